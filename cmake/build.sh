@@ -2,7 +2,7 @@
 # Sourced by tests/run.sh, examples/run.sh and tests/bench/run.sh, which set $root to the repository: what a bare Debian 12
 # needs to build petzval, and the build. POSIX sh.
 
-library_packages="g++ cmake ninja-build pkg-config libglm-dev nlohmann-json3-dev libyaml-cpp-dev libceres-dev libopenexr-dev libpng-dev"
+library_packages="g++ cmake ninja-build pkg-config libglm-dev nlohmann-json3-dev libeigen3-dev libyaml-cpp-dev libceres-dev libopenexr-dev libpng-dev"
 example_packages="libcli11-dev libfreetype-dev libfontconfig-dev fonts-dejavu-core libembree-dev libtinyobjloader-dev"
 test_packages="libgtest-dev"
 

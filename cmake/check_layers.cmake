@@ -8,16 +8,16 @@
 cmake_minimum_required(VERSION 3.25)
 
 set(layer_0 core)
-set(layer_1 media surface prescription film iris)
+set(layer_1 glass prescription iris)
 set(layer_2 lens)
 set(layer_3 paraxial trace)
 set(layer_4 pupil)
-set(layer_5 pupil_table rays lint)  # lint compares what a prescription declares with what the modules below compute
+set(layer_5 pupil_table)
 set(layer_6 focus polynomial)
-set(layer_7 movement)
-set(layer_8 camera)
-set(layer_9 accuracy blur distortion psf)
-set(layer_10 io figure files)   # the edge
+set(layer_7 camera)
+set(layer_8 io)
+set(layer_9 analysis blur fit)
+set(layer_10 figure formats image)   # the edge
 set(edge 10)
 foreach(layer RANGE ${edge})
   foreach(module IN LISTS layer_${layer})

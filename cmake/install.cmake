@@ -46,11 +46,13 @@ function(petzval_install component)
   install(FILES ${PROJECT_BINARY_DIR}/${name}.pc DESTINATION ${pkgconfig_dir})
 endfunction()
 
-petzval_install(core DESCRIPTION "Real lenses for renderers: prescriptions, ray tracing, pupils, focus, point spread functions"
-  REQUIRES glm STATIC_REQUIRES yaml-cpp STATIC_LIBS -ldl)
+petzval_install(core DESCRIPTION "Real lenses for renderers: prescriptions, ray tracing, pupils, focus, cameras"
+  REQUIRES glm STATIC_LIBS -ldl)
+petzval_install(analysis DESCRIPTION "Spots, point spread functions, colour, distortion and errors of lenses")
 petzval_install(blur DESCRIPTION "Lens blur of layered pictures")
-petzval_install(fit DESCRIPTION "Least-squares fits for lens optics")
 petzval_install(figure DESCRIPTION "SVG figures of lenses")
+petzval_install(fit DESCRIPTION "Least-squares fits for lens optics")
+petzval_install(formats DESCRIPTION "Lenses and glasses in files of other programs" STATIC_REQUIRES yaml-cpp)
 petzval_install(image DESCRIPTION "EXR and PNG images" STATIC_REQUIRES "OpenEXR libpng")
 
 get_target_property(core_type petzval-core TYPE)

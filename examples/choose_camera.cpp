@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-#include "petzval/accuracy/choose_model.hpp"
+#include "petzval/analysis/choose_model.hpp"
 #include "petzval/core/parallel.hpp"
 #include "support/cli.hpp"
 #include "support/files.hpp"

@@ -14,16 +14,16 @@
 #include <string>
 #include <vector>
 
+#include "petzval/analysis/lens_metadata.hpp"
+#include "petzval/analysis/lint.hpp"
 #include "petzval/core/error.hpp"
 #include "petzval/core/parallel.hpp"
 #include "petzval/core/units.hpp"
-#include "petzval/files/lens_exr.hpp"
-#include "petzval/files/lens_file.hpp"
-#include "petzval/files/lens_metadata.hpp"
-#include "petzval/files/open_track_io.hpp"
-#include "petzval/files/osl_camera.hpp"
+#include "petzval/formats/lens_file.hpp"
+#include "petzval/formats/open_track_io.hpp"
+#include "petzval/formats/osl_camera.hpp"
+#include "petzval/image/lens_exr.hpp"
 #include "petzval/io/lens_json.hpp"
-#include "petzval/lint/lint.hpp"
 #include "petzval/paraxial/first_order.hpp"
 #include "petzval/pupil/f_number.hpp"
 #include "support/cli.hpp"

@@ -17,7 +17,7 @@
 #include "petzval/core/parallel.hpp"
 #include "petzval/core/sobol.hpp"
 #include "petzval/core/units.hpp"
-#include "petzval/io/image.hpp"
+#include "petzval/image/image.hpp"
 #include "petzval/pupil/f_number.hpp"
 #include "support/bokeh.hpp"
 #include "support/camera_setup.hpp"

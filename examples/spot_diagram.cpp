@@ -9,10 +9,10 @@
 #include <utility>
 #include <vector>
 
+#include "petzval/analysis/spot.hpp"
 #include "petzval/core/units.hpp"
 #include "petzval/figure/spot_figure.hpp"
 #include "petzval/focus/focus.hpp"
-#include "petzval/psf/spot.hpp"
 #include "support/cli.hpp"
 #include "support/design.hpp"
 #include "support/files.hpp"

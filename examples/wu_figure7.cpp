@@ -11,7 +11,7 @@
 
 #include "petzval/core/parallel.hpp"
 #include "petzval/core/units.hpp"
-#include "petzval/media/glass.hpp"
+#include "petzval/glass/glass.hpp"
 #include "support/bokeh.hpp"
 #include "support/cli.hpp"
 #include "support/files.hpp"

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "petzval/files/lens_file.hpp"
+#include "petzval/io/lens_json.hpp"
 #include "petzval/lens/lens.hpp"
 
 namespace petzval::testing {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "petzval/film/film.hpp"
+#include "petzval/core/film.hpp"
 
 namespace petzval::testing {
 

@@ -11,8 +11,8 @@
 
 #include "layers/blur_scenes.hpp"
 #include "petzval/core/error.hpp"
-#include "petzval/io/deep_exr.hpp"
-#include "petzval/io/image.hpp"
+#include "petzval/image/deep_exr.hpp"
+#include "petzval/image/image.hpp"
 
 namespace lens_blur {
 namespace {

@@ -21,7 +21,7 @@
 #include "petzval/blur/gather.hpp"
 #include "petzval/core/error.hpp"
 #include "petzval/core/parallel.hpp"
-#include "petzval/io/image.hpp"
+#include "petzval/image/image.hpp"
 #include "support/cli.hpp"
 #include "support/files.hpp"
 #include "support/picture_files.hpp"

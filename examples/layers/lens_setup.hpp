@@ -8,7 +8,7 @@
 
 #include "petzval/blur/lens_rays.hpp"
 #include "petzval/camera/camera.hpp"
-#include "petzval/movement/focus_point.hpp"
+#include "petzval/focus/focus_point.hpp"
 #include "renderer/scene_description.hpp"
 #include "support/bokeh_flags.hpp"
 #include "support/cli.hpp"

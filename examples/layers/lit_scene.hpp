@@ -7,7 +7,7 @@
 
 #include "petzval/blur/layers.hpp"
 #include "petzval/blur/lens_rays.hpp"
-#include "petzval/io/image.hpp"
+#include "petzval/image/image.hpp"
 #include "renderer/scene_description.hpp"
 
 /// Scenes for the lens blur: what a real-time renderer shows of them, as layers and as a reference.

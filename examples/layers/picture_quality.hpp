@@ -5,7 +5,7 @@
 
 #include "petzval/blur/layers.hpp"
 #include "petzval/blur/lens_rays.hpp"
-#include "petzval/io/image.hpp"
+#include "petzval/image/image.hpp"
 
 namespace lens_blur {
 

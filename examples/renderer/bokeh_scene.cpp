@@ -20,7 +20,7 @@
 #include "petzval/core/parallel.hpp"
 #include "petzval/core/sobol.hpp"
 #include "petzval/core/units.hpp"
-#include "petzval/io/image.hpp"
+#include "petzval/image/image.hpp"
 #include "petzval/io/lens_json.hpp"
 #include "petzval/io/write_file.hpp"
 #include "petzval/pupil/f_number.hpp"

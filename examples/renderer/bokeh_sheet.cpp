@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "petzval/core/error.hpp"
-#include "petzval/io/image.hpp"
+#include "petzval/image/image.hpp"
 #include "renderer/highlights.hpp"
 #include "support/cli.hpp"
 #include "support/contact_sheet.hpp"

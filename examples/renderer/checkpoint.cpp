@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "petzval/core/error.hpp"
-#include "petzval/io/image.hpp"
+#include "petzval/image/image.hpp"
 #include "petzval/io/write_file.hpp"
 
 namespace renderer {

@@ -5,7 +5,7 @@
 #include <optional>
 #include <vector>
 
-#include "petzval/io/image.hpp"
+#include "petzval/image/image.hpp"
 
 namespace renderer {
 

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "petzval/io/image.hpp"
+#include "petzval/image/image.hpp"
 #include "renderer/picture_sums.hpp"
 #include "support/files.hpp"
 

@@ -6,8 +6,8 @@
 
 #include <glm/glm.hpp>
 
+#include "petzval/analysis/colour.hpp"
 #include "petzval/core/units.hpp"
-#include "petzval/psf/colour.hpp"
 #include "support/bokeh.hpp"
 
 namespace renderer {

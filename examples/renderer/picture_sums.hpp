@@ -7,7 +7,7 @@
 #include <span>
 #include <vector>
 
-#include "petzval/io/image.hpp"
+#include "petzval/image/image.hpp"
 #include "renderer/fixed_sum.hpp"
 
 namespace renderer {

@@ -12,7 +12,7 @@
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 
-#include "petzval/io/image.hpp"
+#include "petzval/image/image.hpp"
 
 /// A small renderer that sees its scenes through lenses, not a part of the library.
 namespace renderer {

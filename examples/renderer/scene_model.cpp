@@ -8,7 +8,7 @@
 
 #include <glm/glm.hpp>
 
-#include "petzval/accuracy/choose_model.hpp"
+#include "petzval/analysis/choose_model.hpp"
 #include "petzval/core/error.hpp"
 #include "petzval/core/sobol.hpp"
 #include "renderer/luminance.hpp"

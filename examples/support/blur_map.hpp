@@ -6,9 +6,9 @@
 #include <string>
 #include <vector>
 
-#include "petzval/film/film.hpp"
-#include "petzval/io/image.hpp"
-#include "petzval/movement/image_rays.hpp"
+#include "petzval/core/film.hpp"
+#include "petzval/focus/image_rays.hpp"
+#include "petzval/image/image.hpp"
 #include "point_scene.hpp"
 
 namespace examples {

@@ -8,11 +8,11 @@
 #include "cli.hpp"
 #include "contact_sheet.hpp"
 #include "load_lens.hpp"
+#include "petzval/analysis/colour.hpp"
+#include "petzval/analysis/psf.hpp"
 #include "petzval/camera/camera.hpp"
 #include "petzval/focus/focus.hpp"
-#include "petzval/io/image.hpp"
-#include "petzval/psf/colour.hpp"
-#include "petzval/psf/psf.hpp"
+#include "petzval/image/image.hpp"
 
 namespace examples {
 

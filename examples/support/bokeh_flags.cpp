@@ -4,7 +4,7 @@
 #include <iostream>
 
 #include "petzval/core/error.hpp"
-#include "petzval/io/image.hpp"
+#include "petzval/image/image.hpp"
 #include "text.hpp"
 
 namespace examples {

@@ -9,7 +9,7 @@
 #include "cli.hpp"
 #include "iris_setup.hpp"
 #include "load_lens.hpp"
-#include "petzval/film/film.hpp"
+#include "petzval/core/film.hpp"
 #include "petzval/lens/lens.hpp"
 
 namespace examples {

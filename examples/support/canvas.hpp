@@ -2,7 +2,7 @@
 #pragma once
 
 #include "font.hpp"
-#include "petzval/io/image.hpp"
+#include "petzval/image/image.hpp"
 
 namespace examples {
 

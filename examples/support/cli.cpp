@@ -17,7 +17,7 @@
 #include <system_error>
 
 #include "petzval/core/error.hpp"
-#include "petzval/media/glass.hpp"
+#include "petzval/glass/glass.hpp"
 #include "text.hpp"
 
 namespace examples {

@@ -9,7 +9,7 @@
 #include "cli.hpp"
 #include "petzval/core/error.hpp"
 #include "petzval/core/units.hpp"
-#include "petzval/media/glass.hpp"
+#include "petzval/glass/glass.hpp"
 #include "petzval/pupil/aim.hpp"
 #include "petzval/pupil/pupil_boundary.hpp"
 #include "text.hpp"

@@ -8,8 +8,8 @@
 
 #include "cli.hpp"
 #include "petzval/camera/camera.hpp"
+#include "petzval/camera/focal_surface.hpp"
 #include "petzval/focus/focus.hpp"
-#include "petzval/movement/focal_surface.hpp"
 
 namespace examples {
 

@@ -4,7 +4,7 @@
 #include <filesystem>
 #include <vector>
 
-#include "petzval/movement/focus_point.hpp"
+#include "petzval/focus/focus_point.hpp"
 
 namespace examples {
 

@@ -6,7 +6,7 @@
 #include <memory>
 #include <string_view>
 
-#include "petzval/io/image.hpp"
+#include "petzval/image/image.hpp"
 
 namespace examples {
 

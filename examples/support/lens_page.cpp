@@ -7,12 +7,12 @@
 #include <string_view>
 #include <utility>
 
+#include "petzval/analysis/spot.hpp"
 #include "petzval/core/units.hpp"
 #include "petzval/figure/focus_figures.hpp"
 #include "petzval/figure/lens_figures.hpp"
 #include "petzval/figure/spot_figure.hpp"
 #include "petzval/focus/focus.hpp"
-#include "petzval/psf/spot.hpp"
 #include "text.hpp"
 
 namespace examples {

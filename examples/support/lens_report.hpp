@@ -10,7 +10,7 @@
 #include "design.hpp"
 #include "files.hpp"
 #include "load_lens.hpp"
-#include "petzval/lint/lint.hpp"
+#include "petzval/analysis/lint.hpp"
 #include "petzval/paraxial/first_order.hpp"
 
 namespace examples {

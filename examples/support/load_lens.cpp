@@ -8,10 +8,10 @@
 #include <iostream>
 #include <utility>
 
+#include "petzval/analysis/match_glasses.hpp"
 #include "petzval/core/units.hpp"
-#include "petzval/files/glass_files.hpp"
-#include "petzval/files/lens_file.hpp"
-#include "petzval/lint/match_glasses.hpp"
+#include "petzval/formats/glass_files.hpp"
+#include "petzval/formats/lens_file.hpp"
 #include "petzval/paraxial/first_order.hpp"
 #include "text.hpp"
 
@@ -100,7 +100,7 @@ petzval::GlassCatalogue glasses_of(const LensInput& input) {
 ReadLens read_configurations(const LensInput& input, const petzval::GlassCatalogue& glasses) {
   const std::size_t slash = input.configuration.find('/');
   const std::string first = input.configuration.substr(0, slash);
-  petzval::Prescription whole = petzval::read_prescription(input.file, {.glasses = &glasses, .entry = first});
+  petzval::Prescription whole = petzval::read_lens(input.file, {.glasses = &glasses, .entry = first});
   std::string position = input.configuration;
   if (whole.imported && !whole.imported->entry.empty()) {
     position = slash == std::string::npos ? "" : position.substr(slash + 1);

@@ -7,16 +7,16 @@
 #include <vector>
 
 #include "cli.hpp"
+#include "petzval/glass/glass.hpp"
 #include "petzval/lens/lens.hpp"
 #include "petzval/lens/medium.hpp"
-#include "petzval/media/glass.hpp"
 #include "petzval/prescription/prescription.hpp"
 
 namespace examples {
 
 /// What a command line says about a lens.
 struct LensInput {
-  std::string file{};                      ///< of any format that read_prescription() knows
+  std::string file{};                      ///< of any format that read_lens() knows
   std::vector<std::string> glass_files{};  ///< looked into before the tables of petzval
   std::string configuration{};             ///< a name or a number from 0; empty: the first
   bool match_glasses = false;              ///< media without a name get the nearest glass

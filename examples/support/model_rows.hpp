@@ -9,8 +9,8 @@
 #include "cli.hpp"
 #include "files.hpp"
 #include "load_lens.hpp"
-#include "petzval/accuracy/choose_model.hpp"
-#include "petzval/film/film.hpp"
+#include "petzval/analysis/choose_model.hpp"
+#include "petzval/core/film.hpp"
 
 namespace examples {
 

@@ -8,10 +8,10 @@
 
 #include "cli.hpp"
 #include "load_lens.hpp"
-#include "petzval/film/film.hpp"
+#include "petzval/core/film.hpp"
+#include "petzval/focus/focus_point.hpp"
+#include "petzval/focus/image_rays.hpp"
 #include "petzval/lens/lens.hpp"
-#include "petzval/movement/focus_point.hpp"
-#include "petzval/movement/image_rays.hpp"
 #include "petzval/paraxial/ideal_lens.hpp"
 
 namespace examples {

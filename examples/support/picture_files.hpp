@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "cli.hpp"
-#include "petzval/io/image.hpp"
+#include "petzval/image/image.hpp"
 
 namespace examples {
 

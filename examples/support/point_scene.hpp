@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-#include "petzval/film/film.hpp"
+#include "petzval/core/film.hpp"
 #include "petzval/paraxial/ideal_lens.hpp"
 
 namespace examples {

@@ -12,7 +12,7 @@
 #include "contact_sheet.hpp"
 #include "petzval/core/error.hpp"
 #include "petzval/core/units.hpp"
-#include "petzval/io/psf_set_exr.hpp"
+#include "petzval/image/psf_set_exr.hpp"
 #include "petzval/io/write_file.hpp"
 #include "text.hpp"
 

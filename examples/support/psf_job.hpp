@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "files.hpp"
-#include "petzval/io/image.hpp"
-#include "petzval/psf/psf_set.hpp"
+#include "petzval/analysis/psf_set.hpp"
+#include "petzval/image/image.hpp"
 #include "shard.hpp"
 
 namespace examples {

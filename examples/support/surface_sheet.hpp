@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "petzval/io/image.hpp"
+#include "petzval/image/image.hpp"
 
 namespace examples {
 

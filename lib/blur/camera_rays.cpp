@@ -10,7 +10,7 @@
 #include "petzval/camera/camera.hpp"
 #include "petzval/core/error.hpp"
 
-namespace petzval::inline v0 {
+namespace petzval {
 namespace {
 
 /// Rays of one film point.
@@ -142,4 +142,4 @@ LensRays LensRays::of(const Camera& camera, const LayerCamera& layers, std::span
                   options);
 }
 
-}  // namespace petzval::inline v0
+}  // namespace petzval

@@ -5,7 +5,7 @@
 
 #include "petzval/core/error.hpp"
 
-namespace petzval::inline v0::blur_detail {
+namespace petzval::blur_detail {
 
 /// Throws Error for a picture without pixels or with more than 32768 a side. what: the picture, for the message.
 inline void check_sides(const std::string& what, int columns, int rows) {
@@ -15,4 +15,4 @@ inline void check_sides(const std::string& what, int columns, int rows) {
               std::to_string(most) + " pixels a side");
 }
 
-}  // namespace petzval::inline v0::blur_detail
+}  // namespace petzval::blur_detail

@@ -19,7 +19,7 @@
 #include "pixel_steps.hpp"
 #include "ray_table.hpp"
 
-namespace petzval::inline v0 {
+namespace petzval {
 namespace {
 
 using namespace blur_detail;
@@ -376,4 +376,4 @@ Blurred gather(const LayerSet& layers, const LensRays& rays, const GatherOptions
   return picture;
 }
 
-}  // namespace petzval::inline v0
+}  // namespace petzval

@@ -7,7 +7,7 @@
 #include "ray_rows.hpp"
 #include "trace/lanes.hpp"
 
-namespace petzval::inline v0::blur_detail {
+namespace petzval::blur_detail {
 namespace {
 
 using Numbers = trace_detail::Lanes<float>;
@@ -529,4 +529,4 @@ PETZVAL_FOLLOW(general, DifferentRays)
 extern const GatherLoops PETZVAL_LOOPS;
 const GatherLoops PETZVAL_LOOPS{same, coherent, general, limits};
 
-}  // namespace petzval::inline v0::blur_detail
+}  // namespace petzval::blur_detail

@@ -7,7 +7,7 @@
 
 #include "core/widest.hpp"
 
-namespace petzval::inline v0::blur_detail {
+namespace petzval::blur_detail {
 
 /// Layers around a tile: a window of them, or a copy with repeated edges if rays leave them. Lanes read up to 66
 /// numbers beyond the pixels that rays reach.
@@ -99,4 +99,4 @@ struct GatherLoops {
 
 PETZVAL_WIDEST(GatherLoops, gather_loops)
 
-}  // namespace petzval::inline v0::blur_detail
+}  // namespace petzval::blur_detail

@@ -10,7 +10,7 @@
 #include "gather_loops.hpp"
 #include "petzval/blur/gather.hpp"
 
-namespace petzval::inline v0 {
+namespace petzval {
 
 /// What threads of gather() work with, kept from picture to picture.
 struct Blurred::Memory {
@@ -55,4 +55,4 @@ struct Blurred::Memory {
   std::size_t lent_ = 0;
 };
 
-}  // namespace petzval::inline v0
+}  // namespace petzval

@@ -10,7 +10,7 @@
 #include "petzval/core/parallel.hpp"
 #include "pixel_steps.hpp"
 
-namespace petzval::inline v0::blur_detail {
+namespace petzval::blur_detail {
 namespace {
 
 constexpr std::size_t least_rays = 64, most_rays = 16384;  // of a stamp
@@ -396,4 +396,4 @@ void Highlights::add(const Stamp& stamp, const Highlight& h, std::size_t channel
   }
 }
 
-}  // namespace petzval::inline v0::blur_detail
+}  // namespace petzval::blur_detail

@@ -9,7 +9,7 @@
 #include "petzval/blur/gather.hpp"
 #include "ray_table.hpp"
 
-namespace petzval::inline v0::blur_detail {
+namespace petzval::blur_detail {
 
 /// A bright pixel of the layers.
 struct Highlight {
@@ -75,4 +75,4 @@ class Highlights {
   std::vector<RayTable> shared_;  ///< of each channel, of rays that all pixels share
 };
 
-}  // namespace petzval::inline v0::blur_detail
+}  // namespace petzval::blur_detail

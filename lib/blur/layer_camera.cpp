@@ -13,7 +13,7 @@
 #include "petzval/paraxial/first_order.hpp"
 #include "petzval/paraxial/ideal_lens.hpp"
 
-namespace petzval::inline v0 {
+namespace petzval {
 namespace {
 
 using blur_detail::check_sides;
@@ -70,4 +70,4 @@ double layer_origin_z(const Camera& camera) {
   return z;
 }
 
-}  // namespace petzval::inline v0
+}  // namespace petzval

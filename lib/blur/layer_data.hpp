@@ -7,7 +7,7 @@
 #include "n_buffer.hpp"
 #include "petzval/blur/layers.hpp"
 
-namespace petzval::inline v0 {
+namespace petzval {
 
 /// Planes of columns x rows numbers, side by side: of each layer inverse depth, red, green, blue, alpha.
 struct LayerSet::Data {
@@ -63,4 +63,4 @@ namespace blur_detail {
 using LayerData = LayerAccess::Data;
 }
 
-}  // namespace petzval::inline v0
+}  // namespace petzval

@@ -12,7 +12,7 @@
 #include "layer_data.hpp"
 #include "petzval/core/error.hpp"
 
-namespace petzval::inline v0 {
+namespace petzval {
 namespace {
 
 constexpr float infinity = std::numeric_limits<float>::infinity();
@@ -292,4 +292,4 @@ FragmentLists LayerSet::fragments() const {
   return lists;
 }
 
-}  // namespace petzval::inline v0
+}  // namespace petzval

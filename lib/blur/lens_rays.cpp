@@ -13,7 +13,7 @@
 #include "petzval/core/error.hpp"
 #include "ray_table.hpp"
 
-namespace petzval::inline v0 {
+namespace petzval {
 namespace {
 
 using namespace blur_detail;
@@ -226,4 +226,4 @@ void LensRays::exact_at(int channel, int column, int row, std::span<LayerRay> ra
   data_->source(channel, {column + 0.5, row + 0.5}, std::span(data_->points).subspan(first, rays.size()), rays);
 }
 
-}  // namespace petzval::inline v0
+}  // namespace petzval

@@ -5,7 +5,7 @@
 #include <bit>
 #include <limits>
 
-namespace petzval::inline v0::blur_detail {
+namespace petzval::blur_detail {
 namespace {
 
 constexpr float infinity = std::numeric_limits<float>::infinity();
@@ -99,4 +99,4 @@ DepthRange NBuffer::below(const PixelRect& rect) const noexcept {
   return {least, most, static_cast<int>(layers)};
 }
 
-}  // namespace petzval::inline v0::blur_detail
+}  // namespace petzval::blur_detail

@@ -7,7 +7,7 @@
 
 #include "petzval/core/version.hpp"
 
-namespace petzval::inline v0::blur_detail {
+namespace petzval::blur_detail {
 
 /// Columns and rows from first to last, both included.
 struct PixelRect {
@@ -45,4 +45,4 @@ class NBuffer {
   std::vector<float> row_least_, row_most_, row_layers_;
 };
 
-}  // namespace petzval::inline v0::blur_detail
+}  // namespace petzval::blur_detail

@@ -9,7 +9,7 @@
 #include "petzval/core/error.hpp"
 #include "ray_table.hpp"
 
-namespace petzval::inline v0 {
+namespace petzval {
 
 using blur_detail::most_reach_px;
 
@@ -32,4 +32,4 @@ PeelPlan plan_peel(const LensRays& rays, double nearest_mm, double farthest_mm) 
   return plan;
 }
 
-}  // namespace petzval::inline v0
+}  // namespace petzval

@@ -6,7 +6,7 @@
 #include "core/scalar.hpp"
 #include "core/simd.hpp"
 
-namespace petzval::inline v0::blur_detail {
+namespace petzval::blur_detail {
 
 /// Inverse depth of a pixel without a surface in front of the ray, for SurfaceGap.
 inline constexpr float no_surface = -1e30f;
@@ -75,4 +75,4 @@ class PixelSteps {
 };
 
 }  // namespace
-}  // namespace petzval::inline v0::blur_detail
+}  // namespace petzval::blur_detail

@@ -6,7 +6,7 @@
 #include "petzval/blur/lens_rays.hpp"
 #include "petzval/core/error.hpp"
 
-namespace petzval::inline v0 {
+namespace petzval {
 
 std::vector<PupilPoint> vogel_points(int count, double turn) {
   if (count < 1 || count > (1 << 20)) {
@@ -38,4 +38,4 @@ std::vector<PupilPoint> vogel_sets(int count, int sets) {
   return points;
 }
 
-}  // namespace petzval::inline v0
+}  // namespace petzval

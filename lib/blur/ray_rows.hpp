@@ -5,7 +5,7 @@
 
 #include "petzval/core/version.hpp"
 
-namespace petzval::inline v0::blur_detail {
+namespace petzval::blur_detail {
 
 /// Lines of the rays of a place, in rows of as many numbers: where a line runs to at infinity less the place itself
 /// (along columns and rows), its slope (the same), and its weight.
@@ -16,4 +16,4 @@ constexpr std::size_t set_of(int column, int row, int side) noexcept {
   return static_cast<std::size_t>(row % side * side + column % side);
 }
 
-}  // namespace petzval::inline v0::blur_detail
+}  // namespace petzval::blur_detail

@@ -9,7 +9,7 @@
 #include "petzval/core/error.hpp"
 #include "petzval/core/parallel.hpp"
 
-namespace petzval::inline v0::blur_detail {
+namespace petzval::blur_detail {
 namespace {
 
 /// The cell that holds a position along one side, and the part of the way through it.
@@ -150,4 +150,4 @@ RayTable ray_table(const RasterArea& area, std::span<const PupilPoint> points, s
   return table;
 }
 
-}  // namespace petzval::inline v0::blur_detail
+}  // namespace petzval::blur_detail

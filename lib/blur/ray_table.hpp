@@ -9,7 +9,7 @@
 #include "petzval/blur/lens_rays.hpp"
 #include "ray_rows.hpp"
 
-namespace petzval::inline v0::blur_detail {
+namespace petzval::blur_detail {
 
 /// Layers of more overscan are refused.
 inline constexpr double most_reach_px = 16384;
@@ -43,9 +43,9 @@ struct RayTable {
 RayTable ray_table(const RasterArea& area, std::span<const PupilPoint> points, std::size_t channels,
                    const LensRays::Source& source, int step, int threads);
 
-}  // namespace petzval::inline v0::blur_detail
+}  // namespace petzval::blur_detail
 
-namespace petzval::inline v0 {
+namespace petzval {
 
 struct LensRays::Data {
   LayerCamera camera;
@@ -79,4 +79,4 @@ namespace blur_detail {
 using RayData = RayAccess::Data;
 }
 
-}  // namespace petzval::inline v0
+}  // namespace petzval

@@ -8,7 +8,7 @@
 #include "petzval/blur/lens_rays.hpp"
 #include "petzval/core/error.hpp"
 
-namespace petzval::inline v0 {
+namespace petzval {
 namespace {
 
 /// Samples of an iris that follow its weights; a small part is uniform, so that no weight is large.
@@ -59,4 +59,4 @@ LensRays LensRays::thin(const LayerCamera& camera, const ThinLens& lens, std::sp
   return LensRays(camera, points, coloured ? 3 : 1, source, options);
 }
 
-}  // namespace petzval::inline v0
+}  // namespace petzval

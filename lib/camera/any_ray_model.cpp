@@ -4,7 +4,7 @@
 
 #include "petzval/camera/ray_model.hpp"
 
-namespace petzval::inline v0 {
+namespace petzval {
 
 RayFate AnyRayModel::Interface::batch_of_one(const TwoPlaneRay& film_ray, Wavelength wavelength,
                                              Ray<double>& ray) const noexcept {
@@ -42,4 +42,4 @@ RayDerivatives AnyRayModel::Interface::differences(const TwoPlaneRayDerivatives&
   return result;
 }
 
-}  // namespace petzval::inline v0
+}  // namespace petzval

@@ -9,7 +9,7 @@
 #include "petzval/trace/trace.hpp"
 #include "pupil/boundary_nodes.hpp"
 
-namespace petzval::inline v0::camera_detail {
+namespace petzval::camera_detail {
 
 StopMaps stop_maps(const LensFacts& facts, std::size_t wavelength, const TwoPlanes& space, Meridian section) {
   const Lens& lens = facts.lens();
@@ -54,4 +54,4 @@ double best_focus_power(const LensFacts& facts, std::size_t wavelength, const St
   return std::isfinite(power) ? power : 0;
 }
 
-}  // namespace petzval::inline v0::camera_detail
+}  // namespace petzval::camera_detail

@@ -6,7 +6,7 @@
 #include "lens_facts.hpp"
 #include "petzval/pupil_table/two_plane_rays.hpp"
 
-namespace petzval::inline v0::camera_detail {
+namespace petzval::camera_detail {
 
 /// Film and pupil point of a line to its height and slope in the plane z behind the lens.
 inline RayMatrix line_at(const TwoPlanes& space, double z) noexcept {
@@ -29,4 +29,4 @@ StopMaps stop_maps(const LensFacts& facts, std::size_t wavelength, const TwoPlan
 /// along the section. 0 where no exact ray passes.
 double best_focus_power(const LensFacts& facts, std::size_t wavelength, const StopMaps& maps, Meridian section);
 
-}  // namespace petzval::inline v0::camera_detail
+}  // namespace petzval::camera_detail

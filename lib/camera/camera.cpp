@@ -16,7 +16,7 @@
 #include "petzval/core/error.hpp"
 #include "tilted_pinhole.hpp"
 
-namespace petzval::inline v0 {
+namespace petzval {
 namespace {
 
 using camera_detail::FilmView;
@@ -291,4 +291,4 @@ template PETZVAL_API void Camera::sample(std::size_t, const CameraSamples<float>
 template PETZVAL_API void Camera::sample(std::size_t, const CameraSamples<double>&,
                                          const CameraRays<double>&) const noexcept;
 
-}  // namespace petzval::inline v0
+}  // namespace petzval

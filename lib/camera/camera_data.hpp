@@ -14,7 +14,7 @@
 #include "scene_side.hpp"
 #include "tilted_film.hpp"
 
-namespace petzval::inline v0 {
+namespace petzval {
 
 /// Everything that a camera works out once: the film's side when it is made, the scene's when it is first asked for.
 struct Camera::Data {
@@ -79,4 +79,4 @@ struct Camera::Data {
   mutable std::optional<camera_detail::SceneSide> scene_;
 };
 
-}  // namespace petzval::inline v0
+}  // namespace petzval

@@ -8,7 +8,7 @@
 #include "lens/look_up.hpp"
 #include "way_to_front.hpp"
 
-namespace petzval::inline v0::camera_detail {
+namespace petzval::camera_detail {
 namespace {
 
 template <class T>
@@ -192,4 +192,4 @@ constexpr CameraLoopsOf<T> loops{keep_on_film<T>, start<T>,      move_to_front<T
 
 const CameraLoops PETZVAL_LOOPS{loops<float>, loops<double>, weigh_one};
 
-}  // namespace petzval::inline v0::camera_detail
+}  // namespace petzval::camera_detail

@@ -11,7 +11,7 @@
 #include "petzval/camera/camera_ray.hpp"
 #include "petzval/pupil_table/two_plane_rays.hpp"
 
-namespace petzval::inline v0::camera_detail {
+namespace petzval::camera_detail {
 
 /// A tilted film in numbers of type T: see TiltedPlane. It stays where it is unless it has times.
 template <class T>
@@ -64,4 +64,4 @@ struct CameraLoops {
 
 PETZVAL_WIDEST(CameraLoops, camera_loops)
 
-}  // namespace petzval::inline v0::camera_detail
+}  // namespace petzval::camera_detail

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "core/film_bounds.hpp"
 #include "core/loop_math.hpp"
-#include "film/film_bounds.hpp"
 #include "petzval/core/ray.hpp"
 
 /// What a camera does to one sample before and after its ray is found, for loops over many and for a single one.
-namespace petzval::inline v0::camera_detail {
+namespace petzval::camera_detail {
 
-using film_detail::FilmBounds;
+using core_detail::FilmBounds;
 
 // Local names: this is compiled for several instruction sets, and the linker must not take one for another.
 namespace {
@@ -90,4 +90,4 @@ inline T facing_of(const Plane& plane, T virtual_x, T virtual_y, T pupil_x, T pu
 }
 
 }  // namespace
-}  // namespace petzval::inline v0::camera_detail
+}  // namespace petzval::camera_detail

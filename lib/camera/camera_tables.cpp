@@ -13,7 +13,7 @@
 #include "petzval/camera/polynomial_model.hpp"
 #include "petzval/core/error.hpp"
 
-namespace petzval::inline v0 {
+namespace petzval {
 namespace {
 
 using Table = CameraTables;
@@ -213,4 +213,4 @@ std::vector<float> Camera::tables() const {
   return std::move(to.list);
 }
 
-}  // namespace petzval::inline v0
+}  // namespace petzval

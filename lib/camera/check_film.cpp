@@ -6,14 +6,14 @@
 #include <cstddef>
 #include <string>
 
+#include "core/check_rectangle.hpp"
 #include "core/text.hpp"
-#include "film/check_rectangle.hpp"
 #include "petzval/core/error.hpp"
-#include "petzval/film/film.hpp"
+#include "petzval/core/film.hpp"
 #include "petzval/pupil_table/two_plane_rays.hpp"
 #include "pupil/face.hpp"
 
-namespace petzval::inline v0::camera_detail {
+namespace petzval::camera_detail {
 
 namespace {
 
@@ -75,7 +75,7 @@ FilmBehindLens placed(const Lens& lens, const Film& film) {
 }
 
 void check_film(const Lens& lens, const Film& film) {
-  film_detail::check_rectangle(lens.name() + ": film", film);
+  core_detail::check_rectangle(lens.name() + ": film", film);
   check_outside_surface(lens, film);
   if (film.tilted()) check_tilted(lens, film);
   if (film.travel_mm == 0) return;
@@ -96,4 +96,4 @@ void check_upright_film(const Lens& lens, const Film& film) {
               " rad, wanted one perpendicular to the axis");
 }
 
-}  // namespace petzval::inline v0::camera_detail
+}  // namespace petzval::camera_detail

@@ -2,19 +2,19 @@
 #pragma once
 
 #include "petzval/core/export.hpp"
-#include "petzval/film/film.hpp"
+#include "petzval/core/film.hpp"
 #include "petzval/lens/lens.hpp"
 
-namespace petzval::inline v0::camera_detail {
+namespace petzval::camera_detail {
 
 /// Whether a film meets other rays than an upright one at its place.
 inline bool tilted_or_moving(const Film& film) noexcept { return film.tilted() || film.travel_mm != 0; }
 
-/// Throws Error where film_detail::check_rectangle() does, and for a film that reaches into the last surface or is
+/// Throws Error where core_detail::check_rectangle() does, and for a film that reaches into the last surface or is
 /// tilted into the lens at any time.
 void check_film(const Lens& lens, const Film& film);
 /// The same, and for any film that is tilted or travels.
-void check_upright_film(const Lens& lens, const Film& film);
+PETZVAL_API void check_upright_film(const Lens& lens, const Film& film);
 
 /// A lens whose film lies where a Film says, and that film with its place set.
 struct FilmBehindLens {
@@ -24,4 +24,4 @@ struct FilmBehindLens {
 /// Throws Error where with_film() does, also for the lens's own film.
 PETZVAL_API FilmBehindLens placed(const Lens& lens, const Film& film);
 
-}  // namespace petzval::inline v0::camera_detail
+}  // namespace petzval::camera_detail

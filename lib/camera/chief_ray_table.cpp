@@ -10,7 +10,7 @@
 #include "make_model.hpp"
 #include "trace/sequential.hpp"
 
-namespace petzval::inline v0::camera_detail {
+namespace petzval::camera_detail {
 namespace {
 
 /// The radius of the table, in film radii: a point imaged beside the film differs from one that no ray sees.
@@ -241,4 +241,4 @@ std::optional<FilmPoint> ChiefRayTable::about(const Vec3<double>& point) const n
   return FilmPoint{*film * point.x / height, *film * point.y / height};
 }
 
-}  // namespace petzval::inline v0::camera_detail
+}  // namespace petzval::camera_detail

@@ -8,12 +8,12 @@
 
 #include "lens_facts.hpp"
 #include "petzval/camera/ray_model.hpp"
+#include "petzval/core/film.hpp"
 #include "petzval/core/geometry.hpp"
-#include "petzval/film/film.hpp"
 #include "petzval/pupil_table/two_plane_rays.hpp"
 #include "petzval/trace/trace.hpp"
 
-namespace petzval::inline v0::camera_detail {
+namespace petzval::camera_detail {
 
 /// Where an exact line of the film's space goes, clear apertures ignored.
 TracedRay<double> unclipped(const Lens& lens, const TwoPlanes& space, Wavelength wavelength, const TwoPlaneRay& line);
@@ -47,4 +47,4 @@ class ChiefRayTable {
   Meridian y_, x_;  // x_ is empty where it is as y_
 };
 
-}  // namespace petzval::inline v0::camera_detail
+}  // namespace petzval::camera_detail

@@ -1,29 +1,29 @@
 // SPDX-License-Identifier: Apache-2.0
 // Rays with their derivatives by two parameters: each model once more, over dual numbers.
-#include <ceres/jet.h>
 
 #include <cmath>
 #include <optional>
 
+#include "core/dual.hpp"
 #include "core/kernel_vec.hpp"
 #include "exact_model.hpp"
 #include "paraxial_model.hpp"
 #include "petzval/trace/trace.hpp"
 #include "trace/sequential.hpp"
 
-namespace petzval::inline v0::camera_detail {
+namespace petzval::camera_detail {
 namespace {
 
-using Jet = ceres::Jet<double, 2>;
-using Vec = kernel::Vec<Jet>;
+using kernel::Dual;
+using Vec = kernel::Vec<Dual>;
 
 struct Line {
-  Jet film_x, film_y, pupil_x, pupil_y;
+  Dual film_x, film_y, pupil_x, pupil_y;
 };
 
 Line line_of(const TwoPlaneRayDerivatives& d) noexcept {
   const auto jet = [&](double TwoPlaneRay::*part) {
-    Jet x(d.line.*part);
+    Dual x(d.line.*part);
     x.v[0] = d.by_u.*part;
     x.v[1] = d.by_v.*part;
     return x;
@@ -67,9 +67,9 @@ RayDerivatives ExactModel<R>::to_scene(const TwoPlaneRayDerivatives& line, Wavel
   const TwoPlanes& space = pupils_.space();
   const auto [film_x, film_y, pupil_x, pupil_y] = line_of(line);
   const double depth = space.depth();
-  const Jet x = pupil_x - film_x, y = pupil_y - film_y;
-  const Jet per_length = towards_ / sqrt(x * x + y * y + depth * depth);
-  const Vec origin{pupil_x, pupil_y, Jet(space.pupil_z)};
+  const Dual x = pupil_x - film_x, y = pupil_y - film_y;
+  const Dual per_length = towards_ / sqrt(x * x + y * y + depth * depth);
+  const Vec origin{pupil_x, pupil_y, Dual(space.pupil_z)};
   const Vec direction{x * per_length, y * per_length, depth * per_length};
   RayDerivatives start = derivatives_of(origin, direction);
   start.by_u = start.by_v = {{0, 0, 0}, {0, 0, 0}};
@@ -83,8 +83,10 @@ RayDerivatives ExactModel<R>::to_scene(const TwoPlaneRayDerivatives& line, Wavel
   return end.fate == RayFate::transmitted ? derivatives_of(end.origin, end.direction) : start;
 }
 
-template RayDerivatives ExactModel<float>::to_scene(const TwoPlaneRayDerivatives&, Wavelength) const noexcept;
-template RayDerivatives ExactModel<double>::to_scene(const TwoPlaneRayDerivatives&, Wavelength) const noexcept;
+template PETZVAL_API RayDerivatives ExactModel<float>::to_scene(const TwoPlaneRayDerivatives&,
+                                                                Wavelength) const noexcept;
+template PETZVAL_API RayDerivatives ExactModel<double>::to_scene(const TwoPlaneRayDerivatives&,
+                                                                 Wavelength) const noexcept;
 
 RayDerivatives ParaxialModel::to_scene(const TwoPlaneRayDerivatives& line, Wavelength wavelength) const noexcept {
   SectionMaps own;
@@ -92,10 +94,10 @@ RayDerivatives ParaxialModel::to_scene(const TwoPlaneRayDerivatives& line, Wavel
   if (!map) return {RayFate::missed_surface};
   const auto [film_x, film_y, pupil_x, pupil_y] = line_of(line);
   const auto& [mx, my] = *map;
-  const Jet slope_x = mx.c * film_x + mx.d * pupil_x, slope_y = my.c * film_y + my.d * pupil_y;
-  const Jet down = -1.0 / sqrt(slope_x * slope_x + slope_y * slope_y + 1.0);
-  return derivatives_of({mx.a * film_x + mx.b * pupil_x, my.a * film_y + my.b * pupil_y, Jet(z_)},
+  const Dual slope_x = mx.c * film_x + mx.d * pupil_x, slope_y = my.c * film_y + my.d * pupil_y;
+  const Dual down = -1.0 / sqrt(slope_x * slope_x + slope_y * slope_y + 1.0);
+  return derivatives_of({mx.a * film_x + mx.b * pupil_x, my.a * film_y + my.b * pupil_y, Dual(z_)},
                         {slope_x * down, slope_y * down, down});
 }
 
-}  // namespace petzval::inline v0::camera_detail
+}  // namespace petzval::camera_detail

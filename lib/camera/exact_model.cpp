@@ -10,7 +10,7 @@
 #include "core/meet_plane.hpp"
 #include "petzval/trace/trace.hpp"
 
-namespace petzval::inline v0::camera_detail {
+namespace petzval::camera_detail {
 namespace {
 
 constexpr std::size_t block = 256;
@@ -136,4 +136,4 @@ PETZVAL_EXACT(double, float)
 PETZVAL_EXACT(double, double)
 #undef PETZVAL_EXACT
 
-}  // namespace petzval::inline v0::camera_detail
+}  // namespace petzval::camera_detail

@@ -6,7 +6,7 @@
 #include "petzval/camera/ray_model.hpp"
 #include "petzval/lens/lens.hpp"
 
-namespace petzval::inline v0::camera_detail {
+namespace petzval::camera_detail {
 
 /// The lens itself: rays traced through every surface in R, float or double, whatever the type of samples and rays.
 template <class R>
@@ -42,4 +42,4 @@ class ExactModel {
   double towards_;
 };
 
-}  // namespace petzval::inline v0::camera_detail
+}  // namespace petzval::camera_detail

@@ -14,7 +14,7 @@
 #include "petzval/trace/trace.hpp"
 #include "pupil/boundary_nodes.hpp"
 
-namespace petzval::inline v0 {
+namespace petzval {
 namespace {
 
 /// The plane of focus of a film point's exact rays, as what is added to slopes per height in the plane z: that of least
@@ -107,4 +107,4 @@ ExpressiveLens expressive_from(const Lens& given, const Film& given_film) {
   return found;
 }
 
-}  // namespace petzval::inline v0
+}  // namespace petzval

@@ -1,20 +1,19 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "front.hpp"
 
-#include <ceres/jet.h>
-
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
 
+#include "core/dual.hpp"
 #include "core/text.hpp"
 #include "petzval/core/error.hpp"
 #include "petzval/paraxial/first_order.hpp"
 #include "pupil/face.hpp"
 #include "way_to_front.hpp"
 
-namespace petzval::inline v0::camera_detail {
+namespace petzval::camera_detail {
 
 Front front_of(const Lens& lens) {
   const Pupil entrance = has_pupils(lens) ? pupils(lens).entrance : Pupil{};
@@ -43,19 +42,19 @@ double way_to_front(const Front& front, const Ray<double>& ray) noexcept {
 }
 
 RayDerivatives at_front(const Front& front, const RayDerivatives& ray) noexcept {
-  using Jet = ceres::Jet<double, 2>;
+  using kernel::Dual;
   const auto jet = [&](Vec3<double> Ray<double>::*part, int axis) {
-    Jet x((ray.ray.*part)[axis]);
+    Dual x((ray.ray.*part)[axis]);
     x.v[0] = (ray.by_u.*part)[axis];
     x.v[1] = (ray.by_v.*part)[axis];
     return x;
   };
   const std::array o{jet(&Ray<double>::origin, 0), jet(&Ray<double>::origin, 1), jet(&Ray<double>::origin, 2)};
   const std::array d{jet(&Ray<double>::direction, 0), jet(&Ray<double>::direction, 1), jet(&Ray<double>::direction, 2)};
-  const Jet way = way_to_front(Jet(front.curvature), o[0], o[1], o[2] - front.vertex_z, d[0], d[1], d[2]);
+  const Dual way = way_to_front(Dual(front.curvature), o[0], o[1], o[2] - front.vertex_z, d[0], d[1], d[2]);
   RayDerivatives result = ray;
   for (int axis = 0; axis < 3; ++axis) {
-    const Jet moved = o[axis] + way * d[axis];
+    const Dual moved = o[axis] + way * d[axis];
     result.ray.origin[axis] = moved.a;
     result.by_u.origin[axis] = moved.v[0];
     result.by_v.origin[axis] = moved.v[1];
@@ -63,4 +62,4 @@ RayDerivatives at_front(const Front& front, const RayDerivatives& ray) noexcept 
   return result;
 }
 
-}  // namespace petzval::inline v0::camera_detail
+}  // namespace petzval::camera_detail

@@ -5,7 +5,7 @@
 #include "petzval/lens/lens.hpp"
 #include "petzval/pupil_table/two_plane_rays.hpp"
 
-namespace petzval::inline v0::camera_detail {
+namespace petzval::camera_detail {
 
 /// The front of a lens, on which the rays of every model start: see Camera.
 struct Front {
@@ -21,4 +21,4 @@ double way_to_front(const Front& front, const Ray<double>& ray) noexcept;
 /// A ray whose origin is moved there, and its derivatives.
 RayDerivatives at_front(const Front& front, const RayDerivatives& ray) noexcept;
 
-}  // namespace petzval::inline v0::camera_detail
+}  // namespace petzval::camera_detail

@@ -8,7 +8,7 @@
 #include "petzval/core/error.hpp"
 #include "petzval/paraxial/first_order.hpp"
 
-namespace petzval::inline v0 {
+namespace petzval {
 namespace {
 
 Vec3<double> signs_of(Host host) noexcept {
@@ -67,4 +67,4 @@ Ray<double> HostFrame::to_lens(const Ray<double>& host) const noexcept {
   return {point_to_lens(host.origin), direction_to_lens(host.direction)};
 }
 
-}  // namespace petzval::inline v0
+}  // namespace petzval

@@ -31,7 +31,7 @@
 #include "scene_side.hpp"
 #include "tilted_pinhole.hpp"
 
-namespace petzval::inline v0 {
+namespace petzval {
 namespace camera_detail {
 namespace {
 
@@ -511,4 +511,4 @@ Projection Camera::project(const Vec3<double>& point, Wavelength wavelength, dou
   return data_->scene().project(data_->model, point, data_->resolved(wavelength), time);
 }
 
-}  // namespace petzval::inline v0
+}  // namespace petzval

@@ -9,7 +9,7 @@
 #include "petzval/lens/lens.hpp"
 #include "petzval/paraxial/first_order.hpp"
 
-namespace petzval::inline v0::camera_detail {
+namespace petzval::camera_detail {
 
 /// Whether the two sections of a lens differ.
 inline bool has_cylinders(const Lens& lens) noexcept {
@@ -44,4 +44,4 @@ class LensFacts {
   std::vector<std::optional<Pupils>> pupils_;
 };
 
-}  // namespace petzval::inline v0::camera_detail
+}  // namespace petzval::camera_detail

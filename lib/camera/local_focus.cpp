@@ -10,8 +10,6 @@
 // equation for t, whose left side grows with the slope 1 + w'_X . A^-1 H' (t less what is in focus).
 #include "local_focus.hpp"
 
-#include <ceres/jet.h>
-
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -21,36 +19,37 @@
 #include <utility>
 #include <vector>
 
+#include "camera/moving_least_squares.hpp"
+#include "core/dual.hpp"
 #include "core/meet_plane.hpp"
 #include "core/text.hpp"
 #include "focus/root.hpp"
+#include "focus/targets.hpp"
 #include "lens/between_wavelengths.hpp"
 #include "local_focus_loops.hpp"
 #include "make_model.hpp"
-#include "movement/moving_least_squares.hpp"
-#include "movement/targets.hpp"
 #include "paraxial_model.hpp"
 #include "petzval/core/error.hpp"
 #include "tilted_pinhole.hpp"
 
-namespace petzval::inline v0::camera_detail {
+namespace petzval::camera_detail {
 namespace {
 
-using movement_detail::pupil_scale;
+using focus_detail::pupil_scale;
 
-using Jet = ceres::Jet<double, 2>;
+using kernel::Dual;
 
 /// How much nearer to the pupil than the film, or farther from it, offsets may lead.
 constexpr double nearest_offset = -0.9, farthest_offset = 9;
 
 /// The film's offsets over its distance from the plane of the pupil.
-movement_detail::MovingLeastSquares offsets_of(const std::string& where, const std::vector<FilmOffset>& offsets,
-                                               const Film& film, double film_from_pupil) {
-  std::vector<movement_detail::WeighedValue> points;
+camera_detail::MovingLeastSquares offsets_of(const std::string& where, const std::vector<FilmOffset>& offsets,
+                                             const Film& film, double film_from_pupil) {
+  std::vector<camera_detail::WeighedValue> points;
   for (const auto& [place, offset, weight] : offsets) points.push_back({place, offset / film_from_pupil, weight});
   constexpr double beta = 3;
-  movement_detail::MovingLeastSquares surface(where + "film offsets: ", points, std::sqrt(film.area_mm2()),
-                                              SurfaceKind::affine, beta);
+  camera_detail::MovingLeastSquares surface(where + "film offsets: ", points, std::sqrt(film.area_mm2()),
+                                            SurfaceKind::affine, beta);
   if (!(surface.least() > nearest_offset && surface.most() < farthest_offset)) {
     throw Error(where + "film offsets: the surface reaches from " + to_text(surface.least() * film_from_pupil) +
                 " to " + to_text(surface.most() * film_from_pupil) +
@@ -100,8 +99,8 @@ double zero_of(const auto& f, double scale) {
 }
 
 /// A number by film x and y.
-Jet jet(double value, const Vec2<double>& by) noexcept {
-  Jet result(value);
+Dual jet(double value, const Vec2<double>& by) noexcept {
+  Dual result(value);
   result.v[0] = by.x, result.v[1] = by.y;
   return result;
 }
@@ -132,7 +131,7 @@ struct LocalFocus::Data {
   AnyRayModel model;
   Film film;
   std::optional<FocalSurface> surface;
-  std::optional<movement_detail::MovingLeastSquares> offsets = {};
+  std::optional<camera_detail::MovingLeastSquares> offsets = {};
   FocusRules<double> rules = {};
   FocusRules<float> rules_in_float = {};
   std::vector<At> compiled = {};
@@ -191,8 +190,8 @@ struct LocalFocus::Data {
     if (offsets) result.offset = offsets->at(place);
     return result;
   }
-  FilmPointFocus<Jet> point(const FilmPoint& place, double nearer, const Vec2<double>& nearer_by) const noexcept {
-    FilmPointFocus<Jet> result{jet(nearer, nearer_by), Jet(0.0), Jet(0.0), Jet(1.0)};
+  FilmPointFocus<Dual> point(const FilmPoint& place, double nearer, const Vec2<double>& nearer_by) const noexcept {
+    FilmPointFocus<Dual> result{jet(nearer, nearer_by), Dual(0.0), Dual(0.0), Dual(1.0)};
     if (surface) {
       const auto at_place = surface->slopes(place);
       result.surface = jet(at_place.values.inverse_distance, at_place.inverse_distance);
@@ -324,19 +323,19 @@ void LocalFocus::bend(const FilmPoint& film, double nearer, const Vec2<double>& 
   const auto at = data.at(wavelength);
   if (!at) return;
   const auto part = [&](auto of) {
-    Jet result(of(ray.ray));
+    Dual result(of(ray.ray));
     result.v[0] = of(ray.by_u), result.v[1] = of(ray.by_v);
     return result;
   };
-  BentRay<Jet> bent{part([](const Ray<double>& r) { return r.origin.x; }),
-                    part([](const Ray<double>& r) { return r.origin.y; }),
-                    part([](const Ray<double>& r) { return r.direction.x; }),
-                    part([](const Ray<double>& r) { return r.direction.y; }),
-                    part([](const Ray<double>& r) { return r.direction.z; })};
+  BentRay<Dual> bent{part([](const Ray<double>& r) { return r.origin.x; }),
+                     part([](const Ray<double>& r) { return r.origin.y; }),
+                     part([](const Ray<double>& r) { return r.direction.x; }),
+                     part([](const Ray<double>& r) { return r.direction.y; }),
+                     part([](const Ray<double>& r) { return r.direction.z; })};
   const double z = data.first_order().z();
   const auto point = data.point(film, nearer, nearer_by);
-  const Jet radius = radius_of(at->maps, point, at_entrance(at->maps, z, bent));
-  const Jet by_radius = beyond_one(data.rules.spline, radius) * data.rules.power;
+  const Dual radius = radius_of(at->maps, point, at_entrance(at->maps, z, bent));
+  const Dual by_radius = beyond_one(data.rules.spline, radius) * data.rules.power;
   bent = bent_ray(data.rules, at->maps, at->dispersion, z, point, by_radius, bent);
   ray.ray = {{bent.x.a, bent.y.a, z}, {bent.dx.a, bent.dy.a, bent.dz.a}};
   ray.by_u = {{bent.x.v[0], bent.y.v[0], 0}, {bent.dx.v[0], bent.dy.v[0], bent.dz.v[0]}};
@@ -368,11 +367,11 @@ LocalFocus::Straight LocalFocus::straighten(const Ray<double>& ray, Wavelength w
   const auto from = data.seen(*at, chief, plane);
   if (!from) return {};
   const Vec2<double> nearer_by = plane ? plane->nearer_at(from->place).by : Vec2<double>{0, 0};
-  const FilmPointFocus<Jet> point = data.point(from->place, from->nearer, nearer_by);
+  const FilmPointFocus<Dual> point = data.point(from->place, from->nearer, nearer_by);
   const auto focus = focus_of(data.rules, at->maps, at->dispersion, point);
   const double scale = point.scale.a;
   const Vec2<double> straight = height / scale;
-  const auto spread = [&](const Jet& in_focus, const Vec2<double>& at_height) {
+  const auto spread = [&](const Dual& in_focus, const Vec2<double>& at_height) {
     const Vec2<double> by = data.moved(*at, chief, at_height, plane);
     return 1 + in_focus.v[0] * by.x + in_focus.v[1] * by.y;
   };
@@ -397,7 +396,7 @@ FocalSteepness LocalFocus::steepness(const std::optional<TiltedPlane>& plane) co
       const FilmPoint from_pupil = lies.virtual_point(place);
       const double nearer = lies.nearer_by(from_pupil), part = part_of_virtual(lies, from_pupil, at.middle);
       const Vec2<double> chief = Vec2<double>{from_pupil.x, from_pupil.y} * (part * at.maps.chief_slope);
-      const FilmPointFocus<Jet> point = data.point(place, nearer, lies.nearer_at(place).by);
+      const FilmPointFocus<Dual> point = data.point(place, nearer, lies.nearer_at(place).by);
       const auto [own, asked] = focus_of(data.rules, at.maps, at.dispersion, point);
       const double rim = at.maps.radius * point.scale.a;
       const Vec2<double> x = data.moved(at, chief, {rim, 0}, plane), y = data.moved(at, chief, {0, rim}, plane);
@@ -460,4 +459,4 @@ EntrancePupilTable LocalFocus::entrances(const Lens& lens, const AnyRayModel& mo
 
 double LocalFocus::middle(std::size_t wavelength) const noexcept { return data_->compiled[wavelength].middle; }
 
-}  // namespace petzval::inline v0::camera_detail
+}  // namespace petzval::camera_detail

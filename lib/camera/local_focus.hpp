@@ -9,13 +9,13 @@
 #include "local_focus_steps.hpp"
 #include "petzval/camera/camera_ray.hpp"
 #include "petzval/camera/expressive_lens.hpp"
+#include "petzval/camera/focal_surface.hpp"
 #include "petzval/camera/ray_model.hpp"
-#include "petzval/film/film.hpp"
-#include "petzval/movement/focal_surface.hpp"
+#include "petzval/core/film.hpp"
 #include "pupil_table/entrance_pupil_table.hpp"
 #include "tilted_film.hpp"
 
-namespace petzval::inline v0::camera_detail {
+namespace petzval::camera_detail {
 
 /// map: from film and pupil point to height and slope in the plane z of the scene; middle, radius: of the stop's image,
 /// middle over the film point.
@@ -69,4 +69,4 @@ class LocalFocus {
   std::shared_ptr<const Data> data_;
 };
 
-}  // namespace petzval::inline v0::camera_detail
+}  // namespace petzval::camera_detail

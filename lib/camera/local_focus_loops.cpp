@@ -2,7 +2,7 @@
 // Compiled for each instruction set: see petzval_loops in cmake/module.cmake.
 #include "local_focus_loops.hpp"
 
-namespace petzval::inline v0::camera_detail {
+namespace petzval::camera_detail {
 namespace {
 
 template <class T>
@@ -43,4 +43,4 @@ void bend(const FocusRules<T>& given, const EntranceMaps<T>& given_maps, T dispe
 extern const LocalFocusLoops PETZVAL_LOOPS;
 const LocalFocusLoops PETZVAL_LOOPS{&bend<float>, &bend<double>};
 
-}  // namespace petzval::inline v0::camera_detail
+}  // namespace petzval::camera_detail

@@ -7,7 +7,7 @@
 #include "local_focus_steps.hpp"
 #include "petzval/core/ray.hpp"
 
-namespace petzval::inline v0::camera_detail {
+namespace petzval::camera_detail {
 
 /// FilmPointFocus of N film points.
 template <class T>
@@ -41,4 +41,4 @@ struct LocalFocusLoops {
 
 PETZVAL_WIDEST(LocalFocusLoops, local_focus_loops)
 
-}  // namespace petzval::inline v0::camera_detail
+}  // namespace petzval::camera_detail

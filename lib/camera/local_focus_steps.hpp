@@ -10,7 +10,7 @@
 /// slopes u = U + w H: U is that of the chief ray, and w, the same for all of them, is 1 / distance of the plane in
 /// focus. Another plane in focus is another w, for each film point, radius in the pupil and wavelength; another extent
 /// of the depth of field is another scale s of H.
-namespace petzval::inline v0::camera_detail {
+namespace petzval::camera_detail {
 
 /// First-order optics of one wavelength, in mm: the maps from film and pupil point to height and slope in the plane of
 /// the entrance pupil, height a X + b P and slope c X + d P.
@@ -112,4 +112,4 @@ inline BentRay<N> bent_ray(const FocusRules<T>& rules, const EntranceMaps<T>& ma
 }
 
 }  // namespace
-}  // namespace petzval::inline v0::camera_detail
+}  // namespace petzval::camera_detail

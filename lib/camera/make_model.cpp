@@ -8,7 +8,7 @@
 #include "petzval/camera/polynomial_model.hpp"
 #include "petzval/core/error.hpp"
 
-namespace petzval::inline v0 {
+namespace petzval {
 namespace {
 
 constexpr int least_degree = 3, degree_step = 2;
@@ -60,4 +60,4 @@ ModelKind PolynomialModel::kind() const noexcept {
   return static_cast<ModelKind>(static_cast<int>(ModelKind::polynomial_3) + steps);
 }
 
-}  // namespace petzval::inline v0
+}  // namespace petzval

@@ -8,7 +8,7 @@
 #include "petzval/camera/ray_model.hpp"
 #include "petzval/core/export.hpp"
 
-namespace petzval::inline v0::camera_detail {
+namespace petzval::camera_detail {
 
 /// Builds a model for film points up to film_radius (mm) from the axis. rim: cuts its pupils. Throws Error where the
 /// model's own constructor and FilmPupilTable::cut_by_rim() do, and for ModelKind::custom.
@@ -19,7 +19,7 @@ PETZVAL_API AnyRayModel make_model(ModelKind model, const LensFacts& facts, doub
 FilmPupilTable behind(const PupilRim& rim, const FilmPupilTable& pupils, const Lens& lens);
 
 /// Whether a model is a ParaxialModel, or a PolynomialModel.
-bool is_first_order(ModelKind model) noexcept;
+PETZVAL_API bool is_first_order(ModelKind model) noexcept;
 PETZVAL_API bool is_polynomial(ModelKind model) noexcept;
 
-}  // namespace petzval::inline v0::camera_detail
+}  // namespace petzval::camera_detail

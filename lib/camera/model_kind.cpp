@@ -6,7 +6,7 @@
 
 #include "petzval/camera/model_kind.hpp"
 
-namespace petzval::inline v0 {
+namespace petzval {
 namespace {
 
 constexpr std::array all{ModelKind::pinhole,      ModelKind::thin,         ModelKind::thin_two_disc,
@@ -32,4 +32,4 @@ std::optional<ModelKind> model_named(std::string_view name) noexcept {
 
 std::span<const ModelKind> models() noexcept { return all; }
 
-}  // namespace petzval::inline v0
+}  // namespace petzval

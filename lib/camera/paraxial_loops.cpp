@@ -7,7 +7,7 @@
 
 #include "lens/look_up.hpp"
 
-namespace petzval::inline v0::camera_detail {
+namespace petzval::camera_detail {
 namespace {
 
 template <class T>
@@ -114,4 +114,4 @@ RayFate one_to_scene(const SectionMaps* maps, double z, double reach, const TwoP
 extern const ParaxialLoops PETZVAL_LOOPS;
 const ParaxialLoops PETZVAL_LOOPS{&to_scene<float>, &to_scene<double>, &one_to_scene};
 
-}  // namespace petzval::inline v0::camera_detail
+}  // namespace petzval::camera_detail

@@ -5,7 +5,7 @@
 
 #include "paraxial_model.hpp"
 
-namespace petzval::inline v0::camera_detail {
+namespace petzval::camera_detail {
 
 /// Film lines as rays in the plane z, for first-order models.
 template <class T>
@@ -27,4 +27,4 @@ struct ParaxialLoops {
   RayFate (*one)(const SectionMaps* maps, double z, double reach, const TwoPlaneRay& line, Ray<double>& ray) noexcept;
 };
 
-}  // namespace petzval::inline v0::camera_detail
+}  // namespace petzval::camera_detail

@@ -23,7 +23,7 @@
 #include "pupil_table/sector.hpp"
 #include "two_disc_fit.hpp"
 
-namespace petzval::inline v0::camera_detail {
+namespace petzval::camera_detail {
 
 PETZVAL_WIDEST(ParaxialLoops, paraxial_loops)
 
@@ -293,4 +293,4 @@ template PETZVAL_API void ParaxialModel::to_scene(std::size_t, const TwoPlaneRay
 template PETZVAL_API void ParaxialModel::to_scene(std::size_t, const TwoPlaneRays<const double>&, const RayWavelengths&,
                                                   const RayArrays<double>&, RayFate*) const noexcept;
 
-}  // namespace petzval::inline v0::camera_detail
+}  // namespace petzval::camera_detail

@@ -14,7 +14,7 @@
 #include "petzval/paraxial/first_order.hpp"
 #include "petzval/trace/trace.hpp"
 
-namespace petzval::inline v0::camera_detail {
+namespace petzval::camera_detail {
 
 /// Film and pupil point to place and slope in a plane, or back, in the sections along x and y. Of a lens of revolution
 /// both are alike.
@@ -113,4 +113,4 @@ class ParaxialModel {
   std::vector<double> pinhole_shifts_;
 };
 
-}  // namespace petzval::inline v0::camera_detail
+}  // namespace petzval::camera_detail

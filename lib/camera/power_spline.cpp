@@ -7,7 +7,7 @@
 #include "core/text.hpp"
 #include "petzval/core/error.hpp"
 
-namespace petzval::inline v0::camera_detail {
+namespace petzval::camera_detail {
 
 PowerSpline<double> power_spline(const std::string& where, const std::vector<PowerKnot>& knots) {
   PowerSpline<double> spline;
@@ -54,4 +54,4 @@ PowerSpline<double> power_spline(const std::string& where, const std::vector<Pow
   return spline;
 }
 
-}  // namespace petzval::inline v0::camera_detail
+}  // namespace petzval::camera_detail

@@ -8,7 +8,7 @@
 
 #include "petzval/camera/expressive_lens.hpp"
 
-namespace petzval::inline v0::camera_detail {
+namespace petzval::camera_detail {
 
 /// A cubic spline as a sum of powers that begin at its knots, so that lanes need no search and no branch:
 ///
@@ -59,4 +59,4 @@ inline N beyond_one(const PowerSpline<T>& spline, N t) noexcept {
 }
 
 }  // namespace
-}  // namespace petzval::inline v0::camera_detail
+}  // namespace petzval::camera_detail

@@ -8,7 +8,7 @@
 #include "petzval/camera/camera_ray.hpp"
 #include "scene_side.hpp"
 
-namespace petzval::inline v0 {
+namespace petzval {
 
 std::string_view name(ProjectionStatus status) noexcept {
   switch (status) {
@@ -121,4 +121,4 @@ Projection SceneSide::project(const AnyRayModel& model, const Vec3<double>& poin
 }
 
 }  // namespace camera_detail
-}  // namespace petzval::inline v0
+}  // namespace petzval

@@ -12,7 +12,7 @@
 #include "paraxial_model.hpp"
 #include "trace/stop_points.hpp"
 
-namespace petzval::inline v0::camera_detail {
+namespace petzval::camera_detail {
 namespace {
 
 constexpr std::size_t block = 256;
@@ -193,4 +193,4 @@ PETZVAL_PUPIL_WEIGHTS(float)
 PETZVAL_PUPIL_WEIGHTS(double)
 #undef PETZVAL_PUPIL_WEIGHTS
 
-}  // namespace petzval::inline v0::camera_detail
+}  // namespace petzval::camera_detail

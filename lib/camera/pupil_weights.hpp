@@ -9,7 +9,7 @@
 #include "petzval/camera/ray_model.hpp"
 #include "petzval/lens/lens.hpp"
 
-namespace petzval::inline v0::camera_detail {
+namespace petzval::camera_detail {
 
 /// The weights of a bokeh (BokehControls): which samples of pupils are drawn, and what each counts.
 ///
@@ -51,4 +51,4 @@ class PupilWeights {
   std::shared_ptr<const Data> data_;
 };
 
-}  // namespace petzval::inline v0::camera_detail
+}  // namespace petzval::camera_detail

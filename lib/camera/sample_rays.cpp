@@ -10,7 +10,7 @@
 #include "camera_loops.hpp"
 #include "tilted_pinhole.hpp"
 
-namespace petzval::inline v0::camera_detail {
+namespace petzval::camera_detail {
 namespace {
 
 constexpr std::size_t block = 256;
@@ -86,7 +86,7 @@ void weigh_pupil(const FilmView& view, std::size_t count, std::size_t wanted, co
 template <class T>
 void bend(const FilmView& view, std::size_t count, const CameraSamples<T>& samples, const RayArrays<T>& rays) noexcept {
   alignas(64) Values<T> film_x, film_y, nearer;
-  camera_loops().of<T>().keep_on_film(film_detail::bounds_of<T>(view.film), count, samples.film_x, samples.film_y,
+  camera_loops().of<T>().keep_on_film(core_detail::bounds_of<T>(view.film), count, samples.film_x, samples.film_y,
                                       film_x.data(), film_y.data());
   for (std::size_t i = 0; i < count && view.tilted; ++i) {
     const TiltedPlane plane = view.tilted->plane(samples.times ? samples.times[i] : 0);
@@ -103,7 +103,7 @@ void sample_block(const FilmView& view, std::size_t n, std::size_t wanted, const
                   const CameraRays<T>& rays) noexcept {
   const auto& loops = camera_loops().of<T>();
   const FilmPupilTable& pupils = view.model.pupils();
-  const FilmBounds<T> bounds = film_detail::bounds_of<T>(view.film);
+  const FilmBounds<T> bounds = core_detail::bounds_of<T>(view.film);
   const TiltedFilm* const tilted = view.tilted;
   const RayWavelengths& wavelengths = samples.wavelengths;
 
@@ -308,4 +308,4 @@ CameraRay sample_ray(const FilmView& view, const FilmPoint& film, double u, doub
   return out;
 }
 
-}  // namespace petzval::inline v0::camera_detail
+}  // namespace petzval::camera_detail

@@ -5,21 +5,21 @@
 #include <span>
 #include <vector>
 
-#include "film/film_bounds.hpp"
+#include "core/film_bounds.hpp"
 #include "front.hpp"
 #include "lens/between_wavelengths.hpp"
 #include "local_focus.hpp"
 #include "petzval/camera/camera_ray.hpp"
 #include "petzval/camera/ray_model.hpp"
 #include "petzval/core/export.hpp"
-#include "petzval/film/film.hpp"
+#include "petzval/core/film.hpp"
 #include "pupil_weights.hpp"
 #include "tilted_film.hpp"
 
-namespace petzval::inline v0::camera_detail {
+namespace petzval::camera_detail {
 
 /// What a camera knows of each wavelength beside its model: the scale of weights, and of a pinhole its shift.
-class WavelengthFacts {
+class PETZVAL_API WavelengthFacts {
  public:
   /// scale: one for each wavelength. nm: the wavelengths; none where there are no samples between them.
   WavelengthFacts(const AnyRayModel& model, std::vector<double> scale, std::span<const double> nm = {});
@@ -67,7 +67,7 @@ struct FilmView {
   Front front = {};  ///< of the lens
   LocalFocus focus = {};
   double depth = model.pupils().space().depth();
-  film_detail::FilmBounds<double> bounds = film_detail::bounds_of<double>(film);
+  core_detail::FilmBounds<double> bounds = core_detail::bounds_of<double>(film);
 
   /// Rays of the model start elsewhere.
   bool moves_rays() const noexcept {
@@ -84,4 +84,4 @@ PETZVAL_API void sample_rays(const FilmView& view, std::size_t count, const Came
 CameraRay sample_ray(const FilmView& view, const FilmPoint& film, double u, double v, Wavelength wavelength,
                      double time) noexcept;
 
-}  // namespace petzval::inline v0::camera_detail
+}  // namespace petzval::camera_detail

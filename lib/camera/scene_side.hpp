@@ -12,12 +12,12 @@
 #include "local_focus.hpp"
 #include "petzval/camera/camera_ray.hpp"
 #include "petzval/camera/ray_model.hpp"
-#include "petzval/film/film.hpp"
+#include "petzval/core/film.hpp"
 #include "pupil_table/entrance_pupil_table.hpp"
 #include "sample_rays.hpp"
 #include "tilted_film.hpp"
 
-namespace petzval::inline v0::camera_detail {
+namespace petzval::camera_detail {
 
 /// The scene's side of a camera: importance.cpp and projection.cpp.
 class SceneSide {
@@ -116,4 +116,4 @@ class SceneSide {
   std::optional<FilmPupilTable> whole_;  // of a pinhole whose pupils a rim has cut: those before, of the same film
 };
 
-}  // namespace petzval::inline v0::camera_detail
+}  // namespace petzval::camera_detail

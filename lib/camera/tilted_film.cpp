@@ -9,8 +9,6 @@
 // travel - g . q) for all its points. So it is the upright weight times n_z (1 + travel - g . q) / lambda^3.
 #include "tilted_film.hpp"
 
-#include <ceres/jet.h>
-
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -20,14 +18,15 @@
 
 #include "camera_steps.hpp"
 #include "check_film.hpp"
+#include "core/check_rectangle.hpp"
+#include "core/dual.hpp"
 #include "core/text.hpp"
-#include "film/check_rectangle.hpp"
 #include "make_model.hpp"
 #include "petzval/core/error.hpp"
 #include "pupil/face.hpp"
 #include "tilted_pinhole.hpp"
 
-namespace petzval::inline v0 {
+namespace petzval {
 namespace camera_detail {
 namespace {
 
@@ -44,22 +43,22 @@ TiltedPlane plane_of(const Film& film, const TwoPlanes& space) {
           .cosine = normal.z};
 }
 
-using Jet = ceres::Jet<double, 2>;
+using kernel::Dual;
 
 /// The virtual point of a film point, by the film point.
 struct VirtualPoint {
-  Jet x, y, nearer;
+  Dual x, y, nearer;
 
   FilmPoint point() const noexcept { return {x.a, y.a}; }
 };
 
 VirtualPoint differentiated(const TiltedPlane& plane, const FilmPoint& film) noexcept {
-  const auto [x, y] = virtual_of(plane, Jet(film.x, 0), Jet(film.y, 1));
+  const auto [x, y] = virtual_of(plane, Dual(film.x, 0), Dual(film.y, 1));
   return {x, y, nearer_by(plane, x, y)};
 }
 
-TwoPlaneRayDerivatives derivatives_of(const Jet& film_x, const Jet& film_y, const Jet& pupil_x,
-                                      const Jet& pupil_y) noexcept {
+TwoPlaneRayDerivatives derivatives_of(const Dual& film_x, const Dual& film_y, const Dual& pupil_x,
+                                      const Dual& pupil_y) noexcept {
   const auto part = [&](int k) { return TwoPlaneRay{film_x.v[k], film_y.v[k], pupil_x.v[k], pupil_y.v[k]}; };
   return {{film_x.a, film_y.a, pupil_x.a, pupil_y.a}, part(0), part(1)};
 }
@@ -161,7 +160,7 @@ TiltedFilm::TiltedFilm(const Film& film, const FilmPupilTable& pupils, int threa
       travel_(-film.travel_mm / pupils.space().depth()),
       pupils_(pupils) {
   const std::string where = "tilted film";
-  film_detail::check_rectangle(where, film);
+  core_detail::check_rectangle(where, film);
   film_.z_mm = pupils.space().film_z;
   for (const double time : {0.0, 1.0}) {
     const Film still = film_.at(time);
@@ -193,7 +192,7 @@ double TiltedPlane::nearer_by(const FilmPoint& point) const noexcept {
 }
 
 TiltedPlane::Nearer TiltedPlane::nearer_at(const FilmPoint& film) const noexcept {
-  const Jet nearer = differentiated(*this, film).nearer;
+  const Dual nearer = differentiated(*this, film).nearer;
   return {nearer.a, {nearer.v[0], nearer.v[1]}};
 }
 
@@ -224,7 +223,7 @@ TwoPlaneRayDerivatives TiltedFilm::line(const FilmPoint& film, double u, double 
   const VirtualPoint from = differentiated(plane(time), film);
   const PupilSample at = pupils_.sample(from.point(), u, v, wavelength);
   const auto [by_x, by_y] = pupils_.derivatives(from.point(), u, v, wavelength);
-  Jet pupil_x(at.x), pupil_y(at.y);
+  Dual pupil_x(at.x), pupil_y(at.y);
   pupil_x.v = by_x[0] * from.x.v + by_y[0] * from.y.v;
   pupil_y.v = by_x[1] * from.x.v + by_y[1] * from.y.v;
   return derivatives_of(from.x - from.nearer * pupil_x, from.y - from.nearer * pupil_y, pupil_x, pupil_y);
@@ -232,17 +231,17 @@ TwoPlaneRayDerivatives TiltedFilm::line(const FilmPoint& film, double u, double 
 
 TwoPlaneRayDerivatives pinhole_line(const TiltedPlane& plane, const FilmPoint& film, double shift) noexcept {
   const VirtualPoint from = differentiated(plane, film);
-  const Jet x = from.x / (1.0 + from.nearer * shift), y = from.y / (1.0 + from.nearer * shift);
+  const Dual x = from.x / (1.0 + from.nearer * shift), y = from.y / (1.0 + from.nearer * shift);
   return derivatives_of(x, y, shift * x, shift * y);
 }
 
 }  // namespace camera_detail
 
 double upright_radius(const Lens& lens, const Film& film, ModelKind model) {
-  film_detail::check_rectangle(lens.name() + ": film", film);
+  core_detail::check_rectangle(lens.name() + ": film", film);
   if (!camera_detail::tilted_or_moving(film)) return film.radius_mm();
   const auto [placed_lens, placed_film] = camera_detail::placed(lens, film);
   return camera_detail::upright_radius(placed_lens, placed_film, model);
 }
 
-}  // namespace petzval::inline v0
+}  // namespace petzval

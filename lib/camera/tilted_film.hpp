@@ -7,11 +7,11 @@
 #include "lens_facts.hpp"
 #include "petzval/camera/model_kind.hpp"
 #include "petzval/core/export.hpp"
-#include "petzval/film/film.hpp"
+#include "petzval/core/film.hpp"
 #include "petzval/pupil_table/film_pupil_table.hpp"
 #include "petzval/pupil_table/two_plane_rays.hpp"
 
-namespace petzval::inline v0::camera_detail {
+namespace petzval::camera_detail {
 
 /// A film at a moment, in its own coordinates: its points, their virtual points, and the rays that meet it.
 struct PETZVAL_API TiltedPlane {
@@ -80,4 +80,4 @@ class PETZVAL_API TiltedFilm {
   FilmPupilTable pupils_;
 };
 
-}  // namespace petzval::inline v0::camera_detail
+}  // namespace petzval::camera_detail

@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "two_disc_fit.hpp"
 
-#include <ceres/tiny_solver.h>
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <unsupported/Eigen/NonLinearOptimization>
 #include <utility>
 #include <vector>
 
@@ -16,7 +15,7 @@
 #include "petzval/core/error.hpp"
 #include "pupil_table/pupil_polygon.hpp"
 
-namespace petzval::inline v0 {
+namespace petzval {
 namespace camera_detail {
 namespace {
 
@@ -37,7 +36,6 @@ double outside(const EdgePoint& point, const Discs& discs) noexcept {
 /// field, and radius. Lengths in units of `unit`, so that the solver's tolerances mean something.
 struct EdgeDistances {
   using Scalar = double;
-  enum { NUM_RESIDUALS = 5, NUM_PARAMETERS = 4 };
 
   std::span<const EdgePoint> edges;
   std::span<const double> weights;
@@ -53,9 +51,19 @@ struct EdgeDistances {
     }
   }
 
-  /// jacobian: 5 x 4, by columns, or null.
-  bool operator()(const double* p, double* residuals, double* jacobian) const {
-    const Discs both = discs(p);
+  int values() const noexcept { return 5; }
+  int operator()(const Eigen::VectorXd& p, Eigen::VectorXd& residuals) const {
+    residuals = triangle(p).col(4).head<5>();
+    return 0;
+  }
+  int df(const Eigen::VectorXd& p, Eigen::MatrixXd& jacobian) const {
+    jacobian = triangle(p).topLeftCorner<5, 4>().triangularView<Eigen::Upper>();
+    return 0;
+  }
+
+  /// Derivatives in four columns and distances in the fifth, reduced to five rows.
+  Eigen::MatrixXd triangle(const Eigen::VectorXd& p) const {
+    const Discs both = discs(p.data());
     Eigen::MatrixXd all = Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(edges.size()), 5);
     for (std::size_t i = 0; i < edges.size(); ++i) {
       const EdgePoint& e = edges[i];
@@ -70,11 +78,7 @@ struct EdgeDistances {
       row[4] = weights[i] * std::max(first, second) / unit;
     }
     core_detail::to_triangle(all, 5);
-    Eigen::Map<Eigen::Vector<double, 5>>{residuals} = all.col(4).head<5>();
-    if (jacobian) {
-      Eigen::Map<Eigen::Matrix<double, 5, 4>>{jacobian} = all.topLeftCorner<5, 4>().triangularView<Eigen::Upper>();
-    }
-    return true;
+    return all;
   }
 };
 
@@ -135,14 +139,12 @@ std::array<PupilDisc, 2> fit_two_discs(std::span<const EdgePoint> edges) {
   std::vector<double> weights(edges.size());
   const double last_field = pupils.back()[0].field;
   const EdgeDistances distances{edges, weights, radius, last_field > 0 ? last_field : 1};
-  ceres::TinySolver<EdgeDistances> solver;
-  solver.options.function_tolerance = 1e-9;
   Discs best{};
   double least = std::numeric_limits<double>::infinity();
   const auto improve = [&](const Discs& start) {
-    Eigen::Vector4d p;
+    Eigen::VectorXd p(4);
     distances.parameters(start, p.data());
-    solver.Solve(distances, &p);
+    Eigen::LevenbergMarquardt<const EdgeDistances>(distances).minimize(p);
     const Discs discs = distances.discs(p.data());
     const double error = two_disc_error(edges, discs);
     if (error < least) least = error, best = discs;
@@ -192,4 +194,4 @@ TwoDiscs fit_two_discs(const Lens& lens, double film_radius, Wavelength waveleng
   return result;
 }
 
-}  // namespace petzval::inline v0
+}  // namespace petzval

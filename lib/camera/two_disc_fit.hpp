@@ -8,7 +8,7 @@
 
 #include "petzval/pupil_table/film_pupil_table.hpp"
 
-namespace petzval::inline v0::camera_detail {
+namespace petzval::camera_detail {
 
 /// A point of a pupil's edge, in the plane of the pupil, of a film point at (0, field), mm.
 struct EdgePoint {
@@ -27,4 +27,4 @@ double two_disc_error(std::span<const EdgePoint> edges, const std::array<PupilDi
 /// are consecutive; the axis and other film points are needed.
 std::array<PupilDisc, 2> fit_two_discs(std::span<const EdgePoint> edges);
 
-}  // namespace petzval::inline v0::camera_detail
+}  // namespace petzval::camera_detail

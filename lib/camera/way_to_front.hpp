@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-namespace petzval::inline v0::camera_detail {
+namespace petzval::camera_detail {
 
 // Local names: this is compiled for several instruction sets, and the linker must not take one for another.
 namespace {
@@ -33,4 +33,4 @@ inline T way_to_front(const T& curvature, const T& x, const T& y, const T& z, co
 
 }  // namespace
 
-}  // namespace petzval::inline v0::camera_detail
+}  // namespace petzval::camera_detail

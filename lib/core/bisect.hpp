@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace petzval::inline v0::core_detail {
+namespace petzval::core_detail {
 
 /// The last parameter with a property, between one that has it and one that does not, by bisection down to neighbouring
 /// doubles.
@@ -79,4 +79,4 @@ double last_above(double above, double at_above, double below, double at_below, 
   return search.above();
 }
 
-}  // namespace petzval::inline v0::core_detail
+}  // namespace petzval::core_detail

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <utility>
 
-namespace petzval::inline v0 {
+namespace petzval {
 namespace {
 
 constexpr std::size_t longest = 1000;
@@ -26,4 +26,4 @@ Error::Error(std::string message) : std::runtime_error(one_line(std::move(messag
 
 Error::~Error() = default;  // anchors the type information in this library, so that it can be caught across its border
 
-}  // namespace petzval::inline v0
+}  // namespace petzval

@@ -3,7 +3,7 @@
 
 #include <Eigen/Householder>
 
-namespace petzval::inline v0::core_detail {
+namespace petzval::core_detail {
 
 void to_triangle(Eigen::Ref<Eigen::MatrixXd> matrix, Eigen::Index columns) {
   Eigen::RowVectorXd workspace(matrix.cols());
@@ -17,4 +17,4 @@ void to_triangle(Eigen::Ref<Eigen::MatrixXd> matrix, Eigen::Index columns) {
   }
 }
 
-}  // namespace petzval::inline v0::core_detail
+}  // namespace petzval::core_detail

@@ -3,7 +3,7 @@
 
 #include <Eigen/Core>
 
-namespace petzval::inline v0::core_detail {
+namespace petzval::core_detail {
 
 /// Turns a matrix by Householder's reflections until its first columns are a triangle: R of their QR decomposition, and
 /// what is below it is not set; the columns behind them turn along. With at least as many rows as columns, least
@@ -13,4 +13,4 @@ namespace petzval::inline v0::core_detail {
 /// other bits on another processor. This has not.
 void to_triangle(Eigen::Ref<Eigen::MatrixXd> matrix, Eigen::Index columns);
 
-}  // namespace petzval::inline v0::core_detail
+}  // namespace petzval::core_detail

@@ -5,7 +5,7 @@
 #include <cstddef>
 #include <cstdlib>
 
-namespace petzval::inline v0 {
+namespace petzval {
 
 std::string_view name(InstructionSet set) noexcept {
   switch (set) {
@@ -46,4 +46,4 @@ std::span<const InstructionSet> instruction_sets() noexcept {
 #endif
 }
 
-}  // namespace petzval::inline v0
+}  // namespace petzval

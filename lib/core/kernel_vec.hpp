@@ -3,7 +3,7 @@
 
 #include "petzval/core/geometry.hpp"
 
-namespace petzval::inline v0::kernel {
+namespace petzval::kernel {
 
 /// Three components of any scalar. GLM vectors cannot hold derivatives or lanes.
 template <class T>
@@ -29,4 +29,4 @@ Vec3<T> to_public(const Vec<T>& v) noexcept {
   return {v.x, v.y, v.z};
 }
 
-}  // namespace petzval::inline v0::kernel
+}  // namespace petzval::kernel

@@ -3,7 +3,7 @@
 
 #include <Eigen/QR>
 
-namespace petzval::inline v0::core_detail {
+namespace petzval::core_detail {
 
 Eigen::VectorXd least_squares(const Eigen::MatrixXd& rows, const Eigen::VectorXd& values) {
   Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> decomposition;
@@ -11,4 +11,4 @@ Eigen::VectorXd least_squares(const Eigen::MatrixXd& rows, const Eigen::VectorXd
   return decomposition.compute(rows).solve(values);
 }
 
-}  // namespace petzval::inline v0::core_detail
+}  // namespace petzval::core_detail

@@ -3,9 +3,11 @@
 
 #include <Eigen/Core>
 
-namespace petzval::inline v0::core_detail {
+#include "petzval/core/export.hpp"
+
+namespace petzval::core_detail {
 
 /// The x for which rows * x is nearest to the values. Where columns say the same to 1e-9, the smallest of such x.
-Eigen::VectorXd least_squares(const Eigen::MatrixXd& rows, const Eigen::VectorXd& values);
+PETZVAL_API Eigen::VectorXd least_squares(const Eigen::MatrixXd& rows, const Eigen::VectorXd& values);
 
-}  // namespace petzval::inline v0::core_detail
+}  // namespace petzval::core_detail

@@ -10,7 +10,7 @@
 
 #include "core/simd.hpp"
 
-namespace petzval::inline v0::core_detail {
+namespace petzval::core_detail {
 namespace {
 
 /// The longest table that registers hold and permute; 0 without such an instruction.
@@ -69,4 +69,4 @@ PETZVAL_INLINE typename Native<R>::Values look_up(const R* table, std::size_t co
 }
 
 }  // namespace
-}  // namespace petzval::inline v0::core_detail
+}  // namespace petzval::core_detail

@@ -2,7 +2,7 @@
 #pragma once
 
 /// What loops on lanes call for one number.
-namespace petzval::inline v0::core_detail {
+namespace petzval::core_detail {
 
 // Local names: this is compiled for several instruction sets, and the linker must not take one for another.
 namespace {
@@ -30,4 +30,4 @@ inline R clamped(R x) noexcept {
 }
 
 }  // namespace
-}  // namespace petzval::inline v0::core_detail
+}  // namespace petzval::core_detail

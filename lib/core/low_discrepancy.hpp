@@ -9,7 +9,7 @@
 #include <cstdint>
 #include <numbers>
 
-namespace petzval::inline v0::core_detail {
+namespace petzval::core_detail {
 
 /// From one state of splitmix64 to the next; mixed() of the states are its numbers.
 inline constexpr std::uint64_t splitmix_step = 0x9e3779b97f4a7c15u;
@@ -77,4 +77,4 @@ inline std::array<double, 2> fibonacci_point(std::size_t index, std::size_t coun
   return {std::fmod(i * std::numbers::phi, 1.0), (i + 0.5) / static_cast<double>(count)};
 }
 
-}  // namespace petzval::inline v0::core_detail
+}  // namespace petzval::core_detail

@@ -10,7 +10,7 @@
 
 #include "petzval/core/ray.hpp"
 
-namespace petzval::inline v0::core_detail {
+namespace petzval::core_detail {
 
 /// Ray i of some arrays.
 template <class T>
@@ -54,4 +54,4 @@ SlopeRay<T> slope_ray(const Ray<T>& ray, T z) noexcept {
   return slope_ray(ray).moved(z - ray.origin.z);
 }
 
-}  // namespace petzval::inline v0::core_detail
+}  // namespace petzval::core_detail

@@ -9,7 +9,7 @@
 
 #include "petzval/core/error.hpp"
 
-namespace petzval::inline v0::core_detail {
+namespace petzval::core_detail {
 
 /// Throws Error for a folder: some systems open it as a file and fail only when it is read. wanted: the kind of file,
 /// for the message.
@@ -30,4 +30,4 @@ inline std::ifstream opened(const std::filesystem::path& file, const std::string
   return stream;
 }
 
-}  // namespace petzval::inline v0::core_detail
+}  // namespace petzval::core_detail

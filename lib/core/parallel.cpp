@@ -12,7 +12,7 @@
 
 #include "petzval/core/error.hpp"
 
-namespace petzval::inline v0 {
+namespace petzval {
 
 int processor_threads() noexcept { return std::max(1, static_cast<int>(std::thread::hardware_concurrency())); }
 
@@ -58,4 +58,4 @@ void parallel_for(std::size_t count, std::size_t block, int threads,
   if (thrown) std::rethrow_exception(thrown);
 }
 
-}  // namespace petzval::inline v0
+}  // namespace petzval

@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-namespace petzval::inline v0 {
+namespace petzval {
 
 std::optional<SpaceLine> line_at(const Plane& plane, double z) {
   const Vec3<double>& n = plane.normal;
@@ -15,4 +15,4 @@ std::optional<SpaceLine> line_at(const Plane& plane, double z) {
   return SpaceLine{{reach * ux, reach * uy, z}, turned ? Vec3<double>(-uy, ux, 0) : Vec3<double>(uy, -ux, 0)};
 }
 
-}  // namespace petzval::inline v0
+}  // namespace petzval

@@ -6,7 +6,7 @@
 #include <cstddef>
 #include <numbers>
 
-namespace petzval::inline v0::core_detail {
+namespace petzval::core_detail {
 
 struct QuadratureNode {
   double x, weight;  ///< on (0, 1); the weights sum to 1
@@ -35,4 +35,4 @@ std::array<QuadratureNode, count> gauss_legendre() {
   return nodes;
 }
 
-}  // namespace petzval::inline v0::core_detail
+}  // namespace petzval::core_detail

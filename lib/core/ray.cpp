@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "petzval/core/ray.hpp"
 
-namespace petzval::inline v0 {
+namespace petzval {
 
 std::string_view name(RayFate fate) noexcept {
   switch (fate) {
@@ -18,4 +18,4 @@ std::string_view name(RayFate fate) noexcept {
   return "unknown";
 }
 
-}  // namespace petzval::inline v0
+}  // namespace petzval

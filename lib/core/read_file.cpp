@@ -10,7 +10,7 @@
 #include "open_file.hpp"
 #include "petzval/core/error.hpp"
 
-namespace petzval::inline v0 {
+namespace petzval {
 namespace {
 
 std::string in_bytes(std::uintmax_t size) {
@@ -47,4 +47,4 @@ std::string read_file(const std::filesystem::path& file, const std::string& kind
   return bytes;
 }
 
-}  // namespace petzval::inline v0
+}  // namespace petzval

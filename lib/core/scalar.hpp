@@ -11,10 +11,10 @@
 
 /// The interface between the kernels and their scalars.
 ///
-/// A kernel is written once over a scalar `T`: float, double or an automatic-differentiation number such as
-/// `ceres::Jet` (SIMD lanes have the same interface). It asks `T` for arithmetic, comparison, `sqrt` by
+/// A kernel is written once over a scalar `T`: float, double or a number with derivatives such as `Dual`
+/// (SIMD lanes have the same interface). It asks `T` for arithmetic, comparison, `sqrt` by
 /// argument-dependent look-up, and the names below. Ray data steers no branch but through `select`, `any` and masks.
-namespace petzval::inline v0::kernel {
+namespace petzval::kernel {
 
 namespace detail {
 template <class T>
@@ -94,4 +94,4 @@ T safe_sqrt(const T& x) noexcept {
   return select(positive, T(sqrt(select(positive, x, T(1)))), T(0));
 }
 
-}  // namespace petzval::inline v0::kernel
+}  // namespace petzval::kernel

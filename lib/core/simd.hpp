@@ -9,7 +9,7 @@
 #include <cstdint>
 #include <type_traits>
 
-namespace petzval::inline v0::core_detail {
+namespace petzval::core_detail {
 namespace {
 
 #if defined(__AVX512F__)
@@ -61,4 +61,4 @@ PETZVAL_INLINE T sum_of_products(const T& a, const T& b, const T& c, const T& d)
 }
 
 }  // namespace
-}  // namespace petzval::inline v0::core_detail
+}  // namespace petzval::core_detail

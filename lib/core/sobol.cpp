@@ -4,7 +4,7 @@
 #include "low_discrepancy.hpp"
 #include "petzval/core/instruction_set.hpp"
 
-namespace petzval::inline v0 {
+namespace petzval {
 namespace {
 
 using core_detail::mixed;
@@ -106,4 +106,4 @@ void owen_sobol(std::uint32_t first, std::uint32_t seed, std::span<double> u, st
   fill(first, seed, u, v);
 }
 
-}  // namespace petzval::inline v0
+}  // namespace petzval

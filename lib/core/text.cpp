@@ -4,7 +4,7 @@
 #include <array>
 #include <charconv>
 
-namespace petzval::inline v0 {
+namespace petzval {
 
 std::string to_text(double value) {
   std::array<char, 32> buffer;
@@ -48,4 +48,4 @@ std::string_view beginning(std::string_view text, std::size_t most) noexcept {
   return text.substr(0, most);
 }
 
-}  // namespace petzval::inline v0
+}  // namespace petzval

@@ -7,7 +7,7 @@
 
 #include "petzval/core/export.hpp"
 
-namespace petzval::inline v0 {
+namespace petzval {
 
 /// A number for messages, figures and JSON: the shortest decimals that read back to the same double, whatever the
 /// locale ("0.1", "1e+30", "nan").
@@ -23,4 +23,4 @@ PETZVAL_API std::size_t utf8_length(std::string_view text, std::size_t at) noexc
 /// The beginning of a UTF-8 text, at most this many bytes: whole characters.
 PETZVAL_API std::string_view beginning(std::string_view text, std::size_t most) noexcept;
 
-}  // namespace petzval::inline v0
+}  // namespace petzval

@@ -7,7 +7,7 @@
 #include "core/text.hpp"
 #include "sheet.hpp"
 
-namespace petzval::inline v0::figure_detail {
+namespace petzval::figure_detail {
 namespace {
 
 /// Calls draw(value, words) for round values within an axis.
@@ -109,4 +109,4 @@ void Axes::marks(std::vector<Mark> marks) {
   }
 }
 
-}  // namespace petzval::inline v0::figure_detail
+}  // namespace petzval::figure_detail

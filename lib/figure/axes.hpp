@@ -9,7 +9,7 @@
 
 #include "svg.hpp"
 
-namespace petzval::inline v0::figure_detail {
+namespace petzval::figure_detail {
 
 /// One axis of a diagram: its range, and its title with the unit.
 struct Axis {
@@ -53,4 +53,4 @@ class Axes {
   Axis across_, up_;
 };
 
-}  // namespace petzval::inline v0::figure_detail
+}  // namespace petzval::figure_detail

@@ -12,7 +12,7 @@
 #include "scene_panel.hpp"
 #include "sheet.hpp"
 
-namespace petzval::inline v0 {
+namespace petzval {
 namespace {
 
 using figure_detail::axis_style;
@@ -138,4 +138,4 @@ std::string focal_surface_figure(const FocalSurfaceView& view) {
   return Figure(view).draw();
 }
 
-}  // namespace petzval::inline v0
+}  // namespace petzval

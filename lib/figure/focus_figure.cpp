@@ -10,12 +10,12 @@
 
 #include "axes.hpp"
 #include "core/text.hpp"
+#include "petzval/analysis/spot.hpp"
 #include "petzval/core/error.hpp"
 #include "petzval/paraxial/first_order.hpp"
-#include "petzval/psf/spot.hpp"
 #include "sheet.hpp"
 
-namespace petzval::inline v0 {
+namespace petzval {
 namespace {
 
 using figure_detail::Svg;
@@ -211,4 +211,4 @@ std::string focus_figure(const Lens& lens, double subject_z, std::span<const dou
       .draw();
 }
 
-}  // namespace petzval::inline v0
+}  // namespace petzval

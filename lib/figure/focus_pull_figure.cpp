@@ -14,7 +14,7 @@
 #include "petzval/core/units.hpp"
 #include "sheet.hpp"
 
-namespace petzval::inline v0 {
+namespace petzval {
 namespace {
 
 using Frames = std::span<const FocusPullFrame>;
@@ -118,4 +118,4 @@ std::string focus_pull_figure(std::string_view title, std::string_view remark, F
   return std::move(svg).finish();
 }
 
-}  // namespace petzval::inline v0
+}  // namespace petzval

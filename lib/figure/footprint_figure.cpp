@@ -16,7 +16,7 @@
 #include "petzval/pupil/pupil_boundary.hpp"
 #include "sheet.hpp"
 
-namespace petzval::inline v0 {
+namespace petzval {
 namespace {
 
 using figure_detail::Svg;
@@ -224,4 +224,4 @@ std::string footprint_figure(const Lens& lens, double subject_z, std::span<const
   return Figure(lens, subject_z, fields_rad).draw();
 }
 
-}  // namespace petzval::inline v0
+}  // namespace petzval

@@ -14,7 +14,7 @@
 #include "petzval/pupil/illumination.hpp"
 #include "sheet.hpp"
 
-namespace petzval::inline v0 {
+namespace petzval {
 
 std::string illumination_figure(const Lens& lens, double subject_z, double field_rad) {
   if (!(field_rad > 0)) {
@@ -50,4 +50,4 @@ std::string illumination_figure(const Lens& lens, double subject_z, double field
   return std::move(svg).finish();
 }
 
-}  // namespace petzval::inline v0
+}  // namespace petzval

@@ -14,7 +14,7 @@
 #include "section.hpp"
 #include "sheet.hpp"
 
-namespace petzval::inline v0 {
+namespace petzval {
 namespace {
 
 using figure_detail::LensSection;
@@ -282,4 +282,4 @@ std::string layout_figure(const Lens& lens, double subject_z, std::span<const do
   return Figure(lens, subject_z, fields_rad, options).draw();
 }
 
-}  // namespace petzval::inline v0
+}  // namespace petzval

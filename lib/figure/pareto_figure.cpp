@@ -12,7 +12,7 @@
 #include "petzval/core/error.hpp"
 #include "sheet.hpp"
 
-namespace petzval::inline v0 {
+namespace petzval {
 namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
@@ -101,4 +101,4 @@ std::string pareto_figure(std::string_view title, std::string_view remark, std::
   return std::move(svg).finish();
 }
 
-}  // namespace petzval::inline v0
+}  // namespace petzval

@@ -8,7 +8,7 @@
 #include "petzval/pupil/aim.hpp"
 #include "trace/sequential.hpp"
 
-namespace petzval::inline v0::figure_detail {
+namespace petzval::figure_detail {
 namespace {
 
 /// The rays of one field, by their height in the stop: -1 to 1 in the section.
@@ -91,4 +91,4 @@ std::vector<RayPath> ray_paths(const Lens& lens, double subject_z, std::span<con
   return result;
 }
 
-}  // namespace petzval::inline v0::figure_detail
+}  // namespace petzval::figure_detail

@@ -10,7 +10,7 @@
 #include "petzval/paraxial/first_order.hpp"
 #include "section.hpp"
 
-namespace petzval::inline v0::figure_detail {
+namespace petzval::figure_detail {
 
 /// The path of one ray through a lens in a section. (A RayBundle knows rays behind the lens only.)
 struct RayPath {
@@ -27,4 +27,4 @@ struct RayPath {
 std::vector<RayPath> ray_paths(const Lens& lens, double subject_z, std::span<const double> fields_rad,
                                Meridian meridian, std::size_t count, std::size_t wavelength);
 
-}  // namespace petzval::inline v0::figure_detail
+}  // namespace petzval::figure_detail

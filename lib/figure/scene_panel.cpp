@@ -5,7 +5,7 @@
 #include <utility>
 #include <vector>
 
-namespace petzval::inline v0::figure_detail {
+namespace petzval::figure_detail {
 namespace {
 
 double unit_of(const SceneFrame& frame) { return frame.box.length() > 2000 ? 1e-3 : 1; }
@@ -85,4 +85,4 @@ void ScenePanel::words(const SectionPoint& p, std::string_view words, double low
                 (at_right ? " text-anchor=\"end\"" : ""));
 }
 
-}  // namespace petzval::inline v0::figure_detail
+}  // namespace petzval::figure_detail

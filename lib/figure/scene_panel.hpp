@@ -10,7 +10,7 @@
 #include "section.hpp"
 #include "svg.hpp"
 
-namespace petzval::inline v0::figure_detail {
+namespace petzval::figure_detail {
 
 /// Of the film's exposed part, of what is in focus, and of the axis.
 inline constexpr std::string_view film_style = "fill=\"none\" stroke=\"#111\" stroke-width=\"2.6\"";
@@ -84,4 +84,4 @@ class ScenePanel {
   Axes axes_;
 };
 
-}  // namespace petzval::inline v0::figure_detail
+}  // namespace petzval::figure_detail

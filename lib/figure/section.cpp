@@ -8,7 +8,7 @@
 #include "core/bisect.hpp"
 #include "petzval/lens/lens.hpp"
 
-namespace petzval::inline v0::figure_detail {
+namespace petzval::figure_detail {
 namespace {
 
 /// The surface's own sag at a height of the section; NaN where it has none.
@@ -160,4 +160,4 @@ std::vector<GlassBody> LensSection::bodies() const {
   return result;
 }
 
-}  // namespace petzval::inline v0::figure_detail
+}  // namespace petzval::figure_detail

@@ -9,7 +9,7 @@
 #include "petzval/lens/lens.hpp"
 #include "petzval/paraxial/first_order.hpp"
 
-namespace petzval::inline v0::figure_detail {
+namespace petzval::figure_detail {
 
 /// A point of a section through the axis: z, and the height y (or x) in it. Lens frame, mm.
 struct SectionPoint {
@@ -63,4 +63,4 @@ class LensSection {
   std::vector<double> drawn_;  ///< rims, cemented surfaces extended
 };
 
-}  // namespace petzval::inline v0::figure_detail
+}  // namespace petzval::figure_detail

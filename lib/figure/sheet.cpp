@@ -11,7 +11,7 @@
 #include "petzval/paraxial/first_order.hpp"
 #include "petzval/pupil/f_number.hpp"
 
-namespace petzval::inline v0::figure_detail {
+namespace petzval::figure_detail {
 namespace {
 
 /// Width of small text, close enough to place text after it.
@@ -111,4 +111,4 @@ double draw_key(Svg& svg, double x, double y, std::string_view colour, std::stri
   return x + 23 + width_of(words);
 }
 
-}  // namespace petzval::inline v0::figure_detail
+}  // namespace petzval::figure_detail

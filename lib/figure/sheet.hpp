@@ -8,11 +8,11 @@
 #include <vector>
 
 #include "petzval/lens/lens.hpp"
-#include "petzval/rays/ray_bundle.hpp"
+#include "petzval/pupil/ray_bundle.hpp"
 #include "svg.hpp"
 
 /// What the figures share: head line, colours of fields, scale bar, lengths as text.
-namespace petzval::inline v0::figure_detail {
+namespace petzval::figure_detail {
 
 inline constexpr double sheet_margin = 14;  ///< px, left of all text
 inline constexpr std::string_view small_text = "font-size=\"11\" fill=\"#555\"";
@@ -56,4 +56,4 @@ double draw_scale_bar(Svg& svg, double x, double y, double px_per_mm, double lon
 /// A coloured stroke and its meaning, from (x, y). Returns about where the text ends.
 double draw_key(Svg& svg, double x, double y, std::string_view colour, std::string_view words);
 
-}  // namespace petzval::inline v0::figure_detail
+}  // namespace petzval::figure_detail

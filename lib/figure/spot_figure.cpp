@@ -15,7 +15,7 @@
 #include "petzval/paraxial/first_order.hpp"
 #include "sheet.hpp"
 
-namespace petzval::inline v0 {
+namespace petzval {
 namespace {
 
 using figure_detail::small_centred;
@@ -224,4 +224,4 @@ std::string spot_figure(const Lens& lens, std::span<const Spot> spots, std::span
   return Figure(lens, spots, figure_detail::checked_weights("spot_figure", lens, wavelength_weights)).draw();
 }
 
-}  // namespace petzval::inline v0
+}  // namespace petzval

@@ -8,7 +8,7 @@
 
 #include "core/text.hpp"
 
-namespace petzval::inline v0::figure_detail {
+namespace petzval::figure_detail {
 namespace {
 
 std::string attribute(std::string_view name, double value) {
@@ -93,4 +93,4 @@ std::string Svg::finish() && {
   return std::move(out_);
 }
 
-}  // namespace petzval::inline v0::figure_detail
+}  // namespace petzval::figure_detail

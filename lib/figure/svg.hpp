@@ -4,7 +4,7 @@
 #include <string>
 #include <string_view>
 
-namespace petzval::inline v0::figure_detail {
+namespace petzval::figure_detail {
 
 /// A length in an SVG file, to 1/100 of a pixel, whatever the locale.
 std::string svg_number(double value);
@@ -29,4 +29,4 @@ class Svg {
   std::string out_;
 };
 
-}  // namespace petzval::inline v0::figure_detail
+}  // namespace petzval::figure_detail

@@ -13,7 +13,7 @@
 #include "scene_panel.hpp"
 #include "sheet.hpp"
 
-namespace petzval::inline v0 {
+namespace petzval {
 namespace {
 
 using figure_detail::axis_style;
@@ -394,4 +394,4 @@ std::string tilt_figure(const TiltView& view) {
   return Figure(view).draw();
 }
 
-}  // namespace petzval::inline v0
+}  // namespace petzval

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-namespace petzval::inline v0::focus_detail {
+namespace petzval::focus_detail {
 namespace {
 
 using enum FocusStatus;
@@ -99,4 +99,4 @@ FocusSolution paraxial_nearest(const Conjugates& c) noexcept {
   return near < farthest_p(c) ? pair(c, solved, near) : no_focus(c);
 }
 
-}  // namespace petzval::inline v0::focus_detail
+}  // namespace petzval::focus_detail

@@ -4,7 +4,7 @@
 #include "petzval/focus/focus.hpp"
 #include "petzval/paraxial/ideal_lens.hpp"
 
-namespace petzval::inline v0::focus_detail {
+namespace petzval::focus_detail {
 
 /// Subject and film as axial conjugates of an ideal lens, and where distances count from. A subject is p in front of
 /// the front focal point; p is positive for every subject that can be focused.
@@ -54,4 +54,4 @@ FocusSolution paraxial_focus(const Conjugates& c, double distance) noexcept;
 FocusSolution paraxial_subject(const Conjugates& c, double film_z) noexcept;
 FocusSolution paraxial_nearest(const Conjugates& c) noexcept;
 
-}  // namespace petzval::inline v0::focus_detail
+}  // namespace petzval::focus_detail

@@ -11,7 +11,7 @@
 #include "root.hpp"
 #include "solver.hpp"
 
-namespace petzval::inline v0 {
+namespace petzval {
 namespace {
 
 using enum FocusStatus;
@@ -110,4 +110,4 @@ std::optional<double> breathing(const Lens& lens, double film_z, const FocusOpti
   return (film_z - infinite.film_z) / (infinite.film_z - exit_z);
 }
 
-}  // namespace petzval::inline v0
+}  // namespace petzval

@@ -6,10 +6,10 @@
 
 #include "petzval/pupil/pupil_boundary.hpp"
 #include "petzval/pupil/pupil_plane.hpp"
-#include "rays/pupil_nodes.hpp"
-#include "rays/trace_rays.hpp"
+#include "pupil/pupil_nodes.hpp"
+#include "pupil/trace_rays.hpp"
 
-namespace petzval::inline v0::focus_detail {
+namespace petzval::focus_detail {
 namespace {
 
 /// The rays of one field at all wavelengths, and along the rims of its pupils if asked for. Nothing where no light
@@ -23,10 +23,10 @@ std::optional<RayBundle> field_rays(const Lens& lens, const FieldPoint& point,
   bundle.plane_z = plane_z;
   for (const auto& [wavelength, weight] : wavelengths) {
     const PupilBoundary boundary = pupil_boundary(lens, point, wavelength, on_axis ? 1 : directions);
-    RayBundle rays = rays_detail::trace_nodes(lens, boundary, plane_z);
+    RayBundle rays = pupil_detail::trace_nodes(lens, boundary, plane_z);
     for (double& w : rays.weights) w *= weight;
-    rays_detail::append(bundle, rays);
-    if (rims) rays_detail::append(bundle, rays_detail::trace_rim(lens, boundary, plane_z));
+    pupil_detail::append(bundle, rays);
+    if (rims) pupil_detail::append(bundle, pupil_detail::trace_rim(lens, boundary, plane_z));
   }
   if (!centre(bundle, on_axis)) return {};
   return bundle;
@@ -55,9 +55,9 @@ std::optional<Image> exact_image(const Lens& lens, double subject_z, std::span<c
         for (double& value : *values) value *= field.weight / most;
       }
     }
-    rays_detail::append(all, *rays);
+    pupil_detail::append(all, *rays);
   }
   return rms ? least_rms(all) : least_maximum(std::move(all));
 }
 
-}  // namespace petzval::inline v0::focus_detail
+}  // namespace petzval::focus_detail

@@ -9,7 +9,7 @@
 #include "petzval/focus/focus.hpp"
 #include "petzval/lens/lens.hpp"
 
-namespace petzval::inline v0::focus_detail {
+namespace petzval::focus_detail {
 
 struct WavelengthWeight {
   std::size_t wavelength;
@@ -22,4 +22,4 @@ struct WavelengthWeight {
 std::optional<Image> exact_image(const Lens& lens, double subject_z, std::span<const FocusField> fields,
                                  std::span<const WavelengthWeight> wavelengths, FocusCriterion criterion);
 
-}  // namespace petzval::inline v0::focus_detail
+}  // namespace petzval::focus_detail

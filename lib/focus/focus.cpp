@@ -10,7 +10,7 @@
 #include "petzval/paraxial/first_order.hpp"
 #include "solver.hpp"
 
-namespace petzval::inline v0 {
+namespace petzval {
 
 std::string_view name(FocusCriterion criterion) noexcept {
   switch (criterion) {
@@ -101,4 +101,4 @@ Lens with_focus(const Lens& lens, double distance, const FocusOptions& options) 
               (distance <= nearest ? focus_detail::hint_of_units(distance) : ""));
 }
 
-}  // namespace petzval::inline v0
+}  // namespace petzval

@@ -9,7 +9,7 @@
 
 #include "core/bisect.hpp"
 
-namespace petzval::inline v0::focus_detail {
+namespace petzval::focus_detail {
 namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
@@ -88,4 +88,4 @@ Image least_maximum(RayBundle rays) {
   return {.film_z = rays.plane_z + shift, .rays = std::move(rays)};
 }
 
-}  // namespace petzval::inline v0::focus_detail
+}  // namespace petzval::focus_detail

@@ -2,10 +2,10 @@
 #pragma once
 
 #include "petzval/core/export.hpp"
-#include "petzval/rays/ray_bundle.hpp"
+#include "petzval/pupil/ray_bundle.hpp"
 
 /// How the blur of rays depends on where an upright film stands.
-namespace petzval::inline v0::focus_detail {
+namespace petzval::focus_detail {
 
 /// The image of one subject by a criterion: the film where it is sharpest, and the blur's diameter on any other.
 struct PETZVAL_API Image {
@@ -29,4 +29,4 @@ PETZVAL_API Image least_rms(const RayBundle& rays);
 /// By the largest radius; weights do not count.
 PETZVAL_API Image least_maximum(RayBundle rays);
 
-}  // namespace petzval::inline v0::focus_detail
+}  // namespace petzval::focus_detail

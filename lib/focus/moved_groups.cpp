@@ -9,7 +9,7 @@
 #include "petzval/core/error.hpp"
 #include "solver.hpp"
 
-namespace petzval::inline v0::focus_detail {
+namespace petzval::focus_detail {
 
 Lens with_moved_groups(const Lens& lens, double distance, const FocusOptions& options) {
   const double first = lens.focus_positions().front().inverse_distance;
@@ -53,4 +53,4 @@ Lens with_moved_groups(const Lens& lens, double distance, const FocusOptions& op
   throw refuse("no place of them was found");
 }
 
-}  // namespace petzval::inline v0::focus_detail
+}  // namespace petzval::focus_detail

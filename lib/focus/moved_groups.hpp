@@ -3,9 +3,9 @@
 
 #include "petzval/focus/focus.hpp"
 
-namespace petzval::inline v0::focus_detail {
+namespace petzval::focus_detail {
 
 /// with_focus() of a lens with focus positions: the groups stand where the subject's film is the lens's own.
 Lens with_moved_groups(const Lens& lens, double distance, const FocusOptions& options);
 
-}  // namespace petzval::inline v0::focus_detail
+}  // namespace petzval::focus_detail

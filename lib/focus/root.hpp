@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-namespace petzval::inline v0::focus_detail {
+namespace petzval::focus_detail {
 
 /// A zero of f between a and b, where f has opposite signs (or is 0), within 2 eps of x and eps^2 of |b - a|.
 /// Bisection, with inverse quadratic interpolation where the last three points show f to be nearly straight: at most
@@ -91,4 +91,4 @@ double highest(const Function& f, double from, double to, double tolerance) {
   }
 }
 
-}  // namespace petzval::inline v0::focus_detail
+}  // namespace petzval::focus_detail

@@ -8,7 +8,7 @@
 
 #include "root.hpp"
 
-namespace petzval::inline v0::focus_detail {
+namespace petzval::focus_detail {
 namespace {
 
 using enum FocusStatus;
@@ -189,4 +189,4 @@ FocusSolution Search::subject(double film_z) const {
   return {solved, film_z, subject_z, c_.distance(subject_z, film_z)};
 }
 
-}  // namespace petzval::inline v0::focus_detail
+}  // namespace petzval::focus_detail

@@ -5,7 +5,7 @@
 
 #include "solver.hpp"
 
-namespace petzval::inline v0::focus_detail {
+namespace petzval::focus_detail {
 
 /// The solvers by exact rays. The film of a subject can only be traced; everything else is a search over the vergence
 /// of the subject (Conjugates), along which the paraxial film is nearly the exact one.
@@ -42,4 +42,4 @@ class Search {
   double cap_;                           ///< film vergence beyond that of all films
 };
 
-}  // namespace petzval::inline v0::focus_detail
+}  // namespace petzval::focus_detail

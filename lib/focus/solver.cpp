@@ -13,7 +13,7 @@
 #include "petzval/paraxial/first_order.hpp"
 #include "search.hpp"
 
-namespace petzval::inline v0::focus_detail {
+namespace petzval::focus_detail {
 namespace {
 
 void check_weight(const Lens& lens, const char* what, double weight) {
@@ -182,4 +182,4 @@ Image FocusSolver::cone(double subject_z) const {
   return {.film_z = conjugates_.film_z(p), .rays = std::move(ray)};
 }
 
-}  // namespace petzval::inline v0::focus_detail
+}  // namespace petzval::focus_detail

@@ -12,7 +12,7 @@
 #include "petzval/lens/lens.hpp"
 #include "petzval/paraxial/first_order.hpp"
 
-namespace petzval::inline v0::focus_detail {
+namespace petzval::focus_detail {
 
 /// Throw Error for a subject distance that is NaN or not above 0, and for a film_z that is not finite.
 void check_distance(const Lens& lens, double distance);
@@ -62,4 +62,4 @@ class FocusSolver {
   Conjugates conjugates_;
 };
 
-}  // namespace petzval::inline v0::focus_detail
+}  // namespace petzval::focus_detail

@@ -14,7 +14,7 @@
 #include "core/text.hpp"
 #include "petzval/core/error.hpp"
 
-namespace petzval::inline v0::io_detail {
+namespace petzval::io_detail {
 namespace {
 
 constexpr std::int64_t largest_integer = std::int64_t{1} << 53;  // beyond it not every integer is a double
@@ -277,4 +277,4 @@ std::string json_text(const std::string& text) {
   }
 }
 
-}  // namespace petzval::inline v0::io_detail
+}  // namespace petzval::io_detail

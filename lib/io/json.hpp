@@ -8,7 +8,9 @@
 #include <utility>
 #include <variant>
 
-namespace petzval::inline v0::io_detail {
+#include "petzval/core/export.hpp"
+
+namespace petzval::io_detail {
 
 /// A word in the position of a value that JSON does not know ("Infinity"), or a number beyond double.
 struct JsonWord {
@@ -20,7 +22,7 @@ using JsonValue = std::variant<std::nullptr_t, bool, double, std::string, JsonWo
 
 /// The tokens of a JSON text for which the parser has events (values, keys and brackets), in their order. A parser that
 /// calls `next` once an event knows the position of each.
-class JsonTokens {
+class PETZVAL_API JsonTokens {
  public:
   explicit JsonTokens(std::string_view text);
   /// Moves to the next token. After the last token: to the end, or to text that the parser refuses.
@@ -39,7 +41,7 @@ class JsonTokens {
 };
 
 /// The text in quotes for a message, shortened if it is long.
-std::string in_quotes(std::string_view text);
+PETZVAL_API std::string in_quotes(std::string_view text);
 /// The value for a message.
 std::string describe(const JsonValue& value);
 
@@ -91,12 +93,12 @@ class JsonReader {
 
 /// ":11:8", the line and column of a value in a JSON text by its path ("surfaces[1].radius"), for messages. If the text
 /// has no such value: the position of the nearest list or object on its path. The text may have Infinity and NaN.
-std::string json_position(std::string_view json, std::string path);
+PETZVAL_API std::string json_position(std::string_view json, std::string path);
 
 /// The shortest decimals that read back; without an exponent from 1e-4 to 1e16, and always with a point.
-std::string json_number(double value);
+PETZVAL_API std::string json_number(double value);
 
 /// A text in quotes, with escapes. Throws Error for one that is not UTF-8.
-std::string json_text(const std::string& text);
+PETZVAL_API std::string json_text(const std::string& text);
 
-}  // namespace petzval::inline v0::io_detail
+}  // namespace petzval::io_detail

@@ -10,9 +10,11 @@
 #include <system_error>
 
 #include "json.hpp"
+#include "missing_apertures.hpp"
 #include "petzval/core/error.hpp"
+#include "petzval/core/read_file.hpp"
 
-namespace petzval::inline v0 {
+namespace petzval {
 namespace {
 
 using io_detail::describe;
@@ -481,4 +483,14 @@ Prescription parse_prescription(std::string_view json, const std::string& where)
   return prescription;
 }
 
-}  // namespace petzval::inline v0
+Prescription read_prescription(const std::filesystem::path& file) {
+  const std::string text = read_file(file, "a lens file");
+  const std::size_t first = text.find_first_not_of(" \t\r\n");
+  if (first != std::string::npos && text[first] != '{') {
+    throw Error(file.string() +
+                ": is no JSON; must be a lens of petzval (read_lens() reads the files of other programs)");
+  }
+  return io_detail::with_missing_apertures(parse_prescription(text, file.string()));
+}
+
+}  // namespace petzval

@@ -5,7 +5,7 @@
 #include "petzval/io/lens_json.hpp"
 #include "petzval/io/write_file.hpp"
 
-namespace petzval::inline v0 {
+namespace petzval {
 namespace {
 
 std::string json(double value) { return io_detail::json_number(value); }
@@ -181,4 +181,4 @@ void write_prescription(const Prescription& prescription, const std::filesystem:
   write_file(format_prescription(prescription), file);
 }
 
-}  // namespace petzval::inline v0
+}  // namespace petzval

@@ -14,7 +14,7 @@
 #include "petzval/core/read_file.hpp"
 #include "petzval/io/write_file.hpp"
 
-namespace petzval::inline v0 {
+namespace petzval {
 namespace {
 
 using io_detail::describe;
@@ -265,4 +265,4 @@ void write_ray_polynomial(const RayPolynomial& polynomial, const std::filesystem
   write_file(format_ray_polynomial(polynomial), file);
 }
 
-}  // namespace petzval::inline v0
+}  // namespace petzval

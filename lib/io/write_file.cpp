@@ -24,7 +24,7 @@
 #include "petzval/core/error.hpp"
 #include "petzval/core/read_file.hpp"
 
-namespace petzval::inline v0 {
+namespace petzval {
 namespace {
 
 namespace fs = std::filesystem;
@@ -185,4 +185,4 @@ std::vector<float> read_floats(const std::filesystem::path& file) {
   return numbers;
 }
 
-}  // namespace petzval::inline v0
+}  // namespace petzval

@@ -10,7 +10,7 @@
 #include "core/text.hpp"
 #include "petzval/core/error.hpp"
 
-namespace petzval::inline v0 {
+namespace petzval {
 namespace iris_detail {
 namespace {
 
@@ -111,4 +111,4 @@ double equal_area_f_number(const Iris& iris, double f_number) {
   return f_number * std::sqrt(iris_area(iris) / std::numbers::pi);
 }
 
-}  // namespace petzval::inline v0
+}  // namespace petzval

@@ -7,7 +7,7 @@
 #include "petzval/core/export.hpp"
 #include "petzval/iris/iris.hpp"
 
-namespace petzval::inline v0::iris_detail {
+namespace petzval::iris_detail {
 
 /// The edge of one blade, in semi-diameters of the stop: within the rim, light passes where
 /// x nx + y ny + bend (x^2 + y^2) <= distance.
@@ -42,4 +42,4 @@ struct Blade {
   double along_at(double across) const noexcept;
 };
 
-}  // namespace petzval::inline v0::iris_detail
+}  // namespace petzval::iris_detail

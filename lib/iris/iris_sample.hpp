@@ -9,7 +9,7 @@
 #include "core/loop_math.hpp"
 
 /// Uniform points of an iris, one at a time, for loops over many and for IrisShape.
-namespace petzval::inline v0::iris_detail {
+namespace petzval::iris_detail {
 
 /// How many terms the polynomials of an edge have: within 1e-7 semi-diameters, and 2e-13.
 template <class R>
@@ -110,4 +110,4 @@ inline bool within_edge(const IrisSectors<R>& s, std::size_t k, R x, R y) noexce
 }
 
 }  // namespace
-}  // namespace petzval::inline v0::iris_detail
+}  // namespace petzval::iris_detail

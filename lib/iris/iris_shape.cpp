@@ -9,7 +9,7 @@
 
 #include "iris/iris_edges.hpp"
 
-namespace petzval::inline v0::iris_detail {
+namespace petzval::iris_detail {
 namespace {
 
 constexpr double pi = std::numbers::pi;
@@ -107,4 +107,4 @@ bool IrisShape::contains(double x, double y) const noexcept {
   return within;
 }
 
-}  // namespace petzval::inline v0::iris_detail
+}  // namespace petzval::iris_detail

@@ -9,7 +9,7 @@
 #include "petzval/core/geometry.hpp"
 #include "petzval/iris/iris.hpp"
 
-namespace petzval::inline v0::iris_detail {
+namespace petzval::iris_detail {
 
 /// An iris in units of the stop's semi-diameter, to be sampled.
 class PETZVAL_API IrisShape {
@@ -61,4 +61,4 @@ class PETZVAL_API IrisShape {
   Columns<double> twice_;
 };
 
-}  // namespace petzval::inline v0::iris_detail
+}  // namespace petzval::iris_detail

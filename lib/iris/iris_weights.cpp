@@ -14,7 +14,7 @@
 #include "core/text.hpp"
 #include "petzval/core/error.hpp"
 
-namespace petzval::inline v0 {
+namespace petzval {
 namespace {
 
 /// The printed formula and its integral from 0 on, for d >= 0.
@@ -335,4 +335,4 @@ double IrisWeights::density(double u, double v) const noexcept {
 }
 
 }  // namespace iris_detail
-}  // namespace petzval::inline v0
+}  // namespace petzval

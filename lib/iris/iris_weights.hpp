@@ -11,7 +11,7 @@
 #include "petzval/core/geometry.hpp"
 #include "petzval/iris/iris_weights.hpp"
 
-namespace petzval::inline v0::iris_detail {
+namespace petzval::iris_detail {
 
 /// Throws Error, which begins with `where`, for weights that are not finite or negative, sizes that do not fit them,
 /// and more than 2^26 pixels.
@@ -72,4 +72,4 @@ class PETZVAL_API IrisWeights {
   std::vector<double> before_in_row_;  // [row][column]: the part of the row's samples, one more than columns
 };
 
-}  // namespace petzval::inline v0::iris_detail
+}  // namespace petzval::iris_detail

@@ -6,7 +6,7 @@
 
 #include "spectrum.hpp"
 
-namespace petzval::inline v0::lens_detail {
+namespace petzval::lens_detail {
 namespace {
 
 constexpr std::size_t most_nodes = 4;
@@ -70,4 +70,4 @@ std::size_t CompiledWavelengths::nearest(double nm) const noexcept {
       .position;
 }
 
-}  // namespace petzval::inline v0::lens_detail
+}  // namespace petzval::lens_detail

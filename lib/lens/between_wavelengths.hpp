@@ -12,7 +12,7 @@
 #include "petzval/core/export.hpp"
 #include "wavelength_rows.hpp"
 
-namespace petzval::inline v0::lens_detail {
+namespace petzval::lens_detail {
 
 /// Compiled wavelengths in the order of their ranks, the smallest first, to find those about any other.
 class PETZVAL_API CompiledWavelengths {
@@ -187,4 +187,4 @@ class BetweenWavelengths {
   In<double> twice_;
 };
 
-}  // namespace petzval::inline v0::lens_detail
+}  // namespace petzval::lens_detail

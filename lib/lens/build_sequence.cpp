@@ -5,7 +5,7 @@
 
 #include "build_tables.hpp"
 
-namespace petzval::inline v0::lens_detail {
+namespace petzval::lens_detail {
 namespace {
 
 /// Distance between vertices, in radii of curvature, beyond which a ray is moved near the vertex before it is
@@ -126,4 +126,4 @@ template SurfaceSequenceTables<float> build_sequence(std::span<const LensSurface
 template SurfaceSequenceTables<double> build_sequence(std::span<const LensSurface>, std::optional<std::size_t>,
                                                       std::span<const double>, std::size_t, const Spectrum&, Travel);
 
-}  // namespace petzval::inline v0::lens_detail
+}  // namespace petzval::lens_detail

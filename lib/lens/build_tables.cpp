@@ -7,7 +7,7 @@
 #include "describe_asphere.hpp"
 #include "iris/iris_edges.hpp"
 
-namespace petzval::inline v0::lens_detail {
+namespace petzval::lens_detail {
 namespace {
 
 template <class R>
@@ -97,4 +97,4 @@ template Tables<double> build_tables(std::span<const LensSurface>, std::span<con
                                      std::optional<std::size_t>, const Iris&, std::span<const double>, std::size_t,
                                      const Spectrum&);
 
-}  // namespace petzval::inline v0::lens_detail
+}  // namespace petzval::lens_detail

@@ -12,7 +12,7 @@
 #include "petzval/lens/lens.hpp"
 #include "spectrum.hpp"
 
-namespace petzval::inline v0::lens_detail {
+namespace petzval::lens_detail {
 
 /// A SurfaceSequence and its arrays.
 template <class R>
@@ -87,4 +87,4 @@ SurfaceSequenceTables<R> build_sequence(std::span<const LensSurface> surfaces, s
                                         std::span<const double> indices, std::size_t wavelengths,
                                         const Spectrum& spectrum, Travel travel);
 
-}  // namespace petzval::inline v0::lens_detail
+}  // namespace petzval::lens_detail

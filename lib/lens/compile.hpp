@@ -6,7 +6,7 @@
 
 #include "petzval/lens/lens.hpp"
 
-namespace petzval::inline v0::lens_detail {
+namespace petzval::lens_detail {
 
 /// Compiles a prescription as compile() does, but leaves surfaces without a clear aperture unlimited.
 Lens compile_as_given(const Prescription& prescription, std::span<const double> wavelengths_nm,
@@ -15,4 +15,4 @@ Lens compile_as_given(const Prescription& prescription, std::span<const double> 
 /// The lens with other semi-diameters (mm), in the order of the surfaces.
 Lens with_rims(const Lens& lens, std::vector<double> rims);
 
-}  // namespace petzval::inline v0::lens_detail
+}  // namespace petzval::lens_detail

@@ -15,7 +15,7 @@
 #include "indices.hpp"
 #include "petzval/lens/lens.hpp"
 
-namespace petzval::inline v0 {
+namespace petzval {
 
 /// What a Lens shares with its copies.
 struct Lens::Data {
@@ -53,4 +53,4 @@ struct Lens::Data {
   }
 };
 
-}  // namespace petzval::inline v0
+}  // namespace petzval

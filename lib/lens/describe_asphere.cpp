@@ -7,7 +7,7 @@
 #include <limits>
 #include <vector>
 
-namespace petzval::inline v0::lens_detail {
+namespace petzval::lens_detail {
 namespace {
 
 /// x^n by multiplication, so that a lens scaled by 2 gets the same constants times powers of two (pow() may round).
@@ -196,4 +196,4 @@ std::vector<kernel::Asphere<double>> describe_aspheres(std::span<const LensSurfa
   return aspheres;
 }
 
-}  // namespace petzval::inline v0::lens_detail
+}  // namespace petzval::lens_detail

@@ -4,10 +4,10 @@
 #include <span>
 #include <vector>
 
+#include "lens/asphere.hpp"
 #include "petzval/lens/lens.hpp"
-#include "surface/asphere.hpp"
 
-namespace petzval::inline v0::lens_detail {
+namespace petzval::lens_detail {
 
 kernel::Quadric<double> describe_quadric(const LensSurface& surface);
 
@@ -18,4 +18,4 @@ double described_height(const LensSurface& surface);
 /// The shapes of the surfaces with aspheric terms, with bounds of their rings.
 std::vector<kernel::Asphere<double>> describe_aspheres(std::span<const LensSurface> surfaces);
 
-}  // namespace petzval::inline v0::lens_detail
+}  // namespace petzval::lens_detail

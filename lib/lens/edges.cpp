@@ -10,7 +10,7 @@
 #include "describe_asphere.hpp"
 #include "equator.hpp"
 
-namespace petzval::inline v0::lens_detail {
+namespace petzval::lens_detail {
 namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
@@ -98,4 +98,4 @@ void end_at_edges(std::span<LensSurface> surfaces, std::span<const double> rims,
   for (LensSurface& s : surfaces) s.semi_diameter = std::min(s.semi_diameter, s.edge);
 }
 
-}  // namespace petzval::inline v0::lens_detail
+}  // namespace petzval::lens_detail

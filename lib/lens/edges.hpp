@@ -3,17 +3,19 @@
 
 #include <span>
 
+#include "petzval/core/export.hpp"
 #include "petzval/lens/lens.hpp"
 
-namespace petzval::inline v0::lens_detail {
+namespace petzval::lens_detail {
 
 /// Sag of a surface at (x, y) (mm), beyond its clear aperture too; NaN beyond the equator of its base conic.
-double sag_of(const LensSurface& surface, double x, double y) noexcept;
+PETZVAL_API double sag_of(const LensSurface& surface, double x, double y) noexcept;
 
 /// True if rays change at a surface: it is a mirror, or the indices on its sides differ at one wavelength.
 ///
 /// @param indices  [wavelength * (surfaces + 1) + space]
-bool changes_rays(std::span<const LensSurface> surfaces, std::span<const double> indices, std::size_t surface) noexcept;
+PETZVAL_API bool changes_rays(std::span<const LensSurface> surfaces, std::span<const double> indices,
+                              std::size_t surface) noexcept;
 
 /// Sets the clear apertures of surfaces: the given rims, ended where an asphere is no longer described and where two
 /// surfaces of an element meet.
@@ -28,4 +30,4 @@ bool changes_rays(std::span<const LensSurface> surfaces, std::span<const double>
 /// @param indices   [wavelength * (surfaces + 1) + space]
 void end_at_edges(std::span<LensSurface> surfaces, std::span<const double> rims, std::span<const double> indices);
 
-}  // namespace petzval::inline v0::lens_detail
+}  // namespace petzval::lens_detail

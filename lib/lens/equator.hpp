@@ -6,7 +6,7 @@
 
 #include "petzval/lens/lens.hpp"
 
-namespace petzval::inline v0::lens_detail {
+namespace petzval::lens_detail {
 
 /// Height of the equator of a surface's base conic, mm; infinite for a paraboloid, a hyperboloid and a plane.
 inline double equator(const LensSurface& surface) noexcept {
@@ -15,4 +15,4 @@ inline double equator(const LensSurface& surface) noexcept {
   return 1 / (std::abs(surface.curvature) * std::sqrt(bend));
 }
 
-}  // namespace petzval::inline v0::lens_detail
+}  // namespace petzval::lens_detail

@@ -6,12 +6,12 @@
 #include <cmath>
 
 #include "core/text.hpp"
-#include "media/similar_names.hpp"
+#include "glass/similar_names.hpp"
 #include "petzval/core/error.hpp"
+#include "petzval/glass/glass.hpp"
 #include "petzval/lens/medium.hpp"
-#include "petzval/media/glass.hpp"
 
-namespace petzval::inline v0::lens_detail {
+namespace petzval::lens_detail {
 namespace {
 
 /// The medium in front of the first surface or behind surface space - 1 (at a mirror, the medium light stays in).
@@ -57,7 +57,7 @@ std::string why_missing(const Medium& m, const Tables& tables) {
   std::string others;
   int count = 0;
   for (const Glass& glass : tables.glasses->glasses()) {
-    if (!media_detail::same_bare(glass.name, *m.glass) || ++count > 5) continue;
+    if (!glass_detail::same_bare(glass.name, *m.glass) || ++count > 5) continue;
     others +=
         (others.empty() ? "" : ", ") + glass.name + " (" + glass.catalogue + ", n_d " + to_text(glass.nd, 6) + ")";
   }
@@ -70,7 +70,7 @@ std::string why_missing(const Medium& m, const Tables& tables) {
 /// For errors: similar names in the tables.
 std::string names_like(const Medium& m, const Tables& tables) {
   if (!m.glass || !tables.glasses) return "";
-  const std::string names = media_detail::similar_names(*tables.glasses, *m.glass);
+  const std::string names = glass_detail::similar_names(*tables.glasses, *m.glass);
   return names.empty() ? "" : " (names like it: " + names + ")";
 }
 
@@ -171,4 +171,4 @@ Indices indices(const Prescription& prescription, std::span<const double> wavele
   return result;
 }
 
-}  // namespace petzval::inline v0::lens_detail
+}  // namespace petzval::lens_detail

@@ -8,7 +8,7 @@
 #include "petzval/lens/lens.hpp"
 #include "spectrum.hpp"
 
-namespace petzval::inline v0::lens_detail {
+namespace petzval::lens_detail {
 
 /// Indices of every medium at every wavelength, and how well dispersion is known.
 struct Indices {
@@ -21,4 +21,4 @@ struct Indices {
 Indices indices(const Prescription& prescription, std::span<const double> wavelengths_nm, const CompileOptions& options,
                 const std::string& where);
 
-}  // namespace petzval::inline v0::lens_detail
+}  // namespace petzval::lens_detail

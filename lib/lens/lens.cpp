@@ -16,7 +16,7 @@
 #include "petzval/core/error.hpp"
 #include "without_obscurations.hpp"
 
-namespace petzval::inline v0 {
+namespace petzval {
 
 namespace {
 
@@ -304,4 +304,4 @@ Lens with_iris(const Lens& lens, const Iris& iris) {
   return Lens::Data::lens(std::move(data));
 }
 
-}  // namespace petzval::inline v0
+}  // namespace petzval

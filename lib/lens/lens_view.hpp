@@ -6,16 +6,16 @@
 #include <cstdint>
 #include <span>
 
+#include "lens/asphere.hpp"
+#include "lens/quadric.hpp"
+#include "lens/snell.hpp"
 #include "petzval/core/export.hpp"
-#include "surface/asphere.hpp"
-#include "surface/quadric.hpp"
-#include "surface/snell.hpp"
 
-namespace petzval::inline v0 {
+namespace petzval {
 class Lens;
 }
 
-namespace petzval::inline v0::kernel {
+namespace petzval::kernel {
 
 /// One surface in the tables of the kernels.
 template <class R>
@@ -141,4 +141,4 @@ PETZVAL_API const LensView<float>& view(const Lens& lens) noexcept;
 template <>
 PETZVAL_API const LensView<double>& view(const Lens& lens) noexcept;
 
-}  // namespace petzval::inline v0::kernel
+}  // namespace petzval::kernel

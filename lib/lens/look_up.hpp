@@ -10,7 +10,7 @@
 #include "petzval/lens/wavelength.hpp"
 #include "wavelength_rows.hpp"
 
-namespace petzval::inline v0::lens_detail {
+namespace petzval::lens_detail {
 namespace {
 
 /// The most rays that look_up() takes.
@@ -113,4 +113,4 @@ inline void find_nearest(const NearestPosition& nearest, std::size_t count, cons
 }
 
 }  // namespace
-}  // namespace petzval::inline v0::lens_detail
+}  // namespace petzval::lens_detail

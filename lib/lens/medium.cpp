@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "petzval/lens/medium.hpp"
 
-namespace petzval::inline v0 {
+namespace petzval {
 
 const Glass* glass_of(const Medium& medium, const GlassCatalogue& glasses) {
   if (!medium.glass) return nullptr;
@@ -18,4 +18,4 @@ std::optional<double> reference_index(const Medium& medium, const GlassCatalogue
   return refractive_index(*glass, reference_wavelength_nm);
 }
 
-}  // namespace petzval::inline v0
+}  // namespace petzval

@@ -4,10 +4,10 @@
 #include <cmath>
 #include <limits>
 
+#include "lens/asphere.hpp"
 #include "lens/lens_view.hpp"
-#include "surface/asphere.hpp"
 
-namespace petzval::inline v0 {
+namespace petzval {
 
 double sag(const Lens& lens, std::size_t surface, double x, double y) noexcept {
   if (surface >= lens.surface_count()) return std::numeric_limits<double>::quiet_NaN();
@@ -20,4 +20,4 @@ double sag(const Lens& lens, std::size_t surface, double x, double y) noexcept {
   return defined && std::isfinite(z) ? z : std::numeric_limits<double>::quiet_NaN();
 }
 
-}  // namespace petzval::inline v0
+}  // namespace petzval

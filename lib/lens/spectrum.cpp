@@ -9,7 +9,7 @@
 
 #include "petzval/core/error.hpp"
 
-namespace petzval::inline v0::lens_detail {
+namespace petzval::lens_detail {
 namespace {
 
 using kernel::SquaredIndex;
@@ -107,4 +107,4 @@ double Spectrum::index(std::size_t space, double nm) const noexcept {
   return std::sqrt(media_[space].at(t, t * t, t * t * (t * t)));
 }
 
-}  // namespace petzval::inline v0::lens_detail
+}  // namespace petzval::lens_detail

@@ -8,7 +8,7 @@
 
 #include "lens_view.hpp"
 
-namespace petzval::inline v0::lens_detail {
+namespace petzval::lens_detail {
 
 /// The range of some wavelengths, by the rounding of a float wider.
 kernel::SpectralPlace<double> spectral_place(std::span<const double> wavelengths_nm);
@@ -41,4 +41,4 @@ class Spectrum {
   double error_ = 0;
 };
 
-}  // namespace petzval::inline v0::lens_detail
+}  // namespace petzval::lens_detail

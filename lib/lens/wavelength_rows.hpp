@@ -7,7 +7,7 @@
 
 #include "lens_view.hpp"
 
-namespace petzval::inline v0::lens_detail {
+namespace petzval::lens_detail {
 
 /// Rows of numbers as core_detail::look_up() reads them: on registers of their own, with zeros to whole pairs.
 template <class R>
@@ -65,4 +65,4 @@ struct NearestPosition {
   std::int32_t first = 0;
 };
 
-}  // namespace petzval::inline v0::lens_detail
+}  // namespace petzval::lens_detail

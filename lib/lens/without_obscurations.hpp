@@ -3,9 +3,9 @@
 
 #include "petzval/lens/lens.hpp"
 
-namespace petzval::inline v0 {
+namespace petzval {
 
 /// The lens without its central obscurations: its pupils hold those of the lens, and none is a ring.
 PETZVAL_API Lens without_obscurations(const Lens& lens);
 
-}  // namespace petzval::inline v0
+}  // namespace petzval

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-namespace petzval::inline v0 {
+namespace petzval {
 namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
@@ -149,4 +149,4 @@ double lensmaker_focal_length(double n, double c1, double c2, double thickness) 
   return power == 0 ? infinity : 1 / power;
 }
 
-}  // namespace petzval::inline v0
+}  // namespace petzval

@@ -5,9 +5,9 @@
 #include "petzval/paraxial/first_order.hpp"
 #include "petzval/paraxial/ideal_lens.hpp"
 
-namespace petzval::inline v0::paraxial_detail {
+namespace petzval::paraxial_detail {
 
 /// The ideal lens of a lens that is not afocal, without pupils; light may leave it along -z.
 IdealLens focal_points(const Lens& lens, const FirstOrder& data) noexcept;
 
-}  // namespace petzval::inline v0::paraxial_detail
+}  // namespace petzval::paraxial_detail

@@ -18,7 +18,7 @@
 #include "petzval/core/error.hpp"
 #include "petzval/paraxial/first_order.hpp"
 
-namespace petzval::inline v0 {
+namespace petzval {
 namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
@@ -162,4 +162,4 @@ std::optional<FilmPoint> chief_point(const ImagePoint& image, const Film& film) 
   return film.point(hit);
 }
 
-}  // namespace petzval::inline v0
+}  // namespace petzval

@@ -7,7 +7,7 @@
 
 #include "petzval/core/error.hpp"
 
-namespace petzval::inline v0 {
+namespace petzval {
 namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
@@ -82,4 +82,4 @@ double film_side_f_number(const Lens& lens, Wavelength wavelength) {
                                : paraxial_f_number(lens, wavelength);
 }
 
-}  // namespace petzval::inline v0
+}  // namespace petzval

@@ -7,7 +7,7 @@
 #include "core/text.hpp"
 #include "petzval/core/error.hpp"
 
-namespace petzval::inline v0 {
+namespace petzval {
 namespace {
 
 void require(bool holds, const char* where, const char* what, double found, const char* wanted) {
@@ -57,4 +57,4 @@ double thin_lens_film_distance(double focal_length, double subject_to_film) {
   return std::isinf(subject_to_film) ? focal_length : 2 * focal_length / (1 + root);
 }
 
-}  // namespace petzval::inline v0
+}  // namespace petzval

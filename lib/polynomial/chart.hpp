@@ -3,7 +3,7 @@
 
 #include "petzval/core/geometry.hpp"
 
-namespace petzval::inline v0::polynomial_detail {
+namespace petzval::polynomial_detail {
 
 /// A line in object space as two vectors that turn with it about the axis.
 ///
@@ -25,4 +25,4 @@ inline SceneLine scene_line(const Vec3<double>& direction, const Vec3<double>& p
   return {sx, sy, point.x - along * direction.x + foot_z * sx, point.y - along * direction.y + foot_z * sy};
 }
 
-}  // namespace petzval::inline v0::polynomial_detail
+}  // namespace petzval::polynomial_detail

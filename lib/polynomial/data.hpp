@@ -11,7 +11,7 @@
 #include "loops.hpp"
 #include "petzval/polynomial/ray_polynomial.hpp"
 
-namespace petzval::inline v0 {
+namespace petzval {
 
 struct RayPolynomial::Data {
   template <class R>
@@ -99,4 +99,4 @@ const R* RayPolynomial::Data::coefficients(Wavelength wavelength, Room<R>& room)
   return room.coefficients.data();
 }
 
-}  // namespace petzval::inline v0
+}  // namespace petzval

@@ -15,7 +15,7 @@
 #include "petzval/paraxial/first_order.hpp"
 #include "petzval/polynomial/ray_polynomial.hpp"
 
-namespace petzval::inline v0 {
+namespace petzval {
 namespace {
 
 using polynomial_detail::Lines;
@@ -233,4 +233,4 @@ RayPolynomial RayPolynomial::fit(const Lens& lens, const FilmPupilTable& pupils,
   return RayPolynomial(degree, domain, std::move(fits), lens.primary_wavelength());
 }
 
-}  // namespace petzval::inline v0
+}  // namespace petzval

@@ -6,7 +6,7 @@
 
 #include "core/simd.hpp"
 
-namespace petzval::inline v0::polynomial_detail {
+namespace petzval::polynomial_detail {
 namespace {
 
 /// Products of at most n of some variables.
@@ -34,4 +34,4 @@ PETZVAL_INLINE auto horner(const C& c, const T& first, const Rest&... rest) noex
 }
 
 }  // namespace
-}  // namespace petzval::inline v0::polynomial_detail
+}  // namespace petzval::polynomial_detail

@@ -16,7 +16,7 @@
 #include "petzval/core/error.hpp"
 #include "petzval/trace/trace.hpp"
 
-namespace petzval::inline v0::polynomial_detail {
+namespace petzval::polynomial_detail {
 namespace {
 
 /// Rays as arrays of their own.
@@ -258,4 +258,4 @@ RayPolynomial::Fit fit(const Lens& lens, const RayPolynomial::Domain& domain, in
   return fit;
 }
 
-}  // namespace petzval::inline v0::polynomial_detail
+}  // namespace petzval::polynomial_detail

@@ -7,7 +7,7 @@
 #include "petzval/lens/lens.hpp"
 #include "petzval/polynomial/ray_polynomial.hpp"
 
-namespace petzval::inline v0::polynomial_detail {
+namespace petzval::polynomial_detail {
 
 /// Lines of the film points from which all others follow by the symmetry: those on the axis +y of a lens of revolution,
 /// those in the quadrant x, y >= 0 of one with mirror symmetry.
@@ -31,4 +31,4 @@ struct FitLines {
 RayPolynomial::Fit fit(const Lens& lens, const RayPolynomial::Domain& domain, int degree, std::size_t wavelength,
                        const FitLines& lines);
 
-}  // namespace petzval::inline v0::polynomial_detail
+}  // namespace petzval::polynomial_detail

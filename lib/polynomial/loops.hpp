@@ -12,7 +12,7 @@
 #include "petzval/lens/wavelength.hpp"
 #include "petzval/pupil_table/two_plane_rays.hpp"
 
-namespace petzval::inline v0::polynomial_detail {
+namespace petzval::polynomial_detail {
 
 /// Degrees 3, 5, 7, 9, 11.
 inline constexpr std::size_t degree_count = 5;
@@ -76,4 +76,4 @@ struct PolynomialLoops {
 
 PETZVAL_WIDEST(PolynomialLoops, polynomial_loops)
 
-}  // namespace petzval::inline v0::polynomial_detail
+}  // namespace petzval::polynomial_detail

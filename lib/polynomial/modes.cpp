@@ -6,7 +6,7 @@
 #include <cmath>
 #include <cstddef>
 
-namespace petzval::inline v0::polynomial_detail {
+namespace petzval::polynomial_detail {
 
 FitModes find_modes(const std::vector<RayPolynomial::Fit>& fits, const std::vector<std::vector<double>>& coefficients) {
   using Eigen::Index;
@@ -46,4 +46,4 @@ FitModes find_modes(const std::vector<RayPolynomial::Fit>& fits, const std::vect
   return result;
 }
 
-}  // namespace petzval::inline v0::polynomial_detail
+}  // namespace petzval::polynomial_detail

@@ -7,7 +7,7 @@
 #include "loops.hpp"
 #include "petzval/polynomial/ray_polynomial.hpp"
 
-namespace petzval::inline v0::polynomial_detail {
+namespace petzval::polynomial_detail {
 
 /// Coefficients of all fits as sums of few modes: those of fit w are those of the modes times weights[w].
 struct FitModes {
@@ -21,4 +21,4 @@ struct FitModes {
 /// coefficients: of each fit, the half for directions first.
 FitModes find_modes(const std::vector<RayPolynomial::Fit>& fits, const std::vector<std::vector<double>>& coefficients);
 
-}  // namespace petzval::inline v0::polynomial_detail
+}  // namespace petzval::polynomial_detail

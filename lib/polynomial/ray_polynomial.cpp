@@ -16,7 +16,7 @@
 #include "petzval/core/units.hpp"
 #include "pupil_table/repeated_wavelength.hpp"
 
-namespace petzval::inline v0 {
+namespace petzval {
 namespace {
 
 /// Beyond it products overflow in float; no lens comes near it.
@@ -220,4 +220,4 @@ template PETZVAL_API void RayPolynomial::to_scene<double>(std::size_t, const Two
                                                           const RayWavelengths&, const RayArrays<double>&,
                                                           RayFate*) const noexcept;
 
-}  // namespace petzval::inline v0
+}  // namespace petzval

@@ -7,7 +7,7 @@
 
 #include "horner.hpp"
 
-namespace petzval::inline v0::polynomial_detail {
+namespace petzval::polynomial_detail {
 namespace {
 
 using core_detail::sum_of_products;
@@ -138,4 +138,4 @@ constexpr auto by_symmetry_and_degree(Of of) {
 }
 
 }  // namespace
-}  // namespace petzval::inline v0::polynomial_detail
+}  // namespace petzval::polynomial_detail

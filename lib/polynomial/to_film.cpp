@@ -9,7 +9,7 @@
 #include "data.hpp"
 #include "sums.hpp"
 
-namespace petzval::inline v0 {
+namespace petzval {
 namespace {
 
 using polynomial_detail::horner;
@@ -256,4 +256,4 @@ void RayPolynomial::to_film(std::size_t count, const RayArrays<const double>& ra
   }
 }
 
-}  // namespace petzval::inline v0
+}  // namespace petzval

@@ -10,7 +10,7 @@
 #include "loops.hpp"
 #include "sums.hpp"
 
-namespace petzval::inline v0::polynomial_detail {
+namespace petzval::polynomial_detail {
 namespace {
 
 using core_detail::lane_count;
@@ -248,4 +248,4 @@ constexpr ToSceneLoops<R> loops = by_symmetry_and_degree([]<class Symmetry>(Symm
 extern const PolynomialLoops PETZVAL_LOOPS;
 const PolynomialLoops PETZVAL_LOOPS{loops<float>, loops<double>, one};
 
-}  // namespace petzval::inline v0::polynomial_detail
+}  // namespace petzval::polynomial_detail

@@ -7,7 +7,7 @@
 #include "petzval/core/error.hpp"
 #include "petzval/prescription/prescription.hpp"
 
-namespace petzval::inline v0 {
+namespace petzval {
 namespace {
 
 using Configurations = std::vector<Configuration>;
@@ -198,4 +198,4 @@ Prescription configured(const Prescription& p, const ConfigurationChoice& choice
   return result;
 }
 
-}  // namespace petzval::inline v0
+}  // namespace petzval

@@ -4,7 +4,7 @@
 #include "petzval/prescription/configuration.hpp"
 #include "petzval/prescription/surface_row.hpp"
 
-namespace petzval::inline v0::prescription_detail {
+namespace petzval::prescription_detail {
 
 /// Makes a configuration's change of a surface.
 inline void apply(const SurfaceChange& change, SurfaceRow& row) {
@@ -15,4 +15,4 @@ inline void apply(const SurfaceChange& change, SurfaceRow& row) {
   if (change.medium) row.medium = *change.medium;
 }
 
-}  // namespace petzval::inline v0::prescription_detail
+}  // namespace petzval::prescription_detail

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "petzval/prescription/design_data.hpp"
 
-namespace petzval::inline v0 {
+namespace petzval {
 
 std::string_view name(ApertureSetting setting) noexcept {
   switch (setting) {
@@ -25,4 +25,4 @@ std::string_view name(FieldKind kind) noexcept {
   return "unknown";
 }
 
-}  // namespace petzval::inline v0
+}  // namespace petzval

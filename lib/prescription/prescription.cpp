@@ -8,7 +8,7 @@
 #include "core/text.hpp"
 #include "petzval/core/error.hpp"
 
-namespace petzval::inline v0 {
+namespace petzval {
 namespace {
 
 std::string name_of(const Prescription& p) { return p.name.empty() ? std::string("lens") : p.name; }
@@ -133,4 +133,4 @@ Prescription reverse(const Prescription& prescription) {
   return p;
 }
 
-}  // namespace petzval::inline v0
+}  // namespace petzval

@@ -10,7 +10,7 @@
 #include "petzval/core/error.hpp"
 #include "petzval/prescription/prescription.hpp"
 
-namespace petzval::inline v0 {
+namespace petzval {
 namespace {
 
 // The squared curvature of a smaller radius overflows float. File formats write infinity as longer thicknesses.
@@ -233,4 +233,4 @@ void validate(const Prescription& p, const std::string& where) {
   ConfigurationCheck(where, p).run();
 }
 
-}  // namespace petzval::inline v0
+}  // namespace petzval

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "aim.hpp"
 
-#include <ceres/jet.h>
-
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -12,6 +10,7 @@
 #include <string>
 
 #include "core/bisect.hpp"
+#include "core/dual.hpp"
 #include "face.hpp"
 #include "petzval/core/error.hpp"
 #include "petzval/lens/lens.hpp"
@@ -19,10 +18,10 @@
 #include "petzval/trace/trace.hpp"
 #include "trace/sequential.hpp"
 
-namespace petzval::inline v0 {
+namespace petzval {
 namespace {
 
-using Jet = ceres::Jet<double, 2>;
+using kernel::Dual;
 using kernel::Vec;
 
 /// The unknown: transverse components of the unit direction in which a ray leaves the stop towards the point.
@@ -130,13 +129,13 @@ class Aimer {
     return edge ? newton(target, *edge) : std::nullopt;
   }
 
-  std::optional<Departure<Jet>> differentiated(const StopPoint& from, const Slope& s) const noexcept {
-    return leave(from, Jet(s.x, 0), Jet(s.y, 1));
+  std::optional<Departure<Dual>> differentiated(const StopPoint& from, const Slope& s) const noexcept {
+    return leave(from, Dual(s.x, 0), Dual(s.y, 1));
   }
 
   /// Whether directions in object space turn the other way round when those at the stop turn.
-  static bool mirrored(const Departure<Jet>& ray) noexcept {
-    const Vec<Jet> e = ray.direction - ray.wanted;
+  static bool mirrored(const Departure<Dual>& ray) noexcept {
+    const Vec<Dual> e = ray.direction - ray.wanted;
     const auto part = [&](int i) { return Vec<double>{e.x.v[i], e.y.v[i], e.z.v[i]}; };
     const Vec<double> a = part(0), b = part(1);
     const Vec<double> d{ray.direction.x.a, ray.direction.y.a, ray.direction.z.a};
@@ -148,14 +147,14 @@ class Aimer {
   std::optional<Slope> newton(const StopPoint& from, Slope slope) const noexcept {
     constexpr double rounding = 1e-15, good = 1e-9;
     const auto at = [&](const Slope& s) { return differentiated(from, s); };
-    const auto miss = [](const Departure<Jet>& d) {
+    const auto miss = [](const Departure<Dual>& d) {
       const bool away = !(dot(d.direction, d.wanted) > 0.0);
       return away ? 2.0 : std::hypot(d.along.a, d.across.a);
     };
     auto now = at(slope);
     if (!now) return {};
     for (int iteration = 0; iteration < 40 && miss(*now) > rounding; ++iteration) {
-      const Jet &f = now->along, &g = now->across;
+      const Dual &f = now->along, &g = now->across;
       const double d = f.v[0] * g.v[1] - f.v[1] * g.v[0];
       Slope step{(f.v[1] * g.a - f.a * g.v[1]) / d, (f.a * g.v[0] - f.v[0] * g.a) / d};
       if (!std::isfinite(step.x) || !std::isfinite(step.y)) return {};
@@ -263,4 +262,4 @@ AimedRay chief_ray(const Lens& lens, const FieldPoint& point, Wavelength wavelen
   return aim(lens, point, {}, wavelength);
 }
 
-}  // namespace petzval::inline v0
+}  // namespace petzval

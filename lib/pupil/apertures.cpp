@@ -20,7 +20,7 @@
 #include "petzval/pupil/f_number.hpp"
 #include "trace/sequential.hpp"
 
-namespace petzval::inline v0 {
+namespace petzval {
 namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
@@ -241,4 +241,4 @@ Prescription with_apertures(const Prescription& prescription, const CompileOptio
   return result;
 }
 
-}  // namespace petzval::inline v0
+}  // namespace petzval

@@ -6,7 +6,7 @@
 #include "core/quadrature.hpp"
 #include "petzval/pupil/pupil_boundary.hpp"
 
-namespace petzval::inline v0::pupil_detail {
+namespace petzval::pupil_detail {
 
 /// Calls visit(place, area, weight) at N Gauss-Legendre nodes between the edges of a pupil in each direction. They lie
 /// in the squared radius, of which equal steps are equal areas; area * weight is their share of the pupil, in squared
@@ -23,4 +23,4 @@ void for_each_node(const PupilRegion& region, const Visit& visit) {
   }
 }
 
-}  // namespace petzval::inline v0::pupil_detail
+}  // namespace petzval::pupil_detail

@@ -11,7 +11,7 @@
 #include "found_pupil.hpp"
 #include "pupil_region.hpp"
 
-namespace petzval::inline v0::pupil_detail {
+namespace petzval::pupil_detail {
 namespace {
 
 /// Of ends, in half axes.
@@ -484,4 +484,4 @@ std::vector<bool> lit_points(std::span<const PupilGuess> points, const PlaceClea
   return Search(points, any_directions, false, clearances, nullptr).lit_points();
 }
 
-}  // namespace petzval::inline v0::pupil_detail
+}  // namespace petzval::pupil_detail

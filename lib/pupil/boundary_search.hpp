@@ -12,7 +12,7 @@
 #include "petzval/pupil/pupil_boundary.hpp"
 #include "search_order.hpp"
 
-namespace petzval::inline v0::pupil_detail {
+namespace petzval::pupil_detail {
 
 /// Where to look for the pupil of a point: first where it is expected, near (x, y), then along a line across the whole
 /// part of the plane that is in question.
@@ -47,4 +47,4 @@ std::vector<PupilRegion> find_regions(std::span<const PupilGuess> points, const 
 /// Of which points anything passes, as far as find_regions() would see it.
 std::vector<bool> lit_points(std::span<const PupilGuess> points, const PlaceClearances& clearances);
 
-}  // namespace petzval::inline v0::pupil_detail
+}  // namespace petzval::pupil_detail

@@ -12,7 +12,7 @@
 #include "petzval/paraxial/first_order.hpp"
 #include "trace/sequential.hpp"
 
-namespace petzval::inline v0 {
+namespace petzval {
 namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
@@ -182,4 +182,4 @@ Lens with_f_number(const Lens& lens, double f_number, Wavelength wavelength) {
   return stopped;
 }
 
-}  // namespace petzval::inline v0
+}  // namespace petzval

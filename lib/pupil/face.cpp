@@ -6,7 +6,7 @@
 
 #include "petzval/lens/lens.hpp"
 
-namespace petzval::inline v0::pupil_detail {
+namespace petzval::pupil_detail {
 
 double half_height(const Lens& lens, std::size_t surface, const Pupil& entrance) noexcept {
   const double own = lens.surfaces()[surface].semi_diameter;
@@ -42,4 +42,4 @@ Face last_face(const Lens& lens) {
   return face_of(lens, lens.surface_count() - 1, entrance);
 }
 
-}  // namespace petzval::inline v0::pupil_detail
+}  // namespace petzval::pupil_detail

@@ -7,7 +7,7 @@
 #include "petzval/lens/lens.hpp"
 #include "petzval/paraxial/first_order.hpp"
 
-namespace petzval::inline v0::pupil_detail {
+namespace petzval::pupil_detail {
 
 /// Half height through which light enters an outer surface: its own, or where it is unlimited four times that of the
 /// widest rim or pupil.
@@ -24,4 +24,4 @@ Face face_of(const Lens& lens, std::size_t surface, const Pupil& entrance) noexc
 /// The last surface.
 PETZVAL_API Face last_face(const Lens& lens);
 
-}  // namespace petzval::inline v0::pupil_detail
+}  // namespace petzval::pupil_detail

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <numbers>
 
-namespace petzval::inline v0::pupil_detail {
+namespace petzval::pupil_detail {
 
 bool recentre(Found& found, std::span<const Vec2<double>> units) {
   if (found.empty()) return false;
@@ -62,4 +62,4 @@ PupilRegion region_of(const Found& found, std::span<const Vec2<double>> units) {
   return region;
 }
 
-}  // namespace petzval::inline v0::pupil_detail
+}  // namespace petzval::pupil_detail

@@ -10,7 +10,7 @@
 #include "line_extents.hpp"
 #include "petzval/pupil/pupil_boundary.hpp"
 
-namespace petzval::inline v0::pupil_detail {
+namespace petzval::pupil_detail {
 
 /// What is known of a region while it is searched: middle, half axes and, by direction, what passes from the middle to
 /// `to`, except for one obscuration and other gaps. Nothing passes where `to` is 0, and nothing at all without
@@ -69,4 +69,4 @@ class Interpolation {
   std::array<double, 4> weights_;
 };
 
-}  // namespace petzval::inline v0::pupil_detail
+}  // namespace petzval::pupil_detail

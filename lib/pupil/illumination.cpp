@@ -17,7 +17,7 @@
 #include "petzval/pupil/pupil_boundary.hpp"
 #include "pupil_region.hpp"
 
-namespace petzval::inline v0 {
+namespace petzval {
 
 double film_irradiance(const Lens& lens, const FilmPoint& point, Wavelength wavelength) {
   const bool alike_all_round = point.x == 0 && point.y == 0 && lens.rotationally_symmetric();
@@ -82,4 +82,4 @@ std::optional<double> relative_illumination(const Lens& lens, const FieldPoint& 
   return film_irradiance(lens, {image.x, image.y}, wavelength) / axis;
 }
 
-}  // namespace petzval::inline v0
+}  // namespace petzval

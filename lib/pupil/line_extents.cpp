@@ -5,7 +5,7 @@
 #include <array>
 #include <cmath>
 
-namespace petzval::inline v0::pupil_detail {
+namespace petzval::pupil_detail {
 
 void close_in(std::vector<Bracket>& brackets, const std::vector<Line>& lines, double tolerance,
               const PlaceClearances& clearances) {
@@ -125,4 +125,4 @@ std::vector<LineExtent> extents_along(const std::vector<Line>& lines, double low
   return result;
 }
 
-}  // namespace petzval::inline v0::pupil_detail
+}  // namespace petzval::pupil_detail

@@ -11,7 +11,7 @@
 #include "petzval/core/version.hpp"
 
 /// What passes along lines in the planes of pupils, for the search of their boundaries.
-namespace petzval::inline v0::pupil_detail {
+namespace petzval::pupil_detail {
 
 /// How near the rays through N places come to the edge of what passes, at (x[i], y[i]) of the plane of points[i]: not
 /// negative where they pass, as trace/clearances.hpp; 1 and -1 where no more is known.
@@ -95,4 +95,4 @@ PETZVAL_API std::vector<LineExtent> extents_along(const std::vector<Line>& lines
                                                   double tolerance, const PlaceClearances& clearances,
                                                   const PartOfLine& part = {});
 
-}  // namespace petzval::inline v0::pupil_detail
+}  // namespace petzval::pupil_detail

@@ -16,7 +16,7 @@
 #include "pupil_region.hpp"
 #include "sight.hpp"
 
-namespace petzval::inline v0 {
+namespace petzval {
 namespace {
 
 using Point = Vec2<double>;
@@ -405,4 +405,4 @@ PupilRegion directions_seen(const Lens& lens, const FilmPoint& point, Wavelength
 
 }  // namespace pupil_detail
 
-}  // namespace petzval::inline v0
+}  // namespace petzval

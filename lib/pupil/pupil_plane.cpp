@@ -15,7 +15,7 @@
 #include "petzval/core/units.hpp"
 #include "petzval/paraxial/first_order.hpp"
 
-namespace petzval::inline v0 {
+namespace petzval {
 namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
@@ -145,4 +145,4 @@ Vec2<double> PupilPlane::meet(const Ray<double>& ray) const noexcept {
   return {glm::dot(place, x_axis_), glm::dot(place, y_axis_)};
 }
 
-}  // namespace petzval::inline v0
+}  // namespace petzval

@@ -8,7 +8,7 @@
 
 #include "pupil_region.hpp"
 
-namespace petzval::inline v0 {
+namespace petzval {
 
 Vec2<double> PupilRegion::unit(std::size_t direction) const noexcept {
   const double angle = 2 * std::numbers::pi * (static_cast<double>(direction) + 0.5) / static_cast<double>(directions);
@@ -110,4 +110,4 @@ void keep_within(PupilRegion& region, const PupilRegion& other) {
 }
 
 }  // namespace pupil_detail
-}  // namespace petzval::inline v0
+}  // namespace petzval

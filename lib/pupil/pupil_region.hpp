@@ -5,7 +5,7 @@
 
 #include "petzval/pupil/pupil_boundary.hpp"
 
-namespace petzval::inline v0::pupil_detail {
+namespace petzval::pupil_detail {
 
 /// The area of squared radii, summed over the directions of a region.
 double area_of(const PupilRegion& region, double squared_radii) noexcept;
@@ -32,4 +32,4 @@ void keep_connected(PupilRegion& region, const Vec2<double>& place);
 /// Keeps the spans that overlap a span of another region with the same middle, half axes and directions.
 void keep_within(PupilRegion& region, const PupilRegion& other);
 
-}  // namespace petzval::inline v0::pupil_detail
+}  // namespace petzval::pupil_detail

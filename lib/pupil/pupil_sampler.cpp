@@ -9,7 +9,7 @@
 
 #include "pupil_region.hpp"
 
-namespace petzval::inline v0 {
+namespace petzval {
 
 PupilSampler::PupilSampler(const PupilBoundary& boundary)
     : plane_(boundary.plane),
@@ -103,4 +103,4 @@ void PupilSampler::operator()(std::span<const double> u, std::span<const double>
   }
 }
 
-}  // namespace petzval::inline v0
+}  // namespace petzval

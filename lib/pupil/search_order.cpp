@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <bit>
 
-namespace petzval::inline v0::pupil_detail {
+namespace petzval::pupil_detail {
 
 SearchOrder SearchOrder::rows(std::size_t points, std::size_t row) {
   SearchOrder order;
@@ -45,4 +45,4 @@ void SearchOrder::halve(const Line& line, std::size_t first_step, std::size_t fi
   }
 }
 
-}  // namespace petzval::inline v0::pupil_detail
+}  // namespace petzval::pupil_detail

@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <vector>
 
-namespace petzval::inline v0::pupil_detail {
+namespace petzval::pupil_detail {
 
 /// A point about halfway between two others, where its pupil is looked for next to theirs. The farther two are as far
 /// again from these on both sides; the point itself: there is none.
@@ -32,4 +32,4 @@ struct SearchOrder {
   void halve(const Line& line, std::size_t first_step, std::size_t first_round);
 };
 
-}  // namespace petzval::inline v0::pupil_detail
+}  // namespace petzval::pupil_detail

@@ -14,7 +14,7 @@
 #include "sines.hpp"
 #include "trace/clearances.hpp"
 
-namespace petzval::inline v0::pupil_detail {
+namespace petzval::pupil_detail {
 namespace {
 
 using Place = Vec2<double>;
@@ -274,4 +274,4 @@ std::vector<SeenPlace> Sight::passing_places() {
   return result;
 }
 
-}  // namespace petzval::inline v0::pupil_detail
+}  // namespace petzval::pupil_detail

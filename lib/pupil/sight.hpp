@@ -12,7 +12,7 @@
 #include "petzval/pupil/pupil_plane.hpp"
 #include "sines.hpp"
 
-namespace petzval::inline v0::pupil_detail {
+namespace petzval::pupil_detail {
 
 /// A place of a plane and about how far it is to the places beside it that are tried.
 struct SeenPlace {
@@ -73,4 +73,4 @@ class Sight {
   std::vector<int> surfaces_;
 };
 
-}  // namespace petzval::inline v0::pupil_detail
+}  // namespace petzval::pupil_detail

@@ -8,7 +8,7 @@
 
 #include "petzval/pupil/pupil_plane.hpp"
 
-namespace petzval::inline v0::pupil_detail {
+namespace petzval::pupil_detail {
 
 /// Places of a plane by the sines under which its point sees them, times its distance: a surface close to the point
 /// has a bounded image. Of a point at infinity they are the places themselves.
@@ -64,4 +64,4 @@ class Sines {
   double per_distance_ = 0;
 };
 
-}  // namespace petzval::inline v0::pupil_detail
+}  // namespace petzval::pupil_detail

@@ -14,7 +14,7 @@
 #include "petzval/paraxial/first_order.hpp"
 #include "petzval/trace/trace.hpp"
 
-namespace petzval::inline v0 {
+namespace petzval {
 namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
@@ -128,4 +128,4 @@ TextbookPupil textbook_exit_pupil(const Lens& lens, double film_z, Wavelength wa
   return textbook_pupil(lens, Travel::to_scene, film_z, wavelength);
 }
 
-}  // namespace petzval::inline v0
+}  // namespace petzval

@@ -12,7 +12,7 @@
 #include "lens/lens_view.hpp"
 #include "trace/sequential.hpp"
 
-namespace petzval::inline v0::pupil_table_detail {
+namespace petzval::pupil_table_detail {
 namespace {
 
 using Place = Vec2<double>;
@@ -407,4 +407,4 @@ std::vector<PupilPolygon> bladed_polygons(const BladedGrid& grid, std::span<cons
   return result;
 }
 
-}  // namespace petzval::inline v0::pupil_table_detail
+}  // namespace petzval::pupil_table_detail

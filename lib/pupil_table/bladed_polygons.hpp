@@ -12,7 +12,7 @@
 #include "petzval/pupil_table/two_plane_rays.hpp"
 #include "pupil_table/pupil_polygon.hpp"
 
-namespace petzval::inline v0::pupil_table_detail {
+namespace petzval::pupil_table_detail {
 
 /// Where the rays of a film point on +y meet the stop and where the stop is seen from there, as polynomials fitted to
 /// rays through its pupil. Places are counted from a middle on the y axis, mm; points of the stop in its
@@ -68,4 +68,4 @@ struct BladedGrid {
 std::vector<PupilPolygon> bladed_polygons(const BladedGrid& grid, std::span<const PupilPolygon> round,
                                           std::vector<StopMap> maps, PolygonFit fit);
 
-}  // namespace petzval::inline v0::pupil_table_detail
+}  // namespace petzval::pupil_table_detail

@@ -10,7 +10,7 @@
 
 #include "grid_pupils.hpp"
 
-namespace petzval::inline v0::pupil_table_detail {
+namespace petzval::pupil_table_detail {
 namespace {
 
 /// Bounds of the places where rays cross the planes that they face.
@@ -266,4 +266,4 @@ PupilPolygon EntranceGrid::polygon(const Bearing& bearing, double reciprocal_dis
   return at ? interpolated(polygons_, *at) : PupilPolygon{};
 }
 
-}  // namespace petzval::inline v0::pupil_table_detail
+}  // namespace petzval::pupil_table_detail

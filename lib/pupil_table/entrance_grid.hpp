@@ -14,7 +14,7 @@
 #include "pupil_table/entrance_pupil_table.hpp"
 #include "pupil_table/pupil_polygon.hpp"
 
-namespace petzval::inline v0::pupil_table_detail {
+namespace petzval::pupil_table_detail {
 
 /// What clearances tell of places in planes, by the rays that meet them there.
 class RayClearances {
@@ -84,4 +84,4 @@ class EntranceGrid {
   std::vector<PupilPolygon> polygons_;            // [distance][y][x]
 };
 
-}  // namespace petzval::inline v0::pupil_table_detail
+}  // namespace petzval::pupil_table_detail

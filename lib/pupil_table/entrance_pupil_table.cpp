@@ -20,7 +20,7 @@
 #include "pupil/face.hpp"
 #include "pupil_table/pupil_polygon.hpp"
 
-namespace petzval::inline v0 {
+namespace petzval {
 namespace {
 
 using namespace pupil_table_detail;
@@ -538,4 +538,4 @@ double EntrancePupilTable::pdf(const Vec3<double>& point, const Ray<double>& ray
   return 1 - cosine <= solid / (2 * pi) * (1 + 1e-12) + rounding ? 1 / solid : 0;
 }
 
-}  // namespace petzval::inline v0
+}  // namespace petzval

@@ -17,7 +17,7 @@
 #include "petzval/pupil_table/two_plane_rays.hpp"
 #include "petzval/trace/trace.hpp"
 
-namespace petzval::inline v0 {
+namespace petzval {
 
 /// A ray from a scene point into the lens.
 struct EntranceSample {
@@ -93,4 +93,4 @@ PETZVAL_API ScenePassing traced_passing(const Lens& lens);
 /// The table of a lens by exact rays. pupils: FilmPupilTable::enclosing() of its film.
 PETZVAL_API EntrancePupilTable traced_entrances(const Lens& lens, const FilmPupilTable& pupils);
 
-}  // namespace petzval::inline v0
+}  // namespace petzval

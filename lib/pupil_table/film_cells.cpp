@@ -1,16 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "film_cells.hpp"
 
-#include <ceres/jet.h>
-
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <numbers>
 
+#include "core/dual.hpp"
 #include "polygon_place.hpp"
 
-namespace petzval::inline v0::pupil_table_detail {
+namespace petzval::pupil_table_detail {
 namespace {
 
 using L = CellLayout;
@@ -308,7 +307,7 @@ Vec2<double> FilmCells::position(const FilmPoint& film, double x, double y, std:
 
 FilmPupilTable::Derivatives FilmCells::derivatives(const FilmPoint& film, double u, double v,
                                                    std::size_t wavelength) const noexcept {
-  using Jet = ceres::Jet<double, 2>;
+  using kernel::Dual;
   const Place at = find(film, wavelength);
   if (!at.cell || !(u - u == 0 && v - v == 0)) return {};
   if (!(at.polygon().area_before(polygon_corners) > 0)) return {};
@@ -316,38 +315,38 @@ FilmPupilTable::Derivatives FilmCells::derivatives(const FilmPoint& film, double
   // s by y; t by x and, where the rows around have different widths, by s.
   const auto i = static_cast<std::size_t>(at.row);
   const double widening = grid_.half_widths[i + 1] - grid_.half_widths[i];
-  Jet s(at.s), t(at.t);
+  Dual s(at.s), t(at.t);
   s.v[1] = at.sign_y * table<double>().rows_per_mm;
-  const Jet width = grid_.half_widths[i] + s * widening;
+  const Dual width = grid_.half_widths[i] + s * widening;
   if (width.a > 0) {
-    const Jet column = at.sign_x * Jet(film.x, 0) / width * static_cast<double>(grid_.columns);
+    const Dual column = at.sign_x * Dual(film.x, 0) / width * static_cast<double>(grid_.columns);
     t.v = column.v;
   }
-  const InCell<Jet> polygon{at.cell, t, s};
-  const Jet share = at.share(polygon, std::clamp(u, 0.0, 1.0));
+  const InCell<Dual> polygon{at.cell, t, s};
+  const Dual share = at.share(polygon, std::clamp(u, 0.0, 1.0));
   const std::size_t k = sector_with(at.polygon(), share.a * at.polygon().area_before(polygon_corners));
-  const Point<Jet> p = polygon.middle() + sample_place(polygon, k, share, std::clamp(v, 0.0, 1.0));
-  const Jet x = at.sign_x * p.x, y = at.sign_y * p.y;
+  const Point<Dual> p = polygon.middle() + sample_place(polygon, k, share, std::clamp(v, 0.0, 1.0));
+  const Dual x = at.sign_x * p.x, y = at.sign_y * p.y;
   return {{x.v[0], y.v[0]}, {x.v[1], y.v[1]}};
 }
 
 FilmPupilTable::Derivatives FilmCells::bladed_derivatives(const Place& at, const FilmPoint& film, double u,
                                                           double v) const noexcept {
-  using Jet = ceres::Jet<double, 2>;
+  using kernel::Dual;
   const BladedTable<double> own = bladed_table<double>();
   // On the axis the directions around it meet: beside it is near enough.
   const double beside = 1e-4 * film_radius_;
   if (!(std::hypot(film.x, film.y) >= beside)) return {};
-  const Jet x(film.x, 0), y(film.y, 1), r = sqrt(x * x + y * y), sine = x / r, cosine = y / r;
-  Jet s = r * own.rows_per_mm, t = 2.0 * at.fold[5] * static_cast<double>(columns_) * blades_ * turn_of(sine, cosine);
+  const Dual x(film.x, 0), y(film.y, 1), r = sqrt(x * x + y * y), sine = x / r, cosine = y / r;
+  Dual s = r * own.rows_per_mm, t = 2.0 * at.fold[5] * static_cast<double>(columns_) * blades_ * turn_of(sine, cosine);
   s.a = at.s, t.a = at.t;
-  const InCell<Jet> polygon{at.cell, t, s, corners_, true};
-  const Jet share = at.share(polygon, std::clamp(u, 0.0, 1.0));
+  const InCell<Dual> polygon{at.cell, t, s, corners_, true};
+  const Dual share = at.share(polygon, std::clamp(u, 0.0, 1.0));
   const std::size_t k = sector_with(at.polygon(), share.a * at.polygon().area_before(polygon_corners));
-  const Point<Jet> p = sample_place(polygon, k, share, std::clamp(v, 0.0, 1.0));
-  const Jet middle = polygon.middle().y;
-  const Jet qx = sine * middle + at.fold[0] * p.x + at.fold[1] * p.y;
-  const Jet qy = cosine * middle + at.fold[2] * p.x + at.fold[3] * p.y;
+  const Point<Dual> p = sample_place(polygon, k, share, std::clamp(v, 0.0, 1.0));
+  const Dual middle = polygon.middle().y;
+  const Dual qx = sine * middle + at.fold[0] * p.x + at.fold[1] * p.y;
+  const Dual qy = cosine * middle + at.fold[2] * p.x + at.fold[3] * p.y;
   return {{qx.v[0], qy.v[0]}, {qx.v[1], qy.v[1]}};
 }
 
@@ -356,4 +355,4 @@ template BladedTable<double> FilmCells::bladed_table() const noexcept;
 template CellTable<float> FilmCells::table() const noexcept;
 template CellTable<double> FilmCells::table() const noexcept;
 
-}  // namespace petzval::inline v0::pupil_table_detail
+}  // namespace petzval::pupil_table_detail

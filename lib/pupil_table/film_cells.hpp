@@ -11,7 +11,7 @@
 #include "petzval/pupil_table/film_pupil_table.hpp"
 #include "pupil_table/pupil_polygon.hpp"
 
-namespace petzval::inline v0::pupil_table_detail {
+namespace petzval::pupil_table_detail {
 
 /// Rows or strips per mm of a film. A film smaller than 1e-30 mm counts as one of the axis alone, so that this is
 /// finite in float too.
@@ -71,4 +71,4 @@ class FilmCells {
   std::vector<float> single_, folds_single_, half_widths_single_;
 };
 
-}  // namespace petzval::inline v0::pupil_table_detail
+}  // namespace petzval::pupil_table_detail

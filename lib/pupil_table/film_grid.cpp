@@ -17,7 +17,7 @@
 #include "pupil/boundary_search.hpp"
 #include "virtual_film_point.hpp"
 
-namespace petzval::inline v0::pupil_table_detail {
+namespace petzval::pupil_table_detail {
 namespace {
 
 using pupil_detail::PupilGuess;
@@ -298,4 +298,4 @@ std::vector<PupilPolygon> tilted_grid_polygons(const FilmPupilTable& upright, co
   return polygons;
 }
 
-}  // namespace petzval::inline v0::pupil_table_detail
+}  // namespace petzval::pupil_table_detail

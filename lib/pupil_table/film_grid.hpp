@@ -9,7 +9,7 @@
 #include "petzval/pupil_table/two_plane_rays.hpp"
 #include "pupil_table/pupil_polygon.hpp"
 
-namespace petzval::inline v0::pupil_table_detail {
+namespace petzval::pupil_table_detail {
 
 /// A grid over the film of a lens that is alike at x and -x and at y and -y: over the quadrant x, y >= 0. Rows lie at
 /// equal steps of y, the nodes of a row at equal steps of x, so that a pupil that moves as the film point does is
@@ -38,4 +38,4 @@ std::vector<PupilPolygon> grid_polygons(const Lens& lens, const TwoPlanes& space
 std::vector<PupilPolygon> tilted_grid_polygons(const FilmPupilTable& upright, const FilmTilt& tilt,
                                                const FilmGrid& grid, std::size_t wavelength);
 
-}  // namespace petzval::inline v0::pupil_table_detail
+}  // namespace petzval::pupil_table_detail

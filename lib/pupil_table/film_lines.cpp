@@ -13,7 +13,7 @@
 #include "pupil/face.hpp"
 #include "trace/clearances.hpp"
 
-namespace petzval::inline v0::pupil_table_detail {
+namespace petzval::pupil_table_detail {
 
 pupil_detail::PlaceClearances traced_lines(const Lens& lens, const TwoPlanes& space, std::vector<FilmPoint> points,
                                            std::size_t wavelength) {
@@ -79,4 +79,4 @@ std::vector<pupil_detail::PupilGuess> first_order_guesses(const Lens& lens, cons
   return result;
 }
 
-}  // namespace petzval::inline v0::pupil_table_detail
+}  // namespace petzval::pupil_table_detail

@@ -5,12 +5,12 @@
 #include <span>
 #include <vector>
 
-#include "petzval/film/film.hpp"
+#include "petzval/core/film.hpp"
 #include "petzval/lens/lens.hpp"
 #include "petzval/pupil_table/two_plane_rays.hpp"
 #include "pupil/boundary_search.hpp"
 
-namespace petzval::inline v0::pupil_table_detail {
+namespace petzval::pupil_table_detail {
 
 /// The clearances of the rays of some film points through a lens, which has to outlive the result. Places lie in the
 /// plane of the pupil.
@@ -22,4 +22,4 @@ pupil_detail::PlaceClearances traced_lines(const Lens& lens, const TwoPlanes& sp
 std::vector<pupil_detail::PupilGuess> first_order_guesses(const Lens& lens, const TwoPlanes& space,
                                                           std::span<const FilmPoint> points, std::size_t wavelength);
 
-}  // namespace petzval::inline v0::pupil_table_detail
+}  // namespace petzval::pupil_table_detail

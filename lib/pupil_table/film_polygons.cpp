@@ -14,7 +14,7 @@
 #include "petzval/core/parallel.hpp"
 #include "pupil/aim.hpp"
 
-namespace petzval::inline v0::pupil_table_detail {
+namespace petzval::pupil_table_detail {
 
 namespace {
 
@@ -197,4 +197,4 @@ std::vector<PupilPolygon> disc_polygons(std::span<const PupilDisc> discs, double
   return polygons;
 }
 
-}  // namespace petzval::inline v0::pupil_table_detail
+}  // namespace petzval::pupil_table_detail

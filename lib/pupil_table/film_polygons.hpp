@@ -11,7 +11,7 @@
 #include "petzval/pupil_table/two_plane_rays.hpp"
 #include "pupil_table/pupil_polygon.hpp"
 
-namespace petzval::inline v0::pupil_table_detail {
+namespace petzval::pupil_table_detail {
 
 inline constexpr std::size_t region_directions = 128;  ///< of the regions that polygons are made of
 
@@ -45,4 +45,4 @@ FilmPolygons film_polygons(double film_radius, PolygonFit fit, std::span<const F
 /// The overlap of some discs, as a pupil of equal area.
 std::vector<PupilPolygon> disc_polygons(std::span<const PupilDisc> discs, double film_radius);
 
-}  // namespace petzval::inline v0::pupil_table_detail
+}  // namespace petzval::pupil_table_detail

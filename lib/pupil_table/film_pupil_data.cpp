@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "film_pupil_data.hpp"
 
-namespace petzval::inline v0 {
+namespace petzval {
 namespace {
 
 using namespace pupil_table_detail;
@@ -73,4 +73,4 @@ std::shared_ptr<FilmPupilTable::Data> FilmPupilTable::Data::alike() const {
   return data;
 }
 
-}  // namespace petzval::inline v0
+}  // namespace petzval

@@ -19,7 +19,7 @@
 #include "petzval/pupil_table/film_pupil_table.hpp"
 #include "polygon_place.hpp"
 
-namespace petzval::inline v0 {
+namespace petzval {
 namespace pupil_table_detail {
 
 /// The projected solid angle of a pupil from uniform samples of it: place_at(u, v).
@@ -130,4 +130,4 @@ struct FilmPupilTable::Data {
   }
 };
 
-}  // namespace petzval::inline v0
+}  // namespace petzval

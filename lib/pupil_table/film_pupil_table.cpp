@@ -1,15 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "petzval/pupil_table/film_pupil_table.hpp"
 
-#include <ceres/jet.h>
-
 #include <algorithm>
 #include <cmath>
 
+#include "core/dual.hpp"
 #include "film_pupil_data.hpp"
 #include "pupil/line_extents.hpp"
 
-namespace petzval::inline v0 {
+namespace petzval {
 namespace {
 
 using namespace pupil_table_detail;
@@ -193,7 +192,7 @@ FilmPupilTable::Derivatives FilmPupilTable::derivatives(const FilmPoint& film, d
                                                         Wavelength wavelength) const noexcept {
   if (const auto& images = data_->images) return images->derivatives(film, u, v, wavelength);
   if (const auto& cells = data_->cells) return cells->derivatives(film, u, v, data_->position(wavelength));
-  using Jet = ceres::Jet<double, 2>;
+  using kernel::Dual;
   if (data_->strips_per_mm == 0) return {};
   // On the axis the directions around it meet: beside it is near enough.
   const double beside = 1e-4 * data_->film_radius;
@@ -203,21 +202,21 @@ FilmPupilTable::Derivatives FilmPupilTable::derivatives(const FilmPoint& film, d
   if (!found.strip || !(u - u == 0 && v - v == 0)) return {};
   u = std::clamp(u, 0.0, 1.0);
   v = std::clamp(v, 0.0, 1.0);
-  const Jet x(at.x, 0), y(at.y, 1);
-  const Jet r = sqrt(x * x + y * y);
-  Jet t = r * data_->strips_per_mm;
+  const Dual x(at.x, 0), y(at.y, 1);
+  const Dual r = sqrt(x * x + y * y);
+  Dual t = r * data_->strips_per_mm;
   t.a = found.t;
-  const Jet cosine = y / r, sine = x / r;
-  Jet share(u);
+  const Dual cosine = y / r, sine = x / r;
+  Dual share(u);
   share -= turn_of(sine, cosine);
   if (share.a < 0) share += 1.0;
   if (share.a >= 1) share -= 1.0;
   const double whole = found.polygon().area_before(polygon_corners);
   if (!(whole > 0)) return {};
   const std::size_t k = sector_with(found.polygon(), share.a * whole);
-  const InStrip<Jet> polygon{found.strip, t};
+  const InStrip<Dual> polygon{found.strip, t};
   const auto [px, py] = polygon.middle() + sample_place(polygon, k, share, v);
-  const Jet qx = cosine * px + sine * py, qy = cosine * py - sine * px;
+  const Dual qx = cosine * px + sine * py, qy = cosine * py - sine * px;
   return {{qx.v[0], qy.v[0]}, {qx.v[1], qy.v[1]}};
 }
 
@@ -231,4 +230,4 @@ template PETZVAL_API void FilmPupilTable::sample(std::size_t, const double*, con
                                                  const double*, const RayWavelengths&, double*, double*,
                                                  double*) const noexcept;
 
-}  // namespace petzval::inline v0
+}  // namespace petzval

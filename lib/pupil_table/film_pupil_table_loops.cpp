@@ -9,7 +9,7 @@
 #include "core/simd.hpp"
 #include "lens/look_up.hpp"
 
-namespace petzval::inline v0::pupil_table_detail {
+namespace petzval::pupil_table_detail {
 namespace {
 
 /// Where a film point stands in the table; nowhere: at the table's beginning.
@@ -510,4 +510,4 @@ const FilmPupilLoops PETZVAL_LOOPS{.strips = {sample_strips<float>, sample_strip
 
                                    .find_nearest = lens_detail::find_nearest};
 
-}  // namespace petzval::inline v0::pupil_table_detail
+}  // namespace petzval::pupil_table_detail

@@ -14,7 +14,7 @@
 #include "petzval/pupil_table/film_pupil_table.hpp"
 #include "pupil_table/sector.hpp"
 
-namespace petzval::inline v0::pupil_table_detail {
+namespace petzval::pupil_table_detail {
 
 /// Squared distances from the axis, mm^2, up to which film points count as on it: smaller ones have too few digits for
 /// a direction.
@@ -154,4 +154,4 @@ struct FilmPupilLoops {
 
 PETZVAL_WIDEST(FilmPupilLoops, film_pupil_table)
 
-}  // namespace petzval::inline v0::pupil_table_detail
+}  // namespace petzval::pupil_table_detail

@@ -8,7 +8,7 @@
 
 #include "core/low_discrepancy.hpp"
 
-namespace petzval::inline v0::pupil_table_detail {
+namespace petzval::pupil_table_detail {
 namespace {
 
 using pupil_detail::PupilGuess;
@@ -324,4 +324,4 @@ void expand_to_probes(std::span<PupilPolygon> polygons, std::size_t probes, cons
   }
 }
 
-}  // namespace petzval::inline v0::pupil_table_detail
+}  // namespace petzval::pupil_table_detail

@@ -13,7 +13,7 @@
 #include "pupil_table/pupil_polygon.hpp"
 
 /// Pupils at the nodes of grids over two coordinates of their points: of the film, of the directions of the scene.
-namespace petzval::inline v0::pupil_table_detail {
+namespace petzval::pupil_table_detail {
 
 /// The points of a grid, row by row.
 struct GridOfPoints {
@@ -48,4 +48,4 @@ using ProbeClearances =
 void expand_to_probes(std::span<PupilPolygon> polygons, std::size_t probes, const ProbeWeights& weights,
                       const ProbeClearances& clearances);
 
-}  // namespace petzval::inline v0::pupil_table_detail
+}  // namespace petzval::pupil_table_detail

@@ -7,7 +7,7 @@
 #include <cstdint>
 #include <vector>
 
-namespace petzval::inline v0::pupil_table_detail {
+namespace petzval::pupil_table_detail {
 namespace {
 
 constexpr double rounded_up = 1 + 1e-6;  // the corner itself, rounded, still belongs to the film
@@ -149,4 +149,4 @@ PETZVAL_IRIS_IMAGES(float)
 PETZVAL_IRIS_IMAGES(double)
 #undef PETZVAL_IRIS_IMAGES
 
-}  // namespace petzval::inline v0::pupil_table_detail
+}  // namespace petzval::pupil_table_detail

@@ -11,7 +11,7 @@
 #include "lens/between_wavelengths.hpp"
 #include "petzval/pupil_table/film_pupil_table.hpp"
 
-namespace petzval::inline v0::pupil_table_detail {
+namespace petzval::pupil_table_detail {
 
 /// Pupils in closed form: the images of an iris, one for each wavelength, that move with the film point.
 ///
@@ -75,4 +75,4 @@ class IrisImages {
   lens_detail::BetweenWavelengths<4> between_;  // shift and radius along x, along y
 };
 
-}  // namespace petzval::inline v0::pupil_table_detail
+}  // namespace petzval::pupil_table_detail

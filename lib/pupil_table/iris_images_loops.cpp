@@ -6,7 +6,7 @@
 #include "core/loop_math.hpp"
 #include "lens/look_up.hpp"
 
-namespace petzval::inline v0::pupil_table_detail {
+namespace petzval::pupil_table_detail {
 namespace {
 
 /// Calls body(begin, end, image_of) with the images of all rays, by ray.
@@ -128,4 +128,4 @@ void contains(const IrisImageTable<R>& given, std::size_t count, const TwoPlaneR
 
 const IrisImageLoops PETZVAL_LOOPS{{sample<float>, contains<float>}, {sample<double>, contains<double>}, sample_one};
 
-}  // namespace petzval::inline v0::pupil_table_detail
+}  // namespace petzval::pupil_table_detail

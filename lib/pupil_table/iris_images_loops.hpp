@@ -11,7 +11,7 @@
 #include "petzval/pupil_table/film_pupil_table.hpp"
 #include "petzval/pupil_table/two_plane_rays.hpp"
 
-namespace petzval::inline v0::pupil_table_detail {
+namespace petzval::pupil_table_detail {
 
 /// A PupilImage in numbers of type R; area 0: none.
 template <class R>
@@ -74,4 +74,4 @@ struct IrisImageLoops {
 
 PETZVAL_WIDEST(IrisImageLoops, iris_images)
 
-}  // namespace petzval::inline v0::pupil_table_detail
+}  // namespace petzval::pupil_table_detail

@@ -8,7 +8,7 @@
 #include "core/low_discrepancy.hpp"
 #include "pupil_table/entrance_pupil_table.hpp"
 
-namespace petzval::inline v0 {
+namespace petzval {
 namespace {
 
 /// Samples of the pupils of a film.
@@ -84,4 +84,4 @@ std::vector<std::vector<Ray<double>>> leaving_rays(const FilmPupilTable& pupils,
   return result;
 }
 
-}  // namespace petzval::inline v0
+}  // namespace petzval

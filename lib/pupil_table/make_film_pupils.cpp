@@ -20,7 +20,7 @@
 #include "repeated_wavelength.hpp"
 #include "rim_cut.hpp"
 
-namespace petzval::inline v0 {
+namespace petzval {
 namespace {
 
 using namespace pupil_table_detail;
@@ -370,4 +370,4 @@ FilmPupilTable FilmPupilTable::for_tilted_film(const FilmTilt& tilt, int threads
   return FilmPupilTable(std::move(data));
 }
 
-}  // namespace petzval::inline v0
+}  // namespace petzval

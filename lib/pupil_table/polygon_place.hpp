@@ -13,7 +13,7 @@
 #include "pupil_table/sector.hpp"
 
 /// Polygons of tables for one film point, as loops have them for many: double or derivatives.
-namespace petzval::inline v0::pupil_table_detail {
+namespace petzval::pupil_table_detail {
 
 /// The polygon at the fraction t of a strip (StripLayout).
 template <class T>
@@ -173,4 +173,4 @@ int corrections_of(const In<double>& polygon) {
   return corrections;
 }
 
-}  // namespace petzval::inline v0::pupil_table_detail
+}  // namespace petzval::pupil_table_detail

@@ -8,7 +8,7 @@
 
 #include "pupil/pupil_region.hpp"
 
-namespace petzval::inline v0::pupil_table_detail {
+namespace petzval::pupil_table_detail {
 namespace {
 
 using pupil_detail::Extent;
@@ -359,4 +359,4 @@ void expand_towards(PupilPolygon& polygon, const PupilPolygon& other) noexcept {
   stretch(polygon, scale);
 }
 
-}  // namespace petzval::inline v0::pupil_table_detail
+}  // namespace petzval::pupil_table_detail

@@ -8,7 +8,7 @@
 #include "petzval/pupil/pupil_boundary.hpp"
 #include "pupil_table/sector.hpp"
 
-namespace petzval::inline v0::pupil_table_detail {
+namespace petzval::pupil_table_detail {
 
 /// A pupil as tables hold it: a middle and 64 corners around it, with an obscuration in each sector (sector.hpp).
 struct PupilPolygon {
@@ -80,4 +80,4 @@ void expand_to_cover(std::span<PupilPolygon> polygons, std::span<const Interpola
 /// neighbour, whose pupil at the same place is `other`: edges move evenly with the wavelength, nearly.
 void expand_towards(PupilPolygon& polygon, const PupilPolygon& other) noexcept;
 
-}  // namespace petzval::inline v0::pupil_table_detail
+}  // namespace petzval::pupil_table_detail

@@ -8,7 +8,7 @@
 #include <span>
 #include <vector>
 
-namespace petzval::inline v0::pupil_table_detail {
+namespace petzval::pupil_table_detail {
 
 /// The position of a wavelength that another one repeats, within 1e-6 nm as compile() has it. Nothing where each stands
 /// there once.
@@ -21,4 +21,4 @@ inline std::optional<std::size_t> repeated_wavelength(std::span<const double> wa
   return found == order.end() ? std::nullopt : std::optional(std::max(*found, *(found + 1)));
 }
 
-}  // namespace petzval::inline v0::pupil_table_detail
+}  // namespace petzval::pupil_table_detail

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace petzval::inline v0::pupil_table_detail {
+namespace petzval::pupil_table_detail {
 namespace {
 
 /// How far the polygon reaches from its middle in a direction; 0 where no sector faces it.
@@ -42,4 +42,4 @@ PupilPolygon cut_by_disc(const PupilPolygon& polygon, const Vec2<double>& toward
   return result;
 }
 
-}  // namespace petzval::inline v0::pupil_table_detail
+}  // namespace petzval::pupil_table_detail

@@ -4,10 +4,10 @@
 #include "petzval/core/geometry.hpp"
 #include "pupil_table/pupil_polygon.hpp"
 
-namespace petzval::inline v0::pupil_table_detail {
+namespace petzval::pupil_table_detail {
 
 /// What a disc leaves of a polygon whose middle lies at middle.y along a unit vector, as the centre of the disc does at
 /// `centre`; the new middle too. Corners stay on the ways to those of the polygon. Obscurations are left out.
 PupilPolygon cut_by_disc(const PupilPolygon& polygon, const Vec2<double>& towards, double centre, double radius);
 
-}  // namespace petzval::inline v0::pupil_table_detail
+}  // namespace petzval::pupil_table_detail

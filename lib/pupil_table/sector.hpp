@@ -8,7 +8,7 @@
 /// A polygon has a middle and corners around it in order, from +y towards +x; sector k is the triangle between the
 /// middle and the corners k and k + 1. A part of it may be obscured, between two lines parallel to its outer edge.
 /// Samples (u, v) are uniform by area: u picks the sector and the place along its edge, v the squared way outwards.
-namespace petzval::inline v0::pupil_table_detail {
+namespace petzval::pupil_table_detail {
 
 inline constexpr std::size_t polygon_corners = 64;
 
@@ -89,4 +89,4 @@ inline std::size_t sector_facing(const Point<double>& q, const Sectors& sector, 
 }
 
 }  // namespace
-}  // namespace petzval::inline v0::pupil_table_detail
+}  // namespace petzval::pupil_table_detail

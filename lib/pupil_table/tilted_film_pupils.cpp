@@ -10,7 +10,7 @@
 #include "pupil/boundary_search.hpp"
 #include "virtual_film_point.hpp"
 
-namespace petzval::inline v0::pupil_table_detail {
+namespace petzval::pupil_table_detail {
 namespace {
 
 /// What the pupils of the upright film tell before those of the tilted one are looked for.
@@ -87,4 +87,4 @@ FilmPupils tilted_film_pupils(const FilmPupilTable& upright, const FilmTilt& til
           }};
 }
 
-}  // namespace petzval::inline v0::pupil_table_detail
+}  // namespace petzval::pupil_table_detail

@@ -6,7 +6,7 @@
 #include "petzval/pupil_table/two_plane_rays.hpp"
 #include "pupil_table/entrance_pupil_table.hpp"
 
-namespace petzval::inline v0 {
+namespace petzval {
 ScenePassing traced_passing(const Lens& lens) {
   return [&lens](std::size_t count, const RayArrays<const double>& rays, std::size_t wavelength, std::uint8_t* passes) {
     std::array<std::vector<double>, 6> ray;
@@ -39,4 +39,4 @@ EntrancePupilTable traced_entrances(const Lens& bladed, const FilmPupilTable& of
   return EntrancePupilTable(lens, leaving_rays(pupils, lens.rotationally_symmetric(), to_scene), traced_passing(lens));
 }
 
-}  // namespace petzval::inline v0
+}  // namespace petzval

@@ -7,7 +7,7 @@
 #include "petzval/core/error.hpp"
 #include "petzval/paraxial/first_order.hpp"
 
-namespace petzval::inline v0 {
+namespace petzval {
 
 TwoPlanes two_planes(const Lens& lens) {
   const double film_z = lens.film_z(), last_z = lens.surfaces().back().vertex_z;
@@ -30,4 +30,4 @@ double towards_scene(const Lens& lens, const TwoPlanes& space) {
   return lens.light_direction(lens.surface_count()) * space.depth() > 0 ? -1 : 1;
 }
 
-}  // namespace petzval::inline v0
+}  // namespace petzval

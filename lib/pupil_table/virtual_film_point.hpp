@@ -7,7 +7,7 @@
 
 #include "petzval/pupil_table/film_pupil_table.hpp"
 
-namespace petzval::inline v0::pupil_table_detail {
+namespace petzval::pupil_table_detail {
 
 /// A virtual film point of a tilted film, and how much nearer a film point of it is (see FilmTilt).
 struct VirtualFilmPoint {
@@ -35,4 +35,4 @@ void upright_clearances(const FilmPupilTable& upright, std::size_t wavelength, s
   }
 }
 
-}  // namespace petzval::inline v0::pupil_table_detail
+}  // namespace petzval::pupil_table_detail

@@ -2,10 +2,10 @@
 // Aspheres for a bundle of rays. Included like lanes.hpp.
 #pragma once
 
+#include "lens/asphere_hit.hpp"
 #include "steps.hpp"
-#include "surface/asphere_hit.hpp"
 
-namespace petzval::inline v0::trace_detail {
+namespace petzval::trace_detail {
 namespace {
 
 /// A number and its derivative, for the slope of the slope of a sag.
@@ -96,8 +96,8 @@ struct Search {
     for (int o = 0; o < count; o += width) {
       const Vector p{at(x, o), at(y, o), at(z, o)}, d{at(dx, o), at(dy, o), at(dz, o)};
       const V newton = at(answer, o);
-      const auto ray = kernel::surface_detail::passage(surface, p, d);
-      const auto [part, empty, rising] = kernel::surface_detail::prospect(surface, ray, p, d, sense);
+      const auto ray = kernel::trace_detail::passage(surface, p, d);
+      const auto [part, empty, rising] = kernel::trace_detail::prospect(surface, ray, p, d, sense);
       const Mask<R> stands = rising & (at(inside, o) > V(R(0)));
       // Without a crossing, the ray passes beside the aperture if it can have one at most.
       const V nothing = select(empty | rising, code<R>(Outcome::beside), code<R>(Outcome::open));
@@ -115,9 +115,9 @@ struct Search {
     R found_t[room], found[room];
     for (int o = 0; o < kept; o += width) {
       const Vector p{at(x, o), at(y, o), at(z, o)}, d{at(dx, o), at(dy, o), at(dz, o)};
-      const auto ray = kernel::surface_detail::passage(surface, p, d);
-      const auto crossing = kernel::surface_detail::first_crossing(surface, ray, p, d, sense,
-                                                                   {load(from + o), load(to + o)}, at(answer, o));
+      const auto ray = kernel::trace_detail::passage(surface, p, d);
+      const auto crossing = kernel::trace_detail::first_crossing(surface, ray, p, d, sense,
+                                                                 {load(from + o), load(to + o)}, at(answer, o));
       const V some = select(crossing.converged, code<R>(Outcome::crosses), code<R>(Outcome::lost));
       store(found_t + o, crossing.t);
       store(found + o, select(crossing.found, some, code<R>(Outcome::open)));
@@ -147,7 +147,7 @@ struct Search {
 /// edge.
 template <class R>
 PETZVAL_INLINE Mask<R> beside_edge(const kernel::Asphere<R>& surface,
-                                   const kernel::surface_detail::Passage<Lanes<R>>& ray, Lanes<R> z,
+                                   const kernel::trace_detail::Passage<Lanes<R>>& ray, Lanes<R> z,
                                    Lanes<R> dz) noexcept {
   using V = Lanes<R>;
   const R unsure = R(64) * std::numeric_limits<R>::epsilon() * surface.height;
@@ -242,7 +242,7 @@ template <class R>
     taken[i] = without(doubtful[i], doubtful[i]);
     if (!any(doubtful[i])) continue;
     const kernel::Vec<V> p{b.x[i], b.y[i], sense * b.z[i]}, d{b.px[i], b.py[i], sense * b.pz[i]};
-    const auto ray = kernel::surface_detail::passage(surface, p, d);
+    const auto ray = kernel::trace_detail::passage(surface, p, d);
     const Mask<R> upright = d.z * d.z > steepest2 * ray.across2;
     at.beside[i] = doubtful[i] & upright & beside_edge(surface, ray, p.z, d.z);
     taken[i] = without(doubtful[i], at.beside[i]);
@@ -312,4 +312,4 @@ void asphere(const kernel::Step<R>& s, const Lanes<R>& rim2, const Route<R>& rou
 }
 
 }  // namespace
-}  // namespace petzval::inline v0::trace_detail
+}  // namespace petzval::trace_detail

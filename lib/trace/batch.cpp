@@ -11,7 +11,7 @@
 #include "route.hpp"
 #include "stop_points.hpp"
 
-namespace petzval::inline v0 {
+namespace petzval {
 namespace {
 
 using trace_detail::block_rays;
@@ -248,4 +248,4 @@ template PETZVAL_API void trace(const Lens&, std::span<const Ray<float>>, Traced
 template PETZVAL_API void trace(const Lens&, std::span<const Ray<double>>, TracedRay<double>*,
                                 const BatchOptions&) noexcept;
 
-}  // namespace petzval::inline v0
+}  // namespace petzval

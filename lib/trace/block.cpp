@@ -10,7 +10,7 @@
 #include "march.hpp"
 #include "stop_hits.hpp"
 
-namespace petzval::inline v0::trace_detail {
+namespace petzval::trace_detail {
 namespace {
 
 /// Arrays from a position on; those that nobody asked for are null, and stay so.
@@ -136,4 +136,4 @@ void trace_blocks(const BlockJob<R>& job) noexcept {
 
 const BlockTracer PETZVAL_TRACER{trace_blocks<float>, trace_blocks<double>};
 
-}  // namespace petzval::inline v0::trace_detail
+}  // namespace petzval::trace_detail

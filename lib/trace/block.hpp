@@ -8,7 +8,7 @@
 #include "lens/lens_view.hpp"
 #include "petzval/trace/trace.hpp"
 
-namespace petzval::inline v0::trace_detail {
+namespace petzval::trace_detail {
 
 /// Rays in a block: enough to hide the latency of square roots.
 inline constexpr int block_rays = 64;
@@ -58,4 +58,4 @@ extern const BlockTracer baseline;
 extern const BlockTracer avx2_fast, avx2_reproducible, avx512_fast, avx512_reproducible;
 #endif
 
-}  // namespace petzval::inline v0::trace_detail
+}  // namespace petzval::trace_detail

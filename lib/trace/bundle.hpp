@@ -25,7 +25,7 @@
 #define PETZVAL_UNROLL
 #endif
 
-namespace petzval::inline v0::trace_detail {
+namespace petzval::trace_detail {
 namespace {
 
 /// Rays in front of the next step: points from its vertex, directions p of length n (the index), in the turned frame of
@@ -68,4 +68,4 @@ struct Tangent {
 };
 
 }  // namespace
-}  // namespace petzval::inline v0::trace_detail
+}  // namespace petzval::trace_detail

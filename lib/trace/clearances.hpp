@@ -6,7 +6,7 @@
 #include "petzval/lens/lens.hpp"
 #include "petzval/trace/trace.hpp"
 
-namespace petzval::inline v0::trace_detail {
+namespace petzval::trace_detail {
 
 /// How near N rays come to the rims: the least of 1 - r^2 / R^2 over them, R their semi-diameters; at central
 /// obscurations of radius i of (r^2 - i^2) / R^2, at the edges of the iris their distance / R. It is not negative
@@ -21,4 +21,4 @@ template <class T>
 void clearances(const Lens& lens, std::size_t count, const RayArrays<T>& rays, T* clearances,
                 const BatchOptions& options) noexcept;
 
-}  // namespace petzval::inline v0::trace_detail
+}  // namespace petzval::trace_detail

@@ -13,7 +13,7 @@
 #include "core/look_up.hpp"
 #include "core/simd.hpp"
 
-namespace petzval::inline v0::trace_detail {
+namespace petzval::trace_detail {
 namespace {
 
 using core_detail::Native;
@@ -347,4 +347,4 @@ PETZVAL_INLINE Lanes<R> unpack(const R* from, Mask<R> mask, Lanes<R> others) noe
 }
 
 }  // namespace
-}  // namespace petzval::inline v0::trace_detail
+}  // namespace petzval::trace_detail

@@ -6,7 +6,7 @@
 
 #include "steps.hpp"
 
-namespace petzval::inline v0::trace_detail {
+namespace petzval::trace_detail {
 namespace {
 
 /// Follows a bundle and keeps the least clearance of each ray (trace/clearances.hpp).
@@ -62,4 +62,4 @@ class LeastClearance : public NoTangents {
 };
 
 }  // namespace
-}  // namespace petzval::inline v0::trace_detail
+}  // namespace petzval::trace_detail

@@ -10,7 +10,7 @@
 #include "steps.hpp"
 #include "tangents.hpp"
 
-namespace petzval::inline v0::trace_detail {
+namespace petzval::trace_detail {
 namespace {
 
 /// Loads rays and turns them into the frame of the first step. Rays that are not finite or not of unit length are not
@@ -175,4 +175,4 @@ PETZVAL_ONE_LANE_INLINE void pass(const Route<R>& route, std::size_t j, const Me
 }
 
 }  // namespace
-}  // namespace petzval::inline v0::trace_detail
+}  // namespace petzval::trace_detail

@@ -9,7 +9,7 @@
 
 #include "bundle.hpp"
 
-namespace petzval::inline v0::trace_detail {
+namespace petzval::trace_detail {
 namespace {
 
 /// The media at a step, for a batch of one wavelength.
@@ -140,4 +140,4 @@ class SpectralMedia {
 };
 
 }  // namespace
-}  // namespace petzval::inline v0::trace_detail
+}  // namespace petzval::trace_detail

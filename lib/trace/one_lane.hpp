@@ -8,7 +8,7 @@
 
 #include "core/simd.hpp"
 
-namespace petzval::inline v0::trace_detail {
+namespace petzval::trace_detail {
 namespace {
 
 template <class R>
@@ -128,4 +128,4 @@ Lanes<R> unpack(const R* from, Mask<R> mask, Lanes<R> others) noexcept {
 }
 
 }  // namespace
-}  // namespace petzval::inline v0::trace_detail
+}  // namespace petzval::trace_detail

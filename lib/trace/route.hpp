@@ -6,7 +6,7 @@
 #include "block.hpp"
 #include "lens/lens_view.hpp"
 
-namespace petzval::inline v0::trace_detail {
+namespace petzval::trace_detail {
 
 /// The way of rays through a lens. Options: of one ray or of a batch; all: their one wavelength.
 template <class R, class Options>
@@ -29,4 +29,4 @@ Route<R> route_of(const kernel::LensView<R>& view, const Options& options, Wavel
   return route;
 }
 
-}  // namespace petzval::inline v0::trace_detail
+}  // namespace petzval::trace_detail

@@ -6,11 +6,11 @@
 #include <limits>
 #include <span>
 
+#include "lens/asphere_hit.hpp"
 #include "lens/lens_view.hpp"
 #include "petzval/core/ray.hpp"
-#include "surface/asphere_hit.hpp"
 
-namespace petzval::inline v0::kernel {
+namespace petzval::kernel {
 
 /// A part of the lens to trace through: surfaces [first, last) in table order, for either direction of travel.
 struct SurfaceRange {
@@ -136,4 +136,4 @@ TraceState<T> trace(const LensView<Storage<T>>& lens, const Vec<T>& origin, cons
   return ray;
 }
 
-}  // namespace petzval::inline v0::kernel
+}  // namespace petzval::kernel

@@ -13,7 +13,7 @@
 #include "media.hpp"
 #include "trace/sequential.hpp"
 
-namespace petzval::inline v0::trace_detail {
+namespace petzval::trace_detail {
 namespace {
 
 /// Where rays met a surface and how they went on; what derivatives need beside the bundle.
@@ -241,4 +241,4 @@ void quadric(const kernel::Step<R>& s, const Lanes<R>& rim2, const Media& media,
 }
 
 }  // namespace
-}  // namespace petzval::inline v0::trace_detail
+}  // namespace petzval::trace_detail

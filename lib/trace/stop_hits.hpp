@@ -4,7 +4,7 @@
 
 #include "steps.hpp"
 
-namespace petzval::inline v0::trace_detail {
+namespace petzval::trace_detail {
 namespace {
 
 /// Follows a bundle as far as the stop (trace/stop_points.hpp).
@@ -38,4 +38,4 @@ class StopHits : public NoTangents {
 };
 
 }  // namespace
-}  // namespace petzval::inline v0::trace_detail
+}  // namespace petzval::trace_detail

@@ -4,7 +4,7 @@
 
 #include "steps.hpp"
 
-namespace petzval::inline v0::trace_detail {
+namespace petzval::trace_detail {
 namespace {
 
 /// Carries derivatives beside the rays, by the chain rule: a dot is d/du or d/dv.
@@ -75,4 +75,4 @@ struct TwoTangents {
 };
 
 }  // namespace
-}  // namespace petzval::inline v0::trace_detail
+}  // namespace petzval::trace_detail

@@ -13,7 +13,7 @@
 #include "march.hpp"
 #include "route.hpp"
 
-namespace petzval::inline v0 {
+namespace petzval {
 namespace trace_detail {
 namespace {
 
@@ -137,4 +137,4 @@ template PETZVAL_API TracedRay<float> trace(const Lens&, const Ray<float>&, cons
 template PETZVAL_API TracedRay<double> trace(const Lens&, const Ray<double>&, const TraceOptions&,
                                              const std::function<void(int, const Vec3<double>&)>&);
 
-}  // namespace petzval::inline v0
+}  // namespace petzval

@@ -26,7 +26,7 @@
 #include "layers/picture_quality.hpp"
 #include "petzval/blur/gather.hpp"
 #include "petzval/core/parallel.hpp"
-#include "petzval/io/image.hpp"
+#include "petzval/image/image.hpp"
 #include "single_image_blur.hpp"
 #include "table.hpp"
 

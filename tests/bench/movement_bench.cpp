@@ -12,9 +12,9 @@
 #include <vector>
 
 #include "petzval/core/units.hpp"
-#include "petzval/files/lens_file.hpp"
-#include "petzval/movement/focus_point.hpp"
-#include "petzval/movement/tilt_fit.hpp"
+#include "petzval/fit/tilt_fit.hpp"
+#include "petzval/focus/focus_point.hpp"
+#include "petzval/io/lens_json.hpp"
 #include "table.hpp"
 
 namespace {

@@ -11,11 +11,11 @@
 #include <string>
 #include <vector>
 
+#include "analysis/histogram.hpp"
+#include "petzval/analysis/psf.hpp"
 #include "petzval/core/sobol.hpp"
-#include "petzval/files/lens_file.hpp"
-#include "petzval/psf/psf.hpp"
+#include "petzval/io/lens_json.hpp"
 #include "petzval/trace/trace.hpp"
-#include "psf/histogram.hpp"
 #include "table.hpp"
 
 namespace {
@@ -88,10 +88,10 @@ void trace(benchmark::State& state, const Light& light) {
 void histogram(benchmark::State& state, const Light& light) {
   const petzval::RayBundle hits = petzval::trace_bundle(light.lens, light.pupil, samples);
   const petzval::SpotSize spot = petzval::spot_size(hits.x, hits.y);
-  const petzval::psf_detail::PixelGrid grid{spot.centroid, 2.1 * spot.max_radius / 512, 512};
+  const petzval::analysis_detail::PixelGrid grid{spot.centroid, 2.1 * spot.max_radius / 512, 512};
   std::vector<std::uint64_t> counts(512 * 512, 0);
   for (auto _ : state) {
-    petzval::psf_detail::count_points(grid, hits.x, hits.y, counts);
+    petzval::analysis_detail::count_points(grid, hits.x, hits.y, counts);
     benchmark::DoNotOptimize(counts.data());
     benchmark::ClobberMemory();
   }

@@ -10,7 +10,7 @@
 
 #include "petzval/core/sobol.hpp"
 #include "petzval/core/units.hpp"
-#include "petzval/files/lens_file.hpp"
+#include "petzval/io/lens_json.hpp"
 #include "petzval/pupil/aim.hpp"
 #include "petzval/pupil/pupil_boundary.hpp"
 #include "petzval/trace/trace.hpp"

@@ -14,9 +14,9 @@
 #include <vector>
 
 #include "petzval/camera/camera.hpp"
-#include "petzval/files/lens_file.hpp"
 #include "petzval/focus/focus.hpp"
-#include "petzval/media/glass.hpp"
+#include "petzval/glass/glass.hpp"
+#include "petzval/io/lens_json.hpp"
 #include "renderer/built_in_scenes.hpp"
 #include "renderer/unit_tracer.hpp"
 #include "table.hpp"

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "petzval/blur/layers.hpp"
-#include "petzval/io/image.hpp"
+#include "petzval/image/image.hpp"
 
 /// A thin lens as a filter of pictures sees it.
 struct CircleOfConfusion {

@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
-#include "movement/moving_least_squares.hpp"
-#include "petzval/movement/focal_surface.hpp"
+#include "camera/moving_least_squares.hpp"
+#include "petzval/camera/focal_surface.hpp"
 #include "table.hpp"
 
 namespace {
@@ -39,9 +39,9 @@ void frame(benchmark::State& state, const Film& film, std::size_t count, int thr
 
 void loops(benchmark::State& state, InstructionSet set, SurfaceKind kind, double beta) {
   const Film film{.columns = 800, .rows = 600};
-  std::vector<movement_detail::WeighedValue> values;
+  std::vector<camera_detail::WeighedValue> values;
   for (const FocalPoint& point : points_on(film, 16)) values.push_back({point.place, *point.inverse_distance});
-  const movement_detail::MovingLeastSquares surface("surface_bench: ", values, 29, kind, beta);
+  const camera_detail::MovingLeastSquares surface("surface_bench: ", values, 29, kind, beta);
   std::vector<float> x, y;
   for (int r = 0; r < film.rows; ++r) {
     for (int c = 0; c < film.columns; ++c) {

@@ -22,7 +22,7 @@
 #include <vector>
 
 #include "petzval/core/error.hpp"
-#include "petzval/files/lens_file.hpp"
+#include "petzval/io/lens_json.hpp"
 #include "petzval/io/write_file.hpp"
 #include "table.hpp"
 #include "trace_rays.hpp"

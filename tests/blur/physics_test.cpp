@@ -8,13 +8,13 @@
 #include <vector>
 
 #include "../data_lenses.hpp"
+#include "petzval/analysis/psf.hpp"
 #include "petzval/blur/gather.hpp"
 #include "petzval/blur/layers.hpp"
 #include "petzval/blur/lens_rays.hpp"
 #include "petzval/camera/camera.hpp"
 #include "petzval/core/units.hpp"
 #include "petzval/focus/focus.hpp"
-#include "petzval/psf/psf.hpp"
 
 namespace {
 

@@ -17,7 +17,7 @@
 #include "petzval/camera/polynomial_model.hpp"
 #include "petzval/camera/ray_model.hpp"
 #include "petzval/focus/focus.hpp"
-#include "petzval/media/glass.hpp"
+#include "petzval/glass/glass.hpp"
 #include "petzval/pupil/f_number.hpp"
 
 namespace petzval {

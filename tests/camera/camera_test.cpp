@@ -25,7 +25,7 @@
 #include "petzval/camera/ray_model.hpp"
 #include "petzval/core/error.hpp"
 #include "petzval/focus/focus.hpp"
-#include "petzval/media/glass.hpp"
+#include "petzval/glass/glass.hpp"
 #include "petzval/paraxial/first_order.hpp"
 #include "tilted_films.hpp"
 

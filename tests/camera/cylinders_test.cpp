@@ -13,7 +13,7 @@
 #include "camera_samples.hpp"
 #include "petzval/camera/camera.hpp"
 #include "petzval/focus/focus.hpp"
-#include "petzval/media/glass.hpp"
+#include "petzval/glass/glass.hpp"
 #include "petzval/paraxial/first_order.hpp"
 #include "petzval/pupil/f_number.hpp"
 

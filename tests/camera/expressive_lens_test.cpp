@@ -16,7 +16,7 @@
 #include "core/low_discrepancy.hpp"
 #include "petzval/camera/camera.hpp"
 #include "petzval/core/error.hpp"
-#include "petzval/media/glass.hpp"
+#include "petzval/glass/glass.hpp"
 #include "petzval/paraxial/first_order.hpp"
 #include "petzval/pupil/f_number.hpp"
 #include "tilted_films.hpp"

@@ -12,7 +12,7 @@
 
 #include "../data_lenses.hpp"
 #include "petzval/camera/camera.hpp"
-#include "petzval/media/glass.hpp"
+#include "petzval/glass/glass.hpp"
 #include "petzval/paraxial/first_order.hpp"
 #include "petzval/pupil/f_number.hpp"
 

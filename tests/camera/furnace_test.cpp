@@ -13,10 +13,10 @@
 
 #include "../data_lenses.hpp"
 #include "camera_samples.hpp"
-#include "petzval/accuracy/model_error.hpp"
+#include "petzval/analysis/model_error.hpp"
 #include "petzval/core/sobol.hpp"
 #include "petzval/focus/focus.hpp"
-#include "petzval/media/glass.hpp"
+#include "petzval/glass/glass.hpp"
 #include "petzval/paraxial/first_order.hpp"
 #include "petzval/pupil/f_number.hpp"
 #include "petzval/pupil/illumination.hpp"

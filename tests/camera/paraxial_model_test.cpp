@@ -17,7 +17,7 @@
 #include "camera_parts.hpp"
 #include "petzval/core/error.hpp"
 #include "petzval/focus/focus.hpp"
-#include "petzval/media/glass.hpp"
+#include "petzval/glass/glass.hpp"
 #include "petzval/paraxial/first_order.hpp"
 #include "petzval/pupil/f_number.hpp"
 #include "petzval/trace/trace.hpp"

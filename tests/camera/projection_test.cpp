@@ -13,7 +13,7 @@
 #include "../data_lenses.hpp"
 #include "core/low_discrepancy.hpp"
 #include "petzval/camera/camera.hpp"
-#include "petzval/film/film.hpp"
+#include "petzval/core/film.hpp"
 #include "petzval/paraxial/first_order.hpp"
 #include "petzval/pupil/aim.hpp"
 #include "petzval/trace/trace.hpp"

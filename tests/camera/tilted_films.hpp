@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "petzval/core/film.hpp"
 #include "petzval/core/units.hpp"
-#include "petzval/film/film.hpp"
 #include "petzval/lens/lens.hpp"
 
 namespace petzval::testing {

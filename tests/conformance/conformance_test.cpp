@@ -14,11 +14,11 @@
 #include <vector>
 
 #include "../data_lenses.hpp"
+#include "petzval/analysis/psf.hpp"
 #include "petzval/core/error.hpp"
 #include "petzval/core/sobol.hpp"
 #include "petzval/focus/focus.hpp"
 #include "petzval/paraxial/first_order.hpp"
-#include "petzval/psf/psf.hpp"
 #include "petzval/pupil/f_number.hpp"
 #include "petzval/pupil/illumination.hpp"
 #include "renderer/frame.hpp"

@@ -7,9 +7,9 @@
 #include <fstream>
 #include <numbers>
 
-#include "petzval/files/lens_file.hpp"
 #include "petzval/focus/focus.hpp"
-#include "petzval/io/image.hpp"
+#include "petzval/image/image.hpp"
+#include "petzval/io/lens_json.hpp"
 #include "petzval/paraxial/ideal_lens.hpp"
 #include "program.hpp"
 

@@ -8,7 +8,7 @@
 #include <tuple>
 #include <vector>
 
-#include "petzval/io/image.hpp"
+#include "petzval/image/image.hpp"
 #include "program.hpp"
 
 namespace {

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <map>
 
-#include "petzval/io/image.hpp"
+#include "petzval/image/image.hpp"
 #include "program.hpp"
 
 namespace {

@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "petzval/files/lens_file.hpp"
-#include "petzval/io/image.hpp"
+#include "petzval/formats/lens_file.hpp"
+#include "petzval/image/image.hpp"
 #include "petzval/io/lens_json.hpp"
 #include "petzval/lens/lens.hpp"
 #include "petzval/paraxial/first_order.hpp"
@@ -47,7 +47,7 @@ TEST_F(ConvertLens, WritesEveryFormatByItsEnding) {
   for (const char* ending : {".json", ".dat", ".zmx", ".seq"}) {
     const auto outcome = run("convert_lens", {lens("double_gauss_100mm_f2.0"), path(std::string("lens") + ending)});
     EXPECT_EQ(outcome.status, 0) << outcome.err;
-    const auto back = petzval::read_prescription(path(std::string("lens") + ending));
+    const auto back = petzval::read_lens(path(std::string("lens") + ending));
     // Other programs' files name glasses, whose formulas differ from printed indices by a few 1e-6.
     const bool names_glasses = std::string(ending) == ".zmx" || std::string(ending) == ".seq";
     EXPECT_NEAR(petzval::first_order(petzval::compile(back)).effective_focal_length, 100.7163339,
@@ -115,7 +115,7 @@ TEST_F(ConvertLens, MissingGlassesComeFromFilesOfTheUser) {
   ASSERT_EQ(json["configurations"].size(), 2u);
   EXPECT_EQ(json["configurations"][1]["name"], "far");
   EXPECT_NEAR(json["f_number"].get<double>(), 8, 1e-6);
-  const auto back = petzval::read_prescription(path("lens.json"));
+  const auto back = petzval::read_lens(path("lens.json"));
   EXPECT_EQ(back.configurations.size(), 2u);
   EXPECT_NEAR(back.surfaces[0].medium.nd.value(), 1.5168, 1e-7);  // by the formula
   // One position alone.
@@ -123,7 +123,7 @@ TEST_F(ConvertLens, MissingGlassesComeFromFilesOfTheUser) {
       run("convert_lens", {path("lens.zmx"), path("far.json"), "--glasses", path("my.agf"), "--configuration", "far"})
           .status,
       0);
-  EXPECT_NEAR(petzval::read_prescription(path("far.json")).surfaces[1].thickness, 2.1 * 25.4, 1e-9);
+  EXPECT_NEAR(petzval::read_lens(path("far.json")).surfaces[1].thickness, 2.1 * 25.4, 1e-9);
 }
 
 // Germanium is opaque at the d line: its V_d is 0, and the lens is one for 10.6 um.
@@ -158,7 +158,7 @@ SURF 3
   expect_both("convert_lens", {path("ge.json")});
   expect_both("lens_report", {"--wavelength-nm", "10600"});
   expect_both("spot_diagram", {"--wavelengths-nm", "10600", "--field-deg", "0", "--out", path("spots")});
-  const auto back = petzval::read_prescription(path("ge.json"));
+  const auto back = petzval::read_lens(path("ge.json"));
   EXPECT_EQ(back.reference_wavelength_nm, 10600);
   EXPECT_NEAR(petzval::first_order(petzval::compile(back)).effective_focal_length, 106.5453, 1e-4);
   for (const char* ending : {".zmx", ".seq", ".dat", ".osl"}) {
@@ -209,7 +209,7 @@ TEST_F(ConvertLens, TablesAsPeopleTypeThemGetTheirGlasses) {
 
   const auto matched = run("convert_lens", {path("cooke.txt"), path("cooke.json"), "--match-glasses"});
   ASSERT_EQ(matched.status, 0) << matched.err;
-  const auto lens = petzval::read_prescription(path("cooke.json"));
+  const auto lens = petzval::read_lens(path("cooke.json"));
   for (const std::size_t i : {0u, 2u, 4u}) {
     EXPECT_EQ(lens.surfaces[i].medium.glass_origin, "matched") << i;
     EXPECT_NE(matched.err.find(lens.surfaces[i].medium.glass.value()), std::string::npos) << matched.err;
@@ -229,12 +229,12 @@ TEST_F(ConvertLens, OneLensOfADatabaseIsAConfiguration) {
   }
   for (const char* chosen : {"2004", "b"}) {
     ASSERT_EQ(run("convert_lens", {path("lenses.json"), path("lens.json"), "--configuration", chosen}).status, 0);
-    const auto lens = petzval::read_prescription(path("lens.json"));
+    const auto lens = petzval::read_lens(path("lens.json"));
     EXPECT_EQ(lens.imported->entry, "2004");
     EXPECT_EQ(lens.configurations.size(), 3u);
   }
   ASSERT_EQ(run("convert_lens", {path("lenses.json"), path("lens.json"), "--configuration", "2004/long"}).status, 0);
-  EXPECT_EQ(petzval::read_prescription(path("lens.json")).surfaces[0].thickness, 7);
+  EXPECT_EQ(petzval::read_lens(path("lens.json")).surfaces[0].thickness, 7);
   EXPECT_EQ(run("lens_report", {path("lenses.json"), "--configuration", "2004/long"}).status, 0);
 }
 

@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "petzval/files/lens_file.hpp"
 #include "petzval/focus/focus.hpp"
+#include "petzval/io/lens_json.hpp"
 #include "petzval/pupil/f_number.hpp"
 #include "program.hpp"
 

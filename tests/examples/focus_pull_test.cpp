@@ -2,10 +2,10 @@
 #include <cmath>
 #include <set>
 
-#include "petzval/files/lens_file.hpp"
+#include "petzval/focus/autofocus.hpp"
 #include "petzval/focus/focus.hpp"
-#include "petzval/movement/autofocus.hpp"
-#include "petzval/movement/focus_point.hpp"
+#include "petzval/focus/focus_point.hpp"
+#include "petzval/io/lens_json.hpp"
 #include "petzval/pupil/f_number.hpp"
 #include "program.hpp"
 

@@ -4,8 +4,8 @@
 #include <set>
 
 #include "petzval/core/units.hpp"
-#include "petzval/files/lens_file.hpp"
 #include "petzval/focus/focus.hpp"
+#include "petzval/io/lens_json.hpp"
 #include "program.hpp"
 
 namespace {

@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "petzval/blur/layers.hpp"
-#include "petzval/io/deep_exr.hpp"
-#include "petzval/io/image.hpp"
+#include "petzval/image/deep_exr.hpp"
+#include "petzval/image/image.hpp"
 #include "program.hpp"
 
 namespace {

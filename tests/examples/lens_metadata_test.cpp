@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <string>
 
-#include "petzval/files/lens_file.hpp"
 #include "petzval/focus/focus.hpp"
-#include "petzval/io/image.hpp"
+#include "petzval/image/image.hpp"
+#include "petzval/io/lens_json.hpp"
 #include "program.hpp"
 
 namespace {

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <cmath>
 
-#include "petzval/files/lens_file.hpp"
 #include "petzval/focus/focus.hpp"
+#include "petzval/io/lens_json.hpp"
 #include "petzval/paraxial/first_order.hpp"
 #include "petzval/pupil/f_number.hpp"
 #include "program.hpp"

@@ -5,8 +5,8 @@
 
 #include "core/text.hpp"
 #include "petzval/core/units.hpp"
-#include "petzval/files/lens_file.hpp"
 #include "petzval/focus/focus.hpp"
+#include "petzval/io/lens_json.hpp"
 #include "petzval/paraxial/first_order.hpp"
 #include "petzval/pupil/f_number.hpp"
 #include "program.hpp"

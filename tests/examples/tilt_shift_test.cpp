@@ -4,9 +4,9 @@
 #include <set>
 
 #include "petzval/core/units.hpp"
-#include "petzval/files/lens_file.hpp"
-#include "petzval/movement/autofocus.hpp"
-#include "petzval/movement/tilt_fit.hpp"
+#include "petzval/fit/tilt_fit.hpp"
+#include "petzval/focus/autofocus.hpp"
+#include "petzval/io/lens_json.hpp"
 #include "petzval/pupil/f_number.hpp"
 #include "program.hpp"
 

@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-#include "petzval/files/lens_file.hpp"
+#include "petzval/io/lens_json.hpp"
 #include "program.hpp"
 
 namespace {

@@ -10,13 +10,13 @@
 
 #include "../data_lenses.hpp"
 #include "allocations.hpp"
+#include "petzval/analysis/colour.hpp"
+#include "petzval/analysis/psf_set.hpp"
 #include "petzval/camera/camera.hpp"
 #include "petzval/core/units.hpp"
 #include "petzval/focus/focus.hpp"
 #include "petzval/io/lens_json.hpp"
 #include "petzval/polynomial/ray_polynomial.hpp"
-#include "petzval/psf/colour.hpp"
-#include "petzval/psf/psf_set.hpp"
 #include "petzval/pupil/f_number.hpp"
 #include "petzval/trace/trace.hpp"
 

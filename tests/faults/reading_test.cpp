@@ -12,9 +12,9 @@
 #include "../data_lenses.hpp"
 #include "allocations.hpp"
 #include "petzval/core/error.hpp"
-#include "petzval/files/lens_file.hpp"
+#include "petzval/formats/lens_file.hpp"
+#include "petzval/glass/glass.hpp"
 #include "petzval/io/lens_json.hpp"
-#include "petzval/media/glass.hpp"
 #include "petzval/paraxial/first_order.hpp"
 
 namespace petzval {

@@ -11,10 +11,10 @@
 
 #include "../data_lenses.hpp"
 #include "petzval/figure/lens_figures.hpp"
-#include "petzval/io/deep_exr.hpp"
-#include "petzval/io/image.hpp"
+#include "petzval/image/deep_exr.hpp"
+#include "petzval/image/image.hpp"
+#include "petzval/image/psf_set_exr.hpp"
 #include "petzval/io/lens_json.hpp"
-#include "petzval/io/psf_set_exr.hpp"
 #include "petzval/io/write_file.hpp"
 #include "petzval/polynomial/ray_polynomial.hpp"
 

@@ -7,9 +7,9 @@
 #include <string>
 #include <vector>
 
+#include "petzval/camera/focal_surface.hpp"
 #include "petzval/core/error.hpp"
 #include "petzval/figure/focus_figures.hpp"
-#include "petzval/movement/focal_surface.hpp"
 #include "svg_parts.hpp"
 
 namespace petzval {

@@ -11,11 +11,11 @@
 #include <vector>
 
 #include "../data_lenses.hpp"
+#include "petzval/analysis/spot.hpp"
 #include "petzval/core/error.hpp"
 #include "petzval/core/units.hpp"
 #include "petzval/focus/focus.hpp"
 #include "petzval/paraxial/first_order.hpp"
-#include "petzval/psf/spot.hpp"
 #include "svg_parts.hpp"
 
 namespace petzval {

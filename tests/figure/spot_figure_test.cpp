@@ -11,7 +11,7 @@
 #include "core/text.hpp"
 #include "petzval/core/error.hpp"
 #include "petzval/core/units.hpp"
-#include "petzval/files/lens_file.hpp"
+#include "petzval/io/lens_json.hpp"
 #include "svg_parts.hpp"
 
 namespace petzval {

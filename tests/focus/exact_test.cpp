@@ -12,7 +12,7 @@
 #include "../data_lenses.hpp"
 #include "petzval/core/units.hpp"
 #include "petzval/focus/focus.hpp"
-#include "petzval/media/glass.hpp"
+#include "petzval/glass/glass.hpp"
 #include "petzval/pupil/pupil_plane.hpp"
 #include "petzval/trace/trace.hpp"
 

@@ -10,8 +10,8 @@
 
 #include "camera_laws.hpp"
 #include "fixed_lenses.hpp"
+#include "petzval/camera/focal_surface.hpp"
 #include "petzval/focus/focus.hpp"
-#include "petzval/movement/focal_surface.hpp"
 #include "petzval/paraxial/ideal_lens.hpp"
 
 namespace {

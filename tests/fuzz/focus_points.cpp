@@ -3,9 +3,9 @@
 #include <vector>
 
 #include "laws.hpp"
-#include "petzval/movement/autofocus.hpp"
-#include "petzval/movement/focal_surface.hpp"
-#include "petzval/movement/tilt_fit.hpp"
+#include "petzval/camera/focal_surface.hpp"
+#include "petzval/fit/tilt_fit.hpp"
+#include "petzval/focus/autofocus.hpp"
 #include "wild_lens.hpp"
 
 namespace {

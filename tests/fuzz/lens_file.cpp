@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // Lens files of every format: what is read is a valid lens, and this library's own JSON keeps it to the byte.
-#include "petzval/files/lens_file.hpp"
+#include "petzval/formats/lens_file.hpp"
 
 #include "laws.hpp"
+#include "petzval/glass/glass.hpp"
 #include "petzval/io/lens_json.hpp"
-#include "petzval/media/glass.hpp"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace petzval;

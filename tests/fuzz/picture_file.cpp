@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // EXR, PNG and PFM files, flat and deep: numbers of the size that the file says, or an Error.
-#include "petzval/io/deep_exr.hpp"
-#include "petzval/io/image.hpp"
-#include "petzval/io/psf_set_exr.hpp"
+#include "petzval/blur/layers.hpp"
+#include "petzval/image/deep_exr.hpp"
+#include "petzval/image/image.hpp"
+#include "petzval/image/psf_set_exr.hpp"
 
 #include <string>
 

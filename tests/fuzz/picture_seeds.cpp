@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Pictures of a few pixels, by this library's own writers.
-#include "petzval/io/deep_exr.hpp"
-#include "petzval/io/image.hpp"
-#include "petzval/io/psf_set_exr.hpp"
+#include "petzval/image/deep_exr.hpp"
+#include "petzval/image/image.hpp"
+#include "petzval/image/psf_set_exr.hpp"
 #include "scratch_file.hpp"
 #include "seeds.hpp"
 

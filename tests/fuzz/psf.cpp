@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // Pictures of point lights through any lens.
-#include "petzval/psf/psf.hpp"
+#include "petzval/analysis/psf.hpp"
 
 #include <array>
 #include <numeric>
 
 #include "laws.hpp"
-#include "petzval/psf/psf_set.hpp"
+#include "petzval/analysis/psf_set.hpp"
 #include "wild_lens.hpp"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Parts of PSF sets with entries that were changed: a kernel comes back bit for bit, or the part is refused.
-#include "petzval/io/psf_set_exr.hpp"
+#include "petzval/image/psf_set_exr.hpp"
 
 #include <string>
 #include <utility>

@@ -9,8 +9,9 @@
 
 #include "../data_lenses.hpp"
 #include "laws.hpp"
+#include "petzval/formats/lens_file.hpp"
+#include "petzval/glass/glass.hpp"
 #include "petzval/io/lens_json.hpp"
-#include "petzval/media/glass.hpp"
 #include "petzval/polynomial/ray_polynomial.hpp"
 
 namespace petzval::fuzz {

@@ -5,7 +5,7 @@
 #include <vector>
 
 /// Where fuzzing starts: lenses of data/, small, in every format that is written here; texts of tests/fuzz/seeds and
-/// tests/files/samples in the others; pictures of a few pixels; bytes for targets that make lenses of them.
+/// tests/formats/samples in the others; pictures of a few pixels; bytes for targets that make lenses of them.
 namespace petzval::fuzz {
 
 std::vector<std::string> own_json();

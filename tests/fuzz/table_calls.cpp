@@ -8,10 +8,10 @@
 
 #include "fixed_lenses.hpp"
 #include "laws.hpp"
+#include "petzval/analysis/lens_distortion.hpp"
 #include "petzval/camera/camera.hpp"
-#include "petzval/distortion/lens_distortion.hpp"
+#include "petzval/camera/focal_surface.hpp"
 #include "petzval/focus/focus.hpp"
-#include "petzval/movement/focal_surface.hpp"
 #include "petzval/polynomial/ray_polynomial.hpp"
 #include "petzval/pupil_table/film_pupil_table.hpp"
 

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "petzval/files/lens_file.hpp"
 #include "petzval/io/lens_json.hpp"
 
 #include <gtest/gtest.h>

@@ -11,8 +11,8 @@
 #include "../data_lenses.hpp"
 #include "../message.hpp"
 #include "core/text.hpp"
+#include "petzval/glass/glass.hpp"
 #include "petzval/lens/lens.hpp"
-#include "petzval/media/glass.hpp"
 
 namespace {
 

@@ -13,9 +13,9 @@
 #include "../data_lenses.hpp"
 #include "../message.hpp"
 #include "lens/between_wavelengths.hpp"
-#include "petzval/files/lens_file.hpp"
+#include "petzval/glass/glass.hpp"
+#include "petzval/io/lens_json.hpp"
 #include "petzval/lens/lens.hpp"
-#include "petzval/media/glass.hpp"
 #include "petzval/paraxial/first_order.hpp"
 
 namespace {

@@ -15,7 +15,7 @@
 #include "lens/lens_view.hpp"
 #include "petzval/core/units.hpp"
 #include "petzval/focus/focus.hpp"
-#include "petzval/movement/focus_plane.hpp"
+#include "petzval/focus/focus_plane.hpp"
 
 namespace petzval {
 namespace {

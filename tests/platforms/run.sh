@@ -25,13 +25,13 @@ platforms=${platforms:-aarch64 windows}
 
 # What is the same for every platform: headers, with the files by which CMake finds them, and sources.
 prepare() {
-  need $library_packages libeigen3-dev googletest
+  need $library_packages googletest
   [ -e "$work/prepared" ] && return
   rm -rf "$work/host"
   mkdir -p "$work/host/lists/partial" "$work/host/sources" "$work/host/prefix"
-  for package in libglm-dev nlohmann-json3-dev libeigen3-dev libceres-dev; do
+  for package in libglm-dev nlohmann-json3-dev libeigen3-dev; do
     dpkg -L "$package"
-  done | grep -E '^/usr/(include/(glm|nlohmann|ceres|eigen3)|share/(cmake|eigen3))/' |
+  done | grep -E '^/usr/(include/(glm|nlohmann|eigen3)|share/(cmake|eigen3))/' |
     while read -r file; do [ -d "$file" ] || echo "${file#/usr/}"; done | tar -C /usr -c -T - | tar -C "$work/host/prefix" -x
 
   echo "== Fetching the sources of yaml-cpp"

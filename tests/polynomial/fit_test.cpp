@@ -17,7 +17,7 @@
 #include "core/text.hpp"
 #include "lines.hpp"
 #include "petzval/focus/focus.hpp"
-#include "petzval/media/glass.hpp"
+#include "petzval/glass/glass.hpp"
 #include "petzval/paraxial/first_order.hpp"
 #include "petzval/pupil/f_number.hpp"
 #include "petzval/trace/trace.hpp"

@@ -16,13 +16,13 @@
 #include <vector>
 
 #include "../data_lenses.hpp"
+#include "petzval/analysis/psf.hpp"
 #include "petzval/core/units.hpp"
-#include "petzval/files/lens_file.hpp"
 #include "petzval/focus/focus.hpp"
+#include "petzval/formats/lens_file.hpp"
+#include "petzval/glass/glass.hpp"
 #include "petzval/io/lens_json.hpp"
-#include "petzval/media/glass.hpp"
 #include "petzval/paraxial/first_order.hpp"
-#include "petzval/psf/psf.hpp"
 #include "petzval/pupil/f_number.hpp"
 #include "petzval/trace/trace.hpp"
 

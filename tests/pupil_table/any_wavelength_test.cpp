@@ -13,7 +13,7 @@
 
 #include "../data_lenses.hpp"
 #include "../declared_radius.hpp"
-#include "petzval/media/glass.hpp"
+#include "petzval/glass/glass.hpp"
 #include "petzval/pupil_table/film_pupil_table.hpp"
 #include "petzval/trace/trace.hpp"
 #include "pupil_table/entrance_pupil_table.hpp"

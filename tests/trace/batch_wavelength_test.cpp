@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "batches.hpp"
-#include "petzval/media/glass.hpp"
+#include "petzval/glass/glass.hpp"
 
 namespace {
 

@@ -11,7 +11,7 @@
 #include "petzval/blur/lens_rays.hpp"
 #include "petzval/core/export.hpp"
 
-namespace petzval::inline v0 {
+namespace petzval {
 
 /// How rays are brought to the lanes of the processor.
 enum class GatherPath : std::uint8_t {
@@ -74,4 +74,4 @@ struct Blurred {
 PETZVAL_API void gather(const LayerSet& layers, const LensRays& rays, const GatherOptions& options, Blurred& picture);
 PETZVAL_API Blurred gather(const LayerSet& layers, const LensRays& rays, const GatherOptions& options = {});
 
-}  // namespace petzval::inline v0
+}  // namespace petzval

@@ -4,7 +4,7 @@
 #include "petzval/core/export.hpp"
 #include "petzval/core/geometry.hpp"
 
-namespace petzval::inline v0 {
+namespace petzval {
 
 class Camera;
 
@@ -41,4 +41,4 @@ PETZVAL_API LayerCamera layer_camera(const Camera& camera);
 /// whose entrance pupil is at infinity.
 PETZVAL_API double layer_origin_z(const Camera& camera);
 
-}  // namespace petzval::inline v0
+}  // namespace petzval

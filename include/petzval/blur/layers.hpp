@@ -9,8 +9,9 @@
 
 #include "petzval/blur/layer_camera.hpp"
 #include "petzval/core/export.hpp"
+#include "petzval/core/fragment_lists.hpp"
 
-namespace petzval::inline v0 {
+namespace petzval {
 
 class LensRays;
 
@@ -47,18 +48,6 @@ PETZVAL_API PeelPlan plan_peel(const LensRays& rays, double nearest_mm, double f
 struct LayerPlanes {
   std::span<float> inverse_depth;            ///< 1/mm; 0: infinity; below 0 or not a number: empty
   std::span<float> red, green, blue, alpha;  ///< linear, of any brightness, multiplied with alpha
-};
-
-/// The surfaces of pixels as lists: those of pixel p are fragments[offsets[p]] to fragments[offsets[p + 1] - 1], in any
-/// order.
-struct FragmentLists {
-  struct Fragment {
-    float depth_mm = 0;                             ///< along the axis; infinity: the sky
-    float red = 0, green = 0, blue = 0, alpha = 1;  ///< multiplied with alpha
-  };
-  int columns = 0, rows = 0;
-  std::vector<std::size_t> offsets;  ///< columns x rows + 1
-  std::vector<Fragment> fragments;
 };
 
 /// Turns distances from the pinhole into depths along the axis, in place; infinity and what is no depth stay. camera:
@@ -124,4 +113,4 @@ class PETZVAL_API LayerSet {
   std::unique_ptr<Data> data_;
 };
 
-}  // namespace petzval::inline v0
+}  // namespace petzval

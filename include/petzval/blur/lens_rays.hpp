@@ -13,7 +13,7 @@
 #include "petzval/iris/iris_weights.hpp"
 #include "petzval/lens/wavelength.hpp"
 
-namespace petzval::inline v0 {
+namespace petzval {
 
 class Camera;
 
@@ -139,4 +139,4 @@ class PETZVAL_API LensRays {
   std::shared_ptr<const Data> data_;
 };
 
-}  // namespace petzval::inline v0
+}  // namespace petzval

@@ -3,7 +3,7 @@
 
 #include "petzval/iris/iris_weights.hpp"
 
-namespace petzval::inline v0 {
+namespace petzval {
 
 /// What an artist asks of a bokeh, by the names of "Recreating realistic bokeh by biasing lens-sample positions", 2017.
 /// Every model of a Camera takes it; the defaults change nothing.
@@ -40,4 +40,4 @@ struct BokehControls {
   EdgeWeight edge() const noexcept { return {weight_distribution, weight_strength}; }
 };
 
-}  // namespace petzval::inline v0
+}  // namespace petzval

@@ -10,13 +10,13 @@
 #include "petzval/camera/bokeh_controls.hpp"
 #include "petzval/camera/camera_ray.hpp"
 #include "petzval/camera/expressive_lens.hpp"
+#include "petzval/camera/focal_surface.hpp"
 #include "petzval/camera/model_kind.hpp"
 #include "petzval/core/export.hpp"
-#include "petzval/film/film.hpp"
+#include "petzval/core/film.hpp"
 #include "petzval/lens/wavelength.hpp"
-#include "petzval/movement/focal_surface.hpp"
 
-namespace petzval::inline v0 {
+namespace petzval {
 
 class AnyRayModel;
 class Lens;
@@ -182,4 +182,4 @@ class PETZVAL_API Camera {
   std::shared_ptr<const Data> data_;
 };
 
-}  // namespace petzval::inline v0
+}  // namespace petzval

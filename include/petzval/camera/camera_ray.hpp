@@ -6,12 +6,12 @@
 #include <string_view>
 
 #include "petzval/core/export.hpp"
+#include "petzval/core/film.hpp"
 #include "petzval/core/geometry.hpp"
 #include "petzval/core/ray.hpp"
-#include "petzval/film/film.hpp"
 #include "petzval/lens/wavelength.hpp"
 
-namespace petzval::inline v0 {
+namespace petzval {
 
 /// A film point, a sample of its pupil, and a wavelength.
 struct CameraSample {
@@ -148,4 +148,4 @@ struct Projection {
   explicit operator bool() const noexcept { return status == ProjectionStatus::converged; }
 };
 
-}  // namespace petzval::inline v0
+}  // namespace petzval

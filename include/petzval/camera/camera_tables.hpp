@@ -7,7 +7,7 @@
 
 #include "petzval/core/export.hpp"
 
-namespace petzval::inline v0 {
+namespace petzval {
 
 /// The layout of Camera::tables(): one array of floats, to be copied to a GPU as it is. Counts, kinds and positions in
 /// the array are whole numbers. Lens frame, mm. examples/hosts/device_camera.hpp samples a camera from it and has
@@ -80,4 +80,4 @@ struct CameraTables {
   PETZVAL_API static void check(std::span<const float> tables, const std::string& where);
 };
 
-}  // namespace petzval::inline v0
+}  // namespace petzval

@@ -4,10 +4,10 @@
 #include <vector>
 
 #include "petzval/core/export.hpp"
-#include "petzval/film/film.hpp"
+#include "petzval/core/film.hpp"
 #include "petzval/lens/lens.hpp"
 
-namespace petzval::inline v0 {
+namespace petzval {
 
 /// The refractive power of a ring of the pupil.
 struct PowerKnot {
@@ -75,4 +75,4 @@ struct FocalSteepness {
   FilmPoint place{};
 };
 
-}  // namespace petzval::inline v0
+}  // namespace petzval

@@ -6,7 +6,7 @@
 #include "petzval/core/export.hpp"
 #include "petzval/core/ray.hpp"
 
-namespace petzval::inline v0 {
+namespace petzval {
 
 class Lens;
 
@@ -40,4 +40,4 @@ class PETZVAL_API HostFrame {
   double origin_z_ = 0, units_per_mm_ = 1;
 };
 
-}  // namespace petzval::inline v0
+}  // namespace petzval

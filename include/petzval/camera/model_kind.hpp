@@ -8,7 +8,7 @@
 
 #include "petzval/core/export.hpp"
 
-namespace petzval::inline v0 {
+namespace petzval {
 
 /// The ray models of a lens, from the cheapest to the most accurate one. All have the exact lens's exposure on the axis
 /// within 0.5 %; thin_two_disc and polynomials have it within 2 % over the declared field
@@ -43,4 +43,4 @@ PETZVAL_API std::optional<ModelKind> model_named(std::string_view name) noexcept
 /// The built-in models, in the order above.
 PETZVAL_API std::span<const ModelKind> models() noexcept;
 
-}  // namespace petzval::inline v0
+}  // namespace petzval

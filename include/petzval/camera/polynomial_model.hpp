@@ -6,7 +6,7 @@
 #include "petzval/camera/ray_model.hpp"
 #include "petzval/polynomial/ray_polynomial.hpp"
 
-namespace petzval::inline v0 {
+namespace petzval {
 
 /// A RayModel of fitted polynomials, such as those read from a file, within pupils of the same area as the real ones.
 ///
@@ -45,4 +45,4 @@ class PolynomialModel {
   FilmPupilTable pupils_;
 };
 
-}  // namespace petzval::inline v0
+}  // namespace petzval

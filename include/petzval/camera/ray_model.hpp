@@ -10,13 +10,13 @@
 
 #include "petzval/camera/model_kind.hpp"
 #include "petzval/core/export.hpp"
+#include "petzval/core/film.hpp"
 #include "petzval/core/ray.hpp"
-#include "petzval/film/film.hpp"
 #include "petzval/lens/wavelength.hpp"
 #include "petzval/pupil_table/film_pupil_table.hpp"
 #include "petzval/pupil_table/two_plane_rays.hpp"
 
-namespace petzval::inline v0 {
+namespace petzval {
 
 /// What a Camera needs of a lens: the pupils to sample, and the map between image-space rays and rays of the scene.
 ///
@@ -196,4 +196,4 @@ class AnyRayModel {
   std::shared_ptr<const Interface> model_;
 };
 
-}  // namespace petzval::inline v0
+}  // namespace petzval

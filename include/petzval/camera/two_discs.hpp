@@ -6,7 +6,7 @@
 #include "petzval/core/export.hpp"
 #include "petzval/lens/lens.hpp"
 
-namespace petzval::inline v0 {
+namespace petzval {
 
 /// The two discs whose overlap is nearest to the pupils of a lens's film points, as BokehControls has them: the smaller
 /// one is the pupil.
@@ -34,4 +34,4 @@ struct TwoDiscs {
 /// or dark, a wavelength that is not compiled, and a film_radius that is no length.
 PETZVAL_API TwoDiscs fit_two_discs(const Lens& lens, double film_radius, Wavelength wavelength = {});
 
-}  // namespace petzval::inline v0
+}  // namespace petzval

@@ -6,7 +6,7 @@
 
 #include "petzval/core/export.hpp"
 
-namespace petzval::inline v0 {
+namespace petzval {
 
 /// Thrown when an object cannot be built or read. The message says where, what was found and what was wanted:
 /// `data/lenses/x.json: surface 4: thickness is nan, wanted a finite length in mm`.
@@ -18,4 +18,4 @@ class PETZVAL_API Error : public std::runtime_error {
   ~Error() override;
 };
 
-}  // namespace petzval::inline v0
+}  // namespace petzval

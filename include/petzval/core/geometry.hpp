@@ -9,7 +9,7 @@
 #include "petzval/core/export.hpp"
 #include "petzval/core/version.hpp"
 
-namespace petzval::inline v0 {
+namespace petzval {
 
 /// Two components, of a point in a plane across the axis unless said otherwise.
 ///
@@ -38,4 +38,4 @@ struct SpaceLine {
 /// Where a plane meets the plane across the axis at z. Nothing where both are parallel within rounding.
 PETZVAL_API std::optional<SpaceLine> line_at(const Plane& plane, double z);
 
-}  // namespace petzval::inline v0
+}  // namespace petzval

@@ -7,7 +7,7 @@
 
 #include "petzval/core/export.hpp"
 
-namespace petzval::inline v0 {
+namespace petzval {
 
 /// The vector instructions that a processor offers to loops over rays. Processors other than x86-64 have `baseline`
 /// only.
@@ -24,4 +24,4 @@ PETZVAL_API std::string_view name(InstructionSet set) noexcept;
 /// otherwise, which reproducible batches (trace.hpp) and single calls do not.
 PETZVAL_API std::span<const InstructionSet> instruction_sets() noexcept;
 
-}  // namespace petzval::inline v0
+}  // namespace petzval

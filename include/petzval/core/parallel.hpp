@@ -6,7 +6,7 @@
 
 #include "petzval/core/export.hpp"
 
-namespace petzval::inline v0 {
+namespace petzval {
 
 /// How many threads the processor runs at once, at least 1: what a program may give to functions that take `threads`.
 PETZVAL_API int processor_threads() noexcept;
@@ -21,4 +21,4 @@ PETZVAL_API int processor_threads() noexcept;
 PETZVAL_API void parallel_for(std::size_t count, std::size_t block, int threads,
                               const std::function<void(std::size_t begin, std::size_t end)>& work);
 
-}  // namespace petzval::inline v0
+}  // namespace petzval

@@ -7,7 +7,7 @@
 #include "petzval/core/export.hpp"
 #include "petzval/core/geometry.hpp"
 
-namespace petzval::inline v0 {
+namespace petzval {
 
 /// A direction counts as a unit vector d if | d . d - 1 | is less than this; others lose their ray. Directions that
 /// were normalised in float are within 4e-7. Exact rays correct the length; the other models leave the error in the
@@ -68,4 +68,4 @@ struct TracedRay {
   bool transmitted() const noexcept { return fate == RayFate::transmitted; }
 };
 
-}  // namespace petzval::inline v0
+}  // namespace petzval

@@ -7,7 +7,7 @@
 
 #include "petzval/core/export.hpp"
 
-namespace petzval::inline v0 {
+namespace petzval {
 
 /// The largest files that the readers of this library take into memory: lenses, glasses, polynomials, camera tables and
 /// tables of colour. Some formats have narrower limits. Pictures are limited by their pixels.
@@ -26,4 +26,4 @@ inline constexpr std::size_t largest_file_bytes = std::size_t{256} << 20;
 PETZVAL_API std::string read_file(const std::filesystem::path& file, const std::string& kind = "a file",
                                   std::size_t most = largest_file_bytes);
 
-}  // namespace petzval::inline v0
+}  // namespace petzval

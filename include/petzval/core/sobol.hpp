@@ -7,7 +7,7 @@
 #include "petzval/core/export.hpp"
 #include "petzval/core/geometry.hpp"
 
-namespace petzval::inline v0 {
+namespace petzval {
 
 /// Point `index` of the two-dimensional Sobol sequence, Owen-scrambled by a hash of `seed`: in [0, 1)^2, random access,
 /// no state.
@@ -21,4 +21,4 @@ PETZVAL_API Vec2<double> owen_sobol(std::uint32_t index, std::uint32_t seed) noe
 /// The points from `first` on, the same as one by one, faster. u, v: N each.
 PETZVAL_API void owen_sobol(std::uint32_t first, std::uint32_t seed, std::span<double> u, std::span<double> v) noexcept;
 
-}  // namespace petzval::inline v0
+}  // namespace petzval

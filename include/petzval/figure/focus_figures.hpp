@@ -6,14 +6,14 @@
 #include <string>
 #include <string_view>
 
+#include "petzval/camera/focal_surface.hpp"
 #include "petzval/core/export.hpp"
-#include "petzval/film/film.hpp"
+#include "petzval/core/film.hpp"
+#include "petzval/focus/focus_plane.hpp"
 #include "petzval/lens/lens.hpp"
-#include "petzval/movement/focal_surface.hpp"
-#include "petzval/movement/focus_plane.hpp"
 #include "petzval/paraxial/ideal_lens.hpp"
 
-namespace petzval::inline v0 {
+namespace petzval {
 
 /// Sharpness against film position, as SVG text: the RMS spot radius of each field and of all fields together, over the
 /// distance of the film from the paraxial focus. Lines mark the paraxial focus, the film, and the minima of the axial
@@ -95,4 +95,4 @@ struct FocalSurfaceView {
 /// Throws Error for a film that has no place or size.
 PETZVAL_API std::string focal_surface_figure(const FocalSurfaceView& view);
 
-}  // namespace petzval::inline v0
+}  // namespace petzval

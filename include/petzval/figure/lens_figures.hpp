@@ -9,7 +9,7 @@
 #include "petzval/lens/lens.hpp"
 #include "petzval/paraxial/first_order.hpp"
 
-namespace petzval::inline v0 {
+namespace petzval {
 
 struct LayoutOptions {
   std::size_t rays = 5;            ///< per field, of those that pass: 3 to 7
@@ -45,4 +45,4 @@ PETZVAL_API std::string footprint_figure(const Lens& lens, double subject_z, std
 /// not above 0.
 PETZVAL_API std::string illumination_figure(const Lens& lens, double subject_z, double field_rad);
 
-}  // namespace petzval::inline v0
+}  // namespace petzval

@@ -7,7 +7,7 @@
 
 #include "petzval/core/export.hpp"
 
-namespace petzval::inline v0 {
+namespace petzval {
 
 /// A model in the figure.
 struct ParetoPoint {
@@ -26,4 +26,4 @@ struct ParetoPoint {
 PETZVAL_API std::string pareto_figure(std::string_view title, std::string_view remark,
                                       std::span<const ParetoPoint> points);
 
-}  // namespace petzval::inline v0
+}  // namespace petzval

@@ -4,11 +4,11 @@
 #include <span>
 #include <string>
 
+#include "petzval/analysis/spot.hpp"
 #include "petzval/core/export.hpp"
 #include "petzval/lens/lens.hpp"
-#include "petzval/psf/spot.hpp"
 
-namespace petzval::inline v0 {
+namespace petzval {
 
 /// A spot diagram as SVG text: a row for each field, with a column for all wavelengths and one for each of them.
 ///
@@ -25,4 +25,4 @@ namespace petzval::inline v0 {
 PETZVAL_API std::string spot_figure(const Lens& lens, std::span<const Spot> spots,
                                     std::span<const double> wavelength_weights = {});
 
-}  // namespace petzval::inline v0
+}  // namespace petzval

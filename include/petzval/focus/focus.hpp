@@ -9,7 +9,7 @@
 #include "petzval/core/export.hpp"
 #include "petzval/lens/lens.hpp"
 
-namespace petzval::inline v0 {
+namespace petzval {
 
 /// The meaning of "in focus", and of the diameter of a blur.
 enum class FocusCriterion : std::uint8_t {
@@ -147,4 +147,4 @@ PETZVAL_API FocusSolution hyperfocal(const Lens& lens, double blur_mm, const Foc
 /// any film, or if that film lies in the exit pupil.
 PETZVAL_API std::optional<double> breathing(const Lens& lens, double film_z, const FocusOptions& options = {});
 
-}  // namespace petzval::inline v0
+}  // namespace petzval

@@ -9,10 +9,14 @@
 #include "petzval/polynomial/ray_polynomial.hpp"
 #include "petzval/prescription/prescription.hpp"
 
-namespace petzval::inline v0 {
+namespace petzval {
 
-/// Reads a lens from JSON (format "petzval-lens 1"; data/README.md has its keys); read_prescription() in
-/// files/lens_file.hpp reads a file of this or any other format. `where` is the name of the source in messages. Throws
+/// Reads a lens from a JSON file (format "petzval-lens 1"; data/README.md has its keys). Surfaces without a clear
+/// aperture get the aperture of with_apertures(). read_lens() of petzval::formats reads a file of this or any other
+/// format. Throws Error as parse_prescription does, and for a file that cannot be read.
+PETZVAL_API Prescription read_prescription(const std::filesystem::path& file);
+
+/// Reads a lens from JSON in memory, and adds nothing to it. `where` is the name of the source in messages. Throws
 /// Error that names it, line and column, the surface (from 0), the key, its value and the rule. It refuses unknown and
 /// duplicate keys, comments, NaN, numbers out of range of double, brackets nested deeper than the format has them,
 /// lists of more than 10,000 entries, and all that `validate` refuses. Time is proportional to the size of the file,
@@ -43,4 +47,4 @@ PETZVAL_API std::string format_ray_polynomial(const RayPolynomial& polynomial);
 /// Writes that text as write_file does. Throws Error that names the file.
 PETZVAL_API void write_ray_polynomial(const RayPolynomial& polynomial, const std::filesystem::path& file);
 
-}  // namespace petzval::inline v0
+}  // namespace petzval

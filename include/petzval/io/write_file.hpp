@@ -9,7 +9,7 @@
 
 #include "petzval/core/export.hpp"
 
-namespace petzval::inline v0 {
+namespace petzval {
 
 /// Writes a whole file or none: first to a new file in the same folder, flushed to the disk, which then replaces FILE
 /// and keeps its mode. A failure keeps the old file and leaves no partial one; of several writers at once one wins. A
@@ -26,4 +26,4 @@ PETZVAL_API std::vector<float> read_floats(const std::filesystem::path& file);
 /// FNV-1a of 64 bits (Fowler, Noll and Vo) as 16 hexadecimal digits: tells whether bytes have changed, not who did it.
 PETZVAL_API std::string checksum(std::string_view bytes);
 
-}  // namespace petzval::inline v0
+}  // namespace petzval

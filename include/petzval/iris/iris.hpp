@@ -3,7 +3,7 @@
 
 #include "petzval/core/export.hpp"
 
-namespace petzval::inline v0 {
+namespace petzval {
 
 /// The shape of a stop: round, or a regular polygon of blades with straight or rounded edges.
 ///
@@ -34,4 +34,4 @@ PETZVAL_API double iris_area(const Iris& iris);
 ///     petzval::Lens lens = with_f_number(with_iris(wide_open, hexagon), petzval::equal_area_f_number(hexagon, 4));
 PETZVAL_API double equal_area_f_number(const Iris& iris, double f_number);
 
-}  // namespace petzval::inline v0
+}  // namespace petzval

@@ -7,7 +7,7 @@
 #include "petzval/core/export.hpp"
 #include "petzval/iris/iris.hpp"
 
-namespace petzval::inline v0 {
+namespace petzval {
 
 /// The weight of a place of an iris: 1 + p (d + 1) x^d - p for the distribution d and the strength p, not below 0.
 ///
@@ -58,4 +58,4 @@ struct OnionRings {
 /// pixels or above 2, a contrast out of range, a negative or infinite jitter, and pixels outside 2 to 8192.
 PETZVAL_API IrisMap onion_rings(const OnionRings& rings, int pixels = 1024);
 
-}  // namespace petzval::inline v0
+}  // namespace petzval

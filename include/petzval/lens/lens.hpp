@@ -16,7 +16,7 @@
 #include "petzval/lens/wavelength.hpp"
 #include "petzval/prescription/prescription.hpp"
 
-namespace petzval::inline v0 {
+namespace petzval {
 
 class GlassCatalogue;
 
@@ -209,4 +209,4 @@ PETZVAL_API Lens with_iris(const Lens& lens, const Iris& iris);
 /// or conic, and for a surface that does not exist. Clear apertures are ignored.
 PETZVAL_API double sag(const Lens& lens, std::size_t surface, double x, double y) noexcept;
 
-}  // namespace petzval::inline v0
+}  // namespace petzval

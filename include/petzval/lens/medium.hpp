@@ -4,10 +4,10 @@
 #include <optional>
 
 #include "petzval/core/export.hpp"
-#include "petzval/media/glass.hpp"
+#include "petzval/glass/glass.hpp"
 #include "petzval/prescription/surface_row.hpp"
 
-namespace petzval::inline v0 {
+namespace petzval {
 
 /// The glass of a medium: by name and catalogue, else by name and n_d, else by name (GlassCatalogue::find). nullptr for
 /// a medium without a name, and for a name outside the tables.
@@ -22,4 +22,4 @@ PETZVAL_API const Glass* glass_of(const Medium& medium, const GlassCatalogue& gl
 PETZVAL_API std::optional<double> reference_index(const Medium& medium, const GlassCatalogue& glasses,
                                                   double reference_wavelength_nm);
 
-}  // namespace petzval::inline v0
+}  // namespace petzval

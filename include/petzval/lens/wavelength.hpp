@@ -8,7 +8,7 @@
 
 #include "petzval/core/version.hpp"
 
-namespace petzval::inline v0 {
+namespace petzval {
 
 /// A wavelength of a lens: a position in Lens::wavelengths_nm(), by default that of the primary wavelength wherever it
 /// stands, or any wavelength between the smallest and the largest compiled one, in nm.
@@ -81,4 +81,4 @@ struct RayWavelengths {
   }
 };
 
-}  // namespace petzval::inline v0
+}  // namespace petzval

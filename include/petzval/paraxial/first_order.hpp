@@ -9,7 +9,7 @@
 #include "petzval/lens/lens.hpp"
 #include "petzval/lens/wavelength.hpp"
 
-namespace petzval::inline v0 {
+namespace petzval {
 
 /// A ray-transfer (ABCD) matrix on (y, n u): height in mm and optical direction, n the signed index (negative while
 /// light runs backwards after a mirror). Its determinant is 1.
@@ -127,4 +127,4 @@ PETZVAL_API double paraxial_f_number(const Lens& lens, Wavelength wavelength = {
 /// Infinite for an empty pupil.
 PETZVAL_API double film_side_f_number(const Lens& lens, Wavelength wavelength = {});
 
-}  // namespace petzval::inline v0
+}  // namespace petzval

@@ -4,13 +4,13 @@
 #include <optional>
 
 #include "petzval/core/export.hpp"
+#include "petzval/core/film.hpp"
 #include "petzval/core/geometry.hpp"
-#include "petzval/film/film.hpp"
 #include "petzval/lens/lens.hpp"
 #include "petzval/lens/wavelength.hpp"
 #include "petzval/paraxial/first_order.hpp"
 
-namespace petzval::inline v0 {
+namespace petzval {
 
 /// A point of the scene, or a direction to one at infinity.
 struct ScenePoint {
@@ -116,4 +116,4 @@ PETZVAL_API double thin_lens_subject(double focal_length, double extension);
 /// f), adds to that. Throws Error unless T >= 4 f > 0.
 PETZVAL_API double thin_lens_film_distance(double focal_length, double subject_to_film);
 
-}  // namespace petzval::inline v0
+}  // namespace petzval

@@ -16,7 +16,7 @@
 #include "petzval/pupil_table/two_plane_rays.hpp"
 #include "petzval/trace/trace.hpp"
 
-namespace petzval::inline v0 {
+namespace petzval {
 
 /// Rays of a lens as polynomials of film point f and pupil point p, of degree 3, 5, 7, 9 or 11.
 ///
@@ -132,4 +132,4 @@ class PETZVAL_API RayPolynomial {
   std::shared_ptr<const Data> data_;
 };
 
-}  // namespace petzval::inline v0
+}  // namespace petzval

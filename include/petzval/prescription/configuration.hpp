@@ -11,7 +11,7 @@
 
 #include "petzval/prescription/surface_row.hpp"
 
-namespace petzval::inline v0 {
+namespace petzval {
 
 /// What a configuration changes on one surface; the rest of the row stays.
 struct SurfaceChange {
@@ -58,4 +58,4 @@ class ConfigurationChoice {
   std::variant<double, std::string> choice_ = 0.0;
 };
 
-}  // namespace petzval::inline v0
+}  // namespace petzval

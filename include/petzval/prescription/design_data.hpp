@@ -10,7 +10,7 @@
 
 #include "petzval/core/export.hpp"
 
-namespace petzval::inline v0 {
+namespace petzval {
 
 /// How a designer fixed the width of the beam.
 enum class ApertureSetting : std::uint8_t {
@@ -73,4 +73,4 @@ struct DesignData {
   bool operator==(const DesignData&) const = default;
 };
 
-}  // namespace petzval::inline v0
+}  // namespace petzval

@@ -6,7 +6,7 @@
 
 #include "petzval/core/version.hpp"
 
-namespace petzval::inline v0 {
+namespace petzval {
 
 /// What an importer assumed, changed or left out.
 struct ImportWarning {
@@ -30,4 +30,4 @@ struct FileOrigin {
   bool operator==(const FileOrigin&) const = default;
 };
 
-}  // namespace petzval::inline v0
+}  // namespace petzval

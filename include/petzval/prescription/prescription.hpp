@@ -13,7 +13,7 @@
 #include "petzval/prescription/file_origin.hpp"
 #include "petzval/prescription/surface_row.hpp"
 
-namespace petzval::inline v0 {
+namespace petzval {
 
 /// A lens as its source prints it: plain data that a program may edit. `compile` makes a Lens of it.
 ///
@@ -80,4 +80,4 @@ PETZVAL_API Prescription scale(const Prescription& prescription, double factor);
 /// the film.
 PETZVAL_API Prescription reverse(const Prescription& prescription);
 
-}  // namespace petzval::inline v0
+}  // namespace petzval

@@ -8,7 +8,7 @@
 
 #include "petzval/core/version.hpp"
 
-namespace petzval::inline v0 {
+namespace petzval {
 
 /// The medium behind a surface: air, a glass of a catalogue, or numbers. A stated index counts at the reference
 /// wavelength of the prescription, and the glass gives the dispersion; without a stated index the formula of the glass
@@ -64,4 +64,4 @@ struct SurfaceRow {
   bool operator==(const SurfaceRow&) const = default;
 };
 
-}  // namespace petzval::inline v0
+}  // namespace petzval

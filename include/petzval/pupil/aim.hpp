@@ -12,7 +12,7 @@
 #include "petzval/lens/wavelength.hpp"
 #include "petzval/pupil/pupil_plane.hpp"
 
-namespace petzval::inline v0 {
+namespace petzval {
 
 /// How the search for a ray ended.
 enum class AimStatus : std::uint8_t {
@@ -60,4 +60,4 @@ PETZVAL_API AimedRay aim(const Lens& lens, const FieldPoint& point, const StopPo
 /// The chief ray: aimed at the centre of the stop.
 PETZVAL_API AimedRay chief_ray(const Lens& lens, const FieldPoint& point, Wavelength wavelength = {});
 
-}  // namespace petzval::inline v0
+}  // namespace petzval

@@ -5,7 +5,7 @@
 #include "petzval/lens/lens.hpp"
 #include "petzval/prescription/prescription.hpp"
 
-namespace petzval::inline v0 {
+namespace petzval {
 
 /// Gives a clear aperture to each surface that has none, or a computed one: the smallest that passes the beam.
 ///
@@ -28,4 +28,4 @@ namespace petzval::inline v0 {
 /// @throws Error   if compile() does
 PETZVAL_API Prescription with_apertures(const Prescription& prescription, const CompileOptions& options = {});
 
-}  // namespace petzval::inline v0
+}  // namespace petzval

@@ -7,7 +7,7 @@
 #include "petzval/lens/lens.hpp"
 #include "petzval/lens/wavelength.hpp"
 
-namespace petzval::inline v0 {
+namespace petzval {
 
 /// |EFL| / (2 y), y the height of the axis-parallel ray (in the main meridian) whose exact trace meets the rim of the
 /// stop; the ray is traced through the front part alone, whatever clips it elsewhere. Where rays end before they get as
@@ -33,4 +33,4 @@ PETZVAL_API double fastest_f_number(const Lens& lens, Wavelength wavelength = {}
 /// surface and the f-number of the obscuration, and N that no stop gives, as spherical aberration folds the beam there.
 PETZVAL_API Lens with_f_number(const Lens& lens, double f_number, Wavelength wavelength = {});
 
-}  // namespace petzval::inline v0
+}  // namespace petzval

@@ -5,12 +5,12 @@
 #include <optional>
 
 #include "petzval/core/export.hpp"
-#include "petzval/film/film.hpp"
+#include "petzval/core/film.hpp"
 #include "petzval/lens/lens.hpp"
 #include "petzval/lens/wavelength.hpp"
 #include "petzval/pupil/pupil_plane.hpp"
 
-namespace petzval::inline v0 {
+namespace petzval {
 
 /// Irradiance of the film of a lens at a point, in units of the radiance of a scene that is uniform in all directions:
 /// n'^2 times the projected solid angle in which the point sees the scene through the lens, in sr. Within 5e-4 for
@@ -35,4 +35,4 @@ PETZVAL_API std::optional<double> relative_illumination(const Lens& lens, const 
 /// two of them is not seen. Throws Error where film_irradiance does, and for a part that is not from 0 to 1.
 PETZVAL_API double image_circle_mm(const Lens& lens, double least_part = 0, Wavelength wavelength = {});
 
-}  // namespace petzval::inline v0
+}  // namespace petzval

@@ -13,7 +13,7 @@
 #include "petzval/lens/wavelength.hpp"
 #include "petzval/pupil/pupil_plane.hpp"
 
-namespace petzval::inline v0 {
+namespace petzval {
 
 /// A point of a pupil's boundary: the last ray that passes, and what ends the next one.
 struct RimPoint {
@@ -128,4 +128,4 @@ class PETZVAL_API PupilSampler {
   std::vector<std::uint32_t> first_;  ///< that begins in or before each of as many equal steps of u
 };
 
-}  // namespace petzval::inline v0
+}  // namespace petzval

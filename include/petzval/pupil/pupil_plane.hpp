@@ -5,13 +5,13 @@
 #include <span>
 
 #include "petzval/core/export.hpp"
+#include "petzval/core/film.hpp"
 #include "petzval/core/ray.hpp"
 #include "petzval/core/version.hpp"
-#include "petzval/film/film.hpp"
 #include "petzval/lens/lens.hpp"
 #include "petzval/trace/trace.hpp"
 
-namespace petzval::inline v0 {
+namespace petzval {
 
 /// A point of the scene, seen from the centre of the paraxial entrance pupil: `field_rad` away from the axis, in the
 /// direction `azimuth_rad` turned from +y to +x. A field of +10 degrees lies towards +y, and a lens that turns its
@@ -85,4 +85,4 @@ class PETZVAL_API PupilPlane {
   double reciprocal_distance_ = 0;
 };
 
-}  // namespace petzval::inline v0
+}  // namespace petzval

@@ -8,7 +8,7 @@
 #include "petzval/lens/lens.hpp"
 #include "petzval/lens/wavelength.hpp"
 
-namespace petzval::inline v0 {
+namespace petzval {
 
 /// A pupil as the textbook method finds it: one disc on the axis, and the ray that gave it.
 struct TextbookPupil {
@@ -43,4 +43,4 @@ PETZVAL_API TextbookPupil textbook_entrance_pupil(const Lens& lens, double objec
 /// The exit pupil by the same method from the other side: rays from the axial point of a film, traced to the scene.
 PETZVAL_API TextbookPupil textbook_exit_pupil(const Lens& lens, double film_z, Wavelength wavelength = {});
 
-}  // namespace petzval::inline v0
+}  // namespace petzval

@@ -9,15 +9,15 @@
 #include <vector>
 
 #include "petzval/core/export.hpp"
+#include "petzval/core/film.hpp"
 #include "petzval/core/geometry.hpp"
-#include "petzval/film/film.hpp"
 #include "petzval/iris/iris.hpp"
 #include "petzval/lens/lens.hpp"
 #include "petzval/lens/wavelength.hpp"
 #include "petzval/pupil/pupil_plane.hpp"
 #include "petzval/pupil_table/two_plane_rays.hpp"
 
-namespace petzval::inline v0 {
+namespace petzval {
 
 /// A disc in the plane of the pupil whose centre moves with the film point: it lies at shift times that point.
 struct PupilDisc {
@@ -263,4 +263,4 @@ class PETZVAL_API FilmPupilTable {
   std::shared_ptr<const Data> data_;
 };
 
-}  // namespace petzval::inline v0
+}  // namespace petzval

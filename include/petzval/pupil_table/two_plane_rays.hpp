@@ -7,7 +7,7 @@
 #include "petzval/core/ray.hpp"
 #include "petzval/lens/lens.hpp"
 
-namespace petzval::inline v0 {
+namespace petzval {
 
 /// The two planes that parametrise image-space rays: the film, and the plane of the pupil behind the lens, that of the
 /// paraxial exit pupil where it lies in reach. Lens frame, mm.
@@ -57,4 +57,4 @@ struct RayDerivatives {
   Ray<double> ray{}, by_u{{0, 0, 0}, {0, 0, 0}}, by_v{{0, 0, 0}, {0, 0, 0}};
 };
 
-}  // namespace petzval::inline v0
+}  // namespace petzval

@@ -13,7 +13,7 @@
 #include "petzval/lens/lens.hpp"
 #include "petzval/lens/wavelength.hpp"
 
-namespace petzval::inline v0 {
+namespace petzval {
 
 /// How to trace one ray.
 struct TraceOptions {
@@ -103,4 +103,4 @@ PETZVAL_API void trace_differentials(const Lens& lens, std::size_t count, const 
                                      const RayTangents<T>& tangents_out, RayFate* fates, int* surfaces,
                                      const BatchOptions& options = {}) noexcept;
 
-}  // namespace petzval::inline v0
+}  // namespace petzval

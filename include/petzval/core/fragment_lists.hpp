@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+namespace petzval {
+
+/// The surfaces of pixels as lists: those of pixel p are fragments[offsets[p]] to fragments[offsets[p + 1] - 1], in any
+/// order.
+struct FragmentLists {
+  struct Fragment {
+    float depth_mm = 0;                             ///< along the axis; infinity: the sky
+    float red = 0, green = 0, blue = 0, alpha = 1;  ///< multiplied with alpha
+  };
+  int columns = 0, rows = 0;
+  std::vector<std::size_t> offsets;  ///< columns x rows + 1
+  std::vector<Fragment> fragments;
+};
+
+}  // namespace petzval

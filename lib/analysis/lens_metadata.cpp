@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "petzval/analysis/lens_metadata.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <vector>
+
+#include "core/least_squares.hpp"
+#include "core/text.hpp"
+#include "petzval/core/error.hpp"
+#include "petzval/paraxial/first_order.hpp"
+#include "petzval/pupil/illumination.hpp"
+#include "petzval/pupil/pupil_boundary.hpp"
+
+namespace petzval {
+
+LensIdentity identity_of(const Prescription& prescription) {
+  return {.model = prescription.name, .nominal_focal_length_mm = prescription.focal_length_mm};
+}
+
+Film film_of(const Prescription& prescription, const Lens& lens) {
+  constexpr double least_part = 0.1;  // of the light on the axis
+  const bool declared = prescription.image_diagonal_mm.has_value();
+  const double diagonal = declared ? *prescription.image_diagonal_mm : image_circle_mm(lens, least_part);
+  if (!(diagonal > 0 && std::isfinite(diagonal))) {
+    throw Error(lens.name() + ": film: the " +
+                (declared ? "declared image diagonal is " + to_text(diagonal) + " mm, wanted a positive, finite one"
+                          : "prescription declares no image diagonal and the image circle is " + to_text(diagonal) +
+                                " mm wide, wanted a film"));
+  }
+  const double unit = diagonal / std::hypot(3.0, 2.0);
+  return {.width_mm = 3 * unit, .height_mm = 2 * unit, .columns = 1920, .rows = 1280};
+}
+
+LensState lens_state(const LensDistortion& distortion) {
+  const Lens& lens = distortion.camera().lens();
+  const Pinhole& pinhole = distortion.pinhole();
+  const double film_z = distortion.camera().film().z();
+  LensState state;
+  state.effective_focal_length_mm = first_order(lens, {}, main_meridian(lens)).effective_focal_length;
+  state.pinhole_focal_length_mm = pinhole.focal_length_mm.y;
+  state.f_number = paraxial_f_number(lens);
+  const double area = pupil_boundary(lens, {.z = -std::numeric_limits<double>::infinity()}).area();
+  state.t_number =
+      std::max(state.f_number, std::abs(state.effective_focal_length_mm) / (2 * std::sqrt(area / std::numbers::pi)));
+  state.focus_distance_mm = film_z - pinhole.subject_z_mm;
+  state.entrance_pupil_offset_mm = film_z - pinhole.z_mm;
+  return state;
+}
+
+double ExposureFalloff::light(double radius_mm) const noexcept {
+  const double r2 = radius_mm * radius_mm;
+  return 1 - r2 * (a[0] + r2 * (a[1] + r2 * a[2]));
+}
+
+ExposureFalloff fit_exposure_falloff(const Lens& lens, const Film& film) {
+  constexpr int radii = 24;
+  const double farthest = film.radius_mm(), on_axis = film_irradiance(lens, {});
+  if (!(on_axis > 0)) throw Error(lens.name() + ": exposure falloff: the axis is dark, wanted light on it");
+
+  struct Place {
+    double radius = 0, light = 0;
+  };
+  std::vector<Place> places;
+  const int directions = lens.rotationally_symmetric() ? 1 : 4;
+  for (int direction = 0; direction < directions; ++direction) {
+    const double angle = direction * std::numbers::pi / 6;
+    for (int i = 1; i <= radii; ++i) {
+      const double radius = farthest * i / radii;
+      const double light = film_irradiance(lens, {radius * std::sin(angle), radius * std::cos(angle)}) / on_axis;
+      if (light > 0) places.push_back({radius, light});
+    }
+  }
+  ExposureFalloff result;
+  if (places.empty()) return result;
+  Eigen::MatrixXd rows(places.size(), 3);
+  Eigen::VectorXd lost(places.size());
+  for (std::size_t i = 0; i < places.size(); ++i) {
+    const double r2 = (places[i].radius / farthest) * (places[i].radius / farthest);
+    const double weight = std::sqrt(places[i].radius / farthest);  // of a ring of the film
+    rows.row(static_cast<Eigen::Index>(i)) << weight * r2, weight * r2 * r2, weight * r2 * r2 * r2;
+    lost(static_cast<Eigen::Index>(i)) = weight * (1 - places[i].light);
+  }
+  const Eigen::VectorXd a = core_detail::least_squares(rows, lost);
+  for (int i = 0; i < 3; ++i) result.a[static_cast<std::size_t>(i)] = a(i) / std::pow(farthest, 2 * (i + 1));
+  for (const Place& place : places) {
+    result.largest_error = std::max(result.largest_error, std::abs(result.light(place.radius) - place.light));
+  }
+  return result;
+}
+
+}  // namespace petzval

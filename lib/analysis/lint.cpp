@@ -1,0 +1,339 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "petzval/analysis/lint.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+
+#include "core/check_rectangle.hpp"
+#include "core/text.hpp"
+#include "lens/equator.hpp"
+#include "petzval/core/error.hpp"
+#include "petzval/glass/glass.hpp"
+#include "petzval/paraxial/first_order.hpp"
+#include "petzval/pupil/f_number.hpp"
+#include "petzval/pupil/illumination.hpp"
+#include "spacing.hpp"
+
+namespace petzval {
+namespace {
+
+using Kind = FindingKind;
+constexpr double tolerance = 0.02;
+
+std::string mm(double value) { return to_text(value, 6) + " mm"; }
+
+std::string at(int surface) { return "surface " + std::to_string(surface) + ": "; }
+
+bool differs(double found, double wanted) { return !(std::abs(found - wanted) <= tolerance * std::abs(wanted)); }
+
+using Findings = std::vector<Finding>;
+
+void check_stops(const Prescription& prescription, Findings& findings) {
+  int stops = 0, last = 0;
+  for (const SurfaceRow& row : prescription.surfaces) {
+    if (row.stop) ++stops, last = static_cast<int>(&row - prescription.surfaces.data());
+  }
+  if (stops == 0) {
+    findings.push_back(
+        {Kind::no_stop, {}, 0, 1, "no surface is marked as stop; the one that clips the axial beam first is used"});
+  } else if (stops > 1) {
+    findings.push_back({Kind::several_stops, last, static_cast<double>(stops), 1,
+                        at(last) + "is the last of " + std::to_string(stops) + " marked as stop; the first is used"});
+  }
+}
+
+void check_surfaces(const Prescription& rows, const Lens& lens, Findings& findings) {
+  const int count = static_cast<int>(lens.surface_count());
+  for (int i = 0; i < count; ++i) {
+    const auto position = static_cast<std::size_t>(i);
+    const LensSurface& surface = lens.surfaces()[position];
+    const double end = std::min(lens_detail::equator(surface), surface.semi_diameter);
+    const std::optional<double> declared = rows.surfaces[position].semi_diameter;
+    // Apertures that end where two surfaces meet are overlaps.
+    const bool meets_another = surface.semi_diameter == surface.edge;
+    if (declared && std::isfinite(*declared) && surface.semi_diameter > 0 && *declared > end && !meets_another) {
+      findings.push_back(
+          {Kind::semi_diameter, i, *declared, end,
+           at(i) + "semi_diameter is " + mm(*declared) + ", wanted at most " + mm(end) + ", where the surface ends"});
+    }
+    // A stop of 0 is a closed iris. Any other rim of 0 is hardly intended.
+    if (surface.semi_diameter == 0 && lens.stop() != position) {
+      findings.push_back({Kind::semi_diameter, i, 0, lens_detail::equator(surface),
+                          at(i) + "semi_diameter is 0 mm; only the axial ray passes"});
+    }
+    if (i + 1 == count) break;
+    const auto spacing = analysis_detail::least_spacing(lens, position);
+    if (spacing && spacing->width < -1e-9 * std::max(spacing->height, std::abs(surface.thickness))) {
+      findings.push_back(
+          {Kind::overlap, i, spacing->width, 0,
+           at(i) + "overlaps the next surface by " + mm(-spacing->width) + " at a height of " + mm(spacing->height)});
+    }
+  }
+}
+
+/// False for an unlimited stop and for a lens without clear apertures: they do not fix the f-number.
+bool limits_the_beam(const Lens& lens) {
+  const auto surfaces = lens.stop() ? lens.surfaces().subspan(*lens.stop(), 1) : lens.surfaces();
+  return std::any_of(surfaces.begin(), surfaces.end(),
+                     [](const LensSurface& s) { return std::isfinite(s.semi_diameter); });
+}
+
+/// 10, 25.4 or 1000, or one over it, if a length is that many times a declared one.
+std::optional<double> unit_between(double length, double declared) {
+  for (const double factor : {10.0, 25.4, 1000.0}) {
+    for (const double ratio : {factor, 1 / factor}) {
+      if (!differs(length, ratio * declared)) return ratio;
+    }
+  }
+  return {};
+}
+
+/// The f-number with all clear apertures so many times as large; nothing where it has none.
+std::optional<double> f_number_with(const Prescription& prescription, double factor, const GlassCatalogue* glasses) {
+  Prescription scaled = prescription;
+  for (SurfaceRow& row : scaled.surfaces) {
+    if (row.semi_diameter) *row.semi_diameter *= factor;
+    if (row.obscuration_semi_diameter) *row.obscuration_semi_diameter *= factor;
+  }
+  const Lens lens = compile(scaled, {.glasses = glasses});
+  if (!has_pupils(lens)) return {};
+  return real_f_number(lens);
+}
+
+/// By what factor all apertures are too large or too small: 2 or a half, if that gives the declared f-number.
+std::optional<double> aperture_factor(const Prescription& prescription, double f_number,
+                                      const GlassCatalogue* glasses) {
+  const double factor = f_number < *prescription.f_number ? 2 : 0.5;
+  if (std::abs(std::log2(*prescription.f_number / f_number)) < 0.8) return {};
+  const auto mended = f_number_with(prescription, 1 / factor, glasses);
+  if (mended && std::abs(*mended - *prescription.f_number) <= 0.04 * *prescription.f_number) return factor;
+  return {};
+}
+
+/// The rim that clips the axial beam first, if that is well before the marked stop does.
+void check_stop(const Lens& lens, Findings& findings) {
+  constexpr double well_before = 0.7;
+  if (!lens.stop()) return;
+  const auto to = ray_matrices_to(lens, {}, main_meridian(lens));
+  // Of a ray that enters at height 1.
+  const auto margin = [&](std::size_t i) { return lens.surfaces()[i].semi_diameter / std::abs(to[i].a); };
+  const double of_stop = margin(*lens.stop());
+  std::size_t first = *lens.stop();
+  for (std::size_t i = 0; i < lens.surface_count(); ++i) {
+    if (lens.surfaces()[i].semi_diameter > 0 && margin(i) < margin(first)) first = i;
+  }
+  if (!(margin(first) < well_before * of_stop) || !std::isfinite(of_stop)) return;
+  findings.push_back({Kind::idle_stop, static_cast<int>(*lens.stop()), of_stop, margin(first),
+                      at(static_cast<int>(*lens.stop())) + "the stop lets an axial beam of " + mm(of_stop) +
+                          " radius pass, surface " + std::to_string(first) + " clips it at " + mm(margin(first))});
+}
+
+/// From the last vertex to the paraxial image of the design's object; infinite for an afocal lens.
+double image_distance(const Prescription& prescription, const Lens& lens) {
+  const double object_z = -prescription.design.object_distance_mm;
+  return paraxial_image_z(lens, object_z, {}, main_meridian(lens)) - lens.surfaces().back().vertex_z;
+}
+
+void check_first_order(const Prescription& prescription, const Lens& lens, const GlassCatalogue* glasses,
+                       Findings& findings) {
+  const FirstOrder data = first_order(lens, 0, main_meridian(lens));
+  const double focal_length = data.effective_focal_length;
+  const auto unit =
+      prescription.focal_length_mm ? unit_between(focal_length, *prescription.focal_length_mm) : std::nullopt;
+  if (unit) {
+    findings.push_back({Kind::units,
+                        {},
+                        focal_length,
+                        *prescription.focal_length_mm,
+                        "focal length is " + mm(focal_length) + ", declared " + mm(*prescription.focal_length_mm) +
+                            ": lengths are " + to_text(*unit, 4) + " times what they should be"});
+  } else if (prescription.focal_length_mm && differs(focal_length, *prescription.focal_length_mm)) {
+    findings.push_back({Kind::focal_length,
+                        {},
+                        focal_length,
+                        *prescription.focal_length_mm,
+                        "focal length is " + mm(focal_length) + ", declared " + mm(*prescription.focal_length_mm)});
+  }
+  if (prescription.f_number && limits_the_beam(lens)) {
+    const double f_number = real_f_number(lens);
+    if (const auto factor = aperture_factor(prescription, f_number, glasses)) {
+      findings.push_back({Kind::apertures,
+                          {},
+                          f_number,
+                          *prescription.f_number,
+                          "f-number is " + to_text(f_number, 4) + ", declared " + to_text(*prescription.f_number, 4) +
+                              ": semi-diameters are " + (*factor > 1 ? "diameters" : "halves of them")});
+    } else if (differs(f_number, *prescription.f_number)) {
+      findings.push_back({Kind::f_number,
+                          {},
+                          f_number,
+                          *prescription.f_number,
+                          "f-number is " + to_text(f_number, 6) + ", declared " + to_text(*prescription.f_number, 6)});
+    }
+  }
+  const int last = static_cast<int>(lens.surface_count()) - 1;
+  const double distance = lens.surfaces().back().thickness;
+  const double image = image_distance(prescription, lens);
+  if (std::isfinite(image) && std::abs(distance - image) > tolerance * std::abs(focal_length)) {
+    const bool far = std::isinf(prescription.design.object_distance_mm);
+    findings.push_back({Kind::image_distance, last, distance, image,
+                        at(last) + "the film is " + mm(distance) + " behind it and the paraxial " +
+                            (far ? "focus " : "image of the object ") + mm(image)});
+  }
+}
+
+void check_glasses(const Prescription& prescription, const GlassCatalogue& glasses, Findings& findings) {
+  constexpr double another_glass = 0.005;
+  for (std::size_t i = 0; i < prescription.surfaces.size(); ++i) {
+    const Medium& medium = prescription.surfaces[i].medium;
+    if (!medium.glass || !medium.catalogue || !medium.nd) continue;
+    const Glass* glass = glasses.find(*medium.glass, *medium.catalogue);
+    if (!glass || std::abs(glass->nd - *medium.nd) <= another_glass) continue;
+    const int surface = static_cast<int>(i);
+    findings.push_back({Kind::glass_index, surface, *medium.nd, glass->nd,
+                        at(surface) + "n_d is " + to_text(*medium.nd, 6) + ", that of " + glass->name + " is " +
+                            to_text(glass->nd, 6)});
+  }
+}
+
+void check_size(const Lens& lens, const Film& film, Findings& findings) {
+  constexpr double too_large = 3, too_small = 0.02;
+  const double circle = image_circle_mm(with_film(lens, film.z_mm.value_or(lens.film_z())));
+  const double diameter = 2 * film.radius_mm();
+  const bool larger = diameter > too_large * circle;
+  if (!larger && !(diameter < too_small * circle && std::isfinite(circle))) return;
+  findings.push_back({Kind::film_size,
+                      {},
+                      diameter,
+                      circle,
+                      "the film is " + to_text(film.width_mm, 6) + " by " + mm(film.height_mm) +
+                          " and needs an image circle of " + mm(diameter) + "; the lens has one of " +
+                          to_text(circle, 4) + " mm, wanted a " + (larger ? "smaller" : "larger") + " film"});
+}
+
+void check_pixels(const Lens& lens, const Film& film, Findings& findings) {
+  // Pictures of an anamorphic lens are stretched later, or by such pixels.
+  if (!with_iris(lens, {}).rotationally_symmetric()) return;
+  const double width = film.width_mm / film.columns, height = film.height_mm / film.rows;
+  const double wanted_height = width * film.rows;
+  // Few pixels leave a film of whole ones a little too high or too low.
+  if (std::abs(width / height - 1) <= 0.005 || std::abs(film.height_mm - wanted_height) < width) return;
+  findings.push_back({Kind::pixel_shape,
+                      {},
+                      width / height,
+                      1,
+                      "pixels are " + to_text(width, 4) + " by " + to_text(height, 4) +
+                          " mm, wanted square ones: " + to_text(film.width_mm, 6) + " by " + mm(wanted_height) +
+                          " fit " + std::to_string(film.columns) + " by " + std::to_string(film.rows)});
+}
+
+}  // namespace
+
+std::string_view name(FindingKind kind) noexcept {
+  switch (kind) {
+    case Kind::focal_length: return "focal_length";
+    case Kind::f_number: return "f_number";
+    case Kind::overlap: return "overlap";
+    case Kind::semi_diameter: return "semi_diameter";
+    case Kind::no_stop: return "no_stop";
+    case Kind::several_stops: return "several_stops";
+    case Kind::image_distance: return "image_distance";
+    case Kind::units: return "units";
+    case Kind::apertures: return "apertures";
+    case Kind::idle_stop: return "idle_stop";
+    case Kind::glass_index: return "glass_index";
+    case Kind::film_size: return "film_size";
+    case Kind::pixel_shape: return "pixel_shape";
+  }
+  return "unknown";
+}
+
+namespace {
+
+Findings lint_rows(const Prescription& prescription, const GlassCatalogue* glasses) {
+  const Prescription rows = configured(prescription, 0);
+  const Lens lens = compile(rows, {.glasses = glasses});
+  Findings findings;
+  check_stops(rows, findings);
+  check_stop(lens, findings);
+  check_surfaces(rows, lens, findings);
+  check_first_order(rows, lens, glasses, findings);
+  return findings;
+}
+
+}  // namespace
+
+std::vector<Finding> lint(const Prescription& prescription) { return lint_rows(prescription, nullptr); }
+
+std::vector<Finding> lint(const Prescription& prescription, const GlassCatalogue& glasses) {
+  Findings findings = lint_rows(prescription, &glasses);
+  check_glasses(configured(prescription, 0), glasses, findings);
+  return findings;
+}
+
+Repaired repair(const Prescription& prescription, const GlassCatalogue* glasses) {
+  Repaired result{prescription, {}};
+  Prescription& p = result.prescription;
+  const auto find = [&](Kind kind) -> std::optional<Finding> {
+    const Findings findings = lint_rows(p, glasses);
+    const auto found = std::ranges::find(findings, kind, &Finding::kind);
+    return found == findings.end() ? std::nullopt : std::optional(*found);
+  };
+  const auto say = [&](const Finding& finding, const std::string& cure) {
+    result.changes.push_back({0, std::string(name(finding.kind)), finding.message + "; " + cure});
+  };
+  // Makes a change, unless the lens would be invalid with it: whether it was made.
+  const auto changed = [&](const std::function<void(Prescription&)>& change) {
+    Prescription after = p;
+    try {
+      change(after);
+      validate(after, "");
+    } catch (const Error&) {
+      return false;
+    }
+    p = std::move(after);
+    return true;
+  };
+  const bool alone = p.configurations.size() < 2;
+  if (const auto units = find(Kind::units); alone && units) {
+    const bool made = changed([&](Prescription& lens) {
+      lens = scale(lens, 1 / *unit_between(units->found, units->wanted));
+      lens.focal_length_mm = p.focal_length_mm, lens.image_diagonal_mm = p.image_diagonal_mm;
+    });
+    if (made) say(*units, "all lengths are scaled");
+  }
+  if (const auto apertures = find(Kind::apertures); alone && apertures) {
+    const double factor = apertures->found < apertures->wanted ? 0.5 : 2;
+    const bool made = changed([&](Prescription& lens) {
+      for (SurfaceRow& row : lens.surfaces) {
+        if (row.semi_diameter) *row.semi_diameter *= factor;
+        if (row.obscuration_semi_diameter) *row.obscuration_semi_diameter *= factor;
+      }
+    });
+    if (made) say(*apertures, std::string("they are ") + (factor < 1 ? "halved" : "doubled"));
+  }
+  if (const auto stops = find(Kind::several_stops)) {
+    bool first = true;
+    for (SurfaceRow& row : p.surfaces) {
+      row.stop = row.stop && first;
+      first = first && !row.stop;
+    }
+    say(*stops, "the marks behind the first are taken off");
+  }
+  if (const auto film = find(Kind::image_distance); alone && film && film->wanted > 0) {
+    if (changed([&](Prescription& lens) { lens.surfaces.back().thickness = film->wanted; }))
+      say(*film, "the film is put there");
+  }
+  return result;
+}
+
+std::vector<Finding> lint(const Lens& lens, const Film& film) {
+  core_detail::check_rectangle(lens.name() + ": film", film);
+  Findings findings;
+  check_size(lens, film, findings);
+  check_pixels(lens, film, findings);
+  return findings;
+}
+
+}  // namespace petzval

@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "error_study.hpp"
+#include "petzval/analysis/choose_model.hpp"
+#include "pupil_study.hpp"
+
+namespace petzval::analysis_detail {
+
+/// What a choice is based on: every model measured for a scene, and what the scene may do without.
+struct ModelTable {
+  std::vector<ModelCandidate> models;
+  /// Bounds of errors over tolerances, [model][tolerance].
+  std::vector<std::vector<double>> of_tolerance;
+
+  /// Bounds of the errors of tracing one wavelength for all, and of chief rays to first order. Nothing where they
+  /// cannot be measured.
+  std::optional<RayStudy::Largest> one_wavelength, no_distortion;
+  double pixel_mm = 0;
+  std::size_t wavelengths = 1;
+  double central_nm = 0;
+  double constant_pupil_shape = 0;
+};
+ModelTable model_table(const Lens& lens, const SceneRequirements& scene, std::span<const Tolerance> tolerances,
+                       int threads);
+
+}  // namespace petzval::analysis_detail

@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "model_timing.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <limits>
+
+#include "camera/sample_rays.hpp"
+#include "core/low_discrepancy.hpp"
+#include "error_lines.hpp"
+
+namespace petzval::analysis_detail {
+namespace {
+
+constexpr std::size_t rays = 8192;  // of float: 0.5 MB, which the second cache holds
+constexpr int rounds = 9;
+
+/// Samples all over a film, and room for the rays.
+template <class T>
+class Work {
+ public:
+  Work(const Film& film, std::size_t wavelengths)
+      : film_(film), scale_(wavelengths, 1.0), values_(11 * rays), fates_(rays) {
+    const core_detail::Kronecker<2> places(0), pupil(1);
+    for (std::size_t i = 0; i < rays; ++i) {
+      const FilmPoint point = film.point(places(i)[0] * film.columns, places(i)[1] * film.rows);
+      const double sample[] = {point.x, point.y, pupil(i)[0], pupil(i)[1]};
+      for (std::size_t k = 0; k < 4; ++k) values_[k * rays + i] = static_cast<T>(sample[k]);
+    }
+  }
+
+  double ns_per_ray(const AnyRayModel& model) {
+    const auto at = [this](std::size_t k) { return &values_[k * rays]; };
+    const CameraSamples<T> in{at(0), at(1), at(2), at(3)};
+    const CameraRays<T> out{{at(4), at(5), at(6), at(7), at(8), at(9)}, at(10), fates_.data()};
+    const camera_detail::WavelengthFacts facts(model, scale_);
+    const auto start = std::chrono::steady_clock::now();
+    camera_detail::sample_rays<T>({model, film_, nullptr, facts}, rays, in, out);
+    const std::chrono::duration<double, std::nano> time = std::chrono::steady_clock::now() - start;
+    return time.count() / static_cast<double>(rays);
+  }
+
+ private:
+  Film film_;
+  std::vector<double> scale_;
+  std::vector<T> values_;
+  std::vector<RayFate> fates_;
+};
+
+}  // namespace
+
+std::vector<double> time_rays(std::span<const AnyRayModel> models, const Film& film) {
+  std::vector<double> best(models.size(), std::numeric_limits<double>::infinity());
+  if (models.empty()) return best;
+  const std::size_t wavelengths = models[0].pupils().wavelengths();
+  Work<float> in_float(film, wavelengths);
+  Work<double> in_double(film, wavelengths);
+  for (int round = 0; round < rounds; ++round) {
+    for (std::size_t k = 0; k < models.size(); ++k) {
+      const bool exact = models[k].kind() == ModelKind::exact_double;
+      best[k] = std::min(best[k], exact ? in_double.ns_per_ray(models[k]) : in_float.ns_per_ray(models[k]));
+    }
+  }
+  return best;
+}
+
+}  // namespace petzval::analysis_detail

@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <algorithm>
+#include <optional>
+#include <span>
+
+#include "petzval/analysis/spot.hpp"
+
+namespace petzval::analysis_detail {
+
+/// Coordinates of film points, N each, mm, and their weights, or none.
+struct Points {
+  std::span<const double> x, y, weights{};
+};
+
+/// Half the side of a picture for hits up to `farthest` from its centre, mm: 5 % more, at least 0.1 um.
+inline double fitting_half_width(double farthest) noexcept { return std::max(1.05 * farthest, 1e-4); }
+
+/// spot_size() of all points of several sets.
+SpotSize spot_size(std::span<const Points> sets) noexcept;
+
+/// Where the chief ray of a point meets the film, x and y, mm; clear apertures do not stop it. Nothing where no such
+/// ray reaches the film.
+std::optional<Vec2<double>> chief_point(const Lens& lens, const FieldPoint& point, std::size_t wavelength);
+
+}  // namespace petzval::analysis_detail

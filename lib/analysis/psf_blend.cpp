@@ -1,0 +1,131 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "analysis/psf_blend.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <vector>
+
+#include "analysis/points.hpp"
+#include "petzval/core/sobol.hpp"
+
+namespace petzval {
+namespace {
+
+using analysis_detail::WeightedKernel;
+
+/// The bundle between those of several kernels: mean hits, and the share of the kernels whose ray passes.
+struct MeanBundle {
+  int side = 0;
+  std::vector<double> x, y, passing;
+
+  /// A ray that passes everywhere has smooth means; at the edge of the pupil, where it is lost in some kernels, those
+  /// of the next ones in which it passes.
+  explicit MeanBundle(std::span<const WeightedKernel> nodes) : side(nodes.front().kernel->pixels) {
+    const std::size_t count = nodes.front().kernel->hits_x.size();
+    x.assign(count, 0.0), y = passing = x;
+    std::vector<double> smooth_x = x, smooth_y = x;
+    for (const auto& [kernel, smooth, linear] : nodes) {
+      for (std::size_t i = 0; i < count; ++i) {
+        const auto hit_x = static_cast<double>(kernel->hits_x[i]), hit_y = static_cast<double>(kernel->hits_y[i]);
+        smooth_x[i] += smooth * hit_x, smooth_y[i] += smooth * hit_y;  // NaN where it is lost
+        if (linear == 0 || std::isnan(hit_x)) continue;
+        x[i] += linear * hit_x, y[i] += linear * hit_y, passing[i] += linear;
+      }
+    }
+    for (std::size_t i = 0; i < count; ++i) {
+      if (passing[i] > 0) x[i] /= passing[i], y[i] /= passing[i];
+      if (!std::isnan(smooth_x[i])) x[i] = smooth_x[i], y[i] = smooth_y[i];
+    }
+  }
+
+  /// Where the ray of a point of the pupil arrives, and how much of it.
+  struct Hit {
+    double x = 0, y = 0, light = 0;
+  };
+
+  /// u in turns, v the square of the radius, as PupilSampler has them. Linear between rays; beyond the last ones at
+  /// centre and rim too, where all four neighbours pass whole.
+  Hit at(double u, double v) const noexcept {
+    const double column = u * side - 0.5 + side, row = std::sqrt(v) * side - 0.5;  // u is periodic
+    const int c = static_cast<int>(column), r = std::clamp(static_cast<int>(std::floor(row)), 0, side - 2);
+    const double right = column - c;
+    double down = row - r;
+    const auto place = [&](int i, int k) {
+      return static_cast<std::size_t>(r + i) * static_cast<std::size_t>(side) +
+             static_cast<std::size_t>((c + k) % side);
+    };
+    const std::array<std::size_t, 4> near{place(0, 0), place(0, 1), place(1, 0), place(1, 1)};
+    const bool whole = std::all_of(near.begin(), near.end(), [&](std::size_t i) { return passing[i] > 1 - 1e-9; });
+    if (!whole) down = std::clamp(down, 0.0, 1.0);
+    const std::array<double, 4> parts{(1 - down) * (1 - right), (1 - down) * right, down * (1 - right), down * right};
+    Hit hit;
+    for (std::size_t k = 0; k < near.size(); ++k) {
+      const double part = parts[k] * passing[near[k]];
+      hit.light += part, hit.x += part * x[near[k]], hit.y += part * y[near[k]];
+    }
+    if (hit.light > 0) hit.x /= hit.light, hit.y /= hit.light;
+    return hit;
+  }
+};
+
+}  // namespace
+
+PsfKernel analysis_detail::blend(std::span<const WeightedKernel> nodes) {
+  PsfKernel result;
+  result.pixels = nodes.front().kernel->pixels;
+  result.chief_ray = true;
+  // Light goes with the area of the pupil: the square of what f-numbers and fields change evenly, up to where it is
+  // dark.
+  double most = 0, amplitude = 0, linear_amplitude = 0;
+  bool dark = false;
+  for (const auto& [kernel, smooth, linear] : nodes) {
+    result.anchor_mm += smooth * kernel->anchor_mm;
+    amplitude += smooth * std::sqrt(kernel->total);
+    linear_amplitude += linear * std::sqrt(kernel->total);
+    dark = dark || kernel->total == 0;
+    if (linear == 0) continue;
+    result.chief_ray = result.chief_ray && kernel->chief_ray;
+    result.throughput += linear * kernel->throughput;
+    result.error += linear * kernel->error;
+    result.rays += kernel->rays;
+    result.pixel_mm = std::max(result.pixel_mm, kernel->pixel_mm);
+    if (linear > most) most = linear, result.diffraction = kernel->diffraction;
+  }
+  const std::size_t plane = static_cast<std::size_t>(result.pixels) * static_cast<std::size_t>(result.pixels);
+  result.light.assign(plane, 0.0f);
+  result.hits_x.assign(plane, std::nanf("")), result.hits_y = result.hits_x;
+  const MeanBundle bundle(nodes);
+  bool lit = false;
+  double half = 0;
+  for (std::size_t i = 0; i < plane; ++i) {
+    if (bundle.passing[i] == 0) continue;
+    lit = true;
+    half = std::max({half, std::abs(bundle.x[i]), std::abs(bundle.y[i])});
+    result.hits_x[i] = static_cast<float>(bundle.x[i]), result.hits_y[i] = static_cast<float>(bundle.y[i]);
+  }
+  if (!lit) return result;
+  result.pixel_mm = 2 * analysis_detail::fitting_half_width(half) / result.pixels;
+
+  // The bundle is sampled as rays are, from the same points of the pupil each time.
+  constexpr std::size_t samples = 1u << 20, block = 4096;
+  std::vector<double> u(block), v(block), light(plane, 0.0);
+  const double per_mm = 1 / result.pixel_mm, middle = result.pixels / 2.0;
+  double all = 0;
+  for (std::size_t begin = 0; begin < samples; begin += block) {
+    owen_sobol(static_cast<std::uint32_t>(begin), 0, u, v);
+    for (std::size_t i = 0; i < block; ++i) {
+      const MeanBundle::Hit hit = bundle.at(u[i], v[i]);
+      const double column = hit.x * per_mm + middle, row = middle - hit.y * per_mm;
+      if (!(column >= 0 && column < result.pixels && row >= 0 && row < result.pixels)) continue;
+      light[static_cast<std::size_t>(row) * static_cast<std::size_t>(result.pixels) +
+            static_cast<std::size_t>(column)] += hit.light;
+      all += hit.light;
+    }
+  }
+  result.total = dark ? linear_amplitude * linear_amplitude : amplitude * amplitude;
+  for (std::size_t i = 0; i < plane; ++i) result.light[i] = static_cast<float>(light[i] * (result.total / all));
+  return result;
+}
+
+}  // namespace petzval

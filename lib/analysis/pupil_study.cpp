@@ -1,0 +1,132 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "pupil_study.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/low_discrepancy.hpp"
+#include "error_study.hpp"
+#include "petzval/core/parallel.hpp"
+
+namespace petzval::analysis_detail {
+namespace {
+
+constexpr std::size_t blocks = 64;  // of lines for each pupil
+
+/// Calls use(block, lines) for blocks of lines distributed uniformly over a pupil; returns its area.
+template <class Use>
+double for_lines(const ModelPupils& pupils, const FilmPoint& film, std::size_t wavelength,
+                 const core_detail::Kronecker<2>& even, Use use) {
+  const FilmPoint of = pupils.of.value_or(film);
+  std::array<double, lines_per_point> film_x, film_y, u, v, areas;
+  film_x.fill(of.x), film_y.fill(of.y);
+  PointLines lines(film);
+  for (std::size_t b = 0; b < blocks; ++b) {
+    for (std::size_t i = 0; i < lines_per_point; ++i) {
+      const auto [at_u, at_v] = even(b * lines_per_point + i);
+      u[i] = at_u, v[i] = at_v;
+    }
+    pupils.map.sample(lines_per_point, film_x.data(), film_y.data(), u.data(), v.data(), {.all = wavelength}, u.data(),
+                      v.data(), areas.data());
+    for (std::size_t i = 0; i < lines_per_point; ++i) lines.put(i, u[i], v[i]);
+    use(b, lines);
+  }
+  return areas[0];
+}
+
+constexpr double total = blocks * lines_per_point;
+
+core_detail::Kronecker<2> uniform_points(const ErrorSamples& samples, std::size_t place) noexcept {
+  return core_detail::Kronecker<2>((std::uint64_t{samples.seed} << 32 | place) + 0x5bd1e995);
+}
+
+}  // namespace
+
+ModelPupils pupils_of(const AnyRayModel& model) {
+  return {model.pupils(), tracing_within(model), tracing(model), model.pinhole(), {}};
+}
+
+/// What a line adds to the irradiance of its film point, per area of the pupil: cos^4 / depth^2.
+double PupilStudy::weight(const PointLines& lines, std::size_t line) const noexcept {
+  const double x = lines.pupil_x[line] - lines.film.x, y = lines.pupil_y[line] - lines.film.y;
+  const double squared = x * x + y * y + depth_ * depth_;
+  return depth_ * depth_ / (squared * squared);
+}
+
+PupilStudy::PupilStudy(const camera_detail::ExactModel<double>& exact, const Film& film, std::size_t film_points,
+                       const ErrorSamples& samples)
+    : samples_(samples),
+      any_(exact),
+      exact_(pupils_of(any_)),
+      depth_(exact.pupils().space().depth()),
+      wavelengths_(wavelengths_of(exact.lens(), samples)) {
+  for (const std::size_t wavelength : wavelengths_) {
+    std::vector<Point>& points = points_.emplace_back();
+    for (const FilmPoint& at :
+         pupil_film_points(exact.lens(), film, film_points, samples.seed, lit_radius(exact, film, wavelength))) {
+      points.push_back({points.size(), at});
+    }
+    parallel_for(points.size(), 1, samples.threads, [&](std::size_t begin, std::size_t) {
+      Point& point = points[begin];
+      PointRays rays;
+      const auto even = uniform_points(samples_, point.place);
+      const double whole = for_lines(exact_, point.film, wavelength, even, [&](std::size_t, const PointLines& lines) {
+        exact_.tracing(lines, wavelength, rays);
+        point.passes.push_back(rays.passes);
+        for (std::size_t i = 0; i < lines_per_point; ++i) {
+          if (!rays.passes[i]) continue;
+          point.area += 1 / total;
+          point.irradiance += weight(lines, i) / total;
+        }
+      });
+      point.area *= whole;
+      point.irradiance *= whole;
+    });
+    const double brightest = std::ranges::max(points, {}, &Point::irradiance).irradiance;
+    std::erase_if(points, [&](const Point& p) { return !(p.irradiance > darkest * brightest); });
+  }
+}
+
+PupilStudy::Errors PupilStudy::errors_of(const Point& point, const ModelPupils& model, std::size_t wavelength) const {
+  const core_detail::Kronecker<2> even = uniform_points(samples_, point.place);
+  PointRays exact, rays;
+  double exact_alone = 0, model_alone = 0, irradiance = 0;
+  const double exact_area =
+      for_lines(exact_, point.film, wavelength, even, [&](std::size_t b, const PointLines& lines) {
+        model.tracing(lines, wavelength, rays);
+        for (std::size_t i = 0; i < lines_per_point; ++i) exact_alone += point.passes[b][i] && !rays.passes[i];
+      });
+  const double model_area = for_lines(model, point.film, wavelength, even, [&](std::size_t, const PointLines& lines) {
+    exact_.tracing(lines, wavelength, exact);
+    model.within(lines, wavelength, rays);
+    for (std::size_t i = 0; i < lines_per_point; ++i) {
+      if (!rays.passes[i]) continue;
+      model_alone += !exact.passes[i];
+      irradiance += weight(lines, i);
+    }
+  });
+  return {model.point ? 1 : (exact_alone * exact_area + model_alone * model_area) / (total * point.area),
+          std::abs(irradiance * model_area / (total * point.irradiance) - 1)};
+}
+
+PupilStudy::Found PupilStudy::measure(const ModelPupils& model) const {
+  Found found;
+  for (std::size_t w = 0; w < points_.size(); ++w) {
+    const std::vector<Point>& points = points_[w];
+    std::vector<Errors> errors(points.size());
+    parallel_for(points.size(), 1, samples_.threads, [&](std::size_t begin, std::size_t) {
+      errors[begin] = errors_of(points[begin], model, wavelengths_[w]);
+    });
+    for (const Errors& e : errors) {
+      found.shape = std::max(found.shape, e.shape);
+      found.exposure = std::max(found.exposure, e.exposure);
+    }
+  }
+  // What samples miss shows first where a few of them decide.
+  const double unsure = std::sqrt((found.shape + 16 / total) / total);
+  found.shape_bound = model.point ? found.shape : found.shape * smooth_guard + unsure;
+  found.exposure_bound = found.exposure * smooth_guard + unsure;
+  return found;
+}
+
+}  // namespace petzval::analysis_detail

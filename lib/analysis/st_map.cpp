@@ -1,0 +1,235 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "petzval/analysis/st_map.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <functional>
+#include <glm/geometric.hpp>
+
+#include "core/text.hpp"
+#include "petzval/core/error.hpp"
+#include "petzval/core/parallel.hpp"
+
+namespace petzval {
+namespace {
+
+using Place = std::optional<Vec2<double>>;
+using PlaceOf = std::function<Place(const Vec2<double>&)>;
+using ErrorOf = std::function<double(const Vec2<double>&, const Vec2<double>&)>;
+
+constexpr double widest_cell = 16;  // pixels
+constexpr int least_cells = 80;     // along the longer side
+constexpr int most_nodes = 6;       // of a polynomial along one axis
+constexpr float blind = -1;
+
+/// Lagrange's weights of n nodes at 0, 1, 2, ...
+std::array<double, most_nodes> weights(int n, double x) noexcept {
+  std::array<double, most_nodes> result{};
+  for (int i = 0; i < n; ++i) {
+    result[i] = 1;
+    for (int j = 0; j < n; ++j) {
+      if (j != i) result[i] *= (x - j) / (i - j);
+    }
+  }
+  return result;
+}
+
+/// Equally spaced nodes over some pixels, from edge to edge.
+struct NodeAxis {
+  double from = 0, step = 1;
+  int nodes = most_nodes;
+
+  NodeAxis(double first, int pixels, double cell)
+      : from(first), nodes(std::max(most_nodes, static_cast<int>(std::ceil(pixels / cell)) + 1)) {
+    step = static_cast<double>(pixels) / (nodes - 1);
+  }
+  double node(int i) const noexcept { return from + i * step; }
+  /// In steps.
+  double at(double x) const noexcept { return (x - from) / step; }
+  int cell(double x) const noexcept { return std::clamp(static_cast<int>(at(x)), 0, nodes - 2); }
+};
+
+/// A function of the raster, which is interpolated in cells where that gives what it gives.
+class NodeGrid {
+ public:
+  /// error: of a place against another one, at most 1 where it may stand for it.
+  NodeGrid(const PlaceOf& place_of, const ErrorOf& error, const NodeAxis& x, const NodeAxis& y, int threads)
+      : place_of_(place_of),
+        x_(x),
+        y_(y),
+        places_(static_cast<std::size_t>(x.nodes) * y.nodes),
+        cells_(static_cast<std::size_t>(x.nodes - 1) * (y.nodes - 1)) {
+    parallel_for(places_.size(), 64, threads, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i) {
+        const int column = static_cast<int>(i % x_.nodes), row = static_cast<int>(i / x_.nodes);
+        places_[i] = place_of_({x_.node(column), y_.node(row)});
+      }
+    });
+    parallel_for(cells_.size(), 64, threads, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i) {
+        const int column = static_cast<int>(i % (x_.nodes - 1)), row = static_cast<int>(i / (x_.nodes - 1));
+        cells_[i] = cell_at(column, row, error);
+      }
+    });
+  }
+
+  Place operator()(const Vec2<double>& at) const {
+    const Cell& cell = cells_[static_cast<std::size_t>(y_.cell(at.y)) * (x_.nodes - 1) + x_.cell(at.x)];
+    if (cell.kind == Cell::dark) return {};
+    return cell.kind == Cell::smooth ? interpolated(cell, at) : place_of_(at);
+  }
+
+ private:
+  struct Cell {
+    enum Kind { dark, rough, smooth } kind = dark;
+    int nodes = 0, left = 0, top = 0;  ///< smooth: of the polynomials
+  };
+
+  Cell cell_at(int column, int row, const ErrorOf& error) const {
+    if (known(column, row, 2) == 0) return {};
+    if (known(column, row, 1) < 4) return {.kind = Cell::rough};
+    const Vec2<double> middle{x_.node(column) + x_.step / 2, y_.node(row) + y_.step / 2};
+    const Place there = place_of_(middle);
+    if (!there) return {.kind = Cell::rough};
+    // Polynomials of many nodes, or of few, with the cell as near to their middle as light allows.
+    for (const int nodes : {most_nodes, 4}) {
+      const int before = nodes / 2 - 1;
+      for (const int left : {column - before, column - before - 1, column - before + 1}) {
+        for (const int top : {row - before, row - before - 1, row - before + 1}) {
+          const Cell cell{Cell::smooth, nodes, left, top};
+          if (all_known(cell) && error(interpolated(cell, middle), *there) <= 1) return cell;
+        }
+      }
+    }
+    return {.kind = Cell::rough};
+  }
+  bool inside(int column, int row) const noexcept {
+    return column >= 0 && row >= 0 && column < x_.nodes && row < y_.nodes;
+  }
+  const Place& place(int column, int row) const noexcept {
+    return places_[static_cast<std::size_t>(row) * x_.nodes + column];
+  }
+  /// Nodes with values: for a reach of 1 among the corners of a cell, for 2 among those of the cells around it too.
+  int known(int column, int row, int reach) const noexcept {
+    int count = 0;
+    for (int j = row + 1 - reach; j <= row + reach; ++j) {
+      for (int i = column + 1 - reach; i <= column + reach; ++i) count += inside(i, j) && place(i, j);
+    }
+    return count;
+  }
+  bool all_known(const Cell& cell) const noexcept {
+    for (int j = cell.top; j < cell.top + cell.nodes; ++j) {
+      for (int i = cell.left; i < cell.left + cell.nodes; ++i) {
+        if (!inside(i, j) || !place(i, j)) return false;
+      }
+    }
+    return true;
+  }
+  Vec2<double> interpolated(const Cell& cell, const Vec2<double>& at) const noexcept {
+    const auto across = weights(cell.nodes, x_.at(at.x) - cell.left),
+               down = weights(cell.nodes, y_.at(at.y) - cell.top);
+    Vec2<double> sum{0, 0};
+    for (int j = 0; j < cell.nodes; ++j) {
+      for (int i = 0; i < cell.nodes; ++i) sum += across[i] * down[j] * *place(cell.left + i, cell.top + j);
+    }
+    return sum;
+  }
+
+  const PlaceOf& place_of_;
+  NodeAxis x_, y_;
+  std::vector<Place> places_;
+  std::vector<Cell> cells_;
+};
+
+/// Of a film's pixels and a margin. raster: of an interpolated place, its raster position.
+StMap map_of(const PlaceOf& place_of, const PlaceOf& raster, const Film& film, int margin_x, int margin_y,
+             int threads) {
+  StMap map{.width = film.columns + 2 * margin_x,
+            .height = film.rows + 2 * margin_y,
+            .margin_x = margin_x,
+            .margin_y = margin_y};
+  const auto pixels = static_cast<std::size_t>(map.width) * static_cast<std::size_t>(map.height);
+  map.s.assign(pixels, blind), map.t.assign(pixels, blind);
+  const double cell = std::min(widest_cell, static_cast<double>(std::max(map.width, map.height)) / least_cells);
+  // Half a thousandth of a pixel in the middle of the picture, twice that in its corners, more far outside.
+  const Vec2<double> size{film.columns, film.rows};
+  const auto error = [&](const Vec2<double>& a, const Vec2<double>& b) {
+    const Place at = raster(a), wanted = raster(b);
+    if (!at || !wanted) return HUGE_VAL;
+    const double away = 2 * glm::distance(*wanted, size / 2.0) / glm::length(size);
+    return glm::distance(*at, *wanted) / (5e-4 * (1 + away * away));
+  };
+  const NodeGrid grid(place_of, error, NodeAxis(-margin_x, map.width, cell), NodeAxis(-margin_y, map.height, cell),
+                      threads);
+  parallel_for(static_cast<std::size_t>(map.height), 8, threads, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t row = begin; row < end; ++row) {
+      for (int column = 0; column < map.width; ++column) {
+        const auto found = grid({column + 0.5 - margin_x, static_cast<double>(row) + 0.5 - margin_y});
+        const auto place = found ? raster(*found) : found;
+        if (!place) continue;
+        const std::size_t i = row * static_cast<std::size_t>(map.width) + static_cast<std::size_t>(column);
+        map.s[i] = static_cast<float>(place->x / film.columns);
+        map.t[i] = static_cast<float>(1 - place->y / film.rows);
+      }
+    }
+  });
+  return map;
+}
+
+struct Margin {
+  int x = 0, y = 0;
+};
+
+Margin margin_of(const LensDistortion& distortion, const StMapOptions& options) {
+  const Film& film = distortion.camera().film();
+  const std::string where = distortion.camera().lens().name() + ": ST maps: ";
+  const auto either_side = [](double excess) { return static_cast<int>(std::ceil(excess - 1e-6)); };
+  if (options.overscan) {
+    const double beyond = (*options.overscan - 1) / 2;
+    if (!(beyond >= 0 && *options.overscan <= 10)) {
+      throw Error(where + "the overscan is " + to_text(*options.overscan) + ", wanted 1 to 10");
+    }
+    return {either_side(beyond * film.columns), either_side(beyond * film.rows)};
+  }
+  const auto box = undistorted_box(distortion);
+  if (!box) throw Error(where + "no light reaches the film");
+  const auto beyond = [&](double least, double largest, int pixels) {
+    return either_side(std::clamp(std::max(-least, largest - pixels), 0.0, pixels / 2.0));
+  };
+  return {beyond(box->least.x, box->largest.x, film.columns), beyond(box->least.y, box->largest.y, film.rows)};
+}
+
+}  // namespace
+
+bool StMap::sees(int column, int row) const noexcept {
+  if (column < 0 || column >= width || row < 0 || row >= height) return false;
+  const std::size_t i =
+      static_cast<std::size_t>(row) * static_cast<std::size_t>(width) + static_cast<std::size_t>(column);
+  if (i >= std::min(s.size(), t.size())) return false;
+  return s[i] != blind || t[i] != blind;
+}
+
+StMaps st_maps(const LensDistortion& distortion, const StMapOptions& options) {
+  const Film& film = distortion.camera().film();
+  const auto [margin_x, margin_y] = margin_of(distortion, options);
+  const Vec2<double> centre = distortion.centre(), focal_length = distortion.focal_length_px();
+  // The pinhole's picture of wide fields is no polynomial of the lens's. The sines of its directions are bounded.
+  const auto sines = [&](const Vec2<double>& at) -> Place {
+    const auto place = distortion.undistorted(at);
+    if (!place) return {};
+    const Vec2<double> tangent = (*place - centre) / focal_length;
+    return tangent / std::sqrt(1 + glm::dot(tangent, tangent));
+  };
+  const auto from_sines = [&](const Vec2<double>& sine) -> Place {
+    const double cosine2 = 1 - glm::dot(sine, sine);
+    if (!(cosine2 > 0)) return {};
+    return centre + focal_length * sine / std::sqrt(cosine2);
+  };
+  return {map_of([&](const Vec2<double>& at) { return distortion.distorted(at); },
+                 [](const Vec2<double>& at) { return Place(at); }, film, margin_x, margin_y, options.threads),
+          map_of(sines, from_sines, film, 0, 0, options.threads)};
+}
+
+}  // namespace petzval

@@ -1,0 +1,280 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "petzval/camera/focal_surface.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <string>
+#include <vector>
+
+#include "core/text.hpp"
+#include "focus/targets.hpp"
+#include "moving_least_squares.hpp"
+#include "petzval/core/error.hpp"
+#include "petzval/core/parallel.hpp"
+
+namespace petzval {
+namespace {
+
+using camera_detail::MovingLeastSquares;
+using camera_detail::WeighedValue;
+
+constexpr double margin = 1e-3;        // focal lengths in front of the front focal plane
+constexpr double largest_power = 1e6;  // inverse distances, in 1 / focal length: their squares are numbers
+
+double entrance_pupil(const IdealLens& lens) {
+  const double z = lens.pupils.entrance.z;
+  if (!std::isfinite(z)) throw Error("focal surface: the entrance pupil is at infinity, wanted it at a finite place");
+  return z;
+}
+
+/// Of the nearest object that a surface may focus on.
+double nearest_inverse(const IdealLens& lens) {
+  const double f = std::abs(lens.front_focal_length);
+  const double in_front = entrance_pupil(lens) - std::min(lens.front_focal_z - margin * f, lens.front_z);
+  return in_front > 0 ? std::min(1 / in_front, largest_power / f) : largest_power / f;
+}
+
+/// Diameter of the blur on the film, mm, per 1/mm from the plane of focus to the object: linear for an ideal lens.
+double blur_per_inverse(const IdealLens& lens, Film film) {
+  film.tilt_rad = film.swing_rad = 0;
+  const double near = nearest_inverse(lens) / 2;
+  const auto blur = [&](const ScenePoint& at) {
+    const auto image = lens.image(at);
+    return image ? signed_blur(*image, film) : std::nan("");
+  };
+  return (blur({{0, 0, -1}, true}) - blur({{0, 0, entrance_pupil(lens) - 1 / near}, false})) / near;
+}
+
+/// Where the film is in focus, on the axis.
+double inverse_in_focus(const IdealLens& lens, const Film& film) {
+  const ScenePoint scene = lens.scene_of({0, 0, film.z()});
+  return scene.at_infinity ? 0 : 1 / (entrance_pupil(lens) - scene.position.z);
+}
+
+std::string point_name(std::size_t i) { return "focal surface: point " + std::to_string(i + 1) + ": "; }
+
+void check(const FocalPoint& point, double nearest, double farthest, const std::string& where) {
+  if (point.inverse_distance && *point.inverse_distance > nearest) {
+    throw Error(where + "the object is " + to_text(1 / *point.inverse_distance) +
+                " mm from the entrance pupil, wanted it farther away than " + to_text(1 / nearest) +
+                " mm, in front of the front focal plane");
+  }
+  if (point.inverse_distance && !(*point.inverse_distance >= farthest)) {
+    throw Error(where + "1 / distance is " + to_text(*point.inverse_distance) + " / mm, wanted " + to_text(farthest) +
+                " / mm or more");
+  }
+  if (!std::isfinite(point.blur_mm)) {
+    throw Error(where + "the blur is " + to_text(point.blur_mm) + " mm, wanted a finite one");
+  }
+  if (point.extent_stops) focus_detail::check_extent(*point.extent_stops, where);
+}
+
+}  // namespace
+
+std::string_view name(SurfaceKind kind) noexcept {
+  switch (kind) {
+    case SurfaceKind::affine: return "affine";
+    case SurfaceKind::shepard: return "shepard";
+  }
+  return "unknown";
+}
+
+struct FocalSurface::Fields {
+  double origin_z = 0;
+  bool fixes_distance = false;
+  double blur_per_inverse = 0;
+  MovingLeastSquares distance, extent;
+  /// Through the points' own distances; nothing if no blur is wanted.
+  std::optional<MovingLeastSquares> objects;
+};
+
+FocalSurface::FocalSurface(const IdealLens& lens, const Film& film, std::span<const FocalPoint> points,
+                           const FocalSurfaceOptions& options) {
+  const double place = film.z() + film.tilt_rad + film.swing_rad;
+  if (!(film.width_mm > 0 && film.height_mm > 0 && std::isfinite(film.area_mm2()) && std::isfinite(place))) {
+    throw Error("focal surface: the film is " + to_text(film.width_mm) + " x " + to_text(film.height_mm) +
+                " mm at z = " + to_text(film.z()) + " mm, wanted a size above 0 and finite numbers");
+  }
+  const double origin_z = entrance_pupil(lens), side = std::sqrt(film.area_mm2());
+  const double nearest = nearest_inverse(lens);
+  const double farthest = -largest_power / std::abs(lens.front_focal_length);
+  const double per_inverse = blur_per_inverse(lens, film);
+  bool blurs = false, any = false;
+  std::vector<WeighedValue> objects, extents;
+  std::vector<std::size_t> numbers;  // of the points with distances
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const FocalPoint& point = points[i];
+    check(point, nearest, farthest, point_name(i));
+    const WeighedValue with{point.place, 0, point.weight, point.fade};
+    camera_detail::check(with, side, point_name(i));
+    const bool counts = point.weight > 0 && point.fade > 0;
+    if (!counts) continue;
+    const auto add = [&](std::vector<WeighedValue>& to, double value) {
+      to.push_back(with);
+      to.back().value = value;
+    };
+    if (point.inverse_distance) {
+      add(objects, *point.inverse_distance);
+      numbers.push_back(i);
+      blurs = blurs || point.blur_mm != 0;
+    }
+    if (point.extent_stops) add(extents, *point.extent_stops);
+    any = any || point.inverse_distance || point.extent_stops;
+  }
+  if (!any) {
+    throw Error("focal surface: none of " + std::to_string(points.size()) +
+                " points has a weight and a distance or an extent, wanted one at least");
+  }
+  const bool fixes_distance = !objects.empty();
+  if (!fixes_distance) {
+    const double otherwise = options.otherwise.value_or(inverse_in_focus(lens, film));
+    if (!(otherwise >= farthest && otherwise <= nearest)) {
+      throw Error("focal surface: in focus otherwise is " + to_text(otherwise) + " / mm, wanted one from " +
+                  to_text(farthest) + " to " + to_text(nearest) + " / mm");
+    }
+    objects.push_back({{0, 0}, otherwise});
+  }
+  if (extents.empty()) extents.push_back({{0, 0}, 0});
+  const MovingLeastSquares extent("focal surface: ", extents, side, options.kind, options.beta, 0);
+  // Not beyond infinity, unless a point is.
+  const auto field = [&](const std::vector<WeighedValue>& of) {
+    MovingLeastSquares result("focal surface: ", of, side, options.kind, options.beta);
+    result.keep_within(std::min(0.0, result.least_value()), nearest);
+    return result;
+  };
+  MovingLeastSquares distance = field(objects);
+  std::optional<MovingLeastSquares> own;
+  if (blurs) {
+    own = distance;
+    std::vector<WeighedValue> moved = objects;
+    for (std::size_t k = 0; k < moved.size(); ++k) {
+      const double blur = points[numbers[k]].blur_mm;
+      const double stopped = focus_detail::pupil_scale(extent.at(moved[k].place));
+      if (blur != 0) moved[k].value += blur / (per_inverse * stopped);
+      if (!(moved[k].value >= farthest && moved[k].value <= nearest)) {
+        throw Error(point_name(numbers[k]) + "a blur of " + to_text(blur) + " mm wants the surface at " +
+                    to_text(moved[k].value) + " / mm, wanted 1 / distance from " + to_text(farthest) + " to " +
+                    to_text(nearest) + " / mm, in front of the front focal plane");
+      }
+    }
+    distance = field(moved);
+  }
+  fields_ = std::make_shared<const Fields>(
+      Fields{origin_z, fixes_distance, per_inverse, std::move(distance), extent, std::move(own)});
+}
+
+bool FocalSurface::fixes_distance() const noexcept { return fields_->fixes_distance; }
+double FocalSurface::origin_z() const noexcept { return fields_->origin_z; }
+
+FocalSurface::Values FocalSurface::at(const FilmPoint& place) const noexcept {
+  Values values{fields_->distance.at(place), fields_->extent.at(place), 0};
+  if (fields_->objects) {
+    const double stopped = focus_detail::pupil_scale(values.extent_stops);
+    values.blur_mm = fields_->blur_per_inverse * stopped * (values.inverse_distance - fields_->objects->at(place));
+  }
+  return values;
+}
+
+FocalSurface::Slopes FocalSurface::slopes(const FilmPoint& place) const noexcept {
+  return {at(place), fields_->distance.slopes(place), fields_->extent.slopes(place)};
+}
+
+template <class T>
+void FocalSurface::at(std::size_t count, const T* film_x, const T* film_y, T* inverse_distances,
+                      T* extents) const noexcept {
+  fields_->distance.at(count, film_x, film_y, inverse_distances);
+  if (extents) fields_->extent.at(count, film_x, film_y, extents);
+}
+template PETZVAL_API void FocalSurface::at(std::size_t, const float*, const float*, float*, float*) const noexcept;
+template PETZVAL_API void FocalSurface::at(std::size_t, const double*, const double*, double*, double*) const noexcept;
+
+template <class T>
+void FocalSurface::frame(const Film& film, int threads, T* inverse_distances, T* extents) const {
+  const auto columns = static_cast<std::size_t>(std::max(film.columns, 0));
+  const auto rows = static_cast<std::size_t>(std::max(film.rows, 0));
+  parallel_for(rows, 8, threads, [&](std::size_t begin, std::size_t end) {
+    std::vector<T> x(columns), y(columns);
+    for (std::size_t c = 0; c < columns; ++c) {
+      x[c] = static_cast<T>(film.point(static_cast<double>(c) + 0.5, 0).x);
+    }
+    for (std::size_t r = begin; r < end; ++r) {
+      std::fill(y.begin(), y.end(), static_cast<T>(film.point(0, static_cast<double>(r) + 0.5).y));
+      at(columns, x.data(), y.data(), inverse_distances + r * columns, extents ? extents + r * columns : nullptr);
+    }
+  });
+}
+template PETZVAL_API void FocalSurface::frame(const Film&, int, float*, float*) const;
+template PETZVAL_API void FocalSurface::frame(const Film&, int, double*, double*) const;
+
+double FocalSurface::nearest() const noexcept { return fields_->distance.most(); }
+double FocalSurface::farthest() const noexcept { return fields_->distance.least(); }
+double FocalSurface::least_extent() const noexcept { return fields_->extent.least(); }
+double FocalSurface::most_extent() const noexcept { return fields_->extent.most(); }
+
+std::vector<FocalPoint> focal_points(const IdealLens& lens, const Film& film, std::span<const FocusPoint> points,
+                                     const FocusMoment& moment, std::span<const double> fades) {
+  focus_detail::check_points(points, moment);
+  if (!fades.empty() && fades.size() != points.size()) {
+    throw Error("focal_points: " + std::to_string(fades.size()) + " fades for " + std::to_string(points.size()) +
+                " points, wanted as many or none");
+  }
+  const double nearest = nearest_inverse(lens),
+               farthest_place = camera_detail::reach_in_sides * std::sqrt(film.area_mm2());
+  std::vector<FocusTarget> targets;
+  std::vector<FocalPoint> result;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const bool valid = moment.time >= points[i].from && moment.time <= points[i].until;
+    const double fade = fades.empty() ? (valid ? 1 : 0) : fades[i];
+    if (fade == 0) continue;
+    if (!(fade > 0 && fade <= 1)) {
+      throw Error("focal_points: fade " + std::to_string(i) + " is " + to_text(fade) + ", wanted one from 0 to 1");
+    }
+    const auto target = focus_detail::target_at(lens, points[i], moment);
+    const auto image = target ? lens.image(target->place) : std::nullopt;
+    const auto place = image ? chief_point(*image, film) : std::nullopt;
+    if (!place || !(std::abs(place->x) <= farthest_place && std::abs(place->y) <= farthest_place)) continue;
+    FocalPoint point{.place = *place, .blur_mm = target->blur_mm, .extent_stops = target->extent_stops, .fade = fade};
+    if (target->fixes_distance) {
+      const bool at_infinity = target->place.at_infinity;
+      point.inverse_distance = at_infinity ? 0 : 1 / (lens.pupils.entrance.z - target->place.position.z);
+      if (!(*point.inverse_distance >= 0 && *point.inverse_distance <= nearest)) continue;
+    }
+    targets.push_back(*target);
+    result.push_back(point);
+  }
+  if (moment.nearer_weighs_more) focus_detail::weigh_nearer_more(lens, targets);
+  for (std::size_t k = 0; k < result.size(); ++k) result[k].weight = targets[k].weight;
+  return result;
+}
+
+std::vector<bool> points_in_view(const IdealLens& lens, const Film& film, std::span<const FocusPoint> points,
+                                 const FocusMoment& moment) {
+  FocusMoment when = moment;
+  when.film = film;
+  focus_detail::check_points(points, when);
+  std::vector<bool> result;
+  for (const FocusPoint& point : points) {
+    const bool valid = moment.time >= point.from && moment.time <= point.until;
+    result.push_back(valid && focus_detail::target_at(lens, point, when));
+  }
+  return result;
+}
+
+FocusFades::FocusFades(double time_constant_s) : time_constant_(time_constant_s) {
+  if (time_constant_s >= 0 && std::isfinite(time_constant_s)) return;
+  throw Error("FocusFades: the time constant is " + to_text(time_constant_s) + " s, wanted a finite one of 0 or more");
+}
+
+void FocusFades::advance(double seconds, const std::vector<bool>& in_view) {
+  if (!(seconds >= 0)) throw Error("FocusFades: the step is " + to_text(seconds) + " s, wanted one of 0 or more");
+  const double left = time_constant_ > 0 ? std::exp(-seconds / time_constant_) : 0;
+  const std::size_t known = std::min(fades_.size(), in_view.size());
+  fades_.resize(in_view.size());
+  for (std::size_t i = 0; i < in_view.size(); ++i) {
+    const double end = in_view[i] ? 1 : 0;
+    fades_[i] = i < known ? end + (fades_[i] - end) * left : end;
+  }
+}
+
+}  // namespace petzval

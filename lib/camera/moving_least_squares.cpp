@@ -1,0 +1,319 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "moving_least_squares.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <string>
+#include <type_traits>
+
+#include "core/text.hpp"
+#include "moving_least_squares_loops.hpp"
+#include "petzval/core/error.hpp"
+
+namespace petzval::camera_detail {
+namespace {
+
+constexpr double longest_soft = 0.1;                 // sides
+constexpr double full_alpha = 1e-3;                  // of the largest: with less, a point becomes soft
+constexpr double negligible = 1e-9;                  // of the largest
+constexpr double scaled_reach = 2 * reach_in_sides;  // a side is less than 2, scaled
+
+const LeastSquaresLoops& loops_of([[maybe_unused]] InstructionSet set) noexcept {
+#if defined(__x86_64__)
+  if (set == InstructionSet::avx512) return least_squares_loops_avx512;
+  if (set == InstructionSet::avx2) return least_squares_loops_avx2;
+#endif
+  return least_squares_loops_baseline;
+}
+
+/// The power of two that brings a number into [1, 2), or near.
+double scale_of(double x) { return std::ldexp(1, -std::clamp(std::ilogb(x), -1000, 1000)); }
+
+}  // namespace
+
+void check(const WeighedValue& point, double side, const std::string& where) {
+  const auto& [place, value, weight, fade] = point;
+  if (!(std::abs(place.x) <= reach_in_sides * side && std::abs(place.y) <= reach_in_sides * side)) {
+    throw Error(where + "the place is (" + to_text(place.x) + ", " + to_text(place.y) + ") mm, wanted one within " +
+                to_text(reach_in_sides * side) + " mm");
+  }
+  if (!std::isfinite(value)) throw Error(where + "the value is " + to_text(value) + ", wanted a finite one");
+  if (!std::isfinite(weight) || weight < 0) {
+    throw Error(where + "the weight is " + to_text(weight) + ", wanted a finite one of 0 or more");
+  }
+  if (!(fade >= 0 && fade <= 1)) throw Error(where + "the fade is " + to_text(fade) + ", wanted one from 0 to 1");
+}
+
+MovingLeastSquares::MovingLeastSquares(const std::string& where, std::span<const WeighedValue> points, double side,
+                                       SurfaceKind kind, double beta, double beyond)
+    : affine_(kind == SurfaceKind::affine), beta_(beta) {
+  if (!(beta >= 1 && beta <= 8)) throw Error(where + "beta is " + to_text(beta) + ", wanted one from 1 to 8");
+  if (!(side > 0 && std::isfinite(side))) {
+    throw Error(where + "the side of the picture is " + to_text(side) + " mm, wanted one above 0");
+  }
+  double most_weight = 0;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    check(points[i], side, where + "point " + std::to_string(i + 1) + ": ");
+    if (points[i].fade > 0) most_weight = std::max(most_weight, points[i].weight);
+  }
+  const auto raw_alpha = [&](const WeighedValue& point) { return point.weight / most_weight * point.fade; };
+  double most_alpha = 0, most_present = 0;
+  if (most_weight > 0) {
+    for (const auto& point : points) most_alpha = std::max(most_alpha, raw_alpha(point));
+  }
+  if (!(most_alpha > 0)) {
+    throw Error(where + "none of " + std::to_string(points.size()) + " points has a weight, wanted one at least");
+  }
+  // Continuous in all weights and fades, and 1 for the point that counts most if all fade alike.
+  const auto presence = [&](const WeighedValue& point) {
+    return point.fade * std::min(1.0, raw_alpha(point) / most_alpha / full_alpha);
+  };
+  for (const auto& point : points) most_present = std::max(most_present, presence(point));
+
+  if (beta == std::floor(beta)) {
+    odd_ = static_cast<int>(beta) % 2 == 1;
+    wholes_ = static_cast<int>(beta) / 2;
+  }
+  to_scaled_ = scale_of(side);
+  double largest = 0;
+  for (const auto& point : points) {
+    if (raw_alpha(point) >= negligible * most_alpha) largest = std::max(largest, std::abs(point.value));
+  }
+  to_scaled_value_ = largest > 0 ? scale_of(largest) : 1;
+  Columns<double>& to = points_;
+  std::vector<double> shares;
+  for (const auto& point : points) {
+    const double alpha = raw_alpha(point) / most_alpha;
+    if (!(alpha >= negligible)) continue;
+    shares.push_back(presence(point) / most_present);
+    const double soft = (1 - shares.back()) * longest_soft * side * to_scaled_;
+    to.x.push_back(point.place.x * to_scaled_);
+    to.y.push_back(point.place.y * to_scaled_);
+    to.value.push_back(point.value * to_scaled_value_);
+    to.alpha.push_back(alpha);
+    to.soft2.push_back(soft * soft);
+  }
+  find_line(shares);
+  // A point that vanishes takes its part of the limits along.
+  double mean = 0, alphas = 0;
+  for (std::size_t i = 0; i < to.alpha.size(); ++i) mean += to.alpha[i] * to.value[i], alphas += to.alpha[i];
+  mean /= alphas;
+  double least = std::numeric_limits<double>::infinity(), most = -least;
+  for (std::size_t i = 0; i < shares.size(); ++i) {
+    const double value = shares[i] == 1 ? to.value[i] : mean + shares[i] * (to.value[i] - mean);
+    least = std::min(least, value);
+    most = std::max(most, value);
+  }
+  low_ = least - beyond * (most - least);
+  high_ = most + beyond * (most - least);
+  least_value_ = least;
+  soft_ = std::any_of(to.soft2.begin(), to.soft2.end(), [](double soft2) { return soft2 > 0; });
+
+  // Numbers as T have them.
+  const auto fill = [&]<class T, class R>(Columns<R>& columns, T) {
+    const auto copied = [](const std::vector<double>& from) {
+      std::vector<R> copies;
+      for (const double number : from) {
+        copies.insert(copies.end(), LeastSquaresJob<R>::copies, static_cast<R>(static_cast<T>(number)));
+      }
+      return copies;
+    };
+    columns = {copied(to.x), copied(to.y), copied(to.value), copied(to.alpha), copied(to.soft2)};
+  };
+  if (steep()) {
+    fill(of_floats_, float());
+  } else {
+    fill(in_float_, float());
+  }
+  fill(in_double_, double());
+}
+
+// The second moments of weights that fall steeply are those of two points, and float loses the others.
+bool MovingLeastSquares::steep() const noexcept { return affine_ && beta_ > 4; }
+
+// A plane through points on a line with one beside it is the same however little that one weighs. So points nearly on a
+// line keep the slope along it alone, and those that fade count for this by the square of their share.
+void MovingLeastSquares::find_line(std::span<const double> shares) {
+  constexpr double line_aspect = 0.02, plane_aspect = 0.08;
+  double sum = 0, mean_x = 0, mean_y = 0, xx = 0, xy = 0, yy = 0;
+  for (std::size_t i = 0; i < shares.size(); ++i) {
+    const double share = shares[i] * shares[i];
+    sum += share, mean_x += share * points_.x[i], mean_y += share * points_.y[i];
+  }
+  mean_x /= sum, mean_y /= sum;
+  for (std::size_t i = 0; i < shares.size(); ++i) {
+    const double share = shares[i] * shares[i], x = points_.x[i] - mean_x, y = points_.y[i] - mean_y;
+    xx += share * x * x, xy += share * x * y, yy += share * y * y;
+  }
+  const double angle = std::atan2(2 * xy, xx - yy) / 2, half = std::hypot((xx - yy) / 2, xy);
+  along_ = {std::cos(angle), std::sin(angle)};
+  const double along = (xx + yy) / 2 + half, across = std::max((xx + yy) / 2 - half, 0.0);
+  const double aspect = along > 0 ? std::sqrt(across / along) : 0;
+  const double part = std::clamp((aspect - line_aspect) / (plane_aspect - line_aspect), 0.0, 1.0);
+  plane_ = part * part * (3 - 2 * part);
+}
+
+void MovingLeastSquares::keep_within(double low, double high) noexcept {
+  low_ = std::max(low_, low * to_scaled_value_);
+  high_ = std::min(high_, high * to_scaled_value_);
+}
+
+template <class T>
+LeastSquaresJob<T> MovingLeastSquares::job(const Columns<T>& columns) const noexcept {
+  return {
+      .points = points_.x.size(),
+      .x = columns.x.data(),
+      .y = columns.y.data(),
+      .value = columns.value.data(),
+      .alpha = columns.alpha.data(),
+      .soft2 = columns.soft2.data(),
+      .soft = soft_,
+      .affine = affine_,
+      .plane = static_cast<T>(plane_),
+      .along_x = static_cast<T>(along_.x),
+      .along_y = static_cast<T>(along_.y),
+      .odd = odd_,
+      .wholes = wholes_,
+      .half_beta = static_cast<T>(beta_ / 2),
+      .low = static_cast<T>(low_),
+      .high = static_cast<T>(high_),
+      .to_scaled = static_cast<T>(to_scaled_),
+      .reach = static_cast<T>(scaled_reach),
+      .from_scaled = static_cast<T>(1 / to_scaled_value_),
+  };
+}
+
+template <class T>
+void MovingLeastSquares::at(InstructionSet set, std::size_t count, const T* x, const T* y, T* out) const noexcept {
+  if (points_.x.size() == 1) {
+    std::fill_n(out, count, static_cast<T>(most()));
+    return;
+  }
+  const auto run = [&]<class R>(LeastSquaresJob<R> work, std::size_t places, const R* at_x, const R* at_y, R* to,
+                                void (*loop)(const LeastSquaresJob<R>&) noexcept) {
+    work.count = places, work.at_x = at_x, work.at_y = at_y, work.out = to;
+    loop(work);
+  };
+  const LeastSquaresLoops& loops = loops_of(set);
+  if constexpr (std::is_same_v<T, float>) {
+    if (!steep()) return run(job(in_float_), count, x, y, out, loops.in_float);
+    constexpr std::size_t block = 256;
+    std::array<double, block> xs, ys, values;
+    for (std::size_t i = 0; i < count; i += block) {
+      const std::size_t some = std::min(block, count - i);
+      std::copy_n(x + i, some, xs.begin());
+      std::copy_n(y + i, some, ys.begin());
+      run(job(of_floats_), some, xs.data(), ys.data(), values.data(), loops.in_double);
+      std::transform(values.begin(), values.begin() + some, out + i, [](double v) { return static_cast<float>(v); });
+    }
+  } else {
+    run(job(in_double_), count, x, y, out, loops.in_double);
+  }
+}
+
+template <class T>
+void MovingLeastSquares::at(std::size_t count, const T* x, const T* y, T* out) const noexcept {
+  at(instruction_sets().back(), count, x, y, out);
+}
+
+double MovingLeastSquares::at(const FilmPoint& place) const noexcept {
+  if (least_squares_takes_one(points_.x.size())) return least_squares_of_one(job(points_), place.x, place.y);
+  double value = 0;
+  at(1, &place.x, &place.y, &value);
+  return value;
+}
+
+template PETZVAL_API void MovingLeastSquares::at(std::size_t, const float*, const float*, float*) const noexcept;
+template PETZVAL_API void MovingLeastSquares::at(std::size_t, const double*, const double*, double*) const noexcept;
+template PETZVAL_API void MovingLeastSquares::at(InstructionSet, std::size_t, const float*, const float*,
+                                                 float*) const noexcept;
+template PETZVAL_API void MovingLeastSquares::at(InstructionSet, std::size_t, const double*, const double*,
+                                                 double*) const noexcept;
+
+// Let h(q) = a + g . (q - p) be the plane of a place p, and L_i = 1 / W + (p - mean) . C^-1 (x_i - mean) the part of
+// point i in a. The normal equations, differentiated, give
+//
+//     da/dp = g + sum_i dw_i/dp L_i (f_i - h(x_i)),   dw_i/dp = -beta w_i (p - x_i) / r2_i,
+//
+// in which the common factor m of the weights counts as constant.
+Vec2<double> MovingLeastSquares::slopes(const FilmPoint& place) const noexcept {
+  using V = Vec2<double>;
+  const Columns<double>& points = points_;
+  const std::size_t count = points.x.size();
+  // In reach, as at() has it; a coordinate beyond moves nothing.
+  const auto in_reach = [](double x) { return x < scaled_reach ? std::max(x, -scaled_reach) : scaled_reach; };
+  const V wanted{place.x * to_scaled_, place.y * to_scaled_}, p{in_reach(wanted.x), in_reach(wanted.y)};
+  const double value = at(place) * to_scaled_value_;
+  if (!(value > low_ && value < high_)) return {0, 0};
+  const auto away = [&](std::size_t i) { return p - V{points.x[i], points.y[i]}; };
+  const auto dot = [](const V& a, const V& b) { return a.x * b.x + a.y * b.y; };
+  const auto r2_of = [&](std::size_t i) { return dot(away(i), away(i)) + points.soft2[i]; };
+
+  // Squared distance up to which a place counts as at the point: weights of the others stay normal numbers.
+  constexpr double touching = 1e-60;
+  std::size_t nearest = 0;
+  double least = std::numeric_limits<double>::infinity(), next = least;
+  for (std::size_t i = 0; i < count; ++i) {
+    const double r2 = r2_of(i);
+    if (r2 < least) least = r2, nearest = i;
+    if (r2 > touching) next = std::min(next, r2);
+  }
+  // At a point, the others alone determine the slopes: their weights relative to the nearest of them.
+  const bool on_point = least <= touching;
+  if (on_point && !(affine_ && std::isfinite(next))) return {0, 0};
+  const auto weight = [&](std::size_t i) {
+    const double r2 = r2_of(i);
+    if (r2 <= touching) return 0.0;
+    return points.alpha[i] * std::pow((on_point ? next : least) / r2, beta_ / 2);
+  };
+  const V centre{points.x[nearest], points.y[nearest]};
+  const double centre_value = on_point ? value : points.value[nearest];
+  double w_sum = 0, wf = 0, xx = 0, xy = 0, yy = 0;
+  V wq{0, 0}, wqf{0, 0};
+  for (std::size_t i = 0; i < count; ++i) {
+    const double w = weight(i), f = points.value[i] - centre_value;
+    const V q = V{points.x[i], points.y[i]} - centre;
+    w_sum += w;
+    wf += w * f;
+    wq += w * q;
+    wqf += w * f * q;
+    xx += w * q.x * q.x;
+    xy += w * q.x * q.y;
+    yy += w * q.y * q.y;
+  }
+  const V mean = on_point ? V{0, 0} : wq / w_sum;
+  const double mean_value = on_point ? 0 : wf / w_sum, trace = xx + yy;
+  const double a = xx - w_sum * mean.x * mean.x, b = xy - w_sum * mean.x * mean.y, c = yy - w_sum * mean.y * mean.y;
+  // As the loops solve it: for planes, and for those that rise along a line alone.
+  const auto in_planes = [&](const V& right) {
+    constexpr double thin2 = 1e-20;
+    const double xx1 = a / trace, xy1 = b / trace, yy1 = c / trace, det = xx1 * yy1 - xy1 * xy1, tr = xx1 + yy1;
+    const V by = right / trace, along{xx1 * by.x + xy1 * by.y, xy1 * by.x + yy1 * by.y};
+    return (thin2 * along + det * (tr * by - along)) / (det * det + thin2 * (tr * tr - 2 * det + thin2));
+  };
+  const auto along_line = [&](const V& right) {
+    const double moment = along_.x * (along_.x * a + along_.y * b) + along_.y * (along_.x * b + along_.y * c);
+    return moment > 1e-10 * trace ? along_ * (dot(along_, right) / moment) : V{0, 0};
+  };
+  const auto with = [&](const auto& solved) {
+    const V slope = solved(wqf - w_sum * mean_value * mean);
+    V result = slope;
+    if (on_point) return result;
+    const V from_mean = p - centre - mean, towards = solved(from_mean);
+    for (std::size_t i = 0; i < count; ++i) {
+      const V q = V{points.x[i], points.y[i]} - centre - mean;
+      const double residual = points.value[i] - centre_value - mean_value - dot(slope, q);
+      const double part = 1 / w_sum + dot(towards, q);
+      result -= beta_ * weight(i) / r2_of(i) * part * residual * away(i);
+    }
+    return result;
+  };
+  const V unit = V{p.x == wanted.x ? 1 : 0, p.y == wanted.y ? 1 : 0} * (to_scaled_ / to_scaled_value_);
+  if (!affine_ || !(trace > 1e-290)) return with([](const V&) { return V{0, 0}; }) * unit;
+  if (plane_ == 1) return with(in_planes) * unit;
+  return (plane_ * with(in_planes) + (1 - plane_) * with(along_line)) * unit;
+}
+
+}  // namespace petzval::camera_detail

@@ -1,0 +1,174 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "petzval/fit/tilt_fit.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <glm/geometric.hpp>
+#include <limits>
+#include <numbers>
+
+#include "core/text.hpp"
+#include "focus/targets.hpp"
+#include "petzval/core/error.hpp"
+#include "tilt_problem.hpp"
+#include "tilt_rays.hpp"
+
+namespace petzval {
+namespace {
+
+/// The options with z_mm of the film set. Throws Error for invalid options.
+TiltOptions checked(TiltOptions options, double unset_z) {
+  if (!(options.max_tilt_rad >= 0 && options.max_tilt_rad < std::numbers::pi / 2)) {
+    throw Error("fit_tilt: the largest tilt is " + to_text(options.max_tilt_rad) +
+                " rad, wanted one from 0 to less than a quarter turn");
+  }
+  Film& film = options.film;
+  film.z_mm = film.z_mm.value_or(unset_z);
+  if (!std::isfinite(film.z()) || !std::isfinite(film.tilt_rad) || !std::isfinite(film.swing_rad)) {
+    throw Error("fit_tilt: the film stands at " + to_text(film.z()) + " mm, " + to_text(film.tilt_rad) + " and " +
+                to_text(film.swing_rad) + " rad, wanted finite numbers");
+  }
+  const double sum = film.width_mm + film.height_mm + film.shift_x_mm + film.shift_y_mm;
+  if (!(film.width_mm >= 0 && film.height_mm >= 0) || !std::isfinite(sum)) {
+    throw Error("fit_tilt: the film is " + to_text(film.width_mm) + " x " + to_text(film.height_mm) + " mm about (" +
+                to_text(film.shift_x_mm) + ", " + to_text(film.shift_y_mm) +
+                "), wanted finite numbers and no negative size");
+  }
+  return options;
+}
+
+/// Where the chief ray to the middle of the picture meets another film.
+std::optional<FilmPoint> carried_centre(const IdealLens& lens, const Film& before, const Film& film) {
+  const Vec3<double> middle = before.position({before.shift_x_mm, before.shift_y_mm});
+  const double pupil_z = lens.pupils.exit.z;
+  Vec3<double> line = middle - Vec3<double>(0, 0, pupil_z);
+  if (!std::isfinite(pupil_z) || (middle.x == 0 && middle.y == 0)) line = {0, 0, 1};
+  const Vec3<double> n = film.normal();
+  const double steps = glm::dot(n, Vec3<double>(0, 0, film.z()) - middle) / glm::dot(n, line);
+  if (!std::isfinite(steps)) return {};
+  return film.point(middle + steps * line);
+}
+
+/// Whether the film, with its corners, lies behind the lens.
+bool clear_of_lens(const IdealLens& lens, const Film& film) {
+  const auto corners = film.corners();
+  return std::all_of(corners.begin(), corners.end(),
+                     [&](const FilmPoint& corner) { return film.position(corner).z > lens.rear_z; });
+}
+
+/// The film that was found, or the film as it stood. blur_of: the blur of a target on a film.
+TiltFit described(const IdealLens& lens, std::span<const FocusTarget> targets, const TiltOptions& options,
+                  std::span<const fit_detail::SeenTarget> seen, const fit_detail::TiltProblem& problem,
+                  const fit_detail::TiltSolution& solution, const auto& blur_of) {
+  TiltFit fit;
+  fit.rank = problem.rank;
+  fit.film = options.film;
+  if (problem.rank == PlaneRank::none) {
+    fit.status = TiltFitStatus::no_targets;
+  } else if (!solution.converged) {
+    fit.status = TiltFitStatus::not_converged;
+  } else {
+    Film film = problem.frame.film(solution.film, options.film);
+    const std::optional<FilmPoint> centre = carried_centre(lens, options.film, film);
+    if (centre) film.shift_x_mm = centre->x, film.shift_y_mm = centre->y;
+    if (!centre || !clear_of_lens(lens, film)) {
+      fit.status = TiltFitStatus::unreachable;
+    } else {
+      fit.status = solution.limited                   ? TiltFitStatus::limited
+                   : problem.rank == PlaneRank::plane ? TiltFitStatus::solved
+                                                      : TiltFitStatus::least_tilt;
+      fit.film = film;
+    }
+  }
+  fit.focus = focus_plane(lens, fit.film);
+  for (std::size_t i = 0; i < targets.size(); ++i) {
+    fit.blurs.push_back({seen[i].use, targets[i].blur_mm, blur_of(i, fit.film)});
+  }
+  fit.rms_mm = focus_detail::rms_error(targets, fit.blurs);
+  return fit;
+}
+
+/// The problem without outliers.
+fit_detail::TiltProblem problem_without_outliers(const IdealLens& lens, std::span<fit_detail::SeenTarget> seen,
+                                                 const TiltOptions& options) {
+  constexpr std::size_t fewest = 5;  // targets among which an outlier can be told
+  const fit_detail::TiltProblem problem = tilt_problem(lens, seen, options.max_tilt_rad);
+  if (!options.robust || problem.used.size() < fewest) return problem;
+  const std::vector<double> kept = robust_weights(problem, seen);
+  for (std::size_t i = 0; i < kept.size(); ++i) {
+    fit_detail::SeenTarget& target = seen[problem.used[i]];
+    target.weight *= kept[i];
+    if (!(target.weight > 0)) target.use = TargetUse::outlier;
+  }
+  return tilt_problem(lens, seen, options.max_tilt_rad);
+}
+
+fit_detail::TiltSolution solved(const fit_detail::TiltProblem& problem) {
+  if (problem.rank == PlaneRank::none) return {};
+  std::vector<const fit_detail::BlurErrors*> errors;
+  for (const auto& blur : problem.blurs) errors.push_back(&blur);
+  return least_blur(errors, problem.space, {.film = problem.start});
+}
+
+}  // namespace
+
+std::string_view name(TiltFitStatus status) noexcept {
+  switch (status) {
+    case TiltFitStatus::solved: return "solved";
+    case TiltFitStatus::least_tilt: return "least_tilt";
+    case TiltFitStatus::limited: return "limited";
+    case TiltFitStatus::no_targets: return "no_targets";
+    case TiltFitStatus::unreachable: return "unreachable";
+    case TiltFitStatus::not_converged: return "not_converged";
+  }
+  return "unknown";
+}
+
+TiltFit fit_tilt(const IdealLens& lens, std::span<const FocusTarget> targets, const TiltOptions& given) {
+  const TiltOptions options = checked(given, lens.rear_focal_z);
+  std::vector<fit_detail::SeenTarget> seen = fit_detail::seen_targets(lens, targets);
+  const fit_detail::TiltProblem problem = problem_without_outliers(lens, seen, options);
+  return described(lens, targets, options, seen, problem, solved(problem), [&](std::size_t i, const Film& film) {
+    return seen[i].image ? signed_blur(*seen[i].image, film) : std::numeric_limits<double>::quiet_NaN();
+  });
+}
+
+TiltFit fit_tilt(const ImageRays& lens, std::span<const FocusTarget> targets, const TiltOptions& given) {
+  const TiltOptions options = checked(given, lens.lens().film_z());
+  const IdealLens& ideal = lens.ideal();
+  std::vector<fit_detail::SeenTarget> seen = fit_detail::seen_targets(ideal, targets);
+  std::vector<RayBundle> bundles(targets.size());
+  for (std::size_t i = 0; i < targets.size(); ++i) {
+    if (!seen[i].image) continue;
+    bundles[i] = lens.bundle(targets[i].place);
+    if (bundles[i].empty() && seen[i].weight > 0) {
+      seen[i].use = TargetUse::no_rays;
+      seen[i].weight = 0;
+    }
+  }
+  const fit_detail::TiltProblem problem = problem_without_outliers(ideal, seen, options);
+  const fit_detail::TiltSolution thick = solved(problem);
+  fit_detail::TiltSolution solution = thick;
+  if (thick.converged) {
+    std::vector<fit_detail::RayBlur> blurs;
+    std::vector<const fit_detail::BlurErrors*> errors;
+    blurs.reserve(problem.used.size());
+    for (std::size_t k = 0; k < problem.used.size(); ++k) {
+      const std::size_t i = problem.used[k];
+      const double root = problem.blurs[k].root / seen[i].image->cone;
+      blurs.emplace_back(bundles[i], problem.frame, root, targets[i].blur_mm / problem.frame.unit);
+      errors.push_back(&blurs.back());
+    }
+    solution = least_blur(errors, problem.space, thick);
+  }
+  TiltFit fit = described(ideal, targets, options, seen, problem, solution, [&](std::size_t i, const Film& film) {
+    const std::optional<BundleBlur> blur = blur_on(bundles[i], film);
+    return blur ? blur->signed_diameter : std::numeric_limits<double>::quiet_NaN();
+  });
+  // Aberrations move the film by nearly the same amount for all distances: what is in focus is the plane that the
+  // cardinal points put into focus on the film that they find for the same targets.
+  if (fit) fit.focus = focus_plane(ideal, problem.frame.film(thick.film, options.film));
+  return fit;
+}
+
+}  // namespace petzval

@@ -1,0 +1,127 @@
+// SPDX-License-Identifier: Apache-2.0
+// Least median of squares (Rousseeuw 1984) over films through as many targets as a film has parameters, then the
+// minimum of Tukey's loss nearby. Blurs are not weighted here: whether a target is an outlier does not depend on its
+// weight.
+#include <Eigen/Core>
+#include <Eigen/LU>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <span>
+#include <vector>
+
+#include "tilt_problem.hpp"
+
+namespace petzval::fit_detail {
+namespace {
+
+/// The groups of `size` among `count` targets: all of them up to `most`, else a uniform subset.
+std::vector<std::array<std::size_t, 3>> groups(std::size_t count, int size, std::size_t most) {
+  std::vector<std::array<std::size_t, 3>> result;
+  const std::size_t second = size > 1 ? count : 1, third = size > 2 ? count : 1;
+  double all = static_cast<double>(count);
+  if (size > 1) all *= static_cast<double>(count - 1) / 2;
+  if (size > 2) all *= static_cast<double>(count - 2) / 3;
+  if (all <= static_cast<double>(most)) {
+    for (std::size_t i = 0; i < count; ++i)
+      for (std::size_t j = size > 1 ? i + 1 : 0; j < second; ++j)
+        for (std::size_t k = size > 2 ? j + 1 : 0; k < third; ++k) result.push_back({i, j, k});
+    return result;
+  }
+  // Multiples of powers of the root of x^4 = x + 1 fill the cube uniformly (Roberts 2018, "The unreasonable
+  // effectiveness of quasirandom sequences").
+  constexpr double step = 0.8191725133961645;
+  const auto pick = [&](std::size_t n, double power) {
+    const double turn = static_cast<double>(n + 1) * power;
+    return std::min(static_cast<std::size_t>((turn - std::floor(turn)) * static_cast<double>(count)), count - 1);
+  };
+  for (std::size_t n = 0; n < most; ++n) {
+    const std::array<std::size_t, 3> group{pick(n, step), pick(n, step * step), pick(n, step * step * step)};
+    const bool distinct =
+        size < 2 || (group[0] != group[1] && (size < 3 || (group[0] != group[2] && group[1] != group[2])));
+    if (distinct) result.push_back(group);
+  }
+  return result;
+}
+
+/// The film that a group of targets asks for; not finite if it is not unique.
+FilmSlopes film_through(std::span<const IdealBlur> blurs, const std::array<std::size_t, 3>& group,
+                        const TiltSpace& space) {
+  Eigen::Matrix3d rows = Eigen::Matrix3d::Identity();
+  Eigen::Vector3d places = Eigen::Vector3d::Zero();
+  for (int i = 0; i < space.parameters; ++i) {
+    const IdealBlur& blur = blurs[group[static_cast<std::size_t>(i)]];
+    const double along = blur.x * space.along_x + blur.y * space.along_y;
+    const double across = blur.y * space.along_x - blur.x * space.along_y;
+    const Eigen::RowVector3d row(1, along / space.spread_along, across / space.spread_across);
+    rows.row(i).head(space.parameters) = row.head(space.parameters);
+    places[i] = blur.z;
+  }
+  const Eigen::Vector3d t = rows.inverse() * places;
+  return space.film(t[0], t[1] / space.spread_along, t[2] / space.spread_across);
+}
+
+/// The film whose median of squared blurs is least, and that median.
+struct LeastMedian {
+  FilmSlopes film;
+  double square = std::numeric_limits<double>::infinity();
+};
+
+LeastMedian least_median(std::span<const IdealBlur> blurs, const TiltSpace& space) {
+  // As many as the triples of 24 targets.
+  constexpr std::size_t most_groups = 2024;
+  const auto count = static_cast<std::ptrdiff_t>(blurs.size());
+  const std::ptrdiff_t half = count / 2 + (space.parameters + 1) / 2;  // so many blurs within the median
+  LeastMedian best;
+  std::vector<double> squares(blurs.size());
+  for (const auto& group : groups(blurs.size(), space.parameters, most_groups)) {
+    const FilmSlopes film = film_through(blurs, group, space);
+    std::ptrdiff_t beyond = 0;
+    for (std::size_t i = 0; i < blurs.size() && beyond <= count - half; ++i) {
+      double blur = 0;
+      squares[i] = blurs[i](film, &blur, nullptr) ? blur * blur : std::numeric_limits<double>::infinity();
+      if (!(squares[i] < best.square)) ++beyond;
+    }
+    if (beyond > count - half) continue;
+    std::nth_element(squares.begin(), squares.begin() + (half - 1), squares.end());
+    best = {film, squares[static_cast<std::size_t>(half - 1)]};
+  }
+  return best;
+}
+
+}  // namespace
+
+std::vector<double> robust_weights(const TiltProblem& problem, std::span<const SeenTarget> targets) {
+  // In units of the mean cone, so that the floor below has a meaning.
+  std::vector<IdealBlur> blurs = problem.blurs;
+  std::vector<double> weights;
+  double cones = 0;
+  for (const std::size_t i : problem.used) cones += targets[i].image->cone / static_cast<double>(blurs.size());
+  for (std::size_t i = 0; i < blurs.size(); ++i) {
+    const SeenTarget& target = targets[problem.used[i]];
+    blurs[i].root = target.image->cone / cones;
+    weights.push_back(target.weight);
+  }
+  const double largest = *std::max_element(weights.begin(), weights.end());
+  for (double& weight : weights) weight /= largest;
+
+  // The median of exact targets is a rounding error, and no scale for outliers.
+  constexpr double rounding = 1e-11;
+  const LeastMedian start = least_median(blurs, problem.space);
+  const double spare = static_cast<double>(blurs.size()) - problem.space.parameters;
+  const double deviation = std::max(1.4826 * (1 + 5 / spare) * std::sqrt(start.square), rounding);
+  const double reach = 4.685 * deviation;
+  std::vector<const BlurErrors*> errors;
+  for (const IdealBlur& blur : blurs) errors.push_back(&blur);
+  const FilmSlopes film = least_tukey_loss(errors, weights, problem.space, start.film, reach).value_or(start.film);
+
+  for (std::size_t i = 0; i < blurs.size(); ++i) {
+    double blur = 0;
+    const double part = blurs[i](film, &blur, nullptr) ? std::min(std::abs(blur) / reach, 1.0) : 1;
+    weights[i] = (1 - part * part) * (1 - part * part);
+  }
+  return weights;
+}
+
+}  // namespace petzval::fit_detail

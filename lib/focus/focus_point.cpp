@@ -1,0 +1,217 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "petzval/focus/focus_point.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <utility>
+
+#include "core/text.hpp"
+#include "keyframes.hpp"
+#include "petzval/core/error.hpp"
+#include "petzval/core/film.hpp"
+#include "plane_fit.hpp"
+#include "targets.hpp"
+
+namespace petzval {
+namespace {
+
+bool finite(const Vec3<double>& v) noexcept { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); }
+
+void check(const ScenePoint& place, const std::string& where) {
+  const auto& [p, at_infinity] = place;
+  const bool nowhere = at_infinity && p.x == 0 && p.y == 0 && p.z == 0;
+  if (finite(p) && !nowhere) return;
+  throw Error(where + "the place is (" + to_text(p.x) + ", " + to_text(p.y) + ", " + to_text(p.z) + "), wanted " +
+              (at_infinity ? "a direction" : "finite coordinates"));
+}
+
+void check(const OnTriangle& place, std::size_t vertices, const std::string& where) {
+  const auto& [a, b, c] = place.barycentric;
+  constexpr double tolerance = 1e-9;
+  // NaN fails either comparison.
+  if (!(std::min({a, b, c}) >= -tolerance) || !(std::abs(a + b + c - 1) <= tolerance)) {
+    throw Error(where + "barycentric coordinates are (" + to_text(a) + ", " + to_text(b) + ", " + to_text(c) +
+                "), wanted 0 or more and a sum of 1");
+  }
+  for (const std::size_t vertex : place.vertices) {
+    if (vertex < vertices) continue;
+    throw Error(where + "it lies at vertex " + std::to_string(vertex) + ", wanted one of the " +
+                std::to_string(vertices) + " there are");
+  }
+}
+
+void check(const FocusPoint& point, std::size_t vertices, const std::string& where) {
+  if (point.keys.empty()) throw Error(where + "no keys, wanted one at least");
+  if (!(point.from <= point.until)) {
+    throw Error(where + "valid from " + to_text(point.from) + " s until " + to_text(point.until) +
+                " s, wanted an interval");
+  }
+  for (std::size_t k = 0; k < point.keys.size(); ++k) {
+    const FocusKey& key = point.keys[k];
+    const std::string at = where + "key " + std::to_string(k) + ": ";
+    if (!std::isfinite(key.time)) throw Error(at + "time is " + to_text(key.time) + " s, wanted a finite one");
+    if (k > 0 && !(key.time > point.keys[k - 1].time)) {
+      throw Error(at + "time is " + to_text(key.time) + " s, wanted one after " + to_text(point.keys[k - 1].time) +
+                  " s");
+    }
+    if (!std::isfinite(key.blur_mm)) throw Error(at + "blur is " + to_text(key.blur_mm) + " mm, wanted a finite one");
+    if (!std::isfinite(key.weight) || key.weight < 0) {
+      throw Error(at + "weight is " + to_text(key.weight) + ", wanted a finite one of 0 or more");
+    }
+    if (key.extent_stops.has_value() != point.keys.front().extent_stops.has_value()) {
+      throw Error(at + "an extent is " + (key.extent_stops ? "given" : "missing") +
+                  ", wanted one in all keys of the point or in none");
+    }
+    if (key.extent_stops) focus_detail::check_extent(*key.extent_stops, at);
+    if (const auto* place = std::get_if<ScenePoint>(&key.anchor)) {
+      check(*place, at);
+    } else {
+      check(std::get<OnTriangle>(key.anchor), vertices, at);
+    }
+  }
+}
+
+void check(const FocusMoment& moment) {
+  if (std::isnan(moment.time)) throw Error("focus_targets: time is nan, wanted a number");
+  if (!moment.film) return;
+  const Film& film = *moment.film;
+  const double width = film.width_mm, height = film.height_mm, x = film.shift_x_mm, y = film.shift_y_mm;
+  const double z = film.z_mm.value_or(0), turns = film.tilt_rad + film.swing_rad;
+  if (!(width >= 0 && height >= 0) || !std::isfinite(width + height + x + y + z + turns)) {
+    throw Error("focus_targets: the film is " + to_text(width) + " x " + to_text(height) + " mm about (" + to_text(x) +
+                ", " + to_text(y) + ") at z = " + to_text(z) + " mm, wanted finite numbers and no negative size");
+  }
+}
+
+/// A number interpolated over the keys; of(k): its value at key k.
+double at_time(const FocusPoint& point, double time, const auto& of) {
+  if (point.keys.size() == 1) return of(0);
+  std::vector<double> times, values;
+  for (std::size_t k = 0; k < point.keys.size(); ++k) {
+    times.push_back(point.keys[k].time);
+    values.push_back(of(k));
+  }
+  return focus_detail::Keyframes(std::move(times), std::move(values)).at(time);
+}
+
+Vec3<double> place_of(const OnTriangle& on, const std::array<double, 3>& parts, const FocusMoment& moment) {
+  Vec3<double> sum{0, 0, 0};
+  for (std::size_t i = 0; i < 3; ++i) sum += moment.vertices[on.vertices[i]] * parts[i];
+  return sum;
+}
+
+/// The triangle that all keys lie on, or null.
+const OnTriangle* only_triangle(const FocusPoint& point) {
+  const auto* first = std::get_if<OnTriangle>(&point.keys.front().anchor);
+  const auto same = [&](const FocusKey& key) {
+    const auto* on = std::get_if<OnTriangle>(&key.anchor);
+    return on && on->vertices == first->vertices;
+  };
+  return first && std::all_of(point.keys.begin(), point.keys.end(), same) ? first : nullptr;
+}
+
+/// As seen from the front principal point; z is the inverse distance.
+Vec3<double> seen(const ScenePoint& place, double principal_z) {
+  const focus_detail::PicturePoint point = focus_detail::picture_point(place, principal_z);
+  return {point.x, point.y, point.inverse_distance};
+}
+
+/// Nothing if a vertex is not finite, and on a way from behind the lens to infinity.
+std::optional<ScenePoint> place_at(const IdealLens& lens, const FocusPoint& point, const FocusMoment& moment) {
+  if (const OnTriangle* triangle = only_triangle(point)) {
+    std::array<double, 3> parts{};
+    double sum = 0;
+    for (std::size_t i = 0; i < 3; ++i) {
+      parts[i] = at_time(point, moment.time,
+                         [&](std::size_t k) { return std::get<OnTriangle>(point.keys[k].anchor).barycentric[i]; });
+      sum += parts[i];
+    }
+    // Each stays within the span of its keys, but their sum does not stay 1.
+    for (double& part : parts) part /= sum;
+    return ScenePoint{place_of(*triangle, parts, moment), false};
+  }
+  std::vector<ScenePoint> places;
+  for (const FocusKey& key : point.keys) {
+    const auto* on = std::get_if<OnTriangle>(&key.anchor);
+    places.push_back(on ? ScenePoint{place_of(*on, on->barycentric, moment), false} : std::get<ScenePoint>(key.anchor));
+    if (!finite(places.back().position)) return {};
+  }
+  if (places.size() == 1) return places[0];
+
+  const double z = lens.front_principal_z();
+  const auto in_front = [&](const ScenePoint& place) {
+    return place.position.z < (place.at_infinity ? 0 : z) && finite(seen(place, z));
+  };
+  const auto at_infinity = [](const ScenePoint& place) { return place.at_infinity; };
+  Vec3<double> at{0, 0, 0};
+  if (std::all_of(places.begin(), places.end(), in_front)) {
+    for (int i = 0; i < 3; ++i) {
+      at[i] = at_time(point, moment.time, [&](std::size_t k) { return seen(places[k], z)[i]; });
+    }
+    const double depth = 1 / at.z;
+    if (!std::isfinite(depth)) return ScenePoint{{at.x, at.y, -1}, true};
+    return ScenePoint{{at.x * depth, at.y * depth, z - depth}, false};
+  }
+  if (std::any_of(places.begin(), places.end(), at_infinity)) return {};
+  for (int i = 0; i < 3; ++i) {
+    at[i] = at_time(point, moment.time, [&](std::size_t k) { return places[k].position[i]; });
+  }
+  return ScenePoint{at, false};
+}
+
+bool within(Film film, const IdealLens& lens, const ImagePoint& image) {
+  film.z_mm = film.z_mm.value_or(lens.rear_focal_z);
+  const std::optional<FilmPoint> hit = chief_point(image, film);
+  return hit && film.contains(*hit);
+}
+
+}  // namespace
+
+std::optional<FocusTarget> focus_detail::target_at(const IdealLens& lens, const FocusPoint& point,
+                                                   const FocusMoment& moment) {
+  const auto place = place_at(lens, point, moment);
+  const auto image = place ? lens.image(*place) : std::nullopt;
+  if (!image || (moment.film && !within(*moment.film, lens, *image))) return {};
+  const auto now = [&](const auto& of) {
+    return at_time(point, moment.time, [&](std::size_t k) { return of(point.keys[k]); });
+  };
+  FocusTarget target{*place, now([](const FocusKey& key) { return key.blur_mm; }),
+                     now([](const FocusKey& key) { return key.weight; })};
+  if (point.keys.front().extent_stops) {
+    target.extent_stops = now([](const FocusKey& key) { return *key.extent_stops; });
+  }
+  target.fixes_distance = point.fixes_distance;
+  return target;
+}
+
+void focus_detail::check_points(std::span<const FocusPoint> points, const FocusMoment& moment) {
+  check(moment);
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    check(points[i], moment.vertices.size(), "focus point " + std::to_string(i) + ": ");
+  }
+}
+
+void focus_detail::weigh_nearer_more(const IdealLens& lens, std::span<FocusTarget> targets) {
+  const auto inverse_distance = [&](const FocusTarget& target) {
+    return seen(target.place, lens.front_principal_z()).z;
+  };
+  double nearest = 0;
+  for (const FocusTarget& target : targets) nearest = std::max(nearest, inverse_distance(target));
+  if (!(nearest > 0)) return;
+  for (FocusTarget& target : targets) target.weight *= inverse_distance(target) / nearest;
+}
+
+std::vector<FocusTarget> focus_targets(const IdealLens& lens, std::span<const FocusPoint> points,
+                                       const FocusMoment& moment) {
+  focus_detail::check_points(points, moment);
+  std::vector<FocusTarget> targets;
+  for (const FocusPoint& point : points) {
+    if (moment.time < point.from || moment.time > point.until) continue;
+    if (const auto target = focus_detail::target_at(lens, point, moment)) targets.push_back(*target);
+  }
+  if (moment.nearer_weighs_more) focus_detail::weigh_nearer_more(lens, targets);
+  return targets;
+}
+
+}  // namespace petzval

@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "petzval/focus/focus_point.hpp"
+
+#include <cmath>
+#include <limits>
+
+#include "core/text.hpp"
+#include "petzval/core/error.hpp"
+#include "targets.hpp"
+
+namespace petzval {
+
+std::string_view name(TargetUse use) noexcept {
+  switch (use) {
+    case TargetUse::used: return "used";
+    case TargetUse::no_weight: return "no_weight";
+    case TargetUse::not_finite: return "not_finite";
+    case TargetUse::no_image: return "no_image";
+    case TargetUse::outlier: return "outlier";
+    case TargetUse::no_rays: return "no_rays";
+  }
+  return "unknown";
+}
+
+std::string_view name(PlaneRank rank) noexcept {
+  switch (rank) {
+    case PlaneRank::none: return "none";
+    case PlaneRank::point: return "point";
+    case PlaneRank::line: return "line";
+    case PlaneRank::plane: return "plane";
+  }
+  return "unknown";
+}
+
+void focus_detail::check_extent(double stops, const std::string& where) {
+  if (std::abs(stops) <= largest_extent) return;
+  throw Error(where + "the extent is " + to_text(stops) + " stops, wanted one from " + to_text(-largest_extent) +
+              " to " + to_text(largest_extent) + " stops");
+}
+
+bool focus_detail::well_formed(const FocusTarget& target) noexcept {
+  const Vec3<double>& p = target.place.position;
+  const bool place = std::isfinite(p.x) && std::isfinite(p.y) && p.z < std::numeric_limits<double>::infinity();
+  return place && std::isfinite(target.blur_mm) && std::isfinite(target.weight) && target.weight >= 0;
+}
+
+}  // namespace petzval

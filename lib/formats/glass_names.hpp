@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <map>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+
+#include "petzval/glass/glass.hpp"
+
+namespace petzval::formats_detail {
+
+/// Meaning of n_d and V_d that a file states after the name of a glass.
+enum class Numbers {
+  stated,    ///< they tell glasses of one name apart, and count where they differ from the glass
+  leftovers  ///< the name alone counts
+};
+
+/// For messages: "F2 (schott, n_d 1.62004, V_d 36.37)".
+std::string describe(const Glass& glass);
+
+/// True if a list names the maker of a glass: "SCHOTT" lists schott, schott-legacy, schott-1983.
+bool is_listed(std::span<const std::string> catalogues, const Glass& glass);
+
+/// Glasses by the names that files of other programs give them: dashes, blanks and case do not count.
+class GlassNames {
+ public:
+  /// The glasses must outlive the object.
+  explicit GlassNames(const GlassCatalogue& glasses);
+
+  /// Finds the glass for a name in a file.
+  ///
+  /// @param catalogues  catalogues that the file names; the first comes first, and newer catalogues of a maker come
+  ///                    before older ones
+  /// @param nd          n_d after the name; if `numbers` are leftovers, used only between catalogues outside
+  ///                    `catalogues`
+  /// @return            the glass; null if no table has the name
+  const Glass* find(std::string_view name, std::span<const std::string> catalogues, std::optional<double> nd,
+                    Numbers numbers) const;
+
+  /// For messages: glasses of the name of `found`, in catalogues as new, that differ by more than 1e-4 in n_d; empty if
+  /// the file names the catalogue or states the n_d of `found`.
+  std::string others(const Glass& found, std::span<const std::string> catalogues, std::optional<double> nd) const;
+
+ private:
+  std::multimap<std::string, const Glass*> by_name_;  ///< by bare name, in the order of the catalogue
+};
+
+}  // namespace petzval::formats_detail

@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "glass_names.hpp"
+#include "petzval/formats/lens_file.hpp"
+#include "petzval/glass/glass.hpp"
+#include "petzval/lens/lens.hpp"
+#include "petzval/prescription/prescription.hpp"
+
+namespace petzval::formats_detail {
+
+/// A prescription on its way from a file of another program: where it comes from, what was assumed, and the glasses.
+class Import {
+ public:
+  /// @param where    the file's name, for messages
+  /// @param options  a null catalogue means glass_tables(), loaded for the first glass
+  Import(std::string where, std::string_view format, const ReadOptions& options);
+
+  Prescription lens;  ///< `imported` is set
+  /// True if the design's aperture is a rounded number that describes the lens. It launches no beam: the rim of the
+  /// stop, if the file has one, is the size of the stop.
+  bool nominal_aperture = false;
+  /// Value of the design's aperture by configuration; nullopt or too short if it does not differ from the design.
+  std::vector<std::optional<double>> position_apertures;
+
+  /// Takes note of what the file does not say, or of what is left out. After a thousand only their number is kept.
+  void warn(int line, std::string_view command, const std::string& message);
+  /// Throws Error: "file: line 7: CURV is found, wanted wanted".
+  [[noreturn]] void refuse(int line, std::string_view command, const std::string& found,
+                           const std::string& wanted) const;
+  /// Throws Error: "file:7: parameter = value; must be rule".
+  [[noreturn]] void must_be(int line, std::string_view parameter, const std::string& value,
+                            const std::string& rule) const;
+  /// The word as a number; refuses what is none, also one with a decimal comma, beyond double or not a number.
+  double number(int line, std::string_view command, std::string_view word) const;
+
+  /// A medium by the name in a file: "N-BK7", "NBK7" (dashes and blanks left out), "BK7_SCHOTT". n_d and V_d come from
+  /// the formula of the glass, and are absent if the formula does not reach the d, F and C lines. Warns if a glass of
+  /// another catalogue or name is taken.
+  ///
+  /// @param catalogues  catalogues that the file names, the first comes first; may be empty
+  /// @param nd, vd      numbers after the name: taken if no table has the name, and as `numbers` says
+  /// @throws Error      with similar names for a glass in no table without an index
+  Medium glass(int line, std::string_view name, std::span<const std::string> catalogues, std::optional<double> nd,
+               std::optional<double> vd, Numbers numbers = Numbers::stated);
+  const GlassCatalogue& glasses();
+  const std::string& where() const noexcept { return where_; }
+  /// ReadOptions::entry.
+  const std::string& entry() const noexcept { return entry_; }
+
+  /// Rows compiled for their reference wavelength: the d line, or the primary wavelength of the design if a glass has
+  /// no index at the d line.
+  Lens compiled(const Prescription& rows) const { return compile(with_reference(rows), {.glasses = glasses_}); }
+  /// Rows compiled for the primary wavelength of the design, with the n_d/V_d model where a glass is unknown.
+  Lens at_primary_wavelength(const Prescription& rows);
+
+  /// Sizes the stop by the aperture of the design, sets nominal data by the fields, and a name. Returns the valid
+  /// prescription.
+  Prescription finish();
+
+ private:
+  const GlassNames& names();
+  Prescription with_reference(Prescription rows) const;
+  void mark_a_stop();
+  void size_the_stop();
+  void compare_the_declared();
+  void declare();
+
+  std::string where_, entry_;
+  const GlassCatalogue* glasses_;
+  std::optional<GlassNames> names_;  ///< names in glasses_; filled when the first glass is looked up
+  std::size_t left_out_ = 0;
+  /// True if the stop has the size of the declared beam, or a warning says that its rim clips the beam.
+  bool has_declared_beam_ = false;
+};
+
+/// What a configuration changes of a surface: nothing yet, if it was not asked for before.
+SurfaceChange& change_of(Configuration& configuration, int surface);
+
+/// nd and vd of six digits and more: "517642", "517.642", "620410.603236": n_d - 1 and V_d without the point.
+std::optional<Medium> medium_of_code(std::string_view code);
+
+}  // namespace petzval::formats_detail

@@ -1,0 +1,114 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "petzval/formats/lens_file.hpp"
+
+#include <array>
+#include <utility>
+
+#include "codev_reader.hpp"
+#include "flaresim_reader.hpp"
+#include "import.hpp"
+#include "io/json.hpp"
+#include "io/missing_apertures.hpp"
+#include "lentil_reader.hpp"
+#include "opticalbench_reader.hpp"
+#include "optiland_reader.hpp"
+#include "oslo_reader.hpp"
+#include "petzval/core/error.hpp"
+#include "petzval/core/read_file.hpp"
+#include "petzval/io/lens_json.hpp"
+#include "table_reader.hpp"
+#include "text_file.hpp"
+#include "zemax_reader.hpp"
+
+namespace petzval {
+namespace {
+
+using namespace formats_detail;
+
+constexpr const char* wanted =
+    "a lens: petzval JSON, Zemax .zmx, CODE V .seq, OSLO .len, FlareSim .lens, an OpticalBench table, a table of "
+    "surfaces, lentil or optiland JSON";
+
+/// A format of another program: how to know it, and how to read it.
+struct Format {
+  std::string_view name;
+  bool (*is)(std::string_view text);
+  void (*read)(std::string_view text, Import& in);
+};
+
+/// In the order in which they are tried: each is sure of what it takes.
+constexpr std::array formats{
+    Format{"zemax", is_zemax, read_zemax},
+    Format{"oslo", is_oslo, read_oslo},
+    Format{"opticalbench", is_opticalbench, read_opticalbench},
+    Format{"optiland", is_optiland, read_optiland},
+    Format{"lentil", is_lentil, read_lentil},
+    Format{"flaresim", is_flaresim, read_flaresim},
+    Format{"codev", is_codev, read_codev},
+    Format{"table", is_table, read_table},
+};
+
+/// A line of dashes and colons, which rules the columns of BEAM FOUR.
+bool is_ruler(std::string_view line) {
+  return line.size() >= 8 && line.find(':') != std::string_view::npos &&
+         line.find_first_not_of("-_: \t") == std::string_view::npos;
+}
+
+/// Throws Error for the lens of a program that has no reader here, with the format in which it exports lenses.
+void refuse_other_programs(std::string_view text, const std::string& where) {
+  const std::string_view start = trimmed(text);
+  if (start.starts_with('{') && text.find("\"optical_model\"") != std::string_view::npos) {
+    throw Error(where + ": is a ray-optics model (.roa); must be exported from ray-optics as .seq or .zmx");
+  }
+  std::string_view first;
+  for (Lines lines(text); lines.next() && lines.number() <= 8;) {
+    const std::string_view line = trimmed(lines.text());
+    if (first.empty()) first = line;
+    const auto head = words(first, 3);
+    const bool counts = head.size() > 1 && number(head[0]) && lower(head[1]).starts_with("surf");
+    if (counts && is_ruler(line)) {
+      throw Error(where + ": is a table of BEAM FOUR (.OPT); must be exported as .zmx, or typed as a table");
+    }
+  }
+}
+
+void refuse_warnings(const Prescription& lens, const std::string& where) {
+  if (!lens.imported || lens.imported->warnings.empty()) return;
+  const ImportWarning& first = lens.imported->warnings.front();
+  throw Error(where + (first.line > 0 ? ": line " + std::to_string(first.line) : "") + ": " + first.command + ": " +
+              first.message + "; wanted a file without assumptions (strict)");
+}
+
+}  // namespace
+
+Prescription parse_lens(std::string bytes, const std::string& where, const ReadOptions& options) {
+  const bool own_json = [&] {
+    const std::size_t first = bytes.find_first_not_of(" \t\r\n");
+    return first != std::string::npos && bytes[first] == '{' && bytes.find("\"petzval-lens 1\"") != std::string::npos;
+  }();
+  if (own_json) return io_detail::with_missing_apertures(parse_prescription(bytes, where), options.glasses);
+
+  const std::string text = as_utf8(std::move(bytes), where, wanted);
+  refuse_other_programs(text, where);
+  for (const Format& format : formats) {
+    if (!format.is(text)) continue;
+    Import in(where, format.name, options);
+    format.read(text, in);
+    Prescription lens = io_detail::with_missing_apertures(in.finish(), options.glasses);
+    if (options.strict) refuse_warnings(lens, where);
+    return lens;
+  }
+  if (trimmed(text).empty()) throw Error(where + ": is empty; must be " + wanted);
+  // Most likely a damaged file of the library's own: its messages name line and column.
+  if (const std::string_view start = trimmed(text); start.starts_with('{')) {
+    return parse_prescription(text, where);
+  }
+  std::string first_line(trimmed(text.substr(0, text.find_first_of("\r\n"))));
+  throw Error(where + ": begins with " + io_detail::in_quotes(first_line) + "; must be " + wanted);
+}
+
+Prescription read_lens(const std::filesystem::path& file, const ReadOptions& options) {
+  return parse_lens(read_file(file, "a lens file"), file.string(), options);
+}
+
+}  // namespace petzval

@@ -1,0 +1,338 @@
+// SPDX-License-Identifier: Apache-2.0
+// Lens files of OSLO: commands, one a line or separated by semicolons; NXT begins the next surface.
+#include "oslo_reader.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <functional>
+#include <set>
+#include <utility>
+
+#include "core/text.hpp"
+#include "io/json.hpp"
+#include "oslo_surface.hpp"
+#include "petzval/core/error.hpp"
+#include "text_file.hpp"
+
+namespace petzval::formats_detail {
+namespace {
+
+constexpr std::size_t most_surfaces = 10'000;
+
+/// The commands of a line: what stands between semicolons, outside quotes and in front of two slashes.
+std::vector<std::string_view> commands_of(std::string_view line) {
+  std::vector<std::string_view> commands;
+  bool quoted = false;
+  std::size_t start = 0;
+  for (std::size_t i = 0; i <= line.size(); ++i) {
+    if (i < line.size() && line[i] == '"') quoted = !quoted;
+    const bool ends = i == line.size() || (!quoted && line.substr(i).starts_with("//"));
+    if (ends || (!quoted && line[i] == ';')) {
+      if (const auto command = trimmed(line.substr(start, i - start)); !command.empty()) commands.push_back(command);
+      start = i + 1;
+    }
+    if (ends) break;
+  }
+  return commands;
+}
+
+class OsloReader {
+ public:
+  explicit OsloReader(Import& in) : in_(in) { lens_.surfaces.emplace_back(); }
+
+  void read(std::string_view text) {
+    for (Lines lines(text); lines.next();) {
+      const auto commands = commands_of(lines.text());
+      if (commands.empty() && trimmed(lines.text()).empty() && !has_next(text)) next_surface(lines.number());
+      for (const auto command : commands) take(lines.number(), command);
+    }
+    if (lens_.surfaces.back().line == 0) lens_.surfaces.pop_back();  // a blank line at the end
+    build_oslo(lens_, in_);
+  }
+
+ private:
+  using Words = std::vector<std::string_view>;
+
+  /// Where no NXT occurs, blank lines separate surfaces.
+  bool has_next(std::string_view text) {
+    if (!has_next_) {
+      has_next_ = false;
+      for (Lines lines(text); lines.next() && !*has_next_;) {
+        for (const auto command : commands_of(lines.text())) *has_next_ |= same(command.substr(0, 3), "NXT");
+      }
+    }
+    return *has_next_;
+  }
+
+  void next_surface(int line) {
+    if (lens_.surfaces.back().line == 0 || ended_) return;  // nothing stands between two blank lines
+    start_surface(line);
+  }
+  void start_surface(int line) {
+    if (lens_.surfaces.size() > most_surfaces + 1)
+      throw Error(in_.where() + ": more than 10000 surfaces, wanted fewer");
+    lens_.surfaces.back().line = std::max(lens_.surfaces.back().line, 1);
+    lens_.surfaces.emplace_back().line = has_next_.value_or(false) ? line : 0;
+  }
+
+  double value(int line, const Words& w, std::size_t i = 1) const {
+    if (i >= w.size()) in_.refuse(line, w[0], "without a number", "one");
+    return in_.number(line, w[0], w[i]);
+  }
+  std::vector<double> values(int line, const Words& w) const {
+    std::vector<double> result;
+    for (std::size_t i = 1; i < w.size(); ++i) result.push_back(in_.number(line, w[0], w[i]));
+    return result;
+  }
+  void warn_once(int line, std::string_view command, const std::string& message) {
+    if (said_.size() < 1000 && said_.emplace(command.substr(0, 60)).second) in_.warn(line, command, message);
+  }
+
+  void take(int line, std::string_view text);
+  bool take_general(int line, std::string_view command, const Words& w);
+  bool take_surface(int line, std::string_view command, const Words& w, OsloSurface& s);
+  bool take_asphere(int line, std::string_view command, const Words& w, OsloSurface& s);
+  bool refuse_or_skip(int line, std::string_view command, const Words& w);
+  void take_glass(int line, const Words& w, OsloSurface& s);
+  void take_aperture(int line, const Words& w, OsloSurface& s);
+  void take_pickup(int line, const Words& w, OsloSurface& s);
+
+  Import& in_;
+  OsloLens lens_;
+  std::vector<double> inline_wavelengths_;
+  std::set<std::string, std::less<>> said_;
+  std::optional<bool> has_next_;
+  bool ended_ = false;
+};
+
+void OsloReader::take(int line, std::string_view text) {
+  const Words w = words(text, 1024);
+  const std::string command = upper(w[0]);
+  if (take_general(line, command, w)) return;
+  if (ended_) {
+    // Rays, variables and merit functions follow the lens.
+    if (command == "CFG") warn_once(line, command, "configurations are left out; the lens is the first one");
+    return;
+  }
+  OsloSurface& s = lens_.surfaces.back();
+  if (s.line == 0) s.line = line;
+  if (take_surface(line, command, w, s) || take_asphere(line, command, w, s) || refuse_or_skip(line, command, w))
+    return;
+  warn_once(line, command, "an unknown command is left out");
+}
+
+bool OsloReader::take_general(int line, std::string_view command, const Words& w) {
+  const auto length = [&](std::optional<double>& place) { return place = value(line, w), true; };
+  if (command == "LEN") {
+    if (w.size() < 3 || !same(w[1], "NEW")) in_.refuse(line, "LEN", "without NEW and a name", "LEN NEW \"name\"");
+    lens_.line = line;
+    in_.lens.imported->title = w[2];
+    if (w.size() > 3) lens_.scale = value(line, w, 3);
+    return true;
+  }
+  if (command == "EBR") return length(lens_.beam_radius);
+  if (command == "NAO") return length(lens_.object_na);
+  if (command == "NAP") return length(lens_.image_na);
+  if (command == "FNO") return length(lens_.f_number);
+  if (command == "ANG") return length(lens_.angle);
+  if (command == "OBH") return length(lens_.object_height);
+  if (command == "GIH") return length(lens_.image_height);
+  if (command == "UNI") {
+    lens_.unit = value(line, w);
+    if (!(lens_.unit > 0)) in_.refuse(line, "UNI", to_text(lens_.unit), "millimetres in a unit, above 0");
+    in_.lens.imported->units = lens_.unit == 10 ? "cm" : lens_.unit == 25.4 ? "in" : lens_.unit == 1000 ? "m" : "mm";
+    if (lens_.unit != 1) in_.warn(line, "UNI", "a unit is taken as " + to_text(lens_.unit) + " mm");
+    return true;
+  }
+  if (command == "WV") {
+    lens_.wavelengths = values(line, w);
+    inline_wavelengths_ = lens_.wavelengths;
+    return true;
+  }
+  if (command.starts_with("WV") && number(command.substr(2)).value_or(0) >= 1) {
+    const double place = *number(command.substr(2));
+    if (!(place <= 100 && place == std::floor(place)))
+      in_.refuse(line, command, "not a place in the list", "WV1 to WV100");
+    const auto i = static_cast<std::size_t>(place);
+    if (lens_.wavelengths.size() < i) lens_.wavelengths.resize(i);
+    lens_.wavelengths[i - 1] = value(line, w);
+    return true;
+  }
+  if (command == "WW") return lens_.weights = values(line, w), true;
+  if (command == "DES" || command.starts_with("SNO")) {
+    std::string note;
+    for (std::size_t i = 1; i < w.size(); ++i) note += (note.empty() ? "" : " ") + std::string(w[i]);
+    if (!note.empty() && in_.lens.imported->notes.size() < 1000)
+      in_.lens.imported->notes.push_back(std::string(beginning(note, 4096)));
+    return true;
+  }
+  if (command == "NXT") {
+    if (!ended_) {
+      has_next_ = true;
+      start_surface(line);
+    }
+    return true;
+  }
+  if (command == "END") return ended_ = true;
+  return false;
+}
+
+bool OsloReader::take_surface(int line, std::string_view command, const Words& w, OsloSurface& s) {
+  if (command == "RD") {
+    const double radius = value(line, w);
+    s.curvature = radius == 0 ? 0 : 1 / radius;
+  } else if (command == "CV") {
+    s.curvature = value(line, w);
+  } else if (command == "TH") {
+    s.thickness = value(line, w);
+  } else if (command == "AIR") {
+    s.medium = {line, OsloMedium::Kind::air, {}, {}, {}};
+  } else if (command == "RFL" || command == "RFH") {
+    s.medium = {line, OsloMedium::Kind::mirror, {}, {}, {}};
+  } else if (command == "GLA") {
+    take_glass(line, w, s);
+  } else if (command == "AP") {
+    take_aperture(line, w, s);
+  } else if (command == "AST") {
+    s.stop = true;
+  } else if (command == "CC") {
+    s.conic = value(line, w);
+  } else if (command == "PK") {
+    take_pickup(line, w, s);
+  } else if (command == "PY") {
+    s.height = value(line, w);
+  } else if (command == "PYC" || command == "PUC" || command == "PU" || command == "EC" || command == "PI" ||
+             command == "PIC" || command == "APC" || command == "APL") {
+    warn_once(line, command, "a solve is not evaluated: the value that the file states is taken");
+  } else {
+    return false;
+  }
+  return true;
+}
+
+void OsloReader::take_glass(int line, const Words& w, OsloSurface& s) {
+  if (w.size() < 2) in_.refuse(line, "GLA", "without a glass", "a name or indices");
+  s.medium = {line, OsloMedium::Kind::glass, std::string(w[1]), {}, {}};
+  if (same(w[1], "PK")) {
+    take_pickup(line, {"PK", "GLA", w.size() > 2 ? w[2] : ""}, s);
+    return;
+  }
+  const bool model = same(w[1], "MOD");
+  if (!model && !number(w[1])) return;
+  s.medium.kind = OsloMedium::Kind::indices;
+  const std::size_t first = model ? 3 : 1;  // a model has a name
+  if (w.size() <= first) in_.refuse(line, "GLA", "a model without indices", "its indices at the wavelengths");
+  for (std::size_t i = first; i < w.size(); ++i) s.medium.indices.push_back(in_.number(line, "GLA", w[i]));
+  s.medium.wavelengths = inline_wavelengths_;
+}
+
+void OsloReader::take_aperture(int line, const Words& w, OsloSurface& s) {
+  std::size_t i = 1;
+  if (w.size() > 1 && same(w[1], "PK")) return take_pickup(line, {"PK", "AP", w.size() > 2 ? w[2] : ""}, s);
+  if (w.size() > 1 && same(w[1], "CHK")) s.checked = true, i = 2;
+  if (w.size() <= i) return;
+  const double radius = value(line, w, i);
+  if (radius < 0) in_.refuse(line, "AP", to_text(radius), "0 or more");
+  s.aperture = radius;
+}
+
+void OsloReader::take_pickup(int line, const Words& w, OsloSurface& s) {
+  static constexpr std::array<std::string_view, 7> known = {"CV", "CVM", "TH", "THM", "GLA", "AP", "CC"};
+  if (w.size() < 3 || w.size() > 4 || std::ranges::none_of(known, [&](auto k) { return same(k, w[1]); })) {
+    in_.warn(line, "PK", "an unknown pickup is left out; the value that the file states is taken");
+    return;
+  }
+  const double surface = in_.number(line, "PK", w[2]);
+  const auto own = static_cast<double>(lens_.surfaces.size() - 1);
+  if (!(surface >= 0 && surface < own && surface == std::floor(surface))) {
+    in_.refuse(line, "PK", "of surface " + to_text(surface), "a surface before it");
+  }
+  OsloPickup pickup{line, upper(w[1]), static_cast<int>(surface), w.size() > 3 ? value(line, w, 3) : 0};
+  s.pickups.push_back(std::move(pickup));
+}
+
+/// AD to AG are r^4 to r^10. General aspheres: ASn of r^2n (ASR) or of r^n (ARA).
+bool OsloReader::take_asphere(int line, std::string_view command, const Words& w, OsloSurface& s) {
+  static constexpr std::array<std::string_view, 4> classic = {"AD", "AE", "AF", "AG"};
+  if (const auto found = std::ranges::find(classic, command); found != classic.end()) {
+    s.terms[4 + 2 * static_cast<int>(found - classic.begin())] = value(line, w);
+    return true;
+  }
+  if (command == "ASP") {
+    s.asphere = w.size() > 1 ? lower(w[1]) : std::string();
+    if (s.asphere != "asr" && s.asphere != "ara") {
+      in_.refuse(line, "ASP", io_detail::in_quotes(s.asphere), "ASR (even powers) or ARA (all powers)");
+    }
+    return true;
+  }
+  if (!command.starts_with("AS") || !number(command.substr(2))) return false;
+  const double place = *number(command.substr(2)), coefficient = value(line, w);
+  if (coefficient == 0) return true;
+  if (s.asphere.empty()) in_.refuse(line, command, "before ASP", "the kind of asphere first");
+  const double order = s.asphere == "asr" ? 2 * place : place;
+  if (!(order >= 2 && order <= 40 && order == std::floor(order))) {
+    in_.refuse(line, command, "of order " + to_text(order), "orders 2 to 40");
+  }
+  s.terms[static_cast<int>(order)] = coefficient;
+  return true;
+}
+
+/// What would make another lens if it were left out, and what is of no matter to it.
+bool OsloReader::refuse_or_skip(int line, std::string_view command, const Words& w) {
+  static constexpr std::array<std::string_view, 9> transforms = {"DCX", "DCY", "DCZ", "TLA", "TLB",
+                                                                 "TLC", "CVX", "RDX", "CCX"};
+  if (std::ranges::count(transforms, command) > 0) {
+    if (value(line, w) != 0) {
+      in_.refuse(line, command, to_text(value(line, w)), "0: surfaces that are rotationally symmetric about one axis");
+    }
+    return true;
+  }
+  static constexpr std::array<std::pair<std::string_view, std::string_view>, 10> others = {{
+      {"PFL", "a perfect lens"},
+      {"PFM", "a perfect lens"},
+      {"GSP", "a grating"},
+      {"GOR", "a grating"},
+      {"HOR", "a hologram"},
+      {"DOR", "a diffractive surface"},
+      {"GDT", "a gradient index"},
+      {"GRT", "a gradient index"},
+      {"ARX", "a lens array"},
+      {"SPL", "a spline"},
+  }};
+  const auto other = std::ranges::find_if(others, [&](const auto& entry) { return entry.first == command; });
+  if (other != others.end()) in_.refuse(line, command, std::string(other->second), "spheres, conics and aspheres");
+  if (command == "LMO") {
+    if (w.size() > 1 && (same(w[1], "NSS") || same(w[1], "ARR"))) {
+      in_.refuse(line, command, std::string(w[1]), "surfaces in sequence");
+    }
+    return true;
+  }
+  // Bends and returns are of tilted surfaces, which are refused by their angles.
+  static constexpr std::array<std::string_view, 8> harmless = {"TCE", "DT", "DRW", "BEN", "RCO", "TLM", "PEN", "ELE"};
+  if (std::ranges::count(harmless, command) > 0) return true;
+  if (command == "APN" || command.starts_with("ATP") || command.starts_with("AX") || command.starts_with("AY") ||
+      command.starts_with("AAC") || command.starts_with("AVX")) {
+    warn_once(line, command, "apertures that are no circles are left out");
+    return true;
+  }
+  return false;
+}
+
+}  // namespace
+
+bool is_oslo(std::string_view text) {
+  int tried = 0;
+  for (Lines lines(text); lines.next() && tried < 100;) {
+    for (const auto command : commands_of(lines.text())) {
+      const auto w = words(command, 5);
+      if (w.size() >= 4 && same(w[0], "LEN") && same(w[1], "NEW") && number(w[3])) return true;
+      ++tried;
+    }
+  }
+  return false;
+}
+
+void read_oslo(std::string_view text, Import& in) { OsloReader(in).read(text); }
+
+}  // namespace petzval::formats_detail

@@ -1,0 +1,320 @@
+// SPDX-License-Identifier: Apache-2.0
+// Pages of refractiveindex.info. Source of the form: M. N. Polyanskiy, Refractiveindex.info database of optical
+// constants, Scientific Data 11, 94 (2024).
+#include <yaml-cpp/eventhandler.h>
+#include <yaml-cpp/exceptions.h>
+#include <yaml-cpp/mark.h>
+#include <yaml-cpp/parser.h>
+
+#include <algorithm>
+#include <cmath>
+#include <sstream>
+#include <utility>
+#include <vector>
+
+#include "core/text.hpp"
+#include "glass_reader.hpp"
+#include "text_file.hpp"
+
+namespace petzval::formats_detail {
+namespace {
+
+struct Value {
+  std::string text;
+  int line = 0;  ///< 0: absent
+};
+
+/// One entry of DATA.
+struct Entry {
+  Value type, range, coefficients, table;
+};
+
+struct Page {
+  std::vector<Entry> data;
+  Value nd, vd, absolute;
+};
+
+/// Keeps the few values of a page that make a glass, while yaml-cpp walks through it: no tree is built, so that neither
+/// aliases nor depth cost memory.
+class PageReader : public YAML::EventHandler {
+ public:
+  PageReader(Page& page, const GlassReader& reader) : page_(page), reader_(reader) {}
+
+  void OnDocumentStart(const YAML::Mark& mark) override {
+    if (++documents_ > 1) reader_.refuse(mark.line + 1, "a second document", "one page");
+  }
+  void OnDocumentEnd() override {}
+  void OnAlias(const YAML::Mark& mark, YAML::anchor_t) override {
+    reader_.refuse(mark.line + 1, "an alias", "a page without them");
+  }
+  void OnNull(const YAML::Mark& mark, YAML::anchor_t) override { take(mark, ""); }
+  void OnScalar(const YAML::Mark& mark, const std::string&, YAML::anchor_t, const std::string& value) override {
+    take(mark, value);
+  }
+  void OnSequenceStart(const YAML::Mark& mark, const std::string&, YAML::anchor_t, YAML::EmitterStyle::value) override {
+    open(mark, false);
+  }
+  void OnSequenceEnd() override { close(); }
+  void OnMapStart(const YAML::Mark& mark, const std::string&, YAML::anchor_t, YAML::EmitterStyle::value) override {
+    open(mark, true);
+    if (inside_.size() == 3 && inside_[0].key == "DATA" && !inside_[1].map) page_.data.emplace_back();
+  }
+  void OnMapEnd() override { close(); }
+
+ private:
+  struct Level {
+    bool map, at_key;
+    std::string key;
+  };
+  static constexpr std::size_t most_levels = 32;
+
+  void open(const YAML::Mark& mark, bool map) {
+    if (inside_.size() == most_levels) {
+      reader_.refuse(mark.line + 1, "lists in lists", "at most " + std::to_string(most_levels) + " levels");
+    }
+    if (!inside_.empty() && inside_.back().map && inside_.back().at_key) {
+      reader_.refuse(mark.line + 1, "a list or an object as a key", "a word");
+    }
+    inside_.push_back({map, map, {}});
+  }
+
+  void close() {
+    inside_.pop_back();
+    value_ends();
+  }
+
+  /// A value inside an object is complete: a key comes next.
+  void value_ends() {
+    if (!inside_.empty() && inside_.back().map) inside_.back().at_key = true;
+  }
+
+  void take(const YAML::Mark& mark, const std::string& text) {
+    if (inside_.empty()) return;
+    Level& level = inside_.back();
+    if (level.map && level.at_key) {
+      level.key = text;
+      level.at_key = false;
+      return;
+    }
+    if (Value* value = place(level.key)) *value = {text, mark.line + 1};
+    value_ends();
+  }
+
+  /// Where a value goes, by the keys that lead to it.
+  Value* place(const std::string& key) {
+    const std::string& section = inside_[0].key;
+    if (inside_.size() == 3 && section == "DATA" && !page_.data.empty()) {
+      Entry& entry = page_.data.back();
+      if (key == "type") return &entry.type;
+      if (key == "wavelength_range" || key == "range") return &entry.range;
+      if (key == "coefficients") return &entry.coefficients;
+      if (key == "data") return &entry.table;
+    }
+    if (inside_.size() == 2) {
+      const bool properties = section == "PROPERTIES" || section == "SPECS";
+      if (properties && key == "nd") return &page_.nd;
+      if (properties && key == "Vd") return &page_.vd;
+      if (section == "CONDITIONS" && key == "n_is_absolute") return &page_.absolute;
+    }
+    return nullptr;
+  }
+
+  Page& page_;
+  const GlassReader& reader_;
+  std::vector<Level> inside_;
+  int documents_ = 0;
+};
+
+/// yaml-cpp holds the tokens of a line, hundreds of bytes each, until it knows whether they are a key, and those of a
+/// document that another one follows.
+void check_lines(std::string_view text, const GlassReader& reader) {
+  constexpr std::size_t most_bytes = 8 << 20, longest_line = 64 << 10;
+  if (text.size() > most_bytes) {
+    reader.refuse(1, "a page of " + std::to_string(text.size()) + " bytes", "at most 8 MiB");
+  }
+  int documents = 0;
+  Lines lines(text);
+  while (lines.next()) {
+    if (lines.text().size() > longest_line) {
+      reader.refuse(lines.number(), "a line of " + std::to_string(lines.text().size()) + " bytes", "at most 64 KiB");
+    }
+    if (lines.text().starts_with("---") && ++documents > 1)
+      reader.refuse(lines.number(), "a second document", "one page");
+  }
+}
+
+Page read_page(std::string text, const GlassReader& reader) {
+  check_lines(text, reader);
+  Page page;
+  PageReader handler(page, reader);
+  try {
+    std::istringstream stream(std::move(text));
+    YAML::Parser parser(stream);
+    while (parser.HandleNextDocument(handler)) {
+    }
+  } catch (const YAML::Exception& error) {
+    reader.refuse(error.mark.line + 1, "YAML that ends or errs here (" + error.msg + ")",
+                  "a page of refractiveindex.info");
+  }
+  return page;
+}
+
+std::vector<double> numbers(const Value& value, std::string_view what, const GlassReader& reader) {
+  std::vector<double> result;
+  Lines lines(value.text);
+  while (lines.next()) {
+    const int line = value.line + lines.number() - 1;
+    for (const auto word : words(lines.text())) result.push_back(reader.number(line, what, word));
+  }
+  return result;
+}
+
+/// n^2 = C1 + C2 l^C3 / (l^2 - C4^C5) + C6 l^C7 / (l^2 - C8^C9) + C10 l^C11 + ...
+std::vector<double> rational_terms(const std::vector<double>& c) {
+  const auto at = [&](std::size_t i) { return i < c.size() ? c[i] : 0.0; };
+  std::vector<double> terms = {at(0)};
+  for (const std::size_t i : {1, 5}) {
+    if (at(i) != 0) terms.insert(terms.end(), {at(i), at(i + 1), std::pow(at(i + 2), at(i + 3))});
+  }
+  for (std::size_t i = 9; i < c.size(); i += 2) terms.insert(terms.end(), {c[i], at(i + 1) + 2, 0});
+  return terms;
+}
+
+class RiiReader {
+ public:
+  RiiReader(const std::string& name, GlassReader& reader) : reader_(reader) {
+    glass_.catalogue = "rii";
+    glass_.name = name;
+  }
+
+  void read(const Page& page) {
+    if (page.absolute.text == "true") {
+      reader_.warn(page.absolute.line, "n_is_absolute", "the index, which is relative to vacuum, is taken as it is");
+    }
+    const auto printed = [&](const Value& v) { return v.line > 0 ? reader_.number(v.line, "nd or Vd", v.text) : 0.0; };
+    glass_.nd = printed(page.nd);
+    glass_.vd = printed(page.vd);
+    const Entry* taken = nullptr;
+    for (const Entry& entry : page.data) {
+      const std::string_view type = entry.type.text;
+      if (type == "tabulated k") {
+        reader_.warn(entry.type.line, type, "absorption is not used: glasses are clear");
+      } else if (taken) {
+        reader_.warn(entry.type.line, type, "left out: the indices are those of the entry before");
+      } else {
+        taken = &entry;
+      }
+    }
+    if (!taken) reader_.refuse(1, "no DATA with an index", "a formula or a table of n");
+    line_ = taken->type.line;
+    take(*taken);
+    reader_.add(std::move(glass_), line_);
+  }
+
+ private:
+  void take(const Entry& entry) {
+    const std::string& type = entry.type.text;
+    if (type == "tabulated n" || type == "tabulated nk") return take_table(entry.table, type == "tabulated nk");
+    using enum DispersionFormula;
+    std::vector<double> c = numbers(entry.coefficients, "coefficient", reader_);
+    const auto pairs = [&](DispersionFormula formula) {
+      if (c.size() % 2 == 0) {
+        reader_.refuse(entry.coefficients.line, std::to_string(c.size()) + " coefficients", "C1 and pairs");
+      }
+      glass_.formula = formula;
+      glass_.coefficients = std::move(c);
+    };
+    if (c.empty()) reader_.refuse(line_, type + " without coefficients", "some");
+    if (type == "formula 1") {
+      pairs(sellmeier_squared);
+    } else if (type == "formula 2") {
+      pairs(sellmeier);
+    } else if (type == "formula 3") {
+      pairs(polynomial);
+    } else if (type == "formula 4") {
+      glass_.formula = rational;
+      glass_.coefficients = rational_terms(c);
+    } else if (type == "formula 5") {
+      pairs(cauchy);
+    } else if (type == "formula 7") {
+      glass_.formula = herzberger;
+      c.resize(6);
+      glass_.coefficients = std::move(c);
+    } else {
+      reader_.refuse(line_, "type \"" + std::string(beginning(type, 100)) + "\"",
+                     "formula 1, 2, 3, 4, 5 or 7, or tabulated n or nk");
+    }
+    const auto range = numbers(entry.range, "wavelength_range", reader_);
+    if (range.size() != 2) {
+      reader_.refuse(line_, "a range of " + std::to_string(range.size()) + " numbers", "two wavelengths");
+    }
+    glass_.shortest_nm = range[0] * 1000;
+    glass_.longest_nm = range[1] * 1000;
+  }
+
+  /// Rows of a table: wavelength, n and, with k, how much it absorbs.
+  void take_table(const Value& table, bool with_k) {
+    struct Row {
+      double l, n, k;
+    };
+    std::vector<Row> rows;
+    const std::size_t columns = with_k ? 3 : 2;
+    Lines lines(table.text);
+    while (lines.next()) {
+      const int line = table.line + lines.number();  // the rows begin below the key
+      const auto w = words(lines.text(), columns + 1);
+      if (w.empty()) continue;
+      if (w.size() != columns) {
+        reader_.refuse(line, "a row of " + std::to_string(w.size()) + " numbers", std::to_string(columns));
+      }
+      const auto at = [&](std::size_t i) { return reader_.number(line, "data", w[i]); };
+      rows.push_back({at(0), at(1), with_k ? at(2) : 0});
+    }
+    std::stable_sort(rows.begin(), rows.end(), [](const Row& a, const Row& b) { return a.l < b.l; });
+    const auto same = std::unique(rows.begin(), rows.end(), [](const Row& a, const Row& b) { return a.l == b.l; });
+    if (same != rows.end()) {
+      reader_.warn(line_, "data", std::to_string(rows.end() - same) + " rows of wavelengths given before are left out");
+      rows.erase(same, rows.end());
+    }
+
+    // Where k is above 0.01, a millimetre passes nothing; the longest clear stretch is the glass.
+    constexpr double clear = 0.01;
+    std::size_t first = 0, count = 0;
+    for (std::size_t i = 0, start = 0; i < rows.size(); ++i) {
+      if (rows[i].k > clear) start = i + 1;
+      if (i + 1 > start && i + 1 - start > count) first = start, count = i + 1 - start;
+    }
+    if (count < 2) {
+      reader_.refuse(line_, "a table with " + std::to_string(count) + " rows of a clear medium (k at most 0.01)",
+                     "two or more");
+    }
+    if (count < rows.size()) {
+      reader_.warn(line_, "tabulated nk",
+                   "it absorbs at other wavelengths than " + to_text(rows[first].l * 1000, 7) + " to " +
+                       to_text(rows[first + count - 1].l * 1000, 7) + " nm: they are left out");
+    }
+    if (with_k) reader_.warn(line_, "tabulated nk", "absorption is not used: glasses are clear");
+    glass_.formula = DispersionFormula::tabulated;
+    for (std::size_t i = first; i < first + count; ++i) {
+      glass_.coefficients.insert(glass_.coefficients.end(), {rows[i].l, rows[i].n});
+    }
+    glass_.shortest_nm = rows[first].l * 1000;
+    glass_.longest_nm = rows[first + count - 1].l * 1000;
+  }
+
+  GlassReader& reader_;
+  Glass glass_;
+  int line_ = 0;
+};
+
+}  // namespace
+
+bool looks_like_rii(std::string_view text) {
+  return text.starts_with("DATA:") || text.find("\nDATA:") != std::string_view::npos;
+}
+
+void read_rii(std::string text, const std::string& name, GlassReader& reader) {
+  RiiReader(name, reader).read(read_page(std::move(text), reader));
+}
+
+}  // namespace petzval::formats_detail

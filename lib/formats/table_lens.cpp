@@ -1,0 +1,319 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "table_lens.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <functional>
+#include <set>
+#include <utility>
+
+#include "core/text.hpp"
+#include "io/json.hpp"
+#include "petzval/core/error.hpp"
+#include "petzval/lens/lens.hpp"
+#include "petzval/paraxial/first_order.hpp"
+#include "text_file.hpp"
+
+namespace petzval::formats_detail {
+namespace {
+
+bool is_air(std::string_view name) {
+  return name.empty() || same(name, "air") || same(name, "vacuum") || same(name, "vac");
+}
+
+class TableBuilder {
+ public:
+  TableBuilder(TableLens table, Import& in) : table_(std::move(table)), rows_(table_.rows), in_(in) {}
+  void build();
+
+ private:
+  void check(const TableRow& row) const;
+  void move_gaps_behind();
+  Medium medium(const TableRow& row, const Medium& before);
+  void name_other_makers(const TableRow& row, const Medium& taken);
+  void choose_stop();
+  std::vector<std::size_t> planes_in_one_medium() const;
+  void drop_film_row();
+  void choose_apertures();
+  void place_film();
+  std::optional<double> f_number(double aperture_scale);
+  FirstOrder first_order_of_rows();
+
+  TableLens table_;
+  std::vector<TableRow>& rows_;
+  Import& in_;
+  std::set<std::string> named_;  ///< glasses of other makers that a warning has named
+};
+
+void TableBuilder::check(const TableRow& row) const {
+  if (row.radius != 0 && std::abs(row.radius) < 1e-12) {
+    in_.must_be(row.line, "radius", to_text(row.radius), "at least 1e-12 mm, or 0 for a plane");
+  }
+  if (row.thickness && !(std::abs(*row.thickness) < 1e10)) {
+    in_.must_be(row.line, "thickness", to_text(*row.thickness), "below 1e10 mm");
+  }
+  if (row.index && *row.index != 0 && !(*row.index >= 0.1 && *row.index <= 5)) {
+    in_.must_be(row.line, "index", to_text(*row.index), "0.1 to 5");
+  }
+  if (row.aperture && !(*row.aperture >= 0)) in_.must_be(row.line, "aperture", to_text(*row.aperture), "0 or more");
+}
+
+/// The column of distances is the gap in front of each surface if the table says so, or if else the first glass would
+/// have no thickness.
+void TableBuilder::move_gaps_behind() {
+  const TableRow& first = rows_.front();
+  const bool guess = table_.gaps == TableGaps::unknown && rows_.size() > 1 && first.thickness == 0.0 &&
+                     (first.index.value_or(0) > 1.01 || !is_air(first.glass));
+  if (table_.gaps != TableGaps::in_front && !guess) return;
+  if (guess) {
+    in_.warn(first.line, "thickness",
+             "is 0 for the first glass, so the column is taken as the gap in front of each surface");
+  }
+  for (std::size_t i = 0; i + 1 < rows_.size(); ++i) rows_[i].thickness = rows_[i + 1].thickness;
+  rows_.back().thickness.reset();
+}
+
+Medium TableBuilder::medium(const TableRow& row, const Medium& before) {
+  const bool stated = row.index && *row.index != 0;
+  if (row.mirror) return before;
+  if (is_air(row.glass)) {
+    if (!row.index) return row.in_medium && row.radius == 0 ? before : Medium{};
+    if (!stated || *row.index == 1) return {.nd = 1};
+    Medium medium{.nd = *row.index};
+    if (row.abbe.value_or(0) > 0) medium.vd = *row.abbe;
+    return medium;
+  }
+  if (!stated) {
+    if (const auto code = medium_of_code(row.glass)) return *code;
+  }
+  // A name without a maker is a glass of Schott, if Schott has this name.
+  std::vector<std::string> catalogues;
+  if (!row.catalogue.empty()) {
+    catalogues.push_back(row.catalogue);
+  } else if (in_.glasses().find(row.glass, "schott") || in_.glasses().find(row.glass, "schott-legacy")) {
+    catalogues.emplace_back("schott");
+  }
+  const auto nd = stated ? row.index : std::nullopt;
+  const auto vd = row.abbe.value_or(0) > 0 ? row.abbe : std::nullopt;
+  Medium found = in_.glass(row.line, row.glass, catalogues, nd, vd);
+  if (row.catalogue.empty() && !stated) name_other_makers(row, found);
+  return found;
+}
+
+/// One name may stand for several glasses: F2 has n_d 1.62004 at Schott and 1.61293 at CDGM.
+void TableBuilder::name_other_makers(const TableRow& row, const Medium& taken) {
+  constexpr double another_glass = 1e-3;
+  if (!taken.glass || !taken.catalogue || !named_.insert(*taken.glass).second) return;
+  const Glass* glass = in_.glasses().find(*taken.glass, *taken.catalogue);
+  std::string others;
+  for (const Glass& other : in_.glasses().glasses()) {
+    if (!glass || !same(other.name, glass->name) || std::abs(other.nd - glass->nd) <= another_glass) continue;
+    others += ", " + other.catalogue + " (n_d " + to_text(other.nd, 6) + ')';
+  }
+  if (others.empty()) return;
+  in_.warn(row.line, row.glass,
+           "is taken as that of " + glass->catalogue + " (n_d " + to_text(glass->nd, 6) + "), not of" +
+               others.substr(1) + "; a column \"catalogue\" names another");
+}
+
+FirstOrder TableBuilder::first_order_of_rows() {
+  Prescription rows = in_.lens;
+  rows.imported.reset();
+  return first_order(in_.compiled(rows));
+}
+
+/// Planes with the same medium on both sides.
+std::vector<std::size_t> TableBuilder::planes_in_one_medium() const {
+  std::vector<std::size_t> result;
+  const Medium* before = &in_.lens.object_space;
+  for (std::size_t i = 0; i < rows_.size(); ++i) {
+    const SurfaceRow& row = in_.lens.surfaces[i];
+    const bool plane = row.radius == 0 && row.conic == 0 && row.aspheric.empty() && !row.mirror;
+    if (plane && row.medium == *before) result.push_back(i);
+    before = &row.medium;
+  }
+  return result;
+}
+
+/// A table may end in a plane for the film: in one medium, without a distance behind it, and where light is focused.
+void TableBuilder::drop_film_row() {
+  const TableRow& last = rows_.back();
+  const auto planes = planes_in_one_medium();
+  const bool plane = !planes.empty() && planes.back() + 1 == rows_.size() && rows_.size() > 1;
+  if (!plane || !last.stop.empty() || last.thickness.value_or(0) != 0 || last.index == 0.0) return;
+  const FirstOrder first = first_order_of_rows();
+  constexpr double near =
+      0.05;  // fraction of the focal length: tables state the sharpest film, or the film of a near subject
+  if (first.afocal || std::abs(first.back_focal_distance) > near * std::abs(first.effective_focal_length)) return;
+  in_.warn(last.line, "row", "is a plane in the paraxial focus; it is taken as the film");
+  rows_.pop_back();
+  in_.lens.surfaces.pop_back();
+}
+
+void TableBuilder::choose_stop() {
+  std::vector<std::size_t> marked;
+  for (std::size_t i = 0; i < rows_.size(); ++i) {
+    if (!rows_[i].stop.empty()) marked.push_back(i);
+  }
+  const auto is_star = [&](std::size_t i) { return rows_[i].stop == "*"; };
+  if (marked.size() > 1 && std::ranges::all_of(marked, is_star)) {
+    in_.warn(rows_[marked.front()].line, "*",
+             "marks " + std::to_string(marked.size()) + " surfaces, so it is not taken for the stop and is left out");
+    marked.clear();
+  }
+  if (marked.empty()) {
+    for (std::size_t i = 0; i < rows_.size(); ++i) {
+      if (rows_[i].radius == 0 && rows_[i].index == 0.0) marked.push_back(i);
+    }
+  }
+  if (marked.empty()) {
+    marked = planes_in_one_medium();
+    if (!marked.empty()) {
+      in_.warn(rows_[marked.front()].line, "stop", "is not marked; the plane in one medium is taken as the stop");
+    }
+  }
+  if (marked.empty()) return;  // Import::finish() marks the first surface, with a warning
+  in_.lens.surfaces[marked.front()].stop = true;
+  for (std::size_t i = 1; i < marked.size(); ++i) {
+    in_.warn(rows_[marked[i]].line, "stop", "a second one only limits rays; the first is the stop");
+  }
+}
+
+std::optional<double> TableBuilder::f_number(double aperture_scale) {
+  Prescription p = in_.lens;
+  p.imported.reset();
+  for (SurfaceRow& row : p.surfaces) {
+    if (row.semi_diameter) *row.semi_diameter *= aperture_scale;
+  }
+  const double result = paraxial_f_number(in_.compiled(p));
+  return std::isfinite(result) ? std::optional(result) : std::nullopt;
+}
+
+/// Tables have diameters or semi-diameters in one column. Without a head the declared f-number decides.
+void TableBuilder::choose_apertures() {
+  const auto has_one = [](const TableRow& row) { return row.aperture.value_or(0) > 0; };
+  const auto first = std::ranges::find_if(rows_, has_one);
+  if (first == rows_.end()) {
+    return in_.warn(0, "aperture", "the table has no apertures; the surfaces have no semi-diameters");
+  }
+  const auto without = std::ranges::find_if_not(rows_, has_one);
+  const auto set = [&](double scale) {
+    for (std::size_t i = 0; i < rows_.size(); ++i) {
+      if (has_one(rows_[i])) in_.lens.surfaces[i].semi_diameter = scale * *rows_[i].aperture;
+    }
+    in_.lens.semi_diameters = scale == 1 ? "the table's apertures" : "half of the table's apertures";
+  };
+  TableApertures meaning = table_.apertures;
+  set(0.5);
+  if (meaning == TableApertures::unknown) {
+    const auto as_diameters = in_.lens.f_number ? f_number(1) : std::nullopt;
+    const auto as_radii = in_.lens.f_number ? f_number(2) : std::nullopt;
+    if (as_diameters && as_radii) {
+      const auto off = [&](double found) { return std::abs(std::log(found / *in_.lens.f_number)); };
+      const bool diameters = off(*as_diameters) <= off(*as_radii);
+      meaning = diameters ? TableApertures::diameters : TableApertures::semi_diameters;
+      if (meaning != table_.likely_apertures) {
+        in_.warn(first->line, "aperture",
+                 "the column is taken as " + std::string(diameters ? "diameters" : "semi-diameters") +
+                     ": diameters give f/" + to_text(*as_diameters, 3) + ", semi-diameters f/" + to_text(*as_radii, 3) +
+                     ", and the file declares f/" + to_text(*in_.lens.f_number, 3));
+      }
+    } else {
+      meaning = table_.likely_apertures;
+      in_.warn(first->line, "aperture",
+               "the column is taken as " +
+                   std::string(meaning == TableApertures::diameters ? "diameters" : "semi-diameters") +
+                   ": the file declares no f-number that could tell");
+    }
+  }
+  if (meaning == TableApertures::semi_diameters) set(1);
+  if (without != rows_.end()) {
+    in_.warn(without->line, "aperture",
+             "is missing in " + std::to_string(std::ranges::count_if(rows_, std::not_fn(has_one))) +
+                 " of the rows; these surfaces have no semi-diameters");
+  }
+}
+
+void TableBuilder::place_film() {
+  SurfaceRow& last = in_.lens.surfaces.back();
+  const TableRow& row = rows_.back();
+  if (last.thickness != 0) return;
+  const FirstOrder first = first_order_of_rows();
+  const std::string what = row.thickness ? "of the last surface is 0" : "of the last surface is not stated";
+  if (first.afocal || !(first.back_focal_distance > 0)) {
+    return in_.warn(row.line, "thickness", what + ", and no image lies behind it; the film lies in the last vertex");
+  }
+  last.thickness = first.back_focal_distance;
+  in_.lens.image_distance = "paraxial focus";
+  in_.warn(row.line, "thickness",
+           what + "; the film is put at the paraxial focus, " + to_text(last.thickness, 7) + " mm");
+}
+
+void TableBuilder::build() {
+  for (const TableRow& row : rows_) check(row);
+  move_gaps_behind();
+  Medium before = in_.lens.object_space;
+  const TableRow* air = nullptr;
+  std::size_t air_rows = 0;
+  for (std::size_t i = 0; i < rows_.size(); ++i) {
+    const TableRow& row = rows_[i];
+    SurfaceRow& surface = in_.lens.surfaces.emplace_back();
+    surface.radius = row.radius;
+    if (!row.thickness && i + 1 < rows_.size()) {
+      in_.must_be(row.line, "thickness", "-", "a number: the distance to the next surface");
+    }
+    surface.thickness = row.thickness.value_or(0);
+    surface.conic = row.conic;
+    surface.aspheric = row.terms;
+    surface.mirror = row.mirror;
+    surface.curved_in = row.curved_in;
+    surface.medium = medium(row, before);
+    if (!row.comment.empty()) surface.comment = row.comment;
+    if (!row.index && row.glass.empty() && !row.mirror && surface.medium == Medium{} && ++air_rows == 1) air = &row;
+    before = surface.medium;
+  }
+  if (air) {
+    in_.warn(air->line, "index",
+             "is missing in " + std::to_string(air_rows) + (air_rows == 1 ? " row" : " rows") + "; air is taken");
+  }
+  validate(in_.lens, in_.where());
+  drop_film_row();
+  choose_stop();
+  choose_apertures();
+  place_film();
+}
+
+}  // namespace
+
+std::optional<double> focal_length_in(std::string_view text) {
+  const std::string all = lower(text);
+  const std::string_view digits = "0123456789.";
+  for (std::size_t at = all.find("mm"); at != std::string::npos; at = all.find("mm", at + 1)) {
+    std::size_t end = at;
+    while (end > 0 && all[end - 1] == ' ') --end;
+    std::size_t start = end;
+    while (start > 0 && digits.find(all[start - 1]) != std::string_view::npos) --start;
+    while (start < end && all[start] == '.') ++start;
+    if (const auto value = number(std::string_view(all).substr(start, end - start)); value && *value > 0) return value;
+  }
+  return {};
+}
+
+std::optional<double> f_number_in(std::string_view text) {
+  const std::string all = lower(text);
+  for (std::size_t at = all.find('f'); at != std::string::npos; at = all.find('f', at + 1)) {
+    if (at > 0 && std::string_view(" .,(-_/").find(all[at - 1]) == std::string_view::npos) continue;
+    std::size_t start = at + 1;
+    if (start < all.size() && all[start] == '/') ++start;
+    std::size_t end = std::min(all.find_first_not_of("0123456789.", start), all.size());
+    while (end > start && all[end - 1] == '.') --end;
+    const auto value = number(std::string_view(all).substr(start, end - start));
+    if (value && *value >= 0.5 && *value <= 64) return value;
+  }
+  return {};
+}
+
+void build_table(TableLens table, Import& import) { TableBuilder(std::move(table), import).build(); }
+
+}  // namespace petzval::formats_detail

@@ -1,0 +1,588 @@
+// SPDX-License-Identifier: Apache-2.0
+// Tables of surfaces as people type them: with heads or without, from patents, spreadsheets and renderers. A line is a
+// head, a row or a comment; there is no fourth kind, so that nothing is dropped. data/README.md describes the form.
+#include "table_reader.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "core/text.hpp"
+#include "io/json.hpp"
+#include "petzval/core/error.hpp"
+#include "table_columns.hpp"
+#include "table_lens.hpp"
+#include "table_text.hpp"
+#include "text_file.hpp"
+
+namespace petzval::formats_detail {
+namespace {
+
+using io_detail::in_quotes;
+
+constexpr std::size_t most_rows = 10'000;
+
+/// The mark of the stop behind the number of a row: "4(stop)", "4 STO", "4S"; empty without a mark.
+std::string_view stop_mark_of(std::string_view label) {
+  const std::size_t end = std::min(label.find_first_not_of("0123456789"), label.size());
+  std::string_view mark = label.substr(end);
+  while (mark.starts_with(' ')) mark.remove_prefix(1);
+  const bool marks = mark != "*" && (is_stop_word(mark) || same(mark, "s"));
+  return end > 0 && marks ? mark : std::string_view();
+}
+
+/// The number in front of a row: "3", "S3", "3*", "3.", "3(stop)"; nullopt for anything else.
+std::optional<int> label_of(std::string_view cell) {
+  cell.remove_suffix(stop_mark_of(cell).size());
+  if (cell.starts_with('S') || cell.starts_with('s') || cell.starts_with('#')) cell.remove_prefix(1);
+  while (!cell.empty() && std::string_view("*.):").find(cell.back()) != std::string_view::npos) cell.remove_suffix(1);
+  if (cell.empty() || cell.size() > 5 || cell.find_first_not_of("0123456789") != std::string_view::npos) return {};
+  return static_cast<int>(*number(cell));
+}
+
+bool is_object_word(std::string_view cell) { return same(cell, "obj") || same(cell, "object"); }
+bool is_image_word(std::string_view cell) {
+  static constexpr std::array<std::string_view, 6> all = {"ima", "img", "image", "film", "sensor", "si"};
+  return std::ranges::any_of(all, [&](std::string_view word) { return same(word, cell); });
+}
+
+/// In a column of comments "ASP" is an asphere, and "aperture" any rim.
+bool marks_stop_in_comment(std::string_view cell) {
+  return is_stop_word(cell) && !same(cell, "asp") && !same(cell, "as") && !same(cell, "ast") && !same(cell, "aperture");
+}
+
+/// A row before its cells have meanings.
+struct RawRow {
+  int line = 0;
+  std::vector<std::string_view> cells{};
+  std::string_view remark{};
+  std::string stop{};  ///< the word that marks the stop
+  bool stop_in_front = false, object = false, image = false;
+};
+
+class TableReader {
+ public:
+  TableReader(std::string_view text, Import& in) : text_(text), in_(in) {}
+  void read();
+
+ private:
+  using Columns = std::vector<TableColumn>;
+
+  void take_comments();
+  void take_lines();
+  Columns columns_for_rows(const TableLine& head) const;
+  bool take_units(const TableLine& line);
+  void take_text(const TableLine& line);
+  void use_comment_as_head();
+  void drop_labels();
+  void take_titles();
+  void end_last_row();
+  bool are_labels() const;
+  void name_star(int line, std::string_view label);
+  void guess();
+  void check_head() const;
+  void take_marks(RawRow& row);
+  void check_width(const RawRow& row) const;
+  TableRow row_of(const RawRow& raw);
+  void put(TableRow& row, const TableColumn& column, std::string_view cell, const RawRow& raw);
+  double value(const RawRow& row, const TableColumn& column, std::string_view cell) const;
+  void take_object(const TableRow& row, const RawRow& raw);
+  bool is_bare_plane(const RawRow& raw) const;
+  void take_image(const RawRow& raw, bool last) const;
+  std::size_t find(Column kind) const {
+    return static_cast<std::size_t>(std::ranges::find(columns_, kind, &TableColumn::kind) - columns_.begin());
+  }
+  bool has(Column kind) const { return find(kind) < columns_.size(); }
+
+  TableText text_;
+  Import& in_;
+  Columns columns_;
+  int head_line_ = 0;  ///< 0: the table has no head
+  bool guessed_ = false;
+  bool star_named_ = false;
+  std::vector<RawRow> rows_;
+  std::string said_;  ///< comments, titles and the file's name
+};
+
+void TableReader::take_comments() {
+  auto& notes = in_.lens.imported->notes;
+  for (const TableComment& comment : text_.comments) {
+    if (said_.size() < 65'536) said_ += std::string(beginning(comment.text, 4096)) + ' ';
+    if (!comment.text.empty() && notes.size() < 1000) notes.emplace_back(beginning(comment.text, 4096));
+  }
+}
+
+/// A line of words in front of the table: its title.
+void TableReader::take_text(const TableLine& line) {
+  std::string title;
+  for (const std::string_view cell : line.cells)
+    title += (title.empty() ? "" : " ") + std::string(beginning(cell, 4096));
+  said_ += title + ' ';
+  in_.warn(line.number, "line", in_quotes(title) + " names no columns; it is taken as a title");
+  auto& notes = in_.lens.imported->notes;
+  notes.insert(notes.begin(), std::move(title));
+}
+
+/// Lines with numbers and words in front of the head are titles: "50 mm f/5", "EPD 10".
+void TableReader::take_titles() {
+  const auto is_value = [](std::string_view cell) {
+    return looks_like_a_number(cell) || is_plane_word(cell) || is_none(cell) || is_stop_word(cell);
+  };
+  const auto title = [&](const RawRow& row) { return !std::ranges::all_of(row.cells, is_value); };
+  if (!std::ranges::all_of(rows_, title)) return;
+  for (const RawRow& row : std::exchange(rows_, {})) take_text({row.line, row.cells, {}});
+}
+
+/// A last row may end behind its radius, or name its thickness in words: the film is at the paraxial focus.
+void TableReader::end_last_row() {
+  const std::size_t thickness = find(Column::thickness);
+  auto& cells = rows_.back().cells;
+  if (thickness == columns_.size() || rows_.size() < 2) return;
+  if (thickness > cells.size() || is_stop_word(cells.front())) return;
+  if (thickness == cells.size()) cells.push_back("-");
+  for (const char* word : {"bf", "bfl", "b.f.", "(bf)", "variable", "(variable)"}) {
+    if (same(cells[thickness], word)) cells[thickness] = "-";
+  }
+}
+
+/// "mm mm - - mm" below the heads.
+bool TableReader::take_units(const TableLine& line) {
+  if (head_line_ == 0 || !rows_.empty() || line.cells.size() > columns_.size()) return false;
+  const auto is_unit = [](std::string_view cell) { return is_none(cell) || unit_of(cell); };
+  if (!std::ranges::all_of(line.cells, is_unit) || std::ranges::all_of(line.cells, is_none)) return false;
+  for (std::size_t i = 0; i < line.cells.size(); ++i) {
+    if (const auto unit = unit_of(line.cells[i])) columns_[i].unit_mm = *unit;
+  }
+  return true;
+}
+
+/// The columns of a head. Words that blanks separate may be one head or two ("Abbe no"): the rows tell.
+TableReader::Columns TableReader::columns_for_rows(const TableLine& head) const {
+  std::size_t widest = 0;
+  for (const TableLine& line : text_.lines) {
+    if (&line != &head) widest = std::max(widest, line.cells.size());
+  }
+  Columns joined = columns_of(head.cells, !text_.has_empty_cells()), single = columns_of(head.cells, false);
+  const bool as_wide = single.size() == widest && joined.size() != widest;
+  return as_wide ? std::move(single) : std::move(joined);
+}
+
+void TableReader::take_lines() {
+  const bool by_blanks = !text_.has_empty_cells();
+  for (const TableLine& line : text_.lines) {
+    if (line.cells.size() > TableText::most_cells) {
+      in_.must_be(line.number, "row", "more than " + std::to_string(TableText::most_cells) + " cells", "fewer");
+    }
+    if (is_head(line.cells, by_blanks)) {
+      if (head_line_ == 0) take_titles();
+      if (!rows_.empty()) {
+        in_.must_be(line.number, "row", in_quotes(line.cells[0]) + " ..., a head behind rows",
+                    "one head in front of one table");
+      }
+      columns_ = columns_for_rows(line);
+      head_line_ = line.number;
+      continue;
+    }
+    if (take_units(line)) continue;
+    const auto is_data = [](std::string_view cell) { return looks_like_a_number(cell) || is_plane_word(cell); };
+    const bool data = std::ranges::any_of(line.cells, is_data);
+    if (rows_.empty() && !data && head_line_ == 0 && !is_stop_word(line.cells[0])) {
+      take_text(line);
+      continue;
+    }
+    // A title with a number in it: "Cooke triplet 50 mm f/5".
+    const bool in_columns = line.cells.size() >= 2 && (is_data(line.cells[0]) || is_data(line.cells[1]));
+    if (rows_.empty() && head_line_ == 0 && !in_columns && !is_stop_word(line.cells[0])) {
+      take_text(line);
+      continue;
+    }
+    if (rows_.size() == most_rows) {
+      throw Error(in_.where() + ": more than " + std::to_string(most_rows) + " surfaces; must be fewer");
+    }
+    rows_.push_back({line.number, line.cells, line.remark});
+  }
+}
+
+/// "# radius  thickness  n  aperture" in front of the rows, if all its words are heads and their number is the number
+/// of cells.
+void TableReader::use_comment_as_head() {
+  if (head_line_ != 0 || rows_.empty()) return;
+  std::size_t widest = 0;
+  for (const RawRow& row : rows_) widest = std::max(widest, row.cells.size());
+  for (const TableComment& comment : text_.comments) {
+    if (comment.number > rows_.front().line) return;
+    for (const bool by_blanks : {false, true}) {
+      const auto cells = by_blanks ? words(comment.text, TableText::most_cells) : text_.cells_of(comment.text);
+      Columns columns = columns_of(cells, by_blanks);
+      const bool known = std::ranges::find(columns, Column::left_out, &TableColumn::kind) == columns.end();
+      const bool fits = columns.size() == widest || (columns.size() + 1 == widest && are_labels());
+      if (known && fits && columns.size() >= 3) {
+        columns_ = std::move(columns);
+        head_line_ = comment.number;
+      }
+    }
+  }
+}
+
+/// True if the first cells are 1, 2, 3, ..., with or without an S or a mark. The row of the stop may have no number.
+bool TableReader::are_labels() const {
+  std::optional<int> last;
+  int labels = 0;
+  bool skipped = false;
+  for (const RawRow& row : rows_) {
+    const auto label = label_of(row.cells[0]);
+    if (!label) {
+      if (!is_stop_word(row.cells[0]) && !is_object_word(row.cells[0]) && !is_image_word(row.cells[0])) return false;
+      skipped = true;
+      continue;
+    }
+    const bool next = last ? *label == *last + 1 || (skipped && *label == *last + 2) : *label <= 1 || skipped;
+    if (!next || row.cells.size() < 3) return false;
+    last = label;
+    skipped = false;
+    ++labels;
+  }
+  return labels >= 2;
+}
+
+void TableReader::drop_labels() {
+  if (has(Column::number)) return;
+  if (head_line_ != 0) {
+    // A column of numbers that the heads do not name makes the rows one cell longer.
+    const bool wider =
+        std::ranges::any_of(rows_, [&](const RawRow& row) { return row.cells.size() > columns_.size(); });
+    if (!wider) return;
+  }
+  if (!are_labels()) return;
+  in_.warn(rows_.front().line, "columns", "the first one counts the rows, so it is not read");
+  for (RawRow& row : rows_) {
+    if (is_stop_word(row.cells[0])) continue;
+    row.object = is_object_word(row.cells[0]), row.image = is_image_word(row.cells[0]);
+    if (row.cells[0].ends_with('*')) name_star(row.line, row.cells[0]);
+    if (const auto mark = stop_mark_of(row.cells[0]); !mark.empty()) row.stop = std::string(mark);
+    row.cells.erase(row.cells.begin());
+  }
+}
+
+/// The star of an aspheric surface in a patent; the first one is named.
+void TableReader::name_star(int line, std::string_view label) {
+  if (!std::exchange(star_named_, true)) {
+    in_.warn(line, label, "its mark * is left out: aspheric terms stand in columns with heads (k A4 A6)");
+  }
+}
+
+/// Heads must name radius, thickness and medium. Other heads are read, or named in a warning.
+void TableReader::check_head() const {
+  std::string unknown;
+  for (const TableColumn& column : columns_) {
+    if (column.kind == Column::left_out) {
+      unknown += (unknown.empty() ? "" : ", ") + in_quotes(column.name);
+      continue;
+    }
+    const bool once = column.kind != Column::term && column.kind != Column::comment && column.kind != Column::number;
+    const auto same_kind = [&](const TableColumn& other) {
+      return other.kind == column.kind && (once || (column.kind == Column::term && other.order == column.order));
+    };
+    if (std::ranges::count_if(columns_, same_kind) > 1) {
+      in_.must_be(head_line_, "head", in_quotes(column.name) + " beside another of its meaning", "one of them");
+    }
+  }
+  const auto need = [&](bool given, const char* what) {
+    if (given) return;
+    in_.must_be(head_line_, "head",
+                unknown.empty() ? "no " + std::string(what) : "no " + std::string(what) + " and the unknown " + unknown,
+                "heads for radius, thickness, and index or glass (R d nd vd semi)");
+  };
+  need(has(Column::radius) || has(Column::curvature), "radius");
+  need(has(Column::thickness) || has(Column::gap_before), "thickness");
+  need(has(Column::index) || has(Column::glass), "index");
+  const int apertures = has(Column::semi_diameter) + has(Column::diameter) + has(Column::aperture);
+  if (apertures > 1) in_.must_be(head_line_, "head", "several columns of apertures", "one of them");
+  if (!unknown.empty()) {
+    in_.warn(head_line_, "head", "has columns that are not known and are left out: " + unknown);
+  }
+}
+
+void TableReader::guess() {
+  if (head_line_ != 0) return;
+  std::vector<std::vector<std::string_view>> plain;
+  for (const RawRow& row : rows_) {
+    auto cells = row.cells;
+    if (is_stop_word(cells[0]) || is_object_word(cells[0]) || is_image_word(cells[0])) continue;
+    if (cells.size() > 2 && is_stop_word(cells.back())) cells.pop_back();
+    plain.push_back(std::move(cells));
+  }
+  const auto is_index_of = [&](std::string_view name, double nd) { return in_.glasses().find(name, nd) != nullptr; };
+  GuessedColumns found = guess_columns(plain, is_index_of);
+  if (found.columns.empty()) {
+    in_.must_be(rows_.front().line, "columns", "without heads, and " + found.reason,
+                "named by a first line (R d nd vd semi)");
+  }
+  columns_ = std::move(found.columns);
+  guessed_ = true;
+  // Index 0 is the mark of renderers' tables, which have these columns and no heads.
+  const bool renderers =
+      columns_.size() == 4 && columns_[2].kind == Column::index && columns_[3].kind == Column::aperture &&
+      std::ranges::any_of(plain, [&](const auto& cells) { return cells.size() == 4 && text_.number(cells[2]) == 0.0; });
+  if (renderers) return;
+  std::string names;
+  for (const TableColumn& column : columns_) names += (names.empty() ? "" : ", ") + column.name;
+  in_.warn(rows_.front().line, "columns", "have no heads; they are taken as " + names);
+}
+
+/// Takes the words that mark the stop, the object and the image out of a row.
+void TableReader::take_marks(RawRow& row) {
+  auto& cells = row.cells;
+  const std::size_t width = columns_.size(),
+                    radius = has(Column::radius) ? find(Column::radius) : find(Column::curvature);
+  const auto take = [&](std::size_t at) {
+    if (row.stop.empty()) row.stop = std::string(cells[at]);
+    row.stop_in_front = row.stop_in_front || at <= radius;
+    cells.erase(cells.begin() + static_cast<std::ptrdiff_t>(at));
+  };
+  const auto kind = [&](std::size_t at) { return at < width ? columns_[at].kind : Column::left_out; };
+  // The mark stands behind the row, or in front of a whole row.
+  const Column last = kind(cells.size() - 1);
+  const bool of_words = last == Column::comment || last == Column::stop || last == Column::number;
+  if (cells.size() > 1 && is_stop_word(cells.back()) && !of_words && cells.size() - 1 != radius) take(cells.size() - 1);
+  if (cells.size() == width + 1 && is_stop_word(cells[0])) take(0);
+  if (cells.size() > 1 && radius == 0 && (is_object_word(cells[0]) || is_image_word(cells[0]))) {
+    row.object = is_object_word(cells[0]), row.image = !row.object;
+    cells.erase(cells.begin());
+  }
+  if (radius >= cells.size() || !is_stop_word(cells[radius])) return;
+  // In place of the radius, unless one follows.
+  const auto zero = [&](std::size_t at) { return at < cells.size() && text_.number(cells[at]) == 0.0; };
+  const bool followed = !text_.has_empty_cells() && radius + 2 < cells.size() && cells.size() != width &&
+                        (is_plane_word(cells[radius + 1]) || zero(radius + 1));
+  const bool word_follows = radius + 1 < cells.size() && is_plane_word(cells[radius + 1]);
+  if (followed || (word_follows && !text_.has_empty_cells())) return take(radius);
+  if (row.stop.empty()) row.stop = std::string(cells[radius]);
+  row.stop_in_front = true;
+  cells[radius] = "inf";
+}
+
+/// Rows that blanks separate may end early: behind the distances (air), or where only words, V-numbers and aspheric
+/// terms follow. Else it is not known which cell is missing.
+void TableReader::check_width(const RawRow& row) const {
+  const std::size_t width = columns_.size(), cells = row.cells.size();
+  if (cells == width || (cells < width && text_.has_empty_cells() && !guessed_)) return;
+  std::string names;
+  for (const TableColumn& column : columns_) names += (names.empty() ? "" : ", ") + column.name;
+  const auto refuse = [&] {
+    in_.must_be(row.line, "row", std::to_string(cells) + (cells == 1 ? " cell" : " cells"),
+                std::to_string(width) + ": " + names + "; \"-\" for none");
+  };
+  if (cells > width) refuse();
+  const auto tells_no_medium = [](const TableColumn& c) {
+    return c.kind == Column::number || c.kind == Column::radius || c.kind == Column::curvature ||
+           c.kind == Column::thickness || c.kind == Column::gap_before;
+  };
+  const auto may_be_missing = [](const TableColumn& c) {
+    return c.kind == Column::abbe || c.kind == Column::glass || c.kind == Column::catalogue ||
+           c.kind == Column::conic || c.kind == Column::term || c.kind == Column::comment || c.kind == Column::stop ||
+           c.kind == Column::left_out;
+  };
+  const auto end = columns_.begin() + static_cast<std::ptrdiff_t>(cells);
+  const bool air =
+      std::all_of(columns_.begin(), end, tells_no_medium) && std::none_of(end, columns_.end(), tells_no_medium);
+  if (!air && !std::all_of(end, columns_.end(), may_be_missing)) refuse();
+}
+
+double TableReader::value(const RawRow& row, const TableColumn& column, std::string_view cell) const {
+  if (const auto number = text_.number(cell)) return *number;
+  in_.must_be(row.line, column.name, in_quotes(cell), "a finite number with a decimal point");
+}
+
+void TableReader::put(TableRow& row, const TableColumn& column, std::string_view cell, const RawRow& raw) {
+  const double mm = column.unit_mm;
+  switch (column.kind) {
+    case Column::left_out: break;
+    case Column::number:
+      if (is_stop_word(cell)) row.stop = std::string(cell), row.in_medium = true;
+      if (const auto mark = stop_mark_of(cell); !mark.empty()) row.stop = std::string(mark);
+      if (cell.size() > 1 && cell.ends_with('*')) name_star(raw.line, cell);
+      break;
+    case Column::radius: row.radius = is_plane_word(cell) ? 0 : mm * value(raw, column, cell); break;
+    case Column::curvature: {
+      const double curvature = is_plane_word(cell) && !is_infinite(cell) ? 0 : value(raw, column, cell);
+      row.radius = curvature == 0 ? 0 : mm / curvature;
+      break;
+    }
+    case Column::thickness:
+    case Column::gap_before: row.thickness = mm * value(raw, column, cell); break;
+    case Column::index: row.index = same(cell, "air") ? 1 : value(raw, column, cell); break;
+    case Column::abbe: row.abbe = value(raw, column, cell); break;
+    case Column::glass:
+      if (same(cell, "mirror") || same(cell, "refl")) {
+        row.mirror = true;
+      } else if (is_stop_word(cell)) {
+        row.stop = std::string(cell);
+      } else {
+        row.glass = std::string(cell);
+      }
+      break;
+    case Column::catalogue: row.catalogue = std::string(cell); break;
+    case Column::semi_diameter:
+    case Column::diameter:
+    case Column::aperture: row.aperture = mm * value(raw, column, cell); break;
+    case Column::conic: row.conic = value(raw, column, cell); break;
+    case Column::term:
+      if (const double coefficient = value(raw, column, cell); coefficient != 0) {
+        row.terms.push_back({column.order, coefficient * std::pow(mm, 1 - column.order)});
+      }
+      break;
+    case Column::stop:
+      if (is_stop_word(cell) || same(cell, "x") || same(cell, "yes") || same(cell, "true") || cell == "1") {
+        row.stop = std::string(cell);
+      } else if (!same(cell, "no") && !same(cell, "false") && cell != "0") {
+        in_.must_be(raw.line, column.name, in_quotes(cell), "\"stop\" or empty");
+      }
+      break;
+    case Column::comment:
+      if (same(cell, "mirror") || same(cell, "refl")) row.mirror = true;
+      if (marks_stop_in_comment(cell)) row.stop = std::string(cell);
+      row.comment = std::string(beginning(cell, 200));
+      break;
+  }
+}
+
+TableRow TableReader::row_of(const RawRow& raw) {
+  TableRow row{.line = raw.line, .stop = raw.stop, .in_medium = raw.stop_in_front};
+  std::vector<std::string_view> cells = raw.cells;
+  // Without a glass the cell may be missing: what stands there is the next number.
+  const std::size_t glass = find(Column::glass);
+  if (!text_.has_empty_cells() && cells.size() + 1 == columns_.size() && glass < cells.size() &&
+      looks_like_a_number(cells[glass])) {
+    cells.insert(cells.begin() + static_cast<std::ptrdiff_t>(glass), "-");
+  }
+  RawRow whole = raw;
+  whole.cells = cells;
+  check_width(whole);
+  bool radius = false;
+  for (std::size_t i = 0; i < cells.size(); ++i) {
+    const TableColumn& column = columns_[i];
+    if (is_none(cells[i])) continue;
+    const bool is_radius = column.kind == Column::radius || column.kind == Column::curvature;
+    radius = radius || is_radius;
+    if (column.kind == Column::thickness && is_plane_word(cells[i]))
+      continue;  // the row is the object, or is refused below
+    put(row, column, cells[i], raw);
+  }
+  if (!radius && row.stop.empty()) {
+    in_.must_be(raw.line, "radius", "missing", "a number, or \"inf\" for a plane");
+  }
+  if (row.comment.empty() && !raw.remark.empty()) row.comment = std::string(beginning(raw.remark, 200));
+  return row;
+}
+
+/// The first row may be the object: it is called so, or is a plane infinitely far away.
+void TableReader::take_object(const TableRow& row, const RawRow& raw) {
+  const std::size_t thickness = find(Column::thickness);
+  const bool far = thickness < raw.cells.size() && is_plane_word(raw.cells[thickness]);
+  if (row.radius != 0) in_.must_be(raw.line, "radius", to_text(row.radius) + " of the object", "a plane");
+  in_.warn(raw.line, "row", "is taken as the object");
+  if (!far && row.thickness) in_.lens.design.object_distance_mm = *row.thickness;
+}
+
+/// True if a row has a radius only. A comment "film" of a surface does not make it the film.
+bool TableReader::is_bare_plane(const RawRow& raw) const {
+  for (std::size_t i = 0; i < std::min(raw.cells.size(), columns_.size()); ++i) {
+    const Column kind = columns_[i].kind;
+    const bool of_image = kind == Column::radius || kind == Column::comment || kind == Column::number;
+    if (!of_image && !is_none(raw.cells[i])) return false;
+  }
+  return true;
+}
+
+/// The last row may be the image. The row before states its distance.
+void TableReader::take_image(const RawRow& raw, bool last) const {
+  if (!last) in_.must_be(raw.line, "row", "the image", "the last one");
+  const std::size_t radius = find(Column::radius);
+  if (radius < raw.cells.size() && text_.number(raw.cells[radius]).value_or(0) != 0) {
+    in_.warn(raw.line, "radius", "of the image is left out: a film is flat");
+  }
+}
+
+void TableReader::read() {
+  take_comments();
+  take_lines();
+  if (rows_.empty()) throw Error(in_.where() + ": no rows; must be radius, thickness and index of surfaces");
+  use_comment_as_head();
+  drop_labels();
+  guess();
+  if (head_line_ != 0) check_head();
+  end_last_row();
+  if (text_.has_decimal_commas()) in_.warn(rows_.front().line, "numbers", "have decimal commas");
+
+  auto& notes = in_.lens.imported->notes;
+  if (!notes.empty()) {
+    in_.lens.imported->title = notes.front();
+    notes.erase(notes.begin());
+  }
+  said_ += ' ' + in_.lens.id + ' ';
+  const std::string all = lower(said_);
+  in_.lens.focal_length_mm = focal_length_in(all);
+  in_.lens.f_number = f_number_in(all);
+
+  TableLens table;
+  const bool diameters = has(Column::diameter) || all.find("aperture diameter") != std::string::npos;
+  table.apertures = has(Column::semi_diameter) ? TableApertures::semi_diameters
+                    : diameters                ? TableApertures::diameters
+                                               : TableApertures::unknown;
+  table.gaps = has(Column::gap_before) ? TableGaps::in_front : guessed_ ? TableGaps::unknown : TableGaps::behind;
+  const std::size_t thickness = find(Column::thickness);
+  for (std::size_t i = 0; i < rows_.size(); ++i) {
+    RawRow& raw = rows_[i];
+    take_marks(raw);
+    for (std::size_t c = 0; c < std::min(raw.cells.size(), columns_.size()); ++c) {
+      if (columns_[c].kind != Column::number && columns_[c].kind != Column::comment) continue;
+      raw.object = raw.object || is_object_word(raw.cells[c]);
+      const bool label = columns_[c].kind == Column::number;
+      raw.image = raw.image || (is_image_word(raw.cells[c]) && (label || is_bare_plane(raw)));
+    }
+    if (raw.image && i > 0) {
+      take_image(raw, i + 1 == rows_.size());
+      continue;
+    }
+    const bool endless = thickness < raw.cells.size() && is_plane_word(raw.cells[thickness]);
+    TableRow row = row_of(raw);
+    if (i == 0 && (raw.object || (endless && row.radius == 0 && rows_.size() > 1))) {
+      take_object(row, raw);
+      continue;
+    }
+    if (raw.object) in_.must_be(raw.line, "row", "the object", "the first one");
+    if (endless) in_.must_be(raw.line, "thickness", in_quotes(raw.cells[thickness]), "a finite number");
+    table.rows.push_back(std::move(row));
+  }
+  if (table.rows.empty()) throw Error(in_.where() + ": no rows of surfaces; must be at least one");
+  build_table(std::move(table), in_);
+}
+
+}  // namespace
+
+/// True if one of the first lines is a row: two numbers, or a plane and a number, behind a label or a mark.
+bool is_table(std::string_view text) {
+  int tried = 0;
+  bool head = false;
+  const TableText table(text.substr(0, std::min<std::size_t>(text.size(), 65'536)));
+  for (const TableLine& line : table.lines) {
+    const auto is_data = [](std::string_view cell) { return looks_like_a_number(cell) || is_plane_word(cell); };
+    const auto& cells = line.cells;
+    for (std::size_t from = 0; from < 2 && from + 1 < cells.size(); ++from) {
+      const bool starts = from == 0 || label_of(cells[0]) || is_stop_word(cells[0]) || is_object_word(cells[0]);
+      if (starts && is_data(cells[from]) && (is_data(cells[from + 1]) || is_none(cells[from + 1]))) return true;
+    }
+    if (head && std::ranges::any_of(cells, is_data)) return true;
+    head = head || is_head(cells, !table.has_empty_cells());
+    if (++tried == 5) return false;
+  }
+  return false;
+}
+
+void read_table(std::string_view text, Import& in) { TableReader(text, in).read(); }
+
+}  // namespace petzval::formats_detail

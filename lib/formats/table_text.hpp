@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <deque>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace petzval::formats_detail {
+
+/// A line of a table that is not a comment.
+struct TableLine {
+  int number = 0;
+  std::vector<std::string_view> cells;  ///< without blanks and quotes; not empty, and its last cell is not empty
+  std::string_view remark;              ///< behind a comment mark
+};
+
+/// A comment of a table, without its mark.
+struct TableComment {
+  int number = 0;
+  std::string_view text;
+};
+
+/// The lines of a table that someone typed, as cells. Cells are separated by blanks, tabs, commas, semicolons or bars;
+/// the whole table decides by which. Minus signs and blanks of typesetting are replaced by ASCII.
+class TableText {
+ public:
+  static constexpr std::size_t most_cells = 64;  ///< one more is kept, for the message
+
+  explicit TableText(std::string_view text);
+  TableText(const TableText&) = delete;
+  TableText& operator=(const TableText&) = delete;
+
+  std::vector<TableLine> lines;
+  std::vector<TableComment> comments;
+
+  char separator() const noexcept { return separator_; }  ///< ' ', '\t', ',', ';' or '|'
+  /// True if an empty cell keeps its column: cells are not separated by blanks.
+  bool has_empty_cells() const noexcept { return separator_ != ' '; }
+  /// True if numbers have a decimal comma: cells are separated by semicolons, and no number has a point.
+  bool has_decimal_commas() const noexcept { return decimal_commas_; }
+  /// The cells of a text, with the separator of the table.
+  std::vector<std::string_view> cells_of(std::string_view text) const;
+  /// The number of a cell; nullopt if the cell is not a finite number.
+  std::optional<double> number(std::string_view cell) const;
+
+ private:
+  std::string_view in_ascii(std::string_view line);
+  void choose_separator(const std::vector<TableLine>& raw);
+
+  std::deque<std::string> changed_lines_;
+  char separator_ = ' ';
+  bool bars_in_front_ = false;
+  bool decimal_commas_ = false;
+};
+
+/// True if a cell is a number, or was meant as one: "1,5", "nan", "5x".
+bool looks_like_a_number(std::string_view cell);
+/// True for "inf", "Infinity", "plano", "flat", ..., with or without a sign: the words for the radius of a plane.
+bool is_plane_word(std::string_view cell);
+/// True for the words that mark the aperture stop, and for "*".
+bool is_stop_word(std::string_view cell);
+/// True for an empty cell, "-", "--", "none", "n/a" and ".".
+bool is_none(std::string_view cell);
+
+}  // namespace petzval::formats_detail

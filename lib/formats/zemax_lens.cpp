@@ -1,0 +1,519 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "zemax_lens.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <numeric>
+#include <utility>
+
+#include "core/text.hpp"
+#include "declared_beam.hpp"
+#include "petzval/core/error.hpp"
+#include "petzval/glass/glass.hpp"
+#include "petzval/lens/lens.hpp"
+#include "petzval/paraxial/first_order.hpp"
+#include "petzval/trace/trace.hpp"
+#include "text_file.hpp"
+
+namespace petzval::formats_detail {
+namespace {
+
+using Surfaces = std::vector<ZemaxSurface>;
+
+// Thicknesses of 1e10 and more stand for infinity.
+constexpr double endless = 1e10;
+
+/// Fits as the file's digits do: values are stored with 12 and more.
+bool agree(double a, double b) { return std::abs(a - b) <= 1e-9 * std::max(std::abs(a), std::abs(b)) + 1e-15; }
+
+double radius_of(double curvature) { return curvature == 0 ? 0 : 1 / curvature; }
+
+// --- pickups --------------------------------------------------------------------------------------------------------
+
+class Pickups {
+ public:
+  Pickups(Surfaces& surfaces, Import& in) : surfaces_(surfaces), in_(in) {}
+
+  /// In the order of surfaces: a pickup may be of one before that is picked up itself.
+  void evaluate() {
+    for (std::size_t i = 0; i < surfaces_.size(); ++i) {
+      ZemaxSurface& s = surfaces_[i];
+      if (s.curvature_pickup) take(i, *s.curvature_pickup, "CURV", &ZemaxSurface::curvature);
+      if (s.thickness_pickup) take(i, *s.thickness_pickup, "DISZ", &ZemaxSurface::thickness);
+      if (s.thickness_sum) complete(i, *s.thickness_sum, "TCOM", false);
+      if (s.position) complete(i, *s.position, "TOLE", true);
+      if (s.glass && s.glass->pickup) take_glass(i);
+    }
+  }
+
+ private:
+  const ZemaxSurface& source(std::size_t i, int line, const char* command, int surface) const {
+    if (surface >= 0 && static_cast<std::size_t>(surface) < i) return surfaces_[static_cast<std::size_t>(surface)];
+    in_.refuse(line, command, "picked up from surface " + std::to_string(surface), "a surface before it");
+  }
+
+  /// The value of a pickup or solve; the file's digits where they agree with it.
+  void set(int line, const char* command, double& value, double wanted) const {
+    if (agree(value, wanted)) return;
+    in_.warn(line, command,
+             "the file states " + to_text(value, 12) + ", its pickup or solve gives " + to_text(wanted, 12) +
+                 ", which is taken");
+    value = wanted;
+  }
+
+  void take(std::size_t i, const ZemaxPickup& pickup, const char* command, double ZemaxSurface::*member) {
+    const double picked = source(i, pickup.line, command, pickup.surface).*member;
+    set(pickup.line, command, surfaces_[i].*member, picked * pickup.scale + pickup.offset);
+  }
+
+  /// The thickness that makes the sum of two, or of all from one on, the total.
+  void complete(std::size_t i, const ZemaxPickup& sum, const char* command, bool all) {
+    source(i, sum.line, command, sum.surface);
+    double rest = sum.offset;
+    for (auto k = static_cast<std::size_t>(sum.surface); k < i; ++k) {
+      if (all || k == static_cast<std::size_t>(sum.surface)) rest -= surfaces_[k].thickness;
+    }
+    set(sum.line, command, surfaces_[i].thickness, rest);
+  }
+
+  void take_glass(std::size_t i) {
+    ZemaxGlass& glass = *surfaces_[i].glass;
+    const ZemaxSurface& from = source(i, glass.line, "GLAS", *glass.pickup);
+    if (!from.glass) {
+      surfaces_[i].glass.reset();
+      return;
+    }
+    const int line = glass.line;
+    glass = *from.glass;
+    glass.line = line;
+  }
+
+  Surfaces& surfaces_;
+  Import& in_;
+};
+
+// --- rows -----------------------------------------------------------------------------------------------------------
+
+class Rows {
+ public:
+  Rows(const ZemaxLens& zemax, double unit, Import& in) : zemax_(zemax), unit_(unit), in_(in) {}
+
+  SurfaceRow row(const ZemaxSurface& s, const Medium& before);
+  Medium medium(const ZemaxGlass& glass);
+
+ private:
+  void asphere(const ZemaxSurface& s, SurfaceRow& row) const;
+  void rims(const ZemaxSurface& s, const Medium& before, SurfaceRow& row) const;
+  void clip_by_ring(const ZemaxSurface& s, SurfaceRow& row) const;
+  void term(const ZemaxSurface& s, int order, double coefficient, SurfaceRow& row) const;
+
+  const ZemaxLens& zemax_;
+  double unit_;
+  Import& in_;
+};
+
+Medium Rows::medium(const ZemaxGlass& glass) {
+  if (same(glass.name, "AIR") || same(glass.name, "VACUUM")) return {};
+  if (glass.model) {
+    if (!glass.nd) in_.refuse(glass.line, "GLAS", "a model without n_d", "its n_d");
+    return {.nd = *glass.nd, .vd = glass.vd};
+  }
+  // OpticStudio looks into the catalogues of GCAT, or of Schott if the file has no GCAT.
+  static const std::vector<std::string> by_default{"SCHOTT"};
+  const auto code = medium_of_code(glass.name);
+  Medium result = code ? *code
+                       : in_.glass(glass.line, glass.name, zemax_.catalogues.empty() ? by_default : zemax_.catalogues,
+                                   glass.nd, glass.vd, Numbers::leftovers);
+  if (glass.vd_offset != 0) {
+    in_.warn(
+        glass.line, "GLAS",
+        "V_d is offset by " + to_text(glass.vd_offset) + "; the dispersion of " + glass.name + " is taken as it is");
+  }
+  if (glass.nd_offset == 0) return result;
+  if (!result.nd) {
+    in_.refuse(glass.line, "GLAS", "an offset of " + glass.name + ", which has no index at the d line",
+               "an offset of 0");
+  }
+  *result.nd += glass.nd_offset;
+  return result;
+}
+
+void Rows::term(const ZemaxSurface& s, int order, double coefficient, SurfaceRow& row) const {
+  if (coefficient == 0) return;
+  if (order < 2) {
+    in_.refuse(s.line, s.type, "with a term of order " + std::to_string(order) + ", a cone",
+               "terms of order 2 and more");
+  }
+  if (order > 40) in_.refuse(s.line, s.type, "with a term of order " + std::to_string(order), "orders up to 40");
+  row.aspheric.push_back({order, coefficient});
+}
+
+void Rows::asphere(const ZemaxSurface& s, SurfaceRow& row) const {
+  if (s.type == "STANDARD") return;
+  if (s.type == "EVENASPH" || s.type == "ODDASPHE") {
+    // Powers of r up to r^20 and r^8.
+    const int step = s.type == "EVENASPH" ? 2 : 1, last = s.type == "EVENASPH" ? 10 : 8;
+    for (const auto& [number, value] : s.parameters) {
+      if (value == 0) continue;
+      if (number < 1 || number > last) {
+        in_.refuse(s.line, s.type, "with PARM " + std::to_string(number) + " of " + to_text(value),
+                   "terms of PARM 1 to " + std::to_string(last));
+      }
+      const int order = step * number;
+      term(s, order, value * std::pow(unit_, 1 - order), row);
+    }
+    return;
+  }
+  if (s.type == "XASPHERE" || s.type == "XOSPHERE") {
+    // Terms in (r / r0), as many as the first number says.
+    const auto extra = [&](int i) {
+      const auto found = s.extra.find(i);
+      return found == s.extra.end() ? 0.0 : found->second;
+    };
+    const int step = s.type == "XASPHERE" ? 2 : 1;
+    const double r0 = extra(2) * unit_;
+    const double count = extra(1);
+    if (!(count >= 0 && count <= 1000)) in_.refuse(s.line, s.type, to_text(count) + " terms", "0 to 1000");
+    for (int i = 1; i <= static_cast<int>(count); ++i) {
+      const int order = step * i;
+      if (extra(i + 2) == 0) continue;
+      if (!(r0 > 0)) in_.refuse(s.line, s.type, "normalised to a radius of " + to_text(r0), "one above 0");
+      term(s, order, extra(i + 2) * unit_ * std::pow(r0, -order), row);
+    }
+    return;
+  }
+  if (s.type == "TOROIDAL") {
+    const bool only_a_cylinder =
+        s.conic == 0 && std::ranges::all_of(s.parameters, [](const auto& p) { return p.second == 0; });
+    if (only_a_cylinder) {
+      row.curved_in = Section::y;
+      return;
+    }
+  }
+  in_.refuse(s.line, "TYPE", s.type,
+             "STANDARD, EVENASPH, ODDASPHE, XASPHERE, XOSPHERE, COORDBRK, or a TOROIDAL that is a cylinder");
+}
+
+/// Clear apertures (CLAP, FLAP) clip; so do semi-diameters (DIAM) of elements, the user's or the width of the design's
+/// beams, and the user's of the stop. Dummy surfaces, with one medium on both sides, clip only by a clear aperture.
+void Rows::rims(const ZemaxSurface& s, const Medium& before, SurfaceRow& row) const {
+  row.obscuration_semi_diameter = s.obscuration;
+  const bool dummy = !row.mirror && row.medium == before;
+  const auto& aperture = in_.lens.design.aperture;
+  const bool floats = aperture && aperture->setting == ApertureSetting::stop_size;
+  if (s.semi_diameter > 0 && (s.stop ? s.fixed_semi_diameter || floats : !dummy)) row.semi_diameter = s.semi_diameter;
+  if (s.aperture) {
+    // A clear aperture of the stop clips the beam that the size of the stop launches.
+    row.semi_diameter = s.stop && floats ? std::min(*s.aperture, row.semi_diameter.value_or(*s.aperture)) : *s.aperture;
+  }
+  if (s.ring) clip_by_ring(s, row);
+  if (row.obscuration_semi_diameter && row.semi_diameter && *row.semi_diameter <= *row.obscuration_semi_diameter) {
+    row.semi_diameter.reset();  // the width of the beam that passes beside it
+  }
+}
+
+/// An opaque ring that reaches the rim leaves an opening of its inner radius.
+void Rows::clip_by_ring(const ZemaxSurface& s, SurfaceRow& row) const {
+  const double rim = s.aperture.value_or(s.semi_diameter);
+  if (!(rim > 0) || s.ring->outer < rim * (1 - 1e-9)) {
+    in_.refuse(s.ring->line, "OBSC",
+               "an opaque ring from " + to_text(s.ring->inner, 6) + " to " + to_text(s.ring->outer, 6) +
+                   " mm that light passes inside and outside" +
+                   (rim > 0 ? ": the rim is at " + to_text(rim, 6) + " mm" : std::string()),
+               "a disc (OBSC 0 " + to_text(s.ring->outer, 6) + ") or a ring up to the rim");
+  }
+  row.semi_diameter = std::min(s.ring->inner, row.semi_diameter.value_or(s.ring->inner));
+}
+
+SurfaceRow Rows::row(const ZemaxSurface& s, const Medium& before) {
+  SurfaceRow row{.radius = radius_of(s.curvature), .thickness = s.thickness};
+  if (std::abs(row.thickness) >= endless) {
+    in_.refuse(s.line, "DISZ", "infinite behind a surface of the lens", "a finite thickness");
+  }
+  row.conic = s.conic;
+  row.stop = s.stop;
+  if (!s.comment.empty()) row.comment = s.comment;
+  row.mirror = s.glass && same(s.glass->name, "MIRROR");
+  if (row.mirror) {
+    row.medium = before;
+  } else if (s.glass) {
+    row.medium = medium(*s.glass);
+  }
+  asphere(s, row);
+  rims(s, before, row);
+  return row;
+}
+
+// --- configurations ---------------------------------------------------------------------------------------------
+
+/// Operands that change nothing of the lens: weights, coatings, comments, drawing.
+constexpr std::string_view silent_operands[] = {"MOFF", "FLWT", "WLWT", "COTN", "CWGT", "GCRS", "NCOM", "MCOM", "SDRW"};
+
+class Configurations {
+ public:
+  Configurations(const ZemaxLens& zemax, const std::vector<int>& place, double unit, Rows& rows, Import& in)
+      : zemax_(zemax), place_(place), unit_(unit), rows_(rows), in_(in) {}
+
+  void build();
+
+ private:
+  void take(const ZemaxOperand& operand);
+  void aperture(const ZemaxOperand& operand, double value);
+  SurfaceChange& change(Configuration& c, const ZemaxOperand& operand);
+
+  const ZemaxLens& zemax_;
+  const std::vector<int>& place_;  ///< of the rows: their numbers in the file, the object not counted
+  double unit_;
+  Rows& rows_;
+  Import& in_;
+  std::map<std::pair<std::string, int>, std::pair<std::string, bool>> left_out_;  ///< first value; whether they differ
+};
+
+/// The value of the design's aperture in a configuration.
+void Configurations::aperture(const ZemaxOperand& operand, double value) {
+  const auto position = static_cast<std::size_t>(operand.configuration) - 1;
+  const ApertureSetting setting = in_.lens.design.aperture->setting;
+  if (setting == ApertureSetting::f_number) in_.lens.configurations[position].f_number = value;
+  if (!(value > 0)) return;
+  in_.position_apertures.resize(in_.lens.configurations.size());
+  in_.position_apertures[position] = setting == ApertureSetting::entrance_pupil_diameter ? value * unit_ : value;
+}
+
+/// The change of the operand's surface; a surface that the rows do not have is refused.
+SurfaceChange& Configurations::change(Configuration& c, const ZemaxOperand& operand) {
+  const auto found = std::ranges::find(place_, operand.surface);
+  if (found == place_.end()) {
+    in_.refuse(operand.line, operand.name, "of surface " + std::to_string(operand.surface), "a surface of the lens");
+  }
+  return change_of(c, static_cast<int>(found - place_.begin()));
+}
+
+void Configurations::take(const ZemaxOperand& operand) {
+  auto& list = in_.lens.configurations;
+  if (operand.configuration < 1 || static_cast<std::size_t>(operand.configuration) > list.size()) {
+    in_.refuse(operand.line, operand.name, "of configuration " + std::to_string(operand.configuration),
+               "1 to " + std::to_string(list.size()));
+  }
+  Configuration& c = list[static_cast<std::size_t>(operand.configuration) - 1];
+  const auto value = [&] { return in_.number(operand.line, operand.name, operand.value); };
+  if (std::ranges::find(silent_operands, operand.name) != std::end(silent_operands)) return;
+  if (operand.name == "LTTL") {
+    if (!operand.value.empty()) c.name = operand.value;
+  } else if (operand.name == "THIC" && operand.surface == 0) {
+    const double distance = same(operand.value, "INFINITY") ? endless : value() * unit_;
+    if (distance > 0 && distance < endless) c.subject_distance_mm = distance;
+  } else if (operand.name == "THIC") {
+    change(c, operand).thickness = value() * unit_;
+  } else if (operand.name == "CRVT") {
+    change(c, operand).radius = radius_of(value() / unit_);
+  } else if (operand.name == "CONN") {
+    change(c, operand).conic = value();
+  } else if (operand.name == "SDIA") {
+    // As under DIAM, 0 is no rim.
+    if (const double rim = std::abs(value() * unit_); rim > 0) change(c, operand).semi_diameter = rim;
+  } else if (operand.name == "GLSS") {
+    change(c, operand).medium = rows_.medium({.line = operand.line, .name = operand.value});
+  } else if (operand.name == "APER" && in_.lens.design.aperture &&
+             in_.lens.design.aperture->setting != ApertureSetting::stop_size) {
+    aperture(operand, value());
+  } else {
+    const auto [entry, first] = left_out_.try_emplace({operand.name, operand.surface}, std::pair{operand.value, false});
+    if (first || entry->second.second || entry->second.first == operand.value) return;
+    entry->second.second = true;
+    in_.warn(operand.line, operand.name, "its values differ among the configurations; it is left out");
+  }
+}
+
+void Configurations::build() {
+  if (zemax_.configurations < 2) return;
+  auto& list = in_.lens.configurations;
+  list.resize(static_cast<std::size_t>(zemax_.configurations));
+  for (std::size_t i = 0; i < list.size(); ++i) list[i].name = "position " + std::to_string(i + 1);
+  for (const ZemaxOperand& operand : zemax_.operands) take(operand);
+  for (std::size_t i = 0; i < list.size(); ++i) {
+    const auto earlier = std::ranges::find(list, list[i].name, &Configuration::name);
+    if (earlier != list.begin() + static_cast<std::ptrdiff_t>(i)) list[i].name += " (" + std::to_string(i + 1) + ")";
+  }
+  // Where one position alone is at infinity, the others focus it.
+  const auto far = [](const Configuration& c) { return !c.subject_distance_mm; };
+  if (std::ranges::count_if(list, far) != 1 || !far(list[0])) return;
+  for (Configuration& c : list) {
+    if (!far(c)) c.focus_of = list[0].name;
+  }
+}
+
+// --- solves ---------------------------------------------------------------------------------------------------------
+
+/// Where the ray of a height, parallel to the axis in front of the lens, crosses the axis behind the last surface.
+std::optional<double> crossing(const Lens& lens, double height) {
+  const double start = -10 - std::abs(height);
+  const auto exit = trace(lens, Ray<double>{{0, height, start}, {0, 0, 1}});
+  const auto& [at, direction] = exit.ray;
+  if (!exit.transmitted() || direction.y == 0) return {};
+  return at.z - at.y / direction.y * direction.z - lens.surfaces().back().vertex_z;
+}
+
+/// Distance from the last surface to the crossing of marginal ray and axis: a ray of a zone of the pupil, or to first
+/// order (zone 0).
+std::optional<double> marginal_crossing(double zone, Import& in) {
+  const DesignData& design = in.lens.design;
+  Prescription rows = in.lens;
+  rows.configurations.clear();
+  for (SurfaceRow& surface : rows.surfaces) {
+    surface.semi_diameter.reset();
+    surface.obscuration_semi_diameter.reset();
+  }
+  const Lens lens = in.at_primary_wavelength(rows);
+  const Meridian meridian = main_meridian(lens);
+  const FirstOrder first = first_order(lens, {}, meridian);
+  if (first.afocal) return {};
+  if (zone == 0) {
+    return paraxial_image_z(lens, -design.object_distance_mm, {}, meridian) - lens.surfaces().back().vertex_z;
+  }
+  if (!std::isinf(design.object_distance_mm) || !design.aperture) return {};
+  using enum ApertureSetting;
+  const double value = design.aperture->value;
+  const double diameter = design.aperture->setting == entrance_pupil_diameter ? value
+                          : design.aperture->setting == f_number              ? first.effective_focal_length / value
+                                                                              : 0;
+  return diameter != 0 ? crossing(lens, zone * std::abs(diameter) / 2) : std::nullopt;
+}
+
+/// MAZH behind the last surface: the film is where the marginal ray crosses the axis. The file states its distance. A
+/// missing one is computed; one that the rays of this lens do not meet is taken and named, as a glass is then another.
+void check_the_film(const ZemaxSurface& last, Import& in) {
+  const auto [height, zone] = *last.marginal_height;
+  double& stated = in.lens.surfaces.back().thickness;
+  std::optional<double> focus;
+  if (height == 0) {
+    try {
+      focus = marginal_crossing(zone, in);
+    } catch (const Error&) {
+      // not evaluated
+    }
+  }
+  if (focus && !std::isfinite(*focus)) focus.reset();
+  if (stated == 0) {
+    in.warn(last.solve_line, "MAZH",
+            focus
+                ? "the file states a thickness of 0; its marginal ray crosses the axis at " + to_text(*focus, 8) +
+                      " mm, where the film is put"
+                : "the file states a thickness of 0, and its solve is not evaluated; the film is at the last surface");
+    stated = focus.value_or(0);
+    return;
+  }
+  // The digits that files state, and differences between the editions of a glass catalogue.
+  constexpr double tolerance = 1e-3;
+  if (!focus || std::abs(*focus - stated) <= tolerance * std::max(std::abs(*focus), std::abs(stated))) return;
+  in.warn(last.solve_line, "MAZH",
+          "the file puts the film at " + to_text(stated, 8) +
+              " mm; the marginal ray of its solve crosses the axis at " + to_text(*focus, 8) + " mm. The film stays");
+}
+
+/// Object and film are planes perpendicular to the axis.
+void check_ends(const ZemaxSurface& object, const ZemaxSurface& image, Import& in) {
+  const bool near = std::isfinite(in.lens.design.object_distance_mm);
+  const auto refuse_tilt = [&](const ZemaxSurface& s, const std::string& place, const std::string& instead) {
+    if (s.type != "TILTSURF") return;
+    // PARM 1 and 2: tangents of the tilts in x and y.
+    for (const int axis : {1, 2}) {
+      const auto tangent = s.parameters.find(axis);
+      if (tangent == s.parameters.end() || tangent->second == 0) continue;
+      in.refuse(s.line, "TYPE",
+                "a TILTSURF at the " + place + ", tilted by " +
+                    to_text(std::atan(tangent->second) * 180 / std::acos(-1.0), 4) + " degrees in " +
+                    (axis == 1 ? "x" : "y"),
+                "an upright " + place + ": set PARM 1 and 2 to 0" + instead);
+    }
+  };
+  if (near) refuse_tilt(object, "object", " and focus on the tilted plane with a tilted film");
+  refuse_tilt(image, "image", " and tilt the film of the camera instead");
+  const auto curved = [](const ZemaxSurface& s) {
+    const bool terms = s.type == "EVENASPH" || s.type == "ODDASPHE";
+    return s.curvature != 0 ||
+           (terms && std::ranges::any_of(s.parameters, [](const auto& p) { return p.second != 0; }));
+  };
+  if (near && curved(object)) in.warn(object.line, "SURF", "the object is curved; a flat one is taken");
+  if (curved(image)) in.warn(image.line, "SURF", "the image is curved; a flat film is taken");
+}
+
+/// A telecentric object space (FTYP) has its pupil at infinity, at any position of the stop. The stop must put the
+/// pupil there: 100 object distances away or more.
+void check_telecentric(int line, Import& in) {
+  const double object = in.lens.design.object_distance_mm;
+  const std::size_t stop = stop_of(in.lens);
+  std::string found = "telecentric in object space";
+  if (std::isfinite(object) && stop < in.lens.surfaces.size()) {
+    const double pupil = entrance_pupil_z(in.at_primary_wavelength(without_rims(in.lens)), stop);
+    if (std::abs(pupil + object) >= 100 * std::abs(object)) return;
+    found += ", and the stop, surface " + std::to_string(stop) + ", puts the entrance pupil " +
+             to_text(pupil + object, 6) + " mm from the object";
+  }
+  in.refuse(line, "FTYP", found,
+            "pupils that the stop forms: switch Telecentric Object Space off (the second number is 0), or mark the "
+            "surface as the stop at which the chief rays cross the axis");
+}
+
+/// Where the image is at infinity: a film at the paraxial focus of light from infinity, if that lies behind the lens.
+void put_film_at_focus(const ZemaxSurface& s, Import& in) {
+  Prescription rows = in.lens;
+  rows.configurations.clear();
+  const Lens lens = in.compiled(rows);
+  const FirstOrder first = first_order(lens, {}, main_meridian(lens));
+  const bool behind = !first.afocal && first.back_focal_distance > 0;
+  in.lens.surfaces.back().thickness = behind ? first.back_focal_distance : 0;
+  in.warn(s.line, "DISZ",
+          std::string("the image is at infinity; the film is put at ") +
+              (behind ? "the focus of light from infinity" : "the last surface"));
+}
+
+}  // namespace
+
+void build_lens(ZemaxLens zemax, double unit, Import& in) {
+  Pickups(zemax.surfaces, in).evaluate();
+  std::vector<int> place(zemax.surfaces.size());
+  std::iota(place.begin(), place.end(), 0);
+  fold_breaks(zemax.surfaces, place, in);
+  if (zemax.surfaces.size() < 3) throw Error(in.where() + ": no surface of a lens, wanted one at least");
+
+  const ZemaxSurface &object = zemax.surfaces.front(), &image = zemax.surfaces.back();
+  DesignData& design = in.lens.design;
+  design.object_distance_mm =
+      std::abs(object.thickness) >= endless ? std::numeric_limits<double>::infinity() : object.thickness;
+  Rows rows(zemax, unit, in);
+  if (object.glass) in.lens.object_space = rows.medium(*object.glass);
+  if (object.stop) in.refuse(object.line, "STOP", "at the object", "a surface of the lens");
+  for (const ZemaxSurface& s : zemax.surfaces) {
+    if (s.has_thickness || &s == &image) continue;
+    in.warn(s.line, "DISZ", "is missing for this surface; 0 is taken");
+  }
+  if (image.glass)
+    in.refuse(image.line, "SURF", "the last one and has a glass", "an image behind it: the file is cut off");
+  if (!image.has_thickness) in.warn(image.line, "SURF", "the image is incomplete; the file may be cut off");
+  const auto stops = std::ranges::count_if(zemax.surfaces, &ZemaxSurface::stop);
+  if (stops > 1) in.warn(0, "STOP", "is marked on " + std::to_string(stops) + " surfaces; the first one is taken");
+  check_ends(object, image, in);
+
+  // Light that leaves as a parallel beam has no film.
+  ZemaxSurface& last = zemax.surfaces[zemax.surfaces.size() - 2];
+  const bool image_at_infinity = std::abs(last.thickness) >= endless;
+  if (image_at_infinity) last.thickness = 0;
+  Medium before = in.lens.object_space;
+  for (const ZemaxSurface& s : std::span(zemax.surfaces).subspan(1, zemax.surfaces.size() - 2)) {
+    in.lens.surfaces.push_back(rows.row(s, before));
+    before = in.lens.surfaces.back().medium;
+  }
+  if (image_at_infinity) put_film_at_focus(zemax.surfaces[zemax.surfaces.size() - 2], in);
+  if (image.stop) in.refuse(image.line, "STOP", "at the image", "a surface of the lens");
+  if (zemax.telecentric > 0) check_telecentric(zemax.telecentric, in);
+  in.lens.semi_diameters = "of the file: clear apertures, else the widths of the design's beams";
+  place.erase(place.begin());
+  place.pop_back();
+  Configurations(zemax, place, unit, rows, in).build();
+  const ZemaxSurface& behind = zemax.surfaces[zemax.surfaces.size() - 2];
+  if (behind.marginal_height && !image_at_infinity) check_the_film(behind, in);
+}
+
+}  // namespace petzval::formats_detail

@@ -1,0 +1,258 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "image/exr.hpp"
+
+#include <ImathBox.h>
+#include <ImfChannelList.h>
+#include <ImfCompression.h>
+#include <ImfDoubleAttribute.h>
+#include <ImfFloatAttribute.h>
+#include <ImfFrameBuffer.h>
+#include <ImfHeader.h>
+#include <ImfInputPart.h>
+#include <ImfIntAttribute.h>
+#include <ImfMultiPartInputFile.h>
+#include <ImfMultiPartOutputFile.h>
+#include <ImfOutputPart.h>
+#include <ImfPartType.h>
+#include <ImfStdIO.h>
+#include <ImfStringAttribute.h>
+#include <ImfVecAttribute.h>
+
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <set>
+#include <span>
+#include <string>
+
+#include "image/exr_head.hpp"
+#include "image/file_room.hpp"
+#include "petzval/core/error.hpp"
+#include "petzval/io/write_file.hpp"
+
+namespace petzval {
+namespace {
+
+// 3 GiB in memory. A damaged header may claim any size.
+constexpr std::uint64_t most_values = std::uint64_t(3) << 28;
+
+/// Attributes that OpenEXR writes into every file by itself.
+constexpr std::array<std::string_view, 7> of_every_file{
+    "chunkCount", "name", "pixelAspectRatio", "screenWindowCenter", "screenWindowWidth", "type", "version"};
+/// Attributes of lenses that are float by OpenEXR's standard.
+constexpr std::array<std::string_view, 7> standard_floats{"aperture", "effectiveFocalLength", "entrancePupilOffset",
+                                                          "focus",    "nominalFocalLength",   "pinholeFocalLength",
+                                                          "tStop"};
+
+bool is_among(std::span<const std::string_view> names, std::string_view name) noexcept {
+  return std::find(names.begin(), names.end(), name) != names.end();
+}
+bool in_every_file(std::string_view name) noexcept { return is_among(of_every_file, name); }
+
+std::string size_of(const ExrPart& part) { return std::to_string(part.width) + " x " + std::to_string(part.height); }
+
+void validate(const ExrPart& part) {
+  const std::string where = "part \"" + part.name + "\": ";
+  if (part.width < 1 || part.height < 1) throw Error(where + "is " + size_of(part) + ", wanted at least one pixel");
+  if (part.margin_x < 0 || part.margin_y < 0 || 2 * part.margin_x >= part.width || 2 * part.margin_y >= part.height) {
+    throw Error(where + "has margins of " + std::to_string(part.margin_x) + " and " + std::to_string(part.margin_y) +
+                " pixels, wanted 0 or more, and less than half of " + size_of(part));
+  }
+  if (part.channels.empty()) throw Error(where + "no channel, wanted one at least");
+  std::set<std::string_view> names;
+  for (const ExrChannel& channel : part.channels) {
+    if (channel.name.empty()) throw Error(where + "a channel has no name, wanted one");
+    if (!names.insert(channel.name).second)
+      throw Error(where + "channel " + channel.name + " stands twice, wanted once");
+    if (channel.values.size() != static_cast<std::size_t>(part.width) * static_cast<std::size_t>(part.height)) {
+      throw Error(where + "channel " + channel.name + " has " + std::to_string(channel.values.size()) +
+                  " values, wanted one for each of " + size_of(part) + " pixels");
+    }
+  }
+  for (const auto& [name, text] : part.texts) {
+    if (part.numbers.contains(name)) throw Error(where + "attribute " + name + " is a text and a number, wanted one");
+  }
+  for (const auto& [name, pair] : part.pairs) {
+    if (part.texts.contains(name) || part.numbers.contains(name)) {
+      throw Error(where + "attribute " + name + " is a pair and something else, wanted one");
+    }
+  }
+}
+
+void validate(std::span<const ExrPart> parts) {
+  if (parts.empty()) throw Error("no part, wanted one at least");
+  std::set<std::string_view> names;
+  for (const ExrPart& part : parts) {
+    validate(part);
+    if (parts.size() == 1) break;
+    if (part.name.empty()) throw Error("one of several parts has no name, wanted one");
+    if (!names.insert(part.name).second) throw Error("part \"" + part.name + "\" stands twice, wanted once");
+  }
+}
+
+/// Refuses names that EXR has a meaning for: it would overwrite their values, or refuse them by a message without name.
+template <class Attribute, class Value>
+void insert(Imf::Header& header, const std::string& name, const Value& value) {
+  if (in_every_file(name) || header.find(name) != header.end()) {
+    throw Error("attribute " + name + " is EXR's own, wanted another name");
+  }
+  header.insert(name, Attribute(value));
+}
+
+Imf::Header header_of(const ExrPart& part, const Imath::Box2i& display) {
+  const Imath::V2i first{-part.margin_x, -part.margin_y};
+  Imf::Header header(display, {first, first + Imath::V2i(part.width - 1, part.height - 1)});
+  header.setType(Imf::SCANLINEIMAGE);
+  for (const ExrChannel& channel : part.channels) header.channels().insert(channel.name, Imf::Channel(Imf::FLOAT));
+  for (const auto& [name, text] : part.texts) insert<Imf::StringAttribute>(header, name, text);
+  for (const auto& [name, number] : part.numbers) {
+    if (is_among(standard_floats, name)) {
+      insert<Imf::FloatAttribute>(header, name, static_cast<float>(number));
+    } else {
+      insert<Imf::DoubleAttribute>(header, name, number);
+    }
+  }
+  for (const auto& [name, pair] : part.pairs) insert<Imf::V2fAttribute>(header, name, Imath::V2f(pair.x, pair.y));
+  if (!part.name.empty()) header.setName(part.name);
+  return header;
+}
+
+/// The first pixel is the upper left corner of the data window.
+Imf::FrameBuffer frame(std::span<ExrChannel> channels, const Imath::Box2i& window, int width, int height) {
+  Imf::FrameBuffer buffer;
+  for (ExrChannel& channel : channels) {
+    buffer.insert(channel.name, Imf::Slice::Make(Imf::FLOAT, channel.values.data(), window.min, width, height,
+                                                 sizeof(float), sizeof(float) * static_cast<std::size_t>(width)));
+  }
+  return buffer;
+}
+
+template <class T>
+const T* number(const Imf::Attribute& attribute) {
+  const auto* typed = dynamic_cast<const Imf::TypedAttribute<T>*>(&attribute);
+  return typed ? &typed->value() : nullptr;
+}
+
+void read_attributes(const Imf::Header& header, ExrPart& part) {
+  if (header.hasName()) part.name = header.name();
+  for (auto i = header.begin(); i != header.end(); ++i) {
+    if (in_every_file(i.name())) continue;
+    const Imf::Attribute& attribute = i.attribute();
+    if (const auto* text = number<std::string>(attribute)) part.texts[i.name()] = *text;
+    if (const auto* value = number<double>(attribute)) part.numbers[i.name()] = *value;
+    if (const auto* value = number<float>(attribute)) part.numbers[i.name()] = static_cast<double>(*value);
+    if (const auto* value = number<int>(attribute)) part.numbers[i.name()] = *value;
+    if (const auto* value = number<Imath::V2f>(attribute)) part.pairs[i.name()] = {value->x, value->y};
+  }
+}
+
+/// The most values that a byte of a file holds: twice what black pictures of 100,000 columns give, 511 by deflate and
+/// 8566 by DWA.
+std::uint64_t most_in_a_byte(Imf::Compression compression) noexcept {
+  return compression == Imf::DWAA_COMPRESSION || compression == Imf::DWAB_COMPRESSION ? 1 << 14 : 1 << 10;
+}
+
+/// An EXR file, part by part.
+class Reader {
+ public:
+  explicit Reader(const std::filesystem::path& file) : path_(file), file_(file.string().c_str(), 0) {}
+
+  int parts() const { return file_.parts(); }
+
+  /// Of all channels, or of those, in that order.
+  ExrPart part(int index, std::span<const std::string_view> wanted = {}) {
+    const Imf::Header& header = file_.header(index);
+    ExrPart part;
+    read_attributes(header, part);
+    for (const std::string_view name : wanted) part.channels.push_back({std::string(name), {}});
+    if (wanted.empty()) {
+      for (auto i = header.channels().begin(); i != header.channels().end(); ++i)
+        part.channels.push_back({i.name(), {}});
+    }
+    for (const ExrChannel& channel : part.channels) {
+      if (header.channels().findChannel(channel.name)) continue;
+      std::string all;
+      for (const std::string_view name : wanted) all += (all.empty() ? "" : ", ") + std::string(name);
+      throw Error("no channel " + channel.name + ", wanted " + all);
+    }
+
+    const Imath::Box2i window = header.dataWindow();
+    const auto width = std::uint64_t(std::int64_t(window.max.x) - window.min.x + 1);
+    const auto height = std::uint64_t(std::int64_t(window.max.y) - window.min.y + 1);
+    // Checked in this order, no product overflows: sides are below 2^32.
+    if (width * height > left_ || width * height * part.channels.size() > left_) {
+      throw Error("part \"" + part.name + "\" is " + std::to_string(width) + " x " + std::to_string(height) + " with " +
+                  std::to_string(part.channels.size()) + " channels, wanted " + std::to_string(most_values) +
+                  " values or fewer in all parts");
+    }
+    const std::uint64_t values = width * height * part.channels.size();
+    if (!image_detail::has_room_for(values, most_in_a_byte(header.compression()), path_)) {
+      throw Error("part \"" + part.name + "\" claims " + std::to_string(values) +
+                  " values, wanted no more than the file has room for");
+    }
+    left_ -= values;
+    part.width = static_cast<int>(width);
+    part.height = static_cast<int>(height);
+    const Imath::Box2i& display = header.displayWindow();
+    const Imath::V2i before = display.min - window.min, after = window.max - display.max;
+    if (before == after && before.x >= 0 && before.y >= 0) part.margin_x = before.x, part.margin_y = before.y;
+    for (ExrChannel& channel : part.channels) channel.values.resize(static_cast<std::size_t>(width * height));
+    Imf::InputPart in(file_, index);
+    in.setFrameBuffer(frame(part.channels, window, part.width, part.height));
+    in.readPixels(window.min.y, window.max.y);
+    return part;
+  }
+
+ private:
+  std::filesystem::path path_;
+  Imf::MultiPartInputFile file_;
+  std::uint64_t left_ = most_values;  ///< may still be read
+};
+
+}  // namespace
+
+void write_exr(std::span<const ExrPart> parts, const std::filesystem::path& file) {
+  Imf::StdOSStream stream;
+  try {
+    validate(parts);
+    Imath::Box2i display{{0, 0}, {0, 0}};
+    for (const ExrPart& part : parts) {
+      display.extendBy(Imath::V2i(part.width - 2 * part.margin_x - 1, part.height - 2 * part.margin_y - 1));
+    }
+    std::vector<Imf::Header> headers;
+    for (const ExrPart& part : parts) headers.push_back(header_of(part, display));
+    Imf::MultiPartOutputFile out(stream, headers.data(), static_cast<int>(headers.size()), false, 0);
+    for (std::size_t i = 0; i < parts.size(); ++i) {
+      const ExrPart& part = parts[i];
+      // A frame has no constant pixels; these are only read.
+      const std::span channels(const_cast<ExrChannel*>(part.channels.data()), part.channels.size());
+      Imf::OutputPart out_part(out, static_cast<int>(i));
+      out_part.setFrameBuffer(frame(channels, headers[i].dataWindow(), part.width, part.height));
+      out_part.writePixels(part.height);
+    }
+  } catch (const std::exception& e) {
+    throw Error(file.string() + ": " + e.what());
+  }
+  write_file(stream.str(), file);
+}
+
+std::vector<ExrPart> read_exr_parts(const std::filesystem::path& file) {
+  return image_detail::read_exr_file(file, [&] {
+    Reader reader(file);
+    std::vector<ExrPart> parts;
+    for (int i = 0; i < reader.parts(); ++i) parts.push_back(reader.part(i));
+    return parts;
+  });
+}
+
+ExrPart image_detail::read_first_part(const std::filesystem::path& file, std::span<const std::string_view> channels) {
+  return read_exr_file(file, [&] { return Reader(file).part(0, channels); });
+}
+
+const std::vector<float>* image_detail::channel(const ExrPart& part, std::string_view name) noexcept {
+  const auto found =
+      std::find_if(part.channels.begin(), part.channels.end(), [&](const ExrChannel& own) { return own.name == name; });
+  return found == part.channels.end() ? nullptr : &found->values;
+}
+
+}  // namespace petzval

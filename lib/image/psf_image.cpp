@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "petzval/image/psf_image.hpp"
+
+#include <algorithm>
+#include <string>
+#include <vector>
+
+#include "core/text.hpp"
+#include "petzval/core/error.hpp"
+
+namespace petzval {
+namespace {
+
+/// The light of a wavelength in each pixel, per mm^2, turned by half a turn.
+std::vector<double> irradiance(const Psf& psf, std::size_t wavelength) {
+  const std::size_t plane = static_cast<std::size_t>(psf.pixels) * static_cast<std::size_t>(psf.pixels);
+  const double per_count = psf.ray_weight(wavelength) / (psf.pixel_mm * psf.pixel_mm);
+  std::vector<double> values(plane);
+  for (std::size_t i = 0; i < plane; ++i) {
+    values[i] = per_count * static_cast<double>(psf.counts[wavelength * plane + plane - 1 - i]);
+  }
+  return values;
+}
+
+}  // namespace
+
+RgbImage render(const Psf& psf, std::span<const std::array<double, 3>> weights) {
+  if (weights.size() != psf.wavelengths_nm.size()) {
+    throw Error("render: " + std::to_string(weights.size()) + " weights, wanted one for each of " +
+                std::to_string(psf.wavelengths_nm.size()) + " wavelengths");
+  }
+  RgbImage image(psf.pixels, psf.pixels);
+  if (const std::size_t wanted = weights.size() * image.pixels.size() / 3; psf.counts.size() != wanted) {
+    throw Error("render: found " + std::to_string(psf.counts.size()) + " counts, wanted " + std::to_string(wanted) +
+                ", one for each pixel and wavelength");
+  }
+  std::vector<double> sums(image.pixels.size(), 0.0);
+  for (std::size_t w = 0; w < weights.size(); ++w) {
+    const auto light = irradiance(psf, w);
+    for (std::size_t i = 0; i < light.size(); ++i) {
+      for (std::size_t k = 0; k < 3; ++k) sums[3 * i + k] += weights[w][k] * light[i];
+    }
+  }
+  for (std::size_t i = 0; i < sums.size(); ++i) image.pixels[i] = static_cast<float>(sums[i]);
+  return image;
+}
+
+ExrPart spectral_image(const Psf& psf, std::span<const std::array<double, 3>> weights) {
+  const RgbImage rgb = render(psf, weights);
+  ExrPart part{.width = psf.pixels,
+               .height = psf.pixels,
+               .texts = {{"spectralLayoutVersion", "1.0"}, {"emissiveUnits", "mm^-2"}}};
+  for (std::size_t k = 0; k < 3; ++k) {
+    ExrChannel channel{std::string(1, "RGB"[k]), {}};
+    for (std::size_t i = k; i < rgb.pixels.size(); i += 3) channel.values.push_back(rgb.pixels[i]);
+    part.channels.push_back(std::move(channel));
+  }
+  for (std::size_t w = 0; w < psf.wavelengths_nm.size(); ++w) {
+    std::string nm = to_text(psf.wavelengths_nm[w]);
+    std::replace(nm.begin(), nm.end(), '.', ',');
+    const auto light = irradiance(psf, w);
+    part.channels.push_back({"S0." + nm + "nm", {light.begin(), light.end()}});
+  }
+  return part;
+}
+
+}  // namespace petzval

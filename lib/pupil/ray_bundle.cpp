@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "petzval/pupil/ray_bundle.hpp"
+
+#include <array>
+#include <span>
+#include <string>
+
+#include "petzval/core/error.hpp"
+#include "petzval/core/sobol.hpp"
+#include "trace_rays.hpp"
+
+namespace petzval {
+
+RayBundle trace_bundle(const Lens& lens, const PupilSampler& pupil, std::uint32_t samples, std::uint32_t seed,
+                       int threads, std::uint32_t first) {
+  if (threads < 1) throw Error("trace_bundle: threads is " + std::to_string(threads) + ", wanted 1 or more");
+  (void)lens.compiled_position(pupil.wavelength());
+  const auto start = [&](std::size_t begin, std::size_t end, const RayArrays<double>& rays) {
+    std::array<double, pupil_detail::block_rays> room_u, room_v;
+    const std::span u(room_u.data(), end - begin), v(room_v.data(), end - begin);
+    owen_sobol(first + static_cast<std::uint32_t>(begin), seed, u, v);
+    pupil(u, v, u, v);
+    pupil.plane().rays(u, v, rays);
+    return end - begin;
+  };
+  // The same bits from every processor: a picture is a measurement.
+  RayBundle bundle = pupil_detail::trace_rays(
+      lens, lens.film_z(), pupil.empty() ? 0 : samples,
+      {.wavelength = pupil.wavelength(), .slopes = false, .arithmetic = Arithmetic::reproducible, .threads = threads},
+      start);
+  bundle.sent = samples;
+  bundle.sampled_area = pupil.area();
+  return bundle;
+}
+
+}  // namespace petzval

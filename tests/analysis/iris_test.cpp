@@ -1,0 +1,172 @@
+// SPDX-License-Identifier: Apache-2.0
+// What passes a lens with a hexagonal iris, against the same lens with a round stop: the ratio of both is the hexagon's
+// area over the disc's, 0.826993.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+#include <vector>
+
+#include "../blades.hpp"
+#include "../data_lenses.hpp"
+#include "petzval/analysis/psf.hpp"
+#include "petzval/analysis/spot.hpp"
+#include "petzval/camera/camera.hpp"
+#include "petzval/focus/focus.hpp"
+#include "petzval/pupil/aim.hpp"
+#include "petzval/pupil/f_number.hpp"
+#include "petzval/pupil/illumination.hpp"
+#include "petzval/pupil/pupil_boundary.hpp"
+#include "petzval/trace/trace.hpp"
+
+namespace petzval {
+namespace {
+
+const double hexagon_over_disc = 3 * std::numbers::sqrt3 / 2 / std::numbers::pi;
+const Iris hexagon{.blades = 6, .rotation_rad = 0.1};
+
+struct Pair {
+  Lens round, bladed;
+};
+
+Pair pair_of(const Lens& lens) { return {lens, with_iris(lens, hexagon)}; }
+Pair double_gauss(double f_number) {
+  return pair_of(with_focus(with_f_number(testing::data_lens("double_gauss_100mm_f2.0"), f_number), 3000));
+}
+
+TEST(LensWithIris, ItsPupilsHaveTheAreaOfThePolygon) {
+  const auto [round, bladed] = pair_of(testing::front_stop_lens());
+  const double disc = pupil_boundary(round, {0, -500}).area(), polygon = pupil_boundary(bladed, {0, -500}).area();
+  EXPECT_NEAR(polygon / disc, hexagon_over_disc, 5e-4 * hexagon_over_disc);
+  EXPECT_EQ(pupil_boundary(bladed, {0.05, -500}).spans[0].to.surface, 0);
+  const auto [round_gauss, bladed_gauss] = double_gauss(5.6);
+  EXPECT_NEAR(exit_pupil_boundary(bladed_gauss, {}).area() / exit_pupil_boundary(round_gauss, {}).area(),
+              hexagon_over_disc, 2e-3);
+}
+
+TEST(LensWithIris, EveryRimPointOfItsBoundaryIsOneOfTheIris) {
+  const Lens lens = double_gauss(5.6).bladed;
+  const PupilBoundary boundary = pupil_boundary(lens, {0.05, -3000});
+  const double radius = lens.surfaces()[*lens.stop()].semi_diameter;
+  std::size_t beside = 0;
+  for (const PupilSpan& span : boundary.spans) {
+    const Ray<double> ray = boundary.plane.ray(span.to.x, span.to.y);
+    double nearest = 1;
+    trace<double>(lens, ray, {}, [&](int surface, const Vec3<double>& p) {
+      if (surface != static_cast<int>(*lens.stop())) return;
+      nearest = testing::room_between_blades(hexagon, p.x / radius, p.y / radius);
+    });
+    beside += !(std::abs(nearest) < 1e-10);
+    EXPECT_EQ(span.to.surface, static_cast<int>(*lens.stop()));
+  }
+  EXPECT_EQ(boundary.spans.size(), 256u);
+  EXPECT_EQ(beside, 0u);
+}
+
+TEST(LensWithIris, TheFilmGetsLessLightByTheSameRatio) {
+  for (const auto& [round, bladed] : {pair_of(testing::front_stop_lens()), double_gauss(8)}) {
+    EXPECT_NEAR(film_irradiance(bladed, {}) / film_irradiance(round, {}), hexagon_over_disc, 2e-3) << round.name();
+  }
+}
+
+TEST(LensWithIris, APointImageHasItsShapeAndItsShareOfTheLight) {
+  const auto [round, bladed] = double_gauss(4);
+  const FieldPoint near{0, -1500};  // well out of focus
+  const auto disc = point_image(round, near, {.samples = 1 << 15, .pixels = 64});
+  const auto polygon = point_image(bladed, near, {.samples = 1 << 15, .pixels = 64});
+  EXPECT_NEAR(polygon.throughput / disc.throughput, hexagon_over_disc, 3e-3);
+  EXPECT_LT(polygon.size.rms_radius, disc.size.rms_radius);
+  EXPECT_GT(polygon.size.max_radius, 0.97 * disc.size.max_radius);  // the corners reach the rim
+}
+
+TEST(LensWithIris, SpotsLoseTheRaysBesideThePolygon) {
+  const auto [round, bladed] = double_gauss(4);
+  const std::vector<double> fields{0.0, 0.1};
+  const auto discs = spot_diagram(round, -1500, fields, 4096), polygons = spot_diagram(bladed, -1500, fields, 4096);
+  for (std::size_t i = 0; i < discs.size(); ++i) {
+    EXPECT_NEAR(polygons[i].hits.sampled_area / discs[i].hits.sampled_area, hexagon_over_disc, 0.02) << i;
+    EXPECT_LT(polygons[i].size.rms_radius, discs[i].size.rms_radius) << i;
+  }
+}
+
+TEST(LensWithIris, AnExactCameraSeesIt) {
+  const auto [round, bladed] = double_gauss(4);
+  const Film film{.width_mm = 30, .height_mm = 20, .columns = 30, .rows = 20};
+  const auto mean = [&](const Lens& lens, const FilmPoint& at) {
+    const Camera camera(lens, film, {.model = ModelKind::exact_double});
+    constexpr int count = 20000;
+    double sum = 0;
+    for (int i = 0; i < count; ++i) {
+      sum += camera.sample({at, std::fmod(i * std::numbers::phi, 1.0), (i + 0.5) / count}).weight;
+    }
+    return sum / count;
+  };
+  for (const FilmPoint& at : {FilmPoint{0, 0}, FilmPoint{9, -6}}) {
+    EXPECT_NEAR(mean(bladed, at) / film_irradiance(bladed, at), 1, 5e-3);
+    EXPECT_NEAR(mean(bladed, at) / mean(round, at), hexagon_over_disc, 5e-3);
+  }
+}
+
+TEST(LensWithIris, AnExactCameraConnectsTheSceneThroughIt) {
+  const Camera camera(double_gauss(4).bladed, {.width_mm = 30, .height_mm = 20, .columns = 30, .rows = 20},
+                      {.model = ModelKind::exact_double});
+  const Vec3<double> point{20, 30, -1500};
+  constexpr int count = 2000;
+  int passed = 0, stopped = 0;
+  for (int i = 0; i < count; ++i) {
+    const auto s = camera.sample_importance(point, std::fmod(i * std::numbers::phi, 1.0), (i + 0.5) / count);
+    passed += s.importance.we > 0;
+    stopped += s.pdf > 0 && s.importance.fate == RayFate::vignetted;
+  }
+  EXPECT_NEAR(passed / static_cast<double>(passed + stopped), hexagon_over_disc, 0.04);
+}
+
+TEST(LensWithIris, FittedModelsSeeIt) {
+  const Lens lens = double_gauss(4).bladed;
+  const Film film{.width_mm = 30, .height_mm = 20, .columns = 30, .rows = 20};
+  for (const ModelKind model : {ModelKind::thin_two_disc, ModelKind::polynomial_3, ModelKind::polynomial_7}) {
+    const Camera camera(lens, film, {.model = model});
+    for (const FilmPoint& at : {FilmPoint{0, 0}, FilmPoint{9, -6}, FilmPoint{-14, 9}}) {
+      constexpr int count = 20000;
+      double sum = 0;
+      int lost = 0;
+      for (int i = 0; i < count; ++i) {
+        const CameraRay ray = camera.sample({at, std::fmod(i * std::numbers::phi, 1.0), (i + 0.5) / count});
+        sum += ray.weight;
+        lost += !ray;
+      }
+      EXPECT_NEAR(sum / count / film_irradiance(lens, at), 1, 2e-3) << name(model);
+      EXPECT_EQ(lost, 0) << name(model);
+    }
+  }
+}
+
+TEST(LensWithIris, FittedModelsConnectTheSceneThroughIt) {
+  const Film film{.width_mm = 30, .height_mm = 20, .columns = 30, .rows = 20};
+  const auto [round, bladed] = double_gauss(4);
+  for (const ModelKind model : {ModelKind::thin_two_disc, ModelKind::polynomial_5}) {
+    const auto flux = [&](const Lens& lens) {
+      const Camera camera(lens, film, {.model = model});
+      constexpr int count = 20000;
+      double sum = 0;
+      for (int i = 0; i < count; ++i) {
+        const auto s =
+            camera.sample_importance({20, 30, -1500}, std::fmod(i * std::numbers::phi, 1.0), (i + 0.5) / count);
+        if (s.pdf > 0) sum += s.importance.we / s.pdf;
+      }
+      return sum;
+    };
+    EXPECT_NEAR(flux(bladed) / flux(round), hexagon_over_disc, 0.01) << name(model);
+  }
+}
+
+TEST(LensWithIris, FocusOfExactRaysMovesWithItAndParaxialFocusDoesNot) {
+  const Lens lens = testing::data_lens("double_gauss_100mm_f2.0");
+  const Lens bladed = with_iris(lens, hexagon);
+  const FocusOptions paraxial{.criterion = FocusCriterion::paraxial};
+  EXPECT_EQ(with_focus(bladed, 3000, paraxial).film_z(), with_focus(lens, 3000, paraxial).film_z());
+  EXPECT_NE(with_focus(bladed, 3000).film_z(), with_focus(lens, 3000).film_z());
+}
+
+}  // namespace
+}  // namespace petzval

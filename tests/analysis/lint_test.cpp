@@ -1,0 +1,419 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "petzval/analysis/lint.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <optional>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "../data_lenses.hpp"
+#include "../message.hpp"
+#include "petzval/core/error.hpp"
+#include "petzval/glass/glass.hpp"
+#include "petzval/paraxial/first_order.hpp"
+#include "petzval/pupil/illumination.hpp"
+
+namespace petzval {
+namespace {
+
+using Kind = FindingKind;
+using testing::data_prescription;
+
+/// f = 100 mm, f/5, the film at the paraxial focus: no findings.
+Prescription singlet() {
+  Prescription p;
+  p.name = "singlet";
+  p.focal_length_mm = 100;
+  p.f_number = 5;
+  p.surfaces = {{.radius = 0, .thickness = 4, .medium = {.nd = 1.5}, .semi_diameter = 10, .stop = true},
+                {.radius = -50, .thickness = 100, .semi_diameter = 12}};
+  return p;
+}
+
+// In metres, or in inches of a hundredth: the film that a host has its units wrong for.
+TEST(Lint, FindsAFilmFarFromTheImageCircle) {
+  const Lens lens = testing::data_lens("double_gauss_100mm_f2_28deg");
+  const double circle = image_circle_mm(lens);
+  for (const double width : {0.036, 0.36, 360.0, 36000.0}) {
+    const std::vector<Finding> findings = lint(lens, {.width_mm = width, .height_mm = width / 1.5});
+    ASSERT_EQ(findings.size(), 1u) << width;
+    EXPECT_EQ(findings[0].kind, Kind::film_size);
+    EXPECT_NEAR(findings[0].found, width * std::hypot(1, 1 / 1.5), 1e-9 * width);
+    EXPECT_EQ(findings[0].wanted, circle);
+    EXPECT_NE(findings[0].message.find(width > 36 ? "wanted a smaller film" : "wanted a larger film"),
+              std::string::npos)
+        << findings[0].message;
+  }
+  for (const double width : {1.8, 6.4, 36.0, 60.0, 110.0}) {
+    EXPECT_TRUE(lint(lens, {.width_mm = width, .height_mm = width / 1.5}).empty()) << width;
+  }
+  // One that is shifted out of the circle.
+  EXPECT_EQ(lint(lens, {.shift_x_mm = 200}).size(), 1u);
+}
+
+TEST(Lint, FindsPixelsThatAreNotSquare) {
+  const Lens lens = testing::data_lens("double_gauss_100mm_f2_28deg");
+  const std::vector<Finding> findings = lint(lens, {.columns = 1920, .rows = 1080});
+  ASSERT_EQ(findings.size(), 1u);
+  EXPECT_EQ(findings[0].kind, Kind::pixel_shape);
+  EXPECT_NEAR(findings[0].found, 0.84375, 1e-15);
+  EXPECT_EQ(findings[0].wanted, 1);
+  EXPECT_EQ(findings[0].message,
+            "pixels are 0.01875 by 0.02222 mm, wanted square ones: 36 by 20.25 mm fit 1920 by 1080");
+  EXPECT_EQ(lint(lens, {.width_mm = 360, .height_mm = 240, .columns = 1080, .rows = 1920}).size(), 2u);
+  EXPECT_EQ(lint(with_iris(lens, {.blades = 6}), {.columns = 1920, .rows = 1080}).size(), 1u);
+  EXPECT_EQ(lint(lens, {.columns = 3840, .rows = 2590}).size(), 1u);
+  // Within 0.5 %; as near as whole pixels come; and a lens that squeezes the picture.
+  EXPECT_TRUE(lint(lens, {.columns = 3840, .rows = 2570}).empty());
+  EXPECT_TRUE(lint(lens, {.columns = 10, .rows = 7}).empty());
+  EXPECT_TRUE(lint(testing::data_lens("anamorphic_60mm_2x"), {.columns = 1920, .rows = 1080}).empty());
+}
+
+TEST(Lint, RefusesAFilmThatNoCameraTakes) {
+  const Lens lens = testing::data_lens("double_gauss_100mm_f2.0");
+  const auto refusal = [&](const Film& film) { return testing::message([&] { lint(lens, film); }); };
+  EXPECT_EQ(
+      refusal({.width_mm = 0}),
+      lens.name() + ": film: it is 0 by 24 mm, wanted positive lengths up to 1e+09 mm and an area that is a number");
+  for (const Film& film :
+       {Film{.width_mm = std::nan("")}, Film{.height_mm = -24}, Film{.columns = 0}, Film{.margin_mm = -1},
+        Film{.shift_x_mm = std::nan("")}, Film{.tilt_rad = 1.6}, Film{.width_mm = 2e9}, Film{.margin_mm = 2e9},
+        Film{.shift_x_mm = -2e9}, Film{.shift_y_mm = 2e9}, Film{.z_mm = -2e9}, Film{.travel_mm = 2e9}}) {
+    EXPECT_EQ(refusal(film).find(lens.name() + ": film: it"), 0u) << refusal(film);
+  }
+}
+
+void expect_one(const Prescription& p, Kind kind, std::optional<int> surface, const std::string& message) {
+  const std::vector<Finding> findings = lint(p);
+  ASSERT_EQ(findings.size(), 1u);
+  EXPECT_EQ(findings[0].kind, kind);
+  EXPECT_EQ(findings[0].surface, surface);
+  EXPECT_EQ(findings[0].message, message);
+}
+
+TEST(Lint, FindsNothingInASoundLens) { EXPECT_TRUE(lint(singlet()).empty()); }
+
+TEST(Lint, FindsAnotherFocalLengthThanDeclared) {
+  Prescription p = singlet();
+  p.focal_length_mm = 101.9;
+  EXPECT_TRUE(lint(p).empty());
+  p.focal_length_mm = 103;
+  expect_one(p, Kind::focal_length, {}, "focal length is 100 mm, declared 103 mm");
+  EXPECT_NEAR(lint(p)[0].found, 100, 1e-12);
+  EXPECT_EQ(lint(p)[0].wanted, 103);
+  p.focal_length_mm.reset();
+  EXPECT_TRUE(lint(p).empty());
+}
+
+/// The singlet, so many times as large as it is declared.
+Prescription in_another_unit(double factor) {
+  Prescription p = scale(singlet(), factor);
+  p.focal_length_mm = 100;
+  return p;
+}
+
+/// The singlet with all rims so many times as wide.
+Prescription with_rims(double factor) {
+  Prescription p = singlet();
+  p.surfaces[0].thickness = 8;  // room for the widest
+  p.surfaces[1].obscuration_semi_diameter = 1;
+  for (SurfaceRow& row : p.surfaces) *row.semi_diameter *= factor;
+  *p.surfaces[1].obscuration_semi_diameter *= factor;
+  return p;
+}
+
+TEST(Lint, FindsLengthsInAnotherUnit) {
+  expect_one(in_another_unit(25.4), Kind::units, {},
+             "focal length is 2540 mm, declared 100 mm: lengths are 25.4 times what they should be");
+  expect_one(in_another_unit(0.1), Kind::units, {},
+             "focal length is 10 mm, declared 100 mm: lengths are 0.1 times what they should be");
+  EXPECT_EQ(lint(in_another_unit(20)).at(0).kind, Kind::focal_length);
+}
+
+TEST(Lint, FindsEveryLensInInches) {
+  for (const Prescription& millimetres : testing::data_prescriptions()) {
+    if (!millimetres.focal_length_mm || !millimetres.configurations.empty()) continue;  // theirs are scaled with them
+    SCOPED_TRACE(millimetres.name);
+    Prescription p = scale(millimetres, 1 / 25.4);
+    p.focal_length_mm = millimetres.focal_length_mm, p.image_diagonal_mm = millimetres.image_diagonal_mm;
+    const auto findings = lint(p);
+    EXPECT_TRUE(std::ranges::any_of(findings, [](const Finding& f) { return f.kind == Kind::units; }));
+  }
+}
+
+TEST(Lint, FindsDiametersInThePlaceOfSemiDiameters) {
+  expect_one(with_rims(2), Kind::apertures, {}, "f-number is 2.5, declared 5: semi-diameters are diameters");
+  expect_one(with_rims(0.5), Kind::apertures, {}, "f-number is 10, declared 5: semi-diameters are halves of them");
+  EXPECT_EQ(lint(with_rims(1.5)).at(0).kind, Kind::f_number);
+  // Were it so, the f-number would be another.
+  EXPECT_EQ(lint(with_rims(1.8)).at(0).kind, Kind::f_number);
+}
+
+TEST(Lint, FindsAStopThatDoesNotLimitTheBeam) {
+  Prescription p = singlet();
+  p.f_number.reset();
+  p.surfaces[1].semi_diameter = 7.5;
+  EXPECT_TRUE(lint(p).empty());
+  p.surfaces[1].semi_diameter = 5;
+  expect_one(p, Kind::idle_stop, 0,
+             "surface 0: the stop lets an axial beam of 10 mm radius pass, surface 1 clips it at 5 mm");
+  p.surfaces[0].semi_diameter.reset();
+  EXPECT_TRUE(lint(p).empty());
+}
+
+TEST(Lint, FindsIndicesThatAreNotThoseOfTheGlass) {
+  const auto glasses = GlassCatalogue::load(std::filesystem::path(PETZVAL_TEST_DATA) / "glass");
+  Prescription p = singlet();
+  p.focal_length_mm.reset();
+  const auto index_of = [&](Medium medium) {
+    p.surfaces[0].medium = std::move(medium);
+    p.surfaces[1].thickness = first_order(compile(p, {.glasses = &glasses})).back_focal_distance;
+    std::vector<std::string> messages;
+    for (const Finding& finding : lint(p, glasses)) {
+      if (finding.kind == Kind::glass_index) messages.push_back(finding.message);
+    }
+    return messages;
+  };
+  using Messages = std::vector<std::string>;
+  EXPECT_EQ(index_of({.glass = "N-BK7", .catalogue = "schott", .nd = 1.52}), Messages{});
+  EXPECT_EQ(index_of({.glass = "N-BK7", .catalogue = "schott", .nd = 1.6}),
+            Messages{"surface 0: n_d is 1.6, that of N-BK7 is 1.5168"});
+  EXPECT_EQ(index_of({.glass = "N-BK7", .nd = 1.6}), Messages{});
+  EXPECT_EQ(index_of({.glass = "N-NONE", .catalogue = "schott", .nd = 1.6}), Messages{});
+}
+
+TEST(Lint, KindsHaveNamesOfTheirOwn) {
+  std::set<std::string_view> names;
+  for (int kind = 0; kind <= static_cast<int>(Kind::pixel_shape); ++kind) {
+    names.insert(name(static_cast<Kind>(kind)));
+  }
+  EXPECT_EQ(names.size(), 13u);
+  EXPECT_FALSE(names.contains("unknown"));
+}
+
+TEST(Repair, MendsWhatHasOneCure) {
+  const auto changes = [](const Repaired& repaired) {
+    std::vector<std::string> result;
+    for (const ImportWarning& change : repaired.changes) result.push_back(change.command + ": " + change.message);
+    return result;
+  };
+  using Changes = std::vector<std::string>;
+  EXPECT_EQ(repair(singlet()).prescription, singlet());
+  EXPECT_TRUE(repair(singlet()).changes.empty());
+
+  Repaired repaired = repair(in_another_unit(1000));
+  EXPECT_EQ(changes(repaired), Changes{"units: focal length is 100000 mm, declared 100 mm: lengths are 1000 times what "
+                                       "they should be; all lengths are scaled"});
+  EXPECT_NEAR(repaired.prescription.surfaces[1].radius, -50, 1e-12);
+  EXPECT_EQ(repaired.prescription.focal_length_mm, 100);
+
+  for (const double factor : {0.5, 2.0}) {
+    repaired = repair(with_rims(factor));
+    EXPECT_EQ(repaired.prescription, with_rims(1));
+    EXPECT_NE(changes(repaired).at(0).find(factor > 1 ? "; they are halved" : "; they are doubled"), std::string::npos);
+  }
+
+  Prescription p = singlet();
+  p.surfaces[1].stop = true;
+  p.surfaces[1].thickness = 90;
+  repaired = repair(p);
+  EXPECT_NEAR(repaired.prescription.surfaces[1].thickness, 100, 1e-9);
+  repaired.prescription.surfaces[1].thickness = 100;
+  EXPECT_EQ(repaired.prescription, singlet());
+  EXPECT_EQ(changes(repaired),
+            (Changes{"several_stops: surface 1: is the last of 2 marked as stop; the first is used; the marks behind "
+                     "the first are taken off",
+                     "image_distance: surface 1: the film is 90 mm behind it and the paraxial focus 100 mm; the film "
+                     "is put there"}));
+}
+
+TEST(Repair, LeavesWhatItWouldMakeInvalidAndPositions) {
+  Prescription p = singlet();
+  p.surfaces[1].radius = -1e12;  // focused beyond the longest thickness
+  p.focal_length_mm.reset();
+  p.f_number.reset();
+  EXPECT_EQ(lint(p).at(0).kind, Kind::image_distance);
+  EXPECT_EQ(repair(p).prescription, p);
+  p = scale(singlet(), 1e7);  // a thickness of 1e9 mm
+  p.focal_length_mm = 1e12;
+  EXPECT_EQ(lint(p).at(0).kind, Kind::units);
+  EXPECT_EQ(repair(p).prescription, p);
+
+  p = in_another_unit(10);
+  p.configurations = {{.name = "a"}, {.name = "b", .changes = {{.surface = 1, .thickness = 990}}}};
+  EXPECT_EQ(lint(p).at(0).kind, Kind::units);
+  EXPECT_EQ(repair(p).prescription, p);
+  EXPECT_TRUE(repair(p).changes.empty());
+}
+
+TEST(Lint, FindsAnotherFNumberThanDeclared) {
+  Prescription p = singlet();
+  p.f_number = 4;
+  expect_one(p, Kind::f_number, {}, "f-number is 5, declared 4");
+  p.surfaces[0].semi_diameter.reset();  // an unlimited stop gives no f-number
+  EXPECT_TRUE(lint(p).empty());
+}
+
+TEST(Lint, FindsSurfacesThatCross) {
+  // The rear surface bends forward by 50 - sqrt(50^2 - h^2), the glass is 4 mm thick: room up to a height of 19.6 mm.
+  Prescription p = singlet();
+  p.f_number.reset();
+  p.surfaces[0].semi_diameter = 25;
+  p.surfaces[1].semi_diameter = 19;
+  EXPECT_TRUE(lint(p).empty());
+  p.surfaces[1].semi_diameter = 21;
+  expect_one(p, Kind::overlap, 0, "surface 0: overlaps the next surface by 0.623795 mm at a height of 21 mm");
+}
+
+TEST(Lint, LooksForOverlapsOutsideCentralObscurationsOnly) {
+  Prescription p = singlet();
+  p.f_number.reset();
+  p.surfaces[0].thickness = -1;  // the rear surface lies in front of the other up to a height of 10 mm
+  p.surfaces[1].radius = 50.5;
+  p.focal_length_mm.reset();
+  p.surfaces[1].thickness = first_order(compile(p)).back_focal_distance;
+  p.surfaces[0].semi_diameter = p.surfaces[1].semi_diameter = 15;
+  EXPECT_EQ(lint(p).at(0).kind, Kind::overlap);
+  p.surfaces[1].obscuration_semi_diameter = 11;
+  EXPECT_TRUE(lint(p).empty());
+  p.surfaces[1].obscuration_semi_diameter = 9;
+  EXPECT_EQ(lint(p).at(0).kind, Kind::overlap);
+}
+
+TEST(Lint, FollowsTheLightBehindMirrors) {
+  Prescription p = data_prescription("catadioptric_mangin_1000mm_f7.5");
+  EXPECT_TRUE(lint(p).empty());
+  p.surfaces[3].thickness = 2;  // as if light went on through the mirror
+  bool crosses = false;
+  for (const Finding& finding : lint(p)) crosses = crosses || (finding.kind == Kind::overlap && finding.surface == 3);
+  EXPECT_TRUE(crosses);
+}
+
+TEST(Lint, FollowsTheLightBehindMirrorsWithoutRims) {
+  Prescription p = data_prescription("catadioptric_mangin_1000mm_f7.5");
+  for (SurfaceRow& row : p.surfaces) row.semi_diameter.reset();
+  p.f_number.reset();
+  const auto crosses = [&] {
+    return std::ranges::any_of(lint(p), [](const Finding& f) { return f.kind == Kind::overlap && f.surface == 3; });
+  };
+  EXPECT_FALSE(crosses());
+  p.surfaces[3].thickness = 2;
+  EXPECT_TRUE(crosses());
+}
+
+TEST(Lint, SeesCylindersInBothSections) {
+  Prescription p = singlet();
+  p.focal_length_mm.reset();
+  p.f_number.reset();
+  p.surfaces[1].thickness = 0;
+  p.surfaces.push_back({.radius = 0, .thickness = 2, .medium = {.nd = 1.5}, .semi_diameter = 12});
+  p.surfaces.push_back({.radius = 0, .semi_diameter = 12});
+  for (const Section section : {Section::x, Section::y}) {
+    p.surfaces[1].curved_in = section;
+    p.surfaces[1].radius = 50;
+    bool crosses = false;
+    for (const Finding& finding : lint(p)) crosses = crosses || finding.kind == Kind::overlap;
+    EXPECT_TRUE(crosses);
+  }
+}
+
+TEST(Lint, FindsARimBeyondTheEndOfAnAsphere) {
+  Prescription p = singlet();
+  p.surfaces[1].aspheric = {{8, -std::pow(5, -7) / 2}};
+  const std::vector<Finding> findings = lint(p);
+  const auto rim = std::ranges::find(findings, Kind::semi_diameter, &Finding::kind);
+  ASSERT_NE(rim, findings.end());
+  EXPECT_EQ(rim->surface, 1);
+  EXPECT_EQ(rim->found, 12);
+  EXPECT_NEAR(rim->wanted, 4.95, 0.05);  // where it is as steep as 4
+}
+
+TEST(Lint, FindsASemiDiameterBeyondTheSurface) {
+  Prescription p = singlet();
+  p.surfaces[1].semi_diameter = 51;
+  expect_one(p, Kind::semi_diameter, 1,
+             "surface 1: semi_diameter is 51 mm, wanted at most 50 mm, where the surface ends");
+  p.surfaces[1].conic = -1;  // a paraboloid has no equator
+  EXPECT_TRUE(lint(p).empty());
+  p.surfaces[1].conic = 3;
+  EXPECT_NEAR(lint(p).at(0).wanted, 25, 1e-12);
+  p.surfaces[1].conic = -0.75;
+  EXPECT_TRUE(lint(p).empty());
+}
+
+TEST(Lint, FindsARimThatOnlyTheAxisPasses) {
+  Prescription p = singlet();
+  p.surfaces[1].semi_diameter = 0;
+  expect_one(p, Kind::semi_diameter, 1, "surface 1: semi_diameter is 0 mm; only the axial ray passes");
+  EXPECT_EQ(lint(p)[0].found, 0);
+  EXPECT_EQ(lint(p)[0].wanted, 50);
+  p = singlet();
+  p.surfaces[0].semi_diameter = 0;  // a closed iris
+  for (const Finding& finding : lint(p)) EXPECT_NE(finding.kind, Kind::semi_diameter) << finding.message;
+  p.surfaces[0].stop = false;
+  bool found = false;
+  for (const Finding& finding : lint(p)) found = found || (finding.kind == Kind::semi_diameter && finding.surface == 0);
+  EXPECT_TRUE(found);
+}
+
+TEST(Lint, FindsNoStopAndSeveral) {
+  Prescription p = singlet();
+  p.surfaces[0].stop = false;
+  expect_one(p, Kind::no_stop, {}, "no surface is marked as stop; the one that clips the axial beam first is used");
+  p.surfaces[0].stop = p.surfaces[1].stop = true;
+  expect_one(p, Kind::several_stops, 1, "surface 1: is the last of 2 marked as stop; the first is used");
+}
+
+TEST(Lint, FindsAFilmAwayFromTheFocus) {
+  Prescription p = singlet();
+  p.surfaces[1].thickness = 97;
+  expect_one(p, Kind::image_distance, 1, "surface 1: the film is 97 mm behind it and the paraxial focus 100 mm");
+  p.surfaces[1].thickness = 101;
+  EXPECT_TRUE(lint(p).empty());
+}
+
+TEST(Lint, TakesALensWithoutFocalLengthOrRims) {
+  Prescription p;
+  p.surfaces = {{.medium = {.nd = 1.5}, .stop = true}};
+  EXPECT_TRUE(lint(p).empty());
+  p.focal_length_mm = 50;
+  expect_one(p, Kind::focal_length, {}, "focal length is inf mm, declared 50 mm");
+}
+
+TEST(Lint, RefusesAnInvalidPrescriptionOnly) {
+  Prescription p = singlet();
+  p.surfaces[0].thickness = std::nan("");
+  EXPECT_THROW(lint(p), Error);
+}
+
+// Known overlaps in the data. Most of these lenses have estimated diameters.
+TEST(Lint, FindsInDataTheKnownOverlapsAndNothingElse) {
+  const std::map<std::string, std::vector<int>> known{
+      {"anamorphic_60mm_2x", {11}},       {"speed_panchro_26mm_f2", {4}},
+      {"biotar_100mm_f1.4", {4}},         {"double_gauss_100mm_f1.7_substitute", {3}},
+      {"modern_50mm_f1.0", {6}},          {"retrofocus_100mm_f2", {3}},
+      {"telephoto_200mm_f1.8", {3}},      {"telephoto_392mm_f2.9", {12, 23}},
+      {"tessar_100mm_f5.5_1902", {0, 6}}, {"zoom_70-210mm_f4:middle", {6}},
+      {"zoom_70-210mm_f4:tele", {6}},     {"zoom_70-210mm_f4:wide", {6}},
+  };
+  std::size_t count = 0;
+  for (const Prescription& p : testing::data_prescriptions()) {
+    std::vector<int> overlaps;
+    for (const Finding& finding : lint(p)) {
+      EXPECT_EQ(finding.kind, Kind::overlap) << p.id << ": " << finding.message;
+      overlaps.push_back(finding.surface.value_or(-1));
+    }
+    const auto wanted = known.find(p.id);
+    EXPECT_EQ(overlaps, wanted == known.end() ? std::vector<int>{} : wanted->second) << p.id;
+    ++count;
+  }
+  EXPECT_EQ(count, 75u);
+}
+
+}  // namespace
+}  // namespace petzval

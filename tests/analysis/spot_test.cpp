@@ -1,0 +1,189 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "petzval/analysis/spot.hpp"
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cmath>
+#include <limits>
+#include <vector>
+
+#include "../data_lenses.hpp"
+#include "petzval/core/error.hpp"
+#include "petzval/core/units.hpp"
+#include "petzval/paraxial/first_order.hpp"
+#include "petzval/pupil/aim.hpp"
+#include "petzval/pupil/f_number.hpp"
+
+namespace petzval {
+namespace {
+
+using testing::data_lens;
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
+
+TEST(SpotSize, OfACross) {
+  const std::vector<double> x{1, 3, 2, 2}, y{5, 5, 4, 6};
+  const SpotSize size = spot_size(x, y);
+  EXPECT_DOUBLE_EQ(size.centroid.x, 2);
+  EXPECT_DOUBLE_EQ(size.centroid.y, 5);
+  EXPECT_DOUBLE_EQ(size.rms_radius, 1);
+  EXPECT_DOUBLE_EQ(size.max_radius, 1);
+}
+
+TEST(SpotSize, OfNoneAndOne) {
+  EXPECT_EQ(spot_size({}, {}).max_radius, 0);
+  EXPECT_EQ(spot_size(std::array{4.0}, std::array{-7.0}).centroid, Vec2<double>(4, -7));
+  EXPECT_EQ(spot_size(std::array{4.0}, std::array{-7.0}).rms_radius, 0);
+}
+
+TEST(SpotSize, LeavesOutPointsWithoutBothCoordinates) {
+  const std::vector<double> x{1, 3, 2, 2}, y{5, 5, 4, 6}, longer{1, 3, 2, 2, 1e9};
+  EXPECT_EQ(spot_size(longer, y).rms_radius, spot_size(x, y).rms_radius);
+  EXPECT_EQ(spot_size(y, longer).centroid, spot_size(y, x).centroid);
+  EXPECT_EQ(spot_size(x, {}).centroid, Vec2<double>(0, 0));
+  const std::vector<RayBundle> sets{{.x = {7}, .y = {}}, {.x = longer, .y = y, .weights = {1, 1}}};
+  EXPECT_EQ(spot_size(sets).centroid, Vec2<double>(2, 5));
+}
+
+TEST(SpotSize, KeepsSmallSpotsFarFromTheAxis) {
+  // A ring of a nanometre at a height of 40 mm: the coordinates resolve 1e-8 of it.
+  std::vector<double> x, y;
+  for (int i = 0; i < 100000; ++i) {
+    x.push_back(1e-6 * std::cos(radians(i * 0.36)));
+    y.push_back(40 + 1e-6 * std::sin(radians(i * 0.36)));
+  }
+  const SpotSize size = spot_size(x, y);
+  EXPECT_NEAR(size.rms_radius / 1e-6, 1, 2e-8);
+  EXPECT_NEAR(size.max_radius / 1e-6, 1, 2e-8);
+}
+
+TEST(SpotSize, SetsCountAsOne) {
+  const std::vector<RayBundle> sets{{.x = {1, 3}, .y = {5, 5}}, {.x = {}, .y = {}}, {.x = {2, 2}, .y = {4, 6}}};
+  EXPECT_DOUBLE_EQ(spot_size(sets).rms_radius, 1);
+  EXPECT_DOUBLE_EQ(spot_size(sets).centroid.y, 5);
+}
+
+/// 0.61 wavelengths over the numerical aperture, of slopes as first order has them.
+double radius_by_aperture(const Lens& lens, double wavelength_nm) {
+  const Pupil exit = pupils(lens).exit;
+  const double index = lens.index(lens.surface_count()), slope = exit.diameter / 2 / std::abs(lens.film_z() - exit.z);
+  return 0.61 * 1e-6 * wavelength_nm / (index * slope);
+}
+
+TEST(AiryRadius, IsThatOfTheNumericalApertureOfTheFilm) {
+  const Lens lens = data_lens("double_gauss_100mm_f2.0");
+  EXPECT_NEAR(airy_radius(lens), 1.22 * 587.5618e-6 * 2, 4e-5);
+  // Near objects, other stops, and media behind the lens.
+  for (const Lens& other : {lens, with_film(lens, lens.film_z() + 40), with_f_number(lens, 11),
+                            data_lens("eye_gullstrand_le_grand"), data_lens("mirror_newton_200mm_f8")}) {
+    const double nm = other.wavelengths_nm()[other.primary_wavelength()];
+    EXPECT_NEAR(airy_radius(other) / radius_by_aperture(other, nm), 1, 1e-9) << other.name();
+  }
+  EXPECT_GT(data_lens("eye_gullstrand_le_grand").index(5), 1.3);
+  const Lens two = compile(testing::data_prescription("achromat_100mm"), std::array{450.0, 650.0},
+                           {.missing_glass = MissingGlass::abbe});
+  EXPECT_NEAR(airy_radius(two, 1) / airy_radius(two, 0), 650.0 / 450.0, 0.01);
+  EXPECT_EQ(airy_radius(with_semi_diameter(lens, *lens.stop(), 0)), infinity);
+}
+
+TEST(AiryRadius, AgainstTheBlurTellsWhatDiffractionDoes) {
+  const SpotSize size{.centroid = {0, 0}, .rms_radius = 0.01, .max_radius = 0.02};
+  const double blur = 0.01 * std::sqrt(2.0);  // radius of the uniform disc
+  EXPECT_EQ(diffraction(0.099 * blur, size), Diffraction::negligible);
+  EXPECT_EQ(diffraction(0.101 * blur, size), Diffraction::visible);
+  EXPECT_EQ(diffraction(0.99 * blur, size), Diffraction::visible);
+  EXPECT_EQ(diffraction(1.01 * blur, size), Diffraction::dominant);
+  EXPECT_EQ(diffraction(infinity, size), Diffraction::dominant);
+}
+
+TEST(SpotDiagram, ImagesTheFieldUpsideDown) {
+  const Lens lens = data_lens("double_gauss_100mm_f2.0");
+  const double f = first_order(lens).effective_focal_length;
+  const std::array fields{radians(0.0), radians(5.0), radians(10.0), radians(-10.0)};
+  const auto spots = spot_diagram(lens, -infinity, fields, 2048);
+  ASSERT_EQ(spots.size(), 4u);
+  EXPECT_NEAR(spots[0].chief_ray_height.value(), 0, 1e-12);
+  for (std::size_t i = 1; i < 4; ++i) {
+    const double ideal = -f * std::tan(fields[i]);
+    EXPECT_EQ(spots[i].point.field_rad, fields[i]);
+    EXPECT_NEAR(spots[i].chief_ray_height.value() / ideal, 1, 0.02);  // distortion
+    EXPECT_NEAR(spots[i].size.centroid.y / ideal, 1, 0.03);
+    EXPECT_NEAR(spots[i].size.centroid.x, 0, 2e-3);
+    EXPECT_LE(spots[i].size.rms_radius, spots[i].size.max_radius);
+    EXPECT_EQ(spots[i].hits.sent, 2048u);
+  }
+  EXPECT_DOUBLE_EQ(spots[2].chief_ray_height.value(), -spots[3].chief_ray_height.value());
+}
+
+TEST(SpotDiagram, GoesFieldByFieldAndByWavelengthWithin) {
+  Prescription p = testing::data_prescription("double_gauss_100mm_f2.0");
+  for (auto& row : p.surfaces) {
+    row.medium = {.nd = row.medium.nd, .vd = row.medium.vd};
+    row.medium.vd = !row.medium.is_air() ? std::optional(50.0) : std::nullopt;
+  }
+  const std::array wavelengths{486.1, 587.5618, 656.3};
+  const Lens lens = compile(p, wavelengths, {.missing_glass = MissingGlass::abbe});
+  const std::array fields{0.0, 0.1};
+  const auto spots = spot_diagram(lens, -1000, fields, 512);
+  ASSERT_EQ(spots.size(), 6u);
+  for (std::size_t i = 0; i < 6; ++i) {
+    EXPECT_EQ(spots[i].point.field_rad, fields[i / 3]);
+    EXPECT_EQ(spots[i].wavelength, i % 3);
+  }
+  // One scene point for all: the differences on the film are chromatic aberration.
+  EXPECT_NE(spots[3].chief_ray_height.value(), spots[5].chief_ray_height.value());
+  EXPECT_NEAR(spots[3].chief_ray_height.value(), spots[5].chief_ray_height.value(), 0.1);
+}
+
+TEST(SpotDiagram, PerfectLensMakesAPoint) {
+  const Lens lens = data_lens("analytic_plano_hyperbolic_100mm");
+  const std::array axis{0.0};
+  const auto spots = spot_diagram(lens, -infinity, axis);
+  EXPECT_GT(spots[0].hits.x.size(), 1000u);
+  EXPECT_LT(spots[0].size.max_radius, 1e-12);
+}
+
+TEST(SpotDiagram, ChiefRayPassesTheHoleOfAMirror) {
+  const std::array fields{radians(0.5)};
+  const auto spots = spot_diagram(data_lens("catadioptric_mangin_1000mm_f7.5"), -infinity, fields, 256);
+  EXPECT_NEAR(spots[0].chief_ray_height.value(), -1000 * std::tan(radians(0.5)), 0.2);
+}
+
+TEST(SpotDiagram, ReachesTheEdgeOfA220DegreeFisheye) {
+  const Lens lens = data_lens("fisheye_6.3mm_f2.8");
+  const std::array fields{radians(0.0), radians(60.0), radians(89.0), radians(110.0)};
+  const auto spots = spot_diagram(lens, -infinity, fields, 1024);
+  double height = 1, light = 1.1;
+  for (const Spot& spot : spots) {
+    EXPECT_GE(spot.hits.x.size(), 0.95 * spot.hits.sent);
+    EXPECT_NEAR(spot.chief_ray_height.value(), spot.size.centroid.y, 0.02);
+    EXPECT_LT(spot.chief_ray_height.value(), height);
+    EXPECT_LT(spot.relative_illumination.value(), light);
+    height = *spot.chief_ray_height;
+    light = *spot.relative_illumination;
+  }
+  EXPECT_NEAR(height, -11.7, 0.2);  // half of the 23.4 mm that the file declares
+}
+
+TEST(SpotDiagram, ChiefRayIsThatThroughTheCentreOfTheStop) {
+  const Lens lens = data_lens("fisheye_10mm_f4");
+  const std::array fields{radians(70.0)};
+  const auto spots = spot_diagram(lens, -infinity, fields, 256);
+  const AimedRay chief = chief_ray(lens, {radians(70.0), -infinity});
+  ASSERT_LE(chief.residual, 1e-12);
+  const auto& ray = chief.end.ray;
+  EXPECT_NEAR(spots[0].chief_ray_height.value(),
+              ray.origin.y + (lens.film_z() - ray.origin.z) / ray.direction.z * ray.direction.y, 1e-13);
+}
+
+TEST(SpotDiagram, SaysWhereThereIsNoChiefRay) {
+  const std::array fields{radians(0.0), radians(89.5)};
+  const auto spots = spot_diagram(data_lens("double_gauss_100mm_f2.0"), -infinity, fields, 256);
+  EXPECT_EQ(spots[0].relative_illumination.value(), 1);
+  EXPECT_FALSE(spots[1].chief_ray_height.has_value());
+  EXPECT_FALSE(spots[1].relative_illumination.has_value());
+}
+
+}  // namespace
+}  // namespace petzval

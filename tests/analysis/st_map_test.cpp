@@ -1,0 +1,244 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "petzval/analysis/st_map.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <optional>
+#include <string>
+
+#include "../data_lenses.hpp"
+#include "../message.hpp"
+#include "distorting_lenses.hpp"
+#include "petzval/analysis/lens_metadata.hpp"
+
+namespace petzval {
+namespace {
+
+using testing::data_lens;
+using testing::small_film;
+
+LensDistortion distortion_of(const std::string& id, const Film& film, ModelKind model = ModelKind::exact_double) {
+  return LensDistortion(Camera(data_lens(id), film, {.model = model}));
+}
+
+std::size_t index(const StMap& map, int column, int row) {
+  return static_cast<std::size_t>(row) * static_cast<std::size_t>(map.width) + static_cast<std::size_t>(column);
+}
+
+/// The raster position that a pixel shows.
+Vec2<double> shown(const StMap& map, const Film& film, int column, int row) {
+  const std::size_t i = index(map, column, row);
+  return {map.s[i] * static_cast<double>(film.columns), (1 - static_cast<double>(map.t[i])) * film.rows};
+}
+
+/// The same at any raster position of the film, linear between centres of pixels, as programs that apply a map do it.
+std::optional<Vec2<double>> shown_at(const StMap& map, const Film& film, const Vec2<double>& at) {
+  const double x = at.x + map.margin_x - 0.5, y = at.y + map.margin_y - 0.5;
+  const int column = static_cast<int>(std::floor(x)), row = static_cast<int>(std::floor(y));
+  if (column < 0 || row < 0 || column + 1 >= map.width || row + 1 >= map.height) return {};
+  Vec2<double> sum{0, 0};
+  for (int i : {0, 1}) {
+    for (int j : {0, 1}) {
+      if (!map.sees(column + i, row + j)) return {};
+      const double share = std::abs(1 - i - (x - column)) * std::abs(1 - j - (y - row));
+      sum += share * shown(map, film, column + i, row + j);
+    }
+  }
+  return sum;
+}
+
+double far_apart(const Vec2<double>& a, const Vec2<double>& b) { return std::hypot(a.x - b.x, a.y - b.y); }
+
+TEST(StMap, OfAPinholeIsTheIdentity) {
+  const Film film = small_film(36);
+  const StMaps maps = st_maps(distortion_of("biogon_35mm_f2.8", film, ModelKind::pinhole));
+  for (const StMap* map : {&maps.undistort, &maps.redistort}) {
+    ASSERT_EQ(map->width, film.columns);
+    ASSERT_EQ(map->height, film.rows);
+    for (int row = 0; row < film.rows; ++row) {
+      for (int column = 0; column < film.columns; ++column) {
+        const std::size_t i = index(*map, column, row);
+        ASSERT_NEAR(map->s[i], (column + 0.5) / film.columns, 1e-6);
+        ASSERT_NEAR(map->t[i], 1 - (row + 0.5) / film.rows, 1e-6);
+      }
+    }
+  }
+}
+
+TEST(StMap, HasItsOriginAtTheLowerLeft) {
+  const Film film = small_film(36);
+  const StMap map = st_maps(distortion_of("double_gauss_100mm_f2_28deg", film)).redistort;
+  EXPECT_NEAR(map.s[index(map, 0, film.rows - 1)], 0.5 / film.columns, 1e-2);
+  EXPECT_NEAR(map.t[index(map, 0, film.rows - 1)], 0.5 / film.rows, 1e-2);
+  EXPECT_NEAR(map.s[index(map, film.columns - 1, 0)], 1 - 0.5 / film.columns, 1e-2);
+  EXPECT_NEAR(map.t[index(map, film.columns - 1, 0)], 1 - 0.5 / film.rows, 1e-2);
+}
+
+struct Case {
+  std::string lens;
+  Film film;
+  ModelKind model = ModelKind::exact_double;
+  double largest_px = 1e-3;
+};
+
+class StMapsOf : public ::testing::TestWithParam<Case> {};
+
+TEST_P(StMapsOf, AreTheDistortionInBothDirections) {
+  const auto& [id, film, model, largest_px] = GetParam();
+  const LensDistortion distortion = distortion_of(id, film, model);
+  const StMaps maps = st_maps(distortion);
+  for (int i = 0; i < 300; ++i) {
+    const int column = i * 7919 % maps.undistort.width, row = i * 6101 % maps.undistort.height;
+    const Vec2<double> at{column + 0.5 - maps.undistort.margin_x, row + 0.5 - maps.undistort.margin_y};
+    const auto wanted = distortion.distorted(at);
+    ASSERT_EQ(wanted.has_value(), maps.undistort.sees(column, row)) << at.x << ", " << at.y;
+    if (!wanted) continue;
+    EXPECT_LT(far_apart(shown(maps.undistort, film, column, row), *wanted), largest_px);
+  }
+  for (int i = 0; i < 300; ++i) {
+    const int column = i * 7919 % film.columns, row = i * 6101 % film.rows;
+    const auto wanted = distortion.undistorted({column + 0.5, row + 0.5});
+    ASSERT_EQ(wanted.has_value(), maps.redistort.sees(column, row)) << column << ", " << row;
+    if (!wanted) continue;
+    EXPECT_LT(far_apart(shown(maps.redistort, film, column, row), *wanted), largest_px);
+  }
+}
+
+TEST_P(StMapsOf, LeadBackOneAfterTheOther) {
+  const auto& [id, film, model, largest_px] = GetParam();
+  const StMaps maps = st_maps(distortion_of(id, film, model));
+  int compared = 0;
+  for (int row = 0; row < film.rows; row += 3) {
+    for (int column = 0; column < film.columns; column += 3) {
+      if (!maps.redistort.sees(column, row)) continue;
+      const auto back = shown_at(maps.undistort, film, shown(maps.redistort, film, column, row));
+      if (!back) continue;
+      ++compared;
+      ASSERT_LT(far_apart(*back, {column + 0.5, row + 0.5}), 0.005);
+    }
+  }
+  EXPECT_GT(compared, film.columns * film.rows / 9 * 0.98);
+}
+
+Film tilted_film() {
+  Film film = small_film(36);
+  film.tilt_rad = 0.03, film.swing_rad = -0.02;
+  return film;
+}
+
+INSTANTIATE_TEST_SUITE_P(Lenses, StMapsOf,
+                         ::testing::Values(Case{"double_gauss_100mm_f2_28deg", small_film(36)},
+                                           Case{"biogon_35mm_f2.8", small_film(36), ModelKind::exact_float},
+                                           Case{"zoom_14-30mm_f4:wide", small_film(36)},
+                                           Case{"anamorphic_60mm_2x", small_film(24)},
+                                           Case{"catadioptric_mangin_1000mm_f7.5", small_film(36)},
+                                           Case{"double_gauss_100mm_f2_28deg", tilted_film()},
+                                           Case{"biogon_35mm_f2.8", small_film(36), ModelKind::thin}));
+
+// Chief rays end within these pictures.
+TEST(StMap, IsTheDistortionUpToTheEndOfTheLight) {
+  for (const char* id : {"anamorphic_60mm_2x", "tessar_100mm_f3.5", "primoplan_100mm_f1.9", "fisheye_16mm_f2.8"}) {
+    SCOPED_TRACE(id);
+    const Lens lens = data_lens(id);
+    Film film = film_of(testing::data_prescription(id), lens);
+    film.columns = 480, film.rows = 320;
+    const LensDistortion distortion(Camera(lens, film, {.model = ModelKind::exact_double}));
+    const StMaps maps = st_maps(distortion);
+    int seen = 0;
+    for (int row = 0; row < film.rows; row += 3) {
+      for (int column = 0; column < film.columns; column += 3) {
+        const Vec2<double> at{column + 0.5, row + 0.5};
+        const auto back = distortion.undistorted(at);
+        if (!back || !maps.redistort.sees(column, row)) continue;
+        ++seen;
+        const double off = far_apart(shown(maps.redistort, film, column, row), *back);
+        EXPECT_LT(off, far_apart(*back, distortion.centre()) < film.columns ? 0.005 : 0.1) << column << ' ' << row;
+      }
+    }
+    EXPECT_GT(seen, 2000);
+  }
+}
+
+TEST(StMap, MarksWhatSeesNothing) {
+  const Film film = small_film(36);
+  const LensDistortion distortion = distortion_of("fisheye_8mm_f2.8", film);
+  const StMaps maps = st_maps(distortion);
+  const StMap& lens = maps.redistort;
+  EXPECT_FALSE(lens.sees(0, 0));
+  EXPECT_EQ(lens.s[0], -1);
+  EXPECT_EQ(lens.t[0], -1);
+  EXPECT_TRUE(lens.sees(film.columns / 2, film.rows / 2));
+  int seen = 0;
+  for (int row = 0; row < film.rows; ++row) {
+    for (int column = 0; column < film.columns; ++column) seen += lens.sees(column, row);
+  }
+  // The image circle of 89 degrees, which is within the film.
+  int wanted = 0;
+  for (int row = 0; row < film.rows; row += 4) {
+    for (int column = 0; column < film.columns; column += 4) {
+      wanted += distortion.undistorted({column + 0.5, row + 0.5}).has_value();
+    }
+  }
+  EXPECT_NEAR(seen / (wanted * 16.0), 1, 0.02);
+  EXPECT_EQ(maps.undistort.margin_x, film.columns / 2);  // cut
+}
+
+TEST(StMap, SeesNothingOutsideItself) {
+  EXPECT_FALSE(StMap{}.sees(0, 0));
+  const StMap map{.width = 2, .height = 1, .s = {0.5f, 0.5f}, .t = {0.5f, 0.5f}};
+  EXPECT_TRUE(map.sees(1, 0));
+  for (const auto& [column, row] : {std::pair{-1, 0}, {2, 0}, {0, -1}, {0, 1}, {-1, 1}}) {
+    EXPECT_FALSE(map.sees(column, row)) << column << ' ' << row;
+  }
+  EXPECT_FALSE((StMap{.width = 2, .height = 1, .s = {0.5f}, .t = {0.5f}}.sees(1, 0)));
+}
+
+TEST(StMap, MarginsHoldTheOverscan) {
+  const Film film = small_film(36);
+  const LensDistortion distortion = distortion_of("zoom_14-30mm_f4:wide", film);
+  const StMaps tight = st_maps(distortion, {.overscan = 1});
+  EXPECT_EQ(tight.undistort.width, film.columns);
+  const StMaps wide = st_maps(distortion, {.overscan = 1.5});
+  EXPECT_EQ(wide.undistort.width, film.columns * 3 / 2);
+  EXPECT_EQ(wide.undistort.margin_y, film.rows / 4);
+  const StMaps fitting = st_maps(distortion);
+  EXPECT_EQ(fitting.redistort.width, film.columns);
+  // Every pixel of the lens's picture is found in the pinhole's.
+  for (int row : {0, film.rows / 2, film.rows - 1}) {
+    for (int column : {0, film.columns / 2, film.columns - 1}) {
+      const Vec2<double> at = shown(fitting.redistort, film, column, row);
+      EXPECT_GE(at.x, -fitting.undistort.margin_x);
+      EXPECT_LE(at.x, film.columns + fitting.undistort.margin_x);
+      EXPECT_GE(at.y, -fitting.undistort.margin_y);
+      EXPECT_LE(at.y, film.rows + fitting.undistort.margin_y);
+    }
+  }
+  // The same places, whatever the margin.
+  for (int row = 7; row < film.rows; row += 50) {
+    for (int column = 3; column < film.columns; column += 50) {
+      const Vec2<double> a = shown(tight.undistort, film, column, row);
+      const Vec2<double> b =
+          shown(wide.undistort, film, column + wide.undistort.margin_x, row + wide.undistort.margin_y);
+      EXPECT_LT(far_apart(a, b), 1e-3);
+    }
+  }
+}
+
+TEST(StMap, DoesNotDependOnThreads) {
+  const LensDistortion distortion = distortion_of("double_gauss_100mm_f2_28deg", small_film(36));
+  const StMaps one = st_maps(distortion), three = st_maps(distortion, {.threads = 3});
+  EXPECT_EQ(one.undistort.s, three.undistort.s);
+  EXPECT_EQ(one.redistort.t, three.redistort.t);
+}
+
+TEST(StMap, RefusesOverscansOutOfRange) {
+  const LensDistortion distortion = distortion_of("double_gauss_100mm_f2_28deg", small_film(36));
+  for (const double overscan : {0.9, 11.0, std::nan("")}) {
+    EXPECT_NE(testing::message([&] { st_maps(distortion, {.overscan = overscan}); }).find("wanted 1 to 10"),
+              std::string::npos);
+  }
+}
+
+}  // namespace
+}  // namespace petzval

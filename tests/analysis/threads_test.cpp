@@ -1,0 +1,98 @@
+// SPDX-License-Identifier: Apache-2.0
+// Threads share a lens and a glass catalogue and use them at the same time. Each must get the results of a single
+// thread. Built with -fsanitize=thread, the test also finds races that do not change the numbers.
+#include <gtest/gtest.h>
+
+#include <array>
+#include <barrier>
+#include <thread>
+#include <vector>
+
+#include "../data_lenses.hpp"
+#include "petzval/analysis/lint.hpp"
+#include "petzval/analysis/psf.hpp"
+#include "petzval/analysis/spot.hpp"
+#include "petzval/core/error.hpp"
+#include "petzval/core/units.hpp"
+#include "petzval/focus/focus.hpp"
+#include "petzval/glass/glass.hpp"
+#include "petzval/paraxial/first_order.hpp"
+#include "petzval/pupil/f_number.hpp"
+#include "petzval/trace/trace.hpp"
+
+namespace petzval {
+namespace {
+
+struct Shared {
+  Prescription prescription;
+  GlassCatalogue glasses;
+  Lens lens;
+};
+
+/// Results of the library for the lens.
+std::vector<double> all_about(const Shared& shared) {
+  std::vector<double> numbers;
+  const auto say = [&](auto... values) { (numbers.push_back(static_cast<double>(values)), ...); };
+
+  const auto traced = [&](const Lens& lens) {
+    for (int i = -20; i <= 20; ++i) {
+      const auto end = trace(lens, Ray<double>{{0.3 * i, 1.7 * i, -50}, {0, 0, 1}});
+      say(end.ray.origin.x, end.ray.origin.y, end.ray.direction.y, end.fate, end.surface);
+      const auto single = trace(lens, Ray<float>{{0, 1.7f * static_cast<float>(i), -50}, {0, 0, 1}});
+      say(single.ray.origin.y, single.ray.direction.y);
+    }
+  };
+  traced(shared.lens);
+
+  const Lens own = compile(shared.prescription, std::array{450.0, d_line_nm, 650.0}, {.glasses = &shared.glasses});
+  for (std::size_t wavelength = 0; wavelength < 3; ++wavelength) {
+    const FirstOrder data = first_order(own, wavelength);
+    say(data.effective_focal_length, data.rear_focal_z, data.petzval_sum);
+  }
+  const Glass* glass = shared.glasses.find("n-bk7", "schott");
+  say(glass ? refractive_index(*glass, 500) : 0, shared.glasses.find("F2", 1.62) != nullptr);
+
+  Lens changed = with_focus(with_f_number(shared.lens, 2.8), 1500);
+  say(changed.film_z(), real_f_number(changed), pupils(changed).exit.diameter, lint(shared.prescription).size());
+  traced(changed);
+  const std::array fields{0.0, radians(8.0)};
+  for (const Spot& spot : spot_diagram(changed, -1500, fields, 512)) {
+    say(spot.size.rms_radius, spot.size.max_radius, spot.chief_ray_height.value_or(0), spot.hits.x.size());
+  }
+  const PointImage image =
+      point_image(changed, {.field_rad = fields[1], .z = -1200}, {.samples = 4096, .pixels = 32, .threads = 2});
+  for (const auto count : image.psf.counts) say(count);
+  say(image.throughput, image.size.rms_radius);
+
+  try {
+    changed = with_f_number(changed, 0.1);
+  } catch (const Error& error) {
+    say(std::string_view(error.what()).size());
+  }
+  return numbers;
+}
+
+TEST(Threads, ShareALensAndAGlassCatalogue) {
+  const Prescription prescription = testing::data_prescription("double_gauss_100mm_f1.35");
+  const Shared shared{prescription, GlassCatalogue::load(std::filesystem::path(PETZVAL_TEST_DATA) / "glass"),
+                      compile(prescription)};
+  const std::vector<double> alone = all_about(shared);
+  ASSERT_GT(alone.size(), 1500u);
+
+  constexpr int count = 8;
+  std::vector<std::vector<double>> together(count);
+  {
+    std::barrier start(count);
+    std::vector<std::jthread> threads;
+    for (auto& numbers : together) {
+      threads.emplace_back([&] {
+        start.arrive_and_wait();
+        numbers = all_about(shared);
+      });
+    }
+  }
+  for (const auto& numbers : together) EXPECT_EQ(numbers, alone);
+}
+
+}  // namespace
+}  // namespace petzval

@@ -1,0 +1,247 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "camera/moving_least_squares.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <random>
+#include <vector>
+
+#include "../message.hpp"
+#include "petzval/core/instruction_set.hpp"
+
+namespace {
+
+using namespace petzval;
+using camera_detail::MovingLeastSquares;
+using camera_detail::WeighedValue;
+
+constexpr SurfaceKind kinds[] = {SurfaceKind::affine, SurfaceKind::shepard};
+constexpr double betas[] = {1, 2, 2.5, 3, 4, 5.3, 8};
+
+MovingLeastSquares through(const std::vector<WeighedValue>& points, SurfaceKind kind = SurfaceKind::affine,
+                           double beta = 3, double side = 1) {
+  return {"test: ", points, side, kind, beta};
+}
+
+std::vector<WeighedValue> random_points(unsigned seed, std::size_t count) {
+  std::mt19937 random(seed);
+  std::uniform_real_distribution<double> unit(-1, 1);
+  std::vector<WeighedValue> points;
+  for (std::size_t i = 0; i < count; ++i) {
+    points.push_back({{unit(random), unit(random)}, unit(random), 0.1 + std::abs(unit(random))});
+  }
+  return points;
+}
+
+// Computed with 40 digits.
+TEST(MovingLeastSquares, GivesTheValuesOfAnIndependentComputation) {
+  std::vector<WeighedValue> points{{{0, 0}, 0.5}, {{1, 0}, 0.25}, {{0, 1}, 0.125, 2}};
+  const FilmPoint at{0.3, 0.2};
+  const double by_beta[] = {0.31177199880250149, 0.37830858618463525, 0.43180227305683083, 0.46544479750646939};
+  for (int b = 0; b < 4; ++b) {
+    EXPECT_NEAR(through(points, SurfaceKind::shepard, b + 1).at(at), by_beta[b], 1e-15) << b;
+  }
+  points.push_back({{1, 1}, 0.4});
+  EXPECT_NEAR(through(points, SurfaceKind::shepard, 2).at(at), 0.37976240763813471, 1e-15);
+  EXPECT_NEAR(through(points, SurfaceKind::affine, 2).at(at), 0.39068445475636171, 1e-12);
+  EXPECT_NEAR(through(points, SurfaceKind::affine, 4).at(at), 0.38681544143619512, 1e-12);
+}
+
+// Two points: a closed form, for every power.
+TEST(MovingLeastSquares, ComesToTheNearestPointAsBetaGrows) {
+  const std::vector<WeighedValue> points{{{0, 0}, 0.7}, {{4, 0}, -0.2, 0.5}};
+  for (double beta = 1; beta <= 8; beta += 0.125) {
+    const double other = 0.5 * std::pow(3, -beta), expected = (0.7 - 0.2 * other) / (1 + other);
+    const auto surface = through(points, SurfaceKind::shepard, beta, 10);
+    EXPECT_NEAR(surface.at({1, 0}), expected, 2e-15) << beta;
+    const float x = 1, y = 0;
+    float value = 0;
+    surface.at(1, &x, &y, &value);
+    EXPECT_NEAR(value, expected, 2e-7) << beta;
+  }
+}
+
+TEST(MovingLeastSquares, TakesTheMeanOfPointsInOnePlace) {
+  for (const SurfaceKind kind : kinds) {
+    for (const double beta : betas) {
+      const std::vector<WeighedValue> points{{{1, 2}, 0.5, 1}, {{1, 2}, 0.1, 3}, {{-3, 1}, 5, 1}};
+      EXPECT_DOUBLE_EQ(through(points, kind, beta, 10).at({1, 2}), 0.2);
+      const std::vector<WeighedValue> alone(points.begin(), points.begin() + 2);
+      EXPECT_DOUBLE_EQ(through(alone, kind, beta, 10).at({7, -9}), 0.2);
+      const Vec2<double> slopes = through(alone, kind, beta, 10).slopes({7, -9});
+      EXPECT_NEAR(std::abs(slopes.x) + std::abs(slopes.y), 0, 1e-15);
+    }
+  }
+}
+
+TEST(MovingLeastSquares, HasTheSlopeAlongALineOfPointsAlone) {
+  for (const double beta : betas) {
+    std::vector<WeighedValue> points;
+    for (const double t : {-1.0, 0.1, 0.5, 2.0}) points.push_back({{3 * t + 1, 1 - 2 * t}, 0.4 + 0.3 * t});
+    const auto surface = through(points, SurfaceKind::affine, beta, 10);
+    for (const double t : {-1.5, -0.3, 0.2, 0.9, 2.1}) {
+      for (const double across : {-2.0, 0.0, 0.4}) {
+        const FilmPoint at{3 * t + 1 + 2 * across, 1 - 2 * t + 3 * across};
+        EXPECT_NEAR(surface.at(at), 0.4 + 0.3 * t, 1e-11) << beta;
+        const float x = static_cast<float>(at.x), y = static_cast<float>(at.y);
+        float value = 0;
+        surface.at(1, &x, &y, &value);
+        EXPECT_NEAR(value, 0.4 + 0.3 * t, 1e-4) << beta;
+      }
+    }
+  }
+}
+
+TEST(MovingLeastSquares, SaysWhichPointItDoesNotTake) {
+  using petzval::testing::message;
+  const double nan = std::nan("");
+  const WeighedValue good{{1, 1}, 2};
+  EXPECT_EQ(message([&] { through({good, {{1, 1}, nan}}); }), "test: point 2: the value is nan, wanted a finite one");
+  EXPECT_EQ(message([&] {
+              through({good, {{1, 2e6}, 0}});
+            }),
+            "test: point 2: the place is (1, 2e+06) mm, wanted one within 1e+06 mm");
+  EXPECT_EQ(message([&] { through({}); }), "test: none of 0 points has a weight, wanted one at least");
+  EXPECT_EQ(message([&] { through({good}, SurfaceKind::affine, 8.1); }), "test: beta is 8.1, wanted one from 1 to 8");
+  EXPECT_EQ(message([&] { through({good}, SurfaceKind::affine, 3, 0); }),
+            "test: the side of the picture is 0 mm, wanted one above 0");
+}
+
+TEST(MovingLeastSquares, IsExactAtItsPoints) {
+  for (const SurfaceKind kind : kinds) {
+    for (const double beta : betas) {
+      const auto points = random_points(1, 16);
+      const auto surface = through(points, kind, beta);
+      for (const auto& point : points) {
+        EXPECT_EQ(surface.at(point.place), point.value) << name(kind) << beta;
+        const float x = static_cast<float>(point.place.x), y = static_cast<float>(point.place.y);
+        float value = 0;
+        surface.at(1, &x, &y, &value);
+        EXPECT_EQ(value, static_cast<float>(point.value)) << name(kind) << beta;
+      }
+    }
+  }
+}
+
+TEST(MovingLeastSquares, ReproducesPlanes) {
+  for (const double beta : betas) {
+    const double rounding = beta <= 4 ? 1e-13 : 1e-11, float_rounding = beta <= 4 ? 1e-5 : 1e-3;
+    auto points = random_points(2, 8);
+    const auto plane = [](const FilmPoint& p) { return 0.3 - 0.7 * p.x + 0.4 * p.y; };
+    for (auto& point : points) point.value = plane(point.place);
+    const auto surface = through(points, SurfaceKind::affine, beta);
+    for (const auto& at : random_points(3, 100)) {
+      EXPECT_NEAR(surface.at(at.place), plane(at.place), rounding) << beta;
+      const float x = static_cast<float>(at.place.x), y = static_cast<float>(at.place.y);
+      float value = 0;
+      surface.at(1, &x, &y, &value);
+      EXPECT_NEAR(value, plane(at.place), float_rounding) << beta;
+    }
+  }
+}
+
+TEST(MovingLeastSquares, HasTheSlopesOfFarPlaces) {
+  const double infinity = std::numeric_limits<double>::infinity();
+  for (const double beta : betas) {
+    std::vector<WeighedValue> two = random_points(4, 2);
+    two[0].place = {0, -8}, two[0].value = 0;
+    two[1].place = {0, 8}, two[1].value = 1e-3;
+    const auto rising = through(two, SurfaceKind::affine, beta), any = through(random_points(4, 12), kinds[0], beta);
+    for (const double far : {1e9, 1e200, infinity, -infinity, std::nan("")}) {
+      EXPECT_EQ(rising.slopes({far, 1}).x, 0) << far;
+      EXPECT_NEAR(rising.slopes({far, 1}).y, rising.at({far, 1.5}) - rising.at({far, 0.5}), 1e-9) << beta << ' ' << far;
+      EXPECT_GT(rising.slopes({far, 1}).y, 1e-5) << beta << ' ' << far;
+      EXPECT_EQ(rising.slopes({1, far}), Vec2<double>(0, 0)) << far;
+      for (const FilmPoint& place : {FilmPoint{far, 1}, {1, far}, {far, far}}) {
+        EXPECT_TRUE(std::isfinite(any.at(place))) << far;
+        const Vec2<double> slopes = any.slopes(place);
+        EXPECT_TRUE(std::isfinite(slopes.x) && std::isfinite(slopes.y)) << far;
+      }
+    }
+  }
+}
+
+TEST(MovingLeastSquares, HasTheSlopesOfItsPointsNextToThem) {
+  for (const SurfaceKind kind : kinds) {
+    for (const double beta : betas) {
+      auto points = random_points(4, 12);
+      points[0].place = {0, 0};
+      const auto surface = through(points, kind, beta);
+      const Vec2<double> at_point = surface.slopes({0, 0});
+      const double size = std::hypot(at_point.x, at_point.y);
+      for (double r = 1e-3; r > 0; r /= 2) {
+        const Vec2<double> beside = surface.slopes({0, r});
+        EXPECT_TRUE(std::isfinite(beside.x) && std::isfinite(beside.y)) << name(kind) << beta << ' ' << r;
+        if (r > 1e-8 || beta < 2) continue;  // next to the cusp of beta 1 they are others
+        EXPECT_NEAR(std::hypot(beside.x - at_point.x, beside.y - at_point.y), 0, 1e-4 * size + 1e-5)
+            << beta << ' ' << r;
+      }
+    }
+  }
+}
+
+TEST(MovingLeastSquares, SlopesAreFiniteDifferences) {
+  for (const SurfaceKind kind : kinds) {
+    for (const double beta : betas) {
+      const auto points = random_points(4, 12);
+      const auto surface = through(points, kind, beta);
+      for (const auto& at : random_points(5, 50)) {
+        const auto& [x, y] = at.place;
+        const double h = 1e-6;
+        const Vec2<double> slopes = surface.slopes(at.place);
+        EXPECT_NEAR(slopes.x, (surface.at({x + h, y}) - surface.at({x - h, y})) / (2 * h), 1e-6) << name(kind) << beta;
+        EXPECT_NEAR(slopes.y, (surface.at({x, y + h}) - surface.at({x, y - h})) / (2 * h), 1e-6) << name(kind) << beta;
+      }
+      if (beta <= 1.5) continue;
+      for (const auto& at : points) {
+        const auto& [x, y] = at.place;
+        const double h = beta < 3 ? 1e-9 : 1e-6;
+        const Vec2<double> slopes = surface.slopes(at.place);
+        const double tolerance = beta < 3 ? 3e-3 : 1e-3;
+        EXPECT_NEAR(slopes.x, (surface.at({x + h, y}) - surface.at({x - h, y})) / (2 * h), tolerance)
+            << name(kind) << beta;
+        EXPECT_NEAR(slopes.y, (surface.at({x, y + h}) - surface.at({x, y - h})) / (2 * h), tolerance)
+            << name(kind) << beta;
+      }
+    }
+  }
+}
+
+template <class T>
+void expect_same_bits(std::size_t points) {
+  std::vector<T> x, y;
+  for (const auto& at : random_points(6, 333)) {
+    x.push_back(static_cast<T>(1.5 * at.place.x));
+    y.push_back(static_cast<T>(1.5 * at.place.y));
+  }
+  for (const SurfaceKind kind : kinds) {
+    for (const double beta : betas) {
+      const auto surface = through(random_points(7, points), kind, beta);
+      std::vector<T> expected(x.size()), found(x.size());
+      surface.at(InstructionSet::baseline, x.size(), x.data(), y.data(), expected.data());
+      for (std::size_t i = 0; i < x.size() && sizeof(T) == sizeof(double); ++i) {
+        EXPECT_EQ(surface.at({x[i], y[i]}), expected[i]) << name(kind) << beta;
+      }
+      for (const InstructionSet set : instruction_sets()) {
+        surface.at(set, x.size(), x.data(), y.data(), found.data());
+        EXPECT_EQ(found, expected) << name(set) << name(kind) << beta;
+        for (std::size_t i = 0; i < x.size(); ++i) {
+          T single = 0;
+          surface.at(set, 1, &x[i], &y[i], &single);
+          EXPECT_EQ(single, expected[i]) << name(set) << name(kind) << beta;
+        }
+      }
+    }
+  }
+}
+
+TEST(MovingLeastSquares, GivesTheSameBitsOnAllInstructionSetsAndInBatches) {
+  for (const std::size_t points : {2, 3, 13, 200}) {
+    expect_same_bits<float>(points);
+    expect_same_bits<double>(points);
+  }
+}
+
+}  // namespace

@@ -1,0 +1,435 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "petzval/formats/glass_files.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <functional>
+#include <iterator>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "../message.hpp"
+#include "petzval/core/units.hpp"
+
+namespace {
+
+namespace fs = std::filesystem;
+using petzval::Glass;
+using petzval::GlassFile;
+using petzval::read_glasses;
+using petzval::refractive_index;
+using petzval::testing::message;
+
+std::string bytes_of(const fs::path& file) {
+  std::ifstream stream(file, std::ios::binary);
+  return {std::istreambuf_iterator<char>(stream), {}};
+}
+
+const std::string every_formula = bytes_of(fs::path(PETZVAL_TEST_SAMPLES) / "every_formula.agf");
+
+class GlassFiles : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    const auto* test = ::testing::UnitTest::GetInstance()->current_test_info();
+    folder = fs::path(::testing::TempDir()) / (std::string("petzval_") + test->name());
+    fs::remove_all(folder);
+    fs::create_directories(folder);
+  }
+  void TearDown() override { fs::remove_all(folder); }
+
+  fs::path written(const std::string& name, std::string_view bytes) const {
+    std::ofstream(folder / name, std::ios::binary) << bytes;
+    return folder / name;
+  }
+  GlassFile read(std::string_view bytes, const std::string& name = "Made-Up.agf") const {
+    return read_glasses(written(name, bytes));
+  }
+  /// The message of reading it, without the name of the folder.
+  std::string refusal(std::string_view bytes, const std::string& name = "x.agf") const {
+    const std::string all = message([&] { read(bytes, name); });
+    const std::string prefix = (folder / name).string();
+    return all.starts_with(prefix) ? all.substr(prefix.size()) : all;
+  }
+
+  fs::path folder;
+};
+
+/// "line command: message" of each warning.
+std::vector<std::string> said(const GlassFile& file) {
+  std::vector<std::string> result;
+  for (const auto& w : file.warnings) result.push_back(std::to_string(w.line) + " " + w.command + ": " + w.message);
+  return result;
+}
+
+const Glass& only(const GlassFile& file) {
+  EXPECT_EQ(file.glasses.size(), 1u);
+  return file.glasses.at(0);
+}
+
+void expect_index(const Glass& glass, const std::function<double(double)>& formula) {
+  for (const double l : {0.45, 0.55, 0.65}) {
+    EXPECT_NEAR(refractive_index(glass, l * 1000), formula(l), 1e-12) << glass.name << " at " << l;
+  }
+}
+
+// n^2 or n of each formula as its maker prints it, with the numbers of the sample.
+TEST_F(GlassFiles, EveryFormulaOfACatalogueGivesItsIndex) {
+  const auto file = read(every_formula);
+  ASSERT_EQ(file.glasses.size(), 15u);
+  const auto glass = [&](std::size_t i) -> const Glass& { return file.glasses[i]; };
+  const auto p = [](double l, double e) { return std::pow(l, e); };
+  const auto pole = [](double l, double k, double c) { return k * l * l / (l * l - c); };
+  expect_index(glass(0), [&](double l) {
+    return std::sqrt(2.2716 - 0.0097 * p(l, 2) + 0.0111 * p(l, -2) + 4.6e-5 * p(l, -4) + 1.6e-5 * p(l, -6) -
+                     8e-7 * p(l, -8));
+  });
+  expect_index(glass(1), [&](double l) {
+    return std::sqrt(1 + pole(l, 1.03961212, 0.00600069867) + pole(l, 0.231792344, 0.0200179144) +
+                     pole(l, 1.01046945, 103.560653));
+  });
+  expect_index(glass(2), [&](double l) {
+    const double s = 1 / (l * l - 0.028);
+    return 1.5 + 0.01 * s + 0.0004 * s * s - 0.002 * p(l, 2) + 0.0001 * p(l, 4) - 0.00001 * p(l, 6);
+  });
+  expect_index(glass(3), [&](double l) { return std::sqrt(1.25 + pole(l, 1, 0.01) + 0.006 / (l * l - 0.0081)); });
+  expect_index(glass(4), [&](double l) { return std::sqrt(1.25 + pole(l, 1, 0.01) + pole(l, 0.006, 0.0081)); });
+  expect_index(glass(5), [&](double l) { return 1.5 + 0.008 / l + 0.0004 / p(l, 3.5); });
+  expect_index(glass(6), [&](double l) {
+    return std::sqrt(1 + pole(l, 0.8559, 0.00345744) + pole(l, 0.8391, 0.019881) + pole(l, 0.0009, 0.038809) +
+                     pole(l, 0.6845, 49.070025));
+  });
+  expect_index(glass(7), [&](double l) { return std::sqrt(2.7405 + 0.0184 / (l * l - 0.0179) - 0.0155 * l * l); });
+  expect_index(glass(8), [&](double l) { return std::sqrt(1.3 + pole(l, 1.45, 0.0135) - 0.015 * l * l); });
+  expect_index(glass(9),
+               [&](double l) { return std::sqrt(3.1399 + pole(l, 1.3786, 0.02941) + pole(l, 3.861, 225.9009)); });
+  expect_index(glass(10), [&](double l) {
+    return std::sqrt(2.27 - 0.0097 * p(l, 2) + 0.011 * p(l, -2) + 5e-5 * p(l, -4) + 1e-5 * p(l, -6) - 5e-7 * p(l, -8) +
+                     1e-8 * p(l, -10) + 2e-9 * p(l, -12));
+  });
+  expect_index(glass(11), [&](double l) {
+    return std::sqrt(1 + pole(l, 0.4, 0.003) + pole(l, 0.5, 0.01) + pole(l, 0.2, 0.02) + pole(l, 0.1, 0.03) +
+                     pole(l, 0.9, 95));
+  });
+  expect_index(glass(12), [&](double l) {
+    return std::sqrt(2.27 - 0.0097 * p(l, 2) + 0.011 * p(l, -2) + 5e-5 * p(l, -4) + 1e-5 * p(l, -6) - 5e-7 * p(l, -8) -
+                     0.0002 * p(l, 4) - 0.00003 * p(l, 6));
+  });
+  expect_index(glass(13), [&](double l) {
+    return std::sqrt(2.27 - 0.0097 * p(l, 2) - 0.0002 * p(l, 4) + 0.011 * p(l, -2) + 5e-5 * p(l, -4) + 1e-5 * p(l, -6) -
+                     5e-7 * p(l, -8) + 1e-8 * p(l, -10) + 2e-9 * p(l, -12));
+  });
+  const double s = 1 / (25 - 0.028);
+  EXPECT_NEAR(refractive_index(glass(14), 5000),
+              2.51253618 + 0.0686942636 * s + 0.0211563734 * s * s - 0.000155048679 * 25 - 4.35296121e-8 * 625 +
+                  1.99858193e-10 * 15625,
+              1e-12);
+}
+
+// The n_d and V_d of calcite, beta barium borate and aluminium nitride are those of public catalogues.
+TEST_F(GlassFiles, ACatalogueKeepsWhatItPrints) {
+  const auto file = read(every_formula);
+  for (const Glass& glass : file.glasses) EXPECT_EQ(glass.catalogue, "made-up");
+  EXPECT_EQ(file.glasses[1].name, "F2-SELLMEIER1");
+  EXPECT_EQ(file.glasses[1].nd, 1.5168);
+  EXPECT_EQ(file.glasses[1].vd, 64.1673);
+  EXPECT_DOUBLE_EQ(file.glasses[1].shortest_nm, 300);
+  EXPECT_DOUBLE_EQ(file.glasses[1].longest_nm, 2500);
+  EXPECT_EQ(file.glasses[6].nd, 1.658643);
+  EXPECT_EQ(file.glasses[7].nd, 1.670737);
+  EXPECT_EQ(file.glasses[9].nd, 2.154291);
+  EXPECT_EQ(said(file),
+            (std::vector<std::string>{
+                "7 ED: thermal expansion and density are not used",
+                "9 TD: thermal dispersion is not used: indices are those at the temperature of the catalogue",
+                "10 MD: mechanical data are not used", "11 OD: price and resistance to chemicals are not used",
+                "13 IT: internal transmittance is not used: glasses are clear",
+                "145 INFRARED: no n_d is printed; the formula gives 2.605447 at 1000 nm"}));
+}
+
+std::string utf16(std::string_view latin, bool big, bool mark) {
+  std::string bytes = !mark ? "" : big ? "\xFE\xFF" : "\xFF\xFE";
+  for (const char c : latin) {
+    if (big) bytes += '\0';
+    bytes += c;
+    if (!big) bytes += '\0';
+  }
+  return bytes;
+}
+
+TEST_F(GlassFiles, EncodingAndLineEndsDoNotMatter) {
+  std::string dos;
+  for (const char c : every_formula) dos += c == '\n' ? "\r\n" : std::string(1, c);
+  std::string latin = every_formula;
+  latin.replace(latin.find("GC a"), 4, "GC \xE9");
+  const std::vector<std::string> copies = {dos,
+                                           latin,
+                                           "\xEF\xBB\xBF" + every_formula,
+                                           utf16(dos, false, true),
+                                           utf16(every_formula, false, false),
+                                           utf16(dos, true, true),
+                                           utf16(every_formula, true, false)};
+  const auto expected = read(every_formula);
+  for (std::size_t i = 0; i < copies.size(); ++i) {
+    const auto file = read(copies[i]);
+    ASSERT_EQ(file.glasses.size(), expected.glasses.size()) << i;
+    for (std::size_t g = 0; g < file.glasses.size(); ++g) {
+      EXPECT_EQ(file.glasses[g].name, expected.glasses[g].name) << i;
+      EXPECT_EQ(file.glasses[g].coefficients, expected.glasses[g].coefficients) << i;
+    }
+    EXPECT_EQ(said(file), said(expected)) << i;
+  }
+}
+
+const std::string crown =
+    "NM K 2 0 1.5168 64.17 0 1\nCD 1.03961212 0.00600069867 0.231792344 0.0200179144 1.01046945 "
+    "103.560653\nLD 0.3 2.5\n";
+
+TEST_F(GlassFiles, WhatAFormulaContradictsIsNamed) {
+  std::string wrong = crown;
+  wrong.replace(wrong.find("1.5168"), 6, "1.5178");
+  EXPECT_EQ(said(read(wrong)), (std::vector<std::string>{"1 K: the formula gives n_d 1.5168, but 1.5178 is printed"}));
+  EXPECT_EQ(only(read(wrong)).nd, 1.5178);
+  wrong = crown;
+  wrong.replace(wrong.find("64.17"), 5, "61.00");
+  EXPECT_EQ(said(read(wrong)), (std::vector<std::string>{"1 K: the formula gives V_d 64.17, but 61 is printed"}));
+  wrong.replace(wrong.find("61.00"), 5, "-    ");
+  EXPECT_TRUE(said(read(wrong)).empty());
+  EXPECT_NEAR(only(read(wrong)).vd, 64.167, 1e-3);
+}
+
+TEST_F(GlassFiles, WhatHasNoIndexIsLeftOutByName) {
+  const auto others = [&](std::string_view text) { return said(read(crown + std::string(text))); };
+  using Said = std::vector<std::string>;
+  EXPECT_EQ(others("NM Y 14 0 1.5 60 0 1\nCD 2\nLD 0.4 0.7\n"),
+            Said{"4 Y: left out: its formula is 14, known are 1 to 13"});
+  EXPECT_EQ(others("NM Y 2.5 0 1.5 60 0 1\nCD 2\nLD 0.4 0.7\n"),
+            Said{"4 Y: left out: its formula is 2.5, known are 1 to 13"});
+  EXPECT_EQ(others("NM Y 1 0 1.5 60\nNM Z 1 0 1.5 60\nCD 2.25\nLD 0.4 0.7\n"), (Said{"4 Y: left out: it has no CD"}));
+  EXPECT_EQ(others("NM Y 1 0 1.5 60\nCD 2.25\nLD 0.7 0.4\n"), Said{"4 Y: left out: its range is 700 to 400 nm"});
+  EXPECT_EQ(others("NM Y 1 0 1.5 60\nCD 2.25\nLD 0 0\n"), Said{"4 Y: left out: its range is 0 to 0 nm"});
+  EXPECT_EQ(others("NM Y 1 0 1.5 60\nCD -2.25\nLD 0.4 0.7\n"),
+            Said{"4 Y: left out: its formula gives no real index at 587.5618 nm"});
+  EXPECT_EQ(others("NM Y 4 0 1.9 60\nCD 0.25 1 0.1 0.006 0.09\nLD 0.4 0.7\n"),
+            Said{"4 Y: left out: formula 4 has two readings, and its n_d does not tell them apart"});
+  EXPECT_EQ(others("NM Y 1 0 1.5 60\nCD 2.25\n"), Said{"4 Y: it has no LD: its range is assumed to be 400 to 700 nm"});
+  EXPECT_EQ(others("NM k 1 0 1.5 60\nCD 2.25\nLD 0.4 0.7\n"),
+            Said{"4 k: given before; the first is found by its name"});
+  EXPECT_EQ(others("XX 1\nXX 2\n"), Said{"4 XX: an unknown command is left out"});
+}
+
+TEST_F(GlassFiles, ACatalogueThatIsBrokenIsRefusedWithItsLine) {
+  EXPECT_EQ(refusal("CC a\nNM\n"), ": line 2: NM has 0 words, wanted a name, a formula, a code, n_d and V_d");
+  EXPECT_EQ(refusal("NM K 2 0 1,5168 64.17\n"), ": line 1: NM is \"1,5168\", wanted a finite number");
+  EXPECT_EQ(refusal("NM K 2 0 nan 64.17\n"), ": line 1: NM is \"nan\", wanted a finite number");
+  EXPECT_EQ(refusal("NM K 2 0 1.5 64.17\nCD 1 1e400\n"), ": line 2: CD is \"1e400\", wanted a finite number");
+  EXPECT_EQ(refusal("NM K 2 0 1.5 64.17\nLD 1\n"), ": line 2: LD has 1 numbers, wanted two");
+  EXPECT_EQ(refusal("CC a\nCD 1\n"), ": line 2: CD stands before the first NM, wanted a glass that it is of");
+  EXPECT_EQ(refusal("NM K 2 0 1.5 64.17\n\n"),
+            ": line 2: the file ends before the CD of glass K, wanted its coefficients");
+  EXPECT_EQ(refusal("NM K 99 0 1.5 64.17\nCD 1\n"),
+            ": no glass can be used (line 1: K: left out: its formula is 99, known are 1 to 13), wanted at least one");
+  EXPECT_EQ(refusal("CC nothing but this\n"), ": no glass can be used, wanted at least one");
+}
+
+TEST_F(GlassFiles, OtherFilesAreRefused) {
+  const std::string wanted =
+      ", wanted glasses: a Zemax catalogue (.agf), a page of refractiveindex.info (.yml) or a glass table";
+  EXPECT_EQ(refusal("#include <vector>\n"), ": its first lines are of no glass file" + wanted);
+  EXPECT_EQ(refusal(""), ": its first lines are of no glass file" + wanted);
+  EXPECT_EQ(refusal("PK\x03\x04..."), ": is a zip archive (.zip, .zos or .zar)" + wanted);
+  EXPECT_EQ(message([&] { read_glasses(folder); }), folder.string() + ": is a folder" + wanted);
+  EXPECT_TRUE(message([&] { read_glasses(folder / "absent.agf"); }).starts_with((folder / "absent.agf").string()));
+}
+
+TEST_F(GlassFiles, ATableOfThisLibraryIsReadToo) {
+  const std::string table = "catalogue,name,nd,vd,formula,wl_min_um,wl_max_um,coefficients,origin\n";
+  const auto file = read(table + "mine,X1,1.5,60,cauchy,0.4,0.7,1.49 0.0034525 -2,me\n", "x.csv");
+  EXPECT_EQ(only(file).catalogue, "mine");
+  EXPECT_NEAR(refractive_index(only(file), 500), 1.49 + 0.0034525 * 4, 1e-15);
+  EXPECT_EQ(said(file), std::vector<std::string>{"2 X1: the formula gives V_d 75.84, but 60 is printed"});
+  EXPECT_EQ(refusal(table + "mine\n", "x.csv").substr(0, 9), ": line 2:");
+}
+
+/// A page with one entry of DATA.
+std::string page(const std::string& entry, const std::string& rest = "") {
+  return "# a comment\nREFERENCES: \"a book: <a href=\\\"x\\\">y</a>\"\nCOMMENTS: |\n    many\n    words\nDATA:\n" +
+         entry + rest;
+}
+
+std::string formula(int number, const std::string& coefficients) {
+  return page("  - type: formula " + std::to_string(number) +
+              "\n    wavelength_range: 0.4 0.7\n    coefficients: " + coefficients + "\n");
+}
+
+TEST_F(GlassFiles, EveryFormulaOfAPageGivesItsIndex) {
+  const auto glass = [&](int number, const std::string& c) { return only(read(formula(number, c), "A-B.yml")); };
+  EXPECT_EQ(glass(1, "0.5 1 0.25").catalogue, "rii");
+  EXPECT_EQ(glass(1, "0.5 1 0.25").name, "A-B");
+  expect_index(glass(1, "0.5 1 0.25"), [](double l) { return std::sqrt(1.5 + l * l / (l * l - 0.0625)); });
+  expect_index(glass(2, "0.5 1 0.0625"), [](double l) { return std::sqrt(1.5 + l * l / (l * l - 0.0625)); });
+  expect_index(glass(3, "2.25 -0.01 2 0.02 -2"),
+               [](double l) { return std::sqrt(2.25 - 0.01 * l * l + 0.02 / (l * l)); });
+  expect_index(glass(4, "2.25 0.1 1 0.2 2 0.2 0 0.3 2 -0.05 2 0.01 3"), [](double l) {
+    return std::sqrt(2.25 + 0.1 * l / (l * l - 0.04) + 0.2 / (l * l - 0.09) - 0.05 * l * l + 0.01 * l * l * l);
+  });
+  expect_index(glass(4, "2.25 0.1 1 0.2 2"), [](double l) { return std::sqrt(2.25 + 0.1 * l / (l * l - 0.04)); });
+  expect_index(glass(5, "1.5 0.01 -2"), [](double l) { return 1.5 + 0.01 / (l * l); });
+  expect_index(glass(7, "1.5 0.01 0.001 0.02 0.03"), [](double l) {
+    const double s = 1 / (l * l - 0.028);
+    return 1.5 + 0.01 * s + 0.001 * s * s + 0.02 * l * l + 0.03 * l * l * l * l;
+  });
+}
+
+TEST_F(GlassFiles, APageKeepsWhatItPrints) {
+  const std::string cauchy = "  - type: formula 5\n    wavelength_range: 0.4 0.7\n    coefficients: 1.5 0.004 -2\n";
+  for (const char* section : {"PROPERTIES", "SPECS"}) {
+    const auto file = read(page(cauchy, std::string(section) + ":\n    nd: 1.5116\n    Vd: 68\n"), "x.yml");
+    EXPECT_EQ(only(file).nd, 1.5116);
+    EXPECT_EQ(only(file).vd, 68);
+    EXPECT_EQ(said(file), std::vector<std::string>{"7 x: the formula gives V_d 66.97, but 68 is printed"});
+  }
+  const auto file = read(page(cauchy + "  - type: tabulated k\n    data: |\n        0.4 1e-6\n        0.7 1e-6\n",
+                              "CONDITIONS:\n  n_is_absolute: true\n"),
+                         "x.yml");
+  EXPECT_EQ(said(file),
+            (std::vector<std::string>{"15 n_is_absolute: the index, which is relative to vacuum, is taken as it is",
+                                      "10 tabulated k: absorption is not used: glasses are clear",
+                                      "7 x: no n_d is printed; the formula gives 1.511587 at 587.5618 nm"}));
+}
+
+TEST_F(GlassFiles, OfTwoEntriesOfAPageTheFirstIsTaken) {
+  const std::string entry = "  - type: formula 5\n    wavelength_range: 0.4 0.7\n    coefficients: 1.5 0.004 -2\n";
+  EXPECT_EQ(said(read(page(entry + entry), "x.yml")).at(0),
+            "10 formula 5: left out: the indices are those of the entry before");
+}
+
+std::string table(const std::string& type, const std::string& rows) {
+  return page("  - type: tabulated " + type + "\n    data: |\n" + rows);
+}
+
+TEST_F(GlassFiles, TablesOfAPageAreInterpolated) {
+  const auto file =
+      read(table("n", "        0.7 1.5\n        0.4 1.53\n        0.5 1.515\n        0.5 1.515\n"), "x.yml");
+  const Glass& glass = only(file);
+  EXPECT_DOUBLE_EQ(glass.shortest_nm, 400);
+  EXPECT_DOUBLE_EQ(glass.longest_nm, 700);
+  EXPECT_DOUBLE_EQ(refractive_index(glass, 500), 1.515);
+  EXPECT_DOUBLE_EQ(refractive_index(glass, 700), 1.5);
+  EXPECT_EQ(said(file).at(0), "7 data: 1 rows of wavelengths given before are left out");
+}
+
+TEST_F(GlassFiles, OfATableWithAbsorptionTheClearStretchIsTaken) {
+  const auto file = read(table("nk",
+                               "        0.2 1.9 1.5\n        0.3 1.6 0.02\n        0.4 1.53 0.001\n"
+                               "        0.5 1.52 1e-5\n        0.7 1.51 0\n        3 1.4 0.3\n        4 1.4 0\n"),
+                         "x.yml");
+  EXPECT_DOUBLE_EQ(only(file).shortest_nm, 400);
+  EXPECT_DOUBLE_EQ(only(file).longest_nm, 700);
+  EXPECT_EQ(said(file).at(0), "7 tabulated nk: it absorbs at other wavelengths than 400 to 700 nm: they are left out");
+  EXPECT_EQ(refusal(table("nk", "        0.4 0.2 3\n        0.5 0.2 3\n        0.7 0.1 4\n"), "silver.yml"),
+            ": line 7: a table with 0 rows of a clear medium (k at most 0.01), wanted two or more");
+}
+
+TEST_F(GlassFiles, APageThatIsBrokenIsRefusedWithItsLine) {
+  EXPECT_EQ(refusal(formula(6, "0 1 2"), "x.yml"),
+            ": line 7: type \"formula 6\", wanted formula 1, 2, 3, 4, 5 or 7, or tabulated n or nk");
+  EXPECT_EQ(refusal(formula(2, "0 1"), "x.yml"), ": line 9: 2 coefficients, wanted C1 and pairs");
+  EXPECT_EQ(refusal(formula(2, ""), "x.yml"), ": line 7: formula 2 without coefficients, wanted some");
+  EXPECT_EQ(refusal(formula(2, "0 nan 1"), "x.yml"), ": line 9: coefficient is \"nan\", wanted a finite number");
+  EXPECT_EQ(refusal(formula(2, "0 1e400 1"), "x.yml"), ": line 9: coefficient is \"1e400\", wanted a finite number");
+  EXPECT_EQ(refusal(page("  - type: formula 2\n    coefficients: 0\n"), "x.yml"),
+            ": line 7: a range of 0 numbers, wanted two wavelengths");
+  EXPECT_EQ(refusal(table("n", "        0.4 1.5\n        0.5 1,5\n"), "x.yml"),
+            ": line 10: data is \"1,5\", wanted a finite number");
+  EXPECT_EQ(refusal(table("n", "        0.4 1.5\n        0.5\n"), "x.yml"), ": line 10: a row of 1 numbers, wanted 2");
+  EXPECT_EQ(refusal(page("  - type: tabulated k\n    data: |\n        0.4 1\n"), "x.yml"),
+            ": line 1: no DATA with an index, wanted a formula or a table of n");
+  EXPECT_EQ(refusal("DATA:\n  - type: [formula 2\n", "x.yml"),
+            ": line 3: YAML that ends or errs here (end of sequence flow not found), wanted a page of "
+            "refractiveindex.info");
+  EXPECT_EQ(refusal("DATA: 5\n", "x.yml"), ": line 1: no DATA with an index, wanted a formula or a table of n");
+}
+
+TEST_F(GlassFiles, BombsOfAPageAreRefused) {
+  EXPECT_EQ(refusal("a: &a [x, x]\nb: &b [*a, *a]\nDATA: [*b]\n", "x.yml"),
+            ": line 2: an alias, wanted a page without them");
+  for (const char* opening : {"[", "{a: ", "- ", "? "}) {
+    std::string deep = "DATA:\n  ";
+    for (int i = 0; i < 100; ++i) deep += opening;
+    EXPECT_TRUE(refusal(deep, "x.yml").starts_with(": line ")) << opening;
+  }
+  EXPECT_EQ(refusal("DATA:\n" + std::string(65'537, '['), "x.yml"),
+            ": line 2: a line of 65537 bytes, wanted at most 64 KiB");
+  EXPECT_EQ(refusal("DATA:\n" + std::string(8 << 20, '\n'), "x.yml"),
+            ": line 1: a page of 8388614 bytes, wanted at most 8 MiB");
+  EXPECT_EQ(refusal("---\nDATA:\n---\n", "x.yml"), ": line 3: a second document, wanted one page");
+}
+
+// An Error or glasses, and never anything else.
+TEST_F(GlassFiles, AFileCutAnywhereIsReadOrRefused) {
+  const std::string nk = table("nk", "        0.4 1.53 0.001\n        0.5 1.52 1e-5\n        0.7 1.51 0\n");
+  int refused = 0, taken = 0;
+  for (const std::string& whole : {every_formula.substr(0, 1500), utf16(every_formula.substr(0, 400), false, true), nk,
+                                   formula(4, "2.25 0.1 1 0.2 2 0.2 0 0.3 2")}) {
+    const fs::path cut = written("cut", whole);
+    for (std::size_t length = whole.size(); length-- > 0;) {
+      fs::resize_file(cut, length);
+      try {
+        const auto file = read_glasses(cut);
+        EXPECT_FALSE(file.glasses.empty());
+        ++taken;
+      } catch (const petzval::Error& error) {
+        EXPECT_TRUE(std::string_view(error.what()).starts_with(cut.string())) << error.what();
+        ++refused;
+      }
+    }
+  }
+  EXPECT_GT(refused, 500);
+  EXPECT_GT(taken, 500);
+}
+
+TEST_F(GlassFiles, AMillionLinesAreReadOrRefused) {
+  std::string lines = crown;
+  for (int i = 0; i < 1'000'000; ++i) lines += "IT 0.5 1 10\n";
+  EXPECT_EQ(read(lines).glasses.size(), 1u);
+  lines = "CC\n";
+  for (int i = 0; i < 1'000'000; ++i) lines += "X" + std::to_string(i) + "\n";
+  EXPECT_EQ(refusal(lines).substr(0, 22), ": no glass can be used");
+  std::string many;
+  for (int i = 0; i < 100'001; ++i) many += "NM G" + std::to_string(i) + " 1 0 1.5 0\nCD 2.25\nLD .4 .7\n";
+  EXPECT_EQ(refusal(many), ": line 300001: one glass more, wanted at most 100000 in a file");
+  EXPECT_EQ(refusal("NM K 2 0 1.5 " + std::string(1'000'000, '9') + "x\n").substr(0, 29),
+            ": line 1: NM is \"999999999999");
+}
+
+TEST_F(GlassFiles, WarningsEndAfterAThousand) {
+  std::string many = crown;
+  for (int i = 0; i < 2000; ++i) many += "NM G 1 0 1.4 0\nCD 2.25\nLD .4 .7\n";
+  const auto file = read(many);
+  EXPECT_EQ(file.glasses.size(), 2001u);
+  ASSERT_EQ(file.warnings.size(), 1001u);
+  EXPECT_EQ(file.warnings.back().message, "2999 more warnings are left out");
+}
+
+// The samples beside the repository, where they are.
+TEST(GlassFilesOfOthers, AreReadWithTheirPrintedIndices) {
+  const fs::path formats = PETZVAL_TEST_FORMATS;
+  if (!fs::exists(formats)) GTEST_SKIP() << formats << " is missing";
+  std::size_t count = 0;
+  for (const char* folder : {"agf", "rii"}) {
+    for (const auto& entry : fs::directory_iterator(formats / folder)) {
+      const auto file = read_glasses(entry.path());
+      for (const Glass& glass : file.glasses) {
+        EXPECT_NEAR(refractive_index(glass, petzval::d_line_nm), glass.nd, 1e-5) << glass.name;
+        ++count;
+      }
+    }
+  }
+  EXPECT_GE(count, 14u);
+}
+
+}  // namespace

@@ -1,0 +1,156 @@
+// SPDX-License-Identifier: Apache-2.0
+// Files of other kinds, of other programs, and of hostile ones.
+#include <gtest/gtest.h>
+
+#include <clocale>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <map>
+#include <random>
+#include <string>
+
+#include "lens_text.hpp"
+#include "petzval/io/lens_json.hpp"
+#include "petzval/lens/lens.hpp"
+#include "petzval/paraxial/first_order.hpp"
+
+namespace {
+
+namespace fs = std::filesystem;
+using petzval::Prescription;
+using petzval::testing::message;
+using petzval::testing::refusal;
+
+const fs::path formats = PETZVAL_TEST_FORMATS;
+
+std::string bytes_of(const fs::path& file) {
+  std::ifstream stream(file, std::ios::binary);
+  return {std::istreambuf_iterator<char>(stream), {}};
+}
+
+TEST(LensFile, TheSamplesOfOtherProgramsHaveTheirFocalLengths) {
+  if (!fs::exists(formats)) GTEST_SKIP() << "no samples";
+  // Focal lengths by the tables of the same lenses in data/README.md, and of lenses that it lacks by their makers.
+  const std::map<std::string, double> focal_lengths = {{"cooke_triplet.zmx", 50.0213},
+                                                       {"cooke_triplet.len", 50.0213},
+                                                       {"cooke_triplet_utf16.zmx", 50.0213},
+                                                       {"compact_even_asphere.zmx", 30.806},
+                                                       {"catadioptric_corrector.zmx", 24.612},
+                                                       {"mangin_photographic.zmx", 999.595},
+                                                       {"planar_1896_pickups.zmx", 49.389},
+                                                       {"ag_dblgauss.seq", 100.004},
+                                                       {"landscape_lens.seq", 10.034},
+                                                       {"questar35.seq", 1282.62},
+                                                       {"dgauss.50mm.dat", 50.358},
+                                                       {"dgauss.axpos.dat", 100.716},
+                                                       {"dgauss.f1.35.100mm.dat", 100.437},
+                                                       {"fisheye.10mm.dat", 9.991},
+                                                       {"telephoto.250mm.dat", 249.567},
+                                                       {"wide.22mm.dat", 22.0235},
+                                                       {"double_gauss_f1.35.txt", 100.437},
+                                                       {"double_gauss_f2.0.txt", 100.716},
+                                                       {"double_gauss_f1.7_substitute.txt", 99.913}};
+  std::size_t known = 0, lenses = 0;
+  for (const char* folder : {"zemax", "codev", "oslo", "pbrt", "table"}) {
+    for (const auto& entry : fs::directory_iterator(formats / folder)) {
+      if (entry.path().filename() == "finite_conjugate_uv.zmx") {
+        // Telecentric object space, with a stop elsewhere.
+        EXPECT_NE(message([&] { petzval::read_lens(entry.path()); }).find("line 38: FTYP"), std::string::npos);
+        continue;
+      }
+      const Prescription lens = petzval::read_lens(entry.path());
+      ++lenses;
+      const auto found = focal_lengths.find(entry.path().filename().string());
+      if (found == focal_lengths.end()) continue;
+      ++known;
+      EXPECT_NEAR(petzval::first_order(compile(lens)).effective_focal_length, found->second, 1e-4 * found->second)
+          << entry.path();
+    }
+  }
+  EXPECT_EQ(known, focal_lengths.size());
+  EXPECT_EQ(lenses, 27u);
+}
+
+TEST(LensFile, ASampleCutOffAtAnyByteIsReadOrRefused) {
+  if (!fs::exists(formats)) GTEST_SKIP() << "no samples";
+  std::size_t texts = 0;
+  for (const auto& entry : fs::recursive_directory_iterator(formats)) {
+    if (!entry.is_regular_file() || entry.file_size() > 40'000) continue;
+    const std::string whole = bytes_of(entry.path());
+    // Every byte of short files, and steps through long ones: the test suite is no fuzzer.
+    const std::size_t step = 1 + whole.size() / 100;
+    for (std::size_t length = 0; length < whole.size(); length += step) {
+      refusal(whole.substr(0, length));  // any exception but Error ends the test
+      ++texts;
+    }
+  }
+  EXPECT_GT(texts, 1500u);
+}
+
+TEST(LensFile, ASampleWithAnyBytesChangedIsReadOrRefused) {
+  if (!fs::exists(formats)) GTEST_SKIP() << "no samples";
+  std::mt19937 random(5);
+  for (const char* name : {"zemax/cooke_triplet.zmx", "codev/questar35.seq", "pbrt/dgauss.50mm.dat"}) {
+    const std::string whole = bytes_of(formats / name);
+    for (int i = 0; i < 300; ++i) {
+      std::string text = whole;
+      for (auto changes = 1 + random() % 4; changes > 0; --changes) {
+        text[random() % text.size()] =
+            static_cast<char>(random() % 3 ? "0123456789.-eE \n;'\""[random() % 19] : random() % 256);
+      }
+      refusal(text);
+    }
+  }
+}
+
+TEST(LensFile, OtherFilesAreNamed) {
+  using namespace std::string_literals;
+  EXPECT_EQ(refusal("PK\x03\x04 and more"s).find("x: is a zip archive (.zip, .zos or .zar), wanted a lens"), 0u);
+  EXPECT_EQ(refusal("\x89PNG\r\n\x1a\n"s).find("x: is a PNG picture"), 0u);
+  EXPECT_EQ(refusal("\x76\x2f\x31\x01 exr"s).find("x: is an OpenEXR picture"), 0u);
+  EXPECT_EQ(refusal("\x01\x02\x00\x03\x04"s).find("x: byte 2 is 0"), 0u);
+  EXPECT_EQ(refusal("To be, or not to be\n"s).find("x: begins with \"To be, or not to be\""), 0u);
+  EXPECT_NE(refusal(""), "no error");
+  EXPECT_NE(refusal("\xFF\xFE"s), "no error");
+  EXPECT_NE(refusal("{\"lens\": 5}"), "no error");
+  // Models of other programs, and the format to export.
+  const std::string roa = refusal("{\"optical_model\": {\"seq_model\": {\"ifcs\": []}}}");
+  for (const char* word : {"ray-optics", ".seq", ".zmx"}) EXPECT_NE(roa.find(word), std::string::npos) << roa;
+  const std::string opt = refusal(
+      "  3 surfaces  SIMPLE.OPT\n  index   Z     Curv    Diam   Mir/Lens\n--------:-----:-------:------:---------:\n"
+      "   1.0  : 0.0 : 0.02  : 10 : Lens\n");
+  EXPECT_NE(opt.find("BEAM FOUR"), std::string::npos) << opt;
+}
+
+TEST(LensFile, HugeFilesAreReadOrRefusedSoon) {
+  const std::string long_line(2'000'000, 'x');
+  EXPECT_LT(refusal(long_line).size(), 1000u);
+  EXPECT_LT(refusal("VERS 1\nSURF 0\n" + long_line + "\n").size(), 1000u);
+  std::string surfaces = "VERS 1\nMODE SEQ\n";
+  for (int i = 0; i < 200'000; ++i) surfaces += "SURF " + std::to_string(i) + "\n";
+  EXPECT_EQ(refusal(surfaces), "x: more than 10000 surfaces, wanted fewer");
+  std::string rows;
+  for (int i = 0; i < 200'000; ++i) rows += "50 1 1.5 10\n";
+  EXPECT_EQ(refusal(rows), "x: more than 10000 surfaces; must be fewer");
+  std::string commands =
+      "MODE SEQ\nUNIT MM\nSURF 0\nDISZ INFINITY\nSURF 1\nSTOP\nDISZ 5\nCURV 0.01\nDIAM 5 1\nGLAS ___BLANK 1 0 1.5 60\n";
+  for (int i = 0; i < 200'000; ++i) commands += "A" + std::to_string(i) + "\n";
+  const Prescription lens = petzval::testing::read(commands + "SURF 2\nDISZ 90\nSURF 3\n");
+  EXPECT_EQ(lens.imported->warnings.size(), 1001u);
+  EXPECT_NE(lens.imported->warnings.back().message.find("more warnings are left out"), std::string::npos);
+  std::string statements = "SO 0 1e13;";
+  for (int i = 0; i < 100'000; ++i) statements += "S 50 1;";
+  EXPECT_EQ(refusal(statements), "x: more than 10000 surfaces, wanted fewer");
+}
+
+TEST(LensFile, StrictRefusesAssumptionsAndTheOwnFormatHasNone) {
+  const std::string table = "50.6 5.2 1.5168 25.4\n-50.6 0 1 25.4\n";
+  EXPECT_NE(message([&] { petzval::parse_lens(table, "x", {.strict = true}); }).find("(strict)"), std::string::npos);
+  const Prescription lens = petzval::testing::read(table);
+  EXPECT_FALSE(lens.imported->warnings.empty());
+  const Prescription again = petzval::parse_lens(petzval::format_prescription(lens), "x", {.strict = false});
+  EXPECT_EQ(again, lens);
+}
+
+}  // namespace

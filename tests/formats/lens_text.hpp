@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <algorithm>
+#include <string>
+#include <string_view>
+
+#include "../message.hpp"
+#include "petzval/formats/lens_file.hpp"
+#include "said.hpp"
+
+namespace petzval::testing {
+
+inline Prescription read(const std::string& text) { return parse_lens(text, "x"); }
+
+inline std::string refusal(const std::string& text) {
+  return message([&] { read(text); });
+}
+
+/// The message of the warning about a command; "no warning" if there is none.
+inline std::string warning(const Prescription& lens, std::string_view command) {
+  const auto found = std::ranges::find(lens.imported->warnings, command, &ImportWarning::command);
+  return found == lens.imported->warnings.end() ? "no warning" : found->message;
+}
+inline std::string warning(const std::string& text, std::string_view command) { return warning(read(text), command); }
+
+/// Whether the message of a refusal, or of the warning about a command, has these words.
+inline bool refuses(const std::string& text, std::string_view words) {
+  return refusal(text).find(words) != std::string::npos;
+}
+inline bool warns(const std::string& text, std::string_view command, std::string_view words) {
+  return warning(text, command).find(words) != std::string::npos;
+}
+
+/// A text so many times.
+inline std::string repeated(int times, std::string_view text) {
+  std::string result;
+  for (int i = 0; i < times; ++i) result += text;
+  return result;
+}
+
+}  // namespace petzval::testing

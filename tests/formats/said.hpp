@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "petzval/core/error.hpp"
+#include "petzval/formats/lens_file.hpp"
+
+namespace petzval::testing {
+
+/// "line command: message" of each warning.
+inline std::vector<std::string> said(const std::vector<ImportWarning>& warnings) {
+  std::vector<std::string> result;
+  for (const auto& w : warnings) result.push_back(std::to_string(w.line) + " " + w.command + ": " + w.message);
+  return result;
+}
+
+inline std::vector<std::string> said(const Prescription& lens) { return said(lens.imported.value().warnings); }
+
+inline Prescription read_sample(std::string_view name) {
+  return read_lens(std::filesystem::path(PETZVAL_TEST_SAMPLES) / name);
+}
+
+/// The text with `old` replaced where it stands first. Throws Error where it does not stand.
+inline std::string with(std::string text, std::string_view old, std::string_view replacement) {
+  const std::size_t at = text.find(old);
+  if (at == std::string::npos) throw Error("the text has no \"" + std::string(old) + '"');
+  return text.replace(at, old.size(), replacement);
+}
+
+}  // namespace petzval::testing

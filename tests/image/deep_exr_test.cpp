@@ -1,0 +1,198 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "petzval/image/deep_exr.hpp"
+
+#include <gtest/gtest.h>
+
+#include <bit>
+#include <cstdint>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <limits>
+#include <random>
+#include <string>
+#include <vector>
+
+#include "../message.hpp"
+#include "petzval/core/error.hpp"
+#include "petzval/image/image.hpp"
+
+namespace {
+
+using namespace petzval;
+
+constexpr float infinity = std::numeric_limits<float>::infinity(), none = std::numeric_limits<float>::quiet_NaN();
+
+std::filesystem::path file_named(const std::string& name) {
+  return std::filesystem::path(::testing::TempDir()) /
+         ("petzval_deep_" + std::string(::testing::UnitTest::GetInstance()->current_test_info()->name()) + name);
+}
+
+FragmentLists some_lists(int columns, int rows) {
+  std::mt19937 engine(5);
+  std::uniform_real_distribution<float> number(0, 1);
+  FragmentLists lists{.columns = columns, .rows = rows, .offsets = {0}, .fragments = {}};
+  for (int i = 0; i < columns * rows; ++i) {
+    for (int k = static_cast<int>(5 * number(engine)); k > 0; --k) {  // in no order, some empty
+      const float alpha = number(engine);
+      lists.fragments.push_back({number(engine) < 0.1f ? infinity : 1e4f * number(engine) + 1e-3f, 50 * number(engine),
+                                 -number(engine), 1e-30f, alpha});
+    }
+    lists.offsets.push_back(lists.fragments.size());
+  }
+  return lists;
+}
+
+std::string bytes_of(const std::filesystem::path& file) {
+  std::ifstream in(file, std::ios::binary);
+  return {std::istreambuf_iterator<char>(in), {}};
+}
+void write_bytes(const std::filesystem::path& file, const std::string& bytes) {
+  std::ofstream(file, std::ios::binary) << bytes;
+}
+
+TEST(DeepExr, ComesBackToTheBit) {
+  const auto file = file_named("round_trip.exr");
+  const FragmentLists lists = some_lists(67, 41);
+  write_deep_exr(lists, file);
+  const DeepPicture again = read_deep_exr(file);
+  EXPECT_EQ(again.without_depth, 0u);
+  EXPECT_EQ(again.lists.columns, 67);
+  EXPECT_EQ(again.lists.rows, 41);
+  EXPECT_EQ(again.lists.offsets, lists.offsets);
+  ASSERT_EQ(again.lists.fragments.size(), lists.fragments.size());
+  for (std::size_t i = 0; i < lists.fragments.size(); ++i) {
+    const auto bits = [](const FragmentLists::Fragment& f) {
+      return std::vector{std::bit_cast<std::uint32_t>(f.depth_mm), std::bit_cast<std::uint32_t>(f.red),
+                         std::bit_cast<std::uint32_t>(f.green), std::bit_cast<std::uint32_t>(f.blue),
+                         std::bit_cast<std::uint32_t>(f.alpha)};
+    };
+    ASSERT_EQ(bits(again.lists.fragments[i]), bits(lists.fragments[i]));
+  }
+  EXPECT_FLOAT_EQ(read_deep_exr(file, 1000).lists.fragments[0].depth_mm, 1000 * lists.fragments[0].depth_mm);
+}
+
+TEST(DeepExr, LeavesOutWhatHasNoDepth) {
+  const auto file = file_named("no_depth.exr");
+  write_deep_exr({.columns = 2,
+                  .rows = 1,
+                  .offsets = {0, 3, 4},
+                  .fragments = {{none, 1, 1, 1, 1}, {-5, 1, 1, 1, 1}, {7, 1, 2, 3, 1}, {0, 1, 1, 1, 1}}},
+                 file);
+  const DeepPicture picture = read_deep_exr(file);
+  EXPECT_EQ(picture.without_depth, 3u);
+  EXPECT_EQ(picture.lists.offsets, (std::vector<std::size_t>{0, 1, 1}));
+  EXPECT_EQ(picture.lists.fragments[0].green, 2);
+}
+
+TEST(DeepExr, RefusesOtherFiles) {
+  const auto flat = file_named("flat.exr");
+  write_exr(RgbImage(3, 2), flat);
+  EXPECT_NE(petzval::testing::message([&] { read_deep_exr(flat); }).find("flat.exr: no part with deep scan lines"),
+            std::string::npos);
+  const auto text = file_named("text.exr");
+  write_bytes(text, "not a picture");
+  EXPECT_NE(petzval::testing::message([&] { read_deep_exr(text); }).find("text.exr: cannot be read ("),
+            std::string::npos);
+  EXPECT_NE(petzval::testing::message([&] {
+              read_deep_exr(file_named("nowhere.exr"));
+            }).find("nowhere.exr: cannot be opened (No such file or directory); must be an EXR file"),
+            std::string::npos);
+  EXPECT_NE(petzval::testing::message([&] { read_deep_exr(text, 0); }).find("unit"), std::string::npos);
+  EXPECT_NE(petzval::testing::message([&] {
+              write_deep_exr({.columns = 2, .rows = 1, .offsets = {0, 1}, .fragments = {{}}}, text);
+            }).find("offsets"),
+            std::string::npos);
+}
+
+TEST(DeepExr, RefusesChannelsThatAreMissing) {
+  const auto file = file_named("channels.exr");
+  write_deep_exr(some_lists(5, 4), file);
+  const std::string whole = bytes_of(file);
+  // The names of channels stand in the header as text.
+  const auto renamed = [&](const std::string& from, const std::string& to) {
+    std::string bytes = whole;
+    std::string pattern;
+    pattern += '\0';
+    pattern += from;
+    pattern += '\0';
+    pattern += '\2';
+    const std::size_t at = bytes.find(pattern);
+    EXPECT_NE(at, std::string::npos);
+    bytes.replace(at + 1, 1, to);
+    write_bytes(file, bytes);
+    return petzval::testing::message([&] { read_deep_exr(file); });
+  };
+  EXPECT_NE(renamed("Z", "Q").find("no channel Z"), std::string::npos);
+  EXPECT_NE(renamed("R", "S").find("neither channels R, G and B nor Y"), std::string::npos);
+}
+
+TEST(DeepExr, IsRefusedWhereItIsCutOff) {
+  const auto file = file_named("cut.exr");
+  write_deep_exr(some_lists(23, 19), file);
+  const std::string whole = bytes_of(file);
+  for (std::size_t end = 0; end + 1 < whole.size(); end += 1 + whole.size() / 60) {
+    write_bytes(file, whole.substr(0, end));
+    EXPECT_NE(petzval::testing::message([&] { read_deep_exr(file); }).find("cut.exr: "), std::string::npos) << end;
+  }
+}
+
+TEST(DeepExr, SurvivesDamage) {
+  const auto file = file_named("damaged.exr");
+  write_deep_exr(some_lists(13, 9), file);
+  const std::string whole = bytes_of(file);
+  std::mt19937 engine(2);
+  int refused = 0;
+  for (int i = 0; i < 1500; ++i) {
+    std::string bytes = whole;
+    for (int k = 0; k < 1 + i % 3; ++k) bytes[engine() % bytes.size()] = static_cast<char>(engine());
+    write_bytes(file, bytes);
+    const std::string said = petzval::testing::message([&] { read_deep_exr(file); });
+    if (said == "no error") continue;
+    ++refused;
+    EXPECT_NE(said.find("damaged.exr: "), std::string::npos);
+  }
+  EXPECT_GT(refused, 100);
+}
+
+TEST(Pfm, ComesBack) {
+  const auto file = file_named("back.pfm");
+  RgbImage image(5, 3);
+  for (std::size_t i = 0; i < image.pixels.size(); ++i) image.pixels[i] = 0.37f * static_cast<float>(i) - 2;
+  write_pfm(image, file);
+  EXPECT_EQ(read_pfm(file).pixels, image.pixels);
+  const std::vector<float> grey{1, 2, infinity, -4, 5, 6};
+  write_pfm(3, 2, grey, file);
+  const RgbImage back = read_pfm(file);
+  for (std::size_t i = 0; i < 6; ++i) EXPECT_EQ(back.pixels[3 * i + 2], grey[i]);
+  // The other order of bytes.
+  write_bytes(file, std::string("Pf\n1 1\n1.0\n") + "\x3f\x80" + std::string(2, '\0'));
+  EXPECT_EQ(read_pfm(file).pixels[0], 1);
+}
+
+TEST(Pfm, IsRefusedWhereItIsDamaged) {
+  const auto file = file_named("bad.pfm");
+  const auto says = [&](const std::string& bytes, const std::string& what) {
+    write_bytes(file, bytes);
+    const std::string said = petzval::testing::message([&] { read_pfm(file); });
+    EXPECT_NE(said.find(what), std::string::npos) << said;
+  };
+  says("", "no head");
+  says("P6\n1 1\n255\n", "no head");
+  says("PF\n-1 1\n-1\n", "no head");
+  says("PF\n2 2\n-1.0\nabcd", "ends before");
+  says("PF\n1000000 1000000\n-1.0\n", "1000000 x 1000000");
+}
+
+TEST(Png, IsReadAsLinearLight) {
+  const auto file = file_named("light.png");
+  Rgb8Image shown{3, 1, {0, 128, 255, 10, 188, 64, 255, 255, 255}};
+  write_png(shown, file);
+  const RgbImage light = read_png(file);
+  ASSERT_EQ(light.width, 3);
+  EXPECT_NEAR(light.pixels[1], 0.21586, 1e-5);
+  EXPECT_EQ(light.pixels[2], 1);
+  EXPECT_EQ(to_srgb8(light).pixels, shown.pixels);
+}
+
+}  // namespace

@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: Apache-2.0
+// No reader takes more memory from an endless or huge file than its stated limit.
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <filesystem>
+#include <fstream>
+#include <functional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "../message.hpp"
+#include "petzval/analysis/colour.hpp"
+#include "petzval/core/read_file.hpp"
+#include "petzval/formats/glass_files.hpp"
+#include "petzval/formats/lens_file.hpp"
+#include "petzval/glass/glass.hpp"
+#include "petzval/image/deep_exr.hpp"
+#include "petzval/image/image.hpp"
+#include "petzval/image/psf_set_exr.hpp"
+#include "petzval/io/lens_json.hpp"
+#include "petzval/io/write_file.hpp"
+
+namespace petzval {
+namespace {
+
+namespace fs = std::filesystem;
+using Read = std::function<void(const fs::path&)>;
+
+/// Readers that take whole files into memory.
+const std::vector<std::pair<std::string, Read>> of_bytes = {
+    {"lens", [](const fs::path& file) { read_lens(file); }},
+    {"glasses", [](const fs::path& file) { read_glasses(file); }},
+    {"glass table",
+     [](const fs::path& file) {
+       const fs::path folder = fs::path(::testing::TempDir()) / ("petzval_endless_glass_" + std::to_string(getpid()));
+       fs::create_directories(folder);
+       fs::remove(folder / "glass_x.csv");
+       fs::create_symlink(fs::absolute(file), folder / "glass_x.csv");
+       GlassCatalogue::load(folder);
+     }},
+    {"polynomial", [](const fs::path& file) { read_ray_polynomial(file); }},
+    {"floats", [](const fs::path& file) { read_floats(file); }},
+    {"spectrum", [](const fs::path& file) { Spectrum::load(file); }},
+    {"colour matching functions", [](const fs::path& file) { ColourMatching::load(file); }},
+};
+/// Readers of pictures, whose heads say how much is to be read.
+const std::vector<std::pair<std::string, Read>> of_pictures = {
+    {"PFM", [](const fs::path& file) { read_pfm(file); }},
+    {"PNG", [](const fs::path& file) { read_png(file); }},
+    {"EXR", [](const fs::path& file) { read_exr(file); }},
+    {"EXR parts", [](const fs::path& file) { read_exr_parts(file); }},
+    {"deep EXR", [](const fs::path& file) { read_deep_exr(file); }},
+    {"PSF set", [](const fs::path& file) { read_psf_set(file); }},
+};
+
+TEST(EndlessFiles, OfBytes_AreRefusedWithSizeAndLimit) {
+  const fs::path huge = fs::path(::testing::TempDir()) / ("petzval_huge_" + std::to_string(getpid()));
+  std::ofstream(huge) << "x";
+  fs::resize_file(huge, largest_file_bytes + 1);
+  for (const auto& [kind, read] : of_bytes) {
+    for (const fs::path& file : {fs::path("/dev/zero"), huge}) {
+      const std::string said = testing::message([&, &reader = read] { reader(file); });
+      EXPECT_NE(said.find("256 MiB"), std::string::npos) << kind << ", " << file << ": " << said;
+    }
+  }
+  fs::remove(huge);
+}
+
+TEST(EndlessFiles, OfPictures_AreRefusedByTheirHeads) {
+  for (const auto& [kind, read] : of_pictures) {
+    const std::string said = testing::message([&reader = read] { reader("/dev/zero"); });
+    EXPECT_EQ(said.rfind("/dev/zero: ", 0), 0u) << kind << ": " << said;
+  }
+  const fs::path digits = fs::path(::testing::TempDir()) / ("petzval_digits_" + std::to_string(getpid()));
+  for (const std::string& endless : {std::string(1 << 20, '1'), std::string(1 << 20, ' ')}) {
+    std::ofstream(digits) << "PF\n3 " << endless;
+    EXPECT_NE(testing::message([&] { read_pfm(digits); }).find("head"), std::string::npos);
+  }
+  fs::remove(digits);
+}
+
+}  // namespace
+}  // namespace petzval

@@ -1,0 +1,104 @@
+// SPDX-License-Identifier: Apache-2.0
+// Heads of pictures that claim more than their files hold are refused before memory is taken.
+#include "image/file_room.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <string>
+
+#include "../message.hpp"
+#include "../png_checksums.hpp"
+#include "petzval/image/deep_exr.hpp"
+#include "petzval/image/image.hpp"
+
+namespace petzval {
+namespace {
+
+std::filesystem::path file_named(const std::string& name) {
+  return std::filesystem::path(::testing::TempDir()) / ("petzval_room_" + name);
+}
+std::string bytes_of(const std::filesystem::path& file) {
+  std::ifstream in(file, std::ios::binary);
+  return {std::istreambuf_iterator<char>(in), {}};
+}
+void write_bytes(const std::filesystem::path& file, const std::string& bytes) {
+  std::ofstream(file, std::ios::binary) << bytes;
+}
+
+/// An EXR file whose data window begins at 0 and is so wide.
+std::string with_width(std::string exr, std::uint32_t width) {
+  const std::string key = "dataWindow";
+  const std::size_t most_x = exr.find(key) + key.size() + 1 + 6 + 4 + 8;  // its type, "box2i", size, and two numbers
+  for (std::size_t i = 0; i < 4; ++i) exr[most_x + i] = static_cast<char>((width - 1) >> (8 * i) & 255);
+  return exr;
+}
+
+TEST(FileRoom, IsThatOfTheFileOrAMillionNumbers) {
+  const auto file = file_named("thousand");
+  write_bytes(file, std::string(1000, 'x'));
+  EXPECT_TRUE(image_detail::has_room_for(1 << 20, 1, file));
+  EXPECT_FALSE(image_detail::has_room_for((1 << 20) + 1, 1, file));
+  EXPECT_TRUE(image_detail::has_room_for(2'000'000, 2000, file));
+  EXPECT_FALSE(image_detail::has_room_for(2'000'001, 2000, file));
+  EXPECT_TRUE(image_detail::has_room_for(2'000'001, 1, "/nowhere/at/all"));
+  std::filesystem::remove(file);
+}
+
+TEST(FileRoom, IsAskedByEveryReaderOfPictures) {
+  const auto file = file_named("flat.exr"), deep = file_named("deep.exr"), png = file_named("x.png"),
+             pfm = file_named("x.pfm");
+  write_exr(RgbImage(3, 2), file);
+  write_bytes(file, with_width(bytes_of(file), 10'000'000));
+  EXPECT_NE(testing::message([&] { read_exr(file); }).find("claims 60000000 values"), std::string::npos);
+
+  // OpenEXR reads 16 bytes, whatever the head says, and takes what follows for the next attribute.
+  write_exr(RgbImage(3, 2), file);
+  std::string longer = bytes_of(file);
+  longer[longer.find("box2i") + 6] = 17;
+  write_bytes(file, longer);
+  EXPECT_NE(testing::message([&] { read_exr(file); }).find("of type box2i claims 17 bytes, wanted 16"),
+            std::string::npos);
+
+  write_deep_exr({.columns = 1, .rows = 1, .offsets = {0, 1}, .fragments = {{.depth_mm = 5}}}, deep);
+  write_bytes(deep, with_width(bytes_of(deep), 10'000'000));
+  EXPECT_NE(testing::message([&] { read_deep_exr(deep); }).find("claims 10000000 x 1 pixels"), std::string::npos);
+
+  // The same for its samples. Behind the place of the only row in the file: its number, three sizes, the table of
+  // counts.
+  write_deep_exr({.columns = 1, .rows = 1, .offsets = {0, 1}, .fragments = {{.depth_mm = 5}}}, deep);
+  std::string counted = bytes_of(deep);
+  std::uint64_t place = 0, size = 0;
+  for (std::size_t at = 0; place != at + 7; ++at) std::memcpy(&place, &counted.at(at), 8);
+  const std::uint32_t count = 2'000'000;
+  size = 20ull * count;
+  std::memcpy(&counted.at(place + 20), &size, 8);
+  std::memcpy(&counted.at(place + 28), &count, 4);
+  write_bytes(deep, counted);
+  EXPECT_NE(testing::message([&] { read_deep_exr(deep); }).find("claims 2000000 samples up to row 0"),
+            std::string::npos);
+
+  // Before that, more than any file may have.
+  write_deep_exr({.columns = 1, .rows = 1, .offsets = {0, 1}, .fragments = {{.depth_mm = 5}}}, deep);
+  write_bytes(deep, with_width(bytes_of(deep), 1 << 28));
+  EXPECT_NE(testing::message([&] { read_deep_exr(deep); }).find("is 268435456 x 1"), std::string::npos);
+  write_exr(RgbImage(3, 2), file);
+  write_bytes(file, with_width(bytes_of(file), 1 << 28));
+  EXPECT_NE(testing::message([&] { read_exr(file); }).find("is 268435456 x 2 with 3 channels"), std::string::npos);
+
+  write_png({3, 1, {0, 128, 255, 10, 188, 64, 255, 255, 255}}, png);
+  std::string bytes = bytes_of(png);
+  bytes[18] = bytes[22] = 0x1f;  // of the width and the height
+  write_bytes(png, testing::with_checksums(bytes));
+  EXPECT_NE(testing::message([&] { read_png(png); }).find("wanted a whole one"), std::string::npos);
+
+  write_bytes(pfm, "PF\n8000 8000\n-1.0\nabcd");
+  EXPECT_NE(testing::message([&] { read_pfm(pfm); }).find("ends before its last value"), std::string::npos);
+  for (const auto& written : {file, deep, png, pfm}) std::filesystem::remove(written);
+}
+
+}  // namespace
+}  // namespace petzval

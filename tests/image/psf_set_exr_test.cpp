@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "petzval/image/psf_set_exr.hpp"
+
+#include <gtest/gtest.h>
+
+#include <bit>
+#include <cmath>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "../message.hpp"
+
+namespace petzval {
+namespace {
+
+using testing::message;
+
+const PsfSet::Axes axes{{0, 10.1}, {1000, HUGE_VAL}, {587.5618}, {2}};
+
+PsfKernel kernel(float value) {
+  PsfKernel result{.pixels = 3, .pixel_mm = 0.1};
+  result.light.assign(9, value);
+  result.hits_x = {0, 1, -2, std::nanf(""), 4, 5, 6, 7, value},
+  result.hits_y = {1, 2, 3, std::nanf(""), 5, 6, 7, 8, -0.f};
+  result.chief_ray = value > 1;
+  result.anchor_mm = {0.25, -17.1};
+  result.total = 9 * static_cast<double>(value);
+  result.throughput = 1 / 3.0, result.error = 0.01, result.rays = 1024;
+  result.diffraction = value > 2 ? Diffraction::visible : Diffraction::dominant;
+  return result;
+}
+
+std::vector<std::uint32_t> bits(const std::vector<float>& values) {
+  std::vector<std::uint32_t> result;
+  for (const float value : values) result.push_back(std::bit_cast<std::uint32_t>(value));
+  return result;
+}
+
+TEST(PsfSetExr, KernelsComeBackBitForBitFromPartsInAnyOrder) {
+  const auto file = std::filesystem::path(::testing::TempDir()) / "petzval_psf_set.exr";
+  std::vector<ExrPart> parts;
+  for (const std::size_t node : {2u, 0u, 3u, 1u}) {
+    parts.push_back(to_exr_part(kernel(static_cast<float>(node) + 0.1f), axes.point(node)));
+  }
+  EXPECT_EQ(parts[0].name, "0deg_inf_587.5618nm_f2");
+  EXPECT_EQ(parts[3].name, "10.1deg_1000mm_587.5618nm_f2");
+  write_exr(parts, file);
+  const PsfSet set = read_psf_set(file);
+  EXPECT_EQ(set.axes(), axes);
+  for (std::size_t node = 0; node < axes.size(); ++node) {
+    const PsfKernel &back = set.kernels()[node], wanted = kernel(static_cast<float>(node) + 0.1f);
+    EXPECT_EQ(bits(back.light), bits(wanted.light));
+    EXPECT_EQ(bits(back.hits_x), bits(wanted.hits_x));
+    EXPECT_EQ(bits(back.hits_y), bits(wanted.hits_y));
+    EXPECT_EQ(back.pixels, wanted.pixels);
+    EXPECT_EQ(back.pixel_mm, wanted.pixel_mm);
+    EXPECT_EQ(back.chief_ray, wanted.chief_ray);
+    EXPECT_EQ(back.anchor_mm, wanted.anchor_mm);
+    EXPECT_EQ(back.total, wanted.total);
+    EXPECT_EQ(back.throughput, wanted.throughput);
+    EXPECT_EQ(back.error, wanted.error);
+    EXPECT_EQ(back.rays, wanted.rays);
+    EXPECT_EQ(back.diffraction, wanted.diffraction);
+  }
+
+  parts.pop_back();
+  write_exr(parts, file);
+  EXPECT_EQ(message([&] { read_psf_set(file); }),
+            file.string() + ": no part \"10.1deg_1000mm_587.5618nm_f2\", wanted one for every node of the grid");
+  std::filesystem::remove(file);
+}
+
+TEST(PsfSetExr, RefusesPartsThatHaveChangedOrAreSomethingElse) {
+  const auto refused = [&](auto&& change, const std::string& words) {
+    ExrPart part = to_exr_part(kernel(1), axes.point(0));
+    change(part);
+    const std::string said = message([&] { from_exr_part(part); });
+    EXPECT_TRUE(said.starts_with("part \"0deg_1000mm_587.5618nm_f2\": ")) << said;
+    EXPECT_NE(said.find(words), std::string::npos) << said;
+  };
+  refused([](ExrPart& p) { p.channels[0].values[4] += 1e-6f; }, "the file has changed");
+  refused([](ExrPart& p) { p.channels[2].values[8] = 0; }, "the file has changed");  // was -0
+  refused([](ExrPart& p) { p.numbers["error"] += 1e-16; }, "the file has changed");
+  refused([](ExrPart& p) { p.numbers["more"] = 1; }, "the file has changed");
+  refused([](ExrPart& p) { p.texts["anchor"] = "chief_ray"; }, "the file has changed");
+  refused([](ExrPart& p) { p.texts["diffraction"] = "none"; }, "the file has changed");
+  refused([](ExrPart& p) { p.numbers.erase("total"); }, "no number total");
+  refused([](ExrPart& p) { p.texts.erase("anchor"); }, "no text anchor");
+  refused([](ExrPart& p) { p.channels.erase(p.channels.begin()); }, "no channel Y");
+}
+
+}  // namespace
+}  // namespace petzval

@@ -1,0 +1,307 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "lens/asphere_hit.hpp"
+#include "lens/lens_view.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
+#include <random>
+#include <string>
+#include <vector>
+
+#include "../asphere_scan.hpp"
+#include "../report.hpp"
+#include "petzval/lens/lens.hpp"
+
+namespace {
+
+using petzval::AsphereTerm;
+using petzval::SurfaceRow;
+using petzval::kernel::Asphere;
+using petzval::kernel::Vec;
+using testing_aspheres::Sag;
+using testing_aspheres::scan;
+
+struct Named {
+  std::string name;
+  SurfaceRow row;
+};
+
+SurfaceRow row(double radius, double conic, double semi_diameter, std::vector<AsphereTerm> terms) {
+  SurfaceRow r;
+  r.radius = radius;
+  r.conic = conic;
+  r.semi_diameter = semi_diameter;
+  r.aspheric = std::move(terms);
+  return r;
+}
+
+/// From a gentle camera asphere to gull-wing surfaces of phone lenses and a wavy one.
+std::vector<Named> surfaces() {
+  return {
+      {"camera", row(40, -0.5, 18, {{4, -2e-6}, {6, 3e-9}, {8, -4e-12}})},
+      {"phone, odd terms", row(1.674, -8.617, 2.5,
+                               {{3, 0.07429},
+                                {4, -0.06933},
+                                {5, -0.005811},
+                                {6, 0.002396},
+                                {7, 0.0021},
+                                {8, -0.0003119},
+                                {9, -5.552e-05},
+                                {10, 7.969e-06}})},
+      {"phone, steep conic", row(5.694, -222.1, 2.0,
+                                 {{3, -0.07876},
+                                  {4, 0.0702},
+                                  {5, 0.001575},
+                                  {6, -0.009958},
+                                  {7, -0.007322},
+                                  {8, 0.0006914},
+                                  {9, 0.00254},
+                                  {10, -0.000765}})},
+      {"gull wing", row(2.2, -1, 2.8, {{4, -0.085}, {6, 0.0075}, {8, -0.0002}})},
+      {"gull wing, plane base", row(0, 0, 3, {{2, 0.3}, {4, -0.06}, {6, 0.003}})},
+      {"wave", row(0, 0, 3, {{2, 0.5}, {4, -0.15}, {6, 0.0105}})},
+      {"coefficient denormal in float", row(1000, 0, 300, {{16, 1e-41}})},
+  };
+}
+
+petzval::Lens compiled(const SurfaceRow& r) {
+  petzval::Prescription p;
+  p.name = "asphere";
+  p.surfaces = {r};
+  return petzval::compile(p);
+}
+
+template <class T>
+class AsphereOf : public testing::Test {};
+using Plain = testing::Types<float, double>;
+TYPED_TEST_SUITE(AsphereOf, Plain);
+
+TYPED_TEST(AsphereOf, FindsTheFirstCrossingOfSteepRays) {
+  const double eps = std::numeric_limits<TypeParam>::epsilon();
+  double most = 0;
+  int several = 0;
+  for (const auto& [name, r] : surfaces()) {
+    const petzval::Lens lens = compiled(r);
+    const auto view = petzval::kernel::view<TypeParam>(lens);
+    const Asphere<TypeParam>& asphere = view.aspheres[0];
+    const double rim = *r.semi_diameter;
+    std::mt19937 random(5);
+    std::uniform_real_distribution<double> uniform(0, 1);
+    int lost = 0, wrong = 0, doubtful = 0, inaccurate = 0;
+    constexpr int rays = 10000;
+    for (int i = 0; i < rays; ++i) {
+      const double reach = rim * std::sqrt(uniform(random)), turn = 6.3 * uniform(random);
+      const double slope = 0.9 * uniform(random), heading = 6.3 * uniform(random);
+      const int sense = i % 2 ? 1 : -1;
+      const Vec<TypeParam> d{static_cast<TypeParam>(slope * std::cos(heading)),
+                             static_cast<TypeParam>(slope * std::sin(heading)),
+                             static_cast<TypeParam>(sense * std::sqrt(1 - slope * slope))};
+      const Vec<TypeParam> target{static_cast<TypeParam>(reach * std::cos(turn)),
+                                  static_cast<TypeParam>(reach * std::sin(turn)),
+                                  static_cast<TypeParam>(Sag{r}.value(reach))};
+      const Vec<TypeParam> start = target - d * static_cast<TypeParam>(rim);
+      const Vec<double> p{start.x, start.y, start.z}, direction{d.x, d.y, d.z};
+      const auto crossings = scan(r, rim, p, direction, sense);
+      if (!crossings) {
+        ++doubtful;
+        continue;
+      }
+      const auto [point, hit, converged, beside] = intersect(asphere, start, d, static_cast<TypeParam>(sense));
+      EXPECT_TRUE(converged) << name << " ray " << i;
+      const bool inside = hit && std::hypot(point.x, point.y) <= rim * (1 + 4 * eps);
+      several += crossings->size() > 1;
+      if (crossings->empty()) {
+        wrong += inside && std::hypot(point.x, point.y) < rim * (1 - 16 * eps);
+        continue;
+      }
+      if (!inside) {
+        const auto& [t, c] = crossings->front();
+        const double radius = std::hypot(p.x + t * direction.x, p.y + t * direction.y);
+        lost += radius < rim * (1 - 8 * eps);
+        continue;
+      }
+      const auto& [t, cosine] = crossings->front();
+      const double error = std::hypot(point.x - (p.x + t * direction.x), point.y - (p.y + t * direction.y),
+                                      point.z - (p.z + t * direction.z));
+      // A larger error means another crossing.
+      if (error > 1e-3 * rim) {
+        ++wrong;
+      } else {
+        most = std::max(most, error * cosine / (eps * rim));
+        inaccurate += error * cosine > 4 * eps * rim;
+      }
+    }
+    EXPECT_EQ(lost, 0) << name;
+    EXPECT_EQ(wrong, 0) << name;
+    EXPECT_EQ(inaccurate, 0) << name << ", worst " << most;
+    EXPECT_LT(doubtful, rays / 10) << name;
+  }
+  EXPECT_GT(several, 50) << "the rays are too easy";
+  testing_report::put("first crossing of steep rays with aspheres, x cos(incidence)",
+                      testing_report::one_ray<TypeParam>, most, "4 eps");
+}
+
+Asphere<double> described(const SurfaceRow& row) { return petzval::kernel::view<double>(compiled(row)).aspheres[0]; }
+
+// With bounds of 1e50 for sag and slope every ray of these surfaces was searched for: 9 s for a camera.
+TEST(Asphere, IsDescribedAsFarAsItIsNotSteep) {
+  SurfaceRow runaway =
+      row(-600, 0.8, 0, {{12, std::pow(20., -11)}, {14, -std::pow(11., -13)}, {37, std::pow(15., -36)}});
+  runaway.semi_diameter.reset();
+  const Asphere<double> unlimited = described(runaway);
+  EXPECT_GT(unlimited.height, 5);
+  EXPECT_LT(unlimited.height, 15);
+  EXPECT_LT(unlimited.steepest, 3);
+  for (const double rim : {446., 1e6, 1e15}) {
+    runaway.semi_diameter = rim;
+    const Asphere<double> limited = described(runaway);
+    EXPECT_GT(limited.height, 9) << rim;
+    EXPECT_LT(limited.height, 18) << rim;
+    EXPECT_LT(limited.steepest, 5) << rim;
+    EXPECT_GT(limited.highest - limited.lowest, 0) << rim;
+    EXPECT_LT(limited.highest - limited.lowest, 10 * limited.height) << rim;
+  }
+  for (const auto& [order, coefficient] : {AsphereTerm{2, -4e11}, {40, 1e300}, {3, 1e-300}}) {
+    SurfaceRow extreme = row(50, 0, 20, {{order, coefficient}});
+    const Asphere<double> a = described(extreme);
+    EXPECT_TRUE(a.height > 0 && a.steepest < 5 && std::isfinite(a.highest - a.lowest)) << order;
+  }
+  runaway.semi_diameter = 1e-12;  // of less, float has no square
+  EXPECT_EQ(described(runaway).height, 1e-12);
+  for (const Named& named : surfaces()) {
+    const double e = 1 + named.row.conic;
+    const bool ends = named.row.radius != 0 && e > 0;
+    const double domain = ends ? std::abs(named.row.radius) / std::sqrt(e) : std::numeric_limits<double>::infinity();
+    EXPECT_EQ(described(named.row).height, std::min(*named.row.semi_diameter, domain)) << named.name;
+  }
+}
+
+/// Compares the bounds of all rings with samples; says how much wider than the samples they are at worst, as a share of
+/// those of the whole surface.
+double expect_bounds(const SurfaceRow& row, const std::string& what) {
+  constexpr int samples = 200;
+  const Asphere<double> a = described(row);
+  const Sag sag{row};
+  double slack = 0;
+  for (const auto& ring : a.rings) {
+    const double inner = std::sqrt(std::max(ring.inner2, 0.)),
+                 outer = std::sqrt(std::min(ring.outer2, a.height * a.height));
+    EXPECT_LT(inner, outer) << what;
+    EXPECT_GE(ring.outer, outer) << what;
+    double low = 1e300, high = -1e300, least = 1e300, most = -1e300;
+    for (int i = 0; i <= samples; ++i) {
+      const double r = inner + (outer - inner) * i / samples, h = 1e-6 * a.height;
+      const auto z = static_cast<double>(sag.value(r));
+      low = std::min(low, z), high = std::max(high, z);
+      if (r < 2 * h || r > a.height - h) continue;
+      const auto bend = static_cast<double>((sag.value(r + h) - sag.value(r - h)) / (2 * h)) / r;
+      least = std::min(least, bend), most = std::max(most, bend);
+      EXPECT_LE(std::abs(bend) * r, a.steepest) << what << " r " << r;
+    }
+    const double little = 1e-7 * a.steepest / a.height;  // of the difference quotient
+    EXPECT_LE(ring.lowest, low) << what << " r " << outer;
+    EXPECT_GE(ring.highest, high) << what << " r " << outer;
+    EXPECT_LE(ring.least_bend, least + little) << what << " r " << outer;
+    EXPECT_GE(ring.most_bend, most - little) << what << " r " << outer;
+    EXPECT_TRUE(a.lowest <= ring.lowest && ring.highest <= a.highest) << what;
+    slack =
+        std::max({slack, (low - ring.lowest) / (a.highest - a.lowest), (ring.highest - high) / (a.highest - a.lowest),
+                  (least - ring.least_bend) * outer / a.steepest, (ring.most_bend - most) * outer / a.steepest});
+  }
+  return slack;
+}
+
+TEST(Asphere, IsWithinTheBoundsOfItsRings) {
+  for (const Named& named : surfaces()) EXPECT_LT(expect_bounds(named.row, named.name), 0.03) << named.name;
+  std::mt19937 random(3);
+  double worst = 0, sum = 0;
+  constexpr int count = 300;
+  for (int i = 0; i < count; ++i) {
+    const double slack = expect_bounds(testing_aspheres::wild(random), "wild " + std::to_string(i));
+    worst = std::max(worst, slack);
+    sum += slack;
+  }
+  EXPECT_LT(worst, 0.5);
+  EXPECT_LT(sum / count, 0.05);
+}
+
+/// Whether a ray stays clear of a surface's aperture: outside its cylinder, or within that above or below its sag.
+bool clearly_beside(const SurfaceRow& r, const Vec<double>& p, const Vec<double>& d) {
+  const double rim = *r.semi_diameter, across = d.x * d.x + d.y * d.y, middle = -(p.x * d.x + p.y * d.y) / across;
+  const double closest = std::hypot(p.x + middle * d.x, p.y + middle * d.y);
+  if (closest > 1.001 * rim) return true;
+  if (closest > 0.999 * rim) return false;
+  double low = 0, high = 0;
+  for (int i = 0; i <= 200; ++i) {
+    const auto z = static_cast<double>(Sag{r}.value(rim * i / 200));
+    low = std::min(low, z), high = std::max(high, z);
+  }
+  const double margin = 0.05 * (high - low) + 1e-3 * rim, half = std::sqrt((rim * rim - closest * closest) / across);
+  const double one = p.z + (middle - half) * d.z, other = p.z + (middle + half) * d.z;
+  return std::min(one, other) > high + margin || std::max(one, other) < low - margin;
+}
+
+TEST(Asphere, ARayPassesBesideWhereItCrossesNothing) {
+  int beside = 0, misses = 0;
+  for (const auto& [name, r] : surfaces()) {
+    const Asphere<double> asphere = described(r);
+    const double rim = *r.semi_diameter;
+    std::mt19937 random(11);
+    std::uniform_real_distribution<double> uniform(0, 1);
+    for (int i = 0; i < 4000; ++i) {
+      const double reach = 2 * rim * uniform(random), turn = 6.3 * uniform(random), heading = 6.3 * uniform(random);
+      const double slope = std::sqrt(uniform(random)) * 0.999;
+      const int sense = i % 2 ? 1 : -1;
+      const Vec<double> d{slope * std::cos(heading), slope * std::sin(heading), sense * std::sqrt(1 - slope * slope)};
+      const Vec<double> p{reach * std::cos(turn), reach * std::sin(turn), rim * (uniform(random) - 0.5)};
+      const auto found = intersect(asphere, p, d, static_cast<double>(sense));
+      if (found.hit) continue;
+      beside += found.beside;
+      misses += !found.beside;
+      if (found.beside) {
+        const auto crossings = scan(r, rim, p, d, sense);
+        EXPECT_TRUE(!crossings || crossings->empty()) << name << " ray " << i;
+      } else {
+        EXPECT_FALSE(clearly_beside(r, p, d)) << name << " ray " << i;
+      }
+    }
+  }
+  EXPECT_GT(beside, 1000);
+  EXPECT_GT(misses, 100);
+}
+
+// Newton's iteration finds them from where they meet the vertex plane.
+TEST(Asphere, RaysThatMissItsBaseMeetItFartherOut) {
+  std::mt19937 random(5);
+  const auto uniform = [&](double low, double high) {
+    return low + (high - low) * std::uniform_real_distribution<double>(0, 1)(random);
+  };
+  int aimed = 0, met = 0;
+  for (int surface = 0; surface < 1000; ++surface) {
+    // Flattened out to nearly a plane, as far as the equator of the base.
+    const double radius = (surface % 2 ? 1 : -1) * uniform(5, 20);
+    const SurfaceRow r = row(radius, 0, uniform(1, 3),
+                             {{2, -uniform(0.85, 1.15) / (2 * radius)}, {4, uniform(-1, 1) / (30. * 30 * 30)}});
+    const Asphere<double> asphere = described(r);
+    for (int i = 0; i < 20; ++i) {
+      const double reach = *r.semi_diameter * uniform(1.1, 3), turn = uniform(0, 6.3), heading = uniform(0, 6.3);
+      const double z = uniform(0.12, 0.6), slope = std::sqrt(1 - z * z), back = uniform(5, 50);
+      if (reach > 0.95 * std::abs(radius)) continue;
+      const Vec<double> target{reach * std::cos(turn), reach * std::sin(turn),
+                               static_cast<double>(Sag{r}.value(reach))};
+      const Vec<double> d{slope * std::cos(heading), slope * std::sin(heading), z}, start = target - d * back;
+      if (intersect(asphere.base, start, d, 1.0).hit || dot(normal(asphere, target), d) < 0.05) continue;
+      const auto found = intersect(asphere, start, d, 1.0);
+      ++aimed;
+      met += found.hit && dot(found.point - target, found.point - target) < 1e-18;
+    }
+  }
+  EXPECT_GT(aimed, 5000);
+  EXPECT_GT(met, 0.98 * aimed);
+}
+
+}  // namespace

@@ -1,0 +1,100 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "petzval/pupil/ray_bundle.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "../data_lenses.hpp"
+#include "../message.hpp"
+#include "petzval/core/error.hpp"
+#include "petzval/core/sobol.hpp"
+#include "petzval/core/units.hpp"
+#include "petzval/trace/trace.hpp"
+
+namespace petzval {
+namespace {
+
+using testing::data_lens;
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
+
+TEST(TraceBundle, SendsFewRaysInVain) {
+  for (const auto& [id, field_deg] : {std::pair{"double_gauss_100mm_f1.35", 0.0},
+                                      {"double_gauss_100mm_f1.35", 21.0},
+                                      {"fisheye_6.3mm_f2.8", 110.0},
+                                      {"catadioptric_mangin_1000mm_f7.5", 1.0}}) {
+    const Lens lens = data_lens(id);
+    const PupilBoundary boundary = pupil_boundary(lens, {radians(field_deg), -infinity});
+    const RayBundle hits = trace_bundle(lens, PupilSampler(boundary), 1 << 16);
+    EXPECT_GE(hits.x.size(), 0.96 * hits.sent) << id;
+    EXPECT_NEAR(hits.transmitted_area() / boundary.area(), 1, 1e-3) << id;
+  }
+}
+
+TEST(TraceBundle, OfNothingIsNothing) {
+  const Lens lens = data_lens("double_gauss_100mm_f1.35");
+  const RayBundle hits = trace_bundle(lens, PupilSampler(pupil_boundary(lens, {radians(60), -infinity})), 1000);
+  EXPECT_EQ(hits.sent, 1000u);
+  EXPECT_TRUE(hits.x.empty());
+  EXPECT_EQ(hits.transmitted_area(), 0);
+}
+
+TEST(TraceBundle, IsTheSameForAnyNumberOfThreads) {
+  const Lens lens = data_lens("double_gauss_100mm_f1.35");
+  const PupilSampler pupil(pupil_boundary(lens, {radians(10), -1500}));
+  const RayBundle one = trace_bundle(lens, pupil, 50000, 3, 1);
+  EXPECT_GT(one.x.size(), 20000u);
+  for (const int threads : {2, 3, 7, 64}) {
+    const RayBundle many = trace_bundle(lens, pupil, 50000, 3, threads);
+    EXPECT_EQ(many.x, one.x) << threads;
+    EXPECT_EQ(many.y, one.y) << threads;
+  }
+  EXPECT_NE(trace_bundle(lens, pupil, 50000, 4, 1).x, one.x);
+  EXPECT_THROW(trace_bundle(lens, pupil, 10, 0, 0), Error);
+}
+
+TEST(TraceBundle, RefusesAPupilOfAWavelengthThatTheLensLacks) {
+  const Lens one = data_lens("double_gauss_100mm_f2.0");
+  const Lens three = compile(testing::data_prescription("double_gauss_100mm_f2.0"), std::array{450.0, 550.0, 650.0},
+                             {.missing_glass = MissingGlass::abbe});
+  const PupilSampler pupil(pupil_boundary(three, {.z = -1500}, 2));
+  EXPECT_FALSE(trace_bundle(three, pupil, 100).empty());
+  EXPECT_EQ(testing::message([&] { trace_bundle(one, pupil, 100); }),
+            one.name() + ": wavelength 2 does not exist, wanted one of 1");
+}
+
+TEST(TraceBundle, BeginsWithTheHitsOfFewerSamples) {
+  const Lens lens = data_lens("double_gauss_100mm_f1.35");
+  const PupilSampler pupil(pupil_boundary(lens, {0, -1500}));
+  const RayBundle few = trace_bundle(lens, pupil, 5000), many = trace_bundle(lens, pupil, 9000);
+  ASSERT_LT(few.x.size(), many.x.size());
+  EXPECT_TRUE(std::equal(few.x.begin(), few.x.end(), many.x.begin()));
+}
+
+TEST(TraceBundle, HitsAreThoseOfSingleRays) {
+  const Lens lens = data_lens("catadioptric_mangin_1000mm_f7.5");
+  const PupilSampler pupil(pupil_boundary(lens, {radians(0.5), -infinity}));
+  const RayBundle hits = trace_bundle(lens, pupil, 500, 8);
+  std::size_t next = 0;
+  for (std::uint32_t i = 0; i < 500; ++i) {
+    const auto uv = owen_sobol(i, 8);
+    const double u = uv.x, v = uv.y;
+    const Vec2<double> p = pupil(u, v);
+    const auto end = trace(lens, pupil.plane().ray(p.x, p.y));
+    if (!end.transmitted()) continue;
+    const double t = (lens.film_z() - end.ray.origin.z) / end.ray.direction.z;
+    ASSERT_LT(next, hits.x.size());
+    EXPECT_NEAR(hits.x[next], end.ray.origin.x + t * end.ray.direction.x, 1e-12);
+    EXPECT_NEAR(hits.y[next], end.ray.origin.y + t * end.ray.direction.y, 1e-12);
+    ++next;
+  }
+  EXPECT_EQ(next, hits.x.size());
+}
+
+}  // namespace
+}  // namespace petzval
