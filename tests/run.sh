@@ -1,8 +1,9 @@
 #!/bin/sh
 # SPDX-License-Identifier: Apache-2.0
-# Builds petzval with its examples and runs the tests; installs what a bare Debian 12 lacks.
+# Builds petzval and runs its tests; installs what a bare Debian 12 lacks.
 #
-#   sh tests/run.sh [arguments of ctest, such as -R Snell]
+#   sh tests/run.sh [arguments of ctest, such as -R Snell]    the tests of the library
+#   sh tests/run.sh -L full      the tests of programs, packages and fuzz targets; clang compiles all sources, if it is there
 #   sh tests/run.sh --report    prints the worst cases of the accuracy tests: the tables of tests/README.md
 #
 # BUILD_DIR=... builds elsewhere than in build/.
@@ -46,20 +47,24 @@ table() {
     }' $files
 }
 
+case " $* " in
+  *" -L full "*) full=ON target=all ;;
+  *) full=OFF target=petzval-tests example_packages= ;;
+esac
 need $library_packages $example_packages $test_packages
-build -DPETZVAL_BUILD_TESTS=ON -DPETZVAL_BUILD_EXAMPLES=ON -DCMAKE_COMPILE_WARNING_AS_ERROR=ON
+build -DPETZVAL_BUILD_TESTS=ON -DPETZVAL_FULL_TESTS=$full -DPETZVAL_BUILD_EXAMPLES=$full -DCMAKE_COMPILE_WARNING_AS_ERROR=ON
 if [ "${1-}" = --report ]; then
   work=$(mktemp -d)
   trap 'rm -rf "$work"' EXIT
   by_type='float;double;batch float, fast / reproducible;batch double, fast / reproducible'
   printf '\nAccuracy'
-  table "$by_type" 'surface/Quadric*' 'surface/Asphere*' 'surface/Snell*' 'trace/ReferenceRays*' 'trace/BatchReference*' \
+  table "$by_type" 'lens/Quadric*' 'lens/Asphere*' 'lens/Snell*' 'trace/ReferenceRays*' 'trace/BatchReference*' \
     'trace/Laws*' 'trace/Derivative*' 'trace/DifferentialsOf*AreThoseOfExactRays' \
     'trace/DifferentialsOf*-*AreThoseOfExactRays' 'pupil/Aim*'
   printf '\nLimits'
   table "$by_type" 'trace/Extremes*'
   printf '\nMemory'
-  table 'text, MB;beside it, MB' 'files/LargestInputs*'
+  table 'text, MB;beside it, MB' 'formats/LargestInputs*'
   exit
 fi
 echo "== Testing"
