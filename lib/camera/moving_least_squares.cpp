@@ -6,9 +6,9 @@
 #include <cmath>
 #include <limits>
 #include <string>
-#include <type_traits>
 
 #include "core/text.hpp"
+#include "falling_power.hpp"
 #include "moving_least_squares_loops.hpp"
 #include "petzval/core/error.hpp"
 
@@ -19,14 +19,6 @@ constexpr double longest_soft = 0.1;                 // sides
 constexpr double full_alpha = 1e-3;                  // of the largest: with less, a point becomes soft
 constexpr double negligible = 1e-9;                  // of the largest
 constexpr double scaled_reach = 2 * reach_in_sides;  // a side is less than 2, scaled
-
-const LeastSquaresLoops& loops_of([[maybe_unused]] InstructionSet set) noexcept {
-#if defined(__x86_64__)
-  if (set == InstructionSet::avx512) return least_squares_loops_avx512;
-  if (set == InstructionSet::avx2) return least_squares_loops_avx2;
-#endif
-  return least_squares_loops_baseline;
-}
 
 /// The power of two that brings a number into [1, 2), or near.
 double scale_of(double x) { return std::ldexp(1, -std::clamp(std::ilogb(x), -1000, 1000)); }
@@ -72,17 +64,15 @@ MovingLeastSquares::MovingLeastSquares(const std::string& where, std::span<const
   };
   for (const auto& point : points) most_present = std::max(most_present, presence(point));
 
-  if (beta == std::floor(beta)) {
-    odd_ = static_cast<int>(beta) % 2 == 1;
-    wholes_ = static_cast<int>(beta) / 2;
-  }
+  const bool whole = beta == std::floor(beta);
+  power_ = {beta / 2, whole && static_cast<int>(beta) % 2 == 1, whole ? static_cast<int>(beta) / 2 : -1};
   to_scaled_ = scale_of(side);
   double largest = 0;
   for (const auto& point : points) {
     if (raw_alpha(point) >= negligible * most_alpha) largest = std::max(largest, std::abs(point.value));
   }
   to_scaled_value_ = largest > 0 ? scale_of(largest) : 1;
-  Columns<double>& to = points_;
+  Columns& to = points_;
   std::vector<double> shares;
   for (const auto& point : points) {
     const double alpha = raw_alpha(point) / most_alpha;
@@ -109,29 +99,7 @@ MovingLeastSquares::MovingLeastSquares(const std::string& where, std::span<const
   low_ = least - beyond * (most - least);
   high_ = most + beyond * (most - least);
   least_value_ = least;
-  soft_ = std::any_of(to.soft2.begin(), to.soft2.end(), [](double soft2) { return soft2 > 0; });
-
-  // Numbers as T have them.
-  const auto fill = [&]<class T, class R>(Columns<R>& columns, T) {
-    const auto copied = [](const std::vector<double>& from) {
-      std::vector<R> copies;
-      for (const double number : from) {
-        copies.insert(copies.end(), LeastSquaresJob<R>::copies, static_cast<R>(static_cast<T>(number)));
-      }
-      return copies;
-    };
-    columns = {copied(to.x), copied(to.y), copied(to.value), copied(to.alpha), copied(to.soft2)};
-  };
-  if (steep()) {
-    fill(of_floats_, float());
-  } else {
-    fill(in_float_, float());
-  }
-  fill(in_double_, double());
 }
-
-// The second moments of weights that fall steeply are those of two points, and float loses the others.
-bool MovingLeastSquares::steep() const noexcept { return affine_ && beta_ > 4; }
 
 // A plane through points on a line with one beside it is the same however little that one weighs. So points nearly on a
 // line keep the slope along it alone, and those that fade count for this by the square of their share.
@@ -160,77 +128,52 @@ void MovingLeastSquares::keep_within(double low, double high) noexcept {
   high_ = std::min(high_, high * to_scaled_value_);
 }
 
-template <class T>
-LeastSquaresJob<T> MovingLeastSquares::job(const Columns<T>& columns) const noexcept {
+LeastSquaresJob MovingLeastSquares::job() const noexcept {
   return {
       .points = points_.x.size(),
-      .x = columns.x.data(),
-      .y = columns.y.data(),
-      .value = columns.value.data(),
-      .alpha = columns.alpha.data(),
-      .soft2 = columns.soft2.data(),
-      .soft = soft_,
+      .x = points_.x.data(),
+      .y = points_.y.data(),
+      .value = points_.value.data(),
+      .alpha = points_.alpha.data(),
+      .soft2 = points_.soft2.data(),
       .affine = affine_,
-      .plane = static_cast<T>(plane_),
-      .along_x = static_cast<T>(along_.x),
-      .along_y = static_cast<T>(along_.y),
-      .odd = odd_,
-      .wholes = wholes_,
-      .half_beta = static_cast<T>(beta_ / 2),
-      .low = static_cast<T>(low_),
-      .high = static_cast<T>(high_),
-      .to_scaled = static_cast<T>(to_scaled_),
-      .reach = static_cast<T>(scaled_reach),
-      .from_scaled = static_cast<T>(1 / to_scaled_value_),
+      .plane = plane_,
+      .along_x = along_.x,
+      .along_y = along_.y,
+      .power = power_,
+      .low = low_,
+      .high = high_,
+      .to_scaled = to_scaled_,
+      .reach = scaled_reach,
+      .from_scaled = 1 / to_scaled_value_,
   };
 }
 
-template <class T>
-void MovingLeastSquares::at(InstructionSet set, std::size_t count, const T* x, const T* y, T* out) const noexcept {
+void MovingLeastSquares::at(std::size_t count, const double* x, const double* y, double* out) const noexcept {
   if (points_.x.size() == 1) {
-    std::fill_n(out, count, static_cast<T>(most()));
-    return;
-  }
-  const auto run = [&]<class R>(LeastSquaresJob<R> work, std::size_t places, const R* at_x, const R* at_y, R* to,
-                                void (*loop)(const LeastSquaresJob<R>&) noexcept) {
-    work.count = places, work.at_x = at_x, work.at_y = at_y, work.out = to;
-    loop(work);
-  };
-  const LeastSquaresLoops& loops = loops_of(set);
-  if constexpr (std::is_same_v<T, float>) {
-    if (!steep()) return run(job(in_float_), count, x, y, out, loops.in_float);
-    constexpr std::size_t block = 256;
-    std::array<double, block> xs, ys, values;
-    for (std::size_t i = 0; i < count; i += block) {
-      const std::size_t some = std::min(block, count - i);
-      std::copy_n(x + i, some, xs.begin());
-      std::copy_n(y + i, some, ys.begin());
-      run(job(of_floats_), some, xs.data(), ys.data(), values.data(), loops.in_double);
-      std::transform(values.begin(), values.begin() + some, out + i, [](double v) { return static_cast<float>(v); });
-    }
+    std::fill_n(out, count, most());
   } else {
-    run(job(in_double_), count, x, y, out, loops.in_double);
+    least_squares_loops().values(job(), count, x, y, out);
   }
 }
 
-template <class T>
-void MovingLeastSquares::at(std::size_t count, const T* x, const T* y, T* out) const noexcept {
-  at(instruction_sets().back(), count, x, y, out);
+void MovingLeastSquares::at(std::size_t count, const float* x, const float* y, float* out) const noexcept {
+  constexpr std::size_t block = 256;
+  std::array<double, block> xs, ys, values;
+  for (std::size_t i = 0; i < count; i += block) {
+    const std::size_t some = std::min(block, count - i);
+    std::copy_n(x + i, some, xs.begin());
+    std::copy_n(y + i, some, ys.begin());
+    at(some, xs.data(), ys.data(), values.data());
+    std::transform(values.begin(), values.begin() + some, out + i, [](double v) { return static_cast<float>(v); });
+  }
 }
 
 double MovingLeastSquares::at(const FilmPoint& place) const noexcept {
-  if (least_squares_takes_one(points_.x.size())) return least_squares_of_one(job(points_), place.x, place.y);
   double value = 0;
   at(1, &place.x, &place.y, &value);
   return value;
 }
-
-template PETZVAL_API void MovingLeastSquares::at(std::size_t, const float*, const float*, float*) const noexcept;
-template PETZVAL_API void MovingLeastSquares::at(std::size_t, const double*, const double*, double*) const noexcept;
-template PETZVAL_API void MovingLeastSquares::at(InstructionSet, std::size_t, const float*, const float*,
-                                                 float*) const noexcept;
-template PETZVAL_API void MovingLeastSquares::at(InstructionSet, std::size_t, const double*, const double*,
-                                                 double*) const noexcept;
 
 // Let h(q) = a + g . (q - p) be the plane of a place p, and L_i = 1 / W + (p - mean) . C^-1 (x_i - mean) the part of
 // point i in a. The normal equations, differentiated, give
@@ -240,7 +183,7 @@ template PETZVAL_API void MovingLeastSquares::at(InstructionSet, std::size_t, co
 // in which the common factor m of the weights counts as constant.
 Vec2<double> MovingLeastSquares::slopes(const FilmPoint& place) const noexcept {
   using V = Vec2<double>;
-  const Columns<double>& points = points_;
+  const Columns& points = points_;
   const std::size_t count = points.x.size();
   // In reach, as at() has it; a coordinate beyond moves nothing.
   const auto in_reach = [](double x) { return x < scaled_reach ? std::max(x, -scaled_reach) : scaled_reach; };
@@ -266,7 +209,7 @@ Vec2<double> MovingLeastSquares::slopes(const FilmPoint& place) const noexcept {
   const auto weight = [&](std::size_t i) {
     const double r2 = r2_of(i);
     if (r2 <= touching) return 0.0;
-    return points.alpha[i] * std::pow((on_point ? next : least) / r2, beta_ / 2);
+    return points.alpha[i] * falling(power_, (on_point ? next : least) / r2);
   };
   const V centre{points.x[nearest], points.y[nearest]};
   const double centre_value = on_point ? value : points.value[nearest];

@@ -6,11 +6,11 @@
 #include <string>
 #include <vector>
 
+#include "moving_least_squares_loops.hpp"
 #include "petzval/camera/focal_surface.hpp"
 #include "petzval/core/export.hpp"
 #include "petzval/core/film.hpp"
 #include "petzval/core/geometry.hpp"
-#include "petzval/core/instruction_set.hpp"
 
 namespace petzval::camera_detail {
 
@@ -21,9 +21,6 @@ struct WeighedValue {
   double weight = 1;  ///< 0 or more
   double fade = 1;    ///< from 0 (gone) to 1
 };
-
-template <class R>
-struct LeastSquaresJob;
 
 /// Places of points lie within so many sides of the picture.
 inline constexpr double reach_in_sides = 1e6;
@@ -47,10 +44,9 @@ void check(const WeighedValue& point, double side, const std::string& where);
 /// widen this in part.
 ///
 /// Results are the same for all instruction sets and however places are batched; they are finite for any place, as
-/// constants beyond 1e6 sides. Accuracy: planes are reproduced within 1e-13 (float: 1e-5) of the range of values for
-/// beta up to 4, and within 1e-11 for 8. In float, results are those in double within 2e-4 of that range; planes of
-/// beta above 4 are computed in double. Source: Lancaster and Salkauskas 1981; weights of Lee et al. 2010,
-/// section 5.2.
+/// constants beyond 1e6 sides. Accuracy: planes are reproduced within 1e-13 of the range of values for beta up to 4,
+/// and within 1e-11 for 8; floats are computed in double. Source: Lancaster and Salkauskas 1981; weights of Lee et al.
+/// 2010, section 5.2.
 class PETZVAL_API MovingLeastSquares {
  public:
   /// side: of the picture, mm: the root of its area. Throws Error, which begins with `where` and the number of the
@@ -60,12 +56,9 @@ class PETZVAL_API MovingLeastSquares {
                      double beta, double beyond = 1);
 
   double at(const FilmPoint& place) const noexcept;
-  /// N places, float or double; out: N.
-  template <class T>
-  void at(std::size_t count, const T* x, const T* y, T* out) const noexcept;
-  /// The same by the loops of one of instruction_sets().
-  template <class T>
-  void at(InstructionSet set, std::size_t count, const T* x, const T* y, T* out) const noexcept;
+  /// N places; out: N.
+  void at(std::size_t count, const double* x, const double* y, double* out) const noexcept;
+  void at(std::size_t count, const float* x, const float* y, float* out) const noexcept;
   /// The derivatives of at() by x and y. At a point: those of the plane there (beta 1 has a cusp there).
   Vec2<double> slopes(const FilmPoint& place) const noexcept;
 
@@ -79,32 +72,22 @@ class PETZVAL_API MovingLeastSquares {
 
  private:
   void find_line(std::span<const double> shares);
-  /// Whether floats are computed in double.
-  bool steep() const noexcept;
+  LeastSquaresJob job() const noexcept;
 
   /// What counts of the points: places and values scaled by powers of two, weights against the heaviest point's, and
   /// squares of softness.
-  template <class R>
   struct Columns {
-    std::vector<R> x, y, value, alpha, soft2;
+    std::vector<double> x, y, value, alpha, soft2;
   };
-
-  template <class R>
-  LeastSquaresJob<R> job(const Columns<R>& columns) const noexcept;
 
   bool affine_;
   double plane_ = 1;  ///< as in LeastSquaresJob
   Vec2<double> along_{1, 0};
   double beta_;
-  bool odd_ = false;  ///< as in LeastSquaresJob
-  int wholes_ = -1;
+  FallingPower power_{};
   double to_scaled_ = 1, to_scaled_value_ = 1;
-  Columns<double> points_;
+  Columns points_;
   double low_ = 0, high_ = 0, least_value_ = 0;  ///< of the result, scaled
-  bool soft_ = false;
-  Columns<float> in_float_;  ///< as LeastSquaresJob wants them; empty if steep
-  Columns<double> in_double_;
-  Columns<double> of_floats_;  ///< if steep: those of in_float_
 };
 
 }  // namespace petzval::camera_detail

@@ -1,88 +1,115 @@
 // SPDX-License-Identifier: Apache-2.0
-// Compiled for each instruction set, without fused operations: see petzval_loops in cmake/module.cmake. Each lane is a
-// place, and sums run over the points in their order, so that a result depends on its place alone.
+// Compiled for each instruction set, without fused operations: see petzval_loops in cmake/module.cmake. Sums run over
+// the points in their order, so that a result depends on its place alone.
 #include "moving_least_squares_loops.hpp"
 
-#include "moving_least_squares_lanes.hpp"
+#include "falling_power.hpp"
 
 namespace petzval::camera_detail {
 namespace {
 
-/// The value at a register of places.
-template <bool affine, Power kind, class R>
-PETZVAL_INLINE Lanes<R> value_at(const LeastSquaresJob<R>& job, Lanes<R> x, Lanes<R> y) noexcept {
-  using L = Lanes<R>;
-  const auto distance2 = [&](std::size_t i) {
-    const L dx = x - of_point(job.x, i), dy = y - of_point(job.y, i), d2 = dx * dx + dy * dy;
-    return job.soft ? d2 + of_point(job.soft2, i) : d2;
-  };
-  // Of so many points the distances are kept.
-  constexpr std::size_t most_kept = 128;
-  L kept[most_kept];
-  const std::size_t keep = job.points < most_kept ? job.points : most_kept;
-  L least(R(3e38));
-  Moments<R> m;
-  const auto look = [&](std::size_t i, L r2) {
-    const auto nearer = r2 < least;
-    least = smaller(r2, least);
-    // Few points are the nearest so far of any lane, and for neighbours in a picture they are the same ones. (Doubles
-    // are often single places anywhere: nobody could predict the branch.)
-    if (sizeof(R) == 4 && !any(nearer)) return;
-    if constexpr (affine) {
-      m.centre_x = select(nearer, of_point(job.x, i), m.centre_x);
-      m.centre_y = select(nearer, of_point(job.y, i), m.centre_y);
-    }
-    m.centre_value = select(nearer, of_point(job.value, i), m.centre_value);
-  };
-  for (std::size_t i = 0; i < keep; ++i) look(i, kept[i] = distance2(i));
-  for (std::size_t i = keep; i < job.points; ++i) look(i, distance2(i));
+constexpr std::size_t block = 64;  // points whose weights are computed side by side
 
-  const auto add = [&](std::size_t i, L r2) {
-    // At the point itself the ratio is 0 / 0, which counts as 1.
-    const L w = of_point(job.alpha, i) * falling<kind>(job, smaller(least / r2, L(1)));
-    const L f = of_point(job.value, i) - m.centre_value;
-    m.w = m.w + w;
-    m.wf = m.wf + w * f;
-    if constexpr (affine) {
-      const L px = of_point(job.x, i) - m.centre_x, py = of_point(job.y, i) - m.centre_y, ax = w * px, ay = w * py;
-      m.wx = m.wx + ax;
-      m.wy = m.wy + ay;
-      m.wxx = m.wxx + ax * px;
-      m.wxy = m.wxy + ax * py;
-      m.wyy = m.wyy + ay * py;
-      m.wxf = m.wxf + ax * f;
-      m.wyf = m.wyf + ay * f;
-    }
-  };
-  for (std::size_t i = 0; i < keep; ++i) add(i, kept[i]);
-  for (std::size_t i = keep; i < job.points; ++i) add(i, distance2(i));
-  return value_of<affine>(job, m, x, y);
+/// Sums of weights, and of places and values about the nearest point, which adds nothing to the latter, however much it
+/// weighs: nothing cancels next to it.
+struct Moments {
+  double x = 0, y = 0, value = 0;  ///< of the nearest point
+  double w = 0, wf = 0, wx = 0, wy = 0, wxx = 0, wxy = 0, wyy = 0, wxf = 0, wyf = 0;
+};
+
+/// The height of the plane above its mean at a place, (x, y) from the nearest point.
+///
+/// C: second moments of places about their mean, b: with values, in parts of the trace. Points on a line leave rounding
+/// errors of their smaller moment. So C (C^2 + thin^2)^-1 stands for C^-1, which for 2 x 2 is
+/// (thin^2 C + det C (tr C - C)) / (det^2 C + thin^2 tr C^2 + thin^4): for points on a line it keeps the slope along it
+/// alone, however the line lies.
+double rise_of(const LeastSquaresJob& job, const Moments& m, double x, double y) noexcept {
+  constexpr double thin = 1e-10, thin2 = thin * thin;
+  const double trace = m.wxx + m.wyy;
+  if (!(trace > 1e-290)) return 0;
+  const double mean_x = m.wx / m.w, mean_y = m.wy / m.w;
+  const double xx = (m.wxx - m.wx * mean_x) / trace, xy = (m.wxy - m.wx * mean_y) / trace;
+  const double yy = (m.wyy - m.wy * mean_y) / trace;
+  const double bx = (m.wxf - m.wf * mean_x) / trace, by = (m.wyf - m.wf * mean_y) / trace;
+  const double det = xx * yy - xy * xy, tr = xx + yy;
+  const double along_x = xx * bx + xy * by, along_y = xy * bx + yy * by;
+  const double slope_x = thin2 * along_x + det * (tr * bx - along_x);
+  const double slope_y = thin2 * along_y + det * (tr * by - along_y);
+  const double from_x = x - mean_x, from_y = y - mean_y;
+  const double rise = (slope_x * from_x + slope_y * from_y) / (det * det + thin2 * (tr * tr - (det + det) + thin2));
+  if (job.plane == 1) return rise;
+  // The same of planes that rise along a line alone.
+  const double ex = job.along_x, ey = job.along_y;
+  const double moment = ex * (ex * xx + ey * xy) + ey * (ex * xy + ey * yy);
+  const double along = moment > thin ? (ex * bx + ey * by) / moment * (ex * from_x + ey * from_y) : 0;
+  return job.plane * rise + (1 - job.plane) * along;
 }
 
-template <bool affine, Power kind, class R>
-void fill(const LeastSquaresJob<R>& job) noexcept {
-  using L = Lanes<R>;
-  constexpr std::size_t width = L::width;
-  const auto fill_some = [&](std::size_t i, std::size_t some) {
-    L x(0), y(0);
-    __builtin_memcpy(&x.v, job.at_x + i, some * sizeof(R));
-    __builtin_memcpy(&y.v, job.at_y + i, some * sizeof(R));
-    const L result = limited(job, value_at<affine, kind>(job, scaled(job, x), scaled(job, y)));
-    __builtin_memcpy(job.out + i, &result.v, some * sizeof(R));
+/// The value at a place, all scaled.
+double value_at(const LeastSquaresJob& job, double x, double y) noexcept {
+  double r2[block], weights[block];
+  const auto distances = [&](std::size_t begin, std::size_t count) {
+    for (std::size_t i = 0; i < count; ++i) {
+      const double dx = x - job.x[begin + i], dy = y - job.y[begin + i];
+      r2[i] = dx * dx + dy * dy + job.soft2[begin + i];
+    }
   };
-  std::size_t i = 0;
-  for (; i + width <= job.count; i += width) fill_some(i, width);
-  if (i < job.count) fill_some(i, job.count - i);
+  const auto blocks = [&](const auto& work) {
+    for (std::size_t begin = 0; begin < job.points; begin += block) {
+      work(begin, job.points - begin < block ? job.points - begin : block);
+    }
+  };
+  double least = 3e300;
+  std::size_t nearest = 0;
+  blocks([&](std::size_t begin, std::size_t count) {
+    distances(begin, count);
+    for (std::size_t i = 0; i < count; ++i) {
+      if (r2[i] < least) least = r2[i], nearest = begin + i;
+    }
+  });
+  Moments m{job.x[nearest], job.y[nearest], job.value[nearest]};
+  blocks([&](std::size_t begin, std::size_t count) {
+    if (job.points > block) distances(begin, count);
+    for (std::size_t i = 0; i < count; ++i) {
+      const double ratio = r2[i] > least ? least / r2[i] : 1;  // 1 at the point itself too
+      weights[i] = job.alpha[begin + i] * falling(job.power, ratio);
+    }
+    for (std::size_t i = 0; i < count; ++i) {
+      const double w = weights[i], f = job.value[begin + i] - m.value;
+      m.w += w;
+      m.wf += w * f;
+      if (!job.affine) continue;
+      const double px = job.x[begin + i] - m.x, py = job.y[begin + i] - m.y, ax = w * px, ay = w * py;
+      m.wx += ax;
+      m.wy += ay;
+      m.wxx += ax * px;
+      m.wxy += ax * py;
+      m.wyy += ay * py;
+      m.wxf += ax * f;
+      m.wyf += ay * f;
+    }
+  });
+  const double mean = m.wf / m.w;
+  return m.value + (job.affine ? mean + rise_of(job, m, x - m.x, y - m.y) : mean);
 }
 
-template <class R>
-void run(const LeastSquaresJob<R>& job) noexcept {
-  by_kind(job, [&]<bool affine, Power kind>() { fill<affine, kind>(job); });
+/// a coordinate of places, scaled and in reach; the comparisons turn what is not a number into a limit
+double scaled(const LeastSquaresJob& job, double place) noexcept {
+  const double x = place * job.to_scaled, below = x < job.reach ? x : job.reach;
+  return below > -job.reach ? below : -job.reach;
+}
+
+void values(const LeastSquaresJob& job, std::size_t count, const double* x, const double* y, double* out) noexcept {
+  for (std::size_t i = 0; i < count; ++i) {
+    const double value = value_at(job, scaled(job, x[i]), scaled(job, y[i]));
+    const double above = value > job.low ? value : job.low;
+    out[i] = (above < job.high ? above : job.high) * job.from_scaled;
+  }
 }
 
 }  // namespace
 
 extern const LeastSquaresLoops PETZVAL_LOOPS;
-const LeastSquaresLoops PETZVAL_LOOPS{run<float>, run<double>};
+const LeastSquaresLoops PETZVAL_LOOPS{values};
 
 }  // namespace petzval::camera_detail

@@ -37,11 +37,11 @@ void frame(benchmark::State& state, const Film& film, std::size_t count, int thr
   state.SetItemsProcessed(state.iterations());
 }
 
-void loops(benchmark::State& state, InstructionSet set, SurfaceKind kind, double beta) {
+void values(benchmark::State& state, SurfaceKind kind, double beta) {
   const Film film{.columns = 800, .rows = 600};
-  std::vector<camera_detail::WeighedValue> values;
-  for (const FocalPoint& point : points_on(film, 16)) values.push_back({point.place, *point.inverse_distance});
-  const camera_detail::MovingLeastSquares surface("surface_bench: ", values, 29, kind, beta);
+  std::vector<camera_detail::WeighedValue> points;
+  for (const FocalPoint& point : points_on(film, 16)) points.push_back({point.place, *point.inverse_distance});
+  const camera_detail::MovingLeastSquares surface("surface_bench: ", points, 29, kind, beta);
   std::vector<float> x, y;
   for (int r = 0; r < film.rows; ++r) {
     for (int c = 0; c < film.columns; ++c) {
@@ -52,7 +52,7 @@ void loops(benchmark::State& state, InstructionSet set, SurfaceKind kind, double
   }
   std::vector<float> out(x.size());
   for (auto _ : state) {
-    surface.at(set, x.size(), x.data(), y.data(), out.data());
+    surface.at(x.size(), x.data(), y.data(), out.data());
     benchmark::DoNotOptimize(out.data());
   }
   state.SetItemsProcessed(state.iterations());
@@ -80,14 +80,11 @@ int main(int argc, char** argv) {
     add("800 x 600, 16 points" + on, frame, small, std::size_t{16}, threads);
     add("1920 x 1080, 64 points" + on, frame, large, std::size_t{64}, threads);
   }
-  for (const InstructionSet set : instruction_sets()) {
-    for (const SurfaceKind kind : {SurfaceKind::affine, SurfaceKind::shepard}) {
-      for (const double beta : {2.0, 3.0, 2.5}) {
-        char text[64];
-        std::snprintf(text, sizeof text, "%s, %s, beta %g", std::string(name(set)).c_str(),
-                      std::string(name(kind)).c_str(), beta);
-        add(text, loops, set, kind, beta);
-      }
+  for (const SurfaceKind kind : {SurfaceKind::affine, SurfaceKind::shepard}) {
+    for (const double beta : {2.0, 3.0, 2.5}) {
+      char text[64];
+      std::snprintf(text, sizeof text, "%s, beta %g", std::string(name(kind)).c_str(), beta);
+      add(text, values, kind, beta);
     }
   }
   add("single place, 16 points", single);
