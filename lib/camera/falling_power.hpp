@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cmath>
+#include <cstdint>
+
+#include "moving_least_squares_loops.hpp"
+
+namespace petzval::camera_detail {
+namespace {
+
+/// base^exponent for base from 0 to 1, by logarithm and exponential to the base 2; what is below the normal numbers is
+/// 0. Relative error: some (1 + |exponent log2 base|) roundings. std::pow has other bits on other processors.
+inline double power(double base, double exponent) noexcept {
+  constexpr double ln2 = 0.693147180559945309417;
+  constexpr std::int64_t root_half = 0x3fe6a09e667f3bcd;  // the bits of 0.70710678
+  // base = 2^whole fraction, with the fraction about 1.
+  const auto bits = __builtin_bit_cast(std::int64_t, base);
+  const std::int64_t whole = (bits - root_half) >> 52;
+  const auto fraction = __builtin_bit_cast(double, bits - (whole << 52));
+  const double s = (fraction - 1) / (fraction + 1), s2 = s * s;
+  double series = 1.0 / 19;
+  for (int k = 8; k >= 0; --k) series = series * s2 + 1.0 / (2 * k + 1);
+  const double wanted = (static_cast<double>(whole) + s * series * (2 / ln2)) * exponent;
+  if (!(wanted >= -1021 && base >= 2.3e-308)) return 0;
+  constexpr double rounding = 1.5 * 4503599627370496.0;  // the nearest whole number: adding 1.5 * 2^52 rounds to it
+  const double shifted = wanted + rounding, rest = (wanted - (shifted - rounding)) * ln2;
+  double result = 1;
+  for (int k = 13; k >= 1; --k) result = result * rest * (1.0 / k) + 1;
+  const std::int64_t steps = (__builtin_bit_cast(std::int64_t, shifted) - __builtin_bit_cast(std::int64_t, rounding))
+                             << 52;
+  return __builtin_bit_cast(double, __builtin_bit_cast(std::int64_t, result) + steps);
+}
+
+/// ratio^exponent for ratios from 0 to 1.
+inline double falling(const FallingPower& by, double ratio) noexcept {
+  if (by.wholes < 0) return power(ratio, by.exponent);
+  double result = by.half ? std::sqrt(ratio) : ratio;
+  for (int k = by.half ? 0 : 1; k < by.wholes; ++k) result *= ratio;
+  return result;
+}
+
+}  // namespace
+}  // namespace petzval::camera_detail

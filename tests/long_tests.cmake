@@ -1,0 +1,40 @@
+# SPDX-License-Identifier: Apache-2.0
+# Tests that take more than three seconds, as filters of GoogleTest. They have the label "full".
+set(petzval_long_tests
+  AnyWavelength.IsEnclosedByThePupilsOfTheNearestOne
+  AnyWavelengthOf.ExposureIsThatOfACameraMadeForIt
+  Apertures.LetTheStopDecideInEveryLens
+  AsphereOf/*.FindsTheFirstCrossingOfSteepRays
+  BokehControls.ShowAMapTheSameWayInAllModels
+  BrownConrady.HasNoPoleWithinTheFilm
+  BrownConrady.TermsAreBoundedAndRadiiRiseAsFarAsItSays
+  Camera.SetUpDoesNotDependOnThreads
+  Certified.*
+  ChooseModel.DistancesCountFromTheirOrigin
+  ChooseModel.LeavesOutWhatCannotBeBuilt
+  ChooseModel.SaysWhatElseIsNotNeeded
+  ChooseModel.StopsTheLensDown
+  Cylinders.Polynomials*
+  DifferentialsOf*.EveryLensAreThoseOfExactRays
+  EndlessFiles.*
+  Exposure.OnTheAxisIsThatOfTheExactLensInEveryModel
+  Extremes.FieldsBeyondTheLensAreDark
+  FilmIrradiance.InTheBowlOfTheLastSurfaceIsThatOfAllRays
+  FilmIrradiance.OfEveryLensIsThatOfAllRays
+  Gather.IsTheReference
+  ImageCircle.EndsWhereTheLightDoes
+  IrisShape.PassesAChiSquareTestInSmallSquares
+  IrisWeights.DrawSamplesOfTheDensityTheySay
+  LargestInputs.*
+  LensFile.ASampleCutOffAtAnyByteIsReadOrRefused
+  MemoryEnds.*
+  OslCamera.*
+  PolynomialFit.TheLargestErrorsHoldToTheCornerOfTheFilm
+  RayTiltFit.NoSearchFindsBetterBlurs
+  Reciprocity.HoldsFor*
+  Spectrum.TheStatedErrorOfEveryGlassHolds
+  StMap.IsTheDistortionUpToTheEndOfTheLight
+  TiltFitLimit.PlaneThroughTheViewVectorNeitherFlipsNorJumps
+  TwentyLenses/Promise.*
+  WavelengthOrder.*)
+list(JOIN petzval_long_tests ":" petzval_long_tests)
