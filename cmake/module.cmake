@@ -13,6 +13,11 @@ endmacro()
 # cache, and with it all that follows (a camera's single sample: 67 instead of 50 ns).
 set(PETZVAL_NO_PAIRS -fno-tree-slp-vectorize)
 
+# petzval_gnu_options(target PRIVATE -Wall ...): flags in the words of GCC and Clang, which other compilers do not get.
+function(petzval_gnu_options target scope)
+  target_compile_options(${target} ${scope} "$<$<CXX_COMPILER_ID:GNU,Clang,AppleClang>:${ARGN}>")
+endfunction()
+
 # petzval_library(core): one of the libraries, with what all of them share.
 function(petzval_library name)
   add_library(petzval-${name})
@@ -31,7 +36,7 @@ function(petzval_library name)
     INSTALL_RPATH $<IF:$<PLATFORM_ID:Darwin>,@loader_path,$ORIGIN>)
   target_compile_features(petzval-${name} PUBLIC cxx_std_20)
   # No contraction into fused operations: the same bits from every compiler and processor.
-  target_compile_options(petzval-${name} PRIVATE -ffp-contract=off -fno-math-errno -fno-trapping-math ${PETZVAL_NO_PAIRS})
+  petzval_gnu_options(petzval-${name} PRIVATE -ffp-contract=off -fno-math-errno -fno-trapping-math ${PETZVAL_NO_PAIRS})
   if(UNIX AND NOT APPLE)  # ELF
     target_link_options(petzval-${name} PRIVATE LINKER:--version-script=${PROJECT_SOURCE_DIR}/cmake/exports.map)
     set_property(TARGET petzval-${name} PROPERTY LINK_DEPENDS ${PROJECT_SOURCE_DIR}/cmake/exports.map)
@@ -73,9 +78,9 @@ function(petzval_lanes library file name set)
   add_library(petzval-${name} OBJECT ${file})
   target_compile_features(petzval-${name} PRIVATE cxx_std_20)
   target_compile_definitions(petzval-${name} PRIVATE ${ARGN})
-  target_compile_options(petzval-${name} PRIVATE -O3 -fno-math-errno -fno-trapping-math -ffp-contract=${contract} ${flags_${set}}
-    -Wno-psabi  # vectors pass between functions of this file only
-    $<$<CXX_COMPILER_ID:Clang>:-Wno-pass-failed>)  # clang leaves some loops scalar where the instruction set has no gathers
+  petzval_gnu_options(petzval-${name} PRIVATE -O3 -fno-math-errno -fno-trapping-math -ffp-contract=${contract} ${flags_${set}}
+    -Wno-psabi)  # vectors pass between functions of this file only
+  target_compile_options(petzval-${name} PRIVATE $<$<CXX_COMPILER_ID:Clang>:-Wno-pass-failed>)  # clang leaves some loops scalar where the instruction set has no gathers
   target_include_directories(petzval-${name} PRIVATE ${PROJECT_SOURCE_DIR}/include ${PROJECT_SOURCE_DIR}/lib)
   target_link_libraries(petzval-${name} PRIVATE glm::glm)
   set_target_properties(petzval-${name} PROPERTIES CXX_VISIBILITY_PRESET hidden VISIBILITY_INLINES_HIDDEN ON
@@ -93,13 +98,13 @@ function(petzval_loops library file name)
     set(fast PETZVAL_FAST=0)
   endif()
   petzval_lanes(${library} ${file} ${name}_baseline baseline PETZVAL_LOOPS=${name}_baseline PETZVAL_FAST=0)
-  target_compile_options(petzval-${name}_baseline PRIVATE ${PETZVAL_NO_PAIRS})
+  petzval_gnu_options(petzval-${name}_baseline PRIVATE ${PETZVAL_NO_PAIRS})
   if(PETZVAL_X86_64)
     foreach(set avx2 avx512)
       petzval_lanes(${library} ${file} ${name}_${set} ${set} PETZVAL_LOOPS=${name}_${set} ${fast})
     endforeach()
-    target_compile_options(petzval-${name}_avx2 PRIVATE ${PETZVAL_NO_PAIRS} -mtune=haswell)
-    target_compile_options(petzval-${name}_avx512 PRIVATE ${PETZVAL_NO_PAIRS} -mtune=icelake-server -mprefer-vector-width=512)
+    petzval_gnu_options(petzval-${name}_avx2 PRIVATE ${PETZVAL_NO_PAIRS} -mtune=haswell)
+    petzval_gnu_options(petzval-${name}_avx512 PRIVATE ${PETZVAL_NO_PAIRS} -mtune=icelake-server -mprefer-vector-width=512)
   endif()
 endfunction()
 
