@@ -12,6 +12,7 @@
 #include "core/text.hpp"
 #include "gather_loops.hpp"
 #include "gather_memory.hpp"
+#include "gather_way.hpp"
 #include "highlights.hpp"
 #include "layer_data.hpp"
 #include "petzval/core/error.hpp"
@@ -50,12 +51,12 @@ void add_steps(const float* rows, std::size_t stride, std::size_t i, const Depth
 /// One call of gather().
 class Gathering {
  public:
-  Gathering(const LayerSet& layers, const LensRays& rays, const GatherOptions& options, GatherPath path, int overscan,
-            const Highlights& highlights, Blurred& picture)
+  Gathering(const LayerSet& layers, const LensRays& rays, const GatherOptions& options, const GatherWay& way,
+            int overscan, const Highlights& highlights, Blurred& picture)
       : layers_(LayerAccess::data(layers)),
         rays_(RayAccess::data(rays)),
         options_(options),
-        path_(path),
+        way_(way),
         overscan_(overscan),
         highlights_(highlights),
         picture_(picture),
@@ -104,7 +105,7 @@ class Gathering {
   void follow(const Tile& tile, std::size_t channel, Memory& memory) {
     const std::size_t stride = rays_.table.rays;
     const float* corners[4];
-    if (path_ == GatherPath::shift_invariant) {
+    if (way_.path == GatherPath::shift_invariant) {
       corners[0] = rays_.table.node(channel, 0, 0);
     } else {
       for (int c = 0; c < 4; ++c) {
@@ -115,7 +116,7 @@ class Gathering {
       }
     }
     const GatherLoops& loops = gather_loops();
-    const std::size_t corner_count = path_ == GatherPath::shift_invariant ? 1 : 4;
+    const std::size_t corner_count = way_.path == GatherPath::shift_invariant ? 1 : 4;
     const auto rect_of = [&](const DepthRange& range) {
       const Limits reach = loops.limits(corners, corner_count, stride, stride, range.least, range.most);
       const int left = tile.left + overscan_, top = tile.top + overscan_;
@@ -126,7 +127,7 @@ class Gathering {
     DepthRange range = all_;
     PixelRect rect = rect_of(range.empty() ? DepthRange{0, 0, 0} : range);
     constexpr int iterations = 3;
-    for (int i = 0; options_.bounded && i < iterations && !range.empty(); ++i) {
+    for (int i = 0; way_.bounded && i < iterations && !range.empty(); ++i) {
       const DepthRange narrower = layers_.n_buffer.below(rect);
       const bool same = narrower.least == range.least && narrower.most == range.most;
       range = narrower;
@@ -147,7 +148,7 @@ class Gathering {
                 .sums = &memory.sums[channel]};
     if (range.empty()) range = {farthest_, farthest_, 1};  // the window holds no other pixels
     std::uint64_t made = 0;
-    if (path_ == GatherPath::shift_invariant) {
+    if (way_.path == GatherPath::shift_invariant) {
       memory.steps.clear(), memory.ends.clear(), memory.first.assign(1, 0);
       for (std::size_t i = 0; i < stride; ++i) {
         add_steps(corners[0], stride, i, range, all_, job.window.stride, memory.steps);
@@ -184,7 +185,7 @@ class Gathering {
                                .most = std::max(all_.most, 1e-30f),
                                .end = farthest_,
                                .side = rays_.side()};
-      made = path_ == GatherPath::coherent ? loops.coherent(job, rays) : loops.general(job, rays);
+      made = way_.path == GatherPath::coherent ? loops.coherent(job, rays) : loops.general(job, rays);
     }
     steps_ += made;
   }
@@ -242,7 +243,7 @@ class Gathering {
   }
 
   /// As in TileSums::place().
-  int sums_side() const noexcept { return path_ == GatherPath::shift_invariant ? rays_.side() : 1; }
+  int sums_side() const noexcept { return way_.path == GatherPath::shift_invariant ? rays_.side() : 1; }
 
   void compose(const Tile& tile, const Memory& memory) {
     const std::size_t channels = rays_.table.channels;
@@ -290,7 +291,7 @@ class Gathering {
   const LayerData& layers_;
   const RayData& rays_;
   const GatherOptions& options_;
-  GatherPath path_;
+  GatherWay way_;
   int overscan_, tile_columns_ = 0, tile_rows_ = 0;
   const Highlights& highlights_;
   Blurred& picture_;
@@ -305,7 +306,7 @@ double seconds_since(std::chrono::steady_clock::time_point start) {
 
 }  // namespace
 
-std::string_view name(GatherPath path) noexcept {
+std::string_view blur_detail::name(GatherPath path) noexcept {
   switch (path) {
     case GatherPath::automatic: return "automatic";
     case GatherPath::shift_invariant: return "shift_invariant";
@@ -315,7 +316,8 @@ std::string_view name(GatherPath path) noexcept {
   return "unknown";
 }
 
-void gather(const LayerSet& layers, const LensRays& rays, const GatherOptions& options, Blurred& picture) {
+void blur_detail::gather(const LayerSet& layers, const LensRays& rays, const GatherOptions& options,
+                         const GatherWay& way, Blurred& picture) {
   const auto wrong = [](const std::string& what) { return Error("gather: " + what); };
   const LayerCamera& camera = rays.camera();
   const int beyond = layers.columns() - camera.columns;
@@ -327,7 +329,7 @@ void gather(const LayerSet& layers, const LensRays& rays, const GatherOptions& o
   if (!(options.highlights_above >= 0)) {
     throw wrong("highlights_above is " + to_text(options.highlights_above) + ", wanted 0 (none) or more");
   }
-  GatherPath path = options.path;
+  GatherPath path = way.path;
   if (path == GatherPath::automatic) {
     path = rays.shift_invariant() ? GatherPath::shift_invariant
            : rays.sets() == 1     ? GatherPath::coherent
@@ -358,7 +360,7 @@ void gather(const LayerSet& layers, const LensRays& rays, const GatherOptions& o
     const Highlights highlights(LayerAccess::data(layers), rays, options, beyond / 2);
     const double finding = seconds_since(start);
     start = std::chrono::steady_clock::now();
-    Gathering(layers, rays, options, path, beyond / 2, highlights, picture).run();
+    Gathering(layers, rays, options, {path, way.bounded}, beyond / 2, highlights, picture).run();
     picture.statistics.gather_seconds = seconds_since(start);
     start = std::chrono::steady_clock::now();
     highlights.spread(options.threads, picture);
@@ -370,10 +372,19 @@ void gather(const LayerSet& layers, const LensRays& rays, const GatherOptions& o
   }
 }
 
-Blurred gather(const LayerSet& layers, const LensRays& rays, const GatherOptions& options) {
+Blurred blur_detail::gather(const LayerSet& layers, const LensRays& rays, const GatherOptions& options,
+                            const GatherWay& way) {
   Blurred picture;
-  gather(layers, rays, options, picture);
+  gather(layers, rays, options, way, picture);
   return picture;
+}
+
+void gather(const LayerSet& layers, const LensRays& rays, const GatherOptions& options, Blurred& picture) {
+  blur_detail::gather(layers, rays, options, {}, picture);
+}
+
+Blurred gather(const LayerSet& layers, const LensRays& rays, const GatherOptions& options) {
+  return blur_detail::gather(layers, rays, options, {});
 }
 
 }  // namespace petzval

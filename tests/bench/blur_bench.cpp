@@ -20,11 +20,11 @@
 #include <vector>
 
 #include "../blur/reference_gather.hpp"
+#include "blur/gather_way.hpp"
 #include "layers/blur_scenes.hpp"
 #include "layers/lens_setup.hpp"
 #include "layers/lit_scene.hpp"
 #include "layers/picture_quality.hpp"
-#include "petzval/blur/gather.hpp"
 #include "petzval/core/parallel.hpp"
 #include "petzval/image/image.hpp"
 #include "single_image_blur.hpp"
@@ -32,8 +32,8 @@
 
 namespace {
 
-using petzval::GatherPath;
 using petzval::RgbImage;
+using petzval::blur_detail::GatherPath;
 
 constexpr double focus_mm = 5000;
 constexpr std::array scene_names{"town", "statues", "knot", "leaves"};
@@ -86,7 +86,7 @@ class View {
   }
   void gather(const petzval::LayerSet& layers, petzval::Blurred& picture, GatherPath path = GatherPath::automatic,
               bool bounded = true) const {
-    petzval::gather(layers, rays, {.threads = settings_.threads, .path = path, .bounded = bounded}, picture);
+    petzval::blur_detail::gather(layers, rays, {.threads = settings_.threads}, {path, bounded}, picture);
   }
   RgbImage reference() const { return scene_.reference(rays, settings_.threads); }
 

@@ -5,8 +5,8 @@
 #include <cmath>
 #include <limits>
 
+#include "blur/gather_way.hpp"
 #include "hash.hpp"
-#include "petzval/blur/gather.hpp"
 #include "petzval/blur/layers.hpp"
 #include "petzval/blur/lens_rays.hpp"
 #include "petzval/core/instruction_set.hpp"
@@ -14,6 +14,8 @@
 
 namespace petzval {
 namespace {
+
+using blur_detail::GatherPath;
 
 /// Two boards with stripes before a wall, from integers alone: the same on every machine.
 LayerSet boards(const LensRays& rays) {
@@ -63,9 +65,10 @@ TEST(GatherBits, AreThoseOfTheTable) {
                                                 return FocusAt{(1 + 0.4 * raster.y / 90) / 2000.0, 1};
                                               }},
                                          vogel_points(31), {.nearest_mm = 1000});
-  EXPECT_EQ(hash(gather(boards(same), same, {.path = GatherPath::shift_invariant})), 0x410c03e041ae69f8u);
-  EXPECT_EQ(hash(gather(boards(varied), varied, {.path = GatherPath::coherent})), 0xbcf69b2919a61816u);
-  EXPECT_EQ(hash(gather(boards(varied), varied, {.threads = 2, .path = GatherPath::general})), 0xbcf69b2919a61816u);
+  EXPECT_EQ(hash(blur_detail::gather(boards(same), same, {}, {GatherPath::shift_invariant})), 0x410c03e041ae69f8u);
+  EXPECT_EQ(hash(blur_detail::gather(boards(varied), varied, {}, {GatherPath::coherent})), 0xbcf69b2919a61816u);
+  EXPECT_EQ(hash(blur_detail::gather(boards(varied), varied, {.threads = 2}, {GatherPath::general})),
+            0xbcf69b2919a61816u);
 }
 
 }  // namespace

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "../message.hpp"
+#include "blur/gather_way.hpp"
 #include "petzval/blur/layers.hpp"
 #include "petzval/blur/lens_rays.hpp"
 #include "petzval/core/error.hpp"
@@ -21,6 +22,7 @@
 namespace {
 
 using namespace petzval;
+using blur_detail::GatherPath;
 
 constexpr float infinity = std::numeric_limits<float>::infinity();
 
@@ -136,7 +138,7 @@ TEST(Gather, ThroughAPinholeIsTheFirstLayer) {
   const LensRays rays = thin_rays(0, 5);
   const LayerSet layers = layers_of(boards, rays);
   for (const GatherPath path : {GatherPath::shift_invariant, GatherPath::coherent, GatherPath::general}) {
-    EXPECT_LT(from_first_layer(gather(layers, rays, {.path = path}), layers), 1e-6) << name(path);
+    EXPECT_LT(from_first_layer(blur_detail::gather(layers, rays, {}, {path}), layers), 1e-6) << name(path);
   }
 }
 
@@ -145,7 +147,7 @@ TEST(Gather, ThroughATinyLensIsTheFirstLayer) {
   for (const LensRays& rays : {thin_rays(0.05, 12), tilted_rays(0.05, 12)}) {
     const LayerSet layers = layers_of(boards, rays);
     for (const GatherPath path : {GatherPath::coherent, GatherPath::general}) {
-      EXPECT_LT(from_first_layer(gather(layers, rays, {.path = path}), layers), 1e-6) << name(path);
+      EXPECT_LT(from_first_layer(blur_detail::gather(layers, rays, {}, {path}), layers), 1e-6) << name(path);
     }
   }
 }
@@ -174,7 +176,7 @@ TEST(Gather, IsTheReference) {
       const Blurred reference = petzval::testing::reference_gather(layers, rays);
       for (const GatherPath path : {GatherPath::coherent, GatherPath::general}) {
         if (path == GatherPath::coherent && rays.sets() > 1) continue;
-        const Difference d = difference(gather(layers, rays, {.path = path}), reference);
+        const Difference d = difference(blur_detail::gather(layers, rays, {}, {path}), reference);
         // Rounding in float takes a few rays to the pixel beside.
         EXPECT_LT(d.mean, 2e-4) << name(path) << (scene == Scene(panes) ? ", panes" : "");
         EXPECT_LT(d.most, 0.06) << name(path);
@@ -198,7 +200,7 @@ TEST(Gather, DarkensColoursAndKeepsAlpha) {
     const LayerSet layers = layers_of(scene, rays, 1);  // of which much is missed
     const Blurred reference = petzval::testing::reference_gather(layers, rays);
     for (const GatherPath path : {GatherPath::coherent, GatherPath::general}) {
-      const Blurred picture = gather(layers, rays, {.path = path, .highlights_above = 0});
+      const Blurred picture = blur_detail::gather(layers, rays, {.highlights_above = 0}, {path});
       EXPECT_LT(difference(picture, reference).mean, 2e-4) << name(path);
       double most = 0;
       for (std::size_t i = 0; i < picture.missed.size(); ++i) {
@@ -226,7 +228,7 @@ TEST(Gather, KeepsAnEvenColourWhereSurfacesAreMissing) {
   for (const LensRays& rays : {thin_rays(40), tilted_rays(40)}) {
     const LayerSet layers = layers_of(grey_boards, rays, 1);
     for (const GatherPath path : {GatherPath::coherent, GatherPath::general}) {
-      const Blurred picture = gather(layers, rays, {.path = path, .highlights_above = 0});
+      const Blurred picture = blur_detail::gather(layers, rays, {.highlights_above = 0}, {path});
       EXPECT_GT(picture.statistics.missed, 0u) << name(path);
       for (std::size_t i = 0; i < picture.missed.size(); ++i) {
         ASSERT_NEAR(picture.rgba[4 * i], 0.5, 1e-4) << name(path) << ' ' << i << ' ' << picture.missed[i];
@@ -241,10 +243,10 @@ TEST(Gather, PathsAgreeTo55Decibels) {
     const LensRays rays = thin_rays(25, 200 / sets, {.nearest_mm = 1000, .sets = sets});
     EXPECT_TRUE(rays.shift_invariant());
     const LayerSet layers = layers_of(scene, rays);
-    const Blurred same = gather(layers, rays, {.path = GatherPath::shift_invariant});
+    const Blurred same = blur_detail::gather(layers, rays, {}, {GatherPath::shift_invariant});
     for (const GatherPath path : {GatherPath::coherent, GatherPath::general}) {
       if (path == GatherPath::coherent && sets > 1) continue;
-      const Blurred other = gather(layers, rays, {.path = path});
+      const Blurred other = blur_detail::gather(layers, rays, {}, {path});
       double squares = 0;
       for (std::size_t i = 0; i < same.rgba.size(); ++i) {
         squares += std::pow(static_cast<double>(same.rgba[i] - other.rgba[i]), 2);
@@ -277,7 +279,7 @@ TEST(Gather, ReadsNoPixelBesideItsWindow) {
   LayerSet layers;
   layers.thin(lists, 0, 1);
   for (const GatherPath path : {GatherPath::coherent, GatherPath::general}) {
-    const Blurred picture = gather(layers, rays, {.path = path});
+    const Blurred picture = blur_detail::gather(layers, rays, {}, {path});
     for (const float value : picture.rgba) EXPECT_EQ(value, 0) << static_cast<int>(path);
     for (const float share : picture.missed) EXPECT_EQ(share, 0);
   }
@@ -288,8 +290,8 @@ TEST(Gather, FindsTheSameWithAndWithoutBounds) {
     const LayerSet layers = layers_of(boards, rays);
     for (const GatherPath path : {GatherPath::shift_invariant, GatherPath::coherent, GatherPath::general}) {
       if (path == GatherPath::shift_invariant && !rays.shift_invariant()) continue;
-      const Blurred bounded = gather(layers, rays, {.path = path}),
-                    free = gather(layers, rays, {.path = path, .bounded = false});
+      const Blurred bounded = blur_detail::gather(layers, rays, {}, {path}),
+                    free = blur_detail::gather(layers, rays, {}, {path, false});
       EXPECT_EQ(bounded.rgba, free.rgba) << name(path);
       EXPECT_LT(bounded.statistics.steps, free.statistics.steps) << name(path);
     }
@@ -352,8 +354,11 @@ TEST(Gather, RefusesWhatDoesNotFit) {
     EXPECT_NE(said.find(what), std::string::npos) << said;
   };
   says(LayerSet(), rays, {}, "layers are 0 x 0");
-  says(layers, tilted, {.path = GatherPath::shift_invariant}, "differ from pixel to pixel");
-  says(layers, tilted_rays(9, 4, {.nearest_mm = 1000, .sets = 4}), {.path = GatherPath::coherent}, "4 sets");
+  const auto refuses = [](const LayerSet& l, const LensRays& r, GatherPath path) {
+    EXPECT_THROW(blur_detail::gather(l, r, {}, {path}), Error) << name(path);
+  };
+  refuses(layers, tilted, GatherPath::shift_invariant);
+  refuses(layers, tilted_rays(9, 4, {.nearest_mm = 1000, .sets = 4}), GatherPath::coherent);
   says(layers, rays, {.highlights_above = -1}, "highlights_above is -1");
   says(layers, rays, {.threads = 0}, "threads is 0");
   // A surface a hundredth of a mm before a lens of 18 mm.

@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "../data_lenses.hpp"
+#include "blur/gather_way.hpp"
 #include "petzval/analysis/psf.hpp"
-#include "petzval/blur/gather.hpp"
 #include "petzval/blur/layers.hpp"
 #include "petzval/blur/lens_rays.hpp"
 #include "petzval/camera/camera.hpp"
@@ -19,6 +19,7 @@
 namespace {
 
 using namespace petzval;
+using blur_detail::GatherPath;
 
 /// Layers of one plane across the axis, with what it shows at raster positions of the picture.
 template <class Light>
@@ -179,7 +180,7 @@ TEST(Points, HaveTheRadiusOfTheirCircleOfConfusionOnEveryPath) {
     const LayerSet layers = grey_pixel(plan, w, 0.5 * w);
     double fast = 0;
     for (const GatherPath path : {GatherPath::shift_invariant, GatherPath::coherent, GatherPath::general}) {
-      const Disc disc = disc_of(gather(layers, rays, {.path = path, .highlights_above = 0}));
+      const Disc disc = disc_of(blur_detail::gather(layers, rays, {.highlights_above = 0}, {path}));
       const double radius = std::sqrt(disc.radius * disc.radius - rounding);
       EXPECT_NEAR(radius, std::abs(wanted), 0.03) << name(path) << ' ' << wanted;
       EXPECT_NEAR(disc.light, 0.5, 0.01) << name(path) << ' ' << wanted;

@@ -9,13 +9,15 @@
 #include <vector>
 
 #include "allocations.hpp"
-#include "petzval/blur/gather.hpp"
+#include "blur/gather_way.hpp"
 #include "petzval/blur/layers.hpp"
 #include "petzval/blur/lens_rays.hpp"
 #include "petzval/core/units.hpp"
 
 namespace petzval {
 namespace {
+
+using blur_detail::GatherPath;
 
 using testing::bits;
 using testing::expect_all_or_nothing;
@@ -105,7 +107,7 @@ TEST(MemoryEnds, InAnyThreadOfABlur) {
     expect_all_or_nothing([&] {
       Blurred picture;
       try {
-        gather(layers, rays, {.threads = 4, .path = path}, picture);
+        blur_detail::gather(layers, rays, {.threads = 4}, {path}, picture);
       } catch (...) {
         if (picture.columns != 0 || picture.rows != 0 || !picture.rgba.empty()) return std::string("half blurred");
         throw;

@@ -4,8 +4,8 @@
 #include <limits>
 #include <vector>
 
+#include "blur/gather_way.hpp"
 #include "flood.hpp"
-#include "petzval/blur/gather.hpp"
 #include "petzval/blur/layers.hpp"
 #include "petzval/blur/lens_rays.hpp"
 #include "petzval/core/error.hpp"
@@ -56,7 +56,7 @@ Counts gathers(Case& at) {
     if (plan.camera.overscan > 200) return counts;
     LayerSet layers;
     layers.thin(random_lists(plan.camera, even, opaque, at), plan.bias, bytes.count(1, 6));
-    const Blurred picture = gather(layers, rays, {.bounded = (kind & 2) == 0, .highlights_above = 0});
+    const Blurred picture = blur_detail::gather(layers, rays, {.highlights_above = 0}, {.bounded = (kind & 2) == 0});
     float least = infinity, most = 0;
     for (std::size_t i = 0; i < picture.rgba.size(); ++i) {
       const float value = picture.rgba[i];

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Small pictures of any layers through any rays: finite, and on the whole those of the reference.
-#include "petzval/blur/gather.hpp"
+#include "blur/gather_way.hpp"
 
 #include <algorithm>
 #include <vector>
@@ -12,6 +12,7 @@
 namespace {
 
 using namespace petzval;
+using blur_detail::GatherPath;
 
 constexpr float infinity = std::numeric_limits<float>::infinity();
 
@@ -95,12 +96,13 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     const double bias = bytes.one_in(2) ? plan.bias : 0;
     layers.thin(lists, bias, bytes.count(1, 4));
     const auto path = static_cast<GatherPath>(bytes.count(0, 3));
-    GatherOptions options{.path = path, .bounded = !bytes.one_in(4), .highlights_above = bytes.one_in(4) ? 1.0 : 0.0};
-    const Blurred picture = gather(layers, rays, options);
+    const blur_detail::GatherWay way{path, !bytes.one_in(4)};
+    const GatherOptions options{.highlights_above = bytes.one_in(4) ? 1.0 : 0.0};
+    const Blurred picture = blur_detail::gather(layers, rays, options, way);
     check(picture, tame);
     if (!tame || options.highlights_above > 0 || path == GatherPath::shift_invariant || layers.count() == 0) return;
     if (path == GatherPath::automatic && rays.shift_invariant()) return;
-    fuzz::require(mean_difference(picture, testing::reference_gather(layers, rays), options.bounded) < 0.1,
+    fuzz::require(mean_difference(picture, testing::reference_gather(layers, rays), way.bounded) < 0.1,
                   "a picture is that of the reference");
   });
   return 0;

@@ -4,7 +4,6 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
-#include <string_view>
 #include <vector>
 
 #include "petzval/blur/layers.hpp"
@@ -13,22 +12,8 @@
 
 namespace petzval {
 
-/// How rays are brought to the lanes of the processor.
-enum class GatherPath : std::uint8_t {
-  automatic,        ///< the fastest that the rays allow
-  shift_invariant,  ///< neighbouring pixels, one ray: the same step for all
-  coherent,         ///< neighbouring pixels, one ray each, nearly the same step
-  general,          ///< the rays of one pixel
-};
-/// "automatic", ...
-PETZVAL_API std::string_view name(GatherPath path) noexcept;
-
 struct GatherOptions {
   int threads = 1;
-  GatherPath path = GatherPath::automatic;
-  /// Whether the depths below the rays of a tile bound the way of its rays. What they meet does not depend on it;
-  /// guesses for those that meet nothing may.
-  bool bounded = true;
   /// Surfaces brighter than this in any channel, of which the rays of a pixel would meet too few to show their blur
   /// evenly, are spread over the pixels instead: even discs of the lens's own shape. 0: none.
   double highlights_above = 1;
@@ -68,9 +53,8 @@ struct Blurred {
 ///
 /// Source: Lee, Eisemann, Seidel 2010, "Real-time lens blur effects and focus control", section 3.1.
 ///
-/// Throws Error for layers of another size, a path that the rays do not allow, options out of range, and rays of a tile
-/// that reach over more than 256 MiB of layers beyond their edges. A picture that memory does not suffice for is left
-/// empty.
+/// Throws Error for layers of another size, options out of range, and rays of a tile that reach over more than 256 MiB
+/// of layers beyond their edges. A picture that memory does not suffice for is left empty.
 PETZVAL_API void gather(const LayerSet& layers, const LensRays& rays, const GatherOptions& options, Blurred& picture);
 PETZVAL_API Blurred gather(const LayerSet& layers, const LensRays& rays, const GatherOptions& options = {});
 
