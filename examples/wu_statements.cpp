@@ -3,6 +3,7 @@
 // and two origins of "distance from the lens".
 //
 //   wu_statements --html wu_statements.html
+#include <algorithm>
 #include <array>
 #include <iostream>
 #include <sstream>
@@ -12,11 +13,13 @@
 #include "petzval/core/parallel.hpp"
 #include "petzval/core/units.hpp"
 #include "petzval/glass/glass.hpp"
+#include "petzval/paraxial/first_order.hpp"
 #include "support/bokeh.hpp"
 #include "support/cli.hpp"
 #include "support/files.hpp"
 #include "support/load_lens.hpp"
 #include "support/text.hpp"
+#include "support/textbook_pupil.hpp"
 #include "support/wu2010.hpp"
 
 namespace {
@@ -109,13 +112,24 @@ constexpr std::array<const char*, 12> headings{"lens",    "focus mm",       "cri
                                                "printed", "found",          "agrees",         "RMS mm",
                                                "core",    "brightest ring", "darkest inside", "deviation"};
 
-std::string to_text(const std::vector<Verdict>& all) {
-  std::vector<std::array<std::string, 12>> rows;
-  std::array<std::size_t, 12> widths{};
-  std::array<std::string, 12> top;
-  for (std::size_t c = 0; c < top.size(); ++c) top[c] = headings[c];
-  rows.push_back(top);
-  for (const Verdict& v : all) rows.push_back(cells(v));
+/// Entrance pupils by steps 1 to 8 of the paper, of the light at 1000 mm, beside the images of the stop.
+using PupilCells = std::array<std::string, 4>;
+std::vector<PupilCells> pupils() {
+  std::vector<PupilCells> rows{{"lens", "textbook pupil mm", "limited by surface", "image of the stop mm"}};
+  for (const examples::WuRow& wu : examples::wu_rows()) {
+    const auto file = petzval::data_directory() / "lenses" / (std::string(wu.lens) + ".json");
+    const petzval::Lens lens = examples::load_lens({.file = file.string()}, std::array{petzval::d_line_nm}).lens;
+    const auto textbook = examples::textbook_entrance_pupil(lens, -examples::wu_light_mm);
+    rows.push_back({wu.lens, fixed(textbook.diameter, 3), std::to_string(textbook.limiting),
+                    fixed(petzval::pupils(lens).entrance.diameter, 3)});
+  }
+  return rows;
+}
+
+/// Columns side by side, as wide as their longest cells.
+template <std::size_t n>
+std::string to_text(const std::vector<std::array<std::string, n>>& rows) {
+  std::array<std::size_t, n> widths{};
   for (const auto& row : rows) {
     for (std::size_t c = 0; c < row.size(); ++c) widths[c] = std::max(widths[c], row[c].size());
   }
@@ -126,6 +140,13 @@ std::string to_text(const std::vector<Verdict>& all) {
     }
   }
   return text.str();
+}
+
+std::string to_text(const std::vector<Verdict>& all) {
+  std::vector<std::array<std::string, 12>> rows(1);
+  std::copy(headings.begin(), headings.end(), rows[0].begin());
+  for (const Verdict& v : all) rows.push_back(cells(v));
+  return to_text(rows);
 }
 
 /// A table for the gallery: one line per statement, the four readings side by side.
@@ -166,7 +187,7 @@ int main(int argc, char** argv) {
       "and core and innermost tenth are below 1.25; nearly even with a bright core: one of them is above. Ring: the "
       "brightest ring lies in the outer half; with a slight core if the core is 1.5 times as bright as the darkest "
       "ring. Core: the brightest ring lies in the inner half; with a dark centre if the innermost tenth is below 0.95 "
-      "of it. Sharpest: least RMS radius.",
+      "of it. Sharpest: least RMS radius. A second table has the entrance pupils by the paper's steps 1 to 8.",
       "wu_statements");
   examples::add_samples(app, samples);
   examples::add_out_file(app, html_file, "also write the table as HTML", "FILE", "--html");
@@ -174,6 +195,6 @@ int main(int argc, char** argv) {
   return examples::run(app, argc, argv, [&] {
     const std::vector<Verdict> all = all_verdicts(samples);
     if (!html_file.empty()) examples::write_text(html_file, to_html(all));
-    std::cout << to_text(all);
+    std::cout << to_text(all) << '\n' << to_text(pupils());
   });
 }

@@ -73,7 +73,6 @@
 #include "petzval/pupil/f_number.hpp"
 #include "petzval/pupil/illumination.hpp"
 #include "petzval/pupil/pupil_boundary.hpp"
-#include "petzval/pupil/textbook.hpp"
 #include "petzval/trace/trace.hpp"
 
 // The functions of its vectors, for hosts without a vector library of their own.

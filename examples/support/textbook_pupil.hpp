@@ -3,12 +3,11 @@
 
 #include <cstddef>
 
-#include "petzval/core/export.hpp"
 #include "petzval/core/ray.hpp"
 #include "petzval/lens/lens.hpp"
 #include "petzval/lens/wavelength.hpp"
 
-namespace petzval {
+namespace examples {
 
 /// A pupil as the textbook method finds it: one disc on the axis, and the ray that gave it.
 struct TextbookPupil {
@@ -16,16 +15,16 @@ struct TextbookPupil {
   double diameter = 0;  ///< of the marginal ray in that plane, mm
   std::size_t limiting =
       0;  ///< the surface that ends the next ray outwards: the first rim to clip, not always the stop
-  RayFate beyond = RayFate::vignetted;  ///< what becomes of that next ray
+  petzval::RayFate beyond = petzval::RayFate::vignetted;  ///< what becomes of that next ray
   /// The outermost ray, traced and transmitted; as it meets the lens: in object space (entrance) or image space (exit).
-  Ray<double> marginal{};
+  petzval::Ray<double> marginal{};
 };
 
 /// The entrance pupil by the textbook method: the outermost ray that the lens passes from a point of the axis, found by
 /// bisection between the axis and the rim of the first surface, in the plane of the paraxial image of the stop.
 ///
-/// It is the baseline by which the literature samples lenses; its errors (tests/pupil/textbook_test.cpp, a double Gauss
-/// f/2) are:
+/// It is the baseline by which the literature samples lenses; its errors (tests/examples/textbook_pupil_test.cpp, a
+/// double Gauss f/2) are:
 ///   - its ray belongs to the first rim that clips, which need not be the stop: f/2.018 where the stop gives f/2.004;
 ///   - it is a disc on the axis: 10 degrees or more off, rims and the aberrations of the pupil cut and shift what
 ///     passes. In the corner of the film a fifth of the disc passes;
@@ -38,9 +37,9 @@ struct TextbookPupil {
 /// of the bracket that nobody traced); rays count by their distance from the vertex, which an infinite conjugate has
 /// too; steps 6 to 8 are their limit, the paraxial matrices. Throws Error where pupils() does, for a wavelength that
 /// was not compiled, an object_z in the vertex or NaN, and where the ray along the axis is lost.
-PETZVAL_API TextbookPupil textbook_entrance_pupil(const Lens& lens, double object_z, Wavelength wavelength = {});
+TextbookPupil textbook_entrance_pupil(const petzval::Lens& lens, double object_z, petzval::Wavelength wavelength = {});
 
 /// The exit pupil by the same method from the other side: rays from the axial point of a film, traced to the scene.
-PETZVAL_API TextbookPupil textbook_exit_pupil(const Lens& lens, double film_z, Wavelength wavelength = {});
+TextbookPupil textbook_exit_pupil(const petzval::Lens& lens, double film_z, petzval::Wavelength wavelength = {});
 
-}  // namespace petzval
+}  // namespace examples

@@ -1,21 +1,21 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "petzval/pupil/textbook.hpp"
+#include "textbook_pupil.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <string>
 
-#include "core/bisect.hpp"
-#include "core/meet_plane.hpp"
-#include "core/text.hpp"
 #include "petzval/core/error.hpp"
 #include "petzval/lens/lens.hpp"
 #include "petzval/paraxial/first_order.hpp"
 #include "petzval/trace/trace.hpp"
+#include "text.hpp"
 
-namespace petzval {
+namespace examples {
 namespace {
+
+using namespace petzval;
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
@@ -55,8 +55,9 @@ class AxialFan {
   /// Where the ray crosses the axis-normal plane at z.
   double height_at(double p, double z) const noexcept {
     if (std::isinf(z)) return infinity;
-    const Vec3<double> hit = core_detail::meet_plane(ray(p), z);
-    return along_y_ ? hit.y : hit.x;
+    const auto [origin, direction] = ray(p);
+    const double way = (z - origin.z) / direction.z;
+    return along_y_ ? origin.y + way * direction.y : origin.x + way * direction.x;
   }
 
   bool at_vertex() const noexcept { return distance_ == 0; }
@@ -92,7 +93,7 @@ TextbookPupil textbook_pupil(const Lens& lens, Travel travel, double point_z, Wa
   const Pupils paraxial = pupils(lens, wavelength, main_meridian(lens, wavelength));
   const AxialFan fan(lens, travel, point_z, wavelength);
   if (std::isnan(point_z) || fan.at_vertex()) {
-    throw Error(where + (entrance ? "object_z" : "film_z") + " is " + to_text(point_z) +
+    throw Error(where + (entrance ? "object_z" : "film_z") + " is " + number(point_z) +
                 " mm, wanted infinity or a place off the vertex of the lens");
   }
   const auto passes = [&](double p) { return fan.trace(p).transmitted(); };
@@ -105,7 +106,13 @@ TextbookPupil textbook_pupil(const Lens& lens, Travel travel, double point_z, Wa
   double height = fan.rim(), outermost = fan.towards(height);
   const bool limited = std::isfinite(lens.surfaces()[entrance ? 0 : lens.surface_count() - 1].semi_diameter);
   while (!limited && passes(outermost) && height < 1e100) outermost = fan.towards(height *= 2);
-  if (!passes(outermost)) outermost = core_detail::last_with(0.0, outermost, passes);
+  if (!passes(outermost)) {
+    double last = 0, first = outermost;  // the last that passes and the first that does not
+    for (double middle = first / 2; middle > last && middle < first; middle = last + (first - last) / 2) {
+      (passes(middle) ? last : first) = middle;
+    }
+    outermost = last;
+  }
 
   // Steps 6 to 8.
   const Pupil& image = entrance ? paraxial.entrance : paraxial.exit;
@@ -128,4 +135,4 @@ TextbookPupil textbook_exit_pupil(const Lens& lens, double film_z, Wavelength wa
   return textbook_pupil(lens, Travel::to_scene, film_z, wavelength);
 }
 
-}  // namespace petzval
+}  // namespace examples

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The textbook method, its bounds and its faults in numbers.
-#include "petzval/pupil/textbook.hpp"
+#include "support/textbook_pupil.hpp"
 
 #include <gtest/gtest.h>
 
@@ -16,6 +16,9 @@
 namespace petzval {
 namespace {
 
+using examples::textbook_entrance_pupil;
+using examples::textbook_exit_pupil;
+using examples::TextbookPupil;
 using testing::data_lens;
 using testing::data_prescriptions;
 using testing::message;
