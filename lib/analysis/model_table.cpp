@@ -106,15 +106,13 @@ std::size_t central_of(const Lens& lens, const std::vector<std::size_t>& wavelen
 /// look-up of a table, and polynomials, the more the more terms they have, a sum of terms.
 std::vector<double> costs(std::span<const AnyRayModel> models, std::vector<double> times) {
   double discs = std::numeric_limits<double>::infinity(), simpler = 0;
-  const auto one_disc = [](ModelKind kind) {
-    return camera_detail::is_first_order(kind) && kind != ModelKind::thin_two_disc;
-  };
+  const auto one_disc = [](ModelKind kind) { return kind.is_first_order() && kind != ModelKind::thin_two_disc; };
   for (std::size_t k = 0; k < models.size(); ++k) {
     if (one_disc(models[k].kind())) discs = std::min(discs, times[k]);
   }
   for (std::size_t k = 0; k < models.size(); ++k) {
     const ModelKind kind = models[k].kind();
-    if (!camera_detail::is_first_order(kind) && !camera_detail::is_polynomial(kind)) continue;
+    if (!kind.is_first_order() && !kind.is_polynomial()) continue;
     times[k] = one_disc(kind) ? discs : std::max(times[k], simpler);
     simpler = std::max(simpler, times[k]);
   }

@@ -112,7 +112,7 @@ void CameraTables::check(std::span<const float> tables, const std::string& where
              " to " + std::to_string(most));
     }
   };
-  check_number(model, 0, static_cast<std::size_t>(ModelKind::custom));
+  check_number(model, 0, models().size());
   check_number(wavelength_count, 1, 1 << 16);
   check_number(primary_wavelength, 0, number(wavelength_count) - 1);
   const std::size_t w = number(wavelength_count), spaces = number(surface_count) + 1;
@@ -169,7 +169,7 @@ std::vector<float> Camera::tables() const {
   if (data.focus) throw Error(where + "found a focal surface or an expressive lens, wanted a camera without");
   Numbers to;
   to.set(Table::format, 3);
-  to.set(Table::model, static_cast<int>(data.model.kind()));
+  to.set(Table::model, std::ranges::find(models(), data.model.kind()) - models().begin());
   to.set(Table::wavelength_count, data.lens.wavelengths_nm().size());
   to.set(Table::primary_wavelength, data.lens.primary_wavelength());
   const TwoPlanes& space = data.model.pupils().space();

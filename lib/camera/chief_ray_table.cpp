@@ -101,7 +101,7 @@ ChiefRayTable::ChiefRayTable(const LensFacts& facts, const AnyRayModel& model, d
   const Lens& lens = facts.lens();
   const TwoPlanes space = model.pupils().space();
   const bool traced =
-      is_polynomial(model.kind()) || model.kind() == ModelKind::exact_float || model.kind() == ModelKind::exact_double;
+      model.kind().is_polynomial() || model.kind() == ModelKind::exact_float || model.kind() == ModelKind::exact_double;
   // Adds a chief ray; false where it does not reach the scene.
   const auto add = [&](Meridian& nodes, Section section, const Heights& h, double ratio) {
     const auto ray = traced ? to_scene(lens, space, wavelength, section, h) : to_scene(model, wavelength, section, h);

@@ -81,7 +81,7 @@ ScenePassing passing(const AnyRayModel& model) {
 EntrancePupilTable entrance_of(const Lens& lens, const AnyRayModel& model) {
   const bool exact = model.kind() == ModelKind::exact_float || model.kind() == ModelKind::exact_double;
   if (exact) return traced_entrances(lens, model.pupils());
-  if (is_first_order(model.kind()) && !lens.iris().round()) {  // whose pupils the round stop's enclose
+  if (model.kind().is_first_order() && !lens.iris().round()) {  // whose pupils the round stop's enclose
     const Lens round = with_iris(lens, {});
     return entrance_of(round, make_model(model.kind(), round, model.pupils().film_radius()));
   }
@@ -93,7 +93,7 @@ EntrancePupilTable entrance_of(const Lens& lens, const AnyRayModel& model) {
     return EntrancePupilTable(lens, std::vector<std::vector<Ray<double>>>(model.pupils().wavelengths()), {});
   }
   return EntrancePupilTable(lens, leaving_rays_of(lens, model),
-                            is_polynomial(model.kind()) ? traced_passing(lens) : passing(model),
+                            model.kind().is_polynomial() ? traced_passing(lens) : passing(model),
                             model.clips_at_apertures() ? ClippedBy::apertures : ClippedBy::samples);
 }
 

@@ -210,7 +210,7 @@ LocalFocus::LocalFocus(const LensFacts& facts, const Film& film, const AnyRayMod
   const Lens& lens = facts.lens();
   const std::string where = lens.name() + ": camera: ";
   if (!surface && expressive.empty()) return;
-  if (!is_first_order(model.kind())) {
+  if (!model.kind().is_first_order()) {
     throw Error(where + "found a focal surface or an expressive lens for " + std::string(name(model.kind())) +
                 ", wanted a first-order model: pinhole, thin, thin_two_disc or thick");
   }

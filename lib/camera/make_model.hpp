@@ -18,8 +18,4 @@ PETZVAL_API AnyRayModel make_model(ModelKind model, const LensFacts& facts, doub
 /// What a rim leaves of the pupils of a lens. Throws Error where FilmPupilTable::cut_by_rim() does.
 FilmPupilTable behind(const PupilRim& rim, const FilmPupilTable& pupils, const Lens& lens);
 
-/// Whether a model is a ParaxialModel, or a PolynomialModel.
-PETZVAL_API bool is_first_order(ModelKind model) noexcept;
-PETZVAL_API bool is_polynomial(ModelKind model) noexcept;
-
 }  // namespace petzval::camera_detail

@@ -1,18 +1,18 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "petzval/camera/model_kind.hpp"
+
 #include <algorithm>
 #include <array>
 #include <cstddef>
 #include <iterator>
 
-#include "petzval/camera/model_kind.hpp"
-
 namespace petzval {
 namespace {
 
-constexpr std::array all{ModelKind::pinhole,      ModelKind::thin,         ModelKind::thin_two_disc,
-                         ModelKind::thick,        ModelKind::polynomial_3, ModelKind::polynomial_5,
-                         ModelKind::polynomial_7, ModelKind::polynomial_9, ModelKind::polynomial_11,
-                         ModelKind::exact_float,  ModelKind::exact_double};
+constexpr std::array all{ModelKind::pinhole,       ModelKind::thin,          ModelKind::thin_two_disc,
+                         ModelKind::thick,         ModelKind::polynomial(3), ModelKind::polynomial(5),
+                         ModelKind::polynomial(7), ModelKind::polynomial(9), ModelKind::polynomial(11),
+                         ModelKind::exact_float,   ModelKind::exact_double};
 constexpr std::array<std::string_view, all.size()> names{
     "pinhole",      "thin",         "thin_two_disc", "thick",       "polynomial_3", "polynomial_5",
     "polynomial_7", "polynomial_9", "polynomial_11", "exact_float", "exact_double"};
@@ -20,8 +20,9 @@ constexpr std::array<std::string_view, all.size()> names{
 }  // namespace
 
 std::string_view name(ModelKind model) noexcept {
-  const auto at = static_cast<std::size_t>(model);
-  return at < names.size() ? names[at] : model == ModelKind::custom ? "custom" : "unknown";
+  const auto found = std::find(all.begin(), all.end(), model);
+  if (found != all.end()) return names[static_cast<std::size_t>(std::distance(all.begin(), found))];
+  return model == ModelKind::custom ? "custom" : "unknown";
 }
 
 std::optional<ModelKind> model_named(std::string_view name) noexcept {

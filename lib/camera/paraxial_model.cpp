@@ -116,7 +116,7 @@ double reach_of(const Lens& lens, const std::vector<SectionMaps>& maps) {
 /// Throws Error for a lens that has no model of a kind.
 void check(ModelKind model, const LensFacts& facts) {
   const Lens& lens = facts.lens();
-  if (!is_first_order(model)) {
+  if (!model.is_first_order()) {
     throw Error(lens.name() + ": found " + std::string(name(model)) + ", wanted a first-order model");
   }
   const bool cylinders = has_cylinders(lens);

@@ -92,7 +92,7 @@ PupilWeights::PupilWeights(const Lens& lens, const AnyRayModel& model, const Bok
     return;
   }
   const ModelKind kind = model.kind();
-  const bool custom = kind == ModelKind::custom, first_order = !custom && is_first_order(kind);
+  const bool custom = kind == ModelKind::custom, first_order = !custom && kind.is_first_order();
   std::optional<RealStop> stop;
   const bool has_rim = lens.stop() && std::isfinite(lens.surfaces()[*lens.stop()].semi_diameter);
   if (has_rim && !custom) stop.emplace(lens, model.pupils().space());

@@ -124,7 +124,7 @@ double upright_radius(const LensFacts& facts, const Film& film, ModelKind model)
   const double pupil_z = two_planes(lens).pupil_z;
   const std::vector<Rim> pupils = pupils_of(facts, model);
   const pupil_detail::Face face = pupil_detail::last_face(lens);
-  const bool discs = is_first_order(model) && model != ModelKind::thin_two_disc;
+  const bool discs = model.is_first_order() && model != ModelKind::thin_two_disc;
   // Aberrations move a pupil that lies behind the film by more than its size.
   const bool in_lens = !pupils.empty() && std::all_of(pupils.begin(), pupils.end(), [&](const Rim& rim) {
     return (rim.z - film_z) * (face.vertex_z - film_z) > 0;

@@ -56,7 +56,7 @@ TEST(CameraImages, HaveTheWeightsOfTheCamera) {
   const Lens lens = with_f_number(with_focus(data_lens("double_gauss_100mm_f2.0"), 3000), 5.6);
   const FieldPoint point{0, -1000};
   for (const ModelKind model :
-       {ModelKind::thin, ModelKind::thin_two_disc, ModelKind::polynomial_7, ModelKind::exact_float}) {
+       {ModelKind::thin, ModelKind::thin_two_disc, ModelKind::polynomial(7), ModelKind::exact_float}) {
     const auto image = [&](const BokehControls& bokeh) {
       return point_image(Camera(lens, film, {.model = model, .bokeh = bokeh}), point, options);
     };

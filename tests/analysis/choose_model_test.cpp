@@ -258,7 +258,7 @@ TEST(ChooseModel, LeavesOutWhatCannotBeBuilt) {
   const Lens lens = focused("anamorphic_60mm_2x", 5000);
   const ModelChoice choice =
       choose_model(lens, {.near_mm = 3000, .film = {.width_mm = 20, .height_mm = 13}}, {.max_px = 4});
-  EXPECT_EQ(choice.model, ModelKind::polynomial_7);
+  EXPECT_EQ(choice.model, ModelKind::polynomial(7));
   EXPECT_TRUE(candidate_of(choice, ModelKind::thick).available);
   EXPECT_FALSE(candidate_of(choice, ModelKind::thin_two_disc).available);
   EXPECT_FALSE(candidate_of(choice, ModelKind::thin_two_disc).inside);
@@ -267,9 +267,9 @@ TEST(ChooseModel, LeavesOutWhatCannotBeBuilt) {
 }
 
 TEST(ChooseModel, StopsTheLensDown) {
-  const double open = candidate_of(usual_choices()[none], ModelKind::polynomial_5).bound_px;
+  const double open = candidate_of(usual_choices()[none], ModelKind::polynomial(5)).bound_px;
   const double stopped =
-      candidate_of(choose_model(usual_lens(), {.near_mm = 1500, .f_number = 8}, {}), ModelKind::polynomial_5).bound_px;
+      candidate_of(choose_model(usual_lens(), {.near_mm = 1500, .f_number = 8}, {}), ModelKind::polynomial(5)).bound_px;
   EXPECT_LT(stopped, 0.5 * open);
 }
 

@@ -124,7 +124,7 @@ TEST(LensWithIris, AnExactCameraConnectsTheSceneThroughIt) {
 TEST(LensWithIris, FittedModelsSeeIt) {
   const Lens lens = double_gauss(4).bladed;
   const Film film{.width_mm = 30, .height_mm = 20, .columns = 30, .rows = 20};
-  for (const ModelKind model : {ModelKind::thin_two_disc, ModelKind::polynomial_3, ModelKind::polynomial_7}) {
+  for (const ModelKind model : {ModelKind::thin_two_disc, ModelKind::polynomial(3), ModelKind::polynomial(7)}) {
     const Camera camera(lens, film, {.model = model});
     for (const FilmPoint& at : {FilmPoint{0, 0}, FilmPoint{9, -6}, FilmPoint{-14, 9}}) {
       constexpr int count = 20000;
@@ -144,7 +144,7 @@ TEST(LensWithIris, FittedModelsSeeIt) {
 TEST(LensWithIris, FittedModelsConnectTheSceneThroughIt) {
   const Film film{.width_mm = 30, .height_mm = 20, .columns = 30, .rows = 20};
   const auto [round, bladed] = double_gauss(4);
-  for (const ModelKind model : {ModelKind::thin_two_disc, ModelKind::polynomial_5}) {
+  for (const ModelKind model : {ModelKind::thin_two_disc, ModelKind::polynomial(5)}) {
     const auto flux = [&](const Lens& lens) {
       const Camera camera(lens, film, {.model = model});
       constexpr int count = 20000;

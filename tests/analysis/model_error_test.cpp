@@ -138,8 +138,8 @@ TEST(ModelError, OfPolynomialsFallsWithTheDegree) {
   const Lens lens = focused("double_gauss_52mm_f1.8", 3000, 2);
   double before = infinity;
   for (const ModelKind model :
-       {ModelKind::thick, ModelKind::polynomial_3, ModelKind::polynomial_5, ModelKind::polynomial_7,
-        ModelKind::polynomial_9, ModelKind::polynomial_11, ModelKind::exact_float}) {
+       {ModelKind::thick, ModelKind::polynomial(3), ModelKind::polynomial(5), ModelKind::polynomial(7),
+        ModelKind::polynomial(9), ModelKind::polynomial(11), ModelKind::exact_float}) {
     const ModelError error = model_error(lens, {}, model, at(lens, {1500, 3000, infinity}));
     EXPECT_LT(error.all.max_mm, 0.5 * before) << name(model);
     before = error.all.max_mm;
@@ -149,9 +149,9 @@ TEST(ModelError, OfPolynomialsFallsWithTheDegree) {
 TEST(ModelError, IsTheSameForAnyNumberOfThreads) {
   const Lens lens = focused("double_gauss_52mm_f1.8", 3000);
   ErrorSamples samples = at(lens, {1500, infinity});
-  const ModelError one = model_error(lens, {}, ModelKind::polynomial_5, samples);
+  const ModelError one = model_error(lens, {}, ModelKind::polynomial(5), samples);
   samples.threads = 3;
-  const ModelError three = model_error(lens, {}, ModelKind::polynomial_5, samples);
+  const ModelError three = model_error(lens, {}, ModelKind::polynomial(5), samples);
   EXPECT_EQ(one.all.rms_mm, three.all.rms_mm);
   EXPECT_EQ(one.all.max_mm, three.all.max_mm);
   EXPECT_EQ(one.pupil_shape, three.pupil_shape);
@@ -161,7 +161,7 @@ TEST(ModelError, IsTheSameForAnyNumberOfThreads) {
 /// Two sets of samples find the same largest errors.
 TEST(ModelError, HardlyDependsOnTheSamples) {
   const Lens lens = focused("double_gauss_52mm_f1.8", 3000);
-  for (const ModelKind model : {ModelKind::thick, ModelKind::polynomial_5, ModelKind::polynomial_9}) {
+  for (const ModelKind model : {ModelKind::thick, ModelKind::polynomial(5), ModelKind::polynomial(9)}) {
     std::vector<ModelError> found;
     for (const std::uint32_t seed : {0, 1, 2}) {
       ErrorSamples samples = at(lens, {1500, infinity}, seed);
@@ -191,10 +191,10 @@ TEST(ModelError, TellsWavelengthsApart) {
                                        {.glasses = &glasses, .missing_glass = MissingGlass::abbe}),
                                3000, {.origin = DistanceOrigin::film});
   ErrorSamples samples = at(lens, {3000, infinity});
-  const ModelError all = model_error(lens, {}, ModelKind::polynomial_5, samples);
+  const ModelError all = model_error(lens, {}, ModelKind::polynomial(5), samples);
   ASSERT_EQ(all.wavelength.size(), 3u);
   samples.wavelengths = {2};
-  const ModelError red = model_error(lens, {}, ModelKind::polynomial_5, samples);
+  const ModelError red = model_error(lens, {}, ModelKind::polynomial(5), samples);
   ASSERT_EQ(red.wavelength.size(), 1u);
   EXPECT_EQ(red.all.max_mm, all.wavelength[2].max_mm);
   EXPECT_NEAR(red.all.rms_mm, all.wavelength[2].rms_mm, 1e-12);

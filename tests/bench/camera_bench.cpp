@@ -281,7 +281,7 @@ int run(std::vector<char*> arguments) {
     petzval::BokehControls rings;
     rings.weight_map = petzval::onion_rings({}, 512);
     for (const ModelKind model :
-         {ModelKind::thin, ModelKind::thin_two_disc, ModelKind::polynomial_7, ModelKind::exact_float}) {
+         {ModelKind::thin, ModelKind::thin_two_disc, ModelKind::polynomial(7), ModelKind::exact_float}) {
       for (const auto& [call, controls] :
            {Shape{"hexagon", {.lens_elements = 6}}, Shape{"cat's eye", {.rate_of_change = 1}},
             Shape{"rim", {.weight_distribution = 12.7, .weight_strength = 0.6}}, Shape{"rings", rings}}) {

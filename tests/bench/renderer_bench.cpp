@@ -72,7 +72,7 @@ constexpr std::array integrators{Integrator::path, Integrator::light, Integrator
 void report_models(int rounds) {
   const Scene scene(*built_in_scene("chess"));
   constexpr std::array models{petzval::ModelKind::pinhole,       petzval::ModelKind::thin,
-                              petzval::ModelKind::thin_two_disc, petzval::ModelKind::polynomial_7,
+                              petzval::ModelKind::thin_two_disc, petzval::ModelKind::polynomial(7),
                               petzval::ModelKind::exact_float,   petzval::ModelKind::exact_double};
   for (const ColourMode mode : {ColourMode::d, ColourMode::hero}) {
     const PathColourSource colours(mode);

@@ -243,7 +243,7 @@ TEST_P(CameraRays, HaveTheLightOfTheCamera) {
   }
 }
 INSTANTIATE_TEST_SUITE_P(Models, CameraRays,
-                         ::testing::Values(ModelKind::thin, ModelKind::thick, ModelKind::polynomial_7,
+                         ::testing::Values(ModelKind::thin, ModelKind::thick, ModelKind::polynomial(7),
                                            ModelKind::exact_float),
                          [](const auto& model) { return std::string(name(model.param)); });
 

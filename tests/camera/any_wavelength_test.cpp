@@ -77,8 +77,9 @@ class AnyWavelength : public ::testing::TestWithParam<const char*> {
 TEST_P(AnyWavelength, GivesTheRaysOfACameraMadeForIt) {
   // In pixels of a film of 36 mm with 1920 columns.
   const double per_mm = 1920 / 36.0;
-  for (const auto& [model, limit] : {std::pair(ModelKind::exact_double, 1e-3), std::pair(ModelKind::polynomial_7, 0.05),
-                                     std::pair(ModelKind::thick, 0.05), std::pair(ModelKind::pinhole, 0.05)}) {
+  for (const auto& [model, limit] :
+       {std::pair(ModelKind::exact_double, 1e-3), std::pair(ModelKind::polynomial(7), 0.05),
+        std::pair(ModelKind::thick, 0.05), std::pair(ModelKind::pinhole, 0.05)}) {
     const Camera camera(lens_, film_, {.model = model});
     double worst = 0;
     std::size_t compared = 0;
@@ -104,7 +105,7 @@ TEST_P(AnyWavelength, GivesTheRaysOfACameraMadeForIt) {
 
 TEST_P(AnyWavelength, KeepsFilmAndSceneTheSame) {
   for (const ModelKind model :
-       {ModelKind::exact_double, ModelKind::polynomial_5, ModelKind::thick, ModelKind::thin_two_disc}) {
+       {ModelKind::exact_double, ModelKind::polynomial(5), ModelKind::thick, ModelKind::thin_two_disc}) {
     const bool each = model != ModelKind::exact_double;
     const Camera camera(lens_, film_,
                         {model, each ? Normalisation::unity_at_each_wavelength : Normalisation::irradiance});
@@ -131,7 +132,7 @@ TEST_P(AnyWavelength, KeepsFilmAndSceneTheSame) {
 }
 
 TEST_P(AnyWavelength, ConnectsEveryRayOfItsSamples) {
-  for (const ModelKind model : {ModelKind::exact_double, ModelKind::polynomial_5, ModelKind::thick}) {
+  for (const ModelKind model : {ModelKind::exact_double, ModelKind::polynomial(5), ModelKind::thick}) {
     const Camera camera(lens_, film_, {.model = model});
     Samples samples(film_, 9);
     int rays = 0;
@@ -152,7 +153,7 @@ TEST_P(AnyWavelength, ConnectsEveryRayOfItsSamples) {
 }
 
 TEST_P(AnyWavelength, IsTheSameInBatchesAndAlone) {
-  for (const ModelKind model : {ModelKind::exact_double, ModelKind::polynomial_5, ModelKind::thin_two_disc,
+  for (const ModelKind model : {ModelKind::exact_double, ModelKind::polynomial(5), ModelKind::thin_two_disc,
                                 ModelKind::thick, ModelKind::pinhole}) {
     const Camera camera(lens_, film_, {.model = model});
     constexpr std::size_t count = 301;
@@ -231,7 +232,7 @@ TEST(AnyWavelengthOf, ExposureIsThatOfACameraMadeForIt) {
     const Lens lens = compiled(prescription, eight());
     const Film film = film_for(prescription, lens);
     for (const auto& [model, limit] :
-         {std::pair(ModelKind::exact_float, 8e-3), std::pair(ModelKind::polynomial_5, 6e-3),
+         {std::pair(ModelKind::exact_float, 8e-3), std::pair(ModelKind::polynomial(5), 6e-3),
           std::pair(ModelKind::thin_two_disc, 6e-3), std::pair(ModelKind::thick, 1e-4)}) {
       const Camera camera(lens, film, {.model = model});
       const FilmPoint point = film.point(0.7 * film.columns, 0.7 * film.rows);
@@ -251,7 +252,7 @@ TEST(AnyWavelengthOf, PositionsInNmAreNearlyThosePositions) {
   const Prescription prescription = petzval::testing::data_prescription("double_gauss_100mm_f2.0");
   const Lens lens = compiled(prescription, eight());
   const Film film = film_for(prescription, lens);
-  for (const ModelKind model : {ModelKind::exact_double, ModelKind::polynomial_5, ModelKind::thick, ModelKind::thin}) {
+  for (const ModelKind model : {ModelKind::exact_double, ModelKind::polynomial(5), ModelKind::thick, ModelKind::thin}) {
     const Camera camera(lens, film, {.model = model});
     Samples samples(film);
     for (int i = 0; i < 80; ++i) {
@@ -319,7 +320,7 @@ TEST(AnyWavelengthOf, OthersAreOutsideTheSpectrumOnBothSides) {
   const Lens lens = compiled(prescription, eight());
   const Film film = film_for(prescription, lens);
   for (const ModelKind model :
-       {ModelKind::exact_float, ModelKind::polynomial_5, ModelKind::thick, ModelKind::pinhole}) {
+       {ModelKind::exact_float, ModelKind::polynomial(5), ModelKind::thick, ModelKind::pinhole}) {
     const Camera camera(lens, film, {.model = model});
     for (const double nm : {std::numeric_limits<double>::quiet_NaN(), 399.0, 701.0, 0.0, -1.0}) {
       const Wavelength bad = Wavelength::nm(nm);
@@ -342,7 +343,7 @@ TEST(AnyWavelengthOf, ClampedCamerasSeeTheLensAtTheEndsOfTheRange) {
   const FilmPoint point{3, -2};
   const Vec3<double> scene{40, 30, -2000};
   for (const ModelKind model :
-       {ModelKind::exact_float, ModelKind::polynomial_5, ModelKind::thick, ModelKind::pinhole}) {
+       {ModelKind::exact_float, ModelKind::polynomial(5), ModelKind::thick, ModelKind::pinhole}) {
     const Camera camera(lens, film, {.model = model, .clamp_wavelengths = true});
     const auto same = [](const Ray<double>& a, const Ray<double>& b) {
       return a.origin == b.origin && a.direction == b.direction;

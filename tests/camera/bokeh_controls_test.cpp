@@ -99,7 +99,7 @@ TEST_P(RealLens, HasWeightsOnItsStop) {
     const Lens lens = with_iris(open, iris);
     for (const BokehControls& controls : {ring, soft, mapped()}) {
       const iris_detail::IrisWeights weights(iris, controls.edge(), controls.weight_map, 0, "");
-      for (const ModelKind model : {ModelKind::exact_double, ModelKind::polynomial_7}) {
+      for (const ModelKind model : {ModelKind::exact_double, ModelKind::polynomial(7)}) {
         const Film small{.width_mm = 18, .height_mm = 12};
         const Camera camera(lens, small, {.model = model, .bokeh = controls});
         const Camera plain(lens, small, {.model = model});
@@ -188,7 +188,7 @@ TEST(BokehControls, KeepTheLightOfEveryModel) {
     const auto plain = light({});
     for (const BokehControls& controls : {ring, soft}) {
       const auto [own, variance] = light(controls);
-      EXPECT_NEAR(own / plain[0], 1, model >= ModelKind::polynomial_3 ? 0.01 : 0.002)
+      EXPECT_NEAR(own / plain[0], 1, model >= ModelKind::polynomial(3) ? 0.01 : 0.002)
           << name(model) << controls.weight_distribution;
       // Samples follow the weights.
       EXPECT_LT(variance, plain[1] + 0.25) << name(model) << controls.weight_distribution;
@@ -281,7 +281,7 @@ TEST_P(CatsEyes, BringTheSameLightThroughConnections) {
 
 INSTANTIATE_TEST_SUITE_P(BokehControls, CatsEyes,
                          ::testing::Values(ModelKind::pinhole, ModelKind::thin, ModelKind::thin_two_disc,
-                                           ModelKind::thick, ModelKind::polynomial_5, ModelKind::exact_float,
+                                           ModelKind::thick, ModelKind::polynomial(5), ModelKind::exact_float,
                                            ModelKind::exact_double));
 
 TEST(BokehControls, SampleManyAsOneByOne) {

@@ -32,7 +32,7 @@ Lens anamorphic(double f_number = 0) {
 TEST(Cylinders, SamplesOfPolynomialsPassTheExactLens) {
   for (const double f_number : {0.0, 4.0, 8.0, 16.0, 32.0}) {
     const Lens lens = anamorphic(f_number);
-    const Camera camera(lens, film, {.model = ModelKind::polynomial_7});
+    const Camera camera(lens, film, {.model = ModelKind::polynomial(7)});
     auto samples = random_samples(film, 10000);
     samples.run(camera);
     EXPECT_EQ(std::count(samples.fates.begin(), samples.fates.end(), RayFate::transmitted), 10000) << f_number;
@@ -51,7 +51,7 @@ TEST(Cylinders, PolynomialsGiveTheSameRaysSinglyAndInABatch) {
   tilted.tilt_rad = 0.1, tilted.swing_rad = -0.05;
   travelling.travel_mm = 0.5;
   for (const Film& any : {film, tilted, travelling}) {
-    for (const ModelKind model : {ModelKind::polynomial_3, ModelKind::polynomial_7, ModelKind::polynomial_11}) {
+    for (const ModelKind model : {ModelKind::polynomial(3), ModelKind::polynomial(7), ModelKind::polynomial(11)}) {
       const Camera camera(anamorphic(), any, {.model = model});
       auto samples = random_samples(any, 500);
       auto in_float = random_samples<float>(any, 500);
@@ -98,8 +98,8 @@ TEST(Cylinders, PolynomialsAreInFocusWhereExactRaysAreInBothSections) {
     };
     for (const int axis : {0, 1}) {
       const auto [exact, half_depth] = sharpest(ModelKind::exact_double, axis);
-      for (const ModelKind model : {ModelKind::polynomial_3, ModelKind::polynomial_5, ModelKind::polynomial_7,
-                                    ModelKind::polynomial_9, ModelKind::polynomial_11}) {
+      for (const ModelKind model : {ModelKind::polynomial(3), ModelKind::polynomial(5), ModelKind::polynomial(7),
+                                    ModelKind::polynomial(9), ModelKind::polynomial(11)}) {
         EXPECT_NEAR(sharpest(model, axis)[0], exact, half_depth) << name(model) << " along "
                                                                  << "xy"[axis];
       }
@@ -114,8 +114,8 @@ TEST(Cylinders, PolynomialsHaveRaysBetweenWavelengths) {
     return compile(prescription, nm, {.glasses = &glasses, .missing_glass = MissingGlass::abbe});
   };
   const Camera camera(compiled(std::array{440.0, 500.0, 560.0, 620.0, 680.0}), film,
-                      {.model = ModelKind::polynomial_7});
-  const Camera own(compiled(std::array{587.5618}), film, {.model = ModelKind::polynomial_7});
+                      {.model = ModelKind::polynomial(7)});
+  const Camera own(compiled(std::array{587.5618}), film, {.model = ModelKind::polynomial(7)});
   const double pixel = film.width_mm / film.columns;
   auto samples = random_samples(film, 500);
   samples.run(own);

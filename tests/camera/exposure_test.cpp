@@ -19,7 +19,7 @@ namespace petzval {
 namespace {
 
 constexpr std::array pupil_models{ModelKind::pinhole, ModelKind::thin, ModelKind::thin_two_disc, ModelKind::thick,
-                                  ModelKind::polynomial_3};
+                                  ModelKind::polynomial(3)};
 
 /// The irradiance of a film point that a pupil gives, as a camera samples it.
 double exposure(const Lens& lens, const FilmPupilTable& pupils, const FilmPoint& film) {
@@ -58,7 +58,7 @@ TEST(Exposure, OnTheAxisIsThatOfTheExactLensInEveryModel) {
         if (cylinders && (model == ModelKind::pinhole || model == ModelKind::thin_two_disc)) continue;
         // Pupils that have more than two parts along a line have no table of polygons.
         const bool in_parts = prescription.name.starts_with("Ball lens");
-        if (in_parts && (model == ModelKind::thin_two_disc || model == ModelKind::polynomial_3)) continue;
+        if (in_parts && (model == ModelKind::thin_two_disc || model == ModelKind::polynomial(3))) continue;
         const FilmPupilTable pupils = camera_detail::make_model(model, *lens, radius).pupils();
         EXPECT_NEAR(exposure(*lens, pupils, {}) / exact, 1, 5e-3)
             << prescription.name << " f/" << f_number << ' ' << name(model);
@@ -81,7 +81,7 @@ TEST(Exposure, OverTheFieldIsThatOfTheExactLensWhereAModelHasItsPupils) {
       const auto lens = stopped(open, f_number);
       if (!lens) continue;
       const double axis = film_irradiance(*lens, {});
-      for (const ModelKind model : {ModelKind::thin_two_disc, ModelKind::polynomial_3}) {
+      for (const ModelKind model : {ModelKind::thin_two_disc, ModelKind::polynomial(3)}) {
         if (model == ModelKind::thin_two_disc && !open.rotationally_symmetric()) continue;
         const FilmPupilTable pupils = camera_detail::make_model(model, *lens, radius).pupils();
         for (const double part : {0.3, 0.5, 0.7, 0.85, 0.97}) {

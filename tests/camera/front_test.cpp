@@ -60,7 +60,7 @@ TEST(Front, IsWhereTheRaysOfEveryModelStart) {
     for (const ModelKind model : c.models) {
       SCOPED_TRACE(std::string(c.id) + ' ' + std::string(name(model)));
       Film film = film_of(lens, c.id);
-      if (model < ModelKind::polynomial_3) film.tilt_rad = 0.02;
+      if (model < ModelKind::polynomial(3)) film.tilt_rad = 0.02;
       const Camera camera(lens, film, {.model = model});
       auto samples = testing::random_samples(film, 200);
       samples.run(camera);
@@ -71,7 +71,7 @@ TEST(Front, IsWhereTheRaysOfEveryModelStart) {
         const Ray<double> one = camera.sample(samples.one(i)).ray;
         EXPECT_NEAR(glm::distance(one.origin, samples.ray(i).origin), 0, single * size);
         // The line of a wide lens's first-order ray may pass the sphere by: it starts in the plane that touches it.
-        const bool at_plane = model < ModelKind::polynomial_3 && std::abs(one.origin.z - c.vertex_z) < 1e-9 * size;
+        const bool at_plane = model < ModelKind::polynomial(3) && std::abs(one.origin.z - c.vertex_z) < 1e-9 * size;
         beside += at_plane;
         if (!at_plane) {
           EXPECT_NEAR(off_front(c, one.origin), 0, single * size) << one.origin.x << ' ' << one.origin.y;
@@ -90,7 +90,7 @@ TEST(Front, IsWhereTheRaysOfEveryModelStart) {
 // Fisheyes see beyond 90 degrees: a ray starts beside the vertex's plane, not far away from the lens.
 TEST(Front, IsCloseToTheGlassOfAFisheye) {
   const Lens lens = testing::data_lens("fisheye_6.3mm_f2.8");
-  const Camera camera(lens, {.width_mm = 24, .height_mm = 24}, {.model = ModelKind::polynomial_11});
+  const Camera camera(lens, {.width_mm = 24, .height_mm = 24}, {.model = ModelKind::polynomial(11)});
   auto samples = testing::random_samples(camera.film(), 20000);
   samples.run(camera);
   int beyond = 0;
@@ -124,7 +124,7 @@ TEST(Front, IsWhereShadowRaysEnd) {
         ++connected;
         EXPECT_NEAR(glm::distance(point + s.direction * s.distance, s.on_front), 0, 1e-12 * (away + size));
         const bool at_plane =
-            model < ModelKind::polynomial_3 && std::abs(s.on_front.z - c.vertex_z) < 1e-9 * (away + size);
+            model < ModelKind::polynomial(3) && std::abs(s.on_front.z - c.vertex_z) < 1e-9 * (away + size);
         if (!at_plane) {
           EXPECT_NEAR(off_front(c, s.on_front), 0, 1e-9 * (away + size));
         }

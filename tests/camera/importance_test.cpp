@@ -114,11 +114,11 @@ INSTANTIATE_TEST_SUITE_P(
                       Case{"double_gauss_100mm_f2_28deg", film, ModelKind::thin, 1e-5},
                       Case{"double_gauss_100mm_f2_28deg", film, ModelKind::thin_two_disc, 1e-5},
                       Case{"double_gauss_100mm_f2_28deg", film, ModelKind::thick, 1e-5},
-                      Case{"double_gauss_100mm_f2_28deg", film, ModelKind::polynomial_3, 1e-5},
-                      Case{"double_gauss_100mm_f2_28deg", film, ModelKind::polynomial_9, 1e-5},
+                      Case{"double_gauss_100mm_f2_28deg", film, ModelKind::polynomial(3), 1e-5},
+                      Case{"double_gauss_100mm_f2_28deg", film, ModelKind::polynomial(9), 1e-5},
                       Case{"fisheye_10mm_f4", {.width_mm = 24, .height_mm = 16}, ModelKind::exact_double, 1e-5},
                       Case{"eye_gullstrand_le_grand", small, ModelKind::exact_double, 1e-5},
-                      Case{"anamorphic_60mm_2x", film, ModelKind::polynomial_5, 2e-5},
+                      Case{"anamorphic_60mm_2x", film, ModelKind::polynomial(5), 2e-5},
                       Case{"anamorphic_60mm_2x", film, ModelKind::exact_double, 1e-5}));
 
 TEST(Importance, OfPolynomialsFindsTheFilmPointOnFilmsThatAreWiderThanTheLight) {
@@ -128,8 +128,8 @@ TEST(Importance, OfPolynomialsFindsTheFilmPointOnFilmsThatAreWiderThanTheLight) 
                                                           {"phone_5.6mm_f3.5", {.width_mm = 20, .height_mm = 14}},
                                                           {"zoom_14-30mm_f4", {.width_mm = 72, .height_mm = 48}}}};
   for (const auto& [id, size] : wide) {
-    for (const ModelKind model : {ModelKind::polynomial_3, ModelKind::polynomial_5, ModelKind::polynomial_7,
-                                  ModelKind::polynomial_9, ModelKind::polynomial_11}) {
+    for (const ModelKind model : {ModelKind::polynomial(3), ModelKind::polynomial(5), ModelKind::polynomial(7),
+                                  ModelKind::polynomial(9), ModelKind::polynomial(11)}) {
       SCOPED_TRACE(std::string(id) + ' ' + std::string(name(model)));
       const Camera camera(testing::data_lens(id), size, {.model = model});
       const core_detail::Kronecker<5> random(6);
@@ -173,7 +173,7 @@ TEST(Importance, OfAPinholeIsThatOfTheThickLensInOnePoint) {
 
 TEST(Importance, IsNothingForWhatMakesNoRay) {
   const Lens lens = testing::data_lens("double_gauss_100mm_f2_28deg");
-  for (const ModelKind model : {ModelKind::pinhole, ModelKind::thick, ModelKind::polynomial_5, ModelKind::exact_float,
+  for (const ModelKind model : {ModelKind::pinhole, ModelKind::thick, ModelKind::polynomial(5), ModelKind::exact_float,
                                 ModelKind::exact_double}) {
     SCOPED_TRACE(name(model));
     const Camera camera(lens, film, {.model = model});
@@ -217,7 +217,7 @@ TEST(Importance, DirectionsPassWithinTheStatedTolerance) {
   const Lens lens = compile(petzval::testing::data_prescription("double_gauss_100mm_f2.0"));
   const Vec3<double> point{20, 10, -2000};
   for (const ModelKind model :
-       {ModelKind::exact_float, ModelKind::exact_double, ModelKind::polynomial_5, ModelKind::thin}) {
+       {ModelKind::exact_float, ModelKind::exact_double, ModelKind::polynomial(5), ModelKind::thin}) {
     const Camera camera(lens, {}, {.model = model});
     const Vec3<double> direction = camera.sample_importance(point, 0.4, 0.6).direction;
     const Importance unit = camera.importance({point, direction});
@@ -317,7 +317,7 @@ TEST(Importance, OfManyRaysIsThatOfEach) {
 TEST(Importance, OfASunIsTheAreaThroughWhichItShines) {
   // A sun on the axis of a lens with a large film: every ray through the entrance pupil arrives, with We = n^2 / A.
   const Lens lens = testing::data_lens("double_gauss_100mm_f2.0");
-  for (const ModelKind model : {ModelKind::thin, ModelKind::thick, ModelKind::polynomial_7, ModelKind::exact_double}) {
+  for (const ModelKind model : {ModelKind::thin, ModelKind::thick, ModelKind::polynomial(7), ModelKind::exact_double}) {
     const Camera camera(lens, film, {.model = model});
     for (const double field : {0.0, 0.1}) {
       const Vec3<double> direction{0, -std::sin(field), std::cos(field)};
@@ -383,7 +383,7 @@ TEST(Importance, OfAStopThatIsClosedIsThatOfAVignettedRay) {
   for (const double radius : {0., 1e-300, 1e-160}) {
     const Lens closed = with_semi_diameter(open, *open.stop(), radius);
     for (const ModelKind model : models()) {
-      if (camera_detail::is_polynomial(model)) continue;  // there is nothing to fit
+      if (model.is_polynomial()) continue;  // there is nothing to fit
       SCOPED_TRACE(std::string(name(model)) + ' ' + std::to_string(radius));
       const Camera camera(closed, film, {.model = model});
       const Importance axis = camera.importance({{0, 0, -10}, {0, 0, 1}});
@@ -401,7 +401,7 @@ TEST(Importance, OfAStopThatIsClosedIsThatOfAVignettedRay) {
 TEST(Importance, OfALostRaySaysNothingOfTheFilm) {
   const Film beside{.width_mm = 6, .height_mm = 6, .shift_x_mm = 10};  // the axis does not meet it
   for (const char* id : {"double_gauss_100mm_f2_28deg", "fisheye_10mm_f4"}) {
-    for (const ModelKind model : {ModelKind::exact_float, ModelKind::exact_double, ModelKind::polynomial_3}) {
+    for (const ModelKind model : {ModelKind::exact_float, ModelKind::exact_double, ModelKind::polynomial(3)}) {
       const Camera camera(testing::data_lens(id), beside, {.model = model});
       for (const double x : {70., 500.}) {
         const Importance lost = camera.importance({{x, 0, -10}, {0, 0, 1}});

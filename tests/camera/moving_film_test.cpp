@@ -60,7 +60,7 @@ TEST(MovingFilm, ExposesAsAFilmThatStaysThere) {
   for (const auto& [id, film] : cases()) {
     const Lens lens = testing::data_lens(id);
     for (const ModelKind model :
-         {ModelKind::thin, ModelKind::thin_two_disc, ModelKind::polynomial_5, ModelKind::exact_double}) {
+         {ModelKind::thin, ModelKind::thin_two_disc, ModelKind::polynomial(5), ModelKind::exact_double}) {
       SCOPED_TRACE(std::string(id) + " " + std::string(name(model)));
       const double tolerance = model == ModelKind::thin ? 1.5e-2 : model == ModelKind::exact_double ? 2e-3 : 5e-3;
       const Camera moving(lens, film, {.model = model});
@@ -158,7 +158,7 @@ TEST(MovingFilm, SamplesBatchesAsSingleRays) {
   for (const auto& [id, film] : cases()) {
     const Lens lens = testing::data_lens(id);
     for (const ModelKind model :
-         {ModelKind::pinhole, ModelKind::thick, ModelKind::polynomial_5, ModelKind::exact_double}) {
+         {ModelKind::pinhole, ModelKind::thick, ModelKind::polynomial(5), ModelKind::exact_double}) {
       const Camera camera(lens, film, {.model = model});
       auto samples = testing::random_samples(film, 300);
       for (std::size_t i = 0; i < samples.size(); ++i) samples.times.push_back(static_cast<double>(i % 100) / 80 - 0.1);

@@ -86,8 +86,8 @@ INSTANTIATE_TEST_SUITE_P(Lenses, Projections,
 
 TEST(Projection, OfACameraRaysPointsAreItsFilmPoint) {
   for (const ModelKind model :
-       {ModelKind::pinhole, ModelKind::thin, ModelKind::thin_two_disc, ModelKind::thick, ModelKind::polynomial_3,
-        ModelKind::polynomial_9, ModelKind::exact_float, ModelKind::exact_double}) {
+       {ModelKind::pinhole, ModelKind::thin, ModelKind::thin_two_disc, ModelKind::thick, ModelKind::polynomial(3),
+        ModelKind::polynomial(9), ModelKind::exact_float, ModelKind::exact_double}) {
     SCOPED_TRACE(name(model));
     const Camera camera(testing::data_lens("double_gauss_100mm_f2_28deg"), wide, {.model = model});
     for (const FilmPoint film : {FilmPoint{0, 0}, FilmPoint{0, 9}, FilmPoint{-17, 3}, FilmPoint{12, -10}}) {
@@ -168,7 +168,7 @@ TEST(Projection, PutsTheSceneUpright) {
 TEST(Projection, FindsPointsThroughCylinders) {
   const Lens lens = testing::data_lens("anamorphic_60mm_2x");
   const Film film{.width_mm = 12, .height_mm = 8};
-  for (const ModelKind model : {ModelKind::polynomial_7, ModelKind::exact_double}) {
+  for (const ModelKind model : {ModelKind::polynomial(7), ModelKind::exact_double}) {
     SCOPED_TRACE(name(model));
     const Camera camera(lens, film, {.model = model});
     for (const auto& [x, y] : {std::array{0.0, 0.0}, {150.0, 0.0}, {0.0, 120.0}, {-180.0, 90.0}}) {

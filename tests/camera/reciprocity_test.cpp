@@ -161,20 +161,20 @@ TEST(Reciprocity, HoldsCloseToTheLens) {
 }
 
 TEST(Reciprocity, HoldsForCylinders) {
-  for (const ModelKind model : {ModelKind::thin, ModelKind::thick, ModelKind::polynomial_7, ModelKind::exact_double}) {
+  for (const ModelKind model : {ModelKind::thin, ModelKind::thick, ModelKind::polynomial(7), ModelKind::exact_double}) {
     SCOPED_TRACE(name(model));
     expect_reciprocity(testing::data_lens("anamorphic_60mm_2x"), wide, {.model = model}, 5, 3000,
-                       model == ModelKind::polynomial_7 ? 1e-3 : 0, 0.04, 1e-2);
+                       model == ModelKind::polynomial(7) ? 1e-3 : 0, 0.04, 1e-2);
   }
 }
 
 TEST(Reciprocity, HoldsForModelsWithoutRims) {
   const Lens lens = testing::data_lens("double_gauss_100mm_f2_28deg");
   for (const ModelKind model :
-       {ModelKind::pinhole, ModelKind::thin, ModelKind::thin_two_disc, ModelKind::thick, ModelKind::polynomial_7}) {
+       {ModelKind::pinhole, ModelKind::thin, ModelKind::thin_two_disc, ModelKind::thick, ModelKind::polynomial(7)}) {
     SCOPED_TRACE(name(model));
     // Polynomials conserve etendue within their errors.
-    expect_reciprocity(lens, wide, {.model = model}, 6, 2500, model == ModelKind::polynomial_7 ? 1e-3 : 0);
+    expect_reciprocity(lens, wide, {.model = model}, 6, 2500, model == ModelKind::polynomial(7) ? 1e-3 : 0);
   }
 }
 
@@ -221,9 +221,9 @@ TEST(Reciprocity, HoldsForTiltedFilms) {
   for (const auto& [film, model] :
        {std::pair{eight, ModelKind::thin_two_disc}, std::pair{eight, ModelKind::exact_float},
         std::pair{twenty, ModelKind::pinhole}, std::pair{twenty, ModelKind::thick},
-        std::pair{twenty, ModelKind::polynomial_7}, std::pair{twenty, ModelKind::exact_double}}) {
+        std::pair{twenty, ModelKind::polynomial(7)}, std::pair{twenty, ModelKind::exact_double}}) {
     SCOPED_TRACE(name(model));
-    expect_reciprocity(lens, film, {.model = model}, 6, 2500, model == ModelKind::polynomial_7 ? 1e-3 : 0);
+    expect_reciprocity(lens, film, {.model = model}, 6, 2500, model == ModelKind::polynomial(7) ? 1e-3 : 0);
   }
   // Far off the axis the ray of a pinhole is not the mean of the lines of its sample.
   expect_reciprocity(lens, {.width_mm = 30, .height_mm = 30, .shift_y_mm = -14, .tilt_rad = 20 * degree},
@@ -231,10 +231,10 @@ TEST(Reciprocity, HoldsForTiltedFilms) {
   expect_reciprocity(testing::data_lens("fisheye_8mm_f2.8"),
                      {.width_mm = 16, .height_mm = 16, .tilt_rad = 6 * degree, .swing_rad = 6 * degree},
                      {.model = ModelKind::exact_double}, 50, 600, 0, 0.04, 3e-3);
-  for (const ModelKind model : {ModelKind::polynomial_7, ModelKind::exact_double}) {
+  for (const ModelKind model : {ModelKind::polynomial(7), ModelKind::exact_double}) {
     expect_reciprocity(testing::data_lens("anamorphic_60mm_2x"),
                        {.width_mm = 20, .height_mm = 14, .tilt_rad = 8 * degree, .swing_rad = 4 * degree},
-                       {.model = model}, 3, 3000, model == ModelKind::polynomial_7 ? 1e-3 : 0, 0.04, 1e-2);
+                       {.model = model}, 3, 3000, model == ModelKind::polynomial(7) ? 1e-3 : 0, 0.04, 1e-2);
   }
 }
 

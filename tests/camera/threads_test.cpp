@@ -42,7 +42,7 @@ std::vector<double> answers(const Camera& camera) {
 
 void expect_shared(const Lens& lens, const Film& film) {
   for (const ModelKind model :
-       {ModelKind::thin_two_disc, ModelKind::polynomial_5, ModelKind::exact_float, ModelKind::exact_double}) {
+       {ModelKind::thin_two_disc, ModelKind::polynomial(5), ModelKind::exact_float, ModelKind::exact_double}) {
     const Camera camera(lens, film, {.model = model});
     const std::vector<double> alone = answers(camera);
     constexpr int count = 16;
@@ -75,8 +75,8 @@ TEST(Camera, SetUpDoesNotDependOnThreads) {
                                  {"anamorphic_60mm_2x", Film{.width_mm = 20, .height_mm = 14, .swing_rad = 0.1}}}) {
     Prescription p = testing::data_prescription(id);
     const Lens lens = compile(p, std::vector<double>{480, 540, 620}, {.missing_glass = MissingGlass::abbe});
-    for (const ModelKind model : {ModelKind::polynomial_3, ModelKind::exact_float}) {
-      if (model == ModelKind::polynomial_3 && !lens.rotationally_symmetric()) continue;
+    for (const ModelKind model : {ModelKind::polynomial(3), ModelKind::exact_float}) {
+      if (model == ModelKind::polynomial(3) && !lens.rotationally_symmetric()) continue;
       const std::vector<double> alone = answers({lens, film, {.model = model}});
       for (const int threads : {2, 8}) {
         EXPECT_EQ(answers({lens, film, {.model = model, .threads = threads}}), alone) << id << ' ' << name(model);

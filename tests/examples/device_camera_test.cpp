@@ -69,7 +69,7 @@ TEST(DeviceCamera, SamplesBladesMirrorsAspheresAndCylinders) {
   const Lens blades =
       with_iris(testing::data_lens("double_gauss_100mm_f1.35"), {.blades = 5, .roundness = -0.5, .rotation_rad = 0.4});
   for (const ModelKind model :
-       {ModelKind::thin_two_disc, ModelKind::thick, ModelKind::polynomial_7, ModelKind::exact_double}) {
+       {ModelKind::thin_two_disc, ModelKind::thick, ModelKind::polynomial(7), ModelKind::exact_double}) {
     SCOPED_TRACE(name(model));
     expect_same_rays(Camera(blades, film, {.model = model}));
   }
@@ -79,8 +79,8 @@ TEST(DeviceCamera, SamplesBladesMirrorsAspheresAndCylinders) {
   expect_same_rays(Camera(testing::data_lens("phone_5.6mm_f3.5"), {.width_mm = 4, .height_mm = 3},
                           {.model = ModelKind::exact_double}));
   const Lens cylinders = with_f_number(testing::data_lens("anamorphic_60mm_2x"), 8);
-  for (const ModelKind model : {ModelKind::thick, ModelKind::polynomial_3, ModelKind::polynomial_7,
-                                ModelKind::polynomial_11, ModelKind::exact_double}) {
+  for (const ModelKind model : {ModelKind::thick, ModelKind::polynomial(3), ModelKind::polynomial(7),
+                                ModelKind::polynomial(11), ModelKind::exact_double}) {
     SCOPED_TRACE(name(model));
     expect_same_rays(Camera(cylinders, {.width_mm = 20, .height_mm = 14, .shift_y_mm = 1}, {.model = model}));
     expect_same_rays(Camera(testing::data_lens("anamorphic_60mm_2x"), small, {.model = model}));
@@ -89,7 +89,7 @@ TEST(DeviceCamera, SamplesBladesMirrorsAspheresAndCylinders) {
 
 TEST(CameraTables, ReadBackByteForByte) {
   const std::vector<float> tables =
-      Camera(testing::data_lens("tessar_100mm_f2.8"), film, {.model = ModelKind::polynomial_5}).tables();
+      Camera(testing::data_lens("tessar_100mm_f2.8"), film, {.model = ModelKind::polynomial(5)}).tables();
   const auto file = std::filesystem::path(::testing::TempDir()) / "petzval_camera_tables.bin";
   write_floats(tables, file);
   EXPECT_EQ(std::filesystem::file_size(file), 4 * tables.size());
@@ -106,9 +106,9 @@ TEST(CameraTables, AreRefusedWhereTheyAreNone) {
   };
   const Lens cylinders = testing::data_lens("anamorphic_60mm_2x");
   for (const Camera& camera :
-       {Camera(lens, film, {.model = ModelKind::thick}), Camera(lens, film, {.model = ModelKind::polynomial_5}),
+       {Camera(lens, film, {.model = ModelKind::thick}), Camera(lens, film, {.model = ModelKind::polynomial(5)}),
         Camera(lens, film, {.model = ModelKind::exact_float}),
-        Camera(cylinders, film, {.model = ModelKind::polynomial_5}),
+        Camera(cylinders, film, {.model = ModelKind::polynomial(5)}),
         Camera(with_iris(lens, {.blades = 7, .rotation_rad = 1}), film, {.model = ModelKind::exact_float})}) {
     const std::vector<float> good = camera.tables();
     EXPECT_EQ(fault(good), "no error");

@@ -61,7 +61,7 @@ TEST(MemoryEnds, WhileACameraOfAnyModelIsBuilt) {
   const Lens lens = with_focus(with_f_number(data_lens("double_gauss_100mm_f2_28deg"), 4), 2000);
   const Film film{.width_mm = 12, .height_mm = 8, .columns = 48, .rows = 32};
   for (const ModelKind model : {ModelKind::pinhole, ModelKind::thin, ModelKind::thin_two_disc, ModelKind::thick,
-                                ModelKind::polynomial_3, ModelKind::exact_float}) {
+                                ModelKind::polynomial(3), ModelKind::exact_float}) {
     SCOPED_TRACE(name(model));
     expect_all_or_nothing([&] { return seen_by(Camera(lens, film, {.model = model, .threads = 2})); });
   }

@@ -32,7 +32,7 @@ Film wild_film(fuzz::Bytes& bytes) {
 ModelKind wild_model(fuzz::Bytes& bytes) {
   const int kind = bytes.byte();
   const ModelKind model = models()[static_cast<std::size_t>(kind) % models().size()];
-  const bool fitted = model >= ModelKind::polynomial_3 && model <= ModelKind::polynomial_11;
+  const bool fitted = model.is_polynomial();
   return fitted && kind < 240 ? ModelKind::exact_float : model;
 }
 

@@ -50,8 +50,8 @@ const Camera& some_camera(fuzz::Bytes& bytes) {
         return Camera(lens, placed,
                       {.model = ModelKind::thick, .focal_surface = FocalSurface(thick_lens(lens), placed, points)});
       },
-      [=] { return focused(usual, {.model = ModelKind::polynomial_5}, film); },
-      [=] { return focused(usual, {.model = ModelKind::polynomial_3}, tilted, {.blades = 8}); },
+      [=] { return focused(usual, {.model = ModelKind::polynomial(5)}, film); },
+      [=] { return focused(usual, {.model = ModelKind::polynomial(3)}, tilted, {.blades = 8}); },
       [=] {
         const IrisMap map{.width = 2, .height = 2, .values = {1, 0.5f, 0.25f, 0}};
         return focused(usual, {.bokeh = {.weight_map = map}}, moving);
@@ -65,7 +65,7 @@ const Camera& some_camera(fuzz::Bytes& bytes) {
       },
       [=] { return focused(usual, {.bokeh = {.lens_ratio = 1.2, .rate_of_change = 0.5}}, film); },
       [=] { return focused(wide, {}, small); },
-      [=] { return focused(wide, {.model = ModelKind::polynomial_3}, small); },
+      [=] { return focused(wide, {.model = ModelKind::polynomial(3)}, small); },
       [=] { return focused(flat, {}, small); },
       [=] { return focused(flat, {.model = ModelKind::thick}, small); },
       [=] { return focused("catadioptric_mangin_1000mm_f7.5", {.model = ModelKind::exact_double}, small); },

@@ -32,7 +32,7 @@ namespace petzval {
 struct CameraTables {
   enum Position : std::size_t {
     format,  ///< 3
-    model,   ///< a ModelKind
+    model,   ///< position in models()
     wavelength_count,
     primary_wavelength,
     film_z,
