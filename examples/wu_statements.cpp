@@ -112,7 +112,7 @@ constexpr std::array<const char*, 12> headings{"lens",    "focus mm",       "cri
                                                "printed", "found",          "agrees",         "RMS mm",
                                                "core",    "brightest ring", "darkest inside", "deviation"};
 
-/// Entrance pupils by steps 1 to 8 of the paper, of the light at 1000 mm, beside the images of the stop.
+/// Entrance pupils by steps 1 to 8 of the paper for the light at 1000 mm, compared with the images of the stop.
 using PupilCells = std::array<std::string, 4>;
 std::vector<PupilCells> pupils() {
   std::vector<PupilCells> rows{{"lens", "textbook pupil mm", "limited by surface", "image of the stop mm"}};

@@ -107,7 +107,7 @@ TextbookPupil textbook_pupil(const Lens& lens, Travel travel, double point_z, Wa
   const bool limited = std::isfinite(lens.surfaces()[entrance ? 0 : lens.surface_count() - 1].semi_diameter);
   while (!limited && passes(outermost) && height < 1e100) outermost = fan.towards(height *= 2);
   if (!passes(outermost)) {
-    double last = 0, first = outermost;  // the last that passes and the first that does not
+    double last = 0, first = outermost;  // neighbours of the edge: a ray that passes and a lost ray
     for (double middle = first / 2; middle > last && middle < first; middle = last + (first - last) / 2) {
       (passes(middle) ? last : first) = middle;
     }

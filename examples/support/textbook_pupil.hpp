@@ -15,15 +15,14 @@ struct TextbookPupil {
   double diameter = 0;  ///< of the marginal ray in that plane, mm
   std::size_t limiting =
       0;  ///< the surface that ends the next ray outwards: the first rim to clip, not always the stop
-  petzval::RayFate beyond = petzval::RayFate::vignetted;  ///< what becomes of that next ray
+  petzval::RayFate beyond = petzval::RayFate::vignetted;  ///< the fate of that next ray
   /// The outermost ray, traced and transmitted; as it meets the lens: in object space (entrance) or image space (exit).
   petzval::Ray<double> marginal{};
 };
 
 /// The entrance pupil by the textbook method: the outermost ray that the lens passes from a point of the axis, found by
 /// bisection between the axis and the rim of the first surface, in the plane of the paraxial image of the stop.
-///
-/// It is the baseline by which the literature samples lenses; its errors (tests/examples/textbook_pupil_test.cpp, a
+/// The literature samples lenses by this pupil. Its errors (tests/examples/textbook_pupil_test.cpp, a
 /// double Gauss f/2) are:
 ///   - its ray belongs to the first rim that clips, which need not be the stop: f/2.018 where the stop gives f/2.004;
 ///   - it is a disc on the axis: 10 degrees or more off, rims and the aberrations of the pupil cut and shift what

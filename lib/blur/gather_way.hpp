@@ -9,7 +9,7 @@
 
 namespace petzval::blur_detail {
 
-/// How rays are brought to the lanes of the processor.
+/// The assignment of rays to the lanes of the processor.
 enum class GatherPath : std::uint8_t {
   automatic,        ///< the fastest that the rays allow
   shift_invariant,  ///< neighbouring pixels, one ray: the same step for all
@@ -21,8 +21,8 @@ PETZVAL_API std::string_view name(GatherPath path) noexcept;
 
 struct GatherWay {
   GatherPath path = GatherPath::automatic;
-  /// Whether the depths below the rays of a tile bound the way of its rays. What they meet does not depend on it;
-  /// guesses for those that meet nothing may.
+  /// The depths below the rays of a tile bound the steps of its rays. The bound changes no surface that a ray meets; it
+  /// may change the guess for a ray that meets no surface.
   bool bounded = true;
 };
 

@@ -9,7 +9,7 @@
 namespace petzval::camera_detail {
 namespace {
 
-/// base^exponent for base from 0 to 1, by logarithm and exponential to the base 2; what is below the normal numbers is
+/// base^exponent for base from 0 to 1, by logarithm and exponential to the base 2. Results below the normal numbers are
 /// 0. Relative error: some (1 + |exponent log2 base|) roundings. std::pow has other bits on other processors.
 inline double power(double base, double exponent) noexcept {
   constexpr double ln2 = 0.693147180559945309417;
@@ -23,7 +23,7 @@ inline double power(double base, double exponent) noexcept {
   for (int k = 8; k >= 0; --k) series = series * s2 + 1.0 / (2 * k + 1);
   const double wanted = (static_cast<double>(whole) + s * series * (2 / ln2)) * exponent;
   if (!(wanted >= -1021 && base >= 2.3e-308)) return 0;
-  constexpr double rounding = 1.5 * 4503599627370496.0;  // the nearest whole number: adding 1.5 * 2^52 rounds to it
+  constexpr double rounding = 1.5 * 4503599627370496.0;  // adding 1.5 * 2^52 rounds to the nearest whole number
   const double shifted = wanted + rounding, rest = (wanted - (shifted - rounding)) * ln2;
   double result = 1;
   for (int k = 13; k >= 1; --k) result = result * rest * (1.0 / k) + 1;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Compiled for each instruction set, without fused operations: see petzval_loops in cmake/module.cmake. Sums run over
-// the points in their order, so that a result depends on its place alone.
+// the points in their order, so that a place has the same result in every batch.
 #include "moving_least_squares_loops.hpp"
 
 #include "falling_power.hpp"
@@ -10,8 +10,8 @@ namespace {
 
 constexpr std::size_t block = 64;  // points whose weights are computed side by side
 
-/// Sums of weights, and of places and values about the nearest point, which adds nothing to the latter, however much it
-/// weighs: nothing cancels next to it.
+/// Sums of weights, and of places and values relative to the nearest point. Relative to itself the nearest point adds
+/// 0, however large its weight is, so that no digits cancel near a point.
 struct Moments {
   double x = 0, y = 0, value = 0;  ///< of the nearest point
   double w = 0, wf = 0, wx = 0, wy = 0, wxx = 0, wxy = 0, wyy = 0, wxf = 0, wyf = 0;
@@ -21,8 +21,8 @@ struct Moments {
 ///
 /// C: second moments of places about their mean, b: with values, in parts of the trace. Points on a line leave rounding
 /// errors of their smaller moment. So C (C^2 + thin^2)^-1 stands for C^-1, which for 2 x 2 is
-/// (thin^2 C + det C (tr C - C)) / (det^2 C + thin^2 tr C^2 + thin^4): for points on a line it keeps the slope along it
-/// alone, however the line lies.
+/// (thin^2 C + det C (tr C - C)) / (det^2 C + thin^2 tr C^2 + thin^4): for points on a line the
+/// result has the slope along the line and no slope across it, in any direction of the line.
 double rise_of(const LeastSquaresJob& job, const Moments& m, double x, double y) noexcept {
   constexpr double thin = 1e-10, thin2 = thin * thin;
   const double trace = m.wxx + m.wyy;
@@ -38,7 +38,7 @@ double rise_of(const LeastSquaresJob& job, const Moments& m, double x, double y)
   const double from_x = x - mean_x, from_y = y - mean_y;
   const double rise = (slope_x * from_x + slope_y * from_y) / (det * det + thin2 * (tr * tr - (det + det) + thin2));
   if (job.plane == 1) return rise;
-  // The same of planes that rise along a line alone.
+  // The same for planes that rise along the line only.
   const double ex = job.along_x, ey = job.along_y;
   const double moment = ex * (ex * xx + ey * xy) + ey * (ex * xy + ey * yy);
   const double along = moment > thin ? (ex * bx + ey * by) / moment * (ex * from_x + ey * from_y) : 0;
@@ -71,7 +71,7 @@ double value_at(const LeastSquaresJob& job, double x, double y) noexcept {
   blocks([&](std::size_t begin, std::size_t count) {
     if (job.points > block) distances(begin, count);
     for (std::size_t i = 0; i < count; ++i) {
-      const double ratio = r2[i] > least ? least / r2[i] : 1;  // 1 at the point itself too
+      const double ratio = r2[i] > least ? least / r2[i] : 1;  // 0 / 0 at the point counts as 1
       weights[i] = job.alpha[begin + i] * falling(job.power, ratio);
     }
     for (std::size_t i = 0; i < count; ++i) {
@@ -93,7 +93,7 @@ double value_at(const LeastSquaresJob& job, double x, double y) noexcept {
   return m.value + (job.affine ? mean + rise_of(job, m, x - m.x, y - m.y) : mean);
 }
 
-/// a coordinate of places, scaled and in reach; the comparisons turn what is not a number into a limit
+/// A coordinate of a place, scaled and within reach. The comparisons replace NaN by a limit.
 double scaled(const LeastSquaresJob& job, double place) noexcept {
   const double x = place * job.to_scaled, below = x < job.reach ? x : job.reach;
   return below > -job.reach ? below : -job.reach;

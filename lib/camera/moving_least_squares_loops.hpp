@@ -22,7 +22,7 @@ struct LeastSquaresJob {
   const double *alpha = nullptr, *soft2 = nullptr;            ///< above 0, at most 1; 0 or more
   bool affine = true;
   double plane = 1, along_x = 1, along_y = 0;  ///< affine: the part that planes have, and the direction of lines (unit)
-  FallingPower power{};                        ///< of ratios of squared distances: beta / 2
+  FallingPower power{};                        ///< beta / 2: the exponent for ratios of squared distances
   double low = 0, high = 0;                    ///< of the result, scaled
   double to_scaled = 1, reach = 0, from_scaled = 1;
 };

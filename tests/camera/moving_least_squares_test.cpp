@@ -118,7 +118,7 @@ TEST(MovingLeastSquares, IsExactAtItsPoints) {
         const float x = static_cast<float>(point.place.x), y = static_cast<float>(point.place.y);
         float value = 0;
         surface.at(1, &x, &y, &value);
-        EXPECT_NEAR(value, point.value, 1e-5) << name(kind) << beta;  // the rounded place lies beside the point
+        EXPECT_NEAR(value, point.value, 1e-5) << name(kind) << beta;  // rounding moves the place off the point
       }
     }
   }

@@ -11,12 +11,14 @@
 
 namespace petzval {
 
-/// A ray model of a lens; from the cheapest to the most accurate one. All have the exact lens's exposure on the axis
-/// within 0.5 %; thin_two_disc and polynomials have it within 2 % over the declared field
-/// (tests/camera/exposure_test.cpp). Where a central obscuration divides the pupil, as in catadioptrics beyond their
-/// field, their light may be wrong by a factor (FilmPupilTable::equal_area); that of exact models is not. Beyond the
-/// declared field polynomials of lenses with cylinders are up to 20 % too dark. Slopes are no angles: first-order
-/// models of lenses faster than f/0.36 are up to 5 % too bright, and beyond f/0.31 of no use.
+/// A ray model of a lens. Models are listed and ordered from the cheapest to the most accurate.
+///
+/// Accuracy: all models have the exposure of the exact lens on the axis within 0.5 %; thin_two_disc and polynomials
+/// have it within 2 % over the declared field (tests/camera/exposure_test.cpp). If a central obscuration divides the
+/// pupil, as in catadioptrics beyond their field, the light of models that are not exact may be wrong by a factor
+/// (FilmPupilTable::equal_area). Beyond the declared field polynomials of lenses with cylinders are up to 20 % too
+/// dark. Slopes are no angles: first-order models of lenses faster than f/0.36 are up to 5 % too bright, and beyond
+/// f/0.31 of no use.
 class ModelKind {
  public:
   enum class Family : std::uint8_t {
@@ -45,7 +47,7 @@ class ModelKind {
   static constexpr ModelKind polynomial(int degree) noexcept;
   /// Every surface, traced in float or double.
   static const ModelKind exact_float, exact_double;
-  /// A renderer's own model: ray_model.hpp.
+  /// The model of a renderer: ray_model.hpp.
   static const ModelKind custom;
 
   constexpr ModelKind() noexcept = default;

@@ -16,7 +16,7 @@ namespace petzval {
 /// format. Throws Error as parse_prescription does, and for a file that cannot be read.
 PETZVAL_API Prescription read_prescription(const std::filesystem::path& file);
 
-/// Reads a lens from JSON in memory, and adds nothing to it. `where` is the name of the source in messages. Throws
+/// Reads a lens from JSON in memory, without additions. `where` is the name of the source in messages. Throws
 /// Error that names it, line and column, the surface (from 0), the key, its value and the rule. It refuses unknown and
 /// duplicate keys, comments, NaN, numbers out of range of double, brackets nested deeper than the format has them,
 /// lists of more than 10,000 entries, and all that `validate` refuses. Time is proportional to the size of the file,
