@@ -16,7 +16,7 @@ namespace examples {
 
 /// What a command line says about a lens.
 struct LensInput {
-  std::string file{};                      ///< of any format that read_lens() knows
+  std::string file{};                      ///< path of a lens in any format of read_lens()
   std::vector<std::string> glass_files{};  ///< looked into before the tables of petzval
   std::string configuration{};             ///< a name or a number from 0; empty: the first
   bool match_glasses = false;              ///< media without a name get the nearest glass

@@ -9,8 +9,8 @@
 namespace petzval::camera_detail {
 namespace {
 
-/// base^exponent for base from 0 to 1, by logarithm and exponential to the base 2. Results below the normal numbers are
-/// 0. Relative error: some (1 + |exponent log2 base|) roundings. std::pow has other bits on other processors.
+/// base^exponent for base from 0 to 1, by logarithm and exponential to the base 2. A result below the normal numbers
+/// becomes 0. Relative error: some (1 + |exponent log2 base|) roundings. std::pow has other bits on other processors.
 inline double power(double base, double exponent) noexcept {
   constexpr double ln2 = 0.693147180559945309417;
   constexpr std::int64_t root_half = 0x3fe6a09e667f3bcd;  // the bits of 0.70710678

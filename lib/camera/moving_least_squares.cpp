@@ -40,7 +40,7 @@ void check(const WeighedValue& point, double side, const std::string& where) {
 
 MovingLeastSquares::MovingLeastSquares(const std::string& where, std::span<const WeighedValue> points, double side,
                                        SurfaceKind kind, double beta, double beyond)
-    : affine_(kind == SurfaceKind::affine), beta_(beta) {
+    : affine_(kind == SurfaceKind::affine) {
   if (!(beta >= 1 && beta <= 8)) throw Error(where + "beta is " + to_text(beta) + ", wanted one from 1 to 8");
   if (!(side > 0 && std::isfinite(side))) {
     throw Error(where + "the side of the picture is " + to_text(side) + " mm, wanted one above 0");
@@ -249,7 +249,7 @@ Vec2<double> MovingLeastSquares::slopes(const FilmPoint& place) const noexcept {
       const V q = V{points.x[i], points.y[i]} - centre - mean;
       const double residual = points.value[i] - centre_value - mean_value - dot(slope, q);
       const double part = 1 / w_sum + dot(towards, q);
-      result -= beta_ * weight(i) / r2_of(i) * part * residual * away(i);
+      result -= 2 * power_.exponent * weight(i) / r2_of(i) * part * residual * away(i);
     }
     return result;
   };

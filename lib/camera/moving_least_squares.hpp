@@ -83,8 +83,7 @@ class PETZVAL_API MovingLeastSquares {
   bool affine_;
   double plane_ = 1;  ///< as in LeastSquaresJob
   Vec2<double> along_{1, 0};
-  double beta_;
-  FallingPower power_{};
+  FallingPower power_{};  ///< beta / 2
   double to_scaled_ = 1, to_scaled_value_ = 1;
   Columns points_;
   double low_ = 0, high_ = 0, least_value_ = 0;  ///< of the result, scaled

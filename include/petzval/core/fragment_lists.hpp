@@ -6,8 +6,7 @@
 
 namespace petzval {
 
-/// The surfaces of pixels as lists: those of pixel p are fragments[offsets[p]] to fragments[offsets[p + 1] - 1], in any
-/// order.
+/// The surfaces of pixels as lists. Pixel p has fragments[offsets[p]] to fragments[offsets[p + 1] - 1], in any order.
 struct FragmentLists {
   struct Fragment {
     float depth_mm = 0;                             ///< along the axis; infinity: the sky
