@@ -10,8 +10,6 @@
 
 #include "core/text.hpp"
 #include "petzval/core/error.hpp"
-#include "petzval/lens/lens.hpp"
-#include "petzval/paraxial/first_order.hpp"
 #include "text_file.hpp"
 
 namespace petzval::formats_detail {
@@ -27,7 +25,6 @@ class CodevBuilder {
   void evaluate_pickups();
   void choose_shapes();
   Medium medium(const CodevSurface& s);
-  void put_paraxial_image();
   std::optional<ApertureSetting> aperture_setting(std::string_view what) const;
   void build_zooms();
 
@@ -183,31 +180,15 @@ void CodevBuilder::build() {
   }
   // The thickness of the image surface is its distance from where the last surface put it.
   in_.lens.surfaces.back().thickness += lens_.surfaces.back().thickness * lens_.unit;
-  if (lens_.paraxial_image > 0) put_paraxial_image();
+  // PIM puts the film into the paraxial image. The file states its distance if CODE V saved the solution.
+  if (lens_.paraxial_image > 0) {
+    in_.requests.solves.push_back({.line = lens_.paraxial_image,
+                                   .command = "PIM",
+                                   .surface = in_.lens.surfaces.size() - 1,
+                                   .offset = lens_.surfaces.back().thickness * lens_.unit,
+                                   .is_taken = true});
+  }
   build_zooms();
-}
-
-/// PIM: the image is the paraxial one; the file states where that is, if it was saved so.
-void CodevBuilder::put_paraxial_image() try {
-  SurfaceRow& last = in_.lens.surfaces.back();
-  const double defocus = lens_.surfaces.back().thickness * lens_.unit;
-  Prescription p = in_.lens;
-  p.imported.reset();
-  p.configurations.clear();
-  const Lens lens = in_.at_primary_wavelength(p);
-  const FirstOrder first = first_order(lens, {}, main_meridian(lens));
-  const double object = in_.lens.design.object_distance_mm;
-  const double image = paraxial_image_z(lens, -object, {}, main_meridian(lens)) - lens.surfaces().back().vertex_z;
-  const double wanted = image + defocus;
-  if (!std::isfinite(wanted) || first.afocal) return;
-  // The digits that files state, and what indices of one catalogue's editions differ by.
-  if (std::abs(wanted - last.thickness) <= 2e-4 * std::abs(first.effective_focal_length)) return;
-  in_.warn(lens_.paraxial_image, "PIM",
-           "the file states an image distance of " + to_text(last.thickness, 8) + " mm, the paraxial image lies at " +
-               to_text(wanted, 8) + " mm, which is taken");
-  last.thickness = wanted;
-} catch (const Error& error) {
-  in_.warn(lens_.paraxial_image, "PIM", std::string("is not evaluated: ") + error.what());
 }
 
 /// The setting of the design's aperture, if a word is its command.
@@ -244,7 +225,7 @@ void CodevBuilder::build_zooms() {
     if (lens_value && !of_object && (surface < 0 || surface > last)) {
       in_.refuse(z.line, "ZOO", "of surface " + std::to_string(z.surface), "a surface of the lens");
     }
-    if (setting) in_.position_apertures.resize(list.size());
+    if (setting) in_.requests.position_apertures.resize(list.size());
     std::size_t changed = 0;
     if (lens_value && !of_object) {
       const auto [entry, first] = change_of.try_emplace(surface, change_of.size());
@@ -260,7 +241,7 @@ void CodevBuilder::build_zooms() {
       if (z.what == "fno") list[i].f_number = value;
       if (setting) {
         const bool length = *setting == ApertureSetting::entrance_pupil_diameter;
-        if (value > 0) in_.position_apertures[i] = length ? value * lens_.unit : value;
+        if (value > 0) in_.requests.position_apertures[i] = length ? value * lens_.unit : value;
       } else if (!lens_value) {
         continue;
       } else if (of_object) {

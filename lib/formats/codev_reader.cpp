@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "codev_reader.hpp"
-
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -13,6 +11,7 @@
 #include "core/text.hpp"
 #include "io/json.hpp"
 #include "petzval/core/error.hpp"
+#include "readers.hpp"
 #include "statements.hpp"
 #include "text_file.hpp"
 

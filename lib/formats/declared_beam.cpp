@@ -2,6 +2,7 @@
 #include "declared_beam.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <utility>
@@ -25,6 +26,20 @@ double entrance_pupil_z(const Lens& compiled, std::size_t stop) {
   const Meridian meridian = main_meridian(compiled);
   return entrance_pupil_z(ray_matrix_to(compiled, stop, {}, meridian),
                           first_order(compiled, {}, meridian).object_index);
+}
+
+Lens at_primary_wavelength(const Prescription& rows, const GlassCatalogue* glasses) {
+  const DesignData& design = rows.design;
+  try {
+    if (!design.wavelengths.empty() &&
+        design.wavelengths[design.primary_wavelength].nm != rows.reference_wavelength_nm) {
+      return compile(rows, std::array{design.wavelengths[design.primary_wavelength].nm},
+                     {.glasses = glasses, .missing_glass = MissingGlass::abbe});
+    }
+  } catch (const Error&) {
+    // outside the range of a glass
+  }
+  return compile(rows, {.glasses = glasses});
 }
 
 Prescription without_rims(Prescription rows) {

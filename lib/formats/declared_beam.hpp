@@ -8,6 +8,10 @@
 
 namespace petzval::formats_detail {
 
+/// Rows compiled for the primary wavelength of their design, with the n_d/V_d model if a glass is unknown. For
+/// their reference wavelength if the design has no wavelength, or one outside the range of a glass.
+Lens at_primary_wavelength(const Prescription& rows, const GlassCatalogue* glasses);
+
 /// Rows without configurations, with every rim open.
 Prescription without_rims(Prescription rows);
 

@@ -2,8 +2,6 @@
 // FlareSim's .lens files: keys ("focal_length: 50"), a line "surfaces:", then rows of radius, thickness, index,
 // V-number, aperture and number of coating layers. The column of apertures is called semi_ap, but many files have
 // diameters there.
-#include "flaresim_reader.hpp"
-
 #include <algorithm>
 #include <array>
 #include <utility>
@@ -12,6 +10,7 @@
 #include "core/text.hpp"
 #include "io/json.hpp"
 #include "petzval/core/error.hpp"
+#include "readers.hpp"
 #include "table_lens.hpp"
 #include "table_text.hpp"
 #include "text_file.hpp"

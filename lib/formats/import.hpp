@@ -9,14 +9,15 @@
 #include <vector>
 
 #include "glass_names.hpp"
+#include "import_requests.hpp"
 #include "petzval/formats/lens_file.hpp"
 #include "petzval/glass/glass.hpp"
-#include "petzval/lens/lens.hpp"
 #include "petzval/prescription/prescription.hpp"
 
 namespace petzval::formats_detail {
 
-/// A prescription on its way from a file of another program: where it comes from, what was assumed, and the glasses.
+/// A lens in a file of another program, as data: its prescription, the requests of the file, and warnings about
+/// assumptions. Filled by a reader, for complete().
 class Import {
  public:
   /// @param where    the file's name, for messages
@@ -24,11 +25,7 @@ class Import {
   Import(std::string where, std::string_view format, const ReadOptions& options);
 
   Prescription lens;  ///< `imported` is set
-  /// True if the design's aperture is a rounded number that describes the lens. It launches no beam: the rim of the
-  /// stop, if the file has one, is the size of the stop.
-  bool nominal_aperture = false;
-  /// Value of the design's aperture by configuration; nullopt or too short if it does not differ from the design.
-  std::vector<std::optional<double>> position_apertures;
+  ImportRequests requests;
 
   /// Takes note of what the file does not say, or of what is left out. After a thousand only their number is kept.
   void warn(int line, std::string_view command, const std::string& message);
@@ -55,31 +52,22 @@ class Import {
   /// ReadOptions::entry.
   const std::string& entry() const noexcept { return entry_; }
 
-  /// Rows compiled for their reference wavelength: the d line, or the primary wavelength of the design if a glass has
-  /// no index at the d line.
-  Lens compiled(const Prescription& rows) const { return compile(with_reference(rows), {.glasses = glasses_}); }
-  /// Rows compiled for the primary wavelength of the design, with the n_d/V_d model where a glass is unknown.
-  Lens at_primary_wavelength(const Prescription& rows);
-
-  /// Sizes the stop by the aperture of the design, sets nominal data by the fields, and a name. Returns the valid
-  /// prescription.
-  Prescription finish();
+  /// The glasses if one was looked up, or the options name them; else null, which stands for glass_tables().
+  const GlassCatalogue* loaded_glasses() const noexcept { return glasses_; }
+  /// Adds a warning with the number of those beyond a thousand.
+  void count_left_out_warnings();
 
  private:
   const GlassNames& names();
-  Prescription with_reference(Prescription rows) const;
-  void mark_a_stop();
-  void size_the_stop();
-  void compare_the_declared();
-  void declare();
 
   std::string where_, entry_;
   const GlassCatalogue* glasses_;
   std::optional<GlassNames> names_;  ///< names in glasses_; filled when the first glass is looked up
   std::size_t left_out_ = 0;
-  /// True if the stop has the size of the declared beam, or a warning says that its rim clips the beam.
-  bool has_declared_beam_ = false;
 };
+
+/// The index of a glass; nullopt if the wavelength is outside its range.
+std::optional<double> index_at(const Glass& glass, double nm);
 
 /// What a configuration changes of a surface: nothing yet, if it was not asked for before.
 SurfaceChange& change_of(Configuration& configuration, int surface);

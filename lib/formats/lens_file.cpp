@@ -4,21 +4,14 @@
 #include <array>
 #include <utility>
 
-#include "codev_reader.hpp"
-#include "flaresim_reader.hpp"
-#include "import.hpp"
+#include "complete.hpp"
 #include "io/json.hpp"
 #include "io/missing_apertures.hpp"
-#include "lentil_reader.hpp"
-#include "opticalbench_reader.hpp"
-#include "optiland_reader.hpp"
-#include "oslo_reader.hpp"
 #include "petzval/core/error.hpp"
 #include "petzval/core/read_file.hpp"
 #include "petzval/io/lens_json.hpp"
-#include "table_reader.hpp"
+#include "readers.hpp"
 #include "text_file.hpp"
-#include "zemax_reader.hpp"
 
 namespace petzval {
 namespace {
@@ -28,13 +21,6 @@ using namespace formats_detail;
 constexpr const char* wanted =
     "a lens: petzval JSON, Zemax .zmx, CODE V .seq, OSLO .len, FlareSim .lens, an OpticalBench table, a table of "
     "surfaces, lentil or optiland JSON";
-
-/// A format of another program: how to know it, and how to read it.
-struct Format {
-  std::string_view name;
-  bool (*is)(std::string_view text);
-  void (*read)(std::string_view text, Import& in);
-};
 
 /// In the order in which they are tried: each is sure of what it takes.
 constexpr std::array formats{
@@ -94,7 +80,7 @@ Prescription parse_lens(std::string bytes, const std::string& where, const ReadO
     if (!format.is(text)) continue;
     Import in(where, format.name, options);
     format.read(text, in);
-    Prescription lens = io_detail::with_missing_apertures(in.finish(), options.glasses);
+    Prescription lens = complete(std::move(in));
     if (options.strict) refuse_warnings(lens, where);
     return lens;
   }

@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "lentil_reader.hpp"
-
 #include <array>
 #include <cmath>
 #include <vector>
@@ -9,6 +7,7 @@
 #include "io/json.hpp"
 #include "json_tree.hpp"
 #include "petzval/core/error.hpp"
+#include "readers.hpp"
 #include "text_file.hpp"
 
 namespace petzval::formats_detail {

@@ -2,8 +2,6 @@
 // The tables of Photons to Photos: sections of lines, whose cells tabs separate. One column of [variable distances] is
 // one position of the lens. Sources of the form: the documentation of Beam42's LensTool2, and the grammar that the
 // lens editor of the same tables prints.
-#include "opticalbench_reader.hpp"
-
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -17,8 +15,7 @@
 
 #include "core/text.hpp"
 #include "petzval/core/error.hpp"
-#include "petzval/lens/lens.hpp"
-#include "petzval/paraxial/first_order.hpp"
+#include "readers.hpp"
 #include "text_file.hpp"
 
 namespace petzval::formats_detail {
@@ -92,10 +89,8 @@ class OpticalBenchReader {
   void place(std::size_t column);
   void declare(std::size_t column);
   Configuration configuration(std::size_t column, std::size_t base);
-  std::optional<double> subject_distance(std::size_t column) const;
   void configure(const std::vector<std::size_t>& columns);
-  double unlikeness(std::size_t a, std::size_t b) const;
-  void place_film();
+  void place_film(const std::vector<std::size_t>& columns);
 
   Import& in_;
   std::string section_;
@@ -105,7 +100,6 @@ class OpticalBenchReader {
   std::map<std::string, std::size_t> row_of_;  ///< by the name in the first column
   std::set<std::size_t> aspheres_;
   std::vector<std::string> scenarios_, names_;
-  bool film_unknown_ = false;
 };
 
 /// What a table calls a row of numbers about a position, none of them a distance of the lens.
@@ -135,6 +129,7 @@ void OpticalBenchReader::read(std::string_view text) {
   place(columns.front());
   declare(columns.front());
   configure(columns);
+  place_film(columns);
 }
 
 void OpticalBenchReader::take(int line, const Cells& cells) {
@@ -327,29 +322,12 @@ void OpticalBenchReader::place(std::size_t column) {
     SurfaceRow& surface = in_.lens.surfaces[i];
     const auto thickness = value(rows_[i].thickness, column);
     surface.thickness = thickness.value_or(0);
-    if (i + 1 == rows_.size()) film_unknown_ = !thickness;
     auto diameter = value(rows_[i].diameter, column);
     if (surface.stop) diameter = value("Aperture Diameter", column) ? value("Aperture Diameter", column) : diameter;
     surface.semi_diameter.reset();
     if (diameter && std::isfinite(*diameter) && *diameter > 0) surface.semi_diameter = *diameter / 2;
   }
   in_.lens.semi_diameters = "half of the table's diameters";
-  if (film_unknown_) place_film();
-}
-
-void OpticalBenchReader::place_film() {
-  Prescription rows = in_.lens;
-  rows.imported.reset();
-  const FirstOrder first = first_order(in_.compiled(rows));
-  if (first.afocal || !(first.back_focal_distance > 0)) {
-    in_.refuse(rows_.back().line, "thickness", "unknown, and light from afar is not focused behind it",
-               "the film's place");
-  }
-  in_.lens.surfaces.back().thickness = first.back_focal_distance;
-  in_.lens.image_distance = "paraxial focus";
-  in_.warn(rows_.back().line, "thickness",
-           "the place of the film is not stated; it is put at the paraxial focus, " +
-               to_text(first.back_focal_distance, 7) + " mm");
 }
 
 std::optional<double> positive(std::optional<double> value) {
@@ -361,7 +339,7 @@ void OpticalBenchReader::declare(std::size_t column) {
   const auto focal_length = value("Focal Length", column), field = positive(value("Angle of View", column));
   if (focal_length && std::isfinite(*focal_length)) lens.focal_length_mm = focal_length;
   lens.f_number = positive(value("F-Number", column));
-  in_.nominal_aperture = true;
+  in_.requests.nominal_aperture = true;
   lens.image_diagonal_mm = positive(value("Image Height", column));
   if (lens.f_number) {
     lens.design.aperture = {ApertureSetting::f_number, *lens.f_number};
@@ -374,15 +352,6 @@ void OpticalBenchReader::declare(std::size_t column) {
   }
   if (const auto object = value("d0", column)) lens.design.object_distance_mm = *object;
   lens.design.wavelengths = {{d_line_nm, 1}};
-}
-
-/// Where a position is focused, from the first surface: as its row d0 says, else from its magnification.
-std::optional<double> OpticalBenchReader::subject_distance(std::size_t column) const {
-  if (const auto d0 = value("d0", column)) return positive(d0);
-  const auto magnification = value("Magnification", column);
-  if (!magnification || !std::isfinite(*magnification) || *magnification == 0) return {};
-  const FirstOrder first = first_order(in_.compiled(in_.lens));
-  return positive(first.effective_focal_length * (1 - 1 / *magnification) - first.front_principal_z);
 }
 
 /// A position; only what it changes on the rows of `base` is listed.
@@ -398,7 +367,7 @@ Configuration OpticalBenchReader::configuration(std::size_t column, std::size_t 
     if (now.semi_diameter && now.semi_diameter != old.semi_diameter) change.semi_diameter = now.semi_diameter;
     if (change.thickness || change.semi_diameter) result.changes.push_back(change);
   }
-  result.subject_distance_mm = subject_distance(column);
+  result.subject_distance_mm = positive(value("d0", column));
   const auto focal_length = value("Focal Length", column);
   if (focal_length && std::isfinite(*focal_length)) result.focal_length_mm = focal_length;
   result.f_number = positive(value("F-Number", column));
@@ -408,64 +377,41 @@ Configuration OpticalBenchReader::configuration(std::size_t column, std::size_t 
   return result;
 }
 
-/// How much the distances of two positions differ.
-double OpticalBenchReader::unlikeness(std::size_t a, std::size_t b) const {
-  double sum = 0;
-  for (const auto& [name, variable] : variables_) {
-    if (variable.used) sum += std::abs(value(variable, a).value_or(0) - value(variable, b).value_or(0));
-  }
-  return sum;
-}
-
-/// Columns with a subject at infinity are zoom positions; each of the others focuses the one that it is most like.
+/// Columns are positions. Names are in [report data], or follow from the subject distances.
 void OpticalBenchReader::configure(const std::vector<std::size_t>& columns) {
   if (columns.size() < 2) return;
-  const std::size_t base = columns.front();
-  std::vector<Configuration> list;
-  std::vector<std::size_t> far;  // places in the list
+  const auto line_of = [&](std::string_view name) {
+    const auto found = variables_.find(name);
+    return found == variables_.end() ? 0 : found->second.line;
+  };
+  UnnamedPositions positions{line_of("d0") > 0 ? line_of("d0") : line_of("Magnification"), {}};
   for (const std::size_t column : columns) {
-    list.push_back(configuration(column, base));
-    if (!list.back().subject_distance_mm) far.push_back(list.size() - 1);
-  }
-  place(base);
-
-  std::set<std::string> taken;
-  const auto name = [&](Configuration& c, std::string wanted) {
-    std::string unique = wanted;
-    for (int i = 2; !taken.insert(unique).second; ++i) unique = wanted + " (" + std::to_string(i) + ")";
-    c.name = unique;
-  };
-  const auto given_name = [&](std::size_t column) -> std::string {
-    if (scenarios_.size() != names_.size()) return {};
-    const auto found = std::ranges::find(scenarios_, std::to_string(column));
-    return found == scenarios_.end() ? std::string() : names_[static_cast<std::size_t>(found - scenarios_.begin())];
-  };
-  const bool is_zoom = far.size() != 1;
-  for (std::size_t i = 0; i < list.size(); ++i) {
-    Configuration& c = list[i];
-    if (!far.empty() && c.subject_distance_mm) continue;
-    const std::string given = given_name(columns[i]);
-    name(c, !given.empty()      ? given
-            : !is_zoom          ? "infinity"
-            : c.focal_length_mm ? to_text(*c.focal_length_mm) + " mm"
-                                : "position " + std::to_string(columns[i] + 1));
-  }
-  for (std::size_t i = 0; i < list.size() && !far.empty(); ++i) {
-    Configuration& c = list[i];
-    if (!c.subject_distance_mm) continue;
-    const std::size_t of = *std::ranges::min_element(
-        far, {}, [&](std::size_t place_in_list) { return unlikeness(columns[i], columns[place_in_list]); });
-    c.focus_of = list[of].name;
-    const std::string given = given_name(columns[i]);
-    const std::string distance = to_text(*c.subject_distance_mm, 6) + " mm";
-    name(c, !given.empty() ? given : is_zoom ? list[of].name + " at " + distance : distance);
-    if (is_zoom) {
-      in_.warn(variables_.contains("d0") ? variables_.at("d0").line : variables_.at("Magnification").line, "d0",
-               "the position at " + distance + " is taken to focus " + list[of].name +
-                   ", whose distances are most like its own");
+    Configuration& c = in_.lens.configurations.emplace_back(configuration(column, columns.front()));
+    Position& position = positions.list.emplace_back();
+    // d0 comes before a magnification.
+    const auto magnification = value("d0", column) ? std::nullopt : value("Magnification", column);
+    if (magnification && std::isfinite(*magnification) && *magnification != 0) position.magnification = magnification;
+    const auto scenario = std::ranges::find(scenarios_, std::to_string(column));
+    if (scenario != scenarios_.end() && scenarios_.size() == names_.size()) {
+      c.name = names_[static_cast<std::size_t>(scenario - scenarios_.begin())];
     }
+    position.is_named = !c.name.empty();
+    if (!position.is_named) c.name = "position " + std::to_string(column + 1);
   }
-  in_.lens.configurations = std::move(list);
+  place(columns.front());
+  in_.requests.positions = std::move(positions);
+}
+
+/// The positions of the film that the table does not state.
+void OpticalBenchReader::place_film(const std::vector<std::size_t>& columns) {
+  const Row& last = rows_.back();
+  FilmAtFocus film{last.line, "thickness", "the place of the film is not stated", true, false, {}};
+  for (std::size_t i = 0; i < columns.size(); ++i) {
+    if (value(last.thickness, columns[i])) continue;
+    if (i == 0) film.in_the_rows = true;
+    if (i > 0) film.configurations.push_back(i);
+  }
+  if (film.in_the_rows || !film.configurations.empty()) in_.requests.film_at_focus = std::move(film);
 }
 
 }  // namespace

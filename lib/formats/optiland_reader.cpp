@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "optiland_reader.hpp"
-
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -14,6 +12,7 @@
 #include "io/json.hpp"
 #include "json_tree.hpp"
 #include "petzval/core/error.hpp"
+#include "readers.hpp"
 #include "text_file.hpp"
 
 namespace petzval::formats_detail {

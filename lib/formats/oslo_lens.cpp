@@ -7,8 +7,6 @@
 #include "oslo_surface.hpp"
 #include "petzval/core/units.hpp"
 #include "petzval/glass/glass.hpp"
-#include "petzval/lens/lens.hpp"
-#include "petzval/paraxial/first_order.hpp"
 
 namespace petzval::formats_detail {
 namespace {
@@ -27,6 +25,7 @@ class Builder {
   Medium medium(const OsloMedium& m, const Medium& before);
   Medium medium_of_indices(const OsloMedium& m);
   void solve(std::size_t i);
+  double defocus() const;
   void place_film();
   void declare();
   double object_distance() const;
@@ -136,45 +135,32 @@ SurfaceRow Builder::row(const OsloSurface& s, const Medium& before) {
   return row;
 }
 
-/// PY: the thickness that brings the axial ray to a height on the next surface.
+/// PY: the thickness that brings the axial ray to a height on the next surface. i: in the file.
 void Builder::solve(std::size_t i) {
-  const OsloSurface& s = oslo_.surfaces[i + 1];
-  const double object = object_distance();
+  const OsloSurface& s = oslo_.surfaces[i];
   if (*s.height != 0 && !oslo_.beam_radius) {
     in_.warn(s.line, "PY", "without EBR it is not evaluated: the thickness that the file states is taken");
     return;
   }
-  double y = oslo_.beam_radius.value_or(1) * oslo_.unit, n = 1, u = std::isfinite(object) ? y / object : 0;
-  double sign = 1;
-  for (std::size_t k = 0; k <= i; ++k) {
-    const SurfaceRow& row = in_.lens.surfaces[k];
-    if (row.mirror) sign = -sign;
-    double curvature = row.radius == 0 ? 0 : 1 / row.radius;
-    for (const AsphereTerm& term : row.aspheric) curvature += term.order == 2 ? 2 * term.coefficient : 0;
-    const double after = sign * row.medium.nd.value_or(1);
-    u = (n * u - y * (after - n) * curvature) / after;
-    n = after;
-    if (k < i) y += u * row.thickness;
-  }
-  const double thickness = (*s.height * oslo_.unit - y) / u;
-  double& stated = in_.lens.surfaces[i].thickness;
-  if (!std::isfinite(thickness)) {
-    in_.warn(s.line, "PY", "no thickness fulfils it: the one that the file states is taken");
-  } else if (!s.thickness) {
-    stated = thickness;
-  } else if (std::abs(stated - thickness) > 1e-3 * std::abs(thickness)) {
-    in_.warn(s.line, "PY",
-             "the file states a thickness of " + to_text(stated, 8) + " mm, which is taken; the solve gives " +
-                 to_text(thickness, 8) + " mm");
-  }
+  ThicknessSolve solve{.line = s.line, .command = "PY", .surface = i - 1, .height = *s.height * oslo_.unit};
+  if (oslo_.beam_radius) solve.beam_radius = *oslo_.beam_radius * oslo_.unit;
+  if (i + 2 == oslo_.surfaces.size()) solve.offset = defocus();
+  solve.is_stated = s.thickness.has_value();
+  in_.requests.solves.push_back(std::move(solve));
+}
+
+/// The thickness of the image, mm.
+double Builder::defocus() const {
+  const double defocus = oslo_.surfaces.back().thickness.value_or(0) * oslo_.unit;
+  return std::abs(defocus) < endless ? defocus : 0;
 }
 
 /// The last surface is the film: what it states moves the film, or cannot be had.
 void Builder::place_film() {
   const OsloSurface& film = oslo_.surfaces.back();
-  if (const double defocus = film.thickness.value_or(0) * oslo_.unit; defocus != 0 && std::abs(defocus) < endless) {
-    in_.lens.surfaces.back().thickness += defocus;
-    in_.warn(film.line, "TH", "of the image, " + to_text(defocus) + " mm, moves the film");
+  if (defocus() != 0) {
+    in_.lens.surfaces.back().thickness += defocus();
+    in_.warn(film.line, "TH", "of the image, " + to_text(defocus()) + " mm, moves the film");
   }
   if (film.curvature != 0 || film.conic != 0 || !film.terms.empty()) {
     in_.warn(film.line, "RD", "the image is curved; the film is a plane at its vertex");
@@ -217,15 +203,8 @@ void Builder::declare() {
     design.wavelengths.push_back({um * 1000, i < oslo_.weights.size() ? oslo_.weights[i] : 1});
   }
   // OSLO writes the focal length behind the name, or the 100 with which every new lens begins.
-  if (!oslo_.scale || *oslo_.scale <= 0) return;
-  const FirstOrder first = first_order(in_.compiled(lens));
-  const double stated = *oslo_.scale * unit;
-  if (!first.afocal && std::abs(std::abs(first.effective_focal_length) / stated - 1) < 0.01) {
-    lens.focal_length_mm = std::copysign(stated, first.effective_focal_length);
-  } else if (*oslo_.scale != 100) {
-    in_.warn(oslo_.line, "LEN",
-             "states " + to_text(stated) + " mm, which is not the focal length" +
-                 (first.afocal ? " of an afocal lens" : ", " + to_text(first.effective_focal_length, 6) + " mm"));
+  if (oslo_.scale && *oslo_.scale > 0) {
+    in_.requests.focal_length = {oslo_.line, "LEN", *oslo_.scale * unit, *oslo_.scale == 100};
   }
 }
 
@@ -241,10 +220,9 @@ void Builder::build() {
   for (std::size_t i = 1; i + 1 < oslo_.surfaces.size(); ++i) {
     lens.surfaces.push_back(row(oslo_.surfaces[i], before));
     before = lens.surfaces.back().medium;
-    if (oslo_.surfaces[i].height) solve(i - 1);
+    if (oslo_.surfaces[i].height) solve(i);
   }
   place_film();
-  validate(lens, in_.where());
   declare();
 }
 

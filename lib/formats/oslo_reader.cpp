@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 // Lens files of OSLO: commands, one a line or separated by semicolons; NXT begins the next surface.
-#include "oslo_reader.hpp"
-
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -13,6 +11,7 @@
 #include "io/json.hpp"
 #include "oslo_surface.hpp"
 #include "petzval/core/error.hpp"
+#include "readers.hpp"
 #include "text_file.hpp"
 
 namespace petzval::formats_detail {

@@ -4,15 +4,11 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <functional>
 #include <set>
 #include <utility>
 
 #include "core/text.hpp"
 #include "io/json.hpp"
-#include "petzval/core/error.hpp"
-#include "petzval/lens/lens.hpp"
-#include "petzval/paraxial/first_order.hpp"
 #include "text_file.hpp"
 
 namespace petzval::formats_detail {
@@ -33,12 +29,7 @@ class TableBuilder {
   Medium medium(const TableRow& row, const Medium& before);
   void name_other_makers(const TableRow& row, const Medium& taken);
   void choose_stop();
-  std::vector<std::size_t> planes_in_one_medium() const;
-  void drop_film_row();
-  void choose_apertures();
-  void place_film();
-  std::optional<double> f_number(double aperture_scale);
-  FirstOrder first_order_of_rows();
+  void take_apertures();
 
   TableLens table_;
   std::vector<TableRow>& rows_;
@@ -117,40 +108,6 @@ void TableBuilder::name_other_makers(const TableRow& row, const Medium& taken) {
                others.substr(1) + "; a column \"catalogue\" names another");
 }
 
-FirstOrder TableBuilder::first_order_of_rows() {
-  Prescription rows = in_.lens;
-  rows.imported.reset();
-  return first_order(in_.compiled(rows));
-}
-
-/// Planes with the same medium on both sides.
-std::vector<std::size_t> TableBuilder::planes_in_one_medium() const {
-  std::vector<std::size_t> result;
-  const Medium* before = &in_.lens.object_space;
-  for (std::size_t i = 0; i < rows_.size(); ++i) {
-    const SurfaceRow& row = in_.lens.surfaces[i];
-    const bool plane = row.radius == 0 && row.conic == 0 && row.aspheric.empty() && !row.mirror;
-    if (plane && row.medium == *before) result.push_back(i);
-    before = &row.medium;
-  }
-  return result;
-}
-
-/// A table may end in a plane for the film: in one medium, without a distance behind it, and where light is focused.
-void TableBuilder::drop_film_row() {
-  const TableRow& last = rows_.back();
-  const auto planes = planes_in_one_medium();
-  const bool plane = !planes.empty() && planes.back() + 1 == rows_.size() && rows_.size() > 1;
-  if (!plane || !last.stop.empty() || last.thickness.value_or(0) != 0 || last.index == 0.0) return;
-  const FirstOrder first = first_order_of_rows();
-  constexpr double near =
-      0.05;  // fraction of the focal length: tables state the sharpest film, or the film of a near subject
-  if (first.afocal || std::abs(first.back_focal_distance) > near * std::abs(first.effective_focal_length)) return;
-  in_.warn(last.line, "row", "is a plane in the paraxial focus; it is taken as the film");
-  rows_.pop_back();
-  in_.lens.surfaces.pop_back();
-}
-
 void TableBuilder::choose_stop() {
   std::vector<std::size_t> marked;
   for (std::size_t i = 0; i < rows_.size(); ++i) {
@@ -167,87 +124,30 @@ void TableBuilder::choose_stop() {
       if (rows_[i].radius == 0 && rows_[i].index == 0.0) marked.push_back(i);
     }
   }
-  if (marked.empty()) {
-    marked = planes_in_one_medium();
-    if (!marked.empty()) {
-      in_.warn(rows_[marked.front()].line, "stop", "is not marked; the plane in one medium is taken as the stop");
-    }
-  }
-  if (marked.empty()) return;  // Import::finish() marks the first surface, with a warning
+  in_.requests.plane_may_be_stop = true;
+  if (marked.empty()) return;
   in_.lens.surfaces[marked.front()].stop = true;
   for (std::size_t i = 1; i < marked.size(); ++i) {
     in_.warn(rows_[marked[i]].line, "stop", "a second one only limits rays; the first is the stop");
   }
 }
 
-std::optional<double> TableBuilder::f_number(double aperture_scale) {
-  Prescription p = in_.lens;
-  p.imported.reset();
-  for (SurfaceRow& row : p.surfaces) {
-    if (row.semi_diameter) *row.semi_diameter *= aperture_scale;
-  }
-  const double result = paraxial_f_number(in_.compiled(p));
-  return std::isfinite(result) ? std::optional(result) : std::nullopt;
-}
-
-/// Tables have diameters or semi-diameters in one column. Without a head the declared f-number decides.
-void TableBuilder::choose_apertures() {
+/// Tables have diameters or semi-diameters in one column.
+void TableBuilder::take_apertures() {
   const auto has_one = [](const TableRow& row) { return row.aperture.value_or(0) > 0; };
   const auto first = std::ranges::find_if(rows_, has_one);
   if (first == rows_.end()) {
     return in_.warn(0, "aperture", "the table has no apertures; the surfaces have no semi-diameters");
   }
-  const auto without = std::ranges::find_if_not(rows_, has_one);
-  const auto set = [&](double scale) {
-    for (std::size_t i = 0; i < rows_.size(); ++i) {
-      if (has_one(rows_[i])) in_.lens.surfaces[i].semi_diameter = scale * *rows_[i].aperture;
-    }
-    in_.lens.semi_diameters = scale == 1 ? "the table's apertures" : "half of the table's apertures";
-  };
-  TableApertures meaning = table_.apertures;
-  set(0.5);
-  if (meaning == TableApertures::unknown) {
-    const auto as_diameters = in_.lens.f_number ? f_number(1) : std::nullopt;
-    const auto as_radii = in_.lens.f_number ? f_number(2) : std::nullopt;
-    if (as_diameters && as_radii) {
-      const auto off = [&](double found) { return std::abs(std::log(found / *in_.lens.f_number)); };
-      const bool diameters = off(*as_diameters) <= off(*as_radii);
-      meaning = diameters ? TableApertures::diameters : TableApertures::semi_diameters;
-      if (meaning != table_.likely_apertures) {
-        in_.warn(first->line, "aperture",
-                 "the column is taken as " + std::string(diameters ? "diameters" : "semi-diameters") +
-                     ": diameters give f/" + to_text(*as_diameters, 3) + ", semi-diameters f/" + to_text(*as_radii, 3) +
-                     ", and the file declares f/" + to_text(*in_.lens.f_number, 3));
-      }
-    } else {
-      meaning = table_.likely_apertures;
-      in_.warn(first->line, "aperture",
-               "the column is taken as " +
-                   std::string(meaning == TableApertures::diameters ? "diameters" : "semi-diameters") +
-                   ": the file declares no f-number that could tell");
-    }
+  const bool semi_diameters = table_.apertures == TableApertures::semi_diameters;
+  for (std::size_t i = 0; i < rows_.size(); ++i) {
+    if (has_one(rows_[i])) in_.lens.surfaces[i].semi_diameter = (semi_diameters ? 1 : 0.5) * *rows_[i].aperture;
   }
-  if (meaning == TableApertures::semi_diameters) set(1);
-  if (without != rows_.end()) {
-    in_.warn(without->line, "aperture",
-             "is missing in " + std::to_string(std::ranges::count_if(rows_, std::not_fn(has_one))) +
-                 " of the rows; these surfaces have no semi-diameters");
+  in_.lens.semi_diameters = semi_diameters ? "the table's apertures" : "half of the table's apertures";
+  in_.requests.names_missing_apertures = true;
+  if (table_.apertures == TableApertures::unknown) {
+    in_.requests.unknown_apertures = {first->line, table_.likely_apertures == TableApertures::diameters};
   }
-}
-
-void TableBuilder::place_film() {
-  SurfaceRow& last = in_.lens.surfaces.back();
-  const TableRow& row = rows_.back();
-  if (last.thickness != 0) return;
-  const FirstOrder first = first_order_of_rows();
-  const std::string what = row.thickness ? "of the last surface is 0" : "of the last surface is not stated";
-  if (first.afocal || !(first.back_focal_distance > 0)) {
-    return in_.warn(row.line, "thickness", what + ", and no image lies behind it; the film lies in the last vertex");
-  }
-  last.thickness = first.back_focal_distance;
-  in_.lens.image_distance = "paraxial focus";
-  in_.warn(row.line, "thickness",
-           what + "; the film is put at the paraxial focus, " + to_text(last.thickness, 7) + " mm");
 }
 
 void TableBuilder::build() {
@@ -258,6 +158,7 @@ void TableBuilder::build() {
   std::size_t air_rows = 0;
   for (std::size_t i = 0; i < rows_.size(); ++i) {
     const TableRow& row = rows_[i];
+    in_.requests.surface_lines.push_back(row.line);
     SurfaceRow& surface = in_.lens.surfaces.emplace_back();
     surface.radius = row.radius;
     if (!row.thickness && i + 1 < rows_.size()) {
@@ -277,11 +178,18 @@ void TableBuilder::build() {
     in_.warn(air->line, "index",
              "is missing in " + std::to_string(air_rows) + (air_rows == 1 ? " row" : " rows") + "; air is taken");
   }
-  validate(in_.lens, in_.where());
-  drop_film_row();
+  // A table may end in a plane for the film, with no distance behind the plane.
+  const TableRow& last = rows_.back();
+  const bool ends = last.thickness.value_or(0) == 0;
+  in_.requests.last_plane_may_be_film = ends && rows_.size() > 1 && last.stop.empty() && last.index != 0.0;
   choose_stop();
-  choose_apertures();
-  place_film();
+  take_apertures();
+  if (ends) {
+    in_.requests.film_at_focus = {
+        .line = last.line,
+        .command = "thickness",
+        .reason = last.thickness ? "of the last surface is 0" : "of the last surface is not stated"};
+  }
 }
 
 }  // namespace

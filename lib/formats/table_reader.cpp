@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Tables of surfaces as people type them: with heads or without, from patents, spreadsheets and renderers. A line is a
 // head, a row or a comment; there is no fourth kind, so that nothing is dropped. data/README.md describes the form.
-#include "table_reader.hpp"
-
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -13,6 +11,7 @@
 #include "core/text.hpp"
 #include "io/json.hpp"
 #include "petzval/core/error.hpp"
+#include "readers.hpp"
 #include "table_columns.hpp"
 #include "table_lens.hpp"
 #include "table_text.hpp"

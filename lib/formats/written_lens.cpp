@@ -7,7 +7,6 @@
 #include <utility>
 
 #include "core/text.hpp"
-#include "declared_beam.hpp"
 #include "import.hpp"
 #include "petzval/core/error.hpp"
 #include "petzval/lens/lens.hpp"
@@ -95,7 +94,6 @@ void Writer::refuse_closed_rims(const std::string& format) const {
 
 void Writer::state_indices_at_d() {
   const double reference = lens_.reference_wavelength_nm;
-  const auto covers = [](const Glass& g, double nm) { return nm >= g.shortest_nm - 1e-6 && nm <= g.longest_nm + 1e-6; };
   double rounding = 0;
   const auto restate = [&](Medium& medium) {
     if (!medium.nd) return;
@@ -103,7 +101,7 @@ void Writer::state_indices_at_d() {
     if (const Glass* found = glass(medium)) {
       // An index from the formula or from the printed table means the glass itself.
       const bool printed = reference == d_line_nm && nd == found->nd;
-      const double off = covers(*found, reference) ? std::abs(nd - refractive_index(*found, reference)) : HUGE_VAL;
+      const double off = std::abs(nd - index_at(*found, reference).value_or(HUGE_VAL));
       if (printed || off <= 1e-10) {
         if (std::isfinite(off)) rounding = std::max(rounding, off);
         medium.nd.reset();
@@ -159,18 +157,6 @@ void Writer::lose_nominal_data(bool design_data, std::initializer_list<std::stri
 const GlassCatalogue& Writer::glasses() {
   if (!glasses_) glasses_ = &glass_tables();
   return *glasses_;
-}
-
-Lens Writer::at_primary_wavelength(const Prescription& rows) {
-  const DesignData& design = lens_.design;
-  if (design.wavelengths.empty()) return compiled(rows);
-  const double nm = design.wavelengths[design.primary_wavelength].nm;
-  if (nm == rows.reference_wavelength_nm) return compiled(rows);
-  try {
-    return compile(rows, std::array{nm}, {.glasses = &glasses(), .missing_glass = MissingGlass::abbe});
-  } catch (const Error&) {
-    return compiled(rows);  // the wavelength is outside the range of a glass
-  }
 }
 
 const Glass* Writer::glass(const Medium& medium) { return medium.glass ? glass_of(medium, glasses()) : nullptr; }

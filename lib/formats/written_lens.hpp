@@ -5,6 +5,7 @@
 #include <string>
 #include <string_view>
 
+#include "declared_beam.hpp"
 #include "petzval/formats/lens_file.hpp"
 #include "petzval/glass/glass.hpp"
 #include "petzval/lens/lens.hpp"
@@ -36,8 +37,9 @@ class Writer {
   /// index. The reference wavelength becomes the wavelength of the design. Throws Error if the index of a glass is
   /// stated and the glass does not reach the d line.
   void state_indices_at_d();
-  /// Rows compiled for the primary wavelength of the design, with the n_d/V_d model if a glass is unknown.
-  Lens at_primary_wavelength(const Prescription& rows);
+  Lens at_primary_wavelength(const Prescription& rows) const {
+    return formats_detail::at_primary_wavelength(rows, glasses_);
+  }
   const GlassCatalogue& glasses();
   /// The glass of the tables that a medium names; null if there is none.
   const Glass* glass(const Medium& medium);

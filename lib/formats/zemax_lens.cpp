@@ -9,12 +9,8 @@
 #include <utility>
 
 #include "core/text.hpp"
-#include "declared_beam.hpp"
 #include "petzval/core/error.hpp"
 #include "petzval/glass/glass.hpp"
-#include "petzval/lens/lens.hpp"
-#include "petzval/paraxial/first_order.hpp"
-#include "petzval/trace/trace.hpp"
 #include "text_file.hpp"
 
 namespace petzval::formats_detail {
@@ -277,8 +273,9 @@ void Configurations::aperture(const ZemaxOperand& operand, double value) {
   const ApertureSetting setting = in_.lens.design.aperture->setting;
   if (setting == ApertureSetting::f_number) in_.lens.configurations[position].f_number = value;
   if (!(value > 0)) return;
-  in_.position_apertures.resize(in_.lens.configurations.size());
-  in_.position_apertures[position] = setting == ApertureSetting::entrance_pupil_diameter ? value * unit_ : value;
+  in_.requests.position_apertures.resize(in_.lens.configurations.size());
+  in_.requests.position_apertures[position] =
+      setting == ApertureSetting::entrance_pupil_diameter ? value * unit_ : value;
 }
 
 /// The change of the operand's surface; a surface that the rows do not have is refused.
@@ -346,70 +343,25 @@ void Configurations::build() {
 
 // --- solves ---------------------------------------------------------------------------------------------------------
 
-/// Where the ray of a height, parallel to the axis in front of the lens, crosses the axis behind the last surface.
-std::optional<double> crossing(const Lens& lens, double height) {
-  const double start = -10 - std::abs(height);
-  const auto exit = trace(lens, Ray<double>{{0, height, start}, {0, 0, 1}});
-  const auto& [at, direction] = exit.ray;
-  if (!exit.transmitted() || direction.y == 0) return {};
-  return at.z - at.y / direction.y * direction.z - lens.surfaces().back().vertex_z;
-}
-
-/// Distance from the last surface to the crossing of marginal ray and axis: a ray of a zone of the pupil, or to first
-/// order (zone 0).
-std::optional<double> marginal_crossing(double zone, Import& in) {
-  const DesignData& design = in.lens.design;
-  Prescription rows = in.lens;
-  rows.configurations.clear();
-  for (SurfaceRow& surface : rows.surfaces) {
-    surface.semi_diameter.reset();
-    surface.obscuration_semi_diameter.reset();
-  }
-  const Lens lens = in.at_primary_wavelength(rows);
-  const Meridian meridian = main_meridian(lens);
-  const FirstOrder first = first_order(lens, {}, meridian);
-  if (first.afocal) return {};
-  if (zone == 0) {
-    return paraxial_image_z(lens, -design.object_distance_mm, {}, meridian) - lens.surfaces().back().vertex_z;
-  }
-  if (!std::isinf(design.object_distance_mm) || !design.aperture) return {};
-  using enum ApertureSetting;
-  const double value = design.aperture->value;
-  const double diameter = design.aperture->setting == entrance_pupil_diameter ? value
-                          : design.aperture->setting == f_number              ? first.effective_focal_length / value
-                                                                              : 0;
-  return diameter != 0 ? crossing(lens, zone * std::abs(diameter) / 2) : std::nullopt;
-}
-
 /// MAZH behind the last surface: the film is where the marginal ray crosses the axis. The file states its distance. A
 /// missing one is computed; one that the rays of this lens do not meet is taken and named, as a glass is then another.
-void check_the_film(const ZemaxSurface& last, Import& in) {
+void solve_the_film(const ZemaxSurface& last, Import& in) {
   const auto [height, zone] = *last.marginal_height;
-  double& stated = in.lens.surfaces.back().thickness;
-  std::optional<double> focus;
-  if (height == 0) {
-    try {
-      focus = marginal_crossing(zone, in);
-    } catch (const Error&) {
-      // not evaluated
-    }
-  }
-  if (focus && !std::isfinite(*focus)) focus.reset();
-  if (stated == 0) {
+  const DesignData& design = in.lens.design;
+  const bool missing = in.lens.surfaces.back().thickness == 0;
+  using enum ApertureSetting;
+  const bool has_pupil = design.aperture && std::isinf(design.object_distance_mm) && design.aperture->value != 0 &&
+                         (design.aperture->setting == entrance_pupil_diameter || design.aperture->setting == f_number);
+  if (height == 0 && (zone == 0 || has_pupil)) {
+    in.requests.solves.push_back({.line = last.solve_line,
+                                  .command = "MAZH",
+                                  .surface = in.lens.surfaces.size() - 1,
+                                  .zone = zone,
+                                  .is_taken = missing});
+  } else if (missing) {
     in.warn(last.solve_line, "MAZH",
-            focus
-                ? "the file states a thickness of 0; its marginal ray crosses the axis at " + to_text(*focus, 8) +
-                      " mm, where the film is put"
-                : "the file states a thickness of 0, and its solve is not evaluated; the film is at the last surface");
-    stated = focus.value_or(0);
-    return;
+            "the file states a thickness of 0, and its solve is not evaluated; the film is at the last surface");
   }
-  // The digits that files state, and differences between the editions of a glass catalogue.
-  constexpr double tolerance = 1e-3;
-  if (!focus || std::abs(*focus - stated) <= tolerance * std::max(std::abs(*focus), std::abs(stated))) return;
-  in.warn(last.solve_line, "MAZH",
-          "the file puts the film at " + to_text(stated, 8) +
-              " mm; the marginal ray of its solve crosses the axis at " + to_text(*focus, 8) + " mm. The film stays");
 }
 
 /// Object and film are planes perpendicular to the axis.
@@ -437,36 +389,6 @@ void check_ends(const ZemaxSurface& object, const ZemaxSurface& image, Import& i
   };
   if (near && curved(object)) in.warn(object.line, "SURF", "the object is curved; a flat one is taken");
   if (curved(image)) in.warn(image.line, "SURF", "the image is curved; a flat film is taken");
-}
-
-/// A telecentric object space (FTYP) has its pupil at infinity, at any position of the stop. The stop must put the
-/// pupil there: 100 object distances away or more.
-void check_telecentric(int line, Import& in) {
-  const double object = in.lens.design.object_distance_mm;
-  const std::size_t stop = stop_of(in.lens);
-  std::string found = "telecentric in object space";
-  if (std::isfinite(object) && stop < in.lens.surfaces.size()) {
-    const double pupil = entrance_pupil_z(in.at_primary_wavelength(without_rims(in.lens)), stop);
-    if (std::abs(pupil + object) >= 100 * std::abs(object)) return;
-    found += ", and the stop, surface " + std::to_string(stop) + ", puts the entrance pupil " +
-             to_text(pupil + object, 6) + " mm from the object";
-  }
-  in.refuse(line, "FTYP", found,
-            "pupils that the stop forms: switch Telecentric Object Space off (the second number is 0), or mark the "
-            "surface as the stop at which the chief rays cross the axis");
-}
-
-/// Where the image is at infinity: a film at the paraxial focus of light from infinity, if that lies behind the lens.
-void put_film_at_focus(const ZemaxSurface& s, Import& in) {
-  Prescription rows = in.lens;
-  rows.configurations.clear();
-  const Lens lens = in.compiled(rows);
-  const FirstOrder first = first_order(lens, {}, main_meridian(lens));
-  const bool behind = !first.afocal && first.back_focal_distance > 0;
-  in.lens.surfaces.back().thickness = behind ? first.back_focal_distance : 0;
-  in.warn(s.line, "DISZ",
-          std::string("the image is at infinity; the film is put at ") +
-              (behind ? "the focus of light from infinity" : "the last surface"));
 }
 
 }  // namespace
@@ -505,15 +427,16 @@ void build_lens(ZemaxLens zemax, double unit, Import& in) {
     in.lens.surfaces.push_back(rows.row(s, before));
     before = in.lens.surfaces.back().medium;
   }
-  if (image_at_infinity) put_film_at_focus(zemax.surfaces[zemax.surfaces.size() - 2], in);
+  if (image_at_infinity)
+    in.requests.film_at_focus = {.line = last.line, .command = "DISZ", .reason = "the image is at infinity"};
   if (image.stop) in.refuse(image.line, "STOP", "at the image", "a surface of the lens");
-  if (zemax.telecentric > 0) check_telecentric(zemax.telecentric, in);
+  in.requests.telecentric_line = zemax.telecentric;
+  in.requests.telecentric_command = "FTYP";
   in.lens.semi_diameters = "of the file: clear apertures, else the widths of the design's beams";
   place.erase(place.begin());
   place.pop_back();
   Configurations(zemax, place, unit, rows, in).build();
-  const ZemaxSurface& behind = zemax.surfaces[zemax.surfaces.size() - 2];
-  if (behind.marginal_height && !image_at_infinity) check_the_film(behind, in);
+  if (last.marginal_height && !image_at_infinity) solve_the_film(last, in);
 }
 
 }  // namespace petzval::formats_detail

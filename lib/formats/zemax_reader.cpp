@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "zemax_reader.hpp"
-
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -11,6 +9,7 @@
 #include "core/text.hpp"
 #include "io/json.hpp"
 #include "petzval/core/error.hpp"
+#include "readers.hpp"
 #include "text_file.hpp"
 #include "zemax_lens.hpp"
 #include "zemax_surface.hpp"

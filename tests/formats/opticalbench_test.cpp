@@ -2,6 +2,7 @@
 // Tables of Photons to Photos.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <string>
 #include <vector>
 
@@ -144,10 +145,25 @@ TEST(OpticalBench, OnePositionIsNoConfiguration) {
 TEST(OpticalBench, AnUnknownFilmIsPutAtTheFocus) {
   auto lens = parse_lens(with(plain, "d2\t97", "d2\tundefined"), "x.txt");
   EXPECT_NEAR(lens.surfaces[2].thickness, 100 - 5 / 1.5 + 5 * (1 - 1 / 1.0), 1e-9);
-  EXPECT_EQ(said(lens), Said{"10 thickness: the place of the film is not stated; it is put at the paraxial focus, "
-                             "96.66667 mm"});
+  ASSERT_EQ(said(lens).size(), 1u);
+  EXPECT_EQ(lens.imported->warnings[0].line, 10);
+  EXPECT_NE(said(lens)[0].find("96.66667 mm"), std::string::npos);
   lens = parse_lens(with(plain, "3\tInfinity\td2", "3\tInfinity\t"), "x.txt");
   EXPECT_NEAR(lens.surfaces[2].thickness, 96.66667, 1e-5);
+}
+
+TEST(OpticalBench, EachPositionHasItsOwnUnknownFilm) {
+  const auto lens = parse_lens(
+      "[descriptive data]\n[variable distances]\nd2\t10\t20\t30\nBf\tundefined\t60\tundefined\n[lens data]\n"
+      "1\tAS\t1\t\t9\n2\t50\td2\t\t30\n3\t40\t5\t1.5\t30\t60\n4\tInfinity\tBf\t\t30\n",
+      "x.txt");
+  ASSERT_EQ(lens.configurations.size(), 3u);
+  EXPECT_EQ(configured(lens, 1).surfaces.back().thickness, 60);
+  for (const int position : {0, 2}) {
+    const petzval::Prescription rows = configured(lens, position);
+    EXPECT_NEAR(rows.surfaces.back().thickness, first_order(petzval::compile(rows)).back_focal_distance, 1e-9);
+  }
+  EXPECT_EQ(std::ranges::count(lens.imported->warnings, "thickness", &petzval::ImportWarning::command), 2);
 }
 
 // Two zoom positions, each focused twice; the near ones are told apart by their distances.

@@ -2,6 +2,7 @@
 // Lens files of OSLO.
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <string>
 #include <vector>
@@ -80,7 +81,8 @@ TEST(Oslo, EveryKnownCommandIsHonouredOrNamed) {
 
 TEST(Oslo, TheAxialRaySolveFindsTheFocus) {
   const auto lens = read_sample("oslo_words.len");
-  const auto first = first_order(compile(lens));
+  const auto first = first_order(
+      compile(lens, std::array{lens.design.wavelengths[0].nm}, {.missing_glass = petzval::MissingGlass::abbe}));
   EXPECT_NEAR(lens.surfaces.back().thickness, first.back_focal_distance - 0.1, 1e-9);
 }
 

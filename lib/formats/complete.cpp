@@ -1,0 +1,505 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "complete.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <set>
+#include <utility>
+#include <vector>
+
+#include "core/text.hpp"
+#include "declared_beam.hpp"
+#include "io/missing_apertures.hpp"
+#include "petzval/analysis/lint.hpp"
+#include "petzval/core/error.hpp"
+#include "petzval/lens/lens.hpp"
+#include "petzval/lens/medium.hpp"
+#include "petzval/paraxial/first_order.hpp"
+#include "petzval/trace/trace.hpp"
+
+namespace petzval::formats_detail {
+namespace {
+
+/// The stop in one position: its rim in the file, and the declared marginal ray.
+struct StopSize {
+  std::size_t surface = 0;
+  std::optional<double> rim{};     ///< absent: open
+  std::optional<double> height{};  ///< marginal ray at the stop; nullopt if the aperture does not determine the ray
+
+  bool clips_the_beam() const { return rim && height && *rim < 0.99 * *height; }
+  /// The smaller of both; nullopt if both are unknown. Equal within the digits of files, the rim is taken.
+  std::optional<double> semi_diameter() const {
+    constexpr double digits = 1e-6;
+    if (!height || (rim && *rim <= *height * (1 + digits))) return rim;
+    return height;
+  }
+};
+
+/// The stop has a size in each position: it opens and closes as the lens zooms.
+void set_the_stop(Prescription& lens, std::span<const StopSize> sizes) {
+  const std::size_t marked = stop_of(lens);
+  const std::optional<double> old = lens.surfaces[marked].semi_diameter;
+  if (sizes.front().surface == marked) lens.surfaces[marked].semi_diameter = sizes.front().semi_diameter();
+  const bool changed = lens.surfaces[marked].semi_diameter != old;
+  for (std::size_t i = 0; i < lens.configurations.size(); ++i) {
+    Configuration& c = lens.configurations[i];
+    const auto size = sizes[i].semi_diameter();
+    const auto known = std::ranges::find(c.changes, static_cast<int>(sizes[i].surface), &SurfaceChange::surface);
+    const auto now = known != c.changes.end() && known->semi_diameter ? known->semi_diameter
+                                                                      : lens.surfaces[sizes[i].surface].semi_diameter;
+    if (size && !(now && std::abs(*now - *size) <= 1e-9 * *size)) {
+      change_of(c, static_cast<int>(sizes[i].surface)).semi_diameter = size;
+    }
+    if (sizes[i].surface == marked || !changed) continue;
+    SurfaceChange& other =
+        change_of(c, static_cast<int>(marked));  // no stop in this position: keeps the rim of the file
+    if (!other.semi_diameter) other.semi_diameter = old.value_or(std::numeric_limits<double>::infinity());
+  }
+}
+
+/// Position where the ray of a height, parallel to the axis in front of the lens, crosses the axis, from the last
+/// surface; not a number if the ray is lost or does not cross.
+double crossing(const Lens& lens, double height) {
+  const double start = -10 - std::abs(height);
+  const auto exit = trace(lens, Ray<double>{{0, height, start}, {0, 0, 1}});
+  const auto& [at, direction] = exit.ray;
+  if (!exit.transmitted()) return std::numeric_limits<double>::quiet_NaN();
+  return at.z - at.y / direction.y * direction.z - lens.surfaces().back().vertex_z;
+}
+
+/// The thickness that fulfils a solve, without its offset; not finite if no thickness does. lens: the surfaces in front
+/// of the thickness.
+double solution(const ThicknessSolve& solve, const Lens& lens, const DesignData& design) {
+  const Meridian meridian = main_meridian(lens);
+  const FirstOrder first = first_order(lens, {}, meridian);
+  const double object = design.object_distance_mm;
+  const bool far = !std::isfinite(object);
+  if (far && first.afocal) return std::numeric_limits<double>::infinity();
+  if (solve.zone != 0) {
+    const double value = design.aperture->value;
+    const bool by_ratio = design.aperture->setting == ApertureSetting::f_number;
+    return crossing(lens, solve.zone * std::abs(by_ratio ? first.effective_focal_length / value : value) / 2);
+  }
+  const RayMatrix all = ray_matrix(lens, 0, lens.surface_count(), {}, meridian);
+  const double radius = solve.beam_radius.value_or(1), slope = far ? 0 : first.object_index * radius / object;
+  const double height = all.a * radius + all.b * slope;
+  return (solve.height - height) / ((all.c * radius + all.d * slope) / first.image_index);
+}
+
+/// Planes with the same medium on both sides.
+std::vector<std::size_t> planes_in_one_medium(const Prescription& lens) {
+  std::vector<std::size_t> result;
+  const Medium* before = &lens.object_space;
+  for (std::size_t i = 0; i < lens.surfaces.size(); ++i) {
+    const SurfaceRow& row = lens.surfaces[i];
+    const bool plane = row.radius == 0 && row.conic == 0 && row.aspheric.empty() && !row.mirror;
+    if (plane && row.medium == *before) result.push_back(i);
+    before = &row.medium;
+  }
+  return result;
+}
+
+/// The name, with a number if it is taken.
+std::string unique_name(std::set<std::string>& taken, const std::string& name) {
+  std::string unique = name;
+  for (int i = 2; !taken.insert(unique).second; ++i) unique = name + " (" + std::to_string(i) + ")";
+  return unique;
+}
+
+class Completion {
+ public:
+  explicit Completion(Import in) : in_(std::move(in)), lens_(in_.lens), asked_(in_.requests) {}
+  Prescription run();
+
+ private:
+  Lens compiled(const Prescription& rows) const { return compile(rows, {.glasses = in_.loaded_glasses()}); }
+  Lens at_primary(const Prescription& rows) const { return at_primary_wavelength(rows, in_.loaded_glasses()); }
+  FirstOrder first_order_of(const Prescription& rows) const {
+    const Lens lens = compiled(without_rims(rows));
+    return first_order(lens, {}, main_meridian(lens));
+  }
+  int line_of(std::size_t surface) const {
+    return surface < asked_.surface_lines.size() ? asked_.surface_lines[surface] : 0;
+  }
+
+  void name_the_lens();
+  void take_reference();
+  void drop_film_row();
+  void mark_a_plane_as_stop();
+  void mark_a_stop();
+  void choose_apertures();
+  void name_missing_apertures();
+  void solve(const ThicknessSolve& solve);
+  void put_film_at_focus();
+  void compare_focal_length();
+  void check_telecentric() const;
+  void find_subject_distances();
+  void name_positions();
+  void size_the_stop();
+  void declare();
+  void compare_the_declared();
+
+  Import in_;
+  Prescription& lens_;
+  ImportRequests& asked_;
+  /// True if the stop has the size of the declared beam, or a warning says that its rim clips the beam.
+  bool has_declared_beam_ = false;
+};
+
+void Completion::name_the_lens() {
+  const FileOrigin& origin = *lens_.imported;
+  if (lens_.name.empty()) lens_.name = origin.title.empty() ? lens_.id : origin.title;
+  if (lens_.source_design.empty()) lens_.source_design = origin.title;
+  lens_.source_numbers = origin.file;
+}
+
+/// If a glass has no index at the d line, the reference is the primary wavelength of the design.
+void Completion::take_reference() {
+  std::vector<Medium*> media{&lens_.object_space};
+  for (SurfaceRow& row : lens_.surfaces) media.push_back(&row.medium);
+  for (Configuration& c : lens_.configurations) {
+    for (SurfaceChange& change : c.changes) {
+      if (change.medium) media.push_back(&*change.medium);
+    }
+  }
+  const auto unknown = [](const Medium* m) { return m->glass && !m->nd; };
+  if (lens_.design.wavelengths.empty() || std::ranges::none_of(media, unknown)) return;
+  const double from = lens_.reference_wavelength_nm, to = lens_.design.wavelengths[lens_.design.primary_wavelength].nm;
+  lens_.reference_wavelength_nm = to;
+  const GlassCatalogue* glasses = in_.loaded_glasses();
+  try {
+    for (Medium* m : media) {
+      if (m->glass && m->catalogue && glasses) {
+        const Glass* glass = glass_of(*m, *glasses);
+        const auto before = index_at(*glass, from);
+        const double after = refractive_index(*glass, to);
+        m->nd = m->nd && before ? *m->nd + after - *before : after;
+      } else if (m->nd && m->vd && *m->vd > 0) {
+        m->nd = *m->nd + abbe_index(*m->nd, *m->vd, to) - abbe_index(*m->nd, *m->vd, from);
+      }
+    }
+  } catch (const Error& error) {
+    throw Error(in_.where() + ": primary wavelength: " + error.what());
+  }
+}
+
+void Completion::drop_film_row() {
+  const auto planes = planes_in_one_medium(lens_);
+  if (planes.empty() || planes.back() + 1 != lens_.surfaces.size()) return;
+  const FirstOrder first = first_order_of(lens_);
+  constexpr double near =
+      0.05;  // fraction of the focal length: tables state the sharpest film, or the film of a near subject
+  if (first.afocal || std::abs(first.back_focal_distance) > near * std::abs(first.effective_focal_length)) return;
+  in_.warn(line_of(planes.back()), "row", "is a plane in the paraxial focus; it is taken as the film");
+  lens_.surfaces.pop_back();
+}
+
+void Completion::mark_a_plane_as_stop() {
+  const auto planes = planes_in_one_medium(lens_);
+  if (stop_of(lens_) < lens_.surfaces.size() || planes.empty()) return;
+  lens_.surfaces[planes.front()].stop = true;
+  in_.warn(line_of(planes.front()), "stop", "is not marked; the plane in one medium is taken as the stop");
+  for (const std::size_t other : std::span(planes).subspan(1)) {
+    in_.warn(line_of(other), "stop", "a second one only limits rays; the first is the stop");
+  }
+}
+
+void Completion::mark_a_stop() {
+  if (stop_of(lens_) < lens_.surfaces.size()) return;
+  lens_.surfaces.front().stop = true;
+  in_.warn(0, "stop", "no surface is marked as the stop; the first one is taken");
+}
+
+/// The declared f-number tells diameters from semi-diameters.
+void Completion::choose_apertures() {
+  const auto& [line, likely_diameters] = *asked_.unknown_apertures;
+  const auto scaled = [&](double factor) {
+    Prescription rows = lens_;
+    for (SurfaceRow& row : rows.surfaces) {
+      if (row.semi_diameter) *row.semi_diameter *= factor;
+    }
+    return rows;
+  };
+  bool diameters = likely_diameters;
+  const auto meaning = [&] {
+    return "the column is taken as " + std::string(diameters ? "diameters" : "semi-diameters") + ": ";
+  };
+  const double declared = lens_.f_number.value_or(0);
+  const double as_diameters = declared > 0 ? paraxial_f_number(compiled(lens_)) : HUGE_VAL;
+  const double as_semi_diameters = declared > 0 ? paraxial_f_number(compiled(scaled(2))) : HUGE_VAL;
+  if (std::isfinite(as_diameters) && std::isfinite(as_semi_diameters)) {
+    const auto off = [&](double found) { return std::abs(std::log(found / declared)); };
+    diameters = off(as_diameters) <= off(as_semi_diameters);
+    if (diameters != likely_diameters) {
+      in_.warn(line, "aperture",
+               meaning() + "diameters give f/" + to_text(as_diameters, 3) + ", semi-diameters f/" +
+                   to_text(as_semi_diameters, 3) + ", and the file declares f/" + to_text(declared, 3));
+    }
+  } else {
+    in_.warn(line, "aperture", meaning() + "the file declares no f-number that could tell");
+  }
+  if (!diameters) lens_.surfaces = scaled(2).surfaces;
+  lens_.semi_diameters = diameters ? "half of the table's apertures" : "the table's apertures";
+}
+
+void Completion::name_missing_apertures() {
+  const auto lacks_one = [](const SurfaceRow& row) { return !row.semi_diameter; };
+  const auto first = std::ranges::find_if(lens_.surfaces, lacks_one);
+  if (first == lens_.surfaces.end()) return;
+  in_.warn(line_of(static_cast<std::size_t>(first - lens_.surfaces.begin())), "aperture",
+           "is missing in " + std::to_string(std::ranges::count_if(lens_.surfaces, lacks_one)) +
+               " of the rows; these surfaces have no semi-diameters");
+}
+
+void Completion::solve(const ThicknessSolve& solve) {
+  Prescription rows = without_rims(lens_);
+  rows.surfaces.resize(solve.surface + 1);
+  const double solved = solution(solve, at_primary(rows), lens_.design) + solve.offset;
+  double& stated = lens_.surfaces[solve.surface].thickness;
+  if (!(std::abs(solved) < 1e10)) {
+    return in_.warn(solve.line, solve.command, "no thickness fulfils it: the one that the file states is taken");
+  }
+  // The digits that files state, and differences between the editions of a glass catalogue. A film stays if it is
+  // in focus.
+  const double tolerance = solve.is_taken ? 2e-4 * std::abs(first_order_of(lens_).effective_focal_length)
+                                          : 1e-3 * std::max(std::abs(solved), std::abs(stated));
+  if (solve.is_stated && std::abs(stated - solved) <= tolerance) return;
+  if (solve.is_stated) {
+    const std::string taken = ", which is taken";
+    in_.warn(solve.line, solve.command,
+             "the file states a thickness of " + to_text(stated, 8) + " mm" + (solve.is_taken ? "" : taken) +
+                 "; the solve gives " + to_text(solved, 8) + " mm" + (solve.is_taken ? taken : ""));
+  }
+  if (solve.is_taken || !solve.is_stated) stated = solved;
+}
+
+void Completion::put_film_at_focus() {
+  const FilmAtFocus& film = *asked_.film_at_focus;
+  const auto focus = [&](const Prescription& rows, const std::string& position) {
+    const FirstOrder first = first_order_of(rows);
+    const double distance = first.afocal ? 0 : std::max(first.back_focal_distance, 0.0);
+    if (distance > 0) {
+      lens_.image_distance = "paraxial focus";
+      in_.warn(film.line, film.command,
+               film.reason + "; the film is put at the paraxial focus, " + to_text(distance, 7) + " mm" + position);
+    } else if (film.is_needed) {
+      in_.refuse(film.line, film.command, "unknown, and light from afar is not focused behind it", "the film's place");
+    } else {
+      in_.warn(film.line, film.command,
+               film.reason + ", and no image lies behind it; the film lies in the last vertex" + position);
+    }
+    return distance;
+  };
+  const auto last = static_cast<int>(lens_.surfaces.size()) - 1;
+  if (film.in_the_rows && lens_.surfaces.back().thickness == 0) lens_.surfaces.back().thickness = focus(lens_, "");
+  for (const std::size_t i : film.configurations) {
+    Configuration& c = lens_.configurations[i];
+    change_of(c, last).thickness = focus(configured(lens_, i), ", in " + c.name);
+  }
+}
+
+/// A nominal focal length has few digits.
+void Completion::compare_focal_length() {
+  const StatedFocalLength& stated = *asked_.focal_length;
+  const FirstOrder first = first_order_of(lens_);
+  if (!first.afocal && std::abs(std::abs(first.effective_focal_length) / stated.mm - 1) < 0.01) {
+    lens_.focal_length_mm = std::copysign(stated.mm, first.effective_focal_length);
+  } else if (!stated.is_default) {
+    in_.warn(stated.line, stated.command,
+             "states " + to_text(stated.mm) + " mm, which is not the focal length" +
+                 (first.afocal ? " of an afocal lens" : ", " + to_text(first.effective_focal_length, 6) + " mm"));
+  }
+}
+
+/// A telecentric object space has its pupil at infinity, at any position of the stop. The lens must image its stop to
+/// 100 object distances or more.
+void Completion::check_telecentric() const {
+  const double object = lens_.design.object_distance_mm;
+  const std::size_t stop = stop_of(lens_);
+  std::string found = "telecentric in object space";
+  if (std::isfinite(object) && stop < lens_.surfaces.size()) {
+    const double pupil = entrance_pupil_z(at_primary(without_rims(lens_)), stop);
+    if (std::abs(pupil + object) >= 100 * std::abs(object)) return;
+    found += ", and the stop, surface " + std::to_string(stop) + ", puts the entrance pupil " +
+             to_text(pupil + object, 6) + " mm from the object";
+  }
+  in_.refuse(asked_.telecentric_line, asked_.telecentric_command, found,
+             "pupils that the stop forms: switch Telecentric Object Space off (the second number is 0), or mark the "
+             "surface as the stop at which the chief rays cross the axis");
+}
+
+void Completion::find_subject_distances() {
+  for (std::size_t i = 0; i < lens_.configurations.size(); ++i) {
+    const auto& magnification = asked_.positions->list[i].magnification;
+    if (!magnification) continue;
+    const FirstOrder first = first_order_of(configured(lens_, i));
+    const double distance = first.effective_focal_length * (1 - 1 / *magnification) - first.front_principal_z;
+    if (distance > 0 && std::isfinite(distance)) lens_.configurations[i].subject_distance_mm = distance;
+  }
+}
+
+/// Positions with a subject at infinity are zoom positions. Each of the others focuses the zoom position with the most
+/// similar thicknesses.
+void Completion::name_positions() {
+  auto& list = lens_.configurations;
+  const auto is_named = [&](std::size_t i) { return asked_.positions->list[i].is_named; };
+  std::vector<std::size_t> far;
+  std::vector<std::vector<double>> thicknesses;
+  for (std::size_t i = 0; i < list.size(); ++i) {
+    if (!list[i].subject_distance_mm) far.push_back(i);
+    auto& own = thicknesses.emplace_back();
+    for (const SurfaceRow& row : lens_.surfaces) own.push_back(row.thickness);
+    for (const SurfaceChange& c : list[i].changes) {
+      own[static_cast<std::size_t>(c.surface)] = c.thickness.value_or(own[static_cast<std::size_t>(c.surface)]);
+    }
+  }
+  const bool is_zoom = far.size() != 1;
+  std::set<std::string> taken;
+  for (std::size_t i = 0; i < list.size(); ++i) {
+    Configuration& c = list[i];
+    if (!far.empty() && c.subject_distance_mm) continue;
+    c.name = unique_name(taken, is_named(i)         ? c.name
+                                : !is_zoom          ? "infinity"
+                                : c.focal_length_mm ? to_text(*c.focal_length_mm) + " mm"
+                                                    : c.name);
+  }
+  for (std::size_t i = 0; i < list.size() && !far.empty(); ++i) {
+    Configuration& c = list[i];
+    if (!c.subject_distance_mm) continue;
+    const std::size_t of = *std::ranges::min_element(far, {}, [&](std::size_t other) {
+      double sum = 0;
+      for (std::size_t k = 0; k < lens_.surfaces.size(); ++k) {
+        sum += std::abs(thicknesses[i][k] - thicknesses[other][k]);
+      }
+      return sum;
+    });
+    c.focus_of = list[of].name;
+    const std::string distance = to_text(*c.subject_distance_mm, 6) + " mm";
+    c.name = unique_name(taken, is_named(i) ? c.name : is_zoom ? list[of].name + " at " + distance : distance);
+    if (!is_zoom) continue;
+    in_.warn(asked_.positions->line, "d0",
+             "the position at " + distance + " is taken to focus " + list[of].name +
+                 ", whose distances are most like its own");
+  }
+}
+
+/// A declared aperture launches the beam and the rim of the stop clips it, so the smaller one is the size of the stop.
+void Completion::size_the_stop() {
+  const auto& aperture = lens_.design.aperture;
+  const bool declared = aperture && aperture->setting != ApertureSetting::stop_size && aperture->value > 0 &&
+                        std::isfinite(aperture->value);
+  std::vector<StopSize> sizes(std::max<std::size_t>(lens_.configurations.size(), 1));
+  for (std::size_t i = 0; i < sizes.size(); ++i) {
+    const Prescription rows = configured(lens_, i);
+    StopSize& size = sizes[i];
+    size.surface = stop_of(rows);
+    size.rim = rows.surfaces[size.surface].semi_diameter;
+    if (size.rim && std::isinf(*size.rim)) size.rim.reset();
+    if (!declared) break;
+    DesignAperture own = *aperture;
+    const bool by_position = i < lens_.configurations.size() && own.setting == ApertureSetting::f_number;
+    if (by_position) own.value = lens_.configurations[i].f_number.value_or(own.value);
+    if (i < asked_.position_apertures.size()) own.value = asked_.position_apertures[i].value_or(own.value);
+    const double height =
+        marginal_height_at_the_stop(at_primary(without_rims(rows)), size.surface, lens_.design.object_distance_mm, own);
+    if (height > 0 && std::isfinite(height)) size.height = height;
+  }
+  const StopSize& first = sizes.front();
+  if (!first.height) {
+    if (first.rim) return;
+    return in_.warn(0, "stop",
+                    declared ? "the declared aperture does not give its size; the rims limit the beam"
+                             : "neither the size of the stop nor an aperture is given; the rims limit the beam");
+  }
+  const std::string beam =
+      "the declared " + std::string(name(aperture->setting)) + " of " + to_text(aperture->value, 6);
+  if (asked_.nominal_aperture && first.rim) {
+    // lint() compares f-numbers
+    if (aperture->setting == ApertureSetting::f_number || std::abs(*first.height / *first.rim - 1) <= 0.01) return;
+    return in_.warn(0, "stop",
+                    "its rim has a semi-diameter of " + to_text(*first.rim, 6) + " mm; " + beam + " needs " +
+                        to_text(*first.height, 6) + " mm; the rim is taken");
+  }
+  for (StopSize& size : sizes) {
+    if (asked_.nominal_aperture && size.rim) size.height.reset();
+  }
+  if (first.semi_diameter() == first.height) lens_.stop_size = "from " + beam;
+  has_declared_beam_ = !asked_.nominal_aperture;
+  const auto clipped = std::ranges::find_if(sizes, &StopSize::clips_the_beam);
+  if (clipped != sizes.end()) {
+    in_.warn(
+        0, "stop",
+        "the rim of " + to_text(*clipped->rim, 6) + " mm clips " + beam + ", whose marginal ray meets the stop at " +
+            to_text(*clipped->height, 6) + " mm" +
+            (sizes.size() > 1 ? ", in " + lens_.configurations[static_cast<std::size_t>(clipped - sizes.begin())].name
+                              : std::string()));
+  }
+  set_the_stop(lens_, sizes);
+}
+
+void Completion::declare() {
+  const auto& aperture = lens_.design.aperture;
+  if (aperture && aperture->setting == ApertureSetting::f_number && aperture->value > 0 && !lens_.f_number) {
+    lens_.f_number = aperture->value;
+  }
+  double largest = 0;
+  for (const DesignField& field : lens_.design.fields) largest = std::max(largest, std::hypot(field.x, field.y));
+  if (largest == 0) return;
+  switch (lens_.design.field_kind) {
+    case FieldKind::angle_deg:
+      if (!lens_.half_field_deg && largest < 180) lens_.half_field_deg = largest;
+      break;
+    case FieldKind::paraxial_image:
+    case FieldKind::real_image_height:
+      if (!lens_.image_diagonal_mm) lens_.image_diagonal_mm = 2 * largest;
+      break;
+    case FieldKind::object_height: break;
+  }
+}
+
+/// Declared data that the lens does not have, as lint() finds them.
+void Completion::compare_the_declared() try {
+  using enum FindingKind;
+  const GlassCatalogue* glasses = in_.loaded_glasses();
+  for (const Finding& finding : glasses ? lint(lens_, *glasses) : lint(lens_)) {
+    const bool declared = finding.kind == focal_length || finding.kind == units || finding.kind == apertures ||
+                          (finding.kind == f_number && !has_declared_beam_);
+    if (declared) in_.warn(0, name(finding.kind), finding.message);
+  }
+} catch (const Error&) {
+  // the f-number of the lens cannot be computed
+}
+
+Prescription Completion::run() {
+  name_the_lens();
+  if (lens_.surfaces.empty()) throw Error(in_.where() + ": 0 surfaces; must be at least 1");
+  take_reference();
+  validate(lens_, in_.where());
+  if (asked_.last_plane_may_be_film) drop_film_row();
+  if (asked_.plane_may_be_stop) mark_a_plane_as_stop();
+  if (asked_.unknown_apertures) choose_apertures();
+  if (asked_.names_missing_apertures) name_missing_apertures();
+  for (const ThicknessSolve& each : asked_.solves) solve(each);
+  if (asked_.film_at_focus) put_film_at_focus();
+  if (asked_.focal_length) compare_focal_length();
+  if (asked_.telecentric_line > 0) check_telecentric();
+  if (asked_.positions) {
+    find_subject_distances();
+    name_positions();
+  }
+  mark_a_stop();
+  validate(lens_, in_.where());
+  size_the_stop();
+  declare();
+  compare_the_declared();
+  in_.count_left_out_warnings();
+  validate(lens_, in_.where());
+  return io_detail::with_missing_apertures(std::move(lens_), in_.loaded_glasses());
+}
+
+}  // namespace
+
+Prescription complete(Import in) { return Completion(std::move(in)).run(); }
+
+}  // namespace petzval::formats_detail
