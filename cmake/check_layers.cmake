@@ -5,6 +5,8 @@
 # know each other. The edge, formats and figures, may include everything and is included by nothing but examples, tests and
 # itself; include/petzval/petzval.hpp stands above all. Headers in lib/<module> are the inside: the library's own sources name
 # them "module/header.hpp", or "header.hpp" in their own folder; public headers never do, and name no third party but GLM.
+#
+# Readers in lib/formats return data: they include no module that computes.
 cmake_minimum_required(VERSION 3.25)
 
 set(layer_0 core)
@@ -45,6 +47,10 @@ function(check file line)
       set(fault "${module} (layer ${layer}) includes ${other} (layer ${layer_of_${other}})")
     elseif(NOT target MATCHES "^petzval/" AND NOT EXISTS "${ROOT}/lib/${target}")
       set(fault "includes \"${target}\", which lib/ does not have")
+    elseif(file MATCHES "^lib/formats/[a-z]+_(reader|lens|breaks|columns|text)\\.|^lib/formats/import"
+           AND NOT file MATCHES "^lib/formats/written_" AND layer_of_${other} GREATER_EQUAL 2
+           AND NOT other MATCHES "^(io|formats)$")
+      set(fault "a reader of files includes ${other}: it returns data, and complete() computes")
     endif()
   elseif(target MATCHES "^petzval/")
     set(fault "${module} includes ${target}, which stands above all modules")
