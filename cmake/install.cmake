@@ -52,7 +52,12 @@ petzval_install(analysis DESCRIPTION "Spots, point spread functions, colour, dis
 petzval_install(blur DESCRIPTION "Lens blur of layered pictures")
 petzval_install(figure DESCRIPTION "SVG figures of lenses")
 petzval_install(fit DESCRIPTION "Least-squares fits for lens optics")
-petzval_install(formats DESCRIPTION "Lenses and glasses in files of other programs" STATIC_REQUIRES yaml-cpp)
+get_target_property(formats_links petzval-formats LINK_LIBRARIES)
+set(formats_yaml "")
+if("yaml-cpp" IN_LIST formats_links)
+  set(formats_yaml yaml-cpp)
+endif()
+petzval_install(formats DESCRIPTION "Lenses and glasses in files of other programs" STATIC_REQUIRES "${formats_yaml}")
 petzval_install(image DESCRIPTION "EXR and PNG images" STATIC_REQUIRES "OpenEXR libpng")
 
 get_target_property(core_type petzval-core TYPE)

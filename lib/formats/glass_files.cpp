@@ -36,6 +36,10 @@ double abbe_number(const Glass& glass, double nd) {
   return n_f > 0 && n_c > 0 && n_f != n_c ? (nd - 1) / (n_f - n_c) : 0;
 }
 
+bool looks_like_rii(std::string_view text) {
+  return text.starts_with("DATA:") || text.find("\nDATA:") != std::string_view::npos;
+}
+
 }  // namespace
 
 void GlassReader::warn(int line, std::string_view command, const std::string& message) {

@@ -43,8 +43,7 @@ class GlassReader {
 bool looks_like_agf(std::string_view text);
 void read_agf(std::string_view text, const std::string& catalogue, GlassReader& reader);
 
-/// Pages of refractiveindex.info. name: of the glass.
-bool looks_like_rii(std::string_view text);
+/// Pages of refractiveindex.info. name: of the glass. Throws Error if the library was built without yaml-cpp.
 void read_rii(std::string text, const std::string& name, GlassReader& reader);
 
 }  // namespace petzval::formats_detail

@@ -309,10 +309,6 @@ class RiiReader {
 
 }  // namespace
 
-bool looks_like_rii(std::string_view text) {
-  return text.starts_with("DATA:") || text.find("\nDATA:") != std::string_view::npos;
-}
-
 void read_rii(std::string text, const std::string& name, GlassReader& reader) {
   RiiReader(name, reader).read(read_page(std::move(text), reader));
 }
