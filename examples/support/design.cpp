@@ -11,6 +11,7 @@
 #include "petzval/core/units.hpp"
 #include "petzval/glass/glass.hpp"
 #include "petzval/pupil/aim.hpp"
+#include "petzval/pupil/apertures.hpp"
 #include "petzval/pupil/pupil_boundary.hpp"
 #include "text.hpp"
 
@@ -48,27 +49,13 @@ double magnification(const petzval::Lens& lens, double object_z) {
   return std::abs((image_z - first.rear_focal_z) / first.effective_focal_length);
 }
 
-/// Tangent of the angle under which the entrance pupil sees a field of one kind; nullopt if it tells none.
-std::optional<double> tangent(const petzval::Lens& lens, FieldKind kind, double value, double object_distance) {
-  const double pupil_z = petzval::pupils(lens).entrance.z, object_z = -object_distance;
-  const auto of_object = [&](double height) -> std::optional<double> {
-    if (std::isinf(object_distance)) return {};
-    return height / (pupil_z + object_distance);
-  };
-  switch (kind) {
-    case FieldKind::angle_deg: return std::tan(petzval::radians(value));
-    case FieldKind::object_height: return of_object(value);
-    case FieldKind::paraxial_image: {
-      if (!std::isinf(object_distance)) return of_object(value / magnification(lens, object_z));
-      return value / std::abs(petzval::first_order(lens, {}, petzval::main_meridian(lens)).effective_focal_length);
-    }
-    case FieldKind::real_image_height: {
-      const auto field = field_of_height(lens, std::abs(value), object_z);
-      if (!field) return {};
-      return std::copysign(std::tan(*field), value);
-    }
+/// Angle under which the entrance pupil sees a field of the design (rad); nullopt if it tells none.
+std::optional<double> field_angle(const petzval::Prescription& p, const petzval::Lens& lens, double value) {
+  const petzval::DesignData& design = p.design;
+  if (design.field_kind != FieldKind::real_image_height) {
+    return petzval::declared_field(p, lens, design.field_kind, value);
   }
-  return {};
+  return field_of_height(lens, value, -design.object_distance_mm);
 }
 
 /// Four significant digits beyond the rounding of a conversion keep captions short.
@@ -85,7 +72,7 @@ std::vector<double> declared_fields(const LensFile& file, const petzval::Lens& l
       continue;
     }
     const double sign = field.x == 0 && !lens.rotationally_symmetric() && field.y < 0 ? -1 : 1;
-    std::optional<double> found;
+    std::optional<double> found;  // rad
     if (design.field_kind == FieldKind::angle_deg) {
       const double x = std::tan(petzval::radians(field.x)), y = std::tan(petzval::radians(field.y));
       // Beyond 90 degrees an angle has no tangent; such fields lie in one plane.
@@ -93,11 +80,11 @@ std::vector<double> declared_fields(const LensFile& file, const petzval::Lens& l
         result.push_back(sign * std::abs(field.y));
         continue;
       }
-      found = std::hypot(x, y);
+      found = std::atan(std::hypot(x, y));
     } else {
-      found = tangent(lens, design.field_kind, std::hypot(field.x, field.y), design.object_distance_mm);
+      found = field_angle(file.prescription, lens, std::hypot(field.x, field.y));
     }
-    if (found && std::isfinite(*found)) result.push_back(sign * rounded(petzval::degrees(std::atan(*found))));
+    if (found && std::isfinite(*found)) result.push_back(sign * rounded(petzval::degrees(*found)));
   }
   if (beside > 0) note(file.id + ": fields outside the section y-z are left out: " + std::to_string(beside));
   std::vector<double> once;

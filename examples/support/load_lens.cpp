@@ -13,6 +13,7 @@
 #include "petzval/formats/glass_files.hpp"
 #include "petzval/formats/lens_file.hpp"
 #include "petzval/paraxial/first_order.hpp"
+#include "petzval/pupil/apertures.hpp"
 #include "text.hpp"
 
 namespace examples {
@@ -145,14 +146,9 @@ LoadedLens load_lens(const LensInput& input, std::span<const double> wavelengths
 }
 
 double half_field_deg(const LensFile& file, const petzval::Lens& lens) {
-  const petzval::Prescription& p = file.prescription;
-  if (p.half_field_deg) return *p.half_field_deg;
-  const petzval::Meridian meridian = petzval::main_meridian(lens);
-  const double focal_length = std::abs(petzval::first_order(lens, {}, meridian).effective_focal_length);
-  if (p.image_diagonal_mm && std::isfinite(focal_length)) {
-    return std::round(100 * petzval::degrees(std::atan(*p.image_diagonal_mm / 2 / focal_length))) / 100;
-  }
-  return 10;
+  if (file.prescription.half_field_deg) return *file.prescription.half_field_deg;
+  const auto declared = petzval::declared_half_field(file.prescription, lens);
+  return declared ? std::round(100 * petzval::degrees(*declared)) / 100 : 10;
 }
 
 petzval::CompileOptions compile_options(const LensFile& file, std::optional<double> primary_nm) {

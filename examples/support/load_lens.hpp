@@ -68,7 +68,7 @@ LoadedLens compiled(LensFile file, std::span<const double> wavelengths_nm, std::
 /// Both.
 LoadedLens load_lens(const LensInput& input, std::span<const double> wavelengths_nm);
 
-/// As declared, or by the diagonal of the image, or 10 degrees if the source has neither. lens: compiled from the file.
+/// The largest field that the source declares, else 10 degrees. lens: compiled from the file.
 double half_field_deg(const LensFile& file, const petzval::Lens& lens);
 
 /// With the glasses of the file; the n_d/V_d model replaces those that are in no table.

@@ -82,41 +82,6 @@ Lens with_declared_stop(const Lens& lens, const Prescription& rows) {
   }
 }
 
-/// Distance of the object plane, and the largest field that the prescription declares, as an angle (rad).
-struct DeclaredField {
-  double z = -infinity;
-  double half_rad = default_half_field_rad;
-};
-
-DeclaredField declared_field(const Prescription& rows, const Lens& lens) {
-  DeclaredField result;
-  const DesignData& design = rows.design;
-  result.z = object_z(rows);
-  const Meridian meridian = main_meridian(lens);
-  const FirstOrder first = first_order(lens, {}, meridian);
-  const double to_pupil = pupils(lens, {}, meridian).entrance.z - result.z;  // from the object
-  double largest = 0;
-  for (const DesignField& field : design.fields) largest = std::max(largest, std::hypot(field.x, field.y));
-  const auto of_image_height = [&](double height) {
-    if (std::isinf(result.z)) return std::atan(std::abs(height / first.effective_focal_length));
-    // Magnification of a finite object: f / (distance from the front focus).
-    const double size = height * std::abs((first.front_focal_z - result.z) / first.effective_focal_length);
-    return std::atan(std::abs(size / to_pupil));
-  };
-  if (rows.half_field_deg) {
-    result.half_rad = *rows.half_field_deg * std::numbers::pi / 180;
-  } else if (largest > 0 && design.field_kind == FieldKind::angle_deg) {
-    result.half_rad = largest * std::numbers::pi / 180;
-  } else if (largest > 0 && design.field_kind == FieldKind::object_height && std::isfinite(result.z)) {
-    result.half_rad = std::atan(std::abs(largest / to_pupil));
-  } else if (largest > 0 && design.field_kind != FieldKind::object_height && !first.afocal) {
-    result.half_rad = of_image_height(largest);
-  } else if (rows.image_diagonal_mm && !first.afocal) {
-    result.half_rad = of_image_height(*rows.image_diagonal_mm / 2);
-  }
-  return result;
-}
-
 /// The heights at which the rays of a beam meet the surfaces of a lens.
 class BeamHeights {
  public:
@@ -174,7 +139,7 @@ std::vector<double> rims_of(const Lens& given, const Prescription& rows) {
   if (!has_pupils(lens)) return rims;
   BeamHeights beam(lens);
   try {
-    const auto [z, half] = declared_field(rows, lens);
+    const double z = object_z(rows), half = declared_half_field(rows, lens).value_or(default_half_field_rad);
     constexpr std::array parts{0.0, 0.5, 0.7, 0.85, 1.0};
     const bool round = with_iris(lens, {}).rotationally_symmetric();
     for (const double part : parts) {
@@ -196,6 +161,28 @@ std::vector<double> rims_of(const Lens& given, const Prescription& rows) {
 }
 
 }  // namespace
+
+std::optional<double> declared_field(const Prescription& rows, const Lens& lens, FieldKind kind, double value) {
+  if (kind == FieldKind::angle_deg) return value * std::numbers::pi / 180;
+  const double z = object_z(rows);
+  const Meridian meridian = main_meridian(lens);
+  const FirstOrder first = first_order(lens, {}, meridian);
+  const bool of_image = kind != FieldKind::object_height;
+  if (of_image ? first.afocal : std::isinf(z)) return {};
+  if (std::isinf(z)) return std::atan(std::abs(value / first.effective_focal_length));
+  // Magnification of a finite object: f / (distance from the front focus).
+  const double size = of_image ? value * (first.front_focal_z - z) / first.effective_focal_length : value;
+  return std::atan(std::abs(size / (pupils(lens, {}, meridian).entrance.z - z)));
+}
+
+std::optional<double> declared_half_field(const Prescription& rows, const Lens& lens) {
+  if (rows.half_field_deg) return declared_field(rows, lens, FieldKind::angle_deg, *rows.half_field_deg);
+  double largest = 0;
+  for (const DesignField& field : rows.design.fields) largest = std::max(largest, std::hypot(field.x, field.y));
+  const auto declared = largest > 0 ? declared_field(rows, lens, rows.design.field_kind, largest) : std::nullopt;
+  if (declared || !rows.image_diagonal_mm) return declared;
+  return declared_field(rows, lens, FieldKind::paraxial_image, *rows.image_diagonal_mm / 2);
+}
 
 Lens compile(const Prescription& prescription, std::span<const double> wavelengths_nm, const CompileOptions& options) {
   const Lens given = lens_detail::compile_as_given(prescription, wavelengths_nm, options);

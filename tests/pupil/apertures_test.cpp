@@ -235,5 +235,35 @@ TEST(Apertures, GiveOptilandsTripletTheSpotsOfOpticStudio) {
   }
 }
 
+/// An object and its paraxial image are one field, and so are an angle and the image of a far object.
+TEST(DeclaredField, ObjectsAndTheirImagesAreSeenUnderOneAngle) {
+  Prescription p = testing::data_prescription("cooke_triplet_50mm_f5");
+  const Lens lens = compile(p);
+  const double focal_length = first_order(lens).effective_focal_length;
+  EXPECT_NEAR(*declared_field(p, lens, FieldKind::paraxial_image, focal_length * std::tan(0.3)), 0.3, 1e-12);
+  EXPECT_NEAR(*declared_field(p, lens, FieldKind::angle_deg, degrees(0.3)), 0.3, 1e-15);
+  EXPECT_FALSE(declared_field(p, lens, FieldKind::object_height, 1));
+  p.design.object_distance_mm = 700;
+  const double magnification =
+      (paraxial_image_z(lens, -700) - first_order(lens).rear_focal_z) / first_order(lens).effective_focal_length;
+  const double of_object = *declared_field(p, lens, FieldKind::object_height, 120);
+  EXPECT_NEAR(std::tan(of_object), 120 / (700 + pupils(lens).entrance.z), 1e-12);
+  EXPECT_NEAR(*declared_field(p, lens, FieldKind::real_image_height, 120 * magnification), of_object, 1e-12);
+}
+
+TEST(DeclaredField, TheAngleComesBeforeFieldsAndFieldsBeforeTheImageDiagonal) {
+  Prescription p = testing::data_prescription("cooke_triplet_50mm_f5");
+  const Lens lens = compile(p);
+  p.design = {};
+  p.half_field_deg.reset(), p.image_diagonal_mm.reset();
+  EXPECT_FALSE(declared_half_field(p, lens));
+  p.image_diagonal_mm = 2 * first_order(lens).effective_focal_length * std::tan(0.2);
+  EXPECT_NEAR(*declared_half_field(p, lens), 0.2, 1e-12);
+  p.design.fields = {{.y = 3}, {.x = 3, .y = 4}};
+  EXPECT_NEAR(*declared_half_field(p, lens), radians(5), 1e-15);
+  p.half_field_deg = 12;
+  EXPECT_NEAR(*declared_half_field(p, lens), radians(12), 1e-15);
+}
+
 }  // namespace
 }  // namespace petzval

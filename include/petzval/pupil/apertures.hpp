@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <optional>
+
 #include "petzval/core/export.hpp"
 #include "petzval/lens/lens.hpp"
 #include "petzval/prescription/prescription.hpp"
@@ -27,5 +29,18 @@ namespace petzval {
 /// @return         the prescription; `semi_diameter_computed` is true in the rows that got an aperture
 /// @throws Error   if compile() does
 PETZVAL_API Prescription with_apertures(const Prescription& prescription, const CompileOptions& options = {});
+
+/// Angle from the axis under which the entrance pupil sees a field of a design, to first order.
+///
+/// @param rows   gives the distance of the object
+/// @param lens   the lens compiled from `rows`
+/// @param value  of the kind: degrees, or the height of the object or the image (mm)
+/// @return       the angle (rad); nullopt for an object height at infinity, and for an image height of an afocal lens
+PETZVAL_API std::optional<double> declared_field(const Prescription& rows, const Lens& lens, FieldKind kind,
+                                                 double value);
+
+/// The largest field that a prescription declares (rad): `half_field_deg`, the fields of `design`, or the field whose
+/// image lies at half of `image_diagonal_mm`; nullopt if it declares none.
+PETZVAL_API std::optional<double> declared_half_field(const Prescription& rows, const Lens& lens);
 
 }  // namespace petzval
