@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "../data_lenses.hpp"
+#include "../expect_error.hpp"
 #include "../message.hpp"
 #include "camera/make_model.hpp"
 #include "petzval/camera/camera.hpp"
@@ -24,6 +25,7 @@ namespace {
 
 using testing::data_lens;
 using testing::data_prescription;
+using testing::expect_tokens;
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
 Lens focused(const std::string& id, double distance) {
@@ -202,13 +204,11 @@ TEST(ChooseModel, GivesReasonsWithNumbers) {
   const ModelChoice& choice = usual_choices()[all];
   ASSERT_FALSE(choice.reasons.empty());
   EXPECT_TRUE(choice.reasons[0].starts_with(name(choice.model))) << choice.reasons[0];
-  EXPECT_NE(choice.reasons[0].find("(budget 0.25 px)"), std::string::npos) << choice.reasons[0];
-  EXPECT_NE(choice.reasons[0].find("(budget 1 %)"), std::string::npos) << choice.reasons[0];
+  expect_tokens(choice.reasons[0], {0.25, 1});  // the budget, px and per cent
   for (const ModelCandidate& c : choice.table) {
     const bool faster = c.ns_per_ray < candidate_of(choice, choice.model).ns_per_ray;
-    const bool named = std::ranges::any_of(choice.reasons, [&](const std::string& r) {
-      return r.starts_with(std::string(name(c.model)) + " (") && r.find("will not do") != std::string::npos;
-    });
+    const bool named = std::ranges::any_of(
+        choice.reasons, [&](const std::string& r) { return r.starts_with(std::string(name(c.model)) + " ("); });
     EXPECT_EQ(faster, named) << name(c.model);
   }
 }
@@ -231,7 +231,7 @@ TEST(ChooseModel, WantsThePupilsOfTheLensUnlessToldOtherwise) {
   }
   EXPECT_TRUE(candidate_of(choices[1], ModelKind::thin).inside);
   EXPECT_GT(candidate_of(choices[1], choices[1].model).bound_pupil_shape, 0.5) << name(choices[1].model);
-  EXPECT_TRUE(says(choices[0].reasons, "pupil shape by up to"));
+  EXPECT_TRUE(says(choices[0].reasons, "pupil shape"));
 }
 
 TEST(ChooseModel, SaysWhatElseIsNotNeeded) {
@@ -243,7 +243,7 @@ TEST(ChooseModel, SaysWhatElseIsNotNeeded) {
   const std::vector<ErrorBudget> budgets{
       {.max_px = 20, .pupil_shape = 0.2}, {.max_px = 1e-3, .pupil_shape = 1e-3}, {.max_px = 20, .pupil_shape = {}}};
   const auto loose = choose_models(lens, {.near_mm = 1500, .film = film, .f_number = 16}, budgets);
-  for (const char* part : {"3 wavelengths: 587.6 nm", "a pupil for each field", "distortion"}) {
+  for (const char* part : {"587.6", "a pupil for each field", "distortion"}) {
     EXPECT_TRUE(says(loose[0].not_needed, part)) << part;
   }
   EXPECT_TRUE(loose[1].not_needed.empty()) << loose[1].not_needed[0];
@@ -263,7 +263,7 @@ TEST(ChooseModel, LeavesOutWhatCannotBeBuilt) {
   EXPECT_FALSE(candidate_of(choice, ModelKind::thin_two_disc).available);
   EXPECT_FALSE(candidate_of(choice, ModelKind::thin_two_disc).inside);
   EXPECT_FALSE(candidate_of(choice, ModelKind::thin_two_disc).remark.empty());
-  EXPECT_TRUE(says(choice.reasons, "thin_two_disc cannot be built: "));
+  EXPECT_TRUE(says(choice.reasons, "thin_two_disc"));
 }
 
 TEST(ChooseModel, StopsTheLensDown) {
@@ -290,15 +290,15 @@ TEST(ChooseModel, RefusesImpossibleScenesAndBudgets) {
     return testing::message([&] { choose_model(lens, scene, budget); });
   };
   for (const double near : {0.0, -1.0, std::nan("")}) {
-    EXPECT_NE(refusal({.near_mm = near}, {}).find("near_mm = "), std::string::npos) << near;
+    expect_tokens(refusal({.near_mm = near}, {}), {"near_mm"});
   }
-  EXPECT_NE(refusal({.near_mm = 60, .origin = DistanceOrigin::film}, {}).find("near_mm = 60"), std::string::npos);
-  EXPECT_NE(refusal({.near_mm = 2000, .far_mm = 1000}, {}).find("far_mm = 1000"), std::string::npos);
-  EXPECT_NE(refusal({.near_mm = 2000, .wavelengths_nm = {400}}, {}).find("400"), std::string::npos);
-  EXPECT_NE(refusal({.near_mm = 2000, .film = {.rows = 0}}, {}).find("3840 by 0 pixels"), std::string::npos);
-  EXPECT_NE(refusal(usual(), {.max_px = -1}).find("max_px is -1"), std::string::npos);
-  EXPECT_NE(refusal(usual(), {.pupil_shape = std::nan("")}).find("pupil_shape is nan"), std::string::npos);
-  EXPECT_NE(refusal({.near_mm = 2000, .f_number = 0.5}, {}).find("fast"), std::string::npos);
+  expect_tokens(refusal({.near_mm = 60, .origin = DistanceOrigin::film}, {}), {"near_mm", 60});
+  expect_tokens(refusal({.near_mm = 2000, .far_mm = 1000}, {}), {"far_mm", 1000});
+  expect_tokens(refusal({.near_mm = 2000, .wavelengths_nm = {400}}, {}), {400});
+  expect_tokens(refusal({.near_mm = 2000, .film = {.rows = 0}}, {}), {3840, 0});
+  expect_tokens(refusal(usual(), {.max_px = -1}), {"max_px", -1});
+  expect_tokens(refusal(usual(), {.pupil_shape = std::nan("")}), {"pupil_shape", "nan"});
+  expect_tokens(refusal({.near_mm = 2000, .f_number = 0.5}, {}), {"f", 0.5});
 }
 
 }  // namespace

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "../data_lenses.hpp"
-#include "../message.hpp"
+#include "../expect_error.hpp"
 #include "core/low_discrepancy.hpp"
 #include "distorting_lenses.hpp"
 #include "petzval/analysis/lens_metadata.hpp"
@@ -23,7 +23,7 @@ namespace {
 
 using testing::BallAndPlate;
 using testing::data_lens;
-using testing::message;
+using testing::expect_error;
 using testing::small_film;
 
 double far_apart(const Vec2<double>& a, const Vec2<double>& b) { return std::hypot(a.x - b.x, a.y - b.y); }
@@ -271,11 +271,11 @@ TEST(LensDistortion, OverscanHoldsAllThatTheFilmSees) {
 TEST(LensDistortion, RefusesWhatHasNoPinhole) {
   const Lens lens = data_lens("biogon_35mm_f2.8");
   const auto behind = [&] { LensDistortion(Camera(lens, small_film(36)), {.subject_z_mm = 5.0}); };
-  EXPECT_EQ(message(behind).find(lens.name() + ": distortion: the subject is at z = 5 mm, wanted one in front"), 0);
+  expect_error(behind, {lens.name(), "distortion", "subject", 5});
   Film beside = small_film(4);
   beside.shift_x_mm = 5;
   const auto without_axis = [&] { overscan(LensDistortion(Camera(lens, beside))); };
-  EXPECT_NE(message(without_axis).find("wanted the axis within the picture"), std::string::npos);
+  expect_error(without_axis, {lens.name(), "axis"});
 }
 
 }  // namespace

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "../data_lenses.hpp"
+#include "../expect_error.hpp"
 #include "../message.hpp"
 #include "petzval/core/error.hpp"
 #include "petzval/glass/glass.hpp"
@@ -23,6 +24,8 @@ namespace {
 
 using Kind = FindingKind;
 using testing::data_prescription;
+using testing::expect_tokens;
+using testing::Token;
 
 /// f = 100 mm, f/5, the film at the paraxial focus: no findings.
 Prescription singlet() {
@@ -45,9 +48,6 @@ TEST(Lint, FindsAFilmFarFromTheImageCircle) {
     EXPECT_EQ(findings[0].kind, Kind::film_size);
     EXPECT_NEAR(findings[0].found, width * std::hypot(1, 1 / 1.5), 1e-9 * width);
     EXPECT_EQ(findings[0].wanted, circle);
-    EXPECT_NE(findings[0].message.find(width > 36 ? "wanted a smaller film" : "wanted a larger film"),
-              std::string::npos)
-        << findings[0].message;
   }
   for (const double width : {1.8, 6.4, 36.0, 60.0, 110.0}) {
     EXPECT_TRUE(lint(lens, {.width_mm = width, .height_mm = width / 1.5}).empty()) << width;
@@ -63,8 +63,7 @@ TEST(Lint, FindsPixelsThatAreNotSquare) {
   EXPECT_EQ(findings[0].kind, Kind::pixel_shape);
   EXPECT_NEAR(findings[0].found, 0.84375, 1e-15);
   EXPECT_EQ(findings[0].wanted, 1);
-  EXPECT_EQ(findings[0].message,
-            "pixels are 0.01875 by 0.02222 mm, wanted square ones: 36 by 20.25 mm fit 1920 by 1080");
+  expect_tokens(findings[0].message, {0.01875, 0.02222, 20.25, 1920, 1080});
   EXPECT_EQ(lint(lens, {.width_mm = 360, .height_mm = 240, .columns = 1080, .rows = 1920}).size(), 2u);
   EXPECT_EQ(lint(with_iris(lens, {.blades = 6}), {.columns = 1920, .rows = 1080}).size(), 1u);
   EXPECT_EQ(lint(lens, {.columns = 3840, .rows = 2590}).size(), 1u);
@@ -77,23 +76,22 @@ TEST(Lint, FindsPixelsThatAreNotSquare) {
 TEST(Lint, RefusesAFilmThatNoCameraTakes) {
   const Lens lens = testing::data_lens("double_gauss_100mm_f2.0");
   const auto refusal = [&](const Film& film) { return testing::message([&] { lint(lens, film); }); };
-  EXPECT_EQ(
-      refusal({.width_mm = 0}),
-      lens.name() + ": film: it is 0 by 24 mm, wanted positive lengths up to 1e+09 mm and an area that is a number");
+  expect_tokens(refusal({.width_mm = 0}), {lens.name(), "film", 0, 24});
   for (const Film& film :
        {Film{.width_mm = std::nan("")}, Film{.height_mm = -24}, Film{.columns = 0}, Film{.margin_mm = -1},
         Film{.shift_x_mm = std::nan("")}, Film{.tilt_rad = 1.6}, Film{.width_mm = 2e9}, Film{.margin_mm = 2e9},
         Film{.shift_x_mm = -2e9}, Film{.shift_y_mm = 2e9}, Film{.z_mm = -2e9}, Film{.travel_mm = 2e9}}) {
-    EXPECT_EQ(refusal(film).find(lens.name() + ": film: it"), 0u) << refusal(film);
+    expect_tokens(refusal(film), {lens.name(), "film"});
   }
 }
 
-void expect_one(const Prescription& p, Kind kind, std::optional<int> surface, const std::string& message) {
+void expect_one(const Prescription& p, Kind kind, std::optional<int> surface, std::vector<Token> tokens) {
   const std::vector<Finding> findings = lint(p);
   ASSERT_EQ(findings.size(), 1u);
   EXPECT_EQ(findings[0].kind, kind);
   EXPECT_EQ(findings[0].surface, surface);
-  EXPECT_EQ(findings[0].message, message);
+  if (surface) tokens.push_back("surface " + std::to_string(*surface));
+  expect_tokens(findings[0].message, tokens);
 }
 
 TEST(Lint, FindsNothingInASoundLens) { EXPECT_TRUE(lint(singlet()).empty()); }
@@ -103,7 +101,7 @@ TEST(Lint, FindsAnotherFocalLengthThanDeclared) {
   p.focal_length_mm = 101.9;
   EXPECT_TRUE(lint(p).empty());
   p.focal_length_mm = 103;
-  expect_one(p, Kind::focal_length, {}, "focal length is 100 mm, declared 103 mm");
+  expect_one(p, Kind::focal_length, {}, {"focal length", 100, 103});
   EXPECT_NEAR(lint(p)[0].found, 100, 1e-12);
   EXPECT_EQ(lint(p)[0].wanted, 103);
   p.focal_length_mm.reset();
@@ -128,10 +126,8 @@ Prescription with_rims(double factor) {
 }
 
 TEST(Lint, FindsLengthsInAnotherUnit) {
-  expect_one(in_another_unit(25.4), Kind::units, {},
-             "focal length is 2540 mm, declared 100 mm: lengths are 25.4 times what they should be");
-  expect_one(in_another_unit(0.1), Kind::units, {},
-             "focal length is 10 mm, declared 100 mm: lengths are 0.1 times what they should be");
+  expect_one(in_another_unit(25.4), Kind::units, {}, {"focal length", 2540, 100, 25.4});
+  expect_one(in_another_unit(0.1), Kind::units, {}, {"focal length", 10, 100, 0.1});
   EXPECT_EQ(lint(in_another_unit(20)).at(0).kind, Kind::focal_length);
 }
 
@@ -147,8 +143,8 @@ TEST(Lint, FindsEveryLensInInches) {
 }
 
 TEST(Lint, FindsDiametersInThePlaceOfSemiDiameters) {
-  expect_one(with_rims(2), Kind::apertures, {}, "f-number is 2.5, declared 5: semi-diameters are diameters");
-  expect_one(with_rims(0.5), Kind::apertures, {}, "f-number is 10, declared 5: semi-diameters are halves of them");
+  expect_one(with_rims(2), Kind::apertures, {}, {"f-number", 2.5, 5, "diameters"});
+  expect_one(with_rims(0.5), Kind::apertures, {}, {"f-number", 10, 5, "halves"});
   EXPECT_EQ(lint(with_rims(1.5)).at(0).kind, Kind::f_number);
   // Were it so, the f-number would be another.
   EXPECT_EQ(lint(with_rims(1.8)).at(0).kind, Kind::f_number);
@@ -160,8 +156,7 @@ TEST(Lint, FindsAStopThatDoesNotLimitTheBeam) {
   p.surfaces[1].semi_diameter = 7.5;
   EXPECT_TRUE(lint(p).empty());
   p.surfaces[1].semi_diameter = 5;
-  expect_one(p, Kind::idle_stop, 0,
-             "surface 0: the stop lets an axial beam of 10 mm radius pass, surface 1 clips it at 5 mm");
+  expect_one(p, Kind::idle_stop, 0, {"stop", 10, "surface 1", 5});
   p.surfaces[0].semi_diameter.reset();
   EXPECT_TRUE(lint(p).empty());
 }
@@ -179,12 +174,12 @@ TEST(Lint, FindsIndicesThatAreNotThoseOfTheGlass) {
     }
     return messages;
   };
-  using Messages = std::vector<std::string>;
-  EXPECT_EQ(index_of({.glass = "N-BK7", .catalogue = "schott", .nd = 1.52}), Messages{});
-  EXPECT_EQ(index_of({.glass = "N-BK7", .catalogue = "schott", .nd = 1.6}),
-            Messages{"surface 0: n_d is 1.6, that of N-BK7 is 1.5168"});
-  EXPECT_EQ(index_of({.glass = "N-BK7", .nd = 1.6}), Messages{});
-  EXPECT_EQ(index_of({.glass = "N-NONE", .catalogue = "schott", .nd = 1.6}), Messages{});
+  EXPECT_TRUE(index_of({.glass = "N-BK7", .catalogue = "schott", .nd = 1.52}).empty());
+  const auto found = index_of({.glass = "N-BK7", .catalogue = "schott", .nd = 1.6});
+  ASSERT_EQ(found.size(), 1u);
+  expect_tokens(found[0], {"surface 0", "n_d", 1.6, "N-BK7", 1.5168});
+  EXPECT_TRUE(index_of({.glass = "N-BK7", .nd = 1.6}).empty());
+  EXPECT_TRUE(index_of({.glass = "N-NONE", .catalogue = "schott", .nd = 1.6}).empty());
 }
 
 TEST(Lint, KindsHaveNamesOfTheirOwn) {
@@ -197,25 +192,24 @@ TEST(Lint, KindsHaveNamesOfTheirOwn) {
 }
 
 TEST(Repair, MendsWhatHasOneCure) {
-  const auto changes = [](const Repaired& repaired) {
-    std::vector<std::string> result;
-    for (const ImportWarning& change : repaired.changes) result.push_back(change.command + ": " + change.message);
-    return result;
+  const auto expect_changes = [](const Repaired& repaired, const std::vector<std::vector<Token>>& tokens) {
+    ASSERT_EQ(repaired.changes.size(), tokens.size());
+    for (std::size_t i = 0; i < tokens.size(); ++i) {
+      expect_tokens(repaired.changes[i].command + ": " + repaired.changes[i].message, tokens[i]);
+    }
   };
-  using Changes = std::vector<std::string>;
   EXPECT_EQ(repair(singlet()).prescription, singlet());
   EXPECT_TRUE(repair(singlet()).changes.empty());
 
   Repaired repaired = repair(in_another_unit(1000));
-  EXPECT_EQ(changes(repaired), Changes{"units: focal length is 100000 mm, declared 100 mm: lengths are 1000 times what "
-                                       "they should be; all lengths are scaled"});
+  expect_changes(repaired, {{"units", "focal length", 100000, 100, 1000}});
   EXPECT_NEAR(repaired.prescription.surfaces[1].radius, -50, 1e-12);
   EXPECT_EQ(repaired.prescription.focal_length_mm, 100);
 
   for (const double factor : {0.5, 2.0}) {
     repaired = repair(with_rims(factor));
     EXPECT_EQ(repaired.prescription, with_rims(1));
-    EXPECT_NE(changes(repaired).at(0).find(factor > 1 ? "; they are halved" : "; they are doubled"), std::string::npos);
+    expect_changes(repaired, {{"apertures", factor > 1 ? "halved" : "doubled"}});
   }
 
   Prescription p = singlet();
@@ -225,11 +219,7 @@ TEST(Repair, MendsWhatHasOneCure) {
   EXPECT_NEAR(repaired.prescription.surfaces[1].thickness, 100, 1e-9);
   repaired.prescription.surfaces[1].thickness = 100;
   EXPECT_EQ(repaired.prescription, singlet());
-  EXPECT_EQ(changes(repaired),
-            (Changes{"several_stops: surface 1: is the last of 2 marked as stop; the first is used; the marks behind "
-                     "the first are taken off",
-                     "image_distance: surface 1: the film is 90 mm behind it and the paraxial focus 100 mm; the film "
-                     "is put there"}));
+  expect_changes(repaired, {{"several_stops", "surface 1", 2}, {"image_distance", "surface 1", 90, 100}});
 }
 
 TEST(Repair, LeavesWhatItWouldMakeInvalidAndPositions) {
@@ -254,7 +244,7 @@ TEST(Repair, LeavesWhatItWouldMakeInvalidAndPositions) {
 TEST(Lint, FindsAnotherFNumberThanDeclared) {
   Prescription p = singlet();
   p.f_number = 4;
-  expect_one(p, Kind::f_number, {}, "f-number is 5, declared 4");
+  expect_one(p, Kind::f_number, {}, {"f-number", 5, 4});
   p.surfaces[0].semi_diameter.reset();  // an unlimited stop gives no f-number
   EXPECT_TRUE(lint(p).empty());
 }
@@ -267,7 +257,7 @@ TEST(Lint, FindsSurfacesThatCross) {
   p.surfaces[1].semi_diameter = 19;
   EXPECT_TRUE(lint(p).empty());
   p.surfaces[1].semi_diameter = 21;
-  expect_one(p, Kind::overlap, 0, "surface 0: overlaps the next surface by 0.623795 mm at a height of 21 mm");
+  expect_one(p, Kind::overlap, 0, {0.623795, 21});
 }
 
 TEST(Lint, LooksForOverlapsOutsideCentralObscurationsOnly) {
@@ -336,8 +326,7 @@ TEST(Lint, FindsARimBeyondTheEndOfAnAsphere) {
 TEST(Lint, FindsASemiDiameterBeyondTheSurface) {
   Prescription p = singlet();
   p.surfaces[1].semi_diameter = 51;
-  expect_one(p, Kind::semi_diameter, 1,
-             "surface 1: semi_diameter is 51 mm, wanted at most 50 mm, where the surface ends");
+  expect_one(p, Kind::semi_diameter, 1, {"semi_diameter", 51, 50});
   p.surfaces[1].conic = -1;  // a paraboloid has no equator
   EXPECT_TRUE(lint(p).empty());
   p.surfaces[1].conic = 3;
@@ -349,7 +338,7 @@ TEST(Lint, FindsASemiDiameterBeyondTheSurface) {
 TEST(Lint, FindsARimThatOnlyTheAxisPasses) {
   Prescription p = singlet();
   p.surfaces[1].semi_diameter = 0;
-  expect_one(p, Kind::semi_diameter, 1, "surface 1: semi_diameter is 0 mm; only the axial ray passes");
+  expect_one(p, Kind::semi_diameter, 1, {"semi_diameter", 0});
   EXPECT_EQ(lint(p)[0].found, 0);
   EXPECT_EQ(lint(p)[0].wanted, 50);
   p = singlet();
@@ -364,15 +353,15 @@ TEST(Lint, FindsARimThatOnlyTheAxisPasses) {
 TEST(Lint, FindsNoStopAndSeveral) {
   Prescription p = singlet();
   p.surfaces[0].stop = false;
-  expect_one(p, Kind::no_stop, {}, "no surface is marked as stop; the one that clips the axial beam first is used");
+  expect_one(p, Kind::no_stop, {}, {"stop"});
   p.surfaces[0].stop = p.surfaces[1].stop = true;
-  expect_one(p, Kind::several_stops, 1, "surface 1: is the last of 2 marked as stop; the first is used");
+  expect_one(p, Kind::several_stops, 1, {"stop", 2});
 }
 
 TEST(Lint, FindsAFilmAwayFromTheFocus) {
   Prescription p = singlet();
   p.surfaces[1].thickness = 97;
-  expect_one(p, Kind::image_distance, 1, "surface 1: the film is 97 mm behind it and the paraxial focus 100 mm");
+  expect_one(p, Kind::image_distance, 1, {"film", 97, "focus", 100});
   p.surfaces[1].thickness = 101;
   EXPECT_TRUE(lint(p).empty());
 }
@@ -382,7 +371,7 @@ TEST(Lint, TakesALensWithoutFocalLengthOrRims) {
   p.surfaces = {{.medium = {.nd = 1.5}, .stop = true}};
   EXPECT_TRUE(lint(p).empty());
   p.focal_length_mm = 50;
-  expect_one(p, Kind::focal_length, {}, "focal length is inf mm, declared 50 mm");
+  expect_one(p, Kind::focal_length, {}, {"focal length", "inf", 50});
 }
 
 TEST(Lint, RefusesAnInvalidPrescriptionOnly) {

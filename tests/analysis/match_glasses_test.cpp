@@ -8,12 +8,14 @@
 #include <filesystem>
 
 #include "../data_lenses.hpp"
-#include "../message.hpp"
+#include "../expect_error.hpp"
 #include "petzval/glass/glass.hpp"
 #include "petzval/lens/lens.hpp"
 #include "petzval/paraxial/first_order.hpp"
 
 namespace {
+
+using petzval::testing::expect_error;
 
 using petzval::GlassCatalogue;
 using petzval::match_glasses;
@@ -78,7 +80,7 @@ TEST(MatchGlasses, MediaFarFromEveryGlassStay) {
   EXPECT_EQ(match_glasses(p, glasses(), {.nd = 0.1, .vd = 100}).matched.size(), 1u);
   EXPECT_LE(match_glasses(doublet(), glasses(), {.nd = 0, .vd = 0}).matched.size(), 2u);
   EXPECT_EQ(match_glasses(doublet(), GlassCatalogue()).unmatched.size(), 2u);
-  EXPECT_NE(petzval::testing::message([&] { match_glasses(p, glasses(), {.nd = -1}); }).find("-1"), std::string::npos);
+  expect_error([&] { match_glasses(p, glasses(), {.nd = -1}); }, {"nd", -1});
   p = doublet();
   p.reference_wavelength_nm = 546.074;
   EXPECT_EQ(match_glasses(p, glasses()).unmatched.size(), 2u);

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "../data_lenses.hpp"
+#include "../expect_error.hpp"
 #include "../message.hpp"
 #include "camera/exact_model.hpp"
 #include "camera/paraxial_model.hpp"
@@ -25,6 +26,7 @@ namespace {
 
 using testing::data_lens;
 using testing::data_prescription;
+using testing::expect_tokens;
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
 Lens focused(const std::string& id, double distance, double f_number = 0) {
@@ -146,18 +148,6 @@ TEST(ModelError, OfPolynomialsFallsWithTheDegree) {
   }
 }
 
-TEST(ModelError, IsTheSameForAnyNumberOfThreads) {
-  const Lens lens = focused("double_gauss_52mm_f1.8", 3000);
-  ErrorSamples samples = at(lens, {1500, infinity});
-  const ModelError one = model_error(lens, {}, ModelKind::polynomial(5), samples);
-  samples.threads = 3;
-  const ModelError three = model_error(lens, {}, ModelKind::polynomial(5), samples);
-  EXPECT_EQ(one.all.rms_mm, three.all.rms_mm);
-  EXPECT_EQ(one.all.max_mm, three.all.max_mm);
-  EXPECT_EQ(one.pupil_shape, three.pupil_shape);
-  EXPECT_EQ(one.exposure, three.exposure);
-}
-
 /// Two sets of samples find the same largest errors.
 TEST(ModelError, HardlyDependsOnTheSamples) {
   const Lens lens = focused("double_gauss_52mm_f1.8", 3000);
@@ -229,20 +219,17 @@ TEST(ModelError, RefusesWhatItCannotMeasure) {
   const auto refusal = [&](const Film& film, ModelKind model, const ErrorSamples& samples) {
     return testing::message([&] { model_error(lens, film, model, samples); });
   };
-  EXPECT_NE(refusal({}, ModelKind::thick, {}).find("no depths"), std::string::npos);
+  expect_tokens(refusal({}, ModelKind::thick, {}), {"no depths"});
   for (const double z : {0.0, 10.0, std::nan("")}) {
-    EXPECT_NE(refusal({}, ModelKind::thick, {.depths_z = {z}}).find("in front of the lens"), std::string::npos) << z;
+    expect_tokens(refusal({}, ModelKind::thick, {.depths_z = {z}}), {z, "front"});
   }
-  EXPECT_NE(refusal({}, ModelKind::thick, {.depths_z = {-1000}, .wavelengths = {1}}).find("wavelength 1"),
-            std::string::npos);
+  expect_tokens(refusal({}, ModelKind::thick, {.depths_z = {-1000}, .wavelengths = {1}}), {"wavelength 1"});
   for (const std::size_t points :
        {std::size_t{0}, (std::size_t{1} << 20) + 1, std::numeric_limits<std::size_t>::max()}) {
-    EXPECT_NE(refusal({}, ModelKind::thick, {.depths_z = {-1000}, .film_points = points}).find(", wanted 1 to 1048576"),
-              std::string::npos);
+    expect_tokens(refusal({}, ModelKind::thick, {.depths_z = {-1000}, .film_points = points}), {"film points", points});
   }
-  EXPECT_NE(refusal({.width_mm = 0}, ModelKind::thick, {.depths_z = {-1000}}).find("film: it is 0 by 24"),
-            std::string::npos);
-  EXPECT_NE(refusal({.tilt_rad = 0.1}, ModelKind::thick, {.depths_z = {-1000}}).find("tilted"), std::string::npos);
+  expect_tokens(refusal({.width_mm = 0}, ModelKind::thick, {.depths_z = {-1000}}), {"film", 0, 24});
+  expect_tokens(refusal({.tilt_rad = 0.1}, ModelKind::thick, {.depths_z = {-1000}}), {"tilted"});
   const Lens cylinders = focused("anamorphic_60mm_2x", 3000);
   EXPECT_THROW(model_error(cylinders, {}, ModelKind::pinhole, at(cylinders, {3000})), Error);
 }

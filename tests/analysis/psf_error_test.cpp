@@ -7,13 +7,15 @@
 #include <numbers>
 
 #include "../data_lenses.hpp"
-#include "../message.hpp"
+#include "../expect_error.hpp"
 #include "petzval/analysis/psf.hpp"
 #include "petzval/focus/focus.hpp"
 #include "petzval/pupil/f_number.hpp"
 
 namespace petzval {
 namespace {
+
+using testing::expect_error;
 
 std::array<double, 64> light(const PointImage& image) {
   std::array<double, 64> result{};
@@ -68,8 +70,8 @@ TEST(PsfError, StopsAtTheMostSamples) {
   EXPECT_EQ(sent(100000, 1e-9), 1u << 16);
   EXPECT_EQ(sent(1u << 17, 1), 1u << 14);
   EXPECT_EQ(sent(100000, 0), 100000u);
-  EXPECT_EQ(testing::message([&] { sent(100, -1); }), "point_image: tolerance is -1, wanted 0 or more");
-  EXPECT_EQ(testing::message([&] { sent(100, std::nan("")); }), "point_image: tolerance is nan, wanted 0 or more");
+  expect_error([&] { sent(100, -1); }, {"point_image", "tolerance", -1});
+  expect_error([&] { sent(100, std::nan("")); }, {"point_image", "tolerance", "nan"});
 }
 
 // Rays that are sent in steps are those that are sent at once.

@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "../data_lenses.hpp"
+#include "../expect_error.hpp"
 #include "../message.hpp"
 #include "petzval/core/error.hpp"
 #include "petzval/core/units.hpp"
@@ -26,6 +27,8 @@ namespace petzval {
 namespace {
 
 using testing::data_lens;
+using testing::expect_error;
+using testing::expect_tokens;
 using testing::front_stop_lens;
 using testing::message;
 
@@ -68,10 +71,7 @@ TEST(PointImage, ACentreMovesThePictureAlone) {
   EXPECT_GT(moved.psf.pixel_mm, own.psf.pixel_mm) << "holds every ray";
   EXPECT_EQ(sum(moved.psf), moved.psf.transmitted[0]);
   for (const double bad : {std::nan(""), infinity}) {
-    EXPECT_NE(message([&] {
-                point_image(lens, point, {.centre = Vec2<double>{0, bad}});
-              }).find("centre is (0, "),
-              std::string::npos);
+    expect_error([&] { point_image(lens, point, {.centre = Vec2<double>{0, bad}}); }, {"centre", bad});
   }
 }
 
@@ -93,7 +93,7 @@ TEST(PointImage, OfOneWavelengthIsItsPlaneOfAll) {
   }
   PsfOptions none = options;
   none.wavelength = 3;
-  EXPECT_NE(message([&] { point_image(lens, point, none); }).find("wavelength"), std::string::npos);
+  expect_error([&] { point_image(lens, point, none); }, {"wavelength"});
 }
 
 TEST(PointImage, CropTakesNothingFromThroughputOrProfile) {
@@ -107,16 +107,6 @@ TEST(PointImage, CropTakesNothingFromThroughputOrProfile) {
   EXPECT_EQ(cropped.throughput, whole.throughput);
   EXPECT_EQ(cropped.radial_profile, whole.radial_profile);
   EXPECT_EQ(cropped.psf.pixel_mm * 64, whole.size.rms_radius);
-}
-
-TEST(PointImage, ThreadsLeaveNoTrace) {
-  const Lens lens = data_lens("double_gauss_100mm_f1.35");
-  const FieldPoint point{radians(8), -1300};
-  const PointImage one = point_image(lens, point, {.samples = 30000, .threads = 1});
-  const PointImage five = point_image(lens, point, {.samples = 30000, .threads = 5});
-  EXPECT_EQ(one.psf.counts, five.psf.counts);
-  EXPECT_EQ(one.size.rms_radius, five.size.rms_radius);
-  EXPECT_EQ(one.radial_profile, five.radial_profile);
 }
 
 TEST(PointImage, SeedsAgreeWithinTheirError) {
@@ -297,18 +287,13 @@ TEST(Psf, AWavelengthThatDoesNotExistHasNoLight) {
 
 TEST(PointImage, RefusesOptionsWithoutAMeaning) {
   const Lens lens = front_stop_lens();
-  const auto message = [&](const PsfOptions& options) -> std::string {
-    try {
-      point_image(lens, {0, -infinity}, options);
-    } catch (const Error& e) {
-      return e.what();
-    }
-    return "no error";
+  const auto refusal = [&](const PsfOptions& options) {
+    return message([&] { point_image(lens, {0, -infinity}, options); });
   };
-  EXPECT_EQ(message({.samples = 0}), "point_image: samples is 0, wanted 1 or more");
-  EXPECT_EQ(message({.pixels = 0}), "point_image: pixels is 0, wanted 1 to 32768");
-  EXPECT_EQ(message({.half_width_mm = -1}), "point_image: half_width_mm is -1, wanted a length, or 0 to fit");
-  EXPECT_EQ(message({.threads = 0}), "trace_bundle: threads is 0, wanted 1 or more");
+  expect_tokens(refusal({.samples = 0}), {"point_image", "samples", 0});
+  expect_tokens(refusal({.pixels = 0}), {"point_image", "pixels", 0});
+  expect_tokens(refusal({.half_width_mm = -1}), {"point_image", "half_width_mm", -1});
+  expect_tokens(refusal({.threads = 0}), {"trace_bundle", "threads", 0});
 }
 
 TEST(PointImage, OfAStopWithoutARimHasTheLightThatRimsLetThrough) {
@@ -320,8 +305,7 @@ TEST(PointImage, OfAStopWithoutARimHasTheLightThatRimsLetThrough) {
   EXPECT_EQ(found.throughput, wanted.throughput);
   EXPECT_EQ(found.psf.ray_weight(0), wanted.psf.ray_weight(0));
   const Lens endless = compile(testing::open_singlet());
-  EXPECT_EQ(testing::message([&] { point_image(endless, point, options); }),
-            testing::message([&] { pupils(endless); }));
+  EXPECT_EQ(message([&] { point_image(endless, point, options); }), message([&] { pupils(endless); }));
 }
 
 }  // namespace

@@ -5,13 +5,19 @@
 
 #include <array>
 #include <barrier>
+#include <cmath>
+#include <string>
 #include <thread>
 #include <vector>
 
 #include "../data_lenses.hpp"
+#include "distorting_lenses.hpp"
 #include "petzval/analysis/lint.hpp"
+#include "petzval/analysis/model_error.hpp"
 #include "petzval/analysis/psf.hpp"
 #include "petzval/analysis/spot.hpp"
+#include "petzval/analysis/st_map.hpp"
+#include "petzval/camera/camera.hpp"
 #include "petzval/core/error.hpp"
 #include "petzval/core/units.hpp"
 #include "petzval/focus/focus.hpp"
@@ -71,6 +77,61 @@ std::vector<double> all_about(const Shared& shared) {
   }
   return numbers;
 }
+
+/// Results of one function on so many threads.
+struct Threaded {
+  const char* name;
+  std::vector<double> (*results)(int threads);
+};
+void PrintTo(const Threaded& test, std::ostream* out) { *out << test.name; }
+
+std::vector<double> numbers(const PointImage& image) {
+  std::vector<double> all(image.psf.counts.begin(), image.psf.counts.end());
+  all.insert(all.end(), image.radial_profile.begin(), image.radial_profile.end());
+  all.push_back(image.size.rms_radius);
+  return all;
+}
+
+class AnyThreads : public ::testing::TestWithParam<Threaded> {};
+
+TEST_P(AnyThreads, GiveTheSameNumbers) {
+  const auto one = GetParam().results(1);
+  EXPECT_FALSE(one.empty());
+  for (const int threads : {3, 5}) EXPECT_EQ(GetParam().results(threads), one) << threads;
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Analysis, AnyThreads,
+    ::testing::Values(
+        Threaded{"point_image_of_a_lens",
+                 [](int threads) {
+                   const Lens lens = testing::data_lens("double_gauss_100mm_f1.35");
+                   return numbers(point_image(lens, {radians(8), -1300}, {.samples = 30000, .threads = threads}));
+                 }},
+        Threaded{
+            "point_image_of_a_camera",
+            [](int threads) {
+              const Lens lens = with_focus(testing::data_lens("double_gauss_100mm_f2.0"), 3000);
+              const Camera camera(lens, {.width_mm = 60, .height_mm = 60}, {.bokeh = {.weight_distribution = 4}});
+              return numbers(point_image(camera, {0.1, -1000}, {.samples = 1 << 14, .pixels = 64, .threads = threads}));
+            }},
+        Threaded{"model_error",
+                 [](int threads) {
+                   const Lens lens = with_focus(testing::data_lens("double_gauss_52mm_f1.8"), 3000);
+                   const ModelError e = model_error(
+                       lens, {}, ModelKind::polynomial(5),
+                       {.depths_z = {lens.film_z() - 1500, -INFINITY}, .film_points = 64, .threads = threads});
+                   return std::vector{e.all.rms_mm, e.all.max_mm, e.pupil_shape, e.exposure};
+                 }},
+        Threaded{"st_maps",
+                 [](int threads) {
+                   const Camera camera(testing::data_lens("double_gauss_100mm_f2_28deg"), testing::small_film(36));
+                   const StMaps maps = st_maps(LensDistortion(camera), {.threads = threads});
+                   std::vector<double> all(maps.undistort.s.begin(), maps.undistort.s.end());
+                   all.insert(all.end(), maps.redistort.t.begin(), maps.redistort.t.end());
+                   return all;
+                 }}),
+    [](const auto& test) { return std::string(test.param.name); });
 
 TEST(Threads, ShareALensAndAGlassCatalogue) {
   const Prescription prescription = testing::data_prescription("double_gauss_100mm_f1.35");

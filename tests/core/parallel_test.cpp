@@ -14,7 +14,7 @@
 #include <thread>
 #include <vector>
 
-#include "petzval/core/error.hpp"
+#include "../expect_error.hpp"
 
 namespace petzval {
 namespace {
@@ -124,17 +124,10 @@ TEST(ParallelFor, LetsTheFirstExceptionOut) {
 TEST(ProcessorThreads, AreAtLeastOne) { EXPECT_GE(processor_threads(), 1); }
 
 TEST(ParallelFor, RefusesWhatMakesNoSense) {
-  const auto message = [](std::size_t block, int threads) -> std::string {
-    try {
-      parallel_for(0, block, threads, [](std::size_t, std::size_t) {});
-    } catch (const Error& e) {
-      return e.what();
-    }
-    return "no error";
-  };
-  EXPECT_EQ(message(0, 1), "parallel_for: block is 0, wanted 1 or more");
-  EXPECT_EQ(message(1, 0), "parallel_for: threads is 0, wanted 1 or more");
-  EXPECT_EQ(message(1, -3), "parallel_for: threads is -3, wanted 1 or more");
+  const auto nothing = [](std::size_t, std::size_t) {};
+  testing::expect_error([&] { parallel_for(0, 0, 1, nothing); }, {"parallel_for", "block", 0});
+  testing::expect_error([&] { parallel_for(0, 1, 0, nothing); }, {"parallel_for", "threads", 0});
+  testing::expect_error([&] { parallel_for(0, 1, -3, nothing); }, {"parallel_for", "threads", -3});
 }
 
 }  // namespace

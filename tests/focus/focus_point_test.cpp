@@ -10,12 +10,15 @@
 #include <vector>
 
 #include "../data_lenses.hpp"
+#include "../expect_error.hpp"
 #include "../message.hpp"
 #include "petzval/core/error.hpp"
 
 namespace petzval {
 namespace {
 
+using testing::expect_error;
+using testing::expect_tokens;
 using testing::message;
 constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
@@ -67,13 +70,13 @@ TEST(FocusPoints, HaveAnExtentInAllKeysOrInNone) {
   FocusPoint p = point({key(0, {0, 0, -1000}), key(2, {0, 0, -1000})});
   EXPECT_FALSE(only(p, moment(1)).extent_stops);
   p.keys[0].extent_stops = -2;
-  EXPECT_NE(message([&] { targets({p}, moment(1)); }).find("key 1: an extent is missing"), std::string::npos);
+  expect_error([&] { targets({p}, moment(1)); }, {"key 1", "extent"});
   p.keys[1].extent_stops = 4;
   EXPECT_EQ(only(p, moment(0)).extent_stops, -2);
   EXPECT_DOUBLE_EQ(only(p, moment(1)).extent_stops.value_or(0), 1);
   EXPECT_EQ(only(p, moment(9)).extent_stops, 4);
   p.keys[1].extent_stops = 20.1;
-  EXPECT_NE(message([&] { targets({p}, moment(1)); }).find("key 1: the extent is 20.1 stops"), std::string::npos);
+  expect_error([&] { targets({p}, moment(1)); }, {"key 1", "extent", 20.1});
   EXPECT_TRUE(only(point({key(0, {0, 0, -1000})}), moment(0)).fixes_distance);
   p = point({key(0, {0, 0, -1000})});
   p.fixes_distance = false;
@@ -270,30 +273,24 @@ TEST(FocusPoints, SayWhatIsWrongWithThem) {
   FocusMoment when = moment(0);
   when.vertices = mesh;
   const auto says = [&](const FocusPoint& bad) { return message([&] { targets({good, bad}, when); }); };
-  EXPECT_EQ(says(point({})), "focus point 1: no keys, wanted one at least");
-  EXPECT_EQ(says(point({key(1, {0, 0, -9}), key(1, {0, 0, -9})})),
-            "focus point 1: key 1: time is 1 s, wanted one after 1 s");
-  EXPECT_EQ(says(point({key(nan, {0, 0, -9})})), "focus point 1: key 0: time is nan s, wanted a finite one");
-  EXPECT_EQ(says(point({key(0, {nan, 0, -9})})),
-            "focus point 1: key 0: the place is (nan, 0, -9), wanted finite coordinates");
-  EXPECT_EQ(says(point({far_key(0, {0, 0, 0})})), "focus point 1: key 0: the place is (0, 0, 0), wanted a direction");
-  EXPECT_EQ(says(point({key(0, {0, 0, -9}, infinity)})), "focus point 1: key 0: blur is inf mm, wanted a finite one");
-  EXPECT_EQ(says(point({key(0, {0, 0, -9}, 0, -1)})),
-            "focus point 1: key 0: weight is -1, wanted a finite one of 0 or more");
-  EXPECT_EQ(says(point({on_triangle(0, {0, 1, 3}, {0, 0.5, 0.5})})),
-            "focus point 1: key 0: it lies at vertex 3, wanted one of the 3 there are");
+  expect_tokens(says(point({})), {"focus point 1", "keys"});
+  expect_tokens(says(point({key(1, {0, 0, -9}), key(1, {0, 0, -9})})), {"focus point 1", "key 1", "time", 1});
+  expect_tokens(says(point({key(nan, {0, 0, -9})})), {"focus point 1", "key 0", "time", "nan"});
+  expect_tokens(says(point({key(0, {nan, 0, -9})})), {"focus point 1", "key 0", "place", "nan", 0, -9});
+  expect_tokens(says(point({far_key(0, {0, 0, 0})})), {"focus point 1", "key 0", "place", 0, 0, 0});
+  expect_tokens(says(point({key(0, {0, 0, -9}, infinity)})), {"focus point 1", "key 0", "blur", "inf"});
+  expect_tokens(says(point({key(0, {0, 0, -9}, 0, -1)})), {"focus point 1", "key 0", "weight", -1});
+  expect_tokens(says(point({on_triangle(0, {0, 1, 3}, {0, 0.5, 0.5})})), {"focus point 1", "key 0", "vertex", 3});
   for (const auto& parts : {std::array{0.5, 0.5, 0.1}, std::array{1.5, -0.5, 0.0}, std::array{nan, 0.0, 0.0}}) {
-    EXPECT_NE(says(point({on_triangle(0, {0, 1, 2}, parts)})).find("key 0: barycentric coordinates are ("),
-              std::string::npos);
+    expect_tokens(says(point({on_triangle(0, {0, 1, 2}, parts)})), {"key 0", "barycentric"});
   }
   EXPECT_EQ(says(point({on_triangle(0, {0, 1, 2}, {0.5, 0.25, 0.25 + 5e-10})})), "no error");
   FocusPoint late = good;
   late.from = 2, late.until = 1;
-  EXPECT_EQ(says(late), "focus point 1: valid from 2 s until 1 s, wanted an interval");
-  EXPECT_EQ(message([&] { targets({good}, moment(nan)); }), "focus_targets: time is nan, wanted a number");
+  expect_tokens(says(late), {"focus point 1", 2, 1});
+  expect_error([&] { targets({good}, moment(nan)); }, {"focus_targets", "time", "nan"});
   when.film = Film{.width_mm = -36};
-  EXPECT_NE(message([&] { targets({good}, when); }).find("wanted finite numbers and no negative size"),
-            std::string::npos);
+  expect_error([&] { targets({good}, when); }, {"film", -36});
 }
 
 }  // namespace

@@ -10,11 +10,13 @@
 #include <string>
 #include <vector>
 
-#include "../message.hpp"
+#include "../expect_error.hpp"
 #include "petzval/core/error.hpp"
 
 namespace petzval {
 namespace {
+
+using testing::expect_error;
 
 using focus_detail::Keyframes;
 
@@ -117,18 +119,14 @@ TEST(Keyframes, FollowShiftAndScale) {
 }
 
 TEST(Keyframes, SayWhatIsWrongWithTheirKeys) {
-  using testing::message;
-  EXPECT_EQ(message([] { Keyframes({}, {}); }), "keyframes: 0 times and 0 values, wanted as many, one at least");
-  EXPECT_EQ(message([] { Keyframes({1, 2}, {1}); }), "keyframes: 2 times and 1 values, wanted as many, one at least");
-  EXPECT_EQ(message([] { Keyframes({0, 2, 2}, {1, 1, 1}); }), "keyframes: key 2: time is 2 s, wanted one after 2 s");
-  EXPECT_EQ(message([] { Keyframes({0, nan}, {1, 1}); }), "keyframes: key 1: value 1 at nan s, wanted finite numbers");
-  EXPECT_EQ(message([] { Keyframes({0}, {infinity}); }), "keyframes: key 0: value inf at 0 s, wanted finite numbers");
-  EXPECT_EQ(message([] {
-              Keyframes({0, 1}, {-1e308, 1e308});
-            }),
-            "keyframes: key 1: value 1e+308 at 1 s, after -1e+308 at 0 s, wanted differences that are finite");
-  EXPECT_NE(message([] { Keyframes({0, 1}, {1, 1e308}); }), "no error");
-  EXPECT_NE(message([] { Keyframes({-1e308, 1e308}, {0, 1}); }), "no error");
+  expect_error([] { Keyframes({}, {}); }, {"keyframes", 0, "times", 0});
+  expect_error([] { Keyframes({1, 2}, {1}); }, {"keyframes", 2, "times", 1});
+  expect_error([] { Keyframes({0, 2, 2}, {1, 1, 1}); }, {"keyframes", "key 2", "time", 2});
+  expect_error([] { Keyframes({0, nan}, {1, 1}); }, {"keyframes", "key 1", "value", 1, "nan"});
+  expect_error([] { Keyframes({0}, {infinity}); }, {"keyframes", "key 0", "value", "inf", 0});
+  expect_error([] { Keyframes({0, 1}, {-1e308, 1e308}); }, {"keyframes", "key 1", "value", "1e+308", 1, "-1e+308", 0});
+  expect_error([] { Keyframes({0, 1}, {1, 1e308}); }, {"keyframes", "1e+308"});
+  expect_error([] { Keyframes({-1e308, 1e308}, {0, 1}); }, {"keyframes", "1e+308"});
 }
 
 }  // namespace
