@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "../data_lenses.hpp"
+#include "../expect_error.hpp"
 #include "../film_at.hpp"
 #include "../message.hpp"
 #include "petzval/core/units.hpp"
@@ -22,6 +23,7 @@
 namespace petzval {
 namespace {
 
+using testing::expect_tokens;
 using testing::film_at;
 
 using namespace testing;
@@ -405,16 +407,12 @@ TEST(TiltFitInput, IsCheckedAndNamed) {
   const auto said = [](const TiltOptions& options) {
     return message([&] { fit_tilt(normal_lens(), inexact_targets(3, 1), options); });
   };
-  EXPECT_EQ(said({.max_tilt_rad = -0.1}),
-            "fit_tilt: the largest tilt is -0.1 rad, wanted one from 0 to less than a quarter turn");
-  EXPECT_EQ(said({.max_tilt_rad = nan}),
-            "fit_tilt: the largest tilt is nan rad, wanted one from 0 to less than a quarter turn");
+  expect_tokens(said({.max_tilt_rad = -0.1}), {"fit_tilt", "tilt", -0.1});
+  expect_tokens(said({.max_tilt_rad = nan}), {"fit_tilt", "tilt", "nan"});
   EXPECT_NE(said({.max_tilt_rad = std::numbers::pi / 2}), "no error");
-  EXPECT_EQ(said({.film = film_at(nan)}), "fit_tilt: the film stands at nan mm, 0 and 0 rad, wanted finite numbers");
-  EXPECT_EQ(said({.film = {.width_mm = -1}}),
-            "fit_tilt: the film is -1 x 24 mm about (0, 0), wanted finite numbers and no negative size");
-  EXPECT_EQ(said({.film = {.shift_x_mm = infinity}}),
-            "fit_tilt: the film is 36 x 24 mm about (inf, 0), wanted finite numbers and no negative size");
+  expect_tokens(said({.film = film_at(nan)}), {"fit_tilt", "film", "nan", 0, 0});
+  expect_tokens(said({.film = {.width_mm = -1}}), {"fit_tilt", "film", -1, 24, 0, 0});
+  expect_tokens(said({.film = {.shift_x_mm = infinity}}), {"fit_tilt", "film", 36, 24, "inf", 0});
   EXPECT_EQ(said({.max_tilt_rad = radians(89.9)}), "no error");
 }
 

@@ -9,6 +9,7 @@
 #include <optional>
 #include <string>
 
+#include "../expect_error.hpp"
 #include "../message.hpp"
 
 namespace {
@@ -16,6 +17,8 @@ namespace {
 namespace fs = std::filesystem;
 using petzval::Glass;
 using petzval::GlassCatalogue;
+using petzval::testing::expect_error;
+using petzval::testing::expect_tokens;
 using petzval::testing::message;
 
 const std::string header = "catalogue,name,nd,vd,formula,wl_min_um,wl_max_um,coefficients,origin\n";
@@ -122,10 +125,7 @@ TEST(GlassCatalogue, NameAlone_TakesTheNewestCatalogue) {
   EXPECT_EQ(tables.find("L")->catalogue, "b-legacy");
   EXPECT_EQ(tables.find("M")->catalogue, "a-1983");
   EXPECT_EQ(tables.find("X"), nullptr);
-  const std::string ambiguous = message([&] { tables.find("N"); });
-  for (const char* word : {"\"N\"", "c (n_d 1.5)", "d (n_d 1.5002)"}) {
-    EXPECT_NE(ambiguous.find(word), std::string::npos) << ambiguous;
-  }
+  expect_error([&] { tables.find("N"); }, {"\"N\"", "c", 1.5, "d", 1.5002});
   const auto more = with_glasses(tables, {named("mine", "N", 1.6)});
   EXPECT_EQ(more.find("N")->catalogue, "mine");
 }
@@ -161,8 +161,8 @@ TEST(GlassCatalogue, NamesTheGlassesNearestByIndexAndAbbeNumber) {
   EXPECT_EQ(names(1.5, 60, 0), "");
   EXPECT_EQ(names(1.5, 61, 2), "CA");
   EXPECT_EQ(names(1.501, std::nullopt, 1), "B");
-  EXPECT_EQ(message([&] { names(std::nan(""), 60, 1); }), "glasses near n_d nan, V_d 60: wanted finite numbers");
-  EXPECT_EQ(message([&] { names(1.5, INFINITY, 1); }), "glasses near n_d 1.5, V_d inf: wanted finite numbers");
+  expect_error([&] { names(std::nan(""), 60, 1); }, {"glasses", "n_d", "nan", "V_d 60"});
+  expect_error([&] { names(1.5, INFINITY, 1); }, {"glasses", "n_d", 1.5, "V_d inf"});
   EXPECT_TRUE(nearest_glasses(GlassCatalogue(), 1.5, 60, 3).empty());
 }
 
@@ -181,50 +181,35 @@ TEST_F(TableFolder, LineEndsOfAnyKindReadTheSame) {
 }
 
 TEST_F(TableFolder, ABadTableIsRefusedWithFileLineAndReason) {
-  EXPECT_EQ(refusal(""), ": line 1: header is \"\", wanted " + header.substr(0, header.size() - 1));
-  EXPECT_EQ(refusal("name,nd\n"), ": line 1: header is \"name,nd\", wanted " + header.substr(0, header.size() - 1));
-  EXPECT_EQ(refusal(header + row + "mine,X2,1.5\n"),
-            ": line 3: 3 columns, wanted 9: " + header.substr(0, header.size() - 1));
-  EXPECT_EQ(refusal(header + "\n"), ": line 2: 1 columns, wanted 9: " + header.substr(0, header.size() - 1));
-  EXPECT_EQ(refusal(header + "mine,X1,1;5,60,cauchy,0.4,0.7,1.5,me\n"),
-            ": line 2: nd is \"1;5\", wanted a finite number");
-  EXPECT_EQ(refusal(header + "mine,X1,nan,60,cauchy,0.4,0.7,1.5,me\n"),
-            ": line 2: nd is \"nan\", wanted a finite number");
-  EXPECT_EQ(refusal(header + "mine,X1,1.5,1e400,cauchy,0.4,0.7,1.5,me\n"),
-            ": line 2: vd is \"1e400\", wanted a finite number");
-  EXPECT_EQ(refusal(header + "mine,X1,1.5,60,magic,0.4,0.7,1.5,me\n"),
-            ": line 2: formula is \"magic\", wanted one of sellmeier, sellmeier_squared, polynomial, cauchy, "
-            "buchdahl, rational, herzberger, tabulated");
-  EXPECT_EQ(refusal(header + "mine,X1,1.5,60,cauchy,0.7,0.4,1.5,me\n"),
-            ": line 2: range is 0.7 to 0.4 um, wanted two increasing positive numbers");
-  EXPECT_EQ(refusal(header + "mine,X1,1.5,60,cauchy,0,0.4,1.5,me\n"),
-            ": line 2: range is 0 to 0.4 um, wanted two increasing positive numbers");
-  EXPECT_EQ(refusal(header + "mine,X1,1.5,60,cauchy,0.4,0.7,1.5 0.1,me\n"),
-            ": line 2: 2 coefficients, wanted c0 and pairs");
-  EXPECT_EQ(refusal(header + "mine,X1,1.5,60,buchdahl,0.4,0.7,1.5,me\n"), ": line 2: 1 coefficients, wanted 3");
-  EXPECT_EQ(refusal(header + "mine,X1,1.5,60,cauchy,0.4,0.7,1.5  0.1 2,me\n"),
-            ": line 2: coefficient is \"\", wanted a finite number");
+  expect_tokens(refusal(""), {"line 1", "header", "\"\""});
+  expect_tokens(refusal("name,nd\n"), {"line 1", "header", "\"name,nd\""});
+  expect_tokens(refusal(header + row + "mine,X2,1.5\n"), {"line 3", "3 columns"});
+  expect_tokens(refusal(header + "\n"), {"line 2", "1 columns"});
+  expect_tokens(refusal(header + "mine,X1,1;5,60,cauchy,0.4,0.7,1.5,me\n"), {"line 2", "nd", "\"1;5\""});
+  expect_tokens(refusal(header + "mine,X1,nan,60,cauchy,0.4,0.7,1.5,me\n"), {"line 2", "nd", "\"nan\""});
+  expect_tokens(refusal(header + "mine,X1,1.5,1e400,cauchy,0.4,0.7,1.5,me\n"), {"line 2", "vd", "\"1e400\""});
+  expect_tokens(refusal(header + "mine,X1,1.5,60,magic,0.4,0.7,1.5,me\n"), {"line 2", "formula", "\"magic\""});
+  expect_tokens(refusal(header + "mine,X1,1.5,60,cauchy,0.7,0.4,1.5,me\n"), {"line 2", "range", 0.7, 0.4});
+  expect_tokens(refusal(header + "mine,X1,1.5,60,cauchy,0,0.4,1.5,me\n"), {"line 2", "range", 0, 0.4});
+  expect_tokens(refusal(header + "mine,X1,1.5,60,cauchy,0.4,0.7,1.5 0.1,me\n"), {"line 2", "2 coefficients"});
+  expect_tokens(refusal(header + "mine,X1,1.5,60,buchdahl,0.4,0.7,1.5,me\n"), {"line 2", "1 coefficients"});
+  expect_tokens(refusal(header + "mine,X1,1.5,60,cauchy,0.4,0.7,1.5  0.1 2,me\n"), {"line 2", "coefficient", "\"\""});
   for (const char* table :
        {"0.5 1.5 0.4 1.6 0.7 1.5", "0.4 1.6 0.4 1.5 0.7 1.5", "0.41 1.6 0.7 1.5", "0.4 1.6 0.69 1.5"}) {
-    EXPECT_EQ(refusal(header + "mine,X1,1.5,60,tabulated,0.4,0.7," + table + ",me\n"),
-              ": line 2: wanted wavelengths that increase from wl_min_um or less to wl_max_um or more");
+    expect_tokens(refusal(header + "mine,X1,1.5,60,tabulated,0.4,0.7," + table + ",me\n"), {"line 2"});
   }
-  EXPECT_EQ(refusal(header + ",X1,1.5,60,cauchy,0.4,0.7,1.5,me\n"),
-            ": line 2: catalogue or name is empty, wanted both");
+  expect_tokens(refusal(header + ",X1,1.5,60,cauchy,0.4,0.7,1.5,me\n"), {"line 2", "catalogue"});
   EXPECT_EQ(refusal(header + row), "no error");
 }
 
 TEST_F(TableFolder, AFolderWithoutTablesIsRefused) {
-  EXPECT_EQ(message([&] { GlassCatalogue::load(folder); }),
-            folder.string() + ": no file glass_*.csv, wanted at least one");
-  EXPECT_EQ(message([&] { GlassCatalogue::load(folder / "absent"); }),
-            (folder / "absent").string() + ": No such file or directory, wanted a folder of glass tables");
+  expect_error([&] { GlassCatalogue::load(folder); }, {folder, "file", "glass_*.csv"});
+  expect_error([&] { GlassCatalogue::load(folder / "absent"); }, {folder / "absent", "No such file"});
 }
 
 TEST_F(TableFolder, AFolderWithTheNameOfATableIsRefused) {
   fs::create_directory(folder / "glass_x.csv");
-  EXPECT_EQ(message([&] { GlassCatalogue::load(folder); }),
-            (folder / "glass_x.csv").string() + ": is a folder, wanted a glass table");
+  expect_error([&] { GlassCatalogue::load(folder); }, {folder / "glass_x.csv", "folder"});
 }
 
 }  // namespace

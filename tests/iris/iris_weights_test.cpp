@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "../expect_error.hpp"
 #include "../message.hpp"
 #include "core/low_discrepancy.hpp"
 #include "iris/iris_edges.hpp"
@@ -20,6 +21,8 @@ namespace {
 
 using iris_detail::IrisShape;
 using iris_detail::IrisWeights;
+using testing::expect_error;
+using testing::expect_tokens;
 using testing::message;
 
 std::vector<Iris> irises() {
@@ -199,19 +202,19 @@ TEST(IrisWeights, RefuseWhatIsNoMap) {
       IrisWeights({}, {}, map, 0, "");
     });
   };
-  EXPECT_EQ(refused({2, 2, {1, 2, 3}}), "the map has 3 values, wanted 2 x 2");
-  EXPECT_EQ(refused({2, 1, {1, -1}}), "the map has -1 in row 0, column 1, wanted finite weights of 0 or more");
-  EXPECT_NE(refused({1, 1, {std::numeric_limits<float>::quiet_NaN()}}), "");
-  EXPECT_NE(refused({1, 1, {std::numeric_limits<float>::infinity()}}), "");
-  EXPECT_EQ(refused({1, 1, {0}}), "the map is black on the iris, wanted light somewhere");
-  EXPECT_NE(refused({1 << 14, 1 << 13, {}}), "");
-  EXPECT_NE(refused({-1, -1, {1}}), "");
-  EXPECT_NE(message([] { IrisWeights({}, {std::nan(""), 0.5}, {}, 0, ""); }), "");
-  for (const OnionRings& rings : {OnionRings{.period = 0}, OnionRings{.period = std::nan("")},
-                                  OnionRings{.contrast = 1.5}, OnionRings{.jitter = -1}}) {
-    EXPECT_NE(message([&] { onion_rings(rings); }), "");
-  }
-  EXPECT_NE(message([] { onion_rings({}, 1); }), "");
+  expect_tokens(refused({2, 2, {1, 2, 3}}), {"map", 3, 2});
+  expect_tokens(refused({2, 1, {1, -1}}), {"map", -1, "row 0", "column 1"});
+  expect_tokens(refused({1, 1, {std::numeric_limits<float>::quiet_NaN()}}), {"map", "nan"});
+  expect_tokens(refused({1, 1, {std::numeric_limits<float>::infinity()}}), {"map", "inf"});
+  expect_tokens(refused({1, 1, {0}}), {"map", "black"});
+  expect_tokens(refused({1 << 14, 1 << 13, {}}), {"map", 1 << 14, 1 << 13});
+  expect_tokens(refused({-1, -1, {1}}), {"map", -1});
+  expect_error([] { IrisWeights({}, {std::nan(""), 0.5}, {}, 0, ""); }, {"nan"});
+  expect_error([] { onion_rings({.period = 0}); }, {"period", 0});
+  expect_error([] { onion_rings({.period = std::nan("")}); }, {"period", "nan"});
+  expect_error([] { onion_rings({.contrast = 1.5}); }, {"contrast", 1.5});
+  expect_error([] { onion_rings({.jitter = -1}); }, {"jitter", -1});
+  expect_error([] { onion_rings({}, 1); }, {1});
 }
 
 }  // namespace

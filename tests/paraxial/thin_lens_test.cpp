@@ -5,13 +5,13 @@
 #include <limits>
 #include <string>
 
-#include "../message.hpp"
+#include "../expect_error.hpp"
 #include "petzval/paraxial/ideal_lens.hpp"
 
 namespace petzval {
 namespace {
 
-using testing::message;
+using testing::expect_error;
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr double eps = std::numeric_limits<double>::epsilon();
@@ -83,28 +83,20 @@ TEST(ThinLensFilmDistance, IsWithinEightEpsFromFourFocalLengthsToTheStars) {
 }
 
 TEST(ThinLens, RefusesWhatHasNoImage) {
-  EXPECT_EQ(message([] { thin_lens_extension(50, 50); }),
-            "thin_lens_extension: subject distance is 50 mm, wanted more than the focal length");
-  EXPECT_EQ(message([] { thin_lens_extension(50, std::nan("")); }),
-            "thin_lens_extension: subject distance is nan mm, wanted more than the focal length");
-  EXPECT_EQ(message([] { thin_lens_extension(-50, 10); }),
-            "thin_lens_extension: focal length is -50 mm, wanted a finite one above 0");
-  EXPECT_EQ(message([] { thin_lens_blur_diameter(50, 25, 0, 1000); }),
-            "thin_lens_blur_diameter: subject distance is 0 mm, wanted one above 0");
-  EXPECT_EQ(message([] { thin_lens_blur_diameter(50, 25, 1000, 40); }),
-            "thin_lens_blur_diameter: focused distance is 40 mm, wanted more than the focal length");
-  EXPECT_EQ(message([] { thin_lens_blur_diameter(50, -1, 1000, 400); }),
-            "thin_lens_blur_diameter: diameter is -1 mm, wanted a finite one, 0 or more");
-  EXPECT_EQ(message([] { thin_lens_subject(50, -1); }), "thin_lens_subject: extension is -1 mm, wanted 0 or more");
-  EXPECT_EQ(message([] { thin_lens_film_distance(50, 199); }),
-            "thin_lens_film_distance: distance from subject to film is 199 mm, wanted 4 focal lengths or more");
+  expect_error([] { thin_lens_extension(50, 50); }, {"thin_lens_extension", "subject", 50});
+  expect_error([] { thin_lens_extension(50, std::nan("")); }, {"thin_lens_extension", "subject", "nan"});
+  expect_error([] { thin_lens_extension(-50, 10); }, {"thin_lens_extension", "focal", -50});
+  expect_error([] { thin_lens_blur_diameter(50, 25, 0, 1000); }, {"thin_lens_blur_diameter", "subject", 0});
+  expect_error([] { thin_lens_blur_diameter(50, 25, 1000, 40); }, {"thin_lens_blur_diameter", "focused", 40});
+  expect_error([] { thin_lens_blur_diameter(50, -1, 1000, 400); }, {"thin_lens_blur_diameter", "diameter", -1});
+  expect_error([] { thin_lens_subject(50, -1); }, {"thin_lens_subject", "extension", -1});
+  expect_error([] { thin_lens_film_distance(50, 199); }, {"thin_lens_film_distance", "distance", 199});
 }
 
 TEST(ThinLensBlurDiameter, RefusesNumbersThatNoLensHas) {
   for (const double bad : {infinity, -infinity, std::nan("")}) {
-    EXPECT_NE(message([&] { thin_lens_blur_diameter(50, bad, 1000, 400); }).find("diameter is "), std::string::npos);
-    EXPECT_NE(message([&] { thin_lens_blur_diameter(bad, 25, 1000, 400); }).find("focal length is "),
-              std::string::npos);
+    expect_error([&] { thin_lens_blur_diameter(50, bad, 1000, 400); }, {"diameter", bad});
+    expect_error([&] { thin_lens_blur_diameter(bad, 25, 1000, 400); }, {"focal", bad});
   }
   EXPECT_EQ(thin_lens_blur_diameter(50, 0, 1000, 400), 0);
 }

@@ -7,13 +7,15 @@
 #include <random>
 
 #include "../data_lenses.hpp"
-#include "../message.hpp"
+#include "../expect_error.hpp"
 #include "petzval/paraxial/first_order.hpp"
 #include "petzval/prescription/prescription.hpp"
 #include "petzval/pupil/aim.hpp"
 #include "petzval/trace/trace.hpp"
 
 namespace {
+
+using petzval::testing::expect_error;
 
 using petzval::Prescription;
 using petzval::Ray;
@@ -174,8 +176,7 @@ TEST(Reverse, MediaAndTheStopMoveWithTheirSurfaces) {
   EXPECT_EQ(r.surfaces[1].thickness, 4);
   EXPECT_EQ(r.surfaces[2].thickness, 0);
   EXPECT_TRUE(r.surfaces[2].stop);
-  EXPECT_EQ(petzval::testing::message([] { petzval::reverse({}); }),
-            "lens: no surfaces to reverse, wanted at least one");
+  expect_error([] { petzval::reverse({}); }, {"lens", "surfaces"});
 }
 
 }  // namespace
