@@ -17,6 +17,7 @@
 #include <utility>
 #include <vector>
 
+#include "../expect_error.hpp"
 #include "../message.hpp"
 #include "../positioned.hpp"
 
@@ -26,6 +27,8 @@ namespace fs = std::filesystem;
 using petzval::format_prescription;
 using petzval::parse_prescription;
 using petzval::Prescription;
+using petzval::testing::expect_error;
+using petzval::testing::expect_tokens;
 using petzval::testing::message;
 using petzval::testing::positioned;
 
@@ -55,6 +58,13 @@ std::string with_member(const std::string& member) {
 
 std::string refusal(const std::string& text) {
   return message([&] { parse_prescription(text, "x.json"); });
+}
+
+/// Checks that a text is refused with a line and a column, and these words behind them.
+void expect_refused(const std::string& text, std::initializer_list<std::string_view> words,
+                    std::string_view position = {}, int line = __builtin_LINE()) {
+  const auto result = positioned(refusal(text), "x.json", words, position);
+  if (!result) ADD_FAILURE_AT(__FILE__, line) << result.message();
 }
 
 TEST(PrescriptionJson, EveryLensOfTheDataIsWrittenBackByteForByte) {
@@ -214,26 +224,22 @@ TEST(PrescriptionJson, UnlimitedAperturesAreWrittenAsNone) {
 TEST(PrescriptionJson, WhatCannotBeReadIsNotWritten) {
   Prescription p;
   p.name = "empty";
-  EXPECT_EQ(message([&] { format_prescription(p); }), "empty: no surfaces, wanted at least one");
+  expect_error([&] { format_prescription(p); }, {"empty", "surfaces"});
   p = parse_prescription(file("\"surfaces\": [" + row + "]"), "x.json");
   p.surfaces[0].thickness = std::nan("");
-  EXPECT_EQ(message([&] { format_prescription(p); }),
-            "lens: surface 0: thickness is nan, wanted a finite length below 1e10 mm");
+  expect_error([&] { format_prescription(p); }, {"lens", "surface 0", "thickness", "nan"});
   p.surfaces[0].thickness = 0;
   p.notes = "\xb5m";  // Latin-1
-  EXPECT_EQ(message([&] { format_prescription(p); }), "a string of the lens is not UTF-8, wanted UTF-8 to write JSON");
+  expect_error([&] { format_prescription(p); }, {"UTF-8"});
 }
 
 TEST(PrescriptionJson, FilesThatCannotBeOpenedAreNamed) {
   const fs::path folder = ::testing::TempDir();
   const std::string absent = (folder / "no such folder" / "lens.json").string();
-  EXPECT_EQ(message([&] { petzval::read_prescription(absent); }),
-            absent + ": cannot be opened (No such file or directory); must be a lens file");
-  EXPECT_EQ(message([&] { petzval::read_prescription(folder); }),
-            folder.string() + ": is a folder, wanted a lens file");
+  expect_error([&] { petzval::read_prescription(absent); }, {absent, "No such file"});
+  expect_error([&] { petzval::read_prescription(folder); }, {folder, "folder"});
   const Prescription p = parse_prescription(file("\"surfaces\": [" + row + "]"), "x.json");
-  EXPECT_EQ(message([&] { petzval::write_prescription(p, absent); }),
-            absent + ": cannot be written (No such file or directory), wanted an existing, writable folder with space");
+  expect_error([&] { petzval::write_prescription(p, absent); }, {absent, "No such file"});
   const fs::path written = folder / "petzval_written.json";
   petzval::write_prescription(p, written);
   EXPECT_EQ(petzval::read_prescription(written), p);
@@ -271,82 +277,69 @@ TEST(PrescriptionJson, MembersMayBeLeftOutButNotTheSurfaceItself) {
   EXPECT_TRUE(medium(R"(, "glass": null, "nd": null)").is_air());
   EXPECT_EQ(medium(R"(, "glass": "N-BK7")"), petzval::Medium{.glass = "N-BK7"});
   EXPECT_EQ(medium(R"(, "nd": 2.4, "vd": 0)"), (petzval::Medium{.nd = 2.4, .vd = 0}));
-  EXPECT_TRUE(positioned(refusal(with_surface(R"({"radius": 5, "thickness": 1, "vd": 60})")), "x.json",
-                         {"surface 1", "vd = 60"}));
-  EXPECT_TRUE(positioned(refusal("{}"), "x.json", {"key \"format\"", "missing"}));
-  EXPECT_TRUE(positioned(refusal(file("\"id\": \"a\"")), "x.json", {"key \"surfaces\"", "missing"}));
-  EXPECT_TRUE(positioned(refusal(with_surface(R"({"thickness": 5, "nd": 1})")), "x.json",
-                         {"surface 1", "key \"radius\"", "missing"}));
-  EXPECT_TRUE(positioned(refusal(with_surface(R"({"radius": 5, "nd": 1})")), "x.json",
-                         {"surface 1", "key \"thickness\"", "missing"}));
-  EXPECT_TRUE(positioned(refusal(with_member(R"("aspheric": [{"order": 4}])")), "x.json",
-                         {"surface 1", "aspheric 0", "key \"coefficient\"", "missing"}));
-  EXPECT_TRUE(positioned(refusal(file("\"surfaces\": []")), "x.json", {"no surfaces"}));
+  expect_refused(with_surface(R"({"radius": 5, "thickness": 1, "vd": 60})"), {"surface 1", "vd", "60"});
+  expect_refused("{}", {"\"format\"", "missing"});
+  expect_refused(file("\"id\": \"a\""), {"\"surfaces\"", "missing"});
+  expect_refused(with_surface(R"({"thickness": 5, "nd": 1})"), {"surface 1", "\"radius\"", "missing"});
+  expect_refused(with_surface(R"({"radius": 5, "nd": 1})"), {"surface 1", "\"thickness\"", "missing"});
+  expect_refused(with_member(R"("aspheric": [{"order": 4}])"),
+                 {"surface 1", "aspheric 0", "\"coefficient\"", "missing"});
+  expect_refused(file("\"surfaces\": []"), {"surfaces"});
 }
 
 TEST(PrescriptionJson, ValuesOfTheWrongKindAreNamed) {
-  EXPECT_TRUE(positioned(refusal(R"({"format": "petzval-lens 2"})"), "x.json", {"format", "\"petzval-lens 2\""}));
-  EXPECT_TRUE(positioned(refusal("[]"), "x.json", {"document", "a list"}));
-  EXPECT_TRUE(positioned(refusal("7"), "x.json", {"document", "7"}));
-  EXPECT_TRUE(positioned(refusal("\"text\""), "x.json", {"document", "\"text\""}));
-  EXPECT_TRUE(positioned(refusal(file(R"("name": 5)")), "x.json", {"name", "5"}));
-  EXPECT_TRUE(positioned(refusal(file(R"("name": null)")), "x.json", {"name", "null"}));
-  EXPECT_TRUE(positioned(refusal(file(R"("name": ["a"])")), "x.json", {"name", "a list"}));
-  EXPECT_TRUE(positioned(refusal(file(R"("source": "a book")")), "x.json", {"source", "\"a book\""}));
-  EXPECT_TRUE(positioned(refusal(file(R"("source": [])")), "x.json", {"source", "a list"}));
-  EXPECT_TRUE(positioned(refusal(file(R"("source": {"design": 1})")), "x.json", {"source", "design", "1"}));
-  EXPECT_TRUE(positioned(refusal(file(R"("aliases": ["a", 2])")), "x.json", {"aliases", "2"}));
-  EXPECT_TRUE(positioned(refusal(file(R"("aliases": [{}])")), "x.json", {"aliases", "an object"}));
-  EXPECT_TRUE(positioned(refusal(file(R"("zoom": {"position": "wide", "variable_gaps": {"3": "5"}})")), "x.json",
-                         {"zoom", "variable_gaps", "\"5\""}));
-  EXPECT_TRUE(positioned(refusal(file(R"("design": {"field_kind": "degrees"})")), "x.json",
-                         {"design", "field_kind", "\"degrees\""}));
-  EXPECT_TRUE(positioned(refusal(file(R"("configurations": [{"name": "a", "changes": [{"surface": -1}]}])")), "x.json",
-                         {"configuration 0", "change 0", "surface", "-1"}));
-  EXPECT_TRUE(positioned(refusal(file(R"("configurations": [{"name": "a"}], "zoom": {"position": "b"})")), "x.json",
-                         {"\"zoom\" beside \"configurations\""}));
-  EXPECT_TRUE(positioned(refusal(file(R"("zoom": {"variable_gaps": {"03": 5}})")), "x.json",
-                         {"zoom", "variable_gaps", "key \"03\""}));
-  EXPECT_TRUE(positioned(refusal(file(R"("surfaces": {})")), "x.json", {"surfaces", "an object"}));
-  EXPECT_TRUE(positioned(refusal(file(R"("surfaces": [5])")), "x.json", {"surface 0", "5"}));
-  EXPECT_TRUE(positioned(refusal(with_surface("[]")), "x.json", {"surface 1", "a list"}));
-  EXPECT_TRUE(positioned(refusal(with_surface(R"({"radius": "50"})")), "x.json", {"surface 1", "radius", "\"50\""}));
-  EXPECT_TRUE(positioned(refusal(with_surface(R"({"radius": "1,5"})")), "x.json", {"surface 1", "radius", "\"1,5\""}));
-  EXPECT_TRUE(positioned(refusal(with_surface(R"({"radius": null})")), "x.json", {"surface 1", "radius", "null"}));
-  EXPECT_TRUE(positioned(refusal(with_surface(R"({"radius": {}})")), "x.json", {"surface 1", "radius", "an object"}));
-  EXPECT_TRUE(positioned(refusal(with_member(R"("stop": 1)")), "x.json", {"surface 1", "stop", "1"}));
-  EXPECT_TRUE(positioned(refusal(with_member(R"("curved_in": "z")")), "x.json", {"surface 1", "curved_in", "\"z\""}));
-  EXPECT_TRUE(positioned(refusal(with_member(R"("aspheric": [1])")), "x.json", {"surface 1", "aspheric 0", "1"}));
-  EXPECT_TRUE(positioned(refusal(with_member(R"("aspheric": [{"order": 4.5}])")), "x.json",
-                         {"surface 1", "aspheric 0", "order", "4.5"}));
-  EXPECT_TRUE(positioned(refusal(with_member(R"("glass": true)")), "x.json", {"surface 1", "glass", "true"}));
-  EXPECT_TRUE(
-      positioned(refusal(file(R"("object_space": {"nd": "water"})")), "x.json", {"object_space", "nd", "\"water\""}));
+  expect_refused(R"({"format": "petzval-lens 2"})", {"format", "\"petzval-lens 2\""});
+  expect_refused("[]", {"document", "a list"});
+  expect_refused("7", {"document", "7"});
+  expect_refused("\"text\"", {"document", "\"text\""});
+  expect_refused(file(R"("name": 5)"), {"name", "5"});
+  expect_refused(file(R"("name": null)"), {"name", "null"});
+  expect_refused(file(R"("name": ["a"])"), {"name", "a list"});
+  expect_refused(file(R"("source": "a book")"), {"source", "\"a book\""});
+  expect_refused(file(R"("source": [])"), {"source", "a list"});
+  expect_refused(file(R"("source": {"design": 1})"), {"source", "design", "1"});
+  expect_refused(file(R"("aliases": ["a", 2])"), {"aliases", "2"});
+  expect_refused(file(R"("aliases": [{}])"), {"aliases", "an object"});
+  expect_refused(file(R"("zoom": {"position": "wide", "variable_gaps": {"3": "5"}})"),
+                 {"zoom", "variable_gaps", "\"5\""});
+  expect_refused(file(R"("design": {"field_kind": "degrees"})"), {"design", "field_kind", "\"degrees\""});
+  expect_refused(file(R"("configurations": [{"name": "a", "changes": [{"surface": -1}]}])"),
+                 {"configuration 0", "change 0", "surface", "-1"});
+  expect_refused(file(R"("configurations": [{"name": "a"}], "zoom": {"position": "b"})"),
+                 {"\"zoom\"", "\"configurations\""});
+  expect_refused(file(R"("zoom": {"variable_gaps": {"03": 5}})"), {"zoom", "variable_gaps", "\"03\""});
+  expect_refused(file(R"("surfaces": {})"), {"surfaces", "an object"});
+  expect_refused(file(R"("surfaces": [5])"), {"surface 0", "5"});
+  expect_refused(with_surface("[]"), {"surface 1", "a list"});
+  expect_refused(with_surface(R"({"radius": "50"})"), {"surface 1", "radius", "\"50\""});
+  expect_refused(with_surface(R"({"radius": "1,5"})"), {"surface 1", "radius", "\"1,5\""});
+  expect_refused(with_surface(R"({"radius": null})"), {"surface 1", "radius", "null"});
+  expect_refused(with_surface(R"({"radius": {}})"), {"surface 1", "radius", "an object"});
+  expect_refused(with_member(R"("stop": 1)"), {"surface 1", "stop", "1"});
+  expect_refused(with_member(R"("curved_in": "z")"), {"surface 1", "curved_in", "\"z\""});
+  expect_refused(with_member(R"("aspheric": [1])"), {"surface 1", "aspheric 0", "1"});
+  expect_refused(with_member(R"("aspheric": [{"order": 4.5}])"), {"surface 1", "aspheric 0", "order", "4.5"});
+  expect_refused(with_member(R"("glass": true)"), {"surface 1", "glass", "true"});
+  expect_refused(file(R"("object_space": {"nd": "water"})"), {"object_space", "nd", "\"water\""});
 }
 
 TEST(PrescriptionJson, UnknownAndDuplicateKeysAreRefused) {
-  EXPECT_TRUE(positioned(refusal(with_member(R"("semidiameter": 5)")), "x.json",
-                         {"surface 1", "key \"semidiameter\"", "unknown"}));
-  EXPECT_TRUE(
-      positioned(refusal(file(R"("source": {"year": 1952})")), "x.json", {"source", "key \"year\"", "unknown"}));
-  EXPECT_TRUE(positioned(refusal(file(R"("object_space": {"nd": 1.3, "radius": 5})")), "x.json",
-                         {"object_space", "key \"radius\"", "unknown"}));
-  EXPECT_TRUE(positioned(refusal(with_member(R"("radius": 50)")), "x.json", {"surface 1", "key \"radius\"", "twice"}));
-  EXPECT_TRUE(positioned(refusal(file(R"("id": "a", "id": "a")")), "x.json", {"key \"id\"", "twice"}));
-  EXPECT_TRUE(positioned(refusal(file(R"("zoom": {"variable_gaps": {"0": 1, "0": 1}})")), "x.json",
-                         {"zoom", "variable_gaps", "key \"0\"", "twice"}));
+  expect_refused(with_member(R"("semidiameter": 5)"), {"surface 1", "\"semidiameter\""});
+  expect_refused(file(R"("source": {"year": 1952})"), {"source", "\"year\""});
+  expect_refused(file(R"("object_space": {"nd": 1.3, "radius": 5})"), {"object_space", "\"radius\""});
+  expect_refused(with_member(R"("radius": 50)"), {"surface 1", "\"radius\""});
+  expect_refused(file(R"("id": "a", "id": "a")"), {"\"id\""});
+  expect_refused(file(R"("zoom": {"variable_gaps": {"0": 1, "0": 1}})"), {"zoom", "variable_gaps", "\"0\""});
   EXPECT_TRUE(positioned(
       refusal(with_member(R"("aspheric": [{"order": 4, "coefficient": 1}, {"order": 4, "coefficient": 2}])")), "x.json",
-      {"surface 1", "aspheric coefficient of order 4", "given twice"}));
+      {"surface 1", "aspheric", "4"}));
 }
 
 TEST(PrescriptionJson, WhatIsNotALensIsRefusedWithTheSurface) {
-  EXPECT_TRUE(positioned(refusal(with_surface(R"({"radius": 50, "thickness": 5, "nd": -1})")), "x.json",
-                         {"surface 1", "nd", "-1"}));
-  EXPECT_TRUE(
-      positioned(refusal(with_member(R"("semi_diameter": -3)")), "x.json", {"surface 1", "semi_diameter", "-3"}));
-  EXPECT_TRUE(positioned(refusal(file(R"("zoom": {"variable_gaps": {"1": 5}}, "surfaces": [)" + row + "]")), "x.json",
-                         {"configuration 0", "changed surface", "1"}));
+  expect_refused(with_surface(R"({"radius": 50, "thickness": 5, "nd": -1})"), {"surface 1", "nd", "-1"});
+  expect_refused(with_member(R"("semi_diameter": -3)"), {"surface 1", "semi_diameter", "-3"});
+  expect_refused(file(R"("zoom": {"variable_gaps": {"1": 5}}, "surfaces": [)" + row + "]"),
+                 {"configuration 0", "surface", "1"});
 }
 
 TEST(PrescriptionJson, TheOldFormOfZoomPositionsIsAConfiguration) {
@@ -358,10 +351,9 @@ TEST(PrescriptionJson, TheOldFormOfZoomPositionsIsAConfiguration) {
 }
 
 TEST(PrescriptionJson, TheOldFormOfZoomPositionsStandsAloneAndHasNumbers) {
-  EXPECT_TRUE(positioned(refusal(file(R"("zoom": {"position": "wide"}, "configurations": [{"name": "a"}])")), "x.json",
-                         {"\"zoom\" beside \"configurations\""}));
-  EXPECT_TRUE(positioned(refusal(file(R"("zoom": {"variable_gaps": {"3": {}}})")), "x.json",
-                         {"zoom", "variable_gaps", "an object"}));
+  expect_refused(file(R"("zoom": {"position": "wide"}, "configurations": [{"name": "a"}])"),
+                 {"\"zoom\"", "\"configurations\""});
+  expect_refused(file(R"("zoom": {"variable_gaps": {"3": {}}})"), {"zoom", "variable_gaps", "an object"});
 }
 
 TEST(PrescriptionJson, NumbersBeyondDoubleAreRefused) {
@@ -382,20 +374,19 @@ TEST(PrescriptionJson, TextThatIsNotJson_IsRefusedWithLineAndColumn) {
        std::vector<std::string>{"+1", ".5", "5.", "0x1p3", "01", "1.5D+01", "'a'", "1 // comment\n", "/* */ 1", "1e",
                                 "\"\\ud800\"", "\"\\udc00\"", "\"\\ud800\\u0041\"", "\"\xff\"", "\"\xc0\x80\"",
                                 "\"\xed\xa0\x80\"", "\"line\nend\"", "\"\\x\""}) {
-    const std::string said = refusal(before + wrong + ", \"thickness\": 5, \"nd\": 1}]}");
-    EXPECT_TRUE(positioned(said, "x.json", {"not JSON"})) << wrong;
+    expect_refused(before + wrong + ", \"thickness\": 5, \"nd\": 1}]}", {"JSON"});
   }
   for (const std::string& wrong :
        std::vector<std::string>{"[" + row + ",]", "[" + row + "]]", "[" + row + " " + row + "]"}) {
-    EXPECT_TRUE(positioned(refusal(file("\"surfaces\": " + wrong)), "x.json", {"not JSON"})) << wrong;
+    expect_refused(file("\"surfaces\": " + wrong), {"JSON"});
   }
   const std::string good = file("\"surfaces\": [" + row + "]");
   EXPECT_EQ(refusal(good), "no error");
   const std::string behind = "1:" + std::to_string(good.size() + 1);
-  EXPECT_TRUE(positioned(refusal(good + "x"), "x.json", {"not JSON"}, behind));
-  EXPECT_TRUE(positioned(refusal(good + std::string(1, '\0') + "x"), "x.json", {"UTF-8"}, behind));
+  expect_refused(good + "x", {"JSON"}, behind);
+  expect_refused(good + std::string(1, '\0') + "x", {"UTF-8"}, behind);
   for (const std::string& nothing : std::vector<std::string>{"", " \n", "\xEF\xBB\xBF", "\xEF\xBB", "\xFE\xFF"}) {
-    EXPECT_TRUE(positioned(refusal(nothing), "x.json", {"not JSON"})) << nothing.size();
+    expect_refused(nothing, {"JSON"});
   }
 }
 
@@ -407,22 +398,21 @@ std::string third_line(const std::string& radius, const std::string& rest = ", \
 TEST(PrescriptionJson, MistakesOfPeople_AreNamedWithLineAndColumn) {
   EXPECT_EQ(refusal(third_line("50")), "no error");
   for (const char* wrong : {"\"abc\"", "null", "Infinity", "-Infinity", "inf", "NaN", "true", "1e999"}) {
-    EXPECT_TRUE(positioned(refusal(third_line(wrong)), "x.json", {"surface 0", "radius", wrong}, "3:14")) << wrong;
+    expect_refused(third_line(wrong), {"surface 0", "radius", wrong}, "3:14");
   }
   // A plane has a number, which the message tells.
   for (const char* plane : {"Infinity", "null", "\"inf\""}) {
-    EXPECT_TRUE(positioned(refusal(third_line(plane)), "x.json", {"radius", plane, "0 is a plane"})) << plane;
+    expect_refused(third_line(plane), {"radius", plane, "0"});
   }
-  EXPECT_TRUE(positioned(refusal(third_line("50,5")), "x.json", {"50,5", "decimal point"}, "3:14"));
-  EXPECT_TRUE(positioned(refusal(third_line("50", ", \"raduis\": 5")), "x.json", {"raduis", "radius"}, "3:18"));
-  EXPECT_TRUE(positioned(refusal(third_line("50", ", \"nd\": 1.5")), "x.json", {"thickness", "missing"}, "3:3"));
-  EXPECT_TRUE(positioned(refusal(third_line("50", ", \"thickness\": 5, \"nd\": 7")), "x.json", {"nd", "7"}, "3:40"));
-  EXPECT_TRUE(positioned(refusal(third_line("50", " \"nd\": 1.5")), "x.json", {"not JSON"}, "3:17"));
-  EXPECT_TRUE(positioned(refusal(third_line("1e-13")), "x.json", {"radius", "1e-13"}, "3:14"));
-  EXPECT_TRUE(positioned(refusal("{\"surfaces\": [" + row + "]}"), "x.json", {"format", "petzval-lens 1"}, "1:1"));
+  expect_refused(third_line("50,5"), {"50,5"}, "3:14");
+  expect_refused(third_line("50", ", \"raduis\": 5"), {"raduis", "radius"}, "3:18");
+  expect_refused(third_line("50", ", \"nd\": 1.5"), {"thickness", "missing"}, "3:3");
+  expect_refused(third_line("50", ", \"thickness\": 5, \"nd\": 7"), {"nd", "7"}, "3:40");
+  expect_refused(third_line("50", " \"nd\": 1.5"), {"JSON"}, "3:17");
+  expect_refused(third_line("1e-13"), {"radius", "1e-13"}, "3:14");
+  expect_refused("{\"surfaces\": [" + row + "]}", {"format", "petzval-lens 1"}, "1:1");
   // Columns count characters, without the byte order mark.
-  EXPECT_TRUE(
-      positioned(refusal("\xEF\xBB\xBF{\"name\": \"\u00b5\", \"f_number\": \"a\"}"), "x.json", {"f_number"}, "1:27"));
+  expect_refused("\xEF\xBB\xBF{\"name\": \"\u00b5\", \"f_number\": \"a\"}", {"f_number"}, "1:27");
 }
 
 TEST(PrescriptionJson, ValuesThatNoLensHas_AreFoundInConfigurationsAndDesign) {
@@ -466,20 +456,17 @@ TEST(PrescriptionJson, HugeTextsAreRefusedEarly) {
   for (int i = 1; i < 10'000; ++i) rows += "," + row;
   EXPECT_EQ(parse_prescription(file("\"surfaces\": [" + rows + "]"), "x.json").surfaces.size(), 10'000u);
   // The reader stops at the first surface too many; the rest is not JSON.
-  EXPECT_EQ(refusal(file("\"surfaces\": [" + rows + "," + row + "] !")),
-            "x.json: more than 10000 surfaces; must be fewer");
+  expect_tokens(refusal(file("\"surfaces\": [" + rows + "," + row + "] !")), {"x.json", 10000, "surfaces"});
   std::string aliases = "\"\"";
   for (int i = 0; i < 10'000; ++i) aliases += ",\"\"";
-  EXPECT_EQ(refusal(file("\"aliases\": [" + aliases + "]")),
-            "x.json: more than 10000 entries in a list; must be fewer");
+  expect_tokens(refusal(file("\"aliases\": [" + aliases + "]")), {"x.json", 10000, "entries"});
   // The reader stops at the first bracket that the format does not have, of one or a hundred thousand.
   const std::string deep(100'000, '[');
-  EXPECT_TRUE(positioned(refusal(deep), "x.json", {"document", "a list"}));
-  EXPECT_TRUE(positioned(refusal(file("\"surfaces\": [" + deep)), "x.json", {"surface 0", "a list"}));
-  EXPECT_TRUE(positioned(refusal(file("\"notes\": " + deep)), "x.json", {"notes", "a list"}));
+  expect_refused(deep, {"document", "a list"});
+  expect_refused(file("\"surfaces\": [" + deep), {"surface 0", "a list"});
+  expect_refused(file("\"notes\": " + deep), {"notes", "a list"});
   // Messages shorten long strings.
-  const std::string said = refusal(file("\"" + std::string(1'000'000, 'k') + "\": 1"));
-  EXPECT_TRUE(positioned(said, "x.json", {"key \"" + std::string(60, 'k') + "...\""})) << said.substr(0, 100);
+  expect_refused(file("\"" + std::string(1'000'000, 'k') + "\": 1"), {"\"" + std::string(60, 'k') + "...\""});
   EXPECT_LT(refusal(file("\"f_number\": " + std::string(1'000'000, '1'))).size(), 300u);
 }
 

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "../data_lenses.hpp"
+#include "../expect_error.hpp"
 #include "../message.hpp"
 #include "core/text.hpp"
 #include "petzval/glass/glass.hpp"
@@ -22,6 +23,8 @@ using petzval::GlassCatalogue;
 using petzval::IndexPolicy;
 using petzval::MissingGlass;
 using petzval::Prescription;
+using petzval::testing::expect_error;
+using petzval::testing::expect_tokens;
 using petzval::testing::message;
 
 constexpr double d = petzval::d_line_nm, f = 486.1327, c = 656.2725;
@@ -86,46 +89,36 @@ TEST(Compile, TheReferenceWavelengthIsThatOfTheTable) {
                    catalogue_index("N-BK7", "schott", d) - catalogue_index("N-BK7", "schott", 546.074));
 }
 
-/// Succeeds if a message has all of these words.
-testing::AssertionResult says(const std::string& text, const std::vector<std::string>& words) {
-  for (const std::string& word : words) {
-    if (text.find(word) == std::string::npos)
-      return testing::AssertionFailure() << '"' << word << "\" is not in " << text;
-  }
-  return testing::AssertionSuccess();
-}
-
 TEST(Compile, AGlassNoTableKnowsIsAnErrorThatNamesIt) {
   const petzval::CompileOptions strict{.glasses = &glasses()};
-  EXPECT_TRUE(says(message([&] { compile(doublet(unknown), visible, strict); }),
-                   {"pair: surface 1: ", "\"MYSTERIUM\"", "\"atlantis\"", "in no glass table", "486.1327 nm",
-                    "MissingGlass::abbe"}));
-  EXPECT_TRUE(says(message([&] { compile(doublet(nameless), visible, strict); }),
-                   {"pair: surface 1: nd = 1.673 without a glass name", "486.1327 nm", "MissingGlass::abbe"}));
+  expect_error([&] { compile(doublet(unknown), visible, strict); },
+               {"pair", "surface 1", "\"MYSTERIUM\"", "\"atlantis\"", "glass", 486.1327, "MissingGlass::abbe"});
+  expect_error([&] { compile(doublet(nameless), visible, strict); },
+               {"pair", "surface 1", "nd", 1.673, 486.1327, "MissingGlass::abbe"});
   Prescription immersed = doublet(flint);
   immersed.object_space = {.glass = "SEA WATER", .nd = 1.34};
-  EXPECT_TRUE(says(message([&] { compile(immersed, visible, strict); }), {"pair: object space: ", "\"SEA WATER\""}));
+  expect_error([&] { compile(immersed, visible, strict); }, {"pair", "object space", "\"SEA WATER\""});
   // Without the glass there is no index from the catalogue, at the d line neither.
-  EXPECT_TRUE(says(message([&] {
-                     compile(doublet(unknown), std::array{d},
-                             {.glasses = &glasses(), .index_policy = IndexPolicy::catalogue});
-                   }),
-                   {"pair: surface 1: ", "587.5618 nm"}));
+  expect_error(
+      [&] {
+        compile(doublet(unknown), std::array{d}, {.glasses = &glasses(), .index_policy = IndexPolicy::catalogue});
+      },
+      {"pair", "surface 1", 587.5618});
 }
 
 TEST(Compile, MissingGlass_OfAnotherCatalogueOrIndexOrSpelling_SaysSo) {
   const auto said = [](const petzval::Medium& medium) { return message([&] { compile(doublet(medium), visible); }); };
   const std::string other_catalogue = said({.glass = "N-BK7", .catalogue = "hoya", .nd = 1.5168});
-  EXPECT_TRUE(says(other_catalogue, {"\"N-BK7\"", "\"hoya\"", "schott"}));
+  expect_tokens(other_catalogue, {"\"N-BK7\"", "\"hoya\"", "schott"});
   const std::string other_index = said({.glass = "F2", .nd = 1.7});
-  EXPECT_TRUE(says(other_index, {"\"F2\"", "1.7", "0.01", "schott", "1.62004", "cdgm", "1.61293"}));
+  expect_tokens(other_index, {"\"F2\"", 1.7, 0.01, "schott", 1.62004, "cdgm", 1.61293});
   for (const std::string& text : {other_catalogue, other_index})
     EXPECT_EQ(text.find("in no glass table"), std::string::npos) << text;
-  EXPECT_TRUE(says(said({.glass = "N-BK77", .nd = 1.5168}), {"\"N-BK77\"", "in no glass table", "N-BK7"}));
-  EXPECT_TRUE(says(said({.glass = "NBK7", .nd = 1.5168}), {"\"NBK7\"", "N-BK7"}));
+  expect_tokens(said({.glass = "N-BK77", .nd = 1.5168}), {"\"N-BK77\"", "glass", "N-BK7"});
+  expect_tokens(said({.glass = "NBK7", .nd = 1.5168}), {"\"NBK7\"", "N-BK7"});
   const auto named = compile(doublet({.glass = "F2", .nd = 1.7}));
   ASSERT_EQ(named.missing_glasses().size(), 1u);
-  EXPECT_TRUE(says(named.missing_glasses()[0], {"surface 1", "\"F2\"", "1.7", "1.62004"}));
+  expect_tokens(named.missing_glasses()[0], {"surface 1", "\"F2\"", 1.7, 1.62004});
 }
 
 TEST(Compile, GlassWithoutAnIndex_HasTheFormulaAtEveryWavelength) {
@@ -142,18 +135,16 @@ TEST(Compile, GlassWithoutAnIndex_HasTheFormulaAtEveryWavelength) {
 }
 
 TEST(Compile, GlassWithoutAnIndex_InNoTable_IsAnErrorAtTheReferenceWavelengthToo) {
-  EXPECT_TRUE(says(message([&] { compile(doublet({.glass = "N-BK77"})); }),
-                   {"pair: surface 1: ", "\"N-BK77\"", "in no glass table", "N-BK7", "n_d"}));
-  EXPECT_TRUE(says(message([&] { compile(doublet({.glass = "N-BK7", .catalogue = "hoya"})); }),
-                   {"pair: surface 1: ", "\"N-BK7\"", "\"hoya\"", "schott"}));
-  EXPECT_TRUE(
-      says(message([&] { compile(doublet({.glass = "N-SF5"}), std::array{d}, {.missing_glass = MissingGlass::abbe}); }),
-           {"no error"}));
+  expect_error([&] { compile(doublet({.glass = "N-BK77"})); },
+               {"pair", "surface 1", "\"N-BK77\"", "glass", "N-BK7", "n_d"});
+  expect_error([&] { compile(doublet({.glass = "N-BK7", .catalogue = "hoya"})); },
+               {"pair", "surface 1", "\"N-BK7\"", "\"hoya\"", "schott"});
+  EXPECT_NO_THROW(compile(doublet({.glass = "N-SF5"}), std::array{d}, {.missing_glass = MissingGlass::abbe}));
 }
 
 TEST(Compile, GlassWithoutAnIndex_OfSeveralMeanings_IsAnErrorThatListsThem) {
-  EXPECT_TRUE(says(message([&] { compile(doublet({.glass = "F2"})); }),
-                   {"pair: surface 1: ", "\"F2\"", "schott (n_d 1.62004)", "cdgm (n_d 1.61293)", "catalogue"}));
+  expect_error([&] { compile(doublet({.glass = "F2"})); },
+               {"pair", "surface 1", "\"F2\"", "schott", "n_d 1.62004", "cdgm", "n_d 1.61293", "catalogue"});
   EXPECT_EQ(compile(doublet({.glass = "F2", .catalogue = "cdgm"})).index(2), catalogue_index("F2", "cdgm", d));
 }
 
@@ -175,7 +166,7 @@ TEST(Compile, AtTheReferenceWavelengthNoGlassIsNeeded) {
   EXPECT_EQ(lens.index(2, 0), 1.673);
   EXPECT_EQ(lens.dispersion(), Dispersion::abbe);
   ASSERT_EQ(lens.missing_glasses().size(), 1u);
-  EXPECT_TRUE(says(lens.missing_glasses()[0], {"pair: surface 1: ", "\"MYSTERIUM\"", "\"atlantis\""}));
+  expect_tokens(lens.missing_glasses()[0], {"pair", "surface 1", "\"MYSTERIUM\"", "\"atlantis\""});
 }
 
 TEST(Compile, MediumOfVd0_HasItsIndexAtEveryWavelength) {
@@ -208,8 +199,8 @@ TEST(Compile, TheAbbeModelStandsInOnRequest) {
 
 TEST(Compile, WithoutAnAbbeNumberOnlyTheReferenceWavelengthCanBeUsed) {
   const petzval::CompileOptions options{.glasses = &glasses(), .missing_glass = MissingGlass::abbe};
-  EXPECT_TRUE(says(message([&] { compile(doublet(bare), visible, options); }),
-                   {"pair: surface 1: nd = 1.673 without a glass name", "V_d", "486.1327 nm", "587.5618 nm"}));
+  expect_error([&] { compile(doublet(bare), visible, options); },
+               {"pair", "surface 1", "nd", 1.673, "V_d", 486.1327, 587.5618});
   const auto lens = compile(doublet(bare), std::array{d}, options);
   EXPECT_EQ(lens.index(2, 0), 1.673);
   EXPECT_EQ(lens.dispersion(), Dispersion::none);
@@ -218,7 +209,7 @@ TEST(Compile, WithoutAnAbbeNumberOnlyTheReferenceWavelengthCanBeUsed) {
 TEST(Compile, TheReferenceLineMayBeWrittenWithOneDecimal) {
   const petzval::CompileOptions options{.glasses = &glasses(), .missing_glass = MissingGlass::abbe};
   EXPECT_EQ(compile(doublet(bare), std::array{587.6}, options).index(2, 0), 1.673);
-  EXPECT_NE(message([&] { compile(doublet(bare), std::array{587.7}, options); }), "no error");
+  expect_error([&] { compile(doublet(bare), std::array{587.7}, options); }, {"pair", "surface 1", 587.7});
 }
 
 TEST(Compile, TheStandInAtTheReferenceWavelengthIsThePrintedIndex) {
@@ -238,32 +229,31 @@ TEST(Compile, AGlassWithoutACatalogueIsTheOneWithTheNearestIndex) {
   medium.nd = 1.613;
   EXPECT_NEAR(compile(doublet(medium), std::array{d}, options).index(2, 0), 1.61293, 1e-5);
   medium.nd = 1.7;  // another glass with the same name
-  EXPECT_TRUE(says(message([&] { compile(doublet(medium), std::array{d}, options); }), {"\"F2\"", "1.7"}));
+  expect_error([&] { compile(doublet(medium), std::array{d}, options); }, {"\"F2\"", 1.7});
 }
 
 TEST(Compile, WavelengthsNoGlassKnowsAreRefusedWithSurfaceAndRange) {
   const petzval::CompileOptions options{.glasses = &glasses()};
-  EXPECT_EQ(message([&] { compile(doublet(flint), std::array{d, 2400.0}, options); }), "no error");
-  EXPECT_EQ(message([&] {
-              compile(doublet(flint), std::array{d, 310.0}, options);
-            }),
-            "pair: surface 1: schott N-SF5: wavelength is 310 nm, wanted 370 to 2500 nm");
-  EXPECT_EQ(message([&] {
-              compile(doublet(nameless), std::array{350.0},
-                      {.glasses = &glasses(), .missing_glass = MissingGlass::abbe});
-            }),
-            "pair: surface 1: n_d 1.673, V_d 32.2: wavelength is 350 nm, wanted 365 to 1014 nm");
+  EXPECT_NO_THROW(compile(doublet(flint), std::array{d, 2400.0}, options));
+  expect_error(
+      [&] {
+        compile(doublet(flint), std::array{d, 310.0}, options);
+      },
+      {"pair", "surface 1", "schott N-SF5", "wavelength", 310});
+  expect_error(
+      [&] {
+        compile(doublet(nameless), std::array{350.0}, {.glasses = &glasses(), .missing_glass = MissingGlass::abbe});
+      },
+      {"pair", "surface 1", "n_d 1.673", "V_d 32.2", "wavelength", 350});
 }
 
 TEST(Compile, WavelengthsThatAreNoneAreRefusedForMirrorsToo) {
   Prescription mirror;
   mirror.surfaces = {{.radius = -400, .thickness = -200, .mirror = true}};
   for (const double nm : {std::nan(""), std::numeric_limits<double>::infinity(), 0.0, -d, 0.5876, 587561.8}) {
-    EXPECT_EQ(message([&] { compile(mirror, std::array{nm}); }),
-              "lens: wavelength is " + petzval::to_text(nm) + " nm, wanted 10 to 100000 nm");
+    expect_error([&] { compile(mirror, std::array{nm}); }, {"lens", "wavelength", nm});
   }
-  EXPECT_EQ(message([&] { compile(mirror, std::span<const double>{}); }),
-            "lens: no wavelength to compile for, wanted one at least");
+  expect_error([&] { compile(mirror, std::span<const double>{}); }, {"lens", "wavelength"});
   EXPECT_EQ(compile(mirror, std::array{400.0, 10000.0}).index(1, 1), 1);
 }
 
@@ -271,10 +261,7 @@ TEST(Compile, AWavelengthIsCompiledOnce) {
   Prescription mirror;
   mirror.surfaces = {{.radius = -400, .thickness = -200, .mirror = true}};
   for (const double twice : {d, d + 1e-7}) {
-    EXPECT_EQ(message([&] {
-                compile(mirror, std::array{f, d, c, twice});
-              }),
-              "lens: wavelength 3 is " + petzval::to_text(twice) + " nm, that of wavelength 1, wanted each once");
+    expect_error([&] { compile(mirror, std::array{f, d, c, twice}); }, {"lens", "wavelength", 3, twice, 1});
   }
   EXPECT_EQ(compile(mirror, std::array{d, d + 1e-5}).wavelengths_nm().size(), 2u);
 }
@@ -285,11 +272,12 @@ TEST(Compile, IndicesNoGlassHasAreRefused) {
   heavy.shortest_nm = 300, heavy.longest_nm = 900;
   heavy.coefficients = {6};
   const GlassCatalogue odd({heavy});
-  EXPECT_EQ(message([&] {
-              compile(doublet(unknown), std::array{d},
-                      {.glasses = &odd, .index_policy = IndexPolicy::catalogue, .missing_glass = MissingGlass::abbe});
-            }),
-            "pair: surface 1: index at 587.5618 nm is 6, wanted 0.1 <= n <= 5");
+  expect_error(
+      [&] {
+        compile(doublet(unknown), std::array{d},
+                {.glasses = &odd, .index_policy = IndexPolicy::catalogue, .missing_glass = MissingGlass::abbe});
+      },
+      {"pair", "surface 1", "index", 587.5618, 6});
 }
 
 TEST(Compile, DispersionHasAName) {
@@ -314,7 +302,7 @@ TEST(Compile, EveryLensOfTheDataCompilesAsFarAsItsGlassesAreKnown) {
         break;
       case Dispersion::abbe:
         ++by_abbe;
-        EXPECT_TRUE(says(strict, {"MissingGlass::abbe"}));
+        expect_tokens(strict, {"MissingGlass::abbe"});
         EXPECT_EQ(relaxed, "no error");
         break;
       case Dispersion::none:
@@ -330,8 +318,8 @@ TEST(Compile, EveryLensOfTheDataCompilesAsFarAsItsGlassesAreKnown) {
 
 TEST(Compile, AnIndexTheLensHasNotIsAnError) {
   const auto lens = compile(doublet(bare));
-  EXPECT_EQ(message([&] { lens.index(0, 1); }), "pair: wavelength 1 does not exist, wanted one of 1");
-  EXPECT_EQ(message([&] { lens.index(lens.surface_count() + 1, 0); }).substr(0, 13), "pair: space 4");
+  expect_error([&] { lens.index(0, 1); }, {"pair", "wavelength 1"});
+  expect_error([&] { lens.index(lens.surface_count() + 1, 0); }, {"pair", "space 4"});
 }
 
 TEST(Compile, TheWavelengthNearestTheDLineSpeaksForTheLens) {

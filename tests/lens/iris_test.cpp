@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "../data_lenses.hpp"
+#include "../expect_error.hpp"
 #include "../message.hpp"
 #include "petzval/lens/lens.hpp"
 #include "petzval/pupil/f_number.hpp"
@@ -17,28 +18,27 @@
 namespace petzval {
 namespace {
 
+using testing::expect_error;
+using testing::expect_tokens;
 using testing::message;
 
 TEST(Iris, IsRefusedWhereTheStopCannotHaveIt) {
   const Lens lens = testing::front_stop_lens();
   Prescription p = testing::data_prescription("double_gauss_100mm_f2.0");
   for (auto& surface : p.surfaces) surface.stop = false;
-  EXPECT_EQ(message([&] { with_iris(compile(p), {.blades = 6}); }),
-            p.name + ": iris: no surface is marked as the stop, wanted one that the iris stands at");
+  expect_error([&] { with_iris(compile(p), {.blades = 6}); }, {p.name, "iris", "surface"});
   const Lens open = with_semi_diameter(lens, 0, std::numeric_limits<double>::infinity(), RimLimit::none);
-  EXPECT_EQ(message([&] { with_iris(open, {.blades = 6}); }),
-            "front stop: iris: surface 0, the stop, is unlimited, wanted a semi_diameter");
+  expect_error([&] { with_iris(open, {.blades = 6}); }, {"front stop", "iris", "surface 0", "stop", "is unlimited"});
   const auto refusal = [&](const Iris& iris) { return message([&] { with_iris(lens, iris); }); };
-  EXPECT_EQ(refusal({.blades = 2}), "front stop: iris: blades is 2, wanted 3 to 20, or 0 for a round iris");
-  EXPECT_EQ(refusal({.blades = 21}), "front stop: iris: blades is 21, wanted 3 to 20, or 0 for a round iris");
-  EXPECT_EQ(refusal({.blades = 6, .roundness = 1.1}), "front stop: iris: roundness is 1.1, wanted -1 to 1");
+  expect_tokens(refusal({.blades = 2}), {"front stop", "iris", "blades", 2});
+  expect_tokens(refusal({.blades = 21}), {"front stop", "iris", "blades", 21});
+  expect_tokens(refusal({.blades = 6, .roundness = 1.1}), {"front stop", "iris", "roundness", 1.1});
   const double nan = std::numeric_limits<double>::quiet_NaN();
-  EXPECT_EQ(refusal({.roundness = nan}), "front stop: iris: roundness is nan, wanted -1 to 1");
-  EXPECT_EQ(refusal({.blades = 6, .rotation_rad = nan}),
-            "front stop: iris: rotation_rad is nan, wanted an angle within 1e+06");
+  expect_tokens(refusal({.roundness = nan}), {"front stop", "iris", "roundness", "nan"});
+  expect_tokens(refusal({.blades = 6, .rotation_rad = nan}), {"front stop", "iris", "rotation_rad", "nan"});
   const Lens bladed = with_iris(lens, {.blades = 6});
-  EXPECT_EQ(message([&] { with_semi_diameter(bladed, 0, std::numeric_limits<double>::infinity()); }),
-            "front stop: surface 0: semi_diameter is inf mm, wanted one up to 1e15 mm for the iris of the stop");
+  expect_error([&] { with_semi_diameter(bladed, 0, std::numeric_limits<double>::infinity()); },
+               {"front stop", "surface 0", "semi_diameter", "inf"});
 }
 
 TEST(Iris, KeepsItsShapeWhenTheLensIsStoppedDown) {
