@@ -5,6 +5,7 @@
 #include <cmath>
 #include <string>
 
+#include "../expect_error.hpp"
 #include "lens_text.hpp"
 #include "petzval/lens/lens.hpp"
 #include "petzval/paraxial/first_order.hpp"
@@ -13,6 +14,7 @@
 namespace {
 
 using petzval::Prescription;
+using petzval::testing::expect_tokens;
 using petzval::testing::read;
 using petzval::testing::refusal;
 using petzval::testing::warning;
@@ -90,7 +92,7 @@ TEST(Codev, ShapesAreConicsAndEvenTerms) {
   EXPECT_EQ(read(with_line("CON; K -1")).surfaces[1].conic, -1);
   EXPECT_EQ(read(with_line("CYL; RDX 0")).surfaces[1].curved_in, petzval::Section::y);
   for (const char* word : {"SPS XYP", "DIF GRT", "XDE 1", "ADE 5", "BEN", "UDS"}) {
-    EXPECT_EQ(refusal(with_line(word)).substr(0, 11), "x: line 16:") << word << refusal(with_line(word));
+    expect_tokens(refusal(with_line(word)), {"x", "line 16"});
   }
   EXPECT_EQ(refusal(with_line("XDE 0; YDE 0; ADE 0")), "no error");
 }
@@ -139,7 +141,7 @@ TEST(Codev, GlassesAreNamesCodesAndPrivateOnes) {
   EXPECT_NEAR(medium("620410.603236").nd.value(), 1.62041, 1e-12);
   EXPECT_NEAR(*medium("620410.603236").vd, 60.3236, 1e-12);
   EXPECT_NEAR(medium("500.700").nd.value(), 1.5, 1e-12);
-  EXPECT_NE(refusal(with(singlet, "1.5:60", "XYZ_SCHOTT")).find("--glasses FILE"), std::string::npos);
+  expect_tokens(refusal(with(singlet, "1.5:60", "XYZ_SCHOTT")), {"--glasses FILE"});
   const std::string own = "PRV\nPWL 656.2725 587.5618 486.1327\n'MYGLASS' 1.59 1.6 1.62\nEND\n";
   const petzval::Medium mine = read(with(with(singlet, "SO 0", own + "SO 0"), "1.5:60", "MYGLASS")).surfaces[1].medium;
   EXPECT_EQ(mine.nd, 1.6);
@@ -174,13 +176,13 @@ TEST(Codev, ZoomPositionsAreConfigurations) {
   EXPECT_EQ(configured(p, "tele").surfaces[1].thickness, 6);
   EXPECT_EQ(configured(p, "tele").surfaces[2].thickness, 46.5);
   EXPECT_NE(warning(p, "ZOO"), "no warning");
-  EXPECT_NE(refusal(with(singlet, "GO", "ZOO 3\nZOO THI S2 4 5\nGO")).find("given 2 values"), std::string::npos);
+  expect_tokens(refusal(with(singlet, "GO", "ZOO 3\nZOO THI S2 4 5\nGO")), {"ZOO", 2});
 }
 
 TEST(Codev, EveryWordIsHonouredOrNamed) {
-  EXPECT_EQ(warning(with_line("XYZ 5"), "XYZ"), "is not known and is left out");
-  EXPECT_EQ(warning(with_line("'' 5"), ""), "is not known and is left out");  // a word of no letters
-  EXPECT_NE(refusal(with(singlet, "GO", "SCA 2\nGO")).find("a change of the lens before it"), std::string::npos);
+  EXPECT_NE(warning(with_line("XYZ 5"), "XYZ"), "no warning");
+  EXPECT_NE(warning(with_line("'' 5"), ""), "no warning");  // a word of no letters
+  expect_tokens(refusal(with(singlet, "GO", "SCA 2\nGO")), {"SCA"});
   EXPECT_EQ(read(with(singlet, "SO 0", "S0 0")).surfaces, read(singlet).surfaces);
   EXPECT_TRUE(read(with_line("CCY 0; THC 0; KC 1")).imported->warnings.empty());
   const Prescription without = read(with(singlet, "  STO\n", ""));
@@ -223,28 +225,23 @@ TEST(Codev, CylindersAreCurvedInOneSection) {
 }
 
 TEST(Codev, WhatNoLensHasIsRefused) {
-  const auto refused = [](const std::string& words, std::string_view message) {
-    return petzval::testing::refuses(with(singlet, "\nGO", '\n' + words + "\nGO"), message);
-  };
-  EXPECT_TRUE(refused("PIK RDY S9 Z1 RDY S2 Z1", "PIK is of a surface that does not exist"));
-  EXPECT_TRUE(refused("GLA", "GLA is empty, wanted the name of a glass"));
-  EXPECT_TRUE(refused("THI S9 5", "THI is of \"S9\", wanted a surface that the file has by then"));
-  EXPECT_TRUE(refused("EPD 0", "EPD is 0, wanted a number above 0"));
-  EXPECT_TRUE(refused("WL 0.5876", "WL is 0.5876, wanted 10 to 100000 nm"));
-  EXPECT_TRUE(refused("REF 4", "REF is 4, wanted the number of a wavelength, 1 to 3"));
-  EXPECT_TRUE(refused("CIR S2 -1", "CIR is -1, wanted a radius of 0 or more"));
-  EXPECT_TRUE(refused("S 50 4", "S is behind SI, the image"));
-  EXPECT_TRUE(refused("ZOO 0", "ZOO is 0, wanted 1 to 1000 positions"));
-  EXPECT_TRUE(refused("ZOO THI", "ZOO is incomplete"));
-  EXPECT_TRUE(refused("ZOO 3\nZOO THI S9 4 5 6", "ZOO is of surface 9"));
-  EXPECT_TRUE(refused(petzval::testing::repeated(10'001, "PIK RDY S3 Z1 RDY S2 Z1\n"), "more than 10000 pickups"));
-  EXPECT_TRUE(
-      refused("ZOO 3\n" + petzval::testing::repeated(10'001, "ZOO THI S2 4 5 6\n"), "more than 10000 zoomed values"));
-  EXPECT_NE(refusal(with_line("CYL; RDX 40")).find("RDX is 40, wanted 0, a cylinder"), std::string::npos);
+  const auto refused = [](const std::string& words) { return refusal(with(singlet, "\nGO", '\n' + words + "\nGO")); };
+  expect_tokens(refused("PIK RDY S9 Z1 RDY S2 Z1"), {"PIK", "surface"});
+  expect_tokens(refused("GLA"), {"GLA"});
+  expect_tokens(refused("THI S9 5"), {"THI", "\"S9\""});
+  expect_tokens(refused("EPD 0"), {"EPD", 0});
+  expect_tokens(refused("WL 0.5876"), {"WL", 0.5876});
+  expect_tokens(refused("REF 4"), {"REF", 4});
+  expect_tokens(refused("CIR S2 -1"), {"CIR", -1});
+  expect_tokens(refused("S 50 4"), {"S", "SI"});
+  expect_tokens(refused("ZOO 0"), {"ZOO", 0});
+  expect_tokens(refused("ZOO THI"), {"ZOO"});
+  expect_tokens(refused("ZOO 3\nZOO THI S9 4 5 6"), {"ZOO", 9});
+  expect_tokens(refused(petzval::testing::repeated(10'001, "PIK RDY S3 Z1 RDY S2 Z1\n")), {10000, "pickups"});
+  expect_tokens(refused("ZOO 3\n" + petzval::testing::repeated(10'001, "ZOO THI S2 4 5 6\n")), {10000, "zoomed"});
+  expect_tokens(refusal(with_line("CYL; RDX 40")), {"RDX", 40});
   const std::string own = "PRV\nPWL 656.2725 486.1327\n'MYGLASS' 1.59 1.62\nEND\n";
-  EXPECT_NE(refusal(with(with(singlet, "SO 0", own + "SO 0"), "1.5:60", "MYGLASS"))
-                .find("MYGLASS is a private glass without an index at the d line"),
-            std::string::npos);
+  expect_tokens(refusal(with(with(singlet, "SO 0", own + "SO 0"), "1.5:60", "MYGLASS")), {"MYGLASS"});
 }
 
 TEST(Codev, InfinityIsAPlaneOrAFarObject) {
@@ -255,9 +252,8 @@ TEST(Codev, InfinityIsAPlaneOrAFarObject) {
     EXPECT_EQ(p.surfaces, read(singlet).surfaces);
     EXPECT_EQ(read(with(singlet, "\nGO", "\nTHI SO 300\nTHI SO " + std::string(word) + "\nGO")).design, p.design);
   }
-  EXPECT_TRUE(petzval::testing::refuses(with(singlet, "S 50 4", "S 50 inf"), "thickness"));
-  EXPECT_TRUE(
-      petzval::testing::refuses(with(with(singlet, "RDM;", "RDM N;"), "S 0 2", "S inf 2"), "x:13: S = \"inf\""));
+  expect_tokens(refusal(with(singlet, "S 50 4", "S 50 inf")), {"thickness"});
+  expect_tokens(refusal(with(with(singlet, "RDM;", "RDM N;"), "S 0 2", "S inf 2")), {"x:13", "S", "\"inf\""});
 }
 
 TEST(Codev, ThreeLettersOfAWordAreEnough) {

@@ -12,8 +12,10 @@
 #include <string_view>
 #include <vector>
 
+#include "../expect_error.hpp"
 #include "../message.hpp"
 #include "petzval/core/units.hpp"
+#include "said.hpp"
 
 namespace {
 
@@ -22,6 +24,9 @@ using petzval::Glass;
 using petzval::GlassFile;
 using petzval::read_glasses;
 using petzval::refractive_index;
+using petzval::testing::expect_error;
+using petzval::testing::expect_said;
+using petzval::testing::expect_tokens;
 using petzval::testing::message;
 
 std::string bytes_of(const fs::path& file) {
@@ -58,12 +63,7 @@ class GlassFiles : public ::testing::Test {
   fs::path folder;
 };
 
-/// "line command: message" of each warning.
-std::vector<std::string> said(const GlassFile& file) {
-  std::vector<std::string> result;
-  for (const auto& w : file.warnings) result.push_back(std::to_string(w.line) + " " + w.command + ": " + w.message);
-  return result;
-}
+std::vector<std::string> said(const GlassFile& file) { return petzval::testing::said(file.warnings); }
 
 const Glass& only(const GlassFile& file) {
   EXPECT_EQ(file.glasses.size(), 1u);
@@ -141,13 +141,12 @@ TEST_F(GlassFiles, ACatalogueKeepsWhatItPrints) {
   EXPECT_EQ(file.glasses[6].nd, 1.658643);
   EXPECT_EQ(file.glasses[7].nd, 1.670737);
   EXPECT_EQ(file.glasses[9].nd, 2.154291);
-  EXPECT_EQ(said(file),
-            (std::vector<std::string>{
-                "7 ED: thermal expansion and density are not used",
-                "9 TD: thermal dispersion is not used: indices are those at the temperature of the catalogue",
-                "10 MD: mechanical data are not used", "11 OD: price and resistance to chemicals are not used",
-                "13 IT: internal transmittance is not used: glasses are clear",
-                "145 INFRARED: no n_d is printed; the formula gives 2.605447 at 1000 nm"}));
+  expect_said(said(file), {{"7 ED", "thermal"},
+                           {"9 TD", "thermal", "indices"},
+                           {"10 MD", "mechanical"},
+                           {"11 OD", "price"},
+                           {"13 IT", "internal", "glasses"},
+                           {"145 INFRARED", "n_d", 2.605447, 1000}});
 }
 
 std::string utf16(std::string_view latin, bool big, bool mark) {
@@ -191,11 +190,11 @@ const std::string crown =
 TEST_F(GlassFiles, WhatAFormulaContradictsIsNamed) {
   std::string wrong = crown;
   wrong.replace(wrong.find("1.5168"), 6, "1.5178");
-  EXPECT_EQ(said(read(wrong)), (std::vector<std::string>{"1 K: the formula gives n_d 1.5168, but 1.5178 is printed"}));
+  expect_said(said(read(wrong)), {{"1 K", "formula", "n_d", 1.5168, 1.5178}});
   EXPECT_EQ(only(read(wrong)).nd, 1.5178);
   wrong = crown;
   wrong.replace(wrong.find("64.17"), 5, "61.00");
-  EXPECT_EQ(said(read(wrong)), (std::vector<std::string>{"1 K: the formula gives V_d 64.17, but 61 is printed"}));
+  expect_said(said(read(wrong)), {{"1 K", "formula", "V_d", 64.17, 61}});
   wrong.replace(wrong.find("61.00"), 5, "-    ");
   EXPECT_TRUE(said(read(wrong)).empty());
   EXPECT_NEAR(only(read(wrong)).vd, 64.167, 1e-3);
@@ -203,46 +202,38 @@ TEST_F(GlassFiles, WhatAFormulaContradictsIsNamed) {
 
 TEST_F(GlassFiles, WhatHasNoIndexIsLeftOutByName) {
   const auto others = [&](std::string_view text) { return said(read(crown + std::string(text))); };
-  using Said = std::vector<std::string>;
-  EXPECT_EQ(others("NM Y 14 0 1.5 60 0 1\nCD 2\nLD 0.4 0.7\n"),
-            Said{"4 Y: left out: its formula is 14, known are 1 to 13"});
-  EXPECT_EQ(others("NM Y 2.5 0 1.5 60 0 1\nCD 2\nLD 0.4 0.7\n"),
-            Said{"4 Y: left out: its formula is 2.5, known are 1 to 13"});
-  EXPECT_EQ(others("NM Y 1 0 1.5 60\nNM Z 1 0 1.5 60\nCD 2.25\nLD 0.4 0.7\n"), (Said{"4 Y: left out: it has no CD"}));
-  EXPECT_EQ(others("NM Y 1 0 1.5 60\nCD 2.25\nLD 0.7 0.4\n"), Said{"4 Y: left out: its range is 700 to 400 nm"});
-  EXPECT_EQ(others("NM Y 1 0 1.5 60\nCD 2.25\nLD 0 0\n"), Said{"4 Y: left out: its range is 0 to 0 nm"});
-  EXPECT_EQ(others("NM Y 1 0 1.5 60\nCD -2.25\nLD 0.4 0.7\n"),
-            Said{"4 Y: left out: its formula gives no real index at 587.5618 nm"});
-  EXPECT_EQ(others("NM Y 4 0 1.9 60\nCD 0.25 1 0.1 0.006 0.09\nLD 0.4 0.7\n"),
-            Said{"4 Y: left out: formula 4 has two readings, and its n_d does not tell them apart"});
-  EXPECT_EQ(others("NM Y 1 0 1.5 60\nCD 2.25\n"), Said{"4 Y: it has no LD: its range is assumed to be 400 to 700 nm"});
-  EXPECT_EQ(others("NM k 1 0 1.5 60\nCD 2.25\nLD 0.4 0.7\n"),
-            Said{"4 k: given before; the first is found by its name"});
-  EXPECT_EQ(others("XX 1\nXX 2\n"), Said{"4 XX: an unknown command is left out"});
+  expect_said(others("NM Y 14 0 1.5 60 0 1\nCD 2\nLD 0.4 0.7\n"), {{"4 Y", "left out", "formula", 14, "known", 1, 13}});
+  expect_said(others("NM Y 2.5 0 1.5 60 0 1\nCD 2\nLD 0.4 0.7\n"),
+              {{"4 Y", "left out", "formula", 2.5, "known", 1, 13}});
+  expect_said(others("NM Y 1 0 1.5 60\nNM Z 1 0 1.5 60\nCD 2.25\nLD 0.4 0.7\n"), {{"4 Y", "left out", "CD"}});
+  expect_said(others("NM Y 1 0 1.5 60\nCD 2.25\nLD 0.7 0.4\n"), {{"4 Y", "left out", "range", 700, 400}});
+  expect_said(others("NM Y 1 0 1.5 60\nCD 2.25\nLD 0 0\n"), {{"4 Y", "left out", "range", 0, 0}});
+  expect_said(others("NM Y 1 0 1.5 60\nCD -2.25\nLD 0.4 0.7\n"), {{"4 Y", "left out", "formula", 587.5618}});
+  expect_said(others("NM Y 4 0 1.9 60\nCD 0.25 1 0.1 0.006 0.09\nLD 0.4 0.7\n"),
+              {{"4 Y", "left out", "formula", 4, "n_d"}});
+  expect_said(others("NM Y 1 0 1.5 60\nCD 2.25\n"), {{"4 Y", "LD", "range", 400, 700}});
+  expect_said(others("NM k 1 0 1.5 60\nCD 2.25\nLD 0.4 0.7\n"), {{"4 k", "given"}});
+  expect_said(others("XX 1\nXX 2\n"), {{"4 XX", "unknown"}});
 }
 
 TEST_F(GlassFiles, ACatalogueThatIsBrokenIsRefusedWithItsLine) {
-  EXPECT_EQ(refusal("CC a\nNM\n"), ": line 2: NM has 0 words, wanted a name, a formula, a code, n_d and V_d");
-  EXPECT_EQ(refusal("NM K 2 0 1,5168 64.17\n"), ": line 1: NM is \"1,5168\", wanted a finite number");
-  EXPECT_EQ(refusal("NM K 2 0 nan 64.17\n"), ": line 1: NM is \"nan\", wanted a finite number");
-  EXPECT_EQ(refusal("NM K 2 0 1.5 64.17\nCD 1 1e400\n"), ": line 2: CD is \"1e400\", wanted a finite number");
-  EXPECT_EQ(refusal("NM K 2 0 1.5 64.17\nLD 1\n"), ": line 2: LD has 1 numbers, wanted two");
-  EXPECT_EQ(refusal("CC a\nCD 1\n"), ": line 2: CD stands before the first NM, wanted a glass that it is of");
-  EXPECT_EQ(refusal("NM K 2 0 1.5 64.17\n\n"),
-            ": line 2: the file ends before the CD of glass K, wanted its coefficients");
-  EXPECT_EQ(refusal("NM K 99 0 1.5 64.17\nCD 1\n"),
-            ": no glass can be used (line 1: K: left out: its formula is 99, known are 1 to 13), wanted at least one");
-  EXPECT_EQ(refusal("CC nothing but this\n"), ": no glass can be used, wanted at least one");
+  expect_tokens(refusal("CC a\nNM\n"), {"line 2", "NM", 0});
+  expect_tokens(refusal("NM K 2 0 1,5168 64.17\n"), {"line 1", "NM", "\"1,5168\""});
+  expect_tokens(refusal("NM K 2 0 nan 64.17\n"), {"line 1", "NM", "\"nan\""});
+  expect_tokens(refusal("NM K 2 0 1.5 64.17\nCD 1 1e400\n"), {"line 2", "CD", "\"1e400\""});
+  expect_tokens(refusal("NM K 2 0 1.5 64.17\nLD 1\n"), {"line 2", "LD", 1});
+  expect_tokens(refusal("CC a\nCD 1\n"), {"line 2", "CD"});
+  expect_tokens(refusal("NM K 2 0 1.5 64.17\n\n"), {"line 2", "CD", "K"});
+  expect_tokens(refusal("NM K 99 0 1.5 64.17\nCD 1\n"), {"glass", "line 1", "K", "formula", 99});
+  expect_tokens(refusal("CC nothing but this\n"), {"glass"});
 }
 
 TEST_F(GlassFiles, OtherFilesAreRefused) {
-  const std::string wanted =
-      ", wanted glasses: a Zemax catalogue (.agf), a page of refractiveindex.info (.yml) or a glass table";
-  EXPECT_EQ(refusal("#include <vector>\n"), ": its first lines are of no glass file" + wanted);
-  EXPECT_EQ(refusal(""), ": its first lines are of no glass file" + wanted);
-  EXPECT_EQ(refusal("PK\x03\x04..."), ": is a zip archive (.zip, .zos or .zar)" + wanted);
-  EXPECT_EQ(message([&] { read_glasses(folder); }), folder.string() + ": is a folder" + wanted);
-  EXPECT_TRUE(message([&] { read_glasses(folder / "absent.agf"); }).starts_with((folder / "absent.agf").string()));
+  expect_error([&] { read("#include <vector>\n", "x.agf"); }, {folder / "x.agf"});
+  expect_error([&] { read("", "x.agf"); }, {folder / "x.agf"});
+  expect_tokens(refusal("PK\x03\x04..."), {"zip"});
+  expect_error([&] { read_glasses(folder); }, {folder, "folder"});
+  expect_error([&] { read_glasses(folder / "absent.agf"); }, {folder / "absent.agf"});
 }
 
 TEST_F(GlassFiles, ATableOfThisLibraryIsReadToo) {
@@ -250,8 +241,8 @@ TEST_F(GlassFiles, ATableOfThisLibraryIsReadToo) {
   const auto file = read(table + "mine,X1,1.5,60,cauchy,0.4,0.7,1.49 0.0034525 -2,me\n", "x.csv");
   EXPECT_EQ(only(file).catalogue, "mine");
   EXPECT_NEAR(refractive_index(only(file), 500), 1.49 + 0.0034525 * 4, 1e-15);
-  EXPECT_EQ(said(file), std::vector<std::string>{"2 X1: the formula gives V_d 75.84, but 60 is printed"});
-  EXPECT_EQ(refusal(table + "mine\n", "x.csv").substr(0, 9), ": line 2:");
+  expect_said(said(file), {{"2 X1", "formula", "V_d", 75.84, 60}});
+  expect_tokens(refusal(table + "mine\n", "x.csv"), {"line 2"});
 }
 
 /// Pages of refractiveindex.info, in a build with yaml-cpp.
@@ -306,21 +297,19 @@ TEST_F(GlassPages, APageKeepsWhatItPrints) {
     const auto file = read(page(cauchy, std::string(section) + ":\n    nd: 1.5116\n    Vd: 68\n"), "x.yml");
     EXPECT_EQ(only(file).nd, 1.5116);
     EXPECT_EQ(only(file).vd, 68);
-    EXPECT_EQ(said(file), std::vector<std::string>{"7 x: the formula gives V_d 66.97, but 68 is printed"});
+    expect_said(said(file), {{"7 x", "formula", "V_d", 66.97, 68}});
   }
   const auto file = read(page(cauchy + "  - type: tabulated k\n    data: |\n        0.4 1e-6\n        0.7 1e-6\n",
                               "CONDITIONS:\n  n_is_absolute: true\n"),
                          "x.yml");
-  EXPECT_EQ(said(file),
-            (std::vector<std::string>{"15 n_is_absolute: the index, which is relative to vacuum, is taken as it is",
-                                      "10 tabulated k: absorption is not used: glasses are clear",
-                                      "7 x: no n_d is printed; the formula gives 1.511587 at 587.5618 nm"}));
+  expect_said(
+      said(file),
+      {{"15 n_is_absolute", "index"}, {10, "tabulated", "absorption", "glasses"}, {"7 x", "n_d", 1.511587, 587.5618}});
 }
 
 TEST_F(GlassPages, OfTwoEntriesOfAPageTheFirstIsTaken) {
   const std::string entry = "  - type: formula 5\n    wavelength_range: 0.4 0.7\n    coefficients: 1.5 0.004 -2\n";
-  EXPECT_EQ(said(read(page(entry + entry), "x.yml")).at(0),
-            "10 formula 5: left out: the indices are those of the entry before");
+  expect_tokens(said(read(page(entry + entry), "x.yml")).at(0), {10, "formula", 5, "left out", "indices"});
 }
 
 std::string table(const std::string& type, const std::string& rows) {
@@ -335,7 +324,7 @@ TEST_F(GlassPages, TablesOfAPageAreInterpolated) {
   EXPECT_DOUBLE_EQ(glass.longest_nm, 700);
   EXPECT_DOUBLE_EQ(refractive_index(glass, 500), 1.515);
   EXPECT_DOUBLE_EQ(refractive_index(glass, 700), 1.5);
-  EXPECT_EQ(said(file).at(0), "7 data: 1 rows of wavelengths given before are left out");
+  expect_tokens(said(file).at(0), {"7 data", 1, "rows"});
 }
 
 TEST_F(GlassPages, OfATableWithAbsorptionTheClearStretchIsTaken) {
@@ -345,44 +334,35 @@ TEST_F(GlassPages, OfATableWithAbsorptionTheClearStretchIsTaken) {
                          "x.yml");
   EXPECT_DOUBLE_EQ(only(file).shortest_nm, 400);
   EXPECT_DOUBLE_EQ(only(file).longest_nm, 700);
-  EXPECT_EQ(said(file).at(0), "7 tabulated nk: it absorbs at other wavelengths than 400 to 700 nm: they are left out");
-  EXPECT_EQ(refusal(table("nk", "        0.4 0.2 3\n        0.5 0.2 3\n        0.7 0.1 4\n"), "silver.yml"),
-            ": line 7: a table with 0 rows of a clear medium (k at most 0.01), wanted two or more");
+  expect_tokens(said(file).at(0), {7, "tabulated", "absorbs", 400, 700, "left"});
+  expect_tokens(refusal(table("nk", "        0.4 0.2 3\n        0.5 0.2 3\n        0.7 0.1 4\n"), "silver.yml"),
+                {"line 7", "table", 0, "k", 0.01});
 }
 
 TEST_F(GlassPages, APageThatIsBrokenIsRefusedWithItsLine) {
-  EXPECT_EQ(refusal(formula(6, "0 1 2"), "x.yml"),
-            ": line 7: type \"formula 6\", wanted formula 1, 2, 3, 4, 5 or 7, or tabulated n or nk");
-  EXPECT_EQ(refusal(formula(2, "0 1"), "x.yml"), ": line 9: 2 coefficients, wanted C1 and pairs");
-  EXPECT_EQ(refusal(formula(2, ""), "x.yml"), ": line 7: formula 2 without coefficients, wanted some");
-  EXPECT_EQ(refusal(formula(2, "0 nan 1"), "x.yml"), ": line 9: coefficient is \"nan\", wanted a finite number");
-  EXPECT_EQ(refusal(formula(2, "0 1e400 1"), "x.yml"), ": line 9: coefficient is \"1e400\", wanted a finite number");
-  EXPECT_EQ(refusal(page("  - type: formula 2\n    coefficients: 0\n"), "x.yml"),
-            ": line 7: a range of 0 numbers, wanted two wavelengths");
-  EXPECT_EQ(refusal(table("n", "        0.4 1.5\n        0.5 1,5\n"), "x.yml"),
-            ": line 10: data is \"1,5\", wanted a finite number");
-  EXPECT_EQ(refusal(table("n", "        0.4 1.5\n        0.5\n"), "x.yml"), ": line 10: a row of 1 numbers, wanted 2");
-  EXPECT_EQ(refusal(page("  - type: tabulated k\n    data: |\n        0.4 1\n"), "x.yml"),
-            ": line 1: no DATA with an index, wanted a formula or a table of n");
-  EXPECT_EQ(refusal("DATA:\n  - type: [formula 2\n", "x.yml"),
-            ": line 3: YAML that ends or errs here (end of sequence flow not found), wanted a page of "
-            "refractiveindex.info");
-  EXPECT_EQ(refusal("DATA: 5\n", "x.yml"), ": line 1: no DATA with an index, wanted a formula or a table of n");
+  expect_tokens(refusal(formula(6, "0 1 2"), "x.yml"), {"line 7", "type \"formula 6\""});
+  expect_tokens(refusal(formula(2, "0 1"), "x.yml"), {"line 9", "2 coefficients"});
+  expect_tokens(refusal(formula(2, ""), "x.yml"), {"line 7", "formula", 2});
+  expect_tokens(refusal(formula(2, "0 nan 1"), "x.yml"), {"line 9", "coefficient", "\"nan\""});
+  expect_tokens(refusal(formula(2, "0 1e400 1"), "x.yml"), {"line 9", "coefficient", "\"1e400\""});
+  expect_tokens(refusal(page("  - type: formula 2\n    coefficients: 0\n"), "x.yml"), {"line 7", "range", 0});
+  expect_tokens(refusal(table("n", "        0.4 1.5\n        0.5 1,5\n"), "x.yml"), {"line 10", "data", "\"1,5\""});
+  expect_tokens(refusal(table("n", "        0.4 1.5\n        0.5\n"), "x.yml"), {"line 10", "row", 1});
+  expect_tokens(refusal(page("  - type: tabulated k\n    data: |\n        0.4 1\n"), "x.yml"), {"line 1", "DATA"});
+  expect_tokens(refusal("DATA:\n  - type: [formula 2\n", "x.yml"), {"line 3", "YAML", "end"});
+  expect_tokens(refusal("DATA: 5\n", "x.yml"), {"line 1", "DATA"});
 }
 
 TEST_F(GlassPages, BombsOfAPageAreRefused) {
-  EXPECT_EQ(refusal("a: &a [x, x]\nb: &b [*a, *a]\nDATA: [*b]\n", "x.yml"),
-            ": line 2: an alias, wanted a page without them");
+  expect_tokens(refusal("a: &a [x, x]\nb: &b [*a, *a]\nDATA: [*b]\n", "x.yml"), {"line 2", "alias"});
   for (const char* opening : {"[", "{a: ", "- ", "? "}) {
     std::string deep = "DATA:\n  ";
     for (int i = 0; i < 100; ++i) deep += opening;
-    EXPECT_TRUE(refusal(deep, "x.yml").starts_with(": line ")) << opening;
+    expect_tokens(refusal(deep, "x.yml"), {"line"});
   }
-  EXPECT_EQ(refusal("DATA:\n" + std::string(65'537, '['), "x.yml"),
-            ": line 2: a line of 65537 bytes, wanted at most 64 KiB");
-  EXPECT_EQ(refusal("DATA:\n" + std::string(8 << 20, '\n'), "x.yml"),
-            ": line 1: a page of 8388614 bytes, wanted at most 8 MiB");
-  EXPECT_EQ(refusal("---\nDATA:\n---\n", "x.yml"), ": line 3: a second document, wanted one page");
+  expect_tokens(refusal("DATA:\n" + std::string(65'537, '['), "x.yml"), {"line 2", "line", 65537});
+  expect_tokens(refusal("DATA:\n" + std::string(8 << 20, '\n'), "x.yml"), {"line 1", "page", 8388614});
+  expect_tokens(refusal("---\nDATA:\n---\n", "x.yml"), {"line 3", "second"});
 }
 
 // An Error or glasses, and never anything else.
@@ -414,12 +394,11 @@ TEST_F(GlassFiles, AMillionLinesAreReadOrRefused) {
   EXPECT_EQ(read(lines).glasses.size(), 1u);
   lines = "CC\n";
   for (int i = 0; i < 1'000'000; ++i) lines += "X" + std::to_string(i) + "\n";
-  EXPECT_EQ(refusal(lines).substr(0, 22), ": no glass can be used");
+  expect_tokens(refusal(lines), {"glass"});
   std::string many;
   for (int i = 0; i < 100'001; ++i) many += "NM G" + std::to_string(i) + " 1 0 1.5 0\nCD 2.25\nLD .4 .7\n";
-  EXPECT_EQ(refusal(many), ": line 300001: one glass more, wanted at most 100000 in a file");
-  EXPECT_EQ(refusal("NM K 2 0 1.5 " + std::string(1'000'000, '9') + "x\n").substr(0, 29),
-            ": line 1: NM is \"999999999999");
+  expect_tokens(refusal(many), {"line 300001", "glass"});
+  expect_tokens(refusal("NM K 2 0 1.5 " + std::string(1'000'000, '9') + "x\n"), {"line 1", "NM"});
 }
 
 TEST_F(GlassFiles, WarningsEndAfterAThousand) {
@@ -428,7 +407,7 @@ TEST_F(GlassFiles, WarningsEndAfterAThousand) {
   const auto file = read(many);
   EXPECT_EQ(file.glasses.size(), 2001u);
   ASSERT_EQ(file.warnings.size(), 1001u);
-  EXPECT_EQ(file.warnings.back().message, "2999 more warnings are left out");
+  expect_tokens(file.warnings.back().message, {2999});
 }
 
 // The samples beside the repository, where they are.

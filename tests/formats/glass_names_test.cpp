@@ -11,6 +11,7 @@
 #include <string_view>
 #include <vector>
 
+#include "../expect_error.hpp"
 #include "lens_text.hpp"
 #include "petzval/formats/glass_files.hpp"
 #include "petzval/glass/glass.hpp"
@@ -25,6 +26,7 @@ using petzval::Glass;
 using petzval::GlassCatalogue;
 using petzval::Medium;
 using petzval::Prescription;
+using petzval::testing::expect_tokens;
 using petzval::testing::read;
 using petzval::testing::refusal;
 using petzval::testing::warning;
@@ -109,21 +111,18 @@ TEST(GlassNames, ZemaxGlassOfAnotherCatalogue_IsAWarningThatNamesBoth) {
   const Prescription p = read(text);
   EXPECT_EQ(p.surfaces[3].medium.catalogue, "cdgm");
   const std::string said = warning(p, "H-ZF1");
-  EXPECT_NE(said.find("OHARA"), std::string::npos) << said;
-  EXPECT_NE(said.find("H-ZF1 (cdgm"), std::string::npos) << said;
+  expect_tokens(said, {"OHARA", "H-ZF1", "cdgm"});
   // Under another name, or moulded.
   const auto other = [](const std::string& name) {
     return warning(with(double_gauss("SCHOTT MISC OHARA", dummy, dummy), "GLAS F2", "GLAS " + name), name);
   };
-  EXPECT_NE(other("SILICA").find("F_SILICA (misc"), std::string::npos) << other("SILICA");
-  EXPECT_NE(other("L-TIM28_MOLD").find("L-TIM28 (ohara"), std::string::npos) << other("L-TIM28_MOLD");
+  expect_tokens(other("SILICA"), {"F_SILICA", "misc"});
+  expect_tokens(other("L-TIM28_MOLD"), {"L-TIM28", "ohara"});
 }
 
 TEST(GlassNames, NameThatSeveralCataloguesHave_IsAWarningUnlessTheFileTellsWhich) {
   const std::string seq = "RDM;LEN\nDIM M\nWL 587.56\nEPD 5\nSO 0 1e13\nS 50 4 F2\nSTO\nS -50 40\nSI 0 0\nGO\n";
-  const std::string said = warning(read(seq), "F2");
-  EXPECT_NE(said.find("schott"), std::string::npos) << said;
-  EXPECT_NE(said.find("cdgm"), std::string::npos) << said;
+  expect_tokens(warning(read(seq), "F2"), {"schott", "cdgm"});
   EXPECT_EQ(warning(read(with(seq, "F2", "F2_SCHOTT")), "F2"), "no warning");
   EXPECT_EQ(warning(read(with(seq, "F2", "NBK7")), "NBK7"), "no warning");
 }
@@ -212,9 +211,7 @@ std::string with_material(const std::string& material) {
 TEST(GlassNames, OptilandDataSetThatIsReplaced_IsAWarningThatNamesBoth) {
   for (const char* material : {R"({"type": "Material", "name": "CaF2", "reference": "Daimon-20"})",
                                R"({"type": "MaterialFile", "filename": "data-nk/main/CaF2/Daimon-20.yml"})"}) {
-    const std::string said = warning(read(with_material(material)), "CaF2");
-    EXPECT_NE(said.find("Daimon-20"), std::string::npos) << said;
-    EXPECT_NE(said.find("CAF2 (misc"), std::string::npos) << said;
+    expect_tokens(warning(read(with_material(material)), "CaF2"), {"Daimon-20", "CAF2", "misc"});
   }
   for (const char* material : {R"({"type": "Material", "name": "CaF2", "reference": "Malitson"})",
                                R"({"type": "MaterialFile", "filename": "data-nk/main/CaF2/Malitson.yml"})"}) {
@@ -266,7 +263,7 @@ std::string infrared_lens(const std::string& glass) {
 
 TEST_F(InfraredGlass, WithoutIndexAtTheDLine_IsReadAtThePrimaryWavelength) {
   const std::string text = infrared_lens("GERMANIUM 0 0 1.5 40 0 0 0 0 0 0");
-  EXPECT_NE(refusal(text).find("ReadOptions::glasses"), std::string::npos) << refusal(text);
+  expect_tokens(refusal(text), {"ReadOptions::glasses"});
   const GlassCatalogue all = glasses(germanium_agf);
   const Prescription p = petzval::parse_lens(text, "x", {.glasses = &all});
   EXPECT_FALSE(speaks_of(p, "GERMANIUM"));

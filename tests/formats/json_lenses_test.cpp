@@ -5,6 +5,7 @@
 #include <string>
 
 #include "../data_lenses.hpp"
+#include "../expect_error.hpp"
 #include "../positioned.hpp"
 #include "core/text.hpp"
 #include "lens_text.hpp"
@@ -15,6 +16,7 @@
 namespace {
 
 using petzval::Prescription;
+using petzval::testing::expect_tokens;
 using petzval::testing::positioned;
 using petzval::testing::read;
 using petzval::testing::refusal;
@@ -64,9 +66,8 @@ TEST(Optiland, SaysWhatTheFileSays) {
 }
 
 TEST(Optiland, WhatIsNotALensOfRevolutionIsRefused) {
-  EXPECT_NE(refusal(with(optiland, "\"cs\": {\"z\": 6}", "\"cs\": {\"z\": 6, \"rx\": 0.1}")).find("rx = 0.1"),
-            std::string::npos);
-  EXPECT_NE(refusal(with(optiland, "EvenAsphere", "Toroidal")).find("\"Toroidal\""), std::string::npos);
+  expect_tokens(refusal(with(optiland, "\"cs\": {\"z\": 6}", "\"cs\": {\"z\": 6, \"rx\": 0.1}")), {"rx", 0.1});
+  expect_tokens(refusal(with(optiland, "EvenAsphere", "Toroidal")), {"\"Toroidal\""});
   EXPECT_EQ(read(with(optiland, "EvenAsphere", "OddAsphere")).surfaces[1].aspheric,
             (std::vector<petzval::AsphereTerm>{{2, 1e-6}}));
   EXPECT_NE(warning(with(optiland, "\"is_stop\": true", "\"is_stop\": true, \"bsdf\": 5"),
@@ -78,22 +79,21 @@ TEST(Optiland, WhatIsNotALensOfRevolutionIsRefused) {
 }
 
 TEST(Optiland, WhatIsMissingOrUnknownIsSaid) {
-  using petzval::testing::refuses;
-  using petzval::testing::warns;
-  EXPECT_TRUE(refuses(with(optiland, "\"EPD\"", "\"EPX\""), "type = \"EPX\"; must be EPD"));
-  EXPECT_TRUE(refuses(with(optiland, "\"value\": 10", "\"value\": \"ten\""), "must be a number"));
-  EXPECT_TRUE(refuses(with(optiland, "\"value\": 10,", ""), "value is missing; must be a number"));
-  EXPECT_TRUE(refuses(with(optiland, "\"value\": 10", "\"value\": 1e999"), "1e999"));
-  EXPECT_TRUE(warns(with(optiland, "\"angle\"", "\"angel\""), "file.fields.field_type", "\"angel\" is not known"));
-  EXPECT_TRUE(refuses(with(with(optiland, "EvenAsphere", "OddAsphere"), "[0, 1e-6]", "[1e-3]"),
-                      "coefficients = 0.001 of order 1; must be of orders 2 to 40"));
-  EXPECT_TRUE(warns(with(optiland, "RadialAperture", "RectangularAperture"), "file.surface_group.surfaces[2].aperture",
-                    "is left out: it is not round"));
+  expect_tokens(refusal(with(optiland, "\"EPD\"", "\"EPX\"")), {"type", "\"EPX\""});
+  expect_tokens(refusal(with(optiland, "\"value\": 10", "\"value\": \"ten\"")), {"value", "\"ten\""});
+  expect_tokens(refusal(with(optiland, "\"value\": 10,", "")), {"value", "missing"});
+  expect_tokens(refusal(with(optiland, "\"value\": 10", "\"value\": 1e999")), {"1e999"});
+  expect_tokens(warning(with(optiland, "\"angle\"", "\"angel\""), "file.fields.field_type"), {"\"angel\""});
+  expect_tokens(refusal(with(with(optiland, "EvenAsphere", "OddAsphere"), "[0, 1e-6]", "[1e-3]")),
+                {"coefficients", 0.001, 1});
+  expect_tokens(
+      warning(with(optiland, "RadialAperture", "RectangularAperture"), "file.surface_group.surfaces[2].aperture"),
+      {"round"});
   const std::size_t list = optiland.find("\"surfaces\": [") + 13;
-  EXPECT_TRUE(refuses(optiland.substr(0, list) + "1, 2]}}", "surfaces = 2 surfaces; must be an object, a lens and"));
-  EXPECT_TRUE(refuses(optiland.substr(0, list) + petzval::testing::repeated(10'002, "1,") + "1]}}",
-                      "more than 10000 surfaces"));
-  EXPECT_TRUE(refuses(optiland + std::string(1 << 24, ' '), "bytes; must be at most"));
+  expect_tokens(refusal(optiland.substr(0, list) + "1, 2]}}"), {"surfaces", 2});
+  expect_tokens(refusal(optiland.substr(0, list) + petzval::testing::repeated(10'002, "1,") + "1]}}"),
+                {10000, "surfaces"});
+  expect_tokens(refusal(optiland + std::string(1 << 24, ' ')), {"bytes"});
 }
 
 TEST(Optiland, OtherWordsForTheSameAreRead) {
@@ -196,14 +196,14 @@ TEST(Optiland, WhatIsOfAnotherKindIsRefusedWithItsPlace) {
       positioned(refused("{\"x\": 0, \"y\": 0, \"vx\": 0, \"vy\": 0}", "7"), "x", {"file.fields.fields[0]", "7"}));
   EXPECT_TRUE(positioned(refused("\"is_primary\": true, \"unit\": \"um\"", "\"unit\": \"inch\""), "x",
                          {"file.wavelengths.wavelengths[1].unit", "\"inch\""}));
-  EXPECT_EQ(warning(with(optiland, "\"is_primary\": false", "\"is_primary\": true"), "file.wavelengths.wavelengths"),
-            "2 are primary; the first of them is taken");
+  expect_tokens(
+      warning(with(optiland, "\"is_primary\": false", "\"is_primary\": true"), "file.wavelengths.wavelengths"),
+      {2, "primary"});
   EXPECT_TRUE(
       positioned(refused("{\"wavelengths\": [", "{\"waves\": ["), "x", {"file.wavelengths.wavelengths", "missing"}));
   const std::string telecentric = with(optiland, "_telecentric\": false", "_telecentric\": true");
-  EXPECT_EQ(warning(telecentric, "file.aperture.object_space_telecentric"), "is left out");
-  EXPECT_EQ(warning(with(optiland, "{\"solves\": []}", "{\"solves\": [1]}"), "file.solves"),
-            "are not evaluated; the values that the file states are taken");
+  EXPECT_NE(warning(telecentric, "file.aperture.object_space_telecentric"), "no warning");
+  EXPECT_NE(warning(with(optiland, "{\"solves\": []}", "{\"solves\": [1]}"), "file.solves"), "no warning");
 }
 
 const std::string lentil =
@@ -290,12 +290,11 @@ TEST(Lentil, OneLensOfADatabaseIsChosenByItsKeyOrItsName) {
   EXPECT_EQ(chosen(lentil, "0001").imported->entry, "0001");
   for (const char* entry : {"", "0003"}) {
     const std::string said = petzval::testing::message([&] { chosen(both, entry); });
-    for (const char* word : {"x: ", "--configuration", "0001 (none singlet 2000)", "0002 (none other 2000)", entry}) {
-      EXPECT_NE(said.find(word), std::string::npos) << said;
-    }
+    expect_tokens(said, {"x", "--configuration", "0001", "none singlet 2000", "0002", "none other 2000"});
+    if (*entry) expect_tokens(said, {entry});
   }
   const std::string twins = petzval::testing::message([&] { chosen(with(both, "other", "singlet"), "singlet"); });
-  EXPECT_NE(twins.find("2 lenses"), std::string::npos) << twins;
+  expect_tokens(twins, {"2 lenses"});
 }
 
 TEST(Lentil, WhatIsMissingOrOfAnotherKindIsSaid) {
@@ -308,8 +307,7 @@ TEST(Lentil, WhatIsMissingOrOfAnotherKindIsSaid) {
                          {"0001.optical-elements-patent[0].thickness", "[2,3,null]"}));
   EXPECT_TRUE(
       positioned(refusal("{\"optical-elements-patent\": 5}"), "x", {"file.optical-elements-patent", "no list"}));
-  EXPECT_EQ(refusal("{\"0001\": [\"optical-elements-patent\", \"optical-elements-patent\"]}").substr(0, 11),
-            "x:1:10: 000");
+  expect_tokens(refusal("{\"0001\": [\"optical-elements-patent\", \"optical-elements-patent\"]}"), {"x:1:10", "0001"});
   EXPECT_EQ(read(with(lentil, "\"BK7\"", "\"glass\"")).surfaces[1].medium, (petzval::Medium{.nd = 1.5168, .vd = 64.2}));
   EXPECT_EQ(read(with(lentil, "\"abbe\": 64.2", "\"abbe\": 0")).surfaces[1].medium.vd, std::nullopt);
   EXPECT_EQ(read(with(lentil, "\"radius\": 50.6", "\"radius\": 9999")).surfaces[1].radius, 9999);
@@ -325,17 +323,16 @@ TEST(Lentil, WhatIsMissingOrOfAnotherKindIsSaid) {
 }
 
 TEST(Lentil, ListsAreOfNumbersAndSurfaces) {
-  using petzval::testing::refuses;
-  EXPECT_TRUE(refuses(with(lentil, "[2, 3, 4]", "[2, 3]"), "thickness = [2,3]; must be a number or three"));
+  expect_tokens(refusal(with(lentil, "[2, 3, 4]", "[2, 3]")), {"thickness", "[2,3]"});
   const std::string both =
       with(lentil, "\"year\"", "\"optical-elements-adjusted\": [{\"radius\": 50, \"thickness\": 5}], \"year\"");
-  EXPECT_NE(refusal(both).find("ior is missing"), std::string::npos);
+  expect_tokens(refusal(both), {"ior"});
   const std::string whole = with(both, "\"thickness\": 5}", "\"thickness\": 5, \"ior\": 1.5}");
   EXPECT_EQ(read(whole).surfaces.size(), 1u);
-  EXPECT_EQ(warning(whole, "optical-elements-patent"), "is left out beside optical-elements-adjusted");
+  expect_tokens(warning(whole, "optical-elements-patent"), {"optical-elements-adjusted"});
   const std::size_t list = lentil.find("-patent\": [") + 11;
-  EXPECT_TRUE(
-      refuses(lentil.substr(0, list) + petzval::testing::repeated(10'000, "1,") + "1]}}", "more than 10000 surfaces"));
+  expect_tokens(refusal(lentil.substr(0, list) + petzval::testing::repeated(10'000, "1,") + "1]}}"),
+                {10000, "surfaces"});
 }
 
 }  // namespace

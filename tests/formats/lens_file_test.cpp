@@ -10,6 +10,7 @@
 #include <random>
 #include <string>
 
+#include "../expect_error.hpp"
 #include "lens_text.hpp"
 #include "petzval/io/lens_json.hpp"
 #include "petzval/lens/lens.hpp"
@@ -19,7 +20,8 @@ namespace {
 
 namespace fs = std::filesystem;
 using petzval::Prescription;
-using petzval::testing::message;
+using petzval::testing::expect_error;
+using petzval::testing::expect_tokens;
 using petzval::testing::refusal;
 
 const fs::path formats = PETZVAL_TEST_FORMATS;
@@ -56,7 +58,7 @@ TEST(LensFile, TheSamplesOfOtherProgramsHaveTheirFocalLengths) {
     for (const auto& entry : fs::directory_iterator(formats / folder)) {
       if (entry.path().filename() == "finite_conjugate_uv.zmx") {
         // Telecentric object space, with a stop elsewhere.
-        EXPECT_NE(message([&] { petzval::read_lens(entry.path()); }).find("line 38: FTYP"), std::string::npos);
+        expect_error([&] { petzval::read_lens(entry.path()); }, {"line 38", "FTYP"});
         continue;
       }
       const Prescription lens = petzval::read_lens(entry.path());
@@ -106,21 +108,21 @@ TEST(LensFile, ASampleWithAnyBytesChangedIsReadOrRefused) {
 
 TEST(LensFile, OtherFilesAreNamed) {
   using namespace std::string_literals;
-  EXPECT_EQ(refusal("PK\x03\x04 and more"s).find("x: is a zip archive (.zip, .zos or .zar), wanted a lens"), 0u);
-  EXPECT_EQ(refusal("\x89PNG\r\n\x1a\n"s).find("x: is a PNG picture"), 0u);
-  EXPECT_EQ(refusal("\x76\x2f\x31\x01 exr"s).find("x: is an OpenEXR picture"), 0u);
-  EXPECT_EQ(refusal("\x01\x02\x00\x03\x04"s).find("x: byte 2 is 0"), 0u);
-  EXPECT_EQ(refusal("To be, or not to be\n"s).find("x: begins with \"To be, or not to be\""), 0u);
+  expect_tokens(refusal("PK\x03\x04 and more"s), {"x", "zip"});
+  expect_tokens(refusal("\x89PNG\r\n\x1a\n"s), {"x", "PNG"});
+  expect_tokens(refusal("\x76\x2f\x31\x01 exr"s), {"x", "OpenEXR"});
+  expect_tokens(refusal("\x01\x02\x00\x03\x04"s), {"x", "byte", 2, 0});
+  expect_tokens(refusal("To be, or not to be\n"s), {"x", "To be, or not to be"});
   EXPECT_NE(refusal(""), "no error");
   EXPECT_NE(refusal("\xFF\xFE"s), "no error");
   EXPECT_NE(refusal("{\"lens\": 5}"), "no error");
   // Models of other programs, and the format to export.
   const std::string roa = refusal("{\"optical_model\": {\"seq_model\": {\"ifcs\": []}}}");
-  for (const char* word : {"ray-optics", ".seq", ".zmx"}) EXPECT_NE(roa.find(word), std::string::npos) << roa;
+  expect_tokens(roa, {"ray-optics", ".seq", ".zmx"});
   const std::string opt = refusal(
       "  3 surfaces  SIMPLE.OPT\n  index   Z     Curv    Diam   Mir/Lens\n--------:-----:-------:------:---------:\n"
       "   1.0  : 0.0 : 0.02  : 10 : Lens\n");
-  EXPECT_NE(opt.find("BEAM FOUR"), std::string::npos) << opt;
+  expect_tokens(opt, {"BEAM FOUR"});
 }
 
 TEST(LensFile, HugeFilesAreReadOrRefusedSoon) {
@@ -129,24 +131,24 @@ TEST(LensFile, HugeFilesAreReadOrRefusedSoon) {
   EXPECT_LT(refusal("VERS 1\nSURF 0\n" + long_line + "\n").size(), 1000u);
   std::string surfaces = "VERS 1\nMODE SEQ\n";
   for (int i = 0; i < 200'000; ++i) surfaces += "SURF " + std::to_string(i) + "\n";
-  EXPECT_EQ(refusal(surfaces), "x: more than 10000 surfaces, wanted fewer");
+  expect_tokens(refusal(surfaces), {"x", 10000, "surfaces"});
   std::string rows;
   for (int i = 0; i < 200'000; ++i) rows += "50 1 1.5 10\n";
-  EXPECT_EQ(refusal(rows), "x: more than 10000 surfaces; must be fewer");
+  expect_tokens(refusal(rows), {"x", 10000, "surfaces"});
   std::string commands =
       "MODE SEQ\nUNIT MM\nSURF 0\nDISZ INFINITY\nSURF 1\nSTOP\nDISZ 5\nCURV 0.01\nDIAM 5 1\nGLAS ___BLANK 1 0 1.5 60\n";
   for (int i = 0; i < 200'000; ++i) commands += "A" + std::to_string(i) + "\n";
   const Prescription lens = petzval::testing::read(commands + "SURF 2\nDISZ 90\nSURF 3\n");
   EXPECT_EQ(lens.imported->warnings.size(), 1001u);
-  EXPECT_NE(lens.imported->warnings.back().message.find("more warnings are left out"), std::string::npos);
+  expect_tokens(lens.imported->warnings.back().message, {199001});
   std::string statements = "SO 0 1e13;";
   for (int i = 0; i < 100'000; ++i) statements += "S 50 1;";
-  EXPECT_EQ(refusal(statements), "x: more than 10000 surfaces, wanted fewer");
+  expect_tokens(refusal(statements), {"x", 10000, "surfaces"});
 }
 
 TEST(LensFile, StrictRefusesAssumptionsAndTheOwnFormatHasNone) {
   const std::string table = "50.6 5.2 1.5168 25.4\n-50.6 0 1 25.4\n";
-  EXPECT_NE(message([&] { petzval::parse_lens(table, "x", {.strict = true}); }).find("(strict)"), std::string::npos);
+  expect_error([&] { petzval::parse_lens(table, "x", {.strict = true}); }, {"strict"});
   const Prescription lens = petzval::testing::read(table);
   EXPECT_FALSE(lens.imported->warnings.empty());
   const Prescription again = petzval::parse_lens(petzval::format_prescription(lens), "x", {.strict = false});

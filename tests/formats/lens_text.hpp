@@ -24,14 +24,6 @@ inline std::string warning(const Prescription& lens, std::string_view command) {
 }
 inline std::string warning(const std::string& text, std::string_view command) { return warning(read(text), command); }
 
-/// Whether the message of a refusal, or of the warning about a command, has these words.
-inline bool refuses(const std::string& text, std::string_view words) {
-  return refusal(text).find(words) != std::string::npos;
-}
-inline bool warns(const std::string& text, std::string_view command, std::string_view words) {
-  return warning(text, command).find(words) != std::string::npos;
-}
-
 /// A text so many times.
 inline std::string repeated(int times, std::string_view text) {
   std::string result;

@@ -15,6 +15,7 @@
 #include <vector>
 
 #include "../data_lenses.hpp"
+#include "../expect_error.hpp"
 #include "../message.hpp"
 #include "petzval/camera/camera.hpp"
 #include "petzval/core/units.hpp"
@@ -31,6 +32,7 @@ namespace {
 namespace fs = std::filesystem;
 using petzval::Lens;
 using petzval::testing::data_lens;
+using petzval::testing::expect_tokens;
 
 /// The shader as a function: metadata and defaults of its parameters go, outputs become references.
 std::string as_cpp(const std::string& osl) {
@@ -245,15 +247,15 @@ TEST(OslCamera, WhatTheShaderCannotTraceIsRefused) {
   const auto refusal = [](const Lens& lens) {
     return petzval::testing::message([&] { petzval::format_osl_camera(lens); });
   };
-  EXPECT_NE(refusal(data_lens("mirror_newton_200mm_f8")).find("is a mirror"), std::string::npos);
-  EXPECT_NE(refusal(data_lens("anamorphic_60mm_2x")).find("is a cylinder"), std::string::npos);
-  EXPECT_NE(refusal(petzval::compile(petzval::testing::open_singlet())).find("no stop with a rim"), std::string::npos);
+  expect_tokens(refusal(data_lens("mirror_newton_200mm_f8")), {"mirror"});
+  expect_tokens(refusal(data_lens("anamorphic_60mm_2x")), {"cylinder"});
+  expect_tokens(refusal(petzval::compile(petzval::testing::open_singlet())), {"stop"});
   // Its distant subjects are in focus within the space that the stop leaves.
   petzval::Prescription behind;
   behind.surfaces = {{.radius = 50, .thickness = 5, .medium = {.nd = 1.5168}, .semi_diameter = 12},
                      {.radius = -50, .thickness = 48, .semi_diameter = 12},
                      {.thickness = 60, .semi_diameter = 6, .stop = true}};
-  EXPECT_NE(refusal(petzval::compile(behind)).find("wanted at most 666"), std::string::npos);
+  expect_tokens(refusal(petzval::compile(behind)), {"subject", "inf mm"});
 }
 
 TEST(OslCamera, CompilesWhereACompilerIsInstalled) {

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "../expect_error.hpp"
 #include "../message.hpp"
 #include "petzval/lens/lens.hpp"
 #include "petzval/paraxial/first_order.hpp"
@@ -17,6 +18,9 @@ namespace {
 using petzval::AsphereTerm;
 using petzval::parse_lens;
 using petzval::Prescription;
+using petzval::testing::expect_error;
+using petzval::testing::expect_said;
+using petzval::testing::expect_tokens;
 using petzval::testing::message;
 using petzval::testing::read_sample;
 using petzval::testing::said;
@@ -69,14 +73,15 @@ TEST(Oslo, EveryKnownCommandIsHonouredOrNamed) {
   ASSERT_EQ(lens.design.wavelengths.size(), 3u);
   EXPECT_DOUBLE_EQ(lens.design.wavelengths[1].nm, 486.13);
   EXPECT_EQ(lens.design.wavelengths[1].weight, 0.5);
-  EXPECT_EQ(said(lens), (Said{"5 UNI: a unit is taken as 10 mm", "37 APN: apertures that are no circles are left out",
-                              "38 AX1: apertures that are no circles are left out",
-                              "61 PUC: a solve is not evaluated: the value that the file states is taken",
-                              "62 XYZ: an unknown command is left out",
-                              "75 CFG: configurations are left out; the lens is the first one",
-                              "23 GLA: indices at wavelengths are taken as n_d 1.62 and V_d 36.047",
-                              "65 TH: of the image, -0.1 mm, moves the film",
-                              "65 RD: the image is curved; the film is a plane at its vertex"}));
+  expect_said(said(lens), {{"5 UNI", "unit", 10},
+                           {"37 APN", "apertures"},
+                           {"38 AX1", "apertures"},
+                           {"61 PUC", "solve", "value"},
+                           {"62 XYZ", "unknown"},
+                           {"75 CFG", "configurations"},
+                           {"23 GLA", "indices", "n_d", 1.62, "V_d", 36.047},
+                           {"65 TH", "image", -0.1},
+                           {"65 RD", "image"}});
 }
 
 TEST(Oslo, TheAxialRaySolveFindsTheFocus) {
@@ -147,60 +152,51 @@ TEST(Oslo, IndicesNeedNotBeThoseOfTheHeliumLine) {
 }
 
 TEST(Oslo, AThicknessThatItsSolveContradictsIsNamed) {
-  EXPECT_EQ(said(parse_lens(with(plain, "TH 50", "TH 50\nPY 0"), "x.len")), Said{});
-  EXPECT_EQ(said(parse_lens(with(plain, "TH 50", "TH 49\nPY 0"), "x.len")),
-            Said{"13 PY: the file states a thickness of 49 mm, which is taken; the solve gives 50 mm"});
+  expect_said(said(parse_lens(with(plain, "TH 50", "TH 50\nPY 0"), "x.len")), {});
+  expect_said(said(parse_lens(with(plain, "TH 50", "TH 49\nPY 0"), "x.len")), {{"13 PY", "file", 49, 50}});
   // Half the height of the beam, half of the way.
   const auto lens = parse_lens(with(plain, "TH 50", "PY 2.5"), "x.len");
   EXPECT_NEAR(lens.surfaces[1].thickness, 25, 1e-12);
-  EXPECT_EQ(said(parse_lens(with(with(plain, "TH 50", "TH 1\nPY 2"), "EBR 5", "FNO 5"), "x.len")).at(0),
-            "13 PY: without EBR it is not evaluated: the thickness that the file states is taken");
+  expect_tokens(said(parse_lens(with(with(plain, "TH 50", "TH 1\nPY 2"), "EBR 5", "FNO 5"), "x.len")).at(0),
+                {"13 PY", "EBR", "thickness"});
 }
 
 TEST(Oslo, AWrongFocalLengthIsNamed) {
-  EXPECT_EQ(said(parse_lens(with(plain, "\" 50", "\" 100"), "x.len")), Said{});  // what OSLO writes for new lenses
-  EXPECT_EQ(said(parse_lens(with(plain, "\" 50", "\" 60"), "x.len")),
-            Said{"1 LEN: states 60 mm, which is not the focal length, 50 mm"});
+  expect_said(said(parse_lens(with(plain, "\" 50", "\" 100"), "x.len")), {});  // what OSLO writes for new lenses
+  expect_said(said(parse_lens(with(plain, "\" 50", "\" 60"), "x.len")), {{"1 LEN", 60, "focal", 50}});
 }
 
 TEST(Oslo, WhatWouldBeAnotherLensIsRefusedWithItsLine) {
   const auto refusal = [](std::string_view old, std::string_view text) {
     return message([&] { parse_lens(with(plain, old, text), "x.len"); });
   };
-  EXPECT_EQ(refusal("RD 25", "RD 2,5"), "x.len: line 9: RD is \"2,5\", wanted a finite number with a decimal point");
-  EXPECT_EQ(refusal("RD 25", "RD nan"), "x.len: line 9: RD is \"nan\", wanted a finite number with a decimal point");
-  EXPECT_EQ(refusal("RD 25", "RD 1e400"),
-            "x.len: line 9: RD is \"1e400\", wanted a finite number with a decimal point");
-  EXPECT_EQ(refusal("RD 25", "RD"), "x.len: line 9: RD is without a number, wanted one");
-  EXPECT_EQ(refusal("RD 25", "TLA 5"),
-            "x.len: line 9: TLA is 5, wanted 0: surfaces that are rotationally symmetric about one axis");
-  EXPECT_EQ(refusal("RD 25", "PFL 5"), "x.len: line 9: PFL is a perfect lens, wanted spheres, conics and aspheres");
-  EXPECT_EQ(refusal("RD 25", "GSP 5"), "x.len: line 9: GSP is a grating, wanted spheres, conics and aspheres");
-  EXPECT_EQ(refusal("RD 25", "LMO NSS"), "x.len: line 9: LMO is NSS, wanted surfaces in sequence");
-  EXPECT_EQ(refusal("RD 25", "ASP ZER"), "x.len: line 9: ASP is \"zer\", wanted ASR (even powers) or ARA (all powers)");
-  EXPECT_EQ(refusal("RD 25", "ASP ARA\nAS1 1"), "x.len: line 10: AS1 is of order 1, wanted orders 2 to 40");
-  EXPECT_EQ(refusal("RD 25", "AS1 1"), "x.len: line 9: AS1 is before ASP, wanted the kind of asphere first");
-  EXPECT_EQ(refusal("RD 25", "PK CV 1"), "x.len: line 9: PK is of surface 1, wanted a surface before it");
-  EXPECT_EQ(refusal("AP 8", "AP -8"), "x.len: line 11: AP is -8, wanted 0 or more");
-  EXPECT_EQ(refusal("UNI 1.0", "UNI 0"), "x.len: line 4: UNI is 0, wanted millimetres in a unit, above 0");
-  EXPECT_EQ(refusal("TH 50", "TH 1e20"), "x.len: line 13: TH is 1e+20, wanted a finite thickness");
-  EXPECT_EQ(refusal("GLA 1.5", "GLA MOD X"),
-            "x.len: line 8: GLA is a model without indices, wanted its indices at the "
-            "wavelengths");
-  EXPECT_EQ(message([] { parse_lens("LEN NEW \"x\" 1 1\nTH 5\nNXT\n", "x.len"); }),
-            "x.len: line 1: LEN is of 2 surfaces, wanted an object, a surface of the lens and an image");
-  EXPECT_EQ(said(parse_lens(with(plain, "RD 25", "RD 25\nPK XX 0"), "x.len")),
-            Said{"10 PK: an unknown pickup is left out; the value that the file states is taken"});
+  expect_tokens(refusal("RD 25", "RD 2,5"), {"x.len", "line 9", "RD", "\"2,5\""});
+  expect_tokens(refusal("RD 25", "RD nan"), {"x.len", "line 9", "RD", "\"nan\""});
+  expect_tokens(refusal("RD 25", "RD 1e400"), {"x.len", "line 9", "RD", "\"1e400\""});
+  expect_tokens(refusal("RD 25", "RD"), {"x.len", "line 9", "RD"});
+  expect_tokens(refusal("RD 25", "TLA 5"), {"x.len", "line 9", "TLA", 5});
+  expect_tokens(refusal("RD 25", "PFL 5"), {"x.len", "line 9", "PFL"});
+  expect_tokens(refusal("RD 25", "GSP 5"), {"x.len", "line 9", "GSP"});
+  expect_tokens(refusal("RD 25", "LMO NSS"), {"x.len", "line 9", "LMO"});
+  expect_tokens(refusal("RD 25", "ASP ZER"), {"x.len", "line 9", "ASP", "\"zer\""});
+  expect_tokens(refusal("RD 25", "ASP ARA\nAS1 1"), {"x.len", "line 10", "AS1", 1});
+  expect_tokens(refusal("RD 25", "AS1 1"), {"x.len", "line 9", "AS1"});
+  expect_tokens(refusal("RD 25", "PK CV 1"), {"x.len", "line 9", "PK", 1});
+  expect_tokens(refusal("AP 8", "AP -8"), {"x.len", "line 11", "AP", -8});
+  expect_tokens(refusal("UNI 1.0", "UNI 0"), {"x.len", "line 4", "UNI", 0});
+  expect_tokens(refusal("TH 50", "TH 1e20"), {"x.len", "line 13", "TH", "1e+20"});
+  expect_tokens(refusal("GLA 1.5", "GLA MOD X"), {"x.len", "line 8", "GLA"});
+  expect_error([] { parse_lens("LEN NEW \"x\" 1 1\nTH 5\nNXT\n", "x.len"); }, {"x.len", "line 1", "LEN", 2});
+  expect_said(said(parse_lens(with(plain, "RD 25", "RD 25\nPK XX 0"), "x.len")), {{"10 PK", "unknown"}});
 }
 
 TEST(Oslo, SolvesWithoutAnAnswerAndListsTooLongAreSaid) {
-  EXPECT_EQ(said(parse_lens(with(with(plain, "RD 25", "RD 0"), "TH 50", "TH 50\nPY 0"), "x.len")).at(0),
-            "13 PY: no thickness fulfils it: the one that the file states is taken");
-  EXPECT_EQ(message([] { parse_lens(with(plain, "EBR 5", "EBR 5\nWV101 0.5"), "x.len"); }),
-            "x.len: line 3: WV101 is not a place in the list, wanted WV1 to WV100");
+  expect_tokens(said(parse_lens(with(with(plain, "RD 25", "RD 0"), "TH 50", "TH 50\nPY 0"), "x.len")).at(0),
+                {"13 PY", "thickness", "file"});
+  expect_error([] { parse_lens(with(plain, "EBR 5", "EBR 5\nWV101 0.5"), "x.len"); }, {"x.len", "line 3", "WV101"});
   std::string many = plain;
   for (int i = 0; i < 10'001; ++i) many.insert(many.find("RD 25"), "TH 1\nNXT\n");
-  EXPECT_EQ(message([&] { parse_lens(many, "x.len"); }), "x.len: more than 10000 surfaces, wanted fewer");
+  expect_error([&] { parse_lens(many, "x.len"); }, {"x.len", 10000, "surfaces"});
 }
 
 TEST(OsloOfOthers, TheCookeTripletHasItsFocalLength) {

@@ -9,6 +9,7 @@
 #include <string>
 
 #include "../data_lenses.hpp"
+#include "../expect_error.hpp"
 #include "../message.hpp"
 #include "petzval/formats/lens_file.hpp"
 #include "petzval/glass/glass.hpp"
@@ -19,6 +20,9 @@
 #include "petzval/trace/trace.hpp"
 
 namespace {
+
+using petzval::testing::expect_error;
+using petzval::testing::expect_tokens;
 
 using petzval::Lens;
 using petzval::Prescription;
@@ -93,7 +97,7 @@ int compare(const std::function<WrittenLens(const Prescription&)>& write, double
     std::optional<WrittenLens> written;
     const std::string refusal = petzval::testing::message([&] { written = write(printed); });
     if (!written) {
-      EXPECT_NE(refusal.find("wanted"), std::string::npos) << refusal;
+      expect_tokens(refusal, {printed.name});
       continue;
     }
     const Prescription back = read(*written);
@@ -225,9 +229,7 @@ TEST(RoundTrip, CodevNamesTheMediaThatBecomePrivate) {
   const WrittenLens written = codev(lens);
   const auto loss = std::ranges::find(written.losses, "glass", &petzval::ImportWarning::command);
   ASSERT_NE(loss, written.losses.end());
-  for (const char* word : {"PRIVATE1 (BK7, n_d 1.5173)", "PRIVATE2 (n_d 1.62)"}) {
-    EXPECT_NE(loss->message.find(word), std::string::npos) << loss->message;
-  }
+  expect_tokens(loss->message, {"PRIVATE1", "BK7", 1.5173, "PRIVATE2", 1.62});
   EXPECT_EQ(loss->message.find("SK4"), std::string::npos) << loss->message;
   const Prescription back = read(written);
   for (const double nm : {486.1327, 587.5618, 656.2725}) {
@@ -309,8 +311,7 @@ TEST(RoundTrip, NominalDataComeBackOrAreSaidToBeLost) {
       kept_or_said("f_number", &Prescription::f_number);
       kept_or_said("half_field_deg", &Prescription::half_field_deg);
       kept_or_said("image_diagonal_mm", &Prescription::image_diagonal_mm);
-      EXPECT_NE(said.find("notes"), std::string::npos);
-      EXPECT_NE(said.find("source_numbers"), std::string::npos);
+      expect_tokens(said, {"notes", "source_numbers"});
     }
   }
 }
@@ -389,15 +390,14 @@ TEST(RoundTrip, AspheresOfEveryTypeComeBack) {
     if (terms[0].order % 2 == 0) {
       EXPECT_EQ(read(codev(p)).surfaces[1].aspheric, terms);
     } else {
-      EXPECT_EQ(petzval::testing::message([&] { codev(p); }),
-                "singlet: surface 1: an aspheric term of order 3, wanted even orders from 4 to 20 for a .seq");
+      expect_error([&] { codev(p); }, {"singlet", "surface 1", "aspheric", 3});
     }
   }
   Prescription p = singlet();
   p.surfaces[1].aspheric = {{22, 1e-30}};
-  EXPECT_NE(petzval::testing::message([&] { codev(p); }).find("of order 22"), std::string::npos);
+  expect_error([&] { codev(p); }, {"order", 22});
   p.surfaces[1].aspheric = {{2, 1e-3}};
-  EXPECT_NE(petzval::testing::message([&] { codev(p); }).find("of order 2,"), std::string::npos);
+  expect_error([&] { codev(p); }, {"order", 2});
 }
 
 TEST(RoundTrip, CylindersComeBackOrAreRefused) {
@@ -407,13 +407,10 @@ TEST(RoundTrip, CylindersComeBackOrAreRefused) {
     EXPECT_EQ(read(write(p)).surfaces[1].curved_in, petzval::Section::y);
   }
   p.surfaces[1].conic = -1;
-  EXPECT_EQ(petzval::testing::message([&] { zemax(p); }),
-            "singlet: surface 1: an aspheric cylinder, wanted a circular one for a .zmx");
+  expect_error([&] { zemax(p); }, {"singlet", "surface 1", "aspheric"});
   p.surfaces[1].curved_in = petzval::Section::x;
-  EXPECT_EQ(petzval::testing::message([&] { zemax(p); }),
-            "singlet: surface 1: a cylinder curved along x, wanted one curved along y for a .zmx");
-  EXPECT_EQ(petzval::testing::message([&] { codev(p); }),
-            "singlet: surface 1: a cylinder curved along x, wanted one curved along y for a .seq");
+  expect_error([&] { zemax(p); }, {"singlet", "surface 1", "cylinder"});
+  expect_error([&] { codev(p); }, {"singlet", "surface 1", "cylinder"});
 }
 
 TEST(RoundTrip, WhatConfigurationsChangeComesBack) {
@@ -574,8 +571,7 @@ TEST(RoundTrip, TablesWantAirInFrontAndSayWhatTheirAperturesAre) {
   p.f_number = 2.5;  // of the lens wide open: twice the stop
   EXPECT_EQ(read(table(p)).surfaces[0].semi_diameter, 5);
   p.object_space.nd = 1.33;
-  EXPECT_EQ(petzval::testing::message([&] { table(p); }),
-            "singlet: a medium of index 1.33 in front of the lens, wanted air for a table");
+  expect_error([&] { table(p); }, {"singlet", "medium", 1.33});
 }
 
 TEST(RoundTrip, RowsOfATableWithoutARimGetTheWidestOne) {
@@ -654,13 +650,12 @@ TEST(RoundTrip, ClosedStopsComeBackOrAreRefused) {
   p.surfaces[0].semi_diameter = 0;
   EXPECT_EQ(read(codev(p)).surfaces[0].semi_diameter, 0);
   for (const Write write : {table, zemax}) {
-    const std::string refused = petzval::testing::message([&] { write(p); });
-    EXPECT_NE(refused.find("singlet: surface 0: semi_diameter"), std::string::npos) << refused;
+    expect_error([&] { write(p); }, {"singlet", "surface 0", "semi_diameter"});
   }
   // In one position alone.
   p.surfaces[0].semi_diameter = 5;
   p.configurations = {{.name = "open"}, {.name = "closed", .changes = {{.surface = 0, .semi_diameter = 0}}}};
-  EXPECT_NE(petzval::testing::message([&] { zemax(p); }).find("surface 0: semi_diameter"), std::string::npos);
+  expect_error([&] { zemax(p); }, {"surface 0", "semi_diameter"});
 }
 
 TEST(RoundTrip, RimsOfDummyPlanesComeBackWithTheirObscurations) {

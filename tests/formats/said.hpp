@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
 #include <filesystem>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "../expect_error.hpp"
 #include "petzval/core/error.hpp"
 #include "petzval/formats/lens_file.hpp"
 
@@ -19,6 +21,15 @@ inline std::vector<std::string> said(const std::vector<ImportWarning>& warnings)
 }
 
 inline std::vector<std::string> said(const Prescription& lens) { return said(lens.imported.value().warnings); }
+
+/// Checks the tokens of each of these texts, and their number.
+inline void expect_said(const std::vector<std::string>& said, const std::vector<std::vector<Token>>& tokens,
+                        const char* file = __builtin_FILE(), int line = __builtin_LINE()) {
+  for (std::size_t i = 0; i < std::min(said.size(), tokens.size()); ++i) expect_tokens(said[i], tokens[i], file, line);
+  if (said.size() == tokens.size()) return;
+  ADD_FAILURE_AT(file, line) << said.size() << " texts, not " << tokens.size() << ": "
+                             << ::testing::PrintToString(said);
+}
 
 inline Prescription read_sample(std::string_view name) {
   return read_lens(std::filesystem::path(PETZVAL_TEST_SAMPLES) / name);

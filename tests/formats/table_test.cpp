@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "../data_lenses.hpp"
+#include "../expect_error.hpp"
 #include "core/text.hpp"
 #include "lens_text.hpp"
 #include "petzval/lens/lens.hpp"
@@ -20,6 +21,7 @@
 namespace {
 
 using petzval::Prescription;
+using petzval::testing::expect_tokens;
 using petzval::testing::read;
 using petzval::testing::refusal;
 using petzval::testing::warning;
@@ -54,7 +56,7 @@ TEST(Table, SemiDiametersAreToldByTheDeclaredFNumber) {
   const Prescription p = read(radii);
   EXPECT_EQ(p.surfaces[0].semi_diameter, 12.7);
   EXPECT_EQ(p.surfaces[2].semi_diameter, 4.7);
-  EXPECT_NE(warning(p, "aperture").find("taken as semi-diameters"), std::string::npos);
+  expect_tokens(warning(p, "aperture"), {"semi-diameters"});
 }
 
 TEST(Table, FiveColumnsHaveVNumbersInEitherOrder) {
@@ -83,19 +85,18 @@ TEST(Table, APlaneOfGlassIsNoStop) {
 }
 
 TEST(Table, BadRowsAreRefusedWithTheirLine) {
-  using petzval::testing::refuses;
-  EXPECT_TRUE(refuses(with(table, "1.5168", "1,5168"), "x:3: n = \"1,5168\"; must be a finite number with a decimal"));
-  EXPECT_TRUE(refuses(with(table, "-50.6  1    1       25.4", "-50.6 1 1"), "x:4: row = 3 cells; must be 4: radius"));
+  expect_tokens(refusal(with(table, "1.5168", "1,5168")), {"x:3", "n", "\"1,5168\""});
+  expect_tokens(refusal(with(table, "-50.6  1    1       25.4", "-50.6 1 1")), {"x:4", "row", 3});
   EXPECT_NE(refusal(with(table, "5.2", "nan")), "no error");
   EXPECT_NE(refusal(with(table, "5.2", "1e400")), "no error");
-  EXPECT_TRUE(refuses(with(table, "25.4", "-25.4"), "x:3: aperture = -25.4"));
-  EXPECT_TRUE(refuses(with(table, "1.5168", "6.01"), "x:3: index = 6.01; must be 0.1 to 5"));
-  EXPECT_TRUE(refuses(with(table, "5.2", "d5"), "x:3: thickness = \"d5\""));
-  EXPECT_TRUE(refuses(with(table, "5.2", "inf"), "x:3: thickness = \"inf\""));
-  EXPECT_TRUE(refuses(with(table, "-50.6  1 ", "-50.6  - "), "x:4: thickness = -"));
-  EXPECT_TRUE(refuses(table + "end of the table\n", "x:6: "));
-  EXPECT_TRUE(refuses(table + "r d n ap\n", "x:6: row = "));
-  EXPECT_TRUE(refuses(table + "stop\n", "x:6: "));
+  expect_tokens(refusal(with(table, "25.4", "-25.4")), {"x:3", "aperture", -25.4});
+  expect_tokens(refusal(with(table, "1.5168", "6.01")), {"x:3", "index", 6.01});
+  expect_tokens(refusal(with(table, "5.2", "d5")), {"x:3", "thickness", "\"d5\""});
+  expect_tokens(refusal(with(table, "5.2", "inf")), {"x:3", "thickness", "\"inf\""});
+  expect_tokens(refusal(with(table, "-50.6  1 ", "-50.6  - ")), {"x:4", "thickness"});
+  expect_tokens(refusal(table + "end of the table\n"), {"x:6"});
+  expect_tokens(refusal(table + "r d n ap\n"), {"x:6", "row"});
+  expect_tokens(refusal(table + "stop\n"), {"x:6"});
 }
 
 // The first row of a lens may be a plane, in every spelling.
@@ -205,17 +206,15 @@ TEST(Table, ConicsAndAsphericTermsHaveHeads) {
 }
 
 TEST(Table, HeadsThatAreNotKnownAreNamedOrRefused) {
-  using petzval::testing::refuses;
-  using petzval::testing::warns;
   const std::string rows = "\n50 5 1.5 60 3 12\n-50 90 1 0 4 12\n";
-  EXPECT_TRUE(warns("r d nd vd transmission semi" + rows, "head", "\"transmission\""));
+  expect_tokens(warning("r d nd vd transmission semi" + rows, "head"), {"\"transmission\""});
   EXPECT_EQ(read("r d nd vd transmission semi" + rows).surfaces.at(0).semi_diameter, 12);
-  EXPECT_TRUE(refuses("r d foo vd bar semi" + rows, "x:1: head = no index and the unknown \"foo\", \"bar\""));
-  EXPECT_TRUE(refuses("r d nd vd n semi" + rows, "x:1: head = \"nd\" beside another"));
-  EXPECT_TRUE(refuses("r d nd vd dia semi" + rows, "x:1: head = several columns of apertures"));
-  EXPECT_TRUE(refuses("d nd vd x y semi" + rows, "x:1: head = no radius"));
-  EXPECT_TRUE(warns("r d nd vd n(e) semi" + rows, "head", "\"n(e)\""));  // an index at another line
-  EXPECT_TRUE(warns("Cooke triplet of 1893\n" + table, "line", "\"Cooke triplet of 1893\""));
+  expect_tokens(refusal("r d foo vd bar semi" + rows), {"x:1", "head", "\"foo\"", "\"bar\""});
+  expect_tokens(refusal("r d nd vd n semi" + rows), {"x:1", "head", "\"nd\""});
+  expect_tokens(refusal("r d nd vd dia semi" + rows), {"x:1", "head"});
+  expect_tokens(refusal("d nd vd x y semi" + rows), {"x:1", "head"});
+  expect_tokens(warning("r d nd vd n(e) semi" + rows, "head"), {"\"n(e)\""});  // an index at another line
+  expect_tokens(warning("Cooke triplet of 1893\n" + table, "line"), {"\"Cooke triplet of 1893\""});
   EXPECT_EQ(read("My lens\n50 5 1.5 12\n-50 90 1 12\n").imported->title, "My lens");
 }
 
@@ -228,7 +227,7 @@ TEST(Table, MarksTitlesAndLastRowsAreTypedInManyWays) {
     expect_two_lenses("50 mm f/5\nNo r d nd vd semi\n" + with(rows, "X", mark));
   }
   EXPECT_EQ(read("50 mm f/5\nr d nd vd\n40 4 1.62041 60.3\n-300 50\n").f_number, 5);
-  EXPECT_NE(refusal("40 4 1.62041 60.3\nr d nd vd\n-300 50\n").find("x:2: row = "), std::string::npos);
+  expect_tokens(refusal("40 4 1.62041 60.3\nr d nd vd\n-300 50\n"), {"x:2", "row"});
   for (const char* end : {"-300", "-300 BF", "-300 (variable)"}) {
     const Prescription p = read("r d nd vd\n40 4 1.62041 60.3\n" + std::string(end) + "\n");
     EXPECT_NEAR(p.surfaces[1].thickness, petzval::paraxial_image_z(compile(p), -HUGE_VAL) - 4, 1e-9) << end;
@@ -262,7 +261,7 @@ TEST(Table, PatentsAreTypedAsTheyArePrinted) {
       false);
   const Prescription p = read("1 40 4 1.62041 60.3\n2 -300 5\n3 inf 3 stop\n4 -30 2 1.6727 32.2\n5 inf 60\n");
   for (const char* assumed : {"columns", "index", "aperture"}) EXPECT_NE(warning(p, assumed), "no warning") << assumed;
-  EXPECT_EQ(warning(p, "stop"), "neither the size of the stop nor an aperture is given; the rims limit the beam");
+  EXPECT_NE(warning(p, "stop"), "no warning");
 }
 
 TEST(Table, GlassesHaveNames) {
@@ -293,9 +292,9 @@ TEST(Table, GlassesHaveNames) {
                       text.find(" 4.5") != std::string::npos;
     EXPECT_EQ(as_typed(p.surfaces)[0].semi_diameter, rims ? std::optional(4.5) : std::nullopt);
   }
-  EXPECT_NE(refusal("50 5 NOGLASS9\n-50 90\n").find("NOGLASS9"), std::string::npos);
+  expect_tokens(refusal("50 5 NOGLASS9\n-50 90\n"), {"NOGLASS9"});
   // F2 of Schott and of CDGM are two glasses.
-  EXPECT_NE(warning("50 5 F2\n-50 90\n", "F2").find("cdgm"), std::string::npos);
+  expect_tokens(warning("50 5 F2\n-50 90\n", "F2"), {"cdgm"});
   EXPECT_NEAR(read("50 5 F2\n-50 90\n").surfaces[0].medium.nd.value(), 1.62004, 1e-5);
   EXPECT_NEAR(read("r d glass catalogue\n50 5 F2 cdgm\n-50 90 - -\n").surfaces[0].medium.nd.value(), 1.61293, 1e-5);
   EXPECT_EQ(warning("r d glass nd vd\n50 5 F2 1.62004 36.4\n-50 90 - 1 -\n", "F2"), "no warning");

@@ -6,6 +6,7 @@
 #include <limits>
 #include <string>
 
+#include "../expect_error.hpp"
 #include "core/text.hpp"
 #include "lens_text.hpp"
 #include "petzval/glass/glass.hpp"
@@ -16,6 +17,8 @@
 namespace {
 
 using petzval::Prescription;
+using petzval::testing::expect_error;
+using petzval::testing::expect_tokens;
 using petzval::testing::read;
 using petzval::testing::refusal;
 using petzval::testing::warning;
@@ -116,8 +119,7 @@ TEST(Zemax, UnitsScaleEveryLength) {
     EXPECT_NEAR(p.surfaces[1].aspheric[0].coefficient, 1e-5 / std::pow(factor, 3), 1e-18);
     EXPECT_NEAR(*p.surfaces[0].semi_diameter, factor * 5, 1e-9 * factor);
   }
-  EXPECT_EQ(refusal(with(singlet, "UNIT MM", "UNIT FURLONG")),
-            "x: line 8: UNIT is \"FURLONG\", wanted MM, CM, IN or METER");
+  expect_tokens(refusal(with(singlet, "UNIT MM", "UNIT FURLONG")), {"x", "line 8", "UNIT", "\"FURLONG\""});
 }
 
 TEST(Zemax, EncodingsAndLineEndsDoNotMatter) {
@@ -155,7 +157,7 @@ TEST(Zemax, AspheresAreTheirTerms) {
   for (const char* type : {"EVENASPH", "ODDASPHE"}) {
     const std::string refused = refusal(
         with(singlet, "TYPE STANDARD\n  CURV 0.02", std::string("TYPE ") + type + "\n  PARM 11 1e-30\n  CURV 0.02"));
-    EXPECT_NE(refused.find("PARM 11 of 1e-30"), std::string::npos) << refused;
+    expect_tokens(refused, {"PARM", 11, "1e-30"});
   }
   EXPECT_EQ(terms("ODDASPHE", "  PARM 3 2e-5\n  PARM 4 1e-6\n").aspheric,
             (std::vector<petzval::AsphereTerm>{{3, 2e-5}, {4, 1e-6}}));
@@ -164,26 +166,21 @@ TEST(Zemax, AspheresAreTheirTerms) {
   EXPECT_EQ(extended.aspheric, (std::vector<petzval::AsphereTerm>{{4, 1e-6}}));
   EXPECT_EQ(terms("XOSPHERE", "  XDAT 1 3\n  XDAT 2 1\n  XDAT 5 1.5e-5\n").aspheric,
             (std::vector<petzval::AsphereTerm>{{3, 1.5e-5}}));
-  EXPECT_NE(
-      refusal(with(singlet, "TYPE STANDARD\n  CURV 0.02", "TYPE ODDASPHE\n  PARM 1 1e-3\n  CURV 0.02")).find("order 1"),
-      std::string::npos);
+  expect_tokens(refusal(with(singlet, "TYPE STANDARD\n  CURV 0.02", "TYPE ODDASPHE\n  PARM 1 1e-3\n  CURV 0.02")),
+                {"order 1"});
   EXPECT_EQ(
       read(with(singlet, "TYPE STANDARD\n  CURV 0.02", "TYPE TOROIDAL\n  PARM 1 0\n  CURV 0.02")).surfaces[1].curved_in,
       petzval::Section::y);
-  EXPECT_NE(
-      refusal(with(singlet, "TYPE STANDARD\n  CURV 0.02", "TYPE TOROIDAL\n  PARM 1 30\n  CURV 0.02")).find("TOROIDAL"),
-      std::string::npos);
+  expect_tokens(refusal(with(singlet, "TYPE STANDARD\n  CURV 0.02", "TYPE TOROIDAL\n  PARM 1 30\n  CURV 0.02")),
+                {"TOROIDAL"});
 }
 
 TEST(Zemax, SurfacesThatAreNotThereAreRefusedByName) {
   for (const char* type : {"PARAXIAL", "BICONICX", "DGRATING", "USERSURF", "FRESNELS"}) {
-    EXPECT_EQ(refusal(with(singlet, "TYPE STANDARD\n  CURV 0.02", std::string("TYPE ") + type + "\n  CURV 0.02"))
-                  .find("x: line 36: TYPE is " + std::string(type)),
-              0u)
-        << type << refusal(with(singlet, "TYPE STANDARD\n  CURV 0.02", std::string("TYPE ") + type + "\n  CURV 0.02"));
+    expect_tokens(refusal(with(singlet, "TYPE STANDARD\n  CURV 0.02", std::string("TYPE ") + type + "\n  CURV 0.02")),
+                  {"x", "line 36", "TYPE", type});
   }
-  EXPECT_EQ(refusal(with(singlet, "MODE SEQ", "MODE NSC")),
-            "x: line 2: MODE is \"NSC\", wanted SEQ, a sequential lens");
+  expect_tokens(refusal(with(singlet, "MODE SEQ", "MODE NSC")), {"x", "line 2", "MODE", "\"NSC\""});
 }
 
 TEST(Zemax, AperturesAreRims) {
@@ -205,10 +202,7 @@ TEST(Zemax, OpaqueRings_ReachTheRimOrAreRefused) {
     EXPECT_FALSE(p.surfaces[1].obscuration_semi_diameter);
     EXPECT_TRUE(p.imported->warnings.empty());
   }
-  const std::string refused = refusal(with_line("OBSC 3 5 0"));
-  for (const char* word : {"x: line 40: OBSC", "3", "5 mm", "8 mm"}) {
-    EXPECT_NE(refused.find(word), std::string::npos) << refused;
-  }
+  expect_tokens(refusal(with_line("OBSC 3 5 0")), {"x", "line 40", "OBSC", 3, 5, 8});
   EXPECT_EQ(read(with_line("OBSC 3 3 0")).surfaces, read(singlet).surfaces);  // no ring
 }
 
@@ -236,9 +230,7 @@ TEST(Zemax, DeclaredBeams_AreClippedByTheRimOfTheStop) {
     EXPECT_TRUE(launched.imported->warnings.empty());
     EXPECT_EQ(clipped.surfaces[0].semi_diameter, 3);
     ASSERT_EQ(clipped.imported->warnings.size(), 1u);
-    const std::string said = warning(clipped, "stop");
-    EXPECT_NE(said.find("3 mm"), std::string::npos) << said;
-    EXPECT_NE(said.find(petzval::to_text(declared, 6)), std::string::npos) << said;
+    expect_tokens(warning(clipped, "stop"), {3, petzval::to_text(declared, 6)});
   }
   // The size of the stop launches the beam, automatic or not; a clear aperture clips the beam.
   EXPECT_EQ(stop("FLOA 0", wide).surfaces[0].semi_diameter, 7);
@@ -286,12 +278,11 @@ TEST(Zemax, TheStopOfEachPositionIsThatOfItsBeam) {
   ASSERT_EQ(p.configurations.size(), 4u);
   const double sizes[] = {5, 4, 6, 2};  // a front stop: half of the beam, or the rim
   for (int i = 0; i < 4; ++i) EXPECT_NEAR(*configured(p, i).surfaces[0].semi_diameter, sizes[i], 1e-12) << i;
-  EXPECT_NE(warning(p, "stop").find("position 3"), std::string::npos) << warning(p, "stop");
+  expect_tokens(warning(p, "stop"), {"position 3"});
   EXPECT_EQ(p.imported->warnings.size(), 1u);
 }
 
 TEST(Zemax, TiltsOfObjectAndImageAreRefused) {
-  using petzval::testing::refuses;
   const auto tilted = [](std::string text, const std::string& surface, double tangent) {
     text = with(std::move(text), "DISZ INFINITY", "DISZ 98");
     if (surface == "SURF 0") {
@@ -301,10 +292,8 @@ TEST(Zemax, TiltsOfObjectAndImageAreRefused) {
     return with(std::move(text), "SURF 4\n  TYPE STANDARD\n",
                 "SURF 4\n  TYPE TILTSURF\n  PARM 1 " + petzval::to_text(tangent) + "\n");
   };
-  EXPECT_TRUE(refuses(tilted(singlet, "SURF 0", 1), "x: line 26: TYPE"));
-  EXPECT_TRUE(refuses(tilted(singlet, "SURF 0", 1), "45 degrees in y"));
-  EXPECT_TRUE(refuses(tilted(singlet, "SURF 4", -1), "x: line 47: TYPE"));
-  EXPECT_TRUE(refuses(tilted(singlet, "SURF 4", -1), "-45 degrees in x"));
+  expect_tokens(refusal(tilted(singlet, "SURF 0", 1)), {"x", "line 26", "TYPE", 45, "y"});
+  expect_tokens(refusal(tilted(singlet, "SURF 4", -1)), {"x", "line 47", "TYPE", -45, "x"});
   const Prescription upright = read(with(singlet, "DISZ INFINITY", "DISZ 98"));
   for (const char* surface : {"SURF 0", "SURF 4"}) {
     EXPECT_EQ(read(tilted(singlet, surface, 0)).surfaces, upright.surfaces);
@@ -318,9 +307,7 @@ TEST(Zemax, TiltsOfObjectAndImageAreRefused) {
 TEST(Zemax, TelecentricObjectSpacesAreRefusedUnlessTheStopMakesThem) {
   const std::string near = with(with(singlet, "ENPD 10", "OBNA 0.02 0"), "DISZ INFINITY", "DISZ 98");
   for (const std::string& text : {singlet, near}) {
-    const std::string refused = refusal(with(text, "FTYP 0 0", "FTYP 1 1"));
-    EXPECT_EQ(refused.find("x: line 13: FTYP"), 0u) << refused;
-    EXPECT_NE(refused.find("second number"), std::string::npos) << refused;
+    expect_tokens(refusal(with(text, "FTYP 0 0", "FTYP 1 1")), {"x", "line 13", "FTYP"});
   }
   // The stop behind the lens, in its focal plane.
   const double focus = petzval::first_order(compile(read(singlet))).back_focal_distance;
@@ -359,8 +346,7 @@ TEST(Zemax, SolvesWhoseSolutionIsStatedAreSilent) {
   const Prescription p = read(with(singlet, "  DISZ 48\n", "  DISZ 48\n  MAZH 0 0\n"));
   EXPECT_EQ(p.surfaces[2].thickness, 48);
   const double focus = petzval::first_order(compile(p)).back_focal_distance;
-  EXPECT_NE(warning(p, "MAZH").find("48 mm"), std::string::npos) << warning(p, "MAZH");
-  EXPECT_NE(warning(p, "MAZH").find(petzval::to_text(focus, 8)), std::string::npos) << warning(p, "MAZH");
+  expect_tokens(warning(p, "MAZH"), {48, petzval::to_text(focus, 8)});
   // A near object is imaged by the same solve.
   const Prescription near =
       read(with(with(singlet, "  DISZ 48\n", "  DISZ 0\n  MAZH 0 0\n"), "DISZ INFINITY", "DISZ 200"));
@@ -390,12 +376,12 @@ TEST(Zemax, PickupsAndSumsAreEvaluated) {
   EXPECT_TRUE(read(text).imported->warnings.empty());
   const Prescription stale = read(with(text, "CURV -0.02 4", "CURV -0.03 4"));
   EXPECT_EQ(stale.surfaces[2].radius, -50);
-  EXPECT_NE(warning(stale, "CURV").find("states -0.03"), std::string::npos);
+  expect_tokens(warning(stale, "CURV"), {-0.03});
   const Prescription thick = read(with(singlet, "  DISZ 48\n", "  DISZ 48\n  PZUP 2 3 1\n"));
   EXPECT_EQ(thick.surfaces[2].thickness, 13);
   EXPECT_EQ(read(with(singlet, "  DISZ 48\n", "  DISZ 1\n  TCOM 2 20\n")).surfaces[2].thickness, 16);
   EXPECT_EQ(read(with(singlet, "  DISZ 48\n", "  DISZ 1\n  TOLE 1 20\n")).surfaces[2].thickness, 14);
-  EXPECT_NE(refusal(with(text, "4 2 -1", "4 7 -1")).find("picked up from surface 7"), std::string::npos);
+  expect_tokens(refusal(with(text, "4 2 -1", "4 7 -1")), {"CURV", 7});
   const Prescription glass = read(with(singlet, "  DISZ 48\n", "  DISZ 48\n  GLAS ___BLANK 2 2 1.5 60 0\n"));
   EXPECT_EQ(glass.surfaces[2].medium.nd, 1.5);
   // The marginal height of the last surface is the focus.
@@ -416,11 +402,11 @@ TEST(Zemax, GlassesAreFoundOrNamed) {
   EXPECT_EQ(bk7.nd, formula);
   EXPECT_EQ(read(glass("NBK7 0 0 0 0 0")).surfaces[1].medium.glass, "N-BK7");
   // The dummy index of a glass that nobody knows.
-  EXPECT_EQ(refusal(glass("XYZ12 0 0 1.5 40 0 0 0 0 0 0")).find("x: line 40: XYZ12 is in no glass table"), 0u);
-  EXPECT_NE(refusal(glass("XYZ12 0 0 1.5 40 0")).find("--glasses FILE"), std::string::npos);
+  expect_tokens(refusal(glass("XYZ12 0 0 1.5 40 0 0 0 0 0 0")), {"x", "line 40", "XYZ12"});
+  expect_tokens(refusal(glass("XYZ12 0 0 1.5 40 0")), {"--glasses FILE"});
   const Prescription known = read(glass("XYZ12 0 0 1.62 60.3 0 0 0 0 0 0"));
   EXPECT_EQ(known.surfaces[1].medium, (petzval::Medium{.glass = "XYZ12", .nd = 1.62, .vd = 60.3}));
-  EXPECT_NE(warning(known, "XYZ12").find("the nearest glass is"), std::string::npos);
+  expect_tokens(warning(known, "XYZ12"), {620603});
   EXPECT_EQ(read(glass("517642 0 0 1.5 40 0")).surfaces[1].medium.nd, 1.517);
   EXPECT_NEAR(read(glass("N-BK7 4 0 0 0 0 0 0 0 0.001 0")).surfaces[1].medium.nd.value(), formula + 0.001, 1e-12);
   EXPECT_EQ(read(glass("AIR 0 0 0 0 0")).surfaces[1].medium, petzval::Medium{});
@@ -454,11 +440,9 @@ TEST(Zemax, BreaksThatChangeNothingGo) {
   EXPECT_EQ(read(with_breaks(moved(5), plane, moved(-5))).surfaces, p.surfaces);
   EXPECT_EQ(read(with_breaks("  TYPE COORDBRK\n  DISZ 0\n", plane, "  TYPE COORDBRK\n  DISZ 0\n")).surfaces.size(), 4u);
   const std::string curved = "  TYPE COORDBRK\n  CURV 0.01\n  GLAS N-BK7 0 0 1.5 40 0\n  DISZ 0\n";
-  EXPECT_NE(warning(read(with_breaks(curved, plane, "  TYPE COORDBRK\n  DISZ 0\n")), "COORDBRK")
-                .find("is no surface; its CURV, GLAS N-BK7 is left out"),
-            std::string::npos);
-  EXPECT_NE(refusal(with_breaks(moved(5), plane, moved(5))).find("COORDBRK is a tilt or decentre of surface 2"),
-            std::string::npos);
+  expect_tokens(warning(read(with_breaks(curved, plane, "  TYPE COORDBRK\n  DISZ 0\n")), "COORDBRK"),
+                {"CURV", "GLAS N-BK7"});
+  expect_tokens(refusal(with_breaks(moved(5), plane, moved(5))), {"COORDBRK", 2});
   // A fold by a plane mirror is unfolded: light runs on as before.
   const Prescription straight = read(with(singlet, "  DISZ 2\n", "  DISZ 12\n"));
   std::string folded = with_breaks("  TYPE COORDBRK\n  PARM 3 45\n  DISZ 0\n",
@@ -498,8 +482,8 @@ YFIE 1 2 6 0 0 0 1 1 1 0 0 "" 0
   EXPECT_EQ(configured(p, "tele").surfaces[2].radius, -40);
   EXPECT_EQ(configured(p, 1.5).surfaces[1].thickness, 5.5);
   EXPECT_NE(warning(p, "YFIE"), "no warning");
-  EXPECT_NE(refusal(singlet + table + "THIC 9 1 4\n").find("of surface 9"), std::string::npos);
-  EXPECT_NE(refusal(singlet + table + "THIC 2 4 4\n").find("of configuration 4"), std::string::npos);
+  expect_tokens(refusal(singlet + table + "THIC 9 1 4\n"), {"surface", 9});
+  expect_tokens(refusal(singlet + table + "THIC 2 4 4\n"), {"configuration", 4});
   // One position at infinity: the others focus it.
   const Prescription near = read(singlet + "MNUM 2 1\nTHIC 0 1 1e10\nTHIC 0 2 500\nTHIC 3 1 48\nTHIC 3 2 53\n");
   EXPECT_EQ(near.configurations[1].focus_of, "position 1");
@@ -508,7 +492,7 @@ YFIE 1 2 6 0 0 0 1 1 1 0 0 "" 0
 }
 
 TEST(Zemax, ACutFileAndDoubledWordsAreSaid) {
-  EXPECT_NE(refusal(singlet.substr(0, singlet.find("  DIAM 8"))).find("the file is cut off"), std::string::npos);
+  expect_tokens(refusal(singlet.substr(0, singlet.find("  DIAM 8"))), {"x"});
   EXPECT_NE(warning(singlet.substr(0, singlet.find("  DISZ 48")), "SURF"), "no warning");
   EXPECT_NE(warning(with(singlet, "  DISZ 4\n", ""), "DISZ"), "no warning");
   EXPECT_NE(warning(with(singlet, "  DISZ 4\n", "  DISZ 4\n  DISZ 5\n"), "DISZ"), "no warning");
@@ -520,7 +504,7 @@ TEST(Zemax, AnImageAtInfinityAndAMissingUnitAreSaid) {
   const Prescription p = read(with(singlet, "DISZ 48", "DISZ INFINITY"));
   EXPECT_NEAR(p.surfaces[2].thickness, petzval::first_order(compile(p)).back_focal_distance, 1e-9);
   EXPECT_NE(warning(p, "DISZ"), "no warning");
-  EXPECT_NE(refusal(with(singlet, "DISZ 4\n", "DISZ INFINITY\n")).find("DISZ is infinite"), std::string::npos);
+  expect_tokens(refusal(with(singlet, "DISZ 4\n", "DISZ INFINITY\n")), {"DISZ"});
   EXPECT_NE(warning(with(singlet, "UNIT MM X W X CM MR CPMM\n", ""), "UNIT"), "no warning");
 }
 
@@ -533,22 +517,19 @@ TEST(Zemax, TheStopOpensAsTheLensZooms) {
 }
 
 TEST(Zemax, EveryCommandIsHonouredOrNamed) {
-  EXPECT_EQ(warning(singlet + "XYZZ 1 2 3\n", "XYZZ"), "is not known and is left out");
-  EXPECT_EQ(warning(with_line("ABCD 1"), "ABCD"), "is not known and is left out");
+  EXPECT_NE(warning(singlet + "XYZZ 1 2 3\n", "XYZZ"), "no warning");
+  EXPECT_NE(warning(with_line("ABCD 1"), "ABCD"), "no warning");
   const Prescription p = read(with_line("ABCD 1"));
   EXPECT_EQ(p.imported->warnings[0].line, 40);
   // Once for each command.
   const Prescription twice = read(with_line("ABCD 1\n  EFGH\n  ABCD 2\n  ABCD 3"));
   ASSERT_EQ(twice.imported->warnings.size(), 2u);
   EXPECT_EQ(twice.imported->warnings[0].line, 40);
-  EXPECT_NE(warning(twice, "ABCD").find("2 more lines"), std::string::npos) << warning(twice, "ABCD");
+  expect_tokens(warning(twice, "ABCD"), {2, "lines"});
   // The merit function, tolerances and windows change nothing.
   EXPECT_TRUE(read(singlet + "EFFL 0 2 0 0 0 0 50 1 0 0\nREAY 4 2 0 1 0 0 2.25 0 0 0\nTOL TOFF 0 0 0 0\n")
                   .imported->warnings.empty());
-  EXPECT_NE(petzval::testing::message([] {
-              petzval::parse_lens(with_line("ABCD 1"), "x", {.strict = true});
-            }).find("x: line 40: ABCD: is not known"),
-            std::string::npos);
+  expect_error([] { petzval::parse_lens(with_line("ABCD 1"), "x", {.strict = true}); }, {"x", "line 40", "ABCD"});
   EXPECT_NE(warning(with(singlet, "ENVD 20 1 0", "ENVD 35 1 0"), "ENVD"), "no warning");
 }
 
@@ -598,33 +579,27 @@ TEST(Zemax, NamesASecondAperture) {
   ASSERT_TRUE(p.design.aperture);
   EXPECT_EQ(p.design.aperture->setting, petzval::ApertureSetting::f_number);
   ASSERT_FALSE(p.imported->warnings.empty());
-  EXPECT_EQ(p.imported->warnings[0].message, "is a second aperture; it is taken, the one before is left out");
+  EXPECT_EQ(p.imported->warnings[0].command, "FNUM");
 }
 
 TEST(Zemax, WhatNoLensHasIsRefused) {
-  using petzval::testing::refuses;
   const auto of_type = [](const std::string& type, const std::string& lines) {
     return with(singlet, "TYPE STANDARD\n  CURV 0.02", "TYPE " + type + "\n" + lines + "  CURV 0.02");
   };
-  EXPECT_TRUE(refuses(of_type("XASPHERE", "  XDAT 1 2000\n"), "XASPHERE is 2000 terms, wanted 0 to 1000"));
-  EXPECT_TRUE(refuses(of_type("XASPHERE", "  XDAT 1 1\n  XDAT 3 1\n"),
-                      "XASPHERE is normalised to a radius of 0, wanted one above 0"));
-  EXPECT_TRUE(refuses(of_type("XASPHERE", "  XDAT 1 21\n  XDAT 2 1\n  XDAT 23 1e-60\n"),
-                      "XASPHERE is with a term of order 42, wanted orders up to 40"));
-  EXPECT_TRUE(refuses(of_type("TOROIDAL", "  PARM 1 0\n  CONI -1\n"), "TYPE is TOROIDAL"));
-  EXPECT_TRUE(
-      refuses(with(singlet, "SURF 0\n", "SURF 0\n  STOP\n"), "STOP is at the object, wanted a surface of the lens"));
-  EXPECT_TRUE(
-      refuses(with(singlet, "SURF 4\n", "SURF 4\n  STOP\n"), "STOP is at the image, wanted a surface of the lens"));
-  EXPECT_TRUE(refuses(with(singlet, "___BLANK 1 0 1.5 60 0 0 0 0 0 0", "___BLANK 1"), "GLAS is a model without n_d"));
+  expect_tokens(refusal(of_type("XASPHERE", "  XDAT 1 2000\n")), {"XASPHERE", 2000});
+  expect_tokens(refusal(of_type("XASPHERE", "  XDAT 1 1\n  XDAT 3 1\n")), {"XASPHERE", 0});
+  expect_tokens(refusal(of_type("XASPHERE", "  XDAT 1 21\n  XDAT 2 1\n  XDAT 23 1e-60\n")), {"XASPHERE", 42});
+  expect_tokens(refusal(of_type("TOROIDAL", "  PARM 1 0\n  CONI -1\n")), {"TYPE", "TOROIDAL"});
+  expect_tokens(refusal(with(singlet, "SURF 0\n", "SURF 0\n  STOP\n")), {"STOP"});
+  expect_tokens(refusal(with(singlet, "SURF 4\n", "SURF 4\n  STOP\n")), {"STOP"});
+  expect_tokens(refusal(with(singlet, "___BLANK 1 0 1.5 60 0 0 0 0 0 0", "___BLANK 1")), {"GLAS", "n_d"});
   // A command without its number is not 0.
   for (const char* command : {"CURV", "CONI", "DISZ", "DIAM", "PARM 1", "XDAT 1"}) {
     const std::string name = std::string(command).substr(0, 4);
-    EXPECT_TRUE(refuses(with_line(command), name + " is without its number, wanted a number behind it")) << command;
+    expect_tokens(refusal(with_line(command)), {name, "number"});
   }
   for (const char* command : {"ENPD", "FNUM", "OBNA"}) {
-    EXPECT_TRUE(refuses(with(singlet, "ENPD 10", command), "is without its number, wanted a number behind it"))
-        << command;
+    expect_tokens(refusal(with(singlet, "ENPD 10", command)), {command, "number"});
   }
   // The glass picked up from air is air.
   EXPECT_EQ(read(with(singlet, "  DISZ 48\n", "  DISZ 48\n  GLAS ___BLANK 2 1 1.5 60 0\n")).surfaces[2].medium,
@@ -632,19 +607,17 @@ TEST(Zemax, WhatNoLensHasIsRefused) {
 }
 
 TEST(Zemax, WhatIsNotEvaluatedIsSaid) {
-  using petzval::testing::warns;
-  EXPECT_TRUE(warns(with(singlet, "GLAS ___BLANK 1 0 1.5 60 0 0 0 0 0 0", "GLAS N-BK7 4 0 0 0 0 0 0 0 0 0.5"), "GLAS",
-                    "V_d is offset by 0.5; the dispersion of N-BK7 is taken as it is"));
-  EXPECT_TRUE(warns(with(singlet, "  DISZ 48\n", "  DISZ 0\n  MAZH 1 0\n"), "MAZH", "is not evaluated"));
-  EXPECT_TRUE(warns(with(singlet, "FTYP 0", "FTYP 7"), "FTYP", "field type 7 is not known; fields are left out"));
-  EXPECT_NE(refusal(singlet + "MNUM 1 1\n" + petzval::testing::repeated(100'001, "THIC 2 1 4\n"))
-                .find("more than 100000 values of configurations"),
-            std::string::npos);
+  expect_tokens(
+      warning(with(singlet, "GLAS ___BLANK 1 0 1.5 60 0 0 0 0 0 0", "GLAS N-BK7 4 0 0 0 0 0 0 0 0 0.5"), "GLAS"),
+      {"V_d", 0.5, "N-BK7"});
+  EXPECT_NE(warning(with(singlet, "  DISZ 48\n", "  DISZ 0\n  MAZH 1 0\n"), "MAZH"), "no warning");
+  expect_tokens(warning(with(singlet, "FTYP 0", "FTYP 7"), "FTYP"), {"field", 7});
+  expect_tokens(refusal(singlet + "MNUM 1 1\n" + petzval::testing::repeated(100'001, "THIC 2 1 4\n")),
+                {100000, "values"});
 }
 
 TEST(Zemax, NumbersAreFiniteAndHaveDecimalPoints) {
-  EXPECT_EQ(refusal(with(singlet, "CURV 0.02", "CURV 0,02")),
-            "x: line 38: CURV is \"0,02\", wanted a finite number with a decimal point");
+  expect_tokens(refusal(with(singlet, "CURV 0.02", "CURV 0,02")), {"x", "line 38", "CURV", "\"0,02\""});
   for (const char* number : {"nan", "1e400", "inf", "--5", "0x10", "\"\""}) {
     EXPECT_NE(refusal(with(singlet, "DISZ 4", std::string("DISZ ") + number)), "no error") << number;
   }
