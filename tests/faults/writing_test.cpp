@@ -14,6 +14,7 @@
 #include <utility>
 #include <vector>
 
+#include "../expect_error.hpp"
 #include "../message.hpp"
 #include "allocations.hpp"
 #include "writers.hpp"
@@ -24,6 +25,7 @@ namespace {
 namespace fs = std::filesystem;
 using testing::bits;
 using testing::bytes_of;
+using testing::expect_error;
 using testing::message;
 using testing::Writer;
 
@@ -113,15 +115,13 @@ TEST_F(Writing, OnAFullDiskSaysSoAndLeavesTheOldFile) {
       signal(SIGXFSZ, SIG_IGN);
       const rlimit limit{256, 256};
       setrlimit(RLIMIT_FSIZE, &limit);
-      return message([&] { writer.write(file); }).starts_with(file.string() + ": cannot be written (");
+      return message([&] { writer.write(file); }).starts_with(file.string());
     };
     EXPECT_EQ(status_of_process(refused), 0);
     EXPECT_EQ(bytes_of(file), "old");
     EXPECT_EQ(testing::names_in(folder_), std::vector{writer.name});
     fs::remove(file);
-    if (fs::exists("/dev/full")) {
-      EXPECT_TRUE(message([&] { writer.write("/dev/full"); }).starts_with("/dev/full: cannot be written ("));
-    }
+    if (fs::exists("/dev/full")) expect_error([&] { writer.write("/dev/full"); }, {"/dev/full"});
   }
 }
 
