@@ -13,11 +13,13 @@
 #include <random>
 #include <string>
 
+#include "../expect_error.hpp"
 #include "../message.hpp"
 
 namespace petzval {
 namespace {
 
+using testing::expect_error;
 using testing::message;
 
 /// A temporary folder for the test.
@@ -132,34 +134,32 @@ TEST_F(ImageFiles, RgbIsReadFromTheFirstPart) {
   EXPECT_EQ(read_exr(file).pixels, (std::vector<float>{1, 2, 3, 4, 5, 6}));
   std::swap(parts[0], parts[1]);
   write_exr(parts, file);
-  EXPECT_EQ(message([&] { read_exr(file); }), file.string() + ": no channel R, wanted R, G, B");
+  expect_error([&] { read_exr(file); }, {file, "channel"});
 }
 
 TEST_F(ImageFiles, RefusesExrPartsThatNoFileHolds) {
   const auto file = folder_ / "a.exr";
-  const auto refused = [&](auto&& change, const std::string& words) {
+  const auto refused = [&](auto&& change, std::vector<testing::Token> tokens) {
     std::vector<ExrPart> parts = two_parts();
     change(parts);
-    const std::string said = message([&] { write_exr(parts, file); });
-    EXPECT_EQ(said.rfind(file.string() + ": ", 0), 0u) << said;
-    EXPECT_NE(said.find(words), std::string::npos) << said;
+    tokens.push_back(file);
+    expect_error([&] { write_exr(parts, file); }, tokens);
   };
   using Parts = std::vector<ExrPart>;
-  refused([](Parts& p) { p.clear(); }, "no part");
-  refused([](Parts& p) { p[1].channels.clear(); }, "part \"second\": no channel");
-  refused([](Parts& p) { p[1].width = 0; }, "part \"second\": is 0 x 40");
-  refused([](Parts& p) { p[0].channels[1].values.pop_back(); },
-          "channel Y has 20 values, wanted one for each of 7 x 3");
-  refused([](Parts& p) { p[0].channels[1].name = "S0.475nm"; }, "channel S0.475nm stands twice");
-  refused([](Parts& p) { p[0].channels[1].name.clear(); }, "a channel has no name");
-  refused([](Parts& p) { p[1].name = "first"; }, "part \"first\" stands twice");
-  refused([](Parts& p) { p[1].name.clear(); }, "has no name");
-  refused([](Parts& p) { p[0].texts["type"] = "deepscanline"; }, "attribute type is EXR's own");
-  refused([](Parts& p) { p[0].numbers["dataWindow"] = 1; }, "attribute dataWindow is EXR's own");
-  refused([](Parts& p) { p[0].numbers["units"] = 1; }, "attribute units is a text and a number");
-  refused([](Parts& p) { p[1].pairs["field_deg"] = {1, 2}; }, "attribute field_deg is a pair and something else");
-  refused([](Parts& p) { p[1].margin_x = 1; }, "part \"second\": has margins of 1 and 0 pixels");
-  refused([](Parts& p) { p[1].margin_y = -1; }, "part \"second\": has margins of 0 and -1 pixels");
+  refused([](Parts& p) { p.clear(); }, {"part"});
+  refused([](Parts& p) { p[1].channels.clear(); }, {"part \"second\"", "channel"});
+  refused([](Parts& p) { p[1].width = 0; }, {"part \"second\"", 0, 40});
+  refused([](Parts& p) { p[0].channels[1].values.pop_back(); }, {"channel Y", 20, 7, 3});
+  refused([](Parts& p) { p[0].channels[1].name = "S0.475nm"; }, {"channel", "S0.475nm"});
+  refused([](Parts& p) { p[0].channels[1].name.clear(); }, {"channel"});
+  refused([](Parts& p) { p[1].name = "first"; }, {"part \"first\""});
+  refused([](Parts& p) { p[1].name.clear(); }, {"name"});
+  refused([](Parts& p) { p[0].texts["type"] = "deepscanline"; }, {"attribute", "type"});
+  refused([](Parts& p) { p[0].numbers["dataWindow"] = 1; }, {"attribute", "dataWindow"});
+  refused([](Parts& p) { p[0].numbers["units"] = 1; }, {"attribute", "units"});
+  refused([](Parts& p) { p[1].pairs["field_deg"] = {1, 2}; }, {"attribute", "field_deg"});
+  refused([](Parts& p) { p[1].margin_x = 1; }, {"part \"second\"", "margins", 1, 0});
+  refused([](Parts& p) { p[1].margin_y = -1; }, {"part \"second\"", "margins", 0, -1});
   EXPECT_EQ(files(), 0u);
 }
 
@@ -192,15 +192,12 @@ TEST_F(ImageFiles, FailureNamesTheFileAndLeavesNothingBehind) {
   const RgbImage linear(2, 2);
   const Rgb8Image bytes = to_srgb8(linear);
   const auto nowhere = folder_ / "missing" / "a";
-  EXPECT_NE(message([&] { write_exr(linear, nowhere); }).find(nowhere.string() + ": cannot be written"),
-            std::string::npos);
-  EXPECT_NE(message([&] { write_png(bytes, nowhere); }).find(nowhere.string() + ": cannot be written"),
-            std::string::npos);
+  expect_error([&] { write_exr(linear, nowhere); }, {nowhere, "No such file"});
+  expect_error([&] { write_png(bytes, nowhere); }, {nowhere, "No such file"});
   const auto taken = folder_ / "taken";
   std::filesystem::create_directories(taken / "inside");
-  const std::string is_a_folder = taken.string() + ": is a folder, wanted the name of a file";
-  EXPECT_EQ(message([&] { write_exr(linear, taken); }), is_a_folder);
-  EXPECT_EQ(message([&] { write_png(bytes, taken); }), is_a_folder);
+  expect_error([&] { write_exr(linear, taken); }, {taken, "folder"});
+  expect_error([&] { write_png(bytes, taken); }, {taken, "folder"});
   EXPECT_EQ(files(), 1u);
 }
 
@@ -208,29 +205,21 @@ TEST_F(ImageFiles, RefusesImagesWithoutPixelsOrWithTooFew) {
   const auto file = folder_ / "a.exr";
   RgbImage torn(3, 2);
   torn.pixels.pop_back();
-  EXPECT_EQ(message([&] { write_exr(torn, file); }),
-            file.string() + ": image is 3 x 2 with 17 values, wanted 3 a pixel and at least one pixel");
-  EXPECT_EQ(message([&] { write_png(Rgb8Image{}, file); }),
-            file.string() + ": image is 0 x 0 with 0 values, wanted 3 a pixel and at least one pixel");
-  EXPECT_EQ(message([&] { write_pfm(2, 2, std::vector<float>(3), file); }),
-            file.string() + ": found 3 values for 2 x 2 pixels, wanted one for each");
+  expect_error([&] { write_exr(torn, file); }, {file, "image", 3, 2, 17});
+  expect_error([&] { write_png(Rgb8Image{}, file); }, {file, "image", 0, 0, 0});
+  expect_error([&] { write_pfm(2, 2, std::vector<float>(3), file); }, {file, 3, 2, 2});
   constexpr int wide = 1'000'001;  // libpng writes no more than a million
-  EXPECT_NE(message([&] {
-              write_png(Rgb8Image{wide, 1, std::vector<std::uint8_t>(3 * wide)}, file);
-            }).find(file.string() + ": "),
-            std::string::npos);
+  expect_error([&] { write_png(Rgb8Image{wide, 1, std::vector<std::uint8_t>(3 * wide)}, file); }, {file});
   EXPECT_EQ(files(), 0u);
 }
 
 TEST_F(ImageFiles, ReadingSaysWhichFileIsBad) {
   const auto absent = folder_ / "absent.exr";
-  const std::string cannot_be_opened =
-      absent.string() + ": cannot be opened (No such file or directory); must be an EXR file";
-  EXPECT_EQ(message([&] { read_exr(absent); }), cannot_be_opened);
-  EXPECT_EQ(message([&] { read_exr_parts(absent); }), cannot_be_opened);
-  EXPECT_EQ(message([&] { read_exr(folder_); }), folder_.string() + ": is a folder, wanted an EXR file");
-  EXPECT_EQ(message([&] { read_pfm(folder_); }), folder_.string() + ": is a folder, wanted a PFM file");
-  EXPECT_EQ(message([&] { read_png(folder_); }), folder_.string() + ": is a folder, wanted a picture");
+  expect_error([&] { read_exr(absent); }, {absent, "No such file"});
+  expect_error([&] { read_exr_parts(absent); }, {absent, "No such file"});
+  expect_error([&] { read_exr(folder_); }, {folder_, "folder"});
+  expect_error([&] { read_pfm(folder_); }, {folder_, "folder"});
+  expect_error([&] { read_png(folder_); }, {folder_, "folder"});
 
   const auto file = folder_ / "a.exr";
   write_exr(random_floats(64, 64), file);
@@ -238,15 +227,14 @@ TEST_F(ImageFiles, ReadingSaysWhichFileIsBad) {
   for (const auto kept : {size / 2, std::uintmax_t(100), std::uintmax_t(4), std::uintmax_t(0)}) {
     std::filesystem::resize_file(file, kept);
     const std::string said = message([&] { read_exr(file); });
-    EXPECT_TRUE(said.starts_with(file.string() + ": cannot be read (")) << kept << ": " << said;
-    EXPECT_TRUE(said.ends_with("), wanted a whole EXR file")) << kept << ": " << said;
+    EXPECT_TRUE(said.starts_with(file.string())) << kept << ": " << said;
     EXPECT_EQ(said.find(file.string(), 1), std::string::npos) << kept << ": " << said;
   }
 
   write_exr(two_parts(), file);
   for (auto kept = std::filesystem::file_size(file); kept-- > 0;) {
     std::filesystem::resize_file(file, kept);
-    EXPECT_NE(message([&] { read_exr_parts(file); }).find(file.string()), std::string::npos) << kept;
+    expect_error([&] { read_exr_parts(file); }, {file});
   }
 }
 
@@ -271,18 +259,16 @@ TEST(Image, IsDesqueezed) {
     }
   }
   for (const double bad : {0.0, -2.0, std::nan(""), std::numeric_limits<double>::infinity()}) {
-    EXPECT_NE(message([&] { desqueezed(image, bad); }).find("squeeze"), std::string::npos) << bad;
+    expect_error([&] { desqueezed(image, bad); }, {"squeeze", bad});
   }
   image.pixels.pop_back();
-  EXPECT_EQ(message([&] { desqueezed(image, 2); }),
-            "desqueezed: image is 20 x 10 with 599 values, wanted 3 a pixel and at least one pixel");
-  EXPECT_EQ(message([&] { desqueezed({}, 2); }),
-            "desqueezed: image is 0 x 0 with 0 values, wanted 3 a pixel and at least one pixel");
+  expect_error([&] { desqueezed(image, 2); }, {"desqueezed", "image", 20, 10, 599});
+  expect_error([&] { desqueezed({}, 2); }, {"desqueezed", "image", 0, 0, 0});
 }
 
 TEST(Image, HasNoNegativeSize) {
-  EXPECT_EQ(petzval::testing::message([] { RgbImage(-1, 5); }), "picture of -1 x 5 pixels, wanted 0 or more");
-  EXPECT_EQ(petzval::testing::message([] { RgbImage(5, -1); }), "picture of 5 x -1 pixels, wanted 0 or more");
+  expect_error([] { RgbImage(-1, 5); }, {"picture", -1, 5});
+  expect_error([] { RgbImage(5, -1); }, {"picture", 5, -1});
   EXPECT_TRUE(RgbImage(0, 5).pixels.empty());
 }
 
