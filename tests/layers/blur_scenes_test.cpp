@@ -44,6 +44,8 @@ struct Wanted {
   double deep;                                  ///< surfaces behind each other in the mean, at least
 };
 
+void PrintTo(const Wanted& scene, std::ostream* out) { *out << scene.name; }
+
 class BlurScene : public ::testing::TestWithParam<Wanted> {};
 
 TEST_P(BlurScene, HasThingsBeforeAndBehindTheFocus) {
