@@ -10,13 +10,13 @@
 #include <numeric>
 #include <random>
 
-#include "../message.hpp"
+#include "../expect_error.hpp"
 #include "made_up_sums.hpp"
 
 namespace {
 
 using namespace renderer;
-using petzval::testing::message;
+using petzval::testing::expect_error;
 
 constexpr int width = 40, height = 35;  // 3 x 3 tiles, those at the edges cut
 
@@ -62,11 +62,9 @@ TEST(PictureSums, PartsMakeTheWhole) {
 TEST(PictureSums, RefuseOtherSizesAndTilesThatStandTwice) {
   PictureSums sums = made_up_part(width, height, 1, 3, 1);
   const PictureSums before = sums;
-  EXPECT_EQ(message([&] { sums.add(PictureSums(width, height + 1)); }),
-            "found a part of 40 x 36 pixels, wanted 40 x 35");
+  expect_error([&] { sums.add(PictureSums(width, height + 1)); }, {40, 36, 35});
   const std::size_t last[] = {6};
-  EXPECT_EQ(message([&] { sums.add(made_up_sums(width, height, last, 1)); }),
-            "found tile 6 in two parts, wanted it in one");
+  expect_error([&] { sums.add(made_up_sums(width, height, last, 1)); }, {"tile 6"});
   EXPECT_EQ(sums, before);
 }
 

@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <string>
 
+#include "../expect_error.hpp"
 #include "../message.hpp"
 #include "made_up_sums.hpp"
 #include "renderer/checkpoint.hpp"
@@ -16,6 +17,7 @@ namespace {
 using namespace renderer;
 using examples::Json;
 using examples::Shard;
+using petzval::testing::expect_tokens;
 using petzval::testing::message;
 
 constexpr int width = 40, height = 35;
@@ -38,7 +40,6 @@ class Shards : public testing::Test {
       gather(folders, job);
     });
   }
-  std::string wanted(int count) const { return "; wanted " + std::to_string(count) + " whole shards of one picture"; }
 
   const std::filesystem::path folder_ = std::filesystem::path(testing::TempDir()) / "petzval_shards" /
                                         testing::UnitTest::GetInstance()->current_test_info()->name();
@@ -74,12 +75,10 @@ TEST_F(Shards, MissingAndUnfinishedOnesAreNamed) {
   write(here_, {2, 5});
   write(there_, {3, 5}, passes - 1);
   write(there_, {5, 5});
-  EXPECT_EQ(refusal({here_, there_}),
-            here_.string() + ", " + there_.string() +
-                ": shard 1/5 is missing; shard 3/5: " + (there_ / "tile_3_of_5.exr").string() +
-                " is unfinished: 2 of 2 tiles lack samples; shard 4/5 is missing" + wanted(5));
-  EXPECT_EQ(refusal({folder_}), folder_.string() + ": no shard, wanted tile_I_of_N.exr of one N, or sums.exr");
-  EXPECT_EQ(refusal({folder_ / "nowhere"}).find((folder_ / "nowhere").string() + ": cannot be read"), 0u);
+  expect_tokens(refusal({here_, there_}),
+                {here_, there_, "shard 1/5", "shard 3/5", there_ / "tile_3_of_5.exr", 2, "shard 4/5"});
+  expect_tokens(refusal({folder_}), {folder_, "shard"});
+  expect_tokens(refusal({folder_ / "nowhere"}), {folder_ / "nowhere"});
 }
 
 TEST_F(Shards, OfAPictureByTimeHaveAPassAtLeast) {
@@ -89,7 +88,7 @@ TEST_F(Shards, OfAPictureByTimeHaveAPassAtLeast) {
   Json job;
   EXPECT_EQ(gather({here_}, job).samples(1), 9u);
   write(here_, {2, 2}, 0);
-  EXPECT_NE(refusal({here_}).find("unfinished: 4 of 4"), std::string::npos);
+  expect_tokens(refusal({here_}), {"tile_2_of_2.exr", 4});
 }
 
 TEST_F(Shards, OfOtherPicturesAreRefused) {
@@ -97,13 +96,10 @@ TEST_F(Shards, OfOtherPicturesAreRefused) {
   write(here_, {3, 3});
   job_["lens"] = "another lens";
   write(here_, {2, 3});
-  EXPECT_EQ(refusal({here_}), here_.string() + ": shard 2/3: " + (here_ / "tile_2_of_3.exr").string() +
-                                  ": belongs to another picture: lens: found \"another lens\", wanted \"a lens\"" +
-                                  wanted(3));
+  expect_tokens(refusal({here_}), {here_, "shard 2/3", here_ / "tile_2_of_3.exr", "lens", "\"another lens\""});
   write(there_, {1, 2});
   const std::string both = refusal({here_, there_});
-  EXPECT_NE(both.find("several ways"), std::string::npos) << both;
-  EXPECT_NE(both.find("tile_1_of_2.exr"), std::string::npos) << both;
+  expect_tokens(both, {"tile_1_of_2.exr"});
 }
 
 TEST_F(Shards, ThatDifferOrAreCorruptAreRefused) {
@@ -112,12 +108,12 @@ TEST_F(Shards, ThatDifferOrAreCorruptAreRefused) {
   PictureSums other = made_up_part(width, height, 2, 2, passes);
   other.add(1, 0, 1, {});
   Checkpoint::write(other, job_, checkpoint_file(there_, {2, 2}));
-  EXPECT_NE(refusal({here_, there_}).find("differ"), std::string::npos);
+  expect_tokens(refusal({here_, there_}), {"differ"});
   std::filesystem::rename(here_ / "tile_1_of_2.exr", here_ / "tile_2_of_2.exr");
-  EXPECT_NE(refusal({here_}).find("tile_2_of_2.exr has tile 0 of another shard"), std::string::npos);
+  expect_tokens(refusal({here_}), {"tile_2_of_2.exr", "tile", 0});
   const std::string bytes = examples::read_text(there_ / "tile_2_of_2.exr");
   examples::write_text(there_ / "tile_2_of_2.exr", bytes.substr(0, bytes.size() / 2));
-  EXPECT_NE(refusal({there_}).find("shard 2/2: " + there_.string()), std::string::npos);
+  expect_tokens(refusal({there_}), {"shard 2/2", there_});
 }
 
 }  // namespace
