@@ -10,8 +10,6 @@
 
 namespace {
 
-using Arguments = std::vector<std::string>;
-
 class AccuracySpeed : public Programs {};
 
 std::set<std::string> keys_of(const nlohmann::json& object) {
@@ -64,18 +62,6 @@ TEST_F(AccuracySpeed, PrintsARowForEveryModel) {
   }
 }
 
-TEST_F(AccuracySpeed, ChoosesForFourBudgets) {
-  const auto outcome =
-      run("accuracy_speed", {lens("cooke_triplet_50mm_f5"), "--film-mm", "24x16", "--resolution", "2400x1600"});
-  ASSERT_EQ(outcome.status, 0) << outcome.err;
-  EXPECT_NE(outcome.out.find("film 24 x 16 mm, 2400 x 1600 pixels of 10 um"), std::string::npos) << outcome.out;
-  EXPECT_NE(outcome.out.find("errors from 1500 mm to infinity, and at the focus"), std::string::npos) << outcome.out;
-  for (const char* budget : {"\n4 px: ", "\n1 px: ", "\n0.25 px: ", "\n0.05 px: "}) {
-    EXPECT_NE(outcome.out.find(budget), std::string::npos) << budget;
-  }
-  EXPECT_EQ(outcome.out.find("nan"), std::string::npos);
-}
-
 TEST_F(AccuracySpeed, WritesAFileForEachPositionOfAZoom) {
   const auto outcome =
       run("accuracy_speed", {lens("zoom_70-210mm_f4"), "--configuration", "tele", "--json", "--out", path("out")});
@@ -83,31 +69,6 @@ TEST_F(AccuracySpeed, WritesAFileForEachPositionOfAZoom) {
   for (const char* ending : {".csv", ".svg"}) {
     EXPECT_TRUE(std::filesystem::exists(path(std::string("out/zoom_70-210mm_f4_tele_accuracy_speed") + ending)));
   }
-}
-
-TEST_F(AccuracySpeed, SkipsWhatCylindersDoNotHave) {
-  const auto outcome = run("accuracy_speed", {lens("anamorphic_60mm_2x"), "--film-mm", "20x13", "--json"});
-  ASSERT_EQ(outcome.status, 0) << outcome.err;
-  const auto rows = nlohmann::json::parse(outcome.out);
-  ASSERT_EQ(rows.size(), 9u);
-  EXPECT_EQ(rows[1]["model"], "thick");
-  EXPECT_EQ(rows[2]["model"], "polynomial_3");
-  EXPECT_EQ(rows[7]["model"], "exact_float");
-  EXPECT_NE(outcome.err.find("note: no thin_two_disc: "), std::string::npos) << outcome.err;
-}
-
-TEST_F(AccuracySpeed, ExplainsItselfAndRefusesABadCommandLine) {
-  const auto help = run("accuracy_speed", {"--help"});
-  EXPECT_EQ(help.status, 0);
-  EXPECT_NE(help.out.find("Usage: accuracy_speed"), std::string::npos);
-  const std::string file = lens("double_gauss_100mm_f2.0");
-  expect_failure("accuracy_speed", {}, "LENS is required");
-  expect_failure("accuracy_speed", {file, "--film-mm", "36"}, "--film-mm: found \"36\"");
-  expect_failure("accuracy_speed", {file, "--resolution", "10.5x20"}, "--resolution: found \"10.5x20\"");
-  expect_failure("accuracy_speed", {file, "--resolution", "0x20"}, "--resolution");
-  expect_failure("accuracy_speed", {file, "--focus-mm", "-1"}, "--focus-mm");
-  expect_failure("accuracy_speed", {file, "--f-number", "0.5"}, "fast");
-  expect_failure("accuracy_speed", {file, "--out", ""}, "cannot be created as a folder");
 }
 
 }  // namespace

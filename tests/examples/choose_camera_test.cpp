@@ -8,8 +8,6 @@
 
 namespace {
 
-using Arguments = std::vector<std::string>;
-
 class ChooseCamera : public Programs {
  protected:
   nlohmann::json choice(const Arguments& more) const {
@@ -54,32 +52,6 @@ TEST_F(ChooseCamera, LooksAtTheSceneOnly) {
   EXPECT_LT(row_of(focus, "pinhole")["max_px"], row_of(all, "pinhole")["max_px"]);
   const auto stopped = choice({"--near-mm", "1000", "--far-mm", "inf", "--budget-px", "1", "--f-number", "8"});
   EXPECT_LT(row_of(stopped, "polynomial_5")["max_px"], 0.5 * row_of(all, "polynomial_5")["max_px"].get<double>());
-}
-
-TEST_F(ChooseCamera, GivesItsReasonsInWords) {
-  const auto outcome = run("choose_camera", {lens("double_gauss_52mm_f1.8"), "--near-mm", "1000", "--far-mm", "5000",
-                                             "--focus-mm", "2000", "--budget-px", "0.5"});
-  ASSERT_EQ(outcome.status, 0) << outcome.err;
-  EXPECT_NE(outcome.out.find("focused at 2000 mm from the front vertex"), std::string::npos) << outcome.out;
-  EXPECT_NE(outcome.out.find(" is the fastest inside the budget: "), std::string::npos) << outcome.out;
-  EXPECT_NE(outcome.out.find(" will not do: "), std::string::npos) << outcome.out;
-  EXPECT_EQ(outcome.out.find("nan"), std::string::npos);
-}
-
-TEST_F(ChooseCamera, ExplainsItselfAndRefusesABadCommandLine) {
-  const auto help = run("choose_camera", {"--help"});
-  EXPECT_EQ(help.status, 0);
-  EXPECT_NE(help.out.find("Usage: choose_camera"), std::string::npos);
-  const std::string file = lens("double_gauss_100mm_f2.0");
-  expect_failure("choose_camera", {file, "--far-mm", "inf", "--budget-px", "1"}, "--near-mm is required");
-  expect_failure("choose_camera", {file, "--near-mm", "1000", "--budget-px", "1"}, "--far-mm is required");
-  expect_failure("choose_camera", {file, "--near-mm", "1000", "--far-mm", "inf"}, "--budget-px is required");
-  expect_failure("choose_camera", {file, "--near-mm", "1000", "--far-mm", "500", "--budget-px", "1"}, "far_mm = 500");
-  expect_failure("choose_camera",
-                 {file, "--near-mm", "10", "--far-mm", "500", "--budget-px", "1", "--distance-from", "film"},
-                 "near_mm = 10");
-  expect_failure("choose_camera", {file, "--near-mm", "1000", "--far-mm", "inf", "--budget-px", "-1"},
-                 "--budget-px: found \"-1\"");
 }
 
 }  // namespace

@@ -107,21 +107,4 @@ TEST_F(ChromaticBokeh, FocusesAsItIsTold) {
   EXPECT_NE(film({"--criterion", "paraxial"}), film({}));
 }
 
-TEST_F(ChromaticBokeh, RefusesABadCommandLineInOneLine) {
-  const auto refuse = [&](std::vector<std::string> more, const std::string& reason) {
-    std::vector<std::string> arguments{lens(id), "--out", path("out")};
-    arguments.insert(arguments.end(), more.begin(), more.end());
-    expect_failure("chromatic_bokeh", arguments, reason);
-    EXPECT_FALSE(std::filesystem::exists(path("out")));
-  };
-  refuse({"--white-point", "moon"}, "--white-point: found \"moon\"");
-  refuse({"--subject-distance-mm", "0"}, "--subject-distance-mm: found \"0\"");
-  refuse({"--focus-mm", "15"}, "cannot be focused");
-  refuse({"--field-deg", "95"}, "95");
-  refuse({"--field-deg", "0,60"}, "--field-deg = 60");
-  write("taken", "");
-  expect_failure("chromatic_bokeh", {lens(id), "--samples", "67108864", "--out", path("taken")}, "--out");
-  expect_failure("chromatic_bokeh", {lens("fisheye_10mm_f4"), "--out", path("out")}, "430 nm");
-}
-
 }  // namespace

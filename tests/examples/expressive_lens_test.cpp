@@ -59,19 +59,4 @@ TEST_F(ExpressiveLensProgram, DrawsALensWithACentralObscuration) {
   EXPECT_GT(read_json(path("out/expressive.json"))["highlights"].size(), 5u);
 }
 
-TEST_F(ExpressiveLensProgram, RefusesWhatIsNoLens) {
-  const auto refused = [&](std::vector<std::string> more, const std::string& reason) {
-    std::vector<std::string> arguments{lens("double_gauss_100mm_f1.35"), "--out", path("out")};
-    arguments.insert(arguments.end(), more.begin(), more.end());
-    expect_failure("expressive_lens", arguments, reason);
-  };
-  refused({"--power-spline", "0.5"}, "--power-spline: found \"0.5\", wanted radius:power");
-  refused({"--power-spline", "0:1", "0:2"}, "knot 2");
-  refused({"--power-spline", "0:x"}, "--power-spline");
-  refused({"--curvature-points", "1:2"}, "--curvature-points: found \"1\", wanted x,y:offset");
-  refused({"--curvature-points", "0,0:-500"}, "wanted the film between");
-  refused({"--model", "exact_float"}, "--model");
-  refused({"--light-mm", "20", "--from-lens", "1", "--distance-from", "film"}, "scene point: z is");
-}
-
 }  // namespace

@@ -113,23 +113,4 @@ TEST_F(FocalSurfaceProgram, TakesPointsOfTheWorldAndKinds) {
   }
 }
 
-TEST_F(FocalSurfaceProgram, RefusesWhatIsNoSurface) {
-  const auto refused = [&](const std::string& text, const std::string& reason, std::vector<std::string> more = {}) {
-    write("points.json", text);
-    expect_failure("focal_surface", arguments(std::move(more)), reason);
-  };
-  refused(R"({"points": [{"pixel": [1, 2], "distance_mm": 100}]})",
-          "points.json: focal surface: point 1: the object is", {"--distance-from", "film"});
-  refused(R"({"points": [{"pixel": [1, 2], "distance_mm": 20}]})", "point 1: distance_mm: found 20, wanted more than",
-          {"--distance-from", "film"});
-  refused(R"({"points": [{"pixel": [1, 2], "distance_mm": 3000, "fade": 2}]})", "point 1: fade: found 2, wanted");
-  refused(R"({"points": [{"pixel": [1, 2], "distance_mm": 3000, "weight": 0}]})", "none of 1 points has a weight");
-  refused(R"({"points": [{"pixel": [1, 2], "distance_mm": 3000, "blur_px": 1e9}]})", "point 1: a blur of");
-  refused(R"({"points": [)", "points.json");
-  refused(points, "--beta", {"--beta", "9"});
-  refused(points, "no.csv", {"--queries", path("no.csv")});
-  write("q.csv", "x,y\n1,2\n");
-  refused(points, "q.csv", {"--queries", path("q.csv")});
-}
-
 }  // namespace

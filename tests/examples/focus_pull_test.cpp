@@ -12,7 +12,6 @@
 namespace {
 
 using nlohmann::json;
-using Arguments = std::vector<std::string>;
 
 constexpr const char* rack = R"([{"from_s": 0, "until_s": 4, "keys": [
   {"time_s": 1, "position_mm": [0, 0, -1000]}, {"time_s": 3, "position_mm": [100, 0, -4000]}]}])";
@@ -33,10 +32,6 @@ class FocusPull : public Programs {
     const auto outcome = run("focus_pull", command(lens, keys, more));
     EXPECT_EQ(outcome.status, 0) << outcome.err;
     return json::parse(outcome.out)["frames"];
-  }
-  void refuses(const std::string& keys, const std::string& reason, const Arguments& more = {}) const {
-    expect_failure("focus_pull", command(thin_50, keys, more), reason);
-    EXPECT_FALSE(std::filesystem::exists(path("out"))) << keys;
   }
 };
 
@@ -112,25 +107,6 @@ TEST_F(FocusPull, KeepsTheFilmWhereNothingIsToBeServed) {
   }
 }
 
-TEST_F(FocusPull, LastsAsLongAsItsPointsDo) {
-  // Keys may lie outside the interval of their point.
-  const json late = frames(thin_50, R"([{"from_s": 9, "keys": [{"time_s": 0, "position_mm": [0, 0, -1000]}]}])");
-  ASSERT_EQ(late.size(), 1u);
-  EXPECT_EQ(late[0]["time_s"], 9);
-  EXPECT_NEAR(late[0]["film_z_mm"], film_of(1000), 1e-9);
-  const json early = frames(thin_50, R"([{"until_s": -1, "keys": [{"time_s": 0, "position_mm": [0, 0, -1000]}]}])");
-  ASSERT_EQ(early.size(), 1u);
-  EXPECT_EQ(early[0]["time_s"], -1);
-}
-
-TEST_F(FocusPull, PullsToInfinity) {
-  const json all = frames(thin_50, R"([{"keys": [{"time_s": 0, "position_mm": [0, 0, -900]},
-    {"time_s": 1, "position_mm": [0, 0, -1], "at_infinity": true}]}])");
-  EXPECT_NEAR(all.back()["film_z_mm"], 50, 1e-9);
-  EXPECT_TRUE(all.back()["subject_distance_mm"].is_null() || all.back()["subject_distance_mm"].get<double>() > 1e9);
-  EXPECT_NEAR(all.back()["breathing"], 0, 1e-12);
-}
-
 TEST_F(FocusPull, TiltsWhereAskedTo) {
   const std::string moving =
       R"([{"keys": [{"time_s": 0, "position_mm": [0, -100, -800]}, {"time_s": 1, "position_mm": [0, -50, -800]}]},
@@ -147,13 +123,6 @@ TEST_F(FocusPull, TiltsWhereAskedTo) {
   EXPECT_NE(tilted.front()["tilt_deg"], tilted.back()["tilt_deg"]);
 }
 
-TEST_F(FocusPull, LeavesOutWhatIsOutsideTheFilmThatIsGiven) {
-  const std::string keys = R"([{"keys": [{"time_s": 0, "position_mm": [0, 0, -1000]}]},
-    {"keys": [{"time_s": 0, "position_mm": [0, 900, -2000]}]}])";
-  EXPECT_EQ(frames(thin_50, keys)[0]["targets"], 2);
-  EXPECT_EQ(frames(thin_50, keys, {"--film-mm", "36x24"})[0]["targets"], 1);
-}
-
 TEST_F(FocusPull, WritesATableAndAPlot) {
   const auto outcome = run("focus_pull", command(thin_50, rack, {}));
   ASSERT_EQ(outcome.status, 0) << outcome.err;
@@ -167,50 +136,6 @@ TEST_F(FocusPull, WritesATableAndAPlot) {
   EXPECT_TRUE(rows[1].ends_with(",1,solved")) << rows[1];
   EXPECT_TRUE(read(path("out/thin_lens_focus_pull.svg")).ends_with("</svg>\n"));
   for (const std::string& name : names) EXPECT_NE(outcome.out.find(name), std::string::npos) << name;
-  EXPECT_NE(outcome.out.find("52.63158"), std::string::npos) << outcome.out;
-}
-
-TEST_F(FocusPull, RefusesKeysThatAreNone) {
-  refuses("[", "keys.json: not JSON: ");
-  refuses("[]", "keys.json: found [], wanted a list of one point or more");
-  refuses(R"([{}])", "keys.json: point 1: keys: found none");
-  refuses(R"([{"keys": []}])", "point 1: keys: found [], wanted a list of one key or more");
-  refuses(R"([{"keys": [{"position_mm": [0, 0, -1]}]}])", "point 1: keys: key 1: time_s: found none");
-  refuses(R"([{"keys": [{"time_s": 0, "position_mm": [0, -1]}]}])", "key 1: position_mm: found [0,-1]");
-  refuses(R"([{"keys": [{"time_s": "0", "position_mm": [0, 0, -1]}]}])", "time_s: found \"0\"");
-  refuses(R"([{"until": 3, "keys": [{"time_s": 0, "position_mm": [0, 0, -1]}]}])", "found the key \"until\"");
-  refuses(R"([{"keys": [{"time_s": 1, "position_mm": [0, 0, -900]}, {"time_s": 1, "position_mm": [0, 0, -800]}]}])",
-          "key 2: time_s: found 1, wanted a time after");
-  refuses(R"([{"keys": [{"time_s": 1, "position_mm": [0, 0, -9], "extent_stops": 1},)"
-          R"({"time_s": 2, "position_mm": [0, 0, -8]}]}])",
-          "key 2: extent_stops: found in some keys only");
-  refuses(R"([{"from_s": 2, "until_s": 1, "keys": [{"time_s": 1, "position_mm": [0, 0, -900]}]}])",
-          "until_s: found 1, wanted");
-  refuses(R"([{"keys": [{"time_s": 0, "position_mm": [0, 0, 900]}]}])", "found no point to focus on in any frame");
-  refuses(R"([{"keys": [{"time_s": 0, "position_mm": [0, 0, -900]}, {"time_s": 1e9, "position_mm": [0, 0, -900]}]}])",
-          "wanted at most 100000");
-  std::string deep;
-  for (int i = 0; i < 100'000; ++i) deep += R"([{"keys":)";
-  refuses(deep, "keys.json: found lists or objects nested more than 8 deep");
-}
-
-TEST_F(FocusPull, ExplainsItselfAndRefusesABadCommandLine) {
-  const auto help = run("focus_pull", {"--help"});
-  EXPECT_EQ(help.status, 0);
-  EXPECT_NE(help.out.find("Usage: focus_pull"), std::string::npos);
-  const auto fails = [&](const Arguments& arguments, const std::string& reason) {
-    expect_failure("focus_pull", command(arguments, rack, {}), reason);
-  };
-  fails({}, "LENS is required");
-  fails({lens("double_gauss_100mm_f2.0"), "--criterion", "sharp"}, "--criterion");
-  for (const std::string model : {"thin", "thick"}) {
-    fails({lens("double_gauss_100mm_f2.0"), "--model", model, "--criterion", "min_max"},
-          "--criterion: found it with --model " + model + ", wanted --model real");
-  }
-  fails({"--model", "thin", "--thin-focal-length-mm", "50", "--f-number", "2", "--configuration", "1"},
-        "--configuration requires LENS");
-  fails({lens("double_gauss_100mm_f2.0"), "--frames-per-s", "0"}, "--frames-per-s: found \"0\"");
-  expect_failure("focus_pull", {lens("double_gauss_100mm_f2.0"), "--out", path("out")}, "--keys is required");
 }
 
 }  // namespace

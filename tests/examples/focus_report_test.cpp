@@ -11,7 +11,6 @@
 namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
-using Arguments = std::vector<std::string>;
 
 class FocusReport : public Programs {
  protected:
@@ -78,16 +77,6 @@ TEST_F(FocusReport, HasRowsForUsualDistancesUnasked) {
   EXPECT_TRUE(json[9]["far_limit_mm"].is_null());
 }
 
-TEST_F(FocusReport, DeepensTheFieldAsTheLensIsStoppedDown) {
-  const auto near = [&](const std::string& f_number) {
-    return rows("double_gauss_100mm_f2.0",
-                {"--distance-mm", "3000", "--criterion", "min_rms", "--f-number", f_number})[0]["near_limit_mm"]
-        .get<double>();
-  };
-  EXPECT_GT(near("5.6"), near("8"));
-  EXPECT_GT(near("8"), near("16"));
-}
-
 TEST_F(FocusReport, CountsFieldsAndWavelengths) {
   const auto film = [&](const Arguments& more) {
     Arguments arguments{"--distance-mm", "2000", "--criterion", "min_rms"};
@@ -108,54 +97,15 @@ TEST_F(FocusReport, SaysWhatIsOutOfReach) {
   EXPECT_EQ(json[1]["status"], "solved");
 }
 
-TEST_F(FocusReport, RefusesAFieldThatNoLightReaches) {
-  expect_failure("focus_report", {lens("cooke_triplet_50mm_f5"), "--field-deg", "0,75"}, "--field-deg = 75");
-}
-
-// A report without any answer is an error, and a distance that looks like metres gets a hint.
-TEST_F(FocusReport, TellsMetresFromMillimetres) {
-  const std::string file = lens("double_gauss_100mm_f2.0");
-  expect_failure("focus_report", {file, "--distance-mm", "2"}, "2000 mm");
-  const auto both = run("focus_report", {file, "--distance-mm", "2,3000", "--criterion", "min_rms"});
-  EXPECT_EQ(both.status, 0);
-  EXPECT_NE(both.out.find("unreachable"), std::string::npos) << both.out;
-  EXPECT_NE(both.err.find("2000 mm"), std::string::npos) << both.err;
-}
-
 TEST_F(FocusReport, LosesOneRowWhereTheLensRefusesASubject) {
   const auto json = rows("zoom_14-30mm_f4", {"--criterion", "paraxial,min_rms", "--distance-mm", "0.001,1000"});
   ASSERT_EQ(json.size(), 4u);
   EXPECT_EQ(json[0]["status"], "solved");
   EXPECT_TRUE(json[0]["message"].is_null());
   EXPECT_EQ(json[2]["status"], "refused");
-  EXPECT_NE(json[2]["message"].get<std::string>().find("where the first surface begins"), std::string::npos);
+  petzval::testing::expect_tokens(json[2]["message"].get<std::string>(), {-0.001});
   EXPECT_TRUE(json[2]["film_z_mm"].is_null());
   EXPECT_EQ(json[3]["status"], "solved");
-  expect_failure("focus_report", {lens("zoom_14-30mm_f4"), "--criterion", "min_rms", "--distance-mm", "0.001"},
-                 "where the first surface begins");
-}
-
-TEST_F(FocusReport, PrintsATable) {
-  const auto outcome = run("focus_report", {lens("double_gauss_100mm_f2.0")});
-  EXPECT_EQ(outcome.status, 0) << outcome.err;
-  EXPECT_NE(outcome.out.find("paraxial: nearest 54.2, hyperfocal 16"), std::string::npos) << outcome.out;
-  EXPECT_NE(outcome.out.find("\n      1000.0      147.0174     0.0000"), std::string::npos) << outcome.out;
-  EXPECT_NE(outcome.out.find("too_blurred"), std::string::npos);
-  EXPECT_EQ(outcome.out.find("nan"), std::string::npos);
-}
-
-TEST_F(FocusReport, ExplainsItselfAndRefusesABadCommandLine) {
-  const auto help = run("focus_report", {"--help"});
-  EXPECT_EQ(help.status, 0);
-  EXPECT_NE(help.out.find("Usage: focus_report"), std::string::npos);
-  const std::string file = lens("double_gauss_100mm_f2.0");
-  expect_failure("focus_report", {}, "LENS is required");
-  expect_failure("focus_report", {file, "--distance-mm", "0"}, "--distance-mm: found \"0\"");
-  expect_failure("focus_report", {file, "--blur-mm", "-1"}, "--blur-mm: found \"-1\"");
-  expect_failure("focus_report", {file, "--criterion", "sharp"}, "--criterion");
-  expect_failure("focus_report", {file, "--criterion", "thin,thin"}, "--criterion: found thin twice");
-  expect_failure("focus_report", {file, "--distance-from", "moon"}, "--distance-from");
-  expect_failure("focus_report", {file, "--f-number", "0.5"}, "fast");
 }
 
 }  // namespace

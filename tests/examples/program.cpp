@@ -24,7 +24,7 @@ void Programs::SetUp() {
 
 void Programs::TearDown() { std::filesystem::remove_all(folder); }
 
-Programs::Outcome Programs::run(const std::string& program, const std::vector<std::string>& arguments) const {
+Programs::Outcome Programs::run(const std::string& program, const Arguments& arguments) const {
   std::string command = quoted(std::string(PETZVAL_TEST_PROGRAMS) + '/' + program);
   for (const std::string& argument : arguments) command += ' ' + quoted(argument);
   command += " > " + quoted(path("stdout")) + " 2> " + quoted(path("stderr"));
@@ -32,13 +32,31 @@ Programs::Outcome Programs::run(const std::string& program, const std::vector<st
   return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, read(path("stdout")), read(path("stderr"))};
 }
 
-void Programs::expect_failure(const std::string& program, const std::vector<std::string>& arguments,
-                              const std::string& reason) const {
+void Programs::expect_failure(const std::string& program, const Arguments& arguments,
+                              const std::vector<petzval::testing::Token>& tokens, int line) const {
   const Outcome outcome = run(program, arguments);
-  EXPECT_EQ(outcome.status, 1) << outcome.err;
+  EXPECT_EQ(outcome.status, 1) << outcome.err << "from line " << line;
   EXPECT_EQ(outcome.out, "");
-  EXPECT_NE(outcome.err.find(reason), std::string::npos) << "wanted " << reason << ", found " << outcome.err;
+  const auto* test = testing::UnitTest::GetInstance()->current_test_info();
+  petzval::testing::expect_tokens(outcome.err, tokens, test->file(), line);
   EXPECT_EQ(outcome.err.find('\n'), outcome.err.size() - 1) << outcome.err;
+}
+
+void Programs::write_inputs() const {
+  write("samples.csv", "film_x_mm,film_y_mm,pupil_u,pupil_v,wavelength_nm\n0,0,0.5,0.5,587.5618\n");
+  write("rays_in.csv", "x_mm,y_mm,z_mm,dx,dy,dz\n0,0,-10,0,0,1\n");
+  write("points.json", R"([{"position_mm": [0, 0, -1000]}])");
+  write("keys.json", R"([{"keys": [{"time_s": 0, "position_mm": [0, 0, -1000]}]}])");
+  write("surface.json", R"({"points": [{"world_mm": [0, 0, -1000]}]})");
+}
+
+Arguments Programs::expanded(Arguments arguments) const {
+  for (std::string& argument : arguments) {
+    if (argument == "LENS") argument = lens("double_gauss_100mm_f2_28deg");
+    if (argument.starts_with("LENS:")) argument = lens(argument.substr(5));
+    if (argument.starts_with('@')) argument = path(argument.substr(1));
+  }
+  return arguments;
 }
 
 std::string Programs::read(const std::filesystem::path& file) {

@@ -8,6 +8,10 @@
 #include <string>
 #include <vector>
 
+#include "../expect_error.hpp"
+
+using Arguments = std::vector<std::string>;
+
 /// Runs example programs as a user does, each test in a folder of its own.
 class Programs : public testing::Test {
  protected:
@@ -19,12 +23,17 @@ class Programs : public testing::Test {
   void SetUp() override;
   void TearDown() override;
 
-  Outcome run(const std::string& program, const std::vector<std::string>& arguments) const;
+  Outcome run(const std::string& program, const Arguments& arguments) const;
 
   /// The program must fail with status 1, nothing on standard output, and one line on standard error that contains
-  /// `reason`.
-  void expect_failure(const std::string& program, const std::vector<std::string>& arguments,
-                      const std::string& reason) const;
+  /// the tokens: the flag or the file, and the value.
+  void expect_failure(const std::string& program, const Arguments& arguments,
+                      const std::vector<petzval::testing::Token>& tokens, int line = __builtin_LINE()) const;
+
+  /// Small valid input files: samples.csv, rays_in.csv, points.json, keys.json and surface.json.
+  void write_inputs() const;
+  /// The arguments with files for "LENS" (a double Gauss), "LENS:id" and "@name".
+  Arguments expanded(Arguments arguments) const;
 
   std::string path(const std::string& name) const { return (folder / name).string(); }
 

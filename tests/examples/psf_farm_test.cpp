@@ -64,7 +64,7 @@ TEST_F(PsfFarm, ASlurmArrayMakesTheSetOfOneRun) {
   };
   EXPECT_NE(task(0, 1, 2, 0), 0);
   EXPECT_NE(task(1, 3, 2, 1), 0) << "1,3";
-  EXPECT_NE(read(path("stderr")).find("wanted --array=1-N"), std::string::npos);
+  EXPECT_NE(read(path("stderr")).find("--array"), std::string::npos);
   EXPECT_FALSE(std::filesystem::exists(path("out")));
   for (const int id : {2, 1, 2}) EXPECT_EQ(task(1, 2, 2, id), 0) << read(path("stderr"));
   ASSERT_EQ(shell("psf_set merge '" + path("out") + "' --out '" + path("out/psf_set.exr") + "'"), 0);

@@ -110,13 +110,6 @@ YFLN 0.0 6.0 -10.0
   EXPECT_NE(read(path("spots/relay_spots.svg")).find("subject at z = -200 mm"), std::string::npos);
 }
 
-TEST_F(SpotDiagram, RefusesAFieldThatNoLightReaches) {
-  const auto refusal = run("spot_diagram", {lens("cooke_triplet_50mm_f5"), "--field-deg", "0,60", "--out", path("no")});
-  EXPECT_EQ(refusal.status, 1);
-  EXPECT_NE(refusal.err.find("--field-deg = 60"), std::string::npos) << refusal.err;
-  EXPECT_FALSE(std::filesystem::exists(path("no")));
-}
-
 TEST_F(SpotDiagram, FocusesAnAnalyticLensToAPoint) {
   const auto json = rows("analytic_plano_hyperbolic_100mm",
                          {"--field-deg", "0", "--wavelengths-nm", "587.5618", "--samples", "1000"});
@@ -133,34 +126,6 @@ TEST_F(SpotDiagram, TellsHowMuchLightReachesTheFilm) {
     EXPECT_GT(json[i]["rays_transmitted"].get<double>(), 0.95 * json[i]["rays_sent"].get<double>());
   }
   EXPECT_GT(json[3]["relative_illumination"].get<double>(), 0.2);
-}
-
-TEST_F(SpotDiagram, RefusesABadCommandLineInOneLine) {
-  const auto refuse = [&](const std::string& id, std::vector<std::string> more, const std::string& reason) {
-    std::vector<std::string> arguments{lens(id), "--out", path("spots")};
-    arguments.insert(arguments.end(), more.begin(), more.end());
-    expect_failure("spot_diagram", arguments, reason);
-    EXPECT_FALSE(std::filesystem::exists(path("spots")));
-  };
-  const std::string triplet = "cooke_triplet_50mm_f5";
-  refuse(triplet, {"--wavelengths-nm", "F,x"}, "--wavelengths-nm = x");
-  refuse(triplet, {"--film", "36x24"}, "--film");
-  refuse(triplet, {"--field-deg", "0,,10", "--wavelengths-nm", "500"}, "--field-deg: found \"\"");
-  refuse(triplet, {"--field-deg", "0,10x", "--wavelengths-nm", "500"}, "--field-deg: found \"10x\"");
-  refuse(triplet, {"--field-deg", "nan", "--wavelengths-nm", "500"}, "--field-deg: found \"nan\"");
-  refuse(triplet, {"--field-deg", "190", "--wavelengths-nm", "500"}, "--field-deg");
-  refuse(triplet, {"--field-deg", "95", "--wavelengths-nm", "500", "--subject-distance-mm", "1000"}, "95 degrees");
-  refuse(triplet, {"--field-deg", "0,10,-0", "--wavelengths-nm", "500"}, "twice, wanted every number once");
-  refuse(triplet, {"--field-deg", "0", "--wavelengths-nm", "-500"}, "--wavelengths-nm: found \"-500\"");
-  refuse(triplet, {"--field-deg", "0", "--wavelengths-nm", "5"}, "--wavelengths-nm");
-  refuse(triplet, {"--field-deg", "0", "--wavelengths-nm", "500", "--samples", "0"}, "--samples: found \"0\"");
-  refuse(triplet, {"--field-deg", "0", "--wavelengths-nm", "500", "--samples", "1.5"}, "a whole number");
-  refuse(triplet, {"--field-deg", "0", "--wavelengths-nm", "500", "--subject-distance-mm", "10"}, "cannot be focused");
-  for (const std::string shift : {"1e160", "-1e160", "1000001", "inf"}) {
-    refuse(triplet, {"--field-deg", "0", "--wavelengths-nm", "500", "--defocus-mm", shift},
-           "--defocus-mm: found \"" + shift + "\", wanted a number from -1000000 to 1000000");
-  }
-  refuse("fisheye_10mm_f4", {"--field-deg", "0", "--wavelengths-nm", "500"}, "without V_d");
 }
 
 }  // namespace

@@ -8,7 +8,6 @@
 #include <limits>
 
 #include "../data_lenses.hpp"
-#include "../message.hpp"
 #include "petzval/paraxial/first_order.hpp"
 #include "petzval/pupil/f_number.hpp"
 #include "petzval/trace/trace.hpp"
@@ -21,7 +20,6 @@ using examples::textbook_exit_pupil;
 using examples::TextbookPupil;
 using testing::data_lens;
 using testing::data_prescriptions;
-using testing::message;
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
 /// The marked stop is surface 5; surface 2 is a little too small.
@@ -115,29 +113,6 @@ TEST(TextbookPupil, TendsToTheParaxialOneAsTheStopCloses) {
   }
 }
 
-TEST(TextbookPupil, OfAFarObjectIsThatOfInfinity) {
-  const Lens lens = double_gauss();
-  const double at_infinity = textbook_entrance_pupil(lens, -infinity).diameter;
-  EXPECT_NEAR(textbook_entrance_pupil(lens, -1e12).diameter, at_infinity, 1e-8);
-  EXPECT_NEAR(textbook_entrance_pupil(lens, 1e12).diameter, at_infinity, 1e-8);  // converging as little
-  EXPECT_EQ(textbook_entrance_pupil(lens, infinity).diameter, at_infinity);
-}
-
-TEST(TextbookPupil, OfAHoleIsTheHoleFromNearAndFar) {
-  // A hole on the front of a plane plate: the same circle for every object, and for a converging beam.
-  Prescription p;
-  p.name = "plate";
-  p.surfaces = {{.thickness = 2, .medium = {.nd = 1.5}, .semi_diameter = 3, .stop = true},
-                {.thickness = 10, .semi_diameter = infinity}};
-  for (const double z : {-infinity, -1e6, -7.0, -0.5, 5.0}) {
-    EXPECT_NEAR(textbook_entrance_pupil(compile(p), z).diameter, 6, 1e-13) << z;
-  }
-  // From the other side the plate shows the hole 2 / 1.5 in front of its back.
-  const TextbookPupil exit = textbook_exit_pupil(compile(p), 1e12);
-  EXPECT_NEAR(exit.z, 2 - 2 / 1.5, 1e-15);
-  EXPECT_NEAR(exit.diameter, 6, 1e-10);
-}
-
 // Fault one: the ray depends on the first rim that clips.
 TEST(TextbookPupil, IsThatOfTheFirstRimNotOfTheStop) {
   const Lens lens = double_gauss();
@@ -174,41 +149,6 @@ TEST(TextbookPupil, StoppedDownMissesAFifthOfTheLightAtTheEdgeOfTheField) {
   EXPECT_EQ(exit.limiting, 5u);
   EXPECT_GT(cover(lens, exit, 0).of_passing, 0.99);
   EXPECT_NEAR(cover(lens, exit, film_corner).of_passing, 0.795, 0.005);
-}
-
-TEST(TextbookPupil, CannotBeginInAHole) {
-  const Lens lens = data_lens("mirror_ritchey_chretien_57.6m_f24");
-  const std::string found = message([&] { textbook_entrance_pupil(lens, -infinity); });
-  EXPECT_NE(found.find("textbook entrance pupil: the ray along the axis ends at surface"), std::string::npos) << found;
-}
-
-TEST(TextbookPupil, RefusesWhatIsNoPointAndNoWavelength) {
-  const Lens lens = double_gauss();
-  const std::string name = lens.name();
-  EXPECT_EQ(
-      message([&] { textbook_entrance_pupil(lens, 0); }),
-      name + ": textbook entrance pupil: object_z is 0 mm, wanted infinity or a place off the vertex of the lens");
-  EXPECT_EQ(message([&] { textbook_exit_pupil(lens, std::nan("")); }),
-            name + ": textbook exit pupil: film_z is nan mm, wanted infinity or a place off the vertex of the lens");
-  EXPECT_EQ(message([&] { textbook_exit_pupil(lens, 100, 3); }),
-            name + ": wavelength 3 does not exist, wanted one of 1");
-}
-
-TEST(TextbookPupil, NeedsARim) {
-  Prescription p;
-  p.name = "endless";
-  p.surfaces = {{.thickness = 10, .medium = {.nd = 1.5}, .semi_diameter = infinity, .stop = true}, {.thickness = 10}};
-  EXPECT_EQ(message([&] { textbook_entrance_pupil(compile(p), -infinity); }),
-            "endless: the stop has no rim and no surface limits the axial beam, wanted a semi_diameter");
-  p.surfaces[1].semi_diameter = 4;
-  EXPECT_NEAR(textbook_entrance_pupil(compile(p), -infinity).marginal.origin.y, 4, 1e-14);
-  EXPECT_EQ(textbook_entrance_pupil(compile(p), -infinity).limiting, 1u);
-}
-
-TEST(TextbookPupil, OfAClosedStopIsEmpty) {
-  const Lens lens = with_semi_diameter(double_gauss(), 5, 0);
-  EXPECT_LT(textbook_entrance_pupil(lens, -infinity).diameter, 1e-100);
-  EXPECT_EQ(textbook_entrance_pupil(lens, -infinity).limiting, 5u);
 }
 
 }  // namespace

@@ -14,7 +14,6 @@ namespace {
 
 using nlohmann::json;
 using petzval::radians;
-using Arguments = std::vector<std::string>;
 
 /// Points of a table top, seen from above by a 100 mm lens.
 constexpr const char* table = R"([{"position_mm": [-75, -73, -720]}, {"position_mm": [95, -54, -766]},
@@ -41,10 +40,6 @@ class TiltShift : public Programs {
     more.insert(more.end(), {"--f-number", "4"});
     return result({lens("double_gauss_100mm_f2_28deg")}, points, more);
   }
-  void refuses(const std::string& points, const std::string& reason, const Arguments& more = {}) const {
-    expect_failure("tilt_shift", command(thin_50, points, more), reason);
-    EXPECT_FALSE(std::filesystem::exists(path("out"))) << points;
-  }
 };
 
 std::vector<petzval::FocusTarget> targets_of(const std::string& points) {
@@ -68,20 +63,6 @@ TEST_F(TiltShift, KeepsAnUprightFilmWithoutPoints) {
   }
   EXPECT_EQ(thin["film_z_mm"], 50);
   EXPECT_TRUE(thin["plane_normal"].is_null());  // infinity
-}
-
-TEST_F(TiltShift, TakesAnyUnitOfLength) {
-  const json usual = result(thin_50, table);
-  for (const double unit : {1e-6, 1e-3, 1e3, 1e6}) {
-    json points = json::parse(table);
-    for (auto& p : points) {
-      for (auto& x : p["position_mm"]) x = unit * x.get<double>();
-    }
-    const json found = result(
-        {"--model", "thin", "--thin-focal-length-mm", std::to_string(50 * unit), "--f-number", "2"}, points.dump());
-    EXPECT_NEAR(found["film_tilt_deg"], usual["film_tilt_deg"].get<double>(), 1e-9) << unit;
-    EXPECT_NEAR(found["film_z_mm"].get<double>() / unit, usual["film_z_mm"].get<double>(), 1e-9) << unit;
-  }
 }
 
 /// The plane through (0, 0, -2 m) with the normal (0, sin 30, cos 30), and a thin lens of 50 mm: film, hinge line and
@@ -156,71 +137,6 @@ TEST_F(TiltShift, SaysWhatTheLibraryFinds) {
   }
 }
 
-TEST_F(TiltShift, TheRealLensIsSharperTiltedAndThePredictionHolds) {
-  const json found = gauss(table);
-  EXPECT_EQ(found["status"], "solved");
-  EXPECT_GT(found["film_tilt_deg"], 10);
-  for (std::size_t i = 0; i < 5; ++i) {
-    const double before = found["before"]["blur_um"][i], predicted = found["blur_um"][i]["predicted"],
-                 traced = found["blur_um"][i]["traced"];
-    EXPECT_NEAR(predicted, traced, 0.05 * std::abs(traced)) << i;
-    if (i == 2) continue;  // the middle one is already sharp
-    EXPECT_LT(std::abs(traced), 0.5 * std::abs(before)) << i;
-  }
-  EXPECT_LT(found["rms_um"], 0.25 * found["before"]["rms_um"].get<double>());
-  // The points lie in a plane within a millimetre, and it is the plane of focus despite aberrations.
-  for (const petzval::FocusTarget& target : targets_of(table)) {
-    const auto& p = target.place.position;
-    const double along = found["plane_normal"][0].get<double>() * p.x + found["plane_normal"][1].get<double>() * p.y +
-                         found["plane_normal"][2].get<double>() * p.z;
-    EXPECT_NEAR(along, found["plane_offset_mm"], 1);
-  }
-  // Exact rays show spherical aberration, cardinal points do not.
-  const json thick = gauss(table, {"--model", "thick"});
-  EXPECT_LT(std::abs(thick["rms_um"].get<double>()), 5);
-  double real_squares = 0, thick_squares = 0;
-  for (std::size_t i = 0; i < 5; ++i) {
-    real_squares += std::pow(found["blur_um"][i]["traced"].get<double>(), 2);
-    thick_squares += std::pow(thick["blur_um"][i]["traced"].get<double>(), 2);
-  }
-  EXPECT_LT(real_squares, thick_squares);
-}
-
-TEST_F(TiltShift, GivesTheLeastTiltWhereThePointsFixNoPlane) {
-  const auto check = [&](const std::string& points, const std::string& rank, const std::string& words) {
-    SCOPED_TRACE(points);
-    const json found = result(thin_50, points);
-    EXPECT_EQ(found["status"], "least_tilt");
-    EXPECT_EQ(found["rank"], rank);
-    EXPECT_NE(found["message"].get<std::string>().find(words), std::string::npos) << found["message"];
-    for (const json& blur : found["blur_um"]) EXPECT_LT(std::abs(blur["predicted"].get<double>()), 1e-6);
-    return found;
-  };
-  const json one = check(R"([{"position_mm": [100, 50, -1000]}])", "point", "upright");
-  EXPECT_EQ(one["film_tilt_deg"], 0);
-  EXPECT_EQ(one["film_swing_deg"], 0);
-  EXPECT_TRUE(one["hinge_line"].is_null());
-  EXPECT_TRUE(one["scheimpflug_line"].is_null());
-  EXPECT_NEAR(one["plane_normal"][2], 1, 1e-12);
-  const std::string twice = R"({"position_mm": [100, 50, -1000]})";
-  check("[" + twice + "," + twice + "]", "point", "upright");
-  // Points side by side have a slope along x only.
-  const json two = check(R"([{"position_mm": [-200, 0, -1000]}, {"position_mm": [300, 0, -1500]}])", "line", "line");
-  EXPECT_NEAR(two["film_tilt_deg"], 0, 1e-9);
-  EXPECT_GT(std::abs(two["film_swing_deg"].get<double>()), 0.1);
-  // All points lie on one line.
-  check(R"([{"position_mm": [-200, 0, -1000]}, {"position_mm": [50, 0, -1250]}, {"position_mm": [300, 0, -1500]}])",
-        "line", "line");
-}
-
-TEST_F(TiltShift, KeepsTheLimit) {
-  const json found = gauss(table, {"--max-tilt-deg", "2"});
-  EXPECT_EQ(found["status"], "limited");
-  const double tilt = radians(found["film_tilt_deg"]), swing = radians(found["film_swing_deg"]);
-  EXPECT_NEAR(petzval::degrees(std::acos(std::cos(tilt) * std::cos(swing))), 2, 1e-6);
-  EXPECT_LT(found["rms_um"], found["before"]["rms_um"]);
-}
-
 TEST_F(TiltShift, SaysWhatBecameOfEveryPoint) {
   const std::string points = R"([{"position_mm": [-200, -100, -1000]}, {"position_mm": [200, -100, -1000]},
     {"position_mm": [0, 150, -1400]}, {"position_mm": [0, 0, 500]}, {"position_mm": [0, 0, -20]},
@@ -252,19 +168,6 @@ TEST_F(TiltShift, TakesPointsAtInfinityAndWantedBlurs) {
   EXPECT_TRUE(infinity["plane_offset_mm"].is_null());
 }
 
-TEST_F(TiltShift, RobustLeavesOutliersOut) {
-  std::string points = table;
-  points.insert(points.rfind(']'), R"(, {"position_mm": [60, 40, -650]}, {"position_mm": [-40, 20, -943]},
-    {"position_mm": [50, -20, -848]})");
-  const json clean = gauss(table), robust = gauss(points, {"--robust"}), plain = gauss(points);
-  EXPECT_EQ(robust["use"][5], "outlier");
-  EXPECT_EQ(robust["use"][0], "used");
-  EXPECT_EQ(plain["use"][5], "used");
-  EXPECT_NEAR(robust["film_tilt_deg"], clean["film_tilt_deg"].get<double>(), 0.2);
-  EXPECT_GT(std::abs(plain["film_tilt_deg"].get<double>() - clean["film_tilt_deg"].get<double>()), 1);
-  EXPECT_GT(std::abs(robust["blur_um"][5]["traced"].get<double>()), 500);
-}
-
 TEST_F(TiltShift, WritesThreePicturesAndNothingElse) {
   const auto outcome = run("tilt_shift", command(thin_50, table, {}));
   ASSERT_EQ(outcome.status, 0) << outcome.err;
@@ -278,92 +181,6 @@ TEST_F(TiltShift, WritesThreePicturesAndNothingElse) {
   EXPECT_TRUE(svg.starts_with("<svg"));
   EXPECT_TRUE(svg.ends_with("</svg>\n"));
   for (const std::string& name : names) EXPECT_NE(outcome.out.find(name), std::string::npos) << name;
-}
-
-TEST_F(TiltShift, SaysInWordsWhatItDid) {
-  const auto words = [&](const std::string& points, const Arguments& more = {}) {
-    const auto outcome = run("tilt_shift", command(thin_50, points, more));
-    EXPECT_EQ(outcome.status, 0) << outcome.err;
-    EXPECT_EQ(outcome.out.find("nan"), std::string::npos);
-    return outcome.out;
-  };
-  const auto has = [](const std::string& text, const std::string& part) {
-    EXPECT_NE(text.find(part), std::string::npos) << text;
-  };
-  has(words(table), "solved: the points determine the plane of focus");
-  has(words(R"([{"position_mm": [0, 0, -1000]}])"), "least tilt: one place");
-  has(words(R"([{"position_mm": [0, 9, -1000]}, {"position_mm": [0, -90, -900]}])"), "no slope across it");
-  has(words(table, {"--max-tilt-deg", "1"}), "limited: the tilt may be at most 1 degrees");
-  has(words(R"([{"position_mm": [0, 0, -1000]}, {"position_mm": [0, 0, 10]}])"),
-      "left out: no film can reach its image");
-}
-
-TEST_F(TiltShift, RefusesPointsThatAreNone) {
-  refuses("what", "points.json: not JSON: ");
-  refuses("", "points.json: not JSON: ");
-  refuses(R"([{"position_mm": [0, 0, NaN]}])", "points.json: not JSON: ");
-  refuses(R"([{"position_mm": [0, 0, -1e999]}])", "points.json: not JSON: ");
-  refuses(R"({"position_mm": [0, 0, -1000]})", "wanted a list of one point or more");
-  refuses("[1]", "points.json: point 1: found 1, wanted an object with position_mm");
-  refuses(R"([{"position_mm": [0, 0, -1000]}, {"position_mm": [0, -1000]}])",
-          "points.json: point 2: position_mm: found [0,-1000], wanted three finite numbers");
-  refuses(R"([{"position_mm": [0, "0", -1000]}])", "position_mm: found [0,\"0\",-1000], wanted three");
-  refuses(R"([{"position_mm": [0, null, -1000]}])", "wanted three finite numbers");
-  refuses(R"([{"weight": 1}])", "points.json: point 1: position_mm: found none");
-  refuses(R"([{"position_mm": [0, 0, -1000], "weight": -1}])", "weight: found -1, wanted a finite number, 0 or more");
-  refuses(R"([{"position_mm": [0, 0, -1000], "weight": "1"}])", "weight: found \"1\"");
-  refuses(R"([{"position_mm": [0, 0, -1000], "blur_mm": true}])", "blur_mm: found true, wanted a finite number");
-  refuses(R"([{"position_mm": [0, 0, -1000], "at_infinity": 1}])", "at_infinity: found 1, wanted true or false");
-  refuses(R"([{"position_mm": [0, 0, -1000], "extent_stops": 21}])",
-          "extent_stops: found 21, wanted a number of stops");
-  refuses(R"([{"position_mm": [0, 0, -1000], "fixes_distance": 0}])", "fixes_distance: found 0, wanted true or false");
-  refuses(R"([{"position_mm": [0, 0, -1000], "wieght": 2}])", "found the key \"wieght\", wanted position_mm, weight");
-  refuses(R"([{"position_mm": [0, 0, -1000], "position_mm": [0, 0, -1]}])", "found the key \"position_mm\" twice");
-  const std::string deep = std::string(100'000, '[') + std::string(100'000, ']');
-  refuses(deep, "points.json: found lists or objects nested more than 8 deep");
-  refuses(R"([{"position_mm": )" + deep + "}]", "nested more than 8 deep");
-}
-
-TEST_F(TiltShift, RefusesPointsThatCannotBeInFocus) {
-  refuses(R"([{"position_mm": [0, 0, 1000]}])",
-          "found no point to focus on (point 1 is left out: no film can reach its image");
-  refuses(R"([{"position_mm": [0, 0, 0]}])", "found no point to focus on");
-  refuses(R"([{"position_mm": [0, 0, -1000], "weight": 0}])", "its weight is 0");
-  refuses(R"([{"position_mm": [0, 0, -1000], "extent_stops": 2, "fixes_distance": false}])", "it fixes no distance");
-  refuses(R"([{"position_mm": [0, 900, -1000]}])", "outside the picture", {"--film-mm", "36x24"});
-}
-
-TEST_F(TiltShift, ExplainsItselfAndRefusesABadCommandLine) {
-  const auto help = run("tilt_shift", {"--help"});
-  EXPECT_EQ(help.status, 0);
-  EXPECT_NE(help.out.find("Usage: tilt_shift"), std::string::npos);
-  EXPECT_NE(help.out.find("position_mm"), std::string::npos);
-  write("points.json", table);
-  const Arguments rest{"--points", path("points.json"), "--out", path("out")};
-  const auto fails = [&](Arguments arguments, const std::string& reason) {
-    arguments.insert(arguments.end(), rest.begin(), rest.end());
-    expect_failure("tilt_shift", arguments, reason);
-  };
-  const std::string file = lens("double_gauss_100mm_f2_28deg");
-  expect_failure("tilt_shift", {file, "--out", path("out")}, "--points is required");
-  expect_failure("tilt_shift", {file, "--points", path("points.json")}, "--out is required");
-  expect_failure("tilt_shift", {file, "--points", path("none.json"), "--out", path("out")}, "none.json");
-  fails({}, "LENS is required, or --model thin");
-  fails({path("none.json")}, "none.json: cannot be opened");
-  fails({"--thin-focal-length-mm", "50", "--f-number", "2"}, "found with --model real, wanted --model thin");
-  fails({"--model", "thin", "--thin-focal-length-mm", "50"}, "found no --f-number");
-  fails({"--model", "thin", "--thin-focal-length-mm", "0", "--f-number", "2"}, "--thin-focal-length-mm: found \"0\"");
-  fails({file, "--model", "thin", "--thin-focal-length-mm", "50", "--f-number", "2"}, "wanted one of them");
-  const Arguments thin{"--model", "thin", "--thin-focal-length-mm", "50", "--f-number", "2"};
-  for (const std::string flag : {"--glasses", "--configuration"}) {
-    Arguments arguments = thin;
-    arguments.insert(arguments.end(), {flag, "tele"});
-    fails(arguments, flag + " requires LENS");
-  }
-  fails({file, "--model", "perfect"}, "--model");
-  fails({file, "--max-tilt-deg", "90"}, "--max-tilt-deg: found \"90\", wanted a number of degrees from 0 to 89");
-  fails({file, "--film-mm", "36"}, "--film-mm: found \"36\", wanted a size like 36x24");
-  fails({file, "--f-number", "0.1"}, "fast");
 }
 
 }  // namespace

@@ -1,0 +1,332 @@
+// SPDX-License-Identifier: Apache-2.0
+// Command lines that a program must refuse: flags that need or exclude each other, and values that the lens or a file
+// makes wrong. The program exits with 1, writes nothing, and one line of standard error names the flag (or the file)
+// and the value. hostile_flags_test.cpp has one bad value for each flag of each program.
+#include <algorithm>
+#include <map>
+#include <ostream>
+
+#include "petzval/image/image.hpp"
+#include "program.hpp"
+
+namespace {
+
+using petzval::testing::Token;
+
+struct Case {
+  Arguments arguments;
+  std::vector<Token> tokens;
+};
+
+struct Refused {
+  std::string program;
+  Arguments common;  ///< of all cases
+  std::vector<Case> cases;
+};
+
+std::ostream& operator<<(std::ostream& out, const Refused& refused) { return out << refused.program; }
+
+const std::string f135 = "LENS:double_gauss_100mm_f1.35", triplet = "LENS:cooke_triplet_50mm_f5";
+const Arguments thin{"--model", "thin", "--thin-focal-length-mm", "50", "--f-number", "2"};
+
+/// The file @text.json has this text.
+Case of_text(const std::string& flag, const std::string& text, std::vector<Token> tokens, Arguments more = {}) {
+  tokens.push_back("text.json");
+  more.insert(more.end(), {flag, "@text.json", "TEXT:" + text});
+  return {more, tokens};
+}
+Case surface(const std::string& points, const std::vector<Token>& tokens, const Arguments& more = {}) {
+  return of_text("--points", R"({"points": [)" + points + "]}", tokens, more);
+}
+Case keys(const std::string& keys, const std::vector<Token>& tokens) {
+  return of_text("--keys", R"([{"keys": [)" + keys + "]}]", tokens, thin);
+}
+Case points(const std::string& points, const std::vector<Token>& tokens, Arguments more = {}) {
+  more.insert(more.end(), thin.begin(), thin.end());
+  return of_text("--points", points, tokens, more);
+}
+Case point(const std::string& members, const std::vector<Token>& tokens, const Arguments& more = {}) {
+  return points("[{" + members + "}]", tokens, more);
+}
+std::string deep(const std::string& opening) {
+  std::string text;
+  for (int i = 0; i < 100'000; ++i) text += opening;
+  return text;
+}
+
+const std::vector<Refused> all = {
+    {"accuracy_speed",
+     {},
+     {{{}, {"LENS"}},
+      {{f135, "--resolution", "10.5x20"}, {"--resolution", "\"10.5x20\""}},
+      {{f135, "--resolution", "0x20"}, {"--resolution", "\"0\""}}}},
+    {"bokeh_psf",
+     {f135, "--out", "@out", "--subject-distance-mm", "1000"},
+     {{{}, {"--focus-mm"}},
+      {{"--focus-mm", "900", "--blades", "2"}, {"--blades", 2}},
+      {{"--focus-mm", "900", "--roundness", "0.5"}, {"--roundness", "--blades"}},
+      {{"--focus-mm", "900", "--iris-rotation-deg", "10"}, {"--iris-rotation-deg", "--blades"}},
+      {{"--focus-mm", "900", "--iris-area", "equal", "--f-number", "4"}, {"--iris-area", "--blades"}},
+      {{"--focus-mm", "900", "--blades", "5", "--iris-area", "equal"}, {"--iris-area", "--f-number"}},
+      {{"--focus-mm", "900", "--keep-light"}, {"--keep-light", "--lens-ratio", "--rate-of-change"}},
+      {{"--focus-mm", "900", "--weight-strength", "0.6"}, {"--weight-strength", "--weight-distribution"}},
+      {{"--focus-mm", "900", "--white-point", "@none.csv"}, {"none.csv"}},
+      {{"--focus-mm", "900", "--weight-map", "@none.png"}, {"none.png"}},
+      {{"--focus-mm", "900", "--iris-image", "@black.png"}, {"map", "black"}},
+      {{"--focus-mm", "900", "--iris-image", "@a.png", "--weight-map", "@a.png"}, {"--weight-map", "--iris-image"}},
+      {{"--focus-mm", "800,1000,8e2"}, {"--focus-mm", 800}},
+      {{"--focus-mm", "inf,inf"}, {"--focus-mm", "inf"}},
+      {{"--focus-mm", "900", "--wavelengths-nm", "500,500"}, {"--wavelengths-nm", 500}},
+      {{"--focus-mm", "15"}, {"--focus-mm", 15, 17.0613434}},
+      {{"--focus-mm", "2"}, {"--focus-mm", 2, 2000}},  // metres?
+      {{"--focus-mm", "900", "--f-number", "1"}, {"--f-number", 1, 1.353314189}},
+      {{"--focus-mm", "900", "--field-deg", "60"}, {"--field-deg", 60}},
+      {{"--focus-mm", "900", "--field-deg", "60", "--model", "thin"}, {"--field-deg", 60}},
+      {{"--focus-mm", "900", "--field-deg", "95"}, {95}},
+      {{"--focus-mm", "900", "--subject-distance-mm", "100", "--distance-from", "film"}, {100, "film", 169.792}},
+      {{"--focus-mm", "900", "--subject-distance-mm", "1e-3"}, {0.001, 0.178171}}}},
+    {"camera_rays",
+     {f135, "--samples", "@samples.csv", "--out", "@out", "--focus-mm", "3000", "--model", "thick"},
+     {{{"--film-mm", "36x240", "--tilt-deg", "60"}, {"film", -120, "surface"}},
+      {{"--iris-rotation-deg", "5"}, {"--iris-rotation-deg", "--blades"}},
+      {{"--weight-strength", "1"}, {"--weight-strength", "--weight-distribution"}}}},
+    {"choose_camera",
+     {f135, "--budget-px", "1"},
+     {{{"--far-mm", "inf"}, {"--near-mm"}},
+      {{"--near-mm", "1000"}, {"--far-mm"}},
+      {{"--near-mm", "1000", "--far-mm", "500"}, {"far_mm", 500}},
+      {{"--near-mm", "10", "--far-mm", "500", "--distance-from", "film"}, {"near_mm", 10, "film", 158.933}}}},
+    {"chromatic_bokeh",
+     {"--out", "@out"},
+     {{{f135, "--focus-mm", "15"}, {"--focus-mm", 15, 17.0762701}},
+      {{f135, "--white-point", "moon"}, {"--white-point", "\"moon\""}},
+      {{f135, "--field-deg", "0,60"}, {"--field-deg", 60}},
+      {{"LENS:fisheye_10mm_f4"}, {"surface 0", "V_d", 587.5618, 430}}}},
+    {"convert_lens",
+     {f135},
+     {{{"@lens.doc"}, {"lens.doc", ".zmx"}}, {{}, {"OUT"}}, {{"--configuration", "tele", "@out"}, {"out"}}}},
+    {"expressive_lens",
+     {f135, "--out", "@out"},
+     {{{"--power-spline", "0.5"}, {"--power-spline", "\"0.5\""}},
+      {{"--power-spline", "0:1", "0:2"}, {"power", "knot 2", 0}},
+      {{"--power-spline", "0:x"}, {"--power-spline", "\"x\""}},
+      {{"--curvature-points", "1:2"}, {"--curvature-points", "\"1\""}},
+      {{"--curvature-points", "0,0:-500"}, {"film offsets", 124.49150670677673}},
+      {{"--model", "exact_float"}, {"--model", "exact_float"}},
+      {{"--light-mm", "20", "--from-lens", "1", "--distance-from", "film"}, {"scene point", "z"}}}},
+    {"focal_surface",
+     {"LENS", "--out", "@out"},
+     {surface(R"({"pixel": [1, 2], "distance_mm": 100})", {"point 1", "entrance pupil"}, {"--distance-from", "film"}),
+      surface(R"({"pixel": [1, 2], "distance_mm": 20})", {"point 1", "distance_mm", 20}, {"--distance-from", "film"}),
+      surface(R"({"pixel": [1, 2], "distance_mm": 3000, "fade": 2})", {"point 1", "fade", 2}),
+      surface(R"({"pixel": [1, 2], "distance_mm": 3000, "weight": 0})", {1, "weight"}),
+      surface(R"({"pixel": [1, 2], "distance_mm": 3000, "blur_px": 1e9})", {"point 1", "blur"}),
+      surface(R"({"pixel": [1, 2], "distance_mm": 3000, "sharp": 1})", {"point 1", "\"sharp\""}),
+      surface(R"({"distance_mm": 4})", {"point 1", "pixel", "world_mm"}),
+      surface(R"({"pixel": [1, 2]})", {"point 1", "distance_mm", "extent_stops"}),
+      surface(R"({"pixel": [1], "distance_mm": 4})", {"point 1", "pixel", "[1]"}),
+      surface(R"({"world_mm": [0, 0, 500]})", {"point 1", "world_mm", "[0,0,500]"}),
+      of_text("--points", "{}", {"points", "null"}),
+      of_text("--points", "[", {"JSON"}),
+      {{"--points", "@surface.json", "--queries", "@none.csv"}, {"none.csv"}},
+      {{"--points", "@surface.json", "--queries", "@samples.csv"}, {"samples.csv", "line 1"}},
+      {{"--points", "@surface.json", "--beta", "9"}, {"--beta", 9}}}},
+    {"focus_report",
+     {},
+     {{{}, {"LENS"}},
+      {{triplet, "--field-deg", "0,75"}, {"--field-deg", 75}},
+      {{f135, "--distance-mm", "2"}, {2, 2000}},  // metres?
+      {{f135, "--criterion", "thin,thin"}, {"--criterion", "thin"}},
+      {{"LENS:zoom_14-30mm_f4", "--criterion", "min_rms", "--distance-mm", "0.001"}, {"--distance-mm", -0.001}}}},
+    {"lens_metadata",
+     {f135, "--out", "@out"},
+     {{{"--film-mm", "1x9"}, {"--film-mm", "\"1x9\""}}, {{"--film-mm", "4000x1"}, {"--film-mm", "\"4000x1\""}}}},
+    {"lens_report",
+     {},
+     {{{}, {"LENS"}},
+      {{"@none.json"}, {"none.json"}},
+      {{f135, "--colour"}, {"--colour"}},
+      {{f135, "--wavelength-nm", "10x"}, {"--wavelength-nm", "\"10x\""}},
+      {{f135, "--field-deg", "5"}, {"--field-deg", "--out"}},
+      {{f135, "--out", "@out", "--json"}, {"--out", "--json"}},
+      {{f135, "--out", "@out", "--field-deg", "0,70"}, {"--field-deg", 70}},
+      {{f135, "--f-number", "1"}, {"--f-number", 1, 1.353314189}},
+      {{f135, "--subject-distance-mm", "15"}, {"--subject-distance-mm", 15}},
+      {{"LENS:zoom_70-210mm_f4", "--configuration", "far"}, {"wide", "middle", "tele"}},
+      {{"LENS:fisheye_10mm_f4", "--wavelength-nm", "500"}, {"V_d", 587.5618, 500}}}},
+    {"psf_set",
+     {"LENS", "--out", "@out"},
+     {{{"--distances-mm", "1000"}, {"--fields"}},
+      {{"--fields", "0"}, {"--distances-mm"}},
+      {{"--fields", "", "--distances-mm", "1000"}, {"--fields", "\"\""}},
+      {{"--fields", "7,0", "--distances-mm", "1000"}, {"field_deg", 0, 7}},
+      {{"--fields", "0,95", "--distances-mm", "1000"}, {95}},
+      {{"--fields", "0,60", "--distances-mm", "1000, 2000"}, {"--fields", 60}},
+      {{"--fields", "0", "--distances-mm", "1000,1000"}, {"--distances-mm", 1000}},
+      {{"--fields", "0", "--distances-mm", "1000", "--f-numbers", "1"}, {"--f-numbers", 1, 1.999999995}},
+      {{"--fields", "0", "--distances-mm", "1000", "--pixels", "32"}, {"--pixels", "\"32\""}},
+      {{"--fields", "0", "--distances-mm", "1000", "--focus-mm", "20"}, {"--focus-mm", 20}},
+      {{"--fields", "0", "--distances-mm", "1000", "--iris-rotation-deg", "5"}, {"--iris-rotation-deg", "--blades"}},
+      {{"--fields", "0", "--distances-mm", "1000", "--check", "--shard", "1/2"}, {"--check", "--shard 1/2"}},
+      {{"--fields", "0", "--distances-mm", "1000", "--shard", "5/4"}, {"--shard", "\"5/4\""}},
+      {{"--fields", "0", "--distances-mm", "1000", "--shard", "0/4"}, {"--shard", "\"0/4\""}},
+      {{"--fields", "0", "--distances-mm", "1000", "--shard", "1/2/3"}, {"--shard", "\"1/2/3\""}},
+      {{"--fields", "0", "--distances-mm", "1000", "--shard", "1.5/2"}, {"--shard", "\"1.5/2\""}},
+      {{"--fields", "0", "--distances-mm", "1000", "--shard", ""}, {"--shard", "\"\""}}}},
+    {"spot_diagram",
+     {"--out", "@out"},
+     {{{triplet, "--wavelengths-nm", "F,x"}, {"--wavelengths-nm", "x"}},
+      {{triplet, "--field-deg", "0,,10"}, {"--field-deg", "\"\""}},
+      {{triplet, "--field-deg", "0,10,-0"}, {"--field-deg", 0}},
+      {{triplet, "--field-deg", "0,60"}, {"--field-deg", 60}},
+      {{triplet, "--field-deg", "95", "--subject-distance-mm", "1000"}, {-1000, 95}},
+      {{triplet, "--subject-distance-mm", "10"}, {"--subject-distance-mm", 10, 37.6892731}},
+      {{triplet, "--defocus-mm", "-1e160"}, {"--defocus-mm", "\"-1e160\""}},
+      {{triplet, "--samples", "1.5"}, {"--samples", "\"1.5\""}},
+      {{"LENS:fisheye_10mm_f4", "--wavelengths-nm", "500"}, {"V_d", 587.5618, 500}}}},
+    {"trace_rays",
+     {f135, "--out", "@out"},
+     {{{}, {"--rays"}}, {{"--rays", "@none.csv"}, {"none.csv"}}, {{"--rays", "@samples.csv", "--fast"}, {"--fast"}}}},
+#ifdef PETZVAL_TEST_HAS_tilt_shift
+    {"focus_pull",
+     {"--out", "@out"},
+     {of_text("--keys", "[", {"JSON"}, thin),
+      of_text("--keys", "[]", {"[]"}, thin),
+      of_text("--keys", "[{}]", {"point 1", "keys"}, thin),
+      keys("", {"point 1", "keys", "[]"}),
+      keys(R"({"position_mm": [0, 0, -1]})", {"point 1", "key 1", "time_s"}),
+      keys(R"({"time_s": 0, "position_mm": [0, -1]})", {"key 1", "position_mm", "[0,-1]"}),
+      keys(R"({"time_s": "0", "position_mm": [0, 0, -1]})", {"key 1", "time_s", "\"0\""}),
+      keys(R"({"time_s": 1, "position_mm": [0, 0, -9]}, {"time_s": 1, "position_mm": [0, 0, -8]})",
+           {"key 2", "time_s", 1}),
+      keys(R"({"time_s": 1, "position_mm": [0, 0, -9], "extent_stops": 1}, {"time_s": 2, "position_mm": [0, 0, -8]})",
+           {"key 2", "extent_stops"}),
+      keys(R"({"time_s": 0, "position_mm": [0, 0, 900]})", {"no_targets"}),
+      keys(R"({"time_s": 0, "position_mm": [0, 0, -900]}, {"time_s": 1e9, "position_mm": [0, 0, -900]})", {100000}),
+      of_text("--keys", R"([{"until": 3, "keys": [{"time_s": 0, "position_mm": [0, 0, -1]}]}])", {"\"until\""}, thin),
+      of_text("--keys", R"([{"from_s": 2, "until_s": 1, "keys": [{"time_s": 0, "position_mm": [0, 0, -1]}]}])",
+              {"point 1", "until_s", 1}, thin),
+      of_text("--keys", deep(R"([{"keys":)"), {8}, thin),
+      {{"LENS"}, {"--keys"}},
+      {{"--keys", "@keys.json"}, {"LENS", "--model thin"}},
+      {{"LENS", "--keys", "@keys.json", "--model", "thick", "--criterion", "min_max"},
+       {"--criterion", "--model thick"}},
+      {{"--keys", "@keys.json", "--model", "thin", "--thin-focal-length-mm", "50", "--f-number", "2",  //
+        "--configuration", "1"},
+       {"--configuration", "LENS"}}}},
+    {"tilt_shift",
+     {"--out", "@out"},
+     {points("what", {"JSON"}),
+      points("", {"JSON"}),
+      points(R"([{"position_mm": [0, 0, NaN]}])", {"JSON"}),
+      points(R"([{"position_mm": [0, 0, -1e999]}])", {"JSON"}),
+      points(R"({"position_mm": [0, 0, -1000]})", {"list"}),
+      points("[1]", {"point 1", 1, "position_mm"}),
+      points(R"([{"position_mm": [0, 0, -9]}, {"position_mm": [0, -9]}])", {"point 2", "position_mm", "[0,-9]"}),
+      point(R"("position_mm": [0, "0", -1000])", {"point 1", "position_mm", "[0,\"0\",-1000]"}),
+      point(R"("position_mm": [0, null, -1000])", {"point 1", "position_mm", "[0,null,-1000]"}),
+      point(R"("weight": 1)", {"point 1", "position_mm"}),
+      point(R"("position_mm": [0, 0, -1000], "weight": -1)", {"point 1", "weight", -1}),
+      point(R"("position_mm": [0, 0, -1000], "weight": "1")", {"point 1", "weight", "\"1\""}),
+      point(R"("position_mm": [0, 0, -1000], "blur_mm": true)", {"point 1", "blur_mm", "true"}),
+      point(R"("position_mm": [0, 0, -1000], "at_infinity": 1)", {"point 1", "at_infinity", 1}),
+      point(R"("position_mm": [0, 0, -1000], "extent_stops": 21)", {"point 1", "extent_stops", 21}),
+      point(R"("position_mm": [0, 0, -1000], "fixes_distance": 0)", {"point 1", "fixes_distance", 0}),
+      point(R"("position_mm": [0, 0, -1000], "wieght": 2)", {"point 1", "\"wieght\""}),
+      point(R"("position_mm": [0, 0, -1000], "position_mm": [0, 0, -1])", {"\"position_mm\""}),
+      point(R"("position_mm": [0, 0, 1000])", {"point 1", "image"}),
+      point(R"("position_mm": [0, 0, 0])", {"point 1"}),
+      point(R"("position_mm": [0, 0, -1000], "weight": 0)", {"point 1", "weight", 0}),
+      point(R"("position_mm": [0, 0, -1000], "extent_stops": 2, "fixes_distance": false)", {"point 1", "distance"}),
+      point(R"("position_mm": [0, 900, -1000])", {"point 1", "picture"}, {"--film-mm", "36x24"}),
+      points(deep("["), {8}),
+      {{"LENS"}, {"--points"}},
+      {{"--points", "@points.json"}, {"LENS", "--model thin"}},
+      {{"--points", "@points.json", "--thin-focal-length-mm", "50", "--f-number", "2"},
+       {"--thin-focal-length-mm", "--model thin"}},
+      {{"--points", "@points.json", "--model", "thin", "--thin-focal-length-mm", "50"},
+       {"--thin-focal-length-mm", "--f-number"}},
+      {{"LENS", "--points", "@points.json", "--model", "thin", "--thin-focal-length-mm", "50", "--f-number", "2"},
+       {"--thin-focal-length-mm", "double_gauss_100mm_f2_28deg.json"}},
+      {{"--points", "@points.json", "--model", "thin", "--thin-focal-length-mm", "50", "--f-number", "2", "--glasses",
+        "x"},
+       {"--glasses", "LENS"}}}},
+#endif
+#ifdef PETZVAL_TEST_HAS_bokeh_scene
+    {"bokeh_scene",
+     {"--scene", "balls", "--lens", "LENS", "--focus-mm", "1000", "--out", "@out", "--spp", "1"},
+     {{{"--scene", "town"}, {"town", "balls", "chess", "statues", "street"}},
+      {{"--scene", "@none.json"}, {"none.json"}},
+      {{"--scene", "@inside.json"}, {"inside.json"}},
+      {{"--tile", "3/2"}, {"--tile", "\"3/2\""}},
+      {{"--focus-mm", "10"}, {"--focus-mm", 10, 28.3682134}},
+      {{"--budget-px", "1"}, {"--budget-px", "--model auto"}},
+      {{"--model", "auto", "--tile", "1/2"}, {"--model auto", "--tile 1/2"}},
+      {{"--tile", "1/2", "--format", "pfm"}, {"--format", "--tile 1/2", "bokeh_scene merge"}},
+      {{"--kind", "affine"}, {"--kind", "--focal-surface"}},
+      {{"--beta", "2"}, {"--beta", "--focal-surface"}},
+      {{"--iris-area", "equal"}, {"--iris-area", "--blades"}},
+      {{"--keep-light"}, {"--keep-light", "--lens-ratio"}},
+      {{"--focal-surface", "@surface.json"}, {"exact_float", "pinhole", "thick"}},
+      {{"--focal-surface", "@surface.json", "--model", "auto"}, {"--model auto", "pinhole", "thick"}}}},
+#endif
+#ifdef PETZVAL_TEST_HAS_lens_blur
+    {"lens_blur",
+     {"--out", "@out", "--focus-mm", "3000"},
+     {{{"--thin-lens-mm", "50", "--lens-diameter-mm", "9"}, {"--scene", "--image", "--deep", "--rgb"}},
+      {{"--scene", "town"}, {"--thin-lens-mm", "--lens", "--singlet"}},
+      {{"--thin-lens-mm", "50", "--lens-diameter-mm", "9", "--rgb", "@black.png"}, {"--rgb", "--depth"}},
+      {{"--thin-lens-mm", "50", "--lens-diameter-mm", "9", "--image", "@none.exr"}, {"none.exr"}},
+      {{"--thin-lens-mm", "50", "--lens-diameter-mm", "9", "--deep", "@black.png"}, {"black.png"}},
+      {{"--scene", "town", "--lens", f135, "--focus-mm", "1"}, {"--focus-mm", 1, 1000}},  // metres?
+      {{"--scene", "town", "--lens", f135, "--focus-mm", "70", "--distance-from", "entrance_pupil"},
+       {"--focus-mm", 70, "entrance pupil"}},
+      {{"--scene", "town", "--lens", f135, "--depth-kind", "distance"}, {"--depth-kind", "distance", "--scene"}},
+      {{"--scene", "town", "--lens", f135, "--fps", "24"}, {"--fps", "--points"}},
+      {{"--scene", "town", "--lens", f135, "--travel-mm", "500"}, {"--travel-mm", "--frames"}},
+      {{"--scene", "town", "--lens", f135, "--travel-mm", "500", "--frames", "1"}, {"--travel-mm", 1, 2}},
+      {{"--scene", "town", "--lens", f135, "--kind", "affine"}, {"--kind", "--points"}},
+      {{"--scene", "town", "--lens", f135, "--beta", "2"}, {"--beta", "--points"}},
+      {{"--scene", "town", "--lens", f135, "--iris-rotation-deg", "10"}, {"--iris-rotation-deg", "--blades"}},
+      {{"--scene", "town", "--singlet", "50,-50,5,N-BK7", "--configuration", "tele"}, {"--configuration", "--lens"}},
+      {{"--scene", "town", "--singlet", "50,-50,5,N-BK7", "--glasses", "x"}, {"--glasses", "--lens"}}}},
+#endif
+};
+
+class Refusals : public Programs, public testing::WithParamInterface<Refused> {
+ protected:
+  void SetUp() override {
+    Programs::SetUp();
+    write_inputs();
+    petzval::write_png({2, 2, std::vector<std::uint8_t>(12, 0)}, path("black.png"));
+    write("inside.json", R"({"camera": {"position_mm": [0, 0, 0]}, "objects": [
+      {"sphere": {"centre_mm": [0, 0, 0], "radius_mm": 500}, "emission": [1, 1, 1]}]})");
+  }
+};
+
+TEST_P(Refusals, NameTheFlagAndTheValue) {
+  const auto& [program, common, cases] = GetParam();
+  for (const Case& c : cases) {
+    Arguments arguments = common;
+    for (std::size_t i = 0; i < c.arguments.size(); ++i) {
+      const std::string& word = c.arguments[i];
+      if (word.starts_with("TEXT:")) {
+        write("text.json", word.substr(5));
+        continue;
+      }
+      const auto own = std::find(arguments.begin(), arguments.end(), word);
+      if (word.starts_with("--") && own != arguments.end()) {
+        *(own + 1) = c.arguments[++i];
+      } else {
+        arguments.push_back(word);
+      }
+    }
+    SCOPED_TRACE(testing::PrintToString(arguments));
+    expect_failure(program, expanded(arguments), c.tokens);
+    EXPECT_FALSE(std::filesystem::exists(path("out")));
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(All, Refusals, testing::ValuesIn(all), [](const auto& test) { return test.param.program; });
+
+}  // namespace
