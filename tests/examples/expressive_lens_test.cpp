@@ -50,13 +50,4 @@ TEST_F(ExpressiveLensProgram, TakesASplinePointsAndADispersion) {
   EXPECT_EQ(json["dispersion"], 3);
 }
 
-// The middle of its pupil is dark.
-TEST_F(ExpressiveLensProgram, DrawsALensWithACentralObscuration) {
-  const auto outcome =
-      run("expressive_lens", {lens("catadioptric_mangin_1000mm_f7.5"), "--focus-mm", "20000", "--samples", "1024",
-                              "--model", "thick", "--film-mm", "12x8", "--out", path("out")});
-  ASSERT_EQ(outcome.status, 0) << outcome.err;
-  EXPECT_GT(read_json(path("out/expressive.json"))["highlights"].size(), 5u);
-}
-
 }  // namespace

@@ -110,22 +110,4 @@ YFLN 0.0 6.0 -10.0
   EXPECT_NE(read(path("spots/relay_spots.svg")).find("subject at z = -200 mm"), std::string::npos);
 }
 
-TEST_F(SpotDiagram, FocusesAnAnalyticLensToAPoint) {
-  const auto json = rows("analytic_plano_hyperbolic_100mm",
-                         {"--field-deg", "0", "--wavelengths-nm", "587.5618", "--samples", "1000"});
-  EXPECT_LT(json[0]["max_radius_mm"].get<double>(), 1e-12);
-  EXPECT_EQ(json[0]["rays_sent"], 1000);
-}
-
-TEST_F(SpotDiagram, TellsHowMuchLightReachesTheFilm) {
-  const auto json = rows("fisheye_6.3mm_f2.8", {"--field-deg", "0,60,90,110", "--wavelengths-nm", "587.5618"});
-  EXPECT_EQ(json[0]["relative_illumination"], 1.0);
-  for (std::size_t i = 1; i < 4; ++i) {
-    EXPECT_LT(json[i]["relative_illumination"].get<double>(), json[i - 1]["relative_illumination"].get<double>());
-    EXPECT_LT(json[i]["chief_ray_height_mm"].get<double>(), json[i - 1]["chief_ray_height_mm"].get<double>() - 2);
-    EXPECT_GT(json[i]["rays_transmitted"].get<double>(), 0.95 * json[i]["rays_sent"].get<double>());
-  }
-  EXPECT_GT(json[3]["relative_illumination"].get<double>(), 0.2);
-}
-
 }  // namespace

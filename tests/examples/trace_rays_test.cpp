@@ -122,14 +122,6 @@ TEST_F(TraceRays, SkipsBlankLinesAtTheEnd) {
   }
 }
 
-TEST_F(TraceRays, WritesItsResultAsAWholeOrNotAtAll) {
-  traced("double_gauss_100mm_f1.35", header);
-  const std::string old = read(path("traced.csv"));
-  std::filesystem::create_hard_link(path("traced.csv"), path("kept.csv"));
-  traced("double_gauss_100mm_f1.35", std::string(header) + "0,10,-50,0,0,1\n");
-  EXPECT_EQ(read(path("kept.csv")), old);
-}
-
 TEST_F(TraceRays, NamesLineAndColumnOfWhatItCannotRead) {
   expect_refusal("", {"rays.csv", "line 1"});
   expect_refusal("x,y,z,dx,dy,dz\n", {"line 1", "\"x,y,z,dx,dy,dz\""});
