@@ -31,7 +31,7 @@ class CodevReader {
 
  private:
   struct Command {
-    std::string_view name;
+    std::string_view names;
     void (CodevReader::*take)(Words);
   };
   static std::span<const Command> commands();
@@ -97,105 +97,43 @@ std::span<const CodevReader::Command> CodevReader::commands() {
       {"RDM", &C::radius_mode},
       {"TIT", &C::title},
       {"DIM", &C::dimension},
-      {"EPD", &C::aperture},
-      {"FNO", &C::aperture},
-      {"NA", &C::aperture},
-      {"NAO", &C::aperture},
+      {"EPD FNO NA NAO", &C::aperture},
       {"WL", &C::wavelengths},
       {"REF", &C::reference},
       {"WTW", &C::wavelength_weights},
-      {"XAN", &C::field},
-      {"YAN", &C::field},
-      {"XOB", &C::field},
-      {"YOB", &C::field},
-      {"XIM", &C::field},
-      {"YIM", &C::field},
-      {"XRI", &C::field},
-      {"YRI", &C::field},
+      {"XAN YAN XOB YOB XIM YIM XRI YRI", &C::field},
       {"WTF", &C::field_weights},
-      {"VUY", &C::vignetting},
-      {"VLY", &C::vignetting},
-      {"VUX", &C::vignetting},
-      {"VLX", &C::vignetting},
+      {"VUY VLY VUX VLX", &C::vignetting},
       {"SO", &C::object},
       {"S", &C::lens_surface},
       {"SI", &C::image},
       {"STO", &C::stop},
       {"CIR", &C::circle},
       {"K", &C::conic},
-      {"A", &C::term},
-      {"B", &C::term},
-      {"C", &C::term},
-      {"D", &C::term},
-      {"E", &C::term},
-      {"F", &C::term},
-      {"G", &C::term},
-      {"H", &C::term},
-      {"J", &C::term},
-      {"ASP", &C::asphere_begins},
-      {"CON", &C::asphere_begins},
-      {"SPH", &C::asphere_begins},
+      {"A B C D E F G H J IC", &C::term},
+      {"ASP CON SPH", &C::asphere_begins},
       {"PIM", &C::paraxial_image},
-      {"XDE", &C::tilt},
-      {"YDE", &C::tilt},
-      {"ZDE", &C::tilt},
-      {"ADE", &C::tilt},
-      {"BDE", &C::tilt},
-      {"CDE", &C::tilt},
-      {"SLB", &C::label},
-      {"SCO", &C::label},
+      {"XDE YDE ZDE ADE BDE CDE DAR BEN REV RET", &C::tilt},
+      {"SLB SCO", &C::label},
       {"THI", &C::thickness},
-      {"RDY", &C::shape},
-      {"CUY", &C::shape},
-      {"GLA", &C::glass},
-      {"GL1", &C::glass},
-      {"RMD", &C::reflect},
-      {"REFL", &C::reflect},
-      {"CYL", &C::cylinder},
-      {"RDX", &C::cylinder},
-      {"CUX", &C::cylinder},
+      {"RDY CUY", &C::shape},
+      {"GLA GL1", &C::glass},
+      {"RMD REFL", &C::reflect},
+      {"CYL RDX CUX", &C::cylinder},
       {"PIK", &C::pickup},
       {"ZOO", &C::zoom},
       {"PRV", &C::private_begins},
-      {"SPS", &C::refused_surface},
-      {"XTO", &C::refused_surface},
-      {"YTO", &C::refused_surface},
-      {"AAS", &C::refused_surface},
-      {"DIF", &C::refused_surface},
-      {"GRT", &C::refused_surface},
-      {"HOE", &C::refused_surface},
-      {"SPL", &C::refused_surface},
-      {"UDS", &C::refused_surface},
-      {"NSS", &C::refused_surface},
-      {"GRN", &C::refused_surface},
-      {"FRE", &C::refused_surface},
-      {"DAR", &C::tilt},
-      {"BEN", &C::tilt},
-      {"REV", &C::tilt},
-      {"RET", &C::tilt},
-      {"REX", &C::not_a_shape},
-      {"REY", &C::not_a_shape},
-      {"ELX", &C::not_a_shape},
-      {"ELY", &C::not_a_shape},
-      {"ADX", &C::not_a_shape},
-      {"ADY", &C::not_a_shape},
-      {"ARO", &C::not_a_shape},
-      {"POL", &C::not_a_shape},
-      {"INS", &C::refused_edit},
-      {"IC", &C::term},
-      {"XRX", &C::not_a_shape},
-      {"SCA", &C::refused_edit},
-      {"DEL", &C::refused_edit},
-      {"FLY", &C::refused_edit},
+      {"SPS XTO YTO AAS DIF GRT HOE SPL UDS NSS GRN FRE", &C::refused_surface},
+      {"REX REY ELX ELY ADX ADY ARO POL XRX", &C::not_a_shape},
+      {"INS SCA DEL FLY", &C::refused_edit},
   };
   return all;
 }
 
 /// Statements that change nothing of the lens: who drew it, how it is drawn, what may vary, derived numbers.
-constexpr std::array<std::string_view, 34> silent = {"INI",  "CCY", "THC", "KC", "AC",  "BC",  "CC",  "DC",  "EC",
-                                                     "FC",   "GC",  "HC",  "JC", "CLS", "DER", "GO",  "CUM", "THM",
-                                                     "CRA",  "NUM", "SET", "CA", "SUR", "OUT", "VIE", "EVA", "END",
-                                                     "CON_", "WTA", "MFL", "ID", "TOL", "BUF", "FIE"};
+constexpr std::string_view silent =
+    "INI CCY THC KC AC BC CC DC EC FC GC HC JC CLS DER GO CUM THM CRA NUM SET CA SUR OUT VIE EVA "
+    "END CON_ WTA MFL ID TOL BUF FIE";
 
 std::optional<int> CodevReader::number_of(std::string_view word) const {
   if (word.size() < 2 || lower(word[0]) != 's') return {};
@@ -486,14 +424,14 @@ void CodevReader::statement(std::string_view text) {
   if (in_private_) return private_statement(w);
   // TITLE is TIT, LENS is LEN: three letters are enough of longer words.
   const std::string name = upper(w[0]);
-  const auto find = [&](std::string_view word) { return std::ranges::find(commands(), word, &Command::name); };
-  auto found = find(name);
-  if (found == commands().end() && name.size() > 3) found = find(std::string_view(name).substr(0, 3));
-  if (name == "STOP") found = find("STO");
-  if (found != commands().end()) {
-    std::vector<std::string_view> known = w;
-    known[0] = found->name;  // what a command compares itself with
-    return (this->*found->take)(known);
+  for (const std::string& word : {name, name.substr(0, 3)}) {
+    for (const Command& command : commands()) {
+      const std::string_view entry = entry_of(command.names, word);
+      if (entry.empty()) continue;
+      std::vector<std::string_view> known = w;
+      known[0] = entry;  // what a command compares itself with
+      return (this->*command.take)(known);
+    }
   }
 
   // S3 50 2 NBK7: a surface by its number.
@@ -510,8 +448,7 @@ void CodevReader::statement(std::string_view text) {
     if (w.size() > 3) s.glass = w[3];
     return;
   }
-  if (std::ranges::find(silent, name) != silent.end()) return;
-  if (name.size() > 3 && std::ranges::find(silent, std::string_view(name).substr(0, 3)) != silent.end()) return;
+  if (is_one_of(name, silent) || is_one_of(std::string_view(name).substr(0, 3), silent)) return;
   in_.warn(line_, w[0], "is not known and is left out");
 }
 

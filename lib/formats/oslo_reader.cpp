@@ -201,8 +201,7 @@ bool OsloReader::take_surface(int line, std::string_view command, const Words& w
     take_pickup(line, w, s);
   } else if (command == "PY") {
     s.height = value(line, w);
-  } else if (command == "PYC" || command == "PUC" || command == "PU" || command == "EC" || command == "PI" ||
-             command == "PIC" || command == "APC" || command == "APL") {
+  } else if (is_one_of(command, "PYC PUC PU EC PI PIC APC APL")) {
     warn_once(line, command, "a solve is not evaluated: the value that the file states is taken");
   } else {
     return false;
@@ -237,8 +236,7 @@ void OsloReader::take_aperture(int line, const Words& w, OsloSurface& s) {
 }
 
 void OsloReader::take_pickup(int line, const Words& w, OsloSurface& s) {
-  static constexpr std::array<std::string_view, 7> known = {"CV", "CVM", "TH", "THM", "GLA", "AP", "CC"};
-  if (w.size() < 3 || w.size() > 4 || std::ranges::none_of(known, [&](auto k) { return same(k, w[1]); })) {
+  if (w.size() < 3 || w.size() > 4 || !is_one_of(w[1], "CV CVM TH THM GLA AP CC")) {
     in_.warn(line, "PK", "an unknown pickup is left out; the value that the file states is taken");
     return;
   }
@@ -279,9 +277,7 @@ bool OsloReader::take_asphere(int line, std::string_view command, const Words& w
 
 /// What would make another lens if it were left out, and what is of no matter to it.
 bool OsloReader::refuse_or_skip(int line, std::string_view command, const Words& w) {
-  static constexpr std::array<std::string_view, 9> transforms = {"DCX", "DCY", "DCZ", "TLA", "TLB",
-                                                                 "TLC", "CVX", "RDX", "CCX"};
-  if (std::ranges::count(transforms, command) > 0) {
+  if (is_one_of(command, "DCX DCY DCZ TLA TLB TLC CVX RDX CCX")) {
     if (value(line, w) != 0) {
       in_.refuse(line, command, to_text(value(line, w)), "0: surfaces that are rotationally symmetric about one axis");
     }
@@ -308,8 +304,7 @@ bool OsloReader::refuse_or_skip(int line, std::string_view command, const Words&
     return true;
   }
   // Bends and returns are of tilted surfaces, which are refused by their angles.
-  static constexpr std::array<std::string_view, 8> harmless = {"TCE", "DT", "DRW", "BEN", "RCO", "TLM", "PEN", "ELE"};
-  if (std::ranges::count(harmless, command) > 0) return true;
+  if (is_one_of(command, "TCE DT DRW BEN RCO TLM PEN ELE")) return true;
   if (command == "APN" || command.starts_with("ATP") || command.starts_with("AX") || command.starts_with("AY") ||
       command.starts_with("AAC") || command.starts_with("AVX")) {
     warn_once(line, command, "apertures that are no circles are left out");

@@ -12,138 +12,41 @@
 namespace petzval::formats_detail {
 namespace {
 
-struct Head {
-  std::string_view name;  ///< lower case, without blanks and signs
+/// The heads of a kind of column, in lower case, without blanks and signs.
+struct Heads {
   Column kind;
+  std::string_view names;
 };
 
-constexpr Head heads[] = {
-    {"#", Column::number},
-    {"no", Column::number},
-    {"nr", Column::number},
-    {"num", Column::number},
-    {"number", Column::number},
-    {"row", Column::number},
-    {"s", Column::number},
-    {"s#", Column::number},
-    {"sno", Column::number},
-    {"i", Column::number},
-    {"id", Column::number},
-    {"surf", Column::number},
-    {"surf#", Column::number},
-    {"surface", Column::number},
-    {"surface#", Column::number},
-    {"surfaceno", Column::number},
-    {"surfacenumber", Column::number},
-    {"r", Column::radius},
-    {"rad", Column::radius},
-    {"radius", Column::radius},
-    {"roc", Column::radius},
-    {"rdy", Column::radius},
-    {"ry", Column::radius},
-    {"yradius", Column::radius},
-    {"radiusofcurvature", Column::radius},
-    {"curvatureradius", Column::radius},
-    {"c", Column::curvature},
-    {"cv", Column::curvature},
-    {"cuy", Column::curvature},
-    {"curv", Column::curvature},
-    {"curvature", Column::curvature},
-    {"d", Column::thickness},
-    {"t", Column::thickness},
-    {"th", Column::thickness},
-    {"thi", Column::thickness},
-    {"thick", Column::thickness},
-    {"thickness", Column::thickness},
-    {"dist", Column::thickness},
-    {"distance", Column::thickness},
-    {"gap", Column::thickness},
-    {"spacing", Column::thickness},
-    {"separation", Column::thickness},
-    {"thicknessdistance", Column::thickness},
-    {"axialdistance", Column::thickness},
-    {"axialthickness", Column::thickness},
-    {"gapbefore", Column::gap_before},
-    {"gapinfront", Column::gap_before},
-    {"thicknessbefore", Column::gap_before},
-    {"distancebefore", Column::gap_before},
-    {"axpos", Column::gap_before},
-    {"n", Column::index},
-    {"nd", Column::index},
-    {"index", Column::index},
-    {"ior", Column::index},
-    {"refindex", Column::index},
-    {"refractiveindex", Column::index},
-    {"v", Column::abbe},
-    {"vd", Column::abbe},
-    {"v#", Column::abbe},
-    {"vno", Column::abbe},
-    {"vnumber", Column::abbe},
-    {"nu", Column::abbe},
-    {"nud", Column::abbe},
-    {"abbe", Column::abbe},
-    {"abbeno", Column::abbe},
-    {"abbenumber", Column::abbe},
-    {"abbevd", Column::abbe},
-    {"dispersion", Column::abbe},
-    {"glass", Column::glass},
-    {"glas", Column::glass},
-    {"glassname", Column::glass},
-    {"glasstype", Column::glass},
-    {"material", Column::glass},
-    {"mat", Column::glass},
-    {"medium", Column::glass},
-    {"catalog", Column::catalogue},
-    {"catalogue", Column::catalogue},
-    {"maker", Column::catalogue},
-    {"manufacturer", Column::catalogue},
-    {"semi", Column::semi_diameter},
-    {"sd", Column::semi_diameter},
-    {"sa", Column::semi_diameter},
-    {"semidia", Column::semi_diameter},
-    {"semidiam", Column::semi_diameter},
-    {"semidiameter", Column::semi_diameter},
-    {"semiap", Column::semi_diameter},
-    {"semiaperture", Column::semi_diameter},
-    {"clearsemidiameter", Column::semi_diameter},
-    {"clearsemiaperture", Column::semi_diameter},
-    {"clearradius", Column::semi_diameter},
-    {"apertureradius", Column::semi_diameter},
-    {"housingradius", Column::semi_diameter},
-    {"halfdiameter", Column::semi_diameter},
-    {"halfaperture", Column::semi_diameter},
-    {"dia", Column::diameter},
-    {"diam", Column::diameter},
-    {"diameter", Column::diameter},
-    {"ca", Column::diameter},
-    {"clearaperture", Column::diameter},
-    {"cleardiameter", Column::diameter},
-    {"cleardia", Column::diameter},
-    {"effectivediameter", Column::diameter},
-    {"aperturediameter", Column::diameter},
-    {"fulldiameter", Column::diameter},
-    {"ap", Column::aperture},
-    {"aperture", Column::aperture},
-    {"clear", Column::aperture},
-    {"k", Column::conic},
-    {"cc", Column::conic},
-    {"kappa", Column::conic},
-    {"conic", Column::conic},
-    {"conicconstant", Column::conic},
-    {"stop", Column::stop},
-    {"sto", Column::stop},
-    {"comment", Column::comment},
-    {"description", Column::comment},
-    {"element", Column::comment},
-    {"label", Column::comment},
-    {"name", Column::comment},
-    {"note", Column::comment},
-    {"notes", Column::comment},
-    {"remark", Column::comment},
-    {"remarks", Column::comment},
-    {"surfacetype", Column::comment},
-    {"type", Column::comment},
+constexpr Heads all_heads[] = {
+    {Column::number, "# no nr num number row s s# sno i id surf surf# surface surface# surfaceno surfacenumber"},
+    {Column::radius, "r rad radius roc rdy ry yradius radiusofcurvature curvatureradius"},
+    {Column::curvature, "c cv cuy curv curvature"},
+    {Column::thickness,
+     "d t th thi thick thickness dist distance gap spacing separation thicknessdistance "
+     "axialdistance axialthickness"},
+    {Column::gap_before, "gapbefore gapinfront thicknessbefore distancebefore axpos"},
+    {Column::index, "n nd index ior refindex refractiveindex"},
+    {Column::abbe, "v vd v# vno vnumber nu nud abbe abbeno abbenumber abbevd dispersion"},
+    {Column::glass, "glass glas glassname glasstype material mat medium"},
+    {Column::catalogue, "catalog catalogue maker manufacturer"},
+    {Column::semi_diameter,
+     "semi sd sa semidia semidiam semidiameter semiap semiaperture clearsemidiameter "
+     "clearsemiaperture clearradius apertureradius housingradius halfdiameter halfaperture"},
+    {Column::diameter,
+     "dia diam diameter ca clearaperture cleardiameter cleardia effectivediameter aperturediameter "
+     "fulldiameter"},
+    {Column::aperture, "ap aperture clear"},
+    {Column::conic, "k cc kappa conic conicconstant"},
+    {Column::stop, "stop sto"},
+    {Column::comment, "comment description element label name note notes remark remarks surfacetype type"},
 };
+
+/// The kind of column that a head names; nullopt if the head is not known.
+std::optional<Column> kind_of(std::string_view head) {
+  const auto found = std::ranges::find_if(all_heads, [&](const Heads& h) { return is_one_of(head, h.names); });
+  return found == std::end(all_heads) ? std::nullopt : std::optional(found->kind);
+}
 
 constexpr std::array<std::pair<std::string_view, double>, 8> units = {{
     {"mm", 1},
@@ -226,11 +129,11 @@ std::optional<double> unit_of(std::string_view cell) {
 std::optional<TableColumn> column_of(std::string_view head) {
   auto [name, bracket] = plain(head);
   TableColumn column{.name = std::string(head)};
-  const auto find = [&own = name] { return std::ranges::find(heads, std::string_view(own), &Head::name); };
   if (!bracket.empty()) {
+    const auto kind = kind_of(name);
     if (const auto unit = unit_of(bracket)) {
       column.unit_mm = *unit;
-    } else if (find() != std::end(heads) && (find()->kind == Column::index || find()->kind == Column::abbe)) {
+    } else if (kind == Column::index || kind == Column::abbe) {
       // "n(d)" and "n (587.6 nm)"; an index of another line is another column.
       const auto nm = number(bracket.substr(0, bracket.find_first_not_of("0123456789.")));
       const bool d_line = bracket == "d" || (nm && std::abs((*nm < 1 ? 1000 * *nm : *nm) - 587.56) < 0.1);
@@ -239,9 +142,9 @@ std::optional<TableColumn> column_of(std::string_view head) {
       name += bracket;  // "A(4)"
     }
   }
-  if (find() == std::end(heads) && name.size() > 2 && name.ends_with("mm")) name.resize(name.size() - 2);
-  if (find() != std::end(heads)) {
-    column.kind = find()->kind;
+  if (!kind_of(name) && name.size() > 2 && name.ends_with("mm")) name.resize(name.size() - 2);
+  if (const auto kind = kind_of(name)) {
+    column.kind = *kind;
     return column;
   }
   if (const auto order = order_of_term(name)) {

@@ -42,15 +42,12 @@ std::optional<int> label_of(std::string_view cell) {
   return static_cast<int>(*number(cell));
 }
 
-bool is_object_word(std::string_view cell) { return same(cell, "obj") || same(cell, "object"); }
-bool is_image_word(std::string_view cell) {
-  static constexpr std::array<std::string_view, 6> all = {"ima", "img", "image", "film", "sensor", "si"};
-  return std::ranges::any_of(all, [&](std::string_view word) { return same(word, cell); });
-}
+bool is_object_word(std::string_view cell) { return is_one_of(cell, "obj object"); }
+bool is_image_word(std::string_view cell) { return is_one_of(cell, "ima img image film sensor si"); }
 
 /// In a column of comments "ASP" is an asphere, and "aperture" any rim.
 bool marks_stop_in_comment(std::string_view cell) {
-  return is_stop_word(cell) && !same(cell, "asp") && !same(cell, "as") && !same(cell, "ast") && !same(cell, "aperture");
+  return is_stop_word(cell) && !is_one_of(cell, "asp as ast aperture");
 }
 
 /// A row before its cells have meanings.
@@ -142,9 +139,7 @@ void TableReader::end_last_row() {
   if (thickness == columns_.size() || rows_.size() < 2) return;
   if (thickness > cells.size() || is_stop_word(cells.front())) return;
   if (thickness == cells.size()) cells.push_back("-");
-  for (const char* word : {"bf", "bfl", "b.f.", "(bf)", "variable", "(variable)"}) {
-    if (same(cells[thickness], word)) cells[thickness] = "-";
-  }
+  if (is_one_of(cells[thickness], "bf bfl b.f. (bf) variable (variable)")) cells[thickness] = "-";
 }
 
 /// "mm mm - - mm" below the heads.

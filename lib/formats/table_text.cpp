@@ -200,21 +200,15 @@ bool looks_like_a_number(std::string_view cell) {
 }
 
 bool is_plane_word(std::string_view cell) {
-  static constexpr std::array<std::string_view, 6> all = {"plano", "plane", "planar", "flat", "pl", "pl."};
-  return is_infinite(cell) || std::ranges::any_of(all, [&](std::string_view word) { return same(word, cell); });
+  return is_infinite(cell) || is_one_of(cell, "plano plane planar flat pl pl.");
 }
 
 bool is_stop_word(std::string_view cell) {
   if (cell.size() > 2 && ((cell[0] == '(' && cell.back() == ')') || (cell[0] == '[' && cell.back() == ']')))
     cell = cell.substr(1, cell.size() - 2);
-  static constexpr std::array<std::string_view, 10> all = {"stop",     "sto",           "asp",       "ast",  "as",
-                                                           "aperture", "aperture stop", "diaphragm", "iris", "*"};
-  return std::ranges::any_of(all, [&](std::string_view word) { return same(word, cell); });
+  return same(cell, "aperture stop") || is_one_of(cell, "stop sto asp ast as aperture diaphragm iris *");
 }
 
-bool is_none(std::string_view cell) {
-  static constexpr std::array<std::string_view, 7> all = {"", "-", "--", "---", "none", "n/a", "."};
-  return std::ranges::any_of(all, [&](std::string_view word) { return same(word, cell); });
-}
+bool is_none(std::string_view cell) { return cell.empty() || is_one_of(cell, "- -- --- none n/a ."); }
 
 }  // namespace petzval::formats_detail

@@ -170,8 +170,7 @@ std::optional<double> number(std::string_view word) {
 
 bool is_infinite(std::string_view word) noexcept {
   if (word.starts_with('+') || word.starts_with('-')) word.remove_prefix(1);
-  static constexpr std::array<std::string_view, 5> all = {"inf", "inf.", "infinity", "infinite", "\u221e"};
-  return std::ranges::any_of(all, [&](std::string_view other) { return same(other, word); });
+  return is_one_of(word, "inf inf. infinity infinite \u221e");
 }
 
 char lower(char c) noexcept { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; }
@@ -190,6 +189,15 @@ std::string upper(std::string_view text) {
 
 bool same(std::string_view a, std::string_view b) noexcept {
   return std::ranges::equal(a, b, [](char x, char y) { return lower(x) == lower(y); });
+}
+
+std::string_view entry_of(std::string_view list, std::string_view word) noexcept {
+  while (!list.empty()) {
+    const std::string_view entry = list.substr(0, list.find(' '));
+    if (same(entry, word)) return entry;
+    list.remove_prefix(std::min(entry.size() + 1, list.size()));
+  }
+  return {};
 }
 
 std::string one_line(std::string text) {

@@ -51,6 +51,10 @@ std::string lower(std::string_view text);
 std::string upper(std::string_view text);
 bool same(std::string_view a, std::string_view b) noexcept;  ///< but for the case of ASCII letters
 
+/// The entry of a list, separated by single blanks, that is the `same` as a word; empty if there is no such entry.
+std::string_view entry_of(std::string_view list, std::string_view word) noexcept;
+inline bool is_one_of(std::string_view word, std::string_view list) noexcept { return !entry_of(list, word).empty(); }
+
 /// The text on one line that every reader takes: control characters, line breaks among them, become blanks.
 std::string one_line(std::string text);
 

@@ -245,7 +245,7 @@ SurfaceRow Rows::row(const ZemaxSurface& s, const Medium& before) {
 // --- configurations ---------------------------------------------------------------------------------------------
 
 /// Operands that change nothing of the lens: weights, coatings, comments, drawing.
-constexpr std::string_view silent_operands[] = {"MOFF", "FLWT", "WLWT", "COTN", "CWGT", "GCRS", "NCOM", "MCOM", "SDRW"};
+constexpr std::string_view silent_operands = "MOFF FLWT WLWT COTN CWGT GCRS NCOM MCOM SDRW";
 
 class Configurations {
  public:
@@ -295,7 +295,7 @@ void Configurations::take(const ZemaxOperand& operand) {
   }
   Configuration& c = list[static_cast<std::size_t>(operand.configuration) - 1];
   const auto value = [&] { return in_.number(operand.line, operand.name, operand.value); };
-  if (std::ranges::find(silent_operands, operand.name) != std::end(silent_operands)) return;
+  if (entry_of(silent_operands, operand.name) == operand.name) return;
   if (operand.name == "LTTL") {
     if (!operand.value.empty()) c.name = operand.value;
   } else if (operand.name == "THIC" && operand.surface == 0) {

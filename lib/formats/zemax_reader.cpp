@@ -24,20 +24,19 @@ constexpr std::size_t most_surfaces = 10'000, most_operands = 100'000;
 
 /// Commands that change nothing of the lens: the program's windows, tolerances, analyses, coatings, colours and
 /// polarisation; variables of the optimisation; pickups and solves, as the file states the values that they gave.
-constexpr std::string_view silent[] = {
+constexpr std::string_view silent =
     // the file and its author
-    "VERS", "PFIL", "LANG", "AUTH", "CSUM", "LUID", "BLNK",
+    "VERS PFIL LANG AUTH CSUM LUID BLNK "
     // rays and the pupil; pupil data that follow from the lens
-    "RAIM", "PUSH", "SDMA", "OMMA", "ROPD", "HYPR", "PICB", "GFAC", "GLRS", "GSTD", "NSCD", "PUPD", "ZVDX", "ZVDY",
-    "ZVCX", "ZVCY", "ZVAN",
+    "RAIM PUSH SDMA OMMA ROPD HYPR PICB GFAC GLRS GSTD NSCD PUPD ZVDX ZVDY ZVCX ZVCY ZVAN "
     // coatings, polarisation, scattering, physical optics
-    "POLS", "COFN", "COAT", "POPS", "FIMP", "MEMA",
+    "POLS COFN COAT POPS FIMP MEMA "
     // drawing and rows of the editor
-    "HIDE", "MIRR", "SLAB", "SSID", "SCOL", "UDAD", "UNCO",
+    "HIDE MIRR SLAB SSID SCOL UDAD UNCO "
     // variables, pickups and solves
-    "VDSZ", "VPAR", "VCON", "PPAR", "PCON", "PKUP", "EDGE", "TCED",
+    "VDSZ VPAR VCON PPAR PCON PKUP EDGE TCED "
     // merit function and tolerances
-    "DMFS", "EFFL", "CONF", "RAYS", "TOL", "TCMM"};
+    "DMFS EFFL CONF RAYS TOL TCMM";
 
 class ZemaxReader {
  public:
@@ -47,7 +46,7 @@ class ZemaxReader {
 
  private:
   struct Command {
-    std::string_view name;
+    std::string_view names;
     void (ZemaxReader::*take)(Words);
   };
   static std::span<const Command> of_file();
@@ -136,7 +135,7 @@ class ZemaxReader {
 
 std::span<const ZemaxReader::Command> ZemaxReader::of_file() {
   using Z = ZemaxReader;
-  static constexpr std::array<Command, 31> commands = {{
+  static constexpr Command commands[] = {
       {"MODE", &Z::mode},
       {"NAME", &Z::title},
       {"NOTE", &Z::note},
@@ -148,33 +147,27 @@ std::span<const ZemaxReader::Command> ZemaxReader::of_file() {
       {"ENVD", &Z::environment},
       {"GCAT", &Z::catalogues},
       {"FTYP", &Z::field_type},
-      {"XFLN", &Z::x_fields},
-      {"YFLN", &Z::y_fields},
-      {"XFLD", &Z::x_fields},
-      {"YFLD", &Z::y_fields},
-      {"FWGN", &Z::field_weights},
-      {"FWGT", &Z::field_weights},
+      {"XFLN XFLD", &Z::x_fields},
+      {"YFLN YFLD", &Z::y_fields},
+      {"FWGN FWGT", &Z::field_weights},
       {"VDXN", &Z::decentre_x},
       {"VDYN", &Z::decentre_y},
       {"VCXN", &Z::compress_x},
       {"VCYN", &Z::compress_y},
       {"VANN", &Z::field_angles},
       {"WAVM", &Z::wavelength_row},
-      {"WAVL", &Z::wavelength_list},
-      {"WAVN", &Z::wavelength_list},
-      {"WWGT", &Z::wavelength_weights},
-      {"WWGN", &Z::wavelength_weights},
+      {"WAVL WAVN", &Z::wavelength_list},
+      {"WWGT WWGN WEIG", &Z::wavelength_weights},
       {"PWAV", &Z::primary},
       {"SURF", &Z::new_surface},
       {"MNUM", &Z::configurations},
-      {"WEIG", &Z::wavelength_weights},
-  }};
+  };
   return commands;
 }
 
 std::span<const ZemaxReader::Command> ZemaxReader::of_surfaces() {
   using Z = ZemaxReader;
-  static constexpr std::array<Command, 25> commands = {{
+  static constexpr Command commands[] = {
       {"TYPE", &Z::type},
       {"CURV", &Z::curvature},
       {"CONI", &Z::conic},
@@ -183,24 +176,17 @@ std::span<const ZemaxReader::Command> ZemaxReader::of_surfaces() {
       {"DISZ", &Z::thickness},
       {"GLAS", &Z::glass},
       {"DIAM", &Z::semi_diameter},
-      {"CLAP", &Z::clear_aperture},
-      {"FLAP", &Z::clear_aperture},
+      {"CLAP FLAP", &Z::clear_aperture},
       {"OBSC", &Z::obscuration},
       {"OBDC", &Z::decentred_aperture},
-      {"SQAP", &Z::other_aperture},
-      {"SQOB", &Z::other_aperture},
-      {"ELAP", &Z::other_aperture},
-      {"ELOB", &Z::other_aperture},
-      {"SPID", &Z::other_aperture},
-      {"UDAP", &Z::other_aperture},
-      {"UDOB", &Z::other_aperture},
+      {"SQAP SQOB ELAP ELOB SPID UDAP UDOB", &Z::other_aperture},
       {"STOP", &Z::stop},
       {"COMM", &Z::comment},
       {"PZUP", &Z::thickness_pickup},
       {"MAZH", &Z::marginal_height},
       {"TCOM", &Z::thickness_sum},
       {"TOLE", &Z::position},
-  }};
+  };
   return commands;
 }
 
@@ -209,7 +195,7 @@ void ZemaxReader::read(std::string_view text) {
     line_ = lines.number(), text_ = lines.text();
     const auto all = words(text_);
     if (all.empty()) continue;
-    if (std::ranges::find(silent, all[0]) != std::end(silent)) continue;
+    if (entry_of(silent, all[0]) == all[0]) continue;
     if (!lens_.surfaces.empty() && !in_configurations_ && take(of_surfaces(), all)) continue;
     if (take(of_file(), all)) continue;
     unknown(all);
@@ -237,7 +223,8 @@ void ZemaxReader::read(std::string_view text) {
 }
 
 bool ZemaxReader::take(std::span<const Command> commands, Words words) {
-  const auto found = std::ranges::find(commands, words[0], &Command::name);
+  const auto found =
+      std::ranges::find_if(commands, [&](const Command& c) { return entry_of(c.names, words[0]) == words[0]; });
   if (found == commands.end()) return false;
   (this->*found->take)(words);
   return true;
