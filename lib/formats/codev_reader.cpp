@@ -21,8 +21,6 @@ namespace {
 using Words = std::span<const std::string_view>;
 using io_detail::in_quotes;
 
-constexpr std::size_t most_surfaces = 10'000;
-
 class CodevReader {
  public:
   explicit CodevReader(Import& in) : in_(in) {}
@@ -235,9 +233,7 @@ void CodevReader::object(Words w) {
 void CodevReader::lens_surface(Words w) {
   if (lens_.ended) in_.refuse(line_, w[0], "behind SI, the image", "it in front");
   if (lens_.surfaces.empty() && !same(w[0], "SO")) in_.refuse(line_, w[0], "in front of SO, the object", "SO first");
-  if (lens_.surfaces.size() >= most_surfaces + 2) {
-    throw Error(in_.where() + ": more than " + std::to_string(most_surfaces) + " surfaces, wanted fewer");
-  }
+  in_.limit(lens_.surfaces.size() + 1, "surfaces", 2);
   // Other programs write planes and far objects as "inf"; without RDM, this number is no curvature.
   const bool plane = w.size() > 1 && is_infinite(w[1]), endless = w.size() > 2 && is_infinite(w[2]);
   if (plane && lens_.curvatures.value_or(false)) in_.must_be(line_, w[0], in_quotes(w[1]), "a finite curvature");
@@ -366,10 +362,8 @@ void CodevReader::pickup(Words w) {
   }
   if (!numbers.empty()) p.scale = numbers[0];
   if (numbers.size() > 1 && numbers[1] != 0) in_.warn(line_, "PIK", "its offset is left out");
-  if (lens_.pickups.size() >= most_surfaces) {
-    throw Error(in_.where() + ": more than " + std::to_string(most_surfaces) + " pickups, wanted fewer");
-  }
   lens_.pickups.push_back(std::move(p));
+  in_.limit(lens_.pickups.size(), "pickups");
 }
 
 void CodevReader::zoom(Words w) {
@@ -391,10 +385,8 @@ void CodevReader::zoomed(Words w) {
   std::size_t first = 1;
   if (const auto at = number_of(w[1])) z.surface = *at, first = 2;
   for (std::size_t i = first; i < std::min<std::size_t>(w.size(), 1002); ++i) z.values.emplace_back(w[i]);
-  if (lens_.zooms.size() >= most_surfaces) {
-    throw Error(in_.where() + ": more than " + std::to_string(most_surfaces) + " zoomed values, wanted fewer");
-  }
   lens_.zooms.push_back(std::move(z));
+  in_.limit(lens_.zooms.size(), "zoomed values");
 }
 
 bool CodevReader::zoomed_values(Words w) {
@@ -429,7 +421,7 @@ void CodevReader::statement(std::string_view text) {
       const std::string_view entry = entry_of(command.names, word);
       if (entry.empty()) continue;
       std::vector<std::string_view> known = w;
-      known[0] = entry;  // what a command compares itself with
+      known[0] = entry;  // commands compare it
       return (this->*command.take)(known);
     }
   }

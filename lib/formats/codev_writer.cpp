@@ -133,8 +133,7 @@ void CodevWriter::private_glasses() {
       return medium.vd && *medium.vd > 0 ? abbe_index(nd, *medium.vd, nm) : nd;
     };
     without_vd = without_vd || !medium.vd;
-    list += (list.empty() ? "" : ", ") + name + " (" + (medium.glass ? *medium.glass + ", " : "") + "n_d " +
-            to_text(nd, 7) + ')';
+    append(list, ", ", name + " (" + (medium.glass ? *medium.glass + ", " : "") + "n_d " + to_text(nd, 7) + ')');
     out_.line(quoted(name) + ' ' + to_text(at(c_nm)) + ' ' + to_text(nd) + ' ' + to_text(at(f_nm)));
   }
   out_.line("END");

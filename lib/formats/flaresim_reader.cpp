@@ -20,7 +20,6 @@ namespace {
 
 using io_detail::in_quotes;
 
-constexpr std::size_t most_rows = 10'000;
 constexpr std::array<const char*, 6> names = {"radius", "thickness", "ior", "abbe", "semi_ap", "coating"};
 constexpr std::size_t least_cells = 5, most_cells = names.size() + 1;
 
@@ -41,8 +40,7 @@ class FlaresimReader {
 void FlaresimReader::comment(std::string_view text) {
   if (text.empty() || text.starts_with("radius")) return;
   if (!in_.lens.f_number) in_.lens.f_number = f_number_in(text);
-  auto& notes = in_.lens.imported->notes;
-  if (notes.size() < 1000) notes.emplace_back(beginning(text, 4096));
+  in_.note(text);
 }
 
 void FlaresimReader::key(int line, std::string_view name, std::string_view value) {
@@ -73,9 +71,7 @@ void FlaresimReader::row(int line, const std::vector<std::string_view>& cells, s
     in_.must_be(line, "row", std::to_string(cells.size()) + " cells",
                 "radius, thickness, ior, abbe, semi_ap, coating, type");
   }
-  if (table_.rows.size() == most_rows) {
-    throw Error(in_.where() + ": more than " + std::to_string(most_rows) + " surfaces; must be fewer");
-  }
+  in_.limit(table_.rows.size() + 1);
   std::array<double, names.size()> values{};
   for (std::size_t i = stop || plane ? 1 : 0; i < std::min(cells.size(), names.size()); ++i) {
     const auto value = number(cells[i]);

@@ -85,7 +85,7 @@ std::string GlassNames::others(const Glass& found, std::span<const std::string> 
   for (auto it = first; it != last; ++it) {
     const Glass& other = *it->second;
     if (age(other) != age(found) || std::abs(other.nd - found.nd) <= another_catalogue) continue;
-    list += (list.empty() ? "" : ", ") + describe(other);
+    append(list, ", ", describe(other));
   }
   return list;
 }

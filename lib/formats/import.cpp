@@ -67,6 +67,17 @@ void Import::must_be(int line, std::string_view parameter, const std::string& va
               "; must be " + rule);
 }
 
+void Import::limit(std::size_t count, std::string_view what, std::size_t ends) const {
+  constexpr std::size_t most = 10'000;
+  if (count <= most + ends) return;
+  throw Error(where_ + ": more than " + std::to_string(most) + ' ' + std::string(what) + "; must be fewer");
+}
+
+void Import::note(std::string_view text) {
+  auto& notes = lens.imported->notes;
+  if (!text.empty() && notes.size() < 1000) notes.emplace_back(beginning(text, 4096));
+}
+
 void Import::count_left_out_warnings() {
   if (left_out_ == 0) return;
   lens.imported->warnings.push_back({0, "file", std::to_string(left_out_) + " more warnings are left out"});
@@ -138,7 +149,7 @@ Medium Import::glass(int line, std::string_view name, std::span<const std::strin
       warn(line, name, "is in no glass table; " + describe(*found) + " is taken for it");
     } else if (!catalogues.empty() && !names_its_maker && !is_listed(catalogues, *found)) {
       std::string list;
-      for (const std::string& c : catalogues) list += (list.empty() ? "" : ", ") + c;
+      for (const std::string& c : catalogues) append(list, ", ", c);
       warn(line, name, "is not in the catalogues of the file (" + list + "); " + describe(*found) + " is taken for it");
     } else if (const std::string others = names().others(*found, catalogues, nd); !names_its_maker && !others.empty()) {
       warn(line, name, "is in several catalogues; " + describe(*found) + " is taken, not " + others);

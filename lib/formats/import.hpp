@@ -35,6 +35,10 @@ class Import {
   /// Throws Error: "file:7: parameter = value; must be rule".
   [[noreturn]] void must_be(int line, std::string_view parameter, const std::string& value,
                             const std::string& rule) const;
+  /// Throws Error if a file has more than 10,000 items. ends: more are allowed for object and image surfaces.
+  void limit(std::size_t count, std::string_view what = "surfaces", std::size_t ends = 0) const;
+  /// Keeps a note of the file: the first thousand, up to 4,096 bytes each.
+  void note(std::string_view text);
   /// The word as a number; refuses what is none, also one with a decimal comma, beyond double or not a number.
   double number(int line, std::string_view command, std::string_view word) const;
 

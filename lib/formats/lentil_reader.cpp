@@ -13,7 +13,6 @@
 namespace petzval::formats_detail {
 namespace {
 
-constexpr std::size_t most_surfaces = 10'000;
 constexpr std::array<const char*, 3> positions = {"short", "middle", "long"};
 
 /// A member of a lens as text, whatever its type; empty if it is absent.
@@ -26,7 +25,7 @@ std::string text_of(const nlohmann::json& lens, const char* name) {
 std::string title_of(const nlohmann::json& lens) {
   std::string title;
   for (const char* part : {"company", "product-name", "year"}) {
-    if (const std::string word = text_of(lens, part); !word.empty()) title += (title.empty() ? "" : " ") + word;
+    if (const std::string word = text_of(lens, part); !word.empty()) append(title, " ", word);
   }
   return title;
 }
@@ -53,7 +52,7 @@ std::string listed(const nlohmann::json& database) {
   std::string list;
   for (const auto& [key, lens] : database.items()) {
     if (list.size() > longest) return list + ", ...";
-    list += (list.empty() ? "" : ", ") + std::string(beginning(key, 60));
+    append(list, ", ", beginning(key, 60));
     if (const std::string title = title_of(lens); !title.empty())
       list += " (" + std::string(beginning(title, 80)) + ')';
   }
@@ -140,9 +139,7 @@ void LentilReader::lens(const JsonObject& o) {
   const char* key = has_adjusted ? "optical-elements-adjusted" : "optical-elements-patent";
   const nlohmann::json* elements = o.find(key);
   if (!elements || !elements->is_array()) o.refuse(key, elements ? "no list" : "missing", "a list of surfaces");
-  if (elements->size() > most_surfaces) {
-    throw Error(in_.where() + ": more than " + std::to_string(most_surfaces) + " surfaces, wanted fewer");
-  }
+  in_.limit(elements->size());
   if (has_adjusted && o.find("optical-elements-patent")) {
     in_.warn(0, "optical-elements-patent", "is left out beside optical-elements-adjusted");
   }

@@ -21,7 +21,7 @@
 namespace petzval::formats_detail {
 namespace {
 
-constexpr std::size_t most_rows = 10'000, most_columns = 100;
+constexpr std::size_t most_columns = 100;
 
 /// The cells of a line, without empty cells at its end; at most one cell more than allowed. A comment behind "//" ends
 /// the line, unless "//" is part of a word ("https://...").
@@ -152,11 +152,11 @@ void OpticalBenchReader::take(int line, const Cells& cells) {
 
 void OpticalBenchReader::note(const Cells& cells) {
   std::string text;
-  for (const auto cell : cells) text += (text.empty() ? "" : " ") + std::string(beginning(cell, 4096));
+  for (const auto cell : cells) append(text, " ", beginning(cell, 4096));
   if (cells[0] == "title" && section_ == "descriptive data") {
     in_.lens.imported->title = text.size() > 6 ? text.substr(6) : std::string();
-  } else if (in_.lens.imported->notes.size() < 1000) {
-    in_.lens.imported->notes.push_back(text);
+  } else {
+    in_.note(text);
   }
 }
 
@@ -184,7 +184,7 @@ void OpticalBenchReader::take_surface(int line, const Cells& cells) {
     in_.refuse(line, "row", std::to_string(cells.size()) + " columns",
                "a name, radius, thickness, index, diameter and V-number, with tabs between them");
   }
-  if (rows_.size() == most_rows) throw Error(in_.where() + ": more than 10000 surfaces, wanted fewer");
+  in_.limit(rows_.size() + 1);
   SurfaceRow surface;
   const std::string_view radius = cell(1);
   if (radius == "AS") {

@@ -18,8 +18,6 @@
 namespace petzval::formats_detail {
 namespace {
 
-constexpr std::size_t most_surfaces = 10'000;
-
 const nlohmann::json& list(const JsonObject& object, const char* key) {
   const nlohmann::json* value = object.find(key);
   if (!value || !value->is_array()) object.refuse(key, value ? "no list" : "missing", "a list");
@@ -224,9 +222,7 @@ void OptilandReader::rim(const JsonObject& surface, SurfaceRow& row) {
 
 void OptilandReader::surfaces(const JsonObject& group) {
   const nlohmann::json& all = list(group, "surfaces");
-  if (all.size() > most_surfaces + 2) {
-    throw Error(in_.where() + ": more than " + std::to_string(most_surfaces) + " surfaces, wanted fewer");
-  }
+  in_.limit(all.size(), "surfaces", 2);
   if (all.size() < 3)
     group.refuse("surfaces", std::to_string(all.size()) + " surfaces", "an object, a lens and an image");
   const JsonObject object = entry(group, "surfaces", 0);

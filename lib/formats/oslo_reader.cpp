@@ -17,8 +17,6 @@
 namespace petzval::formats_detail {
 namespace {
 
-constexpr std::size_t most_surfaces = 10'000;
-
 /// The commands of a line: what stands between semicolons, outside quotes and in front of two slashes.
 std::vector<std::string_view> commands_of(std::string_view line) {
   std::vector<std::string_view> commands;
@@ -69,8 +67,7 @@ class OsloReader {
     start_surface(line);
   }
   void start_surface(int line) {
-    if (lens_.surfaces.size() > most_surfaces + 1)
-      throw Error(in_.where() + ": more than 10000 surfaces, wanted fewer");
+    in_.limit(lens_.surfaces.size() + 1, "surfaces", 2);
     lens_.surfaces.back().line = std::max(lens_.surfaces.back().line, 1);
     lens_.surfaces.emplace_back().line = has_next_.value_or(false) ? line : 0;
   }
@@ -161,9 +158,8 @@ bool OsloReader::take_general(int line, std::string_view command, const Words& w
   if (command == "WW") return lens_.weights = values(line, w), true;
   if (command == "DES" || command.starts_with("SNO")) {
     std::string note;
-    for (std::size_t i = 1; i < w.size(); ++i) note += (note.empty() ? "" : " ") + std::string(w[i]);
-    if (!note.empty() && in_.lens.imported->notes.size() < 1000)
-      in_.lens.imported->notes.push_back(std::string(beginning(note, 4096)));
+    for (std::size_t i = 1; i < w.size(); ++i) append(note, " ", w[i]);
+    in_.note(note);
     return true;
   }
   if (command == "NXT") {

@@ -22,8 +22,6 @@ namespace {
 
 using io_detail::in_quotes;
 
-constexpr std::size_t most_rows = 10'000;
-
 /// The mark of the stop behind the number of a row: "4(stop)", "4 STO", "4S"; empty without a mark.
 std::string_view stop_mark_of(std::string_view label) {
   const std::size_t end = std::min(label.find_first_not_of("0123456789"), label.size());
@@ -104,18 +102,16 @@ class TableReader {
 };
 
 void TableReader::take_comments() {
-  auto& notes = in_.lens.imported->notes;
   for (const TableComment& comment : text_.comments) {
     if (said_.size() < 65'536) said_ += std::string(beginning(comment.text, 4096)) + ' ';
-    if (!comment.text.empty() && notes.size() < 1000) notes.emplace_back(beginning(comment.text, 4096));
+    in_.note(comment.text);
   }
 }
 
 /// A line of words in front of the table: its title.
 void TableReader::take_text(const TableLine& line) {
   std::string title;
-  for (const std::string_view cell : line.cells)
-    title += (title.empty() ? "" : " ") + std::string(beginning(cell, 4096));
+  for (const std::string_view cell : line.cells) append(title, " ", beginning(cell, 4096));
   said_ += title + ' ';
   in_.warn(line.number, "line", in_quotes(title) + " names no columns; it is taken as a title");
   auto& notes = in_.lens.imported->notes;
@@ -193,9 +189,7 @@ void TableReader::take_lines() {
       take_text(line);
       continue;
     }
-    if (rows_.size() == most_rows) {
-      throw Error(in_.where() + ": more than " + std::to_string(most_rows) + " surfaces; must be fewer");
-    }
+    in_.limit(rows_.size() + 1);
     rows_.push_back({line.number, line.cells, line.remark});
   }
 }
@@ -273,7 +267,7 @@ void TableReader::check_head() const {
   std::string unknown;
   for (const TableColumn& column : columns_) {
     if (column.kind == Column::left_out) {
-      unknown += (unknown.empty() ? "" : ", ") + in_quotes(column.name);
+      append(unknown, ", ", in_quotes(column.name));
       continue;
     }
     const bool once = column.kind != Column::term && column.kind != Column::comment && column.kind != Column::number;
@@ -323,7 +317,7 @@ void TableReader::guess() {
       std::ranges::any_of(plain, [&](const auto& cells) { return cells.size() == 4 && text_.number(cells[2]) == 0.0; });
   if (renderers) return;
   std::string names;
-  for (const TableColumn& column : columns_) names += (names.empty() ? "" : ", ") + column.name;
+  for (const TableColumn& column : columns_) append(names, ", ", column.name);
   in_.warn(rows_.front().line, "columns", "have no heads; they are taken as " + names);
 }
 
@@ -365,7 +359,7 @@ void TableReader::check_width(const RawRow& row) const {
   const std::size_t width = columns_.size(), cells = row.cells.size();
   if (cells == width || (cells < width && text_.has_empty_cells() && !guessed_)) return;
   std::string names;
-  for (const TableColumn& column : columns_) names += (names.empty() ? "" : ", ") + column.name;
+  for (const TableColumn& column : columns_) append(names, ", ", column.name);
   const auto refuse = [&] {
     in_.must_be(row.line, "row", std::to_string(cells) + (cells == 1 ? " cell" : " cells"),
                 std::to_string(width) + ": " + names + "; \"-\" for none");

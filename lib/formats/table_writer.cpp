@@ -35,7 +35,7 @@ WrittenLens format_table(const Prescription& prescription, const GlassCatalogue*
   out.line("# " + one_line(p.name.empty() ? std::string("lens") : p.name));
   std::string nominal;
   if (p.focal_length_mm) nominal += to_text(*p.focal_length_mm) + " mm";
-  if (p.f_number) nominal += (nominal.empty() ? "" : " ") + ("f/" + to_text(*p.f_number));
+  if (p.f_number) append(nominal, " ", "f/" + to_text(*p.f_number));
   if (!nominal.empty()) out.line("# " + nominal);
   out.lose_nominal_data(false, {"focal_length_mm", "f_number"});
   out.line("# millimetres; the row of index 0 is the stop");

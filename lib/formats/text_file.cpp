@@ -15,7 +15,7 @@
 namespace petzval::formats_detail {
 namespace {
 
-void append(std::string& text, std::uint32_t code) {
+void append_utf8(std::string& text, std::uint32_t code) {
   const auto put = [&text](std::uint32_t byte) { text.push_back(static_cast<char>(byte)); };
   if (code < 0x80) {
     put(code);
@@ -39,12 +39,12 @@ std::string from_utf16(std::string_view bytes, bool big_endian) {
   for (std::size_t i = 0; i + 1 < bytes.size(); i += 2) {
     const std::uint32_t first = unit(i);
     if (first < 0xD800 || first > 0xDFFF) {
-      append(text, first);
+      append_utf8(text, first);
       continue;
     }
     const std::uint32_t second = first < 0xDC00 && i + 3 < bytes.size() ? unit(i + 2) : 0;
     const bool pair = second >= 0xDC00 && second <= 0xDFFF;
-    append(text, pair ? 0x10000 + ((first - 0xD800) << 10) + (second - 0xDC00) : 0xFFFD);
+    append_utf8(text, pair ? 0x10000 + ((first - 0xD800) << 10) + (second - 0xDC00) : 0xFFFD);
     if (pair) i += 2;
   }
   return text;
@@ -62,7 +62,7 @@ bool is_utf8(std::string_view text) {
 std::string from_latin1(std::string_view bytes) {
   std::string text;
   text.reserve(bytes.size() + bytes.size() / 16);
-  for (const char c : bytes) append(text, static_cast<unsigned char>(c));
+  for (const char c : bytes) append_utf8(text, static_cast<unsigned char>(c));
   return text;
 }
 
@@ -198,6 +198,11 @@ std::string_view entry_of(std::string_view list, std::string_view word) noexcept
     list.remove_prefix(std::min(entry.size() + 1, list.size()));
   }
   return {};
+}
+
+void append(std::string& texts, std::string_view separator, std::string_view text) {
+  if (!texts.empty()) texts += separator;
+  texts += text;
 }
 
 std::string one_line(std::string text) {

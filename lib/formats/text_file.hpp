@@ -55,6 +55,9 @@ bool same(std::string_view a, std::string_view b) noexcept;  ///< but for the ca
 std::string_view entry_of(std::string_view list, std::string_view word) noexcept;
 inline bool is_one_of(std::string_view word, std::string_view list) noexcept { return !entry_of(list, word).empty(); }
 
+/// Adds a text to others, behind a separator unless it is the first.
+void append(std::string& texts, std::string_view separator, std::string_view text);
+
 /// The text on one line that every reader takes: control characters, line breaks among them, become blanks.
 std::string one_line(std::string text);
 

@@ -12,6 +12,7 @@
 #include "petzval/lens/lens.hpp"
 #include "petzval/lens/medium.hpp"
 #include "petzval/paraxial/first_order.hpp"
+#include "text_file.hpp"
 
 namespace petzval::formats_detail {
 
@@ -149,7 +150,7 @@ void Writer::lose_nominal_data(bool design_data, std::initializer_list<std::stri
   };
   std::string lost;
   for (const auto& [name, given] : all) {
-    if (given && std::ranges::find(kept, name) == kept.end()) lost += (lost.empty() ? "" : ", ") + std::string(name);
+    if (given && std::ranges::find(kept, name) == kept.end()) append(lost, ", ", name);
   }
   if (!lost.empty()) lose("nominal data", "and sources have no place in this format: " + lost);
 }

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "core/text.hpp"
+#include "text_file.hpp"
 #include "zemax_lens.hpp"
 
 namespace petzval::formats_detail {
@@ -68,7 +69,7 @@ bool is_fold(std::span<const ZemaxSurface> three) {
 void warn_of_surface(const ZemaxSurface& found, Import& in) {
   std::string said;
   const auto add = [&](bool is_there, std::string_view what) {
-    if (is_there) said.append(said.empty() ? "" : ", ").append(what);
+    if (is_there) append(said, ", ", what);
   };
   add(found.curvature != 0 || found.curvature_pickup, "CURV");
   add(found.conic != 0, "CONI");

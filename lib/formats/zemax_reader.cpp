@@ -20,7 +20,7 @@ namespace {
 using Words = std::span<const std::string_view>;
 using io_detail::in_quotes;
 
-constexpr std::size_t most_surfaces = 10'000, most_operands = 100'000;
+constexpr std::size_t most_operands = 100'000;
 
 /// Commands that change nothing of the lens: the program's windows, tolerances, analyses, coatings, colours and
 /// polarisation; variables of the optimisation; pickups and solves, as the file states the values that they gave.
@@ -407,9 +407,7 @@ void ZemaxReader::primary(Words words) {
 
 void ZemaxReader::new_surface(Words words) {
   const int number = whole(words, 1, 0, 1'000'000);
-  if (lens_.surfaces.size() >= most_surfaces + 2) {  // with object and image
-    throw Error(in_.where() + ": more than " + std::to_string(most_surfaces) + " surfaces, wanted fewer");
-  }
+  in_.limit(lens_.surfaces.size() + 1, "surfaces", 2);
   if (static_cast<std::size_t>(number) != lens_.surfaces.size()) {
     in_.refuse(line_, "SURF", std::to_string(number), std::to_string(lens_.surfaces.size()) + ", the next number");
   }
