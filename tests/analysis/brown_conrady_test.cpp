@@ -18,7 +18,7 @@
 #include "petzval/pupil/illumination.hpp"
 
 namespace petzval {
-namespace {
+namespace brown_conrady_test {
 
 using testing::BallAndPlate;
 using testing::data_lens;
@@ -203,5 +203,5 @@ TEST(BrownConrady, SaysItsDirection) {
   EXPECT_EQ(name(BrownConradyDirection::to_distorted), "Brown-Conrady U-D");
 }
 
-}  // namespace
+}  // namespace brown_conrady_test
 }  // namespace petzval

@@ -17,7 +17,7 @@
 #include "petzval/pupil/f_number.hpp"
 
 namespace petzval {
-namespace {
+namespace camera_image_test {
 
 using testing::data_lens;
 using testing::expect_error;
@@ -131,5 +131,5 @@ TEST(CameraImages, WantIrradiance) {
   expect_error([&] { point_image(camera, {0, -1000}, options); }, {lens.name(), "point_image", "weights"});
 }
 
-}  // namespace
+}  // namespace camera_image_test
 }  // namespace petzval

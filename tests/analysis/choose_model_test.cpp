@@ -21,7 +21,7 @@
 #include "petzval/pupil/f_number.hpp"
 
 namespace petzval {
-namespace {
+namespace choose_model_test {
 
 using testing::data_lens;
 using testing::data_prescription;
@@ -302,5 +302,5 @@ TEST(ChooseModel, RefusesImpossibleScenesAndBudgets) {
   expect_tokens(refusal({.near_mm = 2000, .f_number = 0.5}, {}), {"f", 0.5});
 }
 
-}  // namespace
+}  // namespace choose_model_test
 }  // namespace petzval

@@ -16,7 +16,7 @@
 #include "petzval/pupil/f_number.hpp"
 
 namespace petzval {
-namespace {
+namespace chromatic_test {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr std::array f_d_c{486.1327, 587.5618, 656.2725};
@@ -133,5 +133,5 @@ TEST(ChromaticAberration, HasNoLateralColourWithoutAChiefRay) {
   for (const auto& lateral : colour.lateral[0]) EXPECT_FALSE(lateral);
 }
 
-}  // namespace
+}  // namespace chromatic_test
 }  // namespace petzval

@@ -12,7 +12,7 @@
 #include "../message.hpp"
 
 namespace petzval {
-namespace {
+namespace colour_test {
 
 using testing::expect_error;
 using testing::expect_tokens;
@@ -269,5 +269,5 @@ TEST(ColourMatching, SaysWhatIsWrongWithATable) {
   expect_error([] { ColourMatching::load("no/such.csv"); }, {"no/such.csv", "No such file"});
 }
 
-}  // namespace
+}  // namespace colour_test
 }  // namespace petzval

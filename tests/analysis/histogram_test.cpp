@@ -10,7 +10,7 @@
 #include <vector>
 
 namespace petzval {
-namespace {
+namespace histogram_test {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
@@ -61,5 +61,5 @@ TEST(CountPoints, LosesNothingInAFullPixel) {
   }
 }
 
-}  // namespace
+}  // namespace histogram_test
 }  // namespace petzval

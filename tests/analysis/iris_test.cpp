@@ -20,7 +20,7 @@
 #include "petzval/trace/trace.hpp"
 
 namespace petzval {
-namespace {
+namespace iris_test {
 
 const double hexagon_over_disc = 3 * std::numbers::sqrt3 / 2 / std::numbers::pi;
 const Iris hexagon{.blades = 6, .rotation_rad = 0.1};
@@ -168,5 +168,5 @@ TEST(LensWithIris, FocusOfExactRaysMovesWithItAndParaxialFocusDoesNot) {
   EXPECT_NE(with_focus(bladed, 3000).film_z(), with_focus(lens, 3000).film_z());
 }
 
-}  // namespace
+}  // namespace iris_test
 }  // namespace petzval

@@ -19,7 +19,7 @@
 #include "petzval/pupil/aim.hpp"
 
 namespace petzval {
-namespace {
+namespace lens_distortion_test {
 
 using testing::BallAndPlate;
 using testing::data_lens;
@@ -278,5 +278,5 @@ TEST(LensDistortion, RefusesWhatHasNoPinhole) {
   expect_error(without_axis, {lens.name(), "axis"});
 }
 
-}  // namespace
+}  // namespace lens_distortion_test
 }  // namespace petzval

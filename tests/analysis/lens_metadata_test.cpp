@@ -18,7 +18,7 @@
 #include "petzval/pupil/illumination.hpp"
 
 namespace petzval {
-namespace {
+namespace lens_metadata_test {
 
 using testing::data_lens;
 using testing::data_prescription;
@@ -103,5 +103,5 @@ TEST(ExposureFalloff, FollowsTheLightOnTheFilmWithinItsError) {
   }
 }
 
-}  // namespace
+}  // namespace lens_metadata_test
 }  // namespace petzval

@@ -20,7 +20,7 @@
 #include "petzval/pupil/illumination.hpp"
 
 namespace petzval {
-namespace {
+namespace lint_test {
 
 using Kind = FindingKind;
 using testing::data_prescription;
@@ -404,5 +404,5 @@ TEST(Lint, FindsInDataTheKnownOverlapsAndNothingElse) {
   EXPECT_EQ(count, 75u);
 }
 
-}  // namespace
+}  // namespace lint_test
 }  // namespace petzval

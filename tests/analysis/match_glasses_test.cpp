@@ -13,7 +13,7 @@
 #include "petzval/lens/lens.hpp"
 #include "petzval/paraxial/first_order.hpp"
 
-namespace {
+namespace match_glasses_test {
 
 using petzval::testing::expect_error;
 
@@ -112,4 +112,4 @@ TEST(MatchGlasses, EveryLensOfTheDataKeepsItsFocalLengthAtItsReference) {
   EXPECT_GT(matches, rest);
 }
 
-}  // namespace
+}  // namespace match_glasses_test

@@ -22,7 +22,7 @@
 #include "petzval/pupil/f_number.hpp"
 
 namespace petzval {
-namespace {
+namespace model_error_test {
 
 using testing::data_lens;
 using testing::data_prescription;
@@ -234,5 +234,5 @@ TEST(ModelError, RefusesWhatItCannotMeasure) {
   EXPECT_THROW(model_error(cylinders, {}, ModelKind::pinhole, at(cylinders, {3000})), Error);
 }
 
-}  // namespace
+}  // namespace model_error_test
 }  // namespace petzval

@@ -13,7 +13,7 @@
 #include "petzval/pupil/f_number.hpp"
 
 namespace petzval {
-namespace {
+namespace psf_error_test {
 
 using testing::expect_error;
 
@@ -94,5 +94,5 @@ TEST(PsfError, IsNotZeroForFewSamples) {
   }
 }
 
-}  // namespace
+}  // namespace psf_error_test
 }  // namespace petzval

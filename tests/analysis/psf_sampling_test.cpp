@@ -20,7 +20,7 @@
 #include "petzval/trace/trace.hpp"
 
 namespace petzval {
-namespace {
+namespace psf_sampling_test {
 
 constexpr std::size_t rings = 64, side = 16, runs = 8;
 
@@ -185,5 +185,5 @@ TEST(PsfSampling, OneSequenceBeatsEightReplicates) {
   EXPECT_GT(std::pow(product, 1 / static_cast<double>(cases.size())), 1.5);
 }
 
-}  // namespace
+}  // namespace psf_sampling_test
 }  // namespace petzval

@@ -23,7 +23,7 @@
 #include "petzval/pupil/illumination.hpp"
 
 namespace petzval {
-namespace {
+namespace psf_set_test {
 
 using testing::data_lens;
 using testing::data_prescription;
@@ -275,5 +275,5 @@ TEST(PsfSet, RefusesAxesThatAreNoGridAndPointsOutside) {
   expect_tokens(outside({7, 2000, d_line_nm, 4}), {"f_number", 4});
 }
 
-}  // namespace
+}  // namespace psf_set_test
 }  // namespace petzval

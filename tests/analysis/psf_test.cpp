@@ -24,7 +24,7 @@
 #include "petzval/trace/trace.hpp"
 
 namespace petzval {
-namespace {
+namespace psf_test {
 
 using testing::data_lens;
 using testing::expect_error;
@@ -308,5 +308,5 @@ TEST(PointImage, OfAStopWithoutARimHasTheLightThatRimsLetThrough) {
   EXPECT_EQ(message([&] { point_image(endless, point, options); }), message([&] { pupils(endless); }));
 }
 
-}  // namespace
+}  // namespace psf_test
 }  // namespace petzval

@@ -16,7 +16,7 @@
 #include "petzval/pupil/f_number.hpp"
 
 namespace petzval {
-namespace {
+namespace spot_test {
 
 using testing::data_lens;
 
@@ -185,5 +185,5 @@ TEST(SpotDiagram, SaysWhereThereIsNoChiefRay) {
   EXPECT_FALSE(spots[1].relative_illumination.has_value());
 }
 
-}  // namespace
+}  // namespace spot_test
 }  // namespace petzval

@@ -13,7 +13,7 @@
 #include "petzval/analysis/lens_metadata.hpp"
 
 namespace petzval {
-namespace {
+namespace st_map_test {
 
 using testing::data_lens;
 using testing::expect_error;
@@ -235,5 +235,5 @@ TEST(StMap, RefusesOverscansOutOfRange) {
   }
 }
 
-}  // namespace
+}  // namespace st_map_test
 }  // namespace petzval

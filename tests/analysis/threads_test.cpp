@@ -27,7 +27,7 @@
 #include "petzval/trace/trace.hpp"
 
 namespace petzval {
-namespace {
+namespace threads_test {
 
 struct Shared {
   Prescription prescription;
@@ -155,5 +155,5 @@ TEST(Threads, ShareALensAndAGlassCatalogue) {
   for (const auto& numbers : together) EXPECT_EQ(numbers, alone);
 }
 
-}  // namespace
+}  // namespace threads_test
 }  // namespace petzval

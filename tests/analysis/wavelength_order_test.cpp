@@ -24,7 +24,7 @@
 #include "petzval/pupil/illumination.hpp"
 
 namespace petzval {
-namespace {
+namespace wavelength_order_test {
 
 constexpr std::array<double, 3> lines_nm{486.1327, d_line_nm, 656.2725};
 constexpr double off_axis = radians(4.0);
@@ -178,5 +178,5 @@ TEST(WavelengthOrder, ChangesNothingThatALensSays) {
   EXPECT_GE(cameras, 50);
 }
 
-}  // namespace
+}  // namespace wavelength_order_test
 }  // namespace petzval

@@ -14,7 +14,7 @@
 #include "../trace/batches.hpp"
 #include "hash.hpp"
 
-namespace {
+namespace batch_bits_test {
 
 using namespace testing_batches;
 
@@ -136,4 +136,4 @@ TEST(BatchBits, AreTheSameOnEveryInstructionSet) {
   }
 }
 
-}  // namespace
+}  // namespace batch_bits_test

@@ -18,7 +18,7 @@
 #include "petzval/focus/focus.hpp"
 
 namespace petzval {
-namespace {
+namespace camera_bits_test {
 
 struct Row {
   std::string lens;
@@ -134,5 +134,5 @@ TEST(CameraBits, AreThoseOfTheTable) {
   EXPECT_TRUE(found == wanted) << "The table is now:\n" << found;
 }
 
-}  // namespace
+}  // namespace camera_bits_test
 }  // namespace petzval

@@ -11,7 +11,7 @@
 #include "petzval/paraxial/ideal_lens.hpp"
 
 namespace petzval {
-namespace {
+namespace focal_surface_bits_test {
 
 TEST(FocalSurfaceBits, AreThoseOfTheTable) {
   const Film film{.width_mm = 36, .height_mm = 24, .columns = 90, .rows = 60, .z_mm = 50};
@@ -32,5 +32,5 @@ TEST(FocalSurfaceBits, AreThoseOfTheTable) {
   EXPECT_EQ(hash.value(), 17889357273939156048u);
 }
 
-}  // namespace
+}  // namespace focal_surface_bits_test
 }  // namespace petzval

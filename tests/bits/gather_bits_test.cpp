@@ -13,7 +13,7 @@
 #include "petzval/core/units.hpp"
 
 namespace petzval {
-namespace {
+namespace gather_bits_test {
 
 using blur_detail::GatherPath;
 
@@ -71,5 +71,5 @@ TEST(GatherBits, AreThoseOfTheTable) {
             0xbcf69b2919a61816u);
 }
 
-}  // namespace
+}  // namespace gather_bits_test
 }  // namespace petzval

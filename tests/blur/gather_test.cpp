@@ -19,7 +19,7 @@
 #include "petzval/core/units.hpp"
 #include "reference_gather.hpp"
 
-namespace {
+namespace gather_test {
 
 using petzval::testing::expect_error;
 
@@ -450,4 +450,4 @@ TEST(Highlights, HideBehindWhatIsNearer) {
   EXPECT_LT(left, 0.02 * right);
 }
 
-}  // namespace
+}  // namespace gather_test

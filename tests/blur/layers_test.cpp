@@ -15,7 +15,7 @@
 #include "petzval/core/error.hpp"
 #include "petzval/core/units.hpp"
 
-namespace {
+namespace layers_test {
 
 using petzval::testing::expect_error;
 using petzval::testing::expect_tokens;
@@ -248,4 +248,4 @@ TEST(AxialDepths, AreThoseOfPointsInOnePlane) {
   expect_error([&] { axial_depths(camera, lists); }, {"axial_depths", 659, 30, 22});
 }
 
-}  // namespace
+}  // namespace layers_test

@@ -20,7 +20,7 @@
 #include "petzval/focus/focus.hpp"
 #include "petzval/lens/lens.hpp"
 
-namespace {
+namespace lens_rays_test {
 
 using petzval::testing::expect_error;
 
@@ -337,4 +337,4 @@ TEST(LayerCameras, RefuseFisheyes) {
   expect_error([] { layer_camera(0, 10, radians(15)); }, {0, 10});
 }
 
-}  // namespace
+}  // namespace lens_rays_test

@@ -8,7 +8,7 @@
 #include <span>
 #include <vector>
 
-namespace {
+namespace n_buffer_test {
 
 using petzval::blur_detail::DepthRange;
 using petzval::blur_detail::NBuffer;
@@ -80,4 +80,4 @@ TEST_P(NBuffers, AreTheRangesOfRectangles) {
 INSTANTIATE_TEST_SUITE_P(Sizes, NBuffers,
                          ::testing::Values(std::pair{1, 1}, std::pair{7, 300}, std::pair{129, 64}, std::pair{250, 77}));
 
-}  // namespace
+}  // namespace n_buffer_test

@@ -16,7 +16,7 @@
 #include "petzval/core/units.hpp"
 #include "petzval/focus/focus.hpp"
 
-namespace {
+namespace physics_test {
 
 using namespace petzval;
 using blur_detail::GatherPath;
@@ -190,4 +190,4 @@ TEST(Points, HaveTheRadiusOfTheirCircleOfConfusionOnEveryPath) {
   }
 }
 
-}  // namespace
+}  // namespace physics_test

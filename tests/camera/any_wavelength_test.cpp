@@ -21,7 +21,7 @@
 #include "petzval/pupil/f_number.hpp"
 
 namespace petzval {
-namespace {
+namespace any_wavelength_test {
 
 Lens compiled(const Prescription& prescription, const std::vector<double>& wavelengths_nm) {
   static const auto glasses = GlassCatalogue::load(std::filesystem::path(PETZVAL_TEST_DATA) / "glass");
@@ -455,5 +455,5 @@ TEST(AnyWavelengthOf, ModelsThatDoNotTakeItAreCompiledOnes) {
   EXPECT_EQ(fates[1], RayFate::outside_spectrum);
 }
 
-}  // namespace
+}  // namespace any_wavelength_test
 }  // namespace petzval

@@ -20,7 +20,7 @@
 #include "petzval/trace/trace.hpp"
 
 namespace petzval {
-namespace {
+namespace bokeh_controls_test {
 
 using testing::data_lens;
 using testing::message;
@@ -344,5 +344,5 @@ TEST(BokehControls, RefuseBadInput) {
   EXPECT_NE(message([&] { weighted.tables(); }), "");
 }
 
-}  // namespace
+}  // namespace bokeh_controls_test
 }  // namespace petzval

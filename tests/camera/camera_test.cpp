@@ -30,7 +30,7 @@
 #include "tilted_films.hpp"
 
 namespace petzval {
-namespace {
+namespace camera_test {
 
 using testing::random_samples;
 using testing::Samples;
@@ -571,5 +571,5 @@ TEST(Camera, OfAStopWithoutARimHasTheLightThatRimsLetThrough) {
   }
 }
 
-}  // namespace
+}  // namespace camera_test
 }  // namespace petzval

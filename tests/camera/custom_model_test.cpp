@@ -24,7 +24,7 @@
 #include "petzval/pupil/illumination.hpp"
 
 namespace petzval {
-namespace {
+namespace custom_model_test {
 
 using testing::random_samples;
 
@@ -267,5 +267,5 @@ TEST(OwnModel, TakesATiltedFilm) {
   EXPECT_NEAR(mean_weight(camera) / (4 * z * at_film / (length2 * length2)), 1, 3e-3);
 }
 
-}  // namespace
+}  // namespace custom_model_test
 }  // namespace petzval

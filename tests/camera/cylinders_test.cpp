@@ -18,7 +18,7 @@
 #include "petzval/pupil/f_number.hpp"
 
 namespace petzval {
-namespace {
+namespace cylinders_test {
 
 using testing::random_samples;
 
@@ -131,5 +131,5 @@ TEST(Cylinders, PolynomialsHaveRaysBetweenWavelengths) {
   EXPECT_GT(compared, 450);
 }
 
-}  // namespace
+}  // namespace cylinders_test
 }  // namespace petzval

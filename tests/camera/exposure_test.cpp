@@ -16,7 +16,7 @@
 #include "petzval/pupil/illumination.hpp"
 
 namespace petzval {
-namespace {
+namespace exposure_test {
 
 constexpr std::array pupil_models{ModelKind::pinhole, ModelKind::thin, ModelKind::thin_two_disc, ModelKind::thick,
                                   ModelKind::polynomial(3)};
@@ -109,5 +109,5 @@ TEST(Exposure, OfAnIrisWithEdgesIsThatOfTheExactLens) {
   }
 }
 
-}  // namespace
+}  // namespace exposure_test
 }  // namespace petzval

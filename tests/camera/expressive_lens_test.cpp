@@ -22,7 +22,7 @@
 #include "tilted_films.hpp"
 
 namespace petzval {
-namespace {
+namespace expressive_lens_test {
 
 using testing::wide;
 
@@ -236,5 +236,5 @@ TEST(ExpressiveLens, InvalidOnesAreRefused) {
             std::string::npos);
 }
 
-}  // namespace
+}  // namespace expressive_lens_test
 }  // namespace petzval

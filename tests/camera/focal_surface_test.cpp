@@ -13,7 +13,7 @@
 #include "core/low_discrepancy.hpp"
 #include "petzval/core/error.hpp"
 
-namespace {
+namespace focal_surface_test {
 
 using namespace petzval;
 using petzval::testing::message;
@@ -458,4 +458,4 @@ TEST(FocusFades, AreTheSameForAnyFrameRate) {
   EXPECT_NE(message([&] { at_once.advance(nan, {}); }), "no error");
 }
 
-}  // namespace
+}  // namespace focal_surface_test

@@ -17,7 +17,7 @@
 #include "petzval/pupil/f_number.hpp"
 
 namespace petzval {
-namespace {
+namespace focus_test {
 
 /// The blur of the film's centre over the planes of the scene, as the camera's weighted samples have it.
 ///
@@ -129,5 +129,5 @@ TEST(CameraFocus, OfFirstOrderModelsIsThatOfExactRays) {
   }
 }
 
-}  // namespace
+}  // namespace focus_test
 }  // namespace petzval

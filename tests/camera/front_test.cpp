@@ -13,7 +13,7 @@
 #include "petzval/camera/camera.hpp"
 
 namespace petzval {
-namespace {
+namespace front_test {
 
 struct Case {
   const char* id;
@@ -136,5 +136,5 @@ TEST(Front, IsWhereShadowRaysEnd) {
   }
 }
 
-}  // namespace
+}  // namespace front_test
 }  // namespace petzval

@@ -22,7 +22,7 @@
 #include "petzval/pupil/illumination.hpp"
 
 namespace petzval {
-namespace {
+namespace furnace_test {
 
 double mean_weight(const Camera& camera, const FilmPoint& film, std::uint32_t count = 4096, std::uint32_t seed = 3,
                    std::uint16_t wavelength = 0) {
@@ -175,5 +175,5 @@ TEST(WhiteFurnace, ShowsNoRings) {
   }
 }
 
-}  // namespace
+}  // namespace furnace_test
 }  // namespace petzval

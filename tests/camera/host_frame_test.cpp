@@ -15,7 +15,7 @@
 #include "petzval/paraxial/first_order.hpp"
 
 namespace petzval {
-namespace {
+namespace host_frame_test {
 
 constexpr std::array hosts{Host::pbrt, Host::mitsuba, Host::cycles, Host::arnold, Host::appleseed};
 constexpr std::array origins{FrameOrigin::film, FrameOrigin::front_vertex, FrameOrigin::entrance_pupil};
@@ -110,5 +110,5 @@ TEST(HostFrame, RefusesWhatMakesNoFrame) {
   EXPECT_EQ(message([&] { HostFrame(Host::pbrt, telecentric, FrameOrigin::film); }), "no error");
 }
 
-}  // namespace
+}  // namespace host_frame_test
 }  // namespace petzval

@@ -22,7 +22,7 @@
 #include "petzval/trace/trace.hpp"
 
 namespace petzval {
-namespace {
+namespace importance_test {
 
 constexpr double nan = std::numeric_limits<double>::quiet_NaN(), infinity = std::numeric_limits<double>::infinity();
 const Film film{.width_mm = 36, .height_mm = 24}, small{.width_mm = 6, .height_mm = 6};
@@ -445,5 +445,5 @@ TEST(Importance, OfATiltedPinholeIsThatOfAnUprightOneWithHardlyAnyTilt) {
   }
 }
 
-}  // namespace
+}  // namespace importance_test
 }  // namespace petzval

@@ -23,7 +23,7 @@
 #include "tilted_films.hpp"
 
 namespace petzval {
-namespace {
+namespace local_focus_test {
 
 using testing::pose_of;
 using testing::shifted;
@@ -402,5 +402,5 @@ TEST(LocalFocus, PinholesSeeEverythingSharp) {
   }
 }
 
-}  // namespace
+}  // namespace local_focus_test
 }  // namespace petzval

@@ -19,7 +19,7 @@
 #include "tilted_films.hpp"
 
 namespace petzval {
-namespace {
+namespace moving_film_test {
 
 using testing::shifted;
 using testing::tilted_by;
@@ -200,5 +200,5 @@ TEST(MovingFilm, IsRefusedWhereItWouldTravelIntoTheLens) {
   EXPECT_NE(refusal(std::numeric_limits<double>::quiet_NaN()).find("it travels nan mm"), std::string::npos);
 }
 
-}  // namespace
+}  // namespace moving_film_test
 }  // namespace petzval

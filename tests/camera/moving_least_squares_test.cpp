@@ -10,7 +10,7 @@
 
 #include "../message.hpp"
 
-namespace {
+namespace moving_least_squares_test {
 
 using namespace petzval;
 using camera_detail::MovingLeastSquares;
@@ -232,4 +232,4 @@ TEST(MovingLeastSquares, BatchesHaveTheValuesOfSinglePlaces) {
   }
 }
 
-}  // namespace
+}  // namespace moving_least_squares_test

@@ -23,7 +23,7 @@
 #include "petzval/trace/trace.hpp"
 
 namespace petzval {
-namespace {
+namespace paraxial_model_test {
 
 using camera_detail::ParaxialModel;
 
@@ -481,5 +481,5 @@ TEST(ParaxialModel, RefusesWhatItCannotBe) {
   EXPECT_NE(refusal(ModelKind::thin, compile(in_principal_plane)).find("rear principal plane"), std::string::npos);
 }
 
-}  // namespace
+}  // namespace paraxial_model_test
 }  // namespace petzval

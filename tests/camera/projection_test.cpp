@@ -19,7 +19,7 @@
 #include "petzval/trace/trace.hpp"
 
 namespace petzval {
-namespace {
+namespace projection_test {
 
 constexpr double pi = std::numbers::pi;
 
@@ -233,5 +233,5 @@ TEST(Projection, HasNames) {
   EXPECT_EQ(name(ProjectionStatus::not_visible), "not_visible");
 }
 
-}  // namespace
+}  // namespace projection_test
 }  // namespace petzval

@@ -16,7 +16,7 @@
 #include "petzval/camera/camera.hpp"
 
 namespace petzval {
-namespace {
+namespace reciprocity_test {
 
 constexpr double pi = std::numbers::pi;
 constexpr std::uint32_t replicates = 16, samples = 1 << 14;
@@ -238,5 +238,5 @@ TEST(Reciprocity, HoldsForTiltedFilms) {
   }
 }
 
-}  // namespace
+}  // namespace reciprocity_test
 }  // namespace petzval

@@ -12,7 +12,7 @@
 #include "petzval/core/error.hpp"
 
 namespace petzval {
-namespace {
+namespace threads_test {
 
 /// Results of the camera.
 std::vector<double> answers(const Camera& camera) {
@@ -86,5 +86,5 @@ TEST(Camera, SetUpDoesNotDependOnThreads) {
   }
 }
 
-}  // namespace
+}  // namespace threads_test
 }  // namespace petzval

@@ -26,7 +26,7 @@
 #include "tilted_films.hpp"
 
 namespace petzval {
-namespace {
+namespace tilted_exposure_test {
 
 using testing::pose_of;
 using testing::random_samples;
@@ -307,5 +307,5 @@ TEST(TiltedFilm, GivesOneOnTheAxisWhereThatIsAskedFor) {
   }
 }
 
-}  // namespace
+}  // namespace tilted_exposure_test
 }  // namespace petzval

@@ -24,7 +24,7 @@
 #include "tilted_films.hpp"
 
 namespace petzval {
-namespace {
+namespace tilted_film_test {
 
 using camera_detail::TiltedFilm;
 using testing::CameraParts;
@@ -297,5 +297,5 @@ TEST(TiltedFilm, IsRefusedWithoutACameraToo) {
   EXPECT_TRUE(has(larger, "the pupils are those of film points up to")) << larger;
 }
 
-}  // namespace
+}  // namespace tilted_film_test
 }  // namespace petzval

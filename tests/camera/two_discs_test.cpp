@@ -13,7 +13,7 @@
 #include "petzval/camera/camera.hpp"
 
 namespace petzval {
-namespace {
+namespace two_discs_test {
 
 using testing::data_lens;
 using testing::message;
@@ -87,5 +87,5 @@ TEST(TwoDiscs, RefuseWhatHasNone) {
   EXPECT_NE(message([] { fit_two_discs(data_lens("anamorphic_60mm_2x"), 10); }), "");
 }
 
-}  // namespace
+}  // namespace two_discs_test
 }  // namespace petzval

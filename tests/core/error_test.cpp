@@ -6,7 +6,7 @@
 #include <string>
 
 namespace petzval {
-namespace {
+namespace error_test {
 
 TEST(Error, SaysWhatItWasTold) { EXPECT_STREQ(Error("x.json: surface 4: é").what(), "x.json: surface 4: é"); }
 
@@ -20,5 +20,5 @@ TEST(Error, KeepsBothEndsOfALongMessage) {
   EXPECT_TRUE(what.starts_with("beginxxx") && what.ends_with("xxxend") && what.find("x ... x") != std::string::npos);
 }
 
-}  // namespace
+}  // namespace error_test
 }  // namespace petzval

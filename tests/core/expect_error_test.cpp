@@ -6,7 +6,7 @@
 #include <stdexcept>
 
 namespace petzval::testing {
-namespace {
+namespace expect_error_test {
 
 TEST(ExpectError, Tokens_AreWholeWords) {
   for (const char* token : {"film z", "film_z", "film", "-1.5", "4", "lens.txt:4", "mm"}) {
@@ -43,5 +43,5 @@ TEST(ExpectError, Failure_NamesTheLineOfTheCaller) {
   EXPECT_NE(std::string(failures.GetTestPartResult(0).file_name()).find("expect_error_test.cpp"), std::string::npos);
 }
 
-}  // namespace
+}  // namespace expect_error_test
 }  // namespace petzval::testing

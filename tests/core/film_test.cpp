@@ -12,7 +12,7 @@
 #include "petzval/core/units.hpp"
 
 namespace petzval {
-namespace {
+namespace film_test {
 
 using testing::expect_error;
 using testing::film_at;
@@ -146,5 +146,5 @@ TEST(Film, InAPlaneKeepsItsRectangle) {
   EXPECT_NEAR(laid.z(), 80, 1e-13);
 }
 
-}  // namespace
+}  // namespace film_test
 }  // namespace petzval

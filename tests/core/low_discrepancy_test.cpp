@@ -9,7 +9,7 @@
 #include <vector>
 
 namespace petzval::core_detail {
-namespace {
+namespace low_discrepancy_test {
 
 TEST(Kronecker, StepsAreThePowersOfTheGeneralisedGoldenRatio) {
   EXPECT_NEAR(kronecker_steps<1>()[0], (std::sqrt(5.0) - 1) / 2, 2e-16);
@@ -69,5 +69,5 @@ TEST(FibonacciPoint, TakesEveryHeightOnceAndIsUniform) {
   EXPECT_LT(discrepancy(0, count, point), 3.0 / count);
 }
 
-}  // namespace
+}  // namespace low_discrepancy_test
 }  // namespace petzval::core_detail

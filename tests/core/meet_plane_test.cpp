@@ -10,7 +10,7 @@
 #include <type_traits>
 
 namespace petzval::core_detail {
-namespace {
+namespace meet_plane_test {
 
 template <class T>
 class MeetPlane : public ::testing::Test {};
@@ -74,5 +74,5 @@ TEST(RayAt, TakesOneRayOfManyArrays) {
   EXPECT_EQ(ray.direction, Vec3<double>(7, 9, 11));
 }
 
-}  // namespace
+}  // namespace meet_plane_test
 }  // namespace petzval::core_detail

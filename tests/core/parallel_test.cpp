@@ -17,7 +17,7 @@
 #include "../expect_error.hpp"
 
 namespace petzval {
-namespace {
+namespace parallel_test {
 
 TEST(ParallelFor, DoesEveryThingOnce) {
   for (const std::size_t count : {1u, 2u, 63u, 64u, 65u, 1000u, 4099u}) {
@@ -130,5 +130,5 @@ TEST(ParallelFor, RefusesWhatMakesNoSense) {
   testing::expect_error([&] { parallel_for(0, 1, -3, nothing); }, {"parallel_for", "threads", -3});
 }
 
-}  // namespace
+}  // namespace parallel_test
 }  // namespace petzval

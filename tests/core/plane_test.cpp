@@ -6,7 +6,7 @@
 #include <glm/geometric.hpp>
 
 namespace petzval {
-namespace {
+namespace plane_test {
 
 using Vec = Vec3<double>;
 
@@ -29,5 +29,5 @@ TEST(LineAt, LiesInBothPlanesNearestToTheAxis) {
   EXPECT_FALSE(line_at({{0, 0, 1}, 3}, 5));
 }
 
-}  // namespace
+}  // namespace plane_test
 }  // namespace petzval

@@ -8,7 +8,7 @@
 
 #include "petzval/core/error.hpp"
 
-namespace {
+namespace ray_test {
 
 using petzval::RayFate;
 
@@ -38,4 +38,4 @@ TEST(Error, IsCaughtAcrossTheBorderOfTheLibraryWithItsMessage) {
   }
 }
 
-}  // namespace
+}  // namespace ray_test

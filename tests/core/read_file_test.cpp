@@ -15,7 +15,7 @@
 #include "../expect_error.hpp"
 
 namespace petzval {
-namespace {
+namespace read_file_test {
 
 namespace fs = std::filesystem;
 using testing::expect_error;
@@ -75,5 +75,5 @@ TEST_F(ReadFile, MissingFile_IsRefusedWithTheReasonOfTheSystem) {
   }
 }
 
-}  // namespace
+}  // namespace read_file_test
 }  // namespace petzval

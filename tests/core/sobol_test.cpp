@@ -9,7 +9,7 @@
 #include <vector>
 
 namespace petzval {
-namespace {
+namespace sobol_test {
 
 TEST(OwenSobol, AlignedBlocksAreNets) {
   // Of 2^k points that start at a multiple of 2^k, one lies in each box of 2^-i by 2^(i - k).
@@ -113,5 +113,5 @@ TEST(OwenSobol, IntegratesSmoothFunctionsFasterThanAnUnscrambledGrid) {
   EXPECT_LT(slope, -1.35);
 }
 
-}  // namespace
+}  // namespace sobol_test
 }  // namespace petzval

@@ -12,7 +12,7 @@
 #include <string>
 #include <string_view>
 
-namespace {
+namespace text_test {
 
 using petzval::to_text;
 
@@ -69,4 +69,4 @@ TEST(Utf8, OnlyWholeCharactersHaveALength) {
   }
 }
 
-}  // namespace
+}  // namespace text_test

@@ -5,7 +5,7 @@
 
 #include <string>
 
-namespace {
+namespace version_test {
 
 TEST(Version, HeadersAndBuildAgree) {
   EXPECT_STREQ(PETZVAL_VERSION, PETZVAL_TEST_VERSION);
@@ -13,4 +13,4 @@ TEST(Version, HeadersAndBuildAgree) {
                                  std::to_string(PETZVAL_VERSION_PATCH));
 }
 
-}  // namespace
+}  // namespace version_test

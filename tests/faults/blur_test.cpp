@@ -15,7 +15,7 @@
 #include "petzval/core/units.hpp"
 
 namespace petzval {
-namespace {
+namespace blur_test {
 
 using blur_detail::GatherPath;
 
@@ -117,5 +117,5 @@ TEST(MemoryEnds, InAnyThreadOfABlur) {
   }
 }
 
-}  // namespace
+}  // namespace blur_test
 }  // namespace petzval

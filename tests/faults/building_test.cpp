@@ -21,7 +21,7 @@
 #include "petzval/trace/trace.hpp"
 
 namespace petzval {
-namespace {
+namespace building_test {
 
 using testing::data_lens;
 using testing::data_prescription;
@@ -113,5 +113,5 @@ TEST(MemoryEnds, WhileTablesOfColoursAreRead) {
   });
 }
 
-}  // namespace
+}  // namespace building_test
 }  // namespace petzval

@@ -15,7 +15,7 @@
 #include "writers.hpp"
 
 namespace petzval {
-namespace {
+namespace killed_test {
 
 namespace fs = std::filesystem;
 using testing::bytes_of;
@@ -72,5 +72,5 @@ TEST(Killed, AWriterLeavesTheOldFileOrTheNewOne) {
   fs::remove_all(folder);
 }
 
-}  // namespace
+}  // namespace killed_test
 }  // namespace petzval

@@ -18,7 +18,7 @@
 #include "petzval/paraxial/first_order.hpp"
 
 namespace petzval {
-namespace {
+namespace reading_test {
 
 using testing::data_prescription;
 using testing::expect_all_or_nothing;
@@ -104,5 +104,5 @@ TEST(MemoryEnds, WhileALensIsWrittenInOtherFormats) {
   expect_all_or_nothing([&] { return format_table(lens).text; });
 }
 
-}  // namespace
+}  // namespace reading_test
 }  // namespace petzval

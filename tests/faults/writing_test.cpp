@@ -20,7 +20,7 @@
 #include "writers.hpp"
 
 namespace petzval {
-namespace {
+namespace writing_test {
 
 namespace fs = std::filesystem;
 using testing::bits;
@@ -125,5 +125,5 @@ TEST_F(Writing, OnAFullDiskSaysSoAndLeavesTheOldFile) {
   }
 }
 
-}  // namespace
+}  // namespace writing_test
 }  // namespace petzval

@@ -13,7 +13,7 @@
 #include "svg_parts.hpp"
 
 namespace petzval {
-namespace {
+namespace focal_surface_figure_test {
 
 using testing::count;
 using testing::marks;
@@ -85,5 +85,5 @@ TEST(FocalSurfaceFigure, WantsAFilmWithAPlaceAndASize) {
   EXPECT_THROW(drawn(in_section, bad), Error);
 }
 
-}  // namespace
+}  // namespace focal_surface_figure_test
 }  // namespace petzval

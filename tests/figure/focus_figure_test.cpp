@@ -19,7 +19,7 @@
 #include "svg_parts.hpp"
 
 namespace petzval {
-namespace {
+namespace focus_figure_test {
 
 using testing::data_lens;
 using testing::paths;
@@ -139,5 +139,5 @@ TEST(FocusFigure, DrawsEveryLensAndTheSameTwice) {
   EXPECT_THROW(focus_figure(data_lens("cooke_triplet_50mm_f5"), -infinity, {}), Error);
 }
 
-}  // namespace
+}  // namespace focus_figure_test
 }  // namespace petzval

@@ -11,7 +11,7 @@
 #include "svg_parts.hpp"
 
 namespace petzval {
-namespace {
+namespace focus_pull_figure_test {
 
 using testing::count;
 using testing::paths;
@@ -76,5 +76,5 @@ TEST(FocusPullFigure, WantsFramesInOrderWithNumbers) {
   refuses([](FocusPullFrame& f) { f.film.swing_rad = std::nan(""); });
 }
 
-}  // namespace
+}  // namespace focus_pull_figure_test
 }  // namespace petzval

@@ -19,7 +19,7 @@
 #include "svg_parts.hpp"
 
 namespace petzval {
-namespace {
+namespace footprint_figure_test {
 
 using testing::count;
 using testing::data_lens;
@@ -105,5 +105,5 @@ TEST(FootprintFigure, SaysWhereNothingPasses) {
   EXPECT_THROW(footprint_figure(data_lens("double_gauss_100mm_f1.35"), -infinity, {}), Error);
 }
 
-}  // namespace
+}  // namespace footprint_figure_test
 }  // namespace petzval

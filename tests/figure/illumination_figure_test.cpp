@@ -14,7 +14,7 @@
 #include "svg_parts.hpp"
 
 namespace petzval {
-namespace {
+namespace illumination_figure_test {
 
 using testing::data_lens;
 using testing::paths;
@@ -52,5 +52,5 @@ TEST(IlluminationFigure, WantsAField) {
   EXPECT_THROW(illumination_figure(lens, -infinity, std::nan("")), Error);
 }
 
-}  // namespace
+}  // namespace illumination_figure_test
 }  // namespace petzval

@@ -17,7 +17,7 @@
 #include "svg_parts.hpp"
 
 namespace petzval {
-namespace {
+namespace layout_figure_test {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 using testing::count;
@@ -190,5 +190,5 @@ TEST(LayoutFigure, RefusesAnotherNumberOfRays) {
   EXPECT_EQ(paths(layout_figure(lens, -infinity, std::array{0.0}, {.rays = 3}), first_field).size(), 3u);
 }
 
-}  // namespace
+}  // namespace layout_figure_test
 }  // namespace petzval

@@ -12,7 +12,7 @@
 #include "svg_parts.hpp"
 
 namespace petzval {
-namespace {
+namespace pareto_figure_test {
 
 using testing::count;
 using testing::paths;
@@ -60,5 +60,5 @@ TEST(ParetoFigure, WantsNumbersThatHaveLogarithms) {
   EXPECT_THROW(pareto_figure("", "", std::vector<ParetoPoint>{{"a", 0, 1, 1, true}}), Error);
 }
 
-}  // namespace
+}  // namespace pareto_figure_test
 }  // namespace petzval

@@ -15,7 +15,7 @@
 #include "svg_parts.hpp"
 
 namespace petzval {
-namespace {
+namespace spot_figure_test {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
@@ -145,5 +145,5 @@ TEST(SpotFigure, RefusesSpotsOfAnotherSet) {
   EXPECT_THROW(spot_figure(lens, spots), Error);
 }
 
-}  // namespace
+}  // namespace spot_figure_test
 }  // namespace petzval

@@ -13,7 +13,7 @@
 #include "svg_parts.hpp"
 
 namespace petzval {
-namespace {
+namespace tilt_figure_test {
 
 using testing::count;
 using testing::marks;
@@ -191,5 +191,5 @@ TEST(TiltFigure, WantsFiniteFilmsABlurAndAFrame) {
   }
 }
 
-}  // namespace
+}  // namespace tilt_figure_test
 }  // namespace petzval

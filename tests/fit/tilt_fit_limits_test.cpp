@@ -21,7 +21,7 @@
 #include "tilt_scene.hpp"
 
 namespace petzval {
-namespace {
+namespace tilt_fit_limits_test {
 
 using testing::expect_tokens;
 using testing::film_at;
@@ -426,5 +426,5 @@ TEST(TiltFitStatus, HasAName) {
   EXPECT_EQ(name(not_converged), "not_converged");
 }
 
-}  // namespace
+}  // namespace tilt_fit_limits_test
 }  // namespace petzval

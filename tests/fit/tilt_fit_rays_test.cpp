@@ -14,7 +14,7 @@
 #include "tilt_scene.hpp"
 
 namespace petzval {
-namespace {
+namespace tilt_fit_rays_test {
 
 using testing::film_at;
 
@@ -331,5 +331,5 @@ TEST(RayTiltFit, WhatTheLensDoesNotSeeTakesNoPart) {
   EXPECT_EQ(none.status, Status::no_targets);
 }
 
-}  // namespace
+}  // namespace tilt_fit_rays_test
 }  // namespace petzval

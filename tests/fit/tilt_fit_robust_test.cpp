@@ -13,7 +13,7 @@
 #include "tilt_scene.hpp"
 
 namespace petzval {
-namespace {
+namespace tilt_fit_robust_test {
 
 using namespace testing;
 using Status = TiltFitStatus;
@@ -167,5 +167,5 @@ TEST(RobustTiltFit, ServesLinesAndPlacesToo) {
   }
 }
 
-}  // namespace
+}  // namespace tilt_fit_robust_test
 }  // namespace petzval

@@ -17,7 +17,7 @@
 #include "tilt_scene.hpp"
 
 namespace petzval {
-namespace {
+namespace tilt_fit_test {
 
 using testing::film_at;
 
@@ -243,5 +243,5 @@ TEST(TiltFit, MirroredTargetsGiveTheMirroredFilm) {
   }
 }
 
-}  // namespace
+}  // namespace tilt_fit_test
 }  // namespace petzval

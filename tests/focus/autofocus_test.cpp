@@ -18,7 +18,7 @@
 #include "petzval/paraxial/first_order.hpp"
 
 namespace petzval {
-namespace {
+namespace autofocus_test {
 
 using testing::data_lens;
 using testing::expect_error;
@@ -285,5 +285,5 @@ TEST(RegionTargets, AreTheMiddlesOfItsParts) {
   EXPECT_EQ(region_targets({1, 2, -3}, {9, 9, 9}, {9, 9, 9}, 1, 1)[0].place.position, (Vec3<double>{1, 2, -3}));
 }
 
-}  // namespace
+}  // namespace autofocus_test
 }  // namespace petzval

@@ -15,7 +15,7 @@
 #include "petzval/paraxial/ideal_lens.hpp"
 
 namespace petzval {
-namespace {
+namespace both_ways_test {
 
 using testing::data_lens;
 using testing::data_prescription;
@@ -204,5 +204,5 @@ TEST(BothWays, FieldsPastTheLensCountAtInfinityAlone) {
   expect_error([&] { solve_focus(lens, 1000, wide); }, {"field", 100});
 }
 
-}  // namespace
+}  // namespace both_ways_test
 }  // namespace petzval

@@ -14,7 +14,7 @@
 #include "petzval/paraxial/ideal_lens.hpp"
 
 namespace petzval {
-namespace {
+namespace depth_of_field_test {
 
 using testing::data_lens;
 using testing::data_prescription;
@@ -298,5 +298,5 @@ TEST(SolveSubject, SaysWhereImagesEnd) {
   }
 }
 
-}  // namespace
+}  // namespace depth_of_field_test
 }  // namespace petzval

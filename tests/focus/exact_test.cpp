@@ -17,7 +17,7 @@
 #include "petzval/trace/trace.hpp"
 
 namespace petzval {
-namespace {
+namespace exact_test {
 
 using testing::data_lens;
 using testing::data_prescription;
@@ -187,5 +187,5 @@ TEST(ExactFocus, ScalesWithTheLens) {
   }
 }
 
-}  // namespace
+}  // namespace exact_test
 }  // namespace petzval

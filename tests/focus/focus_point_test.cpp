@@ -15,7 +15,7 @@
 #include "petzval/core/error.hpp"
 
 namespace petzval {
-namespace {
+namespace focus_point_test {
 
 using testing::expect_error;
 using testing::expect_tokens;
@@ -293,5 +293,5 @@ TEST(FocusPoints, SayWhatIsWrongWithThem) {
   expect_error([&] { targets({good}, when); }, {"film", -36});
 }
 
-}  // namespace
+}  // namespace focus_point_test
 }  // namespace petzval

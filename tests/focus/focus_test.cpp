@@ -16,7 +16,7 @@
 #include "petzval/pupil/f_number.hpp"
 
 namespace petzval {
-namespace {
+namespace focus_test {
 
 using testing::data_lens;
 using testing::data_prescriptions;
@@ -312,5 +312,5 @@ TEST(WithFocus, TellsMetresFromMillimetres) {
   EXPECT_FALSE(testing::has_token(refusal(51), "51000")) << refusal(51);
 }
 
-}  // namespace
+}  // namespace focus_test
 }  // namespace petzval

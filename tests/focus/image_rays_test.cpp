@@ -20,7 +20,7 @@
 #include "petzval/pupil/pupil_boundary.hpp"
 
 namespace petzval {
-namespace {
+namespace image_rays_test {
 
 using testing::data_lens;
 using testing::film_at;
@@ -249,5 +249,5 @@ TEST(BundleBlur, IsNothingOnAFilmThatRaysRunAlong) {
   EXPECT_FALSE(blur_on(bundle, film_at(nan)));
 }
 
-}  // namespace
+}  // namespace image_rays_test
 }  // namespace petzval

@@ -14,7 +14,7 @@
 #include "petzval/core/error.hpp"
 
 namespace petzval {
-namespace {
+namespace keyframes_test {
 
 using testing::expect_error;
 
@@ -129,5 +129,5 @@ TEST(Keyframes, SayWhatIsWrongWithTheirKeys) {
   expect_error([] { Keyframes({-1e308, 1e308}, {0, 1}); }, {"keyframes", "1e+308"});
 }
 
-}  // namespace
+}  // namespace keyframes_test
 }  // namespace petzval

@@ -15,7 +15,7 @@
 #include "petzval/trace/trace.hpp"
 
 namespace petzval {
-namespace {
+namespace min_rms_test {
 
 using testing::data_lens;
 using testing::data_prescription;
@@ -156,5 +156,5 @@ TEST(MinRms, WithoutAnyRimIsAnError) {
   EXPECT_EQ(solve_focus(compile(p), 1000, {min_rms}).status, Status::solved);
 }
 
-}  // namespace
+}  // namespace min_rms_test
 }  // namespace petzval

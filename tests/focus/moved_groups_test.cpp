@@ -11,7 +11,7 @@
 #include "petzval/lens/lens.hpp"
 #include "petzval/paraxial/first_order.hpp"
 
-namespace {
+namespace moved_groups_test {
 
 using petzval::FocusCriterion;
 using petzval::Lens;
@@ -91,4 +91,4 @@ TEST(MovedGroups, EndWhereTheTableEnds) {
   expect_error([&] { petzval::with_groups_at(lens, -1); }, {"groups"});
 }
 
-}  // namespace
+}  // namespace moved_groups_test

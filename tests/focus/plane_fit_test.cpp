@@ -12,7 +12,7 @@
 #include "petzval/paraxial/ideal_lens.hpp"
 
 namespace petzval {
-namespace {
+namespace plane_fit_test {
 
 using namespace focus_detail;
 using Points = std::vector<PicturePoint>;
@@ -115,5 +115,5 @@ TEST(PlaneFit, IsTheLeast) {
   }
 }
 
-}  // namespace
+}  // namespace plane_fit_test
 }  // namespace petzval

@@ -9,7 +9,7 @@
 #include <utility>
 
 namespace petzval {
-namespace {
+namespace root_test {
 
 struct Found {
   double at;
@@ -75,5 +75,5 @@ TEST(Highest, LiesWhereTheFunctionIsDefined) {
   EXPECT_LT(highest([](double) { return undefined; }).evaluations, 20);
 }
 
-}  // namespace
+}  // namespace root_test
 }  // namespace petzval

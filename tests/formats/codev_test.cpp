@@ -11,7 +11,7 @@
 #include "petzval/paraxial/first_order.hpp"
 #include "petzval/pupil/f_number.hpp"
 
-namespace {
+namespace codev_test {
 
 using petzval::Prescription;
 using petzval::testing::expect_tokens;
@@ -269,4 +269,4 @@ TEST(Codev, ATextCutOffAtAnyByteIsReadOrRefused) {
   EXPECT_GT(refused, 200);
 }
 
-}  // namespace
+}  // namespace codev_test

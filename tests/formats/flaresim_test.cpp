@@ -8,7 +8,7 @@
 #include "petzval/lens/lens.hpp"
 #include "petzval/paraxial/first_order.hpp"
 
-namespace {
+namespace flaresim_test {
 
 using petzval::Prescription;
 using petzval::testing::expect_tokens;
@@ -92,4 +92,4 @@ TEST(FlareSim, WhatIsNotUnderstoodIsRefusedOrNamed) {
   expect_tokens(refusal(lens.substr(0, lens.find("  50.6"))), {"rows"});
 }
 
-}  // namespace
+}  // namespace flaresim_test

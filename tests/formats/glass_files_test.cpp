@@ -17,7 +17,7 @@
 #include "petzval/core/units.hpp"
 #include "said.hpp"
 
-namespace {
+namespace glass_files_test {
 
 namespace fs = std::filesystem;
 using petzval::Glass;
@@ -428,4 +428,4 @@ TEST(GlassFilesOfOthers, AreReadWithTheirPrintedIndices) {
   EXPECT_GE(count, PETZVAL_TEST_YAML ? 14u : 11u);
 }
 
-}  // namespace
+}  // namespace glass_files_test

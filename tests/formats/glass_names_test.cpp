@@ -19,7 +19,7 @@
 #include "petzval/lens/lens.hpp"
 #include "petzval/paraxial/first_order.hpp"
 
-namespace {
+namespace glass_names_test {
 
 namespace fs = std::filesystem;
 using petzval::Glass;
@@ -297,4 +297,4 @@ TEST_F(InfraredGlass, CatalogueThatBeginsWithASentence_IsRead) {
   for (const auto& w : file.warnings) EXPECT_NE(w.line, 1) << w.message;
 }
 
-}  // namespace
+}  // namespace glass_names_test

@@ -13,7 +13,7 @@
 #include "petzval/paraxial/first_order.hpp"
 #include "petzval/pupil/f_number.hpp"
 
-namespace {
+namespace json_lenses_test {
 
 using petzval::Prescription;
 using petzval::testing::expect_tokens;
@@ -335,4 +335,4 @@ TEST(Lentil, ListsAreOfNumbersAndSurfaces) {
                 {10000, "surfaces"});
 }
 
-}  // namespace
+}  // namespace json_lenses_test

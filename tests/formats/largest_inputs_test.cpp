@@ -19,7 +19,7 @@
 #include "petzval/lens/lens.hpp"
 
 namespace petzval {
-namespace {
+namespace largest_inputs_test {
 
 constexpr double megabyte = 1 << 20;
 
@@ -149,5 +149,5 @@ TEST_F(LargestInputs, OfGlasses) {
   std::filesystem::remove_all(folder);
 }
 
-}  // namespace
+}  // namespace largest_inputs_test
 }  // namespace petzval

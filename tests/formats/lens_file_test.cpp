@@ -16,7 +16,7 @@
 #include "petzval/lens/lens.hpp"
 #include "petzval/paraxial/first_order.hpp"
 
-namespace {
+namespace lens_file_test {
 
 namespace fs = std::filesystem;
 using petzval::Prescription;
@@ -155,4 +155,4 @@ TEST(LensFile, StrictRefusesAssumptionsAndTheOwnFormatHasNone) {
   EXPECT_EQ(again, lens);
 }
 
-}  // namespace
+}  // namespace lens_file_test

@@ -21,7 +21,7 @@
 #include "petzval/pupil/illumination.hpp"
 
 namespace petzval {
-namespace {
+namespace open_track_io_test {
 
 using nlohmann::json;
 using testing::data_lens;
@@ -160,5 +160,5 @@ TEST(OpenTrackIo, RefusesFisheyesAndTextsThatAreNotUtf8) {
   expect_tokens(refused("biogon_35mm_f2.8", {.make = std::string(1024, 'x')}), {"make", 1024});
 }
 
-}  // namespace
+}  // namespace open_track_io_test
 }  // namespace petzval

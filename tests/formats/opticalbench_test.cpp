@@ -13,7 +13,7 @@
 #include "petzval/pupil/f_number.hpp"
 #include "said.hpp"
 
-namespace {
+namespace opticalbench_test {
 
 using petzval::AsphereTerm;
 using petzval::parse_lens;
@@ -227,4 +227,4 @@ TEST(OpticalBench, WhatIsInvalidIsRefusedWithItsLine) {
                {"x.txt", "line 2", "line", 101});
 }
 
-}  // namespace
+}  // namespace opticalbench_test

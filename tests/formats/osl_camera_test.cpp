@@ -27,7 +27,7 @@
 #include "petzval/pupil/illumination.hpp"
 #include "petzval/trace/trace.hpp"
 
-namespace {
+namespace osl_camera_test {
 
 namespace fs = std::filesystem;
 using petzval::Lens;
@@ -265,4 +265,4 @@ TEST(OslCamera, CompilesWhereACompilerIsInstalled) {
   EXPECT_EQ(std::system(("oslc -o /dev/null '" + file.string() + "'").c_str()), 0);
 }
 
-}  // namespace
+}  // namespace osl_camera_test

@@ -13,7 +13,7 @@
 #include "petzval/paraxial/first_order.hpp"
 #include "said.hpp"
 
-namespace {
+namespace oslo_test {
 
 using petzval::AsphereTerm;
 using petzval::parse_lens;
@@ -207,4 +207,4 @@ TEST(OsloOfOthers, TheCookeTripletHasItsFocalLength) {
   EXPECT_NEAR(first_order(compile(lens)).effective_focal_length, 50.0213, 1e-3);
 }
 
-}  // namespace
+}  // namespace oslo_test

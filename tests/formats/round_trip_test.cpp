@@ -19,7 +19,7 @@
 #include "petzval/pupil/f_number.hpp"
 #include "petzval/trace/trace.hpp"
 
-namespace {
+namespace round_trip_test {
 
 using petzval::testing::expect_error;
 using petzval::testing::expect_tokens;
@@ -679,4 +679,4 @@ TEST(RoundTrip, AStopWiderThanTheDeclaredBeamIsSaidToBeLost) {
   for (const Write write : {zemax, codev}) EXPECT_FALSE(lost(write(p), "stop"));
 }
 
-}  // namespace
+}  // namespace round_trip_test

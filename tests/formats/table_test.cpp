@@ -18,7 +18,7 @@
 #include "petzval/lens/lens.hpp"
 #include "petzval/paraxial/first_order.hpp"
 
-namespace {
+namespace table_test {
 
 using petzval::Prescription;
 using petzval::testing::expect_tokens;
@@ -522,4 +522,4 @@ TEST(Table, TheExampleOfTheManualIsTheCookeTriplet) {
   EXPECT_NEAR(petzval::first_order(compile(p)).effective_focal_length, 50.0213, 1e-4);
 }
 
-}  // namespace
+}  // namespace table_test

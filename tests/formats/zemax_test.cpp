@@ -14,7 +14,7 @@
 #include "petzval/paraxial/first_order.hpp"
 #include "petzval/pupil/f_number.hpp"
 
-namespace {
+namespace zemax_test {
 
 using petzval::Prescription;
 using petzval::testing::expect_error;
@@ -631,4 +631,4 @@ TEST(Zemax, ATextCutOffAtAnyByteIsReadOrRefused) {
   EXPECT_GT(refused, 500);
 }
 
-}  // namespace
+}  // namespace zemax_test

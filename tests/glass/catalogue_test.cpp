@@ -12,7 +12,7 @@
 #include "../expect_error.hpp"
 #include "../message.hpp"
 
-namespace {
+namespace catalogue_test {
 
 namespace fs = std::filesystem;
 using petzval::Glass;
@@ -212,4 +212,4 @@ TEST_F(TableFolder, AFolderWithTheNameOfATableIsRefused) {
   expect_error([&] { GlassCatalogue::load(folder); }, {folder / "glass_x.csv", "folder"});
 }
 
-}  // namespace
+}  // namespace catalogue_test

@@ -15,7 +15,7 @@
 #include "core/text.hpp"
 #include "petzval/core/units.hpp"
 
-namespace {
+namespace dispersion_test {
 
 using petzval::DispersionFormula;
 using petzval::Glass;
@@ -243,4 +243,4 @@ TEST(Dispersion, TheAbbeModelRefusesWhatItCannotStandFor) {
   expect_error([] { petzval::abbe_index(1.5, 60, 0.5); }, {"n_d 1.5", "V_d 60", "wavelength", 0.5});
 }
 
-}  // namespace
+}  // namespace dispersion_test

@@ -18,7 +18,7 @@
 #include "petzval/core/error.hpp"
 #include "petzval/image/image.hpp"
 
-namespace {
+namespace deep_exr_test {
 
 using petzval::testing::expect_error;
 using petzval::testing::expect_tokens;
@@ -190,4 +190,4 @@ TEST(Png, IsReadAsLinearLight) {
   EXPECT_EQ(to_srgb8(light).pixels, shown.pixels);
 }
 
-}  // namespace
+}  // namespace deep_exr_test

@@ -23,7 +23,7 @@
 #include "petzval/io/write_file.hpp"
 
 namespace petzval {
-namespace {
+namespace endless_files_test {
 
 using testing::expect_error;
 
@@ -83,5 +83,5 @@ TEST(EndlessFiles, OfPictures_AreRefusedByTheirHeads) {
   fs::remove(digits);
 }
 
-}  // namespace
+}  // namespace endless_files_test
 }  // namespace petzval

@@ -16,7 +16,7 @@
 #include "petzval/image/image.hpp"
 
 namespace petzval {
-namespace {
+namespace file_room_test {
 
 using testing::expect_error;
 
@@ -100,5 +100,5 @@ TEST(FileRoom, IsAskedByEveryReaderOfPictures) {
   for (const auto& written : {file, deep, png, pfm}) std::filesystem::remove(written);
 }
 
-}  // namespace
+}  // namespace file_room_test
 }  // namespace petzval

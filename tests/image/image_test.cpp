@@ -17,7 +17,7 @@
 #include "../message.hpp"
 
 namespace petzval {
-namespace {
+namespace image_test {
 
 using testing::expect_error;
 using testing::message;
@@ -280,5 +280,5 @@ TEST(Image, SrgbOfLinearLight) {
   EXPECT_EQ(to_srgb8(image, 2).pixels, (std::vector<std::uint8_t>{0, 255, 255, 0, 255, 18, 0, 188, 13}));
 }
 
-}  // namespace
+}  // namespace image_test
 }  // namespace petzval

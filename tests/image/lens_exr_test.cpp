@@ -22,7 +22,7 @@
 #include "petzval/paraxial/first_order.hpp"
 
 namespace petzval {
-namespace {
+namespace lens_exr_test {
 
 using testing::data_lens;
 using testing::data_prescription;
@@ -140,5 +140,5 @@ TEST(StMapExr, HasTheLightOfTheSceneTheRightWayUp) {
   EXPECT_GT(channel(parts[1], "G").front(), 1);
 }
 
-}  // namespace
+}  // namespace lens_exr_test
 }  // namespace petzval

@@ -20,7 +20,7 @@
 #include "petzval/pupil/f_number.hpp"
 
 namespace petzval {
-namespace {
+namespace psf_image_test {
 
 using testing::expect_error;
 using testing::expect_tokens;
@@ -150,5 +150,5 @@ TEST(Render, WantsAWeightForEachWavelength) {
   }
 }
 
-}  // namespace
+}  // namespace psf_image_test
 }  // namespace petzval

@@ -12,7 +12,7 @@
 #include "../expect_error.hpp"
 
 namespace petzval {
-namespace {
+namespace psf_set_exr_test {
 
 using testing::expect_error;
 
@@ -87,5 +87,5 @@ TEST(PsfSetExr, RefusesPartsThatHaveChangedOrAreSomethingElse) {
   refused([](ExrPart& p) { p.channels.erase(p.channels.begin()); }, "channel");
 }
 
-}  // namespace
+}  // namespace psf_set_exr_test
 }  // namespace petzval

@@ -21,7 +21,7 @@
 #include "../message.hpp"
 #include "../positioned.hpp"
 
-namespace {
+namespace prescription_json_test {
 
 namespace fs = std::filesystem;
 using petzval::format_prescription;
@@ -489,4 +489,4 @@ TEST(PrescriptionJson, TheLocaleDoesNotMatter) {
   EXPECT_EQ(written, text_of(lens));
 }
 
-}  // namespace
+}  // namespace prescription_json_test

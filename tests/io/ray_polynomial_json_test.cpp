@@ -14,7 +14,7 @@
 #include "../positioned.hpp"
 
 namespace petzval {
-namespace {
+namespace ray_polynomial_json_test {
 
 using testing::expect_error;
 using testing::expect_tokens;
@@ -166,5 +166,5 @@ TEST(RayPolynomialJson, EveryCutAndEveryLostByteIsRefusedOrReads) {
   }
 }
 
-}  // namespace
+}  // namespace ray_polynomial_json_test
 }  // namespace petzval

@@ -23,7 +23,7 @@
 #include "../message.hpp"
 
 namespace petzval {
-namespace {
+namespace write_file_test {
 
 namespace fs = std::filesystem;
 using testing::expect_error;
@@ -255,5 +255,5 @@ TEST(Checksum, IsFnv1a) {
   EXPECT_EQ(checksum("foobar"), "85944171f73967e8");
 }
 
-}  // namespace
+}  // namespace write_file_test
 }  // namespace petzval

@@ -16,7 +16,7 @@
 #include "petzval/core/error.hpp"
 
 namespace petzval {
-namespace {
+namespace iris_shape_test {
 
 using iris_detail::IrisShape;
 using testing::expect_tokens;
@@ -261,5 +261,5 @@ TEST(IrisShape, RefusesWhatIsOutOfRange) {
                 {"iris", "rotation_rad", "inf"});
 }
 
-}  // namespace
+}  // namespace iris_shape_test
 }  // namespace petzval

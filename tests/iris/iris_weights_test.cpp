@@ -17,7 +17,7 @@
 #include "petzval/core/error.hpp"
 
 namespace petzval {
-namespace {
+namespace iris_weights_test {
 
 using iris_detail::IrisShape;
 using iris_detail::IrisWeights;
@@ -217,5 +217,5 @@ TEST(IrisWeights, RefuseWhatIsNoMap) {
   expect_error([] { onion_rings({}, 1); }, {1});
 }
 
-}  // namespace
+}  // namespace iris_weights_test
 }  // namespace petzval

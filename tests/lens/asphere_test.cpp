@@ -16,7 +16,7 @@
 #include "../report.hpp"
 #include "petzval/lens/lens.hpp"
 
-namespace {
+namespace asphere_test {
 
 using petzval::AsphereTerm;
 using petzval::SurfaceRow;
@@ -304,4 +304,4 @@ TEST(Asphere, RaysThatMissItsBaseMeetItFartherOut) {
   EXPECT_GT(met, 0.98 * aimed);
 }
 
-}  // namespace
+}  // namespace asphere_test

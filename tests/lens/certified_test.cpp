@@ -16,7 +16,7 @@
 #include "lens/snell.hpp"
 #include "quad.hpp"
 
-namespace {
+namespace certified_test {
 
 using namespace petzval::kernel;
 
@@ -243,4 +243,4 @@ TYPED_TEST(BoundedIn, HasAllValuesAndErrors) {
   EXPECT_GT(closest, 0.9);
 }
 
-}  // namespace
+}  // namespace certified_test

@@ -15,7 +15,7 @@
 #include "petzval/glass/glass.hpp"
 #include "petzval/lens/lens.hpp"
 
-namespace {
+namespace compile_test {
 
 using petzval::compile;
 using petzval::Dispersion;
@@ -326,4 +326,4 @@ TEST(Compile, TheWavelengthNearestTheDLineSpeaksForTheLens) {
   EXPECT_EQ(compile(doublet(flint), std::array{f, c, d}, {.glasses = &glasses()}).primary_wavelength(), 2u);
 }
 
-}  // namespace
+}  // namespace compile_test

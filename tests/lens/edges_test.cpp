@@ -12,7 +12,7 @@
 #include "petzval/trace/trace.hpp"
 
 namespace petzval {
-namespace {
+namespace edges_test {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
@@ -154,5 +154,5 @@ TEST(Edges, LetRaysMeetSurfacesInOrder) {
   }
 }
 
-}  // namespace
+}  // namespace edges_test
 }  // namespace petzval

@@ -16,7 +16,7 @@
 #include "petzval/trace/trace.hpp"
 
 namespace petzval {
-namespace {
+namespace iris_test {
 
 using testing::expect_error;
 using testing::expect_tokens;
@@ -86,5 +86,5 @@ TEST(Lens, StaysItselfWhenItIsMovedFrom) {
   EXPECT_EQ(moved.surfaces().data(), assigned.surfaces().data());
 }
 
-}  // namespace
+}  // namespace iris_test
 }  // namespace petzval

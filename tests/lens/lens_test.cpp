@@ -14,7 +14,7 @@
 #include "petzval/core/error.hpp"
 #include "petzval/trace/trace.hpp"
 
-namespace {
+namespace lens_test {
 
 using petzval::testing::expect_error;
 
@@ -201,4 +201,4 @@ TEST(Lens, TheStopOfAnAsphericSurfaceMayBeClosed) {
   }
 }
 
-}  // namespace
+}  // namespace lens_test

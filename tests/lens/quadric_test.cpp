@@ -15,7 +15,7 @@
 #include "../report.hpp"
 #include "quad.hpp"
 
-namespace {
+namespace quadric_test {
 
 using petzval::kernel::Quadric;
 using petzval::kernel::Vec;
@@ -351,4 +351,4 @@ TYPED_TEST(QuadricOf, AbsurdStartsGiveAFiniteAnswerOrAMiss) {
   }
 }
 
-}  // namespace
+}  // namespace quadric_test

@@ -12,7 +12,7 @@
 #include "../report.hpp"
 #include "quad.hpp"
 
-namespace {
+namespace snell_test {
 
 using petzval::kernel::Interface;
 using petzval::kernel::make_interface;
@@ -175,4 +175,4 @@ TEST(Snell, ReflectionTurnsTheNormalComponentAlone) {
   }
 }
 
-}  // namespace
+}  // namespace snell_test

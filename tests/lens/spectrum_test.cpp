@@ -18,7 +18,7 @@
 #include "petzval/lens/lens.hpp"
 #include "petzval/paraxial/first_order.hpp"
 
-namespace {
+namespace spectrum_test {
 
 using petzval::compile;
 using petzval::CompileOptions;
@@ -301,4 +301,4 @@ TEST(Clamp, IndexError_BoundsTheDistanceFromTheClampedFormula) {
   EXPECT_LT(worst, 9e-3);
 }
 
-}  // namespace
+}  // namespace spectrum_test

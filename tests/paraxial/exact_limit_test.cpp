@@ -9,7 +9,7 @@
 #include "trace/sequential.hpp"
 
 namespace petzval {
-namespace {
+namespace exact_limit_test {
 
 using Jet = ceres::Jet<double, 2>;
 
@@ -41,5 +41,5 @@ TEST(RayMatrix, IsTheDerivativeOfTheExactRayAlongTheAxis) {
   }
 }
 
-}  // namespace
+}  // namespace exact_limit_test
 }  // namespace petzval

@@ -10,7 +10,7 @@
 #include "../data_lenses.hpp"
 
 namespace petzval {
-namespace {
+namespace first_order_test {
 
 using testing::data_lens;
 using testing::data_prescriptions;
@@ -309,5 +309,5 @@ TEST(ParaxialImage, IsInfiniteAtTheFrontFocusAndTheRearFocusOfInfinity) {
   }
 }
 
-}  // namespace
+}  // namespace first_order_test
 }  // namespace petzval

@@ -18,7 +18,7 @@
 #include "petzval/focus/focus_plane.hpp"
 
 namespace petzval {
-namespace {
+namespace ideal_lens_test {
 
 using testing::data_lens;
 using testing::data_prescriptions;
@@ -329,5 +329,5 @@ TEST(IdealLens, RefusesWhatIsNoLens) {
   EXPECT_FALSE(lens.image({{0, 0, 0}, true}));
 }
 
-}  // namespace
+}  // namespace ideal_lens_test
 }  // namespace petzval

@@ -13,7 +13,7 @@
 #include "petzval/pupil/f_number.hpp"
 
 namespace petzval {
-namespace {
+namespace pupils_test {
 
 using testing::data_lens;
 using testing::data_prescriptions;
@@ -153,5 +153,5 @@ TEST(Pupils, OfAClosedStopAreEmpty) {
   EXPECT_EQ(real_f_number(lens), infinity);
 }
 
-}  // namespace
+}  // namespace pupils_test
 }  // namespace petzval

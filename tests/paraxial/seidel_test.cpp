@@ -16,7 +16,7 @@
 #include "trace/sequential.hpp"
 
 namespace petzval {
-namespace {
+namespace seidel_test {
 
 using L = long double;
 
@@ -108,5 +108,5 @@ TEST(Seidel, SumsAreTheLimitsOfRealRays) {
   EXPECT_GE(lenses, 65);
 }
 
-}  // namespace
+}  // namespace seidel_test
 }  // namespace petzval

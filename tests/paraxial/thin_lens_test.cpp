@@ -9,7 +9,7 @@
 #include "petzval/paraxial/ideal_lens.hpp"
 
 namespace petzval {
-namespace {
+namespace thin_lens_test {
 
 using testing::expect_error;
 
@@ -115,5 +115,5 @@ TEST(ThinLensBlurDiameter, IsANumberAtTheEndsOfTheRange) {
   }
 }
 
-}  // namespace
+}  // namespace thin_lens_test
 }  // namespace petzval

@@ -24,7 +24,7 @@
 #include "petzval/trace/trace.hpp"
 
 namespace petzval {
-namespace {
+namespace fit_test {
 
 using testing::data_lens;
 using testing::data_prescription;
@@ -383,5 +383,5 @@ TEST(PolynomialFit, SaysWhyThereIsNone) {
   expect_tokens(why(with_f_number(lens, 200), pupils, 11), {lens.name(), "polynomial"});
 }
 
-}  // namespace
+}  // namespace fit_test
 }  // namespace petzval

@@ -19,7 +19,7 @@
 #include "lines.hpp"
 
 namespace petzval {
-namespace {
+namespace ray_polynomial_test {
 
 using testing::expect_error;
 using testing::Lines;
@@ -463,5 +463,5 @@ TEST(RayPolynomial, HasNoTermsOfOtherDegrees) {
   }
 }
 
-}  // namespace
+}  // namespace ray_polynomial_test
 }  // namespace petzval

@@ -13,7 +13,7 @@
 #include "petzval/lens/lens.hpp"
 #include "petzval/paraxial/first_order.hpp"
 
-namespace {
+namespace configuration_test {
 
 using petzval::Configuration;
 using petzval::configured;
@@ -190,4 +190,4 @@ TEST(Configured, TakesTheMostPositionsThereMayBe) {
   EXPECT_EQ(petzval::compile(p).focus_positions().size(), static_cast<std::size_t>(positions));
 }
 
-}  // namespace
+}  // namespace configuration_test

@@ -15,7 +15,7 @@
 #include "../message.hpp"
 #include "core/text.hpp"
 
-namespace {
+namespace prescription_test {
 
 using petzval::Prescription;
 using petzval::testing::expect_error;
@@ -272,4 +272,4 @@ TEST(Scale, RefusesFactorsThatMakeNoLens) {
   expect_error([] { petzval::scale(singlet(), 1e307); }, {"singlet", "surface 0", 50, "1e+307", "inf"});
 }
 
-}  // namespace
+}  // namespace prescription_test

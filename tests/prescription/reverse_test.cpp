@@ -13,7 +13,7 @@
 #include "petzval/pupil/aim.hpp"
 #include "petzval/trace/trace.hpp"
 
-namespace {
+namespace reverse_test {
 
 using petzval::testing::expect_error;
 
@@ -179,4 +179,4 @@ TEST(Reverse, MediaAndTheStopMoveWithTheirSurfaces) {
   expect_error([] { petzval::reverse({}); }, {"lens", "surfaces"});
 }
 
-}  // namespace
+}  // namespace reverse_test

@@ -22,7 +22,7 @@
 #include "trace/sequential.hpp"
 
 namespace petzval {
-namespace {
+namespace aim_test {
 
 using testing::data_lens;
 using testing::data_prescriptions;
@@ -252,5 +252,5 @@ TEST(Aim, RefusesWhatItCannotAimAt) {
   EXPECT_EQ(testing::message([&] { chief_ray(compile(p), {0, -infinity}); }).rfind("open: no stop is marked", 0), 0u);
 }
 
-}  // namespace
+}  // namespace aim_test
 }  // namespace petzval

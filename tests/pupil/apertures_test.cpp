@@ -27,7 +27,7 @@
 #include "petzval/trace/trace.hpp"
 
 namespace petzval {
-namespace {
+namespace apertures_test {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
@@ -265,5 +265,5 @@ TEST(DeclaredField, TheAngleComesBeforeFieldsAndFieldsBeforeTheImageDiagonal) {
   EXPECT_NEAR(*declared_half_field(p, lens), radians(12), 1e-15);
 }
 
-}  // namespace
+}  // namespace apertures_test
 }  // namespace petzval

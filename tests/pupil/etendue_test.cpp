@@ -18,7 +18,7 @@
 #include "petzval/trace/trace.hpp"
 
 namespace petzval {
-namespace {
+namespace etendue_test {
 
 constexpr double pi = std::numbers::pi;
 constexpr std::uint32_t samples = 1 << 13;
@@ -149,5 +149,5 @@ INSTANTIATE_TEST_SUITE_P(Lenses, Etendue,
                                            Disc{"modern_58mm_f0.95", 10, 0.2}, Disc{"fisheye_10mm_f4", 5, 0.53},
                                            Disc{"eye_gullstrand_le_grand", 2, 0.14}));
 
-}  // namespace
+}  // namespace etendue_test
 }  // namespace petzval

@@ -21,7 +21,7 @@
 #include "petzval/trace/trace.hpp"
 
 namespace petzval {
-namespace {
+namespace extremes_test {
 
 using testing::data_lens;
 using testing::data_prescriptions;
@@ -281,5 +281,5 @@ TEST(Extremes, ATelecentricLensIsRefusedFromTheSceneOnly) {
   EXPECT_NEAR(film_irradiance(lens, {0, 0}), std::numbers::pi * 9 / (9 + 1600), 1e-6);
 }
 
-}  // namespace
+}  // namespace extremes_test
 }  // namespace petzval

@@ -16,7 +16,7 @@
 #include "trace/sequential.hpp"
 
 namespace petzval {
-namespace {
+namespace f_number_test {
 
 using testing::data_lens;
 using testing::data_prescriptions;
@@ -319,5 +319,5 @@ TEST(RealFNumber, OfAStopWithoutARimIsThatOfTheSurfaceThatLimits) {
   EXPECT_EQ(message([&] { real_f_number(endless); }), message([&] { pupils(endless); }));
 }
 
-}  // namespace
+}  // namespace f_number_test
 }  // namespace petzval

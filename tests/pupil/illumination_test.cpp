@@ -27,7 +27,7 @@
 #include "pupil/face.hpp"
 
 namespace petzval {
-namespace {
+namespace illumination_test {
 
 using testing::data_lens;
 constexpr double infinity = std::numeric_limits<double>::infinity();
@@ -463,5 +463,5 @@ TEST(FilmIrradiance, OfAStopAsSmallAsAPointIsANumber) {
   }
 }
 
-}  // namespace
+}  // namespace illumination_test
 }  // namespace petzval

@@ -7,7 +7,7 @@
 #include <functional>
 
 namespace petzval::pupil_detail {
-namespace {
+namespace line_extents_test {
 
 constexpr double tolerance = 1e-9;
 
@@ -69,5 +69,5 @@ TEST(LineExtents, HaveTheWidestObscurationAndOtherGaps) {
   EXPECT_NEAR(found.gaps[0].to, 0.6, 0.125);
 }
 
-}  // namespace
+}  // namespace line_extents_test
 }  // namespace petzval::pupil_detail

@@ -19,7 +19,7 @@
 #include "petzval/trace/trace.hpp"
 
 namespace petzval {
-namespace {
+namespace pupil_boundary_test {
 
 using testing::data_lens;
 using testing::front_stop_lens;
@@ -195,5 +195,5 @@ TEST(PupilBoundary, RefusesTooFewDirections) {
   EXPECT_EQ(said(0, 8, 2), "front stop: wavelength 2 does not exist, wanted one of 1");
 }
 
-}  // namespace
+}  // namespace pupil_boundary_test
 }  // namespace petzval

@@ -19,7 +19,7 @@
 #include "petzval/trace/trace.hpp"
 
 namespace petzval {
-namespace {
+namespace pupil_plane_test {
 
 using testing::data_lens;
 using testing::front_stop_lens;
@@ -213,5 +213,5 @@ TEST(PupilPlane, RefusesPointsThatItCannotSee) {
             start + "the entrance pupil is at infinity, wanted one at a finite place: fields are seen from it");
 }
 
-}  // namespace
+}  // namespace pupil_plane_test
 }  // namespace petzval

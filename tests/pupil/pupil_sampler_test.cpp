@@ -16,7 +16,7 @@
 #include "petzval/trace/trace.hpp"
 
 namespace petzval {
-namespace {
+namespace pupil_sampler_test {
 
 using testing::data_lens;
 using testing::data_prescriptions;
@@ -165,5 +165,5 @@ TEST(PupilSampler, OfNothingIsEmpty) {
   EXPECT_EQ(sampler.area(), 0);
 }
 
-}  // namespace
+}  // namespace pupil_sampler_test
 }  // namespace petzval

@@ -17,7 +17,7 @@
 #include "petzval/trace/trace.hpp"
 
 namespace petzval {
-namespace {
+namespace ray_bundle_test {
 
 using testing::data_lens;
 
@@ -96,5 +96,5 @@ TEST(TraceBundle, HitsAreThoseOfSingleRays) {
   EXPECT_EQ(next, hits.x.size());
 }
 
-}  // namespace
+}  // namespace ray_bundle_test
 }  // namespace petzval

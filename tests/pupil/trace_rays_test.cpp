@@ -19,7 +19,7 @@
 #include "pupil/pupil_nodes.hpp"
 
 namespace petzval::pupil_detail {
-namespace {
+namespace trace_rays_test {
 
 using testing::data_lens;
 
@@ -169,5 +169,5 @@ TEST(TraceRim, HasItsCornersWhereRimsMeet) {
   }
 }
 
-}  // namespace
+}  // namespace trace_rays_test
 }  // namespace petzval::pupil_detail

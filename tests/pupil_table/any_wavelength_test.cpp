@@ -18,7 +18,7 @@
 #include "petzval/trace/trace.hpp"
 #include "pupil_table/entrance_pupil_table.hpp"
 
-namespace {
+namespace any_wavelength_test {
 
 using namespace petzval;
 
@@ -208,4 +208,4 @@ TEST(AnyWavelength, HasEveryRayAmongTheSamplesOfScenePoints) {
   }
 }
 
-}  // namespace
+}  // namespace any_wavelength_test

@@ -18,7 +18,7 @@
 #include "petzval/pupil_table/film_pupil_table.hpp"
 #include "pupil_coverage.hpp"
 
-namespace {
+namespace bladed_pupils_test {
 
 using namespace petzval;
 using petzval::testing::Coverage;
@@ -214,4 +214,4 @@ TEST(BladedPupils, OfEqualAreaAreRefusedWithCylindersAndObscurations) {
   }
 }
 
-}  // namespace
+}  // namespace bladed_pupils_test

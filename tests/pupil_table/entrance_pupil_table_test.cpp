@@ -23,7 +23,7 @@
 #include "petzval/trace/trace.hpp"
 
 namespace petzval {
-namespace {
+namespace entrance_pupil_table_test {
 
 constexpr double pi = std::numbers::pi;
 
@@ -291,5 +291,5 @@ TEST(LeavingRays, ComeFromAllOfTheFilm) {
   EXPECT_LT(least, 0.9 * most);
 }
 
-}  // namespace
+}  // namespace entrance_pupil_table_test
 }  // namespace petzval

@@ -15,7 +15,7 @@
 #include "petzval/pupil_table/film_pupil_table.hpp"
 #include "pupil_coverage.hpp"
 
-namespace {
+namespace film_cells_test {
 
 using namespace petzval;
 using petzval::testing::Coverage;
@@ -168,4 +168,4 @@ TEST(FilmCells, HoldAllLinesOfATiltedFilm) {
   }
 }
 
-}  // namespace
+}  // namespace film_cells_test

@@ -13,7 +13,7 @@
 #include "../data_lenses.hpp"
 #include "petzval/pupil_table/film_pupil_table.hpp"
 
-namespace {
+namespace film_pupil_samples_test {
 
 using namespace petzval;
 using petzval::testing::data_lens;
@@ -216,4 +216,4 @@ TEST_P(MovingSamples, AreKnownByTheirDerivatives) {
 
 INSTANTIATE_TEST_SUITE_P(FilmPupilTable, MovingSamples, ::testing::Values("fisheye_8mm_f2.8", "anamorphic_60mm_2x"));
 
-}  // namespace
+}  // namespace film_pupil_samples_test

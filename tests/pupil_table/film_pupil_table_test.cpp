@@ -17,7 +17,7 @@
 #include "petzval/pupil/illumination.hpp"
 #include "pupil_coverage.hpp"
 
-namespace {
+namespace film_pupil_table_test {
 
 using namespace petzval;
 using petzval::testing::data_lens;
@@ -523,4 +523,4 @@ TEST(FilmPupilTable, OfAFilmWithoutSizeIsThatOfTheAxis) {
   }
 }
 
-}  // namespace
+}  // namespace film_pupil_table_test

@@ -17,7 +17,7 @@
 #include "petzval/pupil/f_number.hpp"
 #include "petzval/pupil/pupil_boundary.hpp"
 
-namespace {
+namespace pupil_coverage_test {
 
 using namespace petzval;
 using petzval::testing::Coverage;
@@ -154,4 +154,4 @@ TEST(FilmPupilTable, FindsWhereTheLightEnds) {
   }
 }
 
-}  // namespace
+}  // namespace pupil_coverage_test

@@ -14,7 +14,7 @@
 #include "petzval/pupil_table/film_pupil_table.hpp"
 
 namespace petzval {
-namespace {
+namespace rim_test {
 
 using testing::data_lens;
 using testing::message;
@@ -113,5 +113,5 @@ TEST(PupilRim, RefusesWhatItCannotCut) {
   }
 }
 
-}  // namespace
+}  // namespace rim_test
 }  // namespace petzval

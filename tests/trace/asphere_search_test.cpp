@@ -12,7 +12,7 @@
 #include "../asphere_scan.hpp"
 #include "batches.hpp"
 
-namespace {
+namespace asphere_search_test {
 
 using petzval::Ray;
 using petzval::RayFate;
@@ -171,4 +171,4 @@ TYPED_TEST(AsphereSearch, RimsEndWhereAnAsphereIsSteep) {
   }
 }
 
-}  // namespace
+}  // namespace asphere_search_test

@@ -12,7 +12,7 @@
 #include "../blades.hpp"
 #include "batches.hpp"
 
-namespace {
+namespace batch_iris_test {
 
 using namespace testing_batches;
 using petzval::Iris;
@@ -168,4 +168,4 @@ TYPED_TEST(BatchIris, WithoutAperturesEveryRimIsOpen) {
   }
 }
 
-}  // namespace
+}  // namespace batch_iris_test

@@ -4,7 +4,7 @@
 
 #include "limits.hpp"
 
-namespace {
+namespace batch_reference_test {
 
 using namespace testing_limits;
 using testing_batches::rays_for;
@@ -27,4 +27,4 @@ TYPED_TEST(BatchReference, RaysAndFatesOfEveryLensAreThoseOfExactRays) {
   this->RecordProperty("fates_beside", std::to_string(judge.beside()));
 }
 
-}  // namespace
+}  // namespace batch_reference_test

@@ -13,7 +13,7 @@
 #include "batches.hpp"
 #include "petzval/core/parallel.hpp"
 
-namespace {
+namespace batch_test {
 
 using namespace testing_batches;
 using petzval::TracedRay;
@@ -290,4 +290,4 @@ TEST(Batch, OfNothingNeedsNoArrays) {
   }
 }
 
-}  // namespace
+}  // namespace batch_test

@@ -10,7 +10,7 @@
 #include "batches.hpp"
 #include "petzval/glass/glass.hpp"
 
-namespace {
+namespace batch_wavelength_test {
 
 using namespace testing_batches;
 using petzval::RayWavelengths;
@@ -279,4 +279,4 @@ TYPED_TEST(BatchWavelengths, InNmHaveDerivatives) {
   }
 }
 
-}  // namespace
+}  // namespace batch_wavelength_test

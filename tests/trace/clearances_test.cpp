@@ -13,7 +13,7 @@
 #include "petzval/trace/trace.hpp"
 
 namespace petzval {
-namespace {
+namespace clearances_test {
 
 /// Rays towards and beside the rear of a lens, as columns.
 struct Columns {
@@ -128,5 +128,5 @@ TEST(Clearances, OfRaysThatMissASurfaceLieBelowThoseOfRims) {
   EXPECT_LT(clearance(30), -1.9);
 }
 
-}  // namespace
+}  // namespace clearances_test
 }  // namespace petzval

@@ -19,7 +19,7 @@
 #include "trace/sequential.hpp"
 
 namespace petzval {
-namespace {
+namespace coddington_test {
 
 using Jet = ceres::Jet<double, 1>;
 using kernel::Vec;
@@ -146,5 +146,5 @@ TEST(Coddington, FociAreThoseOfTheNeighbouringRays) {
   RecordProperty("rays", rays);
 }
 
-}  // namespace
+}  // namespace coddington_test
 }  // namespace petzval

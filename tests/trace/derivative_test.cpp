@@ -16,7 +16,7 @@
 #include "extended.hpp"
 #include "lenses.hpp"
 
-namespace {
+namespace derivative_test {
 
 using petzval::RayFate;
 using petzval::kernel::LensView;
@@ -146,4 +146,4 @@ TEST(Derivative, RaysMoveSymplectically) {
   testing_report::put("symplectic Jacobian, all 75 lenses", testing_report::one_ray<double>, most, "1e-12");
 }
 
-}  // namespace
+}  // namespace derivative_test

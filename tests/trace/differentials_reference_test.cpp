@@ -18,7 +18,7 @@
 #include "differentials.hpp"
 #include "extended.hpp"
 
-namespace {
+namespace differentials_reference_test {
 
 using namespace testing_differentials;
 using L = long double;
@@ -195,4 +195,4 @@ TYPED_TEST(DifferentialsOf, EveryKindOfSurfaceAreThoseOfExactRays) {
   judge_all<TypeParam>(made(), "differentials: single surfaces, both ways", 8);
 }
 
-}  // namespace
+}  // namespace differentials_reference_test

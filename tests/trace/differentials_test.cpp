@@ -13,7 +13,7 @@
 #include "core/text.hpp"
 #include "differentials.hpp"
 
-namespace {
+namespace differentials_test {
 
 using namespace testing_differentials;
 using petzval::Arithmetic;
@@ -327,4 +327,4 @@ TYPED_TEST(DifferentialsOf, ReproducibleOnesAreTheSameOnEveryInstructionSet) {
   });
 }
 
-}  // namespace
+}  // namespace differentials_test

@@ -9,7 +9,7 @@
 
 #include "batches.hpp"
 
-namespace {
+namespace edges_test {
 
 using namespace testing_batches;
 using petzval::Prescription;
@@ -177,4 +177,4 @@ TYPED_TEST(EdgesOf, TheWayOfTravelAndNotTheSignOfZPicksTheCrossing) {
   }
 }
 
-}  // namespace
+}  // namespace edges_test

@@ -15,7 +15,7 @@
 #include "core/text.hpp"
 #include "limits.hpp"
 
-namespace {
+namespace extremes_test {
 
 using namespace testing_limits;
 using petzval::Prescription;
@@ -353,4 +353,4 @@ TYPED_TEST(ExtremesOf, BackwardRaysIntoAFisheye) {
   judge.close("fisheye, rays from behind its front", 4);
 }
 
-}  // namespace
+}  // namespace extremes_test

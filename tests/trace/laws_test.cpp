@@ -11,7 +11,7 @@
 #include "../report.hpp"
 #include "lenses.hpp"
 
-namespace {
+namespace laws_test {
 
 using petzval::Ray;
 using petzval::RayFate;
@@ -237,4 +237,4 @@ TEST(Laws, RimAndHoleBelongToTheClearAperture) {
   EXPECT_EQ(petzval::trace(closed, Ray<double>{{1e-9, 0, -1}, {0, 0, 1}}).fate, RayFate::vignetted);
 }
 
-}  // namespace
+}  // namespace laws_test

@@ -15,7 +15,7 @@
 #include "batches.hpp"
 #include "core/text.hpp"
 
-namespace {
+namespace reference_test {
 
 using petzval::Ray;
 using petzval::TracedRay;
@@ -111,4 +111,4 @@ TYPED_TEST(ReferenceRays, AgreeInPlaceDirectionFateAndSurface) {
                       petzval::to_text(fast, 2) + " / " + petzval::to_text(reproducible, 2), limit);
 }
 
-}  // namespace
+}  // namespace reference_test

@@ -13,7 +13,7 @@
 
 #include "batches.hpp"
 
-namespace {
+namespace robust_test {
 
 using petzval::Ray;
 using petzval::RayFate;
@@ -272,4 +272,4 @@ TEST(Robust, ARayThatMeetsASurfaceBeyond1e15MillimetresIsLost) {
   }
 }
 
-}  // namespace
+}  // namespace robust_test

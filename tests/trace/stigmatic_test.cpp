@@ -8,7 +8,7 @@
 #include "petzval/lens/lens.hpp"
 #include "trace/sequential.hpp"
 
-namespace {
+namespace stigmatic_test {
 
 using petzval::kernel::Vec;
 
@@ -78,4 +78,4 @@ TEST(Stigmatic, DescartesConicsFocusParallelLight) {
   RecordProperty("worst", std::to_string(worst * 1e15) + "e-15");
 }
 
-}  // namespace
+}  // namespace stigmatic_test

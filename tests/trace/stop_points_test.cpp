@@ -12,7 +12,7 @@
 #include "petzval/paraxial/first_order.hpp"
 
 namespace petzval {
-namespace {
+namespace stop_points_test {
 
 /// Where rays along the axis, some mm beside it, meet the stop.
 template <class T>
@@ -70,5 +70,5 @@ TEST(StopPoints, AreZeroForRaysThatAreLostBefore) {
   }
 }
 
-}  // namespace
+}  // namespace stop_points_test
 }  // namespace petzval
