@@ -6,6 +6,9 @@ library_packages="g++ cmake ninja-build pkg-config libglm-dev nlohmann-json3-dev
 example_packages="libcli11-dev libfreetype-dev libfontconfig-dev fonts-dejavu-core libembree-dev libtinyobjloader-dev"
 test_packages="libgtest-dev"
 
+# Sources are compiled in groups: a third to a half less work from nothing, more after a change of one source.
+unity=-DCMAKE_UNITY_BUILD=${UNITY:-ON}
+
 BUILD_DIR=${BUILD_DIR:-$root/build}
 case $BUILD_DIR in
   /*) ;;

@@ -29,7 +29,7 @@ function(petzval_library name)
     CXX_VISIBILITY_PRESET hidden
     VISIBILITY_INLINES_HIDDEN ON
     POSITION_INDEPENDENT_CODE ON
-    UNITY_BUILD OFF  # each file has names of its own, whatever the project around it chooses
+    UNITY_BUILD_MODE GROUP  # with CMAKE_UNITY_BUILD: the sources that a module lists under JOINED
     LIBRARY_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR}/lib
     ARCHIVE_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR}/lib
     WINDOWS_EXPORT_ALL_SYMBOLS ON
@@ -47,13 +47,21 @@ function(petzval_library name)
   petzval_warnings(petzval-${name})
 endfunction()
 
-# petzval_module(core media SOURCES dispersion.cpp HEADERS dispersion.hpp): a module's files, into a library.
+# petzval_module(core glass SOURCES dispersion.cpp HEADERS glass.hpp): a module's files, into a library. A unity build
+# (CMAKE_UNITY_BUILD) compiles the sources after JOINED in groups of eight. They define no name of a namespace twice.
 function(petzval_module library module)
-  cmake_parse_arguments(PARSE_ARGV 2 arg "" "" "SOURCES;HEADERS")
+  cmake_parse_arguments(PARSE_ARGV 2 arg "" "" "JOINED;SOURCES;HEADERS")
+  list(TRANSFORM arg_JOINED PREPEND ${PROJECT_SOURCE_DIR}/lib/${module}/)
   list(TRANSFORM arg_SOURCES PREPEND ${PROJECT_SOURCE_DIR}/lib/${module}/)
   list(TRANSFORM arg_HEADERS PREPEND ${PROJECT_SOURCE_DIR}/include/petzval/${module}/)
-  target_sources(petzval-${library} PRIVATE ${arg_SOURCES}
+  target_sources(petzval-${library} PRIVATE ${arg_JOINED} ${arg_SOURCES}
     PUBLIC FILE_SET HEADERS BASE_DIRS ${PROJECT_SOURCE_DIR}/include FILES ${arg_HEADERS})
+  set(position 0)
+  foreach(source IN LISTS arg_JOINED)
+    math(EXPR group "${position} / 8")
+    math(EXPR position "${position} + 1")
+    set_source_files_properties(${source} TARGET_DIRECTORY petzval-${library} PROPERTIES UNITY_GROUP ${module}_${group})
+  endforeach()
 endfunction()
 
 if(CMAKE_SYSTEM_PROCESSOR MATCHES "x86_64|AMD64")
@@ -84,7 +92,7 @@ function(petzval_lanes library file name set)
   target_include_directories(petzval-${name} PRIVATE ${PROJECT_SOURCE_DIR}/include ${PROJECT_SOURCE_DIR}/lib)
   target_link_libraries(petzval-${name} PRIVATE glm::glm)
   set_target_properties(petzval-${name} PROPERTIES CXX_VISIBILITY_PRESET hidden VISIBILITY_INLINES_HIDDEN ON
-    POSITION_INDEPENDENT_CODE ON)
+    POSITION_INDEPENDENT_CODE ON UNITY_BUILD OFF)
   petzval_warnings(petzval-${name})
   target_sources(petzval-${library} PRIVATE $<TARGET_OBJECTS:petzval-${name}>)
 endfunction()

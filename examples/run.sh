@@ -6,7 +6,7 @@
 #
 # --full renders the scenes large and with little noise, which takes an hour of two cores; what is there already stays.
 # The programs land in build/examples/, the pictures in out/ (start with out/index.html).
-# BUILD_DIR=... builds elsewhere, OUT_DIR=... renders elsewhere.
+# BUILD_DIR=... builds elsewhere, OUT_DIR=... renders elsewhere. UNITY=OFF compiles the sources separately.
 set -eu
 root=$(CDPATH= cd -- "$(dirname -- "$0")/.." && pwd)
 . "$root/cmake/build.sh"
@@ -21,6 +21,6 @@ case ${1-} in
 esac
 
 need $library_packages $example_packages
-build -DPETZVAL_BUILD_TESTS=OFF -DPETZVAL_BUILD_EXAMPLES=ON
+build $unity -DPETZVAL_BUILD_TESTS=OFF -DPETZVAL_BUILD_EXAMPLES=ON
 [ "$render" = yes ] || exit 0
 exec sh "$root/examples/gallery.sh" "$BUILD_DIR/examples" "${OUT_DIR:-$root/out}" $full

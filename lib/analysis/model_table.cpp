@@ -20,7 +20,7 @@
 namespace petzval::analysis_detail {
 namespace {
 
-constexpr std::size_t ray_film_points = 384, pupil_film_points = 40;
+constexpr std::size_t points_for_rays = 384, points_for_pupils = 40;
 
 /// z of the planes in which a scene's rays are compared.
 std::vector<double> depths_of(const Lens& lens, const SceneRequirements& scene) {
@@ -54,7 +54,7 @@ struct Setting {
   Setting(const Lens& whole, const SceneRequirements& scene, std::span<const Tolerance> tolerances, int threads)
       : lens(scene.f_number ? with_f_number(whole, *scene.f_number, whole.primary_wavelength()) : whole),
         film(scene.film),
-        samples{.depths_z = depths_of(lens, scene), .film_points = ray_film_points, .threads = threads},
+        samples{.depths_z = depths_of(lens, scene), .film_points = points_for_rays, .threads = threads},
         exact(lens, film.radius_mm()) {
     for (const double nm : scene.wavelengths_nm) samples.wavelengths.push_back(lens.wavelength(nm));
     samples.wavelengths = wavelengths_of(lens, samples);
@@ -62,7 +62,7 @@ struct Setting {
     const double from_z = origin_z(lens, scene.origin);
     if (blur) samples.sharpest_between_z = {from_z - scene.near_mm, from_z - scene.far_mm};
     rays.emplace(exact, film, samples, tolerances);
-    pupils.emplace(exact, film, pupil_film_points, samples);
+    pupils.emplace(exact, film, points_for_pupils, samples);
   }
 
   Lens lens;

@@ -58,10 +58,10 @@ struct MeanBundle {
     const std::array<std::size_t, 4> near{place(0, 0), place(0, 1), place(1, 0), place(1, 1)};
     const bool whole = std::all_of(near.begin(), near.end(), [&](std::size_t i) { return passing[i] > 1 - 1e-9; });
     if (!whole) down = std::clamp(down, 0.0, 1.0);
-    const std::array<double, 4> parts{(1 - down) * (1 - right), (1 - down) * right, down * (1 - right), down * right};
+    const std::array<double, 4> part_of{(1 - down) * (1 - right), (1 - down) * right, down * (1 - right), down * right};
     Hit hit;
     for (std::size_t k = 0; k < near.size(); ++k) {
-      const double part = parts[k] * passing[near[k]];
+      const double part = part_of[k] * passing[near[k]];
       hit.light += part, hit.x += part * x[near[k]], hit.y += part * y[near[k]];
     }
     if (hit.light > 0) hit.x /= hit.light, hit.y /= hit.light;

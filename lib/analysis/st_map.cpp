@@ -187,18 +187,18 @@ Margin margin_of(const LensDistortion& distortion, const StMapOptions& options) 
   const std::string where = distortion.camera().lens().name() + ": ST maps: ";
   const auto either_side = [](double excess) { return static_cast<int>(std::ceil(excess - 1e-6)); };
   if (options.overscan) {
-    const double beyond = (*options.overscan - 1) / 2;
-    if (!(beyond >= 0 && *options.overscan <= 10)) {
+    const double margin = (*options.overscan - 1) / 2;
+    if (!(margin >= 0 && *options.overscan <= 10)) {
       throw Error(where + "the overscan is " + to_text(*options.overscan) + ", wanted 1 to 10");
     }
-    return {either_side(beyond * film.columns), either_side(beyond * film.rows)};
+    return {either_side(margin * film.columns), either_side(margin * film.rows)};
   }
   const auto box = undistorted_box(distortion);
   if (!box) throw Error(where + "no light reaches the film");
-  const auto beyond = [&](double least, double largest, int pixels) {
-    return either_side(std::clamp(std::max(-least, largest - pixels), 0.0, pixels / 2.0));
+  const auto outside = [&](double least, double most, int pixels) {
+    return either_side(std::clamp(std::max(-least, most - pixels), 0.0, pixels / 2.0));
   };
-  return {beyond(box->least.x, box->largest.x, film.columns), beyond(box->least.y, box->largest.y, film.rows)};
+  return {outside(box->least.x, box->largest.x, film.columns), outside(box->least.y, box->largest.y, film.rows)};
 }
 
 }  // namespace

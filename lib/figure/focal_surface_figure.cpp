@@ -28,9 +28,9 @@ constexpr std::string_view beside_style = "fill=\"none\" stroke=\"#9bd3ab\" stro
 constexpr std::string_view lens_style = "fill=\"none\" stroke=\"#1f5fc4\" stroke-width=\"2\"";
 constexpr std::string_view cone_style = "fill=\"none\" stroke=\"#888\" stroke-width=\"0.8\"";
 
-class Figure {
+class FocalSurfaceFigure {
  public:
-  explicit Figure(const FocalSurfaceView& view) : view_(view) {
+  explicit FocalSurfaceFigure(const FocalSurfaceView& view) : view_(view) {
     double farthest = 0;
     for (const FocalPoint& point : view.points) {
       const bool sharp = point.inverse_distance.value_or(0) > 0 && point.blur_mm == 0;
@@ -135,7 +135,7 @@ std::string focal_surface_figure(const FocalSurfaceView& view) {
     throw Error("focal_surface_figure: the film is " + to_text(film.width_mm) + " x " + to_text(film.height_mm) +
                 " mm, wanted both above 0");
   }
-  return Figure(view).draw();
+  return FocalSurfaceFigure(view).draw();
 }
 
 }  // namespace petzval

@@ -79,9 +79,9 @@ std::optional<Parabola> mean(const std::vector<std::optional<Parabola>>& fields)
   return Parabola{best, least / count, steepness / count};
 }
 
-class Figure {
+class FocusFigure {
  public:
-  Figure(const Lens& lens, double subject_z, std::span<const double> fields_rad, std::vector<double> weights)
+  FocusFigure(const Lens& lens, double subject_z, std::span<const double> fields_rad, std::vector<double> weights)
       : lens_(lens), subject_z_(subject_z), fields_(fields_rad), weights_(std::move(weights)) {
     std::vector<double> with_axis(fields_rad.begin(), fields_rad.end());
     with_axis.push_back(0);
@@ -207,7 +207,8 @@ class Figure {
 std::string focus_figure(const Lens& lens, double subject_z, std::span<const double> fields_rad,
                          std::span<const double> wavelength_weights) {
   if (fields_rad.empty()) throw Error("focus_figure: no fields, wanted at least one");
-  return Figure(lens, subject_z, fields_rad, figure_detail::checked_weights("focus_figure", lens, wavelength_weights))
+  return FocusFigure(lens, subject_z, fields_rad,
+                     figure_detail::checked_weights("focus_figure", lens, wavelength_weights))
       .draw();
 }
 

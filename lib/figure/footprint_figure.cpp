@@ -60,9 +60,9 @@ struct Cell {
   bool away = false;  ///< the paraxial pupil is left out
 };
 
-class Figure {
+class FootprintFigure {
  public:
-  Figure(const Lens& lens, double subject_z, std::span<const double> fields_rad)
+  FootprintFigure(const Lens& lens, double subject_z, std::span<const double> fields_rad)
       : lens_(lens), subject_z_(subject_z), fields_(fields_rad), wavelength_(lens.primary_wavelength()) {
     half_x_ = pupils(lens, wavelength_, Meridian::x).entrance.diameter / 2;
     half_y_ = pupils(lens, wavelength_, Meridian::y).entrance.diameter / 2;
@@ -221,7 +221,7 @@ class Figure {
 
 std::string footprint_figure(const Lens& lens, double subject_z, std::span<const double> fields_rad) {
   if (fields_rad.empty()) throw Error("footprint_figure: no fields, wanted at least one");
-  return Figure(lens, subject_z, fields_rad).draw();
+  return FootprintFigure(lens, subject_z, fields_rad).draw();
 }
 
 }  // namespace petzval

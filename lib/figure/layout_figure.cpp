@@ -38,9 +38,9 @@ struct Box {
   }
 };
 
-class Figure {
+class LayoutFigure {
  public:
-  Figure(const Lens& lens, double subject_z, std::span<const double> fields_rad, const LayoutOptions& options)
+  LayoutFigure(const Lens& lens, double subject_z, std::span<const double> fields_rad, const LayoutOptions& options)
       : lens_(lens),
         subject_z_(subject_z),
         fields_(fields_rad),
@@ -279,7 +279,7 @@ std::string layout_figure(const Lens& lens, double subject_z, std::span<const do
   if (options.rays < 3 || options.rays > 7) {
     throw Error("layout_figure: " + std::to_string(options.rays) + " rays a field, wanted 3 to 7");
   }
-  return Figure(lens, subject_z, fields_rad, options).draw();
+  return LayoutFigure(lens, subject_z, fields_rad, options).draw();
 }
 
 }  // namespace petzval

@@ -61,9 +61,9 @@ std::string marker(std::size_t kind, double x, double y) {
   }
 }
 
-class Figure {
+class SpotFigure {
  public:
-  Figure(const Lens& lens, std::span<const Spot> spots, std::vector<double> weights)
+  SpotFigure(const Lens& lens, std::span<const Spot> spots, std::vector<double> weights)
       : lens_(lens),
         spots_(spots),
         weights_(std::move(weights)),
@@ -221,7 +221,7 @@ std::string spot_figure(const Lens& lens, std::span<const Spot> spots, std::span
     throw Error("spot_figure: " + std::to_string(spots.size()) + " spots, wanted fields by " +
                 std::to_string(wavelengths) + " wavelengths in the order of spot_diagram");
   }
-  return Figure(lens, spots, figure_detail::checked_weights("spot_figure", lens, wavelength_weights)).draw();
+  return SpotFigure(lens, spots, figure_detail::checked_weights("spot_figure", lens, wavelength_weights)).draw();
 }
 
 }  // namespace petzval

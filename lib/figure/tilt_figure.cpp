@@ -56,9 +56,9 @@ std::string degrees_text(double angle_rad) {
   return to_text(std::round(1e5 * degrees(angle_rad)) / 1e5 + 0.0, 4) + "\u00b0";
 }
 
-class Figure {
+class TiltFigure {
  public:
-  explicit Figure(const TiltView& view) : view_(view), film_(view.after), ideal_(view.after) {
+  explicit TiltFigure(const TiltView& view) : view_(view), film_(view.after), ideal_(view.after) {
     if (view.focus) {
       if (const auto image = view.lens.image_of(view.focus->plane)) ideal_ = film_in(*image, view.after);
     }
@@ -391,7 +391,7 @@ class Figure {
 
 std::string tilt_figure(const TiltView& view) {
   check(view);
-  return Figure(view).draw();
+  return TiltFigure(view).draw();
 }
 
 }  // namespace petzval
