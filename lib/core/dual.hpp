@@ -4,6 +4,9 @@
 #include <cmath>
 #include <compare>
 
+/// Calls of operations on two or three numbers would cost more than they do.
+#define PETZVAL_DUAL_INLINE [[gnu::always_inline]]
+
 namespace petzval::kernel {
 
 /// Derivatives of a number by two variables.
@@ -12,11 +15,15 @@ struct Gradient {
 
   double& operator[](int i) noexcept { return i == 0 ? x : y; }
   double operator[](int i) const noexcept { return i == 0 ? x : y; }
-  friend Gradient operator+(const Gradient& a, const Gradient& b) noexcept { return {a.x + b.x, a.y + b.y}; }
-  friend Gradient operator-(const Gradient& a, const Gradient& b) noexcept { return {a.x - b.x, a.y - b.y}; }
-  friend Gradient operator-(const Gradient& a) noexcept { return {-a.x, -a.y}; }
-  friend Gradient operator*(const Gradient& a, double s) noexcept { return {a.x * s, a.y * s}; }
-  friend Gradient operator*(double s, const Gradient& a) noexcept { return a * s; }
+  PETZVAL_DUAL_INLINE friend Gradient operator+(const Gradient& a, const Gradient& b) noexcept {
+    return {a.x + b.x, a.y + b.y};
+  }
+  PETZVAL_DUAL_INLINE friend Gradient operator-(const Gradient& a, const Gradient& b) noexcept {
+    return {a.x - b.x, a.y - b.y};
+  }
+  PETZVAL_DUAL_INLINE friend Gradient operator-(const Gradient& a) noexcept { return {-a.x, -a.y}; }
+  PETZVAL_DUAL_INLINE friend Gradient operator*(const Gradient& a, double s) noexcept { return {a.x * s, a.y * s}; }
+  PETZVAL_DUAL_INLINE friend Gradient operator*(double s, const Gradient& a) noexcept { return a * s; }
 };
 
 /// A number with its derivatives by two variables: a scalar of the kernels. Comparisons compare the values.
@@ -32,33 +39,37 @@ struct Dual {
   /// One of the two variables, 0 or 1.
   Dual(double value, int variable) noexcept : a(value) { v[variable] = 1; }
 
-  friend Dual operator-(const Dual& f) noexcept { return {-f.a, -f.v}; }
-  friend Dual operator+(const Dual& f, const Dual& g) noexcept { return {f.a + g.a, f.v + g.v}; }
-  friend Dual operator+(const Dual& f, double s) noexcept { return {f.a + s, f.v}; }
-  friend Dual operator+(double s, const Dual& f) noexcept { return f + s; }
-  friend Dual operator-(const Dual& f, const Dual& g) noexcept { return {f.a - g.a, f.v - g.v}; }
-  friend Dual operator-(const Dual& f, double s) noexcept { return {f.a - s, f.v}; }
-  friend Dual operator-(double s, const Dual& f) noexcept { return {s - f.a, -f.v}; }
-  friend Dual operator*(const Dual& f, const Dual& g) noexcept { return {f.a * g.a, f.a * g.v + f.v * g.a}; }
-  friend Dual operator*(const Dual& f, double s) noexcept { return {f.a * s, f.v * s}; }
-  friend Dual operator*(double s, const Dual& f) noexcept { return f * s; }
-  friend Dual operator/(const Dual& f, const Dual& g) noexcept {
+  PETZVAL_DUAL_INLINE friend Dual operator-(const Dual& f) noexcept { return {-f.a, -f.v}; }
+  PETZVAL_DUAL_INLINE friend Dual operator+(const Dual& f, const Dual& g) noexcept { return {f.a + g.a, f.v + g.v}; }
+  PETZVAL_DUAL_INLINE friend Dual operator+(const Dual& f, double s) noexcept { return {f.a + s, f.v}; }
+  PETZVAL_DUAL_INLINE friend Dual operator+(double s, const Dual& f) noexcept { return f + s; }
+  PETZVAL_DUAL_INLINE friend Dual operator-(const Dual& f, const Dual& g) noexcept { return {f.a - g.a, f.v - g.v}; }
+  PETZVAL_DUAL_INLINE friend Dual operator-(const Dual& f, double s) noexcept { return {f.a - s, f.v}; }
+  PETZVAL_DUAL_INLINE friend Dual operator-(double s, const Dual& f) noexcept { return {s - f.a, -f.v}; }
+  PETZVAL_DUAL_INLINE friend Dual operator*(const Dual& f, const Dual& g) noexcept {
+    return {f.a * g.a, f.a * g.v + f.v * g.a};
+  }
+  PETZVAL_DUAL_INLINE friend Dual operator*(const Dual& f, double s) noexcept { return {f.a * s, f.v * s}; }
+  PETZVAL_DUAL_INLINE friend Dual operator*(double s, const Dual& f) noexcept { return f * s; }
+  PETZVAL_DUAL_INLINE friend Dual operator/(const Dual& f, const Dual& g) noexcept {
     const double inverse = 1 / g.a, value = f.a * inverse;
     return {value, (f.v - value * g.v) * inverse};
   }
-  friend Dual operator/(const Dual& f, double s) noexcept { return f * (1 / s); }
-  friend Dual operator/(double s, const Dual& g) noexcept { return {s / g.a, g.v * (-s / (g.a * g.a))}; }
+  PETZVAL_DUAL_INLINE friend Dual operator/(const Dual& f, double s) noexcept { return f * (1 / s); }
+  PETZVAL_DUAL_INLINE friend Dual operator/(double s, const Dual& g) noexcept {
+    return {s / g.a, g.v * (-s / (g.a * g.a))};
+  }
   Dual& operator+=(const auto& g) noexcept { return *this = *this + g; }
   Dual& operator-=(const auto& g) noexcept { return *this = *this - g; }
   Dual& operator*=(const auto& g) noexcept { return *this = *this * g; }
 
-  friend bool operator==(const Dual& f, const Dual& g) noexcept { return f.a == g.a; }
-  friend bool operator==(const Dual& f, double s) noexcept { return f.a == s; }
-  friend auto operator<=>(const Dual& f, const Dual& g) noexcept { return f.a <=> g.a; }
-  friend auto operator<=>(const Dual& f, double s) noexcept { return f.a <=> s; }
+  PETZVAL_DUAL_INLINE friend bool operator==(const Dual& f, const Dual& g) noexcept { return f.a == g.a; }
+  PETZVAL_DUAL_INLINE friend bool operator==(const Dual& f, double s) noexcept { return f.a == s; }
+  PETZVAL_DUAL_INLINE friend auto operator<=>(const Dual& f, const Dual& g) noexcept { return f.a <=> g.a; }
+  PETZVAL_DUAL_INLINE friend auto operator<=>(const Dual& f, double s) noexcept { return f.a <=> s; }
 
-  friend Dual abs(const Dual& f) noexcept { return std::signbit(f.a) ? -f : f; }
-  friend Dual sqrt(const Dual& f) noexcept {
+  PETZVAL_DUAL_INLINE friend Dual abs(const Dual& f) noexcept { return std::signbit(f.a) ? -f : f; }
+  PETZVAL_DUAL_INLINE friend Dual sqrt(const Dual& f) noexcept {
     const double root = std::sqrt(f.a);
     return {root, f.v * (1 / (2 * root))};
   }

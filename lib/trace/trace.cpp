@@ -12,6 +12,7 @@
 #include "lens/lens_view.hpp"
 #include "march.hpp"
 #include "route.hpp"
+#include "trace_differential.hpp"
 
 namespace petzval {
 namespace trace_detail {
@@ -61,16 +62,31 @@ void put_at_end(const Route<R>& route, const R* vertex_z, std::size_t j, R per_n
   }
 }
 
+/// Derivatives of a ray, in front of the lens and then behind it.
+template <class R>
+struct RayBy {
+  static constexpr bool wanted = true;
+  Ray<R>&u, &v;
+};
+struct NoDerivatives {
+  static constexpr bool wanted = false;
+};
+
+template <class T, class R>
+RayArrays<T> arrays_of(R& ray) noexcept {
+  auto& [o, d] = ray;
+  return {&o.x, &o.y, &o.z, &d.x, &d.y, &d.z};
+}
+
 /// index, per_index: in front of the lens and one over that behind it; media_at: at each step in turn.
-template <class R, class Seen, class MediaAt>
-TracedRay<R> trace_one(const Route<R>& route, const R* vertex_z, const Ray<R>& ray, const Seen& seen, R index,
-                       R per_index, MediaAt&& media_at) {
+template <class R, class Seen, class By, class MediaAt>
+TracedRay<R> trace_one(const Route<R>& route, const R* vertex_z, const Ray<R>& ray, const Seen& seen, const By& by,
+                       R index, R per_index, MediaAt&& media_at) {
   const auto& sequence = route.sequence;
   TracedRay<R> end{ray, RayFate::missed_surface, sequence.steps[0].surface};
   auto& [origin, direction] = end.ray;
   const RayArrays<R> own{&origin.x, &origin.y, &origin.z, &direction.x, &direction.y, &direction.z};
-  const RayArrays<const R> in{&ray.origin.x,    &ray.origin.y,    &ray.origin.z,
-                              &ray.direction.x, &ray.direction.y, &ray.direction.z};
+  const RayArrays<const R> in = arrays_of<const R>(ray);
   Bundle<R> b;
   enter(route, in, &index, b);
   if (!any(b.alive[0])) {
@@ -78,11 +94,15 @@ TracedRay<R> trace_one(const Route<R>& route, const R* vertex_z, const Ray<R>& r
     return end;
   }
   std::uint8_t unsettled = 0;
-  NoTangents none;
+  std::conditional_t<By::wanted, TwoTangents<R>, NoTangents> follow;
+  if constexpr (By::wanted) {
+    enter(route, arrays_of<const R>(by.u), &index, follow.u);
+    enter(route, arrays_of<const R>(by.v), &index, follow.v);
+  }
   for (std::size_t j = 0; j < route.steps; ++j) {
     const Bundle<R> before = b;
     const auto media = media_at(j);
-    pass(route, j, media, &unsettled, b, none);
+    pass(route, j, media, &unsettled, b, follow);
     if constexpr (!std::is_null_pointer_v<Seen>) {
       const kernel::Step<R>& s = sequence.steps[j];
       const Vec3<R> point{b.x[0].v, b.y[0].v, s.sense * z_before_turning(s, b) + vertex_z[s.surface]};
@@ -95,13 +115,18 @@ TracedRay<R> trace_one(const Route<R>& route, const R* vertex_z, const Ray<R>& r
     }
   }
   leave(route, in, &per_index, b, own);
+  if constexpr (By::wanted) {
+    leave(route, &per_index, b, follow.u, arrays_of<R>(by.u));
+    leave(route, &per_index, b, follow.v, arrays_of<R>(by.v));
+  }
   end.surface = sequence.steps[route.steps - 1].surface;
   if (any(b.alive[0])) end.fate = RayFate::transmitted;
   return end;
 }
 
-template <class R, class Seen>
-TracedRay<R> trace_one(const Lens& lens, const Ray<R>& ray, const TraceOptions& options, const Seen& seen) {
+template <class R, class Seen, class By>
+TracedRay<R> trace_one(const Lens& lens, const Ray<R>& ray, const TraceOptions& options, const Seen& seen,
+                       const By& by) {
   const auto& view = kernel::view<R>(lens);
   const auto route = route_of<R>(view, options, options.wavelength);
   const auto& sequence = route.sequence;
@@ -109,25 +134,37 @@ TracedRay<R> trace_one(const Lens& lens, const Ray<R>& ray, const TraceOptions& 
     SpectralMedia<R> media(sequence, &route.nm);
     R index, per_index;
     media.indices(route.steps, &index, &per_index);
-    return trace_one(route, view.vertex_z, ray, seen, index, per_index, [&](std::size_t j) { return media.at(j); });
+    return trace_one(route, view.vertex_z, ray, seen, by, index, per_index, [&](std::size_t j) { return media.at(j); });
   }
   const kernel::RefractionConstants<R>* bends = sequence.bends + route.wavelength * route.steps;
-  return trace_one(route, view.vertex_z, ray, seen, sequence.n_first[route.wavelength],
+  return trace_one(route, view.vertex_z, ray, seen, by, sequence.n_first[route.wavelength],
                    sequence.per_n_last[route.wavelength], [&](std::size_t j) { return SharedMedia<R>{bends + j}; });
 }
 
 }  // namespace
+
+template <class T>
+TracedRay<T> trace_differential(const Lens& lens, const Ray<T>& ray, Ray<T>& by_u, Ray<T>& by_v,
+                                const TraceOptions& options) noexcept {
+  return trace_one(lens, ray, options, nullptr, RayBy<T>{by_u, by_v});
+}
+template PETZVAL_API TracedRay<float> trace_differential(const Lens&, const Ray<float>&, Ray<float>&, Ray<float>&,
+                                                         const TraceOptions&) noexcept;
+template PETZVAL_API TracedRay<double> trace_differential(const Lens&, const Ray<double>&, Ray<double>&, Ray<double>&,
+                                                          const TraceOptions&) noexcept;
+
 }  // namespace trace_detail
 
 template <class T>
 TracedRay<T> trace(const Lens& lens, const Ray<T>& ray, const TraceOptions& options) noexcept {
-  return trace_detail::trace_one(lens, ray, options, nullptr);
+  return trace_detail::trace_one(lens, ray, options, nullptr, trace_detail::NoDerivatives{});
 }
 
 template <class T>
 TracedRay<T> trace(const Lens& lens, const Ray<T>& ray, const TraceOptions& options,
                    const std::function<void(int, const Vec3<T>&)>& seen) {
-  return seen ? trace_detail::trace_one(lens, ray, options, seen) : trace(lens, ray, options);
+  return seen ? trace_detail::trace_one(lens, ray, options, seen, trace_detail::NoDerivatives{})
+              : trace(lens, ray, options);
 }
 
 template PETZVAL_API TracedRay<float> trace(const Lens&, const Ray<float>&, const TraceOptions&) noexcept;
