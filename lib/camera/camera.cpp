@@ -14,7 +14,6 @@
 #include "make_model.hpp"
 #include "petzval/camera/polynomial_model.hpp"
 #include "petzval/core/error.hpp"
-#include "tilted_pinhole.hpp"
 
 namespace petzval {
 namespace {
@@ -130,13 +129,6 @@ std::vector<double> scales(const Lens& lens, const Film& film, const AnyRayModel
   return each;
 }
 
-/// Bends a ray with its derivatives to the focus of its film point.
-void bend(const camera_detail::LocalFocus& focus, const std::optional<TiltedFilm>& tilted, const CameraSample& sample,
-          Wavelength wavelength, RayDerivatives& ray) {
-  const auto nearer = tilted ? tilted->plane(sample.time).nearer_at(sample.film) : camera_detail::TiltedPlane::Nearer{};
-  focus.bend(sample.film, nearer.value, nearer.by, wavelength, ray);
-}
-
 /// The wavelengths between which there are samples.
 std::span<const double> nm_of(const Lens& lens, const AnyRayModel& model) {
   const bool any = model.any_wavelength() && std::isfinite(lens.index_error());
@@ -226,27 +218,10 @@ void Camera::sample(std::size_t count, const CameraSamples<T>& samples, const Ca
 }
 
 CameraRayDifferential Camera::sample_differential(const CameraSample& s) const noexcept {
-  CameraRayDifferential result{sample(s)};
-  if (!result.sample) return result;
   const Data& data = *data_;
-  const Wavelength wavelength = data.resolved(s.wavelength);
-  const auto drawn = data.weights.draw(s.pupil_u, s.pupil_v);
-  const double u = drawn.u, v = drawn.v;
-  const auto upright = [&]() -> TwoPlaneRayDerivatives {
-    const FilmPupilTable& pupils = data.model.pupils();
-    const PupilSample at = pupils.sample(s.film, u, v, wavelength);
-    const auto [by_x, by_y] = pupils.derivatives(s.film, u, v, wavelength);
-    return {{s.film.x, s.film.y, at.x, at.y}, {1, 0, by_x[0], by_x[1]}, {0, 1, by_y[0], by_y[1]}};
-  };
-  const TwoPlaneRayDerivatives line = !data.tilted           ? upright()
-                                      : data.model.pinhole() ? pinhole_line(data.tilted->plane(s.time), s.film,
-                                                                            data.wavelengths.pinhole_shift(wavelength))
-                                                             : data.tilted->line(s.film, u, v, wavelength, s.time);
-  RayDerivatives ray = data.model.to_scene(line, wavelength);
-  if (data.focus) bend(data.focus, data.tilted, s, wavelength, ray);
-  if (data.view().moves_rays()) ray = at_front(data.front, ray);
-  result.by_film_x = ray.by_u;
-  result.by_film_y = ray.by_v;
+  CameraRayDifferential result = camera_detail::sample_differential(data.view(), s.film, s.pupil_u, s.pupil_v,
+                                                                    data.resolved(s.wavelength), s.time);
+  result.sample.pdf_film = result.sample.fate != RayFate::outside_film ? data.pdf_film : 0;
   return result;
 }
 

@@ -91,7 +91,7 @@ void put_surfaces(Numbers& to, const Lens& lens) {
 
 void CameraTables::check(std::span<const float> tables, const std::string& where) {
   const auto refuse = [&](const std::string& found) { throw Error(where + ": found " + found); };
-  if (tables.size() < head_size || tables[format] != 3) refuse("something else, wanted camera tables of format 3");
+  if (tables.size() < head_size || tables[format] != 4) refuse("something else, wanted camera tables of format 4");
   const auto number = [&](Position at) {
     const float value = tables[at];
     if (!(value >= 0 && value <= 1 << 24 && value == std::floor(value))) {
@@ -118,28 +118,21 @@ void CameraTables::check(std::span<const float> tables, const std::string& where
   const std::size_t w = number(wavelength_count), spaces = number(surface_count) + 1;
   check_list(wavelengths, w), check_list(scales, w);
   switch (number(pupils_kind)) {
-    case 0:
-      check_number(strips, 1, 1 << 16);
-      check_list(pupil_list, w * number(strips) * FilmPupilArrays::strip_size);
-      break;
     case 1: check_list(pupil_list, w * FilmPupilArrays::image_size); break;
+    case 0:
     case 2: {
+      const bool polar = number(pupils_kind) == 0;
       check_number(rows, 1, 1 << 16), check_number(columns, 1, 1 << 16);
       const std::size_t cells = number(rows) * number(columns);
-      check_list(half_widths, number(rows) + 1);
-      check_list(pupil_list, cells), check_list(pupil_list, w * cells * FilmPupilArrays::cell_size);
+      if (!polar) check_list(half_widths, number(rows) + 1);
+      check_list(pupil_list, cells);
+      check_list(pupil_list, w * cells * (polar ? FilmPupilArrays::polar_size : FilmPupilArrays::quadrant_size));
+      if (number(stop_size) == 0) break;
+      check_list(stop_list,
+                 w * cells * (polar ? FilmPupilArrays::polar_stop_size : FilmPupilArrays::quadrant_stop_size));
       break;
     }
-    case 3:
-      check_number(rows, 1, 1 << 16), check_number(columns, 1, 1 << 16);
-      check_number(blades, 3, 20), check_number(blade_corners, number(blades), FilmPupilArrays::corners);
-      if (const float turn = tables[first_blade]; !(turn >= 0 && turn <= static_cast<float>(number(blades)))) {
-        refuse(std::to_string(turn) + " at position " + std::to_string(first_blade) + ", wanted 0 to " +
-               std::to_string(number(blades)));
-      }
-      check_list(pupil_list, w * number(rows) * number(columns) * FilmPupilArrays::bladed_size);
-      break;
-    default: refuse("pupils of kind " + std::to_string(number(pupils_kind)) + ", wanted 0 to 3");
+    default: refuse("pupils of kind " + std::to_string(number(pupils_kind)) + ", wanted 0 to 2");
   }
   if (number(iris_blades) > 0) check_list(iris, 2 * (FilmPupilArrays::edge_terms + number(iris_blades)));
   switch (number(rays_kind)) {
@@ -168,7 +161,7 @@ std::vector<float> Camera::tables() const {
   if (data.weights) throw Error(where + "the pupil has weights, wanted one without: a host weighs its own samples");
   if (data.focus) throw Error(where + "found a focal surface or an expressive lens, wanted a camera without");
   Numbers to;
-  to.set(Table::format, 3);
+  to.set(Table::format, 4);
   to.set(Table::model, std::ranges::find(models(), data.model.kind()) - models().begin());
   to.set(Table::wavelength_count, data.lens.wavelengths_nm().size());
   to.set(Table::primary_wavelength, data.lens.primary_wavelength());
@@ -182,22 +175,19 @@ std::vector<float> Camera::tables() const {
   to.begin(Table::scales), to.add(data.wavelengths.scales());
 
   const FilmPupilArrays pupils = data.model.pupils().arrays();
-  to.begin(Table::pupil_list), to.list.insert(to.list.end(), pupils.pupils.begin(), pupils.pupils.end());
+  const auto put = [&to](Table::Position at, const std::vector<float>& list) {
+    to.begin(at);
+    to.list.insert(to.list.end(), list.begin(), list.end());
+  };
+  put(Table::pupil_list, pupils.pupils);
   to.set(Table::pupils_kind, static_cast<int>(pupils.kind));
   to.set(Table::pupil_radius, pupils.film_radius);
-  to.set(Table::strips, pupils.strips);
-  if (pupils.kind == FilmPupilArrays::Kind::cells) {
-    to.set(Table::rows, pupils.half_widths.size() - 1), to.set(Table::columns, pupils.columns);
-    to.set(Table::height, pupils.height);
-    to.begin(Table::half_widths);
-    to.list.insert(to.list.end(), pupils.half_widths.begin(), pupils.half_widths.end());
-  }
-  if (pupils.kind == FilmPupilArrays::Kind::bladed) {
-    to.set(Table::rows, pupils.rows), to.set(Table::columns, pupils.columns);
-    to.set(Table::blades, pupils.blades), to.set(Table::blade_corners, pupils.blade_corners);
-    to.set(Table::first_blade, pupils.first_blade);
-  }
-  to.begin(Table::iris), to.list.insert(to.list.end(), pupils.iris.begin(), pupils.iris.end());
+  to.set(Table::rows, pupils.rows), to.set(Table::columns, pupils.columns);
+  to.set(Table::height, pupils.height);
+  put(Table::half_widths, pupils.half_widths);
+  put(Table::stop_list, pupils.stop);
+  to.set(Table::stop_size, pupils.stop.size());
+  put(Table::iris, pupils.iris);
   to.set(Table::iris_blades, pupils.iris.empty() ? 0 : pupils.iris.size() / 2 - FilmPupilArrays::edge_terms);
 
   to.begin(Table::rays);

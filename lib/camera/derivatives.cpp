@@ -2,14 +2,12 @@
 // Rays with their derivatives by two parameters: each model once more, over dual numbers.
 
 #include <cmath>
-#include <optional>
 
 #include "core/dual.hpp"
 #include "core/kernel_vec.hpp"
 #include "exact_model.hpp"
 #include "paraxial_model.hpp"
-#include "petzval/trace/trace.hpp"
-#include "trace/sequential.hpp"
+#include "trace/trace_differential.hpp"
 
 namespace petzval::camera_detail {
 namespace {
@@ -40,26 +38,6 @@ RayDerivatives derivatives_of(const Vec& origin, const Vec& direction) noexcept 
           {part(origin, 1), part(direction, 1)}};
 }
 
-RayArrays<double> arrays_of(Ray<double>& ray) noexcept {
-  auto& [o, d] = ray;
-  return {&o.x, &o.y, &o.z, &d.x, &d.y, &d.z};
-}
-RayArrays<const double> arrays_of(const Ray<double>& ray) noexcept {
-  const auto& [o, d] = ray;
-  return {&o.x, &o.y, &o.z, &d.x, &d.y, &d.z};
-}
-
-/// A ray and its derivatives behind the lens, at any wavelength; nothing for a lost one.
-std::optional<RayDerivatives> traced(const Lens& lens, const RayDerivatives& start, Wavelength wavelength) noexcept {
-  RayDerivatives end;
-  const auto& [fate, ray, by_u, by_v] = start;
-  trace_differentials<double>(lens, 1, arrays_of(ray), {arrays_of(by_u), arrays_of(by_v)}, arrays_of(end.ray),
-                              {arrays_of(end.by_u), arrays_of(end.by_v)}, &end.fate, nullptr,
-                              {.travel = Travel::to_scene, .wavelengths = {wavelength}});
-  if (end.fate != RayFate::transmitted) return {};
-  return end;
-}
-
 }  // namespace
 
 template <class R>
@@ -69,18 +47,18 @@ RayDerivatives ExactModel<R>::to_scene(const TwoPlaneRayDerivatives& line, Wavel
   const double depth = space.depth();
   const Dual x = pupil_x - film_x, y = pupil_y - film_y;
   const Dual per_length = towards_ / sqrt(x * x + y * y + depth * depth);
-  const Vec origin{pupil_x, pupil_y, Dual(space.pupil_z)};
-  const Vec direction{x * per_length, y * per_length, depth * per_length};
-  RayDerivatives start = derivatives_of(origin, direction);
-  start.by_u = start.by_v = {{0, 0, 0}, {0, 0, 0}};
-  start.fate = RayFate::missed_surface;
-  if (wavelength.in_nm()) return traced(lens_, derivatives_of(origin, direction), wavelength).value_or(start);
-  const std::size_t position = lens_.position(wavelength);
-  if (position >= lens_.wavelengths_nm().size()) return start;
-  const auto end = kernel::trace(kernel::view<double>(lens_), origin, direction,
-                                 {.travel = Travel::to_scene, .wavelength = position});
-  start.fate = end.fate;
-  return end.fate == RayFate::transmitted ? derivatives_of(end.origin, end.direction) : start;
+  RayDerivatives result =
+      derivatives_of({pupil_x, pupil_y, Dual(space.pupil_z)}, {x * per_length, y * per_length, depth * per_length});
+  // Ray and derivatives in one trace.
+  const auto given = [](const Ray<double>& r) { return Ray<R>{Vec3<R>(r.origin), Vec3<R>(r.direction)}; };
+  const auto found = [](const Ray<R>& r) { return Ray<double>{Vec3<double>(r.origin), Vec3<double>(r.direction)}; };
+  Ray<R> by_u = given(result.by_u), by_v = given(result.by_v);
+  const auto end = trace_detail::trace_differential<R>(lens_, given(result.ray), by_u, by_v,
+                                                       {.travel = Travel::to_scene, .wavelength = wavelength});
+  result.fate = end.fate;
+  if (end.transmitted()) return {end.fate, found(end.ray), found(by_u), found(by_v)};
+  result.by_u = result.by_v = {{0, 0, 0}, {0, 0, 0}};
+  return result;
 }
 
 template PETZVAL_API RayDerivatives ExactModel<float>::to_scene(const TwoPlaneRayDerivatives&,

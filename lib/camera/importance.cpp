@@ -137,13 +137,14 @@ SceneSide::SceneSide(const LensFacts& facts, const Film& film, std::optional<Til
       focus_(focus),
       wavelengths_(wavelengths),
       weights_(weights),
+      pupils_(weights.pupils().value_or(model.pupils())),
       in_nm_(facts.lens().wavelengths_nm()),
       primary_(model.pupils().primary_wavelength()),
       entrance_(focus ? focus.entrances(facts.lens(), model) : entrance_of(facts.lens(), model)) {
   const Lens& lens = facts.lens();
   if (model.kind() == ModelKind::exact_float || model.kind() == ModelKind::exact_double) traced_ = lens;
-  if (const FilmPupilTable& pupils = model.pupils(); model.pinhole() && pupils.cut()) {
-    whole_ = tilted_ ? TiltedFilm(film, pupils.whole()).pupils() : pupils.whole();
+  if (model.pinhole() && pupils_.cut()) {
+    whole_ = tilted_ ? TiltedFilm(film, pupils_.whole()).pupils() : pupils_.whole();
   }
   std::vector<std::array<double, 3>> values;
   for (std::size_t w = 0; w < wavelengths.count(); ++w) {
@@ -295,19 +296,16 @@ Importance SceneSide::arrived(const AnyRayModel& model, const Arrival& arrival, 
   const auto met = on_film(upright, pupil, placed);
   Importance result = met_by(arrival, met);
   if (result.fate != RayFate::transmitted) return result;
-  const FilmPupilTable &passing = model.pupils(), &sampled = tilted_ ? tilted_->pupils() : passing;
   const Facts at = facts_at(wavelength);
-  if (at.entrance_area == 0 || (decide(passing, model) && !passing.contains(upright, pupil.x, pupil.y, wavelength))) {
+  // Film points send no rays through other zones of the surfaces, as of a ball lens.
+  const FilmPupilTable& sampled = tilted_ ? tilted_->pupils() : pupils_;
+  const double area = sampled.sample_area(met->virtual_point, pupil.x, pupil.y, wavelength);
+  const bool passes = !tilted_ || !decide(pupils_, model) || pupils_.contains(upright, pupil.x, pupil.y, wavelength);
+  if (at.entrance_area == 0 || !(area > 0) || !passes) {
     result.fate = RayFate::vignetted;
     return result;
   }
-  // Rays through other zones of the surfaces, as of a ball lens: film points send none there.
-  if (!sampled.contains(met->virtual_point, pupil.x, pupil.y, wavelength)) {
-    result.fate = RayFate::vignetted;
-    return result;
-  }
-  weigh(result, model, arrival, placed ? placed->weight(met->virtual_point, pupil) : 1, cosine,
-        sampled.area(met->virtual_point, wavelength), at);
+  weigh(result, model, arrival, placed ? placed->weight(met->virtual_point, pupil) : 1, cosine, area, at);
   if (!weights_) return result;
   const double density = weights_.density(sampled.position(met->virtual_point, pupil.x, pupil.y, wavelength));
   result.we *= weights_.of_line({upright.x, upright.y, pupil.x, pupil.y}, wavelength);
@@ -417,7 +415,7 @@ ImportanceSample SceneSide::through_pinhole(const AnyRayModel& model, const Vec3
   const auto met = on_film(arrival.upright, arrival.pupil, placed);
   Importance& seen = result.importance = met_by(arrival, met);
   if (seen.fate != RayFate::transmitted) return result;
-  const FilmPupilTable& pupils = tilted_ ? tilted_->pupils() : model.pupils();
+  const FilmPupilTable& pupils = tilted_ ? tilted_->pupils() : pupils_;
   const auto drawn = weights_.draw(u, v);
   const PupilSample s = pupils.sample(met->virtual_point, drawn.u, drawn.v, wavelength);
   const FilmPoint place{s.x, s.y};
@@ -430,7 +428,7 @@ ImportanceSample SceneSide::through_pinhole(const AnyRayModel& model, const Vec3
     const TwoPlaneRay line = placed->upright(met->virtual_point, place);
     arrival.upright = {line.film_x, line.film_y};
     passes = passes && spread > 0 &&
-             (model.clips_at_apertures() || model.pupils().contains(arrival.upright, place.x, place.y, wavelength));
+             (model.clips_at_apertures() || pupils_.contains(arrival.upright, place.x, place.y, wavelength));
   }
   arrival.pupil = place;
   if (!passes) {
@@ -440,7 +438,11 @@ ImportanceSample SceneSide::through_pinhole(const AnyRayModel& model, const Vec3
   // A rim leaves a part of the entrance pupil too.
   Facts left = at;
   if (whole_) {
-    const double part = s.area / whole_->area(met->virtual_point, wavelength);
+    // Tilted films sample the round stop, of whose rays the iris clips some.
+    const double sampled = tilted_ ? s.area : pupils.polygon_area(met->virtual_point, wavelength);
+    const double all =
+        tilted_ ? whole_->area(met->virtual_point, wavelength) : whole_->polygon_area(met->virtual_point, wavelength);
+    const double part = sampled / all;
     left.entrance_area *= part;
     result.pdf /= part;
   }

@@ -63,9 +63,9 @@ class ParaxialModel {
   static constexpr bool any_wavelength = true;
 
   /// film_radius: of the farthest film point, mm. Throws Error for another model, for a lens that is afocal, has no
-  /// pupils or no finite one that the model needs, for a pinhole or two discs of one with cylinders, for two discs
-  /// of an iris with blades and a central obscuration, and for a film in the image of the stop or, for thin lenses, in
-  /// the rear principal plane. rim: cuts the pupils, as FilmPupilTable::cut_by_rim() does, and throws.
+  /// pupils or no finite one that the model needs, for a pinhole or two discs of one with cylinders, and for a film in
+  /// the image of the stop or, for thin lenses, in the rear principal plane. rim: cuts the pupils, as
+  /// FilmPupilTable::cut_by_rim() does, and throws.
   PETZVAL_API ParaxialModel(ModelKind model, const LensFacts& facts, double film_radius,
                             const std::optional<PupilRim>& rim = {});
 

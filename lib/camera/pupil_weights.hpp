@@ -3,10 +3,12 @@
 
 #include <cstddef>
 #include <memory>
+#include <optional>
 
 #include "iris/iris_weights.hpp"
 #include "petzval/camera/bokeh_controls.hpp"
 #include "petzval/camera/ray_model.hpp"
+#include "petzval/core/export.hpp"
 #include "petzval/lens/lens.hpp"
 
 namespace petzval::camera_detail {
@@ -22,6 +24,8 @@ class PupilWeights {
   /// does not fit them, of more than 2^26 pixels or black, and for an edge out of range.
   PupilWeights(const Lens& lens, const AnyRayModel& model, const BokehControls& controls);
 
+  /// The pupils to sample instead of the model's; none without weights.
+  PETZVAL_API std::optional<FilmPupilTable> pupils() const;
   explicit operator bool() const noexcept { return data_ != nullptr; }
 
   /// Samples of the pupil for uniform numbers, N each.

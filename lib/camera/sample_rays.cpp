@@ -102,7 +102,7 @@ template <class T>
 void sample_block(const FilmView& view, std::size_t n, std::size_t wanted, const CameraSamples<T>& samples,
                   const CameraRays<T>& rays) noexcept {
   const auto& loops = camera_loops().of<T>();
-  const FilmPupilTable& pupils = view.model.pupils();
+  const FilmPupilTable& pupils = view.pupils;
   const FilmBounds<T> bounds = core_detail::bounds_of<T>(view.film);
   const TiltedFilm* const tilted = view.tilted;
   const RayWavelengths& wavelengths = samples.wavelengths;
@@ -245,67 +245,122 @@ template PETZVAL_API void sample_rays(const FilmView&, std::size_t, const Camera
 template PETZVAL_API void sample_rays(const FilmView&, std::size_t, const CameraSamples<double>&,
                                       const CameraRays<double>&) noexcept;
 
-CameraRay sample_ray(const FilmView& view, const FilmPoint& film, double u, double v, Wavelength wavelength,
-                     double time) noexcept {
-  const FilmPupilTable& pupils = view.model.pupils();
-  const TiltedFilm* const tilted = view.tilted;
-  const TiltedPlane plane = tilted ? tilted->plane(time) : TiltedPlane{};
-  const bool kept = on_film(view.bounds, film.x, film.y);
-  // Number by number: a load of two that a caller has just stored one by one waits until they are in the cache.
-  const auto drawn = view.weights.draw(u, v);
-  u = drawn.u, v = drawn.v;
-  const FilmPoint point{kept ? film.x : view.bounds.centre_x, kept ? film.y : view.bounds.centre_y};
-  CameraRay out;
+namespace {
 
-  // The line for the weight, and that of the ray.
-  FilmPoint virtual_point;
-  TwoPlaneRay line;
+/// A sample of the film before its ray is known.
+struct Start {
+  bool kept = false;  ///< on the film; else its middle stands for it
+  FilmPoint film, virtual_point;
+  TiltedPlane plane;  ///< of a tilted film
+  PupilWeights::Drawn drawn{};
+  TwoPlaneRay line;                ///< which the weight is that of
+  TwoPlaneRayDerivatives leaving;  ///< of the ray, by film x and y; the pinhole's is another one
   double area = 0;
-  if (!tilted) {
-    const PupilSample at = pupils.sample(point, u, v, wavelength);
-    line = {point.x, point.y, at.x, at.y};
-    area = at.area;
-    out.fate = view.model.to_scene(line, wavelength, out.ray);
-    if (view.focus) view.focus.bend(point, 0, wavelength, out.ray);
-  } else {
-    virtual_point = plane.virtual_point(point);
-    const PupilSample at = tilted->pupils().sample(virtual_point, u, v, wavelength);
-    line = plane.upright(virtual_point, {at.x, at.y});
-    area = at.area;
-    TwoPlaneRay leaving = line;
-    if (view.model.pinhole()) {
-      const double shift = view.wavelengths.pinhole_shift(wavelength);
-      const double part = part_of_virtual(plane, virtual_point, shift);
-      leaving.film_x = virtual_point.x * part, leaving.film_y = virtual_point.y * part;
-    }
-    out.fate = view.model.to_scene(leaving, wavelength, out.ray);
-    if (view.focus) view.focus.bend(point, plane.nearer_by(virtual_point), wavelength, out.ray);
-    const bool within = !decide(pupils, view.model) ||
-                        pupils.contains({line.film_x, line.film_y}, line.pupil_x, line.pupil_y, wavelength);
-    if (!within) out.fate = RayFate::vignetted;
-  }
+};
 
+/// with_derivatives: else those of `leaving` are not set.
+Start start(const FilmView& view, const FilmPoint& film, double u, double v, Wavelength wavelength, double time,
+            bool with_derivatives) noexcept {
+  Start s;
+  s.kept = on_film(view.bounds, film.x, film.y);
+  // Number by number: a load of two that a caller has just stored one by one waits until they are in the cache.
+  s.drawn = view.weights.draw(u, v);
+  const double x = s.kept ? film.x : view.bounds.centre_x, y = s.kept ? film.y : view.bounds.centre_y;
+  s.film = {x, y};
+  if (!view.tilted) {
+    if (with_derivatives) {
+      FilmPupilTable::Derivatives by;
+      const PupilSample at = view.pupils.sample({x, y}, s.drawn.u, s.drawn.v, wavelength, by);
+      s.leaving = {
+          {x, y, at.x, at.y}, {1, 0, by.by_film_x[0], by.by_film_x[1]}, {0, 1, by.by_film_y[0], by.by_film_y[1]}};
+      s.area = at.area;
+    } else {
+      const PupilSample at = view.pupils.sample({x, y}, s.drawn.u, s.drawn.v, wavelength);
+      s.leaving.line = {x, y, at.x, at.y};
+      s.area = at.area;
+    }
+    s.line = s.leaving.line;
+    return s;
+  }
+  s.plane = view.tilted->plane(time);
+  s.virtual_point = s.plane.virtual_point({x, y});
+  if (with_derivatives) {
+    s.leaving = view.tilted->line({x, y}, s.drawn.u, s.drawn.v, wavelength, time, s.area);
+  } else {
+    const PupilSample at = view.tilted->pupils().sample(s.virtual_point, s.drawn.u, s.drawn.v, wavelength);
+    s.leaving.line = s.plane.upright(s.virtual_point, {at.x, at.y});
+    s.area = at.area;
+  }
+  s.line = s.leaving.line;
+  if (!view.model.pinhole()) return s;
+  const double shift = view.wavelengths.pinhole_shift(wavelength);
+  if (with_derivatives) {
+    s.leaving = pinhole_line(s.plane, {x, y}, shift);
+  } else {
+    const double part = part_of_virtual(s.plane, s.virtual_point, shift);
+    s.leaving.line.film_x = s.virtual_point.x * part, s.leaving.line.film_y = s.virtual_point.y * part;
+  }
+  return s;
+}
+
+/// Weight, densities and fate of a sample whose ray has left the lens. front: to move it there; null: it has been.
+void weigh(const FilmView& view, const Start& s, Wavelength wavelength, const Front* front, CameraRay& out) noexcept {
+  const bool decides = view.tilted && decide(view.pupils, view.model);
+  if (decides && !view.pupils.contains({s.line.film_x, s.line.film_y}, s.line.pupil_x, s.line.pupil_y, wavelength)) {
+    out.fate = RayFate::vignetted;
+  }
   const double scale = view.wavelengths.scale(wavelength);
-  out.fate = fate_of(out.fate, kept, scale > 0, area > 0);
-  camera_loops().weigh_one(view.moves_rays() ? &view.front : nullptr, view.depth, line, area, scale, out);
-  if (!(kept && area > 0)) out.pdf_pupil = out.pdf_direction = 0;
+  out.fate = fate_of(out.fate, s.kept, scale > 0, s.area > 0);
+  camera_loops().weigh_one(front, view.depth, s.line, s.area, scale, out);
+  if (!(s.kept && s.area > 0)) out.pdf_pupil = out.pdf_direction = 0;
   if (view.weights) {
-    const double weight = out.fate != RayFate::transmitted  ? 0
-                          : tilted && !view.model.pinhole() ? view.weights.of_line(line, wavelength)
-                                                            : view.weights.of_sample(u, v, line, wavelength);
-    out.weight *= weight / drawn.density;
-    out.pdf_pupil *= drawn.density, out.pdf_direction *= drawn.density;
+    const bool of_line = view.tilted && !view.model.pinhole();
+    const double weight = out.fate != RayFate::transmitted ? 0
+                          : of_line                        ? view.weights.of_line(s.line, wavelength)
+                                    : view.weights.of_sample(s.drawn.u, s.drawn.v, s.line, wavelength);
+    out.weight *= weight / s.drawn.density;
+    out.pdf_pupil *= s.drawn.density, out.pdf_direction *= s.drawn.density;
     if (!(weight > 0) && out.fate == RayFate::transmitted) out.fate = RayFate::vignetted;
   }
   if (out.fate != RayFate::transmitted) out.weight = 0;
-  if (tilted) {
-    const double near = 1 + plane.nearer_by(virtual_point);
-    const double facing = plane.weight(virtual_point, {line.pupil_x, line.pupil_y});
-    out.weight *= facing;
-    out.pdf_direction /= near * near;
-    if (!(facing > 0) && out.fate == RayFate::transmitted) out.fate = RayFate::vignetted;
+  if (!view.tilted) return;
+  const double near = 1 + s.plane.nearer_by(s.virtual_point);
+  const double facing = s.plane.weight(s.virtual_point, {s.line.pupil_x, s.line.pupil_y});
+  out.weight *= facing;
+  out.pdf_direction /= near * near;
+  if (!(facing > 0) && out.fate == RayFate::transmitted) out.fate = RayFate::vignetted;
+}
+
+}  // namespace
+
+CameraRay sample_ray(const FilmView& view, const FilmPoint& film, double u, double v, Wavelength wavelength,
+                     double time) noexcept {
+  const Start s = start(view, film, u, v, wavelength, time, false);
+  CameraRay out;
+  out.fate = view.model.to_scene(s.leaving.line, wavelength, out.ray);
+  if (view.focus) {
+    view.focus.bend(s.film, view.tilted ? s.plane.nearer_by(s.virtual_point) : 0, wavelength, out.ray);
   }
+  weigh(view, s, wavelength, view.moves_rays() ? &view.front : nullptr, out);
   return out;
+}
+
+CameraRayDifferential sample_differential(const FilmView& view, const FilmPoint& film, double u, double v,
+                                          Wavelength wavelength, double time) noexcept {
+  const Start s = start(view, film, u, v, wavelength, time, true);
+  RayDerivatives ray = view.model.to_scene(s.leaving, wavelength);
+  if (view.focus) {
+    const auto nearer = view.tilted ? s.plane.nearer_at(s.film) : TiltedPlane::Nearer{};
+    view.focus.bend(s.film, nearer.value, nearer.by, wavelength, ray);
+  }
+  if (view.moves_rays()) ray = at_front(view.front, ray);
+  CameraRayDifferential result;
+  result.sample.ray = ray.ray, result.sample.fate = ray.fate;
+  weigh(view, s, wavelength, nullptr, result.sample);
+  if (!result.sample) return result;
+  result.by_film_x = ray.by_u;
+  result.by_film_y = ray.by_v;
+  return result;
 }
 
 }  // namespace petzval::camera_detail

@@ -66,6 +66,7 @@ struct FilmView {
   PupilWeights weights = {};
   Front front = {};  ///< of the lens
   LocalFocus focus = {};
+  FilmPupilTable pupils = weights.pupils().value_or(model.pupils());  ///< of the upright film
   double depth = model.pupils().space().depth();
   core_detail::FilmBounds<double> bounds = core_detail::bounds_of<double>(film);
 
@@ -83,5 +84,8 @@ PETZVAL_API void sample_rays(const FilmView& view, std::size_t count, const Came
 /// One ray, within rounding that of a batch. pdf_film is left out.
 CameraRay sample_ray(const FilmView& view, const FilmPoint& film, double u, double v, Wavelength wavelength,
                      double time) noexcept;
+/// The same with its derivatives.
+CameraRayDifferential sample_differential(const FilmView& view, const FilmPoint& film, double u, double v,
+                                          Wavelength wavelength, double time) noexcept;
 
 }  // namespace petzval::camera_detail

@@ -107,6 +107,7 @@ class SceneSide {
   LocalFocus focus_;
   WavelengthFacts wavelengths_;
   PupilWeights weights_;
+  FilmPupilTable pupils_;  // of the upright film
   lens_detail::CompiledWavelengths in_nm_;
   lens_detail::BetweenWavelengths<3> between_;  // etendue, place and area of the entrance pupil
   std::size_t primary_ = 0;

@@ -218,11 +218,13 @@ TiltedPlane TiltedFilm::plane(double time) const noexcept {
   return result;
 }
 
-TwoPlaneRayDerivatives TiltedFilm::line(const FilmPoint& film, double u, double v, Wavelength wavelength,
-                                        double time) const noexcept {
+TwoPlaneRayDerivatives TiltedFilm::line(const FilmPoint& film, double u, double v, Wavelength wavelength, double time,
+                                        double& area) const noexcept {
   const VirtualPoint from = differentiated(plane(time), film);
-  const PupilSample at = pupils_.sample(from.point(), u, v, wavelength);
-  const auto [by_x, by_y] = pupils_.derivatives(from.point(), u, v, wavelength);
+  FilmPupilTable::Derivatives by;
+  const PupilSample at = pupils_.sample(from.point(), u, v, wavelength, by);
+  const auto& [by_x, by_y] = by;
+  area = at.area;
   Dual pupil_x(at.x), pupil_y(at.y);
   pupil_x.v = by_x[0] * from.x.v + by_y[0] * from.y.v;
   pupil_y.v = by_x[1] * from.x.v + by_y[1] * from.y.v;

@@ -69,9 +69,9 @@ class PETZVAL_API TiltedFilm {
 
   /// Where the film is at a part of the time that the shutter is open (0 to 1, clamped).
   TiltedPlane plane(double time) const noexcept;
-  /// The image-space ray of a film sample, with its derivatives by film x and y.
-  TwoPlaneRayDerivatives line(const FilmPoint& film, double u, double v, Wavelength wavelength,
-                              double time) const noexcept;
+  /// The image-space ray of a film sample, with its derivatives by film x and y. area: of the sample.
+  TwoPlaneRayDerivatives line(const FilmPoint& film, double u, double v, Wavelength wavelength, double time,
+                              double& area) const noexcept;
 
  private:
   Film film_;

@@ -58,7 +58,6 @@ struct BetweenNodes {
   std::array<const PupilPolygon*, 4> nodes{};
   std::array<T, 4> weights{};
   std::size_t count = 0;
-  static constexpr std::size_t corners = polygon_corners;
 
   template <class Of>
   Point<T> mean(const Of& of) const {
@@ -69,13 +68,15 @@ struct BetweenNodes {
   Point<T> middle() const {
     return mean([](const PupilPolygon& p) { return Point<T>{p.middle[0], p.middle[1]}; });
   }
-  Point<T> corner(std::size_t k) const {
-    return mean([i = k % polygon_corners](const PupilPolygon& p) {
+  Point<T> corner(std::int32_t k) const {
+    return mean([i = static_cast<std::size_t>(k) % polygon_corners](const PupilPolygon& p) {
       return Point<T>{p.corners[i][0], p.corners[i][1]};
     });
   }
-  Point<T> obscured(std::size_t k) const {
-    return mean([k](const PupilPolygon& p) { return Point<T>{p.obscured_from[k], p.obscured[k]}; });
+  Sector<T> sector(std::int32_t k) const {
+    const auto i = static_cast<std::size_t>(k);
+    const Point<T> obscured = mean([i](const PupilPolygon& p) { return Point<T>{p.obscured_from[i], p.obscured[i]}; });
+    return {corner(k), corner(k + 1), obscured.x, obscured.y};
   }
 };
 
@@ -100,7 +101,7 @@ struct SectorsAlike {
   Drawn operator()(double u) const noexcept {
     const double place = u * polygon_corners;
     const std::size_t k = std::min(static_cast<std::size_t>(place), polygon_corners - 1);
-    const Sector<double> sector = sector_at(polygon, k);
+    const Sector<double> sector = polygon.sector(static_cast<std::int32_t>(k));
     return {sector, place - static_cast<double>(k), density_in(sector)};
   }
 };
@@ -112,7 +113,7 @@ struct SectorsByArea {
 
   explicit SectorsByArea(const BetweenNodes<double>& polygon) noexcept {
     for (std::size_t k = 0; k < polygon_corners; ++k) {
-      sectors[k] = sector_at(polygon, k);
+      sectors[k] = polygon.sector(static_cast<std::int32_t>(k));
       before[k + 1] = before[k] + std::max(sectors[k].area(), 0.0);
     }
   }
@@ -529,9 +530,13 @@ double EntrancePupilTable::pdf(const Vec3<double>& point, const Ray<double>& ray
     const Vec2<double> met = plane.meet(ray), place = table->grid ? bearing.in_quadrant(met) : met;
     std::optional<PupilPolygon> own;
     const auto pupil = data_->pupil_at(*table, bearing, 1 / distance, wavelength, own);
-    const auto found = way_to_place(pupil, Point<double>{place.x, place.y} - pupil.middle());
-    if (!found || found->first > 1 || found->second.obscures(found->first)) return 0;
-    return squared(distance) * density_in(found->second) / (cosine * squared(cosine));
+    const Point<double> q = Point<double>{place.x, place.y} - pupil.middle();
+    const std::size_t k = sector_towards(pupil, q);
+    if (k == polygon_corners) return 0;
+    const Sector<double> sector = pupil.sector(static_cast<std::int32_t>(k));
+    const double way = squared(sector.way_to(q));
+    if (way > 1 || sector.obscures(way)) return 0;
+    return squared(distance) * density_in(sector) / (cosine * squared(cosine));
   }
   const double solid = cone(table->ball, distance);
   constexpr double rounding = 1e-15;  // of the cosine

@@ -10,123 +10,111 @@
 #include <optional>
 #include <vector>
 
-#include "bladed_polygons.hpp"
-#include "core/quadrature.hpp"
-#include "film_cells.hpp"
-#include "film_pupil_table_loops.hpp"
+#include "film_grid.hpp"
+#include "iris/iris_shape.hpp"
 #include "iris_images.hpp"
 #include "lens/between_wavelengths.hpp"
 #include "petzval/pupil_table/film_pupil_table.hpp"
-#include "polygon_place.hpp"
+#include "polygon_loops.hpp"
+#include "stop_cells.hpp"
 
 namespace petzval {
-namespace pupil_table_detail {
 
-/// The projected solid angle of a pupil from uniform samples of it: place_at(u, v).
-template <class PlaceAt>
-double solid_angle(const TwoPlanes& space, const FilmPoint& film, double area, const PlaceAt& place_at) noexcept {
-  constexpr int around = 16;
-  static const auto outwards = core_detail::gauss_legendre<4>();
-  const double depth2 = space.depth() * space.depth();
-  double sum = 0;
-  for (int k = 0; k < around; ++k) {
-    for (const auto& [v, weight] : outwards) {
-      const Vec2<double> place = place_at((k + 0.5) / around, v);
-      const double dx = place.x - film.x, dy = place.y - film.y, length2 = dx * dx + dy * dy + depth2;
-      sum += weight / (length2 * length2);
-    }
-  }
-  return area * depth2 * sum / around;
-}
-
-}  // namespace pupil_table_detail
-
-/// What a table holds: strips, cells or images of an iris.
+/// What a table holds: images of an iris, or a grid of polygons and what it knows of the stop.
 struct FilmPupilTable::Data {
   TwoPlanes space;
   double film_radius = 0;
   std::size_t wavelengths = 0, primary = 0;
   lens_detail::CompiledWavelengths compiled;             // for samples by nm
-  std::optional<pupil_table_detail::IrisImages> images;  // instead of strips
-  // Instead of strips; of a bladed iris, strips are those of the round stop.
-  std::optional<pupil_table_detail::FilmCells> cells;
-  Iris iris;
-  std::vector<std::vector<pupil_table_detail::StopMap>> maps;  // of a bladed iris, by wavelength
-  double lit_radius = 0;                                       // to which the strips reach: beyond it is dark
-  std::size_t strips_each = 0;
-  double strips_per_mm = 0;
-  bool obscured = false;
+  std::optional<pupil_table_detail::IrisImages> images;  // instead of polygons
+  int dimensions = 1;                                    // of the grid
+  double reach = 0;                                      // of the polygons: distance of the farthest film point
+  std::size_t rows = 0, columns = 1;                     // of cells
+  double height = 0;                                     // of the last row
+  std::vector<double> half_widths;                       // FilmGrid
+  bool obscured = false, enclosing = false;
   int corrections = 0;
-  std::vector<double> twice;  // strips by StripLayout
-  std::vector<float> single;
-  std::shared_ptr<const Data> whole;  // the pupils that a rim has cut; null: none has
-
-  bool bladed() const noexcept { return cells && cells->bladed(); }
+  std::vector<double> cells;  // CellLayout
+  std::vector<float> cells_single, half_widths_single;
+  std::shared_ptr<const pupil_table_detail::StopCells> stop;  // null: a round one, or not known
+  std::shared_ptr<const Data> whole;                          // the pupils that a rim has cut; null: none has
 
   /// The same film, planes and wavelengths, and no pupils yet.
   std::shared_ptr<Data> alike() const;
-  /// Adds a wavelength.
+  /// The grid of a lens that has two sections.
+  void set(const pupil_table_detail::FilmGrid& grid);
+  /// Adds a wavelength: the polygons at the nodes.
   void add(const std::vector<pupil_table_detail::PupilPolygon>& polygons);
 
-  template <class R>
-  pupil_table_detail::StripTable<R> table() const noexcept {
-    pupil_table_detail::StripTable<R> result;
+  /// The same pupils with a stop of this iris.
+  FilmPupilTable with_stop(const Iris& iris, const pupil_table_detail::StopOf& stop_of, int threads = 1) const;
+
+  std::size_t nodes() const noexcept { return (rows + 1) * (dimensions == 1 ? 1 : columns + 1); }
+  /// The film point of a node.
+  FilmPoint node_point(std::size_t node) const noexcept;
+  /// The polygon at a node, as add() took it, without obscurations.
+  pupil_table_detail::PupilPolygon node(std::size_t wavelength, std::size_t node) const noexcept;
+
+  /// Rows per mm. A film smaller than 1e-30 mm counts as one of the axis alone, so that this is finite in float too.
+  double rows_per_mm() const noexcept {
+    constexpr double smallest = 1e-30;
+    return height > smallest ? static_cast<double>(rows) / height : 0;
+  }
+  template <int dimensions, class R>
+  pupil_table_detail::PolygonGrid<dimensions, R> grid() const noexcept {
+    pupil_table_detail::PolygonGrid<dimensions, R> result;
     if constexpr (sizeof(R) == sizeof(float)) {
-      result.strips = single.data();
+      result.cells = cells_single.data(), result.half_widths = half_widths_single.data();
     } else {
-      result.strips = twice.data();
+      result.cells = cells.data(), result.half_widths = half_widths.data();
     }
-    result.count = strips_each;
-    result.wavelengths = wavelengths;
-    result.primary = primary;
+    const auto count = [](std::size_t n) { return static_cast<std::int32_t>(n); };
+    result.rows = count(rows), result.columns = count(columns);
+    result.wavelengths = count(wavelengths), result.primary = count(primary);
     // The corner itself, rounded, still belongs to the film.
-    result.lit_radius = static_cast<R>(lit_radius * (1 + 1e-6));
-    result.strips_per_mm = static_cast<R>(strips_per_mm);
+    result.reach = static_cast<R>(reach * (1 + 1e-6));
+    result.rows_per_mm = static_cast<R>(rows_per_mm());
     result.obscured = obscured;
     result.corrections = corrections;
+    if (stop) result.stop = stop->borrowed<R>();
     return result;
   }
+  /// Calls body(grid, loops) with the grid in R.
+  template <class R, class Body>
+  auto with_grid(const Body& body) const {
+    return dimensions == 1 ? body(grid<1, R>(), pupil_table_detail::plain_polar_loops)
+                           : body(grid<2, R>(), pupil_table_detail::plain_quadrant_loops);
+  }
 
-  /// The polygon at the side of a strip, as add() took it, without obscurations.
-  pupil_table_detail::PupilPolygon node(std::size_t wavelength, std::size_t i) const noexcept;
-
-  /// Where a film point stands in the table.
-  struct Place {
-    const double* strip = nullptr;  // null: nowhere
-    double t = 0, cosine = 1, sine = 0;
-
-    pupil_table_detail::InStrip<double> polygon() const noexcept { return {strip, t}; }
-  };
-  /// That of the table to use; none has it for a wavelength that is not covered.
+  /// Position of the pupils to use; `wavelengths` for a wavelength that is not covered.
   std::size_t position(Wavelength at) const noexcept {
     const auto nm = at.in_nm();
     return !nm ? at.position(primary) : compiled.covers(*nm) ? compiled.nearest(*nm) : wavelengths;
   }
-  /// Calls body(begin, count, positions) for parts of N rays whose wavelengths are in nm.
+  /// The same for loops: -1 for a wavelength that is not covered.
+  std::int32_t known(Wavelength at) const noexcept {
+    const std::size_t found = position(at);
+    return found < wavelengths ? static_cast<std::int32_t>(found) : -1;
+  }
+  /// Calls body(begin, count, positions) for parts of N rays.
   template <class Body>
-  void by_nearest(std::size_t count, const RayWavelengths& by_nm, const Body& body) const noexcept {
-    if (!by_nm.each_nm) {
-      body(0, count, RayWavelengths{position(by_nm.all)});
+  void by_position(std::size_t count, const RayWavelengths& given, const Body& body) const noexcept {
+    if (!given.in_nm()) {
+      body(0, count, given);
+      return;
+    }
+    if (!given.each_nm) {
+      body(0, count, RayWavelengths{position(given.all)});
       return;
     }
     constexpr std::size_t block = 256;
     std::array<std::uint16_t, block> positions;
     for (std::size_t begin = 0; begin < count; begin += block) {
       const std::size_t n = std::min(block, count - begin);
-      pupil_table_detail::film_pupil_table().find_nearest(compiled.nearest_position(), n, by_nm.each_nm + begin,
-                                                          positions.data());
+      pupil_table_detail::polar_loops().find_nearest(compiled.nearest_position(), n, given.each_nm + begin,
+                                                     positions.data());
       body(begin, n, RayWavelengths{.each = positions.data()});
     }
-  }
-  Place find(const FilmPoint& film, Wavelength at_wavelength) const noexcept {
-    const std::size_t wavelength = position(at_wavelength);
-    const double r2 = film.x * film.x + film.y * film.y, r = std::sqrt(r2);
-    if (!(r <= lit_radius * (1 + 1e-6)) || wavelength >= wavelengths) return {};
-    const double at = r * strips_per_mm;
-    const std::size_t strip = std::min(static_cast<std::size_t>(at), strips_each - 1);
-    const bool turn = r2 > pupil_table_detail::axis_r2<double>;
-    return {&twice[(wavelength * strips_each + strip) * pupil_table_detail::StripLayout::size],
-            at - static_cast<double>(strip), turn ? film.y / r : 1, turn ? film.x / r : 0};
   }
 };
 

@@ -5,229 +5,304 @@
 #include <cmath>
 
 #include "core/dual.hpp"
+#include "core/quadrature.hpp"
 #include "film_pupil_data.hpp"
+#include "polygon_blocks.hpp"
+#include "polygon_place.hpp"
 #include "pupil/line_extents.hpp"
 
 namespace petzval {
 namespace {
 
 using namespace pupil_table_detail;
-using L = StripLayout;
+
+template <int dimensions>
+std::pair<FilmPlace<double>, CellPolygon<dimensions, true, double, double>> find(
+    const PolygonGrid<dimensions, double>& grid, const FilmPoint& film, std::int32_t wavelength) noexcept {
+  const FilmPlace<double> at = place_of(grid, film.x, film.y, 1, wavelength);
+  return {at, {grid.cells, at.cell * CellLayout<dimensions>::size, at.t, at.s}};
+}
 
 }  // namespace
 
 const TwoPlanes& FilmPupilTable::space() const noexcept { return data_->space; }
 double FilmPupilTable::film_radius() const noexcept { return data_->film_radius; }
-double FilmPupilTable::lit_radius() const noexcept {
-  const bool everywhere = data_->images || (data_->cells && !data_->bladed());
-  return everywhere ? film_radius() : data_->lit_radius;
-}
+double FilmPupilTable::lit_radius() const noexcept { return data_->images ? film_radius() : data_->reach; }
 std::size_t FilmPupilTable::wavelengths() const noexcept { return data_->wavelengths; }
 std::size_t FilmPupilTable::primary_wavelength() const noexcept { return data_->primary; }
 bool FilmPupilTable::covers(Wavelength wavelength) const noexcept {
   return data_->position(wavelength) < data_->wavelengths;
 }
+bool FilmPupilTable::knows_stop() const noexcept { return data_->stop != nullptr; }
 
 FilmPupilArrays FilmPupilTable::arrays() const {
-  static_assert(L::size == FilmPupilArrays::strip_size && L::obscured == 528 && L::sectors == 8);
   FilmPupilArrays result;
   result.film_radius = lit_radius();
   if (const auto& images = data_->images) {
     images->put(result);
-  } else if (const auto& cells = data_->cells) {
-    cells->put(result);
-  } else {
-    result.pupils = data_->single;
-    result.strips = data_->strips_each;
+    return result;
+  }
+  result.kind = data_->dimensions == 1 ? FilmPupilArrays::Kind::polar : FilmPupilArrays::Kind::quadrant;
+  result.pupils = data_->cells_single;
+  result.rows = data_->rows, result.columns = data_->columns;
+  result.height = data_->height;
+  result.half_widths = data_->half_widths_single;
+  if (data_->stop) {
+    result.stop = data_->stop->cells_single;
+    put_iris(data_->stop->shape, result);
   }
   return result;
 }
 
 PupilSample FilmPupilTable::sample(const FilmPoint& film, double u, double v, Wavelength wavelength) const noexcept {
   if (const auto& images = data_->images) return images->sample(film, u, v, wavelength);
-  const std::size_t position = data_->position(wavelength);
-  const std::int32_t known = position < data_->wavelengths ? static_cast<std::int32_t>(position) : -1;
-  const auto& [strips, cells, bladed, find_nearest] = pupil_table_detail::film_pupil_table();
-  if (!data_->cells) return strips.one(data_->table<double>(), film.x, film.y, u, v, known);
-  return data_->bladed() ? bladed.one(data_->cells->bladed_table<double>(), film.x, film.y, u, v, known)
-                         : cells.one(data_->cells->table<double>(), film.x, film.y, u, v, known);
+  const std::int32_t known = data_->known(wavelength);
+  PupilSample result;
+  if (data_->dimensions == 1) {
+    polar_loops().one(data_->grid<1, double>(), film.x, film.y, u, v, known, result.x, result.y, result.area);
+  } else {
+    plain_quadrant_loops.one(data_->grid<2, double>(), film.x, film.y, u, v, known, result.x, result.y, result.area);
+  }
+  return result;
 }
 
 template <class T>
 void FilmPupilTable::sample(std::size_t count, const T* film_x, const T* film_y, const T* u, const T* v,
                             const RayWavelengths& wavelengths, T* x, T* y, T* areas) const noexcept {
-  if (wavelengths.in_nm() && !data_->images) {
-    data_->by_nearest(count, wavelengths, [&](std::size_t o, std::size_t n, const RayWavelengths& nearest) {
-      sample(n, film_x + o, film_y + o, u + o, v + o, nearest, x + o, y + o, areas + o);
-    });
-    return;
-  }
   if (data_->images) {
     data_->images->sample(count, film_x, film_y, u, v, wavelengths, x, y, areas);
     return;
   }
-  const auto& [strips, cells, bladed, find_nearest] = pupil_table_detail::film_pupil_table();
-  const auto run = [&](const auto& loops, const auto& table) {
-    if constexpr (sizeof(T) == sizeof(float)) {
-      loops.single(table, count, film_x, film_y, u, v, wavelengths, x, y, areas);
+  data_->by_position(count, wavelengths, [&](std::size_t o, std::size_t n, const RayWavelengths& known) {
+    const auto run = [&](const auto& grid, const auto& loop) {
+      loop(grid, n, film_x + o, film_y + o, u + o, v + o, known, x + o, y + o, areas + o);
+    };
+    if (data_->dimensions == 2) {
+      run(data_->grid<2, T>(), plain_quadrant_loops.of<T>().sample);
+    } else if constexpr (sizeof(T) == sizeof(float)) {
+      run(data_->grid<1, T>(), polar_loops().single);
     } else {
-      loops.twice(table, count, film_x, film_y, u, v, wavelengths, x, y, areas);
+      run(data_->grid<1, T>(), polar_loops().twice);
     }
-  };
-  if (data_->bladed()) {
-    run(bladed, data_->cells->bladed_table<T>());
-  } else if (data_->cells) {
-    run(cells, data_->cells->table<T>());
-  } else {
-    run(strips, data_->table<T>());
-  }
+  });
+}
+
+double FilmPupilTable::polygon_area(const FilmPoint& film, Wavelength wavelength) const noexcept {
+  if (const auto& images = data_->images) return images->area_of_stop(film, wavelength);
+  return data_->with_grid<double>([&](const auto& grid, const auto&) {
+    const auto [at, polygon] = find(grid, film, data_->known(wavelength));
+    return at.known ? std::max(polygon.whole(), 0.0) : 0.0;
+  });
 }
 
 double FilmPupilTable::area(const FilmPoint& film, Wavelength wavelength) const noexcept {
-  if (const auto& images = data_->images) return images->area(film, wavelength);
-  if (const auto& cells = data_->cells) return cells->area(film, data_->position(wavelength));
-  const auto found = data_->find(film, wavelength);
-  return found.strip ? std::max(found.polygon().area_before(polygon_corners), 0.0) : 0;
+  return data_->stop     ? mean_over_samples(film, wavelength, [](const PupilSample&) { return 1.0; })
+         : data_->images ? data_->images->area(film, wavelength)
+                         : polygon_area(film, wavelength);
 }
 
 double FilmPupilTable::projected_solid_angle(const FilmPoint& film, Wavelength wavelength) const noexcept {
-  const double own = area(film, wavelength);
-  if (!(own > 0)) return 0;
-  return solid_angle(space(), film, own, [&](double u, double v) {
-    const PupilSample s = sample(film, u, v, wavelength);
-    return Vec2<double>{s.x, s.y};
-  });
+  const double depth2 = space().depth() * space().depth();
+  return depth2 * mean_over_samples(film, wavelength, [&](const PupilSample& s) {
+           const double dx = s.x - film.x, dy = s.y - film.y, length2 = dx * dx + dy * dy + depth2;
+           return 1 / (length2 * length2);
+         });
+}
+
+template <class Value>
+double FilmPupilTable::mean_over_samples(const FilmPoint& film, Wavelength wavelength, const Value& value) const {
+  // Where an iris cuts a polygon, areas change fast around it.
+  const int around = data_->stop ? 128 : 16;
+  static const auto outwards = core_detail::gauss_legendre<4>();
+  double sum = 0;
+  for (int k = 0; k < around; ++k) {
+    for (const auto& [v, weight] : outwards) {
+      const PupilSample s = sample(film, (k + 0.5) / around, v, wavelength);
+      if (s.area > 0) sum += weight * s.area * value(s);
+    }
+  }
+  return sum / around;
 }
 
 Vec2<double> FilmPupilTable::middle(const FilmPoint& film, Wavelength wavelength) const noexcept {
   if (const auto& images = data_->images) return images->middle(film, wavelength);
-  if (const auto& cells = data_->cells) return cells->middle(film, data_->position(wavelength));
-  const auto [strip, t, cosine, sine] = data_->find(film, wavelength);
-  if (!strip) return {0, 0};
-  const double y = strip[L::middle_y] + t * strip[L::middle_y + 1];
-  return {sine * y, cosine * y};
+  return data_->with_grid<double>([&](const auto& grid, const auto&) -> Vec2<double> {
+    const auto [at, polygon] = find(grid, film, data_->known(wavelength));
+    if (!at.known) return {0, 0};
+    constexpr int dimensions = std::decay_t<decltype(grid)>::dimensions;
+    const Point<double> middle = to_film<dimensions>(at.cosine, at.sine, polygon.middle());
+    return {middle.x, middle.y};
+  });
+}
+
+double FilmPupilTable::sample_area(const FilmPoint& film, double x, double y, Wavelength wavelength) const noexcept {
+  if (const auto& images = data_->images) {
+    return images->contains(film, x, y, wavelength) ? images->area(film, wavelength) : 0;
+  }
+  return data_->with_grid<double>([&](const auto& grid, const auto& loops) {
+    return loops.area_of_one(grid, film.x, film.y, x, y, data_->known(wavelength));
+  });
 }
 
 bool FilmPupilTable::contains(const FilmPoint& film, double x, double y, Wavelength wavelength) const noexcept {
-  if (const auto& images = data_->images) return images->contains(film, x, y, wavelength);
-  if (const auto& cells = data_->cells) return cells->contains(film, x, y, data_->position(wavelength));
-  const auto [strip, t, cosine, sine] = data_->find(film, wavelength);
-  if (!strip) return false;
-  const InStrip<double> polygon{strip, t};
-  return contains_place(polygon, Point<double>{cosine * x - sine * y, sine * x + cosine * y} - polygon.middle());
+  return sample_area(film, x, y, wavelength) > 0;
 }
 
-void FilmPupilTable::clearances(std::size_t count, const TwoPlaneRays<const double>& lines, Wavelength wavelength,
-                                double* clearances) const noexcept {
-  const std::size_t position = data_->position(wavelength);
-  std::size_t sector = 0;
-  for (std::size_t i = 0; i < count; ++i) {
-    const FilmPoint film{lines.film_x[i], lines.film_y[i]};
-    const double x = lines.pupil_x[i], y = lines.pupil_y[i];
-    if (data_->images) {
-      clearances[i] = pupil_detail::clearance_of(contains(film, x, y, wavelength));
-    } else if (data_->cells) {
-      clearances[i] = data_->cells->clearance(film, x, y, position, sector);
-    } else if (const auto [strip, t, cosine, sine] = data_->find(film, position); strip) {
-      const InStrip<double> polygon{strip, t};
-      const Point<double> place{cosine * x - sine * y, sine * x + cosine * y};
-      clearances[i] = clearance_of_place(polygon, place - polygon.middle(), sector);
-    } else {
-      clearances[i] = -1;
+template <class T>
+void FilmPupilTable::sample_areas(std::size_t count, const TwoPlaneRays<const T>& lines,
+                                  const RayWavelengths& wavelengths, T* areas) const noexcept {
+  if (data_->images) {
+    for (std::size_t i = 0; i < count; ++i) {
+      areas[i] = static_cast<T>(
+          sample_area({lines.film_x[i], lines.film_y[i]}, lines.pupil_x[i], lines.pupil_y[i], wavelengths.at(i)));
     }
+    return;
   }
-}
-
-Vec2<double> FilmPupilTable::position(const FilmPoint& film, double x, double y, Wavelength wavelength) const noexcept {
-  if (const auto& images = data_->images) return images->position(film, x, y, wavelength);
-  if (const auto& cells = data_->cells) return cells->position(film, x, y, data_->position(wavelength));
-  const auto [strip, t, cosine, sine] = data_->find(film, wavelength);
-  if (!strip) return {0, 2};
-  const InStrip<double> polygon{strip, t};
-  const auto [share, v] =
-      position_of_place(polygon, Point<double>{cosine * x - sine * y, sine * x + cosine * y} - polygon.middle());
-  const double u = share + turn_of(sine, cosine);
-  return {u - std::floor(u), v};
+  data_->by_position(count, wavelengths, [&](std::size_t o, std::size_t n, const RayWavelengths& known) {
+    data_->with_grid<T>([&](const auto& grid, const auto& loops) {
+      const auto [film_x, film_y, x, y] = lines.from(o);
+      loops.template of<T>().areas(grid, n, film_x, film_y, x, y, known, areas + o);
+    });
+  });
 }
 
 template <class T>
 void FilmPupilTable::contains(std::size_t count, const TwoPlaneRays<const T>& lines, const RayWavelengths& wavelengths,
                               std::uint8_t* within) const noexcept {
-  if (wavelengths.in_nm() && !data_->images) {
-    data_->by_nearest(count, wavelengths, [&](std::size_t o, std::size_t n, const RayWavelengths& nearest) {
-      contains(n, lines.from(o), nearest, within + o);
-    });
-    return;
-  }
   if (data_->images) {
     data_->images->contains(count, lines, wavelengths, within);
     return;
   }
-  const auto& [film_x, film_y, x, y] = lines;
-  constexpr std::size_t few = 4;
-  if (count < few) {
+  constexpr std::size_t block = 256;
+  std::array<T, block> areas;
+  for (std::size_t begin = 0; begin < count; begin += block) {
+    const std::size_t n = std::min(block, count - begin);
+    sample_areas(n, lines.from(begin), wavelengths.from(begin), areas.data());
+    for (std::size_t i = 0; i < n; ++i) within[begin + i] = areas[i] > 0;
+  }
+}
+
+template <class T>
+void FilmPupilTable::stop_points(std::size_t count, const TwoPlaneRays<const T>& lines,
+                                 const RayWavelengths& wavelengths, T* x, T* y) const noexcept {
+  data_->by_position(count, wavelengths, [&](std::size_t o, std::size_t n, const RayWavelengths& known) {
+    data_->with_grid<T>([&](const auto& grid, const auto& loops) {
+      const auto [film_x, film_y, pupil_x, pupil_y] = lines.from(o);
+      loops.template of<T>().stop_points(grid, n, film_x, film_y, pupil_x, pupil_y, known, x + o, y + o);
+    });
+  });
+}
+
+double FilmPupilTable::drawn_iris_scale(const FilmPoint& film, Wavelength wavelength) const noexcept {
+  if (!data_->stop) return 0;
+  return data_->with_grid<double>([&](const auto& grid, const auto&) {
+    using S = StopLayout<std::decay_t<decltype(grid)>::dimensions>;
+    const auto [at, polygon] = find(grid, film, data_->known(wavelength));
+    const double* stop = grid.stop.cells + at.cell * S::size;
+    return at.known && stop[S::drawn] > 0 ? stop[S::scale] : 0.0;
+  });
+}
+
+void FilmPupilTable::clearances(std::size_t count, const TwoPlaneRays<const double>& lines, Wavelength wavelength,
+                                double* clearances) const noexcept {
+  if (data_->images) {
     for (std::size_t i = 0; i < count; ++i) {
-      within[i] = contains(FilmPoint{film_x[i], film_y[i]}, x[i], y[i], wavelengths.position(i, data_->primary));
+      clearances[i] = pupil_detail::clearance_of(
+          contains({lines.film_x[i], lines.film_y[i]}, lines.pupil_x[i], lines.pupil_y[i], wavelength));
     }
     return;
   }
-  const auto& [strips, cells, bladed, find_nearest] = pupil_table_detail::film_pupil_table();
-  const auto run = [&, film_x = film_x, film_y = film_y, x = x, y = y](const auto& loops, const auto& table) {
-    if constexpr (sizeof(T) == sizeof(float)) {
-      loops.contains_single(table, count, film_x, film_y, x, y, wavelengths, within);
-    } else {
-      loops.contains_twice(table, count, film_x, film_y, x, y, wavelengths, within);
+  const std::int32_t position = data_->known(wavelength);
+  data_->with_grid<double>([&](const auto& grid, const auto&) {
+    constexpr int dimensions = std::decay_t<decltype(grid)>::dimensions;
+    std::size_t sector = 0;
+    for (std::size_t i = 0; i < count; ++i) {
+      const auto [at, polygon] = find(grid, {lines.film_x[i], lines.film_y[i]}, position);
+      const Point<double> place =
+          to_grid<dimensions>(at.cosine, at.sine, Point<double>{lines.pupil_x[i], lines.pupil_y[i]});
+      clearances[i] = at.known ? clearance_of_place(polygon, place - polygon.middle(), sector) : -1;
     }
-  };
-  if (data_->bladed()) {
-    run(bladed, data_->cells->bladed_table<T>());
-  } else if (data_->cells) {
-    run(cells, data_->cells->table<T>());
-  } else {
-    run(strips, data_->table<T>());
+  });
+}
+
+Vec2<double> FilmPupilTable::position(const FilmPoint& film, double x, double y, Wavelength wavelength) const noexcept {
+  if (const auto& images = data_->images) return images->position(film, x, y, wavelength);
+  return data_->with_grid<double>([&](const auto& grid, const auto& loops) -> Vec2<double> {
+    constexpr int dimensions = std::decay_t<decltype(grid)>::dimensions;
+    using S = StopLayout<dimensions>;
+    const std::int32_t known = data_->known(wavelength);
+    const auto [at, polygon] = find(grid, film, known);
+    const double whole = polygon.whole();
+    if (!at.known || !(whole > 0)) return {0, 2};
+    const double* stop = grid.stop.cells ? grid.stop.cells + at.cell * S::size : nullptr;
+    if (stop && stop[S::drawn] > 0) {
+      double stop_x = 0, stop_y = 0;
+      loops.template of<double>().stop_points(grid, 1, &film.x, &film.y, &x, &y, {static_cast<std::size_t>(known)},
+                                              &stop_x, &stop_y);
+      return data_->stop->shape.position(stop_x / stop[S::scale], stop_y / stop[S::scale]);
+    }
+    const Point<double> q = to_grid<dimensions>(at.cosine, at.sine, Point<double>{x, y}) - polygon.middle();
+    const std::size_t k = sector_towards(polygon, q);
+    if (k == polygon_corners) return {0, 2};
+    const Sector<double> sector = polygon.sector(static_cast<std::int32_t>(k));
+    const double along = sector.along_to(q), way = sector.way_to(q);
+    const double share = (polygon.area_before(static_cast<std::int32_t>(k)) + along * sector.area()) / whole;
+    double v = sector.share_within(way * way);
+    if (stop) {
+      const Point<double> edge = sector.at(1, along);
+      const Places<1, double> places{{at.t}, {at.s}, {at.cosine}, {at.sine}, {1}, {at.cell}};
+      Lines<1, double> line{{static_cast<std::int32_t>(k)}, {along}, {edge.x}, {edge.y}, {0}, {1}};
+      cut_by_iris<1>(grid, places, line);
+      const double first = sector.share_within(line.from[0] * line.from[0]);
+      const double last = sector.share_within(line.to[0] * line.to[0]);
+      v = last > first && v >= first ? (v - first) / (last - first) : 2;
+    }
+    return {polygon.u_of(share, whole, at.cosine, at.sine), v};
+  });
+}
+
+PupilSample FilmPupilTable::sample(const FilmPoint& film, double u, double v, Wavelength wavelength,
+                                   Derivatives& by) const noexcept {
+  by = {};
+  if (const auto& images = data_->images) {
+    const PupilSample result = images->sample(film, u, v, wavelength);
+    by = images->derivatives(film, result, wavelength);
+    return result;
   }
+  // On the axis the directions around it meet: beside it is near enough.
+  const double beside = 1e-4 * data_->film_radius;
+  if (data_->dimensions == 1 && std::hypot(film.x, film.y) < beside) {
+    sample({0, beside}, u, v, wavelength, by);
+    return sample(film, u, v, wavelength);
+  }
+  using kernel::Dual;
+  Dual x, y, area;
+  data_->with_grid<double>([&](const auto& grid, const auto& loops) {
+    loops.one_with_derivatives(grid, Dual(film.x, 0), Dual(film.y, 1), Dual(u), Dual(v), data_->known(wavelength), x, y,
+                               area);
+  });
+  if (area.a > 0) by = {{x.v[0], y.v[0]}, {x.v[1], y.v[1]}};
+  return {x.a, y.a, area.a};
 }
 
 FilmPupilTable::Derivatives FilmPupilTable::derivatives(const FilmPoint& film, double u, double v,
                                                         Wavelength wavelength) const noexcept {
-  if (const auto& images = data_->images) return images->derivatives(film, u, v, wavelength);
-  if (const auto& cells = data_->cells) return cells->derivatives(film, u, v, data_->position(wavelength));
-  using kernel::Dual;
-  if (data_->strips_per_mm == 0) return {};
-  // On the axis the directions around it meet: beside it is near enough.
-  const double beside = 1e-4 * data_->film_radius;
-  const bool on_axis = std::hypot(film.x, film.y) < beside;
-  const FilmPoint at = on_axis ? FilmPoint{0, beside} : film;
-  const auto found = data_->find(at, wavelength);
-  if (!found.strip || !(u - u == 0 && v - v == 0)) return {};
-  u = std::clamp(u, 0.0, 1.0);
-  v = std::clamp(v, 0.0, 1.0);
-  const Dual x(at.x, 0), y(at.y, 1);
-  const Dual r = sqrt(x * x + y * y);
-  Dual t = r * data_->strips_per_mm;
-  t.a = found.t;
-  const Dual cosine = y / r, sine = x / r;
-  Dual share(u);
-  share -= turn_of(sine, cosine);
-  if (share.a < 0) share += 1.0;
-  if (share.a >= 1) share -= 1.0;
-  const double whole = found.polygon().area_before(polygon_corners);
-  if (!(whole > 0)) return {};
-  const std::size_t k = sector_with(found.polygon(), share.a * whole);
-  const InStrip<Dual> polygon{found.strip, t};
-  const auto [px, py] = polygon.middle() + sample_place(polygon, k, share, v);
-  const Dual qx = cosine * px + sine * py, qy = cosine * py - sine * px;
-  return {{qx.v[0], qy.v[0]}, {qx.v[1], qy.v[1]}};
+  Derivatives by;
+  sample(film, u, v, wavelength, by);
+  return by;
 }
 
-template PETZVAL_API void FilmPupilTable::contains(std::size_t, const TwoPlaneRays<const float>&, const RayWavelengths&,
-                                                   std::uint8_t*) const noexcept;
-template PETZVAL_API void FilmPupilTable::contains(std::size_t, const TwoPlaneRays<const double>&,
-                                                   const RayWavelengths&, std::uint8_t*) const noexcept;
-template PETZVAL_API void FilmPupilTable::sample(std::size_t, const float*, const float*, const float*, const float*,
-                                                 const RayWavelengths&, float*, float*, float*) const noexcept;
-template PETZVAL_API void FilmPupilTable::sample(std::size_t, const double*, const double*, const double*,
-                                                 const double*, const RayWavelengths&, double*, double*,
-                                                 double*) const noexcept;
+#define PETZVAL_FILM_PUPILS(T)                                                                                         \
+  template PETZVAL_API void FilmPupilTable::contains(std::size_t, const TwoPlaneRays<const T>&, const RayWavelengths&, \
+                                                     std::uint8_t*) const noexcept;                                    \
+  template PETZVAL_API void FilmPupilTable::sample_areas(std::size_t, const TwoPlaneRays<const T>&,                    \
+                                                         const RayWavelengths&, T*) const noexcept;                    \
+  template PETZVAL_API void FilmPupilTable::stop_points(std::size_t, const TwoPlaneRays<const T>&,                     \
+                                                        const RayWavelengths&, T*, T*) const noexcept;                 \
+  template PETZVAL_API void FilmPupilTable::sample(std::size_t, const T*, const T*, const T*, const T*,                \
+                                                   const RayWavelengths&, T*, T*, T*) const noexcept;
+PETZVAL_FILM_PUPILS(float)
+PETZVAL_FILM_PUPILS(double)
+#undef PETZVAL_FILM_PUPILS
 
 }  // namespace petzval

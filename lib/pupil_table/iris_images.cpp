@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <numbers>
 #include <vector>
 
 namespace petzval::pupil_table_detail {
@@ -13,6 +14,16 @@ namespace {
 constexpr double rounded_up = 1 + 1e-6;  // the corner itself, rounded, still belongs to the film
 
 }  // namespace
+
+void put_iris(const iris_detail::IrisShape& shape, FilmPupilArrays& arrays) {
+  const auto iris = shape.sectors<float>();
+  if (iris.count == 0) return;
+  constexpr std::size_t terms = iris_detail::edge_terms<float>;
+  static_assert(FilmPupilArrays::edge_terms == terms);
+  arrays.iris.assign(iris.across, iris.across + terms);
+  arrays.iris.insert(arrays.iris.end(), iris.along, iris.along + terms);
+  arrays.iris.insert(arrays.iris.end(), iris.turns, iris.turns + 2 * iris.count);
+}
 
 IrisImages::IrisImages(const Iris& iris, std::span<const PupilImage> images, double film_radius, std::size_t primary,
                        const lens_detail::CompiledWavelengths& wavelengths)
@@ -49,13 +60,7 @@ void IrisImages::put(FilmPupilArrays& arrays) const {
     arrays.pupils.insert(arrays.pupils.end(), {number(image.shift_x), number(image.shift_y), number(image.radius_x),
                                                number(image.radius_y), number(image.area)});
   }
-  const auto iris = shape_.sectors<float>();
-  if (iris.count == 0) return;
-  constexpr std::size_t terms = iris_detail::edge_terms<float>;
-  static_assert(FilmPupilArrays::edge_terms == terms);
-  arrays.iris.assign(iris.across, iris.across + terms);
-  arrays.iris.insert(arrays.iris.end(), iris.along, iris.along + terms);
-  arrays.iris.insert(arrays.iris.end(), iris.turns, iris.turns + 2 * iris.count);
+  put_iris(shape_, arrays);
 }
 
 template <class R>
@@ -100,6 +105,10 @@ double IrisImages::area(const FilmPoint& film, Wavelength wavelength) const noex
   return image(film, wavelength).area;
 }
 
+double IrisImages::area_of_stop(const FilmPoint& film, Wavelength wavelength) const noexcept {
+  return area(film, wavelength) * (std::numbers::pi / shape_.area());
+}
+
 Vec2<double> IrisImages::middle(const FilmPoint& film, Wavelength wavelength) const noexcept {
   const Image seen = image(film, wavelength);
   if (!(seen.area > 0)) return {0, 0};
@@ -118,10 +127,10 @@ Vec2<double> IrisImages::position(const FilmPoint& film, double x, double y, Wav
   return shape_.position((x - seen.shift_x * film.x) / seen.radius_x, (y - seen.shift_y * film.y) / seen.radius_y);
 }
 
-FilmPupilTable::Derivatives IrisImages::derivatives(const FilmPoint& film, double u, double v,
+FilmPupilTable::Derivatives IrisImages::derivatives(const FilmPoint& film, const PupilSample& sample,
                                                     Wavelength wavelength) const noexcept {
   // Of part (shift film + radius place), by way of part's own: - part^2 shift slope.
-  const auto [x, y, area] = sample(film, u, v, wavelength);
+  const auto [x, y, area] = sample;
   if (!(area > 0)) return {};
   const Image seen = image(film, wavelength);
   return {{seen.shift_x - seen.shift_x * slope_x_ * x, -seen.shift_y * slope_x_ * y},

@@ -13,6 +13,9 @@
 
 namespace petzval::pupil_table_detail {
 
+/// FilmPupilArrays::iris.
+void put_iris(const iris_detail::IrisShape& shape, FilmPupilArrays& arrays);
+
 /// Pupils in closed form: the images of an iris, one for each wavelength, that move with the film point.
 ///
 /// On a tilted film the ray of a virtual film point V (FilmTilt) through q meets the upright film in V - (slope . V) q,
@@ -42,10 +45,13 @@ class IrisImages {
 
   PupilSample sample(const FilmPoint& film, double u, double v, Wavelength wavelength) const noexcept;
   double area(const FilmPoint& film, Wavelength wavelength) const noexcept;
+  /// The area of the image of the whole stop.
+  double area_of_stop(const FilmPoint& film, Wavelength wavelength) const noexcept;
   Vec2<double> middle(const FilmPoint& film, Wavelength wavelength) const noexcept;
   bool contains(const FilmPoint& film, double x, double y, Wavelength wavelength) const noexcept;
   Vec2<double> position(const FilmPoint& film, double x, double y, Wavelength wavelength) const noexcept;
-  FilmPupilTable::Derivatives derivatives(const FilmPoint& film, double u, double v,
+  /// Of a sample of these pupils.
+  FilmPupilTable::Derivatives derivatives(const FilmPoint& film, const PupilSample& sample,
                                           Wavelength wavelength) const noexcept;
 
   template <class T>

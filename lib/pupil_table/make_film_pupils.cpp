@@ -10,11 +10,11 @@
 #include <string>
 #include <vector>
 
+#include "core/quadrature.hpp"
 #include "core/text.hpp"
 #include "film_grid.hpp"
 #include "film_polygons.hpp"
 #include "film_pupil_data.hpp"
-#include "iris/iris_shape.hpp"
 #include "petzval/core/error.hpp"
 #include "petzval/core/parallel.hpp"
 #include "repeated_wavelength.hpp"
@@ -24,6 +24,23 @@ namespace petzval {
 namespace {
 
 using namespace pupil_table_detail;
+
+/// The projected solid angle of a pupil from uniform samples of it: place_at(u, v).
+template <class PlaceAt>
+double solid_angle(const TwoPlanes& space, const FilmPoint& film, double area, const PlaceAt& place_at) noexcept {
+  constexpr int around = 16;
+  static const auto outwards = core_detail::gauss_legendre<4>();
+  const double depth2 = space.depth() * space.depth();
+  double sum = 0;
+  for (int k = 0; k < around; ++k) {
+    for (const auto& [v, weight] : outwards) {
+      const Vec2<double> place = place_at((k + 0.5) / around, v);
+      const double dx = place.x - film.x, dy = place.y - film.y, length2 = dx * dx + dy * dy + depth2;
+      sum += weight / (length2 * length2);
+    }
+  }
+  return area * depth2 * sum / around;
+}
 
 /// Scales a polygon until its film point sees it in a projected solid angle.
 void scale_to_light(PupilPolygon& polygon, const TwoPlanes& space, const FilmPoint& film, double wanted) {
@@ -54,15 +71,6 @@ void expand_to_neighbours(const lens_detail::CompiledWavelengths& compiled,
       expand_towards(polygons[next][i], own[w][i]);
     }
   }
-}
-
-bool obscured(const std::vector<std::vector<PupilPolygon>>& polygons) {
-  for (const auto& own : polygons) {
-    for (const PupilPolygon& polygon : own) {
-      if (std::any_of(polygon.obscured.begin(), polygon.obscured.end(), [](double w) { return w > 0; })) return true;
-    }
-  }
-  return false;
 }
 
 void check_film_radius(const std::string& where, double film_radius) {
@@ -130,46 +138,26 @@ FilmPupilTable FilmPupilTable::traced(const Lens& lens, double film_radius, bool
   data->film_radius = film_radius;
   data->primary = lens.primary_wavelength();
   data->compiled = lens_detail::CompiledWavelengths(lens.wavelengths_nm());
+  data->enclosing = enclosing;
   const std::size_t wavelengths = lens.wavelengths_nm().size();
   const Lens round = with_iris(lens, {});
-  if (!round.rotationally_symmetric()) {
-    data->wavelengths = wavelengths;
+  std::vector<std::vector<PupilPolygon>> polygons(wavelengths);
+  if (round.rotationally_symmetric()) {
+    std::vector<FilmPupils> pupils;
+    for (std::size_t w = 0; w < wavelengths; ++w) pupils.push_back(traced_pupils(round, data->space, w));
+    FilmPolygons found = film_polygons(film_radius, fit, pupils, threads);
+    data->reach = found.lit_radius;
+    polygons = std::move(found.by_wavelength);
+  } else {
     const FilmGrid grid = film_grid(round, data->space, film_radius);
-    data->cells.emplace(grid, film_radius, data->primary);
-    std::vector<std::vector<PupilPolygon>> polygons(wavelengths);
+    data->set(grid);
     parallel_for(wavelengths, 1, threads,
                  [&](std::size_t w, std::size_t) { polygons[w] = grid_polygons(round, data->space, grid, fit, w); });
-    if (enclosing) expand_to_neighbours(data->compiled, polygons);
-    for (const auto& own : polygons) data->cells->add(own);
-    return FilmPupilTable(std::move(data));
   }
-  std::vector<FilmPupils> pupils;
-  for (std::size_t w = 0; w < wavelengths; ++w) pupils.push_back(traced_pupils(round, data->space, w));
-  auto [lit_radius, polygons] = film_polygons(film_radius, fit, pupils, threads);
-  data->lit_radius = lit_radius;
-  std::vector<std::vector<PupilPolygon>> bladed;
-  if (!lens.iris().round() && !obscured(polygons)) {
-    const BladedGrid grid(lens.iris(), lit_radius, polygons[0].size());
-    data->iris = lens.iris();
-    data->cells.emplace(grid, data->primary);
-    data->maps.resize(wavelengths), bladed.resize(wavelengths);
-    parallel_for(wavelengths, 1, threads, [&, lit = lit_radius, &polygons = polygons](std::size_t w, std::size_t) {
-      for (std::size_t i = 0; i < polygons[w].size(); ++i) {
-        const double height = lit * static_cast<double>(i) / static_cast<double>(polygons[w].size() - 1);
-        data->maps[w].emplace_back(lens, data->space, height, polygons[w][i], w);
-      }
-      bladed[w] = bladed_polygons(grid, polygons[w], data->maps[w], fit);
-    });
-  } else if (!lens.iris().round() && !enclosing) {
-    throw Error(lens.name() + ": pupils: found an iris with blades and a central obscuration, wanted a round stop");
-  }
-  if (enclosing) {
-    expand_to_neighbours(data->compiled, polygons);
-    if (!bladed.empty()) expand_to_neighbours(data->compiled, bladed);
-  }
+  if (enclosing) expand_to_neighbours(data->compiled, polygons);
   for (const auto& own : polygons) data->add(own);
-  for (const auto& own : bladed) data->cells->add(own);
-  return FilmPupilTable(std::move(data));
+  const FilmPupilTable table(std::move(data));
+  return lens.iris().round() ? table : table.with_stop(lens, threads);
 }
 
 FilmPupilTable FilmPupilTable::enclosing(const Lens& lens, double film_radius, int threads) {
@@ -177,10 +165,15 @@ FilmPupilTable FilmPupilTable::enclosing(const Lens& lens, double film_radius, i
 }
 
 FilmPupilTable FilmPupilTable::equal_area(const Lens& lens, double film_radius, int threads) {
-  if (!lens.iris().round() && !with_iris(lens, {}).rotationally_symmetric()) {
-    throw Error(lens.name() + ": pupils: found cylinders and an iris with blades, wanted a round stop");
-  }
   return traced(lens, film_radius, false, threads);
+}
+
+FilmPupilTable FilmPupilTable::with_stop(const Lens& lens, int threads) const {
+  if (data_->images) return *this;
+  if (!lens.stop() || !std::isfinite(lens.surfaces()[*lens.stop()].semi_diameter)) {
+    throw Error(lens.name() + ": pupils: found no stop with a semi_diameter, wanted one");
+  }
+  return data_->with_stop(lens.iris(), traced_stop(lens, space()), threads);
 }
 
 FilmPupilTable FilmPupilTable::of_discs(const TwoPlanes& space, std::span<const std::vector<PupilDisc>> discs,
@@ -192,7 +185,7 @@ FilmPupilTable FilmPupilTable::of_discs(const TwoPlanes& space, std::span<const 
   data->primary = primary_wavelength;
   data->compiled = lens_detail::CompiledWavelengths(wavelengths_nm);
   data->space = space;
-  data->film_radius = data->lit_radius = film_radius;
+  data->film_radius = data->reach = film_radius;
   for (const std::vector<PupilDisc>& set : discs) data->add(disc_polygons(set, film_radius));
   return FilmPupilTable(std::move(data));
 }
@@ -200,7 +193,7 @@ FilmPupilTable FilmPupilTable::of_discs(const TwoPlanes& space, std::span<const 
 FilmPupilTable FilmPupilTable::of_round_stop() const {
   if (data_->whole) return whole().of_round_stop();
   auto data = std::make_shared<Data>(*data_);
-  if (data->bladed()) data->cells.reset();
+  data->stop = nullptr;
   if (data->images) data->images = data->images->of_round_stop();
   return FilmPupilTable(std::move(data));
 }
@@ -214,12 +207,6 @@ FilmPupilTable FilmPupilTable::reshaped(std::span<const std::vector<PupilDisc>> 
   const FilmPupilTable round = of_round_stop();
   auto data = data_->alike();
   constexpr std::size_t strips = film_strips(PolygonFit::equal_area);
-  const std::optional<BladedGrid> grid =
-      data_->bladed() ? std::optional(BladedGrid(data_->iris, lit_radius(), strips + 1)) : std::nullopt;
-  if (grid) {
-    data->iris = data_->iris, data->maps = data_->maps;
-    data->cells.emplace(*grid, data->primary);
-  }
   for (std::size_t w = 0; w < discs.size(); ++w) {
     std::vector<PupilPolygon> polygons = disc_polygons(discs[w], lit_radius());
     for (std::size_t i = 0; i < polygons.size(); ++i) {
@@ -227,27 +214,14 @@ FilmPupilTable FilmPupilTable::reshaped(std::span<const std::vector<PupilDisc>> 
       scale_to_light(polygons[i], space(), film, round.projected_solid_angle(film, w));
     }
     data->add(polygons);
-    if (!grid) continue;
-    std::vector<PupilPolygon> bladed = bladed_polygons(*grid, polygons, data_->maps[w], PolygonFit::equal_area);
-    for (std::size_t i = 0; i < bladed.size(); ++i) {
-      // In the frame of the iris, in which the polygons are, and in that of the lens.
-      const auto [radius, azimuth] = grid->node(i);
-      const double turn = azimuth - data_->iris.rotation_rad;
-      PupilPolygon& polygon = bladed[i];
-      const double middle = polygon.middle.y;
-      polygon.middle = {middle * std::sin(azimuth), middle * std::cos(azimuth)};
-      scale_to_light(polygon, space(), {radius * std::sin(azimuth), radius * std::cos(azimuth)},
-                     projected_solid_angle({radius * std::sin(turn), radius * std::cos(turn)}, w));
-      polygon.middle = {0, middle};
-    }
-    data->cells->add(bladed);
   }
-  return FilmPupilTable(std::move(data));
+  const auto& stop = data_->stop;
+  return stop ? data->with_stop(stop->shape.iris(), stop->stop_of) : FilmPupilTable(std::move(data));
 }
 
 FilmPupilTable FilmPupilTable::cut_by_rim(const PupilRim& rim) const {
   const auto& images = data_->images;
-  if ((data_->cells && !data_->bladed()) || (images && !images->of_revolution()) || data_->obscured) {
+  if (data_->dimensions == 2 || (images && !images->of_revolution()) || data_->obscured) {
     throw Error(
         "pupils: found cylinders or a central obscuration, wanted a lens of revolution without for a rim that "
         "cuts cat's eyes");
@@ -263,54 +237,29 @@ FilmPupilTable FilmPupilTable::cut_by_rim(const PupilRim& rim) const {
   }
   auto data = data_->alike();
   data->whole = data_;
-  constexpr std::size_t image_strips = film_strips(PolygonFit::equal_area);
-  const std::size_t strips = images ? image_strips : data_->strips_each;
-  const Iris iris = images ? images->iris() : data_->bladed() ? data_->iris : Iris{};
-  std::optional<BladedGrid> grid;
-  if (!iris.round()) {
-    grid.emplace(iris, lit_radius(), strips + 1);
-    data->iris = iris;
-    data->cells.emplace(*grid, data->primary);
-  }
-  std::vector<Vec2<double>> corners;  // of an iris in closed form, its first corner on +y
-  if (images && grid) {
-    const iris_detail::IrisShape shape({iris.blades, iris.roundness});
-    for (std::size_t k = 0; k < polygon_corners; ++k) {
-      corners.push_back(
-          shape.sample(k < grid->corners ? static_cast<double>(k) / static_cast<double>(grid->corners) : 0, 1));
-    }
-  }
   for (std::size_t w = 0; w < wavelengths(); ++w) {
     const PupilDisc pupil =
         images ? images->disc(w)
-               : disc_about(data_->node(w, 0), data_->node(w, 1), lit_radius() / static_cast<double>(strips));
+               : disc_about(data_->node(w, 0), data_->node(w, 1), lit_radius() / static_cast<double>(data_->rows));
     const PupilDisc disc{pupil.shift - rim.radii_per_mm * pupil.radius, rim.ratio * pupil.radius};
     std::vector<PupilPolygon> polygons;
     if (images) {
       polygons = disc_polygons(std::array{pupil, disc}, lit_radius());
     } else {
-      for (std::size_t i = 0; i <= strips; ++i) {
-        const double height = lit_radius() * static_cast<double>(i) / static_cast<double>(strips);
-        polygons.push_back(cut_by_disc(data_->node(w, i), {0, 1}, disc.shift * height, disc.radius));
+      for (std::size_t i = 0; i < data_->nodes(); ++i) {
+        polygons.push_back(cut_by_disc(data_->node(w, i), disc.shift * data_->node_point(i).y, disc.radius));
       }
     }
     data->add(polygons);
-    if (!grid) continue;
-    std::vector<PupilPolygon> bladed;
-    for (std::size_t i = 0; i < (grid->rows + 1) * (grid->columns + 1); ++i) {
-      const auto [radius, azimuth] = grid->node(i);
-      PupilPolygon polygon;
-      if (images) {
-        polygon.middle = {0, pupil.shift * radius};
-        for (std::size_t k = 0; k < polygon_corners; ++k) polygon.corners[k] = pupil.radius * corners[k];
-      } else {
-        polygon = data_->cells->node(w, i);
-      }
-      bladed.push_back(cut_by_disc(polygon, {std::sin(azimuth), std::cos(azimuth)}, disc.shift * radius, disc.radius));
-    }
-    data->cells->add(bladed);
   }
-  return FilmPupilTable(std::move(data));
+  if (const auto& stop = data_->stop) return data->with_stop(stop->shape.iris(), stop->stop_of);
+  if (!images || images->round()) return FilmPupilTable(std::move(data));
+  const StopOf stop_of = [own = *images](const FilmPoint& film, const Vec2<double>& place,
+                                         std::size_t w) -> std::optional<Vec2<double>> {
+    const auto [shift, radius] = own.disc(w);
+    return Vec2<double>{(place.x - shift * film.x) / radius, (place.y - shift * film.y) / radius};
+  };
+  return data->with_stop(images->iris(), stop_of);
 }
 
 FilmPupilTable FilmPupilTable::whole() const { return FilmPupilTable(data_->whole ? data_->whole : data_); }
@@ -345,27 +294,25 @@ FilmPupilTable FilmPupilTable::for_tilted_film(const FilmTilt& tilt, int threads
     data->images = data_->images->tilted(tilt);
     return FilmPupilTable(std::move(data));
   }
-  // Edges of blades are alike neither all around nor at mirror images.
-  if (data_->bladed() || (data_->images && !data_->images->round()))
-    return of_round_stop().for_tilted_film(tilt, threads);
+  // Edges of blades are alike neither all around nor at mirror images: the iris clips the rays of the round stop.
+  if (data_->stop || (data_->images && !data_->images->round())) return of_round_stop().for_tilted_film(tilt, threads);
   data->space = data_->space;
   data->primary = data_->primary;
   data->compiled = data_->compiled;
   data->film_radius = tilt.radius;
-  if (data_->cells || (data_->images && !data_->images->of_revolution())) {
-    data->wavelengths = wavelengths();
+  std::vector<std::vector<PupilPolygon>> polygons(wavelengths());
+  if (data_->dimensions == 2 || (data_->images && !data_->images->of_revolution())) {
     const FilmGrid grid = disc_grid(tilt.radius);
-    data->cells.emplace(grid, tilt.radius, data->primary);
-    std::vector<std::vector<PupilPolygon>> polygons(wavelengths());
+    data->set(grid);
     parallel_for(wavelengths(), 1, threads,
                  [&](std::size_t w, std::size_t) { polygons[w] = tilted_grid_polygons(*this, tilt, grid, w); });
-    for (const auto& own : polygons) data->cells->add(own);
-    return FilmPupilTable(std::move(data));
+  } else {
+    std::vector<FilmPupils> pupils;
+    for (std::size_t w = 0; w < wavelengths(); ++w) pupils.push_back(tilted_film_pupils(*this, tilt, w));
+    FilmPolygons found = film_polygons(tilt.radius, PolygonFit::enclosing, pupils, threads);
+    data->reach = found.lit_radius;
+    polygons = std::move(found.by_wavelength);
   }
-  std::vector<FilmPupils> pupils;
-  for (std::size_t w = 0; w < wavelengths(); ++w) pupils.push_back(tilted_film_pupils(*this, tilt, w));
-  const auto [lit_radius, polygons] = film_polygons(tilt.radius, PolygonFit::enclosing, pupils, threads);
-  data->lit_radius = lit_radius;
   for (const auto& own : polygons) data->add(own);
   return FilmPupilTable(std::move(data));
 }

@@ -21,8 +21,9 @@ double reach(const PupilPolygon& polygon, const Vec2<double>& d) {
 
 }  // namespace
 
-PupilPolygon cut_by_disc(const PupilPolygon& polygon, const Vec2<double>& towards, double centre, double radius) {
-  // Along the vector from the middle: what both hold.
+PupilPolygon cut_by_disc(const PupilPolygon& polygon, double centre, double radius) {
+  constexpr Vec2<double> towards{0, 1};
+  // Along y from the middle: what both hold.
   const double from_middle = centre - polygon.middle.y;
   const double low = std::max(-reach(polygon, -towards), from_middle - radius);
   const double high = std::min(reach(polygon, towards), from_middle + radius);

@@ -45,7 +45,8 @@ struct Sector {
   /// The v of a squared way: the inverse; of one that is obscured, that where the obscured part begins.
   T share_within(const T& squared_way) const noexcept {
     const T past = squared_way - obscured > obscured_from ? squared_way - obscured : obscured_from;
-    return (squared_way < obscured_from ? squared_way : past) / (T(1) - obscured);
+    const T left = T(1) - obscured;
+    return (squared_way < obscured_from ? squared_way : past) / (left > T(0) ? left : T(1));
   }
   /// The place at a way outwards and a part of the way along the outer edge, from a (0) to b (1).
   Point<T> at(const T& way, const T& along) const noexcept {

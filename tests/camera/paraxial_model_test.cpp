@@ -467,8 +467,6 @@ TEST(ParaxialModel, RefusesWhatItCannotBe) {
   }
   EXPECT_NE(refusal(ModelKind::thick, testing::data_lens("cylinder_3.9mm")).find("afocal"), std::string::npos);
   EXPECT_THROW(ParaxialModel(ModelKind::thick, lens, -1), Error);
-  const Lens bladed = with_iris(testing::data_lens("catadioptric_mangin_1000mm_f7.5"), {.blades = 6});
-  EXPECT_NE(refusal(ModelKind::thin_two_disc, bladed).find("an iris with blades"), std::string::npos);
 
   Prescription window;
   window.name = "window";

@@ -8,17 +8,18 @@ namespace petzval {
 /// What an artist asks of a bokeh, by the names of "Recreating realistic bokeh by biasing lens-sample positions", 2017.
 /// Every model of a Camera takes it; the defaults change nothing.
 ///
-/// Weights act on the stop, where exact rays meet it: in exact models and polynomials on the real one, also of a
-/// vignetted pupil; in first-order models on its image. Those of two discs, of a renderer's own model and of a lens
-/// without a stop, or whose stop has no rim, act on the pupil of each film point instead, so that a cat's eye has a rim
-/// of its own. The pupils of polynomials have the stop's area and nearly its shape: they keep the light within 1 % up
-/// to a distribution of 200, and have 8 % too much at 1000.
+/// Weights act on the stop: in exact models and polynomials on the real one, also of a vignetted pupil, where the
+/// polynomials of FilmPupilTable::stop_points() put a ray (a weight of a narrow ring is off by up to 2 % behind a lens of
+/// f/1.35); in first-order models on its image. Those of two discs behind a round stop, of a renderer's own model and of
+/// a lens without a stop, or whose stop has no rim, act on the pupil of each film point instead, so that a cat's eye has
+/// a rim of its own. The pupils of polynomials have the stop's area and nearly its shape: they keep the light within 1 %
+/// up to a distribution of 200, and have 8 % too much at 1000.
 ///
 /// Samples follow the weights (EdgeWeight): where the stop is the pupil, all rays of a film point weigh within 1 % the
 /// same, but for the few where weights fall to 0, as of a strength near 1; of a map, as far as 256 x 256 cells of the
 /// iris show it. Behind real lenses a quarter of the samples is uniform, which bounds the weights where pupils are
-/// vignetted. A weight follows the stop on the scene's side too. In batches a ray takes 11 ns more, behind a real stop
-/// 19, with a map 40 to 50 (tests/bench/camera_bench.cpp).
+/// vignetted. A weight follows the stop on the scene's side too. In batches a ray takes 11 ns more, with a
+/// map 40 to 50 (tests/bench/camera_bench.cpp).
 struct BokehControls {
   int lens_elements = 0;  ///< straight blades in place of the lens's own iris, 3 to 20; 0: that iris
   /// The radius of a second rim, which cuts cat's eyes, over that of the pupil on the axis. (In the text's program the

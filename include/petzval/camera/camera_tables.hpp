@@ -10,14 +10,13 @@
 namespace petzval {
 
 /// The layout of Camera::tables(): one array of floats, to be copied to a GPU as it is. Counts, kinds and positions in
-/// the array are whole numbers. Lens frame, mm. examples/hosts/device_camera.hpp samples a camera from it and has
-/// nothing else of petzval.
+/// the array are whole numbers. Lens frame, mm.
 ///
 ///     format ... edge_count  the positions below
 ///     wavelengths            [wavelength] nm
 ///     scales                 [wavelength] of weights: weight = scale area depth^2 / length^4, length that of the line
 ///                            from the film point to the place in the pupil, depth from film_z to pupil_z
-///     pupil_list, half_widths, iris  as in FilmPupilArrays
+///     pupil_list, half_widths, iris, stop_list  as in FilmPupilArrays
 ///     rays, first order      [wavelength] a, b, c, d along x, then along y: place = a f + b p and slope = c f + d p of
 ///                            film and pupil point, in the plane reference_z; rays run towards -z
 ///     rays, polynomial       [wavelength] the coefficients of direction_by_film, direction_by_pupil, offset_by_film
@@ -31,7 +30,7 @@ namespace petzval {
 ///                            x nx + y ny + bend (x^2 + y^2) <= distance
 struct CameraTables {
   enum Position : std::size_t {
-    format,  ///< 3
+    format,  ///< 4
     model,   ///< position in models()
     wavelength_count,
     primary_wavelength,
@@ -46,9 +45,8 @@ struct CameraTables {
     wavelengths,      ///< where the lists begin
     scales,
     pupil_list,
-    pupils_kind,   ///< a FilmPupilArrays::Kind: 0 strips, 1 images, 2 cells, 3 bladed
+    pupils_kind,   ///< a FilmPupilArrays::Kind: 0 polar, 1 images, 2 quadrant
     pupil_radius,  ///< film points farther from the axis see nothing
-    strips,
     rows,
     columns,
     height,
@@ -68,10 +66,9 @@ struct CameraTables {
     indices,
     edges,
     edge_count,
-    blades,  ///< of pupils of the kind bladed, as what follows
-    blade_corners,
-    first_blade,
-    head_size = 40
+    stop_list,
+    stop_size,  ///< numbers in it; 0: the iris cuts no polygon
+    head_size = 38
   };
   static constexpr std::size_t surface_size = 9 + 39;
 

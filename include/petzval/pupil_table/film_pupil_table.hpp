@@ -51,60 +51,54 @@ struct FilmTilt {
   double travel = 0;                ///< in all; the film is everywhere on the way
 };
 
-/// A sample of a pupil: its place in the plane of the pupil and the pupil's whole area, mm and mm^2. Samples are
-/// uniform, so that their density is 1 / area. Area 0: nothing to sample, the place is (0, 0).
+/// A sample of a pupil: its place in the plane of the pupil, mm, and the area that it stands for, mm^2: its density is
+/// 1 / area. Where samples are uniform that is the pupil's whole area. Area 0: nothing to sample.
 struct PupilSample {
   double x = 0, y = 0, area = 0;
 };
 
 /// A FilmPupilTable as plain numbers, for another processor.
 struct FilmPupilArrays {
-  /// Images of an iris. Or polygons: of a lens of revolution in strips, by distance from the axis; of a lens with
-  /// cylinders in cells, over both axes of the film; of a bladed iris in cells, over distance and azimuth.
-  enum class Kind : std::uint8_t { strips, images, cells, bladed };
-  Kind kind = Kind::strips;
+  /// Images of an iris, or polygons in the cells of a grid: by the distance from the axis (polar: of a lens of
+  /// revolution) or over both axes of the film (quadrant: of a lens with cylinders).
+  enum class Kind : std::uint8_t { polar, images, quadrant };
+  Kind kind = Kind::polar;
   double film_radius = 0;  ///< mm; film points beyond see nothing
-  /// Images: [wavelength] shift x, shift y, radius x, radius y, area (see PupilImage). Strips: [wavelength][strip] the
-  /// polygons of film points on +y between film_radius strip / strips and the next, by the fraction t of the way:
+  /// Images: [wavelength] shift x, shift y, radius x, radius y, area (see PupilImage). Polygons: [wavelength][row]
+  /// [column] the cells of film points between y = height row / rows and the next row. Polar: film points lie on +y and
+  /// polygons turn with them; values are linear in the fraction t of the way between rows, given by 1, t. Quadrant:
+  /// film points x, y >= 0, those of other quadrants are mirror images; values are linear in t along the row,
+  /// half_widths long, between the column and the next, and in s from row to row, given by 1, t, s, st. With n = 2 or 4
+  /// numbers a value, and m = 4 or 9 terms of an area (by 1, t, t^2, t^3, or by 1, t, t^2, s, st, st^2, s^2, s^2 t, s^2
+  /// t^2):
   ///
-  ///     0       y of the middle, that by t, 0, 0 (x is 0)
-  ///     4       area by 1, t, t^2, t^3, mm^2
-  ///     8 + 8k  corner k from the middle: x, y, x by t, y by t; area before it by 1, t, t^2, t^3 (k = 0 ... 64)
-  ///     528 + 4k  the obscured part of sector k: begin and width, these by t, in squared ways from the middle (0) to
-  ///               the outer edge (1)
-  ///
-  /// Cells: [wavelength][row][column] the polygons of film points x, y >= 0 between y = height row / rows and the next,
-  /// by the fraction s of the way, and along that line, half_widths long, between the column and the next, by t. Those
-  /// of other quadrants are mirror images.
-  ///
-  ///     0, 4        x and y of the middle, each by 1, t, s, st
-  ///     8           area by 1, t, t^2, s, st, st^2, s^2, s^2 t, s^2 t^2, mm^2
-  ///     17 + 17k    corner k from the middle: x and y by 1, t, s, st; area before it as above (k = 0 ... 64)
-  ///
-  /// Bladed: [wavelength][row][column] the polygons of film points between the distance film_radius row / rows and the
-  /// next, by s, and the azimuth pi column / (blades columns) from the direction of the nearest corner of the iris and
-  /// the next, by t: cells of a frame in which that corner is on +y and the film point towards +x of it, so that it may
-  /// be a mirror image. Middles lie on the direction of the film point, at y of the middle. All but the first
-  /// blade_corners corners are like corner 0. u is the share of the area from the first corner of the iris on.
-  ///
-  ///     1122        in sectors, where k / 16 of the area end in the middle of the cell (k = 0 ... 16)
+  ///     0, n            x and y of the middle
+  ///     2n              area, mm^2
+  ///     2n + m + (2n + m) k  corner k from the middle: x, y; area before it (k = 0 ... 64)
+  ///     528 + 4k        polar: begin and width of the obscured part of sector k, in squared ways from the middle (0)
+  ///     to
+  ///                     the outer edge (1)
   std::vector<float> pupils;
-  std::size_t strips = 0;
-  std::size_t columns = 0;
-  double height = 0;               ///< of the cells, mm
-  std::vector<float> half_widths;  ///< [row] of the cells, mm; that of the last line at the end
-  std::size_t rows = 0;            ///< of a bladed iris, as what follows
-  std::size_t blades = 0;
-  std::size_t blade_corners = 0;
-  double first_blade = 0;  ///< the angle from the first corner to +y, towards +x, over that between corners
+  std::size_t rows = 0, columns = 1;
+  double height = 0;               ///< mm
+  std::vector<float> half_widths;  ///< [row] mm; that of the last line at the end
   /// Empty: a disc. Or for the edges of blades, in radii: across [edge_terms] and along [edge_terms], then [blade] sine
   /// and cosine of the angle from +y towards +x of the direction to the edge's middle. The point of the edge that has
   /// the part (1 + q) / 2 of its sector's area before it lies q across(t) across that direction, clockwise, and
   /// along(t) along it; t = 2 q^2 - 1, and both are polynomials in t.
   std::vector<float> iris;
+  /// Empty: the iris cuts no polygon. Or for each cell of `pupils`:
+  ///
+  ///     0               1: samples are points of the iris, 0: of what the iris leaves of the polygon
+  ///     1               scale of the iris
+  ///     2 + n k         place in the pupil by the stop point (x, y), term k, with r = x^2 + y^2: of y 1, y, x^2, y^2,
+  ///                     x^2 y, y^3, r^2, r y^2, r^2 y, of x over x 1, y, x^2, y^2, r y, r^2 (polar); of x, then of y
+  ///                     1, x, y, x^2, xy, y^2, x^3, x^2 y, x y^2, y^3 (quadrant)
+  ///     2 + 15 n (polar), 2 + 20 n (quadrant)  x and y of the stop points of the middle and of the corners 0 ... 64
+  std::vector<float> stop;
 
-  static constexpr std::size_t image_size = 5, strip_size = 784, cell_size = 1122, bladed_size = 1139, corners = 64,
-                               edge_terms = 8;
+  static constexpr std::size_t image_size = 5, polar_size = 784, quadrant_size = 1122, corners = 64, edge_terms = 8;
+  static constexpr std::size_t polar_stop_size = 296, quadrant_stop_size = 610;
 };
 
 /// The pupils of every point of a film: the parts of the plane behind the lens through which the points see the scene,
@@ -112,14 +106,15 @@ struct FilmPupilArrays {
 ///
 /// A pupil of a table is a polygon of 64 corners about a middle, less a central obscuration where the lens has one.
 /// Corners and middles are interpolated between 33 distances from the axis (65, where areas are the light), or, of a
-/// lens with cylinders, bilinearly between 9 x 9 film points in a quadrant, or, of a bladed iris, between 17 distances
-/// (33) and, of six blades, 25 azimuths, so that the pupil, and with it the sample
-/// for a given u and v, moves continuously with the film point and images show no rings and seams. Areas are exact for
-/// the interpolated polygon. The tables of lenses with cylinders and of bladed irises leave out no obscuration.
+/// lens with cylinders, bilinearly between 9 x 9 film points in a quadrant, so that the pupil, and with it the sample
+/// for a given u and v, moves continuously with the film point. Areas are exact for the interpolated polygon. The
+/// tables of lenses with cylinders leave out no obscuration.
 ///
-/// Of a bladed iris a polygon has as many corners for each blade, 64 or fewer in all, on the way from its middle to
-/// even steps of the iris's rim: what the iris leaves of the round stop's, by polynomials that tell where rays meet the
-/// stop.
+/// An iris with blades needs with_stop(), which enclosing() and equal_area() call by themselves. Film points that see
+/// all of it have samples that are uniform on the iris: polynomials of third to fifth order, interpolated as polygons
+/// are, tell where the pupil shows them, and areas change with the sample. Where rims cut, samples are those of the
+/// part of the polygon that the iris leaves. Between the two kinds of film points samples step; what they estimate does
+/// not.
 ///
 /// A wavelength in nm has the pupils of the nearest compiled one. Those of enclosing() contain the rays of wavelengths
 /// up to the middles between compiled ones, for 0.1 to 1.5 % more samples that are lost where these are 150 nm apart
@@ -140,11 +135,8 @@ class PETZVAL_API FilmPupilTable {
   /// Pupils are those of exit_pupil_boundary(). Behind tiny stops, whose images move over the film by more than their
   /// size, pupils hold more than the rays that pass: half of the samples are lost at about f/1e5, most at f/1e6.
   ///
-  /// Of a bladed iris at least 97.5 % of the samples pass on the double Gauss, the Tessar and a fisheye of data/, at
-  /// any film point 93 % (tests/pupil_table/bladed_pupils_test.cpp: 5 to 9 blades from f/2.87 to f/16); in narrow rings
-  /// where pupils change fast as few as 60 % do. A lens with cylinders or central obscurations has the pupils of its
-  /// round stop, which contain those of any iris. A table takes 5 to 15 ms for each wavelength instead of 1.3, and a
-  /// sample 6 to 8 times as long as one of a round iris, 22 to 27 ns in a batch.
+  /// Of a bladed iris at least 97.5 % of the samples pass on the double Gauss, the Tessar and a fisheye of data/
+  /// (tests/pupil_table/bladed_pupils_test.cpp: 5 to 9 blades from f/2.87 to f/16).
   ///
   /// film_radius: of the farthest film point, mm, >= 0. The film is that of the lens. Throws Error for a film in the
   /// plane of the last vertex, for a film_radius that is negative or not finite, and for less than one thread.
@@ -154,8 +146,7 @@ class PETZVAL_API FilmPupilTable {
   /// Polygons that have the area of the pupils and nearly their shape, for models without rims: an outline with one
   /// obscuration. That is not enough for pupils that an obscuration divides (catadioptrics beyond their field): they
   /// are described as one part of about that area. So do the models that use these pupils, polynomials and two discs;
-  /// exact ones do not. Throws Error as enclosing() does, and
-  /// for an iris with blades of a lens with cylinders or central obscurations.
+  /// exact ones do not. Throws Error as enclosing() does.
   static FilmPupilTable equal_area(const Lens& lens, double film_radius, int threads = 1);
 
   /// The same for the overlap of some discs, one list for each wavelength. One disc alone has a closed form: of_iris().
@@ -184,7 +175,12 @@ class PETZVAL_API FilmPupilTable {
   bool cut() const noexcept;
   FilmPupilTable whole() const;
 
-  /// The pupils of the whole stop, of a table with those of a bladed iris; of others, the table itself.
+  /// The same pupils with what they show of the lens's stop: its iris cuts them, and stop_points() are known. Pupils in
+  /// closed form are returned as they are. Throws Error for a lens without a stop that has a semi_diameter. threads: as
+  /// in enclosing().
+  FilmPupilTable with_stop(const Lens& lens, int threads = 1) const;
+  bool knows_stop() const noexcept;
+  /// The pupils of the whole stop, of which nothing else is known; of others, the table itself.
   FilmPupilTable of_round_stop() const;
 
   /// Pupils in closed form: images of an iris, one for each wavelength. iris: as the plane of the pupil shows it.
@@ -194,9 +190,9 @@ class PETZVAL_API FilmPupilTable {
                                 std::span<const double> wavelengths_nm = {});
 
   /// The pupils of a tilted film, by virtual film points; those of of_iris() are exact for one that does not travel.
-  /// Those of a bladed iris are the round stop's. They contain every ray of this table that meets the film, and few
-  /// others: one pupil for each distance of the virtual film point from the axis, or with cylinders for each point and
-  /// its mirror images, holds the pupils of all points there. At most 1e-5 of their area is missed
+  /// An iris with blades does not cut them: they are the round stop's. They contain every ray of this table that meets
+  /// the film, and few others: one pupil for each distance of the virtual film point from the axis, or with cylinders
+  /// for each point and its mirror images, holds the pupils of all points there. At most 1e-5 of their area is missed
   /// (tests/camera/tilted_exposure_test.cpp), except where enclosing() misses more: of a ball lens 10 mm across, tilted
   /// by 8 degrees, 2e-3 on a film of 3 x 2 mm, 2e-4 on one of 0.6 x 0.45 mm at f/8. This table's film_radius must reach
   /// to all points where its rays meet the upright film. Throws Error for a radius that is negative or not finite, and
@@ -215,8 +211,8 @@ class PETZVAL_API FilmPupilTable {
   std::size_t primary_wavelength() const noexcept;
 
   /// A uniform sample of the pupil of a film point, for u and v in [0, 1] (clamped). u runs around the middle, from the
-  /// lens's +y, so that samples of neighbouring points are neighbours, of a bladed iris from
-  /// its first corner; v runs outwards. Area 0 for points outside the
+  /// lens's +y, so that samples of neighbouring points are neighbours, of the points of an iris with blades from its
+  /// first corner; v runs outwards. Area 0 for points outside the
   /// film's radius, numbers that are not finite and wavelengths that the table does not cover.
   PupilSample sample(const FilmPoint& film, double u, double v, Wavelength wavelength = {}) const noexcept;
   /// The same for many: film_x, film_y, u, v, x, y and areas: N each; x and y may be u and v. Float or double.
@@ -224,13 +220,28 @@ class PETZVAL_API FilmPupilTable {
   void sample(std::size_t count, const T* film_x, const T* film_y, const T* u, const T* v,
               const RayWavelengths& wavelengths, T* x, T* y, T* areas) const noexcept;
 
-  /// Area of the pupil of a film point, mm^2; 0 as in `sample`.
+  /// Area of the pupil of a film point, mm^2; 0 as in `sample`. Behind an iris with blades it is a sum over samples.
   double area(const FilmPoint& film, Wavelength wavelength = {}) const noexcept;
   /// The projected solid angle in which a film point sees its pupil, sr, within 1e-4 of it; 0 as in `sample`. Times the
   /// square of the index behind the lens it is the irradiance of the film for a scene of radiance 1.
   double projected_solid_angle(const FilmPoint& film, Wavelength wavelength = {}) const noexcept;
   /// The middle of its polygon; the centre of the central obscuration where there is one. (0, 0) without a pupil.
   Vec2<double> middle(const FilmPoint& film, Wavelength wavelength = {}) const noexcept;
+  /// The area that the whole stop would give it, whatever its blades leave.
+  double polygon_area(const FilmPoint& film, Wavelength wavelength = {}) const noexcept;
+  /// The area that a sample at a place would have; 0 where there is none.
+  double sample_area(const FilmPoint& film, double x, double y, Wavelength wavelength = {}) const noexcept;
+  template <class T>
+  void sample_areas(std::size_t count, const TwoPlaneRays<const T>& lines, const RayWavelengths& wavelengths,
+                    T* areas) const noexcept;
+  /// Where the samples of a film point are those of the iris, so that u and v tell the stop point: the scale of that
+  /// iris, 1 or a little more. Else 0.
+  double drawn_iris_scale(const FilmPoint& film, Wavelength wavelength = {}) const noexcept;
+  /// Where rays meet the stop, in its semi-diameters, for pupils that know it: within the scale of the iris
+  /// (FilmPupilArrays), 0.1 to 2 %. Float or double, N.
+  template <class T>
+  void stop_points(std::size_t count, const TwoPlaneRays<const T>& lines, const RayWavelengths& wavelengths, T* x,
+                   T* y) const noexcept;
   /// Whether a place in the plane of the pupil belongs to the pupil of a film point.
   bool contains(const FilmPoint& film, double x, double y, Wavelength wavelength = {}) const noexcept;
 
@@ -255,9 +266,13 @@ class PETZVAL_API FilmPupilTable {
     Vec2<double> by_film_x{0, 0}, by_film_y{0, 0};
   };
   Derivatives derivatives(const FilmPoint& film, double u, double v, Wavelength wavelength = {}) const noexcept;
+  /// A sample and its derivatives.
+  PupilSample sample(const FilmPoint& film, double u, double v, Wavelength wavelength, Derivatives& by) const noexcept;
 
  private:
   struct Data;
+  template <class Value>
+  double mean_over_samples(const FilmPoint& film, Wavelength wavelength, const Value& value) const;
   static FilmPupilTable traced(const Lens& lens, double film_radius, bool enclosing, int threads);
   explicit FilmPupilTable(std::shared_ptr<const Data> data) noexcept : data_(std::move(data)) {}
   std::shared_ptr<const Data> data_;

@@ -1,0 +1,493 @@
+// SPDX-License-Identifier: Apache-2.0
+// Blocks of samples of the pupils in a grid, in loops without branches, which the compiler runs on its lanes; a block
+// of one is a single sample. Names are local, and no other library is called, as in lib/trace/lanes.hpp.
+#pragma once
+
+#include <type_traits>
+
+#include "core/widest.hpp"
+#include "petzval/lens/wavelength.hpp"
+#include "polygon_grid.hpp"
+
+namespace petzval::pupil_table_detail {
+namespace {
+
+template <std::size_t block, class T>
+struct Places {
+  T t[block], s[block], cosine[block], sine[block], lit[block];  // lit: 1 or 0
+  std::int32_t cell[block];
+};
+
+template <std::size_t block, int dimensions, class R, class T>
+PETZVAL_INLINE void find_places(const PolygonGrid<dimensions, R>& grid, const T* film_x, const T* film_y, const T* u,
+                                const T* v, const std::int32_t* wavelength, Places<block, T>& places) noexcept {
+  PETZVAL_INDEPENDENT
+  for (std::size_t i = 0; i < block; ++i) {
+    // Comparisons with what is not a number are false.
+    const T sound = (film_x[i] + film_y[i] + u[i] + v[i]) * R(0);
+    const FilmPlace<T> at = place_of(grid, film_x[i], film_y[i], sound >= R(0), wavelength[i]);
+    places.t[i] = at.t, places.s[i] = at.s;
+    places.cosine[i] = at.cosine, places.sine[i] = at.sine;
+    places.lit[i] = at.known ? T(1) : T(0);
+    places.cell[i] = at.cell;
+  }
+}
+
+/// Lines outwards through the polygons of some film points, from the middle (0) to the outer edge (1).
+template <std::size_t block, class T>
+struct Lines {
+  std::int32_t sector[block];
+  T along[block], edge_x[block], edge_y[block];  // where they meet the edge: along the sector's, and from the middle
+  T from[block], to[block];                      // the part that the iris leaves
+};
+
+/// Cuts lines at the iris. They are straight in the plane of the pupil, and at the stop nearly: the first cut, between
+/// the stop points of the middle and of the edge, tells where to look again.
+template <std::size_t block, int dimensions, class R, class T>
+PETZVAL_INLINE void cut_by_iris(const PolygonGrid<dimensions, R>& grid, const Places<block, T>& places,
+                                Lines<block, T>& lines) noexcept {
+  using S = StopLayout<dimensions>;
+  const R* const stop = grid.stop.cells;
+  const iris_detail::IrisSectors<R> iris = grid.stop.iris;
+  T middle_x[block], middle_y[block], way_x[block], way_y[block];
+  PETZVAL_INDEPENDENT
+  for (std::size_t i = 0; i < block; ++i) {
+    lines.from[i] = T(0), lines.to[i] = T(1);
+    const std::int32_t begin = places.cell[i] * S::size, at = begin + S::corners + 2 * S::linear * lines.sector[i];
+    const T t = places.t[i], s = places.s[i], along = lines.along[i];
+    const Point<T> a = point_in_cell<dimensions>(stop, at, t, s);
+    const Point<T> b = point_in_cell<dimensions>(stop, at + 2 * S::linear, t, s);
+    const Point<T> middle = point_in_cell<dimensions>(stop, begin + S::middle, t, s);
+    middle_x[i] = middle.x, middle_y[i] = middle.y;
+    way_x[i] = a.x + along * (b.x - a.x) - middle.x, way_y[i] = a.y + along * (b.y - a.y) - middle.y;
+  }
+  const auto cut = [&] {
+    T begin_x[block], begin_y[block], line_x[block], line_y[block], from[block], to[block];
+    PETZVAL_INDEPENDENT
+    for (std::size_t i = 0; i < block; ++i) {
+      const R per_scale = R(1) / stop[places.cell[i] * S::size + S::scale];
+      const Point<T> begin = to_film<dimensions>(places.cosine[i], places.sine[i], Point<T>{middle_x[i], middle_y[i]});
+      const Point<T> line = to_film<dimensions>(places.cosine[i], places.sine[i], Point<T>{way_x[i], way_y[i]});
+      begin_x[i] = per_scale * begin.x, begin_y[i] = per_scale * begin.y;
+      line_x[i] = per_scale * line.x, line_y[i] = per_scale * line.y;
+      from[i] = T(0), to[i] = T(1);
+    }
+    for (std::size_t k = 0; k < iris.count; ++k) {
+      const R* const edge = iris.edges + 4 * k;
+      const R nx = edge[0], ny = edge[1], bend = edge[2], distance = edge[3];
+      PETZVAL_INDEPENDENT
+      for (std::size_t i = 0; i < block; ++i) {
+        cut_by_edge(nx, ny, bend, distance, Point<T>{begin_x[i], begin_y[i]}, Point<T>{line_x[i], line_y[i]}, from[i],
+                    to[i]);
+      }
+    }
+    PETZVAL_INDEPENDENT
+    for (std::size_t i = 0; i < block; ++i) {
+      lines.to[i] = to[i];
+      lines.from[i] = from[i] < to[i] ? from[i] : to[i];
+    }
+  };
+  cut();
+  T looked_at[block];
+  for (std::size_t i = 0; i < block; ++i) {
+    const T last = lines.to[i], least = T(0.25);
+    looked_at[i] = last > least ? last : least;
+  }
+  PETZVAL_INDEPENDENT
+  for (std::size_t i = 0; i < block; ++i) {
+    const std::int32_t begin = places.cell[i] * S::size;
+    const T t = places.t[i], s = places.s[i];
+    const T at = looked_at[i];
+    const Point<T> middle =
+        CellPolygon<dimensions, false, R, T>{grid.cells, places.cell[i] * CellLayout<dimensions>::size, t, s}.middle();
+    const auto number = [&](int k) { return linear_in_cell<dimensions>(stop, begin + S::map + S::linear * k, t, s); };
+    const Point<T> straight{middle_x[i] + at * way_x[i], middle_y[i] + at * way_y[i]};
+    const Point<T> place{middle.x + at * lines.edge_x[i], middle.y + at * lines.edge_y[i]};
+    const Point<T> off = step_to_place(seen_point<dimensions>(number, straight), place);
+    way_x[i] += off.x / at, way_y[i] += off.y / at;
+  }
+  cut();
+}
+
+/// Samples of the polygons, or of what the iris leaves of them.
+template <std::size_t block, bool obscured, bool stopped, int dimensions, class R, class T>
+PETZVAL_INLINE void sample_polygons(const PolygonGrid<dimensions, R>& grid, const Places<block, T>& places, const T* u,
+                                    const T* v, T* x, T* y, T* area) noexcept {
+  using L = CellLayout<dimensions>;
+  constexpr auto corners = static_cast<std::int32_t>(polygon_corners);
+  T target[block], whole[block], behind[block], beyond[block];
+  std::int32_t sector[block];
+  const auto polygon = [&grid, &places](std::size_t i) {
+    return CellPolygon<dimensions, obscured, R, T>{grid.cells, places.cell[i] * L::size, places.t[i], places.s[i]};
+  };
+  const R early = grid.corrections > 0 ? R(0) : R(0.5), last = static_cast<R>(corners - 1);
+  PETZVAL_INDEPENDENT
+  for (std::size_t i = 0; i < block; ++i) {
+    const auto own = polygon(i);
+    whole[i] = places.lit[i] * own.whole();
+    // Areas between nodes may turn over: a share is then anything, and a sector any of the polygon's.
+    target[i] =
+        core_detail::clamped(own.share_of(core_detail::clamped(u[i]), whole[i], places.cosine[i], places.sine[i]));
+    const T expected = own.expected(target[i], whole[i]) - early;
+    const T above = expected > R(0) ? expected : T(0);
+    sector[i] = static_cast<std::int32_t>(value_of(above < last ? above : T(last)));
+    target[i] = target[i] * whole[i];
+  }
+  // Sectors have nearly equal shares: the right one is this or the next, or else near.
+  for (int step = 0; step < grid.corrections; ++step) {
+    const std::int32_t first = sector[0];
+    PETZVAL_INDEPENDENT
+    for (std::size_t i = 0; i < block; ++i) {
+      const std::int32_t k = sector[i];
+      const std::int32_t back = (target[i] < polygon(i).area_before(k)) & (k > 0);
+      const std::int32_t on = (target[i] > polygon(i).area_before(k + 1)) & (k < corners - 1);
+      sector[i] = k + on - back;
+    }
+    if (block == 1 && sector[0] == first) break;  // of many, some always move
+  }
+  PETZVAL_INDEPENDENT
+  for (std::size_t i = 0; i < block; ++i) {
+    const std::int32_t k = sector[i];
+    behind[i] = target[i] - polygon(i).area_before(k + 1);
+    const std::int32_t next = (behind[i] >= R(0)) & (k < corners - 1);
+    sector[i] = k + next;
+    beyond[i] = T(static_cast<R>(1 - next));
+  }
+  // From the sector's first corner, or back from its second.
+  const auto along_edge = [&behind, &beyond](std::size_t i, const Sector<T>& own) {
+    const T own_area = own.area();
+    return core_detail::clamped(T(behind[i] / (own_area > R(0) ? own_area : T(1)) + beyond[i]));
+  };
+  const auto put = [&](std::size_t i, const Point<T>& p, const T& lit) {
+    const Point<T> middle = polygon(i).middle();
+    const Point<T> from_axis = dimensions == 1 ? Point<T>{p.x, middle.y + p.y} : middle + p;
+    const Point<T> place = to_film<dimensions>(places.cosine[i], places.sine[i], from_axis);
+    const T some = lit > R(0) ? T(1) : T(0);
+    x[i] = some * place.x;
+    y[i] = some * place.y;
+    area[i] = some * lit;
+  };
+  if constexpr (!stopped) {
+    // The results overlap nothing that is read here.
+    PETZVAL_INDEPENDENT
+    for (std::size_t i = 0; i < block; ++i) {
+      const Sector<T> own = polygon(i).sector(sector[i]);
+      const T along = along_edge(i, own);
+      put(i, own.at(root_of(own.squared_way(core_detail::clamped(v[i]))), along), whole[i]);
+    }
+  } else {
+    Lines<block, T> lines;
+    PETZVAL_INDEPENDENT
+    for (std::size_t i = 0; i < block; ++i) {
+      const Sector<T> own = polygon(i).sector(sector[i]);
+      lines.sector[i] = sector[i];
+      lines.along[i] = along_edge(i, own);
+      const Point<T> edge = own.at(T(1), lines.along[i]);
+      lines.edge_x[i] = edge.x, lines.edge_y[i] = edge.y;
+    }
+    cut_by_iris<block>(grid, places, lines);
+    PETZVAL_INDEPENDENT
+    for (std::size_t i = 0; i < block; ++i) {
+      const Sector<T> own = polygon(i).sector(sector[i]);
+      const T first = own.share_within(lines.from[i] * lines.from[i]);
+      const T share = own.share_within(lines.to[i] * lines.to[i]) - first;
+      const T way = root_of(own.squared_way(first + core_detail::clamped(v[i]) * share));
+      put(i, {way * lines.edge_x[i], way * lines.edge_y[i]}, whole[i] * share);
+    }
+  }
+}
+
+/// Samples of the iris, at the places where film points see them.
+template <std::size_t block, int dimensions, class R, class T>
+PETZVAL_INLINE void sample_iris(const PolygonGrid<dimensions, R>& grid, const Places<block, T>& places, const T* u,
+                                const T* v, T* x, T* y, T* area) noexcept {
+  using S = StopLayout<dimensions>;
+  const GridStop<R> stop = grid.stop;
+  const auto fill = [&](const auto& point_at) {
+    PETZVAL_INDEPENDENT
+    for (std::size_t i = 0; i < block; ++i) {
+      const std::int32_t begin = places.cell[i] * S::size;
+      const R scale = stop.cells[begin + S::scale];
+      const auto [sx, sy] = point_at(core_detail::clamped(R(value_of(u[i]))), core_detail::clamped(R(value_of(v[i]))));
+      const Point<T> own =
+          to_grid<dimensions>(places.cosine[i], places.sine[i], Point<T>{T(scale * sx), T(scale * sy)});
+      const auto number = [&](int k) {
+        return linear_in_cell<dimensions>(stop.cells, begin + S::map + S::linear * k, places.t[i], places.s[i]);
+      };
+      const SeenPoint<T> seen = seen_point<dimensions>(number, own);
+      const Point<T> place = to_film<dimensions>(places.cosine[i], places.sine[i], seen.place);
+      x[i] = places.lit[i] * place.x;
+      y[i] = places.lit[i] * place.y;
+      area[i] = places.lit[i] * (stop.area * scale * scale) * seen.area();
+    }
+  };
+  if (stop.iris.count == 0) {
+    fill([](R a, R b) { return iris_detail::disc_point(a, b); });
+  } else {
+    fill([iris = stop.iris](R a, R b) { return iris_detail::sector_point(iris, a, b); });
+  }
+}
+
+/// One block. Slots beyond those that are wanted hold zeros.
+template <std::size_t block, bool obscured, bool stopped, int dimensions, class R, class T>
+PETZVAL_INLINE void sample_block(const PolygonGrid<dimensions, R>& given, const T* film_x, const T* film_y, const T* u,
+                                 const T* v, const std::int32_t* wavelength, T* x, T* y, T* area) noexcept {
+  const PolygonGrid<dimensions, R> grid = given;  // which nothing that is written overlaps
+  Places<block, T> places;
+  find_places(grid, film_x, film_y, u, v, wavelength, places);
+  if constexpr (!stopped) {
+    sample_polygons<block, obscured, false>(grid, places, u, v, x, y, area);
+  } else {
+    using S = StopLayout<dimensions>;
+    R drawn[block], count = 0;
+    PETZVAL_INDEPENDENT
+    for (std::size_t i = 0; i < block; ++i) drawn[i] = grid.stop.cells[places.cell[i] * S::size + S::drawn];
+    for (std::size_t i = 0; i < block; ++i) count += drawn[i];
+    if (count == static_cast<R>(block)) {
+      sample_iris<block>(grid, places, u, v, x, y, area);
+      return;
+    }
+    if (count == R(0)) {
+      sample_polygons<block, obscured, true>(grid, places, u, v, x, y, area);
+      return;
+    }
+    T iris_x[block], iris_y[block], iris_area[block], polygon_x[block], polygon_y[block], polygon_area[block];
+    sample_iris<block>(grid, places, u, v, iris_x, iris_y, iris_area);
+    sample_polygons<block, obscured, true>(grid, places, u, v, polygon_x, polygon_y, polygon_area);
+    PETZVAL_INDEPENDENT
+    for (std::size_t i = 0; i < block; ++i) {
+      x[i] = drawn[i] > R(0) ? iris_x[i] : polygon_x[i];
+      y[i] = drawn[i] > R(0) ? iris_y[i] : polygon_y[i];
+      area[i] = drawn[i] > R(0) ? iris_area[i] : polygon_area[i];
+    }
+  }
+}
+
+/// The sectors that face places, given from the middle: found by halving.
+template <std::size_t block, int dimensions, class R>
+PETZVAL_INLINE void find_sectors(const PolygonGrid<dimensions, R>& grid, const Places<block, R>& places,
+                                 const Point<R>* q, std::int32_t* sector) noexcept {
+  constexpr auto corners = static_cast<std::int32_t>(polygon_corners);
+  const auto corner = [&](std::size_t i, std::int32_t k) {
+    return CellPolygon<dimensions, false, R, R>{grid.cells, places.cell[i] * CellLayout<dimensions>::size, places.t[i],
+                                                places.s[i]}
+        .corner(k);
+  };
+  std::int32_t half[block];
+  // Half turns count from the first corner.
+  PETZVAL_INDEPENDENT
+  for (std::size_t i = 0; i < block; ++i) {
+    half[i] = turn(corner(i, 0), q[i]) < R(0);
+    sector[i] = 0;
+  }
+  for (std::int32_t step = corners / 2; step > 0; step /= 2) {
+    PETZVAL_INDEPENDENT
+    for (std::size_t i = 0; i < block; ++i) {
+      const Point<R> c = corner(i, sector[i] + step);
+      const std::int32_t corner_half = turn(corner(i, 0), c) < R(0), behind = turn(c, q[i]) >= R(0);
+      sector[i] += (corner_half < half[i]) | ((corner_half == half[i]) & behind) ? step : 0;
+    }
+  }
+}
+
+/// The stop points of places in the plane of the pupil, in the frame of the film and over the iris's scale, and the
+/// area of the pupil that a sample there stands for.
+template <std::size_t block, int dimensions, class R>
+PETZVAL_INLINE void find_stop_points(const PolygonGrid<dimensions, R>& grid, const Places<block, R>& places, const R* x,
+                                     const R* y, Point<R>* points, R* area) noexcept {
+  using S = StopLayout<dimensions>;
+  PETZVAL_INDEPENDENT
+  for (std::size_t i = 0; i < block; ++i) {
+    const std::int32_t begin = places.cell[i] * S::size;
+    const auto number = [&](int k) {
+      return linear_in_cell<dimensions>(grid.stop.cells, begin + S::map + S::linear * k, places.t[i], places.s[i]);
+    };
+    const Point<R> place = to_grid<dimensions>(places.cosine[i], places.sine[i], Point<R>{x[i], y[i]});
+    const StopPlace<R> found = stop_place<dimensions>(number, place);
+    const R scale = grid.stop.cells[begin + S::scale];
+    points[i] = R(1) / scale * to_film<dimensions>(places.cosine[i], places.sine[i], found.point);
+    const R near = found.step2 < R(1e-6) ? R(1) : R(0);
+    area[i] = near * grid.stop.area * scale * scale * seen_point<dimensions>(number, found.point).area();
+  }
+}
+
+/// The areas that samples at places stand for; 0 where there is no sample.
+template <std::size_t block, bool obscured, bool stopped, int dimensions, class R>
+void areas_block(const PolygonGrid<dimensions, R>& given, const R* film_x, const R* film_y, const R* x, const R* y,
+                 const std::int32_t* wavelength, R* area) noexcept {
+  const PolygonGrid<dimensions, R> grid = given;
+  Places<block, R> places;
+  find_places(grid, film_x, film_y, x, y, wavelength, places);
+  const auto polygon = [&](std::size_t i) {
+    return CellPolygon<dimensions, obscured, R, R>{grid.cells, places.cell[i] * CellLayout<dimensions>::size,
+                                                   places.t[i], places.s[i]};
+  };
+  Point<R> q[block];
+  PETZVAL_INDEPENDENT
+  for (std::size_t i = 0; i < block; ++i) {
+    q[i] = to_grid<dimensions>(places.cosine[i], places.sine[i], Point<R>{x[i], y[i]}) - polygon(i).middle();
+  }
+  std::int32_t sector[block];
+  find_sectors<block>(grid, places, q, sector);
+  Lines<block, R> lines;
+  PETZVAL_INDEPENDENT
+  for (std::size_t i = 0; i < block; ++i) lines.from[i] = R(0), lines.to[i] = R(1);
+  if constexpr (stopped) {
+    PETZVAL_INDEPENDENT
+    for (std::size_t i = 0; i < block; ++i) {
+      const Sector<R> own = polygon(i).sector(sector[i]);
+      lines.sector[i] = sector[i];
+      lines.along[i] = own.along_to(q[i]);
+      const Point<R> edge = own.at(R(1), lines.along[i]);
+      lines.edge_x[i] = edge.x, lines.edge_y[i] = edge.y;
+    }
+    cut_by_iris<block>(grid, places, lines);
+  }
+  PETZVAL_INDEPENDENT
+  for (std::size_t i = 0; i < block; ++i) {
+    const Sector<R> own = polygon(i).sector(sector[i]);
+    const R behind = turn(own.a, q[i]), before = turn(q[i], own.b), whole = turn(own.a, own.b);
+    const R way = (behind + before) / (whole > R(0) ? whole : R(1)), squared = way * way;
+    const R from = lines.from[i] * lines.from[i], to = lines.to[i] * lines.to[i];
+    const bool inside = (behind >= R(0)) & (before >= R(0)) & (whole > R(0)) & (squared <= to) & (squared >= from);
+    const bool dark = (squared >= own.obscured_from) & (squared < own.obscured_from + own.obscured);
+    const R share = stopped ? own.share_within(to) - own.share_within(from) : R(1);
+    area[i] = inside & !dark ? places.lit[i] * polygon(i).whole() * share : R(0);
+  }
+  if constexpr (stopped) {
+    using S = StopLayout<dimensions>;
+    R drawn[block], count = 0;
+    PETZVAL_INDEPENDENT
+    for (std::size_t i = 0; i < block; ++i) drawn[i] = grid.stop.cells[places.cell[i] * S::size + S::drawn];
+    for (std::size_t i = 0; i < block; ++i) count += drawn[i];
+    if (count == R(0)) return;
+    Point<R> points[block];
+    R iris_area[block];
+    find_stop_points<block>(grid, places, x, y, points, iris_area);
+    PETZVAL_INDEPENDENT
+    for (std::size_t i = 0; i < block; ++i) {
+      const Point<R>& p = points[i];
+      const bool in_rim = p.x * p.x + p.y * p.y <= iris_detail::rim_squared<R>;
+      iris_area[i] = in_rim ? places.lit[i] * iris_area[i] : R(0);
+    }
+    for (std::size_t k = 0; k < grid.stop.iris.count; ++k) {
+      PETZVAL_INDEPENDENT
+      for (std::size_t i = 0; i < block; ++i) {
+        iris_area[i] = iris_detail::within_edge(grid.stop.iris, k, points[i].x, points[i].y) ? iris_area[i] : R(0);
+      }
+    }
+    PETZVAL_INDEPENDENT
+    for (std::size_t i = 0; i < block; ++i) area[i] = drawn[i] > R(0) ? iris_area[i] : area[i];
+  }
+}
+
+/// Where rays through places in the plane of the pupil meet the stop, in its semi-diameters.
+template <std::size_t block, int dimensions, class R>
+void stop_points_block(const PolygonGrid<dimensions, R>& given, const R* film_x, const R* film_y, const R* x,
+                       const R* y, const std::int32_t* wavelength, R* stop_x, R* stop_y) noexcept {
+  const PolygonGrid<dimensions, R> grid = given;
+  Places<block, R> places;
+  find_places(grid, film_x, film_y, x, y, wavelength, places);
+  Point<R> points[block];
+  R area[block];
+  find_stop_points<block>(grid, places, x, y, points, area);
+  PETZVAL_INDEPENDENT
+  for (std::size_t i = 0; i < block; ++i) {
+    const R scale = grid.stop.cells[places.cell[i] * StopLayout<dimensions>::size + StopLayout<dimensions>::scale];
+    stop_x[i] = scale * points[i].x, stop_y[i] = scale * points[i].y;
+  }
+}
+
+/// A block, and what a few rays are put in: they fill the widest registers.
+constexpr std::size_t whole_block = 64, small_block = 16;
+
+template <std::size_t rays>
+using Block = std::integral_constant<std::size_t, rays>;
+
+/// Calls body(block, four inputs, positions of wavelengths or -1, outputs) for blocks of N rays; unused slots hold
+/// zeros.
+template <std::size_t outputs, class Grid, class R, class Body>
+inline void by_blocks(const Grid& grid, std::size_t count, const R* const (&in)[4], const RayWavelengths& wavelengths,
+                      R* const (&out)[outputs], const Body& body) noexcept {
+  const auto known = [&](std::size_t w) {
+    return w < static_cast<std::size_t>(grid.wavelengths) ? static_cast<std::int32_t>(w) : -1;
+  };
+  std::int32_t w[whole_block];
+  const std::int32_t shared = known(wavelengths.all.position(static_cast<std::size_t>(grid.primary)));
+  for (std::size_t i = 0; i < whole_block; ++i) w[i] = shared;
+  const auto find_wavelengths = [&](std::size_t begin, auto n) {
+    if (!wavelengths.each) return;
+    const std::uint16_t* const each = wavelengths.each + begin;
+    for (std::size_t i = 0; i < n; ++i) w[i] = each[i] < grid.wavelengths ? each[i] : -1;
+  };
+  std::size_t begin = 0;
+  const auto whole = [&](auto block) {
+    for (; begin + block <= count; begin += block) {
+      find_wavelengths(begin, block);
+      const R* const here[4] = {in[0] + begin, in[1] + begin, in[2] + begin, in[3] + begin};
+      R* to[outputs];
+      for (std::size_t k = 0; k < outputs; ++k) to[k] = out[k] + begin;
+      body(block, here, w, to);
+    }
+  };
+  whole(Block<whole_block>());
+  whole(Block<small_block>());
+  const std::size_t n = count - begin;
+  if (n == 0) return;
+  find_wavelengths(begin, n);
+  R filled[4][small_block] = {}, found[outputs][small_block];
+  for (std::size_t k = 0; k < 4; ++k) {
+    for (std::size_t i = 0; i < n; ++i) filled[k][i] = in[k][begin + i];
+  }
+  const R* const part[4] = {filled[0], filled[1], filled[2], filled[3]};
+  R* to[outputs];
+  for (std::size_t k = 0; k < outputs; ++k) to[k] = found[k];
+  body(Block<small_block>(), part, w, to);
+  for (std::size_t k = 0; k < outputs; ++k) {
+    for (std::size_t i = 0; i < n; ++i) out[k][begin + i] = found[k][i];
+  }
+}
+
+/// Calls body(obscured, stopped) with constants.
+template <int dimensions, class R, class Body>
+inline void with_kind(const PolygonGrid<dimensions, R>& grid, const Body& body) noexcept {
+  const auto by_stop = [&](auto obscured) {
+    if (grid.stop.cells) {
+      body(obscured, std::true_type());
+    } else {
+      body(obscured, std::false_type());
+    }
+  };
+  if (dimensions == 1 && grid.obscured) {
+    by_stop(std::bool_constant<dimensions == 1>());
+  } else {
+    by_stop(std::false_type());
+  }
+}
+
+template <int dimensions, class R>
+void sample(const PolygonGrid<dimensions, R>& grid, std::size_t count, const R* film_x, const R* film_y, const R* u,
+            const R* v, const RayWavelengths& wavelengths, R* x, R* y, R* areas) noexcept {
+  const R* const in[4] = {film_x, film_y, u, v};
+  R* const out[3] = {x, y, areas};
+  with_kind(grid, [&](auto obscured, auto stopped) {
+    by_blocks(grid, count, in, wavelengths, out,
+              [&grid](auto block, const R* const* of, const std::int32_t* w, R* const* to) {
+                sample_block<decltype(block)::value, decltype(obscured)::value, decltype(stopped)::value>(
+                    grid, of[0], of[1], of[2], of[3], w, to[0], to[1], to[2]);
+              });
+  });
+}
+
+/// One sample. wavelength: -1 for one that does not exist.
+template <int dimensions, class T>
+void sample_one(const PolygonGrid<dimensions, double>& grid, T film_x, T film_y, T u, T v, std::int32_t wavelength,
+                T& x, T& y, T& area) noexcept {
+  with_kind(grid, [&](auto obscured, auto stopped) {
+    sample_block<1, decltype(obscured)::value, decltype(stopped)::value>(grid, &film_x, &film_y, &u, &v, &wavelength,
+                                                                         &x, &y, &area);
+  });
+}
+
+}  // namespace
+}  // namespace petzval::pupil_table_detail

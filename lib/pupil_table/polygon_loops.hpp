@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+#include "core/dual.hpp"
+#include "core/widest.hpp"
+#include "lens/wavelength_rows.hpp"
+#include "petzval/lens/wavelength.hpp"
+#include "polygon_grid.hpp"
+
+namespace petzval::pupil_table_detail {
+
+/// Four inputs for each of N rays to some outputs.
+template <int dimensions, class R>
+using SampleLoop = void (*)(const PolygonGrid<dimensions, R>&, std::size_t, const R* film_x, const R* film_y,
+                            const R* u, const R* v, const RayWavelengths&, R* x, R* y, R* areas) noexcept;
+template <int dimensions>
+using SampleOne = void (*)(const PolygonGrid<dimensions, double>&, double film_x, double film_y, double u, double v,
+                           std::int32_t wavelength, double& x, double& y, double& area) noexcept;
+
+/// The loops of grids with one dimension, for every instruction set.
+struct PolarLoops {
+  SampleLoop<1, float> single;
+  SampleLoop<1, double> twice;
+  SampleOne<1> one;
+  void (*find_nearest)(const lens_detail::NearestPosition&, std::size_t, const float* nm,
+                       std::uint16_t* positions) noexcept;
+};
+PETZVAL_WIDEST(PolarLoops, polar_loops)
+
+/// What gains nothing from wider registers.
+template <int dimensions, class R>
+struct PlainLoopsOf {
+  SampleLoop<dimensions, R> sample;
+  void (*areas)(const PolygonGrid<dimensions, R>&, std::size_t, const R* film_x, const R* film_y, const R* x,
+                const R* y, const RayWavelengths&, R* areas) noexcept;
+  void (*stop_points)(const PolygonGrid<dimensions, R>&, std::size_t, const R* film_x, const R* film_y, const R* x,
+                      const R* y, const RayWavelengths&, R* stop_x, R* stop_y) noexcept;
+};
+template <int dimensions>
+struct PlainLoops {
+  PlainLoopsOf<dimensions, float> single;
+  PlainLoopsOf<dimensions, double> twice;
+  SampleOne<dimensions> one;
+  void (*one_with_derivatives)(const PolygonGrid<dimensions, double>&, kernel::Dual film_x, kernel::Dual film_y,
+                               kernel::Dual u, kernel::Dual v, std::int32_t wavelength, kernel::Dual& x,
+                               kernel::Dual& y, kernel::Dual& area) noexcept;
+  /// areas() of one place.
+  double (*area_of_one)(const PolygonGrid<dimensions, double>&, double film_x, double film_y, double x, double y,
+                        std::int32_t wavelength) noexcept;
+
+  template <class R>
+  const PlainLoopsOf<dimensions, R>& of() const noexcept {
+    if constexpr (sizeof(R) == sizeof(float)) {
+      return single;
+    } else {
+      return twice;
+    }
+  }
+};
+extern const PlainLoops<1> plain_polar_loops;
+extern const PlainLoops<2> plain_quadrant_loops;
+template <int dimensions>
+const PlainLoops<dimensions>& plain_loops() noexcept {
+  if constexpr (dimensions == 1) {
+    return plain_polar_loops;
+  } else {
+    return plain_quadrant_loops;
+  }
+}
+
+}  // namespace petzval::pupil_table_detail

@@ -1,0 +1,347 @@
+// SPDX-License-Identifier: Apache-2.0
+// The stop behind the pupils of a grid. At each node, polynomials of third order, and the largest terms of the fifth,
+// are fitted to the places at which the film point sees points of the stop. Samples of the iris map to the pupil by
+// these polynomials where rims do not cut it. Elsewhere the iris cuts the lines of the polygon's samples: between the
+// stop points of the middle and of the edge, which is nearly straight.
+#include "stop_cells.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+#include <span>
+
+#include "core/least_squares.hpp"
+#include "film_pupil_data.hpp"
+#include "lens/lens_view.hpp"
+#include "petzval/core/parallel.hpp"
+#include "trace/sequential.hpp"
+
+namespace petzval {
+namespace pupil_table_detail {
+namespace {
+
+using Place = Point<double>;
+
+constexpr double unlimited = 1e6;  // scale of an iris that cuts nothing
+
+/// StopLayout::map of a node, not of a cell, and its error in semi-diameters.
+template <int dimensions>
+struct NodeMap {
+  std::array<double, StopLayout<dimensions>::terms> terms{};
+  bool known = false, drawn = false;
+  double error = 0;       // of the stop points of places
+  double line_error = 0;  // of those on lines outwards, after the second cut
+  Place middle;           // the stop points of the polygon
+  std::array<Place, polygon_corners> corners{};
+
+  auto number() const noexcept {
+    return [this](int k) { return terms[static_cast<std::size_t>(k)]; };
+  }
+  SeenPoint<double> seen(const Place& stop) const noexcept { return seen_point<dimensions>(number(), stop); }
+  /// Nothing where no stop point near the iris is seen at the place.
+  std::optional<Place> stop(const Place& place) const noexcept {
+    const StopPlace<double> found = stop_place<dimensions>(number(), place);
+    constexpr double close = 1e-6;
+    return found.step2 < close ? std::optional(found.point) : std::nullopt;
+  }
+};
+
+/// The terms of the coordinate `axis` of a place (StopLayout), at a stop point.
+template <int dimensions>
+std::vector<double> products(int axis, const Place& stop) {
+  const auto& [x, y] = stop;
+  if (dimensions == 2) return {1, x, y, x * x, x * y, y * y, x * x * x, x * x * y, x * y * y, y * y * y};
+  const double r = x * x + y * y;
+  if (axis == 0) return {x, x * y, x * x * x, x * y * y, x * y * r, x * r * r};
+  return {1, y, x * x, y * y, x * x * y, y * y * y, r * r, r * y * y, r * r * y};
+}
+
+struct StopSample {
+  Place place, stop;
+};
+
+template <int dimensions>
+void fit(NodeMap<dimensions>& map, std::span<const StopSample> samples) {
+  const auto count = static_cast<Eigen::Index>(samples.size());
+  for (const int axis : {0, 1}) {
+    const std::size_t terms = products<dimensions>(axis, {}).size();
+    Eigen::MatrixXd rows(count, static_cast<Eigen::Index>(terms));
+    Eigen::VectorXd values(count);
+    for (Eigen::Index i = 0; i < count; ++i) {
+      const auto& [place, stop] = samples[static_cast<std::size_t>(i)];
+      const std::vector<double> of = products<dimensions>(axis, stop);
+      for (std::size_t k = 0; k < terms; ++k) rows(i, static_cast<Eigen::Index>(k)) = of[k];
+      values(i) = axis == 0 ? place.x : place.y;
+    }
+    const Eigen::VectorXd solution = core_detail::least_squares(rows, values);
+    const std::size_t first = dimensions == 2 ? (axis == 0 ? 0 : 10) : (axis == 0 ? 9 : 0);
+    std::copy_n(solution.begin(), terms, map.terms.begin() + static_cast<std::ptrdiff_t>(first));
+  }
+}
+
+Place corner(const PupilPolygon& polygon, std::size_t k) {
+  return {polygon.corners[k % polygon_corners].x, polygon.corners[k % polygon_corners].y};
+}
+
+/// Rays through a polygon at a part of the way from its middle to corners and edges.
+template <class Take>
+void for_rays(const PupilPolygon& polygon, std::size_t step, std::span<const double> parts, const Take& take) {
+  for (std::size_t k = 0, i = 0; k < polygon_corners; k += step, ++i) {
+    const double part = parts[i % parts.size()];
+    take(k, part, Place{polygon.middle.x, polygon.middle.y} + part * corner(polygon, k));
+  }
+}
+
+/// The stop points on a line outwards, as samples have them: straight.
+double error_of_line(const Place& middle, const Place& edge, double part, const Place& stop) {
+  const Place off = middle + part * (edge - middle) - stop;
+  return std::hypot(off.x, off.y);
+}
+
+template <int dimensions>
+NodeMap<dimensions> map_at(const StopOf& stop_of, const FilmPoint& film, const PupilPolygon& polygon,
+                           std::size_t wavelength) {
+  NodeMap<dimensions> map;
+  std::vector<StopSample> samples;
+  std::vector<std::array<double, 2>> lines;  // corner and part of the way
+  const auto take = [&](std::size_t k, double part, const Place& place) {
+    const auto stop = stop_of(film, {place.x, place.y}, wavelength);
+    if (!stop) return;
+    samples.push_back({place, {stop->x, stop->y}});
+    lines.push_back({static_cast<double>(k), part});
+  };
+  take(0, 0, {polygon.middle.x, polygon.middle.y});
+  // Of the mirrored half as well where nothing else tells the odd terms apart; as many distances from the middle as
+  // tell all terms apart where the pupil is a disc.
+  constexpr std::array parts{0.99, 0.85, 0.65, 0.4};
+  for_rays(polygon, 2, parts, take);
+  constexpr std::size_t least = 24;
+  if (samples.size() < least) return map;
+  fit<dimensions>(map, samples);
+  const auto middle = map.stop({polygon.middle.x, polygon.middle.y});
+  if (!middle) return map;
+  map.middle = *middle;
+  for (std::size_t k = 0; k < polygon_corners; ++k) {
+    const auto stop = map.stop(Place{polygon.middle.x, polygon.middle.y} + corner(polygon, k));
+    if (!stop) return map;
+    map.corners[k] = *stop;
+  }
+  for (std::size_t i = 0; i < samples.size(); ++i) {
+    const auto stop = map.stop(samples[i].place);
+    if (!stop) return map;
+    const Place off = *stop - samples[i].stop;
+    const double line =
+        error_of_line(map.middle, map.corners[static_cast<std::size_t>(lines[i][0])], lines[i][1], samples[i].stop);
+    map.error = std::max(map.error, std::hypot(off.x, off.y));
+    map.line_error = std::max(map.line_error, line);
+  }
+  constexpr double most = 0.03;
+  map.known = map.error <= most;
+  return map;
+}
+
+/// Whether all of the iris is seen within the polygon, or in one that encloses pupils nearly all.
+template <int dimensions>
+bool whole_iris_within(const NodeMap<dimensions>& map, const PupilPolygon& polygon, const iris_detail::IrisShape& shape,
+                       bool enclosing) {
+  constexpr int around = 48;
+  constexpr double near_rim = 0.97;  // of the area
+  const auto sectors = [&](std::size_t k) { return polygon.sector(k); };
+  std::size_t facing = 0;
+  int within = 0, all = 0;
+  // A film point of a lens of revolution sees the iris turned: by any angle.
+  const int turns = dimensions == 1 && !shape.round() ? 2 : 1;
+  for (int turned = 0; turned < turns; ++turned) {
+    const double angle = turned * std::numbers::pi / std::max(shape.iris().blades, 1);
+    for (int i = 0; i < around; ++i, ++all) {
+      const Vec2<double> p = shape.sample((i + 0.5) / around, near_rim);
+      const Place stop = to_grid<1>(std::cos(angle), std::sin(angle), Place{p.x, p.y});
+      const Place q = map.seen(stop).place - Place{polygon.middle.x, polygon.middle.y};
+      const std::size_t found = sector_facing(q, sectors, facing);
+      if (found == polygon_corners) continue;
+      facing = found;
+      within += polygon.sector(found).way_to(q) <= 1;
+    }
+  }
+  constexpr double most = 0.95;
+  return enclosing ? within >= most * all : within == all;
+}
+
+/// By how much a cell's stop points are off in its middle.
+template <int dimensions>
+double error_in_middle(const StopOf& stop_of, const FilmPoint& film, const PupilPolygon& polygon,
+                       const NodeMap<dimensions>& map, std::size_t wavelength) {
+  double error = 0;
+  constexpr std::array parts{0.97, 0.8};
+  for_rays(polygon, 4, parts, [&](std::size_t, double, const Place& place) {
+    const auto stop = stop_of(film, {place.x, place.y}, wavelength);
+    if (!stop) return;
+    if (const auto found = map.stop(place)) error = std::max(error, std::hypot(found->x - stop->x, found->y - stop->y));
+  });
+  return error;
+}
+
+/// Half the sum of two or more.
+template <int dimensions>
+NodeMap<dimensions> mean_of(std::span<const NodeMap<dimensions>* const> maps) {
+  NodeMap<dimensions> mean;
+  const double part = 1 / static_cast<double>(maps.size());
+  for (const auto* map : maps) {
+    for (std::size_t k = 0; k < mean.terms.size(); ++k) mean.terms[k] += part * map->terms[k];
+    mean.middle = mean.middle + part * map->middle;
+    for (std::size_t k = 0; k < polygon_corners; ++k) mean.corners[k] = mean.corners[k] + part * map->corners[k];
+  }
+  return mean;
+}
+
+/// What changes with the wavelength up to the middle between two.
+template <int dimensions>
+double change_of(const NodeMap<dimensions>& map, const NodeMap<dimensions>& next, const PupilPolygon& polygon) {
+  constexpr double middle = 0.6;  // of the way, with room for edges that move unevenly
+  constexpr std::array parts{0.95};
+  double change = 0;
+  for_rays(polygon, 8, parts, [&](std::size_t, double, const Place& place) {
+    const auto a = map.stop(place), b = next.stop(place);
+    if (a && b) change = std::max(change, middle * std::hypot(a->x - b->x, a->y - b->y));
+  });
+  return change;
+}
+
+template <int dimensions>
+std::vector<double> cell_of(std::span<const NodeMap<dimensions>* const> at, double scale) {
+  using S = StopLayout<dimensions>;
+  std::vector<double> cell(S::size);
+  cell[S::scale] = scale;
+  if (scale == unlimited) {  // stop points far beyond the rim
+    for (const std::int32_t k : dimensions == 1 ? std::array{1, 9} : std::array{1, 12})
+      cell[S::map + S::linear * k] = 1;
+    return cell;
+  }
+  cell[S::drawn] = std::all_of(at.begin(), at.end(), [](const auto* map) { return map->drawn; }) ? 1 : 0;
+  const auto put = [&](std::int32_t place, const auto& number) {
+    const double a = number(*at[0]), b = number(*at[1]);
+    double* to = cell.data() + place;
+    to[0] = a, to[1] = b - a;
+    if constexpr (dimensions == 2) {
+      const double c = number(*at[2]), d = number(*at[3]);
+      to[2] = c - a, to[3] = (d - c) - (b - a);
+    }
+  };
+  for (std::int32_t k = 0; k < S::terms; ++k) {
+    put(S::map + S::linear * k, [k](const auto& map) { return map.terms[static_cast<std::size_t>(k)]; });
+  }
+  put(S::middle, [](const auto& map) { return map.middle.x; });
+  put(S::middle + S::linear, [](const auto& map) { return map.middle.y; });
+  for (std::size_t k = 0; k <= polygon_corners; ++k) {
+    const std::int32_t place = S::corners + 2 * S::linear * static_cast<std::int32_t>(k);
+    put(place, [k](const auto& map) { return map.corners[k % polygon_corners].x; });
+    put(place + S::linear, [k](const auto& map) { return map.corners[k % polygon_corners].y; });
+  }
+  return cell;
+}
+
+/// The cells of all wavelengths. Data: FilmPupilTable::Data.
+template <int dimensions, class Data>
+std::vector<double> stop_cells(const Data& data, const iris_detail::IrisShape& shape, const StopOf& stop_of,
+                               int threads) {
+  using Map = NodeMap<dimensions>;
+  std::vector<std::vector<PupilPolygon>> polygons(data.wavelengths);
+  std::vector<std::vector<Map>> maps(data.wavelengths);
+  parallel_for(data.wavelengths, 1, threads, [&](std::size_t w, std::size_t) {
+    for (std::size_t i = 0; i < data.nodes(); ++i) {
+      const PupilPolygon& polygon = polygons[w].emplace_back(data.node(w, i));
+      Map& map = maps[w].emplace_back(map_at<dimensions>(stop_of, data.node_point(i), polygon, w));
+      // Where the light ends, as beside it.
+      if (!map.known && i > 0 && dimensions == 1 && !(polygon.area() > 0)) map = maps[w][i - 1];
+      map.drawn = map.known && !data.obscured && whole_iris_within(map, polygon, shape, data.enclosing);
+    }
+  });
+  if (data.enclosing) {
+    for (std::size_t r = 0; r + 1 < data.compiled.count(); ++r) {
+      const std::size_t w = data.compiled.position(r), next = data.compiled.position(r + 1);
+      for (std::size_t i = 0; i < maps[w].size(); ++i) {
+        if (!maps[w][i].known || !maps[next][i].known) continue;
+        const double change = change_of(maps[w][i], maps[next][i], polygons[w][i]);
+        maps[w][i].error += change, maps[next][i].error += change;
+      }
+    }
+  }
+  const std::size_t across = dimensions == 1 ? 1 : data.columns + 1;
+  std::vector<std::vector<double>> by_wavelength(data.wavelengths);
+  parallel_for(data.wavelengths, 1, threads, [&](std::size_t w, std::size_t) {
+    for (std::size_t row = 0; row < data.rows; ++row) {
+      for (std::size_t column = 0; column < data.columns; ++column) {
+        const std::size_t first = row * across + column;
+        std::vector<std::size_t> nodes{first, first + 1};
+        if (dimensions == 2) nodes.insert(nodes.end(), {first + across, first + across + 1});
+        std::vector<const Map*> at;
+        std::vector<PupilPolygon> own;
+        FilmPoint middle;
+        for (const std::size_t node : nodes) {
+          at.push_back(&maps[w][node]), own.push_back(polygons[w][node]);
+          const FilmPoint film = data.node_point(node);
+          middle.x += film.x / static_cast<double>(nodes.size());
+          middle.y += film.y / static_cast<double>(nodes.size());
+        }
+        double scale = 1;
+        if (!std::all_of(at.begin(), at.end(), [](const Map* map) { return map->known; })) {
+          scale = unlimited;
+        } else if (data.enclosing) {
+          PolygonWeights weights;
+          for (std::size_t k = 0; k < nodes.size(); ++k) {
+            weights.polygons[k] = k, weights.weights[k] = 1 / static_cast<double>(nodes.size());
+          }
+          double error = error_in_middle(stop_of, middle, interpolated(own, weights), mean_of<dimensions>(at), w);
+          for (const Map* map : at) error = std::max(error, map->error);
+          const bool drawn = std::all_of(at.begin(), at.end(), [](const Map* map) { return map->drawn; });
+          // What the second cut of a line leaves of its error.
+          constexpr double left = 0.1;
+          double of_lines = 0;
+          for (const Map* map : at) of_lines = std::max(of_lines, drawn ? 0 : left * map->line_error);
+          // Room between the rays that were looked at, and more where the map is less known.
+          constexpr double room = 1.25, more = 100, always = 2e-4;
+          scale += (room + more * error) * error + of_lines + always;
+        }
+        const std::vector<double> cell = cell_of<dimensions>(at, scale);
+        by_wavelength[w].insert(by_wavelength[w].end(), cell.begin(), cell.end());
+      }
+    }
+  });
+  std::vector<double> result;
+  for (const auto& cells : by_wavelength) result.insert(result.end(), cells.begin(), cells.end());
+  return result;
+}
+
+}  // namespace
+
+StopOf traced_stop(const Lens& lens, const TwoPlanes& space) {
+  const std::size_t stop = *lens.stop();
+  const double semi_diameter = lens.surfaces()[stop].semi_diameter, towards = towards_scene(lens, space);
+  return [=](const FilmPoint& film, const Vec2<double>& place, std::size_t wavelength) -> std::optional<Vec2<double>> {
+    const double dx = place.x - film.x, dy = place.y - film.y, dz = space.depth();
+    const double per_length = towards / std::sqrt(dx * dx + dy * dy + dz * dz);
+    const auto ray = kernel::trace<double>(
+        kernel::view<double>(lens), {place.x, place.y, space.pupil_z},
+        {per_length * dx, per_length * dy, per_length * dz},
+        {.travel = Travel::to_scene, .wavelength = wavelength, .apertures = false, .first = stop});
+    if (ray.fate != RayFate::transmitted) return {};
+    return Vec2<double>{ray.origin.x / semi_diameter, ray.origin.y / semi_diameter};
+  };
+}
+
+}  // namespace pupil_table_detail
+
+FilmPupilTable FilmPupilTable::Data::with_stop(const Iris& iris, const pupil_table_detail::StopOf& stop_of,
+                                               int threads) const {
+  using namespace pupil_table_detail;
+  StopCells found{iris_detail::IrisShape(iris), stop_of, {}, {}};
+  found.cells = dimensions == 1 ? stop_cells<1>(*this, found.shape, stop_of, threads)
+                                : stop_cells<2>(*this, found.shape, stop_of, threads);
+  found.cells_single.assign(found.cells.begin(), found.cells.end());
+  auto result = std::make_shared<Data>(*this);
+  result->stop = std::make_shared<const StopCells>(std::move(found));
+  return FilmPupilTable(std::move(result));
+}
+
+}  // namespace petzval

@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <vector>
+
+#include "iris/iris_shape.hpp"
+#include "petzval/core/film.hpp"
+#include "petzval/core/geometry.hpp"
+#include "petzval/lens/lens.hpp"
+#include "petzval/pupil_table/two_plane_rays.hpp"
+#include "polygon_grid.hpp"
+
+namespace petzval::pupil_table_detail {
+
+/// Where the ray of a film point through a place in the plane of the pupil meets the stop, in semi-diameters, at a
+/// wavelength; nothing for a ray that does not reach it.
+using StopOf =
+    std::function<std::optional<Vec2<double>>(const FilmPoint&, const Vec2<double>& place, std::size_t wavelength)>;
+
+/// Traced rays, whatever clips them. The lens has a stop with a semi-diameter.
+StopOf traced_stop(const Lens& lens, const TwoPlanes& space);
+
+/// The stop behind the pupils of a grid: GridStop with its numbers.
+struct StopCells {
+  iris_detail::IrisShape shape;
+  StopOf stop_of;
+  std::vector<double> cells;  // StopLayout
+  std::vector<float> cells_single;
+
+  template <class R>
+  GridStop<R> borrowed() const noexcept {
+    GridStop<R> result;
+    if constexpr (sizeof(R) == sizeof(float)) {
+      result.cells = cells_single.data();
+    } else {
+      result.cells = cells.data();
+    }
+    result.iris = shape.sectors<R>();
+    result.area = static_cast<R>(shape.area());
+    return result;
+  }
+};
+
+}  // namespace petzval::pupil_table_detail
