@@ -282,15 +282,21 @@ void SceneSide::importance(const AnyRayModel& model, std::size_t count, const Ra
     std::array<RayFate, block> fates;
     model.to_film(n, {x.data(), y.data(), z.data(), dx.data(), dy.data(), dz.data()}, wavelengths.from(begin),
                   {film_x.data(), film_y.data(), pupil_x.data(), pupil_y.data()}, fates.data());
+    std::array<double, block> areas;
+    if (!tilted_) {
+      pupils_.sample_areas<double>(n, {film_x.data(), film_y.data(), pupil_x.data(), pupil_y.data()},
+                                   wavelengths.from(begin), areas.data());
+    }
     for (std::size_t i = 0; i < n; ++i) {
       const Arrival arrival{fates[i], {film_x[i], film_y[i]}, {pupil_x[i], pupil_y[i]}};
-      found[begin + i] = arrived(model, arrival, dz[i], wavelengths.at(begin + i), time(i));
+      found[begin + i] =
+          arrived(model, arrival, dz[i], wavelengths.at(begin + i), time(i), tilted_ ? nullptr : &areas[i]);
     }
   }
 }
 
 Importance SceneSide::arrived(const AnyRayModel& model, const Arrival& arrival, double cosine, Wavelength wavelength,
-                              double time) const noexcept {
+                              double time, const double* upright_area) const noexcept {
   const FilmPoint &upright = arrival.upright, &pupil = arrival.pupil;
   const auto placed = plane(time);
   const auto met = on_film(upright, pupil, placed);
@@ -299,7 +305,8 @@ Importance SceneSide::arrived(const AnyRayModel& model, const Arrival& arrival, 
   const Facts at = facts_at(wavelength);
   // Film points send no rays through other zones of the surfaces, as of a ball lens.
   const FilmPupilTable& sampled = tilted_ ? tilted_->pupils() : pupils_;
-  const double area = sampled.sample_area(met->virtual_point, pupil.x, pupil.y, wavelength);
+  const double area =
+      upright_area ? *upright_area : sampled.sample_area(met->virtual_point, pupil.x, pupil.y, wavelength);
   const bool passes = !tilted_ || !decide(pupils_, model) || pupils_.contains(upright, pupil.x, pupil.y, wavelength);
   if (at.entrance_area == 0 || !(area > 0) || !passes) {
     result.fate = RayFate::vignetted;

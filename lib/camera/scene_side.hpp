@@ -84,9 +84,10 @@ class SceneSide {
     return wavelengths_.covers(wavelength) ? RayFate::invalid : RayFate::outside_spectrum;
   }
   Arrival arrive(const AnyRayModel& model, const Ray<double>& ray, Wavelength wavelength, double time) const noexcept;
-  /// The importance of a ray that arrives. cosine: of its angle with the axis in the scene.
+  /// The importance of a ray that arrives. cosine: of its angle with the axis in the scene. upright_area: the area that
+  /// its sample on an upright film stands for, or null.
   Importance arrived(const AnyRayModel& model, const Arrival& arrival, double cosine, Wavelength wavelength,
-                     double time) const noexcept;
+                     double time, const double* upright_area = nullptr) const noexcept;
   /// Film point, raster and fate of a ray that arrives.
   Importance met_by(const Arrival& arrival, const std::optional<OnFilm>& met) const noexcept;
   /// Weight and densities of a ray that meets the film. facing: TiltedPlane::weight(); cosine: of its angle with the

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <Eigen/LU>
+#include <Eigen/Core>
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "chart.hpp"
 #include "data.hpp"
@@ -133,22 +134,48 @@ bool within(const Place& x, double square) noexcept {
   return x.head<2>().squaredNorm() <= square && x.tail<2>().squaredNorm() <= square;
 }
 
-/// Newton's iteration. False if a step is more than half the one before, since it may then go to another branch of the
-/// polynomial, and if it leaves the neighbourhood of the domain.
-template <class Symmetry>
-bool correct(const double* c, const Place& wanted, Place& x) noexcept {
-  constexpr double far = 2, settled = 1e-12, rounding = 1e-9;
+/// The solution of a linear system, by elimination with the largest pivot of each column.
+PETZVAL_INLINE Place solution(Eigen::Matrix4d a, Place b) noexcept {
+  for (int k = 0; k < 4; ++k) {
+    int pivot = k;
+    for (int i = k + 1; i < 4; ++i) pivot = std::abs(a(i, k)) > std::abs(a(pivot, k)) ? i : pivot;
+    for (int j = k; j < 4; ++j) std::swap(a(k, j), a(pivot, j));
+    std::swap(b[k], b[pivot]);
+    const double per_pivot = 1 / a(k, k);
+    for (int i = k + 1; i < 4; ++i) {
+      const double factor = a(i, k) * per_pivot;
+      for (int j = k + 1; j < 4; ++j) a(i, j) -= factor * a(k, j);
+      b[i] -= factor * b[k];
+    }
+  }
+  for (int k = 3; k >= 0; --k) {
+    for (int j = k + 1; j < 4; ++j) b[k] -= a(k, j) * b[j];
+    b[k] /= a(k, k);
+  }
+  return b;
+}
+
+/// A polynomial's value and slope at a place.
+struct At {
   Place value;
   Eigen::Matrix4d slope;
+};
+
+/// Newton's iteration, from a place where the polynomial has been evaluated. False if a step is more than half the one
+/// before, since it may then go to another branch of the polynomial, and if it leaves the neighbourhood of the domain.
+template <class Symmetry>
+bool correct(const double* c, const Place& wanted, const At& begin, Place& x) noexcept {
+  constexpr double far = 2, settled = 1e-7, rounding = 1e-9;  // the square of a settled step is its error
+  At at = begin;
   for (double last = std::numeric_limits<double>::infinity();;) {
-    evaluate(Symmetry{}, c, x, value, slope);
-    const Place move = slope.partialPivLu().solve(wanted - value);
+    const Place move = solution(at.slope, wanted - at.value);
     const double length = move.norm();
     x += move;
     if (!within(x, far)) return false;
     if (length < settled) return true;
     if (!(length < last / 2)) return length < rounding;
     last = length;
+    evaluate(Symmetry{}, c, x, at.value, at.slope);
   }
 }
 
@@ -198,17 +225,18 @@ Place chief(OfMirrors<n>, const double* c, const SceneLine& line) noexcept {
 /// several for a fisheye. False if it cannot, and if it ends outside the domain.
 template <class Symmetry>
 bool follow(const double* c, const Place& wanted, Place& x) noexcept {
-  Place first;
-  Eigen::Matrix4d slope;
-  evaluate(Symmetry{}, c, x, first, slope);
+  At at;
+  evaluate(Symmetry{}, c, x, at.value, at.slope);
+  const Place first = at.value;
   double left = 1, step = 1;
   while (left > 0) {
     const double next = std::max(left - step, 0.0);
     Place there = x;
-    if (correct<Symmetry>(c, wanted + next * (first - wanted), there)) {
+    if (correct<Symmetry>(c, wanted + next * (first - wanted), at, there)) {
       x = there;
       left = next;
       step *= 2;
+      if (left > 0) evaluate(Symmetry{}, c, x, at.value, at.slope);
     } else if ((step /= 2) < 1.0 / 64) {
       return false;
     }

@@ -274,17 +274,20 @@ PETZVAL_INLINE void find_sectors(const PolygonGrid<dimensions, R>& grid, const P
         .corner(k);
   };
   std::int32_t half[block];
+  R first_x[block], first_y[block];
   // Half turns count from the first corner.
   PETZVAL_INDEPENDENT
   for (std::size_t i = 0; i < block; ++i) {
-    half[i] = turn(corner(i, 0), q[i]) < R(0);
+    const Point<R> first = corner(i, 0);
+    first_x[i] = first.x, first_y[i] = first.y;
+    half[i] = turn(first, q[i]) < R(0);
     sector[i] = 0;
   }
   for (std::int32_t step = corners / 2; step > 0; step /= 2) {
     PETZVAL_INDEPENDENT
     for (std::size_t i = 0; i < block; ++i) {
       const Point<R> c = corner(i, sector[i] + step);
-      const std::int32_t corner_half = turn(corner(i, 0), c) < R(0), behind = turn(c, q[i]) >= R(0);
+      const std::int32_t corner_half = turn(Point<R>{first_x[i], first_y[i]}, c) < R(0), behind = turn(c, q[i]) >= R(0);
       sector[i] += (corner_half < half[i]) | ((corner_half == half[i]) & behind) ? step : 0;
     }
   }
