@@ -41,72 +41,75 @@ struct Lines {
   T from[block], to[block];                      // the part that the iris leaves
 };
 
-/// Cuts lines at the iris. They are straight in the plane of the pupil, and at the stop nearly: the first cut, between
-/// the stop points of the middle and of the edge, tells where to look again.
+/// Cuts lines at the iris. They are straight in the plane of the pupil, and at the stop nearly: through the stop points
+/// of the middle and of a place near the rim.
 template <std::size_t block, int dimensions, class R, class T>
 PETZVAL_INLINE void cut_by_iris(const PolygonGrid<dimensions, R>& grid, const Places<block, T>& places,
                                 Lines<block, T>& lines) noexcept {
   using S = StopLayout<dimensions>;
   const R* const stop = grid.stop.cells;
   const iris_detail::IrisSectors<R> iris = grid.stop.iris;
-  T middle_x[block], middle_y[block], way_x[block], way_y[block];
+  T begin_x[block], begin_y[block], line_x[block], line_y[block], look[block], from[block], to[block];
   PETZVAL_INDEPENDENT
   for (std::size_t i = 0; i < block; ++i) {
-    lines.from[i] = T(0), lines.to[i] = T(1);
-    const std::int32_t begin = places.cell[i] * S::size, at = begin + S::corners + 2 * S::linear * lines.sector[i];
+    const std::int32_t cell = places.cell[i] * S::size, at = cell + S::corners + 2 * S::linear * lines.sector[i];
     const T t = places.t[i], s = places.s[i], along = lines.along[i];
     const Point<T> a = point_in_cell<dimensions>(stop, at, t, s);
     const Point<T> b = point_in_cell<dimensions>(stop, at + 2 * S::linear, t, s);
-    const Point<T> middle = point_in_cell<dimensions>(stop, begin + S::middle, t, s);
-    middle_x[i] = middle.x, middle_y[i] = middle.y;
-    way_x[i] = a.x + along * (b.x - a.x) - middle.x, way_y[i] = a.y + along * (b.y - a.y) - middle.y;
+    const Point<T> begin = point_in_cell<dimensions>(stop, cell + S::middle, t, s);
+    const Point<T> straight = a + along * (b - a) - begin;
+    begin_x[i] = begin.x, begin_y[i] = begin.y;
+    line_x[i] = straight.x, line_y[i] = straight.y;
   }
-  const auto cut = [&] {
-    T begin_x[block], begin_y[block], line_x[block], line_y[block], from[block], to[block];
-    PETZVAL_INDEPENDENT
-    for (std::size_t i = 0; i < block; ++i) {
-      const R per_scale = R(1) / stop[places.cell[i] * S::size + S::scale];
-      const Point<T> begin = to_film<dimensions>(places.cosine[i], places.sine[i], Point<T>{middle_x[i], middle_y[i]});
-      const Point<T> line = to_film<dimensions>(places.cosine[i], places.sine[i], Point<T>{way_x[i], way_y[i]});
-      begin_x[i] = per_scale * begin.x, begin_y[i] = per_scale * begin.y;
-      line_x[i] = per_scale * line.x, line_y[i] = per_scale * line.y;
-      from[i] = T(0), to[i] = T(1);
-    }
-    for (std::size_t k = 0; k < iris.count; ++k) {
-      const R* const edge = iris.edges + 4 * k;
-      const R nx = edge[0], ny = edge[1], bend = edge[2], distance = edge[3];
+  // Where the line comes about as far from the axis as edges of blades are.
+  for (std::size_t i = 0; i < block; ++i) {
+    const T distance = root_of(T(begin_x[i] * begin_x[i] + begin_y[i] * begin_y[i]));
+    look[i] = (R(0.9) - distance) / root_of(T(line_x[i] * line_x[i] + line_y[i] * line_y[i]));
+  }
+  for (std::size_t i = 0; i < block; ++i) {
+    const T least = T(0.25), own = look[i] > least ? look[i] : least;
+    look[i] = own < T(1) ? own : T(1);
+  }
+  PETZVAL_INDEPENDENT
+  for (std::size_t i = 0; i < block; ++i) {
+    const std::int32_t cell = places.cell[i] * S::size;
+    const T t = places.t[i], s = places.s[i];
+    const Point<T> begin{begin_x[i], begin_y[i]}, straight{line_x[i], line_y[i]};
+    const Point<T> middle =
+        CellPolygon<dimensions, false, R, T>{grid.cells, places.cell[i] * CellLayout<dimensions>::size, t, s}.middle();
+    const auto number = [&](int k) { return linear_in_cell<dimensions>(stop, cell + S::map + S::linear * k, t, s); };
+    const Point<T> place{middle.x + look[i] * lines.edge_x[i], middle.y + look[i] * lines.edge_y[i]};
+    const Point<T> off = step_to_place(seen_point<dimensions>(number, begin + look[i] * straight), place);
+    const R per_scale = R(1) / stop[cell + S::scale];
+    const Point<T> bent{straight.x + off.x / look[i], straight.y + off.y / look[i]};
+    const Point<T> from_middle = to_film<dimensions>(places.cosine[i], places.sine[i], begin);
+    const Point<T> line = to_film<dimensions>(places.cosine[i], places.sine[i], bent);
+    begin_x[i] = per_scale * from_middle.x, begin_y[i] = per_scale * from_middle.y;
+    line_x[i] = per_scale * line.x, line_y[i] = per_scale * line.y;
+    from[i] = T(0), to[i] = T(1);
+  }
+  for (std::size_t k = 0; k < iris.count; ++k) {
+    const R* const edge = iris.edges + 4 * k;
+    const R nx = edge[0], ny = edge[1], bend = edge[2], distance = edge[3];
+    if (bend == R(0)) {
+      PETZVAL_INDEPENDENT
+      for (std::size_t i = 0; i < block; ++i) {
+        cut_by_edge(nx, ny, distance, Point<T>{begin_x[i], begin_y[i]}, Point<T>{line_x[i], line_y[i]}, from[i], to[i]);
+      }
+    } else {
       PETZVAL_INDEPENDENT
       for (std::size_t i = 0; i < block; ++i) {
         cut_by_edge(nx, ny, bend, distance, Point<T>{begin_x[i], begin_y[i]}, Point<T>{line_x[i], line_y[i]}, from[i],
                     to[i]);
       }
     }
-    PETZVAL_INDEPENDENT
-    for (std::size_t i = 0; i < block; ++i) {
-      lines.to[i] = to[i];
-      lines.from[i] = from[i] < to[i] ? from[i] : to[i];
-    }
-  };
-  cut();
-  T looked_at[block];
-  for (std::size_t i = 0; i < block; ++i) {
-    const T last = lines.to[i], least = T(0.25);
-    looked_at[i] = last > least ? last : least;
   }
   PETZVAL_INDEPENDENT
   for (std::size_t i = 0; i < block; ++i) {
-    const std::int32_t begin = places.cell[i] * S::size;
-    const T t = places.t[i], s = places.s[i];
-    const T at = looked_at[i];
-    const Point<T> middle =
-        CellPolygon<dimensions, false, R, T>{grid.cells, places.cell[i] * CellLayout<dimensions>::size, t, s}.middle();
-    const auto number = [&](int k) { return linear_in_cell<dimensions>(stop, begin + S::map + S::linear * k, t, s); };
-    const Point<T> straight{middle_x[i] + at * way_x[i], middle_y[i] + at * way_y[i]};
-    const Point<T> place{middle.x + at * lines.edge_x[i], middle.y + at * lines.edge_y[i]};
-    const Point<T> off = step_to_place(seen_point<dimensions>(number, straight), place);
-    way_x[i] += off.x / at, way_y[i] += off.y / at;
+    const T first = from[i], last = to[i];
+    lines.to[i] = last;
+    lines.from[i] = first < last ? first : last;
   }
-  cut();
 }
 
 /// Samples of the polygons, or of what the iris leaves of them.
@@ -188,7 +191,8 @@ PETZVAL_INLINE void sample_polygons(const PolygonGrid<dimensions, R>& grid, cons
     cut_by_iris<block>(grid, places, lines);
     PETZVAL_INDEPENDENT
     for (std::size_t i = 0; i < block; ++i) {
-      const Sector<T> own = polygon(i).sector(sector[i]);
+      Sector<T> own{};  // only what is obscured
+      if constexpr (obscured) own = polygon(i).sector(sector[i]);
       const T first = own.share_within(lines.from[i] * lines.from[i]);
       const T share = own.share_within(lines.to[i] * lines.to[i]) - first;
       const T way = root_of(own.squared_way(first + core_detail::clamped(v[i]) * share));

@@ -174,7 +174,7 @@ PETZVAL_INLINE FilmPlace<T> place_of(const PolygonGrid<2, R>& grid, const T& fil
 
 /// Turns a point from the frame of the grid to that of the film, and back.
 template <int dimensions, class T>
-inline Point<T> to_film(const T& cosine, const T& sine, const Point<T>& p) noexcept {
+PETZVAL_INLINE Point<T> to_film(const T& cosine, const T& sine, const Point<T>& p) noexcept {
   if constexpr (dimensions == 1) {
     return {cosine * p.x + sine * p.y, cosine * p.y - sine * p.x};
   } else {
@@ -182,7 +182,7 @@ inline Point<T> to_film(const T& cosine, const T& sine, const Point<T>& p) noexc
   }
 }
 template <int dimensions, class T>
-inline Point<T> to_grid(const T& cosine, const T& sine, const Point<T>& p) noexcept {
+PETZVAL_INLINE Point<T> to_grid(const T& cosine, const T& sine, const Point<T>& p) noexcept {
   if constexpr (dimensions == 1) {
     return {cosine * p.x - sine * p.y, sine * p.x + cosine * p.y};
   } else {
@@ -192,7 +192,7 @@ inline Point<T> to_grid(const T& cosine, const T& sine, const Point<T>& p) noexc
 
 /// A value of a cell. Numbers are read at places that are 32 bits wide: lanes gather by those.
 template <int dimensions, class R, class T>
-inline T linear_in_cell(const R* all, std::int32_t at, const T& t, const T& s) noexcept {
+PETZVAL_INLINE T linear_in_cell(const R* all, std::int32_t at, const T& t, const T& s) noexcept {
   if constexpr (dimensions == 1) {
     return all[at] + t * all[at + 1];
   } else {
@@ -200,7 +200,7 @@ inline T linear_in_cell(const R* all, std::int32_t at, const T& t, const T& s) n
   }
 }
 template <int dimensions, class R, class T>
-inline Point<T> point_in_cell(const R* all, std::int32_t at, const T& t, const T& s) noexcept {
+PETZVAL_INLINE Point<T> point_in_cell(const R* all, std::int32_t at, const T& t, const T& s) noexcept {
   constexpr std::int32_t y = CellLayout<dimensions>::linear;
   return {linear_in_cell<dimensions>(all, at, t, s), linear_in_cell<dimensions>(all, at + y, t, s)};
 }
@@ -288,7 +288,7 @@ struct CellPolygon {
 template <class T>
 struct SeenPoint {
   Point<T> place, by_x, by_y;
-  T area() const noexcept {  ///< of the image of a unit of the stop's area
+  PETZVAL_INLINE T area() const noexcept {  ///< of the image of a unit of the stop's area
     const T determinant = by_x.x * by_y.y - by_y.x * by_x.y;
     return determinant < T(0) ? T(-determinant) : determinant;
   }
@@ -296,7 +296,7 @@ struct SeenPoint {
 
 /// The polynomials of StopLayout. number(i): term i.
 template <int dimensions, class T, class Number>
-inline SeenPoint<T> seen_point(const Number& number, const Point<T>& stop) noexcept {
+PETZVAL_INLINE SeenPoint<T> seen_point(const Number& number, const Point<T>& stop) noexcept {
   const T &x = stop.x, &y = stop.y;
   const T xx = x * x, yy = y * y;
   if constexpr (dimensions == 1) {
@@ -328,7 +328,7 @@ inline SeenPoint<T> seen_point(const Number& number, const Point<T>& stop) noexc
 
 /// A step of Newton's method, from a stop point to the one that is seen at a place.
 template <class T>
-inline Point<T> step_to_place(const SeenPoint<T>& seen, const Point<T>& place) noexcept {
+PETZVAL_INLINE Point<T> step_to_place(const SeenPoint<T>& seen, const Point<T>& place) noexcept {
   const auto& [at, by_x, by_y] = seen;
   const T determinant = by_x.x * by_y.y - by_y.x * by_x.y;
   const T per = T(1) / determinant;
@@ -343,7 +343,7 @@ struct StopPlace {
   T step2;
 };
 template <int dimensions, class T, class Number>
-inline StopPlace<T> stop_place(const Number& number, const Point<T>& place) noexcept {
+PETZVAL_INLINE StopPlace<T> stop_place(const Number& number, const Point<T>& place) noexcept {
   StopPlace<T> result{{T(0), T(0)}, T(0)};
   for (int i = 0; i < 4; ++i) {
     const Point<T> step = step_to_place(seen_point<dimensions>(number, result.point), place);
@@ -357,9 +357,22 @@ inline StopPlace<T> stop_place(const Number& number, const Point<T>& place) noex
   return result;
 }
 
+/// The part of a line from a to a + d that lies within a straight edge of the iris, cut to [from, to].
+template <class R, class T>
+PETZVAL_INLINE void cut_by_edge(R nx, R ny, R distance, const Point<T>& a, const Point<T>& d, T& from, T& to) noexcept {
+  const T outside = nx * a.x + ny * a.y - distance, linear = nx * d.x + ny * d.y;
+  // What is infinite or no number where the line is parallel to the edge is not used.
+  const T crosses = -outside / linear;
+  const bool begins_outside = outside > T(0), outwards = linear > T(0), inwards = linear < T(0);
+  const T last = outwards ? crosses : T(2), beyond = inwards ? crosses : T(2);
+  const T first = begins_outside ? beyond : T(0);
+  to = last < to ? last : to;
+  from = first > from ? first : from;
+}
 /// The part of a line from a to a + d that lies within an edge of the iris (IrisEdge), cut to [from, to].
 template <class R, class T>
-inline void cut_by_edge(R nx, R ny, R bend, R distance, const Point<T>& a, const Point<T>& d, T& from, T& to) noexcept {
+PETZVAL_INLINE void cut_by_edge(R nx, R ny, R bend, R distance, const Point<T>& a, const Point<T>& d, T& from,
+                                T& to) noexcept {
   const T square = bend * (d.x * d.x + d.y * d.y);
   const T linear = (nx * d.x + ny * d.y) + T(2) * bend * (a.x * d.x + a.y * d.y);
   const T outside = (nx * a.x + ny * a.y) + bend * (a.x * a.x + a.y * a.y) - distance;
