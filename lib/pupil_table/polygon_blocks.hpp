@@ -41,53 +41,11 @@ struct Lines {
   T from[block], to[block];                      // the part that the iris leaves
 };
 
-/// Cuts lines at the iris. They are straight in the plane of the pupil, and at the stop nearly: through the stop points
-/// of the middle and of a place near the rim.
-template <std::size_t block, int dimensions, class R, class T>
-PETZVAL_INLINE void cut_by_iris(const PolygonGrid<dimensions, R>& grid, const Places<block, T>& places,
-                                Lines<block, T>& lines) noexcept {
-  using S = StopLayout<dimensions>;
-  const R* const stop = grid.stop.cells;
-  const iris_detail::IrisSectors<R> iris = grid.stop.iris;
-  T begin_x[block], begin_y[block], line_x[block], line_y[block], look[block], from[block], to[block];
-  PETZVAL_INDEPENDENT
-  for (std::size_t i = 0; i < block; ++i) {
-    const std::int32_t cell = places.cell[i] * S::size, at = cell + S::corners + 2 * S::linear * lines.sector[i];
-    const T t = places.t[i], s = places.s[i], along = lines.along[i];
-    const Point<T> a = point_in_cell<dimensions>(stop, at, t, s);
-    const Point<T> b = point_in_cell<dimensions>(stop, at + 2 * S::linear, t, s);
-    const Point<T> begin = point_in_cell<dimensions>(stop, cell + S::middle, t, s);
-    const Point<T> straight = a + along * (b - a) - begin;
-    begin_x[i] = begin.x, begin_y[i] = begin.y;
-    line_x[i] = straight.x, line_y[i] = straight.y;
-  }
-  // Where the line comes about as far from the axis as edges of blades are.
-  for (std::size_t i = 0; i < block; ++i) {
-    const T distance = root_of(T(begin_x[i] * begin_x[i] + begin_y[i] * begin_y[i]));
-    look[i] = (R(0.9) - distance) / root_of(T(line_x[i] * line_x[i] + line_y[i] * line_y[i]));
-  }
-  for (std::size_t i = 0; i < block; ++i) {
-    const T least = T(0.25), own = look[i] > least ? look[i] : least;
-    look[i] = own < T(1) ? own : T(1);
-  }
-  PETZVAL_INDEPENDENT
-  for (std::size_t i = 0; i < block; ++i) {
-    const std::int32_t cell = places.cell[i] * S::size;
-    const T t = places.t[i], s = places.s[i];
-    const Point<T> begin{begin_x[i], begin_y[i]}, straight{line_x[i], line_y[i]};
-    const Point<T> middle =
-        CellPolygon<dimensions, false, R, T>{grid.cells, places.cell[i] * CellLayout<dimensions>::size, t, s}.middle();
-    const auto number = [&](int k) { return linear_in_cell<dimensions>(stop, cell + S::map + S::linear * k, t, s); };
-    const Point<T> place{middle.x + look[i] * lines.edge_x[i], middle.y + look[i] * lines.edge_y[i]};
-    const Point<T> off = step_to_place(seen_point<dimensions>(number, begin + look[i] * straight), place);
-    const R per_scale = R(1) / stop[cell + S::scale];
-    const Point<T> bent{straight.x + off.x / look[i], straight.y + off.y / look[i]};
-    const Point<T> from_middle = to_film<dimensions>(places.cosine[i], places.sine[i], begin);
-    const Point<T> line = to_film<dimensions>(places.cosine[i], places.sine[i], bent);
-    begin_x[i] = per_scale * from_middle.x, begin_y[i] = per_scale * from_middle.y;
-    line_x[i] = per_scale * line.x, line_y[i] = per_scale * line.y;
-    from[i] = T(0), to[i] = T(1);
-  }
+/// The parts of lines, by stop points over the iris's scale in the frame of the film, that lie within the iris.
+template <std::size_t block, class R, class T>
+PETZVAL_INLINE void cut_by_edges(const iris_detail::IrisSectors<R>& iris, const T* begin_x, const T* begin_y,
+                                 const T* line_x, const T* line_y, T* from, T* to) noexcept {
+  for (std::size_t i = 0; i < block; ++i) from[i] = T(0), to[i] = T(1);
   for (std::size_t k = 0; k < iris.count; ++k) {
     const R* const edge = iris.edges + 4 * k;
     const R nx = edge[0], ny = edge[1], bend = edge[2], distance = edge[3];
@@ -104,6 +62,52 @@ PETZVAL_INLINE void cut_by_iris(const PolygonGrid<dimensions, R>& grid, const Pl
       }
     }
   }
+}
+
+/// Cuts lines at the iris. They are straight in the plane of the pupil, and at the stop nearly: the first cut, between
+/// the stop points of the middle and of the edge, tells where to look again.
+template <std::size_t block, int dimensions, class R, class T>
+PETZVAL_INLINE void cut_by_iris(const PolygonGrid<dimensions, R>& grid, const Places<block, T>& places,
+                                Lines<block, T>& lines) noexcept {
+  using S = StopLayout<dimensions>;
+  const R* const stop = grid.stop.cells;
+  const iris_detail::IrisSectors<R> iris = grid.stop.iris;
+  T begin_x[block], begin_y[block], line_x[block], line_y[block], look[block], from[block], to[block];
+  PETZVAL_INDEPENDENT
+  for (std::size_t i = 0; i < block; ++i) {
+    const std::int32_t cell = places.cell[i] * S::size, at = cell + S::corners + 2 * S::linear * lines.sector[i];
+    const T t = places.t[i], s = places.s[i], along = lines.along[i];
+    const Point<T> a = point_in_cell<dimensions>(stop, at, t, s);
+    const Point<T> b = point_in_cell<dimensions>(stop, at + 2 * S::linear, t, s);
+    const Point<T> middle = point_in_cell<dimensions>(stop, cell + S::middle, t, s);
+    const R per_scale = R(1) / stop[cell + S::scale];
+    const Point<T> begin = to_film<dimensions>(places.cosine[i], places.sine[i], middle);
+    const Point<T> line = to_film<dimensions>(places.cosine[i], places.sine[i], a + along * (b - a) - middle);
+    begin_x[i] = per_scale * begin.x, begin_y[i] = per_scale * begin.y;
+    line_x[i] = per_scale * line.x, line_y[i] = per_scale * line.y;
+  }
+  cut_by_edges<block>(iris, begin_x, begin_y, line_x, line_y, from, to);
+  for (std::size_t i = 0; i < block; ++i) {
+    const T least = T(0.25), last = to[i];
+    look[i] = last > least ? last : least;
+  }
+  PETZVAL_INDEPENDENT
+  for (std::size_t i = 0; i < block; ++i) {
+    const std::int32_t cell = places.cell[i] * S::size;
+    const T t = places.t[i], s = places.s[i], at = look[i];
+    const R scale = stop[cell + S::scale], per_scale = R(1) / scale;
+    const Point<T> middle =
+        CellPolygon<dimensions, false, R, T>{grid.cells, places.cell[i] * CellLayout<dimensions>::size, t, s}.middle();
+    const auto number = [&](int k) { return linear_in_cell<dimensions>(stop, cell + S::map + S::linear * k, t, s); };
+    const Point<T> straight =
+        to_grid<dimensions>(places.cosine[i], places.sine[i],
+                            Point<T>{scale * (begin_x[i] + at * line_x[i]), scale * (begin_y[i] + at * line_y[i])});
+    const Point<T> place{middle.x + at * lines.edge_x[i], middle.y + at * lines.edge_y[i]};
+    const Point<T> off = step_to_place(seen_point<dimensions>(number, straight), place);
+    const Point<T> bent = to_film<dimensions>(places.cosine[i], places.sine[i], off);
+    line_x[i] += per_scale * bent.x / at, line_y[i] += per_scale * bent.y / at;
+  }
+  cut_by_edges<block>(iris, begin_x, begin_y, line_x, line_y, from, to);
   PETZVAL_INDEPENDENT
   for (std::size_t i = 0; i < block; ++i) {
     const T first = from[i], last = to[i];
