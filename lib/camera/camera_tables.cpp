@@ -91,7 +91,7 @@ void put_surfaces(Numbers& to, const Lens& lens) {
 
 void CameraTables::check(std::span<const float> tables, const std::string& where) {
   const auto refuse = [&](const std::string& found) { throw Error(where + ": found " + found); };
-  if (tables.size() < head_size || tables[format] != 4) refuse("something else, wanted camera tables of format 4");
+  if (tables.size() < head_size || tables[format] != 4) refuse("something else; must be camera tables of format 4");
   const auto number = [&](Position at) {
     const float value = tables[at];
     if (!(value >= 0 && value <= 1 << 24 && value == std::floor(value))) {
@@ -132,7 +132,7 @@ void CameraTables::check(std::span<const float> tables, const std::string& where
                  w * cells * (polar ? FilmPupilArrays::polar_stop_size : FilmPupilArrays::quadrant_stop_size));
       break;
     }
-    default: refuse("pupils of kind " + std::to_string(number(pupils_kind)) + ", wanted 0 to 2");
+    default: refuse("pupils of kind " + std::to_string(number(pupils_kind)) + "; must be 0 to 2");
   }
   if (number(iris_blades) > 0) check_list(iris, 2 * (FilmPupilArrays::edge_terms + number(iris_blades)));
   switch (number(rays_kind)) {

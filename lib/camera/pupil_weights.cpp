@@ -17,7 +17,7 @@ constexpr std::size_t block = 256;
 }  // namespace
 
 struct PupilWeights::Data {
-  FilmPupilTable pupils, whole;  // pupils: which weights on the stop need to know it
+  FilmPupilTable pupils, whole;  // with the stop, if weights act there
   bool on_stop;                  // else weights act on the pupil of each film point
   std::optional<iris_detail::IrisWeights> weights;
   bool keep_light;  // that the rim which cuts the pupils takes
@@ -111,7 +111,7 @@ void PupilWeights::of_samples(std::size_t count, const T* u, const T* v, const T
       weights[i] = T(1);
       continue;
     }
-    // Of samples of the iris, u and v tell the stop point, and v the share of the area nearer to its centre.
+    // For samples of the iris, u and v determine the stop point; v is the share of the area nearer to the centre.
     const double scale =
         data.on_stop ? data.pupils.drawn_iris_scale({lines.film_x[i], lines.film_y[i]}, wavelengths.at(i)) : 1;
     if (scale > 0) weights[i] = static_cast<T>(data.weights->of_sample(u[i], std::min(v[i] * scale * scale, 1.0)));

@@ -24,7 +24,7 @@ class PupilWeights {
   /// does not fit them, of more than 2^26 pixels or black, and for an edge out of range.
   PupilWeights(const Lens& lens, const AnyRayModel& model, const BokehControls& controls);
 
-  /// The pupils to sample instead of the model's; none without weights.
+  /// The pupils to sample instead of the pupils of the model; nullopt if there are no weights.
   PETZVAL_API std::optional<FilmPupilTable> pupils() const;
   explicit operator bool() const noexcept { return data_ != nullptr; }
 

@@ -249,16 +249,16 @@ namespace {
 
 /// A sample of the film before its ray is known.
 struct Start {
-  bool kept = false;  ///< on the film; else its middle stands for it
+  bool kept = false;  ///< the point lies on the film; otherwise `film` is the middle of the film
   FilmPoint film, virtual_point;
   TiltedPlane plane;  ///< of a tilted film
   PupilWeights::Drawn drawn{};
-  TwoPlaneRay line;                ///< which the weight is that of
-  TwoPlaneRayDerivatives leaving;  ///< of the ray, by film x and y; the pinhole's is another one
+  TwoPlaneRay line;                ///< for the weight
+  TwoPlaneRayDerivatives leaving;  ///< for the ray, with derivatives by film x and y; differs from `line` for a pinhole
   double area = 0;
 };
 
-/// with_derivatives: else those of `leaving` are not set.
+/// with_derivatives: whether to set the derivatives of `leaving`.
 Start start(const FilmView& view, const FilmPoint& film, double u, double v, Wavelength wavelength, double time,
             bool with_derivatives) noexcept {
   Start s;

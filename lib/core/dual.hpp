@@ -4,7 +4,7 @@
 #include <cmath>
 #include <compare>
 
-/// Calls of operations on two or three numbers would cost more than they do.
+/// A function call costs more than an operation on three numbers.
 #define PETZVAL_DUAL_INLINE [[gnu::always_inline]]
 
 namespace petzval::kernel {

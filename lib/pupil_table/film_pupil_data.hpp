@@ -20,7 +20,7 @@
 
 namespace petzval {
 
-/// What a table holds: images of an iris, or a grid of polygons and what it knows of the stop.
+/// The contents of a table: images of an iris, or a grid of polygons with a stop.
 struct FilmPupilTable::Data {
   TwoPlanes space;
   double film_radius = 0;
@@ -28,16 +28,16 @@ struct FilmPupilTable::Data {
   lens_detail::CompiledWavelengths compiled;             // for samples by nm
   std::optional<pupil_table_detail::IrisImages> images;  // instead of polygons
   int dimensions = 1;                                    // of the grid
-  double reach = 0;                                      // of the polygons: distance of the farthest film point
-  std::size_t rows = 0, columns = 1;                     // of cells
-  double height = 0;                                     // of the last row
-  std::vector<double> half_widths;                       // FilmGrid
+  double reach = 0;                   // distance of the farthest film point of the grid from the axis
+  std::size_t rows = 0, columns = 1;  // of cells
+  double height = 0;                  // of the last row
+  std::vector<double> half_widths;    // FilmGrid
   bool obscured = false, enclosing = false;
   int corrections = 0;
   std::vector<double> cells;  // CellLayout
   std::vector<float> cells_single, half_widths_single;
   std::shared_ptr<const pupil_table_detail::StopCells> stop;  // null: a round one, or not known
-  std::shared_ptr<const Data> whole;                          // the pupils that a rim has cut; null: none has
+  std::shared_ptr<const Data> whole;  // the pupils before a rim cut them; null if there is no rim
 
   /// The same film, planes and wavelengths, and no pupils yet.
   std::shared_ptr<Data> alike() const;
@@ -55,7 +55,7 @@ struct FilmPupilTable::Data {
   /// The polygon at a node, as add() took it, without obscurations.
   pupil_table_detail::PupilPolygon node(std::size_t wavelength, std::size_t node) const noexcept;
 
-  /// Rows per mm. A film smaller than 1e-30 mm counts as one of the axis alone, so that this is finite in float too.
+  /// Rows per mm. 0 for a film smaller than 1e-30 mm, so that the result is finite in float.
   double rows_per_mm() const noexcept {
     constexpr double smallest = 1e-30;
     return height > smallest ? static_cast<double>(rows) / height : 0;

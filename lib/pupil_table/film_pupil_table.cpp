@@ -111,7 +111,7 @@ double FilmPupilTable::projected_solid_angle(const FilmPoint& film, Wavelength w
 
 template <class Value>
 double FilmPupilTable::mean_over_samples(const FilmPoint& film, Wavelength wavelength, const Value& value) const {
-  // Where an iris cuts a polygon, areas change fast around it.
+  // Areas change fast with u if an iris cuts the polygon.
   const int around = data_->stop ? 128 : 16;
   static const auto outwards = core_detail::gauss_legendre<4>();
   double sum = 0;
@@ -269,7 +269,7 @@ PupilSample FilmPupilTable::sample(const FilmPoint& film, double u, double v, Wa
     by = images->derivatives(film, result, wavelength);
     return result;
   }
-  // On the axis the directions around it meet: beside it is near enough.
+  // The direction of the film point is undefined on the axis: a point next to the axis is close enough.
   const double beside = 1e-4 * data_->film_radius;
   if (data_->dimensions == 1 && std::hypot(film.x, film.y) < beside) {
     sample({0, beside}, u, v, wavelength, by);

@@ -50,7 +50,7 @@ class IrisImages {
   Vec2<double> middle(const FilmPoint& film, Wavelength wavelength) const noexcept;
   bool contains(const FilmPoint& film, double x, double y, Wavelength wavelength) const noexcept;
   Vec2<double> position(const FilmPoint& film, double x, double y, Wavelength wavelength) const noexcept;
-  /// Of a sample of these pupils.
+  /// Derivatives of a sample of these pupils.
   FilmPupilTable::Derivatives derivatives(const FilmPoint& film, const PupilSample& sample,
                                           Wavelength wavelength) const noexcept;
 

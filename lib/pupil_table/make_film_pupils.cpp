@@ -171,7 +171,7 @@ FilmPupilTable FilmPupilTable::equal_area(const Lens& lens, double film_radius, 
 FilmPupilTable FilmPupilTable::with_stop(const Lens& lens, int threads) const {
   if (data_->images) return *this;
   if (!lens.stop() || !std::isfinite(lens.surfaces()[*lens.stop()].semi_diameter)) {
-    throw Error(lens.name() + ": pupils: found no stop with a semi_diameter, wanted one");
+    throw Error(lens.name() + ": pupils: the lens has no stop with a semi_diameter; it must have one");
   }
   return data_->with_stop(lens.iris(), traced_stop(lens, space()), threads);
 }
@@ -294,7 +294,7 @@ FilmPupilTable FilmPupilTable::for_tilted_film(const FilmTilt& tilt, int threads
     data->images = data_->images->tilted(tilt);
     return FilmPupilTable(std::move(data));
   }
-  // Edges of blades are alike neither all around nor at mirror images: the iris clips the rays of the round stop.
+  // Blades have no rotational or mirror symmetry: samples come from the round stop, and the iris clips their rays.
   if (data_->stop || (data_->images && !data_->images->round())) return of_round_stop().for_tilted_film(tilt, threads);
   data->space = data_->space;
   data->primary = data_->primary;

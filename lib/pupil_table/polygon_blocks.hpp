@@ -23,7 +23,7 @@ PETZVAL_INLINE void find_places(const PolygonGrid<dimensions, R>& grid, const T*
                                 const T* v, const std::int32_t* wavelength, Places<block, T>& places) noexcept {
   PETZVAL_INDEPENDENT
   for (std::size_t i = 0; i < block; ++i) {
-    // Comparisons with what is not a number are false.
+    // Comparisons with NaN are false.
     const T sound = (film_x[i] + film_y[i] + u[i] + v[i]) * R(0);
     const FilmPlace<T> at = place_of(grid, film_x[i], film_y[i], sound >= R(0), wavelength[i]);
     places.t[i] = at.t, places.s[i] = at.s;
@@ -37,8 +37,9 @@ PETZVAL_INLINE void find_places(const PolygonGrid<dimensions, R>& grid, const T*
 template <std::size_t block, class T>
 struct Lines {
   std::int32_t sector[block];
-  T along[block], edge_x[block], edge_y[block];  // where they meet the edge: along the sector's, and from the middle
-  T from[block], to[block];                      // the part that the iris leaves
+  T along[block], edge_x[block],
+      edge_y[block];         // intersection with the edge: fraction along the edge, and position from the middle
+  T from[block], to[block];  // the part that the iris leaves
 };
 
 /// The parts of lines, by stop points over the iris's scale in the frame of the film, that lie within the iris.
@@ -116,7 +117,7 @@ PETZVAL_INLINE void cut_by_iris(const PolygonGrid<dimensions, R>& grid, const Pl
   }
 }
 
-/// Samples of the polygons, or of what the iris leaves of them.
+/// Samples of the polygons, or of the part of each polygon inside the iris.
 template <std::size_t block, bool obscured, bool stopped, int dimensions, class R, class T>
 PETZVAL_INLINE void sample_polygons(const PolygonGrid<dimensions, R>& grid, const Places<block, T>& places, const T* u,
                                     const T* v, T* x, T* y, T* area) noexcept {
@@ -150,7 +151,7 @@ PETZVAL_INLINE void sample_polygons(const PolygonGrid<dimensions, R>& grid, cons
       const std::int32_t on = (target[i] > polygon(i).area_before(k + 1)) & (k < corners - 1);
       sector[i] = k + on - back;
     }
-    if (block == 1 && sector[0] == first) break;  // of many, some always move
+    if (block == 1 && sector[0] == first) break;  // in a large block some sectors always move
   }
   PETZVAL_INDEPENDENT
   for (std::size_t i = 0; i < block; ++i) {
@@ -205,7 +206,7 @@ PETZVAL_INLINE void sample_polygons(const PolygonGrid<dimensions, R>& grid, cons
   }
 }
 
-/// Samples of the iris, at the places where film points see them.
+/// Samples of the iris, mapped to the plane of the pupil.
 template <std::size_t block, int dimensions, class R, class T>
 PETZVAL_INLINE void sample_iris(const PolygonGrid<dimensions, R>& grid, const Places<block, T>& places, const T* u,
                                 const T* v, T* x, T* y, T* area) noexcept {
@@ -236,7 +237,7 @@ PETZVAL_INLINE void sample_iris(const PolygonGrid<dimensions, R>& grid, const Pl
   }
 }
 
-/// One block. Slots beyond those that are wanted hold zeros.
+/// Samples one block. Unused slots hold zeros.
 template <std::size_t block, bool obscured, bool stopped, int dimensions, class R, class T>
 PETZVAL_INLINE void sample_block(const PolygonGrid<dimensions, R>& given, const T* film_x, const T* film_y, const T* u,
                                  const T* v, const std::int32_t* wavelength, T* x, T* y, T* area) noexcept {
@@ -392,7 +393,7 @@ void areas_block(const PolygonGrid<dimensions, R>& given, const R* film_x, const
   }
 }
 
-/// Where rays through places in the plane of the pupil meet the stop, in its semi-diameters.
+/// Intersections with the stop, in semi-diameters, of rays through places in the plane of the pupil.
 template <std::size_t block, int dimensions, class R>
 void stop_points_block(const PolygonGrid<dimensions, R>& given, const R* film_x, const R* film_y, const R* x,
                        const R* y, const std::int32_t* wavelength, R* stop_x, R* stop_y) noexcept {
@@ -409,7 +410,7 @@ void stop_points_block(const PolygonGrid<dimensions, R>& given, const R* film_x,
   }
 }
 
-/// A block, and what a few rays are put in: they fill the widest registers.
+/// Sizes of blocks: both fill the widest registers; the small one takes the rest of a batch.
 constexpr std::size_t whole_block = 64, small_block = 16;
 
 template <std::size_t rays>
@@ -490,7 +491,7 @@ void sample(const PolygonGrid<dimensions, R>& grid, std::size_t count, const R* 
   });
 }
 
-/// One sample. wavelength: -1 for one that does not exist.
+/// Samples one ray. wavelength: a position, or -1 if the table does not cover the wavelength.
 template <int dimensions, class T>
 void sample_one(const PolygonGrid<dimensions, double>& grid, T film_x, T film_y, T u, T v, std::int32_t wavelength,
                 T& x, T& y, T& area) noexcept {

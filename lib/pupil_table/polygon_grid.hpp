@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Pupils of film points, interpolated between the polygons at the nodes of a grid: for one sample or for loops over
 // many, in float, in double, or with derivatives (kernel::Dual). Names are local: this is compiled for several
-// instruction sets, and the linker must not take a function of one set for that of another.
+// instruction sets, and the linker must not mix functions of two sets.
 #pragma once
 
 #include <cmath>
@@ -32,7 +32,7 @@ struct CellLayout {
       obscured + (dimensions == 1 ? 2 * linear * static_cast<std::int32_t>(polygon_corners) : 0);
 };
 
-/// What one cell knows of the stop, in its semi-diameters.
+/// The data of one cell about the stop, in semi-diameters.
 template <int dimensions>
 struct StopLayout {
   static constexpr std::int32_t linear = 1 << dimensions;
@@ -50,15 +50,15 @@ struct StopLayout {
 /// The stop of a lens behind the pupils of a grid, borrowed. The stop is round where `cells` is null.
 template <class R>
 struct GridStop {
-  const R* cells = nullptr;  ///< as those of the grid: StopLayout
+  const R* cells = nullptr;  ///< in the order of PolygonGrid::cells: StopLayout
   iris_detail::IrisSectors<R> iris;
-  R area = 0;  ///< of the iris, in squares of the semi-diameter
+  R area = 0;  ///< area of the iris, in squares of the semi-diameter
 };
 
 /// The cells of all wavelengths, borrowed. With one dimension, rows lie at equal steps of the distance from the axis;
-/// polygons are those of film points on +y and turn with the point. With two, they cover the quadrant x, y >= 0, rows
-/// at equal steps of y and the nodes of a row at equal steps of x up to half_widths; the pupils of the other quadrants
-/// are mirror images, corner 0 lies towards +y of the middle and corner 32 towards -y.
+/// polygons belong to film points on +y and turn with the point. With two dimensions, cells cover the quadrant x, y >=
+/// 0: rows lie at equal steps of y, the nodes of a row at equal steps of x up to half_widths. The pupils of the other
+/// quadrants are mirror images. Corner 0 lies towards +y of the middle, corner 32 towards -y.
 template <int number_of_dimensions, class R>
 struct PolygonGrid {
   static constexpr int dimensions = number_of_dimensions;
@@ -67,7 +67,7 @@ struct PolygonGrid {
   std::int32_t rows = 0, columns = 1, wavelengths = 0, primary = 0;
   R reach = 0, rows_per_mm = 0;  ///< distance of the farthest film point, mm
   bool obscured = false;         ///< at least one sector has an obscured part
-  int corrections = 0;           ///< by how many sectors equal shares may miss the right one; 0: by half a one
+  int corrections = 0;  ///< largest error, in sectors, of the sector found by equal shares; 0: less than half a sector
   GridStop<R> stop;
 };
 
@@ -85,7 +85,7 @@ inline double value_of(const T& x) noexcept {
   return x.a;
 }
 
-/// 0 with derivatives 0 at 0, where those of the root are infinite.
+/// The square root; its derivatives are set to 0 at 0.
 inline float root_of(float x) noexcept { return core_detail::square_root(x); }
 inline double root_of(double x) noexcept { return core_detail::square_root(x); }
 template <class T>
@@ -114,14 +114,14 @@ PETZVAL_INLINE T turn_of(const T& sine, const T& cosine) noexcept {
   return sign_of(sine) * turn;
 }
 
-/// Of a number from -1 to 2, from 0 to 1, in a form without branches.
+/// The fractional part of a number from -1 to 2, without branches.
 template <class T>
 PETZVAL_INLINE T fraction_of(const T& x) noexcept {
   const T from_0 = x + T(0.5) * (T(1) - core_detail::sign_of(x));
   return from_0 - T(0.5) * (T(1) - core_detail::sign_of(T(T(1) - from_0)));
 }
 
-/// The cell in which a film point lies; the first one where there is none.
+/// The cell that contains a film point; else cell 0.
 template <class T>
 struct FilmPlace {
   T t, s;                    ///< fractions in the cell
@@ -172,7 +172,7 @@ PETZVAL_INLINE FilmPlace<T> place_of(const PolygonGrid<2, R>& grid, const T& fil
   return {column - static_cast<R>(j), s, sign_y, sign_x, known, cell};
 }
 
-/// Turns a point from the frame of the grid to that of the film, and back.
+/// Turn a point from the frame of the grid to the frame of the film, and back.
 template <int dimensions, class T>
 PETZVAL_INLINE Point<T> to_film(const T& cosine, const T& sine, const Point<T>& p) noexcept {
   if constexpr (dimensions == 1) {
@@ -190,7 +190,7 @@ PETZVAL_INLINE Point<T> to_grid(const T& cosine, const T& sine, const Point<T>& 
   }
 }
 
-/// A value of a cell. Numbers are read at places that are 32 bits wide: lanes gather by those.
+/// A value of a cell. Indices have 32 bits, which lanes can gather by.
 template <int dimensions, class R, class T>
 PETZVAL_INLINE T linear_in_cell(const R* all, std::int32_t at, const T& t, const T& s) noexcept {
   if constexpr (dimensions == 1) {
@@ -224,7 +224,7 @@ struct CellPolygon {
       return point_in_cell<dimensions>(all, begin + L::middle, t, s);
     }
   }
-  /// Of the sectors before one.
+  /// Area of the sectors before sector k.
   T area_before(std::int32_t k) const noexcept { return area_at(begin + L::sectors + L::sector * k + L::area); }
   T whole() const noexcept { return area_at(begin + L::whole); }
   Sector<T> sector(std::int32_t k) const noexcept {
@@ -284,11 +284,12 @@ struct CellPolygon {
   }
 };
 
-/// Where a stop point is seen in the plane of the pupil, in the frame of the grid, and the derivatives by the point.
+/// The image of a stop point in the plane of the pupil, in the frame of the grid, and its derivatives by the stop
+/// point.
 template <class T>
 struct SeenPoint {
   Point<T> place, by_x, by_y;
-  PETZVAL_INLINE T area() const noexcept {  ///< of the image of a unit of the stop's area
+  PETZVAL_INLINE T area() const noexcept {  ///< area of the image of a unit area of the stop
     const T determinant = by_x.x * by_y.y - by_y.x * by_x.y;
     return determinant < T(0) ? T(-determinant) : determinant;
   }
@@ -326,7 +327,7 @@ PETZVAL_INLINE SeenPoint<T> seen_point(const Number& number, const Point<T>& sto
   }
 }
 
-/// A step of Newton's method, from a stop point to the one that is seen at a place.
+/// A step of Newton's method towards the stop point whose image is `place`.
 template <class T>
 PETZVAL_INLINE Point<T> step_to_place(const SeenPoint<T>& seen, const Point<T>& place) noexcept {
   const auto& [at, by_x, by_y] = seen;
@@ -336,7 +337,7 @@ PETZVAL_INLINE Point<T> step_to_place(const SeenPoint<T>& seen, const Point<T>& 
   return {(by_y.y * miss.x - by_y.x * miss.y) * per, (by_x.x * miss.y - by_x.y * miss.x) * per};
 }
 
-/// The stop point that is seen at a place, and the square of the last step to it.
+/// A stop point found by Newton's method, and the square of the last step.
 template <class T>
 struct StopPlace {
   Point<T> point;
@@ -361,7 +362,7 @@ PETZVAL_INLINE StopPlace<T> stop_place(const Number& number, const Point<T>& pla
 template <class R, class T>
 PETZVAL_INLINE void cut_by_edge(R nx, R ny, R distance, const Point<T>& a, const Point<T>& d, T& from, T& to) noexcept {
   const T outside = nx * a.x + ny * a.y - distance, linear = nx * d.x + ny * d.y;
-  // What is infinite or no number where the line is parallel to the edge is not used.
+  // The quotient is not used if the line is parallel to the edge.
   const T crosses = -outside / linear;
   const bool begins_outside = outside > T(0), outwards = linear > T(0), inwards = linear < T(0);
   const T last = outwards ? crosses : T(2), beyond = inwards ? crosses : T(2);
@@ -378,7 +379,7 @@ PETZVAL_INLINE void cut_by_edge(R nx, R ny, R bend, R distance, const Point<T>& 
   const T outside = (nx * a.x + ny * a.y) + bend * (a.x * a.x + a.y * a.y) - distance;
   const T inner = linear * linear - T(4) * square * outside;
   const bool crosses = inner >= T(0), begins_outside = outside > T(0);
-  // What is infinite or no number where the line does not cross the edge is not used.
+  // Root and quotients are not used if the line does not cross the edge.
   const T root = root_of(inner), entering = root - linear;
   const T leaves = T(-2) * outside / (linear + root), enters = T(2) * outside / entering;
   const bool leaves_ahead = crosses & (leaves > T(0)), enters_ahead = crosses & (entering > T(0));

@@ -30,7 +30,7 @@ struct PolarLoops {
 };
 PETZVAL_WIDEST(PolarLoops, polar_loops)
 
-/// What gains nothing from wider registers.
+/// Loops that gain less than 15 % from wider registers.
 template <int dimensions, class R>
 struct PlainLoopsOf {
   SampleLoop<dimensions, R> sample;

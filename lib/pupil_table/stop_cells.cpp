@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // The stop behind the pupils of a grid. At each node, polynomials of third order, and the largest terms of the fifth,
-// are fitted to the places at which the film point sees points of the stop. Samples of the iris map to the pupil by
-// these polynomials where rims do not cut it. Elsewhere the iris cuts the lines of the polygon's samples: between the
-// stop points of the middle and of the edge, which is nearly straight.
+// are fitted to the places at which the film point sees points of the stop. These polynomials map
+// samples of the iris to the pupil at film points without vignetting. At other film points the iris cuts the lines of
+// the polygon's samples: between the stop points of the middle and of the edge, which is nearly straight.
 #include "stop_cells.hpp"
 
 #include <algorithm>
@@ -30,8 +30,8 @@ template <int dimensions>
 struct NodeMap {
   std::array<double, StopLayout<dimensions>::terms> terms{};
   bool known = false, drawn = false;
-  double error = 0;       // of the stop points of places
-  double line_error = 0;  // of those on lines outwards, after the second cut
+  double error = 0;       // largest error of stop(), in semi-diameters
+  double line_error = 0;  // largest error of stop points on straight lines outwards
   Place middle;           // the stop points of the polygon
   std::array<Place, polygon_corners> corners{};
 
@@ -39,7 +39,7 @@ struct NodeMap {
     return [this](int k) { return terms[static_cast<std::size_t>(k)]; };
   }
   SeenPoint<double> seen(const Place& stop) const noexcept { return seen_point<dimensions>(number(), stop); }
-  /// Nothing where no stop point near the iris is seen at the place.
+  /// The stop point with its image at `place`; nullopt if it is far from the iris.
   std::optional<Place> stop(const Place& place) const noexcept {
     const StopPlace<double> found = stop_place<dimensions>(number(), place);
     constexpr double close = 1e-6;
@@ -112,8 +112,7 @@ NodeMap<dimensions> map_at(const StopOf& stop_of, const FilmPoint& film, const P
     lines.push_back({static_cast<double>(k), part});
   };
   take(0, 0, {polygon.middle.x, polygon.middle.y});
-  // Of the mirrored half as well where nothing else tells the odd terms apart; as many distances from the middle as
-  // tell all terms apart where the pupil is a disc.
+  // Enough distances from the middle to determine all terms for a circular pupil.
   constexpr std::array parts{0.99, 0.85, 0.65, 0.4};
   for_rays(polygon, 2, parts, take);
   constexpr std::size_t least = 24;
@@ -141,7 +140,7 @@ NodeMap<dimensions> map_at(const StopOf& stop_of, const FilmPoint& film, const P
   return map;
 }
 
-/// Whether all of the iris is seen within the polygon, or in one that encloses pupils nearly all.
+/// Tests if the image of the iris lies within the polygon. enclosing: nearly all of it suffices.
 template <int dimensions>
 bool whole_iris_within(const NodeMap<dimensions>& map, const PupilPolygon& polygon, const iris_detail::IrisShape& shape,
                        bool enclosing) {
@@ -195,10 +194,10 @@ NodeMap<dimensions> mean_of(std::span<const NodeMap<dimensions>* const> maps) {
   return mean;
 }
 
-/// What changes with the wavelength up to the middle between two.
+/// The largest change of stop points up to the middle between two wavelengths.
 template <int dimensions>
 double change_of(const NodeMap<dimensions>& map, const NodeMap<dimensions>& next, const PupilPolygon& polygon) {
-  constexpr double middle = 0.6;  // of the way, with room for edges that move unevenly
+  constexpr double middle = 0.6;  // fraction of the way to the next wavelength, with room for uneven steps
   constexpr std::array parts{0.95};
   double change = 0;
   for_rays(polygon, 8, parts, [&](std::size_t, double, const Place& place) {
@@ -252,7 +251,7 @@ std::vector<double> stop_cells(const Data& data, const iris_detail::IrisShape& s
     for (std::size_t i = 0; i < data.nodes(); ++i) {
       const PupilPolygon& polygon = polygons[w].emplace_back(data.node(w, i));
       Map& map = maps[w].emplace_back(map_at<dimensions>(stop_of, data.node_point(i), polygon, w));
-      // Where the light ends, as beside it.
+      // Beyond the end of the light, use the map of the previous node.
       if (!map.known && i > 0 && dimensions == 1 && !(polygon.area() > 0)) map = maps[w][i - 1];
       map.drawn = map.known && !data.obscured && whole_iris_within(map, polygon, shape, data.enclosing);
     }
@@ -295,7 +294,7 @@ std::vector<double> stop_cells(const Data& data, const iris_detail::IrisShape& s
           double error = error_in_middle(stop_of, middle, interpolated(own, weights), mean_of<dimensions>(at), w);
           for (const Map* map : at) error = std::max(error, map->error);
           const bool drawn = std::all_of(at.begin(), at.end(), [](const Map* map) { return map->drawn; });
-          // What the second cut of a line leaves of its error.
+          // The part of the error of a line that remains after the second cut.
           constexpr double left = 0.1;
           double of_lines = 0;
           for (const Map* map : at) of_lines = std::max(of_lines, drawn ? 0 : left * map->line_error);

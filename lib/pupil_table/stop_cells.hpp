@@ -14,12 +14,12 @@
 
 namespace petzval::pupil_table_detail {
 
-/// Where the ray of a film point through a place in the plane of the pupil meets the stop, in semi-diameters, at a
-/// wavelength; nothing for a ray that does not reach it.
+/// The intersection with the stop, in semi-diameters, of the ray of a film point through a place in the plane of the
+/// pupil; nullopt if the ray does not reach the stop.
 using StopOf =
     std::function<std::optional<Vec2<double>>(const FilmPoint&, const Vec2<double>& place, std::size_t wavelength)>;
 
-/// Traced rays, whatever clips them. The lens has a stop with a semi-diameter.
+/// By traced rays; apertures do not clip. The lens has a stop with a semi-diameter.
 StopOf traced_stop(const Lens& lens, const TwoPlanes& space);
 
 /// The stop behind the pupils of a grid: GridStop with its numbers.

@@ -62,7 +62,7 @@ void put_at_end(const Route<R>& route, const R* vertex_z, std::size_t j, R per_n
   }
 }
 
-/// Derivatives of a ray, in front of the lens and then behind it.
+/// Derivatives of a ray; the trace replaces them by the derivatives behind the lens.
 template <class R>
 struct RayBy {
   static constexpr bool wanted = true;

@@ -6,8 +6,8 @@
 
 namespace petzval::trace_detail {
 
-/// trace() of one ray with its derivatives by two parameters, as trace_differentials(). by_u, by_v: those of the ray,
-/// and behind the lens those of the result; as they were for a lost ray.
+/// Traces one ray with its derivatives by two parameters (trace_differentials()). by_u, by_v: derivatives of the given
+/// ray, replaced by the derivatives of the result; unchanged for a lost ray.
 template <class T>
 PETZVAL_API TracedRay<T> trace_differential(const Lens& lens, const Ray<T>& ray, Ray<T>& by_u, Ray<T>& by_v,
                                             const TraceOptions& options) noexcept;

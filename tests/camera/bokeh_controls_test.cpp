@@ -104,7 +104,7 @@ TEST_P(RealLens, HasWeightsOnItsStop) {
         const Camera plain(lens, small, {.model = model});
         const core_detail::Kronecker<4> random(7);
         int seen = 0;
-        // Polynomials tell where rays meet the stop; those of the other model miss the exact rays too.
+        // Stop points come from fitted polynomials; the rays of the polynomial model are not exact either.
         const double near = model == ModelKind::exact_double ? 0.02 : 0.1;
         for (std::uint32_t i = 0; i < 400; ++i) {
           const auto [x, y, u, v] = random(i);

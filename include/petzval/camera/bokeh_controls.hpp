@@ -8,12 +8,12 @@ namespace petzval {
 /// What an artist asks of a bokeh, by the names of "Recreating realistic bokeh by biasing lens-sample positions", 2017.
 /// Every model of a Camera takes it; the defaults change nothing.
 ///
-/// Weights act on the stop: in exact models and polynomials on the real one, also of a vignetted pupil, where the
-/// polynomials of FilmPupilTable::stop_points() put a ray (a weight of a narrow ring is off by up to 2 % behind a lens
-/// of f/1.35); in first-order models on its image. Those of two discs behind a round stop, of a renderer's own model
-/// and of a lens without a stop, or whose stop has no rim, act on the pupil of each film point instead, so that a cat's
-/// eye has a rim of its own. The pupils of polynomials have the stop's area and nearly its shape: they keep the light
-/// within 1 % up to a distribution of 200, and have 8 % too much at 1000.
+/// Exact models and polynomials apply the weights on the real stop, also for a vignetted pupil. The stop point of a ray
+/// comes from FilmPupilTable::stop_points(): a weight on a narrow ring is off by up to 2 % behind a lens of f/1.35.
+/// Other first-order models apply the weights on the image of the stop. The model thin_two_disc behind a round stop,
+/// custom models, and lenses whose stop has no rim apply them on the pupil of each film point: a cat's eye then has its
+/// own bright rim. The pupils of polynomials have the stop's area and nearly its shape: they keep the light within 1 %
+/// up to a distribution of 200, and have 8 % too much at 1000.
 ///
 /// Samples follow the weights (EdgeWeight): where the stop is the pupil, all rays of a film point weigh within 1 % the
 /// same, but for the few where weights fall to 0, as of a strength near 1; of a map, as far as 256 x 256 cells of the

@@ -52,7 +52,7 @@ struct FilmTilt {
 };
 
 /// A sample of a pupil: its place in the plane of the pupil, mm, and the area that it stands for, mm^2: its density is
-/// 1 / area. Where samples are uniform that is the pupil's whole area. Area 0: nothing to sample.
+/// 1 / area. Uniform samples have the whole area of the pupil. Area 0: nothing to sample.
 struct PupilSample {
   double x = 0, y = 0, area = 0;
 };
@@ -81,7 +81,7 @@ struct FilmPupilArrays {
   std::vector<float> pupils;
   std::size_t rows = 0, columns = 1;
   double height = 0;               ///< mm
-  std::vector<float> half_widths;  ///< [row] mm; that of the last line at the end
+  std::vector<float> half_widths;  ///< [row] mm; the last line at the end
   /// Empty: a disc. Or for the edges of blades, in radii: across [edge_terms] and along [edge_terms], then [blade] sine
   /// and cosine of the angle from +y towards +x of the direction to the edge's middle. The point of the edge that has
   /// the part (1 + q) / 2 of its sector's area before it lies q across(t) across that direction, clockwise, and
@@ -135,7 +135,7 @@ class PETZVAL_API FilmPupilTable {
   /// Pupils are those of exit_pupil_boundary(). Behind tiny stops, whose images move over the film by more than their
   /// size, pupils hold more than the rays that pass: half of the samples are lost at about f/1e5, most at f/1e6.
   ///
-  /// Of a bladed iris at least 97.5 % of the samples pass on the double Gauss, the Tessar and a fisheye of data/
+  /// With a bladed iris, at least 97.5 % of the samples pass on the double Gauss, the Tessar and a fisheye of data/
   /// (tests/pupil_table/bladed_pupils_test.cpp: 5 to 9 blades from f/2.87 to f/16).
   ///
   /// film_radius: of the farthest film point, mm, >= 0. The film is that of the lens. Throws Error for a film in the
@@ -175,8 +175,8 @@ class PETZVAL_API FilmPupilTable {
   bool cut() const noexcept;
   FilmPupilTable whole() const;
 
-  /// The same pupils with what they show of the lens's stop: its iris cuts them, and stop_points() are known. Pupils in
-  /// closed form are returned as they are. Throws Error for a lens without a stop that has a semi_diameter. threads: as
+  /// The same pupils with the stop of the lens: its iris cuts them, and stop_points() works. Pupils in closed form are
+  /// returned unchanged. Throws Error for a lens without a stop that has a semi_diameter. threads: as
   /// in enclosing().
   FilmPupilTable with_stop(const Lens& lens, int threads = 1) const;
   bool knows_stop() const noexcept;
@@ -229,16 +229,16 @@ class PETZVAL_API FilmPupilTable {
   Vec2<double> middle(const FilmPoint& film, Wavelength wavelength = {}) const noexcept;
   /// The area that the whole stop would give it, whatever its blades leave.
   double polygon_area(const FilmPoint& film, Wavelength wavelength = {}) const noexcept;
-  /// The area that a sample at a place would have; 0 where there is none.
+  /// The area of a sample at a place; 0 outside the pupil.
   double sample_area(const FilmPoint& film, double x, double y, Wavelength wavelength = {}) const noexcept;
   template <class T>
   void sample_areas(std::size_t count, const TwoPlaneRays<const T>& lines, const RayWavelengths& wavelengths,
                     T* areas) const noexcept;
-  /// Where the samples of a film point are those of the iris, so that u and v tell the stop point: the scale of that
-  /// iris, 1 or a little more. Else 0.
+  /// The scale of the iris (1 or slightly more) if the samples of a film point are uniform on the iris, so that u and v
+  /// determine the stop point; otherwise 0.
   double drawn_iris_scale(const FilmPoint& film, Wavelength wavelength = {}) const noexcept;
-  /// Where rays meet the stop, in its semi-diameters, for pupils that know it: within the scale of the iris
-  /// (FilmPupilArrays), 0.1 to 2 %. Float or double, N.
+  /// Intersections of rays with the stop, in semi-diameters, within 0.1 to 2 %, for pupils made by with_stop().
+  /// Float or double, N.
   template <class T>
   void stop_points(std::size_t count, const TwoPlaneRays<const T>& lines, const RayWavelengths& wavelengths, T* x,
                    T* y) const noexcept;
