@@ -364,7 +364,7 @@ void areas_block(const PolygonGrid<dimensions, R>& given, const R* film_x, const
     const bool inside = (behind >= R(0)) & (before >= R(0)) & (whole > R(0)) & (squared <= to) & (squared >= from);
     const bool dark = (squared >= own.obscured_from) & (squared < own.obscured_from + own.obscured);
     const R share = stopped ? own.share_within(to) - own.share_within(from) : R(1);
-    area[i] = inside & !dark ? places.lit[i] * polygon(i).whole() * share : R(0);
+    area[i] = (inside & !dark) ? places.lit[i] * polygon(i).whole() * share : R(0);
   }
   if constexpr (stopped) {
     using S = StopLayout<dimensions>;

@@ -158,8 +158,9 @@ PETZVAL_INLINE FilmPlace<T> place_of(const PolygonGrid<2, R>& grid, const T& fil
   const T x = film_x < R(0) ? T(-film_x) : film_x, y = film_y < R(0) ? T(-film_y) : film_y;
   constexpr R end = R(1) + R(1e-6);  // the edge itself, rounded, still belongs to the film
   const T row = y * grid.rows_per_mm;
-  const std::int32_t in_rows =
-      (x * x + y * y <= grid.reach * grid.reach) & (row <= end * static_cast<R>(grid.rows)) & sound;
+  const std::int32_t on_film = x * x + y * y <= grid.reach * grid.reach;
+  const std::int32_t below_last = row <= end * static_cast<R>(grid.rows);
+  const std::int32_t in_rows = on_film & below_last & sound;
   const auto above = static_cast<std::int32_t>(value_of(in_rows ? row : T(0)));
   const std::int32_t i = above < grid.rows - 1 ? above : grid.rows - 1;
   const T s = (in_rows ? row : T(0)) - static_cast<R>(i);
