@@ -49,7 +49,8 @@ double magnification(const petzval::Lens& lens, double object_z) {
   return std::abs((image_z - first.rear_focal_z) / first.effective_focal_length);
 }
 
-/// Angle under which the entrance pupil sees a field of the design (rad); nullopt if it tells none.
+/// Angle under which the entrance pupil sees a field of the design (rad); nullopt if the design does not determine the
+/// angle.
 std::optional<double> field_angle(const petzval::Prescription& p, const petzval::Lens& lens, double value) {
   const petzval::DesignData& design = p.design;
   if (design.field_kind != FieldKind::real_image_height) {

@@ -132,13 +132,14 @@ void check(ModelKind model, const LensFacts& facts) {
 }
 
 FilmPupilTable two_disc_pupils(const Lens& lens, double film_radius) {
-  const FilmPupilTable real = FilmPupilTable::equal_area(lens, film_radius), round = real.of_round_stop();
+  const FilmPupilTable round = FilmPupilTable::equal_area(with_iris(lens, {}), film_radius);
   std::vector<std::vector<PupilDisc>> discs;
-  for (std::size_t w = 0; w < real.wavelengths(); ++w) {
+  for (std::size_t w = 0; w < round.wavelengths(); ++w) {
     const auto fitted = fit_two_discs(real_edges(round, w));
     discs.emplace_back(fitted.begin(), fitted.end());
   }
-  return real.reshaped(discs);
+  const FilmPupilTable reshaped = round.reshaped(discs);
+  return lens.iris().round() ? reshaped : reshaped.with_stop(lens);
 }
 
 /// The size of the iris's image through which the film's centre gets the light of the exact lens: of its semi-axis

@@ -17,7 +17,7 @@ constexpr std::size_t block = 256;
 }  // namespace
 
 struct PupilWeights::Data {
-  FilmPupilTable pupils, whole;  // with the stop, if weights act there
+  FilmPupilTable pupils, whole;  // include the stop, if weights act on the stop
   bool on_stop;                  // else weights act on the pupil of each film point
   std::optional<iris_detail::IrisWeights> weights;
   bool keep_light;  // that the rim which cuts the pupils takes
@@ -105,16 +105,26 @@ template <class T>
 void PupilWeights::of_samples(std::size_t count, const T* u, const T* v, const TwoPlaneRays<const T>& lines,
                               const RayWavelengths& wavelengths, T* weights) const noexcept {
   const Data& data = *data_;
-  if (data.on_stop) data.weigh(count, lines, wavelengths, weights);
-  for (std::size_t i = 0; i < count; ++i) {
-    if (!data.weights) {
-      weights[i] = T(1);
-      continue;
+  std::array<double, block> scales;  // of the iris that samples are drawn from; 0: they are drawn from a polygon
+  for (std::size_t begin = 0; begin < count; begin += block) {
+    const std::size_t n = std::min(block, count - begin);
+    const auto lines_here = lines.from(begin);
+    const auto wavelengths_here = wavelengths.from(begin);
+    for (std::size_t i = 0; i < n; ++i) {
+      const FilmPoint film{lines_here.film_x[i], lines_here.film_y[i]};
+      scales[i] = data.on_stop ? data.pupils.drawn_iris_scale(film, wavelengths_here.at(i)) : 1;
     }
-    // For samples of the iris, u and v determine the stop point; v is the share of the area nearer to the centre.
-    const double scale =
-        data.on_stop ? data.pupils.drawn_iris_scale({lines.film_x[i], lines.film_y[i]}, wavelengths.at(i)) : 1;
-    if (scale > 0) weights[i] = static_cast<T>(data.weights->of_sample(u[i], std::min(v[i] * scale * scale, 1.0)));
+    const bool polygons = std::any_of(scales.begin(), scales.begin() + n, [](double scale) { return scale == 0; });
+    if (polygons) data.weigh(n, lines_here, wavelengths_here, weights + begin);
+    for (std::size_t i = 0; i < n; ++i) {
+      // For samples of the iris, u and v determine the stop point; v is the share of the area nearer to the centre.
+      const double share = std::min(v[begin + i] * scales[i] * scales[i], 1.0);
+      if (!data.weights) {
+        weights[begin + i] = T(1);
+      } else if (scales[i] > 0) {
+        weights[begin + i] = static_cast<T>(data.weights->of_sample(u[begin + i], share));
+      }
+    }
   }
   data.brighten(count, lines, wavelengths, weights);
 }

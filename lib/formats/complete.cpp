@@ -458,7 +458,7 @@ void Completion::declare() {
   }
 }
 
-/// Declared data that the lens does not have, as lint() finds them.
+/// Warns of declared data that lint() finds to differ from the lens.
 void Completion::compare_the_declared() try {
   using enum FindingKind;
   const GlassCatalogue* glasses = in_.loaded_glasses();

@@ -16,17 +16,6 @@ using Linear = std::array<double, CellLayout<dimensions>::linear>;
 template <int dimensions>
 using Area = std::array<double, CellLayout<dimensions>::area_terms>;
 
-template <int dimensions, class Number>
-Linear<dimensions> linear(const AtCorners<dimensions>& at, const Number& number) {
-  const double a = number(*at[0]), b = number(*at[1]);
-  if constexpr (dimensions == 1) {
-    return {a, b - a};
-  } else {
-    const double c = number(*at[2]), d = number(*at[3]);
-    return {a, b - a, c - a, (d - c) - (b - a)};
-  }
-}
-
 /// Adds the area of the triangle between the middle and two corners, less the share that is obscured.
 void add_sector(Area<1>& sum, const Linear<1>& ax, const Linear<1>& ay, const Linear<1>& bx, const Linear<1>& by,
                 const Linear<1>& obscured) {

@@ -10,6 +10,7 @@
 #include <optional>
 #include <vector>
 
+#include "core/quadrature.hpp"
 #include "film_grid.hpp"
 #include "iris/iris_shape.hpp"
 #include "iris_images.hpp"
@@ -19,6 +20,38 @@
 #include "stop_cells.hpp"
 
 namespace petzval {
+namespace pupil_table_detail {
+
+/// The mean of value(u, v) over the unit square of samples.
+template <class Value>
+double mean_over_samples(int around, const Value& value) {
+  static const auto outwards = core_detail::gauss_legendre<4>();
+  double sum = 0;
+  for (int k = 0; k < around; ++k) {
+    for (const auto& [v, weight] : outwards) sum += weight * value((k + 0.5) / around, v);
+  }
+  return sum / around;
+}
+
+/// The projected solid angle of a place in the pupil, per mm^2 and over the square of the depth.
+inline double solid_angle_at(const TwoPlanes& space, const FilmPoint& film, double x, double y) noexcept {
+  const double dx = x - film.x, dy = y - film.y, length2 = dx * dx + dy * dy + space.depth() * space.depth();
+  return 1 / (length2 * length2);
+}
+
+/// A value that is linear in a cell (CellLayout), from the nodes at its corners: of its first row, then of its second.
+template <int dimensions, class Nodes, class Number>
+std::array<double, CellLayout<dimensions>::linear> linear(const Nodes& nodes, const Number& number) {
+  const double a = number(*nodes[0]), b = number(*nodes[1]);
+  if constexpr (dimensions == 1) {
+    return {a, b - a};
+  } else {
+    const double c = number(*nodes[2]), d = number(*nodes[3]);
+    return {a, b - a, c - a, (d - c) - (b - a)};
+  }
+}
+
+}  // namespace pupil_table_detail
 
 /// The contents of a table: images of an iris, or a grid of polygons with a stop.
 struct FilmPupilTable::Data {

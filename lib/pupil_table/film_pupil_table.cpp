@@ -5,7 +5,6 @@
 #include <cmath>
 
 #include "core/dual.hpp"
-#include "core/quadrature.hpp"
 #include "film_pupil_data.hpp"
 #include "polygon_blocks.hpp"
 #include "polygon_place.hpp"
@@ -56,13 +55,11 @@ FilmPupilArrays FilmPupilTable::arrays() const {
 
 PupilSample FilmPupilTable::sample(const FilmPoint& film, double u, double v, Wavelength wavelength) const noexcept {
   if (const auto& images = data_->images) return images->sample(film, u, v, wavelength);
-  const std::int32_t known = data_->known(wavelength);
   PupilSample result;
-  if (data_->dimensions == 1) {
-    polar_loops().one(data_->grid<1, double>(), film.x, film.y, u, v, known, result.x, result.y, result.area);
-  } else {
-    plain_quadrant_loops.one(data_->grid<2, double>(), film.x, film.y, u, v, known, result.x, result.y, result.area);
-  }
+  data_->with_grid<double>([&](const auto& grid, const auto&) {
+    sample_loops<std::decay_t<decltype(grid)>::dimensions>().one(grid, film.x, film.y, u, v, data_->known(wavelength),
+                                                                 result.x, result.y, result.area);
+  });
   return result;
 }
 
@@ -74,16 +71,10 @@ void FilmPupilTable::sample(std::size_t count, const T* film_x, const T* film_y,
     return;
   }
   data_->by_position(count, wavelengths, [&](std::size_t o, std::size_t n, const RayWavelengths& known) {
-    const auto run = [&](const auto& grid, const auto& loop) {
+    data_->with_grid<T>([&](const auto& grid, const auto&) {
+      const auto loop = sample_loops<std::decay_t<decltype(grid)>::dimensions>().template of<T>();
       loop(grid, n, film_x + o, film_y + o, u + o, v + o, known, x + o, y + o, areas + o);
-    };
-    if (data_->dimensions == 2) {
-      run(data_->grid<2, T>(), plain_quadrant_loops.of<T>().sample);
-    } else if constexpr (sizeof(T) == sizeof(float)) {
-      run(data_->grid<1, T>(), polar_loops().single);
-    } else {
-      run(data_->grid<1, T>(), polar_loops().twice);
-    }
+    });
   });
 }
 
@@ -96,32 +87,23 @@ double FilmPupilTable::polygon_area(const FilmPoint& film, Wavelength wavelength
 }
 
 double FilmPupilTable::area(const FilmPoint& film, Wavelength wavelength) const noexcept {
-  return data_->stop     ? mean_over_samples(film, wavelength, [](const PupilSample&) { return 1.0; })
-         : data_->images ? data_->images->area(film, wavelength)
-                         : polygon_area(film, wavelength);
+  if (const auto& images = data_->images) return images->area(film, wavelength);
+  return data_->stop ? mean_over_samples(film, wavelength, [](const PupilSample&) { return 1.0; })
+                     : polygon_area(film, wavelength);
 }
 
 double FilmPupilTable::projected_solid_angle(const FilmPoint& film, Wavelength wavelength) const noexcept {
-  const double depth2 = space().depth() * space().depth();
-  return depth2 * mean_over_samples(film, wavelength, [&](const PupilSample& s) {
-           const double dx = s.x - film.x, dy = s.y - film.y, length2 = dx * dx + dy * dy + depth2;
-           return 1 / (length2 * length2);
-         });
+  const auto value = [&](const PupilSample& s) { return solid_angle_at(space(), film, s.x, s.y); };
+  return space().depth() * space().depth() * mean_over_samples(film, wavelength, value);
 }
 
 template <class Value>
 double FilmPupilTable::mean_over_samples(const FilmPoint& film, Wavelength wavelength, const Value& value) const {
   // Areas change fast with u if an iris cuts the polygon.
-  const int around = data_->stop ? 128 : 16;
-  static const auto outwards = core_detail::gauss_legendre<4>();
-  double sum = 0;
-  for (int k = 0; k < around; ++k) {
-    for (const auto& [v, weight] : outwards) {
-      const PupilSample s = sample(film, (k + 0.5) / around, v, wavelength);
-      if (s.area > 0) sum += weight * s.area * value(s);
-    }
-  }
-  return sum / around;
+  return pupil_table_detail::mean_over_samples(data_->stop ? 128 : 16, [&](double u, double v) {
+    const PupilSample s = sample(film, u, v, wavelength);
+    return s.area > 0 ? s.area * value(s) : 0;
+  });
 }
 
 Vec2<double> FilmPupilTable::middle(const FilmPoint& film, Wavelength wavelength) const noexcept {

@@ -10,7 +10,6 @@
 #include <string>
 #include <vector>
 
-#include "core/quadrature.hpp"
 #include "core/text.hpp"
 #include "film_grid.hpp"
 #include "film_polygons.hpp"
@@ -25,29 +24,17 @@ namespace {
 
 using namespace pupil_table_detail;
 
-/// The projected solid angle of a pupil from uniform samples of it: place_at(u, v).
-template <class PlaceAt>
-double solid_angle(const TwoPlanes& space, const FilmPoint& film, double area, const PlaceAt& place_at) noexcept {
-  constexpr int around = 16;
-  static const auto outwards = core_detail::gauss_legendre<4>();
-  const double depth2 = space.depth() * space.depth();
-  double sum = 0;
-  for (int k = 0; k < around; ++k) {
-    for (const auto& [v, weight] : outwards) {
-      const Vec2<double> place = place_at((k + 0.5) / around, v);
-      const double dx = place.x - film.x, dy = place.y - film.y, length2 = dx * dx + dy * dy + depth2;
-      sum += weight / (length2 * length2);
-    }
-  }
-  return area * depth2 * sum / around;
-}
-
 /// Scales a polygon until its film point sees it in a projected solid angle.
 void scale_to_light(PupilPolygon& polygon, const TwoPlanes& space, const FilmPoint& film, double wanted) {
   // The solid angle grows with the square of the scale, nearly.
   for (int round = 0; round < 3; ++round) {
     const PolygonSampler sampler(polygon);
-    const double own = solid_angle(space, film, sampler.area(), sampler);
+    const auto solid_angle = [&](double u, double v) {
+      const Vec2<double> place = sampler(u, v);
+      return solid_angle_at(space, film, place.x, place.y);
+    };
+    const double own =
+        sampler.area() * (space.depth() * space.depth()) * pupil_table_detail::mean_over_samples(16, solid_angle);
     const double scale = own > 0 ? std::sqrt(wanted / own) : 0;
     for (auto& corner : polygon.corners) corner = {scale * corner[0], scale * corner[1]};
   }
@@ -204,19 +191,17 @@ FilmPupilTable FilmPupilTable::reshaped(std::span<const std::vector<PupilDisc>> 
                 std::to_string(wavelengths()));
   }
   check_discs(discs);
-  const FilmPupilTable round = of_round_stop();
   auto data = data_->alike();
   constexpr std::size_t strips = film_strips(PolygonFit::equal_area);
   for (std::size_t w = 0; w < discs.size(); ++w) {
     std::vector<PupilPolygon> polygons = disc_polygons(discs[w], lit_radius());
     for (std::size_t i = 0; i < polygons.size(); ++i) {
       const FilmPoint film{0, lit_radius() * static_cast<double>(i) / strips};
-      scale_to_light(polygons[i], space(), film, round.projected_solid_angle(film, w));
+      scale_to_light(polygons[i], space(), film, projected_solid_angle(film, w));
     }
     data->add(polygons);
   }
-  const auto& stop = data_->stop;
-  return stop ? data->with_stop(stop->shape.iris(), stop->stop_of) : FilmPupilTable(std::move(data));
+  return FilmPupilTable(std::move(data));
 }
 
 FilmPupilTable FilmPupilTable::cut_by_rim(const PupilRim& rim) const {

@@ -43,15 +43,14 @@ double area_of_one(const PolygonGrid<dimensions, double>& grid, double film_x, d
 }
 
 template <int dimensions>
-constexpr PlainLoops<dimensions> loops{
-    {sample<dimensions, float>, areas<dimensions, float>, stop_points<dimensions, float>},
-    {sample<dimensions, double>, areas<dimensions, double>, stop_points<dimensions, double>},
-    sample_one<dimensions, double>,
-    sample_one<dimensions, kernel::Dual>,
-    area_of_one<dimensions>};
+constexpr PlainLoops<dimensions> loops{{areas<dimensions, float>, stop_points<dimensions, float>},
+                                       {areas<dimensions, double>, stop_points<dimensions, double>},
+                                       sample_one<dimensions, kernel::Dual>,
+                                       area_of_one<dimensions>};
 
 }  // namespace
 
+const SampleLoops<2> quadrant_samples{sample<2, float>, sample<2, double>, sample_one<2, double>};
 const PlainLoops<1> plain_polar_loops = loops<1>;
 const PlainLoops<2> plain_quadrant_loops = loops<2>;
 

@@ -12,28 +12,48 @@
 
 namespace petzval::pupil_table_detail {
 
-/// Four inputs for each of N rays to some outputs.
+/// Samples of N rays, or of one, of a grid.
 template <int dimensions, class R>
 using SampleLoop = void (*)(const PolygonGrid<dimensions, R>&, std::size_t, const R* film_x, const R* film_y,
                             const R* u, const R* v, const RayWavelengths&, R* x, R* y, R* areas) noexcept;
 template <int dimensions>
-using SampleOne = void (*)(const PolygonGrid<dimensions, double>&, double film_x, double film_y, double u, double v,
-                           std::int32_t wavelength, double& x, double& y, double& area) noexcept;
+struct SampleLoops {
+  SampleLoop<dimensions, float> single;
+  SampleLoop<dimensions, double> twice;
+  void (*one)(const PolygonGrid<dimensions, double>&, double film_x, double film_y, double u, double v,
+              std::int32_t wavelength, double& x, double& y, double& area) noexcept;
+
+  template <class R>
+  SampleLoop<dimensions, R> of() const noexcept {
+    if constexpr (sizeof(R) == sizeof(float)) {
+      return single;
+    } else {
+      return twice;
+    }
+  }
+};
 
 /// The loops of grids with one dimension, for every instruction set.
 struct PolarLoops {
-  SampleLoop<1, float> single;
-  SampleLoop<1, double> twice;
-  SampleOne<1> one;
+  SampleLoops<1> samples;
   void (*find_nearest)(const lens_detail::NearestPosition&, std::size_t, const float* nm,
                        std::uint16_t* positions) noexcept;
 };
 PETZVAL_WIDEST(PolarLoops, polar_loops)
 
-/// Loops that gain less than 15 % from wider registers.
+/// Loops that gain less than 15 % from wider registers: grids with two dimensions, and searches.
+extern const SampleLoops<2> quadrant_samples;
+template <int dimensions>
+const SampleLoops<dimensions>& sample_loops() noexcept {
+  if constexpr (dimensions == 1) {
+    return polar_loops().samples;
+  } else {
+    return quadrant_samples;
+  }
+}
+
 template <int dimensions, class R>
 struct PlainLoopsOf {
-  SampleLoop<dimensions, R> sample;
   void (*areas)(const PolygonGrid<dimensions, R>&, std::size_t, const R* film_x, const R* film_y, const R* x,
                 const R* y, const RayWavelengths&, R* areas) noexcept;
   void (*stop_points)(const PolygonGrid<dimensions, R>&, std::size_t, const R* film_x, const R* film_y, const R* x,
@@ -43,7 +63,6 @@ template <int dimensions>
 struct PlainLoops {
   PlainLoopsOf<dimensions, float> single;
   PlainLoopsOf<dimensions, double> twice;
-  SampleOne<dimensions> one;
   void (*one_with_derivatives)(const PolygonGrid<dimensions, double>&, kernel::Dual film_x, kernel::Dual film_y,
                                kernel::Dual u, kernel::Dual v, std::int32_t wavelength, kernel::Dual& x,
                                kernel::Dual& y, kernel::Dual& area) noexcept;
@@ -62,13 +81,5 @@ struct PlainLoops {
 };
 extern const PlainLoops<1> plain_polar_loops;
 extern const PlainLoops<2> plain_quadrant_loops;
-template <int dimensions>
-const PlainLoops<dimensions>& plain_loops() noexcept {
-  if constexpr (dimensions == 1) {
-    return plain_polar_loops;
-  } else {
-    return plain_quadrant_loops;
-  }
-}
 
 }  // namespace petzval::pupil_table_detail

@@ -57,8 +57,11 @@ std::vector<double> products(int axis, const Place& stop) {
   return {1, y, x * x, y * y, x * x * y, y * y * y, r * r, r * y * y, r * r * y};
 }
 
+/// A ray on the line from the middle of a polygon to a corner.
 struct StopSample {
   Place place, stop;
+  std::size_t corner = 0;
+  double part = 0;  ///< of the line
 };
 
 template <int dimensions>
@@ -69,10 +72,10 @@ void fit(NodeMap<dimensions>& map, std::span<const StopSample> samples) {
     Eigen::MatrixXd rows(count, static_cast<Eigen::Index>(terms));
     Eigen::VectorXd values(count);
     for (Eigen::Index i = 0; i < count; ++i) {
-      const auto& [place, stop] = samples[static_cast<std::size_t>(i)];
-      const std::vector<double> of = products<dimensions>(axis, stop);
+      const StopSample& sample = samples[static_cast<std::size_t>(i)];
+      const std::vector<double> of = products<dimensions>(axis, sample.stop);
       for (std::size_t k = 0; k < terms; ++k) rows(i, static_cast<Eigen::Index>(k)) = of[k];
-      values(i) = axis == 0 ? place.x : place.y;
+      values(i) = axis == 0 ? sample.place.x : sample.place.y;
     }
     const Eigen::VectorXd solution = core_detail::least_squares(rows, values);
     const std::size_t first = dimensions == 2 ? (axis == 0 ? 0 : 10) : (axis == 0 ? 9 : 0);
@@ -93,23 +96,16 @@ void for_rays(const PupilPolygon& polygon, std::size_t step, std::span<const dou
   }
 }
 
-/// The stop points on a line outwards, as samples have them: straight.
-double error_of_line(const Place& middle, const Place& edge, double part, const Place& stop) {
-  const Place off = middle + part * (edge - middle) - stop;
-  return std::hypot(off.x, off.y);
-}
+double distance(const Place& a, const Place& b) { return std::hypot(a.x - b.x, a.y - b.y); }
 
 template <int dimensions>
 NodeMap<dimensions> map_at(const StopOf& stop_of, const FilmPoint& film, const PupilPolygon& polygon,
                            std::size_t wavelength) {
   NodeMap<dimensions> map;
   std::vector<StopSample> samples;
-  std::vector<std::array<double, 2>> lines;  // corner and part of the way
   const auto take = [&](std::size_t k, double part, const Place& place) {
     const auto stop = stop_of(film, {place.x, place.y}, wavelength);
-    if (!stop) return;
-    samples.push_back({place, {stop->x, stop->y}});
-    lines.push_back({static_cast<double>(k), part});
+    if (stop) samples.push_back({place, {stop->x, stop->y}, k, part});
   };
   take(0, 0, {polygon.middle.x, polygon.middle.y});
   // Enough distances from the middle to determine all terms for a circular pupil.
@@ -126,14 +122,11 @@ NodeMap<dimensions> map_at(const StopOf& stop_of, const FilmPoint& film, const P
     if (!stop) return map;
     map.corners[k] = *stop;
   }
-  for (std::size_t i = 0; i < samples.size(); ++i) {
-    const auto stop = map.stop(samples[i].place);
+  for (const auto& [place, met, k, part] : samples) {
+    const auto stop = map.stop(place);
     if (!stop) return map;
-    const Place off = *stop - samples[i].stop;
-    const double line =
-        error_of_line(map.middle, map.corners[static_cast<std::size_t>(lines[i][0])], lines[i][1], samples[i].stop);
-    map.error = std::max(map.error, std::hypot(off.x, off.y));
-    map.line_error = std::max(map.line_error, line);
+    map.error = std::max(map.error, distance(*stop, met));
+    map.line_error = std::max(map.line_error, distance(map.middle + part * (map.corners[k] - map.middle), met));
   }
   constexpr double most = 0.03;
   map.known = map.error <= most;
@@ -176,20 +169,18 @@ double error_in_middle(const StopOf& stop_of, const FilmPoint& film, const Pupil
   for_rays(polygon, 4, parts, [&](std::size_t, double, const Place& place) {
     const auto stop = stop_of(film, {place.x, place.y}, wavelength);
     if (!stop) return;
-    if (const auto found = map.stop(place)) error = std::max(error, std::hypot(found->x - stop->x, found->y - stop->y));
+    if (const auto found = map.stop(place)) error = std::max(error, distance(*found, {stop->x, stop->y}));
   });
   return error;
 }
 
-/// Half the sum of two or more.
+/// The mean of two maps or more, terms alone.
 template <int dimensions>
 NodeMap<dimensions> mean_of(std::span<const NodeMap<dimensions>* const> maps) {
   NodeMap<dimensions> mean;
   const double part = 1 / static_cast<double>(maps.size());
   for (const auto* map : maps) {
     for (std::size_t k = 0; k < mean.terms.size(); ++k) mean.terms[k] += part * map->terms[k];
-    mean.middle = mean.middle + part * map->middle;
-    for (std::size_t k = 0; k < polygon_corners; ++k) mean.corners[k] = mean.corners[k] + part * map->corners[k];
   }
   return mean;
 }
@@ -202,13 +193,14 @@ double change_of(const NodeMap<dimensions>& map, const NodeMap<dimensions>& next
   double change = 0;
   for_rays(polygon, 8, parts, [&](std::size_t, double, const Place& place) {
     const auto a = map.stop(place), b = next.stop(place);
-    if (a && b) change = std::max(change, middle * std::hypot(a->x - b->x, a->y - b->y));
+    if (a && b) change = std::max(change, middle * distance(*a, *b));
   });
   return change;
 }
 
+/// drawn: StopLayout::drawn.
 template <int dimensions>
-std::vector<double> cell_of(std::span<const NodeMap<dimensions>* const> at, double scale) {
+std::vector<double> cell_of(std::span<const NodeMap<dimensions>* const> at, bool drawn, double scale) {
   using S = StopLayout<dimensions>;
   std::vector<double> cell(S::size);
   cell[S::scale] = scale;
@@ -217,15 +209,10 @@ std::vector<double> cell_of(std::span<const NodeMap<dimensions>* const> at, doub
       cell[S::map + S::linear * k] = 1;
     return cell;
   }
-  cell[S::drawn] = std::all_of(at.begin(), at.end(), [](const auto* map) { return map->drawn; }) ? 1 : 0;
+  cell[S::drawn] = drawn ? 1 : 0;
   const auto put = [&](std::int32_t place, const auto& number) {
-    const double a = number(*at[0]), b = number(*at[1]);
-    double* to = cell.data() + place;
-    to[0] = a, to[1] = b - a;
-    if constexpr (dimensions == 2) {
-      const double c = number(*at[2]), d = number(*at[3]);
-      to[2] = c - a, to[3] = (d - c) - (b - a);
-    }
+    const auto numbers = linear<dimensions>(at, number);
+    std::copy(numbers.begin(), numbers.end(), cell.begin() + place);
   };
   for (std::int32_t k = 0; k < S::terms; ++k) {
     put(S::map + S::linear * k, [k](const auto& map) { return map.terms[static_cast<std::size_t>(k)]; });
@@ -283,6 +270,7 @@ std::vector<double> stop_cells(const Data& data, const iris_detail::IrisShape& s
           middle.x += film.x / static_cast<double>(nodes.size());
           middle.y += film.y / static_cast<double>(nodes.size());
         }
+        const bool drawn = std::all_of(at.begin(), at.end(), [](const Map* map) { return map->drawn; });
         double scale = 1;
         if (!std::all_of(at.begin(), at.end(), [](const Map* map) { return map->known; })) {
           scale = unlimited;
@@ -293,7 +281,6 @@ std::vector<double> stop_cells(const Data& data, const iris_detail::IrisShape& s
           }
           double error = error_in_middle(stop_of, middle, interpolated(own, weights), mean_of<dimensions>(at), w);
           for (const Map* map : at) error = std::max(error, map->error);
-          const bool drawn = std::all_of(at.begin(), at.end(), [](const Map* map) { return map->drawn; });
           // The part of the error of a line that remains after the second cut.
           constexpr double left = 0.1;
           double of_lines = 0;
@@ -302,7 +289,7 @@ std::vector<double> stop_cells(const Data& data, const iris_detail::IrisShape& s
           constexpr double room = 1.25, more = 100, always = 2e-4;
           scale += (room + more * error) * error + of_lines + always;
         }
-        const std::vector<double> cell = cell_of<dimensions>(at, scale);
+        const std::vector<double> cell = cell_of<dimensions>(at, drawn, scale);
         by_wavelength[w].insert(by_wavelength[w].end(), cell.begin(), cell.end());
       }
     }

@@ -9,7 +9,6 @@
 #include "clearances.hpp"
 #include "lens/lens_view.hpp"
 #include "route.hpp"
-#include "stop_points.hpp"
 
 namespace petzval {
 namespace {
@@ -158,28 +157,6 @@ void trace_all(const Lens& lens, std::size_t count, const RayArrays<const R>& in
 }  // namespace
 
 template <class T>
-void trace_detail::stop_points(const Lens& lens, std::size_t count, const RayArrays<const T>& rays, T* x, T* y,
-                               BatchOptions options) noexcept {
-  options.apertures = false;
-  const auto trace_blocks = loops<T>(tracer(options.instruction_set, options.arithmetic));
-  auto job = job_for<T>(lens, options);
-  job.rays = count - count % block;
-  job.in = rays;
-  job.stop_x = x, job.stop_y = y;
-  trace_blocks(job);
-  const std::size_t done = job.rays, rest = count - done;
-  if (rest == 0) return;
-  Block<T> last;
-  copy(rest, rays, done, last.arrays(), 0);
-  copy_wavelengths(rest, options.wavelengths, done, last);
-  use(last, rest, job);
-  job.stop_x = last.v[6].data(), job.stop_y = last.v[7].data();
-  trace_blocks(job);
-  std::copy_n(last.v[6].begin(), rest, x + done);
-  std::copy_n(last.v[7].begin(), rest, y + done);
-}
-
-template <class T>
 void trace_detail::clearances(const Lens& lens, std::size_t count, const RayArrays<T>& rays, T* clearances,
                               const BatchOptions& options) noexcept {
   const RayArrays<const T> in{rays.x, rays.y, rays.z, rays.dx, rays.dy, rays.dz};
@@ -231,10 +208,6 @@ template PETZVAL_API void trace(const Lens&, std::size_t, const RayArrays<const 
                                 RayFate*, int*, const BatchOptions&) noexcept;
 template PETZVAL_API void trace(const Lens&, std::size_t, const RayArrays<const double>&, const RayArrays<double>&,
                                 RayFate*, int*, const BatchOptions&) noexcept;
-template PETZVAL_API void trace_detail::stop_points(const Lens&, std::size_t, const RayArrays<const float>&, float*,
-                                                    float*, BatchOptions) noexcept;
-template PETZVAL_API void trace_detail::stop_points(const Lens&, std::size_t, const RayArrays<const double>&, double*,
-                                                    double*, BatchOptions) noexcept;
 template PETZVAL_API void trace_detail::clearances(const Lens&, std::size_t, const RayArrays<double>&, double*,
                                                    const BatchOptions&) noexcept;
 template PETZVAL_API void trace_differentials(const Lens&, std::size_t, const RayArrays<const float>&,

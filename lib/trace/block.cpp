@@ -8,7 +8,6 @@
 
 #include "least_clearance.hpp"
 #include "march.hpp"
-#include "stop_hits.hpp"
 
 namespace petzval::trace_detail {
 namespace {
@@ -52,7 +51,6 @@ PETZVAL_INLINE void march(const BlockJob<R>& job, MediaAt&& media_at, std::uint8
                           Follow& follow) {
   for (std::size_t j = 0; j < job.steps; ++j) {
     pass(job, j, media_at(j), unsettled, b, follow);
-    if (follow.done()) return;
     if (j % 4 != 3) continue;
     Mask<R> left = b.alive[0];
     for (int i = 1; i < b.used; ++i) left = left | b.alive[i];
@@ -70,11 +68,6 @@ void trace_bundle(const BlockJob<R>& job, std::size_t o, const R* index, const R
   const std::size_t left = job.rays - o;
   if (left < Bundle<R>::rays) b.used = (static_cast<int>(left) + Lanes<R>::width - 1) / Lanes<R>::width;
   enter(job, in, index, b);
-  if (job.stop_x) {
-    StopHits<R> hits(b, job.stop_x + o, job.stop_y + o);
-    march(job, media_at, unsettled, b, hits);
-    return;
-  }
   Mask<R> taken = b.alive[0];
   for (int i = 1; i < b.used; ++i) taken = taken & b.alive[i];
   if (job.tangents_in) {

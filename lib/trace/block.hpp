@@ -40,8 +40,6 @@ struct BlockJob : Route<R> {
   const RayTangents<const R>* tangents_in = nullptr;  ///< null: no derivatives
   RayTangents<R> tangents_out;
   R* clearances = nullptr;  ///< or null; without derivatives
-  R* stop_x = nullptr;      ///< or null; nothing else is wanted then
-  R* stop_y = nullptr;
 };
 
 template <class R>

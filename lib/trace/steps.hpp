@@ -37,7 +37,6 @@ struct NoTangents {
   PETZVAL_INLINE void pass(const kernel::Step<R>&, const Bundle<R>&, int, const Contact<R>&) noexcept {}
   template <class R>
   PETZVAL_INLINE void watch(const Route<R>&, std::size_t, const Bundle<R>&) noexcept {}
-  static constexpr bool done() noexcept { return false; }
   static constexpr bool wanted = false;
 };
 

@@ -28,7 +28,6 @@ struct TwoTangents {
   }
 
   PETZVAL_INLINE void watch(const Route<R>&, std::size_t, const Bundle<R>&) noexcept {}
-  static constexpr bool done() noexcept { return false; }
 
  private:
   /// What both derivatives share: 1 / xi, and how gamma grows with xi and nn.

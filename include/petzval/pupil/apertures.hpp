@@ -40,7 +40,7 @@ PETZVAL_API std::optional<double> declared_field(const Prescription& rows, const
                                                  double value);
 
 /// The largest field that a prescription declares (rad): `half_field_deg`, the fields of `design`, or the field whose
-/// image lies at half of `image_diagonal_mm`; nullopt if it declares none.
+/// image lies at half of `image_diagonal_mm`; nullopt if the prescription declares no field.
 PETZVAL_API std::optional<double> declared_half_field(const Prescription& rows, const Lens& lens);
 
 }  // namespace petzval

@@ -67,8 +67,8 @@ struct FilmPupilArrays {
   /// Images: [wavelength] shift x, shift y, radius x, radius y, area (see PupilImage). Polygons: [wavelength][row]
   /// [column] the cells of film points between y = height row / rows and the next row. Polar: film points lie on +y and
   /// polygons turn with them; values are linear in the fraction t of the way between rows, given by 1, t. Quadrant:
-  /// film points x, y >= 0, those of other quadrants are mirror images; values are linear in t along the row,
-  /// half_widths long, between the column and the next, and in s from row to row, given by 1, t, s, st. With n = 2 or 4
+  /// film points x, y >= 0; the other quadrants are mirror images. Values are linear in t along a row of length
+  /// half_widths, from one column to the next, and in s from row to row: 1, t, s, st. With n = 2 or 4
   /// numbers a value, and m = 4 or 9 terms of an area (by 1, t, t^2, t^3, or by 1, t, t^2, s, st, st^2, s^2, s^2 t, s^2
   /// t^2):
   ///
@@ -112,9 +112,8 @@ struct FilmPupilArrays {
 ///
 /// An iris with blades needs with_stop(), which enclosing() and equal_area() call by themselves. Film points that see
 /// all of it have samples that are uniform on the iris: polynomials of third to fifth order, interpolated as polygons
-/// are, tell where the pupil shows them, and areas change with the sample. Where rims cut, samples are those of the
-/// part of the polygon that the iris leaves. Between the two kinds of film points samples step; what they estimate does
-/// not.
+/// are, map them to the pupil, and areas change with the sample. At film points with vignetting, samples are uniform on
+/// the part of the polygon inside the iris. Samples jump between the two kinds of film points; estimates do not.
 ///
 /// A wavelength in nm has the pupils of the nearest compiled one. Those of enclosing() contain the rays of wavelengths
 /// up to the middles between compiled ones, for 0.1 to 1.5 % more samples that are lost where these are 150 nm apart
@@ -160,8 +159,8 @@ class PETZVAL_API FilmPupilTable {
                                  std::span<const double> wavelengths_nm = {});
 
   /// The same film and planes, and pupils that have the shape of an overlap of discs, one list for each wavelength, and
-  /// let through as much light as these do: about their middles they are scaled to the same projected_solid_angle(). A
-  /// bladed iris cuts them as it does these; discs are those of the round stop. Throws Error for other discs than
+  /// let through as much light as these do: about their middles they are scaled to the same projected_solid_angle().
+  /// They know no stop (with_stop()). Throws Error for other discs than
   /// of_discs() takes, and other than one list for each wavelength of these pupils.
   FilmPupilTable reshaped(std::span<const std::vector<PupilDisc>> discs) const;
 
