@@ -6,8 +6,8 @@
 
 namespace petzval::core_detail {
 
-/// The last parameter with a property, between one that has it and one that does not, by bisection down to neighbouring
-/// doubles.
+/// The last parameter with a property, by bisection down to neighbouring doubles.
+/// Requires that `with` has the property and that `without` lacks it.
 template <class Property>
 double last_with(double with, double without, const Property& property) {
   for (;;) {
@@ -17,14 +17,15 @@ double last_with(double with, double without, const Property& property) {
   }
 }
 
-/// The search for the last parameter, within `tolerance`, at which a function is not negative: evaluate it at next()
-/// and take() the value, until done(). Many searches go on side by side. Superlinear where the function is smooth,
-/// never more than one evaluation beyond bisection where it jumps. Source: Oliveira and Takahashi 2020, "An
-/// enhancement of the bisection method average performance preserving minmax optimality" (ITP, kappa1 = 0.2 /
-/// interval, kappa2 = 2, n0 = 1).
+/// Search for the last parameter, within `tolerance`, at which a function is not negative.
+/// Evaluate the function at next() and pass the value to take(), until done(); many searches can run side by side.
+/// Superlinear if the function is smooth, at most one evaluation more than bisection if it jumps.
+/// Source: Oliveira and Takahashi 2020, "An enhancement of the bisection method average performance preserving minmax
+/// optimality" (ITP, kappa1 = 0.2 / interval, kappa2 = 2, n0 = 1).
 class LastAbove {
  public:
-  /// above, at_above: a parameter and its value >= 0; below, at_below: one with a negative value.
+  /// @param above, at_above a parameter and its value, which is >= 0
+  /// @param below, at_below a parameter and its value, which is negative
   LastAbove(double above, double at_above, double below, double at_below, double tolerance) noexcept
       : above_(above),
         at_above_(at_above),
@@ -48,7 +49,7 @@ class LastAbove {
     choose();
   }
 
-  /// The ends of the interval that is left.
+  /// The ends of the remaining interval.
   double above() const noexcept { return above_; }
   double below() const noexcept { return below_; }
 
@@ -70,7 +71,7 @@ class LastAbove {
   bool done_ = false;
 };
 
-/// That search for one function: the parameter itself.
+/// Runs LastAbove on one function and returns the parameter.
 template <class Function>
 double last_above(double above, double at_above, double below, double at_below, double tolerance,
                   const Function& function) {

@@ -8,8 +8,9 @@
 
 namespace petzval::core_detail {
 
-/// Throws Error, which begins with `where`, for a film without area or pixels, with lengths beyond 1e9 mm, or tilted by
-/// a quarter turn or more.
+/// Checks the size, pixels, position and tilt of a film.
+/// @throws Error, prefixed with `where`, if the film has no area or no pixels, if a length exceeds 1e9 mm, or if it is
+/// tilted by a quarter turn or more
 PETZVAL_API void check_rectangle(const std::string& where, const Film& film);
 
 }  // namespace petzval::core_detail

@@ -8,7 +8,7 @@
 
 namespace petzval::kernel {
 
-/// Derivatives of a number by two variables.
+/// Derivatives of a number with respect to two variables.
 struct Gradient {
   double x = 0, y = 0;
 
@@ -25,7 +25,8 @@ struct Gradient {
   PETZVAL_INLINE friend Gradient operator*(double s, const Gradient& a) noexcept { return a * s; }
 };
 
-/// A number with its derivatives by two variables: a scalar of the kernels. Comparisons compare the values.
+/// A number with its derivatives with respect to two variables; can be the scalar of the kernels. Comparisons compare
+/// the values.
 struct Dual {
   using Scalar = double;
 
@@ -35,7 +36,7 @@ struct Dual {
   constexpr Dual() noexcept = default;
   constexpr explicit Dual(double value) noexcept : a(value) {}
   constexpr Dual(double value, const Gradient& gradient) noexcept : a(value), v(gradient) {}
-  /// One of the two variables, 0 or 1.
+  /// The independent variable 0 or 1.
   Dual(double value, int variable) noexcept : a(value) { v[variable] = 1; }
 
   PETZVAL_INLINE friend Dual operator-(const Dual& f) noexcept { return {-f.a, -f.v}; }

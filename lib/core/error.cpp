@@ -24,6 +24,6 @@ std::string one_line(std::string message) {
 
 Error::Error(std::string message) : std::runtime_error(one_line(std::move(message))) {}
 
-Error::~Error() = default;  // anchors the type information in this library, so that it can be caught across its border
+Error::~Error() = default;  // anchors the type information in this library, so that other libraries can catch an Error
 
 }  // namespace petzval

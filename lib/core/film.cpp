@@ -71,7 +71,7 @@ double Film::angle() const noexcept {
 }
 
 double Film::z() const {
-  if (!z_mm) throw Error("film: z_mm is not set, wanted its place on the axis");
+  if (!z_mm) throw Error("film: z_mm is not set; must be the film position on the axis");
   return *z_mm;
 }
 
@@ -93,9 +93,9 @@ Film film_in(const Plane& plane, const Film& film) {
   const double z = plane.offset / plane.normal.z;
   const Vec3<double> n = plane.normal.z < 0 ? -plane.normal : plane.normal;
   if (!std::isfinite(z) || !std::isfinite(n.x) || !std::isfinite(n.y)) {
-    throw Error("film_in: the plane has the normal (" + to_text(plane.normal.x) + ", " + to_text(plane.normal.y) +
-                ", " + to_text(plane.normal.z) + ") and the offset " + to_text(plane.offset) +
-                " mm, wanted finite numbers and a plane that crosses the axis");
+    throw Error("film_in: plane: normal = (" + to_text(plane.normal.x) + ", " + to_text(plane.normal.y) + ", " +
+                to_text(plane.normal.z) + "), offset = " + to_text(plane.offset) +
+                " mm; must be finite, and the plane must cross the axis");
   }
   Film laid = film;
   laid.z_mm = z;

@@ -5,12 +5,13 @@
 
 namespace petzval::core_detail {
 
-/// Turns a matrix by Householder's reflections until its first columns are a triangle: R of their QR decomposition, and
-/// what is below it is not set; the columns behind them turn along. With at least as many rows as columns, least
-/// squares keep their solutions and all columns their products with each other.
+/// Reduces the first columns of a matrix to upper-triangular form by Householder reflections and applies the
+/// reflections to the rest.
+/// The triangle is R of the QR decomposition; entries below it are undefined. If there are at least as many rows as
+/// columns, least-squares solutions and the scalar products of all columns are preserved.
 ///
-/// Eigen's decompositions and products of large matrices sum in blocks that the processor's caches choose, and so have
-/// other bits on another processor. This has not.
+/// The result is the same on every processor. Eigen's decompositions and products of large matrices sum in blocks whose
+/// size depends on the processor's caches, so that their last bits differ between processors.
 void to_triangle(Eigen::Ref<Eigen::MatrixXd> matrix, Eigen::Index columns);
 
 }  // namespace petzval::core_detail

@@ -20,7 +20,8 @@ namespace {
 
 constexpr InstructionSet all[] = {InstructionSet::baseline, InstructionSet::avx2, InstructionSet::avx512};
 
-/// How many of them the environment allows: all where it says nothing.
+/// Number of sets, from the narrowest, that PETZVAL_INSTRUCTION_SET allows: all if it is not set, 1 if its value is
+/// unknown.
 [[maybe_unused]] std::size_t allowed() noexcept {
   const char* widest = std::getenv("PETZVAL_INSTRUCTION_SET");
   if (!widest || !*widest) return std::size(all);

@@ -5,7 +5,7 @@
 
 namespace petzval::kernel {
 
-/// Three components of any scalar. GLM vectors cannot hold derivatives or lanes.
+/// Three components of any scalar type. GLM vectors cannot hold derivatives or lanes.
 template <class T>
 struct Vec {
   T x, y, z;

@@ -7,7 +7,7 @@
 
 namespace petzval::core_detail {
 
-/// The x for which rows * x is nearest to the values. Where columns say the same to 1e-9, the smallest of such x.
+/// The x that minimises |rows * x - values|; the shortest such x if columns are linearly dependent to 1e-9.
 PETZVAL_API Eigen::VectorXd least_squares(const Eigen::MatrixXd& rows, const Eigen::VectorXd& values);
 
 }  // namespace petzval::core_detail

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Numbers of a short table by lane, for sources of one instruction set each, as core/simd.hpp.
+// Look-up in a short table by lane. For sources compiled once per instruction set, like core/simd.hpp.
 #pragma once
 
 #include <cstddef>
@@ -13,7 +13,7 @@
 namespace petzval::core_detail {
 namespace {
 
-/// The longest table that registers hold and permute; 0 without such an instruction.
+/// Number of entries of the longest table that a permutation of registers can read; 0 if there is no such instruction.
 #if defined(__AVX512F__)
 template <class R>
 inline constexpr std::size_t permuted = 2 * static_cast<std::size_t>(lane_count<R>);
@@ -25,7 +25,7 @@ template <class R>
 inline constexpr std::size_t permuted = 0;
 #endif
 
-/// The numbers at places of a table that fills so many registers, 1 or 2, which are loaded whole. For permuted<R> > 0.
+/// Entries of a table that fills `registers` registers (1 or 2), which are loaded in full. Requires permuted<R> > 0.
 template <int registers, class R>
 PETZVAL_INLINE typename Native<R>::Values permute(const R* table,
                                                   [[maybe_unused]] const typename Native<R>::Bits& places) noexcept {
@@ -53,8 +53,8 @@ PETZVAL_INLINE typename Native<R>::Values permute(const R* table,
   return low;
 }
 
-/// The numbers at places of a table of `count` numbers: permuted, or gathered from one that registers do not hold.
-/// Whole registers of it are loaded, up to a pair.
+/// Entries of a table of `count` numbers: permuted if registers can hold the table, otherwise gathered.
+/// A permuted table is read in full registers, one or two, beyond `count`.
 template <class R>
 PETZVAL_INLINE typename Native<R>::Values look_up(const R* table, std::size_t count,
                                                   const typename Native<R>::Bits& places) noexcept {

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-/// What loops on lanes call for one number.
+/// Scalar functions that vectorised loops call.
 namespace petzval::core_detail {
 
-// Local names: this is compiled for several instruction sets, and the linker must not take one for another.
+// Local names: this file is compiled for several instruction sets, and the linker must not merge their functions.
 namespace {
 
 inline float square_root(float x) noexcept { return __builtin_sqrtf(x); }
@@ -14,7 +14,7 @@ inline T square_root(const T& x) noexcept {
   return sqrt(x);
 }
 
-/// 1 or -1, in a form without branches, which nobody could predict; of a dual number without derivatives.
+/// The sign of x, 1 or -1, without branches, which would be unpredictable; for a dual number, without derivatives.
 inline float sign_of(float x) noexcept { return __builtin_copysignf(1, x); }
 inline double sign_of(double x) noexcept { return __builtin_copysign(1, x); }
 template <class T>
@@ -22,7 +22,7 @@ inline T sign_of(const T& x) noexcept {
   return x < T(0) ? T(-1) : T(1);
 }
 
-/// Into [0, 1]; 0 for what is not a number.
+/// x clamped to [0, 1]; 0 for NaN.
 template <class R>
 inline R clamped(R x) noexcept {
   x = x > R(0) ? x : R(0);

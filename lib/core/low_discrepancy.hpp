@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Uniform points beside the Owen-scrambled Sobol sequence of petzval/core/sobol.hpp, which has two dimensions and is
-// uniform in blocks of powers of two.
+// Uniform point sets other than the Owen-scrambled Sobol sequence of petzval/core/sobol.hpp, which is limited to two
+// dimensions and to blocks of powers of two.
 #pragma once
 
 #include <array>
@@ -11,11 +11,11 @@
 
 namespace petzval::core_detail {
 
-/// From one state of splitmix64 to the next; mixed() of the states are its numbers.
+/// Increment of the state of splitmix64; mixed() of successive states are its random numbers.
 inline constexpr std::uint64_t splitmix_step = 0x9e3779b97f4a7c15u;
 
-/// A hash of all bits to all bits: the finaliser of splitmix64. Source: Steele, Lea and Flood 2014, "Fast splittable
-/// pseudorandom number generators".
+/// A hash in which every output bit depends on every input bit: the finaliser of splitmix64.
+/// Source: Steele, Lea and Flood 2014, "Fast splittable pseudorandom number generators".
 constexpr std::uint64_t mixed(std::uint64_t x) noexcept {
   x += splitmix_step;
   x = (x ^ (x >> 30)) * 0xbf58476d1ce4e5b9u;
@@ -23,7 +23,7 @@ constexpr std::uint64_t mixed(std::uint64_t x) noexcept {
   return x ^ (x >> 31);
 }
 
-/// The powers 1 to N of 1 / g, g^(N + 1) = g + 1.
+/// The powers 1 to N of 1 / g, where g^(N + 1) = g + 1.
 template <std::size_t N>
 constexpr std::array<double, N> kronecker_steps() noexcept {
   double g = 1.5;  // Newton's iteration
@@ -38,10 +38,10 @@ constexpr std::array<double, N> kronecker_steps() noexcept {
   return steps;
 }
 
-/// Kronecker's sequence in the unit cube of N dimensions. Any stretch of it is uniform, of any length and from any
-/// index on; that and three or more dimensions are why it exists beside Sobol's.
+/// Kronecker sequence in the N-dimensional unit cube. Unlike Sobol points, any run of it is uniform, of any length and
+/// from any index, and N is not limited to 2.
 ///
-/// The steps are the powers of 1 / g with g^(N + 1) = g + 1. Source: Roberts 2018, "The unreasonable effectiveness of
+/// The steps are the powers of 1 / g, where g^(N + 1) = g + 1. Source: Roberts 2018, "The unreasonable effectiveness of
 /// quasirandom sequences".
 template <std::size_t N>
 class Kronecker {
@@ -50,7 +50,7 @@ class Kronecker {
   constexpr Kronecker() noexcept {
     for (std::size_t k = 0; k < N; ++k) shift_[k] = steps[k] / 2;
   }
-  /// Starts at a point that the seed chooses.
+  /// Starts at a point derived from the seed.
   explicit constexpr Kronecker(std::uint64_t seed) noexcept {
     for (std::size_t k = 0; k < N; ++k) shift_[k] = static_cast<double>(mixed(N * seed + k) >> 11) * 0x1p-53;
   }
@@ -69,9 +69,9 @@ class Kronecker {
   std::array<double, N> shift_{};
 };
 
-/// Point `index` of Fibonacci's lattice of `count` points. With u around a disc and v the squared radius it is the
-/// spiral of a sunflower: every v occurs once, so that the rim of the disc is sampled more finely than by Sobol's
-/// points.
+/// Point `index` of a Fibonacci lattice of `count` points.
+/// With u around a disc and v the squared radius it is a sunflower spiral: every v is used once, so that the rim of the
+/// disc is sampled more finely than by Sobol points.
 inline std::array<double, 2> fibonacci_point(std::size_t index, std::size_t count) noexcept {
   const double i = static_cast<double>(index);
   return {std::fmod(i * std::numbers::phi, 1.0), (i + 0.5) / static_cast<double>(count)};

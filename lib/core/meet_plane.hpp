@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Where rays meet planes: the plane at z across the axis, such as an upright film, and a tilted one. Rays count as
-// whole lines; a ray along the plane gives numbers that are not finite, so that loops over many rays have no branch.
+// Intersections of rays with planes: the plane at z perpendicular to the axis (an upright film), and a tilted plane.
+// Rays are infinite lines. A ray parallel to the plane gives non-finite numbers, so that loops over many rays need no
+// branch.
 #pragma once
 
 #include <glm/geometric.hpp>
@@ -12,43 +13,43 @@
 
 namespace petzval::core_detail {
 
-/// Ray i of some arrays.
+/// Ray i of ray arrays.
 template <class T>
 Ray<std::remove_const_t<T>> ray_at(const RayArrays<T>& rays, std::size_t i) noexcept {
   return {{rays.x[i], rays.y[i], rays.z[i]}, {rays.dx[i], rays.dy[i], rays.dz[i]}};
 }
 
-/// The point of a ray in the plane at z.
+/// Intersection of a ray with the plane at z.
 template <class T>
 Vec3<T> meet_plane(const Ray<T>& ray, T z) noexcept {
   const T t = (z - ray.origin.z) / ray.direction.z;
   return {ray.origin.x + t * ray.direction.x, ray.origin.y + t * ray.direction.y, z};
 }
 
-/// The point of a ray in the plane through `point` across `normal`.
+/// Intersection of a ray with the plane through `point` with normal `normal`.
 template <class T>
 Vec3<T> meet_plane(const Ray<T>& ray, const Vec3<T>& point, const Vec3<T>& normal) noexcept {
   const T t = glm::dot(point - ray.origin, normal) / glm::dot(ray.direction, normal);
   return ray.origin + ray.direction * t;
 }
 
-/// A ray by its point in a plane across the axis and its slopes per mm of z. For rays that meet several such planes:
-/// after the division that makes the slopes each of them costs two products.
+/// A ray given by its point in a plane perpendicular to the axis and its slopes per mm of z.
+/// For rays that meet several such planes: after the division that makes the slopes, each plane costs two products.
 template <class T>
 struct SlopeRay {
   T x, y, slope_x, slope_y;
 
-  /// In the plane `away` further along z.
+  /// The same ray in the plane at distance `away` along z.
   SlopeRay moved(T away) const noexcept { return {x + away * slope_x, y + away * slope_y, slope_x, slope_y}; }
 };
 
-/// In the plane of the ray's origin.
+/// The ray in the plane of its origin.
 template <class T>
 SlopeRay<T> slope_ray(const Ray<T>& ray) noexcept {
   return {ray.origin.x, ray.origin.y, ray.direction.x / ray.direction.z, ray.direction.y / ray.direction.z};
 }
 
-/// In the plane at z.
+/// The ray in the plane at z.
 template <class T>
 SlopeRay<T> slope_ray(const Ray<T>& ray, T z) noexcept {
   return slope_ray(ray).moved(z - ray.origin.z);

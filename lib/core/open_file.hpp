@@ -11,17 +11,18 @@
 
 namespace petzval::core_detail {
 
-/// Throws Error for a folder: some systems open it as a file and fail only when it is read. wanted: the kind of file,
-/// for the message.
+/// Throws Error if `file` is a folder: some systems open a folder as a file and fail only when it is read.
+/// @param wanted the required kind of file, for the message
 inline void refuse_folder(const std::filesystem::path& file, const std::string& wanted) {
   std::error_code unknown;
-  if (std::filesystem::is_directory(file, unknown)) throw Error(file.string() + ": is a folder, wanted " + wanted);
+  if (std::filesystem::is_directory(file, unknown)) throw Error(file.string() + ": is a folder; must be " + wanted);
 }
 
-/// The system's reason for the last failure, which errno has: "No such file or directory".
+/// The system's text for the last failure, from errno: "No such file or directory".
 inline std::string reason() { return std::generic_category().message(errno); }
 
-/// A file to read, its bytes as they are. Throws Error for one that cannot be opened.
+/// Opens a file for binary reading.
+/// @throws Error if the file is a folder or cannot be opened
 inline std::ifstream opened(const std::filesystem::path& file, const std::string& wanted) {
   refuse_folder(file, wanted);
   errno = 0;

@@ -18,9 +18,9 @@ int processor_threads() noexcept { return std::max(1, static_cast<int>(std::thre
 
 void parallel_for(std::size_t count, std::size_t block, int threads,
                   const std::function<void(std::size_t, std::size_t)>& work) {
-  if (block == 0) throw Error("parallel_for: block is 0, wanted 1 or more");
-  if (threads < 1) throw Error("parallel_for: threads is " + std::to_string(threads) + ", wanted 1 or more");
-  if (!work) throw Error("parallel_for: work is empty, wanted a function");
+  if (block == 0) throw Error("parallel_for: block = 0; must be at least 1");
+  if (threads < 1) throw Error("parallel_for: threads = " + std::to_string(threads) + "; must be at least 1");
+  if (!work) throw Error("parallel_for: work is empty; must be a function");
   const std::size_t blocks = count / block + (count % block != 0);
   const auto do_block = [&](std::size_t k) { work(k * block, k * block + std::min(block, count - k * block)); };
   const std::size_t workers = std::min(static_cast<std::size_t>(threads), blocks);
@@ -29,8 +29,8 @@ void parallel_for(std::size_t count, std::size_t block, int threads,
     return;
   }
 
-  // Blocks begin in their order, so that those before one that throws have begun and will end: the first of the blocks
-  // that throw is the one that throws for any number of threads.
+  // Blocks start in order, so that all blocks before a throwing block have started and will end. The first throwing
+  // block is therefore the same for any number of threads.
   std::atomic<std::size_t> next = 0;
   std::mutex keeping;
   std::size_t thrown_by = blocks;
@@ -51,7 +51,7 @@ void parallel_for(std::size_t count, std::size_t block, int threads,
     try {
       while (team.size() + 1 < workers) team.emplace_back(do_blocks);
     } catch (const std::system_error&) {
-      // The system has no more threads to give: those that run do the work.
+      // The system has no more threads: the running threads do the work.
     }
     do_blocks();
   }

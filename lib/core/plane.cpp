@@ -8,7 +8,7 @@ namespace petzval {
 std::optional<SpaceLine> line_at(const Plane& plane, double z) {
   const Vec3<double>& n = plane.normal;
   const double across = std::hypot(n.x, n.y);
-  const double reach = (plane.offset - n.z * z) / across;  // from the axis, along the normal
+  const double reach = (plane.offset - n.z * z) / across;  // distance from the axis along the normal
   if (!(across > 0) || !std::isfinite(reach)) return {};
   const double ux = n.x / across, uy = n.y / across;
   const bool turned = uy < 0 || (uy == 0 && ux > 0);

@@ -12,7 +12,7 @@ struct QuadratureNode {
   double x, weight;  ///< on (0, 1); the weights sum to 1
 };
 
-/// Gauss-Legendre nodes, by Newton's iteration on the three-term recurrence.
+/// Gauss-Legendre nodes, computed by Newton's iteration on the three-term recurrence.
 template <std::size_t count>
 std::array<QuadratureNode, count> gauss_legendre() {
   std::array<QuadratureNode, count> nodes;

@@ -4,16 +4,16 @@
 #include <cmath>
 #include <limits>
 
-// Lost rays are found by comparisons with NaN and infinity, which these options let the compiler drop.
+// Lost rays are detected by comparisons with NaN and infinity, which these options allow the compiler to drop.
 #if defined(__FAST_MATH__) || (defined(__FINITE_MATH_ONLY__) && __FINITE_MATH_ONLY__) || defined(_M_FP_FAST)
 #error "petzval needs IEEE comparisons: compile without -ffast-math and -ffinite-math-only (/fp:fast)"
 #endif
 
 /// The interface between the kernels and their scalars.
 ///
-/// A kernel is written once over a scalar `T`: float, double or a number with derivatives such as `Dual`
-/// (SIMD lanes have the same interface). It asks `T` for arithmetic, comparison, `sqrt` by
-/// argument-dependent look-up, and the names below. Ray data steers no branch but through `select`, `any` and masks.
+/// A kernel is written once over a scalar `T`: float, double, SIMD lanes, or a number with derivatives such as `Dual`.
+/// It needs arithmetic, comparison, `sqrt` by argument-dependent look-up, and the names below. Branches never depend on
+/// ray data except through `select`, `any` and masks.
 namespace petzval::kernel {
 
 namespace detail {
@@ -32,14 +32,14 @@ struct StorageOf<T> {
 template <class T>
 using Storage = typename detail::StorageOf<T>::type;
 
-/// What a comparison of two scalars gives: bool, or a lane mask.
+/// Result of comparing two scalars: bool, or a lane mask.
 template <class T>
 using Mask = decltype(T() < T());
 
 static_assert(std::numeric_limits<float>::is_iec559 && std::numeric_limits<double>::is_iec559,
               "the kernels need IEEE numbers");
 
-/// mask ? a : b, lane by lane. Both sides are computed, so both must be harmless.
+/// mask ? a : b, lane by lane. Both sides are always computed, so neither may trap.
 template <class T>
 constexpr T select(bool mask, const T& a, const T& b) noexcept {
   return mask ? a : b;
@@ -47,19 +47,19 @@ constexpr T select(bool mask, const T& a, const T& b) noexcept {
 
 constexpr bool any(bool mask) noexcept { return mask; }
 
-/// The lanes for which every condition holds.
+/// True in the lanes in which every condition holds.
 template <class... Masks>
 constexpr bool all_of(bool first, Masks... rest) noexcept {
   return (first && ... && rest);
 }
 
-/// The lanes for which either condition holds.
+/// True in the lanes in which either condition holds.
 constexpr bool any_of(bool a, bool b) noexcept { return a || b; }
 
-/// The lanes for which the first condition holds and the second does not.
+/// True in the lanes in which `a` holds and `b` does not.
 constexpr bool without(bool a, bool b) noexcept { return a && !b; }
 
-/// |x|, without the branch on a derivative at zero that a library function may have.
+/// |x|, without the branch on the derivative at zero that a library function may contain.
 template <class T>
 T absolute(const T& x) noexcept {
   return select(x < Storage<T>(0), T(-x), x);
@@ -71,8 +71,8 @@ Mask<T> finite(const T& x) noexcept {
   return absolute(x) <= std::numeric_limits<Storage<T>>::max();
 }
 
-/// a / b. Numbers with derivatives often divide by way of 1/b, which costs a rounding: here their value is the plain
-/// quotient, so that a ray traced with derivatives is the plain ray to the bit.
+/// a / b. Numbers with derivatives often divide by multiplying with 1/b, which adds a rounding. Here the value is the
+/// plain quotient, so that a ray traced with derivatives equals the plain ray bit by bit.
 template <class T>
 T quotient(const T& a, const T& b) noexcept {
   if constexpr (requires {
@@ -86,7 +86,7 @@ T quotient(const T& a, const T& b) noexcept {
   }
 }
 
-/// The root of x where x > 0, else 0: keeps lanes that are not used finite, and their derivatives too.
+/// The square root of x if x > 0, else 0. Keeps unused lanes and their derivatives finite.
 template <class T>
 T safe_sqrt(const T& x) noexcept {
   using std::sqrt;

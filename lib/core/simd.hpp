@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// The vectors of the compiler, as wide as the registers of the instruction set that a file is compiled for. (Google
-// Highway has its own, but that of Debian 12 has no SSE2 and no approximate square root of doubles.)
+// Compiler vectors as wide as the registers of the instruction set for which a file is compiled. (Google Highway as
+// packaged by Debian 12 has no SSE2 target and no approximate square root of doubles.)
 //
 // Sources that are compiled for several instruction sets (petzval_lanes, petzval_loops in cmake/module.cmake) define
-// all their names in unnamed namespaces, as here: the linker must never take a function of one set for that of another.
+// all names in unnamed namespaces, as here: the linker must never replace a function of one set by a function of
+// another.
 #pragma once
 
 #include <cstdint>
@@ -20,8 +21,8 @@ inline constexpr int lane_bytes = 32;
 inline constexpr int lane_bytes = 16;
 #endif
 
-/// The vectors of a register. Values: of R. Bits: what comparing two of them gives, an integer of all bits or none for
-/// each lane. Bytes: one byte for each lane.
+/// Vector types of one register. Values: numbers of type R. Bits: the result of comparing two Values, an integer with
+/// all bits set or clear per lane. Bytes: one byte per lane.
 template <class R>
 struct Native;
 template <>
@@ -39,15 +40,15 @@ struct Native<double> {
   using Bytes = std::uint8_t __attribute__((vector_size(lane_bytes / sizeof(double))));
 };
 
-/// How many numbers of type R a register holds.
+/// Number of values of type R in a register.
 template <class R>
 inline constexpr int lane_count = lane_bytes / static_cast<int>(sizeof(R));
 
-/// For functions over vectors: a call would pass them through memory.
+/// For functions over vectors, whose arguments a call would pass through memory.
 #define PETZVAL_INLINE inline __attribute__((always_inline))
 
-/// a b + c d, where the first product alone may be fused with the sum. Compilers choose one of the two, not the same
-/// one everywhere, and results would depend on the code that a ray meets.
+/// a b + c d, in which only the first product may be fused with the sum.
+/// Compilers choose either product, not everywhere the same, and results would then depend on the code path of a ray.
 template <class T>
 PETZVAL_INLINE T sum_of_products(const T& a, const T& b, const T& c, const T& d) noexcept {
   T second = c * d;

@@ -9,8 +9,9 @@ namespace {
 
 using core_detail::mixed;
 
-/// The bits of x in reverse order. The swap of nibbles stands between those of bytes and half words: next to each other
-/// compilers take the last two for one instruction that the vectors of the baseline do not have.
+/// The bits of x in reverse order.
+/// The swap of nibbles separates the swaps of bytes and half words: compilers would merge adjacent ones into a single
+/// instruction that baseline vectors lack.
 constexpr std::uint32_t reversed(std::uint32_t x) noexcept {
   x = ((x >> 1) & 0x55555555u) | ((x & 0x55555555u) << 1);
   x = ((x >> 2) & 0x33333333u) | ((x & 0x33333333u) << 2);
@@ -19,12 +20,12 @@ constexpr std::uint32_t reversed(std::uint32_t x) noexcept {
   return (x >> 16) | (x << 16);
 }
 
-/// Coordinate 1 of the sequence with its first binary digit in the lowest bit; coordinate 0 in that order is the index
+/// Coordinate 1 of the sequence with its first binary digit in the lowest bit. In this order coordinate 0 is the index
 /// itself.
 ///
-/// The generating matrix is Pascal's triangle modulo 2, and by Lucas's theorem binomial(k, j) is odd where the bits of
-/// j are among those of k. Digit j is then the parity of the bits k of the index with j within k: a sum over supersets,
-/// one bit of the bit numbers at a time.
+/// The generating matrix is Pascal's triangle modulo 2, and by Lucas's theorem binomial(k, j) is odd if the bits of j
+/// are a subset of the bits of k. Digit j is therefore the parity of the bits k of the index with j within k: a sum
+/// over supersets, computed one bit of the bit numbers at a time.
 constexpr std::uint32_t pascal(std::uint32_t x) noexcept {
   x ^= (x >> 1) & 0x55555555u;
   x ^= (x >> 2) & 0x33333333u;
@@ -33,10 +34,10 @@ constexpr std::uint32_t pascal(std::uint32_t x) noexcept {
   return x ^ (x >> 16);
 }
 
-/// Owen's scrambling of digits that start at the lowest bit: each bit is flipped or not by a hash of the bits below it.
+/// Owen scrambling of digits that start at the lowest bit: a hash of the lower bits decides if a bit is flipped.
 ///
-/// Adding a key, multiplying by an odd number and x ^= x * (even number) change a bit by those below it and by the key
-/// alone, and each can be undone. Three rounds under fresh keys let every bit reach all above.
+/// Adding a key, multiplying by an odd number and x ^= x * (even number) change a bit depending only on the bits below
+/// it and the key, and each can be inverted. After three rounds with fresh keys every bit affects all bits above it.
 class Scrambling {
  public:
   explicit constexpr Scrambling(std::uint64_t key) noexcept
@@ -62,12 +63,13 @@ class Scrambling {
   Round first_, second_, third_;
 };
 
-/// Digits in reverse order as a number in [0, 1), exactly; by a signed integer, which baseline vectors can convert.
+/// Converts reversed digits exactly to a number in [0, 1), through a signed integer, which baseline vectors can
+/// convert.
 constexpr double unit(std::uint32_t digits) noexcept {
   return static_cast<std::int32_t>(reversed(digits) ^ 0x80000000u) * 0x1p-32 + 0.5;
 }
 
-/// Plain loops that the compiler puts on lanes.
+/// Plain loops that the compiler vectorises.
 [[gnu::always_inline]] inline void fill(std::uint32_t first, std::uint32_t seed, std::span<double> u,
                                         std::span<double> v) noexcept {
   const std::uint64_t key = std::uint64_t(seed) << 1;
@@ -77,7 +79,7 @@ constexpr double unit(std::uint32_t digits) noexcept {
 }
 
 #if defined(__x86_64__) && defined(__GNUC__)
-// Baseline vectors lack the products of the scrambling. All steps are exact: every set gives the same points.
+// Baseline vectors lack the multiplication of the scrambling. All steps are exact: every set gives the same points.
 [[gnu::target("avx2")]] void fill_avx2(std::uint32_t first, std::uint32_t seed, std::span<double> u,
                                        std::span<double> v) noexcept {
   fill(first, seed, u, v);

@@ -9,18 +9,19 @@
 
 namespace petzval {
 
-/// A number for messages, figures and JSON: the shortest decimals that read back to the same double, whatever the
+/// A number for messages, figures and JSON: the shortest decimals that read back to the same double, independent of the
 /// locale ("0.1", "1e+30", "nan").
 PETZVAL_API std::string to_text(double value);
 
-/// The same rounded to a number of significant digits.
+/// A number rounded to `significant_digits`, independent of the locale.
 PETZVAL_API std::string to_text(double value, int significant_digits);
 
-/// The number of bytes of the UTF-8 character that starts at a place; 0 if none does: also for surrogates, numbers
-/// above U+10FFFF and characters written with more bytes than they need.
+/// Number of bytes of the UTF-8 character that starts at a position.
+/// 0 if the bytes there are no valid character, including surrogates, code points above U+10FFFF and overlong
+/// encodings.
 PETZVAL_API std::size_t utf8_length(std::string_view text, std::size_t at) noexcept;
 
-/// The beginning of a UTF-8 text, at most this many bytes: whole characters.
+/// The longest beginning of a UTF-8 text that has at most `most` bytes and ends with a whole character.
 PETZVAL_API std::string_view beginning(std::string_view text, std::size_t most) noexcept;
 
 }  // namespace petzval

@@ -3,9 +3,9 @@
 
 #include "petzval/core/instruction_set.hpp"
 
-/// PETZVAL_WIDEST(Type, name) defines name(): the loops of a file that petzval_loops (cmake/module.cmake) compiles for
-/// every instruction set, those of the widest set of this processor. Type, name: of the constants that the objects
-/// define, in the namespace where the macro stands.
+/// PETZVAL_WIDEST(Type, name) defines name(): the loops compiled for the widest instruction set of this processor.
+/// For files that petzval_loops (cmake/module.cmake) compiles for every instruction set. The objects define constants
+/// of type `Type`, called name_baseline and so on, in the namespace in which the macro is used.
 #if defined(__x86_64__)
 #define PETZVAL_WIDEST(Type, name)                               \
   extern const Type name##_baseline, name##_avx2, name##_avx512; \
@@ -26,7 +26,8 @@
   inline const Type& name() noexcept { return name##_baseline; }
 #endif
 
-/// Stands before a loop in which no iteration reads what another one writes, so that the compiler may run it on lanes.
+/// Placed before a loop in which no iteration reads a value that another iteration writes, so that the compiler may
+/// vectorise it.
 #if defined(__clang__)
 #define PETZVAL_INDEPENDENT _Pragma("clang loop vectorize(assume_safety)")
 #else
