@@ -14,30 +14,30 @@ inline constexpr int max_asphere_order = 40;
 /// Bounds of the shape of an asphere over a ring between two radii, rounded outwards.
 template <class R>
 struct AsphereRing {
-  R inner2, outer2;         ///< squared radii; that of the last ring outside is the largest number
-  R outer;                  ///< the radius outside
-  R lowest, highest;        ///< of the sag
-  R least_bend, most_bend;  ///< of the slope over the radius, (dz/dr) / r
+  R inner2, outer2;         ///< squared radii; outer2 of the last ring is the largest number
+  R outer;                  ///< outer radius
+  R lowest, highest;        ///< bounds of the sag
+  R least_bend, most_bend;  ///< bounds of (dz/dr) / r
 };
 
-/// Rings of equal area, finer towards the edge, where high orders act.
+/// Number of rings. They have equal areas, so that they are finer towards the edge, where high orders matter.
 inline constexpr int asphere_rings = 16;
 
-/// A quadric with a polynomial in r added to its sag, r measured across the curved section.
+/// A quadric with a polynomial in r added to its sag. r is measured in the curved section.
 ///
 /// The polynomial is stored over rho = r / height with coefficients a_i height^i: raw coefficients such as 1e-41 mm^-13
-/// are denormal in float, and r^16 overflows it outside about 10^(+-2.4) mm.
+/// are denormal in float, and r^16 overflows float if r is outside about 10^(+-2.4) mm.
 template <class R>
 struct Asphere {
   Quadric<R> base;
-  R height = 1;  ///< half height to which it is described: the clear one, or as far as it is not steep
-  R rim2 = std::numeric_limits<R>::infinity();  ///< its square where there is a rim; farther out rays are vignetted
+  R height = 1;  ///< described up to this height: the clear semi-diameter, or less if steep
+  R rim2 = std::numeric_limits<R>::infinity();  ///< height^2 if there is a rim, which vignettes rays
   int even_count = 0, odd_count = 0;
-  std::array<R, max_asphere_order / 2> even{};  ///< of rho^2, rho^4, ...
-  std::array<R, max_asphere_order / 2> odd{};   ///< of rho^3, rho^5, ...
-  R lowest = 0, highest = 0;                    ///< bounds of the sag within the height
-  R steepest = 0;                               ///< bound of |dz/dr| there
-  R edge = 0;                                   ///< the sag at the height
+  std::array<R, max_asphere_order / 2> even{};  ///< coefficients of rho^2, rho^4, ...
+  std::array<R, max_asphere_order / 2> odd{};   ///< coefficients of rho^3, rho^5, ...
+  R lowest = 0, highest = 0;                    ///< bounds of the sag up to the height
+  R steepest = 0;                               ///< bound of |dz/dr| up to the height
+  R edge = 0;                                   ///< sag at the height
   std::array<AsphereRing<R>, asphere_rings> rings{};
 };
 
@@ -55,7 +55,7 @@ template <class T>
   const T inside = R(1) - s.base.e * c * c * r2;
   const auto defined = inside > R(0);
   const T root = safe_sqrt(inside);
-  // z = c r2 / (1 + root) and slope = c / root by one division.
+  // z = c r2 / (1 + root) and slope = c / root with one division.
   const T sum = R(1) + root;
   const T share = quotient(T(c), select(defined, T(root * sum), sum));
   const T conic_sag = share * (r2 * root);

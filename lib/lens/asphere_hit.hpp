@@ -7,13 +7,13 @@
 
 namespace petzval::kernel {
 
-/// Answer of the asphere's iteration: hit, none, or not found.
+/// Result of the intersection with an asphere: a hit, no hit, or no convergence.
 template <class T>
 struct AsphereHit {
   Vec<T> point;
   bool hit;
   bool converged;
-  bool beside = false;  ///< no hit, because the ray passes outside the height to which the surface is described
+  bool beside = false;  ///< no hit, as the ray passes outside the described height of the surface
 };
 
 namespace trace_detail {
@@ -39,7 +39,7 @@ struct Span {
   T from, to;
 };
 
-/// A ray as the axis sees it: at a distance t along it r^2 = nearest2 + across2 (t - middle)^2.
+/// Distance of a ray from the axis: at distance t along the ray, r^2 = nearest2 + across2 (t - middle)^2.
 template <class T>
 struct Passage {
   T middle, nearest2, across2;
@@ -56,7 +56,7 @@ Passage<T> passage(const Asphere<Storage<T>>& s, const Vec<T>& p, const Vec<T>& 
   return {middle, qx * qx + qy * qy, across2};
 }
 
-/// Squared radii between which a part of the ray lies.
+/// Bounds of the squared radius over a part of the ray.
 template <class T>
 Span<T> radii2(const Passage<T>& ray, const Span<T>& part) noexcept {
   using R = Storage<T>;
@@ -79,10 +79,10 @@ Span<T> sags(const Asphere<Storage<T>>& s, const Span<T>& radii2) noexcept {
   return bounds;
 }
 
-/// Bounds of the rate at which a part of a ray rises over the surface.
+/// Bounds of the rate at which a part of a ray rises above the surface.
 ///
-/// The rate is d.z - (slope / r) (r r'), and r r' = across2 (t - middle) grows along the ray; within a ring it is at
-/// most its radius times the speed across.
+/// The rate is d.z - (slope / r) (r r'), and r r' = across2 (t - middle) increases along the ray; within a ring its
+/// magnitude is at most the outer radius times the speed across the axis.
 template <class T>
 Span<T> rates(const Asphere<Storage<T>>& s, const Passage<T>& ray, const T& dz, const Span<T>& part) noexcept {
   using R = Storage<T>;
@@ -96,7 +96,7 @@ Span<T> rates(const Asphere<Storage<T>>& s, const Passage<T>& ray, const T& dz, 
     if (!any(met)) continue;
     const T reach = ring.outer * speed;
     const T low = select(from > -reach, from, T(-reach)), high = select(to < reach, to, reach);
-    // The product of two intervals.
+    // Product of two intervals.
     const T a = low * ring.least_bend, b = low * ring.most_bend, c = high * ring.least_bend, d = high * ring.most_bend;
     const T ab = select(a < b, a, b), ba = select(a < b, b, a), cd = select(c < d, c, d), dc = select(c < d, d, c);
     const T lesser = select(ab < cd, ab, cd), greater = select(ba < dc, dc, ba);
@@ -106,7 +106,7 @@ Span<T> rates(const Asphere<Storage<T>>& s, const Passage<T>& ray, const T& dz, 
   return {dz - most, dz - least};
 }
 
-/// Where a part of the ray lies between two heights.
+/// The part of the ray that lies between two heights.
 template <class T>
 Span<T> between(const T& z, const T& dz, const Span<T>& heights, const Span<T>& part) noexcept {
   const T a = quotient(T(heights.from - z), dz), b = quotient(T(heights.to - z), dz);
@@ -114,13 +114,13 @@ Span<T> between(const T& z, const T& dz, const Span<T>& heights, const Span<T>& 
   return {select(enter > part.from, enter, part.from), select(leave < part.to, leave, part.to)};
 }
 
-/// The part of a ray that can lie on the surface within its height: within the cylinder, and within the sags that the
-/// surface has there. A little wider, for rounding; without a ray there, from > to.
+/// The part of a ray that can lie on the surface up to its height: inside the cylinder and between the bounds of the
+/// sag. Slightly enlarged for rounding; from > to if the part is empty.
 template <class T>
 Span<T> reachable(const Asphere<Storage<T>>& s, const Passage<T>& ray, const Vec<T>& p, const Vec<T>& d) noexcept {
   using R = Storage<T>;
   constexpr R wider = R(1) + R(64) * std::numeric_limits<R>::epsilon();
-  const R far = R(1e18);  // has a square in float
+  const R far = R(1e18);  // its square is finite in float
   const T within2 = wider * s.height * s.height - ray.nearest2;
   const auto slanting = ray.across2 > R(0);
   T half = safe_sqrt(quotient(within2, select(slanting, ray.across2, T(R(1)))));
@@ -132,14 +132,14 @@ Span<T> reachable(const Asphere<Storage<T>>& s, const Passage<T>& ray, const Vec
   return between(p.z, d.z, sags(s, radii2(ray, part)), part);
 }
 
-/// What the bounds of the surface say about a ray.
+/// Properties of a ray that follow from the bounds of the surface.
 template <class T>
 struct Prospect {
-  Span<T> part;           ///< that can lie on the surface within its height
-  Mask<T> empty, rising;  ///< there is none; the ray rises over the surface all along: it crosses once at most
+  Span<T> part;           ///< can lie on the surface up to its height
+  Mask<T> empty, rising;  ///< no such part; the ray rises along all of it: at most one crossing
 };
 
-/// sense: of travel, in which a ray rises.
+/// @param sense direction of travel, for which a rising ray is meant
 template <class T>
 Prospect<T> prospect(const Asphere<Storage<T>>& s, const Passage<T>& ray, const Vec<T>& p, const Vec<T>& d,
                      Storage<T> sense) noexcept {
@@ -150,19 +150,20 @@ Prospect<T> prospect(const Asphere<Storage<T>>& s, const Passage<T>& ray, const 
   return {part, part.from > part.to, all_of(rising, slowest <= fastest)};
 }
 
-/// Where a ray crosses the surface first. A crossing that was found and did not converge is lost.
+/// First crossing of a ray with the surface. If `found` and not `converged`, the ray is lost.
 template <class T>
 struct Crossing {
   T t;
   Mask<T> found, converged;
 };
 
-/// Steps of the search: its least interval is 1/64 of the part, an interval twice as long as one that was settled may
-/// be tried in vain, and six halvings come first.
+/// Steps of the search. The shortest interval is 1/64 of the part; after each settled interval an interval of twice the
+/// length may be tried in vain, and six halvings come first.
 inline constexpr int search_intervals = 64, search_steps = 2 * search_intervals + 8;
 
-/// The crossing between two places, of which the first is under the surface in the sense of travel and the second over
-/// it. Newton, with a bisection where it leaves the bracket or does not halve its step: at most 100 steps.
+/// Refines the crossing between `low` (below the surface in the sense of travel) and `high` (above the surface).
+/// Newton's iteration, replaced by a bisection if a step leaves the bracket or is not at most half the last step; at
+/// most 100 steps.
 template <class T>
 void close_in(const Asphere<Storage<T>>& s, const Vec<T>& p, const Vec<T>& d, Storage<T> sense, T low, T high,
               Crossing<T>& crossing) noexcept {
@@ -190,11 +191,12 @@ void close_in(const Asphere<Storage<T>>& s, const Vec<T>& p, const Vec<T>& d, St
   crossing.t = t;
 }
 
-/// The first crossing of a part of the ray in the sense of travel, and certain to be the first.
+/// The first crossing of a part of the ray in the sense of travel; it is guaranteed to be the first.
 ///
 /// An interval of the ray has no crossing if the rates over its rings do not let it reach the surface from its ends,
-/// and one or none if it rises all along. Other intervals are halved, as far as 1/64 of the part: there two crossings
-/// may be passed over as a near touch. guess: where Newton's iteration has come to.
+/// and at most one if the ray rises throughout. Other intervals are halved down to 1/64 of the part, at which two
+/// crossings may be missed as a near touch.
+/// @param guess result of Newton's iteration
 template <class T>
 Crossing<T> first_crossing(const Asphere<Storage<T>>& s, const Passage<T>& ray, const Vec<T>& p, const Vec<T>& d,
                            Storage<T> sense, const Span<T>& part, const T& guess) noexcept {
@@ -208,7 +210,7 @@ Crossing<T> first_crossing(const Asphere<Storage<T>>& s, const Passage<T>& ray, 
   Crossing<T> crossing{guess, without(active, active), without(active, active)};
   for (int i = 0; i < search_steps && any(active); ++i) {
     const T above = sense * clearance(s, p, d, high).value;
-    // How fast the ray can fall towards the surface, and how fast rise over it, in the sense of travel.
+    // Bounds of the speeds at which the ray falls towards the surface and rises above it, in the sense of travel.
     const auto [slowest, fastest] = rates(s, ray, d.z, {low, high});
     const T fall = sense > 0 ? -slowest : fastest, rise = sense > 0 ? fastest : -slowest;
     const auto over = below > R(0);
@@ -234,7 +236,8 @@ Crossing<T> first_crossing(const Asphere<Storage<T>>& s, const Passage<T>& ray, 
   return crossing;
 }
 
-/// Newton from the hit on the base conic. usable: it ended where the surface is crossed in the sense of travel.
+/// Result of Newton's iteration from the hit on the base conic. usable: the iteration converged to a crossing in the
+/// sense of travel.
 template <class T>
 struct Candidate {
   T t;
@@ -242,7 +245,8 @@ struct Candidate {
   bool usable = false;
 };
 
-/// base: that hit; p: a point of the ray.
+/// @param base hit on the base conic
+/// @param p a point of the ray
 template <class T>
 Candidate<T> newton(const Asphere<Storage<T>>& s, const Hit<T>& base, const Vec<T>& p, const Vec<T>& d,
                     Storage<T> sense) noexcept {
@@ -263,7 +267,7 @@ Candidate<T> newton(const Asphere<Storage<T>>& s, const Hit<T>& base, const Vec<
     const T scale = s.height + offset + absolute(t);
     t = t - step;
     if (!finite(t)) break;
-    // The step from a point already on the surface is the last: derivatives carried along have followed by then.
+    // The step from a point that is already on the surface is the last: by then the derivatives are accurate.
     const bool arrived = absolute(f.value) <= R(4) * eps * scale && step * step <= eps * scale * scale;
     if (arrived && !(f.rate * sense > R(0))) break;
     usable = arrived;
@@ -274,20 +278,24 @@ Candidate<T> newton(const Asphere<Storage<T>>& s, const Hit<T>& base, const Vec<
 
 }  // namespace trace_detail
 
-/// Where a ray meets an asphere: the first crossing inside the clear aperture in the sense of travel.
+/// Intersects a ray with an asphere: the first crossing inside the clear aperture in the sense of travel.
 ///
-/// Newton from the hit on the base conic; its answer is taken if it lies inside the aperture and the ray rises over the
-/// surface, in the sense of travel, all along the part that can lie on it: then there is no other. (On gull-wing
-/// surfaces the plain iteration loses 2.6 % of steep rays to a wrong crossing.) Else that part is searched from its
-/// beginning, in intervals that bounds over rings of the surface settle. Two crossings closer than 1/64 of the part may
-/// be passed over as a near touch. A search takes at most 136 intervals and 100 steps to close in on the crossing; on
-/// the phone lens of data/lenses one interval and four steps. Arguments as for the quadric. Accuracy:
-/// |error| cos(incidence) <= 4 eps (height + distance slope); see tests/lens.
+/// Newton's iteration starts at the hit on the base conic. Its result is accepted if it lies inside the aperture and
+/// the ray rises above the surface, in the sense of travel, along the whole part that can lie on the surface: then
+/// there is no other crossing. (On gull-wing surfaces Newton's iteration without this check takes a wrong crossing for
+/// 2.6 % of steep rays.)
+///
+/// Otherwise this part is searched from its beginning, in intervals that are settled by bounds over rings of the
+/// surface: at most 136 intervals, and 100 steps to refine the crossing. The phone lens of data/lenses needs one
+/// interval and four steps. Arguments as for the quadric.
+///
+/// Accuracy: |error| cos(incidence) <= 4 eps (height + distance slope); see tests/lens.
+/// Limitations: two crossings closer than 1/64 of the part may be missed as a near touch.
 template <class T>
 AsphereHit<T> intersect(const Asphere<Storage<T>>& s, const Vec<T>& start, const Vec<T>& d, Storage<T> sense) noexcept {
   const auto base = intersect(s.base, start, d, sense);
-  // Distances count from the point nearest to the vertex: none of them, nor the point, is then longer than the hit is
-  // far out.
+  // Distances are measured from the point of the ray nearest to the vertex, so that neither they nor this point exceed
+  // the distance of the hit from the vertex.
   const Vec<T> p = start + d * T(-dot(start, d));
   const auto candidate = trace_detail::newton(s, base, p, d, sense);
   const T x = s.base.ax * candidate.point.x, y = s.base.ay * candidate.point.y;
@@ -300,7 +308,7 @@ AsphereHit<T> intersect(const Asphere<Storage<T>>& s, const Vec<T>& start, const
     const auto [t, found, converged] = trace_detail::first_crossing(s, ray, p, d, sense, part, candidate.t);
     if (found) return {converged ? p + d * t : start, converged, converged};
   }
-  // No crossing inside the aperture: the one outside, if the iteration finds it, is where the ray is vignetted.
+  // No crossing inside the aperture: the ray is vignetted at the crossing outside, if the iteration finds one.
   if (candidate.usable) return {candidate.point, true, true};
   return {start, false, true, empty || rising};
 }

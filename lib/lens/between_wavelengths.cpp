@@ -25,7 +25,7 @@ CompiledWavelengths::CompiledWavelengths(std::span<const double> wavelengths_nm)
                       static_cast<std::int32_t>(ranked_[r + 1].position) - static_cast<std::int32_t>(position)});
     const std::size_t nodes = std::min(most_nodes, count()), before = nodes / 2 - 1;
     const Interval cubic = interval(r, std::min(r - std::min(r, before), count() - nodes), nodes);
-    // How much larger the nodes' errors may be between them: 2.6 times at the ends of a row that is even in nm.
+    // Allowed growth of the errors of the nodes between them: it is 2.6 at the ends of a row that is uniform in nm.
     constexpr double much_larger = 4;
     double sum = 0;
     for (const double w : about(cubic, (ranked_[r].place + ranked_[r + 1].place) / 2).weights) sum += std::abs(w);
@@ -42,7 +42,7 @@ CompiledWavelengths::Interval CompiledWavelengths::interval(std::size_t rank, st
     std::array<double, 4> product{1};
     for (std::size_t j = 0; j < nodes; ++j) {
       if (j == i) continue;
-      // Times (t - other) / (own - other).
+      // Multiply by (t - other) / (own - other).
       const double other = ranked_[first + j].place - result.from;
       const double per_step = 1 / (ranked_[first + i].place - ranked_[first + j].place);
       for (std::size_t k = 3; k > 0; --k) product[k] = (product[k - 1] - other * product[k]) * per_step;

@@ -14,27 +14,28 @@
 
 namespace petzval::lens_detail {
 
-/// Compiled wavelengths in the order of their ranks, the smallest first, to find those about any other.
+/// Compiled wavelengths sorted by wavelength (their rank), to find the neighbours of any wavelength.
 class PETZVAL_API CompiledWavelengths {
  public:
-  /// Of nothing: it covers no wavelength.
+  /// Covers no wavelength.
   CompiledWavelengths() = default;
   explicit CompiledWavelengths(std::span<const double> wavelengths_nm);
 
   std::size_t count() const noexcept { return ranked_.size(); }
   std::size_t position(std::size_t rank) const noexcept { return ranked_[rank].position; }
-  /// No step to the next one is more than twice as long as another, and the range is not wider than that of light.
+  /// True if no step between neighbours is more than twice as long as another and the longest wavelength is at most 1.8
+  /// times the shortest.
   bool even() const noexcept;
 
-  /// The range of wavelengths that are covered, nm.
+  /// The range of covered wavelengths (nm).
   double shortest() const noexcept { return place_.shortest; }
   double longest() const noexcept { return place_.longest; }
-  /// Whether a wavelength lies among them, or beside them by the rounding of a float.
+  /// True if a wavelength lies in the range, extended by the rounding of a float.
   bool covers(double nm) const noexcept { return place_.covers(nm); }
-  /// The place in the range, from -1 to 1.
+  /// Position in the range, from -1 to 1.
   double place(double nm) const noexcept { return place_.at(nm); }
 
-  /// Position of the nearest one; count() for a wavelength that is not covered.
+  /// Position of the nearest compiled wavelength; count() if the wavelength is not covered.
   std::size_t nearest(double nm) const noexcept;
   /// For loops over rays.
   NearestPosition nearest_position() const noexcept {
@@ -42,13 +43,13 @@ class PETZVAL_API CompiledWavelengths {
             ranked_.empty() ? 0 : static_cast<std::int32_t>(ranked_.front().position)};
   }
 
-  /// The weights of some ranks in what lies at a wavelength between them.
+  /// Ranks around a wavelength and their weights in the interpolated value.
   struct Neighbours {
     std::size_t first = 0;
     std::array<double, 4> weights{0, 0, 0, 0};
   };
-  /// Cubics through four neighbours, or as many as there are; straight lines where neighbours stand so unevenly that a
-  /// cubic would make their errors larger. For a wavelength that is covered.
+  /// Interpolates by a cubic through four neighbours (fewer if there are fewer), or by a straight line if neighbours
+  /// are spaced so unevenly that a cubic would amplify their errors. Requires a covered wavelength.
   Neighbours about(double nm) const noexcept {
     std::size_t rank = 0;
     for (std::size_t r = 1; r < intervals_.size(); ++r) rank += nm >= ranked_[r].nm;
@@ -60,7 +61,8 @@ class PETZVAL_API CompiledWavelengths {
     double nm, place;
     std::size_t position;
   };
-  /// Between two ranks: weights of nodes as cubics of the place, from its begin.
+  /// The interval between two ranks: weights of its nodes as cubics of the position, measured from the start of the
+  /// interval.
   struct Interval {
     std::size_t first = 0;
     double from = 0;
@@ -81,17 +83,18 @@ class PETZVAL_API CompiledWavelengths {
   std::vector<NearestPosition::Step> steps_;  // at the middles between neighbours
 };
 
-/// Some numbers of a lens, known at its compiled wavelengths, at any wavelength between: in parabolas over even cells
-/// so small that they show little of it: a few of even wavelengths; 2047 of uneven ones, between which straight lines
-/// meet, and of a wide range, at whose end dispersion is steep.
+/// Numbers of a lens that are known at its compiled wavelengths, interpolated at any wavelength between.
+/// Stored as parabolas over equal cells, small enough to add little error: few_cells for uniform wavelengths; 2047 for
+/// uneven wavelengths, between which straight lines meet, and for a wide range, at whose end dispersion is steep.
 template <std::size_t numbers>
 class BetweenWavelengths {
  public:
   using Values = std::array<double, numbers>;
 
-  /// Of no wavelength.
+  /// Covers no wavelength.
   BetweenWavelengths() : BetweenWavelengths({}, {}) {}
-  /// values: by position. wavelengths: theirs, or none where there is nothing between them.
+  /// @param wavelengths wavelengths of the values; empty to look up compiled wavelengths only
+  /// @param values by position of the wavelength
   BetweenWavelengths(const CompiledWavelengths& wavelengths, std::span<const Values> values)
       : wavelengths_(wavelengths), compiled_(values.size()) {
     const double range = std::max(wavelengths.longest() - wavelengths.shortest(), 0.0);
@@ -120,7 +123,7 @@ class BetweenWavelengths {
   }
 
   bool covers(double nm) const noexcept { return wavelengths_.covers(nm); }
-  /// For a wavelength that is covered.
+  /// Requires a covered wavelength.
   Values operator()(double nm) const noexcept {
     const double at = std::max((nm - wavelengths_.shortest()) * cells_per_nm_, 0.0);
     const auto cell = std::min(static_cast<std::size_t>(at), powers_.size() - 1);
@@ -155,7 +158,7 @@ class BetweenWavelengths {
   }
 
  private:
-  /// Makes parabolas of at(nm) over a number of cells.
+  /// Fits parabolas to at(nm) over a number of cells.
   template <class At>
   void cut(std::size_t cells, double range, const At& at) {
     const double width = range / static_cast<double>(cells);
@@ -171,7 +174,7 @@ class BetweenWavelengths {
     }
   }
 
-  /// As WavelengthRows has them.
+  /// The tables in the layout of WavelengthRows.
   template <class R>
   struct In {
     AlignedRows<R> by_position, by_nm;
@@ -182,7 +185,7 @@ class BetweenWavelengths {
   CompiledWavelengths wavelengths_;
   std::size_t compiled_ = 0;
   double cells_per_nm_ = 0;
-  std::vector<std::array<std::array<double, 3>, numbers>> powers_;  // of each cell, by powers of the part of it
+  std::vector<std::array<std::array<double, 3>, numbers>> powers_;  // [cell], powers of the fraction in it
   In<float> single_;
   In<double> twice_;
 };

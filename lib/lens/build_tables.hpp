@@ -14,7 +14,7 @@
 
 namespace petzval::lens_detail {
 
-/// A SurfaceSequence and its arrays.
+/// A SurfaceSequence and the arrays to which it points.
 template <class R>
 struct SurfaceSequenceTables {
   std::vector<kernel::Step<R>> steps;
@@ -63,7 +63,7 @@ struct Tables {
   }
 };
 
-/// Tables and the view of them, made once: a view is long, and a ray is short.
+/// Tables and the view of them, which is built once because that costs more than tracing a ray.
 template <class R>
 struct SharedTables {
   const Tables<R> tables;
@@ -74,8 +74,10 @@ struct SharedTables {
   SharedTables& operator=(const SharedTables&) = delete;
 };
 
-/// aspheres: the surfaces that are (describe_aspheres). stop: position of the stop. indices: [wavelength][space], one
-/// space more than surfaces.
+/// Builds the tables of a lens.
+/// @param aspheres the aspheric surfaces (describe_aspheres)
+/// @param stop position of the stop
+/// @param indices [wavelength][space], one space more than surfaces
 template <class R>
 Tables<R> build_tables(std::span<const LensSurface> surfaces, std::span<const kernel::Asphere<double>> aspheres,
                        std::optional<std::size_t> stop, const Iris& iris, std::span<const double> indices,

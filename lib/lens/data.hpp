@@ -17,11 +17,11 @@
 
 namespace petzval {
 
-/// What a Lens shares with its copies.
+/// Data shared by all copies of a Lens.
 struct Lens::Data {
   std::string name;
   std::vector<LensSurface> surfaces;
-  std::vector<double> rims;  ///< semi-diameters as given; `surfaces` end at the edges
+  std::vector<double> rims;  ///< semi-diameters as given; `surfaces` are limited by edges as well
   std::optional<std::size_t> stop;
   Iris iris;
   double film_z = 0;
@@ -34,7 +34,7 @@ struct Lens::Data {
 
   static Lens lens(std::shared_ptr<const Data> data) noexcept { return Lens(std::move(data)); }
 
-  /// Builds the tables from the rest.
+  /// Builds the tables from the other members.
   void build() {
     lens_detail::end_at_edges(surfaces, rims, indices.values);
     const auto aspheres = lens_detail::describe_aspheres(surfaces);

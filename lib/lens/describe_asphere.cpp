@@ -10,19 +10,20 @@
 namespace petzval::lens_detail {
 namespace {
 
-/// x^n by multiplication, so that a lens scaled by 2 gets the same constants times powers of two (pow() may round).
+/// x^n by multiplication, so that scaling a lens by 2 multiplies its constants by exact powers of two (pow() may
+/// round).
 double power(double x, int n) {
   double result = 1;
   for (int i = 0; i < n; ++i) result *= x;
   return result;
 }
 
-/// Steeper parts of an asphere are not described: out there a polynomial of high order runs away, and with bounds of
-/// sag and slope that held there every ray would have to be searched for. Rims end there; without a rim, rays meet them
-/// where Newton's iteration finds them. (The steepest asphere of data/lenses has a slope of 3.)
+/// Largest slope to which an asphere is described. Beyond it, polynomials of high order diverge, and bounds of sag and
+/// slope that include such parts would force a search for every ray. A rim ends there; if there is no rim, rays beyond
+/// hit the surface if Newton's iteration converges. (The steepest asphere of data/lenses has a slope of 3.)
 constexpr double steepest = 4;
 
-/// The height at which the strongest term alone has a slope.
+/// Least height at which a single aspheric term reaches a slope.
 double term_height(const LensSurface& s, double slope) {
   double least = std::numeric_limits<double>::infinity();
   for (const auto& [order, coefficient] : s.aspheric) {
@@ -32,11 +33,12 @@ double term_height(const LensSurface& s, double slope) {
   return least;
 }
 
-/// The height up to which an asphere may be described: its clear aperture, within the domain of the base conic. An
-/// unlimited one ends where the strongest term alone has a slope of one, or a paraboloid of the base's radius the
-/// steepest: farther out a hyperboloid bends no more, and a weak term has crossings of its own.
+/// Limit of the height to which an asphere is described: its clear aperture, within the domain of the base conic.
+/// An unlimited asphere ends where its strongest term reaches a slope of one, or where a paraboloid with the radius of
+/// the base reaches the steepest slope. Farther out a hyperboloid is nearly straight, and a weak term causes crossings
+/// of its own.
 double height(const LensSurface& s) {
-  constexpr double runs_away = 1e6;  // whatever the other terms are
+  constexpr double runs_away = 1e6;  // slope that the other terms cannot compensate
   const double curvature = std::abs(s.curvature) * std::sqrt(std::max(0.0, 1 + s.conic));
   double limit = curvature > 0 ? 1 / curvature : std::numeric_limits<double>::infinity();
   if (s.semi_diameter > 0) limit = std::min(limit, s.semi_diameter);
@@ -63,8 +65,7 @@ kernel::Asphere<double> asphere_up_to(double height, const LensSurface& s) {
   return a;
 }
 
-/// The polynomial of an asphere over rho = r / height, and bounds of it over intervals of rho by expansions of second
-/// order.
+/// The polynomial of an asphere over rho = r / height, with bounds over intervals of rho from second-order expansions.
 class Polynomial {
  public:
   Polynomial(const LensSurface& s, double height) {
@@ -73,15 +74,15 @@ class Polynomial {
     }
   }
 
-  /// Of its value, and of its slope over rho.
+  /// Bounds of the value, and of the slope divided by rho.
   struct Bounds {
     double lowest, highest, least_bend, most_bend;
   };
   Bounds over(double from, double to) const {
     const double middle = 0.5 * (from + to), half = 0.5 * (to - from);
     const auto at = powers(middle), end = powers(to);
-    double value = 0, slope = 0, bend = 0, bend_slope = 0;        // in the middle
-    double size = 0, bend_size = 0, curved = 0, bend_curved = 0;  // at most, of the terms by themselves
+    double value = 0, slope = 0, bend = 0, bend_slope = 0;        // at the middle
+    double size = 0, bend_size = 0, curved = 0, bend_curved = 0;  // sums of the magnitudes of the terms
     for (const auto& [order, a] : terms_) {
       const auto n = static_cast<std::size_t>(order);
       const double i = order, amount = std::abs(a);
@@ -95,7 +96,7 @@ class Polynomial {
       bend_slope += i * (i - 2) * a * at[n - 3];
       if (order > 3) bend_curved += i * (i - 2) * (i - 3) * amount * end[n - 4];
     }
-    // Coefficients and sums of float have errors of their own.
+    // Add the rounding errors of coefficients and sums in float.
     const double off = half * (std::abs(slope) + 0.5 * half * curved) + rounding * size;
     const double bend_off = half * (std::abs(bend_slope) + 0.5 * half * bend_curved) + rounding * bend_size;
     return {value - off, value + off, bend - bend_off, bend + bend_off};
@@ -114,11 +115,11 @@ class Polynomial {
   std::vector<AsphereTerm> terms_;
 };
 
-/// Bounds over the rings, and with them those of the whole surface. On each of some intervals of a ring the base, whose
-/// sag and slope over r are monotone, is between its ends.
+/// Sets the bounds over the rings and over the whole surface. Each ring is divided into intervals, in each of which the
+/// sag and slope / r of the base are monotone and therefore bounded by their values at the ends.
 void bound(const LensSurface& s, kernel::Asphere<double>& a) {
   constexpr int intervals = 8;
-  constexpr double wider = 1e-5;  // radii of points have errors in float
+  constexpr double wider = 1e-5;  // allows for rounding of radii in float
   constexpr double huge = std::numeric_limits<double>::max();
   kernel::Asphere<double> base;
   base.base = a.base;
@@ -162,7 +163,7 @@ void bound(const LensSurface& s, kernel::Asphere<double>& a) {
   }
 }
 
-/// Without bounds.
+/// The asphere without its bounds.
 kernel::Asphere<double> described(const LensSurface& s) {
   constexpr int samples = 256;
   kernel::Asphere<double> a = asphere_up_to(height(s), s);

@@ -11,11 +11,11 @@ namespace petzval::lens_detail {
 
 kernel::Quadric<double> describe_quadric(const LensSurface& surface);
 
-/// Where the rim of an asphere ends: at its semi-diameter, or before it at the equator of the base conic or where it is
-/// as steep as 4. Farther out it is not described.
+/// Height up to which an asphere is described: its semi-diameter, or less if the base conic has its equator or the
+/// slope reaches 4 before.
 double described_height(const LensSurface& surface);
 
-/// The shapes of the surfaces with aspheric terms, with bounds of their rings.
+/// The shapes of all surfaces with aspheric terms, with the bounds over their rings.
 std::vector<kernel::Asphere<double>> describe_aspheres(std::span<const LensSurface> surfaces);
 
 }  // namespace petzval::lens_detail

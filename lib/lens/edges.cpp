@@ -19,11 +19,12 @@ bool is_sphere(const LensSurface& s) noexcept {
   return s.conic == 0 && s.aspheric.empty() && s.curved_in == Section::both;
 }
 
-/// The least height at which two surfaces meet, up to a height. direction: of light between them, +1 or -1.
+/// Least height, up to `up_to`, at which two surfaces meet; infinite if they do not meet.
+/// @param direction direction of light between them, +1 or -1
 double meeting_height(const LensSurface& front, const LensSurface& rear, double direction, double up_to) {
   const double distance = direction * (rear.vertex_z - front.vertex_z);
   if (!(distance > 0)) return infinity;
-  // A height on an equator may round to a height beyond it.
+  // Rounding may put a height on the equator outside the equator.
   const double end = std::min({up_to, equator(front) * (1 - 1e-15), equator(rear) * (1 - 1e-15), 1e15});
   const auto meet_along = [&](double x, double y) {
     const auto ordered = [&](double height) {
@@ -31,9 +32,9 @@ double meeting_height(const LensSurface& front, const LensSurface& rear, double 
           distance + direction * (sag_of(rear, x * height, y * height) - sag_of(front, x * height, y * height));
       return !(gap < 0);
     };
-    // The slopes of two spheres differ in one sense at all heights.
+    // The difference of the slopes of two spheres has the same sign at all heights.
     if (is_sphere(front) && is_sphere(rear)) return ordered(end) ? infinity : core_detail::last_with(0, end, ordered);
-    // Others are looked at in steps of 1 / 64 of the range, or of 1 / 16 of the height where the range is long.
+    // Other surfaces are sampled in steps of 1 / 64 of the range, or of 1 / 16 of the height if the range is long.
     const double bend = std::abs(front.curvature) + std::abs(rear.curvature);
     const double first = std::min(end, bend > 0 ? std::sqrt(distance / bend) : distance) / 64;
     for (double low = 0; low < end;) {
@@ -46,7 +47,7 @@ double meeting_height(const LensSurface& front, const LensSurface& rear, double 
   double least = meet_along(0, 1);
   const auto round = [](const LensSurface& s) { return s.curved_in == Section::both; };
   if (round(front) && round(rear)) return least;
-  // Cylinders along x and y differ most along an axis or half-way between.
+  // Cylinders along x and y differ most along an axis or on a diagonal.
   constexpr double diagonal = std::numbers::sqrt2 / 2;
   return std::min({least, meet_along(1, 0), meet_along(diagonal, diagonal)});
 }
@@ -58,7 +59,7 @@ double sag_of(const LensSurface& s, double x, double y) noexcept {
   double z = s.curvature * r2 / (1 + std::sqrt(1 - (1 + s.conic) * s.curvature * s.curvature * r2));
   const double r = std::sqrt(r2);
   for (const auto& [order, coefficient] : s.aspheric) {
-    double power = order % 2 == 0 ? 1 : r;  // by multiplication, which powers of two scale to the bit
+    double power = order % 2 == 0 ? 1 : r;  // by multiplication: exact under scaling by powers of two
     for (int i = 0; i < order / 2; ++i) power *= r2;
     z += coefficient * power;
   }
@@ -79,7 +80,7 @@ void end_at_edges(std::span<LensSurface> surfaces, std::span<const double> rims,
     LensSurface& s = surfaces[i];
     s.semi_diameter = rims[i];
     s.edge = infinity;
-    // An asphere in one section ends at a height, not at a radius.
+    // An asphere that is curved in one section ends at a height, not at a radius.
     const bool describes_rim = !s.aspheric.empty() && s.curved_in == Section::both;
     if (describes_rim && std::isfinite(rims[i]) && rims[i] > 0) s.semi_diameter = described_height(s);
   }

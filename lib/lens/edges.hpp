@@ -8,26 +8,26 @@
 
 namespace petzval::lens_detail {
 
-/// Sag of a surface at (x, y) (mm), beyond its clear aperture too; NaN beyond the equator of its base conic.
+/// Sag of a surface at (x, y) (mm), also beyond its clear aperture; NaN beyond the equator of its base conic.
 PETZVAL_API double sag_of(const LensSurface& surface, double x, double y) noexcept;
 
-/// True if rays change at a surface: it is a mirror, or the indices on its sides differ at one wavelength.
+/// True if rays change direction at a surface: it is a mirror, or the indices on its sides differ at one wavelength.
 ///
-/// @param indices  [wavelength * (surfaces + 1) + space]
+/// @param indices [wavelength * (surfaces + 1) + space]
 PETZVAL_API bool changes_rays(std::span<const LensSurface> surfaces, std::span<const double> indices,
                               std::size_t surface) noexcept;
 
-/// Sets the clear apertures of surfaces: the given rims, ended where an asphere is no longer described and where two
-/// surfaces of an element meet.
+/// Limits the clear apertures of surfaces: to the given rims, to the described height of aspheres, and to the height at
+/// which two surfaces of an element meet.
 ///
-/// Light passes a surface and the next one that changes it (another index, or a mirror) in this order only where the
-/// second lies behind the first. Both end at the height at which they meet, unless an aperture is smaller: a ray
-/// that meets a surface inside this height meets them in order, as long as their distance has one zero. Surfaces
-/// that touch or overlap at their vertices (thickness 0 or below) are ideal, and have no edge.
+/// Light passes a surface and the next surface that changes rays (another index, or a mirror) in this order only if the
+/// second lies behind the first. Both end at the height at which they meet, unless an aperture is smaller: a ray that
+/// hits a surface inside this height meets them in order, as long as their distance has a single zero. Surfaces that
+/// touch or overlap at their vertices (thickness <= 0) are ideal and have no edge.
 ///
-/// @param surfaces  vertices, shapes and thicknesses are set; `semi_diameter` and `edge` are written
-/// @param rims      semi-diameters, one for each surface (mm); infinite: unlimited
-/// @param indices   [wavelength * (surfaces + 1) + space]
+/// @param surfaces vertices, shapes and thicknesses are set; `semi_diameter` and `edge` are written
+/// @param rims semi-diameter of each surface (mm); infinite if unlimited
+/// @param indices [wavelength * (surfaces + 1) + space]
 void end_at_edges(std::span<LensSurface> surfaces, std::span<const double> rims, std::span<const double> indices);
 
 }  // namespace petzval::lens_detail

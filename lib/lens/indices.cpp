@@ -14,19 +14,20 @@
 namespace petzval::lens_detail {
 namespace {
 
-/// The medium in front of the first surface or behind surface space - 1 (at a mirror, the medium light stays in).
+/// The medium in front of the first surface (space 0) or behind surface space - 1; behind a mirror, the medium in
+/// front.
 const Medium& medium(const Prescription& p, std::size_t space) {
   return space == 0 ? p.object_space : p.surfaces[space - 1].medium;
 }
 
-/// Lines are often written with one decimal, the d line as 587.6 nm. Within half a unit of that no index changes by
-/// 1e-5.
+/// Spectral lines are often written with one decimal, the d line as 587.6 nm. Within half a unit of this decimal no
+/// index changes by 1e-5.
 constexpr double rounded_line_nm = 0.05;
 
-/// Glass tables for the lookup of media, or the reason for their absence.
+/// Glass tables for the look-up of media, or the error that explains their absence.
 struct Tables {
   const GlassCatalogue* glasses = nullptr;
-  std::string error{};  ///< if null
+  std::string error{};  ///< set if `glasses` is null
 };
 
 /// The given tables, or glass_tables() if a medium names a glass.
@@ -48,7 +49,7 @@ std::string describe(const Medium& m) {
   return "glass = \"" + *m.glass + '"' + (m.catalogue ? " (catalogue \"" + *m.catalogue + "\")" : "");
 }
 
-/// Reason why no glass was found for a medium, behind its description.
+/// Reason why no glass was found for a medium, appended to its description.
 std::string why_missing(const Medium& m, const Tables& tables) {
   if (!m.glass) return "";
   if (!tables.glasses) {
@@ -67,14 +68,14 @@ std::string why_missing(const Medium& m, const Tables& tables) {
   return "; its n_d of " + to_text(*m.nd) + " is more than 0.01 from " + others;
 }
 
-/// For errors: similar names in the tables.
+/// Similar names in the tables, for messages.
 std::string names_like(const Medium& m, const Tables& tables) {
   if (!m.glass || !tables.glasses) return "";
   const std::string names = glass_detail::similar_names(*tables.glasses, *m.glass);
   return names.empty() ? "" : " (names like it: " + names + ")";
 }
 
-/// Wavelengths at which a medium has an index.
+/// Wavelengths (nm) at which a medium has an index.
 struct Range {
   double shortest, longest;
 
@@ -88,7 +89,7 @@ constexpr Range of_abbe_model{365, 1014};
 Indices indices(const Prescription& prescription, std::span<const double> wavelengths_nm, const CompileOptions& options,
                 const std::string& where) {
   for (const double nm : wavelengths_nm) {
-    if (!(nm >= 10 && nm <= 1e5)) throw Error(where + ": wavelength is " + to_text(nm) + " nm, wanted 10 to 100000 nm");
+    if (!(nm >= 10 && nm <= 1e5)) throw Error(where + ": wavelength = " + to_text(nm) + " nm; must be 10 to 100000 nm");
   }
   const double reference = prescription.reference_wavelength_nm;
   const std::size_t spaces = prescription.surfaces.size() + 1;
@@ -101,7 +102,7 @@ Indices indices(const Prescription& prescription, std::span<const double> wavele
   for (std::size_t space = 0; space < spaces; ++space) {
     const Medium& m = medium(prescription, space);
     const std::string here = where + (space == 0 ? ": object space" : ": surface " + std::to_string(space - 1));
-    // Errors of media/ name no surface.
+    // Adds the surface to messages of errors, which name only the glass.
     const auto ask = [&](const auto& question) {
       try {
         return question();
@@ -149,7 +150,7 @@ Indices indices(const Prescription& prescription, std::span<const double> wavele
     const auto sound_index_at = [&](double nm) {
       const double n = index_at(nm);
       if (!(n >= 0.1 && n <= 5))
-        throw Error(here + ": index at " + to_text(nm) + " nm is " + to_text(n) + ", wanted 0.1 <= n <= 5");
+        throw Error(here + ": index at " + to_text(nm) + " nm = " + to_text(n) + "; must be 0.1 to 5");
       return n;
     };
     for (std::size_t w = 0; w < wavelengths_nm.size(); ++w) {
@@ -158,8 +159,8 @@ Indices indices(const Prescription& prescription, std::span<const double> wavele
     const bool clamped =
         options.clamp_wavelengths && !std::ranges::all_of(wavelengths_nm, [&](double nm) { return range.has(nm); });
     if (clamped) {
-      result.clamped_glasses.push_back(here + ": " + describe(m) + ": beyond " + to_text(range.shortest, 7) + " to " +
-                                       to_text(range.longest, 7) + " nm the index at the end of this range is taken");
+      result.clamped_glasses.push_back(here + ": " + describe(m) + ": outside " + to_text(range.shortest, 7) + " to " +
+                                       to_text(range.longest, 7) + " nm, the index at the end of this range is used");
     }
     const std::array kinks{range.shortest, range.longest};
     result.spectrum.add(sound_index_at, clamped ? std::span<const double>(kinks) : std::span<const double>());

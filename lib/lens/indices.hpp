@@ -10,10 +10,10 @@
 
 namespace petzval::lens_detail {
 
-/// Indices of every medium at every wavelength, and how well dispersion is known.
+/// Indices of every medium at every wavelength, and the source of the dispersion.
 struct Indices {
   std::vector<double> values;  ///< [wavelength * (surfaces + 1) + space], space 0 before the first surface
-  Spectrum spectrum;           ///< the same media at wavelengths between
+  Spectrum spectrum;           ///< the same media at any wavelength in the range
   Dispersion dispersion = Dispersion::none;
   std::vector<std::string> missing_glasses, clamped_glasses;
 };

@@ -34,7 +34,7 @@ std::size_t nearest(const std::vector<double>& list, double nm) {
 
 void demand(const Lens& lens, const char* what, std::size_t found, std::size_t count) {
   if (found < count) return;
-  throw Error(lens.name() + ": " + what + " " + std::to_string(found) + " does not exist, wanted one of " +
+  throw Error(lens.name() + ": " + what + " " + std::to_string(found) + " does not exist; must be below " +
               std::to_string(count));
 }
 
@@ -85,9 +85,9 @@ double Lens::index(std::size_t space, Wavelength at) const {
   const bool between = nm && w >= list.size();
   if (between && !covers(at)) {
     const auto [shortest, longest] = std::minmax_element(list.begin(), list.end());
-    throw Error(name() + ": wavelength is " + to_text(*nm) + " nm, wanted " +
+    throw Error(name() + ": wavelength = " + to_text(*nm) + " nm; must be " +
                 (std::isfinite(index_error()) ? to_text(*shortest) + " to " + to_text(*longest) + " nm"
-                                              : "a compiled one: a medium has no index between them"));
+                                              : "a compiled wavelength: a medium has no index between them"));
   }
   if (!between) demand(*this, "wavelength", w, list.size());
   demand(*this, "space", space, surface_count() + 1);
@@ -107,11 +107,11 @@ std::size_t Lens::wavelength(double nm) const {
   if (const auto found = compiled(data_->wavelengths_nm, nm)) return *found;
   std::string list;
   for (const double w : data_->wavelengths_nm) list += (list.empty() ? "" : ", ") + to_text(w);
-  throw Error(name() + ": wavelength is " + to_text(nm) + " nm, wanted one the lens was compiled for: " + list);
+  throw Error(name() + ": wavelength = " + to_text(nm) + " nm; must be a compiled wavelength: " + list);
 }
 
 std::size_t Lens::nearest_wavelength(double nm) const {
-  if (!std::isfinite(nm)) throw Error(name() + ": wavelength is " + to_text(nm) + " nm, wanted a finite one");
+  if (!std::isfinite(nm)) throw Error(name() + ": wavelength = " + to_text(nm) + " nm; must be finite");
   return nearest(data_->wavelengths_nm, nm);
 }
 
@@ -131,7 +131,7 @@ const kernel::LensView<double>& kernel::view(const Lens& lens) noexcept {
 
 namespace {
 
-/// Vertices and film by the thicknesses.
+/// Positions the vertices and the film by the thicknesses.
 void place_vertices(Lens::Data& data) {
   double z = 0;
   for (LensSurface& surface : data.surfaces) {
@@ -141,8 +141,8 @@ void place_vertices(Lens::Data& data) {
   data.film_z = z;
 }
 
-/// Those of a prescription in one configuration; none if no other position focuses it, or if more than thicknesses
-/// change.
+/// The focus positions of a prescription in one configuration, sorted by inverse distance; empty if there are fewer
+/// than two.
 std::vector<FocusPosition> focus_positions(const Prescription& prescription) {
   std::vector<FocusPosition> result;
   for (std::size_t i = 0; i < prescription.configurations.size(); ++i) {
@@ -160,7 +160,7 @@ std::vector<FocusPosition> focus_positions(const Prescription& prescription) {
   return result;
 }
 
-/// A rim in the numbers of float too, which have squares from 1e-38 to 1e38; no ray goes on from beyond 1e15 mm.
+/// A semi-diameter whose square is representable in float (1e-38 to 1e38); rays beyond 1e15 mm are lost.
 double usable_rim(double semi_diameter) noexcept {
   if (semi_diameter < 1e-12) return 0;
   return semi_diameter > 1e15 ? std::numeric_limits<double>::infinity() : semi_diameter;
@@ -174,14 +174,14 @@ Lens lens_detail::compile_as_given(const Prescription& source, std::span<const d
   validate(source, name_of(source));
   const Prescription prescription = configured(source, options.configuration);
   const std::string where = name_of(prescription);
-  if (wavelengths_nm.empty()) throw Error(where + ": no wavelength to compile for, wanted one at least");
+  if (wavelengths_nm.empty()) throw Error(where + ": no wavelengths; must be at least one");
 
   auto data = std::make_shared<Lens::Data>();
   data->name = where;
   for (const double nm : wavelengths_nm) {
     if (const auto same = compiled(data->wavelengths_nm, nm)) {
-      throw Error(where + ": wavelength " + std::to_string(data->wavelengths_nm.size()) + " is " + to_text(nm) +
-                  " nm, that of wavelength " + std::to_string(*same) + ", wanted each once");
+      throw Error(where + ": wavelength " + std::to_string(data->wavelengths_nm.size()) + " = " + to_text(nm) +
+                  " nm; must differ from wavelength " + std::to_string(*same) + " of the list");
     }
     data->wavelengths_nm.push_back(nm);
   }
@@ -221,12 +221,12 @@ Lens lens_detail::with_rims(const Lens& lens, std::vector<double> rims) {
 Lens with_semi_diameter(const Lens& lens, std::size_t surface, double semi_diameter, RimLimit limit) {
   demand(lens, "surface", surface, lens.surface_count());
   if (!(semi_diameter >= 0)) {
-    throw Error(lens.name() + ": surface " + std::to_string(surface) + ": semi_diameter is " + to_text(semi_diameter) +
-                " mm, wanted 0 or more");
+    throw Error(lens.name() + ": surface " + std::to_string(surface) + ": semi_diameter = " + to_text(semi_diameter) +
+                " mm; must be at least 0");
   }
   if (!lens.iris().round() && lens.stop() == surface && std::isinf(usable_rim(semi_diameter))) {
-    throw Error(lens.name() + ": surface " + std::to_string(surface) + ": semi_diameter is " + to_text(semi_diameter) +
-                " mm, wanted one up to 1e15 mm for the iris of the stop");
+    throw Error(lens.name() + ": surface " + std::to_string(surface) + ": semi_diameter = " + to_text(semi_diameter) +
+                " mm; must be at most 1e15 mm at the stop of a lens with an iris");
   }
   const double widest = lens.surfaces()[surface].widest_semi_diameter;
   if (limit == RimLimit::prescription && usable_rim(semi_diameter) > widest) {
@@ -241,12 +241,11 @@ Lens with_semi_diameter(const Lens& lens, std::size_t surface, double semi_diame
 }
 
 Lens with_film(const Lens& lens, double film_z) {
-  if (!std::isfinite(film_z))
-    throw Error(lens.name() + ": film_z is " + to_text(film_z) + " mm, wanted a finite place");
+  if (!std::isfinite(film_z)) throw Error(lens.name() + ": film_z = " + to_text(film_z) + " mm; must be finite");
   const double last_z = lens.surfaces().back().vertex_z, direction = lens.light_direction(lens.surface_count());
   if (!((film_z - last_z) * direction > 0)) {
-    throw Error(lens.name() + ": film_z is " + to_text(film_z) + " mm, wanted it behind the lens, " +
-                (direction > 0 ? "above " : "below ") + to_text(last_z) + " mm, where the last vertex is");
+    throw Error(lens.name() + ": film_z = " + to_text(film_z) + " mm; must be behind the lens, " +
+                (direction > 0 ? "above " : "below ") + to_text(last_z) + " mm, the z of the last vertex");
   }
   auto data = std::make_shared<Lens::Data>(lens.data());
   data->film_z = film_z;
@@ -256,10 +255,10 @@ Lens with_film(const Lens& lens, double film_z) {
 Lens with_groups_at(const Lens& lens, double inverse_distance) {
   const std::span<const FocusPosition> positions = lens.focus_positions();
   const auto refuse = [&](const std::string& found, const std::string& wanted) {
-    throw Error(lens.name() + ": " + found + ", wanted " + wanted);
+    throw Error(lens.name() + ": " + found + "; must be " + wanted);
   };
-  if (positions.empty()) refuse("no group moves", "a lens with positions that focus");
-  if (!std::isfinite(inverse_distance)) refuse("inverse distance is " + to_text(inverse_distance), "a finite one");
+  if (positions.empty()) refuse("no group moves", "a lens with focus positions");
+  if (!std::isfinite(inverse_distance)) refuse("inverse_distance = " + to_text(inverse_distance), "finite");
 
   const auto above = std::ranges::upper_bound(positions.subspan(1, positions.size() - 2), inverse_distance, {},
                                               &FocusPosition::inverse_distance);
@@ -270,8 +269,8 @@ Lens with_groups_at(const Lens& lens, double inverse_distance) {
     const double near = from.thicknesses[i], far = to.thicknesses[i];
     const double thickness = near == far ? near : near + t * (far - near);
     if (thickness < 0 && near > 0 && far > 0) {
-      refuse("surface " + std::to_string(i) + ": its thickness would be " + to_text(thickness) + " mm",
-             "groups that do not meet");
+      refuse("surface " + std::to_string(i) + ": thickness = " + to_text(thickness) + " mm at this distance",
+             "positive, as at the focus positions");
     }
     data->surfaces[i].thickness = thickness;
   }
@@ -292,10 +291,10 @@ Lens with_iris(const Lens& lens, const Iris& iris) {
   iris_detail::check(iris, where + ": ");
   if (iris.round() && lens.iris().round()) return lens;
   if (!iris.round()) {
-    if (!lens.stop()) throw Error(where + ": no surface is marked as the stop, wanted one that the iris stands at");
+    if (!lens.stop()) throw Error(where + ": no surface is marked as the stop; must be one surface");
     if (std::isinf(lens.surfaces()[*lens.stop()].semi_diameter)) {
       throw Error(where + ": surface " + std::to_string(*lens.stop()) +
-                  ", the stop, is unlimited, wanted a semi_diameter");
+                  ", the stop: semi_diameter is unlimited; must be finite");
     }
   }
   auto data = std::make_shared<Lens::Data>(lens.data());

@@ -21,55 +21,55 @@ namespace petzval::kernel {
 template <class R>
 struct SurfaceTable {
   Quadric<R> quadric;
-  R gap = 0;                    ///< thickness to the next vertex; 0 behind the last surface
+  R gap = 0;                    ///< thickness to the next vertex; 0 for the last surface
   R semi_diameter_squared = 0;  ///< the rim itself is inside
   R obscuration_squared = 0;
-  std::int32_t asphere = -1;  ///< position among the aspheres, or -1
+  std::int32_t asphere = -1;  ///< index of the asphere, or -1
   bool mirror = false;
-  R sense = 1;  ///< direction along z of light in front of the surface: -1 behind an odd number of mirrors
+  R sense = 1;  ///< direction of light along z in front of the surface: -1 after an odd number of mirrors
 };
 
-/// An edge of the iris, mm: light passes where x nx + y ny + bend (x^2 + y^2) <= distance (iris_detail::IrisEdge).
+/// An edge of the iris (mm). Light passes if x nx + y ny + bend (x^2 + y^2) <= distance (iris_detail::IrisEdge).
 template <class R>
 struct StopEdge {
   R nx = 1, ny = 0, bend = 0, distance = 0;
 };
 
-/// Which intersection a surface needs in a batch.
+/// The intersection that a surface needs in a batch.
 enum class StepKind : std::uint8_t { plane, sphere, quadric, asphere };
 
-/// One surface in the order of travel, in a frame that is turned at every mirror and for rays towards the scene, so
-/// that rays always run towards +z.
+/// One surface in the order of travel, in a frame that is inverted after every mirror and for rays towards the scene,
+/// so that rays always travel towards +z.
 template <class R>
 struct Step {
   StepKind kind = StepKind::plane;
-  bool far = false;          ///< so far from the surface before that rays are first moved near the vertex
-  bool bends = false;        ///< the media on its sides differ, at one wavelength at least
-  bool mirror = false;       ///< the frame is turned behind it
+  bool far = false;          ///< far from the previous surface: rays are first moved near the vertex
+  bool bends = false;        ///< the media on its sides differ at one wavelength or more
+  bool mirror = false;       ///< the frame is inverted after this surface
   bool stop = false;         ///< the iris clips here
   bool refresh = false;      ///< normalise directions here
-  std::int32_t surface = 0;  ///< its position in the lens
+  std::int32_t surface = 0;  ///< index of the surface in the lens
   std::int32_t asphere = -1;
-  R gap = 0;                               ///< along z, from the vertex before
-  R curvature = 0, e = 1, ax = 1, ay = 1;  ///< as in Quadric, in the turned frame
-  R sense = 1;                             ///< -1 where the frame is turned
+  R gap = 0;                               ///< along z, from the previous vertex
+  R curvature = 0, e = 1, ax = 1, ay = 1;  ///< as in Quadric, in the frame of the step
+  R sense = 1;                             ///< -1 if the frame is inverted
   R rim2 = 0, obscuration2 = 0;            ///< squared semi-diameters; rim2 is at most reach2
-  R reach2 = 0;                            ///< squared height beyond which rays are lost, apertures or none
+  R reach2 = 0;                            ///< squared height beyond which all rays are lost
 };
 
 /// Constants of refraction at a step, for directions scaled by the index, |p| = n.
 template <class R>
 struct RefractionConstants {
-  R cn2 = 0;     ///< curvature n^2, in front
+  R cn2 = 0;     ///< curvature n^2, n in front of the surface
   R k = 0;       ///< n'^2 - n^2
-  R per_n2 = 1;  ///< 1 / n^2, in front
+  R per_n2 = 1;  ///< 1 / n^2, n in front of the surface
 };
 
-/// Where any wavelength lies in the range of the compiled ones: at t from -1 to 1, linear in 1 / nm: there the poles of
-/// dispersion formulas in the ultraviolet and the infrared are about as far away.
+/// Maps any wavelength in the range of the compiled ones to t from -1 to 1, linear in 1 / nm. In 1 / nm the poles of
+/// dispersion formulas in the ultraviolet and the infrared are about equally far away.
 template <class R>
 struct SpectralPlace {
-  R shortest = 1, longest = 0;  ///< the range, nm; empty where indices between compiled wavelengths are unknown
+  R shortest = 1, longest = 0;  ///< the range, nm; empty if indices between compiled wavelengths are unknown
   R scale = 0, offset = 0;      ///< t = scale / nm - offset, clamped; both 0 for one wavelength
 
   bool covers(double nm) const noexcept { return nm >= double{shortest} && nm <= double{longest}; }
@@ -79,15 +79,16 @@ struct SpectralPlace {
   }
 };
 
-/// The square of a medium's index at any wavelength: a polynomial of t. The square, because refraction needs it, and
-/// because it is what dispersion formulas give.
+/// The squared index of a medium at any wavelength: a polynomial of t.
+/// The square, because refraction needs it and dispersion formulas are written for it.
 template <class R>
 struct SquaredIndex {
   static constexpr std::size_t terms = 8;
   std::array<R, terms> by_power{1};
-  bool constant = true;  ///< the first coefficient is all
+  bool constant = true;  ///< only the first coefficient is not zero
 
-  /// By Estrin's scheme, which waits less than Horner's. T: R or lanes of it; t2, t4: powers of t.
+  /// Evaluates by Estrin's scheme, whose dependency chain is shorter than Horner's. T: R or lanes of R; t2, t4: powers
+  /// of t.
   template <class T>
   T at(const T& t, const T& t2, const T& t4) const noexcept {
     const auto pair = [&](std::size_t k) { return T(by_power[k]) + T(by_power[k + 1]) * t; };
@@ -95,8 +96,8 @@ struct SquaredIndex {
   }
 };
 
-/// Numbers in a row of one for each wavelength: with zeros to whole pairs of the widest registers, which look_up() in
-/// trace/lanes.hpp loads.
+/// Length of a row with one number per wavelength, padded with zeros to whole pairs of the widest registers, which
+/// core_detail::look_up() loads.
 template <class R>
 constexpr std::size_t row_length(std::size_t wavelengths) noexcept {
   constexpr std::size_t pair = 2 * 64 / sizeof(R);
@@ -108,13 +109,13 @@ template <class R>
 struct SurfaceSequence {
   const Step<R>* steps = nullptr;
   const RefractionConstants<R>* bends = nullptr;  ///< [wavelength * count + step]
-  const R* bend_rows = nullptr;                   ///< the same in rows, [3 * step + 0 for cn2, 1 for k, 2 for per_n2]
-  const R* n_first = nullptr;                     ///< a row, in front of the lens
-  const R* per_n_last = nullptr;                  ///< a row, behind it
-  SpectralPlace<R> place{};                       ///< of any wavelength
-  const SquaredIndex<R>* media = nullptr;         ///< [step] in front of it; the last one behind the lens
+  const R* bend_rows = nullptr;                   ///< the same in rows [3 * step + 0 for cn2, 1 for k, 2 for per_n2]
+  const R* n_first = nullptr;                     ///< row of indices in front of the lens
+  const R* per_n_last = nullptr;                  ///< row of 1 / index behind the lens
+  SpectralPlace<R> place{};                       ///< maps any wavelength to t
+  const SquaredIndex<R>* media = nullptr;         ///< [step] in front of the surface; the last is behind the lens
   R first_z = 0, last_z = 0;                      ///< vertices of the first and the last step, lens frame
-  R first_sense = 1, last_sense = 1;              ///< -1 where the frame in front and behind is turned
+  R first_sense = 1, last_sense = 1;              ///< -1 if the frame in front or behind is inverted
 };
 
 /// The tables of a compiled lens: flat arrays, borrowed from the Lens.
@@ -123,17 +124,17 @@ struct LensView {
   const SurfaceTable<R>* surfaces = nullptr;
   const Asphere<R>* aspheres = nullptr;
   const Interface<R>* to_film = nullptr;   ///< [wavelength * count + surface]
-  const Interface<R>* to_scene = nullptr;  ///< the same surfaces met from behind
+  const Interface<R>* to_scene = nullptr;  ///< the same surfaces for light from behind
   std::size_t count = 0;
   const R* vertex_z = nullptr;
   std::size_t wavelengths = 0;
-  std::size_t primary = 0;  ///< position of the primary wavelength
-  std::int32_t stop = -1;   ///< position of the stop, or -1
+  std::size_t primary = 0;  ///< index of the primary wavelength
+  std::int32_t stop = -1;   ///< index of the stop, or -1
   std::span<const StopEdge<R>> iris{};
   SurfaceSequence<R> sequence_to_film{}, sequence_to_scene{};
 };
 
-/// The tables of a lens, rounded once from double; they live as long as the lens. R: float or double.
+/// The tables of a lens, rounded once from double; valid as long as the lens exists. R: float or double.
 template <class R>
 const LensView<R>& view(const Lens& lens) noexcept;
 template <>

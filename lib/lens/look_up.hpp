@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Numbers by wavelength for rays of mixed wavelengths, for sources of one instruction set each, as core/simd.hpp.
+// Numbers by wavelength for rays of mixed wavelengths. For sources compiled once per instruction set, like
+// core/simd.hpp.
 #pragma once
 
 #include <cstddef>
@@ -13,14 +14,15 @@
 namespace petzval::lens_detail {
 namespace {
 
-/// The most rays that look_up() takes.
+/// Largest number of rays per call of look_up().
 inline constexpr std::size_t look_up_block = 64;
 
-/// Positions of as many rays as a register has lanes.
+/// Positions for one register of rays.
 using Positions = std::uint16_t __attribute__((vector_size(core_detail::lane_bytes / 2)));
 
-/// The first `used` numbers of the rays from `begin` on that have wavelengths of their own, at most a block of them:
-/// each number of all rays, then the next. Zeros for a wavelength that does not exist.
+/// Looks up the first `used` numbers of rays with individual wavelengths, from ray `begin` on, at most look_up_block
+/// rays.
+/// Written as to[number][ray]; zeros if a wavelength does not exist.
 template <class R, std::size_t numbers>
 inline void look_up(const WavelengthRows<R>& given, const RayWavelengths& wavelengths, std::size_t begin,
                     std::size_t count, R (&to)[numbers][look_up_block], std::size_t used = numbers) noexcept {
@@ -28,11 +30,11 @@ inline void look_up(const WavelengthRows<R>& given, const RayWavelengths& wavele
   using Values = typename Native::Values;
   using Bits = typename Native::Bits;
   constexpr std::size_t lanes = core_detail::lane_count<R>;
-  const WavelengthRows<R> table = given;  // which nothing that is written overlaps
+  const WavelengthRows<R> table = given;  // a copy, which writes cannot alias
   const auto store = [&](std::size_t k, std::size_t o, const Values& values) {
     __builtin_memcpy(&to[k][o], &values, sizeof values);
   };
-  // Places of all rays first, in loops that a compiler runs on its lanes; best when it knows how many there are.
+  // First the table positions of all rays, in loops that vectorise best if the number of rays is a constant.
   typename Native::Bit places[look_up_block];
   const auto for_each = [&](const auto& body) {
     if (count == look_up_block) {
@@ -89,7 +91,7 @@ inline void look_up(const WavelengthRows<R>& given, const RayWavelengths& wavele
   }
 }
 
-/// Positions of the compiled wavelengths nearest to those of N rays, nm; 65535 for those not covered.
+/// Finds the compiled wavelength nearest to each of `count` wavelengths (nm); 65535 if a wavelength is not covered.
 inline void find_nearest(const NearestPosition& nearest, std::size_t count, const float* nm,
                          std::uint16_t* positions) noexcept {
   using Native = core_detail::Native<float>;

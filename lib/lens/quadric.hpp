@@ -6,19 +6,19 @@
 
 namespace petzval::kernel {
 
-/// Plane, sphere, conic and cylinder in one: c (ax x^2 + ay y^2 + e z^2) = 2 z in the vertex frame, e = 1 + k.
-/// Curvature instead of radius: a plane is no special case, and R = 1e12 loses no digits.
+/// Plane, sphere, conic or cylinder: c (ax x^2 + ay y^2 + e z^2) = 2 z in the vertex frame, e = 1 + k.
+/// With the curvature instead of the radius a plane is no special case, and R = 1e12 loses no digits.
 template <class R>
 struct Quadric {
   R curvature = 0;
   R e = 1;             ///< one plus the conic constant
-  R ax = 1, ay = 1;    ///< 0 switches off the section in which a cylinder is straight
+  R ax = 1, ay = 1;    ///< 0 in the section in which a cylinder is straight
   bool sphere = true;  ///< sphere or plane: ax = ay = e = 1
   bool cylinder = false;
-  bool steep_conic = false;  ///< |k| > 10, where the tangent plane is the better place to start
+  bool steep_conic = false;  ///< |k| > 10, for which the tangent plane is the better start
 };
 
-/// curved_x, curved_y: whether the section is curved; one of them is not on a cylinder.
+/// @param curved_x, curved_y true if the section is curved; a cylinder has one straight section
 template <class R>
 Quadric<R> make_quadric(double curvature, double conic, bool curved_x = true, bool curved_y = true) noexcept {
   const bool cylinder = !(curved_x && curved_y);
@@ -27,20 +27,19 @@ Quadric<R> make_quadric(double curvature, double conic, bool curved_x = true, bo
       conic > 10 || conic < -10};
 }
 
-/// The scalar product in the metric of the quadric (ax, ay, e); on a sphere the usual one.
+/// Scalar product in the metric of the quadric (ax, ay, e); the Euclidean product for a sphere.
 template <class T>
 T product(const Quadric<Storage<T>>& q, const Vec<T>& u, const Vec<T>& v) noexcept {
   if (q.sphere) return dot(u, v);
   return q.ax * u.x * v.x + q.ay * u.y * v.y + q.e * u.z * v.z;
 }
 
-/// Intersection of ray and surface: the point in the vertex frame, and whether there is one.
+/// Result of an intersection: the point in the vertex frame, if `hit` is true.
 template <class T>
 struct Hit {
   Vec<T> point;
   Mask<T> hit;
-  T slant;  ///< gradient times direction, in the sense of travel: the cosine of incidence where the gradient is of unit
-            ///< length
+  T slant;  ///< gradient times direction, in the sense of travel: the cosine of incidence if the gradient has length 1
 };
 
 /// Half the gradient of the quadric's equation at one of its points, pointing to +z at the vertex; of unit length on a
@@ -52,8 +51,8 @@ Vec<T> gradient(const Quadric<Storage<T>>& q, const Vec<T>& point) noexcept {
   return {T(-c * q.ax * point.x), T(-c * q.ay * point.y), T(R(1) - c * q.e * point.z)};
 }
 
-/// A point of the ray near the surface, from which the quadratic loses no digits: the one nearest to the vertex (to the
-/// axis of a cylinder), or where a steep conic asks for it, the one in the vertex plane.
+/// A point of the ray near the surface, from which the quadratic loses no digits: the point nearest to the vertex (to
+/// the axis of a cylinder), or for a steep conic the point in the vertex plane.
 template <class T>
 Vec<T> approach(const Quadric<Storage<T>>& q, const Vec<T>& p, const Vec<T>& d) noexcept {
   using R = Storage<T>;
@@ -72,16 +71,19 @@ Vec<T> approach(const Quadric<Storage<T>>& q, const Vec<T>& p, const Vec<T>& d) 
   return p + d * step;
 }
 
-/// Where a ray meets the vertex sheet of a quadric.
+/// Intersects a ray with the vertex sheet of a quadric.
 ///
-/// p, d: a point of the ray and its unit direction, vertex frame. sense: +1 while light runs towards +z in the unfolded
-/// lens, -1 otherwise. The sense picks the root, not the sign of d.z: on a fisheye rays towards the film may have d.z <
-/// 0. The distance may be negative (a start behind the surface is legal: neighbouring surfaces overlap on paper).
-/// Accuracy: |error| cos(incidence) <= 4 eps (height + distance slope), 1.3 at worst in tests/lens. Proven in all of
-/// a narrower domain (`sh tests/run.sh -R Certified`): 10 eps (height + distance) on spheres for height <= 0.6 radii,
+/// The root is chosen by `sense`, not by the sign of d.z: in a fisheye, rays towards the film may have d.z < 0. The
+/// distance may be negative (a start behind the surface is legal: neighbouring surfaces overlap on paper). No hit if
+/// there is no real root, or if the root lies on the far side of the sphere or the second sheet of the hyperboloid; the
+/// point is then the start.
+/// @param start, d a point of the ray and its unit direction, vertex frame
+/// @param sense +1 if light travels towards +z in the unfolded lens, otherwise -1
+///
+/// Accuracy: |error| cos(incidence) <= 4 eps (height + distance slope), 1.3 at worst in tests/lens. Proven in a
+/// narrower domain (`sh tests/run.sh -R Certified`): 10 eps (height + distance) on spheres for height <= 0.6 radii,
 /// rays within 30 degrees of the axis and a distance <= height; 16 eps on conics with 0 <= 1 + k <= 2 for height <= 0.5
-/// radii and rays within 23 degrees. Misses: no real root, or the root lies on the far side of the sphere or the second
-/// sheet of the hyperboloid. The point is then the start.
+/// radii and rays within 23 degrees.
 template <class T>
 Hit<T> intersect(const Quadric<Storage<T>>& q, const Vec<T>& start, const Vec<T>& d, Storage<T> sense) noexcept {
   using R = Storage<T>;
@@ -93,8 +95,8 @@ Hit<T> intersect(const Quadric<Storage<T>>& q, const Vec<T>& start, const Vec<T>
   const T f = c * product(q, p, p) - R(2) * p.z;
   const T root = sqrt(T(b * b - a * f));
 
-  // One root of a t^2 - 2 b t + f, two forms: s f / (s b + root) where s b > 0, else (s b - root) / (s a), for rays
-  // beyond 90 degrees. Where there is no root, t is not a number and fails every test.
+  // One root of a t^2 - 2 b t + f in two forms: s f / (s b + root) if s b > 0, else (s b - root) / (s a), for rays
+  // beyond 90 degrees. If there is no root, t is NaN and fails every test.
   const T sb = sense * b;
   const auto near_form = sb >= R(0);
   const T t = quotient(select(near_form, T(sense * f), T(sb - root)), select(near_form, T(sb + root), T(sense * a)));

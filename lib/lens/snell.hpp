@@ -6,8 +6,8 @@
 
 namespace petzval::kernel {
 
-/// Constants of refraction between two media, computed once in double: mu = n/n', k = (n'-n)(n'+n)/n'^2.
-/// The product keeps k exact to an ulp where the indices nearly agree.
+/// Constants of refraction between two media, computed in double: mu = n/n', k = (n'-n)(n'+n)/n'^2.
+/// The product keeps k exact to an ulp if the indices are nearly equal.
 template <class R>
 struct Interface {
   R mu = 1;
@@ -25,7 +25,7 @@ struct Refracted {
   Mask<T> transmitted;
 };
 
-/// Normalises a direction that is nearly of unit length by one Newton step for 1/|d|.
+/// Factor that normalises a direction of nearly unit length: one Newton step for 1/|d|.
 template <class T>
 T length_correction(const Vec<T>& d) noexcept {
   using R = Storage<T>;
@@ -39,14 +39,18 @@ Vec<T> renormalised(const Vec<T>& d) noexcept {
 
 /// Refracts a direction at a surface point (Snell's law in vector form).
 ///
-/// normal: unit. cosine: direction times normal, > 0; side: 1 where the direction runs along the normal, -1 where
-/// against it, and then cosine is minus their product. interface: in the order of travel. `transmitted` is false beyond
-/// the critical angle (the direction is then finite but meaningless); at the critical angle itself the ray runs along
-/// the surface and counts as refracted. T = mu I + Gamma N with Gamma = cos t' - mu cos t, written as k / (cos t' + mu
-/// cos t), which does not cancel. (The second line for Gamma printed by Wu et al. 2010, section 5.1.1, lacks the factor
-/// n/n'.) The length of the direction that comes in is put right here, beside the critical path, so that its error
-/// never exceeds that of one surface; without, it random-walks over many surfaces, and the hits with it. What goes out
-/// last: renormalised().
+/// T = mu I + Gamma N with Gamma = cos t' - mu cos t, written as k / (cos t' + mu cos t), which does not cancel. (The
+/// second line for Gamma printed by Wu et al. 2010, section 5.1.1, lacks the factor n/n'.)
+///
+/// The length of the incoming direction is corrected here, off the critical path, so that its error never exceeds the
+/// error of one surface. Otherwise it would grow like a random walk over many surfaces, and the errors of the hits with
+/// it. The last direction of a lens must be normalised by renormalised().
+/// @param normal unit normal
+/// @param cosine |direction . normal|
+/// @param side 1 if the direction points along the normal, otherwise -1
+/// @param interface in the order of travel
+/// @return `transmitted` is false beyond the critical angle (the direction is then finite but meaningless); at the
+///   critical angle itself the ray travels along the surface and counts as refracted
 template <class T>
 Refracted<T> refract(const Vec<T>& direction, const Vec<T>& normal, const T& cosine, Storage<T> side,
                      const Interface<Storage<T>>& interface) noexcept {
@@ -60,10 +64,11 @@ Refracted<T> refract(const Vec<T>& direction, const Vec<T>& normal, const T& cos
   return {direction * mu + normal * gamma, s >= R(0)};
 }
 
-/// The same for a unit normal on either side; the result has unit length.
-/// Accuracy: |error| cos(refraction) <= 4 eps, 0.91 at worst in tests/lens. Proven where the ratio of the indices is
-/// within 1.8, the sine of the larger angle within 0.9 and the normal within 44 degrees of the axis (`sh tests/run.sh
-/// -R Certified`): 16 eps into the denser medium, 24 eps (n / n')^2 into the thinner one.
+/// Refracts a direction for a unit normal on either side; the result has unit length.
+///
+/// Accuracy: |error| cos(refraction) <= 4 eps, 0.91 at worst in tests/lens. Proven for a ratio of the indices within
+/// 1.8, the sine of the larger angle within 0.9 and the normal within 44 degrees of the axis (`sh tests/run.sh -R
+/// Certified`): 16 eps into the denser medium, 24 eps (n / n')^2 into the less dense medium.
 template <class T>
 Refracted<T> refract(const Vec<T>& direction, const Vec<T>& normal, const Interface<Storage<T>>& interface) noexcept {
   using R = Storage<T>;
@@ -73,7 +78,7 @@ Refracted<T> refract(const Vec<T>& direction, const Vec<T>& normal, const Interf
   return {renormalised(refracted), transmitted};
 }
 
-/// Mirrors a unit direction at a surface point; unit normal, either side.
+/// Reflects a unit direction at a surface point, for a unit normal on either side.
 template <class T>
 Vec<T> reflect(const Vec<T>& direction, const Vec<T>& normal) noexcept {
   using R = Storage<T>;

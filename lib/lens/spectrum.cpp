@@ -16,7 +16,8 @@ using kernel::SquaredIndex;
 
 constexpr std::size_t terms = SquaredIndex<double>::terms;
 
-/// The polynomial through values at the zeros of the Chebyshev polynomial T_8: their sum with T_0 to T_7, by powers.
+/// The polynomial through values at the zeros of the Chebyshev polynomial T_8: a sum over T_0 to T_7, expanded in
+/// powers.
 SquaredIndex<double> through(const std::array<double, terms>& values) {
   SquaredIndex<double> result{.by_power = {0}, .constant = false};
   std::array<double, terms> before{}, own{1};  // T_{k-1}, T_k
@@ -40,7 +41,7 @@ SquaredIndex<double> through(const std::array<double, terms>& values) {
 }  // namespace
 
 kernel::SpectralPlace<double> spectral_place(std::span<const double> wavelengths_nm) {
-  constexpr double rounding = 1.2e-7;  // of floats
+  constexpr double rounding = 1.2e-7;  // of float
   kernel::SpectralPlace<double> result;
   if (wavelengths_nm.empty()) return result;
   const auto [shortest, longest] = std::minmax_element(wavelengths_nm.begin(), wavelengths_nm.end());
@@ -59,7 +60,7 @@ Spectrum::Spectrum(std::span<const double> wavelengths_nm)
 void Spectrum::add(const std::function<double(double)>& index_at, std::span<const double> kinks) {
   media_.emplace_back();
   SquaredIndex<double>& medium = media_.back();
-  // By numerators over `terms`: the zeros of T_8 at odd halves, its extremes at whole ones.
+  // `part` is in units of pi / terms: the zeros of T_8 are at odd halves, its extrema at integers.
   const auto nm_at = [&](double part) {
     const double t = std::cos(std::numbers::pi * part / terms);
     const double nm = place_.scale / (t + place_.offset);
@@ -82,13 +83,13 @@ void Spectrum::add(const std::function<double(double)>& index_at, std::span<cons
     medium.constant = *least == *most;
     if (medium.constant) return;
     medium = through(values);
-    constexpr double spare = 1.1;  // between the places looked at
+    constexpr double spare = 1.1;  // margin for errors between the checked wavelengths
     const auto check = [&](double nm) {
       error_ = std::max(error_, spare * std::abs(index(media_.size() - 1, nm) - index_at(nm)));
     };
     for (std::size_t k = 0; k <= terms; ++k) check(nm_at(static_cast<double>(k)));
     for (const double nm : compiled_nm_) check(nm);
-    // The error of a smooth function peaks at the extremes of T_8. With kinks it may peak anywhere.
+    // The error of a smooth function peaks at the extrema of T_8. With kinks it may peak anywhere.
     constexpr std::size_t places = 32 * terms;
     for (const double nm : kinks) {
       if (nm >= nm_at(0) && nm <= nm_at(terms)) check(nm);
@@ -98,7 +99,7 @@ void Spectrum::add(const std::function<double(double)>& index_at, std::span<cons
     error_ = std::numeric_limits<double>::infinity();
   }
   if (std::isfinite(error_)) return;
-  // Nothing lies between them.
+  // Without polynomials no wavelength between the compiled ones is covered.
   place_.shortest = 1, place_.longest = 0;
 }
 

@@ -10,25 +10,26 @@
 
 namespace petzval::lens_detail {
 
-/// The range of some wavelengths, by the rounding of a float wider.
+/// The range of wavelengths, extended by the rounding of a float.
 kernel::SpectralPlace<double> spectral_place(std::span<const double> wavelengths_nm);
 
-/// The media of a lens at every wavelength from the smallest to the largest compiled one. Polynomials are fitted to the
-/// dispersion formulas themselves, at Chebyshev nodes of the range, so that neither number nor spacing of the compiled
-/// wavelengths matters.
+/// The indices of the media of a lens at every wavelength from the shortest to the longest compiled wavelength.
+/// Polynomials are fitted to the dispersion formulas themselves, at Chebyshev nodes of the range, so that the number
+/// and spacing of the compiled wavelengths do not matter.
 class Spectrum {
  public:
   Spectrum() = default;
   explicit Spectrum(std::span<const double> wavelengths_nm);
 
-  /// Adds the medium of the next space. index_at(nm) may throw Error: then the lens has its compiled wavelengths only.
-  /// kinks: wavelengths where its slope jumps.
+  /// Adds the medium of the next space.
+  /// @param index_at index at a wavelength (nm); if it throws Error, only the compiled wavelengths are covered
+  /// @param kinks wavelengths at which the slope jumps
   void add(const std::function<double(double)>& index_at, std::span<const double> kinks = {});
 
-  /// Whether a wavelength lies in the range, or beside it by the rounding of a float.
+  /// True if a wavelength lies in the range, extended by the rounding of a float.
   bool covers(double nm) const noexcept { return place_.covers(nm); }
   double index(std::size_t space, double nm) const noexcept;
-  /// The largest error of an index; infinite without polynomials.
+  /// Largest error of an index; infinite if there are no polynomials.
   double error() const noexcept { return error_; }
 
   const kernel::SpectralPlace<double>& place() const noexcept { return place_; }

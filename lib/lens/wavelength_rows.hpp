@@ -9,7 +9,7 @@
 
 namespace petzval::lens_detail {
 
-/// Rows of numbers as core_detail::look_up() reads them: on registers of their own, with zeros to whole pairs.
+/// Rows of numbers in the layout of core_detail::look_up(): aligned to registers and padded with zeros to whole pairs.
 template <class R>
 class AlignedRows {
  public:
@@ -17,7 +17,7 @@ class AlignedRows {
   AlignedRows(std::size_t rows, std::size_t numbers)
       : length_(kernel::row_length<R>(numbers)), registers_(rows * length_ / Register::size) {}
 
-  /// From the beginning of a row to that of the next.
+  /// Distance between the starts of two rows.
   std::size_t length() const noexcept { return length_; }
   const R* data() const noexcept { return registers_.empty() ? nullptr : registers_.front().numbers; }
   void set(std::size_t row, std::size_t at, double value) noexcept {
@@ -35,25 +35,26 @@ class AlignedRows {
   std::vector<Register> registers_;
 };
 
-/// The cells between even wavelengths: with the zero, permutations of registers reach them (core/look_up.hpp).
+/// Number of cells between uniform wavelengths: with the zero entry, permutations of registers can read them
+/// (core/look_up.hpp).
 inline constexpr std::int32_t few_cells = 15;
 
-/// Some numbers for each wavelength, borrowed, for loops over rays of mixed wavelengths (lens/look_up.hpp): of each
-/// number a row by compiled wavelength, then, in nm, parabolas over even cells of the range.
+/// Numbers per wavelength, borrowed, for loops over rays of mixed wavelengths (lens/look_up.hpp).
+/// Each number has a row over compiled wavelengths, and parabolas over equal cells of the range in nm.
 template <class R>
 struct WavelengthRows {
-  const R* by_position = nullptr;  ///< [number]; zeros behind the compiled ones
-  std::size_t length = 0;          ///< of these rows
+  const R* by_position = nullptr;  ///< [number] rows, padded with zeros
+  std::size_t length = 0;          ///< length of the rows by_position
   std::int32_t compiled = 0;
   std::int32_t cells = 0;
-  const R* by_nm = nullptr;     ///< [number][power of the part of a cell] a number for each cell, and zero
-  std::size_t cell_length = 0;  ///< of these rows
-  R shortest = 1, longest = 0;  ///< the range, nm; empty where nothing is known between compiled wavelengths
+  const R* by_nm = nullptr;     ///< [number][power of the fraction in a cell] rows of one number per cell and a zero
+  std::size_t cell_length = 0;  ///< length of the rows by_nm
+  R shortest = 1, longest = 0;  ///< the range, nm; empty if only compiled wavelengths are known
   R cells_per_nm = 0;
 };
 
-/// The position of the compiled wavelength that is nearest to another one, borrowed: that of the smallest, and what is
-/// added to it at each middle between neighbours that a wavelength exceeds.
+/// Finds the compiled wavelength nearest to another one; borrowed. Starts at the position of the shortest wavelength
+/// and adds a step for each midpoint between neighbours that the wavelength exceeds.
 struct NearestPosition {
   struct Step {
     float middle;  ///< nm

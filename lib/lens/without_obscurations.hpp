@@ -5,7 +5,7 @@
 
 namespace petzval {
 
-/// The lens without its central obscurations: its pupils hold those of the lens, and none is a ring.
+/// A copy of the lens without central obscurations. Its pupils contain the pupils of the lens and are never annular.
 PETZVAL_API Lens without_obscurations(const Lens& lens);
 
 }  // namespace petzval

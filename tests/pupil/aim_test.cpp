@@ -245,7 +245,7 @@ TEST(Aim, RefusesWhatItCannotAimAt) {
   EXPECT_EQ(testing::message([&] {
               chief_ray(lens, {0, -infinity}, 3);
             }),
-            lens.name() + ": wavelength 3 does not exist, wanted one of 1");
+            lens.name() + ": wavelength 3 does not exist; must be below 1");
   Prescription p;
   p.name = "open";
   p.surfaces = {{.radius = 50, .thickness = 45, .medium = {.nd = 1.5}}};

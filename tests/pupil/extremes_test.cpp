@@ -249,7 +249,7 @@ TEST(Extremes, PointsThatAreNoneAreRefused) {
 
 TEST(Extremes, WavelengthsOutsideTheSetAreRefused) {
   const Lens lens = data_lens("double_gauss_100mm_f1.35");
-  const std::string wanted = lens.name() + ": wavelength 1 does not exist, wanted one of 1";
+  const std::string wanted = lens.name() + ": wavelength 1 does not exist; must be below 1";
   EXPECT_EQ(message([&] { chief_ray(lens, {0, -infinity}, 1); }), wanted);
   EXPECT_EQ(message([&] { pupil_boundary(lens, {0, -infinity}, 1); }), wanted);
   EXPECT_EQ(message([&] { exit_pupil_boundary(lens, {0, 0}, 1); }), wanted);

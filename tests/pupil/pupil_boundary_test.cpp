@@ -192,7 +192,7 @@ TEST(PupilBoundary, RefusesTooFewDirections) {
   EXPECT_EQ(said(0, (1 << 20) + 1).rfind("front stop: pupil boundary: directions is 1048577, wanted 3 to 1048576", 0),
             0u);
   EXPECT_EQ(said(0, 0).rfind("front stop: pupil boundary: directions is 0", 0), 0u);
-  EXPECT_EQ(said(0, 8, 2), "front stop: wavelength 2 does not exist, wanted one of 1");
+  EXPECT_EQ(said(0, 8, 2), "front stop: wavelength 2 does not exist; must be below 1");
 }
 
 }  // namespace pupil_boundary_test

@@ -65,7 +65,7 @@ TEST(TraceBundle, RefusesAPupilOfAWavelengthThatTheLensLacks) {
   const PupilSampler pupil(pupil_boundary(three, {.z = -1500}, 2));
   EXPECT_FALSE(trace_bundle(three, pupil, 100).empty());
   EXPECT_EQ(testing::message([&] { trace_bundle(one, pupil, 100); }),
-            one.name() + ": wavelength 2 does not exist, wanted one of 1");
+            one.name() + ": wavelength 2 does not exist; must be below 1");
 }
 
 TEST(TraceBundle, BeginsWithTheHitsOfFewerSamples) {
