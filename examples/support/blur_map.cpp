@@ -24,8 +24,9 @@ double ideal_blur(const petzval::Film& film, const PointScene& scene, const petz
   return image ? petzval::signed_blur(*image, film) : none;
 }
 
-/// The blur of the scene point whose rays meet the film about a place of the picture. The ideal lens gives nearly that
-/// point. beside: the correction of the place, in from the neighbour, out for this place; it changes slowly.
+/// The signed blur diameter of the scene point whose rays have their centroid at (x, y), pixels; NaN if no light
+/// arrives. `beside` is the offset of the chief ray of the ideal lens from that film point, updated here. It changes
+/// slowly, so the offset of a neighbour is a good start.
 double exact_blur(const petzval::Film& film, const PointScene& scene, const petzval::ImageRays& lens, double x,
                   double y, petzval::FilmPoint& beside) {
   const petzval::FilmPoint wanted = film.point(x, y);
@@ -41,8 +42,8 @@ double exact_blur(const petzval::Film& film, const PointScene& scene, const petz
   return result;
 }
 
-/// Interpolates between the nodes of a grid. The size is interpolated without its sign: the blur of a real lens is not
-/// 0 where its sign changes.
+/// Interpolates between the nodes of a grid. Magnitude and sign are interpolated separately because the blur of a real
+/// lens is not 0 where its sign changes.
 double between(const std::vector<double>& nodes, int columns, double x, double y) {
   const int i = static_cast<int>(x), j = static_cast<int>(y);
   const double u = x - i, v = y - j;
@@ -69,7 +70,7 @@ petzval::Film with_pixels(petzval::Film film, int longer_side) {
 
 BlurMap blur_map(const petzval::Film& film, const PointScene& scene, const petzval::IdealLens& lens,
                  const petzval::ImageRays* exact, int threads) {
-  constexpr int step = 8;  // pixels between nodes; the last node lies beyond the last pixel
+  constexpr int step = 8;  // pixels between nodes; the last node is beyond the last pixel
   const int width = film.columns, height = film.rows, columns = width / step + 2, rows = height / step + 2;
   std::vector<double> nodes(static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows), none);
   petzval::parallel_for(nodes.size(), static_cast<std::size_t>(columns), threads, [&](std::size_t begin, std::size_t) {

@@ -13,21 +13,22 @@
 
 namespace examples {
 
-/// Signed diameters of blurs over an upright picture, rows from the top. NaN: no light.
+/// Signed blur diameters over an upright picture, rows from the top. NaN: no light.
 struct BlurMap {
   int width = 0, height = 0;
   std::vector<double> diameter_mm;
 };
 
-/// The film with a number of square pixels along its longer side.
+/// The film with square pixels, given the number of pixels along its longer side.
 petzval::Film with_pixels(petzval::Film film, int longer_side = 1080);
 
-/// A blur for each pixel of the film, by the ideal lens or (with exact) by bundles of rays, computed at every 8th pixel
-/// and interpolated. The result does not depend on the number of threads.
+/// The blur at each pixel of the film, by the ideal lens or, if `exact` is not null, by ray bundles. It is computed at
+/// every 8th pixel and interpolated. The result does not depend on the number of threads.
 BlurMap blur_map(const petzval::Film& film, const PointScene& scene, const petzval::IdealLens& lens,
                  const petzval::ImageRays* exact, int threads);
 
-/// The end of a scale: 1, 2 or 5 times a power of ten that 99 % of the maps do not exceed.
+/// Upper end of a colour scale: the smallest 1, 2 or 5 times a power of ten that at least 99 % of the pixels stay
+/// below.
 double scale_of(std::span<const BlurMap> maps);
 
 /// A focus point in the picture.
@@ -40,8 +41,8 @@ struct MarkedPoint {
 struct BlurSheet {
   std::string title = {}, subtitle = {};
   std::vector<std::string> notes = {};  ///< lines at the foot
-  double scale_mm = 0;                  ///< blur of the deepest colours
-  double sharp_mm = 0;                  ///< blur along the thin lines
+  double scale_mm = 0;                  ///< blur shown in the deepest colours
+  double sharp_mm = 0;                  ///< blur along the thin contour lines
   std::vector<MarkedPoint> points = {};
 };
 

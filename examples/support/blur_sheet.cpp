@@ -14,7 +14,7 @@ constexpr Colour paper{251, 251, 250}, ink{29, 32, 38}, faint{86, 91, 102}, line
     no_light{150, 150, 150};
 constexpr int margin = 36, top = 92, line = 21, bar_height = 20, title_size = 26, subtitle_size = 16, small = 15;
 
-/// Deep blue over white to deep red for t from -1 to 1.
+/// Deep blue through white to deep red for t from -1 to 1.
 Colour colour_of(double t) {
   constexpr Colour white{255, 255, 255}, blue{26, 84, 170}, red{190, 38, 32}, deep_blue{8, 32, 84}, deep_red{92, 8, 20};
   const double size = std::min(std::abs(t), 1.0);
@@ -41,7 +41,7 @@ void draw_map(petzval::Rgb8Image& page, const BlurMap& map, const BlurSheet& she
   for (int y = 0; y < map.height; ++y) {
     for (int x = 0; x < map.width; ++x) {
       const double d = at(x, y);
-      // The line at which the blur crosses the limit.
+      // Contour line at the limit of sharpness.
       const auto sharp = [&sheet](double blur) { return std::abs(blur) <= sheet.sharp_mm; };
       const bool edge = (x + 1 < map.width && sharp(d) != sharp(at(x + 1, y))) ||
                         (y + 1 < map.height && sharp(d) != sharp(at(x, y + 1)));

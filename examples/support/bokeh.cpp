@@ -19,7 +19,7 @@
 namespace examples {
 namespace {
 
-/// Whether z lies in front of the whole first surface, also of one that bulges forward.
+/// True if z lies in front of the whole first surface, even if that surface bulges forward.
 bool in_front(const petzval::Lens& lens, double z) {
   try {
     petzval::PupilPlane(lens, {.z = z});
@@ -29,7 +29,7 @@ bool in_front(const petzval::Lens& lens, double z) {
   }
 }
 
-/// Refuses a light that is not in front of the lens and names the least distance.
+/// @throws petzval::Error  if the light is not in front of the lens; the message gives the least distance
 void check_light(const petzval::Lens& lens, const BokehSetup& setup, double origin_z) {
   if (in_front(lens, origin_z - setup.light_mm)) {
     const double focal_length =
@@ -40,15 +40,15 @@ void check_light(const petzval::Lens& lens, const BokehSetup& setup, double orig
     }
     return;
   }
-  petzval::PupilPlane(lens, {.z = -std::numeric_limits<double>::infinity()});  // refuses a lens without fields
+  petzval::PupilPlane(lens, {.z = -std::numeric_limits<double>::infinity()});  // throws if the lens has no pupil
   double refused = setup.light_mm, enough = std::max(1.0, refused);
   while (!in_front(lens, origin_z - enough)) enough *= 2;
   while (enough - refused > 1e-7 * enough) {
     const double middle = (enough + refused) / 2;
     (in_front(lens, origin_z - middle) ? enough : refused) = middle;
   }
-  throw petzval::Error(lens.name() + ": a light " + number(setup.light_mm) + " mm from the " + in_words(setup.origin) +
-                       " is not in front of the lens, wanted more than " + number(enough, 6) + " mm");
+  throw petzval::Error(lens.name() + ": light " + number(setup.light_mm) + " mm from the " + in_words(setup.origin) +
+                       "; must be in front of the lens, more than " + number(enough, 6) + " mm away");
 }
 
 }  // namespace
@@ -83,23 +83,23 @@ petzval::Camera camera_of(const BokehScene& scene, petzval::CameraOptions option
     }
     if (holds) return camera;
   }
-  throw petzval::Error(scene.lens.name() + ": the picture of " + std::string(petzval::name(options.model)) +
-                       " does not fit on " + number(longest / 1000) + " m of film, wanted one that does");
+  throw petzval::Error(scene.lens.name() + ": the image by model " + std::string(petzval::name(options.model)) +
+                       " does not fit on a film of " + number(longest / 1000) + " m");
 }
 
 petzval::Spectrum white_light(const std::string& white_point) {
   if (white_point.ends_with(".csv")) return petzval::Spectrum::load(white_point);
   const std::array<std::string_view, 4> names{"D65", "D50", "A", "E"};
   if (std::find(names.begin(), names.end(), white_point) == names.end()) {
-    throw petzval::Error("--white-point: found \"" + white_point + "\", wanted D65, D50, A, E or a file.csv");
+    throw petzval::Error("--white-point = \"" + white_point + "\"; must be D65, D50, A, E or a file.csv");
   }
   return petzval::illuminant(white_point, petzval::data_directory() / "glass" / "cie_daylight_10nm.csv");
 }
 
 void add_white_point(App& app, std::string& white_point) {
   app.add_option("--white-point", white_point,
-                 "spectrum of the light, which looks white in the pictures: D65 or D50 (daylight), A (tungsten), E "
-                 "(equal power), or a file.csv of wavelength_nm,power; it weights several wavelengths, one alone is "
+                 "spectrum of the light, shown as white: D65 or D50 (daylight), A (tungsten), E "
+                 "(equal power), or a file.csv of wavelength_nm,power; a single wavelength is always shown as "
                  "white")
       ->type_name("NAME|FILE.csv")
       ->capture_default_str();
@@ -132,7 +132,7 @@ std::string focus_caption(double focus_mm) {
 
 namespace {
 
-/// Three digits, without an exponent.
+/// At least three digits, without an exponent.
 std::string short_number(double value) { return value < 100 ? number(value, 3) : number(std::round(value)); }
 
 }  // namespace

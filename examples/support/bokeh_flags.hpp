@@ -10,19 +10,20 @@ namespace examples {
 
 /// Command line of the programs that shape a bokeh beyond its iris.
 struct BokehFlags {
-  petzval::BokehControls controls;  ///< without its map
+  petzval::BokehControls controls;  ///< without a weight map
   std::string iris_image, weight_map;
 
-  /// Whether pictures are those of the lens alone.
+  /// True if the flags leave the bokeh of the lens unchanged.
   bool change_nothing() const noexcept;
 };
 
-/// Options --iris-image, --lens-ratio, --rate-of-change, --keep-light, --weight-distribution, --weight-strength and
+/// Adds --iris-image, --lens-ratio, --rate-of-change, --keep-light, --weight-distribution, --weight-strength and
 /// --weight-map.
 void add_bokeh(App& app, BokehFlags& flags);
 
-/// The controls with their map. Notes on standard error how much light the cut of weights at 0 adds. Throws
-/// petzval::Error for files that cannot be read, two maps, and flags without an effect.
+/// The controls with their map. A note on standard error gives the light added by setting negative weights to 0.
+///
+/// @throws petzval::Error if a file cannot be read, both maps are given, or a flag has no effect
 petzval::BokehControls controls_of(const BokehFlags& flags);
 
 }  // namespace examples

@@ -37,8 +37,8 @@ petzval::Film CameraSetup::film(std::uint32_t columns, std::uint32_t rows, std::
 void add_camera(App& app, CameraSetup& setup) {
   add_iris(app, setup.iris);
   add_number(app, "--focus-mm", setup.focus_mm, positive_length,
-             "distance of the subject in focus (mm), or inf; at the primary of the wavelengths in use: the one nearest "
-             "to the d line, unless the lens states its reference");
+             "distance of the subject in focus (mm), or inf; at the primary wavelength: the one nearest to the d line, "
+             "unless the lens states a reference");
   add_focus(app, setup.focus);
   app.add_option(
          "--film-mm",
@@ -55,7 +55,8 @@ void add_picture_size(App& app, std::uint32_t& width, std::uint32_t& height, std
   constexpr Range side{1, 16384, "a whole number from 1 to 16384"};
   width = height = 0;
   add_count(app, "--width", width, side,
-            "pixels across; with --height and without --film-mm the film has the picture's shape, within 36 x 24 mm")
+            "pixels across; if --height is given and --film-mm is not, the film takes the picture's shape within "
+            "36 x 24 mm")
       ->default_str(std::to_string(usual_width) + ", or by --height");
   add_count(app, "--height", height, side, "pixels down")->default_str("by --width: square pixels");
 }
@@ -69,7 +70,7 @@ Option* add_model(App& app, std::string& model) {
 std::array<double, 2> parse_size(const std::string& where, std::string_view text, const Range& range) {
   const std::size_t x = text.find('x');
   if (x == std::string_view::npos) {
-    throw petzval::Error(where + ": found \"" + std::string(text.substr(0, 60)) + "\", wanted a size like 36x24");
+    throw petzval::Error(where + " = \"" + std::string(text.substr(0, 60)) + "\"; must be a size like 36x24");
   }
   return {parse_number(where, text.substr(0, x), range), parse_number(where, text.substr(x + 1), range)};
 }

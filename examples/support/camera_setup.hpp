@@ -20,7 +20,7 @@ inline constexpr Range film_side{std::numeric_limits<double>::min(), 1e6, "a len
 /// Command line of the programs with a camera.
 struct CameraSetup {
   IrisSetup iris;
-  double focus_mm = 3000;  ///< distance of the subject in focus
+  double focus_mm = 3000;  ///< distance of the subject in focus, mm
   FocusFlags focus;        ///< origin and criterion of focus_mm
   std::string film_mm = "36x24";
   bool film_given = false;
@@ -28,33 +28,32 @@ struct CameraSetup {
   /// Width and height of the film. Throws petzval::Error.
   std::array<double, 2> film_size() const;
 
-  /// A film with so many pixels; 0: not given.
+  /// A film with the given numbers of pixels; 0: not given.
   ///
-  /// A picture decides the shape of a film that is not given: the largest of that shape within 36 x 24 mm, or within
-  /// 24 x 36 mm for an upright picture. A film decides numbers of pixels that are not given, so that pixels are square;
-  /// usual_columns: of a picture of which neither is given.
+  /// Without --film-mm the film is the largest with the shape of the picture within 36 x 24 mm, or within 24 x 36 mm
+  /// for an upright picture. A missing number of pixels follows from the film and square pixels.
   ///
-  /// @throws petzval::Error  for an invalid --film-mm, and for a film so slim that the picture would need more than
-  ///                         16384 pixels
+  /// @param usual_columns  columns if neither number is given
+  /// @throws petzval::Error if --film-mm is invalid, or so slim that the picture would need more than 16384 pixels
   petzval::Film film(std::uint32_t columns, std::uint32_t rows, std::uint32_t usual_columns) const;
 };
 
-/// Options of add_iris, --focus-mm, --distance-from, --criterion and --film-mm.
+/// Adds the options of add_iris, --focus-mm, --distance-from, --criterion and --film-mm.
 void add_camera(App& app, CameraSetup& setup);
 
-/// Options --width and --height, 0 if not given, for CameraSetup::film.
+/// Adds --width and --height, 0 if not given, for CameraSetup::film.
 void add_picture_size(App& app, std::uint32_t& width, std::uint32_t& height, std::uint32_t usual_width);
 
-/// Option --model.
+/// Adds --model.
 Option* add_model(App& app, std::string& model);
 
-/// "36x24". Throws petzval::Error beginning with `where`.
+/// Parses a size like "36x24". @throws petzval::Error that begins with `where`, if the text is not a size
 std::array<double, 2> parse_size(const std::string& where, std::string_view text, const Range& range);
 
 /// The loaded lens, stopped down and focused at its primary wavelength.
 petzval::Lens focused(const LoadedLens& loaded, const CameraSetup& setup);
 
-/// Notes on standard error the findings of petzval::lint() about a film.
+/// Prints the findings of petzval::lint() about a film as notes on standard error.
 ///
 /// @param pixel_flags  the options that set the numbers of pixels; if empty, only the size of the film is checked
 void say_what_does_not_fit(const petzval::Lens& lens, const petzval::Film& film,

@@ -9,13 +9,13 @@ namespace examples {
 /// A picture of one colour.
 petzval::Rgb8Image blank(int width, int height, const Colour& colour);
 
-/// A rectangle, clipped to the picture.
+/// Fills a rectangle, clipped to the picture.
 void fill(petzval::Rgb8Image& picture, int x, int y, int width, int height, const Colour& colour);
 
-/// A disc with a smooth edge, clipped to the picture.
+/// Draws a disc with a smooth edge, clipped to the picture.
 void disc(petzval::Rgb8Image& picture, double x, double y, double radius, const Colour& colour);
 
-/// Another picture with its upper left corner at (x, y). It must fit.
+/// Copies a tile with its upper left corner to (x, y). The tile must fit.
 void place(petzval::Rgb8Image& picture, int x, int y, const petzval::Rgb8Image& tile);
 
 }  // namespace examples

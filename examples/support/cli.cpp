@@ -78,7 +78,8 @@ std::string_view without_blanks(std::string_view text) {
   return text;
 }
 
-/// The values of a comma list by parse(text). These numbers name results: a repeated one would overwrite a result.
+/// Parses a comma-separated list. Throws for a repeated number, because numbers name results: one would overwrite
+/// another.
 template <class Parse>
 std::vector<double> parse_list(const std::string& where, std::string_view text, const Parse& parse) {
   std::vector<double> values;
@@ -90,7 +91,7 @@ std::vector<double> parse_list(const std::string& where, std::string_view text, 
   std::vector<double> sorted = values;
   std::sort(sorted.begin(), sorted.end());
   if (const auto twice = std::adjacent_find(sorted.begin(), sorted.end()); twice != sorted.end()) {
-    throw petzval::Error(where + ": found " + number(*twice) + " twice, wanted every number once");
+    throw petzval::Error(where + ": " + number(*twice) + " occurs twice; numbers must differ");
   }
   return values;
 }
@@ -98,7 +99,7 @@ std::vector<double> parse_list(const std::string& where, std::string_view text, 
 /// @throws petzval::Error  if the folder is not writable or cannot be created
 void want_folder(const std::string& flag, const std::filesystem::path& folder) {
   const auto refuse = [&](const std::string& why) {
-    throw petzval::Error(flag + " = " + folder.string() + ": cannot be created as a folder: " + why);
+    throw petzval::Error(flag + " = " + folder.string() + ": cannot create the folder: " + why);
   };
   if (folder.empty()) refuse("it has no name");
   std::error_code error;
@@ -115,7 +116,7 @@ void want_folder(const std::string& flag, const std::filesystem::path& folder) {
 /// @throws petzval::Error  if the file cannot be created
 void want_file(const std::string& flag, const std::filesystem::path& file) {
   const auto refuse = [&](const std::string& why) {
-    throw petzval::Error(flag + " = " + file.string() + ": cannot be written: " + why);
+    throw petzval::Error(flag + " = " + file.string() + ": cannot write the file: " + why);
   };
   std::error_code error;
   if (file.empty()) refuse("it has no name");
@@ -123,17 +124,17 @@ void want_file(const std::string& flag, const std::filesystem::path& file) {
   if (std::filesystem::is_directory(file, error)) refuse("it is a folder");
   if (std::filesystem::is_other(file, error)) return;  // a device or a pipe
   const std::filesystem::path folder = file.has_parent_path() ? file.parent_path() : std::filesystem::path(".");
-  if (!std::filesystem::is_directory(folder, error)) refuse(folder.string() + " is no folder");
+  if (!std::filesystem::is_directory(folder, error)) refuse(folder.string() + " is not a folder");
   if (access(folder.c_str(), W_OK | X_OK) != 0) refuse(folder.string() + ": " + std::strerror(errno));
 }
 
-/// A wavelength in nm by a number or by the letter of a spectral line.
+/// Parses a wavelength in nm: a number or the letter of a spectral line.
 double parse_wavelength(const std::string& where, std::string_view text) {
   double number = 0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
   const bool letter = !text.empty() && std::isalpha(static_cast<unsigned char>(text.front())) != 0;
   if (!letter || end == text.data() + text.size()) {
-    return parse_number(where, text, {10, 1e5, "10 to 100000 nm"});  // "inf" too
+    return parse_number(where, text, {10, 1e5, "from 10 to 100000 nm"});  // including "inf"
   }
   try {
     return petzval::spectral_line_nm(text);
@@ -149,7 +150,7 @@ double parse_number(const std::string& where, std::string_view text, const Range
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
   const bool read = error == std::errc() && end == text.data() + text.size();
   if (!read || !(value >= range.least && value <= range.most)) {
-    throw petzval::Error(where + ": found \"" + std::string(text) + "\", wanted " + range.words);
+    throw petzval::Error(where + " = \"" + std::string(text) + "\"; must be " + range.words);
   }
   return value;
 }
@@ -223,7 +224,7 @@ std::string in_words(petzval::DistanceOrigin origin) {
 std::string FocusFlags::from() const { return in_words(distance_origin()); }
 
 Option* add_distance_origin(App& app, std::string& origin) {
-  return app.add_option("--distance-from", origin, "origin of all distances, which count towards the scene")
+  return app.add_option("--distance-from", origin, "origin of all distances; they are positive towards the scene")
       ->one_of(names(distance_origins))
       ->capture_default_str();
 }
@@ -236,7 +237,7 @@ void add_focus(App& app, FocusFlags& flags) {
 Option* add_film_choice(App& app, std::string& film, const std::string& default_words) {
   return app
       .add_option("--film", film,
-                  "position of the film. file: of the lens file; focus: where the subject is in focus by --criterion")
+                  "position of the film: file (as in the lens file) or focus (the subject is in focus by --criterion)")
       ->one_of({"file", "focus"})
       ->default_str(default_words);
 }
@@ -249,8 +250,9 @@ void note(const std::string& text) {
 namespace {
 
 constexpr const char* criterion_help =
-    "meaning of \"in focus\", on the axis unless fields are given: thin, paraxial (cardinal points of the thin or the "
-    "thick lens), min_rms, min_max (exact rays: least RMS blur, least largest blur)";
+    "meaning of \"in focus\", on the axis unless fields are given: thin or paraxial (cardinal points of the thin or "
+    "the "
+    "thick lens), min_rms or min_max (exact rays: smallest RMS blur or smallest maximum blur)";
 
 }  // namespace
 
@@ -273,7 +275,7 @@ Option* add_count(App& app, const std::string& flag, std::uint32_t& value, const
           [&value, flag, range](const std::string& text) {
             const double number = parse_number(flag, text, range);
             value = static_cast<std::uint32_t>(number);
-            if (value != number) throw petzval::Error(flag + ": found \"" + text + "\", wanted " + range.words);
+            if (value != number) throw petzval::Error(flag + " = \"" + text + "\"; must be " + range.words);
           },
           help)
       ->type_name("N")

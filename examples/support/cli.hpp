@@ -20,10 +20,10 @@ class App;
 class Option;
 }  // namespace CLI
 
-/// Shared code of the example programs, not a part of the library.
+/// Shared code of the example programs; not part of the library.
 namespace examples {
 
-/// The range of a number on the command line. NaN is never in it.
+/// Valid range of a number on the command line. NaN is outside every range.
 struct Range {
   double least = -std::numeric_limits<double>::max();
   double most = std::numeric_limits<double>::max();
@@ -36,16 +36,21 @@ inline constexpr Range field_angle{-180, 180, "an angle from -180 to 180 degrees
 inline constexpr Range positive_number{std::numeric_limits<double>::min(), std::numeric_limits<double>::max(),
                                        "a finite number above 0"};
 
-/// The whole text as one decimal number, in every locale. Throws petzval::Error beginning with `where`.
+/// Parses the whole text as one decimal number, independent of the locale.
+///
+/// @throws petzval::Error that begins with `where`, if the text is not a number in the range
 double parse_number(const std::string& where, std::string_view text, const Range& range);
 
-/// "10", "0,10,20" or "0, 10, 20"; refuses repeated numbers. Throws petzval::Error beginning with `where`.
+/// Parses "10", "0,10,20" or "0, 10, 20".
+///
+/// @throws petzval::Error that begins with `where`, if a number is invalid or repeated
 std::vector<double> parse_numbers(const std::string& where, std::string_view text, const Range& range);
 
-/// The same for wavelengths in nm; letters are spectral lines: "F,d,C", "486.1, e".
+/// Like parse_numbers() for wavelengths in nm; letters are spectral lines: "F,d,C", "486.1, e".
 std::vector<double> parse_wavelengths(const std::string& where, std::string_view text);
 
-/// An option of a command line; its functions return it. CLI11 stays in cli.cpp: it takes seconds to compile.
+/// An option of a command line. Functions return the option itself. CLI11 stays in cli.cpp: it takes seconds to
+/// compile.
 class Option {
  public:
   Option* required();
@@ -64,7 +69,7 @@ class Option {
   CLI::Option* option_;
 };
 
-/// The command line of a program: what --help says and what each option sets.
+/// The command line of a program: its --help text and its options.
 class App {
  public:
   App(const std::string& description, const std::string& name);
@@ -78,7 +83,7 @@ class App {
                      const std::string& help);
   Option* add_flag(const std::string& name, bool& value, const std::string& help);
   Option* get_option(const std::string& name);
-  /// A check that run() makes before the body.
+  /// Adds a check that run() makes before the body.
   void add_check(std::function<void()> check) { checks_.push_back(std::move(check)); }
 
  private:
@@ -90,7 +95,8 @@ class App {
   std::vector<std::function<void()>> checks_;
 };
 
-/// Runs work and returns its result. Throws its petzval::Error with the flag at fault, if it names no flag.
+/// Runs work and returns its result. Adds the flag to the message of a petzval::Error unless the message begins with a
+/// flag.
 template <class Work>
 auto for_flag(const std::string& flag, const Work& work) {
   try {
@@ -101,24 +107,24 @@ auto for_flag(const std::string& flag, const Work& work) {
   }
 }
 
-/// Options read by the functions above. --help shows the value of the variable as the default.
+/// Add options read by the functions above. --help shows the value of the variable as the default.
 Option* add_number(App& app, const std::string& flag, double& value, const Range& range, const std::string& help);
 Option* add_numbers(App& app, const std::string& flag, std::vector<double>& values, const Range& range,
                     const std::string& help);
 
-/// Wavelengths in nm, by numbers or by spectral lines.
+/// Add wavelengths in nm, as numbers or spectral lines.
 Option* add_wavelength(App& app, const std::string& flag, double& value, const std::string& help);
 Option* add_wavelengths(App& app, const std::string& flag, std::vector<double>& values, const std::string& help);
 
-/// --out, the folder or the file for results. run() checks before the body starts that the path can be written.
+/// Add --out, the folder or file for results. run() checks that the path can be written before the body starts.
 Option* add_out_folder(App& app, std::string& folder, const std::string& help = "folder for the results");
 Option* add_out_file(App& app, std::string& file, const std::string& help, const std::string& type_name,
                      const std::string& flag = "--out");
 
-/// A whole number; the range has whole ends from 0 on.
+/// Adds a whole number. The range has whole ends from 0 on.
 Option* add_count(App& app, const std::string& flag, std::uint32_t& value, const Range& range, const std::string& help);
 
-/// The criteria of focus and the origins of distances.
+/// The focus criteria and the origins of distances.
 inline constexpr std::array focus_criteria{petzval::FocusCriterion::thin, petzval::FocusCriterion::paraxial,
                                            petzval::FocusCriterion::min_rms, petzval::FocusCriterion::min_max};
 inline constexpr std::array distance_origins{petzval::DistanceOrigin::front_vertex, petzval::DistanceOrigin::film,
@@ -132,7 +138,7 @@ std::vector<std::string> names(const std::array<Enum, count>& all) {
   return result;
 }
 
-/// The one with that name, which must exist.
+/// The enumerator with the given name, which must exist.
 template <class Enum, std::size_t count>
 Enum named(const std::string& text, const std::array<Enum, count>& all) {
   return *std::find_if(all.begin(), all.end(), [&](Enum e) { return name(e) == text; });
@@ -147,24 +153,24 @@ struct FocusFlags {
   petzval::FocusOptions options() const {
     return {.criterion = named(criterion, focus_criteria), .origin = distance_origin()};
   }
-  /// "front vertex", "film", ...
+  /// The origin in words: "front vertex", "film", ...
   std::string from() const;
 };
 
-/// --distance-from, for all distances of a program.
+/// Adds --distance-from, for all distances of a program.
 Option* add_distance_origin(App& app, std::string& origin);
 
-/// --criterion: the meaning of "in focus", by name, or several names separated by commas. --help shows the value of the
-/// variable as the default.
+/// Adds --criterion: the meaning of "in focus", by one name or by several names separated by commas. --help shows the
+/// value of the variable as the default.
 Option* add_criterion(App& app, std::string& criterion,
                       const std::vector<std::string>& allowed = names(focus_criteria));
 Option* add_criteria(App& app, std::vector<std::string>& criteria);
 
-/// --distance-from and --criterion.
+/// Adds --distance-from and --criterion.
 void add_focus(App& app, FocusFlags& flags);
 
-/// --film: "file" has the film where the file of the lens has it, "focus" where the subject is in focus. default_words:
-/// the default in words.
+/// Adds --film: "file" for the film position of the lens file, "focus" for the position that focuses the subject.
+/// default_words: the default in words.
 Option* add_film_choice(App& app, std::string& film, const std::string& default_words);
 
 /// "front vertex", "film", "entrance pupil" or "front principal plane".
@@ -173,22 +179,22 @@ std::string in_words(petzval::DistanceOrigin origin);
 /// Prints "note: TEXT" on standard error, each text once.
 void note(const std::string& text);
 
-/// Rays per wavelength, 1 to 2^26.
+/// Adds --samples: rays per wavelength, 1 to 2^26.
 Option* add_samples(App& app, std::uint32_t& samples);
 
-/// Reads the command line, runs the body and returns the exit status: 0, or 1 after one line with the reason on
+/// Reads the command line and runs the body. Returns the exit status: 0, or 1 after one line with the reason on
 /// standard error.
 int run(App& app, int argc, char** argv, const std::function<void()>& body);
 
-/// Shows the progress of a long job and the time left in one line if standard error is a terminal. Steps are taken to
-/// last as long as those before them.
+/// Shows the progress of a long job and the estimated time left in one line if standard error is a terminal. The
+/// estimate assumes that all steps take equally long.
 class Progress {
  public:
   Progress(std::string title, std::size_t steps);
   ~Progress();
   Progress(const Progress&) = delete;
   Progress& operator=(const Progress&) = delete;
-  /// The next step begins.
+  /// Begins the next step.
   void step(const std::string& what);
 
  private:

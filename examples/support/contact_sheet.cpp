@@ -16,7 +16,7 @@ constexpr int margin = 36, gap = 10, line = 21;
 constexpr int title_size = 26, row_title_size = 20, caption_size = 15;
 constexpr int title_height = 44, row_title_height = 64;
 
-/// The longest of 1, 2, 5 x 10^k mm that is no longer than the limit.
+/// The longest of 1, 2, 5 x 10^k mm that is within the limit.
 double round_length(double limit) {
   const double decade = std::pow(10.0, std::floor(std::log10(limit)));
   for (const double step : {5.0, 2.0}) {
@@ -32,7 +32,7 @@ void draw_scale_bar(petzval::Rgb8Image& picture, Font& font, int x, int bottom, 
   font.draw(picture, x + 12, bottom - 21, 13, number(length, 3) + " mm", ink);
 }
 
-/// The most lines below a tile of the row.
+/// The largest number of lines below a tile of the row.
 int caption_lines(const SheetRow& row) {
   std::size_t most = 0;
   for (const Tile& tile : row.tiles) most = std::max(most, tile.captions.size());

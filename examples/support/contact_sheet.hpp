@@ -9,13 +9,13 @@
 
 namespace examples {
 
-/// A picture and the lines below it.
+/// A picture with lines of text below.
 struct Tile {
   petzval::Rgb8Image picture;
   std::vector<std::string> captions;
 };
 
-/// Tiles side by side, all at one scale: a pixel is `pixel_mm` of film.
+/// Tiles side by side at one scale: a pixel is `pixel_mm` of film.
 struct SheetRow {
   std::string title;
   std::string subtitle;
@@ -29,7 +29,7 @@ struct Sheet {
   std::vector<std::string> notes;  ///< lines at the foot
 };
 
-/// Lays out the tiles on a dark sheet with captions. The tiles of a row have one size.
+/// Lays out the tiles on a dark sheet with captions. The tiles of a row must have one size.
 petzval::Rgb8Image draw_sheet(const Sheet& sheet);
 
 }  // namespace examples

@@ -20,7 +20,7 @@ namespace {
 
 using petzval::FieldKind;
 
-/// Height of the chief ray of a field on the film; infinite if none reaches it.
+/// Height of the chief ray of a field on the film; infinite if the ray is lost.
 double chief_height(const petzval::Lens& lens, double field_rad, double object_z) {
   const petzval::AimedRay chief = petzval::chief_ray(lens, {field_rad, object_z});
   if (!chief) return std::numeric_limits<double>::infinity();
@@ -28,7 +28,7 @@ double chief_height(const petzval::Lens& lens, double field_rad, double object_z
   return std::abs(origin.y + (lens.film_z() - origin.z) / direction.z * direction.y);
 }
 
-/// The field whose chief ray meets the film at a height; nullopt if there is none.
+/// The field whose chief ray meets the film at a height; nullopt if no field does.
 std::optional<double> field_of_height(const petzval::Lens& lens, double height, double object_z) {
   double low = 0, high = petzval::radians(1);
   constexpr double most = petzval::radians(89);
@@ -41,7 +41,7 @@ std::optional<double> field_of_height(const petzval::Lens& lens, double height, 
   return std::isfinite(chief_height(lens, low, object_z)) ? std::optional(low) : std::nullopt;
 }
 
-/// Magnification of the paraxial image of an object, without its sign.
+/// Absolute paraxial magnification of an object.
 double magnification(const petzval::Lens& lens, double object_z) {
   const petzval::Meridian meridian = petzval::main_meridian(lens);
   const petzval::FirstOrder first = petzval::first_order(lens, {}, meridian);
@@ -49,8 +49,7 @@ double magnification(const petzval::Lens& lens, double object_z) {
   return std::abs((image_z - first.rear_focal_z) / first.effective_focal_length);
 }
 
-/// Angle under which the entrance pupil sees a field of the design (rad); nullopt if the design does not determine the
-/// angle.
+/// Angle of a field of the design, seen from the entrance pupil (rad); nullopt if undetermined.
 std::optional<double> field_angle(const petzval::Prescription& p, const petzval::Lens& lens, double value) {
   const petzval::DesignData& design = p.design;
   if (design.field_kind != FieldKind::real_image_height) {
@@ -59,7 +58,7 @@ std::optional<double> field_angle(const petzval::Prescription& p, const petzval:
   return field_of_height(lens, value, -design.object_distance_mm);
 }
 
-/// Four significant digits beyond the rounding of a conversion keep captions short.
+/// Rounds to six significant digits: shorter captions without the rounding errors of a conversion.
 double rounded(double degrees) { return parse_number("field", number(degrees, 6), finite_number); }
 
 std::vector<double> declared_fields(const LensFile& file, const petzval::Lens& lens) {
@@ -76,7 +75,7 @@ std::vector<double> declared_fields(const LensFile& file, const petzval::Lens& l
     std::optional<double> found;  // rad
     if (design.field_kind == FieldKind::angle_deg) {
       const double x = std::tan(petzval::radians(field.x)), y = std::tan(petzval::radians(field.y));
-      // Beyond 90 degrees an angle has no tangent; such fields lie in one plane.
+      // Angles from 90 degrees on have no tangent; such fields lie in the section y-z.
       if (field.x == 0) {
         result.push_back(sign * std::abs(field.y));
         continue;
@@ -87,7 +86,7 @@ std::vector<double> declared_fields(const LensFile& file, const petzval::Lens& l
     }
     if (found && std::isfinite(*found)) result.push_back(sign * rounded(petzval::degrees(*found)));
   }
-  if (beside > 0) note(file.id + ": fields outside the section y-z are left out: " + std::to_string(beside));
+  if (beside > 0) note(file.id + ": fields left out, outside the section y-z: " + std::to_string(beside));
   std::vector<double> once;
   for (const double field : result) {
     if (std::ranges::find(once, field) == once.end()) once.push_back(field);

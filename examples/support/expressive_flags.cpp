@@ -9,12 +9,12 @@
 namespace examples {
 namespace {
 
-/// The two parts of "radius:power" or "x,y:offset".
+/// Splits "radius:power" or "x,y:offset" at a character.
 std::pair<std::string_view, std::string_view> parts(const std::string& where, std::string_view text, char between,
                                                     const char* wanted) {
   const std::size_t at = text.find(between);
   if (at == std::string_view::npos) {
-    throw petzval::Error(where + ": found \"" + std::string(text.substr(0, 60)) + "\", wanted " + wanted);
+    throw petzval::Error(where + " = \"" + std::string(text.substr(0, 60)) + "\"; must be " + wanted);
   }
   return {text.substr(0, at), text.substr(at + 1)};
 }
@@ -26,19 +26,20 @@ bool ExpressiveFlags::change_nothing() const noexcept {
 }
 
 void add_expressive(App& app, ExpressiveFlags& flags) {
-  app.add_option("--power-spline", flags.power_spline,
-                 "refractive power of rings of the pupil, over that of the lens: a spline through radius:power, radii "
-                 "from 0 (axis) to 1 (rim), as 0:1 0.7:1.01 1:0.98")
+  app.add_option(
+         "--power-spline", flags.power_spline,
+         "refractive power of the pupil's rings, relative to the lens: a spline through radius:power, radii from "
+         "0 (axis) to 1 (rim), as 0:1 0.7:1.01 1:0.98")
       ->type_name("R:POWER");
   app.add_option("--curvature-points", flags.curvature_points,
-                 "by how much places of the film are moved away from the lens, all mm: a surface through x,y:offset, "
-                 "as 0,0:0 18,12:0.3 -18,12:0.3")
+                 "shift of film points away from the lens, all in mm: a surface through x,y:offset, as 0,0:0 18,12:0.3 "
+                 "-18,12:0.3")
       ->type_name("X,Y:OFFSET");
   add_number(app, "--dispersion", flags.dispersion, {-1e6, 1e6, "a number from -1e6 to 1e6"},
-             "strength of the lens's axial colour: 0 takes it away, 1 keeps it");
+             "factor of the lens's axial colour: 0 removes it, 1 keeps it");
   add_number(app, "--from-lens", flags.from_lens, {-1e6, 1e6, "a number from -1e6 to 1e6"},
-             "begin with the real lens's spherical aberration and curvature of field, so many times (1: its own); "
-             "--power-spline and --curvature-points take their places");
+             "factor of the real lens's spherical aberration and curvature of field to start from (1: unchanged); "
+             "--power-spline and --curvature-points replace them");
 }
 
 petzval::ExpressiveLens expressive_of(const ExpressiveFlags& flags, const petzval::Lens& lens,

@@ -18,10 +18,10 @@ struct ExpressiveFlags {
   bool change_nothing() const noexcept;
 };
 
-/// Options --power-spline, --curvature-points, --dispersion and --from-lens.
+/// Adds --power-spline, --curvature-points, --dispersion and --from-lens.
 void add_expressive(App& app, ExpressiveFlags& flags);
 
-/// Throws petzval::Error that names the option, and where expressive_from() does.
+/// The lens by the flags. @throws petzval::Error that names the option; also if expressive_from() throws
 petzval::ExpressiveLens expressive_of(const ExpressiveFlags& flags, const petzval::Lens& lens,
                                       const petzval::Film& film);
 

@@ -28,13 +28,13 @@ void write_text(const std::filesystem::path& file, const std::string& text) { pe
 
 void want_ending(const std::string& option, const std::filesystem::path& file, const std::string& ending) {
   if (file.extension() == ending) return;
-  throw petzval::Error(option + ": found " + file.string() + ", wanted a name that ends in " + ending);
+  throw petzval::Error(option + " = " + file.string() + "; must end in " + ending);
 }
 
 bool exists(const std::filesystem::path& file) {
   std::error_code error;
   const bool found = std::filesystem::exists(file, error);
-  if (error) fail(file, "cannot be looked up", error);
+  if (error) fail(file, "cannot check that it exists", error);
   return found;
 }
 
@@ -44,21 +44,21 @@ std::vector<std::filesystem::path> entries(const std::filesystem::path& folder) 
   for (std::filesystem::directory_iterator entry(folder, error), end; !error && entry != end; entry.increment(error)) {
     result.push_back(entry->path());
   }
-  if (error) fail(folder, "cannot be read as a folder", error);
+  if (error) fail(folder, "cannot read the folder", error);
   return result;
 }
 
 void rename(const std::filesystem::path& file, const std::filesystem::path& new_name) {
   std::error_code error;
   std::filesystem::rename(file, new_name, error);
-  if (error) fail(file, "cannot be renamed to " + new_name.string(), error);
+  if (error) fail(file, "cannot rename to " + new_name.string(), error);
 }
 
 void make_folder(const std::filesystem::path& folder) {
   std::error_code error, unknown;
   std::filesystem::create_directories(folder, error);
   if (std::filesystem::is_directory(folder, unknown)) return;
-  fail(folder, "cannot be created as a folder", error ? error : std::make_error_code(std::errc::not_a_directory));
+  fail(folder, "cannot create the folder", error ? error : std::make_error_code(std::errc::not_a_directory));
 }
 
 }  // namespace examples

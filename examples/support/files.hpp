@@ -9,34 +9,35 @@
 
 namespace examples {
 
-/// Keys keep their order.
+/// JSON whose keys keep their order.
 using Json = nlohmann::ordered_json;
 
-/// JSON has no infinity: it becomes null.
+/// The value, or null if it is not finite: JSON has no infinity.
 Json finite_or_null(double value);
 
-/// Sizes of files that are read whole, bytes: at most 16 MiB of JSON, whose values take 16 times their text, and 1 GiB
-/// of tables and meshes.
+/// Size limits of files that are read whole, bytes: 16 MiB of JSON, whose values take 16 times the size of their text
+/// in memory, and 1 GiB of tables and meshes.
 inline constexpr std::size_t largest_json = std::size_t{16} << 20, largest_table = std::size_t{1} << 30;
 
-/// Read and write whole files. Throw petzval::Error that names the file; read_text() also for a file of more than
-/// `most` bytes, such as an endless one.
+/// Read and write whole files.
+///
+/// @param most  size limit in bytes, which also stops endless files
+/// @throws petzval::Error that names the file
 std::string read_text(const std::filesystem::path& file, std::size_t most = largest_table);
 void write_text(const std::filesystem::path& file, const std::string& text);
 
-/// Throws petzval::Error that names the option if the file's name does not end so.
+/// @throws petzval::Error that names the option, if the file name does not end in `ending`
 void want_ending(const std::string& option, const std::filesystem::path& file, const std::string& ending);
 
-// The functions of std::filesystem that the programs use. They throw petzval::Error that names the file and the
-// system's reason.
+// Wrappers of std::filesystem functions. They throw petzval::Error with the name of the file and the system's reason.
 
-/// True if there is a file or folder of that name.
+/// True if a file or folder of that name exists.
 bool exists(const std::filesystem::path& file);
 /// The files and folders in a folder.
 std::vector<std::filesystem::path> entries(const std::filesystem::path& folder);
-/// Gives a file another name.
+/// Renames a file.
 void rename(const std::filesystem::path& file, const std::filesystem::path& new_name);
-/// Makes the folder and its parents if missing.
+/// Creates the folder and its parents if they are missing.
 void make_folder(const std::filesystem::path& folder);
 
 }  // namespace examples

@@ -41,8 +41,8 @@ std::vector<petzval::FocalPoint> points_of(const std::filesystem::path& file, co
     const auto pixel = entry.numbers<2>("pixel", "two finite numbers, [x, y]");
     const auto world = entry.numbers<3>("world_mm", "three finite numbers, [x, y, z]");
     if (pixel.has_value() == world.has_value()) {
-      throw petzval::Error(entry.where + ": found " + (pixel ? "pixel and world_mm" : "no place") +
-                           ", wanted one of pixel and world_mm");
+      throw petzval::Error(entry.where + ": has " + (pixel ? "both" : "neither") +
+                           " pixel and world_mm; must have one of them");
     }
     petzval::FocalPoint point;
     if (pixel) {
@@ -51,7 +51,7 @@ std::vector<petzval::FocalPoint> points_of(const std::filesystem::path& file, co
       const Vec3<double> position = to_lens({(*world)[0], (*world)[1], (*world)[2]});
       const petzval::Projection seen = camera.project(position);
       if (seen.status == petzval::ProjectionStatus::not_visible) {
-        refuse(entry.where + ": world_mm", json["world_mm"], "a point that the camera sees, or one beside its film");
+        refuse(entry.where + ": world_mm", json["world_mm"], "a point that the camera images on or outside its film");
       }
       point.place = seen.film;
       point.inverse_distance = 1 / (entrance_z - position.z);
@@ -68,11 +68,11 @@ std::vector<petzval::FocalPoint> points_of(const std::filesystem::path& file, co
     }
     point.extent_stops = entry.number("extent_stops", {-20, 20, "a number from -20 to 20"});
     if (!point.inverse_distance && !point.extent_stops) {
-      throw petzval::Error(entry.where + ": found neither distance_mm nor extent_stops, wanted one of them");
+      throw petzval::Error(entry.where + ": has neither distance_mm nor extent_stops; must have one of them");
     }
     if (const auto blur = entry.number("blur_px", finite_number)) {
       if (!point.inverse_distance) {
-        refuse(entry.where + ": blur_px", json["blur_px"], "a distance_mm with it");
+        refuse(entry.where + ": blur_px", json["blur_px"], "left out if distance_mm is not given");
       }
       point.blur_mm = *blur * camera.film().pixel_mm();
     }
@@ -87,13 +87,13 @@ std::vector<petzval::FocalPoint> points_of(const std::filesystem::path& file, co
 
 void add_surface_kind(App& app, FocalSurfaceSetup& setup, Option* points) {
   app.add_option("--kind", setup.kind,
-                 "how distances are interpolated between points: affine (by planes, which it reproduces) or shepard "
+                 "interpolation of distances between points: affine (by planes, which are reproduced) or shepard "
                  "(weighted means, flat at the points)")
       ->one_of(names(kinds))
       ->capture_default_str()
       ->needs(points);
   add_number(app, "--beta", setup.beta, {1, 8, "a number from 1 to 8"},
-             "weights of points fall with their distance in the picture to the power -beta")
+             "exponent of the weights: a point's weight is its distance in the picture to the power -beta")
       ->needs(points);
 }
 

@@ -20,10 +20,10 @@ struct FocalSurfaceSetup {
   double beta = 3;
 };
 
-/// Options --kind and --beta, which need the option of the points.
+/// Adds --kind and --beta, which need the option of the points.
 void add_surface_kind(App& app, FocalSurfaceSetup& setup, Option* points);
 
-/// A point of the world in the lens frame, mm.
+/// Maps a point of the world to the lens frame, mm.
 using WorldToLens = std::function<petzval::Vec3<double>(const petzval::Vec3<double>&)>;
 
 /// A surface with its points.
@@ -33,10 +33,12 @@ struct ReadSurface {
 };
 
 /// The surface through the points of a file {"points": [{"pixel": [x, y] or "world_mm": [x, y, z], "distance_mm",
-/// "extent_stops", "blur_px", "weight", "fade"}]}. Pixels count from the upper left corner, centres at halves;
-/// distance_mm counts from the origin, and may be null for infinity; without it a point of the world has its own
-/// distance, and a pixel fixes the extent alone. camera: of a first-order model, without a surface: where it sees
-/// points of the world. Throws petzval::Error that names the file, the point (from 1) and the key.
+/// "extent_stops", "blur_px", "weight", "fade"}]}. Pixels count from the upper left corner, with centres at halves.
+/// distance_mm counts from the origin; null is infinity. Without distance_mm a point of the world has its own distance,
+/// and a pixel fixes only the extent.
+///
+/// @param camera  a camera of a first-order model without a focal surface, which projects points of the world
+/// @throws petzval::Error that names the file, the point (from 1) and the key
 ReadSurface read_focal_surface(const FocalSurfaceSetup& setup, const petzval::Camera& camera,
                                petzval::DistanceOrigin origin, double focus_mm, const WorldToLens& to_lens);
 

@@ -18,10 +18,10 @@ namespace {
 constexpr Range extent_range{-20, 20, "a number of stops from -20 to 20"};
 constexpr Range weight_range{0, std::numeric_limits<double>::max(), "a finite number, 0 or more"};
 
-/// A target, a point or a key.
+/// The JSON of a target, a point or a key.
 struct Entry : JsonEntry {
   const Json& at(const char* key, const std::string& wanted) const {
-    if (!json.contains(key)) throw petzval::Error(where + ": " + key + ": found none, wanted " + wanted);
+    if (!json.contains(key)) throw petzval::Error(where + ": " + key + " is missing; must be " + wanted);
     return json.at(key);
   }
   double number(const char* key, double unless, const Range& range) const {
@@ -44,7 +44,7 @@ struct Entry : JsonEntry {
 /// Calls read(entry) for the elements of a list, named `name` and counted from 1.
 template <class Read>
 void for_entries(const std::string& where, const Json& list, const std::string& name, Read read) {
-  if (!list.is_array() || list.empty()) refuse(where, list, "a list of one " + name + " or more");
+  if (!list.is_array() || list.empty()) refuse(where, list, "a list of one or more " + name + "s");
   for (std::size_t i = 0; i < list.size(); ++i)
     read(Entry{{where + ": " + name + " " + std::to_string(i + 1), list[i]}});
 }
@@ -84,7 +84,7 @@ std::vector<petzval::FocusPoint> read_focus_points(const std::filesystem::path& 
                             key.number("blur_mm", 0, finite_number), key.number("weight", 1, weight_range),
                             key.extent()});
       if (point.keys.back().extent_stops.has_value() != point.keys.front().extent_stops.has_value()) {
-        throw petzval::Error(key.where + ": extent_stops: found in some keys only, wanted it in all keys or in none");
+        throw petzval::Error(key.where + ": extent_stops must be given in all keys of the point or in no key");
       }
       if (point.keys.size() > 1 && !(point.keys.end()[-2].time < point.keys.back().time)) {
         refuse(key.where + ": time_s", key.json["time_s"], "a time after the previous key");

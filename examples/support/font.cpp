@@ -13,7 +13,7 @@
 namespace examples {
 namespace {
 
-/// Path of the font file for "sans" on this system; empty if there is none.
+/// Path of the system's font file for "sans"; empty if Fontconfig finds no font.
 std::string sans_file() {
   const std::unique_ptr<FcPattern, void (*)(FcPattern*)> wanted(FcPatternCreate(), FcPatternDestroy);
   FcPatternAddString(wanted.get(), FC_FAMILY, reinterpret_cast<const FcChar8*>("sans"));
@@ -48,7 +48,7 @@ struct Font::Face {
     if (library) FT_Done_FreeType(library);
   }
 
-  /// Calls `use(glyph, x)` for each rendered character; returns the final place of the pen.
+  /// Calls `use(glyph, x)` for each rendered character. Returns the final pen position.
   template <class Use>
   int each_glyph(std::string_view text, int pixel_size, Use&& use) {
     FT_Set_Pixel_Sizes(face, 0, static_cast<FT_UInt>(pixel_size));
@@ -66,8 +66,8 @@ Font::Font() : face_(std::make_unique<Face>()) {
   const std::string file = sans_file();
   if (file.empty() || FT_Init_FreeType(&face_->library) != 0 ||
       FT_New_Face(face_->library, file.c_str(), 0, &face_->face) != 0) {
-    throw petzval::Error("captions: found no usable font" + (file.empty() ? "" : " in " + file) +
-                         ", wanted one that Fontconfig names for \"sans\" (such as fonts-dejavu-core)");
+    throw petzval::Error("captions: no usable font" + (file.empty() ? "" : " in " + file) +
+                         "; Fontconfig must name a font for \"sans\" (such as fonts-dejavu-core)");
   }
 }
 

@@ -15,11 +15,11 @@ using Colour = std::array<std::uint8_t, 3>;
 /// Draws text on pictures in the sans-serif font that Fontconfig names.
 class Font {
  public:
-  /// Throws petzval::Error if the system has no font.
+  /// @throws petzval::Error if the system has no font
   Font();
   ~Font();
 
-  /// Width of an UTF-8 text, in pixels.
+  /// Width of a UTF-8 text, in pixels.
   int width(std::string_view text, int pixel_size);
 
   /// Draws with the left end of the baseline at (x, y), clipped to the picture.

@@ -8,7 +8,7 @@ namespace examples {
 namespace {
 
 std::atomic<bool> stop{false};
-static_assert(std::atomic<bool>::is_always_lock_free);  // as signal handlers need
+static_assert(std::atomic<bool>::is_always_lock_free);  // required in signal handlers
 
 }  // namespace
 

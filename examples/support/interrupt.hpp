@@ -3,8 +3,8 @@
 
 namespace examples {
 
-/// While one exists, the first ctrl-C (SIGINT) or SIGTERM asks the program to stop and write what it has; the second
-/// one kills it. One at a time.
+/// While an Interrupt exists, the first ctrl-C (SIGINT) or SIGTERM asks the program to stop and write its results. The
+/// second signal kills the program. Only one Interrupt may exist at a time.
 class Interrupt {
  public:
   Interrupt();
@@ -12,11 +12,11 @@ class Interrupt {
   Interrupt(const Interrupt&) = delete;
   Interrupt& operator=(const Interrupt&) = delete;
 
-  /// True once a signal has come. Any thread may ask.
+  /// True after the first signal. Thread-safe.
   static bool asked() noexcept;
 };
 
-/// Exit status of a program that was interrupted, as shells have it.
+/// Exit status of an interrupted program, as in shells.
 inline constexpr int interrupted_status = 130;
 
 }  // namespace examples

@@ -17,7 +17,7 @@ double IrisSetup::f_number_by_corners() const {
 }
 
 void add_iris(App& app, IrisSetup& setup) {
-  add_number(app, "--f-number", setup.f_number, positive_number, "stop the lens down (by exact rays)")
+  add_number(app, "--f-number", setup.f_number, positive_number, "f-number to stop the lens down to (by exact rays)")
       ->default_str("wide open");
   add_iris_shape(app, setup);
 }
@@ -28,16 +28,16 @@ void add_iris_shape(App& app, IrisSetup& setup) {
   add_number(app, "--roundness", setup.roundness, {-1, 1, "a number from -1 to 1"},
              "0: the edges of the blades are straight; 1: round; below 0: hollow");
   add_number(app, "--iris-rotation-deg", setup.rotation_deg, finite_number,
-             "turn of the first corner from straight up, anticlockwise seen from behind the camera (degrees)");
+             "rotation of the first corner from straight up, anticlockwise seen from behind the camera (degrees)");
   app.add_option("--iris-area", setup.area,
-                 "what the f-number means for blades. circumscribed: their corners lie on the round iris; equal: they "
-                 "let through as much light")
+                 "meaning of the f-number with blades. circumscribed: their corners lie on the round iris; equal: they "
+                 "pass as much light as the round iris")
       ->one_of({"circumscribed", "equal"})
       ->capture_default_str();
 }
 
 petzval::Lens stopped_to(const petzval::Lens& lens, double f_number, const std::string& flag) {
-  // Names round: an "f/1.8" may open to f/1.85.
+  // Lens names are rounded: an "f/1.8" lens may open only to f/1.85.
   constexpr double by_name = 1.04, rounded = 1.005;
   const double fastest = f_number > 0 ? petzval::fastest_f_number(lens) : 0;
   if (!(f_number < fastest && fastest <= by_name * f_number)) {
@@ -53,17 +53,17 @@ petzval::Lens stopped_to(const petzval::Lens& lens, double f_number, const std::
 petzval::Lens stopped_down(const petzval::Lens& lens, const IrisSetup& setup) {
   if (setup.blades == 0) {
     const auto refuse = [](const std::string& found, const std::string& why) {
-      throw petzval::Error(found + " without --blades, wanted a number of blades: a round iris has " + why);
+      throw petzval::Error(found + " needs --blades: a round iris has " + why);
     };
-    if (setup.roundness != 0) refuse("--roundness: found it", "no edges");
-    if (setup.rotation_deg != 0) refuse("--iris-rotation-deg: found it", "no corners");
-    if (setup.area == "equal") refuse("--iris-area: found equal", "one area");
+    if (setup.roundness != 0) refuse("--roundness", "no edges");
+    if (setup.rotation_deg != 0) refuse("--iris-rotation-deg", "no corners");
+    if (setup.area == "equal") refuse("--iris-area = equal", "only one area");
   }
   const petzval::Lens shaped = for_flag("--blades", [&] { return petzval::with_iris(lens, setup.iris()); });
   if (setup.f_number > 0) return stopped_to(shaped, setup.f_number_by_corners(), setup.f_number_flag);
   if (setup.area == "equal" && !setup.iris().round()) {
-    throw petzval::Error("--iris-area: found equal without " + setup.f_number_flag +
-                         ", wanted one: wide open, blades open no further");
+    throw petzval::Error("--iris-area = equal needs " + setup.f_number_flag +
+                         ": wide open, blades cannot open further");
   }
   return shaped;
 }

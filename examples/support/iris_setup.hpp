@@ -19,21 +19,21 @@ struct IrisSetup {
   std::string f_number_flag = "--f-number";  ///< for messages
 
   petzval::Iris iris() const;
-  /// What petzval::with_f_number takes. Throws petzval::Error for an iris out of range.
+  /// The f-number for petzval::with_f_number. @throws petzval::Error if the iris is out of range
   double f_number_by_corners() const;
 };
 
-/// Options --blades, --roundness, --iris-rotation-deg and --iris-area.
+/// Adds --blades, --roundness, --iris-rotation-deg and --iris-area.
 void add_iris_shape(App& app, IrisSetup& setup);
 
-/// The same and --f-number.
+/// Adds the options of add_iris_shape() and --f-number.
 void add_iris(App& app, IrisSetup& setup);
 
-/// petzval::with_f_number for the f-number of a command line. Names of lenses round: an f-number that is faster than
-/// the lens by at most 4 % opens the lens fully, and a note on standard error gives the true f-number.
+/// Applies petzval::with_f_number for the f-number of a command line. Lens names are rounded: if the f-number is faster
+/// than the lens by at most 4 %, the lens opens fully and a note on standard error gives the true f-number.
 petzval::Lens stopped_to(const petzval::Lens& lens, double f_number, const std::string& flag = "--f-number");
 
-/// The lens with that iris, stopped down. Throws petzval::Error for an iris and an f-number that it cannot have.
+/// The lens with the iris, stopped down. @throws petzval::Error if the lens cannot have the iris or the f-number
 petzval::Lens stopped_down(const petzval::Lens& lens, const IrisSetup& setup);
 
 }  // namespace examples

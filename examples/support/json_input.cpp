@@ -14,7 +14,7 @@ namespace examples {
 void refuse(const std::string& where, const Json& found, const std::string& wanted) {
   std::string text = found.dump(-1, ' ', false, Json::error_handler_t::replace);
   if (text.size() > 60) text = text.substr(0, 57) + "...";
-  throw petzval::Error(where + ": found " + text + ", wanted " + wanted);
+  throw petzval::Error(where + " = " + text + "; must be " + wanted);
 }
 
 Json read_json(const std::filesystem::path& file) {
@@ -23,13 +23,13 @@ Json read_json(const std::filesystem::path& file) {
   std::vector<std::set<std::string>> open;
   const auto look = [&](int depth, Json::parse_event_t event, Json& value) {
     if (depth > deepest) {
-      throw petzval::Error(file.string() + ": found lists or objects nested more than " + std::to_string(deepest) +
-                           " deep, wanted fewer levels");
+      throw petzval::Error(file.string() + ": lists and objects must not be nested more than " +
+                           std::to_string(deepest) + " levels deep");
     }
     if (event == Json::parse_event_t::object_start) open.emplace_back();
     if (event == Json::parse_event_t::object_end) open.pop_back();
     if (event == Json::parse_event_t::key && !open.back().insert(value.get<std::string>()).second) {
-      throw petzval::Error(file.string() + ": found the key " + value.dump() + " twice in one object, wanted once");
+      throw petzval::Error(file.string() + ": key " + value.dump() + " occurs twice in one object");
     }
     return true;
   };
@@ -47,7 +47,7 @@ void check_keys(const std::string& where, const Json& json, std::initializer_lis
   if (!json.is_object()) refuse(where, json, "an object with " + words);
   for (const auto& [key, value] : json.items()) {
     if (std::find(known.begin(), known.end(), key) != known.end()) continue;
-    throw petzval::Error(where + ": found the key " + Json(key).dump() + ", wanted " + words);
+    throw petzval::Error(where + ": unknown key " + Json(key).dump() + "; must be " + words);
   }
 }
 

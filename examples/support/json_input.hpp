@@ -15,19 +15,21 @@
 
 namespace examples {
 
-/// Throws petzval::Error: `where`, what was found there, cut if long, and what was wanted.
+/// @throws petzval::Error  "`where` = `found`; must be `wanted`"; a long value is cut
 [[noreturn]] void refuse(const std::string& where, const Json& found, const std::string& wanted);
 
-/// The document. Throws petzval::Error that names the file: if it is no JSON, for a repeated key, which would hide a
-/// value, and for more than 8 levels, which no format here has: printing and comparing values takes a call for each.
+/// Reads a document.
+///
+/// @throws petzval::Error  that names the file, if it is not JSON, repeats a key (which would hide a value) or has more
+///         than 8 levels (no format here needs more, and values are printed and compared recursively)
 Json read_json(const std::filesystem::path& file);
 
-/// Throws petzval::Error unless `json` is an object with no other keys than these. words: the keys, for the message.
+/// @throws petzval::Error unless `json` is an object with no other keys than `known`. words: the keys, for the message
 void check_keys(const std::string& where, const Json& json, std::initializer_list<std::string_view> known,
                 const std::string& words);
 
-/// An object of a file and its name in messages. What it has no key for is nothing; what is of another kind throws
-/// petzval::Error.
+/// An object of a file and its name in messages. Values are nullopt if the key is missing.
+/// @throws petzval::Error if a value is of the wrong kind
 struct JsonEntry {
   std::string where;
   const Json& json;
@@ -36,7 +38,7 @@ struct JsonEntry {
     check_keys(where, json, known, words);
   }
   std::optional<double> number(const char* key, const Range& range) const;
-  /// So many finite numbers. wanted: in words.
+  /// A list of `count` finite numbers. wanted: the same in words, for messages.
   template <std::size_t count>
   std::optional<std::array<double, count>> numbers(const char* key, const char* wanted) const {
     const std::vector<double> found = list(key, count, wanted);

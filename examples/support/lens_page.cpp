@@ -33,7 +33,7 @@ constexpr std::string_view style =
   td.number, th.number { text-align: right; font-variant-numeric: tabular-nums; }
 )";
 
-/// One row per number, one column per meridian.
+/// Writes one row per number and one column per meridian.
 void first_order_table(std::ostream& html, const Report& r) {
   html << "<table>\n";
   if (r.meridians.size() > 1) {
@@ -64,7 +64,7 @@ void surface_table(std::ostream& html, const Report& r) {
     const petzval::SurfaceRow& row = p.surfaces[i];
     const petzval::LensSurface& compiled = r.loaded.lens.surfaces()[i];
     const petzval::Glass* glass = petzval::glass_of(row.medium, r.loaded.glasses);
-    // Of the row, or else of its glass.
+    // The surface's own value, else the value of its glass.
     const auto either = [&](std::optional<double> own, double petzval::Glass::*of_glass, int digits) {
       return own ? number(*own, digits) : glass ? number(glass->*of_glass, digits) : std::string();
     };
@@ -105,7 +105,7 @@ void sources(std::ostream& html, const petzval::Prescription& p) {
   html << "</table>\n";
 }
 
-/// The subject, wavelengths and fields of the figures, and where they come from.
+/// The subject, wavelengths and fields of the figures, and their sources.
 std::string conditions(const ReportSubject& subject) {
   const auto origin = [](bool of_file) { return of_file ? " (as in the file)" : ""; };
   std::string text = in_words(subject);
@@ -131,18 +131,18 @@ std::vector<LensFigure> lens_figures(const Report& r, const petzval::Lens& colou
   }
 
   add("layout", "The lens",
-      "Follow one colour from the left: its rays come from one far point and should meet in one point of the film. If "
+      "Each colour is one field: its rays come from one far point and should meet in one point of the film. If "
       "the rays of a field do not fill the stop from tick to tick, rims clip the pupil and the corner darkens.",
       petzval::layout_figure(lens, subject_z, fields));
   if (!lens.rotationally_symmetric()) {
     add("layout_x", "The lens in the other section",
-        "The same lens cut along x. Cylinders are curved in one section only, so the focal length differs.",
+        "The section x-z of the lens. Cylinders are curved in one section only, so the focal length differs.",
         petzval::layout_figure(lens, subject_z, fields, {.section = petzval::Meridian::x}));
   }
   if (!limited) return result;
 
   add("spots", "Spots",
-      "Hits of a point's rays on the film. Compare the spot with the dashed Airy circle: within it, diffraction "
+      "Film points of the rays from one field point. If the spot is within the dashed Airy circle, diffraction "
       "dominates. A comet is coma, a line or a cross astigmatism; separate colours are lateral colour.",
       petzval::spot_figure(colours, petzval::spot_diagram(colours, subject_z, fields), weights));
   add("footprints", "Pupils",
@@ -151,14 +151,15 @@ std::vector<LensFigure> lens_figures(const Report& r, const petzval::Lens& colou
       "points out of focus have blurs of this shape.",
       petzval::footprint_figure(lens, subject_z, fields));
   add("focus", "Focus",
-      "Size of the spots against the film position. Separate minima mean curvature of field; a high, flat minimum is "
+      "Spot size against film position. Separate minima mean curvature of field; a high, flat minimum is "
       "an "
       "aberration that focusing does not remove.",
       petzval::focus_figure(colours, subject_z, fields, weights));
   const double farthest = *std::ranges::max_element(fields, {}, [](double f) { return std::abs(f); });
   if (farthest != 0) {
     add("illumination", "Brightness",
-        "Light on the film from the middle to the edge of the field. Below cos\u2074 rims vignette; above it the pupil "
+        "Irradiance on the film from the centre to the edge of the field. Below cos\u2074 rims vignette; above it the "
+        "pupil "
         "grows with the field, as in fisheyes and retrofocus lenses.",
         petzval::illumination_figure(lens, subject_z, std::abs(farthest)));
   }

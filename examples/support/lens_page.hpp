@@ -14,12 +14,13 @@ struct LensFigure {
   std::string svg;
 };
 
-/// The figures of a lens; only the layout, without rays, if nothing limits the beam. colours: the lens for the
-/// wavelengths of the report, which the spots and the focus curve show. Throws petzval::Error for fields and subjects
-/// that the lens cannot see.
+/// The figures of a lens; only the layout, without rays, if no rim limits the beam.
+///
+/// @param colours  the lens for the wavelengths of the report, which the spots and the focus curve show
+/// @throws petzval::Error if the lens cannot see a field or the subject
 std::vector<LensFigure> lens_figures(const Report& report, const petzval::Lens& colours);
 
-/// A page with the figures, the numbers, the prescription and its sources. It needs no other file.
+/// A self-contained HTML page with the figures, the numbers, the prescription and its sources.
 std::string lens_page(const Report& report, const std::vector<LensFigure>& figures);
 
 }  // namespace examples

@@ -25,7 +25,7 @@ MeridianReport in_meridian(const petzval::Lens& lens, petzval::Meridian meridian
                {"front_principal_z_mm", "front principal plane, z", "mm", first.front_principal_z},
                {"rear_principal_z_mm", "rear principal plane, z", "mm", first.rear_principal_z}};
 
-  // Pupils are images of the rim that limits the beam.
+  // Without a rim that limits the beam there are no pupils.
   if (petzval::has_pupils(lens)) {
     r.pupils = petzval::pupils(lens, 0, meridian);
     const petzval::Pupil &entrance = r.pupils->entrance, &exit = r.pupils->exit;
@@ -49,7 +49,7 @@ MeridianReport in_meridian(const petzval::Lens& lens, petzval::Meridian meridian
   return r;
 }
 
-/// The aperture that the file declares, as this lens has it; absent if nothing limits the beam.
+/// The declared kind of aperture, computed for this lens; nullopt if no rim limits the beam.
 std::optional<double> computed_aperture(const petzval::Lens& lens, const petzval::DesignData& design,
                                         const MeridianReport& r) {
   using enum petzval::ApertureSetting;
@@ -74,13 +74,13 @@ std::optional<double> computed_aperture(const petzval::Lens& lens, const petzval
   return {};
 }
 
-/// The value of a design's aperture; absent if the stop in the table is the value.
+/// The declared value of an aperture; nullopt if the aperture is given by the stop in the table.
 std::optional<double> declared_value(const petzval::DesignAperture& aperture) {
   const bool by_table = aperture.setting == petzval::ApertureSetting::stop_size && aperture.value == 0;
   return by_table ? std::nullopt : std::optional(aperture.value);
 }
 
-/// The numbers of one meridian; null for absent ones.
+/// The numbers of one meridian; null if absent.
 Json numbers(const MeridianReport& r) {
   Json json{{"afocal", r.first_order.afocal}};
   for (const char* key :
@@ -141,7 +141,7 @@ Report report(LoadedLens loaded, ReportSubject subject, const std::optional<Decl
   return {std::move(loaded), std::move(subject), declared_pupil, std::move(meridians), std::move(findings)};
 }
 
-/// The surfaces, from 0, whose aperture the source does not state.
+/// Surface indices (from 0) whose aperture the source does not state.
 std::vector<std::size_t> computed_apertures(const Report& r) {
   std::vector<std::size_t> result;
   const auto& surfaces = r.loaded.prescription.surfaces;
@@ -211,9 +211,9 @@ Json to_json(const Report& r) {
 const char* section_name(petzval::Meridian meridian) { return meridian == petzval::Meridian::y ? "y-z" : "x-z"; }
 
 std::string stop_in_words(const std::optional<petzval::Pupils>& pupils) {
-  if (!pupils) return "none: nothing limits the beam";
+  if (!pupils) return "none: no rim limits the beam";
   return "surface " + std::to_string(pupils->stop) +
-         (pupils->stop_inferred ? " (inferred: none with a rim is marked)" : "");
+         (pupils->stop_inferred ? " (inferred: no surface with a rim is marked)" : "");
 }
 
 std::string in_words(double value) {
@@ -249,7 +249,7 @@ std::string to_text(const Report& r) {
       const std::string label = "aperture of the file, " + std::string(petzval::name(aperture->setting));
       if (const auto value = declared_value(*aperture)) line(label.c_str(), *value, length ? "mm" : "");
       if (const auto value = computed_aperture(lens, r.loaded.prescription.design, meridian)) {
-        line(declared_value(*aperture) ? "the same of this lens" : label.c_str(), *value, length ? "mm" : "");
+        line(declared_value(*aperture) ? "computed for this lens" : label.c_str(), *value, length ? "mm" : "");
       }
     }
     if (meridian.first_order.afocal) {
@@ -258,7 +258,7 @@ std::string to_text(const Report& r) {
     }
   }
   if (const auto computed = computed_apertures(r); !computed.empty()) {
-    text << "\nclear apertures computed from the beam, as the source states none: surface"
+    text << "\nclear apertures computed from the beam because the source states no value: surface"
          << (computed.size() == 1 ? " " : "s ");
     for (const std::size_t i : computed) text << (i == computed.front() ? "" : ", ") << i;
     text << '\n';
@@ -271,7 +271,7 @@ std::string to_text(const Report& r) {
            << '\n';
     }
   }
-  if (!lens.missing_glasses().empty()) text << "\nmedia without a glass of the tables:\n";
+  if (!lens.missing_glasses().empty()) text << "\nmedia without a glass in the tables:\n";
   for (std::size_t space = 1; space <= lens.surface_count(); ++space) {
     const petzval::Medium& medium = r.loaded.prescription.surfaces[space - 1].medium;
     if (medium == petzval::Medium{} || r.loaded.prescription.surfaces[space - 1].mirror) continue;

@@ -27,7 +27,7 @@ struct Entry {
 struct MeridianReport {
   petzval::Meridian meridian;
   petzval::FirstOrder first_order;
-  std::optional<petzval::Pupils> pupils;  ///< absent if nothing limits the beam
+  std::optional<petzval::Pupils> pupils;  ///< nullopt if no rim limits the beam
   std::vector<Entry> entries;
 };
 
@@ -45,21 +45,21 @@ struct Report {
   LoadedLens loaded;  ///< at the primary wavelength of the light, with its stop and film
   ReportSubject subject;
   std::optional<DeclaredPupil> declared_pupil;
-  std::vector<MeridianReport> meridians;  ///< the main one first; a lens of revolution has one
+  std::vector<MeridianReport> meridians;  ///< main meridian first; only one for a lens of revolution
   std::vector<petzval::Finding> findings;
 
   const MeridianReport& main() const { return meridians.front(); }
 };
 
-/// declared_pupil: of the lens as the file has it, whose aperture the file declares.
+/// Builds the report. declared_pupil: the pupil of the unmodified lens by the aperture that the file declares.
 Report report(LoadedLens loaded, ReportSubject subject, const std::optional<DeclaredPupil>& declared_pupil);
 
-/// z of the subject in the frame of a lens that is focused, mm; -inf at infinity.
+/// z of the subject in the frame of a focused lens, mm; -inf at infinity.
 double subject_z(const ReportSubject& subject, const petzval::Lens& lens);
 
 /// "subject at infinity (as in the file); film as in the file".
 std::string in_words(const ReportSubject& subject);
-/// "486.133 nm (weight 1), ..."; "0, 14, 20 degrees".
+/// "486.133 nm (weight 1), ..." and "0, 14, 20 degrees".
 std::string in_words(const ReportLight& light);
 std::string in_words(const ReportFields& fields);
 
@@ -68,7 +68,7 @@ std::string to_text(const Report& report);
 
 /// "y-z" or "x-z".
 const char* section_name(petzval::Meridian meridian);
-/// "surface 5", with a remark if it is inferred.
+/// "surface 5", with a remark if the stop is inferred.
 std::string stop_in_words(const std::optional<petzval::Pupils>& pupils);
 /// Four decimals; scientific notation for very small and large numbers.
 std::string in_words(double value);

@@ -19,7 +19,7 @@
 namespace examples {
 namespace {
 
-/// Says how well the dispersion is known, if it matters.
+/// Prints a note if the wavelengths need a dispersion that is known only in part.
 void say_what_is_known(const LensFile& file, const petzval::Lens& lens) {
   const double reference = file.prescription.reference_wavelength_nm;
   const auto at_reference = [&](double nm) { return std::abs(nm - reference) <= 0.05; };  // as in MissingGlass::abbe
@@ -30,7 +30,7 @@ void say_what_is_known(const LensFile& file, const petzval::Lens& lens) {
   const std::size_t missing = lens.missing_glasses().size();
   if (missing == 0) return note(file.id + ": no medium disperses");
   note(file.id + ": " + std::to_string(missing) + (missing == 1 ? " medium has" : " media have") +
-       " no glass of the tables; " +
+       " no glass in the tables; " +
        (lens.dispersion() == petzval::Dispersion::abbe ? "the n_d/V_d model is used away from " + line
                                                        : "without V_d the lens can be used at " + line + " only"));
 }
@@ -50,7 +50,7 @@ void say_what_limits(const LensFile& file, const petzval::Lens& lens) {
   const petzval::Pupils pupils = petzval::pupils(lens);
   if (!pupils.stop_inferred) return;
   note(file.id + (lens.stop() ? ": the stop has no rim" : ": no stop is marked") + "; surface " +
-       std::to_string(pupils.stop) + ", which limits the axial beam, serves as one");
+       std::to_string(pupils.stop) + ", which limits the axial beam, serves as the stop");
 }
 
 petzval::ConfigurationChoice choice_of(const std::string& text) {
@@ -70,17 +70,16 @@ Option* add_lens(App& app, LensInput& input, const std::string& name, const std:
                          (remark.empty() ? "" : "; " + remark));
   if (name == "LENS" && remark.empty()) lens->required();
   lens->type_name("FILE");
-  app.add_option("--glasses", input.glass_files,
-                 "glass catalogues to look into first (.agf, refractiveindex.info .yml)")
+  app.add_option("--glasses", input.glass_files, "glass catalogues to search first (.agf, refractiveindex.info .yml)")
       ->type_name("FILE...")
       ->needs(lens);
   app.add_option("--configuration", input.configuration,
-                 "position of a zoom lens, by name or by number from 0; the lens of a database, by its key or name "
+                 "position of a zoom lens, by name or by number from 0; or a lens of a database, by its key or name "
                  "(2004, or 2004/long)")
       ->default_str("the first")
       ->needs(lens);
   app.add_flag("--match-glasses", input.match_glasses,
-               "give media known by n_d and V_d alone the nearest glass (within 0.001 and 0.5), and say which")
+               "replace media known only by n_d and V_d by the nearest glass (within 0.001 and 0.5), with a note")
       ->needs(lens);
   return lens;
 }

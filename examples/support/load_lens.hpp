@@ -14,23 +14,22 @@
 
 namespace examples {
 
-/// What a command line says about a lens.
+/// The options of a command line about a lens.
 struct LensInput {
   std::string file{};                      ///< path of a lens in any format of read_lens()
-  std::vector<std::string> glass_files{};  ///< looked into before the tables of petzval
+  std::vector<std::string> glass_files{};  ///< searched before the tables of petzval
   std::string configuration{};             ///< a name or a number from 0; empty: the first
   bool match_glasses = false;              ///< media without a name get the nearest glass
 };
 
-/// The option LENS, or --lens, with --glasses and --configuration, which need it. LENS is required if nothing is to be
-/// said about it.
+/// Adds LENS (or --lens) with --glasses and --configuration. LENS is required if `remark` is empty.
 Option* add_lens(App& app, LensInput& input, const std::string& name = "LENS", const std::string& remark = "");
 
-/// The glass tables of petzval, and what --glasses adds.
+/// The glass tables of petzval and the catalogues of --glasses.
 petzval::GlassCatalogue glasses_of(const LensInput& input);
 
-/// A lens file as it is, with all its configurations, and the one that the command line chooses: "tele", or "1" and
-/// "0.5" by number. If a file holds several lenses, the first word names the lens: "2004", "2004/long".
+/// A lens file with all its configurations, and the configuration chosen on the command line: "tele", or "1" and "0.5"
+/// by number. If a file holds several lenses, the first word names the lens: "2004", "2004/long".
 struct ReadLens {
   petzval::Prescription whole;
   petzval::ConfigurationChoice configuration;
@@ -38,43 +37,43 @@ struct ReadLens {
 };
 ReadLens read_configurations(const LensInput& input, const petzval::GlassCatalogue& glasses);
 
-/// The lens with the names of the nearest glasses if --match-glasses is given. Notes on standard error name each medium
-/// and its glass, or the reason for no glass.
+/// Names media after the nearest glasses if --match-glasses is given. Notes on standard error give each medium with its
+/// glass, or the reason why no glass matches.
 petzval::Prescription with_matched_glasses(const LensInput& input, petzval::Prescription lens,
                                            const petzval::GlassCatalogue& glasses);
 
-/// A lens file as it was read, in the configuration of the command line.
+/// An uncompiled lens file in the configuration of the command line.
 struct LensFile {
-  std::string id;  ///< the name of the file without its ending, and of the configuration; output files begin with it
+  std::string id;  ///< file name without extension, and configuration; prefix of output files
   petzval::Prescription prescription;
   petzval::GlassCatalogue glasses;
 };
 
-/// A lens file, read and compiled.
+/// A lens file and its compiled lens.
 struct LoadedLens : LensFile {
   petzval::Lens lens;  ///< for the given wavelengths
 };
 
-/// Reads a lens.
+/// Reads a lens file.
 LensFile read_lens(const LensInput& input);
 
-/// Compiles a lens that was read. primary_nm: Lens::primary_wavelength.
+/// Compiles a lens file. primary_nm: Lens::primary_wavelength.
 ///
 /// Notes on standard error report the assumptions of the import, and the surface that serves as the stop if no stop is
 /// marked. The n_d/V_d model replaces glasses that are in no table (without V_d only the reference wavelength can be
 /// used); a note reports this if a wavelength other than the reference is used.
 LoadedLens compiled(LensFile file, std::span<const double> wavelengths_nm, std::optional<double> primary_nm = {});
 
-/// Both.
+/// Reads and compiles a lens file.
 LoadedLens load_lens(const LensInput& input, std::span<const double> wavelengths_nm);
 
-/// The largest field that the source declares, else 10 degrees. lens: compiled from the file.
+/// The largest field that the source declares, or 10 degrees if it declares no field. lens: compiled from the file.
 double half_field_deg(const LensFile& file, const petzval::Lens& lens);
 
-/// With the glasses of the file; the n_d/V_d model replaces those that are in no table.
+/// Options with the glasses of the file. The n_d/V_d model replaces glasses that are in no table.
 petzval::CompileOptions compile_options(const LensFile& file, std::optional<double> primary_nm = {});
 
-/// The prescription compiled for other wavelengths, in the same way.
+/// The prescription compiled for other wavelengths with compile_options().
 petzval::Lens compiled_for(const LensFile& file, std::span<const double> wavelengths_nm,
                            std::optional<double> primary_nm = {});
 

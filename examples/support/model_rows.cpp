@@ -21,7 +21,7 @@ namespace {
 constexpr Range pixel_count{1, 1e6, "a whole number from 1 to 1000000"};
 constexpr std::uint32_t usual_columns = 3840;
 
-/// Names and values of a row in JSON and CSV.
+/// Calls use(name, value) for the numbers of a row, in the order of JSON and CSV.
 template <class Use>
 void for_numbers(const ModelRow& row, Use use) {
   use("rms_um", row.rms_um);
@@ -41,7 +41,7 @@ petzval::Film ModelOptions::film() const {
   if (resolution.empty()) return setup.film(0, 0, usual_columns);
   const auto [columns, rows] = parse_size("--resolution", resolution, pixel_count);
   if (columns != std::floor(columns) || rows != std::floor(rows)) {
-    throw petzval::Error("--resolution: found \"" + resolution + "\", wanted two whole numbers");
+    throw petzval::Error("--resolution = \"" + resolution + "\"; must be two whole numbers");
   }
   return setup.film(static_cast<std::uint32_t>(columns), static_cast<std::uint32_t>(rows), usual_columns);
 }
@@ -50,7 +50,7 @@ void add_model_options(App& app, ModelOptions& options) {
   add_lens(app, options.lens_file);
   add_camera(app, options.setup);
   app.add_option("--resolution", options.resolution,
-                 "pixels across and up; without --film-mm the film has their shape, within 36 x 24 mm")
+                 "pixels across and up; without --film-mm the film takes their shape within 36 x 24 mm")
       ->type_name("WxH")
       ->default_str("3840 across, square");
   app.add_flag("--json", options.json, "print JSON");

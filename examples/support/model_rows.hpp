@@ -21,7 +21,7 @@ struct ModelOptions {
   std::string resolution{};  ///< empty: not given
   bool json = false;
 
-  /// Throws petzval::Error.
+  /// @throws petzval::Error if --film-mm or --resolution is invalid
   petzval::Film film() const;
 };
 void add_model_options(App& app, ModelOptions& options);
@@ -31,24 +31,24 @@ LoadedLens focused_lens(const ModelOptions& options);
 /// The conditions in one line: "f/2, focused at 3000 mm from the front vertex, ...".
 std::string conditions(const petzval::Lens& lens, const ModelOptions& options);
 
-/// A model as the programs print it. Models that cannot be built have no row.
+/// A model's row in the printed tables. Models that cannot be built have no row.
 struct ModelRow {
   petzval::ModelKind model{};
   double rms_um = 0, p99_um = 0, max_um = 0, rms_px = 0, max_px = 0;
   double pupil_shape_error = 0, exposure_error = 0, ns_per_ray = 0, setup_ms = 0;
-  bool on_front = false;  ///< no other row is both as fast and as accurate (max_um) and better in one of them
+  bool on_front = false;  ///< no other row is faster and as accurate (max_um), or more accurate and as fast
 };
-/// guarded: shows the bounds that are compared with budgets instead of the largest errors measured.
+/// guarded: gives the bounds that are compared with budgets instead of the largest measured errors.
 std::vector<ModelRow> model_rows(std::span<const petzval::ModelCandidate> table, const petzval::Film& film,
                                  bool guarded);
 
 Json to_json(std::span<const ModelRow> rows);
 std::string to_csv(std::span<const ModelRow> rows);
 std::string to_text(std::span<const ModelRow> rows);
-/// "  - line" for each.
+/// "  - line" for each line.
 std::string bullets(std::span<const std::string> lines);
 
-/// Notes on standard error which models could not be built.
+/// Prints a note for each model that could not be built.
 void say_what_is_missing(std::span<const petzval::ModelCandidate> table);
 
 }  // namespace examples

@@ -16,15 +16,15 @@
 namespace examples {
 
 void add_movement_options(App& app, MovementOptions& options) {
-  add_lens(app, options.lens_file, "LENS", "may be left out for a thin lens");
+  add_lens(app, options.lens_file, "LENS", "may be omitted for a thin lens");
   app.add_option("--model", options.model,
                  "model of the lens: thin (one plane), thick (cardinal points and pupils), real (exact rays)")
       ->one_of({"thin", "thick", "real"})
       ->capture_default_str();
   add_number(app, "--thin-focal-length-mm", options.focal_length_mm, positive_number,
-             "focal length of a thin lens at the origin, in place of LENS; needs --model thin and --f-number")
+             "focal length of a thin lens at the origin that replaces LENS; needs --model thin and --f-number")
       ->default_str("none");
-  add_number(app, "--f-number", options.f_number, positive_number, "stop the lens down (by exact rays)")
+  add_number(app, "--f-number", options.f_number, positive_number, "f-number to stop the lens down to (by exact rays)")
       ->default_str("wide open");
   app.add_option(
          "--film-mm",
@@ -32,7 +32,7 @@ void add_movement_options(App& app, MovementOptions& options) {
            options.film_mm = text;
            options.film_given = true;
          },
-         "width and height of the film (mm); if given, points outside the picture are left out")
+         "width and height of the film (mm); if given, points outside the picture are ignored")
       ->type_name("WxH")
       ->default_str(options.film_mm);
 }
@@ -43,12 +43,13 @@ MovingLens moving_lens(const MovementOptions& options) {
   result.film = {.width_mm = width, .height_mm = height};
   if (options.focal_length_mm > 0) {
     if (!options.lens_file.file.empty()) {
-      throw petzval::Error("--thin-focal-length-mm: found with " + options.lens_file.file + ", wanted one of them");
+      throw petzval::Error("--thin-focal-length-mm cannot be combined with the lens file " + options.lens_file.file +
+                           " (LENS)");
     }
     if (options.model != "thin") {
-      throw petzval::Error("--thin-focal-length-mm: found with --model " + options.model + ", wanted --model thin");
+      throw petzval::Error("--thin-focal-length-mm with --model " + options.model + "; must be --model thin");
     }
-    if (!(options.f_number > 0)) throw petzval::Error("--thin-focal-length-mm: found no --f-number, wanted one");
+    if (!(options.f_number > 0)) throw petzval::Error("--thin-focal-length-mm needs --f-number");
     result.id = "thin_lens";
     result.title = "Thin lens, " + number(options.focal_length_mm) + " mm";
     result.conditions = "f/" + number(options.f_number, 3);
@@ -71,8 +72,8 @@ MovingLens moving_lens(const MovementOptions& options) {
 }
 
 petzval::ImageRays MovingLens::bundles(std::span<const petzval::ScenePoint> places, std::size_t rays) const {
-  // Room for a tilted and shifted film and for points somewhat outside the picture. Light of points far outside does
-  // not pass the lens.
+  // Margin for a tilted and shifted film and for points slightly outside the picture. No light of points far outside
+  // passes the lens.
   const double corner = std::hypot(film.width_mm, film.height_mm) / 2;
   double farthest = 1.3 * corner;
   for (const petzval::ScenePoint& place : places) {
@@ -90,8 +91,8 @@ const char* in_words(petzval::TargetUse use) {
     case petzval::TargetUse::no_weight: return "shown only: its weight is 0";
     case petzval::TargetUse::not_finite: return "left out: not a number";
     case petzval::TargetUse::no_image: return "left out: no film can reach its image";
-    case petzval::TargetUse::outlier: return "an outlier: it got no weight";
-    case petzval::TargetUse::no_rays: return "left out: none of its rays passes the lens";
+    case petzval::TargetUse::outlier: return "an outlier: given no weight";
+    case petzval::TargetUse::no_rays: return "left out: no ray of the point passes the lens";
   }
   return "";
 }

@@ -29,18 +29,18 @@ void add_movement_options(App& app, MovementOptions& options);
 struct MovingLens {
   std::string id, title;              ///< output files begin with id
   std::string conditions;             ///< "f/4, real model"
-  std::optional<petzval::Lens> lens;  ///< absent for an ideal lens without a file
-  petzval::IdealLens ideal;           ///< thin, or (thick and real) the cardinal points
+  std::optional<petzval::Lens> lens;  ///< nullopt for an ideal lens without a file
+  petzval::IdealLens ideal;           ///< thin lens, or the cardinal points for thick and real
   bool exact = false;                 ///< the model is real: exact rays
-  petzval::Film film;                 ///< its size
+  petzval::Film film;                 ///< the film size of the options
 
-  /// Exact rays to the film and to the images of these places beside it: so many of each, fewer of many places (2^22 of
-  /// all). Needs a lens.
+  /// Exact rays of scene places to the film and to their images off the film. `rays` for each place, reduced for many
+  /// places to 2^22 in total. The lens must not be nullopt.
   petzval::ImageRays bundles(std::span<const petzval::ScenePoint> places, std::size_t rays) const;
 };
 MovingLens moving_lens(const MovementOptions& options);
 
-/// The use of a point in words; empty if it is used.
+/// The reason why a point is not used, in words; empty if the point is used.
 const char* in_words(petzval::TargetUse use);
 
 }  // namespace examples

@@ -9,7 +9,7 @@
 namespace examples {
 namespace {
 
-/// Removes a line from the text; the last one may lack its end.
+/// Removes and returns the first line of the text. The last line may lack its end.
 std::string_view next_line(std::string_view& text) {
   const std::size_t end = std::min(text.find('\n'), text.size());
   std::string_view line = text.substr(0, end);
@@ -38,10 +38,9 @@ std::vector<std::vector<double>> parse_columns(std::string_view csv, std::span<c
   const std::string header = header_of(columns);
   if (csv.starts_with("\xEF\xBB\xBF")) csv.remove_prefix(3);
   if (const auto first = next_line(csv); first != header) {
-    throw petzval::Error(where + ": line 1: found \"" + std::string(first.substr(0, 60)) + "\", wanted \"" + header +
-                         "\"");
+    throw petzval::Error(where + ": line 1 = \"" + std::string(first.substr(0, 60)) + "\"; must be \"" + header + "\"");
   }
-  // Editors and spreadsheets leave empty lines behind the last row.
+  // Editors and spreadsheets leave empty lines after the last row.
   csv = csv.substr(0, csv.find_last_not_of(" \t\r\n") + 1);
   std::vector<std::vector<double>> result(columns.size());
   for (std::size_t row = 0; !csv.empty(); ++row) {
@@ -50,7 +49,7 @@ std::vector<std::vector<double>> parse_columns(std::string_view csv, std::span<c
     const std::size_t found =
         line.empty() ? 0 : static_cast<std::size_t>(std::count(line.begin(), line.end(), ',')) + 1;
     if (found != columns.size()) {
-      throw petzval::Error(here + ": found " + std::to_string(found) + " values, wanted " +
+      throw petzval::Error(here + ": has " + std::to_string(found) + " values; must have " +
                            std::to_string(columns.size()) + ": " + header);
     }
     for (std::size_t i = 0; i < columns.size(); ++i) {

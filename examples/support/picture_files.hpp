@@ -11,11 +11,13 @@
 
 namespace examples {
 
-/// --format: some of exr, png and pfm; exr and png by default. png: how that file is exposed.
+/// Adds --format: exr, png and pfm; exr and png by default. png: the exposure of the PNG, for the help text.
 Option* add_formats(App& app, std::vector<std::string>& formats, const std::string& png);
 
-/// Writes STEM.exr (linear float; texts and numbers go into its header), STEM.pfm (the same) and STEM.png (`shown`), as
-/// the formats say, each once. Returns the paths. Throws petzval::Error that names a file.
+/// Writes STEM.exr (linear float, with `texts` and `numbers` in its header), STEM.pfm (linear float) and STEM.png
+/// (`shown`) as far as `formats` names them, each once. Returns the paths.
+///
+/// @throws petzval::Error that names the file
 std::vector<std::filesystem::path> write_picture(const petzval::RgbImage& image, const petzval::Rgb8Image& shown,
                                                  const std::vector<std::string>& formats,
                                                  const std::filesystem::path& stem,

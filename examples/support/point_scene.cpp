@@ -19,11 +19,11 @@ PointScene::PointScene(const petzval::IdealLens& lens, std::span<const petzval::
     const double by = parallel_ ? 1 : 1 / depth;
     known_.push_back({p.x * by, p.y * by, point.at_infinity ? 0 : 1 / depth});
   }
-  if (known_.empty()) throw petzval::Error("the scene: found no point in front of the lens, wanted one");
+  if (known_.empty()) throw petzval::Error("scene: no point is in front of the lens; must have at least one");
 }
 
 double PointScene::inverse_distance(double x, double y) const {
-  // Weights relative to the nearest point do not overflow; at a point only its own counts.
+  // Weights relative to the nearest point do not overflow; at a known point only that point has weight.
   const auto squared_away = [&](const Known& k) { return (k.x - x) * (k.x - x) + (k.y - y) * (k.y - y); };
   double nearest2 = std::numeric_limits<double>::infinity(), least = nearest2, most = 0;
   for (const Known& k : known_) {
@@ -46,7 +46,7 @@ double PointScene::inverse_distance(double x, double y) const {
     xx += w * dx * dx, xy += w * dx * dy, yy += w * dy * dy;
     xd += w * dx * (k.inverse_distance - mean), yd += w * dy * (k.inverse_distance - mean);
   }
-  // A small ridge: planes stay planes, and points on a line have no slope across it.
+  // A small ridge: planes stay planes (to 1e-6), and points on a line give no slope across the line.
   const double ridge = 1e-6 * (xx + yy);
   xx += ridge, yy += ridge;
   const double determinant = xx * yy - xy * xy, range = most - least;

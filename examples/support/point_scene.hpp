@@ -10,15 +10,15 @@
 
 namespace examples {
 
-/// A scene through known points. At every place 1/distance is that of a plane fitted to the points, with weights by the
-/// inverse fourth power of their angular distance (moving least squares). The scene contains every point; points of a
-/// plane give that plane. 1/distance exceeds the range of the points by at most that range, and is never negative.
+/// A scene surface through known points. 1/distance is interpolated by planes fitted to the points with weights of the
+/// inverse fourth power of the angular distance (moving least squares). The surface contains every point and reproduces
+/// planes. 1/distance exceeds the range of the points by at most the width of that range, and is never negative.
 class PointScene {
  public:
-  /// Leaves out points behind the lens. Needs at least one other.
+  /// Ignores points behind the lens. @throws petzval::Error if no point is in front of the lens
   PointScene(const petzval::IdealLens& lens, std::span<const petzval::ScenePoint> points);
 
-  /// The scene point that the ideal lens images at a film point, by the chief ray. Nothing if that ray does not come
+  /// The scene point that the ideal lens images at a film point, by the chief ray; nullopt if that ray does not come
   /// from the scene.
   std::optional<petzval::ScenePoint> at(const petzval::Film& film, const petzval::FilmPoint& point) const;
 
@@ -29,12 +29,12 @@ class PointScene {
   double inverse_distance(double x, double y) const;
 
   petzval::IdealLens lens_;
-  double from_z_ = 0;      // of distances
-  bool parallel_ = false;  // chief rays, in front of a lens telecentric there: x and y are places, not slopes
+  double from_z_ = 0;      // z from which distances count
+  bool parallel_ = false;  // object-space telecentric: x and y are positions, not slopes
   std::vector<Known> known_;
 };
 
-/// The hit of a scene point's chief ray on the film. Nothing if the point has no real image or the ray misses the film.
+/// The film point of a scene point's chief ray; nullopt if the point has no real image or the ray misses the film.
 std::optional<petzval::FilmPoint> on_film(const petzval::IdealLens& lens, const petzval::Film& film,
                                           const petzval::ScenePoint& place);
 

@@ -31,7 +31,7 @@ std::vector<double> axis(const Json& description, const char* key) {
   return values;
 }
 
-/// The number of shards, where those that began in folders agree on one.
+/// The number of shards, if the shards that began in the folders agree; otherwise nullopt.
 std::optional<std::size_t> shard_count(const std::vector<fs::path>& folders) {
   std::set<std::size_t> counts;
   for (const fs::path& folder : folders) {
@@ -46,17 +46,16 @@ Json index(const PsfJob& job, const std::vector<petzval::ExrPart>& parts, const 
   Json json = job.description();
   json.erase("prescription");
   json["exr"] = file.filename().string();
-  json["units"] = {
-      {"light",
-       "channel Y: share of the film irradiance that the wide-open lens gives on the axis in an evenly bright "
-       "scene; total is the sum of all pixels"},
-      {"lengths", "mm"},
-      {"throughput", "share of the light on the paraxial entrance pupil of the PSF's own stop"},
-      {"error", "bound of the relative error of the radial profile, kept by 95 of 100 runs"}};
+  json["units"] = {{"light",
+                    "channel Y: film irradiance relative to the wide-open lens on the axis in a uniformly bright "
+                    "scene; total is the sum of all pixels"},
+                   {"lengths", "mm"},
+                   {"throughput", "fraction of the light on the paraxial entrance pupil of the PSF's own stop"},
+                   {"error", "bound of the relative error of the radial profile, held by 95 of 100 runs"}};
   json["frame"] =
-      "rows from the top; up is away from the middle of a photograph, towards the field; the anchor is in the middle "
+      "rows from the top; up is away from the centre of a photograph, towards the field; the anchor is at the centre "
       "of "
-      "the middle pixel; anchor_mm is its place on the film, where the picture stands upside down";
+      "the middle pixel; anchor_mm is its position on the film, where the picture is upside down";
   json["psfs"] = Json::array();
   for (const petzval::ExrPart& part : parts) {
     const auto [point, kernel] = petzval::from_exr_part(part);
@@ -78,7 +77,7 @@ Json index(const PsfJob& job, const std::vector<petzval::ExrPart>& parts, const 
   return json;
 }
 
-/// The picture of a kernel at a scale: its irradiance, in grey.
+/// The irradiance of a kernel as a grey picture at a given scale.
 petzval::RgbImage picture(const petzval::PsfKernel& kernel, int side, double pixel_mm) {
   petzval::RgbImage image(side, side);
   constexpr int samples = 4;  // along each side of a pixel
@@ -111,9 +110,9 @@ Sheet contact_sheet(const PsfJob& job, const std::vector<petzval::ExrPart>& part
   Sheet sheet{
       .title = "PSFs of " + job.description().at("lens").get<std::string>(),
       .rows = {},
-      .notes = {"Angle of the field, and light: the film irradiance of an evenly bright scene, as a share of that of "
+      .notes = {"Field angle, and light: the film irradiance of a uniformly bright scene relative to "
                 "the wide-open lens on the axis.",
-                "Up is away from the middle of the photograph. Tiles of a row have the same scale of film and their "
+                "Up is away from the centre of the photograph. Tiles of a row have the same film scale and their "
                 "own exposure."}};
   for (const double distance : axes.distances_mm) {
     std::vector<petzval::PsfPart> row;
@@ -127,7 +126,7 @@ Sheet contact_sheet(const PsfJob& job, const std::vector<petzval::ExrPart>& part
     for (const auto& [point, kernel] : row) width = std::max(width, kernel.pixels * kernel.pixel_mm);
     SheetRow shown{.title = std::isinf(distance) ? "a light at infinity" : "a light at " + number(distance) + " mm",
                    .subtitle = number(nm) + " nm, f/" + number(axes.f_numbers.front(), 3),
-                   .pixel_mm = 1.15 * width / tile_pixels,  // room for the scale bar
+                   .pixel_mm = 1.15 * width / tile_pixels,  // margin for the scale bar
                    .tiles = {}};
     for (const auto& [point, kernel] : row) {
       shown.tiles.push_back({expose(picture(kernel, tile_pixels, shown.pixel_mm)).picture,
@@ -156,11 +155,11 @@ PsfJob::PsfJob(Json description)
 PsfJob PsfJob::read(const fs::path& folder) {
   const fs::path file = folder / job_file;
   if (!examples::exists(file))
-    throw petzval::Error(folder.string() + ": no " + job_file + ", wanted a folder of psf_set");
+    throw petzval::Error(folder.string() + ": has no " + job_file + "; must be a folder of psf_set");
   try {
     return PsfJob(Json::parse(read_text(file)));
   } catch (const nlohmann::json::exception&) {
-    throw petzval::Error(file.string() + ": cannot be read as a job of psf_set: the file has changed");
+    throw petzval::Error(file.string() + ": not a valid job of psf_set: the file has changed");
   }
 }
 
@@ -174,7 +173,7 @@ void PsfJob::begin(const fs::path& folder, const Shard& shard) const {
   if (examples::exists(folder / job_file)) {
     if (read(folder).description_ != description_) {
       throw petzval::Error((folder / job_file).string() +
-                           ": describes another set, wanted an empty folder or the same set");
+                           ": describes another set; the folder must be empty or hold the same set");
     }
   } else {
     make_folder(folder / "psfs");
@@ -238,7 +237,7 @@ std::vector<petzval::ExrPart> PsfJob::gather(const std::vector<fs::path>& folder
         corrupt.push_back(of_shard(node) + error.what());
       }
     }
-    if (found) {  // a copy that is whole replaces a corrupt one
+    if (found) {  // an intact copy replaces a corrupt one
       parts.push_back(std::move(*found));
     } else if (corrupt.empty()) {
       missing[of_shard(node)].push_back(name(node));
@@ -255,7 +254,7 @@ std::vector<petzval::ExrPart> PsfJob::gather(const std::vector<fs::path>& folder
   if (faults.empty()) return parts;
   std::string all = "of " + std::to_string(axes_.size()) + " PSFs";
   for (const std::string& fault : faults) all += "; " + fault;
-  throw petzval::Error(all + "; wanted all of them whole");
+  throw petzval::Error(all + "; all must be intact");
 }
 
 std::vector<fs::path> write_psf_set(const PsfJob& job, const std::vector<petzval::ExrPart>& parts, const fs::path& file,

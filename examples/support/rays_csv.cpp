@@ -16,7 +16,7 @@ RayTable parse_rays(std::string_view csv, const std::string& where) {
                 std::move(all[3]), std::move(all[4]), std::move(all[5])};
   for (std::size_t i = 0; i < rays.size(); ++i) {
     if (rays.dx[i] == 0 && rays.dy[i] == 0 && rays.dz[i] == 0) {
-      throw petzval::Error(line_of_row(where, i) + ": found direction 0,0,0, wanted a vector of nonzero length");
+      throw petzval::Error(line_of_row(where, i) + ": direction = 0,0,0; must have a nonzero length");
     }
   }
   return rays;

@@ -8,13 +8,15 @@
 
 namespace examples {
 
-/// Rays column by column, lens frame (mm), directions as given.
+/// Rays by column, in the lens frame (mm); directions are not normalized.
 struct RayTable {
   std::vector<double> x, y, z, dx, dy, dz;
   std::size_t size() const noexcept { return x.size(); }
 };
 
-/// Reads "x_mm,y_mm,z_mm,dx,dy,dz" and one ray per line, as parse_columns does. Refuses the direction 0,0,0.
+/// Reads "x_mm,y_mm,z_mm,dx,dy,dz" and one ray per line, like parse_columns.
+///
+/// @throws petzval::Error also if a direction is 0,0,0
 RayTable parse_rays(std::string_view csv, const std::string& where);
 
 }  // namespace examples

@@ -8,7 +8,7 @@
 namespace examples {
 namespace {
 
-/// Two whole numbers with `between` between them, the first from 1 to the second.
+/// Parses two whole numbers separated by `between`, the first from 1 to the second.
 std::optional<Shard> shard_in(std::string_view text, std::string_view between) {
   Shard shard;
   const char* const end = text.data() + text.size();
@@ -27,7 +27,7 @@ std::string Shard::stem(std::string_view prefix) const {
 
 Shard parse_shard(const std::string& where, const std::string& text) {
   if (const auto shard = shard_in(text, "/")) return *shard;
-  throw petzval::Error(where + ": found \"" + text + "\", wanted i/n with whole numbers, i from 1 to n");
+  throw petzval::Error(where + " = \"" + text + "\"; must be i/n with whole numbers, i from 1 to n");
 }
 
 std::optional<Shard> shard_of_file(const std::filesystem::path& file, std::string_view prefix) {

@@ -16,7 +16,7 @@ constexpr Colour paper{251, 251, 250}, ink{29, 32, 38}, faint{86, 91, 102}, line
 constexpr int margin = 36, top = 92, line = 21, bar_height = 20, title_size = 26, subtitle_size = 16, small = 15,
               heading = 28, below_map = 22, scale_height = 92;
 
-/// Deep blue over green and yellow to near white, of growing lightness, for t from 0 to 1.
+/// Deep blue through green and yellow to near white, of increasing lightness, for t from 0 to 1.
 Colour colour_of(double t) {
   constexpr std::array<Colour, 6> stops{
       {{46, 30, 96}, {44, 84, 150}, {38, 134, 142}, {82, 178, 116}, {184, 210, 80}, {250, 236, 150}}};
@@ -62,7 +62,7 @@ class Drawing {
     const auto [low, high] = std::minmax_element(map.values.begin(), map.values.end());
     return {*low, *high};
   }
-  /// From 0 to 1; a map of one value is in the middle.
+  /// The value's fraction of the map's range, from 0 to 1; 0.5 if all values of the map are equal.
   static double part(const SurfaceMap& map, double value) {
     const auto [low, high] = range(map);
     return high > low ? (value - low) / (high - low) : 0.5;
@@ -94,7 +94,7 @@ class Drawing {
         pixels.push_back({x, y});
       }
     }
-    // Its name where the line is farthest from the points and the frame.
+    // Place the label where the line is farthest from the points and the frame.
     const int width = font_.width(level.words, small);
     double best = 0;
     std::array<int, 2> place{};

@@ -7,7 +7,7 @@
 namespace examples {
 namespace {
 
-/// The digits that std::to_chars writes; no number takes more than the buffer holds.
+/// The digits that std::to_chars writes. The buffer is large enough for every number.
 template <class... Format>
 std::string digits(double value, Format... format) {
   std::array<char, 64> buffer;

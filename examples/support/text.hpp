@@ -10,10 +10,10 @@ namespace examples {
 /// ("0.1", "1e+30", "nan").
 std::string number(double value);
 
-/// The same rounded to a number of significant digits.
+/// The number rounded to a count of significant digits.
 std::string number(double value, int significant_digits);
 
-/// Text as the content of an HTML element: & < > by their names.
+/// Escapes & < > for the content of an HTML element.
 std::string escaped_html(std::string_view text);
 
 }  // namespace examples

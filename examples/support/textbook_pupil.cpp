@@ -19,8 +19,8 @@ using namespace petzval;
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
-/// The rays of one point of the axis in the main meridian, by their signed distance from the vertex of the surface that
-/// they meet first: the sine of the angle is that distance over the distance of the point, infinite or not.
+/// Rays of one axial point in the main meridian, indexed by their signed distance p from the vertex of the surface that
+/// they meet first: the sine of the ray's angle is p divided by the distance of the point, which may be infinite.
 class AxialFan {
  public:
   AxialFan(const Lens& lens, Travel travel, double point_z, Wavelength wavelength)
@@ -33,7 +33,7 @@ class AxialFan {
     distance_ = std::isinf(point_z) ? infinity : forward_ * (lens.surfaces()[first_].vertex_z - point_z);
   }
 
-  /// The ray at a distance p from the vertex. It starts at its point nearest to the vertex, so that the rounding of its
+  /// The ray at distance p from the vertex. It starts at its point nearest to the vertex, so that the rounding of its
   /// direction does not grow with the distance of the object.
   Ray<double> ray(double p) const noexcept {
     const double sine = p / distance_, cosine = std::sqrt((1 - sine) * (1 + sine));
@@ -43,8 +43,8 @@ class AxialFan {
 
   TracedRay<double> trace(double p) const noexcept { return petzval::trace(lens_, ray(p), options_); }
 
-  /// Distance from the vertex of the ray to the point of the first surface at some height; at most that of the ray at
-  /// a right angle to the axis.
+  /// Distance p of the ray to the point of the first surface at a height; at most the p of a ray at a right angle to
+  /// the axis.
   double towards(double height) const noexcept {
     const double sag = petzval::sag(lens_, first_, along_y_ ? 0 : height, along_y_ ? height : 0);
     const double depth = distance_ + forward_ * (std::isnan(sag) ? 0 : sag);
@@ -52,7 +52,7 @@ class AxialFan {
     return depth * distance_ > 0 ? std::abs(distance_) * height / std::hypot(height, depth) : std::abs(distance_);
   }
 
-  /// Where the ray crosses the axis-normal plane at z.
+  /// Height of the ray in the plane at z.
   double height_at(double p, double z) const noexcept {
     if (std::isinf(z)) return infinity;
     const auto [origin, direction] = ray(p);
@@ -62,7 +62,7 @@ class AxialFan {
 
   bool at_vertex() const noexcept { return distance_ == 0; }
 
-  /// The height to begin with: the rim of the first surface, or the widest rim where it has none.
+  /// The start height: the rim of the first surface, or the widest rim if that surface has none itself.
   double rim() const noexcept {
     const double own = lens_.surfaces()[first_].semi_diameter;
     if (std::isfinite(own)) return own;
@@ -82,32 +82,32 @@ class AxialFan {
   TraceOptions options_;
   std::size_t first_;
   bool along_y_;
-  double forward_ = 1;   // along z of the way to the lens
-  double distance_ = 0;  // of the point in front of the vertex; negative where the beam converges to it
+  double forward_ = 1;   // sign of the ray's direction along z
+  double distance_ = 0;  // from the point to the vertex; negative for a converging beam
 };
 
 TextbookPupil textbook_pupil(const Lens& lens, Travel travel, double point_z, Wavelength wavelength) {
   const bool entrance = travel == Travel::to_film;
   const std::string where = lens.name() + ": textbook " + (entrance ? "entrance" : "exit") + " pupil: ";
-  lens.index(0, wavelength);  // throws where there is no such wavelength
+  lens.index(0, wavelength);  // throws if the wavelength was not compiled
   const Pupils paraxial = pupils(lens, wavelength, main_meridian(lens, wavelength));
   const AxialFan fan(lens, travel, point_z, wavelength);
   if (std::isnan(point_z) || fan.at_vertex()) {
-    throw Error(where + (entrance ? "object_z" : "film_z") + " is " + number(point_z) +
-                " mm, wanted infinity or a place off the vertex of the lens");
+    throw Error(where + (entrance ? "object_z" : "film_z") + " = " + number(point_z) +
+                " mm; must be infinite or differ from the vertex of the lens");
   }
   const auto passes = [&](double p) { return fan.trace(p).transmitted(); };
   if (const auto axial = fan.trace(0); !axial.transmitted()) {
     throw Error(where + "the ray along the axis ends at surface " + std::to_string(axial.surface) + " (" +
-                std::string(name(axial.fate)) + "), wanted one that passes: the bisection starts from it");
+                std::string(name(axial.fate)) + "); must pass, because the bisection starts from it");
   }
 
-  // Steps 1 to 5. The ray to the rim itself is the first that is tried; without a rim, farther and farther out.
+  // Steps 1 to 5. The ray to the rim is tried first; without a rim, the height doubles.
   double height = fan.rim(), outermost = fan.towards(height);
   const bool limited = std::isfinite(lens.surfaces()[entrance ? 0 : lens.surface_count() - 1].semi_diameter);
   while (!limited && passes(outermost) && height < 1e100) outermost = fan.towards(height *= 2);
   if (!passes(outermost)) {
-    double last = 0, first = outermost;  // neighbours of the edge: a ray that passes and a lost ray
+    double last = 0, first = outermost;  // brackets the edge: a ray that passes and a lost ray
     for (double middle = first / 2; middle > last && middle < first; middle = last + (first - last) / 2) {
       (passes(middle) ? last : first) = middle;
     }

@@ -17,7 +17,7 @@ double mean(std::span<const double, 64> profile, int first, int last) {
   return area > 0 ? sum / area : 0;
 }
 
-/// The first bin of a tenth of the radius.
+/// First bin of a tenth of the radius.
 int bin(int tenth) { return static_cast<int>(std::lround(6.4 * tenth)); }
 
 }  // namespace
@@ -29,7 +29,7 @@ const char* words(Look look) {
     case Look::hollow_core: return "bright core with dark centre";
     case Look::core: return "bright core, dark ring";
     case Look::uniform: return "uniform disc";
-    case Look::even_and_core: return "nearly even, bright core";
+    case Look::even_and_core: return "nearly uniform, bright core";
     case Look::point: return "sharpest of the five";
   }
   return "";
@@ -49,7 +49,7 @@ std::span<const WuRow> wu_rows() {
        {ring, ring_and_core, point, hollow_core, hollow_core}},
       {"double_gauss_100mm_f2_28deg",
        "f/2  double Gauss, 28° field",
-       "their row (c); of two candidates the one that behaves as the paper says",
+       "their row (c); of two candidates, this lens behaves as the paper says",
        {uniform, core, point, ring, ring}},
       {"double_gauss_100mm_f2.0",
        "f/2  double Gauss (Tronnier)",

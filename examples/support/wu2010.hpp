@@ -8,19 +8,19 @@
 
 namespace examples {
 
-/// Looks of a defocused point light in the words of Wu et al. 2010 about their figure 7.
+/// Appearance of a defocused point light, in the words of Wu et al. 2010 about their figure 7.
 enum class Look {
   ring,           ///< dark disc with a bright ring
-  ring_and_core,  ///< the same with a slightly bright core
+  ring_and_core,  ///< dark disc with a bright ring and a slightly bright core
   hollow_core,    ///< bright core with a dark centre, dark ring around
   core,           ///< bright core, dark ring around
   uniform,        ///< uniform disc
-  even_and_core,  ///< nearly even disc with a bright core; the paper has no words for it
-  point,          ///< in focus: the sharpest of the five
+  even_and_core,  ///< nearly uniform disc with a bright core; not described in the paper
+  point,          ///< in focus: the sharpest of the five pictures
 };
 const char* words(Look look);
 
-/// One row of their figure 7.
+/// One row of figure 7 in Wu et al. 2010.
 struct WuRow {
   const char* lens;  ///< file in data/lenses, without .json
   const char* title;
@@ -28,7 +28,7 @@ struct WuRow {
   std::array<Look, 5> printed;
 };
 
-/// A light at 1000 mm, on axis, at the d line, focused at five distances.
+/// A light at 1000 mm on the axis, at the d line, with five focus distances.
 inline constexpr double wu_light_mm = 1000;
 inline constexpr std::array<double, 5> wu_focus_mm{800, 900, 1000, 1100, 1200};
 std::span<const WuRow> wu_rows();
@@ -37,14 +37,14 @@ std::span<const WuRow> wu_rows();
 struct ProfileShape {
   double centre = 0;     ///< mean within 0.1 of the radius
   double core = 0;       ///< mean within 0.2 of the radius
-  double brightest = 0;  ///< of ten rings of equal width
+  double brightest = 0;  ///< maximum of ten rings of equal width
   int brightest_ring = 0;
-  double darkest_inside = 0;  ///< of the rings inside the brightest one; 0 if there is none
+  double darkest_inside = 0;  ///< minimum of the rings inside the brightest ring; 0 if it is the innermost
   double deviation = 0;       ///< RMS over the area of the disc, ten rings
 };
 ProfileShape profile_shape(std::span<const double, 64> profile);
 
-/// The look of a profile; never `point`, which needs a comparison.
+/// The look of a profile. Never `point`, which needs a comparison of profiles.
 Look look(const ProfileShape& shape);
 
 }  // namespace examples
