@@ -512,7 +512,7 @@ TEST(Camera, RefusesFilmsThatAreNone) {
   }
   // Inside the glass or in front of it, upright or tilted, by the film or by the prescription.
   const double last_z = lens.surfaces().back().vertex_z;
-  const std::string place = "wanted it behind the lens, above " + to_text(last_z) + " mm, where the last vertex is";
+  const std::string place = "must be behind the lens, above " + to_text(last_z) + " mm, the z of the last vertex";
   for (const double z : {last_z, last_z - 5, -20.0}) {
     for (const Film& film : {Film{.z_mm = z}, Film{.z_mm = z, .tilt_rad = 0.1}}) {
       EXPECT_NE(testing::message([&] { Camera(lens, film); }).find(place), std::string::npos) << z;

@@ -196,7 +196,7 @@ TEST(MovingFilm, IsRefusedWhereItWouldTravelIntoTheLens) {
     return testing::message([&] { Camera(lens, {.travel_mm = travel}, {.model = ModelKind::thin}); });
   };
   EXPECT_EQ(refusal(0.5), "no error");
-  EXPECT_NE(refusal(last_z - 1 - lens.film_z()).find("wanted it behind the lens"), std::string::npos);
+  EXPECT_NE(refusal(last_z - 1 - lens.film_z()).find("must be behind the lens"), std::string::npos);
   EXPECT_NE(refusal(std::numeric_limits<double>::quiet_NaN()).find("travel_mm = nan"), std::string::npos);
 }
 
