@@ -25,7 +25,7 @@ using renderer::SceneDescription;
 constexpr float pi = std::numbers::pi_v<float>;
 const renderer::Sky daylight{.colour = {0.55f, 0.68f, 0.90f}};
 
-/// The same numbers from 0 to 1 everywhere, which std::uniform_real_distribution does not promise.
+/// Random numbers from 0 to 1, equal on all platforms; std::uniform_real_distribution does not guarantee that.
 class Chance {
  public:
   explicit Chance(std::uint32_t seed) : engine_(seed) {}
@@ -42,7 +42,7 @@ void add(SceneDescription& scene, const char* name, Mesh mesh, const Rgb& colour
   if (!mesh.triangles.empty()) scene.objects.push_back({name, std::move(mesh), matt(colour)});
 }
 
-/// A roof over a rectangle, its ridge along z.
+/// A roof over a rectangle, with its ridge along z.
 Mesh gable(const glm::vec3& least, const glm::vec3& most, float height) {
   const float middle = 0.5f * (least.x + most.x), over = 0.06f * (most.x - least.x);
   const glm::vec3 a{least.x - over, most.y, least.z}, b{most.x + over, most.y, least.z},
@@ -112,7 +112,7 @@ void lamp_post(SceneDescription& scene, const glm::vec3& foot, float height) {
   scene.objects.push_back({"lamp post", placed(renderer::lathe(post, 24), foot), matt({0.06f, 0.07f, 0.07f})});
 }
 
-/// The centre line of the knot at a part of its length, mm.
+/// Centre line of the knot at a fraction of its length, mm.
 glm::vec3 knot_line(float part) {
   const float t = 2 * pi * part, ring = 2 + 0.75f * std::cos(3 * t);
   return 470.0f * glm::vec3{ring * std::cos(2 * t), 1.05f * std::sin(3 * t), ring * std::sin(2 * t)};
@@ -145,7 +145,7 @@ SceneDescription town_scene() {
     tree(scene, chance, {(i % 2 == 0 ? -640.0f : 660.0f) + chance.next(-60, 60), ground, z}, chance.next(800, 1150));
     lamp_post(scene, {i % 2 == 0 ? 560.0f : -580.0f, ground, z + 900}, 1300);
   }
-  // Near: a lamp post, a railing and a stall, in front of the focus.
+  // In front of the focus: a lamp post, a railing and a stall.
   lamp_post(scene, {-420, ground, -2300}, 1500);
   Mesh railing;
   for (int i = 0; i < 14; ++i) {
@@ -220,7 +220,7 @@ SceneDescription leaves_scene() {
   Chance chance(11);
   constexpr int kinds = 6;
   std::array<Mesh, kinds> leaves;
-  // Boughs are balls, wider with their depth: one looks through between them at any depth.
+  // Boughs are balls whose radius grows with depth, so that gaps between them are visible at any depth.
   std::array<glm::vec3, 150> boughs;
   for (glm::vec3& bough : boughs) {
     const float away = chance.next(1900, 10000), wide = 0.40f * away;

@@ -28,14 +28,14 @@ const std::vector<float>* channel(const petzval::ExrPart& part, const std::strin
 
 const std::vector<float>& wanted(const petzval::ExrPart& part, const std::string& name, const std::string& file) {
   if (const auto* const values = channel(part, name)) return *values;
-  throw Error(file + ": no channel " + name + ", wanted R, G, B, Z and perhaps A");
+  throw Error(file + ": has no channel " + name + "; must have R, G, B, Z and optionally A");
 }
 
 bool ends_with(const std::string& name, const std::string& ending) {
   return std::filesystem::path(name).extension() == ending;
 }
 
-/// Depths of a file with one number for each pixel: Z or the only channel of an EXR, or a PFM.
+/// Reads a file with one depth for each pixel: channel Z or the only channel of an EXR, or a PFM.
 std::vector<float> read_depths(const std::string& file, int& columns, int& rows) {
   if (ends_with(file, ".pfm")) {
     const petzval::RgbImage image = petzval::read_pfm(file);
@@ -52,47 +52,48 @@ std::vector<float> read_depths(const std::string& file, int& columns, int& rows)
 }  // namespace
 
 void add_input(examples::App& app, InputFlags& flags) {
-  app.add_option("--scene", flags.scene, "a scene of this program")
+  app.add_option("--scene", flags.scene, "built-in scene to blur")
       ->one_of({"town", "statues", "knot", "leaves", "street"});
-  app.add_option("--image", flags.image, "channels R, G, B, Z and perhaps A; several parts are layers from near to far")
+  app.add_option("--image", flags.image,
+                 "picture with channels R, G, B, Z and optionally A; several parts are layers from near to far")
       ->type_name("RGBAZ.exr");
-  app.add_option("--deep", flags.deep, "a deep picture")->type_name("DEEP.exr");
-  app.add_option("--rgb", flags.rgb, "a picture: PNG (sRGB) or PFM (linear)")->type_name("A.png");
-  app.add_option("--depth", flags.depth, "its depths, mm: EXR or PFM")->type_name("D.exr");
-  app.add_option("--depth-kind", flags.depth_kind, "what depths of files are: along the axis, or along rays")
+  app.add_option("--deep", flags.deep, "deep picture")->type_name("DEEP.exr");
+  app.add_option("--rgb", flags.rgb, "picture: PNG (sRGB) or PFM (linear); needs --depth")->type_name("A.png");
+  app.add_option("--depth", flags.depth, "depths of --rgb (mm): EXR or PFM")->type_name("D.exr");
+  app.add_option("--depth-kind", flags.depth_kind,
+                 "meaning of depths in files: along the axis (axial) or along rays (distance)")
       ->one_of({"axial", "distance"})
       ->capture_default_str();
   constexpr examples::Range side{1, 16384, "a whole number from 1 to 16384"};
-  examples::add_count(app, "--width", flags.width, side, "pixels across, of a scene")->default_str("800");
-  examples::add_count(app, "--height", flags.height, side, "pixels down, of a scene")->default_str("600");
+  examples::add_count(app, "--width", flags.width, side, "pixels across (scenes only)")->default_str("800");
+  examples::add_count(app, "--height", flags.height, side, "pixels down (scenes only)")->default_str("600");
 }
 
 LayerInput::LayerInput(const InputFlags& flags) : flags_(flags), depths_are_axial_(flags.depth_kind == "axial") {
   const int given = !flags.scene.empty() + !flags.image.empty() + !flags.deep.empty() + !flags.rgb.empty();
   if (given != 1) {
-    throw Error("layers: found " + std::to_string(given) + " of --scene, --image, --deep and --rgb, wanted one");
+    throw Error("layers: " + std::to_string(given) + " of --scene, --image, --deep and --rgb are given; must be 1");
   }
-  if (flags.rgb.empty() != flags.depth.empty()) throw Error("--rgb and --depth: found one of them, wanted both");
+  if (flags.rgb.empty() != flags.depth.empty()) throw Error("--rgb and --depth must be given together");
   if (!flags.scene.empty()) {
     if (!depths_are_axial_) {
-      throw Error("--depth-kind: found " + flags.depth_kind +
-                  " with --scene, wanted files: depths of scenes are axial");
+      throw Error("--depth-kind = " + flags.depth_kind + ": must not be used with --scene, whose depths are axial");
     }
     const auto description = blur_scene(flags.scene);
-    if (!description) throw Error("--scene: found " + flags.scene + ", wanted " + std::string(blur_scene_names));
+    if (!description) throw Error("--scene = " + flags.scene + "; must be " + std::string(blur_scene_names));
     pose_ = description->pose;
     scene_ = std::make_unique<LitScene>(*description);
     columns_ = flags.width > 0 ? static_cast<int>(flags.width) : 800;
     rows_ = flags.height > 0 ? static_cast<int>(flags.height) : 600;
     return;
   }
-  if (flags.width > 0 || flags.height > 0) throw Error("--width and --height: files have a size of their own");
+  if (flags.width > 0 || flags.height > 0)
+    throw Error("--width and --height must not be used with files, which have their own size");
   if (!flags.deep.empty()) {
     petzval::DeepPicture deep = petzval::read_deep_exr(flags.deep);
-    if (deep.without_depth > 0)
-      std::cerr << "note: " << deep.without_depth << " samples without a depth are left out\n";
+    if (deep.without_depth > 0) std::cerr << "note: " << deep.without_depth << " samples without a depth are ignored\n";
     if (deep.volumes > 0)
-      std::cerr << "note: " << deep.volumes << " samples of volumes count as surfaces at their front\n";
+      std::cerr << "note: " << deep.volumes << " volume samples are treated as surfaces at their front\n";
     lists_ = std::move(deep.lists);
   } else if (!flags.image.empty()) {
     read_layers(flags.image);
@@ -111,9 +112,9 @@ void LayerInput::read_layers(const std::string& file) {
   std::vector<Planes> planes;
   for (const petzval::ExrPart& part : parts) {
     if (part.width != lists_.columns || part.height != lists_.rows) {
-      throw Error(file + ": part " + part.name + " is " + std::to_string(part.width) + " x " +
-                  std::to_string(part.height) + ", wanted the size of the first, " + std::to_string(lists_.columns) +
-                  " x " + std::to_string(lists_.rows));
+      throw Error(file + ": part " + part.name + ": size = " + std::to_string(part.width) + " x " +
+                  std::to_string(part.height) + "; must be the size of the first part, " +
+                  std::to_string(lists_.columns) + " x " + std::to_string(lists_.rows));
     }
     planes.push_back({&wanted(part, "R", file), &wanted(part, "G", file), &wanted(part, "B", file),
                       &wanted(part, "Z", file), channel(part, "A")});
@@ -131,8 +132,9 @@ void LayerInput::read_picture(const std::string& rgb, const std::string& depth) 
   int columns = 0, rows = 0;
   const std::vector<float> depths = read_depths(depth, columns, rows);
   if (columns != picture.width || rows != picture.height) {
-    throw Error(depth + ": is " + std::to_string(columns) + " x " + std::to_string(rows) + ", wanted the size of " +
-                rgb + ", " + std::to_string(picture.width) + " x " + std::to_string(picture.height));
+    throw Error(depth + ": size = " + std::to_string(columns) + " x " + std::to_string(rows) +
+                "; must be the size of " + rgb + ", " + std::to_string(picture.width) + " x " +
+                std::to_string(picture.height));
   }
   lists_ = {.columns = columns, .rows = rows, .offsets = {0}, .fragments = {}};
   for (std::size_t i = 0; i < depths.size(); ++i) {

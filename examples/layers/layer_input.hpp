@@ -11,30 +11,30 @@
 
 namespace lens_blur {
 
-/// Command line of where layers come from.
+/// Command line of the source of layers.
 struct InputFlags {
   std::string scene, image, deep, rgb, depth, depth_kind = "axial";
-  std::uint32_t width = 0, height = 0;  ///< 0: 800 x 600, or the file's
+  std::uint32_t width = 0, height = 0;  ///< 0: 800 x 600, or the size of the file
 };
 
 void add_input(examples::App& app, InputFlags& flags);
 
-/// Layers of a scene, or of files.
+/// Source of layers: a scene or files.
 class LayerInput {
  public:
-  /// Reads files and builds the scene. Throws petzval::Error that names the flag or the file.
+  /// Reads files or builds the scene. @throws petzval::Error that names the flag or the file
   explicit LayerInput(const InputFlags& flags);
 
-  /// Of the picture.
+  /// Size of the picture.
   int columns() const noexcept { return columns_; }
   int rows() const noexcept { return rows_; }
   const renderer::Pose& pose() const noexcept { return pose_; }
-  /// The scene; null for files.
+  /// The scene; null if the layers come from files.
   LitScene* scene() const noexcept { return scene_.get(); }
 
-  /// Depth of the nearest surface, mm. camera: as layers are seen, which turns distances into depths.
+  /// Depth of the nearest surface, mm. Converts distances to depths. camera: the camera of the layers.
   double nearest_mm(const petzval::LayerCamera& camera, int threads);
-  /// What a plan asks for; files have what they have.
+  /// Fills the layers of a plan. Files have a fixed set of layers, whatever the plan.
   void fill(const petzval::PeelPlan& plan, int layers, int threads, petzval::LayerSet& set);
 
  private:
@@ -45,7 +45,7 @@ class LayerInput {
   int columns_ = 800, rows_ = 600;
   renderer::Pose pose_;
   std::unique_ptr<LitScene> scene_;
-  petzval::FragmentLists lists_;  ///< of files
+  petzval::FragmentLists lists_;  ///< contents of files
   bool depths_are_axial_ = true;
 };
 

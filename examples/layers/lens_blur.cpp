@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Blurs layers of a scene, or a picture with depths, by a lens: thin, two spheres, or any prescription.
+// Blurs layers of a scene, or a picture with depths, by a thin lens, a singlet or any prescription.
 //
 //   lens_blur --scene town --thin-lens-mm 50 --lens-diameter-mm 100 --focus-mm 5000 --compare --out out
 //   lens_blur --scene street --lens data/lenses/double_gauss_52mm_f1.8.json --focus-mm 3000 --rays 32 --out out
@@ -37,7 +37,7 @@ struct Options {
   lens_blur::LensFlags lens;
   std::uint32_t layers = 4, supersample = 0, threads = static_cast<std::uint32_t>(petzval::processor_threads());
   std::uint32_t frames = 1;
-  double frames_per_second = 24, travel_mm = 0, highlights_above = -1;  ///< the last: below 0: threshold_of()
+  double frames_per_second = 24, travel_mm = 0, highlights_above = -1;  ///< highlights_above < 0: threshold_of()
   bool compare = false;
   std::vector<std::string> formats;
   std::string out_folder;
@@ -49,7 +49,7 @@ double ms_since(std::chrono::steady_clock::time_point start) {
   return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
 }
 
-/// The mean of squares of pixels.
+/// The mean over squares of side x side pixels.
 RgbImage averaged(const RgbImage& image, int side) {
   if (side == 1) return image;
   RgbImage result(image.width / side, image.height / side);
@@ -74,7 +74,7 @@ RgbImage missed_of(const petzval::Blurred& picture) {
   return image;
 }
 
-/// What the pinhole sees.
+/// The picture of a pinhole.
 RgbImage sharp_of(const petzval::LayerSet& layers, const petzval::LayerCamera& camera) {
   RgbImage image(camera.columns, camera.rows);
   const int overscan = (layers.columns() - camera.columns) / 2;
@@ -93,9 +93,9 @@ lens_blur::LensFlags with_supersample(lens_blur::LensFlags flags, int side) {
   return flags;
 }
 
-/// The brightness above which small lights become even discs, unless it is given. A light is seen as the dots of single
-/// rays if it is much brighter than its surroundings: 6 times the mean of the first layer, but no more than white, as
-/// which all above 1 is shown. In files that end at white, as PNGs do, what is white may be a light: 0.75 there.
+/// Default of --highlights-above, the radiance above which small lights become uniform discs. A light much brighter
+/// than its surroundings would show the dots of single rays. The threshold is 6 times the mean of the first layer, at
+/// most 1 (white), or at most 0.75 for files that end at white, like PNGs, where white pixels may be lights.
 double threshold_of(const petzval::LayerSet& layers, bool of_file) {
   double sum = 0;
   float brightest = 0;
@@ -123,13 +123,13 @@ class Job {
         lens_(with_supersample(options.lens, side_), input_.columns() * side_, input_.rows() * side_, input_.pose(),
               options.frames > 1) {
     if (options.frames == 1 && options.travel_mm != 0) {
-      throw petzval::Error("--travel-mm: found 1 frame, wanted 2 or more for a way over all of them");
+      throw petzval::Error("--travel-mm: --frames = 1; must be 2 or more");
     }
     if (side_ == 3) throw petzval::Error(std::string("--supersample = 3; must be ") + supersamples.words);
     if (!input_.scene()) {
-      if (options.compare) throw petzval::Error("--compare: files have no scene to compare with, wanted --scene");
-      if (side_ > 1) throw petzval::Error("--supersample: files have the pixels that they have, wanted --scene");
-      if (options.travel_mm != 0) throw petzval::Error("--travel-mm: files have one place, wanted --scene");
+      if (options.compare) throw petzval::Error("--compare needs --scene");
+      if (side_ > 1) throw petzval::Error("--supersample needs --scene: files have a fixed number of pixels");
+      if (options.travel_mm != 0) throw petzval::Error("--travel-mm needs --scene: files have a fixed camera");
     }
   }
 
@@ -148,7 +148,7 @@ class Job {
     examples::write_text(folder / "blur.json", result_.dump(1) + '\n');
     progress.reset();
     if (rays_error_px_ > 1) {
-      std::cerr << "note: rays are interpolated over the picture, and are off by up to "
+      std::cerr << "note: rays are interpolated over the picture, with errors of up to "
                 << examples::number(rays_error_px_, 3) << " pixels\n";
     }
     std::cout << (folder / "blur.json").string() << '\n';
@@ -162,16 +162,17 @@ class Job {
       input_.scene()->move_to({static_cast<float>(part * options_.travel_mm), 0, 0});
     }
     const double nearest = input_.nearest_mm(lens_.layers(), threads_);
-    if (!std::isfinite(nearest)) throw petzval::Error("layers: no surface before infinity, wanted one at least");
+    if (!std::isfinite(nearest))
+      throw petzval::Error("layers: all depths are infinite; must have at least one finite depth");
     auto start = std::chrono::steady_clock::now();
-    // Layers reach beyond the picture, where nearer things may stand.
+    // Overscan: layers extend beyond the picture, where nearer objects may be.
     const petzval::LensRays rays = lens_.rays(0.8 * nearest, threads_, time);
     const double rays_ms = ms_since(start);
     rays_error_px_ = std::max(rays_error_px_, rays.error_px());
     petzval::PeelPlan plan = petzval::plan_peel(rays, 0.8 * nearest, std::numeric_limits<double>::infinity());
     if (!input_.scene()) plan.camera.overscan = 0;
 
-    // A picture alone is worked out twice, and the second time counts: the first one finds no memory yet.
+    // A single picture is computed twice and the second run is timed, because the first run also allocates memory.
     double peel_ms = 0, n_buffer_ms = 0, gather_ms = 0, threshold = 0;
     for (int run = 0; run < (options_.frames > 1 ? 1 : 2); ++run) {
       start = std::chrono::steady_clock::now();
@@ -220,7 +221,7 @@ class Job {
     const auto start = std::chrono::steady_clock::now();
     const RgbImage reference = averaged(input_.scene()->reference(rays, threads_), side_);
     json["reference_ms"] = ms_since(start);
-    // Both follow the same number of rays.
+    // Both trace the same number of rays.
     const auto ns_per_ray = [&](double ms) { return 1e6 * ms / static_cast<double>(blurred_.statistics.rays); };
     json["ns_per_ray"] = ns_per_ray(json["total_ms"].get<double>());
     json["reference_ns_per_ray"] = ns_per_ray(json["reference_ms"].get<double>());
@@ -240,7 +241,7 @@ class Job {
     json["flip_p99"] = *last;
     json["energy_drift"] = lens_blur::energy_drift(picture, reference);
 
-    // How much the error changes from frame to frame.
+    // Flicker: change of the error from frame to frame.
     std::vector<float> error(picture.pixels.size());
     for (std::size_t i = 0; i < error.size(); ++i) error[i] = picture.pixels[i] - reference.pixels[i];
     if (!last_error_.empty()) {
@@ -268,7 +269,7 @@ class Job {
   petzval::Blurred blurred_;
   Json result_;
   std::vector<float> last_error_;
-  double flicker_ = 0, rays_error_px_ = 0;  ///< the latter: of all frames
+  double flicker_ = 0, rays_error_px_ = 0;  ///< rays_error_px_: maximum over all frames
 };
 
 }  // namespace
@@ -277,32 +278,35 @@ int main(int argc, char** argv) {
   Options options;
   examples::App app(
       "Blurs layers of a scene, or a picture with depths, by a lens that is focused at --focus-mm. Writes DIR/blur.*, "
-      "sharp.* (what a pinhole sees), missed.* (the share of rays that met what the layers do not know) and blur.json; "
-      "with --compare reference.*, the same rays through the scene itself.",
+      "sharp.* (the picture of a pinhole), missed.* (the fraction of rays that hit surfaces outside the layers) and "
+      "blur.json; "
+      "with --compare also reference.*, the same rays traced through the scene.",
       "lens_blur");
   lens_blur::add_input(app, options.input);
   lens_blur::add_lens(app, options.lens);
   constexpr examples::Range layers{1, 64, "a whole number from 1 to 64"};
-  examples::add_count(app, "--layers", options.layers, layers, "surfaces behind each other, at most");
-  app.add_flag("--compare", options.compare, "measure the picture of a scene against all rays traced");
+  examples::add_count(app, "--layers", options.layers, layers, "largest number of surfaces behind each other");
+  app.add_flag("--compare", options.compare,
+               "compare the picture of a scene with the same rays traced through the scene");
   examples::add_count(app, "--supersample", options.supersample, supersamples,
-                      "pixels of a scene are so many in each direction, and averaged; the rays of a pixel are divided "
-                      "between them")
+                      "subpixels of a scene per pixel in each direction, averaged; the rays of a pixel are divided "
+                      "between its subpixels")
       ->default_str("2; files: 1");
   examples::add_number(app, "--highlights-above", options.highlights_above, {0, 1e9, "a number from 0 to 1e9"},
-                       "radiance above which small lights become even discs; 0: none")
+                       "radiance above which small lights become uniform discs; 0: never")
       ->default_str("6 times the mean; at most 1, or 0.75 in files that end at 1");
-  auto* frames = examples::add_count(app, "--frames", options.frames, {1, 100000, "a whole number from 1 to 100000"},
-                                     "blur_0001.* and so on; --points has focus points with keys then");
+  auto* frames = examples::add_count(
+      app, "--frames", options.frames, {1, 100000, "a whole number from 1 to 100000"},
+      "number of frames, written as blur_0001.* and so on; --points then gives focus points with keys");
   examples::add_number(app, "--fps", options.frames_per_second, examples::positive_number,
                        "frames per second, for the keys of --points")
       ->needs(frames)
       ->needs(app.get_option("--points"));
   examples::add_number(app, "--travel-mm", options.travel_mm, examples::finite_number,
-                       "way of the camera to the right over all frames (mm)")
+                       "distance that the camera moves to the right over all frames (mm)")
       ->needs(frames);
   examples::add_count(app, "--threads", options.threads, {1, 1024, "a whole number from 1 to 1024"},
-                      "threads; the picture does not depend on them");
+                      "number of threads; the picture does not depend on it");
   examples::add_formats(app, options.formats, "png (sRGB)");
   examples::add_out_folder(app, options.out_folder)->required();
   return examples::run(app, argc, argv, [&] { Job(options).run(); });

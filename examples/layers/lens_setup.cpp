@@ -27,10 +27,10 @@ namespace {
 using examples::number;
 using petzval::Error;
 
-/// Those of the red, green and blue of Lee, Eisemann, Seidel 2010.
+/// Wavelengths of red, green and blue in Lee, Eisemann, Seidel 2010.
 constexpr std::array colours_nm{650.0, 510.0, 475.0};
 
-/// Two spheres of a glass, R1,R2,thickness,glass, the stop on the first one.
+/// A singlet from "R1,R2,thickness,glass" with the stop on its first surface.
 petzval::Prescription singlet_of(const std::string& text, const petzval::GlassCatalogue& glasses) {
   std::vector<std::string> parts(1);
   for (const char c : text) {
@@ -40,7 +40,7 @@ petzval::Prescription singlet_of(const std::string& text, const petzval::GlassCa
       parts.back() += c;
     }
   }
-  if (parts.size() != 4) throw Error("--singlet: found \"" + text + "\", wanted R1,R2,thickness,glass");
+  if (parts.size() != 4) throw Error("--singlet = \"" + text + "\"; must be R1,R2,thickness,glass");
   const auto radius = [&](std::size_t i) {
     return examples::parse_number("--singlet", parts[i], examples::finite_number);
   };
@@ -48,14 +48,14 @@ petzval::Prescription singlet_of(const std::string& text, const petzval::GlassCa
   const auto found = std::find_if(glasses.glasses().begin(), glasses.glasses().end(),
                                   [&](const petzval::Glass& g) { return g.name == parts[3]; });
   if (found == glasses.glasses().end()) {
-    throw Error("--singlet: glass " + parts[3] + " is in no table of data/glass, wanted one");
+    throw Error("--singlet: glass = " + parts[3] + "; must be in a table of data/glass");
   }
   const petzval::Medium glass{.glass = found->name, .catalogue = found->catalogue, .nd = found->nd};
   petzval::Prescription p;
   p.id = "singlet", p.name = "singlet " + text;
   p.surfaces = {{.radius = radius(0), .thickness = thickness, .medium = glass, .stop = true},
                 {.radius = radius(1), .thickness = 1}};
-  // As wide as both spheres allow; the f-number stops it down.
+  // As wide as both spheres allow; the f-number stops the lens down.
   double widest = std::numeric_limits<double>::infinity();
   for (const petzval::SurfaceRow& row : p.surfaces) {
     if (row.radius != 0) widest = std::min(widest, 0.8 * std::abs(row.radius));
@@ -82,36 +82,36 @@ petzval::Prescription thin_singlet(double focal_length, double diameter) {
 void add_lens(examples::App& app, LensFlags& flags) {
   add_number(app, "--thin-lens-mm", flags.thin_lens_mm, examples::positive_number, "focal length of a thin lens (mm)")
       ->default_str("");
-  add_number(app, "--lens-diameter-mm", flags.lens_diameter_mm, examples::positive_number, "of a thin lens (mm)")
+  add_number(app, "--lens-diameter-mm", flags.lens_diameter_mm, examples::positive_number,
+             "diameter of a thin lens (mm)")
       ->default_str("");
-  examples::add_lens(app, flags.lens_file, "--lens", "by exact rays");
-  app.add_option("--singlet", flags.singlet, "two spheres by exact rays; f/2 without --f-number")
+  examples::add_lens(app, flags.lens_file, "--lens", "traced by exact rays");
+  app.add_option("--singlet", flags.singlet,
+                 "two spherical surfaces, traced by exact rays; f/2 unless --f-number is given")
       ->type_name("R1,R2,THICKNESS,GLASS");
-  add_number(
-      app, "--focus-mm", flags.focus_mm, examples::positive_length,
-      "distance of the subject in focus (mm), or inf; depths of layers count from the entrance pupil, from where "
-      "they are seen")
+  add_number(app, "--focus-mm", flags.focus_mm, examples::positive_length,
+             "distance of the subject in focus (mm), or inf; depths of layers count from the entrance pupil")
       ->required();
   examples::add_focus(app, flags.focus);
   constexpr examples::Range angle{1e-3, 120, "more than 0 and at most 120"};
-  add_number(app, "--fov-deg", flags.fov_deg, angle,
-             "vertical angle of the picture (degrees); 30 for a thin lens, else that of a film 24 mm high")
+  add_number(
+      app, "--fov-deg", flags.fov_deg, angle,
+      "vertical angle of the picture (degrees); default: 30 for a thin lens, else the angle of a film 24 mm high")
       ->default_str("");
   constexpr examples::Range tilt{-60, 60, "a number from -60 to 60"};
-  add_number(app, "--tilt-deg", flags.tilt_deg, tilt, "of the film, about the horizontal axis (degrees)");
-  add_number(app, "--swing-deg", flags.swing_deg, tilt, "of the film, about the vertical axis (degrees)");
+  add_number(app, "--tilt-deg", flags.tilt_deg, tilt, "tilt of the film about the horizontal axis (degrees)");
+  add_number(app, "--swing-deg", flags.swing_deg, tilt, "swing of the film about the vertical axis (degrees)");
   constexpr examples::Range rays{1, 16384, "a whole number from 1 to 16384"};
-  add_count(app, "--rays", flags.rays, rays, "through the lens, for each pixel of the picture")
-      ->default_str("256; through surfaces 512 with --jitter");
-  app.add_flag("--jitter", flags.jitter,
-               "16 sets of rays, of which pixels take one in turn: grain instead of patterns");
-  app.add_flag("--chroma", flags.chroma, "red, green and blue have rays of their own, at 650, 510 and 475 nm");
+  add_count(app, "--rays", flags.rays, rays, "rays through the lens per pixel of the picture")
+      ->default_str("256; 512 for --lens and --singlet with --jitter");
+  app.add_flag("--jitter", flags.jitter, "16 sets of rays, alternating over the pixels: grain instead of patterns");
+  app.add_flag("--chroma", flags.chroma, "separate rays for red, green and blue, at 650, 510 and 475 nm");
   add_iris(app, flags.iris);
   add_bokeh(app, flags.bokeh);
   auto* points =
       app.add_option(
              "--points", flags.surface.points_file,
-             "what is in focus at places of the picture: a focal surface; with --frames, focus points with keys")
+             "focal surface: the distances in focus at points of the picture; with --frames, focus points with keys")
           ->type_name("POINTS.json");
   add_surface_kind(app, flags.surface, points);
   add_expressive(app, flags.expressive);
@@ -121,17 +121,18 @@ BlurLens::BlurLens(const LensFlags& flags, int columns, int rows, const renderer
     : flags_(flags), columns_(columns), rows_(rows), pose_(pose), keyed_(keyed), controls_(controls_of(flags.bokeh)) {
   const int kinds = (flags.thin_lens_mm > 0) + !flags.lens_file.file.empty() + !flags.singlet.empty();
   if (kinds != 1) {
-    throw Error("lens: found " + std::to_string(kinds) + " of --thin-lens-mm, --lens and --singlet, wanted one");
+    throw Error("lens: " + std::to_string(kinds) + " of --thin-lens-mm, --lens and --singlet are given; must be 1");
   }
   if ((flags.thin_lens_mm > 0) != (flags.lens_diameter_mm > 0)) {
-    throw Error("--thin-lens-mm and --lens-diameter-mm: found one of them, wanted both");
+    throw Error("--thin-lens-mm and --lens-diameter-mm must be given together");
   }
   thin_ = flags.thin_lens_mm > 0;
   if (flags.rays == 0) {
     flags_.rays = thin_ ? 256 : 512;
     flags_.jitter = flags_.jitter || !thin_;
   }
-  if (thin_ && flags.iris.f_number > 0) throw Error("--f-number: a thin lens has --lens-diameter-mm");
+  if (thin_ && flags.iris.f_number > 0)
+    throw Error("--f-number must not be used with --thin-lens-mm; use --lens-diameter-mm");
   load();
   const petzval::Camera plain = camera({}, flags.supersample);
   film_ = plain.film();
@@ -145,7 +146,7 @@ BlurLens::BlurLens(const LensFlags& flags, int columns, int rows, const renderer
 double BlurLens::fov_deg() const { return flags_.fov_deg > 0 ? flags_.fov_deg : 30; }
 
 void BlurLens::load() {
-  // Focus is that of the d line, also where colours have their own.
+  // The focus is set at the d line, even if the colours have their own wavelengths.
   std::vector<double> wavelengths{petzval::d_line_nm};
   if (flags_.chroma) wavelengths.insert(wavelengths.end(), colours_nm.begin(), colours_nm.end());
   examples::IrisSetup iris = flags_.iris;
@@ -159,13 +160,13 @@ void BlurLens::load() {
   }();
   lens = examples::stopped_down(lens, iris);
   if (thin_ && !(flags_.focus_mm > flags_.thin_lens_mm)) {
-    throw Error("--focus-mm: found " + number(flags_.focus_mm) + ", wanted more than the focal length, " +
-                number(flags_.thin_lens_mm) + ": what is nearer has no real image");
+    throw Error("--focus-mm = " + number(flags_.focus_mm) + "; must be more than the focal length, " +
+                number(flags_.thin_lens_mm) + ": nearer subjects have no real image");
   }
   petzval::FocusOptions focus = flags_.focus.options();
-  if (thin_) focus.criterion = petzval::FocusCriterion::paraxial;  // the only focus of a thin lens
+  if (thin_) focus.criterion = petzval::FocusCriterion::paraxial;  // a thin lens has no other focus
   lens_ = examples::for_flag("--focus-mm", [&] { return petzval::with_focus(lens, flags_.focus_mm, focus); });
-  // Layers are seen from the entrance pupil.
+  // Depths of layers count from the entrance pupil.
   focus_depth_mm_ = flags_.focus_mm + petzval::pupils(*lens_).entrance.z - petzval::origin_z(*lens_, focus.origin);
   name_ = lens_->name();
 }
@@ -173,7 +174,7 @@ void BlurLens::load() {
 petzval::Camera BlurLens::camera(const std::optional<petzval::FocalSurface>& surface, std::uint32_t supersample) const {
   const int columns = columns_ / static_cast<int>(flags_.supersample) * static_cast<int>(supersample),
             rows = rows_ / static_cast<int>(flags_.supersample) * static_cast<int>(supersample);
-  // The film that has the angle of the picture, by the ideal lens.
+  // Film height for the angle of the picture, by the ideal lens.
   double height = 24;
   if (thin_ || flags_.fov_deg > 0) {
     const petzval::ScenePoint seen = petzval::thick_lens(*lens_).scene_of({0, -1, lens_->film_z()});
@@ -213,7 +214,7 @@ std::optional<petzval::FocalSurface> BlurLens::surface_at(double time) {
   const petzval::IdealLens ideal = petzval::thick_lens(*lens_);
   const std::vector<petzval::FocalPoint> seen =
       petzval::focal_points(ideal, film_, points_, {.time = time, .film = shown_});
-  if (seen.empty()) return surface_;  // the last one stays
+  if (seen.empty()) return surface_;  // keep the previous surface
   return petzval::FocalSurface(
       ideal, shown_, seen,
       {.kind = flags_.surface.kind == "shepard" ? petzval::SurfaceKind::shepard : petzval::SurfaceKind::affine,
@@ -222,7 +223,7 @@ std::optional<petzval::FocalSurface> BlurLens::surface_at(double time) {
 
 petzval::LensRays BlurLens::rays(double nearest_mm, int threads, double time) {
   if (keyed_) surface_ = surface_at(time);
-  // Each part of a pixel has its own rays; all parts together have the number of rays that --rays gives.
+  // Each subpixel has its own rays; all subpixels together have the number of rays that --rays gives.
   const auto parts = static_cast<int>(flags_.supersample * flags_.supersample);
   const int sets = flags_.jitter ? 16 : parts;
   const std::vector<petzval::PupilPoint> points =
@@ -252,7 +253,7 @@ petzval::LensRays BlurLens::rays(double nearest_mm, int threads, double time) {
       return petzval::FocusAt{at.inverse_distance, std::exp2(-at.extent_stops / 2)};
     };
   } else if (film_.tilted()) {
-    // What a tilted film has in focus is linear over the picture; the picture keeps its frame.
+    // The inverse distance in focus of a tilted film is linear over the picture; the picture keeps its frame.
     const double power = 1 / flags_.thin_lens_mm, image = power - 1 / focus_depth_mm_;
     thin.focus = [=, normal = film_.normal(), camera = layers_](const petzval::Vec2<double>& raster) {
       const petzval::Vec2<double> run = (raster - camera.axis) / camera.focal_px;

@@ -27,8 +27,8 @@ struct LensFlags {
   double focus_mm = 0, fov_deg = 0;
   examples::FocusFlags focus;
   double tilt_deg = 0, swing_deg = 0;
-  std::uint32_t rays = 0;         ///< 0: 256 of a thin lens; 512 with jitter through surfaces
-  std::uint32_t supersample = 1;  ///< 1, 2 or 4: columns and rows per column and row of the result
+  std::uint32_t rays = 0;         ///< 0: 256, or 512 for traced surfaces with jitter
+  std::uint32_t supersample = 1;  ///< 1, 2 or 4 subpixels per pixel in each direction
   bool chroma = false, jitter = false;
   examples::IrisSetup iris;
   examples::BokehFlags bokeh;
@@ -38,21 +38,21 @@ struct LensFlags {
 
 void add_lens(examples::App& app, LensFlags& flags);
 
-/// The lens of a command line before a picture of some size.
+/// The lens given on the command line, set up for one image size.
 class BlurLens {
  public:
-  /// keyed: whether the points of the focal surface have keys over time. Throws petzval::Error that names the flag.
+  /// keyed: true if focus points have keys over time. @throws petzval::Error that names the flag
   BlurLens(const LensFlags& flags, int columns, int rows, const renderer::Pose& pose, bool keyed);
 
   const petzval::LayerCamera& layers() const noexcept { return layers_; }
   const std::string& name() const noexcept { return name_; }
-  /// The rays at a moment, s. nearest_mm: depth of the nearest surface.
+  /// The rays at a time (s). nearest_mm: depth of the nearest surface.
   petzval::LensRays rays(double nearest_mm, int threads, double time = 0);
 
  private:
   void load();
   double fov_deg() const;
-  /// supersample: pixels of the film for each one of the picture, in each direction.
+  /// supersample: film pixels per picture pixel in each direction.
   petzval::Camera camera(const std::optional<petzval::FocalSurface>& surface, std::uint32_t supersample) const;
   std::optional<petzval::FocalSurface> surface_at(double time);
 
@@ -61,11 +61,11 @@ class BlurLens {
   renderer::Pose pose_;
   bool keyed_, thin_ = false;
   std::string name_;
-  double focus_depth_mm_ = 0;  ///< distance of the subject in focus from the entrance pupil
-  /// Of thin lenses as well: a thin singlet, whose first-order model it is.
+  double focus_depth_mm_ = 0;  ///< distance of the subject in focus from the entrance pupil, mm
+  /// For a thin lens: a thin singlet with the same first-order model.
   std::optional<petzval::Lens> lens_;
   petzval::Film film_;
-  petzval::Film shown_;  ///< with the pixels of the picture, in which focus points count
+  petzval::Film shown_;  ///< film_ with the pixels of the picture, the unit of focus points
   petzval::BokehControls controls_;
   petzval::LayerCamera layers_;
   std::vector<petzval::FocusPoint> points_;

@@ -54,7 +54,7 @@ renderer::Albedo albedo_of(const renderer::Material& material) {
       material);
 }
 
-/// Noise from 0 to 1, smooth between the points of a lattice that repeats.
+/// Noise from 0 to 1 that is smooth between the points of a repeating lattice.
 class Noise {
  public:
   Noise() {
@@ -77,21 +77,21 @@ class Noise {
   std::array<float, side * side * side> values_;
 };
 
-/// An object, ready to be seen.
+/// An object prepared for tracing.
 struct Body {
-  renderer::Mesh mesh;     ///< in the camera's space: x to the right, y up, z along the axis
-  std::vector<Rgb> light;  ///< that falls on the mesh's corners
+  renderer::Mesh mesh;     ///< in camera space: x to the right, y up, z along the axis
+  std::vector<Rgb> light;  ///< incident light at the mesh vertices
   renderer::Albedo albedo;
   Rgb emission{0, 0, 0};
 };
 
-/// Rays of a packet; directions run one mm along the axis, so that distances are depths.
+/// Rays of a packet. Directions have z = 1 mm, so that ray distances are depths.
 struct alignas(64) Packet {
   RTCRayHit16 rays;
   alignas(64) int valid[packet];
   Rgb colours[packet];
 
-  /// No ray at all. Embree may look at lanes that are not valid: these have ways without a length.
+  /// Fills all lanes with empty segments, because Embree may read invalid lanes.
   Packet() {
     std::fill_n(valid, packet, 0);
     RTCRay16& r = rays.ray;
@@ -127,7 +127,7 @@ struct LitScene::Data {
     const renderer::Pose& pose = description.pose;
     const glm::dvec3 forward = glm::normalize(pose.look_at - pose.position);
     const glm::dvec3 right = glm::normalize(glm::cross(forward, pose.up));
-    if (!(glm::dot(right, right) > 0.5)) throw petzval::Error("scene: the pose has no directions");
+    if (!(glm::dot(right, right) > 0.5)) throw petzval::Error("scene: pose: forward and up must not be parallel");
     turn = glm::mat3(right, glm::cross(right, forward), forward);
     origin = pose.position;
 
@@ -137,7 +137,7 @@ struct LitScene::Data {
     for (const renderer::Object& object : description.objects) {
       Body& body = bodies.emplace_back();
       body.mesh = std::visit([](const auto& shape) { return mesh_of(shape); }, object.shape);
-      if (body.mesh.triangles.empty()) throw petzval::Error("scene: " + object.name + " has no area");
+      if (body.mesh.triangles.empty()) throw petzval::Error("scene: object " + object.name + " has no area");
       body.albedo = albedo_of(object.material), body.emission = object.emission;
       light(body);
       for (glm::vec3& p : body.mesh.positions) p = (p - origin) * turn;
@@ -146,10 +146,10 @@ struct LitScene::Data {
     rtcCommitScene(scene.get());
   }
 
-  /// The light on the corners: from the sky by how far they look up, and from the sun, low behind the camera's left.
+  /// Lights the vertices: from the sky by their inclination, and from the sun, low behind the camera on the left.
   void light(Body& body) const {
     renderer::Mesh& mesh = body.mesh;
-    if (mesh.normals.empty()) {  // flat triangles have corners of their own
+    if (mesh.normals.empty()) {  // flat triangles have their own vertices
       renderer::Mesh flat;
       for (const auto& t : mesh.triangles) {
         const auto first = static_cast<std::uint32_t>(flat.positions.size());
@@ -186,7 +186,7 @@ struct LitScene::Data {
     rtcReleaseGeometry(geometry);
   }
 
-  /// Finds what the rays of a packet meet, and its colour.
+  /// Finds the first surfaces hit by the rays of a packet, and their colours.
   void trace(Packet& p) const {
     RTCIntersectContext context;
     rtcInitIntersectContext(&context);
@@ -218,13 +218,13 @@ LitScene::~LitScene() = default;
 
 namespace {
 
-/// The pixels of a packet: squares of 4 x 4, whose rays are alike.
+/// The pixels of a packet: a square of 4 x 4 pixels, whose rays are coherent.
 struct Square {
   int column = 0, row = 0, columns = 0, rows = 0;
 
   int column_of(int lane) const { return column + lane % side; }
   int row_of(int lane) const { return row + lane / side; }
-  /// Squares at the right and lower edges are smaller.
+  /// False for lanes outside the picture: squares at the right and lower edges are smaller.
   bool has(int lane) const { return lane % side < columns && lane / side < rows; }
 
   static constexpr int side = 4;
@@ -302,7 +302,7 @@ petzval::RgbImage LitScene::reference(const petzval::LensRays& rays, int threads
   const auto focal = static_cast<float>(camera.focal_px);
   const auto axis = glm::vec2(camera.axis);
 
-  // Rays that all pixels of a set share are worked out once, as a renderer with an accumulation buffer does.
+  // Rays shared by all pixels of a set are computed once, like in a renderer with an accumulation buffer.
   const bool same = rays.shift_invariant() && rays.channels() == 1;
   const int side = rays.sets() == 16 ? 4 : rays.sets() == 4 ? 2 : 1;
   std::vector<petzval::LayerRay> shared(same ? count * static_cast<std::size_t>(rays.sets()) : 0);

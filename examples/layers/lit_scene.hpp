@@ -10,31 +10,32 @@
 #include "petzval/image/image.hpp"
 #include "renderer/scene_description.hpp"
 
-/// Scenes for the lens blur: what a real-time renderer shows of them, as layers and as a reference.
+/// Scenes for the lens blur, as layers and as a reference, with the shading of a real-time renderer.
 namespace lens_blur {
 
-/// A scene whose surfaces look alike from all sides, as those of layers do: albedo with a little noise, times the light
-/// of the sky and of a low sun without shadows, and what lamps emit. Mirrors and glass have a plain colour.
+/// A scene whose surfaces look the same from all directions, like surfaces of layers: albedo with a little noise, times
+/// the light of the sky and of a low sun without shadows, plus the emission of lamps. Mirrors and glass have a plain
+/// colour.
 ///
-/// Its space is that of a LayerCamera in the scene's pose. Embree traces packets of 16 rays.
+/// The scene is in the space of a LayerCamera in the scene's pose. Embree traces packets of 16 rays.
 class LitScene {
  public:
-  /// Throws petzval::Error for an object without area, and a pose without directions.
+  /// @throws petzval::Error if an object has no area or the pose has parallel directions
   explicit LitScene(const renderer::SceneDescription& description);
   ~LitScene();
   LitScene(const LitScene&) = delete;
   LitScene& operator=(const LitScene&) = delete;
 
-  /// Moves the camera from its pose: to the right, up and ahead, mm.
+  /// Moves the camera from its pose by x to the right, y up and z ahead, mm.
   void move_to(const glm::vec3& place) noexcept { eye_ = place; }
 
-  /// Depth of the nearest thing that a camera sees through the centres of its pixels, mm; infinity for sky alone.
+  /// Depth of the nearest surface seen through the pixel centres of a camera, mm; infinite if only sky is seen.
   double nearest_mm(const petzval::LayerCamera& camera, int threads) const;
 
-  /// The layers of a camera, for LayerSet::peel: a ray through the centre of each pixel, from the last surface on.
+  /// The layers of a camera, for LayerSet::peel: a ray through the centre of each pixel, starting at the last surface.
   petzval::LayerSet::Peel peel(const petzval::LayerCamera& camera, int threads) const;
 
-  /// The picture of rays through the scene itself: all of each pixel, traced through its triangles.
+  /// The reference picture: all rays of each pixel, traced through the triangles of the scene.
   petzval::RgbImage reference(const petzval::LensRays& rays, int threads) const;
 
  private:

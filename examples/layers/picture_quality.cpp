@@ -17,7 +17,7 @@ namespace {
 
 using std::numbers::pi;
 
-/// One number for each pixel.
+/// One value for each pixel.
 struct Plane {
   int width = 0, height = 0;
   std::vector<double> values;
@@ -25,9 +25,9 @@ struct Plane {
   Plane(int w, int h) : width(w), height(h), values(static_cast<std::size_t>(w) * static_cast<std::size_t>(h)) {}
 };
 
-using Kernel = std::vector<double>;  // odd, its middle at 0
+using Kernel = std::vector<double>;  // odd size, centred at 0
 
-/// The convolution with across(x) down(y); edges are repeated.
+/// The convolution with across(x) down(y); pixels at the edges are repeated.
 Plane convolved(const Plane& plane, const Kernel& across, const Kernel& down) {
   const auto along = [](const Plane& from, const Kernel& kernel, bool rows) {
     Plane to(from.width, from.height);
@@ -49,7 +49,7 @@ Plane convolved(const Plane& plane, const Kernel& across, const Kernel& down) {
   return along(along(plane, across, true), down, false);
 }
 
-/// f(x) at whole numbers up to a distance.
+/// f(x) at whole numbers from -reach to reach.
 template <class F>
 Kernel kernel(int reach, const F& f) {
   Kernel result;
@@ -65,8 +65,8 @@ Kernel normalised(Kernel k) {
 
 void check(const petzval::RgbImage& a, const petzval::RgbImage& b) {
   if (a.width == b.width && a.height == b.height) return;
-  throw petzval::Error("compare: pictures of " + std::to_string(a.width) + " x " + std::to_string(a.height) + " and " +
-                       std::to_string(b.width) + " x " + std::to_string(b.height) + ", wanted one size");
+  throw petzval::Error("compare: sizes = " + std::to_string(a.width) + " x " + std::to_string(a.height) + " and " +
+                       std::to_string(b.width) + " x " + std::to_string(b.height) + "; must be equal");
 }
 
 glm::dvec3 clipped(const petzval::RgbImage& image, std::size_t pixel) {
@@ -102,7 +102,7 @@ Plane ssim_map(const petzval::RgbImage& picture, const petzval::RgbImage& refere
   return map;
 }
 
-// FLIP's spaces: linear RGB to XYZ of D65, relative to white. By rows, which GLM takes as columns.
+// Colour spaces of FLIP: linear RGB to XYZ of D65, relative to white. Listed by rows; GLM takes columns.
 const glm::dmat3 to_xyz =
     glm::transpose(glm::dmat3(10135552.0 / 24577794, 8788810.0 / 24577794, 4435075.0 / 24577794,    // X
                               2613072.0 / 12288897, 8788810.0 / 12288897, 887015.0 / 12288897,      // Y
@@ -118,7 +118,7 @@ glm::dvec3 from_opponent(const glm::dvec3& yc) {
   const double y = (yc.x + 16) / 116;
   return to_rgb * (glm::dvec3(y + yc.y / 500, y, y - yc.z / 200) * white);
 }
-/// L*a*b*, its colours less strong in the dark.
+/// L*a*b* with colours weakened in the dark (Hunt effect).
 glm::dvec3 hunt_lab(const glm::dvec3& rgb) {
   const auto f = [](double t) {
     constexpr double limit = 6.0 / 29;
@@ -135,7 +135,7 @@ double hyab(const glm::dvec3& a, const glm::dvec3& b) {
 
 constexpr double pixels_per_degree = 67;
 
-/// A picture as the contrast sensitivity of the eye lets it through, in perceptual colours.
+/// The picture filtered by the contrast sensitivity of the eye, in perceptual colours.
 std::vector<glm::dvec3> seen(const petzval::RgbImage& image) {
   struct Gauss {
     double a, b;
@@ -148,8 +148,8 @@ std::vector<glm::dvec3> seen(const petzval::RgbImage& image) {
     Plane plane(image.width, image.height);
     for (std::size_t i = 0; i < pixels; ++i) plane.values[i] = opponent(clipped(image, i))[c];
     const int reach = static_cast<int>(std::ceil(3 * std::sqrt(0.04 / (2 * pi * pi)) * pixels_per_degree));
-    // Sums of Gaussians: each is separable, and weighs its part of the whole sum. Its height is that of the paper,
-    // sqrt(pi / b) also over two dimensions.
+    // Sums of separable Gaussians, each weighted by its part of the total. The height sqrt(pi / b) is the paper's, also
+    // in two dimensions.
     double whole = 0;
     std::array<double, 2> parts{};
     std::array<Kernel, 2> kernels;
@@ -173,7 +173,7 @@ std::vector<glm::dvec3> seen(const petzval::RgbImage& image) {
   return result;
 }
 
-/// How strong edges and points are.
+/// Strength of edges and points.
 struct Features {
   Plane edges, points;
 };
@@ -184,7 +184,7 @@ Features features(const petzval::RgbImage& image) {
   const int reach = static_cast<int>(std::ceil(3 * deviation));
   const auto gauss = [&](double x) { return std::exp(-x * x / (2 * deviation * deviation)); };
   const Kernel smooth = normalised(kernel(reach, gauss));
-  const auto balanced = [](Kernel k) {  // rises by 1 and falls by 1
+  const auto balanced = [](Kernel k) {  // positive values sum to 1, negative values to -1
     double up = 0, down = 0;
     for (const double v : k) (v > 0 ? up : down) += v;
     for (double& v : k) v /= v > 0 ? up : -down;

@@ -9,25 +9,27 @@
 
 namespace lens_blur {
 
-/// How alike two pictures are, linear and clipped to 0 to 1.
+/// Similarity of two pictures, linear and clipped to 0 to 1.
 struct Likeness {
-  double psnr_db = 0;  ///< infinity where they are the same
-  double ssim = 0;     ///< mean structural similarity of luma. Source: Wang et al. 2004, with their 11 x 11 window
+  double psnr_db = 0;  ///< infinite for equal pictures
+  double ssim = 0;     ///< mean structural similarity of luma, 11 x 11 window. Source: Wang et al. 2004
 };
 
-/// Over pixels where `mask` is not 0, or all without a mask. Throws petzval::Error for pictures of different sizes.
+/// The likeness over pixels where `mask` is not 0, or over all pixels if `mask` is empty.
+///
+/// @throws petzval::Error if the sizes of the pictures differ
 Likeness likeness(const petzval::RgbImage& picture, const petzval::RgbImage& reference,
                   const std::vector<unsigned char>& mask = {});
 
-/// What an observer sees who flips between two pictures, from 0 to 1 per pixel, at 67 pixels per degree. Source:
-/// Andersson et al. 2020, "FLIP: a difference evaluator for alternating images".
+/// Differences visible to an observer who flips between two pictures, from 0 to 1 per pixel, at 67 pixels per degree.
+/// Source: Andersson et al. 2020, "FLIP: a difference evaluator for alternating images".
 std::vector<float> flip(const petzval::RgbImage& picture, const petzval::RgbImage& reference);
 
-/// The light of a picture over that of another, less 1.
+/// Relative difference of the total light: picture / reference - 1.
 double energy_drift(const petzval::RgbImage& picture, const petzval::RgbImage& reference);
 
-/// The pixels of a picture that lie within one circle of confusion of an edge of depth in the first layer: where a
-/// neighbour's inverse depth differs by more than rays can follow. 0 or 1, row by row.
+/// Mask (0 or 1, row by row) of the pixels within one circle of confusion of a depth edge in the first layer. A depth
+/// edge is a step of inverse depth between neighbours that is larger than rays can follow.
 std::vector<unsigned char> near_depth_edges(const petzval::LayerSet& layers, const petzval::LensRays& rays);
 
 }  // namespace lens_blur
