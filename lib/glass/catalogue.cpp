@@ -38,7 +38,7 @@ void sort_by_name(std::vector<Glass>& glasses) {
                    [](const Glass& a, const Glass& b) { return comes_before(a.name, b.name); });
 }
 
-/// Of glasses sorted by name, those of that name.
+/// The glasses of a name, in a list sorted by name.
 std::span<const Glass> named(std::span<const Glass> glasses, std::string_view name) noexcept {
   const auto first = std::lower_bound(glasses.begin(), glasses.end(), name, [](const Glass& glass, std::string_view n) {
     return comes_before(glass.name, n);
@@ -47,7 +47,7 @@ std::span<const Glass> named(std::span<const Glass> glasses, std::string_view na
   return {first, last};
 }
 
-/// Of the glasses of that name, the one with the nearest n_d; nullptr if none is within `most` of it.
+/// The glass of a name with the nearest n_d; nullptr if no n_d is within `most`.
 const Glass* nearest_named(std::span<const Glass> glasses, std::string_view name, double nd, double most) noexcept {
   const auto candidates = named(glasses, name);
   const auto nearest = std::min_element(candidates.begin(), candidates.end(), [nd](const Glass& a, const Glass& b) {
@@ -58,7 +58,7 @@ const Glass* nearest_named(std::span<const Glass> glasses, std::string_view name
 
 #if defined(_WIN32)
 
-/// Of the files in a folder.
+/// Names of the files in a folder.
 std::vector<std::string> names_in(const std::filesystem::path& directory) {
   std::vector<std::string> names;
   std::error_code failed;
@@ -66,7 +66,7 @@ std::vector<std::string> names_in(const std::filesystem::path& directory) {
        entry.increment(failed)) {
     names.push_back(entry->path().filename().string());
   }
-  if (failed) throw Error(directory.string() + ": " + failed.message() + ", wanted a folder of glass tables");
+  if (failed) throw Error(directory.string() + ": " + failed.message() + "; must be a folder of glass tables");
   return names;
 }
 
@@ -76,7 +76,8 @@ struct CloseFolder {
   void operator()(DIR* folder) const noexcept { ::closedir(folder); }
 };
 
-/// Of the files in a folder. std::filesystem::directory_iterator would end the program where memory ends (libstdc++).
+/// Names of the files in a folder. Without std::filesystem::directory_iterator, which terminates the program if memory
+/// runs out (libstdc++).
 std::vector<std::string> names_in(const std::filesystem::path& directory) {
   const std::unique_ptr<DIR, CloseFolder> folder(::opendir(directory.c_str()));
   std::vector<std::string> names;
@@ -88,7 +89,7 @@ std::vector<std::string> names_in(const std::filesystem::path& directory) {
   }
   if (errno != 0) {
     throw Error(directory.string() + ": " + std::generic_category().message(errno) +
-                ", wanted a folder of glass tables");
+                "; must be a folder of glass tables");
   }
   return names;
 }
@@ -104,7 +105,7 @@ GlassCatalogue GlassCatalogue::load(const std::filesystem::path& directory) {
   for (const std::string& name : names_in(directory)) {
     if (name.starts_with("glass_") && name.ends_with(".csv")) files.push_back(directory / name);
   }
-  if (files.empty()) throw Error(directory.string() + ": no file glass_*.csv, wanted at least one");
+  if (files.empty()) throw Error(directory.string() + ": no file glass_*.csv; must contain at least one");
   std::sort(files.begin(), files.end());
   std::vector<Glass> glasses;
   for (const auto& file : files) {
@@ -171,7 +172,7 @@ GlassCatalogue with_glasses(const GlassCatalogue& catalogue, std::vector<Glass> 
 std::vector<const Glass*> nearest_glasses(const GlassCatalogue& catalogue, double nd, std::optional<double> vd,
                                           std::size_t count) {
   if (!std::isfinite(nd) || !std::isfinite(vd.value_or(0))) {
-    throw Error("glasses near n_d " + to_text(nd) + ", V_d " + to_text(vd.value_or(0)) + ": wanted finite numbers");
+    throw Error("nearest_glasses: n_d, V_d = " + to_text(nd) + ", " + to_text(vd.value_or(0)) + "; must be finite");
   }
   const auto distance = [&](const Glass& glass) {
     return std::hypot((glass.nd - nd) / 0.001, vd ? (glass.vd - *vd) / 0.5 : 0.0);
@@ -180,7 +181,7 @@ std::vector<const Glass*> nearest_glasses(const GlassCatalogue& catalogue, doubl
   by_distance.reserve(catalogue.glasses().size());
   for (const Glass& glass : catalogue.glasses()) by_distance.emplace_back(distance(glass), &glass);
   const auto last = by_distance.begin() + static_cast<std::ptrdiff_t>(std::min(count, by_distance.size()));
-  std::partial_sort(by_distance.begin(), last, by_distance.end());  // of equal ones the first of the catalogue
+  std::partial_sort(by_distance.begin(), last, by_distance.end());  // ties: the first of the catalogue
   std::vector<const Glass*> result;
   std::transform(by_distance.begin(), last, std::back_inserter(result), [](const auto& entry) { return entry.second; });
   return result;

@@ -5,7 +5,7 @@
 
 namespace petzval::glass_detail {
 
-/// Rank of a catalogue, the lowest first: 0 for catalogues of today, 1 for "-legacy", 2 for "-1983".
+/// Rank of a catalogue, lowest first: 0 for current catalogues, 1 for "-legacy", 2 for "-1983".
 constexpr int age(std::string_view catalogue) noexcept {
   return catalogue.ends_with("-1983") ? 2 : catalogue.ends_with("-legacy") ? 1 : 0;
 }

@@ -14,15 +14,15 @@
 namespace petzval {
 namespace {
 
-const char anchor = 0;  ///< An address in the file this code was loaded from.
+const char anchor = 0;  ///< an address in the file from which this code was loaded
 
-/// The name of that file, as the system tells it.
+/// The name of this file as reported by the system.
 #if defined(_WIN32)
 std::filesystem::path loaded_from() {
   HMODULE module = nullptr;
   GetModuleHandleExW(GET_MODULE_HANDLE_EX_FLAG_FROM_ADDRESS | GET_MODULE_HANDLE_EX_FLAG_UNCHANGED_REFCOUNT,
                      reinterpret_cast<LPCWSTR>(&anchor), &module);
-  std::array<wchar_t, 32768> name{};  // the longest path that Windows has
+  std::array<wchar_t, 32768> name{};  // the longest path in Windows
   return std::wstring(name.data(), GetModuleFileNameW(module, name.data(), static_cast<DWORD>(name.size())));
 }
 #else
@@ -37,14 +37,14 @@ std::filesystem::path loaded_from() {
 }
 #endif
 
-/// The shared library, or the program it was linked into.
+/// The shared library, or the program into which this code was linked.
 std::filesystem::path own_module() {
   const std::filesystem::path name = loaded_from();
   std::error_code failed;
   const auto file = std::filesystem::canonical(name, failed);
   if (failed) {
     throw Error("data directory: " + name.string() + ": " + failed.message() +
-                ", wanted the file of the loaded library");
+                "; must be the file of the loaded library");
   }
   return file;
 }
@@ -60,8 +60,8 @@ std::filesystem::path data_directory() {
     std::error_code missing;
     if (std::filesystem::is_directory(candidate / "glass", missing)) return candidate;
   }
-  throw Error("data directory: none of the " + std::to_string(levels) + " folders above " + module.string() +
-              " holds share/petzval/glass, wanted the data beside the library");
+  throw Error("data directory: the " + std::to_string(levels) + " folders above " + module.string() +
+              " lack share/petzval/glass; must be installed in one of them");
 }
 
 }  // namespace petzval

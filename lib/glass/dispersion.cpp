@@ -15,7 +15,7 @@
 namespace petzval {
 namespace {
 
-// The ends of a range belong to it; converting micrometres to nanometres rounds them.
+// Tolerance for the ends of a range, which converting micrometres to nanometres rounds.
 constexpr double edge_nm = 1e-6;
 
 constexpr std::array<std::pair<std::string_view, double>, 14> lines = {{
@@ -37,11 +37,11 @@ constexpr std::array<std::pair<std::string_view, double>, 14> lines = {{
 
 void check_wavelength(const std::string& where, double nm, double shortest, double longest) {
   if (nm >= shortest - edge_nm && nm <= longest + edge_nm) return;
-  throw Error(where + ": wavelength is " + to_text(nm) + " nm, wanted " + to_text(shortest, 7) + " to " +
+  throw Error(where + ": wavelength = " + to_text(nm) + " nm; must be " + to_text(shortest, 7) + " to " +
               to_text(longest, 7) + " nm");
 }
 
-/// first + the sum over pairs of the first number times `shape` of the second.
+/// first + the sum over pairs of (first number) * shape(second number).
 template <class Shape>
 double sum(std::span<const double> c, double first, Shape shape) {
   double total = first;
@@ -49,7 +49,7 @@ double sum(std::span<const double> c, double first, Shape shape) {
   return total;
 }
 
-/// One point of a table of indices, over x = 1 / l^2: there n of a glass is nearly a line.
+/// One point of a table of indices, over x = 1 / l^2, in which n of a glass is nearly linear.
 struct TablePoint {
   double x, n;
 };
@@ -65,7 +65,7 @@ double slope_between(const TablePoint& before, const TablePoint& at, const Table
   return left * right / (part * right + (1 - part) * left);
 }
 
-/// The index at wavelength l (micrometres) of a table l0, n0, l1, n1, ...
+/// The index at wavelength l (micrometres) from a table l0, n0, l1, n1, ...
 double interpolated(std::span<const double> table, double l) {
   const std::size_t count = table.size() / 2;
   const auto point = [&](std::size_t i) { return TablePoint{1 / (table[2 * i] * table[2 * i]), table[2 * i + 1]}; };
@@ -90,7 +90,7 @@ double refractive_index(const Glass& glass, double wavelength_nm) {
   const std::span<const double> c = glass.coefficients;
   const auto& form = glass_detail::form_of(glass.formula);
   if (!form.takes(c.size())) {
-    throw Error(where + ": formula has " + std::to_string(c.size()) + " coefficients, wanted " +
+    throw Error(where + ": formula has " + std::to_string(c.size()) + " coefficients; must be " +
                 std::string(form.wanted));
   }
 
@@ -130,18 +130,16 @@ double refractive_index(const Glass& glass, double wavelength_nm) {
   }
   // Near a pole the formula gives no physical index.
   if (!(n2 > 1e-6 && std::isfinite(n2))) {
-    throw Error(where + ": square of the index at " + to_text(wavelength_nm) + " nm is " + to_text(n2) +
-                ", wanted above 1e-6");
+    throw Error(where + ": square of the index at " + to_text(wavelength_nm) + " nm = " + to_text(n2) +
+                "; must be above 1e-6");
   }
   return n > 0 ? n : std::sqrt(n2);
 }
 
 double abbe_index(double nd, double vd, double wavelength_nm) {
   const std::string where = "n_d " + to_text(nd) + ", V_d " + to_text(vd);
-  if (!(nd > 0 && std::isfinite(nd)))
-    throw Error(where + ": n_d is " + to_text(nd) + ", wanted a finite number above 0");
-  if (!(vd > 0 && std::isfinite(vd)))
-    throw Error(where + ": V_d is " + to_text(vd) + ", wanted a finite number above 0");
+  if (!(nd > 0 && std::isfinite(nd))) throw Error(where + ": n_d = " + to_text(nd) + "; must be finite and positive");
+  if (!(vd > 0 && std::isfinite(vd))) throw Error(where + ": V_d = " + to_text(vd) + "; must be finite and positive");
   check_wavelength(where, wavelength_nm, 365, 1014);
   const auto inverse_square = [](double nm) { return 1 / (nm * nm); };
   const double f_minus_c = inverse_square(spectral_line_nm("F")) - inverse_square(spectral_line_nm("C"));
@@ -154,7 +152,7 @@ double spectral_line_nm(std::string_view symbol) {
   if (line != lines.end()) return line->second;
   std::string known;
   for (const auto& entry : lines) known += (known.empty() ? "" : " ") + std::string(entry.first);
-  throw Error("spectral line \"" + std::string(symbol) + "\" is unknown, wanted one of " + known);
+  throw Error("spectral line \"" + std::string(symbol) + "\" is unknown; must be in: " + known);
 }
 
 }  // namespace petzval

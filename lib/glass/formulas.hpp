@@ -9,11 +9,11 @@
 
 namespace petzval::glass_detail {
 
-/// How tables write a formula, and how many coefficients it has: `first`, then any number of terms of `each`.
+/// Name of a formula in tables and its number of coefficients: `first`, then any number of terms of `each`.
 struct FormulaForm {
   DispersionFormula formula;
   std::string_view name;
-  std::size_t first, each;  ///< each: 0: no terms
+  std::size_t first, each;  ///< each: 0 if the formula has no terms
   std::string_view wanted;  ///< the coefficients, for messages
 
   constexpr bool takes(std::size_t count) const noexcept {

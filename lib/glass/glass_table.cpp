@@ -29,12 +29,12 @@ double parse_number(std::string_view text, const std::string& where, const char*
   double value = 0;
   const auto [end, status] = std::from_chars(text.data(), text.data() + text.size(), value);
   if (status != std::errc() || end != text.data() + text.size() || !std::isfinite(value)) {
-    throw Error(where + ": " + what + " is \"" + std::string(text) + "\", wanted a finite number");
+    throw Error(where + ": " + what + " = \"" + std::string(text) + "\"; must be a finite number");
   }
   return value;
 }
 
-/// Do the wavelengths of a table increase, and cover the range of the glass?
+/// True if the wavelengths of a table increase and cover the range of the glass.
 bool covers(const Glass& glass) {
   const auto& c = glass.coefficients;
   for (std::size_t i = 2; i < c.size(); i += 2) {
@@ -46,13 +46,13 @@ bool covers(const Glass& glass) {
 Glass parse_glass(std::string_view line, const std::string& where) {
   const auto cells = split(line, ',');
   if (cells.size() != columns) {
-    throw Error(where + ": " + std::to_string(cells.size()) + " columns, wanted " + std::to_string(columns) + ": " +
+    throw Error(where + ": " + std::to_string(cells.size()) + " columns; must be " + std::to_string(columns) + ": " +
                 std::string(glass_table_header));
   }
   Glass glass;
   glass.catalogue = cells[0];
   glass.name = cells[1];
-  if (glass.catalogue.empty() || glass.name.empty()) throw Error(where + ": catalogue or name is empty, wanted both");
+  if (glass.catalogue.empty() || glass.name.empty()) throw Error(where + ": catalogue or name is empty; must not be");
   glass.nd = parse_number(cells[2], where, "nd");
   glass.vd = parse_number(cells[3], where, "vd");
   const auto form = std::find_if(formula_forms.begin(), formula_forms.end(),
@@ -60,7 +60,7 @@ Glass parse_glass(std::string_view line, const std::string& where) {
   if (form == formula_forms.end()) {
     std::string known;
     for (const FormulaForm& f : formula_forms) known += (known.empty() ? "" : ", ") + std::string(f.name);
-    throw Error(where + ": formula is \"" + std::string(cells[4]) + "\", wanted one of " + known);
+    throw Error(where + ": formula = \"" + std::string(cells[4]) + "\"; must be in: " + known);
   }
   glass.formula = form->formula;
   glass.shortest_nm = parse_number(cells[5], where, "wl_min_um") * 1000;
@@ -69,14 +69,14 @@ Glass parse_glass(std::string_view line, const std::string& where) {
 
   const auto count = glass.coefficients.size();
   if (!form->takes(count)) {
-    throw Error(where + ": " + std::to_string(count) + " coefficients, wanted " + std::string(form->wanted));
+    throw Error(where + ": " + std::to_string(count) + " coefficients; must be " + std::string(form->wanted));
   }
   if (glass.formula == DispersionFormula::tabulated && !covers(glass)) {
-    throw Error(where + ": wanted wavelengths that increase from wl_min_um or less to wl_max_um or more");
+    throw Error(where + ": wavelengths of the table must increase and cover wl_min_um to wl_max_um");
   }
   if (!(glass.shortest_nm > 0 && glass.shortest_nm < glass.longest_nm)) {
-    throw Error(where + ": range is " + std::string(cells[5]) + " to " + std::string(cells[6]) +
-                " um, wanted two increasing positive numbers");
+    throw Error(where + ": range wl_min_um, wl_max_um = " + std::string(cells[5]) + ", " + std::string(cells[6]) +
+                "; must be positive and increasing");
   }
   return glass;
 }
@@ -91,7 +91,7 @@ void read_glass_table(std::istream& stream, const std::string& where, std::vecto
     if (count > 1) {
       glasses.push_back(parse_glass(line, here));
     } else if (line != glass_table_header) {
-      throw Error(here + ": header is \"" + line.substr(0, 100) + "\", wanted " + std::string(glass_table_header));
+      throw Error(here + ": header = \"" + line.substr(0, 100) + "\"; must be " + std::string(glass_table_header));
     }
   }
   if (stream.bad()) throw Error(where + ": cannot be read to its end");

@@ -14,7 +14,7 @@ namespace {
 constexpr bool is_separator(char c) noexcept { return c == '-' || c == ' ' || c == '_'; }
 constexpr char lower(char c) noexcept { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; }
 
-/// The least number of letters to insert, remove or replace (Levenshtein); `most` + 1 if it exceeds `most`.
+/// Number of letters to insert, remove or replace (Levenshtein distance); `most` + 1 if it exceeds `most`.
 std::size_t changes(std::string_view a, std::string_view b, std::size_t most) {
   if (std::max(a.size(), b.size()) - std::min(a.size(), b.size()) > most) return most + 1;
   std::vector<std::size_t> row(b.size() + 1);

@@ -14,15 +14,15 @@ using Configurations = std::vector<Configuration>;
 
 std::string name_of(const Prescription& p) { return p.name.empty() ? std::string("lens") : p.name; }
 
-/// 1, 2.5: the number itself; a name: where it stands in the list.
+/// The number of a configuration choice (1, 2.5), or the index of its name.
 double place_of(const Prescription& p, const ConfigurationChoice& choice) {
   const std::size_t count = std::max<std::size_t>(p.configurations.size(), 1);
   const auto refuse = [&](const std::string& found) -> Error {
     std::string names;
     for (const Configuration& c : p.configurations) names += (names.empty() ? "" : ", ") + c.name;
     return Error(
-        name_of(p) + ": configuration " + found + " does not exist, wanted " +
-        (names.empty() ? "0, as the lens has one only" : "0 to " + std::to_string(count - 1) + " or one of " + names));
+        name_of(p) + ": configuration " + found + " does not exist; must be " +
+        (names.empty() ? "0, the only configuration" : "0 to " + std::to_string(count - 1) + " or in: " + names));
   };
   if (const double* number = std::get_if<double>(&choice.value())) {
     if (!(*number >= 0 && *number <= static_cast<double>(count - 1))) throw refuse(to_text(*number));
@@ -34,7 +34,7 @@ double place_of(const Prescription& p, const ConfigurationChoice& choice) {
   return static_cast<double>(found - p.configurations.begin());
 }
 
-/// Copies everything but the configurations: a copy of all of them for each one would take quadratic time.
+/// Copies everything except the configurations: copying all of them for each configuration would take quadratic time.
 Prescription without_configurations(const Prescription& p) {
   // A new member does not compile until it is named here.
   const auto& [id, name, source_design, source_numbers, focal_length_mm, f_number, half_field_deg, image_diagonal_mm,
@@ -76,7 +76,7 @@ void apply(const Configuration& configuration, Prescription& p) {
   if (configuration.image_diagonal_mm) p.image_diagonal_mm = configuration.image_diagonal_mm;
 }
 
-/// The rows in one position of the list, without the list.
+/// The prescription in one configuration of the list, without the list.
 Prescription rows_at(const Prescription& p, std::size_t number) {
   Prescription result = without_configurations(p);
   if (!p.configurations.empty()) apply(p.configurations[number], result);
@@ -88,7 +88,8 @@ std::optional<double> between(const std::optional<double>& a, const std::optiona
   return std::lerp(*a, *b, t);
 }
 
-/// The curvature is linear where one of them is a plane, as a radius would pass through 0.
+/// Interpolates the radius, or the curvature if one surface is a plane or the signs differ: a radius would pass through
+/// 0.
 double radius_between(double a, double b, double t) {
   if (a != 0 && b != 0 && (a > 0) == (b > 0)) return std::lerp(a, b, t);
   const double curvature = std::lerp(a == 0 ? 0 : 1 / a, b == 0 ? 0 : 1 / b, t);
@@ -106,7 +107,7 @@ Prescription between(const Prescription& a, const Prescription& b, double t, con
     SurfaceRow& row = result.surfaces[i];
     if (from.medium != to.medium || from.stop != to.stop) {
       throw Error(where + ": surface " + std::to_string(i) +
-                  ": its medium or the stop changes, wanted a position of the list");
+                  ": medium or stop changes; must be a configuration of the list");
     }
     row.thickness = std::lerp(from.thickness, to.thickness, t);
     row.radius = radius_between(from.radius, to.radius, t);
@@ -120,7 +121,7 @@ Prescription between(const Prescription& a, const Prescription& b, double t, con
   return result;
 }
 
-/// What `to` changes on the rows of `from`, under the name and the distance of another configuration.
+/// The changes from the rows of `from` to the rows of `to`, with the name and the distance of `named`.
 Configuration difference(const Prescription& from, const Prescription& to, Configuration named) {
   named.changes.clear();
   named.stop.reset();
@@ -138,7 +139,7 @@ Configuration difference(const Prescription& from, const Prescription& to, Confi
   return named;
 }
 
-/// The positions that focus one, in the order of the list.
+/// The configurations that focus a zoom position, in the order of the list.
 std::vector<std::size_t> focusing(const Prescription& p, std::size_t number) {
   std::vector<std::size_t> result;
   for (std::size_t i = 0; i < p.configurations.size(); ++i) {
@@ -177,7 +178,7 @@ Prescription configured(const Prescription& p, const ConfigurationChoice& choice
   const std::string where = name_of(p) + ": configuration " + to_text(place);
   if (first.focus_of || second.focus_of) {
     throw Error(where + " lies between \"" + first.name + "\" and \"" + second.name +
-                "\", of which one focuses another, wanted two zoom positions");
+                "\"; must lie between two zoom positions");
   }
   result = between(result, rows_at(p, number + 1), t, where);
   result.configurations = {{.name = first.name + " to " + second.name}};

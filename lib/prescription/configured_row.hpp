@@ -6,7 +6,7 @@
 
 namespace petzval::prescription_detail {
 
-/// Makes a configuration's change of a surface.
+/// Applies a configuration's change of a surface.
 inline void apply(const SurfaceChange& change, SurfaceRow& row) {
   row.thickness = change.thickness.value_or(row.thickness);
   row.radius = change.radius.value_or(row.radius);

@@ -13,12 +13,13 @@ namespace {
 
 std::string name_of(const Prescription& p) { return p.name.empty() ? std::string("lens") : p.name; }
 
-/// value * factor. Refuses a product outside the normal range of double: a radius that became 0 would be a plane.
+/// value * factor.
+/// @throws Error if the product is outside the normal range of double: a radius that became 0 would be a plane
 double times(double value, double factor, const std::string& where) {
   const double product = value * factor;
   if (value == 0 || !std::isfinite(value) || std::isnormal(product)) return product;
-  throw Error(where + ": " + to_text(value) + " scaled by " + to_text(factor) + " is " + to_text(product) +
-              ", wanted a number in the normal range of double");
+  throw Error(where + ": " + to_text(value) + " scaled by " + to_text(factor) + " = " + to_text(product) +
+              "; must be in the normal range of double");
 }
 
 void enlarge(std::optional<double>& length, double factor, const std::string& where) {
@@ -55,7 +56,7 @@ Prescription scale(const Prescription& prescription, double factor) {
   Prescription p = prescription;
   const std::string where = name_of(p);
   if (!(factor > 0 && std::isfinite(factor))) {
-    throw Error(where + ": scale factor is " + to_text(factor) + ", wanted a finite number above 0");
+    throw Error(where + ": scale factor = " + to_text(factor) + "; must be finite and positive");
   }
   enlarge(p.focal_length_mm, factor, where);
   enlarge(p.image_diagonal_mm, factor, where);
@@ -75,11 +76,12 @@ Prescription scale(const Prescription& prescription, double factor) {
 
 Prescription reverse(const Prescription& prescription) {
   Prescription p = prescription;
-  if (p.surfaces.empty()) throw Error(name_of(p) + ": no surfaces to reverse, wanted at least one");
+  if (p.surfaces.empty()) throw Error(name_of(p) + ": no surfaces; must be at least one to reverse");
 
-  // Light must enter towards +z. With an even number of mirrors it left the lens towards +z, so the reversed lens is a
-  // mirror image in z: sags change sign, thicknesses keep theirs (the ends of each are exchanged and mirrored). With an
-  // odd number it left towards -z and the way back runs towards +z: sags stay, thicknesses change sign.
+  // Light must enter towards +z. With an even number of mirrors it leaves the lens towards +z, so that the reversed
+  // lens is a mirror image in z: sags change sign, thicknesses keep theirs (the ends of each are exchanged and
+  // mirrored). With an odd number it leaves towards -z and the reversed light travels towards +z: sags stay,
+  // thicknesses change sign.
   const auto mirrors =
       std::count_if(p.surfaces.begin(), p.surfaces.end(), [](const SurfaceRow& row) { return row.mirror; });
   const bool turned = mirrors % 2 == 0;
@@ -112,7 +114,7 @@ Prescription reverse(const Prescription& prescription) {
     if (c.stop) c.stop = last - *c.stop;
     std::map<int, SurfaceChange> changes;
     for (const SurfaceChange& old : c.changes) {
-      // What lies behind a surface lies behind the one before it in the reversed lens.
+      // The space behind a surface is the space behind the previous surface of the reversed lens.
       if (old.surface < last && (old.thickness || old.medium)) {
         SurfaceChange& gap = changes[last - 1 - old.surface];
         gap.medium = old.medium;

@@ -21,7 +21,7 @@ constexpr std::size_t most_surfaces = 10'000;
 constexpr std::size_t most_configurations = 1'000;
 
 [[noreturn]] void refuse(const std::string& where, const std::string& what, double found, const std::string& wanted) {
-  throw Error(where + ": " + what + " is " + to_text(found) + ", wanted " + wanted);
+  throw Error(where + ": " + what + " = " + to_text(found) + "; must be " + wanted);
 }
 
 void check_finite(const std::string& where, const char* what, double value, const std::string& wanted) {
@@ -29,11 +29,11 @@ void check_finite(const std::string& where, const char* what, double value, cons
 }
 
 void check_nominal(const std::string& where, const char* what, const std::optional<double>& value) {
-  if (value) check_finite(where, what, *value, "a finite number or no value");
+  if (value) check_finite(where, what, *value, "finite or absent");
 }
 
 void check_medium(const std::string& where, const Medium& medium) {
-  if (medium.nd && !(*medium.nd >= 0.1 && *medium.nd <= 5)) refuse(where, "nd", *medium.nd, "an index of 0.1 to 5");
+  if (medium.nd && !(*medium.nd >= 0.1 && *medium.nd <= 5)) refuse(where, "nd", *medium.nd, "0.1 to 5");
   if (medium.vd && !medium.nd && !medium.glass) {
     throw Error(where + ": vd = " + to_text(*medium.vd) + " without nd; must be given with nd or a glass");
   }
@@ -43,7 +43,7 @@ void check_medium(const std::string& where, const Medium& medium) {
   }
 }
 
-/// For messages: "nd 1.5168", "glass N-BK7".
+/// Text for messages: "nd 1.5168", "glass N-BK7".
 std::string describe(const Medium& medium) {
   if (medium.nd || !medium.glass) return "nd " + to_text(medium.nd.value_or(1));
   return "glass " + *medium.glass;
@@ -51,10 +51,10 @@ std::string describe(const Medium& medium) {
 
 void check_surface(const std::string& where, const SurfaceRow& row, const Medium& before) {
   if (!std::isfinite(row.radius) || (row.radius != 0 && std::abs(row.radius) < smallest_radius)) {
-    refuse(where, "radius", row.radius, "a finite length of at least 1e-12 mm, or 0 for a plane");
+    refuse(where, "radius", row.radius, "finite and at least 1e-12 mm, or 0 for a plane");
   }
   if (!(std::abs(row.thickness) < longest_thickness))
-    refuse(where, "thickness", row.thickness, "a finite length below 1e10 mm");
+    refuse(where, "thickness", row.thickness, "finite and below 1e10 mm");
   check_medium(where, row.medium);
   if (row.mirror && row.medium != before) {
     throw Error(where + ": medium of the mirror = " + describe(row.medium) +
@@ -62,11 +62,10 @@ void check_surface(const std::string& where, const SurfaceRow& row, const Medium
   }
 
   if (row.semi_diameter && !(*row.semi_diameter >= 0))
-    refuse(where, "semi_diameter", *row.semi_diameter, "0 mm or more");
+    refuse(where, "semi_diameter", *row.semi_diameter, "at least 0 mm");
   if (row.obscuration_semi_diameter) {
     const double inner = *row.obscuration_semi_diameter;
-    if (!(inner >= 0 && std::isfinite(inner)))
-      refuse(where, "inner_semi_diameter", inner, "a finite length of 0 mm or more");
+    if (!(inner >= 0 && std::isfinite(inner))) refuse(where, "inner_semi_diameter", inner, "finite and at least 0 mm");
     if (inner > 0 && row.semi_diameter && inner >= *row.semi_diameter) {
       refuse(where, "inner_semi_diameter", inner,
              "less than the semi_diameter of " + to_text(*row.semi_diameter) + " mm");
@@ -74,25 +73,25 @@ void check_surface(const std::string& where, const SurfaceRow& row, const Medium
   }
 
   check_finite(where, "conic", row.conic, "a finite number");
-  // Where a conic bends away from its sphere; of less, float has no square.
+  // Radius of curvature of the equator of the conic; float cannot hold the square of a smaller length.
   if (row.radius != 0 && std::abs(row.radius) / std::sqrt(std::abs(1 + row.conic)) < smallest_bend)
-    refuse(where, "conic", row.conic, "one with a radius / sqrt|1 + conic| of at least 1e-15 mm");
+    refuse(where, "conic", row.conic, "such that radius / sqrt|1 + conic| is at least 1e-15 mm");
   std::set<int> orders;
   for (const auto& [order, coefficient] : row.aspheric) {
     if (order < 2 || order > 40) refuse(where, "aspheric order", order, "2 to 40");
     const std::string term = "aspheric coefficient of order " + std::to_string(order);
     check_finite(where, term.c_str(), coefficient, "a finite number");
-    // As for radii: a term of order 2 is a curvature.
+    // The limit of radii: a term of order 2 is a curvature.
     if (std::pow(order * std::abs(coefficient), 1.0 / (order - 1)) > 1 / smallest_radius) {
-      refuse(where, term, coefficient, "one whose slope is below 1 up to 1e-12 mm");
+      refuse(where, term, coefficient, "such that the slope is below 1 up to 1e-12 mm");
     }
-    if (!orders.insert(order).second) throw Error(where + ": " + term + " is given twice, wanted once");
+    if (!orders.insert(order).second) throw Error(where + ": " + term + " is given twice; must be given once");
   }
 }
 
 void check_design(const std::string& where, const DesignData& design) {
   if (design.aperture && !(design.aperture->value >= 0 && std::isfinite(design.aperture->value))) {
-    refuse(where, "aperture", design.aperture->value, "a finite number of 0 or more");
+    refuse(where, "aperture", design.aperture->value, "finite and at least 0");
   }
   if (std::isnan(design.object_distance_mm)) refuse(where, "object distance", design.object_distance_mm, "a length");
   for (std::size_t i = 0; i < design.fields.size(); ++i) {
@@ -104,12 +103,12 @@ void check_design(const std::string& where, const DesignData& design) {
   for (std::size_t i = 0; i < design.wavelengths.size(); ++i) {
     const auto& [nm, weight] = design.wavelengths[i];
     const std::string here = where + ": wavelength " + std::to_string(i);
-    if (!(nm >= 10 && nm <= 1e5)) refuse(here, "it", nm, "10 to 100000 nm");
+    if (!(nm >= 10 && nm <= 1e5)) refuse(here, "nm", nm, "10 to 100000 nm");
     check_finite(here, "weight", weight, "a finite number");
   }
   if (design.primary_wavelength > 0 && design.primary_wavelength >= design.wavelengths.size()) {
     refuse(where, "primary wavelength", static_cast<double>(design.primary_wavelength),
-           "one of " + std::to_string(design.wavelengths.size()));
+           "below " + std::to_string(design.wavelengths.size()));
   }
 }
 
@@ -118,13 +117,13 @@ template <class Declared>
 void check_nominal_data(const std::string& where, const Declared& declared) {
   check_nominal(where, "focal_length_mm", declared.focal_length_mm);
   if (declared.f_number && !(*declared.f_number > 0 && std::isfinite(*declared.f_number))) {
-    refuse(where, "f_number", *declared.f_number, "a finite number above 0 or no value");
+    refuse(where, "f_number", *declared.f_number, "finite and positive, or absent");
   }
   check_nominal(where, "half_field_deg", declared.half_field_deg);
   check_nominal(where, "image_diagonal_mm", declared.image_diagonal_mm);
 }
 
-/// Checks configurations of rows that are valid. Work and memory are proportional to the number of changes.
+/// Checks configurations of rows that are already validated. Work and memory are proportional to the number of changes.
 class ConfigurationCheck {
  public:
   ConfigurationCheck(const std::string& where, const Prescription& p)
@@ -136,7 +135,7 @@ class ConfigurationCheck {
   void check(const std::string& here, const Configuration& c);
   void check_rows(const std::string& here, const Configuration& c);
   void check_row(const std::string& here, std::size_t surface);
-  /// The medium behind a surface in the configuration that is being checked.
+  /// The medium behind a surface in the configuration being checked.
   const Medium& medium(std::size_t surface) const {
     const SurfaceChange* change = change_of_[surface];
     return change && change->medium ? *change->medium : p_.surfaces[surface].medium;
@@ -145,14 +144,14 @@ class ConfigurationCheck {
   const std::string& where_;
   const Prescription& p_;
   std::set<std::string_view> zoom_positions_;
-  std::vector<const SurfaceChange*> change_of_;  ///< by surface; null outside of check_rows()
+  std::vector<const SurfaceChange*> change_of_;  ///< by surface; null outside check_rows()
   SurfaceRow row_;                               ///< scratch
 };
 
 void ConfigurationCheck::run() {
   const auto& list = p_.configurations;
   if (list.size() > most_configurations) {
-    throw Error(where_ + ": " + std::to_string(list.size()) + " configurations, wanted at most " +
+    throw Error(where_ + ": " + std::to_string(list.size()) + " configurations; must be at most " +
                 std::to_string(most_configurations));
   }
   for (const Configuration& c : list) {
@@ -162,9 +161,10 @@ void ConfigurationCheck::run() {
   for (std::size_t i = 0; i < list.size(); ++i) {
     const Configuration& c = list[i];
     const std::string here = where_ + ": configuration " + std::to_string(i);
-    if (c.name.empty()) throw Error(here + " has no name, wanted one");
-    if (!names.insert(c.name).second) throw Error(here + ": name \"" + c.name + "\" is given twice, wanted once");
-    if (i == 0 && c.focus_of) throw Error(here + " focuses another, wanted a zoom position first");
+    if (c.name.empty()) throw Error(here + ": name is empty; must not be");
+    if (!names.insert(c.name).second) throw Error(here + ": name \"" + c.name + "\" is given twice; must be unique");
+    if (i == 0 && c.focus_of)
+      throw Error(here + " focuses another configuration; must be a zoom position, as the first");
     check(here, c);
   }
 }
@@ -172,16 +172,16 @@ void ConfigurationCheck::run() {
 void ConfigurationCheck::check(const std::string& here, const Configuration& c) {
   const auto check_place = [&](const char* what, int surface) {
     if (surface < 0 || static_cast<std::size_t>(surface) >= p_.surfaces.size()) {
-      refuse(here, what, surface, "one of " + std::to_string(p_.surfaces.size()));
+      refuse(here, what, surface, "0 or more and below " + std::to_string(p_.surfaces.size()));
     }
   };
   if (c.stop) check_place("stop", *c.stop);
   if (c.subject_distance_mm && !(*c.subject_distance_mm > 0)) {
-    refuse(here, "subject_distance_mm", *c.subject_distance_mm, "a length above 0, or inf");
+    refuse(here, "subject_distance_mm", *c.subject_distance_mm, "positive or inf");
   }
   for (const SurfaceChange& change : c.changes) check_place("changed surface", change.surface);
   if (c.focus_of && !zoom_positions_.contains(*c.focus_of)) {
-    throw Error(here + " focuses \"" + *c.focus_of + "\", wanted the name of a zoom position");
+    throw Error(here + " focuses \"" + *c.focus_of + "\"; must be the name of a zoom position");
   }
   check_nominal_data(here, c);
   check_rows(here, c);
@@ -190,13 +190,14 @@ void ConfigurationCheck::check(const std::string& here, const Configuration& c) 
 void ConfigurationCheck::check_rows(const std::string& here, const Configuration& c) {
   for (const SurfaceChange& change : c.changes) {
     const SurfaceChange*& known = change_of_[static_cast<std::size_t>(change.surface)];
-    if (known) throw Error(here + ": surface " + std::to_string(change.surface) + " is changed twice, wanted once");
+    if (known)
+      throw Error(here + ": surface " + std::to_string(change.surface) + " is changed twice; must be changed once");
     known = &change;
   }
   for (const SurfaceChange& change : c.changes) {
     const auto surface = static_cast<std::size_t>(change.surface);
     check_row(here, surface);
-    // A mirror has the medium of the surface in front.
+    // A mirror has the medium of the surface in front, and may follow.
     if (change.medium && surface + 1 < p_.surfaces.size()) check_row(here, surface + 1);
   }
   for (const SurfaceChange& change : c.changes) change_of_[static_cast<std::size_t>(change.surface)] = nullptr;
@@ -217,10 +218,10 @@ void validate(const Prescription& p, const std::string& where) {
     refuse(where, "reference_wavelength_nm", p.reference_wavelength_nm, "10 to 100000 nm");
   }
   check_medium(where + ": object_space", p.object_space);
-  if (p.surfaces.empty()) throw Error(where + ": no surfaces, wanted at least one");
+  if (p.surfaces.empty()) throw Error(where + ": no surfaces; must be at least one");
 
   if (p.surfaces.size() > most_surfaces) {
-    throw Error(where + ": " + std::to_string(p.surfaces.size()) + " surfaces, wanted at most " +
+    throw Error(where + ": " + std::to_string(p.surfaces.size()) + " surfaces; must be at most " +
                 std::to_string(most_surfaces));
   }
 
