@@ -16,7 +16,7 @@ namespace {
 
 constexpr double pi = std::numbers::pi;
 
-/// The turn of a point's angle over a chord's: (angle - sin(angle)) / angle^3.
+/// (angle - sin(angle)) / angle^3, accurate for small angles.
 double excess(double angle) noexcept {
   if (std::abs(angle) > 0.3) return (angle - std::sin(angle)) / (angle * angle * angle);
   const double square = angle * angle;
@@ -28,34 +28,35 @@ double excess(double angle) noexcept {
 void check(const Iris& iris, const std::string& where) {
   const auto& [blades, roundness, rotation_rad] = iris;
   if (!(blades == 0 || (blades >= 3 && blades <= 20))) {
-    throw Error(where + "blades is " + std::to_string(blades) + ", wanted 3 to 20, or 0 for a round iris");
+    throw Error(where + "blades = " + std::to_string(blades) + "; must be 3 to 20, or 0 for a round iris");
   }
   if (!(roundness >= -1 && roundness <= 1)) {
-    throw Error(where + "roundness is " + to_text(roundness) + ", wanted -1 to 1");
+    throw Error(where + "roundness = " + to_text(roundness) + "; must be -1 to 1");
   }
-  constexpr double farthest = 1e6;  // of larger angles too little is left within a turn
+  constexpr double farthest = 1e6;  // |larger angles lose too many digits within a turn
   if (!(std::abs(rotation_rad) <= farthest)) {
-    throw Error(where + "rotation_rad is " + to_text(rotation_rad) + ", wanted an angle within " + to_text(farthest));
+    throw Error(where + "rotation_rad = " + to_text(rotation_rad) + "; absolute value must be at most " +
+                to_text(farthest));
   }
 }
 
 Blade::Blade(const Iris& iris) : half_angle(pi / iris.blades), half_chord(std::sin(half_angle)) {
-  // Inwards, corners keep half of the straight polygon's angle.
+  // Bent inwards, corners keep at least half of the straight polygon's angle.
   const double most = iris.roundness < 0 ? std::min(half_angle, (pi / 2 - half_angle) / 2) : half_angle;
   const double at_corner = iris.roundness * most;
   curvature = std::sin(at_corner) / half_chord;
   middle = std::cos(half_angle) + half_chord * std::tan(at_corner / 2);
 }
 
-// The triangle to the edge's middle, and what the circle adds to it.
+// A triangle to the middle of the edge, and the area between the edge and its tangent at the middle.
 double Blade::twice_area(double across) const noexcept {
   const double angle = std::asin(std::clamp(curvature * across, -1.0, 1.0));
   const double per_curvature = curvature == 0 ? across : angle / curvature;
   return middle * across + per_curvature * per_curvature * angle * excess(angle);
 }
 
-// Newton's method from the side on which it does not overshoot: the area grows ever faster along an edge that bends
-// outwards.
+// Newton's method from the side on which it does not overshoot: if the edge bends outwards, the rate of the area grows
+// with `across`.
 double Blade::across_at(double part) const noexcept {
   const double wanted = part * twice_area(half_chord);
   double across = curvature > 0 ? half_chord : 0;
@@ -77,7 +78,7 @@ std::vector<IrisEdge> edges(const Iris& iris) {
   std::vector<IrisEdge> result;
   if (iris.round()) return result;
   const Blade blade(iris);
-  // Of |p - c|^2 <= 1 / curvature^2, where c lies 1 / curvature below the middle, times curvature / 2.
+  // From |p - c|^2 <= 1 / curvature^2, times curvature / 2; c lies 1 / curvature below the middle.
   const double slope = 1 - blade.curvature * blade.middle;
   for (int k = 0; k < iris.blades; ++k) {
     const double angle = (2 * k + 1) * blade.half_angle - iris.rotation_rad;
@@ -89,7 +90,7 @@ std::vector<IrisEdge> edges(const Iris& iris) {
 
 Iris upside_down(Iris iris, bool along_x, bool along_y) {
   iris.rotation_rad = std::remainder(iris.rotation_rad, 2 * pi);
-  // A regular polygon is its own mirror image in the line through a corner.
+  // A regular polygon is symmetric about the line through a corner.
   if (along_x) iris.rotation_rad = -iris.rotation_rad;
   if (along_y) iris.rotation_rad = pi - iris.rotation_rad;
   return iris;
@@ -106,7 +107,7 @@ double iris_area(const Iris& iris) {
 
 double equal_area_f_number(const Iris& iris, double f_number) {
   if (!(f_number > 0 && std::isfinite(f_number))) {
-    throw Error("iris: f_number is " + to_text(f_number) + ", wanted a finite one above 0");
+    throw Error("iris: f_number = " + to_text(f_number) + "; must be finite and above 0");
   }
   return f_number * std::sqrt(iris_area(iris) / std::numbers::pi);
 }

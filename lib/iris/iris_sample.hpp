@@ -8,30 +8,31 @@
 
 #include "core/loop_math.hpp"
 
-/// Uniform points of an iris, one at a time, for loops over many and for IrisShape.
+/// Uniform points of an iris, one at a time. Used by loops over many samples and by IrisShape.
 namespace petzval::iris_detail {
 
-/// How many terms the polynomials of an edge have: within 1e-7 semi-diameters, and 2e-13.
+/// Number of terms in the polynomials of an edge: accurate to 1e-7 semi-diameters in float and 2e-13 in double.
 template <class R>
 inline constexpr std::size_t edge_terms = sizeof(R) == sizeof(float) ? 8 : 17;
 
-/// The rim, with room for the rounding of corners: hollow edges are parts of circles, beyond which light passes again.
+/// Squared radius of the rim, with a tolerance for rounding at the corners. Needed because an edge that bends inwards
+/// is a circle, and its condition holds again farther out.
 template <class R>
 inline constexpr R rim_squared = 1 + 8 * std::numeric_limits<R>::epsilon();
 
-/// The sectors of a bladed iris between the centre and the edge of a blade each, in order from +y towards +x, and the
-/// edges. Borrowed.
+/// The sectors of a bladed iris in order from +y towards +x, each between the centre and the edge of one blade. Does
+/// not own the arrays.
 template <class R>
 struct IrisSectors {
-  std::size_t count = 0;     ///< 0: the unit disc instead
-  const R* turns = nullptr;  ///< [count] sine and cosine of the angle from +y towards +x of the edge's middle
-  /// The point of an edge that has the part (1 + q) / 2 of the sector's area before it: q across(2 q^2 - 1) across and
-  /// along(2 q^2 - 1) along the direction of the edge's middle; by powers, [edge_terms].
+  std::size_t count = 0;     ///< |0 for the unit disc
+  const R* turns = nullptr;  ///< |[count] sine and cosine of the angle from +y towards +x to the middle of the edge
+  /// The edge point that has the fraction (1 + q) / 2 of the sector's area before it lies at q across(2 q^2 - 1) across
+  /// and along(2 q^2 - 1) along the direction to the middle of the edge. Coefficients by ascending power, [edge_terms].
   const R *across = nullptr, *along = nullptr;
-  const R* edges = nullptr;  ///< [count] the numbers of an IrisEdge
+  const R* edges = nullptr;  ///< |[count] the four members of each IrisEdge
 };
 
-// Local names: this is compiled for several instruction sets, and the linker must not take one for another.
+// Anonymous namespace: the code is compiled for several instruction sets, and the linker must not merge the versions.
 namespace {
 
 template <class R>
@@ -39,13 +40,13 @@ struct IrisPoint {
   R x, y;
 };
 
-/// 1 - s / (first (first + 1)) (1 - s / ((first + 2) (first + 3)) (1 - ...)), Taylor's series of sine over angle
-/// (first: 2) or cosine (1), s: the square of the angle. Every second term by itself: a single sample waits half as
-/// long.
+/// Taylor series of sin(a) / a (first = 2) or cos(a) (first = 1) in s = a^2:
+///     1 - s / (first (first + 1)) (1 - s / ((first + 2) (first + 3)) (1 - ...)).
+/// Even and odd terms are summed separately, which halves the latency of a single sample.
 template <int first, int terms, class R>
 inline R turning_series(R s) noexcept {
   struct Terms {
-    R of[terms + 1] = {R(1)};  // the last one is 0
+    R of[terms + 1] = {R(1)};  // |the last term is 0
     constexpr Terms() {
       double c = 1;
       for (int k = 1; k < terms; ++k) of[k] = static_cast<R>(c /= -(first + 2. * k - 2) * (first + 2. * k - 1));
@@ -62,7 +63,8 @@ inline R turning_series(R s) noexcept {
   return even + s * odd;
 }
 
-/// The point of the unit circle after a part u of the turn from +y towards +x, for u in [0, 1]. Within 2e-7 and 1e-15.
+/// The point of the unit circle at the fraction u of a turn from +y towards +x, u in [0, 1]. Accurate to 2e-7 in float
+/// and 1e-15 in double.
 template <class R>
 inline IrisPoint<R> circle_point(R u) noexcept {
   constexpr bool single = sizeof(R) == sizeof(float);
@@ -71,13 +73,12 @@ inline IrisPoint<R> circle_point(R u) noexcept {
   const auto quarter = static_cast<std::int32_t>(quarters + R(0.5));
   const R angle = R(std::numbers::pi / 2) * (quarters - static_cast<R>(quarter)), square = angle * angle;
   const R sine = angle * turning_series<2, sine_terms>(square), cosine = turning_series<1, cosine_terms>(square);
-  // Without branches, which nobody could predict.
+  // Branch-free, because a branch on a random quarter is mispredicted.
   const R swapped = static_cast<R>(quarter & 1), change = swapped * (cosine - sine);
   return {static_cast<R>(1 - (quarter & 2)) * (sine + change),
           static_cast<R>(1 - ((quarter + 1) & 2)) * (cosine - change)};
 }
 
-/// A uniform point of the unit disc.
 template <class R>
 inline IrisPoint<R> disc_point(R u, R v) noexcept {
   const auto [x, y] = circle_point(u);
@@ -85,7 +86,6 @@ inline IrisPoint<R> disc_point(R u, R v) noexcept {
   return {way * x, way * y};
 }
 
-/// A uniform point of a bladed iris.
 template <class R>
 inline IrisPoint<R> sector_point(const IrisSectors<R>& s, R u, R v) noexcept {
   const R at = u * static_cast<R>(static_cast<std::int32_t>(s.count));
@@ -102,7 +102,7 @@ inline IrisPoint<R> sector_point(const IrisSectors<R>& s, R u, R v) noexcept {
   return {way * (along * sine + across * cosine), way * (along * cosine - across * sine)};
 }
 
-/// Whether light passes beside the edge of a blade.
+/// True if the point lies on the open side of the edge of blade k.
 template <class R>
 inline bool within_edge(const IrisSectors<R>& s, std::size_t k, R x, R y) noexcept {
   const R* edge = s.edges + 4 * k;

@@ -14,7 +14,7 @@ namespace {
 
 constexpr double pi = std::numbers::pi;
 
-/// Powers of t in [-1, 1] of the polynomial through value(t) at Chebyshev's points.
+/// Coefficients, by power of t in [-1, 1], of the polynomial that equals value(t) at the Chebyshev nodes.
 template <std::size_t n, class Value>
 std::array<double, n> interpolate(const Value& value) {
   std::array<double, n> sums{};
@@ -24,7 +24,7 @@ std::array<double, n> interpolate(const Value& value) {
       sums[k] += (k == 0 ? 1.0 : 2.0) / n * f * std::cos(static_cast<double>(k) * angle);
     }
   }
-  // Chebyshev's polynomials by powers: T(k + 1) = 2 t T(k) - T(k - 1).
+  // Chebyshev polynomials by powers: T(k + 1) = 2 t T(k) - T(k - 1).
   std::array<double, n> powers{}, before{}, own{1};
   for (std::size_t k = 0; k < n; ++k) {
     for (std::size_t i = 0; i <= k; ++i) powers[i] += sums[k] * own[i];
@@ -35,7 +35,7 @@ std::array<double, n> interpolate(const Value& value) {
   return powers;
 }
 
-/// The remainder of a division by 1, from 0 on.
+/// The fractional part in [0, 1), also of negative numbers.
 double fraction(double x) noexcept { return x - std::floor(x); }
 
 }  // namespace
@@ -78,7 +78,7 @@ Vec2<double> IrisShape::position(double x, double y) const noexcept {
   const double sectors = fraction((turn + iris_.rotation_rad) / (2 * pi)) * iris_.blades;
   const double sector = std::min(std::floor(sectors), iris_.blades - 1.0);
   const double angle = (2 * (sectors - sector) - 1) * blade.half_angle;
-  // Where the ray from the centre meets the edge.
+  // The point at which the ray from the centre meets the edge.
   const double way = share(x, y), to_edge = std::sqrt(square / way);
   const double across = std::clamp(to_edge * std::sin(angle), -blade.half_chord, blade.half_chord);
   const double part = blade.twice_area(across) / blade.twice_area(blade.half_chord);
@@ -89,7 +89,7 @@ double IrisShape::share(double x, double y) const noexcept {
   const double square = x * x + y * y;
   const IrisSectors<double> s = sectors<double>();
   if (s.count == 0) return square;
-  // The point over `part` lies on an edge: distance part^2 - across part - bend square = 0.
+  // The point divided by `part` lies on the edge: distance part^2 - across part - bend square = 0.
   double largest = 0;
   for (std::size_t k = 0; k < s.count; ++k) {
     const double* edge = s.edges + 4 * k;

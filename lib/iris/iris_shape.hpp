@@ -11,29 +11,28 @@
 
 namespace petzval::iris_detail {
 
-/// An iris in units of the stop's semi-diameter, to be sampled.
+/// The shape of an iris in units of the stop's semi-diameter, for sampling.
 class PETZVAL_API IrisShape {
  public:
   /// The unit disc.
   IrisShape() = default;
-  /// Throws Error for blades, roundness or rotation out of range.
+  /// Throws Error if blades, roundness or rotation are out of range.
   explicit IrisShape(const Iris& iris);
 
   const Iris& iris() const noexcept { return iris_; }
-  /// The disc.
   bool round() const noexcept { return iris_.round(); }
   double area() const noexcept { return area_; }
-  /// A uniform point for u and v in [0, 1]: u runs around the axis, from the first corner (of a disc: from +y) in the
-  /// direction from +y towards +x; v, the share of the area that lies nearer to the centre, outwards. Equal areas of
-  /// the square become equal areas of the iris, and neighbours stay neighbours.
+  /// A uniform point of the iris for u and v in [0, 1]. u runs around the axis from +y towards +x, starting at the
+  /// first corner (of a disc: at +y). v runs outwards and is the fraction of the area nearer to the centre. The map
+  /// preserves ratios of areas and is continuous.
   Vec2<double> sample(double u, double v) const noexcept;
-  /// The inverse: u and v of a point. v is above 1 outside; u is 0 at the centre.
+  /// The inverse of sample(): u and v of a point. v is above 1 outside the iris; u is 0 at the centre.
   Vec2<double> position(double x, double y) const noexcept;
-  /// v of a point alone: the share of the area that lies nearer to the centre.
+  /// v of position(): the fraction of the area nearer to the centre.
   double share(double x, double y) const noexcept;
   bool contains(double x, double y) const noexcept;
 
-  /// For loops over samples, in float or double.
+  /// The arrays for loops over samples, in float or double.
   template <class R>
   IrisSectors<R> sectors() const noexcept {
     const auto of = [](const auto& columns) -> IrisSectors<R> {

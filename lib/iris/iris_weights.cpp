@@ -17,7 +17,7 @@
 namespace petzval {
 namespace {
 
-/// The printed formula and its integral from 0 on, for d >= 0.
+/// The published formula without the cut at 0, and its integral from 0 to x, with |d| for d.
 double uncut(const EdgeWeight& w, double x) noexcept {
   const double d = std::abs(w.distribution);
   return 1 + w.strength * ((d + 1) * std::pow(x, d) - 1);
@@ -27,7 +27,7 @@ double uncut_below(const EdgeWeight& w, double x) noexcept {
   return x + w.strength * (std::pow(x, d + 1) - x);
 }
 
-/// Where the formula is not negative: it rises or falls all the way.
+/// The interval of x in which the formula is not negative; the formula is monotonic.
 std::array<double, 2> lit(const EdgeWeight& w) noexcept {
   const bool first = uncut(w, 0) >= 0, last = uncut(w, 1) >= 0;
   if (first && last) return {0, 1};
@@ -39,12 +39,12 @@ std::array<double, 2> lit(const EdgeWeight& w) noexcept {
   return first ? std::array{0.0, low} : std::array{high, 1.0};
 }
 
-/// The light of an edge, cut at 0.
+/// The integral of an edge weight, cut at 0.
 class EdgeLight {
  public:
   explicit EdgeLight(const EdgeWeight& weight) noexcept : weight_(weight), lit_(lit(weight)) {}
 
-  /// Of the places with a share below x.
+  /// The integral over the points with a fraction of the area below x.
   double below(double x) const noexcept {
     if (weight_.even()) return x;
     return weight_.distribution < 0 ? from_begin(1) - from_begin(1 - x) : from_begin(x);
@@ -76,19 +76,19 @@ double iris_area(const Iris& iris, const IrisMap& map) {
 
 IrisMap onion_rings(const OnionRings& rings, int pixels) {
   if (!(pixels >= 2 && pixels <= 8192)) {
-    throw Error("onion_rings: pixels is " + std::to_string(pixels) + ", wanted 2 to 8192");
+    throw Error("onion_rings: pixels = " + std::to_string(pixels) + "; must be 2 to 8192");
   }
   const double least = 4.0 / pixels;
   if (!(rings.period >= least && rings.period <= 2)) {
-    throw Error("onion_rings: period is " + to_text(rings.period) + ", wanted " + to_text(least) + " to 2");
+    throw Error("onion_rings: period = " + to_text(rings.period) + "; must be " + to_text(least) + " to 2");
   }
   if (!(rings.contrast >= 0 && rings.contrast <= 1)) {
-    throw Error("onion_rings: contrast is " + to_text(rings.contrast) + ", wanted 0 to 1");
+    throw Error("onion_rings: contrast = " + to_text(rings.contrast) + "; must be 0 to 1");
   }
   if (!(rings.jitter >= 0 && std::isfinite(rings.jitter))) {
-    throw Error("onion_rings: jitter is " + to_text(rings.jitter) + ", wanted a number of 0 or more");
+    throw Error("onion_rings: jitter = " + to_text(rings.jitter) + "; must be finite and at least 0");
   }
-  // The phase walks at random from ring to ring, in straight lines between them.
+  // The phase is a random walk over the rings, interpolated linearly.
   constexpr double pi = std::numbers::pi;
   std::vector<double> walk{0};
   std::uint32_t state = rings.seed;
@@ -116,14 +116,14 @@ IrisMap onion_rings(const OnionRings& rings, int pixels) {
 namespace iris_detail {
 namespace {
 
-/// Rows and columns of a map's samples.
+/// Rows and columns of the cells in which maps are sampled.
 constexpr std::size_t map_cells = 256;
 
-/// Comparisons with what is not a number are false, and a cast of it to an index is anything.
+/// True if both are finite. NaN must not be cast to an index: the result is undefined.
 bool finite(double a, double b) noexcept { return (a + b) * 0 == 0; }
 
-/// Where a sum over such parts, which rises from 0, reaches a value: the last part that does not begin beyond it.
-/// Halved without branches, which nobody could predict.
+/// Index of the last part that begins at or below `value`, by bisection of cumulative sums that start at 0.
+/// Branch-free, because branches on random numbers are mispredicted.
 std::size_t part_at(const double* begins, double value) noexcept {
   std::size_t part = 0;
   for (std::size_t step = map_cells / 2; step > 0; step /= 2) part += begins[part + step] <= value ? step : 0;
@@ -138,17 +138,18 @@ void check(const IrisMap& map, const std::string& where) {
   constexpr std::int64_t most = std::int64_t{1} << 26;
   const std::int64_t pixels = std::int64_t{map.width} * map.height;
   if (map.width < 1 || map.height < 1 || pixels > most) {
-    throw Error(where + "the map has " + size + " pixels, wanted 1 x 1 to " + std::to_string(most) + " in all");
+    throw Error(where + "map: width x height = " + size + "; must be 1 x 1 to " + std::to_string(most) +
+                " pixels in all");
   }
   if (static_cast<std::int64_t>(map.values.size()) != pixels) {
-    throw Error(where + "the map has " + std::to_string(map.values.size()) + " values, wanted " + size);
+    throw Error(where + "map: number of values = " + std::to_string(map.values.size()) + "; must be " + size);
   }
   for (std::size_t i = 0; i < map.values.size(); ++i) {
     const float value = map.values[i];
     if (std::isfinite(value) && value >= 0) continue;
     const auto width = static_cast<std::size_t>(map.width);
-    throw Error(where + "the map has " + to_text(value) + " in row " + std::to_string(i / width) + ", column " +
-                std::to_string(i % width) + ", wanted finite weights of 0 or more");
+    throw Error(where + "map: weight = " + to_text(value) + " in row " + std::to_string(i / width) + ", column " +
+                std::to_string(i % width) + "; must be finite and at least 0");
   }
 }
 
@@ -166,21 +167,21 @@ IrisWeights::IrisWeights(const Iris& iris, const EdgeWeight& edge, const IrisMap
                          const std::string& where)
     : shape_(iris), edge_(edge), map_(map) {
   if (!(std::abs(edge.distribution) <= 1000) || !(std::abs(edge.strength) <= 1e6)) {
-    throw Error(where + "found the weight distribution " + to_text(edge.distribution) + " and strength " +
-                to_text(edge.strength) + ", wanted at most 1000 and 1e6 in size");
+    throw Error(where + "weight distribution, strength = " + to_text(edge.distribution) + ", " +
+                to_text(edge.strength) + "; must be at most 1000 and 1e6 in absolute value");
   }
   tabulate_edge();
   divide_rows(map.empty() ? 2048 : map_cells, uniform_part);
   if (map.empty()) return;
   std::vector<double> light = light_of_cells();
   mean_ = std::accumulate(light.begin(), light.end(), 0.0);
-  if (!(mean_ > 0)) throw Error(where + "the map is black on the iris, wanted light somewhere");
+  if (!(mean_ > 0)) throw Error(where + "the map is black on the iris; must be above 0 somewhere");
   for (double& value : light) value /= mean_;
   divide_columns(light, uniform_part);
 }
 
 void IrisWeights::tabulate_edge() {
-  // Within 2e-6 of the brightest weight: (d / steps)^4 / 384.
+  // The error is at most 4e-6 of the largest weight: (d / steps)^4 / 384.
   constexpr double least = 4, most = 200;
   constexpr int steps = 1024;
   const double d = std::abs(edge_.distribution);
@@ -213,7 +214,7 @@ void IrisWeights::divide_rows(std::size_t count, double uniform_part) {
 }
 
 std::vector<double> IrisWeights::light_of_cells() {
-  // An even grid over the square: of every pixel one place at least.
+  // A uniform grid over the square with at least one point per pixel.
   constexpr int across_at_least = 1024;
   const auto places = [](int pixels) { return pixels * ((across_at_least + pixels - 1) / pixels); };
   const int across = places(map_.width), down = places(map_.height);
@@ -239,7 +240,7 @@ std::vector<double> IrisWeights::light_of_cells() {
 }
 
 void IrisWeights::divide_columns(const std::vector<double>& parts, double uniform_part) {
-  // What lies between the places may be brighter, and small cells may hold none of them.
+  // Weights between the grid points may be larger, and small cells may contain no grid point.
   const double floor = std::max(uniform_part, 0.02);
   before_rows_.push_back(0);
   for (std::size_t i = 0; i < map_cells; ++i) {
@@ -307,7 +308,7 @@ std::size_t IrisWeights::column_of(double u) const noexcept {
 }
 
 IrisWeights::Drawn IrisWeights::draw(double u, double v) const noexcept {
-  if (!finite(u, v)) return {u, v, 1};  // the pupil refuses it
+  if (!finite(u, v)) return {u, v, 1};  // |the pupil rejects such numbers
   u = std::clamp(u, 0.0, 1.0), v = std::clamp(v, 0.0, 1.0);
   if (map_.empty()) {
     const double at = v * static_cast<double>(rows_.size() - 1);

@@ -13,44 +13,44 @@
 
 namespace petzval::iris_detail {
 
-/// Throws Error, which begins with `where`, for weights that are not finite or negative, sizes that do not fit them,
-/// and more than 2^26 pixels.
+/// Throws Error, prefixed with `where`, if a weight is negative or not finite, the number of values is not width x
+/// height, or there are more than 2^26 pixels.
 PETZVAL_API void check(const IrisMap& map, const std::string& where);
 
-/// The map as an image shows it that is upside down along an axis, or along both.
+/// The map as it appears in an image that is mirrored along x, along y, or along both.
 PETZVAL_API IrisMap upside_down(IrisMap map, bool along_x, bool along_y);
 
-/// Weights over an iris, and samples that follow them.
+/// Weights over an iris, and importance sampling of the weights.
 class PETZVAL_API IrisWeights {
  public:
-  /// map: as check() lets it pass. uniform_part: of the samples, whatever the weights are. Throws Error, which begins
-  /// with `where`, for an edge out of range and a map that is black on the iris.
+  /// map: must satisfy check(). uniform_part: fraction of the samples that is spread uniformly, independent of the
+  /// weights. Throws Error, prefixed with `where`, if the edge is out of range or the map is black on the iris.
   IrisWeights(const Iris& iris, const EdgeWeight& edge, const IrisMap& map, double uniform_part,
               const std::string& where);
 
-  /// At a point of the stop, in semi-diameters. Beyond the rim: as there.
+  /// The weight at a point of the stop, in semi-diameters. Outside the iris the edge weight keeps its value at the rim.
   double at(const Vec2<double>& place) const noexcept;
-  /// At IrisShape::sample(u, v).
+  /// The weight at IrisShape::sample(u, v).
   double of_sample(double u, double v) const noexcept;
-  /// Over the iris.
+  /// The mean weight over the iris.
   double mean() const noexcept { return mean_; }
 
-  /// Where uniform numbers of the unit square go: numbers of IrisShape::sample() whose density is nearly in proportion
-  /// to the weights.
+  /// Arguments of IrisShape::sample() with their probability density on the unit square.
   struct Drawn {
     double u, v, density;
   };
+  /// Maps uniform random numbers to (u, v) whose density is nearly proportional to the weights.
   Drawn draw(double u, double v) const noexcept;
-  /// Of such numbers at a place.
+  /// The density of draw() at (u, v).
   double density(double u, double v) const noexcept;
 
  private:
   void tabulate_edge();
-  /// Rows with equal parts of the samples that follow the edge's weights: in each, these are nearly even.
+  /// Divides v into rows that receive equal fractions of the samples. Edge weights are nearly constant within a row.
   void divide_rows(std::size_t count, double uniform_part);
-  /// The light of each row's columns by edge and map, of the map of mean 1 if it keeps that: together the mean weight.
+  /// The contribution of each cell to the mean weight, [row][column]. Scales the map to mean 1 if it keeps its mean.
   std::vector<double> light_of_cells();
-  /// Samples in cells. parts: of the light, of each row's columns.
+  /// Distributes samples over the cells. parts: contributions to the mean weight, scaled to the sum 1.
   void divide_columns(const std::vector<double>& parts, double uniform_part);
 
   double edge_at(double share) const noexcept;
@@ -60,16 +60,16 @@ class PETZVAL_API IrisWeights {
 
   IrisShape shape_;
   EdgeWeight edge_;
-  /// The edge's weight and how much it grows in a step, at even steps of the share, where cubic polynomials between
-  /// them are near enough; else empty. A power takes four times as long.
+  /// Edge weight and its change per step at equally spaced fractions of the area, for cubic interpolation, which is
+  /// four times as fast as a power. Empty if interpolation is not accurate enough.
   std::vector<std::array<double, 2>> edge_steps_;
-  IrisMap map_;  // scaled
+  IrisMap map_;  // |scaled by the constructor
   double mean_ = 1;
-  std::vector<double> rows_;           // where they begin, by v; the end of the last one
-  std::vector<double> row_densities_;  // of samples in each
-  // Of a map; else rows have equal parts of all samples.
-  std::vector<double> before_rows_;    // the part of all samples, likewise
-  std::vector<double> before_in_row_;  // [row][column]: the part of the row's samples, one more than columns
+  std::vector<double> rows_;           // |lower ends of the rows in v, then 1
+  std::vector<double> row_densities_;  // |sample density of each row
+  // With a map only; without a map every row has the same fraction of the samples.
+  std::vector<double> before_rows_;    // |[rows + 1] fraction of all samples in the rows before
+  std::vector<double> before_in_row_;  // |[row][columns + 1] fraction of the row's samples in the columns before
 };
 
 }  // namespace petzval::iris_detail

@@ -10,7 +10,7 @@ namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
-/// A surface at its vertex, with the signed indices around it.
+/// A surface at its vertex, with the signed indices on both sides.
 struct VertexSurface {
   double n_in, n_out, curvature;
 
@@ -32,7 +32,7 @@ VertexSurface at_vertex(const Lens& lens, std::size_t i, Wavelength wavelength, 
           vertex_curvature(lens.surfaces()[i], meridian)};
 }
 
-/// From the vertex of the surface before to that of surface i, in a medium of index n.
+/// Transfer from the vertex of the previous surface to the vertex of surface i, in a medium of index n.
 RayMatrix transfer_to(const Lens& lens, std::size_t i, double n) noexcept {
   return {1, lens.surfaces()[i - 1].thickness / n, 0, 1};
 }
@@ -88,7 +88,7 @@ FirstOrder first_order(const Lens& lens, Wavelength wavelength, Meridian meridia
   const double n = result.object_index = signed_index(lens, 0, wavelength);
   const double n_image = result.image_index = signed_index(lens, count, wavelength);
 
-  // A focal length beyond 1e100 mm is infinite too, and so is one of a matrix beyond the range of double.
+  // A focal length beyond 1e100 mm counts as infinite, and so does a matrix outside the range of double.
   const bool in_range = std::isfinite(m.a) && std::isfinite(m.b) && std::isfinite(m.c) && std::isfinite(m.d);
   result.afocal = !(in_range && std::abs(m.c) > std::max(1e-12 * contributions, 1e-100));
   if (result.afocal) {
@@ -101,7 +101,7 @@ FirstOrder first_order(const Lens& lens, Wavelength wavelength, Meridian meridia
   const double rear_z = lens.surfaces().back().vertex_z;
   result.power = m.power();
   result.effective_focal_length = 1 / result.power;
-  // A ray that leaves parallel to the axis has c y + d n u = 0 at the first vertex; one that enters parallel leaves
+  // A ray that leaves parallel to the axis has c y + d n u = 0 at the first vertex; a ray that enters parallel leaves
   // with (a, c) y.
   result.front_focal_distance = n * m.d / m.c;
   result.back_focal_distance = -n_image * m.a / m.c;
@@ -109,7 +109,7 @@ FirstOrder first_order(const Lens& lens, Wavelength wavelength, Meridian meridia
   result.rear_focal_z = rear_z + result.back_focal_distance;
   result.front_principal_z = front_z + n * (m.d - 1) / m.c;
   result.rear_principal_z = rear_z + n_image * (1 - m.a) / m.c;
-  // Nodal points lie one focal length of the other side from the focal points.
+  // From a focal point to the nodal point on its side it is the focal length of the other side.
   result.front_nodal_z = front_z + (n * m.d - n_image) / m.c;
   result.rear_nodal_z = rear_z + (n - n_image * m.a) / m.c;
   return result;
@@ -131,14 +131,14 @@ double paraxial_image_z(const Lens& lens, double object_z, Wavelength wavelength
   RayMatrix m = ray_matrix(lens, 0, lens.surface_count(), wavelength, meridian);
   if (data.afocal) m.c = 0;
 
-  // The ray from the object at distance l that has n u = q at the first vertex has y = p = -q l / n there.
+  // At the first vertex, the ray from the object at distance l with n u = q has the height y = p = -q l / n.
   const double l = object_z - lens.surfaces().front().vertex_z;
   const bool distant = std::abs(l) > 1e100;
   const double p = distant ? 1 : -l / data.object_index;
   const double q = distant ? 0 : 1;
   const double y = m.a * p + m.b * q;
   const double nu = m.c * p + m.d * q;
-  // An object within rounding of the front focal point counts as at the focal point.
+  // An object within rounding of the front focal point has its image at infinity.
   const double rounding = 4 * std::numeric_limits<double>::epsilon() * (std::abs(m.c * p) + std::abs(m.d * q));
   if (std::abs(nu) <= rounding) return infinity;
   return lens.surfaces().back().vertex_z - data.image_index * y / nu;

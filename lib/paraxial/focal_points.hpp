@@ -7,7 +7,8 @@
 
 namespace petzval::paraxial_detail {
 
-/// The ideal lens of a lens that is not afocal, without pupils; light may leave it along -z.
+/// The ideal lens with the cardinal points in `data` and without pupils. The lens must not be afocal; light may leave
+/// it along -z.
 IdealLens focal_points(const Lens& lens, const FirstOrder& data) noexcept;
 
 }  // namespace petzval::paraxial_detail

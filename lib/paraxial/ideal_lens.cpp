@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// Newton's form of imaging, from the focal points: with Z = z - F before the lens and Z' = z' - F' behind it
+// Newton's equations, with distances from the focal points: Z = z - F for the object and Z' = z' - F' for the image,
 //
-//     Z Z' = -f f',   x' = x f / Z,   y' = y f / Z,
+//     Z Z' = -f f',   x' = x f / Z,   y' = y f / Z.
 //
-// which maps planes to planes, the ends included: Z = 0 goes to infinity, infinity to Z' = 0. A point at infinity is
-// its direction with the fourth coordinate 0.
+// The equations map planes to planes, also at infinity: Z = 0 maps to infinity and infinity to Z' = 0. A point at
+// infinity is a direction with the fourth coordinate 0.
 #include "petzval/paraxial/ideal_lens.hpp"
 
 #include <algorithm>
@@ -23,7 +23,7 @@ namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
-/// Unit normal with z >= 0.
+/// The plane with a unit normal, normal.z >= 0; nullopt if it lies at infinity or a number is not finite.
 std::optional<Plane> plane(const Vec3<double>& normal, double offset) {
   const double length = std::hypot(normal.x, normal.y, normal.z) * (normal.z < 0 ? -1 : 1);
   const Plane result{normal / length, offset / length};
@@ -34,8 +34,8 @@ std::optional<Plane> plane(const Vec3<double>& normal, double offset) {
 }  // namespace
 
 double IdealLens::object_at_separation(double separation) const noexcept {
-  // The larger root of p + product / p = sum, in factors: no square overflows, and nothing cancels next to the turning
-  // point, where sum is twice the root of the product.
+  // The larger root of p + product / p = sum, factored so that squares do not overflow and nothing cancels near the
+  // turning point, where sum is twice the root of the product.
   const double turning = 2 * std::sqrt(std::abs(product())), sum = separation - (rear_focal_z - front_focal_z);
   if (product() < 0) return (sum + std::hypot(sum, turning)) / 2;
   const double reached = std::max(sum, turning);
@@ -43,8 +43,8 @@ double IdealLens::object_at_separation(double separation) const noexcept {
 }
 
 MarginalRay IdealLens::marginal_ray(double p) const noexcept {
-  // A ray's height in the rear focal plane depends on its slope in front of the lens alone, and its slope behind the
-  // lens on its height in the front focal plane.
+  // The height of a ray in the rear focal plane depends only on its slope in front of the lens, and its slope behind
+  // the lens only on its height in the front focal plane.
   if (const Pupil& in = pupils.entrance; std::isfinite(in.z)) {
     const double slope = in.diameter / 2 / (p + (in.z - front_focal_z));
     const double height = std::isinf(p) ? in.diameter / 2 : slope * p;
@@ -81,7 +81,7 @@ std::optional<ImagePoint> IdealLens::image(const ScenePoint& point) const noexce
 ScenePoint IdealLens::scene_of(const Vec3<double>& image) const noexcept {
   const double from_focus = image.z - rear_focal_z;
   if (from_focus == 0) return {{-image.x / front_focal_length, -image.y / front_focal_length, -1}, true};
-  // x = x' Z / f, without Z.
+  // x = x' Z / f = -x' f' / Z'.
   const double by = -rear_focal_length / from_focus;
   return {{by * image.x, by * image.y, front_focal_z + by * front_focal_length}, false};
 }
@@ -120,10 +120,10 @@ IdealLens focal_points(const Lens& lens, const FirstOrder& data) noexcept {
 
 IdealLens thin_lens(double focal_length, double f_number, double z) {
   if (!std::isfinite(focal_length) || focal_length == 0) {
-    throw Error("thin_lens: focal length is " + to_text(focal_length) + " mm, wanted a finite one other than 0");
+    throw Error("thin_lens: focal length = " + to_text(focal_length) + " mm; must be finite and not 0");
   }
-  if (!(f_number > 0)) throw Error("thin_lens: f-number is " + to_text(f_number) + ", wanted one above 0");
-  if (!std::isfinite(z)) throw Error("thin_lens: z is " + to_text(z) + " mm, wanted a finite place");
+  if (!(f_number > 0)) throw Error("thin_lens: f-number = " + to_text(f_number) + "; must be above 0");
+  if (!std::isfinite(z)) throw Error("thin_lens: z = " + to_text(z) + " mm; must be finite");
   const Pupil pupil{z, std::abs(focal_length) / f_number};
   return {z - focal_length, z + focal_length, focal_length, focal_length, {pupil, pupil}, z, z};
 }
@@ -141,9 +141,9 @@ IdealLens thin_lens(const Lens& lens, Wavelength wavelength) { return thin_lens(
 IdealLens thick_lens(const Lens& lens, Wavelength wavelength) {
   const Meridian meridian = main_meridian(lens, wavelength);
   const FirstOrder data = first_order(lens, wavelength, meridian);
-  if (data.afocal) throw Error(lens.name() + ": ideal lens: it has no focal length, wanted one");
+  if (data.afocal) throw Error(lens.name() + ": ideal lens: the lens has no focal length; must not be afocal");
   if (data.image_index < 0) {
-    throw Error(lens.name() + ": ideal lens: light leaves it towards -z, wanted it towards +z");
+    throw Error(lens.name() + ": ideal lens: light leaves the lens towards -z; must leave towards +z");
   }
   IdealLens result = paraxial_detail::focal_points(lens, data);
   result.pupils = pupils(lens, wavelength, meridian);

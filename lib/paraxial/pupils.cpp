@@ -12,8 +12,8 @@ namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
-/// The surface that clips the axial beam from infinity first: least semi-diameter over the height of a ray that enters
-/// at height 1, in whichever meridian of a lens with cylinders that ray is higher.
+/// The surface that clips the axial beam from infinity first: the least ratio of its semi-diameter to the height of a
+/// ray that enters at height 1. In a lens with cylinders the larger height of both meridians counts.
 std::size_t limiting_surface(const Lens& lens, Wavelength wavelength) {
   std::size_t limiting = lens.surface_count();
   double least = infinity;
@@ -30,14 +30,15 @@ std::size_t limiting_surface(const Lens& lens, Wavelength wavelength) {
   }
   if (limiting == lens.surface_count()) {
     throw Error(lens.name() + (lens.stop() ? ": the stop has no rim" : ": no stop is marked") +
-                " and no surface limits the axial beam, wanted a semi_diameter");
+                " and no surface limits the axial beam; at least one surface must have a semi_diameter");
   }
   return limiting;
 }
 
-/// The image of the stop from a ray through its centre of optical slope 1, which has height y and optical slope n u at
-/// a vertex. By the Lagrange invariant n u is the size of the stop over that of its image. An image more than 1e12
-/// times as large as the stop counts as at infinity, as in telecentric designs up to rounding.
+/// The image of the stop, from a ray through the centre of the stop with optical slope 1, which has height y and
+/// optical slope nu at a vertex. By the Lagrange invariant, nu is the size of the stop divided by the size of its
+/// image. An image more than 1e12 times as large as the stop counts as infinitely distant: a telecentric design up to
+/// rounding.
 Pupil pupil(double vertex_z, double n, double y, double nu, double semi_diameter) {
   if (std::abs(nu) < 1e-12) return {infinity, infinity};
   return {vertex_z - n * y / nu, 2 * semi_diameter / std::abs(nu)};
@@ -52,12 +53,12 @@ bool has_pupils(const Lens& lens) noexcept {
 
 Pupils pupils(const Lens& lens, Wavelength wavelength, Meridian meridian) {
   Pupils result;
-  // A marked stop without a rim stops no ray.
+  // A marked stop without a rim does not clip rays.
   result.stop_inferred = !lens.stop() || std::isinf(lens.surfaces()[*lens.stop()].semi_diameter);
   result.stop = result.stop_inferred ? limiting_surface(lens, wavelength) : *lens.stop();
 
-  // The ray (0, 1) at the vertex of the stop: (-b, a) of the front part before, by the inverse matrix, and (b, d) of
-  // the rear after.
+  // The ray (0, 1) at the vertex of the stop is (-b, a) at the first vertex, by the inverse of the front matrix, and
+  // (b, d) at the last vertex.
   const RayMatrix front = ray_matrix_to(lens, result.stop, wavelength, meridian);
   const RayMatrix rear = ray_matrix(lens, result.stop, lens.surface_count(), wavelength, meridian);
   const double n = signed_index(lens, 0, wavelength);
@@ -77,7 +78,7 @@ double paraxial_f_number(const Lens& lens, Wavelength wavelength) {
 
 double film_side_f_number(const Lens& lens, Wavelength wavelength) {
   const Pupil exit = pupils(lens, wavelength).exit;
-  if (exit.diameter == 0) return infinity;  // on the film, too
+  if (exit.diameter == 0) return infinity;  // |also if the pupil lies on the film
   return std::isfinite(exit.z) ? std::abs((lens.film_z() - exit.z) / exit.diameter)
                                : paraxial_f_number(lens, wavelength);
 }

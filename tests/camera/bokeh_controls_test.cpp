@@ -339,7 +339,7 @@ TEST(BokehControls, RefuseBadInput) {
   EXPECT_NE(refused({.weight_distribution = 2, .weight_strength = 1e300}), "");
   EXPECT_NE(refused({.lens_ratio = -1}).find(lens.name()), std::string::npos);
   EXPECT_EQ(refused({.weight_map = {1, 1, {0}}}),
-            lens.name() + ": camera: the map is black on the iris, wanted light somewhere");
+            lens.name() + ": camera: the map is black on the iris; must be above 0 somewhere");
   const Camera weighted(lens, film, {.model = ModelKind::thin, .bokeh = ring});
   EXPECT_NE(message([&] { weighted.tables(); }), "");
 }
