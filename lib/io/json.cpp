@@ -17,10 +17,10 @@
 namespace petzval::io_detail {
 namespace {
 
-constexpr std::int64_t largest_integer = std::int64_t{1} << 53;  // beyond it not every integer is a double
+constexpr std::int64_t largest_integer = std::int64_t{1} << 53;  // not every larger integer is a double
 constexpr const char* wanted_integer = "an integer up to 2^53";
 
-/// Strings of a document have any length; messages must not.
+/// Shortens text for messages: strings of a document may be long.
 std::string shortened(std::string_view text, std::size_t longest = 60) {
   if (text.size() <= longest) return std::string(text);
   return std::string(beginning(text, longest)) + "...";
@@ -31,7 +31,7 @@ constexpr std::string_view byte_order_mark = "\xEF\xBB\xBF";
 
 bool is_digit(char c) { return c >= '0' && c <= '9'; }
 
-/// True for words of numbers that JSON lacks: "Infinity", "NaN".
+/// True for words of non-finite numbers, which JSON lacks: "Infinity", "NaN".
 bool is_not_finite(std::string_view word) {
   if (word.starts_with('-') || word.starts_with('+')) word.remove_prefix(1);
   std::string lower(word);
@@ -74,7 +74,7 @@ class JsonEvents {
 };
 
 bool JsonEvents::number_float(double, const std::string& token) {
-  // Read the digits again: the parser's value depends on the decimal point of the C locale and hides an underflow.
+  // Read the digits again: the value of the parser depends on the decimal point of the C locale and hides an underflow.
   std::string digits = token;
   for (char& c : digits) {
     if (!is_digit(c) && c != '-' && c != '+' && c != 'e' && c != 'E') c = '.';
@@ -92,7 +92,7 @@ bool JsonEvents::parse_error(std::size_t, const std::string&, const nlohmann::js
   tokens.next();
   const std::string_view token = tokens.token();
   const bool overflow = dynamic_cast<const nlohmann::json::out_of_range*>(&error) != nullptr;
-  // Mistakes of people who type a lens: they are told the key, and the rule of its value.
+  // Common mistakes in lenses typed by hand: the message names the key and the rule of its value.
   if (tokens.separator() == ':' && (overflow || is_not_finite(token))) {
     reader_.assign(JsonWord{shortened(token)});
   }
@@ -120,7 +120,7 @@ void JsonTokens::next() {
   from_ = to_;
   skip_blanks();
   separator_ = 0;
-  // A second separator, or one behind an opening bracket, is not expected: it is a token of its own.
+  // An unexpected separator (a second one, or one after an opening bracket) is a token of its own.
   const bool after_bracket = before_ == "{" || before_ == "[" || before_.empty();
   if (from_ < text_.size() && (text_[from_] == ',' || text_[from_] == ':') && !after_bracket) {
     separator_ = text_[from_++];
@@ -152,14 +152,14 @@ std::string JsonTokens::line_and_column(std::size_t byte) const {
 
 namespace {
 
-/// The byte of a value by its path; nullopt if the text has no such value. The path of the document is "".
+/// Byte offset of the value at a path; nullopt if the text has no such value. The whole document has the path "".
 std::optional<std::size_t> find_in_json(std::string_view json, std::string_view path) {
   struct Level {
     bool list;
     std::size_t path_size, entries = 0;
   };
   std::vector<Level> levels;
-  std::string here;  // the path of the token
+  std::string here;  // path of the token
   JsonTokens tokens(json);
   for (tokens.next(); !tokens.token().empty(); tokens.next()) {
     const std::string_view token = tokens.token();
@@ -207,7 +207,7 @@ std::string describe(const JsonValue& value) {
 
 void JsonReader::parse(std::string_view json) {
   tokens_ = JsonTokens(json);
-  // nlohmann's parser takes a zero byte for the end of the text and ignores the rest.
+  // nlohmann's parser treats a zero byte as the end of the text and ignores the rest.
   if (const auto zero = json.find('\0'); zero != std::string_view::npos) {
     throw Error(where_ + ':' + tokens_.line_and_column(zero) + ": not JSON: a byte is 0; must be UTF-8");
   }
@@ -273,7 +273,7 @@ std::string json_text(const std::string& text) {
   try {
     return nlohmann::json(text).dump();
   } catch (const nlohmann::json::exception&) {
-    throw Error("a string of the lens is not UTF-8, wanted UTF-8 to write JSON");
+    throw Error("a string of the lens is not UTF-8; must be UTF-8 to write JSON");
   }
 }
 

@@ -7,8 +7,8 @@
 
 namespace petzval::io_detail {
 
-/// The lens with the apertures that its file lacks (with_apertures); unchanged if it has no index at its own
-/// wavelength, which compile() refuses.
+/// The lens with the apertures that are missing in its file (with_apertures). Unchanged if a medium has no index at the
+/// lens's wavelength, which compile() refuses.
 PETZVAL_API Prescription with_missing_apertures(Prescription lens, const GlassCatalogue* glasses = nullptr);
 
 }  // namespace petzval::io_detail

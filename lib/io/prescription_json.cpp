@@ -53,10 +53,10 @@ enum class Place {
   new_medium,
 };
 
-/// What a list holds: a place, or strings where there is none.
+/// Kind of the entries of a list; nullopt for strings.
 struct ListOf {
   std::optional<Place> entry;
-  const char* word;  ///< for one entry in messages
+  const char* word;  ///< name of an entry in messages
 };
 
 constexpr std::optional<ListOf> list_of(Place place) {
@@ -100,9 +100,9 @@ class Reader : public io_detail::JsonReader {
   };
   struct Open {
     Place place;
-    std::size_t byte = 0;     ///< of its bracket
-    std::uint32_t seen = 0;   ///< keys met, by number in the table of the place
-    std::size_t entries = 0;  ///< of a list
+    std::size_t byte = 0;     ///< of the opening bracket
+    std::uint32_t seen = 0;   ///< bits of the keys so far, by index in the table of the place
+    std::size_t entries = 0;  ///< number of entries of a list
   };
 
   static std::span<const Key> keys(Place place);
@@ -132,8 +132,8 @@ class Reader : public io_detail::JsonReader {
 
   Prescription lens_;
   std::vector<Open> open_;
-  int key_ = -1;  ///< the key just read, by number in the table of the innermost place
-  int gap_ = 0;   ///< the key just read among the variable gaps
+  int key_ = -1;  ///< the last key, by index in the table of the innermost place
+  int gap_ = 0;   ///< the last key among the variable gaps
 };
 
 std::span<const Reader::Key> Reader::keys(Place place) {
@@ -240,7 +240,7 @@ std::span<const Reader::Key> Reader::keys(Place place) {
       {"semi_diameter", [](R& r, V& v) { r.change().semi_diameter = r.number_of(v); }},
       {"medium", nullptr, Place::new_medium},
   }};
-  // The keys of the medium come first: object_space has only these.
+  // The keys of the medium come first: they are the only keys of object_space.
   static constexpr std::array<Key, 16> surface = {{
       {"glass", [](R& r, V& v) { r.medium().glass = r.maybe_text(v); }},
       {"catalogue", [](R& r, V& v) { r.medium().catalogue = r.maybe_text(v); }},
@@ -395,7 +395,7 @@ void Reader::open(bool list) {
     if (is_list(*inner) != list) refuse_kind(found, is_list(*inner) ? "a list" : "an object");
   }
   if ((*inner == Place::zoom || *inner == Place::configurations) && !lens_.configurations.empty()) {
-    fail(R"("zoom" beside "configurations"; must be one of them)");
+    fail(R"("zoom" and "configurations" are given; must be one of the two)");
   }
   open_.push_back({*inner, byte()});
   key_ = -1;
@@ -423,7 +423,7 @@ int Reader::whole_number(const JsonValue& value, int least, int most) const {
 
 double Reader::radius_of(const JsonValue& value) const {
   if (const double* radius = std::get_if<double>(&value)) return *radius;
-  refuse(describe(value), "a number; 0 is a plane");
+  refuse(describe(value), "a number (0 for a plane)");
 }
 
 template <class Enum, std::size_t count>
@@ -451,7 +451,7 @@ void Reader::close() {
   open_.pop_back();
 }
 
-/// The path in the document that a message of validate() names: "surfaces[1].nd" for "surface 1: nd is 9".
+/// The path in the document named by a message of validate(): "surfaces[1].nd" for "surface 1: nd = 9".
 std::string path_of(std::string_view message) {
   std::string path;
   const auto add = [&path](std::string_view key) { path += (path.empty() ? "" : ".") + std::string(key); };
@@ -488,7 +488,7 @@ Prescription read_prescription(const std::filesystem::path& file) {
   const std::size_t first = text.find_first_not_of(" \t\r\n");
   if (first != std::string::npos && text[first] != '{') {
     throw Error(file.string() +
-                ": is no JSON; must be a lens of petzval (read_lens() reads the files of other programs)");
+                ": is not JSON; must be a lens file of petzval (read_lens() reads files of other programs)");
   }
   return io_detail::with_missing_apertures(parse_prescription(text, file.string()));
 }

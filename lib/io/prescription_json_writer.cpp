@@ -53,7 +53,7 @@ std::string surface(const SurfaceRow& row) {
   return text + "}";
 }
 
-/// The entries of a list, one a line, indented by six blanks.
+/// The entries of a list, one per line, indented by six blanks.
 template <class Entry, class Text>
 std::string list(const std::vector<Entry>& entries, const Text& text_of) {
   if (entries.empty()) return "[]";

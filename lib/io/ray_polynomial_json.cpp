@@ -32,7 +32,7 @@ Domain::Section& along_x(Domain& domain) {
   return *domain.along_x;
 }
 
-/// A key and the member that holds its number.
+/// A key and the member for its number.
 template <class Part>
 struct Number {
   std::string_view name;
@@ -48,7 +48,7 @@ constexpr std::array<Number<Domain>, 8> domain_numbers{{
     {"pupil_shift_x", [](Domain& d) -> double& { return along_x(d).pupil_shift; }},
     {"pupil_radius_x_mm", [](Domain& d) -> double& { return along_x(d).pupil_radius; }},
 }};
-/// The last ones, of polynomials with mirror symmetry: a file has both or neither.
+/// Number of keys at the end that belong to polynomials with mirror symmetry: a file has both or neither.
 constexpr std::size_t mirror_numbers = 2;
 constexpr std::array<Number<Fit>, 5> fit_numbers{{
     {"wavelength_nm", [](Fit& f) -> double& { return f.wavelength_nm; }},
@@ -68,7 +68,7 @@ constexpr std::array<List, 4> fit_lists{{
     {"offset_by_pupil", &Fit::offset_by_pupil},
 }};
 
-/// The keys of a file and of a fit, in the order in which they are written.
+/// The keys of a file and of a fit, in the order of writing.
 constexpr std::array<std::string_view, 11> file_keys{"format",
                                                      domain_numbers[0].name,
                                                      domain_numbers[1].name,
@@ -80,7 +80,7 @@ constexpr std::array<std::string_view, 11> file_keys{"format",
                                                      domain_numbers[7].name,
                                                      "degree",
                                                      "fits"};
-/// Those of mirror symmetry, as bits of file_keys.
+/// The keys of mirror symmetry, as bits of file_keys.
 constexpr std::uint32_t mirror_keys = 0b11 << (1 + domain_numbers.size() - mirror_numbers);
 constexpr std::array<std::string_view, 9> fit_keys{fit_numbers[0].name, fit_numbers[1].name, fit_numbers[2].name,
                                                    fit_numbers[3].name, fit_numbers[4].name, fit_lists[0].name,
@@ -97,16 +97,16 @@ class Reader : public io_detail::JsonReader {
  private:
   struct Open {
     Place place;
-    std::size_t byte = 0;    ///< of its bracket
-    std::uint32_t seen = 0;  ///< keys met, by number
-    std::size_t key = 0;     ///< the one just read
+    std::size_t byte = 0;    ///< of the opening bracket
+    std::uint32_t seen = 0;  ///< bits of the keys so far, by index
+    std::size_t key = 0;     ///< the last key
   };
 
   static std::span<const std::string_view> keys(Place place) {
     if (place == Place::file) return file_keys;
     return fit_keys;
   }
-  /// The list or object that must come next; nothing for a plain value.
+  /// The list or object that must come next; nullopt if a plain value must come.
   std::optional<Place> wanted() const;
 
   void key(const std::string& name) override;
@@ -135,7 +135,7 @@ void Reader::key(const std::string& name) {
   Open& object = open_.back();
   const auto known = keys(object.place);
   const auto found = std::find(known.begin(), known.end(), name);
-  const std::uint32_t seen = std::exchange(object.seen, 0);  // messages name this key, not the one before
+  const std::uint32_t seen = std::exchange(object.seen, 0);  // messages name this key, not the previous key
   if (found == known.end()) {
     std::string all;
     for (const std::string_view k : known) all += (all.empty() ? "" : ", ") + std::string(k);

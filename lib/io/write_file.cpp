@@ -33,7 +33,7 @@ void check(bool done) {
   if (!done) throw std::system_error(errno, std::generic_category());
 }
 
-/// What the two kinds of systems call by different names. All return what write(2) and its like do, and set errno.
+/// Functions whose names differ between systems. All return the results of write(2) and its relatives, and set errno.
 #if defined(_WIN32)
 
 using Mode = int;
@@ -41,7 +41,7 @@ int open_file(const fs::path& file, int flags, Mode mode) {
   return ::_wopen(file.c_str(), flags | _O_BINARY | _O_NOINHERIT, mode & (_S_IREAD | _S_IWRITE));
 }
 int sync(int descriptor) { return ::_commit(descriptor); }
-std::optional<Mode> mode_of(const fs::path&) { return {}; }  // files have lists of rights, which folders hand on
+std::optional<Mode> mode_of(const fs::path&) { return {}; }  // access rights are lists that folders pass on
 void set_mode(int, Mode) {}
 int remove_file(const fs::path& file) { return ::_wunlink(file.c_str()); }
 
@@ -81,18 +81,18 @@ class OpenFile {
     }
   }
 
-  /// Network file systems report some errors only here.
+  /// Network file systems report some errors only on closing.
   void close() { check(::close(std::exchange(descriptor_, -1)) == 0); }
 
  private:
   int descriptor_;
 };
 
-/// A new file in the folder of another, whose place it may take. Its name is its own: O_EXCL creates no file where
-/// there is one, and follows no link.
+/// A new file in the folder of another file, which it may replace. Its name is unique: O_EXCL neither opens an existing
+/// file nor follows a link.
 class NewFile {
  public:
-  /// Has the mode of the file to replace, or that of any new file.
+  /// Creates the file with the mode of the file to replace, or with the default mode.
   explicit NewFile(const fs::path& old) : file_(created(old)) {}
   NewFile(const NewFile&) = delete;
   NewFile& operator=(const NewFile&) = delete;
@@ -102,7 +102,7 @@ class NewFile {
 
   void write(std::string_view bytes) {
     file_.write(bytes);
-    check(sync(file_.descriptor()) == 0 || errno == EINVAL);  // not every file system can
+    check(sync(file_.descriptor()) == 0 || errno == EINVAL);  // some file systems cannot sync
     file_.close();
   }
 
@@ -120,7 +120,7 @@ class NewFile {
       const int descriptor = open_file(name_, O_WRONLY | O_CREAT | O_EXCL, known.value_or(0666));
       if (descriptor < 0 && errno == EEXIST) continue;
       check(descriptor >= 0);
-      if (known) set_mode(descriptor, *known);  // the mask took bits from it
+      if (known) set_mode(descriptor, *known);  // the umask removed bits
       return descriptor;
     }
   }
@@ -129,7 +129,7 @@ class NewFile {
   OpenFile file_;
 };
 
-/// The path that a new file may replace, at the end of links; nothing for a pipe or a device.
+/// The path that a new file may replace, after following links; nullopt for a pipe or a device.
 std::optional<fs::path> place(fs::path file) {
   const auto type = fs::status(file).type();
   if (type != fs::file_type::regular && type != fs::file_type::not_found) return {};
@@ -140,9 +140,9 @@ std::optional<fs::path> place(fs::path file) {
 }  // namespace
 
 void write_file(std::string_view bytes, const fs::path& file) {
-  // The system would end the name there, and write over another file.
+  // The system would cut the name at a zero and overwrite another file.
   if (file.native().find(fs::path::value_type{}) != fs::path::string_type::npos) {
-    throw Error(file.string() + ": the name has a zero in it, wanted one without");
+    throw Error(file.string() + ": the name contains a zero byte; must not");
   }
   core_detail::refuse_folder(file, "the name of a file");
   try {
@@ -158,7 +158,7 @@ void write_file(std::string_view bytes, const fs::path& file) {
     }
   } catch (const std::system_error& error) {
     throw Error(file.string() + ": cannot be written (" + error.code().message() +
-                "), wanted an existing, writable folder with space");
+                "); must be in an existing, writable folder with space");
   }
 }
 
@@ -178,7 +178,8 @@ void write_floats(std::span<const float> numbers, const std::filesystem::path& f
 std::vector<float> read_floats(const std::filesystem::path& file) {
   const std::string bytes = read_file(file, "a file of floats");
   if (bytes.size() % sizeof(float) != 0) {
-    throw Error(file.string() + ": found " + std::to_string(bytes.size()) + " bytes, wanted whole floats of 4");
+    throw Error(file.string() + ": size = " + std::to_string(bytes.size()) +
+                " bytes; must be a multiple of 4 (floats)");
   }
   std::vector<float> numbers(bytes.size() / sizeof(float));
   std::memcpy(numbers.data(), bytes.data(), bytes.size());

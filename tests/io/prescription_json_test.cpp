@@ -421,7 +421,7 @@ TEST(PrescriptionJson, ValuesThatNoLensHas_AreFoundInConfigurationsAndDesign) {
   };
   EXPECT_TRUE(positioned(refused(R"("f_number": -1)"), "x.json", {"f_number", "-1"}, "2:13"));
   EXPECT_TRUE(positioned(refused(R"("design": {"wavelengths": [{"nm": 550}, {"nm": 1}]})"), "x.json",
-                         {"wavelength 1", "1"}, "2:41"));
+                         {"wavelength 1", "1"}, "2:48"));
   EXPECT_TRUE(positioned(refused(R"("configurations": [{"name": "a"}, {"name": "b", "changes": [{"surface": 4}]}])"),
                          "x.json", {"configuration 1", "4"}, "2:35"));
 }
