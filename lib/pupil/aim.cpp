@@ -32,22 +32,22 @@ struct Slope {
   Slope operator*(double s) const noexcept { return {x * s, y * s}; }
 };
 
-/// A ray that left the stop and the lens, and its error: the components, in the meridian of the point and across it, of
-/// the sine of the angle between its direction and that to the point.
+/// A ray behind the stop and the lens. The error is the sine of the angle between `direction` and the direction to the
+/// point: its components in the meridian of the point (along) and perpendicular to the meridian (across).
 template <class T>
 struct Departure {
   Vec<T> origin, direction, wanted;
   T along, across;
 };
 
-/// Solves for the rays of one point, of the scene or the film, at one wavelength. Lengths at the stop are in mm here.
+/// Solves for the rays of one scene or film point at one wavelength. Lengths at the stop are in mm in this class.
 class Aimer {
  public:
   Aimer(const Lens& lens, const PupilPlane& plane, std::size_t wavelength)
       : lens_(lens), plane_(plane), wavelength_(wavelength) {
     const Pupils p = pupils(lens, wavelength);
     stop_ = p.stop;
-    // Rays to the film leave the stop in the direction of light, rays to the scene against it.
+    // Rays to the film leave the stop in the direction of light; rays to the scene leave in the opposite direction.
     departure_ = {.wavelength = wavelength, .apertures = false};
     arrival_ = {.travel = plane.travel(), .wavelength = wavelength, .apertures = false};
     if (plane.travel() == Travel::to_film) {
@@ -69,12 +69,12 @@ class Aimer {
     outwards_ = across > 0 ? Slope{towards.x / across, towards.y / across} : Slope{0, 1};
     lateral_ = {outwards_.y, -outwards_.x, 0};
     meridian_ = glm::cross(lateral_, towards);
-    // A stop of radius 0 is hit within rounding.
+    // A stop of radius 0 counts as hit within rounding.
     acceptance_ = 1e-6 * std::max(unit(), 1e-3 * pupil_detail::half_height(lens, 0, p.entrance));
     if (const auto axis = differentiated({}, {})) mirrored_ = mirrored(*axis);
   }
 
-  /// The unit of a StopPoint, mm: the semi-diameter of the stop, 1 where it has none.
+  /// The unit of a StopPoint, mm: the semi-diameter of the stop, or 1 if the stop has no rim.
   double unit() const noexcept {
     const double semi_diameter = lens_.surfaces()[stop_].semi_diameter;
     return semi_diameter > 0 && std::isfinite(semi_diameter) ? semi_diameter : 1;
@@ -133,7 +133,7 @@ class Aimer {
     return leave(from, Dual(s.x, 0), Dual(s.y, 1));
   }
 
-  /// Whether directions in object space turn the other way round when those at the stop turn.
+  /// True if directions in object space rotate in the opposite sense when directions at the stop rotate.
   static bool mirrored(const Departure<Dual>& ray) noexcept {
     const Vec<Dual> e = ray.direction - ray.wanted;
     const auto part = [&](int i) { return Vec<double>{e.x.v[i], e.y.v[i], e.z.v[i]}; };
@@ -142,8 +142,8 @@ class Aimer {
     return dot(Vec<double>{a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x}, d) < 0;
   }
 
-  /// Newton's iteration, damped: no step ends outside the lens or farther from the point. Far beyond their rims
-  /// surfaces bend rays back, and a second, mirrored ray has the same angle; it does not count.
+  /// Damped Newton iteration: every step reduces the error and keeps the ray inside the lens. Far outside their rims
+  /// surfaces bend rays back, so that a second, mirrored ray has the same angle; the mirrored ray is rejected.
   std::optional<Slope> newton(const StopPoint& from, Slope slope) const noexcept {
     constexpr double rounding = 1e-15, good = 1e-9;
     const auto at = [&](const Slope& s) { return differentiated(from, s); };
@@ -169,11 +169,11 @@ class Aimer {
     return miss(*now) < good && mirrored(*now) == mirrored_ ? std::optional(slope) : std::nullopt;
   }
 
-  /// The largest slope in the meridian of the field at which the ray from a place on the stop leaves the lens at a
-  /// smaller angle to the axis than the point has. The angle grows with the slope until the ray misses a surface, which
-  /// counts as too large an angle.
+  /// The largest slope in the meridian of the field for which the ray from a point on the stop leaves the lens at a
+  /// smaller angle to the axis than the angle of the scene or film point. The angle grows with the slope until the ray
+  /// misses a surface; a miss counts as too large an angle.
   std::optional<Slope> bracket(const StopPoint& from) const noexcept {
-    // The angle of the point less that of the ray, rad.
+    // Angle of the point minus angle of the ray, rad.
     const auto missing_angle = [&](double slope) {
       const auto d = leave(from, outwards_.x * slope, outwards_.y * slope);
       const auto angle = [&](const Vec<double>& v) {
@@ -198,12 +198,12 @@ class Aimer {
     return {};
   }
 
-  /// The ray turned round and traced in its own direction of travel.
+  /// Reverses the ray and traces it in its own direction of travel.
   AimedRay tested(const StopPoint& target, const Slope& slope) const noexcept {
     const auto out = leave(target, slope.x, slope.y);
     if (!out) return {};
-    // It starts at its point nearest to the centre of the pupil: a steep field meets the plane of the pupil far off,
-    // where rounding is large beside a small stop.
+    // The origin is the point of the ray nearest to the centre of the pupil: rays of a steep field meet the pupil plane
+    // far away, with rounding errors that are large compared with a small stop.
     const Vec3<double> exit = kernel::to_public(out->origin), backwards = kernel::to_public(out->direction);
     const Vec3<double> start = exit + backwards * glm::dot(plane_.centre() - exit, backwards);
     AimedRay result;
@@ -231,12 +231,12 @@ class Aimer {
   const Lens& lens_;
   const PupilPlane& plane_;
   std::size_t wavelength_, stop_ = 0;
-  double from_stop_, at_point_;               // sense along z of rays on their way to the point
+  double from_stop_, at_point_;               // sense along z of rays towards the point
   kernel::SurfaceRange departure_, arrival_;  // from the stop to the point; from the point to the stop
   Slope outwards_;                            // unit vector across the axis, towards the point
-  Vec3<double> lateral_, meridian_;  // unit vectors across the line to the point: across the meridian, and within it
-  double acceptance_;                // how far from its place on the stop a ray may arrive, mm
-  bool mirrored_ = false;            // near the axis
+  Vec3<double> lateral_, meridian_;           // unit vectors across the line to the point; the second in the meridian
+  double acceptance_;                         // largest accepted distance from the target on the stop, mm
+  bool mirrored_ = false;                     // value of mirrored() on the axis
 };
 
 }  // namespace

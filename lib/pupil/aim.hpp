@@ -8,8 +8,8 @@
 
 namespace petzval::pupil_detail {
 
-/// `aim` for the point of a plane, of the scene or the film: the ray runs from it to the stop, and `end` lies beyond
-/// the other side of the lens.
+/// Aims a ray from the scene or film point of a plane at a point on the stop. `end` lies behind the opposite side of
+/// the lens.
 PETZVAL_API AimedRay aim(const Lens& lens, const PupilPlane& plane, const StopPoint& target, Wavelength wavelength);
 
 }  // namespace petzval::pupil_detail

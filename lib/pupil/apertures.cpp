@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// compile() is defined here and not in the module lens: the apertures that a prescription lacks are found by aimed
-// rays.
+// compile() is defined here and not in the module lens, because aimed rays find apertures that a prescription lacks.
 #include "petzval/pupil/apertures.hpp"
 
 #include <algorithm>
@@ -43,7 +42,7 @@ void for_heights(const Lens& lens, const Ray<double>& ray, const auto& take) {
                 });
 }
 
-/// The lens with its stop as large as the axial beam that the other apertures and the edges pass, if they limit it.
+/// The lens with a stop as large as the axial beam that the other apertures and the edges pass, if they limit the beam.
 Lens with_widest_stop(const Lens& lens, const Prescription& rows) {
   if (!lacks_aperture(rows.surfaces[*lens.stop()]) || !has_pupils(lens)) return lens;
   const PupilPlane axis(lens, {.z = object_z(rows)});
@@ -64,7 +63,7 @@ Lens with_widest_stop(const Lens& lens, const Prescription& rows) {
   return height > 0 ? with_semi_diameter(lens, *lens.stop(), height) : lens;
 }
 
-/// The lens with its stop as large as the prescription declares the beam, if the stop is marked and has no aperture.
+/// The lens with the stop set to the declared beam, if the stop is marked and has no aperture.
 Lens with_declared_stop(const Lens& lens, const Prescription& rows) {
   if (!lens.stop() || std::isfinite(lens.data().rims[*lens.stop()])) return lens;
   std::optional<double> f_number = rows.f_number;
@@ -78,7 +77,7 @@ Lens with_declared_stop(const Lens& lens, const Prescription& rows) {
   try {
     return with_f_number(lens, *f_number);
   } catch (const Error&) {
-    return lens;  // rays of this height do not reach the stop
+    return lens;  // rays at the height of this f-number do not reach the stop
   }
 }
 
@@ -87,8 +86,8 @@ class BeamHeights {
  public:
   explicit BeamHeights(const Lens& lens) : lens_(lens), heights_(lens.surface_count(), 0.0) {}
 
-  /// Takes the beam of a field: rays through the rim of the stop, or as near to it as rays pass. mirrored: the beam is
-  /// symmetric about its meridian, x = 0.
+  /// Adds the beam of a field: rays through the rim of the stop, or through the last point towards the rim that rays
+  /// pass. mirrored: true if the beam is symmetric about the meridian x = 0.
   void add(const FieldPoint& point, bool mirrored) {
     const PupilPlane plane(lens_, point);
     if (!pupil_detail::aim(lens_, plane, {}, {})) return;
@@ -132,7 +131,7 @@ class BeamHeights {
   std::vector<double> heights_;
 };
 
-/// Semi-diameters of all surfaces: computed from the beam where the prescription states none.
+/// Semi-diameters of all surfaces; computed from the beam if missing in the prescription.
 std::vector<double> rims_of(const Lens& given, const Prescription& rows) {
   const Lens lens = with_declared_stop(given, rows);
   std::vector<double> rims = lens.data().rims;
@@ -149,7 +148,7 @@ std::vector<double> rims_of(const Lens& given, const Prescription& rows) {
       beam.add({.field_rad = part * half, .z = z, .azimuth_rad = std::numbers::pi / 4}, false);
     }
   } catch (const Error&) {
-    // A field angle has no meaning, or no stop limits the beam.
+    // Field angles are undefined, or no stop limits the beam: no rims are computed.
   }
   for (std::size_t i = 0; i < rims.size(); ++i) {
     const bool computed = lacks_aperture(rows.surfaces[i]) && lens.stop() != i &&
@@ -186,7 +185,7 @@ std::optional<double> declared_half_field(const Prescription& rows, const Lens& 
 
 Lens compile(const Prescription& prescription, std::span<const double> wavelengths_nm, const CompileOptions& options) {
   const Lens given = lens_detail::compile_as_given(prescription, wavelengths_nm, options);
-  // A configuration may add apertures, and takes none away.
+  // A configuration may add apertures, but does not remove any.
   if (std::ranges::none_of(prescription.surfaces, lacks_aperture)) return given;
   const Prescription rows = configured(prescription, options.configuration);
   if (std::ranges::none_of(rows.surfaces, lacks_aperture)) return given;

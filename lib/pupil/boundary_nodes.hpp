@@ -8,8 +8,8 @@
 
 namespace petzval::pupil_detail {
 
-/// Calls visit(place, area, weight) at N Gauss-Legendre nodes between the edges of a pupil in each direction. They lie
-/// in the squared radius, of which equal steps are equal areas; area * weight is their share of the pupil, in squared
+/// Calls visit(place, area, weight) at N Gauss-Legendre nodes between the edges of each span of a pupil. The nodes lie
+/// in the squared radius, in which equal steps have equal areas; area * weight is the fraction of the pupil in squared
 /// radii.
 template <int N, class Visit>
 void for_each_node(const PupilRegion& region, const Visit& visit) {

@@ -14,7 +14,7 @@
 namespace petzval::pupil_detail {
 namespace {
 
-/// Of ends, in half axes.
+/// Tolerance of span ends, in half axes.
 constexpr double tolerance = 2e-5;
 
 class Search {
@@ -45,7 +45,7 @@ class Search {
     return result;
   }
 
-  /// Their parts that obscurations leave.
+  /// The found pupils minus the obscurations, which `clearances` includes.
   std::vector<PupilRegion> obscured_regions(const PlaceClearances& clearances) {
     const std::vector<PupilRegion> open = regions();
     clearances_ = &clearances;
@@ -61,7 +61,7 @@ class Search {
     return result;
   }
 
-  /// Looks for pupils of which nothing is known.
+  /// Finds pupils without a prediction from their neighbours.
   void in_full(std::span<const std::uint32_t> which) {
     std::vector<std::uint32_t> seen, rings;
     look_along_y(which, seen, rings);
@@ -76,7 +76,7 @@ class Search {
     outwards_far(rings, true);
   }
 
-  /// Of which points anything passes.
+  /// True for each point with at least one ray that passes.
   std::vector<bool> lit_points() {
     std::vector<std::uint32_t> all(points_.size()), seen, rings;
     std::iota(all.begin(), all.end(), 0u);
@@ -85,8 +85,8 @@ class Search {
     return lit;
   }
 
-  /// Looks for pupils about halfway between two that were found: next to where these have their ends. Those that are
-  /// not there are looked for in full.
+  /// Finds pupils about halfway between two known pupils: the search starts from the mean of their ends. Pupils that
+  /// are not near this prediction are searched in full.
   void between(std::span<const Halfway> which) {
     std::vector<std::uint32_t> points, in_parts;
     for (const Halfway& place : which) {
@@ -111,7 +111,7 @@ class Search {
       }
       points.push_back(place.point);
     }
-    // Some at a time, so that memory is used again.
+    // In batches of 8, to reuse buffers.
     constexpr std::size_t some = 8;
     std::vector<std::uint32_t> lost;
     for (std::size_t begin = 0; begin < points.size(); begin += some) {
@@ -131,8 +131,8 @@ class Search {
  private:
   enum class Reach { near, far };
 
-  /// Finds outer ends of which the slope of the clearance is expected: where they are, nearly, by that slope, else by
-  /// one Newton step and one secant. by_slope_ tells for which of them this served.
+  /// Finds outer ends whose clearance has a predicted slope: directly by that slope if the end is close enough, else by
+  /// one Newton step and one secant step. by_slope_ is true for the ends that were found in this way.
   void step_to_ends(std::span<const std::uint32_t> which, double beside) {
     struct Step {
       std::uint32_t point;
@@ -186,7 +186,7 @@ class Search {
     }
   }
 
-  /// Finds the ends of some pupils next to where they are expected. Returns those that have none there.
+  /// Finds the ends of some pupils close to their predicted positions. Returns the pupils that were not found.
   std::vector<std::uint32_t> settle(std::span<const std::uint32_t> which) {
     constexpr double beside = 0.01;
     step_to_ends(which, beside);
@@ -232,8 +232,8 @@ class Search {
     return lost;
   }
 
-  /// Moves the sides of brackets outwards where the end does not lie between them, each time twice as far. Returns
-  /// those for which this does not help.
+  /// Moves both sides of each bracket that does not enclose its end, twice as far in every round. Returns the brackets
+  /// that still enclose no end.
   std::vector<Bracket> widened(std::vector<Bracket>& brackets, const std::vector<Line>& lines) {
     std::vector<std::size_t> open(brackets.size());
     std::iota(open.begin(), open.end(), std::size_t{0});
@@ -264,17 +264,17 @@ class Search {
     return lost;
   }
 
-  /// Extents along y, as along_y(). Returns the points of which nothing is seen.
+  /// Extents along y, as along_y(), in finer and finer steps. Returns the points without any ray that passes.
   std::vector<std::uint32_t> look_along_y(std::span<const std::uint32_t> which, std::vector<std::uint32_t>& seen,
                                           std::vector<std::uint32_t>& rings) {
-    // Where nothing is found the pupil may be far off its place, or a sliver: once more on all of the line, and finer.
+    // The pupil may be far from its predicted position, or a sliver: repeat on the whole line and in smaller steps.
     auto dark = along_y(which, Reach::near, 128, seen, rings);
     dark = along_y(dark, Reach::far, 256, seen, rings);
     return along_y(dark, Reach::far, 1024, seen, rings);
   }
 
-  /// Extents along y; points of which something is seen are added to `seen`, of these those with an obscuration to
-  /// `rings`. Returns the others, and those that reach beyond what is near.
+  /// Extents along y. Appends points with rays that pass to `seen`, and also to `rings` if they have an obscuration.
+  /// Returns the other points, including points whose extent exceeds the near range.
   std::vector<std::uint32_t> along_y(std::span<const std::uint32_t> which, Reach reach, int samples,
                                      std::vector<std::uint32_t>& seen, std::vector<std::uint32_t>& rings) {
     std::vector<Line> lines;
@@ -296,7 +296,7 @@ class Search {
       const double half = lines[i].dy, low = lines[i].y + half * e.from, high = lines[i].y + half * e.to;
       found.middle = {lines[i].x, (low + high) / 2};
       found.half_axes[1] = (high - low) / 2;
-      // What is left of a ring is described about the ring's own middle, though that is dark.
+      // A clipped ring keeps the middle of the ring, although the middle is dark.
       if (g.ring && g.y > low - g.radius && g.y < high + g.radius) {
         found.middle[1] = g.y;
         found.half_axes[1] = std::max(high - g.y, g.y - low);
@@ -307,7 +307,7 @@ class Search {
     return left;
   }
 
-  /// The part of each line along y that counts: the one about the chief ray.
+  /// Selects the component of each line along y that contains the chief ray.
   PartOfLine part_along_y(std::span<const std::uint32_t> which, const std::vector<Line>& lines) const {
     if (!connected_) return {};
     return [this, which, &lines](std::size_t l) -> std::optional<double> {
@@ -316,8 +316,8 @@ class Search {
     };
   }
 
-  /// Extents along x, from the middle of those along y; of tiny pupils first near it, as ends are found in parts of the
-  /// line.
+  /// Extents along x through the middle of the extents along y. Tiny pupils are searched close to the middle first, as
+  /// the tolerance of the ends is relative to the length of the line.
   void across(std::span<const std::uint32_t> which, Reach reach) {
     constexpr double tiny = 1e-4, near = 32;
     std::vector<Line> lines;
@@ -340,7 +340,7 @@ class Search {
       const PupilGuess& g = points_[which[i]];
       found.half_axes[0] = found.half_axes[1];
       if (!e.any) continue;
-      if (g.ring) {  // the line may miss the ring's widest place
+      if (g.ring) {  // the line may miss the widest part of the ring
         found.half_axes[0] = std::max(found.half_axes[1], lines[i].dx * e.to);
         continue;
       }
@@ -351,14 +351,14 @@ class Search {
     if (!far.empty()) across(far, Reach::far);
   }
 
-  /// From the middle in a direction, in coordinates in which the pupil is about a unit disc.
+  /// Line from the middle in a direction, in coordinates in which the pupil is roughly a unit disc.
   Line outward(std::uint32_t point, std::size_t direction) const noexcept {
     const Found& found = found_[point];
     const Vec2<double> half = found.half_axes * units_[direction];
     return {point, found.middle.x, found.middle.y, half.x, half.y};
   }
 
-  /// All ends along some of the directions: each `apart`-th of those traced, and the last.
+  /// All ends along every `apart`-th traced direction and along the last direction.
   void outwards(std::span<const std::uint32_t> which, int samples, double reach, std::size_t apart = 1) {
     std::vector<std::size_t> looked;
     for (std::size_t k = 0; k < traced_; ++k) {
@@ -376,7 +376,7 @@ class Search {
       if (!e.any) continue;
       Found& found = found_[lines[i].point];
       const std::size_t direction = looked[i % looked.size()];
-      // A dark middle is the obscuration that counts.
+      // If the middle is dark, the dark interval around it is the obscuration.
       const bool dark = e.from > 0, both = dark && e.obscured_from < e.obscured_to;
       for (const std::size_t k : {direction, directions_ - 1 - direction}) {
         if (k != direction && !mirrored_) break;
@@ -389,15 +389,15 @@ class Search {
     }
   }
 
-  static constexpr double near_reach = 1.6;  // of outward lines, in half axes
+  static constexpr double near_reach = 1.6;  // length of outward lines, in half axes
 
-  /// Whether ends in a direction are those of a disc, or of a ring.
+  /// True if the ends in a direction are typical for a disc, or for a ring if `ring`.
   static bool is_usual(const Found::Ends& e, bool ring) noexcept {
     return e.to > 0 && e.to < near_reach - 0.01 && (ring || e.obscured_from == e.obscured_to);
   }
 
-  /// The ends in every direction, not far beyond the half axes: first along a few directions and, where they show a
-  /// disc or a ring, along the others next to where those have them.
+  /// The ends in every direction, up to near_reach: first along a few directions; if these show a disc or a ring, then
+  /// along the others, close to interpolated positions.
   void outwards_near(std::span<const std::uint32_t> which, int samples, bool rings) {
     constexpr std::size_t apart = 4, worth_it = 16;
     if (traced_ < worth_it) {
@@ -411,7 +411,7 @@ class Search {
     outwards(others, samples, near_reach);
   }
 
-  /// Expects ends between those of some directions. False: they are not alike.
+  /// Predicts ends between every `apart`-th direction by interpolation. Returns false if their ends differ in kind.
   bool fill_between(Found& found, std::size_t apart, bool ring) const {
     if (!found.gaps.empty()) return false;
     for (std::size_t k = 0; k + 1 < traced_; k += apart) {
@@ -430,7 +430,7 @@ class Search {
     return true;
   }
 
-  /// Looks for pupils of an unusual shape farther out, in steps as long as those for discs.
+  /// Searches pupils of an unusual shape farther out, with the same step length as for discs.
   void outwards_far(std::span<const std::uint32_t> which, bool rings) {
     std::vector<std::uint32_t> unusual;
     for (const std::uint32_t p : which) {
@@ -450,7 +450,7 @@ class Search {
   const PlaceClearances* clearances_;
   const ConnectedPupils* connected_;
   std::vector<Found> found_;
-  std::vector<Vec2<double>> units_;  // of the directions
+  std::vector<Vec2<double>> units_;  // unit vectors of the directions
   std::vector<bool> by_slope_;
 };
 
@@ -465,7 +465,7 @@ std::vector<PupilRegion> find_regions(std::span<const PupilGuess> points, const 
     std::vector<Halfway> halfway;
     std::vector<std::uint32_t> full;
     for (const Halfway& place : round) {
-      // Between two dark points it is dark.
+      // A point between two dark points is dark.
       const bool before = search.lit(place.before), after = search.lit(place.after);
       if (before && after) {
         halfway.push_back(place);

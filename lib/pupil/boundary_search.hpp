@@ -14,37 +14,40 @@
 
 namespace petzval::pupil_detail {
 
-/// Where to look for the pupil of a point: first where it is expected, near (x, y), then along a line across the whole
-/// part of the plane that is in question.
+/// Predicted position of the pupil of a point. The search looks near (x, y) first, then along a line across the whole
+/// searched part of the plane.
 struct PupilGuess {
   double x = 0, low = -1, high = 1;  ///< the line runs from (x, low) to (x, high)
-  double radius = 1;                 ///< about that of the pupil
-  double y = 0, near = 0;            ///< the search begins between y - near and y + near; 0: nothing is expected
-  bool ring = false;  ///< the lens has a central obscuration: the pupil may be what is left of a ring about (x, y)
+  double radius = 1;                 ///< approximate radius of the pupil
+  double y = 0, near = 0;            ///< the search begins between y - near and y + near; near = 0: no prediction
+  bool ring = false;                 ///< true if the lens has a central obscuration: the pupil may be a clipped ring
 };
 
-/// Makes the pupils of a lens connected sets: of several parts that pass, the part about the chief ray counts.
+/// Makes the pupils of a lens connected: only the component around the chief ray is kept.
 struct ConnectedPupils {
-  /// Place of the chief ray of a point; nullopt if there is none: the widest part counts. Called where it matters.
+  /// Position of the chief ray of a point; nullopt selects the widest component. Called only for disconnected pupils.
   std::function<std::optional<Vec2<double>>(std::uint32_t point)> chief;
-  /// Clearances of a lens with its central obscurations, which may divide its pupils; empty: the lens has no
-  /// obscurations. If it is set, find_regions() takes the clearances of the lens without obscurations.
+  /// Clearances of a lens with its central obscurations, which may divide its pupils; empty if the lens has no
+  /// obscurations. If set, the clearances passed to find_regions() must ignore the obscurations.
   PlaceClearances obscured{};
 };
 
-/// The regions of many points at once, in batches, to 2e-5 of the half axes.
+/// Finds the pupils of many points at once, in batches.
 ///
-/// pupil_boundary() is exact to 2e-13 and knows the rims; here models without rims are asked too, and neighbours tell
-/// where to look. Of a direction with several obscurations the widest is known well, the others roughly; the surfaces
-/// of the RimPoints are unknown.
+/// pupil_boundary() is exact to 2e-13 and knows the rims. This search also works for models without rims, and uses
+/// neighbouring pupils as predictions.
 ///
-/// mirrored: pupils are alike at x and -x, and half of the directions are traced. directions: even. connected: null:
-/// all parts count that lie along the lines that are looked at.
+/// Accuracy: 2e-5 of the half axes. In a direction with several obscurations only the widest has this accuracy; the
+/// others are as coarse as the samples. The RimPoints have no surface.
+///
+/// @param directions  even
+/// @param mirrored    true if the pupils are symmetric about x = 0; half of the directions are traced then
+/// @param connected   selects one component; null keeps all components that the searched lines meet
 std::vector<PupilRegion> find_regions(std::span<const PupilGuess> points, const SearchOrder& order,
                                       std::size_t directions, bool mirrored, const PlaceClearances& clearances,
                                       const ConnectedPupils* connected = nullptr);
 
-/// Of which points anything passes, as far as find_regions() would see it.
+/// True for each point with at least one ray that passes, at the resolution of find_regions().
 std::vector<bool> lit_points(std::span<const PupilGuess> points, const PlaceClearances& clearances);
 
 }  // namespace petzval::pupil_detail

@@ -10,9 +10,8 @@
 
 namespace petzval::pupil_detail {
 
-/// The same region as exit_pupil_boundary()'s, by the angles under which the film point sees it: a direction at the
-/// angle t from the normal of the film lies t from (0, 0), towards where it points. It holds directions along the film
-/// too, which no plane does.
+/// The region of exit_pupil_boundary() in angles at the film point: a direction at the angle t from the film normal has
+/// the distance t from (0, 0). Unlike a plane, these coordinates include directions parallel to the film.
 PupilRegion directions_seen(const Lens& lens, const FilmPoint& point, Wavelength wavelength, std::size_t directions);
 
 }  // namespace petzval::pupil_detail

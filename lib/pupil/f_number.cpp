@@ -17,7 +17,7 @@ namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
-/// Axis-parallel rays in the main meridian, on their way from object space to a surface: the stop, or one with a
+/// Traces axis-parallel rays in the main meridian from object space to one surface: the stop or a surface with a
 /// central obscuration.
 class HeightAt {
  public:
@@ -28,8 +28,8 @@ class HeightAt {
     path_.last = surface + 1;
   }
 
-  /// Height at which the ray that enters at height y meets the surface; none where it does not reach it. Its fate there
-  /// does not matter.
+  /// Height at which the ray that enters at height y meets the surface; nullopt if it does not reach the surface. Its
+  /// fate at the surface is ignored.
   std::optional<double> operator()(double y) const noexcept {
     const kernel::Vec<double> start{along_y_ ? 0 : y, along_y_ ? y : 0, lens_.surfaces().front().vertex_z};
     const auto end = kernel::trace(kernel::view<double>(lens_), start, kernel::Vec<double>{0, 0, 1}, path_);
@@ -46,16 +46,17 @@ class HeightAt {
   kernel::SurfaceRange path_;
 };
 
-/// Largest entering height of the beam within the rim of the stop: that of the ray that meets the rim, or, where rays
-/// are lost before they get so high, of the last one that reaches the stop. `expected`: first-order estimate, for the
-/// size of the steps.
+/// Largest entering height of the beam within the rim of the stop: the height of the ray that meets the rim or, if rays
+/// are lost before, of the last ray that reaches the stop.
+///
+/// @param expected  first-order estimate, sets the step size
 double entering_height(const HeightAt& height_at, double rim, double expected) {
   const auto inside = [&](double y) {
     const auto height = height_at(y);
     return height && *height <= rim;
   };
-  // Spherical aberration may bring the heights back below the rim further out: steps small beside the beam find the
-  // first crossing. They grow where the estimate is far too small, or underflows.
+  // Spherical aberration may bring the heights back below the rim farther out: steps that are small compared with the
+  // beam find the first crossing. The steps grow in case the estimate is far too small or underflows.
   double step = std::max(expected / 16, std::numeric_limits<double>::min());
   double low = 0, high = step;
   while (inside(high)) {
@@ -78,19 +79,19 @@ Beam beam_of(const Lens& lens, double focal_length, Wavelength wavelength) {
   return {p.stop, std::min(p.entrance.diameter / 2, focal_length)};
 }
 
-/// The height at which the beam enters, by rays, for the stop as it is.
+/// Exact entering height of the beam for the present stop.
 double beam_height(const Lens& lens, const Beam& beam, Wavelength wavelength) {
   const double rim = lens.surfaces()[beam.stop].semi_diameter;
   return rim == 0 ? 0 : entering_height(HeightAt(lens, beam.stop, wavelength), rim, beam.height);
 }
 
-/// A central obscuration and the height at which the rays that meet its edge enter; 0: none.
+/// A central obscuration and the entering height of the ray that grazes its edge; 0 if there is no obscuration.
 struct Obscuration {
   std::size_t surface = 0;
   double height = 0;
 };
 
-/// Of those that stop the ray that enters at height y, the one that reaches farthest.
+/// The largest of the obscurations that stop the ray that enters at height y.
 Obscuration widest_obscuration(const Lens& lens, const Beam& beam, Wavelength wavelength, double y) {
   Obscuration widest;
   for (std::size_t i = 0; i < lens.surface_count(); ++i) {
@@ -103,7 +104,7 @@ Obscuration widest_obscuration(const Lens& lens, const Beam& beam, Wavelength wa
   return widest;
 }
 
-/// The axial beam of the stop at its widest.
+/// The axial beam with the stop fully open.
 struct WidestBeam {
   Beam beam;
   bool open = false;  ///< true if the marked stop has no rim
@@ -140,44 +141,44 @@ double fastest_f_number(const Lens& lens, Wavelength wavelength) {
 
 Lens with_f_number(const Lens& lens, double f_number, Wavelength wavelength) {
   if (!(f_number > 0 && std::isfinite(f_number))) {
-    throw Error(lens.name() + ": f-number is " + to_text(f_number) + ", wanted a finite one above 0");
+    throw Error(lens.name() + ": f-number = " + to_text(f_number) + "; must be finite and above 0");
   }
   const double length = focal_length(lens, wavelength);
   if (std::isinf(length))
-    throw Error(lens.name() + ": the lens is afocal, wanted a focal length to set an f-number by");
+    throw Error(lens.name() + ": the lens is afocal; must have a focal length to set an f-number");
 
   const auto [beam, open, largest] = widest_beam(lens, length, wavelength);
   const LensSurface& stop = lens.surfaces()[beam.stop];
   const double y = length / (2 * f_number);
   if (!(largest > 0)) {
-    throw Error(lens.name() + ": no ray parallel to the axis passes, wanted light to set an f-number by");
+    throw Error(lens.name() + ": no ray parallel to the axis passes; must transmit an axial beam to set an f-number");
   }
   const HeightAt stop_height(lens, beam.stop, wavelength);
   const auto height = stop_height(std::min(y, largest));
-  // Declared f-numbers are rounded, of the paraxial pupil, or of another glass. Without a rim, the one that was
-  // printed.
+  // Declared f-numbers are rounded, or belong to the paraxial pupil or to another glass. A stop without a rim gets the
+  // declared f-number exactly.
   const double tolerance = open ? 1e-9 : 0.005;
   if (!height || y > largest * (1 + tolerance)) {
-    throw Error(lens.name() + ": f-number is " + to_text(f_number) + ", wanted " + to_text(length / (2 * largest), 10) +
-                " (the fastest the lens can give) or more");
+    throw Error(lens.name() + ": f-number = " + to_text(f_number) + "; must be at least " +
+                to_text(length / (2 * largest), 10) + " (the fastest the lens can give)");
   }
   if (!open && y > largest) return lens;
   const Obscuration obscuration = widest_obscuration(lens, beam, wavelength, y);
   if (obscuration.height > 0) {
-    throw Error(lens.name() + ": f-number is " + to_text(f_number) + ", wanted less than " +
+    throw Error(lens.name() + ": f-number = " + to_text(f_number) + "; must be less than " +
                 to_text(length / (2 * obscuration.height), 10) + ": the central obscuration of surface " +
                 std::to_string(obscuration.surface) + " is that large");
   }
   Lens stopped = with_semi_diameter(lens, beam.stop, std::min(*height, stop.semi_diameter), RimLimit::none);
-  // Strong spherical aberration lets other rays meet the stop as far out as the ray of height y does.
+  // With strong spherical aberration other rays may meet the stop as far out as the ray of height y.
   const double found = real_f_number(stopped, wavelength);
   if (std::isinf(found)) {
-    throw Error(lens.name() + ": f-number is " + to_text(f_number) + ", wanted a smaller one: its stop of " +
+    throw Error(lens.name() + ": f-number = " + to_text(f_number) + "; must be smaller: its stop of " +
                 to_text(*height) + " mm is closed");
   }
   if (!(std::abs(found - f_number) <= 1e-6 * f_number)) {
-    throw Error(lens.name() + ": f-number is " + to_text(f_number) + ", wanted one that a stop gives, such as " +
-                to_text(found, 10) + ": spherical aberration folds the beam, and other rays meet its rim");
+    throw Error(lens.name() + ": f-number = " + to_text(f_number) + "; must belong to a stop, such as " +
+                to_text(found, 10) + ": spherical aberration folds the beam, and other rays meet the rim");
   }
   return stopped;
 }

@@ -20,7 +20,7 @@ double half_height(const Lens& lens, std::size_t surface, const Pupil& entrance)
 
 Face face_of(const Lens& lens, std::size_t surface, const Pupil& entrance) noexcept {
   Face face{.half = half_height(lens, surface, entrance), .vertex_z = lens.surfaces()[surface].vertex_z};
-  // Cylinders are curved in one of the two sections.
+  // A cylinder is curved in one of the two sections only.
   constexpr int samples = 64;
   for (const bool along_x : {false, true}) {
     for (int i = 0; i <= samples; ++i) {

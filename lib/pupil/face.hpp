@@ -9,8 +9,8 @@
 
 namespace petzval::pupil_detail {
 
-/// Half height through which light enters an outer surface: its own, or where it is unlimited four times that of the
-/// widest rim or pupil.
+/// Half height of an outer surface through which light enters: its semi-diameter or, if it has no rim, four times the
+/// largest semi-diameter of any rim or pupil.
 double half_height(const Lens& lens, std::size_t surface, const Pupil& entrance) noexcept;
 
 /// An outer surface as a box around its clear part, lens frame, mm.
@@ -19,6 +19,7 @@ struct Face {
   double vertex_z = 0, z_min = 0, z_max = 0;
 };
 
+/// @param entrance  sets the size of a surface without a rim, see half_height()
 Face face_of(const Lens& lens, std::size_t surface, const Pupil& entrance) noexcept;
 
 /// The last surface.

@@ -12,28 +12,28 @@
 
 namespace petzval::pupil_detail {
 
-/// What is known of a region while it is searched: middle, half axes and, by direction, what passes from the middle to
-/// `to`, except for one obscuration and other gaps. Nothing passes where `to` is 0, and nothing at all without
-/// directions.
+/// A pupil during the search: middle, half axes and, in each direction, an interval that passes from the middle to
+/// `to`, minus one obscuration and other gaps. to = 0: no ray passes in this direction; without directions no ray
+/// passes.
 struct Found {
   struct Ends {
     double obscured_from = 0, obscured_to = 0, to = 0;
-    double slope = 0;  // of the clearance at `to`, where it is known
+    double slope = 0;  // d clearance / d radius at `to`; 0 if unknown
   };
   Vec2<double> middle{0, 0}, half_axes{0, 0};
   std::vector<Ends> ends;
-  std::vector<std::vector<Gap>> gaps;  // of each direction; empty: there are none
+  std::vector<std::vector<Gap>> gaps;  // by direction; empty if there are no gaps
 
   bool empty() const noexcept { return ends.empty(); }
 };
 
-/// Describes a pupil about its own middle where it was found far beside it. units: of the directions. False: it was
-/// not, or has an obscuration.
+/// Moves the origin of a pupil to its own middle if it was found far from there. units: unit vectors of the directions.
+/// Returns false if the pupil stays as it is, because the origin is close to the middle or a direction is obscured.
 bool recentre(Found& found, std::span<const Vec2<double>> units);
 
 PupilRegion region_of(const Found& found, std::span<const Vec2<double>> units);
 
-/// Values halfway between two pupils that were found, by those and the next beyond them, if these were found too.
+/// Interpolates halfway between two found pupils, with the next pupils on both sides if these were found.
 class Interpolation {
  public:
   Interpolation(const Found& far_before, const Found& before, const Found& after, const Found& far_after) noexcept
@@ -53,7 +53,7 @@ class Interpolation {
     }
     return sum;
   }
-  /// Of a value that is not negative; the mean of both neighbours where one is 0 or values change too fast.
+  /// For a non-negative value; the mean of both neighbours if one is 0 or the values change too fast.
   template <class Value>
   double positive(const Value& value) const noexcept {
     const double sum = (*this)(value), a = value(*found_[1]), b = value(*found_[2]);

@@ -25,11 +25,11 @@ double film_irradiance(const Lens& lens, const FilmPoint& point, Wavelength wave
     return pupil_detail::directions_seen(lens, point, wavelength, directions);
   };
   PupilRegion region = seen(alike_all_round ? 1 : 256);
-  // Parts beside the middle are seen along few directions.
+  // A pupil with several spans in one direction is rare and needs more directions.
   const bool parts = !region.empty() && region.spans.size() != region.directions;
   if (parts && !alike_all_round) region = seen(1024);
   if (region.empty()) return 0;
-  // The projected solid angle of a small area about the angle t is sin t cos t / t of it.
+  // A small area at the angle t from the normal has a projected solid angle of sin t cos t / t times the area.
   double sum = 0;
   pupil_detail::for_each_node<16>(region, [&](const Vec2<double>& angles, double area, double weight) {
     const double angle = glm::length(angles);
@@ -41,8 +41,7 @@ double film_irradiance(const Lens& lens, const FilmPoint& point, Wavelength wave
 
 double image_circle_mm(const Lens& lens, double least_part, Wavelength wavelength) {
   if (!(least_part >= 0 && least_part <= 1)) {
-    throw Error(lens.name() + ": image circle: the least part of the light on the axis is " + to_text(least_part) +
-                ", wanted 0 to 1");
+    throw Error(lens.name() + ": image circle: least_part = " + to_text(least_part) + "; must be 0 to 1");
   }
   const double axis = film_irradiance(lens, {}, wavelength), wanted = least_part * axis;
   if (axis == 0) return 0;
@@ -51,7 +50,7 @@ double image_circle_mm(const Lens& lens, double least_part, Wavelength wavelengt
     for (std::size_t k = 0; k < directions; ++k) {
       const double angle = 2 * std::numbers::pi * static_cast<double>(k) / static_cast<double>(directions);
       const FilmPoint point{radius * std::sin(angle), radius * std::cos(angle)};
-      // A coarse boundary tells whether there is one.
+      // 16 directions suffice to detect a pupil.
       const bool enough = least_part > 0 ? film_irradiance(lens, point, wavelength) >= wanted
                                          : !pupil_detail::directions_seen(lens, point, wavelength, 16).empty();
       if (!enough) return false;

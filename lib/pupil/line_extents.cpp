@@ -41,7 +41,7 @@ void close_in(std::vector<Bracket>& brackets, const std::vector<Line>& lines, do
 
 namespace {
 
-/// Narrows the range from `first` to `last` to one part. near: called if there are several parts.
+/// Narrows the range from `first` to `last` to one component. near: called if there are several components.
 template <class Passes, class Near>
 void narrow(int& first, int& last, const Passes& passes, const Near& near, double low, double step) {
   std::vector<std::array<int, 2>> parts;
@@ -73,7 +73,7 @@ std::vector<LineExtent> extents_along(const std::vector<Line>& lines, double low
   Batch batch;
   std::vector<LineExtent> result(lines.size());
   std::vector<Bracket> brackets;
-  // Some lines at a time, so that memory is used again.
+  // In batches of about 2048 samples, to reuse buffers.
   const std::size_t a_line = static_cast<std::size_t>(samples) + 1, some = 1 + 2048 / a_line;
   for (std::size_t l = 0; l < lines.size(); ++l) {
     if (l % some == 0) {
@@ -85,7 +85,7 @@ std::vector<LineExtent> extents_along(const std::vector<Line>& lines, double low
     }
     const double* values = batch.clearances.data() + l % some * a_line;
     const auto passes = [&](int i) { return values[i] >= 0; };
-    int first = 0, last = samples, dark = 0, light = 0;  // dark, light: the samples beside the widest obscuration
+    int first = 0, last = samples, dark = 0, light = 0;  // dark, light: samples that enclose the widest obscuration
     while (first <= samples && !passes(first)) ++first;
     if (first > samples) continue;
     while (!passes(last)) --last;

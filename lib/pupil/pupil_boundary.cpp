@@ -35,14 +35,14 @@ struct Box {
   Point half() const noexcept { return {(high[0] - low[0]) / 2, (high[1] - low[1]) / 2}; }
 };
 
-/// The box about the ends of all spans.
+/// The bounding box of the ends of all spans.
 Box box_of(const PupilRegion& region) noexcept {
   Box box;
   for (const PupilSpan& s : region.spans) box.take({s.from.x, s.from.y}), box.take({s.to.x, s.to.y});
   return box;
 }
 
-/// A box within the pupil's and one about it, from some rays that pass: grids close in on those that do.
+/// A box inside the pupil and a box around it, from some rays that pass, by successively finer grids.
 std::pair<Box, Box> boxes_about(Sight& sight, const std::vector<SeenPlace>& passing) {
   Box seen, box;
   for (const auto& [at, beside] : passing) {
@@ -61,7 +61,7 @@ std::pair<Box, Box> boxes_about(Sight& sight, const std::vector<SeenPlace>& pass
     for (std::size_t i = 0; i < x.size(); ++i) {
       if (clearance[i] >= 0) seen.take({x[i], y[i]});
     }
-    // Parts at the edge of the box may reach beyond it.
+    // Components at the edge of the box may extend beyond the box.
     const Point before = std::exchange(box, {seen.low - step, seen.high + step}).half();
     if (box.half().x > before.x / 2 && box.half().y > before.y / 2 && seen.half().x > 2 * step.x &&
         seen.half().y > 2 * step.y) {
@@ -71,19 +71,19 @@ std::pair<Box, Box> boxes_about(Sight& sight, const std::vector<SeenPlace>& pass
   return {seen, box};
 }
 
-/// Looks along the directions of a boundary, all at once. Radii are in units of its half axes.
+/// Searches the boundary along all its directions at once. Radii are in units of the half axes.
 class Tracer {
  public:
-  /// near: a place of the part to keep; nullopt: all parts are kept.
+  /// near: a point of the component to keep; nullopt keeps all components.
   Tracer(Sight& sight, PupilBoundary& boundary, const std::optional<Point>& near)
       : sight_(sight), boundary_(boundary), near_(near) {}
 
   struct Seen {
-    bool disc = true;   ///< one span in each direction, from the middle
-    bool whole = true;  ///< no span reaches to the end of its direction
+    bool disc = true;   ///< one span in each direction, beginning at the middle
+    bool whole = true;  ///< no span reaches the end of the scan
   };
-  /// All spans between the middle and `reach` that `steps` samples of each of `directions` show, and those between two
-  /// samples to which the clearance points.
+  /// All spans between the middle and `reach` that `steps` samples of each of `directions` show, and slivers between
+  /// two samples that the clearance indicates.
   Seen scan(std::size_t directions, double reach, int steps, double tolerance) {
     begin(directions);
     sample(steps + 1, [&](std::size_t, int i) { return reach * i / steps; });
@@ -112,7 +112,7 @@ class Tracer {
           ++sliver;
         }
       }
-      // No ray beyond `reach` enters the first surface: one that passes there touches its rim.
+      // Rays beyond `reach` miss the first surface: a ray that passes at `reach` touches its rim.
       if (value[steps] >= 0) ends_.push_back({k, {reach, 0, reach, 0, 1}});
     }
     finish();
@@ -125,8 +125,8 @@ class Tracer {
     return seen;
   }
 
-  /// One span in each direction, from the middle; those of `few` directions, which divide the others, tell about where
-  /// they end. False where one does not end there.
+  /// One span in each direction, beginning at the middle; the ends are predicted from `few`, which has fewer
+  /// directions. Returns false if an end is not close to its prediction.
   bool disc(std::size_t directions, const PupilBoundary& few) {
     begin(directions);
     const auto near = [&](std::size_t k) {
@@ -155,23 +155,24 @@ class Tracer {
   static constexpr double finest = 4e-14;
 
  private:
-  /// An end of a span while it is searched; in pairs, the inner one first.
+  /// An end of a span during the search; ends come in pairs, the inner one first.
   struct End {
     std::size_t direction;
     core_detail::LastAbove radius;
   };
 
-  /// A part of a direction between two samples that do not pass, about a third at which the clearance has a maximum.
+  /// An interval of a direction between two samples that do not pass, around a sample with a local maximum of
+  /// clearance.
   struct Sliver {
     std::size_t direction;
     int sample;
     std::array<double, 3> radii, values;
   };
 
-  /// The slivers that pass, in the order of directions and samples.
+  /// The slivers that pass, sorted by direction and sample.
   std::vector<Sliver> find_slivers(double step, int steps) {
     std::vector<Sliver> result, open;
-    const auto lost = [](double value) { return value <= -1; };  // otherwise than by a rim
+    const auto lost = [](double value) { return value <= -1; };  // not at a rim
     for (std::size_t k = 0; k < boundary_.directions; ++k) {
       const double* value = values_.data() + k * (static_cast<std::size_t>(steps) + 1);
       for (int i = 1; i < steps; ++i) {
@@ -228,13 +229,13 @@ class Tracer {
     const auto values = sight_.clearances(x_, y_);
     values_.assign(values.begin(), values.end());
   }
-  /// As PupilRegion::at, to the bit.
+  /// Same arithmetic as PupilRegion::at(), so that results are equal to the bit.
   void add(const Point& unit, double radius) {
     x_.push_back(boundary_.middle.x + boundary_.half_axes.x * radius * unit.x);
     y_.push_back(boundary_.middle.y + boundary_.half_axes.y * radius * unit.y);
   }
 
-  /// Closes in on all ends and makes spans of them.
+  /// Refines all ends and turns each pair of ends into a span.
   void finish() {
     std::vector<Point> units;
     for (std::size_t k = 0; k < boundary_.directions; ++k) units.push_back(boundary_.unit(k));
@@ -254,7 +255,7 @@ class Tracer {
       }
       open.resize(left);
     }
-    // The rays just beyond tell what ends the others.
+    // Rays just outside tell which surface limits each end.
     x_.clear(), y_.clear();
     for (const End& end : ends_) add(units[end.direction], end.radius.below());
     const auto [fates, surfaces] = sight_.ends(x_, y_);
@@ -278,30 +279,30 @@ class Tracer {
   std::vector<End> ends_;
 };
 
-/// Farther than the corners of the box about the pupil.
+/// Reach of a scan in half axes; the corners of the bounding box are at sqrt(2).
 constexpr double farthest = 1.6;
 
-/// The boundary, from some rays that pass. It stays empty if the pupil is too small for rays.
+/// Traces the boundary, starting from some rays that pass. The boundary stays empty if the pupil is too small for rays.
 ///
-/// The pupil is connected: of several parts the part nearest to the chief ray counts, or to the middle of these rays.
+/// The pupil is connected: the component nearest to the chief ray, or else to the middle of the given rays, is kept.
 void trace_boundary(Sight& sight, PupilBoundary& boundary, const std::vector<SeenPlace>& passing,
                     std::size_t directions) {
   const auto [inner, box] = boxes_about(sight, passing);
   const Point near = sight.chief().value_or(inner.middle());
   boundary.middle = box.middle(), boundary.half_axes = box.half();
   Tracer tracer(sight, boundary, near);
-  if (directions == 1) {  // alike all round
+  if (directions == 1) {  // rotationally symmetric
     const double reach =
         std::max({std::abs(box.low.x), std::abs(box.high.x), std::abs(box.low.y), std::abs(box.high.y)});
     boundary.middle = {0, 0}, boundary.half_axes = {reach, reach};
     tracer.scan(1, farthest, 512, Tracer::finest);
     return;
   }
-  // Middle and half axes by the ends along some directions, until they settle.
+  // Middle and half axes from the ends along a few directions, until they settle.
   Tracer::Seen shape;
   for (int pass = 0; pass < 6; ++pass) {
     if (!(boundary.half_axes.x > 0 && boundary.half_axes.y > 0)) break;
-    // Horseshoes and crescents, whose tips lie behind their own edges, need more directions and steps.
+    // The tips of horseshoes and crescents lie behind their own edges and need more directions and steps.
     const int samples = shape.disc ? 32 : 96;
     const bool simple = shape.disc;
     shape = tracer.scan(samples, farthest, samples, 1e-10);
@@ -317,7 +318,7 @@ void trace_boundary(Sight& sight, PupilBoundary& boundary, const std::vector<See
     boundary = PupilBoundary(boundary.plane, boundary.wavelength);
     return;
   }
-  // More directions may show more of it.
+  // A scan with more directions may reveal a larger pupil.
   for (int pass = 0; pass < 4; ++pass) {
     bool found = false;
     if (shape.disc && directions > 32 && tracer.scan(32, farthest, 32, 1e-6).disc) {
@@ -339,12 +340,11 @@ PupilBoundary open_boundary(const Lens& lens, const PupilPlane& plane, std::size
   const auto closed = [](const LensSurface& s) { return s.semi_diameter == 0; };
   if (std::any_of(lens.surfaces().begin(), lens.surfaces().end(), closed)) return boundary;
   Sight sight(lens, plane, wavelength, coordinates);
-  if (directions == 1) {  // one line shows it, unless all of it lies between two samples
+  if (directions == 1) {  // one line is enough, unless the pupil lies between two samples
     const double reach = sight.reach();
     boundary.half_axes = {reach, reach};
     if (reach > 0) Tracer(sight, boundary, Point{0, 0}).scan(1, 1, 512, Tracer::finest);
     if (!boundary.empty()) {
-      // The half axes of the pupil.
       const double radius = boundary.spans.back().to_radius;
       if (!(radius > 0)) return boundary;
       for (PupilSpan& span : boundary.spans) span.from_radius /= radius, span.to_radius /= radius;
@@ -358,7 +358,7 @@ PupilBoundary open_boundary(const Lens& lens, const PupilPlane& plane, std::size
   return boundary;
 }
 
-/// The parts of a boundary that obscurations leave.
+/// The boundary minus the obscurations.
 PupilBoundary obscured_boundary(const Lens& lens, const PupilBoundary& open, Coordinates coordinates) {
   PupilBoundary result = open;
   if (open.empty()) return result;
@@ -375,7 +375,7 @@ PupilBoundary boundary_of(const Lens& lens, const PupilPlane& plane, Wavelength 
   constexpr std::size_t most = 1 << 20;
   const bool one_is_enough = plane.on_axis() && lens.rotationally_symmetric();
   if ((directions < 3 || directions > most) && !(directions == 1 && one_is_enough)) {
-    throw Error(lens.name() + ": pupil boundary: directions is " + std::to_string(directions) + ", wanted 3 to " +
+    throw Error(lens.name() + ": pupil boundary: directions = " + std::to_string(directions) + "; must be 3 to " +
                 std::to_string(most) + ", or 1 on the axis of a lens of revolution");
   }
   const auto obscures = [](const LensSurface& s) { return s.obscuration_semi_diameter > 0; };

@@ -8,12 +8,13 @@
 
 namespace petzval::pupil_detail {
 
-/// The bundle of a scene point with its rays at Gauss-Legendre nodes between the edges of its pupil: every integral
-/// over it is a smooth function of the point, which solvers need and samples of a fixed region do not give. Weights: in
-/// mm^2 of the pupil plane, but for a constant.
+/// Traces the rays of a scene point at Gauss-Legendre nodes between the edges of its pupil.
+///
+/// Integrals over this bundle are smooth functions of the scene point, which solvers require; samples of a fixed region
+/// are not smooth. Weights: mm^2 of the pupil plane, up to a constant factor.
 PETZVAL_API RayBundle trace_nodes(const Lens& lens, const PupilBoundary& boundary, double plane_z);
 
-/// The rays along the rim of the same pupil, of weight 0: its edges, and its corners, which lie farther out.
+/// Traces the rays along the rim of the same pupil, with weight 0: its edges and its corners, which lie farther out.
 PETZVAL_API RayBundle trace_rim(const Lens& lens, const PupilBoundary& boundary, double plane_z);
 
 }  // namespace petzval::pupil_detail

@@ -25,40 +25,40 @@ void check(const Lens& lens, const FieldPoint& point, const Pupil& entrance) {
     throw Error(lens.name() + ": scene point: " + found_and_wanted);
   };
   if (!(std::abs(point.field_rad) <= std::numbers::pi)) {
-    refuse("field is " + to_text(degrees(point.field_rad), 6) + " degrees, wanted -180 to 180");
+    refuse("field = " + to_text(degrees(point.field_rad), 6) + " degrees; must be -180 to 180");
   }
   if (!std::isfinite(point.azimuth_rad)) {
-    refuse("azimuth is " + to_text(point.azimuth_rad) + " rad, wanted a finite angle");
+    refuse("azimuth = " + to_text(point.azimuth_rad) + " rad; must be finite");
   }
   if (!std::isfinite(entrance.z)) {
-    refuse("the entrance pupil is at infinity, wanted one at a finite place: fields are seen from it");
+    refuse("the entrance pupil is at infinity; must be at a finite distance, as fields are seen from the pupil");
   }
-  if (!(point.z < infinity)) refuse("z is " + to_text(point.z) + " mm, wanted a finite one or -inf");
+  if (!(point.z < infinity)) refuse("z = " + to_text(point.z) + " mm; must be finite or -inf");
   if (point.z == entrance.z) {
-    refuse("z is " + to_text(point.z) + " mm, that of the entrance pupil, wanted another");
+    refuse("z = " + to_text(point.z) + " mm; must differ from z of the entrance pupil");
   }
   if (std::isinf(point.z)) return;
 
-  // A plane in front of the lens is met by fields below 90 degrees; the others meet planes beside and behind it.
+  // Fields below 90 degrees meet planes in front of the lens; larger fields meet planes next to or behind the lens.
   if (std::abs(point.field_rad) < std::numbers::pi / 2) {
     const double front = pupil_detail::face_of(lens, 0, entrance).z_min;
     if (!(point.z < front)) {
-      refuse("z is " + to_text(point.z) + " mm, wanted less than where the first surface begins, " + to_text(front) +
-             " mm");
+      refuse("z = " + to_text(point.z) +
+             " mm; must be in front of the first surface, which begins at z = " + to_text(front) + " mm");
     }
   } else {
     const double side = std::abs(std::tan(point.field_rad) * (entrance.z - point.z));
     if (!(point.z > entrance.z && side > pupil_detail::half_height(lens, 0, entrance))) {
-      refuse("z is " + to_text(point.z) + " mm at a field of " + to_text(degrees(point.field_rad), 6) +
-             " degrees, wanted -inf, or a plane behind the entrance pupil (" + to_text(entrance.z) +
+      refuse("z = " + to_text(point.z) + " mm at field = " + to_text(degrees(point.field_rad), 6) +
+             " degrees; must be -inf, or a plane behind the entrance pupil (" + to_text(entrance.z) +
              " mm) that this field meets outside the lens");
     }
   }
 }
 
-/// The direction at a place of the plane, from its centre. (place - point) / distance has no large numbers in it, and
-/// at infinity the first term is 0. A negative distance, of a point that the rays of the plane have before them, turns
-/// place - point around.
+/// Direction of the ray of the point through a position in the plane; `place` is relative to the centre. The form
+/// (place - point) / distance contains no large numbers, and at infinity its first term is 0. A negative distance
+/// stands for a point that the rays have not reached yet, and reverses place - point.
 Vec3<double> direction_from(const Vec3<double>& place, const Vec3<double>& towards,
                             double reciprocal_distance) noexcept {
   const Vec3<double> d = place * reciprocal_distance - towards;
@@ -95,14 +95,14 @@ PupilPlane PupilPlane::of_film(const Lens& lens, const FilmPoint& point) {
   const std::string where = lens.name() + ": film point: ";
   for (const double coordinate : {point.x, point.y}) {
     if (std::isfinite(coordinate)) continue;
-    throw Error(where + "a coordinate is " + to_text(coordinate) + " mm, wanted a finite place");
+    throw Error(where + "coordinate = " + to_text(coordinate) + " mm; must be finite");
   }
   const double last_z = lens.surfaces().back().vertex_z;
   if (lens.film_z() == last_z) {
-    throw Error(where + "the film is at z = " + to_text(last_z) + " mm, that of the last vertex, wanted it elsewhere");
+    throw Error(where + "film z = " + to_text(last_z) + " mm; must differ from z of the last vertex");
   }
   const Vec3<double> to_point{point.x, point.y, lens.film_z() - last_z};
-  // Of a film in front of the last vertex the lens sends a virtual image: its rays run as if it lay behind.
+  // A film in front of the last vertex receives a virtual image: its rays run as if the film lay behind the lens.
   const double sense = signed_index(lens, lens.surface_count()) > 0 ? 1 : -1;
   const double distance = std::copysign(glm::length(to_point), to_point.z * sense);
   PupilPlane plane;
@@ -115,7 +115,7 @@ PupilPlane PupilPlane::of_film(const Lens& lens, const FilmPoint& point) {
 
 Vec3<double> PupilPlane::direction_at(const Vec3<double>& place) const noexcept {
   const Vec3<double> d = direction_from(place - centre_, towards_, reciprocal_distance_);
-  return glm::dot(d, towards_) > 0 ? -d : d;  // the point may lie between the plane and the place
+  return glm::dot(d, towards_) > 0 ? -d : d;  // the scene or film point may lie between plane and `place`
 }
 
 Ray<double> PupilPlane::ray(double x, double y) const noexcept {
@@ -126,7 +126,7 @@ Ray<double> PupilPlane::ray(double x, double y) const noexcept {
 void PupilPlane::rays(std::span<const double> x, std::span<const double> y,
                       const RayArrays<double>& rays) const noexcept {
   const std::size_t count = std::min(x.size(), y.size());
-  // The promise that nothing overlaps lets a compiler run this loop on lanes; it takes it of parameters only.
+  // With __restrict compilers vectorize this loop; they honour it on parameters only.
   const auto fill = [count, plane = *this](const double* __restrict in_x, const double* __restrict in_y,
                                            double* __restrict ox, double* __restrict oy, double* __restrict oz,
                                            double* __restrict dx, double* __restrict dy, double* __restrict dz) {

@@ -39,7 +39,7 @@ std::vector<Extent> extents(const PupilRegion& region) {
     Extent& e = result[span.direction];
     if (!e.lit) {
       e.obscured_to = span.from_radius;
-    } else if (e.obscured_from > 0 || e.obscured_to == 0) {  // not dark from the middle on
+    } else if (e.obscured_from > 0 || e.obscured_to == 0) {  // the middle is not dark
       if (span.from_radius - e.to > e.obscured_to - e.obscured_from) {
         e.obscured_from = e.to, e.obscured_to = span.from_radius;
       }
@@ -63,13 +63,13 @@ void keep_connected(PupilRegion& region, const Vec2<double>& place) {
     if (distance < least) least = distance, nearest = i;
   }
 
-  std::vector<std::size_t> first(region.directions + 1, 0);  // of the spans of each direction
+  std::vector<std::size_t> first(region.directions + 1, 0);  // index of the first span of each direction
   for (const PupilSpan& span : spans) ++first[span.direction + 1];
   for (std::size_t k = 0; k < region.directions; ++k) first[k + 1] += first[k];
   std::vector<bool> kept(spans.size(), false);
   std::vector<std::size_t> open{nearest};
   kept[nearest] = true;
-  bool middle = false;  // the spans that begin there were taken
+  bool middle = false;  // true if the spans that begin at the middle were taken
   const auto take = [&](std::size_t i) {
     if (!kept[i]) kept[i] = true, open.push_back(i);
   };

@@ -7,26 +7,26 @@
 
 namespace petzval::pupil_detail {
 
-/// The area of squared radii, summed over the directions of a region.
+/// Area of a region (mm^2) from the sum of its squared radii over all directions.
 double area_of(const PupilRegion& region, double squared_radii) noexcept;
 
-/// What passes along one direction of a region, as one interval from the middle with one obscuration: the part around
-/// a dark middle, else the widest between two spans.
+/// One direction of a region as a single interval from the middle with a single obscuration: the interval around a dark
+/// middle, else the widest gap between two spans.
 struct Extent {
-  double obscured_from = 0, obscured_to = 0;  ///< radii; equal: nothing is obscured
+  double obscured_from = 0, obscured_to = 0;  ///< radii; equal if there is no obscuration
   double to = 0;                              ///< radius of the outermost point that passes
-  RimPoint rim;                               ///< that point
-  bool lit = false;                           ///< something passes
+  RimPoint rim;                               ///< the outermost point
+  bool lit = false;                           ///< true if the direction has a span
 
-  /// Radius at which light begins: 0 where the middle passes.
+  /// Radius at which the first span begins; 0 if the middle passes.
   double from() const noexcept { return obscured_from > 0 ? 0 : obscured_to; }
 };
 
-/// Of each direction.
+/// The extents of all directions of a region.
 std::vector<Extent> extents(const PupilRegion& region);
 
-/// Leaves the spans that are connected with the one nearest to a place: spans of neighbouring directions whose radii
-/// overlap, and spans that begin at the middle, are connected.
+/// Keeps the spans that are connected with the span nearest to `place`. Spans of adjacent directions with overlapping
+/// radii are connected, and so are all spans that begin at the middle.
 void keep_connected(PupilRegion& region, const Vec2<double>& place);
 
 /// Keeps the spans that overlap a span of another region with the same middle, half axes and directions.

@@ -20,14 +20,14 @@ PupilSampler::PupilSampler(const PupilBoundary& boundary)
   using pupil_detail::Extent;
   const std::vector<Extent> along = pupil_detail::extents(boundary);
   const std::size_t n = boundary.directions;
-  // Pieces are so slim that a few terms of a series are their sine and cosine.
+  // Pieces are so slim that a few terms of the series of sine and cosine suffice.
   constexpr std::size_t least_pieces = 64;
   const std::size_t parts = (least_pieces + n - 1) / n;
   const double turn = 2 * std::numbers::pi / static_cast<double>(n * parts);
   half_turn_ = turn / 2;
 
-  // Between two directions an edge may reach past both of them by half of what it gains in a step, at a corner where
-  // two rims meet, and by the bulge of an arc.
+  // Between two directions an edge may exceed both by half of their difference, by a corner where two rims meet, and by
+  // the bulge of an arc.
   constexpr double margin = 0.002;
   double sum = 0;
   for (std::size_t k = 0; k < n; ++k) {
@@ -53,9 +53,9 @@ PupilSampler::PupilSampler(const PupilBoundary& boundary)
   area_ = sum * half_turn_ * half_axes_[0] * half_axes_[1];
   for (Piece& p : pieces_) p.before /= sum, p.angle_per_share = turn / (p.angle_per_share / sum);
   for (double& share : until_) share /= sum;
-  until_.back() = std::numeric_limits<double>::infinity();  // and what rounding leaves
+  until_.back() = std::numeric_limits<double>::infinity();  // guards against rounding
 
-  // Few steps have the ends of several pieces in them.
+  // With four steps per piece, few steps contain the ends of several pieces.
   first_.resize(4 * std::bit_ceil(pieces_.size()));
   const double step = 1 / static_cast<double>(first_.size());
   for (std::size_t i = 0, piece = 0; i < first_.size(); ++i) {
@@ -79,7 +79,7 @@ void PupilSampler::operator()(std::span<const double> u, std::span<const double>
   const std::size_t last = first_.size() - 1;
   for (std::size_t begin = 0; begin < points; begin += block) {
     const std::size_t count = std::min(block, points - begin);
-    // One end is passed or not without a branch, which would be guessed wrong as often as not.
+    // The first comparison is branch-free, because a branch would be mispredicted half of the time.
     std::array<std::uint32_t, block> at;
     std::array<double, block> across, up;
     for (std::size_t i = 0; i < count; ++i) {

@@ -13,7 +13,7 @@ namespace petzval {
 
 RayBundle trace_bundle(const Lens& lens, const PupilSampler& pupil, std::uint32_t samples, std::uint32_t seed,
                        int threads, std::uint32_t first) {
-  if (threads < 1) throw Error("trace_bundle: threads is " + std::to_string(threads) + ", wanted 1 or more");
+  if (threads < 1) throw Error("trace_bundle: threads = " + std::to_string(threads) + "; must be at least 1");
   (void)lens.compiled_position(pupil.wavelength());
   const auto start = [&](std::size_t begin, std::size_t end, const RayArrays<double>& rays) {
     std::array<double, pupil_detail::block_rays> room_u, room_v;
@@ -23,7 +23,7 @@ RayBundle trace_bundle(const Lens& lens, const PupilSampler& pupil, std::uint32_
     pupil.plane().rays(u, v, rays);
     return end - begin;
   };
-  // The same bits from every processor: a picture is a measurement.
+  // Reproducible arithmetic: images must be equal to the bit on every processor.
   RayBundle bundle = pupil_detail::trace_rays(
       lens, lens.film_z(), pupil.empty() ? 0 : samples,
       {.wavelength = pupil.wavelength(), .slopes = false, .arithmetic = Arithmetic::reproducible, .threads = threads},

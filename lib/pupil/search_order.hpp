@@ -7,20 +7,20 @@
 
 namespace petzval::pupil_detail {
 
-/// A point about halfway between two others, where its pupil is looked for next to theirs. The farther two are as far
-/// again from these on both sides; the point itself: there is none.
+/// A point about halfway between two neighbours, whose pupils predict its pupil. The two far neighbours have the same
+/// spacing on both sides; equal to `point` if there is no far neighbour.
 struct Halfway {
   std::uint32_t point, before, after, far_before, far_after;
 };
 
-/// In which order pupils are looked for: some points in full, then those halfway between, round after round.
+/// Order in which pupils are searched: some points in full, then the points halfway between, in rounds.
 struct SearchOrder {
   std::vector<std::uint32_t> full;
   std::vector<std::vector<Halfway>> rounds;
 
-  /// Points stand in rows of so many, in which neighbours have similar pupils.
+  /// Order for points in rows of length `row`; adjacent points of a row have similar pupils.
   static SearchOrder rows(std::size_t points, std::size_t row);
-  /// In neighbouring rows too: two columns of the grid are found first, and the rows from there.
+  /// Order for a grid in which adjacent rows have similar pupils: two columns first, then the rows between them.
   static SearchOrder grid(std::size_t rows, std::size_t row);
 
  private:

@@ -29,13 +29,13 @@ struct Box {
   }
 };
 
-/// All directions.
+/// The box of all directions.
 Box hemisphere(const Sines& sines) noexcept {
   const double all = 1 / sines.per_distance();
   return {{-all, -all}, {all, all}};
 }
 
-/// What the point of a plane sees of the surface through which its rays enter, in sines.
+/// The box that contains, in sines, the surface through which rays enter, seen from the point of a plane.
 Box seen_face(const Lens& lens, const PupilPlane& plane, const Sines& sines) {
   const std::size_t entered = plane.travel() == Travel::to_film ? 0 : lens.surface_count() - 1;
   const double vertex_z = lens.surfaces()[entered].vertex_z;
@@ -64,7 +64,7 @@ Box seen_face(const Lens& lens, const PupilPlane& plane, const Sines& sines) {
   return {box.low - margin, box.high + margin};
 }
 
-/// Places in even steps over a box of sines, row by row.
+/// Points in equal steps over a box of sines, row by row.
 struct Grid {
   int side;
   Place low, cell;  // in sines
@@ -82,7 +82,8 @@ struct Grid {
     }
   }
 
-  /// The connected part of the places with values of 0 and more that is nearest to `near`; without it the largest part.
+  /// The connected component of the points with values >= 0 nearest to `near`, or the largest component if near is
+  /// empty.
   std::vector<SeenPlace> connected(std::span<const double> values, const std::optional<Place>& near) const {
     std::vector<int> part(places.size(), -1);
     std::vector<std::size_t> best, own;
@@ -148,7 +149,7 @@ RayArrays<double> Sight::rays(std::span<const double> x, std::span<const double>
 
 std::span<const double> Sight::clearances(std::span<const double> x, std::span<const double> y, bool apertures) {
   values_.resize(x.size());
-  // Blocks that stay in the cache.
+  // Blocks fit into the cache.
   constexpr std::size_t block = 1024;
   for (std::size_t begin = 0; begin < x.size(); begin += block) {
     const std::size_t count = std::min(block, x.size() - begin);
@@ -212,15 +213,15 @@ std::vector<SeenPlace> Sight::passing_places() {
   constexpr std::size_t enough = 32;
   if (result.size() >= enough) return result;
 
-  // Parts that slip between the places: about the rays that come nearest to passing. Without apertures the clearance
-  // is continuous, and has a maximum in each part. Beyond their apertures, though, aspheres may be of any shape, and
-  // their hits take long to find.
+  // Components that lie between the grid points: search near the rays with the largest clearance. Without apertures the
+  // clearance is continuous and has a maximum in each component. Aspheres may have any shape beyond their apertures,
+  // though, and their intersections take long to find.
   const auto surfaces = lens_.surfaces();
   const bool aspheric =
       std::any_of(surfaces.begin(), surfaces.end(), [](const LensSurface& s) { return !s.aspheric.empty(); });
   std::vector<std::pair<double, SeenPlace>> highest;
   const auto take_summits = [&](const Grid& on, std::span<const double> heights) {
-    const double lost = result.empty() ? -infinity : -1;  // otherwise than by a rim
+    const double lost = result.empty() ? -infinity : -1;  // not at a rim
     for (const std::size_t at : summits(heights, static_cast<std::size_t>(on.side))) {
       if (heights[at] > lost) highest.push_back({heights[at], on.places[at]});
     }
@@ -249,8 +250,8 @@ std::vector<SeenPlace> Sight::passing_places() {
   for (const auto& [height, summit] : highest) {
     constexpr int half_side = 4;
     auto [middle, half] = summit;
-    std::array<double, 2> before{-infinity, -infinity};  // the values two passes ago and one
-    // Deep enough for the smallest of stops where nothing else is found.
+    std::array<double, 2> before{-infinity, -infinity};  // values of the last two passes
+    // 24 passes reach the smallest stops; fewer are enough if other rays pass.
     for (int pass = 0, passes = result.empty() ? 24 : 8; pass < passes; ++pass) {
       x.clear(), y.clear();
       for (int j = -half_side; j <= half_side; ++j) {
@@ -265,7 +266,7 @@ std::vector<SeenPlace> Sight::passing_places() {
         result.push_back({middle, half / static_cast<double>(half_side)});
         break;
       }
-      // At a ridge the value grows by half as much in each pass, roughly.
+      // On a ridge the gain per pass roughly halves.
       if (!result.empty() && 4 * (closer[best] - before[0]) < -closer[best]) break;
       before = {before[1], closer[best]};
       half = half * (2.0 / half_side);

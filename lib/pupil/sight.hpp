@@ -14,20 +14,20 @@
 
 namespace petzval::pupil_detail {
 
-/// A place of a plane and about how far it is to the places beside it that are tried.
+/// A point of the pupil plane and the approximate distances to the neighbouring points that are tried.
 struct SeenPlace {
   Vec2<double> at{0, 0}, beside{0, 0};
 };
 
-/// Of values in rows, one for each place, those that are negative and that no neighbour exceeds: a part of a pupil may
-/// slip between these places. Places at the border do not count.
+/// Indices of local maxima among negative values on a grid with rows of length `row`: near a maximum a component of a
+/// pupil may lie between grid points. Border points are left out.
 std::vector<std::size_t> summits(std::span<const double> values, std::size_t row);
 
-/// What x and y of a place are: those of the plane, mm, or the angles under which its point, at a finite distance, sees
-/// it (sines.hpp), rad.
+/// Meaning of x and y: positions in the plane (mm), or angles (rad, sines.hpp) at which the point, at a finite
+/// distance, sees these positions.
 enum class Coordinates { plane, angles };
 
-/// The rays of one point, many at a time. Keeps the memory for them.
+/// Traces rays of one point in batches and keeps the buffers.
 class Sight {
  public:
   Sight(const Lens& lens, const PupilPlane& plane, std::size_t wavelength, Coordinates coordinates);
@@ -36,26 +36,28 @@ class Sight {
   const PupilPlane& plane() const noexcept { return plane_; }
   Coordinates coordinates() const noexcept { return coordinates_; }
 
-  /// Of the rays through some places: trace/clearances.hpp, reproducible. x, y: N each. Returns N values, valid until
-  /// the next call. apertures: as in BatchOptions.
+  /// Clearances of the rays through (x[i], y[i]), as in trace/clearances.hpp, reproducible.
+  ///
+  /// @param apertures  as in BatchOptions
+  /// @return           N values, valid until the next call
   std::span<const double> clearances(std::span<const double> x, std::span<const double> y, bool apertures = true);
 
-  /// Where the rays through some places end: fates and surfaces of N each, valid until the next call.
+  /// Fates and surfaces at the ends of N rays, valid until the next call.
   struct Ends {
     std::span<const RayFate> fates;
     std::span<const int> surfaces;
   };
   Ends ends(std::span<const double> x, std::span<const double> y);
 
-  /// How far from 0 the coordinates of places are that see the surface through which rays enter.
+  /// Largest absolute coordinate of the positions in which the point sees the surface through which rays enter.
   double reach() const;
 
-  /// Place of the chief ray, which apertures may stop; nullopt if no ray goes through the centre of the stop.
+  /// Position of the chief ray, ignoring apertures; nullopt if no ray goes through the centre of the stop.
   std::optional<Vec2<double>> chief() const;
 
-  /// Looks for rays that pass, over all that can be seen of the surface through which they enter: at 48 x 48 places
-  /// and, where few of them pass, about those of 96 x 96 at which the clearance has a maximum. Of several parts it
-  /// returns the one nearest to the chief ray, without a chief ray the largest.
+  /// Finds positions whose rays pass, within the visible part of the surface through which rays enter: on a grid of 48
+  /// x 48 steps and, if few rays pass, near maxima of the clearance on a grid of 96 x 96. Of several components it
+  /// returns the component nearest to the chief ray, or the largest if there is no chief ray.
   std::vector<SeenPlace> passing_places();
 
  private:

@@ -10,8 +10,8 @@
 
 namespace petzval::pupil_detail {
 
-/// Places of a plane by the sines under which its point sees them, times its distance: a surface close to the point
-/// has a bounded image. Of a point at infinity they are the places themselves.
+/// Maps positions in a plane to the sines of the angles at which the point sees them, times the distance of the point.
+/// A surface close to the point has a bounded image. For a point at infinity the map is the identity.
 class Sines {
  public:
   explicit Sines(const PupilPlane& plane) noexcept {
@@ -23,38 +23,38 @@ class Sines {
   }
 
   Vec2<double> of(const Vec2<double>& p) const noexcept { return (p - foot_) / std::sqrt(secant2(p)); }
-  /// Not finite for directions along the plane and beyond.
+  /// Not finite for directions that are parallel to the plane or point away.
   Vec2<double> place(const Vec2<double>& sines) const noexcept {
     const Vec2<double> s = sines * per_distance_;
     return foot_ + sines / std::sqrt(1 - s.x * s.x - s.y * s.y);
   }
-  /// By how much a step of sines is longer at a place, at most.
+  /// Largest factor by which a step in sines is longer in the plane.
   double stretch(const Vec2<double>& p) const noexcept {
     const double square = secant2(p);
     return square * std::sqrt(square);
   }
-  /// Places by the angles under which a point at a finite distance sees them, rad: these are bounded too, and tell
-  /// directions along the plane apart.
+  /// Angles (rad) at which a point at a finite distance sees a position. Angles are bounded too, and they distinguish
+  /// directions parallel to the plane.
   Vec2<double> angles(const Vec2<double>& p) const noexcept {
     const Vec2<double> t = tangents(p);
     const double tangent = glm::length(t);
     return tangent == 0 ? t : t * (std::atan(tangent) / tangent);
   }
-  /// Not finite for directions along the plane and beyond.
+  /// Not finite for directions that are parallel to the plane or point away.
   Vec2<double> place_at_angles(const Vec2<double>& angles) const noexcept {
     const double angle = glm::length(angles);
     if (angle == 0) return foot_;
     const double tangent = angle < std::numbers::pi / 2 ? std::tan(angle) : std::numeric_limits<double>::infinity();
     return foot_ + angles * (tangent / (angle * per_distance_));
   }
-  /// By how much a step of the plane is shorter in angles, at most.
+  /// Smallest angle per step in the plane, rad/mm.
   double angle_per_step(const Vec2<double>& p) const noexcept { return per_distance_ / secant2(p); }
   /// One over the distance of the point from the plane, 1/mm; 0 at infinity.
   double per_distance() const noexcept { return per_distance_; }
 
  private:
   Vec2<double> tangents(const Vec2<double>& p) const noexcept { return (p - foot_) * per_distance_; }
-  /// The square of the secant of the angle under which a place is seen.
+  /// Squared secant of the angle at which the point sees a position.
   double secant2(const Vec2<double>& p) const noexcept {
     const Vec2<double> t = tangents(p);
     return 1 + t.x * t.x + t.y * t.y;

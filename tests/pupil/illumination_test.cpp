@@ -434,7 +434,7 @@ TEST(ImageCircle, IsNoneOfADarkLensAndInfiniteOfAnOpenOne) {
                 {.thickness = 100}};
   EXPECT_GT(image_circle_mm(compile(p)), 100);
   for (const double part : {-0.1, 1.1, std::nan("")}) {
-    EXPECT_NE(testing::message([&] { image_circle_mm(lens, part); }).find("wanted 0 to 1"), std::string::npos);
+    EXPECT_NE(testing::message([&] { image_circle_mm(lens, part); }).find("must be 0 to 1"), std::string::npos);
   }
 }
 

@@ -187,11 +187,11 @@ TEST(PupilBoundary, RefusesTooFewDirections) {
   EXPECT_EQ(said(0, 1), "no error");
   EXPECT_EQ(said(0.1, 3), "no error");
   EXPECT_EQ(said(0.1, 1),
-            "front stop: pupil boundary: directions is 1, wanted 3 to 1048576, or 1 on the axis of a lens of "
+            "front stop: pupil boundary: directions = 1; must be 3 to 1048576, or 1 on the axis of a lens of "
             "revolution");
-  EXPECT_EQ(said(0, (1 << 20) + 1).rfind("front stop: pupil boundary: directions is 1048577, wanted 3 to 1048576", 0),
+  EXPECT_EQ(said(0, (1 << 20) + 1).rfind("front stop: pupil boundary: directions = 1048577; must be 3 to 1048576", 0),
             0u);
-  EXPECT_EQ(said(0, 0).rfind("front stop: pupil boundary: directions is 0", 0), 0u);
+  EXPECT_EQ(said(0, 0).rfind("front stop: pupil boundary: directions = 0", 0), 0u);
   EXPECT_EQ(said(0, 8, 2), "front stop: wavelength 2 does not exist; must be below 1");
 }
 

@@ -170,10 +170,10 @@ TEST(PupilPlane, OfAFilmPointSendsRaysAgainstTheLight) {
   EXPECT_EQ(message([&] {
               PupilPlane::of_film(lens, {std::nan(""), 0});
             }),
-            lens.name() + ": film point: a coordinate is nan mm, wanted a finite place");
+            lens.name() + ": film point: coordinate = nan mm; must be finite");
   Prescription touching = testing::data_prescription("double_gauss_100mm_f2.0");
   touching.surfaces.back().thickness = 0;
-  EXPECT_NE(message([&] { PupilPlane::of_film(compile(touching), {}); }).find("that of the last vertex"),
+  EXPECT_NE(message([&] { PupilPlane::of_film(compile(touching), {}); }).find("must differ from z of the last vertex"),
             std::string::npos);
 }
 
@@ -181,18 +181,18 @@ TEST(PupilPlane, RefusesPointsThatItCannotSee) {
   const Lens lens = front_stop_lens();
   const auto said = [&](const FieldPoint& point) { return message([&] { PupilPlane(lens, point); }); };
   const std::string start = "front stop: scene point: ";
-  EXPECT_EQ(said({radians(181), -1000}), start + "field is 181 degrees, wanted -180 to 180");
-  EXPECT_EQ(said({std::nan(""), -1000}), start + "field is nan degrees, wanted -180 to 180");
-  EXPECT_EQ(said({0, -1000, infinity}), start + "azimuth is inf rad, wanted a finite angle");
-  EXPECT_EQ(said({0, std::nan("")}), start + "z is nan mm, wanted a finite one or -inf");
-  EXPECT_EQ(said({0, infinity}), start + "z is inf mm, wanted a finite one or -inf");
-  EXPECT_EQ(said({0, 50}), start + "z is 50 mm, wanted less than where the first surface begins, 0 mm");
-  EXPECT_EQ(said({0, 0}), start + "z is 0 mm, that of the entrance pupil, wanted another");
+  EXPECT_EQ(said({radians(181), -1000}), start + "field = 181 degrees; must be -180 to 180");
+  EXPECT_EQ(said({std::nan(""), -1000}), start + "field = nan degrees; must be -180 to 180");
+  EXPECT_EQ(said({0, -1000, infinity}), start + "azimuth = inf rad; must be finite");
+  EXPECT_EQ(said({0, std::nan("")}), start + "z = nan mm; must be finite or -inf");
+  EXPECT_EQ(said({0, infinity}), start + "z = inf mm; must be finite or -inf");
+  EXPECT_EQ(said({0, 50}), start + "z = 50 mm; must be in front of the first surface, which begins at z = 0 mm");
+  EXPECT_EQ(said({0, 0}), start + "z = 0 mm; must differ from z of the entrance pupil");
   EXPECT_EQ(said({radians(100), -1000}),
             start +
-                "z is -1000 mm at a field of 100 degrees, wanted -inf, or a plane behind the entrance pupil (0 mm) "
+                "z = -1000 mm at field = 100 degrees; must be -inf, or a plane behind the entrance pupil (0 mm) "
                 "that this field meets outside the lens");
-  EXPECT_EQ(said({radians(100), 0.1}).substr(0, start.size() + 10), start + "z is 0.1 m");
+  EXPECT_EQ(said({radians(100), 0.1}).substr(0, start.size() + 10), start + "z = 0.1 mm");
   // Half a millimetre behind the pupil that field is still within the glass.
   const Lens fisheye = data_lens("fisheye_6.3mm_f2.8");
   const double just_behind = pupils(fisheye).entrance.z + 0.5;
@@ -207,10 +207,11 @@ TEST(PupilPlane, RefusesPointsThatItCannotSee) {
   p.surfaces = {{.radius = 50, .medium = {.nd = 1.5}, .semi_diameter = 10},
                 {.thickness = 100, .semi_diameter = 10},
                 {.thickness = 20, .semi_diameter = 5, .stop = true}};
-  EXPECT_EQ(message([&] {
-              PupilPlane(compile(p), {0, -1000});
-            }),
-            start + "the entrance pupil is at infinity, wanted one at a finite place: fields are seen from it");
+  EXPECT_EQ(
+      message([&] {
+        PupilPlane(compile(p), {0, -1000});
+      }),
+      start + "the entrance pupil is at infinity; must be at a finite distance, as fields are seen from the pupil");
 }
 
 }  // namespace pupil_plane_test
