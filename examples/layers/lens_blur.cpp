@@ -279,8 +279,7 @@ int main(int argc, char** argv) {
   examples::App app(
       "Blurs layers of a scene, or a picture with depths, by a lens that is focused at --focus-mm. Writes DIR/blur.*, "
       "sharp.* (the picture of a pinhole), missed.* (the fraction of rays that hit surfaces outside the layers) and "
-      "blur.json; "
-      "with --compare also reference.*, the same rays traced through the scene.",
+      "blur.json; with --compare also reference.*, the same rays traced through the scene.",
       "lens_blur");
   lens_blur::add_input(app, options.input);
   lens_blur::add_lens(app, options.lens);

@@ -7,8 +7,8 @@
 namespace renderer {
 namespace {
 
-/// The cubes along one axis, counted from the origin. They lie half a cube off, so that a plane through the origin, as
-/// a floor is, does not run along their faces, where rounding would choose the colour.
+/// Parity of the checker cube along one axis. Cubes are centred at the origin: their faces do not lie in a plane
+/// through the origin, such as a floor, where rounding would choose the colour.
 bool odd(float x, float size) { return std::fmod(std::floor(x / size + 0.5f), 2.0f) != 0; }
 
 int wrapped(int i, int count) {

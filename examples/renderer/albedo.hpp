@@ -5,9 +5,9 @@
 
 namespace renderer {
 
-/// The albedo at a point of a surface. point_world: mm; uv: texture coordinates there. Pixels of an image are
-/// interpolated linearly, across its edges too; their centres lie at half integers. Values of an image outside 0 to 1
-/// are clipped: no surface scatters back more light than it gets.
+/// The albedo at a point of a surface. point_world: mm; uv: texture coordinates of the point. Images are interpolated
+/// linearly and repeated; pixel centres are at half integers. Values outside 0 to 1 are clipped, so that no surface
+/// scatters more light than it receives.
 Rgb at(const Albedo& albedo, const glm::vec3& point_world, const glm::vec2& uv);
 
 }  // namespace renderer

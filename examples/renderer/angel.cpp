@@ -14,19 +14,19 @@
 namespace renderer {
 namespace {
 
-// In thousandths of the height.
+// Lengths in thousandths of the height.
 
 constexpr float pi = std::numbers::pi_v<float>;
 
 Mesh ball(const glm::vec3& centre, float radius, float stretch = 1) {
   const float half_height = radius * stretch;
-  // Three arcs approach an ellipse well enough for a curl.
+  // Three arcs approximate an ellipse well enough for a curl.
   const std::array profile{ProfilePoint{0, -half_height, 0.2f}, ProfilePoint{0.87f * radius, -half_height / 2, 0.25f},
                            ProfilePoint{0.87f * radius, half_height / 2, 0.2f}, ProfilePoint{0, half_height}};
   return placed(lathe(profile, 16), centre);
 }
 
-/// An elliptic section of an upright body: half axes at a height.
+/// An elliptic cross section of an upright body: half axes at a height.
 struct Section {
   float y, half_x, half_z;
 };
@@ -41,7 +41,7 @@ Mesh upright(const std::array<Section, n>& sections, const glm::vec3& by = {0, 0
   return placed(tube(stations, 48), by);
 }
 
-/// A rounded limb between two places, with a radius at each.
+/// A rounded limb between two points, with a radius at each end.
 Mesh limb(const glm::vec3& from, const glm::vec3& to, float first, float last) {
   const glm::vec3 way = to - from;
   const float across = std::hypot(way.x, way.z);
@@ -50,7 +50,8 @@ Mesh limb(const glm::vec3& from, const glm::vec3& to, float first, float last) {
   const auto station = [&](float s, float radius) {
     return TubeStation{s * along + radius * left, s * along - radius * left, radius};
   };
-  // Not much farther apart than those of the round ends, or the curve through them would loop there.
+  // At most slightly farther apart than the stations of the round ends, because the curve would loop between distant
+  // stations.
   const int parts = std::max(1, static_cast<int>(std::ceil(length / (1.4f * std::min(first, last)))));
   std::vector<TubeStation> stations{station(-0.75f * first, 0.55f * first), station(-0.3f * first, 0.9f * first)};
   for (int i = 0; i <= parts; ++i) {
@@ -66,7 +67,7 @@ constexpr std::array robe{Section{0, 152, 132}, Section{30, 150, 130}, Section{2
                           Section{520, 94, 78}, Section{610, 70, 58},  Section{690, 90, 70},   Section{760, 106, 60},
                           Section{798, 84, 46}, Section{822, 40, 36},  Section{850, 31, 31},   Section{890, 30, 30}};
 
-/// Folds from the girdle to the hem, deeper and wider below, of changing strength.
+/// Adds folds from the girdle to the hem, deeper and wider towards the hem, of varying depth.
 void add_folds(Mesh& mesh) {
   constexpr int count = 26;
   for (int k = 0; k < count; ++k) {
@@ -77,7 +78,7 @@ void add_folds(Mesh& mesh) {
       const auto& [y, half_x, half_z] = robe[6 - i];  // from the girdle down
       const float away = 1 / std::hypot(std::cos(angle) / half_x, std::sin(angle) / half_z);
       const float radius = strength * (2.5f + 3.2f * static_cast<float>(i - 1));
-      // Downwards the left side is that of +x.
+      // Seen downwards, left is +x.
       stations[i] = {{away + 0.8f * radius, y}, {away - 1.2f * radius, y}, radius};
     }
     // The upper end is hidden in the body.
@@ -104,17 +105,17 @@ void add_head(Mesh& body) {
     append(mesh, limb({side * 9, 942, forward + 50}, {side * 29, 940, forward + 41}, 4, 3));  // brow
     append(mesh, ball({side * 17, 929, forward + 43}, 6.5f));                                 // eye
   }
-  // Curls on spirals from the crown, all but where the face is.
+  // Curls on spirals from the crown, except over the face.
   constexpr int count = 190;
   for (int k = 0; k < count; ++k) {
-    const float height = 1 - 1.55f * (static_cast<float>(k) + 0.5f) / count;  // of a sphere
+    const float height = 1 - 1.55f * (static_cast<float>(k) + 0.5f) / count;  // on a unit sphere
     const float angle = static_cast<float>(k) * pi * (3 - std::sqrt(5.0f));
     const float ring = std::sqrt(1 - height * height);
     const glm::vec3 out{ring * std::cos(angle), height, ring * std::sin(angle)};
     if (out.z > 0.35f && out.y < 0.55f) continue;
     append(mesh, ball(glm::vec3{0, 935, forward - 2} + out * glm::vec3{47, 53, 54}, 10.5f));
   }
-  // A seventh of the height, as of a young person.
+  // A seventh of the body height, the proportion of a young person.
   for (glm::vec3& position : mesh.positions)
     position = {1.1f * position.x, 1.1f * (position.y - 909), 1.1f * position.z};
   append(body, placed(std::move(mesh), {0, 901.8f, 0}));
@@ -132,15 +133,15 @@ Mesh feather(const glm::vec2& root, const glm::vec2& tip, float half_width, floa
   return placed(tube(stations, 12), {0, 0, z});
 }
 
-/// side: 1 for the wing at +x.
+/// Adds a wing. side: 1 for the wing at +x, -1 for the other.
 void add_wing(Mesh& mesh, float side) {
   Mesh wing;
-  // Its upper edge, from the shoulder.
+  // Upper edge of the wing, from the shoulder.
   const auto edge = [&](float t) {
     return (1 - t) * (1 - t) * glm::vec2{side * 20, 700} + 2 * t * (1 - t) * glm::vec2{side * 95, 1095} +
            t * t * glm::vec2{side * 262, 925};
   };
-  // Rows from the longest feathers, behind, to the shortest: how many, where the first and the last one end.
+  // Rows from the longest feathers (at the back) to the shortest: number, and ends of the first and the last feather.
   struct Row {
     int count;
     glm::vec2 first_tip, last_tip;

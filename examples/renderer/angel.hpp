@@ -6,12 +6,12 @@
 namespace renderer {
 
 enum class AngelPose {
-  praying,  ///< hands together before the chest
+  praying,  ///< hands together in front of the chest
   calling,  ///< the left arm raised, the right one on the heart
 };
 
-/// A winged statue, `height` mm from its foot in the middle of the plane y = 0 to its crown; it looks along +z. The
-/// wings are 0.76 of the height wide. Its details are some thousandths of the height: curls, feathers, folds.
+/// A winged statue that looks along +z, `height` mm from its foot at the origin to its crown. The wings are 0.76 of the
+/// height wide. Curls, feathers and folds are some thousandths of the height in size.
 Mesh angel(AngelPose pose, float height);
 
 }  // namespace renderer

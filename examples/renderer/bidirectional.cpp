@@ -11,10 +11,10 @@ struct LightVertex {
   Bsdf bsdf;
   Lanes power;
   OtherWays others;
-  int scatterings;  ///< up to it and there
+  int scatterings;  ///< number of scatterings up to and including this vertex
 };
 
-/// One path from both ends. The lens has two ways: film samples, and connections from the light's side.
+/// One path from both ends. It reaches the lens by film samples and by connections from the light side.
 class Path {
  public:
   Path(const Scene& scene, const LensView& lens, Random& random, LensConnections& connections, Splats& splats)
@@ -39,7 +39,7 @@ class Path {
     for (int k = 1; k <= most_scatterings; ++k) {
       const auto met = scene_.meet(ray.origin, ray.direction);
       if (!met) return;
-      // Light from the sky is spread over an area, not from a point.
+      // Light from the sky starts on an area with one direction, so distance does not matter.
       others.arrive(k > 1 || near ? distance2(ray.origin, met->position) : 1, cosine(met->normal, ray.direction));
       const Bsdf bsdf(*met, -ray.direction, colours_);
       if (!bsdf.specular()) {
@@ -101,7 +101,7 @@ class Path {
     return true;
   }
 
-  /// Light straight from a lamp.
+  /// Light directly from a lamp.
   Lanes lit(const SurfacePoint& at, const Bsdf& bsdf, const OtherWays& others) {
     const auto light = illumination(scene_, at, random_);
     if (!light) return Lanes(0);
@@ -114,7 +114,7 @@ class Path {
            weight(meets + emitted * others.with(back));
   }
 
-  /// Light from all vertices of the light path, with at most so many scatterings there.
+  /// Light from all vertices of the light path that have at most `most` scatterings.
   Lanes connected(const SurfacePoint& at, const Bsdf& bsdf, const OtherWays& others, int most) {
     Lanes sum(0);
     for (const LightVertex& vertex : vertices_) {
@@ -124,7 +124,7 @@ class Path {
       const glm::vec3 way = (vertex.point.position - at.position) / static_cast<float>(std::sqrt(d2));
       const Lanes here = bsdf.times_cosine(way, Carries::radiance);
       if (here == Lanes(0)) continue;
-      // times_cosine() holds the cosine of the direction wi, which for power is this one.
+      // times_cosine() includes the cosine of its argument wi, which for power is the direction -way.
       const Lanes there = vertex.bsdf.times_cosine(-way, Carries::power);
       if (there == Lanes(0) || !scene_.sees(at, vertex.point)) continue;
       const double here_cosine = cosine(at.normal, way), there_cosine = cosine(vertex.point.normal, way);

@@ -69,7 +69,7 @@ struct Options {
 
 void say(const fs::path& file) { std::cout << file.string() << '\n'; }
 
-/// Writes picture.* and render.json. job: what the numbers depend on; about: what else render.json says first.
+/// Writes picture.* and render.json. job: all inputs of the numbers; about: entries at the top of render.json.
 void write_results(const renderer::PictureSums& sums, const Json& job, Json about,
                    const std::vector<std::string>& formats, const fs::path& folder) {
   const std::map<std::string, std::string> texts{{"lens", job.at("lens")},
@@ -94,7 +94,7 @@ void write_results(const renderer::PictureSums& sums, const Json& job, Json abou
     say(file);
   }
   if (sums.rejected() > 0) {
-    std::cerr << "note: " << sums.rejected() << " contributions were left out: not finite, or beyond 2^40\n";
+    std::cerr << "note: " << sums.rejected() << " contributions were rejected: not finite, or beyond 2^40\n";
   }
   about.update(renderer::statistics(sums));
   about["job"] = job;
@@ -102,7 +102,7 @@ void write_results(const renderer::PictureSums& sums, const Json& job, Json abou
   say(folder / "render.json");
 }
 
-/// Of a sky of radiance 1.
+/// Irradiance on the axis of the film for a sky of radiance 1.
 double irradiance_on_axis(const petzval::Camera& camera) {
   constexpr std::uint32_t count = 4096;
   double sum = 0;
@@ -118,7 +118,7 @@ std::string file_checksum(const std::string& file) {
   return file.empty() ? "" : petzval::checksum(examples::read_text(file));
 }
 
-/// The scene, the lens, and what decides the picture's numbers.
+/// The scene, the lens and all options that determine the picture.
 class Job {
  public:
   explicit Job(const Options& options)
@@ -132,17 +132,17 @@ class Job {
     film_ = options.setup.film(options.width, options.height, usual_width);
     film_.tilt_rad = petzval::radians(options.tilt_deg);
     film_.swing_rad = petzval::radians(options.swing_deg);
-    if (!scene_.has_light()) std::cerr << "note: " << options.scene << " has no light: the picture is black\n";
+    if (!scene_.has_light()) std::cerr << "note: " << options.scene << " has no light source: the picture is black\n";
     examples::say_what_does_not_fit(lens_, film_);
     choose_model();
     if (!options.surface.points_file.empty()) surface_ = surface();
     if (options.expressive.dispersion != 1 && options.wavelengths == "d") {
-      std::cerr << "note: --dispersion shows with --wavelengths rgb or hero alone\n";
+      std::cerr << "note: --dispersion has an effect only with --wavelengths rgb or hero\n";
     }
     expressive_ = examples::expressive_of(options.expressive, lens_, film_);
   }
 
-  /// False if a signal ended the work.
+  /// Renders and writes the results. Returns false if a signal ended the work.
   bool run() {
     const renderer::LensCamera lens = camera(chosen_.model);
     refuse_walls(lens);
@@ -154,11 +154,12 @@ class Job {
     if (options_.resume && examples::exists(file)) {
       sums = resumed(file, job);
     } else if (options_.resume) {
-      std::cerr << "note: " << file.string() << " does not exist: the picture begins anew\n";
+      std::cerr << "note: " << file.string() << " does not exist: the picture starts from the beginning\n";
     } else if (examples::exists(file)) {
       const fs::path kept = fs::path(file).replace_extension(".before.exr");
       examples::rename(file, kept);
-      std::cerr << "note: without --resume the picture begins anew; the old sums are kept in " << kept.string() << '\n';
+      std::cerr << "note: without --resume the picture starts from the beginning; the old sums are kept in "
+                << kept.string() << '\n';
     }
     examples::make_folder(folder);
     std::vector<std::size_t> tiles;
@@ -174,9 +175,9 @@ class Job {
     }();
     say(file);
     if (report.interrupted) {
-      std::cerr << "note: interrupted; the same command with --resume goes on\n";
+      std::cerr << "note: interrupted; the same command with --resume continues\n";
     } else if (!report.finished) {
-      std::cerr << "note: out of time; the same command with --resume goes on\n";
+      std::cerr << "note: out of time; the same command with --resume continues\n";
     }
     if (options_.shard.count > 1) return !report.interrupted;
     write_results(sums, job,
@@ -195,8 +196,8 @@ class Job {
   static renderer::SceneDescription description(const Options& options) {
     if (options.scene.ends_with(".json")) return renderer::read_scene(options.scene);
     if (auto scene = renderer::built_in_scene(options.scene)) return std::move(*scene);
-    throw petzval::Error("--scene: found \"" + options.scene + "\", wanted one of " +
-                         std::string(renderer::built_in_scene_names) + ", or a file that ends in .json");
+    throw petzval::Error("--scene = \"" + options.scene + "\"; must be " + std::string(renderer::built_in_scene_names) +
+                         " or a file that ends in .json");
   }
   renderer::LensCamera camera(petzval::ModelKind model) const {
     return {petzval::Camera(
@@ -210,7 +211,7 @@ class Job {
                  .expressive = expressive_}),
             scene_.description().pose};
   }
-  /// Through the points of the file, where the model sees them.
+  /// The focal surface through the points of the file, projected by the model.
   petzval::FocalSurface surface() const {
     const renderer::LensCamera lens = camera(chosen_.model);
     return examples::read_focal_surface(options_.surface, lens.camera(), options_.setup.focus.distance_origin(),
@@ -222,11 +223,11 @@ class Job {
     const petzval::FocalSteepness found = camera.focal_steepness();
     if (found.steepness < 1 || integrator_ == renderer::Integrator::path) return;
     const petzval::Vec2<double> pixel = film_.raster(found.place);
-    std::cerr << "note: about the pixel (" << examples::number(pixel.x, 3) << ", " << examples::number(pixel.y, 3)
-              << ") the focus is so steep that rays of several film points coincide; of these, light paths know one: "
-                 "--integrator path has all their light\n";
+    std::cerr << "note: near pixel (" << examples::number(pixel.x, 3) << ", " << examples::number(pixel.y, 3)
+              << ") the focal surface is so steep that rays of several film points coincide; light paths count only "
+                 "one of them: --integrator path includes all their light\n";
   }
-  /// The sums of a picture that goes on. It may get more samples than it was begun with.
+  /// Reads the sums of a picture to be continued, which may get more samples than before.
   static renderer::PictureSums resumed(const fs::path& file, Json& job) {
     Json found;
     renderer::PictureSums sums = renderer::Checkpoint::read_any(file, found);
@@ -237,8 +238,8 @@ class Job {
     renderer::refuse_other_job(file, without_samples(found), without_samples(job));
     const Json had = found.value("samples", Json()), asked = job.at("samples");
     if (had.is_number() && asked.is_number() && had > asked) {
-      std::cerr << "note: " << file.string() << ": --spp = " << asked << "; the picture was begun with " << had
-                << ", which it keeps\n";
+      std::cerr << "note: " << file.string() << ": --spp = " << asked << "; the picture keeps its " << had
+                << " samples\n";
       job["samples"] = had;
     }
     return sums;
@@ -254,19 +255,19 @@ class Job {
     const bool bent = !options_.surface.points_file.empty() || !options_.expressive.change_nothing();
     if (bent && options_.model == "auto") {
       throw petzval::Error(
-          "--model auto: found a focal surface or an expressive lens, wanted a first-order model by "
-          "name: pinhole, thin, thin_two_disc or thick");
+          "--model auto: a focal surface or an expressive lens needs a first-order model by name: pinhole, thin, "
+          "thin_two_disc or thick");
     }
     if (const auto named = petzval::model_named(options_.model)) {
       if (options_.budget_px > 0)
-        throw petzval::Error("--budget-px: found it with --model " + options_.model + ", wanted --model auto");
+        throw petzval::Error("--budget-px with --model " + options_.model + "; must be --model auto");
       chosen_ = {*named, {"--model " + options_.model}};
       return;
     }
-    // The choice follows measured times, which differ between machines and days.
+    // The choice depends on measured times, which vary between machines and runs.
     if (options_.shard.count > 1) {
-      throw petzval::Error("--model auto: found --tile " + options_.shard.text() +
-                           ", wanted one model for all shards by name");
+      throw petzval::Error("--model auto with --tile " + options_.shard.text() +
+                           "; must be a model by name, the same for all shards");
     }
     const fs::path file = renderer::checkpoint_file(options_.out_folder, options_.shard);
     if (options_.resume && examples::exists(file)) {
@@ -274,12 +275,12 @@ class Job {
       renderer::Checkpoint::read_any(file, job);
       const std::string before = job.value("model", "");
       if (const auto model = petzval::model_named(before)) {
-        chosen_ = {*model, {before + " was chosen when the picture began"}};
+        chosen_ = {*model, {before + " was chosen at the start of the picture"}};
         return;
       }
     }
     if (options_.budget_px == 0 && options_.samples == 0) {
-      throw petzval::Error("--model auto: found --time-s alone, wanted --budget-px or --spp to choose by");
+      throw petzval::Error("--model auto with --time-s needs --budget-px or --spp for the choice");
     }
     const renderer::LensCamera exact = camera(petzval::ModelKind::exact_float);
     refuse_walls(exact);
@@ -291,8 +292,8 @@ class Job {
   }
   void refuse_walls(const renderer::LensCamera& lens) const {
     if (const renderer::Object* const wall = scene_.around(lens.front())) {
-      throw petzval::Error(options_.scene + ": the camera stands inside " + wall->name +
-                           ", wanted it in the open (a room is a mesh that faces inwards, or quads)");
+      throw petzval::Error(options_.scene + ": the camera is inside " + wall->name +
+                           "; must be outside all solids (a room is a mesh that faces inwards, or quads)");
     }
   }
 
@@ -359,12 +360,12 @@ class Job {
   petzval::ExpressiveLens expressive_;
 };
 
-/// bokeh_scene merge FOLDER... --out DIR
+/// Runs: bokeh_scene merge FOLDER... --out DIR
 int merge(int argc, char** argv) {
   std::vector<std::string> folders, formats{"exr", "png"};
   std::string out_folder;
   examples::App app(
-      "Adds the shards of a picture, each rendered with --tile I/N, to the bits of one run. Writes picture.* and "
+      "Merges the shards of a picture, each rendered with --tile I/N, bit for bit as one run. Writes picture.* and "
       "render.json to DIR.",
       "bokeh_scene merge");
   app.add_option("FOLDER", folders, "folders with tile_I_of_N.exr")->required();
@@ -385,20 +386,17 @@ int main(int argc, char** argv) {
   if (argc > 1 && std::string_view(argv[1]) == "merge") return merge(argc - 1, argv + 1);
   Options options;
   examples::App app(
-      "Renders a scene through a lens. World: right-handed, y up, mm; the scene's camera stands where the entrance "
-      "pupil "
-      "is. Writes picture.* to DIR (linear Rec. 709; a sky of radiance 1 gives 1 in the middle, unless --normalisation "
-      "says irradiance) and render.json: model and why, samples, seconds, the share of the time spent in the lens, "
-      "mean "
-      "radiance and luminance of tiles with standard errors.\n"
-      "Without --spp and --time-s it takes 64 samples of each pixel. --time-s alone takes as many as it can, --time-s "
-      "with --spp leaves the rest for --resume. Ctrl-C writes sums and picture as they are. --resume goes on; a larger "
-      "--spp adds samples to a finished picture, to the bits of one run.",
+      "Renders a scene through a lens. World: right-handed, y up, mm; the entrance pupil is at the position of the "
+      "scene's camera. Writes picture.* to DIR (linear Rec. 709; a sky of radiance 1 gives 1 in the centre, or "
+      "irradiance with --normalisation irradiance) and render.json: model and reasons, samples, seconds, fraction of "
+      "the time spent in the lens, mean radiance and luminance of tiles with standard errors.\n"
+      "Default: 64 samples per pixel. --time-s without --spp takes as many samples as the time allows; --time-s with "
+      "--spp leaves missing samples to --resume. Ctrl-C writes sums and picture. --resume continues; a larger --spp "
+      "adds samples to a finished picture, bit for bit as one run.",
       "bokeh_scene");
-  app.add_option(
-         "--scene", options.scene,
-         "balls, chess, statues or street, made for the film of 36x24 and lenses of 100 mm (statues: 50 mm); or "
-         "a scene as JSON")
+  app.add_option("--scene", options.scene,
+                 "balls, chess, statues or street, for a film of 36x24 mm and lenses of 100 mm (statues: 50 mm); or a "
+                 "scene as JSON")
       ->required()
       ->type_name("NAME|FILE.json");
   examples::add_lens(app, options.lens_file, "--lens")->required();
@@ -406,39 +404,39 @@ int main(int argc, char** argv) {
   for (const petzval::ModelKind m : petzval::models()) models.emplace_back(petzval::name(m));
   app.add_option(
          "--model", options.model,
-         "model of the lens; auto: the fastest one within --budget-px, or without it the fastest one whose bias "
-         "is below a tenth of the noise")
+         "model of the lens; auto: the fastest model within --budget-px, or by default the fastest model whose bias is "
+         "below a tenth of the noise")
       ->one_of(models)
       ->capture_default_str();
   examples::add_number(app, "--budget-px", options.budget_px, examples::positive_number,
-                       "of --model auto: the largest error of a ray (pixels)")
+                       "largest error of a ray for --model auto (pixels)")
       ->default_str("a tenth of the noise");
   app.add_option("--integrator", options.integrator,
-                 "path: from the film; light: from the lamps, without what only mirrors and smooth glass show; "
+                 "path: from the film; light: from the lamps, which misses views through mirrors and smooth glass; "
                  "bidirectional: both, for small lamps")
       ->one_of({"path", "light", "bidirectional"})
       ->capture_default_str();
   examples::add_count(app, "--spp", options.samples, {1, 1u << 24, "a whole number from 1 to 16777216"},
-                      "samples of each pixel")
+                      "samples per pixel")
       ->default_str("64");
-  examples::add_number(app, "--time-s", options.seconds, examples::positive_number,
-                       "begin no pass over the picture after this time (s); a pass, which is always finished, takes 1 "
-                       "sample of each pixel, with --spp up to 16")
+  examples::add_number(
+      app, "--time-s", options.seconds, examples::positive_number,
+      "time limit (s); no pass over the picture starts after it. A pass is always finished and takes 1 sample per "
+      "pixel, or up to 16 with --spp")
       ->default_str("none");
   examples::add_count(app, "--seed", options.seed, {0, 4294967295.0, "a whole number from 0 to 4294967295"},
-                      "another seed gives other noise");
+                      "seed of the random numbers");
   examples::add_count(app, "--threads", options.threads, {1, 1024, "a whole number from 1 to 1024"},
-                      "threads; the picture does not depend on them");
+                      "number of threads; the picture does not depend on it");
   examples::add_picture_size(app, options.width, options.height, usual_width);
   examples::add_camera(app, options.setup);
   app.get_option("--focus-mm")->required()->default_str("");
   examples::add_bokeh(app, options.bokeh);
-  auto* points =
-      app.add_option("--focal-surface", options.surface.points_file,
-                     "distances in focus, extents of the depth of field and blurs at places of the picture, for a "
-                     "first-order --model: {\"points\": [{\"pixel\": [x, y] or \"world_mm\": [x, y, z], "
-                     "\"distance_mm\", \"extent_stops\", \"blur_px\", \"weight\", \"fade\"}]}")
-          ->type_name("POINTS.json");
+  auto* points = app.add_option("--focal-surface", options.surface.points_file,
+                                "distances in focus, depth-of-field extents and blurs at points of the picture, for a "
+                                "first-order --model: {\"points\": [{\"pixel\": [x, y] or \"world_mm\": [x, y, z], "
+                                "\"distance_mm\", \"extent_stops\", \"blur_px\", \"weight\", \"fade\"}]}")
+                     ->type_name("POINTS.json");
   examples::add_surface_kind(app, options.surface, points);
   examples::add_expressive(app, options.expressive);
   constexpr examples::Range below_quarter_turn{-89.9, 89.9, "an angle from -89.9 to 89.9"};
@@ -447,20 +445,20 @@ int main(int argc, char** argv) {
                        "swing of the film about +y (degrees)");
   app.add_option(
          "--wavelengths", options.wavelengths,
-         "d: the lens at the d line; rgb: each channel at a wavelength of its own; hero: four wavelengths a path, "
-         "over the visible spectrum")
+         "d: the lens at the d line; rgb: one wavelength per channel; hero: four wavelengths per path over the visible "
+         "spectrum")
       ->one_of({"d", "rgb", "hero"})
       ->capture_default_str();
   app.add_option("--normalisation", options.normalisation, "unit of the picture")
       ->one_of({"unity_on_axis", "irradiance"})
       ->capture_default_str();
   std::string tile;
-  app.add_option(
-         "--tile", tile,
-         "render every Nth tile of 16 x 16 pixels, from the Ith on; 'bokeh_scene merge DIR --out DIR' adds them")
+  app.add_option("--tile", tile,
+                 "render every Nth tile of 16 x 16 pixels, starting with the Ith; 'bokeh_scene merge DIR --out DIR' "
+                 "adds the shards")
       ->type_name("I/N");
   app.add_flag("--resume", options.resume,
-               "go on from the checkpoint in DIR, with as many samples or more, to the bits of one run");
+               "continue from the checkpoint in DIR with at least as many samples, bit for bit as one run");
   const auto* formats = examples::add_formats(app, options.formats, "png (sRGB)");
   examples::add_out_folder(app, options.out_folder)->required();
 
@@ -469,8 +467,8 @@ int main(int argc, char** argv) {
     if (options.samples == 0 && options.seconds == 0) options.samples = 64;
     if (!tile.empty()) options.shard = examples::parse_shard("--tile", tile);
     if (options.shard.count > 1 && formats->given()) {
-      throw petzval::Error("--format: found it with --tile " + tile +
-                           ", wanted it for 'bokeh_scene merge', which writes the picture");
+      throw petzval::Error("--format must not be used with --tile " + tile +
+                           "; 'bokeh_scene merge' writes the picture");
     }
     whole = Job(options).run();
   });

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Lays out pictures of bokeh_scene on a sheet, and measures the highlights of the balls scene.
+// Lays out pictures of bokeh_scene on a sheet and measures the highlights of the balls scene.
 //
 //   bokeh_sheet --columns 5 --title "Balls" --out balls.png --balls balls.csv FOLDER...
 #include <algorithm>
@@ -28,7 +28,7 @@ struct Picture {
   petzval::RgbImage image;
   Json job;
 
-  /// What is in focus, and what else differs from an upright film behind the lens.
+  /// The focus, and differences from an upright film behind the unmodified lens.
   std::vector<std::string> captions() const {
     const Json &mm = job.at("focus_mm"), &expressive = job.at("expressive");
     std::string from = job.at("distance_from");
@@ -54,7 +54,7 @@ Picture read(const fs::path& folder) {
     picture.job = Json::parse(examples::read_text(folder / "render.json")).at("job");
     picture.captions(), picture.lens();
   } catch (const Json::exception&) {
-    throw petzval::Error((folder / "render.json").string() + ": found another file, wanted that of bokeh_scene");
+    throw petzval::Error((folder / "render.json").string() + ": not a file of bokeh_scene");
   }
   return picture;
 }
@@ -64,8 +64,8 @@ examples::Sheet sheet_of(const std::vector<Picture>& pictures, const std::string
   for (std::size_t i = 0; i < pictures.size(); ++i) {
     const Picture& p = pictures[i];
     if (p.image.width != pictures[0].image.width || p.image.height != pictures[0].image.height) {
-      throw petzval::Error((p.folder / "picture.exr").string() + ": found " + std::to_string(p.image.width) + " x " +
-                           std::to_string(p.image.height) + " pixels, wanted all pictures of one size");
+      throw petzval::Error((p.folder / "picture.exr").string() + ": size = " + std::to_string(p.image.width) + " x " +
+                           std::to_string(p.image.height) + " pixels; must be the same for all pictures");
     }
     if (i % columns == 0) {
       const std::string film = p.job.at("film_mm");
@@ -79,7 +79,7 @@ examples::Sheet sheet_of(const std::vector<Picture>& pictures, const std::string
     row.tiles.push_back({petzval::to_srgb8(p.image), p.captions()});
     if (row.title.empty()) row.tiles.back().captions.insert(row.tiles.back().captions.begin(), p.lens());
   }
-  sheet.notes = {"bokeh_scene: white is the radiance 1 in the middle; scale bars on the film."};
+  sheet.notes = {"bokeh_scene: white is radiance 1 in the centre; scale bars on the film."};
   return sheet;
 }
 
@@ -108,18 +108,17 @@ int main(int argc, char** argv) {
   std::vector<std::string> folders;
   std::string title = "Scenes through lenses", out, balls;
   std::uint32_t columns = 1;
-  examples::App app("Lays out pictures of bokeh_scene on a sheet, in rows from the left. Pictures have one size.",
-                    "bokeh_sheet");
+  examples::App app(
+      "Lays out pictures of bokeh_scene on a sheet, in rows from the left. All pictures must have the same size.",
+      "bokeh_sheet");
   app.add_option("FOLDER", folders, "folders with picture.exr and render.json")->required();
-  examples::add_count(app, "--columns", columns, {1, 100, "a whole number from 1 to 100"}, "pictures in a row");
+  examples::add_count(app, "--columns", columns, {1, 100, "a whole number from 1 to 100"}, "pictures per row");
   app.add_option("--title", title, "title of the sheet")->capture_default_str();
   examples::add_out_file(
       app, balls,
-      "CSV to write: of the balls scene, each highlight's ratio of axes, the angle of the long axis against the "
-      "radius, and skewness outwards; x_mm is the position of the ball, `beside` the light of other spots near the "
-      "ball, as a "
-      "fraction of the highlight's. trusted: yes for highlights of 6 pixels and more that are whole and far brighter "
-      "than other spots",
+      "CSV of the balls scene: for each highlight axis_ratio, the angle of its long axis to the radius, and its "
+      "outward skewness; x_mm: position of the ball; beside: light of other spots near the ball, relative to the "
+      "highlight; trusted: yes for complete highlights of at least 6 pixels that are far brighter than other spots",
       "CSV", "--balls");
   examples::add_out_file(app, out, "PNG to write", "FILE.png")->required();
   return examples::run(app, argc, argv, [&] {

@@ -14,14 +14,14 @@ namespace {
 
 constexpr float pi = std::numbers::pi_v<float>;
 constexpr float coat_ior = 1.5f;
-/// What a coat of that index reflects of light that comes evenly from below it: 1 - (1 - .0918) / 1.5^2, with what it
-/// reflects of light from above.
+/// Diffuse reflectance of a coat of index 1.5 from inside: 1 - (1 - 0.0918) / 1.5^2, where 0.0918 is its diffuse
+/// reflectance from outside.
 constexpr float coat_inside = 0.5964f;
 
 float largest(const Rgb& colour) { return std::max({colour.r, colour.g, colour.b}); }
 float squared(float x) { return x * x; }
 
-/// The share that a smooth face reflects. cosine: of the side where light comes from, negative inside.
+/// Fresnel reflectance of a smooth interface. cosine: of the incident direction, negative inside.
 float fresnel(float cosine, float ior) {
   const float eta = cosine > 0 ? ior : 1 / ior, c = std::min(std::abs(cosine), 1.0f);
   const float sine2 = (1 - c * c) / (eta * eta);
@@ -35,9 +35,9 @@ Lanes schlick(const Lanes& head_on, float cosine) {
   return head_on + (1.0f - head_on) * (x * x * x * x * x);
 }
 
-/// GGX. m, w: about the normal, m on its side.
+/// GGX distribution. m, w: in the frame of the normal, m on its side.
 float facets(const glm::vec3& m, float alpha) {
-  // cos^4 (1 + tan^2 / alpha^2)^2, without what cancels near the normal.
+  // cos^4 (1 + tan^2 / alpha^2)^2, written without cancellation near the normal.
   const float d = m.z * m.z + (m.x * m.x + m.y * m.y) / (alpha * alpha);
   return m.z > 0 ? 1 / (pi * alpha * alpha * d * d) : 0;
 }
@@ -47,7 +47,7 @@ float lambda(const glm::vec3& w, float alpha) {
 float shown(const glm::vec3& o, const glm::vec3& i, float alpha) {
   return 1 / (1 + lambda(o, alpha) + lambda(i, alpha));
 }
-/// The density of facets that o sees.
+/// Density of the facets visible from o.
 float visible(const glm::vec3& o, const glm::vec3& m, float alpha) {
   return facets(m, alpha) * std::abs(glm::dot(o, m)) / ((1 + lambda(o, alpha)) * std::abs(o.z));
 }
@@ -66,7 +66,7 @@ glm::vec3 sample_facet(const glm::vec3& o, float alpha, float u, float v) {
 
 glm::vec3 reflected(const glm::vec3& w, const glm::vec3& m) { return 2 * glm::dot(w, m) * m - w; }
 
-/// Into the other side of a facet m, whose side is that of positive cosines; nothing when reflected totally.
+/// Refracts w through a facet m, whose side has positive cosines; nullopt for total internal reflection.
 std::optional<glm::vec3> refracted(const glm::vec3& w, const glm::vec3& m, float ior) {
   const float c = glm::dot(w, m), eta = c > 0 ? ior : 1 / ior, sine2 = (1 - c * c) / (eta * eta);
   if (sine2 >= 1) return {};
@@ -123,13 +123,13 @@ float Bsdf::correction(const glm::vec3& wi, Carries carries) const noexcept {
   return std::abs(glm::dot(wo_, ns) * glm::dot(wi, normal_) / (glm::dot(wo_, normal_) * glm::dot(wi, ns)));
 }
 
-/// Of rough glass between its sides; value and density follow from the facet.
+/// A facet of rough glass that connects two directions; value and density follow from the facet.
 struct Facet {
   glm::vec3 m{0, 0, 1};
   float jacobian = 0, f = 0, eta = 1;
 };
 static std::optional<Facet> through_facet(const glm::vec3& o, const glm::vec3& i, float ior) {
-  const float eta = o.z > 0 ? ior : 1 / ior;  // of the side of i over that of o
+  const float eta = o.z > 0 ? ior : 1 / ior;  // index on the side of i, divided by the index on the side of o
   glm::vec3 m = o + eta * i;
   const float length = glm::length(m);
   if (!(length > 0)) return {};

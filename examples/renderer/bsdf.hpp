@@ -10,31 +10,29 @@
 
 namespace renderer {
 
-/// What a path carries away from its first end: radiance from a lamp is seen from the lens, power goes out from the
-/// lamp.
+/// Quantity carried by a path: radiance for paths from the lens, power for paths from a lamp.
 enum class Carries : std::uint8_t { radiance, power };
 
-/// How a surface scatters light between two directions away from it, both in the world and of unit length.
+/// Scattering of light by a surface between two directions that point away from it (world frame, unit length).
 ///
-/// Surfaces scatter on both sides; glass is inside where its normal points away from.
-/// Sources: Walter et al., Microfacet models for refraction through rough surfaces, 2007 (GGX); Heitz, Sampling the GGX
-/// distribution of visible normals, 2018; Schlick's Fresnel term for metals. Below a varnish light is scattered as
-/// Lambert has it, inside the coat too.
+/// Surfaces scatter on both sides; the inside of glass is opposite to its normal. Below a varnish the light is
+/// scattered by Lambert's law, also inside the coat. Sources: Walter et al., Microfacet models for refraction through
+/// rough surfaces, 2007 (GGX); Heitz, Sampling the GGX distribution of visible normals, 2018; Schlick's Fresnel term
+/// for metals.
 class Bsdf {
  public:
-  /// wo: towards where the path came from.
+  /// wo: direction towards the origin of the path.
   Bsdf(const SurfacePoint& point, const glm::vec3& wo, const PathColours& colours) noexcept;
 
-  /// A mirror, or smooth glass: there is nothing to be evaluated.
+  /// True for a mirror or smooth glass, which cannot be evaluated, only sampled.
   bool specular() const noexcept { return specular_; }
-  /// The share of paths that go on: the largest reflectance in RGB, which wavelengths and directions leave as it is.
+  /// Fraction of paths that continue: the largest reflectance in RGB, independent of wavelengths and directions.
   double goes_on() const noexcept { return goes_on_; }
 
-  /// The BSDF times the cosine at the surface of the direction wi, as an estimator wants it: of power, with the
-  /// correction for interpolated normals. Source: Veach, Robust Monte Carlo methods for light transport simulation,
-  /// 1997, section 5.3.
+  /// The BSDF times the cosine of wi at the surface. For power it includes the correction for interpolated normals.
+  /// Source: Veach, Robust Monte Carlo methods for light transport simulation, 1997, section 5.3.
   Lanes times_cosine(const glm::vec3& wi, Carries carries) const noexcept;
-  /// The density of sampling wi for wo, and wo for wi, 1/sr.
+  /// Densities of sampling wi given wo, and wo given wi, 1/sr.
   double pdf(const glm::vec3& wi) const noexcept;
   double pdf_reverse(const glm::vec3& wi) const noexcept;
 
@@ -50,14 +48,14 @@ class Bsdf {
   Lanes value(const glm::vec3& o, const glm::vec3& i, Carries carries) const noexcept;
   double density(const glm::vec3& o, const glm::vec3& i) const noexcept;
   std::optional<Sample> sample_specular(float choice, Carries carries) const noexcept;
-  /// What normals other than the surface's own change for power.
+  /// Correction of power for interpolated normals.
   float correction(const glm::vec3& wi, Carries carries) const noexcept;
   bool same_side(const glm::vec3& wi) const noexcept;
   double coat_share(const glm::vec3& o) const noexcept;
 
   const Material& material_;
-  glm::vec3 normal_;  ///< of the surface
-  glm::vec3 wo_, o_;  ///< in the world, and about the shading normal
+  glm::vec3 normal_;  ///< normal of the surface
+  glm::vec3 wo_, o_;  ///< world frame, and frame of the shading normal
   Frame frame_;
   Lanes colour_{1};  ///< albedo or reflectance
   float alpha_ = 0;

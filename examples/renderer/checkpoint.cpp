@@ -28,7 +28,7 @@ std::string term_name(const std::string& name, std::size_t term) {
   return term == 0 ? name : name + '.' + std::to_string(term);
 }
 
-/// Adds the channels of sums; at(i): the i-th.
+/// Adds the channels of sums; at(i) is the i-th sum.
 template <class At>
 void add_channels(petzval::ExrPart& part, const std::string& name, const At& at) {
   const auto size = static_cast<std::size_t>(part.width) * static_cast<std::size_t>(part.height);
@@ -45,7 +45,7 @@ void add_channels(petzval::ExrPart& part, const std::string& name, const At& at)
   } while (std::any_of(rest.begin(), rest.end(), [](const FixedSum& sum) { return sum != FixedSum(); }));
 }
 
-/// The sums that add_channels() wrote, given to set(i, sum).
+/// Reads the sums written by add_channels() and calls set(i, sum).
 template <class Set>
 void read_channels(const petzval::ExrPart& part, const std::string& name, const Set& set) {
   std::vector<FixedSum> sums(static_cast<std::size_t>(part.width) * static_cast<std::size_t>(part.height));
@@ -72,7 +72,7 @@ std::string checksum_of(const std::string& job, const std::vector<petzval::ExrPa
   for (const petzval::ExrPart& part : parts) {
     bytes += part.name;
     for (const auto& [name, value] : part.numbers) bytes += name, add(std::bit_cast<std::uint64_t>(value), 8);
-    std::vector<const petzval::ExrChannel*> sorted;  // as files keep them
+    std::vector<const petzval::ExrChannel*> sorted;  // order of channels in files
     for (const petzval::ExrChannel& channel : part.channels) sorted.push_back(&channel);
     std::sort(sorted.begin(), sorted.end(), [](const auto* a, const auto* b) { return a->name < b->name; });
     for (const petzval::ExrChannel* const channel : sorted) {
@@ -85,7 +85,7 @@ std::string checksum_of(const std::string& job, const std::vector<petzval::ExrPa
 
 const std::string& text(const petzval::ExrPart& part, const char* key) {
   const auto found = part.texts.find(key);
-  if (found == part.texts.end()) throw petzval::Error(std::string("no text ") + key);
+  if (found == part.texts.end()) throw petzval::Error(std::string("has no text ") + key);
   return found->second;
 }
 
@@ -129,16 +129,16 @@ PictureSums Checkpoint::read_any(const fs::path& file, Json& job) {
     const auto& job_text = text(all.front(), "job");
     const std::string sum = checksum_of(job_text, all);
     if (text(all.front(), "checksum") != sum) {
-      throw petzval::Error("found checksum " + sum + ", wanted " + text(all.front(), "checksum") +
+      throw petzval::Error("checksum = " + sum + "; must be " + text(all.front(), "checksum") +
                            ": the file has changed");
     }
     job = Json::parse(job_text, nullptr, false);
-    if (!job.is_object()) throw petzval::Error("text job is no JSON object");
+    if (!job.is_object()) throw petzval::Error("text job is not a JSON object");
     PictureSums sums(all.front().width, all.front().height);
     const auto part = [&](std::size_t i, const char* name, std::size_t width, std::size_t height) -> const auto& {
       if (i >= all.size() || all[i].name != name || all[i].width != static_cast<int>(width) ||
           all[i].height != static_cast<int>(height)) {
-        throw petzval::Error("no part \"" + std::string(name) + "\" of " + std::to_string(width) + " x " +
+        throw petzval::Error("has no part \"" + std::string(name) + "\" of " + std::to_string(width) + " x " +
                              std::to_string(height));
       }
       return all[i];
@@ -156,11 +156,11 @@ PictureSums Checkpoint::read_any(const fs::path& file, Json& job) {
                     [&](std::size_t t, const FixedSum& own) { sums.tiles_[t].luminance[r] = own; });
     }
     const auto rejected = all.front().numbers.find("rejected");
-    if (rejected == all.front().numbers.end()) throw petzval::Error("no number rejected");
+    if (rejected == all.front().numbers.end()) throw petzval::Error("has no number rejected");
     sums.rejected_ = static_cast<std::uint64_t>(rejected->second);
     return sums;
   } catch (const petzval::Error& error) {
-    throw petzval::Error(file.string() + ": " + error.what() + "; wanted a checkpoint of bokeh_scene");
+    throw petzval::Error(file.string() + ": " + error.what() + "; must be a checkpoint of bokeh_scene");
   }
 }
 
@@ -175,7 +175,7 @@ void refuse_other_job(const fs::path& file, const Json& found, const Json& wante
     for (const auto& [key, value] : values->items()) {
       if (at(own, key) == at(other, key) || !seen.insert(key).second) continue;
       differences +=
-          (differences.empty() ? "" : "; ") + key.substr(1) + ": found " + at(own, key) + ", wanted " + at(other, key);
+          (differences.empty() ? "" : ", ") + key.substr(1) + " = " + at(own, key) + "; must be " + at(other, key);
     }
   }
   if (differences.empty()) return;

@@ -11,7 +11,7 @@ namespace {
 
 using Profile = std::vector<ProfilePoint>;
 
-/// The foot that all pieces have, up to a height of 8 mm and 0.7 of its radius.
+/// The foot of all pieces, up to a height of 8 mm and 0.7 of its radius.
 Profile foot(float radius) {
   return {{0, 0},
           {0.96f * radius, 0, 0.6f},

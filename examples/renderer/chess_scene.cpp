@@ -16,7 +16,7 @@ namespace renderer {
 namespace {
 
 constexpr float square = 40;
-/// The middle of the board: cubes of the checker have their middles at multiples of their edge.
+/// Centre of the board: cubes of the checker are centred at multiples of their edge.
 constexpr glm::vec3 middle{square / 2, 0, square / 2};
 
 constexpr Rgb boxwood{0.74f, 0.60f, 0.40f}, ebony{0.045f, 0.032f, 0.028f};
@@ -33,8 +33,8 @@ std::optional<ChessPiece> piece_of(char letter) {
   }
 }
 
-/// The pieces of a position in Forsyth-Edwards notation: rows from the far one, digits for empty squares, capitals
-/// white.
+/// Places the pieces of a position in Forsyth-Edwards notation: rows from the far side, digits for empty squares,
+/// capitals for white.
 void set_up(SceneDescription& scene, std::string_view position) {
   int column = 0, row = 0;
   for (const char letter : position) {
@@ -43,7 +43,7 @@ void set_up(SceneDescription& scene, std::string_view position) {
     } else if (const auto piece = piece_of(letter)) {
       const bool white = std::isupper(static_cast<unsigned char>(letter));
       const auto steps = [](int i) { return square * (static_cast<float>(i) - 3.5f); };
-      // Turned a little, as hands put them; knights and the bar of a king's cross face the other side at angles.
+      // Rotated slightly, as if placed by hand; knights and the bar of the king's cross are oblique to the opponent.
       const float turn_deg = (white ? 40.0f : -155.0f) + static_cast<float>(column * 31 % 17);
       Mesh mesh = placed(chess_piece(*piece), middle + glm::vec3{steps(column), 0, steps(row)}, turn_deg);
       scene.objects.push_back({std::string("piece ") + letter, std::move(mesh),
@@ -55,7 +55,7 @@ void set_up(SceneDescription& scene, std::string_view position) {
   }
 }
 
-/// A square lamp that faces a place.
+/// A square lamp that faces a point.
 Object panel(const char* name, const glm::vec3& centre, const glm::vec3& towards, float width, const Rgb& emission) {
   const glm::vec3 facing = glm::normalize(towards - centre);
   const glm::vec3 v = width * glm::normalize(glm::cross(glm::vec3{1, 0, 0}, facing)), u = glm::cross(v, facing);
@@ -67,7 +67,7 @@ Object panel(const char* name, const glm::vec3& centre, const glm::vec3& towards
 SceneDescription chess_scene() {
   SceneDescription scene{.name = "chess", .sky = {.colour = {0.055f, 0.065f, 0.085f}}};
 
-  // Seen across a corner of the board, 950 mm from its middle.
+  // Seen across a corner of the board, 950 mm from its centre.
   constexpr double aside = 28 * std::numbers::pi / 180, above = 12 * std::numbers::pi / 180;
   const glm::dvec3 target = glm::dvec3(middle) + glm::dvec3{10, 26, 0};
   const glm::dvec3 back{std::sin(aside) * std::cos(above), std::sin(above), std::cos(aside) * std::cos(above)};
@@ -88,7 +88,7 @@ SceneDescription chess_scene() {
   scene.objects.push_back(panel("window", middle + glm::vec3{-700, 900, 300}, middle, 500, {27, 25, 22.5f}));
   scene.objects.push_back(panel("rim light", middle + glm::vec3{550, 500, -800}, middle, 250, {16, 18, 21}));
 
-  // Lamps in the dark behind the table, given as seen: right and up of the axis over distance, and distance.
+  // Lamps in the dark behind the table: tangents right and up of the axis, and distance.
   struct Lamp {
     double right, up, distance;
     Rgb emission;

@@ -7,7 +7,7 @@
 
 namespace renderer {
 
-/// Embree's handles, released by themselves.
+/// Embree handles with automatic release.
 struct DeviceRelease {
   void operator()(RTCDevice device) const { rtcReleaseDevice(device); }
 };
@@ -17,7 +17,7 @@ struct SceneRelease {
 using EmbreeDevice = std::unique_ptr<RTCDeviceTy, DeviceRelease>;
 using EmbreeScene = std::unique_ptr<RTCSceneTy, SceneRelease>;
 
-/// A visitor of variants from functions.
+/// A visitor of variants composed of functions.
 template <class... F>
 struct Cases : F... {
   using F::operator()...;

@@ -6,11 +6,11 @@
 
 namespace renderer {
 
-/// A sum in whole multiples of 2^-64, up to 2^63: the same bits in whatever order numbers are added.
+/// A sum in multiples of 2^-64, up to 2^63. Its bits do not depend on the order of additions.
 class FixedSum {
  public:
   constexpr FixedSum() noexcept = default;
-  /// A finite number below 2^62 in size, rounded towards zero to a multiple of 2^-64.
+  /// A finite number with an absolute value below 2^62, rounded towards zero to a multiple of 2^-64.
   explicit FixedSum(double x) noexcept {
     const double size = std::abs(x), whole = std::floor(size);
     high_ = static_cast<std::int64_t>(whole);
@@ -30,7 +30,8 @@ class FixedSum {
   }
   friend bool operator==(const FixedSum&, const FixedSum&) = default;
 
-  /// The nearest double but for one unit in the last place. Small negative numbers keep their digits.
+  /// The sum as a double, within one unit in the last place of the nearest double. Small negative numbers keep their
+  /// digits.
   double value() const noexcept {
     if (high_ >= 0) return static_cast<double>(high_) + static_cast<double>(low_) * 0x1p-64;
     FixedSum opposite;

@@ -8,7 +8,7 @@
 
 namespace renderer {
 
-/// Axes about a unit vector, which is their z.
+/// Orthonormal axes whose z is a given unit vector.
 /// Source: Duff et al., Building an orthonormal basis, revisited, 2017.
 struct Frame {
   glm::vec3 x, y, z;
@@ -22,7 +22,7 @@ struct Frame {
   glm::vec3 to_local(const glm::vec3& v) const { return {glm::dot(v, x), glm::dot(v, y), glm::dot(v, z)}; }
 };
 
-/// Points of the unit disc, uniform by area, from points of the unit square; of neighbours, neighbours.
+/// Maps the unit square to the unit disc, uniform by area; neighbours stay neighbours.
 /// Source: Shirley, Chiu, A low distortion map between disk and square, 1997.
 inline glm::vec2 on_disc(float u, float v) {
   constexpr auto pi = std::numbers::pi_v<float>;
@@ -33,14 +33,14 @@ inline glm::vec2 on_disc(float u, float v) {
   return {radius * std::cos(angle), radius * std::sin(angle)};
 }
 
-/// Directions, uniform over the sphere.
+/// Maps the unit square to directions, uniform over the sphere.
 inline glm::vec3 on_sphere(float u, float v) {
   const float z = 1 - 2 * u, radius = std::sqrt(std::max(0.0f, 1 - z * z));
   const float angle = 2 * std::numbers::pi_v<float> * v;
   return {radius * std::cos(angle), radius * std::sin(angle), z};
 }
 
-/// Directions about +z with the density cos / pi.
+/// Maps the unit square to directions about +z with the density cos / pi.
 inline glm::vec3 by_cosine(float u, float v) {
   const glm::vec2 d = on_disc(u, v);
   return {d, std::sqrt(std::max(0.0f, 1 - glm::dot(d, d)))};

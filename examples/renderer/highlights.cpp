@@ -12,21 +12,21 @@
 namespace renderer {
 namespace {
 
-constexpr int balls_beside = 6;  // the middle one
+constexpr int balls_beside = 6;  // on each side of the centre ball
 
 double luminance_at(const petzval::RgbImage& picture, int x, int y) {
   const float* const p = picture.pixel(x, y);
   return static_cast<double>(luminance({p[0], p[1], p[2]}));
 }
 
-/// The value below which a share of the values lies.
+/// The value below which a given fraction of the values lies.
 double quantile(std::vector<double> values, double share) {
   const auto at = values.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));
   std::nth_element(values.begin(), at, values.end());
   return *at;
 }
 
-/// The columns of a ball, `spacing` apart.
+/// The range of columns of a ball at a spacing.
 std::pair<int, int> columns_of(const petzval::RgbImage& picture, int ball, double spacing) {
   const double middle = picture.width / 2.0 + ball * spacing;
   return {std::max(0, static_cast<int>(middle - spacing / 2)),
@@ -41,7 +41,7 @@ double spacing_of(const petzval::RgbImage& picture) {
     columns.push_back(sum);
   }
   double best = 0, found = 0;
-  // From half of what the picture has room for.
+  // From half of the largest spacing that fits into the picture.
   const double most = picture.width / (2.0 * balls_beside + 1);
   for (double spacing = most / 2; spacing <= most; spacing += 0.1) {
     double sum = 0;
@@ -61,11 +61,11 @@ double spacing_of(const petzval::RgbImage& picture) {
 /// A pixel of a mask.
 struct Point {
   int column, row;
-  double x, y, value, mean;  ///< value and mean of 3 x 3 pixels over the background
+  double x, y, value, mean;  ///< value, and mean of 3 x 3 pixels, above the background
 };
 
-/// Parts a mask into the spot with the most light and the rest. Points up to two pixels apart belong together: grain
-/// leaves gaps of one. Returns the first point of the rest.
+/// Moves the spot with the most light to the front of a mask. Points up to two pixels apart belong to one spot, because
+/// grain leaves gaps of one pixel. Returns the first point of the other spots.
 std::vector<Point>::iterator brightest_spot_first(std::vector<Point>& points) {
   double most = 0;
   auto first = points.begin(), first_of_most = first, end_of_most = first;
@@ -113,7 +113,7 @@ std::optional<Highlight> highlight_in(const petzval::RgbImage& picture, int firs
   std::erase_if(points, [&](const Point& p) { return p.mean <= least; });
   if (points.empty()) return {};
 
-  // Balls show each other's highlights as spots of their own.
+  // Mutual reflections of balls are separate spots.
   Highlight result;
   const auto rest = brightest_spot_first(points);
   for (auto p = rest; p != points.end(); ++p) result.beside += p->value;
@@ -131,7 +131,7 @@ std::optional<Highlight> highlight_in(const petzval::RgbImage& picture, int firs
   result.x /= result.light, result.y /= result.light;
   const double from_x = result.x - picture.width / 2.0, from_y = result.y - picture.height / 2.0;
   const double radius = std::hypot(from_x, from_y);
-  // In the middle the radius is taken along x.
+  // In the centre the radius is taken along x.
   const double rx = radius > 1 ? from_x / radius : 1, ry = radius > 1 ? from_y / radius : 0;
   double along = 0, across = 0, mixed = 0, cubes = 0;
   for (const Point& p : points) {

@@ -11,20 +11,20 @@
 
 namespace renderer {
 
-/// Paths scatter so often at most between lamp and lens, by every integrator.
+/// Largest number of scatterings between lamp and lens, for all integrators.
 inline constexpr int most_scatterings = 10;
 
-/// Three ways to the same picture.
+/// Integrators. All converge to the same picture, except that `light` misses some paths.
 enum class Integrator : std::uint8_t {
   path,           ///< from the film, with connections to lamps
-  light,          ///< from lamps, with connections to the lens: what only mirrors and smooth glass show is missing
-  bidirectional,  ///< from both, connected at all places; multiple importance sampling weighs all of them
+  light,          ///< from lamps, with connections to the lens; misses views through mirrors and smooth glass
+  bidirectional,  ///< from both, connected at all vertices, weighted by multiple importance sampling
 };
 std::optional<Integrator> integrator_named(std::string_view name) noexcept;
 
-/// One path each, or one from either end. Their sums over all film samples, one path for each sample, over the samples
-/// of a pixel estimate the irradiance of the pixel in the camera's normalisation. What connections with the lens add
-/// comes with LensConnections::finish(); colours have to live until then.
+/// Trace one path from the film, from a lamp, or from both. The sum over all film samples, with one path per sample,
+/// divided by the samples of a pixel, estimates the irradiance of the pixel in the camera's normalisation. Connections
+/// with the lens are added by LensConnections::finish(); colours must live until then.
 void trace_path(const Scene& scene, const LensView& lens, const FilmSample& sample, Random& random, Splats& splats);
 void trace_light(const Scene& scene, const PathColours& colours, Random& random, LensConnections& connections);
 void trace_both(const Scene& scene, const LensView& lens, const FilmSample& sample, Random& random,

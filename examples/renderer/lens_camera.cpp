@@ -17,9 +17,7 @@ LensCamera::LensCamera(petzval::Camera camera, const Pose& pose) : camera_(std::
   const glm::dvec3 ahead = pose.look_at - pose.position, right = glm::cross(ahead, pose.up);
   const double length = glm::length(ahead), across = glm::length(right);
   if (!(std::isfinite(length) && std::isfinite(across) && across > 1e-9 * length * glm::length(pose.up))) {
-    throw petzval::Error(
-        "camera: found a view without direction or along \"up\", wanted position_mm and look_at_mm apart and up "
-        "across");
+    throw petzval::Error("camera: position_mm and look_at_mm must differ, and up must not be parallel to the view");
   }
   const glm::dvec3 z = -ahead / length, x = right / across;
   turn_ = {x, glm::cross(z, x), z};
@@ -28,7 +26,7 @@ LensCamera::LensCamera(petzval::Camera camera, const Pose& pose) : camera_(std::
 }
 
 Vec3<double> LensCamera::turn_to_lens(const glm::vec3& direction) const noexcept {
-  // In double: the error of a float direction, far below petzval::unit_direction_tolerance, would still move the ray.
+  // In double: the rounding of a float direction, although far below petzval::unit_direction_tolerance, moves the ray.
   return glm::normalize(glm::dvec3(direction) * turn_);
 }
 Vec3<double> LensCamera::to_lens(const glm::vec3& point) const noexcept {

@@ -11,16 +11,16 @@
 
 namespace renderer {
 
-/// Places where the lens may see light: they are gathered, and connected in one call, in which the exact lens traces
-/// its rays side by side.
+/// Collects vertices that may connect with the lens, and connects them in one call, so that the exact lens traces rays
+/// in SIMD lanes.
 class LensConnections {
  public:
-  /// weigh: film samples find the same paths, and multiple importance sampling weighs both.
+  /// weigh: true if film samples find the same paths; then multiple importance sampling weighs both.
   LensConnections(const Scene& scene, const LensCamera& lens, bool weigh) : scene_(scene), lens_(lens), weigh_(weigh) {}
 
-  /// The lamp where a light path begins, or the sky.
+  /// Adds the lamp or the sky where a light path begins.
   void add(const PathColours& colours, const Emitted& start, float u, float v);
-  /// A surface that light of a power reaches.
+  /// Adds a surface reached by light of a given power.
   void add(const PathColours& colours, const SurfacePoint& at, const Bsdf& bsdf, const Lanes& power,
            const OtherWays& others, float u, float v);
 
@@ -29,9 +29,9 @@ class LensConnections {
  private:
   struct Place {
     const PathColours* colours;
-    std::optional<SurfacePoint> surface;  ///< nothing: the sky
-    glm::vec3 travel;                     ///< of its light
-    std::optional<Bsdf> bsdf;             ///< nothing: a lamp
+    std::optional<SurfacePoint> surface;  ///< nullopt: the sky
+    glm::vec3 travel;                     ///< direction of the light
+    std::optional<Bsdf> bsdf;             ///< nullopt: a lamp
     Lanes power;
     OtherWays others;
     float u, v;

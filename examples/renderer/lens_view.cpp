@@ -38,7 +38,7 @@ SeenRay LensView::at_all_lanes(const LensCamera::Connection& hero, const glm::ve
     add(result, 0, hero.importance, hero.pdf);
     return result;
   }
-  if (lens_.pinhole()) {  // only the hero meets its point; the others have theirs when they are heroes
+  if (lens_.pinhole()) {  // a pinhole connects only the hero; other lanes connect when they are the hero
     add(result, colours_.hero, hero.importance, hero.pdf);
     result.we *= static_cast<float>(colours_.lanes);
     result.by_film *= colours_.lanes, result.by_connection *= colours_.lanes;

@@ -14,51 +14,51 @@
 
 namespace renderer {
 
-/// A film sample, and what its lanes weigh: radiance by lane times weight is what the path adds to a pixel.
+/// A film sample and the weights of its lanes: radiance times weight is the contribution to a pixel, by lane.
 struct FilmSample {
   WorldRay ray;
-  float u = 0, v = 0;  ///< of the pupil
+  float u = 0, v = 0;  ///< pupil sample
   Lanes weight{0};
   LanePixels pixels{no_pixel, no_pixel, no_pixel, no_pixel};
-  double by_film = 0;  ///< as in SeenRay, where it was asked for
+  double by_film = 0;  ///< as in SeenRay, if requested
 
   explicit operator bool() const noexcept { return weight != Lanes(0); }
 };
 
-/// A ray of the scene, as the lens sees it at the wavelengths of a path.
+/// A ray of the scene, seen by the lens at the wavelengths of a path.
 ///
-/// A ray may be found from the film or by a connection, at the hero's wavelength, and any lane may be the hero. So its
-/// densities are the means over the lanes (Wilkie et al. 2014), and all lanes share one path.
+/// A ray is found from the film or by a connection at the hero wavelength, and any lane may be the hero. The densities
+/// are therefore means over the lanes (Wilkie et al. 2014), and all lanes share one path.
 struct SeenRay {
   glm::vec3 direction{0, 0, 1};  ///< towards the lens
-  glm::vec3 on_front{0, 0, 0};   ///< of connections: where shadow rays end
+  glm::vec3 on_front{0, 0, 0};   ///< end point of the shadow ray of a connection
   Lanes we{0};                   ///< importance, 1/mm^2
   LanePixels pixels{no_pixel, no_pixel, no_pixel, no_pixel};
-  double by_film = 0;        ///< among film samples, in the measure cos dA dw of the scene, 1/(mm^2 sr)
-  double by_connection = 0;  ///< among connections, 1/sr at their point; of light from the sky 1/mm^2
+  double by_film = 0;        ///< density of film samples in the measure cos dA dw of the scene, 1/(mm^2 sr)
+  double by_connection = 0;  ///< density of connections, 1/sr at their point; for the sky 1/mm^2
 
   explicit operator bool() const noexcept { return we != Lanes(0); }
 };
 
-/// The lens for one path.
+/// The lens as used by one path.
 class LensView {
  public:
-  /// seconds: where the time spent in the lens is added.
+  /// seconds: accumulates the time spent in the lens.
   LensView(const LensCamera& lens, const PathColours& colours, double& seconds) noexcept
       : lens_(lens), colours_(colours), seconds_(seconds) {}
 
   const PathColours& colours() const noexcept { return colours_; }
 
-  /// A sample of a batch, drawn at the hero's wavelength in a pixel. seen: what the lens says of its ray at each lane's
-  /// wavelength, or nothing.
+  /// A sample of a batch in a pixel, drawn at the hero wavelength. seen: importances of its ray at the wavelengths of
+  /// the lanes; may be empty.
   FilmSample film_sample(const LensCamera::Batch& batch, std::size_t index, std::uint32_t pixel,
                          std::span<const std::vector<petzval::Importance>> seen) const noexcept;
-  /// The densities of a sample's ray from where it begins in the scene: a surface, or with none the sky.
+  /// Densities of a sample's ray from its start in the scene: a surface, or the sky if `from` is null.
   struct Densities {
     double by_film = 0, by_connection = 0;  ///< as in SeenRay
   };
   Densities densities(const FilmSample& sample, const SurfacePoint* from) const noexcept;
-  /// A connection that was made at the hero's wavelength, from a point or, without one, with the sky's light.
+  /// Evaluates a connection, made at the hero wavelength, at all lanes. point: null for light from the sky.
   SeenRay at_all_lanes(const LensCamera::Connection& hero, const glm::vec3* point) const noexcept;
   petzval::Wavelength hero() const noexcept { return wavelength(colours_.hero); }
 
@@ -72,7 +72,7 @@ class LensView {
   double& seconds_;
 };
 
-/// Adds the time of its life to a sum.
+/// Adds its lifetime to a sum of seconds.
 class Stopwatch {
  public:
   explicit Stopwatch(double& seconds) noexcept : seconds_(seconds) {}

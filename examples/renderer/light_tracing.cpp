@@ -8,7 +8,7 @@ namespace renderer {
 void trace_light(const Scene& scene, const PathColours& colours, Random& random, LensConnections& connections) {
   const auto start = emit(scene, random);
   if (!start) return;
-  // The lamp itself, then what it lights.
+  // The lamp itself, then the surfaces that it illuminates.
   const float lamp_u = random(), lamp_v = random();
   connections.add(colours, *start, lamp_u, lamp_v);
   Lanes power = colours.from_rgb * start->from.radiance * static_cast<float>(start->cosine / start->pdf_emission);

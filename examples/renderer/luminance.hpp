@@ -5,7 +5,7 @@
 
 namespace renderer {
 
-/// Of linear Rec. 709.
+/// Luminance of linear Rec. 709.
 inline float luminance(const glm::vec3& rgb) noexcept { return 0.2126f * rgb.r + 0.7152f * rgb.g + 0.0722f * rgb.b; }
 
 }  // namespace renderer

@@ -21,7 +21,7 @@ namespace {
 
 using petzval::Error;
 
-/// Takes the next word from a line.
+/// Removes and returns the first word of a line.
 std::string_view next_word(std::string_view& line) {
   constexpr std::string_view blanks = " \t\r";
   line.remove_prefix(std::min(line.find_first_not_of(blanks), line.size()));
@@ -30,7 +30,7 @@ std::string_view next_word(std::string_view& line) {
   return word;
 }
 
-/// tinyobjloader takes what is no number for 0, and drops faces with a wrong index: they are found here.
+/// Checks of numbers and indices. tinyobjloader reads invalid numbers as 0 and drops faces with invalid indices.
 class Lines {
  public:
   Lines(const std::string& text, std::string where) : where_(std::move(where)) {
@@ -40,7 +40,7 @@ class Lines {
       check(std::string_view(text).substr(begin, end - begin));
       begin = end + 1;
     }
-    if (faces_ == 0) throw Error(where_ + ": found no face, wanted a mesh of one triangle or more");
+    if (faces_ == 0) throw Error(where_ + ": has no face; must have at least one triangle");
     for (std::size_t kind = 0; kind < 3; ++kind) {
       if (largest_[kind] <= counts_[kind]) continue;
       line_ = largest_at_[kind];
@@ -52,11 +52,12 @@ class Lines {
   static constexpr std::array<const char*, 3> kinds{"vertex", "texture coordinate", "normal"};
 
   [[noreturn]] void refuse(const std::string& found, const std::string& wanted) const {
-    throw Error(where_ + ": line " + std::to_string(line_) + ": found " + found + ", wanted " + wanted);
+    throw Error(where_ + ": line " + std::to_string(line_) + ": " + found + "; must be " + wanted);
   }
   [[noreturn]] void refuse_index(std::size_t kind, long index) const {
     refuse(std::string(kinds[kind]) + " " + std::to_string(index),
-           counts_[kind] == 0 ? std::string("none: there is none") : "1 to " + std::to_string(counts_[kind]));
+           counts_[kind] == 0 ? std::string("left out: the file has no such entry")
+                              : "1 to " + std::to_string(counts_[kind]));
   }
 
   void check(std::string_view line) {
@@ -74,10 +75,10 @@ class Lines {
       float value = 0;
       const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
       if (error == std::errc::result_out_of_range && std::abs(std::strtod(std::string(word).c_str(), nullptr)) < 1) {
-        continue;  // less than the least float: 0
+        continue;  // smaller than the smallest float: read as 0
       }
       if (error != std::errc() || end != digits.data() + digits.size() || !(std::abs(value) <= 1e9f)) {
-        refuse('"' + std::string(word) + '"', "a finite number, up to 1e9");
+        refuse('"' + std::string(word) + '"', "a finite number up to 1e9");
       }
     }
     if (count < wanted) refuse(std::to_string(count) + " numbers", std::to_string(wanted));
@@ -94,7 +95,7 @@ class Lines {
         rest.remove_prefix(digits.size() + 1);
       }
     }
-    if (corners < 3) refuse("a face of " + std::to_string(corners) + " corners", "3 or more");
+    if (corners < 3) refuse("face with " + std::to_string(corners) + " corners", "3 or more");
   }
 
   void index(std::size_t kind, std::string_view digits, std::string_view word) {
@@ -112,7 +113,7 @@ class Lines {
   std::array<long, 3> counts_{}, largest_{}, largest_at_{};
 };
 
-/// Without area: no wider than the rounding of its places.
+/// True if the triangle has no area: it is no wider than the rounding of its coordinates.
 bool is_a_line(const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c) {
   const double longest = std::max({glm::distance(a, b), glm::distance(b, c), glm::distance(c, a)});
   return !(glm::length(glm::cross(b - a, c - a)) > 1e-6 * longest * longest);
@@ -127,7 +128,7 @@ Mesh read_obj(const std::filesystem::path& file) {
   config.vertex_color = false;
   tinyobj::ObjReader reader;
   if (!reader.ParseFromString(text, "", config)) {
-    throw Error(file.string() + ": cannot be read as an OBJ file: " + reader.Error());
+    throw Error(file.string() + ": not a valid OBJ file: " + reader.Error());
   }
   const tinyobj::attrib_t& attributes = reader.GetAttrib();
 
@@ -146,8 +147,8 @@ Mesh read_obj(const std::filesystem::path& file) {
       const auto at = [&](const std::vector<float>& values, int index, std::size_t size) {
         const std::size_t first = size * static_cast<std::size_t>(index);
         if (index < 0 || first + size > values.size()) {
-          throw Error(file.string() + ": triangle " + std::to_string(mesh.triangles.size() + 1) + " has a corner " +
-                      std::to_string(index + 1) + ", wanted one of " + std::to_string(values.size() / size));
+          throw Error(file.string() + ": triangle " + std::to_string(mesh.triangles.size() + 1) + ": corner = " +
+                      std::to_string(index + 1) + "; must be 1 to " + std::to_string(values.size() / size));
         }
         return &values[first];
       };
@@ -182,13 +183,13 @@ Mesh read_obj(const std::filesystem::path& file) {
       mesh.triangles.push_back(triangle);
     }
   }
-  if (mesh.triangles.empty()) throw Error(file.string() + ": found no triangle, wanted one or more");
+  if (mesh.triangles.empty()) throw Error(file.string() + ": has no triangle; must have at least one");
   if (lines > 0) {
-    throw Error(file.string() + ": found " + std::to_string(lines) + " of " + std::to_string(mesh.triangles.size()) +
-                " triangles without area, the first is triangle " + std::to_string(first_line) + ", wanted none");
+    throw Error(file.string() + ": " + std::to_string(lines) + " of " + std::to_string(mesh.triangles.size()) +
+                " triangles have no area, first triangle " + std::to_string(first_line) + "; all must have an area");
   }
   for (glm::vec3& normal : mesh.normals) {
-    if (!(glm::length(normal) > 0)) throw Error(file.string() + ": found a normal of length 0, wanted a direction");
+    if (!(glm::length(normal) > 0)) throw Error(file.string() + ": has a normal of length 0");
     normal = glm::normalize(normal);
   }
   return mesh;

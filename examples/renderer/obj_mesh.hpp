@@ -7,12 +7,12 @@
 
 namespace renderer {
 
-/// The faces of a Wavefront OBJ file, all groups in one mesh, mm; faces of more than three corners are cut into
-/// triangles. Corners without a normal get that of their triangle, unless no corner has one. Texture coordinates are
-/// left out unless all corners have them, and so are materials, lines and points.
+/// Reads the faces of a Wavefront OBJ file into one mesh, mm; faces with more than three corners are triangulated. If
+/// only some corners have a normal, the others get the normal of their triangle. Texture coordinates are ignored unless
+/// all corners have them. Materials, lines and points are ignored.
 ///
-/// Throws petzval::Error that names the file, and the line for what can be told from it: a file that cannot be read or
-/// has no face, numbers that are not finite, indices out of range, triangles without area.
+/// @throws petzval::Error that names the file and, if known, the line: if the file cannot be read or has no face, a
+///         number is not finite, an index is out of range, or a triangle has no area
 Mesh read_obj(const std::filesystem::path& file);
 
 }  // namespace renderer

@@ -5,16 +5,16 @@
 
 namespace renderer {
 
-/// What the weights of all ways to make a path take from the part behind a vertex: sums of densities of the other ways,
-/// over that of this one. A path that is connected at the vertex, or ends there, takes `connected`; one that goes on
-/// backwards through it, `through` times the density of that.
-/// Source: Georgiev, Implementing vertex connection and merging, 2012 (dVCM and dVC; nothing is merged here).
+/// Partial sums of the multiple importance weights of a path up to a vertex: densities of the other techniques that
+/// make the same path, divided by the density of this technique. A path that is connected or ends at the vertex uses
+/// `connected`; a path that continues backwards through it uses `through` times the density of that step. Source:
+/// Georgiev, Implementing vertex connection and merging, 2012 (dVCM and dVC; without merging).
 struct OtherWays {
   double connected = 0, through = 0;
 
-  /// The path arrives at a surface.
+  /// Updates the sums for the arrival at a surface.
   void arrive(double d2, double cosine) noexcept { connected *= d2 / cosine, through /= cosine; }
-  /// It is scattered there.
+  /// Updates the sums for a scattering at that surface.
   void scatter(const Bsdf::Sample& next, double goes_on, double cosine) noexcept {
     if (next.specular) {
       connected = 0, through *= cosine;

@@ -12,18 +12,19 @@
 
 namespace renderer {
 
-/// Writes picture.exr (linear Rec. 709; texts and numbers go into its header), picture.pfm (the same) and picture.png
-/// (sRGB of the values times
-/// `exposure`) to a folder, as the formats say. Returns the paths. Throws petzval::Error that names a file.
+/// Writes picture.exr (linear Rec. 709, with `texts` and `numbers` in its header), picture.pfm (linear Rec. 709) and
+/// picture.png (sRGB of the values times `exposure`) to a folder, as listed in `formats`. Returns the paths.
+///
+/// @throws petzval::Error that names the file
 std::vector<std::filesystem::path> write_pictures(const petzval::RgbImage& picture,
                                                   const std::map<std::string, std::string>& texts,
                                                   const std::map<std::string, double>& numbers,
                                                   const std::vector<std::string>& formats,
                                                   const std::filesystem::path& folder, float exposure = 1);
 
-/// "samples" (of a pixel, the mean of all), "mean_radiance" (R, G, B: mean and standard_error), "tiles" (of rows by
-/// columns: mean and standard_error of the luminance, a list for each row), "rejected". A standard error is null where
-/// there is nothing to compare.
+/// "samples" (mean number per pixel), "mean_radiance" (R, G, B: mean and standard_error), "tiles" (rows by columns:
+/// mean and standard_error of the luminance, a list for each row) and "rejected". A standard error is null if fewer
+/// than two rounds have samples or the sum is 0.
 examples::Json statistics(const PictureSums& sums);
 
 }  // namespace renderer

@@ -14,12 +14,13 @@ namespace renderer {
 namespace {
 
 constexpr double first_nm = 420, band_nm = 5;
-constexpr int band_count = 53;  // to 680 nm
+constexpr int band_count = 53;  // up to 680 nm
 
 using Row = std::array<double, 3>;
 
-/// Reflectances of the three primaries in each band: between 0 and 1, with the sum 1, and of the primaries' colours
-/// under the weights. Projections in turn, Dykstra's, onto those sets, from three soft bands on.
+/// Reflectances of the three primaries in each band. They are from 0 to 1, add up to 1, and give the colours of the
+/// primaries under the weights. Found by Dykstra's alternating projections onto these sets, starting with three soft
+/// bands.
 std::vector<Row> primaries(const std::vector<Row>& weights) {
   const std::size_t n = weights.size();
   std::vector<Row> b(n), held(n, Row{});
@@ -31,7 +32,7 @@ std::vector<Row> primaries(const std::vector<Row>& weights) {
   glm::dmat3 gram(0);
   for (const Row& w : weights) gram += glm::outerProduct(glm::dvec3(w[0], w[1], w[2]), glm::dvec3(w[0], w[1], w[2]));
   const glm::dmat3 inverse = glm::inverse(gram);
-  const auto project = [&] {  // onto the colours and the sum, which projections onto one leave to the other
+  const auto project = [&] {  // onto the colours, then onto the sum; the first condition stays valid
     for (int c = 0; c < 3; ++c) {
       glm::dvec3 missing(0);
       missing[c] = 1;
@@ -99,7 +100,7 @@ PathColours PathColourSource::draw(float u) const noexcept {
     result.hero = result.one_wavelength ? 0 : std::min(static_cast<int>(3 * u), 2);
     return result;
   }
-  // Four places a quarter apart: each has the density of one, and any of them could be the hero's.
+  // Stratified: four positions a quarter apart. Each has the density of a single draw, and any lane could be the hero.
   result.lanes = 4;
   for (int lane = 0; lane < 4; ++lane) {
     double place = double{u} + lane / 4.0;

@@ -10,12 +10,11 @@ void trace_path(const Scene& scene, const LensView& lens, const FilmSample& samp
   const PathColours& colours = lens.colours();
   Lanes radiance(0), throughput(1);
   WorldRay ray = sample.ray;
-  double pdf = 0;        // of the ray's direction; connections to lamps could have found the lamp that it meets
-  bool specular = true;  // none could
+  double pdf = 0;        // density of the ray's direction
+  bool specular = true;  // true if no connection could have found the lamp that the ray meets
   for (int scatterings = 0;; ++scatterings) {
     const auto met = scene.meet(ray.origin, ray.direction);
-    // The share of what a chance meeting adds, where a connection could have been made with the density p: the balance
-    // heuristic.
+    // Weight of a lamp hit by chance if a connection has the density p: balance heuristic.
     const auto by_chance = [&](double p) { return specular ? 1.0f : static_cast<float>(pdf / (pdf + p)); };
     if (!met) {
       radiance +=

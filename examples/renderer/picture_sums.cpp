@@ -13,7 +13,7 @@
 namespace renderer {
 namespace {
 
-/// The mean of sums that had so many samples each, by the scatter of their residuals.
+/// The mean, and its standard error from the scatter of the residuals of the rounds.
 Estimate estimate(const std::array<FixedSum, PictureSums::rounds>& sums,
                   const std::array<double, PictureSums::rounds>& samples) {
   FixedSum sum;
@@ -25,7 +25,7 @@ Estimate estimate(const std::array<FixedSum, PictureSums::rounds>& sums,
   }
   if (!(all > 0)) return {0, std::numeric_limits<double>::quiet_NaN()};
   const double mean = sum.value() / all;
-  // Where nothing arrived, nothing is known.
+  // Without contributions the error is unknown.
   if (used < 2 || sum == FixedSum()) return {mean, std::numeric_limits<double>::quiet_NaN()};
   double squares = 0;
   for (std::size_t r = 0; r < sums.size(); ++r) {
@@ -79,12 +79,12 @@ void PictureSums::add(std::size_t tile, std::size_t round, std::uint32_t samples
 
 void PictureSums::add(const PictureSums& part) {
   if (part.width_ != width_ || part.height_ != height_) {
-    throw petzval::Error("found a part of " + std::to_string(part.width_) + " x " + std::to_string(part.height_) +
-                         " pixels, wanted " + std::to_string(width_) + " x " + std::to_string(height_));
+    throw petzval::Error("part: size = " + std::to_string(part.width_) + " x " + std::to_string(part.height_) +
+                         " pixels; must be " + std::to_string(width_) + " x " + std::to_string(height_));
   }
   for (std::size_t t = 0; t < tiles_.size(); ++t) {
     if (samples(t) > 0 && part.samples(t) > 0) {
-      throw petzval::Error("found tile " + std::to_string(t) + " in two parts, wanted it in one");
+      throw petzval::Error("tile " + std::to_string(t) + " is in two parts; must be in only one part");
     }
   }
   for (std::size_t p = 0; p < pixels_.size(); ++p) {

@@ -12,7 +12,7 @@
 
 namespace renderer {
 
-/// What a path adds to a pixel.
+/// The contribution of a path to a pixel.
 struct Contribution {
   std::uint32_t pixel = 0;  ///< row * width + column
   std::array<float, 3> rgb{};
@@ -23,17 +23,17 @@ struct PixelBlock {
   int x = 0, y = 0, width = 0, height = 0;
 };
 
-/// A mean and its standard error, which is not a number where there is nothing to compare.
+/// A mean and its standard error, NaN if fewer than two rounds have samples or the sum is 0.
 struct Estimate {
   double mean = 0, standard_error = 0;
 };
 
-/// The sums of a picture: the same bits in whatever order, and in whatever parts, contributions are added.
+/// The sums of a picture. Their bits do not depend on the order or the grouping of contributions.
 ///
-/// A picture is traced in units: samples of the pixels of a tile of 16 x 16, fewer at the right and lower edges.
-/// Contributions of a unit may fall on any pixel. The value of a pixel is the sum of all that fell on it over its own
-/// samples. Samples belong to 16 rounds that do not depend on each other: their scatter gives standard errors. The
-/// numbers of samples by round tell which samples a tile has, so that any picture can get more.
+/// A picture is traced in units: samples of the pixels of a tile of 16 x 16 (smaller at the right and lower edges). A
+/// unit may contribute to any pixel. The value of a pixel is the sum of its contributions divided by its own number of
+/// samples. Samples belong to 16 independent rounds, whose scatter gives standard errors. The numbers of samples by
+/// round identify the samples of a tile, so that samples can be added to any picture.
 class PictureSums {
  public:
   static constexpr int tile_pixels = 16;
@@ -47,30 +47,30 @@ class PictureSums {
   std::size_t tile_rows() const noexcept { return tile_rows_; }
   std::size_t tiles() const noexcept { return tiles_.size(); }
   PixelBlock block(std::size_t tile) const noexcept;
-  /// Number of samples of each pixel of a tile: in all rounds, or in one round.
+  /// Number of samples per pixel of a tile, in all rounds or in one round.
   std::uint64_t samples(std::size_t tile) const noexcept;
   std::uint32_t samples(std::size_t tile, std::size_t round) const noexcept { return tiles_[tile].samples[round]; }
-  /// Contributions that were left out: not finite, or beyond 2^40.
+  /// Number of rejected contributions: not finite, or beyond 2^40.
   std::uint64_t rejected() const noexcept { return rejected_; }
 
-  /// Adds a unit: so many samples of each pixel of a tile, of one round. Not by several threads at once.
+  /// Adds a unit: `samples` samples per pixel of a tile in one round. Not thread-safe.
   void add(std::size_t tile, std::size_t round, std::uint32_t samples, std::span<const Contribution> contributions);
-  /// Adds the sums of another part of the picture. Throws petzval::Error for a tile that both have, or another size.
+  /// Adds the sums of another part. @throws petzval::Error if both parts have a tile, or the sizes differ
   void add(const PictureSums& part);
 
-  /// Black where a tile has no samples.
+  /// The picture; tiles without samples are black.
   petzval::RgbImage picture() const;
-  /// Of all pixels, in each channel; of the luminance of a tile. Both by the samples of the tiles that have some.
+  /// Mean of all pixels by channel, and of the luminance of a tile. Tiles without samples do not count.
   std::array<Estimate, 3> mean() const;
   Estimate luminance(std::size_t tile) const;
 
-  /// The same bits.
+  /// True if all bits are equal.
   friend bool operator==(const PictureSums&, const PictureSums&) = default;
 
  private:
   friend class Checkpoint;
   struct Tile {
-    std::array<std::uint32_t, rounds> samples{};  ///< of each pixel
+    std::array<std::uint32_t, rounds> samples{};  ///< per pixel
     std::array<FixedSum, rounds> luminance{};
 
     friend bool operator==(const Tile&, const Tile&) = default;

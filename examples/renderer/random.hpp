@@ -5,7 +5,7 @@
 
 namespace renderer {
 
-/// A number whose bits all depend on all bits of another.
+/// Hashes a number: every bit of the result depends on all bits of the argument.
 /// Source: Steele, Lea, Flood, Fast splittable pseudorandom number generators, 2014 (the finalizer of SplitMix64).
 constexpr std::uint64_t mixed(std::uint64_t x) noexcept {
   x = (x ^ (x >> 30)) * 0xbf58476d1ce4e5b9u;
@@ -13,13 +13,13 @@ constexpr std::uint64_t mixed(std::uint64_t x) noexcept {
   return x ^ (x >> 31);
 }
 
-/// The random numbers of one path: they follow from its keys alone, so that pictures do not depend on threads.
+/// The random numbers of one path. They depend only on its keys, so that pictures do not depend on threads.
 class Random {
  public:
   constexpr Random(std::uint64_t seed, std::uint64_t pixel, std::uint64_t sample) noexcept
       : state_(mixed(mixed(mixed(seed + step) + pixel + step) + sample + step)) {}
 
-  /// From 0 up to, not including, 1.
+  /// The next number, uniform in [0, 1).
   float operator()() noexcept { return static_cast<float>(mixed(state_ += step) >> 40) * 0x1p-24f; }
 
  private:

@@ -16,14 +16,14 @@ using Clock = std::chrono::steady_clock;
 
 double seconds_since(Clock::time_point begin) { return std::chrono::duration<double>(Clock::now() - begin).count(); }
 
-/// Seconds between checkpoints, and how many times as long as one takes.
+/// Least time between checkpoints: in seconds, and in multiples of the time for saving.
 constexpr double save_every = 20, save_share = 20;
 
 }  // namespace
 
 namespace {
 
-/// Samples of a round in a picture of so many samples.
+/// Samples of a round in a picture with a given number of samples.
 std::uint32_t share(std::uint32_t samples, std::size_t round) noexcept {
   constexpr auto rounds = static_cast<std::uint32_t>(PictureSums::rounds);
   return samples / rounds + (round < samples % rounds ? 1 : 0);
@@ -68,7 +68,7 @@ RenderReport render(const UnitTracer& tracer, PictureSums& sums, const std::vect
   std::optional<examples::Progress> progress;
   if (effort.samples) progress.emplace("tiles", units);
   while (!late() && !stop()) {
-    // A pass: the tiles that have the fewest samples.
+    // A pass: the tiles with the fewest samples.
     std::uint64_t least = std::numeric_limits<std::uint64_t>::max();
     std::vector<std::size_t> missing;
     for (const std::size_t tile : tiles) {

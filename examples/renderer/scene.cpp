@@ -23,7 +23,7 @@ namespace {
 using std::numbers::pi;
 
 constexpr float infinity = std::numeric_limits<float>::infinity();
-/// Rays start so far from a surface, times the size of its coordinates: sixteen units of float's last place.
+/// Offset of ray origins from a surface, relative to the size of its coordinates: sixteen units in the last place.
 constexpr float rounding = 1e-6f;
 
 Mesh mesh_of(const Quad& q) {
@@ -35,13 +35,13 @@ Mesh mesh_of(const Quad& q) {
 
 float largest(const glm::vec3& v) { return std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)}); }
 
-/// An object as Embree and lamps see it.
+/// An object prepared for Embree and for light sampling.
 struct Body {
-  Mesh mesh;                 ///< of a quad too; empty for a sphere
-  float reach = 0;           ///< of its surface points
-  std::vector<double> ends;  ///< of the triangles: area of those up to each
-  double area = 0;           ///< of a closed sphere or of all triangles, mm^2
-  double lamp_share = 0;     ///< of its light among all
+  Mesh mesh;                 ///< also for a quad; empty for a sphere
+  float reach = 0;           ///< SurfacePoint::reach of its points
+  std::vector<double> ends;  ///< cumulative areas of the triangles
+  double area = 0;           ///< area of the whole sphere or of all triangles, mm^2
+  double lamp_share = 0;     ///< probability to be sampled as a lamp
 
   std::array<glm::vec3, 3> corners(std::size_t triangle) const {
     const auto& t = mesh.triangles[triangle];
@@ -81,9 +81,9 @@ struct Scene::Data {
   EmbreeDevice device;
   EmbreeScene scene;
   std::vector<Body> bodies;
-  std::vector<double> lamp_ends;  ///< of the objects: share of the light of lamps up to each; the rest is the sky's
+  std::vector<double> lamp_ends;  ///< cumulative lamp_share of the objects; the rest belongs to the sky
   double sky_share = 0;
-  glm::vec3 centre{0, 0, 0};  ///< of a sphere around all objects
+  glm::vec3 centre{0, 0, 0};  ///< centre of the bounding sphere of all objects
   float radius = 1;
 
   explicit Data(SceneDescription d) : description(std::move(d)), sky(description.sky) {}
@@ -135,7 +135,7 @@ void Scene::Data::build() {
                                                      sizeof(glm::vec3), body.mesh.positions.size());
       auto* const indices = rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
                                                     sizeof(body.mesh.triangles[0]), body.mesh.triangles.size());
-      if (!vertices || !indices) throw petzval::Error(object.name + ": Embree has no room for the mesh");
+      if (!vertices || !indices) throw petzval::Error(object.name + ": Embree cannot allocate the mesh");
       std::memcpy(vertices, body.mesh.positions.data(), body.mesh.positions.size() * sizeof(glm::vec3));
       std::memcpy(indices, body.mesh.triangles.data(), body.mesh.triangles.size() * sizeof(body.mesh.triangles[0]));
       for (std::size_t t = 0; t < body.mesh.triangles.size(); ++t) {
@@ -146,7 +146,7 @@ void Scene::Data::build() {
       }
     }
     if (!(body.area > 0 && std::isfinite(body.area))) {
-      throw petzval::Error(object.name + ": found a surface without area, wanted one with some");
+      throw petzval::Error(object.name + ": has no area; must have a finite area above 0");
     }
     body.reach = rounding * size;
     rtcCommitGeometry(geometry);
@@ -168,13 +168,13 @@ void Scene::Data::find_light() {
     powers.push_back(double{luminance(description.objects[i].emission)} * bodies[i].area * pi);
     total += powers.back();
   }
-  // What of the sky's light enters the sphere around the scene; a sky without objects has some too. Beside lamps it
-  // gets half of the samples at most: most of its light falls far from what the lens sees.
+  // Sky light that enters the bounding sphere, which is not 0 without objects. With lamps the sky gets at most half of
+  // the samples, because most of its light falls outside the view of the lens.
   const double sky_power = sky.total() * pi * double{radius} * double{radius};
   if (!(total + sky_power > 0)) return;
   constexpr double most = 0.5;
   sky_share = total > 0 ? std::min(sky_power / (total + sky_power), most) : 1;
-  // Half by power, half alike: small lamps are bright where the lens sees them.
+  // Half by power, half equally: small lamps are bright where the lens sees them.
   const auto lamps = static_cast<double>(std::count_if(powers.begin(), powers.end(), [](double p) { return p > 0; }));
   double end = 0;
   for (std::size_t i = 0; i < bodies.size(); ++i) {

@@ -8,7 +8,7 @@
 namespace renderer {
 namespace {
 
-/// Everything that is drawn, as bytes: numbers one by one, lists after their length.
+/// All visible properties as bytes: numbers one by one, lists after their length.
 class Bytes {
  public:
   template <class T>

@@ -7,7 +7,7 @@
 
 namespace renderer {
 
-/// The same for scenes that look the same, whatever files they came from; names do not count.
+/// Equal for scenes that look the same, independent of their files and names.
 std::string checksum(const SceneDescription& scene);
 
 }  // namespace renderer

@@ -22,15 +22,15 @@ using examples::Json;
 using examples::Range;
 using examples::refuse;
 
-// Embree loses what is larger, and float what is brighter.
-constexpr Range finite{-1e9, 1e9, "number from -1e9 to 1e9"}, positive{1e-9, 1e9, "number above 0, from 1e-9 to 1e9"},
-    not_negative{0, 1e12, "finite number, 0 or more, up to 1e12"}, share{0, 1, "number from 0 to 1"},
+// Embree misses larger objects, and float overflows at larger radiances.
+constexpr Range finite{-1e9, 1e9, "number from -1e9 to 1e9"}, positive{1e-9, 1e9, "number from 1e-9 to 1e9"},
+    not_negative{0, 1e12, "number from 0 to 1e12"}, share{0, 1, "number from 0 to 1"},
     rough{0.01, 1, "number from 0.01 to 1"}, index_of_glass{1.001, 4, "number from 1.001 to 4"};
 
 std::shared_ptr<const petzval::RgbImage> read_image(const std::string& where, const std::filesystem::path& file,
                                                     float most, const char* wanted) {
   const std::string ending = file.extension().string();
-  if (ending != ".exr" && ending != ".EXR") refuse(where, file.string(), "an EXR file, .exr");
+  if (ending != ".exr" && ending != ".EXR") refuse(where, file.string(), "an EXR file (.exr)");
   auto image = std::make_shared<petzval::RgbImage>();
   try {
     *image = petzval::read_exr(file);
@@ -42,13 +42,13 @@ std::shared_ptr<const petzval::RgbImage> read_image(const std::string& where, co
   if (wrong != image->pixels.end()) {
     const auto pixel = (wrong - image->pixels.begin()) / 3;
     throw petzval::Error(where + ": " + file.string() + ": pixel (" + std::to_string(pixel % image->width) + ", " +
-                         std::to_string(pixel / image->width) + "): found " + std::to_string(*wrong) + ", wanted " +
+                         std::to_string(pixel / image->width) + ") = " + std::to_string(*wrong) + "; must be " +
                          wanted);
   }
   return image;
 }
 
-/// A value of the file, its place for messages, and the folder of the file.
+/// A JSON value, its path for messages, and the folder of its file.
 struct Entry {
   std::string where;
   const Json& json;
@@ -58,7 +58,7 @@ struct Entry {
     examples::check_keys(where, json, known, words);
   }
   bool has(const char* key) const { return json.is_object() && json.contains(key); }
-  /// A key that is there.
+  /// The value of an existing key.
   Entry at(const std::string& key) const { return {where + "." + key, json.at(key), folder}; }
   Entry at(std::size_t i) const { return {where + "[" + std::to_string(i) + "]", json.at(i), folder}; }
 
@@ -77,7 +77,7 @@ struct Entry {
       return c.is_number() && c.get<double>() >= range.least && c.get<double>() <= range.most;
     };
     if (!json.is_array() || json.size() != 3 || !std::all_of(json.begin(), json.end(), good)) {
-      refuse(where, json, std::string("a list of three: each a ") + range.words);
+      refuse(where, json, std::string("a list of three values, each a ") + range.words);
     }
     return {json[0].get<double>(), json[1].get<double>(), json[2].get<double>()};
   }
@@ -87,19 +87,19 @@ struct Entry {
   }
 
   std::filesystem::path path() const {
-    if (!json.is_string()) refuse(where, json, "the name of a file");
+    if (!json.is_string()) refuse(where, json, "a file name");
     return folder / json.get<std::string>();
   }
 };
 
-/// Which one of these keys an entry has.
+/// The key of this list that an entry has; empty if the entry has no such key. Throws if it has several.
 std::string_view one_of(const Entry& entry, std::initializer_list<const char*> keys, const std::string& words) {
   std::string_view found;
   for (const char* const key : keys) {
     if (!entry.has(key)) continue;
     if (!found.empty()) {
-      throw petzval::Error(entry.where + ": found both " + std::string(found) + " and " + key + ", wanted one of " +
-                           words);
+      throw petzval::Error(entry.where + ": has both " + std::string(found) + " and " + key +
+                           "; must have only one of " + words);
     }
     found = key;
   }
@@ -116,7 +116,8 @@ Albedo albedo(const Entry& entry) {
   const std::string_view kind = one_of(entry, {"checker", "image"}, "them");
   if (kind.empty()) refuse(entry.where, entry.json, "a list of three numbers, or an object with checker or image");
   if (kind == "image") {
-    if (entry.has("size_mm")) throw petzval::Error(entry.where + ": found size_mm with image, wanted it with checker");
+    if (entry.has("size_mm"))
+      throw petzval::Error(entry.where + ": size_mm must not be used with image, only with checker");
     result.image = read_image(entry.at("image").where, entry.at("image").path(), 1, "an albedo from 0 to 1");
     return result;
   }
@@ -163,7 +164,7 @@ Material material(const Entry& entry) {
 Shape shape(const Entry& entry) {
   const std::string words = "sphere, quad and obj";
   const std::string_view kind = one_of(entry, {"sphere", "quad", "obj"}, words);
-  if (kind.empty()) throw petzval::Error(entry.where + ": found no shape, wanted one of " + words);
+  if (kind.empty()) throw petzval::Error(entry.where + ": has no shape; must have one of " + words);
   const Entry of = entry.at(std::string(kind));
   if (kind == "sphere") {
     Sphere result;
@@ -180,7 +181,7 @@ Shape shape(const Entry& entry) {
     of.read("edge_v_mm", result.edge_v, finite);
     const glm::dvec3 u = result.edge_u, v = result.edge_v;
     if (!(glm::length(glm::cross(u, v)) > 1e-6 * glm::length(u) * glm::length(v))) {
-      refuse(of.where, of.json, "edges that span an area");
+      refuse(of.where, of.json, "a quad whose edges span an area");
     }
     return result;
   }
@@ -207,8 +208,8 @@ Object object(const Entry& entry) {
   const Albedo* const painted = albedo_of(result.material);
   if (mesh && mesh->uvs.empty() && painted && painted->image) {
     throw petzval::Error(entry.where +
-                         ".obj: found corners without texture coordinates, wanted them for the image of its " +
-                         "material");
+                         ".obj: corners have no texture coordinates; must have them, because the material has an " +
+                         "image");
   }
   return result;
 }
@@ -223,10 +224,10 @@ Pose pose(const Entry& entry) {
   const glm::dvec3 way = result.look_at - result.position;
   const double apart = glm::length(way), up = glm::length(result.up);
   if (!(apart > 1e-9 * glm::length(result.position))) {
-    refuse(entry.where, entry.json, "look_at_mm away from position_mm");
+    refuse(entry.where, entry.json, "a pose whose look_at_mm differs from position_mm");
   }
   if (!(glm::length(glm::cross(way / apart, result.up)) > 1e-6 * up)) {
-    refuse(entry.where, entry.json, "up across the way from position_mm to look_at_mm");
+    refuse(entry.where, entry.json, "a pose whose up is not parallel to look_at_mm - position_mm");
   }
   return result;
 }

@@ -20,7 +20,7 @@ namespace {
 
 using examples::number;
 
-/// The nearest and the farthest surface in the picture, along the axis from the front vertex, mm; infinity for the sky.
+/// Depth range of the visible surfaces, along the axis from the front vertex, mm; infinite for the sky.
 std::array<double, 2> depths(const Scene& scene, const LensCamera& exact) {
   constexpr std::size_t count = 4096;
   LensCamera::Batch batch;
@@ -38,23 +38,23 @@ std::array<double, 2> depths(const Scene& scene, const LensCamera& exact) {
     if (!(batch.weights[i] > 0)) continue;
     const auto met = scene.meet(batch.rays[i].origin, batch.rays[i].direction);
     const double depth = met ? exact.depth(met->position) : std::numeric_limits<double>::infinity();
-    // What lies beside the lens or behind it has no plane in front of it.
+    // Points beside or behind the lens have no plane in front of it.
     if (depth > 0) near = std::min(near, depth);
     far = std::max(far, depth);
   }
   return {near, far};
 }
 
-/// The depths at which models can be measured, or why the exact lens is taken without.
+/// The depths at which models are measured, or the exact lens with a reason why models cannot be measured.
 std::variant<std::array<double, 2>, ModelForScene> measurable(const Scene& scene, const LensCamera& exact) {
   const petzval::Film& film = exact.film();
   const auto exact_lens = [](const char* why) { return ModelForScene{petzval::ModelKind::exact_float, {why}}; };
   if (film.tilted() || film.travel_mm != 0) {
-    return exact_lens("the film is tilted: the exact lens, as models are measured on upright films");
+    return exact_lens("the film is tilted: the exact lens, because models are measured on upright films");
   }
   const auto range = depths(scene, exact);
   if (std::isinf(range[0])) {
-    return exact_lens("the picture shows the sky alone: the exact lens, as there is no depth to measure at");
+    return exact_lens("the picture shows only the sky: the exact lens, because there is no depth to measure at");
   }
   return range;
 }
@@ -70,10 +70,10 @@ std::string in_words(const std::array<double, 2>& depths) {
          " from the front vertex";
 }
 
-/// What a pilot picture says about a scene.
+/// Statistics of a small pilot picture.
 struct Pilot {
-  double noise = 0;  ///< of one sample of a pixel
-  double slope = 0;  ///< of the large picture, per pixel
+  double noise = 0;  ///< RMS noise of one sample per pixel
+  double slope = 0;  ///< RMS slope of the full-size picture, per pixel
   double contrast = 0, brightness = 0;
 };
 
@@ -119,7 +119,7 @@ Pilot pilot_of(const Scene& scene, const LensCamera& exact, const PathColourSour
   const auto count = static_cast<double>(a.size());
   mean /= count;
   result.noise = std::sqrt(noise / count * samples);
-  result.slope = std::sqrt(std::max(0.0, slope / count) * scale);  // squares of slopes at edges, as many along a line
+  result.slope = std::sqrt(std::max(0.0, slope / count) * scale);  // edges per length are independent of the size
   result.contrast = std::sqrt(std::max(0.0, product / count - mean * mean));
   result.brightness = std::sqrt(std::max(0.0, product / count));
   return result;
@@ -163,17 +163,17 @@ ModelForScene model_below_noise(const Scene& scene, const LensCamera& exact, con
   }
   ModelForScene result;
   result.why.push_back("noise of " + std::to_string(samples) + " samples: " + number(noise, 2) +
-                       " of white, so that the bias may be " + number(noise / 10, 2) + "; depths " + in_words(range));
+                       " of white; the bias may be at most " + number(noise / 10, 2) + "; depths " + in_words(range));
   if (best) {
     result.model = best->model;
     result.why.push_back(std::string(petzval::name(best->model)) + ": bias " + number(best_bias, 2) + ", " +
-                         number(best->ns_per_ray, 2) + " ns a ray");
+                         number(best->ns_per_ray, 2) + " ns per ray");
   } else {
     result.model = petzval::ModelKind::exact_double;
-    result.why.push_back("exact_double: no other model will do");
+    result.why.push_back("exact_double: all other models have too much bias");
   }
   if (!refused.empty()) {
-    std::string line = "too far off: ";
+    std::string line = "rejected: ";
     for (const std::string& r : refused) line += (&r == refused.data() ? "" : "; ") + r;
     result.why.push_back(line);
   }

@@ -47,15 +47,15 @@ void refuse_unfinished(const fs::path& file, const PictureSums& sums, const Shar
       ++tiles;
       unfinished += sums.samples(t) < samples;
     } else if (sums.samples(t) > 0) {
-      throw petzval::Error(file.string() + " has tile " + std::to_string(t) + " of another shard");
+      throw petzval::Error(file.string() + ": has tile " + std::to_string(t) + " of another shard");
     }
   }
   if (unfinished == 0) return;
-  throw petzval::Error(file.string() + " is unfinished: " + std::to_string(unfinished) + " of " +
-                       std::to_string(tiles) + " tiles lack samples");
+  throw petzval::Error(file.string() + ": unfinished: " + std::to_string(unfinished) + " of " + std::to_string(tiles) +
+                       " tiles lack samples");
 }
 
-/// A shard from its files, which agree. job: that of the picture, or null, which becomes that of the first file.
+/// The sums of a shard from its files, which must agree. job: the job of the picture; if null, set from the first file.
 PictureSums shard_sums(const std::vector<fs::path>& files, const Shard& shard, Json& job) {
   std::optional<PictureSums> found;
   for (const fs::path& file : files) {
@@ -90,9 +90,8 @@ PictureSums gather(const std::vector<fs::path>& folders, Json& job) {
     for (const auto& [count, shards] : files) {
       found += (found.empty() ? "" : " and of ") + shards.begin()->second.front().string();
     }
-    throw petzval::Error(where + ": " +
-                         (files.empty() ? "no shard" : "shards of pictures cut in several ways: " + found) +
-                         ", wanted tile_I_of_N.exr of one N, or " + whole_picture);
+    throw petzval::Error(where + ": " + (files.empty() ? "no shard" : "different numbers of shards: " + found) +
+                         "; must be tile_I_of_N.exr with the same N, or " + whole_picture);
   }
   const std::size_t count = files.begin()->first;
   std::vector<std::string> faults;
@@ -116,7 +115,7 @@ PictureSums gather(const std::vector<fs::path>& folders, Json& job) {
   if (faults.empty()) return std::move(*all);
   std::string message;
   for (const std::string& fault : faults) message += fault + "; ";
-  throw petzval::Error(where + ": " + message + "wanted " + std::to_string(count) + " whole shards of one picture");
+  throw petzval::Error(where + ": " + message + "must be " + std::to_string(count) + " complete shards of one picture");
 }
 
 }  // namespace renderer

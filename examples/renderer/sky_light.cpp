@@ -17,7 +17,7 @@ using std::numbers::pi;
 
 SkyLight::SkyLight(const Sky& sky) : sky_(sky) {
   if (sky.image) {
-    if (sky.image->width < 1 || sky.image->height < 1) throw petzval::Error("sky: found an image without pixels");
+    if (sky.image->width < 1 || sky.image->height < 1) throw petzval::Error("sky: image has no pixels");
     columns_ = static_cast<std::size_t>(sky.image->width), rows_ = static_cast<std::size_t>(sky.image->height);
   }
   ends_.reserve(columns_ * rows_);
@@ -28,8 +28,8 @@ SkyLight::SkyLight(const Sky& sky) : sky_(sky) {
           sky.image ? sky.image->pixel(static_cast<int>(column), static_cast<int>(row)) : &sky.colour[0];
       for (int c = 0; c < 3; ++c) {
         if (!(std::isfinite(pixel[c]) && pixel[c] >= 0)) {
-          throw petzval::Error("sky: found a radiance of " + std::to_string(pixel[c]) + " at pixel (" +
-                               std::to_string(column) + ", " + std::to_string(row) + "), wanted 0 or more");
+          throw petzval::Error("sky: radiance = " + std::to_string(pixel[c]) + " at pixel (" + std::to_string(column) +
+                               ", " + std::to_string(row) + "); must be 0 or more");
         }
       }
       const Rgb colour = sky.image ? sky.colour * Rgb(pixel[0], pixel[1], pixel[2]) : sky.colour;

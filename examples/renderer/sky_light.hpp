@@ -7,18 +7,18 @@
 
 namespace renderer {
 
-/// The sky as a light: directions are drawn by radiance.
+/// The sky as a light source: directions are sampled by radiance.
 class SkyLight {
  public:
-  /// Throws petzval::Error for an image without pixels, or with radiances that are negative or not finite.
+  /// @throws petzval::Error if the image has no pixels, or a radiance is negative or not finite
   explicit SkyLight(const Sky& sky);
 
-  /// In a direction of travel, from the sky.
+  /// Radiance by direction of travel, from the sky.
   Rgb radiance(const glm::vec3& travel) const noexcept;
-  /// A direction of travel.
+  /// Samples a direction of travel.
   glm::vec3 sample(float u, float v) const noexcept;
   double pdf(const glm::vec3& travel) const noexcept;  ///< 1/sr
-  /// Luminance over the sphere of directions.
+  /// Integral of the luminance over the sphere of directions.
   double total() const noexcept { return total_; }
 
  private:
@@ -26,8 +26,8 @@ class SkyLight {
   double sine_above(std::size_t row) const noexcept;
 
   Sky sky_;
-  std::size_t columns_ = 1, rows_ = 1;  ///< of the image; a plain sky is one pixel
-  std::vector<double> ends_;            ///< of the pixels, row by row: their share of the light and that before it
+  std::size_t columns_ = 1, rows_ = 1;  ///< size of the image; 1 x 1 for a plain sky
+  std::vector<double> ends_;            ///< cumulative fractions of the light, by pixel and row
   double total_ = 0;
 };
 

@@ -18,14 +18,14 @@ constexpr float pi = std::numbers::pi_v<float>;
 struct Turn {
   float cos, sin;
 };
-/// The k-th of `sides` directions around; the last one is the first one to the bit, or bodies would have a seam.
+/// Direction k of `sides` around the axis. k = sides equals k = 0 to the bit, so that bodies have no seam.
 Turn turn(int k, int sides) {
   const float angle = 2 * pi * static_cast<float>(k % sides) / static_cast<float>(sides);
   return {std::cos(angle), std::sin(angle)};
 }
 
-/// Joins the last two rings of a mesh, `sides` vertices each, the upper one last, counter-clockwise seen from above. A
-/// ring may be a point.
+/// Connects the last two rings of a mesh, `sides` vertices each, the upper ring last, counter-clockwise seen from
+/// above. A ring may be a point.
 void join_rings(Mesh& mesh, int sides, bool lower_is_point, bool upper_is_point) {
   const auto count = static_cast<std::uint32_t>(sides);
   const auto upper = static_cast<std::uint32_t>(mesh.positions.size()) - count, lower = upper - count;
@@ -36,7 +36,7 @@ void join_rings(Mesh& mesh, int sides, bool lower_is_point, bool upper_is_point)
   }
 }
 
-/// Normals by the area of the triangles around.
+/// Sets vertex normals, weighted by the areas of adjacent triangles.
 void smooth(Mesh& mesh) {
   mesh.normals.assign(mesh.positions.size(), glm::vec3{0, 0, 0});
   for (const auto& [a, b, c] : mesh.triangles) {
@@ -54,14 +54,14 @@ Mesh lathe(std::span<const ProfilePoint> profile, int sides) {
   const auto beyond = [](const ProfilePoint& p) { return !(p.radius >= 0); };
   if (profile.size() < 3 || !on_axis(profile.front()) || !on_axis(profile.back()) ||
       std::any_of(profile.begin(), profile.end(), beyond)) {
-    throw petzval::Error("lathe: found a profile of " + std::to_string(profile.size()) +
-                         " points, wanted 3 or more with radii of 0 or more, 0 at both ends");
+    throw petzval::Error("lathe: profile of " + std::to_string(profile.size()) +
+                         " points; must have at least 3, with radii of 0 or more, and 0 at both ends");
   }
   Mesh mesh;
   for (std::size_t i = 0; i + 1 < profile.size(); ++i) {
     const glm::vec2 from{profile[i].radius, profile[i].height}, to{profile[i + 1].radius, profile[i + 1].height};
     const glm::vec2 half = (to - from) * 0.5f, middle = from + half, out{half.y, -half.x};
-    // On the arc, angle a from its middle: middle + half sin(a) / sin(end) + out (cos(a) - cos(end)) / sin(end).
+    // On the arc, at angle a from its centre: middle + half sin(a) / sin(end) + out (cos(a) - cos(end)) / sin(end).
     const float end = 2 * std::atan(profile[i].bulge);
     const int chords = std::max(1, static_cast<int>(std::ceil(std::abs(end) * 36 / pi)));
     for (int chord = 0; chord <= chords; ++chord) {
@@ -84,7 +84,7 @@ Mesh lathe(std::span<const ProfilePoint> profile, int sides) {
 }
 
 Mesh tube(std::span<const TubeStation> stations, int sides) {
-  if (stations.size() < 2) throw petzval::Error("tube: found fewer than 2 stations, wanted 2 or more");
+  if (stations.size() < 2) throw petzval::Error("tube: must have at least 2 stations");
   constexpr int steps = 6;
   Mesh mesh;
   const auto ring = [&](const glm::vec2& left, const glm::vec2& right, float half_z) {
@@ -102,7 +102,7 @@ Mesh tube(std::span<const TubeStation> stations, int sides) {
     const bool last = i + 2 == stations.size();
     for (int step = 0; step < steps + (last ? 1 : 0); ++step) {
       const float t = static_cast<float>(step) / steps;
-      const auto curve = [&](auto member) {  // of Catmull and Rom
+      const auto curve = [&](auto member) {  // Catmull-Rom spline
         const auto slope = (c.*member - a.*member) * 0.5f, next_slope = (d.*member - b.*member) * 0.5f;
         const auto way = c.*member - b.*member;
         return b.*member +

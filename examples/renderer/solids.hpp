@@ -7,39 +7,41 @@
 
 #include "renderer/scene_description.hpp"
 
-/// Closed meshes from few numbers, mm. All have normals, outward.
+/// Closed meshes from few parameters, mm. All have outward normals.
 namespace renderer {
 
-/// A point of the outline of a turned body, and the curve from there to the next one.
+/// A point of the outline of a solid of revolution, and the curve from it to the next point.
 struct ProfilePoint {
   float radius = 0, height = 0;
-  /// Of the arc of a circle to the next point: its height over half its chord; > 0 bends outward, 1 is a semicircle, 0
-  /// a straight line.
+  /// Height of the circular arc to the next point divided by half its chord: > 0 bends outward, 1 is a semicircle, 0 a
+  /// straight line.
   float bulge = 0;
 };
 
-/// The body that an outline makes as it turns about the y axis. The outline goes from the lower end of the axis to the
-/// upper one; where its direction jumps there is an edge, elsewhere the normals are those of the smooth body. Arcs are
-/// cut into chords of at most 10 degrees. sides: 3 or more. Throws petzval::Error for a profile that does not begin and
-/// end on the axis, or leaves to its other side.
+/// The solid of revolution of an outline about the y axis. The outline goes from the lower end of the axis to the upper
+/// end. Corners of the outline are edges of the solid; elsewhere it has smooth normals. Arcs are divided into chords of
+/// at most 10 degrees.
+///
+/// @param sides  number of sides, 3 or more
+/// @throws petzval::Error if the outline does not begin and end on the axis, or crosses the axis
 Mesh lathe(std::span<const ProfilePoint> profile, int sides = 64);
 
-/// An ellipse that a tube passes, square to the xy plane.
+/// An ellipse across a tube, perpendicular to the xy plane.
 struct TubeStation {
-  glm::vec2 left{0, 0}, right{0, 0};  ///< where it meets that plane, seen along the tube with z towards the viewer
+  glm::vec2 left{0, 0}, right{0, 0};  ///< its points in the xy plane, seen along the tube with z up
   float half_z = 0;                   ///< half axis along z
 };
 
-/// A smooth body through the stations, 2 or more, closed by a point in the middle of the first and of the last.
+/// A smooth tube through 2 or more stations, closed by a point in the centre of the first and of the last station.
 Mesh tube(std::span<const TubeStation> stations, int sides = 32);
 
-/// A box along the axes.
+/// An axis-aligned box.
 Mesh box(const glm::vec3& least, const glm::vec3& most);
 
-/// The mesh turned about the y axis, counter-clockwise seen from above, then moved.
+/// The mesh rotated about the y axis, counter-clockwise seen from above, then moved.
 Mesh placed(Mesh mesh, const glm::vec3& by, float turn_deg = 0);
 
-/// Both in one. Texture coordinates are left out.
+/// Appends a mesh. Texture coordinates are discarded.
 void append(Mesh& mesh, const Mesh& other);
 
 }  // namespace renderer

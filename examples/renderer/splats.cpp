@@ -7,7 +7,7 @@ void Splats::add(const PathColours& colours, const LanePixels& pixels, const Lan
   for (int lane = 0; lane < colours.lanes;) {
     const std::uint32_t pixel = pixels[static_cast<std::size_t>(lane)];
     Rgb rgb(0);
-    // Neighbouring lanes mostly meet the same pixel.
+    // Adjacent lanes usually meet the same pixel.
     for (; lane < colours.lanes && pixels[static_cast<std::size_t>(lane)] == pixel; ++lane) {
       rgb += colours.to_rgb[lane] * value[lane];
     }

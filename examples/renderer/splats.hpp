@@ -11,10 +11,10 @@
 namespace renderer {
 
 inline constexpr std::uint32_t no_pixel = ~std::uint32_t{0};
-/// Where the lanes of a path meet the film: a lens bends each wavelength in its own way.
+/// Pixels of the lanes of a path: a lens refracts each wavelength differently.
 using LanePixels = std::array<std::uint32_t, 4>;
 
-/// What paths add to a picture.
+/// Contributions of paths to a picture.
 class Splats {
  public:
   void add(const PathColours& colours, const LanePixels& pixels, const Lanes& value);

@@ -21,8 +21,8 @@ const Diffuse black{{.colour = {0, 0, 0}}};
 
 Diffuse matt(const Rgb& colour) { return {{.colour = colour}}; }
 
-/// An evening after sunset, the glow at the right behind what is seen; a bright cloud at the left behind the camera
-/// shapes the statues. Its light comes from wide parts of the sky, so that few samples show little noise.
+/// An evening sky after sunset: the glow is on the right in front of the camera; a bright cloud on the left behind the
+/// camera models the statues. Both are wide, so that few samples give little noise.
 Sky evening() {
   constexpr int columns = 512, rows = 256;
   constexpr float pi = std::numbers::pi_v<float>;
@@ -49,7 +49,7 @@ Sky evening() {
   return {.colour = {1, 1, 1}, .image = std::move(image)};
 }
 
-/// A square pedestal whose top is at a place: a moulded plate, a shaft with a checkered band, a foot on the ground.
+/// A square pedestal with its top at a point: a moulded plate, a shaft with a checkered band, a foot on the ground.
 void pedestal(SceneDescription& scene, const glm::vec3& top, float width, const Rgb& colour) {
   const auto slab = [&](float half, float from, float to) {
     return box({top.x - half, from, top.z - half}, {top.x + half, to, top.z + half});
@@ -95,7 +95,7 @@ void column(SceneDescription& scene, const glm::vec3& foot) {
   scene.objects.push_back({"column", placed(std::move(mesh), foot), matt(marble)});
 }
 
-/// An urn, `height` high, with a stone ball.
+/// An urn of a given height, with a stone ball.
 void urn(SceneDescription& scene, const glm::vec3& foot, float height, const Rgb& colour) {
   std::array<ProfilePoint, 12> profile{{{0, 0},
                                         {0.20f, 0},
@@ -113,7 +113,7 @@ void urn(SceneDescription& scene, const glm::vec3& foot, float height, const Rgb
   scene.objects.push_back({"urn", placed(lathe(profile), foot), matt(colour)});
 }
 
-/// A lamp of the park: a bright globe on a post. Globes are large, for path tracing: see built_in_scenes.hpp.
+/// A park lamp: a bright globe on a post. Globes are large, for path tracing: see built_in_scenes.hpp.
 void lamp(SceneDescription& scene, const glm::vec3& foot, float height, float radius, const Rgb& emission) {
   const float neck = height - radius;
   const std::array post{ProfilePoint{0, 0},    ProfilePoint{90, 0},         ProfilePoint{90, 250},
@@ -173,7 +173,7 @@ SceneDescription statues_scene() {
   statue(scene, AngelPose::praying, {-900, -400, -9500}, 1500, 25, marble);
   statue(scene, AngelPose::praying, {160, -300, -15500}, 2300, 0, marble);
 
-  // Lamps along the path, and those of the town far behind.
+  // Lamps along the path, and lamps of the town far behind.
   constexpr Rgb warm{7.5f, 4.6f, 2.1f}, white{6.5f, 5.6f, 4.4f}, red{6, 1.1f, 0.7f}, cold{3.2f, 4.6f, 6.4f};
   for (const float side : {-1.0f, 1.0f}) {
     for (int i = 0; i < 5; ++i)
@@ -201,7 +201,7 @@ SceneDescription statues_scene() {
   for (const auto& [right, up, away, emission] : town) {
     scene.objects.push_back({"lamp", Sphere{away * glm::vec3{right, up, -1}, 0.0055f * away}, black, emission});
   }
-  // The wood before the town.
+  // The wood in front of the town.
   for (int i = 0; i < 60; ++i) {
     const float x = -32000 + 64000 * (static_cast<float>(i) + 0.5f) / 60;
     const float radius = 1500 + 900 * std::sin(7.0f * static_cast<float>(i)) * std::sin(3.3f * static_cast<float>(i));

@@ -17,7 +17,7 @@ constexpr Rgb sodium{1, 0.55f, 0.16f}, white{1, 0.95f, 0.85f}, red{1, 0.07f, 0.0
     warm{1, 0.72f, 0.40f};
 const Diffuse black{{.colour = {0, 0, 0}}};
 
-/// The same numbers from 0 to 1 everywhere, which std::uniform_real_distribution does not promise.
+/// Random numbers from 0 to 1, equal on all platforms; std::uniform_real_distribution does not guarantee that.
 class Chance {
  public:
   float next() { return static_cast<float>(engine_() >> 8) / 16777216.0f; }
@@ -26,8 +26,8 @@ class Chance {
   std::mt19937 engine_{7};
 };
 
-/// The radiance of a small light whose disc is as bright as `disc` in a picture by a lens of 100 mm, f/2, focused at
-/// the sign: the area of its disc over that of its sharp image.
+/// The radiance of a small light whose blur disc has the radiance `disc` in a picture by a lens of 100 mm, f/2, focused
+/// at the sign: `disc` times the ratio of the areas of blur disc and sharp image.
 float radiance(float disc, float radius, float away) {
   constexpr float pupil = 50, focal_length = 100, image_away = 1 / (1 / focal_length - 1 / sign_away);
   const float blur = pupil * std::abs(away - sign_away) / away * focal_length / (sign_away - focal_length);
@@ -55,7 +55,7 @@ void houses(SceneDescription& scene, float side, Chance& chance) {
       for (float z = near_z - 2000; z > far_z + 2000; z -= 2800) {
         const float lit = chance.next(), tint = chance.next();
         if (lit > 0.2f) continue;
-        // Before the wall, facing the street.
+        // In front of the wall, facing the street.
         const glm::vec3 corner{x(walls - 20), 1000 + 3300 * static_cast<float>(level), z};
         const glm::vec3 along{0, 0, side * 1100}, up{0, 1500, 0};
         const Rgb colour = tint < 0.75f ? warm : Rgb{0.75f, 0.85f, 1};
@@ -67,14 +67,14 @@ void houses(SceneDescription& scene, float side, Chance& chance) {
   }
 }
 
-/// The object in focus: a checkered plate on a post at the left.
+/// Adds the object in focus: a checkered plate on a post at the left.
 void sign(SceneDescription& scene) {
   const glm::vec3 foot{-275, 0, -sign_away};
   constexpr ProfilePoint post[] = {{0, 0}, {30, 0}, {30, 1640}, {38, 1645, 1}, {0, 1690}};
   scene.objects.push_back({"post", placed(lathe(post), foot - glm::vec3{0, 0, 45}), Rough{{0.5f, 0.5f, 0.5f}, 0.25f}});
   const Varnish paint{{.colour = {0.8f, 0.78f, 0.72f}, .checker = Albedo::Checker{{0.5f, 0.03f, 0.03f}, 50}}, 0.1f};
   scene.objects.push_back({"sign", box(foot + glm::vec3{-150, 1275, -14}, foot + glm::vec3{150, 1525, 0}), paint});
-  // The shop window that it stands before is out of the picture.
+  // The shop window that lights the sign is outside the picture.
   scene.objects.push_back(
       {"shop window", Quad{{-1500, 600, -100}, {-900, 0, -900}, {0, 1800, 0}}, black, {6, 5, 3.6f}});
 }
@@ -92,7 +92,7 @@ SceneDescription street_scene() {
   for (const float side : {-1.0f, 1.0f}) houses(scene, side, chance);
   sign(scene);
 
-  // Street lamps, over the kerbs in turn.
+  // Street lamps, alternately over the left and the right kerb.
   int count = 0;
   for (float away = 36000; away < 200000; away += 11000, ++count) {
     const float x = count % 2 == 0 ? -kerb : kerb;
@@ -102,7 +102,7 @@ SceneDescription street_scene() {
                              Diffuse{{.colour = {0.05f, 0.05f, 0.05f}}}});
   }
 
-  // Cars: white lights come on the left half of the road, red ones go on the right.
+  // Cars: headlights approach on the left half of the road, tail lights recede on the right.
   for (const float away : {19000.0f, 31000.0f, 47000.0f, 68000.0f, 98000.0f, 140000.0f}) {
     for (const float apart : {-650.0f, 650.0f}) {
       light(scene, "headlight", {-1700 + apart, 650, -away * 1.12f}, 35, white, 0.9f);
@@ -116,8 +116,8 @@ SceneDescription street_scene() {
     light(scene, "traffic light", {-kerb + 300, 3000, -away - 9000}, 40, red, 1.0f);
   }
 
-  // Strings of bulbs hang across the street, from 5 m. Bulbs do not hide each other: a hidden
-  // bulb's light would show around the nearer bulb.
+  // Strings of bulbs across the street, from 5 m. Bulbs do not hide each other: light of a hidden bulb would be visible
+  // around the nearer bulb.
   for (const auto& [away, shift] : {std::pair{5200.0f, 0.0f}, std::pair{9500.0f, 0.33f}, std::pair{15500.0f, -0.33f}}) {
     constexpr int bulbs = 9;
     for (int i = 0; i < bulbs; ++i) {

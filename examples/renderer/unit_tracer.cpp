@@ -6,7 +6,7 @@
 namespace renderer {
 namespace {
 
-/// Seeds of what is drawn before a path begins; its own numbers have the seed itself.
+/// Seeds of numbers drawn before a path begins. The path itself uses the unmodified seed.
 enum class Drawn : std::uint64_t { film = 1, pupil = 2 };
 
 /// Point of the unit square for a sample of a pixel: the Owen-Sobol sequence of its round.
@@ -27,8 +27,8 @@ std::optional<Integrator> integrator_named(std::string_view name) noexcept {
 
 void UnitTracer::trace(const PixelBlock& block, const SampleRange& samples, Splats& splats,
                        double& lens_seconds) const {
-  // The same ray in two batches agrees within rounding only. Batches of one sample of each pixel make
-  // the bits independent of how the samples are divided among calls.
+  // A ray is the same in two batches only up to rounding. Batches of one sample per pixel make the bits independent of
+  // the division of samples among calls.
   for (std::uint32_t i = 0; i < samples.count; ++i) {
     trace_once(block, samples.round, samples.first + i, splats, lens_seconds);
   }
@@ -53,7 +53,7 @@ void UnitTracer::trace_once(const PixelBlock& block, std::uint32_t round, std::u
     colours.push_back(colours_.draw(random.back()()));
   }
   LensCamera::Batch batch;
-  std::vector<std::vector<petzval::Importance>> seen;  // of the batch's rays, by lane
+  std::vector<std::vector<petzval::Importance>> seen;  // importances of the batch's rays, by lane
   if (integrator_ != Integrator::light) {
     batch.resize(pixels, !colours.front().one_wavelength);
     for (std::size_t i = 0; i < pixels; ++i) {

@@ -8,19 +8,19 @@
 
 namespace renderer {
 
-/// Samples of a pixel: `count` of one of the PictureSums::rounds, from the sample `first` of that round on.
+/// Samples of a pixel: `count` samples of a round (see PictureSums::rounds), starting at `first`.
 ///
-/// The samples of a round are one sequence over film and pupil, evenly spread from its beginning to anywhere; rounds do
-/// not depend on each other.
+/// The samples of a round are a low-discrepancy sequence over film and pupil, uniform for any number of samples. Rounds
+/// are independent.
 struct SampleRange {
   std::uint32_t round = 0, first = 0, count = 0;
 };
 
-/// Traces a picture in units: some samples of each pixel of a block. The contributions of a unit depend on the seed,
-/// its pixels and its samples, and on nothing else.
+/// Traces a picture in units: some samples of each pixel of a block. The contributions of a unit depend only on the
+/// seed, its pixels and its samples.
 class UnitTracer {
  public:
-  /// The scene, the lens and the colours must outlive it.
+  /// The scene, the lens and the colours must outlive the tracer.
   UnitTracer(const Scene& scene, const LensCamera& lens, const PathColourSource& colours, Integrator integrator,
              std::uint64_t seed) noexcept
       : scene_(scene), lens_(lens), colours_(colours), integrator_(integrator), seed_(seed) {}

@@ -98,9 +98,8 @@ petzval::Spectrum white_light(const std::string& white_point) {
 
 void add_white_point(App& app, std::string& white_point) {
   app.add_option("--white-point", white_point,
-                 "spectrum of the light, shown as white: D65 or D50 (daylight), A (tungsten), E "
-                 "(equal power), or a file.csv of wavelength_nm,power; a single wavelength is always shown as "
-                 "white")
+                 "spectrum of the light, shown as white: D65 or D50 (daylight), A (tungsten), E (equal power), or a "
+                 "file.csv of wavelength_nm,power; a single wavelength is always shown as white")
       ->type_name("NAME|FILE.csv")
       ->capture_default_str();
 }

@@ -16,8 +16,8 @@ bool BokehFlags::change_nothing() const noexcept {
 void add_bokeh(App& app, BokehFlags& flags) {
   petzval::BokehControls& c = flags.controls;
   app.add_option("--iris-image", flags.iris_image,
-                 "grey PNG or EXR over the square around the stop's rim, +x to the right and +y up: the fraction "
-                 "of the light that passes, 0 to 1")
+                 "grey PNG or EXR over the square around the stop's rim, +x to the right and +y up: the fraction of "
+                 "the light that passes, 0 to 1")
       ->type_name("FILE");
   add_number(app, "--lens-ratio", c.lens_ratio, positive_number,
              "radius of the second rim that clips cat's eyes, divided by the radius of the pupil on the axis");

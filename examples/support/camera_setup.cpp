@@ -55,8 +55,8 @@ void add_picture_size(App& app, std::uint32_t& width, std::uint32_t& height, std
   constexpr Range side{1, 16384, "a whole number from 1 to 16384"};
   width = height = 0;
   add_count(app, "--width", width, side,
-            "pixels across; if --height is given and --film-mm is not, the film takes the picture's shape within "
-            "36 x 24 mm")
+            "pixels across; if --height is given and --film-mm is not, the film takes the picture's shape within 36 x "
+            "24 mm")
       ->default_str(std::to_string(usual_width) + ", or by --height");
   add_count(app, "--height", height, side, "pixels down")->default_str("by --width: square pixels");
 }

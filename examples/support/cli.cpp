@@ -251,8 +251,7 @@ namespace {
 
 constexpr const char* criterion_help =
     "meaning of \"in focus\", on the axis unless fields are given: thin or paraxial (cardinal points of the thin or "
-    "the "
-    "thick lens), min_rms or min_max (exact rays: smallest RMS blur or smallest maximum blur)";
+    "the thick lens), min_rms or min_max (exact rays: smallest RMS blur or smallest maximum blur)";
 
 }  // namespace
 

@@ -28,8 +28,8 @@ bool ExpressiveFlags::change_nothing() const noexcept {
 void add_expressive(App& app, ExpressiveFlags& flags) {
   app.add_option(
          "--power-spline", flags.power_spline,
-         "refractive power of the pupil's rings, relative to the lens: a spline through radius:power, radii from "
-         "0 (axis) to 1 (rim), as 0:1 0.7:1.01 1:0.98")
+         "refractive power of the pupil's rings, relative to the lens: a spline through radius:power, radii from 0 "
+         "(axis) to 1 (rim), as 0:1 0.7:1.01 1:0.98")
       ->type_name("R:POWER");
   app.add_option("--curvature-points", flags.curvature_points,
                  "shift of film points away from the lens, all in mm: a surface through x,y:offset, as 0,0:0 18,12:0.3 "

@@ -131,8 +131,8 @@ std::vector<LensFigure> lens_figures(const Report& r, const petzval::Lens& colou
   }
 
   add("layout", "The lens",
-      "Each colour is one field: its rays come from one far point and should meet in one point of the film. If "
-      "the rays of a field do not fill the stop from tick to tick, rims clip the pupil and the corner darkens.",
+      "Each colour is one field: its rays come from one far point and should meet in one point of the film. If the "
+      "rays of a field do not fill the stop from tick to tick, rims clip the pupil and the corner darkens.",
       petzval::layout_figure(lens, subject_z, fields));
   if (!lens.rotationally_symmetric()) {
     add("layout_x", "The lens in the other section",
@@ -147,20 +147,17 @@ std::vector<LensFigure> lens_figures(const Report& r, const petzval::Lens& colou
       petzval::spot_figure(colours, petzval::spot_diagram(colours, subject_z, fields), weights));
   add("footprints", "Pupils",
       "The vignetted pupil of each field point. The more of the dashed circle is missing, the darker the corner. "
-      "Bright "
-      "points out of focus have blurs of this shape.",
+      "Bright points out of focus have blurs of this shape.",
       petzval::footprint_figure(lens, subject_z, fields));
   add("focus", "Focus",
-      "Spot size against film position. Separate minima mean curvature of field; a high, flat minimum is "
-      "an "
+      "Spot size against film position. Separate minima mean curvature of field; a high, flat minimum is an "
       "aberration that focusing does not remove.",
       petzval::focus_figure(colours, subject_z, fields, weights));
   const double farthest = *std::ranges::max_element(fields, {}, [](double f) { return std::abs(f); });
   if (farthest != 0) {
     add("illumination", "Brightness",
         "Irradiance on the film from the centre to the edge of the field. Below cos\u2074 rims vignette; above it the "
-        "pupil "
-        "grows with the field, as in fisheyes and retrofocus lenses.",
+        "pupil grows with the field, as in fisheyes and retrofocus lenses.",
         petzval::illumination_figure(lens, subject_z, std::abs(farthest)));
   }
   return result;

@@ -54,8 +54,7 @@ Json index(const PsfJob& job, const std::vector<petzval::ExrPart>& parts, const 
                    {"error", "bound of the relative error of the radial profile, held by 95 of 100 runs"}};
   json["frame"] =
       "rows from the top; up is away from the centre of a photograph, towards the field; the anchor is at the centre "
-      "of "
-      "the middle pixel; anchor_mm is its position on the film, where the picture is upside down";
+      "of the middle pixel; anchor_mm is its position on the film, where the picture is upside down";
   json["psfs"] = Json::array();
   for (const petzval::ExrPart& part : parts) {
     const auto [point, kernel] = petzval::from_exr_part(part);
@@ -110,8 +109,8 @@ Sheet contact_sheet(const PsfJob& job, const std::vector<petzval::ExrPart>& part
   Sheet sheet{
       .title = "PSFs of " + job.description().at("lens").get<std::string>(),
       .rows = {},
-      .notes = {"Field angle, and light: the film irradiance of a uniformly bright scene relative to "
-                "the wide-open lens on the axis.",
+      .notes = {"Field angle, and light: the film irradiance of a uniformly bright scene relative to the wide-open "
+                "lens on the axis.",
                 "Up is away from the centre of the photograph. Tiles of a row have the same film scale and their "
                 "own exposure."}};
   for (const double distance : axes.distances_mm) {
