@@ -8,7 +8,7 @@
 namespace petzval::trace_detail {
 namespace {
 
-/// A number and its derivative, for the slope of the slope of a sag.
+/// A number and its derivative; gives the second derivative of a sag.
 template <class R>
 struct Rate {
   using Scalar = R;
@@ -39,7 +39,7 @@ PETZVAL_INLINE Rate<R> sqrt(Rate<R> x) noexcept {
   return {s, x.d / (s + s)};
 }
 
-/// A ray's height over an asphere and how fast it grows along the ray, in the turned frame.
+/// Height of a ray above an asphere and its derivative along the ray, in the frame of kernel::Step.
 template <class R>
 struct Height {
   Lanes<R> value, rate, slope;
@@ -56,7 +56,7 @@ PETZVAL_INLINE Height<R> height(const kernel::Step<R>& s, const kernel::Asphere<
   return {z - V(s.sense) * sag.z, pz - slope * (ux * px + uy * py), slope, sag.defined};
 }
 
-/// What a search says about a ray. stands: Newton's answer is the first crossing.
+/// Result of a search. stands: Newton's result is the first crossing. beside: the ray passes outside the aperture.
 enum class Outcome : std::uint8_t { open, stands, crosses, beside, lost };
 
 template <class R>
@@ -68,13 +68,14 @@ PETZVAL_INLINE Mask<R> are(Lanes<R> outcomes, Outcome what) noexcept {
   return (outcomes >= code<R>(what)) & (outcomes <= code<R>(what));
 }
 
-/// Rays of a bundle whose crossings are searched for, packed, in the lens frame; and the answers, in their order.
+/// Rays of a bundle whose crossings are searched, packed, in the lens frame; and the results in the same order.
 template <class R>
 struct Search {
   using V = Lanes<R>;
   using Vector = kernel::Vec<V>;
   static constexpr int width = V::width, room = Bundle<R>::rays + width;
-  /// Of a ray: point, direction, Newton's answer, whether it lies inside the aperture.
+  /// Values per ray: point, direction, Newton's result, and 1 if this result lies inside the aperture. Decides rays by
+  /// bounds if possible, then packs and searches the other rays.
   enum Value { x, y, z, dx, dy, dz, answer, inside, values };
   R v[values][room];
   int count = 0;
@@ -99,7 +100,7 @@ struct Search {
       const auto ray = kernel::trace_detail::passage(surface, p, d);
       const auto [part, empty, rising] = kernel::trace_detail::prospect(surface, ray, p, d, sense);
       const Mask<R> stands = rising & (at(inside, o) > V(R(0)));
-      // Without a crossing, the ray passes beside the aperture if it can have one at most.
+      // Without a crossing on the aperture, a ray that can have at most one crossing passes outside.
       const V nothing = select(empty | rising, code<R>(Outcome::beside), code<R>(Outcome::open));
       store(outcome + o, select(stands, code<R>(Outcome::stands), nothing));
       left[o / width] = without(part.from <= part.to, stands);
@@ -134,7 +135,7 @@ struct Search {
  private:
   V at(Value value, int o) const noexcept { return load(v[value] + o); }
 
-  /// Fills the last vector: its other lanes do as its last ray does.
+  /// Fills the remaining lanes of the last vector with copies of the last ray.
   static void fill(R* numbers, int count) noexcept {
     for (int l = count; l % width != 0; ++l) numbers[l] = numbers[count - 1];
   }
@@ -143,8 +144,8 @@ struct Search {
   }
 };
 
-/// Whether rays too upright to cross the surface twice see both ends of the aperture's cylinder on one side of its
-/// edge.
+/// True if both ends of the ray inside the cylinder of the aperture lie on the same side of the rim; only for rays too
+/// upright to cross the surface twice.
 template <class R>
 PETZVAL_INLINE Mask<R> beside_edge(const kernel::Asphere<R>& surface,
                                    const kernel::trace_detail::Passage<Lanes<R>>& ray, Lanes<R> z,
@@ -157,25 +158,29 @@ PETZVAL_INLINE Mask<R> beside_edge(const kernel::Asphere<R>& surface,
   return (within2 < V(-unsure * surface.height)) | ((one > over) & (other > over)) | ((one < under) & (other < under));
 }
 
-/// Steps of Newton's iteration from the hit on the base conic: of all rays; of those that are closing in, by steps
-/// shorter than 1/16 of the height; and of rays whose search shows no crossing inside the aperture.
+/// Numbers of Newton steps from the hit on the base conic: usual_steps for all rays; after first_steps only if the last
+/// step was shorter than 1/16 of the height; up to newton_steps if the search shows no crossing inside the aperture.
 template <class R>
 inline constexpr int usual_steps = sizeof(R) == sizeof(float) ? 4 : 6;
 inline constexpr int first_steps = 3, newton_steps = 10;
 
-/// Where the rays of a bundle meet an asphere: points b + q p.
+/// Points b + q p at which the rays of a bundle meet an asphere.
 template <class R>
 struct Meeting {
   using V = Lanes<R>;
   static constexpr int vectors = Bundle<R>::vectors;
   V q[vectors], rate[vectors], slope[vectors];
   Mask<R> found[vectors];
-  Mask<R> beside[vectors];  ///< nothing within the aperture: vignetted, wherever the ray may cross the surface
+  Mask<R> beside[vectors];  ///< no crossing inside the aperture: vignetted, whether or not the ray hits
 };
 
-/// Newton lane by lane: a lane that has arrived stays, so that its answer is its own. An answer counts if it lies
-/// inside the aperture and the ray rises over the surface all along the part that can lie on it. For the crossings of
-/// other rays intervals are searched, as kernel::intersect does. q: in, where to start; per_n2: of the media.
+/// Newton's iteration in each lane; a converged lane keeps its value, so that results do not depend on other lanes.
+///
+/// A result counts if it lies inside the aperture and the ray rises over the surface along the whole part that can lie
+/// on the aperture. For other rays the intervals are searched, as in kernel::intersect.
+///
+/// @param at      in: q, the start values; out: the results
+/// @param per_n2  one over the squared index in front of the surface
 template <class R>
 [[gnu::noinline]] void meet(const kernel::Step<R>& s, const Route<R>& route, std::uint8_t* unsettled,
                             const Bundle<R>& b, const Lanes<R>* per_n2, Meeting<R>& at) noexcept {
@@ -223,7 +228,7 @@ template <class R>
   };
   iterate(0, usual_steps<R>);
 
-  // Of upright rays the answer needs no search.
+  // Upright rays with a result inside the aperture need no search.
   Mask<R> inside[vectors], doubtful[vectors];
   bool doubts = false;
   const V steepest2(surface.steepest * surface.steepest);
@@ -254,7 +259,7 @@ template <class R>
     const Mask<R> crosses = taken[i] & are(outcome, Outcome::crosses), lost = taken[i] & are(outcome, Outcome::lost);
     at.beside[i] = at.beside[i] | (taken[i] & are(outcome, Outcome::beside));
     at.found[i] = without(at.found[i] | crosses, lost);
-    // Where a ray meets the surface outside the aperture is of no interest if it is clipped there.
+    // A hit outside the aperture does not matter if the aperture clips the ray.
     const Mask<R> settled = crosses | lost | (route.apertures ? at.beside[i] : lost);
     moving[i] = without(moving[i] | waiting[i], settled);
     if (any(lost)) {
@@ -281,7 +286,7 @@ void asphere(const kernel::Step<R>& s, const Lanes<R>& rim2, const Route<R>& rou
   V per_n2[vectors];
   for (int i = 0; i < vectors; ++i) {
     approach(s, media, b, i, follow);
-    // The hit on the base conic; where there is none, the place that approach() found.
+    // Hit on the base conic, or else the point found by approach().
     const auto [a, slant, f] = quadratic(s, b, i);
     const V disc = slant * slant - a * f;
     const Mask<R> on_base = (disc > none) & (slant > none);

@@ -40,7 +40,7 @@ trace_detail::TraceBlocks<R> loops(const trace_detail::BlockTracer& tracer) noex
   }
 }
 
-/// Where each ray has its own wavelength, that of the batch is ignored.
+/// Ignores the wavelength of the batch if each ray has its own wavelength.
 template <class R>
 BlockJob<R> job_for(const Lens& lens, const BatchOptions& options) noexcept {
   const auto& view = kernel::view<R>(lens);
@@ -55,7 +55,7 @@ BlockJob<R> job_for(const Lens& lens, const BatchOptions& options) noexcept {
   return job;
 }
 
-/// Memory for a block of rays and their derivatives: for the rest of a batch, and for arrays of structures.
+/// Memory for a block of rays and their derivatives: for the last rays of a batch and for arrays of structures.
 template <class R>
 struct Block {
   alignas(64) std::array<std::array<R, block>, 18> v;
@@ -65,7 +65,7 @@ struct Block {
   std::array<std::uint16_t, block> wavelengths{};
   std::array<float, block> nm{};
 
-  /// On the axis, where no ray has been put.
+  /// Unused rays lie on the axis.
   explicit Block(bool with_tangents = false) noexcept {
     for (std::size_t k = 0; k < (with_tangents ? 18 : 6); ++k) v[k].fill(R(0));
     v[5].fill(R(1));
@@ -87,14 +87,13 @@ std::array<T*, 6> pointers(const RayArrays<T>& a) noexcept {
   return {a.x, a.y, a.z, a.dx, a.dy, a.dz};
 }
 
-/// Copies `count` rays.
 template <class T, class R>
 void copy(std::size_t count, const RayArrays<T>& from, std::size_t begin, const RayArrays<R>& to,
           std::size_t to_begin) noexcept {
   for (std::size_t k = 0; k < 6; ++k) std::copy_n(pointers(from)[k] + begin, count, pointers(to)[k] + to_begin);
 }
 
-/// Points a job at the first `count` rays of a block.
+/// Directs a job to the first `count` rays of a block.
 template <class R>
 void use(Block<R>& rays, std::size_t count, BlockJob<R>& job) noexcept {
   job.rays = count;
@@ -106,7 +105,6 @@ void use(Block<R>& rays, std::size_t count, BlockJob<R>& job) noexcept {
   if (job.each_nm) job.each_nm = rays.nm.data();
 }
 
-/// Copies the wavelengths of `count` rays.
 template <class R>
 void copy_wavelengths(std::size_t count, const RayWavelengths& from, std::size_t begin, Block<R>& to) noexcept {
   if (from.each) std::copy_n(from.each + begin, count, to.wavelengths.begin());

@@ -12,20 +12,20 @@
 namespace petzval::trace_detail {
 namespace {
 
-/// Arrays from a position on; those that nobody asked for are null, and stay so.
+/// Arrays from a position on; null pointers stay null.
 template <class R, class T>
 RayArrays<T> from(const RayArrays<T>& a, std::size_t o) noexcept {
   const auto at = [o](T* p) { return p ? p + o : p; };
   return {at(a.x), at(a.y), at(a.z), at(a.dx), at(a.dy), at(a.dz)};
 }
 
-/// Fates and surfaces from the tallies.
+/// Writes fates and surfaces from the tallies.
 template <class R>
 void report(const BlockJob<R>& job, const Bundle<R>& b, const std::uint8_t* unsettled, std::size_t o) noexcept {
   constexpr int rays = Bundle<R>::rays;
   typename Native<R>::Bit tally[rays];
   __builtin_memcpy(tally, b.tally, sizeof tally);
-  // Surfaces rise or fall from step to step.
+  // Consecutive steps have consecutive surfaces, ascending or descending.
   const auto steps = static_cast<std::int32_t>(job.steps);
   const std::int32_t first = job.sequence.steps[0].surface;
   const std::int32_t by = first == 0 ? 1 : -1;
@@ -45,7 +45,7 @@ void report(const BlockJob<R>& job, const Bundle<R>& b, const std::uint8_t* unse
   }
 }
 
-/// Through all steps, or as far as a ray is left or wanted.
+/// Passes all steps, or ends early if all rays are lost; checked at every fourth step.
 template <class R, class MediaAt, class Follow>
 PETZVAL_INLINE void march(const BlockJob<R>& job, MediaAt&& media_at, std::uint8_t* unsettled, Bundle<R>& b,
                           Follow& follow) {
@@ -58,7 +58,8 @@ PETZVAL_INLINE void march(const BlockJob<R>& job, MediaAt&& media_at, std::uint8
   }
 }
 
-/// One bundle of a job: the rays from o on. index, per_index: in front of the lens and one over that behind it, by ray.
+/// Traces one bundle of a job, from ray o on. index, per_index: by ray, the index in front of the lens and one over the
+/// index behind the lens.
 template <class R, class MediaAt>
 void trace_bundle(const BlockJob<R>& job, std::size_t o, const R* index, const R* per_index, MediaAt&& media_at) {
   const auto in = from<R>(job.in, o);

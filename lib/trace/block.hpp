@@ -10,17 +10,17 @@
 
 namespace petzval::trace_detail {
 
-/// Rays in a block: enough to hide the latency of square roots.
+/// Number of rays in a block: enough to hide the latency of square roots.
 inline constexpr int block_rays = 64;
 
-/// A way through a lens, for one ray or many.
+/// A path through a lens, for one ray or a batch.
 template <class R>
 struct Route {
   kernel::SurfaceSequence<R> sequence;
   std::size_t steps = 0;
   const kernel::Asphere<R>* aspheres = nullptr;
   std::size_t wavelength = 0;
-  bool spectral = false;  ///< a wavelength in nm instead
+  bool spectral = false;  ///< true if `nm` replaces `wavelength`
   R nm = 0;
   bool apertures = true;
   std::span<const kernel::StopEdge<R>> iris{};
@@ -30,8 +30,8 @@ struct Route {
 template <class R>
 struct BlockJob : Route<R> {
   std::size_t compiled_wavelengths = 1;
-  const std::uint16_t* wavelengths = nullptr;  ///< of each ray, or null
-  const float* each_nm = nullptr;              ///< of each ray, or null
+  const std::uint16_t* wavelengths = nullptr;  ///< by ray, or null
+  const float* each_nm = nullptr;              ///< by ray, or null
   std::size_t rays = 0;
   RayArrays<const R> in;
   RayArrays<R> out;
@@ -39,7 +39,7 @@ struct BlockJob : Route<R> {
   int* surfaces = nullptr;                            ///< or null
   const RayTangents<const R>* tangents_in = nullptr;  ///< null: no derivatives
   RayTangents<R> tangents_out;
-  R* clearances = nullptr;  ///< or null; without derivatives
+  R* clearances = nullptr;  ///< or null; not with derivatives
 };
 
 template <class R>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Rays on their way, lane by lane. Included like lanes.hpp.
+// A bundle of rays during a trace. Included like lanes.hpp.
 #pragma once
 
 #include <cstdint>
@@ -11,14 +11,14 @@
 #include "lanes.hpp"
 #endif
 
-/// For what a single ray passes in registers.
+/// Inlines the functions that must keep a single ray in registers.
 #if defined(PETZVAL_ONE_LANE)
 #define PETZVAL_ONE_LANE_INLINE PETZVAL_INLINE
 #else
 #define PETZVAL_ONE_LANE_INLINE
 #endif
 
-/// Where there are registers for four vectors of rays, the loop over them is laid out.
+/// Unrolls the loop over vectors if the registers suffice for four vectors of rays.
 #if defined(__AVX512F__)
 #define PETZVAL_UNROLL _Pragma("GCC unroll 4")
 #else
@@ -28,8 +28,8 @@
 namespace petzval::trace_detail {
 namespace {
 
-/// Rays in front of the next step: points from its vertex, directions p of length n (the index), in the turned frame of
-/// kernel::Step. The numbers of lost rays are meaningless; `alive` and `tally` tell which they are.
+/// Rays in front of the next step: points relative to its vertex and directions p of length n (the index), in the frame
+/// of kernel::Step. Values of lost rays are meaningless; see `alive` and `tally`.
 template <class R>
 struct Bundle {
   using V = Lanes<R>;
@@ -38,7 +38,7 @@ struct Bundle {
 #if defined(PETZVAL_ONE_LANE)
   static constexpr int used = 1;
 #else
-  int used = vectors;  ///< the first ones hold rays, the others none: a few rays need not cost what a whole bundle does
+  int used = vectors;  ///< number of vectors that hold rays, so that a few rays cost less than a bundle
 #endif
   static_assert(block_rays % rays == 0);
 
@@ -46,13 +46,15 @@ struct Bundle {
   V px[vectors], py[vectors], pz[vectors];
   V r2[vectors];  ///< x^2 + y^2
   Mask<R> alive[vectors];
-  /// Four for every surface passed: one for the hit, one for the rim, two for the refraction. What is missing at the
-  /// last one tells the ray's fate.
+  /// Adds four for every surface passed: one for the hit, one for the rim, two for the refraction. The remainder at the
+  /// last surface encodes the fate of a lost ray.
   typename Native<R>::Bits tally[vectors];
 };
 
-/// The fate of a lost ray, from the excess of its tally over the surfaces passed, as a number, so that loops run on
-/// lanes. unsettled: the search for a hit did not converge.
+/// Fate of a lost ray, as a number so that loops vectorize.
+///
+/// @param beyond     excess of its tally over the surfaces passed
+/// @param unsettled  true if the search for a hit did not converge
 PETZVAL_INLINE std::int32_t lost_by(std::int32_t beyond, bool unsettled) noexcept {
   std::int32_t fate = beyond == 0 ? static_cast<std::int32_t>(RayFate::missed_surface)
                                   : static_cast<std::int32_t>(RayFate::totally_reflected);
@@ -60,7 +62,7 @@ PETZVAL_INLINE std::int32_t lost_by(std::int32_t beyond, bool unsettled) noexcep
   return unsettled ? static_cast<std::int32_t>(RayFate::no_convergence) : fate;
 }
 
-/// How points and directions change with one parameter.
+/// Derivatives of points and directions with respect to one parameter.
 template <class R>
 struct Tangent {
   Lanes<R> x[Bundle<R>::vectors], y[Bundle<R>::vectors], z[Bundle<R>::vectors];

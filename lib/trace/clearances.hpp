@@ -8,15 +8,16 @@
 
 namespace petzval::trace_detail {
 
-/// How near N rays come to the rims: the least of 1 - r^2 / R^2 over them, R their semi-diameters; at central
-/// obscurations of radius i of (r^2 - i^2) / R^2, at the edges of the iris their distance / R. It is not negative
-/// exactly for the rays that a batch with these options transmits with apertures.
+/// Computes how close rays pass to the rims: not negative exactly if a batch with these options and apertures transmits
+/// the ray.
 ///
-/// 0 at a rim and continuous beside it. Negative for rays that a rim stops, v there gives v / (1 - v) in (-1, 0): with
-/// apertures v of the first rim that stops the ray, without of the narrowest. Below -1 for rays that are lost
-/// otherwise, lower the earlier.
+/// The clearance is the minimum of 1 - r^2 / R^2 over all rims (R: semi-diameter), of (r^2 - i^2) / R^2 over central
+/// obscurations of radius i, and of distance / R over the edges of the iris. It is continuous, and 0 at a rim. A ray
+/// stopped by a rim has v / (1 - v), in (-1, 0), with v < 0 the value at that rim: the first such rim with apertures,
+/// the narrowest without. A ray lost for another reason has a value below -1, the lower the earlier.
 ///
-/// rays: N each; they are replaced by their results, as by a batch whose `out` is `in`. clearances: N.
+/// @param rays        `count` rays; replaced by their results, as by a batch with out = in
+/// @param clearances  `count` values
 template <class T>
 void clearances(const Lens& lens, std::size_t count, const RayArrays<T>& rays, T* clearances,
                 const BatchOptions& options) noexcept;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// As many rays side by side as a register holds: numbers and masks of the seam in core/scalar.hpp. Included, like
-// core/simd.hpp, by the sources of one instruction set each.
+// As many rays as a register holds: numbers and masks with the interface of core/scalar.hpp. Included, like
+// core/simd.hpp, by sources that are compiled for one instruction set each.
 #pragma once
 
 #include <cstddef>
@@ -18,11 +18,11 @@ namespace {
 
 using core_detail::Native;
 
-/// 64 or 32 rays go together, enough to hide the latency of a root behind the others.
+/// A bundle has 64 or 32 rays, enough to hide the latency of square roots.
 template <class R>
 inline constexpr int rays_in_bundle = 256 / static_cast<int>(sizeof(R));
 
-/// The lanes for which a comparison holds.
+/// The lanes in which a comparison holds.
 template <class R>
 struct Mask {
 #if defined(__AVX512F__)
@@ -34,7 +34,7 @@ struct Mask {
 
   friend PETZVAL_INLINE Mask operator&(Mask a, Mask b) noexcept { return {static_cast<Bits>(a.bits & b.bits)}; }
   friend PETZVAL_INLINE Mask operator|(Mask a, Mask b) noexcept { return {static_cast<Bits>(a.bits | b.bits)}; }
-  /// a where not b.
+  /// a and not b.
   friend PETZVAL_INLINE Mask without(Mask a, Mask b) noexcept { return {static_cast<Bits>(a.bits & ~b.bits)}; }
 };
 
@@ -113,7 +113,7 @@ template <class R>
 PETZVAL_INLINE Mask<R> all_of(Mask<R> a, Mask<R> b, Mask<R> c) noexcept {
   return a & b & c;
 }
-/// The same with a mask in memory. (Compilers would take it to the registers of integers.)
+/// The same with a mask in memory; otherwise compilers move the mask through integer registers.
 template <class R>
 PETZVAL_INLINE Mask<R> also(const Mask<R>& in_memory, Mask<R> b) noexcept {
 #if defined(__AVX512F__)
@@ -127,7 +127,7 @@ PETZVAL_INLINE Mask<R> any_of(Mask<R> a, Mask<R> b) noexcept {
   return a | b;
 }
 
-/// The square root, as IEEE has it.
+/// IEEE square root.
 template <class R>
 PETZVAL_INLINE Lanes<R> sqrt(Lanes<R> x) noexcept {
 #if defined(__AVX512F__)
@@ -160,7 +160,7 @@ PETZVAL_INLINE Lanes<R> sqrt(Lanes<R> x) noexcept {
 #endif
 }
 
-/// Whether a mask of comparisons has every lane.
+/// True if a mask, made by comparisons, has every lane.
 template <class R>
 PETZVAL_INLINE bool every(Mask<R> mask) noexcept {
 #if defined(__AVX512F__)
@@ -170,8 +170,8 @@ PETZVAL_INLINE bool every(Mask<R> mask) noexcept {
 #endif
 }
 
-/// The square root at the speed that the arithmetic allows: approximate, and then corrected, where that is faster. Not
-/// a number at 0 then.
+/// Square root with the precision of the arithmetic: approximate and then refined if that is faster. The approximation
+/// is NaN at 0.
 template <class R>
 PETZVAL_INLINE Lanes<R> root(Lanes<R> x) noexcept {
 #if PETZVAL_FAST && defined(__AVX512F__)
@@ -192,7 +192,7 @@ PETZVAL_INLINE Lanes<R> root(Lanes<R> x) noexcept {
 #endif
 }
 
-/// kernel::safe_sqrt at that speed.
+/// kernel::safe_sqrt with the precision of root().
 template <class R>
 PETZVAL_INLINE Lanes<R> safe_sqrt(Lanes<R> x) noexcept {
   const Lanes<R> none(R(0));
@@ -200,7 +200,7 @@ PETZVAL_INLINE Lanes<R> safe_sqrt(Lanes<R> x) noexcept {
   return select(positive, root(select(positive, x, Lanes<R>(R(1)))), none);
 }
 
-/// a / b at that speed. Not a number where b or its reciprocal is 0.
+/// a / b with the precision of root(). NaN if b or its reciprocal is 0.
 template <class R>
 PETZVAL_INLINE Lanes<R> quotient(Lanes<R> a, Lanes<R> b) noexcept {
 #if PETZVAL_FAST && defined(__AVX512F__)
@@ -220,8 +220,8 @@ PETZVAL_INLINE Lanes<R> quotient(Lanes<R> a, Lanes<R> b) noexcept {
 #endif
 }
 
-/// A second root beside root(): of doubles under AVX2 by way of the float one, so that the two do not wait for the one
-/// divider. For numbers within the range of float.
+/// A second root next to root(): double roots under AVX2 start from the float approximation, so that the two roots do
+/// not compete for the only divider. For values within the range of float.
 template <class R>
 PETZVAL_INLINE Lanes<R> second_root(Lanes<R> x) noexcept {
 #if PETZVAL_FAST && defined(__AVX2__) && !defined(__AVX512F__)
@@ -239,7 +239,7 @@ PETZVAL_INLINE Lanes<R> second_root(Lanes<R> x) noexcept {
   return root(x);
 }
 
-/// Where root() and second_root() are numbers.
+/// True where root() and second_root() are defined.
 template <class R>
 PETZVAL_INLINE Mask<R> has_root(Lanes<R> x) noexcept {
 #if PETZVAL_FAST && defined(__AVX2__)
@@ -249,7 +249,7 @@ PETZVAL_INLINE Mask<R> has_root(Lanes<R> x) noexcept {
 #endif
 }
 
-/// Adds a small number to a counter where the mask is set.
+/// Adds a small number to a counter in the lanes of the mask.
 template <int by, class R>
 PETZVAL_INLINE void count(typename Native<R>::Bits& counter, Mask<R> mask) noexcept {
 #if defined(__AVX512F__)
@@ -266,7 +266,7 @@ PETZVAL_INLINE void count(typename Native<R>::Bits& counter, Mask<R> mask) noexc
 #endif
 }
 
-/// Puts the other counter where the mask is set.
+/// Replaces the counter by another one in the lanes of the mask.
 template <class R>
 PETZVAL_INLINE void keep(typename Native<R>::Bits& counter, Mask<R> mask, typename Native<R>::Bits other) noexcept {
 #if defined(__AVX512F__)
@@ -282,7 +282,7 @@ PETZVAL_INLINE void keep(typename Native<R>::Bits& counter, Mask<R> mask, typena
 #endif
 }
 
-/// Unaligned.
+/// Unaligned load.
 template <class R>
 PETZVAL_INLINE Lanes<R> load(const R* from) noexcept {
   typename Lanes<R>::Values v;
@@ -294,13 +294,12 @@ PETZVAL_INLINE void store(R* to, Lanes<R> x) noexcept {
   __builtin_memcpy(to, &x.v, sizeof x.v);
 }
 
-/// core_detail::look_up().
 template <class R>
 PETZVAL_INLINE Lanes<R> look_up(const R* table, std::size_t count, const typename Native<R>::Bits& places) noexcept {
   return Lanes<R>(core_detail::look_up(table, count, places));
 }
 
-/// How many lanes a mask has.
+/// Number of lanes of a mask.
 template <class R>
 PETZVAL_INLINE int lanes_in(Mask<R> mask) noexcept {
 #if defined(__AVX512F__)
@@ -312,7 +311,7 @@ PETZVAL_INLINE int lanes_in(Mask<R> mask) noexcept {
 #endif
 }
 
-/// Stores the lanes of a mask side by side. It may write a whole vector.
+/// Stores the lanes of a mask contiguously. It may write a whole vector.
 template <class R>
 PETZVAL_INLINE void pack(R* to, Mask<R> mask, Lanes<R> x) noexcept {
 #if defined(__AVX512F__)
@@ -329,7 +328,7 @@ PETZVAL_INLINE void pack(R* to, Mask<R> mask, Lanes<R> x) noexcept {
 #endif
 }
 
-/// Takes lanes from where pack() has put them; the others are given.
+/// Reads lanes that pack() stored; the other lanes come from `others`.
 template <class R>
 PETZVAL_INLINE Lanes<R> unpack(const R* from, Mask<R> mask, Lanes<R> others) noexcept {
 #if defined(__AVX512F__)

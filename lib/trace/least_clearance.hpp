@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// How near a bundle of rays comes to the rims. Included like lanes.hpp.
+// How close a bundle of rays comes to the rims. Included like lanes.hpp.
 #pragma once
 
 #include <limits>
@@ -9,7 +9,7 @@
 namespace petzval::trace_detail {
 namespace {
 
-/// Follows a bundle and keeps the least clearance of each ray (trace/clearances.hpp).
+/// Follows a bundle and keeps the smallest clearance of each ray (trace/clearances.hpp).
 template <class R>
 class LeastClearance : public NoTangents {
   using V = Lanes<R>;
@@ -23,10 +23,10 @@ class LeastClearance : public NoTangents {
     }
   }
 
-  /// Behind a step.
+  /// Called behind each step.
   void watch(const Route<R>& route, std::size_t j, const Bundle<R>& b) noexcept {
     const kernel::Step<R>& s = route.sequence.steps[j];
-    // A difference of squares has the sign of the trace's own comparison with the rim; products by these keep it.
+    // A difference of squares has the same sign as the comparison with the rim in the trace; scaling keeps the sign.
     const R scale = s.rim2 > 4 * std::numeric_limits<R>::min() ? 1 / s.rim2 : R(1);
     const auto iris = s.stop ? route.iris : std::span<const kernel::StopEdge<R>>{};
     const V left(R(-1) - static_cast<R>(route.steps - j) / static_cast<R>(route.steps)), none(R(0));
@@ -34,7 +34,7 @@ class LeastClearance : public NoTangents {
       V own = (V(s.rim2) - b.r2[i]) * V(scale);
       if (s.obscuration2 > 0) own = smaller((b.r2[i] - V(s.obscuration2)) * V(scale), own);
       for (const auto& edge : iris) own = smaller(kernel::room_at(edge, b.x[i], b.y[i]) * sqrt(V(scale)), own);
-      // Without apertures rims lose nothing.
+      // Without apertures rims stop no rays.
       const Mask<R> lost = without(alive_[i], b.alive[i]);
       const Mask<R> otherwise = route.apertures ? without(lost, own < none) : lost;
       lost_[i] = select(otherwise, left, lost_[i]);
@@ -43,7 +43,7 @@ class LeastClearance : public NoTangents {
     }
   }
 
-  /// to: one value for each ray. Of a bundle that has left the lens.
+  /// Writes the clearances, one per ray. Call it after the bundle has left the lens.
   void leave(const Bundle<R>& b, R* to) const noexcept {
     const V none(R(0)), one(R(1));
     for (int i = 0; i < Bundle<R>::vectors; ++i) {
@@ -56,8 +56,8 @@ class LeastClearance : public NoTangents {
  private:
   static PETZVAL_INLINE V smaller(V a, V b) noexcept { return select(a < b, a, b); }
 
-  V least_[Bundle<R>::vectors];  ///< over the rims so far
-  V lost_[Bundle<R>::vectors];   ///< below 0 for rays that something else than a rim has lost
+  V least_[Bundle<R>::vectors];  ///< minimum over the rims so far
+  V lost_[Bundle<R>::vectors];   ///< below 0 for rays lost for another reason than a rim
   Mask<R> alive_[Bundle<R>::vectors];
 };
 

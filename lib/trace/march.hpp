@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A bundle into the lens, through its surfaces and out again. Included like lanes.hpp.
+// Takes a bundle into the lens, through its surfaces and out again. Included like lanes.hpp.
 #pragma once
 
 #include <cstddef>
@@ -13,8 +13,8 @@
 namespace petzval::trace_detail {
 namespace {
 
-/// Loads rays and turns them into the frame of the first step. Rays that are not finite or not of unit length are not
-/// alive.
+/// Loads rays and transforms them into the frame of the first step. Rays that are not finite or not of unit length are
+/// not alive.
 template <class R>
 PETZVAL_ONE_LANE_INLINE void enter(const Route<R>& route, const RayArrays<const R>& in, const R* index,
                                    Bundle<R>& b) noexcept {
@@ -33,7 +33,7 @@ PETZVAL_ONE_LANE_INLINE void enter(const Route<R>& route, const RayArrays<const 
     b.py[i] = scale * dy;
     b.pz[i] = sense * (scale * dz);
     b.r2[i] = x * x + y * y;
-    const V zero = (x + y + z) * V(R(0));  // unless one of them is not finite
+    const V zero = (x + y + z) * V(R(0));  // NaN if one of them is not finite
     constexpr R shortest(1 - unit_direction_tolerance), longest(1 + unit_direction_tolerance);
     b.alive[i] = (length > V(shortest)) & (length < V(longest)) & (zero >= V(R(0)));
     b.tally[i] = typename Native<R>::Bits{};
@@ -62,7 +62,6 @@ void enter(const Route<R>& route, const RayArrays<const R>& in, const R* index, 
   }
 }
 
-/// Normalises directions.
 template <class R, class Media>
 PETZVAL_ONE_LANE_INLINE void refresh(const Media& media, Bundle<R>& b) noexcept {
   using V = Lanes<R>;
@@ -75,12 +74,12 @@ PETZVAL_ONE_LANE_INLINE void refresh(const Media& media, Bundle<R>& b) noexcept 
   }
 }
 
-/// Stores rays in the lens frame with unit directions. A lost ray is stored as it was given.
+/// Stores rays in the lens frame with unit directions; lost rays are stored as given.
 template <class R>
 PETZVAL_ONE_LANE_INLINE void leave(const Route<R>& route, const RayArrays<const R>& in, const R* per_index,
                                    Bundle<R>& b, const RayArrays<R>& out) noexcept {
   using V = Lanes<R>;
-  // Of a direction that was off by t = unit_direction_tolerance in |d|^2, the step in enter() has left 3/4 t^2.
+  // A direction with |d|^2 = 1 + t, t = unit_direction_tolerance, has an error of 3/4 t^2 after the step in enter().
   constexpr R entered(unit_direction_tolerance * unit_direction_tolerance);
   constexpr R rounding = 100 * std::numeric_limits<R>::epsilon(), of_entry = entered * entered;
   constexpr R most = rounding > of_entry ? rounding : of_entry;
@@ -91,7 +90,7 @@ PETZVAL_ONE_LANE_INLINE void leave(const Route<R>& route, const RayArrays<const 
     const V dx = per_n * b.px[i], dy = per_n * b.py[i], dz = per_n * b.pz[i];
     const V length = dx * dx + dy * dy + dz * dz;
     const V scale = V(R(1.5)) - V(R(0.5)) * length;
-    // Rays whose numbers have overflowed or lost their digits on the way are lost at the last surface.
+    // Rays whose values overflowed or lost their digits count as lost at the last surface.
     const V excess = length - V(R(1)) + b.z[i] * V(R(0));
     const Mask<R> sound = b.alive[i] & (excess * excess < V(most));
     count<1>(b.tally[i], sound);
@@ -124,7 +123,7 @@ void leave(const Route<R>& route, const R* per_index, const Bundle<R>& b, const 
   }
 }
 
-/// Puts rays that came in without finite numbers on the axis, in the sense of travel.
+/// Puts rays with non-finite input on the axis, in the direction of travel.
 template <class R>
 void put_on_axis(const Route<R>& route, int rays, const RayArrays<R>& out) noexcept {
   const auto finite = [](R value) { return value - value == 0; };
@@ -138,7 +137,7 @@ void put_on_axis(const Route<R>& route, int rays, const RayArrays<R>& out) noexc
   }
 }
 
-/// Calls body with the bundle for what is seldom needed: one ray goes there in a copy, so that it stays in registers.
+/// Calls body with the bundle for rarely needed work; a single ray is passed as a copy, so that it stays in registers.
 template <class R, class Body>
 PETZVAL_INLINE void in_memory(Bundle<R>& b, const Body& body) noexcept {
   if constexpr (Bundle<R>::rays == 1) {
@@ -150,7 +149,7 @@ PETZVAL_INLINE void in_memory(Bundle<R>& b, const Body& body) noexcept {
   }
 }
 
-/// One surface.
+/// Passes the bundle through one surface.
 template <class R, class Media, class Follow>
 PETZVAL_ONE_LANE_INLINE void pass(const Route<R>& route, std::size_t j, const Media& media, std::uint8_t* unsettled,
                                   Bundle<R>& b, Follow& follow) noexcept {

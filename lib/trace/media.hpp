@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The media at a step for a bundle of rays: of one compiled wavelength, of a compiled one for each ray, and of any.
-// Included like lanes.hpp.
+// Media at a step for a bundle of rays: for one compiled wavelength, for a compiled wavelength per ray, or for any
+// wavelengths. Included like lanes.hpp.
 #pragma once
 
 #include <cstddef>
@@ -12,7 +12,7 @@
 namespace petzval::trace_detail {
 namespace {
 
-/// The media at a step, for a batch of one wavelength.
+/// Media at a step for a batch with one wavelength.
 template <class R>
 struct SharedMedia {
   const kernel::RefractionConstants<R>* bend;
@@ -22,14 +22,14 @@ struct SharedMedia {
   PETZVAL_INLINE Lanes<R> per_n2(int) const noexcept { return bend->per_n2; }
 };
 
-/// The media where each ray has a compiled wavelength: constants are looked up in rows of one for each wavelength.
+/// Media for a compiled wavelength per ray; constants come from rows with one value per wavelength.
 template <class R>
 class MediaByRay {
   using V = Lanes<R>;
   using Places = typename Native<R>::Bits;
 
  public:
-  /// The media at a step.
+  /// Media at a step.
   struct Step {
     const R* rows;
     std::size_t count, length;
@@ -40,11 +40,11 @@ class MediaByRay {
     PETZVAL_INLINE V per_n2(int i) const noexcept { return look_up(rows + 2 * length, count, places[i]); }
   };
 
-  /// wavelengths: of each ray; count: how many are compiled.
+  /// wavelengths: by ray; count: number of compiled wavelengths.
   PETZVAL_INLINE MediaByRay(const kernel::SurfaceSequence<R>& sequence, const std::uint16_t* wavelengths,
                             std::size_t count) noexcept
       : sequence_(sequence), count_(count), length_(kernel::row_length<R>(count)) {
-    // Of 32 bits, as many as a float has: on them loops run best.
+    // 32 bits, as wide as float, vectorize best.
     const auto compiled = static_cast<std::int32_t>(count <= 0xffff ? count : 0x10000);
     typename Native<R>::Bit places[Bundle<R>::rays];
     for (int l = 0; l < Bundle<R>::rays; ++l) {
@@ -55,8 +55,8 @@ class MediaByRay {
     __builtin_memcpy(places_, places, sizeof places);
   }
 
-  /// The indices in front of the first step, and one over those behind the last one. Not a number, which loses the ray,
-  /// for a wavelength that was not compiled.
+  /// Indices in front of the first step and one over the indices behind the last step. NaN, which loses the ray, if the
+  /// wavelength was not compiled.
   PETZVAL_INLINE void indices(R* first, R* per_last) const noexcept {
     for (int i = 0; i < Bundle<R>::vectors; ++i) {
       const int o = i * V::width;
@@ -76,13 +76,13 @@ class MediaByRay {
   R unless_known_[Bundle<R>::rays];
 };
 
-/// The media of rays of any wavelengths, step by step: squares of indices by their polynomials.
+/// Media for any wavelengths, step by step: squared indices from their polynomials.
 template <class R>
 class SpectralMedia {
   using V = Lanes<R>;
 
  public:
-  /// The media at a step.
+  /// Media at a step.
   struct Step {
     R curvature;
     const V *front, *behind;
@@ -92,7 +92,7 @@ class SpectralMedia {
     PETZVAL_INLINE V per_n2(int i) const noexcept { return V(R(1)) / front[i]; }
   };
 
-  /// nm: of each ray.
+  /// nm: by ray.
   PETZVAL_INLINE SpectralMedia(const kernel::SurfaceSequence<R>& sequence, const R* nm) noexcept : sequence_(sequence) {
     const auto& place = sequence.place;
     for (int i = 0; i < vectors; ++i) {
@@ -106,8 +106,8 @@ class SpectralMedia {
     fill(0);
   }
 
-  /// The indices in front of the first step, and one over those behind the last one. Not a number, which loses the ray,
-  /// for a wavelength that the lens does not cover.
+  /// Indices in front of the first step and one over the indices behind the last step. NaN, which loses the ray, if the
+  /// lens does not cover the wavelength.
   PETZVAL_INLINE void indices(std::size_t steps, R* first, R* per_last) const noexcept {
     for (int i = 0; i < vectors; ++i) {
       const auto index = [&](std::size_t medium) { return sqrt(square(sequence_.media[medium], i)); };
@@ -116,7 +116,7 @@ class SpectralMedia {
     }
   }
 
-  /// To be called for each step in turn.
+  /// Call it for each step in turn.
   PETZVAL_INLINE Step at(std::size_t j) noexcept {
     fill(j + 1);
     return {sequence_.steps[j].curvature, squares_[j % 2], squares_[(j + 1) % 2]};
@@ -134,9 +134,9 @@ class SpectralMedia {
   }
 
   const kernel::SurfaceSequence<R>& sequence_;
-  V at_[vectors], at2_[vectors], at4_[vectors];  // powers of the place
+  V at_[vectors], at2_[vectors], at4_[vectors];  // powers of the argument of the polynomials
   Mask<R> covered_[vectors];
-  V squares_[2][vectors];  // in front of a step and behind it, by turns
+  V squares_[2][vectors];  // in front of a step and behind it, alternating
 };
 
 }  // namespace

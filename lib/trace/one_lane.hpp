@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// One ray alone, in the words of lanes.hpp.
+// A single ray with the interface of lanes.hpp.
 #pragma once
 
 #include <cmath>

@@ -12,7 +12,7 @@
 
 namespace petzval::kernel {
 
-/// A part of the lens to trace through: surfaces [first, last) in table order, for either direction of travel.
+/// The surfaces [first, last) in table order to trace through, for either direction of travel.
 struct SurfaceRange {
   Travel travel = Travel::to_film;
   std::size_t wavelength = 0;
@@ -21,7 +21,7 @@ struct SurfaceRange {
   std::size_t last = static_cast<std::size_t>(-1);  ///< beyond the end: all surfaces
 };
 
-/// A ray on its way, lens frame, any scalar.
+/// A ray during a trace, lens frame, any scalar type.
 template <class T>
 struct TraceState {
   Vec<T> origin, direction;
@@ -29,13 +29,13 @@ struct TraceState {
   int surface = -1;
 };
 
-/// How far beside an edge of the iris a point of the stop's plane lies, > 0 inside, to first order.
+/// Distance of a point in the stop plane from an edge of the iris, positive inside, to first order.
 template <class T>
 T room_at(const StopEdge<Storage<T>>& edge, const T& x, const T& y) noexcept {
   return T(edge.distance) - (x * T(edge.nx) + y * T(edge.ny) + T(edge.bend) * (x * x + y * y));
 }
 
-/// Whether a point of the stop's plane lies within the iris; its edges count as inside.
+/// True if a point in the stop plane lies within the iris; its edges count as inside.
 template <class T>
 Mask<T> within(std::span<const StopEdge<Storage<T>>> iris, const T& x, const T& y) noexcept {
   Mask<T> inside = x <= std::numeric_limits<Storage<T>>::max();
@@ -48,11 +48,13 @@ struct NoObserver {
   void operator()(int, const Vec<T>&) const noexcept {}
 };
 
-/// Traces one ray through a part of the lens, surface by surface, and returns as soon as it is lost.
+/// Traces one ray through a part of the lens, surface by surface; returns as soon as the ray is lost.
 ///
-/// direction: unit length (within a few ulp); so is the result of a transmitted ray. Calls observer(surface, point) for
-/// each hit, lens frame. One loop for both directions of travel and every scalar: derivatives, parts of the lens and
-/// drawings use it, and the faster recurrence of `trace` and of batches is tested against it.
+/// One loop serves both directions of travel and every scalar type: derivatives, parts of a lens and drawings. The
+/// faster recurrence of trace() and of batches is tested against it.
+///
+/// @param direction  unit length within a few ulp; a transmitted ray has unit length too
+/// @param observer   called as observer(surface, point) for each hit, lens frame
 template <class T, class Observer = NoObserver>
 TraceState<T> trace(const LensView<Storage<T>>& lens, const Vec<T>& origin, const Vec<T>& direction,
                     const SurfaceRange& path, Observer&& observer = {}) noexcept {
@@ -69,7 +71,7 @@ TraceState<T> trace(const LensView<Storage<T>>& lens, const Vec<T>& origin, cons
   Vec<T> p{origin.x, origin.y, T(origin.z - lens.vertex_z[i])};
   for (;;) {
     const SurfaceTable<R>& surface = lens.surfaces[i];
-    // Towards the scene, the sense is reversed; at a mirror, the space in front and behind is the same.
+    // Towards the scene the sense is reversed; at a mirror the spaces in front and behind are the same.
     const R sense = to_film || surface.mirror ? surface.sense : -surface.sense;
     const auto end = [&](RayFate fate) {
       ray.fate = fate;

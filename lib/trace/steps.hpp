@@ -2,9 +2,9 @@
 // One surface for a bundle of rays. Included like lanes.hpp.
 //
 // Directions are scaled by the index, |p| = n, so that refraction needs no division: p' = p + gamma N, where N is half
-// the gradient of the surface's equation, and (p N) and (p' N) come from two roots that do not wait for each other.
-// (The algebra of Feder 1951 and of Spencer and Murty 1962, in these directions.) References: kernel::intersect and
-// kernel::refract, which the results are tested against.
+// the gradient of the surface equation, and p N and p' N come from two independent square roots. The algebra is from
+// Feder 1951 and from Spencer and Murty 1962. References: kernel::intersect and kernel::refract, against which the
+// results are tested.
 #pragma once
 
 #include <limits>
@@ -16,10 +16,10 @@
 namespace petzval::trace_detail {
 namespace {
 
-/// Where rays met a surface and how they went on; what derivatives need beside the bundle.
+/// Hit points and refraction of rays at a surface: the data that derivatives need in addition to the bundle.
 template <class R>
 struct Contact {
-  Lanes<R> q;              ///< the way there, in steps of p
+  Lanes<R> q;              ///< the distance to the surface, in units of p
   Lanes<R> px, py, pz;     ///< in front of the surface
   Lanes<R> gx, gy, w;      ///< N = (-gx, -gy, w)
   Lanes<R> nn;             ///< N N
@@ -29,7 +29,7 @@ struct Contact {
   Lanes<R> bx, by;      ///< ... - (bx x, by y, 0) (ax x dx + ay y dy)
 };
 
-/// For rays without derivatives.
+/// Follower of rays without derivatives.
 struct NoTangents {
   template <class R>
   PETZVAL_INLINE void shift(int, Lanes<R>) noexcept {}
@@ -51,7 +51,7 @@ PETZVAL_INLINE void book(Bundle<R>& b, int i, Mask<R> found, Mask<R> inside, Mas
   count<2>(b.tally[i], b.alive[i]);
 }
 
-/// Clips by a central obscuration and the iris, which few surfaces have. j: the step.
+/// Clips at a central obscuration and the iris, which few surfaces have. j: the step.
 template <class R>
 void clip(const kernel::Step<R>& s, std::span<const kernel::StopEdge<R>> iris, std::size_t j, Bundle<R>& b) noexcept {
   using V = Lanes<R>;
@@ -90,8 +90,8 @@ PETZVAL_ONE_LANE_INLINE void plane(const kernel::Step<R>& s, const Lanes<R>& rim
   }
 }
 
-/// Moves rays near the vertex, so that the quadratic loses no digits: into its plane, or to the nearest point if they
-/// are steep or run backwards.
+/// Moves rays close to the vertex, so that the quadratic loses no digits: into the vertex plane, or to the nearest
+/// point if they are steep or travel backwards.
 template <class R, class Media, class Follow>
 PETZVAL_INLINE void approach(const kernel::Step<R>& s, const Media& media, Bundle<R>& b, int i,
                              Follow& follow) noexcept {
@@ -108,12 +108,12 @@ PETZVAL_INLINE void approach(const kernel::Step<R>& s, const Media& media, Bundl
   follow.shift(i, t);
 }
 
-/// The second of a pair may be one without rays: code of its own for a single one would round otherwise.
+/// The second vector of a pair may be empty; separate code for a single vector would round differently.
 template <class R>
 inline constexpr int vectors_together = Bundle<R>::vectors % 2 == 0 ? 2 : 1;
 
-/// A refracting sphere, for a pair of vectors from the first on, stage by stage: while one waits for a root, the other
-/// goes on.
+/// Refracts a pair of vectors from `first` on at a sphere. The stages of both vectors are interleaved to hide the
+/// latency of square roots.
 template <bool far, class R, class Media, class Follow>
 PETZVAL_INLINE void sphere(const kernel::Step<R>& s, const Lanes<R>& rim2, const Media& media, Bundle<R>& b, int first,
                            Follow& follow) noexcept {
@@ -136,7 +136,7 @@ PETZVAL_INLINE void sphere(const kernel::Step<R>& s, const Lanes<R>& rim2, const
   }
   for (int m = 0; m < together; ++m) xi[m] = root(d[m]);
   for (int m = 0; m < together; ++m) {
-    if constexpr (far) {  // beyond 90 degrees the same root by its other form
+    if constexpr (far) {  // beyond 90 degrees use the other form of the same root
       const Mask<R> facing = slant[m] >= none;
       q[m] = select(facing, f[m], slant[m] - xi[m]) / select(facing, slant[m] + xi[m], cn2[m]);
     } else {
@@ -165,21 +165,21 @@ PETZVAL_INLINE void sphere(const kernel::Step<R>& s, const Lanes<R>& rim2, const
   }
 }
 
-/// A refracting sphere.
+/// Refracting sphere.
 template <bool far, class R, class Media, class Follow>
 PETZVAL_ONE_LANE_INLINE void sphere(const kernel::Step<R>& s, const Lanes<R>& rim2, const Media& media, Bundle<R>& b,
                                     Follow& follow) noexcept {
   for (int i = 0; i < b.used; i += vectors_together<R>) sphere<far>(s, rim2, media, b, i, follow);
 }
 
-/// Turns the frame round behind a mirror.
+/// Reverses the frame behind a mirror.
 template <class R>
 PETZVAL_INLINE void turn(Bundle<R>& b, int i) noexcept {
   b.z[i] = -b.z[i];
   b.pz[i] = -b.pz[i];
 }
 
-/// Changes directions at points whose N is known: books, bends or mirrors, follows.
+/// Refracts or reflects at points with known N, and updates tally and follower.
 template <class R, class Media, class Follow>
 PETZVAL_INLINE void bend(const kernel::Step<R>& s, const Lanes<R>& rim2, const Media& media, Bundle<R>& b, int i,
                          Mask<R> found, Contact<R> at, Follow& follow) noexcept {
@@ -198,7 +198,7 @@ PETZVAL_INLINE void bend(const kernel::Step<R>& s, const Lanes<R>& rim2, const M
   if (s.mirror) turn(b, i);
 }
 
-/// The quadratic for the steps q of p to a quadric, a q^2 - 2 slant q + f = 0.
+/// The quadratic for q, the distance to a quadric in units of p: a q^2 - 2 slant q + f = 0.
 template <class R>
 struct Quadratic {
   Lanes<R> a, slant, f;

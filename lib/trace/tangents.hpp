@@ -7,14 +7,14 @@
 namespace petzval::trace_detail {
 namespace {
 
-/// Carries derivatives beside the rays, by the chain rule: a dot is d/du or d/dv.
+/// Propagates derivatives by the chain rule; a dot stands for d/du or d/dv.
 template <class R>
 struct TwoTangents {
   using V = Lanes<R>;
   static constexpr bool wanted = true;
   Tangent<R> u, v;
 
-  /// The start of a ray moved along it: x + t p. How t changes does not matter before the next contact.
+  /// Moves the start of a ray along the ray: x + t p. The derivative of t does not matter before the next contact.
   PETZVAL_INLINE void shift(int i, V t) noexcept {
     shift(u, i, t);
     shift(v, i, t);
@@ -30,7 +30,7 @@ struct TwoTangents {
   PETZVAL_INLINE void watch(const Route<R>&, std::size_t, const Bundle<R>&) noexcept {}
 
  private:
-  /// What both derivatives share: 1 / xi, and how gamma grows with xi and nn.
+  /// Shared by both derivatives: 1 / xi, and the derivatives of gamma with respect to xi and nn.
   struct Rates {
     V per_xi, with_xi, with_nn;
   };
@@ -43,14 +43,14 @@ struct TwoTangents {
 
   static PETZVAL_INLINE void pass(Tangent<R>& d, const kernel::Step<R>& s, const Bundle<R>& b, int i,
                                   const Contact<R>& at, const Rates& rates) noexcept {
-    // The point moves on the surface: N x. = 0 settles how its distance along the ray changes.
+    // The point stays on the surface: N x. = 0 gives the change of the distance along the ray.
     shift(d, i, at.q);
     const V on = (at.gx * d.x[i] + at.gy * d.y[i] - at.w * d.z[i]) * rates.per_xi;
     d.x[i] = d.x[i] + on * at.px;
     d.y[i] = d.y[i] + on * at.py;
     d.z[i] = d.z[i] + on * at.pz;
 
-    // N. = -(ngx, ngy, ngz), and with it gamma. On planes and spheres N keeps its length.
+    // N. = -(ngx, ngy, ngz), and the change of gamma. On planes and spheres N keeps its length.
     V ngx = at.cx * d.x[i], ngy = at.cy * d.y[i];
     const V ngz = at.cz * d.z[i];
     if (s.kind == kernel::StepKind::asphere) {

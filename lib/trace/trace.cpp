@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// One ray: a batch of a single lane, which returns as soon as the ray is lost and reports where.
+// Traces one ray: a batch with a single lane that returns as soon as the ray is lost and reports the place.
 #define PETZVAL_ONE_LANE
 #define PETZVAL_FAST 0
 
@@ -18,7 +18,7 @@ namespace petzval {
 namespace trace_detail {
 namespace {
 
-/// Position and direction in the lens frame.
+/// Converts to position and direction in the lens frame.
 template <class R>
 Ray<R> in_lens_frame(const Bundle<R>& b, R z, R pz, const kernel::Step<R>& s, R vertex_z, R per_n) noexcept {
   const Vec3<R> d{per_n * b.px[0].v, per_n * b.py[0].v, s.sense * (per_n * pz)};
@@ -26,13 +26,13 @@ Ray<R> in_lens_frame(const Bundle<R>& b, R z, R pz, const kernel::Step<R>& s, R 
   return {{b.x[0].v, b.y[0].v, s.sense * z + vertex_z}, d * scale};
 }
 
-/// The height of the hit behind a step, in the frame in front of it.
+/// z of the hit in the frame in front of the step.
 template <class R>
 R z_before_turning(const kernel::Step<R>& s, const Bundle<R>& behind) noexcept {
   return s.mirror ? -behind.z[0].v : behind.z[0].v;
 }
 
-/// Takes a ray unless its numbers have overflowed.
+/// Copies a ray if all its values are finite.
 template <class R>
 void keep_finite(const Ray<R>& found, Ray<R>& ray) noexcept {
   using kernel::finite;
@@ -40,8 +40,11 @@ void keep_finite(const Ray<R>& found, Ray<R>& ray) noexcept {
   if (finite(o.x) && finite(o.y) && finite(o.z) && finite(d.x) && finite(d.y) && finite(d.z)) ray = found;
 }
 
-/// Puts a ray where it was lost, at step j. per_n2: one over the squared index in front of it; before, after: the state
-/// there and behind, copies of what is kept in registers.
+/// Sets the end of a ray that was lost at step j.
+///
+/// @param per_n2  one over the squared index in front of the step
+/// @param before  state in front of the step; `before` and `after` are copies of values in registers
+/// @param after   state behind the step
 template <class R>
 void put_at_end(const Route<R>& route, const R* vertex_z, std::size_t j, R per_n2, bool unsettled, Bundle<R> before,
                 Bundle<R> after, TracedRay<R>& end) noexcept {
@@ -78,7 +81,8 @@ RayArrays<T> arrays_of(R& ray) noexcept {
   return {&o.x, &o.y, &o.z, &d.x, &d.y, &d.z};
 }
 
-/// index, per_index: in front of the lens and one over that behind it; media_at: at each step in turn.
+/// index, per_index: the index in front of the lens, and one over the index behind; media_at: called for each step in
+/// turn.
 template <class R, class Seen, class By, class MediaAt>
 TracedRay<R> trace_one(const Route<R>& route, const R* vertex_z, const Ray<R>& ray, const Seen& seen, const By& by,
                        R index, R per_index, MediaAt&& media_at) {
