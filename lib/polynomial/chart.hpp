@@ -5,18 +5,18 @@
 
 namespace petzval::polynomial_detail {
 
-/// A line in object space as two vectors that turn with it about the axis.
+/// A line in object space as two vectors that rotate with the line about the axis.
 ///
-/// s: its direction towards the scene in stereographic projection, d = (2 s, |s|^2 - 1) / (1 + |s|^2): 0 along the
-/// axis, of length 1 at 90 degrees, infinite only for a line along +z. o: from a reference point on the axis to the
-/// foot of the perpendicular on the line, turned back by the shortest turn that takes -z to d. That turn takes a vector
-/// v across the axis to v - (v.h) h / (1 - d_z), h = d - z: (v, 0) + 2 (s.v) (-s, 1) / (1 + |s|^2). Its inverse takes a
-/// vector w across d to w_xy + w_z s.
+/// s is the stereographic projection of its direction d towards the scene, d = (2 s, |s|^2 - 1) / (1 + |s|^2): 0 along
+/// the axis, of length 1 at 90 degrees, infinite only for a line along +z. o points from a reference point on the axis
+/// to the foot of the perpendicular on the line, rotated back by the shortest rotation R that takes -z to d. R takes a
+/// vector v across the axis to v - (v.h) h / (1 - d_z), h = d - z, which is (v, 0) + 2 (s.v) (-s, 1) / (1 + |s|^2). The
+/// inverse of R takes a vector w across d to w_xy + w_z s.
 struct SceneLine {
   double sx = 0, sy = 0, ox = 0, oy = 0;
 };
 
-/// direction: unit length, towards the scene; point: on the line, from the reference point.
+/// direction: unit length, towards the scene; point: on the line, relative to the reference point.
 inline SceneLine scene_line(const Vec3<double>& direction, const Vec3<double>& point) noexcept {
   const double per_length = 1 / (1 - direction.z);
   const double sx = direction.x * per_length, sy = direction.y * per_length;

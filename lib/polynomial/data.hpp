@@ -18,7 +18,7 @@ struct RayPolynomial::Data {
   struct In {
     polynomial_detail::Scales<R> scales;
     std::vector<R> coefficients = {};       ///< by wavelength, as in ToSceneJob
-    lens_detail::AlignedRows<R> rows = {};  ///< the same by coefficient
+    lens_detail::AlignedRows<R> rows = {};  ///< the coefficients in rows, one row per coefficient
     std::vector<R> modes = {};              ///< coefficients by mode
   };
 
@@ -27,14 +27,14 @@ struct RayPolynomial::Data {
   std::vector<Fit> fits;
   std::size_t primary;  ///< position of the primary wavelength
   lens_detail::CompiledWavelengths wavelengths;
-  std::size_t modes;  ///< how many there are
+  std::size_t modes;  ///< number of modes
   lens_detail::BetweenWavelengths<polynomial_detail::most_modes> mode_weights;
   In<float> in_float{};
   In<double> in_double{};
 
   Data(int degree, const Domain& domain, std::vector<Fit> fits, std::optional<std::size_t> primary);
 
-  /// The coefficients at a wavelength, null where there are none. nm: memory for those of a wavelength in nm.
+  /// Coefficients at a wavelength; null if there is no fit. nm: buffer for blended coefficients.
   template <class R>
   struct Room {
     std::array<R, polynomial_detail::most_coefficients> coefficients;
@@ -42,7 +42,7 @@ struct RayPolynomial::Data {
   template <class R>
   const R* coefficients(Wavelength wavelength, Room<R>& nm) const noexcept;
 
-  /// Position of symmetry and degree in the tables of loops.
+  /// Index of symmetry and degree in the tables of loops.
   std::size_t loop() const noexcept {
     return static_cast<std::size_t>(degree - 3) / 2 + (domain.along_x ? polynomial_detail::degree_count : 0);
   }
@@ -50,7 +50,7 @@ struct RayPolynomial::Data {
 
 namespace polynomial_detail {
 
-/// Throws Error, which begins with `where`, for a degree that fits do not have.
+/// @throws Error  prefixed with `where` if no fit has this degree
 void check_degree(const std::string& where, int degree);
 
 /// Shift and radius of the pupil along x and y.

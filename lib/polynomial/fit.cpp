@@ -20,7 +20,7 @@ namespace {
 
 using polynomial_detail::Lines;
 
-/// Samples of the pupils of film points, in the part of the film from which all others follow by the symmetry.
+/// Samples of pupils of film points, in the part of the film that the symmetry maps to the whole film.
 class Samples {
  public:
   Samples(const FilmPupilTable& pupils, bool mirrors) : pupils_(pupils), mirrors_(mirrors) {}
@@ -29,7 +29,8 @@ class Samples {
     for (auto* numbers : {&film_x_, &film_y_, &u_, &v_}) numbers->reserve(count);
   }
 
-  /// A film point by parts of the film's radius and, with mirror symmetry, of a right angle from +y to +x.
+  /// Adds a film point. height: fraction of the film radius; turn: with mirror symmetry, fraction of a right angle from
+  /// +y to +x.
   void add(double height, double turn, double u, double v) {
     constexpr double right_angle = std::numbers::pi / 2;
     const double radius = pupils_.film_radius() * height;
@@ -38,7 +39,7 @@ class Samples {
     u_.push_back(u), v_.push_back(v);
   }
 
-  /// Uniform numbers for height, azimuth in the pupil, way outwards, turn.
+  /// Uniform numbers for height, azimuth in the pupil, radius in the pupil, turn.
   std::array<double, 4> uniform(std::size_t index) const {
     static constexpr core_detail::Kronecker<3> three;
     static constexpr core_detail::Kronecker<4> four;
@@ -47,7 +48,7 @@ class Samples {
     return {height, around, outwards, 0};
   }
 
-  /// As lines, without those of empty pupils.
+  /// The samples as lines, without samples of empty pupils.
   Lines lines(std::size_t wavelength) const {
     const std::size_t count = u_.size();
     std::vector<double> x(count), y(count), areas(count);
@@ -71,8 +72,9 @@ class Samples {
   std::vector<double> film_x_, film_y_, u_, v_;
 };
 
-/// Uniform lines over film and pupils, from any `first` on. Uniform by area, or denser towards the edges of film and
-/// pupil like Chebyshev nodes: that makes the largest errors some tenths smaller, and the RMS one tenth larger.
+/// Uniform lines over film and pupils, from index `first` on. Uniform by area or, if `dense`, denser towards the edges
+/// of film and pupil like Chebyshev nodes: this reduces the largest errors by some tenths and raises the RMS by one
+/// tenth.
 Samples spread(Samples samples, std::size_t first, std::size_t count, bool dense) {
   constexpr double quarter = std::numbers::pi / 2;
   samples.reserve(count);
@@ -84,7 +86,7 @@ Samples spread(Samples samples, std::size_t first, std::size_t count, bool dense
   return samples;
 }
 
-/// The film's centre, uniformly over its pupil.
+/// Lines from the centre of the film, uniform over its pupil.
 Samples axial(Samples samples) {
   constexpr std::size_t count = 512;
   for (std::size_t i = 0; i < count; ++i) {
@@ -94,10 +96,10 @@ Samples axial(Samples samples) {
   return samples;
 }
 
-/// Evenly from 0 to 1; of one alone 0.
+/// Equal steps from 0 to 1; 0 if count is 1.
 double part(int k, int count) noexcept { return count > 1 ? static_cast<double>(k) / (count - 1) : 0; }
 
-/// The rims of the pupils. turns: of film points of one height.
+/// The rims of the pupils. turns: number of film points of equal height.
 Samples rims(Samples samples, int steps, int turns) {
   constexpr int around = 128;
   samples.reserve(static_cast<std::size_t>((steps + 1) * turns * around));
@@ -111,11 +113,11 @@ Samples rims(Samples samples, int steps, int turns) {
   return samples;
 }
 
-/// Where errors are largest: just within the rims of all pupils, where the last rays pass, and from the film's farthest
-/// points, on their rims and through the rest of their pupils. turns: of these points.
+/// Lines with the largest errors: just inside the rims of all pupils, and from the edge of the film on the rims and
+/// through the rest of their pupils. turns: number of points at the edge.
 Samples edges(Samples samples, int turns) {
   constexpr std::size_t near_rims = 8192, on_rim = 1024, within = 3072;
-  constexpr double margin = 0.02;  // of the pupil's area
+  constexpr double margin = 0.02;  // fraction of the area of the pupil
   const auto all = static_cast<std::size_t>(turns);
   samples.reserve((near_rims + on_rim + within) * all);
   for (std::size_t i = 0; i < near_rims * all; ++i) {
@@ -133,8 +135,8 @@ Samples edges(Samples samples, int turns) {
   return samples;
 }
 
-/// The smallest disc, moving with the film point, that holds the rims of all wavelengths: its shift and radius. Or the
-/// smallest stretch, where only one of the axes x and y counts.
+/// Shift and radius of the smallest disc that moves with the film point and contains the rims of all wavelengths; the
+/// smallest interval if only x or only y counts.
 RayPolynomial::Domain::Section smallest(const std::vector<Lines>& rims, double film_radius, bool x_counts,
                                         bool y_counts) {
   struct Farthest {
@@ -152,7 +154,7 @@ RayPolynomial::Domain::Section smallest(const std::vector<Lines>& rims, double f
     }
     return result;
   };
-  // The radius is convex in the shift: the farthest point tells on which side of the best shift this one is.
+  // The radius is convex in the shift, and the farthest point tells on which side the best shift lies.
   double high = 2 * std::sqrt(farthest(0).square) / film_radius, low = -high;
   for (int halving = 0; halving < 30; ++halving) {
     const double middle = (low + high) / 2;
@@ -162,7 +164,7 @@ RayPolynomial::Domain::Section smallest(const std::vector<Lines>& rims, double f
   return {shift, std::sqrt(farthest(shift).square)};
 }
 
-/// The smallest disc, or with mirror symmetry an ellipse about the smallest rectangle, that holds the rims.
+/// Sets the smallest disc that contains the rims or, with mirror symmetry, an ellipse around the smallest rectangle.
 void enclose(const std::vector<Lines>& rims, bool mirrors, RayPolynomial::Domain& domain) {
   constexpr double between = 1.01;  // corners lie between the directions searched
   auto along_y = smallest(rims, domain.film_radius, !mirrors, true);
@@ -183,7 +185,7 @@ void enclose(const std::vector<Lines>& rims, bool mirrors, RayPolynomial::Domain
   domain.pupil_radius = between * along_y.pupil_radius;
 }
 
-/// The centre of the entrance pupil unless it is far from the lens: rays begin near it.
+/// z of the entrance pupil, near which rays begin; 0 if the pupil is far from the lens.
 double reference_of(const Lens& lens) {
   const double longest = 10 * std::abs(lens.film_z() - lens.surfaces().front().vertex_z);
   const double z = has_pupils(lens) ? pupils(lens, lens.primary_wavelength()).entrance.z : 0;
@@ -198,17 +200,17 @@ RayPolynomial RayPolynomial::fit(const Lens& lens, const FilmPupilTable& pupils,
   if (!lens.iris().round()) return fit(with_iris(lens, {}), pupils.of_round_stop(), degree);
   polynomial_detail::check_degree(where, degree);
   if (pupils.wavelengths() != lens.wavelengths_nm().size()) {
-    throw Error(where + "the pupils are of " + std::to_string(pupils.wavelengths()) +
-                " wavelengths, wanted the lens's " + std::to_string(lens.wavelengths_nm().size()));
+    throw Error(where + "the pupil table has " + std::to_string(pupils.wavelengths()) +
+                " wavelengths; must equal the number of the lens, " + std::to_string(lens.wavelengths_nm().size()));
   }
-  if (!(pupils.film_radius() > 0)) throw Error(where + "the film's radius is 0, wanted more than one point");
+  if (!(pupils.film_radius() > 0)) throw Error(where + "film radius = 0; must be above 0");
   const bool mirrors = !lens.rotationally_symmetric();
   const Samples none(pupils, mirrors);
   const Samples on_rims = mirrors ? rims(none, 32, 17) : rims(none, 64, 1);
   std::vector<Lines> all_rims;
   for (std::size_t wavelength = 0; wavelength < pupils.wavelengths(); ++wavelength) {
     all_rims.push_back(on_rims.lines(wavelength));
-    if (all_rims.back().size() == 0) throw Error(where + "the pupils are empty, wanted rays");
+    if (all_rims.back().size() == 0) throw Error(where + "the pupils are empty; must transmit rays");
   }
 
   Domain domain;
@@ -216,7 +218,7 @@ RayPolynomial RayPolynomial::fit(const Lens& lens, const FilmPupilTable& pupils,
   domain.film_radius = pupils.film_radius();
   domain.reference_z = reference_of(lens);
   enclose(all_rims, mirrors, domain);
-  // One more dimension takes more lines, of which there are enough for 12 equations for each coefficient.
+  // The additional dimension needs more lines; there are enough for 12 equations per coefficient.
   const std::size_t fitted = mirrors ? std::max<std::size_t>(3072, 24 * mirror_terms(degree).size()) : 1536;
   constexpr std::size_t judged = 4096;
   const Samples to_fit = spread(none, 0, fitted, true), on_axis = axial(none),

@@ -9,7 +9,7 @@
 namespace petzval::polynomial_detail {
 namespace {
 
-/// Products of at most n of some variables.
+/// Number of products of at most n factors from some variables.
 constexpr int term_count(int n, int variables) {
   int count = 1;
   for (int k = 1; k <= variables; ++k) count = count * (n + k) / k;
@@ -21,9 +21,13 @@ PETZVAL_INLINE auto horner(const C& c) noexcept {
   return c[0];
 }
 
-/// All products of at most n variables: those without the first variable, then it times those with one factor less.
-/// In each group the same of the other variables: powers of the last one change fastest. T: float, double, lanes or a
-/// dual number; C: a pointer to plain constants, or what is read like one.
+/// Evaluates a polynomial of all products of at most n variables.
+///
+/// Order of coefficients: terms without the first variable, then the first variable times terms with one factor less;
+/// the same within each group, so that powers of the last variable change fastest.
+///
+/// @tparam T  float, double, lanes or a dual number
+/// @tparam C  pointer to constants, or a type that is read like a pointer
 template <int n, class C, class T, class... Rest>
 PETZVAL_INLINE auto horner(const C& c, const T& first, const Rest&... rest) noexcept {
   if constexpr (n == 0) {

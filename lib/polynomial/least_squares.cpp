@@ -19,7 +19,7 @@
 namespace petzval::polynomial_detail {
 namespace {
 
-/// Rays as arrays of their own.
+/// Rays as separate arrays.
 struct Rays {
   std::array<std::vector<double>, 6> v;
   std::vector<RayFate> fates;
@@ -34,11 +34,10 @@ struct Rays {
   Vec3<double> direction(std::size_t i) const noexcept { return {v[3][i], v[4][i], v[5][i]}; }
 };
 
-/// Traces the lines through the lens. Rays start at the last vertex, so that no digits are lost for a distant film or
-/// pupil.
+/// Traces lines through the lens. Rays start at the last vertex, so that a distant film or pupil costs no digits.
 Rays trace(const Lens& lens, const TwoPlanes& space, const Lines& lines, std::size_t wavelength) {
   const double last_z = lens.surfaces().back().vertex_z;
-  const double part = (last_z - space.film_z) / space.depth();  // of the distance from the film to the pupil
+  const double part = (last_z - space.film_z) / space.depth();  // fraction of the distance from film to pupil
   const double towards = towards_scene(lens, space);
   Rays rays(lines.size());
   for (std::size_t i = 0; i < lines.size(); ++i) {
@@ -59,7 +58,7 @@ Rays trace(const Lens& lens, const TwoPlanes& space, const Lines& lines, std::si
 
 double square(const Vec3<double>& v) noexcept { return glm::dot(v, v); }
 
-/// Sum of squares, and the largest value.
+/// Collects the sum of squares and the largest value.
 struct Errors {
   double sum = 0, largest = 0;
   std::size_t count = 0;
@@ -73,7 +72,7 @@ struct Errors {
   double max() const noexcept { return std::sqrt(largest); }
 };
 
-/// The errors of a fit for some lines, in direction and offset.
+/// Errors of a fit for some lines, in direction and offset.
 std::array<Errors, 2> errors_of(const Lens& lens, const RayPolynomial& polynomial, std::size_t wavelength,
                                 const Lines& lines) {
   const double reference_z = polynomial.domain().reference_z;
@@ -87,7 +86,7 @@ std::array<Errors, 2> errors_of(const Lens& lens, const RayPolynomial& polynomia
     if (exact.fates[i] != RayFate::transmitted || rays.fates[i] != RayFate::transmitted) continue;
     const Vec3<double> towards = exact.direction(i);
     direction.see(square(rays.direction(i) - towards));
-    const Vec3<double> apart = rays.origin(i) - exact.origin(i);  // between the feet of the perpendiculars
+    const Vec3<double> apart = rays.origin(i) - exact.origin(i);  // difference of the feet of the perpendiculars
     const Vec3<double> from_reference = exact.origin(i) - Vec3<double>(0, 0, reference_z);
     offset.see(square(apart + glm::dot(from_reference, towards) * towards));
   }
@@ -112,8 +111,9 @@ class Powers {
   std::array<std::array<double, 11>, N> powers_;
 };
 
-/// The equations of lines for the coefficients by film, and behind them those by pupil. Both axes share these in a lens
-/// of revolution, and with mirror symmetry have their own. Direction and offset are two right-hand sides.
+/// Equations of lines for the coefficients by film, followed by the coefficients by pupil. In a lens of revolution both
+/// axes share the coefficients; with mirror symmetry each axis has its own. Direction and offset are two right-hand
+/// sides.
 class Equations {
  public:
   struct Row {
@@ -130,13 +130,13 @@ class Equations {
     for (Row& row : rows_) row.left.resize(2 * count());
   }
 
-  /// Coefficients by film.
+  /// Number of coefficients by film.
   Eigen::Index count() const noexcept { return static_cast<Eigen::Index>(terms_.size() + mirror_terms_.size()); }
-  /// Whose coefficients an axis has.
+  /// Index of the system that holds the coefficients of an axis.
   std::size_t system(std::size_t axis) const noexcept { return domain_.along_x ? axis : 0; }
   std::size_t systems() const noexcept { return domain_.along_x ? 2 : 1; }
 
-  /// Those of one line, along x and y, until the next one.
+  /// Equations of one line, along x and y; valid until the next call.
   const std::array<Row, 2>& of(const Lines& lines, const Rays& traced, std::size_t i) {
     const auto [along_x, along_y] = sections(domain_);
     const double fx = lines.film_x[i] / domain_.film_radius, fy = lines.film_y[i] / domain_.film_radius;
@@ -186,8 +186,9 @@ RayPolynomial::Fit fit(const Lens& lens, const RayPolynomial::Domain& domain, in
   const double nm = lens.wavelengths_nm()[wavelength];
   if (passed < 2 * systems * count) {
     throw Error(lens.name() + ": polynomial of degree " + std::to_string(degree) + ": " + std::to_string(passed) +
-                " rays from a film of radius " + to_text(domain.film_radius) + " mm get through at " + to_text(nm) +
-                " nm, wanted " + std::to_string(2 * systems * count) + " or more: a film within the image circle");
+                " rays from a film of radius " + to_text(domain.film_radius) + " mm pass at " + to_text(nm) +
+                " nm; must be at least " + std::to_string(2 * systems * count) +
+                ": use a film within the image circle");
   }
   struct System {
     Eigen::MatrixXd both;  // sides of the equations
@@ -200,9 +201,9 @@ RayPolynomial::Fit fit(const Lens& lens, const RayPolynomial::Domain& domain, in
   std::vector<System> all(equations.systems());
   for (System& system : all) system.both.setZero(1 + 2 * passed / systems, 2 * count + 2);
 
-  // The focus of the film's centre: the first moments of direction and offset over its pupil are those of the lens, so
-  // that rays meet the axis in the same plane on average. A row as heavy as this one holds nearly exactly; heavy rows
-  // come first for the sake of QR.
+  // Focus of the film centre: the first moments of direction and offset over its pupil equal the moments of the lens,
+  // so that the rays meet the axis in the same plane on average. The weight makes this row hold almost exactly; heavy
+  // rows come first for the stability of QR.
   const Rays axial = trace(lens, domain.space, lines.axial, wavelength);
   const double heavy = 1e4 / static_cast<double>(std::max<std::size_t>(1, axial.size()));
   for (std::size_t i = 0; i < axial.size(); ++i) {
@@ -251,7 +252,7 @@ RayPolynomial::Fit fit(const Lens& lens, const RayPolynomial::Domain& domain, in
     fit.max_rad = std::max(fit.max_rad, direction_there.max());
     fit.max_mm = std::max(fit.max_mm, offset_there.max());
   }
-  // For rays between those that were looked at.
+  // Margin for rays between the tested rays.
   constexpr double to_spare = 1.1;
   fit.max_rad *= to_spare;
   fit.max_mm *= to_spare;

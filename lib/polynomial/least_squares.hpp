@@ -9,8 +9,8 @@
 
 namespace petzval::polynomial_detail {
 
-/// Lines of the film points from which all others follow by the symmetry: those on the axis +y of a lens of revolution,
-/// those in the quadrant x, y >= 0 of one with mirror symmetry.
+/// Lines from the film points that represent all others by symmetry: points on the axis +y for a lens of revolution,
+/// points in the quadrant x, y >= 0 for a lens with mirror symmetry.
 struct Lines {
   std::vector<double> film_x, film_y, pupil_x, pupil_y;
 
@@ -19,15 +19,14 @@ struct Lines {
 
 struct FitLines {
   Lines fitted;
-  Lines axial;  ///< of the film's centre, uniform over its pupil
-  Lines fresh;  ///< to find errors with, and for the largest ones
-  Lines rims;   ///< those along the rims of the pupils and
-  Lines edges;  ///< those near them and of the film's farthest points
+  Lines axial;  ///< from the film centre, uniform over its pupil
+  Lines fresh;  ///< independent lines to measure errors
+  Lines rims;   ///< lines on the rims of the pupils, for the largest errors
+  Lines edges;  ///< lines near the rims and from the edge of the film, for the largest errors
 };
 
-/// The fit at one wavelength to the lines that pass the lens. The film's centre is in focus where exact rays are
-/// sharpest, in both sections of a
-/// lens with mirror symmetry.
+/// Fits the lines that pass the lens at one wavelength. The film centre is in focus at the plane where exact rays are
+/// sharpest; with mirror symmetry in both sections.
 RayPolynomial::Fit fit(const Lens& lens, const RayPolynomial::Domain& domain, int degree, std::size_t wavelength,
                        const FitLines& lines);
 

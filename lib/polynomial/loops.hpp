@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The loops from lines to rays towards the scene, which to_scene.cpp defines for each instruction set.
+// Loops from lines to rays towards the scene; to_scene.cpp defines them for each instruction set.
 #pragma once
 
 #include <array>
@@ -16,7 +16,7 @@ namespace petzval::polynomial_detail {
 
 /// Degrees 3, 5, 7, 9, 11.
 inline constexpr std::size_t degree_count = 5;
-/// Coefficients of degree 11 and two mirror symmetries, the most at a wavelength.
+/// Coefficients for degree 11 and two mirror symmetries, the largest number at a wavelength.
 inline constexpr std::size_t most_coefficients = 1568;
 
 /// The constants of a domain, rounded once from double.
@@ -29,14 +29,13 @@ struct Scales {
   Section along_x, along_y;
 };
 
-/// Limit of |f|^2 and |p|^2, at most 1: lines on the rim of the domain belong to it in float too.
+/// Limit of |f|^2 and |p|^2. It exceeds 1, so that lines on the rim of the domain belong to the domain in float too.
 inline constexpr double within_domain = 1 + 1e-5;
 
-/// The most modes of a polynomial.
+/// Largest number of modes of a polynomial.
 inline constexpr std::size_t most_modes = 8;
-
-/// Fits at any wavelength, borrowed: sums of modes, which are coefficients as of a fit, with weights by wavelength.
-/// That of the first mode is 1.
+/// Fits at any wavelength, borrowed: a mode holds coefficients like a fit, and a sum of modes with weights by
+/// wavelength is the fit at that wavelength. The weight of the first mode is 1.
 template <class R>
 struct Modes {
   const R* coefficients = nullptr;  ///< by mode
@@ -47,7 +46,7 @@ struct Modes {
 template <class R>
 struct ToSceneJob {
   const R* coefficients;  ///< by wavelength: direction by film and by pupil, offset by film and by pupil
-  const R* rows;          ///< the same in rows by wavelength, one for each coefficient
+  const R* rows;          ///< one row for each coefficient, by wavelength
   std::size_t row_length;
   std::size_t fits, primary;
   Modes<R> modes;
@@ -62,12 +61,12 @@ struct ToSceneJob {
 template <class R>
 using ToSceneLoops = std::array<void (*)(const ToSceneJob<R>&) noexcept, 2 * degree_count>;
 
-/// One line. coefficients: of its wavelength, null where there is no fit.
+/// Maps one line. coefficients: of its wavelength; null if there is no fit.
 using OneToScene = std::array<RayFate (*)(const double* coefficients, const Scales<double>&, const TwoPlaneRay&,
                                           Ray<double>&) noexcept,
                               2 * degree_count>;
 
-/// By Data::loop().
+/// Tables indexed by Data::loop().
 struct PolynomialLoops {
   ToSceneLoops<float> in_float;
   ToSceneLoops<double> in_double;

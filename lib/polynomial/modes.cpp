@@ -17,7 +17,7 @@ FitModes find_modes(const std::vector<RayPolynomial::Fit>& fits, const std::vect
   }
   const Eigen::VectorXd mean = all.rowwise().mean();
 
-  // What is left of each fit, over what may be left of it.
+  // Scales the residual of each fit by its tolerance.
   constexpr double part = 0.05, least_rad = 5e-8;
   double most_rad = 0, most_mm = 0;
   for (const RayPolynomial::Fit& fit : fits) {
@@ -27,14 +27,14 @@ FitModes find_modes(const std::vector<RayPolynomial::Fit>& fits, const std::vect
   Eigen::MatrixXd left = all.colwise() - mean;
   left.topRows(each / 2) /= part * most_rad + least_rad;
   left.bottomRows(each / 2) /= part * most_mm + least_mm + 1e-300;
-  // A lazy product has the same bits on every processor; the other sums as its caches choose.
+  // The lazy product has the same bits on every processor; the blocked product sums in an order set by cache sizes.
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(left.transpose().lazyProduct(left));
 
   FitModes result;
   result.weights.resize(fits.size(), {1});
   const auto add = [&](const Eigen::VectorXd& mode) { result.modes.emplace_back(mode.data(), mode.data() + each); };
   add(mean);
-  for (Index k = count - 1; k > 0 && result.modes.size() < most_modes; --k) {  // the largest value is the last
+  for (Index k = count - 1; k > 0 && result.modes.size() < most_modes; --k) {  // eigenvalues ascend
     if (left.colwise().norm().maxCoeff() <= 1) break;
     const Eigen::VectorXd direction = solver.eigenvectors().col(k);
     for (Index w = 0; w < count; ++w) {

@@ -9,16 +9,19 @@
 
 namespace petzval::polynomial_detail {
 
-/// Coefficients of all fits as sums of few modes: those of fit w are those of the modes times weights[w].
+/// All fits as sums of few modes: the coefficients of fit w are the sum of modes[k] * weights[w][k].
 struct FitModes {
-  std::vector<std::vector<double>> modes;               ///< the mean of all fits first
-  std::vector<std::array<double, most_modes>> weights;  ///< of the first mode 1, of those that do not exist 0
+  std::vector<std::vector<double>> modes;               ///< the first mode is the mean of all fits
+  std::vector<std::array<double, most_modes>> weights;  ///< 1 for the first mode, 0 for missing modes
 };
 
-/// By singular values: as many modes as make the root of the sum of squares of what is left of any fit's coefficients a
-/// twentieth of its error (and 5e-8 rad, which is less than float adds), or most_modes. Fits of a lens follow the
-/// dispersion of its glasses: four or five modes hold any number of them.
-/// coefficients: of each fit, the half for directions first.
+/// Finds modes by singular values.
+///
+/// It takes as many modes as reduce the norm of the residual coefficients of every fit to a twentieth of the error of
+/// the fit, plus 5e-8 rad, which is less than float adds; at most most_modes. Fits of a lens follow the dispersion of
+/// its glasses: four or five modes represent any number of fits.
+///
+/// @param coefficients  by fit, the half for directions first
 FitModes find_modes(const std::vector<RayPolynomial::Fit>& fits, const std::vector<std::vector<double>>& coefficients);
 
 }  // namespace petzval::polynomial_detail

@@ -19,12 +19,12 @@
 namespace petzval {
 namespace {
 
-/// Beyond it products overflow in float; no lens comes near it.
+/// Products of larger values overflow in float; no lens comes near this limit.
 constexpr double largest = 1e12;
 
 void check(const std::string& what, double value, double from, double to) {
   if (value >= from && value <= to) return;
-  throw Error(what + " is " + to_text(value) + ", wanted a number from " + to_text(from) + " to " + to_text(to));
+  throw Error(what + " = " + to_text(value) + "; must be a number from " + to_text(from) + " to " + to_text(to));
 }
 
 std::vector<double> wavelengths_of(const std::vector<RayPolynomial::Fit>& fits) {
@@ -39,7 +39,7 @@ void check(int degree, const RayPolynomial::Domain& domain, const std::vector<Ra
   check(where + "film_z", domain.space.film_z, -largest, largest);
   check(where + "pupil_z", domain.space.pupil_z, -largest, largest);
   if (domain.space.depth() == 0) {
-    throw Error(where + "pupil_z is that of the film, " + to_text(domain.space.film_z) + " mm, wanted another");
+    throw Error(where + "pupil_z = " + to_text(domain.space.film_z) + " mm; must differ from film_z");
   }
   check(where + "film_radius", domain.film_radius, 1 / largest, largest);
   check(where + "pupil_shift", domain.pupil_shift, -largest, largest);
@@ -49,7 +49,7 @@ void check(int degree, const RayPolynomial::Domain& domain, const std::vector<Ra
     check(where + "pupil_radius along x", domain.along_x->pupil_radius, 1 / largest, largest);
   }
   check(where + "reference_z", domain.reference_z, -largest, largest);
-  if (fits.empty()) throw Error(where + "there are no fits, wanted one for each wavelength");
+  if (fits.empty()) throw Error(where + "there are no fits; must have a fit for each wavelength");
   const std::size_t terms = domain.along_x ? 2 * RayPolynomial::mirror_terms(degree).size()  // along x and y
                                            : RayPolynomial::terms(degree).size();
   for (std::size_t i = 0; i < fits.size(); ++i) {
@@ -57,7 +57,7 @@ void check(int degree, const RayPolynomial::Domain& domain, const std::vector<Ra
     const std::string here = where + "fit " + std::to_string(i) + ": ";
     const auto check_all = [&](const char* name, const std::vector<double>& coefficients) {
       if (coefficients.size() != terms) {
-        throw Error(here + name + " has " + std::to_string(coefficients.size()) + " numbers, wanted " +
+        throw Error(here + name + " has " + std::to_string(coefficients.size()) + " numbers; must have " +
                     std::to_string(terms) + " for degree " + std::to_string(degree) +
                     (domain.along_x ? " and mirror symmetry" : ""));
       }
@@ -77,8 +77,8 @@ void check(int degree, const RayPolynomial::Domain& domain, const std::vector<Ra
   }
   const std::vector<double> nm = wavelengths_of(fits);
   if (const auto repeated = pupil_table_detail::repeated_wavelength(nm)) {
-    throw Error(where + "fit " + std::to_string(*repeated) + ": wavelength_nm is " + to_text(nm[*repeated]) +
-                ", that of another fit, wanted each once");
+    throw Error(where + "fit " + std::to_string(*repeated) + ": wavelength_nm = " + to_text(nm[*repeated]) +
+                "; must differ from all other fits");
   }
 }
 
@@ -111,7 +111,7 @@ void round_to(In& in, const RayPolynomial::Domain& domain, const std::vector<std
   }
 }
 
-/// The coefficients of a fit in the order of ToSceneJob.
+/// Coefficients of a fit in the order of ToSceneJob.
 std::vector<double> all_coefficients(const RayPolynomial::Fit& fit) {
   std::vector<double> result;
   for (const auto* c : {&fit.direction_by_film, &fit.direction_by_pupil, &fit.offset_by_film, &fit.offset_by_pupil}) {
@@ -128,7 +128,7 @@ RayPolynomial::Data::Data(int of_degree, const Domain& of_domain, std::vector<Fi
   check(degree, domain, fits);
   primary = of_primary.value_or(nearest_to_d(fits));
   if (primary >= fits.size()) {
-    throw Error("polynomial: primary_wavelength is " + std::to_string(primary) + ", wanted one of " +
+    throw Error("polynomial: primary_wavelength = " + std::to_string(primary) + "; must be below " +
                 std::to_string(fits.size()));
   }
   wavelengths = lens_detail::CompiledWavelengths(wavelengths_of(fits));
@@ -143,7 +143,7 @@ RayPolynomial::Data::Data(int of_degree, const Domain& of_domain, std::vector<Fi
 
 void polynomial_detail::check_degree(const std::string& where, int degree) {
   if (degree >= 3 && degree <= 11 && degree % 2 == 1) return;
-  throw Error(where + "degree is " + std::to_string(degree) + ", wanted 3, 5, 7, 9 or 11");
+  throw Error(where + "degree = " + std::to_string(degree) + "; must be 3, 5, 7, 9 or 11");
 }
 
 std::vector<RayPolynomial::Term> RayPolynomial::terms(int degree) {

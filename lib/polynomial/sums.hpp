@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// s and o of a line (chart.hpp) as sums of terms, for each symmetry of a lens; n: factors of a term, (degree - 1) / 2.
-// In an unnamed namespace, for objects of several instruction sets (lib/README.md).
+// s and o of a line (chart.hpp) as sums of terms, for each symmetry of a lens; n = (degree - 1) / 2 is the number of
+// factors of a term. In an unnamed namespace, for objects of several instruction sets (lib/README.md).
 #pragma once
 
 #include <array>
@@ -21,7 +21,10 @@ struct FilmAndPupil {
   PETZVAL_INLINE T pupil_square() const noexcept { return sum_of_products(px, px, py, py); }
 };
 
-/// A line, from mm. Scaling: Scales<R>; R: the plain type of T.
+/// Scales a line from mm to the domain.
+///
+/// @tparam R        plain type of T
+/// @tparam Scaling  Scales<R>
 template <class R, class T, class Scaling>
 PETZVAL_INLINE FilmAndPupil<T> in_domain(const Scaling& scales, const FilmAndPupil<T>& line) noexcept {
   const auto& [film_x, film_y, pupil_x, pupil_y] = line;
@@ -46,7 +49,7 @@ struct LocalRay {
   T dx, dy, dz;
 };
 
-/// Out of the chart (chart.hpp). R: the plain type of T.
+/// Converts a line from the chart to a ray (chart.hpp). R: plain type of T.
 template <class R, class T>
 PETZVAL_INLINE LocalRay<T> out_of_chart(const ChartLine<T>& line) noexcept {
   const auto& [sx, sy, ox, oy] = line;
@@ -60,8 +63,7 @@ PETZVAL_INLINE LocalRay<T> out_of_chart(const ChartLine<T>& line) noexcept {
 template <int n>
 struct OfRevolution {
   static constexpr int terms = term_count(n, 3), coefficients = 4 * terms;
-  /// Sums of the same variables have the same bits in all code made of them: no compiler can choose which of two
-  /// products it fuses.
+  /// True: these sums have the same bits in all code, because no compiler can choose which of two products it fuses.
   static constexpr bool same_bits = true;
 
   template <class T>
@@ -72,7 +74,7 @@ struct OfRevolution {
   static PETZVAL_INLINE Variables<T> variables(const FilmAndPupil<T>& at) noexcept {
     return {at.film_square(), sum_of_products(at.fx, at.px, at.fy, at.py), at.pupil_square()};
   }
-  /// A, B, C and D. c: as of horner().
+  /// A, B, C and D. c: as in horner().
   template <class C, class T>
   static PETZVAL_INLINE FourSums<T> sums(const C& c, const Variables<T>& at) noexcept {
     const auto& [u, v, w] = at;
@@ -88,9 +90,9 @@ struct OfRevolution {
   }
 };
 
-/// Of a lens that is alike at x and -x and at y and -y. Components along x are odd in fx and px together and even in fy
-/// and py together: fx or px, times a polynomial of the four squares, plus fy py times one with a factor less. Those
-/// along y are the same with x and y exchanged.
+/// For a lens that is symmetric about x = 0 and about y = 0. Components along x are odd in fx and px together and even
+/// in fy and py together: fx or px times the sum of a polynomial of the four squares and fy py times a polynomial with
+/// one factor less. Components along y are the same with x and y exchanged.
 template <int n>
 struct OfMirrors {
   static constexpr int even = term_count(n, 4), terms = even + term_count(n - 1, 4), coefficients = 8 * terms;
@@ -102,7 +104,7 @@ struct OfMirrors {
   static PETZVAL_INLINE Variables<T> variables(const FilmAndPupil<T>& at) noexcept {
     return at;
   }
-  /// The components themselves. Not inlined: there is one of each degree, with the same bits for every caller.
+  /// s and o themselves. Not inlined: one function per degree gives every caller the same bits.
   template <class R, class T>
   static __attribute__((noinline)) FourSums<T> sums(const R* c, const FilmAndPupil<T>& at) noexcept {
     const auto& [fx, fy, px, py] = at;
@@ -120,7 +122,7 @@ struct OfMirrors {
   }
 
  private:
-  /// across: the product of film and pupil point along the other axis.
+  /// across: product of film and pupil coordinate along the other axis.
   template <class R, class T>
   static PETZVAL_INLINE T even_sum(const R* c, const T& across, const T& other_pupil2, const T& other_film2,
                                    const T& pupil2, const T& film2) noexcept {
@@ -129,7 +131,7 @@ struct OfMirrors {
   }
 };
 
-/// What a function makes of each symmetry, for the degrees 3, 5, 7, 9 and 11: Data::loop() is the position.
+/// Calls a function with each symmetry, for the degrees 3, 5, 7, 9 and 11; Data::loop() is the index.
 template <class Of>
 constexpr auto by_symmetry_and_degree(Of of) {
   return std::array{of(OfRevolution<1>{}), of(OfRevolution<2>{}), of(OfRevolution<3>{}), of(OfRevolution<4>{}),

@@ -19,8 +19,8 @@ using polynomial_detail::OfRevolution;
 using polynomial_detail::SceneLine;
 using Place = Eigen::Vector4d;  // f and p, scaled to the domain
 
-/// A polynomial's value and its derivatives by the last N of its variables, the first of these first. Horner's rule
-/// meets the last variable most often, where there is but one derivative to carry.
+/// Value of a polynomial and its derivatives with respect to the last N variables, in their order. Horner's rule
+/// multiplies by the last variable most often, with only one derivative to carry then.
 template <int N>
 struct Gradient {
   double value = 0;
@@ -30,7 +30,7 @@ struct Gradient {
   Gradient(double constant) noexcept : value(constant) {}
 };
 
-/// The variable from which on there are N.
+/// A variable followed by N - 1 others.
 template <int N>
 struct Variable {
   double value;
@@ -50,7 +50,7 @@ struct Variable {
   }
 };
 
-/// Adds what does not depend on the first variable.
+/// Adds a term that does not depend on the first variable.
 template <int N>
 PETZVAL_INLINE Gradient<N> operator+(const Gradient<N>& p, const Gradient<N - 1>& q) noexcept {
   Gradient<N> sum;
@@ -66,8 +66,8 @@ PETZVAL_INLINE Gradient<N> operator+(const Gradient<N>& p, double q) noexcept {
   return sum;
 }
 
-/// s and o at (f, p), with their derivatives: A f + B p, by way of those of A and B by u, v and w. Flat: so much code
-/// is not inlined otherwise.
+/// s and o at (f, p) with their derivatives: A f + B p, through the derivatives of A and B with respect to u, v and w.
+/// Flattened, because compilers do not inline this much code otherwise.
 template <int n>
 [[gnu::flatten]] void evaluate(OfRevolution<n>, const double* c, const Place& x, Place& value,
                                Eigen::Matrix4d& slope) noexcept {
@@ -97,8 +97,8 @@ template <int n>
   put(2, horner<n>(c + 2 * terms, w, v, u), horner<n>(c + 3 * terms, w, v, u));
 }
 
-/// The same by way of the derivatives of A and B by the squares of fx, fy, px and py, and by the product of film and
-/// pupil point along the other axis.
+/// The same through the derivatives of A and B with respect to the squares of fx, fy, px and py and to the product of
+/// film and pupil coordinate along the other axis.
 template <int n>
 [[gnu::flatten]] void evaluate(OfMirrors<n>, const double* c, const Place& x, Place& value,
                                Eigen::Matrix4d& slope) noexcept {
@@ -134,7 +134,7 @@ bool within(const Place& x, double square) noexcept {
   return x.head<2>().squaredNorm() <= square && x.tail<2>().squaredNorm() <= square;
 }
 
-/// The solution of a linear system, by elimination with the largest pivot of each column.
+/// Solves a linear system by elimination with partial pivoting.
 PETZVAL_INLINE Place solution(Eigen::Matrix4d a, Place b) noexcept {
   for (int k = 0; k < 4; ++k) {
     int pivot = k;
@@ -155,14 +155,14 @@ PETZVAL_INLINE Place solution(Eigen::Matrix4d a, Place b) noexcept {
   return b;
 }
 
-/// A polynomial's value and slope at a place.
+/// Value and slope of a polynomial at a point.
 struct At {
   Place value;
   Eigen::Matrix4d slope;
 };
 
-/// Newton's iteration, from a place where the polynomial has been evaluated. False if a step is more than half the one
-/// before, since it may then go to another branch of the polynomial, and if it leaves the neighbourhood of the domain.
+/// Newton's iteration, from a point with known value and slope. Returns false if a step is longer than half of the last
+/// step, as it may then lead to another branch of the polynomial, or if it leaves the neighbourhood of the domain.
 template <class Symmetry>
 bool correct(const double* c, const Place& wanted, const At& begin, Place& x) noexcept {
   constexpr double far = 2, settled = 1e-7, rounding = 1e-9;  // the square of a settled step is its error
@@ -179,9 +179,9 @@ bool correct(const double* c, const Place& wanted, const At& begin, Place& x) no
   }
 }
 
-/// The least height on the film, along one axis, whose line through the centre of the pupil has a slope `s` (of the
-/// chart), or where slopes no longer grow: light may end there, and what is not fitted bends back. slope: by height,
-/// over that height.
+/// Smallest film height, along one axis, at which the line through the centre of the pupil has the slope `s` (in the
+/// chart). Stops at the height where slopes no longer grow: light may end there, and a polynomial bends back outside
+/// the fitted range. slope: function of height, divided by the height.
 template <class Slope>
 double chief_height(double s, const Slope& slope) noexcept {
   constexpr int steps = 32, halvings = 7;
@@ -203,7 +203,7 @@ double chief_height(double s, const Slope& slope) noexcept {
   return std::copysign(high, sign * s);
 }
 
-/// The film point whose line through the centre of the pupil has about the direction of a given line.
+/// The film point whose line through the centre of the pupil has approximately the direction of a given line.
 template <int n>
 Place chief(OfRevolution<n>, const double* c, const SceneLine& line) noexcept {
   const double length = std::hypot(line.sx, line.sy);
@@ -214,15 +214,15 @@ Place chief(OfRevolution<n>, const double* c, const SceneLine& line) noexcept {
 
 template <int n>
 Place chief(OfMirrors<n>, const double* c, const SceneLine& line) noexcept {
-  // As if each section were alone; together they may lie beyond the film.
+  // Treats the sections as independent; the combination may lie outside the film.
   const double x = chief_height(line.sx, [c](double h) { return horner<n>(c, h * h); });
   const double y = chief_height(line.sy, [c](double h) { return horner<n>(c + OfMirrors<n>::terms, h * h); });
   const double within = std::max(std::hypot(x, y), 1.0);
   return {x / within, y / within, 0, 0};
 }
 
-/// Goes from the line of x to the wanted one over lines in between, in steps that the iteration can follow: mostly one,
-/// several for a fisheye. False if it cannot, and if it ends outside the domain.
+/// Moves from the line of x to the line of `wanted` over intermediate lines, in steps that the iteration can follow:
+/// mostly one step, several for a fisheye. Returns false if an iteration fails or the result is outside the domain.
 template <class Symmetry>
 bool follow(const double* c, const Place& wanted, Place& x) noexcept {
   At at;
@@ -244,8 +244,8 @@ bool follow(const double* c, const Place& wanted, Place& x) noexcept {
   return within(x, polynomial_detail::within_domain);
 }
 
-/// The (f, p) of a line; false if none in the domain is found. Starts at a line of about the same direction, or at the
-/// axis where that line lies outside the light, of which nothing was fitted.
+/// Finds (f, p) of a line; returns false if no solution in the domain is found. Starts at a line of similar direction
+/// and, if this fails, at the axis: the first start may lie outside the fitted light.
 template <class Symmetry>
 bool solve(const double* c, const SceneLine& line, Place& x) noexcept {
   const Place wanted(line.sx, line.sy, line.ox, line.oy);

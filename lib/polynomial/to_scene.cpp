@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Compiled once for each instruction set; PETZVAL_LOOPS names the result. A result depends on its own line alone: the
-// remainder of a batch goes through the same vectors as the rest.
+// Compiled once for each instruction set; PETZVAL_LOOPS names the result. Each result depends on its own line only: the
+// remainder of a batch goes through the same vector code.
 #include <cstddef>
 #include <cstdint>
 #include <type_traits>
@@ -23,8 +23,8 @@ using Sums = FourSums<typename Native<R>::Values>;
 
 static_assert(OfMirrors<degree_count>::coefficients == most_coefficients);
 
-/// The sums for a wavelength for each lane: all lanes are evaluated at each wavelength that occurs, smallest first, and
-/// the lanes of that wavelength are kept. known: the lanes whose wavelength has a fit.
+/// Sums for one wavelength per lane: evaluates all lanes at each wavelength that occurs, smallest first, and keeps the
+/// lanes of that wavelength. known: lanes whose wavelength has a fit.
 template <class Symmetry, class R>
 PETZVAL_INLINE Sums<R> mixed_sums(const ToSceneJob<R>& job, const std::uint16_t* each,
                                   const Variables<Symmetry, R>& at_place, typename Native<R>::Bits& known) noexcept {
@@ -54,8 +54,8 @@ PETZVAL_INLINE Sums<R> mixed_sums(const ToSceneJob<R>& job, const std::uint16_t*
   return result;
 }
 
-/// The coefficients of the lanes' own wavelengths, read like a pointer to those of one: rows of two registers, also
-/// where one would do (the code for those is slower).
+/// Coefficients of each lane's own wavelength, read like a pointer to the coefficients of one wavelength. Rows have two
+/// registers even if one would do, because the code for one register is slower.
 template <class R>
 struct CoefficientsByLane {
   const R* rows;
@@ -73,12 +73,12 @@ struct CoefficientsByLane {
 /// lens_detail::Positions for the lanes of doubles.
 using HalfPositions = std::uint16_t __attribute__((vector_size(core_detail::lane_bytes / 4)));
 
-/// The same where registers hold a coefficient of all fits.
+/// mixed_sums() for registers that hold a coefficient of all fits.
 template <class Symmetry, class R>
 PETZVAL_INLINE Sums<R> permuted_sums(const ToSceneJob<R>& job, const std::uint16_t* each,
                                      const Variables<Symmetry, R>& at_place, typename Native<R>::Bits& known) noexcept {
   using Bit = typename Native<R>::Bit;
-  // Converted as a whole: put together one by one, it would be read before it is written.
+  // Converted as a whole: element-wise stores would stall the load that follows.
   using Positions = std::conditional_t<sizeof(R) == 4, lens_detail::Positions, HalfPositions>;
   Positions positions;
   __builtin_memcpy(&positions, each, sizeof positions);
@@ -88,11 +88,11 @@ PETZVAL_INLINE Sums<R> permuted_sums(const ToSceneJob<R>& job, const std::uint16
   return Symmetry::sums(CoefficientsByLane<R>{job.rows, job.row_length, places}, at_place);
 }
 
-/// The weights of modes for a block of rays.
+/// Weights of modes for a block of rays.
 template <class R>
 using ModeWeights = R[most_modes][lens_detail::look_up_block];
 
-/// The sums for any wavelengths. weights: those of the lanes, from `at` on.
+/// Sums for any wavelengths. weights: of the lanes, from `at` on.
 template <class Symmetry, class R>
 PETZVAL_INLINE Sums<R> mode_sums(const ToSceneJob<R>& job, const ModeWeights<R>& weights, std::size_t at,
                                  const Variables<Symmetry, R>& at_place, typename Native<R>::Bits& known) noexcept {
@@ -114,7 +114,7 @@ PETZVAL_INLINE Sums<R> mode_sums(const ToSceneJob<R>& job, const ModeWeights<R>&
   return result;
 }
 
-/// As many rays as there are lanes.
+/// Maps as many rays as there are lanes.
 template <class Symmetry, class R>
 PETZVAL_INLINE void map_lanes(const ToSceneJob<R>& job, std::size_t o, const ModeWeights<R>& weights) noexcept {
   using Values = typename Native<R>::Values;
@@ -168,8 +168,8 @@ PETZVAL_INLINE void map_lanes(const ToSceneJob<R>& job, std::size_t o, const Mod
   __builtin_memcpy(job.fates + o, &fates, sizeof fates);
 }
 
-/// A number of rays that fills lanes. Not inlined: all rays pass the same code, in which the compiler chose once which
-/// of two products it fuses.
+/// Maps a number of rays that fills lanes. Not inlined: all rays run through the same code, in which the compiler chose
+/// once which of two products to fuse.
 template <class Symmetry, class R>
 __attribute__((noinline)) void map_whole(const ToSceneJob<R>& job) noexcept {
   constexpr std::size_t lanes = lane_count<R>, block = lens_detail::look_up_block;
@@ -183,7 +183,7 @@ __attribute__((noinline)) void map_whole(const ToSceneJob<R>& job) noexcept {
   }
 }
 
-/// The last rays fill lanes with copies of the first of them.
+/// The last rays fill unused lanes with copies of the first of them.
 template <class Symmetry, class R>
 void to_scene(const ToSceneJob<R>& job) noexcept {
   constexpr std::size_t lanes = lane_count<R>;

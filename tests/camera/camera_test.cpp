@@ -490,7 +490,7 @@ TEST(Camera, RefusesModelsThatAreNone) {
             lens.name() + ": camera: model is custom, wanted one of models(), or an AnyRayModel");
   for (const int degree : {-1, 0, 4, 13}) {
     const std::string said = testing::message([&] { Camera(lens, {}, {.model = ModelKind::polynomial(degree)}); });
-    EXPECT_NE(said.find("degree is " + std::to_string(degree)), std::string::npos) << said;
+    EXPECT_NE(said.find("degree = " + std::to_string(degree)), std::string::npos) << said;
   }
 }
 
