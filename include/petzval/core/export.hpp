@@ -3,8 +3,8 @@
 
 #include "petzval/core/version.hpp"
 
-/// Marks what the shared libraries export where symbols are hidden unless marked. Windows has no such default: there
-/// the build exports every symbol (WINDOWS_EXPORT_ALL_SYMBOLS). Static libraries ignore the mark.
+/// Exports a class or function from a shared library that is compiled with hidden symbols. On Windows the macro is
+/// empty, because the build exports every symbol there (WINDOWS_EXPORT_ALL_SYMBOLS). Static libraries ignore it.
 #if defined(__GNUC__) && !defined(_WIN32)
 #define PETZVAL_API __attribute__((visibility("default")))
 #else

@@ -11,31 +11,35 @@
 
 namespace petzval {
 
-/// Two components, of a point in a plane across the axis unless said otherwise.
+/// A vector of two components; by default a point in a plane perpendicular to the axis.
 ///
-/// The qualifier of these vectors is spelled out on purpose: plain `glm::vec3` changes its size when a program defines
-/// GLM_FORCE_DEFAULT_ALIGNED_GENTYPES, and a struct that holds one would then be read wrongly without a warning.
-/// They convert from and to the `glm::vec3` and `glm::dvec3` of the caller.
+/// The qualifier is spelled out because plain `glm::vec3` changes its size if a program defines
+/// GLM_FORCE_DEFAULT_ALIGNED_GENTYPES; program and library would then disagree about the layout of a struct without a
+/// warning. Vec2 and Vec3 convert from and to the vectors of the caller, such as `glm::vec3` and `glm::dvec3`.
 template <class T>
 using Vec2 = glm::vec<2, T, glm::packed_highp>;
 
-/// Three components in the lens frame.
+/// A vector of three components in the lens frame.
 template <class T>
 using Vec3 = glm::vec<3, T, glm::packed_highp>;
 
-/// The points p with normal . p = offset; unit normal. Lens frame, mm.
+/// A plane: the points p with dot(normal, p) = offset. Lens frame, mm; the normal is a unit vector.
 struct Plane {
   Vec3<double> normal{0, 0, 1};
   double offset = 0;
 };
 
-/// A line in space; unit direction.
+/// A line in space. Lens frame, mm.
 struct SpaceLine {
-  Vec3<double> point{0, 0, 0};      ///< of the line the point nearest to the axis
-  Vec3<double> direction{1, 0, 0};  ///< x >= 0 (x = 0: y > 0) of lines across the axis
+  Vec3<double> point{0, 0, 0};      ///< the point of the line nearest to the axis
+  Vec3<double> direction{1, 0, 0};  ///< unit vector; if perpendicular to the axis: x > 0, or x = 0 and y > 0
 };
 
-/// Where a plane meets the plane across the axis at z. Nothing where both are parallel within rounding.
+/// Intersects a plane with the plane perpendicular to the axis at z.
+///
+/// @param plane  the plane
+/// @param z      position of the perpendicular plane on the axis (mm, lens frame)
+/// @return       the common line; nullopt if both planes are parallel within rounding
 PETZVAL_API std::optional<SpaceLine> line_at(const Plane& plane, double z);
 
 }  // namespace petzval

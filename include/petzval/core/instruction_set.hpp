@@ -9,19 +9,18 @@
 
 namespace petzval {
 
-/// The vector instructions that a processor offers to loops over rays. Processors other than x86-64 have `baseline`
-/// only.
+/// The vector instructions that loops over rays can use. Processors other than x86-64 have `baseline` only.
 enum class InstructionSet : std::uint8_t { baseline, avx2, avx512 };
 
 /// "baseline", "avx2" or "avx512".
 PETZVAL_API std::string_view name(InstructionSet set) noexcept;
 
-/// The sets of this processor, narrowest first.
+/// The instruction sets of this processor, narrowest first.
 ///
-/// The environment variable PETZVAL_INSTRUCTION_SET, read by the first call, leaves out those wider than the one it
-/// names (a name that is none of these leaves the baseline). Under `baseline` every batch, camera and gather has the
-/// same bits on every processor and from every compiler, at about half the speed; wider sets round some results
-/// otherwise, which reproducible batches (trace.hpp) and single calls do not.
+/// The environment variable PETZVAL_INSTRUCTION_SET, read by the first call, excludes all sets wider than the named
+/// set; an unknown name leaves `baseline`. With `baseline` the results of batches, cameras and gathers have the same
+/// bits on every processor and from every compiler, at about half the speed. Wider sets round some results differently;
+/// reproducible batches (trace.hpp) and single calls have the same bits with every set.
 PETZVAL_API std::span<const InstructionSet> instruction_sets() noexcept;
 
 }  // namespace petzval

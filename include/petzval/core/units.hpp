@@ -7,7 +7,7 @@
 
 namespace petzval {
 
-/// The helium d line, the usual reference of printed indices (nm).
+/// Wavelength of the helium d line, the usual reference of printed indices (nm).
 inline constexpr double d_line_nm = 587.5618;
 
 constexpr double radians(double degrees) noexcept { return degrees * (std::numbers::pi / 180.0); }
