@@ -10,39 +10,39 @@
 
 namespace petzval {
 
-/// Which picture a distortion model starts from.
+/// The direction in which a distortion model maps image positions.
 enum class BrownConradyDirection : std::uint8_t {
-  to_undistorted,  ///< from the lens's picture to the pinhole's: what OpenTrackIO takes where no model is named
-  to_distorted,    ///< from the pinhole's picture to the lens's: OpenCV
+  to_undistorted,  ///< from the lens image to the pinhole image: the default of OpenTrackIO if no model is named
+  to_distorted,    ///< from the pinhole image to the lens image: OpenCV
 };
 
-/// "Brown-Conrady D-U" or "Brown-Conrady U-D", as OpenTrackIO and Unreal name the models.
+/// "Brown-Conrady D-U" or "Brown-Conrady U-D", the names in OpenTrackIO and Unreal.
 PETZVAL_API std::string_view name(BrownConradyDirection direction) noexcept;
 
 enum class RadialForm : std::uint8_t {
   polynomial,  ///< k1 to k3; the others are 0
-  rational,    ///< k1 to k6, of which the last ones are 0 where that is better
+  rational,    ///< k1 to k6; unused denominator terms are 0
 };
 
-/// The radial distortion of a lens as the polynomials of Brown and Conrady in the order of OpenCV and Unreal:
+/// Radial distortion of a lens in the Brown-Conrady form, with the coefficient order of OpenCV and Unreal.
 ///
 ///     r' = r (1 + k1 r^2 + k2 r^4 + k3 r^6) / (1 + k4 r^2 + k5 r^4 + k6 r^6)
 ///
-/// r is the distance from the centre of projection over the focal length of the pinhole. The tangential terms p1 and p2
-/// of a lens of revolution on an upright film are 0.
+/// r is the distance from the centre of projection divided by the focal length of the pinhole. The tangential terms p1
+/// and p2 are 0, because only rotationally symmetric lenses on an upright film can be fitted.
 struct PETZVAL_API BrownConrady {
   BrownConradyDirection direction = BrownConradyDirection::to_undistorted;
   std::array<double, 6> k{};  ///< k1 to k6
   Pinhole pinhole;
-  double rms_px = 0;      ///< of the errors at 33 x 33 places of the film, without dark ones
-  double largest_px = 0;  ///< of those errors
-  /// The widest field among these places, as the pinhole sees it: the coefficients are fitted up to there.
+  double rms_px = 0;      ///< RMS error over a grid of 33 x 33 film points, dark film points left out
+  double largest_px = 0;  ///< largest error on the same grid
+  /// Largest pinhole field angle on that grid: the limit of the fitted range.
   double field_rad = 0;
-  /// The field up to which r' rises with r, at most the field of 4 times the largest radius of the film: beyond it the
-  /// coefficients fold the picture or have a pole.
+  /// Pinhole field angle up to which r' increases with r. Beyond it the coefficients fold the image or have a pole.
+  /// Searched up to 4 times the largest radius on the film.
   double rises_to_rad = 0;
 
-  /// r' of r.
+  /// Maps a radius r to r'.
   double radius(double r) const noexcept;
 };
 
@@ -51,17 +51,21 @@ struct BrownConradyOptions {
   RadialForm form = RadialForm::rational;
 };
 
-/// Fits the coefficients by least squares over the film, in pixels of the picture that they lead to, with the scale on
-/// the axis as it is.
+/// Fits Brown-Conrady coefficients to a lens by least squares over the film.
 ///
-/// Forms of 1 to 3 terms in the numerator and 0 to 3 in the denominator are tried. Of the
-/// forms whose r' rises up to 1.25 times the largest radius of the film, the form with the least error is taken. If its
-/// RMS error is above 0.001 pixels and more than twice the error of a form without pole up to 1.1 times that radius,
-/// the latter is taken; rises_to_rad gives its range. No term exceeds 100 at the largest radius.
+/// The errors are measured in pixels of the target image; the scale on the axis is kept. Forms with 1 to 3 terms in the
+/// numerator and 0 to 3 in the denominator are tried. The form with the least error whose r' increases up to 1.25 times
+/// the largest radius on the film is preferred. If its RMS error is above 0.001 pixels and more than twice the error of
+/// another form without a pole up to 1.1 times that radius, the other form is taken; rises_to_rad gives its range.
+/// No term exceeds 100 at the largest radius.
 ///
-/// Throws Error for lenses with cylinders and tilted films, whose distortion is not radial; for fisheyes, whose film
-/// sees fields of 88 degrees and more: no picture of a pinhole holds them; and for a dark film. st_maps() has the first
-/// three.
+/// @param distortion  the lens, camera and pinhole
+/// @param options     direction and form
+/// @return            the coefficients and their errors
+/// @throws Error      if the lens has cylindrical surfaces or the film is tilted (distortion is not radial), if the
+///                    film sees fields above 88 degrees (fisheyes exceed a pinhole image), or if the film is dark
+///
+/// st_maps() supports cylindrical surfaces, tilted films and fisheyes.
 PETZVAL_API BrownConrady fit_brown_conrady(const LensDistortion& distortion, const BrownConradyOptions& options = {});
 
 }  // namespace petzval

@@ -16,49 +16,63 @@ struct ColourMatching {
   std::vector<double> wavelengths_nm;
   std::vector<std::array<double, 3>> xyz;
 
-  /// Reads cie1931_2deg_5nm.csv. Throws Error with file and line.
+  /// Reads cie1931_2deg_5nm.csv.
+  ///
+  /// @throws Error with file and line, if the table is invalid
   PETZVAL_API static ColourMatching load(const std::filesystem::path& file);
 };
 
-/// The light of a source: its power per nm in any unit, linear between the samples and 0 outside them.
+/// The spectral power of a light source per nm, in any unit: linear between the samples and 0 outside their range.
 struct Spectrum {
   std::vector<double> wavelengths_nm;  ///< increasing
   std::vector<double> power;
 
-  /// Reads "wavelength_nm,power": two rows or more, wavelengths above 0 and increasing, powers finite and not negative.
-  /// Throws Error with file and line.
+  /// Reads a CSV file with the header "wavelength_nm,power".
+  ///
+  /// @throws Error with file and line, unless there are two rows or more, the wavelengths are positive and increasing,
+  ///               and the powers are finite and not negative
   PETZVAL_API static Spectrum load(const std::filesystem::path& file);
 };
 
-/// A CIE standard illuminant by name, from 300 to 830 nm: "D65" or "D50", daylight of 6500 and 5000 K (nominal); "A", a
-/// tungsten lamp, a black body of 2856 K; "E", equal power at all wavelengths. daylight_components: the table
-/// cie_daylight_10nm.csv, of which daylight is made. Throws Error for another name, and with file and line for an
-/// invalid table.
+/// Spectrum of a CIE standard illuminant from 300 to 830 nm.
+///
+/// @param name                 "D65" or "D50": daylight of nominally 6500 and 5000 K; "A": tungsten lamp, a black body
+///                             of 2856 K; "E": equal power at all wavelengths
+/// @param daylight_components  the table cie_daylight_10nm.csv, used for D65 and D50
+/// @throws Error               if the name is unknown; with file and line if the table is invalid
+///
 /// Source: CIE 15, Colorimetry: S0 + M1 S1 + M2 S2 with M1 and M2 to three decimals; A in closed form.
 PETZVAL_API Spectrum illuminant(std::string_view name, const std::filesystem::path& daylight_components);
 
-/// CIE XYZ of a light, in its unit of power; linear in the light. Exact integrals of both piecewise linear functions
-/// over the range of the table. Throws Error for a spectrum that load() would refuse, and for a table that has not two
-/// wavelengths or more, above 0 and increasing, with a triple each, all finite.
+/// CIE XYZ of a light, in the light's unit of power.
+///
+/// The product of the two piecewise linear functions is integrated exactly over the range of the table.
+///
+/// @throws Error if load() would reject the spectrum, or unless the table has two finite wavelengths or more, positive
+///               and increasing, each with a finite triple
 PETZVAL_API std::array<double, 3> tristimulus(const Spectrum& light, const ColourMatching& table);
 
-/// Linear RGB weights of a set of wavelengths, in its order; they sum to the colour of the light at the luminance of
-/// white.
+/// Linear RGB weights of a set of wavelengths. Their sum is the colour of the light at the luminance of white.
 ///
-/// The weight of a wavelength is the light's tristimulus() over the band of wavelengths nearest to it (the first and
-/// the last band reach to the ends of the table), in sRGB primaries. `white` is the light that looks white: its weights
-/// sum to (1, 1, 1). Colours are adapted from it to the white of sRGB by the Bradford transform, as ICC profiles adapt
-/// them; for D65 that leaves them as they are. A single wavelength is white, (1, 1, 1), in any light. A weight is
-/// negative where the colour is purer than the primaries.
+/// A weight is the tristimulus() of the light over the band of wavelengths nearest to its wavelength, in sRGB
+/// primaries; the first and the last band extend to the ends of the table. A weight has negative components if its
+/// colour is outside the sRGB gamut. A single wavelength has the weight (1, 1, 1) in any light.
 ///
-/// Throws Error for an empty set, duplicates, several wavelengths of which one lies outside 420 to 680 nm, and where
-/// tristimulus() does; also for a light without luminance.
+/// @param wavelengths_nm  the wavelengths (nm), in any order
+/// @param table           the colour matching functions
+/// @param light           the spectrum of the light
+/// @param white           the light that appears white: its weights sum to (1, 1, 1). Colours are adapted from it to
+///                        the white of sRGB (D65) by the Bradford transform, as in ICC profiles
+/// @return                one weight per wavelength, in the same order
+/// @throws Error          if the set is empty or has duplicates, one of several wavelengths lies outside 420 to 680 nm,
+///                        the light has no luminance, or tristimulus() throws
 PETZVAL_API std::vector<std::array<double, 3>> rgb_weights(std::span<const double> wavelengths_nm,
                                                            const ColourMatching& table, const Spectrum& light,
                                                            const Spectrum& white);
 
-/// The cheapest set for a renderer with three channels: one wavelength stands for each, and each channel takes its own.
-/// The light is white, but a fringe has only the colours of the three images.
+/// The cheapest wavelengths for a renderer with three channels: one wavelength per channel.
+///
+/// White light stays white; a colour fringe contains only the colours of the three images.
 /// Source: Lee, Eisemann, Seidel, Real-time lens blur effects and focus control, 2010, section 4.
 inline constexpr std::array<double, 3> rgb_triple_nm{650, 510, 475};
 inline constexpr std::array<std::array<double, 3>, 3> rgb_triple_weights{{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};

@@ -13,48 +13,57 @@
 
 namespace petzval {
 
-/// What files call a lens. Empty texts are not written.
+/// Names and nominal data of a lens for file metadata. Empty strings are not written.
 struct LensIdentity {
   std::string make{}, model{}, serial_number{};
   std::optional<double> nominal_focal_length_mm{};  ///< as engraved
 };
 
-/// The name of a prescription as the model, and its nominal focal length.
+/// The identity of a prescription: its name as the model, and its nominal focal length.
 PETZVAL_API LensIdentity identity_of(const Prescription& prescription);
 
-/// A film for a lens that came without one: 3:2 and 1920 x 1280 pixels, with the image diagonal that the prescription
-/// declares, else with the image circle in which the film has a tenth of the light of the axis. Throws Error where
-/// neither is a positive length below 1000 focal lengths.
+/// A default film for a lens: 3:2 with 1920 x 1280 pixels.
+///
+/// The diagonal is the image diagonal of the prescription. If the prescription declares no diagonal, it is the diameter
+/// of the image circle within which the irradiance is at least a tenth of the irradiance on the axis.
+///
+/// @throws Error unless the diagonal is positive and finite; an image circle above 1000 focal lengths is infinite
 PETZVAL_API Film film_of(const Prescription& prescription, const Lens& lens);
 
-/// What a lens is set to, in the words of OpenEXR and OpenTrackIO.
+/// Lens settings, with the terms of OpenEXR and OpenTrackIO.
 struct LensState {
   double effective_focal_length_mm = 0;  ///< in the main meridian
-  double pinhole_focal_length_mm = 0;    ///< of Pinhole, down the picture
+  double pinhole_focal_length_mm = 0;    ///< vertical focal length of Pinhole
   double f_number = 0;                   ///< effective focal length over the diameter of the paraxial entrance pupil
-  /// That of a round pupil of the area that lets light through, at least the f-number: blades and obscurations count,
-  /// and glass and coatings lose nothing.
+  /// The f-number of a round pupil with the transmitting area of the actual pupil; at least f_number. Accounts for
+  /// blades and obscurations, but not for losses in glass and coatings.
   double t_number = 0;
-  double focus_distance_mm = 0;         ///< of the subject from the film; infinite at infinity
+  double focus_distance_mm = 0;         ///< from the film to the subject; infinite at infinity
   double entrance_pupil_offset_mm = 0;  ///< from the film to the entrance pupil, positive towards the scene
 };
 
-/// The setting of the lens of a camera, with Pinhole::subject_z_mm as the subject. Throws Error where pupil_boundary()
-/// does.
+/// The lens settings of a camera, with the subject at Pinhole::subject_z_mm.
+///
+/// @throws Error under the conditions of pupil_boundary()
 PETZVAL_API LensState lens_state(const LensDistortion& distortion);
 
-/// How much darker the film gets towards its edge: 1 - (a1 r^2 + a2 r^4 + a3 r^6) of the light on the axis at r mm from
-/// it. Source: OpenLensIO 1.0, equation 20.
+/// Polynomial falloff of the irradiance towards the edge of the film, relative to the axis.
+///
+/// The relative irradiance at r mm from the axis is 1 - (a1 r^2 + a2 r^4 + a3 r^6). Source: OpenLensIO 1.0, equation
+/// 20.
 struct PETZVAL_API ExposureFalloff {
   std::array<double, 3> a{};
-  double largest_error = 0;  ///< in parts of the light on the axis, where there is light
+  double largest_error = 0;  ///< largest error where the film is lit, as a fraction of the irradiance on the axis
 
+  /// Relative irradiance at a distance from the axis (mm).
   double light(double radius_mm) const noexcept;
 };
 
-/// Fitted to film_irradiance() by least squares over the area of the film, as far out as light reaches it. Of a lens
-/// without symmetry of revolution over four directions from the axis. Throws Error where film_irradiance() does and for
-/// a lens whose axis is dark.
+/// Fits an exposure falloff to film_irradiance() by least squares over the lit area of the film.
+///
+/// Lenses without rotational symmetry are sampled in four directions from the axis.
+///
+/// @throws Error if the axis is dark; also under the conditions of film_irradiance()
 PETZVAL_API ExposureFalloff fit_exposure_falloff(const Lens& lens, const Film& film);
 
 }  // namespace petzval

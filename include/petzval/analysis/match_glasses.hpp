@@ -17,21 +17,22 @@ struct GlassTolerance {
   double vd = 0.5;
 };
 
-/// A prescription with names of glasses, and the lists of matched and unmatched media.
+/// A prescription with glass names, and the lists of matched and unmatched media.
 struct MatchedGlasses {
   Prescription prescription;
   std::vector<ImportWarning> matched;    ///< command: "surfaces 0, 4"; message: the medium and its glass
   std::vector<ImportWarning> unmatched;  ///< the same, with the reason
 };
 
-/// Gives media without a name the catalogue glass that is nearest to their n_d and V_d, so that they disperse as a
-/// glass and not as the n_d/V_d model.
+/// Assigns to each unnamed medium the catalogue glass nearest to its n_d and V_d.
 ///
-/// @param prescription  the lens; media with a name, air and mirrors stay
-/// @param glasses       the catalogue; nearest_glasses() chooses
-/// @param tolerance     a medium beyond it keeps its numbers and is listed in `unmatched`, and so is one without V_d
-/// @return              the lens; a matched medium has glass, catalogue and glass_origin "matched" beside its n_d and
-/// V_d
+/// A matched medium has the dispersion of the glass instead of the n_d/V_d model.
+///
+/// @param prescription  the lens; named media, air and mirrors are kept
+/// @param glasses       the catalogue, searched with nearest_glasses()
+/// @param tolerance     media beyond the tolerance or without V_d keep their numbers and are listed in `unmatched`
+/// @return              the lens; a matched medium has glass, catalogue and glass_origin "matched", and keeps its n_d
+///                      and V_d
 /// @throws Error        if a tolerance is negative or not finite
 PETZVAL_API MatchedGlasses match_glasses(const Prescription& prescription, const GlassCatalogue& glasses,
                                          const GlassTolerance& tolerance = {});

@@ -14,7 +14,7 @@
 
 namespace petzval {
 
-/// Centroid, and moments and largest radius about it, of a set of film points (mm); zeros for none.
+/// Centroid of a set of film points, and their moments and largest radius about it (mm). All 0 if there are no points.
 struct SpotSize {
   Vec2<double> centroid{0, 0};
   double rms_radius = 0;
@@ -22,58 +22,72 @@ struct SpotSize {
   double xx = 0, yy = 0, xy = 0;  ///< mean squares and product, mm^2
 };
 
-/// x, y: N each; points without both coordinates are left out.
+/// The spot size of a set of film points.
+///
+/// @param x, y  film coordinates (mm); if the lengths differ, the surplus is ignored
 PETZVAL_API SpotSize spot_size(std::span<const double> x, std::span<const double> y) noexcept;
 
-/// The same of all rays of several bundles, by their weights where they have some.
+/// The spot size of all rays of several bundles; rays without weights count 1.
 PETZVAL_API SpotSize spot_size(std::span<const RayBundle> sets) noexcept;
 
-/// Radius of the first dark ring of an ideal image on the film, 1.22 wavelength N / n, mm, n: index in front of the
-/// film, N = film_side_f_number (lens). Infinite for a closed stop.
+/// Radius of the first dark ring of an ideal image on the film (mm); infinite if the stop is closed.
+///
+/// It is 1.22 wavelength N / n with the refractive index n in front of the film and N = film_side_f_number(lens).
 PETZVAL_API double airy_radius(const Lens& lens, Wavelength wavelength = {});
 
-/// How much of a blur is diffraction.
+/// The influence of diffraction on a blur.
 enum class Diffraction : std::uint8_t {
-  negligible,  ///< the Airy disc is at most a tenth as large as the geometric blur: rays tell its shape
-  visible,     ///< it softens edges and fine structure
-  dominant,    ///< it is as large as the blur: rays tell neither size nor shape
+  negligible,  ///< the Airy disc is at most a tenth as large as the geometric blur: the geometric shape is valid
+  visible,     ///< diffraction softens edges and fine structure
+  dominant,    ///< the Airy disc is at least as large as the blur: its geometric size and shape are meaningless
 };
 PETZVAL_API std::string_view name(Diffraction diffraction) noexcept;
 
-/// By airy_radius() and the geometric blur's rms_radius, of which a uniform disc has 1 / sqrt 2 of its radius.
+/// Classifies a blur by its Airy radius and its geometric radius sqrt(2) rms_radius, the radius of a uniform disc.
 PETZVAL_API Diffraction diffraction(double airy_radius_mm, const SpotSize& size) noexcept;
 
 /// The spot of one field and wavelength.
 struct Spot {
   FieldPoint point;
   std::size_t wavelength = 0;
-  /// y on the film of the exact ray through the centre of the stop; clear apertures do not stop it. Unset where no such
-  /// ray reaches the film.
+  /// y on the film of the exact ray through the centre of the stop, regardless of clear apertures; nullopt if the ray
+  /// does not reach the film.
   std::optional<double> chief_ray_height;
-  /// relative_illumination() of the field. Unset where the axis is dark.
+  /// relative_illumination() of the field; nullopt if the axis is dark or no chief ray reaches the film.
   std::optional<double> relative_illumination;
   RayBundle hits;
   SpotSize size;
 };
 
-/// Spots of several fields on the lens's film at every compiled wavelength, ordered by field, then by wavelength.
-/// subject_z: lens frame, mm, -inf at infinity. Throws Error where pupil_boundary does.
+/// Spots of several fields on the film at every compiled wavelength, ordered by field, then by wavelength.
+///
+/// @param lens        the focused lens
+/// @param subject_z   subject plane (lens frame, mm); -inf at infinity
+/// @param fields_rad  field angles (rad)
+/// @param samples     rays per field and wavelength
+/// @throws Error      under the conditions of pupil_boundary()
 PETZVAL_API std::vector<Spot> spot_diagram(const Lens& lens, double subject_z, std::span<const double> fields_rad,
                                            std::uint32_t samples = 4096);
 
-/// Longitudinal and lateral colour: what each compiled wavelength differs by from the primary one, mm; 0 at that one.
+/// Longitudinal and lateral colour: differences of each compiled wavelength from the primary wavelength (mm).
 struct ChromaticAberration {
-  /// z of the paraxial image of the subject. Positive: farther from the lens. Unset for an image at infinity.
+  /// Shift of the paraxial image of the subject, positive away from the lens; nullopt if the image is at infinity.
   std::vector<std::optional<double>> paraxial_focus_shift;
-  /// The same of the film on which the axial point has the least RMS radius: also spherical aberration varies with the
-  /// wavelength. Unset where no such film exists.
+  /// Shift of the film with the least RMS radius of the axial point, which includes the variation of spherical
+  /// aberration with the wavelength; nullopt if there is no such film.
   std::vector<std::optional<double>> sharpest_focus_shift;
-  /// [field][wavelength]: y of the chief ray on the lens's film, as Spot::chief_ray_height. Unset without such a ray.
+  /// [field][wavelength]: shift of Spot::chief_ray_height on the film; nullopt if the chief ray is missing.
   std::vector<std::vector<std::optional<double>>> lateral;
 };
 
-/// For a subject at subject_z (lens frame, mm, in front of the first vertex, -inf at infinity). Lateral colour belongs
-/// to a film on which the subject is in focus: see with_focus(). Throws Error where chief_ray() and solve_focus() do.
+/// Computes the chromatic aberration of a lens.
+///
+/// Lateral colour is measured on the film of the lens, which should be focused on the subject: see with_focus().
+///
+/// @param lens        the focused lens
+/// @param subject_z   subject plane in front of the first vertex (lens frame, mm); -inf at infinity
+/// @param fields_rad  field angles (rad) for lateral colour
+/// @throws Error      under the conditions of chief_ray() and solve_focus()
 PETZVAL_API ChromaticAberration chromatic_aberration(const Lens& lens, double subject_z,
                                                      std::span<const double> fields_rad);
 

@@ -9,43 +9,43 @@
 
 namespace petzval {
 
-/// For each pixel of a picture, the place of another picture that it shows: s from 0 at the left edge to 1 at the right
-/// one, t from 0 at the bottom to 1 at the top, as Nuke's STMap reads them. The centre of the first of n pixels is at
-/// 0.5 / n.
+/// An ST map: for each pixel of an image, the position in another image from which it takes its value.
 ///
-/// 0 and 1 are the edges of the film's picture in both maps, whatever the margin; places beside it are below 0 or above
-/// 1. A pixel that sees nothing has s = t = -1.
+/// s runs from 0 at the left edge to 1 at the right edge, t from 0 at the bottom to 1 at the top, as in Nuke's STMap.
+/// The centre of the first of n pixels is at 0.5 / n. In both maps 0 and 1 are the edges of the film image without its
+/// margin; positions outside are below 0 or above 1. Pixels without a source position have s = t = -1.
 struct PETZVAL_API StMap {
   int width = 0, height = 0;       ///< pixels, with the margin
-  int margin_x = 0, margin_y = 0;  ///< pixels on either side of the film's picture
+  int margin_x = 0, margin_y = 0;  ///< pixels on either side of the film image
   std::vector<float> s{}, t{};     ///< width x height, rows from the top
 
-  /// False outside the map.
+  /// True if the pixel has a source position; false outside the map.
   bool sees(int column, int row) const noexcept;
 };
 
-/// The two maps between the picture of a lens and that of its pinhole.
+/// The two maps between a lens image and the image of its pinhole.
 struct StMaps {
-  StMap undistort;  ///< pixels of the pinhole's picture, with the margin: where the lens's picture shows them
-  StMap redistort;  ///< pixels of the lens's picture, those of the film: where the pinhole's picture shows them
+  StMap undistort;  ///< for pixels of the pinhole image and its margin: positions in the lens image
+  StMap redistort;  ///< for pixels of the lens image: positions in the pinhole image
 };
 
 struct StMapOptions {
-  /// Size of the pinhole's picture over that of the film, at least 1. Unset: the smallest that holds all that the film
-  /// sees, and at most 2: what lies farther out in a picture of a fisheye is cut.
+  /// Size of the pinhole image relative to the film image, 1 to 10. Unset: the smallest size that contains everything
+  /// the film sees, at most 2. The outer part of a fisheye image is cut off by this limit.
   std::optional<double> overscan = {};
-  int threads = 1;  ///< the maps do not depend on them
+  int threads = 1;  ///< does not change the maps
 };
 
-/// Maps of the film's pixels. A pinhole's picture through `redistort` looks as the lens shows it, a lens's picture
-/// through `undistort` as the pinhole does.
+/// Computes ST maps for the pixels of a film: `undistort` warps a lens image to the pinhole image, `redistort` back.
 ///
-/// Both are computed at nodes, 16 pixels apart at most, and interpolated in between: within 0.001 pixels of
-/// LensDistortion, 0.02 near the end of the light and 0.1 at fields beyond 70 degrees. Where that does not reach it,
-/// mostly at the edge of what the film sees, they are computed pixel by pixel. One after the other they lead back
-/// within 0.005 pixels by exact and first-order models, where they are interpolated linearly
-/// (tests/analysis/st_map_test.cpp). Throws Error for an overscan below 1 or above 10, for fewer than 1 thread, and
-/// for a dark film.
+/// The maps are computed at nodes at most 16 pixels apart and interpolated. Cells in which interpolation is not
+/// accurate enough, mostly at the edge of the lit region, are computed pixel by pixel.
+///
+/// @throws Error if the overscan is not 1 to 10, there is less than 1 thread, or the film is dark
+///
+/// Accuracy: within 0.001 pixels of LensDistortion, 0.02 near the edge of the lit region and 0.1 at fields beyond 70
+/// degrees. With linear interpolation of the maps and exact or first-order models, one map after the other returns to
+/// the start within 0.005 pixels (tests/analysis/st_map_test.cpp).
 PETZVAL_API StMaps st_maps(const LensDistortion& distortion, const StMapOptions& options = {});
 
 }  // namespace petzval
