@@ -13,7 +13,7 @@
 
 namespace petzval {
 
-/// What a configuration changes on one surface; the rest of the row stays.
+/// The changes of one surface in a configuration. Absent members keep the value of the row.
 struct SurfaceChange {
   int surface = 0;  ///< from 0
   std::optional<double> thickness{};
@@ -25,14 +25,14 @@ struct SurfaceChange {
   bool operator==(const SurfaceChange&) const = default;
 };
 
-/// One position of a lens with moving groups: a zoom position, or a position focused at a near subject.
+/// One position of a lens with moving groups: a zoom position, or the focus of a zoom position at a near subject.
 struct Configuration {
   std::string name{};
-  /// The name of the zoom position that this one focuses; absent: a zoom position itself.
+  /// Name of the zoom position that this configuration focuses; nullopt for a zoom position.
   std::optional<std::string> focus_of{};
-  std::optional<double> subject_distance_mm{};  ///< from the first surface, above 0; absent: infinity
-  std::optional<int> stop{};                    ///< the surface that is the stop here, if not that of the rows
-  std::optional<double> focal_length_mm{};      ///< nominal, as printed
+  std::optional<double> subject_distance_mm{};  ///< from the first surface, positive; nullopt: infinity
+  std::optional<int> stop{};                    ///< stop surface; nullopt: the stop of the rows
+  std::optional<double> focal_length_mm{};      ///< nominal, as printed in the source
   std::optional<double> f_number{};
   std::optional<double> half_field_deg{};
   std::optional<double> image_diagonal_mm{};
@@ -41,7 +41,8 @@ struct Configuration {
   bool operator==(const Configuration&) const = default;
 };
 
-/// A configuration by name, by number from 0, or between two neighbours: 0.5 is halfway from the first to the second.
+/// A configuration, chosen by name or by number from 0. Fractions interpolate: 0.5 is halfway from the first to the
+/// second configuration.
 class ConfigurationChoice {
  public:
   ConfigurationChoice() = default;

@@ -12,14 +12,14 @@
 
 namespace petzval {
 
-/// How a designer fixed the width of the beam.
+/// The quantity by which a design states the width of the beam.
 enum class ApertureSetting : std::uint8_t {
   entrance_pupil_diameter,  ///< mm
-  f_number,                 ///< focal length over the diameter of the paraxial entrance pupil
+  f_number,                 ///< focal length divided by the diameter of the paraxial entrance pupil
   working_f_number,         ///< 1 / (2 tan u') of the paraxial marginal ray
   object_na,                ///< n sin u in object space
   image_na,                 ///< n' sin u' in image space
-  stop_size,                ///< the semi-diameter of the stop is what the table says
+  stop_size,                ///< the table states the semi-diameter of the stop
 };
 
 struct DesignAperture {
@@ -29,20 +29,22 @@ struct DesignAperture {
   bool operator==(const DesignAperture&) const = default;
 };
 
-/// What the fields of a design are.
+/// The quantity by which a design states its fields.
 enum class FieldKind : std::uint8_t {
-  angle_deg,         ///< of the chief ray in object space, degrees
-  object_height,     ///< mm
+  angle_deg,         ///< angle of the chief ray in object space, degrees
+  object_height,     ///< object height, mm
   paraxial_image,    ///< paraxial image height, mm
-  real_image_height  ///< mm
+  real_image_height  ///< image height of the exact chief ray, mm
 };
 
-/// "entrance_pupil_diameter", "f_number", ...; "angle_deg", "object_height", ...
+/// The name of a setting ("entrance_pupil_diameter", ...) or of a kind ("angle_deg", ...).
 PETZVAL_API std::string_view name(ApertureSetting setting) noexcept;
 PETZVAL_API std::string_view name(FieldKind kind) noexcept;
 
-/// One field, and how its beam differs from the full pupil: decentred by (decentre_x, decentre_y) and compressed by
-/// (compress_x, compress_y), fractions of the pupil's radius, in axes turned by angle_deg.
+/// One field with its vignetting factors.
+///
+/// The beam is the full pupil decentred by (decentre_x, decentre_y) and compressed by (compress_x, compress_y), all in
+/// units of the pupil radius, in axes rotated by angle_deg.
 struct DesignField {
   double x = 0, y = 0;
   double weight = 1;
@@ -60,15 +62,17 @@ struct DesignWavelength {
   bool operator==(const DesignWavelength&) const = default;
 };
 
-/// What a designer put in besides surfaces. No function of the library computes with it but those that say so:
-/// a renderer chooses its own fields, wavelengths and stop.
+/// The data of a design other than its surfaces.
+///
+/// Functions ignore these data unless their documentation says otherwise: a renderer chooses its own fields,
+/// wavelengths and stop.
 struct DesignData {
   std::optional<DesignAperture> aperture{};
-  double object_distance_mm = std::numeric_limits<double>::infinity();  ///< from the first surface
+  double object_distance_mm = std::numeric_limits<double>::infinity();  ///< distance from the first surface
   FieldKind field_kind = FieldKind::angle_deg;
   std::vector<DesignField> fields{};
   std::vector<DesignWavelength> wavelengths{};
-  std::size_t primary_wavelength = 0;  ///< from 0
+  std::size_t primary_wavelength = 0;  ///< index into wavelengths
 
   bool operator==(const DesignData&) const = default;
 };
