@@ -16,28 +16,29 @@
 namespace petzval {
 namespace {
 
-/// The options with z_mm of the film set. Throws Error for invalid options.
+/// The options with film.z_mm set. Throws Error if the options are invalid.
 TiltOptions checked(TiltOptions options, double unset_z) {
   if (!(options.max_tilt_rad >= 0 && options.max_tilt_rad < std::numbers::pi / 2)) {
-    throw Error("fit_tilt: the largest tilt is " + to_text(options.max_tilt_rad) +
-                " rad, wanted one from 0 to less than a quarter turn");
+    throw Error("fit_tilt: max_tilt_rad = " + to_text(options.max_tilt_rad) +
+                "; must be at least 0 and below a quarter turn (pi/2)");
   }
   Film& film = options.film;
   film.z_mm = film.z_mm.value_or(unset_z);
   if (!std::isfinite(film.z()) || !std::isfinite(film.tilt_rad) || !std::isfinite(film.swing_rad)) {
-    throw Error("fit_tilt: the film stands at " + to_text(film.z()) + " mm, " + to_text(film.tilt_rad) + " and " +
-                to_text(film.swing_rad) + " rad, wanted finite numbers");
+    throw Error("fit_tilt: film: z_mm, tilt_rad, swing_rad = " + to_text(film.z()) + ", " + to_text(film.tilt_rad) +
+                ", " + to_text(film.swing_rad) + "; must be finite");
   }
   const double sum = film.width_mm + film.height_mm + film.shift_x_mm + film.shift_y_mm;
   if (!(film.width_mm >= 0 && film.height_mm >= 0) || !std::isfinite(sum)) {
-    throw Error("fit_tilt: the film is " + to_text(film.width_mm) + " x " + to_text(film.height_mm) + " mm about (" +
-                to_text(film.shift_x_mm) + ", " + to_text(film.shift_y_mm) +
-                "), wanted finite numbers and no negative size");
+    throw Error("fit_tilt: film: width_mm x height_mm = " + to_text(film.width_mm) + " x " + to_text(film.height_mm) +
+                ", shift = (" + to_text(film.shift_x_mm) + ", " + to_text(film.shift_y_mm) +
+                "); must be finite, and the size not negative");
   }
   return options;
 }
 
-/// Where the chief ray to the middle of the picture meets another film.
+/// The point of `film` on the chief ray through the centre of the picture on the film `before`; nullopt if they do not
+/// meet.
 std::optional<FilmPoint> carried_centre(const IdealLens& lens, const Film& before, const Film& film) {
   const Vec3<double> middle = before.position({before.shift_x_mm, before.shift_y_mm});
   const double pupil_z = lens.pupils.exit.z;
@@ -49,14 +50,14 @@ std::optional<FilmPoint> carried_centre(const IdealLens& lens, const Film& befor
   return film.point(middle + steps * line);
 }
 
-/// Whether the film, with its corners, lies behind the lens.
+/// True if the film, including its corners, lies behind the lens.
 bool clear_of_lens(const IdealLens& lens, const Film& film) {
   const auto corners = film.corners();
   return std::all_of(corners.begin(), corners.end(),
                      [&](const FilmPoint& corner) { return film.position(corner).z > lens.rear_z; });
 }
 
-/// The film that was found, or the film as it stood. blur_of: the blur of a target on a film.
+/// The result for a solution; the given film if there is no solution. blur_of: the blur of a target on a film.
 TiltFit described(const IdealLens& lens, std::span<const FocusTarget> targets, const TiltOptions& options,
                   std::span<const fit_detail::SeenTarget> seen, const fit_detail::TiltProblem& problem,
                   const fit_detail::TiltSolution& solution, const auto& blur_of) {
@@ -88,10 +89,10 @@ TiltFit described(const IdealLens& lens, std::span<const FocusTarget> targets, c
   return fit;
 }
 
-/// The problem without outliers.
+/// The problem with outliers weighted down or removed.
 fit_detail::TiltProblem problem_without_outliers(const IdealLens& lens, std::span<fit_detail::SeenTarget> seen,
                                                  const TiltOptions& options) {
-  constexpr std::size_t fewest = 5;  // targets among which an outlier can be told
+  constexpr std::size_t fewest = 5;  // targets needed to identify an outlier
   const fit_detail::TiltProblem problem = tilt_problem(lens, seen, options.max_tilt_rad);
   if (!options.robust || problem.used.size() < fewest) return problem;
   const std::vector<double> kept = robust_weights(problem, seen);
@@ -165,8 +166,8 @@ TiltFit fit_tilt(const ImageRays& lens, std::span<const FocusTarget> targets, co
     const std::optional<BundleBlur> blur = blur_on(bundles[i], film);
     return blur ? blur->signed_diameter : std::numeric_limits<double>::quiet_NaN();
   });
-  // Aberrations move the film by nearly the same amount for all distances: what is in focus is the plane that the
-  // cardinal points put into focus on the film that they find for the same targets.
+  // Aberrations move the film by nearly the same distance for all subjects. The plane of focus is therefore taken from
+  // the film that the cardinal points give for the same targets.
   if (fit) fit.focus = focus_plane(ideal, problem.frame.film(thick.film, options.film));
   return fit;
 }

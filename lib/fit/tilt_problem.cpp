@@ -8,9 +8,9 @@
 namespace petzval::fit_detail {
 namespace {
 
-/// The film with a plane of the scene in focus. With v the distance behind the rear principal plane, the inverse
-/// distance is (1 - f' / v) / f and the picture is -f' (X, Y) / (f v), so that a x + b y + c for the inverse distance
-/// becomes v (1 - c f) = f' (1 - a X - b Y).
+/// The film that focuses a plane of the scene. At a distance v behind the rear principal plane, the inverse distance is
+/// (1 - f' / v) / f and the picture is -f' (X, Y) / (f v), so the plane a x + b y + c of inverse distances becomes v (1
+/// - c f) = f' (1 - a X - b Y).
 FilmSlopes film_of(const focus_detail::PlaneFit& fit, const IdealLens& lens, const TiltFrame& frame) {
   const double at_axis = lens.rear_focal_length / (1 - fit.c * lens.front_focal_length);
   const double p = -fit.a * at_axis, q = -fit.b * at_axis;
@@ -19,8 +19,8 @@ FilmSlopes film_of(const focus_detail::PlaneFit& fit, const IdealLens& lens, con
 }
 
 /// Main direction and spreads of the images, and the limits of the slopes. The limits fall to 0 as the targets shrink
-/// to one place of the picture, the limit across the main direction as they become a line: planes then turn through the
-/// plane of least tilt to the other side without a jump.
+/// to one point of the picture, and the limit across the main direction as they approach a line. The film then passes
+/// continuously through the film of least tilt when the plane of the targets turns over.
 TiltSpace tilt_space(const focus_detail::PlaneFit& fit, std::span<const IdealBlur> blurs, double max_tilt) {
   TiltSpace space;
   space.parameters = static_cast<int>(fit.rank);
@@ -88,7 +88,7 @@ std::vector<SeenTarget> seen_targets(const IdealLens& lens, std::span<const Focu
     const double away = std::max({std::abs(from_lens.x), std::abs(from_lens.y), std::abs(from_lens.z)});
     const PicturePoint& d = seen.picture;
     const bool near = away < farthest && std::isfinite(d.x) && std::isfinite(d.y) && std::isfinite(d.inverse_distance);
-    if (weight == 0 || image.cone == 0) {  // through a pinhole everything is sharp
+    if (weight == 0 || image.cone == 0) {  // a pinhole images all distances sharply
       seen.use = TargetUse::no_weight;
     } else if (near) {
       seen.use = TargetUse::used;
@@ -100,7 +100,7 @@ std::vector<SeenTarget> seen_targets(const IdealLens& lens, std::span<const Focu
 
 TiltProblem tilt_problem(const IdealLens& lens, std::span<const SeenTarget> targets, double max_tilt) {
   TiltProblem problem;
-  // Cones and weights are divided by the largest, so that their squares do not overflow.
+  // Cones and weights are divided by the largest to keep their squares from overflowing.
   double largest = 0, largest_cone = 0, weights = 0;
   for (const SeenTarget& target : targets) {
     if (!(target.weight > 0)) continue;
@@ -131,7 +131,7 @@ TiltProblem tilt_problem(const IdealLens& lens, std::span<const SeenTarget> targ
   }
   problem.space = tilt_space(fit, problem.blurs, max_tilt);
 
-  // A plane of focus within the focal length has no film: the fit then starts from an upright one in the middle.
+  // A plane of focus within the focal length has no film. The fit then starts from an upright film at the centroid.
   const FilmSlopes film = film_of(fit, lens, problem.frame);
   const TiltSpace& space = problem.space;
   if (1 - fit.c * lens.front_focal_length > 0 && std::isfinite(film.z + film.p + film.q)) {

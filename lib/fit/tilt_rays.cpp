@@ -17,7 +17,7 @@ RayBlur::RayBlur(const RayBundle& bundle, const TiltFrame& frame, double root, d
   x_ = (array(bundle.x) + to_frame * slope_x_ - frame.origin.x) / frame.unit;
   y_ = (array(bundle.y) + to_frame * slope_y_ - frame.origin.y) / frame.unit;
   if (wanted == 0) return;
-  // The blur on the sharpest upright film is nearly the blur without defocus on any film.
+  // The blur on the sharpest upright film approximates the blur without defocus on any film.
   const Eigen::ArrayXd u = slope_x_ - slope_x_.mean(), v = slope_y_ - slope_y_.mean();
   const double sharpest = -(x_ * u + y_ * v).sum() / (u.square() + v.square()).sum();
   const Eigen::ArrayXd x = x_ + sharpest * slope_x_, y = y_ + sharpest * slope_y_;
@@ -26,18 +26,18 @@ RayBlur::RayBlur(const RayBundle& bundle, const TiltFrame& frame, double root, d
 }
 
 bool RayBlur::operator()(const FilmSlopes& film, double* errors, double* derivatives) const {
-  // A ray of slopes s from (x, y) at z = 0 is at z = (z0 + p x + q y) / (1 - p s_x - q s_y) on the film, and moves
-  // there along (s_x, s_y, 1) by (1, X, Y) / (1 - p s_x - q s_y) with z0, p and q, where (X, Y) is its place on the
-  // film.
+  // A ray with slopes s from (x, y) at z = 0 meets the film at z = (z0 + p x + q y) / (1 - p s_x - q s_y). The
+  // derivatives of this hit (X, Y, z) with respect to z0, p and q are (1, X, Y) / (1 - p s_x - q s_y) times (s_x, s_y,
+  // 1).
   const Eigen::Index count = x_.size();
   const double scale = 8 / static_cast<double>(count);
   const Eigen::ArrayXd facing = 1 - film.p * slope_x_ - film.q * slope_y_;
   if (!(facing > 0).all()) return false;
-  Eigen::Matrix<double, Eigen::Dynamic, 4> hits(3 * count, 4);  // moved by z0, p and q; and the hits
-  auto parts = hits.reshaped(count, 12);                        // x, y and z by turns
+  Eigen::Matrix<double, Eigen::Dynamic, 4> hits(3 * count, 4);  // derivatives by z0, p and q; then the hits
+  auto parts = hits.reshaped(count, 12);                        // interleaved x, y and z
   parts.col(0) = slope_x_ / facing, parts.col(1) = slope_y_ / facing, parts.col(2) = 1 / facing;
 
-  // Diameters grow by `steepness` with z0, which depends on the slopes alone.
+  // Defocus changes the diameter at a rate that depends only on the slopes of the film.
   double nearer = 0, nearer_by_p = 0, nearer_by_q = 0;
   if (defocus_ != 0) {
     const Eigen::Array<double, Eigen::Dynamic, 3> by_z = parts.leftCols<3>();
@@ -61,7 +61,8 @@ bool RayBlur::operator()(const FilmSlopes& film, double* errors, double* derivat
   parts.middleCols<3>(3) = parts.leftCols<3>().array().colwise() * (x - nearer_by_p);
   parts.middleCols<3>(6) = parts.leftCols<3>().array().colwise() * (y - nearer_by_q);
   parts.rowwise() -= parts.colwise().mean().eval();
-  // Four errors whose squares, gradient and Gauss-Newton matrix are those of all hits: the root of their products.
+  // Reduces all hits to four errors with the same sum of squares, gradient and Gauss-Newton matrix: a square root of
+  // their product matrix.
   const Eigen::Matrix4d products = scale * hits.transpose() * hits;
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix4d> eigen(products);
   const Eigen::Matrix4d rows =

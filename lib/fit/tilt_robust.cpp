@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Least median of squares (Rousseeuw 1984) over films through as many targets as a film has parameters, then the
-// minimum of Tukey's loss nearby. Blurs are not weighted here: whether a target is an outlier does not depend on its
-// weight.
+// Least median of squares (Rousseeuw 1984) over films through as many targets as a film has parameters, followed by the
+// nearest minimum of Tukey's loss. Blurs are not weighted here: a target is an outlier independently of its weight.
 #include <Eigen/Core>
 #include <Eigen/LU>
 #include <algorithm>
@@ -16,7 +15,7 @@
 namespace petzval::fit_detail {
 namespace {
 
-/// The groups of `size` among `count` targets: all of them up to `most`, else a uniform subset.
+/// The groups of `size` among `count` targets: all of them if there are at most `most`, otherwise a uniform subset.
 std::vector<std::array<std::size_t, 3>> groups(std::size_t count, int size, std::size_t most) {
   std::vector<std::array<std::size_t, 3>> result;
   const std::size_t second = size > 1 ? count : 1, third = size > 2 ? count : 1;
@@ -29,8 +28,8 @@ std::vector<std::array<std::size_t, 3>> groups(std::size_t count, int size, std:
         for (std::size_t k = size > 2 ? j + 1 : 0; k < third; ++k) result.push_back({i, j, k});
     return result;
   }
-  // Multiples of powers of the root of x^4 = x + 1 fill the cube uniformly (Roberts 2018, "The unreasonable
-  // effectiveness of quasirandom sequences").
+  // Multiples of the powers of 1 / g with g^4 = g + 1 fill the cube uniformly. Source: Roberts 2018, "The unreasonable
+  // effectiveness of quasirandom sequences".
   constexpr double step = 0.8191725133961645;
   const auto pick = [&](std::size_t n, double power) {
     const double turn = static_cast<double>(n + 1) * power;
@@ -45,7 +44,7 @@ std::vector<std::array<std::size_t, 3>> groups(std::size_t count, int size, std:
   return result;
 }
 
-/// The film that a group of targets asks for; not finite if it is not unique.
+/// The film that makes a group of targets sharp; not finite if it is not unique.
 FilmSlopes film_through(std::span<const IdealBlur> blurs, const std::array<std::size_t, 3>& group,
                         const TiltSpace& space) {
   Eigen::Matrix3d rows = Eigen::Matrix3d::Identity();
@@ -62,17 +61,17 @@ FilmSlopes film_through(std::span<const IdealBlur> blurs, const std::array<std::
   return space.film(t[0], t[1] / space.spread_along, t[2] / space.spread_across);
 }
 
-/// The film whose median of squared blurs is least, and that median.
+/// The film with the least median of squared blurs, and that median.
 struct LeastMedian {
   FilmSlopes film;
   double square = std::numeric_limits<double>::infinity();
 };
 
 LeastMedian least_median(std::span<const IdealBlur> blurs, const TiltSpace& space) {
-  // As many as the triples of 24 targets.
+  // The number of triples of 24 targets.
   constexpr std::size_t most_groups = 2024;
   const auto count = static_cast<std::ptrdiff_t>(blurs.size());
-  const std::ptrdiff_t half = count / 2 + (space.parameters + 1) / 2;  // so many blurs within the median
+  const std::ptrdiff_t half = count / 2 + (space.parameters + 1) / 2;  // number of blurs up to the median
   LeastMedian best;
   std::vector<double> squares(blurs.size());
   for (const auto& group : groups(blurs.size(), space.parameters, most_groups)) {
@@ -93,7 +92,7 @@ LeastMedian least_median(std::span<const IdealBlur> blurs, const TiltSpace& spac
 }  // namespace
 
 std::vector<double> robust_weights(const TiltProblem& problem, std::span<const SeenTarget> targets) {
-  // In units of the mean cone, so that the floor below has a meaning.
+  // In units of the mean cone, to which `rounding` below refers.
   std::vector<IdealBlur> blurs = problem.blurs;
   std::vector<double> weights;
   double cones = 0;
@@ -106,7 +105,7 @@ std::vector<double> robust_weights(const TiltProblem& problem, std::span<const S
   const double largest = *std::max_element(weights.begin(), weights.end());
   for (double& weight : weights) weight /= largest;
 
-  // The median of exact targets is a rounding error, and no scale for outliers.
+  // The median of exact targets is a rounding error and must not set the scale for outliers.
   constexpr double rounding = 1e-11;
   const LeastMedian start = least_median(blurs, problem.space);
   const double spare = static_cast<double>(blurs.size()) - problem.space.parameters;

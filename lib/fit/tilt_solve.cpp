@@ -18,7 +18,7 @@
 namespace petzval::fit_detail {
 namespace {
 
-/// Films by parameters: z, and slopes times spreads as far as the targets determine them, relative to a film.
+/// Films as functions of the parameters, relative to an origin: z, and slopes times spreads.
 class FilmChart {
  public:
   FilmChart(const TiltSpace& space, const FilmSlopes& origin, int parameters)
@@ -28,7 +28,7 @@ class FilmChart {
     by_parameters_ << 1, 0, 0, 0, along.p, across.p, 0, along.q, across.q;
   }
   int parameters() const noexcept { return parameters_; }
-  /// Derivatives of z, p and q.
+  /// Derivatives of z, p and q with respect to the parameters.
   auto by_parameters() const noexcept { return by_parameters_.leftCols(parameters_); }
   FilmSlopes operator()(const double* t) const noexcept {
     const Eigen::Vector3d step = by_parameters() * Eigen::Map<const Eigen::VectorXd>(t, parameters_);
@@ -41,7 +41,7 @@ class FilmChart {
   int parameters_;
 };
 
-/// The cost of slopes: its square grows from 0 to `strength` at the limit.
+/// A penalty on slopes, whose square grows from 0 to `strength` at the slope limit.
 class Restraint final : public BlurErrors {
  public:
   Restraint(const TiltSpace& space, double strength) : root_(std::sqrt(strength)) {
@@ -65,7 +65,7 @@ class Restraint final : public BlurErrors {
   double root_;
 };
 
-/// The errors on a film that light does not cross from the front: no step goes there.
+/// Error of a film whose front is not reached by light, so large that the solver rejects the step.
 constexpr double hopeless = 1e100;
 
 class ChartedErrors final : public ceres::CostFunction {
@@ -79,7 +79,7 @@ class ChartedErrors final : public ceres::CostFunction {
     const int rows = errors_.rows(), columns = chart_.parameters();
     Eigen::Matrix<double, Eigen::Dynamic, 3, Eigen::RowMajor, most_rows, 3> by_film(rows, 3);
     const bool wanted = jacobians && jacobians[0];
-    // Ceres prints if an evaluation fails and if numbers are not finite.
+    // Ceres prints a message if an evaluation fails or a number is not finite.
     const auto finite = [](double x) { return std::isfinite(x); };
     if (!errors_(film, residuals, wanted ? by_film.data() : nullptr) ||
         !std::all_of(residuals, residuals + rows, finite)) {
@@ -101,7 +101,7 @@ struct NormalEquations {
   Eigen::Matrix3d products = Eigen::Matrix3d::Identity();
   Eigen::Vector3d gradient = Eigen::Vector3d::Zero();
 };
-/// Nothing for a film that light does not cross from the front.
+/// nullopt if light does not reach the front of the film.
 std::optional<NormalEquations> normal_equations(std::span<const BlurErrors* const> errors, const FilmChart& chart,
                                                 const FilmSlopes& film) {
   const int columns = chart.parameters();
@@ -118,8 +118,8 @@ std::optional<NormalEquations> normal_equations(std::span<const BlurErrors* cons
   return result;
 }
 
-/// Gauss-Newton steps without a test of descent: after half of the digits the sum of squares no longer distinguishes
-/// films, but its gradient does.
+/// Gauss-Newton steps without a test of descent: below half of the digits the sum of squares no longer distinguishes
+/// films, but the gradient still differs.
 FilmSlopes polished(std::span<const BlurErrors* const> errors, const FilmChart& chart) {
   Eigen::Vector3d place = Eigen::Vector3d::Zero();
   for (int i = 0; i < 8; ++i) {
@@ -135,7 +135,8 @@ FilmSlopes polished(std::span<const BlurErrors* const> errors, const FilmChart& 
   return chart(place.data());
 }
 
-/// Moves a film to the least sum of losses over the first parameters. False if that did not converge: the film stays.
+/// Moves `film` to the least sum of losses over the first `parameter_count` parameters. Returns false and leaves `film`
+/// if the search does not converge.
 bool minimise(std::span<const BlurErrors* const> errors, std::span<ceres::LossFunction* const> losses,
               const TiltSpace& space, int parameter_count, FilmSlopes& film) {
   const FilmChart chart(space, film, parameter_count);
@@ -150,15 +151,16 @@ bool minimise(std::span<const BlurErrors* const> errors, std::span<ceres::LossFu
   options.linear_solver_type = ceres::DENSE_QR;
   options.logging_type = ceres::SILENT;
   options.num_threads = 1;
-  // The parameters are scaled: the first step is the whole step, and steps end at the rounding of numbers near 1 or of
-  // the sum of squares.
+  // The parameters are scaled, so the first step is not shortened. The search ends at the rounding error of numbers
+  // near 1 or of the sum of squares.
   options.initial_trust_region_radius = options.max_trust_region_radius;
   options.jacobi_scaling = false;
   options.function_tolerance = 1e-13;
   options.gradient_tolerance = 1e-15;
   options.parameter_tolerance = 1e-14;
   options.max_num_iterations = 200;
-  options.max_num_consecutive_invalid_steps = options.max_num_iterations;  // at the rounding; giving up prints
+  options.max_num_consecutive_invalid_steps =
+      options.max_num_iterations;  // such steps occur at the rounding error; Ceres prints if it gives up
   ceres::Solver::Summary summary;
   ceres::Solve(options, &problem, &summary);
   if (summary.termination_type != ceres::CONVERGENCE || !(summary.final_cost < hopeless)) return false;
@@ -172,15 +174,16 @@ bool faces_light(std::span<const BlurErrors* const> errors, const FilmSlopes& fi
   return std::all_of(errors.begin(), errors.end(), [&](const auto* error) { return (*error)(film, values, nullptr); });
 }
 
-/// Slopes relative to the limit.
+/// Slopes divided by the limit.
 double part_of_limit(const TiltSpace& space, const FilmSlopes& film) {
   const double along = space.along(film) / space.largest_slope;
   return space.parameters < 3 ? std::abs(along) : std::hypot(along, space.across(film) / space.largest_slope_across);
 }
 
-/// The minimum of a sum of squares within the limit, from a film near it: Gauss-Newton steps, each to the best film
-/// within the limit by the normal equations at the last one. Nothing if the steps do not shrink fast; if they do they
-/// end at a minimum, since the neglected second derivatives are then smaller than the rest.
+/// The minimum of a sum of squares within the slope limit, starting at a film nearby. Each Gauss-Newton step goes to
+/// the best film within the limit by the normal equations of the previous film. nullopt if the steps do not shrink
+/// fast. If they do, they end at a minimum, because the neglected second derivatives are then smaller than the other
+/// terms.
 std::optional<TiltSolution> least_nearby(std::span<const BlurErrors* const> errors, const TiltSpace& space,
                                          FilmSlopes film) {
   TiltSolution result;
@@ -247,12 +250,13 @@ TiltSolution least_blur(std::span<const BlurErrors* const> errors, const TiltSpa
   };
   if (part_of_limit(space, result.film) > 1) bring_to_limit();
 
-  // The best film within the limit is the best of all, or the best on the limit; and that is also the best of all where
-  // squared slopes cost so much in addition that it needs no limit (their price is Lagrange's multiplier). With the
-  // price slopes fall to 0 steadily, their reciprocals nearly along a straight line. Unlike an angle around the limit
-  // the price has one solution, and it moves with the targets, however far away the best film of all is.
+  // The best film within the limit is either the unrestricted minimum or lies on the limit. A film on the limit is also
+  // the unrestricted minimum after a penalty on squared slopes is added; its price is the Lagrange multiplier. The
+  // slopes decrease monotonically with the price, and their reciprocals are nearly linear in it. Unlike an angle around
+  // the limit, the price has one solution, which is continuous in the targets even if the unrestricted minimum is far
+  // away.
   const double wide = std::max(space.spread_along, space.spread_across) * space.largest_slope;
-  const double scale = wide * wide;  // the price that halves slopes, about
+  const double scale = wide * wide;  // price that approximately halves the slopes
   constexpr double infinity = std::numeric_limits<double>::infinity();
   double dear = infinity, cheap = -1, last_price = 0, last_excess = 0;
   double& price = result.restraint;
@@ -261,7 +265,7 @@ TiltSolution least_blur(std::span<const BlurErrors* const> errors, const TiltSpa
     std::vector<const BlurErrors*> all(errors.begin(), errors.end());
     if (price > 0) all.push_back(&restraint);
     result.converged = minimise(all, {}, space, space.parameters, result.film);
-    // Fits that ran away did so beyond the limit.
+    // A search that diverged did so beyond the limit.
     const double excess = result.converged ? 1 - std::min(1 / part_of_limit(space, result.film), 1e100) : 1;
     if (price == 0 && excess <= 1e-14) {
       result.limited = false;

@@ -33,7 +33,7 @@ void check(const Iris& iris, const std::string& where) {
   if (!(roundness >= -1 && roundness <= 1)) {
     throw Error(where + "roundness = " + to_text(roundness) + "; must be -1 to 1");
   }
-  constexpr double farthest = 1e6;  // |larger angles lose too many digits within a turn
+  constexpr double farthest = 1e6;  // larger angles lose too many digits within a turn
   if (!(std::abs(rotation_rad) <= farthest)) {
     throw Error(where + "rotation_rad = " + to_text(rotation_rad) + "; absolute value must be at most " +
                 to_text(farthest));

@@ -28,10 +28,10 @@ PETZVAL_API Iris upside_down(Iris iris, bool along_x = true, bool along_y = true
 
 /// One edge of a bladed iris in a frame whose second axis points from the stop's centre to the edge's middle.
 struct Blade {
-  double half_angle = 0;  ///< |half the angle of the sector
+  double half_angle = 0;  ///< half the angle of the sector
   double half_chord = 0;
-  double middle = 0;     ///< |distance from the centre to the middle of the edge
-  double curvature = 0;  ///< |positive if the edge bends outwards
+  double middle = 0;     ///< distance from the centre to the middle of the edge
+  double curvature = 0;  ///< positive if the edge bends outwards
 
   explicit Blade(const Iris& iris);
 

@@ -24,12 +24,12 @@ inline constexpr R rim_squared = 1 + 8 * std::numeric_limits<R>::epsilon();
 /// not own the arrays.
 template <class R>
 struct IrisSectors {
-  std::size_t count = 0;     ///< |0 for the unit disc
-  const R* turns = nullptr;  ///< |[count] sine and cosine of the angle from +y towards +x to the middle of the edge
+  std::size_t count = 0;     ///< 0 for the unit disc
+  const R* turns = nullptr;  ///< [count] sine and cosine of the angle from +y towards +x to the middle of the edge
   /// The edge point that has the fraction (1 + q) / 2 of the sector's area before it lies at q across(2 q^2 - 1) across
   /// and along(2 q^2 - 1) along the direction to the middle of the edge. Coefficients by ascending power, [edge_terms].
   const R *across = nullptr, *along = nullptr;
-  const R* edges = nullptr;  ///< |[count] the four members of each IrisEdge
+  const R* edges = nullptr;  ///< [count] the four members of each IrisEdge
 };
 
 // Anonymous namespace: the code is compiled for several instruction sets, and the linker must not merge the versions.
@@ -46,7 +46,7 @@ struct IrisPoint {
 template <int first, int terms, class R>
 inline R turning_series(R s) noexcept {
   struct Terms {
-    R of[terms + 1] = {R(1)};  // |the last term is 0
+    R of[terms + 1] = {R(1)};  // the last term is 0
     constexpr Terms() {
       double c = 1;
       for (int k = 1; k < terms; ++k) of[k] = static_cast<R>(c /= -(first + 2. * k - 2) * (first + 2. * k - 1));

@@ -308,7 +308,7 @@ std::size_t IrisWeights::column_of(double u) const noexcept {
 }
 
 IrisWeights::Drawn IrisWeights::draw(double u, double v) const noexcept {
-  if (!finite(u, v)) return {u, v, 1};  // |the pupil rejects such numbers
+  if (!finite(u, v)) return {u, v, 1};  // the pupil rejects such numbers
   u = std::clamp(u, 0.0, 1.0), v = std::clamp(v, 0.0, 1.0);
   if (map_.empty()) {
     const double at = v * static_cast<double>(rows_.size() - 1);

@@ -63,13 +63,13 @@ class PETZVAL_API IrisWeights {
   /// Edge weight and its change per step at equally spaced fractions of the area, for cubic interpolation, which is
   /// four times as fast as a power. Empty if interpolation is not accurate enough.
   std::vector<std::array<double, 2>> edge_steps_;
-  IrisMap map_;  // |scaled by the constructor
+  IrisMap map_;  // scaled by the constructor
   double mean_ = 1;
-  std::vector<double> rows_;           // |lower ends of the rows in v, then 1
-  std::vector<double> row_densities_;  // |sample density of each row
+  std::vector<double> rows_;           // lower ends of the rows in v, then 1
+  std::vector<double> row_densities_;  // sample density of each row
   // With a map only; without a map every row has the same fraction of the samples.
-  std::vector<double> before_rows_;    // |[rows + 1] fraction of all samples in the rows before
-  std::vector<double> before_in_row_;  // |[row][columns + 1] fraction of the row's samples in the columns before
+  std::vector<double> before_rows_;    // [rows + 1] fraction of all samples in the rows before
+  std::vector<double> before_in_row_;  // [row][columns + 1] fraction of the row's samples in the columns before
 };
 
 }  // namespace petzval::iris_detail

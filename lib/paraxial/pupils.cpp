@@ -78,7 +78,7 @@ double paraxial_f_number(const Lens& lens, Wavelength wavelength) {
 
 double film_side_f_number(const Lens& lens, Wavelength wavelength) {
   const Pupil exit = pupils(lens, wavelength).exit;
-  if (exit.diameter == 0) return infinity;  // |also if the pupil lies on the film
+  if (exit.diameter == 0) return infinity;  // also if the pupil lies on the film
   return std::isfinite(exit.z) ? std::abs((lens.film_z() - exit.z) / exit.diameter)
                                : paraxial_f_number(lens, wavelength);
 }
