@@ -33,8 +33,8 @@ struct TiltFrame {
 
 /// The films among which a fit chooses. parameters: 1, 2 or 3, the number that the targets determine.
 struct TiltSpace {
-  int parameters = 1;               ///< z; z and the slope along the main direction; both and the slope across
-  double along_x = 1, along_y = 0;  ///< unit vector: main direction of the images of the targets
+  int parameters = 1;                                  ///< z; slope along the main direction; slope across
+  double along_x = 1, along_y = 0;                     ///< unit vector: main direction of the images of the targets
   double spread_along = 1, spread_across = 1;          ///< RMS; slope times spread has the size of z
   double largest_slope = 0, largest_slope_across = 0;  ///< half axes of the ellipse of the allowed slopes
 

@@ -159,8 +159,7 @@ bool minimise(std::span<const BlurErrors* const> errors, std::span<ceres::LossFu
   options.gradient_tolerance = 1e-15;
   options.parameter_tolerance = 1e-14;
   options.max_num_iterations = 200;
-  options.max_num_consecutive_invalid_steps =
-      options.max_num_iterations;  // such steps occur at the rounding error; Ceres prints if it gives up
+  options.max_num_consecutive_invalid_steps = options.max_num_iterations;  // Ceres prints if it gives up
   ceres::Solver::Summary summary;
   ceres::Solve(options, &problem, &summary);
   if (summary.termination_type != ceres::CONVERGENCE || !(summary.final_cost < hopeless)) return false;

@@ -28,25 +28,25 @@ Film moved(Film film, double z) noexcept {
   return film;
 }
 
-/// The film before it moves. Throws Error if it cannot be moved along the axis.
+/// The film before the move. Throws Error if the film is tilted or its position is not finite.
 Film standing(const Film& film, double unset_z) {
   const double z = film.z_mm.value_or(unset_z);
-  if (!std::isfinite(z)) throw Error("autofocus: the film stands at z = " + to_text(z) + " mm, wanted a finite place");
+  if (!std::isfinite(z)) throw Error("autofocus: film: z = " + to_text(z) + " mm; must be finite");
   if (film.tilted()) {
-    throw Error("autofocus: the film is tilted by " + to_text(film.tilt_rad) + " and " + to_text(film.swing_rad) +
-                " rad, wanted an upright one");
+    throw Error("autofocus: film: tilt_rad, swing_rad = " + to_text(film.tilt_rad) + ", " + to_text(film.swing_rad) +
+                "; must be 0");
   }
   return moved(film, z);
 }
 
-/// The film that a target asks for.
+/// The film position for one target.
 struct Request {
   TargetUse use = TargetUse::used;
-  double film_z = nan;   ///< where its blur is the wanted one; NaN if it has no image
-  double steepness = 0;  ///< of the diameter of its blur, per mm that the film is away
+  double film_z = nan;   ///< position at which the blur equals the target's blur; NaN if there is no image
+  double steepness = 0;  ///< derivative of the blur diameter by the film position
 };
 
-/// The request with its use set, or refused.
+/// The request with its use set; film_z is NaN if the target is rejected.
 Request checked(const IdealLens& lens, const FocusTarget& target, Request request) {
   const double farthest = focus_detail::farthest_film * std::abs(lens.rear_focal_length);
   if (!focus_detail::well_formed(target)) return {TargetUse::not_finite, nan, 0};
@@ -64,7 +64,7 @@ double largest_weight(std::span<const FocusTarget> targets, std::span<const Requ
   return largest;
 }
 
-/// Nothing if no target can be used.
+/// The film position of least squares; nullopt if no target can be used.
 std::optional<double> least_squares(std::span<const FocusTarget> targets, std::span<const Request> requests) {
   const double largest = largest_weight(targets, requests);
   double weights = 0, sum = 0, from = 0;
@@ -79,8 +79,8 @@ std::optional<double> least_squares(std::span<const FocusTarget> targets, std::s
   return from + sum / weights;
 }
 
-/// before: the film as it stood; infinity_z: of the film with infinity in focus; blur_of: the blur of a target that has
-/// an image, on a film.
+/// before: the film before the move. infinity_z: the film that focuses infinity. blur_of: the blur on a film of a
+/// target that has an image.
 Autofocus described(const IdealLens& lens, std::span<const FocusTarget> targets, std::span<const Request> requests,
                     const Film& before, double infinity_z, std::optional<double> found, const auto& blur_of) {
   using enum AutofocusStatus;
@@ -100,21 +100,21 @@ Autofocus described(const IdealLens& lens, std::span<const FocusTarget> targets,
   return result;
 }
 
-/// A place's bundle about its centroid, with weights that sum to 1; empty where the lens does not see it.
+/// The bundle of a place relative to its centroid, with weights of the sum 1; empty if the lens does not see the place.
 RayBundle centred_bundle(const ImageRays& lens, const ScenePoint& place) {
   RayBundle bundle = lens.bundle(place);
   focus_detail::centre(bundle);
   return bundle;
 }
 
-/// The signed diameter on a film, by the criterion of the image.
+/// The signed blur diameter on a film, by the criterion of the image.
 double signed_diameter(const focus_detail::Image& image, double film_z) noexcept {
   const double away = film_z - image.film_z, diameter = image.diameter(film_z);
   return image.rays.empty() ? focus_detail::signed_diameter(diameter, image.slope * away)
                             : std::copysign(diameter, away);
 }
 
-/// The film on which the signed diameter is the wanted one; the sharpest film if it is larger on all.
+/// The film with the given signed blur diameter; the sharpest film if every diameter is larger.
 double film_of(const focus_detail::Image& image, double wanted) noexcept {
   if (wanted == 0) return image.film_z;
   if (image.rays.empty()) {
@@ -158,14 +158,14 @@ Autofocus autofocus(const IdealLens& lens, std::span<const FocusTarget> targets,
 Autofocus autofocus(const ImageRays& lens, std::span<const FocusTarget> targets, const Film& film,
                     FocusCriterion criterion) {
   if (criterion != FocusCriterion::min_rms && criterion != FocusCriterion::min_max) {
-    throw Error("autofocus: criterion is " + std::string(name(criterion)) +
-                ", wanted min_rms or min_max, or an ideal lens");
+    throw Error("autofocus: criterion = " + std::string(name(criterion)) +
+                "; must be min_rms or min_max, or the lens an ideal lens");
   }
   const Film before = standing(film, lens.lens().film_z());
   const bool rms = criterion == FocusCriterion::min_rms;
   std::vector<Request> requests;
   std::vector<RayBundle> bundles;
-  std::vector<focus_detail::Image> images;  // by the criterion, for targets that have one
+  std::vector<focus_detail::Image> images;  // by the criterion; empty for targets without an image
   for (const FocusTarget& target : targets) {
     const RayBundle& rays = bundles.emplace_back(centred_bundle(lens, target.place));
     focus_detail::Image& image = images.emplace_back();
@@ -175,7 +175,7 @@ Autofocus autofocus(const ImageRays& lens, std::span<const FocusTarget> targets,
     } else {
       image = focus_detail::least_rms(rays);
       request.steepness = image.slope;
-      // In front of that, the rays diverge behind the lens.
+      // At a smaller z the rays diverge behind the lens.
       if (image.film_z > lens.ideal().rear_z) {
         request.film_z = film_of(image, target.blur_mm);
         if (!rms) image = focus_detail::least_maximum(rays);
@@ -214,8 +214,8 @@ std::vector<FocusTarget> region_targets(const Vec3<double>& centre, const Vec3<d
                                         const Vec3<double>& half_height, int columns, int rows) {
   constexpr std::int64_t most = std::int64_t{1} << 20;
   if (columns < 1 || rows < 1 || std::int64_t{columns} * rows > most) {
-    throw Error("region_targets: " + std::to_string(columns) + " x " + std::to_string(rows) +
-                " targets, wanted 1 x 1 or more and " + std::to_string(most) + " at most");
+    throw Error("region_targets: columns x rows = " + std::to_string(columns) + " x " + std::to_string(rows) +
+                "; must be at least 1 x 1 and have " + std::to_string(most) + " targets at most");
   }
   std::vector<FocusTarget> targets;
   for (int row = 0; row < rows; ++row) {

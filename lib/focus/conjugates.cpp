@@ -15,7 +15,7 @@ constexpr double rounding = 8 * std::numeric_limits<double>::epsilon();
 /// The p of a subject at the front of the lens.
 double least_p(const Conjugates& c) noexcept { return std::max(0.0, c.lens.front_focal_z); }
 
-/// The largest p with a real image: infinite except where the lens brings a distant subject to focus inside itself.
+/// The largest p with a real image. Infinite unless the lens focuses distant subjects inside itself.
 double farthest_p(const Conjugates& c) noexcept {
   const bool real_at_infinity = (c.lens.rear_focal_z - c.lens.rear_z) * c.direction >= 0;
   return real_at_infinity ? infinity : c.lens.product() / (c.lens.rear_z - c.lens.rear_focal_z);
@@ -55,7 +55,7 @@ Conjugates::Conjugates(const IdealLens& thick, FocusCriterion criterion, Distanc
     focal_distance = pupil_z - lens.front_focal_z;
   } else if (origin == DistanceOrigin::front_principal) {
     origin_z = thick.front_principal_z();
-    // Of the thick lens a focal length, without what is lost in the difference of the two positions.
+    // For the thick lens a focal length, without the rounding error of a difference of positions.
     focal_distance = criterion == FocusCriterion::thin ? origin_z - lens.front_focal_z : lens.front_focal_length;
   }
 }
@@ -76,7 +76,7 @@ FocusSolution paraxial_focus(const Conjugates& c, double distance) noexcept {
   if (!(p > 0) || distance < distance_at(c, near) * (1 - rounding)) return pair(c, unreachable, near);
   if (distance > distance_at(c, far) * (1 + rounding)) return pair(c, unreachable, far);
   FocusSolution result = pair(c, solved, p);
-  result.distance = distance;  // to the last bit
+  result.distance = distance;  // exactly as given
   if (c.origin != DistanceOrigin::film) result.subject_z = c.origin_z - distance;
   return result;
 }
@@ -93,7 +93,7 @@ FocusSolution paraxial_subject(const Conjugates& c, double film_z) noexcept {
 }
 
 FocusSolution paraxial_nearest(const Conjugates& c) noexcept {
-  // Behind a mirror, film and subject meet.
+  // Behind a mirror, film and subject can coincide.
   const bool meets = c.origin == DistanceOrigin::film && c.lens.product() < 0;
   const double near = meets ? p_at(c, 0) : nearest_p(c);
   return near < farthest_p(c) ? pair(c, solved, near) : no_focus(c);

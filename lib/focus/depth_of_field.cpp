@@ -19,11 +19,11 @@ constexpr double infinity = std::numeric_limits<double>::infinity();
 
 void check_blur(const Lens& lens, double blur_mm) {
   if (!(blur_mm > 0 && std::isfinite(blur_mm))) {
-    throw Error(lens.name() + ": blur is " + to_text(blur_mm) + " mm, wanted a finite diameter above 0");
+    throw Error(lens.name() + ": blur = " + to_text(blur_mm) + " mm; must be finite and above 0");
   }
 }
 
-/// The blur on the film of the lens minus the allowed one, over the vergence of the subject.
+/// The blur on the film of the lens minus the allowed blur, as a function of the subject's vergence.
 class Excess {
  public:
   Excess(const focus_detail::FocusSolver& solver, double film_z, double blur)
@@ -31,7 +31,7 @@ class Excess {
 
   double operator()(double vergence) const {
     const auto image = solver_.image_at(vergence);
-    // Capped, since root() needs finite numbers.
+    // Capped, because root() needs finite numbers.
     return image ? std::min(image->diameter(film_z_), 4 * blur_) - blur_ : 3 * blur_;
   }
 
@@ -68,7 +68,7 @@ DepthOfField depth_of_field(const Lens& lens, double blur_mm, const FocusOptions
   const auto distance = [&](double vergence) {
     return vergence > 0 ? c.distance(c.subject_at(vergence), film_z) : infinity;
   };
-  const double rounding = 1e-12 * blur_mm;  // at its hyperfocal distance a lens is sharp to infinity
+  const double rounding = 1e-12 * blur_mm;  // focused at the hyperfocal distance, a lens is sharp to infinity
   const double far = excess(0) > rounding ? focus_detail::root(excess, 0, middle) : 0;
   double near = middle;
   for (double low = middle, step = (vertex - middle) / 1024; near < vertex && near == low; step *= 2) {
@@ -88,10 +88,10 @@ FocusSolution hyperfocal(const Lens& lens, double blur_mm, const FocusOptions& o
   const double focus = infinite->film_z;
   if (!(infinite->diameter(focus) <= blur_mm)) return {too_blurred, focus, -infinity, infinity};
 
-  // The film as far behind infinity focus as infinity stays sharp enough.
+  // The film moves behind the infinity focus until the blur of infinity reaches blur_mm.
   const focus_detail::Conjugates& c = solver.conjugates();
   const auto excess = [&](double shift) { return infinite->diameter(focus + c.direction * shift) - blur_mm; };
-  // At least one that rounding leaves a difference of.
+  // Large enough to change `focus` despite rounding.
   double shift = std::max(blur_mm, 4 * std::numeric_limits<double>::epsilon() * std::abs(focus));
   for (int i = 0; i < 100 && excess(shift) <= 0; ++i) shift *= 2;
   if (excess(shift) <= 0) return solver.nearest();

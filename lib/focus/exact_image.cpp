@@ -12,11 +12,11 @@
 namespace petzval::focus_detail {
 namespace {
 
-/// The rays of one field at all wavelengths, and along the rims of its pupils if asked for. Nothing where no light
+/// The rays of one field at all wavelengths; if `rims`, also rays along the rims of its pupils. nullopt if no light
 /// passes.
 std::optional<RayBundle> field_rays(const Lens& lens, const FieldPoint& point,
                                     std::span<const WavelengthWeight> wavelengths, double plane_z, bool rims) {
-  // On the axis of a lens of revolution one meridian stands for all: its centroid is the axis.
+  // On the axis of a lens of revolution one meridian represents all, and the centroid is the axis.
   const bool on_axis = point.field_rad == 0 && lens.rotationally_symmetric();
   constexpr std::size_t directions = 96;
   RayBundle bundle;
@@ -40,7 +40,7 @@ std::optional<Image> exact_image(const Lens& lens, double subject_z, std::span<c
   double total = 0, most = 0;
   for (const FocusField& field : fields) total += field.weight, most = std::max(most, field.weight);
 
-  // A field that does not meet the plane is refused before others are traced.
+  // Rejects fields that do not meet the plane before any field is traced.
   for (const FocusField& field : fields) PupilPlane(lens, {field.field_rad, subject_z});
 
   RayBundle all;

@@ -97,8 +97,8 @@ Lens with_focus(const Lens& lens, double distance, const FocusOptions& options) 
   }
   const double nearest = solution.distance;
   if (std::isinf(nearest)) throw Error(subject + ": the lens forms no real image at any distance");
-  throw Error(subject + ", wanted " + (distance <= nearest ? "more than " : "at most ") + to_text(nearest, 9) + " mm" +
-              (distance <= nearest ? focus_detail::hint_of_units(distance) : ""));
+  throw Error(subject + "; the distance must be " + (distance <= nearest ? "more than " : "at most ") +
+              to_text(nearest, 9) + " mm" + (distance <= nearest ? focus_detail::hint_of_units(distance) : ""));
 }
 
 }  // namespace petzval

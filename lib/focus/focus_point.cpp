@@ -22,46 +22,45 @@ void check(const ScenePoint& place, const std::string& where) {
   const auto& [p, at_infinity] = place;
   const bool nowhere = at_infinity && p.x == 0 && p.y == 0 && p.z == 0;
   if (finite(p) && !nowhere) return;
-  throw Error(where + "the place is (" + to_text(p.x) + ", " + to_text(p.y) + ", " + to_text(p.z) + "), wanted " +
-              (at_infinity ? "a direction" : "finite coordinates"));
+  throw Error(where + "place = (" + to_text(p.x) + ", " + to_text(p.y) + ", " + to_text(p.z) + "); must be " +
+              (at_infinity ? "a direction, finite and not 0" : "finite"));
 }
 
 void check(const OnTriangle& place, std::size_t vertices, const std::string& where) {
   const auto& [a, b, c] = place.barycentric;
   constexpr double tolerance = 1e-9;
-  // NaN fails either comparison.
+  // NaN fails both comparisons.
   if (!(std::min({a, b, c}) >= -tolerance) || !(std::abs(a + b + c - 1) <= tolerance)) {
-    throw Error(where + "barycentric coordinates are (" + to_text(a) + ", " + to_text(b) + ", " + to_text(c) +
-                "), wanted 0 or more and a sum of 1");
+    throw Error(where + "barycentric coordinates = (" + to_text(a) + ", " + to_text(b) + ", " + to_text(c) +
+                "); must be at least 0, with the sum 1");
   }
   for (const std::size_t vertex : place.vertices) {
     if (vertex < vertices) continue;
-    throw Error(where + "it lies at vertex " + std::to_string(vertex) + ", wanted one of the " +
-                std::to_string(vertices) + " there are");
+    throw Error(where + "vertex = " + std::to_string(vertex) + "; must be one of the " + std::to_string(vertices) +
+                " vertices");
   }
 }
 
 void check(const FocusPoint& point, std::size_t vertices, const std::string& where) {
-  if (point.keys.empty()) throw Error(where + "no keys, wanted one at least");
+  if (point.keys.empty()) throw Error(where + "no keys; must have at least 1");
   if (!(point.from <= point.until)) {
     throw Error(where + "valid from " + to_text(point.from) + " s until " + to_text(point.until) +
-                " s, wanted an interval");
+                " s; `from` must not be after `until`");
   }
   for (std::size_t k = 0; k < point.keys.size(); ++k) {
     const FocusKey& key = point.keys[k];
     const std::string at = where + "key " + std::to_string(k) + ": ";
-    if (!std::isfinite(key.time)) throw Error(at + "time is " + to_text(key.time) + " s, wanted a finite one");
+    if (!std::isfinite(key.time)) throw Error(at + "time = " + to_text(key.time) + " s; must be finite");
     if (k > 0 && !(key.time > point.keys[k - 1].time)) {
-      throw Error(at + "time is " + to_text(key.time) + " s, wanted one after " + to_text(point.keys[k - 1].time) +
-                  " s");
+      throw Error(at + "time = " + to_text(key.time) + " s; must be after " + to_text(point.keys[k - 1].time) + " s");
     }
-    if (!std::isfinite(key.blur_mm)) throw Error(at + "blur is " + to_text(key.blur_mm) + " mm, wanted a finite one");
+    if (!std::isfinite(key.blur_mm)) throw Error(at + "blur = " + to_text(key.blur_mm) + " mm; must be finite");
     if (!std::isfinite(key.weight) || key.weight < 0) {
-      throw Error(at + "weight is " + to_text(key.weight) + ", wanted a finite one of 0 or more");
+      throw Error(at + "weight = " + to_text(key.weight) + "; must be finite and at least 0");
     }
     if (key.extent_stops.has_value() != point.keys.front().extent_stops.has_value()) {
       throw Error(at + "an extent is " + (key.extent_stops ? "given" : "missing") +
-                  ", wanted one in all keys of the point or in none");
+                  "; must be in every key of the point or in no key");
     }
     if (key.extent_stops) focus_detail::check_extent(*key.extent_stops, at);
     if (const auto* place = std::get_if<ScenePoint>(&key.anchor)) {
@@ -73,18 +72,18 @@ void check(const FocusPoint& point, std::size_t vertices, const std::string& whe
 }
 
 void check(const FocusMoment& moment) {
-  if (std::isnan(moment.time)) throw Error("focus_targets: time is nan, wanted a number");
+  if (std::isnan(moment.time)) throw Error("focus_targets: time = nan; must be a number");
   if (!moment.film) return;
   const Film& film = *moment.film;
   const double width = film.width_mm, height = film.height_mm, x = film.shift_x_mm, y = film.shift_y_mm;
   const double z = film.z_mm.value_or(0), turns = film.tilt_rad + film.swing_rad;
   if (!(width >= 0 && height >= 0) || !std::isfinite(width + height + x + y + z + turns)) {
-    throw Error("focus_targets: the film is " + to_text(width) + " x " + to_text(height) + " mm about (" + to_text(x) +
-                ", " + to_text(y) + ") at z = " + to_text(z) + " mm, wanted finite numbers and no negative size");
+    throw Error("focus_targets: film: size = " + to_text(width) + " x " + to_text(height) + " mm about (" + to_text(x) +
+                ", " + to_text(y) + ") at z = " + to_text(z) + " mm; must be finite, and the size not negative");
   }
 }
 
-/// A number interpolated over the keys; of(k): its value at key k.
+/// Interpolates a number over the keys. of(k): its value at key k.
 double at_time(const FocusPoint& point, double time, const auto& of) {
   if (point.keys.size() == 1) return of(0);
   std::vector<double> times, values;
@@ -101,7 +100,7 @@ Vec3<double> place_of(const OnTriangle& on, const std::array<double, 3>& parts, 
   return sum;
 }
 
-/// The triangle that all keys lie on, or null.
+/// The triangle on which all keys lie; null if the keys lie on several triangles or on no triangle.
 const OnTriangle* only_triangle(const FocusPoint& point) {
   const auto* first = std::get_if<OnTriangle>(&point.keys.front().anchor);
   const auto same = [&](const FocusKey& key) {
@@ -111,13 +110,13 @@ const OnTriangle* only_triangle(const FocusPoint& point) {
   return first && std::all_of(point.keys.begin(), point.keys.end(), same) ? first : nullptr;
 }
 
-/// As seen from the front principal point; z is the inverse distance.
+/// The place as seen from the front principal point; z is the inverse distance.
 Vec3<double> seen(const ScenePoint& place, double principal_z) {
   const focus_detail::PicturePoint point = focus_detail::picture_point(place, principal_z);
   return {point.x, point.y, point.inverse_distance};
 }
 
-/// Nothing if a vertex is not finite, and on a way from behind the lens to infinity.
+/// nullopt if a vertex is not finite, or if the path leads from behind the lens to infinity.
 std::optional<ScenePoint> place_at(const IdealLens& lens, const FocusPoint& point, const FocusMoment& moment) {
   if (const OnTriangle* triangle = only_triangle(point)) {
     std::array<double, 3> parts{};
@@ -127,7 +126,7 @@ std::optional<ScenePoint> place_at(const IdealLens& lens, const FocusPoint& poin
                          [&](std::size_t k) { return std::get<OnTriangle>(point.keys[k].anchor).barycentric[i]; });
       sum += parts[i];
     }
-    // Each stays within the span of its keys, but their sum does not stay 1.
+    // Each coordinate stays within the range of its keys, but their sum may differ from 1.
     for (double& part : parts) part /= sum;
     return ScenePoint{place_of(*triangle, parts, moment), false};
   }

@@ -34,8 +34,8 @@ std::string_view name(PlaneRank rank) noexcept {
 
 void focus_detail::check_extent(double stops, const std::string& where) {
   if (std::abs(stops) <= largest_extent) return;
-  throw Error(where + "the extent is " + to_text(stops) + " stops, wanted one from " + to_text(-largest_extent) +
-              " to " + to_text(largest_extent) + " stops");
+  throw Error(where + "extent = " + to_text(stops) + " stops; must be " + to_text(-largest_extent) + " to " +
+              to_text(largest_extent) + " stops");
 }
 
 bool focus_detail::well_formed(const FocusTarget& target) noexcept {

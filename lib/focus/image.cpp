@@ -16,7 +16,7 @@ constexpr double infinity = std::numeric_limits<double>::infinity();
 
 double square(double x) { return x * x; }
 
-/// The squared radius of a ray in the plane `shift` behind that of the bundle.
+/// Squared radius of a ray in the plane `shift` behind the plane of the bundle.
 double square_radius(const RayBundle& rays, std::size_t i, double shift) noexcept {
   return square(rays.x[i] + shift * rays.slope_x[i]) + square(rays.y[i] + shift * rays.slope_y[i]);
 }
@@ -48,8 +48,8 @@ bool centre(RayBundle& bundle, bool centroid_on_axis) {
   return true;
 }
 
-/// The mean square radius is a parabola over the film's position, with its vertex at -cov(p, u) / var(u), p the point
-/// in the plane and u the slope.
+/// The mean squared radius is a parabola over the film position with its vertex at -cov(p, u) / var(u), where p is the
+/// point in the plane and u the slope.
 Image least_rms(const RayBundle& rays) {
   double covariance = 0, variance = 0, least = 0;
   for (std::size_t i = 0; i < rays.size(); ++i) {
@@ -59,12 +59,12 @@ Image least_rms(const RayBundle& rays) {
   }
   const double shift = variance == 0 ? infinity : -covariance / variance;
   for (std::size_t i = 0; i < rays.size(); ++i) least += rays.weights[i] * square_radius(rays, i, shift);
-  // A uniform disc has an RMS radius of its diameter over the root of 8.
+  // The diameter of a uniform disc is sqrt(8) times its RMS radius.
   return {.film_z = rays.plane_z + shift, .least = std::sqrt(8 * least), .slope = std::sqrt(8 * variance)};
 }
 
-/// The largest of the squared radii, each a parabola over the film's position, is convex: it falls where the parabola
-/// that is largest there falls.
+/// The largest squared radius is the maximum of parabolas over the film position and therefore convex. It falls if the
+/// largest parabola falls.
 Image least_maximum(RayBundle rays) {
   const auto rises = [&](double shift) {
     double largest = -1, slope = 0;

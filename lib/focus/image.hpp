@@ -4,29 +4,29 @@
 #include "petzval/core/export.hpp"
 #include "petzval/pupil/ray_bundle.hpp"
 
-/// How the blur of rays depends on where an upright film stands.
+/// The blur of rays as a function of the position of an upright film.
 namespace petzval::focus_detail {
 
-/// The image of one subject by a criterion: the film where it is sharpest, and the blur's diameter on any other.
+/// The image of one subject by a focus criterion: the position of the sharpest film, and the blur diameter on any film.
 struct PETZVAL_API Image {
-  double film_z = 0;  ///< infinite where the rays leave parallel
-  /// min_rms: the diameter is a hyperbola over the film's position. Its least value, and its slope far off.
+  double film_z = 0;  ///< infinite if the rays leave parallel
+  /// min_rms: the diameter is a hyperbola over the film position, with this minimum and this asymptotic slope.
   double least = 0, slope = 0;
-  /// The other criteria: the diameter is twice the largest radius of these rays, which are relative to the centroids of
-  /// their fields.
+  /// Other criteria: the diameter is twice the largest radius of these rays, relative to the centroids of their fields.
   RayBundle rays{};
 
   double diameter(double film_z) const noexcept;
 };
 
-/// Scales the weights of a bundle with slopes to a sum of 1 (equal ones where it has none) and makes its points and
-/// slopes relative to their centroid, or leaves them where that is known to be the axis. False where no ray has weight.
+/// Scales the weights of a bundle with slopes to the sum 1 (equal weights if it has no weights) and makes points and
+/// slopes relative to their centroid. centroid_on_axis: points and slopes stay, because the centroid is the axis.
+/// Returns false if no ray has a weight.
 PETZVAL_API bool centre(RayBundle& bundle, bool centroid_on_axis = false);
 
-/// By the RMS radius, of a bundle that is centred, or several whose weights sum to 1. Infinite film_z for parallel
-/// rays.
+/// The image of least RMS radius. rays: a centred bundle, or several bundles whose weights sum to 1. film_z is infinite
+/// for parallel rays.
 PETZVAL_API Image least_rms(const RayBundle& rays);
-/// By the largest radius; weights do not count.
+/// The image whose largest radius is least; ignores weights.
 PETZVAL_API Image least_maximum(RayBundle rays);
 
 }  // namespace petzval::focus_detail

@@ -20,11 +20,11 @@
 namespace petzval {
 namespace {
 
-/// Where to look for a place; nothing where its coordinates say none.
+/// The point to which rays are sent for a place; nullopt if its coordinates are invalid.
 std::optional<Vec3<double>> seen_at(const ScenePoint& place) noexcept {
   const auto& [p, at_infinity] = place;
   constexpr double infinity = std::numeric_limits<double>::infinity();
-  constexpr double farthest = 1e50;  // mm: rays from there are parallel to the last bit
+  constexpr double farthest = 1e50;  // mm; rays from this distance are parallel to the last bit
   if (p.z == -infinity && !at_infinity && std::isfinite(p.x) && std::isfinite(p.y)) {
     return Vec3<double>{0, 0, -farthest};
   }
@@ -43,8 +43,8 @@ std::optional<BundleBlur> blur_on(const RayBundle& bundle, const Film& film) {
   const std::size_t count = bundle.x.size();
   for (const auto* numbers : {&bundle.y, &bundle.slope_x, &bundle.slope_y}) {
     if (numbers->size() == count) continue;
-    throw Error("blur: the bundle has " + std::to_string(count) + " rays and " + std::to_string(numbers->size()) +
-                " of one of their numbers, wanted places and slopes of all");
+    throw Error("blur: bundle: x has " + std::to_string(count) + " values, y, slope_x or slope_y has " +
+                std::to_string(numbers->size()) + "; must be equal");
   }
   if (count == 0) return {};
   const Vec3<double> right = film.right(), up = film.up(), normal = film.normal();
@@ -52,7 +52,7 @@ std::optional<BundleBlur> blur_on(const RayBundle& bundle, const Film& film) {
   const auto rise = [&](std::size_t i) {
     return normal.x * bundle.slope_x[i] + normal.y * bundle.slope_y[i] + normal.z;
   };
-  // From the film's point on the axis.
+  // Relative to the point of the film on the axis.
   const auto hit = [&](std::size_t i) {
     const Ray<double> ray{{bundle.x[i], bundle.y[i], -to_film}, {bundle.slope_x[i], bundle.slope_y[i], 1}};
     return core_detail::meet_plane(ray, {0, 0, 0}, normal);
@@ -73,14 +73,14 @@ std::optional<BundleBlur> blur_on(const RayBundle& bundle, const Film& film) {
     const double radius2 = glm::dot(from, from);
     square += radius2;
     largest = std::max(largest, radius2);
-    // Rays that have met already run apart.
+    // Positive if the rays diverge: the film then lies behind their focus.
     const double u = bundle.slope_x[i] - slope_x, v = bundle.slope_y[i] - slope_y;
     spreads += from.x * u + from.y * v;
     steepness += u * u + v * v;
   }
   const double rms = std::sqrt(square * each);
   if (!std::isfinite(rms)) return {};
-  constexpr double diameter = 2 * std::numbers::sqrt2;  // of the uniform disc, over its RMS radius
+  constexpr double diameter = 2 * std::numbers::sqrt2;  // diameter of a uniform disc divided by its RMS radius
   const double defocus = steepness > 0 ? spreads * each / std::sqrt(steepness * each) : 0;
   return BundleBlur{.centroid = {glm::dot(middle, right), glm::dot(middle, up)},
                     .rms_radius = rms,
@@ -92,7 +92,7 @@ struct ImageRays::Data {
   Lens lens;
   IdealLens ideal;
   EntrancePupilTable entrances;
-  std::size_t wanted;  // rays of each point
+  std::size_t wanted;  // rays per point
 
   RayBundle send(const Vec3<double>& point, std::size_t count) const;
 };
@@ -122,7 +122,8 @@ RayBundle ImageRays::Data::send(const Vec3<double>& point, std::size_t count) co
 }
 
 ImageRays::ImageRays(const Lens& lens, double film_radius, std::size_t rays) {
-  if (rays < 16) throw Error(lens.name() + ": point bundles: " + std::to_string(rays) + " rays, wanted 16 or more");
+  if (rays < 16)
+    throw Error(lens.name() + ": point bundles: number of rays = " + std::to_string(rays) + "; must be at least 16");
   data_ = std::make_shared<const Data>(Data{
       .lens = lens,
       .ideal = thick_lens(lens, lens.primary_wavelength()),
@@ -143,7 +144,7 @@ RayBundle ImageRays::bundle(const ScenePoint& place) const {
   }
   const std::size_t rays = data_->wanted;
   RayBundle bundle = data_->send(*point, rays);
-  // Where the lens passes little of what it was sent, as lenses without symmetry of revolution do.
+  // More rays if the lens blocks most of them, which happens without rotational symmetry.
   const std::size_t kept = bundle.x.size();
   if (kept == 0 || 2 * kept >= rays) return bundle;
   return data_->send(*point, std::min(rays * rays / kept, 16 * rays));

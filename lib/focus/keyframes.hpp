@@ -7,18 +7,18 @@
 
 namespace petzval::focus_detail {
 
-/// A number over time, through keys: a piecewise cubic with a continuous derivative that never leaves the span of the
-/// two keys about it. Constant before the first key and after the last; the derivative is 0 there.
+/// A number as a function of time: a piecewise cubic through keys, with a continuous derivative, that stays between the
+/// values of adjacent keys. Constant before the first key and after the last; the derivative is 0 at both.
 ///
-/// The slope at a key is the weighted harmonic mean of the slopes on both sides, and 0 if they differ in sign or at the
-/// ends. Source: Brodlie's formula in Fritsch and Butland 1984, "A method for constructing local monotone piecewise
-/// cubic interpolants".
+/// The slope at any other key is the weighted harmonic mean of the slopes on both sides, and 0 if they differ in sign.
+/// Source: Brodlie's formula in Fritsch and Butland 1984, "A method for constructing local monotone piecewise cubic
+/// interpolants".
 class PETZVAL_API Keyframes {
  public:
-  /// times: s, strictly increasing. values: as many. Throws Error for empty lists, numbers that are not finite, and
-  /// keys between which differences or slopes overflow.
+  /// times: s, strictly increasing. values: one per time. Throws Error if the lists are empty or differ in length, a
+  /// number is not finite, or a difference or slope between keys overflows.
   Keyframes(std::vector<double> times, std::vector<double> values);
-  /// Exact at keys. NaN for NaN.
+  /// Exact at keys; NaN for NaN.
   double at(double time) const noexcept;
 
  private:

@@ -5,7 +5,7 @@
 
 namespace petzval::focus_detail {
 
-/// with_focus() of a lens with focus positions: the groups stand where the subject's film is the lens's own.
+/// with_focus() for a lens with focus positions: moves the groups until the image of the subject lies on the film.
 Lens with_moved_groups(const Lens& lens, double distance, const FocusOptions& options);
 
 }  // namespace petzval::focus_detail

@@ -26,14 +26,14 @@ PlaneFit fit_plane(std::span<const PicturePoint> points) {
   }
   fit.mean_x /= total, fit.mean_y /= total, fit.c /= total;
 
-  // Moments about the centroid: xx, xy, yy of the positions, x and y with the inverse distance.
+  // Moments about the centroid: xx, xy, yy of the positions; xd, yd of positions and inverse distance.
   double xx = 0, xy = 0, yy = 0, xd = 0, yd = 0;
   for (const auto& p : points) {
     const double w = p.weight / largest, x = p.x - fit.mean_x, y = p.y - fit.mean_y, d = p.inverse_distance - fit.c;
     xx += w * x * x, xy += w * x * y, yy += w * y * y;
     xd += w * x * d, yd += w * y * d;
   }
-  // The main direction in the picture, and the spread of the points along it and across.
+  // Main direction in the picture, and the spread of the points along and across.
   const double turn = std::atan2(2 * xy, xx - yy) / 2;
   fit.along_x = std::cos(turn), fit.along_y = std::sin(turn);
   const double ax = fit.along_x, ay = fit.along_y;
@@ -51,7 +51,7 @@ PlaneFit fit_plane(std::span<const PicturePoint> points) {
     fit.a = slope * ax, fit.b = slope * ay;
   } else {
     fit.rank = PlaneRank::plane;
-    // Each direction by itself: along the main directions the mixed moment is 0.
+    // The slopes along both main directions are independent, because the mixed moment is 0.
     const double first = (ax * xd + ay * yd) / along, second = (ax * yd - ay * xd) / across;
     fit.a = first * ax - second * ay, fit.b = first * ay + second * ax;
   }

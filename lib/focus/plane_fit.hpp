@@ -11,21 +11,22 @@
 
 namespace petzval::focus_detail {
 
-/// A scene point as a pinhole at the principal point sees it.
+/// A scene point as seen by a pinhole at the principal point.
 struct PicturePoint {
-  double x = 0, y = 0;          ///< over depth
+  double x = 0, y = 0;          ///< divided by the depth
   double inverse_distance = 0;  ///< reciprocal of the depth, 1/mm; 0 at infinity
   double weight = 1;
 };
 
-/// Points lie on a line of the picture if their RMS spread across it is within this part of that along it.
+/// Points are collinear in the picture if their RMS spread across the line is at most this fraction of the spread along
+/// it.
 inline constexpr double line_aspect = 0.02;
 
-/// Points lie in one place of the picture if their RMS spread is within this: half a micrometre on the film of a 50 mm
-/// lens, less than a film or an eye resolves.
+/// Points coincide in the picture if their RMS spread is at most this value: half a micrometre on the film of a 50 mm
+/// lens, below the resolution of films and eyes.
 inline constexpr double one_place = 1e-5;
 
-/// What a pinhole at (0, 0, z) sees of a scene point in front of it.
+/// A scene point in front of a pinhole at (0, 0, z), as seen by the pinhole.
 PETZVAL_API PicturePoint picture_point(const ScenePoint& point, double z) noexcept;
 
 /// A plane of the scene: inverse distance = a x + b y + c.
@@ -33,17 +34,18 @@ struct PlaneFit {
   PlaneRank rank = PlaneRank::none;
   double a = 0, b = 0, c = 0;
   double mean_x = 0, mean_y = 0;    ///< weighted centroid
-  double along_x = 0, along_y = 0;  ///< unit main direction of the points in the picture; rank line: of the line
-  double spread = 0;                ///< RMS along it
-  double aspect = 0;                ///< spread across it over that along it
+  double along_x = 0, along_y = 0;  ///< unit main direction of the points in the picture
+  double spread = 0;                ///< RMS along the main direction
+  double aspect = 0;                ///< spread across divided by spread along
 };
 
-/// The weighted least squares plane in inverse distance: the plane of focus of least squared blur of a thin lens, which
-/// exists for all points. For points on a line of the picture (line_aspect) its slope across is 0; for points in one
-/// place (one_place) both slopes are: the plane of least tilt. Weights: finite, at least 0.
+/// The weighted least squares plane in inverse distance. For a thin lens it is the plane of focus of least squared
+/// blur; it exists for all points. If the points are collinear in the picture (line_aspect), the slope across the line
+/// is 0; if they coincide (one_place), both slopes are 0. The result is then the plane of least tilt. Weights: finite,
+/// at least 0.
 PETZVAL_API PlaneFit fit_plane(std::span<const PicturePoint> points);
 
-/// The plane in the scene, with depths counted from z towards -z; normal.z >= 0. Nothing for the plane at infinity.
+/// The plane in the scene, with depths counted from z towards -z; normal.z >= 0. nullopt if the plane is at infinity.
 PETZVAL_API std::optional<Plane> plane_of(const PlaneFit& fit, double z);
 
 }  // namespace petzval::focus_detail

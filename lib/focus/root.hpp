@@ -7,9 +7,11 @@
 
 namespace petzval::focus_detail {
 
-/// A zero of f between a and b, where f has opposite signs (or is 0), within 2 eps of x and eps^2 of |b - a|.
-/// Bisection, with inverse quadratic interpolation where the last three points show f to be nearly straight: at most
-/// five evaluations for each halving. f must be finite; it may jump, and be constant far from the root.
+/// A zero of f between a and b, where f has opposite signs or is 0. Uses bisection, and inverse quadratic interpolation
+/// if the last three points show f to be nearly linear. f must be finite; it may jump, and may be constant far from the
+/// root.
+///
+/// Accuracy: 2 eps of x plus eps^2 of |b - a|, with at most five evaluations for each halving.
 template <class Function>
 double root(const Function& f, double a, double b) {
   double at_a = f(a), at_b = f(b);
@@ -17,7 +19,7 @@ double root(const Function& f, double a, double b) {
   constexpr double eps = std::numeric_limits<double>::epsilon();
   const double least = eps * eps * std::abs(b - a) + std::numeric_limits<double>::min();
   double t = 0.5;
-  int slow = 0;  // steps since one halved the interval
+  int slow = 0;  // steps since the interval was last halved
   for (;;) {
     const double x = a + t * (b - a), at_x = f(x), width = std::abs(b - a);
     double c = a, at_c = at_a;
@@ -34,7 +36,7 @@ double root(const Function& f, double a, double b) {
 
     const double xi = (a - b) / (c - b), phi = (at_a - at_b) / (at_c - at_b);
     const bool straight = phi * phi < xi && (1 - phi) * (1 - phi) < 1 - xi;
-    // Before a jump it looks straight, with a root at the next number.
+    // Next to a jump f looks linear, with a root at the next number.
     slow = std::abs(b - a) > width / 2 ? slow + 1 : 0;
     t = straight && slow < 4 ? at_a / (at_b - at_a) * at_c / (at_b - at_c) +
                                    (c - a) / (b - a) * at_a / (at_c - at_a) * at_b / (at_c - at_b)
@@ -43,15 +45,15 @@ double root(const Function& f, double a, double b) {
   }
 }
 
-/// The maximum of f between two positions, from < to: the vertices of parabolas through the three highest points where
-/// they close in, else golden sections. Between two positions that are as high the search goes on nearer to `from`. f
-/// may be -infinite where it is not defined; a search that has met no other value ends within a thousandth of the
-/// range. Source: Brent 1973, "Algorithms for Minimization without Derivatives", chapter 5.
+/// The maximum of f between from and to, from < to. Each step goes to the vertex of the parabola through the three
+/// highest points if these steps shrink, otherwise to a golden section. Between two equal values the search continues
+/// near `from`. f may be -infinity; a search that finds no other value ends within a thousandth of the range. Source:
+/// Brent 1973, "Algorithms for Minimization without Derivatives", chapter 5.
 template <class Function>
 double highest(const Function& f, double from, double to, double tolerance) {
   constexpr double golden = 0.3819660112501051;
   const double unseen = (to - from) / 1000;
-  double x = from + golden * (to - from), second = x, third = x;  // the highest position and the next
+  double x = from + golden * (to - from), second = x, third = x;  // positions of the three highest values
   double at_x = f(x), at_second = at_x, at_third = at_x;
   double step = 0, step_before = 0;
   for (;;) {
@@ -59,7 +61,7 @@ double highest(const Function& f, double from, double to, double tolerance) {
     if (!(std::abs(x - middle) > 2 * tolerance - (to - from) / 2)) return x;
     if (std::isinf(at_x) && to - from < unseen) return x;
 
-    double offset = 0, divisor = 0;  // of the vertex from x; not finite where a height is not
+    double offset = 0, divisor = 0;  // the vertex is x + offset / divisor; not finite if a value is infinite
     if (std::abs(step_before) > tolerance) {
       const double r = (x - second) * (at_x - at_third), q = (x - third) * (at_x - at_second);
       offset = (x - third) * q - (x - second) * r, divisor = 2 * (r - q);

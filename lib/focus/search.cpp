@@ -14,7 +14,7 @@ namespace {
 using enum FocusStatus;
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
-/// Accuracy of a position found at a flat extremum, from half of the digits.
+/// Accuracy of a position at a flat extremum: half of the digits.
 constexpr double flat = 1e-9;
 
 }  // namespace
@@ -26,15 +26,16 @@ Search::Search(const FocusSolver& solver)
 
 double Search::subject_at(double vergence) const noexcept { return vergence > 0 ? c_.subject_at(vergence) : -infinity; }
 
-/// Nothing if there is no image, as next to the front of the lens.
+/// nullopt if there is no image, for example next to the front of the lens.
 std::optional<double> Search::film(double vergence) const {
   if (!(vergence > 0)) return infinite_film_;
   const auto image = solver_.image_at(vergence);
   return image ? std::optional(image->film_z) : std::nullopt;
 }
 
-/// The vergence of the subject that the film belongs to. A virtual image belongs to a subject too near, any other real
-/// one to a subject too far, unless the images of distant subjects lie inside the lens; then the position decides.
+/// The vergence of the subject that belongs to a film, limited to cap_. A virtual image counts as a subject that is too
+/// near (cap_), a real image with a vergence beyond vergence_of_infinite_film as a subject that is too far (-cap_). If
+/// the lens images distant subjects inside itself, the sign of the vergence decides instead.
 double Search::film_vergence(double film_z) const noexcept {
   const double vergence = c_.vergence_of_film(film_z), infinite = c_.vergence_of_infinite_film();
   if (!c_.real(*infinite_film_)) return vergence < -infinite / 2 ? cap_ : std::min(vergence, cap_);
@@ -42,13 +43,13 @@ double Search::film_vergence(double film_z) const noexcept {
   return vergence > infinite ? -cap_ : std::max(vergence, -cap_);
 }
 
-/// From film to subject; infinite if there is no real image.
+/// Distance from subject to film; infinite if there is no real image.
 double Search::separation(double vergence) const {
   const auto film_z = film(vergence);
   return film_z && c_.real(*film_z) ? *film_z - subject_at(vergence) : infinity;
 }
 
-/// The subject of a film farther out than that of infinity; nothing beyond the limit.
+/// The subject of a film farther out than the film for infinity; nullopt beyond the limit.
 std::optional<double> Search::vergence_for(double wanted) const {
   const auto excess = [&](double vergence) {
     const auto film_z = film(vergence);
@@ -56,10 +57,10 @@ std::optional<double> Search::vergence_for(double wanted) const {
   };
   const auto root_between = [&](double low, double high) {
     const double vergence = root(excess, low, high);
-    const bool found = std::abs(excess(vergence)) < flat * cap_;  // and no jump where images end
+    const bool found = std::abs(excess(vergence)) < flat * cap_;  // excludes jumps at which images end
     return found ? std::optional(vergence) : std::nullopt;
   };
-  // The paraxial subject is near the exact one, and the film moves alike for both.
+  // The paraxial subject is close to the exact subject, and the films of both move by nearly equal amounts.
   const double vertex = c_.vergence_of_vertex();
   double low = 0, high = std::clamp(wanted, 0.0, vertex / 2);
   for (int i = 0; i < 20; ++i) {
@@ -82,7 +83,7 @@ FocusSolution Search::at(FocusStatus status, double vergence) const {
   return {status, *film_z, subject_z, c_.distance(subject_z, *film_z)};
 }
 
-/// The vergence at which the film is farthest out.
+/// The vergence at which the film is farthest from the lens.
 double Search::limit() const {
   const auto film_out = [&](double vergence) {
     const auto film_z = film(vergence);
@@ -92,7 +93,7 @@ double Search::limit() const {
   return highest(film_out, 0, std::min(cap_, vertex), flat * vertex);
 }
 
-/// The vergence at which distances from the film turn, near the paraxial turning point.
+/// The vergence at which the distance between subject and film is least, close to the paraxial turning point.
 double Search::turning_point() const {
   const double start = c_.vergence(c_.subject_z(nearest_p(c_)));
   return highest([&](double vergence) { return -separation(vergence); }, start / 4,
@@ -102,7 +103,7 @@ double Search::turning_point() const {
 FocusSolution Search::nearest() const {
   if (!infinite_film_) return {.status = no_rays};
   const bool turns = c_.origin == DistanceOrigin::film && c_.lens.product() > 0;
-  if (c_.origin == DistanceOrigin::film && !turns) return focus_from_film(0);  // behind a mirror: where they meet
+  if (c_.origin == DistanceOrigin::film && !turns) return focus_from_film(0);  // behind a mirror: both coincide
   const double vergence = turns ? turning_point() : limit();
   if (std::isinf(separation(vergence))) return no_focus(c_);
   FocusSolution result = at(solved, vergence);
@@ -131,14 +132,14 @@ FocusSolution Search::focus(double distance) const {
   const double subject_z = std::isinf(distance) ? -infinity : c_.origin_z - distance;
   if (!(subject_z < 0)) return too_near();
   const double vergence = c_.vergence(subject_z);
-  // Next to the front of the lens no pupil is seen.
+  // The pupil is not visible from points next to the front of the lens.
   const bool near = vergence > c_.vergence_of_infinite_film();
   const auto image = near ? solver_.image_seen(subject_z) : solver_.image(subject_z);
   if (!image) return near ? too_near() : FocusSolution{.status = no_rays};
   const double film_z = image->film_z;
   if (!c_.real(film_z)) return film_vergence(film_z) < c_.vergence_of_infinite_film() ? farthest() : too_near();
 
-  // Next to the limit the film may already have turned back.
+  // Close to the limit the film may already have turned back.
   if (vergence > c_.vergence_of_infinite_film() / 16) {
     const auto before = film(vergence * (1 - 1e-7));
     if (before && c_.vergence_of_film(*before) > c_.vergence_of_film(film_z)) return too_near();
@@ -154,7 +155,7 @@ FocusSolution Search::focus_from_film(double distance) const {
     low = c_.vergence(far.subject_z);
   }
 
-  // The separation falls from there to its turning point; behind a single mirror it has none.
+  // The separation falls from this vergence to the turning point; behind a single mirror there is no turning point.
   double high = c_.vergence_of_infinite_film();
   if (c_.lens.product() > 0) {
     high = c_.vergence(c_.subject_z(nearest_p(c_)));
@@ -165,7 +166,7 @@ FocusSolution Search::focus_from_film(double distance) const {
       if (least > distance) return at(unreachable, high);
     }
   }
-  // A subject is too far if it lies beyond the one at the wanted distance from its film.
+  // Negative if the subject lies beyond the point at `distance` from its film.
   const auto excess = [&](double vergence) {
     const auto film_z = film(vergence);
     return film_z && c_.real(*film_z) ? vergence - c_.vergence(*film_z - distance) : high;

@@ -7,15 +7,15 @@
 
 namespace petzval::focus_detail {
 
-/// The solvers by exact rays. The film of a subject can only be traced; everything else is a search over the vergence
-/// of the subject (Conjugates), along which the paraxial film is nearly the exact one.
+/// Focus solvers by exact rays. Tracing gives the film of a subject; every other question is a search over the vergence
+/// of the subject (Conjugates), for which the paraxial film nearly equals the exact one.
 ///
-/// The film moves out as the subject comes nearer, up to a limit: there it is at infinity or, since rays with
-/// aberrations never all leave parallel, turns back. Nearer subjects are out of reach, so that film and subject
-/// determine each other.
+/// The film moves out as the subject comes nearer, up to a limit. At the limit the film is at infinity or, because rays
+/// with aberrations never all leave parallel, turns back. Nearer subjects count as unreachable, so that film and
+/// subject determine each other.
 class Search {
  public:
-  /// Throws Error if nothing can be traced from infinity.
+  /// Throws Error as FocusSolver::image() does for a subject at infinity.
   explicit Search(const FocusSolver& solver);
 
   FocusSolution focus(double distance) const;
@@ -38,8 +38,8 @@ class Search {
 
   const FocusSolver& solver_;
   const Conjugates& c_;
-  std::optional<double> infinite_film_;  ///< of a subject at infinity
-  double cap_;                           ///< film vergence beyond that of all films
+  std::optional<double> infinite_film_;  ///< film of a subject at infinity
+  double cap_;                           ///< bound of film vergences, beyond all films
 };
 
 }  // namespace petzval::focus_detail

@@ -18,17 +18,17 @@ namespace {
 
 void check_weight(const Lens& lens, const char* what, double weight) {
   if (weight >= 0 && std::isfinite(weight)) return;
-  throw Error(lens.name() + ": focus: weight of a " + what + " is " + to_text(weight) +
-              ", wanted a finite one, 0 or more");
+  throw Error(lens.name() + ": focus: weight of a " + what + " = " + to_text(weight) +
+              "; must be finite and at least 0");
 }
 
-/// Throws Error for numbers that are no criterion or no origin.
+/// Throws Error if criterion or origin is not an enumerator.
 void check_kinds(const Lens& lens, const FocusOptions& options) {
   using enum FocusCriterion;
   const FocusCriterion criterion = options.criterion;
   if (criterion != thin && criterion != paraxial && criterion != min_rms && criterion != min_max) {
-    throw Error(lens.name() + ": focus: found the criterion " + std::to_string(static_cast<int>(criterion)) +
-                ", wanted thin, paraxial, min_rms or min_max");
+    throw Error(lens.name() + ": focus: criterion = " + std::to_string(static_cast<int>(criterion)) +
+                "; must be thin, paraxial, min_rms or min_max");
   }
   using enum DistanceOrigin;
   const DistanceOrigin origin = options.origin;
@@ -43,11 +43,12 @@ std::vector<FocusField> weighted_fields(const Lens& lens, const FocusOptions& op
   for (const FocusField& field : options.fields) {
     check_weight(lens, "field", field.weight);
     if (!std::isfinite(field.field_rad)) {
-      throw Error(lens.name() + ": focus: field is " + to_text(field.field_rad) + " rad, wanted a finite angle");
+      throw Error(lens.name() + ": focus: field = " + to_text(field.field_rad) + " rad; must be finite");
     }
     if (field.weight > 0) fields.push_back(field);
   }
-  if (fields.empty()) throw Error(lens.name() + ": focus: no field has a weight, wanted at least one above 0");
+  if (fields.empty())
+    throw Error(lens.name() + ": focus: the weight of every field is 0; at least one must be above 0");
   return fields;
 }
 
@@ -56,15 +57,16 @@ std::vector<WavelengthWeight> weighted_wavelengths(const Lens& lens, const Focus
   if (weights.empty()) return {{lens.primary_wavelength(), 1.0}};
   const std::size_t wanted = lens.wavelengths_nm().size();
   if (weights.size() != wanted) {
-    throw Error(lens.name() + ": focus: " + std::to_string(weights.size()) + " wavelength weights, wanted " +
-                std::to_string(wanted) + ", one per compiled wavelength");
+    throw Error(lens.name() + ": focus: number of wavelength weights = " + std::to_string(weights.size()) +
+                "; must be " + std::to_string(wanted) + ", one per compiled wavelength");
   }
   std::vector<WavelengthWeight> result;
   for (std::size_t i = 0; i < wanted; ++i) {
     check_weight(lens, "wavelength", weights[i]);
     if (weights[i] > 0) result.push_back({i, weights[i]});
   }
-  if (result.empty()) throw Error(lens.name() + ": focus: no wavelength has a weight, wanted at least one above 0");
+  if (result.empty())
+    throw Error(lens.name() + ": focus: the weight of every wavelength is 0; at least one must be above 0");
   return result;
 }
 
@@ -72,12 +74,12 @@ std::vector<WavelengthWeight> weighted_wavelengths(const Lens& lens, const Focus
 
 void check_distance(const Lens& lens, double distance) {
   if (distance > 0) return;
-  throw Error(lens.name() + ": subject distance is " + to_text(distance) + " mm, wanted one above 0 (or infinity)");
+  throw Error(lens.name() + ": subject distance = " + to_text(distance) + " mm; must be above 0 (or infinity)");
 }
 
 void check_film(const Lens& lens, double film_z) {
   if (std::isfinite(film_z)) return;
-  throw Error(lens.name() + ": film_z is " + to_text(film_z) + " mm, wanted a finite place");
+  throw Error(lens.name() + ": film_z = " + to_text(film_z) + " mm; must be finite");
 }
 
 std::string hint_of_units(double distance) {
@@ -97,7 +99,7 @@ FocusSolver::FocusSolver(const Lens& lens, const FocusOptions& options)
       fields_(weighted_fields(lens, options)),
       wavelengths_(weighted_wavelengths(lens, options)) {
   check_kinds(lens, options);
-  // The wavelength of largest weight; among equal ones the primary.
+  // The wavelength of largest weight; the primary wavelength among equal weights.
   wavelength_ = std::ranges::max_element(wavelengths_, {}, [&](const WavelengthWeight& w) {
                   return std::pair(w.weight, w.wavelength == lens.primary_wavelength());
                 })->wavelength;
@@ -109,8 +111,8 @@ FocusSolver::FocusSolver(const Lens& lens, const FocusOptions& options)
         options.origin == DistanceOrigin::entrance_pupil ? entrance_pupil_z(lens, wavelength_, meridian_) : 0;
     conjugates_ = Conjugates(paraxial_detail::focal_points(lens, data), options.criterion, options.origin, pupil_z);
     if (exact() && has_pupils(lens) && std::isinf(pupils(lens, lens.primary_wavelength()).entrance.z)) {
-      throw Error(lens.name() + ": focus: the entrance pupil is at infinity, from where no field is seen; wanted the " +
-                  "criterion paraxial or thin, found " + std::string(name(options.criterion)));
+      throw Error(lens.name() + ": focus: the entrance pupil is at infinity, from where no field is seen; the " +
+                  "criterion must be paraxial or thin, not " + std::string(name(options.criterion)));
     }
   }
 }
@@ -131,12 +133,11 @@ FocusSolution FocusSolver::nearest() const { return exact() ? Search(*this).near
 
 std::optional<Image> FocusSolver::image(double subject_z) const {
   if (!(subject_z < 0)) {
-    throw Error(lens_.name() + ": subject at z = " + to_text(subject_z) +
-                " mm, wanted one in front of the lens (z < 0)");
+    throw Error(lens_.name() + ": subject at z = " + to_text(subject_z) + " mm; must be in front of the lens (z < 0)");
   }
   const auto unlimited = [](const LensSurface& s) { return std::isinf(s.semi_diameter); };
   if (std::ranges::all_of(lens_.surfaces(), unlimited)) {
-    throw Error(lens_.name() + ": no surface limits the beam, wanted a semi_diameter for a blur to have a size");
+    throw Error(lens_.name() + ": no surface limits the beam; at least one must have a semi_diameter");
   }
   if (exact()) return exact_image(lens_, subject_z, fields_, wavelengths_, options_.criterion);
   return cone(subject_z);
@@ -154,26 +155,27 @@ std::optional<Image> FocusSolver::image_at(double vergence) const {
   return image_seen(vergence > 0 ? conjugates_.subject_at(vergence) : -std::numeric_limits<double>::infinity());
 }
 
-/// The cone of the paraxial pupil, as its one marginal ray.
+/// The cone of the paraxial pupil, represented by its marginal ray.
 Image FocusSolver::cone(double subject_z) const {
   IdealLens ideal = conjugates_.lens;
   ideal.pupils = pupils(lens_, wavelength_, meridian_);
   const std::size_t stop = ideal.pupils.stop;
   if (std::isinf(lens_.surfaces()[stop].semi_diameter)) {
     throw Error(lens_.name() + ": the stop (surface " + std::to_string(stop) +
-                ") has no semi_diameter, wanted one for a blur to have a size");
+                ") has no semi_diameter; must have one that limits the blur");
   }
   const bool at_infinity = std::isinf(ideal.pupils.entrance.z);
   if (options_.criterion == FocusCriterion::thin) {
     if (at_infinity) {
       throw Error(lens_.name() +
-                  ": the entrance pupil is at infinity, wanted a finite one for the blur of a thin lens");
+                  ": the entrance pupil is at infinity; must be at a finite distance for the blur of a thin lens");
     }
     ideal = thin_lens(ideal);
   } else if (at_infinity && std::isinf(subject_z)) {
-    throw Error(lens_.name() +
-                ": the entrance pupil is at infinity, wanted a subject that is not: the stop limits no "
-                "beam from there");
+    throw Error(
+        lens_.name() +
+        ": the entrance pupil is at infinity; the subject must be at a finite distance, because the stop limits no "
+        "beam from infinity");
   }
   const double p = ideal.front_focal_z - subject_z;
   const MarginalRay marginal = ideal.marginal_ray(p);

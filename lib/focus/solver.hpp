@@ -14,39 +14,39 @@
 
 namespace petzval::focus_detail {
 
-/// Throw Error for a subject distance that is NaN or not above 0, and for a film_z that is not finite.
+/// Throw Error if the distance is NaN or not above 0, and if film_z is not finite.
 void check_distance(const Lens& lens, double distance);
 void check_film(const Lens& lens, double film_z);
 
-/// Hint for a message about a subject that is too near: a distance below 50 mm was probably meant in metres. Empty for
-/// larger distances.
+/// Hint appended to messages about subjects that are too near: a distance below 50 mm was probably given in metres.
+/// Empty for larger distances.
 std::string hint_of_units(double distance);
 
 /// @throws Error  if the entrance pupil is at infinity or nothing limits the beam
 double entrance_pupil_z(const Lens& lens, Wavelength wavelength, Meridian meridian);
 
-/// Focus of one lens by one set of options: the solvers and the images behind focus, depth of field and breathing.
+/// Focus of one lens with one set of options: the solvers and images used by focus, depth of field and breathing.
 class FocusSolver {
  public:
-  /// Throws Error for invalid fields and weights. Keeps references to both arguments.
+  /// Throws Error if fields or weights are invalid. Keeps references to both arguments.
   FocusSolver(const Lens& lens, const FocusOptions& options);
 
   bool afocal() const noexcept { return afocal_; }
   bool exact() const noexcept;
-  std::size_t wavelength() const noexcept { return wavelength_; }  ///< the one of largest weight
+  std::size_t wavelength() const noexcept { return wavelength_; }  ///< wavelength of largest weight
   Meridian meridian() const noexcept { return meridian_; }
 
-  // The rest is for lenses that are not afocal.
+  // The members below require a lens that is not afocal.
   const Conjugates& conjugates() const noexcept { return conjugates_; }
   FocusSolution focus(double distance) const;  ///< distance: > 0 or infinite
   FocusSolution subject(double film_z) const;  ///< film_z: finite
   FocusSolution nearest() const;
-  /// The image of a subject; nothing if no ray of a field passes. Throws Error for a subject that is not in front of
-  /// the lens, and if nothing limits the beam.
+  /// The image of a subject; nullopt if no ray of a field passes. Throws Error if the subject is not in front of the
+  /// lens or nothing limits the beam.
   std::optional<Image> image(double subject_z) const;
-  /// Nothing also where image() throws: exact rays start in front of the vertex of a concave first surface.
+  /// nullopt also if image() throws, for example if the subject lies behind the rim of a concave first surface.
   std::optional<Image> image_seen(double subject_z) const;
-  /// The same by vergence of the subject (Conjugates).
+  /// image_seen() of the subject with this vergence (Conjugates).
   std::optional<Image> image_at(double vergence) const;
 
  private:

@@ -12,32 +12,33 @@
 
 namespace petzval::focus_detail {
 
-/// Whether a target has no NaN, nothing infinite except z = -inf, and no negative weight.
+/// True if a target has no NaN, no infinity except z = -inf, and no negative weight.
 PETZVAL_API bool well_formed(const FocusTarget& target) noexcept;
 
-/// Extents of the depth of field are within so many stops.
+/// Largest absolute extent of the depth of field, in stops.
 inline constexpr double largest_extent = 20;
-/// Throws Error, which begins with `where`, for an extent that is not.
+/// Throws Error, prefixed with `where`, if abs(stops) > largest_extent.
 void check_extent(double stops, const std::string& where);
 
-/// Throws what focus_targets() throws.
+/// Throws the errors of focus_targets().
 void check_points(std::span<const FocusPoint> points, const FocusMoment& moment);
-/// A checked point as target at a moment, valid then or not. Nothing without an image, and beside the moment's film.
+/// The target of a checked point at a moment, which may lie outside its period of validity. nullopt if the point has no
+/// image or its image lies outside the film of the moment.
 std::optional<FocusTarget> target_at(const IdealLens& lens, const FocusPoint& point, const FocusMoment& moment);
-/// FocusMoment::nearer_weighs_more.
+/// Applies FocusMoment::nearer_weighs_more.
 void weigh_nearer_more(const IdealLens& lens, std::span<FocusTarget> targets);
 
-/// In focal lengths from the rear focal point: no film is farther away, and images that are belong to points in the
-/// front focal plane or far beside the lens.
+/// Largest distance of a film from the rear focal point, in focal lengths. An image farther away belongs to a point in
+/// the front focal plane or far off the axis.
 inline constexpr double farthest_film = 1e9;
 
-/// How large the pupil is for an extent of the depth of field in stops, over that for 0.
+/// Pupil size for an extent of the depth of field in stops, relative to an extent of 0.
 template <class T>
 T pupil_scale(T extent_stops) noexcept {
   return std::exp2(extent_stops * T(-0.5));
 }
 
-/// The weighted RMS of the blur minus the wanted blur over the targets used, without overflow; 0 if there are none.
+/// Weighted RMS of the blur errors of the used targets, computed without overflow; 0 if no target is used.
 inline double rms_error(std::span<const FocusTarget> targets, std::span<const TargetBlur> blurs) noexcept {
   const auto error = [&](std::size_t i) {
     return blurs[i].use == TargetUse::used ? blurs[i].blur_mm - blurs[i].wanted_mm : 0;

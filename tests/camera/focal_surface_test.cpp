@@ -305,7 +305,7 @@ TEST(FocalSurface, RefusesWhatIsNoPoint) {
   EXPECT_EQ(of((point = good, point.inverse_distance = infinity, point)).find(where + "the object is 0 mm from"), 0u);
   EXPECT_EQ(of((point = good, point.blur_mm = infinity, point)).find(where + "the blur is inf mm"), 0u);
   EXPECT_EQ(of((point = good, point.blur_mm = 40, point)).find(where + "a blur of 40 mm wants the surface at"), 0u);
-  EXPECT_EQ(of((point = good, point.extent_stops = 21, point)).find(where + "the extent is 21 stops"), 0u);
+  EXPECT_EQ(of((point = good, point.extent_stops = 21, point)).find(where + "extent = 21 stops"), 0u);
   EXPECT_EQ(of((point = good, point.weight = -1, point)).find(where + "the weight is -1"), 0u);
   EXPECT_EQ(of((point = good, point.fade = 1.5, point)).find(where + "the fade is 1.5"), 0u);
   EXPECT_EQ(of((point = good, point.fade = nan, point)).find(where + "the fade is nan"), 0u);

@@ -260,8 +260,8 @@ TEST(TiltedFilm, IsRefusedInTheLens) {
   EXPECT_EQ(refusal("double_gauss_100mm_f2.0", tilted_by(wide, 30, 0)), "no error");
   const std::string steep = refusal("double_gauss_100mm_f2.0", tilted_by({.width_mm = 36, .height_mm = 240}, 40, 0));
   EXPECT_TRUE(has(steep, "corner (-18, -120) mm at z = ") && has(steep, "where the last surface ends")) << steep;
-  EXPECT_TRUE(has(refusal("double_gauss_100mm_f2.0", tilted_by(wide, 90, 0)), "less than a quarter turn"));
-  EXPECT_TRUE(has(refusal("tessar_100mm_f2.8", tilted_by(wide, std::nan(""), 0)), "less than a quarter turn"));
+  EXPECT_TRUE(has(refusal("double_gauss_100mm_f2.0", tilted_by(wide, 90, 0)), "below a quarter turn"));
+  EXPECT_TRUE(has(refusal("tessar_100mm_f2.8", tilted_by(wide, std::nan(""), 0)), "below a quarter turn"));
   const Film steep_square = tilted_by({.width_mm = 20, .height_mm = 20}, 45, 0);
   const Lens fisheye = testing::data_lens("fisheye_6.3mm_f2.8");
   const auto thin = testing::message([&] { Camera(fisheye, steep_square, {.model = ModelKind::thin}); });
@@ -287,8 +287,8 @@ TEST(TiltedFilm, IsRefusedWithoutACameraToo) {
   };
   const auto tilted = [&](const Film& f) { return testing::message([&] { TiltedFilm(f, pupils); }); };
   for (const auto& [wrong, wanted] :
-       {std::pair{beyond, "less than a quarter turn"}, std::pair{flipped, "wanted positive lengths"},
-        std::pair{unknown, "wanted positive lengths"}, std::pair{close, "at least a tenth of the film's distance"}}) {
+       {std::pair{beyond, "below a quarter turn"}, std::pair{flipped, "both must be positive"},
+        std::pair{unknown, "both must be positive"}, std::pair{close, "at least a tenth of the film's distance"}}) {
     EXPECT_TRUE(has(radius(wrong), wanted)) << radius(wrong);
     EXPECT_TRUE(has(tilted(wrong), wanted)) << tilted(wrong);
   }
