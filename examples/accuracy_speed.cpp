@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Errors and times of every model of a lens, and the model that each of four error budgets allows.
+// Prints errors and times of every model of a lens, and the fastest model within each of four error budgets.
 //
 //   accuracy_speed data/lenses/double_gauss_52mm_f1.8.json
 //   accuracy_speed data/lenses/double_gauss_52mm_f1.8.json --f-number 4 --json --out out
@@ -27,11 +27,11 @@ struct Options : examples::ModelOptions {
   std::string out_folder;
 };
 
-/// Half the focus distance, in front of the lens. Infinity counts as 100 focal lengths.
+/// Half the focus distance, in front of the lens. Infinity is replaced by 100 focal lengths.
 double nearest_mm(const petzval::Lens& lens, const Options& options) {
   const double far = 100 * std::abs(petzval::first_order(lens, 0, petzval::main_meridian(lens)).effective_focal_length);
   const double half = std::min(options.setup.focus_mm, far) / 2;
-  // If half the distance lies inside the lens (macro), take the middle between its front and the focus.
+  // If half the distance is inside the lens (macro), the midpoint between its front and the focus.
   const double front = petzval::origin_z(lens, options.setup.focus.distance_origin());
   return half > front ? half : (front + std::min(options.setup.focus_mm, far)) / 2;
 }
@@ -49,12 +49,12 @@ std::string figure(const std::vector<examples::ModelRow>& rows, const petzval::L
 int main(int argc, char** argv) {
   Options options;
   examples::App app(
-      "Compares every model of a lens with exact rays in double. Prints the errors on the film (RMS, 99 %, largest; "
-      "for "
-      "planes from half the focus distance to infinity, and for the plane in focus; at infinity angle times focal "
-      "length), of the pupil's shape (symmetric difference over area) and of the exposure (largest over the film), ns "
-      "per ray in batches on one thread, and set-up time. Then chooses the fastest model whose rays are within 4, 1, "
-      "0.25 and 0.05 pixels and whose pupils have the lens's shape within 10 %. With --json prints the rows only.\n"
+      "Compares every model of a lens with exact rays in double. Prints the errors on the film (RMS, 99 %, maximum; "
+      "for planes from half the focus distance to infinity, and for the plane in focus; at infinity the angle times "
+      "the focal length), of the pupil's shape (symmetric difference over area) and of the exposure (maximum over the "
+      "film), ns per ray in batches on one thread, and set-up time. Then chooses the fastest model whose rays are "
+      "within 4, 1, 0.25 and 0.05 pixels and whose pupils have the lens's shape within 10 %. With --json prints only "
+      "the rows.\n"
       "front: no other model is both faster and more accurate (max_um). At the d line (587.5618 nm).\n"
       "--out writes DIR/LENS_accuracy_speed.csv and .svg and prints their paths (with --json on standard error).",
       "accuracy_speed");
@@ -66,7 +66,7 @@ int main(int argc, char** argv) {
     const examples::LoadedLens loaded = examples::focused_lens(options);
     const petzval::Lens& lens = loaded.lens;
     const std::filesystem::path folder = options.out_folder;
-    if (out->given()) examples::make_folder(folder);  // measuring takes seconds
+    if (out->given()) examples::make_folder(folder);  // fail before the measurement, which takes seconds
     examples::say_what_does_not_fit(lens, film, "--resolution");
     std::vector<petzval::ErrorBudget> budgets;
     for (const double px : budgets_px) budgets.push_back({.max_px = px});

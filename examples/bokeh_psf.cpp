@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Renders the image of a point light for several focus distances: an EXR and a PNG for each, a contact sheet, and the
-// numbers as JSON.
+// Renders the image of a point light for several focus distances: an EXR and a PNG for each, a contact sheet, and a
+// JSON file of measurements.
 //
 //   bokeh_psf data/lenses/double_gauss_100mm_f1.35.json --subject-distance-mm 1000
 //             --focus-mm 800,900,1000,1100,1200 --out out
@@ -47,9 +47,9 @@ struct Options {
   examples::IrisSetup iris;
   examples::BokehFlags bokeh;
   std::uint32_t samples = 1u << 21;
-  petzval::Spectrum light;  ///< of the white point
+  petzval::Spectrum light;  ///< spectrum of the white point
 
-  /// Rays of the lens alone; else those of a camera.
+  /// True for rays of the unmodified lens, false for rays of a camera.
   bool plain() const noexcept { return model == "exact_double" && bokeh.change_nothing(); }
 };
 
@@ -65,7 +65,7 @@ petzval::PointImage image_of(const Picture& picture, const petzval::PsfOptions& 
   return petzval::point_image(picture.scene.lens, picture.scene.light, options);
 }
 
-/// The focused lenses, before anything is traced. Throws petzval::Error for those that cannot be.
+/// The focused lenses, before tracing. @throws petzval::Error if a focus is out of reach
 std::vector<Picture> focused(const examples::LoadedLens& loaded, const Options& options,
                              const petzval::BokehControls& controls) {
   const petzval::Lens lens = examples::stopped_down(loaded.lens, options.iris);
@@ -86,7 +86,7 @@ std::vector<Picture> focused(const examples::LoadedLens& loaded, const Options& 
   return pictures;
 }
 
-/// All tiles have the scale of the largest blur.
+/// The contact sheet. All tiles have the scale of the largest blur.
 examples::Sheet contact_sheet(const std::vector<Picture>& pictures, const examples::LoadedLens& loaded,
                               const Options& options) {
   double half_width = 1e-4;  // a perfect point has no size
@@ -168,8 +168,8 @@ Json to_json(std::span<const Picture> pictures, const examples::LoadedLens& load
   return json;
 }
 
-/// Traces the pictures. Each picture is written when it is complete, with the numbers of all complete pictures, so that
-/// an interrupted run loses only the current picture.
+/// Traces the pictures. Each complete picture is written at once, with the measurements of all complete pictures, so
+/// that an interrupted run loses only the current picture.
 void render(std::vector<Picture> pictures, const examples::LoadedLens& loaded, const Options& options,
             const petzval::BokehControls& controls) {
   const std::filesystem::path folder = options.out_folder;
@@ -207,15 +207,13 @@ int main(int argc, char** argv) {
   Options options;
   examples::App app(
       "Renders the geometric point spread function of a lens for a point light, focused at several distances.\n"
-      "Writes to DIR, and prints the paths, each picture when it is complete: LENS_focus_<D>mm.exr (float, linear: "
-      "share of the light in the paraxial "
-      "entrance pupil, per mm^2 of film), LENS_focus_<D>mm.png (each with its own exposure), LENS_bokeh.png (all at "
-      "one "
-      "scale) and LENS_bokeh.json. Images show the film as a photograph does, turned by half a turn (+x to the left, "
-      "+y down); centroids are in the axes of the film. throughput is a fraction of the light on the paraxial entrance "
-      "pupil of the stop as it is open, throughput_of_round_iris of a round iris with the same f-number: --iris-area "
-      "equal opens the stop. The lens is focused at the primary wavelength: the one nearest to the d line "
-      "(587.5618 nm).",
+      "Writes to DIR and prints the paths, each picture as soon as it is complete: LENS_focus_<D>mm.exr (float, "
+      "linear: fraction of the light in the paraxial entrance pupil, per mm^2 of film), LENS_focus_<D>mm.png (each "
+      "with its own exposure), LENS_bokeh.png (all at one scale) and LENS_bokeh.json. Images show the film as a "
+      "photograph does, rotated by 180 degrees (+x to the left, +y down); centroids are in the axes of the film. "
+      "throughput is relative to the light on the paraxial entrance pupil of the open stop, throughput_of_round_iris "
+      "to that pupil of a round iris with the same f-number: --iris-area equal opens the stop. The lens is focused at "
+      "the primary wavelength: the one nearest to the d line (587.5618 nm).",
       "bokeh_psf");
   examples::add_lens(app, options.lens_file);
   examples::add_number(app, "--subject-distance-mm", options.subject_mm, examples::positive_length,
@@ -237,15 +235,15 @@ int main(int argc, char** argv) {
   examples::add_samples(app, options.samples);
   examples::add_number(
       app, "--tolerance", options.tolerance, {std::numeric_limits<double>::min(), 1, "a number above 0, at most 1"},
-      "send rays until the relative error of the radial profile is at most this, --samples at most; 2^14 "
-      "first, then twice as many")
+      "largest relative error of the radial profile: rays are added, from 2^14 by doubling, until it is reached, or "
+      "--samples")
       ->default_str("all samples");
   examples::add_formats(app, options.formats, "each with its own exposure");
   examples::add_out_folder(app, options.out_folder)->required();
 
   return examples::run(app, argc, argv, [&] {
     options.light = examples::white_light(options.white_point);
-    examples::rgb_weights(options.wavelengths_nm, options.light);  // refuses an invalid set before the work
+    examples::rgb_weights(options.wavelengths_nm, options.light);  // throws for invalid wavelengths before the work
     const auto loaded = examples::load_lens(options.lens_file, options.wavelengths_nm);
     const petzval::BokehControls controls = examples::controls_of(options.bokeh);
     render(focused(loaded, options, controls), loaded, options, controls);

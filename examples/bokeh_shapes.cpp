@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Draws contact sheets of the shapes that irises, cat's eyes and weights give to a point of light out of focus.
+// Draws contact sheets of out-of-focus point lights, shaped by irises, cat's eyes and weights.
 //
 //   bokeh_shapes --out out
 #include <array>
@@ -33,7 +33,7 @@ petzval::Lens lens_of_data(const std::string& id) {
 
 petzval::Lens focused(const petzval::Lens& lens) { return petzval::with_focus(lens, focus_mm); }
 
-std::uint32_t samples = 1 << 19;  // of a tile
+std::uint32_t samples = 1 << 19;  // per tile
 
 petzval::PsfOptions tile_options(double half_width_mm) {
   return {.samples = samples,
@@ -42,7 +42,7 @@ petzval::PsfOptions tile_options(double half_width_mm) {
           .threads = petzval::processor_threads()};
 }
 
-/// A row of tiles of one scale.
+/// An empty row whose tiles have one scale.
 examples::SheetRow row(const std::string& title, const std::string& subtitle, double half_width_mm) {
   return {.title = title, .subtitle = subtitle, .pixel_mm = 2 * half_width_mm / tile_pixels, .tiles = {}};
 }
@@ -51,14 +51,14 @@ examples::Tile tile(const petzval::PointImage& image, const std::vector<std::str
   return {examples::expose(examples::irradiance(image.psf)).picture, captions};
 }
 
-/// The Tronnier double Gauss at f/4, and a light on its axis.
+/// The Tronnier double Gauss at f/4, with a light on the axis.
 struct AxialScene {
   petzval::Lens lens = focused(petzval::with_f_number(lens_of_data("double_gauss_100mm_f2.0"), 4));
   petzval::FieldPoint light{0, -light_mm};
   double half_width_mm = 1.08 * petzval::point_image(lens, light, {.samples = 1 << 14}).size.max_radius;
   std::string text = lens.name() +
-                     " at f/4, focused at 2 m. A point of light at 10 m on the axis, as a photograph shows "
-                     "it. Each tile has its own exposure.";
+                     " at f/4, focused at 2 m. A point light at 10 m on the axis, as in a photograph. Each tile has "
+                     "its own exposure.";
 
   petzval::PointImage image(petzval::ModelKind model, const petzval::BokehControls& controls) const {
     return petzval::point_image(examples::camera_of({lens, light}, {.model = model, .bokeh = controls}), light,
@@ -78,8 +78,8 @@ examples::Sheet blades() {
       "Bokeh of irises with blades",
       {},
       {scene.text,
-       "Light: the area of the iris, of the round one's at the same f-number. The first corner points up, and all "
-       "corners lie where the round iris ends."}};
+       "Light: area of the iris relative to the round iris of the same f-number. The first corner points up, and all "
+       "corners are on the edge of the round iris."}};
   for (const auto& [name, roundness] : all_edges) {
     auto& tiles =
         sheet.rows
@@ -96,7 +96,7 @@ examples::Sheet blades() {
   return sheet;
 }
 
-/// A real lens, the two discs fitted to it, and a thin lens with these as controls.
+/// Rows of a real lens, of the two discs fitted to it, and of a thin lens with the fit as controls.
 examples::Sheet cats_eyes() {
   constexpr std::array fields_deg{0.0, 4.0, 7.0, 9.5, 11.5};
   constexpr double half_film_mm = 18;
@@ -108,11 +108,10 @@ examples::Sheet cats_eyes() {
   examples::Sheet sheet{
       "Cat's eyes over the field",
       {},
-      {lens.name() +
-           ", wide open, focused at 2 m. A point of light at 10 m, as a photograph shows it. Each tile has its "
-           "own exposure.",
-       "Light: of the light on the axis. Two discs: lens ratio " + number(discs.lens_ratio, 3) + ", rate of change " +
-           number(discs.rate_of_change, 3) + "; the pupil's shape is off by " + number(100 * discs.error, 2) +
+      {lens.name() + ", wide open, focused at 2 m. A point light at 10 m, as in a photograph. Each tile has its own "
+                     "exposure.",
+       "Light: relative to the axis. Two discs: lens ratio " + number(discs.lens_ratio, 3) + ", rate of change " +
+           number(discs.rate_of_change, 3) + "; error of the pupil's shape: " + number(100 * discs.error, 2) +
            " % of its area on a film of 36 mm."}};
   struct Row {
     const char *title, *subtitle;
@@ -122,7 +121,7 @@ examples::Sheet cats_eyes() {
   for (const auto& [title, subtitle, model, controls] :
        {Row{"exact rays", "every surface of the lens", petzval::ModelKind::exact_double, {}},
         Row{"two discs",
-            "a thin lens with two discs fitted to it, as bright as it",
+            "a thin lens with two fitted discs, as bright as the lens",
             petzval::ModelKind::thin_two_disc,
             {}},
         Row{"thin lens", "with the lens ratio and the rate of change of the fit", petzval::ModelKind::thin, eye}}) {
@@ -140,14 +139,15 @@ examples::Sheet cats_eyes() {
   return sheet;
 }
 
-/// The three rows of the text.
+/// The three kinds of weights in the text.
 examples::Sheet weights() {
   const AxialScene scene;
-  examples::Sheet sheet{"Weights of the rim",
-                        {},
-                        {scene.text,
-                         "Weight 1 + p (d + 1) x^d - p; x: the share of the iris that lies nearer to its centre, for d "
-                         "below 0 that which lies farther out."}};
+  examples::Sheet sheet{
+      "Weights of the rim",
+      {},
+      {scene.text,
+       "Weight 1 + p (d + 1) x^d - p; x: fraction of the iris area nearer to its centre, or for d below "
+       "0 farther out."}};
   const auto add_row = [&](const std::string& title, const std::vector<petzval::EdgeWeight>& edges, int blades) {
     auto& tiles = sheet.rows.emplace_back(row(title, "", scene.half_width_mm)).tiles;
     for (const auto& [d, p] : edges) {
@@ -166,7 +166,7 @@ examples::Sheet weights() {
   return sheet;
 }
 
-/// A heart, soft by a pixel.
+/// A heart with an edge that is soft over a pixel.
 petzval::IrisMap heart() {
   constexpr int pixels = 256;
   petzval::IrisMap map{pixels, pixels, {}};
@@ -208,9 +208,9 @@ examples::Sheet maps() {
 int main(int argc, char** argv) {
   std::string out_folder;
   examples::App app(
-      "Draws contact sheets of a point of light out of focus into DIR and prints their paths: bokeh_blades.png (3 to 9 "
-      "blades, straight, rounded and hollow), bokeh_cats_eyes.png (a lens over its field beside two fitted discs), "
-      "bokeh_weights.png (weights of the rim) and bokeh_maps.png (onion rings, an image as iris).",
+      "Draws contact sheets of an out-of-focus point light into DIR and prints their paths: bokeh_blades.png (3 to 9 "
+      "blades, straight, rounded and hollow), bokeh_cats_eyes.png (a lens over its field compared with two fitted "
+      "discs), bokeh_weights.png (weights of the rim) and bokeh_maps.png (onion rings, an image as iris).",
       "bokeh_shapes");
   examples::add_out_folder(app, out_folder, "folder for the sheets")->required();
   examples::add_samples(app, samples);
@@ -220,7 +220,7 @@ int main(int argc, char** argv) {
       std::function<examples::Sheet()> sheet;
     };
     const std::filesystem::path folder = out_folder;
-    examples::make_folder(folder);  // drawing takes seconds
+    examples::make_folder(folder);  // fail before the drawing, which takes seconds
     const std::array<Drawn, 4> all{{{"bokeh_blades.png", "blades", blades},
                                     {"bokeh_cats_eyes.png", "cat's eyes", cats_eyes},
                                     {"bokeh_weights.png", "weights", weights},

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Turns film samples from a CSV file into the rays that a renderer would trace, by any model of the lens.
+// Converts film samples of a CSV file to camera rays, by any model of the lens.
 //
 //   printf 'film_x_mm,film_y_mm,pupil_u,pupil_v,wavelength_nm\n0,-10,0.25,0.5,587.5618\n' > samples.csv
 //   camera_rays data/lenses/double_gauss_100mm_f2.0.json --samples samples.csv --out rays.csv --model exact_double
@@ -36,9 +36,9 @@ constexpr std::array<CsvColumn, 5> sample_columns{{{"film_x_mm"},
 
 struct Samples {
   std::vector<double> film_x, film_y, pupil_u, pupil_v;
-  std::vector<std::uint16_t> wavelength;  ///< positions in
-  std::vector<double> wavelengths_nm;     ///< each once, in the order of the file
-  std::vector<std::size_t> first_row;     ///< of each wavelength
+  std::vector<std::uint16_t> wavelength;  ///< indices of
+  std::vector<double> wavelengths_nm;     ///< without repetitions, in the order of the file
+  std::vector<std::size_t> first_row;     ///< first row of each wavelength
 
   std::size_t size() const noexcept { return film_x.size(); }
 };
@@ -54,7 +54,7 @@ Samples parse_samples(const std::string& csv, const std::string& where) {
     if (found != known.end()) continue;
     if (known.size() == 1000) {
       throw petzval::Error(examples::line_of_row(where, row) +
-                           ": found more than 1000 wavelengths, wanted at most 1000");
+                           ": more than 1000 different wavelengths; must be at most 1000");
     }
     known.push_back(nm);
     samples.first_row.push_back(row);
@@ -62,7 +62,7 @@ Samples parse_samples(const std::string& csv, const std::string& where) {
   return samples;
 }
 
-/// The lens compiled for the wavelengths of the samples. An error names the line of its wavelength.
+/// The lens compiled for the wavelengths of the samples. @throws petzval::Error that names the line of a wavelength
 LoadedLens load_for(const Samples& samples, const examples::LensInput& lens_file, const std::string& where) {
   LoadedLens loaded = examples::load_lens(lens_file, std::array{petzval::d_line_nm});
   for (std::size_t w = 0; w < samples.wavelengths_nm.size(); ++w) {
@@ -111,14 +111,13 @@ int main(int argc, char** argv) {
   examples::CameraSetup setup;
   double tilt_deg = 0, swing_deg = 0;
   examples::App app(
-      "Samples camera rays from points of the film through the lens into the scene. Lengths in mm, in the lens frame: "
-      "origin at the first vertex, light travels towards +z, and these rays the other way. The image on the film is "
-      "upside down.",
+      "Samples camera rays from film points through the lens into the scene. Lengths in mm, in the lens frame: origin "
+      "at the first vertex, light travels towards +z, camera rays towards -z. The image on the film is upside down.",
       "camera_rays");
   examples::add_lens(app, lens_file);
   app.add_option("--samples", samples_file,
                  "CSV with the columns film_x_mm,film_y_mm,pupil_u,pupil_v,wavelength_nm; pupil_u and pupil_v from 0 "
-                 "to 1, uniform by area over the model's pupil of the film point")
+                 "to 1, uniform by area over the model's pupil for the film point")
       ->required()
       ->type_name("CSV");
   examples::add_out_file(app, out_file,
@@ -131,10 +130,9 @@ int main(int argc, char** argv) {
   examples::add_camera(app, setup);
   examples::BokehFlags bokeh;
   examples::add_bokeh(app, bokeh);
-  examples::add_number(
-      app, "--tilt-deg", tilt_deg, below_quarter_turn,
-      "tilt of the film about +x (degrees); its normal is Ry(swing) Rx(tilt) e_z, and film points are in its own "
-      "axes");
+  examples::add_number(app, "--tilt-deg", tilt_deg, below_quarter_turn,
+                       "tilt of the film about +x (degrees); its normal is Ry(swing) Rx(tilt) e_z, and film points "
+                       "are in the axes of the film");
   examples::add_number(app, "--swing-deg", swing_deg, below_quarter_turn, "swing of the film about +y (degrees)");
   app.get_option("--focus-mm")->required()->default_str("");
 

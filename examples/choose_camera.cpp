@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The fastest model of a lens for a scene and an error budget, verified on fresh samples.
+// Chooses the fastest model of a lens for a scene and an error budget, and verifies it on fresh samples.
 //
 //   choose_camera data/lenses/double_gauss_52mm_f1.8.json --near-mm 1000 --far-mm inf --budget-px 0.25
 //   choose_camera data/lenses/double_gauss_52mm_f1.8.json --near-mm 1000 --far-mm 5000 --f-number 4 --focus-mm 2000
@@ -26,7 +26,7 @@ struct Options : examples::ModelOptions {
 
 constexpr examples::Range budget{0, std::numeric_limits<double>::max(), "a finite number, 0 or more"};
 
-/// The largest error of the model for samples that the choice has not seen: at the nearest and the farthest depth, and
+/// Largest error of the model for samples that were not used for the choice: at the nearest and the farthest depth, and
 /// at random depths between them.
 double verified_max_px(const petzval::Lens& lens, const Options& options, petzval::ModelKind model) {
   std::mt19937 random(20'241);
@@ -47,11 +47,10 @@ double verified_max_px(const petzval::Lens& lens, const Options& options, petzva
 int main(int argc, char** argv) {
   Options options;
   examples::App app(
-      "Chooses the fastest model of a lens for a scene. The error of its rays must be within a budget for all points "
-      "of "
-      "the film and the pupil and all depths of the scene, its exposure within 1 %, and the shape of its pupil within "
-      "2 % of the area. At the d line (587.5618 nm).\n"
-      "predicted_max_px is the bound that the choice used; max_px in the table is the bound of each model; "
+      "Chooses the fastest model of a lens for a scene. The error of its rays must be within a budget for all film "
+      "points, pupil points and depths of the scene, its exposure within 1 %, and the shape of its pupil within 2 % of "
+      "the area. At the d line (587.5618 nm).\n"
+      "predicted_max_px is the bound used for the choice; max_px in the table is the bound of each model; "
       "verified_max_px is the largest error of fresh samples.",
       "choose_camera");
   examples::add_model_options(app, options);

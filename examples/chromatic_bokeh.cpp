@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Shows the colours that a lens gives to a point of light out of focus: contact sheets over a spectral set of
-// wavelengths and over one wavelength per channel, a spectral EXR for each picture, and longitudinal and lateral colour
-// as numbers.
+// Shows the colours of an out-of-focus point light: contact sheets over a spectral set of wavelengths and over one
+// wavelength per channel, a spectral EXR for each picture, and longitudinal and lateral colour as numbers.
 //
 //   chromatic_bokeh data/lenses/double_gauss_100mm_f1.35.json --out out
 #include <algorithm>
@@ -37,7 +36,7 @@ struct Options {
   examples::LensInput lens_file;
   std::string out_folder, white_point = "D65";
   double subject_mm = 0;                    ///< 0: twenty focal lengths
-  std::vector<double> focus_mm, field_deg;  ///< none: about the light; the axis and 0.7 of the field
+  std::vector<double> focus_mm, field_deg;  ///< empty: around the light; the axis and 0.7 of the field
   examples::FocusFlags focus;
   examples::IrisSetup iris;
   std::uint32_t samples = 1u << 18;
@@ -50,7 +49,7 @@ struct Options {
   }
 };
 
-/// The set over the visible range, with the wavelengths of the RGB triple among it.
+/// Wavelengths over the visible range, including the wavelengths of the RGB triple.
 std::vector<double> wavelengths_nm() {
   std::vector<double> set;
   for (int nm = 430; nm <= 670; nm += 10) set.push_back(nm);
@@ -61,7 +60,7 @@ std::vector<double> wavelengths_nm() {
   return set;
 }
 
-/// Of the set: the RGB triple's weights, 0 for the others.
+/// Weights for the set: the weights of the RGB triple, 0 for the other wavelengths.
 Weights triple_weights(const std::vector<double>& set) {
   Weights weights(set.size());
   for (std::size_t i = 0; i < petzval::rgb_triple_nm.size(); ++i) {
@@ -75,11 +74,12 @@ double rounded(double value, int digits) {
   return examples::parse_number("rounded", examples::number(value, digits), examples::finite_number);
 }
 
-/// What the command line leaves open.
+/// Fills in the options that the command line does not set.
 void complete(Options& options, const examples::LoadedLens& loaded) {
   const petzval::Meridian meridian = petzval::main_meridian(loaded.lens);
   const double focal_length = std::abs(petzval::first_order(loaded.lens, {}, meridian).effective_focal_length);
-  if (!std::isfinite(focal_length)) throw petzval::Error(loaded.lens.name() + ": afocal, wanted a lens with a focus");
+  if (!std::isfinite(focal_length))
+    throw petzval::Error(loaded.lens.name() + ": afocal; must be a lens with a finite focal length");
   if (options.subject_mm == 0) options.subject_mm = rounded(20 * focal_length, 2);
   if (options.focus_mm.empty() && std::isinf(options.subject_mm)) {
     for (const double lengths : {25, 50, 100}) options.focus_mm.push_back(rounded(lengths * focal_length, 3));
@@ -102,7 +102,7 @@ struct Picture {
 std::vector<Picture> prepared(const petzval::Lens& lens, const Options& options) {
   std::vector<Picture> pictures;
   for (const double field : options.field_deg) {
-    double half_width_mm = 1e-4;  // of all at a field; a perfect point has no size
+    double half_width_mm = 1e-4;  // largest of a field; not 0 for a perfect point
     const std::size_t first = pictures.size();
     for (const double focus : options.focus_mm) {
       const auto scene = examples::focused_scene(lens, focus, options.scene(field));
@@ -122,15 +122,14 @@ examples::Sheet sheet(const std::vector<Picture>& pictures, const petzval::Lens&
   const std::string title =
       lens.name() + ", " +
       (std::isinf(options.subject_mm)
-           ? std::string("a point of light at infinity")
-           : "a point of light at " + examples::number(options.subject_mm) + " mm from the " + options.focus.from());
+           ? std::string("a point light at infinity")
+           : "a point light at " + examples::number(options.subject_mm) + " mm from the " + options.focus.from());
   examples::Sheet result{
       title,
       {},
-      {"The film is where the primary wavelength, " + examples::number(set[lens.primary_wavelength()]) +
-           " nm, is in focus (" + options.focus.criterion +
-           "). Tiles of a row have the same scale of film and their own exposure.",
-       "In three wavelengths each channel has its own image, and no colours lie between them."}};
+      {"The film is at the focus of the primary wavelength, " + examples::number(set[lens.primary_wavelength()]) +
+           " nm (" + options.focus.criterion + "). Tiles of a row have the same film scale and their own exposure.",
+       "With three wavelengths each channel has its own image, without intermediate colours."}};
   for (const double field : options.field_deg) {
     for (const bool triple : {false, true}) {
       const Weights weights = triple ? triple_weights(set) : spectral;
@@ -178,7 +177,7 @@ std::string right(const std::string& text, std::size_t width) {
   return std::string(width > text.size() ? width - text.size() : 0, ' ') + text;
 }
 
-/// Micrometres to a tenth, signed.
+/// A length in micrometres, rounded to a tenth, with its sign.
 std::string micrometres(const std::optional<double>& mm) {
   if (!mm) return "-";
   const double tenths = std::round(*mm * 1e4);
@@ -206,18 +205,14 @@ std::string table(const petzval::ChromaticAberration& colour, const Options& opt
 int main(int argc, char** argv) {
   Options options;
   examples::App app(
-      "Shows the colours of a point of light out of focus, on the axis and off it, over 26 wavelengths and over one "
-      "for "
-      "each channel (650, 510, 475 nm).\n"
-      "Prints longitudinal and lateral colour: how far focus and chief ray are from those of the primary wavelength, "
-      "the "
-      "one nearest to the d line; positive: farther from the lens, and towards +y on the film. Writes to DIR, and "
-      "prints "
-      "the paths: LENS_chromatic.png (contact sheet), LENS_<F>deg_focus_<D>mm.exr (a channel S0.<wavelength>nm for "
-      "each "
-      "wavelength: share of its light in the paraxial entrance pupil, per mm^2 of film; and R, G, B of all in the "
-      "light "
-      "of the white point) and LENS_chromatic.json. Images show the film as a photograph does.",
+      "Shows the colours of an out-of-focus point light, on and off the axis, over 26 wavelengths and over one "
+      "wavelength per channel (650, 510, 475 nm).\n"
+      "Prints longitudinal and lateral colour: shifts of focus and chief ray against the primary wavelength (nearest "
+      "to the d line); positive: farther from the lens, or towards +y on the film. Writes to DIR and prints the "
+      "paths: LENS_chromatic.png (contact sheet), LENS_<F>deg_focus_<D>mm.exr (a channel S0.<wavelength>nm for each "
+      "wavelength: fraction of its light in the paraxial entrance pupil, per mm^2 of film; R, G, B: sum of all "
+      "wavelengths for the light of the white point) and LENS_chromatic.json. Images show the film as a photograph "
+      "does.",
       "chromatic_bokeh");
   examples::add_lens(app, options.lens_file);
   examples::add_number(app, "--subject-distance-mm", options.subject_mm, examples::positive_length,
@@ -262,7 +257,7 @@ int main(int argc, char** argv) {
     const auto written = [](const std::filesystem::path& file) { std::cout << file.string() << std::endl; };
     const std::filesystem::path numbers = folder / (loaded.id + "_chromatic.json");
     {
-      // Each picture is written when it is complete, so that an interrupted run loses only the current picture.
+      // Each complete picture is written at once, so that an interrupted run loses only the current picture.
       examples::Progress progress("chromatic bokeh", pictures.size());
       for (Picture& p : pictures) {
         progress.step(examples::number(p.field_deg) + "°, " + examples::focus_caption(p.focus_mm));

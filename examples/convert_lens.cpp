@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Reads a lens from a file of any format and writes it in another, chosen by the ending of OUT. Says what was assumed
-// and what is lost.
+// Converts a lens between file formats; OUT's extension chooses the format. Reports assumptions and losses.
 //
 //   convert_lens lens.zmx lens.json
 //   convert_lens zoom.txt tele.zmx --configuration tele --glasses hoya.agf --json
@@ -45,16 +44,16 @@ struct Options {
 
 constexpr int refused_by_strict = 3;
 
-/// A format to write: the ending of its files, and what writes one.
+/// An output format: the extension of its files, and its writer.
 struct Output {
   std::string_view ending;
   std::vector<ImportWarning> (*write)(const Prescription& lens, const petzval::GlassCatalogue& glasses,
                                       const std::filesystem::path& file);
 };
 
-/// Of a file that holds one position of a lens.
+/// Reports the loss of zoom positions in a format without zoom lenses.
 void lose_positions(const Prescription& lens, std::vector<ImportWarning>& losses) {
-  if (lens.configurations.size() > 1) losses.push_back({0, "configurations", "all but the first are lost"});
+  if (lens.configurations.size() > 1) losses.push_back({0, "configurations", "only the first is kept"});
 }
 
 std::vector<ImportWarning> write_text(const petzval::WrittenLens& written, const std::filesystem::path& file) {
@@ -62,18 +61,18 @@ std::vector<ImportWarning> write_text(const petzval::WrittenLens& written, const
   return written.losses;
 }
 
-/// What a file has that says what a lens does, not what it is made of.
+/// Losses of a file that describes the effect of a lens but not its construction.
 std::vector<ImportWarning> only_metadata(const Prescription& lens, const petzval::Lens& compiled) {
   const petzval::Film film = petzval::film_of(lens, compiled);
   std::vector<ImportWarning> losses{{0, "surfaces",
-                                     "are lost; the file has what the lens does to a picture of " +
+                                     "are lost; the file has only the effect of the lens on a picture of " +
                                          examples::number(film.width_mm, 4) + " x " +
                                          examples::number(film.height_mm, 4) + " mm"}};
   lose_positions(lens, losses);
   return losses;
 }
 
-// Longer endings first: .opentrackio.json ends in .json too.
+// Longer extensions first: .opentrackio.json also ends in .json.
 constexpr std::array outputs{
     Output{".opentrackio.json",
            [](const Prescription& lens, const petzval::GlassCatalogue& glasses, const std::filesystem::path& file) {
@@ -102,7 +101,7 @@ constexpr std::array outputs{
              examples::write_text(file, petzval::format_osl_camera(petzval::compile(lens, {.glasses = &glasses})));
              std::vector<ImportWarning> losses{
                  {0, "wavelengths",
-                  "the shader has the indices of " + examples::number(lens.reference_wavelength_nm) + " nm alone"}};
+                  "the shader has only the indices at " + examples::number(lens.reference_wavelength_nm) + " nm"}};
              lose_positions(lens, losses);
              return losses;
            }},
@@ -121,7 +120,7 @@ const Output& output_for(const std::string& file) {
   if (found != outputs.end()) return *found;
   std::string known;
   for (const Output& o : outputs) known += (known.empty() ? "" : ", ") + std::string(o.ending);
-  throw petzval::Error(file + ": its ending is unknown, wanted one of " + known);
+  throw petzval::Error(file + ": unknown extension; must be " + known);
 }
 
 Json maybe(const std::optional<double>& value) { return value ? Json(*value) : Json(nullptr); }
@@ -196,18 +195,18 @@ void say(const char* kind, const std::string& file, const std::vector<ImportWarn
   }
 }
 
-/// Returns whether a file was written.
+/// Converts the file. Returns false if --strict prevented the conversion.
 bool convert(const Options& options) {
   const Output& output = output_for(options.out);
   const auto glasses = examples::glasses_of(options.in);
   auto [whole, configuration, one] = examples::read_configurations(options.in, glasses);
   const std::vector<ImportWarning> warnings = whole.imported ? whole.imported->warnings : std::vector<ImportWarning>();
-  // A petzval-lens has the warnings of the file that it was made of.
+  // A petzval-lens file keeps the warnings of the file it was converted from.
   const bool of_another = whole.imported && whole.imported->file != std::filesystem::path(options.in.file).filename();
-  say("warning", of_another ? options.in.file + ", made of " + whole.imported->file : options.in.file, warnings);
+  say("warning", of_another ? options.in.file + ", converted from " + whole.imported->file : options.in.file, warnings);
   if (options.strict && !warnings.empty()) {
     std::cerr << "convert_lens: " << options.in.file << ": " << warnings.size()
-              << (warnings.size() == 1 ? " assumption" : " assumptions") << ", wanted none (--strict)\n";
+              << (warnings.size() == 1 ? " assumption" : " assumptions") << "; must be 0 with --strict\n";
     if (options.json) std::cout << Json{{"refused_by_strict", true}, {"warnings", to_json(warnings)}}.dump(2) << '\n';
     return false;
   }
@@ -221,7 +220,7 @@ bool convert(const Options& options) {
   whole = examples::with_matched_glasses(options.in, std::move(whole), glasses);
   Prescription lens = examples::for_flag(
       "--configuration", [&all = whole, &chosen = configuration] { return petzval::configured(all, chosen); });
-  // A position that was asked for is a lens of its own; else all positions are written.
+  // With --configuration only the chosen position is written, otherwise all positions.
   const auto losses = output.write(one ? lens : whole, glasses, options.out);
   say("lost", options.out, losses);
   if (options.json) std::cout << report(whole, lens, glasses, warnings, losses, repairs).dump(2) << '\n';
@@ -234,18 +233,17 @@ int main(int argc, char** argv) {
   Options options;
   bool refused = false;
   examples::App app(
-      "Reads a lens of any format (petzval JSON, Zemax .zmx, CODE V .seq, OSLO .len, FlareSim .lens, OpticalBench and "
-      "other tables, lentil and optiland JSON; known by its content) and writes OUT in the format of its ending. "
-      "Warnings "
-      "name the lines of IN that were not taken as they are. The exit status is 0 if OUT was written, 3 if --strict "
-      "refused IN.",
+      "Converts a lens of any format (petzval JSON, Zemax .zmx, CODE V .seq, OSLO .len, FlareSim .lens, OpticalBench "
+      "and other tables, lentil and optiland JSON; detected by content) to the format of OUT's extension. Warnings "
+      "name the lines of IN that were not taken literally. The exit status is 0 if OUT was written, 3 if --strict "
+      "prevented the conversion.",
       "convert_lens");
-  examples::add_lens(app, options.in, "IN", "the lens to convert")->required();
-  examples::add_out_file(app, options.out, "the file to write: .json .dat .zmx .seq .osl .opentrackio.json .stmap.exr",
+  examples::add_lens(app, options.in, "IN", "lens to convert")->required();
+  examples::add_out_file(app, options.out, "file to write: .json .dat .zmx .seq .osl .opentrackio.json .stmap.exr",
                          "FILE", "OUT")
       ->required();
-  app.add_flag("--strict", options.strict, "refuse a file of which anything had to be assumed or left out");
-  app.add_flag("--repair", options.repair, "mend faults whose cure is certain, and say what was changed");
+  app.add_flag("--strict", options.strict, "write nothing if an entry of IN had to be assumed or left out");
+  app.add_flag("--repair", options.repair, "repair faults with an unambiguous correction, and list the changes");
   app.add_flag("--json", options.json, "print a report of IN as one JSON object");
   const int status = examples::run(app, argc, argv, [&] { refused = !convert(options); });
   return status == 0 && refused ? refused_by_strict : status;

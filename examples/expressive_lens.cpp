@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Shows what an artist's power spline, curvature of field and dispersion do to highlights over the field, beside the
-// real lens.
+// Compares highlights over the field of the real lens with highlights of an artist's power spline, curvature of field
+// and dispersion.
 //
 //   expressive_lens data/lenses/double_gauss_100mm_f1.35.json --focus-mm 1000 --from-lens 2 --out out
 //   expressive_lens data/lenses/double_gauss_100mm_f2_28deg.json --power-spline 0:1 0.7:1.02 1:0.97
@@ -33,19 +33,19 @@ using examples::Json;
 using examples::number;
 
 constexpr int tile_pixels = 200;
-constexpr std::array film_parts{0.0, 0.3, 0.55, 0.75, 0.9};  // of the way to the film's corner
+constexpr std::array film_parts{0.0, 0.3, 0.55, 0.75, 0.9};  // fractions of the distance to the film's corner
 
 struct Options {
   examples::LensInput lens_file;
   std::string out_folder, model = "thin_two_disc";
-  std::vector<double> light_mm;  // none: nearer and farther than the focus
+  std::vector<double> light_mm;  // empty: nearer and farther than the focus
   examples::CameraSetup setup;
   examples::ExpressiveFlags expressive;
   bool from_lens_given = false;
   std::uint32_t samples = 1u << 17;
 };
 
-/// One wavelength, or with a dispersion that shows a set over the visible range.
+/// One wavelength, or a set over the visible range if the dispersion is changed.
 std::vector<double> wavelengths_nm(const Options& options) {
   if (options.expressive.dispersion == 1) return {petzval::d_line_nm};
   std::vector<double> set;
@@ -53,8 +53,10 @@ std::vector<double> wavelengths_nm(const Options& options) {
   return set;
 }
 
-/// The angles under which film points between the axis and the corner see the scene by exact rays, of those that do:
-/// the mean of what passes their pupils. Throws petzval::Error where none does.
+/// Mean angles under which film points between the axis and the corner see the scene, by exact rays. Film points
+/// without light are skipped.
+///
+/// @throws petzval::Error if no film point has light
 std::vector<double> fields_rad(const petzval::Lens& lens, const petzval::Film& film) {
   const petzval::Camera exact(lens, film, {.model = petzval::ModelKind::exact_double});
   std::vector<double> fields;
@@ -70,15 +72,15 @@ std::vector<double> fields_rad(const petzval::Lens& lens, const petzval::Film& f
     }
     if (weight > 0) fields.push_back(part == 0 ? 0 : std::atan2(std::hypot(x, y), z));
   }
-  if (fields.empty()) throw petzval::Error(lens.name() + ": no light reaches the film, wanted some for highlights");
+  if (fields.empty()) throw petzval::Error(lens.name() + ": no light reaches the film");
   if (fields.size() < film_parts.size()) {
     std::cerr << "note: " << film_parts.size() - fields.size() << " of " << film_parts.size()
-              << " places of the film see no light; --film-mm makes it smaller\n";
+              << " film points have no light; --film-mm sets a smaller film\n";
   }
   return fields;
 }
 
-/// A light in front of the lens, seen through a camera of its own for each field.
+/// A light in front of the lens, with a separate camera for each field.
 class Highlights {
  public:
   Highlights(const petzval::Lens& lens, double light_mm, double origin_z, const Options& options)
@@ -124,7 +126,7 @@ Json description(const petzval::ExpressiveLens& expressive) {
 void draw(Options options) {
   if (options.expressive.change_nothing() && !options.from_lens_given) {
     options.expressive.from_lens = 1;
-    std::cerr << "note: no aberrations are given, so they are those of the lens (--from-lens 1)\n";
+    std::cerr << "note: no aberrations are given; the aberrations of the lens are used (--from-lens 1)\n";
   }
   const examples::LoadedLens loaded = examples::load_lens(options.lens_file, wavelengths_nm(options));
   const petzval::Lens lens = examples::focused(loaded, options.setup);
@@ -151,10 +153,10 @@ void draw(Options options) {
       {},
       {lens.name() + " at f/" + number(petzval::real_f_number(lens), 3) + ", " + examples::focus_caption(focus) +
            " from the " + options.setup.focus.from() +
-           ". A point of light over the field, as a photograph shows it. The tiles of a light have one scale, and each "
-           "its own exposure.",
-       "Fields are those of film points on the way to the corner of " + options.setup.film_mm +
-           " mm. RMS: of the distance of hits from their centroid."}};
+           ". A point light over the field, as in a photograph. The tiles of a light have one scale, and each its own "
+           "exposure.",
+       "Fields of film points on the diagonal of " + options.setup.film_mm +
+           " mm. RMS: distance of film points of rays from their centroid."}};
   Json highlights_json = Json::array();
   examples::Progress progress("expressive lens", lights.size() * rows.size());
   for (const double light_mm : lights) {
@@ -193,14 +195,14 @@ void draw(Options options) {
 int main(int argc, char** argv) {
   Options options;
   examples::App app(
-      "Draws highlights over the field of a lens, of its first-order model with expressive aberrations, and without "
-      "them: DIR/highlights.png, and the numbers of the aberrations and of the highlights as DIR/expressive.json. "
-      "Without any option of them they are those of the real lens.",
+      "Draws highlights over the field of a lens, of its first-order model with expressive aberrations, and of the "
+      "model without aberrations: DIR/highlights.png, with the numbers of aberrations and highlights in "
+      "DIR/expressive.json. The default aberrations are the real lens's.",
       "expressive_lens");
   examples::add_lens(app, options.lens_file);
   examples::add_camera(app, options.setup);
   examples::add_expressive(app, options.expressive);
-  app.add_option("--model", options.model, "first-order model that is bent")
+  app.add_option("--model", options.model, "first-order model that gets the aberrations")
       ->one_of({"thin", "thick", "thin_two_disc"})
       ->capture_default_str();
   examples::add_numbers(app, "--light-mm", options.light_mm, examples::positive_length, "distances of the lights (mm)")

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Puts each place of a picture in focus at the distance that an artist asks for: the surface through focus points as a
-// map, in section, as numbers.
+// Computes a focal surface: the distance in focus at each point of a picture, given by an artist's focus points. Writes
+// it as a map, in section and as numbers.
 //
 //   focal_surface data/lenses/double_gauss_52mm_f1.8.json --points examples/scenes/statues_focus.json --width 600
 //                 --height 400 --film-mm 36x24 --out out
@@ -45,7 +45,7 @@ struct Options {
   examples::FocalSurfaceSetup surface;
 };
 
-/// The surface of the points, with distances from the origin of the options.
+/// The surface through the points, with distances from the origin of the options.
 class Surface {
  public:
   explicit Surface(const Options& options)
@@ -69,10 +69,10 @@ class Surface {
   const petzval::FocalSurface& surface() const { return *surface_; }
   const std::vector<petzval::FocalPoint>& points() const { return points_; }
 
-  /// 1 / distance from the origin, of 1 / distance from the entrance pupil.
+  /// Converts 1 / distance from the entrance pupil to 1 / distance from the origin.
   double inverse(double from_pupil) const { return from_pupil / (1 + from_pupil * beyond_pupil_); }
 
-  /// Of all pixels of a film, row by row from the upper left.
+  /// Values of all pixels of a film, row by row from the upper left.
   struct Frame {
     std::vector<double> inverses, extents;
   };
@@ -104,7 +104,7 @@ std::string distance_in_words(double inverse) {
 }
 std::string stops_in_words(double stops) { return number(stops, 4) + " stops"; }
 
-/// Round distances whose inverses lie within a range, the farthest first, not too close to each other.
+/// Round distances within a range of inverse distances, farthest first, with a minimum spacing.
 std::vector<examples::SurfaceMap::Level> distance_levels(double least, double most) {
   std::vector<examples::SurfaceMap::Level> result;
   constexpr double lines = 12;
@@ -145,7 +145,7 @@ petzval::Rgb8Image map_of(const Surface& surface, const Options& options) {
                        const char* high, std::optional<double> petzval::FocalPoint::*fixed) {
     const auto [least, most] = std::minmax_element(values.begin(), values.end());
     auto levels = levels_of(*least, *most);
-    if (levels.empty()) title += ": the same everywhere, " + in_words(*least);
+    if (levels.empty()) title += ": constant, " + in_words(*least);
     auto& map = sheet.maps.emplace_back(
         examples::SurfaceMap{std::move(title), std::move(values), std::move(levels), low, high, {}});
     for (std::size_t i = 0; i < surface.points().size(); ++i) {
@@ -161,11 +161,12 @@ petzval::Rgb8Image map_of(const Surface& surface, const Options& options) {
         stops_in_words, "less is sharp", "more is sharp", &petzval::FocalPoint::extent_stops);
   }
   const std::string points_file = std::filesystem::path(options.surface.points_file).filename().string();
-  sheet.notes = {"Points by their numbers in " + points_file + "; the picture as a photograph shows it."};
+  sheet.notes = {"Points have their numbers in " + points_file + "; the picture is upright."};
   return examples::draw_surface_sheet(sheet);
 }
 
-/// x_px,y_px to answers. An object at the points' own distances has the blur that they ask for.
+/// Answers to queries x_px,y_px. At a focus point, blur_px for an object at the point's own distance is the requested
+/// blur.
 std::string answers(const Surface& surface, const std::string& queries_file) {
   constexpr std::array columns{examples::CsvColumn{"x_px"}, examples::CsvColumn{"y_px"}};
   const auto queries = examples::parse_columns(examples::read_text(queries_file), columns, queries_file);
@@ -210,16 +211,13 @@ void write(const Options& options) {
 int main(int argc, char** argv) {
   Options options;
   examples::App app(
-      "Puts each place of a picture in focus at the distance that focus points ask for. Writes to DIR: surface.png, "
-      "the "
-      "distance over the picture, and the extent of the depth of field where points give it; side.svg, lens, film and "
-      "surface in section; surface.pfm, 1/distance in 1/mm for each pixel, rows from the bottom as PFM has them; and "
-      "for --queries answers.csv (x_px,y_px,distance_mm,extent_stops,blur_px). Distances count from --distance-from; "
-      "infinity is inf, and beyond it, where a blur leads there, they are negative. blur_px is the signed diameter of "
-      "the blur that the points "
-      "ask "
-      "for: of an object at their own distances, negative in front of what is in focus. Points that fix a distance "
-      "outweigh --focus-mm.",
+      "Sets the distance in focus at each point of a picture from focus points. Writes to DIR: surface.png, the "
+      "distance over the picture, and the extent of the depth of field if points give one; side.svg, lens, film and "
+      "surface in section; surface.pfm, 1/distance in 1/mm for each pixel, rows from the bottom as in all PFM files; "
+      "and with --queries answers.csv (x_px,y_px,distance_mm,extent_stops,blur_px). Distances count from "
+      "--distance-from; infinity is inf, and distances beyond infinity, which a blur can cause, are negative. blur_px "
+      "is the signed diameter of the requested blur for an object at the distance of the points, negative in front of "
+      "the focus. Points that fix a distance override --focus-mm.",
       "focal_surface");
   examples::add_lens(app, options.lens_file);
   auto* points =
@@ -233,8 +231,7 @@ int main(int argc, char** argv) {
   examples::add_picture_size(app, options.width, options.height, usual_width);
   examples::add_camera(app, options.setup);
   examples::add_surface_kind(app, options.surface, points);
-  app.add_option("--queries", options.queries_file, "places of the picture: a CSV file of x_px,y_px")
-      ->type_name("Q.csv");
+  app.add_option("--queries", options.queries_file, "CSV file of picture points: x_px,y_px")->type_name("Q.csv");
   examples::add_out_folder(app, options.out_folder)->required();
   return examples::run(app, argc, argv, [&] { write(options); });
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Focus over time: points with keyframes give a film position for every frame, as a table and a plot.
+// Pulls focus over time: points with keyframes give a film position for every frame, as a table and a plot.
 //
 //   focus_pull data/lenses/double_gauss_100mm_f2_28deg.json --keys examples/scenes/rack.json --out out
 //   focus_pull --model thin --thin-focal-length-mm 50 --f-number 2 --keys keys.json --json --out out
@@ -54,7 +54,7 @@ struct Times {
   double from = infinity, to = -infinity;
 };
 
-/// From the start of the first point to the end of the last: of its interval, or of its keys if that is unbounded.
+/// From the start of the first point to the end of the last point. Unbounded intervals are replaced by the keys.
 Times span_of(const std::vector<petzval::FocusPoint>& points) {
   Times times;
   for (const petzval::FocusPoint& p : points) {
@@ -114,7 +114,7 @@ class Pull {
     frame.rms_um = 1e3 * found.rms_mm;
   }
 
-  /// The distance in focus on the axis; by rays for the real model. Infinite if nothing is in focus.
+  /// Distance in focus on the axis, by rays for the real model; infinite if no finite distance is in focus.
   double distance() const {
     if (lens_.exact) return petzval::solve_subject(*lens_.lens, film_.z(), options_.focus.options()).distance;
     const petzval::ScenePoint place = lens_.ideal.scene_of({0, 0, film_.z()});
@@ -132,7 +132,7 @@ class Pull {
     return 0;
   }
 
-  /// By the chief ray through the exit pupil, compared with a film focused at infinity.
+  /// Growth of the image by the chief ray through the exit pupil, compared with a film focused at infinity.
   double breathing() const {
     if (lens_.exact) {
       return petzval::breathing(*lens_.lens, film_.z(), {.criterion = criterion()}).value_or(none);
@@ -144,7 +144,7 @@ class Pull {
   const examples::MovingLens& lens_;
   const std::vector<petzval::FocusPoint>& points_;
   std::optional<petzval::ImageRays> bundles_;
-  petzval::Film film_;  // of the previous frame
+  petzval::Film film_;  // film of the previous frame
 };
 
 std::vector<Frame> frames(const Options& options, const examples::MovingLens& lens,
@@ -152,15 +152,15 @@ std::vector<Frame> frames(const Options& options, const examples::MovingLens& le
   const Times times = span_of(points);
   const double count = std::floor((times.to - times.from) * options.frames_per_s + 1e-6) + 1;
   if (!(count <= most_frames)) {
-    throw petzval::Error(options.keys_file + ": found " + number(count) + " frames from " + number(times.from) +
-                         " s to " + number(times.to) + " s, wanted at most " + std::to_string(most_frames));
+    throw petzval::Error(options.keys_file + ": frames = " + number(count) + " from " + number(times.from) + " s to " +
+                         number(times.to) + " s; must be at most " + std::to_string(most_frames));
   }
   Pull pull(options, lens, points);
   std::vector<Frame> result;
   for (double k = 0; k < count; ++k) result.push_back(pull.at(times.from + k / options.frames_per_s));
   if (std::ranges::none_of(result, [](const Frame& f) { return std::isfinite(f.rms_um); })) {
-    throw petzval::Error(options.keys_file + ": found no point to focus on in any frame (the first is " +
-                         result.front().status + "), wanted one in front of the lens");
+    throw petzval::Error(options.keys_file + ": no frame has a point to focus on (status of the first frame: " +
+                         result.front().status + "); at least one point must be in front of the lens");
   }
   return result;
 }
@@ -204,12 +204,12 @@ std::string plot(const Options& options, const examples::MovingLens& lens,
   }
   const std::string remark = lens.conditions + ", " + std::to_string(points.size()) +
                              (points.size() == 1 ? " focus point, " : " focus points, ") +
-                             number(options.frames_per_s) + " frames a second";
+                             number(options.frames_per_s) + " frames per second";
   return petzval::focus_pull_figure(lens.title, remark, shown, std::vector<double>(keys.begin(), keys.end()),
                                     options.focus.from());
 }
 
-/// One frame per second, and the last one.
+/// Table rows: one frame per second, and the last frame.
 std::string to_text(const std::vector<Frame>& all, double frames_per_s) {
   const auto cell = [](double value, int digits) {
     const std::string text = std::isnan(value) ? "-" : number(value, digits);
@@ -232,31 +232,31 @@ std::string to_text(const std::vector<Frame>& all, double frames_per_s) {
 int main(int argc, char** argv) {
   Options options;
   examples::App app(
-      "Moves the film for points of the scene that have keyframes, frame by frame.\n"
+      "Moves the film to focus on scene points with keyframes, frame by frame.\n"
       "keys.json: [{\"from_s\": 0, \"until_s\": 10, \"keys\": [{\"time_s\": 0, \"position_mm\": [x, y, z], \"weight\": "
       "1, \"blur_mm\": 0, \"at_infinity\": false}, ...]}, ...] in the lens frame, the scene at negative z; a point is "
       "used within its interval.\n"
-      "The film starts at infinity focus. It keeps its place in a frame without points (no_targets), with points out "
-      "of "
-      "reach (unreachable) or without a solution (not_converged). subject_distance_mm: in focus on the axis.\n"
+      "The film starts at the focus for infinity. It does not move in a frame without points (no_targets), with points "
+      "out of reach (unreachable) or without a solution (not_converged). subject_distance_mm: distance in focus on the "
+      "axis.\n"
       "Writes NAME_focus_pull.csv and NAME_focus_pull.svg into DIR.",
       "focus_pull");
   examples::add_movement_options(app, options);
-  app.add_option("--keys", options.keys_file, "points and their keys")->type_name("FILE")->required();
+  app.add_option("--keys", options.keys_file, "JSON file of points and keys")->type_name("FILE")->required();
   examples::add_out_folder(app, options.out_folder, "folder for the table and the plot")->required();
   examples::add_distance_origin(app, options.focus.origin);
   const auto* criterion = examples::add_criterion(app, options.focus.criterion, {"min_rms", "min_max"});
-  examples::add_number(app, "--frames-per-s", options.frames_per_s, examples::positive_number, "frames a second");
+  examples::add_number(app, "--frames-per-s", options.frames_per_s, examples::positive_number, "frames per second");
   app.add_flag("--tilt", options.tilt, "also tilt and swing the film");
   app.add_flag("--json", options.json, "print one JSON object instead of text");
 
   return examples::run(app, argc, argv, [&] {
     if (criterion->given() && options.model != "real") {
-      throw petzval::Error("--criterion: found it with --model " + options.model +
-                           ", wanted --model real: the other models have one focus");
+      throw petzval::Error("--criterion with --model " + options.model +
+                           "; must be --model real, because other models have only one focus");
     }
     if (criterion->given() && options.tilt) {
-      throw petzval::Error("--criterion: found it with --tilt, wanted one of them: tilted films have the least RMS");
+      throw petzval::Error("--criterion cannot be combined with --tilt: tilted films always minimize the RMS blur");
     }
     const examples::MovingLens lens = examples::moving_lens(options);
     const auto points = examples::read_focus_points(options.keys_file);

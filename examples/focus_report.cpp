@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Film position, depth of field and breathing for several subject distances and criteria of focus.
+// Reports film position, depth of field and breathing for several subject distances and focus criteria.
 //
 //   focus_report data/lenses/double_gauss_100mm_f2.0.json
 //   focus_report data/lenses/double_gauss_100mm_f2.0.json --json --distance-mm 700,2000,inf --criterion min_rms
@@ -39,13 +39,13 @@ struct Options {
   examples::LensInput lens_file;
   std::string origin = "front_vertex";
   std::vector<std::string> criteria{"min_rms", "paraxial", "min_max"};
-  std::vector<double> distance_mm, field_deg{0}, wavelengths_nm;  // none: of the file
+  std::vector<double> distance_mm, field_deg{0}, wavelengths_nm;  // empty: values of the file
   double blur_mm = 0.03, f_number = 0;                            // f_number 0: wide open
   bool json = false;
 };
 
 struct Row {
-  std::string criterion, refusal{};  ///< the reason if the library refuses the row
+  std::string criterion, refusal{};  ///< the error message if the row cannot be computed
   double distance = 0;
   petzval::FocusSolution focus{};
   double near = none, far = none, blur = none, breathing = none;
@@ -60,12 +60,12 @@ struct Limits {
 
 struct Report {
   petzval::Lens lens;
-  std::vector<Row> rows;  ///< criterion by criterion, by distance within
+  std::vector<Row> rows;  ///< ordered by criterion, then by distance
   std::vector<Limits> limits;
 };
 
-/// The object of the file. Without a finite one distances as engraved on lenses of 50 to 100 mm; in proportion for
-/// others, rounded to two digits.
+/// Default distances: the object distance of the file if finite, otherwise multiples of the focal length, rounded to
+/// two digits, like the distances engraved on lenses of 50 to 100 mm.
 std::vector<double> usual_distances(const petzval::Lens& lens, const petzval::DesignData& design,
                                     petzval::DistanceOrigin origin) {
   if (std::isfinite(design.object_distance_mm)) return {design.object_distance_mm + petzval::origin_z(lens, origin)};
@@ -108,8 +108,8 @@ void solve(Row& row, const petzval::Lens& lens, const petzval::FocusOptions& foc
   if (depth) row.near = depth.near_distance, row.far = depth.far_distance;
 }
 
-/// The message of a refusal (a subject inside the lens, a field that does not see the subject's plane), which costs one
-/// row only.
+/// The message of an error that costs only one row: a subject inside the lens, or a field that cannot see the subject's
+/// plane. Empty if there is no error.
 template <class Work>
 std::string refusal(Work&& work) {
   try {
@@ -120,12 +120,13 @@ std::string refusal(Work&& work) {
   return "";
 }
 
-/// The message about a subject that is out of reach; it names the nearest distance.
+/// The error message for a subject that is out of reach; it gives the nearest distance.
 std::string reason(const petzval::Lens& lens, const Row& row, const Options& options) {
   return refusal([&] { petzval::with_focus(lens, row.distance, focus_options(row.criterion, options)); });
 }
 
-/// Fields that no light reaches, and reports without any answer, are errors. Distances that look like metres are noted.
+/// Throws for fields without light and for reports without any result. Prints a note for distances that look like
+/// metres.
 void want_answers(const Report& report, const std::vector<double>& distances, const Options& options) {
   const double z = petzval::origin_z(report.lens, examples::named(options.origin, examples::distance_origins)) -
                    *std::ranges::max_element(distances);
@@ -253,42 +254,39 @@ std::string to_text(const Report& report, const Options& options) {
 int main(int argc, char** argv) {
   Options options;
   examples::App app(
-      "Reports, for subject distances and criteria of focus: the film position, the blur of the subject there, the "
-      "depth "
-      "of field, the hyperfocal distance, the nearest distance, and breathing (growth of the image compared with focus "
-      "at "
+      "Reports, for subject distances and focus criteria: the film position, the blur of the subject, the depth of "
+      "field, the hyperfocal distance, the nearest distance, and breathing (growth of the image compared with focus at "
       "infinity).\n"
       "Criteria: thin (a thin lens of the same focal length), paraxial (the cardinal points), min_rms and min_max "
-      "(exact rays through the whole aperture: least RMS and least largest radius of the blur). Blurs are diameters: "
-      "of the paraxial cone, of the uniform disc with that RMS radius, twice the largest radius.\n"
-      "thin and paraxial use the axis and the wavelength nearest to the d line (587.5618 nm) only.",
+      "(exact rays through the whole aperture: smallest RMS and smallest maximum radius of the blur). Blurs are "
+      "diameters: the paraxial cone, the uniform disc with the RMS radius, or twice the maximum radius.\n"
+      "thin and paraxial use only the axis and the wavelength nearest to the d line (587.5618 nm).",
       "focus_report");
   examples::add_lens(app, options.lens_file);
-  app.add_flag("--json", options.json,
-               "print an array of rows, one per criterion and distance; null is an infinite or absent value, explained "
-               "by status and depth_status (refused: by message); blur_mm is the value of --blur-mm, breathing a "
-               "fraction");
+  app.add_flag(
+      "--json", options.json,
+      "print an array of rows, one per criterion and distance; null is an infinite or absent value, explained by "
+      "status and depth_status (refused: see message); blur_mm is the value of --blur-mm; breathing is a fraction");
   examples::add_numbers(app, "--distance-mm", options.distance_mm, examples::positive_length,
                         "subject distances (mm), or inf")
-      ->default_str(
-          "the object of the file, if it is not at infinity, else 10, 20, 50, 100 focal lengths, rounded, and inf");
+      ->default_str("the object of the file if finite, else 10, 20, 50, 100 focal lengths, rounded, and inf");
   examples::add_criteria(app, options.criteria);
   examples::add_distance_origin(app, options.origin);
   examples::add_number(app, "--blur-mm", options.blur_mm, examples::positive_number,
                        "largest blur in the depth of field, a diameter on the film (mm); 0.03 is usual for 24 x 36 mm");
   examples::add_number(app, "--f-number", options.f_number, examples::positive_number,
-                       "stop the lens down (by exact rays)")
+                       "f-number to stop the lens down to (by exact rays)")
       ->default_str("wide open");
   examples::add_numbers(app, "--field-deg", options.field_deg, examples::field_angle,
                         "fields of min_rms and min_max, of equal weight (degrees)");
   examples::add_wavelengths(app, "--wavelengths-nm", options.wavelengths_nm,
                             "wavelengths of min_rms and min_max, of equal weight")
-      ->default_str("the primary one of the file, else the d line");
+      ->default_str("the primary wavelength of the file, else the d line");
 
   return examples::run(app, argc, argv, [&] {
     for (const std::string& criterion : options.criteria) {
       if (std::ranges::count(options.criteria, criterion) == 1) continue;
-      throw petzval::Error("--criterion: found " + criterion + " twice, wanted every criterion once");
+      throw petzval::Error("--criterion: " + criterion + " occurs twice; criteria must differ");
     }
     examples::LensFile file = examples::read_lens(options.lens_file);
     if (options.wavelengths_nm.empty()) options.wavelengths_nm = {examples::light_of(file).primary_nm};

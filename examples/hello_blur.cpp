@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A picture with depths, out of focus: a board 1 m away before a striped wall 3 m away, through a lens focused at the
-// wall. Prints a row across the edge
-// of the board, which does not hide the wall sharply.
+// Blurs a picture with depths: a board 1 m away in front of a striped wall 3 m away, through a lens focused at the
+// wall. Prints a row across the edge of the board, which hides the wall gradually.
 #include <cstdio>
 #include <exception>
 #include <vector>
@@ -17,7 +16,7 @@ int main() try {
   const petzval::LensRays rays =
       petzval::LensRays::thin(camera, {.radius_mm = 25, .inverse_focus = 1 / 3000.0}, petzval::vogel_points(100));
 
-  // What a renderer gives: colours and depths, with a margin that the lens sees around the picture.
+  // A renderer's colours and depths, with a margin around the picture that the lens can see.
   const petzval::PeelPlan plan = petzval::plan_peel(rays, 1000, 3000);
   const int columns = plan.camera.layer_columns(), rows = plan.camera.layer_rows();
   std::vector<float> rgba, depth_mm;
@@ -38,7 +37,7 @@ int main() try {
     std::printf("%.2f ",
                 static_cast<double>(picture.rgba[static_cast<std::size_t>(4 * (120 * picture.columns + column))]));
   }
-  std::printf("\n%.1f %% of the rays met what the picture does not know\n",
+  std::printf("\n%.1f %% of the rays hit surfaces that are not in the picture\n",
               100 * static_cast<double>(picture.statistics.missed) / static_cast<double>(picture.statistics.rays));
 } catch (const std::exception& e) {
   std::fprintf(stderr, "%s\n", e.what());

@@ -23,7 +23,7 @@ std::array<double, 4> next_sample() {
   return sample;
 }
 
-/// The scene of the renderer: white discs in the dark.
+/// The scene of the renderer: white discs on black.
 double radiance(const Ray<double>& ray) {
   for (const auto& [x, z] : {std::array{-50.0, -552.0}, {0.0, -852.0}, {450.0, -4852.0}}) {
     const Vec3<double> hit = ray.origin + (z - ray.origin.z) / ray.direction.z * ray.direction;

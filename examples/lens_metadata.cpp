@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Writes what compositing and virtual production ask of a lens at its stop and focus: a lens sample of OpenTrackIO and
-// ST maps that remove and restore its distortion.
+// Writes the data of a lens at its stop and focus for compositing and virtual production: a lens sample of OpenTrackIO,
+// and ST maps that remove and restore its distortion.
 //
 //   lens_metadata data/lenses/biogon_35mm_f2.8.json --f-number 4 --focus-mm 2000 --out out
 #include <array>
@@ -38,7 +38,7 @@ void write(const Options& options) {
   constexpr int columns = 1920, most_rows = 8 * columns;
   const double rows = std::round(columns * height / width);  // pixels are square
   if (!(rows >= 1 && rows <= most_rows)) {
-    throw petzval::Error("--film-mm: found \"" + options.setup.film_mm + "\", wanted a height of 1/" + number(columns) +
+    throw petzval::Error("--film-mm = \"" + options.setup.film_mm + "\"; the height must be 1/" + number(columns) +
                          " to " + number(most_rows / columns) + " times the width");
   }
   const petzval::Film film{.width_mm = width, .height_mm = height, .columns = columns, .rows = static_cast<int>(rows)};
@@ -69,7 +69,7 @@ void write(const Options& options) {
 int main(int argc, char** argv) {
   Options options;
   examples::App app(
-      "Writes a lens at its stop and focus as DIR/LENS.opentrackio.json, and the ST maps of its distortion as "
+      "Writes the lens sample at its stop and focus as DIR/LENS.opentrackio.json, and the ST maps of its distortion as "
       "DIR/LENS.stmap.exr.",
       "lens_metadata");
   examples::add_lens(app, options.lens_file);

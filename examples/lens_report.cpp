@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Prints the first-order data of a lens, its pupils and f-numbers, and the doubtful entries of its prescription. With
-// --out it draws the lens, its spots, pupils, focus and brightness, and makes a page of them.
+// Prints the first-order data of a lens, its pupils and f-numbers, and doubtful entries of its prescription. With --out
+// it draws the lens, its spots, pupils, focus and brightness, and combines them in a page.
 //
 //   lens_report data/lenses/double_gauss_100mm_f1.35.json
 //   lens_report data/lenses/double_gauss_100mm_f1.35.json --json --wavelength-nm 486.1327
@@ -36,7 +36,7 @@ struct Options {
   std::vector<double> field_deg;
 };
 
-/// The subject, film and light by the command line; the file gives the values that are not set there.
+/// The subject, film and light by the command line; by default the values of the file.
 examples::ReportSubject subject_of(const examples::LensFile& file, const Options& options) {
   examples::ReportSubject subject{.focus = options.focus};
   const petzval::DesignData& design = file.prescription.design;
@@ -72,7 +72,7 @@ examples::Report report_of(const Options& options) {
   const std::array primary{subject.light.primary_nm};
   examples::LoadedLens loaded = examples::compiled(std::move(file), primary);
   const auto declared = examples::declared_pupil(loaded.prescription.design, loaded.lens);
-  // Heights of images are those on the film of the file.
+  // Image heights refer to the film of the file.
   subject.fields = options.field_deg.empty() ? examples::fields_of(loaded, loaded.lens)
                                              : examples::ReportFields{options.field_deg, false};
   loaded.lens = set(loaded.lens, options, subject);
@@ -106,28 +106,29 @@ void write_page(const examples::Report& report, const Options& options) {
 int main(int argc, char** argv) {
   Options options;
   examples::App app(
-      "Reports the first-order data, pupils, f-numbers and lint findings of a lens, for a lens with cylinders in both "
-      "sections. Lengths in mm; z from the first vertex, towards the film. Findings are not failures. Subject, "
-      "wavelengths with their weights, and fields are those of the file, if it has them.\n"
-      "With --out: writes LENS_layout.svg (and LENS_layout_x.svg of a lens with cylinders), LENS_spots.svg, "
+      "Reports the first-order data, pupils, f-numbers and lint findings of a lens, in both sections if it has "
+      "cylinders. Lengths in mm; z from the first vertex, towards the film. Findings are not failures. Subject, "
+      "wavelengths with their weights, and fields are taken from the file if it has them.\n"
+      "With --out: writes LENS_layout.svg (and LENS_layout_x.svg for a lens with cylinders), LENS_spots.svg, "
       "LENS_footprints.svg, LENS_focus.svg, LENS_illumination.svg and LENS.html, a page with all of them, to DIR, and "
       "prints their paths instead.",
       "lens_report");
   examples::add_lens(app, options.lens_file);
   app.add_flag("--json", options.json, "print one JSON object; null is an infinite or absent value");
-  const auto* wavelength = examples::add_wavelength(app, "--wavelength-nm", options.wavelength_nm, "wavelength")
-                               ->default_str("those of the file, else F, d and C; numbers at the primary one");
+  const auto* wavelength =
+      examples::add_wavelength(app, "--wavelength-nm", options.wavelength_nm, "wavelength")
+          ->default_str("wavelengths of the file, else F, d and C; numbers at the primary wavelength");
   examples::add_number(app, "--f-number", options.f_number, examples::positive_number,
-                       "stop the lens down to this f-number")
+                       "f-number to stop the lens down to")
       ->default_str("wide open");
   const auto* subject = examples::add_number(app, "--subject-distance-mm", options.subject_mm,
                                              examples::positive_length, "distance of the subject (mm), or inf")
-                            ->default_str("that of the file, with the film of the file");
+                            ->default_str("distance and film of the file");
   examples::add_focus(app, options.focus);
   examples::add_film_choice(app, options.film, "file; with --subject-distance-mm focus");
-  auto* out = examples::add_out_folder(app, options.out_folder, "draw figures and a page in this folder");
+  auto* out = examples::add_out_folder(app, options.out_folder, "folder for figures and a page");
   examples::add_numbers(app, "--field-deg", options.field_deg, examples::field_angle, "fields of the figures (degrees)")
-      ->default_str("those of the file, else the axis, 0.7 and 1 of the declared half field")
+      ->default_str("fields of the file, else the axis, 0.7 and 1 of the declared half field")
       ->needs(out);
   out->excludes("--json");
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Computes the images of point lights over fields, distances, wavelengths and f-numbers as one EXR, in shards on as
-// many machines as there are, and looks up the image of any point between them.
+// Computes the images of point lights over fields, distances, wavelengths and f-numbers as one EXR, optionally in
+// shards on several machines, and interpolates the image of any point between them.
 //
 //   psf_set data/lenses/double_gauss_100mm_f2_28deg.json --fields 0,5,10,14 --distances-mm 1000,2000,4000,inf
 //           --f-numbers 2,2.8 --focus-mm 2000 --out set
@@ -52,7 +52,7 @@ struct Options {
   bool resume = false, check = false;
 };
 
-/// The lens at its f-numbers, focused, and lights in front of it.
+/// The lens at its f-numbers, focused, with lights in object space.
 class Scenes {
  public:
   Scenes(const examples::LoadedLens& loaded, const Options& options)
@@ -61,7 +61,7 @@ class Scenes {
   bool wide_open() const noexcept { return wide_open_; }
   const petzval::Lens& lens() const noexcept { return lens_; }
 
-  /// Throws petzval::Error for a point that the lens cannot have in front of it.
+  /// @throws petzval::Error if the point is not in front of the lens
   examples::BokehScene at(const PsfSetPoint& point) {
     if (!stopped_ || f_number_ != point.f_number) {
       examples::IrisSetup iris = options_.iris;
@@ -101,7 +101,7 @@ examples::PsfJob job_of(const examples::LoadedLens& loaded, const Options& optio
   Json distances = Json::array();
   for (const double mm : options.axes.distances_mm) distances.push_back(examples::finite_or_null(mm));
   std::vector<double> f_numbers = options.axes.f_numbers;
-  if (f_numbers.empty()) {  // rounded: a name for what the lens has
+  if (f_numbers.empty()) {  // rounded, for file names
     f_numbers = {examples::parse_number("f-number", examples::number(petzval::real_f_number(loaded.lens), 4),
                                         examples::positive_number)};
   }
@@ -126,7 +126,7 @@ examples::PsfJob job_of(const examples::LoadedLens& loaded, const Options& optio
                            {"petzval", PETZVAL_VERSION}});
 }
 
-/// The own PSFs of a folder that are not whole yet. A note on standard error names those that are corrupt.
+/// PSFs of this shard that are not complete in the folder. Notes on standard error name corrupt files.
 std::vector<std::size_t> left_to_do(const examples::PsfJob& job, const Options& options) {
   std::vector<std::size_t> left;
   for (std::size_t node = 0; node < job.axes().size(); ++node) {
@@ -144,7 +144,8 @@ std::vector<std::size_t> left_to_do(const examples::PsfJob& job, const Options& 
   return left;
 }
 
-/// Traces the middles of all cells of the grid, at the wavelengths of the set, and compares.
+/// Traces the centres of all cells of the grid, at the wavelengths of the set, and compares them with the
+/// interpolation.
 Json interpolation_error(const std::vector<petzval::ExrPart>& parts, const examples::PsfJob& job, Scenes& scenes) {
   std::vector<petzval::PsfKernel> kernels;
   for (const petzval::ExrPart& part : parts) kernels.push_back(petzval::from_exr_part(part).kernel);
@@ -166,7 +167,7 @@ Json interpolation_error(const std::vector<petzval::ExrPart>& parts, const examp
     progress.step(petzval::psf_part_name(point));
     const petzval::PsfKernel between = set.at(point);
     const double half_width = between.pixels * between.pixel_mm / 2;
-    // Seeds of their own: kernels and their interpolation share one.
+    // Separate seeds, because kernels and their interpolation have the same seed.
     const auto traced = scenes.kernel(point, 1, half_width), again = scenes.kernel(point, 2, half_width);
     moved.push_back(100 * petzval::light_moved(between, traced));
     noise.push_back(100 * petzval::light_moved(traced, again));
@@ -182,7 +183,7 @@ Json interpolation_error(const std::vector<petzval::ExrPart>& parts, const examp
     std::sort(values.begin(), values.end());
     return Json{{"median", values[values.size() / 2]}, {"worst", values.back()}};
   };
-  return {{"what", "middles of all cells of the grid against traced PSFs"},
+  return {{"what", "interpolation at the centres of all grid cells compared with traced PSFs"},
           {"points", cells.size()},
           {"light_moved_percent", summary(moved)},
           {"worst_at", std::move(worst)},
@@ -194,8 +195,8 @@ void say(const std::vector<fs::path>& files) {
   for (const fs::path& file : files) std::cout << file.string() << '\n';
 }
 
-/// Refuses points from which no ray can be sent, and fields without light at any distance and f-number, before anything
-/// is written.
+/// Throws before files are written, for points from which no ray can be sent and for fields without light at all
+/// distances and f-numbers.
 void want_light(const petzval::PsfSet::Axes& axes, Scenes& scenes) {
   std::vector<bool> lit(axes.fields_deg.size());
   for (std::size_t node = 0; node < axes.size(); ++node) {
@@ -213,14 +214,14 @@ void want_light(const petzval::PsfSet::Axes& axes, Scenes& scenes) {
 
 void compute(const Options& options) {
   petzval::PsfSet::Axes axes = options.axes;
-  if (axes.f_numbers.empty()) axes.f_numbers = {1};  // found out below
+  if (axes.f_numbers.empty()) axes.f_numbers = {1};  // replaced below
   petzval::PsfSet::validate(axes);
   if (options.pixels % 2 == 0) {
-    throw petzval::Error("--pixels: found \"" + std::to_string(options.pixels) +
-                         "\", wanted an odd number: the chief ray is in the middle of a pixel");
+    throw petzval::Error("--pixels = \"" + std::to_string(options.pixels) +
+                         "\"; must be odd, because the chief ray is at the centre of a pixel");
   }
   if (options.check && options.shard.count > 1) {
-    throw petzval::Error("--check: found --shard " + options.shard.text() + ", wanted a whole set");
+    throw petzval::Error("--check with --shard " + options.shard.text() + "; must be used without --shard");
   }
   const auto loaded = examples::load_lens(options.lens_file, options.axes.wavelengths_nm);
   const examples::PsfJob job = job_of(loaded, options);
@@ -252,12 +253,12 @@ void merge(const std::vector<std::string>& names, const std::string& out) {
   for (const fs::path& folder : folders) {
     if (examples::PsfJob::read(folder).description() == job.description()) continue;
     throw petzval::Error(folder.string() + ": describes another set than " + folders.front().string() +
-                         ", wanted shards of one set");
+                         "; must be a shard of the same set");
   }
   say(examples::write_psf_set(job, job.gather(folders), out));
 }
 
-/// A number that may be left out.
+/// An optional number.
 struct Maybe {
   double value = 0;
   examples::Option* option = nullptr;
@@ -288,40 +289,40 @@ void query(const std::string& file, PsfSetPoint point, const std::string& origin
 int main_compute(int argc, char** argv) {
   Options options;
   examples::App app(
-      "Computes the images of point lights over a grid of fields, distances, wavelengths and f-numbers. Writes to DIR, "
+      "Computes the images of point lights over a grid of fields, distances, wavelengths and f-numbers. Writes to DIR "
       "and prints the paths: psf_set.exr (one part for each PSF: channel Y is its light, hits.x and hits.y its rays), "
-      "psf_set.json (index with units) and psf_set.png (contact sheet). Each PSF is a file in DIR/psfs as soon as it "
-      "is "
-      "whole. With --shard only these are written; psf_set merge makes the set of them, with the bits of one run.\n"
-      "psf_set merge DIR... --out FILE.exr   gathers the shards of one or several folders\n"
-      "psf_set query FILE.exr --field-deg F --distance-mm D --out PSF.exr   looks up a point, between nodes too",
+      "psf_set.json (index with units) and psf_set.png (contact sheet). Each complete PSF is a file in DIR/psfs. With "
+      "--shard only these files are written; psf_set merge combines them, bit for bit as one run.\n"
+      "psf_set merge DIR... --out FILE.exr   merges the shards of one or several folders\n"
+      "psf_set query FILE.exr --field-deg F --distance-mm D --out PSF.exr   interpolates a PSF at any point",
       "psf_set");
   examples::add_lens(app, options.lens_file);
   examples::add_numbers(app, "--fields", options.axes.fields_deg, {0, 180, "an angle from 0 to 180 degrees"},
                         "angles of the light seen from the paraxial entrance pupil (degrees, ascending)")
       ->required();
   examples::add_numbers(app, "--distances-mm", options.axes.distances_mm, examples::positive_length,
-                        "distances of the light (mm, ascending), the last may be inf")
+                        "distances of the light (mm, ascending); the last may be inf")
       ->required();
   examples::add_wavelengths(app, "--wavelengths-nm", options.axes.wavelengths_nm, "wavelengths, ascending");
   examples::add_numbers(app, "--f-numbers", options.axes.f_numbers, examples::positive_number,
                         "f-numbers, by exact rays (ascending)")
       ->default_str("wide open");
   examples::add_number(app, "--focus-mm", options.focus_mm, examples::positive_length,
-                       "focus distance (mm), or inf; each f-number has its film");
+                       "focus distance (mm), or inf; the film is focused for each f-number");
   examples::add_focus(app, options.focus);
   examples::add_iris_shape(app, options.iris);
   examples::add_samples(app, options.samples);
   examples::add_count(app, "--pixels", options.pixels, {3, 1025, "an odd number from 3 to 1025"},
-                      "pixels along a side of each image, odd");
+                      "pixels along each side of an image, odd");
   app.add_option(
          "--shard", [&](const std::string& text) { options.shard = examples::parse_shard("--shard", text); },
          "compute part i of n, from 1/n to n/n")
       ->type_name("I/N")
       ->default_str("1/1");
-  app.add_flag("--resume", options.resume, "keep the PSFs that an interrupted run has left whole in DIR");
-  app.add_flag("--check", options.check,
-               "compare the middles between nodes with traced PSFs: interpolation_error in the index");
+  app.add_flag("--resume", options.resume, "keep the complete PSFs of an interrupted run in DIR");
+  app.add_flag(
+      "--check", options.check,
+      "compare interpolated PSFs with traced PSFs at the centres of grid cells: interpolation_error in the index");
   examples::add_out_folder(app, options.out_folder)->required();
   return examples::run(app, argc, argv, [&] { compute(options); });
 }
@@ -330,12 +331,11 @@ int main_merge(int argc, char** argv) {
   std::vector<std::string> folders;
   std::string out;
   examples::App app(
-      "Gathers the PSFs of shards. Writes FILE.exr, and index and contact sheet beside it, as one run without shards "
-      "does. "
-      "Names every PSF that is missing or corrupt, and its shard; to repair it, run that shard with --resume.",
+      "Merges the PSFs of shards. Writes FILE.exr with index and contact sheet next to it, like one run without "
+      "shards. Names every missing or corrupt PSF and its shard; to repair it, run that shard with --resume.",
       "psf_set merge");
   app.add_option("DIR", folders, "folders that psf_set --shard wrote to")->required();
-  examples::add_out_file(app, out, "the set", "FILE.exr")->required();
+  examples::add_out_file(app, out, "set of PSFs to write", "FILE.exr")->required();
   return examples::run(app, argc, argv, [&] { merge(folders, out); });
 }
 
@@ -343,20 +343,21 @@ int main_query(int argc, char** argv) {
   std::string file, out, origin = "front_vertex";
   PsfSetPoint point;
   Maybe wavelength, f_number;
-  examples::App app("Looks up a PSF of a set: a node as it is, any other point interpolated.", "psf_set query");
-  app.add_option("FILE.exr", file, "a set of psf_set")->required();
+  examples::App app("Looks up a PSF of a set: nodes are copied, other points are interpolated.", "psf_set query");
+  app.add_option("FILE.exr", file, "set of PSFs written by psf_set")->required();
   examples::add_number(app, "--field-deg", point.field_deg, examples::field_angle, "angle of the light (degrees)")
       ->required()
       ->default_str("");
-  examples::add_number(app, "--distance-mm", point.distance_mm, examples::positive_length, "its distance (mm), or inf")
+  examples::add_number(app, "--distance-mm", point.distance_mm, examples::positive_length,
+                       "distance of the light (mm), or inf")
       ->required()
       ->default_str("");
   examples::add_distance_origin(app, origin);
   wavelength.option = examples::add_wavelength(app, "--wavelength-nm", wavelength.value, "wavelength")
-                          ->default_str("that of the set nearest to the d line");
+                          ->default_str("wavelength of the set nearest to the d line");
   f_number.option = examples::add_number(app, "--f-number", f_number.value, examples::positive_number, "f-number")
-                        ->default_str("the smallest of the set");
-  examples::add_out_file(app, out, "the PSF: a set of one part", "PSF.exr")->required();
+                        ->default_str("smallest f-number of the set");
+  examples::add_out_file(app, out, "PSF to write: a set of one part", "PSF.exr")->required();
   return examples::run(app, argc, argv, [&] { query(file, point, origin, wavelength, f_number, out); });
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Spot diagrams: the hits of a point's rays on the film, for several field angles and wavelengths.
+// Draws spot diagrams: film points of the rays of a field point, for several field angles and wavelengths.
 //
 //   spot_diagram data/lenses/cooke_triplet_50mm_f5.json --field-deg 0,14,20 --wavelengths-nm 486.1,587.6,656.3 --out
 //   out
@@ -24,7 +24,7 @@ namespace {
 
 using examples::Json;
 
-/// A kilometre. Beyond 1e150 mm the squares of hits would overflow.
+/// A kilometre. Beyond 1e150 mm the squares of film points would overflow.
 constexpr examples::Range film_shift{-1e6, 1e6, "a number from -1000000 to 1000000"};
 
 struct Options {
@@ -37,7 +37,7 @@ struct Options {
   std::uint32_t samples = 4096;
 };
 
-/// The lens and all that its spots depend on.
+/// The lens and all other inputs of its spots.
 struct Setting {
   examples::LoadedLens loaded;
   petzval::Lens lens;  ///< stopped down, with its film
@@ -90,7 +90,7 @@ std::vector<petzval::Spot> spots(const Setting& setting, bool fields_given, std:
   return petzval::spot_diagram(setting.lens, subject_z, fields, samples);
 }
 
-/// The field of a spot as given, without a conversion to radians and back. Spots are ordered by field.
+/// The field of a spot as given, without the rounding of a conversion to radians and back. Spots are ordered by field.
 double field_deg(const Setting& setting, std::size_t spot) {
   return setting.fields.degrees[spot / setting.light.wavelengths_nm.size()];
 }
@@ -112,7 +112,7 @@ Json to_json(const std::vector<petzval::Spot>& all, const Setting& setting, cons
   Json rows = Json::array();
   for (std::size_t i = 0; i < all.size(); ++i) {
     const petzval::Spot& spot = all[i];
-    const bool empty = spot.hits.x.empty();  // no ray passes: no size
+    const bool empty = spot.hits.x.empty();  // no ray passes
     rows.push_back({{"field_deg", field_deg(setting, i)},
                     {"wavelength_nm", setting.light.wavelengths_nm[spot.wavelength]},
                     {"wavelength_weight", setting.light.weights[spot.wavelength]},
@@ -138,26 +138,26 @@ Json to_json(const std::vector<petzval::Spot>& all, const Setting& setting, cons
 int main(int argc, char** argv) {
   Options options;
   examples::App app(
-      "Draws spot diagrams. The film stands where the subject is in focus at the primary wavelength (that of the file, "
-      "else the one nearest to the d line, 587.5618 nm), or with --film file where the file has it, plus "
+      "Draws spot diagrams. The film is at the focus of the subject at the primary wavelength (of the file, else the "
+      "wavelength nearest to the d line, 587.5618 nm), or with --film file at the position in the file, plus "
       "--defocus-mm.\n"
-      "Writes to DIR, and prints the paths: LENS_spots.svg, LENS_spots.csv (the hits: "
+      "Writes to DIR and prints the paths: LENS_spots.svg, LENS_spots.csv (film points of rays: "
       "field_deg,wavelength_nm,x_mm,y_mm) and LENS_spots.json (one row per field and wavelength: height of the chief "
-      "ray through the centre of the stop; illumination of the film relative to the axis; RMS and largest radius about "
+      "ray through the centre of the stop; illumination of the film relative to the axis; RMS and maximum radius about "
       "the centroid; null if no such ray exists).",
       "spot_diagram");
   examples::add_lens(app, options.lens_file);
   examples::add_numbers(app, "--field-deg", options.field_deg, examples::field_angle,
                         "field angles towards +y, in object space at the paraxial entrance pupil (degrees)")
-      ->default_str("those of the file, else the axis, 0.7 and 1 of the declared half field");
+      ->default_str("fields of the file, else the axis, 0.7 and 1 of the declared half field");
   examples::add_wavelengths(app, "--wavelengths-nm", options.wavelengths_nm, "wavelengths")
-      ->default_str("those of the file, with their weights, else F, d and C");
+      ->default_str("wavelengths of the file, with their weights, else F, d and C");
   examples::add_number(app, "--f-number", options.f_number, examples::positive_number,
-                       "stop the lens down (by exact rays)")
+                       "f-number to stop the lens down to (by exact rays)")
       ->default_str("wide open");
   auto* subject = examples::add_number(app, "--subject-distance-mm", options.subject_mm, examples::positive_length,
                                        "distance of the subject (mm), or inf")
-                      ->default_str("that of the file");
+                      ->default_str("subject of the file");
   examples::add_focus(app, options.focus);
   examples::add_film_choice(app, options.film, options.film);
   examples::add_number(app, "--defocus-mm", options.defocus_mm, film_shift,

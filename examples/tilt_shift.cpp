@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Tilts the film so that the plane of focus goes through points of the scene, and shows what that does: film, planes
-// and lines from the side, and the blur over the picture before and after.
+// Tilts the film so that the plane of focus passes through points of the scene, and shows the effect: film, planes and
+// lines from the side, and the blur over the picture before and after.
 //
 //   tilt_shift data/lenses/double_gauss_100mm_f2_28deg.json --f-number 4 --points examples/scenes/table.json --out out
 //   tilt_shift --model thin --thin-focal-length-mm 50 --f-number 2 --points points.json --json --out out
@@ -55,7 +55,7 @@ struct Point {
   double before_mm = none, predicted_mm = none, traced_mm = none;
 
   bool serves() const { return in_picture && use == TargetUse::used; }
-  /// Whether it lies on the scene: an outlier does not.
+  /// True if the point is on the scene surface. Outliers are not used for the surface.
   bool shows() const { return in_picture && (use == TargetUse::used || use == TargetUse::no_weight); }
   std::string use_name() const { return in_picture ? std::string(petzval::name(use)) : "outside_picture"; }
   std::string use_in_words() const {
@@ -68,7 +68,7 @@ struct Point {
 struct Result {
   examples::MovingLens lens;
   std::vector<Point> points = {};
-  std::optional<petzval::ImageRays> bundles = {};  // of the real model
+  std::optional<petzval::ImageRays> bundles = {};  // rays of the real model
   petzval::Autofocus before = {};
   TiltFit after = {};
 };
@@ -89,15 +89,15 @@ std::vector<petzval::FocusTarget> targets(const std::vector<Point>& points) {
   return result;
 }
 
-/// Throws with the reason of the first point that cannot serve.
+/// Throws with the reason why the first unusable point cannot be used.
 [[noreturn]] void give_up(const Options& options, const std::vector<Point>& points) {
   const auto first = std::ranges::find_if_not(points, &Point::serves);
   const auto which = std::to_string(first - points.begin() + 1);
-  throw petzval::Error(options.points_file + ": found no point to focus on (point " + which + " is " +
-                       first->use_in_words() + "), wanted one or more in front of the lens, with a weight");
+  throw petzval::Error(options.points_file + ": no point to focus on (point " + which + " is " + first->use_in_words() +
+                       "); at least one must be in front of the lens and have a weight");
 }
 
-/// The upright film for the points in the picture. Without points: the film of the lens, or focus at infinity.
+/// The upright film for the points in the picture. Without points: the film of the lens, or the focus for infinity.
 petzval::Autofocus focused(const Options& options, Result& result) {
   if (result.points.empty()) {
     petzval::Film film = result.lens.film;
@@ -118,7 +118,7 @@ petzval::Autofocus focused(const Options& options, Result& result) {
   return focus;
 }
 
-/// Points must lie in the picture of a film whose size is given.
+/// Excludes points outside the picture, if the size of the film is given.
 void leave_out_what_is_beside(const petzval::Film& film, Result& result) {
   for (Point& p : result.points) {
     if (p.use != TargetUse::used && p.use != TargetUse::no_weight) continue;
@@ -140,7 +140,7 @@ Result solve(const Options& options) {
   }
   petzval::TiltOptions tilt{
       .max_tilt_rad = petzval::radians(options.max_tilt_deg), .robust = options.robust, .film = result.before.film};
-  if (!options.film_given) tilt.film.width_mm = tilt.film.height_mm = 0;  // its middle has to stay behind the lens
+  if (!options.film_given) tilt.film.width_mm = tilt.film.height_mm = 0;  // only its centre must stay behind the lens
   const auto served = targets(result.points);
   result.after = result.bundles ? petzval::fit_tilt(*result.bundles, served, tilt)
                                 : petzval::fit_tilt(result.lens.ideal, served, tilt);
@@ -159,9 +159,9 @@ Result solve(const Options& options) {
     case petzval::TiltFitStatus::unreachable:
       throw petzval::Error(options.points_file + ": the film, " + number(result.lens.film.width_mm) + " x " +
                            number(result.lens.film.height_mm) +
-                           " mm, would touch the lens, wanted points farther away or a smaller film");
+                           " mm, would touch the lens; points must be farther away or the film smaller");
     case petzval::TiltFitStatus::not_converged:
-      throw petzval::Error(options.points_file + ": found no film that serves these points");
+      throw petzval::Error(options.points_file + ": the fit of the film to these points did not converge");
     default: break;
   }
   if (result.lens.lens) {
@@ -178,20 +178,20 @@ Result solve(const Options& options) {
 std::string status_in_words(const Result& result, const Options& options) {
   const std::string limit = number(options.max_tilt_deg) + " degrees";
   if (result.after.status == petzval::TiltFitStatus::limited) {
-    return "limited: the tilt may be at most " + limit +
-           ", less across points that nearly lie on a line; this is the best film within the limit";
+    return "limited: the tilt is limited to " + limit +
+           ", or less across points that are nearly on a line; this is the best film within the limit";
   }
   if (result.after.status == petzval::TiltFitStatus::solved) return "solved: the points determine the plane of focus";
   if (result.after.status == petzval::TiltFitStatus::no_targets)
     return "no targets: without points the film stays upright";
   if (result.after.rank == petzval::PlaneRank::point) {
-    return "least tilt: one place in the picture determines a distance but no slope, so the film stays upright";
+    return "least tilt: one point of the picture determines a distance but no slope, so the film stays upright";
   }
-  return "least tilt: points on one line of the picture determine no slope across it; this plane of focus tilts the "
-         "film least";
+  return "least tilt: points on one line of the picture determine no slope across the line; this plane of focus tilts "
+         "the film least";
 }
 
-/// Rounding errors of 0 are shown as 0.
+/// Replaces rounding errors of 0 by 0.
 double tidy(double value) { return std::abs(value) < 1e-9 ? 0.0 : value; }
 
 std::string film_in_words(const petzval::Film& film) {
@@ -256,7 +256,7 @@ std::string to_text(const Result& result, const Options& options) {
                      "\n\nfilm at z = " + number(fit.film.z(), 9) + " mm, " + film_in_words(fit.film) +
                      " (upright before, at " + number(result.before.film.z(), 9) + " mm)\n";
   if (tidy(fit.film.shift_x_mm) != 0 || tidy(fit.film.shift_y_mm) != 0) {
-    text += "middle of the picture on it: " + number(tidy(fit.film.shift_x_mm), 6) + ", " +
+    text += "centre of the picture on the film: " + number(tidy(fit.film.shift_x_mm), 6) + ", " +
             number(tidy(fit.film.shift_y_mm), 6) + " mm\n";
   }
   text += result.after.focus ? "plane of focus: normal " + triple(result.after.focus->plane.normal) + ", " +
@@ -280,7 +280,7 @@ std::string to_text(const Result& result, const Options& options) {
   return text;
 }
 
-/// The film's diagonal over 1442: 0.03 mm of 24 x 36 mm.
+/// Limit of sharpness: the film's diagonal / 1442, which is 0.03 mm for 24 x 36 mm.
 double sharp_mm(const petzval::Film& film) { return std::hypot(film.width_mm, film.height_mm) / 1442.2; }
 
 std::string side_view(const Result& result) {
@@ -299,7 +299,7 @@ std::string side_view(const Result& result) {
                                .points = points});
 }
 
-/// The pictures before and after, with one scale; none if no point lies on the scene.
+/// The pictures before and after at one scale; empty if no point is on the scene surface.
 std::vector<petzval::Rgb8Image> blur_pictures(const Result& result) {
   if (std::ranges::none_of(result.points, &Point::shows)) return {};
   const petzval::IdealLens& ideal = result.lens.ideal;
@@ -316,10 +316,10 @@ std::vector<petzval::Rgb8Image> blur_pictures(const Result& result) {
   sheet.subtitle = result.lens.title + ", " + result.lens.conditions + ", film " + number(result.lens.film.width_mm) +
                    " x " + number(result.lens.film.height_mm) + " mm; picture upright";
   sheet.notes = {"Signed diameter of the blur on the film" +
-                     std::string(rays ? ": of the uniform disc with the RMS radius of the traced rays." : ".") +
+                     std::string(rays ? ": the uniform disc with the RMS radius of the traced rays." : ".") +
                      " Thin lines: " + number(1e3 * sheet.sharp_mm, 3) + " \u00b5m. Both pictures have the same scale.",
-                 "Circles: the focus points and their blurs (grey: not used). 1/distance is interpolated between "
-                 "them."};
+                 "Circles: the focus points and their blurs (grey: not used). Between them 1/distance is "
+                 "interpolated."};
   const bool upright = !result.after.film.tilted();
   const std::string titles[]{"Before: upright film, focused on the points",
                              "After: film " + film_in_words(result.after.film)};
@@ -341,26 +341,22 @@ std::vector<petzval::Rgb8Image> blur_pictures(const Result& result) {
 int main(int argc, char** argv) {
   Options options;
   examples::App app(
-      "Tilts and swings the film so that points of the scene are sharp (or have a given blur), by least squares of "
-      "their "
+      "Tilts and swings the film so that scene points are sharp or have a given blur, by least squares of their "
       "blurs.\n"
       "points.json: [{\"position_mm\": [x, y, z], \"weight\": 1, \"blur_mm\": 0, \"at_infinity\": false}, ...] in the "
       "lens frame, the scene at negative z; at infinity the position is a direction. Blurs are signed diameters on the "
       "film: negative nearer than the plane of focus, positive beyond it.\n"
-      "predicted: by the fitted model; traced: by 4096 exact rays of each point (fewer of more than 1024 points) for "
-      "every model (needs LENS). "
-      "Plane "
-      "and lines of the real model are those of its cardinal points. If the points do not determine a plane, the "
-      "result "
-      "is the one of least tilt, and status is least_tilt.\n"
+      "predicted: by the fitted model; traced: by 4096 exact rays per point (fewer for more than 1024 points), for "
+      "every model if LENS is given. Plane and lines of the real model follow from its cardinal points. If the points "
+      "do not determine a plane, the result has the smallest tilt, and status is least_tilt.\n"
       "Writes NAME_side.svg, NAME_before.png and NAME_after.png into DIR.",
       "tilt_shift");
   examples::add_movement_options(app, options);
-  app.add_option("--points", options.points_file, "the points to focus on")->type_name("FILE")->required();
+  app.add_option("--points", options.points_file, "JSON file of points to focus on")->type_name("FILE")->required();
   examples::add_out_folder(app, options.out_folder, "folder for the pictures")->required();
   constexpr examples::Range angle{0, 89, "a number of degrees from 0 to 89"};
   examples::add_number(app, "--max-tilt-deg", options.max_tilt_deg, angle, "largest tilt of the film (degrees)");
-  app.add_flag("--robust", options.robust, "ignore outliers: points far from the plane of most others get no weight");
+  app.add_flag("--robust", options.robust, "ignore outliers: points far from the plane of most points get no weight");
   app.add_flag("--json", options.json, "print one JSON object instead of text");
 
   return examples::run(app, argc, argv, [&] {

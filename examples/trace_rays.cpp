@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Traces rays from a CSV file through a lens and writes where and why each ended.
+// Traces rays of a CSV file through a lens and writes the end point and the fate of each ray.
 //
 //   printf 'x_mm,y_mm,z_mm,dx,dy,dz\n0,10,-50,0,0,1\n' > rays.csv
 //   trace_rays data/lenses/double_gauss_100mm_f1.35.json --rays rays.csv --out traced.csv
@@ -25,10 +25,10 @@ namespace {
 
 using examples::RayTable;
 
-/// Makes directions of any length unit vectors in double.
+/// Normalizes directions of any length to unit vectors in double.
 void normalise(RayTable& rays) {
   for (std::size_t i = 0; i < rays.size(); ++i) {
-    // Scaled by a power of two first, so that tiny and huge components lose no digits.
+    // Scaled by a power of two first, so that very small and large components lose no digits.
     const double largest = std::max({std::abs(rays.dx[i]), std::abs(rays.dy[i]), std::abs(rays.dz[i])});
     const int exponent = std::ilogb(largest);
     const double x = std::scalbn(rays.dx[i], -exponent);
@@ -47,8 +47,8 @@ std::vector<T> rounded(const std::vector<double>& values, const std::string& whe
   result.reserve(values.size());
   for (const double value : values) {
     if (std::abs(value) > static_cast<double>(std::numeric_limits<T>::max())) {
-      throw petzval::Error(where + ": line " + std::to_string(result.size() + 2) + ", column " + column + ": found " +
-                           examples::number(value) + ", wanted a number within the range of float");
+      throw petzval::Error(where + ": line " + std::to_string(result.size() + 2) + ", column " + column + " = " +
+                           examples::number(value) + "; must be within the range of float");
     }
     result.push_back(static_cast<T>(value));
   }
@@ -94,8 +94,8 @@ int main(int argc, char** argv) {
   examples::add_out_file(
       app, out_file,
       "CSV to write, one line per ray in the same order: x_mm,y_mm,z_mm,dx,dy,dz,fate,surface, with 17 digits. The "
-      "point is the hit on the last surface that the ray reached; surfaces count from 0. After missed_surface and "
-      "no_convergence it is the hit on the surface before, or the ray's origin if there is none",
+      "point is on the last surface that the ray reached; surfaces count from 0. For missed_surface and "
+      "no_convergence it is on the previous surface, or the ray's origin if there is no previous surface",
       "CSV")
       ->required();
   app.add_option("--precision", precision, "arithmetic of the trace")
@@ -105,7 +105,7 @@ int main(int argc, char** argv) {
       ->one_of({"to_film", "to_scene"})
       ->capture_default_str();
   examples::add_wavelength(app, "--wavelength-nm", wavelength_nm, "wavelength");
-  app.add_flag("--ignore-apertures", ignore_apertures, "rays pass outside the clear diameters too");
+  app.add_flag("--ignore-apertures", ignore_apertures, "let rays pass outside the clear diameters");
 
   return examples::run(app, argc, argv, [&] {
     const auto loaded = examples::load_lens(lens_file, std::array{wavelength_nm});

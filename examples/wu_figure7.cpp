@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Repeats figure 7 of Wu et al. 2010, "Realistic rendering of bokeh effect based on optical aberrations": a point light
-// at 1000 mm through three double Gauss lenses and a fourth one, focused at five distances.
+// at 1000 mm through three double Gauss lenses and a fourth double Gauss, focused at five distances.
 //
 //   wu_figure7 --out wu_figure7.png
 #include <algorithm>
@@ -63,7 +63,7 @@ int main(int argc, char** argv) {
     examples::want_ending("--out", out_file, ".png");
     const examples::BokehSetup setup{.light_mm = examples::wu_light_mm,
                                      .criterion = examples::named(criterion, examples::focus_criteria)};
-    examples::Sheet sheet{"A point light at 1000 mm, and what five focus distances make of it", {}, {}};
+    examples::Sheet sheet{"A point light at 1000 mm at five focus distances", {}, {}};
     {
       examples::Progress progress("figure 7", examples::wu_rows().size() * examples::wu_focus_mm.size());
       for (const examples::WuRow& wu : examples::wu_rows()) {

@@ -37,7 +37,7 @@ struct Verdict {
   examples::ProfileShape shape;
 };
 
-/// The five pictures of one lens under one reading of the text.
+/// The five pictures of one lens for one interpretation of the text.
 std::vector<Verdict> verdicts(const examples::WuRow& wu, const petzval::Lens& lens, const examples::BokehSetup& setup,
                               std::uint32_t samples) {
   std::vector<Verdict> row;
@@ -59,7 +59,7 @@ std::vector<Verdict> verdicts(const examples::WuRow& wu, const petzval::Lens& le
                    .shape = shape});
     if (row[i].rms_radius < row[sharpest].rms_radius) sharpest = i;
   }
-  // Sharpness decides only about the picture that the paper calls in focus.
+  // Sharpness is tested only for the picture that the paper calls in focus.
   for (std::size_t i = 0; i < row.size(); ++i) {
     if (row[i].printed == Look::point && i == sharpest) row[i].found = Look::point;
     row[i].agrees = row[i].found == row[i].printed;
@@ -126,7 +126,7 @@ std::vector<PupilCells> pupils() {
   return rows;
 }
 
-/// Columns side by side, as wide as their longest cells.
+/// Columns side by side, each as wide as its longest cell.
 template <std::size_t n>
 std::string to_text(const std::vector<std::array<std::string, n>>& rows) {
   std::array<std::size_t, n> widths{};
@@ -149,7 +149,7 @@ std::string to_text(const std::vector<Verdict>& all) {
   return to_text(rows);
 }
 
-/// A table for the gallery: one line per statement, the four readings side by side.
+/// A table for the gallery: one line per statement, the four interpretations side by side.
 std::string to_html(const std::vector<Verdict>& all) {
   std::ostringstream html;
   html << "<table class=\"statements\">\n<thead><tr><th rowspan=\"2\">lens</th><th rowspan=\"2\">focus</th>"
@@ -182,15 +182,16 @@ int main(int argc, char** argv) {
   std::uint32_t samples = 1u << 18;
   examples::App app(
       "Compares the statements of Wu et al. 2010 about their figure 7 with radial profiles, and prints a table.\n"
-      "Irradiances are relative to the mean of the disc: of the core (within 0.2 of the radius), of the brightest of "
-      "ten rings, of the darkest ring inside that; deviation: RMS over the area. Uniform: the deviation is below 0.25, "
-      "and core and innermost tenth are below 1.25; nearly even with a bright core: one of them is above. Ring: the "
-      "brightest ring lies in the outer half; with a slight core if the core is 1.5 times as bright as the darkest "
-      "ring. Core: the brightest ring lies in the inner half; with a dark centre if the innermost tenth is below 0.95 "
-      "of it. Sharpest: least RMS radius. A second table has the entrance pupils by the paper's steps 1 to 8.",
+      "Irradiances are relative to the mean of the disc: core (within 0.2 of the radius), brightest of ten rings, "
+      "darkest ring inside the brightest ring; deviation: RMS over the area. Uniform: the deviation is below 0.25, "
+      "and core and innermost tenth are below 1.25; nearly uniform with a bright core: core or innermost tenth is "
+      "above 1.25. Ring: the brightest ring is in the outer half; with a slight core if the core is 1.5 times as "
+      "bright as the darkest ring. Core: the brightest ring is in the inner half; with a dark centre if the innermost "
+      "tenth is below 0.95 of it. Sharpest: smallest RMS radius. A second table has the entrance pupils by the "
+      "paper's steps 1 to 8.",
       "wu_statements");
   examples::add_samples(app, samples);
-  examples::add_out_file(app, html_file, "also write the table as HTML", "FILE", "--html");
+  examples::add_out_file(app, html_file, "HTML file for the table", "FILE", "--html");
 
   return examples::run(app, argc, argv, [&] {
     const std::vector<Verdict> all = all_verdicts(samples);
