@@ -12,108 +12,148 @@
 
 namespace petzval {
 
-/// A point of the scene, or a direction to one at infinity.
+/// A point of the scene, or the direction towards a point at infinity.
 struct ScenePoint {
-  Vec3<double> position{0, 0, 0};  ///< lens frame, mm; at infinity: the direction towards it, of any length
+  Vec3<double> position{0, 0, 0};  ///< lens frame, mm; for a point at infinity, a direction of any length
   bool at_infinity = false;
 };
 
-/// The image of a scene point with its chief ray and the beam about it. Lens frame, mm.
+/// The image of a scene point with its chief ray and its beam. Lens frame, mm.
 struct ImagePoint {
   Vec3<double> position{0, 0, 0};
-  double slope_x = 0, slope_y = 0;  ///< of the chief ray, per mm of z
-  double cone = 0;                  ///< diameter of the beam, across the axis, per mm of z away from the image; > 0
+  double slope_x = 0, slope_y = 0;  ///< slope of the chief ray, per mm of z
+  double cone = 0;  ///< growth of the beam diameter perpendicular to the axis, per mm of z from the image; >= 0
 };
 
-/// The marginal ray of an axial point behind a lens.
+/// The marginal ray of an axial point, behind the lens.
 struct MarginalRay {
-  double height = 0;  ///< in the rear focal plane, mm
-  double slope = 0;   ///< per mm of z
+  double height = 0;  ///< height in the rear focal plane, mm
+  double slope = 0;   ///< slope per mm of z
 };
 
-/// A lens that images points into points and planes into planes: a thin lens, or the cardinal points and pupils of a
-/// real one. Light comes along +z; where the focal lengths differ in sign (behind an odd number of mirrors) it leaves
-/// along -z. Lens frame, mm.
+/// A lens that images points to points and planes to planes: a thin lens, or a lens reduced to its cardinal points and
+/// pupils. Lens frame, mm.
 ///
-/// Everything is computed from the focal points (Newton's form), which is safe for objects and images at infinity: an
-/// axial object at front_focal_z - p has its image at rear_focal_z + product() / p.
+/// Light enters along +z. If the focal lengths differ in sign, light leaves along -z, after an odd number of mirrors.
+/// All results are computed from the focal points (Newton's form), which is exact for objects and images at infinity:
+/// an axial object at front_focal_z - p has its image at rear_focal_z + product() / p.
 struct PETZVAL_API IdealLens {
   double front_focal_z = 0, rear_focal_z = 0;
   double front_focal_length = 0, rear_focal_length = 0;  ///< n / power and n' / power; equal in air; may be negative
   Pupils pupils;
-  double front_z = 0;  ///< scene points lie in front of it: the first vertex, or the thin lens
-  double rear_z = 0;   ///< films lie behind it: the last vertex, or the thin lens
+  double front_z = 0;  ///< the first vertex, or the thin lens; scene points lie in front
+  double rear_z = 0;   ///< the last vertex, or the thin lens; films lie behind
 
   double front_principal_z() const noexcept { return front_focal_z + front_focal_length; }
   double rear_principal_z() const noexcept { return rear_focal_z - rear_focal_length; }
-  /// Newton's constant n n' / power^2; negative where light leaves along -z.
+  /// Newton's constant n n' / power^2; negative if light leaves along -z.
   double product() const noexcept { return front_focal_length * rear_focal_length; }
 
-  /// How far in front of the front focal point an axial object is that lies `separation` in front of its image, of two
-  /// such objects the farther one. Nothing is lost next to the turning point, at which object and image are as near to
-  /// each other as they can be; for smaller separations the result is that of the turning point.
+  /// Distance from the front focal point to the axial object that lies `separation` in front of its image (mm).
+  ///
+  /// If there are two such objects, the result is for the farther one. A separation below the smallest possible
+  /// distance of object and image counts as the smallest distance. No digits are lost near the smallest distance.
   double object_at_separation(double separation) const noexcept;
 
-  /// The marginal ray of an axial object p in front of the front focal point; p may be infinite if the entrance pupil
-  /// is at a finite place.
+  /// The marginal ray of an axial object at distance p in front of the front focal point.
+  ///
+  /// p may be infinite if the entrance pupil is at a finite position.
   MarginalRay marginal_ray(double p) const noexcept;
 
-  /// The image of a scene point. Nothing for points that are not in front of the lens and of its front focal plane (no
-  /// real image), and for coordinates that are not finite (except z = -inf with finite x and y: at infinity on the
-  /// axis).
+  /// The image of a scene point; nullopt if the point has no real image.
+  ///
+  /// A point has a real image if it lies in front of the lens and of the front focal plane. Coordinates must be finite,
+  /// except that z = -inf with finite x and y is the point at infinity on the axis; other values give nullopt.
   std::optional<ImagePoint> image(const ScenePoint& point) const noexcept;
-  /// The scene point that is imaged to a position: at infinity for a position in the rear focal plane, behind the front
-  /// focal plane (virtual) for one in front of it.
+  /// The scene point with its image at a position (lens frame, mm).
+  ///
+  /// The scene point is at infinity if the position is in the rear focal plane. It is virtual, behind the front focal
+  /// plane, if the position is in front of the rear focal plane.
   ScenePoint scene_of(const Vec3<double>& image) const noexcept;
 
-  /// Relative growth of images from a film at z = `before` to one at film_z, by the chief ray through the exit pupil: 0
-  /// for a lens telecentric in image space, NaN if the first film lies in the exit pupil.
+  /// Relative growth of the image if the film moves from z = `before` to film_z, along the chief ray through the exit
+  /// pupil.
+  ///
+  /// 0 for a lens telecentric in image space; NaN if `before` lies in the exit pupil.
   double growth(double film_z, double before) const noexcept;
 
-  /// The image of a plane of the scene, and the plane of the scene that is imaged to a film: Scheimpflug's. Nothing for
-  /// the plane at infinity.
+  /// The image of a scene plane, and the scene plane that is imaged to a film plane (Scheimpflug); nullopt if the
+  /// result is the plane at infinity.
   std::optional<Plane> image_of(const Plane& scene) const noexcept;
   std::optional<Plane> scene_of(const Plane& film) const noexcept;
 };
 
-/// A thin lens at z in air. Throws Error unless focal_length is finite and not 0, f_number > 0 (may be infinite: no
-/// blur) and z finite.
+/// A thin lens in air.
+///
+/// @param focal_length  focal length (mm)
+/// @param f_number      f-number; infinite for a lens without blur
+/// @param z             position on the axis (lens frame, mm)
+/// @throws Error unless `focal_length` is finite and not 0, `f_number` is positive and `z` is finite
 PETZVAL_API IdealLens thin_lens(double focal_length, double f_number, double z = 0);
-/// The thin lens in place of another: its focal lengths and its rear focal point, and at its rear principal plane the
-/// lens with a pupil as wide as the entrance pupil (FocusCriterion::thin).
+/// The thin equivalent of a lens, as used by FocusCriterion::thin.
+///
+/// It has the focal lengths and the rear focal point of `lens`, and lies at its rear principal plane, with a pupil as
+/// wide as the entrance pupil.
 PETZVAL_API IdealLens thin_lens(const IdealLens& lens);
-/// The thin lens in place of thick_lens(lens, wavelength), which may throw Error.
+/// The thin equivalent of thick_lens(lens, wavelength).
+///
+/// @throws Error if thick_lens() throws
 PETZVAL_API IdealLens thin_lens(const Lens& lens, Wavelength wavelength = {});
-/// Cardinal points and paraxial pupils, in the main meridian. Throws Error for an afocal lens, one that light leaves
-/// along -z, and where pupils() does.
+/// The cardinal points and paraxial pupils of a lens, in the main meridian.
+///
+/// @throws Error if the lens is afocal, if light leaves the lens along -z, or if pupils() throws
 PETZVAL_API IdealLens thick_lens(const Lens& lens, Wavelength wavelength = {});
 
-/// Diameter of the blur of an image point on a film, across the axis where the chief ray meets the film: negative in
-/// front of the plane of focus (the image lies behind the film), positive beyond it. Infinite for a chief ray along the
-/// film. Throws Error, as chief_point(), for a film without a place.
+/// Signed diameter of the blur of an image point on a film (mm), perpendicular to the axis where the chief ray meets
+/// the film.
+///
+/// Negative for subjects in front of the plane of focus (the image lies behind the film), positive for subjects beyond
+/// the plane. Infinite if the chief ray is parallel to the film.
+///
+/// @throws Error if film.z_mm is not set
 PETZVAL_API double signed_blur(const ImagePoint& image, const Film& film);
-/// Where the chief ray of an image point meets a film. Nothing for a chief ray along the film.
+/// The film point of the chief ray of an image point; nullopt if the chief ray is parallel to the film.
+///
+/// @throws Error if film.z_mm is not set
 PETZVAL_API std::optional<FilmPoint> chief_point(const ImagePoint& image, const Film& film);
 
-// The thin lens in closed form, safe at infinity and next to the focus. Lengths in mm.
+// The thin lens in closed form, accurate at infinity and near the focus.
 
-/// Blur diameter (circle of confusion) c = D f |U - Uf| / (U (Uf - f)) of a thin lens of focal length f and diameter D
-/// focused at Uf, for a subject at U. Distances count from the lens; both may be infinite. Within 4 eps, also at
-/// infinity, for Uf next to f and for U next to Uf. Throws Error unless U > 0, Uf > f > 0 and D >= 0.
+/// Blur diameter (circle of confusion) c = D f |U - Uf| / (U (Uf - f)) of a thin lens (mm).
+///
+/// @param focal_length  f (mm)
+/// @param diameter      diameter D of the lens (mm)
+/// @param subject       distance U from lens to subject (mm); may be infinite
+/// @param focused       distance Uf from lens to the plane of focus (mm); may be infinite
+/// @throws Error unless U > 0, Uf > f > 0 and D >= 0
+///
+/// Accuracy: within 4 eps, also at infinity, for Uf near f and for U near Uf.
 /// Source: Wu et al. 2010, equation 1.
 PETZVAL_API double thin_lens_blur_diameter(double focal_length, double diameter, double subject, double focused);
 
-/// Distance from the focal point to the image of a subject at U: V - f = f (f / (U - f)), 0 for infinity. Within 4 eps.
-/// Throws Error unless U > f > 0.
+/// Distance from the focal point to the image of a subject at distance U: f (f / (U - f)), 0 for infinity (mm).
+///
+/// @throws Error unless U > f > 0
+///
+/// Accuracy: within 4 eps.
 PETZVAL_API double thin_lens_extension(double focal_length, double subject);
 
-/// The inverse: the distance U = f + f (f / e) from the lens of the subject in focus on a film e behind the focal
-/// point; infinite for e = 0. Within 4 eps. Throws Error unless e >= 0 and f > 0.
+/// Distance from the lens to the subject in focus on a film at distance e behind the focal point: f + f (f / e) (mm).
+///
+/// Infinite for e = 0. The inverse of thin_lens_extension().
+///
+/// @throws Error unless e >= 0 and f > 0
+///
+/// Accuracy: within 4 eps.
 PETZVAL_API double thin_lens_subject(double focal_length, double extension);
 
-/// Distance from the lens to the film if film and subject are T apart: the smaller V = 2 f T / (T + sqrt(T (T - 4 f)))
-/// of the two, and f for infinity. Within 8 eps for T >= 4.001 f; nearer to 4 f the condition of the root, T / (T - 4
-/// f), adds to that. Throws Error unless T >= 4 f > 0.
+/// Distance from the lens to the film for a distance T from subject to film: 2 f T / (T + sqrt(T (T - 4 f))) (mm).
+///
+/// The smaller of the two solutions; f for infinity.
+///
+/// @throws Error unless T >= 4 f > 0
+///
+/// Accuracy: within 8 eps for T >= 4.001 f; nearer to 4 f the condition of the root, T / (T - 4 f), adds to the error.
 PETZVAL_API double thin_lens_film_distance(double focal_length, double subject_to_film);
 
 }  // namespace petzval
