@@ -5,38 +5,37 @@
 
 namespace petzval {
 
-/// What an artist asks of a bokeh, by the names of "Recreating realistic bokeh by biasing lens-sample positions", 2017.
-/// Every model of a Camera takes it; the defaults change nothing.
+/// Artistic controls of the bokeh of a Camera; the defaults change nothing.
 ///
-/// Exact models and polynomials apply the weights on the real stop, also for a vignetted pupil. The stop point of a ray
-/// comes from FilmPupilTable::stop_points(): a weight on a narrow ring is off by up to 2 % behind a lens of f/1.35.
-/// Other first-order models apply the weights on the image of the stop. The model thin_two_disc behind a round stop,
-/// custom models, and lenses whose stop has no rim apply them on the pupil of each film point: a cat's eye then has its
-/// own bright rim. The pupils of polynomials have the stop's area and nearly its shape: they keep the light within 1 %
-/// up to a distribution of 200, and have 8 % too much at 1000.
+/// Every ray model supports the controls. Names and formulas follow "Recreating realistic bokeh by biasing lens-sample
+/// positions", 2017. Film samples are distributed by the weights; the importance of rays from the scene includes the
+/// weights.
 ///
-/// Samples follow the weights (EdgeWeight): where the stop is the pupil, all rays of a film point weigh within 1 % the
-/// same, but for the few where weights fall to 0, as of a strength near 1; of a map, as far as 256 x 256 cells of the
-/// iris show it. Behind real lenses a quarter of the samples is uniform, which bounds the weights where pupils are
-/// vignetted. A weight follows the stop on the scene's side too. In batches a ray takes 11 ns more, with a
-/// map 40 to 50 (tests/bench/camera_bench.cpp).
+/// Accuracy: exact models and polynomials weight the points of the real stop (FilmPupilTable::stop_points()); a weight
+/// on a narrow ring is off by up to 2 % at f/1.35. Polynomials keep the irradiance within 1 % for distributions up to
+/// 200 and are 8 % too bright at 1000.
+///
+/// Limitations: the model thin_two_disc with a round stop, custom models, and lenses whose stop has no rim apply the
+/// weights to the clipped pupil of each film point, so that a cat's eye gets a bright rim of its own. The other
+/// first-order models apply them to the paraxial image of the stop.
 struct BokehControls {
-  int lens_elements = 0;  ///< straight blades in place of the lens's own iris, 3 to 20; 0: that iris
-  /// The radius of a second rim, which cuts cat's eyes, over that of the pupil on the axis. (In the text's program the
-  /// rim has 1 / sqrt of this number.) Error for a rim in a lens with cylinders, and in exact models and polynomials of
-  /// a lens with a central obscuration.
+  int lens_elements = 0;  ///< number of straight blades, 3 to 20; 0: the iris of the lens
+  /// Radius of a second rim that clips the pupils to cat's eyes, divided by the radius of the pupil on the axis. (The
+  /// program in the source uses 1 / sqrt of this number.) A Camera throws Error for such a rim if the lens has
+  /// cylinders, and in exact models and polynomials if it has a central obscuration.
   double lens_ratio = 1;
-  /// By how many of these radii it moves against the film point from the axis to half of the film's longer side: over
-  /// the same length in all directions, so that cat's eyes lie around the axis of a film that is not square, or
-  /// shifted. Error where it moves by more than 1e6 radii over the film.
+  /// Displacement of the second rim, opposite to the film point, at half of the longer side of the film from the axis;
+  /// in pupil radii on the axis. The displacement per mm is equal in all directions, so that cat's eyes are symmetric
+  /// about the axis on every film. A Camera throws Error if the rim moves by more than 1e6 radii over the film.
   double rate_of_change = 0;
-  /// Weights make up for the area that the rim takes; else light falls with it. (What is left of the pupil of a fast
-  /// lens sees the film under other angles: 12 % of an f/2's light are still lost where half of its pupil is, 30 % of
-  /// an f/1.1's.)
+  /// true: the weights compensate for the pupil area that the rim clips. false: the irradiance falls with the area.
+  /// Limitations: a clipped pupil sees the film at other angles. With half of the pupil left, the compensated
+  /// irradiance is still 12 % too low at f/2 and 30 % at f/1.1.
   bool keep_light = false;
-  double weight_distribution = 0, weight_strength = 0.5;  ///< EdgeWeight
-  IrisMap weight_map{};                                   ///< empty: none
+  double weight_distribution = 0, weight_strength = 0.5;  ///< as in EdgeWeight
+  IrisMap weight_map{};                                   ///< empty: no map
 
+  /// True if the second rim clips pupils.
   bool vignettes() const noexcept { return lens_ratio != 1 || rate_of_change != 0; }
   EdgeWeight edge() const noexcept { return {weight_distribution, weight_strength}; }
 };

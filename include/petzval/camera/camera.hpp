@@ -21,160 +21,157 @@ namespace petzval {
 class AnyRayModel;
 class Lens;
 
-/// The unit of a camera's weights.
+/// Unit of the weights of a camera.
 enum class Normalisation : std::uint8_t {
-  irradiance,  ///< irradiance of the film for a scene of radiance 1, with natural darkening and f-number
-  /// Irradiance over that on the axis at the primary wavelength, where a uniform scene of radiance 1 gives 1 (as the
-  /// shutter opens). The other wavelengths have the same scale: what the lens makes brighter at one than at another,
-  /// its tint, stays.
+  irradiance,  ///< irradiance of the film for a scene of radiance 1, with natural vignetting and f-number
+  /// Irradiance divided by the irradiance on the axis at the primary wavelength, as the shutter opens: a uniform scene
+  /// of radiance 1 gives 1 on the axis. All wavelengths have the same scale, so that the tint of the lens stays.
   unity_on_axis,
-  /// Each wavelength over its own irradiance on the axis: a white scene is white there, and the tint of the lens is
-  /// lost.
+  /// Irradiance of each wavelength divided by its own irradiance on the axis: a white scene is white there, and the
+  /// tint of the lens is lost.
   unity_at_each_wavelength,
 };
 
 struct CameraOptions {
   ModelKind model = ModelKind::exact_float;
   Normalisation normalisation = Normalisation::irradiance;
-  /// Of the set-up, 1 or more: they share the compiled wavelengths of exact models, polynomials and tilted films. The
-  /// camera does not depend on them.
+  /// Threads for the set-up, at least 1. They share the compiled wavelengths of exact models, polynomials and tilted
+  /// films; the camera is the same for every number of threads.
   int threads = 1;
   BokehControls bokeh{};  ///< the defaults change nothing
-  /// Of first-order models: what is in focus at each place of the film, in place of the film's own focus, where a point
-  /// of it fixes a distance. Connections sample the pupil of the least extent everywhere: where others are stopped down
-  /// by s stops, one in 2^s is of use.
+  /// First-order models only: distance in focus and depth of field for each film point. The film keeps its own focus if
+  /// no focal point fixes a distance. Connections sample the pupil of the smallest extent for all film points: at a
+  /// film point stopped down by s stops more, one connection in 2^s passes.
   std::optional<FocalSurface> focal_surface = {};
-  ExpressiveLens expressive{};  ///< of first-order models
-  /// Samples, rays and connections at a wavelength in nm beyond the compiled range see the lens at the end of the
-  /// range. Otherwise they are lost as RayFate::outside_spectrum.
+  ExpressiveLens expressive{};  ///< aberrations; first-order models only
+  /// true: wavelengths in nm outside the compiled range are clamped to the range, for samples, rays and connections.
+  /// false: they are lost as RayFate::outside_spectrum.
   bool clamp_wavelengths = false;
 };
 
-/// A film behind a focused lens, seen through a ray model: what a renderer holds.
+/// A focused lens and its film, seen through a ray model: generates the rays of a renderer. Lens frame, mm.
 ///
 ///     Lens lens = with_focus(with_f_number(compile(prescription), 2.8), 3000, {.origin = DistanceOrigin::film});
 ///     Camera camera(lens, {.width_mm = 36, .height_mm = 24, .columns = 1920, .rows = 1280});
 ///     CameraRay r = camera.sample({.film = camera.film().point(column, row), .pupil_u = u, .pupil_v = v});
 ///     if (r) pixel += r.weight * radiance(r.ray);
 ///
-/// The picture is sharpest 3 m from the film, whatever the model: first-order models are focused where exact rays of
-/// the film's centre are sharpest.
+/// Immutable, cheap to copy, thread-safe. Calls neither allocate nor retry: a lost sample has weight 0 and a fate. The
+/// first call of importance or projection builds tables while other threads wait for them; it may throw std::bad_alloc,
+/// and the next call tries again.
 ///
-/// Any size of film is taken; lint(lens, film) finds one that the image circle of the lens does not fit.
-///
-/// Rays of every model start on the front of the lens, and shadow rays of connections end there: on the sphere through
-/// the vertex and the rim of the first surface, which is that surface where it is spherical or plane. Where other
-/// surfaces stand before the first one, as with some mirrors, or it is a cylinder, the front is the plane across the
-/// axis before all of them. A line that misses the sphere starts in the plane that touches it at the vertex.
-///
-/// A pull of focus while the shutter is open is a film that travels (Film::travel_mm): each sample has its time, and
-/// the ray is that of the film's place then, without interpolation. First-order models keep the focus and the size of
-/// the pupil that they are given as the shutter opens: after a pull from 3 m to infinity of a 100 mm lens their
-/// exposure is 1 to 4 % off. Such a film costs what a tilted one does; pinhole, thin and thick, which tilt for nothing,
-/// are set up as an exact camera is.
-///
-/// A sample has a wavelength of its own: a position among the compiled ones, or any between them in nm
-/// (Wavelength::nm(), RayWavelengths::each_nm), so that hero wavelengths need no camera per bin. Beyond the compiled
-/// range it has weight 0 and the fate outside_spectrum: compile the lens for the whole range of the renderer (pbrt and
-/// Mitsuba: 360 to 830 nm, with CompileOptions::clamp_wavelengths, as glasses are known less far), or set
-/// CameraOptions::clamp_wavelengths. Set-up grows with the
-/// compiled ones only. A ray meets the film of 36 mm where that of a camera compiled for its wavelength does, in pixels
-/// of 1920: exact models within 1e-4, whatever wavelengths were compiled; polynomials of degree 7 and first-order ones
-/// within 0.03 (lenses faster than f/1.4: 0.08) from eight even ones over 400 to 700 nm, and within pixels from three
-/// (tests/camera/any_wavelength_test.cpp). The light of polynomials and two discs steps in the middles between compiled
-/// wavelengths, by 1 % or less (FilmPupilTable). Film and scene hold the same light at every wavelength. A renderer's
-/// own models take nm where they say so (RayModel).
-///
-/// A first-order model may have a focus of its own at each place of the film (CameraOptions::focal_surface) and the
-/// aberrations of an ExpressiveLens. Film samples keep their weights and densities: a picture keeps its exposure. Rays
-/// of the scene spread otherwise, and their importance with them, so that film and scene hold the same light. Of a
-/// tilted film the surface decides what is in focus, and the tilt the perspective.
-///
-/// Immutable, cheap to copy, shared freely between threads. Calls neither allocate nor draw random numbers nor loop
-/// until a ray passes: a lost sample has weight 0 and a fate. Only the first call that concerns rays from the scene
-/// (importance and projection) makes the tables for those, while other threads that want them wait; it throws
-/// std::bad_alloc where there is no memory for them, and the next call tries again. Lens frame, mm; host_frame.hpp has
-/// the frames of hosts.
+/// Rays start on the front of the lens, and shadow rays end there: the sphere through the vertex and the rim of the
+/// first surface. A line that misses the sphere starts in the tangent plane at the vertex. If a mirror stands in front
+/// of the first surface, or this surface is a cylinder, the front is a plane perpendicular to the axis before all
+/// surfaces.
 class PETZVAL_API Camera {
  public:
-  /// Copies. Moves copy too, so that no Camera is ever empty.
+  /// Copies. Moves also copy, so that a Camera is never empty.
   Camera(const Camera&) = default;
   Camera& operator=(const Camera&) = default;
 
-  /// The lens has its film where film.z_mm says, as with_film() would. A film that is tilted or travels takes four to
-  /// six times as long to set up (7 ms rather than 1.3 for a double Gauss); fits of tilts need no camera. Throws
-  /// Error for a film without area or pixels, one that is not behind the last surface, is tilted into the lens or comes
-  /// near to the plane of the pupil, and where the model cannot be built: a lens without a pupil, a pinhole or two
-  /// discs of a lens with cylinders.
+  /// Sets up a camera with a built-in model.
+  ///
+  /// First-order models are focused where the exact rays of the film's centre are sharpest. A film that is tilted or
+  /// travels takes four to six times as long to set up (7 ms instead of 1.3 ms for a double Gauss).
+  ///
+  /// @param lens     the lens; its film moves to film.z_mm, as with with_film()
+  /// @param film     the film; it may be larger than the image circle (lint() reports that)
+  /// @param options  model, unit of the weights and other settings
+  /// @throws Error   if the film has no area or no pixels, is not behind the last surface, is tilted into the lens or
+  ///                 comes near the pupil plane; if the lens has no pupil; if a lens for pinhole or thin_two_disc has
+  ///                 cylinders
+  ///
+  /// Limitations: if the film travels, first-order models keep the focus and the pupil size of the position at which
+  /// the shutter opens. After a pull from 3 m to infinity with a 100 mm lens the exposure is off by 1 to 4 %.
   Camera(const Lens& lens, const Film& film, const CameraOptions& options = {});
-  /// With a model that was built before: a renderer's own, or polynomials read from a file (ray_model.hpp). Throws
-  /// Error also for a model of other wavelengths, of another place of the film, or whose pupils or polynomials reach
-  /// less far than upright_radius(), and for lens_elements, lens_ratio and rate_of_change, which its pupils cannot
-  /// follow.
+  /// Sets up a camera with a given model: a model of the renderer, or polynomials from a file (ray_model.hpp).
+  ///
+  /// @throws Error  as above; if the model has other wavelengths or another film position; if its pupils or polynomials
+  ///                end within upright_radius(); if lens_elements, lens_ratio or rate_of_change differ from the
+  ///                default, because the pupils of a given model cannot follow them
   Camera(const Lens& lens, const Film& film, const AnyRayModel& model,
          Normalisation normalisation = Normalisation::irradiance, const BokehControls& bokeh = {});
 
-  /// With the film's place.
+  /// The lens with its film at the position of the camera's film.
   const Lens& lens() const noexcept;
   const Film& film() const noexcept;
   ModelKind model() const noexcept;
   Normalisation normalisation() const noexcept;
 
-  /// One ray; it agrees with that of a batch within rounding. The densities of a pinhole's rays are those of the thick
-  /// lens's pupil. Fates of invalid samples: outside_film for a film point that is outside the film or not finite,
-  /// outside_spectrum for a wavelength that the lens does not cover, vignetted for a pupil without area and pupil
-  /// samples that are not finite. Pupil samples outside the unit square count as its edge.
+  /// Samples one ray from the film to the scene; equal to the batch result up to rounding.
+  ///
+  /// A lost sample has the fate outside_film if the film point is outside the film or not finite, outside_spectrum if
+  /// the lens does not cover the wavelength, and vignetted if the pupil has no area or the pupil sample is not finite.
+  /// Pupil samples outside the unit square are clamped. A pinhole reports the densities of the thick lens's pupil.
+  ///
+  /// Accuracy: film positions at a wavelength between compiled ones are compared with a camera compiled for it, in
+  /// pixels of 36 mm / 1920 (tests/camera/any_wavelength_test.cpp). Exact models are within 1e-4. First-order models
+  /// and polynomials of degree 7 are within 0.03 (lenses faster than f/1.4: 0.08) with eight equally spaced wavelengths
+  /// over 400 to 700 nm, and within a few pixels with three. The weights of polynomials and thin_two_disc have steps of
+  /// up to 1 % midway between compiled wavelengths.
   CameraRay sample(const CameraSample& sample) const noexcept;
-  /// N rays, float or double, in the precision of the model.
+  /// Samples N rays, float or double, in the precision of the model.
   template <class T>
   void sample(std::size_t count, const CameraSamples<T>& samples, const CameraRays<T>& rays) const noexcept;
 
-  /// One ray with its exact derivatives.
+  /// Samples one ray with its exact derivatives.
   CameraRayDifferential sample_differential(const CameraSample& sample) const noexcept;
-  /// N rays with their derivatives by raster position, 0 for a lost ray: the values of single calls, which it makes.
+  /// Samples N rays with their derivatives by raster position; 0 for a lost ray. Calls sample_differential() N times.
   template <class T>
   void sample_differentials(std::size_t count, const CameraSamples<T>& samples, const CameraRays<T>& rays,
                             const RayArrays<T>& by_raster_x, const RayArrays<T>& by_raster_y) const noexcept;
 
-  /// The importance of a ray from the scene, given anywhere on its line, in its direction towards the lens. 0 for a
-  /// pinhole, which no ray meets by chance; so is pdf_importance(). Only connections meet it.
-  /// time: as in CameraSample, here and below.
+  /// Importance of a ray from the scene.
+  ///
+  /// The ray has its origin anywhere on its line and its direction of travel towards the lens. time, also in the calls
+  /// below, is as in CameraSample. A pinhole has importance 0 and pdf_importance() 0: only connections find a pinhole.
   Importance importance(const Ray<double>& ray, Wavelength wavelength = {}, double time = 0) const;
-  /// The same for N rays, faster than one by one: within rounding. times: N, or null.
+  /// Importance of N rays; faster than single calls and equal up to rounding. times: N values, or null for 0.
   void importance(std::size_t count, const RayArrays<const double>& rays, const RayWavelengths& wavelengths,
                   Importance* found, const double* times = nullptr) const;
-  /// Samples a connection from a scene point (lens frame, mm) to the part of the entrance pupil that it sees.
+  /// Samples a connection from a scene point to the part of the entrance pupil that the point sees.
+  ///
+  /// point: lens frame, mm. u, v: in the unit square.
   ImportanceSample sample_importance(const Vec3<double>& point, double u, double v, Wavelength wavelength = {},
                                      double time = 0) const;
-  /// The same for N points, faster than one by one: within rounding. times: N, or null.
+  /// Samples N connections; faster than single calls and equal up to rounding. times: N values, or null for 0.
   void sample_importance(std::size_t count, const Vec3<double>* points, const double* u, const double* v,
                          const RayWavelengths& wavelengths, ImportanceSample* found,
                          const double* times = nullptr) const;
-  /// A connection with light from infinity, of a sun or an environment, in a direction of travel (unit, towards the
-  /// lens): the pdf is that of the ray's place in a plane across it, 1/mm^2, and the distance is infinite. The mean of
-  /// E We / pdf is the film's mean irradiance by light of the irradiance E across that direction.
+  /// Samples a connection with light from infinity: the sun or an environment.
+  ///
+  /// The mean of E We / pdf is the mean irradiance of the film for light of irradiance E perpendicular to the
+  /// direction.
+  ///
+  /// direction: unit direction of travel, towards the lens. In the result, the distance is infinite and pdf is the
+  /// density of the ray's position in a plane perpendicular to the direction (1/mm^2).
   ImportanceSample sample_distant_importance(const Vec3<double>& direction, double u, double v,
                                              Wavelength wavelength = {}, double time = 0) const;
-  /// The density with which sample_importance() gives a direction at a point, 1/sr; the same at all times. 0 for what
-  /// is invalid as a ray (Importance::fate).
+  /// Density with which sample_importance() samples a direction at a point (1/sr); equal at all times. 0 if the ray is
+  /// invalid (Importance::fate).
   double pdf_importance(const Vec3<double>& point, const Vec3<double>& direction, Wavelength wavelength = {}) const;
-  /// The same for sample_distant_importance(): of a ray with its direction of travel, given anywhere on its line, among
-  /// those of its direction, 1/mm^2 across it.
+  /// Density with which sample_distant_importance() samples a ray among all rays of its direction, in a plane
+  /// perpendicular to it (1/mm^2). ray: any point of the line, and the direction of travel.
   double pdf_distant_importance(const Ray<double>& ray, Wavelength wavelength = {}) const;
 
-  /// The camera's film side as plain numbers, for hosts that sample on another processor: CameraTables
-  /// (camera_tables.hpp) has the layout. Throws Error for a film that is tilted or travels, for weights of the
-  /// pupil, a focal surface or an expressive lens, and for a renderer's own model.
+  /// The film side of the camera as an array of floats, for sampling on a GPU; CameraTables describes the layout.
+  ///
+  /// @throws Error  if the film is tilted or travels, if the camera has weights of the pupil, a focal surface or an
+  ///                expressive lens, or if the model is custom
   std::vector<float> tables() const;
 
-  /// Where the camera sees a scene point: the film point and raster position of its chief ray. not_visible also for a
-  /// wavelength outside the compiled range.
+  /// Projects a scene point: film point and raster position of its chief ray. not_visible if the wavelength is outside
+  /// the compiled range.
   Projection project(const Vec3<double>& point, Wavelength wavelength = {}, double time = 0) const;
 
-  /// Of the focal surface and the film offsets, on a grid of 96 x 64 places of the film as the shutter opens, which may
-  /// miss folds that are narrower; 0 without them. From 1 on rays of several film points coincide. Film samples stay
-  /// what they are; importance, connections and projections know one of these film points, and where it turns the rays
-  /// over none, so that light tracing lacks light: trace paths from the film.
+  /// Largest steepness of the focal surface and the film offsets over the film; 0 without them.
+  ///
+  /// Evaluated at 96 x 64 film points as the shutter opens; narrower folds may be missed.
+  ///
+  /// Limitations: for a steepness of 1 or more, rays of several film points coincide. Film samples stay correct.
+  /// Importance, connections and projections find only one of these film points, or no film point if the surface
+  /// inverts the order of the rays, so that light tracing is too dark: trace paths from the film.
   FocalSteepness focal_steepness() const noexcept;
 
  private:

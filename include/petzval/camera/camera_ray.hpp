@@ -13,32 +13,32 @@
 
 namespace petzval {
 
-/// A film point, a sample of its pupil, and a wavelength.
+/// A sample of a camera: film point, pupil sample, wavelength and time.
 struct CameraSample {
   FilmPoint film;
-  double pupil_u = 0, pupil_v = 0;  ///< in the unit square; mapped uniformly to the pupil of this film point
+  double pupil_u = 0, pupil_v = 0;  ///< in the unit square, mapped uniformly to the pupil of the film point
   Wavelength wavelength = {};
-  double time = 0;  ///< part of the time that the shutter is open, 0 to 1 (clamped; not a number: 0): where a film that
-                    ///< travels is
+  /// Fraction of the exposure, 0 to 1 (clamped; NaN: 0): sets the position of a film that travels.
+  double time = 0;
 };
 
-/// A ray that leaves the lens towards the scene, from the front of the lens (see Camera).
+/// A ray from the front of the lens (see Camera) towards the scene, with its weight and densities.
 ///
-/// The mean of weight x radiance over pupil samples is the irradiance of the film point (for unity_on_axis, relative to
-/// that of the axis for the same radiance). A lost ray has weight 0 and its fate. Densities are those of the sample,
-/// lost or not; they are 0 for a sample outside the film or without a pupil, and 1e36 at most.
+/// The mean of weight * radiance over pupil samples is the irradiance of the film point (for unity_on_axis, relative to
+/// the axis). A lost ray has weight 0 and a fate. Densities describe the sample, also of a lost ray; they are at most
+/// 1e36, and 0 if the sample is outside the film or has no pupil.
 struct CameraRay {
   Ray<double> ray{};
   RayFate fate = RayFate::vignetted;
-  double weight = 0;     ///< sr (irradiance), or without unit
-  double pdf_film = 0;   ///< of film points distributed uniformly over the film, and as densely over its margin, 1/mm^2
-  double pdf_pupil = 0;  ///< in the plane of the pupil, 1/mm^2
-  double pdf_direction = 0;  ///< of the direction at the film point, in solid angle, 1/sr
+  double weight = 0;         ///< sr for Normalisation::irradiance, else without unit
+  double pdf_film = 0;       ///< 1 / area of the film, also in its margin, 1/mm^2
+  double pdf_pupil = 0;      ///< density in the pupil plane, 1/mm^2
+  double pdf_direction = 0;  ///< density of the direction at the film point, in solid angle, 1/sr
 
   explicit operator bool() const noexcept { return weight > 0; }
 };
 
-/// The same as structures of arrays, N values each. Outputs must not alias inputs.
+/// N samples as a structure of arrays. CameraRays must not alias the samples.
 template <class T>
 struct CameraSamples {
   const T* film_x = nullptr;
@@ -46,14 +46,16 @@ struct CameraSamples {
   const T* pupil_u = nullptr;
   const T* pupil_v = nullptr;
   RayWavelengths wavelengths{};
-  const T* times = nullptr;  ///< null: 0, when the shutter opens
+  const T* times = nullptr;  ///< null: 0, as the shutter opens
 
-  /// The samples from a position on.
+  /// The samples from index `sample` on.
   CameraSamples from(std::size_t sample) const noexcept {
     return {film_x + sample,  film_y + sample,          pupil_u + sample,
             pupil_v + sample, wavelengths.from(sample), times ? times + sample : nullptr};
   }
 };
+
+/// N rays as a structure of arrays.
 template <class T>
 struct CameraRays {
   RayArrays<T> rays;
@@ -62,7 +64,7 @@ struct CameraRays {
   T* pdf_pupil = nullptr;      ///< may be null
   T* pdf_direction = nullptr;  ///< may be null
 
-  /// The rays from a position on.
+  /// The rays from index `ray` on.
   CameraRays from(std::size_t ray) const noexcept {
     return {{rays.x + ray, rays.y + ray, rays.z + ray, rays.dx + ray, rays.dy + ray, rays.dz + ray},
             weights + ray,
@@ -72,46 +74,45 @@ struct CameraRays {
   }
 };
 
-/// A camera ray and the exact derivatives of its point and direction by film x and film y, per mm, for a constant pupil
-/// sample.
+/// A camera ray and the exact derivatives of its origin and direction by film x and film y (per mm), at a constant
+/// pupil sample.
 struct CameraRayDifferential {
   CameraRay sample{};
   Ray<double> by_film_x{{0, 0, 0}, {0, 0, 0}}, by_film_y{{0, 0, 0}, {0, 0, 0}};
 };
 
-/// The derivatives by raster position, per pixel: those that a host's texture filters take. The raster's x runs against
-/// the film's.
+/// Derivatives of a camera ray by raster position (per pixel), for texture filters. Raster x runs opposite to film x.
 struct RasterDifferential {
   Ray<double> by_x{{0, 0, 0}, {0, 0, 0}}, by_y{{0, 0, 0}, {0, 0, 0}};
 };
 PETZVAL_API RasterDifferential by_raster(const CameraRayDifferential& ray, const Film& film) noexcept;
 
-/// The importance of a ray from the scene, for light tracing and bidirectional methods.
+/// Importance of a ray from the scene, for light tracing and bidirectional methods.
 ///
-/// The film's mean irradiance is the integral of We x radiance over the rays of the scene, in the measure cos dA dw of
-/// any surface in front of the lens. (Rays that meet the film's margin have We as well, and their raster outside the
-/// picture: they count for pixel filters and not for that mean.) For Normalisation::irradiance, We is the square of the
-/// index in front of the lens over the film's area for every ray that arrives; there is no cosine in it. The other
-/// normalisations divide We as they divide weights. The index of the film's medium changes the weights of film samples
-/// by its square, and not We: derivation in lib/camera/importance.cpp.
+/// The mean irradiance of the film is the integral of We * radiance over the scene rays, in the measure cos dA dw of
+/// any surface in front of the lens. Rays into the film's margin also have We, but count for pixel filters only. For
+/// Normalisation::irradiance, We is the squared index in front of the lens divided by the film's area, for every ray
+/// that arrives; it contains no cosine and no index of the film's medium (derivation: lib/camera/importance.cpp). The
+/// other normalisations divide We as they divide weights. First-order models do not conserve etendue; their We has the
+/// factor (cos t / cos t')^4, with the angles t and t' of the ray to the axis behind and in front of the lens, so that
+/// light tracing gives the irradiance of film sampling.
 ///
-/// First-order models are linear in slopes and do not conserve etendue, as no lens can that images planes sharply.
-/// There We has the factor (cos t / cos t')^4, t and t' the angles of the ray with the axis behind and before the lens,
-/// so that film and scene hold the same light, as they do in exact models. With polynomials they differ, the less the
-/// better the fit: by 12 % at degree 3 and 2.5 % at degree 5 for a fisheye, by 4 % and 1 % for wide lenses.
+/// Accuracy: light tracing and film sampling agree for exact and first-order models. For polynomials of degree 3 and 5
+/// they differ by 12 % and 2.5 % for a fisheye, 4 % and 1 % for wide-angle lenses.
 struct Importance {
-  double we = 0;  ///< 1/mm^2; 0 for a ray that is lost or misses the film
-  /// invalid: a direction that is no unit vector (unit_direction_tolerance), or numbers that are not finite;
-  /// outside_spectrum: a wavelength outside the compiled range.
+  double we = 0;  ///< 1/mm^2; 0 if the ray is lost or misses the film
+  /// invalid if the direction is no unit vector (unit_direction_tolerance) or a number is not finite; outside_spectrum
+  /// if the wavelength is outside the compiled range.
   RayFate fate = RayFate::vignetted;
-  FilmPoint film{};  ///< where the ray meets the plane of the film
+  FilmPoint film{};  ///< intersection of the ray with the film plane
   Vec2<double> raster{0, 0};
   double pdf_film = 0;   ///< 1/mm^2
-  double pdf_pupil = 0;  ///< of the film sample with this ray, 1/mm^2
-  /// The density of this ray among film samples, in the measure cos dA dw of the scene, as a product: of its position
-  /// on the entrance pupil (1 / the pupil's paraxial area, 1/mm^2, in a plane across the ray) and of its direction
-  /// there (1/sr). We over the product is the weight of the film sample with this ray. The product times the cosine at
-  /// a scene point compares with the pdf of sample_importance() for points distributed by area.
+  double pdf_pupil = 0;  ///< CameraRay::pdf_pupil of the film sample with this ray, 1/mm^2
+  /// pdf_position * pdf_direction is the density of this ray among film samples, in the measure cos dA dw of the scene.
+  /// pdf_position: 1 / paraxial area of the entrance pupil, in a plane perpendicular to the ray (1/mm^2);
+  /// pdf_direction: in solid angle (1/sr). We divided by the product is the weight of the film sample with this ray.
+  /// The product times the cosine at a scene point is comparable to the pdf of sample_importance() for points
+  /// distributed by area.
   double pdf_position = 0, pdf_direction = 0;
 
   explicit operator bool() const noexcept { return we > 0; }
@@ -121,25 +122,27 @@ struct Importance {
 struct ImportanceSample {
   Vec3<double> direction{0, 0, 1};  ///< unit, from the point to the lens
   double distance = 0;              ///< from the point to `on_front`, mm
-  Vec3<double> on_front{0, 0, 0};   ///< where the line meets the front of the lens (see Camera): shadow rays end there
-  double pdf = 0;                   ///< of the direction at the point, 1/sr; 0 without a connection
+  Vec3<double> on_front{0, 0, 0};   ///< end of the shadow ray, on the front of the lens (see Camera)
+  double pdf = 0;                   ///< density of the direction at the point, 1/sr; 0 if there is no connection
   Importance importance{};
 
   explicit operator bool() const noexcept { return importance.we > 0; }
 };
 
-/// How the search for a film point ended.
+/// Result of the search for a film point.
 enum class ProjectionStatus : std::uint8_t {
   converged,     ///< the point's chief ray meets the film
-  outside_film,  ///< it meets the film plane outside the film
-  vignetted,     ///< the lens clips it; other rays of the point may pass
-  not_visible,   ///< the point has no chief ray, or one that meets the film plane far outside the film
+  outside_film,  ///< the chief ray meets the film plane outside the film
+  vignetted,     ///< the lens clips the chief ray; other rays of the point may pass
+  not_visible,   ///< the point has no chief ray, or its chief ray meets the film plane far outside the film
 };
 /// "converged", "outside_film", "vignetted" or "not_visible".
 PETZVAL_API std::string_view name(ProjectionStatus status) noexcept;
 
-/// film and raster are set except for not_visible. For vignetted and outside_film they may have the error of a table of
-/// exact chief rays, 2e-5 of the film's radius (tests/camera/projection_test.cpp).
+/// The projection of a scene point; `film` and `raster` are set unless the status is not_visible.
+///
+/// Accuracy: for vignetted and outside_film, 2e-5 of the film's radius, from a table of exact chief rays
+/// (tests/camera/projection_test.cpp).
 struct Projection {
   ProjectionStatus status = ProjectionStatus::not_visible;
   FilmPoint film{};

@@ -9,67 +9,65 @@
 
 namespace petzval {
 
-/// The refractive power of a ring of the pupil.
+/// Relative refractive power at one radius of the pupil.
 struct PowerKnot {
-  double radius = 0;  ///< over that of the pupil: 0 (axis) to 1 (rim)
-  double power = 1;   ///< over that of the lens: above 1, rays of the ring cross the axis nearer to the lens
+  double radius = 0;  ///< fraction of the pupil's radius: 0 (axis) to 1 (rim)
+  double power = 1;   ///< fraction of the lens's power; above 1, rays cross the axis nearer to the lens
 };
 
-/// How far a place of the film is moved along the axis.
+/// Axial offset of the film at one film point.
 struct FilmOffset {
   FilmPoint place{};
-  double offset_mm = 0;  ///< positive: away from the lens, so that nearer objects are sharp there
-  double weight = 1;     ///< 0 or more: against the other places
+  double offset_mm = 0;  ///< positive: away from the lens, so that nearer objects are in focus
+  double weight = 1;     ///< relative to the other offsets; at least 0
 };
 
-/// Aberrations as an artist sets them, for first-order models: sources, signs and amounts are free, and a real lens can
-/// be where they start (expressive_from).
+/// Aberrations of any sign and amount for first-order models; expressive_from() starts from a real lens.
 ///
 ///     ExpressiveLens bent = expressive_from(lens);
 ///     for (PowerKnot& knot : bent.power) knot.power = 1 + 3 * (knot.power - 1);
 ///     const Camera camera(lens, film, {.model = ModelKind::thick, .expressive = bent});
 ///
-/// This has three times the spherical aberration of the lens.
-///
-/// A ray through the pupil at the radius rho (after the extent of a focal surface has scaled it), of the film point X
-/// and the wavelength l, runs through the place of the chief ray of X where 1 / distance is
-///
-///     w(X) + (k(rho) - 1) / F + strength(l) (w(X, l) - w(X)),
-///
-/// distances counted along the axis from the entrance pupil, F the focal length, k the spline of power, and w(X) what
-/// the moved film or the focal surface has in focus at the primary wavelength, w(X, l) at its own. Chief rays stay: the
-/// aberrations have no distortion and no lateral colour of their own.
+/// This triples the spherical aberration. A ray of film point X and wavelength l at radius rho of the pupil (as scaled
+/// by a focal surface) meets the chief ray of X at w(X) + (k(rho) - 1) / F + dispersion(l) (w(X, l) - w(X)) (1/mm along
+/// the axis from the entrance pupil), with the focal length F, the spline k of power, and w, the inverse distance in
+/// focus, at the primary wavelength and at l. Chief rays stay: distortion and lateral colour do not change.
 ///
 /// Source: Lee, Eisemann, Seidel 2010, "Real-time lens blur effects and focus control", section 5.3.
 struct ExpressiveLens {
-  /// A cubic spline (continuous second derivative, flat at the first knot, without curvature at the last), constant on
-  /// both sides. Up to 32 knots in the order of their radii, 0.001 apart or more; empty: even power. Steps between near
-  /// knots overshoot.
+  /// Knots of a cubic spline: up to 32, sorted by radius, at least 0.001 apart; empty: uniform power. The spline has a
+  /// continuous second derivative, slope 0 at the first knot and curvature 0 at the last, and is constant outside the
+  /// knots. It overshoots at steps between close knots.
   std::vector<PowerKnot> power{};
-  /// A surface by moving least squares of planes, with weights that fall with the third power of the distance; limited
-  /// to a span three times that of the offsets. Empty: none.
+  /// Offsets interpolated by moving least squares with planes and weights 1 / distance^3, limited to three times the
+  /// range of the offsets; empty: no offset.
   std::vector<FilmOffset> film_offsets{};
-  /// Of the lens's own axial colour: 1 keeps it, 0 takes it away. One for each compiled wavelength, one for all, or
-  /// empty: 1.
+  /// Factors of the lens's axial colour (1 keeps, 0 removes the colour): a factor per compiled wavelength, or a single
+  /// factor; empty: 1.
   std::vector<double> dispersion{};
 
-  /// Nothing is changed.
+  /// True if the lens is unchanged.
   bool empty() const noexcept { return power.empty() && film_offsets.empty() && dispersion.empty(); }
 };
 
-/// The spherical aberration on the axis and the curvature of field of a real lens as power and film offsets of its
-/// first-order model, as far as its pupil, its image circle and this film's corners go, with a dispersion of 1; at the
-/// lens's primary wavelength, f-number and focus. Offsets stand for the mean of both sections: astigmatism and coma are
-/// left out. Where offsets grow beyond a fifth of the film's distance from the pupil they end.
+/// Spherical aberration and field curvature of a real lens, as power and film offsets of its first-order model.
 ///
-/// The blur of out-of-focus points is within 5 % of the real one on the axis and within 6 % over the film, for a double
-/// Gauss f/1.35 and f/1.8, a Tessar and a Petzval lens (tests/camera/expressive_lens_test.cpp). Lenses that a
-/// first-order model does not fit, fisheyes above all, gain nothing. Throws Error where a Camera of the thick lens
-/// does, and for cylinders.
+/// Evaluated at the primary wavelength, f-number and focus of the lens, within its pupil, its image circle and the
+/// corners of the film. Offsets end if they exceed a fifth of the distance between film and pupil.
+///
+/// @throws Error  if a Camera of the thick model does, or the lens has cylinders
+///
+/// Accuracy: the blur of out-of-focus points is within 5 % on the axis and 6 % over the film, for a double Gauss f/1.35
+/// and f/1.8, a Tessar and a Petzval lens (tests/camera/expressive_lens_test.cpp).
+///
+/// Limitations: offsets are the mean of the tangential and the sagittal section; astigmatism and coma are left out.
+/// Lenses far from first order, such as fisheyes, gain nothing.
 PETZVAL_API ExpressiveLens expressive_from(const Lens& lens, const Film& film = {});
 
-/// How steep the focus of a camera is over its film, where it is steepest: by how much, over their distance, the rays
-/// of neighbouring film points through the rim of the pupil come nearer to each other.
+/// Largest steepness of a camera's focus over the film.
+///
+/// The steepness at a film point is the relative decrease of the distance between rays of neighbouring film points
+/// through the rim of the pupil.
 struct FocalSteepness {
   double steepness = 0;  ///< below 1: every ray of the scene has one film point
   FilmPoint place{};

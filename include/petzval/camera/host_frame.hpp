@@ -10,7 +10,7 @@ namespace petzval {
 
 class Lens;
 
-/// Renderers with a known camera frame.
+/// Renderers whose camera frames are known.
 enum class Host : std::uint8_t { pbrt, mitsuba, cycles, arnold, appleseed };
 
 /// The origin of a host's camera frame.
@@ -18,12 +18,13 @@ enum class FrameOrigin : std::uint8_t { film, front_vertex, entrance_pupil };
 
 /// Converts between the lens frame in mm and a host's camera frame in its unit of length.
 ///
-/// pbrt and Cycles are left-handed, +x right, +y up, looking along +z: (x, y, -z), a mirror image. Mitsuba is
-/// right-handed, +x left, +y up, looking along +z: (-x, y, -z). Arnold and appleseed look along -z, as the lens frame.
-/// Default units per mm: 0.001 for metres (pbrt, Mitsuba, Cycles, appleseed), 0.1 for centimetres (Arnold).
+/// A point (x, y, z) of the lens frame becomes (x, y, -z) for pbrt and Cycles (left-handed, +x right, +y up, view along
+/// +z), and (-x, y, -z) for Mitsuba (right-handed, +x left, +y up, view along +z). Arnold and appleseed look along -z,
+/// like the lens frame. Default units per mm: 0.001 for metres (pbrt, Mitsuba, Cycles, appleseed), 0.1 for centimetres
+/// (Arnold).
 class PETZVAL_API HostFrame {
  public:
-  /// Throws Error for an origin in an entrance pupil at infinity, and for a unit that is not positive and finite.
+  /// @throws Error  if the origin is an entrance pupil at infinity, or units_per_mm is not positive and finite
   HostFrame(Host host, const Lens& lens, FrameOrigin origin);
   HostFrame(Host host, const Lens& lens, FrameOrigin origin, double units_per_mm);
 

@@ -8,7 +8,7 @@
 
 namespace petzval {
 
-/// A RayModel of fitted polynomials, such as those read from a file, within pupils of the same area as the real ones.
+/// A RayModel of fitted polynomials, for example from a file, with pupils of the same area as the real pupils.
 ///
 ///     const Camera camera(lens, film, AnyRayModel(PolynomialModel(
 ///         read_ray_polynomial(path), FilmPupilTable::equal_area(lens, upright_radius(lens, film)))));

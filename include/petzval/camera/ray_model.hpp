@@ -18,34 +18,31 @@
 
 namespace petzval {
 
-/// What a Camera needs of a lens: the pupils to sample, and the map between image-space rays and rays of the scene.
+/// Requirements of a Camera on a ray model: the pupils to sample, and the map between image-space and scene rays.
 ///
-/// An image-space ray is given by its points on two planes: the film, and the plane of the pupils (TwoPlanes). Every
-/// call is const and noexcept, may come from several threads, allocates nothing, and writes every slot of its results
-/// with finite numbers; fates say which rays are lost. Wavelengths are positions, or for models of any_wavelength also
-/// nm; those that the model does not have give missed_surface.
-///
-/// Required:
+/// An image-space ray is given by its points on the film and on the pupil plane (TwoPlanes). Calls must be const,
+/// noexcept, thread-safe and free of allocations, and must write finite numbers for every ray; fates tell lost rays.
+/// Wavelengths are positions, or also nm with any_wavelength; unknown wavelengths give missed_surface. Required:
 ///
 ///     pupils()      the pupils of the film points, up to upright_radius()
 ///     to_scene()    N image-space rays, float and double, to rays that leave the lens towards the scene
-///     to_film()     N rays of the scene, anywhere on their lines, to image-space rays
+///     to_film()     N rays of the scene, given anywhere on their lines, to image-space rays
 ///
-/// Optional members, and what their absence means:
+/// Optional members, with the default if absent:
 ///
-///     static constexpr bool clips_at_apertures       false: a ray passes where it lies in pupils(). true: fates alone
-///                                                    decide, and pupils() contain what passes
+///     static constexpr bool clips_at_apertures       false: a ray passes if pupils() contain it. true: only the fates
+///                                                    decide, and pupils() contain all rays that pass
 ///     static constexpr bool linear_in_slopes         false: the model conserves etendue. true: it is linear in heights
-///                                                    and slopes and conserves their area, as ideal lenses do
-///     static constexpr bool any_wavelength           false: samples at a wavelength in nm are lost. true: the
-///                                                    model takes it, and so does its table of pupils
-///     std::span<const double> pinhole_shifts()       empty. Of a pinhole, one for each wavelength: its rays pass the
-///                                                    plane of the pupils at so many times the film point
+///                                                    and slopes and conserves their area, like an ideal lens
+///     static constexpr bool any_wavelength           false: samples at a wavelength in nm are lost. true: the model
+///                                                    and its pupils accept wavelengths in nm
+///     std::span<const double> pinhole_shifts()       empty. For a pinhole, one per wavelength: rays pass the pupil
+///                                                    plane at pinhole_shift * film point
 ///     RayFate to_scene(TwoPlaneRay, wavelength,      a batch of one
 ///                      Ray<double>&)
 ///     RayDerivatives to_scene(TwoPlaneRayDerivatives,       central differences of to_scene()
 ///                             wavelength)
-///                                                    wavelength: a position, or a Wavelength for any_wavelength
+///                                                    wavelength: a position; with any_wavelength, a Wavelength
 ///     ModelKind kind()                               custom
 template <class M>
 concept RayModel = requires(const M& model, std::size_t count, const RayWavelengths& wavelengths, RayFate* fates,
@@ -62,22 +59,22 @@ concept RayModel = requires(const M& model, std::size_t count, const RayWaveleng
   noexcept;
 };
 
-/// The radius that the pupils of a model must reach, mm: how far from the axis the rays of a film's points meet the
-/// plane of the upright film. For an upright film, its own radius. Throws Error for a film that is no rectangle or
-/// tilted by a quarter turn or more, and for a tilted one that comes near to the plane of the pupils or to the pupil of
-/// a first-order model (of a thin lens, its rear principal plane).
+/// Radius up to which the pupils of a model are needed (mm): distance from the axis at which the rays of the film's
+/// points meet the plane of the upright film. For an upright film, Film::radius_mm().
+///
+/// @throws Error  if the film is no rectangle or tilted by 90 degrees or more, or if a tilted film comes near the pupil
+///                plane or the pupil of a first-order model (thin: the rear principal plane)
 PETZVAL_API double upright_radius(const Lens& lens, const Film& film, ModelKind model = ModelKind::custom);
 
-/// Any RayModel, as a Camera holds it.
+/// Any RayModel, type-erased for a Camera.
 ///
 ///     struct MyModel { ... };
 ///     const Camera camera(lens, film, AnyRayModel(MyModel(lens, upright_radius(lens, film))));
 ///
-/// Immutable, cheap to copy (copies share the model), shared freely between threads. Its calls are those of the model,
-/// virtual once a batch.
+/// Immutable, cheap to copy (copies share the model), thread-safe. One virtual call per batch.
 class AnyRayModel {
  public:
-  /// Copies. Moves copy too, so that no AnyRayModel is ever empty.
+  /// Copies. Moves also copy, so that an AnyRayModel is never empty.
   AnyRayModel(const AnyRayModel&) = default;
   AnyRayModel& operator=(const AnyRayModel&) = default;
 
@@ -85,7 +82,7 @@ class AnyRayModel {
     requires(!std::same_as<M, AnyRayModel> && RayModel<M>)
   AnyRayModel(M model) : model_(std::make_shared<const Held<M>>(std::move(model))) {}
 
-  /// The model, if it is an M; else null.
+  /// The model if it has the type M, else null.
   template <class M>
   const M* as() const noexcept {
     const auto* const held = dynamic_cast<const Held<M>*>(model_.get());
@@ -120,7 +117,7 @@ class AnyRayModel {
   struct Interface {
     ModelKind kind = ModelKind::custom;
     bool clips_at_apertures = false, linear_in_slopes = false, any_wavelength = false;
-    const FilmPupilTable* pupils = nullptr;  ///< the model's
+    const FilmPupilTable* pupils = nullptr;  ///< owned by the model
     std::span<const double> pinhole_shifts;
 
     virtual ~Interface() = default;
@@ -136,7 +133,7 @@ class AnyRayModel {
     std::size_t position(Wavelength wavelength) const noexcept {
       return wavelength.position(pupils->primary_wavelength());
     }
-    /// What models without the optional members get.
+    /// Defaults for models without the optional members.
     PETZVAL_API RayFate batch_of_one(const TwoPlaneRay&, Wavelength, Ray<double>&) const noexcept;
     PETZVAL_API RayDerivatives differences(const TwoPlaneRayDerivatives&, Wavelength) const noexcept;
   };
