@@ -34,7 +34,7 @@ Form powers(const Coefficients& a, std::initializer_list<double> exponents) {
   return form;
 }
 
-/// n^2 = c0 + 1 + sum K l^2 / (l^2 - L), K and L in turn from the first coefficient given
+/// n^2 = c0 + 1 + sum K l^2 / (l^2 - L), for pairs of K and L
 Form poles(double c0, std::span<const double> pairs) {
   Form form{DispersionFormula::sellmeier, {c0}};
   for (std::size_t i = 0; i + 1 < pairs.size(); i += 2) {
@@ -43,14 +43,14 @@ Form poles(double c0, std::span<const double> pairs) {
   return form;
 }
 
-/// What the numbers of formulas 1 to 13 mean; nothing for others, two readings of formula 4.
+/// The forms of formulas 1 to 13; empty for other numbers. Formula 4 has two readings.
 std::vector<Form> forms(int number, const Coefficients& a) {
   const std::span<const double> all(a);
   switch (number) {
     case 1: return {powers(a, {2, -2, -4, -6, -8})};  // Schott
     case 2: return {poles(0, all.first(6))};          // Sellmeier 1
     case 3: return {{DispersionFormula::herzberger, {a[0], a[1], a[2], a[3], a[4], a[5]}}};
-    case 4:  // Sellmeier 2: the last term with and without l^2 above
+    case 4:  // Sellmeier 2: the last term with and without l^2 in the numerator
       return {{DispersionFormula::rational, {1 + a[0], a[1], 2, a[2] * a[2], a[3], 0, a[4] * a[4]}},
               {DispersionFormula::rational, {1 + a[0], a[1], 2, a[2] * a[2], a[3], 2, a[4] * a[4]}}};
     case 5: return {{DispersionFormula::cauchy, {a[0], a[1], -1, a[2], -3.5}}};          // Conrady
@@ -66,7 +66,7 @@ std::vector<Form> forms(int number, const Coefficients& a) {
   }
 }
 
-/// The record of one glass, from its NM to the next.
+/// The record of one glass, from its NM to the next NM.
 struct Record {
   int line = 0;
   int formula = 0;
@@ -97,7 +97,7 @@ class AgfReader {
     Lines lines(text);
     while (lines.next()) read_line(lines.number(), lines.text());
     if (record_ && !record_->coefficients) {
-      reader_.refuse(lines.number(), "the file ends before the CD of glass " + record_->glass.name, "its coefficients");
+      reader_.refuse(lines.number(), "the file ends before the CD of glass " + record_->glass.name, "complete");
     }
     close_record();
   }
@@ -107,7 +107,7 @@ class AgfReader {
     const auto w = words(text, 32);
     if (w.empty() || w[0].starts_with('!')) return;
     const std::string_view command = w[0];
-    if (!began_ && !is_command(command)) return;  // words about the catalogue
+    if (!began_ && !is_command(command)) return;  // text about the catalogue
     if (command == "NM") {
       began_ = true;
       close_record();
@@ -142,14 +142,14 @@ class AgfReader {
     record_->formula = formula >= 1 && formula <= 13 && formula == std::floor(formula) ? static_cast<int>(formula) : 0;
     if (record_->formula == 0) {
       reader_.warn(line, record_->glass.name,
-                   "left out: its formula is " + std::string(beginning(w[2], 100)) + ", known are 1 to 13");
+                   "left out: its formula is " + std::string(beginning(w[2], 100)) + "; formulas 1 to 13 are known");
     }
     record_->glass.nd = printed(4);
     record_->glass.vd = printed(5);
   }
 
   Record& record_of(int line, std::string_view command) {
-    if (!record_) reader_.refuse(line, std::string(command) + " stands before the first NM", "a glass that it is of");
+    if (!record_) reader_.refuse(line, std::string(command) + " is before the first NM", "after the NM of a glass");
     return *record_;
   }
 
@@ -179,11 +179,11 @@ class AgfReader {
       reader_.add(std::move(glasses[0]), record.line);
     } else {
       reader_.warn(record.line, glass.name,
-                   "left out: formula 4 has two readings, and its n_d does not tell them apart");
+                   "left out: formula 4 has two readings, and its n_d does not distinguish them");
     }
   }
 
-  /// Says once for each command what is not used.
+  /// Warns once per unused command.
   void leave_out(int line, std::string_view command) {
     static constexpr std::array<std::pair<std::string_view, std::string_view>, 5> unused = {{
         {"ED", "thermal expansion and density are not used"},

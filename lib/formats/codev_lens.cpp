@@ -43,7 +43,7 @@ void CodevBuilder::evaluate_pickups() {
   for (const CodevPickup& p : lens_.pickups) {
     const auto inside = [&](int at) { return at >= 0 && static_cast<std::size_t>(at) < lens_.surfaces.size(); };
     if (!inside(p.surface) || !inside(p.from)) {
-      in_.refuse(p.line, "PIK", "of a surface that does not exist", "surfaces of the file");
+      in_.refuse(p.line, "PIK", "a surface that does not exist", "a surface of the file");
     }
     CodevSurface& to = lens_.surfaces[static_cast<std::size_t>(p.surface)];
     CodevSurface& from = lens_.surfaces[static_cast<std::size_t>(p.from)];
@@ -54,7 +54,7 @@ void CodevBuilder::evaluate_pickups() {
     double* value = member(to, p.what);
     const double* source = member(from, p.of.empty() ? p.what : p.of);
     if (!value || !source) {
-      in_.warn(p.line, "PIK", "of " + p.what + " is not evaluated; the value that the file states is taken");
+      in_.warn(p.line, "PIK", "of " + p.what + " is not evaluated; the value in the file is taken");
       continue;
     }
     const double scale = value == &to.shape && !*lens_.curvatures && p.scale != 0 ? 1 / p.scale : p.scale;
@@ -68,8 +68,8 @@ void CodevBuilder::evaluate_pickups() {
   }
 }
 
-/// Without RDM CODE V reads curvatures. Files of other programs mean radii: no surface can be as steep as they would
-/// be.
+/// Without RDM, CODE V reads curvatures, but other programs write radii without RDM. The numbers are radii if, as
+/// curvatures, they would make a surface impossibly steep.
 void CodevBuilder::choose_shapes() {
   if (lens_.curvatures) return;
   const auto& aperture = in_.lens.design.aperture;
@@ -82,7 +82,7 @@ void CodevBuilder::choose_shapes() {
   lens_.curvatures = !impossible;
   in_.warn(0, "RDM",
            impossible ? "is missing; the first number of a surface is taken as its radius, as it would be too "
-                        "steep by its curvature"
+                        "steep as a curvature"
                       : "is missing; the first number of a surface is taken as its curvature");
 }
 
@@ -92,7 +92,7 @@ Medium CodevBuilder::medium(const CodevSurface& s) {
   const auto own =
       std::ranges::find_if(lens_.private_glasses, [&](const PrivateGlass& g) { return same(g.name, name); });
   if (own != lens_.private_glasses.end()) {
-    // The index nearest to the d line; V_d from those nearest to F and C.
+    // n_d is the index nearest to the d line; V_d comes from the indices nearest to F and C.
     const auto at = [&](double nm) -> std::optional<double> {
       std::optional<double> best;
       double distance = 3;
@@ -104,13 +104,13 @@ Medium CodevBuilder::medium(const CodevSurface& s) {
     };
     const auto nd = at(587.5618), nf = at(486.1327), nc = at(656.2725);
     if (!nd) {
-      in_.refuse(s.line, s.glass, "a private glass without an index at the d line", "one near 587.56 nm under PWL");
+      in_.refuse(s.line, s.glass, "a private glass without an index at the d line",
+                 "a glass with an index near 587.56 nm (PWL)");
     }
     Medium medium{.glass = own->name, .nd = *nd};
     if (nf && nc) medium.vd = *nf == *nc ? 0 : (*nd - 1) / (*nf - *nc);
     in_.warn(s.line, s.glass,
-             medium.vd ? "is known by n_d and V_d, from its private indices"
-                       : "is known by n_d alone, from its private indices");
+             medium.vd ? "has n_d and V_d from its private indices" : "has only n_d, from its private indices");
     return medium;
   }
   // 1.5168:64.17, n_d and V_d
@@ -131,7 +131,7 @@ Medium CodevBuilder::medium(const CodevSurface& s) {
 void CodevBuilder::build() {
   if (lens_.surfaces.size() < 3 || !lens_.ended) {
     throw Error(in_.where() + ": " + std::to_string(lens_.surfaces.size()) + " surfaces" +
-                (lens_.ended ? "" : " and no SI") + ", wanted SO, one S or more, and SI");
+                (lens_.ended ? "" : " without SI") + "; must be SO, at least one S, and SI");
   }
   if (!lens_.unit_given) in_.warn(0, "DIM", "is missing; lengths are taken as millimetres");
   choose_shapes();
@@ -174,13 +174,13 @@ void CodevBuilder::build() {
     if (s.aperture || s.edge) row.semi_diameter = (s.aperture ? *s.aperture : *s.edge) * lens_.unit;
     if (s.obscuration) row.obscuration_semi_diameter = *s.obscuration * lens_.unit;
     if (!s.label.empty()) row.comment = s.label;
-    // CYL alone is curved in y; of a plane in y, RDX is the radius in x.
+    // CYL without RDX is curved in y. If the surface is a plane in y, RDX is the radius in x.
     if (s.shape != 0 && (s.cylinder_x || s.cylinder_y)) row.curved_in = s.cylinder_x ? Section::x : Section::y;
     before = row.medium;
   }
-  // The thickness of the image surface is its distance from where the last surface put it.
+  // The thickness of the image surface moves the film away from the position given by the last surface.
   in_.lens.surfaces.back().thickness += lens_.surfaces.back().thickness * lens_.unit;
-  // PIM puts the film into the paraxial image. The file states its distance if CODE V saved the solution.
+  // PIM puts the film at the paraxial image. The file states its distance if CODE V saved the solution.
   if (lens_.paraxial_image > 0) {
     in_.requests.solves.push_back({.line = lens_.paraxial_image,
                                    .command = "PIM",
@@ -191,7 +191,7 @@ void CodevBuilder::build() {
   build_zooms();
 }
 
-/// The setting of the design's aperture, if a word is its command.
+/// The setting of the design's aperture if `what` is its command.
 std::optional<ApertureSetting> CodevBuilder::aperture_setting(std::string_view what) const {
   using enum ApertureSetting;
   const auto& aperture = in_.lens.design.aperture;
@@ -213,17 +213,17 @@ void CodevBuilder::build_zooms() {
     const bool lens_value = z.what == "thi" || z.what == "rdy" || z.what == "cuy";
     const auto setting = aperture_setting(z.what);
     if (!lens_value && !setting && z.what != "fno" && z.what != "tit") {
-      in_.warn(z.line, "ZOO", "of " + z.what + " is left out; all positions have the value of the first");
+      in_.warn(z.line, "ZOO", "of " + z.what + " is left out; all positions have the value of the first one");
       continue;
     }
     if (z.values.size() != lens_.zoom_positions) {
-      in_.refuse(z.line, "ZOO", "given " + std::to_string(z.values.size()) + " values",
-                 std::to_string(lens_.zoom_positions) + ", one for each position");
+      in_.refuse(z.line, "ZOO", "a list of " + std::to_string(z.values.size()) + " values",
+                 std::to_string(lens_.zoom_positions) + " values, one per position");
     }
     const int last = static_cast<int>(in_.lens.surfaces.size()) - 1, surface = z.surface - 1;
     const bool of_object = z.what == "thi" && z.surface == 0;
     if (lens_value && !of_object && (surface < 0 || surface > last)) {
-      in_.refuse(z.line, "ZOO", "of surface " + std::to_string(z.surface), "a surface of the lens");
+      in_.refuse(z.line, "ZOO", "surface " + std::to_string(z.surface), "a surface of the lens");
     }
     if (setting) in_.requests.position_apertures.resize(list.size());
     std::size_t changed = 0;

@@ -10,7 +10,7 @@
 
 namespace petzval::formats_detail {
 
-/// One surface of a .seq as the file has it: lengths in its unit, the first number a radius or a curvature.
+/// One surface of a .seq as stated in the file: lengths in the file's unit, `shape` is a radius or a curvature.
 struct CodevSurface {
   int line = 0;
   double shape = 0;
@@ -24,13 +24,13 @@ struct CodevSurface {
   bool cylinder_x = false, cylinder_y = false;
 };
 
-/// PRV: a glass of the file itself, by its indices at wavelengths.
+/// PRV: a private glass of the file, by its indices at wavelengths.
 struct PrivateGlass {
   std::string name;
   std::vector<double> indices;
 };
 
-/// PIK: a value of a surface that is another's times a factor.
+/// PIK: a value of a surface that equals a value of another surface times a factor.
 struct CodevPickup {
   int line = 0;
   std::string what{}, of{};
@@ -46,26 +46,26 @@ struct CodevZoom {
   std::vector<std::string> values{};
 };
 
-/// A .seq as it was read.
+/// The contents of a .seq.
 struct CodevLens {
   std::vector<CodevSurface> surfaces;  ///< object, lens and image
   bool ended = false;                  ///< SI was read
   double unit = 1;                     ///< mm
   bool unit_given = false;
-  std::optional<bool> curvatures;  ///< what RDM says the first number of a surface is
+  std::optional<bool> curvatures;  ///< true if the first number of a surface is a curvature (RDM)
   std::vector<PrivateGlass> private_glasses;
   std::vector<double> private_nm;
   std::vector<CodevPickup> pickups;
   std::size_t zoom_positions = 1;
   std::vector<CodevZoom> zooms;
-  int paraxial_image = 0;                         ///< the line of PIM; 0: none
+  int paraxial_image = 0;                         ///< line of PIM; 0 if absent
   std::vector<std::array<double, 4>> vignetting;  ///< VUY VLY VUX VLX of each field
 };
 
-/// From here on thicknesses stand for infinity.
+/// Thicknesses from this value on mean infinity.
 inline constexpr double codev_endless = 1e10;
 
-/// Makes the rows and configurations of a prescription.
+/// Builds the rows and configurations of a prescription.
 void build_codev(CodevLens codev, Import& in);
 
 }  // namespace petzval::formats_detail

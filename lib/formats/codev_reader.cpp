@@ -37,7 +37,7 @@ class CodevReader {
   void statement(std::string_view text);
   double value(Words w, std::size_t at) const { return at < w.size() ? in_.number(line_, w[0], w[at]) : 0.0; }
   double needed(Words w, std::size_t at) const {
-    if (at >= w.size()) in_.refuse(line_, w[0], "without a number", "one");
+    if (at >= w.size()) in_.refuse(line_, w[0], "missing", "a number");
     return in_.number(line_, w[0], w[at]);
   }
   CodevSurface& surface(Words w);
@@ -77,7 +77,9 @@ class CodevReader {
   bool zoomed_values(Words);
   void private_begins(Words) { in_private_ = true; }
   void refused_surface(Words);
-  void refused_edit(Words w) { in_.refuse(line_, w[0], "a change of the lens before it", "the lens as it becomes"); }
+  void refused_edit(Words w) {
+    in_.refuse(line_, w[0], "an edit of the lens above it", "applied to the lens before saving");
+  }
   void not_a_shape(Words);
 
   void private_statement(Words);
@@ -128,7 +130,7 @@ std::span<const CodevReader::Command> CodevReader::commands() {
   return all;
 }
 
-/// Statements that change nothing of the lens: who drew it, how it is drawn, what may vary, derived numbers.
+/// Statements that do not change the lens: author, drawing, variables, derived numbers.
 constexpr std::string_view silent =
     "INI CCY THC KC AC BC CC DC EC FC GC HC JC CLS DER GO CUM THM CRA NUM SET CA SUR OUT VIE EVA "
     "END CON_ WTA MFL ID TOL BUF FIE";
@@ -145,11 +147,11 @@ std::optional<int> CodevReader::number_of(std::string_view word) const {
 CodevSurface& CodevReader::numbered(Words w, std::string_view word) {
   const auto at = number_of(word);
   if (at && static_cast<std::size_t>(*at) < lens_.surfaces.size()) return lens_.surfaces[static_cast<std::size_t>(*at)];
-  in_.refuse(line_, w[0], "of " + in_quotes(word), "a surface that the file has by then");
+  in_.refuse(line_, w[0], "surface " + in_quotes(word), "a surface defined before this line");
 }
 
 CodevSurface& CodevReader::surface(Words w) {
-  if (lens_.surfaces.empty()) in_.refuse(line_, w[0], "in front of the first surface", "it behind one");
+  if (lens_.surfaces.empty()) in_.refuse(line_, w[0], "a command before the first surface", "after a surface");
   return lens_.surfaces.back();
 }
 
@@ -171,7 +173,7 @@ void CodevReader::aperture(Words w) {
                                   : same(w[0], "NA")  ? image_na
                                                       : object_na;
   const double number = needed(w, 1);
-  if (!(number > 0)) in_.refuse(line_, w[0], to_text(number), "a number above 0");
+  if (!(number > 0)) in_.refuse(line_, w[0], to_text(number), "positive");
   in_.lens.design.aperture = DesignAperture{setting, number};
 }
 
@@ -226,15 +228,16 @@ void CodevReader::vignetting(Words w) {
 }
 
 void CodevReader::object(Words w) {
-  if (!lens_.surfaces.empty()) in_.refuse(line_, "SO", "given twice", "one object in front of all surfaces");
+  if (!lens_.surfaces.empty()) in_.refuse(line_, "SO", "a second object", "a single object, before all surfaces");
   lens_surface(w);
 }
 
 void CodevReader::lens_surface(Words w) {
-  if (lens_.ended) in_.refuse(line_, w[0], "behind SI, the image", "it in front");
-  if (lens_.surfaces.empty() && !same(w[0], "SO")) in_.refuse(line_, w[0], "in front of SO, the object", "SO first");
+  if (lens_.ended) in_.refuse(line_, w[0], "a surface after SI, the image", "before SI");
+  if (lens_.surfaces.empty() && !same(w[0], "SO"))
+    in_.refuse(line_, w[0], "a surface before SO, the object", "after SO");
   in_.limit(lens_.surfaces.size() + 1, "surfaces", 2);
-  // Other programs write planes and far objects as "inf"; without RDM, this number is no curvature.
+  // Other programs write planes and infinite distances as "inf"; if there is no RDM, this number is not a curvature.
   const bool plane = w.size() > 1 && is_infinite(w[1]), endless = w.size() > 2 && is_infinite(w[2]);
   if (plane && lens_.curvatures.value_or(false)) in_.must_be(line_, w[0], in_quotes(w[1]), "a finite curvature");
   CodevSurface s{.line = line_, .shape = plane ? 0 : value(w, 1), .thickness = endless ? codev_endless : value(w, 2)};
@@ -266,17 +269,17 @@ void CodevReader::circle(Words w) {
       s = &numbered(w, w[i]);
     } else if (same(w[i], "EDG") || same(w[i], "HOL") || same(w[i], "OBS") || same(w[i], "CLR")) {
       kind = lower(w[i]);
-    } else if (!w[i].starts_with('l') && !w[i].starts_with('L')) {  // an empty one in quotes is no label
+    } else if (!w[i].starts_with('l') && !w[i].starts_with('L')) {  // an empty quoted word is not a label
       in_.warn(line_, "CIR", "its word " + in_quotes(w[i]) + " is left out");
     }
   }
   if (!s) s = &surface(w);
-  if (!size || *size < 0) in_.refuse(line_, "CIR", size ? to_text(*size) : "without a number", "a radius of 0 or more");
+  if (!size || *size < 0) in_.refuse(line_, "CIR", size ? to_text(*size) : "missing", "a radius of at least 0");
   (kind == "edg" ? s->edge : kind == "hol" || kind == "obs" ? s->obscuration : s->aperture) = *size;
 }
 
 void CodevReader::term(Words w) {
-  // A B C D E F G H J: r^4, r^6, ..., r^20. IC: whether a ray may use the other intersection.
+  // A B C D E F G H J: r^4, r^6, ..., r^20. IC: true if a ray may use the alternative intersection.
   if (same(w[0], "IC")) return;
   const std::string_view letters = "abcdefghj";
   const auto order = static_cast<int>(letters.find(lower(w[0][0]))) * 2 + 4;
@@ -289,7 +292,7 @@ void CodevReader::term(Words w) {
 void CodevReader::tilt(Words w) {
   const bool any = w.size() < 2 || std::ranges::any_of(w.subspan(1), [](auto word) { return number(word) != 0.0; });
   if (!any) return;
-  in_.refuse(line_, w[0], "a tilt or decentre", "a centred lens");
+  in_.refuse(line_, w[0], "a tilt or decentre", "0 (a centred lens)");
 }
 
 void CodevReader::refused_surface(Words w) {
@@ -343,12 +346,12 @@ void CodevReader::cylinder(Words w) {
     s.cylinder_x = true;
     s.shape = given;
   } else {
-    in_.refuse(line_, w[0], to_text(given), "0, a cylinder: surfaces curved in both sections are spheres");
+    in_.refuse(line_, w[0], to_text(given), "0 (a cylinder); a surface curved in both sections must be a sphere");
   }
 }
 
 void CodevReader::pickup(Words w) {
-  // PIK RDY S4 Z1 RDY S2 Z1 [scale]: zoom positions may be left out.
+  // PIK RDY S4 Z1 RDY S2 Z1 [scale]; zoom positions may be omitted.
   CodevPickup p{.line = line_};
   std::vector<double> numbers;
   for (std::size_t i = 1; i < w.size(); ++i) {
@@ -375,8 +378,7 @@ void CodevReader::zoom(Words w) {
     lens_.zoom_positions = static_cast<std::size_t>(count);
     return;
   }
-  if (w.size() < 3)
-    in_.refuse(line_, "ZOO", "incomplete", "a number of positions, or a value, its surface and numbers");
+  if (w.size() < 3) in_.refuse(line_, "ZOO", "incomplete", "a number of positions, or a value, a surface and numbers");
   zoomed(w.subspan(1));
 }
 
@@ -390,7 +392,7 @@ void CodevReader::zoomed(Words w) {
 }
 
 bool CodevReader::zoomed_values(Words w) {
-  // THI S3 1 2 3, with as many values as there are positions.
+  // THI S3 1 2 3, one value per position.
   if (lens_.zoom_positions < 2 || w.size() < 2 || !number_of(w[1]) || w.size() - 2 != lens_.zoom_positions)
     return false;
   zoomed(w);
@@ -414,19 +416,19 @@ void CodevReader::statement(std::string_view text) {
   const auto w = words(text);
   if (w.empty()) return;
   if (in_private_) return private_statement(w);
-  // TITLE is TIT, LENS is LEN: three letters are enough of longer words.
+  // TITLE is TIT, LENS is LEN: only the first three letters count.
   const std::string name = upper(w[0]);
   for (const std::string& word : {name, name.substr(0, 3)}) {
     for (const Command& command : commands()) {
       const std::string_view entry = entry_of(command.names, word);
       if (entry.empty()) continue;
       std::vector<std::string_view> known = w;
-      known[0] = entry;  // commands compare it
+      known[0] = entry;  // commands compare this spelling
       return (this->*command.take)(known);
     }
   }
 
-  // S3 50 2 NBK7: a surface by its number.
+  // S3 50 2 NBK7: a surface given by its number.
   if (const auto at = number_of(w[0]); at && w.size() > 1) {
     if (*at == 0 && lens_.surfaces.empty()) {
       std::vector<std::string_view> as_object(w.begin(), w.end());

@@ -60,7 +60,7 @@ class CodevWriter {
   void surface(std::size_t i);
   std::string glass(const Medium& medium) const;
   std::optional<double> beam_diameter(std::size_t position);
-  /// True if every zoom position has a beam, and they differ.
+  /// True if every zoom position has a beam and they differ.
   bool zoomed_beam() const {
     return std::ranges::all_of(beams_, [](const auto& beam) { return beam.has_value(); }) &&
            std::ranges::adjacent_find(beams_, std::ranges::not_equal_to()) != beams_.end();
@@ -71,10 +71,10 @@ class CodevWriter {
   const Prescription& p_;
   std::vector<std::pair<Medium, std::string>> names_;
   std::vector<std::pair<std::string, Medium>> private_;
-  std::vector<std::optional<double>> beams_;  ///< diameter for each position; empty if the design declares the beam
+  std::vector<std::optional<double>> beams_;  ///< diameter per position; empty if the design declares the beam
 };
 
-/// "BK7_SCHOTT": the name without dashes and the maker, as CODE V names the glasses of all its catalogues.
+/// "BK7_SCHOTT": the name without dashes, and the maker, as CODE V names catalogue glasses.
 std::string codev_name(const Glass& glass) {
   std::string name;
   for (const char c : glass.name) {
@@ -83,7 +83,7 @@ std::string codev_name(const Glass& glass) {
   return name + '_' + maker_of(glass);
 }
 
-/// Catalogue glasses keep their names if the name and the maker mean this glass; other media become private glasses.
+/// A catalogue glass keeps its name if name and maker identify it; other media become private glasses.
 void CodevWriter::name_media() {
   std::optional<GlassNames> names;
   std::vector<Medium> media{p_.object_space};
@@ -139,12 +139,12 @@ void CodevWriter::private_glasses() {
   out_.line("END");
   if (without_vd) out_.lose("vd", "glasses without V_d get the same index at all wavelengths");
   out_.lose("glass",
-            "media without the name and n_d of a catalogue glass become private ones, with indices at C, d and "
-            "F alone: " +
+            "media without the name and n_d of a catalogue glass become private glasses with indices at C, d and "
+            "F only: " +
                 list);
 }
 
-/// Diameter of the parallel beam whose exact rays fill the stop in a position; nullopt if the beam is unlimited.
+/// Diameter of the parallel beam whose exact rays fill the stop in a zoom position; nullopt if the beam is unlimited.
 std::optional<double> CodevWriter::beam_diameter(std::size_t position) {
   const Lens lens = out_.at_primary_wavelength(configured(p_, position));
   if (!has_pupils(lens)) return {};
@@ -173,13 +173,13 @@ void CodevWriter::design() {
       beams_.push_back(beam_diameter(i));
     }
     if (beams_[0]) out_.line("EPD " + to_text(*beams_[0]));
-    if (by_stop) out_.lose("aperture", "of the stop's size becomes the diameter of the entrance pupil");
+    if (by_stop) out_.lose("aperture", "given by the size of the stop becomes the diameter of the entrance pupil");
     if (d.aperture && !by_stop) {
       out_.lose("aperture",
                 std::string(name(d.aperture->setting)) + " of 0 becomes the diameter of the entrance pupil");
     }
   }
-  // Wavelengths fall from the first to the last.
+  // Wavelengths must decrease.
   std::vector<std::pair<DesignWavelength, bool>> waves;
   for (std::size_t i = 0; i < d.wavelengths.size(); ++i)
     waves.emplace_back(d.wavelengths[i], i == d.primary_wavelength);
@@ -221,14 +221,14 @@ void CodevWriter::surface(std::size_t i) {
   out_.line("S " + to_text(row.radius) + ' ' + to_text(row.thickness) + (row.mirror ? " REFL" : glass(row.medium)));
   if (row.stop) out_.line("  STO");
   if (row.comment) out_.line("  SLB " + quoted(*row.comment));
-  // The beams of zoom positions give the size of their stop.
+  // The beams of the zoom positions determine the size of the stop.
   const bool limited = row.semi_diameter && std::isfinite(*row.semi_diameter) && !row.semi_diameter_computed &&
                        !(row.stop && zoomed_beam());
   if (limited) out_.line("  CIR " + to_text(*row.semi_diameter));
   if (row.obscuration_semi_diameter.value_or(0) > 0) {
     out_.line(std::string(row.mirror ? "  CIR HOL " : "  CIR OBS ") + to_text(*row.obscuration_semi_diameter));
   }
-  if (row.curved_in == Section::x) out_.refuse(i, "a cylinder curved along x", "one curved along y for a .seq");
+  if (row.curved_in == Section::x) out_.refuse(i, "a cylinder curved along x", "a cylinder curved along y for a .seq");
   if (row.curved_in == Section::y) {
     out_.line("  CYL");
     out_.line("  RDX 0");
@@ -238,7 +238,8 @@ void CodevWriter::surface(std::size_t i) {
   out_.line("  K " + to_text(row.conic));
   for (const AsphereTerm& term : row.aspheric) {
     if (term.order % 2 != 0 || term.order < 4 || term.order > 20) {
-      out_.refuse(i, "an aspheric term of order " + std::to_string(term.order), "even orders from 4 to 20 for a .seq");
+      out_.refuse(i, "an aspheric term of order " + std::to_string(term.order),
+                  "of even order from 4 to 20 for a .seq");
     }
     out_.line("  " + std::string(1, "ABCDEFGHJ"[term.order / 2 - 2]) + ' ' + to_text(term.coefficient));
   }
@@ -288,8 +289,9 @@ void CodevWriter::zooms() {
     for (const SurfaceChange& change : c.changes)
       other = other || change.conic || change.semi_diameter || change.medium;
   }
-  if (other) out_.lose("configurations", "conics, semi-diameters, glasses and stops of all are those of the first");
-  if (focusing) out_.lose("focus_of", "which zoom position a focused one belongs to is lost, but for its name");
+  if (other)
+    out_.lose("configurations", "all configurations get the conics, semi-diameters, glasses and stops of the first");
+  if (focusing) out_.lose("focus_of", "the zoom position of a focused configuration is lost, except in its name");
 }
 
 }  // namespace

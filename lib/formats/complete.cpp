@@ -21,14 +21,14 @@
 namespace petzval::formats_detail {
 namespace {
 
-/// The stop in one position: its rim in the file, and the declared marginal ray.
+/// The stop in one position: the rim in the file and the declared marginal ray.
 struct StopSize {
   std::size_t surface = 0;
-  std::optional<double> rim{};     ///< absent: open
-  std::optional<double> height{};  ///< marginal ray at the stop; nullopt if the aperture does not determine the ray
+  std::optional<double> rim{};     ///< nullopt if open
+  std::optional<double> height{};  ///< marginal ray at the stop; nullopt if undetermined by the aperture
 
   bool clips_the_beam() const { return rim && height && *rim < 0.99 * *height; }
-  /// The smaller of both; nullopt if both are unknown. Equal within the digits of files, the rim is taken.
+  /// The smaller of rim and height; nullopt if both are unknown. The rim if they are equal within the digits of files.
   std::optional<double> semi_diameter() const {
     constexpr double digits = 1e-6;
     if (!height || (rim && *rim <= *height * (1 + digits))) return rim;
@@ -36,7 +36,7 @@ struct StopSize {
   }
 };
 
-/// The stop has a size in each position: it opens and closes as the lens zooms.
+/// Sets the size of the stop in each position: the stop may open and close as the lens zooms.
 void set_the_stop(Prescription& lens, std::span<const StopSize> sizes) {
   const std::size_t marked = stop_of(lens);
   const std::optional<double> old = lens.surfaces[marked].semi_diameter;
@@ -52,14 +52,13 @@ void set_the_stop(Prescription& lens, std::span<const StopSize> sizes) {
       change_of(c, static_cast<int>(sizes[i].surface)).semi_diameter = size;
     }
     if (sizes[i].surface == marked || !changed) continue;
-    SurfaceChange& other =
-        change_of(c, static_cast<int>(marked));  // no stop in this position: keeps the rim of the file
+    SurfaceChange& other = change_of(c, static_cast<int>(marked));  // not the stop in this position: keeps its rim
     if (!other.semi_diameter) other.semi_diameter = old.value_or(std::numeric_limits<double>::infinity());
   }
 }
 
-/// Position where the ray of a height, parallel to the axis in front of the lens, crosses the axis, from the last
-/// surface; not a number if the ray is lost or does not cross.
+/// Position, from the last surface, at which a ray crosses the axis that enters at a height parallel to the axis; NaN
+/// if the ray is lost or does not cross.
 double crossing(const Lens& lens, double height) {
   const double start = -10 - std::abs(height);
   const auto exit = trace(lens, Ray<double>{{0, height, start}, {0, 0, 1}});
@@ -68,8 +67,8 @@ double crossing(const Lens& lens, double height) {
   return at.z - at.y / direction.y * direction.z - lens.surfaces().back().vertex_z;
 }
 
-/// The thickness that fulfils a solve, without its offset; not finite if no thickness does. lens: the surfaces in front
-/// of the thickness.
+/// The thickness that satisfies a solve, without its offset; not finite if there is no such thickness.
+/// @param lens the surfaces in front of the thickness
 double solution(const ThicknessSolve& solve, const Lens& lens, const DesignData& design) {
   const Meridian meridian = main_meridian(lens);
   const FirstOrder first = first_order(lens, {}, meridian);
@@ -100,7 +99,7 @@ std::vector<std::size_t> planes_in_one_medium(const Prescription& lens) {
   return result;
 }
 
-/// The name, with a number if it is taken.
+/// The name, with a number appended if it is already used.
 std::string unique_name(std::set<std::string>& taken, const std::string& name) {
   std::string unique = name;
   for (int i = 2; !taken.insert(unique).second; ++i) unique = name + " (" + std::to_string(i) + ")";
@@ -143,7 +142,7 @@ class Completion {
   Import in_;
   Prescription& lens_;
   ImportRequests& asked_;
-  /// True if the stop has the size of the declared beam, or a warning says that its rim clips the beam.
+  /// True if the stop has the size of the declared beam, or if a warning says that its rim clips the beam.
   bool has_declared_beam_ = false;
 };
 
@@ -154,7 +153,7 @@ void Completion::name_the_lens() {
   lens_.source_numbers = origin.file;
 }
 
-/// If a glass has no index at the d line, the reference is the primary wavelength of the design.
+/// If a glass has no index at the d line, the reference becomes the primary wavelength of the design.
 void Completion::take_reference() {
   std::vector<Medium*> media{&lens_.object_space};
   for (SurfaceRow& row : lens_.surfaces) media.push_back(&row.medium);
@@ -189,7 +188,7 @@ void Completion::drop_film_row() {
   if (planes.empty() || planes.back() + 1 != lens_.surfaces.size()) return;
   const FirstOrder first = first_order_of(lens_);
   constexpr double near =
-      0.05;  // fraction of the focal length: tables state the sharpest film, or the film of a near subject
+      0.05;  // fraction of the focal length: tables state the sharpest film, or the film for a near subject
   if (first.afocal || std::abs(first.back_focal_distance) > near * std::abs(first.effective_focal_length)) return;
   in_.warn(line_of(planes.back()), "row", "is a plane in the paraxial focus; it is taken as the film");
   lens_.surfaces.pop_back();
@@ -201,7 +200,7 @@ void Completion::mark_a_plane_as_stop() {
   lens_.surfaces[planes.front()].stop = true;
   in_.warn(line_of(planes.front()), "stop", "is not marked; the plane in one medium is taken as the stop");
   for (const std::size_t other : std::span(planes).subspan(1)) {
-    in_.warn(line_of(other), "stop", "a second one only limits rays; the first is the stop");
+    in_.warn(line_of(other), "stop", "a second stop only limits rays; the first is the stop");
   }
 }
 
@@ -211,7 +210,7 @@ void Completion::mark_a_stop() {
   in_.warn(0, "stop", "no surface is marked as the stop; the first one is taken");
 }
 
-/// The declared f-number tells diameters from semi-diameters.
+/// The declared f-number distinguishes diameters from semi-diameters.
 void Completion::choose_apertures() {
   const auto& [line, likely_diameters] = *asked_.unknown_apertures;
   const auto scaled = [&](double factor) {
@@ -237,7 +236,7 @@ void Completion::choose_apertures() {
                    to_text(as_semi_diameters, 3) + ", and the file declares f/" + to_text(declared, 3));
     }
   } else {
-    in_.warn(line, "aperture", meaning() + "the file declares no f-number that could tell");
+    in_.warn(line, "aperture", meaning() + "the file declares no usable f-number");
   }
   if (!diameters) lens_.surfaces = scaled(2).surfaces;
   lens_.semi_diameters = diameters ? "half of the table's apertures" : "the table's apertures";
@@ -258,10 +257,10 @@ void Completion::solve(const ThicknessSolve& solve) {
   const double solved = solution(solve, at_primary(rows), lens_.design) + solve.offset;
   double& stated = lens_.surfaces[solve.surface].thickness;
   if (!(std::abs(solved) < 1e10)) {
-    return in_.warn(solve.line, solve.command, "no thickness fulfils it: the one that the file states is taken");
+    return in_.warn(solve.line, solve.command, "no thickness satisfies the solve; the thickness in the file is taken");
   }
-  // The digits that files state, and differences between the editions of a glass catalogue. A film stays if it is
-  // in focus.
+  // Allow for the digits of files and for differences between editions of a glass catalogue. A film stays if it is in
+  // focus.
   const double tolerance = solve.is_taken ? 2e-4 * std::abs(first_order_of(lens_).effective_focal_length)
                                           : 1e-3 * std::max(std::abs(solved), std::abs(stated));
   if (solve.is_stated && std::abs(stated - solved) <= tolerance) return;
@@ -284,10 +283,11 @@ void Completion::put_film_at_focus() {
       in_.warn(film.line, film.command,
                film.reason + "; the film is put at the paraxial focus, " + to_text(distance, 7) + " mm" + position);
     } else if (film.is_needed) {
-      in_.refuse(film.line, film.command, "unknown, and light from afar is not focused behind it", "the film's place");
+      in_.refuse(film.line, film.command, "unknown, and light from infinity has no focus behind the lens",
+                 "the position of the film");
     } else {
       in_.warn(film.line, film.command,
-               film.reason + ", and no image lies behind it; the film lies in the last vertex" + position);
+               film.reason + ", and no image lies behind the lens; the film is put at the last vertex" + position);
     }
     return distance;
   };
@@ -299,7 +299,7 @@ void Completion::put_film_at_focus() {
   }
 }
 
-/// A nominal focal length has few digits.
+/// Accepts a nominal focal length within 1 %, as it has few digits.
 void Completion::compare_focal_length() {
   const StatedFocalLength& stated = *asked_.focal_length;
   const FirstOrder first = first_order_of(lens_);
@@ -312,8 +312,8 @@ void Completion::compare_focal_length() {
   }
 }
 
-/// A telecentric object space has its pupil at infinity, at any position of the stop. The lens must image its stop to
-/// 100 object distances or more.
+/// A telecentric object space has its pupil at infinity, at any position of the stop: the lens must image its stop to
+/// at least 100 object distances.
 void Completion::check_telecentric() const {
   const double object = lens_.design.object_distance_mm;
   const std::size_t stop = stop_of(lens_);
@@ -325,8 +325,8 @@ void Completion::check_telecentric() const {
              to_text(pupil + object, 6) + " mm from the object";
   }
   in_.refuse(asked_.telecentric_line, asked_.telecentric_command, found,
-             "pupils that the stop forms: switch Telecentric Object Space off (the second number is 0), or mark the "
-             "surface as the stop at which the chief rays cross the axis");
+             "consistent with the stop: switch Telecentric Object Space off (the second number is 0), or mark as "
+             "the stop the surface at which the chief rays cross the axis");
 }
 
 void Completion::find_subject_distances() {
@@ -339,8 +339,8 @@ void Completion::find_subject_distances() {
   }
 }
 
-/// Positions with a subject at infinity are zoom positions. Each of the others focuses the zoom position with the most
-/// similar thicknesses.
+/// Names the positions. Positions with a subject at infinity are zoom positions; each other position focuses the zoom
+/// position with the most similar thicknesses.
 void Completion::name_positions() {
   auto& list = lens_.configurations;
   const auto is_named = [&](std::size_t i) { return asked_.positions->list[i].is_named; };
@@ -380,11 +380,12 @@ void Completion::name_positions() {
     if (!is_zoom) continue;
     in_.warn(asked_.positions->line, "d0",
              "the position at " + distance + " is taken to focus " + list[of].name +
-                 ", whose distances are most like its own");
+                 ", whose distances are the most similar");
   }
 }
 
-/// A declared aperture launches the beam and the rim of the stop clips it, so the smaller one is the size of the stop.
+/// The declared aperture defines the beam and the rim of the stop clips it, so the smaller of both is the size of the
+/// stop.
 void Completion::size_the_stop() {
   const auto& aperture = lens_.design.aperture;
   const bool declared = aperture && aperture->setting != ApertureSetting::stop_size && aperture->value > 0 &&
@@ -409,7 +410,7 @@ void Completion::size_the_stop() {
   if (!first.height) {
     if (first.rim) return;
     return in_.warn(0, "stop",
-                    declared ? "the declared aperture does not give its size; the rims limit the beam"
+                    declared ? "the declared aperture does not determine its size; the rims limit the beam"
                              : "neither the size of the stop nor an aperture is given; the rims limit the beam");
   }
   const std::string beam =
@@ -458,7 +459,7 @@ void Completion::declare() {
   }
 }
 
-/// Warns of declared data that lint() finds to differ from the lens.
+/// Warns of declared data that differ from the lens according to lint().
 void Completion::compare_the_declared() try {
   using enum FindingKind;
   const GlassCatalogue* glasses = in_.loaded_glasses();

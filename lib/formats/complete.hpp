@@ -6,14 +6,14 @@
 
 namespace petzval::formats_detail {
 
-/// Completes the data of a reader to a valid lens, with the library's optics.
+/// Completes the data of a reader to a valid lens by means of the library's optics.
 ///
 /// Carries out the requests of the file: film, solved thicknesses, meaning of apertures, names of positions. Sizes the
-/// stop by the aperture of the design, sets nominal data by the fields, and computes missing apertures. Each
-/// assumption, and each number of the file that the lens does not have, becomes a warning.
+/// stop by the aperture of the design, sets nominal data from the fields, and computes missing apertures. Each
+/// assumption becomes a warning, and so does each number in the file that differs from the lens.
 ///
-/// @return         the valid prescription
-/// @throws Error   if the prescription is invalid, or a request that it needs cannot be carried out
+/// @return the valid prescription
+/// @throws Error if the prescription is invalid, or if a required request cannot be carried out
 Prescription complete(Import in);
 
 }  // namespace petzval::formats_detail

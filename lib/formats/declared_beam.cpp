@@ -14,8 +14,8 @@
 namespace petzval::formats_detail {
 namespace {
 
-/// Position of the stop's image in object space, from the first surface: a ray through its centre meets the centre of
-/// the stop.
+/// Position of the stop's image in object space, from the first surface: a ray through the centre of this image passes
+/// the centre of the stop.
 double entrance_pupil_z(const RayMatrix& to_stop, double object_index) {
   return to_stop.a == 0 ? std::numeric_limits<double>::infinity() : to_stop.b * object_index / to_stop.a;
 }
@@ -46,7 +46,7 @@ Prescription without_rims(Prescription rows) {
   rows.imported.reset();
   rows.configurations.clear();
   for (SurfaceRow& row : rows.surfaces) {
-    row.semi_diameter = std::numeric_limits<double>::infinity();  // without a number it would be computed
+    row.semi_diameter = std::numeric_limits<double>::infinity();  // nullopt would be computed
     row.obscuration_semi_diameter.reset();
   }
   return rows;
@@ -61,7 +61,7 @@ double marginal_height_at_the_stop(const Lens& compiled, std::size_t position, d
                                    const DesignAperture& aperture) {
   const FirstOrder first = first_order(compiled, {}, main_meridian(compiled));
 
-  // The marginal ray of the design: its height and slope in front of the first surface.
+  // The marginal ray of the design: height and slope in front of the first surface.
   const RayMatrix to_stop = ray_matrix_to(compiled, position, {}, main_meridian(compiled));
   const bool far = !std::isfinite(object);
   const auto per_unit = [&](double height, double slope) { return to_stop.a * height + to_stop.b * slope; };
@@ -85,7 +85,7 @@ double marginal_height_at_the_stop(const Lens& compiled, std::size_t position, d
           height = with_f_number(wide, n).surfaces()[position].semi_diameter;
           break;
         } catch (const Error&) {
-          // rays of this height miss a surface: first order then
+          // rays of this height miss a surface: use first order
         }
       }
       // A parallel beam, or the cone from the object to the rim of the entrance pupil, the image of the stop.

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // FlareSim's .lens files: keys ("focal_length: 50"), a line "surfaces:", then rows of radius, thickness, index,
-// V-number, aperture and number of coating layers. The column of apertures is called semi_ap, but many files have
-// diameters there.
+// V-number, aperture and number of coating layers. The column of apertures is called semi_ap, but contains diameters in
+// many files.
 #include <algorithm>
 #include <array>
 #include <utility>
@@ -46,7 +46,7 @@ void FlaresimReader::comment(std::string_view text) {
 void FlaresimReader::key(int line, std::string_view name, std::string_view value) {
   const auto positive = [&] {
     const auto read = number(value);
-    if (!read || !(*read > 0)) in_.must_be(line, name, in_quotes(value), "a number above 0");
+    if (!read || !(*read > 0)) in_.must_be(line, name, in_quotes(value), "a positive number");
     return *read;
   };
   if (same(name, "name")) {
@@ -120,13 +120,13 @@ void FlaresimReader::read(std::string_view text) {
     }
     const std::size_t colon = line.find(':');
     if (colon == std::string_view::npos) {
-      in_.must_be(lines.number(), "line", in_quotes(line), "\"key: value\", or \"surfaces:\" in front of rows");
+      in_.must_be(lines.number(), "line", in_quotes(line), "\"key: value\", or \"surfaces:\" before rows");
     }
     const std::string_view name = trimmed(line.substr(0, colon));
     rows = same(name, "surfaces");
     if (!rows) key(lines.number(), name, trimmed(line.substr(colon + 1)));
   }
-  if (table_.rows.empty()) throw Error(in_.where() + ": no rows behind \"surfaces:\"; must be at least one");
+  if (table_.rows.empty()) throw Error(in_.where() + ": no rows after \"surfaces:\"; must be at least one");
   table_.likely_apertures = TableApertures::semi_diameters;
   table_.gaps = TableGaps::behind;
   build_table(std::move(table_), in_);

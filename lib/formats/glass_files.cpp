@@ -20,7 +20,7 @@ namespace {
 
 constexpr std::size_t most_warnings = 1000, most_glasses = 100'000;
 
-/// The index of a formula, where it gives a real one in its range.
+/// The index of a glass; nullopt if the formula gives no real index or the wavelength is outside its range.
 std::optional<double> index_at(const Glass& glass, double nm) {
   try {
     return refractive_index(glass, nm);
@@ -29,7 +29,7 @@ std::optional<double> index_at(const Glass& glass, double nm) {
   }
 }
 
-/// 0 if the range of the formula does not reach the F and C lines.
+/// V_d of a glass with this n_d; 0 if the formula does not reach the F and C lines.
 double abbe_number(const Glass& glass, double nd) {
   const double n_f = index_at(glass, spectral_line_nm("F")).value_or(0);
   const double n_c = index_at(glass, spectral_line_nm("C")).value_or(0);
@@ -51,13 +51,13 @@ void GlassReader::warn(int line, std::string_view command, const std::string& me
 }
 
 void GlassReader::refuse(int line, const std::string& found, const std::string& wanted) const {
-  throw Error(where_ + ": line " + std::to_string(line) + ": " + found + ", wanted " + wanted);
+  throw Error(where_ + ": line " + std::to_string(line) + ": " + found + "; must be " + wanted);
 }
 
 double GlassReader::number(int line, std::string_view what, std::string_view word) const {
   const auto value = formats_detail::number(word);
   if (!value) {
-    refuse(line, std::string(what) + " is \"" + std::string(beginning(word, 100)) + "\"", "a finite number");
+    refuse(line, std::string(what) + " = \"" + std::string(beginning(word, 100)) + "\"", "a finite number");
   }
   return *value;
 }
@@ -92,9 +92,9 @@ void GlassReader::add(Glass glass, int line) {
     return;
   }
   if (file_.glasses.size() == most_glasses) {
-    refuse(line, "one glass more", "at most " + std::to_string(most_glasses) + " in a file");
+    refuse(line, "one more glass", "at most " + std::to_string(most_glasses) + " per file");
   }
-  if (!names_.insert(lower(glass.name)).second) warn(line, glass.name, "given before; the first is found by its name");
+  if (!names_.insert(lower(glass.name)).second) warn(line, glass.name, "is given before; the name refers to the first");
   check_against_formula(glass, line, nm);
   file_.glasses.push_back(std::move(glass));
 }
@@ -105,7 +105,7 @@ GlassFile GlassReader::finish() {
                                 ? std::string()
                                 : " (line " + std::to_string(file_.warnings[0].line) + ": " +
                                       file_.warnings[0].command + ": " + file_.warnings[0].message + ")";
-    throw Error(where_ + ": no glass can be used" + why + ", wanted at least one");
+    throw Error(where_ + ": no usable glass" + why + "; must be at least one");
   }
   if (warnings_left_out_ > 0) {
     file_.warnings.push_back({0, "", std::to_string(warnings_left_out_) + " more warnings are left out"});
@@ -131,7 +131,7 @@ GlassFile read_glasses(const std::filesystem::path& file) {
   } else if (looks_like_rii(text)) {
     read_rii(std::move(text), file.stem().string(), reader);
   } else {
-    throw Error(file.string() + ": its first lines are of no glass file, wanted " + wanted);
+    throw Error(file.string() + ": its first lines match no glass format; must be " + wanted);
   }
   return reader.finish();
 }

@@ -16,8 +16,8 @@ namespace {
 
 using glass_detail::bare;
 
-/// True for catalogues of one maker, whose name is a word of the first, maybe cut off: "SUMITA_AUG2011", "NIKON-HIKARI"
-/// and "OLD-OHAR" are of sumita, hikari and ohara. own: "sumita", "schott-1983".
+/// True if a catalogue belongs to the maker of `own` ("sumita", "schott-1983"): the maker's name is one of its words,
+/// possibly truncated. "SUMITA_AUG2011", "NIKON-HIKARI" and "OLD-OHAR" belong to sumita, hikari and ohara.
 bool same_maker(std::string_view catalogue, std::string_view own) {
   constexpr std::string_view separators = "-_ 0123456789";
   const std::string_view maker = own.substr(0, std::min(own.find_first_of(separators), own.size()));
@@ -32,11 +32,11 @@ bool same_maker(std::string_view catalogue, std::string_view own) {
 
 int age(const Glass& glass) { return glass_detail::age(glass.catalogue); }
 
-/// Rank of the maker if nothing else decides: names without a prefix (F2, SK16) are Schott's; CDGM has other glasses of
-/// the same names.
+/// Rank of the maker if nothing else decides: names without a prefix (F2, SK16) belong to Schott; CDGM has different
+/// glasses of the same names.
 int maker(const Glass& glass) { return same_maker(glass.catalogue, "schott") ? 0 : glass.catalogue == "cdgm" ? 2 : 1; }
 
-/// Position of a glass's catalogue in a list; the size of the list if the catalogue is not listed.
+/// Index of a glass's catalogue in a list; the size of the list if it is not listed.
 std::ptrdiff_t place_in(std::span<const std::string> catalogues, const Glass& glass) {
   const auto listed = std::ranges::find_if(
       catalogues, [&](const std::string& c) { return same(c, glass.catalogue) || same_maker(c, glass.catalogue); });
@@ -60,7 +60,7 @@ GlassNames::GlassNames(const GlassCatalogue& glasses) {
 const Glass* GlassNames::find(std::string_view name, std::span<const std::string> catalogues, std::optional<double> nd,
                               Numbers numbers) const {
   const auto rank = [&](const Glass& glass) {
-    double off = nd ? std::round(std::abs(glass.nd - *nd) / 1e-6) : 0;  // within its digits
+    double off = nd ? std::round(std::abs(glass.nd - *nd) / 1e-6) : 0;  // to the digits of the file
     constexpr double another_glass = 2e-3 / 1e-6;
     if (numbers == Numbers::leftovers) off = std::min(off, another_glass);
     const std::ptrdiff_t place = place_in(catalogues, glass);

@@ -11,19 +11,19 @@
 
 namespace petzval::formats_detail {
 
-/// Meaning of n_d and V_d that a file states after the name of a glass.
+/// Meaning of the n_d and V_d that a file states after the name of a glass.
 enum class Numbers {
-  stated,    ///< they tell glasses of one name apart, and count where they differ from the glass
-  leftovers  ///< the name alone counts
+  stated,    ///< distinguish glasses of one name, and override the glass if different
+  leftovers  ///< only the name counts
 };
 
-/// For messages: "F2 (schott, n_d 1.62004, V_d 36.37)".
+/// Text for messages: "F2 (schott, n_d 1.62004, V_d 36.37)".
 std::string describe(const Glass& glass);
 
-/// True if a list names the maker of a glass: "SCHOTT" lists schott, schott-legacy, schott-1983.
+/// True if a list names the maker of a glass: "SCHOTT" covers schott, schott-legacy, schott-1983.
 bool is_listed(std::span<const std::string> catalogues, const Glass& glass);
 
-/// Glasses by the names that files of other programs give them: dashes, blanks and case do not count.
+/// Looks up glasses by the names in files of other programs: dashes, blanks and case are ignored.
 class GlassNames {
  public:
   /// The glasses must outlive the object.
@@ -31,20 +31,21 @@ class GlassNames {
 
   /// Finds the glass for a name in a file.
   ///
-  /// @param catalogues  catalogues that the file names; the first comes first, and newer catalogues of a maker come
-  ///                    before older ones
-  /// @param nd          n_d after the name; if `numbers` are leftovers, used only between catalogues outside
-  ///                    `catalogues`
-  /// @return            the glass; null if no table has the name
+  /// @param catalogues catalogues that the file names, in order of preference; newer catalogues of a maker come before
+  ///   older ones
+  /// @param nd n_d after the name; if `numbers` are leftovers, used only to choose between catalogues outside
+  ///   `catalogues`
+  /// @return the glass; null if no table has the name
   const Glass* find(std::string_view name, std::span<const std::string> catalogues, std::optional<double> nd,
                     Numbers numbers) const;
 
-  /// For messages: glasses of the name of `found`, in catalogues as new, that differ by more than 1e-4 in n_d; empty if
-  /// the file names the catalogue or states the n_d of `found`.
+  /// Text for messages: glasses with the name of `found` in equally new catalogues that differ by more than 1e-4 in
+  /// n_d.
+  /// Empty if the file names the catalogue or states the n_d of `found`.
   std::string others(const Glass& found, std::span<const std::string> catalogues, std::optional<double> nd) const;
 
  private:
-  std::multimap<std::string, const Glass*> by_name_;  ///< by bare name, in the order of the catalogue
+  std::multimap<std::string, const Glass*> by_name_;  ///< by bare name, in catalogue order
 };
 
 }  // namespace petzval::formats_detail

@@ -10,27 +10,30 @@
 
 namespace petzval::formats_detail {
 
-/// The glasses of a file on their way: each is checked against what the file prints of it.
+/// Collects the glasses of a file and checks each against the n_d and V_d printed in the file.
 class GlassReader {
  public:
-  /// where: the file's name, for messages.
+  /// @param where file name, for messages
   explicit GlassReader(std::string where) : where_(std::move(where)) {}
 
-  /// After a thousand only their number is kept.
+  /// Adds a warning; after a thousand only their number is kept.
   void warn(int line, std::string_view command, const std::string& message);
-  /// Throws Error: "file: line 7: CD is "1,5", wanted a finite number".
+  /// Throws Error: "file: line 7: CD = "1,5"; must be a finite number".
   [[noreturn]] void refuse(int line, const std::string& found, const std::string& wanted) const;
-  /// The word as a number; refuses what is none, or not finite. what: its name, for the message.
+  /// Converts a word to a number.
+  /// @param what name of the number, for the message
+  /// @throws Error if the word is not a finite number
   double number(int line, std::string_view what, std::string_view word) const;
 
-  /// Adds a glass, or leaves it out with a warning where its range or its index is none. nd of 1 or less means that the
-  /// file prints none: it is computed.
+  /// Adds a glass, or leaves it out with a warning if its range is empty or its index is not real. If nd is 1 or less
+  /// (not printed in the file), n_d is computed.
   void add(Glass glass, int line);
-  /// Refuses a file without a glass.
+  /// Returns the result.
+  /// @throws Error if the file has no usable glass
   GlassFile finish();
 
  private:
-  /// nm: the d line, or the end of the range next to it.
+  /// @param nm the d line, or the nearest end of the range
   void check_against_formula(Glass& glass, int line, double nm);
 
   std::string where_;
@@ -39,11 +42,14 @@ class GlassReader {
   std::size_t warnings_left_out_ = 0;
 };
 
-/// Zemax catalogues. catalogue: the name that its glasses get.
+/// Zemax catalogues.
+/// @param catalogue catalogue name for the glasses
 bool looks_like_agf(std::string_view text);
 void read_agf(std::string_view text, const std::string& catalogue, GlassReader& reader);
 
-/// Pages of refractiveindex.info. name: of the glass. Throws Error if the library was built without yaml-cpp.
+/// Pages of refractiveindex.info.
+/// @param name name for the glass
+/// @throws Error if the library was built without yaml-cpp
 void read_rii(std::string text, const std::string& name, GlassReader& reader);
 
 }  // namespace petzval::formats_detail

@@ -21,7 +21,7 @@ using glass_detail::same_bare;
 
 constexpr std::size_t most_warnings = 1000;
 
-/// Names under which other programs know materials of the tables.
+/// Names of materials in other programs, and in the tables.
 constexpr std::array<std::pair<std::string_view, std::string_view>, 12> other_names = {{
     {"SILICA", "F_SILICA"},
     {"FUSEDSILICA", "F_SILICA"},
@@ -59,7 +59,7 @@ void Import::refuse(int line, std::string_view command, const std::string& found
   std::string text = where_;
   if (line > 0) text += ": line " + std::to_string(line);
   if (!command.empty()) text += ": " + std::string(beginning(command, 60));
-  throw Error(text + " is " + found + ", wanted " + wanted);
+  throw Error(text + " = " + found + "; must be " + wanted);
 }
 
 void Import::must_be(int line, std::string_view parameter, const std::string& value, const std::string& rule) const {
@@ -100,7 +100,7 @@ std::optional<double> index_at(const Glass& glass, double nm) {
 
 namespace {
 
-/// The medium of a glass: n_d and V_d of its formula.
+/// The medium of a glass, with n_d and V_d from its formula.
 Medium medium_of(const Glass& glass) {
   Medium medium{.glass = glass.name, .catalogue = glass.catalogue, .nd = index_at(glass, d_line_nm)};
   const auto n_f = index_at(glass, spectral_line_nm("F")), n_c = index_at(glass, spectral_line_nm("C"));
@@ -111,7 +111,7 @@ Medium medium_of(const Glass& glass) {
   return medium;
 }
 
-// n_d of glasses of one name that are two glasses; half a unit of the fourth decimal.
+// Difference of n_d that separates two glasses of one name; half a unit of the fourth decimal.
 constexpr double another_glass = 0.01, rounded_index = 5e-5;
 
 }  // namespace
@@ -130,7 +130,7 @@ Medium Import::glass(int line, std::string_view name, std::span<const std::strin
         std::ranges::find_if(other_names, [&](const auto& entry) { return same_bare(entry.first, name); });
     if (other != other_names.end()) found = names().find(other->second, catalogues, nd, numbers);
   }
-  // "L-TIM28_MOLD" is a moulded L-TIM28, "NBK7_SCHOTT" an N-BK7.
+  // "L-TIM28_MOLD" is a moulded L-TIM28, "NBK7_SCHOTT" is an N-BK7.
   bool names_its_maker = false;
   if (const std::size_t tail = name.find_last_of('_'); !found && tail != std::string_view::npos && tail > 0) {
     const std::string maker_name(name.substr(tail + 1));
@@ -141,7 +141,7 @@ Medium Import::glass(int line, std::string_view name, std::span<const std::strin
   if (found && numbers == Numbers::stated && nd && std::abs(found->nd - *nd) > another_glass) {
     warn(line, name,
          "has n_d " + to_text(*nd, 6) + " in the file; " + describe(*found) +
-             " has another, so the file's n_d and V_d are taken");
+             " differs, so the file's n_d and V_d are taken");
     return {.glass = std::string(name), .nd = *nd, .vd = vd};
   }
   if (found) {
@@ -155,7 +155,7 @@ Medium Import::glass(int line, std::string_view name, std::span<const std::strin
       warn(line, name, "is in several catalogues; " + describe(*found) + " is taken, not " + others);
     }
     Medium medium = medium_of(*found);
-    // Other melts and moulded glasses have their own index.
+    // Other melts and moulded glasses have different indices.
     if (numbers == Numbers::stated && nd && medium.nd && std::abs(*medium.nd - *nd) > rounded_index) medium.nd = nd;
     return medium;
   }
@@ -171,9 +171,9 @@ Medium Import::glass(int line, std::string_view name, std::span<const std::strin
   }
 
   const std::string alike = glass_detail::similar_names(glasses(), name);
-  refuse(line, name, "in no glass table and has no index in the file",
+  refuse(line, name, "a name in no glass table, without an index in the file",
          "a glass of ReadOptions::glasses (programs: --glasses FILE, an .agf or .yml)" +
-             (alike.empty() ? std::string() : "; names like it: " + alike));
+             (alike.empty() ? std::string() : "; similar names: " + alike));
 }
 
 SurfaceChange& change_of(Configuration& configuration, int surface) {

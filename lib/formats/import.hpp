@@ -16,39 +16,41 @@
 
 namespace petzval::formats_detail {
 
-/// A lens in a file of another program, as data: its prescription, the requests of the file, and warnings about
-/// assumptions. Filled by a reader, for complete().
+/// The data of a lens file of another program: its prescription, its requests, and warnings about assumptions. Filled
+/// by a reader for complete().
 class Import {
  public:
-  /// @param where    the file's name, for messages
-  /// @param options  a null catalogue means glass_tables(), loaded for the first glass
+  /// @param where file name, for messages
+  /// @param options a null catalogue means glass_tables(), loaded for the first glass
   Import(std::string where, std::string_view format, const ReadOptions& options);
 
   Prescription lens;  ///< `imported` is set
   ImportRequests requests;
 
-  /// Takes note of what the file does not say, or of what is left out. After a thousand only their number is kept.
+  /// Adds a warning about an assumption or omitted data; after a thousand only their number is kept.
   void warn(int line, std::string_view command, const std::string& message);
-  /// Throws Error: "file: line 7: CURV is found, wanted wanted".
+  /// Throws Error: "file: line 7: CURV = found; must be wanted".
   [[noreturn]] void refuse(int line, std::string_view command, const std::string& found,
                            const std::string& wanted) const;
   /// Throws Error: "file:7: parameter = value; must be rule".
   [[noreturn]] void must_be(int line, std::string_view parameter, const std::string& value,
                             const std::string& rule) const;
-  /// Throws Error if a file has more than 10,000 items. ends: more are allowed for object and image surfaces.
+  /// Throws Error if a file has more than 10,000 items.
+  /// @param ends additional items allowed, for object and image surfaces
   void limit(std::size_t count, std::string_view what = "surfaces", std::size_t ends = 0) const;
-  /// Keeps a note of the file: the first thousand, up to 4,096 bytes each.
+  /// Keeps a note of the file: at most a thousand notes of up to 4,096 bytes each.
   void note(std::string_view text);
-  /// The word as a number; refuses what is none, also one with a decimal comma, beyond double or not a number.
+  /// Converts a word to a number.
+  /// @throws Error if the word is not a finite number within double, or has a decimal comma
   double number(int line, std::string_view command, std::string_view word) const;
 
-  /// A medium by the name in a file: "N-BK7", "NBK7" (dashes and blanks left out), "BK7_SCHOTT". n_d and V_d come from
-  /// the formula of the glass, and are absent if the formula does not reach the d, F and C lines. Warns if a glass of
-  /// another catalogue or name is taken.
+  /// Finds a medium by its name in a file: "N-BK7", "NBK7" (dashes and blanks are ignored), "BK7_SCHOTT".
+  /// n_d and V_d come from the formula of the glass, and are absent if the formula does not reach the d, F and C lines.
+  /// Warns if a glass of another catalogue or name is used.
   ///
-  /// @param catalogues  catalogues that the file names, the first comes first; may be empty
-  /// @param nd, vd      numbers after the name: taken if no table has the name, and as `numbers` says
-  /// @throws Error      with similar names for a glass in no table without an index
+  /// @param catalogues catalogues that the file names, in order of preference; may be empty
+  /// @param nd, vd numbers after the name: used if no table has the name, and as `numbers` says
+  /// @throws Error, with similar names, if no table has the glass and the file states no index
   Medium glass(int line, std::string_view name, std::span<const std::string> catalogues, std::optional<double> nd,
                std::optional<double> vd, Numbers numbers = Numbers::stated);
   const GlassCatalogue& glasses();
@@ -56,9 +58,9 @@ class Import {
   /// ReadOptions::entry.
   const std::string& entry() const noexcept { return entry_; }
 
-  /// The glasses if one was looked up, or the options name them; else null, which stands for glass_tables().
+  /// The glasses if a glass was looked up or the options name them; otherwise null, which stands for glass_tables().
   const GlassCatalogue* loaded_glasses() const noexcept { return glasses_; }
-  /// Adds a warning with the number of those beyond a thousand.
+  /// Adds a warning with the number of warnings beyond a thousand.
   void count_left_out_warnings();
 
  private:
@@ -66,17 +68,18 @@ class Import {
 
   std::string where_, entry_;
   const GlassCatalogue* glasses_;
-  std::optional<GlassNames> names_;  ///< names in glasses_; filled when the first glass is looked up
+  std::optional<GlassNames> names_;  ///< names in glasses_; filled on the first look-up
   std::size_t left_out_ = 0;
 };
 
 /// The index of a glass; nullopt if the wavelength is outside its range.
 std::optional<double> index_at(const Glass& glass, double nm);
 
-/// What a configuration changes of a surface: nothing yet, if it was not asked for before.
+/// The change of a surface in a configuration; added empty if absent.
 SurfaceChange& change_of(Configuration& configuration, int surface);
 
-/// nd and vd of six digits and more: "517642", "517.642", "620410.603236": n_d - 1 and V_d without the point.
+/// Medium of a code of six or more digits, n_d - 1 and V_d without the point: "517642", "517.642", "620410.603236".
+/// nullopt if the text is not a code.
 std::optional<Medium> medium_of_code(std::string_view code);
 
 }  // namespace petzval::formats_detail

@@ -8,26 +8,26 @@
 
 namespace petzval::formats_detail {
 
-/// A thickness that a ray of the axis determines.
+/// A thickness that is determined by a marginal ray.
 struct ThicknessSolve {
   int line = 0;
   std::string command;
-  std::size_t surface = 0;              ///< in front of the thickness
+  std::size_t surface = 0;              ///< surface before the thickness
   double height = 0;                    ///< ray height on the next surface (mm)
   std::optional<double> beam_radius{};  ///< ray height on the first surface (mm); needed if `height` is not 0
-  double zone = 0;                      ///< fraction of the radius of the pupil, for an exact ray; 0: to first order
+  double zone = 0;                      ///< fraction of the pupil radius, for an exact ray; 0 for first order
   double offset = 0;                    ///< added to the solution (mm)
-  bool is_stated = true;                ///< false: the file leaves the thickness out
-  bool is_taken = false;                ///< true: the solution replaces a thickness that the file states
+  bool is_stated = true;                ///< false if the file omits the thickness
+  bool is_taken = false;                ///< true if the solution replaces a stated thickness
 };
 
-/// A film without a position: it is put at the focus of light from infinity.
+/// A film without a position, to be put at the focus of light from infinity.
 struct FilmAtFocus {
   int line = 0;
   std::string command;
   std::string reason;       ///< for the warning
-  bool is_needed = false;   ///< true: a lens without such a focus is refused
-  bool in_the_rows = true;  ///< false: only `configurations` have no position of the film
+  bool is_needed = false;   ///< true if a lens without this focus is refused
+  bool in_the_rows = true;  ///< false if only `configurations` lack the film position
   std::vector<std::size_t> configurations{};
 };
 
@@ -36,43 +36,43 @@ struct StatedFocalLength {
   int line = 0;
   std::string command;
   double mm = 0;
-  bool is_default = false;  ///< the program writes the number for a new lens: it may mean nothing
+  bool is_default = false;  ///< true if the program writes this number for every new lens
 };
 
-/// A column of apertures that may be diameters or semi-diameters. The rows have half of the numbers.
+/// A column of apertures that may be diameters or semi-diameters. The rows contain half of the numbers.
 struct UnknownApertures {
   int line = 0;
-  bool likely_diameters = true;  ///< the meaning if the f-number does not tell
+  bool likely_diameters = true;  ///< the meaning if the f-number does not decide
 };
 
-/// A configuration of a list of positions.
+/// A configuration in a list of positions.
 struct Position {
-  std::optional<double> magnification{};  ///< gives the subject distance
-  bool is_named = false;                  ///< true: the name is from the file
+  std::optional<double> magnification{};  ///< determines the subject distance
+  bool is_named = false;                  ///< true if the name is from the file
 };
 
-/// Positions for which the file says neither the names nor which of them focus which zoom position.
+/// Positions for which the file states neither names nor the zoom position that they focus.
 struct UnnamedPositions {
   int line = 0;
-  std::vector<Position> list;  ///< for each configuration
+  std::vector<Position> list;  ///< one per configuration
 };
 
-/// Requests of a file beyond its prescription, as data: complete() carries them out.
+/// Requests of a file beyond its prescription; complete() carries them out.
 struct ImportRequests {
-  std::vector<int> surface_lines;  ///< lines of the surfaces in the file; empty: unknown
-  /// True if the design's aperture is a rounded number that describes the lens. It launches no beam: the rim of the
-  /// stop, if the file has one, is the size of the stop.
+  std::vector<int> surface_lines;  ///< lines of the surfaces in the file; empty if unknown
+  /// True if the design's aperture is a rounded number that describes the lens. It then defines no beam, and the rim of
+  /// the stop, if given in the file, is the size of the stop.
   bool nominal_aperture = false;
-  /// Value of the design's aperture by configuration; nullopt or too short if it does not differ from the design.
+  /// Value of the design's aperture per configuration; nullopt or too short if equal to the design.
   std::vector<std::optional<double>> position_apertures;
-  bool last_plane_may_be_film = false;  ///< the last surface is the film if it is a plane in the focus
-  bool plane_may_be_stop = false;       ///< without a marked stop, a plane in one medium is the stop
+  bool last_plane_may_be_film = false;  ///< a plane in focus, if last, is the film
+  bool plane_may_be_stop = false;       ///< a plane in one medium is the stop if none is marked
   bool names_missing_apertures = false;
   std::optional<UnknownApertures> unknown_apertures;
   std::vector<ThicknessSolve> solves;  ///< from the first surface to the last
   std::optional<FilmAtFocus> film_at_focus;
   std::optional<StatedFocalLength> focal_length;
-  int telecentric_line = 0;  ///< line that asks for a telecentric object space; 0: no line
+  int telecentric_line = 0;  ///< line that asks for a telecentric object space; 0 if absent
   std::string telecentric_command;
   std::optional<UnnamedPositions> positions;
 };

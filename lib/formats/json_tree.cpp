@@ -17,7 +17,7 @@ namespace {
 constexpr std::size_t largest_text = std::size_t{16} << 20;
 constexpr std::size_t deepest = 64;
 
-/// Bare words that are no JSON, in quotes.
+/// The text with bare words that are not JSON (Infinity, NaN) in quotes.
 std::string with_quoted_numbers(std::string_view text) {
   std::string result;
   result.reserve(text.size() + text.size() / 16);
@@ -25,7 +25,7 @@ std::string with_quoted_numbers(std::string_view text) {
   for (std::size_t i = 0; i < text.size(); ++i) {
     if (in_string) {
       if (text[i] == '\\' && i + 1 < text.size()) {
-        result.push_back(text[i++]);  // what it escapes ends no string
+        result.push_back(text[i++]);  // an escaped character ends no string
       } else {
         in_string = text[i] != '"';
       }
@@ -47,10 +47,10 @@ std::string with_quoted_numbers(std::string_view text) {
   return result;
 }
 
-/// Receives the events of nlohmann's parser, and makes a tree of them where its owner can empty it.
+/// Receives the events of nlohmann's parser and builds a tree that its owner can empty.
 class Builder {
  public:
-  /// tokens: of the text as it is in the file.
+  /// @param text the text as in the file, for positions
   Builder(nlohmann::json& root, const std::string& where, std::string_view text)
       : next_(&root), where_(where), tokens_(text) {}
 
@@ -107,13 +107,13 @@ class Builder {
   }
 
   nlohmann::json* next_;               ///< the root, then the member whose key was read last
-  std::vector<nlohmann::json*> open_;  ///< an entry moves only while none of its own is open
+  std::vector<nlohmann::json*> open_;  ///< stable: an entry moves only while its own entries are closed
   const std::string& where_;
   io_detail::JsonTokens tokens_;
 };
 
-/// From the leaves on: the destructor of a list or object that has entries allocates, and ends the program where there
-/// is no memory.
+/// Empties a value from the leaves up: the destructor of a non-empty list or object allocates, and terminates the
+/// program if memory runs out.
 void empty(nlohmann::json& value) noexcept {
   if (!value.is_structured()) return;
   for (nlohmann::json& entry : value) empty(entry);
@@ -122,7 +122,7 @@ void empty(nlohmann::json& value) noexcept {
 
 }  // namespace
 
-// The first constructor is done before the text is read, so that whatever is thrown then finds the destructor.
+// Delegates to a constructor that completes before the text is read, so that the destructor runs if reading throws.
 JsonTree::JsonTree(std::string_view text, std::string where) : JsonTree() {
   text_ = text, where_ = std::move(where);
   if (text.size() > largest_text) {
@@ -136,7 +136,7 @@ JsonTree::JsonTree(std::string_view text, std::string where) : JsonTree() {
 JsonTree::~JsonTree() { empty(root_); }
 
 void JsonTree::refuse(const std::string& path, const std::string& value, const std::string& rule) const {
-  // Paths begin with "file". In a database they begin with the key of the lens.
+  // Paths begin with "file", or with the key of the lens in a database.
   const std::string_view in_text = path == "file"              ? std::string_view()
                                    : path.starts_with("file.") ? std::string_view(path).substr(5)
                                                                : std::string_view(path);

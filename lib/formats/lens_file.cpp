@@ -22,7 +22,7 @@ constexpr const char* wanted =
     "a lens: petzval JSON, Zemax .zmx, CODE V .seq, OSLO .len, FlareSim .lens, an OpticalBench table, a table of "
     "surfaces, lentil or optiland JSON";
 
-/// In the order in which they are tried: each is sure of what it takes.
+/// The formats in the order in which they are tried; each accepts only files that it recognises with certainty.
 constexpr std::array formats{
     Format{"zemax", is_zemax, read_zemax},
     Format{"oslo", is_oslo, read_oslo},
@@ -34,13 +34,13 @@ constexpr std::array formats{
     Format{"table", is_table, read_table},
 };
 
-/// A line of dashes and colons, which rules the columns of BEAM FOUR.
+/// True for a line of dashes and colons, the ruler of columns in BEAM FOUR.
 bool is_ruler(std::string_view line) {
   return line.size() >= 8 && line.find(':') != std::string_view::npos &&
          line.find_first_not_of("-_: \t") == std::string_view::npos;
 }
 
-/// Throws Error for the lens of a program that has no reader here, with the format in which it exports lenses.
+/// Throws Error for lenses of programs that cannot be read, and names the format in which the program can export them.
 void refuse_other_programs(std::string_view text, const std::string& where) {
   const std::string_view start = trimmed(text);
   if (start.starts_with('{') && text.find("\"optical_model\"") != std::string_view::npos) {
@@ -62,7 +62,7 @@ void refuse_warnings(const Prescription& lens, const std::string& where) {
   if (!lens.imported || lens.imported->warnings.empty()) return;
   const ImportWarning& first = lens.imported->warnings.front();
   throw Error(where + (first.line > 0 ? ": line " + std::to_string(first.line) : "") + ": " + first.command + ": " +
-              first.message + "; wanted a file without assumptions (strict)");
+              first.message + "; must be a file without assumptions (strict)");
 }
 
 }  // namespace
@@ -85,7 +85,7 @@ Prescription parse_lens(std::string bytes, const std::string& where, const ReadO
     return lens;
   }
   if (trimmed(text).empty()) throw Error(where + ": is empty; must be " + wanted);
-  // Most likely a damaged file of the library's own: its messages name line and column.
+  // Most likely a damaged file of this library: its messages name line and column.
   if (const std::string_view start = trimmed(text); start.starts_with('{')) {
     return parse_prescription(text, where);
   }

@@ -30,13 +30,13 @@ std::string title_of(const nlohmann::json& lens) {
   return title;
 }
 
-/// The lens of a database that a program asks for.
+/// A lens of a database and its key.
 struct Entry {
   std::string key;
   const nlohmann::json* lens = nullptr;
 };
 
-/// The lenses of a database with a key. Without such a key: the lenses with this name.
+/// The lenses of a database with a key; if there is no such key, the lenses with this name.
 std::vector<Entry> entries_of(const nlohmann::json& database, const std::string& word) {
   std::vector<Entry> by_key, by_name;
   for (const auto& [key, lens] : database.items()) {
@@ -46,7 +46,7 @@ std::vector<Entry> entries_of(const nlohmann::json& database, const std::string&
   return by_key.empty() ? by_name : by_key;
 }
 
-/// "1 (angenieux double-gauss 1953), 2 (...)", as long as messages may be.
+/// "1 (angenieux double-gauss 1953), 2 (...)", limited to the length of messages.
 std::string listed(const nlohmann::json& database) {
   constexpr std::size_t longest = 4000;
   std::string list;
@@ -73,7 +73,7 @@ class LentilReader {
   Import& in_;
 };
 
-/// One number, or three: of the short, the middle and the long end of a zoom lens.
+/// Reads one number, or three: for the short, middle and long end of a zoom lens.
 void LentilReader::thickness(const JsonObject& e, SurfaceRow& row) {
   const nlohmann::json* value = e.find("thickness");
   if (!value || !value->is_array()) {
@@ -82,7 +82,7 @@ void LentilReader::thickness(const JsonObject& e, SurfaceRow& row) {
   }
   const bool three =
       value->size() == 3 && (*value)[0].is_number() && (*value)[1].is_number() && (*value)[2].is_number();
-  if (!three) e.refuse("thickness", shown(*value), "a number or three");
+  if (!three) e.refuse("thickness", shown(*value), "a number or a list of three numbers");
   row.thickness = (*value)[0].get<double>();
   auto& list = in_.lens.configurations;
   if (list.empty()) {
@@ -141,7 +141,7 @@ void LentilReader::lens(const JsonObject& o) {
   if (!elements || !elements->is_array()) o.refuse(key, elements ? "no list" : "missing", "a list of surfaces");
   in_.limit(elements->size());
   if (has_adjusted && o.find("optical-elements-patent")) {
-    in_.warn(0, "optical-elements-patent", "is left out beside optical-elements-adjusted");
+    in_.warn(0, "optical-elements-patent", "is left out, as optical-elements-adjusted is given");
   }
   for (std::size_t i = 0; i < elements->size(); ++i) {
     const nlohmann::json& e = (*elements)[i];
@@ -167,7 +167,7 @@ void LentilReader::lens(const JsonObject& o) {
                  "patent-location", "polynomial-optics", "implementation-version"});
 }
 
-/// The lens of a database that the options name; the only lens if the database has a single lens.
+/// The lens of a database named by the options; the only lens if the database has a single lens.
 Entry LentilReader::choose(const nlohmann::json& database) const {
   const std::string& wanted = in_.entry();
   const auto found = wanted.empty() ? std::vector<Entry>() : entries_of(database, wanted);

@@ -20,18 +20,18 @@ namespace {
 using io_detail::json_number;
 using io_detail::json_text;
 
-constexpr double metres = 1e-3;  // of mm
+constexpr double metres = 1e-3;  // per mm
 
-/// An object on several lines, indented, or on one.
+/// A JSON object, written on one line or on several indented lines.
 class Object {
  public:
   void add(std::string_view key, const std::string& json) { members_.emplace_back(key, json); }
   void add(std::string_view key, double value) { add(key, json_number(value)); }
-  /// Unless it is empty. Texts of the standard have at most 1023 bytes.
+  /// Adds a text unless it is empty. Texts of the standard have at most 1023 bytes.
   void add_text(std::string_view key, const std::string& text) {
     if (text.size() > 1023) {
       throw Error("OpenTrackIO: " + std::string(key) + " has " + std::to_string(text.size()) +
-                  " bytes, wanted 1023 or fewer");
+                  " bytes; must be at most 1023");
     }
     if (!text.empty()) add(key, json_text(text));
   }
@@ -58,7 +58,7 @@ std::string size_of(double width, double height, bool whole) {
   return object.on_one_line();
 }
 
-/// OpenLensIO's order, for radii in mm.
+/// The coefficients in the order of OpenLensIO, for radii in mm.
 std::string radial(const BrownConrady& fit) {
   const double f2 = fit.pinhole.focal_length_mm.y * fit.pinhole.focal_length_mm.y;
   std::string list;

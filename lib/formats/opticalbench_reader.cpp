@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// The tables of Photons to Photos: sections of lines, whose cells tabs separate. One column of [variable distances] is
-// one position of the lens. Sources of the form: the documentation of Beam42's LensTool2, and the grammar that the
-// lens editor of the same tables prints.
+// The tables of Photons to Photos: sections of lines whose cells are separated by tabs. Each column of [variable
+// distances] is one position of the lens. Sources of the form: the documentation of Beam42's LensTool2, and the grammar
+// printed by the lens editor of the same tables.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -23,8 +23,8 @@ namespace {
 
 constexpr std::size_t most_columns = 100;
 
-/// The cells of a line, without empty cells at its end; at most one cell more than allowed. A comment behind "//" ends
-/// the line, unless "//" is part of a word ("https://...").
+/// The cells of a line without empty cells at its end, at most one more than allowed. A comment after "//" ends the
+/// line, unless "//" is part of a word ("https://...").
 std::vector<std::string_view> cells_of(std::string_view line) {
   for (std::size_t at = line.find("//"); at != std::string_view::npos; at = line.find("//", at + 1)) {
     if (at > 0 && line[at - 1] != ' ' && line[at - 1] != '\t') continue;
@@ -44,20 +44,20 @@ std::vector<std::string_view> cells_of(std::string_view line) {
   return cells;
 }
 
-/// A row of [variable distances]: one value for each position.
+/// A row of [variable distances]: one value per position.
 struct Variable {
   int line = 0;
   std::vector<std::string> values;
   bool used = false;
 };
 
-/// A length that the table states, or names; without either it is unknown.
+/// A length as a number or as the name of a variable; unknown if both are absent.
 struct Length {
   std::optional<double> number;
   Variable* variable = nullptr;
 };
 
-/// A row of [lens data], and which of its lengths vary.
+/// A row of [lens data] with its lengths, which may vary.
 struct Row {
   int line = 0;
   std::string id;
@@ -97,12 +97,12 @@ class OpticalBenchReader {
   std::map<std::string, Variable, std::less<>> variables_;
   std::map<std::string, std::pair<int, std::string>> constants_;
   std::vector<Row> rows_;
-  std::map<std::string, std::size_t> row_of_;  ///< by the name in the first column
+  std::map<std::string, std::size_t> row_of_;  ///< row index by the name in the first column
   std::set<std::size_t> aspheres_;
   std::vector<std::string> scenarios_, names_;
 };
 
-/// What a table calls a row of numbers about a position, none of them a distance of the lens.
+/// Names of rows that state a property of each position rather than a distance of the lens.
 constexpr std::array<std::string_view, 9> quantities = {
     "Focal Length", "F-Number", "Angle of View", "Image Height",      "Magnification",
     "NA",           "WD",       "Total Length",  "Aperture Diameter",
@@ -119,11 +119,11 @@ void OpticalBenchReader::read(std::string_view text) {
     }
     const auto cells = cells_of(line);
     if (cells.size() > most_columns + 1) {
-      in_.refuse(lines.number(), "line", "of more than " + std::to_string(most_columns + 1) + " columns", "fewer");
+      in_.refuse(lines.number(), "line", "more than " + std::to_string(most_columns + 1) + " columns", "fewer");
     }
     take(lines.number(), cells);
   }
-  if (rows_.empty()) throw Error(in_.where() + ": no rows of [lens data], wanted at least one surface");
+  if (rows_.empty()) throw Error(in_.where() + ": no rows of [lens data]; must be at least one surface");
   name_variables();
   const auto columns = defined_columns();
   place(columns.front());
@@ -139,7 +139,7 @@ void OpticalBenchReader::take(int line, const Cells& cells) {
   if (section_ == "descriptive data" || section_ == "notes" || section_ == "patent info") return note(cells);
   if (section_ == "variable distances") {
     Variable& variable = variables_[std::string(cells[0])];
-    if (variable.line > 0) in_.refuse(line, cells[0], "given twice", "one row of it");
+    if (variable.line > 0) in_.refuse(line, cells[0], "a second row", "a single row");
     variable.line = line;
     variable.values.assign(cells.begin() + 1, cells.end());
   } else if (section_ == "constants") {
@@ -182,14 +182,14 @@ void OpticalBenchReader::take_surface(int line, const Cells& cells) {
   const auto cell = [&](std::size_t i) { return i < cells.size() ? cells[i] : std::string_view(); };
   if (cells.size() < 3) {
     in_.refuse(line, "row", std::to_string(cells.size()) + " columns",
-               "a name, radius, thickness, index, diameter and V-number, with tabs between them");
+               "a name, radius, thickness, index, diameter and V-number, separated by tabs");
   }
   in_.limit(rows_.size() + 1);
   SurfaceRow surface;
   const std::string_view radius = cell(1);
   if (radius == "AS") {
     surface.stop = std::ranges::none_of(in_.lens.surfaces, [](const SurfaceRow& s) { return s.stop; });
-    if (!surface.stop) in_.warn(line, "AS", "a second aperture stop only limits rays; the first one is the stop");
+    if (!surface.stop) in_.warn(line, "AS", "a second aperture stop only limits rays; the first is the stop");
   } else if (radius == "FS") {
     surface.comment = "field stop";
   } else if (radius == "CG") {
@@ -200,7 +200,7 @@ void OpticalBenchReader::take_surface(int line, const Cells& cells) {
   std::optional<double> nd, vd;
   if (!cell(3).empty()) nd = in_.number(line, "index", cell(3));
   if (!cell(5).empty()) vd = in_.number(line, "V-number", cell(5));
-  if (nd && *nd < 0) in_.refuse(line, "index", to_text(*nd), "one above 0; mirrors are not known in these tables");
+  if (nd && *nd < 0) in_.refuse(line, "index", to_text(*nd), "positive; these tables have no mirrors");
   if (nd && *nd == 0) nd.reset();
   if (vd && *vd <= 0) vd.reset();
   if (!cell(6).empty()) {
@@ -211,12 +211,12 @@ void OpticalBenchReader::take_surface(int line, const Cells& cells) {
   }
   std::string id(cell(0));
   if (!row_of_.emplace(id, rows_.size()).second)
-    in_.refuse(line, "row", "named " + id + " as one before", "one name each");
+    in_.refuse(line, "row", "name " + id + " of an earlier row", "a unique name");
   rows_.push_back({line, std::move(id), length(line, "thickness", cell(2)), length(line, "diameter", cell(4))});
   in_.lens.surfaces.push_back(std::move(surface));
 }
 
-/// How many odd powers, from the third on, stand between the even ones.
+/// Number of odd powers, from the third on, between the even powers.
 int OpticalBenchReader::odd_count() const {
   const auto found = constants_.find("AsphericalOddCount");
   if (found == constants_.end()) return 0;
@@ -231,16 +231,16 @@ int OpticalBenchReader::odd_count() const {
 void OpticalBenchReader::take_asphere(int line, const Cells& cells) {
   const auto named = row_of_.find(std::string(cells[0]));
   if (named == row_of_.end()) {
-    in_.refuse(line, "asphere", "of surface \"" + std::string(beginning(cells[0], 60)) + "\"", "one of [lens data]");
+    in_.refuse(line, "asphere", "surface \"" + std::string(beginning(cells[0], 60)) + "\"", "a surface of [lens data]");
   }
   if (cells.size() < 3)
-    in_.refuse(line, "asphere", std::to_string(cells.size()) + " columns", "its name, radius and conic");
-  if (!aspheres_.insert(named->second).second) in_.refuse(line, "asphere", "given twice", "one row of it");
+    in_.refuse(line, "asphere", std::to_string(cells.size()) + " columns", "name, radius and conic");
+  if (!aspheres_.insert(named->second).second) in_.refuse(line, "asphere", "a second row", "a single row");
   SurfaceRow& surface = in_.lens.surfaces[named->second];
   const double radius = is_infinite(cells[1]) ? 0 : in_.number(line, "radius", cells[1]);
   if (std::abs(radius - surface.radius) > 1e-3 * std::abs(surface.radius)) {
     in_.warn(line, cells[0],
-             "its asphere has a radius of " + to_text(radius) + ", [lens data] one of " + to_text(surface.radius) +
+             "its asphere has a radius of " + to_text(radius) + ", [lens data] states " + to_text(surface.radius) +
                  ", which is taken");
   }
   surface.conic = cells[2].empty() ? 0 : in_.number(line, "conic", cells[2]);
@@ -249,14 +249,15 @@ void OpticalBenchReader::take_asphere(int line, const Cells& cells) {
   for (std::size_t i = 3; i < cells.size(); ++i) {
     const double coefficient = cells[i].empty() ? 0 : in_.number(line, "coefficient", cells[i]);
     if (coefficient != 0) {
-      if (order > 40) in_.refuse(line, "coefficient", "of order " + std::to_string(order), "orders up to 40");
+      if (order > 40)
+        in_.refuse(line, "coefficient", "a term of order " + std::to_string(order), "of order 40 or less");
       surface.aspheric.push_back({order, coefficient});
     }
     order += order < 2 * odd + 2 ? 1 : 2;
   }
 }
 
-/// Rows that neither a surface names nor the format knows.
+/// Warns of rows that no surface refers to and the format does not define.
 void OpticalBenchReader::name_variables() {
   for (const auto& [name, variable] : variables_) {
     const bool known = variable.used || name == "d0" || name == "Bf" || std::ranges::count(quantities, name) > 0;
@@ -264,7 +265,7 @@ void OpticalBenchReader::name_variables() {
   }
 }
 
-/// "undefined" and empty cells are no value. Of one value for all positions, that.
+/// The value of a row in a position; nullopt for "undefined" and empty cells. A single value holds for all positions.
 std::optional<double> OpticalBenchReader::value(const Variable& variable, std::size_t column) const {
   const std::size_t at = variable.values.size() == 1 ? 0 : column;
   if (at >= variable.values.size()) return {};
@@ -283,7 +284,7 @@ std::optional<double> OpticalBenchReader::value(const Length& length, std::size_
   return length.variable ? value(*length.variable, column) : length.number;
 }
 
-/// Whether all distances between surfaces have values in a position; the last one, to the film, can be found.
+/// True if all distances between surfaces have values in a position. The last distance, to the film, may be missing.
 bool OpticalBenchReader::is_defined(std::size_t column) const {
   return std::ranges::all_of(rows_.begin(), rows_.end() - 1, [&](const Row& row) {
     const auto thickness = value(row.thickness, column);
@@ -312,11 +313,11 @@ std::vector<std::size_t> OpticalBenchReader::defined_columns() {
     }
   }
   if (columns.empty())
-    throw Error(in_.where() + ": no column of [variable distances] states all distances, wanted one");
+    throw Error(in_.where() + ": no column of [variable distances] states all distances; must be at least one column");
   return columns;
 }
 
-/// The rows in one position.
+/// Sets the rows to one position.
 void OpticalBenchReader::place(std::size_t column) {
   for (std::size_t i = 0; i < rows_.size(); ++i) {
     SurfaceRow& surface = in_.lens.surfaces[i];
@@ -354,7 +355,7 @@ void OpticalBenchReader::declare(std::size_t column) {
   lens.design.wavelengths = {{d_line_nm, 1}};
 }
 
-/// A position; only what it changes on the rows of `base` is listed.
+/// A position, with only the changes from the rows of `base`.
 Configuration OpticalBenchReader::configuration(std::size_t column, std::size_t base) {
   place(base);
   const Prescription rows = in_.lens;
@@ -377,7 +378,7 @@ Configuration OpticalBenchReader::configuration(std::size_t column, std::size_t 
   return result;
 }
 
-/// Columns are positions. Names are in [report data], or follow from the subject distances.
+/// Makes a configuration of each column. Names are in [report data], or follow from the subject distances.
 void OpticalBenchReader::configure(const std::vector<std::size_t>& columns) {
   if (columns.size() < 2) return;
   const auto line_of = [&](std::string_view name) {
@@ -388,7 +389,7 @@ void OpticalBenchReader::configure(const std::vector<std::size_t>& columns) {
   for (const std::size_t column : columns) {
     Configuration& c = in_.lens.configurations.emplace_back(configuration(column, columns.front()));
     Position& position = positions.list.emplace_back();
-    // d0 comes before a magnification.
+    // d0 takes precedence over a magnification.
     const auto magnification = value("d0", column) ? std::nullopt : value("Magnification", column);
     if (magnification && std::isfinite(*magnification) && *magnification != 0) position.magnification = magnification;
     const auto scenario = std::ranges::find(scenarios_, std::to_string(column));
@@ -402,10 +403,10 @@ void OpticalBenchReader::configure(const std::vector<std::size_t>& columns) {
   in_.requests.positions = std::move(positions);
 }
 
-/// The positions of the film that the table does not state.
+/// Requests the positions of the film that the table does not state.
 void OpticalBenchReader::place_film(const std::vector<std::size_t>& columns) {
   const Row& last = rows_.back();
-  FilmAtFocus film{last.line, "thickness", "the place of the film is not stated", true, false, {}};
+  FilmAtFocus film{last.line, "thickness", "the position of the film is not stated", true, false, {}};
   for (std::size_t i = 0; i < columns.size(); ++i) {
     if (value(last.thickness, columns[i])) continue;
     if (i == 0) film.in_the_rows = true;

@@ -31,7 +31,7 @@ JsonObject entry(const JsonObject& object, const char* key, std::size_t i) {
   return {value, std::move(path), object.in, object.tree};
 }
 
-/// Measurements on refractiveindex.info that are in the table "misc".
+/// Measurements on refractiveindex.info that the table "misc" contains.
 struct Measurement {
   std::string_view material, source, glass;
 };
@@ -123,16 +123,16 @@ void OptilandReader::wavelengths(const JsonObject& o) {
     if (primaries++ == 0) in_.lens.design.primary_wavelength = i;
   }
   if (primaries > 1) {
-    in_.warn(0, o.path + ".wavelengths", std::to_string(primaries) + " are primary; the first of them is taken");
+    in_.warn(0, o.path + ".wavelengths", std::to_string(primaries) + " are primary; the first is taken");
   }
 }
 
 double OptilandReader::place(const JsonObject& surface) const {
   const JsonObject cs = surface.object("geometry").object("cs");
   for (const char* key : {"x", "y", "rx", "ry", "rz"}) {
-    if (cs.number(key).value_or(0) != 0) cs.refuse(key, to_text(*cs.number(key)), "0: a centred lens");
+    if (cs.number(key).value_or(0) != 0) cs.refuse(key, to_text(*cs.number(key)), "0 (a centred lens)");
   }
-  if (cs.find("reference_cs")) cs.refuse("reference_cs", "another system of coordinates", "none");
+  if (cs.find("reference_cs")) cs.refuse("reference_cs", "another system of coordinates", "absent");
   return cs.needed("z");
 }
 
@@ -145,7 +145,7 @@ void OptilandReader::terms(const JsonObject& geometry, int first, int step, Surf
     const int order = first + step * static_cast<int>(i);
     if (coefficient == 0) continue;
     if (order < 2 || order > 40) {
-      geometry.refuse("coefficients", to_text(coefficient) + " of order " + std::to_string(order), "of orders 2 to 40");
+      geometry.refuse("coefficients", to_text(coefficient) + " of order " + std::to_string(order), "of order 2 to 40");
     }
     row.aspheric.push_back({order, coefficient});
   }
@@ -170,7 +170,7 @@ Medium OptilandReader::medium(const JsonObject& material) {
   const std::string type = material.text("type");
   if (type == "IdealMaterial") {
     const nlohmann::json* index = material.find("index");
-    // Newer versions write a list of one.
+    // Newer versions write a list with a single entry.
     const double n = index && index->is_array() && index->size() == 1 && index->front().is_number()
                          ? index->front().get<double>()
                          : material.needed("index");
@@ -186,8 +186,8 @@ Medium OptilandReader::medium(const JsonObject& material) {
     return {.nd = value("index"), .vd = value("abbe")};
   }
   if (type == "Material" || type == "MaterialFile") {
-    // The path of the data: ".../glass/schott/N-SK10.yml", of the catalogue schott, or ".../main/CaF2/Daimon-20.yml",
-    // the measurement Daimon-20 of the material CaF2.
+    // The path of the data: ".../glass/schott/N-SK10.yml" for the catalogue schott, or ".../main/CaF2/Daimon-20.yml"
+    // for the measurement Daimon-20 of the material CaF2.
     std::string path = material.text("filename");
     std::ranges::replace(path, '\\', '/');
     const std::filesystem::path file = path;

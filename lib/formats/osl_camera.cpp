@@ -23,9 +23,9 @@ namespace petzval {
 namespace {
 
 constexpr std::size_t focus_nodes = 33, stop_nodes = 9, rings = 12, light_nodes = 5;
-constexpr double spare = 1.02;  ///< of a box about its pupil, for what lies between the places it was made at
+constexpr double spare = 1.02;  ///< enlarges boxes about pupils, which are computed at sample points
 
-/// A number that reads back as the same float, with a point so that it is no integer.
+/// A number that reads back as the same float, with a point so that it is not an integer.
 std::string number(double value) {
   std::string text = to_text(std::clamp(value, -3e38, 3e38), 9);
   return text.find_first_of(".e") == std::string::npos ? text + ".0" : text;
@@ -40,8 +40,8 @@ std::string array(const std::string& name, std::span<const double> values) {
   return text + " };\n";
 }
 
-/// What the film sees of the rear of the lens: in the plane of its last vertex, along the film point's direction from
-/// the axis and across it.
+/// Bounds of the exit pupil as seen from a film point, in the plane of the last vertex: along the film point's
+/// direction from the axis (from, to), and perpendicular to it (across).
 struct Box {
   double from = std::numeric_limits<double>::infinity(), to = -std::numeric_limits<double>::infinity(), across = 0;
 
@@ -92,20 +92,21 @@ class OslCamera {
   double origin_z_ = 0;
   double f_number_ = 0;     ///< wide open
   double nearest_ = 0;      ///< distance from the origin of the last focus node, mm
-  double film_radius_ = 0;  ///< of the largest film, mm
+  double film_radius_ = 0;  ///< half diagonal of the largest film, mm
   std::vector<Lens> stopped_;
 };
 
 OslCamera::OslCamera(const Lens& lens, const OslCameraOptions& options) : lens_(with_iris(lens, Iris{})) {
   check();
   film_ = options.film.value_or(usual_film(lens_));
-  if (!(film_.width_mm > 0 && film_.height_mm > 0)) throw Error(lens.name() + ": a film without area, wanted one");
+  if (!(film_.width_mm > 0 && film_.height_mm > 0))
+    throw Error(lens.name() + ": film has no area; its width and height must be positive");
   const FirstOrder first = first_order(lens_);
   const Pupils p = pupils(lens_);
   origin_z_ = std::isfinite(p.entrance.z) ? p.entrance.z : 0;
   f_number_ = real_f_number(lens_);
   film_radius_ = std::hypot(film_.width_mm, film_.height_mm) / 2;
-  focused(0);  // throws where a lens cannot be
+  focused(0);  // throws Error if the lens cannot be focused
   const auto& moves = lens_.focus_positions();
   const FocusSolution near = nearest_focus(lens_);
   const double least = moves.empty() ? std::max(1.25 * near.distance, 6 * std::abs(first.effective_focal_length))
@@ -121,20 +122,21 @@ void OslCamera::check() const {
   for (std::size_t i = 0; i < lens_.surface_count(); ++i) {
     const LensSurface& s = lens_.surfaces()[i];
     const std::string here = where + ": surface " + std::to_string(i);
-    if (s.mirror) throw Error(here + " is a mirror, wanted refracting surfaces for an OSL camera");
-    if (s.curved_in != Section::both) throw Error(here + " is a cylinder, wanted surfaces of revolution");
+    if (s.mirror) throw Error(here + " is a mirror; must be refracting for an OSL camera");
+    if (s.curved_in != Section::both)
+      throw Error(here + " is a cylinder; must be a surface of revolution for an OSL camera");
   }
   if (!lens_.stop() || !std::isfinite(lens_.surfaces()[*lens_.stop()].semi_diameter)) {
-    throw Error(where + ": no stop with a rim, wanted one for an OSL camera");
+    throw Error(where + ": no stop with a rim; must be given for an OSL camera");
   }
 }
 
-/// Of a subject at an inverse distance (1/mm) from the origin.
+/// Distance from the first vertex (mm) of a subject at an inverse distance (1/mm) from the origin.
 double OslCamera::distance_from_vertex(double inverse_distance) const {
   return 1 / inverse_distance - (inverse_distance == 0 ? 0 : origin_z_);
 }
 
-/// Wide open, focused at an inverse distance (1/mm) from the origin.
+/// The lens wide open, focused at an inverse distance (1/mm) from the origin.
 Lens OslCamera::focused(double inverse_distance) const {
   return with_focus(lens_, distance_from_vertex(inverse_distance));
 }
@@ -148,10 +150,11 @@ std::string OslCamera::header() const {
          " nm\n"
          "//\n"
          "// A camera for Blender's Cycles. For Octane, replace camera_shader_raster_position() and\n"
-         "// camera_shader_random_sample() in the first two statements of the shader by Octane's film place (0 to 1,\n"
+         "// camera_shader_random_sample() in the first two statements of the shader by Octane's film position (0 to "
+         "1,\n"
          "// upwards) and random numbers.\n"
          "//\n"
-         "// Lengths inside are mm. z runs from the scene to the film; the first surface stands at 0.\n\n";
+         "// Lengths inside are in mm. z runs from the scene to the film; the first surface is at 0.\n\n";
 }
 
 std::string OslCamera::parameters() const {
@@ -178,7 +181,7 @@ std::string OslCamera::parameters() const {
          "  output color throughput = 1.0)\n{\n";
 }
 
-/// Arrays of the surfaces: places for each focus where groups move.
+/// Arrays of the surfaces, without their positions, which may vary with focus.
 std::string OslCamera::surfaces() const {
   const std::size_t count = lens_.surface_count();
   std::vector<double> curvature, conic, radius, inner, ahead, behind;
@@ -197,7 +200,7 @@ std::string OslCamera::surfaces() const {
   text += array("curvature", curvature) + array("conic", conic) + array("rim", radius) + array("inner_rim", inner) +
           array("index_in_front", ahead) + array("index_behind", behind);
   if (highest > 0) {
-    // Terms of order 2, 3, ... of every surface.
+    // Terms of order 2, 3, ... of all surfaces.
     std::vector<double> terms(count * static_cast<std::size_t>(highest - 1), 0.0);
     std::vector<double> aspheric(count, 0.0);
     for (std::size_t i = 0; i < count; ++i) {
@@ -218,7 +221,7 @@ std::string OslCamera::surfaces() const {
 void OslCamera::boxes(std::string& text) const {
   std::vector<double> from, to, across;
   for (const Lens& stopped : stopped_) {
-    // At the rings and halfway between them.
+    // Boxes at the rings and halfway between the rings.
     std::vector<Box> at(2 * rings + 1);
     for (const double inverse : {0.0, 1 / nearest_}) {
       const Lens set = with_semi_diameter(focused(inverse), *lens_.stop(),
@@ -227,7 +230,7 @@ void OslCamera::boxes(std::string& text) const {
         at[k].take(box_at(set, film_radius_ * static_cast<double>(k) / static_cast<double>(at.size() - 1)));
       }
     }
-    // Edges are linear between rings: they move out until the places halfway lie inside.
+    // Edges are interpolated linearly between rings: they are moved out until the boxes halfway lie inside.
     const auto widen = [&](double Box::*edge, double sign) {
       for (std::size_t k = 1; k + 1 < at.size(); k += 2) {
         if (at[k].empty()) continue;
@@ -252,7 +255,8 @@ void OslCamera::boxes(std::string& text) const {
     }
   }
   text +=
-      "  // boxes about what the film sees of the last vertex plane: by f-number, then by distance from the axis\n" +
+      "  // boxes about the exit pupils in the plane of the last vertex: by f-number, then by distance from the "
+      "axis\n" +
       array("box_from", from) + array("box_to", to) + array("box_across", across);
 }
 
@@ -283,15 +287,16 @@ std::string OslCamera::tables() const {
   text +=
       "  // by inverse focus distance, from infinity to " + to_text(nearest_ / 1000, 4) + " m\n" + array("film", film);
   text += "  // by f-number, from f/" + to_text(f_number_, 3) +
-          " in stops: radius of the stop, and irradiance of the film, over what they change by\n" +
+          " in stops: radius of the stop and irradiance of the film, divided by their nominal change\n" +
           array("stop_size", stop_size) + array("light", light);
-  text += "  // how far the film moves as the stop closes, for spherical aberration: by focus, then by f-number\n" +
+  text += "  // focus shift from stopping down (spherical aberration): by focus, then by f-number\n" +
           array("focus_shift", shift);
   boxes(text);
   return text;
 }
 
-/// The part that is the same for all lenses. Its statements are also C++, but for `point`, `vector` and `color`.
+/// The part of the shader that is the same for all lenses. Its statements are also C++, except for `point`, `vector`
+/// and `color`.
 constexpr const char* body = R"OSL(
   vector raster = camera_shader_raster_position();
   vector places = camera_shader_random_sample();
@@ -319,7 +324,7 @@ constexpr const char* body = R"OSL(
   film_z += far_shift + lit_part * (near_shift - far_shift);
   float stop_radius = (stop_size[wider] + wider_part * (stop_size[wider + 1] - stop_size[wider])) / pow(2.0, 0.5 * stops);
 
-  // The film place. The image is upside down: what lies to the right meets the film on its left.
+  // The film point. The image is inverted: the right of the scene is imaged on the left of the film.
   float film_x = (0.5 - raster[0]) * sensor_width;
   float film_y = (0.5 - raster[1]) * sensor_height;
   float film_r = sqrt(film_x * film_x + film_y * film_y);
@@ -330,7 +335,7 @@ constexpr const char* body = R"OSL(
     along_y = film_y / film_r;
   }
 
-  // A place in the box that the pupil of this film place fills, in the plane of the last vertex.
+  // A point in the box about the exit pupil of this film point, in the plane of the last vertex.
   float at_ring = min(film_r / film_radius, 1.0) * rings;
   int ring = int(min(at_ring, rings - 1.0));
   float ring_part = at_ring - ring;
@@ -348,7 +353,7 @@ constexpr const char* body = R"OSL(
   float rear_y = a * along_y - b * along_x;
   float depth = film_z - last_z;
 
-  // The ray, from the film to the scene: a place p on it and its direction d.
+  // The ray from the film to the scene: a point p and its direction d.
   float px = rear_x;
   float py = rear_y;
   float pz = last_z;
@@ -368,7 +373,7 @@ constexpr const char* body = R"OSL(
       float z = vertex[focus * move + i];
       if (groups_move == 1) z += focus_part * (vertex[(focus + 1) * surfaces + i] - z);
 
-      // To the plane of the vertex, then to the conic, from which z counts now.
+      // To the plane of the vertex, then to the conic; z is now relative to the vertex.
       float t = (z - pz) / dz;
       float x = px + t * dx;
       float y = py + t * dy;
@@ -399,7 +404,7 @@ ASPHERE
       float r2 = x * x + y * y;
       float limit = rim[i];
       if (i == stop) limit = min(limit, stop_radius);
-      // r2 is no number if the ray misses an asphere.
+      // r2 is NaN if the ray misses an asphere.
       if (!(r2 <= limit * limit && r2 >= inner_rim[i] * inner_rim[i])) passes = 0;
       if (i == stop && blades > 2) {
         // The middle of the nearest blade's edge lies on the first axis.
@@ -447,7 +452,7 @@ ASPHERE
   }
 
   if (passes == 1) {
-    // Irradiance by the area of the box and the solid angle of its places, over that of the middle of the film.
+    // Irradiance from the area and the solid angle of the box, divided by the irradiance at the film centre.
     float near_light = light[to] + wider_part * (light[to + 1] - light[to]);
     float far_light = light[from] + wider_part * (light[from + 1] - light[from]);
     float middle = (far_light + lit_part * (near_light - far_light)) / pow(2.0, stops);
@@ -475,7 +480,7 @@ ASPHERE
 
 constexpr const char* newton = R"OSL(
       if (aspheric[i] > 0.5 && passes == 1) {
-        // Newton's steps along the ray, from the conic to the asphere.
+        // Newton steps along the ray, from the conic to the asphere.
         float miss = 1.0;
         for (int n = 0; n < 12; ++n) {
           float rr = x * x + y * y;

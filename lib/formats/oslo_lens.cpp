@@ -11,7 +11,7 @@
 namespace petzval::formats_detail {
 namespace {
 
-// OSLO takes thicknesses of 1e8 and more for infinite, and writes 1e10 or 1e20.
+// OSLO treats thicknesses of 1e8 and more as infinite, and writes 1e10 or 1e20.
 constexpr double endless = 1e8;
 
 class Builder {
@@ -39,7 +39,7 @@ double Builder::object_distance() const {
   return std::abs(thickness) >= endless ? std::numeric_limits<double>::infinity() : thickness * oslo_.unit;
 }
 
-/// In the order of surfaces: a pickup may be of one that is picked up itself.
+/// Evaluates pickups in the order of surfaces, as the source of a pickup may be picked up itself.
 void Builder::pick_up() {
   for (OsloSurface& s : oslo_.surfaces) {
     for (const OsloPickup& p : s.pickups) {
@@ -47,7 +47,7 @@ void Builder::pick_up() {
       if (p.what == "CV" || p.what == "CVM") {
         const double sign = p.what == "CV" ? 1 : -1;
         s.curvature = sign * from.curvature + p.constant;
-        // The rest of the shape comes with it, unless the surface has its own.
+        // The rest of the shape is picked up too, unless the surface has its own.
         if (s.conic == 0) s.conic = from.conic;
         if (s.terms.empty()) {
           for (const auto& [order, coefficient] : from.terms) s.terms[order] = sign * coefficient;
@@ -66,13 +66,13 @@ void Builder::pick_up() {
   }
 }
 
-/// n_d and V_d of indices at some wavelengths: n = A + B / l^2 through the shortest and the longest.
+/// n_d and V_d from indices at wavelengths: n = A + B / l^2 through the shortest and the longest.
 Medium Builder::medium_of_indices(const OsloMedium& m) {
   auto wavelengths = m.wavelengths.empty() ? oslo_.wavelengths : m.wavelengths;
   if (wavelengths.empty()) wavelengths = {0.58756, 0.48613, 0.65627};
   const std::size_t count = std::min(wavelengths.size(), m.indices.size());
   const double first = m.indices.front();
-  if (!(first > 0)) in_.refuse(m.line, "GLA", "an index of " + to_text(first), "one above 0");
+  if (!(first > 0)) in_.refuse(m.line, "GLA", "an index of " + to_text(first), "positive");
   const auto weight = [&](std::size_t i) { return 1 / (wavelengths[i] * wavelengths[i]); };
   std::size_t low = 0, high = 0;
   for (std::size_t i = 0; i < count; ++i) {
@@ -103,8 +103,8 @@ Medium Builder::medium(const OsloMedium& m, const Medium& before) {
     case OsloMedium::Kind::glass: break;
   }
   if (const auto code = medium_of_code(m.name)) return *code;
-  // A name alone is one of Schott where Schott has it. "H_LAF2" is LAF2 of Hoya, "O_PBH1" PBH1 of Ohara; other letters
-  // name other makers.
+  // A name without a prefix is a glass of Schott if Schott has the name. "H_LAF2" is LAF2 of Hoya, "O_PBH1" is PBH1 of
+  // Ohara; other letters stand for other makers.
   std::vector<std::string> catalogues = {"schott", "ohara", "hoya"};
   std::string name = m.name;
   if (name.size() > 2 && name[1] == '_') {
@@ -120,7 +120,7 @@ SurfaceRow Builder::row(const OsloSurface& s, const Medium& before) {
   SurfaceRow row;
   row.radius = s.curvature == 0 ? 0 : unit / s.curvature;
   row.thickness = s.thickness.value_or(0) * unit;
-  if (std::abs(row.thickness) >= endless) in_.refuse(s.line, "TH", to_text(row.thickness), "a finite thickness");
+  if (std::abs(row.thickness) >= endless) in_.refuse(s.line, "TH", to_text(row.thickness), "finite");
   row.conic = s.conic;
   for (const auto& [order, coefficient] : s.terms) {
     if (coefficient != 0) row.aspheric.push_back({order, coefficient * std::pow(unit, 1 - order)});
@@ -128,18 +128,19 @@ SurfaceRow Builder::row(const OsloSurface& s, const Medium& before) {
   row.mirror = s.medium.kind == OsloMedium::Kind::mirror;
   row.medium = medium(s.medium, before);
   row.stop = s.stop;
-  // The width of the design's beams is a rim of elements; of the stop and of dummies only where rays are checked.
+  // The width of the design's beams is a rim of elements; at the stop and at dummy surfaces only if rays are checked.
   const bool dummy = !row.mirror && row.medium == before;
   const bool counts = s.checked || !(dummy || s.stop);
   if (counts && s.aperture && *s.aperture > 0 && *s.aperture < 1e6) row.semi_diameter = *s.aperture * unit;
   return row;
 }
 
-/// PY: the thickness that brings the axial ray to a height on the next surface. i: in the file.
+/// PY: the thickness that brings the axial ray to a height on the next surface.
+/// @param i index in the file
 void Builder::solve(std::size_t i) {
   const OsloSurface& s = oslo_.surfaces[i];
   if (*s.height != 0 && !oslo_.beam_radius) {
-    in_.warn(s.line, "PY", "without EBR it is not evaluated: the thickness that the file states is taken");
+    in_.warn(s.line, "PY", "without EBR it is not evaluated; the thickness in the file is taken");
     return;
   }
   ThicknessSolve solve{.line = s.line, .command = "PY", .surface = i - 1, .height = *s.height * oslo_.unit};
@@ -149,13 +150,13 @@ void Builder::solve(std::size_t i) {
   in_.requests.solves.push_back(std::move(solve));
 }
 
-/// The thickness of the image, mm.
+/// The thickness of the image (mm), which moves the film.
 double Builder::defocus() const {
   const double defocus = oslo_.surfaces.back().thickness.value_or(0) * oslo_.unit;
   return std::abs(defocus) < endless ? defocus : 0;
 }
 
-/// The last surface is the film: what it states moves the film, or cannot be had.
+/// The last surface is the film. Its thickness moves the film; its shape is left out with a warning.
 void Builder::place_film() {
   const OsloSurface& film = oslo_.surfaces.back();
   if (defocus() != 0) {
@@ -182,7 +183,7 @@ void Builder::declare() {
   } else if (oslo_.f_number) {
     design.aperture = {ApertureSetting::f_number, *oslo_.f_number};
   } else if (oslo_.beam_radius && std::isfinite(object)) {
-    // The radius is that of the beam on the first surface.
+    // The radius of the beam on the first surface.
     design.aperture = {ApertureSetting::object_na, std::sin(std::atan(*oslo_.beam_radius * unit / std::abs(object)))};
   } else if (oslo_.beam_radius) {
     design.aperture = {ApertureSetting::entrance_pupil_diameter, 2 * *oslo_.beam_radius * unit};
@@ -199,10 +200,10 @@ void Builder::declare() {
   }
   for (std::size_t i = 0; i < oslo_.wavelengths.size(); ++i) {
     const double um = oslo_.wavelengths[i];
-    if (!(um > 0)) in_.refuse(oslo_.line, "WV", to_text(um), "wavelengths above 0, in micrometres");
+    if (!(um > 0)) in_.refuse(oslo_.line, "WV", to_text(um), "positive (micrometres)");
     design.wavelengths.push_back({um * 1000, i < oslo_.weights.size() ? oslo_.weights[i] : 1});
   }
-  // OSLO writes the focal length behind the name, or the 100 with which every new lens begins.
+  // OSLO writes the focal length after the name, or 100, the default of a new lens.
   if (oslo_.scale && *oslo_.scale > 0) {
     in_.requests.focal_length = {oslo_.line, "LEN", *oslo_.scale * unit, *oslo_.scale == 100};
   }
@@ -210,8 +211,8 @@ void Builder::declare() {
 
 void Builder::build() {
   if (oslo_.surfaces.size() < 3) {
-    in_.refuse(oslo_.line, "LEN", "of " + std::to_string(oslo_.surfaces.size()) + " surfaces",
-               "an object, a surface of the lens and an image");
+    in_.refuse(oslo_.line, "LEN", "a lens of " + std::to_string(oslo_.surfaces.size()) + " surfaces",
+               "an object, at least one surface and an image");
   }
   pick_up();
   Prescription& lens = in_.lens;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Lens files of OSLO: commands, one a line or separated by semicolons; NXT begins the next surface.
+// Lens files of OSLO: commands, one per line or separated by semicolons. NXT begins the next surface.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -17,7 +17,7 @@
 namespace petzval::formats_detail {
 namespace {
 
-/// The commands of a line: what stands between semicolons, outside quotes and in front of two slashes.
+/// The commands of a line, separated by semicolons outside quotes; "//" begins a comment.
 std::vector<std::string_view> commands_of(std::string_view line) {
   std::vector<std::string_view> commands;
   bool quoted = false;
@@ -51,7 +51,7 @@ class OsloReader {
  private:
   using Words = std::vector<std::string_view>;
 
-  /// Where no NXT occurs, blank lines separate surfaces.
+  /// True if the text has an NXT; otherwise blank lines separate surfaces.
   bool has_next(std::string_view text) {
     if (!has_next_) {
       has_next_ = false;
@@ -63,7 +63,7 @@ class OsloReader {
   }
 
   void next_surface(int line) {
-    if (lens_.surfaces.back().line == 0 || ended_) return;  // nothing stands between two blank lines
+    if (lens_.surfaces.back().line == 0 || ended_) return;  // two adjacent blank lines
     start_surface(line);
   }
   void start_surface(int line) {
@@ -73,7 +73,7 @@ class OsloReader {
   }
 
   double value(int line, const Words& w, std::size_t i = 1) const {
-    if (i >= w.size()) in_.refuse(line, w[0], "without a number", "one");
+    if (i >= w.size()) in_.refuse(line, w[0], "missing", "a number");
     return in_.number(line, w[0], w[i]);
   }
   std::vector<double> values(int line, const Words& w) const {
@@ -108,7 +108,7 @@ void OsloReader::take(int line, std::string_view text) {
   if (take_general(line, command, w)) return;
   if (ended_) {
     // Rays, variables and merit functions follow the lens.
-    if (command == "CFG") warn_once(line, command, "configurations are left out; the lens is the first one");
+    if (command == "CFG") warn_once(line, command, "configurations are left out; the first one is read");
     return;
   }
   OsloSurface& s = lens_.surfaces.back();
@@ -121,7 +121,8 @@ void OsloReader::take(int line, std::string_view text) {
 bool OsloReader::take_general(int line, std::string_view command, const Words& w) {
   const auto length = [&](std::optional<double>& place) { return place = value(line, w), true; };
   if (command == "LEN") {
-    if (w.size() < 3 || !same(w[1], "NEW")) in_.refuse(line, "LEN", "without NEW and a name", "LEN NEW \"name\"");
+    if (w.size() < 3 || !same(w[1], "NEW"))
+      in_.refuse(line, "LEN", "a command without NEW and a name", "LEN NEW \"name\"");
     lens_.line = line;
     in_.lens.imported->title = w[2];
     if (w.size() > 3) lens_.scale = value(line, w, 3);
@@ -136,7 +137,7 @@ bool OsloReader::take_general(int line, std::string_view command, const Words& w
   if (command == "GIH") return length(lens_.image_height);
   if (command == "UNI") {
     lens_.unit = value(line, w);
-    if (!(lens_.unit > 0)) in_.refuse(line, "UNI", to_text(lens_.unit), "millimetres in a unit, above 0");
+    if (!(lens_.unit > 0)) in_.refuse(line, "UNI", to_text(lens_.unit), "positive (millimetres per unit)");
     in_.lens.imported->units = lens_.unit == 10 ? "cm" : lens_.unit == 25.4 ? "in" : lens_.unit == 1000 ? "m" : "mm";
     if (lens_.unit != 1) in_.warn(line, "UNI", "a unit is taken as " + to_text(lens_.unit) + " mm");
     return true;
@@ -149,7 +150,7 @@ bool OsloReader::take_general(int line, std::string_view command, const Words& w
   if (command.starts_with("WV") && number(command.substr(2)).value_or(0) >= 1) {
     const double place = *number(command.substr(2));
     if (!(place <= 100 && place == std::floor(place)))
-      in_.refuse(line, command, "not a place in the list", "WV1 to WV100");
+      in_.refuse(line, command, "an index outside the list", "WV1 to WV100");
     const auto i = static_cast<std::size_t>(place);
     if (lens_.wavelengths.size() < i) lens_.wavelengths.resize(i);
     lens_.wavelengths[i - 1] = value(line, w);
@@ -198,7 +199,7 @@ bool OsloReader::take_surface(int line, std::string_view command, const Words& w
   } else if (command == "PY") {
     s.height = value(line, w);
   } else if (is_one_of(command, "PYC PUC PU EC PI PIC APC APL")) {
-    warn_once(line, command, "a solve is not evaluated: the value that the file states is taken");
+    warn_once(line, command, "a solve is not evaluated; the value in the file is taken");
   } else {
     return false;
   }
@@ -206,7 +207,7 @@ bool OsloReader::take_surface(int line, std::string_view command, const Words& w
 }
 
 void OsloReader::take_glass(int line, const Words& w, OsloSurface& s) {
-  if (w.size() < 2) in_.refuse(line, "GLA", "without a glass", "a name or indices");
+  if (w.size() < 2) in_.refuse(line, "GLA", "missing", "a name or indices");
   s.medium = {line, OsloMedium::Kind::glass, std::string(w[1]), {}, {}};
   if (same(w[1], "PK")) {
     take_pickup(line, {"PK", "GLA", w.size() > 2 ? w[2] : ""}, s);
@@ -216,7 +217,7 @@ void OsloReader::take_glass(int line, const Words& w, OsloSurface& s) {
   if (!model && !number(w[1])) return;
   s.medium.kind = OsloMedium::Kind::indices;
   const std::size_t first = model ? 3 : 1;  // a model has a name
-  if (w.size() <= first) in_.refuse(line, "GLA", "a model without indices", "its indices at the wavelengths");
+  if (w.size() <= first) in_.refuse(line, "GLA", "a model without indices", "a model with indices at the wavelengths");
   for (std::size_t i = first; i < w.size(); ++i) s.medium.indices.push_back(in_.number(line, "GLA", w[i]));
   s.medium.wavelengths = inline_wavelengths_;
 }
@@ -227,25 +228,25 @@ void OsloReader::take_aperture(int line, const Words& w, OsloSurface& s) {
   if (w.size() > 1 && same(w[1], "CHK")) s.checked = true, i = 2;
   if (w.size() <= i) return;
   const double radius = value(line, w, i);
-  if (radius < 0) in_.refuse(line, "AP", to_text(radius), "0 or more");
+  if (radius < 0) in_.refuse(line, "AP", to_text(radius), "at least 0");
   s.aperture = radius;
 }
 
 void OsloReader::take_pickup(int line, const Words& w, OsloSurface& s) {
   if (w.size() < 3 || w.size() > 4 || !is_one_of(w[1], "CV CVM TH THM GLA AP CC")) {
-    in_.warn(line, "PK", "an unknown pickup is left out; the value that the file states is taken");
+    in_.warn(line, "PK", "an unknown pickup is left out; the value in the file is taken");
     return;
   }
   const double surface = in_.number(line, "PK", w[2]);
   const auto own = static_cast<double>(lens_.surfaces.size() - 1);
   if (!(surface >= 0 && surface < own && surface == std::floor(surface))) {
-    in_.refuse(line, "PK", "of surface " + to_text(surface), "a surface before it");
+    in_.refuse(line, "PK", "surface " + to_text(surface), "an earlier surface");
   }
   OsloPickup pickup{line, upper(w[1]), static_cast<int>(surface), w.size() > 3 ? value(line, w, 3) : 0};
   s.pickups.push_back(std::move(pickup));
 }
 
-/// AD to AG are r^4 to r^10. General aspheres: ASn of r^2n (ASR) or of r^n (ARA).
+/// AD to AG are r^4 to r^10. General aspheres: ASn is r^2n (ASR) or r^n (ARA).
 bool OsloReader::take_asphere(int line, std::string_view command, const Words& w, OsloSurface& s) {
   static constexpr std::array<std::string_view, 4> classic = {"AD", "AE", "AF", "AG"};
   if (const auto found = std::ranges::find(classic, command); found != classic.end()) {
@@ -262,20 +263,20 @@ bool OsloReader::take_asphere(int line, std::string_view command, const Words& w
   if (!command.starts_with("AS") || !number(command.substr(2))) return false;
   const double place = *number(command.substr(2)), coefficient = value(line, w);
   if (coefficient == 0) return true;
-  if (s.asphere.empty()) in_.refuse(line, command, "before ASP", "the kind of asphere first");
+  if (s.asphere.empty()) in_.refuse(line, command, "a term before ASP", "after ASP, the kind of asphere");
   const double order = s.asphere == "asr" ? 2 * place : place;
   if (!(order >= 2 && order <= 40 && order == std::floor(order))) {
-    in_.refuse(line, command, "of order " + to_text(order), "orders 2 to 40");
+    in_.refuse(line, command, "order " + to_text(order), "2 to 40");
   }
   s.terms[static_cast<int>(order)] = coefficient;
   return true;
 }
 
-/// What would make another lens if it were left out, and what is of no matter to it.
+/// Refuses commands without which the lens would be a different one, and skips commands that do not affect it.
 bool OsloReader::refuse_or_skip(int line, std::string_view command, const Words& w) {
   if (is_one_of(command, "DCX DCY DCZ TLA TLB TLC CVX RDX CCX")) {
     if (value(line, w) != 0) {
-      in_.refuse(line, command, to_text(value(line, w)), "0: surfaces that are rotationally symmetric about one axis");
+      in_.refuse(line, command, to_text(value(line, w)), "0 (surfaces of revolution about one axis)");
     }
     return true;
   }
@@ -295,15 +296,15 @@ bool OsloReader::refuse_or_skip(int line, std::string_view command, const Words&
   if (other != others.end()) in_.refuse(line, command, std::string(other->second), "spheres, conics and aspheres");
   if (command == "LMO") {
     if (w.size() > 1 && (same(w[1], "NSS") || same(w[1], "ARR"))) {
-      in_.refuse(line, command, std::string(w[1]), "surfaces in sequence");
+      in_.refuse(line, command, std::string(w[1]), "a sequence of surfaces");
     }
     return true;
   }
-  // Bends and returns are of tilted surfaces, which are refused by their angles.
+  // Bends and returns belong to tilted surfaces, which are refused because of their angles.
   if (is_one_of(command, "TCE DT DRW BEN RCO TLM PEN ELE")) return true;
   if (command == "APN" || command.starts_with("ATP") || command.starts_with("AX") || command.starts_with("AY") ||
       command.starts_with("AAC") || command.starts_with("AVX")) {
-    warn_once(line, command, "apertures that are no circles are left out");
+    warn_once(line, command, "apertures that are not circular are left out");
     return true;
   }
   return false;

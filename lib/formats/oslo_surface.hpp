@@ -11,7 +11,7 @@
 
 namespace petzval::formats_detail {
 
-/// A value that another surface gives: PK.
+/// PK: a value picked up from another surface.
 struct OsloPickup {
   int line = 0;
   std::string what;
@@ -19,7 +19,7 @@ struct OsloPickup {
   double constant = 0;
 };
 
-/// What is behind a surface.
+/// The medium behind a surface.
 struct OsloMedium {
   int line = 0;
   enum class Kind { air, mirror, glass, indices } kind = Kind::air;
@@ -28,7 +28,7 @@ struct OsloMedium {
   std::vector<double> wavelengths;  ///< micrometres
 };
 
-/// A surface as the file has it, in its own units.
+/// A surface as stated in the file, in the file's unit.
 struct OsloSurface {
   int line = 0;
   double curvature = 0;
@@ -38,16 +38,16 @@ struct OsloSurface {
   bool checked = false;  ///< rays end at the aperture
   bool stop = false;
   double conic = 0;
-  std::map<int, double> terms;   ///< of the asphere: coefficient by order
-  std::string asphere;           ///< ASP: its type
-  std::optional<double> height;  ///< PY: of the axial ray on the next surface
+  std::map<int, double> terms;   ///< aspheric coefficients by order
+  std::string asphere;           ///< ASP: type of the asphere
+  std::optional<double> height;  ///< PY: height of the axial ray on the next surface
   std::vector<OsloPickup> pickups;
   std::string note;
 };
 
-/// A lens of OSLO as its file has it.
+/// A lens as stated in a file of OSLO.
 struct OsloLens {
-  int line = 0;                 ///< of LEN
+  int line = 0;                 ///< line of LEN
   std::optional<double> scale;  ///< the number of LEN
   double unit = 1;              ///< mm
   std::vector<OsloSurface> surfaces;
@@ -55,7 +55,7 @@ struct OsloLens {
   std::optional<double> beam_radius, object_na, image_na, f_number, angle, object_height, image_height;
 };
 
-/// Rows, media and design data of a lens that was read.
+/// Builds rows, media and design data from a lens that was read.
 void build_oslo(OsloLens& oslo, Import& in);
 
 }  // namespace petzval::formats_detail

@@ -34,8 +34,8 @@ struct Page {
   Value nd, vd, absolute;
 };
 
-/// Keeps the few values of a page that make a glass, while yaml-cpp walks through it: no tree is built, so that neither
-/// aliases nor depth cost memory.
+/// Keeps the few values of a page that define a glass, while yaml-cpp walks through it. No tree is built, so that
+/// neither aliases nor depth cost memory.
 class PageReader : public YAML::EventHandler {
  public:
   PageReader(Page& page, const GlassReader& reader) : page_(page), reader_(reader) {}
@@ -45,7 +45,7 @@ class PageReader : public YAML::EventHandler {
   }
   void OnDocumentEnd() override {}
   void OnAlias(const YAML::Mark& mark, YAML::anchor_t) override {
-    reader_.refuse(mark.line + 1, "an alias", "a page without them");
+    reader_.refuse(mark.line + 1, "an alias", "a page without aliases");
   }
   void OnNull(const YAML::Mark& mark, YAML::anchor_t) override { take(mark, ""); }
   void OnScalar(const YAML::Mark& mark, const std::string&, YAML::anchor_t, const std::string& value) override {
@@ -70,7 +70,7 @@ class PageReader : public YAML::EventHandler {
 
   void open(const YAML::Mark& mark, bool map) {
     if (inside_.size() == most_levels) {
-      reader_.refuse(mark.line + 1, "lists in lists", "at most " + std::to_string(most_levels) + " levels");
+      reader_.refuse(mark.line + 1, "nested lists", "at most " + std::to_string(most_levels) + " levels deep");
     }
     if (!inside_.empty() && inside_.back().map && inside_.back().at_key) {
       reader_.refuse(mark.line + 1, "a list or an object as a key", "a word");
@@ -100,7 +100,7 @@ class PageReader : public YAML::EventHandler {
     value_ends();
   }
 
-  /// Where a value goes, by the keys that lead to it.
+  /// The member that stores a value, by the keys that lead to it; null if the value is not used.
   Value* place(const std::string& key) {
     const std::string& section = inside_[0].key;
     if (inside_.size() == 3 && section == "DATA" && !page_.data.empty()) {
@@ -125,8 +125,8 @@ class PageReader : public YAML::EventHandler {
   int documents_ = 0;
 };
 
-/// yaml-cpp holds the tokens of a line, hundreds of bytes each, until it knows whether they are a key, and those of a
-/// document that another one follows.
+/// Limits lines and documents: yaml-cpp holds the tokens of a line, hundreds of bytes each, until it knows if they are
+/// a key, and all tokens of a document that is followed by another one.
 void check_lines(std::string_view text, const GlassReader& reader) {
   constexpr std::size_t most_bytes = 8 << 20, longest_line = 64 << 10;
   if (text.size() > most_bytes) {
@@ -153,7 +153,7 @@ Page read_page(std::string text, const GlassReader& reader) {
     while (parser.HandleNextDocument(handler)) {
     }
   } catch (const YAML::Exception& error) {
-    reader.refuse(error.mark.line + 1, "YAML that ends or errs here (" + error.msg + ")",
+    reader.refuse(error.mark.line + 1, "invalid or incomplete YAML (" + error.msg + ")",
                   "a page of refractiveindex.info");
   }
   return page;
@@ -189,7 +189,7 @@ class RiiReader {
 
   void read(const Page& page) {
     if (page.absolute.text == "true") {
-      reader_.warn(page.absolute.line, "n_is_absolute", "the index, which is relative to vacuum, is taken as it is");
+      reader_.warn(page.absolute.line, "n_is_absolute", "the index is relative to vacuum; it is taken unchanged");
     }
     const auto printed = [&](const Value& v) { return v.line > 0 ? reader_.number(v.line, "nd or Vd", v.text) : 0.0; };
     glass_.nd = printed(page.nd);
@@ -200,7 +200,7 @@ class RiiReader {
       if (type == "tabulated k") {
         reader_.warn(entry.type.line, type, "absorption is not used: glasses are clear");
       } else if (taken) {
-        reader_.warn(entry.type.line, type, "left out: the indices are those of the entry before");
+        reader_.warn(entry.type.line, type, "left out: an earlier entry has the indices");
       } else {
         taken = &entry;
       }
@@ -224,7 +224,7 @@ class RiiReader {
       glass_.formula = formula;
       glass_.coefficients = std::move(c);
     };
-    if (c.empty()) reader_.refuse(line_, type + " without coefficients", "some");
+    if (c.empty()) reader_.refuse(line_, type + " has no coefficients", "a list of coefficients");
     if (type == "formula 1") {
       pairs(sellmeier_squared);
     } else if (type == "formula 2") {
@@ -241,7 +241,7 @@ class RiiReader {
       c.resize(6);
       glass_.coefficients = std::move(c);
     } else {
-      reader_.refuse(line_, "type \"" + std::string(beginning(type, 100)) + "\"",
+      reader_.refuse(line_, "type = \"" + std::string(beginning(type, 100)) + "\"",
                      "formula 1, 2, 3, 4, 5 or 7, or tabulated n or nk");
     }
     const auto range = numbers(entry.range, "wavelength_range", reader_);
@@ -252,7 +252,7 @@ class RiiReader {
     glass_.longest_nm = range[1] * 1000;
   }
 
-  /// Rows of a table: wavelength, n and, with k, how much it absorbs.
+  /// Reads rows of a table: wavelength, n and, with k, the absorption.
   void take_table(const Value& table, bool with_k) {
     struct Row {
       double l, n, k;
@@ -261,7 +261,7 @@ class RiiReader {
     const std::size_t columns = with_k ? 3 : 2;
     Lines lines(table.text);
     while (lines.next()) {
-      const int line = table.line + lines.number();  // the rows begin below the key
+      const int line = table.line + lines.number();  // the rows begin on the line after the key
       const auto w = words(lines.text(), columns + 1);
       if (w.empty()) continue;
       if (w.size() != columns) {
@@ -273,11 +273,11 @@ class RiiReader {
     std::stable_sort(rows.begin(), rows.end(), [](const Row& a, const Row& b) { return a.l < b.l; });
     const auto same = std::unique(rows.begin(), rows.end(), [](const Row& a, const Row& b) { return a.l == b.l; });
     if (same != rows.end()) {
-      reader_.warn(line_, "data", std::to_string(rows.end() - same) + " rows of wavelengths given before are left out");
+      reader_.warn(line_, "data", std::to_string(rows.end() - same) + " rows with repeated wavelengths are left out");
       rows.erase(same, rows.end());
     }
 
-    // Where k is above 0.01, a millimetre passes nothing; the longest clear stretch is the glass.
+    // If k exceeds 0.01, a millimetre is opaque; the longest clear range is the glass.
     constexpr double clear = 0.01;
     std::size_t first = 0, count = 0;
     for (std::size_t i = 0, start = 0; i < rows.size(); ++i) {
@@ -286,12 +286,12 @@ class RiiReader {
     }
     if (count < 2) {
       reader_.refuse(line_, "a table with " + std::to_string(count) + " rows of a clear medium (k at most 0.01)",
-                     "two or more");
+                     "at least two");
     }
     if (count < rows.size()) {
       reader_.warn(line_, "tabulated nk",
-                   "it absorbs at other wavelengths than " + to_text(rows[first].l * 1000, 7) + " to " +
-                       to_text(rows[first + count - 1].l * 1000, 7) + " nm: they are left out");
+                   "absorbs outside " + to_text(rows[first].l * 1000, 7) + " to " +
+                       to_text(rows[first + count - 1].l * 1000, 7) + " nm; these wavelengths are left out");
     }
     if (with_k) reader_.warn(line_, "tabulated nk", "absorption is not used: glasses are clear");
     glass_.formula = DispersionFormula::tabulated;

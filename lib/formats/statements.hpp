@@ -8,8 +8,8 @@
 
 namespace petzval::formats_detail {
 
-/// The statements of a .seq, one after the other: a line, or parts of it between semicolons. "!" begins a comment, "&"
-/// at the end goes on in the next line; quoted text keeps its signs.
+/// The statements of a .seq, one after the other: lines, or parts of lines between semicolons. "!" begins a comment,
+/// "&" at the end continues the statement on the next line; quoted text keeps these characters.
 class Statements {
  public:
   explicit Statements(std::string_view text) : lines_(text) {}
@@ -24,11 +24,11 @@ class Statements {
     at_ = end + 1;
     return true;
   }
-  int line() const noexcept { return line_; }  ///< at which the statement begins
+  int line() const noexcept { return line_; }  ///< first line of the statement
   std::string_view text() const noexcept { return statement_; }
 
  private:
-  /// Where a sign stands outside of quotes; the size of the text if nowhere.
+  /// Position of a character outside quotes; the size of the text if it does not occur.
   static std::size_t outside_quotes(std::string_view text, std::size_t from, char sign) {
     char quote = 0;
     for (std::size_t i = from; i < text.size(); ++i) {

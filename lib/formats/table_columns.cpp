@@ -12,7 +12,7 @@
 namespace petzval::formats_detail {
 namespace {
 
-/// The heads of a kind of column, in lower case, without blanks and signs.
+/// The heads of a kind of column, in lower case, without blanks and punctuation.
 struct Heads {
   Column kind;
   std::string_view names;
@@ -42,7 +42,7 @@ constexpr Heads all_heads[] = {
     {Column::comment, "comment description element label name note notes remark remarks surfacetype type"},
 };
 
-/// The kind of column that a head names; nullopt if the head is not known.
+/// The kind of column of a head; nullopt if the head is not known.
 std::optional<Column> kind_of(std::string_view head) {
   const auto found = std::ranges::find_if(all_heads, [&](const Heads& h) { return is_one_of(head, h.names); });
   return found == std::end(all_heads) ? std::nullopt : std::optional(found->kind);
@@ -59,7 +59,7 @@ constexpr std::array<std::pair<std::string_view, double>, 8> units = {{
     {"millimeters", 1},
 }};
 
-/// Greek letters of heads, and their names in the list of heads.
+/// Greek letters in heads and their spelling in the list of heads.
 constexpr std::array<std::pair<std::string_view, std::string_view>, 8> greek = {{
     {"\u03bd", "v"},
     {"\u03c5", "v"},
@@ -71,7 +71,7 @@ constexpr std::array<std::pair<std::string_view, std::string_view>, 8> greek = {
     {"\u2300", "dia"},
 }};
 
-/// A head as the list of heads spells it, and the text in its brackets.
+/// A head in the spelling of the list of heads, and the text in its brackets.
 struct PlainHead {
   std::string name, bracket;
 };
@@ -158,13 +158,13 @@ std::optional<TableColumn> column_of(std::string_view head) {
 std::vector<TableColumn> columns_of(std::span<const std::string_view> cells, bool by_blanks) {
   std::vector<TableColumn> columns;
   for (std::size_t i = 0; i < cells.size();) {
-    // The longest run of words that is a head: "semi diameter (mm)".
+    // The longest run of words that is a known head: "semi diameter (mm)".
     std::size_t taken = 1;
     TableColumn column{.name = std::string(cells[i])};
     if (const auto known = column_of(cells[i])) column = *known;
     std::string joined(cells[i]);
     for (std::size_t more = 1; by_blanks && more < 4 && i + more < cells.size(); ++more) {
-      // Letters are heads of their own: "V D".
+      // Single letters are separate heads: "V D".
       const std::string_view next = cells[i + more];
       const bool in_brackets = next.starts_with('(') || next.starts_with('[');
       if (!in_brackets && (next.size() < 2 || cells[i].size() < 2)) break;
@@ -177,7 +177,7 @@ std::vector<TableColumn> columns_of(std::span<const std::string_view> cells, boo
     columns.push_back(std::move(column));
     i += taken;
   }
-  // Two heads have two meanings: "index" is a row number if there is "nd", and a second "d" ("r d n D") is a diameter.
+  // Two heads are ambiguous: "index" is a row number if there is "nd", and a second "d" ("r d n D") is a diameter.
   const auto find = [&](Column kind) { return std::ranges::find(columns, kind, &TableColumn::kind); };
   const auto second = [&](Column kind) {
     const auto first = find(kind);
@@ -205,7 +205,7 @@ std::vector<TableColumn> columns_of(std::span<const std::string_view> cells, boo
 bool is_head(std::span<const std::string_view> cells, bool by_blanks) {
   const auto is_data = [](std::string_view cell) { return looks_like_a_number(cell) || is_plane_word(cell); };
   const auto data = static_cast<std::size_t>(std::ranges::count_if(cells, is_data));
-  if (2 * data >= cells.size()) return false;  // numbers are no heads
+  if (2 * data >= cells.size()) return false;  // numbers are not heads
   const auto columns = columns_of(cells, by_blanks);
   const auto known =
       columns.size() - static_cast<std::size_t>(std::ranges::count(columns, Column::left_out, &TableColumn::kind));
@@ -214,10 +214,10 @@ bool is_head(std::span<const std::string_view> cells, bool by_blanks) {
 
 namespace {
 
-/// The numbers of rows behind radius and thickness, and behind a glass.
+/// The numbers of a row after radius and thickness, and its glass.
 struct Tail {
   std::vector<std::string_view> cells;
-  std::string_view glass;  ///< empty: none
+  std::string_view glass;  ///< empty if absent
 
   std::optional<double> number(std::size_t i) const {
     return i < cells.size() ? formats_detail::number(cells[i]) : std::nullopt;
@@ -226,7 +226,7 @@ struct Tail {
 
 constexpr double least_abbe = 15, most_abbe = 110;
 
-/// Indices of glasses, and 1 or 0 for air.
+/// True for indices of glasses, and for 1 or 0, which mean air.
 bool is_index(double value) { return value == 0 || (value >= 0.9 && value <= 5); }
 
 bool has_glass(const Tail& tail) {
@@ -234,7 +234,7 @@ bool has_glass(const Tail& tail) {
   return tail.number(0).value_or(0) > 1.01;
 }
 
-/// True if a column has the V-numbers of glasses, and 0 or nothing for air.
+/// True if a column can contain the V-numbers of glasses, with 0 or nothing for air.
 bool could_be_abbe(std::span<const Tail> tails, std::size_t column, bool strict_air) {
   return std::ranges::all_of(tails, [&](const Tail& tail) {
     const auto value = tail.number(column);
@@ -255,7 +255,7 @@ GuessedColumns guess_columns(std::span<const std::vector<std::string_view>> rows
     widest = std::max(widest, row.size());
     for (std::size_t i = 2; i < row.size(); ++i) {
       if (!is_glass_name(row[i])) continue;
-      if (glass_at && *glass_at != i) return refused("glasses stand in several columns");
+      if (glass_at && *glass_at != i) return refused("several columns contain glasses");
       glass_at = i;
     }
   }
@@ -286,12 +286,12 @@ GuessedColumns guess_columns(std::span<const std::vector<std::string_view>> rows
   std::vector<Column> kinds;
   using enum Column;
   if (numbers == 0 && !glass_at) return refused("no column has indices or glasses");
-  if (numbers > 3) return refused("rows of " + std::to_string(widest) + " cells have no usual order");
+  if (numbers > 3) return refused("rows of " + std::to_string(widest) + " cells have no common order");
   if (numbers == 1) kinds = {index_first ? index : aperture};
   if (numbers == 1 && !index_first && !glass_at) return refused("the third column has no indices");
-  if (numbers >= 2 && !index_first) return refused("the column behind the thickness has no indices");
+  if (numbers >= 2 && !index_first) return refused("the column after the thickness has no indices");
   if (numbers == 2) {
-    // Renderers' tables have an aperture in each row, patents no V-number for air.
+    // Tables of renderers have an aperture in each row; tables of patents have no V-number for air.
     const bool any_air = std::ranges::any_of(tails, std::not_fn(has_glass));
     kinds = {index, any_air && could_be_abbe(tails, 1, true) ? abbe : aperture};
   }

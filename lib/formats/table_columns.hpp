@@ -15,7 +15,7 @@ namespace petzval::formats_detail {
 /// The meaning of a column.
 enum class Column {
   left_out,
-  number,  ///< of the row
+  number,  ///< number of the row
   radius,
   curvature,
   thickness,
@@ -35,33 +35,34 @@ enum class Column {
 
 struct TableColumn {
   Column kind = Column::left_out;
-  std::string name;    ///< as the head prints it, for messages
-  int order = 0;       ///< of an aspheric term
-  double unit_mm = 1;  ///< of lengths
+  std::string name;    ///< the head, for messages
+  int order = 0;       ///< order of an aspheric term
+  double unit_mm = 1;  ///< unit of lengths
 };
 
-/// The column that a head names, in any case, with a unit in brackets: "R", "Radius (mm)", "nd", "A4". nullopt if the
-/// head is not known.
+/// The column of a head, in any case, with a unit in brackets: "R", "Radius (mm)", "nd", "A4". nullopt if the head is
+/// not known.
 std::optional<TableColumn> column_of(std::string_view head);
 
-/// The columns that the cells of a line name. Cells of a line that blanks separate are parts of heads: "semi diameter".
-/// Unknown heads are Column::left_out.
+/// The columns named by the cells of a line; unknown heads become Column::left_out.
+/// @param by_blanks true if blanks separate cells, so that a head may have several cells: "semi diameter"
 std::vector<TableColumn> columns_of(std::span<const std::string_view> cells, bool by_blanks);
 
-/// True if a line names columns: two or more known heads, and fewer numbers.
+/// True if a line names columns: it has at least two known heads, and fewer numbers.
 bool is_head(std::span<const std::string_view> cells, bool by_blanks);
 
-/// The unit that a cell below the heads names, in mm; nullopt if the cell is not a unit.
+/// The unit in mm named by a cell below the heads; nullopt if the cell is not a unit.
 std::optional<double> unit_of(std::string_view cell);
 
 /// The columns of rows without heads.
 struct GuessedColumns {
-  std::vector<TableColumn> columns;  ///< empty: the rows do not tell
-  std::string reason;                ///< of an empty one
+  std::vector<TableColumn> columns;  ///< empty if the rows are ambiguous
+  std::string reason;                ///< reason if `columns` is empty
 };
 
-/// The columns of rows without heads: radius, thickness, then index, V-number, glass and aperture by their values.
-/// Rows may be short. glasses: true if a glass of this name has about this index.
+/// Guesses the columns of rows without heads: radius, thickness, then index, V-number, glass and aperture by their
+/// values. Rows may be short.
+/// @param is_index_of true if a glass of this name has about this index
 GuessedColumns guess_columns(std::span<const std::vector<std::string_view>> rows,
                              const std::function<bool(std::string_view, double)>& is_index_of);
 

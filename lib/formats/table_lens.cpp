@@ -34,7 +34,7 @@ class TableBuilder {
   TableLens table_;
   std::vector<TableRow>& rows_;
   Import& in_;
-  std::set<std::string> named_;  ///< glasses of other makers that a warning has named
+  std::set<std::string> named_;  ///< glasses whose other makers were named in a warning
 };
 
 void TableBuilder::check(const TableRow& row) const {
@@ -47,11 +47,11 @@ void TableBuilder::check(const TableRow& row) const {
   if (row.index && *row.index != 0 && !(*row.index >= 0.1 && *row.index <= 5)) {
     in_.must_be(row.line, "index", to_text(*row.index), "0.1 to 5");
   }
-  if (row.aperture && !(*row.aperture >= 0)) in_.must_be(row.line, "aperture", to_text(*row.aperture), "0 or more");
+  if (row.aperture && !(*row.aperture >= 0)) in_.must_be(row.line, "aperture", to_text(*row.aperture), "at least 0");
 }
 
-/// The column of distances is the gap in front of each surface if the table says so, or if else the first glass would
-/// have no thickness.
+/// Moves distances behind their surfaces if the column states gaps in front of surfaces: if the table says so, or if
+/// the first glass would otherwise have no thickness.
 void TableBuilder::move_gaps_behind() {
   const TableRow& first = rows_.front();
   const bool guess = table_.gaps == TableGaps::unknown && rows_.size() > 1 && first.thickness == 0.0 &&
@@ -78,7 +78,7 @@ Medium TableBuilder::medium(const TableRow& row, const Medium& before) {
   if (!stated) {
     if (const auto code = medium_of_code(row.glass)) return *code;
   }
-  // A name without a maker is a glass of Schott, if Schott has this name.
+  // A name without a maker is a glass of Schott if Schott has this name.
   std::vector<std::string> catalogues;
   if (!row.catalogue.empty()) {
     catalogues.push_back(row.catalogue);
@@ -92,7 +92,7 @@ Medium TableBuilder::medium(const TableRow& row, const Medium& before) {
   return found;
 }
 
-/// One name may stand for several glasses: F2 has n_d 1.62004 at Schott and 1.61293 at CDGM.
+/// Warns if a name stands for several glasses: F2 has n_d 1.62004 at Schott and 1.61293 at CDGM.
 void TableBuilder::name_other_makers(const TableRow& row, const Medium& taken) {
   constexpr double another_glass = 1e-3;
   if (!taken.glass || !taken.catalogue || !named_.insert(*taken.glass).second) return;
@@ -104,8 +104,8 @@ void TableBuilder::name_other_makers(const TableRow& row, const Medium& taken) {
   }
   if (others.empty()) return;
   in_.warn(row.line, row.glass,
-           "is taken as that of " + glass->catalogue + " (n_d " + to_text(glass->nd, 6) + "), not of" +
-               others.substr(1) + "; a column \"catalogue\" names another");
+           "is taken from " + glass->catalogue + " (n_d " + to_text(glass->nd, 6) + "), not from" + others.substr(1) +
+               "; a column \"catalogue\" selects another");
 }
 
 void TableBuilder::choose_stop() {
@@ -116,7 +116,7 @@ void TableBuilder::choose_stop() {
   const auto is_star = [&](std::size_t i) { return rows_[i].stop == "*"; };
   if (marked.size() > 1 && std::ranges::all_of(marked, is_star)) {
     in_.warn(rows_[marked.front()].line, "*",
-             "marks " + std::to_string(marked.size()) + " surfaces, so it is not taken for the stop and is left out");
+             "marks " + std::to_string(marked.size()) + " surfaces, so it does not mark the stop and is left out");
     marked.clear();
   }
   if (marked.empty()) {
@@ -128,11 +128,11 @@ void TableBuilder::choose_stop() {
   if (marked.empty()) return;
   in_.lens.surfaces[marked.front()].stop = true;
   for (std::size_t i = 1; i < marked.size(); ++i) {
-    in_.warn(rows_[marked[i]].line, "stop", "a second one only limits rays; the first is the stop");
+    in_.warn(rows_[marked[i]].line, "stop", "a second stop only limits rays; the first is the stop");
   }
 }
 
-/// Tables have diameters or semi-diameters in one column.
+/// Takes the column of apertures, which are diameters or semi-diameters.
 void TableBuilder::take_apertures() {
   const auto has_one = [](const TableRow& row) { return row.aperture.value_or(0) > 0; };
   const auto first = std::ranges::find_if(rows_, has_one);
@@ -178,7 +178,7 @@ void TableBuilder::build() {
     in_.warn(air->line, "index",
              "is missing in " + std::to_string(air_rows) + (air_rows == 1 ? " row" : " rows") + "; air is taken");
   }
-  // A table may end in a plane for the film, with no distance behind the plane.
+  // A table may end with a plane for the film, without a distance behind it.
   const TableRow& last = rows_.back();
   const bool ends = last.thickness.value_or(0) == 0;
   in_.requests.last_plane_may_be_film = ends && rows_.size() > 1 && last.stop.empty() && last.index != 0.0;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Tables of surfaces as people type them: with heads or without, from patents, spreadsheets and renderers. A line is a
-// head, a row or a comment; there is no fourth kind, so that nothing is dropped. data/README.md describes the form.
+// Hand-typed tables of surfaces, with or without heads, from patents, spreadsheets and renderers. Each line is a head,
+// a row or a comment; there is no fourth kind, so that nothing is dropped. data/README.md describes the form.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -22,7 +22,7 @@ namespace {
 
 using io_detail::in_quotes;
 
-/// The mark of the stop behind the number of a row: "4(stop)", "4 STO", "4S"; empty without a mark.
+/// The mark of the stop after the number of a row: "4(stop)", "4 STO", "4S"; empty if there is no mark.
 std::string_view stop_mark_of(std::string_view label) {
   const std::size_t end = std::min(label.find_first_not_of("0123456789"), label.size());
   std::string_view mark = label.substr(end);
@@ -31,7 +31,7 @@ std::string_view stop_mark_of(std::string_view label) {
   return end > 0 && marks ? mark : std::string_view();
 }
 
-/// The number in front of a row: "3", "S3", "3*", "3.", "3(stop)"; nullopt for anything else.
+/// The number at the start of a row: "3", "S3", "3*", "3.", "3(stop)"; nullopt for other text.
 std::optional<int> label_of(std::string_view cell) {
   cell.remove_suffix(stop_mark_of(cell).size());
   if (cell.starts_with('S') || cell.starts_with('s') || cell.starts_with('#')) cell.remove_prefix(1);
@@ -43,12 +43,12 @@ std::optional<int> label_of(std::string_view cell) {
 bool is_object_word(std::string_view cell) { return is_one_of(cell, "obj object"); }
 bool is_image_word(std::string_view cell) { return is_one_of(cell, "ima img image film sensor si"); }
 
-/// In a column of comments "ASP" is an asphere, and "aperture" any rim.
+/// In a column of comments "ASP" means an asphere, and "aperture" any rim.
 bool marks_stop_in_comment(std::string_view cell) {
   return is_stop_word(cell) && !is_one_of(cell, "asp as ast aperture");
 }
 
-/// A row before its cells have meanings.
+/// A row before its cells are interpreted.
 struct RawRow {
   int line = 0;
   std::vector<std::string_view> cells{};
@@ -94,11 +94,11 @@ class TableReader {
   TableText text_;
   Import& in_;
   Columns columns_;
-  int head_line_ = 0;  ///< 0: the table has no head
+  int head_line_ = 0;  ///< 0 if the table has no head
   bool guessed_ = false;
   bool star_named_ = false;
   std::vector<RawRow> rows_;
-  std::string said_;  ///< comments, titles and the file's name
+  std::string said_;  ///< comments, titles and the file name
 };
 
 void TableReader::take_comments() {
@@ -108,7 +108,7 @@ void TableReader::take_comments() {
   }
 }
 
-/// A line of words in front of the table: its title.
+/// Takes a line of words before the table as its title.
 void TableReader::take_text(const TableLine& line) {
   std::string title;
   for (const std::string_view cell : line.cells) append(title, " ", beginning(cell, 4096));
@@ -118,7 +118,7 @@ void TableReader::take_text(const TableLine& line) {
   notes.insert(notes.begin(), std::move(title));
 }
 
-/// Lines with numbers and words in front of the head are titles: "50 mm f/5", "EPD 10".
+/// Lines with numbers and words before the head are titles: "50 mm f/5", "EPD 10".
 void TableReader::take_titles() {
   const auto is_value = [](std::string_view cell) {
     return looks_like_a_number(cell) || is_plane_word(cell) || is_none(cell) || is_stop_word(cell);
@@ -128,7 +128,7 @@ void TableReader::take_titles() {
   for (const RawRow& row : std::exchange(rows_, {})) take_text({row.line, row.cells, {}});
 }
 
-/// A last row may end behind its radius, or name its thickness in words: the film is at the paraxial focus.
+/// The last row may end after its radius, or describe its thickness in words: the film is at the paraxial focus.
 void TableReader::end_last_row() {
   const std::size_t thickness = find(Column::thickness);
   auto& cells = rows_.back().cells;
@@ -138,7 +138,7 @@ void TableReader::end_last_row() {
   if (is_one_of(cells[thickness], "bf bfl b.f. (bf) variable (variable)")) cells[thickness] = "-";
 }
 
-/// "mm mm - - mm" below the heads.
+/// Takes a line of units below the heads: "mm mm - - mm".
 bool TableReader::take_units(const TableLine& line) {
   if (head_line_ == 0 || !rows_.empty() || line.cells.size() > columns_.size()) return false;
   const auto is_unit = [](std::string_view cell) { return is_none(cell) || unit_of(cell); };
@@ -149,7 +149,7 @@ bool TableReader::take_units(const TableLine& line) {
   return true;
 }
 
-/// The columns of a head. Words that blanks separate may be one head or two ("Abbe no"): the rows tell.
+/// The columns of a head. Words separated by blanks may be one head or two ("Abbe no"); the rows decide.
 TableReader::Columns TableReader::columns_for_rows(const TableLine& head) const {
   std::size_t widest = 0;
   for (const TableLine& line : text_.lines) {
@@ -169,8 +169,8 @@ void TableReader::take_lines() {
     if (is_head(line.cells, by_blanks)) {
       if (head_line_ == 0) take_titles();
       if (!rows_.empty()) {
-        in_.must_be(line.number, "row", in_quotes(line.cells[0]) + " ..., a head behind rows",
-                    "one head in front of one table");
+        in_.must_be(line.number, "row", in_quotes(line.cells[0]) + " ..., a head after rows",
+                    "a single head before a single table");
       }
       columns_ = columns_for_rows(line);
       head_line_ = line.number;
@@ -183,7 +183,7 @@ void TableReader::take_lines() {
       take_text(line);
       continue;
     }
-    // A title with a number in it: "Cooke triplet 50 mm f/5".
+    // A title with a number: "Cooke triplet 50 mm f/5".
     const bool in_columns = line.cells.size() >= 2 && (is_data(line.cells[0]) || is_data(line.cells[1]));
     if (rows_.empty() && head_line_ == 0 && !in_columns && !is_stop_word(line.cells[0])) {
       take_text(line);
@@ -194,8 +194,8 @@ void TableReader::take_lines() {
   }
 }
 
-/// "# radius  thickness  n  aperture" in front of the rows, if all its words are heads and their number is the number
-/// of cells.
+/// Takes a comment before the rows as the head ("# radius  thickness  n  aperture") if all its words are heads and
+/// their number equals the number of cells.
 void TableReader::use_comment_as_head() {
   if (head_line_ != 0 || rows_.empty()) return;
   std::size_t widest = 0;
@@ -215,7 +215,7 @@ void TableReader::use_comment_as_head() {
   }
 }
 
-/// True if the first cells are 1, 2, 3, ..., with or without an S or a mark. The row of the stop may have no number.
+/// True if the first cells are 1, 2, 3, ..., with or without an S or a mark. The row of the stop may lack a number.
 bool TableReader::are_labels() const {
   std::optional<int> last;
   int labels = 0;
@@ -239,13 +239,13 @@ bool TableReader::are_labels() const {
 void TableReader::drop_labels() {
   if (has(Column::number)) return;
   if (head_line_ != 0) {
-    // A column of numbers that the heads do not name makes the rows one cell longer.
+    // A column of row numbers without a head makes the rows one cell longer.
     const bool wider =
         std::ranges::any_of(rows_, [&](const RawRow& row) { return row.cells.size() > columns_.size(); });
     if (!wider) return;
   }
   if (!are_labels()) return;
-  in_.warn(rows_.front().line, "columns", "the first one counts the rows, so it is not read");
+  in_.warn(rows_.front().line, "columns", "the first column counts the rows and is not read");
   for (RawRow& row : rows_) {
     if (is_stop_word(row.cells[0])) continue;
     row.object = is_object_word(row.cells[0]), row.image = is_image_word(row.cells[0]);
@@ -255,14 +255,14 @@ void TableReader::drop_labels() {
   }
 }
 
-/// The star of an aspheric surface in a patent; the first one is named.
+/// Warns once of a star, which marks aspheric surfaces in patents.
 void TableReader::name_star(int line, std::string_view label) {
   if (!std::exchange(star_named_, true)) {
-    in_.warn(line, label, "its mark * is left out: aspheric terms stand in columns with heads (k A4 A6)");
+    in_.warn(line, label, "its mark * is left out: aspheric terms need columns with heads (k A4 A6)");
   }
 }
 
-/// Heads must name radius, thickness and medium. Other heads are read, or named in a warning.
+/// Heads must name radius, thickness and medium. Other heads are read if known; unknown heads are named in a warning.
 void TableReader::check_head() const {
   std::string unknown;
   for (const TableColumn& column : columns_) {
@@ -275,7 +275,7 @@ void TableReader::check_head() const {
       return other.kind == column.kind && (once || (column.kind == Column::term && other.order == column.order));
     };
     if (std::ranges::count_if(columns_, same_kind) > 1) {
-      in_.must_be(head_line_, "head", in_quotes(column.name) + " beside another of its meaning", "one of them");
+      in_.must_be(head_line_, "head", in_quotes(column.name) + " and another head of its meaning", "a single one");
     }
   }
   const auto need = [&](bool given, const char* what) {
@@ -288,7 +288,7 @@ void TableReader::check_head() const {
   need(has(Column::thickness) || has(Column::gap_before), "thickness");
   need(has(Column::index) || has(Column::glass), "index");
   const int apertures = has(Column::semi_diameter) + has(Column::diameter) + has(Column::aperture);
-  if (apertures > 1) in_.must_be(head_line_, "head", "several columns of apertures", "one of them");
+  if (apertures > 1) in_.must_be(head_line_, "head", "several columns of apertures", "a single column");
   if (!unknown.empty()) {
     in_.warn(head_line_, "head", "has columns that are not known and are left out: " + unknown);
   }
@@ -311,7 +311,7 @@ void TableReader::guess() {
   }
   columns_ = std::move(found.columns);
   guessed_ = true;
-  // Index 0 is the mark of renderers' tables, which have these columns and no heads.
+  // Index 0 marks tables of renderers, which have these columns and no heads.
   const bool renderers =
       columns_.size() == 4 && columns_[2].kind == Column::index && columns_[3].kind == Column::aperture &&
       std::ranges::any_of(plain, [&](const auto& cells) { return cells.size() == 4 && text_.number(cells[2]) == 0.0; });
@@ -321,7 +321,7 @@ void TableReader::guess() {
   in_.warn(rows_.front().line, "columns", "have no heads; they are taken as " + names);
 }
 
-/// Takes the words that mark the stop, the object and the image out of a row.
+/// Removes the words that mark the stop, the object and the image from a row.
 void TableReader::take_marks(RawRow& row) {
   auto& cells = row.cells;
   const std::size_t width = columns_.size(),
@@ -332,7 +332,7 @@ void TableReader::take_marks(RawRow& row) {
     cells.erase(cells.begin() + static_cast<std::ptrdiff_t>(at));
   };
   const auto kind = [&](std::size_t at) { return at < width ? columns_[at].kind : Column::left_out; };
-  // The mark stands behind the row, or in front of a whole row.
+  // The mark follows the row, or precedes a complete row.
   const Column last = kind(cells.size() - 1);
   const bool of_words = last == Column::comment || last == Column::stop || last == Column::number;
   if (cells.size() > 1 && is_stop_word(cells.back()) && !of_words && cells.size() - 1 != radius) take(cells.size() - 1);
@@ -342,7 +342,7 @@ void TableReader::take_marks(RawRow& row) {
     cells.erase(cells.begin());
   }
   if (radius >= cells.size() || !is_stop_word(cells[radius])) return;
-  // In place of the radius, unless one follows.
+  // The mark replaces the radius, unless a radius follows.
   const auto zero = [&](std::size_t at) { return at < cells.size() && text_.number(cells[at]) == 0.0; };
   const bool followed = !text_.has_empty_cells() && radius + 2 < cells.size() && cells.size() != width &&
                         (is_plane_word(cells[radius + 1]) || zero(radius + 1));
@@ -353,8 +353,8 @@ void TableReader::take_marks(RawRow& row) {
   cells[radius] = "inf";
 }
 
-/// Rows that blanks separate may end early: behind the distances (air), or where only words, V-numbers and aspheric
-/// terms follow. Else it is not known which cell is missing.
+/// Rows with cells separated by blanks may end early: after the distances (air), or if only words, V-numbers and
+/// aspheric terms would follow. Otherwise the missing cell is ambiguous.
 void TableReader::check_width(const RawRow& row) const {
   const std::size_t width = columns_.size(), cells = row.cells.size();
   if (cells == width || (cells < width && text_.has_empty_cells() && !guessed_)) return;
@@ -362,7 +362,7 @@ void TableReader::check_width(const RawRow& row) const {
   for (const TableColumn& column : columns_) append(names, ", ", column.name);
   const auto refuse = [&] {
     in_.must_be(row.line, "row", std::to_string(cells) + (cells == 1 ? " cell" : " cells"),
-                std::to_string(width) + ": " + names + "; \"-\" for none");
+                std::to_string(width) + ": " + names + "; \"-\" for an empty cell");
   };
   if (cells > width) refuse();
   const auto tells_no_medium = [](const TableColumn& c) {
@@ -441,7 +441,7 @@ void TableReader::put(TableRow& row, const TableColumn& column, std::string_view
 TableRow TableReader::row_of(const RawRow& raw) {
   TableRow row{.line = raw.line, .stop = raw.stop, .in_medium = raw.stop_in_front};
   std::vector<std::string_view> cells = raw.cells;
-  // Without a glass the cell may be missing: what stands there is the next number.
+  // In a row without a glass the cell may be missing: its position then has the next number.
   const std::size_t glass = find(Column::glass);
   if (!text_.has_empty_cells() && cells.size() + 1 == columns_.size() && glass < cells.size() &&
       looks_like_a_number(cells[glass])) {
@@ -467,16 +467,16 @@ TableRow TableReader::row_of(const RawRow& raw) {
   return row;
 }
 
-/// The first row may be the object: it is called so, or is a plane infinitely far away.
+/// The first row may be the object: it is called so, or is a plane at infinity.
 void TableReader::take_object(const TableRow& row, const RawRow& raw) {
   const std::size_t thickness = find(Column::thickness);
   const bool far = thickness < raw.cells.size() && is_plane_word(raw.cells[thickness]);
-  if (row.radius != 0) in_.must_be(raw.line, "radius", to_text(row.radius) + " of the object", "a plane");
+  if (row.radius != 0) in_.must_be(raw.line, "radius", to_text(row.radius) + " of the object", "0 (a plane)");
   in_.warn(raw.line, "row", "is taken as the object");
   if (!far && row.thickness) in_.lens.design.object_distance_mm = *row.thickness;
 }
 
-/// True if a row has a radius only. A comment "film" of a surface does not make it the film.
+/// True if a row has only a radius. A comment "film" does not make a surface the film.
 bool TableReader::is_bare_plane(const RawRow& raw) const {
   for (std::size_t i = 0; i < std::min(raw.cells.size(), columns_.size()); ++i) {
     const Column kind = columns_[i].kind;
@@ -486,9 +486,9 @@ bool TableReader::is_bare_plane(const RawRow& raw) const {
   return true;
 }
 
-/// The last row may be the image. The row before states its distance.
+/// The last row may be the image. The previous row states its distance.
 void TableReader::take_image(const RawRow& raw, bool last) const {
-  if (!last) in_.must_be(raw.line, "row", "the image", "the last one");
+  if (!last) in_.must_be(raw.line, "row", "the image", "the last row");
   const std::size_t radius = find(Column::radius);
   if (radius < raw.cells.size() && text_.number(raw.cells[radius]).value_or(0) != 0) {
     in_.warn(raw.line, "radius", "of the image is left out: a film is flat");
@@ -542,7 +542,7 @@ void TableReader::read() {
       take_object(row, raw);
       continue;
     }
-    if (raw.object) in_.must_be(raw.line, "row", "the object", "the first one");
+    if (raw.object) in_.must_be(raw.line, "row", "the object", "the first row");
     if (endless) in_.must_be(raw.line, "thickness", in_quotes(raw.cells[thickness]), "a finite number");
     table.rows.push_back(std::move(row));
   }
@@ -552,7 +552,7 @@ void TableReader::read() {
 
 }  // namespace
 
-/// True if one of the first lines is a row: two numbers, or a plane and a number, behind a label or a mark.
+/// True if one of the first lines is a row: two numbers, or a plane and a number, after an optional label or mark.
 bool is_table(std::string_view text) {
   int tried = 0;
   bool head = false;

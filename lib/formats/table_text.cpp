@@ -14,7 +14,7 @@ bool is_comment(std::string_view line) {
   return line.starts_with('#') || line.starts_with("//") || line.starts_with(';') || line.starts_with('%');
 }
 
-/// The position of a comment behind a row: "#" or "//" behind a blank. A "#" between separators is a head.
+/// The position of a comment after a row: "#" or "//" after a blank. A "#" between separators is a head.
 std::size_t remark_start(std::string_view line) {
   for (std::size_t i = 1; i < line.size(); ++i) {
     const bool mark = line[i] == '#' || line.substr(i, 2) == "//";
@@ -56,13 +56,13 @@ std::vector<std::string_view> split(std::string_view line, char separator) {
   return cells;
 }
 
-/// "50,6   5,2": two numbers of a cell that a comma would cut out.
+/// True for two numbers in one cell, "50,6   5,2", which a comma would cut.
 bool has_two_numbers(std::string_view cell) {
   const auto parts = words(cell, 2);
   return parts.size() == 2 && looks_like_a_number(parts[0]) && looks_like_a_number(parts[1]);
 }
 
-/// A line of Markdown between its head and its rows: "|---|:-:|".
+/// True for the line of Markdown between head and rows: "|---|:-:|".
 bool is_rule(std::string_view line) { return line.find_first_not_of("|-: \t") == std::string_view::npos; }
 
 bool has_comma_for_point(std::string_view cell) {
@@ -75,7 +75,7 @@ bool has_comma_for_point(std::string_view cell) {
 
 }  // namespace
 
-/// The line with the minus signs and blanks of ASCII.
+/// The line with typographic minus signs and blanks replaced by ASCII.
 std::string_view TableText::in_ascii(std::string_view line) {
   static constexpr std::array<std::pair<std::string_view, char>, 8> signs = {{
       {"\u2212", '-'},
@@ -104,13 +104,13 @@ std::string_view TableText::in_ascii(std::string_view line) {
 }
 
 TableText::TableText(std::string_view text) {
-  std::vector<TableLine> raw;  // one cell each: the line
+  std::vector<TableLine> raw;  // one cell each: the whole line
   std::vector<TableLine> with_semicolon;
   for (Lines all(text); all.next();) {
     const std::string_view whole = in_ascii(all.text()), line = trimmed(whole);
     if (line.empty()) continue;
     if (is_comment(line)) {
-      // In a table of semicolons, a row with an empty first cell begins like a comment.
+      // In a table separated by semicolons, a row with an empty first cell begins like a comment.
       if (line.starts_with(';') && std::ranges::count(line, ';') > 2) {
         with_semicolon.push_back({all.number(), {line}, {}});
         continue;
@@ -119,7 +119,7 @@ TableText::TableText(std::string_view text) {
       comments.push_back({all.number(), trimmed(line.substr(start))});
       continue;
     }
-    // Tabs in front of a row may be empty cells.
+    // Tabs before a row may be empty cells.
     const std::size_t end = remark_start(whole);
     const std::string_view mark = whole.substr(end);
     raw.push_back({all.number(),
@@ -152,7 +152,7 @@ TableText::TableText(std::string_view text) {
   decimal_commas_ = decimal_commas_ && !points;
 }
 
-/// The first line may be a title.
+/// Chooses the separator. The first line is ignored, as it may be a title.
 void TableText::choose_separator(const std::vector<TableLine>& raw) {
   const std::size_t first = raw.size() > 1 ? 1 : 0;
   const auto all_lines_have = [&](char c) {
@@ -168,7 +168,7 @@ void TableText::choose_separator(const std::vector<TableLine>& raw) {
   };
   if (all_lines_have('|')) {
     separator_ = '|';
-    // Markdown: one bar more, in front of each line. If only some lines begin with a bar, it follows an empty cell.
+    // Markdown: an additional bar starts each line. If only some lines begin with a bar, it follows an empty cell.
     bars_in_front_ = std::ranges::all_of(raw, [](const auto& l) { return trimmed(l.cells[0]).starts_with('|'); });
   } else if (all_lines_have(';')) {
     separator_ = ';';

@@ -13,8 +13,8 @@ namespace petzval::formats_detail {
 /// A line of a table that is not a comment.
 struct TableLine {
   int number = 0;
-  std::vector<std::string_view> cells;  ///< without blanks and quotes; not empty, and its last cell is not empty
-  std::string_view remark;              ///< behind a comment mark
+  std::vector<std::string_view> cells;  ///< without blanks and quotes; at least one, and the last is not empty
+  std::string_view remark;              ///< after a comment mark
 };
 
 /// A comment of a table, without its mark.
@@ -23,11 +23,11 @@ struct TableComment {
   std::string_view text;
 };
 
-/// The lines of a table that someone typed, as cells. Cells are separated by blanks, tabs, commas, semicolons or bars;
-/// the whole table decides by which. Minus signs and blanks of typesetting are replaced by ASCII.
+/// The lines of a hand-typed table, as cells. Cells are separated by blanks, tabs, commas, semicolons or bars, the same
+/// in the whole table. Typographic minus signs and blanks are replaced by ASCII.
 class TableText {
  public:
-  static constexpr std::size_t most_cells = 64;  ///< one more is kept, for the message
+  static constexpr std::size_t most_cells = 64;  ///< one more cell is kept, for the message
 
   explicit TableText(std::string_view text);
   TableText(const TableText&) = delete;
@@ -37,13 +37,13 @@ class TableText {
   std::vector<TableComment> comments;
 
   char separator() const noexcept { return separator_; }  ///< ' ', '\t', ',', ';' or '|'
-  /// True if an empty cell keeps its column: cells are not separated by blanks.
+  /// True if an empty cell keeps its column: the separator is not a blank.
   bool has_empty_cells() const noexcept { return separator_ != ' '; }
   /// True if numbers have a decimal comma: cells are separated by semicolons, and no number has a point.
   bool has_decimal_commas() const noexcept { return decimal_commas_; }
   /// The cells of a text, with the separator of the table.
   std::vector<std::string_view> cells_of(std::string_view text) const;
-  /// The number of a cell; nullopt if the cell is not a finite number.
+  /// The number in a cell; nullopt if the cell is not a finite number.
   std::optional<double> number(std::string_view cell) const;
 
  private:
@@ -56,13 +56,13 @@ class TableText {
   bool decimal_commas_ = false;
 };
 
-/// True if a cell is a number, or was meant as one: "1,5", "nan", "5x".
+/// True if a cell is a number or was meant to be: "1,5", "nan", "5x".
 bool looks_like_a_number(std::string_view cell);
-/// True for "inf", "Infinity", "plano", "flat", ..., with or without a sign: the words for the radius of a plane.
+/// True for the words for the radius of a plane, with or without a sign: "inf", "Infinity", "plano", "flat", ...
 bool is_plane_word(std::string_view cell);
 /// True for the words that mark the aperture stop, and for "*".
 bool is_stop_word(std::string_view cell);
-/// True for an empty cell, "-", "--", "none", "n/a" and ".".
+/// True for an empty cell and for "-", "--", "---", "none", "n/a" and ".".
 bool is_none(std::string_view cell);
 
 }  // namespace petzval::formats_detail

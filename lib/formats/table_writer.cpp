@@ -12,11 +12,11 @@ namespace {
 
 using namespace formats_detail;
 
-/// Readers take a thickness of 0 of the first glass for gaps in front of surfaces, and of the last surface for a film
-/// that has no position yet.
+/// Readers interpret a thickness of 0 of the first glass as gaps in front of surfaces, and of the last surface as a
+/// film without a position.
 constexpr double nearly_zero = 1e-9;
 
-/// Renderers take radius 0 for the stop. A sphere this flat departs from a plane by 5e-5 mm at 10 mm from the axis.
+/// Renderers interpret radius 0 as the stop. A sphere this flat departs from a plane by 5e-5 mm at 10 mm from the axis.
 constexpr double nearly_plane = 1e6;
 
 std::string cells(double radius, double thickness, double index, double diameter) {
@@ -44,17 +44,17 @@ WrittenLens format_table(const Prescription& prescription, const GlassCatalogue*
   out.refuse_closed_rims("table");
   if (!p.object_space.is_air()) {
     throw Error(out.where() + ": a medium of index " + to_text(out.index(p.object_space)) +
-                " in front of the lens, wanted air for a table");
+                " in front of the lens; must be air for a table");
   }
   bool disperses = false, planes = false, open = false, obscured = false;
   const SurfaceRow* first_stop = nullptr;
   double before = 1;
   for (std::size_t i = 0; i < p.surfaces.size(); ++i) {
     const SurfaceRow& row = p.surfaces[i];
-    if (row.mirror) out.refuse(i, "a mirror", "refracting surfaces for a table");
-    if (row.curved_in != Section::both) out.refuse(i, "a cylinder", "spheres for a table");
-    if (row.conic != 0 && row.radius != 0) out.refuse(i, "a conic", "spheres for a table");
-    if (!row.aspheric.empty()) out.refuse(i, "an asphere", "spheres for a table");
+    if (row.mirror) out.refuse(i, "a mirror", "a refracting surface for a table");
+    if (row.curved_in != Section::both) out.refuse(i, "a cylinder", "a sphere for a table");
+    if (row.conic != 0 && row.radius != 0) out.refuse(i, "a conic", "a sphere for a table");
+    if (!row.aspheric.empty()) out.refuse(i, "an asphere", "a sphere for a table");
     disperses = disperses || row.medium.vd || row.medium.glass;
     obscured = obscured || row.obscuration_semi_diameter.value_or(0) > 0;
     const bool limited = row.semi_diameter && std::isfinite(*row.semi_diameter);
@@ -66,7 +66,8 @@ WrittenLens format_table(const Prescription& prescription, const GlassCatalogue*
     double thickness = row.thickness;
     if (thickness == 0 && ((i == 0 && index != 1) || i + 1 == p.surfaces.size())) {
       thickness = nearly_zero;
-      out.lose("thickness", "of 0 behind surface " + std::to_string(i) + " is written as 1e-9 mm: readers take 0 for " +
+      out.lose("thickness", "of 0 behind surface " + std::to_string(i) +
+                                " is written as 1e-9 mm: readers interpret 0 as " +
                                 (i == 0 ? "gaps in front of surfaces" : "a film without a position"));
     }
     if (is_stop && row.radius == 0 && index == 1 && before == 1) {
@@ -74,7 +75,7 @@ WrittenLens format_table(const Prescription& prescription, const GlassCatalogue*
     } else {
       const double radius = row.radius == 0 ? nearly_plane : row.radius;
       planes = planes || row.radius == 0;
-      // A stop on a lens surface becomes a row of its own, in air beside it.
+      // A stop on a lens surface becomes a separate row, on the side of the surface that is air.
       if (is_stop && before == 1) {
         out.line(cells(0, 0, 0, diameter));
         out.line(cells(radius, thickness, index, diameter));
@@ -91,8 +92,8 @@ WrittenLens format_table(const Prescription& prescription, const GlassCatalogue*
     before = index;
   }
   if (planes) out.lose("radius", "of planes is written as 1e6 mm, as 0 marks the stop");
-  if (disperses) out.lose("vd", "the dispersion of glasses is lost: a table has n_d alone");
-  if (open) out.lose("semi_diameter", "surfaces without one get the largest of the others");
+  if (disperses) out.lose("vd", "the dispersion of glasses is lost: a table has only n_d");
+  if (open) out.lose("semi_diameter", "surfaces without a semi-diameter get the largest of the others");
   if (obscured) out.lose("inner_semi_diameter", "central obscurations are lost");
   if (p.configurations.size() > 1) out.lose("configurations", "all but the first are lost");
   return out.take();

@@ -28,7 +28,7 @@ void append_utf8(std::string& text, std::uint32_t code) {
   }
 }
 
-/// A unit without its partner becomes the replacement character.
+/// Converts UTF-16; an unpaired surrogate becomes the replacement character.
 std::string from_utf16(std::string_view bytes, bool big_endian) {
   std::string text;
   text.reserve(bytes.size() / 2 + bytes.size() / 16);
@@ -66,7 +66,7 @@ std::string from_latin1(std::string_view bytes) {
   return text;
 }
 
-/// What the first bytes of a file that is no text say it is.
+/// The kind of a binary file by its first bytes; empty if not known.
 std::string_view kind_of(std::string_view bytes) {
   using namespace std::string_view_literals;
   static constexpr std::array<std::pair<std::string_view, std::string_view>, 8> kinds = {{
@@ -89,13 +89,13 @@ std::string_view kind_of(std::string_view bytes) {
 
 std::string as_utf8(std::string bytes, const std::string& where, const std::string& wanted) {
   if (const auto kind = kind_of(bytes); !kind.empty()) {
-    throw Error(where + ": is " + std::string(kind) + ", wanted " + wanted);
+    throw Error(where + ": is " + std::string(kind) + "; must be " + wanted);
   }
   if (bytes.starts_with("\xFF\xFE")) return from_utf16(std::string_view(bytes).substr(2), false);
   if (bytes.starts_with("\xFE\xFF")) return from_utf16(std::string_view(bytes).substr(2), true);
   if (bytes.starts_with("\xEF\xBB\xBF")) bytes.erase(0, 3);
 
-  // Text of Latin letters has a zero in every other byte of UTF-16, and nowhere else.
+  // UTF-16 of Latin letters has a zero in every other byte, and nowhere else.
   const std::size_t looked_at = std::min<std::size_t>(bytes.size() & ~std::size_t{1}, 4096);
   std::array<std::size_t, 2> zeros{};
   for (std::size_t i = 0; i < looked_at; ++i) zeros[i % 2] += bytes[i] == '\0';
@@ -104,7 +104,8 @@ std::string as_utf8(std::string bytes, const std::string& where, const std::stri
     if (zeros[big ? 0 : 1] * 4 >= looked_at && zeros[big ? 1 : 0] * 16 <= looked_at) return from_utf16(bytes, big);
   }
   if (bytes.find('\0') != std::string::npos) {
-    throw Error(where + ": byte " + std::to_string(bytes.find('\0')) + " is 0, so it is no text, wanted " + wanted);
+    throw Error(where + ": byte " + std::to_string(bytes.find('\0')) + " = 0, so the file is not text; must be " +
+                wanted);
   }
   return is_utf8(bytes) ? std::move(bytes) : from_latin1(bytes);
 }
@@ -155,7 +156,7 @@ std::string_view trimmed(std::string_view text) {
 
 std::optional<double> number(std::string_view word) {
   if (word.starts_with('+')) word.remove_prefix(1);
-  // FORTRAN's exponents: 1.0D+10.
+  // Exponents of FORTRAN: 1.0D+10.
   std::string with_e;
   if (const std::size_t d = word.find_first_of("dD"); d != std::string_view::npos && d > 0 && word.size() < 64) {
     with_e = word;

@@ -18,7 +18,7 @@ namespace petzval::formats_detail {
 
 namespace {
 
-/// The rows in the first configuration. What it changes, the others change back.
+/// The rows in the first configuration. Its changes are undone in the other configurations.
 Prescription first_rows(const Prescription& lens) {
   if (lens.configurations.empty()) return lens;
   Prescription rows = configured(lens, 0);
@@ -50,21 +50,21 @@ Writer::Writer(const Prescription& lens, const GlassCatalogue* glasses)
   mark_the_stop();
 }
 
-/// Programs take the first surface where no stop is marked.
+/// Marks the stop, as other programs use the first surface if no stop is marked.
 void Writer::mark_the_stop() {
   const auto marked = std::ranges::find_if(lens_.surfaces, &SurfaceRow::stop);
   if (marked != lens_.surfaces.end()) {
     if (!std::isfinite(marked->semi_diameter.value_or(HUGE_VAL)))
-      lose("stop", "has no rim; other programs give it that of the aperture");
+      lose("stop", "has no rim; other programs give it the rim of the aperture");
     return;
   }
   Prescription rows = lens_;
   rows.configurations.clear();
   const Lens lens = compiled(rows);
-  if (!has_pupils(lens)) return lose("stop", "none is marked, and no rim limits the beam");
+  if (!has_pupils(lens)) return lose("stop", "is not marked, and no rim limits the beam");
   const std::size_t stop = pupils(lens, {}, main_meridian(lens)).stop;
   lens_.surfaces[stop].stop = true;
-  lose("stop", "none is marked; surface " + std::to_string(stop) + ", whose rim limits the beam, becomes the stop");
+  lose("stop", "is not marked; surface " + std::to_string(stop) + ", whose rim limits the beam, becomes the stop");
 }
 
 void Writer::lose_the_wider_stop() {
@@ -80,12 +80,12 @@ void Writer::lose_the_wider_stop() {
   if (!std::isfinite(rim) || !(height > 0) || !std::isfinite(height) || rim <= 1.01 * height) return;
   lose("stop", "its rim of " + to_text(rim, 6) + " mm is wider than the declared " +
                    std::string(name(aperture->setting)) + " of " + to_text(aperture->value, 6) +
-                   ", which other programs take: " + to_text(height, 6) + " mm");
+                   ", which other programs use: " + to_text(height, 6) + " mm");
 }
 
 void Writer::refuse_closed_rims(const std::string& format) const {
   const auto check = [&](std::size_t surface, const std::optional<double>& semi_diameter) {
-    if (semi_diameter == 0.0) refuse(surface, "semi_diameter is 0 mm", "a rim that is not closed for a " + format);
+    if (semi_diameter == 0.0) refuse(surface, "semi_diameter = 0 mm", "positive for a " + format);
   };
   for (std::size_t i = 0; i < lens_.surfaces.size(); ++i) check(i, lens_.surfaces[i].semi_diameter);
   for (const Configuration& c : lens_.configurations) {
@@ -100,13 +100,13 @@ void Writer::state_indices_at_d() {
     if (!medium.nd) return;
     double& nd = *medium.nd;
     if (const Glass* found = glass(medium)) {
-      // An index from the formula or from the printed table means the glass itself.
+      // An index equal to the formula or to the printed table means the glass itself.
       const bool printed = reference == d_line_nm && nd == found->nd;
       const double off = std::abs(nd - index_at(*found, reference).value_or(HUGE_VAL));
       if (printed || off <= 1e-10) {
         if (std::isfinite(off)) rounding = std::max(rounding, off);
         medium.nd.reset();
-        medium.catalogue = found->catalogue;  // without it the name may be ambiguous
+        medium.catalogue = found->catalogue;  // the name may be ambiguous
       } else if (reference != d_line_nm) {
         nd += refractive_index(*found, d_line_nm) - refractive_index(*found, reference);
       }
@@ -123,7 +123,7 @@ void Writer::state_indices_at_d() {
   }
   if (rounding > 1e-10) {
     lose("nd",
-         "indices printed in the glass tables become those of the formulas, up to " + to_text(rounding, 2) + " away");
+         "indices printed in the glass tables are replaced by the formulas, up to " + to_text(rounding, 2) + " away");
   }
   if (reference == d_line_nm) return;
   if (lens_.design.wavelengths.empty()) lens_.design.wavelengths = {{reference, 1}};
@@ -131,7 +131,7 @@ void Writer::state_indices_at_d() {
 }
 
 void Writer::refuse(std::size_t surface, const std::string& found, const std::string& wanted) const {
-  throw Error(where_ + ": surface " + std::to_string(surface) + ": " + found + ", wanted " + wanted);
+  throw Error(where_ + ": surface " + std::to_string(surface) + ": " + found + "; must be " + wanted);
 }
 
 void Writer::lose_nominal_data(bool design_data, std::initializer_list<std::string_view> kept) {
@@ -152,7 +152,7 @@ void Writer::lose_nominal_data(bool design_data, std::initializer_list<std::stri
   for (const auto& [name, given] : all) {
     if (given && std::ranges::find(kept, name) == kept.end()) append(lost, ", ", name);
   }
-  if (!lost.empty()) lose("nominal data", "and sources have no place in this format: " + lost);
+  if (!lost.empty()) lose("nominal data", "and sources cannot be stored in this format: " + lost);
 }
 
 const GlassCatalogue& Writer::glasses() {

@@ -28,13 +28,13 @@ bool changes_nothing(const ZemaxSurface& s) {
   return std::ranges::all_of(s.parameters, [](const auto& p) { return p.first > 5 || p.second == 0; });
 }
 
-/// A plane without glass on either side, as a place for breaks to stand at.
+/// True for a plane without glass on either side, which only positions breaks.
 bool is_dummy(const ZemaxSurface& s, const ZemaxSurface& before) {
   return s.type == "STANDARD" && s.curvature == 0 && !s.stop && !s.glass && !before.glass && !s.aperture &&
          !s.obscuration && !s.ring;
 }
 
-/// The number of a parameter that is the only one; nothing if there are several.
+/// The number of the only parameter that is not 0; nullopt if there are several.
 std::optional<int> only_parameter(const ZemaxSurface& s) {
   std::optional<int> only;
   for (int i = 1; i <= 5; ++i) {
@@ -56,7 +56,7 @@ bool undoes(const ZemaxSurface& second, const ZemaxSurface& first) {
   return true;
 }
 
-/// Two equal tilts about x or y at a plane mirror: the axis follows the mirrored light.
+/// True for two equal tilts about x or y at a plane mirror: the axis follows the mirrored light.
 bool is_fold(std::span<const ZemaxSurface> three) {
   const auto tilt = only_parameter(three[0]);
   return is_break(three[0]) && is_break(three[2]) && (tilt == 3 || tilt == 4) && only_parameter(three[2]) == tilt &&
@@ -65,7 +65,7 @@ bool is_fold(std::span<const ZemaxSurface> three) {
          three[1].glass->name == "MIRROR" && !three[1].stop;
 }
 
-/// A break is no surface: what it says of one is left out.
+/// Warns of surface data at a break, which is not a surface.
 void warn_of_surface(const ZemaxSurface& found, Import& in) {
   std::string said;
   const auto add = [&](bool is_there, std::string_view what) {
@@ -75,10 +75,10 @@ void warn_of_surface(const ZemaxSurface& found, Import& in) {
   add(found.conic != 0, "CONI");
   add(found.glass.has_value(), found.glass ? "GLAS " + found.glass->name : "");
   add(found.aperture || found.obscuration || found.ring, "aperture");
-  if (!said.empty()) in.warn(found.line, "COORDBRK", "is no surface; its " + said + " is left out");
+  if (!said.empty()) in.warn(found.line, "COORDBRK", "is not a surface; its " + said + " is left out");
 }
 
-/// Behind a mirror that is taken out light runs the other way along z.
+/// Inverts a surface behind a removed mirror, where light travels the other way along z.
 void turn(ZemaxSurface& s) {
   const auto opposite = [](double& value) { value = 0.0 - value; };
   opposite(s.thickness);
@@ -102,7 +102,7 @@ void fold_breaks(Surfaces& surfaces, std::vector<int>& place, Import& in) {
     kept.push_back(std::move(surfaces[i]));
     kept_place.push_back(place[i]);
   };
-  // Takes out surfaces up to `end`: the surface in front gets the thickness of the last.
+  // Removes surfaces up to `end`: the surface in front gets the thickness of the last.
   const auto take_out = [&](std::size_t end) {
     const double thickness = surfaces[end - 1].thickness;
     kept.back().thickness += turned ? 0.0 - thickness : thickness;
@@ -140,9 +140,10 @@ void fold_breaks(Surfaces& surfaces, std::vector<int>& place, Import& in) {
       i = take_out(end + 1);
       continue;
     }
-    in.refuse(found.line, "COORDBRK",
-              "a tilt or decentre of surface " + std::to_string(place[i]) + " that stays, or has glass within it",
-              "a centred lens, with folds by plane mirrors at most");
+    in.refuse(
+        found.line, "COORDBRK",
+        "a tilt or decentre of surface " + std::to_string(place[i]) + " that is not undone, or has glass within it",
+        "a centred lens, folded only by plane mirrors");
   }
   surfaces = std::move(kept);
   place = std::move(kept_place);

@@ -18,10 +18,10 @@ namespace {
 
 using Surfaces = std::vector<ZemaxSurface>;
 
-// Thicknesses of 1e10 and more stand for infinity.
+// Thicknesses of 1e10 and more mean infinity.
 constexpr double endless = 1e10;
 
-/// Fits as the file's digits do: values are stored with 12 and more.
+/// True if two values agree within the digits of files, which store at least 12.
 bool agree(double a, double b) { return std::abs(a - b) <= 1e-9 * std::max(std::abs(a), std::abs(b)) + 1e-15; }
 
 double radius_of(double curvature) { return curvature == 0 ? 0 : 1 / curvature; }
@@ -32,7 +32,7 @@ class Pickups {
  public:
   Pickups(Surfaces& surfaces, Import& in) : surfaces_(surfaces), in_(in) {}
 
-  /// In the order of surfaces: a pickup may be of one before that is picked up itself.
+  /// Evaluates pickups in the order of surfaces, as the source of a pickup may be picked up itself.
   void evaluate() {
     for (std::size_t i = 0; i < surfaces_.size(); ++i) {
       ZemaxSurface& s = surfaces_[i];
@@ -47,10 +47,10 @@ class Pickups {
  private:
   const ZemaxSurface& source(std::size_t i, int line, const char* command, int surface) const {
     if (surface >= 0 && static_cast<std::size_t>(surface) < i) return surfaces_[static_cast<std::size_t>(surface)];
-    in_.refuse(line, command, "picked up from surface " + std::to_string(surface), "a surface before it");
+    in_.refuse(line, command, "a pickup from surface " + std::to_string(surface), "a pickup from an earlier surface");
   }
 
-  /// The value of a pickup or solve; the file's digits where they agree with it.
+  /// Sets the value of a pickup or solve; keeps the digits of the file if they agree.
   void set(int line, const char* command, double& value, double wanted) const {
     if (agree(value, wanted)) return;
     in_.warn(line, command,
@@ -64,7 +64,7 @@ class Pickups {
     set(pickup.line, command, surfaces_[i].*member, picked * pickup.scale + pickup.offset);
   }
 
-  /// The thickness that makes the sum of two, or of all from one on, the total.
+  /// Sets a thickness so that its sum with one thickness, or with all from a surface on, equals the total.
   void complete(std::size_t i, const ZemaxPickup& sum, const char* command, bool all) {
     source(i, sum.line, command, sum.surface);
     double rest = sum.offset;
@@ -113,10 +113,10 @@ class Rows {
 Medium Rows::medium(const ZemaxGlass& glass) {
   if (same(glass.name, "AIR") || same(glass.name, "VACUUM")) return {};
   if (glass.model) {
-    if (!glass.nd) in_.refuse(glass.line, "GLAS", "a model without n_d", "its n_d");
+    if (!glass.nd) in_.refuse(glass.line, "GLAS", "a model without n_d", "a model with n_d");
     return {.nd = *glass.nd, .vd = glass.vd};
   }
-  // OpticStudio looks into the catalogues of GCAT, or of Schott if the file has no GCAT.
+  // OpticStudio searches the catalogues of GCAT, or Schott if the file has no GCAT.
   static const std::vector<std::string> by_default{"SCHOTT"};
   const auto code = medium_of_code(glass.name);
   Medium result = code ? *code
@@ -125,7 +125,7 @@ Medium Rows::medium(const ZemaxGlass& glass) {
   if (glass.vd_offset != 0) {
     in_.warn(
         glass.line, "GLAS",
-        "V_d is offset by " + to_text(glass.vd_offset) + "; the dispersion of " + glass.name + " is taken as it is");
+        "V_d is offset by " + to_text(glass.vd_offset) + "; the dispersion of " + glass.name + " is taken unchanged");
   }
   if (glass.nd_offset == 0) return result;
   if (!result.nd) {
@@ -139,10 +139,9 @@ Medium Rows::medium(const ZemaxGlass& glass) {
 void Rows::term(const ZemaxSurface& s, int order, double coefficient, SurfaceRow& row) const {
   if (coefficient == 0) return;
   if (order < 2) {
-    in_.refuse(s.line, s.type, "with a term of order " + std::to_string(order) + ", a cone",
-               "terms of order 2 and more");
+    in_.refuse(s.line, s.type, "a term of order " + std::to_string(order) + ", a cone", "of order 2 or higher");
   }
-  if (order > 40) in_.refuse(s.line, s.type, "with a term of order " + std::to_string(order), "orders up to 40");
+  if (order > 40) in_.refuse(s.line, s.type, "a term of order " + std::to_string(order), "of order 40 or less");
   row.aspheric.push_back({order, coefficient});
 }
 
@@ -154,8 +153,8 @@ void Rows::asphere(const ZemaxSurface& s, SurfaceRow& row) const {
     for (const auto& [number, value] : s.parameters) {
       if (value == 0) continue;
       if (number < 1 || number > last) {
-        in_.refuse(s.line, s.type, "with PARM " + std::to_string(number) + " of " + to_text(value),
-                   "terms of PARM 1 to " + std::to_string(last));
+        in_.refuse(s.line, s.type, "PARM " + std::to_string(number) + " of " + to_text(value),
+                   "PARM 1 to " + std::to_string(last));
       }
       const int order = step * number;
       term(s, order, value * std::pow(unit_, 1 - order), row);
@@ -163,7 +162,7 @@ void Rows::asphere(const ZemaxSurface& s, SurfaceRow& row) const {
     return;
   }
   if (s.type == "XASPHERE" || s.type == "XOSPHERE") {
-    // Terms in (r / r0), as many as the first number says.
+    // Terms in (r / r0); the first number is their count.
     const auto extra = [&](int i) {
       const auto found = s.extra.find(i);
       return found == s.extra.end() ? 0.0 : found->second;
@@ -175,7 +174,7 @@ void Rows::asphere(const ZemaxSurface& s, SurfaceRow& row) const {
     for (int i = 1; i <= static_cast<int>(count); ++i) {
       const int order = step * i;
       if (extra(i + 2) == 0) continue;
-      if (!(r0 > 0)) in_.refuse(s.line, s.type, "normalised to a radius of " + to_text(r0), "one above 0");
+      if (!(r0 > 0)) in_.refuse(s.line, s.type, "a normalisation radius of " + to_text(r0), "positive");
       term(s, order, extra(i + 2) * unit_ * std::pow(r0, -order), row);
     }
     return;
@@ -192,8 +191,10 @@ void Rows::asphere(const ZemaxSurface& s, SurfaceRow& row) const {
              "STANDARD, EVENASPH, ODDASPHE, XASPHERE, XOSPHERE, COORDBRK, or a TOROIDAL that is a cylinder");
 }
 
-/// Clear apertures (CLAP, FLAP) clip; so do semi-diameters (DIAM) of elements, the user's or the width of the design's
-/// beams, and the user's of the stop. Dummy surfaces, with one medium on both sides, clip only by a clear aperture.
+/// Sets the rim and the obscuration of a surface.
+/// Clear apertures (CLAP, FLAP) clip. Semi-diameters (DIAM) clip at elements, set by the user or by the width of the
+/// design's beams, and at the stop if set by the user. Dummy surfaces, with the same medium on both sides, clip only by
+/// a clear aperture.
 void Rows::rims(const ZemaxSurface& s, const Medium& before, SurfaceRow& row) const {
   row.obscuration_semi_diameter = s.obscuration;
   const bool dummy = !row.mirror && row.medium == before;
@@ -201,16 +202,16 @@ void Rows::rims(const ZemaxSurface& s, const Medium& before, SurfaceRow& row) co
   const bool floats = aperture && aperture->setting == ApertureSetting::stop_size;
   if (s.semi_diameter > 0 && (s.stop ? s.fixed_semi_diameter || floats : !dummy)) row.semi_diameter = s.semi_diameter;
   if (s.aperture) {
-    // A clear aperture of the stop clips the beam that the size of the stop launches.
+    // A clear aperture of the stop clips the beam launched by the size of the stop.
     row.semi_diameter = s.stop && floats ? std::min(*s.aperture, row.semi_diameter.value_or(*s.aperture)) : *s.aperture;
   }
   if (s.ring) clip_by_ring(s, row);
   if (row.obscuration_semi_diameter && row.semi_diameter && *row.semi_diameter <= *row.obscuration_semi_diameter) {
-    row.semi_diameter.reset();  // the width of the beam that passes beside it
+    row.semi_diameter.reset();  // the width of the beam passing outside
   }
 }
 
-/// An opaque ring that reaches the rim leaves an opening of its inner radius.
+/// An opaque ring that reaches the rim leaves an opening with its inner radius.
 void Rows::clip_by_ring(const ZemaxSurface& s, SurfaceRow& row) const {
   const double rim = s.aperture.value_or(s.semi_diameter);
   if (!(rim > 0) || s.ring->outer < rim * (1 - 1e-9)) {
@@ -226,7 +227,7 @@ void Rows::clip_by_ring(const ZemaxSurface& s, SurfaceRow& row) const {
 SurfaceRow Rows::row(const ZemaxSurface& s, const Medium& before) {
   SurfaceRow row{.radius = radius_of(s.curvature), .thickness = s.thickness};
   if (std::abs(row.thickness) >= endless) {
-    in_.refuse(s.line, "DISZ", "infinite behind a surface of the lens", "a finite thickness");
+    in_.refuse(s.line, "DISZ", "infinite behind a surface of the lens", "finite");
   }
   row.conic = s.conic;
   row.stop = s.stop;
@@ -244,7 +245,7 @@ SurfaceRow Rows::row(const ZemaxSurface& s, const Medium& before) {
 
 // --- configurations ---------------------------------------------------------------------------------------------
 
-/// Operands that change nothing of the lens: weights, coatings, comments, drawing.
+/// Operands that do not change the lens: weights, coatings, comments, drawing.
 constexpr std::string_view silent_operands = "MOFF FLWT WLWT COTN CWGT GCRS NCOM MCOM SDRW";
 
 class Configurations {
@@ -260,14 +261,15 @@ class Configurations {
   SurfaceChange& change(Configuration& c, const ZemaxOperand& operand);
 
   const ZemaxLens& zemax_;
-  const std::vector<int>& place_;  ///< of the rows: their numbers in the file, the object not counted
+  const std::vector<int>& place_;  ///< [row] number of the surface in the file
   double unit_;
   Rows& rows_;
   Import& in_;
-  std::map<std::pair<std::string, int>, std::pair<std::string, bool>> left_out_;  ///< first value; whether they differ
+  std::map<std::pair<std::string, int>, std::pair<std::string, bool>>
+      left_out_;  ///< first value; true if others differ
 };
 
-/// The value of the design's aperture in a configuration.
+/// Sets the value of the design's aperture in a configuration.
 void Configurations::aperture(const ZemaxOperand& operand, double value) {
   const auto position = static_cast<std::size_t>(operand.configuration) - 1;
   const ApertureSetting setting = in_.lens.design.aperture->setting;
@@ -278,11 +280,12 @@ void Configurations::aperture(const ZemaxOperand& operand, double value) {
       setting == ApertureSetting::entrance_pupil_diameter ? value * unit_ : value;
 }
 
-/// The change of the operand's surface; a surface that the rows do not have is refused.
+/// The change of the operand's surface.
+/// @throws Error if the surface is not a row of the lens
 SurfaceChange& Configurations::change(Configuration& c, const ZemaxOperand& operand) {
   const auto found = std::ranges::find(place_, operand.surface);
   if (found == place_.end()) {
-    in_.refuse(operand.line, operand.name, "of surface " + std::to_string(operand.surface), "a surface of the lens");
+    in_.refuse(operand.line, operand.name, "surface " + std::to_string(operand.surface), "a surface of the lens");
   }
   return change_of(c, static_cast<int>(found - place_.begin()));
 }
@@ -290,7 +293,7 @@ SurfaceChange& Configurations::change(Configuration& c, const ZemaxOperand& oper
 void Configurations::take(const ZemaxOperand& operand) {
   auto& list = in_.lens.configurations;
   if (operand.configuration < 1 || static_cast<std::size_t>(operand.configuration) > list.size()) {
-    in_.refuse(operand.line, operand.name, "of configuration " + std::to_string(operand.configuration),
+    in_.refuse(operand.line, operand.name, "configuration " + std::to_string(operand.configuration),
                "1 to " + std::to_string(list.size()));
   }
   Configuration& c = list[static_cast<std::size_t>(operand.configuration) - 1];
@@ -308,7 +311,7 @@ void Configurations::take(const ZemaxOperand& operand) {
   } else if (operand.name == "CONN") {
     change(c, operand).conic = value();
   } else if (operand.name == "SDIA") {
-    // As under DIAM, 0 is no rim.
+    // 0 means no rim, as for DIAM.
     if (const double rim = std::abs(value() * unit_); rim > 0) change(c, operand).semi_diameter = rim;
   } else if (operand.name == "GLSS") {
     change(c, operand).medium = rows_.medium({.line = operand.line, .name = operand.value});
@@ -333,7 +336,7 @@ void Configurations::build() {
     const auto earlier = std::ranges::find(list, list[i].name, &Configuration::name);
     if (earlier != list.begin() + static_cast<std::ptrdiff_t>(i)) list[i].name += " (" + std::to_string(i + 1) + ")";
   }
-  // Where one position alone is at infinity, the others focus it.
+  // If exactly one position is at infinity, the others focus it.
   const auto far = [](const Configuration& c) { return !c.subject_distance_mm; };
   if (std::ranges::count_if(list, far) != 1 || !far(list[0])) return;
   for (Configuration& c : list) {
@@ -343,8 +346,9 @@ void Configurations::build() {
 
 // --- solves ---------------------------------------------------------------------------------------------------------
 
-/// MAZH behind the last surface: the film is where the marginal ray crosses the axis. The file states its distance. A
-/// missing one is computed; one that the rays of this lens do not meet is taken and named, as a glass is then another.
+/// MAZH behind the last surface: the film is at the axial crossing of the marginal ray, and the file states its
+/// distance. A missing distance is computed. A distance that differs from the rays of this lens is kept with a warning,
+/// as it means another glass.
 void solve_the_film(const ZemaxSurface& last, Import& in) {
   const auto [height, zone] = *last.marginal_height;
   const DesignData& design = in.lens.design;
@@ -364,7 +368,7 @@ void solve_the_film(const ZemaxSurface& last, Import& in) {
   }
 }
 
-/// Object and film are planes perpendicular to the axis.
+/// Checks that object and film are planes perpendicular to the axis.
 void check_ends(const ZemaxSurface& object, const ZemaxSurface& image, Import& in) {
   const bool near = std::isfinite(in.lens.design.object_distance_mm);
   const auto refuse_tilt = [&](const ZemaxSurface& s, const std::string& place, const std::string& instead) {
@@ -387,7 +391,7 @@ void check_ends(const ZemaxSurface& object, const ZemaxSurface& image, Import& i
     return s.curvature != 0 ||
            (terms && std::ranges::any_of(s.parameters, [](const auto& p) { return p.second != 0; }));
   };
-  if (near && curved(object)) in.warn(object.line, "SURF", "the object is curved; a flat one is taken");
+  if (near && curved(object)) in.warn(object.line, "SURF", "the object is curved; a flat object is taken");
   if (curved(image)) in.warn(image.line, "SURF", "the image is curved; a flat film is taken");
 }
 
@@ -398,7 +402,7 @@ void build_lens(ZemaxLens zemax, double unit, Import& in) {
   std::vector<int> place(zemax.surfaces.size());
   std::iota(place.begin(), place.end(), 0);
   fold_breaks(zemax.surfaces, place, in);
-  if (zemax.surfaces.size() < 3) throw Error(in.where() + ": no surface of a lens, wanted one at least");
+  if (zemax.surfaces.size() < 3) throw Error(in.where() + ": no surface of a lens; must be at least one");
 
   const ZemaxSurface &object = zemax.surfaces.front(), &image = zemax.surfaces.back();
   DesignData& design = in.lens.design;
@@ -406,13 +410,13 @@ void build_lens(ZemaxLens zemax, double unit, Import& in) {
       std::abs(object.thickness) >= endless ? std::numeric_limits<double>::infinity() : object.thickness;
   Rows rows(zemax, unit, in);
   if (object.glass) in.lens.object_space = rows.medium(*object.glass);
-  if (object.stop) in.refuse(object.line, "STOP", "at the object", "a surface of the lens");
+  if (object.stop) in.refuse(object.line, "STOP", "the object", "a surface of the lens");
   for (const ZemaxSurface& s : zemax.surfaces) {
     if (s.has_thickness || &s == &image) continue;
     in.warn(s.line, "DISZ", "is missing for this surface; 0 is taken");
   }
   if (image.glass)
-    in.refuse(image.line, "SURF", "the last one and has a glass", "an image behind it: the file is cut off");
+    in.refuse(image.line, "SURF", "a last surface with a glass", "followed by an image: the file is cut off");
   if (!image.has_thickness) in.warn(image.line, "SURF", "the image is incomplete; the file may be cut off");
   const auto stops = std::ranges::count_if(zemax.surfaces, &ZemaxSurface::stop);
   if (stops > 1) in.warn(0, "STOP", "is marked on " + std::to_string(stops) + " surfaces; the first one is taken");
@@ -429,7 +433,7 @@ void build_lens(ZemaxLens zemax, double unit, Import& in) {
   }
   if (image_at_infinity)
     in.requests.film_at_focus = {.line = last.line, .command = "DISZ", .reason = "the image is at infinity"};
-  if (image.stop) in.refuse(image.line, "STOP", "at the image", "a surface of the lens");
+  if (image.stop) in.refuse(image.line, "STOP", "the image", "a surface of the lens");
   in.requests.telecentric_line = zemax.telecentric;
   in.requests.telecentric_command = "FTYP";
   in.lens.semi_diameters = "of the file: clear apertures, else the widths of the design's beams";

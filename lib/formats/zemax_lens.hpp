@@ -18,21 +18,22 @@ struct ZemaxOperand {
   std::string value;
 };
 
-/// A .zmx as it was read.
+/// The contents of a .zmx.
 struct ZemaxLens {
   std::vector<ZemaxSurface> surfaces;  ///< object, lens and image
   std::vector<std::string> catalogues;
   int configurations = 1;
   std::vector<ZemaxOperand> operands;
-  int telecentric = 0;  ///< line of FTYP if the object space is telecentric; else 0
+  int telecentric = 0;  ///< line of FTYP if the object space is telecentric, otherwise 0
 };
 
-/// Makes the rows and configurations of a prescription: pickups are evaluated, coordinate breaks are folded.
-/// unit: of the lengths in operands, mm.
+/// Builds the rows and configurations of a prescription: evaluates pickups and folds coordinate breaks.
+/// @param unit unit of the lengths in operands (mm)
 void build_lens(ZemaxLens zemax, double unit, Import& in);
 
-/// Takes out breaks that change nothing and folds by plane mirrors. place: the number that each surface had in the
-/// file. Throws Error for any other tilt or decentre.
+/// Removes breaks that change nothing and folds by plane mirrors.
+/// @param place number of each surface in the file
+/// @throws Error if there is another tilt or decentre
 void fold_breaks(std::vector<ZemaxSurface>& surfaces, std::vector<int>& place, Import& in);
 
 }  // namespace petzval::formats_detail

@@ -22,8 +22,8 @@ using io_detail::in_quotes;
 
 constexpr std::size_t most_operands = 100'000;
 
-/// Commands that change nothing of the lens: the program's windows, tolerances, analyses, coatings, colours and
-/// polarisation; variables of the optimisation; pickups and solves, as the file states the values that they gave.
+/// Commands that do not change the lens: windows, tolerances, analyses, coatings, colours and polarisation; variables
+/// of the optimisation; pickups and solves, whose results are in the file.
 constexpr std::string_view silent =
     // the file and its author
     "VERS PFIL LANG AUTH CSUM LUID BLNK "
@@ -55,12 +55,12 @@ class ZemaxReader {
   bool take(std::span<const Command> commands, Words words);
   void unknown(Words words);
   void name_unknown();
-  /// The words of a line by number: the command is 0. A missing one counts as 0.
+  /// Number at a position in a line, in which the command is word 0; 0 if missing.
   double value(Words words, std::size_t at) const {
     return at < words.size() ? in_.number(line_, words[0], words[at]) : 0.0;
   }
   double length(Words words, std::size_t at) const { return value(words, at) * unit_; }
-  /// A word without which the command means nothing.
+  /// A number that must be present.
   double stated(Words words, std::size_t at) const;
   int whole(Words words, std::size_t at, int least, int most) const;
   ZemaxSurface& surface() { return lens_.surfaces.back(); }
@@ -120,13 +120,13 @@ class ZemaxReader {
   Import& in_;
   ZemaxLens lens_;
   int line_ = 0;
-  std::string_view text_;  ///< the line
+  std::string_view text_;  ///< current line
   double unit_ = 1;        ///< mm
   std::size_t field_count_ = 0, wavelength_count_ = 0;
   std::string note_;
   struct Unknown {
     std::string name;
-    int line = 0;  ///< the first
+    int line = 0;  ///< first line
     std::size_t lines = 0;
   };
   std::vector<Unknown> unknown_;
@@ -205,7 +205,7 @@ void ZemaxReader::read(std::string_view text) {
   if (!unit_given_) in_.warn(0, "UNIT", "is missing; lengths are taken as millimetres");
   if (lens_.surfaces.size() < 3) {
     throw Error(in_.where() + ": " + std::to_string(lens_.surfaces.size()) +
-                " surfaces, wanted an object, one or more of the lens, and an image");
+                " surfaces; must be an object, at least one lens surface and an image");
   }
   DesignData& design = in_.lens.design;
   design.fields.resize(std::min(design.fields.size(), std::max<std::size_t>(field_count_, 1)));
@@ -216,7 +216,7 @@ void ZemaxReader::read(std::string_view text) {
     design.wavelengths.resize(wavelength_count_);
   }
   if (design.primary_wavelength >= std::max<std::size_t>(design.wavelengths.size(), 1)) {
-    in_.warn(0, "PWAV", "is no number of a wavelength; the first one is taken");
+    in_.warn(0, "PWAV", "is not the number of a wavelength; the first is taken");
     design.primary_wavelength = 0;
   }
   build_lens(std::move(lens_), unit_, in_);
@@ -234,7 +234,7 @@ void ZemaxReader::unknown(Words words) {
   if (in_configurations_ && words.size() >= 4) {
     if (lens_.operands.size() >= most_operands) {
       throw Error(in_.where() + ": more than " + std::to_string(most_operands) +
-                  " values of configurations, wanted fewer");
+                  " values of configurations; must be fewer");
     }
     lens_.operands.push_back({line_, std::string(words[0]), whole(words, 1, 0, 100'000), whole(words, 2, 0, 100'000),
                               std::string(words[3])});
@@ -254,7 +254,7 @@ void ZemaxReader::unknown(Words words) {
   }
 }
 
-/// One warning for each unknown command, however often it occurs.
+/// Warns once per unknown command.
 void ZemaxReader::name_unknown() {
   for (const Unknown& u : unknown_) {
     in_.warn(u.line, u.name,
@@ -264,7 +264,7 @@ void ZemaxReader::name_unknown() {
 }
 
 double ZemaxReader::stated(Words words, std::size_t at) const {
-  if (at >= words.size()) in_.refuse(line_, words[0], "without its number", "a number behind it");
+  if (at >= words.size()) in_.refuse(line_, words[0], "missing", "a number");
   return value(words, at);
 }
 
@@ -275,7 +275,7 @@ int ZemaxReader::whole(Words words, std::size_t at, int least, int most) const {
              "a whole number from " + std::to_string(least) + " to " + std::to_string(most));
 }
 
-/// What stands behind the command.
+/// The text after the command.
 std::string ZemaxReader::rest() const {
   const std::string_view line = trimmed(text_);
   const std::string_view behind = trimmed(line.substr(std::min(line.find_first_of(" \t"), line.size())));
@@ -292,9 +292,9 @@ void ZemaxReader::fields(Words words, double DesignField::*member) {
 void ZemaxReader::aperture(Words words, ApertureSetting setting, double scale) {
   auto& aperture = in_.lens.design.aperture;
   if (aperture && aperture->setting != setting) {
-    in_.warn(line_, words[0], "is a second aperture; it is taken, the one before is left out");
+    in_.warn(line_, words[0], "is a second aperture; it is taken, the first is left out");
   }
-  // The size of the stop is that of its surface.
+  // The size of the stop is stated at its surface.
   aperture = DesignAperture{setting, setting == ApertureSetting::stop_size ? 0 : stated(words, 1) * scale};
 }
 
@@ -304,7 +304,7 @@ void ZemaxReader::mode(Words words) {
 }
 
 void ZemaxReader::note(Words) {
-  // "NOTE 0 text" goes on where the line before ended, "NOTE 4" ends a paragraph.
+  // "NOTE 0 text" continues the previous line, "NOTE 4" ends a paragraph.
   constexpr std::size_t longest = 65'536;
   const std::string text = rest();
   if (text.starts_with("0")) {
@@ -328,8 +328,8 @@ void ZemaxReader::unit(Words words) {
   if (found == units.end()) {
     in_.refuse(line_, "UNIT", words.size() > 1 ? in_quotes(words[1]) : "empty", "MM, CM, IN or METER");
   }
-  if (!lens_.surfaces.empty()) in_.refuse(line_, "UNIT", "behind the first surface", "it before the surfaces");
-  // Lengths that were read before it.
+  if (!lens_.surfaces.empty()) in_.refuse(line_, "UNIT", "a command after the first surface", "before all surfaces");
+  // Rescale a length that was read before the unit.
   if (auto& set = in_.lens.design.aperture; set && set->setting == ApertureSetting::entrance_pupil_diameter) {
     set->value *= found->second / unit_;
   }
@@ -343,7 +343,7 @@ void ZemaxReader::f_number(Words words) {
 }
 
 void ZemaxReader::object_aperture(Words words) {
-  // The second number is 1 where the first is an angle.
+  // The second number is 1 if the first is an angle.
   const bool angle = value(words, 2) == 1;
   aperture(words, ApertureSetting::object_na, 1);
   if (angle) in_.lens.design.aperture->value = std::sin(value(words, 1) * std::acos(-1.0) / 180);
@@ -354,7 +354,7 @@ void ZemaxReader::environment(Words words) {
   if (celsius == 20 && atmospheres == 1) return;
   in_.warn(line_, "ENVD",
            to_text(celsius) + " degrees and " + to_text(atmospheres) +
-               " atm are left out; indices are those at 20 degrees and 1 atm");
+               " atm are left out; indices apply to 20 degrees and 1 atm");
 }
 
 void ZemaxReader::catalogues(Words words) {
@@ -383,7 +383,7 @@ void ZemaxReader::wavelength(std::size_t number, double micrometres, double weig
   if (!(micrometres >= 0.01 && micrometres <= 100)) {
     in_.refuse(line_, "wavelength", to_text(micrometres) + " um", "0.01 to 100 um");
   }
-  // Micrometres of a few decimals; their product with 1000 is rounded.
+  // Micrometres have few decimals; remove the rounding of the product with 1000.
   list[number] = {*formats_detail::number(to_text(micrometres * 1000, 12)), weight};
 }
 
@@ -423,14 +423,14 @@ void ZemaxReader::configurations(Words words) {
 void ZemaxReader::curvature(Words words) {
   ZemaxSurface& s = surface();
   s.curvature = stated(words, 1) / unit_;
-  // The file states the solution of any other solve.
+  // The file states the results of all other solves.
   if (const int solve = words.size() > 2 ? whole(words, 2, 0, 100) : 0; solve == 4) {
     s.curvature_pickup = ZemaxPickup{line_, whole(words, 3, 0, 100'000), value(words, 4), value(words, 5) / unit_};
   }
 }
 
 void ZemaxReader::thickness(Words words) {
-  if (surface().has_thickness) in_.warn(line_, "DISZ", "is given twice for a surface; the last one is taken");
+  if (surface().has_thickness) in_.warn(line_, "DISZ", "is given twice for a surface; the last is taken");
   surface().has_thickness = true;
   if (words.size() > 1 && same(words[1], "INFINITY")) {
     surface().thickness = std::numeric_limits<double>::infinity();
@@ -444,13 +444,13 @@ void ZemaxReader::glass(Words words) {
   ZemaxGlass glass{.line = line_, .name = std::string(words[1])};
   const int mode = words.size() > 2 ? whole(words, 2, 0, 100) : 0;
   // Words: name, solve type (0 fixed, 1 model, 2 pickup, 4 offset), surface of a pickup, n_d, V_d, dPgF, three flags of
-  // variables, offsets of n_d and V_d. n_d and V_d count for a model. For other types they are leftovers of an earlier
+  // variables, offsets of n_d and V_d. n_d and V_d apply to a model. For other types they are leftovers of an earlier
   // model, or 1.5 and 40.
   glass.model = mode == 1 || glass.name == "___BLANK";
   const double nd = value(words, 4), vd = value(words, 5);
   const bool known = nd != 0 && (glass.model || !(nd == 1.5 && vd == 40));
   if (known) glass.nd = nd;
-  // A model of V_d 0 has the same index at all wavelengths.
+  // A model with V_d 0 has the same index at all wavelengths.
   if (known && (vd > 0 || (glass.model && vd == 0))) glass.vd = vd;
   if (mode == 2) glass.pickup = whole(words, 3, 0, 100'000);
   if (mode == 4) glass.nd_offset = value(words, 10), glass.vd_offset = value(words, 11);
@@ -487,7 +487,7 @@ void ZemaxReader::other_aperture(Words words) {
 }
 
 void ZemaxReader::thickness_pickup(Words words) {
-  // Of a curvature or a glass the same line says where it comes from; the offset stands in the third place.
+  // Pickups of a curvature or a glass are on the line of the value; here the offset is the third number.
   surface().thickness_pickup = ZemaxPickup{line_, whole(words, 1, 0, 100'000), value(words, 2), length(words, 3)};
 }
 

@@ -9,7 +9,7 @@
 
 namespace petzval::formats_detail {
 
-/// A value of a .zmx that another surface gives: its own times scale plus offset.
+/// A value picked up from another surface: its value times scale plus offset.
 struct ZemaxPickup {
   int line = 0;
   int surface = 0;
@@ -17,23 +17,23 @@ struct ZemaxPickup {
   double offset = 0;
 };
 
-/// GLAS: a name, and what the file says about its index.
+/// GLAS: a name, and the index data of the file.
 struct ZemaxGlass {
   int line = 0;
   std::string name;
-  std::optional<int> pickup{};  ///< the surface whose glass this one has
-  bool model = false;           ///< n_d and V_d are meant, not the name
+  std::optional<int> pickup{};  ///< surface from which the glass is picked up
+  bool model = false;           ///< n_d and V_d count, not the name
   std::optional<double> nd{}, vd{};
   double nd_offset = 0, vd_offset = 0;
 };
 
-/// OBSC with an opening: the ring that is opaque.
+/// OBSC with an opening: an opaque ring.
 struct ZemaxRing {
   int line = 0;
   double inner = 0, outer = 0;  ///< mm
 };
 
-/// One SURF of a .zmx as the file has it, in millimetres.
+/// One SURF as stated in a .zmx, in millimetres.
 struct ZemaxSurface {
   int line = 0;
   std::string type = "STANDARD";
@@ -47,12 +47,12 @@ struct ZemaxSurface {
   bool stop = false;
   std::string comment;
   double semi_diameter = 0;
-  bool fixed_semi_diameter = false;  ///< the user's, not the width of the design's beams
+  bool fixed_semi_diameter = false;  ///< set by the user, not by the width of the design's beams
   std::optional<double> aperture, obscuration;
   std::optional<ZemaxRing> ring;
   std::optional<ZemaxPickup> curvature_pickup, thickness_pickup;
-  std::optional<std::array<double, 2>> marginal_height;  ///< MAZH: height and zone of the pupil
-  std::optional<ZemaxPickup> thickness_sum, position;    ///< TCOM, TOLE: offset is the total
+  std::optional<std::array<double, 2>> marginal_height;  ///< MAZH: height and pupil zone
+  std::optional<ZemaxPickup> thickness_sum, position;    ///< TCOM, TOLE: the offset is the total
   int solve_line = 0;
 };
 

@@ -53,7 +53,7 @@ class ZemaxWriter {
   Writer out_;
   const Prescription& p_;
   std::vector<std::string> catalogues_;  ///< GCAT
-  std::optional<GlassNames> names_;      ///< names in the tables; filled when the first glass is written
+  std::optional<GlassNames> names_;      ///< names in the tables; filled with the first glass
 };
 
 void ZemaxWriter::header() {
@@ -87,7 +87,7 @@ void ZemaxWriter::choose_catalogues() {
   std::set<std::string> makers;
   for (const Glass* glass : used) makers.insert(maker_of(*glass));
   catalogues_.assign(makers.begin(), makers.end());
-  // If an earlier maker hides a glass by one of the same name, the maker of the glass moves before the other.
+  // If an earlier maker has another glass of the same name, the maker of the glass moves before it.
   for (std::size_t moves = 0; moves < catalogues_.size() * catalogues_.size(); ++moves) {
     const auto hidden = std::ranges::find_if(used, [&](const Glass* g) { return resolved(*g) != g; });
     if (hidden == used.end()) break;
@@ -120,7 +120,7 @@ void ZemaxWriter::aperture() {
     case ApertureSetting::object_na: return out_.line("OBNA " + value + " 0");
     default: break;
   }
-  out_.lose("aperture", "of the image side's numerical aperture becomes the size of the stop");
+  out_.lose("aperture", "given by the numerical aperture of the image side becomes the size of the stop");
   out_.line("FLOA 0 0");
 }
 
@@ -158,7 +158,7 @@ void ZemaxWriter::wavelengths() {
   std::size_t primary = std::min(p_.design.primary_wavelength, waves.size() - 1);
   if (waves.size() > 24) {
     out_.lose("wavelengths",
-              primary < 24 ? "all but the first 24 are lost" : "all but 23 and the primary one are lost");
+              primary < 24 ? "all but the first 24 are lost" : "all but 23 and the primary wavelength are lost");
     if (primary >= 24) waves[23] = waves[primary], primary = 23;
     waves.resize(24);
   }
@@ -180,7 +180,7 @@ void ZemaxWriter::object() {
   if (p_.object_space != Medium{}) out_.line("  GLAS " + glass(p_.object_space));
 }
 
-/// Empty for a medium that has no name.
+/// Name of a medium's glass; empty if it has no name.
 std::string ZemaxWriter::glass_name(const Medium& medium) {
   if (medium == Medium{}) return "AIR";
   const Glass* found = out_.glass(medium);
@@ -195,17 +195,18 @@ std::string ZemaxWriter::glass(const Medium& medium) {
   const Glass* meant = resolved(*found);
   const std::string numbers = " 0 " + to_text(meant->nd) + ' ' + to_text(meant->vd) + " 0 0 0 0 ";
   if (!medium.nd && meant == found) return one_word(found->name) + " 0" + numbers + "0 0";
-  // The printed n_d of a table differs from the catalogue's: type 4 states by how much.
+  // The printed n_d of a table differs from the catalogue: type 4 states the offset.
   const double offset = medium.nd.value_or(refractive_index(*found, d_line_nm)) - refractive_index(*meant, d_line_nm);
   return one_word(found->name) + " 4" + numbers + to_text(offset) + " 0";
 }
 
-/// The type of a surface; its terms are lines behind CURV.
+/// The type of a surface; its terms are lines after CURV.
 std::string ZemaxWriter::shape(std::size_t i) {
   const SurfaceRow& row = p_.surfaces[i];
-  if (row.curved_in == Section::x) out_.refuse(i, "a cylinder curved along x", "one curved along y for a .zmx");
+  if (row.curved_in == Section::x) out_.refuse(i, "a cylinder curved along x", "a cylinder curved along y for a .zmx");
   if (row.curved_in == Section::y) {
-    if (row.conic != 0 || !row.aspheric.empty()) out_.refuse(i, "an aspheric cylinder", "a circular one for a .zmx");
+    if (row.conic != 0 || !row.aspheric.empty())
+      out_.refuse(i, "an aspheric cylinder", "a circular cylinder for a .zmx");
     return "TOROIDAL";
   }
   if (row.aspheric.empty()) return "STANDARD";
@@ -259,7 +260,7 @@ void ZemaxWriter::configurations() {
   const auto& list = p_.configurations;
   if (list.size() < 2) return;
   out_.line("MNUM " + std::to_string(list.size()) + " 1");
-  // All values of one operand stand together; a configuration that does not change a value has that of the rows.
+  // All values of an operand are adjacent; a configuration without a change gets the value of the rows.
   const auto operand = [&](const std::string& name, int surface,
                            const std::function<std::string(const Configuration&)>& value) {
     for (std::size_t c = 0; c < list.size(); ++c) {
@@ -287,7 +288,7 @@ void ZemaxWriter::configurations() {
       };
       if (std::ranges::any_of(list, [&](const Configuration& c) { return word(c).empty(); })) {
         out_.lose("configurations", "the glass of surface " + std::to_string(s) +
-                                        ", which no catalogue has in one of them, is that of the first in all");
+                                        " has no name in one configuration; all get the glass of the first");
       } else {
         operand(name, s + 1, word);
       }
@@ -301,7 +302,7 @@ void ZemaxWriter::configurations() {
       [](double radius) { return to_text(radius == 0 ? 0 : 1 / radius); });
   changes(
       "CONN", &SurfaceChange::conic, [](const SurfaceRow& r) { return r.conic; }, number);
-  // 0 is no rim.
+  // 0 means no rim.
   changes(
       "SDIA", &SurfaceChange::semi_diameter, [](const SurfaceRow& r) { return r.semi_diameter.value_or(0); },
       [](double rim) { return to_text(std::isfinite(rim) ? rim : 0); });
@@ -314,10 +315,10 @@ void ZemaxWriter::configurations() {
 
   const auto focusing = std::ranges::count_if(list, [](const Configuration& c) { return c.focus_of.has_value(); });
   if (focusing > 0 && static_cast<std::size_t>(focusing) + 1 < list.size()) {
-    out_.lose("focus_of", "which zoom position each focused one belongs to is lost, but for its name");
+    out_.lose("focus_of", "the zoom position of each focused configuration is lost, except in its name");
   }
   if (std::ranges::any_of(list, [](const Configuration& c) { return c.stop.has_value(); })) {
-    out_.lose("stop", "of all configurations is that of the first");
+    out_.lose("stop", "of the first configuration is used in all");
   }
 }
 

@@ -340,7 +340,7 @@ TEST_F(GlassPages, OfATableWithAbsorptionTheClearStretchIsTaken) {
 }
 
 TEST_F(GlassPages, APageThatIsBrokenIsRefusedWithItsLine) {
-  expect_tokens(refusal(formula(6, "0 1 2"), "x.yml"), {"line 7", "type \"formula 6\""});
+  expect_tokens(refusal(formula(6, "0 1 2"), "x.yml"), {"line 7", "type", "\"formula 6\""});
   expect_tokens(refusal(formula(2, "0 1"), "x.yml"), {"line 9", "2 coefficients"});
   expect_tokens(refusal(formula(2, ""), "x.yml"), {"line 7", "formula", 2});
   expect_tokens(refusal(formula(2, "0 nan 1"), "x.yml"), {"line 9", "coefficient", "\"nan\""});
