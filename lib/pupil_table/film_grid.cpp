@@ -22,12 +22,12 @@ namespace {
 
 using pupil_detail::PupilGuess;
 
-constexpr std::size_t grid_steps = 8;  // between the nodes of an axis
+constexpr std::size_t grid_steps = 8;  // steps between the nodes of an axis
 constexpr std::size_t probes = 16384;
-constexpr std::size_t grid_directions = 64;  // of the regions that polygons are made of
+constexpr std::size_t grid_directions = 64;  // directions of the regions behind the polygons
 
-/// Where the rays to the centre and the rim of the stop cross the plane. Aiming takes longer than rays: from some
-/// points of each row, as many as are looked for in full.
+/// Guesses from aimed rays to the centre and the rim of the stop. Aiming is slow: some points of each row are aimed,
+/// about as many as are searched in full, and the points between them are interpolated.
 std::vector<PupilGuess> aimed_guesses(const Lens& lens, const TwoPlanes& space, std::span<const FilmPoint> points,
                                       std::size_t row, std::size_t wavelength) {
   std::vector<PupilGuess> guesses = first_order_guesses(lens, space, points, wavelength);
@@ -75,14 +75,14 @@ std::vector<PupilGuess> aimed_guesses(const Lens& lens, const TwoPlanes& space, 
   return guesses;
 }
 
-/// The pupils of film points in rows.
+/// Pupils of film points in rows.
 std::vector<PupilRegion> film_pupils(const Lens& lens, const TwoPlanes& space, const std::vector<FilmPoint>& points,
                                      std::size_t row, std::size_t directions, std::size_t wavelength) {
   const auto guesses = aimed_guesses(lens, space, points, row, wavelength);
   return grid_pupils({guesses, row}, directions, traced_lines(lens, space, points, wavelength));
 }
 
-/// Which of some film points get light at any wavelength.
+/// True for each film point that gets light at any wavelength.
 std::vector<bool> lit_points(const Lens& lens, const TwoPlanes& space, const std::vector<FilmPoint>& points) {
   std::vector<bool> lit(points.size(), false);
   constexpr std::size_t few_directions = 4;
@@ -93,7 +93,7 @@ std::vector<bool> lit_points(const Lens& lens, const TwoPlanes& space, const std
   return lit;
 }
 
-/// How far the light reaches on some lines from (0, y) towards +x, or along +y, each within a 2^-8 part.
+/// Lengths of the lit parts of lines from (0, y) towards +x, or from (x, 0) towards +y; exact to 2^-8 of the line.
 std::vector<double> lit_lengths(const Lens& lens, const TwoPlanes& space, const std::vector<double>& heights,
                                 const std::vector<double>& lengths, bool along_x) {
   const auto point = [&](std::size_t line, double along) {
@@ -121,7 +121,7 @@ std::vector<double> lit_lengths(const Lens& lens, const TwoPlanes& space, const 
 
 constexpr std::size_t half_steps = 2 * grid_steps;
 
-/// Half the lengths of the chords of a disc at half the steps of rows up to a height.
+/// Half the chord lengths of a disc at half steps of rows up to a height.
 std::vector<double> half_chords(double radius, double height) {
   std::vector<double> widths;
   for (std::size_t i = 0; i <= half_steps; ++i) {
@@ -131,7 +131,7 @@ std::vector<double> half_chords(double radius, double height) {
   return widths;
 }
 
-/// The grid with straight lines between the ends of rows that enclose a convex area. widths: of it, at half the steps.
+/// The grid whose rows, connected by straight lines, enclose a convex area. widths: of the area at half steps of rows.
 FilmGrid grid_within(double height, const std::vector<double>& widths) {
   FilmGrid grid;
   grid.columns = grid_steps;
@@ -140,7 +140,7 @@ FilmGrid grid_within(double height, const std::vector<double>& widths) {
   for (int round = 0; round < 2; ++round) {
     for (std::size_t i = 0; i < grid.rows(); ++i) {
       double &before = grid.half_widths[i], &after = grid.half_widths[i + 1];
-      // An arc reaches over the chords to its middle by a quarter as much.
+      // An arc exceeds the chords to its middle by a quarter as much.
       const double chord = (before + after) / 2, beyond = 1.35 * std::max(widths[2 * i + 1] - chord, 0.0);
       before += beyond, after += beyond;
     }
@@ -162,14 +162,14 @@ std::vector<FilmPoint> points_of(const FilmGrid& grid) {
   return points;
 }
 
-/// Of those points.
+/// Weights of the nodes at a point of points_of().
 PolygonWeights weights_of_point(const FilmGrid& grid, std::size_t point) noexcept {
   const std::size_t i = point / (2 * grid.columns + 1), j = point % (2 * grid.columns + 1), right = j % 2;
   const std::size_t low = i / 2 * (grid.columns + 1) + j / 2, up = (i + 1) / 2 * (grid.columns + 1) + j / 2;
   return {{low, low + right, up, up + right}, {0.25, 0.25, 0.25, 0.25}};
 }
 
-/// A place in a grid, for probes: by parts of the way along y and along x.
+/// A probe in a grid, given as fractions of the height and of the row width.
 struct ProbedPoint {
   FilmPoint film;
   PolygonWeights weights;
@@ -190,7 +190,7 @@ void mirror_at_axes(std::span<PupilPolygon> polygons, const FilmGrid& grid) noex
   for (std::size_t i = 0; i <= grid.rows(); ++i) mirror(polygons[i * (grid.columns + 1)], true);
 }
 
-/// Probes film points all over a grid by traced rays.
+/// Expands polygons to traced rays at probes all over a grid.
 void expand_to_traced_probes(std::span<PupilPolygon> polygons, const Lens& lens, const TwoPlanes& space,
                              const FilmGrid& grid, std::size_t wavelength) {
   const auto weights = [&](const std::array<double, 4>& at) { return ProbedPoint(grid, at[0], at[1]).weights; };
@@ -205,8 +205,7 @@ void expand_to_traced_probes(std::span<PupilPolygon> polygons, const Lens& lens,
   expand_to_probes(polygons, probes, weights, at_probes);
 }
 
-/// The places of the film points that belong to a virtual film point or to its mirror images, from the lowest to the
-/// highest (FilmTilt).
+/// Range of `nearer` (FilmTilt) over the film points that belong to a virtual film point or its mirror images.
 struct Nearer {
   double low, high;
 
@@ -248,7 +247,7 @@ std::vector<PupilPolygon> grid_polygons(const Lens& lens, const TwoPlanes& space
 
 std::vector<PupilPolygon> tilted_grid_polygons(const FilmPupilTable& upright, const FilmTilt& tilt,
                                                const FilmGrid& grid, std::size_t wavelength) {
-  // The pupils of some places of each point: of the middle one first, where there is light if anywhere.
+  // Pupils for several values of `nearer` at each point; the middle value first, as it is the most likely to be lit.
   const std::size_t columns = 2 * grid.columns + 1;
   const std::vector<FilmPoint> points = points_of(grid);
   constexpr std::array parts{0.5, 0.0, 0.25, 0.75, 1.0};
@@ -258,7 +257,7 @@ std::vector<PupilPolygon> tilted_grid_polygons(const FilmPupilTable& upright, co
     std::vector<PupilGuess> guesses;
     for (const FilmPoint& point : points) {
       seen.push_back({point, Nearer(tilt, point).at(part)});
-      // Where the upright film has the pupil, or the last one on the way to it.
+      // Start from the pupil of the upright film; if it is empty, move the film point towards the axis.
       Vec2<double> place{0, 0};
       double area = 0;
       for (int round = 0; round < 4; ++round) {

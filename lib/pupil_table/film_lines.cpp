@@ -21,7 +21,7 @@ pupil_detail::PlaceClearances traced_lines(const Lens& lens, const TwoPlanes& sp
   return
       [&lens, space, towards, wavelength, points = std::move(points), memory = std::array<std::vector<double>, 6>{}](
           std::size_t count, const std::uint32_t* which, const double* x, const double* y, double* clearances) mutable {
-        // Blocks that stay in the cache.
+        // Blocks fit into the cache.
         constexpr std::size_t block = 1024;
         for (auto& a : memory) a.resize(std::min(count, block));
         const auto at = [&](std::size_t k) { return memory[k].data(); };
@@ -47,7 +47,7 @@ std::vector<pupil_detail::PupilGuess> first_order_guesses(const Lens& lens, cons
   const std::size_t last = lens.surface_count() - 1;
   const double last_z = lens.surfaces()[last].vertex_z;
   const pupil_detail::Face face = pupil_detail::face_of(lens, last, paraxial.entrance);
-  const auto seen = [&](double film, double at, double z) {  // in the plane of the pupil
+  const auto seen = [&](double film, double at, double z) {  // projects to the pupil plane
     return film + (at - film) * space.depth() / (z - space.film_z);
   };
   double radius = std::isfinite(paraxial.exit.z) && paraxial.exit.z != space.film_z
@@ -62,7 +62,7 @@ std::vector<pupil_detail::PupilGuess> first_order_guesses(const Lens& lens, cons
   for (const FilmPoint& p : points) {
     double low = std::numeric_limits<double>::infinity(), high = -low;
     for (const double z : {face.z_min, face.z_max, last_z}) {
-      // A face that reaches to the film is met at any angle; one beyond the film counts as near it.
+      // A face that reaches the film is seen at any angle; a face beyond the film counts as close to the film.
       const double least = 0.02 * std::abs(space.film_z - last_z);
       const double from_film = z - space.film_z;
       const double at = space.film_z + std::copysign(std::max(std::abs(from_film), least), last_z - space.film_z);

@@ -12,13 +12,11 @@
 
 namespace petzval::pupil_table_detail {
 
-/// The clearances of the rays of some film points through a lens, which has to outlive the result. Places lie in the
-/// plane of the pupil.
+/// Clearances of rays from film points through positions in the pupil plane. The lens must outlive the result.
 pupil_detail::PlaceClearances traced_lines(const Lens& lens, const TwoPlanes& space, std::vector<FilmPoint> points,
                                            std::size_t wavelength);
 
-/// Where the pupils of film points are expected to first order. Rays pass the last surface: a pupil is no larger than
-/// what is seen through it.
+/// First-order guesses of the pupils of film points. Rays pass the last surface, which limits the size of a pupil.
 std::vector<pupil_detail::PupilGuess> first_order_guesses(const Lens& lens, const TwoPlanes& space,
                                                           std::span<const FilmPoint> points, std::size_t wavelength);
 

@@ -18,7 +18,7 @@ namespace petzval::pupil_table_detail {
 
 namespace {
 
-/// Where the chief ray of a film point crosses the plane of the pupil.
+/// Intersection of the chief ray of a film point with the pupil plane.
 std::optional<Vec2<double>> chief_place(const Lens& lens, const TwoPlanes& space, const FilmPoint& film,
                                         std::size_t wavelength) {
   const AimedRay chief = pupil_detail::aim(lens, PupilPlane::of_film(lens, film), {}, wavelength);
@@ -67,11 +67,11 @@ FilmPupils traced_pupils(const Lens& lens, const TwoPlanes& space, std::size_t w
 
 namespace {
 
-/// The height up to which a film gets light at a wavelength, at most film_radius; 0: none.
+/// Height up to which a film gets light at a wavelength, at most film_radius; 0 if the film is dark.
 double lit_radius(double film_radius, const FilmPupils& pupils) {
   const auto lit_at = [&](double height) { return bool{pupils.lit(std::array{height})[0]}; };
   if (lit_at(film_radius)) return film_radius;
-  // From the edge inwards: of a ring of light the outer end counts.
+  // From the edge inwards: the outer edge of a lit ring counts.
   constexpr int parts = 16;
   for (int i = parts; --i >= 0;) {
     double low = film_radius * i / parts, high = film_radius * (i + 1) / parts;
@@ -85,9 +85,9 @@ double lit_radius(double film_radius, const FilmPupils& pupils) {
   return 0;
 }
 
-/// The polygons of a wavelength.
+/// The polygons of one wavelength.
 std::vector<PupilPolygon> polygons_of(double lit_radius, PolygonFit fit, const FilmPupils& film) {
-  // Heights by strips, and between them where interpolated polygons are to enclose pupils.
+  // Heights at the strips and, if interpolated polygons must enclose pupils, halfway between.
   const std::size_t strips = film_strips(fit), parts = fit == PolygonFit::enclosing ? 2 : 1;
   std::vector<double> heights;
   for (std::size_t i = 0; i <= parts * strips; ++i) {
@@ -101,7 +101,7 @@ std::vector<PupilPolygon> polygons_of(double lit_radius, PolygonFit fit, const F
     return nullptr;
   };
   std::vector<PupilPolygon> polygons(strips + 1);
-  std::vector<const PupilRegion*> shown(strips + 1);  // the pupils that they were made of
+  std::vector<const PupilRegion*> shown(strips + 1);  // the pupils behind the polygons
   for (std::size_t i = 0; i <= strips; ++i) {
     const std::size_t at = parts * i;
     shown[i] = first_lit(at);
@@ -109,7 +109,7 @@ std::vector<PupilPolygon> polygons_of(double lit_radius, PolygonFit fit, const F
       polygons[i] = polygon_of(*shown[i], fit);
       continue;
     }
-    // The light ends within a strip: an enclosing pupil continues to its end, one of equal area shrinks to a point.
+    // The light ends within a strip: an enclosing pupil continues to the end, a pupil of equal area shrinks to a point.
     for (const std::size_t beside : {at - 1, at + 1, at - 2, at + 2}) {
       const PupilRegion* lit = beside < heights.size() ? first_lit(beside) : nullptr;
       if (!lit) continue;
@@ -129,7 +129,7 @@ std::vector<PupilPolygon> polygons_of(double lit_radius, PolygonFit fit, const F
     const std::size_t at = j % heights.size();
     if (at % 2 == 1 || &pupils[j] != shown[at / 2]) check(pupils[j], static_cast<double>(at) / 2);
   }
-  // Where the light ends pupils shrink fast.
+  // Pupils shrink fast where the light ends.
   std::vector<PupilRegion> shrinking;
   if (pupils.back().empty()) {
     constexpr std::size_t steps = 16;
@@ -165,7 +165,7 @@ std::vector<PupilPolygon> disc_polygons(std::span<const PupilDisc> discs, double
   std::vector<PupilPolygon> polygons;
   for (std::size_t i = 0; i <= strips; ++i) {
     const double height = film_radius * static_cast<double>(i) / strips;
-    // All discs overlap where the one that ends first does.
+    // The discs overlap up to the nearest end of any disc.
     double low = -std::numeric_limits<double>::infinity(), high = -low;
     for (const PupilDisc& disc : discs) {
       low = std::max(low, disc.shift * height - disc.radius);
@@ -174,7 +174,7 @@ std::vector<PupilPolygon> disc_polygons(std::span<const PupilDisc> discs, double
     PupilRegion overlap{.directions = region_directions};
     if (low < high) {
       overlap.middle = {0, (low + high) / 2};
-      // The nearest of the places where a line from the middle leaves a disc.
+      // Fraction of (x, y) at which a line from the middle leaves the first disc.
       const auto leaves = [&](double x, double y) {
         double nearest = std::numeric_limits<double>::infinity();
         for (const PupilDisc& disc : discs) {

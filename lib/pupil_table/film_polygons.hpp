@@ -13,36 +13,36 @@
 
 namespace petzval::pupil_table_detail {
 
-inline constexpr std::size_t region_directions = 128;  ///< of the regions that polygons are made of
+inline constexpr std::size_t region_directions = 128;  ///< directions of the regions behind the polygons
 
-/// Strips between the heights of polygons. Of equal area they are the film's light, where that ends too; what enclosing
-/// ones hold beyond the pupils costs lost samples alone: 3 in 10,000 more than with 64 strips.
+/// Number of strips between the heights of polygons. Polygons of equal area define the irradiance, also where it ends;
+/// coarser enclosing polygons only lose samples: 3 in 10,000 more than with 64 strips.
 constexpr std::size_t film_strips(PolygonFit fit) noexcept { return fit == PolygonFit::enclosing ? 32 : 64; }
 
-/// The pupils of film points on +y at some heights, in the plane of the pupil: one for each height or, of a film that
-/// has different points at one height, several of each, row by row.
+/// Pupils, in the pupil plane, of film points on +y at some heights: one pupil per height or, if a film has different
+/// points at one height, several pupils per height, row by row.
 struct FilmPupils {
   std::function<std::vector<PupilRegion>(std::span<const double> heights)> at;
-  std::function<std::vector<bool>(std::span<const double> heights)> lit;  ///< which of them have any light
+  std::function<std::vector<bool>(std::span<const double> heights)> lit;  ///< true for each lit height
 };
 
-/// Those of a lens of revolution, traced.
+/// Traced pupils of a lens of revolution.
 FilmPupils traced_pupils(const Lens& lens, const TwoPlanes& space, std::size_t wavelength);
-/// Those of a tilted film, by virtual film points: of the farthest and nearest film points of each, and of three
-/// between. upright: which lines pass.
+/// Pupils of a tilted film by virtual film point: for the farthest and the nearest film point of each, and for three
+/// between. upright: the table that tells which lines pass.
 FilmPupils tilted_film_pupils(const FilmPupilTable& upright, const FilmTilt& tilt, std::size_t wavelength);
 
-/// The pupils of film points on +y at equal steps of the height, from the axis on.
+/// Pupils of film points on +y at equal steps of the height, from the axis on.
 struct FilmPolygons {
-  double lit_radius = 0;  ///< the last height: up to there the film gets light at any of the wavelengths
+  double lit_radius = 0;  ///< the last height; the film is dark beyond it at all wavelengths
   std::vector<std::vector<PupilPolygon>> by_wavelength;
 };
 
-/// Those of a film, from its pupils at each wavelength. enclosing: those of the points between are contained in the
-/// interpolated ones. threads: they share the wavelengths.
+/// Polygons of a film, from its pupils at each wavelength. With PolygonFit::enclosing the interpolated pupils contain
+/// the pupils between heights. threads: share the wavelengths.
 FilmPolygons film_polygons(double film_radius, PolygonFit fit, std::span<const FilmPupils> pupils, int threads);
 
-/// The overlap of some discs, as a pupil of equal area.
+/// The overlap of some discs, as pupils of equal area.
 std::vector<PupilPolygon> disc_polygons(std::span<const PupilDisc> discs, double film_radius);
 
 }  // namespace petzval::pupil_table_detail

@@ -8,7 +8,7 @@ namespace {
 
 using namespace pupil_table_detail;
 
-/// The polygons at the corners of a cell: of its first row, then of its second.
+/// The polygons at the corners of a cell: first row, then second row.
 template <int dimensions>
 using AtCorners = std::array<const PupilPolygon*, CellLayout<dimensions>::linear>;
 template <int dimensions>
@@ -16,7 +16,7 @@ using Linear = std::array<double, CellLayout<dimensions>::linear>;
 template <int dimensions>
 using Area = std::array<double, CellLayout<dimensions>::area_terms>;
 
-/// Adds the area of the triangle between the middle and two corners, less the share that is obscured.
+/// Adds the area of the triangle between the middle and two corners, minus the obscured fraction.
 void add_sector(Area<1>& sum, const Linear<1>& ax, const Linear<1>& ay, const Linear<1>& bx, const Linear<1>& by,
                 const Linear<1>& obscured) {
   const Point<double> a{ax[0], ay[0]}, a_change{ax[1], ay[1]}, b{bx[0], by[0]}, b_change{bx[1], by[1]};

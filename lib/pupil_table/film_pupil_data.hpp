@@ -33,13 +33,13 @@ double mean_over_samples(int around, const Value& value) {
   return sum / around;
 }
 
-/// The projected solid angle of a place in the pupil, per mm^2 and over the square of the depth.
+/// Projected solid angle of a position in the pupil, per mm^2, divided by the squared depth.
 inline double solid_angle_at(const TwoPlanes& space, const FilmPoint& film, double x, double y) noexcept {
   const double dx = x - film.x, dy = y - film.y, length2 = dx * dx + dy * dy + space.depth() * space.depth();
   return 1 / (length2 * length2);
 }
 
-/// A value that is linear in a cell (CellLayout), from the nodes at its corners: of its first row, then of its second.
+/// Coefficients of a value that is linear in a cell (CellLayout), from the corner nodes: first row, then second row.
 template <int dimensions, class Nodes, class Number>
 std::array<double, CellLayout<dimensions>::linear> linear(const Nodes& nodes, const Number& number) {
   const double a = number(*nodes[0]), b = number(*nodes[1]);
@@ -58,25 +58,25 @@ struct FilmPupilTable::Data {
   TwoPlanes space;
   double film_radius = 0;
   std::size_t wavelengths = 0, primary = 0;
-  lens_detail::CompiledWavelengths compiled;             // for samples by nm
+  lens_detail::CompiledWavelengths compiled;             // for wavelengths in nm
   std::optional<pupil_table_detail::IrisImages> images;  // instead of polygons
-  int dimensions = 1;                                    // of the grid
+  int dimensions = 1;                                    // number of grid dimensions
   double reach = 0;                   // distance of the farthest film point of the grid from the axis
   std::size_t rows = 0, columns = 1;  // of cells
-  double height = 0;                  // of the last row
+  double height = 0;                  // y of the last row, mm
   std::vector<double> half_widths;    // FilmGrid
   bool obscured = false, enclosing = false;
   int corrections = 0;
   std::vector<double> cells;  // CellLayout
   std::vector<float> cells_single, half_widths_single;
-  std::shared_ptr<const pupil_table_detail::StopCells> stop;  // null: a round one, or not known
+  std::shared_ptr<const pupil_table_detail::StopCells> stop;  // null for a round or unknown stop
   std::shared_ptr<const Data> whole;  // the pupils before a rim cut them; null if there is no rim
 
-  /// The same film, planes and wavelengths, and no pupils yet.
+  /// A copy of film, planes and wavelengths, without pupils.
   std::shared_ptr<Data> alike() const;
-  /// The grid of a lens that has two sections.
+  /// Sets the grid of a lens with two sections.
   void set(const pupil_table_detail::FilmGrid& grid);
-  /// Adds a wavelength: the polygons at the nodes.
+  /// Adds a wavelength with its polygons at the nodes.
   void add(const std::vector<pupil_table_detail::PupilPolygon>& polygons);
 
   /// The same pupils with a stop of this iris.
@@ -85,7 +85,7 @@ struct FilmPupilTable::Data {
   std::size_t nodes() const noexcept { return (rows + 1) * (dimensions == 1 ? 1 : columns + 1); }
   /// The film point of a node.
   FilmPoint node_point(std::size_t node) const noexcept;
-  /// The polygon at a node, as add() took it, without obscurations.
+  /// The polygon at a node as passed to add(), without obscurations.
   pupil_table_detail::PupilPolygon node(std::size_t wavelength, std::size_t node) const noexcept;
 
   /// Rows per mm. 0 for a film smaller than 1e-30 mm, so that the result is finite in float.
@@ -104,7 +104,7 @@ struct FilmPupilTable::Data {
     const auto count = [](std::size_t n) { return static_cast<std::int32_t>(n); };
     result.rows = count(rows), result.columns = count(columns);
     result.wavelengths = count(wavelengths), result.primary = count(primary);
-    // The corner itself, rounded, still belongs to the film.
+    // Includes corner points of the film after rounding.
     result.reach = static_cast<R>(reach * (1 + 1e-6));
     result.rows_per_mm = static_cast<R>(rows_per_mm());
     result.obscured = obscured;
@@ -119,12 +119,12 @@ struct FilmPupilTable::Data {
                            : body(grid<2, R>(), pupil_table_detail::plain_quadrant_loops);
   }
 
-  /// Position of the pupils to use; `wavelengths` for a wavelength that is not covered.
+  /// Index of the pupils for a wavelength; `wavelengths` if the wavelength is not covered.
   std::size_t position(Wavelength at) const noexcept {
     const auto nm = at.in_nm();
     return !nm ? at.position(primary) : compiled.covers(*nm) ? compiled.nearest(*nm) : wavelengths;
   }
-  /// The same for loops: -1 for a wavelength that is not covered.
+  /// The same for loops; -1 if the wavelength is not covered.
   std::int32_t known(Wavelength at) const noexcept {
     const std::size_t found = position(at);
     return found < wavelengths ? static_cast<std::int32_t>(found) : -1;

@@ -14,7 +14,7 @@ namespace {
 using pupil_detail::PupilGuess;
 using pupil_detail::SearchOrder;
 
-/// Finds the pupils of points that stand in rows.
+/// Finds the pupils of points in rows.
 class PupilFinder {
  public:
   PupilFinder(const GridOfPoints& grid, std::size_t directions, const pupil_detail::PlaceClearances& clearances)
@@ -24,7 +24,7 @@ class PupilFinder {
     const auto order =
         row_ == 1 ? SearchOrder::rows(guesses_.size(), 1) : SearchOrder::grid(guesses_.size() / row_, row_);
     std::vector<PupilRegion> pupils = pupil_detail::find_regions(guesses_, order, directions_, false, clearances_);
-    // Where the chief ray is lost, light may pass beside it: as beside the pupil of a neighbour, else anywhere.
+    // If the chief ray is lost, other light may pass: search near the pupils of neighbours, else everywhere.
     if (std::all_of(pupils.begin(), pupils.end(), [](const PupilRegion& p) { return p.empty(); })) {
       std::vector<std::uint32_t> ends;
       for (std::size_t i = 0; i < guesses_.size(); ++i) {
@@ -60,7 +60,7 @@ class PupilFinder {
     double x, y, half_x, half_y;
   };
 
-  /// Where to look beside the pupil of a neighbour: where that moves to, and as far as it reaches.
+  /// The search box at the extrapolated pupil of a lit neighbour, as large as that pupil.
   std::optional<Box> lit_neighbour(const std::vector<PupilRegion>& pupils, std::size_t i) const {
     const std::size_t column = i % row_;
     const auto lit = [&](std::size_t at) { return at < pupils.size() && !pupils[at].empty(); };
@@ -78,7 +78,7 @@ class PupilFinder {
     return {};
   }
 
-  /// Tests places all over the boxes of some points and finds the pupils of those where anything passes.
+  /// Tests positions all over the boxes of some points and finds the pupils of the points where a ray passes.
   bool look_again(std::vector<PupilRegion>& pupils, const std::vector<std::uint32_t>& which,
                   const std::vector<Box>& boxes, int side) {
     std::vector<std::uint32_t> points;
@@ -104,7 +104,7 @@ class PupilFinder {
         if (values[i] >= 0) sum_x += x[i], sum_y += y[i], ++count;
       }
       if (count == 0) continue;
-      // The place that passes and lies nearest to the middle of all of them.
+      // Take the passing position nearest to the mean of all passing positions.
       std::size_t best = end;
       const auto away = [&](std::size_t i) { return std::hypot(x[i] - sum_x / count, y[i] - sum_y / count); };
       for (std::size_t i = begin; i < end; ++i) {
@@ -135,9 +135,9 @@ class PupilFinder {
   const pupil_detail::PlaceClearances& clearances_;
 };
 
-/// Corner k at -x.
+/// Mirror image of corner k at x = 0.
 std::size_t across_x(std::size_t k) noexcept { return (polygon_corners - k) % polygon_corners; }
-/// Corner k at -y.
+/// Mirror image of corner k at y = 0.
 std::size_t across_y(std::size_t k) noexcept { return (polygon_corners / 2 + polygon_corners - k) % polygon_corners; }
 
 }  // namespace
@@ -154,7 +154,7 @@ std::vector<PupilPolygon> node_polygons(std::span<const PupilRegion> pupils, std
   const auto node = [&](std::size_t i, std::size_t j) { return i * nodes + j; };
   for (std::size_t i = 0; i < rows; i += 2) {
     for (std::size_t j = 0; j < columns; j += 2) {
-      // Where the light ends beside a node, a pupil of the points between continues to it.
+      // If the light ends next to a node, the node takes the pupil of a lit point nearby.
       const PupilRegion* lit = nullptr;
       for (const auto& [up, right] :
            {std::pair{0, 0}, {0, -1}, {-1, 0}, {-1, -1}, {0, 1}, {1, 0}, {-1, 1}, {1, -1}, {1, 1}}) {
@@ -174,7 +174,7 @@ std::vector<PupilPolygon> node_polygons(std::span<const PupilRegion> pupils, std
       for (auto& corner : polygon.corners) corner *= scale;
     }
   }
-  // Farther out a polygon stays where the light is.
+  // Dark nodes farther out take the polygon of the nearest lit node.
   for (const std::size_t dark : unknown) {
     const auto away = [&](std::size_t k) {
       const auto step = [](std::size_t a, std::size_t b) { return a < b ? b - a : a - b; };
@@ -210,7 +210,7 @@ PupilPolygon hull(const std::vector<PupilPolygon>& polygons) {
     }
   }
   if (places.empty()) return {};
-  // Their convex hull, from the lowest x on: on the way there above, on the way back below.
+  // Convex hull, starting at the lowest x: the upper side first, then the lower side.
   std::sort(places.begin(), places.end(), [](const auto& a, const auto& b) { return a.x < b.x; });
   std::vector<Point<double>> edge;
   const auto go = [&](auto begin, auto end) {
@@ -243,7 +243,7 @@ PupilPolygon hull(const std::vector<PupilPolygon>& polygons) {
     }
   }
   PupilPolygon polygon = polygon_of(region, PolygonFit::enclosing, CornerSteps::even_in_halves);
-  // Corners of the hull between two directions.
+  // Includes corners of the hull between two directions.
   double way = 1;
   for (const auto& p : edge) way = std::max(way, polygon.way_to(p.x, p.y));
   polygon.widen(way);
@@ -254,14 +254,14 @@ void expand_to_probes(std::span<PupilPolygon> polygons, std::size_t probes, cons
                       const ProbeClearances& clearances) {
   constexpr int rounds = 4;
   const core_detail::Kronecker<4> uniform;
-  // Some at a time, so that memory is used again.
+  // In batches of 1024, to reuse buffers.
   constexpr std::size_t some = 1024;
   std::vector<double> x, y, values;
   std::vector<std::uint32_t> open;
   std::vector<std::uint32_t> sectors(some);
   std::vector<PolygonWeights> at(some);
   std::vector<std::array<double, 4>> places(some);
-  std::vector<Point<double>> middles(some), edges(some);  // edges: from the middle
+  std::vector<Point<double>> middles(some), edges(some);  // edges: relative to the middle
   std::vector<double> scales(some);
   for (int round = 0; round < rounds; ++round) {
     std::vector<std::array<double, polygon_corners>> larger(polygons.size());
@@ -283,7 +283,7 @@ void expand_to_probes(std::span<PupilPolygon> polygons, std::size_t probes, cons
           edges[p] = edges[p] + at[p].weights[j] * polygon.sector(k).at(1, along - static_cast<double>(k));
         }
       }
-      // Steps outwards, of those that still pass.
+      // Steps outwards while probes still pass.
       std::fill(scales.begin(), scales.end(), 1);
       open.resize(count);
       std::iota(open.begin(), open.end(), 0u);

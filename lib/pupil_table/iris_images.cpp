@@ -11,7 +11,7 @@
 namespace petzval::pupil_table_detail {
 namespace {
 
-constexpr double rounded_up = 1 + 1e-6;  // the corner itself, rounded, still belongs to the film
+constexpr double rounded_up = 1 + 1e-6;  // includes corner points of the film after rounding
 
 }  // namespace
 
@@ -129,7 +129,7 @@ Vec2<double> IrisImages::position(const FilmPoint& film, double x, double y, Wav
 
 FilmPupilTable::Derivatives IrisImages::derivatives(const FilmPoint& film, const PupilSample& sample,
                                                     Wavelength wavelength) const noexcept {
-  // Of part (shift film + radius place), by way of part's own: - part^2 shift slope.
+  // Derivatives of part (shift film + radius place), where part changes by -part^2 shift slope.
   const auto [x, y, area] = sample;
   if (!(area > 0)) return {};
   const Image seen = image(film, wavelength);

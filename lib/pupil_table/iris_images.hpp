@@ -13,39 +13,39 @@
 
 namespace petzval::pupil_table_detail {
 
-/// FilmPupilArrays::iris.
+/// Writes FilmPupilArrays::iris.
 void put_iris(const iris_detail::IrisShape& shape, FilmPupilArrays& arrays);
 
-/// Pupils in closed form: the images of an iris, one for each wavelength, that move with the film point.
+/// Pupils in closed form: images of an iris, by wavelength, that move with the film point.
 ///
-/// On a tilted film the ray of a virtual film point V (FilmTilt) through q meets the upright film in V - (slope . V) q,
-/// which sees q in the image with its centre at shift times that. Solved for q, that is the upright film's image of V
-/// scaled about the origin, in each section by part = 1 / (1 + shift slope . V).
+/// On a tilted film the ray of a virtual film point V (FilmTilt) through q meets the upright film at V - (slope . V) q.
+/// That point sees q in the image centred at shift (V - (slope . V) q). Solved for q, this is the upright image of V
+/// scaled about the origin, in each section, by 1 / (1 + shift slope . V).
 class IrisImages {
  public:
   IrisImages(const Iris& iris, std::span<const PupilImage> images, double film_radius, std::size_t primary,
              const lens_detail::CompiledWavelengths& wavelengths);
 
-  /// Those of a tilted film, by virtual film points; for images of an upright one.
+  /// Pupils of a tilted film by virtual film point. Call it for images of an upright film.
   IrisImages tilted(const FilmTilt& tilt) const;
 
   bool round() const noexcept { return shape_.round(); }
   const Iris& iris() const noexcept { return shape_.iris(); }
-  /// That of a wavelength, of a lens of revolution.
+  /// The disc of a wavelength, for a lens of revolution.
   PupilDisc disc(std::size_t wavelength) const noexcept {
     return {images_[wavelength].shift_y, images_[wavelength].radius_y};
   }
-  /// Those of the whole stop, which contain these.
+  /// Images of the unclipped stop, which contain these images.
   IrisImages of_round_stop() const;
-  /// Whether discs stay discs, so that turns about the axis change nothing. For round ones.
+  /// True if discs stay discs, so that rotations about the axis change nothing. For round irises.
   bool of_revolution() const noexcept { return sections_alike_; }
 
-  /// As plain numbers. For images of an upright film.
+  /// Writes the images as numbers. Call it for images of an upright film.
   void put(FilmPupilArrays& arrays) const;
 
   PupilSample sample(const FilmPoint& film, double u, double v, Wavelength wavelength) const noexcept;
   double area(const FilmPoint& film, Wavelength wavelength) const noexcept;
-  /// The area of the image of the whole stop.
+  /// Area of the image of the unclipped stop.
   double area_of_stop(const FilmPoint& film, Wavelength wavelength) const noexcept;
   Vec2<double> middle(const FilmPoint& film, Wavelength wavelength) const noexcept;
   bool contains(const FilmPoint& film, double x, double y, Wavelength wavelength) const noexcept;
@@ -63,13 +63,13 @@ class IrisImages {
 
  private:
   using Image = ImageSections<double>;
-  /// The image that a film point sees; area 0: none.
+  /// The image that a film point sees; area 0 if it sees no image.
   Image image(const FilmPoint& film, Wavelength wavelength) const noexcept;
   /// The image at a wavelength, seen from the axis.
   Image image(Wavelength wavelength) const noexcept;
   template <class R>
   SeenIris<R> seen() const noexcept;
-  /// all: the wavelength that rays share.
+  /// all: common wavelength of all rays.
   template <class R>
   IrisImageTable<R> table(Wavelength all) const noexcept;
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Samples of many images of an iris, compiled once for each instruction set: plain loops, which the compiler runs on
-// its lanes. Names are local, and no other library is called, as in lib/trace/lanes.hpp.
+// Samples of images of an iris, compiled once for each instruction set: plain loops that the compiler vectorizes. Names
+// are local, and no other library is called, as in lib/trace/lanes.hpp.
 #include "iris_images_loops.hpp"
 
 #include "core/loop_math.hpp"
@@ -32,7 +32,7 @@ inline void with_images(const IrisImageTable<R>& table, std::size_t count, const
   }
 }
 
-/// A film point and the image that it sees. Nothing of it is infinite.
+/// A film point and the image that it sees, all finite.
 template <class R>
 struct Seen {
   R film_x, film_y;
@@ -48,15 +48,15 @@ inline Seen<R> seen(const SeenIris<R>& table, const ImageSections<R>& image, R f
   return {fx, fy, on_tilted(own, table.slope_x * fx + table.slope_y * fy)};
 }
 
-/// sample_at(i, u, v): a uniform point of the iris.
+/// Writes samples. sample_at(i, u, v): a uniform point of the iris.
 template <class R, class ImageOf, class SampleAt>
 inline void fill(const SeenIris<R>& given, const ImageOf& image_of, const SampleAt& sample_at, std::size_t begin,
                  std::size_t end, const R* film_x, const R* film_y, const R* u, const R* v, R* x, R* y,
                  R* areas) noexcept {
-  const SeenIris<R> table = given;  // which nothing that is written overlaps
+  const SeenIris<R> table = given;  // a copy, which no output can alias
   PETZVAL_INDEPENDENT
   for (std::size_t i = begin; i < end; ++i) {
-    // Comparisons with what is not a number are false.
+    // Comparisons with NaN are false.
     const bool sound = (film_x[i] + film_y[i] + u[i] + v[i]) * R(0) >= R(0);
     const auto [fx, fy, image] = seen(table, image_of(i), film_x[i], film_y[i], sound);
     const auto [px, py] = sample_at(i, core_detail::clamped(u[i]), core_detail::clamped(v[i]));
@@ -67,7 +67,7 @@ inline void fill(const SeenIris<R>& given, const ImageOf& image_of, const Sample
   }
 }
 
-/// Calls body(sample_at) with what fill() wants for an iris.
+/// Calls body(sample_at) with the function for fill().
 template <class R, class Body>
 inline void with_places(const iris_detail::IrisSectors<R>& iris, const Body& body) noexcept {
   if (iris.count == 0) {

@@ -13,16 +13,16 @@
 
 namespace petzval::pupil_table_detail {
 
-/// A PupilImage in numbers of type R; area 0: none.
+/// A PupilImage in numbers of type R; area 0 if there is no image.
 template <class R>
 struct ImageSections {
   R shift_x = 0, shift_y = 0, radius_x = 0, radius_y = 0, area = 0;
 };
 
-// Local names: this is compiled for several instruction sets, and the linker must not take one for another.
+// Local names: compiled for several instruction sets, which the linker must not mix.
 namespace {
 
-/// The image that a virtual point of a tilted film sees, nearer: slope . virtual point.
+/// The image that a virtual point of a tilted film sees. nearer: slope . virtual point.
 template <class R>
 inline ImageSections<R> on_tilted(const ImageSections<R>& image, R nearer) noexcept {
   const R x = R(1) / (R(1) + image.shift_x * nearer), y = R(1) / (R(1) + image.shift_y * nearer);
@@ -31,7 +31,7 @@ inline ImageSections<R> on_tilted(const ImageSections<R>& image, R nearer) noexc
 
 }  // namespace
 
-/// An iris and the film that sees images of it, in numbers of type R, borrowed.
+/// An iris and the film that sees its images, in numbers of type R, borrowed.
 template <class R>
 struct SeenIris {
   iris_detail::IrisSectors<R> iris;
@@ -42,9 +42,9 @@ struct SeenIris {
 template <class R>
 struct IrisImageTable : SeenIris<R> {
   lens_detail::WavelengthRows<R> images{};  ///< shift and radius along x, then along y
-  bool sections_alike = false;              ///< those along y are those along x
-  ImageSections<R> image{};                 ///< that of a wavelength that rays share
-  R area = 0;                               ///< of the iris
+  bool sections_alike = false;              ///< true if both sections are equal
+  ImageSections<R> image{};                 ///< at the common wavelength of all rays
+  R area = 0;                               ///< area of the iris
 };
 
 /// Loops over samples, for float or double.

@@ -18,7 +18,7 @@ struct FilmSamples {
 
 FilmSamples film_samples(const FilmPupilTable& pupils, bool azimuths_alike, std::size_t wavelength) {
   constexpr int radii = 32, around = 16, azimuths = 64;
-  // How far the film gets light, by azimuth.
+  // Lit radius of the film by azimuth.
   const auto lit_at = [&](double turn) {
     const auto seen = [&](double radius) {
       return pupils.area({radius * std::sin(turn), radius * std::cos(turn)}, wavelength) > 0;
@@ -42,16 +42,15 @@ FilmSamples film_samples(const FilmPupilTable& pupils, bool azimuths_alike, std:
   const core_detail::Kronecker<3> points;
   std::size_t index = 0;
   for (int i = 0; i <= radii; ++i) {
-    // Closer where the light ends.
+    // Denser near the edge of the light.
     const double part = 1 - std::pow(1 - static_cast<double>(i) / radii, 1.5);
     if (azimuths_alike) {
-      for (int k = 0; k <= around / 2; ++k) {  // the halves of a pupil are alike
+      for (int k = 0; k <= around / 2; ++k) {  // pupils are symmetric
         for (const double v : {0.0, 0.85, 0.95, 1.0}) add(part * lit[0], 0, static_cast<double>(k) / around, v);
       }
       continue;
     }
-    // The pupil may be that of all points, of which much passes nothing: uniform samples of all of it, and more near
-    // its edge.
+    // The pupil may be the union over all points and pass little: sample all of it, and its edge more densely.
     for (int k = 0; k < 16 * around; ++k, ++index) {
       const auto [turn, u, v] = points(index);
       const double azimuth = turn * azimuths;

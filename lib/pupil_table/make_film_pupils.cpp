@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// How tables of pupils are made.
+// Makers of pupil tables.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -24,9 +24,9 @@ namespace {
 
 using namespace pupil_table_detail;
 
-/// Scales a polygon until its film point sees it in a projected solid angle.
+/// Scales a polygon until its projected solid angle, seen from its film point, is `wanted`.
 void scale_to_light(PupilPolygon& polygon, const TwoPlanes& space, const FilmPoint& film, double wanted) {
-  // The solid angle grows with the square of the scale, nearly.
+  // The solid angle is nearly proportional to the squared scale.
   for (int round = 0; round < 3; ++round) {
     const PolygonSampler sampler(polygon);
     const auto solid_angle = [&](double u, double v) {
@@ -40,14 +40,15 @@ void scale_to_light(PupilPolygon& polygon, const TwoPlanes& space, const FilmPoi
   }
 }
 
-/// The disc that moves as the pupil does near the axis and holds it there. beside: of a film point at a height.
+/// The disc that contains the axial pupil and moves like pupils near the axis. beside: the pupil of a film point at
+/// `height`.
 PupilDisc disc_about(const PupilPolygon& on_axis, const PupilPolygon& beside, double height) noexcept {
   double radius = 0;
   for (const auto& corner : on_axis.corners) radius = std::max(radius, std::hypot(corner.x, corner.y));
   return {height > 0 ? (beside.middle.y - on_axis.middle.y) / height : 0, radius};
 }
 
-/// Makes the pupils of each wavelength contain those up to the middles between it and its neighbours.
+/// Expands the pupils of each wavelength to contain the pupils up to halfway to the adjacent wavelengths.
 void expand_to_neighbours(const lens_detail::CompiledWavelengths& compiled,
                           std::vector<std::vector<PupilPolygon>>& polygons) {
   const std::vector<std::vector<PupilPolygon>> own = polygons;
@@ -62,54 +63,53 @@ void expand_to_neighbours(const lens_detail::CompiledWavelengths& compiled,
 
 void check_film_radius(const std::string& where, double film_radius) {
   if (film_radius >= 0 && std::isfinite(film_radius)) return;
-  throw Error(where + ": film: its radius is " + to_text(film_radius) + " mm, wanted a finite one, 0 or more");
+  throw Error(where + ": film: radius = " + to_text(film_radius) + " mm; must be finite and at least 0");
 }
 
-/// Throws Error for what no table is made of. count: of the wavelengths.
+/// @throws Error  if no table can be made of the arguments; count: number of wavelengths
 void check_table(const TwoPlanes& space, double film_radius, std::size_t count, std::size_t primary,
                  std::span<const double> wavelengths_nm) {
   const std::string where = "pupil table: ";
   if (!std::isfinite(space.depth()) || space.depth() == 0) {
-    throw Error(where + "the film lies at z = " + to_text(space.film_z) + " and the plane of the pupil at " +
-                to_text(space.pupil_z) + " mm, wanted two places");
+    throw Error(where + "film_z = " + to_text(space.film_z) + " and pupil_z = " + to_text(space.pupil_z) +
+                " mm; must differ");
   }
   check_film_radius("pupil table", film_radius);
   constexpr std::size_t most = std::numeric_limits<std::uint16_t>::max();  // RayWavelengths::each
   if (count < 1 || count > most) {
-    throw Error(where + "it has " + std::to_string(count) + " wavelengths, wanted 1 to " + std::to_string(most));
+    throw Error(where + "it has " + std::to_string(count) + " wavelengths; must have 1 to " + std::to_string(most));
   }
   if (primary >= count) {
-    throw Error(where + "primary_wavelength is " + std::to_string(primary) + ", wanted one of " +
-                std::to_string(count));
+    throw Error(where + "primary_wavelength = " + std::to_string(primary) + "; must be below " + std::to_string(count));
   }
   if (wavelengths_nm.empty()) return;
   if (wavelengths_nm.size() != count) {
-    throw Error(where + "wavelengths_nm has " + std::to_string(wavelengths_nm.size()) + " numbers, wanted " +
-                std::to_string(count) + " or none");
+    throw Error(where + "wavelengths_nm has " + std::to_string(wavelengths_nm.size()) + " numbers; must have " +
+                std::to_string(count) + " or be empty");
   }
   for (const double nm : wavelengths_nm) {
-    if (!(nm > 0 && std::isfinite(nm))) throw Error(where + "a wavelength is " + to_text(nm) + " nm, wanted a length");
+    if (!(nm > 0 && std::isfinite(nm)))
+      throw Error(where + "wavelength = " + to_text(nm) + " nm; must be finite and above 0");
   }
   if (const auto repeated = repeated_wavelength(wavelengths_nm)) {
-    throw Error(where + "wavelength " + std::to_string(*repeated) + " is " + to_text(wavelengths_nm[*repeated]) +
-                " nm, that of another one, wanted each once");
+    throw Error(where + "wavelength " + std::to_string(*repeated) + " = " + to_text(wavelengths_nm[*repeated]) +
+                " nm; must differ from all others");
   }
 }
 
-/// Throws Error for an outline in the plane of the pupil that is no disc or has no place. Areas and places of larger
-/// numbers would overflow in float.
+/// @throws Error  if an outline in the pupil plane is no disc or not finite; larger numbers overflow in float
 void check_outline(std::size_t wavelength, double shift, double radius) {
   constexpr double largest = 1e15;
   if (std::abs(shift) <= largest && radius >= 0 && radius <= largest) return;
-  throw Error("pupil table: wavelength " + std::to_string(wavelength) + ": a pupil has the shift " + to_text(shift) +
-              " and the radius " + to_text(radius) + " mm, wanted numbers up to " + to_text(largest) +
-              " and no negative radius");
+  throw Error("pupil table: wavelength " + std::to_string(wavelength) + ": shift = " + to_text(shift) +
+              ", radius = " + to_text(radius) + " mm; both must be at most " + to_text(largest) +
+              " in absolute value, and the radius not negative");
 }
 
 void check_discs(std::span<const std::vector<PupilDisc>> discs) {
   for (std::size_t w = 0; w < discs.size(); ++w) {
     if (discs[w].empty()) {
-      throw Error("pupil table: wavelength " + std::to_string(w) + " has no disc, wanted one or more");
+      throw Error("pupil table: wavelength " + std::to_string(w) + " has no disc; must have one or more");
     }
     for (const auto& [shift, radius] : discs[w]) check_outline(w, shift, radius);
   }
@@ -187,7 +187,7 @@ FilmPupilTable FilmPupilTable::of_round_stop() const {
 
 FilmPupilTable FilmPupilTable::reshaped(std::span<const std::vector<PupilDisc>> discs) const {
   if (discs.size() != wavelengths()) {
-    throw Error("pupil table: found discs of " + std::to_string(discs.size()) + " wavelengths, wanted those of " +
+    throw Error("pupil table: discs has " + std::to_string(discs.size()) + " wavelengths; must have " +
                 std::to_string(wavelengths()));
   }
   check_discs(discs);
@@ -208,17 +208,17 @@ FilmPupilTable FilmPupilTable::cut_by_rim(const PupilRim& rim) const {
   const auto& images = data_->images;
   if (data_->dimensions == 2 || (images && !images->of_revolution()) || data_->obscured) {
     throw Error(
-        "pupils: found cylinders or a central obscuration, wanted a lens of revolution without for a rim that "
-        "cuts cat's eyes");
+        "pupils: the lens has cylinders or a central obscuration; must be a lens of revolution without "
+        "obscurations if a rim clips its pupils");
   }
   if (!(rim.ratio > 0 && std::isfinite(rim.ratio)) || !std::isfinite(rim.radii_per_mm)) {
-    throw Error("pupils: a rim of " + to_text(rim.ratio) + " radii that moves by " + to_text(rim.radii_per_mm) +
-                " of them per mm, wanted a positive radius and finite numbers");
+    throw Error("pupils: rim: ratio = " + to_text(rim.ratio) + ", radii_per_mm = " + to_text(rim.radii_per_mm) +
+                "; both must be finite, and the ratio above 0");
   }
-  constexpr double farthest = 1e6;  // beyond it, float does not tell the places of a pupil apart
+  constexpr double farthest = 1e6;  // float cannot resolve a pupil beyond this distance
   if (!(std::abs(rim.radii_per_mm) * lit_radius() <= farthest)) {
     throw Error("pupils: the rim moves by " + to_text(std::abs(rim.radii_per_mm) * lit_radius()) +
-                " radii over the film, wanted at most " + to_text(farthest));
+                " radii over the film; must be at most " + to_text(farthest));
   }
   auto data = data_->alike();
   data->whole = data_;
@@ -271,7 +271,7 @@ FilmPupilTable FilmPupilTable::of_iris(const TwoPlanes& space, const Iris& iris,
 
 FilmPupilTable FilmPupilTable::for_tilted_film(const FilmTilt& tilt, int threads) const {
   check_film_radius("tilted film", tilt.radius);
-  if (threads < 1) throw Error("tilted film: threads is " + std::to_string(threads) + ", wanted 1 or more");
+  if (threads < 1) throw Error("tilted film: threads = " + std::to_string(threads) + "; must be at least 1");
   auto data = std::make_shared<Data>();
   if (data_->images && tilt.travel == 0) {
     *data = *data_;
@@ -279,7 +279,7 @@ FilmPupilTable FilmPupilTable::for_tilted_film(const FilmTilt& tilt, int threads
     data->images = data_->images->tilted(tilt);
     return FilmPupilTable(std::move(data));
   }
-  // Blades have no rotational or mirror symmetry: samples come from the round stop, and the iris clips their rays.
+  // Blades break the rotational and mirror symmetry: samples come from the round stop, and the iris clips their rays.
   if (data_->stop || (data_->images && !data_->images->round())) return of_round_stop().for_tilted_film(tilt, threads);
   data->space = data_->space;
   data->primary = data_->primary;

@@ -12,7 +12,7 @@
 
 namespace petzval::pupil_table_detail {
 
-/// Samples of N rays, or of one, of a grid.
+/// Samples N rays, or one ray, of a grid.
 template <int dimensions, class R>
 using SampleLoop = void (*)(const PolygonGrid<dimensions, R>&, std::size_t, const R* film_x, const R* film_y,
                             const R* u, const R* v, const RayWavelengths&, R* x, R* y, R* areas) noexcept;
@@ -33,7 +33,7 @@ struct SampleLoops {
   }
 };
 
-/// The loops of grids with one dimension, for every instruction set.
+/// Loops of grids with one dimension, for each instruction set.
 struct PolarLoops {
   SampleLoops<1> samples;
   void (*find_nearest)(const lens_detail::NearestPosition&, std::size_t, const float* nm,
@@ -66,7 +66,7 @@ struct PlainLoops {
   void (*one_with_derivatives)(const PolygonGrid<dimensions, double>&, kernel::Dual film_x, kernel::Dual film_y,
                                kernel::Dual u, kernel::Dual v, std::int32_t wavelength, kernel::Dual& x,
                                kernel::Dual& y, kernel::Dual& area) noexcept;
-  /// areas() of one place.
+  /// areas() of one ray.
   double (*area_of_one)(const PolygonGrid<dimensions, double>&, double film_x, double film_y, double x, double y,
                         std::int32_t wavelength) noexcept;
 

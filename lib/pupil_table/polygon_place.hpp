@@ -7,10 +7,10 @@
 
 #include "polygon_grid.hpp"
 
-/// Places in the polygon of one film point, in double.
+/// Positions in the polygon of one film point, in double.
 namespace petzval::pupil_table_detail {
 
-/// The last corner before a place, seen from the middle, of corners in order.
+/// Index of the last corner before a position, seen from the middle, by bisection.
 template <class Polygon>
 std::size_t corner_before(const Polygon& polygon, const Point<double>& q) {
   const Point<double> first = polygon.corner(0);
@@ -25,14 +25,15 @@ std::size_t corner_before(const Polygon& polygon, const Point<double>& q) {
   return low;
 }
 
-/// The sector that faces a place, seen from the middle; polygon_corners: none does.
+/// Index of the sector that faces a position, seen from the middle; polygon_corners if there is no such sector.
 template <class Polygon>
 std::size_t sector_towards(const Polygon& polygon, const Point<double>& q) {
   return sector_facing(
       q, [&](std::size_t k) { return polygon.sector(static_cast<std::int32_t>(k)); }, corner_before(polygon, q));
 }
 
-/// As FilmPupilTable::clearances(). facing: the sector that probably faces the place, replaced by the one that does.
+/// Clearance as in FilmPupilTable::clearances(). facing: in: first sector to try; out: the sector that faces the
+/// position.
 template <class Polygon>
 double clearance_of_place(const Polygon& polygon, const Point<double>& q, std::size_t& facing) {
   Sector<double> sector = polygon.sector(static_cast<std::int32_t>(facing));
@@ -42,7 +43,7 @@ double clearance_of_place(const Polygon& polygon, const Point<double>& q, std::s
     facing = k;
     sector = polygon.sector(static_cast<std::int32_t>(k));
   }
-  constexpr double farthest = 1e150;  // whose square is a number
+  constexpr double farthest = 1e150;  // its square is finite
   const double way = std::min(sector.way_to(q), farthest), squared = way * way;
   double least = 1 - squared;
   if (sector.obscured > 0) {
@@ -52,7 +53,8 @@ double clearance_of_place(const Polygon& polygon, const Point<double>& q, std::s
   return least < 0 ? least / (1 - least) : least;
 }
 
-/// By how many sectors equal shares of the area miss the right one, at most (PolygonGrid::corrections).
+/// Largest distance, in sectors, between the sector guessed from equal areas and the right one; see
+/// PolygonGrid::corrections.
 template <class Polygon>
 int corrections_of(const Polygon& polygon) {
   int corrections = 0;

@@ -12,20 +12,20 @@ namespace petzval::pupil_table_detail {
 namespace {
 
 using pupil_detail::Extent;
-using Place = Point<double>;  // in the plane, from a middle
+using Place = Point<double>;  // in the plane, relative to a middle
 
 Place place_of(const Vec2<double>& p) noexcept { return {p[0], p[1]}; }
 
-/// The outer edge of a region as a closed line about its middle, from +y on, and the obscuration on the way to each of
-/// its points as fractions.
+/// The outer edge of a region as a closed line about its middle, starting at +y, and for each of its points the ends of
+/// the obscuration as fractions of the distance from the middle.
 struct Edge {
   std::vector<Place> points;
   std::vector<double> obscured_from, obscured_to;
   double area = 0;  // inside the outer edge
 };
 
-/// Where the prolonged chords before and behind the one from b to c meet: between b and c, the boundary of a convex
-/// region stays within. Else b.
+/// Intersection of the prolonged chords before and behind the chord from b to c: between b and c the boundary of a
+/// convex region stays inside. Returns b if there is no such intersection.
 Place apex(const Place& a, const Place& b, const Place& c, const Place& d) noexcept {
   const Place u = b - a, v = c - d, w = c - b;
   const double determinant = turn(u, v);
@@ -37,7 +37,7 @@ Place apex(const Place& a, const Place& b, const Place& c, const Place& d) noexc
   return between ? b + s * u : b;
 }
 
-/// Where the chord from a to b crosses the direction +y of the middle.
+/// Intersection of the chord from a to b with the line from the middle towards +y.
 Place crossing(const Place& a, const Place& b) noexcept {
   const double across = b.x - a.x, t = across > 0 ? std::clamp(-a.x / across, 0.0, 1.0) : 0;
   return a + t * (b - a);
@@ -52,7 +52,7 @@ Edge edge_of(const PupilRegion& region, PolygonFit fit) {
   for (std::size_t k = 0; k < n; ++k) {
     if (found[k].lit) p[k] = {found[k].rim.x - region.middle[0], found[k].rim.y - region.middle[1]};
   }
-  // A tip that lies between a direction along which something passes and one along which nothing does.
+  // A tip may lie between a lit direction and a dark direction.
   for (std::size_t k = 0; enclosing && k < n; ++k) {
     if (found[k].lit) continue;
     for (const std::size_t beside : {(k + 1) % n, (k + n - 1) % n}) {
@@ -69,7 +69,7 @@ Edge edge_of(const PupilRegion& region, PolygonFit fit) {
     edge.obscured_from.push_back(outer > 0 ? from / outer : 0);
     edge.obscured_to.push_back(outer > 0 ? to / outer : 1);
   };
-  // The first direction is half a step beyond +y.
+  // The first direction is half a step after +y.
   const Place &last = p[n - 1], &first = p[0];
   add(crossing(last, first), n - 1);
   for (std::size_t k = 0; k < n; ++k) {
@@ -78,7 +78,7 @@ Edge edge_of(const PupilRegion& region, PolygonFit fit) {
     edge.area += turn(p[k], p[next]) / 2;
     const Place tip = apex(p[(k + n - 1) % n], p[k], p[next], p[(k + 2) % n]);
     if (tip.x == p[k].x && tip.y == p[k].y) continue;
-    // A smooth arc reaches over the chord by a third of the triangle (chords meet twice as far out as tangents do).
+    // A smooth arc exceeds the chord by a third of the triangle (chords meet twice as far out as tangents).
     edge.area += (turn(p[k], tip) + turn(tip, p[next]) - turn(p[k], p[next])) / 6;
     if (!(enclosing && turn(p[k], tip) > 0 && turn(tip, p[next]) > 0)) continue;
     if (next > 0) {
@@ -90,20 +90,21 @@ Edge edge_of(const PupilRegion& region, PolygonFit fit) {
   return edge;
 }
 
-/// By how much the corners must be scaled for a sector to contain a place that it faces.
+/// Scale of the corners with which a sector contains a position that it faces.
 double scale_for(const Sector<double>& sector, const Place& q) noexcept {
   return turn(sector.a, sector.b) > 0 ? sector.way_to(q) : 1;
 }
 
-/// The obscuration that all directions of a sector share: between squared ways outwards.
+/// The obscuration common to all directions of a sector, as an interval of squared radial fractions.
 struct Obscured {
   double from = 0, to = 1;
 
-  /// Keeps the obscuration between two points that the sector faces, a little narrower; by as much again as it is
-  /// narrower than `expected`, which comes from neighbours. dark: from the middle on.
+  /// Intersects with the obscuration between two points that the sector faces, narrowed by a margin; narrowed further
+  /// by the amount by which it is smaller than `expected`, the obscuration of the neighbours. dark: obscured from the
+  /// middle on.
   void keep(const Sector<double>& sector, bool dark, const Place& begin, const Place& end,
             const Obscured& expected) noexcept {
-    if (!(from < to)) return;  // nothing is left to keep
+    if (!(from < to)) return;  // already empty
     constexpr double margin = 0.002;
     const auto squared = [&](const Place& p, double room) {
       const double way = std::max(scale_for(sector, p), 0.0) * room;
@@ -119,12 +120,12 @@ struct Obscured {
   }
 };
 
-/// Scales the corners; the obscurations stay where they are.
+/// Scales the corners and keeps the obscurations in place.
 void stretch(PupilPolygon& polygon, const std::array<double, polygon_corners>& scale) {
   for (std::size_t k = 0; k < polygon_corners; ++k) {
     const double larger = std::max(scale[k], scale[(k + 1) % polygon_corners]);
     const double smaller = std::min(scale[k], scale[(k + 1) % polygon_corners]);
-    // What is obscured at both sides of a sector that is stretched more at one.
+    // If the corners scale differently, keep the interval obscured at both.
     const double from = polygon.obscured_from[k] / (smaller * smaller);
     const double to = (polygon.obscured_from[k] + polygon.obscured[k]) / (larger * larger);
     polygon.obscured_from[k] = from < to ? from : 0;
@@ -133,7 +134,8 @@ void stretch(PupilPolygon& polygon, const std::array<double, polygon_corners>& s
   for (std::size_t k = 0; k < polygon_corners; ++k) polygon.corners[k] *= scale[k];
 }
 
-/// Makes outer and obscured areas those of the region: the outer one by the corners, the other by the sectors.
+/// Makes outer and obscured areas equal to the areas of the region: the outer area by scaling the corners, the obscured
+/// area by the widths in the sectors.
 void match_area(PupilPolygon& polygon, const PupilRegion& region, double outer_area) {
   double outer = 0, obscured = 0;
   for (std::size_t k = 0; k < polygon_corners; ++k) outer += turn(polygon.sector(k).a, polygon.sector(k).b);
@@ -201,10 +203,10 @@ PupilPolygon polygon_of(const PupilRegion& region, PolygonFit fit, CornerSteps s
   const std::size_t n = edge.points.size();
   const auto point = [&](std::size_t i) -> const Place& { return edge.points[i % n]; };
 
-  // Corners at equal steps of the area.
+  // Corners at equal steps of area.
   std::vector<double> until{0};
   for (std::size_t i = 0; i < n; ++i) until.push_back(until.back() + std::max(turn(point(i), point(i + 1)), 0.0));
-  double right = until.back() / 2;  // of the half at +x
+  double right = until.back() / 2;  // area of the half at +x
   for (std::size_t i = 0; i < n; ++i) {
     const Place &a = point(i), &b = point(i + 1);
     if (steps == CornerSteps::even || !(a.x >= 0 && b.x < 0)) continue;
@@ -249,7 +251,7 @@ PupilPolygon polygon_of(const PupilRegion& region, PolygonFit fit, CornerSteps s
     stretch(polygon, scale);
   } else {
     match_area(polygon, region, edge.area);
-    // A pupil in parts is more than one outline and one obscuration can tell: its light is kept, not its shape.
+    // A disconnected pupil does not fit one outline with one obscuration: keep its area rather than its shape.
     const double lit = region.area(), area = polygon.area();
     if (constexpr double rounding = 1.01; area > rounding * lit) {
       for (auto& corner : polygon.corners) corner *= std::sqrt(lit / area);
@@ -275,7 +277,7 @@ PupilPolygon interpolated(std::span<const PupilPolygon> polygons, const PolygonW
 }
 
 void expand_to_cover(std::span<PupilPolygon> polygons, std::span<const InterpolationCheck> checks) {
-  // Boundaries between those looked at reach a little farther still.
+  // Margin for boundaries between the tested points.
   constexpr double beyond = 1.4, always = 2e-4;
   std::vector<std::array<double, polygon_corners>> scales(polygons.size());
   std::vector<std::array<Obscured, polygon_corners>> obscured(polygons.size());
@@ -322,7 +324,7 @@ void expand_towards(PupilPolygon& polygon, const PupilPolygon& other) noexcept {
     if (other.area() > 0) polygon = other;
     return;
   }
-  constexpr double middle = 0.6;  // of the way, with room for edges that move unevenly
+  constexpr double middle = 0.6;  // fraction of the distance, with a margin for nonlinear motion
   const PupilPolygon both[2] = {polygon, other};
   const PupilPolygon between = interpolated(both, {{0, 1, 0, 0}, {1 - middle, middle, 0, 0}});
   const Place offset = place_of(between.middle) - place_of(polygon.middle);

@@ -10,8 +10,7 @@
 
 namespace petzval::pupil_table_detail {
 
-/// The position of a wavelength that another one repeats, within 1e-6 nm as compile() has it. Nothing where each stands
-/// there once.
+/// Index of a wavelength that repeats another one within 1e-6 nm, the tolerance of compile(); nullopt if all differ.
 inline std::optional<std::size_t> repeated_wavelength(std::span<const double> wavelengths_nm) {
   std::vector<std::size_t> order(wavelengths_nm.size());
   std::iota(order.begin(), order.end(), std::size_t{0});

@@ -7,10 +7,10 @@
 namespace petzval::pupil_table_detail {
 namespace {
 
-/// How far the polygon reaches from its middle in a direction; 0 where no sector faces it.
+/// Distance from the middle of the polygon to its edge in a direction; 0 if no sector faces the direction.
 double reach(const PupilPolygon& polygon, const Vec2<double>& d) {
   const auto sectors = [&](std::size_t k) { return polygon.sector(k); };
-  // On the line to a corner both sectors beside it may miss the direction by rounding.
+  // On the line to a corner, rounding may exclude the direction from both adjacent sectors.
   for (const double aside : {0.0, 1e-9}) {
     const Point<double> q{d.x + aside * d.y, d.y - aside * d.x};
     const std::size_t found = sector_facing(q, sectors);
@@ -23,7 +23,7 @@ double reach(const PupilPolygon& polygon, const Vec2<double>& d) {
 
 PupilPolygon cut_by_disc(const PupilPolygon& polygon, double centre, double radius) {
   constexpr Vec2<double> towards{0, 1};
-  // Along y from the middle: what both hold.
+  // Common interval of polygon and disc along y through the middle.
   const double from_middle = centre - polygon.middle.y;
   const double low = std::max(-reach(polygon, -towards), from_middle - radius);
   const double high = std::min(reach(polygon, towards), from_middle + radius);
@@ -34,7 +34,7 @@ PupilPolygon cut_by_disc(const PupilPolygon& polygon, double centre, double radi
   const double to_centre = from_middle - step, room = radius * radius - to_centre * to_centre;
   for (std::size_t k = 0; k < polygon_corners; ++k) {
     const Vec2<double> way = polygon.corners[k] - step * towards;
-    // Where the way leaves the disc: square t^2 - 2 t along - room = 0.
+    // Fraction at which the line to the corner leaves the disc: square t^2 - 2 t along - room = 0.
     const double square = way.x * way.x + way.y * way.y;
     const double along = (way.x * towards.x + way.y * towards.y) * to_centre;
     const double leaves = square > 0 ? (along + std::sqrt(along * along + square * room)) / square : 1;

@@ -3,16 +3,17 @@
 
 #include <cstddef>
 
-/// The geometry of pupil polygons, for the table of one polygon and for loops over many: float, double, derivatives.
+/// Geometry of pupil polygons, for a table of one polygon and for loops over many: float, double, derivatives.
 ///
-/// A polygon has a middle and corners around it in order, from +y towards +x; sector k is the triangle between the
-/// middle and the corners k and k + 1. A part of it may be obscured, between two lines parallel to its outer edge.
-/// Samples (u, v) are uniform by area: u picks the sector and the place along its edge, v the squared way outwards.
+/// A polygon has a middle and corners around it, in order from +y towards +x; sector k is the triangle between the
+/// middle and the corners k and k + 1. A part of a sector may be obscured, between two lines parallel to its outer
+/// edge. Way: the radial fraction, 0 at the middle and 1 at the outer edge. Samples (u, v) are uniform by area: u
+/// selects the sector and the position along its edge, v the squared way.
 namespace petzval::pupil_table_detail {
 
 inline constexpr std::size_t polygon_corners = 64;
 
-// Local names: this is compiled for several instruction sets, and the linker must not take one for another.
+// Local names: compiled for several instruction sets, which the linker must not mix.
 namespace {
 
 template <class T>
@@ -24,7 +25,7 @@ struct Point {
   friend inline Point operator*(const T& s, const Point& a) noexcept { return {s * a.x, s * a.y}; }
 };
 
-/// Twice the area of the triangle from the middle to a and b: positive in the order of corners.
+/// Twice the area of the triangle from the middle to a and b; positive in the order of corners.
 template <class T>
 inline T turn(const Point<T>& a, const Point<T>& b) noexcept {
   return b.x * a.y - a.x * b.y;
@@ -32,32 +33,32 @@ inline T turn(const Point<T>& a, const Point<T>& b) noexcept {
 
 template <class T>
 struct Sector {
-  Point<T> a, b;              ///< its corners, from the middle
-  T obscured_from, obscured;  ///< begin and width, of the squared way from the middle (0) to the outer edge (1)
+  Point<T> a, b;              ///< the corners, relative to the middle
+  T obscured_from, obscured;  ///< begin and width of the obscured interval of squared ways
 
   T area() const noexcept { return T(0.5) * turn(a, b) * (T(1) - obscured); }
 
-  /// The squared way outwards of a sample.
+  /// Squared way of a sample.
   T squared_way(const T& v) const noexcept {
     const T within = (T(1) - obscured) * v;
     return within < obscured_from ? within : T(within + obscured);
   }
-  /// The v of a squared way: the inverse; of one that is obscured, that where the obscured part begins.
+  /// Inverse of squared_way(): v of a squared way; inside the obscured interval, v at its begin.
   T share_within(const T& squared_way) const noexcept {
     const T past = squared_way - obscured > obscured_from ? squared_way - obscured : obscured_from;
     const T left = T(1) - obscured;
     return (squared_way < obscured_from ? squared_way : past) / (left > T(0) ? left : T(1));
   }
-  /// The place at a way outwards and a part of the way along the outer edge, from a (0) to b (1).
+  /// Position at a way and at a fraction of the outer edge, from a (0) to b (1).
   Point<T> at(const T& way, const T& along) const noexcept {
     return {way * (a.x + along * (b.x - a.x)), way * (a.y + along * (b.y - a.y))};
   }
 
-  /// Whether a place lies between the two lines from the middle through the corners.
+  /// True if the position lies between the lines from the middle through the corners.
   bool faces(const Point<T>& q) const noexcept { return turn(a, q) >= T(0) && turn(q, b) >= T(0) && turn(a, b) > T(0); }
-  /// The way outwards to a place that the sector faces.
+  /// Way of a position that the sector faces.
   T way_to(const Point<T>& q) const noexcept { return (turn(a, q) + turn(q, b)) / turn(a, b); }
-  /// The part of the way along the outer edge to where a place lies that it faces.
+  /// Fraction along the outer edge, from a (0) to b (1), where the line from the middle through q crosses it.
   T along_to(const Point<T>& q) const noexcept {
     const T before = turn(a, q), after = turn(q, b);
     return before + after > T(0) ? before / (before + after) : T(0);
@@ -67,8 +68,10 @@ struct Sector {
   }
 };
 
-/// The sector that holds a sample, of sectors with nearly equal areas. area: of those before the sample; before(k): of
-/// those before sector k, `before(polygon_corners)` the whole.
+/// Index of the sector that contains a sample, for sectors of nearly equal areas.
+///
+/// @param area    area of the polygon before the sample
+/// @param before  before(k): area before sector k; before(polygon_corners): area of the polygon
 template <class AreaBefore>
 inline std::size_t sector_of_area(double area, const AreaBefore& before) noexcept {
   constexpr double last = polygon_corners - 1;
@@ -79,7 +82,8 @@ inline std::size_t sector_of_area(double area, const AreaBefore& before) noexcep
   return k;
 }
 
-/// The sector that faces a place, from sector `first` on, or polygon_corners. sector(k): the sectors.
+/// Index of the sector that faces a position, searched from sector `first` on; polygon_corners if there is no such
+/// sector.
 template <class Sectors>
 inline std::size_t sector_facing(const Point<double>& q, const Sectors& sector, std::size_t first = 0) noexcept {
   for (std::size_t i = 0; i < polygon_corners; ++i) {

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// The stop behind the pupils of a grid. At each node, polynomials of third order, and the largest terms of the fifth,
-// are fitted to the places at which the film point sees points of the stop. These polynomials map
-// samples of the iris to the pupil at film points without vignetting. At other film points the iris cuts the lines of
-// the polygon's samples: between the stop points of the middle and of the edge, which is nearly straight.
+// The stop behind the pupils of a grid. At each node, polynomials of third order, with the largest terms of the fifth,
+// are fitted to the positions at which the film point sees points of the stop. These polynomials map samples of the
+// iris to the pupil at film points without vignetting. At other film points the iris clips the lines of the polygon's
+// samples: between the stop points of the middle and of the edge, which is nearly straight.
 #include "stop_cells.hpp"
 
 #include <algorithm>
@@ -23,7 +23,7 @@ namespace {
 
 using Place = Point<double>;
 
-constexpr double unlimited = 1e6;  // scale of an iris that cuts nothing
+constexpr double unlimited = 1e6;  // scale of an iris that clips no rays
 
 /// StopLayout::map of a node, not of a cell, and its error in semi-diameters.
 template <int dimensions>
@@ -47,7 +47,7 @@ struct NodeMap {
   }
 };
 
-/// The terms of the coordinate `axis` of a place (StopLayout), at a stop point.
+/// Terms of the coordinate `axis` of a position (StopLayout), at a stop point.
 template <int dimensions>
 std::vector<double> products(int axis, const Place& stop) {
   const auto& [x, y] = stop;
@@ -61,7 +61,7 @@ std::vector<double> products(int axis, const Place& stop) {
 struct StopSample {
   Place place, stop;
   std::size_t corner = 0;
-  double part = 0;  ///< of the line
+  double part = 0;  ///< fraction of the line
 };
 
 template <int dimensions>
@@ -87,7 +87,7 @@ Place corner(const PupilPolygon& polygon, std::size_t k) {
   return {polygon.corners[k % polygon_corners].x, polygon.corners[k % polygon_corners].y};
 }
 
-/// Rays through a polygon at a part of the way from its middle to corners and edges.
+/// Calls take() for rays at fractions of the lines from the middle of a polygon to its corners.
 template <class Take>
 void for_rays(const PupilPolygon& polygon, std::size_t step, std::span<const double> parts, const Take& take) {
   for (std::size_t k = 0, i = 0; k < polygon_corners; k += step, ++i) {
@@ -133,16 +133,16 @@ NodeMap<dimensions> map_at(const StopOf& stop_of, const FilmPoint& film, const P
   return map;
 }
 
-/// Tests if the image of the iris lies within the polygon. enclosing: nearly all of it suffices.
+/// True if the image of the iris lies within the polygon; nearly within suffices if `enclosing`.
 template <int dimensions>
 bool whole_iris_within(const NodeMap<dimensions>& map, const PupilPolygon& polygon, const iris_detail::IrisShape& shape,
                        bool enclosing) {
   constexpr int around = 48;
-  constexpr double near_rim = 0.97;  // of the area
+  constexpr double near_rim = 0.97;  // fraction of the area
   const auto sectors = [&](std::size_t k) { return polygon.sector(k); };
   std::size_t facing = 0;
   int within = 0, all = 0;
-  // A film point of a lens of revolution sees the iris turned: by any angle.
+  // A film point of a lens of revolution sees the iris rotated by any angle.
   const int turns = dimensions == 1 && !shape.round() ? 2 : 1;
   for (int turned = 0; turned < turns; ++turned) {
     const double angle = turned * std::numbers::pi / std::max(shape.iris().blades, 1);
@@ -160,7 +160,7 @@ bool whole_iris_within(const NodeMap<dimensions>& map, const PupilPolygon& polyg
   return enclosing ? within >= most * all : within == all;
 }
 
-/// By how much a cell's stop points are off in its middle.
+/// Error of the stop points in the middle of a cell.
 template <int dimensions>
 double error_in_middle(const StopOf& stop_of, const FilmPoint& film, const PupilPolygon& polygon,
                        const NodeMap<dimensions>& map, std::size_t wavelength) {
@@ -174,7 +174,7 @@ double error_in_middle(const StopOf& stop_of, const FilmPoint& film, const Pupil
   return error;
 }
 
-/// The mean of two maps or more, terms alone.
+/// Mean of the terms of several maps; the other members stay unset.
 template <int dimensions>
 NodeMap<dimensions> mean_of(std::span<const NodeMap<dimensions>* const> maps) {
   NodeMap<dimensions> mean;
@@ -185,10 +185,10 @@ NodeMap<dimensions> mean_of(std::span<const NodeMap<dimensions>* const> maps) {
   return mean;
 }
 
-/// The largest change of stop points up to the middle between two wavelengths.
+/// Largest change of stop points up to halfway to the next wavelength.
 template <int dimensions>
 double change_of(const NodeMap<dimensions>& map, const NodeMap<dimensions>& next, const PupilPolygon& polygon) {
-  constexpr double middle = 0.6;  // fraction of the way to the next wavelength, with room for uneven steps
+  constexpr double middle = 0.6;  // fraction of the step, with a margin for uneven changes
   constexpr std::array parts{0.95};
   double change = 0;
   for_rays(polygon, 8, parts, [&](std::size_t, double, const Place& place) {
@@ -198,13 +198,13 @@ double change_of(const NodeMap<dimensions>& map, const NodeMap<dimensions>& next
   return change;
 }
 
-/// drawn: StopLayout::drawn.
+/// Makes a cell. drawn: StopLayout::drawn.
 template <int dimensions>
 std::vector<double> cell_of(std::span<const NodeMap<dimensions>* const> at, bool drawn, double scale) {
   using S = StopLayout<dimensions>;
   std::vector<double> cell(S::size);
   cell[S::scale] = scale;
-  if (scale == unlimited) {  // stop points far beyond the rim
+  if (scale == unlimited) {  // stop points far outside the rim
     for (const std::int32_t k : dimensions == 1 ? std::array{1, 9} : std::array{1, 12})
       cell[S::map + S::linear * k] = 1;
     return cell;
@@ -281,11 +281,11 @@ std::vector<double> stop_cells(const Data& data, const iris_detail::IrisShape& s
           }
           double error = error_in_middle(stop_of, middle, interpolated(own, weights), mean_of<dimensions>(at), w);
           for (const Map* map : at) error = std::max(error, map->error);
-          // The part of the error of a line that remains after the second cut.
+          // Fraction of the line error that remains after the second cut.
           constexpr double left = 0.1;
           double of_lines = 0;
           for (const Map* map : at) of_lines = std::max(of_lines, drawn ? 0 : left * map->line_error);
-          // Room between the rays that were looked at, and more where the map is less known.
+          // Margin for rays between the tested rays, and more if the map is less accurate.
           constexpr double room = 1.25, more = 100, always = 2e-4;
           scale += (room + more * error) * error + of_lines + always;
         }

@@ -14,15 +14,15 @@
 
 namespace petzval::pupil_table_detail {
 
-/// The intersection with the stop, in semi-diameters, of the ray of a film point through a place in the plane of the
-/// pupil; nullopt if the ray does not reach the stop.
+/// Intersection of a ray with the stop, in semi-diameters; the ray runs from a film point through a position in the
+/// pupil plane. nullopt if the ray does not reach the stop.
 using StopOf =
     std::function<std::optional<Vec2<double>>(const FilmPoint&, const Vec2<double>& place, std::size_t wavelength)>;
 
-/// By traced rays; apertures do not clip. The lens has a stop with a semi-diameter.
+/// Traces rays, without clipping by apertures. The stop of the lens must have a semi-diameter.
 StopOf traced_stop(const Lens& lens, const TwoPlanes& space);
 
-/// The stop behind the pupils of a grid: GridStop with its numbers.
+/// The stop behind the pupils of a grid: owns the numbers of GridStop.
 struct StopCells {
   iris_detail::IrisShape shape;
   StopOf stop_of;

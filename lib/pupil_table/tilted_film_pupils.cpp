@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The pupils of a tilted film. A virtual film point stands for a line through the centre of the pupil's plane, on which
-// the film point itself has different places for different azimuths; its pupils are those of all these places.
+// Pupils of a tilted film. A virtual film point stands for a line through the centre of the pupil plane, on which the
+// position of the film point depends on the azimuth; its pupil is the union over all these positions.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -13,7 +13,7 @@
 namespace petzval::pupil_table_detail {
 namespace {
 
-/// What the pupils of the upright film tell before those of the tilted one are looked for.
+/// Properties of the upright pupils that guide the search for the tilted pupils.
 struct Expected {
   double lit = 0, radius = 0;
   bool ring = false;
@@ -42,8 +42,8 @@ FilmPupils tilted_film_pupils(const FilmPupilTable& upright, const FilmTilt& til
   const auto search = [upright, tilt, wavelength, expected](std::span<const double> heights, const auto& find) {
     const double steepest = std::hypot(tilt.slope_x, tilt.slope_y);
     std::vector<VirtualFilmPoint> fields;
-    // The middle first, where there is light if anywhere. More between: the pupils of a plane far from the one in which
-    // light is limited, a thin lens's, move by more than their size.
+    // The middle first, as it is the most likely to be lit. Five positions, because pupils in a plane far from the
+    // limiting aperture, as for a thin lens, move by more than their size.
     for (const double part : {0.5, 0.0, 0.25, 0.75, 1.0}) {
       for (const double height : heights) {
         const auto within = [&](double value) { return std::clamp(value, tilt.low, tilt.high); };

@@ -20,7 +20,7 @@ ScenePassing traced_passing(const Lens& lens) {
 }
 
 EntrancePupilTable traced_entrances(const Lens& bladed, const FilmPupilTable& of_iris) {
-  const Lens lens = with_iris(bladed, {});  // whose pupils enclose those of any iris
+  const Lens lens = with_iris(bladed, {});  // the pupils of a round iris enclose the pupils of any iris
   const FilmPupilTable pupils = of_iris.of_round_stop();
   const TwoPlanes& space = pupils.space();
   const double towards = towards_scene(lens, space);

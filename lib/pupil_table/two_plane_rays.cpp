@@ -12,8 +12,7 @@ namespace petzval {
 TwoPlanes two_planes(const Lens& lens) {
   const double film_z = lens.film_z(), last_z = lens.surfaces().back().vertex_z;
   if (film_z == last_z) {
-    throw Error(lens.name() + ": film: it is at z = " + to_text(last_z) +
-                " mm, that of the last vertex, wanted it elsewhere");
+    throw Error(lens.name() + ": film: z = " + to_text(last_z) + " mm; must differ from z of the last vertex");
   }
   if (!has_pupils(lens)) return {film_z, last_z};
   const std::size_t wavelength = lens.primary_wavelength();
@@ -26,7 +25,7 @@ TwoPlanes two_planes(const Lens& lens) {
 }
 
 double towards_scene(const Lens& lens, const TwoPlanes& space) {
-  // Against the light, which runs towards +z but behind an odd number of mirrors.
+  // Light travels towards +z, except behind an odd number of mirrors; the result has the opposite direction.
   return lens.light_direction(lens.surface_count()) * space.depth() > 0 ? -1 : 1;
 }
 

@@ -9,17 +9,17 @@
 
 namespace petzval::pupil_table_detail {
 
-/// A virtual film point of a tilted film, and how much nearer a film point of it is (see FilmTilt).
+/// A virtual film point of a tilted film, with the value of `nearer` for one of its film points (see FilmTilt).
 struct VirtualFilmPoint {
   FilmPoint at;
   double nearer = 0;
 
-  /// Where the ray from that film point through (x, y) in the plane of the pupil meets the upright film.
+  /// Intersection with the upright film of the ray from that film point through (x, y) in the pupil plane.
   FilmPoint on_upright(double x, double y) const noexcept { return {at.x - nearer * x, at.y - nearer * y}; }
 };
 
-/// The clearances, in the pupils of the upright film, of rays through places in the plane of the pupil. x, y,
-/// clearances: N each. from(i): where ray i comes from, a VirtualFilmPoint.
+/// Clearances, in the pupils of the upright film, of N rays through positions in the pupil plane. from(i): the
+/// VirtualFilmPoint of ray i.
 template <class From>
 void upright_clearances(const FilmPupilTable& upright, std::size_t wavelength, std::size_t count, const From& from,
                         const double* x, const double* y, double* clearances) {

@@ -408,33 +408,32 @@ TEST(FilmPupilTable, RefusesWhatNoTableIsMadeOf) {
     return of_discs;
   };
   const TwoPlanes space{100, 0};
-  const std::string wanted = " mm, wanted numbers up to 1e+15 and no negative radius";
-  const std::string disc = "pupil table: wavelength 0: a pupil has the shift ";
+  const std::string wanted = " mm; both must be at most 1e+15 in absolute value, and the radius not negative";
+  const std::string disc = "pupil table: wavelength 0: shift = ";
   EXPECT_EQ(refusals(space, {{0, 5}}, 0, {}), "no error");
   EXPECT_EQ(refusals(space, {{0, 0}, {-2, 5}}, 1, {400, 500}), "no error");
-  EXPECT_EQ(refusals(space, {{0, -5}}, 0, {}), disc + "0 and the radius -5" + wanted);
-  EXPECT_EQ(refusals(space, {{nan, 5}}, 0, {}), disc + "nan and the radius 5" + wanted);
-  EXPECT_EQ(refusals(space, {{0, infinity}}, 0, {}), disc + "0 and the radius inf" + wanted);
-  EXPECT_EQ(refusals(space, {}, 0, {}), "pupil table: it has 0 wavelengths, wanted 1 to 65535");
+  EXPECT_EQ(refusals(space, {{0, -5}}, 0, {}), disc + "0, radius = -5" + wanted);
+  EXPECT_EQ(refusals(space, {{nan, 5}}, 0, {}), disc + "nan, radius = 5" + wanted);
+  EXPECT_EQ(refusals(space, {{0, infinity}}, 0, {}), disc + "0, radius = inf" + wanted);
+  EXPECT_EQ(refusals(space, {}, 0, {}), "pupil table: it has 0 wavelengths; must have 1 to 65535");
   EXPECT_EQ(refusals(space, std::vector<PupilDisc>(65536, {0, 5}), 0, {}),
-            "pupil table: it has 65536 wavelengths, wanted 1 to 65535");
-  EXPECT_EQ(refusals(space, {{0, 5}}, 7, {}), "pupil table: primary_wavelength is 7, wanted one of 1");
-  EXPECT_EQ(refusals({0, 0}, {{0, 5}}, 0, {}),
-            "pupil table: the film lies at z = 0 and the plane of the pupil at 0 mm, wanted two places");
+            "pupil table: it has 65536 wavelengths; must have 1 to 65535");
+  EXPECT_EQ(refusals(space, {{0, 5}}, 7, {}), "pupil table: primary_wavelength = 7; must be below 1");
+  EXPECT_EQ(refusals({0, 0}, {{0, 5}}, 0, {}), "pupil table: film_z = 0 and pupil_z = 0 mm; must differ");
   EXPECT_NE(refusals({nan, 0}, {{0, 5}}, 0, {}), "no error");
-  EXPECT_EQ(refusals(space, {{0, 5}}, 0, {400, 500}), "pupil table: wavelengths_nm has 2 numbers, wanted 1 or none");
-  EXPECT_EQ(refusals(space, {{0, 5}}, 0, {nan}), "pupil table: a wavelength is nan nm, wanted a length");
+  EXPECT_EQ(refusals(space, {{0, 5}}, 0, {400, 500}),
+            "pupil table: wavelengths_nm has 2 numbers; must have 1 or be empty");
+  EXPECT_EQ(refusals(space, {{0, 5}}, 0, {nan}), "pupil table: wavelength = nan nm; must be finite and above 0");
   EXPECT_EQ(refusals(space, {{0, 5}, {0, 5}, {0, 5}}, 0, {400, 500, 400}),
-            "pupil table: wavelength 2 is 400 nm, that of another one, wanted each once");
+            "pupil table: wavelength 2 = 400 nm; must differ from all others");
 
   std::vector<std::vector<PupilDisc>> lists{{}};
   EXPECT_EQ(message([&] { (void)FilmPupilTable::of_discs(space, lists, 10); }),
-            "pupil table: wavelength 0 has no disc, wanted one or more");
+            "pupil table: wavelength 0 has no disc; must have one or more");
   const FilmPupilTable table = FilmPupilTable::of_discs(space, std::array{std::vector<PupilDisc>{{0, 5}}}, 10);
   EXPECT_NE(message([&] { (void)table.reshaped(lists); }), "no error");
   lists.assign(3, {{0, 5}});
-  EXPECT_EQ(message([&] { (void)table.reshaped(lists); }),
-            "pupil table: found discs of 3 wavelengths, wanted those of 1");
+  EXPECT_EQ(message([&] { (void)table.reshaped(lists); }), "pupil table: discs has 3 wavelengths; must have 1");
 }
 
 TEST(FilmPupilTable, HasNothingInTheMiddleOfAnObscuration) {

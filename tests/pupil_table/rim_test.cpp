@@ -104,7 +104,7 @@ TEST(PupilRim, RefusesWhatItCannotCut) {
   for (const double rate : {1.001 * most, -1e40, 1e200}) {
     EXPECT_NE(message([&] {
                 pupils.cut_by_rim({1, rate});
-              }).find("radii over the film, wanted at most 1e+06"),
+              }).find("radii over the film; must be at most 1e+06"),
               std::string::npos)
         << rate;
   }
