@@ -6,7 +6,7 @@
 #
 #   sh examples/gallery.sh PROGRAMS OUT [--full]    (examples/run.sh calls it with build/examples and out)
 #
-# --full: large pictures of the scenes with little noise, an hour of two cores.
+# --full: large pictures of the scenes with little noise (an hour on two cores).
 set -eu
 if [ $# -lt 2 ] || [ $# -gt 3 ] || { [ $# -eq 3 ] && [ "$3" != --full ]; }; then
   echo "usage: sh examples/gallery.sh PROGRAMS OUT [--full]" >&2
@@ -110,7 +110,7 @@ echo "== Scenes through lenses (11/12)"
 mkdir -p "$out/scenes"
 scenes_file=$out/scenes/scenes.html
 if [ -x "$programs/bokeh_scene" ]; then
-  # scene FOLDER SCENE LENS SPP WIDTH HEIGHT OPTION...: twice as large with --full, and sixteen times the samples.
+  # scene FOLDER SCENE LENS SPP WIDTH HEIGHT OPTION...; --full: twice the size, sixteen times the samples
   scene() {
     folder=$out/scenes/$1 name=$2 lens=$3 spp=$4 width=$5 height=$6
     shift 6
@@ -138,7 +138,7 @@ if [ -x "$programs/bokeh_scene" ]; then
   for lens in $wu; do scene "chess_$lens" chess "$lens" 32 480 320 --focus-mm 880; done
   "$programs/bokeh_sheet" --columns 2 --title "Chess, after figure 9 of Wu et al. 2010" --out "$out/scenes/chess.png" $scenes
   scenes=
-  # Scenes count from the entrance pupil.
+  # Distances in scenes count from the entrance pupil.
   scene street street double_gauss_100mm_f2_28deg 48 480 320 --focus-mm 3000 --distance-from entrance_pupil
   "$programs/bokeh_sheet" --title "A street at night" --out "$out/scenes/street.png" $scenes
   scenes=

@@ -1,11 +1,11 @@
 #!/bin/sh
 # SPDX-License-Identifier: Apache-2.0
-# Builds the example programs and renders the gallery; installs what a bare Debian 12 lacks.
+# Builds the example programs and renders the gallery. Installs missing packages of a bare Debian 12.
 #
 #   sh examples/run.sh [--build-only | --full]
 #
-# --full renders the scenes large and with little noise, which takes an hour of two cores; what is there already stays.
-# The programs land in build/examples/, the pictures in out/ (start with out/index.html).
+# --full renders large scenes with little noise (an hour on two cores). Existing samples are kept.
+# The programs are in build/examples/, the pictures in out/ (start with out/index.html).
 # BUILD_DIR=... builds elsewhere, OUT_DIR=... renders elsewhere. UNITY=OFF compiles the sources separately.
 set -eu
 root=$(CDPATH= cd -- "$(dirname -- "$0")/.." && pwd)

@@ -1,7 +1,7 @@
 #!/bin/sh
 # SPDX-License-Identifier: Apache-2.0
-# A set of PSFs by GNU parallel: one shard at a time on each machine, for psf_set runs on all of its processors. Machines
-# are named by PARALLEL='--sshlogin a,b'; OUT is a folder that all of them see. PROGRAM=bokeh_scene makes a picture.
+# Computes a set of PSFs with GNU parallel: one shard at a time on each machine, because psf_set uses all processors.
+# PARALLEL='--sshlogin a,b' names the machines; OUT must be a shared folder. PROGRAM=bokeh_scene renders a picture instead.
 #
 #   sh examples/farm/psf_set.parallel.sh 8 OUT LENS --fields 0,10 --distances-mm 1000,inf
 #   PROGRAM=bokeh_scene sh examples/farm/psf_set.parallel.sh 8 OUT --scene chess --lens LENS --focus-mm 950 --spp 256

@@ -24,9 +24,10 @@ class MitsubaSensor {
         frame_(petzval::Host::mitsuba, camera_.lens(), petzval::FrameOrigin::film),
         to_world_(std::move(to_world)) {}
 
-  /// At the lens's primary wavelength. time: part of the time that the shutter is open, 0 to 1. position_sample: the
-  /// place in the picture, (0, 0) in the upper left corner, (1, 1) in the lower right one. The weight is 0 for a ray
-  /// that is lost.
+  /// Samples a ray at the primary wavelength of the lens. The weight of a lost ray is 0.
+  ///
+  /// @param time             fraction of the exposure time, 0 to 1
+  /// @param position_sample  position in the picture from (0, 0), upper left, to (1, 1), lower right
   std::pair<Ray3f, Float> sample_ray(Float time, Float /* wavelength_sample */, const Point2f& position_sample,
                                      const Point2f& aperture_sample) const {
     const petzval::Film& film = camera_.film();

@@ -19,7 +19,7 @@ class PbrtCamera {
         open_(shutter_open),
         close_(shutter_close) {}
 
-  /// pFilm is a raster position, beside the picture too if Film::margin_mm leaves room for the pixel filter.
+  /// pFilm is a raster position; it may lie outside the picture if Film::margin_mm is wide enough for the pixel filter.
   std::optional<pbrt::CameraRay> GenerateRay(const pbrt::CameraSample& sample) const {
     const petzval::CameraRay r = camera_.sample(of(sample));
     if (!r) return {};
@@ -27,7 +27,7 @@ class PbrtCamera {
                            pbrt::SampledSpectrum(static_cast<pbrt::Float>(r.weight))};
   }
 
-  /// With the rays of the neighbouring pixels, one to the right and one below.
+  /// The ray with the rays of the adjacent pixels to the right and below.
   std::optional<pbrt::CameraRayDifferential> GenerateRayDifferential(const pbrt::CameraSample& sample) const {
     const petzval::CameraRayDifferential d = camera_.sample_differential(of(sample));
     if (!d.sample) return {};
