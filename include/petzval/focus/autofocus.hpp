@@ -18,50 +18,62 @@ namespace petzval {
 
 enum class AutofocusStatus : std::uint8_t {
   solved,
-  no_targets,   ///< no target can be used
-  unreachable,  ///< the film would not lie behind the lens
+  no_targets,   ///< no target is usable
+  unreachable,  ///< the solution does not lie behind the lens
 };
 
 /// "solved", "no_targets", "unreachable".
 PETZVAL_API std::string_view name(AutofocusStatus status) noexcept;
 
-/// The upright film that serves focus targets best.
+/// The upright film that fits a set of focus targets best.
 struct Autofocus {
   AutofocusStatus status = AutofocusStatus::no_targets;
-  Film film;                      ///< z_mm is set; unless solved, the film as it was given
-  std::vector<TargetBlur> blurs;  ///< of each target on that film
-  double rms_mm = 0;              ///< weighted RMS of the blur minus the wanted blur, over the targets used; 0 if none
-  /// Relative growth of the image, by the paraxial chief ray through the exit pupil (of the ideal lens, for exact rays
-  /// too): from infinity focus on the axis by the same criterion, as breathing(), and from the film as it was given.
-  /// NaN if there is no such film, or if it lies in the exit pupil.
+  Film film;                      ///< the solution, with z_mm set; the given film if there is no solution
+  std::vector<TargetBlur> blurs;  ///< for each target, its blur on this film
+  double rms_mm = 0;              ///< weighted RMS difference of blur and requested blur; 0 if no target was used
+  /// Relative growth of the image on this film, compared with the film for infinity (breathing; same criterion, on the
+  /// axis) and with the given film (magnification_change). It follows the paraxial chief ray through the exit pupil,
+  /// for exact rays as well. NaN if the film to compare with does not exist or lies in the exit pupil.
   double breathing = std::numeric_limits<double>::quiet_NaN();
   double magnification_change = std::numeric_limits<double>::quiet_NaN();
 
   explicit operator bool() const noexcept { return status == AutofocusStatus::solved; }
 };
 
-/// Least weighted squares of the blur minus the wanted blur, in closed form: the blur of a target is linear in the
-/// position of the film.
+/// Finds the film with the least weighted squares of blur minus requested blur, for an ideal lens.
 ///
-/// film: its z_mm, if unset, is the rear focal point. Throws Error for a tilted film and for a z_mm that is not finite.
+/// The solution is in closed form: the blur of a target is linear in the position of the film.
+///
+/// @param lens     the lens
+/// @param targets  scene points and their requested blurs
+/// @param film     the film to move; if z_mm is not set, it starts at the rear focal point
+/// @throws Error   if the film is tilted, or if its z_mm is not finite
 PETZVAL_API Autofocus autofocus(const IdealLens& lens, std::span<const FocusTarget> targets, const Film& film = {});
 
-/// The same by exact rays. A wanted blur moves the film that a target asks for away from the sharpest one until the
-/// blur has that size; a target that is nowhere that sharp asks for the sharpest film.
+/// Finds the film that fits focus targets best, by exact rays.
 ///
-/// min_rms: least weighted squares of RMS blur, in closed form. min_max: least largest radius, each times its weight
-/// (the largest weight as 1), to rounding; blurs are then twice the largest radius. film: its z_mm, if unset, is the
-/// lens's film_z(). Throws Error for other criteria and for films as above.
+/// The preferred film of a target is displaced from its sharpest film until the blur has the requested size. If the
+/// smallest blur is larger than requested, the preferred film is the sharpest film.
 ///
-/// Accuracy, of one target against solve_focus, which also traces the edges of pupils (tests/focus; double Gauss
-/// 100 mm f/2, on the axis and to 11 degrees off): with 256 rays min_rms within 12 um and min_max within 80 um, with
-/// 1024 rays 7 um and 60 um.
+/// @param lens       the lens
+/// @param targets    scene points and their requested blurs
+/// @param film       the film to move; if z_mm is not set, it starts at Lens::film_z()
+/// @param criterion  min_rms: least weighted squares of the RMS blur, in closed form. min_max: smallest maximum of the
+///                   weighted radii (the largest weight counts as 1), to rounding; blurs are twice the maximum radius.
+/// @throws Error     if `criterion` is another one, if the film is tilted, or if its z_mm is not finite
+///
+/// Accuracy: solve_focus() also traces the edges of pupils. With one target, the difference is at most 12 um (min_rms)
+/// and 80 um (min_max) with 256 rays, 7 um and 60 um with 1024 rays (tests/focus; double Gauss 100 mm f/2, on the axis
+/// and up to 11 degrees off axis).
 PETZVAL_API Autofocus autofocus(const ImageRays& lens, std::span<const FocusTarget> targets, const Film& film = {},
                                 FocusCriterion criterion = FocusCriterion::min_rms);
 
-/// A region to focus on, as columns x rows targets in the middles of equal parts of the parallelogram
-/// centre +- half_width +- half_height (lens frame, mm). Throws Error unless columns and rows are 1 or more,
-/// and for more than 2^20 targets.
+/// A grid of targets that covers a parallelogram to focus on.
+///
+/// The parallelogram is centre +- half_width +- half_height (lens frame, mm). It is divided into columns x rows equal
+/// cells with a target at the centre of each.
+///
+/// @throws Error unless `columns` and `rows` are at least 1 and their product is at most 2^20
 PETZVAL_API std::vector<FocusTarget> region_targets(const Vec3<double>& centre, const Vec3<double>& half_width,
                                                     const Vec3<double>& half_height, int columns, int rows);
 

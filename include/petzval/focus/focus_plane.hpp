@@ -10,14 +10,17 @@
 
 namespace petzval {
 
-/// The plane of the scene that is in focus on a film, and the two lines about which it turns: the hinge line, in the
-/// front focal plane, when the film moves along the axis; the Scheimpflug line, in the front principal plane, when the
-/// film turns about the conjugate line. Upright films have no lines.
+/// The plane of focus of a film, and the two lines about which the plane rotates.
 struct FocusPlane {
   Plane plane;  ///< normal.z >= 0
+  /// The plane rotates about `hinge`, in the front focal plane, if the film moves along the axis, and about
+  /// `scheimpflug`, in the front principal plane, if the film rotates about the conjugate line. Both are nullopt for an
+  /// upright film.
   std::optional<SpaceLine> hinge, scheimpflug;
 };
-/// Nothing for a film whose plane of focus is at infinity. Throws Error for a film without a place.
+/// The plane of focus of a film; nullopt if the plane is at infinity.
+///
+/// @throws Error if film.z_mm is not set
 PETZVAL_API std::optional<FocusPlane> focus_plane(const IdealLens& lens, const Film& film);
 
 }  // namespace petzval
