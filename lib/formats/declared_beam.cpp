@@ -46,7 +46,7 @@ Prescription without_rims(Prescription rows) {
   rows.imported.reset();
   rows.configurations.clear();
   for (SurfaceRow& row : rows.surfaces) {
-    row.semi_diameter = std::numeric_limits<double>::infinity();  // nullopt would be computed
+    row.semi_diameter = std::numeric_limits<double>::infinity();  // a missing semi-diameter would be computed
     row.obscuration_semi_diameter.reset();
   }
   return rows;

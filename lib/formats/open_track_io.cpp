@@ -80,10 +80,11 @@ std::string distortion(const BrownConrady& fit, double size) {
 std::string how_well(const BrownConrady& in, const BrownConrady& out, const ExposureFalloff& falloff,
                      const Film& film) {
   const double rises_to = std::min(in.rises_to_rad, out.rises_to_rad);
-  return "Computed from a prescription. Of " + std::to_string(film.columns) + " x " + std::to_string(film.rows) +
-         " pixels the largest error of D-U is " + to_text(in.largest_px, 2) + ", of U-D " + to_text(out.largest_px, 2) +
-         ", up to a field of " + to_text(degrees(in.field_rad), 3) + " degrees; beyond it they extrapolate, and from " +
-         to_text(degrees(rises_to), 3) + " degrees on they fold the picture. The error of exposureFalloff is " +
+  return "Computed from a prescription. In " + std::to_string(film.columns) + " x " + std::to_string(film.rows) +
+         " pixels the largest error (px) of D-U is " + to_text(in.largest_px, 2) + ", of U-D " +
+         to_text(out.largest_px, 2) + ", up to a field of " + to_text(degrees(in.field_rad), 3) +
+         " degrees. Beyond this field the fits extrapolate; from " + to_text(degrees(rises_to), 3) +
+         " degrees they fold the picture. The largest error of exposureFalloff is " +
          to_text(falloff.largest_error, 2) + ".";
 }
 

@@ -150,9 +150,8 @@ std::string OslCamera::header() const {
          " nm\n"
          "//\n"
          "// A camera for Blender's Cycles. For Octane, replace camera_shader_raster_position() and\n"
-         "// camera_shader_random_sample() in the first two statements of the shader by Octane's film position (0 to "
-         "1,\n"
-         "// upwards) and random numbers.\n"
+         "// camera_shader_random_sample() in the first two statements of the shader by Octane's film position\n"
+         "// (0 to 1, upwards) and random numbers.\n"
          "//\n"
          "// Lengths inside are in mm. z runs from the scene to the film; the first surface is at 0.\n\n";
 }
@@ -255,8 +254,7 @@ void OslCamera::boxes(std::string& text) const {
     }
   }
   text +=
-      "  // boxes about the exit pupils in the plane of the last vertex: by f-number, then by distance from the "
-      "axis\n" +
+      "  // boxes about exit pupils, in the plane of the last vertex: by f-number, then by distance from the axis\n" +
       array("box_from", from) + array("box_to", to) + array("box_across", across);
 }
 

@@ -128,7 +128,8 @@ SurfaceRow Builder::row(const OsloSurface& s, const Medium& before) {
   row.mirror = s.medium.kind == OsloMedium::Kind::mirror;
   row.medium = medium(s.medium, before);
   row.stop = s.stop;
-  // The width of the design's beams is a rim of elements; at the stop and at dummy surfaces only if rays are checked.
+  // AP is the width of the design's beams. It becomes a rim of elements, and of the stop and dummy surfaces only if
+  // rays are checked there.
   const bool dummy = !row.mirror && row.medium == before;
   const bool counts = s.checked || !(dummy || s.stop);
   if (counts && s.aperture && *s.aperture > 0 && *s.aperture < 1e6) row.semi_diameter = *s.aperture * unit;
@@ -183,7 +184,7 @@ void Builder::declare() {
   } else if (oslo_.f_number) {
     design.aperture = {ApertureSetting::f_number, *oslo_.f_number};
   } else if (oslo_.beam_radius && std::isfinite(object)) {
-    // The radius of the beam on the first surface.
+    // beam_radius is the radius of the beam on the first surface.
     design.aperture = {ApertureSetting::object_na, std::sin(std::atan(*oslo_.beam_radius * unit / std::abs(object)))};
   } else if (oslo_.beam_radius) {
     design.aperture = {ApertureSetting::entrance_pupil_diameter, 2 * *oslo_.beam_radius * unit};

@@ -192,9 +192,9 @@ void Rows::asphere(const ZemaxSurface& s, SurfaceRow& row) const {
 }
 
 /// Sets the rim and the obscuration of a surface.
-/// Clear apertures (CLAP, FLAP) clip. Semi-diameters (DIAM) clip at elements, set by the user or by the width of the
-/// design's beams, and at the stop if set by the user. Dummy surfaces, with the same medium on both sides, clip only by
-/// a clear aperture.
+/// Clear apertures (CLAP, FLAP) clip. Semi-diameters (DIAM) clip at elements, whether set by the user or by the width
+/// of the design's beams, and at the stop if set by the user or if the stop's size is the aperture. Dummy surfaces,
+/// with the same medium on both sides, clip only by a clear aperture.
 void Rows::rims(const ZemaxSurface& s, const Medium& before, SurfaceRow& row) const {
   row.obscuration_semi_diameter = s.obscuration;
   const bool dummy = !row.mirror && row.medium == before;
@@ -265,8 +265,7 @@ class Configurations {
   double unit_;
   Rows& rows_;
   Import& in_;
-  std::map<std::pair<std::string, int>, std::pair<std::string, bool>>
-      left_out_;  ///< first value; true if others differ
+  std::map<std::pair<std::string, int>, std::pair<std::string, bool>> left_out_;  ///< first value; true if varied
 };
 
 /// Sets the value of the design's aperture in a configuration.

@@ -60,7 +60,7 @@ int remove_file(const fs::path& file) { return ::unlink(file.c_str()); }
 
 #endif
 
-/// An open file.
+/// Owns a file descriptor.
 class OpenFile {
  public:
   explicit OpenFile(int descriptor) noexcept : descriptor_(descriptor) {}

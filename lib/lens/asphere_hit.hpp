@@ -139,7 +139,7 @@ struct Prospect {
   Mask<T> empty, rising;  ///< no such part; the ray rises along all of it: at most one crossing
 };
 
-/// @param sense direction of travel, for which a rising ray is meant
+/// @param sense +1 or -1, the direction of travel; rising is relative to it
 template <class T>
 Prospect<T> prospect(const Asphere<Storage<T>>& s, const Passage<T>& ray, const Vec<T>& p, const Vec<T>& d,
                      Storage<T> sense) noexcept {

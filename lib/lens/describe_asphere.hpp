@@ -11,8 +11,8 @@ namespace petzval::lens_detail {
 
 kernel::Quadric<double> describe_quadric(const LensSurface& surface);
 
-/// Height up to which an asphere is described: its semi-diameter, or less if the base conic has its equator or the
-/// slope reaches 4 before.
+/// Height up to which an asphere is described: its semi-diameter, or the smaller height of the equator of the base
+/// conic or of a slope of 4.
 double described_height(const LensSurface& surface);
 
 /// The shapes of all surfaces with aspheric terms, with the bounds over their rings.

@@ -53,7 +53,7 @@ std::string describe(const Medium& m) {
 std::string why_missing(const Medium& m, const Tables& tables) {
   if (!m.glass) return "";
   if (!tables.glasses) {
-    return "; no glass tables were found (" + tables.error + "), CompileOptions::glasses must name them";
+    return "; no glass tables were found (" + tables.error + "); CompileOptions::glasses must be set";
   }
   std::string others;
   int count = 0;
@@ -63,8 +63,8 @@ std::string why_missing(const Medium& m, const Tables& tables) {
         (others.empty() ? "" : ", ") + glass.name + " (" + glass.catalogue + ", n_d " + to_text(glass.nd, 6) + ")";
   }
   if (others.empty()) return "; is in no glass table";
-  if (m.catalogue) return "; that catalogue lacks it, others have " + others;
-  if (!m.nd) return "; is in no glass table, but " + others;
+  if (m.catalogue) return "; is not in this catalogue, other catalogues have " + others;
+  if (!m.nd) return "; is in no glass table; similar: " + others;
   return "; its n_d of " + to_text(*m.nd) + " is more than 0.01 from " + others;
 }
 
@@ -72,7 +72,7 @@ std::string why_missing(const Medium& m, const Tables& tables) {
 std::string names_like(const Medium& m, const Tables& tables) {
   if (!m.glass || !tables.glasses) return "";
   const std::string names = glass_detail::similar_names(*tables.glasses, *m.glass);
-  return names.empty() ? "" : " (names like it: " + names + ")";
+  return names.empty() ? "" : " (similar names: " + names + ")";
 }
 
 /// Wavelengths (nm) at which a medium has an index.
@@ -117,7 +117,7 @@ Indices indices(const Prescription& prescription, std::span<const double> wavele
     if (!constant && !glass) {
       missing = here + ": " + describe(m) + why_missing(m, tables);
       result.missing_glasses.push_back(missing);
-      if (!m.nd) throw Error(missing + names_like(m, tables) + "; n_d must be given, or a glass of the tables");
+      if (!m.nd) throw Error(missing + names_like(m, tables) + "; must have n_d, or be a glass of the tables");
     }
 
     const Range range = constant ? everywhere : glass ? Range{glass->shortest_nm, glass->longest_nm} : of_abbe_model;
@@ -137,7 +137,7 @@ Indices indices(const Prescription& prescription, std::span<const double> wavele
       }
       if (options.missing_glass == MissingGlass::error) {
         throw Error(missing + names_like(m, tables) + "; the glass must be known at " + to_text(nm) +
-                    " nm, or CompileOptions::missing_glass be MissingGlass::abbe, which takes n_d and V_d");
+                    " nm, or CompileOptions::missing_glass must be MissingGlass::abbe, which uses n_d and V_d");
       }
       if (at_reference) return *m.nd;
       if (!m.vd) {

@@ -73,7 +73,7 @@ void check_surface(const std::string& where, const SurfaceRow& row, const Medium
   }
 
   check_finite(where, "conic", row.conic, "a finite number");
-  // Radius of curvature of the equator of the conic; float cannot hold the square of a smaller length.
+  // Transverse semi-axis of the conic; float cannot hold the square of a smaller length.
   if (row.radius != 0 && std::abs(row.radius) / std::sqrt(std::abs(1 + row.conic)) < smallest_bend)
     refuse(where, "conic", row.conic, "such that radius / sqrt|1 + conic| is at least 1e-15 mm");
   std::set<int> orders;
