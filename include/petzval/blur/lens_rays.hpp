@@ -19,7 +19,7 @@ class Camera;
 
 /// A point of the pupil in the coordinates of CameraSample.
 struct PupilPoint {
-  double u = 0, v = 0;  ///< angle around the middle, and fraction of the area nearer to the middle; 0 to 1
+  double u = 0, v = 0;  ///< angle around the middle in turns, and fraction of the area nearer to the middle; 0 to 1
 };
 
 /// Points of a spiral that cover a pupil uniformly (Vogel 1979).

@@ -10,18 +10,19 @@
 
 namespace petzval {
 
-/// A spot diagram as SVG text: a row for each field, with a column for all wavelengths and one for each of them.
+/// Draws a spot diagram as SVG text: one row per field, with a column for all wavelengths and one per wavelength.
 ///
 /// All cells have the same scale, shown by a bar; +y is up. The origin of a row is the centroid of all its rays, so
-/// that its cells show lateral colour. RMS and largest radius about the centroid of a cell's rays are printed below it.
-/// The dashed Airy circle has the radius 1.22 wavelength N, with the paraxial image-side f-number N. The first 600 rays
-/// of a spot are drawn. The same spots give the same bytes.
+/// that its cells show lateral colour. Below each cell, the RMS and largest radius about the centroid of its rays are
+/// printed. The dashed Airy circle has the radius 1.22 wavelength N, with the paraxial image-side f-number N. The first
+/// 600 rays of a spot are drawn. The output is deterministic.
 ///
-/// @param spots               as spot_diagram gives them for this lens
-/// @param wavelength_weights  one per compiled wavelength, by the light in it: of the column of all wavelengths; empty:
-///                            equal weights
-/// @throws Error  for no spots, a number of spots that is no multiple of the number of wavelengths, and weights that
-///                are not one per wavelength, below 0, or all 0
+/// @param lens                the lens
+/// @param spots               result of spot_diagram() for this lens
+/// @param wavelength_weights  weights of the compiled wavelengths in the column of all wavelengths; empty: equal
+///                            weights
+/// @throws Error              if there are no spots or a wrong number of spots, or if the weights are negative, all 0
+///                            or of the wrong number
 PETZVAL_API std::string spot_figure(const Lens& lens, std::span<const Spot> spots,
                                     std::span<const double> wavelength_weights = {});
 

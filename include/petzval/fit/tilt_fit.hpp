@@ -17,40 +17,42 @@
 namespace petzval {
 
 struct TiltOptions {
-  double max_tilt_rad = 0.3490658503988659;  ///< 20 degrees; between the film and the plane across the axis
-  bool robust = false;                       ///< outliers lose their weight: least median of squares, then Tukey's loss
-  /// The film as it stands. The fit keeps the middle of its picture, keeps its corners behind the lens (for a film
-  /// without size, its middle), and returns it if nothing can be solved. Its z_mm, if unset, is the rear focal point of
-  /// an ideal lens, and the lens's film_z() for exact rays.
+  double max_tilt_rad = 0.3490658503988659;  ///< angle between the film and an upright film; 20 degrees
+  bool robust = false;                       ///< true: ignore outliers, by least median of squares and Tukey's loss
+  /// The initial film. The fit keeps the centre of its image, keeps its corners (its centre if it has no size) behind
+  /// the lens, and returns it unchanged if there is no solution. If z_mm is unset, the film is at the rear focal point
+  /// of an ideal lens, or at film_z() of the lens for exact rays.
   Film film = {};
 };
 
 enum class TiltFitStatus : std::uint8_t {
   solved,        ///< the targets determine a plane
-  least_tilt,    ///< they do not (see `rank`): the plane of least tilt among the best
-  limited,       ///< the best film within the limit of tilt, and on it
-  no_targets,    ///< no target can be used: the film stays
-  unreachable,   ///< the film would touch the lens: it stays
-  not_converged  ///< the film stays
+  least_tilt,    ///< the targets do not determine a plane (see `rank`): the best plane with the least tilt
+  limited,       ///< the tilt is at its limit: the best film within the limit
+  no_targets,    ///< no target can be used: the film is unchanged
+  unreachable,   ///< the fitted film would touch the lens: the film is unchanged
+  not_converged  ///< the film is unchanged
 };
 
 /// "solved", "least_tilt", ...
 PETZVAL_API std::string_view name(TiltFitStatus status) noexcept;
 
-/// The tilted film that serves focus targets best.
+/// The result of fit_tilt().
 struct TiltFit {
   TiltFitStatus status = TiltFitStatus::no_targets;
   PlaneRank rank = PlaneRank::none;
-  Film film;                        ///< shifted so that the middle of the picture stays; z_mm is set
-  std::optional<FocusPlane> focus;  ///< unset if the plane of focus is at infinity
-  std::vector<TargetBlur> blurs;    ///< of each target, used or not
-  double rms_mm = 0;                ///< weighted RMS of the blur minus the wanted blur, over the targets used
+  Film film;                        ///< shifted to keep the centre of the image; z_mm is set
+  std::optional<FocusPlane> focus;  ///< nullopt if the plane of focus is at infinity
+  std::vector<TargetBlur> blurs;    ///< one per target, used or not
+  double rms_mm = 0;                ///< weighted RMS of blur minus target blur, over the targets used
 
   explicit operator bool() const noexcept { return status <= TiltFitStatus::limited; }
 };
 
-/// Tilts and moves a film so that the blur of each focus target comes nearest to the wanted one: least weighted squares
-/// of the signed blur minus the wanted blur. Starts from the least squares plane in inverse distance; Ceres refines it.
+/// Tilts and moves a film so that each focus target comes as close as possible to its target blur.
+///
+/// Minimises the weighted squares of the signed blur minus the target blur. Starts from the least-squares plane in
+/// inverse distance, refined by Ceres.
 ///
 ///     const IdealLens lens = thin_lens(50, 2);
 ///     const std::vector<FocusTarget> targets{{.place = {{-300, -200, -1500}}},
@@ -59,33 +61,36 @@ struct TiltFit {
 ///     const TiltFit fit = fit_tilt(lens, targets, {.film = {.width_mm = 36, .height_mm = 24}});
 ///     if (fit) draw(fit.film);
 ///
-/// If the targets do not determine a plane, the film is as upright as possible: upright for targets in one place of the
-/// picture, the film of least tilt for targets on a line of it. If the best film exceeds the limit of tilt, the result
-/// is the best film on the limit. The film is continuous in the targets, also where their plane comes to contain a line
-/// of sight: the limit of tilt falls to 0 as the RMS spread of the targets in the picture (x and y over depth) falls
-/// from 2e-5 to 1e-5, and the limit across their main direction as the spread across falls from 4 % to 2 % of the
-/// spread along it.
+/// If the targets do not determine a plane, the film is as upright as possible: upright for targets at a single image
+/// position, of least tilt for targets on an image line. The film is continuous in the targets, even if their plane
+/// approaches a line of sight, because the tilt limit falls to 0 for targets that are close together in the image.
 ///
-/// Robust, with 5 targets or more: least median of squares over all groups of three (a uniform subset of them beyond 24
-/// targets), then Tukey's loss, 4.685 deviations wide. Whether a target is an outlier does not depend on its weight.
-/// The film may jump where another majority takes over; a third of all targets, all in one place that is off by a few
-/// deviations only, may win one.
+/// Robust fitting needs 5 targets or more. Outliers do not depend on the weights. The film may jump if a different
+/// majority of targets agrees.
 ///
-/// Accuracy (tests/fit): if all targets can be met, the film is exact within 1e-9, in any unit from 1e-6 to 1e6,
-/// for thin lenses and the thick ones of data/lenses; for 24 points with 3 mm of noise, 8 of them anywhere else, the
-/// plane is within 1 degree. 24 targets take 0.03 ms, robust 0.3 ms (tests/bench). Throws Error unless the limit lies
-/// from 0 to less than a quarter turn, and for a film that is not finite or of negative size.
+/// @param lens     the lens
+/// @param targets  scene points with their target blur and weight
+/// @param options  tilt limit, robust fitting and initial film
+/// @return         the film, or the unchanged initial film with a status
+/// @throws Error   if the tilt limit is not in [0, 90) degrees, or the film is not finite or has a negative size
+///
+/// Accuracy (tests/fit): if all targets can be met, the film is exact within 1e-9, in any unit from 1e-6 to 1e6, for
+/// thin lenses and the thick lenses of data/lenses. Robust, for 24 points with 3 mm of noise and 8 outliers among them,
+/// the plane is within 1 degree. 24 targets take 0.03 ms, robust 0.3 ms (tests/bench).
+///
+/// Limitations: a third of all targets, all at one position that is off by only a few deviations, may win the majority.
 PETZVAL_API TiltFit fit_tilt(const IdealLens& lens, std::span<const FocusTarget> targets,
                              const TiltOptions& options = {});
 
-/// The same by exact rays: fits the thick lens as above and goes on from there to the least weighted squares of the
-/// bundles' diameters (BundleBlur).
+/// Tilts and moves a film with exact rays: minimises the weighted squares of the errors of BundleBlur diameters.
 ///
-/// A target to be blurred counts as a target to be sharp on a film so much nearer that defocus makes the wanted blur,
-/// as for autofocus(). So contradictory targets have one solution, continuous except where single rays come and go at a
-/// rim. A wanted blur smaller than the aberrations on the sharpest upright film counts as sharp; blurs that can all be
-/// met are met within 1e-4 of themselves. Outliers, rank and plane of focus are those of the thick lens: aberrations
-/// move the film, and hardly what is in focus. 24 targets of 256 rays take 1.5 ms.
+/// Starts from the fit of the thick lens, which also provides outliers, rank and plane of focus, because aberrations
+/// move the film but hardly the plane of focus. As in autofocus(), a blurred target is treated as a sharp target on a
+/// film displaced by the defocus of its target blur. Contradictory targets therefore have a single solution, continuous
+/// unless single rays appear or vanish at a rim. A target blur below the aberrations on the sharpest upright film
+/// counts as sharp.
+///
+/// Accuracy: target blurs that can all be met are met within a fraction of 1e-4. 24 targets of 256 rays take 1.5 ms.
 PETZVAL_API TiltFit fit_tilt(const ImageRays& lens, std::span<const FocusTarget> targets,
                              const TiltOptions& options = {});
 

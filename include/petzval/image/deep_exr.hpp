@@ -9,25 +9,32 @@
 
 namespace petzval {
 
-/// The samples of a deep picture, and what was made of them.
+/// The samples of a deep image, with counts of unusual samples.
 struct DeepPicture {
   FragmentLists lists;
-  /// Samples with a depth that is negative or not a number, which are left out. (0 too: it lies in the pinhole.)
+  /// Number of samples left out because their depth is NaN, negative or 0 (in the pinhole).
   std::size_t without_depth = 0;
-  /// Samples of volumes (ZBack beyond Z), which count as surfaces at Z with their alpha.
+  /// Number of volume samples (ZBack beyond Z), which are read as surfaces at Z with their alpha.
   std::size_t volumes = 0;
 };
 
-/// Reads the deep scan lines of an EXR file: the first part that has some. Channels Z, R, G and B, or Y instead of
-/// colours; A is 1 where it is missing; half or float. Colours are multiplied with alpha, as EXR has them. Z is the
-/// depth along the axis or the distance: files do not say which (axial_depths() turns distances into depths). It is
-/// taken for mm; `unit_mm` is the unit of other files (m: 1000).
+/// Reads the first part with deep scan lines of an EXR file.
 ///
-/// Samples keep the file's order, and their numbers to the bit for a unit of 1. Throws Error that names the file: for
-/// one that is no deep picture, that lacks Z or colours, that is damaged, and for more than 2^27 pixels or samples.
+/// The channels are Z, R, G and B, or Y instead of colours, of type half or float. A defaults to 1. Colours are
+/// premultiplied by alpha, as usual in EXR. Samples keep their order and, with a unit of 1, their exact values.
+///
+/// @param file     the EXR file
+/// @param unit_mm  unit of Z in mm (metres: 1000)
+/// @throws Error   if the file is damaged, has no deep part, no channel Z or no colours, or has more than 2^27 pixels
+///                 or samples
+///
+/// Limitations: files do not state if Z is the depth along the axis or the distance from the pinhole. axial_depths()
+/// converts distances to depths.
 PETZVAL_API DeepPicture read_deep_exr(const std::filesystem::path& file, double unit_mm = 1);
 
-/// Writes deep scan lines, 32-bit floats, without loss, as write_file does. Throws Error that names the file.
+/// Writes deep scan lines of 32-bit floats with write_file(), lossless.
+///
+/// @throws Error if the file cannot be written
 PETZVAL_API void write_deep_exr(const FragmentLists& lists, const std::filesystem::path& file);
 
 }  // namespace petzval

@@ -23,7 +23,9 @@ struct RgbImage {
   std::vector<float> pixels;
 
   RgbImage() = default;
-  /// Black. Throws Error for a negative size.
+  /// A black image.
+  ///
+  /// @throws Error if a size is negative
   RgbImage(int w, int h) : width(w), height(h), pixels(values_of(w, h), 0.0f) {}
   float* pixel(int x, int y) noexcept { return &pixels[offset(x, y)]; }
   const float* pixel(int x, int y) const noexcept { return &pixels[offset(x, y)]; }
@@ -31,7 +33,7 @@ struct RgbImage {
  private:
   static std::size_t values_of(int w, int h) {
     if (w < 0 || h < 0) {
-      throw Error("picture of " + std::to_string(w) + " x " + std::to_string(h) + " pixels, wanted 0 or more");
+      throw Error("picture: size = " + std::to_string(w) + " x " + std::to_string(h) + " pixels; must be 0 or more");
     }
     return static_cast<std::size_t>(w) * static_cast<std::size_t>(h) * 3;
   }
@@ -53,68 +55,91 @@ struct ExrChannel {
   std::vector<float> values;
 };
 
-/// One picture of an EXR file: channels of one size, and what the file says about them.
+/// One image of an EXR file: channels of equal size, and attributes.
 ///
-/// Numbers become attributes of type double, except those for which OpenEXR has a standard of type float: aperture,
+/// Numbers are written as attributes of type double, except for the standard float attributes of OpenEXR: aperture,
 /// effectiveFocalLength, entrancePupilOffset, focus, nominalFocalLength, pinholeFocalLength and tStop.
 struct ExrPart {
-  std::string name{};  ///< may be empty in a file of one part
+  std::string name{};  ///< may be empty if the file has a single part
   int width = 0;
   int height = 0;
-  std::vector<ExrChannel> channels{};          ///< read ones are sorted by name, as the format keeps them
+  std::vector<ExrChannel> channels{};          ///< sorted by name after reading
   std::map<std::string, std::string> texts{};  ///< attributes of type string
-  std::map<std::string, double> numbers{};     ///< of type double or float; int is read too
-  std::map<std::string, Vec2<float>> pairs{};  ///< of type v2f
-  /// Pixels on either side beyond the display window. Read ones are 0 where a data window has others.
+  std::map<std::string, double> numbers{};     ///< attributes of type double or float; also int when reading
+  std::map<std::string, Vec2<float>> pairs{};  ///< attributes of type v2f
+  /// Pixels on either side beyond the display window; 0 after reading if the windows have different centres.
   int margin_x = 0, margin_y = 0;
 };
 
-/// Writes parts of 32-bit float channels, without loss, as write_file does; a file of several is multi-part.
+/// Writes parts with 32-bit float channels to an EXR file with write_file(), lossless.
 ///
-/// The display window begins at (0, 0) and is the smallest one around all parts without their margins. Throws Error
-/// that names the file: for no part, a part without channels or pixels, margins that leave no pixel, channels of
-/// another size than their part, names that are empty or stand twice, and attributes that EXR has for itself.
+/// The display window starts at (0, 0) and is the smallest window around all parts without their margins.
+///
+/// @throws Error if there is no part, a part has no channels or no pixels outside its margins, a channel differs in
+///               size from its part, names are empty or duplicate, an attribute name is reserved by EXR, or the file
+///               cannot be written
 PETZVAL_API void write_exr(std::span<const ExrPart> parts, const std::filesystem::path& file);
 
-/// Reads all parts of an EXR file of scan lines or tiles, any channel as float; attributes that every EXR has, and
-/// those of other types, are left out. Throws Error that names the file, also for more than 3 GiB of values.
+/// Reads all parts of an EXR file with scan lines or tiles.
+///
+/// Channels of any type are converted to float. Attributes of other types and attributes of every EXR file are skipped.
+///
+/// @throws Error if the file cannot be read or has more than 3 GiB of values
 PETZVAL_API std::vector<ExrPart> read_exr_parts(const std::filesystem::path& file);
 
-/// Writes 32-bit float channels R, G, B, without loss, as write_file does. Throws Error that names the file.
+/// Writes 32-bit float channels R, G, B to an EXR file with write_file(), lossless.
+///
+/// @throws Error if the image has no pixels or is inconsistent, or the file cannot be written
 PETZVAL_API void write_exr(const RgbImage& image, const std::filesystem::path& file);
 
-/// Reads channels R, G, B of the first part of any EXR file as float. Throws Error that names the file.
+/// Reads channels R, G, B of the first part of an EXR file as float.
+///
+/// @throws Error if the file cannot be read or a channel is missing
 PETZVAL_API RgbImage read_exr(const std::filesystem::path& file);
 
-/// Writes a PFM, for scripts that read without libraries: "PF", width and height, -1.0 (little-endian), then RGB
-/// triples of 32-bit floats, rows from the bottom. As write_file does. Throws Error that names the file.
+/// Writes a PFM file with write_file(), for scripts without image libraries.
+///
+/// The format is "PF", width and height, -1.0 (little-endian), then RGB triples of 32-bit floats, rows from the bottom.
+///
+/// @throws Error if the image has no pixels or is inconsistent, or the file cannot be written
 PETZVAL_API void write_pfm(const RgbImage& image, const std::filesystem::path& file);
-/// The same of one channel, "Pf". values: width x height, rows from the top.
+/// Writes a PFM file with one channel ("Pf"). `values` has width x height values, rows from the top.
 PETZVAL_API void write_pfm(int width, int height, std::span<const float> values, const std::filesystem::path& file);
 
-/// Reads a PFM, of either order of bytes, rows from the bottom: three channels ("PF"), or one ("Pf") for all three.
-/// Throws Error that names the file, also for more than 2^26 pixels.
+/// Reads a PFM file of either byte order. A single channel ("Pf") is copied to all three.
+///
+/// @throws Error if the file cannot be read or has more than 2^26 pixels
 PETZVAL_API RgbImage read_pfm(const std::filesystem::path& file);
 
-/// Reads a PNG of 8 or 16 bits as linear light: its values decoded as sRGB, whatever gamma it states, alpha left out.
-/// Throws Error that names the file, also for more than 2^26 pixels.
+/// Reads an 8-bit or 16-bit PNG file as linear light.
+///
+/// Values are decoded as sRGB; a gamma stated in the file and alpha are ignored.
+///
+/// @throws Error if the file cannot be read or has more than 2^26 pixels
 PETZVAL_API RgbImage read_png(const std::filesystem::path& file);
 
-/// Writes an 8-bit sRGB PNG as write_file does. Throws Error that names the file.
+/// Writes an 8-bit sRGB PNG file with write_file().
+///
+/// @throws Error if the image has no pixels or is inconsistent, or the file cannot be written
 PETZVAL_API void write_png(const Rgb8Image& image, const std::filesystem::path& file);
 
-/// Reads a PNG, or an EXR (.exr) with a channel Y or R, G and B, as weights over the stop: grey, or the mean of the
-/// three, of a PNG as the file has it, from 0 to 1, whatever gamma it states. Alpha is left out. Throws Error that
-/// names the file, also for more than 2^26 pixels.
+/// Reads weights over the stop from an image: grey values, or the mean of R, G and B. Alpha is ignored.
+///
+/// @param file    an EXR file (.exr) with a channel Y or R, G and B, or a PNG file, whose values are scaled to 0 to 1
+///                without gamma
+/// @throws Error  if the file cannot be read, has other channels, or has more than 2^26 pixels
 PETZVAL_API IrisMap read_iris_map(const std::filesystem::path& file);
 
-/// The picture of an anamorphic lens as the scene looks: wider by squeeze(lens), or for less than 1 higher by its
-/// inverse, so that no detail is lost. Pixels are interpolated linearly. Throws Error for an image without
-/// pixels or with another number of values, a squeeze that is not positive and finite, and a picture beyond 2^30
-/// pixels.
+/// Removes the squeeze of an anamorphic image by linear interpolation.
+///
+/// @param image    the image
+/// @param squeeze  squeeze(lens): the factor by which the image is widened. Below 1, the height is divided by `squeeze`
+///                 instead, to keep all detail
+/// @throws Error   if the image has no pixels or is inconsistent, the squeeze is not positive and finite, or the result
+///                 has more than 2^30 pixels
 PETZVAL_API RgbImage desqueezed(const RgbImage& image, double squeeze);
 
-/// Converts linear light times `exposure` to 8-bit sRGB. Values are clipped to 0 and 1; NaN becomes black.
+/// Converts linear light times `exposure` to 8-bit sRGB. Values are clipped to 0 to 1; NaN becomes black.
 PETZVAL_API Rgb8Image to_srgb8(const RgbImage& image, float exposure = 1.0f);
 
 }  // namespace petzval

@@ -11,22 +11,31 @@
 
 namespace petzval {
 
-/// Adds what a picture's lens was to its attributes, by the standard names of OpenEXR 3.2 (any version reads them):
-/// lensMake, lensModel, lensSerialNumber; nominalFocalLength, pinholeFocalLength, effectiveFocalLength and
-/// entrancePupilOffset (mm), aperture (the f-number), tStop, focus (m, from the film; infinite at infinity), and
-/// sensorOverallDimensions (mm).
+/// Adds lens metadata to the attributes of an image.
+///
+/// Uses the standard names of OpenEXR 3.2, which all versions can read: lensMake, lensModel, lensSerialNumber;
+/// nominalFocalLength, pinholeFocalLength, effectiveFocalLength and entrancePupilOffset (mm); aperture (f-number);
+/// tStop; focus (m, from the film; infinite at infinity); sensorOverallDimensions (mm).
+///
+/// @throws Error under the conditions of lens_state()
 PETZVAL_API void add_lens_attributes(ExrPart& part, const LensDistortion& distortion,
                                      const LensIdentity& identity = {});
 
-/// The maps as two parts, "undistort" and "redistort", with s in channel R and t in G, and the lens's attributes.
+/// Converts ST maps to two EXR parts, "undistort" and "redistort", with s in channel R, t in G, and lens metadata.
 ///
-/// The display window is the film's picture. The margin of "undistort" lies around it, as overscan does in Nuke: its
-/// STMap takes a part as it is. The attribute overscan tells the size of the pinhole's picture over the film's.
+/// The display window is the film image. The margin of "undistort" surrounds it like overscan in Nuke, so that Nuke's
+/// STMap accepts a part directly. The attribute `overscan` is the size of the pinhole image relative to the film image.
 PETZVAL_API std::array<ExrPart, 2> to_exr_parts(const StMaps& maps, const LensDistortion& distortion,
                                                 const LensIdentity& identity = {});
 
-/// Writes the maps of exact chief rays of a lens as such a file, as write_file does. The lens has the film where it is
-/// focused. Throws Error where LensDistortion and st_maps() do, and one that names the file.
+/// Writes the ST maps of exact chief rays to an EXR file with the parts of to_exr_parts().
+///
+/// @param lens      the focused lens
+/// @param film      the film, at the focus of the lens
+/// @param identity  names for the metadata
+/// @param file      the EXR file, written with write_file()
+/// @param options   overscan and threads
+/// @throws Error    if the file cannot be written; also under the conditions of LensDistortion and st_maps()
 PETZVAL_API void write_st_map(const Lens& lens, const Film& film, const LensIdentity& identity,
                               const std::filesystem::path& file, const StMapOptions& options = {});
 
