@@ -13,7 +13,7 @@
 namespace petzval {
 namespace {
 
-/// Rays of one film point.
+/// The rays of one film point.
 class Bundle {
  public:
   Bundle(const Camera& camera, const FilmPoint& film, std::span<const PupilPoint> points, Wavelength wavelength)
@@ -38,7 +38,7 @@ class Bundle {
   std::vector<double> film_x_, film_y_, u_, v_, rays_[6], weights_;
 };
 
-/// What layers make of the rays of a camera.
+/// Converts the rays of a camera to lines through layers.
 class RaysOfCamera {
  public:
   RaysOfCamera(const Camera& camera, const LayerCamera& layers, std::span<const Wavelength> wavelengths)
@@ -71,7 +71,7 @@ class RaysOfCamera {
       std::fill(found.begin(), found.end(), LayerRay{raster, {0, 0}, 0});
       return;
     }
-    // The pupil that samples are drawn from is a little larger than what passes. More samples know by how much.
+    // The pupil of the samples is slightly larger than the transmitted part. More samples measure the fraction.
     if (clips_) light = Bundle(camera_, film, light_points_, wavelength).mean_weight();
     const double scale = light * static_cast<double>(found.size()) / sum;
     for (LayerRay& ray : found) {
@@ -83,14 +83,14 @@ class RaysOfCamera {
  private:
   LayerRay line(const Ray<double>& ray, double weight) const noexcept {
     const Vec3<double>&o = ray.origin, &d = ray.direction;
-    const double run_x = d.x / -d.z, run_y = d.y / -d.z, way = origin_z_ - o.z;  // towards the scene is -z
+    const double run_x = d.x / -d.z, run_y = d.y / -d.z, way = origin_z_ - o.z;  // the scene lies towards -z
     return {layers_.axis + layers_.focal_px * Vec2<double>{run_x, -run_y},
             layers_.focal_px * Vec2<double>{o.x - run_x * way, -(o.y - run_y * way)}, weight};
   }
 
-  /// The ray of a lost sample that is moved towards the middle of the pupil until it passes; of weight 0 if none does.
+  /// The ray of a lost sample, moved towards the middle of the pupil until it passes; weight 0 if no ray passes.
   LayerRay pulled_in(const FilmPoint& film, const PupilPoint& point, Wavelength wavelength) const {
-    double passes = 0, lost = 1;  // parts of v
+    double passes = 0, lost = 1;  // fractions of v
     CameraRay found;
     for (const double part : {0.98, 0.95, 0.9, 0.8, 0.6, 0.4, 0.2}) {
       found = sample(film, point.u, part * point.v, wavelength);
@@ -120,7 +120,7 @@ class RaysOfCamera {
   LayerCamera layers_;
   double origin_z_;
   std::vector<Wavelength> wavelengths_;
-  bool clips_;  ///< at apertures
+  bool clips_;  ///< the model clips rays at apertures
   std::vector<PupilPoint> light_points_;
 };
 
@@ -129,11 +129,11 @@ class RaysOfCamera {
 LensRays LensRays::of(const Camera& camera, const LayerCamera& layers, std::span<const PupilPoint> points,
                       std::span<const Wavelength> wavelengths, const LensRaysOptions& options) {
   if (camera.film().travel_mm != 0) {
-    throw Error("lens rays: the film travels while the shutter is open, wanted one that stays (Film::at)");
+    throw Error("lens rays: the film travels while the shutter is open; must not travel (Film::at)");
   }
   if (layers.columns != camera.film().columns || layers.rows != camera.film().rows) {
-    throw Error("lens rays: the layers' picture is " + std::to_string(layers.columns) + " x " +
-                std::to_string(layers.rows) + ", wanted that of the film, " + std::to_string(camera.film().columns) +
+    throw Error("lens rays: picture of the layers: columns x rows = " + std::to_string(layers.columns) + " x " +
+                std::to_string(layers.rows) + "; must equal the film's, " + std::to_string(camera.film().columns) +
                 " x " + std::to_string(camera.film().rows));
   }
   const Wavelength primary{};

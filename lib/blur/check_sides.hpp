@@ -7,12 +7,13 @@
 
 namespace petzval::blur_detail {
 
-/// Throws Error for a picture without pixels or with more than 32768 a side. what: the picture, for the message.
+/// Throws Error if a picture has no pixels or more than 32768 columns or rows. what: name of the picture in the
+/// message.
 inline void check_sides(const std::string& what, int columns, int rows) {
   constexpr int most = 32768;
   if (columns >= 1 && rows >= 1 && columns <= most && rows <= most) return;
-  throw Error(what + " is " + std::to_string(columns) + " x " + std::to_string(rows) + ", wanted 1 to " +
-              std::to_string(most) + " pixels a side");
+  throw Error(what + ": columns x rows = " + std::to_string(columns) + " x " + std::to_string(rows) +
+              "; must be 1 to " + std::to_string(most) + " pixels a side");
 }
 
 }  // namespace petzval::blur_detail

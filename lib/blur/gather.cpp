@@ -25,7 +25,7 @@ namespace {
 
 using namespace blur_detail;
 
-constexpr std::size_t most_window = std::size_t{1} << 26;  // numbers of a copied window: 256 MiB
+constexpr std::size_t most_window = std::size_t{1} << 26;  // numbers in a copied window: 256 MiB
 
 int floor_of(double x) { return static_cast<int>(std::floor(x)); }
 
@@ -34,7 +34,7 @@ struct Tile {
   int left = 0, top = 0, columns = 0, rows = 0;
 };
 
-/// The steps of a ray that all pixels share, as far as it may meet depths of a range. all: the range of all layers.
+/// Adds the steps of a ray that all pixels share, within a range of depths. all: the range of all layers.
 void add_steps(const float* rows, std::size_t stride, std::size_t i, const DepthRange& range, const DepthRange& all,
                std::ptrdiff_t row_stride, std::vector<Step>& steps) {
   const PixelSteps<double> of_ray(rows[at_x * stride + i], rows[at_y * stride + i], rows[slope_x * stride + i],
@@ -64,7 +64,7 @@ class Gathering {
         farthest_(all_.empty() ? 0 : all_.least) {}
 
   void run() {
-    // Rays of a tile are interpolated between its corners, which lie in one cell of the table.
+    // The corners of a tile lie in one cell of the table: rays are interpolated between the corners.
     tile_columns_ = std::min(rays_.table.step, TileSums::columns);
     tile_rows_ = std::min(rays_.table.step, TileSums::rows);
     const int across = (picture_.columns + tile_columns_ - 1) / tile_columns_,
@@ -120,7 +120,7 @@ class Gathering {
     const auto rect_of = [&](const DepthRange& range) {
       const Limits reach = loops.limits(corners, corner_count, stride, stride, range.least, range.most);
       const int left = tile.left + overscan_, top = tile.top + overscan_;
-      // A pixel more: places are rounded.
+      // One pixel more, because positions are rounded.
       return PixelRect{left + floor_of(reach.left) - 1, top + floor_of(reach.top) - 1,
                        left + tile.columns + floor_of(reach.right) + 1, top + tile.rows + floor_of(reach.bottom) + 1};
     };
@@ -135,7 +135,7 @@ class Gathering {
       rect = rect_of(range);
     }
 
-    // Rays that find nothing are followed to the farthest depth of all: do they end in the void?
+    // A ray without a hit is followed to the farthest of all depths, to see if it ends in the void.
     const PixelRect all_read = rect_of({farthest_, range.empty() ? farthest_ : range.most, 1});
     TileJob job{.window = window(tile, all_read, range.empty() ? 1 : range.layers, channel, memory),
                 .columns = tile.columns,
@@ -204,16 +204,16 @@ class Gathering {
       for (int c = 0; c < 3; ++c) w.colour[c] = d.plane(0, 1 + (one ? static_cast<int>(channel) : c)) + at;
       return w;
     }
-    // Copies, with edges repeated and highlights cut.
+    // A copy with repeated edges and without highlights.
     constexpr std::size_t slack = LayerData::slack;
     const std::size_t columns = static_cast<std::size_t>(rect.right - rect.left + 1),
                       rows = static_cast<std::size_t>(rect.bottom - rect.top + 1), plane = columns * rows + slack;
     const std::size_t planes = static_cast<std::size_t>(LayerData::planes * count);
     if (planes * plane > most_window) {
-      throw Error(
-          "gather: the rays of a few pixels reach over " + std::to_string(columns) + " x " + std::to_string(rows) +
-          " px of " + std::to_string(count) +
-          " layers, beyond their edges, wanted layers that reach as far (PeelPlan::camera) or surfaces farther away");
+      throw Error("gather: the rays of a few pixels reach over " + std::to_string(columns) + " x " +
+                  std::to_string(rows) + " px of " + std::to_string(count) +
+                  " layers, beyond their edges; the layers must reach as far (PeelPlan::camera), or surfaces must be "
+                  "farther away");
     }
     if (memory.window.size() < 2 * slack + planes * plane) memory.window.resize(2 * slack + planes * plane);
     for (std::size_t p = 0; p < planes; ++p) {
@@ -242,7 +242,7 @@ class Gathering {
     return w;
   }
 
-  /// As in TileSums::place().
+  /// The `side` of TileSums::place().
   int sums_side() const noexcept { return way_.path == GatherPath::shift_invariant ? rays_.side() : 1; }
 
   void compose(const Tile& tile, const Memory& memory) {
@@ -265,8 +265,8 @@ class Gathering {
             continue;
           }
           const float known = total - sums.unknown[at];
-          if (total > 0) unseen += sums.missed[at] / total;  // the lens may leave a corner dark
-          // Of rays that met what nothing is known of, the first layer is the nearest thing.
+          if (total > 0) unseen += sums.missed[at] / total;  // total is 0 in dark corners of the lens
+          // If nothing is known of the rays, the first layer is the best guess.
           if (known > 1e-6f * total) {
             rgba[c] = colour / known * total * per_ray;
             alpha += layers_.opaque ? std::max(1 - sums.open[at] / known, 0.0f) : sums.alpha[at] / known;
@@ -283,7 +283,7 @@ class Gathering {
         missed += static_cast<double>(unseen);
       }
     }
-    // Of each channel.
+    // Counted for each channel.
     missed_ +=
         static_cast<std::uint64_t>(std::llround(missed / 3 * static_cast<double>(channels * rays_.rays_of_set())));
   }
@@ -296,7 +296,7 @@ class Gathering {
   const Highlights& highlights_;
   Blurred& picture_;
   DepthRange all_;
-  float farthest_;  ///< inverse depth where rays end
+  float farthest_;  ///< inverse depth at which rays end
   std::atomic<std::uint64_t> steps_ = 0, missed_ = 0;
 };
 
@@ -322,12 +322,12 @@ void blur_detail::gather(const LayerSet& layers, const LensRays& rays, const Gat
   const LayerCamera& camera = rays.camera();
   const int beyond = layers.columns() - camera.columns;
   if (beyond < 0 || beyond % 2 != 0 || layers.rows() - camera.rows != beyond) {
-    throw wrong("layers are " + std::to_string(layers.columns()) + " x " + std::to_string(layers.rows()) +
-                ", wanted the picture's " + std::to_string(camera.columns) + " x " + std::to_string(camera.rows) +
-                " and the same overscan on all sides");
+    throw wrong("layers: columns x rows = " + std::to_string(layers.columns()) + " x " + std::to_string(layers.rows()) +
+                "; must be the picture's " + std::to_string(camera.columns) + " x " + std::to_string(camera.rows) +
+                " plus the same overscan on all sides");
   }
   if (!(options.highlights_above >= 0)) {
-    throw wrong("highlights_above is " + to_text(options.highlights_above) + ", wanted 0 (none) or more");
+    throw wrong("highlights_above = " + to_text(options.highlights_above) + "; must be at least 0 (0: off)");
   }
   GatherPath path = way.path;
   if (path == GatherPath::automatic) {
@@ -336,17 +336,18 @@ void blur_detail::gather(const LayerSet& layers, const LensRays& rays, const Gat
                                   : GatherPath::general;
   }
   if (path == GatherPath::shift_invariant && !rays.shift_invariant()) {
-    throw wrong("the rays differ from pixel to pixel, wanted another path than shift_invariant");
+    throw wrong("the rays differ between pixels; the path must not be shift_invariant");
   }
   if (path == GatherPath::coherent && rays.sets() != 1) {
-    throw wrong("the rays are " + std::to_string(rays.sets()) + " sets, wanted one for the path coherent");
+    throw wrong("number of ray sets = " + std::to_string(rays.sets()) + "; must be 1 for the path coherent");
   }
 
   const DepthRange depths = LayerAccess::data(layers).depths();
   const double reach = depths.empty() ? 0 : rays.reach_px(depths.least, depths.most);
   if (!(reach <= most_reach_px)) {
-    throw wrong("rays reach " + to_text(reach, 6) + " px beyond the picture, wanted at most " + to_text(most_reach_px) +
-                ": the nearest surface is " + to_text(1 / static_cast<double>(depths.most), 6) + " mm away");
+    throw wrong("rays reach " + to_text(reach, 6) + " px beyond the picture; must be at most " +
+                to_text(most_reach_px) + ": the nearest surface is " +
+                to_text(1 / static_cast<double>(depths.most), 6) + " mm away");
   }
 
   try {

@@ -12,13 +12,13 @@ namespace {
 
 using Numbers = trace_detail::Lanes<float>;
 using Mask = trace_detail::Mask<float>;
-using Places = core_detail::Native<float>::Bits;  // of 32 bits
+using Places = core_detail::Native<float>::Bits;  // 32-bit integers
 constexpr int width = Numbers::width;
 
 template <>
 struct WholePixel<Numbers> {
   static PETZVAL_INLINE Numbers below(Numbers x) noexcept {
-    // The sum rounds to 1/256; conversions cut towards 0.
+    // The addition rounds to 1/256; conversions truncate towards 0.
     constexpr int up = 1 << 15;
     const Places whole = __builtin_convertvector((x + Numbers(static_cast<float>(up))).v, Places) - up;
     return Numbers(__builtin_convertvector(whole, core_detail::Native<float>::Values));
@@ -47,7 +47,7 @@ PETZVAL_INLINE Mask first_lanes(std::size_t count) noexcept {
   return lane < Numbers(static_cast<float>(count));
 }
 
-/// Every side-th number.
+/// Loads every side-th number.
 template <int side, int... lanes>
 PETZVAL_INLINE Numbers load_every(const float* from, std::integer_sequence<int, lanes...> all) noexcept {
   if constexpr (side == 1) {
@@ -58,7 +58,7 @@ PETZVAL_INLINE Numbers load_every(const float* from, std::integer_sequence<int, 
   }
 }
 
-/// Pixels `side` columns apart, one for each lane.
+/// Loads pixels `side` columns apart, one for each lane.
 template <int side>
 struct Apart {
   std::ptrdiff_t offset;
@@ -69,7 +69,8 @@ struct Apart {
 };
 using Beside = Apart<1>;
 
-/// A pixel for each lane of some. Others are beyond the ends of their rays, where there may be no pixels: they find 0.
+/// Loads a pixel for each active lane. Other lanes are beyond the ends of their rays, where there may be no pixels, and
+/// get 0.
 struct Anywhere {
   Places offsets;
   Mask lanes;
@@ -91,20 +92,20 @@ struct Anywhere {
   }
 };
 
-/// What the rays of the lanes have found.
+/// The results of the rays in the lanes.
 template <bool opaque, int colours>
 struct Found {
   Numbers colour[colours], missed{0.0f}, unknown{0.0f}, open{0.0f};
-  Mask seeking;  ///< lanes whose rays go on
-  // Of surfaces that let light through:
+  Mask seeking;  ///< lanes whose rays continue
+  // For transparent surfaces:
   Numbers alpha{0.0f};
-  Numbers through{1.0f};  ///< what is left of a ray
-  Numbers below{1e30f};   ///< a surface that a ray has met it does not meet again in the next pixel
+  Numbers through{1.0f};  ///< remaining fraction of a ray
+  Numbers below{1e30f};   ///< keeps a ray from meeting one surface again in the next pixel
 
-  /// Inverse depth of the nearest surface that the ray passed in front of in the pixel before.
+  /// Inverse depth of the nearest surface that the ray passed in front of in the previous pixel.
   Numbers front{no_surface};
 
-  /// The sums stay.
+  /// Keeps the sums.
   PETZVAL_INLINE void begin_ray(Mask lanes) noexcept {
     seeking = lanes, front = Numbers(no_surface);
     if constexpr (!opaque) through = Numbers(1.0f), below = Numbers(1e30f);
@@ -117,10 +118,11 @@ struct Found {
 
 PETZVAL_INLINE Numbers larger(Numbers a, Numbers b) noexcept { return select(a > b, a, b); }
 
-/// For Found::front, of a pixel that a ray passes in front of.
+/// The value of Found::front for a pixel that a ray passes in front of.
 PETZVAL_INLINE Numbers in_front(Numbers w) noexcept { return select(w >= Numbers(0.0f), w, Numbers(no_surface)); }
 
-/// Lanes of `hit` meet the surfaces of a layer in the pixels that `at` loads. Lanes whose rays end there leave `here`.
+/// Lanes of `hit` meet the surfaces of a layer in the pixels that `at` loads. Removes lanes from `here` if their rays
+/// end.
 template <bool opaque, int colours, class At>
 PETZVAL_INLINE void take(const LayerWindow& window, const At& at, std::ptrdiff_t layer, Numbers low, Numbers weight,
                          Mask hit, Mask& here, Found<opaque, colours>& found) noexcept {
@@ -139,12 +141,13 @@ PETZVAL_INLINE void take(const LayerWindow& window, const At& at, std::ptrdiff_t
   found.seeking = without(found.seeking, ended), here = without(here, ended);
 }
 
-/// A step of rays that seek: lanes of `here` pass the pixels that `at` loads, between the inverse depths low and high.
-/// before: the pixels of the step before.
+/// One step of seeking rays: lanes of `here` pass the pixels that `at` loads, between the inverse depths low and high.
+/// before: the pixels of the previous step.
 ///
-/// A ray that passed in front of a surface in the pixel before and is behind one in this pixel went between their
-/// centres. If they are nearer to each other than `gap`, nothing is known of what lies between them: the ray meets the
-/// farther one. (At the edge of something small it passes that, and on one surface the colours are nearly the same.)
+/// A ray that passed in front of a surface in the previous pixel and is behind a surface in this pixel went between
+/// their centres. If their inverse depths differ by less than `gap`, the layers lack everything between both surfaces,
+/// and the ray meets the farther surface. (At the edge of a small object the ray passes the object; on a single surface
+/// the colours are nearly equal.)
 template <bool opaque, int colours, class At>
 PETZVAL_INLINE void meet(const LayerWindow& window, const At& at, const At& before, Numbers low, Numbers high,
                          Numbers gap, Numbers weight, Mask here, Found<opaque, colours>& found) noexcept {
@@ -158,7 +161,7 @@ PETZVAL_INLINE void meet(const LayerWindow& window, const At& at, const At& befo
     Mask hit = all_of(w >= low, w <= high, here), joined = all_of(w > high, w <= joined_to, here);
     if constexpr (!opaque) hit = all_of(hit, w < below), joined = all_of(joined, w < below);
     if (any(joined)) {
-      joined_to = select(joined, none, joined_to);  // once
+      joined_to = select(joined, none, joined_to);  // at most once per step
       const float* depth_before = window.depth;
       std::ptrdiff_t layer_before = 0;
       for (int k = 0; k < window.layers && any(joined); ++k) {
@@ -171,13 +174,13 @@ PETZVAL_INLINE void meet(const LayerWindow& window, const At& at, const At& befo
     }
     if (any(hit)) take(window, at, layer, low, weight, hit, here, found);
     front = larger(front, select(w < low, in_front(w), none));
-    // Surfaces behind this one are farther still: rays that have not reached it do not reach them.
+    // Surfaces of later layers are farther still: rays in front of this layer do not reach these surfaces.
     if (!any(all_of(here, w >= low))) break;
   }
   found.front = front;
 }
 
-/// Rays that found nothing see the void where the first layer is empty at the depth of the farthest surface.
+/// Rays without a hit see the void if the first layer is empty at the depth of the farthest surface.
 template <bool opaque, int colours, class At>
 PETZVAL_INLINE void end_in_void(const LayerWindow& window, const At& end, Numbers weight, Mask here,
                                 Found<opaque, colours>& found) noexcept {
@@ -186,7 +189,7 @@ PETZVAL_INLINE void end_in_void(const LayerWindow& window, const At& end, Number
   found.seeking = without(found.seeking, empty);
 }
 
-/// Others slipped behind a surface: the best guess of what is there is what they passed last before.
+/// Other rays slipped behind a surface. The best guess is the surface that they passed last.
 template <bool opaque, int colours, class At>
 PETZVAL_INLINE void guess(const LayerWindow& window, const At& at, Numbers low, Numbers weight, Mask here,
                           Found<opaque, colours>& found) noexcept {
@@ -208,7 +211,7 @@ PETZVAL_INLINE void guess(const LayerWindow& window, const At& at, Numbers low, 
   }
 }
 
-/// Of rays that met a surface with alpha below 1, be it 0, what is left ends in the void.
+/// The rest of a ray that met a surface with alpha below 1, even 0, ends in the void.
 template <bool opaque, int colours>
 PETZVAL_INLINE void end_partly(Found<opaque, colours>& found) noexcept {
   if constexpr (!opaque) found.seeking = all_of(found.seeking, found.below >= Numbers(1e30f));
@@ -220,7 +223,7 @@ PETZVAL_INLINE void give_up(Numbers weight, Found<opaque, colours>& found) noexc
   found.missed = found.missed + rest, found.unknown = found.unknown + rest;
 }
 
-/// Adds what pixels side by side have found.
+/// Adds the results of adjacent pixels.
 template <bool opaque, int colours>
 PETZVAL_INLINE void keep(TileSums& sums, int pixel, const Found<opaque, colours>& found, Numbers weight) noexcept {
   for (int c = 0; c < colours; ++c) add(sums.colour[c] + pixel, found.colour[c]);
@@ -231,13 +234,13 @@ PETZVAL_INLINE void keep(TileSums& sums, int pixel, const Found<opaque, colours>
   add(sums.unknown + pixel, found.unknown);
 }
 
-/// One ray of pixels `side` columns apart, from a step on.
+/// Follows one ray of pixels `side` columns apart, starting at the step `from`.
 template <int side, bool opaque, int colours>
 PETZVAL_INLINE std::uint64_t follow_ray(const LayerWindow& window, const Step* begin, const Step* from, const Step* end,
                                         std::ptrdiff_t last, Numbers gap, Numbers weight, Mask lanes,
                                         Found<opaque, colours>& found) noexcept {
   found.begin_ray(lanes);
-  // All pixels passed in front of the first layer in the step before.
+  // In the previous step all pixels passed in front of the first layer.
   if (from != begin) found.front = in_front(Apart<side>{from[-1].offset}(window.depth));
   std::uint64_t made = 0;
   for (const Step* step = from; step != end && any(found.seeking); ++step, ++made) {
@@ -254,8 +257,8 @@ PETZVAL_INLINE std::uint64_t follow_ray(const LayerWindow& window, const Step* b
   return made;
 }
 
-/// The rays of `at_once` rows of pixels `side` columns apart. In most cases all pixels meet the first layer in the same
-/// step, and need no masks.
+/// Follows the rays of `at_once` rows of pixels `side` columns apart. Usually all pixels meet the first layer in the
+/// same step and need no masks.
 template <int side, bool opaque, int colours, int at_once>
 std::uint64_t follow_rows(const TileJob& job, const SameRays& rays, int row, int column) noexcept {
   LayerWindow windows[at_once];
@@ -331,7 +334,7 @@ Limits limits(const float* const* corners, std::size_t corner_count, std::size_t
   Numbers least_x(1e9f), most_x(-1e9f), least_y(1e9f), most_y(-1e9f);
   for (std::size_t c = 0; c < corner_count; ++c) {
     for (std::size_t i = 0; i < count; i += static_cast<std::size_t>(width)) {
-      // The last lanes repeat rays before them, or are none where there are fewer.
+      // The last lanes repeat earlier rays, or are masked if there are fewer rays than lanes.
       const std::size_t from = i + static_cast<std::size_t>(width) <= count ? i
                                : count < static_cast<std::size_t>(width)    ? 0
                                                                             : count - static_cast<std::size_t>(width);
@@ -356,21 +359,21 @@ Limits limits(const float* const* corners, std::size_t corner_count, std::size_t
   return result;
 }
 
-/// Offsets of pixels relative to each other.
+/// Offsets for differences of columns and rows.
 PETZVAL_INLINE Places offsets_of(Numbers column, Numbers row, std::ptrdiff_t stride) noexcept {
   return __builtin_convertvector(row.v, Places) * static_cast<std::int32_t>(stride) +
          __builtin_convertvector(column.v, Places);
 }
 
-/// The pixels that lines pass at an inverse depth, as offsets.
+/// Offsets of the pixels that lines pass at an inverse depth.
 PETZVAL_INLINE Places pixels_at(const Numbers (&line)[row_count], Numbers w, std::ptrdiff_t stride) noexcept {
   const Numbers half(0.5f);
   return offsets_of(WholePixel<Numbers>::below(line[at_x] + line[slope_x] * w + half),
                     WholePixel<Numbers>::below(line[at_y] + line[slope_y] * w + half), stride);
 }
 
-/// Follows the rays of lanes to their ends. load: calls visit(at, before, here) for all lanes given, with the planes'
-/// loaders at the pixels of some offsets and of others. Returns how many steps the longest ray made.
+/// Follows the rays of the lanes to their ends. load: calls visit(at, before, here) for all given lanes, with loaders
+/// of the planes at two lists of offsets. Returns the number of steps of the longest ray.
 template <bool opaque, int colours, class Load>
 PETZVAL_INLINE std::uint64_t follow(const LayerWindow& window, const DifferentRays& rays, float gap,
                                     const Numbers (&line)[row_count], const Load& load,
@@ -409,7 +412,7 @@ PETZVAL_INLINE std::uint64_t follow(const LayerWindow& window, const DifferentRa
   return made;
 }
 
-/// The lanes of a number.
+/// The lanes equal to a number.
 PETZVAL_INLINE Mask lanes_of(Places numbers, std::int32_t number) noexcept {
 #if defined(__AVX512F__)
   return {_mm512_cmpeq_epi32_mask(reinterpret_cast<__m512i>(numbers), _mm512_set1_epi32(number))};
@@ -418,7 +421,7 @@ PETZVAL_INLINE Mask lanes_of(Places numbers, std::int32_t number) noexcept {
 #endif
 }
 
-/// The pixels of lanes beside each other: mostly as far beside their own for all, which one load finds.
+/// Pixels of adjacent lanes. Usually all lanes have equal offsets from their own pixels, and one load is enough.
 template <class Visit>
 PETZVAL_INLINE void load_beside(Places offsets, Places before, Mask lanes, const Visit& visit) noexcept {
   const std::int32_t first = offsets[0], first_before = before[0];
@@ -435,7 +438,7 @@ std::uint64_t follow_coherent(const TileJob& job, const DifferentRays& rays) noe
   Numbers lane;
   for (int i = 0; i < width; ++i) lane.v[i] = static_cast<float>(i) + 0.5f;
   const std::size_t numbers = row_count * rays.row_stride;
-  float *const left = rays.scratch, *const rise = rays.scratch + numbers;  // of a row, from column to column
+  float *const left = rays.scratch, *const rise = rays.scratch + numbers;  // values of a row, and change per column
   for (int row = 0; row < job.rows; ++row) {
     const float down = (static_cast<float>(row) + 0.5f) / static_cast<float>(job.rows);
     const float per_column = 1 / static_cast<float>(job.columns);

@@ -12,7 +12,7 @@
 
 namespace petzval {
 
-/// What threads of gather() work with, kept from picture to picture.
+/// Work memory of the threads of gather(), kept between pictures.
 struct Blurred::Memory {
   struct OfThread {
     std::vector<blur_detail::Step> steps;
@@ -22,13 +22,13 @@ struct Blurred::Memory {
     blur_detail::TileSums sums[3];
   };
 
-  /// One for each thread at work.
+  /// The memory of one thread while it works.
   class Loan {
    public:
     explicit Loan(Memory& memory) : memory_(memory) {
       const std::lock_guard guard(memory_.mutex_);
       if (memory_.free_.empty()) {
-        memory_.free_.reserve(memory_.lent_ + 1);  // for all of them, as giving back must not allocate
+        memory_.free_.reserve(memory_.lent_ + 1);  // room for all, because the destructor must not allocate
         memory_.free_.push_back(std::make_unique<OfThread>());
       }
       mine_ = std::move(memory_.free_.back());

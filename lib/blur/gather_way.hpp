@@ -9,11 +9,11 @@
 
 namespace petzval::blur_detail {
 
-/// The assignment of rays to the lanes of the processor.
+/// Assignment of rays to SIMD lanes.
 enum class GatherPath : std::uint8_t {
-  automatic,        ///< the fastest that the rays allow
-  shift_invariant,  ///< neighbouring pixels, one ray: the same step for all
-  coherent,         ///< neighbouring pixels, one ray each, nearly the same step
+  automatic,        ///< the fastest path that the rays allow
+  shift_invariant,  ///< adjacent pixels, one common ray: equal steps
+  coherent,         ///< adjacent pixels, one ray each: nearly equal steps
   general,          ///< the rays of one pixel
 };
 /// "automatic", ...
@@ -21,12 +21,12 @@ PETZVAL_API std::string_view name(GatherPath path) noexcept;
 
 struct GatherWay {
   GatherPath path = GatherPath::automatic;
-  /// The depths below the rays of a tile bound the steps of its rays. The bound changes no surface that a ray meets; it
-  /// may change the guess for a ray that meets no surface.
+  /// Limits the steps of a tile's rays to the depths below the rays. The limit changes no surface that a ray meets, but
+  /// it may change the guess for a ray that meets no surface.
   bool bounded = true;
 };
 
-/// petzval::gather() in one of its ways, for tests and benchmarks. Throws Error for a path that the rays do not allow.
+/// petzval::gather() by a given path, for tests and benchmarks. Throws Error if the rays do not allow the path.
 PETZVAL_API void gather(const LayerSet& layers, const LensRays& rays, const GatherOptions& options,
                         const GatherWay& way, Blurred& picture);
 PETZVAL_API Blurred gather(const LayerSet& layers, const LensRays& rays, const GatherOptions& options,

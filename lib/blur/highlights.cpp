@@ -13,10 +13,10 @@
 namespace petzval::blur_detail {
 namespace {
 
-constexpr std::size_t least_rays = 64, most_rays = 16384;  // of a stamp
+constexpr std::size_t least_rays = 64, most_rays = 16384;  // per stamp
 constexpr int group_cell = 16;                             // px
 
-/// The area that the lines of a node cover at an inverse depth, as an ellipse of the same moments has it.
+/// The area covered by the lines of a node at an inverse depth, from an ellipse with the same moments.
 class CoveredArea {
  public:
   CoveredArea(const float* rows, std::size_t rays) {
@@ -72,14 +72,14 @@ std::uint32_t CountsIn::operator()(const PixelRect& rect) const noexcept {
          before_[bottom * stride_ + left];
 }
 
-/// What a light of 1 adds to a rectangle of the picture, from the light's pixel on.
+/// The light that a highlight of 1 adds to a rectangle of the picture, relative to the pixel of the highlight.
 struct Highlights::Stamp {
   int left = 0, top = 0, columns = 0, rows = 0;
-  bool hidden = false;  ///< from some rays
+  bool hidden = false;  ///< some rays do not see the highlight
   std::vector<float> light;
 };
 
-/// Highlights with one stamp.
+/// Highlights that share a stamp.
 struct Highlights::Alike {
   Group members;
   Stamp stamp;
@@ -116,7 +116,7 @@ void Highlights::find(float above) {
     }
   }
   if (bright.empty()) return;
-  // In blocks of one pixel: the borders of larger blocks would treat neighbours differently.
+  // Blocks of one pixel: the borders of larger blocks would treat neighbours differently.
   CountsIn bright_in;
   bright_in.fill(layers_.columns, layers_.rows, 1, bright);
 
@@ -136,7 +136,7 @@ void Highlights::find(float above) {
     h.area = static_cast<float>(areas[node(h.row, table.area.rows, table.node_rows) * table.node_columns +
                                       node(h.column, table.area.columns, table.node_columns)]
                                     .at(h.inverse_depth));
-    // Rays show a wide bright surface well: enough of each pixel's meet it.
+    // A wide bright surface needs no stamps: enough rays of each pixel meet the surface.
     const int reach = static_cast<int>(std::sqrt(h.area / std::numbers::pi));
     const double covered =
         bright_in({h.column - reach, h.row - reach, h.column + reach, h.row + reach}) / std::max(h.area, 1.0f);
@@ -189,9 +189,9 @@ float Highlights::visible(const float* line, double x, double y, const Highlight
         static_cast<int>(std::floor(std::min(a.x, b.x))) - 1, static_cast<int>(std::floor(std::min(a.y, b.y))) - 1,
         static_cast<int>(std::ceil(std::max(a.x, b.x))) + 1, static_cast<int>(std::ceil(std::max(a.y, b.y))) + 1};
   };
-  // From the nearest surface of all, then from the nearest one below that way.
+  // Starts at the nearest of all surfaces, then at the nearest surface below this path.
   double from = nearest_;
-  // Nearer by less, nothing hides it from any ray: the umbra's offset.
+  // A surface nearer by less than this margin, the umbra's offset, hides the highlight from no ray.
   const double margin = 0.5 / std::max(rays_.largest_slope, 1e-30);
   for (int i = 0; i < 2; ++i) {
     from = layers_.n_buffer.below(rect_to(from)).most;
@@ -231,7 +231,7 @@ float Highlights::visible(const float* line, double x, double y, const Highlight
 
 Highlights::Stamp Highlights::stamp_of(const Highlight& h, double rays_of_pixel, const RayTable& table) const {
   const auto rays = static_cast<std::size_t>(std::clamp<double>(rays_of_pixel * h.area, least_rays, table.rays));
-  // A ray's light is spread over a tent that overlaps the tents of its neighbours, so that the sum is even.
+  // The light of a ray is spread over a tent that overlaps the tents of its neighbours, so that the sum is uniform.
   const double half = std::max(0.75, 2.1 * std::sqrt(h.area / static_cast<double>(rays)));
   const double x = h.column + 0.5 - overscan_, y = h.row + 0.5 - overscan_, w = h.inverse_depth;
 
@@ -243,7 +243,7 @@ Highlights::Stamp Highlights::stamp_of(const Highlight& h, double rays_of_pixel,
   Stamp stamp;
   for (std::size_t ray = 0; ray < rays; ++ray) {
     float line[row_count];
-    // Where the ray's line leads at the highlight's depth, from a place of the picture.
+    // The position of the ray at the depth of the highlight, for a ray of the picture position `from`.
     const auto lead = [&](const Vec2<double>& from) {
       table.ray_at(0, ray, from.x, from.y, line);
       return Vec2<double>{from.x + line[at_x] + w * line[slope_x], from.y + line[at_y] + w * line[slope_y]};
@@ -281,7 +281,7 @@ Highlights::Stamp Highlights::stamp_of(const Highlight& h, double rays_of_pixel,
   stamp.columns = static_cast<int>(std::ceil(right)) - first_column;
   stamp.rows = static_cast<int>(std::ceil(bottom)) - first_row;
   stamp.light.resize(static_cast<std::size_t>(stamp.columns) * static_cast<std::size_t>(stamp.rows));
-  const auto share_before = [half](double distance) {  // of a tent's light
+  const auto share_before = [half](double distance) {  // fraction of a tent's light
     const double t = std::clamp(distance / half, -1.0, 1.0);
     return t < 0 ? 0.5 * (1 + t) * (1 + t) : 1 - 0.5 * (1 - t) * (1 - t);
   };
@@ -326,7 +326,7 @@ RasterArea Highlights::area_of(const Group& group, std::size_t channel) const {
     const int x = column - along(at_x, slope_x), y = row - along(at_y, slope_y);
     left = std::min(left, x), right = std::max(right, x), top = std::min(top, y), bottom = std::max(bottom, y);
   }
-  // The blur changes with its position, and members of a group lie up to a cell apart.
+  // The blur changes over the picture, and members of a group are up to a cell apart.
   const int margin = 2 + group_cell + std::max(right - left, bottom - top) / 8;
   left = std::max(left - margin, 0), right = std::min(right + margin, table.area.columns);
   top = std::max(top - margin, 0), bottom = std::min(bottom + margin, table.area.rows);
@@ -336,8 +336,8 @@ RasterArea Highlights::area_of(const Group& group, std::size_t channel) const {
 std::vector<Highlights::Alike> Highlights::stamps_of(const Group& group, std::size_t channel) const {
   constexpr double rays_of_pixel = 2.5;
   constexpr int cell = 4;
-  // Nearer surfaces hide other rays of each highlight. Highlights of one cell share their rays, which moves the edge of
-  // the shadow by less than a cell.
+  // Nearer surfaces hide different rays of each highlight. Highlights of one cell share their rays, which moves the
+  // edge of the shadow by less than a cell.
   std::map<std::pair<int, int>, Group> cells;
   for (const std::size_t member : group) {
     cells[{found_[member].row / cell, found_[member].column / cell}].push_back(member);
@@ -372,7 +372,7 @@ void Highlights::spread(int threads, Blurred& picture) const {
     parallel_for(count, 1, threads, [&](std::size_t first, std::size_t end) {
       for (std::size_t i = first; i < end; ++i) stamps[i] = stamps_of(groups_[begin + i / channels], i % channels);
     });
-    // One after the other: the same sums for any number of threads.
+    // In sequence, so that the sums do not depend on the number of threads.
     for (std::size_t i = 0; i < count; ++i) {
       for (const auto& [members, stamp] : stamps[i]) {
         for (const std::size_t member : members) add(stamp, found_[member], i % channels, picture);

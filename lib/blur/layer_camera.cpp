@@ -18,15 +18,15 @@ namespace {
 
 using blur_detail::check_sides;
 
-constexpr double steepest = radians(60);  // of rays from the axis
+constexpr double steepest = radians(60);  // largest angle of rays from the axis
 
 }  // namespace
 
 LayerCamera layer_camera(int columns, int rows, double vertical_angle_rad) {
   check_sides("layer camera: picture", columns, rows);
   if (!(vertical_angle_rad > 0 && vertical_angle_rad <= radians(120))) {
-    throw Error("layer camera: vertical angle is " + to_text(degrees(vertical_angle_rad)) +
-                " degrees, wanted more than 0 and at most 120: planes of pixels do not show more");
+    throw Error("layer camera: vertical angle = " + to_text(degrees(vertical_angle_rad)) +
+                " degrees; must be above 0 and at most 120 for a planar picture");
   }
   return {.columns = columns,
           .rows = rows,
@@ -39,7 +39,7 @@ LayerCamera layer_camera(const Camera& camera) {
   check_sides("layer camera: picture", film.columns, film.rows);
   const double origin = layer_origin_z(camera);
 
-  // How far from the axis, per pixel, the ideal lens sees the scene of a film point next to it.
+  // Slope, per pixel, of the scene point that the ideal lens images to a film point near the axis.
   const IdealLens ideal = thick_lens(camera.lens());
   const double height = film.height_mm / film.rows;
   const ScenePoint seen = ideal.scene_of({0, -height, film.z()});
@@ -50,15 +50,14 @@ LayerCamera layer_camera(const Camera& camera) {
                            .focal_px = std::abs(1 / slope),
                            .axis = film.raster(FilmPoint{0, 0})};
 
-  constexpr int places = 9;  // along each side; those without light do not count
+  constexpr int places = 9;  // along each side; positions without light are skipped
   for (int i = 0; i < places * places; ++i) {
     const double column = film.columns * (i % places) / (places - 1.0), row = film.rows * (i / places) / (places - 1.0);
     const CameraRay ray = camera.sample({.film = film.point(column, row)});
     if (!ray || -ray.ray.direction.z >= std::cos(steepest)) continue;
     throw Error("layer camera: the ray of column " + to_text(column) + ", row " + to_text(row) + " runs " +
                 to_text(degrees(std::acos(std::clamp(-ray.ray.direction.z, -1.0, 1.0)))) +
-                " degrees from the axis, wanted at most " + to_text(degrees(steepest)) +
-                ": planes of pixels do not show more");
+                " degrees from the axis; must be at most " + to_text(degrees(steepest)) + " for a planar picture");
   }
   return layers;
 }
@@ -66,7 +65,7 @@ LayerCamera layer_camera(const Camera& camera) {
 double layer_origin_z(const Camera& camera) {
   const double z = pupils(camera.lens()).entrance.z;
   if (!std::isfinite(z))
-    throw Error("layer camera: the entrance pupil of the lens is at infinity, wanted a finite place");
+    throw Error("layer camera: the entrance pupil of the lens is at infinity; must be at a finite distance");
   return z;
 }
 

@@ -9,10 +9,10 @@
 
 namespace petzval {
 
-/// Planes of columns x rows numbers, side by side: of each layer inverse depth, red, green, blue, alpha.
+/// Planes of columns x rows numbers: inverse depth, red, green, blue and alpha of each layer.
 struct LayerSet::Data {
   static constexpr int planes = 5;
-  /// Before, between and after planes: lanes may read that far beyond the ends of a row.
+  /// Numbers before, between and after planes: lanes may read this far beyond the ends of a row.
   static constexpr std::size_t slack = 128;
 
   int columns = 0, rows = 0, count = 0;
@@ -28,23 +28,23 @@ struct LayerSet::Data {
   }
   const float* plane(int layer, int p) const noexcept { return const_cast<Data*>(this)->plane(layer, p); }
 
-  /// Of all layers.
+  /// The depths of all layers.
   blur_detail::DepthRange depths() const noexcept { return n_buffer.below({0, 0, columns - 1, rows - 1}); }
 
-  /// One more layer, empty and black with alpha 1, before it counts.
+  /// Adds a layer that is empty and black with alpha 1. end_layer() counts it.
   LayerPlanes begin_layer();
-  /// Takes in the layer that was begun, if it has a surface. where: for messages.
+  /// Counts the layer of begin_layer() if it contains a surface. where: prefix of messages.
   void end_layer(const std::string& where);
 
-  /// From its beginning to its end. One that does not come to its end leaves no layer.
+  /// Scope of a filling. If the scope ends without finish(), the set has no layers.
   class Filling {
    public:
-    /// Room for `layers`; what they held is lost.
+    /// Allocates memory for `layers` layers and discards earlier contents.
     Filling(Data& data, int columns, int rows, int layers);
     Filling(const Filling&) = delete;
     Filling& operator=(const Filling&) = delete;
     ~Filling();
-    /// When all layers are there.
+    /// To be called after the last layer.
     void finish();
 
    private:

@@ -20,23 +20,23 @@ constexpr int most_layers = 64;
 
 void check_number(int layers) {
   if (layers < 1 || layers > most_layers) {
-    throw Error("layers: " + std::to_string(layers) + " layers, wanted 1 to " + std::to_string(most_layers));
+    throw Error("layers: " + std::to_string(layers) + " layers; must be 1 to " + std::to_string(most_layers));
   }
 }
 
 void check_size(const std::string& where, int columns, int rows) {
   constexpr std::int64_t most_pixels = std::int64_t{1} << 26;
   if (columns < 1 || rows < 1 || static_cast<std::int64_t>(columns) * rows > most_pixels) {
-    throw Error(where + ": size is " + std::to_string(columns) + " x " + std::to_string(rows) + ", wanted 1 to " +
+    throw Error(where + ": size = " + std::to_string(columns) + " x " + std::to_string(rows) + "; must be 1 to " +
                 std::to_string(most_pixels) + " pixels");
   }
 }
 
-/// The size of a camera's layers, overscan included.
+/// Checks the size of a camera's layers, including overscan.
 void check_size(const LayerCamera& camera) {
-  constexpr int most = 1 << 15;  // far from where the sum overflows
+  constexpr int most = 1 << 15;  // far below the overflow of the sum
   if (camera.overscan < 0 || camera.overscan > most) {
-    throw Error("layers: overscan is " + std::to_string(camera.overscan) + " px, wanted 0 to " + std::to_string(most));
+    throw Error("layers: overscan = " + std::to_string(camera.overscan) + " px; must be 0 to " + std::to_string(most));
   }
   check_size("layers", camera.columns, camera.rows);
   check_size("layers", camera.layer_columns(), camera.layer_rows());
@@ -47,13 +47,13 @@ std::string pixel_name(std::size_t pixel, int columns) {
   return "column " + std::to_string(pixel % width) + ", row " + std::to_string(pixel / width);
 }
 
-/// 1/mm of a depth, -1 of what is no surface.
+/// Inverse depth, 1/mm; -1 for a value that is no depth.
 float inverse_of(float depth_mm) { return depth_mm > 0 ? 1 / depth_mm : -1.0f; }
 
 }  // namespace
 
 LayerSet::Data::Filling::Filling(Data& data, int columns, int rows, int layers) : data_(data) {
-  data.columns = data.rows = data.count = 0, data.opaque = true;  // also where there is no memory
+  data.columns = data.rows = data.count = 0, data.opaque = true;  // also if memory runs out
   const std::size_t pixels = static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows);
   data.below.assign(pixels, infinity);
   const std::size_t wanted = 2 * slack + static_cast<std::size_t>(layers * planes) * (pixels + slack);
@@ -88,7 +88,7 @@ void LayerSet::Data::end_layer(const std::string& where) {
   const float* const alpha = plane(count, 4);
   bool any = false, solid = true, ordered = true, mixed = true;
   for (std::size_t i = 0; i < pixels(); ++i) {
-    w[i] = w[i] >= 0 ? w[i] : -1.0f;  // not a number: empty
+    w[i] = w[i] >= 0 ? w[i] : -1.0f;  // NaN: empty
     any |= w[i] >= 0;
     ordered &= w[i] < 0 || w[i] < below[i];
     solid &= w[i] < 0 || alpha[i] == 1;
@@ -97,13 +97,13 @@ void LayerSet::Data::end_layer(const std::string& where) {
   if (!ordered) {
     std::size_t i = 0;
     while (w[i] < 0 || w[i] < below[i]) ++i;
-    throw Error(where + ": " + pixel_name(i, columns) + ": inverse depth is " + to_text(w[i], 6) +
-                " / mm, wanted one below " + to_text(below[i], 6) + ", or no surface");
+    throw Error(where + ": " + pixel_name(i, columns) + ": inverse depth = " + to_text(w[i], 6) +
+                " / mm; must be below " + to_text(below[i], 6) + ", or negative (no surface)");
   }
   if (!mixed) {
     std::size_t i = 0;
     while (w[i] < 0 || (alpha[i] >= 0 && alpha[i] <= 1)) ++i;
-    throw Error(where + ": " + pixel_name(i, columns) + ": alpha is " + to_text(alpha[i]) + ", wanted 0 to 1");
+    throw Error(where + ": " + pixel_name(i, columns) + ": alpha = " + to_text(alpha[i]) + "; must be 0 to 1");
   }
   if (!any) return;
   ++count;
@@ -112,7 +112,7 @@ void LayerSet::Data::end_layer(const std::string& where) {
 
 namespace {
 
-/// The axial part of a distance along the ray of a pixel of the layers.
+/// Depth along the axis divided by the distance along the ray, for a pixel of the layers.
 float axial_share(const LayerCamera& camera, std::size_t pixel) {
   const auto width = static_cast<std::size_t>(camera.layer_columns());
   const double x = (static_cast<double>(pixel % width) + 0.5 - camera.overscan - camera.axis.x) / camera.focal_px,
@@ -124,8 +124,9 @@ void check_pixels(const LayerCamera& camera, std::size_t pixels) {
   check_size(camera);
   const auto wanted = static_cast<std::size_t>(camera.layer_columns()) * static_cast<std::size_t>(camera.layer_rows());
   if (pixels == wanted) return;
-  throw Error("axial_depths: found " + std::to_string(pixels) + " pixels, wanted those of the layers, " +
-              std::to_string(camera.layer_columns()) + " x " + std::to_string(camera.layer_rows()));
+  throw Error("axial_depths: number of pixels = " + std::to_string(pixels) +
+              "; must be columns x rows of the layers, " + std::to_string(camera.layer_columns()) + " x " +
+              std::to_string(camera.layer_rows()));
 }
 
 }  // namespace
@@ -150,7 +151,7 @@ LayerSet::~LayerSet() = default;
 
 void LayerSet::peel(const PeelPlan& plan, int layers, const Peel& peel) {
   check_number(layers);
-  if (!peel) throw Error("layers: peel is empty, wanted a function");
+  if (!peel) throw Error("layers: peel is empty; must be a function");
   const LayerCamera& camera = plan.camera;
   check_size(camera);
   Data& d = *data_;
@@ -174,11 +175,11 @@ void LayerSet::thin(const FragmentLists& lists, double bias, int layers) {
   const auto wrong = [](const std::string& what) { return Error("fragments: " + what); };
   if (lists.offsets.size() != pixels + 1 || lists.offsets.front() != 0 ||
       lists.offsets.back() != lists.fragments.size() || !std::is_sorted(lists.offsets.begin(), lists.offsets.end())) {
-    throw wrong("offsets do not rise from 0 to the number of fragments, one for each pixel and one more");
+    throw wrong("offsets must rise from 0 to the number of fragments, with one for each pixel and one more");
   }
-  if (!(bias >= 0)) throw wrong("bias is " + to_text(bias) + ", wanted 0 or more");
+  if (!(bias >= 0)) throw wrong("bias = " + to_text(bias) + "; must be at least 0");
 
-  // Layer by layer over all pixels would sort each list again: one pass keeps what each layer has.
+  // Filling the layers one by one would sort each list again. One pass over the pixels writes to all layers.
   Data& d = *data_;
   Data::Filling filling(d, lists.columns, lists.rows, layers);
   struct Planes {
@@ -201,7 +202,7 @@ void LayerSet::thin(const FragmentLists& lists, double bias, int layers) {
       const FragmentLists::Fragment& f = lists.fragments[i];
       if (!(f.depth_mm > 0)) continue;
       if (!(f.alpha >= 0 && f.alpha <= 1)) {
-        throw wrong(pixel_name(pixel, lists.columns) + ": alpha is " + to_text(f.alpha) + ", wanted 0 to 1");
+        throw wrong(pixel_name(pixel, lists.columns) + ": alpha = " + to_text(f.alpha) + "; must be 0 to 1");
       }
       list.push_back(f);
     }
@@ -215,7 +216,7 @@ void LayerSet::thin(const FragmentLists& lists, double bias, int layers) {
         for (int p = 0; p < Data::planes; ++p) out[kept].p[p][pixel] = values[p];
         ++kept, last = w;
       } else {
-        // Behind a surface that lets light through: what it lets through.
+        // Behind a transparent surface: adds the transmitted part.
         float* const* const front = out[kept - 1].p;
         const float through = 1 - front[4][pixel];
         for (int p = 1; p < Data::planes; ++p) front[p][pixel] += through * values[p];
@@ -238,12 +239,13 @@ void LayerSet::set(std::span<const LayerImage> images) {
     const LayerImage& image = images[layer];
     const std::string where = "layer " + std::to_string(layer);
     if (image.columns != first.columns || image.rows != first.rows) {
-      throw Error(where + ": size is " + std::to_string(image.columns) + " x " + std::to_string(image.rows) +
-                  ", wanted that of the first, " + std::to_string(first.columns) + " x " + std::to_string(first.rows));
+      throw Error(where + ": size = " + std::to_string(image.columns) + " x " + std::to_string(image.rows) +
+                  "; must equal the first layer's, " + std::to_string(first.columns) + " x " +
+                  std::to_string(first.rows));
     }
     if (image.rgba.size() != 4 * pixels || image.depth_mm.size() != pixels) {
-      throw Error(where + ": found " + std::to_string(image.rgba.size()) + " colours and " +
-                  std::to_string(image.depth_mm.size()) + " depths, wanted 4 and 1 for each pixel");
+      throw Error(where + ": number of colours = " + std::to_string(image.rgba.size()) +
+                  ", of depths = " + std::to_string(image.depth_mm.size()) + "; must be 4 and 1 for each pixel");
     }
   }
   Data& d = *data_;
@@ -260,7 +262,7 @@ void LayerSet::set(std::span<const LayerImage> images) {
     d.end_layer("layer " + std::to_string(layer));
     if (d.count == number) break;
     std::copy_n(d.plane(number, 0), pixels, d.below.begin());
-    // A surface may touch the one before it, at the same depth; none stands behind an empty pixel.
+    // A surface may have the same depth as the surface before; there is no surface behind an empty pixel.
     for (float& w : d.below) w = w >= 0 ? std::nextafter(w, infinity) : -1.0f;
   }
   filling.finish();

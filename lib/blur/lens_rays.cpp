@@ -18,21 +18,21 @@ namespace {
 
 using namespace blur_detail;
 
-constexpr int widest_step = 256, narrowest_step = 16;  // of large pictures
-constexpr double same_px = 1e-3;                       // lines that differ by less are the same
+constexpr int widest_step = 256, narrowest_step = 16;  // for large pictures
+constexpr double same_px = 1e-3;                       // lines that differ by less count as equal
 
-/// How far a finer table is from what a coarser one interpolates, at the worst place.
+/// Largest error, over all positions, of a coarse table interpolated to the nodes of a fine table.
 struct TableError {
-  double px = 0;     ///< RMS of a place's lines at the depth where they are nearest to each other
-  double light = 0;  ///< of the weights of all rays of a place, over the largest of all places
+  double px = 0;     ///< RMS over the lines of a position, at the depth where they are closest together
+  double light = 0;  ///< error of the summed weights of a position, relative to the largest sum
 
   bool within_limits() const noexcept { return px <= 0.1 && light <= 6e-3; }
 };
 
-/// The inverse depth, from 0 to `nearest`, at which the lines of a node are nearest to each other.
+/// The inverse depth, from 0 to `nearest`, at which the lines of a node are closest together.
 double sharpest(const float* node, std::size_t rays, double nearest) {
   const auto n = static_cast<double>(rays);
-  double across = 0, steep = 0;  // covariance of places and slopes, variance of slopes
+  double across = 0, steep = 0;  // covariance of positions and slopes, variance of slopes
   for (const auto& [at, slope] : {std::pair{at_x, slope_x}, std::pair{at_y, slope_y}}) {
     double a = 0, s = 0, as = 0, ss = 0;
     for (std::size_t i = 0; i < rays; ++i) {
@@ -78,34 +78,34 @@ void check(const LayerCamera& camera, std::span<const PupilPoint> points, int ch
   const auto wrong = [](const std::string& what) { return Error("lens rays: " + what); };
   check_sides("lens rays: layer camera", camera.columns, camera.rows);
   if (!(camera.focal_px > 0 && std::isfinite(camera.focal_px))) {
-    throw wrong("focal length of the layer camera is " + to_text(camera.focal_px) + " px, wanted a positive number");
+    throw wrong("focal length of the layer camera = " + to_text(camera.focal_px) + " px; must be finite and above 0");
   }
   if (!std::isfinite(camera.axis.x) || !std::isfinite(camera.axis.y)) {
-    throw wrong("axis of the layer camera is at " + to_text(camera.axis.x) + ", " + to_text(camera.axis.y) +
-                " px, wanted finite numbers");
+    throw wrong("axis of the layer camera = " + to_text(camera.axis.x) + ", " + to_text(camera.axis.y) +
+                " px; must be finite");
   }
-  if (channels != 1 && channels != 3) throw wrong(std::to_string(channels) + " channels, wanted 1 or 3");
+  if (channels != 1 && channels != 3) throw wrong(std::to_string(channels) + " channels; must be 1 or 3");
   if (options.sets != 1 && options.sets != 4 && options.sets != 16) {
-    throw wrong(std::to_string(options.sets) + " sets, wanted 1, 4 or 16");
+    throw wrong(std::to_string(options.sets) + " sets; must be 1, 4 or 16");
   }
   if (points.empty() || points.size() % static_cast<std::size_t>(options.sets) != 0) {
-    throw wrong(std::to_string(points.size()) + " points, wanted 1 or more, as many for each of " +
+    throw wrong(std::to_string(points.size()) + " points; must be at least 1, and equally many for each of " +
                 std::to_string(options.sets) + " sets");
   }
   for (const PupilPoint& p : points) {
     if (p.u >= 0 && p.u <= 1 && p.v >= 0 && p.v <= 1) continue;
-    throw wrong("a point of the pupil is " + to_text(p.u) + ", " + to_text(p.v) + ", wanted two numbers from 0 to 1");
+    throw wrong("a point of the pupil = " + to_text(p.u) + ", " + to_text(p.v) + "; must be two numbers from 0 to 1");
   }
   if (!(options.nearest_mm >= 0 && std::isfinite(options.nearest_mm))) {
-    throw wrong("nearest depth is " + to_text(options.nearest_mm) + " mm, wanted 0 (a default) or more");
+    throw wrong("nearest depth = " + to_text(options.nearest_mm) + " mm; must be finite and at least 0 (0: default)");
   }
 }
 
-/// How much the rays of nodes differ from those of the first one, and how steep they are.
+/// Largest differences between the rays of any node and of the first node, and the largest slope.
 struct Spread {
-  double differ_px = 0;  ///< of lines at infinity and at the nearest depth, along columns or rows
-  double light = 0;      ///< of weights
-  double steepest = 0;   ///< |slope| of all, px mm
+  double differ_px = 0;  ///< lines at infinity and at the nearest depth, along columns or rows
+  double light = 0;      ///< weights
+  double steepest = 0;   ///< largest |slope|, px mm
 };
 
 Spread spread_of(const RayTable& t, double nearest) {
@@ -132,7 +132,7 @@ Spread spread_of(const RayTable& t, double nearest) {
 LensRays::LensRays(const LayerCamera& camera, std::span<const PupilPoint> points, int channels, Source source,
                    const LensRaysOptions& options) {
   check(camera, points, channels, options);
-  if (!source) throw Error("lens rays: the source is empty, wanted a function");
+  if (!source) throw Error("lens rays: the source is empty; must be a function");
   auto d = std::make_shared<Data>();
   d->camera = camera, d->camera.overscan = 0;
   d->points.assign(points.begin(), points.end());
@@ -144,8 +144,8 @@ LensRays::LensRays(const LayerCamera& camera, std::span<const PupilPoint> points
   const auto table = [&](int step) {
     return ray_table({0, 0, d->camera.columns, d->camera.rows}, points, count, d->source, step, options.threads);
   };
-  // Steps above the picture's side would have no node within it to tell how wrong they are. Pixels of small pictures
-  // are large on the film: their steps are small.
+  // A step above the picture's side would leave no node inside the picture for an error estimate. Pixels of small
+  // pictures are large on the film, so the steps are small.
   const auto power_of_two = [](int length) { return static_cast<int>(std::bit_floor(static_cast<unsigned>(length))); };
   const int last_step = std::clamp(power_of_two(std::max(camera.columns, camera.rows)) / 16, 2, narrowest_step);
   const int first_step = std::clamp(power_of_two(std::min(camera.columns, camera.rows)), last_step, widest_step);
@@ -180,7 +180,7 @@ double LensRays::reach_px(double least_inverse_depth, double most_inverse_depth)
   for (std::size_t channel = 0; channel < t.channels; ++channel) {
     for (std::size_t row = 0; row < t.node_rows; ++row) {
       for (std::size_t column = 0; column < t.node_columns; ++column) {
-        // Inner nodes reach beyond an edge only by what they lack to it.
+        // The distance of an inner node to the edge does not count.
         const double x = t.column_of(column), y = t.row_of(row);
         const float* const node = t.node(channel, row, column);
         for (std::size_t i = 0; i < n; ++i) {
@@ -204,7 +204,7 @@ RayTable LensRays::Data::dense(const RasterArea& area, std::size_t channel, std:
                               std::span<LayerRay> rays) {
     source(static_cast<int>(channel), raster, points_of_area, rays);
   };
-  // Three nodes along a side are enough for the width of a blur.
+  // Three nodes along a side suffice for the width of a blur.
   const int step = std::max(2 * table.step, (std::max(area.columns, area.rows) + 1) / 2);
   return ray_table(area, many, 1, of_channel, step, 1);
 }

@@ -12,7 +12,7 @@ constexpr float infinity = std::numeric_limits<float>::infinity();
 
 int last_power(int n) { return static_cast<int>(std::bit_width(static_cast<unsigned>(n))) - 1; }
 
-/// Each place takes in those `step` columns and rows further.
+/// Combines each position with the positions `step` columns and rows further on.
 template <class Better>
 void join(const std::vector<float>& from, std::vector<float>& to, int columns, int rows, int step, Better better) {
   to.resize(from.size());
@@ -83,7 +83,7 @@ DepthRange NBuffer::below(const PixelRect& rect) const noexcept {
   const int left = std::clamp(rect.left, 0, columns_ - 1) / block,
             right = std::clamp(rect.right, 0, columns_ - 1) / block, top = std::clamp(rect.top, 0, rows_ - 1) / block,
             bottom = std::clamp(rect.bottom, 0, rows_ - 1) / block;
-  // Squares as wide as the shorter side cover the rectangle and nothing else; the last ones overlap those before.
+  // Squares as wide as the shorter side cover exactly the rectangle; the last squares overlap the squares before.
   const int level = last_power(std::min(right - left, bottom - top) + 1), size = 1 << level;
   const Level& l = levels_[static_cast<std::size_t>(level)];
   float least = infinity, most = -1, layers = 0;

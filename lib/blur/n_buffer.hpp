@@ -9,12 +9,12 @@
 
 namespace petzval::blur_detail {
 
-/// Columns and rows from first to last, both included.
+/// A rectangle of pixels; right and bottom are included.
 struct PixelRect {
   int left = 0, top = 0, right = 0, bottom = 0;
 };
 
-/// Inverse depths between which all surfaces lie, and the number of layers that have them; least > most: none.
+/// The range of inverse depths of all surfaces, and the number of layers with surfaces. Empty if least > most.
 struct DepthRange {
   float least = 1, most = 0;
   int layers = 0;
@@ -22,25 +22,26 @@ struct DepthRange {
   bool empty() const noexcept { return least > most; }
 };
 
-/// Ranges of inverse depth below any rectangle of pixels: N-buffers (Decoret 2005) over blocks of 8 x 8 pixels. A level
-/// holds the ranges of squares twice as large as those of the level before it, one for each place of a block.
+/// Ranges of inverse depth below any rectangle of pixels: N-buffers (Decoret 2005) over blocks of 8 x 8 pixels. Each
+/// level holds, for every position of a block, the range of a square with twice the side of the squares in the previous
+/// level.
 class NBuffer {
  public:
   static constexpr int block = 8;
 
-  /// planes: inverse depth of each layer, columns x rows, below 0 where empty. Allocates where it grows.
+  /// planes: inverse depth of each layer, columns x rows, negative if empty. Allocates only to grow.
   void fill(int columns, int rows, std::span<const std::span<const float>> planes);
-  /// Of a rectangle, clipped to the picture, widened to whole blocks; one beside the picture has that of its nearest
-  /// edge.
+  /// The range below a rectangle, clipped to the picture and widened to whole blocks. A rectangle outside the picture
+  /// has the range of the nearest edge.
   DepthRange below(const PixelRect& rect) const noexcept;
 
  private:
   struct Level {
     std::vector<float> least, most, layers;
   };
-  int columns_ = 0, rows_ = 0;  ///< of pixels
+  int columns_ = 0, rows_ = 0;  ///< pixels
   int block_columns_ = 0, block_rows_ = 0;
-  std::size_t count_ = 0;  ///< of levels in use
+  std::size_t count_ = 0;  ///< levels in use
   std::vector<Level> levels_;
   std::vector<float> row_least_, row_most_, row_layers_;
 };

@@ -8,10 +8,10 @@
 
 namespace petzval::blur_detail {
 
-/// Inverse depth of a pixel without a surface in front of the ray, for SurfaceGap.
+/// Inverse depth that stands for a pixel without a surface in front of the ray.
 inline constexpr float no_surface = -1e30f;
 
-// Local names: this is compiled for several instruction sets, and the linker must not take one for another.
+// Anonymous namespace: the code is compiled for several instruction sets, and the linker must not merge the versions.
 namespace {
 
 using kernel::select;
@@ -20,47 +20,49 @@ PETZVAL_INLINE T size_of(T x) noexcept {
   return select(x < T(0.0f), -x, x);
 }
 
-/// The largest whole number at or below x, after x is rounded to 1/256 px: rays of regular pupils pass exactly between
-/// two pixels at half a step, and rounding errors are not to choose one of them.
+/// The largest whole number at or below x, after x is rounded to 1/256 px. Rays of regular pupils pass exactly between
+/// two pixels at half a step, and rounding errors must not choose the pixel.
 template <class T>
 struct WholePixel {
   static PETZVAL_INLINE T below(T x) noexcept { return std::floor(std::floor(256 * x + 0.5) / 256); }
 };
 
-/// The pixels that a line passes while its inverse depth falls, one for each step along its main direction, in which
-/// its slope is larger. A step ends where the line leaves the pixel: each inverse depth belongs to one step, and a
-/// surface is met in the pixel that the line passes at the surface's own depth.
+/// The pixels that a line passes while its inverse depth falls, by steps along the main direction, the direction of the
+/// larger slope. A step ends where the line leaves the pixel. So each inverse depth belongs to one step, and a surface
+/// is met in the pixel that the line passes at the depth of the surface.
 ///
 /// Positions are relative to the centre of pixel (0, 0). T: double, or lanes of float.
 template <class T>
 class PixelSteps {
  public:
-  /// The line at + slope w from inverse depth `from` to `to`. farthest, nearest: of all surfaces; nearest > 0.
+  /// The line at + slope w from inverse depth `from` to `to`. farthest, nearest: inverse depths of all surfaces;
+  /// nearest > 0.
   PETZVAL_INLINE PixelSteps(T at_x, T at_y, T slope_x, T slope_y, T from, T to, T farthest, T nearest) noexcept
       : along_columns_(size_of(slope_x) >= size_of(slope_y)), farthest_(farthest), nearest_(nearest) {
     const T at = select(along_columns_, at_x, at_y), zero(0.0f), one(1.0f), half(0.5f);
     other_at_ = select(along_columns_, at_y, at_x), other_slope_ = select(along_columns_, slope_y, slope_x);
     T slope = select(along_columns_, slope_x, slope_y);
-    const T least = T(1e-6f) / nearest;  // of lines that hardly lean one step holds all depths
+    const T least = T(1e-6f) / nearest;  // for lines that hardly lean, one step covers all depths
     slope = select(size_of(slope) < least, least, slope);
     towards_ = select(slope > zero, -one, one);
-    // Farther by more than rounding errors: the first step begins before `from`, the last one ends behind `to`.
+    // By more than rounding errors: the first step begins before `from`, the last step ends after `to`.
     const T margin(1.0f / 64);
     first_ = WholePixel<T>::below(at + slope * from + half - towards_ * margin);
     last_ = size_of(WholePixel<T>::below(at + slope * to + half + towards_ * margin) - first_);
     length_ = one / size_of(slope), middle_ = (first_ - at) / slope;
   }
 
-  /// The last step; the first one is 0.
+  /// The last step; the first step is 0.
   PETZVAL_INLINE T last() const noexcept { return last_; }
   /// Inverse depths in a step lie between low(n) and low(n - 1).
   PETZVAL_INLINE T low(T n) const noexcept { return middle_ - (n + T(0.5f)) * length_; }
-  /// The pixel of a step, relative to pixel (0, 0): whole numbers.
+  /// The pixel of a step, relative to pixel (0, 0), in whole numbers.
   struct Pixel {
     T column, row;
   };
   PETZVAL_INLINE Pixel pixel(T n) const noexcept {
-    // The middle of a step, but within the scene's depths: a line that moves by less than a pixel stays in its own.
+    // The middle of a step, clamped to the depths of the scene: a line that moves by less than a pixel stays in its
+    // pixel.
     T w = middle_ - n * length_;
     w = select(w < farthest_, farthest_, w), w = select(w > nearest_, nearest_, w);
     const T main = first_ + towards_ * n, other = WholePixel<T>::below(other_at_ + other_slope_ * w + T(0.5f));
@@ -70,7 +72,7 @@ class PixelSteps {
  private:
   decltype(T(0) < T(0)) along_columns_;
   T other_at_, other_slope_, farthest_, nearest_;
-  T towards_;  ///< by which the pixel changes along the main direction in a step, 1 or -1
+  T towards_;  ///< change of the pixel along the main direction in a step, 1 or -1
   T first_, last_, middle_, length_;
 };
 

@@ -10,10 +10,10 @@ namespace petzval {
 
 std::vector<PupilPoint> vogel_points(int count, double turn) {
   if (count < 1 || count > (1 << 20)) {
-    throw Error("vogel_points: " + std::to_string(count) + " points, wanted 1 to " + std::to_string(1 << 20));
+    throw Error("vogel_points: " + std::to_string(count) + " points; must be 1 to " + std::to_string(1 << 20));
   }
-  if (!std::isfinite(turn)) throw Error("vogel_points: turn is " + to_text(turn) + ", wanted a finite part of a turn");
-  constexpr double golden = 0.38196601125010515;  // of a turn, 2 less the golden ratio
+  if (!std::isfinite(turn)) throw Error("vogel_points: turn = " + to_text(turn) + "; must be finite");
+  constexpr double golden = 0.38196601125010515;  // turns; 2 minus the golden ratio
   std::vector<PupilPoint> points(static_cast<std::size_t>(count));
   for (int i = 0; i < count; ++i) {
     const double u = i * golden + turn;
@@ -29,7 +29,7 @@ std::vector<PupilPoint> vogel_sets(int count, int sets) {
   }
   std::vector<PupilPoint> points;
   for (int set = 0; set < sets; ++set) {
-    // Each set goes between the radii and the directions of the others.
+    // The radii and directions of each set lie between those in the other sets.
     const double outwards = ((set + 0.5) / sets - 0.5) / count;
     for (const PupilPoint& p : vogel_points(count, static_cast<double>(set) / sets)) {
       points.push_back({p.u, p.v + outwards});

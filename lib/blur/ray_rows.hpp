@@ -7,11 +7,11 @@
 
 namespace petzval::blur_detail {
 
-/// Lines of the rays of a place, in rows of as many numbers: where a line runs to at infinity less the place itself
-/// (along columns and rows), its slope (the same), and its weight.
+/// Lines of the rays of a position, in rows of equal length: raster position of the line at infinity minus the position
+/// itself (along columns and rows), slope (along columns and rows), and weight.
 enum Row : std::size_t { at_x, at_y, slope_x, slope_y, weight, row_count };
 
-/// Which of side x side sets of rays a pixel takes: they take turns in squares.
+/// The ray set of a pixel: the side x side sets alternate over blocks of side x side pixels.
 constexpr std::size_t set_of(int column, int row, int side) noexcept {
   return static_cast<std::size_t>(row % side * side + column % side);
 }

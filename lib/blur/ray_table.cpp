@@ -12,7 +12,7 @@
 namespace petzval::blur_detail {
 namespace {
 
-/// The cell that holds a position along one side, and the part of the way through it.
+/// The cell that contains a position along one side, and the fraction of the cell before the position.
 struct Cell {
   std::size_t first = 0;
   float part = 0;
@@ -25,7 +25,7 @@ Cell cell_at(double position, int step, std::size_t nodes, int end) {
   return {first, static_cast<float>((p - begin) / length)};
 }
 
-/// Which nodes of a channel have rays of any weight.
+/// For each node of a channel: true if a ray has a weight.
 std::vector<char> lit_nodes(const RayTable& table, std::size_t channel) {
   std::vector<char> lit(table.node_columns * table.node_rows);
   for (std::size_t n = 0; n < lit.size(); ++n) {
@@ -35,8 +35,8 @@ std::vector<char> lit_nodes(const RayTable& table, std::size_t channel) {
   return lit;
 }
 
-/// Gives a node without light the mean of the lines that lit nodes beside it lead to: straight on through two in a row,
-/// or those of a single one. False, and no change, where there is none.
+/// Gives a node without light the mean of the lines extrapolated from adjacent lit nodes: linearly from two nodes in a
+/// row, or constant from a single node. Returns false, without a change, if there are no such nodes.
 bool lead_on(RayTable& table, std::size_t channel, const std::vector<char>& lit, int column, int row, bool two) {
   const int columns = static_cast<int>(table.node_columns), rows = static_cast<int>(table.node_rows);
   const auto is_lit = [&](int x, int y) {
@@ -66,8 +66,8 @@ bool lead_on(RayTable& table, std::size_t channel, const std::vector<char>& lit,
   return true;
 }
 
-/// Between a lit node and one without light rays fade, and must stay where they are: any line of the dark node would
-/// draw them aside.
+/// Between a lit and a dark node rays fade, but they must keep their positions. Arbitrary lines of the dark node would
+/// displace rays.
 void lead_into_the_dark(RayTable& table) {
   for (std::size_t channel = 0; channel < table.channels; ++channel) {
     const std::vector<char> lit = lit_nodes(table, channel);
@@ -116,7 +116,7 @@ void RayTable::ray_at(std::size_t channel, std::size_t ray, double column, doubl
 
 RayTable ray_table(const RasterArea& area, std::span<const PupilPoint> points, std::size_t channels,
                    const LensRays::Source& source, int step, int threads) {
-  constexpr double most = 1e15;  // far within floats, between which lines are interpolated
+  constexpr double most = 1e15;  // interpolation in float must not overflow
   RayTable table{.area = area,
                  .step = step,
                  .channels = channels,
@@ -140,8 +140,9 @@ RayTable ray_table(const RasterArea& area, std::span<const PupilPoint> points, s
           out[r * rays.size() + i] = static_cast<float>(values[r]);
           if (std::abs(values[r]) <= most && (r != weight || values[r] >= 0)) continue;
           throw Error("lens rays: ray " + std::to_string(i) + " of column " + to_text(place.x) + ", row " +
-                      to_text(place.y) + (r == weight ? " has the weight " : " has the number ") + to_text(values[r]) +
-                      ", wanted a finite one up to " + to_text(most) + ", and no negative weight");
+                      to_text(place.y) + (r == weight ? ": weight = " : ": number = ") + to_text(values[r]) +
+                      "; must be finite, at most " + to_text(most) +
+                      " in absolute value, and not negative if a weight");
         }
       }
     }

@@ -11,7 +11,7 @@
 
 namespace petzval::blur_detail {
 
-/// Layers of more overscan are refused.
+/// Largest overscan of layers that is accepted, px.
 inline constexpr double most_reach_px = 16384;
 
 /// A rectangle of raster positions.
@@ -23,7 +23,7 @@ struct RasterArea {
 struct RayTable {
   RasterArea area;
   int step = 0;                        ///< px
-  std::size_t channels = 0, rays = 0;  ///< rays of a node and channel
+  std::size_t channels = 0, rays = 0;  ///< rays: per node and channel
   std::size_t node_columns = 0, node_rows = 0;
   std::vector<float> nodes;  ///< [channel][node row][node column][Row][ray]
 
@@ -33,13 +33,13 @@ struct RayTable {
   }
   double column_of(std::size_t node) const noexcept;  ///< raster position
   double row_of(std::size_t node) const noexcept;
-  /// The rows of a place of the area, interpolated between the nodes around it: node_size() numbers.
+  /// The rows at a position in the area, interpolated between the nodes around it: node_size() numbers.
   void at(std::size_t channel, double column, double row, float* found) const noexcept;
-  /// The same of one ray: row_count numbers.
+  /// The rows of one ray at a position: row_count numbers.
   void ray_at(std::size_t channel, std::size_t ray, double column, double row, float* found) const noexcept;
 };
 
-/// The rays of a source at all nodes. Throws Error for rays that are not finite, and for negative weights.
+/// The rays of a source at all nodes. Throws Error if a number is not finite or above 1e15, or a weight is negative.
 RayTable ray_table(const RasterArea& area, std::span<const PupilPoint> points, std::size_t channels,
                    const LensRays::Source& source, int step, int threads);
 
@@ -56,16 +56,16 @@ struct LensRays::Data {
   double error_px = 0, largest_slope = 0;
   bool shift_invariant = false;
 
-  /// Rays of a channel over an area of the picture, for light that few would show as dots: the first points of a
-  /// sequence, any run of which covers the pupil evenly.
+  /// Rays of a channel over an area of the picture, for light that few rays would show as dots. The pupil points are
+  /// the first points of a sequence whose runs all cover the pupil uniformly.
   blur_detail::RayTable dense(const blur_detail::RasterArea& area, std::size_t channel, std::size_t count) const;
 
   std::size_t sets() const noexcept { return static_cast<std::size_t>(options.sets); }
-  /// Of the squares in which sets take turns.
+  /// Side of the blocks over which sets alternate, px.
   int side() const noexcept { return options.sets == 16 ? 4 : options.sets == 4 ? 2 : 1; }
   std::size_t rays_of_set() const noexcept { return points.size() / sets(); }
-  /// By how much inverse depths of neighbouring pixels may differ for layers to know nothing of what lies between: the
-  /// bias of peeling.
+  /// Largest difference of inverse depths at which the layers may lack the surfaces between adjacent pixels: the bias
+  /// of peeling.
   float gap() const noexcept { return largest_slope > 0 ? static_cast<float>(std::min(1 / largest_slope, 1e20)) : 0; }
 };
 

@@ -11,7 +11,7 @@
 namespace petzval {
 namespace {
 
-/// Samples of an iris that follow its weights; a small part is uniform, so that no weight is large.
+/// Samples of an iris that follow its weights. A tenth of the samples is uniform, so that no sample weight is large.
 struct WeightedIris {
   iris_detail::IrisShape shape;
   iris_detail::IrisWeights weights;
@@ -26,12 +26,12 @@ LensRays LensRays::thin(const LayerCamera& camera, const ThinLens& lens, std::sp
                         const LensRaysOptions& options) {
   const auto wrong = [](const std::string& what) { return Error("thin lens: " + what); };
   if (!(lens.radius_mm >= 0 && std::isfinite(lens.radius_mm))) {
-    throw wrong("radius is " + to_text(lens.radius_mm) + " mm, wanted 0 or more");
+    throw wrong("radius = " + to_text(lens.radius_mm) + " mm; must be finite and at least 0");
   }
   if (!(lens.inverse_focus >= 0 && 2 * lens.radius_mm * lens.inverse_focus < 1)) {
-    throw wrong("inverse depth in focus is " + to_text(lens.inverse_focus) +
-                " / mm, wanted 0 or more, and a depth beyond the diameter of the lens, " + to_text(2 * lens.radius_mm) +
-                " mm");
+    throw wrong("inverse depth in focus = " + to_text(lens.inverse_focus) +
+                " / mm; must be at least 0, and its depth above the diameter of the lens, " +
+                to_text(2 * lens.radius_mm) + " mm");
   }
   if (!lens.map.empty()) iris_detail::check(lens.map, "thin lens: ");
   const bool even = lens.edge.even() && lens.map.empty();

@@ -200,16 +200,16 @@ TEST(Images, AreRefusedWhereTheyDoNotFit) {
     expect_tokens(said, {what});
   };
   says({}, "0 layers");
-  says({{2, 1, rgba, depth}, {1, 1, std::span(rgba).first(4), std::span(depth).first(1)}}, "layer 1: size is 1 x 1");
-  says({{2, 1, rgba, std::span(depth).first(1)}}, "layer 0: found 8 colours and 1 depths");
+  says({{2, 1, rgba, depth}, {1, 1, std::span(rgba).first(4), std::span(depth).first(1)}}, "layer 1: size = 1 x 1");
+  says({{2, 1, rgba, std::span(depth).first(1)}}, "layer 0: number of colours = 8, of depths = 1");
   for (const float alpha : {2.0f, -1.0f, none, infinity}) {
     std::vector<float> mixed = rgba;
     mixed[7] = alpha;
-    says({{2, 1, mixed, depth}}, "layer 0: column 1, row 0: alpha is");
+    says({{2, 1, mixed, depth}}, "layer 0: column 1, row 0: alpha =");
   }
-  says({{2, 1, rgba, depth}, {2, 1, rgba, nearer}}, "layer 1: column 0, row 0: inverse depth is 0.02");
+  says({{2, 1, rgba, depth}, {2, 1, rgba, nearer}}, "layer 1: column 0, row 0: inverse depth = 0.02");
   says({{2, 1, rgba, nearer}, {2, 1, rgba, depth}},
-       "layer 1: column 1, row 0: inverse depth is 0 / mm");  // behind an empty pixel
+       "layer 1: column 1, row 0: inverse depth = 0 / mm");  // behind an empty pixel
 }
 
 // Points at one depth, given by their distances: the raster position of each is the middle of its pixel.
