@@ -61,7 +61,7 @@ Mesh lathe(std::span<const ProfilePoint> profile, int sides) {
   for (std::size_t i = 0; i + 1 < profile.size(); ++i) {
     const glm::vec2 from{profile[i].radius, profile[i].height}, to{profile[i + 1].radius, profile[i + 1].height};
     const glm::vec2 half = (to - from) * 0.5f, middle = from + half, out{half.y, -half.x};
-    // On the arc, at angle a from its centre: middle + half sin(a) / sin(end) + out (cos(a) - cos(end)) / sin(end).
+    // On the arc, at angle a from its midpoint: middle + half sin(a) / sin(end) + out (cos(a) - cos(end)) / sin(end).
     const float end = 2 * std::atan(profile[i].bulge);
     const int chords = std::max(1, static_cast<int>(std::ceil(std::abs(end) * 36 / pi)));
     for (int chord = 0; chord <= chords; ++chord) {

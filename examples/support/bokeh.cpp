@@ -148,9 +148,9 @@ Tile bokeh_tile(double focus_mm, const petzval::PointImage& image, const petzval
 
 std::vector<std::string> bokeh_notes() {
   return {
-      "Radius: largest distance of a hit from the centroid. Tiles of a row have the same scale of film and their own "
+      "Radius: largest distance of a ray from the centroid. Tiles of a row have the same film scale and their own "
       "exposure.",
-      "White: the 99th percentile of the lit pixels, as a share of the light in the entrance pupil, per mm² of film."};
+      "White: 99th percentile of the lit pixels, as a fraction of the light in the entrance pupil, per mm² of film."};
 }
 
 }  // namespace examples

@@ -41,7 +41,7 @@ std::vector<petzval::FocalPoint> points_of(const std::filesystem::path& file, co
     const auto pixel = entry.numbers<2>("pixel", "two finite numbers, [x, y]");
     const auto world = entry.numbers<3>("world_mm", "three finite numbers, [x, y, z]");
     if (pixel.has_value() == world.has_value()) {
-      throw petzval::Error(entry.where + ": has " + (pixel ? "both" : "neither") +
+      throw petzval::Error(entry.where + ": has " + (pixel ? "both of" : "neither of") +
                            " pixel and world_mm; must have one of them");
     }
     petzval::FocalPoint point;

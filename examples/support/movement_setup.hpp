@@ -34,8 +34,8 @@ struct MovingLens {
   bool exact = false;                 ///< the model is real: exact rays
   petzval::Film film;                 ///< the film size of the options
 
-  /// Exact rays of scene places to the film and to their images off the film. `rays` for each place, reduced for many
-  /// places to 2^22 in total. The lens must not be nullopt.
+  /// Exact rays for images of scene points on the film and around it. The number of rays per point is at most `rays`,
+  /// and less for many points (2^22 in total, but at least 64 per point). The lens must not be nullopt.
   petzval::ImageRays bundles(std::span<const petzval::ScenePoint> places, std::size_t rays) const;
 };
 MovingLens moving_lens(const MovementOptions& options);

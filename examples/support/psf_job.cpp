@@ -251,7 +251,7 @@ std::vector<petzval::ExrPart> PsfJob::gather(const std::vector<fs::path>& folder
     faults.push_back(fault + (names.size() > named ? " and others" : ""));
   }
   if (faults.empty()) return parts;
-  std::string all = "of " + std::to_string(axes_.size()) + " PSFs";
+  std::string all = "set of " + std::to_string(axes_.size()) + " PSFs";
   for (const std::string& fault : faults) all += "; " + fault;
   throw petzval::Error(all + "; all must be intact");
 }
