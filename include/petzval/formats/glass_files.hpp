@@ -10,30 +10,31 @@
 
 namespace petzval {
 
-/// The glasses of a file, and what was assumed or left out.
+/// The glasses of a file, with warnings about assumptions and omissions.
 struct GlassFile {
   std::vector<Glass> glasses;
   std::vector<ImportWarning> warnings;
 };
 
-/// Reads glasses from a file, whose content tells the format, whatever its name:
+/// Reads glasses from a file. The content of the file determines its format:
 ///
-/// - a Zemax catalogue (.agf), as UTF-16, UTF-8 or Latin-1, with or without words before the first glass. The catalogue
-///   is called as the file, in lower case without its ending. All thirteen dispersion formulas are read. Formula 4 is
-///   printed in two forms: the form that gives the printed n_d is taken. Temperature, transmittance and mechanical data
-///   are skipped with a warning.
-/// - a page of refractiveindex.info (YAML): formulas 1, 2, 3, 4, 5 and 7, tables of n, and tables of n and k between
-///   the wavelengths where k is at most 0.01. The glass is called as the file, its catalogue "rii".
+/// - a Zemax catalogue (.agf), in UTF-16, UTF-8 or Latin-1, with or without text before the first glass. The name of
+///   the catalogue is the file name in lower case, without its extension. All thirteen dispersion formulas are
+///   supported. Formula 4 exists in two forms; the form that gives the printed n_d is used. Data on temperature,
+///   transmittance and mechanics are skipped with a warning.
+/// - a page of refractiveindex.info (YAML): formulas 1, 2, 3, 4, 5 and 7, tables of n, and tables of n and k at
+///   wavelengths with k up to 0.01. The name of the glass is the file name, its catalogue "rii".
 /// - a table of this library (CSV, data/README.md).
 ///
-/// Each glass keeps the n_d and V_d that the file prints; a warning names it where its formula differs by more than
-/// 1e-4 in n_d or 0.2 in V_d. Glasses whose formula is unknown or gives no real index are left out with a warning.
+/// Each glass keeps the printed n_d and V_d. A warning names each glass with a formula that differs from these by more
+/// than 1e-4 in n_d or 0.2 in V_d. A glass is left out with a warning if its formula is unknown or gives no real index.
+/// At most 1,000 warnings are recorded.
 ///
 ///     const auto file = petzval::read_glasses("glasses/schott.agf");
 ///     const auto glasses = petzval::with_glasses(petzval::glass_tables(), file.glasses);
 ///
-/// Throws Error with file and line for a file that cannot be read, is of another kind or ends too early, for a number
-/// that is none or not finite, and where no glass is left. Warnings end after the first thousand.
+/// @throws Error with file and line if the file cannot be read, has another format or is incomplete; for a number that
+///               is invalid or not finite; if no glass is left
 PETZVAL_API GlassFile read_glasses(const std::filesystem::path& file);
 
 }  // namespace petzval

@@ -12,34 +12,38 @@ namespace petzval {
 class Lens;
 
 struct OslCameraOptions {
-  /// The largest film that the shader is for: its width and height, which are also the defaults of its parameters.
-  /// Absent: 36 x 24 mm, or the largest of 3:2 in the image circle in which the film has a tenth of the axis's light.
+  /// The largest film that the shader supports; its width and height are the defaults of the shader's parameters.
+  /// nullopt: 36 x 24 mm, or the largest 3:2 film inside the circle with at least a tenth of the axial irradiance.
   std::optional<Film> film{};
 };
 
-/// A camera for Blender's Cycles (4.5 and later) and for Octane, as the text of one Open Shading Language shader that
-/// needs no other file: the surfaces of the lens as arrays, a loop that traces a ray from the film through them, and
-/// numbers made beforehand.
+/// Formats a lens as an Open Shading Language camera for Blender Cycles (4.5 and later) and Octane.
 ///
 ///     write_file(format_osl_camera(compile(prescription)), "lens.osl");
 ///
-/// Parameters of the shader: sensor width and height (mm), focus distance (in units of the host, from the camera's
-/// origin along its axis), f-number (as with_f_number(), no faster than the lens given), blades, roundness and rotation
-/// of the iris (Iris), and the units of the host per mm (0.001: metres). The film moves to focus, or groups do where
-/// the lens has focus positions; the film is where solve_focus() puts it for this f-number, within 1e-4 of the
-/// focal length.
+/// The result is one shader that needs no other file: the surfaces of the lens as arrays, precomputed tables, and a
+/// loop that traces a ray from the film through the surfaces, at the primary wavelength.
 ///
-/// Camera space is that of Cycles: +x right, +y up, +z forward, the origin in the entrance pupil of the lens as focused
-/// at infinity (in its front vertex if that pupil is at infinity). Octane wants its own names for the film place and
-/// the random sample; the comment at the top of the shader says where they stand. Light is that of the primary
-/// wavelength.
+/// Parameters of the shader: sensor width and height (mm); focus distance (host units, from the origin of the camera
+/// along its axis); f-number (as with_f_number(), no faster than the lens); blades, roundness and rotation of the iris
+/// (Iris); host units per mm (0.001 for metres). The film moves to focus, or the groups move if the lens has focus
+/// positions.
 ///
-/// Rays start at a uniform place in a box about what the film place sees of the rear of the lens, for its distance from
-/// the axis and the f-number. Throughput is 0 where a rim clips; its mean over the random sample is the irradiance of
-/// the film for a scene of radiance 1 over that of the middle of the film, as Normalisation::unity_on_axis: within 2 %
-/// of film_irradiance(), and rays within 1e-4 of those of trace() in float (tests/formats).
+/// Camera space is the space of Cycles: +x right, +y up, +z forward. Its origin is the entrance pupil of the lens
+/// focused at infinity, or the front vertex if this pupil is at infinity. Octane has other names for the film point and
+/// the random sample; the comment at the top of the shader names the variables to replace.
 ///
-/// Throws Error for mirrors, cylinders and a lens that nothing limits, and where with_focus() does at infinity.
+/// Rays start uniformly in a box around the exit pupil as seen from the film point. The throughput is 0 if a rim clips
+/// the ray; its mean over the random sample is the irradiance relative to the centre of the film, as with
+/// Normalisation::unity_on_axis.
+///
+/// @param lens     the lens
+/// @param options  the largest film
+/// @throws Error   for mirrors and cylinders; if the lens has no marked stop with a rim; if the film has no area; if
+///                 with_focus() at infinity throws
+///
+/// Accuracy: film position within 1e-4 focal lengths of solve_focus() for the f-number; mean throughput within 2 % of
+/// film_irradiance(); rays within 1e-4 of trace() in float (tests/formats).
 PETZVAL_API std::string format_osl_camera(const Lens& lens, const OslCameraOptions& options = {});
 
 }  // namespace petzval

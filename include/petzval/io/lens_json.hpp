@@ -11,40 +11,57 @@
 
 namespace petzval {
 
-/// Reads a lens from a JSON file (format "petzval-lens 1"; data/README.md has its keys). Surfaces without a clear
-/// aperture get the aperture of with_apertures(). read_lens() of petzval::formats reads a file of this or any other
-/// format. Throws Error as parse_prescription does, and for a file that cannot be read.
+/// Reads a lens from a JSON file of the format "petzval-lens 1" (keys: data/README.md).
+///
+/// Surfaces without a clear aperture get the aperture of with_apertures(). read_lens() of petzval::formats reads this
+/// and other formats.
+///
+/// @throws Error if the file cannot be read, or if parse_prescription() throws
 PETZVAL_API Prescription read_prescription(const std::filesystem::path& file);
 
-/// Reads a lens from JSON in memory, without additions. `where` is the name of the source in messages. Throws
-/// Error that names it, line and column, the surface (from 0), the key, its value and the rule. It refuses unknown and
-/// duplicate keys, comments, NaN, numbers out of range of double, brackets nested deeper than the format has them,
-/// lists of more than 10,000 entries, and all that `validate` refuses. Time is proportional to the size of the file,
-/// memory at most 4 times its size (8 times for a file that is one number of megabytes).
+/// Reads a lens from JSON in memory. Missing clear apertures stay absent.
+///
+/// Time is proportional to the size of the text; memory is at most 4 times its size (8 times if the text is a single
+/// number of megabytes).
+///
+/// @param json   the text
+/// @param where  name of the source, for messages
+/// @throws Error with source, line, column, surface (from 0), key, value and rule: for unknown and duplicate keys,
+///               comments, NaN, numbers outside the range of double, brackets nested too deeply, lists of more than
+///               10,000 entries, and lenses that validate() refuses
 PETZVAL_API Prescription parse_prescription(std::string_view json, const std::string& where);
 
-/// The lens as JSON: one surface a line, numbers as the shortest decimals that read back exactly. Reading and writing
-/// such a text again gives the same bytes.
+/// Formats a lens as JSON, with one surface per line.
+///
+/// Numbers are the shortest decimals that read back exactly. Reading and formatting the text again gives the same
+/// bytes.
 PETZVAL_API std::string format_prescription(const Prescription& prescription);
 
-/// Writes that text as write_file does. Throws Error that names the file.
+/// Writes the result of format_prescription() to a file.
+///
+/// @throws Error if write_file() throws
 PETZVAL_API void write_prescription(const Prescription& prescription, const std::filesystem::path& file);
 
-/// Reads ray polynomials from a JSON file (format "petzval-ray-polynomial 1"). Throws Error that names the file, line
-/// and column, the fit (from 0), the key, its value and the rule. Every key must occur once, pupil_shift_x and
-/// pupil_radius_x_mm with mirror symmetry only, and no other. It refuses numbers out of range of double, lists longer
-/// than a polynomial of degree 11 has, more than 10,000 fits, and all that the constructor of RayPolynomial
-/// refuses.
+/// Reads ray polynomials from a JSON file of the format "petzval-ray-polynomial 1".
+///
+/// @throws Error with file, line, column, fit (from 0), key, value and rule: for missing, unknown and duplicate keys
+///               (pupil_shift_x and pupil_radius_x_mm occur with mirror symmetry only), numbers outside the range of
+///               double, lists longer than a polynomial of degree 11, more than 10,000 fits, and polynomials that the
+///               constructor of RayPolynomial refuses
 PETZVAL_API RayPolynomial read_ray_polynomial(const std::filesystem::path& file);
 
-/// The same from memory. `where` is the name of the source in messages.
+/// Reads ray polynomials from memory, like read_ray_polynomial(). `where` is the name of the source in messages.
 PETZVAL_API RayPolynomial parse_ray_polynomial(std::string_view json, const std::string& where);
 
-/// The polynomial as JSON. Numbers are the shortest decimals that read back exactly: a polynomial that was written and
-/// read gives rays with the same bits, and the same text again.
+/// Formats a ray polynomial as JSON.
+///
+/// Numbers are the shortest decimals that read back exactly: after writing and reading, a polynomial gives rays with
+/// the same bits, and the same text.
 PETZVAL_API std::string format_ray_polynomial(const RayPolynomial& polynomial);
 
-/// Writes that text as write_file does. Throws Error that names the file.
+/// Writes the result of format_ray_polynomial() to a file.
+///
+/// @throws Error if write_file() throws
 PETZVAL_API void write_ray_polynomial(const RayPolynomial& polynomial, const std::filesystem::path& file);
 
 }  // namespace petzval

@@ -11,19 +11,24 @@
 
 namespace petzval {
 
-/// Writes a whole file or none: first to a new file in the same folder, flushed to the disk, which then replaces FILE
-/// and keeps its mode. A failure keeps the old file and leaves no partial one; of several writers at once one wins. A
-/// process that is killed may leave its new file, .petzval-PID-N. Links are followed. Pipes and devices are written to
-/// directly. Throws Error that names the file and the system's reason; also for a folder, and for a name with a zero in
-/// it.
+/// Writes a file atomically: readers see the old file or the complete new file.
+///
+/// The bytes go to a new file in the same folder, which is flushed to the disk and then replaces `file`; the mode is
+/// kept. After a failure the old file is unchanged. If several processes write at once, the last wins. A process
+/// that is killed may leave its new file, .petzval-PID-N. Links are followed; pipes and devices are written directly.
+///
+/// @throws Error with file and system's reason if the file cannot be written; if it is a folder; if its name contains a
+///               zero byte
 PETZVAL_API void write_file(std::string_view bytes, const std::filesystem::path& file);
 
-/// Writes numbers as they are, little-endian floats of 32 bits, as write_file() does: Camera::tables().
+/// Writes numbers as little-endian 32-bit floats with write_file(), for example Camera::tables().
 PETZVAL_API void write_floats(std::span<const float> numbers, const std::filesystem::path& file);
-/// Reads them, bit for bit. Throws Error that names the file, also where its bytes are no whole number of floats.
+/// Reads the numbers of write_floats(), with the same bits.
+///
+/// @throws Error if the file cannot be read, or if its size is not a multiple of 4 bytes
 PETZVAL_API std::vector<float> read_floats(const std::filesystem::path& file);
 
-/// FNV-1a of 64 bits (Fowler, Noll and Vo) as 16 hexadecimal digits: tells whether bytes have changed, not who did it.
+/// The 64-bit FNV-1a hash (Fowler, Noll and Vo) as 16 hexadecimal digits. Detects changes, but is not cryptographic.
 PETZVAL_API std::string checksum(std::string_view bytes);
 
 }  // namespace petzval
