@@ -78,7 +78,7 @@ void add_folds(Mesh& mesh) {
       const auto& [y, half_x, half_z] = robe[6 - i];  // from the girdle down
       const float away = 1 / std::hypot(std::cos(angle) / half_x, std::sin(angle) / half_z);
       const float radius = strength * (2.5f + 3.2f * static_cast<float>(i - 1));
-      // Seen downwards, left is +x.
+      // Going downwards, left is +x.
       stations[i] = {{away + 0.8f * radius, y}, {away - 1.2f * radius, y}, radius};
     }
     // The upper end is hidden in the body.

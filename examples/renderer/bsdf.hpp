@@ -16,12 +16,12 @@ enum class Carries : std::uint8_t { radiance, power };
 /// Scattering of light by a surface between two directions that point away from it (world frame, unit length).
 ///
 /// Surfaces scatter on both sides; the inside of glass is opposite to its normal. Below a varnish the light is
-/// scattered by Lambert's law, also inside the coat. Sources: Walter et al., Microfacet models for refraction through
-/// rough surfaces, 2007 (GGX); Heitz, Sampling the GGX distribution of visible normals, 2018; Schlick's Fresnel term
-/// for metals.
+/// scattered by Lambert's law, also inside the coat.
+/// Sources: Walter et al., Microfacet models for refraction through rough surfaces, 2007 (GGX); Heitz, Sampling the GGX
+/// distribution of visible normals, 2018; Schlick's Fresnel term for metals.
 class Bsdf {
  public:
-  /// wo: direction towards the origin of the path.
+  /// wo: direction towards the previous vertex of the path.
   Bsdf(const SurfacePoint& point, const glm::vec3& wo, const PathColours& colours) noexcept;
 
   /// True for a mirror or smooth glass, which cannot be evaluated, only sampled.

@@ -11,8 +11,8 @@ namespace renderer {
 /// Names of the scenes, for messages.
 inline constexpr std::string_view built_in_scene_names = "balls, chess, statues, street";
 
-/// A built-in scene; nullopt for an unknown name. Scenes are made for lenses of 100 mm (statues: 50 mm), a film of 36 x
-/// 24 mm and exposures that map radiance 1 to 1.
+/// A built-in scene; nullopt for an unknown name. Scenes are made for lenses of 100 mm (statues: 50 mm), a film of
+/// 36 x 24 mm and exposures that map radiance 1 to 1.
 std::optional<SceneDescription> built_in_scene(std::string_view name);
 
 /// A row of glossy balls across the picture, each with one small highlight about 1000 mm from the front of the lens

@@ -63,7 +63,7 @@ class Scene {
   glm::vec3 sky_entry(const glm::vec3& travel, float u, float v) const noexcept;
   double sky_entry_area() const noexcept;
 
-  /// The opaque solid around a point: a sphere, or a mesh seen from behind. Null if there is an opening.
+  /// The opaque solid that encloses a point: a sphere, or a mesh seen from behind. Null if no single solid does.
   const Object* around(const glm::vec3& point) const noexcept;
 
  private:

@@ -27,8 +27,7 @@ petzval::Film with_pixels(petzval::Film film, int longer_side = 1080);
 BlurMap blur_map(const petzval::Film& film, const PointScene& scene, const petzval::IdealLens& lens,
                  const petzval::ImageRays* exact, int threads);
 
-/// Upper end of a colour scale: the smallest 1, 2 or 5 times a power of ten that at least 99 % of the pixels stay
-/// below.
+/// Upper end of a colour scale: the smallest 1, 2 or 5 times a power of ten that 99 % of the pixels do not exceed.
 double scale_of(std::span<const BlurMap> maps);
 
 /// A focus point in the picture.

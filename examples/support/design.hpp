@@ -18,8 +18,8 @@ struct ReportLight {
   bool of_file = false;  ///< true: from the file; false: from the command line, or F, d and C
 };
 
-/// The wavelengths of the file if it states wavelengths at which all its media have an index (a note tells otherwise);
-/// by default F, d and C, or only the reference wavelength if a medium has no dispersion.
+/// The wavelengths of the file; by default F, d and C, or only the reference wavelength if a medium has no dispersion.
+/// The defaults also replace wavelengths of the file at which a medium has no index, with a note.
 ReportLight light_of(const LensFile& file);
 
 /// Fields of a report in degrees towards +y, seen from the paraxial entrance pupil.

@@ -33,7 +33,8 @@ struct TextbookPupil {
 ///   - the ray belongs to the first rim that clips, which need not be the stop: f/2.018 instead of f/2.004;
 ///   - the pupil is a disc on the axis. From 10 degrees on, rims and pupil aberrations clip and shift the real pupil:
 ///     in the corner of the film a fifth of the disc passes;
-///   - stopped down, without clipping rims, the disc still misses a fifth of the passing rays in that corner;
+///   - stopped down, without clipping rims, the disc is misplaced: it misses a fifth of the passing rays in that
+///   corner;
 ///   - a lens with a central obscuration has no such pupil.
 ///
 /// Wu et al. 2010, section 5.1.2, steps 1 to 8, with three repairs: the result is the last ray that passed, not the
