@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "../data_lenses.hpp"
-#include "../message.hpp"
+#include "../expect_error.hpp"
 #include "camera_samples.hpp"
 #include "core/low_discrepancy.hpp"
 #include "iris/iris_shape.hpp"
@@ -23,7 +23,7 @@ namespace petzval {
 namespace bokeh_controls_test {
 
 using testing::data_lens;
-using testing::message;
+using testing::expect_error;
 using testing::Samples;
 
 const Film film{.width_mm = 36, .height_mm = 24};
@@ -329,19 +329,18 @@ TEST(BokehControls, ActOnThePupilOfAStopWithoutARim) {
 
 TEST(BokehControls, RefuseBadInput) {
   const Lens lens = data_lens("double_gauss_100mm_f2.0");
-  const auto refused = [&](const BokehControls& controls) {
-    return message([&] { Camera(lens, film, {.model = ModelKind::thin, .bokeh = controls}); });
+  const auto with = [&](const BokehControls& controls) {
+    return [&lens, controls] { Camera(lens, film, {.model = ModelKind::thin, .bokeh = controls}); };
   };
-  EXPECT_NE(refused({.lens_elements = 2}), "");
-  EXPECT_NE(refused({.lens_elements = 21}), "");
-  EXPECT_NE(refused({.weight_distribution = std::nan("")}), "");
-  EXPECT_NE(refused({.weight_distribution = 1e4}), "");
-  EXPECT_NE(refused({.weight_distribution = 2, .weight_strength = 1e300}), "");
-  EXPECT_NE(refused({.lens_ratio = -1}).find(lens.name()), std::string::npos);
-  EXPECT_EQ(refused({.weight_map = {1, 1, {0}}}),
-            lens.name() + ": camera: the map is black on the iris; must be above 0 somewhere");
+  expect_error(with({.lens_elements = 2}), {lens.name(), 2});
+  expect_error(with({.lens_elements = 21}), {lens.name(), 21});
+  expect_error(with({.weight_distribution = std::nan("")}), {lens.name(), "nan"});
+  expect_error(with({.weight_distribution = 1e4}), {lens.name(), 1e4});
+  expect_error(with({.weight_distribution = 2, .weight_strength = 1e300}), {lens.name(), 1e300});
+  expect_error(with({.lens_ratio = -1}), {lens.name(), -1});
+  expect_error(with({.weight_map = {1, 1, {0}}}), {lens.name(), "map", "iris"});
   const Camera weighted(lens, film, {.model = ModelKind::thin, .bokeh = ring});
-  EXPECT_NE(message([&] { weighted.tables(); }), "");
+  expect_error([&] { weighted.tables(); }, {lens.name(), "weights"});
 }
 
 }  // namespace bokeh_controls_test

@@ -16,14 +16,13 @@
 #include <vector>
 
 #include "../data_lenses.hpp"
+#include "../expect_error.hpp"
 #include "../message.hpp"
 #include "camera_parts.hpp"
 #include "camera_samples.hpp"
 #include "core/low_discrepancy.hpp"
-#include "core/text.hpp"
 #include "petzval/camera/camera_tables.hpp"
 #include "petzval/camera/ray_model.hpp"
-#include "petzval/core/error.hpp"
 #include "petzval/focus/focus.hpp"
 #include "petzval/glass/glass.hpp"
 #include "petzval/paraxial/first_order.hpp"
@@ -32,6 +31,7 @@
 namespace petzval {
 namespace camera_test {
 
+using testing::expect_error;
 using testing::random_samples;
 using testing::Samples;
 using testing::tilted_by;
@@ -470,8 +470,7 @@ TEST(CameraTables, AreRefusedWhereListsEndBeyondThem) {
     for (const auto list : {CameraTables::pupil_list, CameraTables::rays}) {
       std::vector<float> late = tables;
       late[list] = static_cast<float>(tables.size() - 1);
-      const std::string said = petzval::testing::message([&] { CameraTables::check(late, "tables"); });
-      EXPECT_NE(said.find("that begins at " + std::to_string(tables.size() - 1)), std::string::npos) << id << said;
+      expect_error([&] { CameraTables::check(late, "tables"); }, {"tables", tables.size() - 1});
     }
   }
 }
@@ -486,73 +485,68 @@ TEST(ModelKind, HasItsName) {
 
 TEST(Camera, RefusesModelsThatAreNone) {
   const Lens lens = focused("double_gauss_100mm_f2.0");
-  EXPECT_EQ(testing::message([&] { Camera(lens, {}, {.model = ModelKind::custom}); }),
-            lens.name() + ": camera: model is custom, wanted one of models(), or an AnyRayModel");
+  expect_error([&] { Camera(lens, {}, {.model = ModelKind::custom}); }, {lens.name(), "camera", "model", "custom"});
   for (const int degree : {-1, 0, 4, 13}) {
-    const std::string said = testing::message([&] { Camera(lens, {}, {.model = ModelKind::polynomial(degree)}); });
-    EXPECT_NE(said.find("degree = " + std::to_string(degree)), std::string::npos) << said;
+    expect_error([&] { Camera(lens, {}, {.model = ModelKind::polynomial(degree)}); }, {"degree", degree});
   }
 }
 
 TEST(Camera, RefusesANormalisationThatIsNone) {
   const Lens lens = focused("double_gauss_100mm_f2.0");
   const CameraOptions options{.model = ModelKind::thin, .normalisation = static_cast<Normalisation>(9)};
-  EXPECT_EQ(testing::message([&] { Camera(lens, {}, options); }),
-            lens.name() +
-                ": camera: found the normalisation 9, wanted irradiance, unity_on_axis or "
-                "unity_at_each_wavelength");
+  expect_error([&] { Camera(lens, {}, options); }, {lens.name(), "normalisation", 9, "unity_on_axis"});
 }
 
 TEST(Camera, RefusesFilmsThatAreNone) {
   const Lens lens = testing::data_lens("tessar_100mm_f2.8");
   const double nan = std::numeric_limits<double>::quiet_NaN();
-  for (const Film& film : {Film{.width_mm = 0}, Film{.height_mm = -24}, Film{.width_mm = nan}, Film{.columns = 0},
-                           Film{.rows = -1}, Film{.shift_x_mm = nan}, Film{.tilt_rad = nan}, Film{.swing_rad = -1.6}}) {
-    EXPECT_THROW(Camera(lens, film), Error);
-  }
+  const auto with = [&](const Film& film) { return [&lens, film] { Camera(lens, film); }; };
+  expect_error(with({.width_mm = 0}), {"film", "width_mm", 0});
+  expect_error(with({.height_mm = -24}), {"film", "height_mm", -24});
+  expect_error(with({.width_mm = nan}), {"film", "width_mm", "nan"});
+  expect_error(with({.columns = 0}), {"film", "columns", 0});
+  expect_error(with({.rows = -1}), {"film", "rows", -1});
+  expect_error(with({.shift_x_mm = nan}), {"film", "shift_x_mm", "nan"});
+  expect_error(with({.tilt_rad = nan}), {"film", "tilt_rad", "nan"});
+  expect_error(with({.swing_rad = -1.6}), {"film", "swing_rad", -1.6});
   // Inside the glass or in front of it, upright or tilted, by the film or by the prescription.
   const double last_z = lens.surfaces().back().vertex_z;
-  const std::string place = "must be behind the lens, above " + to_text(last_z) + " mm, the z of the last vertex";
   for (const double z : {last_z, last_z - 5, -20.0}) {
-    for (const Film& film : {Film{.z_mm = z}, Film{.z_mm = z, .tilt_rad = 0.1}}) {
-      EXPECT_NE(testing::message([&] { Camera(lens, film); }).find(place), std::string::npos) << z;
-    }
+    expect_error(with({.z_mm = z}), {lens.name(), "film", z, last_z});
+    expect_error(with({.z_mm = z, .tilt_rad = 0.1}), {lens.name(), "film", z, last_z});
     Prescription prescription = testing::data_prescription("tessar_100mm_f2.8");
     prescription.surfaces.back().thickness = z - last_z;
-    EXPECT_NE(testing::message([&] { Camera(compile(prescription), {}); }).find(place), std::string::npos) << z;
+    expect_error([&] { Camera(compile(prescription), {}); }, {lens.name(), "film", last_z});
   }
   // In the hollow of the last surface, behind its vertex: a film that fits in, and one that does not.
   const Lens hollow = testing::data_lens("petzval_100mm_f1.25");
   const double hollow_z = hollow.surfaces().back().vertex_z + 0.5;
   const Film small{.width_mm = 2, .height_mm = 2, .z_mm = hollow_z}, large{.width_mm = 46.9, .z_mm = hollow_z};
   EXPECT_NO_THROW(Camera(hollow, small, {.model = ModelKind::thin}));
-  const std::string refusal = testing::message([&] { Camera(hollow, large, {.model = ModelKind::thin}); });
-  EXPECT_NE(refusal.find("where the last surface is"), std::string::npos) << refusal;
+  expect_error([&] { Camera(hollow, large, {.model = ModelKind::thin}); }, {hollow.name(), "film", "last surface"});
   // In front of a mirror is behind it.
   const Lens mirror = testing::data_lens("mirror_newton_200mm_f8");
   EXPECT_NO_THROW(Camera(mirror, {.width_mm = 2, .height_mm = 2, .z_mm = -190}));
-  EXPECT_THROW(Camera(mirror, {.width_mm = 2, .height_mm = 2, .z_mm = 190}), Error);
-  EXPECT_THROW(Camera(testing::data_lens("anamorphic_60mm_2x"), {}, {.model = ModelKind::pinhole}), Error);
+  expect_error([&] { Camera(mirror, {.width_mm = 2, .height_mm = 2, .z_mm = 190}); }, {mirror.name(), "film", 190});
+  const Lens anamorphic = testing::data_lens("anamorphic_60mm_2x");
+  expect_error([&] { Camera(anamorphic, {}, {.model = ModelKind::pinhole}); }, {anamorphic.name(), "pinhole"});
 }
 
 TEST(Camera, RefusesModelsOfAnotherLensOrFilm) {
-  const auto refusal = [](const Lens& lens, const AnyRayModel& model) {
-    return testing::message([&] { Camera(lens, {}, model); });
+  const auto camera = [](const Lens& lens, const Lens& modelled, double radius) {
+    return [&lens, model = camera_detail::make_model(ModelKind::thick, modelled, radius)] { Camera(lens, {}, model); };
   };
-  const auto has = [](const std::string& text, const char* part) { return text.find(part) != std::string::npos; };
-  const Lens lens = focused("tessar_100mm_f2.8");
-  EXPECT_EQ(refusal(lens, camera_detail::make_model(ModelKind::thick, lens, Film{}.radius_mm())), "no error");
-  EXPECT_TRUE(has(refusal(lens, camera_detail::make_model(ModelKind::thick, lens, 5)), "up to 5 mm"));
-  EXPECT_TRUE(
-      has(refusal(lens, camera_detail::make_model(ModelKind::thick, testing::data_lens("tessar_100mm_f2.8"), 22)),
-          "film at z"));
+  const Lens lens = focused("tessar_100mm_f2.8"), elsewhere = testing::data_lens("tessar_100mm_f2.8");
+  EXPECT_NO_THROW(camera(lens, lens, Film{}.radius_mm())());
+  expect_error(camera(lens, lens, 5), {lens.name(), "model", 5, "mm"});
+  expect_error(camera(lens, elsewhere, 22), {lens.name(), "model", "z", elsewhere.film_z(), lens.film_z()});
   Prescription singlet;
   singlet.surfaces = {
       {.radius = 50, .thickness = 5, .medium = {.nd = 1.5, .vd = 60}, .semi_diameter = 12, .stop = true},
       {.radius = -50, .thickness = 48, .semi_diameter = 12}};
   const Lens two = compile(singlet, std::array{486.0, 587.5618}, {.missing_glass = MissingGlass::abbe});
-  EXPECT_TRUE(
-      has(refusal(compile(singlet), camera_detail::make_model(ModelKind::thick, two, 22)), "for 2 wavelengths"));
+  const Lens one = compile(singlet);
+  expect_error(camera(one, two, 22), {"model", "wavelengths", 2, 1});
 }
 
 TEST(Camera, OfAStopWithoutARimHasTheLightThatRimsLetThrough) {

@@ -11,7 +11,6 @@
 #include <vector>
 
 #include "../data_lenses.hpp"
-#include "../message.hpp"
 #include "camera_samples.hpp"
 #include "core/low_discrepancy.hpp"
 #include "petzval/camera/camera.hpp"

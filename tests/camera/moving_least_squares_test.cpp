@@ -8,7 +8,7 @@
 #include <random>
 #include <vector>
 
-#include "../message.hpp"
+#include "../expect_error.hpp"
 
 namespace moving_least_squares_test {
 
@@ -94,18 +94,13 @@ TEST(MovingLeastSquares, HasTheSlopeAlongALineOfPointsAlone) {
 }
 
 TEST(MovingLeastSquares, SaysWhichPointItDoesNotTake) {
-  using petzval::testing::message;
-  const double nan = std::nan("");
+  using petzval::testing::expect_error;
   const WeighedValue good{{1, 1}, 2};
-  EXPECT_EQ(message([&] { through({good, {{1, 1}, nan}}); }), "test: point 2: the value is nan, wanted a finite one");
-  EXPECT_EQ(message([&] {
-              through({good, {{1, 2e6}, 0}});
-            }),
-            "test: point 2: the place is (1, 2e+06) mm, wanted one within 1e+06 mm");
-  EXPECT_EQ(message([&] { through({}); }), "test: none of 0 points has a weight, wanted one at least");
-  EXPECT_EQ(message([&] { through({good}, SurfaceKind::affine, 8.1); }), "test: beta is 8.1, wanted one from 1 to 8");
-  EXPECT_EQ(message([&] { through({good}, SurfaceKind::affine, 3, 0); }),
-            "test: the side of the picture is 0 mm, wanted one above 0");
+  expect_error([&] { through({good, {{1, 1}, std::nan("")}}); }, {"test", "point 2", "value", "nan"});
+  expect_error([&] { through({good, {{1, 2e6}, 0}}); }, {"test", "point 2", "place", 1, 2e6, 1e6});
+  expect_error([&] { through({}); }, {"test", "points", 0, "weight"});
+  expect_error([&] { through({good}, SurfaceKind::affine, 8.1); }, {"test", "beta", 8.1, 1, 8});
+  expect_error([&] { through({good}, SurfaceKind::affine, 3, 0); }, {"test", "side", 0});
 }
 
 TEST(MovingLeastSquares, IsExactAtItsPoints) {

@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "../data_lenses.hpp"
+#include "../expect_error.hpp"
 #include "camera_samples.hpp"
-#include "petzval/core/error.hpp"
 
 namespace petzval {
 namespace threads_test {
@@ -81,7 +81,7 @@ TEST(Camera, SetUpDoesNotDependOnThreads) {
       for (const int threads : {2, 8}) {
         EXPECT_EQ(answers({lens, film, {.model = model, .threads = threads}}), alone) << id << ' ' << name(model);
       }
-      EXPECT_THROW(Camera(lens, film, {.model = model, .threads = 0}), Error);
+      testing::expect_error([&, &film = film] { Camera(lens, film, {.model = model, .threads = 0}); }, {"threads", 0});
     }
   }
 }

@@ -8,7 +8,7 @@
 #include <utility>
 
 #include "../data_lenses.hpp"
-#include "../message.hpp"
+#include "../expect_error.hpp"
 #include "core/low_discrepancy.hpp"
 #include "petzval/camera/camera.hpp"
 
@@ -16,7 +16,7 @@ namespace petzval {
 namespace two_discs_test {
 
 using testing::data_lens;
-using testing::message;
+using testing::expect_error;
 
 // Less where more is known: a Tessar on twice the film has 5 %, a fisheye of 180 degrees 7 %.
 TEST(TwoDiscs, FitThePupilsOfRealLenses) {
@@ -82,9 +82,10 @@ TEST(TwoDiscs, AreLargerThanThePupilOfAFarPointAsTheHeaderStates) {
 TEST(TwoDiscs, RefuseWhatHasNone) {
   const Lens lens = data_lens("tessar_100mm_f2.8");
   for (const double radius : {0.0, -1.0, std::nan(""), std::numeric_limits<double>::infinity()}) {
-    EXPECT_NE(message([&] { fit_two_discs(lens, radius); }), "");
+    expect_error([&] { fit_two_discs(lens, radius); }, {lens.name(), "film_radius", radius});
   }
-  EXPECT_NE(message([] { fit_two_discs(data_lens("anamorphic_60mm_2x"), 10); }), "");
+  const Lens anamorphic = data_lens("anamorphic_60mm_2x");
+  expect_error([&] { fit_two_discs(anamorphic, 10); }, {anamorphic.name(), "fit_two_discs"});
 }
 
 }  // namespace two_discs_test

@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "../data_lenses.hpp"
-#include "../message.hpp"
+#include "../expect_error.hpp"
 #include "petzval/core/units.hpp"
 #include "petzval/paraxial/first_order.hpp"
 #include "petzval/pupil/aim.hpp"
@@ -25,7 +25,7 @@ namespace extremes_test {
 
 using testing::data_lens;
 using testing::data_prescriptions;
-using testing::message;
+using testing::expect_error;
 constexpr double infinity = std::numeric_limits<double>::infinity(), nan = std::numeric_limits<double>::quiet_NaN();
 
 double edge_deg(const Prescription& p) { return p.half_field_deg.value_or(1); }
@@ -232,28 +232,24 @@ TEST(Extremes, PointsThatAreNoneAreRefused) {
                                     {0.1, -1, infinity},
                                     {radians(100), -50}};
   for (const FieldPoint& point : bad) {
-    const std::string start = lens.name() + ": scene point: ";
-    for (const std::string& said :
-         {message([&] { chief_ray(lens, point); }), message([&] { pupil_boundary(lens, point); }), message([&] {
-            aim(lens, point, {0, 1});
-          }),
-          message([&] { relative_illumination(lens, point); })}) {
-      EXPECT_EQ(said.substr(0, start.size()), start) << point.field_rad << " " << point.z << ": " << said;
-    }
+    SCOPED_TRACE(std::to_string(point.field_rad) + " " + std::to_string(point.z));
+    expect_error([&] { chief_ray(lens, point); }, {lens.name(), "scene point"});
+    expect_error([&] { pupil_boundary(lens, point); }, {lens.name(), "scene point"});
+    expect_error([&] { aim(lens, point, {0, 1}); }, {lens.name(), "scene point"});
+    expect_error([&] { relative_illumination(lens, point); }, {lens.name(), "scene point"});
   }
   for (const FilmPoint& point : {FilmPoint{nan, 0}, FilmPoint{0, -infinity}}) {
-    EXPECT_NE(message([&] { exit_pupil_boundary(lens, point); }).find(": film point: "), std::string::npos);
-    EXPECT_NE(message([&] { film_irradiance(lens, point); }).find(": film point: "), std::string::npos);
+    expect_error([&] { exit_pupil_boundary(lens, point); }, {lens.name(), "film point"});
+    expect_error([&] { film_irradiance(lens, point); }, {lens.name(), "film point"});
   }
 }
 
 TEST(Extremes, WavelengthsOutsideTheSetAreRefused) {
   const Lens lens = data_lens("double_gauss_100mm_f1.35");
-  const std::string wanted = lens.name() + ": wavelength 1 does not exist; must be below 1";
-  EXPECT_EQ(message([&] { chief_ray(lens, {0, -infinity}, 1); }), wanted);
-  EXPECT_EQ(message([&] { pupil_boundary(lens, {0, -infinity}, 1); }), wanted);
-  EXPECT_EQ(message([&] { exit_pupil_boundary(lens, {0, 0}, 1); }), wanted);
-  EXPECT_EQ(message([&] { relative_illumination(lens, {0, -infinity}, 1); }), wanted);
+  expect_error([&] { chief_ray(lens, {0, -infinity}, 1); }, {lens.name(), "wavelength", 1});
+  expect_error([&] { pupil_boundary(lens, {0, -infinity}, 1); }, {lens.name(), "wavelength", 1});
+  expect_error([&] { exit_pupil_boundary(lens, {0, 0}, 1); }, {lens.name(), "wavelength", 1});
+  expect_error([&] { relative_illumination(lens, {0, -infinity}, 1); }, {lens.name(), "wavelength", 1});
 }
 
 TEST(Extremes, TargetsThatAreNoPlacesGetNoRay) {
@@ -274,9 +270,8 @@ TEST(Extremes, ATelecentricLensIsRefusedFromTheSceneOnly) {
   p.surfaces[1].thickness = first_order(compile(p)).back_focal_distance;
   p.surfaces.push_back({.thickness = 40, .semi_diameter = 3, .stop = true});
   const Lens lens = compile(p);
-  const std::string said = message([&] { chief_ray(lens, {0, -infinity}); });
-  EXPECT_NE(said.find("the entrance pupil is at infinity"), std::string::npos) << said;
-  EXPECT_EQ(message([&] { pupil_boundary(lens, {0.1, -100}); }), said);
+  expect_error([&] { chief_ray(lens, {0, -infinity}); }, {"telecentric", "entrance pupil", "infinity"});
+  expect_error([&] { pupil_boundary(lens, {0.1, -100}); }, {"telecentric", "entrance pupil", "infinity"});
   // The film sees the stop as it sees any other: 3 mm, 40 mm away.
   EXPECT_NEAR(film_irradiance(lens, {0, 0}), std::numbers::pi * 9 / (9 + 1600), 1e-6);
 }

@@ -8,8 +8,8 @@
 #include <string>
 
 #include "../data_lenses.hpp"
+#include "../expect_error.hpp"
 #include "../message.hpp"
-#include "petzval/core/error.hpp"
 #include "petzval/paraxial/first_order.hpp"
 #include "petzval/pupil/f_number.hpp"
 #include "petzval/trace/trace.hpp"
@@ -20,6 +20,7 @@ namespace f_number_test {
 
 using testing::data_lens;
 using testing::data_prescriptions;
+using testing::expect_error;
 using testing::message;
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
@@ -34,9 +35,9 @@ Prescription telescope() {
 
 TEST(WithFNumber, SaysWhereNoLightPasses) {
   const Lens lens = data_lens("double_gauss_100mm_f2.0");
-  EXPECT_NE(message([&] { with_f_number(lens, 1e300); }).find("mm is closed"), std::string::npos);
+  expect_error([&] { with_f_number(lens, 1e300); }, {lens.name(), "number", 1e300, "closed"});
   const Lens closed = with_semi_diameter(lens, *lens.stop(), 0);
-  EXPECT_NE(message([&] { with_f_number(closed, 8); }).find("no ray parallel to the axis passes"), std::string::npos);
+  expect_error([&] { with_f_number(closed, 8); }, {lens.name(), "number", "axis"});
 }
 
 TEST(RealFNumber, OfEveryLensInDataIsWithinTwoPercentOfTheDeclared) {
@@ -53,7 +54,7 @@ TEST(FastestFNumber, IsTheLeastThatWithFNumberGives) {
     if (std::isinf(real_f_number(lens))) continue;
     const double fastest = fastest_f_number(lens);
     EXPECT_EQ(fastest, real_f_number(lens));
-    EXPECT_THROW(with_f_number(lens, fastest / 1.006), Error);
+    expect_error([&] { with_f_number(lens, fastest / 1.006); }, {lens.name(), fastest / 1.006});
     EXPECT_NEAR(real_f_number(with_f_number(lens, fastest)), fastest, 1e-9 * fastest);
   }
   // A marked stop without a rim: the last ray that reaches the stop is the limit.
@@ -64,8 +65,8 @@ TEST(FastestFNumber, IsTheLeastThatWithFNumberGives) {
   const Lens lens = compile(open);
   const double fastest = fastest_f_number(lens);
   EXPECT_LT(fastest, real_f_number(compile(testing::data_prescription("double_gauss_100mm_f2.0"))));
-  EXPECT_THROW(with_f_number(lens, fastest / 1.001), Error);
-  EXPECT_THROW(fastest_f_number(compile(telescope())), Error);
+  expect_error([&] { with_f_number(lens, fastest / 1.001); }, {lens.name(), fastest / 1.001});
+  expect_error([] { fastest_f_number(compile(telescope())); }, {"telescope", "afocal"});
 }
 
 TEST(RealFNumber, BelongsToTheRayThatMeetsTheRimOfTheStop) {
@@ -101,11 +102,22 @@ TEST(RealFNumber, AsksTheRayToReachTheStopNotToLeaveIt) {
   EXPECT_NEAR(real_f_number(compile(p)), 1, 1e-14);
 }
 
-/// The f-number of the central obscuration, which is slower than all that the lens has; infinite without one.
+/// The number that the message about an f-number states after it: the limit, or an f-number that is possible.
+double stated_in(std::string message, const Lens& lens, double f_number) {
+  message.erase(0, lens.name().size());
+  const std::string given = testing::Token(f_number).text();
+  const auto at = message.find_first_of("0123456789", message.find(given) + given.size());
+  if (at >= message.size()) {
+    ADD_FAILURE() << "no limit in: " << message;
+    return infinity;
+  }
+  return std::stod(message.substr(at));
+}
+
+/// The f-number at which the central obscuration hides the stop; infinite without an obscuration.
 double slowest(const Lens& lens) {
-  const std::string text = "must be less than ", found = message([&] { with_f_number(lens, 1e6); });
-  const auto at = found.find(text);
-  return at == std::string::npos ? infinity : std::stod(found.substr(at + text.size()));
+  const std::string said = message([&] { with_f_number(lens, 1e6); });
+  return testing::has_token(said, "obscuration") ? stated_in(said, lens, 1e6) : infinity;
 }
 
 TEST(WithFNumber, IsWhatRealFNumberFinds) {
@@ -117,7 +129,7 @@ TEST(WithFNumber, IsWhatRealFNumberFinds) {
     for (const double n : {fastest * (1 - 1e-10), fastest / 1.0049}) {
       EXPECT_EQ(with_f_number(lens, n).surfaces()[stop].semi_diameter, lens.surfaces()[stop].semi_diameter);
     }
-    EXPECT_THROW(with_f_number(lens, fastest / 1.0051), Error);
+    expect_error([&] { with_f_number(lens, fastest / 1.0051); }, {lens.name(), fastest / 1.0051});
     for (const double n : {fastest, fastest * 1.0001, fastest * 1.4, 5.6 * fastest, 64 * fastest, 1000 * fastest}) {
       if (n >= slowest(lens)) continue;
       EXPECT_NEAR(real_f_number(with_f_number(lens, n)), n, 1e-12 * n);
@@ -137,8 +149,7 @@ TEST(WithFNumber, TakesTheDeclaredOneWhereTheLensIsAsFastWithinHalfAPercent) {
       EXPECT_NEAR(real_f_number(with_f_number(lens, *p.f_number)), std::max(fastest, *p.f_number), 1e-12 * fastest);
       ++given;
     } else {
-      EXPECT_NE(message([&] { with_f_number(lens, *p.f_number); }).find("the fastest the lens can give"),
-                std::string::npos);
+      expect_error([&] { with_f_number(lens, *p.f_number); }, {lens.name(), *p.f_number, "fastest"});
       ++refused;
     }
   }
@@ -158,9 +169,8 @@ TEST(WithFNumber, IsRefusedWhereSphericalAberrationFoldsTheBeam) {
   const Lens ball = compile(p);
   for (const double n : {0.85, 3.0, 8.0}) EXPECT_NEAR(real_f_number(with_f_number(ball, n)), n, 1e-9);
   const std::string said = message([&] { with_f_number(ball, 1.5); });
-  EXPECT_NE(said.find("spherical aberration folds the beam"), std::string::npos) << said;
-  const std::string wanted = "such as ";
-  const double next = std::stod(said.substr(said.find(wanted) + wanted.size()));
+  testing::expect_tokens(said, {"ball", 1.5, "spherical aberration"});
+  const double next = stated_in(said, ball, 1.5);
   EXPECT_GT(next, 2);
   EXPECT_NEAR(real_f_number(with_f_number(ball, next)), next, 1e-6 * next);
 }
@@ -179,16 +189,13 @@ TEST(WithFNumber, GivesOrNamesEveryStandardFNumber) {
     for (const double n : {0.95, 1.0, 1.4, 2.0, 2.8, 4.0, 5.6, 8.0, 11.0, 16.0, 22.0, 32.0, 45.0, 64.0, 1000.0}) {
       SCOPED_TRACE(p.id + " f/" + std::to_string(n));
       if (n >= slowest(lens)) {
-        EXPECT_THROW(with_f_number(lens, n), Error);
+        expect_error([&] { with_f_number(lens, n); }, {lens.name(), n});
       } else if (n >= fastest) {
         EXPECT_NEAR(real_f_number(with_f_number(lens, n)), n, 1e-12 * n);
         ++given;
       } else if (n < fastest / 1.0051) {
         // The lens accepts the number in the message.
-        const std::string found = message([&] { with_f_number(lens, n); });
-        const auto least = found.find("at least ");
-        ASSERT_NE(least, std::string::npos) << found;
-        const double named = std::stod(found.substr(least + 9));
+        const double named = stated_in(message([&] { with_f_number(lens, n); }), lens, n);
         EXPECT_NEAR(named, fastest, 1e-9 * fastest);
         EXPECT_NO_THROW(with_f_number(lens, named));
         ++refused;
@@ -222,7 +229,7 @@ TEST(WithFNumber, EndsAtAnObscurationBeforeTheStop) {
   const double hidden = slowest(lens);
   const double marginal = focal_length(lens) / (2 * hidden * 0.99) * (1 - 1e-6);
   EXPECT_TRUE(trace(with_f_number(lens, hidden * 0.99), Ray<double>{{0, marginal, -50}, {0, 0, 1}}).transmitted());
-  EXPECT_THROW(with_f_number(lens, hidden * 1.01), Error);
+  expect_error([&] { with_f_number(lens, hidden * 1.01); }, {lens.name(), "obscuration"});
 }
 
 TEST(WithFNumber, OfAnAnnularStopEndsAtItsHole) {
@@ -230,13 +237,11 @@ TEST(WithFNumber, OfAnAnnularStopEndsAtItsHole) {
   EXPECT_NEAR(real_f_number(with_f_number(lens, 22)), 22, 22e-12);
   EXPECT_EQ(with_f_number(lens, 22).surfaces()[2].obscuration_semi_diameter,
             lens.surfaces()[2].obscuration_semi_diameter);
-  const std::string found = message([&] { with_f_number(lens, 100); });
-  const std::string start = lens.name() + ": f-number = 100; must be less than ";
-  ASSERT_EQ(found.substr(0, start.size()), start);
-  EXPECT_NE(found.find(": the central obscuration of surface 2 is that large"), std::string::npos) << found;
-  const double obscured = std::stod(found.substr(start.size()));
+  const std::string said = message([&] { with_f_number(lens, 100); });
+  testing::expect_tokens(said, {lens.name(), 100, "obscuration", "surface 2"});
+  const double obscured = stated_in(said, lens, 100);
   EXPECT_NO_THROW(with_f_number(lens, obscured * (1 - 1e-8)));
-  EXPECT_THROW(with_f_number(lens, obscured * (1 + 1e-8)), Error);
+  expect_error([&] { with_f_number(lens, obscured * (1 + 1e-8)); }, {lens.name(), "obscuration"});
 }
 
 TEST(WithFNumber, LeavesAnInferredStopTheStop) {
@@ -262,31 +267,26 @@ TEST(WithFNumber, WorksOnAnInferredStop) {
 
 TEST(WithFNumber, RefusesWhatIsNoFNumber) {
   const Lens lens = data_lens("double_gauss_100mm_f1.35");
-  const std::string name = lens.name();
-  EXPECT_EQ(message([&] { with_f_number(lens, 0); }), name + ": f-number = 0; must be finite and above 0");
-  EXPECT_EQ(message([&] { with_f_number(lens, -2); }), name + ": f-number = -2; must be finite and above 0");
-  EXPECT_EQ(message([&] { with_f_number(lens, std::nan("")); }), name + ": f-number = nan; must be finite and above 0");
-  EXPECT_EQ(message([&] { with_f_number(lens, infinity); }), name + ": f-number = inf; must be finite and above 0");
+  for (const double n : {0.0, -2.0, std::nan(""), infinity}) {
+    expect_error([&] { with_f_number(lens, n); }, {lens.name(), "number", n});
+  }
 }
 
 TEST(WithFNumber, NamesTheFastestWhereTheLensIsSlower) {
   const Lens lens = data_lens("double_gauss_100mm_f1.35");
-  const std::string found = message([&] { with_f_number(lens, 1.2); });
-  const std::string start = lens.name() + ": f-number = 1.2; must be at least 1.353";
-  EXPECT_EQ(found.substr(0, start.size()), start);
-  EXPECT_NE(found.find("(the fastest the lens can give)"), std::string::npos);
+  const std::string said = message([&] { with_f_number(lens, 1.2); });
+  testing::expect_tokens(said, {lens.name(), 1.2, "fastest"});
+  EXPECT_NEAR(stated_in(said, lens, 1.2), 1.3535, 5e-4);
   // No stop is wide enough for a ray that misses the glass.
   const Lens open = with_semi_diameter(lens, 5, infinity, RimLimit::none);
-  EXPECT_NE(message([&] { with_f_number(open, 0.1); }).find("at least 1.013132236 ("), std::string::npos)
-      << message([&] { with_f_number(open, 0.1); });
+  expect_error([&] { with_f_number(open, 0.1); }, {lens.name(), 0.1, 1.013132236});
 }
 
 TEST(WithFNumber, RefusesAnAfocalLens) {
   const Lens lens = compile(telescope());
   EXPECT_EQ(real_f_number(lens), infinity);
   EXPECT_EQ(paraxial_f_number(lens), infinity);
-  EXPECT_EQ(message([&] { with_f_number(lens, 4); }),
-            "telescope: the lens is afocal; must have a focal length to set an f-number");
+  expect_error([&] { with_f_number(lens, 4); }, {"telescope", "afocal"});
 }
 
 TEST(RealFNumber, OfTheWidestRimIsThatOfIts1e15Mm) {
@@ -294,7 +294,7 @@ TEST(RealFNumber, OfTheWidestRimIsThatOfIts1e15Mm) {
   p.surfaces[0].semi_diameter = 1e15;
   EXPECT_NEAR(real_f_number(compile(p)), 1e-13, 1e-14);
   p.surfaces[0].semi_diameter = 1e200;
-  EXPECT_NE(message([&] { real_f_number(compile(p)); }).find("the stop has no rim"), std::string::npos);
+  expect_error([&] { real_f_number(compile(p)); }, {p.name, "stop", "semi_diameter"});
 }
 
 TEST(WithFNumber, GivesAMarkedStopItsRim) {

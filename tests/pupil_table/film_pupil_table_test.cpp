@@ -9,8 +9,8 @@
 #include <random>
 
 #include "../data_lenses.hpp"
+#include "../expect_error.hpp"
 #include "../message.hpp"
-#include "petzval/core/error.hpp"
 #include "petzval/core/units.hpp"
 #include "petzval/paraxial/first_order.hpp"
 #include "petzval/pupil/f_number.hpp"
@@ -21,6 +21,8 @@ namespace film_pupil_table_test {
 
 using namespace petzval;
 using petzval::testing::data_lens;
+using petzval::testing::expect_error;
+using petzval::testing::expect_tokens;
 using petzval::testing::message;
 using petzval::testing::passing;
 
@@ -211,12 +213,12 @@ TEST(FilmPupilTable, CoversThePupilsOfATiltedFilm) {
     }
   }
   const FilmPupilTable table = FilmPupilTable::enclosing(data_lens("double_gauss_100mm_f2.0"), 20);
-  EXPECT_THROW((void)table.for_tilted_film({.radius = -1}), Error);
-  EXPECT_THROW((void)table.for_tilted_film({.radius = 5}, 0), Error);
-  const PupilImage disc{.radius = {10, 10}};
-  EXPECT_THROW((void)FilmPupilTable::of_iris({50, 0}, {}, std::array{disc}, 20).for_tilted_film({.radius = 5}, 0),
-               Error);
-  EXPECT_THROW((void)table.for_tilted_film({.radius = std::numeric_limits<double>::quiet_NaN()}), Error);
+  expect_error([&] { (void)table.for_tilted_film({.radius = -1}); }, {"tilted film", "radius", -1});
+  expect_error([&] { (void)table.for_tilted_film({.radius = std::nan("")}); }, {"tilted film", "radius", "nan"});
+  const FilmPupilTable discs = FilmPupilTable::of_iris({50, 0}, {}, std::array{PupilImage{.radius = {10, 10}}}, 20);
+  for (const FilmPupilTable& each : {table, discs}) {
+    expect_error([&] { (void)each.for_tilted_film({.radius = 5}, 0); }, {"tilted film", "threads", 0});
+  }
 }
 
 TEST(FilmPupilTable, HoldsWhatLiesInAllOfSomeDiscs) {
@@ -382,11 +384,12 @@ TEST(FilmPupilTable, HasNothingOutsideItsFilm) {
   EXPECT_EQ(table.sample({0, 0}, 0.5, 0.5, 1).area, 0);
   EXPECT_EQ(table.area({0, 21}), 0);
   EXPECT_FALSE(table.contains({0, 21}, 0, 0));
-  EXPECT_THROW((void)FilmPupilTable::enclosing(lens, nan), Error);
-  EXPECT_THROW((void)FilmPupilTable::enclosing(lens, -1), Error);
-  EXPECT_THROW((void)FilmPupilTable::enclosing(with_film(lens, lens.surfaces().back().vertex_z), 10), Error);
-  EXPECT_THROW((void)FilmPupilTable::of_iris({50, 0}, {}, {}, nan), Error);
-  EXPECT_THROW((void)hexagons({.blades = 2}), Error);
+  expect_error([&] { (void)FilmPupilTable::enclosing(lens, nan); }, {lens.name(), "film", "radius", "nan"});
+  expect_error([&] { (void)FilmPupilTable::enclosing(lens, -1); }, {lens.name(), "film", "radius", -1});
+  const double last_z = lens.surfaces().back().vertex_z;
+  expect_error([&] { (void)FilmPupilTable::enclosing(with_film(lens, last_z), 10); }, {lens.name(), "film", last_z});
+  expect_error([&] { (void)FilmPupilTable::of_iris({50, 0}, {}, {}, nan); }, {"radius", "nan"});
+  expect_error([&] { (void)hexagons({.blades = 2}); }, {"blades", 2});
   const FilmPupilTable dark = FilmPupilTable::enclosing(with_semi_diameter(lens, *lens.stop(), 0), 20);
   EXPECT_EQ(dark.sample({1, 2}, 0.5, 0.5).area, 0);
 }
@@ -394,7 +397,7 @@ TEST(FilmPupilTable, HasNothingOutsideItsFilm) {
 TEST(FilmPupilTable, RefusesWhatNoTableIsMadeOf) {
   constexpr double nan = std::numeric_limits<double>::quiet_NaN(), infinity = std::numeric_limits<double>::infinity();
   using Nm = std::vector<double>;
-  // Of discs and of images alike.
+  // Discs and images are checked by the same rules.
   const auto refusals = [](const TwoPlanes& space, const std::vector<PupilDisc>& discs, std::size_t primary,
                            const Nm& nm) {
     std::vector<std::vector<PupilDisc>> lists;
@@ -408,32 +411,28 @@ TEST(FilmPupilTable, RefusesWhatNoTableIsMadeOf) {
     return of_discs;
   };
   const TwoPlanes space{100, 0};
-  const std::string wanted = " mm; both must be at most 1e+15 in absolute value, and the radius not negative";
-  const std::string disc = "pupil table: wavelength 0: shift = ";
   EXPECT_EQ(refusals(space, {{0, 5}}, 0, {}), "no error");
   EXPECT_EQ(refusals(space, {{0, 0}, {-2, 5}}, 1, {400, 500}), "no error");
-  EXPECT_EQ(refusals(space, {{0, -5}}, 0, {}), disc + "0, radius = -5" + wanted);
-  EXPECT_EQ(refusals(space, {{nan, 5}}, 0, {}), disc + "nan, radius = 5" + wanted);
-  EXPECT_EQ(refusals(space, {{0, infinity}}, 0, {}), disc + "0, radius = inf" + wanted);
-  EXPECT_EQ(refusals(space, {}, 0, {}), "pupil table: it has 0 wavelengths; must have 1 to 65535");
-  EXPECT_EQ(refusals(space, std::vector<PupilDisc>(65536, {0, 5}), 0, {}),
-            "pupil table: it has 65536 wavelengths; must have 1 to 65535");
-  EXPECT_EQ(refusals(space, {{0, 5}}, 7, {}), "pupil table: primary_wavelength = 7; must be below 1");
-  EXPECT_EQ(refusals({0, 0}, {{0, 5}}, 0, {}), "pupil table: film_z = 0 and pupil_z = 0 mm; must differ");
-  EXPECT_NE(refusals({nan, 0}, {{0, 5}}, 0, {}), "no error");
-  EXPECT_EQ(refusals(space, {{0, 5}}, 0, {400, 500}),
-            "pupil table: wavelengths_nm has 2 numbers; must have 1 or be empty");
-  EXPECT_EQ(refusals(space, {{0, 5}}, 0, {nan}), "pupil table: wavelength = nan nm; must be finite and above 0");
-  EXPECT_EQ(refusals(space, {{0, 5}, {0, 5}, {0, 5}}, 0, {400, 500, 400}),
-            "pupil table: wavelength 2 = 400 nm; must differ from all others");
+  expect_tokens(refusals(space, {{0, -5}}, 0, {}), {"pupil table", "wavelength 0", "shift", 0, "radius", -5});
+  expect_tokens(refusals(space, {{nan, 5}}, 0, {}), {"pupil table", "wavelength 0", "shift", "nan", "radius", 5});
+  expect_tokens(refusals(space, {{0, infinity}}, 0, {}), {"pupil table", "wavelength 0", "shift", 0, "radius", "inf"});
+  expect_tokens(refusals(space, {}, 0, {}), {"pupil table", "wavelengths", 0, 65535});
+  expect_tokens(refusals(space, std::vector<PupilDisc>(65536, {0, 5}), 0, {}),
+                {"pupil table", "wavelengths", 65536, 65535});
+  expect_tokens(refusals(space, {{0, 5}}, 7, {}), {"pupil table", "primary_wavelength", 7});
+  expect_tokens(refusals({0, 0}, {{0, 5}}, 0, {}), {"pupil table", "film", "z", 0});
+  expect_tokens(refusals({nan, 0}, {{0, 5}}, 0, {}), {"pupil table", "film", "z", "nan"});
+  expect_tokens(refusals(space, {{0, 5}}, 0, {400, 500}), {"pupil table", "wavelengths_nm", 2, 1});
+  expect_tokens(refusals(space, {{0, 5}}, 0, {nan}), {"pupil table", "wavelength", "nan"});
+  expect_tokens(refusals(space, {{0, 5}, {0, 5}, {0, 5}}, 0, {400, 500, 400}),
+                {"pupil table", "wavelength 2", 400, "nm"});
 
   std::vector<std::vector<PupilDisc>> lists{{}};
-  EXPECT_EQ(message([&] { (void)FilmPupilTable::of_discs(space, lists, 10); }),
-            "pupil table: wavelength 0 has no disc; must have one or more");
+  expect_error([&] { (void)FilmPupilTable::of_discs(space, lists, 10); }, {"pupil table", "wavelength 0", "disc"});
   const FilmPupilTable table = FilmPupilTable::of_discs(space, std::array{std::vector<PupilDisc>{{0, 5}}}, 10);
-  EXPECT_NE(message([&] { (void)table.reshaped(lists); }), "no error");
+  expect_error([&] { (void)table.reshaped(lists); }, {"pupil table", "wavelength 0", "disc"});
   lists.assign(3, {{0, 5}});
-  EXPECT_EQ(message([&] { (void)table.reshaped(lists); }), "pupil table: discs has 3 wavelengths; must have 1");
+  expect_error([&] { (void)table.reshaped(lists); }, {"pupil table", "discs", "wavelengths", 3, 1});
 }
 
 TEST(FilmPupilTable, HasNothingInTheMiddleOfAnObscuration) {
