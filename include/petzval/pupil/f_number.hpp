@@ -9,10 +9,13 @@
 
 namespace petzval {
 
-/// |EFL| / (2 y), y the height of the axis-parallel ray (in the main meridian) whose exact trace meets the rim of the
-/// stop; the ray is traced through the front part alone, whatever clips it elsewhere. Where rays end before they get as
-/// high as the rim, y is the height of the last that reaches the stop. Infinite for an afocal lens or an empty stop, 0
-/// where nothing limits y. Throws Error where pupils() does.
+/// f-number |EFL| / (2 y), with the entrance height y of the axis-parallel ray that meets the rim of the stop.
+///
+/// The ray is traced exactly, in the main meridian, from the front to the stop, without clear apertures. If no ray
+/// reaches the rim, y is the height of the last ray that reaches the stop. Infinite if the lens is afocal or the stop
+/// has radius 0; 0 if y has no limit.
+///
+/// @throws Error  if pupils() does
 PETZVAL_API double real_f_number(const Lens& lens, Wavelength wavelength = {});
 
 /// f-number of the widest axial beam, below which with_f_number() refuses: real_f_number() if the stop has a rim. If
@@ -22,15 +25,17 @@ PETZVAL_API double real_f_number(const Lens& lens, Wavelength wavelength = {});
 /// @throws Error  if the lens is afocal or nothing limits the axial beam
 PETZVAL_API double fastest_f_number(const Lens& lens, Wavelength wavelength = {});
 
-/// The lens stopped down to an f-number (real_f_number, by exact rays): the stop gets the semi-diameter at which the
-/// axis-parallel ray of height |EFL| / (2 N) passes it, so that real_f_number gives N back within 1e-12. A marked stop
-/// without a rim gets one.
+/// The lens stopped down to the f-number N.
 ///
-/// For N faster than wide open by up to 0.5 % the lens stays wide open, as it is: declared f-numbers are rounded, and
-/// real_f_number tells the true one. Throws Error for N faster than that, naming the fastest possible (a program that
-/// takes the f-number of the lens's name can ask fastest_f_number() first), for N <= 0 or
-/// not finite, an afocal lens, N so slow that a central obscuration leaves nothing of the axial beam, naming the
-/// surface and the f-number of the obscuration, and N that no stop gives, as spherical aberration folds the beam there.
+/// The axis-parallel ray of height |EFL| / (2 N) meets the new rim of the stop; a marked stop without a rim gets a rim.
+/// The lens stays wide open if N is too fast by up to 0.5 %, because declared f-numbers are rounded; real_f_number()
+/// gives the exact value.
+///
+/// @throws Error  if N is faster than that (fastest_f_number() gives the limit), not positive or not finite; if the
+///                lens is afocal; if N is so slow that a central obscuration covers the axial beam; or if no stop gives
+///                N, because spherical aberration folds the beam
+///
+/// Accuracy: real_f_number() returns N within 1e-12.
 PETZVAL_API Lens with_f_number(const Lens& lens, double f_number, Wavelength wavelength = {});
 
 }  // namespace petzval

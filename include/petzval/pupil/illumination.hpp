@@ -12,27 +12,36 @@
 
 namespace petzval {
 
-/// Irradiance of the film of a lens at a point, in units of the radiance of a scene that is uniform in all directions:
-/// n'^2 times the projected solid angle in which the point sees the scene through the lens, in sr. Within 5e-4 for
-/// stops of 1e-6 mm and more; one that rays do not resolve counts as closed. Only light of the
-/// pupil counts, as in pupil_boundary; tests/pupil compares every lens of data/ with rays in all directions. Within 5 %
-/// of the little light that comes along the film beside a lens that nearly touches it. Throws Error where
-/// pupil_boundary does.
+/// Irradiance of the film at a point for a uniform scene of radiance 1 (sr): n'^2 times the projected solid angle in
+/// which the point sees the scene through its pupil (pupil_boundary()).
+///
+/// @throws Error  if exit_pupil_boundary() does
+///
+/// Accuracy: 5e-4 for stops of at least 1e-6 mm (tests/pupil compares every lens of data/ with rays in all directions);
+/// a stop too small for rays counts as closed. 5 % if the light travels along the film, outside a lens that almost
+/// touches the film.
 PETZVAL_API double film_irradiance(const Lens& lens, const FilmPoint& point, Wavelength wavelength = {});
 
-/// film_irradiance where the chief ray of a scene point meets the film, relative to that on the axis: natural and
-/// optical vignetting, with the effects of distortion and pupil aberration. No value where the axis is dark or no chief
-/// ray reaches the film. Throws Error where PupilPlane does, for scene points and for the film.
+/// Irradiance at the film point of a scene point's chief ray, relative to the axis: natural and optical vignetting,
+/// with distortion and pupil aberration. nullopt if the axis is dark or no chief ray reaches the film.
+///
+/// @throws Error  if PupilPlane does, for the scene point or the film
 PETZVAL_API std::optional<double> relative_illumination(const Lens& lens, const FieldPoint& point,
                                                         Wavelength wavelength = {});
 
-/// The diameter of the circle about the axis, on the film of the lens, in which film_irradiance is at least a part of
-/// that on the axis, mm; for 0, in which any light arrives at all. 0 where the axis is dark, infinite where the circle
-/// is wider than 1000 focal lengths. Without symmetry of revolution: the largest circle in which this holds in eight
-/// directions.
+/// Diameter of the image circle on the film (mm): the irradiance inside is at least a fraction of that on the axis.
 ///
-/// Within 1e-4 of the focal length. Fields are looked at in steps of a tenth of the focal length: a darker ring between
-/// two of them is not seen. Throws Error where film_irradiance does, and for a part that is not from 0 to 1.
+/// For a lens without symmetry of revolution, this holds in eight directions. 0 if the axis is dark; infinite if the
+/// circle is wider than 1000 focal lengths.
+///
+/// @param lens        the lens
+/// @param least_part  smallest fraction of the irradiance on the axis, 0 to 1; 0: any light
+/// @param wavelength  a compiled wavelength
+/// @throws Error      if film_irradiance() does, or least_part is outside [0, 1]
+///
+/// Accuracy: 1e-4 focal lengths.
+///
+/// Limitations: heights are tested in steps of a tenth of the focal length; a dark ring between two steps is missed.
 PETZVAL_API double image_circle_mm(const Lens& lens, double least_part = 0, Wavelength wavelength = {});
 
 }  // namespace petzval

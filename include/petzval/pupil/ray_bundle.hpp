@@ -11,30 +11,35 @@
 
 namespace petzval {
 
-/// The rays of one point and wavelength that pass a lens, by their points in a plane behind it. One value each, in the
-/// order in which they were sent.
+/// The rays of one point and wavelength that pass a lens, by their intersections with a plane behind the lens; one
+/// value per ray, in the order of the samples.
 struct RayBundle {
-  double plane_z = 0;                        ///< of the plane across the axis, lens frame, mm
+  double plane_z = 0;                        ///< plane perpendicular to the axis, lens frame, mm
   std::vector<double> x, y;                  ///< in the plane, mm
-  std::vector<double> slope_x{}, slope_y{};  ///< per mm of z; empty where the plane is all that matters
-  std::vector<double> weights{};             ///< empty where all rays have the same weight
+  std::vector<double> slope_x{}, slope_y{};  ///< per mm of z; empty if not requested
+  std::vector<double> weights{};             ///< empty if all rays have equal weight
   std::size_t sent = 0;                      ///< rays started
-  double sampled_area = 0;                   ///< area of the pupil plane that uniform rays started from, mm^2
+  double sampled_area = 0;                   ///< area of the pupil plane in which uniform rays started, mm^2
 
   std::size_t size() const noexcept { return x.size(); }
   bool empty() const noexcept { return x.empty(); }
-  /// Area of the pupil plane that the lens passes, of uniform rays, mm^2.
+  /// Area of the pupil plane through which uniform rays pass the lens (mm^2).
   double transmitted_area() const noexcept {
     return sent == 0 ? 0.0 : sampled_area * static_cast<double>(size()) / static_cast<double>(sent);
   }
 };
 
-/// Traces `samples` rays, Owen-scrambled Sobol over the pupil from point `first` of the sequence on, onto the lens's
-/// film; without slopes.
+/// Traces rays through a pupil to the film of the lens; without slopes.
 ///
-/// The bundle does not depend on `threads` (1 or more; more than one starts threads and ends them before it returns).
-/// Rays that leave the lens away from the film are lost. Throws Error for less than one thread, and for a pupil whose
-/// wavelength the lens does not have.
+/// Rays that leave the lens away from the film are lost.
+///
+/// @param lens     the lens
+/// @param pupil    the pupil, sampled by an Owen-scrambled Sobol sequence
+/// @param samples  number of rays
+/// @param seed     seed of the scrambling
+/// @param threads  at least 1; the bundle is the same for every number
+/// @param first    first point of the sequence
+/// @throws Error   if threads is less than 1, or the lens does not have the wavelength of the pupil
 PETZVAL_API RayBundle trace_bundle(const Lens& lens, const PupilSampler& pupil, std::uint32_t samples,
                                    std::uint32_t seed = 0, int threads = 1, std::uint32_t first = 0);
 
