@@ -19,248 +19,259 @@
 
 namespace petzval {
 
-/// A disc in the plane of the pupil whose centre moves with the film point: it lies at shift times that point.
+/// A disc in the pupil plane with its centre at shift * film point.
 struct PupilDisc {
   double shift = 0;
   double radius = 0;  ///< mm
 };
 
-/// A rim that cuts pupils, in their radii on the axis: a disc that moves against the film point, as one does that
-/// stands between the pupil and the film.
+/// A round rim that clips pupils and moves opposite to the film point, in units of the pupil radius on the axis.
 struct PupilRim {
-  double ratio = 1;         ///< its radius
-  double radii_per_mm = 0;  ///< of the film
+  double ratio = 1;         ///< radius of the rim
+  double radii_per_mm = 0;  ///< displacement per mm on the film
 };
 
-/// The image of an iris in the plane of the pupil, in the sections along x and y: its centre lies at shift times the
-/// film point, and the rim of the stop appears with these semi-axes. Of a lens of revolution both sections are alike.
+/// The image of an iris in the pupil plane, in the sections along x and y; equal sections for a lens of revolution.
 struct PupilImage {
-  Vec2<double> shift{0, 0};
-  Vec2<double> radius{0, 0};  ///< mm
+  Vec2<double> shift{0, 0};   ///< the centre lies at shift * film point
+  Vec2<double> radius{0, 0};  ///< semi-axes of the image of the stop's rim, mm
 };
 
-/// A tilted film in pupil coordinates. Each point is identified by its virtual film point v: its projection, through
-/// the centre of the pupil's plane, onto the upright film. The ray from the point through q in the plane of the pupil
-/// meets the upright film in v - nearer q; 1 + nearer is the ratio of the upright film's distance from the pupil's
-/// plane to the point's. nearer is slope . v, or where the film has travelled along the axis, by travel times the
-/// upright film's distance, (slope . v - travel) / (1 + travel).
+/// A tilted film in pupil coordinates.
+///
+/// A film point is identified by its virtual film point v: its projection onto the upright film, through the centre of
+/// the pupil plane. 1 + nearer is the distance of the upright film from the pupil plane divided by the distance of the
+/// film point. The ray from the film point through q in the pupil plane meets the upright film at v - nearer q. Without
+/// travel, nearer = slope . v; after travel by the fraction t of the upright film's distance, nearer = (slope . v - t)
+/// / (1 + t).
 struct FilmTilt {
   double slope_x = 0, slope_y = 0;  ///< 1/mm
   double low = 0, high = 0;         ///< range of nearer on the film, at all times
-  double radius = 0;                ///< of the farthest virtual film point, mm
-  double travel = 0;                ///< in all; the film is everywhere on the way
+  double radius = 0;                ///< distance of the farthest virtual film point from the axis, mm
+  double travel = 0;                ///< t at the end of the travel, which covers all values from 0
 };
 
-/// A sample of a pupil: its place in the plane of the pupil, mm, and the area that it stands for, mm^2: its density is
-/// 1 / area. Uniform samples have the whole area of the pupil. Area 0: nothing to sample.
+/// A sample of a pupil: position in the pupil plane (mm) and area (mm^2), the inverse of the density. Uniform samples
+/// have the area of the pupil. Area 0: there is no pupil.
 struct PupilSample {
   double x = 0, y = 0, area = 0;
 };
 
-/// A FilmPupilTable as plain numbers, for another processor.
+/// A FilmPupilTable as plain numbers, for a GPU.
 struct FilmPupilArrays {
-  /// Images of an iris, or polygons in the cells of a grid: by the distance from the axis (polar: of a lens of
-  /// revolution) or over both axes of the film (quadrant: of a lens with cylinders).
+  /// Images of an iris, or polygons in the cells of a grid: over the distance from the axis (polar: lenses of
+  /// revolution) or over both film axes (quadrant: lenses with cylinders).
   enum class Kind : std::uint8_t { polar, images, quadrant };
   Kind kind = Kind::polar;
-  double film_radius = 0;  ///< mm; film points beyond see nothing
-  /// Images: [wavelength] shift x, shift y, radius x, radius y, area (see PupilImage). Polygons: [wavelength][row]
-  /// [column] the cells of film points between y = height row / rows and the next row. Polar: film points lie on +y and
-  /// polygons turn with them; values are linear in the fraction t of the way between rows, given by 1, t. Quadrant:
-  /// film points x, y >= 0; the other quadrants are mirror images. Values are linear in t along a row of length
-  /// half_widths, from one column to the next, and in s from row to row: 1, t, s, st. With n = 2 or 4
-  /// numbers a value, and m = 4 or 9 terms of an area (by 1, t, t^2, t^3, or by 1, t, t^2, s, st, st^2, s^2, s^2 t, s^2
-  /// t^2):
+  double film_radius = 0;  ///< mm; film points outside see no pupil
+  /// Images: [wavelength] shift x, shift y, radius x, radius y, area (PupilImage).
   ///
-  ///     0, n            x and y of the middle
+  /// Polygons: cells [wavelength][row][column], for film points between y = height * row / rows and the next row.
+  /// Polar: film points on +y; polygons rotate with the film point. A value is linear in the fraction t between rows
+  /// and has n = 2 coefficients (of 1, t); an area has m = 4 (of 1, t, t^2, t^3). Quadrant: film points x, y >= 0; the
+  /// other quadrants are mirror images. A value is bilinear, in t between the columns of a row of length half_widths
+  /// and in s between rows, and has n = 4 coefficients (of 1, t, s, st); an area has m = 9 (of 1, t, t^2, s, st, st^2,
+  /// s^2, s^2 t, s^2 t^2). In a cell:
+  ///
+  ///     0, n            x, y of the middle
   ///     2n              area, mm^2
-  ///     2n + m + (2n + m) k  corner k from the middle: x, y; area before it (k = 0 ... 64)
-  ///     528 + 4k        polar: begin and width of the obscured part of sector k, in squared ways from the middle (0)
-  ///     to
-  ///                     the outer edge (1)
+  ///     2n + m + (2n + m) k  corner k = 0 ... 64: x, y from the middle; area before the corner
+  ///     528 + 4k        polar: begin and width of the obscured part of sector k, as squares of the fraction from the
+  ///                     middle (0) to the outer edge (1)
   std::vector<float> pupils;
   std::size_t rows = 0, columns = 1;
   double height = 0;               ///< mm
-  std::vector<float> half_widths;  ///< [row] mm; the last line at the end
-  /// Empty: a disc. Or for the edges of blades, in radii: across [edge_terms] and along [edge_terms], then [blade] sine
-  /// and cosine of the angle from +y towards +x of the direction to the edge's middle. The point of the edge that has
-  /// the part (1 + q) / 2 of its sector's area before it lies q across(t) across that direction, clockwise, and
-  /// along(t) along it; t = 2 q^2 - 1, and both are polynomials in t.
+  std::vector<float> half_widths;  ///< [row] mm; the last entry is the end of the last row
+  /// Edges of the blades in units of the iris radius; empty: a disc. Coefficients across[edge_terms] and
+  /// along[edge_terms] of polynomials in t = 2 q^2 - 1, then [blade] sine and cosine of the angle from +y towards +x to
+  /// the middle of the edge. The edge point with the fraction (1 + q) / 2 of its sector's area before it lies along(t)
+  /// along the direction to the middle, and q across(t) perpendicular to it, clockwise.
   std::vector<float> iris;
-  /// Empty: the iris cuts no polygon. Or for each cell of `pupils`:
+  /// Stop of each cell of `pupils`; empty: the iris clips no polygon.
   ///
-  ///     0               1: samples are points of the iris, 0: of what the iris leaves of the polygon
+  ///     0               1: samples are points of the iris; 0: samples are points of the polygon inside the iris
   ///     1               scale of the iris
-  ///     2 + n k         place in the pupil by the stop point (x, y), term k, with r = x^2 + y^2: of y 1, y, x^2, y^2,
-  ///                     x^2 y, y^3, r^2, r y^2, r^2 y, of x over x 1, y, x^2, y^2, r y, r^2 (polar); of x, then of y
-  ///                     1, x, y, x^2, xy, y^2, x^3, x^2 y, x y^2, y^3 (quadrant)
-  ///     2 + 15 n (polar), 2 + 20 n (quadrant)  x and y of the stop points of the middle and of the corners 0 ... 64
+  ///     2 + n k         term k of the pupil point as a polynomial of the stop point (x, y), with r = x^2 + y^2. Polar:
+  ///                     y by 1, y, x^2, y^2, x^2 y, y^3, r^2, r y^2, r^2 y; x divided by the stop's x, by 1, y, x^2,
+  ///                     y^2, r y, r^2. Quadrant: x, then y, by 1, x, y, x^2, xy, y^2, x^3, x^2 y, x y^2, y^3
+  ///     2 + 15 n (polar), 2 + 20 n (quadrant)  x, y of the stop points of the middle and of corners 0 ... 64
   std::vector<float> stop;
 
   static constexpr std::size_t image_size = 5, polar_size = 784, quadrant_size = 1122, corners = 64, edge_terms = 8;
   static constexpr std::size_t polar_stop_size = 296, quadrant_stop_size = 610;
 };
 
-/// The pupils of every point of a film: the parts of the plane behind the lens through which the points see the scene,
-/// as a table over the film, one for each compiled wavelength, or in closed form.
+/// The pupils of all points of a film, for sampling: a table per compiled wavelength, or a closed form.
 ///
-/// A pupil of a table is a polygon of 64 corners about a middle, less a central obscuration where the lens has one.
-/// Corners and middles are interpolated between 33 distances from the axis (65, where areas are the light), or, of a
-/// lens with cylinders, bilinearly between 9 x 9 film points in a quadrant, so that the pupil, and with it the sample
-/// for a given u and v, moves continuously with the film point. Areas are exact for the interpolated polygon. The
-/// tables of lenses with cylinders leave out no obscuration.
+/// A pupil is the region of the pupil plane through which a film point sees the scene. In a table it is a polygon of 64
+/// corners, less a central obscuration, and moves continuously with the film point. Samples are uniform in the pupil.
+/// If a film point sees the complete iris with blades, samples are uniform on the iris and areas change with the
+/// sample. Immutable, cheap to copy, thread-safe.
 ///
-/// An iris with blades needs with_stop(), which enclosing() and equal_area() call by themselves. Film points that see
-/// all of it have samples that are uniform on the iris: polynomials of third to fifth order, interpolated as polygons
-/// are, map them to the pupil, and areas change with the sample. At film points with vignetting, samples are uniform on
-/// the part of the polygon inside the iris. Samples jump between the two kinds of film points; estimates do not.
+/// Accuracy: a wavelength in nm has the pupils of the nearest compiled wavelength. Pupils of enclosing() contain the
+/// rays up to midway between compiled wavelengths; at a spacing of 150 nm, 0.1 to 1.5 % more samples are lost
+/// (tests/pupil_table/any_wavelength_test.cpp). Pupils of equal_area() are off by up to 0.5 % in irradiance (fisheye:
+/// 0.6 %) with eight wavelengths over 400 to 700 nm. Closed forms are interpolated within 1e-4.
 ///
-/// A wavelength in nm has the pupils of the nearest compiled one. Those of enclosing() contain the rays of wavelengths
-/// up to the middles between compiled ones, for 0.1 to 1.5 % more samples that are lost where these are 150 nm apart
-/// (tests/pupil_table/any_wavelength_test.cpp). Those of equal_area() step in the middles: with eight wavelengths of
-/// 400 to 700 nm their light is off by up to 0.5 % there, of a fisheye 0.6 % (tests/camera/any_wavelength_test.cpp).
-/// Pupils in closed form are interpolated, within 1e-4.
-///
-/// Immutable, cheap to copy, free to share between threads.
+/// Limitations: the tables of lenses with cylinders leave out no obscuration.
 class PETZVAL_API FilmPupilTable {
  public:
-  /// Copies. Moves copy too, so that no FilmPupilTable is ever empty.
+  /// Copies. Moves also copy, so that a FilmPupilTable is never empty.
   FilmPupilTable(const FilmPupilTable&) = default;
   FilmPupilTable& operator=(const FilmPupilTable&) = default;
 
-  /// Polygons that contain every ray that the lens passes and few others; rays still have to be traced. At most 1e-5 of
-  /// the pupils' area is missed (tests/pupil_table/film_pupil_table_test.cpp: every lens of data/ wide open over its
-  /// declared field, some of them stopped down; film_cells_test.cpp: a lens with cylinders from wide open to f/64).
-  /// Pupils are those of exit_pupil_boundary(). Behind tiny stops, whose images move over the film by more than their
-  /// size, pupils hold more than the rays that pass: half of the samples are lost at about f/1e5, most at f/1e6.
+  /// Polygons that contain the pupils (exit_pupil_boundary()) and little else; their rays still have to be traced.
   ///
-  /// With a bladed iris, at least 97.5 % of the samples pass on the double Gauss, the Tessar and a fisheye of data/
-  /// (tests/pupil_table/bladed_pupils_test.cpp: 5 to 9 blades from f/2.87 to f/16).
+  /// @param lens         the lens with its film
+  /// @param film_radius  distance of the farthest film point from the axis (mm); at least 0
+  /// @param threads      at least 1; they share the wavelengths, and the table is the same for every number
+  /// @throws Error       if the film lies in the plane of the last vertex, film_radius is negative or not finite, or
+  ///                     threads is less than 1
   ///
-  /// film_radius: of the farthest film point, mm, >= 0. The film is that of the lens. Throws Error for a film in the
-  /// plane of the last vertex, for a film_radius that is negative or not finite, and for less than one thread.
-  /// threads: they share the wavelengths; the table does not depend on them.
+  /// Accuracy: at most 1e-5 of the pupils' area is missed (tests/pupil_table/film_pupil_table_test.cpp: every lens of
+  /// data/ wide open over its declared field, some stopped down; film_cells_test.cpp: a lens with cylinders from wide
+  /// open to f/64). With a bladed iris, at least 97.5 % of the samples pass (bladed_pupils_test.cpp: double Gauss,
+  /// Tessar and fisheye of data/, 5 to 9 blades, f/2.87 to f/16). More samples are lost with very small stops: half at
+  /// f/1e5, most at f/1e6.
   static FilmPupilTable enclosing(const Lens& lens, double film_radius, int threads = 1);
 
-  /// Polygons that have the area of the pupils and nearly their shape, for models without rims: an outline with one
-  /// obscuration. That is not enough for pupils that an obscuration divides (catadioptrics beyond their field): they
-  /// are described as one part of about that area. So do the models that use these pupils, polynomials and two discs;
-  /// exact ones do not. Throws Error as enclosing() does.
+  /// Polygons with the area of the pupils and nearly their shape, for models without rims (polynomials, two discs).
+  ///
+  /// @throws Error if enclosing() does
+  ///
+  /// Limitations: a pupil divided by an obscuration (catadioptrics beyond their field) becomes a connected region of
+  /// about the same area.
   static FilmPupilTable equal_area(const Lens& lens, double film_radius, int threads = 1);
 
-  /// The same for the overlap of some discs, one list for each wavelength. One disc alone has a closed form: of_iris().
-  /// wavelengths_nm: the wavelengths; without them there are no samples by nm. Throws Error for planes in one place, a
-  /// film_radius or a disc's radius that is negative, a list without discs, and numbers that are not finite or beyond
-  /// 1e15; for other than 1 to 65535 lists, as many as rays have positions for; for a primary_wavelength without a
-  /// list; and for wavelengths_nm that are not positive, stand there twice (within 1e-6 nm) or are not one for each
-  /// list.
+  /// Equal-area polygons for the overlap of discs. (A single disc has a closed form: of_iris().)
+  ///
+  /// @param space               film and pupil plane
+  /// @param discs               one list of discs per wavelength, 1 to 65535 lists
+  /// @param film_radius         distance of the farthest film point from the axis (mm); at least 0
+  /// @param primary_wavelength  position of the default wavelength
+  /// @param wavelengths_nm      the wavelengths (nm), for samples by nm; or empty
+  /// @throws Error              if the planes coincide; if a radius is negative; if a list is empty; if a number is
+  ///                            infinite, NaN or beyond 1e15; if the primary wavelength has no list; if wavelengths_nm
+  ///                            are not positive, repeat (within 1e-6 nm) or differ in number from the lists
   static FilmPupilTable of_discs(const TwoPlanes& space, std::span<const std::vector<PupilDisc>> discs,
                                  double film_radius, std::size_t primary_wavelength = 0,
                                  std::span<const double> wavelengths_nm = {});
 
-  /// The same film and planes, and pupils that have the shape of an overlap of discs, one list for each wavelength, and
-  /// let through as much light as these do: about their middles they are scaled to the same projected_solid_angle().
-  /// They know no stop (with_stop()). Throws Error for other discs than
-  /// of_discs() takes, and other than one list for each wavelength of these pupils.
+  /// Pupils in the shape of an overlap of discs, scaled about their middles to the projected_solid_angle() of this
+  /// table. The result has no stop (with_stop()).
+  ///
+  /// @throws Error if of_discs() rejects the discs, or the number of lists differs from the number of wavelengths
   FilmPupilTable reshaped(std::span<const std::vector<PupilDisc>> discs) const;
 
-  /// What a rim leaves of these pupils: cat's eyes that an artist asks for. Their light falls with their area. Where
-  /// the rim moves by 5 radii or less over the film, areas are off by 2 % of the whole pupil's or less
-  /// (tests/pupil_table/rim_test.cpp), and may be 0 where eyes nearly close. Throws Error for a ratio that is not
-  /// positive, numbers that are not finite, a rim that moves by more than 1e6 radii over the film, and the pupils of a
-  /// lens with cylinders or a central obscuration.
+  /// The pupils clipped by a rim (cat's eyes); the irradiance falls with the area.
+  ///
+  /// @throws Error if the ratio is not positive, a number is not finite, the rim moves by more than 1e6 radii over the
+  ///               film, or the lens has cylinders or a central obscuration
+  ///
+  /// Accuracy: if the rim moves by at most 5 radii over the film, areas are within 2 % of the unclipped pupil's area
+  /// (tests/pupil_table/rim_test.cpp); nearly closed pupils may have area 0.
   FilmPupilTable cut_by_rim(const PupilRim& rim) const;
-  /// Whether a rim has cut them, and the pupils before that.
+  /// True if a rim has clipped the pupils.
   bool cut() const noexcept;
+  /// The unclipped pupils.
   FilmPupilTable whole() const;
 
-  /// The same pupils with the stop of the lens: its iris cuts them, and stop_points() works. Pupils in closed form are
-  /// returned unchanged. Throws Error for a lens without a stop that has a semi_diameter. threads: as
-  /// in enclosing().
+  /// The pupils with the stop of the lens: the iris clips them, and stop_points() is available. Pupils in closed form
+  /// stay unchanged. enclosing() and equal_area() call with_stop() for an iris with blades.
+  ///
+  /// @throws Error if the lens has no stop with a semi_diameter
   FilmPupilTable with_stop(const Lens& lens, int threads = 1) const;
   bool knows_stop() const noexcept;
-  /// The pupils of the whole stop, of which nothing else is known; of others, the table itself.
+  /// The pupils of the round stop, clipped by neither rim nor blades; the result does not know the stop.
   FilmPupilTable of_round_stop() const;
 
-  /// Pupils in closed form: images of an iris, one for each wavelength. iris: as the plane of the pupil shows it.
-  /// Throws Error as of_discs() does, and for blades, roundness or rotation out of range.
+  /// Pupils in closed form: images of an iris, one per wavelength. iris: as it appears in the pupil plane.
+  ///
+  /// @throws Error if of_discs() does for these parameters, or blades, roundness or rotation are out of range
   static FilmPupilTable of_iris(const TwoPlanes& space, const Iris& iris, std::span<const PupilImage> images,
                                 double film_radius, std::size_t primary_wavelength = 0,
                                 std::span<const double> wavelengths_nm = {});
 
-  /// The pupils of a tilted film, by virtual film points; those of of_iris() are exact for one that does not travel.
-  /// An iris with blades does not cut them: they are the round stop's. They contain every ray of this table that meets
-  /// the film, and few others: one pupil for each distance of the virtual film point from the axis, or with cylinders
-  /// for each point and its mirror images, holds the pupils of all points there. At most 1e-5 of their area is missed
-  /// (tests/camera/tilted_exposure_test.cpp), except where enclosing() misses more: of a ball lens 10 mm across, tilted
-  /// by 8 degrees, 2e-3 on a film of 3 x 2 mm, 2e-4 on one of 0.6 x 0.45 mm at f/8. This table's film_radius must reach
-  /// to all points where its rays meet the upright film. Throws Error for a radius that is negative or not finite, and
-  /// for less than one thread. threads: they share the wavelengths; the table does not depend on them.
+  /// The pupils of a tilted film, by virtual film points.
+  ///
+  /// They contain all rays of this table that meet the tilted film, and few others; for an iris with blades, the rays
+  /// of the round stop. Pupils of of_iris() stay in closed form if the film does not travel. The film_radius of this
+  /// table must include all points at which the rays meet the upright film.
+  ///
+  /// @param tilt     the tilted film
+  /// @param threads  at least 1; they share the wavelengths, and the table is the same for every number
+  /// @throws Error   if tilt.radius is negative or not finite, or threads is less than 1
+  ///
+  /// Accuracy: at most 1e-5 of the area is missed (tests/camera/tilted_exposure_test.cpp), unless enclosing() misses
+  /// more. With a ball lens 10 mm in diameter and a tilt of 8 degrees, 2e-3 is missed on a film of 3 x 2 mm, and 2e-4
+  /// on 0.6 x 0.45 mm at f/8.
   FilmPupilTable for_tilted_film(const FilmTilt& tilt, int threads = 1) const;
 
-  /// The planes that film points and samples lie in.
+  /// The planes of the film points and the samples.
   const TwoPlanes& space() const noexcept;
   double film_radius() const noexcept;
-  /// Film points farther from the axis get no light, as far as is known: film_radius() or less.
+  /// Distance from the axis beyond which film points have no pupil; at most film_radius() (mm).
   double lit_radius() const noexcept;
   std::size_t wavelengths() const noexcept;
-  /// Whether there are samples at a wavelength: by a position, or by nm within the range of the wavelengths.
+  /// True if there are samples at a wavelength: a position of the table, or nm within the range of its wavelengths.
   bool covers(Wavelength wavelength) const noexcept;
   /// Position of the lens's primary wavelength, the default of all calls.
   std::size_t primary_wavelength() const noexcept;
 
-  /// A uniform sample of the pupil of a film point, for u and v in [0, 1] (clamped). u runs around the middle, from the
-  /// lens's +y, so that samples of neighbouring points are neighbours, of the points of an iris with blades from its
-  /// first corner; v runs outwards. Area 0 for points outside the
-  /// film's radius, numbers that are not finite and wavelengths that the table does not cover.
+  /// Samples the pupil of a film point, for u and v in [0, 1] (clamped).
+  ///
+  /// u runs around the middle, from the lens's +y (for points of an iris with blades: from its first corner), so that
+  /// samples of neighbouring film points are neighbours; v runs outwards. The area is 0 if the film point is outside
+  /// lit_radius(), a number is not finite, or the wavelength is not covered.
   PupilSample sample(const FilmPoint& film, double u, double v, Wavelength wavelength = {}) const noexcept;
-  /// The same for many: film_x, film_y, u, v, x, y and areas: N each; x and y may be u and v. Float or double.
+  /// Samples N pupils, float or double. x and y may be u and v.
   template <class T>
   void sample(std::size_t count, const T* film_x, const T* film_y, const T* u, const T* v,
               const RayWavelengths& wavelengths, T* x, T* y, T* areas) const noexcept;
 
-  /// Area of the pupil of a film point, mm^2; 0 as in `sample`. Behind an iris with blades it is a sum over samples.
+  /// Area of the pupil of a film point (mm^2); 0 as in `sample`. For an iris with blades, a mean over samples.
   double area(const FilmPoint& film, Wavelength wavelength = {}) const noexcept;
-  /// The projected solid angle in which a film point sees its pupil, sr, within 1e-4 of it; 0 as in `sample`. Times the
-  /// square of the index behind the lens it is the irradiance of the film for a scene of radiance 1.
+  /// Projected solid angle of the pupil, seen from the film point (sr), within 1e-4; 0 as in `sample`. Multiplied by
+  /// the squared index behind the lens, it is the irradiance of the film for a scene of radiance 1.
   double projected_solid_angle(const FilmPoint& film, Wavelength wavelength = {}) const noexcept;
-  /// The middle of its polygon; the centre of the central obscuration where there is one. (0, 0) without a pupil.
+  /// Middle of the pupil's polygon, or centre of the central obscuration; (0, 0) without a pupil.
   Vec2<double> middle(const FilmPoint& film, Wavelength wavelength = {}) const noexcept;
-  /// The area that the whole stop would give it, whatever its blades leave.
+  /// Area of the pupil for the round stop, without blades (mm^2).
   double polygon_area(const FilmPoint& film, Wavelength wavelength = {}) const noexcept;
-  /// The area of a sample at a place; 0 outside the pupil.
+  /// Area of a sample at a point of the pupil plane (mm^2); 0 outside the pupil.
   double sample_area(const FilmPoint& film, double x, double y, Wavelength wavelength = {}) const noexcept;
   template <class T>
   void sample_areas(std::size_t count, const TwoPlaneRays<const T>& lines, const RayWavelengths& wavelengths,
                     T* areas) const noexcept;
-  /// The scale of the iris (1 or slightly more) if the samples of a film point are uniform on the iris, so that u and v
-  /// determine the stop point; otherwise 0.
+  /// Scale of the iris (1 or slightly more) if the samples of a film point are uniform on the iris; otherwise 0. Then u
+  /// and v determine the stop point.
   double drawn_iris_scale(const FilmPoint& film, Wavelength wavelength = {}) const noexcept;
-  /// Intersections of rays with the stop, in semi-diameters, within 0.1 to 2 %, for pupils made by with_stop().
-  /// Float or double, N.
+  /// Intersections of N rays with the stop, in semi-diameters, float or double; for pupils made by with_stop().
+  ///
+  /// Accuracy: 0.1 to 2 %.
   template <class T>
   void stop_points(std::size_t count, const TwoPlaneRays<const T>& lines, const RayWavelengths& wavelengths, T* x,
                    T* y) const noexcept;
-  /// Whether a place in the plane of the pupil belongs to the pupil of a film point.
+  /// True if a point of the pupil plane belongs to the pupil of a film point.
   bool contains(const FilmPoint& film, double x, double y, Wavelength wavelength = {}) const noexcept;
 
-  /// The u and v whose sample is a place in the pupil of a film point; v is above 1 outside, and where an obscuration
-  /// lies that of its inner edge.
+  /// The inverse of sample(): u and v of a point of the pupil plane. v is above 1 outside the pupil; in a central
+  /// obscuration, v has its value at the inner edge of the obscuration.
   Vec2<double> position(const FilmPoint& film, double x, double y, Wavelength wavelength = {}) const noexcept;
 
-  /// contains() for many rays. within: N, 0 or 1. Float or double.
+  /// contains() for N rays, float or double; `within` gets 0 or 1.
   template <class T>
   void contains(std::size_t count, const TwoPlaneRays<const T>& lines, const RayWavelengths& wavelengths,
                 std::uint8_t* within) const noexcept;
-  /// How far within the pupils the places of some rays lie: from 1 in the middle to 0 at the edge, and on to -1 outside
-  /// and in the obscuration. Continuous over film points and places that the pupil faces; of pupils in closed form 1 or
-  /// -1. clearances: N. Fast where successive rays differ little.
+  /// Clearances of N rays in their pupils: 1 in the middle, 0 at the edge, down to -1 outside and in the obscuration.
+  ///
+  /// Continuous over film and pupil points; 1 or -1 for pupils in closed form. Fast if successive rays differ little.
   void clearances(std::size_t count, const TwoPlaneRays<const double>& lines, Wavelength wavelength,
                   double* clearances) const noexcept;
 
   FilmPupilArrays arrays() const;
 
-  /// Derivatives of a sample's (x, y) by film x and by film y, at constant u and v.
+  /// Derivatives of the x and y of a sample by film x and film y, at constant u and v.
   struct Derivatives {
     Vec2<double> by_film_x{0, 0}, by_film_y{0, 0};
   };

@@ -9,26 +9,29 @@
 
 namespace petzval {
 
-/// The two planes that parametrise image-space rays: the film, and the plane of the pupil behind the lens, that of the
-/// paraxial exit pupil where it lies in reach. Lens frame, mm.
+/// The two planes that parametrise image-space rays: the film and the pupil plane. Lens frame, mm.
 struct TwoPlanes {
   double film_z = 0;
   double pupil_z = 0;
 
-  /// From the film to the plane of the pupil along z; negative where that lies towards the scene, as in most lenses.
+  /// Distance from the film to the pupil plane along z; negative if the pupil plane lies in front of the film, as in
+  /// most lenses.
   double depth() const noexcept { return pupil_z - film_z; }
 };
 
-/// The planes of a lens. The plane of the pupil is that of the paraxial exit pupil (of the primary wavelength, in the
-/// main meridian) where that is 0.05 to 20 focal lengths from the film, else the plane of the last vertex. Throws Error
-/// for a film in the plane of the last vertex.
+/// The two planes of a lens.
+///
+/// The pupil plane is the plane of the paraxial exit pupil (primary wavelength, main meridian) if it is 0.05 to 20
+/// focal lengths from the film, else the plane of the last vertex.
+///
+/// @throws Error if the film lies in the plane of the last vertex
 PETZVAL_API TwoPlanes two_planes(const Lens& lens);
 
-/// 1 where the way from the film to the plane of the pupil leads towards the scene, -1 where it leads away from it.
+/// 1 if the direction from the film to the pupil plane is towards the scene, -1 if it is away from the scene.
 PETZVAL_API double towards_scene(const Lens& lens, const TwoPlanes& space);
 
-/// Image-space rays as a structure of arrays, N values each: where they meet the film and the plane of the pupil, mm.
-/// The direction of travel is not part of them.
+/// N image-space rays as a structure of arrays: their points on the film and on the pupil plane (mm), without a
+/// direction of travel.
 template <class T>
 struct TwoPlaneRays {
   T* film_x = nullptr;
@@ -41,17 +44,17 @@ struct TwoPlaneRays {
   }
 };
 
-/// An image-space ray by two planes: where it meets the film and the plane of the pupil, mm.
+/// An image-space ray: its points on the film and on the pupil plane (mm).
 struct TwoPlaneRay {
   double film_x = 0, film_y = 0, pupil_x = 0, pupil_y = 0;
 };
 
-/// Such a ray and its derivatives by two parameters.
+/// An image-space ray and its derivatives by two parameters.
 struct TwoPlaneRayDerivatives {
   TwoPlaneRay line{}, by_u{}, by_v{};
 };
 
-/// A ray and the derivatives of its origin and direction by two parameters; 0 for a ray that is lost.
+/// A ray and the derivatives of its origin and direction by two parameters; 0 if the ray is lost.
 struct RayDerivatives {
   RayFate fate = RayFate::transmitted;
   Ray<double> ray{}, by_u{{0, 0, 0}, {0, 0, 0}}, by_v{{0, 0, 0}, {0, 0, 0}};
