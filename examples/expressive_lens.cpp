@@ -55,7 +55,6 @@ std::vector<double> wavelengths_nm(const Options& options) {
 
 /// Mean angles under which film points between the axis and the corner see the scene, by exact rays. Film points
 /// without light are skipped.
-///
 /// @throws petzval::Error if no film point has light
 std::vector<double> fields_rad(const petzval::Lens& lens, const petzval::Film& film) {
   const petzval::Camera exact(lens, film, {.model = petzval::ModelKind::exact_double});

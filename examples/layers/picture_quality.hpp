@@ -16,7 +16,6 @@ struct Likeness {
 };
 
 /// The likeness over pixels where `mask` is not 0, or over all pixels if `mask` is empty.
-///
 /// @throws petzval::Error if the sizes of the pictures differ
 Likeness likeness(const petzval::RgbImage& picture, const petzval::RgbImage& reference,
                   const std::vector<unsigned char>& mask = {});

@@ -20,7 +20,6 @@ class Checkpoint {
   static void write(const PictureSums& sums, const examples::Json& job, const std::filesystem::path& file);
 
   /// Reads the sums of a job.
-  ///
   /// @throws petzval::Error that names the file, if it is not a checkpoint, was changed, or belongs to another job;
   ///         then the message lists the different keys
   static PictureSums read(const std::filesystem::path& file, const examples::Json& job);

@@ -31,7 +31,6 @@ struct BokehScene {
 };
 
 /// Focuses the lens at its primary wavelength.
-///
 /// @throws petzval::Error if the focus is out of reach or the light is not in front of the lens
 BokehScene focused_scene(const petzval::Lens& lens, double focus_mm, const BokehSetup& setup);
 
@@ -55,7 +54,6 @@ void add_white_point(App& app, std::string& white_point);
 petzval::RgbImage irradiance(const petzval::Psf& psf, const petzval::Spectrum& light = white_light("D65"));
 
 /// RGB weights of wavelengths under the light, by the colour matching functions of the data directory.
-///
 /// @throws petzval::Error if the wavelengths are invalid
 std::vector<std::array<double, 3>> rgb_weights(std::span<const double> wavelengths_nm, const petzval::Spectrum& light);
 

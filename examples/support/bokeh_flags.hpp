@@ -22,7 +22,6 @@ struct BokehFlags {
 void add_bokeh(App& app, BokehFlags& flags);
 
 /// The controls with their map. A note on standard error gives the light added by setting negative weights to 0.
-///
 /// @throws petzval::Error if a file cannot be read, both maps are given, or a flag has no effect
 petzval::BokehControls controls_of(const BokehFlags& flags);
 

@@ -37,12 +37,10 @@ inline constexpr Range positive_number{std::numeric_limits<double>::min(), std::
                                        "a finite number above 0"};
 
 /// Parses the whole text as one decimal number, independent of the locale.
-///
 /// @throws petzval::Error that begins with `where`, if the text is not a number in the range
 double parse_number(const std::string& where, std::string_view text, const Range& range);
 
 /// Parses "10", "0,10,20" or "0, 10, 20".
-///
 /// @throws petzval::Error that begins with `where`, if a number is invalid or repeated
 std::vector<double> parse_numbers(const std::string& where, std::string_view text, const Range& range);
 

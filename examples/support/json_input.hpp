@@ -19,7 +19,6 @@ namespace examples {
 [[noreturn]] void refuse(const std::string& where, const Json& found, const std::string& wanted);
 
 /// Reads a document.
-///
 /// @throws petzval::Error  that names the file, if it is not JSON, repeats a key (which would hide a value) or has more
 ///         than 8 levels (no format here needs more, and values are printed and compared recursively)
 Json read_json(const std::filesystem::path& file);

@@ -19,7 +19,6 @@ struct CsvColumn {
 
 /// Reads a header with the names of the columns and one line of numbers per row (LF or CRLF; a byte-order mark and
 /// blank lines at the end are skipped). Returns the columns.
-///
 /// @throws petzval::Error that names `where`, the line (from 1) and the column
 std::vector<std::vector<double>> parse_columns(std::string_view csv, std::span<const CsvColumn> columns,
                                                const std::string& where);

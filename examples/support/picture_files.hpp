@@ -16,7 +16,6 @@ Option* add_formats(App& app, std::vector<std::string>& formats, const std::stri
 
 /// Writes STEM.exr (linear float, with `texts` and `numbers` in its header), STEM.pfm (linear float) and STEM.png
 /// (`shown`) as far as `formats` names them, each once. Returns the paths.
-///
 /// @throws petzval::Error that names the file
 std::vector<std::filesystem::path> write_picture(const petzval::RgbImage& image, const petzval::Rgb8Image& shown,
                                                  const std::vector<std::string>& formats,

@@ -42,7 +42,6 @@ class PsfJob {
   petzval::ExrPart part(const std::filesystem::path& folder, std::size_t node) const;
 
   /// Gathers all PSFs from folders of this job.
-  ///
   /// @throws petzval::Error that names every file that differs between folders or is corrupt without an intact copy,
   ///         and the missing PSFs, by shard if the number of shards is known
   std::vector<petzval::ExrPart> gather(const std::vector<std::filesystem::path>& folders) const;

@@ -15,7 +15,6 @@ struct RayTable {
 };
 
 /// Reads "x_mm,y_mm,z_mm,dx,dy,dz" and one ray per line, like parse_columns.
-///
 /// @throws petzval::Error also if a direction is 0,0,0
 RayTable parse_rays(std::string_view csv, const std::string& where);
 
