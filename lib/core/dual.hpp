@@ -25,8 +25,7 @@ struct Gradient {
   PETZVAL_INLINE friend Gradient operator*(double s, const Gradient& a) noexcept { return a * s; }
 };
 
-/// A number with its derivatives with respect to two variables; can be the scalar of the kernels. Comparisons compare
-/// the values.
+/// A number with its derivatives by two variables, as a scalar of the kernels. Comparisons use only the values.
 struct Dual {
   using Scalar = double;
 

@@ -6,9 +6,8 @@
 namespace petzval::core_detail {
 
 /// Reduces the first columns of a matrix to upper-triangular form by Householder reflections and applies the
-/// reflections to the rest.
-/// The triangle is R of the QR decomposition; entries below it are undefined. If there are at least as many rows as
-/// columns, least-squares solutions and the scalar products of all columns are preserved.
+/// reflections to the rest. The triangle is R of the QR decomposition; entries below it are undefined. If there are at
+/// least as many rows as columns, least-squares solutions and the scalar products of all columns are preserved.
 ///
 /// The result is the same on every processor. Eigen's decompositions and products of large matrices sum in blocks whose
 /// size depends on the processor's caches, so that their last bits differ between processors.

@@ -20,8 +20,7 @@ namespace {
 
 constexpr InstructionSet all[] = {InstructionSet::baseline, InstructionSet::avx2, InstructionSet::avx512};
 
-/// Number of sets, from the narrowest, that PETZVAL_INSTRUCTION_SET allows: all if it is not set, 1 if its value is
-/// unknown.
+/// Number of sets allowed by PETZVAL_INSTRUCTION_SET, from the narrowest: all if not set, 1 if the value is unknown.
 [[maybe_unused]] std::size_t allowed() noexcept {
   const char* widest = std::getenv("PETZVAL_INSTRUCTION_SET");
   if (!widest || !*widest) return std::size(all);

@@ -69,9 +69,8 @@ class Kronecker {
   std::array<double, N> shift_{};
 };
 
-/// Point `index` of a Fibonacci lattice of `count` points.
-/// With u around a disc and v the squared radius it is a sunflower spiral: every v is used once, so that the rim of the
-/// disc is sampled more finely than by Sobol points.
+/// Point `index` of a Fibonacci lattice of `count` points. With u around a disc and v the squared radius it is a
+/// sunflower spiral: every v is used once, so that the rim of the disc is sampled more finely than by Sobol points.
 inline std::array<double, 2> fibonacci_point(std::size_t index, std::size_t count) noexcept {
   const double i = static_cast<double>(index);
   return {std::fmod(i * std::numbers::phi, 1.0), (i + 0.5) / static_cast<double>(count)};

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Intersections of rays with planes: the plane at z perpendicular to the axis (an upright film), and a tilted plane.
-// Rays are infinite lines. A ray parallel to the plane gives non-finite numbers, so that loops over many rays need no
-// branch.
+// Rays are infinite lines. A ray parallel to the plane gives non-finite numbers, so that loops need no branch.
 #pragma once
 
 #include <glm/geometric.hpp>
@@ -13,7 +12,6 @@
 
 namespace petzval::core_detail {
 
-/// Ray i of ray arrays.
 template <class T>
 Ray<std::remove_const_t<T>> ray_at(const RayArrays<T>& rays, std::size_t i) noexcept {
   return {{rays.x[i], rays.y[i], rays.z[i]}, {rays.dx[i], rays.dy[i], rays.dz[i]}};

@@ -3,8 +3,7 @@
 // packaged by Debian 12 has no SSE2 target and no approximate square root of doubles.)
 //
 // Sources that are compiled for several instruction sets (petzval_lanes, petzval_loops in cmake/module.cmake) define
-// all names in unnamed namespaces, as here: the linker must never replace a function of one set by a function of
-// another.
+// all names in unnamed namespaces, as here: the linker must never mix functions of two sets.
 #pragma once
 
 #include <cstdint>

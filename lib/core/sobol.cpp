@@ -9,9 +9,8 @@ namespace {
 
 using core_detail::mixed;
 
-/// The bits of x in reverse order.
-/// The swap of nibbles separates the swaps of bytes and half words: compilers would merge adjacent ones into a single
-/// instruction that baseline vectors lack.
+/// The bits of x in reverse order. The swap of nibbles separates the swaps of bytes and half words: compilers would
+/// merge adjacent ones into a single instruction that baseline vectors lack.
 constexpr std::uint32_t reversed(std::uint32_t x) noexcept {
   x = ((x >> 1) & 0x55555555u) | ((x & 0x55555555u) << 1);
   x = ((x >> 2) & 0x33333333u) | ((x & 0x33333333u) << 2);
@@ -20,8 +19,7 @@ constexpr std::uint32_t reversed(std::uint32_t x) noexcept {
   return (x >> 16) | (x << 16);
 }
 
-/// Coordinate 1 of the sequence with its first binary digit in the lowest bit. In this order coordinate 0 is the index
-/// itself.
+/// Coordinate 1 of the sequence, its first binary digit in the lowest bit. In this order coordinate 0 is the index.
 ///
 /// The generating matrix is Pascal's triangle modulo 2, and by Lucas's theorem binomial(k, j) is odd if the bits of j
 /// are a subset of the bits of k. Digit j is therefore the parity of the bits k of the index with j within k: a sum
@@ -63,8 +61,7 @@ class Scrambling {
   Round first_, second_, third_;
 };
 
-/// Converts reversed digits exactly to a number in [0, 1), through a signed integer, which baseline vectors can
-/// convert.
+/// Converts reversed digits exactly to [0, 1), through a signed integer, which baseline vectors can convert.
 constexpr double unit(std::uint32_t digits) noexcept {
   return static_cast<std::int32_t>(reversed(digits) ^ 0x80000000u) * 0x1p-32 + 0.5;
 }

@@ -9,16 +9,14 @@
 
 namespace petzval {
 
-/// A number for messages, figures and JSON: the shortest decimals that read back to the same double, independent of the
-/// locale ("0.1", "1e+30", "nan").
+/// A number as text: the shortest decimals that read back to the same double, in any locale ("0.1", "1e+30", "nan").
 PETZVAL_API std::string to_text(double value);
 
 /// A number rounded to `significant_digits`, independent of the locale.
 PETZVAL_API std::string to_text(double value, int significant_digits);
 
-/// Number of bytes of the UTF-8 character that starts at a position.
-/// 0 if the bytes there are no valid character, including surrogates, code points above U+10FFFF and overlong
-/// encodings.
+/// Number of bytes of the UTF-8 character that starts at a position. 0 if the bytes there are no valid character,
+/// including surrogates, code points above U+10FFFF and overlong encodings.
 PETZVAL_API std::size_t utf8_length(std::string_view text, std::size_t at) noexcept;
 
 /// The longest beginning of a UTF-8 text that has at most `most` bytes and ends with a whole character.

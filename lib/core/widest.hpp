@@ -26,8 +26,7 @@
   inline const Type& name() noexcept { return name##_baseline; }
 #endif
 
-/// Placed before a loop in which no iteration reads a value that another iteration writes, so that the compiler may
-/// vectorise it.
+/// Lets the compiler vectorise the next loop, in which no iteration may read a value written by another.
 #if defined(__clang__)
 #define PETZVAL_INDEPENDENT _Pragma("clang loop vectorize(assume_safety)")
 #else

@@ -65,7 +65,6 @@ struct CodevLens {
 /// Thicknesses from this value on mean infinity.
 inline constexpr double codev_endless = 1e10;
 
-/// Builds the rows and configurations of a prescription.
 void build_codev(CodevLens codev, Import& in);
 
 }  // namespace petzval::formats_detail

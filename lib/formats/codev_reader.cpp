@@ -77,9 +77,7 @@ class CodevReader {
   bool zoomed_values(Words);
   void private_begins(Words) { in_private_ = true; }
   void refused_surface(Words);
-  void refused_edit(Words w) {
-    in_.refuse(line_, w[0], "an edit of the lens above it", "applied to the lens before saving");
-  }
+  void refused_edit(Words w) { in_.refuse(line_, w[0], "an edit of the lens above", "applied before saving"); }
   void not_a_shape(Words);
 
   void private_statement(Words);
@@ -234,8 +232,7 @@ void CodevReader::object(Words w) {
 
 void CodevReader::lens_surface(Words w) {
   if (lens_.ended) in_.refuse(line_, w[0], "a surface after SI, the image", "before SI");
-  if (lens_.surfaces.empty() && !same(w[0], "SO"))
-    in_.refuse(line_, w[0], "a surface before SO, the object", "after SO");
+  if (lens_.surfaces.empty() && !same(w[0], "SO")) in_.refuse(line_, w[0], "a surface before SO", "after SO");
   in_.limit(lens_.surfaces.size() + 1, "surfaces", 2);
   // Other programs write planes and infinite distances as "inf"; if there is no RDM, this number is not a curvature.
   const bool plane = w.size() > 1 && is_infinite(w[1]), endless = w.size() > 2 && is_infinite(w[2]);

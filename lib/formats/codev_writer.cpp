@@ -238,8 +238,7 @@ void CodevWriter::surface(std::size_t i) {
   out_.line("  K " + to_text(row.conic));
   for (const AsphereTerm& term : row.aspheric) {
     if (term.order % 2 != 0 || term.order < 4 || term.order > 20) {
-      out_.refuse(i, "an aspheric term of order " + std::to_string(term.order),
-                  "of even order from 4 to 20 for a .seq");
+      out_.refuse(i, "an aspheric term of order " + std::to_string(term.order), "of even order 4 to 20 for a .seq");
     }
     out_.line("  " + std::string(1, "ABCDEFGHJ"[term.order / 2 - 2]) + ' ' + to_text(term.coefficient));
   }
@@ -289,8 +288,7 @@ void CodevWriter::zooms() {
     for (const SurfaceChange& change : c.changes)
       other = other || change.conic || change.semi_diameter || change.medium;
   }
-  if (other)
-    out_.lose("configurations", "all configurations get the conics, semi-diameters, glasses and stops of the first");
+  if (other) out_.lose("configurations", "all get the conics, semi-diameters, glasses and stops of the first");
   if (focusing) out_.lose("focus_of", "the zoom position of a focused configuration is lost, except in its name");
 }
 

@@ -259,8 +259,7 @@ void Completion::solve(const ThicknessSolve& solve) {
   if (!(std::abs(solved) < 1e10)) {
     return in_.warn(solve.line, solve.command, "no thickness satisfies the solve; the thickness in the file is taken");
   }
-  // Allow for the digits of files and for differences between editions of a glass catalogue. A film stays if it is in
-  // focus.
+  // Allow for the digits of files and for editions of a glass catalogue. A film stays if it is in focus.
   const double tolerance = solve.is_taken ? 2e-4 * std::abs(first_order_of(lens_).effective_focal_length)
                                           : 1e-3 * std::max(std::abs(solved), std::abs(stated));
   if (solve.is_stated && std::abs(stated - solved) <= tolerance) return;
@@ -384,8 +383,7 @@ void Completion::name_positions() {
   }
 }
 
-/// The declared aperture defines the beam and the rim of the stop clips it, so the smaller of both is the size of the
-/// stop.
+/// Sizes the stop: the declared aperture defines the beam and the rim clips it, so the smaller of both counts.
 void Completion::size_the_stop() {
   const auto& aperture = lens_.design.aperture;
   const bool declared = aperture && aperture->setting != ApertureSetting::stop_size && aperture->value > 0 &&

@@ -21,8 +21,7 @@ std::size_t stop_of(const Prescription& rows);
 /// Position of the entrance pupil from the first surface (mm); infinite if the object space is telecentric.
 double entrance_pupil_z(const Lens& compiled, std::size_t stop);
 
-/// Height of a design's marginal ray at the stop (mm): of an exact ray if a parallel beam enters, otherwise to first
-/// order.
+/// Height (mm) of a design's marginal ray at the stop: exact if a parallel beam enters, otherwise to first order.
 ///
 /// @param compiled the lens without rims
 /// @param position the stop

@@ -31,17 +31,14 @@ class GlassNames {
 
   /// Finds the glass for a name in a file.
   ///
-  /// @param catalogues catalogues that the file names, in order of preference; newer catalogues of a maker come before
-  ///   older ones
-  /// @param nd n_d after the name; if `numbers` are leftovers, used only to choose between catalogues outside
-  ///   `catalogues`
+  /// @param catalogues catalogues that the file names, in order of preference; newer catalogues of a maker come first
+  /// @param nd n_d after the name; if `numbers` are leftovers, used only between catalogues outside `catalogues`
   /// @return the glass; null if no table has the name
   const Glass* find(std::string_view name, std::span<const std::string> catalogues, std::optional<double> nd,
                     Numbers numbers) const;
 
   /// Text for messages: glasses with the name of `found` in equally new catalogues that differ by more than 1e-4 in
-  /// n_d.
-  /// Empty if the file names the catalogue or states the n_d of `found`.
+  /// n_d. Empty if the file names the catalogue or states the n_d of `found`.
   std::string others(const Glass& found, std::span<const std::string> catalogues, std::optional<double> nd) const;
 
  private:

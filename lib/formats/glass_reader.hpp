@@ -28,7 +28,6 @@ class GlassReader {
   /// Adds a glass, or leaves it out with a warning if its range is empty or its index is not real. If nd is 1 or less
   /// (not printed in the file), n_d is computed.
   void add(Glass glass, int line);
-  /// Returns the result.
   /// @throws Error if the file has no usable glass
   GlassFile finish();
 

@@ -16,8 +16,7 @@
 
 namespace petzval::formats_detail {
 
-/// The data of a lens file of another program: its prescription, its requests, and warnings about assumptions. Filled
-/// by a reader for complete().
+/// A lens file of another program as data: prescription, requests, and warnings. Filled by a reader for complete().
 class Import {
  public:
   /// @param where file name, for messages

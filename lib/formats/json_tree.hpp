@@ -11,8 +11,7 @@
 
 namespace petzval::formats_detail {
 
-/// A JSON document of another program, as a tree. Infinity, -Infinity and NaN, as written by Python, are read as
-/// strings.
+/// A JSON document of another program, as a tree. Python's Infinity, -Infinity and NaN are read as strings.
 class JsonTree {
  public:
   /// Parses a text, which must outlive the tree.

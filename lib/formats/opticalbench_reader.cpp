@@ -249,8 +249,7 @@ void OpticalBenchReader::take_asphere(int line, const Cells& cells) {
   for (std::size_t i = 3; i < cells.size(); ++i) {
     const double coefficient = cells[i].empty() ? 0 : in_.number(line, "coefficient", cells[i]);
     if (coefficient != 0) {
-      if (order > 40)
-        in_.refuse(line, "coefficient", "a term of order " + std::to_string(order), "of order 40 or less");
+      if (order > 40) in_.refuse(line, "coefficient", "order " + std::to_string(order), "at most 40");
       surface.aspheric.push_back({order, coefficient});
     }
     order += order < 2 * odd + 2 ? 1 : 2;

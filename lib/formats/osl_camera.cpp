@@ -100,7 +100,7 @@ OslCamera::OslCamera(const Lens& lens, const OslCameraOptions& options) : lens_(
   check();
   film_ = options.film.value_or(usual_film(lens_));
   if (!(film_.width_mm > 0 && film_.height_mm > 0))
-    throw Error(lens.name() + ": film has no area; its width and height must be positive");
+    throw Error(lens.name() + ": film without area; area must be positive");
   const FirstOrder first = first_order(lens_);
   const Pupils p = pupils(lens_);
   origin_z_ = std::isfinite(p.entrance.z) ? p.entrance.z : 0;
@@ -123,8 +123,7 @@ void OslCamera::check() const {
     const LensSurface& s = lens_.surfaces()[i];
     const std::string here = where + ": surface " + std::to_string(i);
     if (s.mirror) throw Error(here + " is a mirror; must be refracting for an OSL camera");
-    if (s.curved_in != Section::both)
-      throw Error(here + " is a cylinder; must be a surface of revolution for an OSL camera");
+    if (s.curved_in != Section::both) throw Error(here + " is a cylinder; must be a surface of revolution");
   }
   if (!lens_.stop() || !std::isfinite(lens_.surfaces()[*lens_.stop()].semi_diameter)) {
     throw Error(where + ": no stop with a rim; must be given for an OSL camera");
@@ -293,8 +292,7 @@ std::string OslCamera::tables() const {
   return text;
 }
 
-/// The part of the shader that is the same for all lenses. Its statements are also C++, except for `point`, `vector`
-/// and `color`.
+/// The shader code common to all lenses. Its statements are also C++, except for `point`, `vector` and `color`.
 constexpr const char* body = R"OSL(
   vector raster = camera_shader_raster_position();
   vector places = camera_shader_random_sample();

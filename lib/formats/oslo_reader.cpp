@@ -121,8 +121,7 @@ void OsloReader::take(int line, std::string_view text) {
 bool OsloReader::take_general(int line, std::string_view command, const Words& w) {
   const auto length = [&](std::optional<double>& place) { return place = value(line, w), true; };
   if (command == "LEN") {
-    if (w.size() < 3 || !same(w[1], "NEW"))
-      in_.refuse(line, "LEN", "a command without NEW and a name", "LEN NEW \"name\"");
+    if (w.size() < 3 || !same(w[1], "NEW")) in_.refuse(line, "LEN", "incomplete", "LEN NEW \"name\"");
     lens_.line = line;
     in_.lens.imported->title = w[2];
     if (w.size() > 3) lens_.scale = value(line, w, 3);

@@ -19,7 +19,6 @@ struct OsloPickup {
   double constant = 0;
 };
 
-/// The medium behind a surface.
 struct OsloMedium {
   int line = 0;
   enum class Kind { air, mirror, glass, indices } kind = Kind::air;

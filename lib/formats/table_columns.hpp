@@ -40,8 +40,7 @@ struct TableColumn {
   double unit_mm = 1;  ///< unit of lengths
 };
 
-/// The column of a head, in any case, with a unit in brackets: "R", "Radius (mm)", "nd", "A4". nullopt if the head is
-/// not known.
+/// The column of a head, in any case, with a unit in brackets: "R", "Radius (mm)", "nd", "A4". nullopt if unknown.
 std::optional<TableColumn> column_of(std::string_view head);
 
 /// The columns named by the cells of a line; unknown heads become Column::left_out.

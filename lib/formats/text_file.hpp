@@ -10,12 +10,10 @@
 
 namespace petzval::formats_detail {
 
-/// The text of a file, converted to UTF-8.
-/// The file may be UTF-16 with a byte order mark or recognised by its zero bytes, UTF-8 with or without a mark, or else
-/// Latin-1.
+/// The text of a file, converted to UTF-8. The file may be UTF-16 with a byte order mark or recognised by its zero
+/// bytes, UTF-8 with or without a mark, or else Latin-1.
 /// @param wanted the required kind of file, for messages
-/// @throws Error if the file cannot be read or is not text; names the kind of a binary file (zip, PNG, EXR, ...) if its
-///   first bytes are known
+/// @throws Error if the file cannot be read or is not text; names the kind of a known binary file (zip, PNG, EXR, ...)
 std::string read_as_utf8(const std::filesystem::path& file, const std::string& wanted);
 
 /// The text of bytes in memory, converted like a file.
@@ -64,8 +62,7 @@ void append(std::string& texts, std::string_view separator, std::string_view tex
 /// The text on one line: control characters, including line breaks, become blanks.
 std::string one_line(std::string text);
 
-/// The text as a single word: blanks, quotes and control characters, which some formats do not allow in names, become
-/// underscores.
+/// The text as one word: blanks, quotes and control characters, which some formats forbid in names, become underscores.
 std::string one_word(std::string_view text);
 
 }  // namespace petzval::formats_detail

@@ -30,8 +30,7 @@ class Writer {
   /// Records the loss of nominal data and sources, except the `kept` ones and, in a format with design data, the data
   /// that its aperture and its fields declare.
   void lose_nominal_data(bool design_data, std::initializer_list<std::string_view> kept);
-  /// Records the loss of a rim of the stop that is wider than the declared beam: programs launch the beam that the
-  /// design declares.
+  /// Records the loss of a rim of the stop that is wider than the declared beam: programs launch the declared beam.
   void lose_the_wider_stop();
   /// Throws Error if a semi-diameter is 0 in any configuration: such formats have no closed rim.
   void refuse_closed_rims(const std::string& format) const;

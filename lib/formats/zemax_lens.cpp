@@ -191,10 +191,9 @@ void Rows::asphere(const ZemaxSurface& s, SurfaceRow& row) const {
              "STANDARD, EVENASPH, ODDASPHE, XASPHERE, XOSPHERE, COORDBRK, or a TOROIDAL that is a cylinder");
 }
 
-/// Sets the rim and the obscuration of a surface.
-/// Clear apertures (CLAP, FLAP) clip. Semi-diameters (DIAM) clip at elements, whether set by the user or by the width
-/// of the design's beams, and at the stop if set by the user or if the stop's size is the aperture. Dummy surfaces,
-/// with the same medium on both sides, clip only by a clear aperture.
+/// Sets the rim and the obscuration of a surface. Clear apertures (CLAP, FLAP) clip. Semi-diameters (DIAM) clip at
+/// elements, whether set by the user or by the width of the design's beams, and at the stop if set by the user or if
+/// the stop's size is the aperture. Dummy surfaces, with the same medium on both sides, clip only by a clear aperture.
 void Rows::rims(const ZemaxSurface& s, const Medium& before, SurfaceRow& row) const {
   row.obscuration_semi_diameter = s.obscuration;
   const bool dummy = !row.mirror && row.medium == before;
@@ -268,7 +267,6 @@ class Configurations {
   std::map<std::pair<std::string, int>, std::pair<std::string, bool>> left_out_;  ///< first value; true if varied
 };
 
-/// Sets the value of the design's aperture in a configuration.
 void Configurations::aperture(const ZemaxOperand& operand, double value) {
   const auto position = static_cast<std::size_t>(operand.configuration) - 1;
   const ApertureSetting setting = in_.lens.design.aperture->setting;
@@ -346,8 +344,7 @@ void Configurations::build() {
 // --- solves ---------------------------------------------------------------------------------------------------------
 
 /// MAZH behind the last surface: the film is at the axial crossing of the marginal ray, and the file states its
-/// distance. A missing distance is computed. A distance that differs from the rays of this lens is kept with a warning,
-/// as it means another glass.
+/// distance. A missing distance is computed. A distance that differs from the rays of this lens is kept with a warning.
 void solve_the_film(const ZemaxSurface& last, Import& in) {
   const auto [height, zone] = *last.marginal_height;
   const DesignData& design = in.lens.design;

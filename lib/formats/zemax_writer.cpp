@@ -205,8 +205,7 @@ std::string ZemaxWriter::shape(std::size_t i) {
   const SurfaceRow& row = p_.surfaces[i];
   if (row.curved_in == Section::x) out_.refuse(i, "a cylinder curved along x", "a cylinder curved along y for a .zmx");
   if (row.curved_in == Section::y) {
-    if (row.conic != 0 || !row.aspheric.empty())
-      out_.refuse(i, "an aspheric cylinder", "a circular cylinder for a .zmx");
+    if (row.conic != 0 || !row.aspheric.empty()) out_.refuse(i, "an aspheric cylinder", "circular for a .zmx");
     return "TOROIDAL";
   }
   if (row.aspheric.empty()) return "STANDARD";

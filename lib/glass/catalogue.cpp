@@ -58,7 +58,6 @@ const Glass* nearest_named(std::span<const Glass> glasses, std::string_view name
 
 #if defined(_WIN32)
 
-/// Names of the files in a folder.
 std::vector<std::string> names_in(const std::filesystem::path& directory) {
   std::vector<std::string> names;
   std::error_code failed;
@@ -76,8 +75,7 @@ struct CloseFolder {
   void operator()(DIR* folder) const noexcept { ::closedir(folder); }
 };
 
-/// Names of the files in a folder. Without std::filesystem::directory_iterator, which terminates the program if memory
-/// runs out (libstdc++).
+/// std::filesystem::directory_iterator would terminate the program if memory runs out (libstdc++).
 std::vector<std::string> names_in(const std::filesystem::path& directory) {
   const std::unique_ptr<DIR, CloseFolder> folder(::opendir(directory.c_str()));
   std::vector<std::string> names;

@@ -11,7 +11,6 @@
 
 namespace petzval::glass_detail {
 
-/// The first line of a glass table.
 inline constexpr std::string_view glass_table_header =
     "catalogue,name,nd,vd,formula,wl_min_um,wl_max_um,coefficients,origin";
 

@@ -56,8 +56,7 @@ class JsonReader {
   virtual ~JsonReader() = default;
 
   /// Parses a text. Numbers are read from their digits, independent of the locale.
-  /// @throws Error if the text is not JSON, if an integer exceeds 2^53 or a number the range of double, and if a call
-  ///   below throws
+  /// @throws Error if the text is not JSON, a number is out of range (integers: 2^53), or a call below throws
   void parse(std::string_view json);
 
   // The events, in the order of the text.
@@ -92,9 +91,8 @@ class JsonReader {
   JsonTokens tokens_{{}};
 };
 
-/// Line and column (":11:8") of the value at a path ("surfaces[1].radius") in a JSON text, for messages.
-/// If the text has no such value: the position of the nearest list or object on the path. The text may contain Infinity
-/// and NaN.
+/// Line and column (":11:8") of the value at a path ("surfaces[1].radius") in a JSON text, for messages. If the text
+/// has no such value: the position of the nearest list or object on the path. The text may contain Infinity and NaN.
 PETZVAL_API std::string json_position(std::string_view json, std::string path);
 
 /// The shortest decimals that read back, without an exponent from 1e-4 to 1e16, and always with a point.

@@ -60,7 +60,6 @@ int remove_file(const fs::path& file) { return ::unlink(file.c_str()); }
 
 #endif
 
-/// Owns a file descriptor.
 class OpenFile {
  public:
   explicit OpenFile(int descriptor) noexcept : descriptor_(descriptor) {}
@@ -88,8 +87,7 @@ class OpenFile {
   int descriptor_;
 };
 
-/// A new file in the folder of another file, which it may replace. Its name is unique: O_EXCL neither opens an existing
-/// file nor follows a link.
+/// A new file in the folder of another file, which it may replace. O_EXCL makes its name unique and follows no link.
 class NewFile {
  public:
   /// Creates the file with the mode of the file to replace, or with the default mode.

@@ -8,7 +8,6 @@
 
 namespace petzval::kernel {
 
-/// Highest order of an aspheric term.
 inline constexpr int max_asphere_order = 40;
 
 /// Bounds of the shape of an asphere over a ring between two radii, rounded outwards.

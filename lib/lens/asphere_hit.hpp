@@ -236,8 +236,7 @@ Crossing<T> first_crossing(const Asphere<Storage<T>>& s, const Passage<T>& ray, 
   return crossing;
 }
 
-/// Result of Newton's iteration from the hit on the base conic. usable: the iteration converged to a crossing in the
-/// sense of travel.
+/// Result of Newton's iteration from the hit on the base conic; usable if it is a crossing in the sense of travel.
 template <class T>
 struct Candidate {
   T t;
@@ -282,8 +281,7 @@ Candidate<T> newton(const Asphere<Storage<T>>& s, const Hit<T>& base, const Vec<
 ///
 /// Newton's iteration starts at the hit on the base conic. Its result is accepted if it lies inside the aperture and
 /// the ray rises above the surface, in the sense of travel, along the whole part that can lie on the surface: then
-/// there is no other crossing. (On gull-wing surfaces Newton's iteration without this check takes a wrong crossing for
-/// 2.6 % of steep rays.)
+/// there is no other crossing. (On gull-wing surfaces plain iteration takes a wrong crossing for 2.6 % of steep rays.)
 ///
 /// Otherwise this part is searched from its beginning, in intervals that are settled by bounds over rings of the
 /// surface: at most 136 intervals, and 100 steps to refine the crossing. The phone lens of data/lenses needs one

@@ -61,8 +61,7 @@ class PETZVAL_API CompiledWavelengths {
     double nm, place;
     std::size_t position;
   };
-  /// The interval between two ranks: weights of its nodes as cubics of the position, measured from the start of the
-  /// interval.
+  /// The interval between two ranks: weights of its nodes as cubics of the position in the interval.
   struct Interval {
     std::size_t first = 0;
     double from = 0;

@@ -34,7 +34,6 @@ struct Lens::Data {
 
   static Lens lens(std::shared_ptr<const Data> data) noexcept { return Lens(std::move(data)); }
 
-  /// Builds the tables from the other members.
   void build() {
     lens_detail::end_at_edges(surfaces, rims, indices.values);
     const auto aspheres = lens_detail::describe_aspheres(surfaces);

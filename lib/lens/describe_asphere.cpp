@@ -10,8 +10,7 @@
 namespace petzval::lens_detail {
 namespace {
 
-/// x^n by multiplication, so that scaling a lens by 2 multiplies its constants by exact powers of two (pow() may
-/// round).
+/// x^n by multiplication: scaling a lens by 2 must scale its constants by exact powers of two (pow() may round).
 double power(double x, int n) {
   double result = 1;
   for (int i = 0; i < n; ++i) result *= x;

@@ -11,8 +11,7 @@ namespace petzval::lens_detail {
 
 kernel::Quadric<double> describe_quadric(const LensSurface& surface);
 
-/// Height up to which an asphere is described: its semi-diameter, or the smaller height of the equator of the base
-/// conic or of a slope of 4.
+/// Height up to which an asphere is described: its semi-diameter, its equator or a slope of 4, whichever is smallest.
 double described_height(const LensSurface& surface);
 
 /// The shapes of all surfaces with aspheric terms, with the bounds over their rings.

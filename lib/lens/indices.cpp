@@ -14,8 +14,7 @@
 namespace petzval::lens_detail {
 namespace {
 
-/// The medium in front of the first surface (space 0) or behind surface space - 1; behind a mirror, the medium in
-/// front.
+/// The medium in front of the first surface (space 0) or behind surface space - 1; a mirror keeps its medium.
 const Medium& medium(const Prescription& p, std::size_t space) {
   return space == 0 ? p.object_space : p.surfaces[space - 1].medium;
 }
@@ -68,7 +67,6 @@ std::string why_missing(const Medium& m, const Tables& tables) {
   return "; its n_d of " + to_text(*m.nd) + " is more than 0.01 from " + others;
 }
 
-/// Similar names in the tables, for messages.
 std::string names_like(const Medium& m, const Tables& tables) {
   if (!m.glass || !tables.glasses) return "";
   const std::string names = glass_detail::similar_names(*tables.glasses, *m.glass);

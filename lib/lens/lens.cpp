@@ -141,8 +141,7 @@ void place_vertices(Lens::Data& data) {
   data.film_z = z;
 }
 
-/// The focus positions of a prescription in one configuration, sorted by inverse distance; empty if there are fewer
-/// than two.
+/// The focus positions of a prescription in one configuration, by inverse distance; empty if fewer than two.
 std::vector<FocusPosition> focus_positions(const Prescription& prescription) {
   std::vector<FocusPosition> result;
   for (std::size_t i = 0; i < prescription.configurations.size(); ++i) {

@@ -87,8 +87,7 @@ struct SquaredIndex {
   std::array<R, terms> by_power{1};
   bool constant = true;  ///< only the first coefficient is not zero
 
-  /// Evaluates by Estrin's scheme, whose dependency chain is shorter than Horner's. T: R or lanes of R; t2, t4: powers
-  /// of t.
+  /// Uses Estrin's scheme, whose dependency chain is shorter than Horner's. T: R or lanes of R; t2, t4: powers of t.
   template <class T>
   T at(const T& t, const T& t2, const T& t4) const noexcept {
     const auto pair = [&](std::size_t k) { return T(by_power[k]) + T(by_power[k + 1]) * t; };
@@ -96,8 +95,8 @@ struct SquaredIndex {
   }
 };
 
-/// Length of a row with one number per wavelength, padded with zeros to whole pairs of the widest registers, which
-/// core_detail::look_up() loads.
+/// Length of a row with one number per wavelength, padded with zeros to pairs of the widest registers for
+/// core_detail::look_up().
 template <class R>
 constexpr std::size_t row_length(std::size_t wavelengths) noexcept {
   constexpr std::size_t pair = 2 * 64 / sizeof(R);

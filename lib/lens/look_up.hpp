@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Numbers by wavelength for rays of mixed wavelengths. For sources compiled once per instruction set, like
-// core/simd.hpp.
+// Numbers per ray for mixed wavelengths. For sources compiled once per instruction set, like core/simd.hpp.
 #pragma once
 
 #include <cstddef>
@@ -21,8 +20,7 @@ inline constexpr std::size_t look_up_block = 64;
 using Positions = std::uint16_t __attribute__((vector_size(core_detail::lane_bytes / 2)));
 
 /// Looks up the first `used` numbers of rays with individual wavelengths, from ray `begin` on, at most look_up_block
-/// rays.
-/// Written as to[number][ray]; zeros if a wavelength does not exist.
+/// rays. Written as to[number][ray]; zeros if a wavelength does not exist.
 template <class R, std::size_t numbers>
 inline void look_up(const WavelengthRows<R>& given, const RayWavelengths& wavelengths, std::size_t begin,
                     std::size_t count, R (&to)[numbers][look_up_block], std::size_t used = numbers) noexcept {

@@ -42,8 +42,7 @@ struct Hit {
   T slant;  ///< gradient times direction, in the sense of travel: the cosine of incidence if the gradient has length 1
 };
 
-/// Half the gradient of the quadric's equation at one of its points, pointing to +z at the vertex; of unit length on a
-/// sphere.
+/// Half the gradient of the quadric's equation at a point of it, +z at the vertex; of unit length on a sphere.
 template <class T>
 Vec<T> gradient(const Quadric<Storage<T>>& q, const Vec<T>& point) noexcept {
   using R = Storage<T>;
@@ -75,8 +74,8 @@ Vec<T> approach(const Quadric<Storage<T>>& q, const Vec<T>& p, const Vec<T>& d) 
 ///
 /// The root is chosen by `sense`, not by the sign of d.z: in a fisheye, rays towards the film may have d.z < 0. The
 /// distance may be negative (a start behind the surface is legal: neighbouring surfaces overlap on paper). No hit if
-/// there is no real root, or if the root lies on the far side of the sphere or the second sheet of the hyperboloid; the
-/// point is then the start.
+/// there is no real root, or if it lies on the far side of the sphere or the second sheet of the hyperboloid; the point
+/// is then the start.
 /// @param start, d a point of the ray and its unit direction, vertex frame
 /// @param sense +1 if light travels towards +z in the unfolded lens, otherwise -1
 ///

@@ -16,8 +16,7 @@ using kernel::SquaredIndex;
 
 constexpr std::size_t terms = SquaredIndex<double>::terms;
 
-/// The polynomial through values at the zeros of the Chebyshev polynomial T_8: a sum over T_0 to T_7, expanded in
-/// powers.
+/// The polynomial through values at the zeros of the Chebyshev polynomial T_8: a sum of T_0 to T_7, in powers.
 SquaredIndex<double> through(const std::array<double, terms>& values) {
   SquaredIndex<double> result{.by_power = {0}, .constant = false};
   std::array<double, terms> before{}, own{1};  // T_{k-1}, T_k

@@ -35,8 +35,7 @@ class AlignedRows {
   std::vector<Register> registers_;
 };
 
-/// Number of cells between uniform wavelengths: with the zero entry, permutations of registers can read them
-/// (core/look_up.hpp).
+/// Number of cells between uniform wavelengths: with the zero entry, register permutations can read them.
 inline constexpr std::int32_t few_cells = 15;
 
 /// Numbers per wavelength, borrowed, for loops over rays of mixed wavelengths (lens/look_up.hpp).

@@ -88,8 +88,7 @@ std::optional<double> between(const std::optional<double>& a, const std::optiona
   return std::lerp(*a, *b, t);
 }
 
-/// Interpolates the radius, or the curvature if one surface is a plane or the signs differ: a radius would pass through
-/// 0.
+/// Interpolates the radius, or the curvature for a plane or opposite signs, as a radius would pass through 0.
 double radius_between(double a, double b, double t) {
   if (a != 0 && b != 0 && (a > 0) == (b > 0)) return std::lerp(a, b, t);
   const double curvature = std::lerp(a == 0 ? 0 : 1 / a, b == 0 ? 0 : 1 / b, t);

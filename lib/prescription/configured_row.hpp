@@ -6,7 +6,6 @@
 
 namespace petzval::prescription_detail {
 
-/// Applies a configuration's change of a surface.
 inline void apply(const SurfaceChange& change, SurfaceRow& row) {
   row.thickness = change.thickness.value_or(row.thickness);
   row.radius = change.radius.value_or(row.radius);

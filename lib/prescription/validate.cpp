@@ -112,7 +112,6 @@ void check_design(const std::string& where, const DesignData& design) {
   }
 }
 
-/// Nominal data of a lens or of a configuration.
 template <class Declared>
 void check_nominal_data(const std::string& where, const Declared& declared) {
   check_nominal(where, "focal_length_mm", declared.focal_length_mm);
@@ -163,8 +162,7 @@ void ConfigurationCheck::run() {
     const std::string here = where_ + ": configuration " + std::to_string(i);
     if (c.name.empty()) throw Error(here + ": name is empty; must not be");
     if (!names.insert(c.name).second) throw Error(here + ": name \"" + c.name + "\" is given twice; must be unique");
-    if (i == 0 && c.focus_of)
-      throw Error(here + " focuses another configuration; must be a zoom position, as the first");
+    if (i == 0 && c.focus_of) throw Error(here + " focuses another; must be a zoom position");
     check(here, c);
   }
 }
@@ -190,8 +188,7 @@ void ConfigurationCheck::check(const std::string& here, const Configuration& c) 
 void ConfigurationCheck::check_rows(const std::string& here, const Configuration& c) {
   for (const SurfaceChange& change : c.changes) {
     const SurfaceChange*& known = change_of_[static_cast<std::size_t>(change.surface)];
-    if (known)
-      throw Error(here + ": surface " + std::to_string(change.surface) + " is changed twice; must be changed once");
+    if (known) throw Error(here + ": surface " + std::to_string(change.surface) + " is changed twice; must be unique");
     known = &change;
   }
   for (const SurfaceChange& change : c.changes) {
