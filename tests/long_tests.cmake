@@ -1,14 +1,14 @@
 # SPDX-License-Identifier: Apache-2.0
 # Tests that take more than three seconds, as filters of GoogleTest. They have the label "full".
 set(petzval_long_tests
-  AnyWavelength.IsEnclosedByThePupilsOfTheNearestOne
-  AnyWavelengthOf.ExposureIsThatOfACameraMadeForIt
-  Apertures.LetTheStopDecideInEveryLens
+  AnyWavelength.NearestCompiledPupilsEncloseIt
+  AnyWavelengthOf.ExposureEqualsExposureOfACompiledWavelength
+  Apertures.StopLimitsTheBeamInEveryLens
   AsphereOf/*.FindsTheFirstCrossingOfSteepRays
-  BokehControls.ShowAMapTheSameWayInAllModels
+  BokehControls.MapHasOneOrientationInAllModels
   BrownConrady.HasNoPoleWithinTheFilm
   BrownConrady.TermsAreBoundedAndRadiiRiseAsFarAsItSays
-  Camera.SetUpDoesNotDependOnThreads
+  Camera.SetUpIndependentOfThreads
   Certified.*
   ChooseModel.DistancesCountFromTheirOrigin
   ChooseModel.LeavesOutWhatCannotBeBuilt
@@ -17,10 +17,10 @@ set(petzval_long_tests
   Cylinders.Polynomials*
   DifferentialsOf*.EveryLensAreThoseOfExactRays
   EndlessFiles.*
-  Exposure.OnTheAxisIsThatOfTheExactLensInEveryModel
+  Exposure.EveryModelIsExactOnTheAxis
   Extremes.FieldsBeyondTheLensAreDark
-  FilmIrradiance.InTheBowlOfTheLastSurfaceIsThatOfAllRays
-  FilmIrradiance.OfEveryLensIsThatOfAllRays
+  FilmIrradiance.FilmInsideTheLastSurfaceEqualsRaysInAllDirections
+  FilmIrradiance.EveryLensEqualsRaysInAllDirections
   Gather.IsTheReference
   ImageCircle.EndsWhereTheLightDoes
   IrisShape.PassesAChiSquareTestInSmallSquares

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Cameras at wavelengths between the compiled ones.
+// Cameras at wavelengths that the lens was not compiled for.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -28,7 +28,7 @@ Lens compiled(const Prescription& prescription, const std::vector<double>& wavel
   return compile(prescription, wavelengths_nm, {.glasses = &glasses, .missing_glass = MissingGlass::abbe});
 }
 
-/// Eight of 400 to 700 nm, in no order.
+/// Eight wavelengths from 400 to 700 nm, unsorted.
 const std::vector<double>& eight() {
   static const std::vector<double> wavelengths = [] {
     std::vector<double> result;
@@ -47,7 +47,7 @@ Film film_for(const Prescription& prescription, const Lens& lens) {
   return {.width_mm = width, .height_mm = width * 2 / 3, .columns = 1920, .rows = 1280};
 }
 
-/// A film's points and pupil samples.
+/// Random camera samples on a film.
 class Samples {
  public:
   explicit Samples(const Film& film, std::uint64_t seed = 1) : film_(film), random_(seed) {}
@@ -74,8 +74,8 @@ class AnyWavelength : public ::testing::TestWithParam<const char*> {
   const Film film_ = film_for(prescription_, lens_);
 };
 
-TEST_P(AnyWavelength, GivesTheRaysOfACameraMadeForIt) {
-  // In pixels of a film of 36 mm with 1920 columns.
+TEST_P(AnyWavelength, RaysEqualRaysOfACompiledWavelength) {
+  // Pixels per mm of a film of 36 mm with 1920 columns.
   const double per_mm = 1920 / 36.0;
   for (const auto& [model, limit] :
        {std::pair(ModelKind::exact_double, 1e-3), std::pair(ModelKind::polynomial(7), 0.05),
@@ -103,7 +103,7 @@ TEST_P(AnyWavelength, GivesTheRaysOfACameraMadeForIt) {
   }
 }
 
-TEST_P(AnyWavelength, KeepsFilmAndSceneTheSame) {
+TEST_P(AnyWavelength, FilmAndSceneSideAgree) {
   for (const ModelKind model :
        {ModelKind::exact_double, ModelKind::polynomial(5), ModelKind::thick, ModelKind::thin_two_disc}) {
     const bool each = model != ModelKind::exact_double;
@@ -131,7 +131,7 @@ TEST_P(AnyWavelength, KeepsFilmAndSceneTheSame) {
   }
 }
 
-TEST_P(AnyWavelength, ConnectsEveryRayOfItsSamples) {
+TEST_P(AnyWavelength, EverySampledRayIsConnected) {
   for (const ModelKind model : {ModelKind::exact_double, ModelKind::polynomial(5), ModelKind::thick}) {
     const Camera camera(lens_, film_, {.model = model});
     Samples samples(film_, 9);
@@ -152,7 +152,7 @@ TEST_P(AnyWavelength, ConnectsEveryRayOfItsSamples) {
   }
 }
 
-TEST_P(AnyWavelength, IsTheSameInBatchesAndAlone) {
+TEST_P(AnyWavelength, BatchEqualsSingleSamples) {
   for (const ModelKind model : {ModelKind::exact_double, ModelKind::polynomial(5), ModelKind::thin_two_disc,
                                 ModelKind::thick, ModelKind::pinhole}) {
     const Camera camera(lens_, film_, {.model = model});
@@ -225,8 +225,8 @@ double exposure(const Camera& camera, const FilmPoint& film, Wavelength waveleng
   return sum / (side * side);
 }
 
-/// Of exact rays as far as so many samples tell.
-TEST(AnyWavelengthOf, ExposureIsThatOfACameraMadeForIt) {
+// For exact rays the limit is the noise of the samples.
+TEST(AnyWavelengthOf, ExposureEqualsExposureOfACompiledWavelength) {
   for (const char* id : ids) {
     const Prescription prescription = petzval::testing::data_prescription(id);
     const Lens lens = compiled(prescription, eight());
@@ -237,7 +237,7 @@ TEST(AnyWavelengthOf, ExposureIsThatOfACameraMadeForIt) {
       const Camera camera(lens, film, {.model = model});
       const FilmPoint point = film.point(0.7 * film.columns, 0.7 * film.rows);
       double largest = 0;
-      for (const double nm : {421.2, 421.6, 443., 550., 635.}) {  // near a middle between two, and not
+      for (const double nm : {421.2, 421.6, 443., 550., 635.}) {  // 421.4 nm is midway between compiled ones
         const Camera own(with_film(compiled(prescription, {nm}), lens.film_z()), film, {.model = model});
         const double found = exposure(camera, point, Wavelength::nm(nm)), wanted = exposure(own, point, {});
         largest = std::max(largest, std::abs(found / wanted - 1));
@@ -248,7 +248,7 @@ TEST(AnyWavelengthOf, ExposureIsThatOfACameraMadeForIt) {
   }
 }
 
-TEST(AnyWavelengthOf, PositionsInNmAreNearlyThosePositions) {
+TEST(AnyWavelengthOf, CompiledWavelengthsInNmEqualTheirIndices) {
   const Prescription prescription = petzval::testing::data_prescription("double_gauss_100mm_f2.0");
   const Lens lens = compiled(prescription, eight());
   const Film film = film_for(prescription, lens);
@@ -262,13 +262,13 @@ TEST(AnyWavelengthOf, PositionsInNmAreNearlyThosePositions) {
       const CameraRay found = camera.sample(sample);
       ASSERT_EQ(found.fate, wanted.fate);
       ASSERT_NEAR(found.weight, wanted.weight, 1e-5 * wanted.weight);
-      ASSERT_NEAR(found.ray.direction.x, wanted.ray.direction.x, 3e-7);  // less than float adds
+      ASSERT_NEAR(found.ray.direction.x, wanted.ray.direction.x, 3e-7);  // below the rounding of float
     }
   }
 }
 
-// In registers, in pairs of them and in longer tables: a mixed batch has the rays of batches of one wavelength.
-TEST(AnyWavelengthOf, MixedPositionsGiveTheRaysOfEach) {
+// The numbers of wavelengths cover tables in one register, in two registers and in memory.
+TEST(AnyWavelengthOf, MixedBatchEqualsBatchesOfOneWavelength) {
   const Prescription prescription = petzval::testing::data_prescription("tessar_100mm_f2.8");
   const auto check = [&]<class T>(T, ModelKind model, std::size_t wavelengths, double limit) {
     std::vector<double> nm;
@@ -315,7 +315,7 @@ TEST(AnyWavelengthOf, MixedPositionsGiveTheRaysOfEach) {
   }
 }
 
-TEST(AnyWavelengthOf, OthersAreOutsideTheSpectrumOnBothSides) {
+TEST(AnyWavelengthOf, OtherWavelengthsAreOutsideTheSpectrum) {
   const Prescription prescription = petzval::testing::data_prescription("double_gauss_100mm_f2.0");
   const Lens lens = compiled(prescription, eight());
   const Film film = film_for(prescription, lens);
@@ -336,7 +336,7 @@ TEST(AnyWavelengthOf, OthersAreOutsideTheSpectrumOnBothSides) {
   }
 }
 
-TEST(AnyWavelengthOf, ClampedCamerasSeeTheLensAtTheEndsOfTheRange) {
+TEST(AnyWavelengthOf, ClampingUsesTheEndsOfTheRange) {
   const Prescription prescription = petzval::testing::data_prescription("double_gauss_100mm_f2.0");
   const Lens lens = compiled(prescription, eight());
   const Film film = film_for(prescription, lens);
@@ -369,7 +369,7 @@ TEST(AnyWavelengthOf, ClampedCamerasSeeTheLensAtTheEndsOfTheRange) {
     const auto lost = camera.sample({.film = point, .wavelength = Wavelength::nm(std::nan(""))});
     EXPECT_EQ(lost.fate, RayFate::outside_spectrum);
 
-    // Batches of several blocks.
+    // 777 samples take several blocks.
     constexpr std::size_t count = 777;
     const std::vector<double> x(count, point.x), y(count, point.y), u(count, 0.3), v(count, 0.6);
     std::vector<float> nm(count), clamped_nm(count);
@@ -409,7 +409,7 @@ TEST(AnyWavelengthOf, ClampedCamerasSeeTheLensAtTheEndsOfTheRange) {
   }
 }
 
-/// A polynomial model that knows positions only.
+/// A polynomial model that accepts indices of wavelengths only.
 class ByPosition {
  public:
   explicit ByPosition(PolynomialModel model) : model_(std::move(model)) {}
@@ -429,7 +429,7 @@ class ByPosition {
   PolynomialModel model_;
 };
 
-TEST(AnyWavelengthOf, ModelsThatDoNotTakeItAreCompiledOnes) {
+TEST(AnyWavelengthOf, ModelsWithoutItAcceptCompiledWavelengthsOnly) {
   const Prescription prescription = petzval::testing::data_prescription("double_gauss_100mm_f2.0");
   const Lens lens = compiled(prescription, eight());
   const Film film = film_for(prescription, lens);

@@ -30,7 +30,7 @@ const Film film{.width_mm = 36, .height_mm = 24};
 const BokehControls ring{.weight_distribution = 12.7, .weight_strength = 0.6};
 const BokehControls soft{.weight_distribution = -4, .weight_strength = 0.8};
 
-/// A map without symmetries.
+/// Controls with a weight map without symmetries.
 BokehControls mapped() {
   BokehControls result;
   result.weight_map = {16, 16, {}, false};
@@ -51,7 +51,7 @@ Samples<T> some_samples(const Film& on, std::size_t count) {
   return samples;
 }
 
-TEST(BokehControls, ChangeNoBitByDefault) {
+TEST(BokehControls, DefaultsChangeNoBit) {
   const Lens lens = with_f_number(data_lens("double_gauss_100mm_f2.0"), 2.8);
   for (const ModelKind model : models()) {
     auto as_before = some_samples<float>(film, 500), same = as_before;
@@ -67,7 +67,7 @@ TEST(BokehControls, ChangeNoBitByDefault) {
   }
 }
 
-TEST(BokehControls, TakeBladesByTheTextsName) {
+TEST(BokehControls, LensElementsAreBladesOfTheIris) {
   const Lens lens = data_lens("double_gauss_100mm_f2.0");
   auto samples = some_samples<double>(film, 300), same = samples;
   samples.run(Camera(lens, film, {.model = ModelKind::thick, .bokeh = {.lens_elements = 6}}));
@@ -76,7 +76,7 @@ TEST(BokehControls, TakeBladesByTheTextsName) {
   EXPECT_EQ(samples.dx, same.dx);
 }
 
-/// Where a camera ray meets the stop, by its number of surfaces in all.
+/// Position of a camera ray on the stop, in semi-diameters of the stop; nullopt if the ray misses the stop.
 std::optional<Vec2<double>> at_stop(const Lens& lens, const Ray<double>& from_lens) {
   std::optional<Vec2<double>> found;
   const std::size_t stop = *lens.stop();
@@ -90,9 +90,9 @@ std::optional<Vec2<double>> at_stop(const Lens& lens, const Ray<double>& from_le
 
 class RealLens : public ::testing::TestWithParam<const char*> {};
 
-// On the film's side: weight with controls, over that without, times the density of the sample is the weight of the
-// place in the stop. The scene's side says the same.
-TEST_P(RealLens, HasWeightsOnItsStop) {
+// The importance with controls divided by the importance without them is the weight at the stop point of the ray.
+// Camera samples have the same weights and densities.
+TEST_P(RealLens, WeightsApplyAtTheStop) {
   const Lens open = data_lens(GetParam());
   for (const Iris& iris : {Iris{}, Iris{.blades = 5, .rotation_rad = 0.3}}) {
     const Lens lens = with_iris(open, iris);
@@ -104,7 +104,7 @@ TEST_P(RealLens, HasWeightsOnItsStop) {
         const Camera plain(lens, small, {.model = model});
         const core_detail::Kronecker<4> random(7);
         int seen = 0;
-        // Stop points come from fitted polynomials; the rays of the polynomial model are not exact either.
+        // Stop points are interpolated by fitted polynomials; the polynomial model also has approximate rays.
         const double near = model == ModelKind::exact_double ? 0.02 : 0.1;
         for (std::uint32_t i = 0; i < 400; ++i) {
           const auto [x, y, u, v] = random(i);
@@ -132,8 +132,8 @@ INSTANTIATE_TEST_SUITE_P(BokehControls, RealLens,
                          ::testing::Values("double_gauss_100mm_f1.35", "fisheye_8mm_f2.8", "anamorphic_60mm_2x",
                                            "mirror_newton_200mm_f8"));
 
-// What a map shows to the left of a stop passes there in every model.
-TEST(BokehControls, ShowAMapTheSameWayInAllModels) {
+// The map is bright in one half or quarter of the stop; the mean stop point of the rays lies there in every model.
+TEST(BokehControls, MapHasOneOrientationInAllModels) {
   for (const char* id : {"double_gauss_100mm_f2.0", "telephoto_100mm_f5.6"}) {
     const Lens lens = data_lens(id);
     const Film point{.width_mm = 0.02, .height_mm = 0.02};
@@ -169,8 +169,9 @@ TEST(BokehControls, ShowAMapTheSameWayInAllModels) {
   }
 }
 
-// Of a small pupil, whose parts are seen alike: rays through the rim of an f/2 bring 12 % less than those of the axis.
-TEST(BokehControls, KeepTheLightOfEveryModel) {
+// At f/11 all parts of the pupil have nearly equal irradiance; at f/2 rays through the rim carry 12 % less than the
+// axial ray.
+TEST(BokehControls, WeightsKeepTheExposureOfEveryModel) {
   const Lens lens = with_f_number(data_lens("double_gauss_100mm_f2.0"), 11);
   const Film point{.width_mm = 0.02, .height_mm = 0.02};
   for (const ModelKind model : models()) {
@@ -196,11 +197,10 @@ TEST(BokehControls, KeepTheLightOfEveryModel) {
   }
 }
 
-/// A film point's light, and that of light tracing through a strip of the film about it, over the same of the camera
-/// without controls.
+/// Pupils that are clipped by a rim, for each model.
 class CatsEyes : public ::testing::TestWithParam<ModelKind> {};
 
-TEST_P(CatsEyes, HaveTheSameLightOnTheFilmAndInTheScene) {
+TEST_P(CatsEyes, FilmAndSceneSideAgree) {
   const ModelKind model = GetParam();
   const Lens open = with_f_number(data_lens("double_gauss_100mm_f2.0"), 4);
   for (const Iris& iris : {Iris{}, Iris{.blades = 6, .rotation_rad = 0.2}}) {
@@ -223,13 +223,13 @@ TEST_P(CatsEyes, HaveTheSameLightOnTheFilmAndInTheScene) {
         EXPECT_NEAR(back.we / (back.pdf_position * back.pdf_direction) / r.weight, 1, 0.05);
         EXPECT_NEAR(back.pdf_pupil / r.pdf_pupil, 1, 0.05);
       }
-      EXPECT_GT(seen, model == ModelKind::pinhole ? -1 : 940) << name(model) << iris.blades;  // no ray meets a point
-      EXPECT_LT(lost, 40) << name(model) << iris.blades;                                      // sampled, not rejected
+      EXPECT_GT(seen, model == ModelKind::pinhole ? -1 : 940) << name(model) << iris.blades;  // no ray meets a pinhole
+      EXPECT_LT(lost, 40) << name(model) << iris.blades;  // cat's eyes are sampled directly
     }
   }
 }
 
-TEST_P(CatsEyes, LoseLightWithTheirAreaOrKeepIt) {
+TEST_P(CatsEyes, ExposureFollowsTheAreaOrIsKept) {
   const ModelKind model = GetParam();
   const Lens lens = with_f_number(data_lens("double_gauss_100mm_f2.0"), 8);
   const auto light = [&](const BokehControls& controls, const FilmPoint& at) {
@@ -242,7 +242,7 @@ TEST_P(CatsEyes, LoseLightWithTheirAreaOrKeepIt) {
     }
     return sum;
   };
-  // Discs of radius 1 whose centres lie 1 apart share 2 acos(1/2) - sqrt(3) / 2. The same to the right and upwards.
+  // The intersection of unit discs with centres 1 apart has the area 2 acos(1/2) - sqrt(3) / 2, in any direction.
   const double share = (2 * std::acos(0.5) - std::sqrt(0.75)) / std::acos(-1.0);
   for (const FilmPoint& at : {FilmPoint{9, 0}, FilmPoint{0, 9}, FilmPoint{-9, 0}}) {
     const double plain = light({}, at);
@@ -252,8 +252,8 @@ TEST_P(CatsEyes, LoseLightWithTheirAreaOrKeepIt) {
   EXPECT_NEAR(light({.lens_ratio = 1, .rate_of_change = 2}, {}) / light({}, {}), 1, 0.01);
 }
 
-// The light of a scene through connections, over that of the film's samples.
-TEST_P(CatsEyes, BringTheSameLightThroughConnections) {
+// Connections to a scene of radiance 1 and camera samples estimate the same irradiance.
+TEST_P(CatsEyes, ConnectionsEqualFilmSamples) {
   const ModelKind model = GetParam();
   const Lens open = with_f_number(data_lens("double_gauss_100mm_f2.0"), 4);
   Film tilted = film;
@@ -267,7 +267,7 @@ TEST_P(CatsEyes, BringTheSameLightThroughConnections) {
       const core_detail::Kronecker<4> random(13);
       double seen = 0, connected = 0;
       constexpr int count = 20000;
-      constexpr double side = 1200, z = -3000;  // of a luminous square that fills the picture, mm
+      constexpr double side = 1200, z = -3000;  // luminous square that fills the image, mm
       for (std::uint32_t i = 0; i < count; ++i) {
         const auto [x, y, u, v] = random(i);
         seen += camera.sample({.film = {36 * x - 18, 24 * y - 12}, .pupil_u = u, .pupil_v = v}).weight / count;
@@ -284,7 +284,7 @@ INSTANTIATE_TEST_SUITE_P(BokehControls, CatsEyes,
                                            ModelKind::thick, ModelKind::polynomial(5), ModelKind::exact_float,
                                            ModelKind::exact_double));
 
-TEST(BokehControls, SampleManyAsOneByOne) {
+TEST(BokehControls, BatchEqualsSingleSamples) {
   const Lens lens = data_lens("double_gauss_100mm_f2.0");
   Film tilted = film;
   tilted.tilt_rad = 0.05;

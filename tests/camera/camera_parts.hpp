@@ -10,7 +10,7 @@
 
 namespace petzval::testing {
 
-/// What a camera of a lens and a film is built of.
+/// The model and the tilted film of a camera.
 struct CameraParts {
   AnyRayModel model;
   std::optional<camera_detail::TiltedFilm> tilted;
@@ -23,12 +23,14 @@ struct CameraParts {
   const FilmPupilTable& pupils() const { return model.pupils(); }
 };
 
-/// A first-order model in air, which has the focus of exact rays and so is not quite the paraxial lens.
+/// Cardinal points of a first-order model in air. The model has the focus of exact rays, so that they differ slightly
+/// from the paraxial cardinal points.
 struct CardinalPoints {
   double front_principal_z, rear_principal_z, focal_length;
 };
 
-/// From rays that run along the axis on either side, 1 mm off it: extended, each meets itself in a principal plane.
+/// Derived from rays parallel to the axis at 1 mm on either side: incoming and outgoing ray intersect in a principal
+/// plane.
 inline CardinalPoints cardinal_points(const AnyRayModel& model) {
   const TwoPlanes& space = model.pupils().space();
   Ray<double> ray;

@@ -10,14 +10,14 @@
 
 namespace petzval::testing {
 
-/// Samples of a camera as arrays, and what becomes of them.
+/// Camera samples in arrays and their results.
 template <class T>
 struct Samples {
   std::vector<T> film_x, film_y, pupil_u, pupil_v;
-  Wavelength wavelength{};                 ///< of all, unless there is a list
-  std::vector<std::uint16_t> wavelengths;  ///< positions
-  std::vector<float> nm;                   ///< instead of both
-  std::vector<T> times;                    ///< empty: 0
+  Wavelength wavelength{};                 ///< used if both lists are empty
+  std::vector<std::uint16_t> wavelengths;  ///< indices
+  std::vector<float> nm;                   ///< replaces both
+  std::vector<T> times;                    ///< 0 if empty
   std::vector<T> x, y, z, dx, dy, dz, weights, pdf_pupil, pdf_direction;
   std::vector<RayFate> fates;
 
@@ -38,7 +38,7 @@ struct Samples {
     return {{film_x[i], film_y[i]}, pupil_u[i], pupil_v[i], ray_wavelengths().at(i), times.empty() ? 0 : times[i]};
   }
 
-  /// Samples `count` of them from `first` on.
+  /// Computes `count` samples from `first` on.
   void run(const Camera& camera, std::size_t first, std::size_t count) {
     for (auto* column : {&x, &y, &z, &dx, &dy, &dz, &weights, &pdf_pupil, &pdf_direction}) column->resize(size());
     fates.resize(size());
@@ -57,7 +57,7 @@ struct Samples {
   Ray<double> ray(std::size_t i) const { return {{x[i], y[i], z[i]}, {dx[i], dy[i], dz[i]}}; }
 };
 
-/// Evenly over film and pupils.
+/// Uniform samples on film and pupils.
 template <class T = double>
 Samples<T> random_samples(const Film& film, std::size_t count, unsigned seed = 1) {
   std::mt19937 random(seed);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Tables of cameras for another processor.
+// Camera tables for another processor.
 #include "petzval/camera/camera_tables.hpp"
 
 #include <gtest/gtest.h>
@@ -21,7 +21,7 @@ using testing::expect_error;
 
 constexpr Film film{.width_mm = 24, .height_mm = 16, .shift_x_mm = 2};
 
-TEST(CameraTables, ReadBackByteForByte) {
+TEST(CameraTables, RoundTripKeepsEveryByte) {
   const std::vector<float> tables =
       Camera(testing::data_lens("tessar_100mm_f2.8"), film, {.model = ModelKind::polynomial(5)}).tables();
   const auto file = std::filesystem::path(::testing::TempDir()) / "petzval_camera_tables.bin";
@@ -33,7 +33,7 @@ TEST(CameraTables, ReadBackByteForByte) {
   std::filesystem::remove(file);
 }
 
-TEST(CameraTables, AreRefusedWhereTheyAreNone) {
+TEST(CameraTables, InvalidTablesAreRefused) {
   const Lens lens = testing::data_lens("tessar_100mm_f2.8");
   const auto check = [](const std::vector<float>& tables) { CameraTables::check(tables, "file"); };
   const Lens cylinders = testing::data_lens("anamorphic_60mm_2x");
@@ -50,7 +50,7 @@ TEST(CameraTables, AreRefusedWhereTheyAreNone) {
         std::vector<float> bad = good;
         bad[at] = value;
         try {
-          check(bad);  // reads nothing beyond the list
+          check(bad);  // must not read beyond the list
         } catch (const Error&) {
         }
       }

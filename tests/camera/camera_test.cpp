@@ -38,11 +38,10 @@ using testing::tilted_by;
 
 Lens focused(const char* id) { return with_focus(testing::data_lens(id), 3000, {.origin = DistanceOrigin::film}); }
 
-/// Of single rays against batches.
+/// Tolerance between single rays and batches.
 double precision(ModelKind model) { return model == ModelKind::exact_double ? 1e-11 : 2e-5; }
 
-// What has been moved from is still a camera, as a Lens is still a lens.
-TEST(Camera, IsStillOneAfterAMove) {
+TEST(Camera, MovedFromCameraStaysValid) {
   Camera camera(focused("double_gauss_100mm_f2.0"), {});
   const CameraSample sample{.film = {3, 4}, .pupil_u = 0.3, .pupil_v = 0.6};
   const CameraRay wanted = camera.sample(sample);
@@ -55,7 +54,7 @@ TEST(Camera, IsStillOneAfterAMove) {
   }
 }
 
-TEST(Camera, GivesTheSameRaySinglyAndInABatch) {
+TEST(Camera, BatchEqualsSingleSamples) {
   const Lens lens = focused("double_gauss_100mm_f2.0");
   for (const ModelKind model : models()) {
     const Camera camera(lens, {}, {.model = model});
@@ -82,7 +81,7 @@ TEST(Camera, GivesTheSameRaySinglyAndInABatch) {
   }
 }
 
-/// Bits do not depend on the batch in which a sample stands, nor on its place there.
+/// Checks that results do not depend on the batch of a sample and its index, to the bit.
 template <class T>
 void expect_same_whatever_the_neighbours(const Camera& camera) {
   auto whole = random_samples<T>(camera.film(), 1000), parts = whole;
@@ -101,7 +100,7 @@ void expect_same_whatever_the_neighbours(const Camera& camera) {
   }
 }
 
-TEST(Camera, AsksNothingOfTheNeighboursInABatch) {
+TEST(Camera, BatchResultIndependentOfNeighbours) {
   const Lens tessar = focused("tessar_100mm_f2.8"), aspheric = focused("modern_58mm_f0.95");
   for (const Film& film : {Film{}, tilted_by(testing::shifted, 3, -2)}) {
     for (const ModelKind model : models()) {
@@ -115,7 +114,7 @@ TEST(Camera, AsksNothingOfTheNeighboursInABatch) {
   }
 }
 
-TEST(Camera, TakesAWavelengthForEveryRay) {
+TEST(Camera, BatchHasOneWavelengthPerRay) {
   const GlassCatalogue glasses = GlassCatalogue::load(std::filesystem::path(PETZVAL_TEST_DATA) / "glass");
   const std::array lines_nm{486.1327, 587.5618, 656.2725};
   const Lens lens = compile(testing::data_prescription("double_gauss_100mm_f2.0"), lines_nm,
@@ -138,17 +137,17 @@ TEST(Camera, TakesAWavelengthForEveryRay) {
   }
 }
 
-TEST(Camera, HasItsFilmWhereItIsShiftedTo) {
+TEST(Camera, ShiftMovesTheFilm) {
   const Lens lens = focused("double_gauss_100mm_f2.0");
   const Camera shifted(lens, {.width_mm = 10, .height_mm = 10, .shift_x_mm = 12}, {.model = ModelKind::exact_double});
   const Camera wide(lens, {.width_mm = 36, .height_mm = 36}, {.model = ModelKind::exact_double});
   EXPECT_EQ(shifted.sample({{6.9, 0}, 0.5, 0.5}).fate, RayFate::outside_film);
   const CameraRay a = shifted.sample({{16.9, 4.9}, 0.5, 0.5}), b = wide.sample({{16.9, 4.9}, 0.5, 0.5});
   EXPECT_EQ(a.fate, RayFate::transmitted);
-  EXPECT_NEAR(glm::length(a.ray.direction - b.ray.direction), 0, 5e-3);  // tables of other steps
+  EXPECT_NEAR(glm::length(a.ray.direction - b.ray.direction), 0, 5e-3);  // their tables have different steps
 }
 
-TEST(Camera, HasItsFilmWhereThatSays) {
+TEST(Camera, FilmZReplacesTheLensFilmZ) {
   const Lens lens = focused("double_gauss_100mm_f2.0");
   Film film{.shift_y_mm = 3, .z_mm = lens.film_z() + 1.5, .tilt_rad = 0.1};
   const Camera camera(lens, film, {.model = ModelKind::thick});
@@ -164,7 +163,7 @@ TEST(Camera, HasItsFilmWhereThatSays) {
   EXPECT_EQ(camera.sample(sample).ray.direction, same.sample(sample).ray.direction);
 }
 
-TEST(Camera, SeesTheSceneFromTheMarginOfItsFilm) {
+TEST(Camera, MarginSeesTheScene) {
   const Lens lens = focused("double_gauss_100mm_f2.0");
   for (const ModelKind model : {ModelKind::thick, ModelKind::polynomial(5), ModelKind::exact_double}) {
     Film film{.width_mm = 24, .height_mm = 16, .columns = 240, .rows = 160};
@@ -175,7 +174,7 @@ TEST(Camera, SeesTheSceneFromTheMarginOfItsFilm) {
     const CameraRay ray = camera.sample(beside);
     ASSERT_TRUE(ray) << name(model);
     EXPECT_EQ(ray.pdf_film, 1 / (24. * 16));
-    // The scene side sees the margin as the film side does: We over the densities is the weight there too.
+    // Reciprocity holds on the margin: We divided by the densities is the weight.
     const Importance back = camera.importance({ray.ray.origin, -ray.ray.direction});
     ASSERT_TRUE(back) << name(model);
     EXPECT_NEAR(back.raster.x, -2, 1e-3);
@@ -184,7 +183,7 @@ TEST(Camera, SeesTheSceneFromTheMarginOfItsFilm) {
   }
 }
 
-TEST(Camera, DifferentiatesByRasterInBatches) {
+TEST(Camera, BatchDifferentialsByRasterEqualFiniteDifferences) {
   const Lens lens = focused("double_gauss_100mm_f2.0");
   const Camera camera(lens, {.columns = 360, .rows = 240}, {.model = ModelKind::exact_double});
   constexpr std::size_t count = 3;
@@ -211,13 +210,13 @@ TEST(Camera, DifferentiatesByRasterInBatches) {
         (at(raster_x[i], raster_y[i] + h).direction - at(raster_x[i], raster_y[i] - h).direction) / (2 * h);
     EXPECT_NEAR(by_x.dx[i], across.x, 1e-5 * glm::length(across));
     EXPECT_NEAR(by_y.dy[i], down.y, 1e-5 * glm::length(down));
-    // The picture is upright: a step to the right turns the ray to the right, a step down turns it down.
+    // The image is upright: a step to the right turns the ray to the right, a step down turns it down.
     EXPECT_GT(by_x.dx[i], 0);
     EXPECT_LT(by_y.dy[i], 0);
   }
 }
 
-TEST(Camera, HasItsEdgesOnTheFilm) {
+TEST(Camera, FilmContainsItsEdges) {
   const Lens lens = focused("double_gauss_100mm_f2.0");
   const core_detail::Kronecker<4> random(1);
   for (std::uint32_t i = 0; i < 40; ++i) {
@@ -238,9 +237,8 @@ TEST(Camera, HasItsEdgesOnTheFilm) {
   }
 }
 
-// A sample (film x, y, u, v) and the ray in the phase space of the scene (place and direction cosines across the axis)
-// are two coordinates of the same light. Etendue being conserved, the Jacobian between them is the weight: n'^2 cos /
-// pdf.
+// A sample (film x, y, u, v) and its ray in the phase space of the scene (x, y and the direction cosines) are two
+// coordinates of the same light. As etendue is conserved, the Jacobian between them is the weight n'^2 cos / pdf.
 TEST(Camera, ConservesEtendue) {
   const double angle = 0.2;
   for (const auto& [id, film] :
@@ -267,7 +265,7 @@ TEST(Camera, ConservesEtendue) {
           (k == 0 ? t.film.x : k == 1 ? t.film.y : k == 2 ? t.pupil_u : t.pupil_v) += by;
           const CameraRay r = camera.sample(t);
           whole = whole && r.fate == RayFate::transmitted;
-          // Where the ray passes the plane through the middle one's point.
+          // Intersection with the plane across the axis through the origin of the central ray.
           const double t_plane = (middle.ray.origin.z - r.ray.origin.z) / r.ray.direction.z;
           const Vec3<double> p = r.ray.origin + t_plane * r.ray.direction;
           return std::array{p.x, p.y, r.ray.direction.x, r.ray.direction.y};
@@ -275,7 +273,7 @@ TEST(Camera, ConservesEtendue) {
         const auto after = moved(h), before = moved(-h);
         for (std::size_t row = 0; row < 4; ++row) j[row][k] = (after[row] - before[row]) / (2 * h);
       }
-      // Corners of the tables are no place for differences; the edge of the pupil neither.
+      // Differences across the edge of the pupil are skipped.
       if (!whole) continue;
       const auto minor = [&](std::size_t r0, std::size_t r1, std::size_t c0, std::size_t c1) {
         return j[r0][c0] * j[r1][c1] - j[r0][c1] * j[r1][c0];
@@ -291,7 +289,7 @@ TEST(Camera, ConservesEtendue) {
 }
 
 // The symplectic form of two neighbours of a ray, n (dr1 dp2 - dr2 dp1), is the same on both sides of the lens.
-TEST(Camera, HasSymplecticDifferentials) {
+TEST(Camera, DifferentialsAreSymplectic) {
   const Lens lens = focused("double_gauss_100mm_f2.0");
   const testing::CameraParts parts(lens, {}, ModelKind::exact_double);
   const Camera camera(lens, {}, parts.model);
@@ -322,12 +320,12 @@ TEST(Camera, HasSymplecticDifferentials) {
   EXPECT_GT(largest, 1e-5);
 }
 
-/// Against differences of samples on a film, by all models.
+/// Compares differentials with finite differences of samples, for all models.
 void expect_differences(const Film& film) {
   const Lens lens = focused("double_gauss_100mm_f2.0");
   for (const ModelKind model : models()) {
     const Camera camera(lens, film, {.model = model});
-    // Differences of float rays are noise; their derivatives are near those of the same lens in double.
+    // Differences of float rays are noise, so the model in double is the reference.
     const Camera reference(lens, film, {.model = model == ModelKind::exact_float ? ModelKind::exact_double : model});
     const auto samples = random_samples(camera.film(), 40);
     int checked = 0;
@@ -360,7 +358,7 @@ void expect_differences(const Film& film) {
   }
 }
 
-TEST(Camera, DifferentiatesAsDifferencesDo) {
+TEST(Camera, DifferentialsEqualFiniteDifferences) {
   expect_differences({});
   expect_differences(tilted_by(testing::shifted, 10, -6));
 }
@@ -378,7 +376,7 @@ void expect_lost(const Camera& camera, const CameraSample& sample, RayFate fate)
   EXPECT_EQ(one.pdf_film > 0, fate != RayFate::outside_film);
 }
 
-TEST(Camera, GivesAFateToBadSamples) {
+TEST(Camera, InvalidSamplesHaveFates) {
   const double nan = std::numeric_limits<double>::quiet_NaN(), inf = std::numeric_limits<double>::infinity();
   const Lens lens = focused("double_gauss_100mm_f2.0");
   const auto fates = [&](ModelKind model, const Film& film) {
@@ -392,7 +390,7 @@ TEST(Camera, GivesAFateToBadSamples) {
     expect_lost(camera, {{1, 2}, inf, 0.5}, RayFate::vignetted);
     expect_lost(camera, {{1, 2}, 0.5, 0.5, 1}, RayFate::outside_spectrum);
     expect_lost(camera, {{1, 2}, 0.5, 0.5, 1u << 20}, RayFate::outside_spectrum);
-    // The corners of film and pupil square belong to them.
+    // Corners of the film and of the unit square are valid.
     for (const double u : {0.0, 1.0}) {
       const CameraRay corner = camera.sample({{18, -12}, u, 1 - u});
       EXPECT_NE(corner.fate, RayFate::outside_film);
@@ -405,7 +403,7 @@ TEST(Camera, GivesAFateToBadSamples) {
   }
 }
 
-TEST(Camera, GivesAFateToBadSamplesInBatches) {
+TEST(Camera, InvalidSamplesInBatchesHaveFates) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   const Lens lens = focused("double_gauss_100mm_f2.0");
   const auto fates = [&](ModelKind model, const Film& film) {
@@ -433,7 +431,7 @@ TEST(Camera, GivesAFateToBadSamplesInBatches) {
   }
 }
 
-TEST(Camera, IsDarkBehindAShutStop) {
+TEST(Camera, ClosedStopIsDark) {
   const Lens lens = focused("double_gauss_100mm_f2.0");
   const Lens shut = with_semi_diameter(lens, pupils(lens).stop, 0);
   for (const ModelKind model :
@@ -442,7 +440,7 @@ TEST(Camera, IsDarkBehindAShutStop) {
   }
 }
 
-TEST(Camera, SeesBehindItselfWithAFisheye) {
+TEST(Camera, FisheyeSeesBeyond90Degrees) {
   const Lens lens = testing::data_lens("fisheye_6.3mm_f2.8");
   const Film film{.width_mm = 24, .height_mm = 24};
   const Camera camera(lens, film, {.model = ModelKind::exact_double});
@@ -454,16 +452,16 @@ TEST(Camera, SeesBehindItselfWithAFisheye) {
     for (int k = 0; k < 3; ++k) ASSERT_TRUE(std::isfinite(origin[k]) && std::isfinite(direction[k]));
     beyond += samples.fates[i] == RayFate::transmitted && direction.z > 0;
   }
-  EXPECT_GT(beyond, 100);  // rays run towards -z; beyond 90 degrees they run towards +z
+  EXPECT_GT(beyond, 100);  // rays of fields beyond 90 degrees run towards +z
 }
 
-TEST(Camera, TakesNoOptionsForTheDefaultOnes) {
+TEST(Camera, OptionsHaveDefaults) {
   const Lens lens = testing::data_lens("tessar_100mm_f2.8");
   EXPECT_EQ(Camera(lens, {}, {}).model(), Camera(lens, {}).model());
 }
 
-// All of a list but its first number: a device would read beyond its tables.
-TEST(CameraTables, AreRefusedWhereListsEndBeyondThem) {
+// A list that starts at the last number ends beyond the tables, where a device must not read.
+TEST(CameraTables, ListsBeyondTheEndAreRefused) {
   for (const char* id : {"double_gauss_100mm_f2.0", "anamorphic_60mm_2x"}) {
     const Camera camera(petzval::testing::data_lens(id), {}, {.model = ModelKind::exact_float});
     const std::vector<float> tables = camera.tables();
@@ -475,7 +473,7 @@ TEST(CameraTables, AreRefusedWhereListsEndBeyondThem) {
   }
 }
 
-TEST(ModelKind, HasItsName) {
+TEST(ModelKind, NamesRoundTrip) {
   EXPECT_EQ(models().size(), 11u);
   for (const ModelKind model : models()) EXPECT_EQ(model_named(name(model)), model) << name(model);
   for (const char* none : {"", "custom", "Thin", "thin ", "polynomial_4", "polynomial"}) {
@@ -483,7 +481,7 @@ TEST(ModelKind, HasItsName) {
   }
 }
 
-TEST(Camera, RefusesModelsThatAreNone) {
+TEST(Camera, RefusesInvalidModels) {
   const Lens lens = focused("double_gauss_100mm_f2.0");
   expect_error([&] { Camera(lens, {}, {.model = ModelKind::custom}); }, {lens.name(), "camera", "model", "custom"});
   for (const int degree : {-1, 0, 4, 13}) {
@@ -491,13 +489,13 @@ TEST(Camera, RefusesModelsThatAreNone) {
   }
 }
 
-TEST(Camera, RefusesANormalisationThatIsNone) {
+TEST(Camera, RefusesInvalidNormalisation) {
   const Lens lens = focused("double_gauss_100mm_f2.0");
   const CameraOptions options{.model = ModelKind::thin, .normalisation = static_cast<Normalisation>(9)};
   expect_error([&] { Camera(lens, {}, options); }, {lens.name(), "normalisation", 9, "unity_on_axis"});
 }
 
-TEST(Camera, RefusesFilmsThatAreNone) {
+TEST(Camera, RefusesInvalidFilms) {
   const Lens lens = testing::data_lens("tessar_100mm_f2.8");
   const double nan = std::numeric_limits<double>::quiet_NaN();
   const auto with = [&](const Film& film) { return [&lens, film] { Camera(lens, film); }; };
@@ -509,7 +507,7 @@ TEST(Camera, RefusesFilmsThatAreNone) {
   expect_error(with({.shift_x_mm = nan}), {"film", "shift_x_mm", "nan"});
   expect_error(with({.tilt_rad = nan}), {"film", "tilt_rad", "nan"});
   expect_error(with({.swing_rad = -1.6}), {"film", "swing_rad", -1.6});
-  // Inside the glass or in front of it, upright or tilted, by the film or by the prescription.
+  // Films inside or in front of the glass, upright or tilted, given by the film or by the prescription.
   const double last_z = lens.surfaces().back().vertex_z;
   for (const double z : {last_z, last_z - 5, -20.0}) {
     expect_error(with({.z_mm = z}), {lens.name(), "film", z, last_z});
@@ -518,13 +516,13 @@ TEST(Camera, RefusesFilmsThatAreNone) {
     prescription.surfaces.back().thickness = z - last_z;
     expect_error([&] { Camera(compile(prescription), {}); }, {lens.name(), "film", last_z});
   }
-  // In the hollow of the last surface, behind its vertex: a film that fits in, and one that does not.
+  // Behind the vertex of a concave last surface a small film fits; a large one meets the surface.
   const Lens hollow = testing::data_lens("petzval_100mm_f1.25");
   const double hollow_z = hollow.surfaces().back().vertex_z + 0.5;
   const Film small{.width_mm = 2, .height_mm = 2, .z_mm = hollow_z}, large{.width_mm = 46.9, .z_mm = hollow_z};
   EXPECT_NO_THROW(Camera(hollow, small, {.model = ModelKind::thin}));
   expect_error([&] { Camera(hollow, large, {.model = ModelKind::thin}); }, {hollow.name(), "film", "last surface"});
-  // In front of a mirror is behind it.
+  // Behind a mirror the light runs towards -z.
   const Lens mirror = testing::data_lens("mirror_newton_200mm_f8");
   EXPECT_NO_THROW(Camera(mirror, {.width_mm = 2, .height_mm = 2, .z_mm = -190}));
   expect_error([&] { Camera(mirror, {.width_mm = 2, .height_mm = 2, .z_mm = 190}); }, {mirror.name(), "film", 190});
@@ -549,7 +547,7 @@ TEST(Camera, RefusesModelsOfAnotherLensOrFilm) {
   expect_error(camera(one, two, 22), {"model", "wavelengths", 2, 1});
 }
 
-TEST(Camera, OfAStopWithoutARimHasTheLightThatRimsLetThrough) {
+TEST(Camera, StopWithoutRimIsLimitedByOtherRims) {
   const auto [marked, unmarked] = testing::without_the_rim_of_its_stop(testing::open_singlet(10));
   const Lens endless = compile(testing::open_singlet());
   const Film film{.width_mm = 12, .height_mm = 8};

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Cameras with a renderer's own model.
+// Cameras with a ray model of the renderer.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -29,8 +29,8 @@ namespace custom_model_test {
 using testing::expect_error;
 using testing::random_samples;
 
-/// A thin lens in air as a renderer would write it: rays meet a lens in its rear principal plane and go on at the front
-/// one. The pupil is a disc that gives the film's centre the light of the exact lens.
+/// A thin lens in air as a renderer would write it: rays are refracted in the rear principal plane and leave from the
+/// front principal plane. The pupil is a disc that gives the centre of the film the irradiance of the exact lens.
 class OwnThinLens {
  public:
   static constexpr bool linear_in_slopes = true;
@@ -73,7 +73,7 @@ class OwnThinLens {
   }
 
  private:
-  /// In the rear principal plane of the paraxial lens, seen in the plane of the pupils; part: of the way to there.
+  /// A disc in the rear principal plane of the paraxial lens, projected into the plane of the pupils.
   static FilmPupilTable disc(const Lens& lens, double film_radius) {
     const TwoPlanes planes = two_planes(lens);
     const double part = (first_order(lens).rear_principal_z - planes.film_z) / planes.depth();
@@ -87,7 +87,7 @@ class OwnThinLens {
   FilmPupilTable pupils_;
 };
 
-/// A square hole of 2 by 2 mm in a screen 50 mm in front of the film, and no lens: it clips by itself.
+/// A square hole of 2 by 2 mm in a screen 50 mm in front of the film, without a lens; the model clips its rays.
 class Hole {
  public:
   static constexpr bool clips_at_apertures = true;
@@ -146,7 +146,7 @@ class CustomModel : public ::testing::TestWithParam<Film> {
   const Camera own_{lens_, GetParam(), AnyRayModel(OwnThinLens(lens_, testing::cardinal_points(thin_), radius_))};
 };
 
-TEST_P(CustomModel, SamplesAsTheBuiltInModelDoes) {
+TEST_P(CustomModel, SamplesEqualBuiltInModel) {
   EXPECT_EQ(own_.model(), ModelKind::custom);
   auto samples = random_samples(GetParam(), 200), same = samples;
   samples.run(own_);
@@ -166,7 +166,7 @@ TEST_P(CustomModel, SamplesAsTheBuiltInModelDoes) {
   EXPECT_GT(passed, 150);
 }
 
-TEST_P(CustomModel, HasDifferentials) {
+TEST_P(CustomModel, DifferentialsEqualBuiltInModel) {
   const auto samples = random_samples(GetParam(), 50);
   for (std::size_t i = 0; i < samples.size(); ++i) {
     const CameraRayDifferential own = own_.sample_differential(samples.one(i));
@@ -176,17 +176,17 @@ TEST_P(CustomModel, HasDifferentials) {
   }
 }
 
-TEST_P(CustomModel, IsSeenFromTheSceneAsTheBuiltInModelIs) {
+TEST_P(CustomModel, ImportanceEqualsBuiltInModel) {
   int seen = 0, projected = 0;
   for (int i = 0; i < 200; ++i) {
     const double u = std::fmod(i * std::numbers::phi, 1.0), v = (i + 0.5) / 200, turn = 2 * std::numbers::pi * u;
     const Vec3<double> point{400 * v * std::cos(turn), 400 * v * std::sin(turn), -500 - 4000 * u};
     const ImportanceSample own = own_.sample_importance(point, v, u), wanted = built_in_.sample_importance(point, v, u);
-    // Entrance pupils are searched to 2e-5 and enlarged by what the search leaves open: with the rounding of rays their
-    // area changes by up to 6e-4. Any area that encloses the pupil gives the same light.
+    // Entrance pupils are searched to 2e-5 and enlarged by the tolerance of the search, so that rounding of the rays
+    // changes their area by up to 6e-4. The estimates are equal for any area that encloses the pupil.
     EXPECT_NEAR(own.pdf, wanted.pdf, 1e-3 * wanted.pdf);
     EXPECT_NEAR(glm::length(own.direction - wanted.direction), 0, 1e-5);
-    // A direction between two sectors of the polygon may be in the other one, which is up to 1 % larger.
+    // A direction on the border of two sectors of the polygon may fall into either; their areas differ by up to 1 %.
     EXPECT_NEAR(own_.pdf_importance(point, wanted.direction), wanted.pdf, 1e-2 * wanted.pdf);
     const Importance a = own_.importance({wanted.on_front, wanted.direction}), b = wanted.importance;
     if (a.fate != b.fate) continue;  // at an edge
@@ -219,7 +219,7 @@ double mean_weight(const Camera& camera) {
   return sum / count;
 }
 
-TEST(OwnModel, OfPolynomialsIsRefusedForAnotherLensOrFilm) {
+TEST(OwnModel, RefusesPolynomialsOfAnotherLensOrFilm) {
   const Prescription prescription = testing::data_prescription("double_gauss_100mm_f2.0");
   const auto focused = [&](std::vector<double> nm, double distance) {
     return with_focus(compile(prescription, nm, {.missing_glass = MissingGlass::abbe}), distance);
@@ -239,11 +239,11 @@ TEST(OwnModel, OfPolynomialsIsRefusedForAnotherLensOrFilm) {
   expect_error(camera(lens, 5), {lens.name(), "polynomials", 5, radius});
 }
 
-TEST(OwnModel, ClipsByItself) {
+TEST(OwnModel, MayClipByItself) {
   const Lens lens = testing::data_lens("tessar_100mm_f2.8");
   const Film film{.width_mm = 20, .height_mm = 20};
   const Camera camera(lens, film, AnyRayModel(Hole(lens.film_z(), film.radius_mm())));
-  // A small hole of 4 mm^2 under cos^4 / 50^2.
+  // The irradiance of a small hole of 4 mm^2: area cos^4 / 50^2.
   const double square = 2500.0 / (2500 + 100);
   EXPECT_NEAR(mean_weight(camera) / (4 * square * square / 2500), 1, 3e-3);
   const Vec3<double> point{30, 20, -400};
@@ -255,12 +255,12 @@ TEST(OwnModel, ClipsByItself) {
   }
 }
 
-TEST(OwnModel, TakesATiltedFilm) {
+TEST(OwnModel, AcceptsATiltedFilm) {
   const double tilt = 0.3;
   const Lens lens = testing::data_lens("tessar_100mm_f2.8");
   const Film film{.width_mm = 20, .height_mm = 20, .tilt_rad = tilt};
   const Camera camera(lens, film, AnyRayModel(Hole(lens.film_z(), 30)));
-  // The small hole from a point at (6, -8 cos, 50 - 8 sin), whose normal is (0, -sin, cos).
+  // The irradiance of the small hole at the film point (6, -8 cos, 50 - 8 sin) with normal (0, -sin, cos).
   const double y = -8 * std::cos(tilt), z = 50 - 8 * std::sin(tilt), length2 = 36 + y * y + z * z;
   const double at_film = y * -std::sin(tilt) + z * std::cos(tilt);
   EXPECT_NEAR(mean_weight(camera) / (4 * z * at_film / (length2 * length2)), 1, 3e-3);

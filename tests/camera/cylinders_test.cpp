@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Polynomial cameras of lenses with cylinders, beside the exact ones.
+// Polynomial cameras of lenses with cylinders, compared with exact cameras.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -46,7 +46,7 @@ TEST(Cylinders, SamplesOfPolynomialsPassTheExactLens) {
   }
 }
 
-TEST(Cylinders, PolynomialsGiveTheSameRaysSinglyAndInABatch) {
+TEST(Cylinders, PolynomialsGiveEqualBatchesAndSingleSamples) {
   Film tilted = film, travelling = film;
   tilted.tilt_rad = 0.1, tilted.swing_rad = -0.05;
   travelling.travel_mm = 0.5;
@@ -75,9 +75,9 @@ TEST(Cylinders, PolynomialsGiveTheSameRaysSinglyAndInABatch) {
   }
 }
 
-// In each section: rays cross the plane of an entrance pupil in p with slopes s, and miss the axis least, in the plane
-// `away` from there by s + p / away, where away = -pp / ps.
-TEST(Cylinders, PolynomialsAreInFocusWhereExactRaysAreInBothSections) {
+// In each section, rays cross the plane of the entrance pupil at p with slopes s. At the distance `away` from this
+// plane they miss the axis by s + p / away, seen from the pupil; the mean square is smallest at away = -pp / ps.
+TEST(Cylinders, PolynomialsFocusWithExactRaysInBothSections) {
   for (const double f_number : {0.0, 4.0}) {
     const Lens lens = anamorphic(f_number);
     const double pupil_z = pupils(lens).entrance.z;
@@ -107,7 +107,7 @@ TEST(Cylinders, PolynomialsAreInFocusWhereExactRaysAreInBothSections) {
   }
 }
 
-TEST(Cylinders, PolynomialsHaveRaysBetweenWavelengths) {
+TEST(Cylinders, PolynomialsWorkBetweenCompiledWavelengths) {
   const GlassCatalogue glasses = GlassCatalogue::load(std::filesystem::path(PETZVAL_TEST_DATA) / "glass");
   const Prescription prescription = testing::data_prescription("anamorphic_60mm_2x");
   const auto compiled = [&](std::span<const double> nm) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Pictures keep their brightness when one model takes the place of another.
+// All models have the exposure of the exact lens.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -21,7 +21,7 @@ namespace exposure_test {
 constexpr std::array pupil_models{ModelKind::pinhole, ModelKind::thin, ModelKind::thin_two_disc, ModelKind::thick,
                                   ModelKind::polynomial(3)};
 
-/// The irradiance of a film point that a pupil gives, as a camera samples it.
+/// Irradiance of a film point through a pupil, estimated from camera samples.
 double exposure(const Lens& lens, const FilmPupilTable& pupils, const FilmPoint& film) {
   const double depth = pupils.space().depth(), n = lens.index(lens.surface_count());
   constexpr int count = 2048;
@@ -34,7 +34,7 @@ double exposure(const Lens& lens, const FilmPupilTable& pupils, const FilmPoint&
   return n * n * sum / count;
 }
 
-/// Nothing for a lens that does not open so far.
+/// nullopt if the lens does not have the f-number.
 std::optional<Lens> stopped(const Lens& lens, double f_number) {
   if (f_number == 0) return lens;
   try {
@@ -44,7 +44,7 @@ std::optional<Lens> stopped(const Lens& lens, double f_number) {
   }
 }
 
-TEST(Exposure, OnTheAxisIsThatOfTheExactLensInEveryModel) {
+TEST(Exposure, EveryModelIsExactOnTheAxis) {
   int checked = 0;
   for (const Prescription& prescription : testing::data_prescriptions()) {
     const Lens open = compile(prescription);
@@ -56,7 +56,7 @@ TEST(Exposure, OnTheAxisIsThatOfTheExactLensInEveryModel) {
       const double exact = film_irradiance(*lens, {});
       for (const ModelKind model : pupil_models) {
         if (cylinders && (model == ModelKind::pinhole || model == ModelKind::thin_two_disc)) continue;
-        // Pupils that have more than two parts along a line have no table of polygons.
+        // Pupils with more than two components along a line cannot be tabulated as polygons.
         const bool in_parts = prescription.name.starts_with("Ball lens");
         if (in_parts && (model == ModelKind::thin_two_disc || model == ModelKind::polynomial(3))) continue;
         const FilmPupilTable pupils = camera_detail::make_model(model, *lens, radius).pupils();
@@ -69,8 +69,8 @@ TEST(Exposure, OnTheAxisIsThatOfTheExactLensInEveryModel) {
   EXPECT_GT(checked, 700);
 }
 
-// Two discs and polynomials have the pupils of the exact lens.
-TEST(Exposure, OverTheFieldIsThatOfTheExactLensWhereAModelHasItsPupils) {
+// thin_two_disc and polynomials use pupils fitted to the exact lens.
+TEST(Exposure, ModelsWithExactPupilsAreExactOverTheField) {
   for (const char* id :
        {"double_gauss_100mm_f2.0", "modern_58mm_f0.95", "tessar_100mm_f2.8", "retrofocus_100mm_f2.8",
         "telephoto_200mm_f1.8", "fisheye_10mm_f4", "zoom_14-30mm_f4:wide", "phone_5.6mm_f3.5", "anamorphic_60mm_2x"}) {
@@ -87,7 +87,7 @@ TEST(Exposure, OverTheFieldIsThatOfTheExactLensWhereAModelHasItsPupils) {
         for (const double part : {0.3, 0.5, 0.7, 0.85, 0.97}) {
           const FilmPoint film{0.6 * part * radius, 0.8 * part * radius};
           const double exact = film_irradiance(*lens, film);
-          if (exact < 0.05 * axis) continue;  // the end of the picture
+          if (exact < 0.05 * axis) continue;  // edge of the image circle
           EXPECT_NEAR(exposure(*lens, pupils, film) / exact, 1, 0.02)
               << id << " f/" << f_number << ' ' << name(model) << " at " << part;
         }
@@ -96,7 +96,7 @@ TEST(Exposure, OverTheFieldIsThatOfTheExactLensWhereAModelHasItsPupils) {
   }
 }
 
-TEST(Exposure, OfAnIrisWithEdgesIsThatOfTheExactLens) {
+TEST(Exposure, IrisWithEdgesIsExact) {
   for (const char* id : {"double_gauss_100mm_f2.0", "tessar_100mm_f2.8", "modern_58mm_f0.95"}) {
     for (const double f_number : {2.9, 8.0}) {
       const Lens lens = with_iris(with_f_number(testing::data_lens(id), f_number),

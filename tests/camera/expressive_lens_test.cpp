@@ -28,7 +28,7 @@ using testing::wide;
 
 constexpr double thinness = 1e-7;
 
-/// A lens of 50 mm at f/4, as good as thin, with its stop at z = 0 and its film where 2 m are sharp to first order.
+/// A nearly thin lens of 50 mm at f/4 with the stop at z = 0, focused at 2 m to first order.
 Lens thin_50mm() {
   Prescription p;
   p.name = "thin";
@@ -39,14 +39,15 @@ Lens thin_50mm() {
   return compile(p);
 }
 
-/// 1 / distance from z at which a ray crosses the axis.
+/// Inverse distance from z to the point at which a ray crosses the axis, 1 / mm.
 double crossing(const Ray<double>& ray, double z) {
   const double slope = ray.direction.y / ray.direction.z;
   const double height = ray.origin.y + slope * (z - ray.origin.z);
   return slope / height;
 }
 
-/// Of the ray from the film's centre through the upper part of the pupil, a share of the area of the pupil further out.
+/// The ray from the centre of the film through the upper half of the pupil; v: fraction of the pupil area within its
+/// radius.
 CameraRay ray_at(const Camera& camera, double share, Wavelength wavelength = {}) {
   for (const double u : {0.0, 0.25}) {
     const CameraRay ray = camera.sample({.film = {0, 0}, .pupil_u = u, .pupil_v = share, .wavelength = wavelength});
@@ -55,8 +56,8 @@ CameraRay ray_at(const Camera& camera, double share, Wavelength wavelength = {})
   return {};
 }
 
-// Values of the thin lens's formulas: 1/F - 1/(u + D), and (k - 1)/F.
-TEST(ExpressiveLens, FilmOffsetsAndPowerAreThoseOfTheThinLens) {
+// Thin-lens formulas: 1/F - 1/(u + D) for film offsets and (k - 1)/F for powers.
+TEST(ExpressiveLens, FilmOffsetsAndPowerFollowThinLensFormulas) {
   const Lens lens = thin_50mm();
   const Film film{.width_mm = 10, .height_mm = 10};
   const CameraOptions plain{.model = ModelKind::thick};
@@ -69,7 +70,7 @@ TEST(ExpressiveLens, FilmOffsetsAndPowerAreThoseOfTheThinLens) {
   EXPECT_NEAR(crossing(ray_at(Camera(lens, film, power), 0.5).ray, 0) * 1000, 0.7, 1e-6);
 }
 
-// The spline of power goes through its knots, at the radius of the pupil, and is smooth and even there.
+// The spline of the power over the pupil radius passes through its knots, is smooth, and is even at radius 0.
 TEST(ExpressiveLens, PowerGoesThroughItsKnots) {
   const Lens lens = thin_50mm();
   const Film film{.width_mm = 10, .height_mm = 10};
@@ -91,7 +92,7 @@ TEST(ExpressiveLens, PowerGoesThroughItsKnots) {
   }
 }
 
-// The strength multiplies the axial colour, at compiled wavelengths and between them.
+// The strength scales the axial colour at any wavelength.
 TEST(ExpressiveLens, DispersionMultipliesAxialColour) {
   constexpr std::array nm{587.56, 440., 480., 540., 650.};
   const auto glasses = GlassCatalogue::load(std::filesystem::path(PETZVAL_TEST_DATA) / "glass");
@@ -120,7 +121,7 @@ TEST(ExpressiveLens, DispersionMultipliesAxialColour) {
               1e-2 * std::abs(colour(plain, Wavelength(4))));
 }
 
-/// RMS distance from their mean of the rays of a film point in a plane of the scene, over its distance: an angle.
+/// Angular blur of a film point in a scene plane: RMS distance of its rays from their mean, divided by the distance.
 double spot(const Camera& camera, const FilmPoint& film, double z) {
   double weight = 0, x = 0, y = 0, square = 0;
   const core_detail::Kronecker<2> random(0);
@@ -139,17 +140,17 @@ double spot(const Camera& camera, const FilmPoint& film, double z) {
 struct RealLens {
   std::string id;
   double on_axis;     ///< largest relative error of the blur of points 15 to 10000 focal lengths away
-  double over_field;  ///< the same over the film, where the blur is 3 mrad and more
-  double better;      ///< RMS error of all of these over that of the lens without aberrations
+  double over_field;  ///< the same over the film, for blurs of at least 3 mrad
+  double better;      ///< RMS error relative to the RMS error of the lens without aberrations
 };
 void PrintTo(const RealLens& lens, std::ostream* out) { *out << lens.id; }
 
 class ExpressiveFromLens : public ::testing::TestWithParam<RealLens> {};
 
-// A real lens's spherical aberration and curvature of field: the blur of its exact rays, over the film and in depth.
-// What is left is astigmatism and coma, and the pupil: that of first-order models is as bright, and a few per cent
-// wider.
-TEST_P(ExpressiveFromLens, HasItsBlur) {
+// With the spherical aberration and field curvature of a real lens, the blur equals the blur of exact rays over film
+// and depth. Astigmatism and coma remain, and the pupil of first-order models is a few per cent wider at equal
+// irradiance.
+TEST_P(ExpressiveFromLens, BlurEqualsBlurOfExactRays) {
   const auto& [id, on_axis, over_field, better] = GetParam();
   const Lens lens = testing::data_lens(id);
   const ExpressiveLens found = expressive_from(lens, wide);
@@ -184,15 +185,13 @@ INSTANTIATE_TEST_SUITE_P(Lenses, ExpressiveFromLens,
                            return name;
                          });
 
-// Without aberrations there is nothing to take over.
-TEST(ExpressiveLens, OfAThinLensAtFTwelveThousandIsNone) {
+TEST(ExpressiveLens, LensWithoutAberrationsGivesAnEmptyOne) {
   const ExpressiveLens found = expressive_from(thin_50mm(), {.width_mm = 1, .height_mm = 1});
   for (const PowerKnot& knot : found.power) EXPECT_NEAR(knot.power, 1, 1e-6);
   for (const FilmOffset& offset : found.film_offsets) EXPECT_NEAR(offset.offset_mm, 0, 0.02);
 }
 
-// What is found for a lens is what a camera takes, on any film.
-TEST(ExpressiveLens, OfEveryLensIsOneForItsCamera) {
+TEST(ExpressiveLens, CameraAcceptsTheOneOfEveryLens) {
   for (const char* id : {"phone_5.6mm_f3.5", "ball_10mm", "eye_gullstrand_le_grand", "fisheye_16mm_f2.8",
                          "catadioptric_mangin_1000mm_f7.5", "landscape_meniscus_10mm", "modern_58mm_f0.95"}) {
     const Lens lens = testing::data_lens(id);
@@ -207,7 +206,7 @@ TEST(ExpressiveLens, OfEveryLensIsOneForItsCamera) {
   expect_error([&] { expressive_from(anamorphic); }, {anamorphic.name(), "expressive_from"});
 }
 
-TEST(ExpressiveLens, InvalidOnesAreRefused) {
+TEST(ExpressiveLens, RefusesInvalidParameters) {
   const Lens lens = testing::data_lens("double_gauss_100mm_f2_28deg");
   const auto with = [](const Lens& of, const ExpressiveLens& expressive, ModelKind model = ModelKind::thick) {
     return [=] { Camera(of, wide, {.model = model, .expressive = expressive}); };

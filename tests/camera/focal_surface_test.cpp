@@ -24,7 +24,7 @@ constexpr double infinity = std::numeric_limits<double>::infinity();
 const IdealLens lens = thin_lens(50, 2);
 const Film film{.z_mm = 50 + 50 * 50 / 1950.0};  // focused at 2 m
 
-TEST(FocalSurface, MeetsItsPoints) {
+TEST(FocalSurface, PassesThroughItsPoints) {
   const std::vector<FocalPoint> points{{.place = {-9, 0}, .inverse_distance = 1 / 1500.0},
                                        {.place = {9, 2}, .inverse_distance = 1 / 4000.0, .extent_stops = -1},
                                        {.place = {1, 5}, .extent_stops = 3},
@@ -39,7 +39,7 @@ TEST(FocalSurface, MeetsItsPoints) {
   }
 }
 
-TEST(FocalSurface, PassesBlurredPointsByTheBlurOfTheLens) {
+TEST(FocalSurface, MissesBlurredPointsByTheirBlur) {
   for (const double stops : {0.0, 2.0}) {
     for (const double blur : {-0.1, 0.2}) {
       const double object = 1 / 2500.0;
@@ -49,24 +49,24 @@ TEST(FocalSurface, PassesBlurredPointsByTheBlurOfTheLens) {
       const FocalSurface surface(lens, film, points);
       const auto values = surface.at({3, 4});
       EXPECT_NEAR(values.blur_mm, blur, 1e-14);
-      // The film that the surface stands for: the thin lens, stopped down, focused there.
+      // The equivalent plain camera: the thin lens, stopped down, focused on the surface.
       const double focused = 1 / values.inverse_distance;
       const IdealLens stopped = thin_lens(50, 2 * std::exp2(stops / 2));
       const auto image = stopped.image({{0, 0, -1 / object}});
       const double found = signed_blur(*image, {.z_mm = 50 + 2500 / (focused - 50)});
-      // Of the same picture: the blur grows with the distance of the film.
+      // Divided by the image distance, as the blur grows with the distance of the film.
       EXPECT_NEAR(found * film.z() / (50 + 2500 / (focused - 50)), blur, 1e-12);
     }
   }
 }
 
-TEST(FocalSurface, WithoutDistancesIsWhereTheFilmIsFocused) {
+TEST(FocalSurface, WithoutDistancesKeepsTheFocusOfTheFilm) {
   const std::vector<FocalPoint> points{{.place = {1, 5}, .extent_stops = 3}};
   const FocalSurface surface(lens, film, points);
   EXPECT_NEAR(surface.at({7, 7}).inverse_distance, 1 / 2000.0, 1e-15);
   EXPECT_EQ(surface.at({7, 7}).extent_stops, 3);
   EXPECT_EQ(FocalSurface(lens, {.z_mm = 50}, points).at({7, 7}).inverse_distance, 0);
-  // 0.1 mm behind the image of 2 m: computed with 40 digits.
+  // 0.1 mm behind the image of 2 m; computed with 40 digits.
   const Film behind{.z_mm = 50 * 2000 / 1950.0 + 0.1};
   EXPECT_NEAR(FocalSurface(lens, behind, points).at({0, 0}).inverse_distance, 0.53795099555866061e-3, 1e-16);
 }
@@ -85,7 +85,7 @@ std::vector<FocalPoint> random_points(unsigned seed, std::size_t count) {
   return points;
 }
 
-TEST(FocalSurface, DoesNotDependOnTheOrderOfThePointsNorOnACommonFactorOfTheirWeights) {
+TEST(FocalSurface, IndependentOfPointOrderAndScaleOfWeights) {
   const auto points = random_points(1, 17);
   auto turned = std::vector(points.rbegin(), points.rend()), heavy = points, faded = points;
   for (auto& point : heavy) point.weight *= 1e7;
@@ -101,7 +101,7 @@ TEST(FocalSurface, DoesNotDependOnTheOrderOfThePointsNorOnACommonFactorOfTheirWe
   }
 }
 
-TEST(FocalSurface, TurnsAndScalesWithThePicture) {
+TEST(FocalSurface, RotatesAndScalesWithTheImage) {
   const auto points = random_points(3, 9);
   const double scale = 3, cosine = std::cos(0.7), sine = std::sin(0.7);
   const auto moved = [&](const FilmPoint& p) {
@@ -111,7 +111,7 @@ TEST(FocalSurface, TurnsAndScalesWithThePicture) {
   for (auto& point : large) point.place = moved(point.place);
   const IdealLens large_lens = thin_lens(150, 2);
   const Film large_film{.width_mm = 72, .height_mm = 108, .z_mm = 3 * *film.z_mm};
-  // Faded points are passed at distances in parts of the picture.
+  // Near faded points the distance scales with the size of the image.
   for (const double fade : {1.0, 0.2}) {
     auto from = points;
     from[0].fade = large[0].fade = fade;
@@ -124,7 +124,7 @@ TEST(FocalSurface, TurnsAndScalesWithThePicture) {
   }
 }
 
-TEST(FocalSurface, TakesThePlaneOfFocusOfATiltedFilm) {
+TEST(FocalSurface, ReproducesThePlaneOfFocusOfATiltedFilm) {
   // Through the entrance pupil of a thin lens, 1 / distance over an upright picture is linear on a plane of the scene.
   const double z = *film.z_mm;
   const auto inverse = [&](const FilmPoint& p) { return 5e-4 + 2e-5 * p.x / z * 50 - 1e-5 * p.y; };
@@ -148,7 +148,7 @@ TEST(FocalSurface, IsContinuousWhereAPointVanishes) {
   without.erase(without.begin());
   const FocalSurface gone(lens, film, without);
   for (const bool by_weight : {true, false}) {
-    // At the node itself, in even steps of the logarithm, and beside it.
+    // At the point itself and next to it, in equal steps of the logarithm.
     for (const FilmPoint at : {node, FilmPoint{node.x + 0.01, node.y}, FilmPoint{node.x + 1, node.y - 1}}) {
       double last = nan, largest_step = 0;
       for (double share = 1; share > 1e-12; share *= 0.98) {
@@ -164,9 +164,9 @@ TEST(FocalSurface, IsContinuousWhereAPointVanishes) {
   }
 }
 
-// A plane through three points is the same however little one of them weighs; yet it has to leave without a jump, by
-// its fade and by its weight, and in both precisions.
-TEST(FocalSurface, IsContinuousWhereOnlyALineOfPointsStays) {
+// A plane through three points is independent of their weights. Yet a point has to vanish without a jump, by its fade
+// and by its weight, in both precisions.
+TEST(FocalSurface, IsContinuousWherePointsBecomeCollinear) {
   const auto value = [&](double fade, double weight, const FilmPoint& place) {
     const FocalPoint points[]{{.place = {-9, 0}, .inverse_distance = 1 / 1500.0},
                               {.place = {0, -8}, .inverse_distance = 0},
@@ -182,7 +182,7 @@ TEST(FocalSurface, IsContinuousWhereOnlyALineOfPointsStays) {
   for (const FilmPoint place : {FilmPoint{9, 8}, {9, 2}, {-3, 5}}) {
     for (const bool by_fade : {true, false}) {
       const auto at = [&](double amount) { return by_fade ? value(amount, 1, place) : value(1, amount, place); };
-      // In steps of 5 % from 1 to nothing.
+      // In steps of 5 % from 1 to 0.
       double before = at(1);
       for (double amount = 0.95; amount > 1e-12; amount *= 0.95) {
         const double now = at(amount);
@@ -194,8 +194,8 @@ TEST(FocalSurface, IsContinuousWhereOnlyALineOfPointsStays) {
   }
 }
 
-// Points beside a line by little: floats and doubles agree.
-TEST(FocalSurface, IsTheSameInFloatNextToALineOfPoints) {
+// The points lie next to a line.
+TEST(FocalSurface, FloatEqualsDoubleNextToCollinearPoints) {
   for (const double beside : {1.0, 0.6, 0.3, 0.1, 0.02, 1e-4}) {
     const FocalPoint points[]{{.place = {-9, 0}, .inverse_distance = 1 / 1500.0},
                               {.place = {0, beside}, .inverse_distance = 1 / 3000.0},
@@ -210,7 +210,7 @@ TEST(FocalSurface, IsTheSameInFloatNextToALineOfPoints) {
   }
 }
 
-TEST(FocalSurface, IsTheSameInFloatHoweverSteeplyWeightsFall) {
+TEST(FocalSurface, FloatEqualsDoubleForSteepWeights) {
   for (const double beta : {1.0, 2.5, 3.0, 4.0, 5.0, 6.0, 8.0}) {
     for (unsigned seed = 0; seed < 60; ++seed) {
       const FocalSurface surface(lens, film, random_points(seed, 3 + seed % 8), {.beta = beta});
@@ -230,7 +230,7 @@ TEST(FocalSurface, IsTheSameInFloatHoweverSteeplyWeightsFall) {
   }
 }
 
-TEST(FocalSurface, BatchesFramesAndSinglePlacesAgree) {
+TEST(FocalSurface, BatchesAndFramesEqualSingleFilmPoints) {
   const auto points = random_points(7, 16);
   const FocalSurface surface(lens, film, points);
   const Film raster{.columns = 37, .rows = 23, .z_mm = 50};
@@ -253,7 +253,7 @@ TEST(FocalSurface, BatchesFramesAndSinglePlacesAgree) {
     EXPECT_EQ(single.inverse_distance, distances[i]);
     EXPECT_EQ(single.extent_stops, extents[i]);
   }
-  // In float, within rounding.
+  // In float up to rounding.
   const std::vector<float> xf(x.begin(), x.end()), yf(y.begin(), y.end());
   std::vector<float> in_float(count);
   surface.at<float>(count, xf.data(), yf.data(), in_float.data(), nullptr);
@@ -281,14 +281,14 @@ TEST(FocalSurface, StaysWithinItsLimits) {
       EXPECT_TRUE(std::isfinite(slopes.inverse_distance.x + slopes.extent_stops.y));
     }
   }
-  // Points on a slope towards the lens: no value within the front focal length.
+  // Extrapolated points on a slope towards the lens stay outside the front focal length.
   const std::vector<FocalPoint> steep{{.place = {0, 0}, .inverse_distance = 0},
                                       {.place = {1, 0}, .inverse_distance = 1 / 52.0}};
   const FocalSurface near(lens, film, steep);
   EXPECT_TRUE(lens.image({{0, 0, -1 / near.at({10, 0}).inverse_distance}}));
 }
 
-TEST(FocalSurface, RefusesWhatIsNoPoint) {
+TEST(FocalSurface, RefusesInvalidPoints) {
   const FocalPoint good{.place = {0, 0}, .inverse_distance = 1e-3, .extent_stops = 0};
   const auto surface = [](const FocalPoint& second) {
     return [second] {
@@ -325,7 +325,7 @@ TEST(FocalSurface, RefusesWhatIsNoPoint) {
   expect_error([&] { FocalSurface(telecentric, film, points); }, {"entrance pupil", "infinity"});
 }
 
-// Whatever the points, values are finite and within the limits, or the points are refused.
+// For any points, values are finite and within the limits, or the points are refused.
 TEST(FocalSurface, IsFiniteForAnyPoints) {
   std::mt19937 random(9);
   std::uniform_real_distribution<double> unit(-1, 1);
@@ -340,8 +340,8 @@ TEST(FocalSurface, IsFiniteForAnyPoints) {
       FocalPoint point;
       point.place = shape == 0   ? FilmPoint{18 * t, 12 * unit(random)}
                     : shape == 1 ? FilmPoint{18 * t, -7 * t + 1}                                    // on a line
-                    : shape == 2 ? FilmPoint{double(one_of(2)), 3}                                  // in few places
-                                 : FilmPoint{5 + 1e-9 * t, std::ldexp(unit(random), -one_of(60))};  // close by
+                    : shape == 2 ? FilmPoint{double(one_of(2)), 3}                                  // at two positions
+                                 : FilmPoint{5 + 1e-9 * t, std::ldexp(unit(random), -one_of(60))};  // nearly coincident
       if (one_of(4)) point.inverse_distance = one_of(5) ? 1e-3 * std::abs(unit(random)) : 0;
       if (one_of(2)) point.extent_stops = 20 * unit(random);
       if (!one_of(4)) point.blur_mm = 0.05 * unit(random);
@@ -433,13 +433,13 @@ TEST(FocalPoints, CountByTheirFades) {
   ASSERT_EQ(faded.size(), 2u);
   EXPECT_EQ(faded[0].fade, 0.5);
   EXPECT_EQ(focal_points(lens, film, points, {.time = 1}, std::vector{0.0, 1.0, 1.0}).size(), 1u);
-  // The nearest one keeps its weight.
+  // The nearest point keeps its weight.
   const auto weighed = focal_points(lens, film, points, {.time = 0, .nearer_weighs_more = true});
   EXPECT_DOUBLE_EQ(weighed[0].weight, 900.0 / 2000);
   EXPECT_EQ(weighed[1].weight, 1);
 }
 
-TEST(FocusFades, AreTheSameForAnyFrameRate) {
+TEST(FocusFades, IndependentOfTheFrameRate) {
   FocusFades coarse(0.2), fine(0.2);
   coarse.advance(0, {true, true, false});
   fine.advance(0, {true, true, false});

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Where pictures are sharp: the lens was focused once, and every model of it takes the same picture.
+// Distances at which images are sharp: all models of a focused lens agree.
 #include "petzval/focus/focus.hpp"
 
 #include <gtest/gtest.h>
@@ -19,10 +19,10 @@
 namespace petzval {
 namespace focus_test {
 
-/// The blur of the film's centre over the planes of the scene, as the camera's weighted samples have it.
+/// Blur of the centre of the film over the planes of the scene, from weighted camera samples.
 ///
-/// Seen from the centre of the entrance pupil, rays that cross the pupil's plane in p with slopes s miss the axis in
-/// the plane `away` from there by s + p / away. The mean square is a parabola over 1 / away.
+/// Rays cross the plane of the entrance pupil at p with slopes s. At the distance `away` from this plane they miss the
+/// axis by the angle s + p / away. The mean square is a parabola over 1 / away.
 struct Blur {
   double pupil_z = 0;
   double ss = 0, ps = 0, pp = 0;
@@ -53,7 +53,7 @@ Blur blur(const Camera& camera, std::size_t wavelength = 0) {
   return blur;
 }
 
-TEST(CameraFocus, IsWhereTheLensWasFocusedInEveryModel) {
+TEST(CameraFocus, EveryModelFocusesAtTheSetDistance) {
   constexpr double distance = 3000;
   for (const char* id : {"double_gauss_100mm_f2_28deg", "modern_58mm_f0.95", "telephoto_200mm_f1.8", "biogon_35mm_f2.8",
                          "tessar_100mm_f2.8", "soft_85mm_f2.8", "retrofocus_100mm_f2"}) {
@@ -68,7 +68,7 @@ TEST(CameraFocus, IsWhereTheLensWasFocusedInEveryModel) {
       SCOPED_TRACE(std::string(id) + (f_number > 0 ? " at f/4" : " wide open") + ": exact " +
                    std::to_string(in_focus(exact)) + " mm");
       EXPECT_NEAR(1 / exact.sharpest(), wanted, exact.half_depth());
-      // The scan of planes has its least there too.
+      // A scan of planes has its minimum at the same distance.
       for (const double off : {-2.0, -1.5, 1.5, 2.0}) {
         EXPECT_GT(exact.rms(1 / (wanted + off * exact.half_depth())), exact.rms(1 / wanted)) << off;
       }
@@ -84,8 +84,8 @@ TEST(CameraFocus, IsWhereTheLensWasFocusedInEveryModel) {
   }
 }
 
-// The same for every lens of data/, by rays and to first order.
-TEST(CameraFocus, IsWhereEveryLensWasFocused) {
+// The lenses of data/, by rays and to first order.
+TEST(CameraFocus, EveryLensFocusesAtTheSetDistance) {
   for (const Prescription& prescription : testing::data_prescriptions()) {
     const Lens whole = compile(prescription);
     if (!whole.rotationally_symmetric()) continue;
@@ -101,9 +101,8 @@ TEST(CameraFocus, IsWhereEveryLensWasFocused) {
   }
 }
 
-// Whatever put the film where it is: first-order models are sharp in the plane in which exact rays are sharpest, at
-// each wavelength.
-TEST(CameraFocus, OfFirstOrderModelsIsThatOfExactRays) {
+// For any film position and wavelength, first-order models are sharp in the plane of the smallest blur of exact rays.
+TEST(CameraFocus, FirstOrderModelsFocusWithExactRays) {
   const auto glasses = GlassCatalogue::load(std::filesystem::path(PETZVAL_TEST_DATA) / "glass");
   for (const char* id : {"double_gauss_100mm_f2_28deg", "modern_58mm_f0.95", "catadioptric_mangin_1000mm_f7.5",
                          "mirror_newton_200mm_f8", "eye_gullstrand_le_grand", "fisheye_10mm_f4"}) {

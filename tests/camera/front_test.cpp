@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Where rays start and shadow rays end.
+// The front: the surface on which rays start and shadow rays end.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -24,8 +24,8 @@ struct Case {
 const std::vector<ModelKind> all(models().begin(), models().end()), exact{ModelKind::exact_float,
                                                                           ModelKind::exact_double};
 
-/// Fronts worked out by hand: the first surface where it is spherical or plane; with an asphere, the sphere through its
-/// rim; before a secondary mirror and the rim of a hollow cylinder, a plane.
+/// Fronts derived by hand: the first surface if it is a sphere or plane, the sphere through the rim of an asphere, a
+/// plane in front of a secondary mirror or of the rim of a concave cylinder.
 std::vector<Case> cases() {
   const double paraboloid = 12.5 * 12.5 / 800, hollow = 101.3 - std::sqrt(101.3 * 101.3 - 30.0 * 30.0);
   return {{"telephoto_200mm_f1.8", 0, 1 / 123.12, all},
@@ -41,7 +41,7 @@ std::vector<Case> cases() {
           {"anamorphic_60mm_2x", -1.02 * hollow, 0, exact}};
 }
 
-/// The front is where c |p|^2 = 2 p_z. How far a point is from it, nearly.
+/// Distance of a point from the front c |p|^2 = 2 p_z, to first order.
 double off_front(const Case& c, const Vec3<double>& point) {
   const Vec3<double> p = point - Vec3<double>{0, 0, c.vertex_z};
   return (c.curvature * glm::dot(p, p) - 2 * p.z) / (2 * glm::length(c.curvature * p - Vec3<double>{0, 0, 1}));
@@ -52,7 +52,7 @@ Film film_of(const Lens& lens, const char* id) {
   return {.width_mm = side, .height_mm = side};
 }
 
-TEST(Front, IsWhereTheRaysOfEveryModelStart) {
+TEST(Front, RaysOfEveryModelStartOnIt) {
   for (Case c : cases()) {
     const Lens lens = testing::data_lens(c.id);
     if (std::isnan(c.vertex_z)) c.vertex_z = Camera(lens, film_of(lens, c.id)).sample({}).ray.origin.z;
@@ -70,7 +70,7 @@ TEST(Front, IsWhereTheRaysOfEveryModelStart) {
         const double single = model == ModelKind::exact_float ? 1e-5 : 1e-9;
         const Ray<double> one = camera.sample(samples.one(i)).ray;
         EXPECT_NEAR(glm::distance(one.origin, samples.ray(i).origin), 0, single * size);
-        // The line of a wide lens's first-order ray may pass the sphere by: it starts in the plane that touches it.
+        // A first-order ray of a wide lens may miss the sphere; it starts in the tangent plane at the vertex.
         const bool at_plane = model < ModelKind::polynomial(3) && std::abs(one.origin.z - c.vertex_z) < 1e-9 * size;
         beside += at_plane;
         if (!at_plane) {
@@ -87,8 +87,8 @@ TEST(Front, IsWhereTheRaysOfEveryModelStart) {
   }
 }
 
-// Fisheyes see beyond 90 degrees: a ray starts beside the vertex's plane, not far away from the lens.
-TEST(Front, IsCloseToTheGlassOfAFisheye) {
+// Rays of fields beyond 90 degrees start behind the plane of the vertex, next to the glass.
+TEST(Front, FisheyeRaysStartNearTheGlass) {
   const Lens lens = testing::data_lens("fisheye_6.3mm_f2.8");
   const Camera camera(lens, {.width_mm = 24, .height_mm = 24}, {.model = ModelKind::polynomial(11)});
   auto samples = testing::random_samples(camera.film(), 20000);
@@ -102,7 +102,7 @@ TEST(Front, IsCloseToTheGlassOfAFisheye) {
   EXPECT_GT(beyond, 50);
 }
 
-TEST(Front, IsWhereShadowRaysEnd) {
+TEST(Front, ShadowRaysEndOnIt) {
   for (const Case& c : cases()) {
     if (std::isnan(c.vertex_z)) continue;
     const Lens lens = testing::data_lens(c.id);

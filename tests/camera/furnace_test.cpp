@@ -42,10 +42,10 @@ double mean_weight(const Camera& camera, const FilmPoint& film, std::uint32_t co
 /// Films within the declared fields of the lenses.
 struct Case {
   const char* id;
-  double half_width;  ///< of the film, mm
+  double half_width;  ///< film, mm
 };
 
-TEST(WhiteFurnace, ExposesAsTheLensDoes) {
+TEST(WhiteFurnace, ExactModelsHaveTheIrradianceOfTheLens) {
   for (const auto& [id, half_width] :
        {Case{"double_gauss_100mm_f2.0", 30}, Case{"tessar_100mm_f3.5", 30}, Case{"fisheye_10mm_f4", 9},
         Case{"modern_50mm_f1.0", 18}, Case{"catadioptric_mangin_1000mm_f7.5", 15}, Case{"eye_gullstrand_le_grand", 4},
@@ -65,7 +65,7 @@ TEST(WhiteFurnace, ExposesAsTheLensDoes) {
   }
 }
 
-TEST(WhiteFurnace, ExposesTheAxisAlikeByEveryModel) {
+TEST(WhiteFurnace, EveryModelHasTheIrradianceOfTheLensOnTheAxis) {
   const Lens lens = with_focus(with_f_number(testing::data_lens("double_gauss_100mm_f2.0"), 2.8), 3000);
   const double real = film_irradiance(lens, {});
   for (const ModelKind model : models()) {
@@ -73,8 +73,8 @@ TEST(WhiteFurnace, ExposesTheAxisAlikeByEveryModel) {
   }
 }
 
-// The stated error is the largest of many film points; other points may exceed it a little.
-TEST(WhiteFurnace, ExposesWithinTheErrorThatIsStatedForARung) {
+// The stated error is the maximum over many film points; other points may exceed it slightly.
+TEST(WhiteFurnace, StatedExposureErrorHolds) {
   const Lens lens = with_focus(testing::data_lens("double_gauss_100mm_f2_28deg"), 3000);
   const std::array points{FilmPoint{1.2, -3.4}, FilmPoint{3.1, 5.7},  FilmPoint{-9.4, 2.2},
                           FilmPoint{0, -11.9},  FilmPoint{17.5, 0.3}, FilmPoint{-17.9, 11.8}};
@@ -93,7 +93,7 @@ TEST(WhiteFurnace, ExposesWithinTheErrorThatIsStatedForARung) {
   EXPECT_GT(most, 0.1);
 }
 
-TEST(WhiteFurnace, GivesOneOnTheAxisWhereThatIsAskedFor) {
+TEST(WhiteFurnace, UnityOnAxisGivesWeightOne) {
   const Lens lens = testing::data_lens("tessar_100mm_f2.8");
   for (const ModelKind model : models()) {
     const CameraOptions options{.model = model, .normalisation = Normalisation::unity_on_axis};
@@ -108,8 +108,8 @@ TEST(WhiteFurnace, GivesOneOnTheAxisWhereThatIsAskedFor) {
   }
 }
 
-// The lens is brighter on the axis at some wavelengths than at others: its tint.
-TEST(WhiteFurnace, KeepsTheTintOfTheLensUnlessToldOtherwise) {
+// The irradiance on the axis depends on the wavelength: the tint of the lens.
+TEST(WhiteFurnace, UnityAtEachWavelengthRemovesTheTint) {
   const auto glasses = GlassCatalogue::load(std::filesystem::path(PETZVAL_TEST_DATA) / "glass");
   const Lens lens = compile(testing::data_prescription("ball_10mm"), std::array{440.0, 587.5618, 650.0},
                             {.glasses = &glasses, .missing_glass = MissingGlass::abbe});
@@ -124,7 +124,7 @@ TEST(WhiteFurnace, KeepsTheTintOfTheLensUnlessToldOtherwise) {
     for (const std::uint16_t w : {0, 1, 2}) {
       EXPECT_NEAR(light(tinted, w) / light(tinted, 1), light(absolute, w) / light(absolute, 1), 1e-9) << name(model);
       EXPECT_NEAR(light(white, w), 1, 2e-3) << name(model);
-      // The other side of the camera has the same unit.
+      // Importance has the same unit.
       const Ray<double> ray{{0.01, 0, -1000}, {0, 0, 1}};
       const double we = absolute.importance(ray, w).we / light(absolute, w);
       EXPECT_NEAR(tinted.importance(ray, w).we / light(tinted, w), we, 1e-9 * we) << name(model);
@@ -133,16 +133,16 @@ TEST(WhiteFurnace, KeepsTheTintOfTheLensUnlessToldOtherwise) {
   }
 }
 
-// Tables have 32 strips from the axis to the corner. The mean over all strips, at one place within them, would show
-// rings at their borders.
-TEST(WhiteFurnace, ShowsNoRings) {
+// Tables have 32 strips from the axis to the corner. Rings at the borders would show in the mean over all strips at
+// one position within a strip.
+TEST(WhiteFurnace, TablesShowNoRings) {
   constexpr int strips = 32, places = 16, count = 4096;
   for (const auto& [id, half_width] :
        {Case{"double_gauss_100mm_f2.0", 28}, Case{"catadioptric_mangin_1000mm_f7.5", 15}}) {
     const Lens lens = testing::data_lens(id);
     const Film film{.width_mm = 2 * half_width, .height_mm = 2 * half_width};
     const Camera camera(lens, film, {.model = ModelKind::exact_float});
-    // The irradiance of the lens at every fourth radius, interpolated between (within 1e-4).
+    // The irradiance of the lens at every fourth radius; linear interpolation is accurate to 1e-4.
     const auto side_of = [&](double i) { return film.radius_mm() / std::numbers::sqrt2 * i / (strips * places); };
     std::vector<double> irradiance;
     for (int i = 0; i <= strips * places; i += 4) irradiance.push_back(film_irradiance(lens, {side_of(i), side_of(i)}));

@@ -24,7 +24,7 @@ const Lens& gauss() {
   return lens;
 }
 
-/// The camera frame of a host: its directions right, up and ahead, and its unit.
+/// The camera frame of a host: the directions right, up and ahead, and the unit.
 struct Says {
   Host host;
   Vec3<double> right, up, ahead;
@@ -33,11 +33,11 @@ struct Says {
 
 class HostFrames : public ::testing::TestWithParam<Says> {};
 
-TEST_P(HostFrames, HaveTheirHostsAxesAndUnits) {
+TEST_P(HostFrames, AxesAndUnitsEqualTheHost) {
   const auto& [host, right, up, ahead, per_mm] = GetParam();
   const HostFrame frame(host, gauss(), FrameOrigin::front_vertex);
   EXPECT_EQ(frame.units_per_mm(), per_mm);
-  // In the lens frame a camera looks along -z, +y is up and so +x to the right.
+  // In the lens frame a camera looks along -z; +y is up and +x is right.
   EXPECT_EQ(frame.direction_to_host({1, 0, 0}), right);
   EXPECT_EQ(frame.direction_to_host({0, 1, 0}), up);
   EXPECT_EQ(frame.direction_to_host({0, 0, -1}), ahead);
@@ -56,7 +56,7 @@ INSTANTIATE_TEST_SUITE_P(Hosts, HostFrames,
                                            Says{Host::arnold, {1, 0, 0}, {0, 1, 0}, {0, 0, -1}, 0.1},
                                            Says{Host::appleseed, {1, 0, 0}, {0, 1, 0}, {0, 0, -1}, 0.001}));
 
-TEST(HostFrame, GoesThereAndBack) {
+TEST(HostFrame, RoundTrips) {
   const Ray<double> ray{{12.5, -340, -2000}, {0.36, 0.48, 0.8}};
   for (const Host host : hosts) {
     for (const FrameOrigin origin : origins) {
@@ -79,7 +79,7 @@ TEST(HostFrame, GoesThereAndBack) {
   }
 }
 
-TEST(HostFrame, HasItsOriginWhereItIsAsked) {
+TEST(HostFrame, OriginIsTheRequestedPoint) {
   const double pupil_z = pupils(gauss()).entrance.z;
   for (const Host host : hosts) {
     const auto at = [&](FrameOrigin origin, double z) {
@@ -91,7 +91,7 @@ TEST(HostFrame, HasItsOriginWhereItIsAsked) {
   }
 }
 
-TEST(HostFrame, RefusesWhatMakesNoFrame) {
+TEST(HostFrame, RefusesInvalidFrames) {
   using testing::expect_error;
   for (const double unit : {0.0, -0.001, std::nan(""), std::numeric_limits<double>::infinity()}) {
     expect_error([&] { HostFrame(Host::pbrt, gauss(), FrameOrigin::film, unit); }, {"units_per_mm", unit});

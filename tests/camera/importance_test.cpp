@@ -40,14 +40,14 @@ struct Case {
   std::string lens;
   Film film;
   ModelKind model;
-  double near;  ///< accuracy of returning lines, mm on the film
+  double near;  ///< tolerance of returning rays, mm on the film
 };
 
 std::ostream& operator<<(std::ostream& out, const Case& c) { return out << c.lens << ' ' << name(c.model); }
 
 class Importances : public ::testing::TestWithParam<Case> {};
 
-TEST_P(Importances, OfACameraRayAreItsOwnSampleTurnedRound) {
+TEST_P(Importances, ReversedCameraRaysReturnToTheirSamples) {
   const auto& [id, f, model, near] = GetParam();
   const Camera camera(testing::data_lens(id), f, {.model = model});
   const core_detail::Kronecker<5> random(3);
@@ -61,7 +61,7 @@ TEST_P(Importances, OfACameraRayAreItsOwnSampleTurnedRound) {
     const Vec3<double> point = r.ray.origin + r.ray.direction * std::pow(10, 9 * x[4]);
     const Importance back = camera.importance({point, -r.ray.direction});
     expect_finite(back);
-    // A line near an edge may return on its other side.
+    // A ray next to an edge may return on the other side of the edge.
     at_edges += !back || back.pdf_pupil == 0;
     if (!back || back.pdf_pupil == 0) continue;
     EXPECT_EQ(back.fate, RayFate::transmitted);
@@ -71,14 +71,14 @@ TEST_P(Importances, OfACameraRayAreItsOwnSampleTurnedRound) {
     EXPECT_NEAR(back.raster[1], raster[1], near / f.width_mm * f.columns);
     EXPECT_EQ(back.pdf_film, r.pdf_film);
     EXPECT_NEAR(back.pdf_pupil / r.pdf_pupil, 1, 1e-2 * near);
-    // Reciprocity: a ray's importance over its density is its weight.
+    // Reciprocity: importance divided by density is the weight.
     EXPECT_NEAR(back.we / (back.pdf_position * back.pdf_direction) / r.weight, 1, 1e-2 * near);
   }
   EXPECT_GT(seen, 1500);
   EXPECT_LE(at_edges, seen / 500);
 }
 
-TEST_P(Importances, OfWhatTheCameraSeesAreConnected) {
+TEST_P(Importances, VisiblePointsAreConnected) {
   const auto& [id, f, model, near] = GetParam();
   const Camera camera(testing::data_lens(id), f, {.model = model});
   const core_detail::Kronecker<5> random(4);
@@ -121,8 +121,8 @@ INSTANTIATE_TEST_SUITE_P(
                       Case{"anamorphic_60mm_2x", film, ModelKind::polynomial(5), 2e-5},
                       Case{"anamorphic_60mm_2x", film, ModelKind::exact_double, 1e-5}));
 
-TEST(Importance, OfPolynomialsFindsTheFilmPointOnFilmsThatAreWiderThanTheLight) {
-  // Light ends far within these films, and polynomials bend back beyond it.
+TEST(Importance, PolynomialsFindFilmPointsOnFilmsWiderThanTheLight) {
+  // These films are larger than the image circle, and polynomials fold back outside the image circle.
   const std::array<std::pair<const char*, Film>, 4> wide{{{"telephoto_100mm_f5", {.width_mm = 105, .height_mm = 70}},
                                                           {"heliar_100mm_f4", {.width_mm = 219, .height_mm = 146}},
                                                           {"phone_5.6mm_f3.5", {.width_mm = 20, .height_mm = 14}},
@@ -149,7 +149,7 @@ TEST(Importance, OfPolynomialsFindsTheFilmPointOnFilmsThatAreWiderThanTheLight) 
   }
 }
 
-TEST(Importance, OfAPinholeIsThatOfTheThickLensInOnePoint) {
+TEST(Importance, PinholeEqualsThickLensThroughOnePoint) {
   const Lens lens = testing::data_lens("double_gauss_100mm_f2_28deg");
   const Camera pinhole(lens, film, {.model = ModelKind::pinhole}), thick(lens, film, {.model = ModelKind::thick});
   for (const Vec3<double> point : {Vec3<double>{0, 0, -3000}, Vec3<double>{200, -150, -2500}}) {
@@ -166,12 +166,12 @@ TEST(Importance, OfAPinholeIsThatOfTheThickLensInOnePoint) {
       EXPECT_NEAR(glm::length(glm::cross(to_pupil, p.direction)), 0, 1e-10);
       EXPECT_EQ(pinhole.importance({point, p.direction}).we, 0);
     }
-    // The results differ: the scene side has the cosines of those rays.
+    // The results differ slightly, as the scene side has the cosines of its own rays.
     EXPECT_NEAR(one / all, 1, 1e-2);
   }
 }
 
-TEST(Importance, IsNothingForWhatMakesNoRay) {
+TEST(Importance, InvalidPointsAndRaysHaveNoImportance) {
   const Lens lens = testing::data_lens("double_gauss_100mm_f2_28deg");
   for (const ModelKind model : {ModelKind::pinhole, ModelKind::thick, ModelKind::polynomial(5), ModelKind::exact_float,
                                 ModelKind::exact_double}) {
@@ -193,7 +193,7 @@ TEST(Importance, IsNothingForWhatMakesNoRay) {
       const Importance i = camera.importance(ray);
       EXPECT_EQ(i.we, 0);
       EXPECT_NE(i.fate, RayFate::transmitted);
-      // All but the last are no rays.
+      // The last ray is valid and misses the lens.
       EXPECT_EQ(i.fate == RayFate::invalid, ray.origin.y != 500) << name(i.fate);
       expect_finite(i);
     }
@@ -237,7 +237,7 @@ TEST(Importance, DirectionsPassWithinTheStatedTolerance) {
   }
 }
 
-TEST(Importance, IsConnectedToAFilmThatIsDarkOnTheAxis) {
+TEST(Importance, FilmDarkOnTheAxisIsConnected) {
   Prescription singlet;
   singlet.name = "singlet";
   singlet.surfaces = {{.radius = 50, .thickness = 5, .medium = {.nd = 1.5168}, .semi_diameter = 12, .stop = true},
@@ -255,10 +255,10 @@ TEST(Importance, IsConnectedToAFilmThatIsDarkOnTheAxis) {
     missed += !(camera.pdf_importance(r.ray.origin + r.ray.direction * 1000.0, -r.ray.direction) > 0);
   }
   EXPECT_GT(seen, 500);
-  EXPECT_LT(missed, 0.02 * seen);  // the disc clips pupils abruptly within a field
+  EXPECT_LT(missed, 0.02 * seen);  // the obscuration clips pupils abruptly over the field
 }
 
-TEST(Importance, OfManyRaysIsThatOfEach) {
+TEST(Importance, BatchEqualsSingleRays) {
   constexpr std::array<double, 3> nm{450, 587.5618, 650};
   const Lens lens =
       compile(testing::data_prescription("double_gauss_100mm_f2.0"), nm, {.missing_glass = MissingGlass::abbe});
@@ -314,8 +314,8 @@ TEST(Importance, OfManyRaysIsThatOfEach) {
   }
 }
 
-TEST(Importance, OfASunIsTheAreaThroughWhichItShines) {
-  // A sun on the axis of a lens with a large film: every ray through the entrance pupil arrives, with We = n^2 / A.
+TEST(Importance, DistantLightSeesTheAreaOfTheEntrancePupil) {
+  // On a large film every ray through the entrance pupil arrives, with We = n^2 / A.
   const Lens lens = testing::data_lens("double_gauss_100mm_f2.0");
   for (const ModelKind model : {ModelKind::thin, ModelKind::thick, ModelKind::polynomial(7), ModelKind::exact_double}) {
     const Camera camera(lens, film, {.model = model});
@@ -355,10 +355,10 @@ TEST(Importance, OfASunIsTheAreaThroughWhichItShines) {
   EXPECT_EQ(camera.sample_distant_importance({0, 0, 2}, 0.3, 0.4).importance.fate, RayFate::invalid);
   EXPECT_EQ(camera.sample_distant_importance(direction, 0.3, 0.4, 7).importance.fate, RayFate::outside_spectrum);
   EXPECT_FALSE(camera.sample_distant_importance({0, 0, -1}, 0.3, 0.4));
-  EXPECT_EQ(camera.pdf_distant_importance({s.on_front, direction}), 0);  // of a pinhole
+  EXPECT_EQ(camera.pdf_distant_importance({s.on_front, direction}), 0);  // no ray meets a pinhole
 }
 
-TEST(Importance, IsTheSameWhicheverThreadAsksFirst) {
+TEST(Importance, IndependentOfTheThreadThatAsksFirst) {
   const Lens lens = testing::data_lens("double_gauss_100mm_f2.0");
   const Vec3<double> point{10, 20, -3000};
   const double wanted = Camera(lens, film).sample_importance(point, 0.3, 0.4).importance.we;
@@ -369,7 +369,7 @@ TEST(Importance, IsTheSameWhicheverThreadAsksFirst) {
   for (const double we : found) EXPECT_EQ(we, wanted);
 }
 
-TEST(Importance, SaysWhereARayMissesTheFilm) {
+TEST(Importance, RayBesideTheFilmHasItsFilmPoint) {
   const Camera camera(testing::data_lens("double_gauss_100mm_f2_28deg"), film, {.model = ModelKind::exact_double});
   const double angle = 0.21;  // 21 mm off the axis upwards, where the film ends at 12
   const Importance i = camera.importance({{0, 0, 0}, {0, -std::sin(angle), std::cos(angle)}});
@@ -378,12 +378,12 @@ TEST(Importance, SaysWhereARayMissesTheFilm) {
   EXPECT_LT(i.film.y, -12);
 }
 
-TEST(Importance, OfAStopThatIsClosedIsThatOfAVignettedRay) {
+TEST(Importance, ClosedStopVignettes) {
   const Lens open = testing::data_lens("double_gauss_100mm_f2_28deg");
   for (const double radius : {0., 1e-300, 1e-160}) {
     const Lens closed = with_semi_diameter(open, *open.stop(), radius);
     for (const ModelKind model : models()) {
-      if (model.is_polynomial()) continue;  // there is nothing to fit
+      if (model.is_polynomial()) continue;  // no ray to fit
       SCOPED_TRACE(std::string(name(model)) + ' ' + std::to_string(radius));
       const Camera camera(closed, film, {.model = model});
       const Importance axis = camera.importance({{0, 0, -10}, {0, 0, 1}});
@@ -398,8 +398,8 @@ TEST(Importance, OfAStopThatIsClosedIsThatOfAVignettedRay) {
   }
 }
 
-TEST(Importance, OfALostRaySaysNothingOfTheFilm) {
-  const Film beside{.width_mm = 6, .height_mm = 6, .shift_x_mm = 10};  // the axis does not meet it
+TEST(Importance, LostRayHasNoFilmPoint) {
+  const Film beside{.width_mm = 6, .height_mm = 6, .shift_x_mm = 10};  // does not contain the axis
   for (const char* id : {"double_gauss_100mm_f2_28deg", "fisheye_10mm_f4"}) {
     for (const ModelKind model : {ModelKind::exact_float, ModelKind::exact_double, ModelKind::polynomial(3)}) {
       const Camera camera(testing::data_lens(id), beside, {.model = model});
@@ -415,7 +415,7 @@ TEST(Importance, OfALostRaySaysNothingOfTheFilm) {
   }
 }
 
-TEST(Importance, OfARayFromAsFarAsNumbersGoIsThatOfItsLine) {
+TEST(Importance, RayFromExtremeDistanceEqualsItsLine) {
   const Lens lens = testing::data_lens("double_gauss_100mm_f2_28deg");
   for (const ModelKind model : models()) {
     if (model == ModelKind::pinhole) continue;
@@ -429,7 +429,7 @@ TEST(Importance, OfARayFromAsFarAsNumbersGoIsThatOfItsLine) {
   }
 }
 
-TEST(Importance, OfATiltedPinholeIsThatOfAnUprightOneWithHardlyAnyTilt) {
+TEST(Importance, PinholeWithTinyTiltEqualsUprightPinhole) {
   const Lens lens = testing::data_lens("double_gauss_100mm_f2_28deg");
   Film tilted = film;
   tilted.tilt_rad = 1e-8, tilted.swing_rad = -2e-8;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Cameras with a focus of their own at each place of the film: focal surfaces and expressive lenses.
+// Cameras whose focus depends on the film point: focal surfaces and expressive lenses.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -33,7 +33,7 @@ const std::array first_order{ModelKind::thin, ModelKind::thick, ModelKind::thin_
 
 Lens double_gauss() { return testing::data_lens("double_gauss_100mm_f2_28deg"); }
 
-/// Points at several distances, one at infinity; some of them fix the extent.
+/// A surface through points at several distances and at infinity. With `extents`, three points set the extent.
 FocalSurface surface_of(const Lens& lens, const Film& film, bool extents, double nearest_mm = 1200) {
   std::vector<FocalPoint> points{{.place = {-12, 6}, .inverse_distance = 1 / nearest_mm},
                                  {.place = {11, -5}, .inverse_distance = 1 / 4000.},
@@ -56,7 +56,7 @@ struct Setting {
   Film film;
 };
 
-/// All of them on upright, tilted and travelling films.
+/// Surfaces, extents and expressive lenses on upright, tilted and travelling films.
 std::vector<Setting> settings(const Lens& lens, const std::vector<ModelKind>& models) {
   std::vector<Setting> result;
   Film travels = tilted_by(shifted, -4, 2);
@@ -81,7 +81,7 @@ Vec3<double> in_plane(const Ray<double>& ray, double z) {
   return ray.origin + ray.direction * ((z - ray.origin.z) / ray.direction.z);
 }
 
-// The rays of a film point meet where the surface says, in every first-order model, on films in any pose.
+// In every first-order model and film pose, the rays of a film point meet on the surface.
 TEST(LocalFocus, RaysMeetOnTheFocalSurface) {
   const Lens lens = double_gauss();
   const core_detail::Kronecker<4> random(5);
@@ -103,7 +103,7 @@ TEST(LocalFocus, RaysMeetOnTheFocalSurface) {
           const double z = surface.origin_z() - distance;
           const Vec3<double> apart = in_plane(one.ray, z) - in_plane(other.ray, z);
           EXPECT_LT(glm::length(apart), 1e-9 * std::abs(distance) + 1e-9) << name(model) << " at " << distance;
-          // Twice as far away they do not.
+          // At twice the distance the rays are apart.
           EXPECT_GT(glm::length(in_plane(one.ray, 2 * z) - in_plane(other.ray, 2 * z)), 1e-3);
         }
       }
@@ -111,7 +111,6 @@ TEST(LocalFocus, RaysMeetOnTheFocalSurface) {
   }
 }
 
-// An extent scales the pupil, and keeps weights.
 TEST(LocalFocus, ExtentsScaleBlurAndKeepExposure) {
   const Lens lens = double_gauss();
   const auto with = [&](double stops) {
@@ -132,7 +131,7 @@ TEST(LocalFocus, ExtentsScaleBlurAndKeepExposure) {
   }
 }
 
-// Importance finds the film point, the weight and the density of a film sample from its ray alone.
+// Importance recovers film point, weight and density of a camera sample from its ray.
 TEST(LocalFocus, SceneAndFilmAreInverse) {
   const Lens lens = double_gauss();
   const core_detail::Kronecker<5> random(2);
@@ -159,7 +158,7 @@ TEST(LocalFocus, SceneAndFilmAreInverse) {
   }
 }
 
-// Scene points are connected to places of their pupils, not of rectangles about these.
+// Connections sample the pupil of the scene point, not its bounding box.
 TEST(LocalFocus, MostConnectionsArrive) {
   const Lens lens = double_gauss();
   const core_detail::Kronecker<5> random(3);
@@ -174,14 +173,14 @@ TEST(LocalFocus, MostConnectionsArrive) {
       const ImportanceSample found = camera.sample_importance(point, u, v);
       arrived += found && found.importance.we > 0;
     }
-    // Places are drawn in the widest pupil, of four times the area where extents open it by two stops.
+    // Connections sample the widest pupil; an extent of two stops makes its area four times as large.
     const bool extents = what.ends_with("extents") || what.ends_with("all");
     EXPECT_GT(arrived, (extents ? 0.28 : 0.73) * sent) << what;
   }
 }
 
-// The density of film samples in the scene, by differences of film point and place in the pupil.
-TEST(LocalFocus, DensitiesAreThoseOfTheMapOfRays) {
+// The Jacobian is computed by finite differences of film point and pupil sample.
+TEST(LocalFocus, DensitiesEqualTheJacobianOfTheRays) {
   const Lens lens = double_gauss();
   for (const auto& [what, options, film] : settings(lens, {ModelKind::thin, ModelKind::thick})) {
     const Camera camera(lens, film, options);
@@ -211,7 +210,7 @@ TEST(LocalFocus, DensitiesAreThoseOfTheMapOfRays) {
           for (std::size_t j = 0; j < 4; ++j) by[r][j] -= part * by[k][j];
         }
       }
-      // u and v are spread over the unit square, film points over the film.
+      // u and v are uniform in the unit square, film points on the film.
       const CameraRay ray = camera.sample({place, u, v});
       const double cosine = std::abs(ray.ray.direction.z);
       const double density = 1 / film.area_mm2() / std::abs(determinant) / std::pow(cosine, 4);
@@ -223,7 +222,7 @@ TEST(LocalFocus, DensitiesAreThoseOfTheMapOfRays) {
 }
 
 // A batch is its single samples, in both precisions; derivatives are differences.
-TEST(LocalFocus, BatchesSinglesAndDerivativesAgree) {
+TEST(LocalFocus, DifferentialsEqualFiniteDifferences) {
   const Lens lens = double_gauss();
   const core_detail::Kronecker<5> random(9);
   for (const auto& [what, options, film] : settings(lens, {ModelKind::thick, ModelKind::thin_two_disc})) {
@@ -273,9 +272,9 @@ TEST(LocalFocus, BatchesSinglesAndDerivativesAgree) {
   }
 }
 
-// Points on a plane make a surface that is the plane which a tilted film has in focus: Scheimpflug's.
+// A surface through points of a plane is this plane; by the Scheimpflug principle a tilted film has the same focus.
 TEST(LocalFocus, SurfaceThroughAPlaneFocusesAsATiltedFilm) {
-  const Lens lens = with_f_number(double_gauss(), 11);  // its spherical aberration is small there
+  const Lens lens = with_f_number(double_gauss(), 11);  // small spherical aberration
   const IdealLens ideal = thick_lens(lens);
   const Vec3<double> through{0, -150, -2500}, normal = glm::normalize(Vec3<double>{0.2, 0.6, 1});
   const Film upright = pose_of(lens, wide),
@@ -297,13 +296,13 @@ TEST(LocalFocus, SurfaceThroughAPlaneFocusesAsATiltedFilm) {
       const auto [x, y] = random(i);
       const FilmPoint place = camera->film().point(x * wide.columns, y * wide.rows);
       const Ray<double> one = camera->sample({place, 0.1, 0.9}).ray, other = camera->sample({place, 0.6, 0.9}).ray;
-      // Where each meets the plane.
+      // Intersections with the plane.
       const auto met = [&](const Ray<double>& ray) {
         return ray.origin + ray.direction * (glm::dot(through - ray.origin, normal) / glm::dot(ray.direction, normal));
       };
       const double distance = glm::length(met(one));
       if (distance > 20000) continue;
-      // The film's focus follows what is left of the spherical aberration.
+      // The focus of the film includes the remaining spherical aberration.
       const bool film = camera == &by_film;
       EXPECT_LT(glm::length(met(one) - met(other)), (film ? 5e-5 : 1e-9) * distance) << (film ? "film" : "surface");
       EXPECT_GT(glm::length(in_plane(one, -600) - in_plane(other, -600)), 1);
@@ -311,8 +310,8 @@ TEST(LocalFocus, SurfaceThroughAPlaneFocusesAsATiltedFilm) {
   }
 }
 
-// Wavelengths in nm have the colour of the lens, and the distance of the surface at the primary one; film and scene
-// agree at each.
+// At wavelengths in nm the surface holds for the primary wavelength and the lens adds its axial colour; film side and
+// scene side agree.
 TEST(LocalFocus, HoldsAtAnyWavelength) {
   constexpr std::array nm{587.56, 430., 480., 540., 680.};
   const auto glasses = GlassCatalogue::load(std::filesystem::path(PETZVAL_TEST_DATA) / "glass");
@@ -351,8 +350,8 @@ TEST(LocalFocus, HoldsAtAnyWavelength) {
   }
 }
 
-// Where neighbouring film points' rays cross, film samples go on as they are, and the camera says so.
-TEST(LocalFocus, SteepSurfacesAreFound) {
+// On steep surfaces the rays of adjacent film points cross; samples stay valid, and the camera reports the steepness.
+TEST(LocalFocus, SteepSurfacesAreReported) {
   const Lens lens = double_gauss();
   const auto with = [&](double apart) {
     const std::array points{FocalPoint{.place = {-apart, 0}, .inverse_distance = 1 / 600.},
@@ -372,8 +371,7 @@ TEST(LocalFocus, SteepSurfacesAreFound) {
   EXPECT_EQ(Camera(lens, wide, {.model = ModelKind::thin}).focal_steepness().steepness, 0);
 }
 
-// Extents alone leave the focus to the film, where exact rays have it.
-TEST(LocalFocus, ExtentsAloneKeepTheFocus) {
+TEST(LocalFocus, ExtentsWithoutDistancesKeepTheFocus) {
   const Lens lens = testing::data_lens("double_gauss_100mm_f1.1");
   const std::array points{FocalPoint{.place = {0, 0}, .extent_stops = 2}};
   const FocalSurface surface(thick_lens(lens), pose_of(lens, wide), points);
@@ -391,7 +389,7 @@ TEST(LocalFocus, ExtentsAloneKeepTheFocus) {
   }
 }
 
-TEST(LocalFocus, PinholesSeeEverythingSharp) {
+TEST(LocalFocus, PinholeIgnoresTheSurface) {
   const Lens lens = double_gauss();
   const Camera plain(lens, wide, {.model = ModelKind::pinhole}),
       bent(lens, wide,

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Films that travel while the shutter is open: pulls of focus.
+// Films that travel while the shutter is open: focus pulls.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -28,7 +28,7 @@ struct Case {
   Film film;
 };
 
-/// From 3 m to infinity, and the other way on a tilted film.
+/// Focus pulls from 3 m to infinity, reversed for the tilted film.
 std::vector<Case> cases() {
   std::vector<Case> result{{"double_gauss_100mm_f2.0", shifted},
                            {"double_gauss_100mm_f2.0", tilted_by(shifted, 6, -4)},
@@ -53,9 +53,9 @@ double mean_weight(const Camera& camera, const FilmPoint& point, double time) {
   return sum;
 }
 
-// At each moment it gets the light of a film that stays where it is then. First-order models are fitted to the light as
-// the shutter opens: through the thick lens it changes otherwise than through the real one.
-TEST(MovingFilm, ExposesAsAFilmThatStaysThere) {
+// First-order models are fitted to the irradiance at time 0; over the travel their irradiance changes slightly
+// differently from the exact lens.
+TEST(MovingFilm, ExposureEqualsExposureOfAStillFilm) {
   for (const auto& [id, film] : cases()) {
     const Lens lens = testing::data_lens(id);
     for (const ModelKind model :
@@ -74,8 +74,8 @@ TEST(MovingFilm, ExposesAsAFilmThatStaysThere) {
   }
 }
 
-// Pupils in closed form that are no discs, on a film that hardly travels.
-TEST(MovingFilm, LosesNothingOfPupilsWithoutRevolution) {
+// Closed-form pupils that are not discs, on a film that travels by 1e-9 mm.
+TEST(MovingFilm, KeepsPupilsWithoutRotationalSymmetry) {
   const Lens lens =
       with_iris(testing::data_lens("double_gauss_100mm_f2.0"), {.blades = 3, .roundness = 0.3, .rotation_rad = 0.2});
   for (const Lens& own : {testing::data_lens("anamorphic_60mm_2x"), lens}) {
@@ -94,8 +94,8 @@ TEST(MovingFilm, LosesNothingOfPupilsWithoutRevolution) {
   }
 }
 
-// Its rays are those of the film that stays: that sees them come from the same film point, with the same importance.
-TEST(MovingFilm, SamplesTheRaysOfAFilmThatStaysThere) {
+// A still film sees the rays of the moving film at the same film point with the same importance.
+TEST(MovingFilm, RaysEqualRaysOfAStillFilm) {
   for (const auto& [id, film] : cases()) {
     const Lens lens = testing::data_lens(id);
     const Camera moving(lens, film, {.model = ModelKind::exact_double});
@@ -127,8 +127,7 @@ TEST(MovingFilm, SamplesTheRaysOfAFilmThatStaysThere) {
   }
 }
 
-// Every model's samples are the conjugates of its importance, at their time.
-TEST(MovingFilm, WeighsRaysAlikeFromBothSides) {
+TEST(MovingFilm, ImportanceEqualsWeightOfSamples) {
   const auto [id, film] = cases()[0];
   const Lens lens = testing::data_lens(id);
   for (const ModelKind model : models()) {
@@ -153,7 +152,7 @@ TEST(MovingFilm, WeighsRaysAlikeFromBothSides) {
   }
 }
 
-TEST(MovingFilm, SamplesBatchesAsSingleRays) {
+TEST(MovingFilm, BatchEqualsSingleSamples) {
   for (const auto& [id, film] : cases()) {
     const Lens lens = testing::data_lens(id);
     for (const ModelKind model :
@@ -172,7 +171,7 @@ TEST(MovingFilm, SamplesBatchesAsSingleRays) {
   }
 }
 
-TEST(MovingFilm, DerivativesAreThoseOfItsTime) {
+TEST(MovingFilm, DifferentialsEqualFiniteDifferences) {
   const auto [id, film] = cases()[1];
   const Camera camera(testing::data_lens(id), film, {.model = ModelKind::exact_double});
   const auto samples = testing::random_samples(film, 50);
@@ -188,7 +187,7 @@ TEST(MovingFilm, DerivativesAreThoseOfItsTime) {
   }
 }
 
-TEST(MovingFilm, IsRefusedWhereItWouldTravelIntoTheLens) {
+TEST(MovingFilm, RefusesTravelIntoTheLens) {
   const Lens lens = testing::data_lens("double_gauss_100mm_f2.0");
   const double last_z = lens.surfaces().back().vertex_z;
   const auto camera = [&](double travel) {

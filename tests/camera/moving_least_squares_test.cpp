@@ -34,8 +34,8 @@ std::vector<WeighedValue> random_points(unsigned seed, std::size_t count) {
   return points;
 }
 
-// Computed with 40 digits.
-TEST(MovingLeastSquares, GivesTheValuesOfAnIndependentComputation) {
+// Values computed with 40 digits.
+TEST(MovingLeastSquares, EqualsAnIndependentComputation) {
   std::vector<WeighedValue> points{{{0, 0}, 0.5}, {{1, 0}, 0.25}, {{0, 1}, 0.125, 2}};
   const FilmPoint at{0.3, 0.2};
   const double by_beta[] = {0.31177199880250149, 0.37830858618463525, 0.43180227305683083, 0.46544479750646939};
@@ -48,8 +48,8 @@ TEST(MovingLeastSquares, GivesTheValuesOfAnIndependentComputation) {
   EXPECT_NEAR(through(points, SurfaceKind::affine, 4).at(at), 0.38681544143619512, 1e-12);
 }
 
-// Two points: a closed form, for every power.
-TEST(MovingLeastSquares, ComesToTheNearestPointAsBetaGrows) {
+// Two points have a closed form for every power.
+TEST(MovingLeastSquares, TendsToTheNearestPointAsBetaGrows) {
   const std::vector<WeighedValue> points{{{0, 0}, 0.7}, {{4, 0}, -0.2, 0.5}};
   for (double beta = 1; beta <= 8; beta += 0.125) {
     const double other = 0.5 * std::pow(3, -beta), expected = (0.7 - 0.2 * other) / (1 + other);
@@ -62,7 +62,7 @@ TEST(MovingLeastSquares, ComesToTheNearestPointAsBetaGrows) {
   }
 }
 
-TEST(MovingLeastSquares, TakesTheMeanOfPointsInOnePlace) {
+TEST(MovingLeastSquares, CoincidentPointsGiveTheirMean) {
   for (const SurfaceKind kind : kinds) {
     for (const double beta : betas) {
       const std::vector<WeighedValue> points{{{1, 2}, 0.5, 1}, {{1, 2}, 0.1, 3}, {{-3, 1}, 5, 1}};
@@ -75,7 +75,7 @@ TEST(MovingLeastSquares, TakesTheMeanOfPointsInOnePlace) {
   }
 }
 
-TEST(MovingLeastSquares, HasTheSlopeAlongALineOfPointsAlone) {
+TEST(MovingLeastSquares, CollinearPointsGiveNoSlopeAcrossTheLine) {
   for (const double beta : betas) {
     std::vector<WeighedValue> points;
     for (const double t : {-1.0, 0.1, 0.5, 2.0}) points.push_back({{3 * t + 1, 1 - 2 * t}, 0.4 + 0.3 * t});
@@ -93,7 +93,7 @@ TEST(MovingLeastSquares, HasTheSlopeAlongALineOfPointsAlone) {
   }
 }
 
-TEST(MovingLeastSquares, SaysWhichPointItDoesNotTake) {
+TEST(MovingLeastSquares, RefusesInvalidPoints) {
   using petzval::testing::expect_error;
   const WeighedValue good{{1, 1}, 2};
   expect_error([&] { through({good, {{1, 1}, std::nan("")}}); }, {"test", "point 2", "value", "nan"});
@@ -113,7 +113,7 @@ TEST(MovingLeastSquares, IsExactAtItsPoints) {
         const float x = static_cast<float>(point.place.x), y = static_cast<float>(point.place.y);
         float value = 0;
         surface.at(1, &x, &y, &value);
-        EXPECT_NEAR(value, point.value, 1e-5) << name(kind) << beta;  // rounding moves the place off the point
+        EXPECT_NEAR(value, point.value, 1e-5) << name(kind) << beta;  // rounding moves the position off the point
       }
     }
   }
@@ -136,7 +136,7 @@ TEST(MovingLeastSquares, ReproducesPlanes) {
   }
 }
 
-TEST(MovingLeastSquares, HasTheSlopesOfFarPlaces) {
+TEST(MovingLeastSquares, SlopesAreExactFarFromThePoints) {
   const double infinity = std::numeric_limits<double>::infinity();
   for (const double beta : betas) {
     std::vector<WeighedValue> two = random_points(4, 2);
@@ -157,7 +157,7 @@ TEST(MovingLeastSquares, HasTheSlopesOfFarPlaces) {
   }
 }
 
-TEST(MovingLeastSquares, HasTheSlopesOfItsPointsNextToThem) {
+TEST(MovingLeastSquares, SlopesAreExactNextToThePoints) {
   for (const SurfaceKind kind : kinds) {
     for (const double beta : betas) {
       auto points = random_points(4, 12);
@@ -168,7 +168,7 @@ TEST(MovingLeastSquares, HasTheSlopesOfItsPointsNextToThem) {
       for (double r = 1e-3; r > 0; r /= 2) {
         const Vec2<double> beside = surface.slopes({0, r});
         EXPECT_TRUE(std::isfinite(beside.x) && std::isfinite(beside.y)) << name(kind) << beta << ' ' << r;
-        if (r > 1e-8 || beta < 2) continue;  // next to the cusp of beta 1 they are others
+        if (r > 1e-8 || beta < 2) continue;  // beta 1 has a cusp at each point
         EXPECT_NEAR(std::hypot(beside.x - at_point.x, beside.y - at_point.y), 0, 1e-4 * size + 1e-5)
             << beta << ' ' << r;
       }
@@ -176,7 +176,7 @@ TEST(MovingLeastSquares, HasTheSlopesOfItsPointsNextToThem) {
   }
 }
 
-TEST(MovingLeastSquares, SlopesAreFiniteDifferences) {
+TEST(MovingLeastSquares, SlopesEqualFiniteDifferences) {
   for (const SurfaceKind kind : kinds) {
     for (const double beta : betas) {
       const auto points = random_points(4, 12);
@@ -203,7 +203,7 @@ TEST(MovingLeastSquares, SlopesAreFiniteDifferences) {
   }
 }
 
-TEST(MovingLeastSquares, BatchesHaveTheValuesOfSinglePlaces) {
+TEST(MovingLeastSquares, BatchEqualsSinglePositions) {
   for (const std::size_t points : {1, 2, 3, 13, 64, 65, 200}) {
     std::vector<double> x, y;
     for (const auto& at : random_points(6, 333)) {

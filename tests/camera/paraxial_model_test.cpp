@@ -111,15 +111,15 @@ Prescription telecentric() {
   return p;
 }
 
-// The models equal the exact lens near the axis, up to errors of third order: with the stop, the focus of exact rays
-// tends to the paraxial one.
-TEST(ParaxialModel, DiffersFromTheExactRayByTheCubeOfTheHeight) {
+// Near the axis the models equal the exact lens up to errors of third order. As the stop closes, the focus of exact
+// rays tends to the paraxial focus.
+TEST(ParaxialModel, ErrorIsOfThirdOrderInTheHeight) {
   std::vector<Prescription> prescriptions;
   for (const char* id : {"double_gauss_100mm_f2.0", "fisheye_10mm_f4", "eye_gullstrand_le_grand", "modern_50mm_f1.0",
                          "catadioptric_mangin_1000mm_f7.5", "mirror_newton_200mm_f8", "telephoto_250mm_f5.6"}) {
     prescriptions.push_back(testing::data_prescription(id));
   }
-  // The film of the eye lies in water; of the reversed eye, the scene.
+  // The film of the eye lies in water, and the scene of the reversed eye.
   prescriptions.push_back(reverse(testing::data_prescription("eye_gullstrand_le_grand")));
   prescriptions.back().surfaces.back().thickness = 30;
   for (const Prescription& prescription : prescriptions) {
@@ -143,7 +143,7 @@ TEST(ParaxialModel, DiffersFromTheExactRayByTheCubeOfTheHeight) {
   }
 }
 
-TEST(ParaxialModel, MakesPointsOfThePointsInFocus) {
+TEST(ParaxialModel, FocusedPointsHavePointImages) {
   const Lens lens = with_focus(testing::data_lens("double_gauss_100mm_f2.0"), 700, {FocusCriterion::min_rms});
   const auto data = testing::cardinal_points(ParaxialModel(ModelKind::thick, lens, film_24x36));
   const double behind = lens.film_z() - data.rear_principal_z;
@@ -166,7 +166,7 @@ TEST(ParaxialModel, MakesPointsOfThePointsInFocus) {
   }
 }
 
-TEST(ParaxialModel, GoesBackToTheLineThatItCameFrom) {
+TEST(ParaxialModel, ToFilmInvertsToScene) {
   for (const char* id : {"tessar_100mm_f2.8", "mirror_newton_200mm_f8", "eye_gullstrand_le_grand"}) {
     const Lens lens = testing::data_lens(id);
     for (const ModelKind name : {ModelKind::pinhole, ModelKind::thin, ModelKind::thick}) {
@@ -174,7 +174,7 @@ TEST(ParaxialModel, GoesBackToTheLineThatItCameFrom) {
       const auto lines = random_lines(20, 5, 3);
       const auto rays = to_scene(model, lines);
       for (std::size_t i = 0; i < lines.size(); ++i) {
-        // Anywhere on the line, in the direction of the lens.
+        // The ray may start anywhere on its line.
         const Ray<double> ray{rays[i].ray.origin + 37.0 * rays[i].ray.direction, -rays[i].ray.direction};
         const Back back = to_film(model, ray);
         EXPECT_EQ(back.fate, RayFate::transmitted);
@@ -188,7 +188,7 @@ TEST(ParaxialModel, GoesBackToTheLineThatItCameFrom) {
   }
 }
 
-TEST(ParaxialModel, SendsALineTheSameWayInEveryModelButThePinhole) {
+TEST(ParaxialModel, AllModelsExceptPinholeMapLinesEqually) {
   const Lens lens = testing::data_lens("retrofocus_100mm_f2");
   const auto lines = random_lines(10, 20, 10);
   const auto thick = to_scene(ParaxialModel(ModelKind::thick, lens, film_24x36), lines);
@@ -201,7 +201,7 @@ TEST(ParaxialModel, SendsALineTheSameWayInEveryModelButThePinhole) {
   }
 }
 
-TEST(ParaxialModel, IsBlindToThePupilSampleAsAPinhole) {
+TEST(ParaxialModel, PinholeIgnoresThePupilSample) {
   const Lens lens = testing::data_lens("double_gauss_100mm_f2.0");
   const ParaxialModel pinhole(ModelKind::pinhole, lens, film_24x36), thick(ModelKind::thick, lens, film_24x36);
   const auto middle = thick.pupils().middle({4, -9});
@@ -209,15 +209,15 @@ TEST(ParaxialModel, IsBlindToThePupilSampleAsAPinhole) {
   const auto chief = to_scene(thick, {{4, -9, middle[0], middle[1]}})[0].ray;
   EXPECT_EQ(rays[0].ray.direction, rays[1].ray.direction);
   EXPECT_NEAR(glm::length(rays[0].ray.direction - chief.direction), 0, 1e-14);
-  // All rays pass through the centre of the entrance pupil.
+  // Every ray passes through the centre of the entrance pupil.
   EXPECT_NEAR(meet(rays[0].ray, pupils(lens).entrance.z)[0], 0, 1e-11);
   EXPECT_NEAR(meet(rays[0].ray, pupils(lens).entrance.z)[1], 0, 1e-11);
-  // The pupil is sampled like that of the thick lens, with the same exposure.
+  // The sampled pupil and its exposure equal the thick lens.
   EXPECT_EQ(pinhole.pupils().area({4, -9}), thick.pupils().area({4, -9}));
 }
 
-// With the exit pupil at infinity every film point sees the same disc straight ahead.
-TEST(ParaxialModel, KnowsPupilsAtInfinity) {
+// With the exit pupil at infinity, every film point sees the same disc parallel to the axis.
+TEST(ParaxialModel, HandlesPupilsAtInfinity) {
   const Lens lens = compile(telecentric());
   ASSERT_GT(std::abs(pupils(lens).exit.z), 1e6);
   const ParaxialModel model(ModelKind::thick, lens, 20);
@@ -231,7 +231,7 @@ TEST(ParaxialModel, KnowsPupilsAtInfinity) {
   }
   const auto [ray, fate] = to_scene(ParaxialModel(ModelKind::pinhole, lens, 20), {{0, 19, 0, 3}})[0];
   EXPECT_NEAR(meet(ray, 0)[1], 0, 1e-9);
-  // Scene side: rays are given in reach of the lens.
+  // On the scene side rays start next to the lens.
   Prescription reversed = reverse(telecentric());
   reversed.surfaces.back().thickness = 120;
   const ParaxialModel turned(ModelKind::thick, compile(reversed), 5);
@@ -240,7 +240,7 @@ TEST(ParaxialModel, KnowsPupilsAtInfinity) {
               -3 * 120 / first_order(compile(reversed)).effective_focal_length, 1e-9);
 }
 
-/// Symmetric difference over the area of the lens's own pupils, mean over a film.
+/// Symmetric difference from the exact pupils divided by their area, mean over the film.
 double shape_error(const Lens& lens, double film_radius, const FilmPupilTable& pupils) {
   const FilmPupilTable real = FilmPupilTable::equal_area(lens, film_radius);
   constexpr int fields = 16, samples = 1024;
@@ -259,7 +259,7 @@ double shape_error(const Lens& lens, double film_radius, const FilmPupilTable& p
   return sum / fields;
 }
 
-TEST(ParaxialModel, FitsTwoDiscsToTheRealPupils) {
+TEST(ParaxialModel, TwoDiscsFitTheExactPupils) {
   struct Case {
     const char* id;
     double film_radius, bound;
@@ -325,7 +325,7 @@ TEST(ParaxialModel, HasTwoSectionsForEveryWavelength) {
   }
 }
 
-TEST(ParaxialModel, AnswersInFloatAndInBatchesOfAnySizeAlike) {
+TEST(ParaxialModel, FloatAndBatchesEqualSingleRays) {
   const Lens lens = testing::data_lens("double_gauss_100mm_f2.0");
   const ParaxialModel model(ModelKind::thick, lens, film_24x36);
   const auto lines = random_lines(131, 20, 20);
@@ -339,7 +339,7 @@ TEST(ParaxialModel, AnswersInFloatAndInBatchesOfAnySizeAlike) {
   }
 }
 
-TEST(ParaxialModel, AnswersBadNumbersWithAFateAndFiniteRays) {
+TEST(ParaxialModel, InvalidNumbersGiveFatesAndFiniteRays) {
   const ParaxialModel model(ModelKind::thick, testing::data_lens("tessar_100mm_f2.8"), film_24x36);
   const double nan = std::numeric_limits<double>::quiet_NaN(), inf = std::numeric_limits<double>::infinity();
   const std::vector<Line> bad{{nan, 0, 0, 0}, {0, inf, 0, 0}, {0, 0, -inf, 0}, {1, 2, 3, nan}, {1e300, 0, 0, 0}};
@@ -365,7 +365,7 @@ TEST(ParaxialModel, AnswersBadNumbersWithAFateAndFiniteRays) {
   EXPECT_EQ(to_film(model, {{0, 0, -5}, {0, 0, 1}}, 1).fate, RayFate::missed_surface);
 }
 
-TEST(ParaxialModel, HasNoPupilBehindAShutStop) {
+TEST(ParaxialModel, ClosedStopHasNoPupil) {
   const Lens lens = testing::data_lens("double_gauss_100mm_f2.0");
   const Lens shut = with_semi_diameter(lens, pupils(lens).stop, 0);
   for (const ModelKind model : first_order_models) {
@@ -373,15 +373,15 @@ TEST(ParaxialModel, HasNoPupilBehindAShutStop) {
   }
 }
 
-// A triangle shows which way round it is. Stopped down, real pupils are images of the stop to first order.
-TEST(ParaxialModel, SeesTheIrisTheSameWayRoundAsTheExactLens) {
+// A triangle shows the orientation. Stopped down, the pupils of the exact lens are first-order images of the stop.
+TEST(ParaxialModel, IrisHasTheOrientationOfTheExactLens) {
   std::mt19937 random(8);
   std::uniform_real_distribution<double> one(-1, 1);
   int checked = 0;
   for (const Prescription& prescription : testing::data_prescriptions()) {
     const Lens open = compile(prescription);
     if (!open.stop() || !open.rotationally_symmetric() || first_order(open).afocal) continue;
-    // Its pupil comes in rings, and the models' have the light of all of them.
+    // The pupil consists of rings, and the pupils of the models have their total irradiance.
     if (prescription.name.starts_with("Ball lens")) continue;
     SCOPED_TRACE(prescription.name);
     const Lens stopped = with_semi_diameter(open, *open.stop(), open.surfaces()[*open.stop()].semi_diameter / 8);
@@ -407,8 +407,8 @@ TEST(ParaxialModel, SeesTheIrisTheSameWayRoundAsTheExactLens) {
   EXPECT_GT(checked, 120);
 }
 
-// Near the axis rays are exact ones, in each section and between them. At f/64 the focus is the paraxial one.
-TEST(ParaxialModel, HasTwoSectionsOfALensWithCylinders) {
+// Near the axis rays equal exact rays in both sections and in skew directions. At f/64 the focus is paraxial.
+TEST(ParaxialModel, CylindersHaveTwoSections) {
   const Lens lens = with_f_number(testing::data_lens("anamorphic_60mm_2x"), 64);
   const ParaxialModel model(ModelKind::thick, lens, 20);
   const TwoPlanes space = model.pupils().space();
@@ -428,7 +428,7 @@ TEST(ParaxialModel, HasTwoSectionsOfALensWithCylinders) {
     const double way = (ray.origin.z - exact.ray.origin.z) / exact.ray.direction.z;
     EXPECT_NEAR(glm::length(exact.ray.origin + way * exact.ray.direction - ray.origin), 0, 2e-5);
   }
-  // A thin lens stands in two rear principal planes.
+  // A thin lens has a rear principal plane for each section.
   const ParaxialModel thin(ModelKind::thin, lens, 20);
   const Vec2<double> middle = thin.pupils().middle({5, 5});
   const auto through = [&](Meridian section) {
@@ -439,8 +439,8 @@ TEST(ParaxialModel, HasTwoSectionsOfALensWithCylinders) {
   EXPECT_GT(std::abs(middle.x - middle.y), 0.1);
 }
 
-// A film far larger than the image circle keeps the two discs that fit the light.
-TEST(ParaxialModel, HasTheSameTwoDiscsOnAHugeFilm) {
+// On a film far larger than the image circle the discs are fitted within the image circle.
+TEST(ParaxialModel, TwoDiscsAreIndependentOfTheFilmSize) {
   const Lens lens = testing::data_lens("double_gauss_100mm_f2.0");
   const FilmPupilTable huge = ParaxialModel(ModelKind::thin_two_disc, lens, 1e4).pupils();
   const FilmPupilTable exact = FilmPupilTable::equal_area(lens, 1e4);
@@ -455,7 +455,7 @@ TEST(ParaxialModel, HasTheSameTwoDiscsOnAHugeFilm) {
   EXPECT_EQ(huge.area({0, 1000}), 0);
 }
 
-TEST(ParaxialModel, RefusesWhatItCannotBe) {
+TEST(ParaxialModel, RefusesInvalidModelsAndLenses) {
   const Lens lens = testing::data_lens("double_gauss_100mm_f2.0");
   const auto made = [](ModelKind model, const Lens& of, double radius = 20) {
     return [=] { ParaxialModel(model, of, radius); };

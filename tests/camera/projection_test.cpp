@@ -39,8 +39,8 @@ std::ostream& operator<<(std::ostream& out, const Case& c) { return out << c.len
 
 class Projections : public ::testing::TestWithParam<Case> {};
 
-// The same chief rays by other code: aimed at the stop from the scene.
-TEST_P(Projections, AreWhereChiefRaysMeetTheFilm) {
+// The reference aims chief rays at the stop from the scene.
+TEST_P(Projections, EqualAimedChiefRays) {
   const auto& [id, film, widest] = GetParam();
   const Lens lens = testing::data_lens(id);
   const double pupil_z = pupils(lens).entrance.z;
@@ -54,7 +54,7 @@ TEST_P(Projections, AreWhereChiefRaysMeetTheFilm) {
       const double field = a * widest * pi / 180, azimuth = 2 * pi * b, distance = 200 * std::pow(10, 7 * c);
       const double z = pupil_z - distance * std::cos(field);
       const double across = distance * std::sin(field);
-      // Points in front of the front element, or beside it.
+      // Skips points inside or behind the lens.
       if (z > -30 && !(field > pi / 2 && across > 100)) continue;
       const AimedRay chief = chief_ray(lens, {field, z, azimuth});
       if (!chief) continue;
@@ -84,7 +84,7 @@ INSTANTIATE_TEST_SUITE_P(Lenses, Projections,
                                            Case{"fisheye_6.3mm_f2.8", {.width_mm = 24, .height_mm = 24}, 108},
                                            Case{"telephoto_392mm_f2.9", wide, 5}));
 
-TEST(Projection, OfACameraRaysPointsAreItsFilmPoint) {
+TEST(Projection, PointsOfCameraRaysProjectToTheirFilmPoint) {
   for (const ModelKind model :
        {ModelKind::pinhole, ModelKind::thin, ModelKind::thin_two_disc, ModelKind::thick, ModelKind::polynomial(3),
         ModelKind::polynomial(9), ModelKind::exact_float, ModelKind::exact_double}) {
@@ -97,7 +97,7 @@ TEST(Projection, OfACameraRaysPointsAreItsFilmPoint) {
       for (const double distance : {150.0, 4000.0, 1e9}) {
         const Projection first = camera.project(any.ray.origin + any.ray.direction * distance);
         ASSERT_TRUE(first);
-        // Other rays project near it, the nearer the closer to focus.
+        // Points of other rays project near the film point, closer if they are nearer to focus.
         EXPECT_NEAR(std::hypot(first.film.x - film.x, first.film.y - film.y), 0, distance < 1000 ? 4 : 0.5);
         const double column = first.raster.x, row = first.raster.y;
         const FilmPoint again = camera.film().point(column, row);
@@ -107,8 +107,8 @@ TEST(Projection, OfACameraRaysPointsAreItsFilmPoint) {
   }
 }
 
-// Of points that the lens clips or images beside the film, whose chief rays a table has.
-TEST(Projection, IsExactWhereChiefRaysAreClipped) {
+// Points whose chief rays are clipped or end outside the film.
+TEST(Projection, ClippedChiefRaysAreExact) {
   for (const char* id :
        {"catadioptric_mangin_1000mm_f7.5", "petzval_portrait_100mm_f3.4", "double_gauss_100mm_f2_28deg"}) {
     SCOPED_TRACE(id);
@@ -134,8 +134,8 @@ TEST(Projection, IsExactWhereChiefRaysAreClipped) {
   }
 }
 
-// Where it lets chief rays through to its corners, and those beside them not.
-TEST(Projection, OfACylindricalLensReachesTheEndOfTheLight) {
+// The lens passes chief rays to the corners of the film and clips the ones just outside.
+TEST(Projection, CylindersReachTheEndOfTheLight) {
   const Lens lens = testing::data_lens("anamorphic_60mm_2x");
   const Film film{.width_mm = 29.54, .height_mm = 19.69};
   const Camera camera(lens, film, {.model = ModelKind::exact_double});
@@ -156,7 +156,7 @@ TEST(Projection, OfACylindricalLensReachesTheEndOfTheLight) {
   EXPECT_GT(seen, 300);
 }
 
-TEST(Projection, PutsTheSceneUpright) {
+TEST(Projection, ImageIsUpright) {
   const Camera camera(testing::data_lens("double_gauss_100mm_f2_28deg"), wide, {.model = ModelKind::exact_double});
   const Projection p = camera.project({300, 200, -5000});
   ASSERT_TRUE(p);
@@ -175,7 +175,7 @@ TEST(Projection, FindsPointsThroughCylinders) {
       const Vec3<double> point{x, y, -6000};
       const Projection p = camera.project(point);
       ASSERT_TRUE(p) << x << ' ' << y << ' ' << name(p.status);
-      // Connections spread about it, those through the middle of the pupil closest.
+      // The mean of connections through the whole pupil lies next to the projection.
       double sum_x = 0, sum_y = 0, weight = 0;
       const core_detail::Kronecker<2> random(7);
       for (std::uint32_t i = 0; i < 20000; ++i) {
@@ -191,8 +191,7 @@ TEST(Projection, FindsPointsThroughCylinders) {
   }
 }
 
-// The chief ray of a scene point meets the film at the projected point.
-TEST(Projection, IsWhereChiefRaysMeetATiltedFilm) {
+TEST(Projection, TiltedFilmEqualsAimedChiefRays) {
   const Lens lens = testing::data_lens("double_gauss_100mm_f2_28deg");
   const Film tilted{
       .width_mm = 36, .height_mm = 24, .shift_y_mm = 3, .z_mm = lens.film_z(), .tilt_rad = 0.2, .swing_rad = -0.12};

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The power of a small light is the same by rays from the film and by connections to the lens.
+// The irradiance by a small light is equal by rays from the film and by connections to the lens.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -21,7 +21,7 @@ namespace reciprocity_test {
 constexpr double pi = std::numbers::pi;
 constexpr std::uint32_t replicates = 16, samples = 1 << 14;
 
-/// A uniform square light that faces along the axis.
+/// A uniform square light perpendicular to the axis.
 struct Light {
   Vec3<double> centre;
   double side;
@@ -31,7 +31,7 @@ struct Estimate {
   double mean = 0, sigma = 0;
 };
 
-/// Mean and its standard deviation over independent shifts.
+/// Mean and standard deviation of the mean over independent shifts of the sample points.
 template <class Once>
 Estimate estimate(const Once& once) {
   double sum = 0, squares = 0;
@@ -43,7 +43,7 @@ Estimate estimate(const Once& once) {
   return {mean, std::sqrt(std::max(squares / replicates - mean * mean, 0.0) / (replicates - 1))};
 }
 
-/// Mean irradiance of the film by connections from the light, and the part of the film that it reaches.
+/// Mean irradiance of the film by connections from the light, and the bounding box of its image.
 struct SceneSide {
   Estimate irradiance;
   double low_x = 1e9, high_x = -1e9, low_y = 1e9, high_y = -1e9;
@@ -69,7 +69,7 @@ SceneSide from_light(const Camera& camera, const Light& light) {
   return result;
 }
 
-/// The same by film samples within the image of the light.
+/// Mean irradiance of the film by camera samples within the image of the light.
 Estimate from_film(const Camera& camera, const Light& light, const SceneSide& scene) {
   const double margin_x = 0.02 * (scene.high_x - scene.low_x), margin_y = 0.02 * (scene.high_y - scene.low_y);
   const double left = scene.low_x - margin_x, width = scene.high_x + margin_x - left;
@@ -102,7 +102,7 @@ const Film wide{.width_mm = 36, .height_mm = 24}, square{.width_mm = 24, .height
 struct Case {
   std::string lens;
   Film film;
-  double degrees, distance;  ///< of the light, from the front vertex
+  double degrees, distance;  ///< field angle of the light, distance from the front vertex in mm
 };
 
 std::ostream& operator<<(std::ostream& out, const Case& c) { return out << c.lens << " at " << c.degrees; }
@@ -111,7 +111,7 @@ void expect_reciprocity(const Lens& lens, const Film& film, const CameraOptions&
                         double distance, double tolerance = 0, double side = 0.04, double precision = 2e-3) {
   const Camera camera(lens, film, options);
   const double angle = degrees * pi / 180;
-  // Off the meridian, without symmetry.
+  // Off the meridional planes, so that no symmetry hides an error.
   const Light light{{0.3 * distance * std::sin(angle), 0.954 * distance * std::sin(angle), -distance * std::cos(angle)},
                     side * distance};
   const SceneSide scene = from_light(camera, light);
@@ -135,7 +135,7 @@ TEST_P(Reciprocity, HoldsForExactRays) {
   }
 }
 
-TEST(Reciprocity, HoldsForWeightsThatAreUnityOnTheAxis) {
+TEST(Reciprocity, HoldsForUnityOnAxis) {
   expect_reciprocity(testing::data_lens("eye_gullstrand_le_grand"), retina,
                      {.model = ModelKind::exact_float, .normalisation = Normalisation::unity_on_axis}, 3, 300);
 }
@@ -147,7 +147,7 @@ TEST(Reciprocity, HoldsUnderWater) {
   expect_reciprocity(compile(p), wide, {.model = ModelKind::exact_double}, 3, 900, 0, 0.04, 1e-2);
 }
 
-// The last has water behind it.
+// The last lens has water in image space.
 INSTANTIATE_TEST_SUITE_P(
     Lenses, Reciprocity,
     ::testing::Values(Case{"double_gauss_100mm_f2_28deg", wide, 0, 2500},
@@ -173,7 +173,7 @@ TEST(Reciprocity, HoldsForModelsWithoutRims) {
   for (const ModelKind model :
        {ModelKind::pinhole, ModelKind::thin, ModelKind::thin_two_disc, ModelKind::thick, ModelKind::polynomial(7)}) {
     SCOPED_TRACE(name(model));
-    // Polynomials conserve etendue within their errors.
+    // Polynomials conserve etendue within their fit error.
     expect_reciprocity(lens, wide, {.model = model}, 6, 2500, model == ModelKind::polynomial(7) ? 1e-3 : 0);
   }
 }
@@ -189,8 +189,8 @@ TEST(Reciprocity, HoldsForAnIrisWithEdges) {
   }
 }
 
-// A light that is out of focus in several ways, and the extent of the depth of field with it.
-TEST(Reciprocity, HoldsForAFocusOfItsOwnAtEachPlace) {
+// Defocused lights, with distances and extents from the surface.
+TEST(Reciprocity, HoldsForFocalSurfaces) {
   const Lens lens = testing::data_lens("double_gauss_100mm_f2_28deg");
   Film tilted{.width_mm = 36, .height_mm = 24, .tilt_rad = 0.1, .swing_rad = -0.07};
   Film placed = wide;
@@ -225,7 +225,7 @@ TEST(Reciprocity, HoldsForTiltedFilms) {
     SCOPED_TRACE(name(model));
     expect_reciprocity(lens, film, {.model = model}, 6, 2500, model == ModelKind::polynomial(7) ? 1e-3 : 0);
   }
-  // Far off the axis the ray of a pinhole is not the mean of the lines of its sample.
+  // Far off the axis a pinhole ray differs from the mean ray of the pupil it stands for.
   expect_reciprocity(lens, {.width_mm = 30, .height_mm = 30, .shift_y_mm = -14, .tilt_rad = 20 * degree},
                      {.model = ModelKind::pinhole}, 13, 2500);
   expect_reciprocity(testing::data_lens("fisheye_8mm_f2.8"),

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Threads share a camera and use it at the same time. Each must get the results of a single thread. Built with
-// -fsanitize=thread, the test also finds races that do not change the numbers.
+// Threads that use one camera at the same time get the results of a single thread. Built with -fsanitize=thread, the
+// tests also find races that do not change results.
 #include <gtest/gtest.h>
 
 #include <barrier>
@@ -14,7 +14,7 @@
 namespace petzval {
 namespace threads_test {
 
-/// Results of the camera.
+/// Results of all queries of the camera.
 std::vector<double> answers(const Camera& camera) {
   std::vector<double> numbers;
   const auto say = [&](const Ray<double>& ray) {
@@ -51,7 +51,7 @@ void expect_shared(const Lens& lens, const Film& film) {
     std::vector<std::thread> threads;
     for (auto& numbers : found) {
       threads.emplace_back([&camera, &start, &numbers] {
-        const Camera own = camera;  // copies share what was built
+        const Camera own = camera;  // copies share their tables
         start.arrive_and_wait();
         numbers = answers(own);
       });
@@ -61,14 +61,14 @@ void expect_shared(const Lens& lens, const Film& film) {
   }
 }
 
-TEST(Camera, IsSharedByThreads) {
+TEST(Camera, ThreadsMayShareACamera) {
   const Lens lens = testing::data_lens("double_gauss_100mm_f2.0");
   expect_shared(lens, {});
   expect_shared(lens, {.tilt_rad = 0.1, .swing_rad = 0.05});
 }
 
-// Threads that set a camera up share its wavelengths.
-TEST(Camera, SetUpDoesNotDependOnThreads) {
+// Setup distributes the wavelengths over threads.
+TEST(Camera, SetUpIndependentOfThreads) {
   for (const auto& [id, film] : {std::pair{"double_gauss_100mm_f2_28deg", Film{}},
                                  {"double_gauss_100mm_f2_28deg", Film{.tilt_rad = 0.1}},
                                  {"anamorphic_60mm_2x", Film{.width_mm = 20, .height_mm = 14}},

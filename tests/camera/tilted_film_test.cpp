@@ -37,8 +37,8 @@ using testing::shifted;
 using testing::tilted_by;
 using testing::wide;
 
-// A film with hardly any tilt is upright: the same rays, weights and densities, as near as two tables are.
-TEST(TiltedFilm, IsAnUprightOneWithHardlyAnyTilt) {
+// A film tilted by 1e-9 degrees has the rays, weights and densities of an upright film, up to the errors of two tables.
+TEST(TiltedFilm, TinyTiltEqualsUprightFilm) {
   const Lens lens = testing::data_lens("double_gauss_100mm_f2.0");
   for (const ModelKind model : models()) {
     const Camera upright(lens, shifted, {.model = model});
@@ -59,7 +59,7 @@ TEST(TiltedFilm, IsAnUprightOneWithHardlyAnyTilt) {
       EXPECT_NEAR(weights[1] / weights[0], 1, 1e-3) << name(model);
       EXPECT_NEAR(area[1] / area[0], 1, 1e-3) << name(model);
     }
-    // The same line gives the same ray, with the same weight except for the density of its sample.
+    // Lines and weights are equal.
     const TiltedFilm film(tilted.film(), CameraParts(lens, tilted.film(), model).pupils());
     for (std::uint32_t i = 0; i < 100; ++i) {
       const auto [x, y] = random(i);
@@ -73,8 +73,8 @@ TEST(TiltedFilm, IsAnUprightOneWithHardlyAnyTilt) {
   }
 }
 
-// Virtual film point, line and weight, from positions in space.
-TEST(TiltedFilm, TellsLinesAsSpaceDoes) {
+// Virtual film point, line and weight equal the values derived from positions in space.
+TEST(TiltedFilm, LinesEqualPositionsInSpace) {
   const Lens lens = testing::data_lens("double_gauss_100mm_f2.0");
   Film film = tilted_by(shifted, 14, -9);
   film.travel_mm = -2.5;
@@ -104,8 +104,8 @@ TEST(TiltedFilm, TellsLinesAsSpaceDoes) {
   }
 }
 
-/// For a pinhole: the sample of the upright model's exit pupil, projected from the film point into the plane of the
-/// pupil.
+/// Pupil sample of a pinhole: the sample of the exit pupil of the upright model, projected from the film point into the
+/// plane of the pupil.
 PupilSample pinhole_sample(const Lens& lens, const Film& film, const FilmPupilTable& pupil_table,
                            const CameraSample& s) {
   const Vec3<double> from = pose_of(lens, film).position(s.film);
@@ -121,9 +121,9 @@ PupilSample pinhole_sample(const Lens& lens, const Film& film, const FilmPupilTa
   return {seen.x, seen.y, p.area * larger * larger};
 }
 
-// Densities of samples from the positions of film point and pupil sample, compared with those of their rays from the
-// scene.
-TEST(TiltedFilm, HasTheDensitiesOfItsSamples) {
+// The densities of samples equal densities derived from the positions of film point and pupil sample, and the densities
+// of the reversed rays.
+TEST(TiltedFilm, DensitiesEqualPositionsInSpace) {
   const Lens lens = testing::data_lens("double_gauss_100mm_f2.0");
   for (const ModelKind model : models()) {
     const CameraParts parts(lens, tilted_by(shifted, 14, -9), model);
@@ -146,7 +146,7 @@ TEST(TiltedFilm, HasTheDensitiesOfItsSamples) {
       EXPECT_NEAR(samples.weights[i] * pdf * length / -glm::dot(along, pose.normal()), 1, 1e-9) << name(model);
       if (model == ModelKind::pinhole) continue;
       const Importance met = camera.importance({samples.ray(i).origin, -samples.ray(i).direction});
-      if (!met) continue;  // at a rim a float ray may not return
+      if (!met) continue;  // a float ray next to a rim may not return
       ++checked;
       const double eps = model == ModelKind::exact_double || model <= ModelKind::thick ? 1e-9 : 2e-3;
       EXPECT_NEAR(std::hypot(met.film.x - s.film.x, met.film.y - s.film.y), 0, 100 * eps) << name(model);
@@ -157,8 +157,7 @@ TEST(TiltedFilm, HasTheDensitiesOfItsSamples) {
   }
 }
 
-// The film does not see a line that meets it from behind.
-TEST(TiltedFilm, HasABack) {
+TEST(TiltedFilm, BackSideSeesNothing) {
   const Lens lens = testing::data_lens("double_gauss_100mm_f2.0");
   const Film film = tilted_by({.width_mm = 4, .height_mm = 4}, 80, 0);
   const TiltedFilm tilted(film, FilmPupilTable::enclosing(lens, upright_radius(lens, film, ModelKind::exact_double)));
@@ -169,7 +168,7 @@ TEST(TiltedFilm, HasABack) {
   EXPECT_FALSE(tilted.plane(0).virtual_point_of({0, 0, 0, 1.01 * -reach}));
 }
 
-TEST(TiltedFilm, GivesNoLightToRaysFromBehind) {
+TEST(TiltedFilm, RaysFromBehindHaveNoWeight) {
   const Lens lens = testing::data_lens("double_gauss_100mm_f2.0");
   for (const ModelKind model : {ModelKind::thick, ModelKind::exact_float, ModelKind::exact_double}) {
     const Camera camera(lens, tilted_by({.width_mm = 4, .height_mm = 4}, 80, 0), {.model = model});
@@ -186,9 +185,9 @@ TEST(TiltedFilm, GivesNoLightToRaysFromBehind) {
   }
 }
 
-// Scheimpflug: the plane of the film and the plane of focus of a thin lens meet in the lens. With 1/s + 1/s' = 1/f,
-// film points (y, s' + y tan) are imaged to points of one plane, in which all rays of each meet.
-TEST(TiltedFilm, IsSharpInATiltedPlane) {
+// The film and the plane of focus of a thin lens intersect in the plane of the lens. With 1/s + 1/s' = 1/f, film points
+// (y, s' + y tan) have images on one plane, and all rays of a film point meet in its image.
+TEST(TiltedFilm, ObeysTheScheimpflugPrinciple) {
   const Lens lens = with_focus(testing::data_lens("double_gauss_100mm_f2.0"), 2000);
   const Film film = tilted_by(wide, 7, -4);
   const Camera camera(lens, film, {.model = ModelKind::thin});
@@ -199,7 +198,7 @@ TEST(TiltedFilm, IsSharpInATiltedPlane) {
   std::vector<Vec3<double>> images;
   for (std::size_t i = 0; i < samples.size(); ++i) {
     const Vec3<double> place = pose.position({samples.film_x[i], samples.film_y[i]});
-    // The image by object and image distance from the principal planes.
+    // The image from the distances to the principal planes.
     const double behind = place.z - f.rear_principal_z;
     const double before = 1 / (1 / f.focal_length - 1 / behind);
     const Vec3<double> image{-place.x * before / behind, -place.y * before / behind, f.front_principal_z - before};
@@ -215,7 +214,7 @@ TEST(TiltedFilm, IsSharpInATiltedPlane) {
     }
     EXPECT_GT(passed, rays / 2);
   }
-  // One tilted plane through all of them.
+  // All images lie on one tilted plane.
   const auto side = [&](std::size_t a, std::size_t b, std::size_t c) {
     return glm::normalize(glm::cross(images[b] - images[a], images[c] - images[a]));
   };
@@ -224,7 +223,7 @@ TEST(TiltedFilm, IsSharpInATiltedPlane) {
   EXPECT_LT(std::abs(normal.z), 0.7);
 }
 
-TEST(TiltedFilm, GivesTheSameRaysSinglyAndInABatch) {
+TEST(TiltedFilm, BatchEqualsSingleSamples) {
   const Lens lens = testing::data_lens("double_gauss_100mm_f2.0");
   for (const ModelKind model : models()) {
     const Camera camera(lens, tilted_by(shifted, 8, 5), {.model = model});
@@ -253,7 +252,7 @@ TEST(TiltedFilm, GivesTheSameRaysSinglyAndInABatch) {
   }
 }
 
-TEST(TiltedFilm, IsRefusedInTheLens) {
+TEST(TiltedFilm, RefusesFilmsInsideTheLens) {
   const auto camera = [](const char* id, const Film& film, ModelKind model = ModelKind::exact_float) {
     return [=] { Camera(testing::data_lens(id), film, {.model = model}); };
   };
@@ -270,8 +269,7 @@ TEST(TiltedFilm, IsRefusedInTheLens) {
   expect_error([&] { Camera(lens, film, small); }, {"model", film.radius_mm()});
 }
 
-// The parts of a camera refuse the same input.
-TEST(TiltedFilm, IsRefusedWithoutACameraToo) {
+TEST(TiltedFilm, PartsOfACameraRefuseTheSameFilms) {
   const Lens lens = testing::data_lens("tessar_100mm_f2.8");
   const Film film = tilted_by(wide, 20, 0), beyond = tilted_by(wide, 91, 0);
   const Film flipped = tilted_by({.width_mm = -36, .height_mm = 24}, 20, 0);

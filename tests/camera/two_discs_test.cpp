@@ -18,7 +18,7 @@ namespace two_discs_test {
 using testing::data_lens;
 using testing::expect_error;
 
-// Less where more is known: a Tessar on twice the film has 5 %, a fisheye of 180 degrees 7 %.
+// Errors are larger on larger films: 5 % for a Tessar on twice the film, 7 % for a fisheye of 180 degrees.
 TEST(TwoDiscs, FitThePupilsOfRealLenses) {
   constexpr double film_24x36 = 21.64;
   for (const auto& [id, radius] :
@@ -32,7 +32,7 @@ TEST(TwoDiscs, FitThePupilsOfRealLenses) {
   }
 }
 
-// As controls of a thin lens they darken the film as the lens does.
+// As controls of a thin lens they give the vignetting of the exact lens.
 TEST(TwoDiscs, AreControlsOfACamera) {
   const Lens lens = data_lens("double_gauss_100mm_f1.35");
   const Film film{.width_mm = 36, .height_mm = 24};
@@ -55,7 +55,7 @@ TEST(TwoDiscs, AreControlsOfACamera) {
   EXPECT_GT(light(plain, 17) / light(plain, 0), wanted + 0.2);
 }
 
-/// The radius of the beam that leaves towards a far point of the axis, mm.
+/// Radius of the beam towards a distant point of the axis, mm.
 double beam_radius(const Camera& camera) {
   double largest = 0;
   constexpr std::size_t count = 16384;
@@ -67,8 +67,8 @@ double beam_radius(const Camera& camera) {
   return largest;
 }
 
-// The numbers that the header states: the fit holds for film points; pupils of far points are larger.
-TEST(TwoDiscs, AreLargerThanThePupilOfAFarPointAsTheHeaderStates) {
+// The fit holds for film points; the header states by how much the pupils of distant points are smaller.
+TEST(TwoDiscs, ExceedPupilsOfFarPointsAsStated) {
   for (const auto& [id, larger] : {std::pair{"tessar_100mm_f2.8", 0.026}, std::pair{"double_gauss_100mm_f2.0", 0.055},
                                    std::pair{"double_gauss_100mm_f1.35", 0.144}}) {
     const Lens lens = data_lens(id);
@@ -79,7 +79,7 @@ TEST(TwoDiscs, AreLargerThanThePupilOfAFarPointAsTheHeaderStates) {
   }
 }
 
-TEST(TwoDiscs, RefuseWhatHasNone) {
+TEST(TwoDiscs, RefuseInvalidInput) {
   const Lens lens = data_lens("tessar_100mm_f2.8");
   for (const double radius : {0.0, -1.0, std::nan(""), std::numeric_limits<double>::infinity()}) {
     expect_error([&] { fit_two_discs(lens, radius); }, {lens.name(), "film_radius", radius});

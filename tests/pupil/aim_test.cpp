@@ -28,14 +28,14 @@ using testing::data_lens;
 using testing::data_prescriptions;
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
-/// The centre of the stop and eight places on its rim.
+/// The centre of the stop and eight points on its rim.
 std::vector<StopPoint> places() {
   std::vector<StopPoint> result{{}};
   for (int i = 0; i < 8; ++i) result.push_back({std::sin(radians(45.0 * i)), std::cos(radians(45.0 * i))});
   return result;
 }
 
-/// The distance of a traced ray from its target on the stop, in semi-diameters of the stop.
+/// Distance of a traced ray from its target on the stop, in semi-diameters of the stop.
 double miss(const Lens& lens, const Ray<double>& ray, const StopPoint& target) {
   const std::size_t stop = pupils(lens).stop;
   Vec3<double> hit{infinity, infinity, infinity};
@@ -47,7 +47,7 @@ double miss(const Lens& lens, const Ray<double>& ray, const StopPoint& target) {
   return std::hypot(hit.x / radius - target.x, hit.y / radius - target.y);
 }
 
-TEST(Aim, ReachesTheStopOfEveryLensToItsEdge) {
+TEST(Aim, ReachesStopTargetsOfEveryLens) {
   double worst = 0;
   int chief_rays = 0, rays = 0;
   for (const Prescription& p : data_prescriptions()) {
@@ -60,7 +60,7 @@ TEST(Aim, ReachesTheStopOfEveryLensToItsEdge) {
         for (const StopPoint& target : places()) {
           const AimedRay aimed = aim(lens, {field, z}, target);
           const bool chief = target.x == 0 && target.y == 0;
-          EXPECT_TRUE(aimed || !chief) << part;  // rays through the rim may run into a surface's edge before
+          EXPECT_TRUE(aimed || !chief) << part;  // rays through the rim may be vignetted by another surface
           if (!aimed) continue;
           chief_rays += chief, ++rays;
           ASSERT_LE(aimed.residual, 1e-12) << part << " " << target.x << " " << target.y;
@@ -71,12 +71,12 @@ TEST(Aim, ReachesTheStopOfEveryLensToItsEdge) {
     }
   }
   EXPECT_GE(chief_rays, 75 * 5);
-  EXPECT_GE(rays, 9940);  // 9946; fewer where steps to the place of a stop are left out
+  EXPECT_GE(rays, 9940);  // 9946 today
   testing_report::put("aimed rays at the stop, all 75 lenses, stop radii", testing_report::one_ray<double>, worst,
                       "1e-12");
 }
 
-TEST(Aim, TakesRaysFromBehindTheFrontOfAFisheye) {
+TEST(Aim, FisheyeFieldsBeyond90DegreesConverge) {
   const Lens lens = data_lens("fisheye_6.3mm_f2.8");
   for (const double field : {95.0, 105.0, 110.0, -110.0}) {
     for (const StopPoint& target : places()) {
@@ -87,14 +87,14 @@ TEST(Aim, TakesRaysFromBehindTheFrontOfAFisheye) {
       EXPECT_TRUE(aimed.end.transmitted());
     }
   }
-  // A lamp beside the lens, 200 mm behind its pupil.
+  // A point next to the lens, 200 mm behind the pupil.
   const double z = pupils(lens).entrance.z + 200;
   const AimedRay beside = chief_ray(lens, {radians(100), z});
   EXPECT_EQ(beside.status, AimStatus::converged);
   EXPECT_LE(beside.residual, 1e-12);
 }
 
-TEST(Aim, StatusIsThatOfTheRayTracedAnew) {
+TEST(Aim, StatusEqualsTraceOfTheRay) {
   int converged = 0, vignetted = 0;
   for (const char* id : {"double_gauss_100mm_f2.0", "fisheye_10mm_f4", "modern_58mm_f0.95", "anamorphic_60mm_2x",
                          "catadioptric_mangin_1000mm_f7.5", "biotar_100mm_f1.4"}) {
@@ -130,7 +130,7 @@ TEST(Aim, RayComesFromTheScenePoint) {
   }
 }
 
-TEST(Aim, StoppedDownAndWideOpenAlike) {
+TEST(Aim, ConvergesAtEveryFNumber) {
   const Lens open = data_lens("modern_58mm_f0.95");
   for (const double f_number : {1.0, 4.0, 64.0}) {
     const Lens lens = with_f_number(open, f_number);
@@ -142,7 +142,7 @@ TEST(Aim, StoppedDownAndWideOpenAlike) {
   }
 }
 
-TEST(Aim, AtAPinholeHitsIt) {
+TEST(Aim, HitsPinholes) {
   const Lens open = data_lens("double_gauss_100mm_f2.0");
   for (const double radius : {1e-3, 1e-6, 1e-9}) {
     const Lens lens = with_semi_diameter(open, *open.stop(), radius);
@@ -161,7 +161,7 @@ TEST(Aim, FindsTheSmallStopsOfFisheyesAtSteepFields) {
       for (double field = 60.5; field <= edge; field += 0.7) {
         for (const StopPoint& target : places()) {
           const AimedRay aimed = aim(lens, {radians(field), -infinity}, target);
-          if (!aimed && target.y != 0) continue;  // runs into the edge of a surface before
+          if (!aimed && target.y != 0) continue;  // vignetted by another surface
           ++rays;
           ASSERT_TRUE(aimed) << id << " " << field;
           EXPECT_LE(miss(lens, aimed.ray, target), allowed) << id << " f/" << f_number << " " << field;
@@ -169,10 +169,10 @@ TEST(Aim, FindsTheSmallStopsOfFisheyesAtSteepFields) {
       }
     }
   }
-  EXPECT_GE(rays, 4910);  // 4913
+  EXPECT_GE(rays, 4910);  // 4913 today
 }
 
-TEST(Aim, TurnsWithTheAzimuth) {
+TEST(Aim, RotatesWithTheAzimuth) {
   const Lens lens = data_lens("fisheye_16mm_f2.8");
   const auto straight = aim(lens, {radians(70), -infinity}, {0.2, 0.5});
   for (const double angle : {0.4, 1.9, -2.2}) {
@@ -195,7 +195,7 @@ TEST(ChiefRay, IsTheAxisOnTheAxis) {
   }
 }
 
-TEST(ChiefRay, MeetsTheParaxialOneAtSmallFields) {
+TEST(ChiefRay, EqualsTheParaxialChiefRayAtSmallFields) {
   for (const Prescription& p : data_prescriptions()) {
     SCOPED_TRACE(p.id);
     const Lens lens = compile(p);
@@ -207,9 +207,10 @@ TEST(ChiefRay, MeetsTheParaxialOneAtSmallFields) {
   }
 }
 
-TEST(ChiefRay, PassesTheFisheyeThatTheParaxialPupilLoses) {
-  // A ray through the centre of the paraxial pupil hits the front of this lens outside its rim from 40 degrees on; the
-  // pupil has moved. To 74 degrees the chief ray passes; then the front's rim ends it, and it says so.
+TEST(ChiefRay, PassesFisheyesBeyondTheParaxialPupil) {
+  // From 40 degrees on, a ray through the centre of the paraxial pupil misses the front of this lens, as pupil
+  // aberration moves the pupil. The chief ray passes up to 74 degrees; at larger fields it is vignetted by the rim of
+  // the front.
   const Lens lens = data_lens("fisheye_10mm_f4");
   for (const double field : {40.0, 54.0, 66.0, 74.0}) {
     EXPECT_EQ(chief_ray(lens, {radians(field), -infinity}).status, AimStatus::converged) << field;
@@ -220,7 +221,7 @@ TEST(ChiefRay, PassesTheFisheyeThatTheParaxialPupilLoses) {
   EXPECT_TRUE(edge.end.transmitted());
 }
 
-TEST(Aim, SaysWhereNoRayGoes) {
+TEST(Aim, ReportsFieldsWithoutARay) {
   const Lens lens = data_lens("double_gauss_100mm_f2.0");
   const AimedRay beyond = chief_ray(lens, {radians(89), -infinity});
   EXPECT_FALSE(beyond);
@@ -228,7 +229,7 @@ TEST(Aim, SaysWhereNoRayGoes) {
   EXPECT_EQ(name(beyond.status), "no_ray");
 }
 
-TEST(Aim, UsesTheLimitingApertureWhereNoStopIsMarked) {
+TEST(Aim, UsesTheLimitingApertureWithoutAMarkedStop) {
   Prescription p;
   p.name = "no stop";
   p.surfaces = {{.radius = 50, .thickness = 6, .medium = {.nd = 1.5}, .semi_diameter = 9},
@@ -240,7 +241,7 @@ TEST(Aim, UsesTheLimitingApertureWhereNoStopIsMarked) {
   EXPECT_LE(miss(lens, rim.ray, {0, -1}), 1e-12);
 }
 
-TEST(Aim, RefusesWhatItCannotAimAt) {
+TEST(Aim, RefusesMissingWavelengthsAndStops) {
   const Lens lens = data_lens("double_gauss_100mm_f2.0");
   testing::expect_error([&] { chief_ray(lens, {0, -infinity}, 3); }, {lens.name(), "wavelength", 3});
   Prescription p;

@@ -1,6 +1,5 @@
-// SPDX-License-Identifier: Apache-2.0
-// Apertures that a prescription lacks. A lens with no aperture except the stop's forms the same images as before, as
-// long as the stop decides.
+// SPDX-License-Identifier: Apache-2.0 Computed apertures of a prescription without apertures. As long as the stop
+// limits the beam, the images equal the images with the given apertures.
 #include "petzval/pupil/apertures.hpp"
 
 #include <gtest/gtest.h>
@@ -31,7 +30,7 @@ namespace apertures_test {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
-/// The prescription with no aperture except the stop's.
+/// The prescription without apertures except the stop.
 Prescription with_stop_alone(Prescription p) {
   for (SurfaceRow& row : p.surfaces) {
     if (!row.stop) row.semi_diameter.reset();
@@ -44,7 +43,7 @@ Prescription with_stop_alone(Prescription p) {
   return p;
 }
 
-/// The prescription with computed apertures `factor` times as large.
+/// The prescription with computed apertures scaled by `factor`.
 Prescription with_apertures_times(double factor, Prescription p) {
   p = with_apertures(p);
   for (SurfaceRow& row : p.surfaces) {
@@ -58,7 +57,7 @@ bool stop_has_aperture(const Prescription& p) {
 }
 
 TEST(Apertures, PassTheAxialBeamAndTheDeclaredField) {
-  // A plate behind a stop of 5 mm: rays of 20 degrees reach it 10 mm behind.
+  // A plate 10 mm behind a stop of 5 mm; rays of 20 degrees have to pass.
   Prescription p;
   p.half_field_deg = 20;
   p.surfaces = {{.thickness = 10, .semi_diameter = 5, .stop = true},
@@ -75,7 +74,7 @@ TEST(Apertures, PassTheAxialBeamAndTheDeclaredField) {
   for (std::size_t i = 0; i < 3; ++i) EXPECT_EQ(lens.surfaces()[i].semi_diameter, found.surfaces[i].semi_diameter);
 }
 
-TEST(Apertures, AreComputedAnewWhereTheyWereComputed) {
+TEST(Apertures, ComputedAperturesAreComputedAgain) {
   Prescription p = with_stop_alone(testing::data_prescription("cooke_triplet_50mm_f5"));
   p.half_field_deg = 10;
   const Prescription narrow = with_apertures(p);
@@ -87,13 +86,13 @@ TEST(Apertures, AreComputedAnewWhereTheyWereComputed) {
   EXPECT_EQ(with_apertures(wide), narrow);
 }
 
-TEST(Apertures, KeepTheMarkThatTheyWereComputedInJson) {
+TEST(Apertures, JsonKeepsTheComputedMark) {
   const Prescription p = with_apertures(with_stop_alone(testing::data_prescription("cooke_triplet_50mm_f5")));
   EXPECT_EQ(parse_prescription(format_prescription(p), "p"), p);
   EXPECT_EQ(parse_lens(format_prescription(p), "p"), p);
 }
 
-TEST(Apertures, OfAStopAreThoseOfTheDeclaredFNumber) {
+TEST(Apertures, StopFollowsTheDeclaredFNumber) {
   Prescription p = testing::data_prescription("cooke_triplet_50mm_f5");
   for (SurfaceRow& row : p.surfaces) row.semi_diameter.reset();
   p.f_number = 6;
@@ -102,7 +101,7 @@ TEST(Apertures, OfAStopAreThoseOfTheDeclaredFNumber) {
   EXPECT_GT(6, real_f_number(compile(p)));  // the edges of the elements limit the beam
 }
 
-TEST(Apertures, OfZoomPositionsAreTheLargest) {
+TEST(Apertures, ZoomPositionsShareTheLargest) {
   const Prescription p =
       with_stop_alone(read_prescription(std::filesystem::path(PETZVAL_TEST_DATA) / "lenses" / "zoom_14-30mm_f4.json"));
   ASSERT_GT(p.configurations.size(), 1u);
@@ -117,10 +116,10 @@ TEST(Apertures, OfZoomPositionsAreTheLargest) {
   }
 }
 
-// The stop decides, not the computed apertures: axial spots equal those of the given apertures, and larger computed
-// apertures do not change the spots of the declared field.
-TEST(Apertures, LetTheStopDecideInEveryLens) {
-  // Rays next to total reflection spread over all of the rear element: larger apertures let more of them pass.
+// The stop limits the beam: axial spots equal the spots with the given apertures, and larger computed apertures do not
+// change the spots of the declared field.
+TEST(Apertures, StopLimitsTheBeamInEveryLens) {
+  // Rays near total reflection spread over the whole rear element, so that larger apertures pass more rays.
   const std::map<std::string, double> up_to_part_of_the_field{{"primoplan_100mm_f1.9", 0.7}};
   std::size_t count = 0;
   for (const Prescription& p : testing::data_prescriptions()) {
@@ -139,7 +138,7 @@ TEST(Apertures, LetTheStopDecideInEveryLens) {
     const PointImage axis = image(found, 0), axis_of_given = image(given, 0);
     EXPECT_LE(axis.size.rms_radius, 1.15 * axis_of_given.size.rms_radius + 1e-12) << p.id;
     EXPECT_GE(axis.size.rms_radius, 0.85 * axis_of_given.size.rms_radius - 1e-12) << p.id;
-    // No light beyond the marginal ray. (Pupils larger than paraxial ones have more than 1 with all apertures too.)
+    // No light outside the marginal ray. Pupils larger than the paraxial pupil exceed 1 also with given apertures.
     const double beam = paraxial_f_number(found) / real_f_number(found);
     EXPECT_LE(axis.throughput, 1.005 * beam * beam) << p.id;
 
@@ -153,7 +152,7 @@ TEST(Apertures, LetTheStopDecideInEveryLens) {
   EXPECT_EQ(count, 75u);
 }
 
-// Unlimited apertures: elements end at their edges, and pupils are connected with their chief rays.
+// Without computed apertures, elements end where their surfaces meet, and pupils contain their chief rays.
 TEST(Apertures, AreNotNeededForThePupil) {
   for (const char* id : {"cooke_triplet_50mm_f5", "sonnar_180mm_f2.8", "ernostar_100mm_f2", "retrofocus_100mm_f2.8",
                          "telephoto_100mm_f5.6", "modern_51mm_f1.25", "modern_50mm_f1.0", "ball_10mm"}) {
@@ -174,8 +173,8 @@ TEST(Apertures, AreNotNeededForThePupil) {
   }
 }
 
-// Of optiland's JSON, in which surfaces have no apertures. RMS radii as optiland prints them (tests/analysis of its
-// repository, hexapolar rays); they equal OpticStudio's for its sample "Cooke 40 degree field".
+// Surfaces in the JSON of optiland have no apertures. The RMS radii are printed by optiland (tests/analysis of its
+// repository, hexapolar rays) and equal the values of OpticStudio for its sample "Cooke 40 degree field".
 TEST(Apertures, GiveOptilandsTripletTheSpotsOfOpticStudio) {
   const auto surface = [](double z, double radius, const std::string& glass, bool stop = false) {
     const std::string medium = glass.empty() ? R"({"type": "IdealMaterial", "index": 1.0})"
@@ -210,10 +209,10 @@ TEST(Apertures, GiveOptilandsTripletTheSpotsOfOpticStudio) {
         point_image(lens, {radians(field), -infinity}, {.samples = 16384, .wavelength = wavelength});
     EXPECT_NEAR(image.size.rms_radius, rms, (field == 0 ? 0.04 : 0.15) * rms) << field;
     EXPECT_LE(image.throughput, 1.1) << field;
-    // Without ray aiming the beam fills the paraxial entrance pupil, and not the stop.
+    // Without ray aiming the beam fills the paraxial entrance pupil instead of the stop.
     const auto launched = [&, angle_rad = radians(field)](std::size_t at) {
       std::vector<Vec2<double>> hits;
-      constexpr int rings = 6;  // as both programs send rays by default
+      constexpr int rings = 6;  // the default of both programs
       for (int ring = 0; ring <= rings; ++ring) {
         for (int k = 0; k < std::max(6 * ring, 1); ++k) {
           const double r = 5.0 * ring / rings, angle = 2 * std::numbers::pi * k / std::max(6 * ring, 1);
@@ -226,7 +225,7 @@ TEST(Apertures, GiveOptilandsTripletTheSpotsOfOpticStudio) {
       }
       return hits;
     };
-    Vec2<double> centroid{0, 0};  // at the primary wavelength
+    Vec2<double> centroid{0, 0};  // primary wavelength
     const auto primary = launched(1);
     for (const auto& hit : primary) centroid += hit / static_cast<double>(primary.size());
     double squares = 0;
@@ -235,8 +234,8 @@ TEST(Apertures, GiveOptilandsTripletTheSpotsOfOpticStudio) {
   }
 }
 
-/// An object and its paraxial image are one field, and so are an angle and the image of a far object.
-TEST(DeclaredField, ObjectsAndTheirImagesAreSeenUnderOneAngle) {
+/// Object height, paraxial image height and angle describe the same field.
+TEST(DeclaredField, ObjectAndImageHeightsGiveTheSameAngle) {
   Prescription p = testing::data_prescription("cooke_triplet_50mm_f5");
   const Lens lens = compile(p);
   const double focal_length = first_order(lens).effective_focal_length;
@@ -251,7 +250,7 @@ TEST(DeclaredField, ObjectsAndTheirImagesAreSeenUnderOneAngle) {
   EXPECT_NEAR(*declared_field(p, lens, FieldKind::real_image_height, 120 * magnification), of_object, 1e-12);
 }
 
-TEST(DeclaredField, TheAngleComesBeforeFieldsAndFieldsBeforeTheImageDiagonal) {
+TEST(DeclaredField, AnglePrecedesFieldsAndFieldsPrecedeImageDiagonal) {
   Prescription p = testing::data_prescription("cooke_triplet_50mm_f5");
   const Lens lens = compile(p);
   p.design = {};

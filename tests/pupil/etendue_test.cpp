@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Etendue is conserved: the light of a film disc is as much, counted at the film or in the scene.
+// Conservation of etendue: the flux on a film disc is equal, integrated on the film or in the scene.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -23,7 +23,7 @@ namespace etendue_test {
 constexpr double pi = std::numbers::pi;
 constexpr std::uint32_t samples = 1 << 13;
 
-/// Radius about the axis, in the plane z, of the pupils of points at three heights, and a little more.
+/// Radius about the axis in the plane z that contains the pupils of points at three heights, with a margin.
 template <class BoundaryOf>
 double reach(const BoundaryOf& boundary_of, double height, double z) {
   double farthest = 0;
@@ -42,7 +42,7 @@ struct Interval {
   double from, to;
 };
 
-/// What passes along a line from 0 to a limit.
+/// Intervals of a line from 0 to a limit that pass.
 template <class Passes>
 std::vector<Interval> intervals(const Passes& passes, double limit) {
   constexpr int steps = 16;
@@ -60,13 +60,13 @@ std::vector<Interval> intervals(const Passes& passes, double limit) {
     if (!passing && last) result.back().to = edge(before, now);
     last = passing;
   }
-  EXPECT_FALSE(last);  // nothing is left out beyond the limit
+  EXPECT_FALSE(last);  // the limit is outside the pupil
   return result;
 }
 
-/// Integral over a disc of points, seen from a pupil by Sobol's points in two of the four dimensions: the radius in the
-/// disc and the angle in the pupil. A lens of revolution leaves out the third, and the radius in the pupil is the
-/// fourth: inner(height, x, y) is the integral along the direction (x, y).
+/// Integral over a disc and the pupils of its points. Sobol points cover the radius in the disc and the angle in the
+/// pupil; rotational symmetry removes the angle in the disc; inner(height, x, y) integrates along the radius of the
+/// pupil in the direction (x, y).
 template <class Inner>
 double sum(double disc_radius, std::uint32_t seed, const Inner& inner) {
   double total = 0;
@@ -78,7 +78,7 @@ double sum(double disc_radius, std::uint32_t seed, const Inner& inner) {
   return total * pi * disc_radius * disc_radius * 2 * pi / samples;
 }
 
-/// Places on the film, and the projected solid angle in which they see the exit pupil.
+/// Integral over film points of the projected solid angle of the exit pupil.
 double from_film(const Lens& lens, double radius, double limit, std::uint32_t seed) {
   const double z = pupils(lens).exit.z, gap = lens.film_z() - z, n = lens.index(lens.surface_count(), 0);
   const auto seen = [&](double height, double x, double y) {
@@ -89,7 +89,7 @@ double from_film(const Lens& lens, double radius, double limit, std::uint32_t se
     };
     double value = 0;
     for (const auto& [from, to] : intervals(passes, limit)) {
-      // Gauss and Legendre, of cos^4 / gap^2.
+      // Gauss-Legendre quadrature of cos^4 / gap^2.
       for (const auto& [node, weight] : {std::pair{-std::sqrt(0.6), 5.0}, {0.0, 8.0}, {std::sqrt(0.6), 5.0}}) {
         const double r = (from + to + node * (to - from)) / 2, dx = r * x, dy = r * y - height;
         const double squared = dx * dx + dy * dy + gap * gap;
@@ -101,7 +101,7 @@ double from_film(const Lens& lens, double radius, double limit, std::uint32_t se
   return n * n * sum(radius, seed, seen);
 }
 
-/// Directions in the scene, and the area of the entrance pupil across them.
+/// Integral over scene directions of the area of the entrance pupil, projected along the direction.
 double from_scene(const Lens& lens, double radius, double steepest, double limit, std::uint32_t seed) {
   const double z = pupils(lens).entrance.z;
   return sum(steepest, seed, [&](double sine, double x, double y) {
@@ -121,14 +121,14 @@ double from_scene(const Lens& lens, double radius, double steepest, double limit
 
 struct Disc {
   const char* lens;
-  double radius, steepest;  ///< mm on the film; sine of the field of rays that get there, and more
+  double radius, steepest;  ///< mm on the film; upper bound for the sine of the field of its rays
 };
 
 std::ostream& operator<<(std::ostream& out, const Disc& d) { return out << d.lens; }
 
 class Etendue : public ::testing::TestWithParam<Disc> {};
 
-TEST_P(Etendue, OfAFilmDiscIsTheSameFromBothSides) {
+TEST_P(Etendue, FilmDiscIsEqualFromBothSides) {
   const auto [id, radius, steepest] = GetParam();
   const Lens lens = testing::data_lens(id);
   const Pupils p = pupils(lens);
@@ -143,7 +143,7 @@ TEST_P(Etendue, OfAFilmDiscIsTheSameFromBothSides) {
   RecordProperty("ratio_less_1", std::to_string((scene / film - 1) * 1e6) + "e-6");
 }
 
-// A fast lens, one wide open among its rims, a fisheye, and an eye with water behind its lens.
+// A fast lens, a lens limited by several rims, a fisheye, and an eye with water in image space.
 INSTANTIATE_TEST_SUITE_P(Lenses, Etendue,
                          ::testing::Values(Disc{"double_gauss_100mm_f2.0", 20, 0.22},
                                            Disc{"modern_58mm_f0.95", 10, 0.2}, Disc{"fisheye_10mm_f4", 5, 0.53},

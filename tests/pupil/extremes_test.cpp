@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Aiming and boundaries on every lens of data/ and at the ends of what may be asked: laws, and answers to bad
-// questions.
+// Aiming and boundaries for every lens of data/ and for extreme and invalid input.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -35,7 +34,7 @@ RayFate fate(const Lens& lens, const PupilBoundary& boundary, const PupilSpan& s
   return trace(lens, boundary.plane.ray(p.x, p.y)).fate;
 }
 
-TEST(Extremes, EveryEdgeOfEveryLensPassesAndTheNextRayIsLost) {
+TEST(Extremes, EdgeRaysPassAndTheNextAreLost) {
   int edges = 0;
   for (const Prescription& p : data_prescriptions()) {
     const Lens lens = compile(p);
@@ -61,14 +60,14 @@ TEST(Extremes, EveryEdgeOfEveryLensPassesAndTheNextRayIsLost) {
   EXPECT_GT(edges, 4500);
 }
 
-TEST(Extremes, AreaOfEveryLensIsThatOfAGridOfRays) {
+TEST(Extremes, AreaOfEveryLensEqualsAGridOfRays) {
   for (const Prescription& p : data_prescriptions()) {
     const Lens lens = compile(p);
     for (const double share : {0.7, 1.0}) {
       SCOPED_TRACE(p.id + " at " + std::to_string(share * edge_deg(p)));
       const PupilBoundary boundary = pupil_boundary(lens, {radians(share * edge_deg(p)), -infinity}, 0, 128);
       if (boundary.empty()) continue;
-      // Over twice the pupil's box, so that parts that the boundary has missed count.
+      // The grid covers twice the bounding box of the pupil, so that missed components count.
       constexpr int nodes = 160;
       int passed = 0;
       for (int j = 0; j < nodes; ++j) {
@@ -84,8 +83,8 @@ TEST(Extremes, AreaOfEveryLensIsThatOfAGridOfRays) {
   }
 }
 
-// A pupil turns with its point; so do areas, in any direction in which they are cut.
-TEST(Extremes, PupilsTurnWithTheAzimuth) {
+// Areas are compared, as the directions of the boundary cut the rotated pupil elsewhere.
+TEST(Extremes, PupilsRotateWithTheAzimuth) {
   for (const Prescription& p : data_prescriptions()) {
     const Lens lens = compile(p);
     if (!lens.rotationally_symmetric()) continue;
@@ -107,7 +106,7 @@ TEST(Extremes, PupilsAreMirrorImages) {
     for (const double share : {0.4, 0.9}) {
       SCOPED_TRACE(p.id + " " + std::to_string(share));
       const PupilBoundary boundary = pupil_boundary(lens, {radians(share * edge_deg(p)), -infinity}, 0, 16);
-      EXPECT_NEAR(boundary.middle[0], 0, 1e-8 * boundary.half_axes[0]);  // where a search found it
+      EXPECT_NEAR(boundary.middle[0], 0, 1e-8 * boundary.half_axes[0]);  // up to the tolerance of the search
       for (const PupilSpan& span : boundary.spans) {
         const auto mirror = std::find_if(boundary.spans.begin(), boundary.spans.end(), [&](const PupilSpan& s) {
           return s.direction == boundary.directions - 1 - span.direction &&
@@ -142,7 +141,7 @@ TEST(Extremes, ALensScaledByAPowerOfTwoScalesToTheBit) {
   }
 }
 
-// A field that no lens sees has no ray, an empty pupil and no light, and all numbers are finite.
+// A field outside the field of view has no chief ray, an empty pupil and irradiance 0; all numbers are finite.
 TEST(Extremes, FieldsBeyondTheLensAreDark) {
   for (const Prescription& p : data_prescriptions()) {
     const Lens lens = compile(p);
@@ -151,13 +150,13 @@ TEST(Extremes, FieldsBeyondTheLensAreDark) {
       SCOPED_TRACE(p.id + " at " + std::to_string(field));
       const AimedRay chief = chief_ray(lens, {radians(field), -infinity});
       if (chief) {
-        // Rays that graze a surface before a rim ends them are known no better.
+        // Vignetted rays that graze a surface have a larger residual.
         EXPECT_LE(chief.residual, chief.status == AimStatus::converged ? 1e-12 : 1e-7);
         EXPECT_TRUE(std::isfinite(chief.end.ray.origin.y) && std::isfinite(chief.end.ray.direction.y));
       }
       const PupilBoundary boundary = pupil_boundary(lens, {radians(field), -infinity}, 0, 16);
       EXPECT_TRUE(std::isfinite(boundary.area()));
-      if (chief.status != AimStatus::converged && field > 110) {  // a bulging front takes in a little more than 90
+      if (chief.status != AimStatus::converged && field > 110) {  // convex fronts accept slightly more than 90
         EXPECT_TRUE(boundary.empty());
       }
       const auto light = relative_illumination(lens, {radians(field), -infinity});
@@ -186,7 +185,7 @@ TEST(Extremes, WithoutAMarkedStopTheLimitingApertureServes) {
   }
 }
 
-TEST(Extremes, AStopOfRadiusZeroHasItsCentreOnly) {
+TEST(Extremes, StopOfRadiusZeroPassesItsCentreOnly) {
   for (const Prescription& p : data_prescriptions()) {
     SCOPED_TRACE(p.id);
     const Lens open = compile(p);
@@ -212,13 +211,13 @@ TEST(Extremes, StopsFromHugeToTinyAreFound) {
     const PupilBoundary boundary = pupil_boundary(lens, point, 0, 32);
     ASSERT_FALSE(boundary.empty());
     if (semi_diameter > 1) continue;
-    // The pupil of a small stop is its image: an ellipse whose area goes with the square.
+    // The pupil of a small stop is its image, an ellipse whose area scales with the square of the radius.
     const double unit = pupil_boundary(with_semi_diameter(open, 5, 0.1), point, 0, 32).area() / 0.01;
     EXPECT_NEAR(boundary.area() / (semi_diameter * semi_diameter) / unit, 1, 2e-3);
   }
 }
 
-TEST(Extremes, PointsThatAreNoneAreRefused) {
+TEST(Extremes, RefusesInvalidPoints) {
   const Lens lens = data_lens("double_gauss_100mm_f1.35");
   const std::vector<FieldPoint> bad{{nan, -infinity},
                                     {infinity, -infinity},
@@ -244,7 +243,7 @@ TEST(Extremes, PointsThatAreNoneAreRefused) {
   }
 }
 
-TEST(Extremes, WavelengthsOutsideTheSetAreRefused) {
+TEST(Extremes, RefusesMissingWavelengths) {
   const Lens lens = data_lens("double_gauss_100mm_f1.35");
   expect_error([&] { chief_ray(lens, {0, -infinity}, 1); }, {lens.name(), "wavelength", 1});
   expect_error([&] { pupil_boundary(lens, {0, -infinity}, 1); }, {lens.name(), "wavelength", 1});
@@ -252,17 +251,17 @@ TEST(Extremes, WavelengthsOutsideTheSetAreRefused) {
   expect_error([&] { relative_illumination(lens, {0, -infinity}, 1); }, {lens.name(), "wavelength", 1});
 }
 
-TEST(Extremes, TargetsThatAreNoPlacesGetNoRay) {
+TEST(Extremes, InvalidTargetsGetNoRay) {
   const Lens lens = data_lens("double_gauss_100mm_f1.35");
   for (const StopPoint& target : {StopPoint{nan, 0}, StopPoint{0, infinity}, StopPoint{1e300, 0}, StopPoint{0, -1e3}}) {
     EXPECT_EQ(aim(lens, {0.1, -infinity}, target).status, AimStatus::no_ray) << target.x << " " << target.y;
   }
-  // Outside the rim there is glass still: a ray gets there, and the stop ends it.
+  // A ray reaches a point just outside the rim of the stop, and is vignetted by the stop.
   const AimedRay outside = aim(lens, {0, -infinity}, {0, 1.05});
   EXPECT_EQ(outside.status, AimStatus::vignetted);
 }
 
-TEST(Extremes, ATelecentricLensIsRefusedFromTheSceneOnly) {
+TEST(Extremes, TelecentricLensIsRefusedFromTheSceneOnly) {
   Prescription p;
   p.name = "telecentric";
   p.surfaces = {{.radius = 60, .thickness = 5, .medium = {.nd = 1.6}, .semi_diameter = 12},
@@ -272,7 +271,7 @@ TEST(Extremes, ATelecentricLensIsRefusedFromTheSceneOnly) {
   const Lens lens = compile(p);
   expect_error([&] { chief_ray(lens, {0, -infinity}); }, {"telecentric", "entrance pupil", "infinity"});
   expect_error([&] { pupil_boundary(lens, {0.1, -100}); }, {"telecentric", "entrance pupil", "infinity"});
-  // The film sees the stop as it sees any other: 3 mm, 40 mm away.
+  // From the film side the pupil is the stop: 3 mm at a distance of 40 mm.
   EXPECT_NEAR(film_irradiance(lens, {0, 0}), std::numbers::pi * 9 / (9 + 1600), 1e-6);
 }
 

@@ -33,7 +33,7 @@ Prescription telescope() {
   return p;
 }
 
-TEST(WithFNumber, SaysWhereNoLightPasses) {
+TEST(WithFNumber, RefusesClosedLenses) {
   const Lens lens = data_lens("double_gauss_100mm_f2.0");
   expect_error([&] { with_f_number(lens, 1e300); }, {lens.name(), "number", 1e300, "closed"});
   const Lens closed = with_semi_diameter(lens, *lens.stop(), 0);
@@ -47,7 +47,7 @@ TEST(RealFNumber, OfEveryLensInDataIsWithinTwoPercentOfTheDeclared) {
   }
 }
 
-TEST(FastestFNumber, IsTheLeastThatWithFNumberGives) {
+TEST(FastestFNumber, IsTheSmallestThatWithFNumberAccepts) {
   for (const Prescription& p : data_prescriptions()) {
     SCOPED_TRACE(p.id);
     const Lens lens = compile(p);
@@ -57,7 +57,7 @@ TEST(FastestFNumber, IsTheLeastThatWithFNumberGives) {
     expect_error([&] { with_f_number(lens, fastest / 1.006); }, {lens.name(), fastest / 1.006});
     EXPECT_NEAR(real_f_number(with_f_number(lens, fastest)), fastest, 1e-9 * fastest);
   }
-  // A marked stop without a rim: the last ray that reaches the stop is the limit.
+  // If the marked stop has no rim, the outermost ray that reaches the stop is the limit.
   Prescription open = testing::data_prescription("double_gauss_100mm_f2.0");
   for (SurfaceRow& row : open.surfaces) {
     if (row.stop) row.semi_diameter = infinity;
@@ -82,7 +82,7 @@ TEST(RealFNumber, BelongsToTheRayThatMeetsTheRimOfTheStop) {
   }
 }
 
-TEST(RealFNumber, TendsToTheParaxialOneAsTheStopCloses) {
+TEST(RealFNumber, TendsToTheParaxialFNumberAsTheStopCloses) {
   for (const Prescription& p : data_prescriptions()) {
     const Lens lens = compile(p);
     const std::size_t stop = lens.stop().value();
@@ -91,13 +91,13 @@ TEST(RealFNumber, TendsToTheParaxialOneAsTheStopCloses) {
   }
 }
 
-TEST(RealFNumber, AsksTheRayToReachTheStopNotToLeaveIt) {
-  // From glass of 1.5 onto a sphere of 20 mm the critical angle lies at a height of 13.3 mm, the rim of the stop at 16.
+TEST(RealFNumber, RayHasToReachTheStopOnly) {
+  // In glass of index 1.5, total reflection at the sphere of 20 mm begins at a height of 13.3 mm; the stop has 16 mm.
   Prescription p;
   p.name = "hemisphere";
   p.surfaces = {{.thickness = 25, .medium = {.nd = 1.5}}, {.radius = -20, .semi_diameter = 16, .stop = true}};
   EXPECT_NEAR(real_f_number(compile(p)), 40.0 / 32, 1e-14);
-  // No ray gets higher than the sphere: the rim is out of reach.
+  // A rim larger than the sphere is limited by the radius of the sphere.
   p.surfaces[1].semi_diameter = 30;
   EXPECT_NEAR(real_f_number(compile(p)), 1, 1e-14);
 }
@@ -120,7 +120,7 @@ double slowest(const Lens& lens) {
   return testing::has_token(said, "obscuration") ? stated_in(said, lens, 1e6) : infinity;
 }
 
-TEST(WithFNumber, IsWhatRealFNumberFinds) {
+TEST(WithFNumber, InvertsRealFNumber) {
   for (const Prescription& p : data_prescriptions()) {
     SCOPED_TRACE(p.id);
     const Lens lens = compile(p);
@@ -137,8 +137,8 @@ TEST(WithFNumber, IsWhatRealFNumberFinds) {
   }
 }
 
-// The first thing that people write: the f-number on the barrel.
-TEST(WithFNumber, TakesTheDeclaredOneWhereTheLensIsAsFastWithinHalfAPercent) {
+// Users write the f-number that is engraved on the lens.
+TEST(WithFNumber, AcceptsDeclaredFNumbersWithinHalfAPercent) {
   int given = 0, refused = 0;
   for (const Prescription& p : data_prescriptions()) {
     if (!p.f_number) continue;
@@ -158,9 +158,9 @@ TEST(WithFNumber, TakesTheDeclaredOneWhereTheLensIsAsFastWithinHalfAPercent) {
   RecordProperty("refused", refused);
 }
 
-// Close behind a ball the outer rays cross those nearer to the axis: the rim that lets them pass is met by others
-// first.
-TEST(WithFNumber, IsRefusedWhereSphericalAberrationFoldsTheBeam) {
+// Close behind a ball lens, outer rays cross inner rays, so that no radius of the stop selects the requested marginal
+// ray.
+TEST(WithFNumber, RefusesBeamsFoldedBySphericalAberration) {
   Prescription p;
   p.name = "ball";
   p.surfaces = {{.radius = 10, .thickness = 20, .medium = {.nd = 1.5}, .semi_diameter = 10},
@@ -180,8 +180,8 @@ TEST(WithFNumber, RunsFromTheFastestLensesToPinholes) {
   for (const double n : {0.95, 1.0, 1.4, 8.0, 64.0}) EXPECT_NEAR(real_f_number(with_f_number(lens, n)), n, 1e-12 * n);
 }
 
-// Full stops from f/0.95 to f/64, f/1000: a lens has the f-number, or the message names the widest one.
-TEST(WithFNumber, GivesOrNamesEveryStandardFNumber) {
+// Full stops from f/0.95 to f/64 and f/1000 are accepted, or the message names the fastest f-number.
+TEST(WithFNumber, AcceptsStandardFNumbersOrNamesTheFastest) {
   int given = 0, refused = 0;
   for (const Prescription& p : data_prescriptions()) {
     const Lens lens = compile(p);
@@ -194,7 +194,7 @@ TEST(WithFNumber, GivesOrNamesEveryStandardFNumber) {
         EXPECT_NEAR(real_f_number(with_f_number(lens, n)), n, 1e-12 * n);
         ++given;
       } else if (n < fastest / 1.0051) {
-        // The lens accepts the number in the message.
+        // The f-number in the message is accepted.
         const double named = stated_in(message([&] { with_f_number(lens, n); }), lens, n);
         EXPECT_NEAR(named, fastest, 1e-9 * fastest);
         EXPECT_NO_THROW(with_f_number(lens, named));
@@ -206,7 +206,7 @@ TEST(WithFNumber, GivesOrNamesEveryStandardFNumber) {
   EXPECT_GT(refused, 200);
 }
 
-TEST(WithFNumber, OfAStopInFrontIsFocalLengthOverDiameter) {
+TEST(WithFNumber, FrontStopIsFocalLengthOverDiameter) {
   Prescription p;
   p.name = "front stop";
   p.surfaces = {{.thickness = 3, .semi_diameter = 12, .stop = true},
@@ -216,14 +216,14 @@ TEST(WithFNumber, OfAStopInFrontIsFocalLengthOverDiameter) {
   for (const double n : {4.0, 64.0, 1000.0}) {
     EXPECT_EQ(with_f_number(lens, n).surfaces()[0].semi_diameter, focal_length(lens) / (2 * n));
   }
-  // On the glass itself the ray has not been bent either.
+  // A stop on the front surface is met before refraction.
   p.surfaces[0].stop = false;
   p.surfaces[1].stop = true;
   EXPECT_NEAR(with_f_number(compile(p), 8).surfaces()[1].semi_diameter, focal_length(lens) / 16, 1e-15);
 }
 
-// Also where the stop itself has none: behind the hole of a mirror the axis is dark.
-TEST(WithFNumber, EndsAtAnObscurationBeforeTheStop) {
+// The stop itself has no obscuration, but behind the hole of a mirror the axis is dark.
+TEST(WithFNumber, IsLimitedByAnObscurationBeforeTheStop) {
   const Lens lens = data_lens("catadioptric_mangin_1000mm_f7.5");
   ASSERT_EQ(lens.surfaces()[lens.stop().value()].obscuration_semi_diameter, 0);
   const double hidden = slowest(lens);
@@ -232,7 +232,7 @@ TEST(WithFNumber, EndsAtAnObscurationBeforeTheStop) {
   expect_error([&] { with_f_number(lens, hidden * 1.01); }, {lens.name(), "obscuration"});
 }
 
-TEST(WithFNumber, OfAnAnnularStopEndsAtItsHole) {
+TEST(WithFNumber, AnnularStopIsLimitedByItsHole) {
   const Lens lens = data_lens("catadioptric_maksutov_1280mm_f14.4");
   EXPECT_NEAR(real_f_number(with_f_number(lens, 22)), 22, 22e-12);
   EXPECT_EQ(with_f_number(lens, 22).surfaces()[2].obscuration_semi_diameter,
@@ -244,7 +244,7 @@ TEST(WithFNumber, OfAnAnnularStopEndsAtItsHole) {
   expect_error([&] { with_f_number(lens, obscured * (1 + 1e-8)); }, {lens.name(), "obscuration"});
 }
 
-TEST(WithFNumber, LeavesAnInferredStopTheStop) {
+TEST(WithFNumber, KeepsTheInferredStop) {
   for (Prescription p : data_prescriptions()) {
     SCOPED_TRACE(p.id);
     for (SurfaceRow& row : p.surfaces) row.stop = false;
@@ -265,19 +265,19 @@ TEST(WithFNumber, WorksOnAnInferredStop) {
   EXPECT_NEAR(real_f_number(stopped), 8, 1e-12);
 }
 
-TEST(WithFNumber, RefusesWhatIsNoFNumber) {
+TEST(WithFNumber, RefusesInvalidNumbers) {
   const Lens lens = data_lens("double_gauss_100mm_f1.35");
   for (const double n : {0.0, -2.0, std::nan(""), infinity}) {
     expect_error([&] { with_f_number(lens, n); }, {lens.name(), "number", n});
   }
 }
 
-TEST(WithFNumber, NamesTheFastestWhereTheLensIsSlower) {
+TEST(WithFNumber, NamesTheFastestFNumber) {
   const Lens lens = data_lens("double_gauss_100mm_f1.35");
   const std::string said = message([&] { with_f_number(lens, 1.2); });
   testing::expect_tokens(said, {lens.name(), 1.2, "fastest"});
   EXPECT_NEAR(stated_in(said, lens, 1.2), 1.3535, 5e-4);
-  // No stop is wide enough for a ray that misses the glass.
+  // A larger stop does not help, as faster rays miss the glass.
   const Lens open = with_semi_diameter(lens, 5, infinity, RimLimit::none);
   expect_error([&] { with_f_number(open, 0.1); }, {lens.name(), 0.1, 1.013132236});
 }
@@ -289,7 +289,7 @@ TEST(WithFNumber, RefusesAnAfocalLens) {
   expect_error([&] { with_f_number(lens, 4); }, {"telescope", "afocal"});
 }
 
-TEST(RealFNumber, OfTheWidestRimIsThatOfIts1e15Mm) {
+TEST(RealFNumber, RimsEndAt1e15Mm) {
   Prescription p = testing::data_prescription("mirror_newton_200mm_f8");
   p.surfaces[0].semi_diameter = 1e15;
   EXPECT_NEAR(real_f_number(compile(p)), 1e-13, 1e-14);
@@ -310,7 +310,7 @@ TEST(WithFNumber, GivesAMarkedStopItsRim) {
   }
 }
 
-TEST(RealFNumber, OfAStopWithoutARimIsThatOfTheSurfaceThatLimits) {
+TEST(RealFNumber, StopWithoutRimIsLimitedByOtherRims) {
   const auto [marked, unmarked] = testing::without_the_rim_of_its_stop(testing::open_singlet(10));
   EXPECT_EQ(real_f_number(marked), real_f_number(unmarked));
   EXPECT_NEAR(real_f_number(marked), 2.53, 0.01);

@@ -38,7 +38,7 @@ double on_film(const Lens& lens, const Ray<double>& ray) {
   return ray.origin.y + (lens.film_z() - ray.origin.z) / ray.direction.z * ray.direction.y;
 }
 
-/// The projected solid angle in which a film point (0, y) sees the scene, by a grid of rays to the scene.
+/// Projected solid angle of the pupil from the film point (0, y), by a grid of rays to the scene.
 double seen_from_film(const Lens& lens, double y, int nodes) {
   const double back = lens.surfaces().back().vertex_z, gap = lens.film_z() - back;
   const double reach = 1.3 * lens.surfaces().back().semi_diameter;
@@ -63,7 +63,7 @@ std::ostream& operator<<(std::ostream& out, const Case& c) { return out << c.len
 
 class FilmIrradiance : public ::testing::TestWithParam<Case> {};
 
-TEST_P(FilmIrradiance, IsTheSolidAngleOfAGridOfRays) {
+TEST_P(FilmIrradiance, EqualsTheSolidAngleOfAGridOfRays) {
   const auto& [id, field_deg] = GetParam();
   const Lens open = data_lens(id);
   const Lens lens = with_film(open, paraxial_image_z(open, -infinity));
@@ -79,8 +79,7 @@ INSTANTIATE_TEST_SUITE_P(Lenses, FilmIrradiance,
                                            Case{"fisheye_16mm_f2.8", 80}, Case{"tessar_100mm_f2.8", 15},
                                            Case{"telephoto_200mm_f1.8", 5}, Case{"retrofocus_100mm_f2.8", 20}));
 
-/// The cells that are connected with the cell that passes next to `near`, [row][column]; without it with the most
-/// cells.
+/// The connected component of passing cells next to `near`, or the largest component without `near`; by [row][column].
 std::vector<bool> connected(const std::vector<bool>& passes, int side, const std::optional<Vec2<double>>& near) {
   std::vector<bool> seen(passes.size(), false), best(passes.size(), false);
   double least = infinity;
@@ -108,9 +107,8 @@ std::vector<bool> connected(const std::vector<bool>& passes, int side, const std
   return best;
 }
 
-/// The projected solid angle in which a film point sees the scene, by rays at random places of a grid over all
-/// directions in which the last surface may lie, and a finer one about those that pass or lie beside: the cells that
-/// are connected with the chief ray's.
+/// Projected solid angle of the pupil from a film point, by random rays in a grid over all directions towards the last
+/// surface, refined at the edges. Counts the component that contains the chief ray.
 double seen_in_all_directions(const Lens& lens, const FilmPoint& film, int side) {
   const PupilPlane plane = PupilPlane::of_film(lens, film);
   const std::size_t last = lens.surface_count() - 1;
@@ -142,7 +140,7 @@ double seen_in_all_directions(const Lens& lens, const FilmPoint& film, int side)
   std::vector<Ray<double>> rays;
   const auto add = [&](double i, double j) {
     const Vec2<double> c = low + cell * Vec2<double>{i, j};
-    // Beside the half space dz is no number, and the ray is lost.
+    // Outside the unit disc dz is NaN, and the ray is lost.
     const double dz = std::sqrt(1 - c.x * c.x - c.y * c.y), gap = std::abs(lens.film_z() - back);
     rays.push_back(plane.ray(film.x + c.x / dz * gap, film.y + c.y / dz * gap));
   };
@@ -166,7 +164,7 @@ double seen_in_all_directions(const Lens& lens, const FilmPoint& film, int side)
   std::vector<bool> passes = passing(lens);
   for (std::size_t i = 0; i < passes.size(); ++i) passes[i] = passes[i] && part[i];
   rays.clear();
-  // Cells whose neighbours all pass count as full.
+  // Cells are full if all neighbours pass.
   std::vector<int> mixed;
   double cells = 0;
   for (int j = 0; j < side; ++j) {
@@ -194,14 +192,14 @@ double seen_in_all_directions(const Lens& lens, const FilmPoint& film, int side)
 struct Parts {
   const char* lens;
   double f_number, low, high;  // film heights, mm
-  int side = 384;              // cells; fewer miss slivers
+  int side = 384;              // cells; coarser grids miss slivers
 };
 
 std::ostream& operator<<(std::ostream& out, const Parts& p) { return out << p.lens << " f/" << p.f_number; }
 
 class PupilsBesideOthers : public ::testing::TestWithParam<Parts> {};
 
-TEST_P(PupilsBesideOthers, GiveTheirLightAlone) {
+TEST_P(PupilsBesideOthers, IrradianceCountsTheConnectedPupilOnly) {
   const auto& [id, f_number, low, high, side] = GetParam();
   const Lens lens = with_f_number(data_lens(id), f_number);
   constexpr int heights = 4;
@@ -212,7 +210,7 @@ TEST_P(PupilsBesideOthers, GiveTheirLightAlone) {
   }
 }
 
-// Rings of which a part is left; crescents and slivers through other zones beside the pupil.
+// Clipped rings; disconnected pupils with crescents and slivers.
 INSTANTIATE_TEST_SUITE_P(Lenses, PupilsBesideOthers,
                          ::testing::Values(Parts{"catadioptric_mangin_1000mm_f7.5", 16, 9, 11.5},
                                            Parts{"primoplan_100mm_f1.9", 45, 38.5, 39.25},
@@ -220,7 +218,7 @@ INSTANTIATE_TEST_SUITE_P(Lenses, PupilsBesideOthers,
                                            Parts{"ball_10mm", 45, 0, 0.25, 1200},
                                            Parts{"catadioptric_maksutov_1280mm_f14.4", 14.4, 5, 30}));
 
-TEST(FilmIrradiance, OfEveryLensIsThatOfAllRays) {
+TEST(FilmIrradiance, EveryLensEqualsRaysInAllDirections) {
   int points = 0;
   for (const Prescription& p : testing::data_prescriptions()) {
     const Lens open = compile(p);
@@ -240,8 +238,8 @@ TEST(FilmIrradiance, OfEveryLensIsThatOfAllRays) {
   EXPECT_GT(points, 210);
 }
 
-// Nearly all directions of the half space: 8 % were lost where three nodes stood for each radius of the pupil.
-TEST(FilmIrradiance, OfAFilmCloseToTheGlassIsThatOfAllRays) {
+// The pupil covers nearly the whole half space.
+TEST(FilmIrradiance, FilmCloseToTheGlassEqualsRaysInAllDirections) {
   const Lens lens = data_lens("singlet_50mm_biconvex");
   for (const double gap : {1.6, 0.4}) {
     const Lens close = with_film(lens, lens.surfaces().back().vertex_z + gap);
@@ -252,7 +250,7 @@ TEST(FilmIrradiance, OfAFilmCloseToTheGlassIsThatOfAllRays) {
   }
 }
 
-/// A stop before a bowl of glass: its last surface has the film at its rim or within it.
+/// A stop on a glass bowl; the film lies near or inside the concave last surface.
 Lens bowl(double last_radius, double gap) {
   Prescription p;
   p.name = "bowl";
@@ -261,8 +259,8 @@ Lens bowl(double last_radius, double gap) {
   return compile(p);
 }
 
-// Directions along the film pass, which no plane holds.
-TEST(FilmIrradiance, InTheBowlOfTheLastSurfaceIsThatOfAllRays) {
+// Rays parallel to the film pass; no plane contains their pupil points.
+TEST(FilmIrradiance, FilmInsideTheLastSurfaceEqualsRaysInAllDirections) {
   for (const double radius : {0.0, 200.0, 60.0, 30.0, -200.0, -60.0}) {
     for (const double gap : {0.3, 1.0, 2.0}) {
       const Lens lens = bowl(radius, gap);
@@ -274,13 +272,13 @@ TEST(FilmIrradiance, InTheBowlOfTheLastSurfaceIsThatOfAllRays) {
   }
 }
 
-/// The same for a film point (0, y) by a grid over angles, which tells directions along the film apart.
+/// Projected solid angle from the film point (0, y), by a grid over angles that resolves directions along the film.
 double seen_along_the_film(const Lens& lens, double y, int side) {
   double sum = 0;
   for (int i = 0; i < side; ++i) {
     const double angle = pi / 2 * (i + 0.5) / side, weight = std::sin(2 * angle) / 2;
     for (int k = 0; k < side; ++k) {
-      const double turn = pi * (k + 0.5) / side;  // the other half is alike
+      const double turn = pi * (k + 0.5) / side;  // the other half is symmetric
       const Ray<double> ray{{0, y, lens.film_z()},
                             {std::sin(angle) * std::sin(turn), std::sin(angle) * std::cos(turn), -std::cos(angle)}};
       if (trace(lens, ray, {.travel = Travel::to_scene}).transmitted()) sum += weight;
@@ -289,10 +287,10 @@ double seen_along_the_film(const Lens& lens, double y, int side) {
   return sum * pi * pi / (side * side);
 }
 
-// Much of their light comes along the film, in crescents that are slim by their sines.
-TEST(FilmIrradiance, BesideTheGlassIsThatOfAllRays) {
+// Most of the flux arrives nearly parallel to the film, in crescents that are narrow in direction cosines.
+TEST(FilmIrradiance, PointsBesideTheGlassEqualRaysInAllDirections) {
   for (const double radius : {0.0, -60.0}) {
-    for (const double y : {11.0, 12.0}) {  // farther out the pupil falls into parts
+    for (const double y : {11.0, 12.0}) {  // farther out the pupil is disconnected
       const Lens lens = bowl(radius, 1.5);
       SCOPED_TRACE(std::to_string(radius) + " at " + std::to_string(y));
       EXPECT_NEAR(film_irradiance(lens, {0, y}) / seen_along_the_film(lens, y, 1200), 1, 5e-3);
@@ -302,7 +300,7 @@ TEST(FilmIrradiance, BesideTheGlassIsThatOfAllRays) {
   for (double y = 15; y < 20; y += 0.25) EXPECT_GT(film_irradiance(close, {0, y}), 1e-8) << y;
 }
 
-TEST(FilmIrradiance, OfAThinRingIsTheShareOfItsDisc) {
+TEST(FilmIrradiance, ThinRingHasItsFractionOfTheDisc) {
   for (const double radius : {5.0, 0.1, 0.01, 1e-3}) {
     for (const double obscured : {0.5, 0.9, 0.99, 0.999}) {
       Prescription p;
@@ -315,7 +313,7 @@ TEST(FilmIrradiance, OfAThinRingIsTheShareOfItsDisc) {
       const Lens ring = compile(p);
       for (const FilmPoint& film : {FilmPoint{}, FilmPoint{0, 4}, FilmPoint{-3, 5}}) {
         SCOPED_TRACE(std::to_string(radius) + ", " + std::to_string(obscured) + " at " + std::to_string(film.y));
-        // In a wide beam the solid angle of the middle is another than the rim's.
+        // In wide beams the solid angle per pupil area differs between centre and rim.
         const double share = 1 - obscured * obscured, bound = radius < 1 ? 1e-3 : 0.02;
         EXPECT_NEAR(film_irradiance(ring, film) / film_irradiance(disc, film) / share, 1, bound);
         EXPECT_NEAR(exit_pupil_boundary(ring, film).area() / exit_pupil_boundary(disc, film).area() / share, 1, bound);
@@ -324,8 +322,8 @@ TEST(FilmIrradiance, OfAThinRingIsTheShareOfItsDisc) {
   }
 }
 
-TEST(FilmIrradiance, IsPiSineSquaredOnTheAxis) {
-  // Seen from the axial image of a lens without spherical aberration the edge of the pupil is a circle.
+TEST(FilmIrradiance, IsPiTimesSineSquaredOnTheAxis) {
+  // Without spherical aberration the pupil is a circle of directions, seen from the axial image.
   const Lens lens = data_lens("analytic_plano_hyperbolic_100mm");
   const PupilBoundary axis = pupil_boundary(lens, {0, -infinity}, 0, 1);
   const Vec2<double> p = axis.at(0, axis.spans.back().to_radius);
@@ -333,9 +331,9 @@ TEST(FilmIrradiance, IsPiSineSquaredOnTheAxis) {
   EXPECT_NEAR(film_irradiance(lens, {}) / (pi * (rim.x * rim.x + rim.y * rim.y)), 1, 1e-6);
 }
 
-TEST(RelativeIllumination, IsTheLightThatThePupilTakesInAndTheImageSpreads) {
-  // In front of the lens: area cos sin / (h dh/dfield) over area / f^2 on the axis, with the chief ray's map of the
-  // field onto the film. Etendue is kept, so both sides agree where the lens is stopped down and in focus.
+TEST(RelativeIllumination, EqualsEntrancePupilAreaOverImageArea) {
+  // On the scene side: area cos sin / (h dh/dfield) divided by area / f^2 on the axis, where h is the image height of
+  // the chief ray. As etendue is conserved, both sides agree if the lens is stopped down and in focus.
   for (const auto& [id, field_deg] : {std::pair{"double_gauss_100mm_f2.0", 10.0},
                                       {"biogon_35mm_f2.8", 25.0},
                                       {"fisheye_10mm_f4", 60.0},
@@ -362,7 +360,7 @@ TEST(RelativeIllumination, IsOneOnTheAxis) {
   }
 }
 
-TEST(RelativeIllumination, OfNothingIsNothing) {
+TEST(RelativeIllumination, DarkPointsAreZeroAndDarkLensesNullopt) {
   const Lens lens = data_lens("double_gauss_100mm_f1.35");
   EXPECT_EQ(relative_illumination(lens, {radians(40), -infinity}).value_or(0), 0);
   const Lens closed = with_semi_diameter(lens, *lens.stop(), 0);
@@ -393,7 +391,6 @@ TEST(ImageCircle, EndsWhereTheLightDoes) {
       EXPECT_LE(radius, last) << part;
       last = radius;
       EXPECT_GE(film_irradiance(lens, {0, radius}), part * axis);
-      // By a grid of rays, too.
       EXPECT_NEAR(seen_from_film(lens, radius, 600) / axis, part, 0.02) << part;
       const double beyond = film_irradiance(lens, {0, radius + 1.1e-4 * f});
       EXPECT_TRUE(part > 0 ? beyond < part * axis : beyond == 0) << beyond;
@@ -401,7 +398,7 @@ TEST(ImageCircle, EndsWhereTheLightDoes) {
   }
 }
 
-TEST(ImageCircle, HoldsThePictureThatTheLensWasMadeFor) {
+TEST(ImageCircle, ContainsTheDeclaredImage) {
   int declared = 0;
   for (const Prescription& p : testing::data_prescriptions()) {
     if (!p.image_diagonal_mm) continue;
@@ -411,13 +408,13 @@ TEST(ImageCircle, HoldsThePictureThatTheLensWasMadeFor) {
   EXPECT_GT(declared, 20);
 }
 
-TEST(ImageCircle, OfAScaledLensIsScaled) {
+TEST(ImageCircle, ScalesWithTheLens) {
   const Prescription p = testing::data_prescription("tessar_100mm_f2.8");
   const double circle = image_circle_mm(compile(p), 0.3);
   EXPECT_NEAR(image_circle_mm(compile(scale(p, 0.1)), 0.3), 0.1 * circle, 1e-9);
 }
 
-TEST(ImageCircle, OfALensWithCylindersHoldsAllRound) {
+TEST(ImageCircle, HoldsInEveryDirectionForCylinders) {
   const Lens lens = data_lens("anamorphic_60mm_2x");
   const double radius = image_circle_mm(lens, 0.5) / 2, axis = film_irradiance(lens, {});
   for (int k = 0; k < 8; ++k) {
@@ -426,7 +423,7 @@ TEST(ImageCircle, OfALensWithCylindersHoldsAllRound) {
   }
 }
 
-TEST(ImageCircle, IsNoneOfADarkLensAndInfiniteOfAnOpenOne) {
+TEST(ImageCircle, IsZeroForDarkLensesAndLargeForOpenOnes) {
   const Lens lens = data_lens("tessar_100mm_f2.8");
   EXPECT_EQ(image_circle_mm(with_semi_diameter(lens, *lens.stop(), 0)), 0);
   Prescription p;
@@ -439,7 +436,7 @@ TEST(ImageCircle, IsNoneOfADarkLensAndInfiniteOfAnOpenOne) {
   }
 }
 
-TEST(FilmIrradiance, OfAStopWithoutARimIsThatOfTheRimsThatLimit) {
+TEST(FilmIrradiance, StopWithoutRimIsLimitedByOtherRims) {
   const auto [marked, unmarked] = testing::without_the_rim_of_its_stop(testing::open_singlet(10));
   EXPECT_EQ(film_irradiance(marked, {}), film_irradiance(unmarked, {}));
   EXPECT_EQ(film_irradiance(marked, {3, 5}), film_irradiance(unmarked, {3, 5}));
@@ -449,7 +446,7 @@ TEST(FilmIrradiance, OfAStopWithoutARimIsThatOfTheRimsThatLimit) {
   EXPECT_EQ(testing::message([&] { film_irradiance(endless, {}); }), testing::message([&] { pupils(endless); }));
 }
 
-TEST(FilmIrradiance, OfAStopAsSmallAsAPointIsANumber) {
+TEST(FilmIrradiance, TinyStopsGiveFiniteValues) {
   const Lens open = data_lens("double_gauss_100mm_f2_28deg");
   const auto irradiance = [&](double radius, const FilmPoint& point) {
     return film_irradiance(with_semi_diameter(open, *open.stop(), radius), point);

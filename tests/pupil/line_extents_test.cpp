@@ -11,12 +11,12 @@ namespace line_extents_test {
 
 constexpr double tolerance = 1e-9;
 
-/// Along x from -1 to 1, looked at in eighths. clearance: of a place x.
+/// Extent along x from -1 to 1, sampled at distances of 1/8. clearance: clearance as a function of x.
 LineExtent along_x(const std::function<double(double)>& clearance) {
   const auto at_places = [&](std::size_t count, const std::uint32_t*, const double* x, const double*, double* found) {
     std::transform(x, x + count, found, clearance);
   };
-  // Beside a line that sees nothing: each has samples of its own.
+  // A second, empty line checks that lines do not share samples.
   const auto nothing = [&](std::size_t count, const std::uint32_t* points, const double* x, const double* y,
                            double* found) {
     at_places(count, points, x, y, found);
@@ -27,7 +27,7 @@ LineExtent along_x(const std::function<double(double)>& clearance) {
   return result[1];
 }
 
-TEST(LineExtents, EndWherePlacesPass) {
+TEST(LineExtents, EndAtTheEdges) {
   for (const double from : {-0.95, -0.4, 0.0, 0.3}) {
     for (const double to : {0.45, 0.7, 0.99}) {
       const LineExtent found = along_x([&](double x) { return std::min(x - from, to - x); });
@@ -36,7 +36,7 @@ TEST(LineExtents, EndWherePlacesPass) {
       EXPECT_NEAR(found.to, to, tolerance);
       EXPECT_NEAR(found.slope, -1, 1e-6);
       EXPECT_TRUE(found.gaps.empty());
-      // The same where only the sign is known.
+      // With the sign of the clearance only.
       const LineExtent by_sign = along_x([&](double x) { return clearance_of(x >= from && x <= to); });
       EXPECT_NEAR(by_sign.from, from, tolerance);
       EXPECT_NEAR(by_sign.to, to, tolerance);
@@ -44,8 +44,8 @@ TEST(LineExtents, EndWherePlacesPass) {
   }
 }
 
-// At the last place that is looked at, or at the first.
-TEST(LineExtents, MayBeSeenAtOnePlace) {
+// Only the last or the first sample passes.
+TEST(LineExtents, AreFoundFromOneSample) {
   const LineExtent last = along_x([](double x) { return x - 0.95; });
   ASSERT_TRUE(last.any);
   EXPECT_NEAR(last.from, 0.95, tolerance);
@@ -57,7 +57,7 @@ TEST(LineExtents, MayBeSeenAtOnePlace) {
   EXPECT_FALSE(along_x([](double) { return -0.1; }).any);
 }
 
-TEST(LineExtents, HaveTheWidestObscurationAndOtherGaps) {
+TEST(LineExtents, ReportTheWidestObscurationAndOtherGaps) {
   const auto outside = [](double x, double from, double to) { return std::max(from - x, x - to); };
   const LineExtent found = along_x([&](double x) {
     return std::min({x + 0.9, 0.9 - x, outside(x, -0.55, -0.05), outside(x, 0.3, 0.6)});

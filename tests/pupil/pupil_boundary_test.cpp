@@ -59,7 +59,7 @@ TEST_P(PupilBoundaryTest, LiesBetweenPassingAndLostRays) {
   }
 }
 
-TEST_P(PupilBoundaryTest, HasTheAreaOfAGridOfRays) {
+TEST_P(PupilBoundaryTest, AreaEqualsAGridOfRays) {
   const Lens lens = data_lens(GetParam().lens);
   const PupilBoundary boundary = pupil_boundary(lens, {radians(GetParam().field_deg), -infinity});
   constexpr int nodes = 300;
@@ -75,7 +75,7 @@ TEST_P(PupilBoundaryTest, HasTheAreaOfAGridOfRays) {
   EXPECT_NEAR(boundary.area() / (4 * half_x * half_y / nodes / nodes * passed), 1, 3e-3);
 }
 
-TEST_P(PupilBoundaryTest, FewDirectionsGiveNearlyTheAreaOfMany) {
+TEST_P(PupilBoundaryTest, AreaConvergesWithDirections) {
   const Lens lens = data_lens(GetParam().lens);
   const FieldPoint point{radians(GetParam().field_deg), -infinity};
   const PupilBoundary usual = pupil_boundary(lens, point), fine = pupil_boundary(lens, point, 0, 2048);
@@ -94,7 +94,7 @@ INSTANTIATE_TEST_SUITE_P(
                       Case{"telephoto_200mm_f1.8", 5}, Case{"analytic_ellipsoid_concentric_150mm", 70},
                       Case{"cylinder_3.9mm", 45}));
 
-TEST(PupilBoundary, OfAFrontStopIsTheStop) {
+TEST(PupilBoundary, FrontStopIsThePupil) {
   for (const double field : {0.0, 10.0, 30.0}) {
     for (const double z : {-infinity, -50.0}) {
       const PupilBoundary boundary = pupil_boundary(front_stop_lens(), {radians(field), z}, 0, 32);
@@ -108,7 +108,7 @@ TEST(PupilBoundary, OfAFrontStopIsTheStop) {
   }
 }
 
-TEST(PupilBoundary, OfACentralObscurationIsARing) {
+TEST(PupilBoundary, CentralObscurationGivesARing) {
   Prescription p;
   p.name = "ring";
   p.surfaces = {{.thickness = 2, .semi_diameter = 5, .obscuration_semi_diameter = 2, .stop = true},
@@ -118,7 +118,7 @@ TEST(PupilBoundary, OfACentralObscurationIsARing) {
   EXPECT_EQ(boundary.spans.size(), 32u);
 }
 
-TEST(PupilBoundary, OfAnIrisIsItsPolygon) {
+TEST(PupilBoundary, IrisGivesItsPolygon) {
   const Lens lens = with_iris(front_stop_lens(), {.blades = 6, .rotation_rad = 0.1});
   for (const double field : {0.0, 10.0}) {
     const PupilBoundary boundary = pupil_boundary(lens, {radians(field), -infinity});
@@ -130,7 +130,7 @@ TEST(PupilBoundary, OfAnIrisIsItsPolygon) {
   }
 }
 
-TEST(PupilBoundary, OneDirectionServesTheAxis) {
+TEST(PupilBoundary, OneDirectionSufficesOnTheAxis) {
   for (const char* id : {"double_gauss_100mm_f1.35", "catadioptric_mangin_1000mm_f7.5", "fisheye_6.3mm_f2.8"}) {
     const Lens lens = data_lens(id);
     const PupilBoundary one = pupil_boundary(lens, {0, -infinity}, 0, 1), many = pupil_boundary(lens, {0, -infinity});
@@ -138,8 +138,8 @@ TEST(PupilBoundary, OneDirectionServesTheAxis) {
   }
 }
 
-TEST(PupilBoundary, OfAFastLensIsThatOfTheLimitingRim) {
-  // Wide open on the axis the rim of the stop limits this lens at infinity; for a near subject it is the rear group.
+TEST(PupilBoundary, NamesTheLimitingRim) {
+  // On the axis the rim of the stop limits this lens if the subject is distant, the rear group if it is near.
   const Lens lens = data_lens("double_gauss_100mm_f2.0");
   const auto limiting = [&](double z) { return pupil_boundary(lens, {0, z}, 0, 1).spans.front().to.surface; };
   const auto clips = [&](double z) {
@@ -150,7 +150,7 @@ TEST(PupilBoundary, OfAFastLensIsThatOfTheLimitingRim) {
   for (const double z : {-infinity, -1000.0, -200.0}) EXPECT_EQ(limiting(z), clips(z)) << z;
 }
 
-TEST(PupilBoundary, IsEmptyWhereNothingGetsThrough) {
+TEST(PupilBoundary, IsEmptyIfNoRayPasses) {
   const Lens lens = data_lens("double_gauss_100mm_f1.35");
   const PupilBoundary boundary = pupil_boundary(lens, {radians(60), -infinity});
   EXPECT_TRUE(boundary.empty());
@@ -165,8 +165,7 @@ TEST(PupilBoundary, FindsTheStopOfAFarStoppedDownLens) {
 }
 
 TEST(PupilBoundary, FindsThinRegionsThatTheChiefRayMisses) {
-  // Past the field at which the stop's centre is seen last, slivers are left; no grid finer than 1/100 of them is
-  // needed.
+  // Beyond the last field with a chief ray, slivers of the pupil remain.
   const Lens lens = data_lens("double_gauss_100mm_f1.35");
   int slivers = 0;
   double last = infinity;
@@ -180,7 +179,7 @@ TEST(PupilBoundary, FindsThinRegionsThatTheChiefRayMisses) {
   EXPECT_GE(slivers, 3);
 }
 
-TEST(PupilBoundary, RefusesTooFewDirections) {
+TEST(PupilBoundary, RefusesInvalidDirectionsAndWavelengths) {
   const Lens lens = front_stop_lens();
   const auto of = [&](double field, std::size_t directions, std::size_t wavelength = 0) {
     return [=, &lens] { pupil_boundary(lens, {field, -infinity}, wavelength, directions); };

@@ -26,7 +26,7 @@ using testing::expect_error;
 using testing::front_stop_lens;
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
-TEST(PupilPlane, RaysRunFromTheScenePointThroughThePupilPoint) {
+TEST(PupilPlane, RaysJoinScenePointAndPupilPoint) {
   const Lens lens = data_lens("double_gauss_100mm_f2.0");
   const double pupil_z = pupils(lens).entrance.z;
   const FieldPoint point{radians(25), pupil_z - 1000};
@@ -38,7 +38,7 @@ TEST(PupilPlane, RaysRunFromTheScenePointThroughThePupilPoint) {
   EXPECT_NEAR(ray.origin.y + t * ray.direction.y, 1000 * std::tan(radians(25)), 1e-12);
 }
 
-TEST(PupilPlane, LeavesOutPointsWithoutBothCoordinates) {
+TEST(PupilPlane, IgnoresPointsWithoutBothCoordinates) {
   const PupilPlane plane(front_stop_lens(), {0.3, -infinity});
   const std::vector<double> three(3, 1), two(2, 1);
   for (const bool shorter_x : {false, true}) {
@@ -58,7 +58,7 @@ TEST(PupilPlane, AzimuthTurnsFromYToX) {
   EXPECT_NEAR(plane.towards().z, -std::cos(0.3), 1e-15);
 }
 
-TEST(PupilPlane, FarPointsBecomeInfinity) {
+TEST(PupilPlane, FarPointsTendToInfinity) {
   const Lens lens = front_stop_lens();
   const auto at_infinity = PupilPlane(lens, {radians(40), -infinity}).ray(5, 7);
   EXPECT_NEAR(at_infinity.direction.y, -std::sin(radians(40)), 2e-16);
@@ -93,12 +93,12 @@ TEST(PupilPlane, FacesThePointFrom89DegreesOn) {
     const Ray<double> middle = plane.ray(0, 0), other = plane.ray(1.5, -2.5);
     EXPECT_NEAR(glm::dot(other.origin - middle.origin, middle.direction), 0, 1e-15);
     EXPECT_NEAR(glm::length(other.origin - middle.origin), std::hypot(1.5, 2.5), 4e-15);
-    // Seen from the point, x and y lie as in the pupil's own plane.
+    // Seen from the point, x and y have the orientation of the pupil plane.
     EXPECT_GT((other.origin - middle.origin).x, 0);
   }
 }
 
-TEST(PupilPlane, MeetsItsOwnRays) {
+TEST(PupilPlane, FindsThePupilPointOfItsRays) {
   const Lens lens = data_lens("fisheye_6.3mm_f2.8");
   for (const double field : {0.0, 50.0, 88.0, 95.0, 110.0}) {
     for (const double azimuth : {0.0, 1.0, -2.5}) {
@@ -112,7 +112,7 @@ TEST(PupilPlane, MeetsItsOwnRays) {
   }
 }
 
-TEST(PupilPlane, SeesPlanesBesideTheLensBeyond90Degrees) {
+TEST(PupilPlane, AcceptsPlanesBesideTheLensBeyond90Degrees) {
   const Lens lens = data_lens("fisheye_6.3mm_f2.8");
   const double pupil_z = pupils(lens).entrance.z, z = pupil_z + 200;
   const Ray<double> ray = PupilPlane(lens, {radians(100), z}).ray(0.4, 0.2);
@@ -123,7 +123,7 @@ TEST(PupilPlane, SeesPlanesBesideTheLensBeyond90Degrees) {
 }
 
 TEST(PupilPlane, RaysOfAPointBehindTheEntrancePupilRunIntoTheLens) {
-  // Behind the rear focal point the stop has its image before the lens, and before the point.
+  // A stop behind the rear focal point has its image in front of the lens and in front of the point.
   Prescription p;
   p.name = "rear stop";
   p.surfaces = {{.radius = 100, .thickness = 4, .medium = {.nd = 1.5}, .semi_diameter = 40},
@@ -145,7 +145,7 @@ TEST(PupilPlane, RaysOfAPointBehindTheEntrancePupilRunIntoTheLens) {
   EXPECT_FALSE(pupil_boundary(lens, point).empty());
 }
 
-TEST(PupilPlane, OfAVirtualFilmSendsRaysIntoTheLens) {
+TEST(PupilPlane, RaysOfAVirtualFilmRunIntoTheLens) {
   Prescription p;
   p.name = "diverging";
   p.surfaces = {{.radius = -100, .thickness = 2, .medium = {.nd = 1.5}, .semi_diameter = 10, .stop = true},
@@ -158,7 +158,7 @@ TEST(PupilPlane, OfAVirtualFilmSendsRaysIntoTheLens) {
   EXPECT_GT(film_irradiance(lens, {}), 0);
 }
 
-TEST(PupilPlane, OfAFilmPointSendsRaysAgainstTheLight) {
+TEST(PupilPlane, RaysOfAFilmPointRunToTheScene) {
   const Lens lens = data_lens("double_gauss_100mm_f2.0");
   const PupilPlane plane = PupilPlane::of_film(lens, {3, -20});
   EXPECT_EQ(plane.travel(), Travel::to_scene);
@@ -174,7 +174,7 @@ TEST(PupilPlane, OfAFilmPointSendsRaysAgainstTheLight) {
   expect_error([&] { PupilPlane::of_film(in_contact, {}); }, {"film", "z", in_contact.film_z(), "last vertex"});
 }
 
-TEST(PupilPlane, RefusesPointsThatItCannotSee) {
+TEST(PupilPlane, RefusesInvalidPoints) {
   const Lens lens = front_stop_lens();
   const auto plane = [](const Lens& of, const FieldPoint& point) { return [=] { PupilPlane(of, point); }; };
   const double nan = std::nan("");
@@ -187,12 +187,12 @@ TEST(PupilPlane, RefusesPointsThatItCannotSee) {
   expect_error(plane(lens, {0, 0}), {"front stop", "scene point", "z", 0, "entrance pupil"});
   expect_error(plane(lens, {radians(100), -1000}), {"front stop", "scene point", "z", -1000, "field", 100, 0});
   expect_error(plane(lens, {radians(100), 0.1}), {"front stop", "scene point", "z", 0.1});
-  // Half a millimetre behind the pupil that field is still within the glass.
+  // Half a millimetre behind the pupil, rays of this field run inside the glass.
   const Lens fisheye = data_lens("fisheye_6.3mm_f2.8");
   const double just_behind = pupils(fisheye).entrance.z + 0.5;
   expect_error(plane(fisheye, {radians(100), just_behind}), {fisheye.name(), "scene point", "z", "field", 100});
 
-  // The stop in the rear focal plane of what stands before it.
+  // The stop lies in the rear focal plane of the preceding surfaces.
   Prescription p;
   p.name = "front stop";
   p.surfaces = {{.radius = 50, .medium = {.nd = 1.5}, .semi_diameter = 10},

@@ -23,7 +23,7 @@ using testing::data_prescriptions;
 constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr double pi = std::numbers::pi;
 
-/// Angle (from +y, 0 to 2 pi) and radius of a point in an boundary's units.
+/// Angle from +y (0 to 2 pi) and radius of a point, in units of the boundary.
 std::pair<double, double> polar(const PupilBoundary& boundary, const Vec2<double>& p) {
   const double x = (p[0] - boundary.middle[0]) / boundary.half_axes[0];
   const double y = (p[1] - boundary.middle[1]) / boundary.half_axes[1];
@@ -31,7 +31,7 @@ std::pair<double, double> polar(const PupilBoundary& boundary, const Vec2<double
   return {angle < 0 ? angle + 2 * pi : angle, std::hypot(x, y)};
 }
 
-TEST(PupilSampler, SendsFewRaysInVain) {
+TEST(PupilSampler, MostRaysPass) {
   double worst = 1;
   for (const Prescription& p : data_prescriptions()) {
     SCOPED_TRACE(p.id);
@@ -54,8 +54,8 @@ TEST(PupilSampler, SendsFewRaysInVain) {
   RecordProperty("share", to_text(worst, 4));
 }
 
-TEST(PupilSampler, LeavesNothingOut) {
-  // The edges found in eight times as many directions lie within the sampled region.
+TEST(PupilSampler, CoversThePupil) {
+  // Edges of a boundary with eight times as many directions lie within the sampled region.
   for (const Prescription& p : data_prescriptions()) {
     SCOPED_TRACE(p.id);
     const Lens lens = compile(p);
@@ -92,7 +92,7 @@ TEST(PupilSampler, LeavesNothingOut) {
 }
 
 TEST(PupilSampler, IsUniform) {
-  // Equal squares of (u, v) fall on equal areas: the second moment of a disc is a quarter of its squared radius.
+  // Equal areas of (u, v) map to equal areas, so that the second moment of a disc is a quarter of the squared radius.
   const Lens lens = data_lens("double_gauss_100mm_f1.35");
   const PupilBoundary boundary = pupil_boundary(lens, {0, -infinity});
   const PupilSampler sampler(boundary);
@@ -108,7 +108,7 @@ TEST(PupilSampler, IsUniform) {
   EXPECT_NEAR(xy / side / side / radius_squared, 0, 1e-5);
 }
 
-TEST(PupilSampler, ManyPointsAreThoseOneByOne) {
+TEST(PupilSampler, BatchEqualsSinglePoints) {
   const Lens lens = data_lens("double_gauss_100mm_f1.35");
   for (const std::size_t directions : {1u, 3u, 50u, 256u, 300u}) {
     const PupilSampler sampler(pupil_boundary(lens, {0, -1000}, 0, directions));
@@ -127,7 +127,7 @@ TEST(PupilSampler, ManyPointsAreThoseOneByOne) {
   }
 }
 
-TEST(PupilSampler, LeavesOutPointsThatASpanHasNoRoomFor) {
+TEST(PupilSampler, WritesAsManyPointsAsTheShortestSpanHolds) {
   const PupilSampler sampler(pupil_boundary(data_lens("double_gauss_100mm_f1.35"), {0, -1000}));
   const std::vector<double> u(100, 0.25), v(100, 0.5);
   const Vec2<double> p = sampler(0.25, 0.5);
@@ -143,8 +143,8 @@ TEST(PupilSampler, LeavesOutPointsThatASpanHasNoRoomFor) {
   }
 }
 
-TEST(PupilSampler, TurnsWithUAndWidensWithV) {
-  // A disc: u runs around it from half a direction after +y, v is the share of the area within the radius.
+TEST(PupilSampler, AngleFollowsUAndAreaFollowsV) {
+  // On a disc, u is the angle from half a direction after +y, and v is the fraction of the area within the radius.
   const Lens lens = data_lens("double_gauss_100mm_f1.35");
   for (const int directions : {1, 3, 50, 256}) {
     const PupilSampler sampler(pupil_boundary(lens, {0, -infinity}, 0, static_cast<std::size_t>(directions)));
@@ -152,14 +152,14 @@ TEST(PupilSampler, TurnsWithUAndWidensWithV) {
     for (int i = 0; i < 1000; ++i) {
       const double u = i / 1000.0, v = (i * 37 % 1000) / 1000.0;
       const Vec2<double> p = sampler(u, v);
-      // The edge that was traced is round to 2e-13 of the half axes.
+      // The traced edge is a circle up to 2e-13 half axes.
       EXPECT_NEAR(p.x, radius * std::sqrt(v) * std::sin(2 * pi * u + start), 2e-12 * radius) << directions;
       EXPECT_NEAR(p.y, radius * std::sqrt(v) * std::cos(2 * pi * u + start), 2e-12 * radius) << directions;
     }
   }
 }
 
-TEST(PupilSampler, OfNothingIsEmpty) {
+TEST(PupilSampler, IsEmptyForAnEmptyBoundary) {
   const PupilSampler sampler(pupil_boundary(data_lens("double_gauss_100mm_f1.35"), {radians(60), -infinity}));
   EXPECT_TRUE(sampler.empty());
   EXPECT_EQ(sampler.area(), 0);

@@ -23,7 +23,7 @@ using testing::expect_error;
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
-TEST(TraceBundle, SendsFewRaysInVain) {
+TEST(TraceBundle, MostRaysPass) {
   for (const auto& [id, field_deg] : {std::pair{"double_gauss_100mm_f1.35", 0.0},
                                       {"double_gauss_100mm_f1.35", 21.0},
                                       {"fisheye_6.3mm_f2.8", 110.0},
@@ -36,7 +36,7 @@ TEST(TraceBundle, SendsFewRaysInVain) {
   }
 }
 
-TEST(TraceBundle, OfNothingIsNothing) {
+TEST(TraceBundle, IsEmptyForAnEmptyPupil) {
   const Lens lens = data_lens("double_gauss_100mm_f1.35");
   const RayBundle hits = trace_bundle(lens, PupilSampler(pupil_boundary(lens, {radians(60), -infinity})), 1000);
   EXPECT_EQ(hits.sent, 1000u);
@@ -44,7 +44,7 @@ TEST(TraceBundle, OfNothingIsNothing) {
   EXPECT_EQ(hits.transmitted_area(), 0);
 }
 
-TEST(TraceBundle, IsTheSameForAnyNumberOfThreads) {
+TEST(TraceBundle, IndependentOfThreads) {
   const Lens lens = data_lens("double_gauss_100mm_f1.35");
   const PupilSampler pupil(pupil_boundary(lens, {radians(10), -1500}));
   const RayBundle one = trace_bundle(lens, pupil, 50000, 3, 1);
@@ -58,7 +58,7 @@ TEST(TraceBundle, IsTheSameForAnyNumberOfThreads) {
   expect_error([&] { trace_bundle(lens, pupil, 10, 0, 0); }, {"threads", 0});
 }
 
-TEST(TraceBundle, RefusesAPupilOfAWavelengthThatTheLensLacks) {
+TEST(TraceBundle, RefusesPupilsOfOtherWavelengths) {
   const Lens one = data_lens("double_gauss_100mm_f2.0");
   const Lens three = compile(testing::data_prescription("double_gauss_100mm_f2.0"), std::array{450.0, 550.0, 650.0},
                              {.missing_glass = MissingGlass::abbe});
@@ -67,7 +67,7 @@ TEST(TraceBundle, RefusesAPupilOfAWavelengthThatTheLensLacks) {
   expect_error([&] { trace_bundle(one, pupil, 100); }, {one.name(), "wavelength", 2});
 }
 
-TEST(TraceBundle, BeginsWithTheHitsOfFewerSamples) {
+TEST(TraceBundle, FewerSamplesGiveThePrefix) {
   const Lens lens = data_lens("double_gauss_100mm_f1.35");
   const PupilSampler pupil(pupil_boundary(lens, {0, -1500}));
   const RayBundle few = trace_bundle(lens, pupil, 5000), many = trace_bundle(lens, pupil, 9000);
@@ -75,7 +75,7 @@ TEST(TraceBundle, BeginsWithTheHitsOfFewerSamples) {
   EXPECT_TRUE(std::equal(few.x.begin(), few.x.end(), many.x.begin()));
 }
 
-TEST(TraceBundle, HitsAreThoseOfSingleRays) {
+TEST(TraceBundle, HitsEqualSingleRays) {
   const Lens lens = data_lens("catadioptric_mangin_1000mm_f7.5");
   const PupilSampler pupil(pupil_boundary(lens, {radians(0.5), -infinity}));
   const RayBundle hits = trace_bundle(lens, pupil, 500, 8);

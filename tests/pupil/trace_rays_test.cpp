@@ -44,7 +44,7 @@ struct Spiral {
   }
 };
 
-TEST(TraceRays, KeepsTheRaysThatPassWithTheirSlopesAndWeights) {
+TEST(TraceRays, KeepsSlopesAndWeightsOfTransmittedRays) {
   const Lens lens = data_lens("double_gauss_100mm_f1.35");
   const Spiral spiral{60};
   std::vector<double> weights(Spiral::count);
@@ -72,7 +72,7 @@ TEST(TraceRays, KeepsTheRaysThatPassWithTheirSlopesAndWeights) {
   }
 }
 
-TEST(TraceRays, PointsWithoutSlopesAreTheSame) {
+TEST(TraceRays, SlopesDoNotChangeTheHits) {
   const Lens lens = data_lens("double_gauss_100mm_f1.35");
   const RayBundle with = trace_rays(lens, 80, Spiral::count, {}, Spiral{30});
   const RayBundle without = trace_rays(lens, 80, Spiral::count, {.slopes = false}, Spiral{30});
@@ -81,7 +81,7 @@ TEST(TraceRays, PointsWithoutSlopesAreTheSame) {
   for (std::size_t i = 0; i < with.size(); ++i) EXPECT_NEAR(with.x[i], without.x[i], 1e-12);
 }
 
-TEST(TraceRays, TakesFewerRaysThanAskedFor) {
+TEST(TraceRays, AcceptsFewerRaysThanRequested) {
   const Lens lens = data_lens("double_gauss_100mm_f1.35");
   const Spiral spiral{10};
   const auto every_third = [&](std::size_t begin, std::size_t end, const RayArrays<double>& rays) {
@@ -113,13 +113,13 @@ TEST(TraceNodes, WeightsSumToTheAreaOfThePupil) {
   }
 }
 
-TEST(TraceRim, LiesAroundTheNodes) {
+TEST(TraceRim, EnclosesTheNodes) {
   const Lens lens = data_lens("double_gauss_100mm_f1.35");
   const PupilBoundary boundary = pupil_boundary(lens, {radians(15), -infinity}, 0, 96);
-  // Far behind the image rays lie as in the pupil.
+  // Far behind the image the hits have the shape of the pupil.
   const double plane_z = lens.film_z() + 1000;
   const RayBundle nodes = trace_nodes(lens, boundary, plane_z), rim = trace_rim(lens, boundary, plane_z);
-  EXPECT_GT(rim.size(), 2 * boundary.spans.size());  // the corners too
+  EXPECT_GT(rim.size(), 2 * boundary.spans.size());  // with the corners
   for (const double weight : rim.weights) EXPECT_EQ(weight, 0);
   const auto widest = [](const std::vector<double>& v) {
     const auto [least, most] = std::minmax_element(v.begin(), v.end());
@@ -129,7 +129,7 @@ TEST(TraceRim, LiesAroundTheNodes) {
   EXPECT_GT(widest(rim.y), widest(nodes.y));
 }
 
-TEST(MeetFilm, IsNothingForARayThatRunsAway) {
+TEST(MeetFilm, RayAwayFromTheFilmHasNoHit) {
   const Lens lens = data_lens("double_gauss_100mm_f1.35");
   const auto hit = meet_film(lens, {{0, 1, lens.film_z() - 10}, {0, 0, 1}});
   ASSERT_TRUE(hit);
@@ -138,7 +138,7 @@ TEST(MeetFilm, IsNothingForARayThatRunsAway) {
   EXPECT_FALSE(meet_film(lens, {{0, 1, 0}, {0, 1, 0}}));
 }
 
-TEST(TraceRim, HasItsCornersWhereRimsMeet) {
+TEST(TraceRim, CornersLieWhereRimsMeet) {
   const Lens lens = data_lens("double_gauss_100mm_f1.35");
   const FieldPoint point{radians(15), -infinity};
   const double plane_z = lens.film_z() + 1000;
@@ -147,7 +147,7 @@ TEST(TraceRim, HasItsCornersWhereRimsMeet) {
   };
   const PupilBoundary fine = pupil_boundary(lens, point, 0, 2048);
   PupilBoundary boundary = pupil_boundary(lens, point, 0, 32);
-  // Whoever reads beyond the last span finds one of another rim there, and one corner more.
+  // A read beyond the last span would find this span of another rim and give one more corner.
   PupilSpan beyond;
   beyond.to.surface = 1000;
   boundary.spans.push_back(beyond);
@@ -157,7 +157,7 @@ TEST(TraceRim, HasItsCornersWhereRimsMeet) {
   ASSERT_GE(corners, 2u);
   const RayBundle rim = trace_rim(lens, boundary, plane_z), near = trace_rim(lens, fine, plane_z);
   ASSERT_EQ(rim.size(), 2 * boundary.spans.size() + corners);
-  // Each corner lies next to two of the many directions, of which one rim limits one and another the other.
+  // Each corner lies between two of the 2048 directions that are limited by different rims.
   for (std::size_t i = rim.size() - corners; i < rim.size(); ++i) {
     std::size_t nearest = 0;
     double least = infinity;

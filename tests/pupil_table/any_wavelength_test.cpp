@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Pupils of wavelengths between the compiled ones.
+// Pupils at wavelengths that the lens was not compiled for.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -37,10 +37,10 @@ constexpr std::array ids{"double_gauss_100mm_f2.0",
                          "anamorphic_60mm_2x"};
 
 struct Shares {
-  double missed = 0, passing = 0;  // of the rays that pass, those that are no samples; of samples, those that pass
+  double missed = 0, passing = 0;  // fraction of passing rays outside the samples; fraction of samples that pass
 };
 
-/// By samples of the table, and by rays in a band outside its polygons, of a tenth of their area.
+/// From samples of the table and rays in a band around its polygons with a tenth of their area.
 Shares shares(const Lens& lens, const FilmPupilTable& table, double radius, Wavelength wavelength) {
   constexpr int points = 24, samples = 1500;
   const TwoPlanes& space = table.space();
@@ -71,7 +71,7 @@ Shares shares(const Lens& lens, const FilmPupilTable& table, double radius, Wave
   return {0.1 * missed / std::max(lit, 1), static_cast<double>(in) / std::max(lit, 1)};
 }
 
-/// A lens of three wavelengths with its table over the declared field.
+/// A lens with three wavelengths and its table over the declared field.
 struct Tabled {
   Prescription prescription;
   Lens lens;
@@ -86,7 +86,7 @@ Tabled tabled(const char* id) {
   return {prescription, lens, radius, FilmPupilTable::enclosing(lens, radius)};
 }
 
-TEST(AnyWavelength, IsEnclosedByThePupilsOfTheNearestOne) {
+TEST(AnyWavelength, NearestCompiledPupilsEncloseIt) {
   for (const char* id : ids) {
     const auto [prescription, lens, radius, table] = tabled(id);
     double worst_share = 1;
@@ -95,7 +95,7 @@ TEST(AnyWavelength, IsEnclosedByThePupilsOfTheNearestOne) {
       EXPECT_LE(found.missed, 1e-5) << id << " at " << nm;
       worst_share = std::min(worst_share, found.passing);
     }
-    // Each compiled one alone has tighter pupils: what the neighbours cost.
+    // A table of one wavelength is tighter; the difference is the cost of covering adjacent wavelengths.
     const Lens alone = compiled(prescription, {550});
     const double own = shares(alone, FilmPupilTable::enclosing(alone, radius), radius, {}).passing;
     const double shared = shares(lens, table, radius, 0).passing;
@@ -105,9 +105,9 @@ TEST(AnyWavelength, IsEnclosedByThePupilsOfTheNearestOne) {
   }
 }
 
-TEST(AnyWavelength, OfPupilsInClosedFormIsInterpolated) {
+TEST(AnyWavelength, ClosedFormPupilsAreInterpolated) {
   const TwoPlanes space{.film_z = 0, .pupil_z = -50};
-  // Radii linear and shifts quadratic in 1 / nm.
+  // Radii are linear and shifts quadratic in 1 / nm.
   const auto disc_at = [](double nm) {
     const double shift = 0.1 + 9e3 / (nm * nm), radius = 5 + 500 / nm;
     return PupilImage{.shift = {shift, shift}, .radius = {radius, radius}};
@@ -127,7 +127,7 @@ TEST(AnyWavelength, OfPupilsInClosedFormIsInterpolated) {
   }
 }
 
-TEST(AnyWavelength, HasTheSameSamplesInBatchesAndAlone) {
+TEST(AnyWavelength, PupilBatchEqualsSingleSamples) {
   const Prescription prescription = petzval::testing::data_prescription("double_gauss_100mm_f2.0");
   const Lens lens = compiled(prescription, {550, 400, 700});
   const std::vector<PupilImage> discs{{{0.1, 0.1}, {10, 10}}, {{0.12, 0.1}, {11, 10}}, {{0.09, 0.08}, {9, 8}}};
@@ -172,7 +172,7 @@ TEST(AnyWavelength, HasTheSameSamplesInBatchesAndAlone) {
   }
 }
 
-TEST(AnyWavelength, HasNoPupilsInATableWithoutWavelengths) {
+TEST(AnyWavelength, TablesWithoutWavelengthsHaveNoPupils) {
   const PupilImage disc{{0, 0}, {2, 2}};
   const auto table = FilmPupilTable::of_iris({.film_z = 0, .pupil_z = -50}, {}, {&disc, 1}, 20);
   EXPECT_FALSE(table.covers(Wavelength::nm(550)));
@@ -180,7 +180,7 @@ TEST(AnyWavelength, HasNoPupilsInATableWithoutWavelengths) {
   EXPECT_GT(table.area({}), 0);
 }
 
-TEST(AnyWavelength, HasEveryRayAmongTheSamplesOfScenePoints) {
+TEST(AnyWavelength, ScenePointSamplesCoverEveryRay) {
   for (const char* id : ids) {
     const auto [prescription, lens, radius, table] = tabled(id);
     const EntrancePupilTable entrances = traced_entrances(lens, table);
@@ -204,7 +204,7 @@ TEST(AnyWavelength, HasEveryRayAmongTheSamplesOfScenePoints) {
       missed += !(entrances.pdf(point, {point, -end.ray.direction}, nm) > 0);
     }
     EXPECT_GT(passing, 10000) << id;
-    EXPECT_LE(missed, 3) << id << " of " << passing;  // 1e-5 of them at compiled wavelengths too
+    EXPECT_LE(missed, 3) << id << " of " << passing;  // 1e-5, as at compiled wavelengths
   }
 }
 

@@ -32,7 +32,7 @@ constexpr double pi = std::numbers::pi;
 
 class Bladed : public ::testing::TestWithParam<std::tuple<const char*, double>> {};
 
-TEST_P(Bladed, SamplesReachTheSceneAtEveryFieldAndNothingIsMissed) {
+TEST_P(Bladed, SamplesPassAndCoverThePupil) {
   const auto& [id, f_number] = GetParam();
   const Lens open = data_lens(id);
   const double radius = declared_radius(data_prescription(id), open);
@@ -52,7 +52,7 @@ INSTANTIATE_TEST_SUITE_P(FilmPupilTable, Bladed,
                                                               "fisheye_8mm_f2.8"),
                                             ::testing::Values(2.87, 5.6, 16)));
 
-TEST(BladedPupils, MissNothingWhereLightEndsFast) {
+TEST(BladedPupils, CoverPupilsThatEndAbruptly) {
   for (const auto& [id, part, blades] :
        {std::tuple{"phone_5.6mm_f3.5", 0.5, 3}, std::tuple{"phone_5.6mm_f3.5", 1.0, 5},
         std::tuple{"biogon_35mm_f2.8", 0.5, 5}, std::tuple{"telephoto_100mm_f5.6", 0.5, 3},
@@ -65,7 +65,7 @@ TEST(BladedPupils, MissNothingWhereLightEndsFast) {
   }
 }
 
-TEST(BladedPupils, OfEqualAreaGiveTheLightOfTheLens) {
+TEST(BladedPupils, EqualAreaGivesTheIrradianceOfTheLens) {
   for (const auto& [id, f_number, radius] :
        {std::tuple{"double_gauss_100mm_f2.0", 2.8, 36.0}, std::tuple{"double_gauss_100mm_f2.0", 8.0, 36.0},
         std::tuple{"tessar_100mm_f2.8", 4.0, 40.0}, std::tuple{"fisheye_8mm_f2.8", 4.0, 7.5}}) {
@@ -80,12 +80,12 @@ TEST(BladedPupils, OfEqualAreaGiveTheLightOfTheLens) {
   }
 }
 
-/// A lens whose pupils are cut by rims too, in a frame with no other symmetry than that of its five blades.
+/// A lens with pupils clipped by rims; its only symmetry is the symmetry of the five blades.
 const Iris pentagon{.blades = 5, .roundness = 0.2, .rotation_rad = 0.7};
 Lens vignetting() { return with_iris(with_f_number(data_lens("double_gauss_100mm_f2.0"), 2.4), pentagon); }
 constexpr double corner = 40;  // mm
 
-TEST(BladedPupils, TurnWithTheBladesAndAreMirroredInThem) {
+TEST(BladedPupils, HaveTheSymmetryOfTheBlades) {
   const FilmPupilTable table = FilmPupilTable::enclosing(vignetting(), corner);
   std::mt19937 random(3);
   std::uniform_real_distribution<double> unit(0, 1);
@@ -94,12 +94,12 @@ TEST(BladedPupils, TurnWithTheBladesAndAreMirroredInThem) {
     const double v = 0.999 * unit(random);
     const auto at = [r](double angle) { return FilmPoint{r * std::sin(angle), r * std::cos(angle)}; };
     const PupilSample own = table.sample(at(azimuth), u, v);
-    // One blade on.
+    // Rotated by one blade.
     const double step = 2 * pi / 5, cosine = std::cos(step), sine = std::sin(step);
     EXPECT_NEAR(table.area(at(azimuth + step)) / table.area(at(azimuth)), 1, 1e-3);
     EXPECT_NEAR(table.sample_area(at(azimuth + step), cosine * own.x + sine * own.y, cosine * own.y - sine * own.x),
                 own.area, 1e-5 * own.area);
-    // The first corner's direction is an axis of symmetry.
+    // Mirrored in the direction of the first corner.
     const double first = -pentagon.rotation_rad, mirrored = 2 * first - azimuth;
     const double turn = 2 * first, x = std::sin(turn) * own.y - std::cos(turn) * own.x,
                  y = std::sin(turn) * own.x + std::cos(turn) * own.y;
@@ -107,9 +107,9 @@ TEST(BladedPupils, TurnWithTheBladesAndAreMirroredInThem) {
   }
 }
 
-TEST(BladedPupils, MoveContinuouslyWithTheFilmPoint) {
+TEST(BladedPupils, AreContinuousOverTheFilm) {
   const FilmPupilTable table = FilmPupilTable::enclosing(vignetting(), corner);
-  for (const double v : {0.2, 0.9}) {  // from the centre of the film, which has no direction, upwards
+  for (const double v : {0.2, 0.9}) {  // at the centre of the film the azimuth is undefined
     const PupilSample centre = table.sample({0, 0}, 0.37, v), beside = table.sample({0, 1e-9}, 0.37, v);
     EXPECT_NEAR(std::hypot(centre.x - beside.x, centre.y - beside.y), 0, 1e-6);
     EXPECT_TRUE(table.contains({0, 0}, 0.99 * centre.x, 0.99 * centre.y));
@@ -125,13 +125,13 @@ TEST(BladedPupils, MoveContinuouslyWithTheFilmPoint) {
       longest = std::max(longest, std::hypot(here.x - before.x, here.y - before.y));
       before = here;
     }
-    // All the way around is a few radii of the pupil, and a jump would be a share of one.
+    // The path around the edge has a few radii of the pupil; a jump would be a fraction of a radius.
     const double radius = std::sqrt(before.area / pi);
     EXPECT_LT(longest, 0.01 * radius) << r;
   }
 }
 
-TEST(BladedPupils, OneSampleIsLikeManyInFloatAndDouble) {
+TEST(BladedPupils, BatchEqualsSingleSamples) {
   const FilmPupilTable table = FilmPupilTable::enclosing(vignetting(), corner);
   constexpr std::size_t count = 3000;
   std::mt19937 random(5);
@@ -173,7 +173,7 @@ TEST(BladedPupils, OneSampleIsLikeManyInFloatAndDouble) {
   EXPECT_GT(lit, 0.9 * count);
 }
 
-TEST(BladedPupils, HaveTheDerivativesOfTheirSamples) {
+TEST(BladedPupils, DerivativesEqualFiniteDifferences) {
   const FilmPupilTable table = FilmPupilTable::equal_area(vignetting(), corner);
   std::mt19937 random(9);
   std::uniform_real_distribution<double> unit(0, 1);
@@ -189,12 +189,12 @@ TEST(BladedPupils, HaveTheDerivativesOfTheirSamples) {
     const double error = std::hypot((right.x - left.x) / (2 * step) - by_x[0],
                                     (right.y - left.y) / (2 * step) - by_x[1], (up.x - down.x) / (2 * step) - by_y[0]) +
                          std::abs((up.y - down.y) / (2 * step) - by_y[1]);
-    kinks += error > 1e-3;  // between cells and sectors
+    kinks += error > 1e-3;  // on borders of cells and sectors
   }
   EXPECT_LE(kinks, 3);
 }
 
-TEST(BladedPupils, AreThoseOfTheWholeStopForTiltedFilmsAndOnRequest) {
+TEST(BladedPupils, RoundStopIsUsedForTiltedFilmsAndOnRequest) {
   const Lens lens = vignetting();
   const FilmPupilTable table = FilmPupilTable::enclosing(lens, corner);
   const FilmPupilTable round = FilmPupilTable::enclosing(with_iris(lens, {}), corner), same = table.of_round_stop();
@@ -205,7 +205,7 @@ TEST(BladedPupils, AreThoseOfTheWholeStopForTiltedFilmsAndOnRequest) {
   EXPECT_GT(found.area, table.area({20, -7}));
 }
 
-TEST(BladedPupils, OfEqualAreaGiveTheLightWithCylindersAndObscurations) {
+TEST(BladedPupils, EqualAreaGivesTheIrradianceWithCylindersAndObscurations) {
   for (const auto& [id, f_number, radius] :
        {std::tuple{"anamorphic_60mm_2x", 5.6, 12.0}, std::tuple{"catadioptric_mangin_1000mm_f7.5", 9.0, 10.0}}) {
     const Lens lens = with_iris(with_f_number(data_lens(id), f_number), {.blades = 6, .rotation_rad = 0.3});
@@ -217,7 +217,7 @@ TEST(BladedPupils, OfEqualAreaGiveTheLightWithCylindersAndObscurations) {
   }
 }
 
-TEST(BladedPupils, TellWhereRaysMeetTheStop) {
+TEST(BladedPupils, StopPointsEqualTracedRays) {
   const Lens lens = vignetting();
   const FilmPupilTable table = FilmPupilTable::enclosing(lens, corner), round = table.of_round_stop();
   const double semi_diameter = lens.surfaces()[*lens.stop()].semi_diameter;

@@ -27,7 +27,7 @@ namespace entrance_pupil_table_test {
 
 constexpr double pi = std::numbers::pi;
 
-/// A lens with its table, for a film of some radius.
+/// A lens and its tables for a film radius.
 struct Seen {
   Lens lens;
   double radius;
@@ -40,7 +40,7 @@ struct Seen {
         pupils(FilmPupilTable::enclosing(l, film_radius)),
         table(traced_entrances(l, pupils)) {}
 
-  /// What leaves the lens of a line behind it.
+  /// The ray to the scene through a film point and a pupil point.
   TracedRay<double> leaving(const FilmPoint& film, double pupil_x, double pupil_y) const {
     const double depth = pupils.space().depth();
     const Vec3<double> along = glm::normalize(Vec3<double>{pupil_x - film.x, pupil_y - film.y, depth});
@@ -61,8 +61,8 @@ Seen seen(const std::string& id) {
   return {lens, film_radius(p, lens)};
 }
 
-/// Of lines from the whole film through all of its pupils, seen from places 10 mm to 1 km before the lens: how many
-/// pass, and how many of these the table cannot draw.
+/// Numbers of random lines through film and pupils that pass the lens, and of passing lines that the table does not
+/// sample from scene points at distances from 10 mm to 1 km.
 struct Count {
   std::uint32_t passed = 0, missed = 0;
 };
@@ -87,8 +87,8 @@ Count count_missed(const Seen& s, std::uint32_t lines) {
 
 class EntranceTables : public ::testing::TestWithParam<const char*> {};
 
-// Were more than 1e-5 of the lines missed, none of 3e5 would be with a probability below 5 %.
-TEST_P(EntranceTables, MissNoneOf300000LinesFromTheFilm) {
+// If more than 1e-5 of the lines were missed, the test would pass with a probability below 5 %.
+TEST_P(EntranceTables, Cover300000LinesFromTheFilm) {
   const Count count = count_missed(seen(GetParam()), 300000);
   EXPECT_GT(count.passed, 250000U);
   EXPECT_EQ(count.missed, 0U);
@@ -98,7 +98,7 @@ INSTANTIATE_TEST_SUITE_P(Lenses, EntranceTables,
                          ::testing::Values("double_gauss_100mm_f2_28deg", "biogon_35mm_f2.8", "fisheye_6.3mm_f2.8",
                                            "petzval_100mm_f1.25", "anamorphic_60mm_2x"));
 
-TEST(EntrancePupilTable, SendsMostRaysThroughCylinders) {
+TEST(EntrancePupilTable, MostSamplesPassCylinders) {
   for (const double f_number : {3.0, 8.0, 32.0}) {
     const Seen s(with_f_number(testing::data_lens("anamorphic_60mm_2x"), f_number), 14.4);
     const core_detail::Kronecker<5> random(3);
@@ -120,25 +120,25 @@ TEST(EntrancePupilTable, SendsMostRaysThroughCylinders) {
   }
 }
 
-TEST(EntrancePupilTable, MissesNextToNothingOfAnyLens) {
+TEST(EntrancePupilTable, CoversThePupilsOfEveryLens) {
   for (const Prescription& p : testing::data_prescriptions()) {
     SCOPED_TRACE(p.id);
     const Lens lens = compile(p);
     const double radius = film_radius(p, lens);
     if (!std::isfinite(radius)) continue;
-    // Of 100000, 97 are missed of the ball, which makes no sharp image, and one of all others together.
+    // Of 100000 lines, 97 are missed for the ball, which forms no sharp image, and 1 in total for all other lenses.
     EXPECT_LE(count_missed({lens, radius}, 10000).missed, p.id == "ball_10mm" ? 20U : 0U);
   }
 }
 
-TEST(EntrancePupilTable, HasTheDensityItSays) {
+TEST(EntrancePupilTable, DensityIntegratesToOne) {
   for (const char* id : {"double_gauss_100mm_f2_28deg", "fisheye_8mm_f2.8", "cylinder_3.9mm"}) {
     SCOPED_TRACE(id);
     const Seen s = seen(id);
     for (const Vec3<double> point : {Vec3<double>{0, 0, -2000}, Vec3<double>{300, -200, -3000},
                                      Vec3<double>{-15, 20, -60}, Vec3<double>{4, 3, -30}}) {
       SCOPED_TRACE(point.z);
-      // The mean of 1 / pdf is the solid angle that is drawn from.
+      // The mean of 1 / pdf is the sampled solid angle.
       constexpr std::uint32_t draws = 1 << 12;
       double solid = 0, widest = 0;
       const Vec3<double> axis = s.table.sample(point, 0.5, 0).direction;
@@ -153,7 +153,7 @@ TEST(EntrancePupilTable, HasTheDensityItSays) {
         solid += 1 / sample.pdf / draws;
         widest = std::max(widest, 1 - glm::dot(axis, sample.direction));
       }
-      // Uniform directions in a cone about it give the same solid angle.
+      // Uniform directions in a cone around it give the same solid angle.
       const double cone = std::min(1.01 * widest, 2.0);
       const Vec3<double> x = glm::normalize(glm::cross(axis, Vec3<double>{0.3, 1, 0.2})), y = glm::cross(axis, x);
       double met = 0, whole = 0;
@@ -183,7 +183,7 @@ TEST(EntrancePupilTable, EstimatesTheSolidAngleOfThePupil) {
         const double tangent = std::tan(degrees * pi / 180);
         const Vec3<double> point{0, tangent * (pupil_z - z), z};
         const auto boundary = pupil_boundary(s.lens, {degrees * pi / 180, z}, 0, 512);
-        // By triangles from the boundary's middle: each seen from the point.
+        // Sum of the solid angles of the triangles between centre and boundary.
         double wanted = 0;
         for (std::size_t k = 0; k < boundary.spans.size(); ++k) {
           const auto &a = boundary.spans[k].to, &b = boundary.spans[(k + 1) % boundary.spans.size()].to;
@@ -207,7 +207,7 @@ TEST(EntrancePupilTable, EstimatesTheSolidAngleOfThePupil) {
   }
 }
 
-TEST(EntrancePupilTable, SpreadsRaysEvenly) {
+TEST(EntrancePupilTable, SpreadSamplesAreUniform) {
   const Seen s = seen("double_gauss_100mm_f2_28deg");
   const Vec3<double> point{30, 250, -1500};
   std::vector<double> u, v;
@@ -216,7 +216,7 @@ TEST(EntrancePupilTable, SpreadsRaysEvenly) {
   constexpr int side = 256;
   for (int i = 0; i < side * side; ++i) {
     u.push_back((i % side + 0.5) / side), v.push_back((i / side + 0.5) / side);
-    // Samples weighed by the area that they stand for, nearly: the pupil is small.
+    // For a small pupil 1 / pdf is nearly proportional to the area of a sample.
     const EntranceSample one = s.table.sample(point, u.back(), v.back());
     mean += one.place / one.pdf, all += 1 / one.pdf;
   }
@@ -231,10 +231,10 @@ TEST(EntrancePupilTable, SpreadsRaysEvenly) {
   EXPECT_NEAR(glm::length(even - mean), 0, 0.02);
 }
 
-TEST(EntrancePupilTable, SpreadsNothingForBadNumbersAndPlaces) {
+TEST(EntrancePupilTable, SpreadSkipsInvalidNumbersAndPoints) {
   const Seen s = seen("double_gauss_100mm_f2_28deg");
   const std::vector<double> u{0, 0.3, 0.99, std::numeric_limits<double>::quiet_NaN(), 1}, v{0.5, 0, 1, 0.5, 0.7};
-  // By the table, by the cone of a point that is too near for it, beyond all fields.
+  // A point in the table, a point too close for the table (sampled by a cone), and a point outside all fields.
   for (const Vec3<double> point : {Vec3<double>{30, 50, -800}, Vec3<double>{0, 1, -3}, Vec3<double>{0, 9000, -1000}}) {
     std::vector<EntranceSample> samples(u.size(), EntranceSample{.distance = 7, .pdf = 7});
     s.table.spread(point, u.size(), u.data(), v.data(), 0, samples.data());
@@ -243,7 +243,7 @@ TEST(EntrancePupilTable, SpreadsNothingForBadNumbersAndPlaces) {
   }
 }
 
-TEST(EntrancePupilTable, HasNothingForWhatIsNotInFrontOfTheLens) {
+TEST(EntrancePupilTable, PointsBehindTheFrontHaveNoSamples) {
   const Seen s = seen("double_gauss_100mm_f2_28deg");
   constexpr double nan = std::numeric_limits<double>::quiet_NaN(), inf = std::numeric_limits<double>::infinity();
   for (const Vec3<double> point : {Vec3<double>{0, 0, 20}, Vec3<double>{0, 0, 1}, Vec3<double>{5, 5, 500},
@@ -261,8 +261,8 @@ TEST(EntrancePupilTable, HasNothingForWhatIsNotInFrontOfTheLens) {
   EXPECT_GT(s.table.sample({0, 0, -1000}, 0, 1).pdf, 0);
 }
 
-// Film points reach to where the light ends, in every direction of a film whose directions differ.
-TEST(LeavingRays, ComeFromAllOfTheFilm) {
+// Film points reach the edge of the image circle in every direction; with cylinders the edge depends on the direction.
+TEST(LeavingRays, CoverTheFilm) {
   const FilmPupilTable pupils = FilmPupilTable::enclosing(testing::data_lens("anamorphic_60mm_2x"), 40);
   constexpr std::size_t directions = 256;
   std::array<double, directions> reach{};

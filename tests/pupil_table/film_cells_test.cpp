@@ -32,7 +32,7 @@ Lens anamorphic(double f_number) {
 
 class Anamorphic : public ::testing::TestWithParam<double> {};
 
-TEST_P(Anamorphic, SamplesReachTheSceneAtEveryFieldAndNothingIsMissed) {
+TEST_P(Anamorphic, SamplesPassAndCoverThePupil) {
   const Lens lens = anamorphic(GetParam());
   const Coverage c = coverage(lens, FilmPupilTable::enclosing(lens, format), format, 200, 2000);
   EXPECT_GT(c.mean, 0.95);
@@ -41,8 +41,7 @@ TEST_P(Anamorphic, SamplesReachTheSceneAtEveryFieldAndNothingIsMissed) {
 
 INSTANTIATE_TEST_SUITE_P(FilmCells, Anamorphic, ::testing::Values(0, 4, 8, 16, 32, 45, 64));
 
-/// The irradiance of a film point, in units of a uniform scene's radiance, by rays through places of the plane of the
-/// pupil that are uniform in some area.
+/// Irradiance of a film point in a scene of radiance 1, by rays through uniform points of an area in the pupil plane.
 template <class PlaceAt>
 double irradiance(const Lens& lens, const FilmPupilTable& table, const FilmPoint& film, const PlaceAt& place_at) {
   constexpr std::uint32_t count = 1 << 16;
@@ -63,7 +62,7 @@ double irradiance(const Lens& lens, const FilmPupilTable& table, const FilmPoint
   return n * n * sum / count;
 }
 
-TEST(FilmCells, GiveTheLightOfAllRaysThroughTheLastSurface) {
+TEST(FilmCells, IrradianceEqualsRaysThroughTheLastSurface) {
   for (const auto& [id, f_number, film] :
        {std::tuple{"cylinder_3.9mm", 0.0, FilmPoint{0, 0}}, std::tuple{"cylinder_3.9mm", 0.0, FilmPoint{0.4, -0.6}},
         std::tuple{"cylinder_3.9mm", 16.0, FilmPoint{0, 0}}, std::tuple{"cylinder_3.9mm", 16.0, FilmPoint{-0.5, 0.7}},
@@ -78,7 +77,7 @@ TEST(FilmCells, GiveTheLightOfAllRaysThroughTheLastSurface) {
     const double sampled =
         irradiance(lens, table, film, [&, &at = film](double u, double v) { return table.sample(at, u, v); });
     EXPECT_NEAR(sampled / film_irradiance(lens, film), 1, 2e-3);
-    // The square around the last surface, seen from the film point in the plane of the pupil.
+    // The bounding square of the last surface, projected from the film point into the pupil plane.
     const LensSurface& last = lens.surfaces().back();
     const double to_pupil = table.space().depth() / (last.vertex_z - lens.film_z());
     const double half = 1.5 * last.semi_diameter * std::abs(to_pupil);
@@ -90,7 +89,7 @@ TEST(FilmCells, GiveTheLightOfAllRaysThroughTheLastSurface) {
   }
 }
 
-TEST(FilmCells, OfEqualAreaGiveTheLightOfThePupils) {
+TEST(FilmCells, EqualAreaGivesTheIrradianceOfThePupils) {
   for (const double f_number : {0.0, 8.0}) {
     const Lens lens = anamorphic(f_number);
     const FilmPupilTable table = FilmPupilTable::equal_area(lens, format);
@@ -108,8 +107,7 @@ TEST(FilmCells, OfEqualAreaGiveTheLightOfThePupils) {
   }
 }
 
-// A pupil and its mirror image: a ray and its own.
-TEST(FilmCells, AreAlikeInTheQuadrantsOfTheFilm) {
+TEST(FilmCells, QuadrantsOfTheFilmAreEqual) {
   const FilmPupilTable table = FilmPupilTable::enclosing(anamorphic(5.6), format);
   std::mt19937 random(9);
   std::uniform_real_distribution<double> unit(0, 1);
@@ -120,7 +118,7 @@ TEST(FilmCells, AreAlikeInTheQuadrantsOfTheFilm) {
                       below = table.sample({film.x, -film.y}, u, v);
     EXPECT_NEAR(left.x, -s.x, 1e-9);
     EXPECT_NEAR(left.y, s.y, 1e-9);
-    // u begins on either side of a pupil that is not alike at x and -x: another sample of the mirror image.
+    // As u starts at +y, the mirror image of a pupil without symmetry in x has other samples.
     EXPECT_TRUE(table.contains(film, below.x, -below.y)) << v;
     EXPECT_EQ(left.area, s.area);
     EXPECT_EQ(below.area, s.area);
@@ -128,8 +126,8 @@ TEST(FilmCells, AreAlikeInTheQuadrantsOfTheFilm) {
   }
 }
 
-// Images show no seams: samples move by little where film points do, over the axes and from cell to cell.
-TEST(FilmCells, MoveWithoutJumpsOverTheFilm) {
+// Samples are continuous across the axes and the borders of cells, so that images have no seams.
+TEST(FilmCells, ContinuousOverTheFilm) {
   const FilmPupilTable table = FilmPupilTable::enclosing(anamorphic(0), format);
   for (const auto& [u, v] : {std::array{0.1, 0.9}, std::array{0.43, 0.5}, std::array{0.86, 0.99}, std::array{0.0, 1.0},
                              std::array{0.5, 0.7}}) {
@@ -152,7 +150,7 @@ TEST(FilmCells, MoveWithoutJumpsOverTheFilm) {
   }
 }
 
-TEST(FilmCells, HoldAllLinesOfATiltedFilm) {
+TEST(FilmCells, CoverTheLinesOfATiltedFilm) {
   const FilmPupilTable upright = FilmPupilTable::enclosing(anamorphic(8), 1.4 * format);
   const double steep = 0.1 / -upright.space().depth();
   const double most = steep * format;

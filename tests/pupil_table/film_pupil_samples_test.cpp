@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The samples of a FilmPupilTable: their density, their motion with the film point, one by one and in batches.
+// Samples of a FilmPupilTable: density, continuity over the film, batches.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -20,10 +20,10 @@ using petzval::testing::data_lens;
 
 class UniformSamples : public ::testing::TestWithParam<std::pair<const char*, FilmPoint>> {};
 
-TEST_P(UniformSamples, HaveTheDensityOfTheArea) {
+TEST_P(UniformSamples, DensityIsTheInverseArea) {
   const auto& [id, film] = GetParam();
   const FilmPupilTable table = FilmPupilTable::enclosing(data_lens(id), 22);
-  // Means of the samples and of places that belong to the pupil.
+  // Means over samples and over uniform points inside the pupil.
   std::mt19937_64 random(3);
   std::uniform_real_distribution<double> unit(0, 1);
   std::array<double, 5> sampled{}, inside{};
@@ -56,13 +56,13 @@ INSTANTIATE_TEST_SUITE_P(FilmPupilTable, UniformSamples,
                          ::testing::Values(std::pair{"double_gauss_100mm_f1.35", FilmPoint{-9, 17}},
                                            std::pair{"anamorphic_60mm_2x", FilmPoint{-9.4, 8.1}}));
 
-TEST(FilmPupilTable, MovesWithoutJumpsAcrossTheTable) {
+TEST(FilmPupilTable, IsContinuousAcrossTheTable) {
   const Lens lens = data_lens("double_gauss_100mm_f2.0");
   constexpr double radius = 40;
   const FilmPupilTable table = FilmPupilTable::enclosing(lens, radius);
   for (const auto& [u, v] : {std::array{0.1, 0.9}, std::array{0.43, 0.5}, std::array{0.86, 0.99}}) {
     const auto at = [&, u = u, v = v](double r) { return table.sample({0.28 * r, -0.96 * r}, u, v); };
-    // Steps across the nodes of the table against those within its strips.
+    // Steps across the nodes of the table, compared with steps within its strips.
     constexpr int strips = 32, places = 32, steps = strips * places;
     double across = 0, within = 0;
     for (int i = 1; i < steps; ++i) {
@@ -87,12 +87,12 @@ TEST(FilmPupilTable, IsContinuousAroundTheAxis) {
   for (int i = 0; i < 32; ++i) {
     const double azimuth = 2 * std::numbers::pi * i / 32;
     const PupilSample s = table.sample({1e-6 * std::sin(azimuth), 1e-6 * std::cos(azimuth)}, 0.3, 0.8);
-    // A polygon of 64 corners is round within 1 - cos(pi / 64).
+    // A polygon of 64 corners is a circle within 1 - cos(pi / 64).
     EXPECT_NEAR(std::hypot(s.x - axis.x, s.y - axis.y), 0, 0.0025 * std::sqrt(axis.area));
   }
 }
 
-/// Film points from 10 to the smallest numbers, mm from the axis, on two sides of it: near it they have its pupil.
+/// Checks that film points at 1e-4 mm down to the smallest numbers from the axis have the axial pupil.
 template <class T>
 void expect_the_pupil_of_the_axis(const FilmPupilTable& table, double share) {
   std::vector<T> film_x, film_y;
@@ -113,7 +113,7 @@ void expect_the_pupil_of_the_axis(const FilmPupilTable& table, double share) {
   }
 }
 
-TEST(FilmPupilTable, HasThePupilOfTheAxisBesideIt) {
+TEST(FilmPupilTable, IsContinuousNextToTheAxis) {
   const Lens lens = data_lens("double_gauss_100mm_f2.0");
   for (const FilmPupilTable& table :
        {FilmPupilTable::enclosing(lens, 22), FilmPupilTable::enclosing(with_iris(lens, {.blades = 5}), 22),
@@ -127,7 +127,7 @@ TEST(FilmPupilTable, HasThePupilOfTheAxisBesideIt) {
 
 class SampledTable : public ::testing::TestWithParam<const char*> {};
 
-TEST_P(SampledTable, SamplesBatchesLikeSinglePoints) {
+TEST_P(SampledTable, BatchEqualsSinglePoints) {
   const Lens lens = data_lens(GetParam());
   const FilmPupilTable table = FilmPupilTable::enclosing(lens, 20);
   std::mt19937_64 random(5);
@@ -152,7 +152,7 @@ TEST_P(SampledTable, SamplesBatchesLikeSinglePoints) {
       EXPECT_NEAR(fpy[i], s.y, 2e-4 * size);
       EXPECT_NEAR(fareas[i], s.area, 1e-5 * s.area);
     }
-    // In place, and the same.
+    // Output may overwrite the input.
     table.sample<double>(count, x.data(), y.data(), u.data(), v.data(), {}, u.data(), v.data(), areas.data());
     EXPECT_EQ(u, px);
     EXPECT_EQ(v, py);
@@ -162,7 +162,7 @@ TEST_P(SampledTable, SamplesBatchesLikeSinglePoints) {
 INSTANTIATE_TEST_SUITE_P(FilmPupilTable, SampledTable,
                          ::testing::Values("catadioptric_mangin_1000mm_f7.5", "anamorphic_60mm_2x"));
 
-TEST_P(SampledTable, KnowsWhichSampleAPlaceIs) {
+TEST_P(SampledTable, PositionsMapBackToTheirSamples) {
   const Lens lens = data_lens(GetParam());
   std::vector<FilmPupilTable> tables{FilmPupilTable::enclosing(lens, 20)};
   const Lens round = data_lens("double_gauss_100mm_f1.35");
@@ -190,7 +190,7 @@ TEST_P(SampledTable, KnowsWhichSampleAPlaceIs) {
 
 class MovingSamples : public ::testing::TestWithParam<const char*> {};
 
-TEST_P(MovingSamples, AreKnownByTheirDerivatives) {
+TEST_P(MovingSamples, DerivativesEqualFiniteDifferences) {
   const Lens lens = data_lens(GetParam());
   const FilmPupilTable table = FilmPupilTable::enclosing(lens, 7);
   std::mt19937_64 random(11);
@@ -201,7 +201,7 @@ TEST_P(MovingSamples, AreKnownByTheirDerivatives) {
     const auto motion = table.derivatives(film, u, v);
     const auto at = [&](double dx, double dy) { return table.sample({film.x + dx, film.y + dy}, u, v); };
     const PupilSample right = at(h, 0), left = at(-h, 0), above = at(0, h), below = at(0, -h);
-    // A corner of the polygon or a node of the table may lie between.
+    // Skips differences across a corner of the polygon or a node of the table.
     const double slack = 1e-6 + 0.3 *
                                     (std::hypot(right.x + left.x - 2 * at(0, 0).x, above.x + below.x - 2 * at(0, 0).x,
                                                 right.y + left.y - 2 * at(0, 0).y) +

@@ -34,7 +34,7 @@ double clearance(const FilmPupilTable& table, const FilmPoint& film, double x, d
 
 TEST(FilmPupilTable, SeesThroughAGlassCloseToTheFilm) {
   Prescription p = petzval::testing::data_prescription("double_gauss_100mm_f2.0");
-  // A plate of 2 mm, 0.1 mm before the film, which moves back by what the plate shifts the image.
+  // A plate of 2 mm in front of the film, at 0.1 mm; the film is moved by the focus shift of the plate.
   const Lens bare = compile(p);
   const double gap = bare.film_z() - bare.surfaces().back().vertex_z;
   p.surfaces.back().thickness = gap - 2 / 1.5 - 0.1;
@@ -73,7 +73,7 @@ TEST(FilmPupilTable, MatchesTheShapeOfPupils) {
   }
 }
 
-TEST(FilmPupilTable, KnowsHowFarWithinAPupilAPlaceLies) {
+TEST(FilmPupilTable, ClearanceIsTheDistanceToTheEdge) {
   for (const char* id : {"double_gauss_100mm_f1.35", "catadioptric_mangin_1000mm_f7.5", "anamorphic_60mm_2x"}) {
     constexpr double radius = 18;
     const FilmPupilTable table = FilmPupilTable::enclosing(data_lens(id), radius);
@@ -98,7 +98,7 @@ TEST(FilmPupilTable, KnowsHowFarWithinAPupilAPlaceLies) {
   }
 }
 
-TEST(FilmPupilTable, KnowsHowFarWithinPupilsManyPlacesLie) {
+TEST(FilmPupilTable, BatchClearancesEqualSingleOnes) {
   const Lens lens = data_lens("double_gauss_100mm_f2.0");
   const FilmPupilTable tables[]{FilmPupilTable::enclosing(lens, 20),
                                 FilmPupilTable::enclosing(data_lens("catadioptric_mangin_1000mm_f7.5"), 20),
@@ -110,7 +110,7 @@ TEST(FilmPupilTable, KnowsHowFarWithinPupilsManyPlacesLie) {
     std::mt19937_64 random(5);
     std::uniform_real_distribution<double> unit(-1, 1);
     std::array<std::vector<double>, 4> at;
-    // Lines outwards, as pupils of tilted films are looked for, and places anywhere, on and off the film.
+    // Radial lines, as in the search for pupils of tilted films, and points anywhere, inside and outside the film.
     for (int line = 0; line < 100; ++line) {
       const double film_x = 22 * unit(random), film_y = 22 * unit(random), x = unit(random), y = unit(random);
       for (int i = 0; i < 30; ++i) {
@@ -130,7 +130,7 @@ TEST(FilmPupilTable, KnowsHowFarWithinPupilsManyPlacesLie) {
   }
 }
 
-TEST(FilmPupilTable, ContainsManyPlacesAsItContainsOne) {
+TEST(FilmPupilTable, BatchContainsEqualsSinglePoints) {
   const std::vector<double> nm{450, 650};
   const auto with = [&](const char* id) {
     return compile(petzval::testing::data_prescription(id), nm, {.missing_glass = MissingGlass::abbe});
@@ -171,9 +171,9 @@ TEST(FilmPupilTable, ContainsManyPlacesAsItContainsOne) {
   }
 }
 
-// A tilted film has every line of the table that meets it, and few more. The pupil of a virtual film point is that of
-// the points of the upright film on its lines.
-TEST(FilmPupilTable, CoversThePupilsOfATiltedFilm) {
+// The pupils of a tilted film contain every line of the table that meets the film, and few other lines. The pupil of a
+// virtual film point consists of the lines through it that belong to the pupil of their upright film point.
+TEST(FilmPupilTable, TiltedFilmPupilsAreCovered) {
   for (const auto& [id, radius] : {std::pair{"double_gauss_100mm_f2.0", 22.0}, std::pair{"fisheye_8mm_f2.8", 8.0},
                                    std::pair{"catadioptric_mangin_1000mm_f7.5", 20.0}}) {
     const Lens lens = data_lens(id);
@@ -221,7 +221,7 @@ TEST(FilmPupilTable, CoversThePupilsOfATiltedFilm) {
   }
 }
 
-TEST(FilmPupilTable, HoldsWhatLiesInAllOfSomeDiscs) {
+TEST(FilmPupilTable, IntersectionOfDiscs) {
   const std::vector<std::vector<PupilDisc>> discs{{{0.2, 10}, {-0.5, 9}}};
   const FilmPupilTable table = FilmPupilTable::of_discs({50, 0}, discs, 12);
   for (const double r : {0.0, 3.0, 8.0, 12.0}) {
@@ -237,13 +237,13 @@ TEST(FilmPupilTable, HoldsWhatLiesInAllOfSomeDiscs) {
   }
 }
 
-/// Two wavelengths; the film of the second sees its pupil far away.
+/// Hexagonal pupils at two wavelengths with different shifts.
 FilmPupilTable hexagons(const Iris& iris) {
   const std::array images{PupilImage{{-0.3, -0.3}, {9, 9}}, PupilImage{{0.95, 0.95}, {4, 4}}};
   return FilmPupilTable::of_iris({50, 0}, iris, images, 12);
 }
 
-TEST(FilmPupilTable, HoldsImagesOfAnIris) {
+TEST(FilmPupilTable, ImagesOfAnIris) {
   for (const Iris& iris : {Iris{}, Iris{.blades = 6, .rotation_rad = 0.2}}) {
     const FilmPupilTable table = hexagons(iris);
     const double share = iris.round() ? std::numbers::pi : 3 * std::sin(std::numbers::pi / 3);
@@ -297,7 +297,7 @@ void expect_batch_as_single_samples(const FilmPupilTable& table, double eps) {
   EXPECT_EQ(v[6][15] + v[6][6] + v[6][9] + v[6][12], T(0));
 }
 
-TEST(FilmPupilTable, SamplesImagesOfAnIrisInBatchesAsSingly) {
+TEST(FilmPupilTable, IrisBatchEqualsSingleSamples) {
   for (const Iris& iris : {Iris{}, Iris{.blades = 6, .rotation_rad = 0.2}, Iris{.blades = 3, .roundness = -1}}) {
     for (const FilmPupilTable& table :
          {hexagons(iris), hexagons(iris).for_tilted_film({.slope_x = 0.01, .slope_y = -0.02, .radius = 11})}) {
@@ -307,8 +307,8 @@ TEST(FilmPupilTable, SamplesImagesOfAnIrisInBatchesAsSingly) {
   }
 }
 
-TEST(FilmPupilTable, KnowsTheSolidAngleOfAPupil) {
-  // A disc straight ahead has pi sin^2 of its half angle.
+TEST(FilmPupilTable, SolidAngleEqualsIntegral) {
+  // A disc on the axis has the projected solid angle pi sin^2 of its half angle.
   for (const double radius : {1.0, 9.0, 40.0}) {
     const PupilImage disc{{1, 1}, {radius, radius}};
     const FilmPupilTable table = FilmPupilTable::of_iris({50, 0}, {}, {&disc, 1}, 12);
@@ -319,7 +319,7 @@ TEST(FilmPupilTable, KnowsTheSolidAngleOfAPupil) {
   }
   const Lens lens = data_lens("double_gauss_100mm_f2.0");
   const FilmPupilTable table = FilmPupilTable::equal_area(lens, 20);
-  // Another shape at another place, and as much light.
+  // Other shapes at other positions with the same irradiance.
   const std::vector<std::vector<PupilDisc>> discs{{{0.3, 30}, {-0.2, 20}}};
   const FilmPupilTable other = table.reshaped(discs);
   for (const FilmPoint& film : {FilmPoint{0, 0}, FilmPoint{3, -9}, FilmPoint{14, 14}}) {
@@ -329,7 +329,7 @@ TEST(FilmPupilTable, KnowsTheSolidAngleOfAPupil) {
   }
 }
 
-TEST(FilmPupilTable, KnowsTheLightThatARingLetsThrough) {
+TEST(FilmPupilTable, SolidAngleOfARing) {
   for (const char* id :
        {"catadioptric_mangin_1000mm_f7.5", "catadioptric_maksutov_1280mm_f14.4", "mirror_newton_200mm_f8"}) {
     const Lens lens = data_lens(id);
@@ -341,7 +341,7 @@ TEST(FilmPupilTable, KnowsTheLightThatARingLetsThrough) {
 }
 
 // The ray of a virtual film point V through q meets the upright film in V - (slope . V) q.
-TEST(FilmPupilTable, KnowsTheImagesOfATiltedFilmExactly) {
+TEST(FilmPupilTable, TiltedFilmImagesAreExact) {
   const FilmTilt tilt{.slope_x = 0.012, .slope_y = -0.02, .radius = 8};
   for (const Iris& iris : {Iris{}, Iris{.blades = 5, .roundness = 0.4, .rotation_rad = 0.1}}) {
     const FilmPupilTable upright = hexagons(iris), tilted = upright.for_tilted_film(tilt);
@@ -366,7 +366,7 @@ TEST(FilmPupilTable, KnowsTheImagesOfATiltedFilmExactly) {
   }
 }
 
-TEST(FilmPupilTable, HasNothingOutsideItsFilm) {
+TEST(FilmPupilTable, IsEmptyOutsideItsFilm) {
   const Lens lens = data_lens("double_gauss_100mm_f2.0");
   const FilmPupilTable table = FilmPupilTable::enclosing(lens, 20);
   constexpr double nan = std::numeric_limits<double>::quiet_NaN(), infinity = std::numeric_limits<double>::infinity();
@@ -394,7 +394,7 @@ TEST(FilmPupilTable, HasNothingOutsideItsFilm) {
   EXPECT_EQ(dark.sample({1, 2}, 0.5, 0.5).area, 0);
 }
 
-TEST(FilmPupilTable, RefusesWhatNoTableIsMadeOf) {
+TEST(FilmPupilTable, RefusesInvalidInput) {
   constexpr double nan = std::numeric_limits<double>::quiet_NaN(), infinity = std::numeric_limits<double>::infinity();
   using Nm = std::vector<double>;
   // Discs and images are checked by the same rules.
@@ -435,7 +435,7 @@ TEST(FilmPupilTable, RefusesWhatNoTableIsMadeOf) {
   expect_error([&] { (void)table.reshaped(lists); }, {"pupil table", "discs", "wavelengths", 3, 1});
 }
 
-TEST(FilmPupilTable, HasNothingInTheMiddleOfAnObscuration) {
+TEST(FilmPupilTable, ObscurationsAreExcluded) {
   for (const FilmPupilTable& table : {FilmPupilTable::enclosing(data_lens("catadioptric_mangin_1000mm_f7.5"), 20),
                                       FilmPupilTable::equal_area(data_lens("catadioptric_mangin_1000mm_f7.5"), 20)}) {
     for (const FilmPoint& film : {FilmPoint{0, 0}, FilmPoint{3, 7}}) {
@@ -446,7 +446,7 @@ TEST(FilmPupilTable, HasNothingInTheMiddleOfAnObscuration) {
   }
 }
 
-TEST(FilmPupilTable, HasOneTableForEachWavelength) {
+TEST(FilmPupilTable, EachWavelengthHasItsTable) {
   const Prescription p = petzval::testing::data_prescription("double_gauss_100mm_f2.0");
   const std::vector<double> nm{450, 650};
   const Lens lens = compile(p, nm, {.glasses = nullptr, .missing_glass = MissingGlass::abbe});
@@ -465,7 +465,7 @@ TEST(FilmPupilTable, HasOneTableForEachWavelength) {
   EXPECT_NE(table.area({7, -11}, 0), table.area({7, -11}, 1));
 }
 
-TEST(FilmPupilTable, IsDarkAtWavelengthsThatItDoesNotCover) {
+TEST(FilmPupilTable, IsEmptyAtOtherWavelengths) {
   const Lens lens = data_lens("double_gauss_100mm_f2.0");
   const PupilImage image{.radius = {10, 10}};
   const FilmPupilTable tables[]{FilmPupilTable::enclosing(lens, 20),
@@ -494,7 +494,7 @@ TEST(FilmPupilTable, IsDarkAtWavelengthsThatItDoesNotCover) {
   }
 }
 
-TEST(FilmPupilTable, OfAFilmWithoutSizeIsThatOfTheAxis) {
+TEST(FilmPupilTable, FilmOfRadiusZeroHasTheAxialPupil) {
   const std::vector<std::vector<PupilDisc>> discs{{{0.1, 10}}};
   const PupilSample wanted = FilmPupilTable::of_discs({50, 0}, discs, 1).sample({0, 0}, 0.3, 0.7);
   ASSERT_GT(wanted.area, 300);

@@ -15,7 +15,7 @@
 
 namespace petzval::testing {
 
-/// Which of some places in the plane of the pupil a film point sees the scene through, by tracing.
+/// True for each point of the pupil plane if the ray from the film point through it reaches the scene.
 inline std::vector<bool> passing(const Lens& lens, const FilmPupilTable& table, const FilmPoint& film,
                                  const std::vector<std::array<double, 2>>& places) {
   const TwoPlanes& space = table.space();
@@ -34,13 +34,13 @@ inline std::vector<bool> passing(const Lens& lens, const FilmPupilTable& table, 
 }
 
 struct Coverage {
-  double mean = 0, worst = 1;  // shares of the samples that pass: mean over film points, worst film point
-  double missed = 0;           // share of the pupils that is not sampled
+  double mean = 0, worst = 1;  // fraction of samples that pass: mean and minimum over film points
+  double missed = 0;           // fraction of the pupils that is not sampled
 };
 
-/// Samples of film points at several radii. Two kinds of other rays measure the missed parts: rays in a band outside
-/// the polygon, of a tenth of its area, for small errors, and rays in a box 1.5 times as large as the polygon, for lost
-/// parts. Those that pass are missed.
+/// Coverage of pupils over film points at several radii. Missed light is counted by rays outside the polygon: rays in a
+/// band with a tenth of its area find small errors, rays in a box 1.5 times as large as the polygon find lost
+/// components.
 inline Coverage coverage(const Lens& lens, const FilmPupilTable& table, double radius, int points, int samples) {
   std::mt19937_64 random(points);
   std::uniform_real_distribution<double> unit(0, 1);

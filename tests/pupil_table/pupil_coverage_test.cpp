@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Tables hold the pupils of every lens, small ones and those in parts, and as far out as there is light.
+// Tables cover the pupils of every lens up to the edge of the image circle, including small and disconnected pupils.
 #include "pupil_coverage.hpp"
 
 #include <gtest/gtest.h>
@@ -29,7 +29,7 @@ using petzval::testing::passing;
 
 class DoubleGauss : public ::testing::TestWithParam<double> {};
 
-TEST_P(DoubleGauss, SamplesReachTheSceneAtEveryField) {
+TEST_P(DoubleGauss, SamplesPassAtEveryField) {
   const Lens lens = with_f_number(data_lens("double_gauss_100mm_f2.0"), GetParam());
   constexpr double corner = 40.4;  // mm, 22 degrees
   const Coverage c = coverage(lens, FilmPupilTable::enclosing(lens, corner), corner, 64, 8000);
@@ -50,7 +50,7 @@ TEST(FilmPupilTable, CoversThePupilsOfEveryLens) {
   }
 }
 
-TEST(FilmPupilTable, CoversSmallPupilsToo) {
+TEST(FilmPupilTable, CoversSmallPupils) {
   for (const auto& [id, f_number, radius] :
        {std::tuple{"petzval_100mm_f1.25", 16.0, 21.0}, std::tuple{"modern_58mm_f0.95", 64.0, 21.0},
         std::tuple{"catadioptric_mangin_1000mm_f7.5", 16.0, 21.6}, std::tuple{"fisheye_8mm_f2.8", 32.0, 8.0},
@@ -62,7 +62,7 @@ TEST(FilmPupilTable, CoversSmallPupilsToo) {
   }
 }
 
-// Aberrations move the pupil by more than its size, first order does not tell where it is.
+// Aberrations move the pupil by more than its size, so that first order does not predict its position.
 TEST(FilmPupilTable, CoversTheFilmBehindTinyStops) {
   for (const auto& [id, f_number, least] :
        {std::tuple{"modern_58mm_f0.95", 1e3, 0.9}, std::tuple{"biogon_35mm_f2.8", 1e3, 0.95},
@@ -77,8 +77,8 @@ TEST(FilmPupilTable, CoversTheFilmBehindTinyStops) {
   }
 }
 
-// The ends of pupils are known to parts of the lines along which they are looked for: a line across all of a face told
-// nothing of one that is 1e-9 of it.
+// The tolerance of edges is relative to the search line: a line across a face of 1e9 pupil diameters would not resolve
+// the pupil.
 TEST(FilmPupilTable, CoversTinyPupilsBehindHugeFaces) {
   const auto area = [](double semi_diameter) {
     Prescription p;
@@ -97,7 +97,7 @@ TEST(FilmPupilTable, CoversTinyPupilsBehindHugeFaces) {
     EXPECT_NEAR(area(semi_diameter) / wanted, 1, 0.02) << semi_diameter;
 }
 
-/// The share of the rays that pass, of rays all over what the film point sees of the last surface, outside its pupil.
+/// Fraction of the passing rays that lie outside the pupil; rays cover the last surface, seen from the film point.
 double missed_anywhere(const Lens& lens, const FilmPupilTable& table, const FilmPoint& film, double widths,
                        int side = 700) {
   const LensSurface& last = lens.surfaces().back();
@@ -120,8 +120,8 @@ double missed_anywhere(const Lens& lens, const FilmPupilTable& table, const Film
   return missed / all;
 }
 
-TEST(FilmPupilTable, CoversPupilsInParts) {
-  // Of the primoplan a sliver begins to show that is smaller than a 48th of the last surface.
+TEST(FilmPupilTable, CoversDisconnectedPupils) {
+  // The primoplan has a sliver that is smaller than 1/48 of the last surface.
   for (const auto& [id, f_number, radius, widths, side, most] :
        {std::tuple{"catadioptric_mangin_1000mm_f7.5", 16.0, 21.6, 1.2, 700, 1e-3},
         std::tuple{"primoplan_100mm_f1.9", 45.0, 39.5, 1.2, 700, 0.05}}) {
@@ -134,7 +134,7 @@ TEST(FilmPupilTable, CoversPupilsInParts) {
   }
 }
 
-// However far the film reaches beyond the image circle, the table has the circle's edge.
+// The table finds the edge of the image circle on films of any size.
 TEST(FilmPupilTable, FindsWhereTheLightEnds) {
   for (const auto& [id, radius] : {std::pair{"fisheye_8mm_f2.8", 13.0},
                                    {"phone_5.6mm_f3.5", 5.0},

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Cat's eyes that a rim cuts out of pupils.
+// Cat's eyes: pupils clipped by a rim.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -21,7 +21,7 @@ using testing::expect_error;
 
 constexpr double pi = std::numbers::pi, film_radius = 20;
 
-/// The area that two discs of radii 1 and r share at a distance.
+/// Area of the intersection of two discs of radii 1 and r at a distance.
 double lens_area(double r, double distance) {
   if (distance >= 1 + r) return 0;
   if (distance <= std::abs(1 - r)) return pi * std::min(1.0, r * r);
@@ -34,7 +34,7 @@ FilmPupilTable image(const Lens& lens, const Iris& iris) {
   return FilmPupilTable::of_iris(two_planes(lens), iris, {&of_stop, 1}, film_radius);
 }
 
-TEST(PupilRim, LeavesTheAreaThatBothDiscsShare) {
+TEST(PupilRim, AreaEqualsTheIntersectionOfDiscs) {
   const FilmPupilTable pupils = image(data_lens("double_gauss_100mm_f2.0"), {});
   for (const PupilRim& rim : {PupilRim{1, 0.05}, PupilRim{1.5, 0.08}, PupilRim{0.7, 0.06}, PupilRim{2, -0.1}}) {
     const FilmPupilTable cut = pupils.cut_by_rim(rim);
@@ -51,8 +51,8 @@ TEST(PupilRim, LeavesTheAreaThatBothDiscsShare) {
   }
 }
 
-// Every sample lies in the pupil before and in the disc, and both are covered, whatever the shape.
-TEST(PupilRim, LeavesWhatLiesInTheDisc) {
+// Samples lie in the unclipped pupil and in the disc and cover their intersection, for pupils of any kind.
+TEST(PupilRim, ClippedPupilIsThePartWithinTheDisc) {
   const Lens lens = data_lens("double_gauss_100mm_f2.0");
   const Iris blades{.blades = 5, .rotation_rad = 0.4};
   const PupilRim rim{1.2, 0.05};
@@ -89,14 +89,14 @@ TEST(PupilRim, LeavesWhatLiesInTheDisc) {
   }
 }
 
-TEST(PupilRim, RefusesWhatItCannotCut) {
+TEST(PupilRim, RefusesInvalidRimsAndPupils) {
   const Lens lens = data_lens("double_gauss_100mm_f2.0");
   const FilmPupilTable pupils = image(lens, {});
   for (const PupilRim& rim : {PupilRim{0, 0}, PupilRim{-1, 0}, PupilRim{std::nan(""), 0}, PupilRim{1, std::nan("")},
                               PupilRim{std::numeric_limits<double>::infinity(), 0}}) {
     expect_error([&] { pupils.cut_by_rim(rim); }, {"pupils", "rim", rim.ratio, rim.radii_per_mm});
   }
-  // At the limit all of the film beside the axis is dark, and samples stay finite.
+  // At the limit the film is dark except on the axis, and samples stay finite.
   const double most = 1e6 / pupils.film_radius();
   const FilmPupilTable narrow = pupils.cut_by_rim({1, most * (1 - 1e-12)});
   EXPECT_EQ(narrow.area({0, pupils.film_radius()}), 0);
