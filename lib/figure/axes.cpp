@@ -10,7 +10,7 @@
 namespace petzval::figure_detail {
 namespace {
 
-/// Calls draw(value, words) for round values within an axis.
+/// Calls draw(value, label) for round values within an axis.
 template <class Draw>
 void for_ticks(const Axis& axis, int most, Draw draw) {
   const double span = axis.to - axis.from;
@@ -58,7 +58,7 @@ Axes::Axes(Svg& svg, double x, double y, double width, double height, Axis horiz
             "text-anchor=\"middle\" transform=\"rotate(-90 " + svg_number(x_ - 48) + " " + svg_number(middle) + ")\"");
 }
 
-/// Liang and Barsky's algorithm: each border of the frame shortens the range 0 to 1.
+/// Clips by the algorithm of Liang and Barsky: each border of the frame shortens the range 0 to 1.
 Axes::Part Axes::within(const Point& a, const Point& b) const {
   Part part;
   const auto keep = [&part](double start, double change, const Axis& axis) {

@@ -15,26 +15,27 @@ namespace petzval::figure_detail {
 struct Axis {
   double from = 0, to = 1;
   std::string title;
-  bool powers_of_ten = false;  ///< values are decimal logarithms; ticks show the numbers
+  bool powers_of_ten = false;  ///< true: values are decimal logarithms; ticks show the numbers
 };
 
-/// A diagram: a frame with ticks at round values, and curves cut off at the frame.
+/// A diagram: a frame with ticks at round values, and curves clipped to the frame.
 class Axes {
  public:
   using Point = std::pair<double, double>;
 
-  /// x, y: of the frame's upper left corner, px. Draws frame, grid, ticks and titles, which take 64 px to the left and
-  /// 40 px below.
+  /// Draws frame, grid, ticks and titles. Labels need 64 px to the left of the frame and 40 px below.
+  ///
+  /// @param x, y  upper left corner of the frame, px
   Axes(Svg& svg, double x, double y, double width, double height, Axis horizontal, Axis vertical);
 
   double x(double value) const { return x_ + (value - across_.from) / (across_.to - across_.from) * width_; }
   double y(double value) const { return y_ + height_ - (value - up_.from) / (up_.to - up_.from) * height_; }
 
-  /// A line through points, clipped to the frame. Points that are not finite interrupt it.
+  /// Draws a polyline, clipped to the frame and interrupted at points that are not finite.
   void curve(std::span<const Point> points, std::string_view attributes);
 
-  /// Vertical lines through the whole frame, with names above it: a row of 15 px for each, the leftmost on top, so that
-  /// no line runs through a name. Marks outside are left out.
+  /// Vertical lines through the frame with names above, in a row of 15 px each. The leftmost is on top, so that no line
+  /// crosses a name. Marks outside the frame are left out.
   struct Mark {
     double value = 0;
     std::string_view name, attributes;
@@ -42,7 +43,7 @@ class Axes {
   void marks(std::vector<Mark> marks);
 
  private:
-  /// The part of the segment from a to b, 0 to 1, within the frame; empty where from > to.
+  /// The part of a segment within the frame, as fractions of its length; empty if from > to.
   struct Part {
     double from = 0, to = 1;
   };

@@ -47,17 +47,17 @@ class FocalSurfaceFigure {
     Svg svg(960, foot + 40);
     svg.text(figure_detail::sheet_margin, 26, view_.title, "font-size=\"17\" font-weight=\"bold\"");
     svg.text(figure_detail::sheet_margin, 46, std::string("Focal surface.  ") + std::string(view_.remark));
-    svg.text(figure_detail::sheet_margin, 64,
-             "Green: what is in focus in the section through the film's middle; pale: in sections beside it, at 0.4 "
-             "and 0.8 of "
-             "its half. Grey: what the film's edges see.");
+    svg.text(
+        figure_detail::sheet_margin, 64,
+        "Green: focal surface in the section through the film centre; pale: in parallel sections at 0.4 and 0.8 of "
+        "the half size. Grey: chief rays of the film edges.");
     svg.text(SceneFrame::left, top - 8, "From the side", figure_detail::small_text);
     svg.text(SceneFrame::left, second - 8, "From above", figure_detail::small_text);
     draw_section(svg, top, side, false);
     draw_section(svg, second, above, true);
     svg.text(figure_detail::sheet_margin, foot,
-             "Points of the picture are projected into both sections, at the distances that they have; the surface "
-             "passes those with a blur by.",
+             "Points of the image are projected into both sections at their true distances; the surface does not pass "
+             "through points with a blur.",
              figure_detail::small_text);
     return std::move(svg).finish();
   }
@@ -67,7 +67,7 @@ class FocalSurfaceFigure {
   double half(bool across_x) const { return (across_x ? view_.film.width_mm : view_.film.height_mm) / 2; }
   double middle(bool across_x) const { return across_x ? view_.film.shift_x_mm : view_.film.shift_y_mm; }
 
-  /// Slope of a film point's chief ray in the scene, mm across per mm away from the lens.
+  /// Slope of the chief ray of a film point in the scene, away from the lens.
   double chief_slope(const FilmPoint& place, bool across_x) const {
     const ScenePoint seen = view_.lens.scene_of(view_.film.position(place));
     const double z = seen.at_infinity ? seen.position.z : seen.position.z - entrance_z();
@@ -76,7 +76,8 @@ class FocalSurfaceFigure {
   SectionPoint at(const FilmPoint& place, double distance, bool across_x) const {
     return {entrance_z() - distance, chief_slope(place, across_x) * distance};
   }
-  /// A place of the film, in the section through its middle or beside it; t and beside from -1 to 1.
+  /// A film point in a section, by its position along the section and the offset of the section from the film centre,
+  /// both -1 to 1.
   FilmPoint place(double t, bool across_x, double beside = 0) const {
     const double along = middle(across_x) + t * half(across_x), other = middle(!across_x) + beside * half(!across_x);
     return across_x ? FilmPoint{along, other} : FilmPoint{other, along};
@@ -88,8 +89,7 @@ class FocalSurfaceFigure {
     for (int i = 0; i <= steps; ++i) {
       const FilmPoint film = place(2.0 * i / steps - 1, across_x, beside);
       const double inverse = view_.surface.at(film).inverse_distance;
-      // Beyond the panel the surface is not followed.
-      const bool shown = inverse * 4 * reach_ > 1;
+      const bool shown = inverse * 4 * reach_ > 1;  // the panel ends at reach_
       const auto now = shown ? std::optional(at(film, 1 / inverse, across_x)) : std::nullopt;
       if (before && now) panel.stroke(*before, *now, style);
       before = now;
@@ -110,7 +110,7 @@ class FocalSurfaceFigure {
     }
     for (const double beside : {-0.8, -0.4, 0.4, 0.8}) draw_surface(panel, across_x, beside, beside_style);
     draw_surface(panel, across_x, 0, focus_style);
-    // Lens and film would be too small to see to scale.
+    // At least 10 px: to scale, lens and film could be too small to see.
     const double least = 10 / frame.px_per_mm;
     const double pupil = std::max(view_.lens.pupils.entrance.diameter / 2, least);
     panel.stroke({entrance_z(), -pupil}, {entrance_z(), pupil}, lens_style);
@@ -132,8 +132,8 @@ class FocalSurfaceFigure {
 std::string focal_surface_figure(const FocalSurfaceView& view) {
   const Film& film = view.film;
   if (!(film.width_mm > 0 && film.height_mm > 0 && std::isfinite(film.z()))) {
-    throw Error("focal_surface_figure: the film is " + to_text(film.width_mm) + " x " + to_text(film.height_mm) +
-                " mm, wanted both above 0");
+    throw Error("focal_surface_figure: film size = " + to_text(film.width_mm) + " x " + to_text(film.height_mm) +
+                " mm at a finite z; both sides must be positive");
   }
   return FocalSurfaceFigure(view).draw();
 }

@@ -31,8 +31,8 @@ struct Parabola {
   double least_rms() const { return std::sqrt(std::max(0.0, least)); }
 };
 
-/// The parabola through the values at z - step, z and z + step. Nothing where it has no minimum: no rays, or parallel
-/// ones.
+/// The parabola through the values at z - step, z and z + step. nullopt if it has no minimum: there are no rays, or the
+/// rays are parallel.
 std::optional<Parabola> parabola(const std::array<double, 3>& values, double z, double step) {
   const double bend = (values[0] - 2 * values[1] + values[2]) / 2, slope = (values[2] - values[0]) / 2;
   if (!(bend > 0)) return std::nullopt;
@@ -64,7 +64,7 @@ std::vector<std::optional<Parabola>> parabolas(const Lens& lens, double subject_
   return result;
 }
 
-/// The mean of the parabolas of several fields, each with the same weight.
+/// The unweighted mean of the parabolas of several fields.
 std::optional<Parabola> mean(const std::vector<std::optional<Parabola>>& fields) {
   double count = 0, steepness = 0, moment = 0;
   for (const auto& f : fields) {
@@ -101,10 +101,10 @@ class FocusFigure {
     figure_detail::draw_head(svg, lens_, "Blur against film position", subject_z_, lens_.primary_wavelength());
     const bool micrometres = highest_ < 0.5;
     const double unit = micrometres ? 1e3 : 1;
-    figure_detail::Axes axes(svg, left, top, width - left - right, plot_height,
-                             {from_ - zero_, to_ - zero_,
-                              std::string("film shift from ") + (paraxial_ ? "paraxial focus" : "its place") + " (mm)"},
-                             {0, unit * highest_, std::string("RMS radius (") + (micrometres ? "\u00b5m)" : "mm)")});
+    figure_detail::Axes axes(
+        svg, left, top, width - left - right, plot_height,
+        {from_ - zero_, to_ - zero_, std::string("film shift") + (paraxial_ ? " from paraxial focus" : "") + " (mm)"},
+        {0, unit * highest_, std::string("RMS radius (") + (micrometres ? "\u00b5m)" : "mm)")});
 
     constexpr std::string_view film = "fill=\"none\" stroke=\"#111\" stroke-width=\"1.4\"";
     constexpr std::string_view thin = "fill=\"none\" stroke=\"#777\" stroke-width=\"0.8\"";
@@ -130,7 +130,7 @@ class FocusFigure {
                               name + (p ? ":  least RMS " + figure_detail::length_text(p->least_rms()) + " at " +
                                               signed_mm(p->best - zero_) + ",  " +
                                               figure_detail::length_text(p->rms(lens_.film_z())) + " on the film"
-                                        : ":  no focus: no ray passes, or all are parallel"));
+                                        : ":  no focus: no rays, or parallel rays"));
       y += row;
     };
     for (std::size_t i = 0; i < fields_.size(); ++i) {
@@ -143,7 +143,7 @@ class FocusFigure {
       entry("#111", "mean of the fields (dashed)", mean_);
     }
     svg.text(figure_detail::sheet_margin, y + 12,
-             "RMS radius about the centroid, all of the vignetted pupil by area" + wavelengths_in_words() +
+             "RMS radius about the centroid over the area of the vignetted pupil" + wavelengths_in_words() +
                  ". Mean: root of the mean square, fields with equal weight.",
              figure_detail::small_text);
     return std::move(svg).finish();
@@ -162,7 +162,7 @@ class FocusFigure {
     return (mm >= 0 ? "+" : "\u2212") + to_text(std::abs(mm) < 5e-7 ? 0.0 : std::abs(mm), 3) + " mm";
   }
 
-  /// The range of the horizontal axis: all marks, and a part of the curves on both sides.
+  /// Sets the ranges of the axes: all marks, and a part of the curves on both sides.
   void measure() {
     from_ = to_ = lens_.film_z();
     const auto take = [&](double z) { from_ = std::min(from_, z), to_ = std::max(to_, z); };
@@ -173,8 +173,8 @@ class FocusFigure {
     for (const auto& p : curves_) {
       if (p) take(p->best);
     }
-    // At least to where the axial curve is at three times its least, and a depth of focus, 4 lambda N^2, on both sides:
-    // the RMS radius of a uniform cone grows by 1 / sqrt(8) / N.
+    // On both sides at least the range in which the axial curve rises to three times its minimum, and a depth of focus,
+    // 4 lambda N^2: the RMS radius of a uniform cone grows by 1 / sqrt(8) / N.
     double pad = 0.25 * (to_ - from_);
     if (axis_) {
       const double lambda = lens_.wavelengths_nm()[lens_.primary_wavelength()] * 1e-6;
@@ -194,11 +194,11 @@ class FocusFigure {
   const Lens& lens_;
   double subject_z_;
   std::span<const double> fields_;
-  std::vector<double> weights_;                  // of the wavelengths
-  std::vector<std::optional<Parabola>> curves_;  // of fields_
+  std::vector<double> weights_;                  // one per wavelength
+  std::vector<std::optional<Parabola>> curves_;  // one per field
   std::optional<Parabola> axis_, mean_;
   bool paraxial_ = false;
-  double zero_ = 0;  // of the horizontal axis, lens frame
+  double zero_ = 0;  // z of the origin of the horizontal axis, lens frame
   double from_ = 0, to_ = 0, highest_ = 0;
 };
 
@@ -206,7 +206,7 @@ class FocusFigure {
 
 std::string focus_figure(const Lens& lens, double subject_z, std::span<const double> fields_rad,
                          std::span<const double> wavelength_weights) {
-  if (fields_rad.empty()) throw Error("focus_figure: no fields, wanted at least one");
+  if (fields_rad.empty()) throw Error("focus_figure: fields = 0; must be at least 1");
   return FocusFigure(lens, subject_z, fields_rad,
                      figure_detail::checked_weights("focus_figure", lens, wavelength_weights))
       .draw();

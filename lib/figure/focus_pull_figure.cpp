@@ -19,7 +19,7 @@ namespace {
 
 using Frames = std::span<const FocusPullFrame>;
 
-/// The value of one curve in a frame.
+/// A curve over time: its value in a frame, colour and name.
 struct Curve {
   std::function<double(const FocusPullFrame&)> value;
   std::string_view colour, name;
@@ -32,24 +32,24 @@ struct Diagram {
 };
 
 void check(Frames frames) {
-  if (frames.empty()) throw Error("focus_pull_figure: no frames, wanted one or more");
+  if (frames.empty()) throw Error("focus_pull_figure: frames = 0; must be at least 1");
   for (std::size_t i = 0; i < frames.size(); ++i) {
     const FocusPullFrame& f = frames[i];
     const std::string where = "focus_pull_figure: frame " + std::to_string(i) + ": ";
     if (!std::isfinite(f.time + f.film.z() + f.film.tilt_rad + f.film.swing_rad)) {
-      throw Error(where + "time, film or tilt is not a finite number, wanted such");
+      throw Error(where + "time, film or tilt is not a number; must be finite");
     }
     if (!(f.subject_distance > 0)) {
-      throw Error(where + "the distance in focus is " + to_text(f.subject_distance) + " mm, wanted more than 0");
+      throw Error(where + "subject_distance = " + to_text(f.subject_distance) + " mm; must be positive");
     }
-    if (std::isinf(f.rms_mm)) throw Error(where + "the blur is infinite, wanted a number, or none");
+    if (std::isinf(f.rms_mm)) throw Error(where + "rms_mm is infinite; must be finite or NaN");
     if (i > 0 && !(f.time > frames[i - 1].time)) {
-      throw Error(where + "at " + to_text(f.time) + " s, wanted it after the one before");
+      throw Error(where + "time = " + to_text(f.time) + " s; must be later than the previous frame");
     }
   }
 }
 
-/// The range of all values with some margin; an empty range is widened.
+/// The axis for all values of a diagram, with a margin; an empty range is widened.
 figure_detail::Axis spanning(Frames frames, const Diagram& diagram) {
   double low = std::numeric_limits<double>::infinity(), high = -low;
   for (const Curve& curve : diagram.curves) {
@@ -97,7 +97,7 @@ std::string focus_pull_figure(std::string_view title, std::string_view remark, F
     }
     double key_x = left + 10;
     for (const Curve& curve : diagram.curves) {
-      // The whole curve in grey, then the parts with focus points on top.
+      // The whole curve in grey, overdrawn by the parts with focus points.
       std::vector<figure_detail::Axes::Point> all, served;
       for (const FocusPullFrame& f : frames) {
         const double value = curve.value(f);
@@ -113,7 +113,7 @@ std::string focus_pull_figure(std::string_view title, std::string_view remark, F
   }
   svg.text(figure_detail::sheet_margin, foot + 4,
            "In focus: on the axis, from the " + std::string(distance_from) +
-               ", as 1/distance; 0 is infinity. Dotted: keys. Grey: no point to serve, the film stays.",
+               ", as 1/distance; 0 is infinity. Dotted: keys. Grey: no focus points, the film does not move.",
            figure_detail::small_text);
   return std::move(svg).finish();
 }

@@ -25,7 +25,7 @@ using figure_detail::svg_number;
 constexpr double cell = 220, gap = 14, top = 70, under = 68;
 constexpr std::size_t most_columns = 4;
 
-/// The surface and fate that end rays outside the boundary.
+/// The surface and fate of rays just outside the boundary.
 struct Limit {
   int surface = -1;
   RayFate fate = RayFate::vignetted;
@@ -57,7 +57,7 @@ struct Cell {
   PupilBoundary outline;
   std::optional<double> illumination;
   Box shown;
-  bool away = false;  ///< the paraxial pupil is left out
+  bool away = false;  ///< true: too far from the paraxial pupil to show both
 };
 
 class FootprintFigure {
@@ -82,7 +82,7 @@ class FootprintFigure {
     // The stop first: it is black in every lens.
     const int stop = static_cast<int>(pupils(lens, wavelength_).stop);
     std::ranges::sort(limits_, {}, [&](const Limit& a) { return std::tuple(a.surface != stop, a.surface, a.fate); });
-    half_ = half_ > 0 ? 1.1 * half_ : 1;  // the stop is closed
+    half_ = half_ > 0 ? 1.1 * half_ : 1;  // 1 if the stop is closed
   }
 
   std::string draw() const {
@@ -105,8 +105,8 @@ class FootprintFigure {
     const double y = keys + 20 * static_cast<double>(key_rows) + 2;
     figure_detail::draw_scale_bar(svg, gap, y, cell / 2 / half_, cell, ",  the same in all cells");
     svg.text(figure_detail::sheet_margin, y + 24,
-             "Rays of a point that pass the lens, in the plane of the entrance pupil, seen against the light's way; +y "
-             "up. The edge's colour names the surface that limits.",
+             "Rays of a point that pass the lens, in the plane of the entrance pupil, seen from the film side; +y up. "
+             "The colour of an edge names the limiting surface.",
              figure_detail::small_text);
     svg.text(figure_detail::sheet_margin, y + 40,
              "Dashed: paraxial entrance pupil. Fields of 89\u00b0 and more: in the plane perpendicular to the field.",
@@ -115,7 +115,7 @@ class FootprintFigure {
   }
 
  private:
-  /// Both pupils, as long as that leaves the real one large enough to be seen.
+  /// Sets the shown area: both pupils, or the real pupil only if it would be too small.
   Cell framed(Cell c) const {
     Box paraxial{-half_x_, half_x_, -half_y_, half_y_};
     c.shown = paraxial;
@@ -152,9 +152,9 @@ class FootprintFigure {
     const auto at = [&](const RimPoint& e) { return svg_number(x(e.x)) + " " + svg_number(y(e.y)); };
     svg.rect(left, upper, cell, cell, "fill=\"none\" stroke=\"#bbb\"");
 
-    // A span is joined to the span of the same rank in the next direction, where both have as many spans.
+    // A span is joined to the span of the same rank in the next direction, if both directions have as many spans.
     const auto& spans = c.outline.spans;
-    std::vector<std::pair<std::size_t, std::size_t>> of(c.outline.directions, {0, 0});  // first span and their number
+    std::vector<std::pair<std::size_t, std::size_t>> of(c.outline.directions, {0, 0});  // first span, number of spans
     for (std::size_t i = 0; i < spans.size(); ++i) {
       auto& [first, number] = of[spans[i].direction];
       if (number++ == 0) first = i;
@@ -210,17 +210,17 @@ class FootprintFigure {
   double subject_z_;
   std::span<const double> fields_;
   std::size_t wavelength_;
-  double half_x_ = 0, half_y_ = 0;  // of the paraxial entrance pupil
+  double half_x_ = 0, half_y_ = 0;  // semi-axes of the paraxial entrance pupil
   double axial_area_ = 0;
   std::vector<Cell> cells_;
   std::vector<Limit> limits_;
-  double half_ = 0;  // of a cell, mm
+  double half_ = 0;  // half the side of a cell, mm
 };
 
 }  // namespace
 
 std::string footprint_figure(const Lens& lens, double subject_z, std::span<const double> fields_rad) {
-  if (fields_rad.empty()) throw Error("footprint_figure: no fields, wanted at least one");
+  if (fields_rad.empty()) throw Error("footprint_figure: fields = 0; must be at least 1");
   return FootprintFigure(lens, subject_z, fields_rad).draw();
 }
 

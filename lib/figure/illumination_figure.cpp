@@ -18,7 +18,7 @@ namespace petzval {
 
 std::string illumination_figure(const Lens& lens, double subject_z, double field_rad) {
   if (!(field_rad > 0)) {
-    throw Error("illumination_figure: field is " + to_text(degrees(field_rad), 6) + " degrees, wanted more than 0");
+    throw Error("illumination_figure: field = " + to_text(degrees(field_rad), 6) + " degrees; must be positive");
   }
   constexpr int steps = 30;
   constexpr double width = 960, left = 78, top = 70, height = 300;
@@ -44,8 +44,8 @@ std::string illumination_figure(const Lens& lens, double subject_z, double field
   const double x = figure_detail::draw_key(svg, left, y, "#1f5fc4", "this lens, vignetting included");
   figure_detail::draw_key(svg, x + 30, y, "#888", "cos\u2074 of the field angle");
   svg.text(figure_detail::sheet_margin, y + 24,
-           "Irradiance of the film at the image of a uniform scene over that on the axis: n'\u00b2 times the projected "
-           "solid angle of the vignetted exit pupil.",
+           "Irradiance of the film for a uniform scene, relative to the axis: n'\u00b2 times the projected solid angle "
+           "of the vignetted exit pupil.",
            figure_detail::small_text);
   return std::move(svg).finish();
 }

@@ -26,7 +26,7 @@ using figure_detail::svg_number;
 
 constexpr double width = 960, side = 22, top = 64, bottom = 86, tallest = 520;
 
-/// The part of the section that the drawing shows.
+/// Bounds of the drawing in the section, mm.
 struct Box {
   double z_min = 0, z_max = 0, low = 0, high = 0;
 
@@ -101,13 +101,13 @@ class LayoutFigure {
     return {lens_.film_z(), last.height + ray.behind.height / ray.behind.z * (lens_.film_z() - last.z)};
   }
 
-  /// The end of a ray that runs away from the film: its image is virtual.
+  /// The drawn end of a ray that does not run towards the film: its image is virtual.
   SectionPoint past_lens(const RayPath& ray) const {
     const SectionPoint last = ray.hits.back();
     return {last.z + tail_ * ray.behind.z, last.height + tail_ * ray.behind.height};
   }
 
-  /// Lens and film first, then the rays in front of the lens, whose length depends on the size of both.
+  /// Sets bounds and scale. Lens and film come first: the length of rays in front of the lens depends on their size.
   void measure() {
     for (std::size_t i = 0; i < lens_.surface_count(); ++i) {
       for (const SectionLine& line : section_.surface(i)) {
@@ -120,7 +120,8 @@ class LayoutFigure {
     body_half_ = box_.high;
     box_.take({lens_.film_z(), 0});
     for (std::size_t field = 0; field < fields_.size(); ++field) {
-      // The ray nearest to the chief ray gives the height of the film: a marginal ray may run almost along it.
+      // The ray nearest to the chief ray gives the height of the film: a marginal ray may be almost parallel to the
+      // film.
       const RayPath* nearest = nullptr;
       for (const RayPath& ray : rays_) {
         if (ray.field != field || !arrives(ray)) continue;
@@ -151,8 +152,8 @@ class LayoutFigure {
     left_ = (width - (box_.z_max - box_.z_min) * scale_) / 2;
   }
 
-  /// Rays begin in one plane in front of the lens, or at the subject where that is nearer. A steep field begins on a
-  /// wavefront of its own: such rays come from the side or from behind.
+  /// Rays start in one plane in front of the lens, or at the subject if it is nearer. Rays of a steep field come from
+  /// the side or from behind and start on a wavefront.
   void start_rays(std::size_t field, double z_front) {
     const bool steep = std::abs(fields_[field]) > 0.95;  // rad
     double wavefront = 0;
@@ -183,7 +184,7 @@ class LayoutFigure {
     const std::size_t count = lens_.surface_count();
     const double image_index = lens_.index(count, wavelength_);
     if (image_index > 1.01 && lens_.film_z() > lens_.surfaces()[count - 1].vertex_z) {
-      // Glass, or the eye's humour, up to the film.
+      // Glass or another medium up to the film, as in the eye.
       SectionLine outline = section_.surface(count - 1).front();
       const double rim = outline.back().height;
       outline.push_back({lens_.film_z(), rim});
@@ -197,8 +198,8 @@ class LayoutFigure {
     }
   }
 
-  /// The end of the last segment of a ray, cut at a height: a surface has no point outside its rim, and a ray along the
-  /// film meets it far away.
+  /// The end of the last segment of a ray, clipped to a height: surfaces end at their rims, and a ray nearly parallel
+  /// to the film meets it far away.
   static SectionPoint cut(const SectionPoint& from, const SectionPoint& to, double limit) {
     if (std::abs(to.height) <= limit || std::abs(from.height) >= limit) return to;
     const double t = (std::copysign(limit, to.height) - from.height) / (to.height - from.height);
@@ -233,24 +234,24 @@ class LayoutFigure {
       const bool any = std::ranges::any_of(
           rays_, [&](const RayPath& ray) { return ray.field == field && ray.fate == RayFate::transmitted; });
       x = 21 + figure_detail::draw_key(svg, x, y + 26, figure_detail::field_colour(field),
-                                       figure_detail::field_text(fields_[field]) + (any ? "" : " (none passes)"));
+                                       figure_detail::field_text(fields_[field]) + (any ? "" : " (no rays)"));
     }
     svg.text(figure_detail::sheet_margin, y + 50,
-             "To scale. " + stop_in_words() + " Upright line: film. Glass: the darker, the higher its index.",
+             "To scale. " + stop_in_words() + " Upright line: film. Darker glass has a higher index.",
              figure_detail::small_text);
     if (!fields_.empty()) {
       svg.text(figure_detail::sheet_margin, y + 66,
-               "Rays: the chief ray, the outermost that pass and others between. Thin: rays through the stop's rim or "
-               "centre that end at a surface.",
+               "Rays: the chief ray, the outermost transmitted rays and others between. Thin: vignetted rays through "
+               "the rim or centre of the stop.",
                figure_detail::small_text);
     }
   }
 
   std::string stop_in_words() const {
-    if (!stop_) return "No stop: nothing limits the beam.";
+    if (!stop_) return "No stop: the beam is unlimited.";
     const std::string surface = "surface " + std::to_string(stop_->stop) + ".";
     if (!stop_->stop_inferred) return "Ticks: stop, " + surface;
-    const std::string why = lens_.stop() ? "the stop has no rim" : "none is marked as stop";
+    const std::string why = lens_.stop() ? "the stop has no rim" : "no surface is marked as stop";
     return "Dashed ticks: " + why + ", the beam is limited by " + surface;
   }
 
@@ -263,12 +264,12 @@ class LayoutFigure {
   LensSection section_;
   std::optional<Pupils> stop_;
   Box box_;
-  SectionLine starts_;    // of rays_
-  double film_half_ = 0;  // of the line that stands for the film
-  double body_half_ = 0;  // of the lens
+  SectionLine starts_;    // start points of rays_
+  double film_half_ = 0;  // half length of the line for the film
+  double body_half_ = 0;  // half height of the lens
   double film_and_body_half_ = 0;
-  double tick_ = 0;  // length of the stop's
-  double tail_ = 0;  // of rays in front of the lens
+  double tick_ = 0;  // length of the ticks of the stop
+  double tail_ = 0;  // length of rays in front of the lens
   double scale_ = 1, left_ = 0;
 };
 
@@ -277,7 +278,7 @@ class LayoutFigure {
 std::string layout_figure(const Lens& lens, double subject_z, std::span<const double> fields_rad,
                           const LayoutOptions& options) {
   if (options.rays < 3 || options.rays > 7) {
-    throw Error("layout_figure: " + std::to_string(options.rays) + " rays a field, wanted 3 to 7");
+    throw Error("layout_figure: rays = " + std::to_string(options.rays) + "; must be 3 to 7");
   }
   return LayoutFigure(lens, subject_z, fields_rad, options).draw();
 }

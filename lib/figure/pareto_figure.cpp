@@ -18,20 +18,20 @@ namespace {
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
 void check(std::span<const ParetoPoint> points) {
-  if (points.empty()) throw Error("pareto_figure: no points, wanted one or more");
+  if (points.empty()) throw Error("pareto_figure: points = 0; must be at least 1");
   for (const ParetoPoint& p : points) {
     const std::string where = "pareto_figure: " + std::string(p.name) + ": ";
     if (!(p.ns_per_ray > 0 && p.ns_per_ray < infinity)) {
-      throw Error(where + "takes " + to_text(p.ns_per_ray) + " ns, wanted a finite number above 0");
+      throw Error(where + "ns_per_ray = " + to_text(p.ns_per_ray) + "; must be positive and finite");
     }
     for (const double error : {p.max_um, p.rms_um}) {
       if (error >= 0 && error < infinity) continue;
-      throw Error(where + "an error is " + to_text(error) + " um, wanted a finite one, 0 or more");
+      throw Error(where + "error = " + to_text(error) + " um; must be finite, 0 or more");
     }
   }
 }
 
-/// The range of an axis in logarithms, rounded outwards to decades or parts of one.
+/// A logarithmic axis for the positive values, widened by a margin in decades.
 figure_detail::Axis decades(const std::vector<double>& values, double margin, std::string title) {
   double least = infinity, most = -infinity;
   for (const double value : values) {
@@ -77,7 +77,7 @@ std::string pareto_figure(std::string_view title, std::string_view remark, std::
     svg.circle(x, low, 3, "fill=\"#fff\" stroke=\"#888\"");
     svg.circle(x, high, 5, p.on_front ? "fill=\"#1f5fc4\"" : "fill=\"#fff\" stroke=\"#1f5fc4\" stroke-width=\"1.5\"");
   }
-  // Names to the right of their points, those of points that nearly coincide below one another.
+  // Names are to the right of their points. Names of points that nearly coincide are stacked.
   std::vector<std::pair<double, double>> taken;
   for (const ParetoPoint& p : points) {
     const double x = axes.x(std::log10(p.ns_per_ray)) + 9;
@@ -95,8 +95,8 @@ std::string pareto_figure(std::string_view title, std::string_view remark, std::
   figure_detail::draw_key(svg, x + 30, y, "#888", "RMS error");
   svg.text(
       figure_detail::sheet_margin, y + 24,
-      "Distance of rays from those of exact_double, carried back to the film by the chief ray's magnification, over "
-      "film, pupil and depths.",
+      "Distance of rays from exact_double rays, scaled to the film by the magnification of the chief ray, over film, "
+      "pupil and depths.",
       figure_detail::small_text);
   return std::move(svg).finish();
 }

@@ -11,7 +11,7 @@
 namespace petzval::figure_detail {
 namespace {
 
-/// The rays of one field, by their height in the stop: -1 to 1 in the section.
+/// The rays of one field, by their relative height in the stop, -1 to 1.
 class Fan {
  public:
   Fan(const Lens& lens, const FieldPoint& point, Meridian meridian, std::size_t wavelength)
@@ -23,7 +23,7 @@ class Fan {
   }
   bool passes(double height) const { return at(height).status == AimStatus::converged; }
 
-  /// The last height that passes, between one that does and one that does not.
+  /// The limit of the transmitted heights between a transmitted and a lost height, by bisection.
   double edge(double passing, double lost) const {
     for (int i = 0; i < 20; ++i) {
       const double middle = (passing + lost) / 2;
@@ -47,7 +47,7 @@ class Fan {
     for (std::size_t k = 0; k < count; ++k) {
       result.push_back(from + (to - from) * static_cast<double>(k) / static_cast<double>(count - 1));
     }
-    // The chief ray replaces its nearest neighbour between the edges; rays through the rim of the stop come last.
+    // The chief ray replaces the nearest inner ray; rays through the rim of the stop come last.
     if (from < 0 && to > 0) {
       *std::min_element(result.begin() + 1, result.end() - 1,
                         [](double a, double b) { return std::abs(a) < std::abs(b); }) = 0;

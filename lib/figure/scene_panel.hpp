@@ -12,13 +12,13 @@
 
 namespace petzval::figure_detail {
 
-/// Of the film's exposed part, of what is in focus, and of the axis.
+/// Line styles of the exposed part of the film, the plane or surface of focus, and the axis.
 inline constexpr std::string_view film_style = "fill=\"none\" stroke=\"#111\" stroke-width=\"2.6\"";
 inline constexpr std::string_view focus_style = "fill=\"none\" stroke=\"#1a8f3c\" stroke-width=\"2\"";
 inline constexpr std::string_view axis_style =
     "fill=\"none\" stroke=\"#888\" stroke-width=\"0.8\" stroke-dasharray=\"14 3 2 3\"";
 
-/// The part of a section that a panel shows, mm.
+/// Bounds of a panel in a section, mm.
 struct SectionBox {
   double z_min = 0, z_max = 0, low = 0, high = 0;
 
@@ -37,28 +37,31 @@ struct SectionBox {
 /// A line of a section: along z + across height = offset.
 struct SectionTrace {
   double along = 0, across = 0, offset = 0;
-  /// Above 0 on the side where the normal points.
+  /// Positive on the side of the normal.
   double side(const SectionPoint& p) const { return along * p.z + across * p.height - offset; }
 };
 
-/// The part of a convex outline on the side of a line to which its normal points.
+/// Clips a convex outline to the side of a line to which the normal points.
 SectionLine cut_off(const SectionLine& outline, const SectionTrace& line);
 
-/// The layout of a diagram with the same scale on both axes: the box, enlarged to the shape of its frame.
+/// The layout of a diagram with equal scales: the box, enlarged to the shape of its frame.
 struct SceneFrame {
   static constexpr double left = 78, width = 858;  ///< px
 
-  /// As large as the width and the tallest height (px) allow, at least `lowest` high, with a margin about the box.
+  /// @param content  the box to show; a margin is added
+  /// @param lowest   smallest height of the frame, px
+  /// @param tallest  largest height of the frame, px
   SceneFrame(SectionBox content, double lowest, double tallest);
 
   SectionBox box;
   double height = 0, px_per_mm = 1;
 };
 
-/// A part of a section, to scale, with ticks in mm or m. What is drawn ends at the frame.
+/// A scaled drawing of a section with ticks in mm or m, clipped to its frame.
 class ScenePanel {
  public:
-  /// y: top of the frame, px. across: name of the vertical axis, "y".
+  /// @param y       top of the frame, px
+  /// @param across  name of the vertical axis, for example "y"
   ScenePanel(Svg& svg, double y, const SceneFrame& frame, const std::string& across);
 
   double x(const SectionPoint& p) const { return axes_.x(unit_ * p.z); }
@@ -66,15 +69,15 @@ class ScenePanel {
   const SectionBox& box() const { return frame_.box; }
 
   void stroke(const SectionPoint& a, const SectionPoint& b, std::string_view attributes);
-  /// A line across the whole frame.
+  /// Draws a line across the whole frame.
   void line(const SectionTrace& line, std::string_view attributes);
-  /// A convex outline within the frame, or any that does not leave it.
+  /// Fills an outline that lies within the frame.
   void fill(const SectionLine& outline, std::string_view attributes);
-  /// The intersection of lines with its name; `lower`: px from its usual baseline.
+  /// Draws an intersection with its name, `lower_px` below the default baseline.
   void dot(const SectionPoint& p, std::string_view name, double lower_px);
-  /// A point of the scene or its image with its number; hollow where it was not used.
+  /// Draws a numbered scene or image point; hollow if it was not used.
   void mark(const SectionPoint& p, std::size_t number, bool used, double radius);
-  /// Text beside a point, within the frame.
+  /// Draws text next to a point, within the frame.
   void words(const SectionPoint& p, std::string_view words, double lower_px);
 
  private:

@@ -11,12 +11,12 @@
 namespace petzval::figure_detail {
 namespace {
 
-/// The surface's own sag at a height of the section; NaN where it has none.
+/// Sag of a surface at a height of the section; NaN if undefined.
 double sag_at(const Lens& lens, std::size_t surface, Meridian meridian, double height) {
   return meridian == Meridian::y ? sag(lens, surface, 0, height) : sag(lens, surface, height, 0);
 }
 
-/// The largest value in [low, high] for which `holds`, given that it holds at low and fails beyond some place.
+/// The largest value in [low, high] for which `holds` is true. It must be true at `low` and change at most once.
 template <class Predicate>
 double last_where(double low, double high, const Predicate& holds) {
   return holds(high) ? high : core_detail::last_with(low, high, holds);
@@ -45,7 +45,7 @@ bool LensSection::bends(std::size_t i) const {
   return lens_.surfaces()[i].mirror || lens_.index(i, wavelength_) != lens_.index(i + 1, wavelength_);
 }
 
-/// Whether a surface separates media that a drawing shows: gases are left out.
+/// True if the medium behind a surface is drawn: gases are left out.
 bool LensSection::glass_behind(std::size_t i) const { return lens_.index(i + 1, wavelength_) > 1.01; }
 
 double LensSection::farthest_defined(std::size_t surface, double height) const {
@@ -60,7 +60,7 @@ SectionLine LensSection::line(std::size_t surface, double from, double to) const
   constexpr int steps = 48;
   SectionLine result;
   for (int k = 0; k <= steps; ++k) {
-    // Denser towards the ends, where a deep surface is steep.
+    // Denser towards the ends, because a deep surface is steep there and needs more points.
     const double t = std::sin(std::numbers::pi * (static_cast<double>(k) / steps - 0.5)) / 2 + 0.5;
     const double height = k == steps ? to : from + t * (to - from);
     result.push_back({z(surface, height), height});
@@ -83,8 +83,8 @@ std::vector<SectionLine> LensSection::mirrors() const {
   return result;
 }
 
-/// The elements of a cemented group have one diameter, though tables often give the clear height of each surface. A
-/// polynomial is not extrapolated beyond its rim.
+/// Extends cemented surfaces to the rims of their neighbours. The elements of a cemented group have one diameter, but
+/// tables often list the clear height of each surface. Polynomials are not extrapolated beyond their rim.
 void LensSection::extend_cemented(const std::vector<std::size_t>& bending) {
   for (std::size_t k = 1; k + 1 < bending.size(); ++k) {
     const std::size_t before = bending[k - 1], i = bending[k], after = bending[k + 1];
@@ -97,16 +97,16 @@ void LensSection::extend_cemented(const std::vector<std::size_t>& bending) {
       return !std::isnan(sag_at(lens_, i, meridian_, h)) && (h > rims_[before] || sense * gap(before, i, h) > 0) &&
              (h > rims_[after] || sense * gap(i, after, h) > 0);
     });
-    // All the way or not at all: a part would be neither the table nor the glass.
+    // A partial extension would match neither the table nor the real glass.
     if (reach == wanted) drawn_[i] = reach;
   }
 }
 
-/// From the upper rim of the front surface to that of the back one, both ends left out.
+/// The outline from the upper rim of the front surface to the upper rim of the back surface, without both ends.
 SectionLine LensSection::edge(std::size_t front, std::size_t back, const Edge& edge) const {
   const auto [f, b] = edge;
   if (f == b) return {};
-  // The flat ring stands at the rim of the lower surface, if the higher one stays clear of it.
+  // The flat ring is at the rim of the lower surface, if it does not cut the higher surface.
   const bool front_lower = f < b;
   const double flat_z = front_lower ? z(front, f) : z(back, b);
   const SectionLine higher = front_lower ? line(back, f, b) : line(front, b, f);
@@ -118,12 +118,12 @@ SectionLine LensSection::edge(std::size_t front, std::size_t back, const Edge& e
 
 GlassBody LensSection::body(std::size_t first, std::size_t second, double index) const {
   const auto surfaces = lens_.surfaces();
-  // Light runs either way through a body behind mirrors.
+  // Behind mirrors, light may pass a body in the opposite direction.
   const bool forwards = surfaces[first].vertex_z <= surfaces[second].vertex_z;
   const std::size_t front = forwards ? first : second, back = forwards ? second : first;
   Edge edges{drawn_[front], drawn_[back]};
 
-  // Rims may lie beyond the circle where both surfaces meet: the glass ends there.
+  // If the surfaces intersect inside their rims, the glass ends at the intersection.
   const double common = std::min(edges.front, edges.back);
   const double meet = last_where(0, common, [&](double h) { return gap(front, back, h) >= 0; });
   if (meet < common && gap(front, back, 0) >= 0) edges = {meet, meet};

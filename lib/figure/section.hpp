@@ -11,32 +11,33 @@
 
 namespace petzval::figure_detail {
 
-/// A point of a section through the axis: z, and the height y (or x) in it. Lens frame, mm.
+/// A point of a section through the axis: z and the height y or x (lens frame, mm).
 struct SectionPoint {
   double z = 0, height = 0;
 };
 using SectionLine = std::vector<SectionPoint>;
 
-/// A glass element of a lens: one closed outline, or two where it has a central hole.
+/// A glass element of a lens: one closed outline, or two if it has a central hole.
 struct GlassBody {
   double index = 1;
   std::vector<SectionLine> outlines;
 };
 
-/// The section of a lens by the plane y-z (or x-z).
+/// The section of a lens in the plane y-z or x-z.
 class LensSection {
  public:
-  /// needed: for each surface the largest height of the rays on it, the rim of surfaces without one.
+  /// @param needed  largest ray height on each surface, used for surfaces without a rim
   LensSection(const Lens& lens, Meridian meridian, std::span<const double> needed, std::size_t wavelength);
 
-  /// The glass between surfaces at which the index changes. Rims of different height are joined by a flat ring at the
-  /// lower rim and the cylinder of the higher one, or by a straight edge where the ring would cut the other surface.
-  /// Cemented surfaces reach as far as their neighbours.
+  /// The glass between surfaces at which the index changes.
+  ///
+  /// Rims of different height are joined by a flat ring at the lower rim and a cylinder at the higher rim, or by a
+  /// straight edge if the ring would cut the other surface. Cemented surfaces extend to their neighbours' rims.
   std::vector<GlassBody> bodies() const;
 
   std::vector<SectionLine> mirrors() const;
 
-  /// A surface from its lower rim to its upper one; two pieces where it has a hole.
+  /// A surface from its lower to its upper rim; two pieces if it has a hole.
   std::vector<SectionLine> surface(std::size_t i) const;
 
   double z(std::size_t surface, double height) const;
@@ -60,7 +61,7 @@ class LensSection {
   Meridian meridian_;
   std::size_t wavelength_;
   std::vector<double> rims_;
-  std::vector<double> drawn_;  ///< rims, cemented surfaces extended
+  std::vector<double> drawn_;  ///< rims after extending cemented surfaces
 };
 
 }  // namespace petzval::figure_detail

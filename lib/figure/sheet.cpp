@@ -14,7 +14,7 @@
 namespace petzval::figure_detail {
 namespace {
 
-/// Width of small text, close enough to place text after it.
+/// Approximate width of text, px, to place the next text.
 double width_of(std::string_view text) { return 6.4 * static_cast<double>(text.size()); }
 
 std::string focal_length_text(const Lens& lens, std::size_t wavelength) {
@@ -90,7 +90,7 @@ std::string weights_text(std::span<const double> weights) {
 }
 
 RayBundle weighted(RayBundle bundle, double weight) {
-  if (weight == 0) bundle.x.clear(), bundle.y.clear();  // no light: not in the largest radius either
+  if (weight == 0) bundle.x.clear(), bundle.y.clear();  // the largest radius ignores weights
   bundle.weights.assign(bundle.x.size(), weight);
   return bundle;
 }

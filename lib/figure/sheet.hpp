@@ -11,36 +11,36 @@
 #include "petzval/pupil/ray_bundle.hpp"
 #include "svg.hpp"
 
-/// What the figures share: head line, colours of fields, scale bar, lengths as text.
+/// Shared elements of figures: head line, colours of fields, scale bar, lengths as text.
 namespace petzval::figure_detail {
 
 inline constexpr double sheet_margin = 14;  ///< px, left of all text
 inline constexpr std::string_view small_text = "font-size=\"11\" fill=\"#555\"";
 inline constexpr std::string_view small_centred = "font-size=\"11\" fill=\"#555\" text-anchor=\"middle\"";
 
-/// The largest of 1, 2 or 5 times a power of ten that is not above x.
+/// Rounds down to 1, 2 or 5 times a power of ten.
 double round_length(double x);
 
-/// "20 um" (with the Greek letter), "5 mm", "2 m": in the unit that reads best, three digits.
+/// A length with a suitable unit, for example "20 um" (with the Greek letter), "5 mm" or "2 m".
 std::string length_text(double mm);
 
-/// "10 degrees" with its sign.
+/// A field angle in degrees, with the degree sign.
 std::string field_text(double field_rad);
 
-/// Colour of a field, by its place in the list; the same in every figure of a lens.
+/// Colour of a field by its index; the same in every figure of a lens.
 std::string_view field_colour(std::size_t field);
 
 /// Colour of glass in a section: from pale to deep as the index goes from 1.4 to 1.95.
 std::string glass_colour(double index);
 
-/// The name of the lens, and a line with the kind of figure, focal length, f-number, subject, film and wavelength.
-/// Takes the top 56 px.
+/// Draws the name of the lens, and a line with the kind of figure, focal length, f-number, subject, film and
+/// wavelength, in the top 56 px.
 void draw_head(Svg& svg, const Lens& lens, std::string_view kind, double subject_z, std::size_t wavelength);
 
 /// Weights of the compiled wavelengths: the given weights, or equal weights if `weights` is empty.
 ///
-/// @param where  the figure's name, for messages
-/// @throws Error  for weights that are not one per wavelength, below 0, not finite, or all 0
+/// @param where   name of the figure, for messages
+/// @throws Error  if the weights are negative, not finite, all 0 or of the wrong number
 std::vector<double> checked_weights(std::string_view where, const Lens& lens, std::span<const double> weights);
 
 /// "equal weight", or "weights 1, 0.5, 1" in the order of the compiled wavelengths.
@@ -49,11 +49,14 @@ std::string weights_text(std::span<const double> weights);
 /// Gives every ray of a bundle the weight of its wavelength.
 RayBundle weighted(RayBundle bundle, double weight);
 
-/// A bar of round length, at most `longest` px, with its left end at (x, y) and its length as text to the right.
-/// Returns about where the text ends.
+/// Draws a bar of round length, at most `longest` px, with its left end at (x, y) and its length as text.
+///
+/// @return approximate x of the end of the text
 double draw_scale_bar(Svg& svg, double x, double y, double px_per_mm, double longest, std::string_view remark = {});
 
-/// A coloured stroke and its meaning, from (x, y). Returns about where the text ends.
+/// Draws a coloured stroke and its meaning from (x, y).
+///
+/// @return approximate x of the end of the text
 double draw_key(Svg& svg, double x, double y, std::string_view colour, std::string_view words);
 
 }  // namespace petzval::figure_detail

@@ -23,12 +23,12 @@ using figure_detail::small_text;
 using figure_detail::Svg;
 using figure_detail::svg_number;
 
-constexpr double cell = 190, gap = 14, under = 22;  // a cell, between cells, for the line below one
+constexpr double cell = 190, gap = 14, under = 22;  // side of a cell, space between cells, height of the line below
 constexpr double left = 118, top = 112, bottom = 76;
 constexpr std::size_t drawn_rays = 600;
 
-/// Colour and marker of a wavelength: blue, green and red for up to three, as usual for F, d and C; else from violet to
-/// brown by rank.
+/// Colour and marker of a wavelength: blue, green and red for up to three wavelengths, as is customary for F, d and C;
+/// from violet to brown by rank for more.
 struct Look {
   std::string_view colour;
   std::size_t marker;
@@ -49,7 +49,7 @@ std::vector<Look> looks(std::span<const double> wavelengths_nm) {
   return result;
 }
 
-/// One marker as path commands: plus, cross, square, triangle, diamond by turns.
+/// Path commands of a marker: plus, cross, square, triangle or diamond.
 std::string marker(std::size_t kind, double x, double y) {
   const auto at = [](double px, double py) { return "M" + svg_number(px) + " " + svg_number(py); };
   switch (kind % 5) {
@@ -105,7 +105,7 @@ class SpotFigure {
   double cell_x(std::size_t column) const { return left + static_cast<double>(column) * (cell + gap); }
   double cell_y(std::size_t row) const { return top + static_cast<double>(row) * (cell + under + gap); }
 
-  /// The farthest hit from its row's origin, along x or y.
+  /// Largest distance of a hit from the origin of its row, along x or y.
   double extent() const {
     double farthest = 0;
     for (std::size_t row = 0; row < rows_; ++row) {
@@ -185,17 +185,17 @@ class SpotFigure {
         gap, y + 24,
         "Origin: centroid of all rays of the field. RMS and max: radii about the centroid of the rays in the cell. "
         "Wavelengths have " +
-            figure_detail::weights_text(weights_) + ". Chief ray: through the stop's centre.",
+            figure_detail::weights_text(weights_) + ". Chief ray: through the centre of the stop.",
         small_text);
     // A closed stop has no Airy circle.
     const std::string circle = !std::isfinite(f_number_)
                                    ? std::string()
                                    : "Dashed: Airy circle, 1.22 wavelength N, N = " + to_text(f_number_, 3) +
-                                         " on the film's side; " + figure_detail::length_text(airy(middle_)) + " at " +
+                                         " on the film side; " + figure_detail::length_text(airy(middle_)) + " at " +
                                          to_text(lens_.wavelengths_nm()[middle_], 6) + " nm. ";
     svg_.text(gap, y + 40,
-              circle + std::to_string(spots_.front().hits.sent) + " rays sent a spot, " + std::to_string(drawn_rays) +
-                  " drawn at most.",
+              circle + std::to_string(spots_.front().hits.sent) + " rays sent per spot, at most " +
+                  std::to_string(drawn_rays) + " drawn.",
               small_text);
   }
 
@@ -203,12 +203,12 @@ class SpotFigure {
   std::span<const Spot> spots_;
   std::vector<double> weights_;
   std::size_t wavelengths_, rows_, columns_;
-  std::size_t middle_ = 0;  // the median wavelength, for what has one wavelength
+  std::size_t middle_ = 0;  // the median wavelength, for elements of a single wavelength
   std::vector<Look> looks_;
   double f_number_;
   Svg svg_;
-  std::vector<SpotSize> sizes_;  // of a row
-  double limit_ = 0;             // half a cell, mm
+  std::vector<SpotSize> sizes_;  // one per row
+  double limit_ = 0;             // half the side of a cell, mm
 };
 
 }  // namespace
@@ -218,7 +218,7 @@ std::string spot_figure(const Lens& lens, std::span<const Spot> spots, std::span
   bool ordered = !spots.empty() && spots.size() % wavelengths == 0;
   for (std::size_t i = 0; ordered && i < spots.size(); ++i) ordered = spots[i].wavelength == i % wavelengths;
   if (!ordered) {
-    throw Error("spot_figure: " + std::to_string(spots.size()) + " spots, wanted fields by " +
+    throw Error("spot_figure: spots = " + std::to_string(spots.size()) + "; must be fields by " +
                 std::to_string(wavelengths) + " wavelengths in the order of spot_diagram");
   }
   return SpotFigure(lens, spots, figure_detail::checked_weights("spot_figure", lens, wavelength_weights)).draw();

@@ -15,15 +15,15 @@ std::string attribute(std::string_view name, double value) {
   return " " + std::string(name) + "=\"" + svg_number(value) + "\"";
 }
 
-/// Whether XML 1.0 has a character of UTF-8 (its production 2).
+/// True if a UTF-8 character is allowed in XML 1.0 (production 2).
 bool is_in_xml(std::string_view character) noexcept {
   if (character == "\xEF\xBF\xBE" || character == "\xEF\xBF\xBF") return false;  // U+FFFE, U+FFFF
   const auto first = static_cast<unsigned char>(character[0]);
   return first >= ' ' || first == '\t' || first == '\n' || first == '\r';
 }
 
-/// Words as the content of an element of XML: & < > by their names. What is no character of XML becomes U+FFFD: a
-/// single one makes a figure that no program opens.
+/// Escapes text as the content of an XML element. Invalid characters become U+FFFD, because programs refuse a figure
+/// with a single invalid character.
 std::string escaped_xml(std::string_view words) {
   std::string result;
   for (std::size_t i = 0; i < words.size();) {

@@ -6,15 +6,15 @@
 
 namespace petzval::figure_detail {
 
-/// A length in an SVG file, to 1/100 of a pixel, whatever the locale.
+/// A coordinate for an SVG file, rounded to 1/100 of a pixel, independent of the locale.
 std::string svg_number(double value);
 
-/// The text of an SVG file under construction. Coordinates in pixels, y down.
+/// Builder of an SVG file. Coordinates in pixels, y down.
 class Svg {
  public:
   Svg(double width, double height);
 
-  /// attributes: as in SVG, 'fill="none" stroke="#888"'.
+  /// @param attributes  SVG attributes, for example 'fill="none" stroke="#888"'
   void rect(double x, double y, double width, double height, std::string_view attributes);
   void circle(double x, double y, double radius, std::string_view attributes);
   void ellipse(double x, double y, double half_width, double half_height, std::string_view attributes);

@@ -41,17 +41,17 @@ constexpr std::string_view wedge_style = "fill=\"#dff2e3\"";
 void check(const TiltView& view) {
   for (const Film* film : {&view.before, &view.after}) {
     if (!(film->width_mm > 0 && film->height_mm > 0)) {
-      throw Error("tilt_figure: the film is " + to_text(film->width_mm) + " x " + to_text(film->height_mm) +
-                  " mm, wanted both above 0");
+      throw Error("tilt_figure: film size = " + to_text(film->width_mm) + " x " + to_text(film->height_mm) +
+                  " mm; must be positive");
     }
     if (std::isfinite(film->z() + film->tilt_rad + film->swing_rad)) continue;
-    throw Error("tilt_figure: a film stands at z = " + to_text(film->z()) + " mm, tilt " + to_text(film->tilt_rad) +
-                ", swing " + to_text(film->swing_rad) + ", wanted finite numbers");
+    throw Error("tilt_figure: film z = " + to_text(film->z()) + " mm, tilt = " + to_text(film->tilt_rad) +
+                ", swing = " + to_text(film->swing_rad) + "; must be finite");
   }
-  if (!(view.blur_mm > 0)) throw Error("tilt_figure: blur is " + to_text(view.blur_mm) + " mm, wanted more than 0");
+  if (!(view.blur_mm > 0)) throw Error("tilt_figure: blur = " + to_text(view.blur_mm) + " mm; must be positive");
 }
 
-/// Rounded to 1e-5 degrees, as fits end within less than that; never "-0".
+/// An angle, rounded to 1e-5 degrees because fits converge within less; never "-0".
 std::string degrees_text(double angle_rad) {
   return to_text(std::round(1e5 * degrees(angle_rad)) / 1e5 + 0.0, 4) + "\u00b0";
 }
@@ -88,7 +88,7 @@ class TiltFigure {
     svg.text(SceneFrame::left, top - 8,
              film_.tilted() ? "The scene, and the planes that meet in one line" : "The scene",
              figure_detail::small_text);
-    svg.text(SceneFrame::left, second - 8, "The lens and its film; small dots: where the lens images the points",
+    svg.text(SceneFrame::left, second - 8, "The lens and its film; small dots: images of the points",
              figure_detail::small_text);
     draw_scene(svg, top, scene);
     draw_close(svg, second, close);
@@ -101,7 +101,7 @@ class TiltFigure {
   SectionTrace trace(const Plane& plane) const { return {plane.normal.z, glm::dot(plane.normal, up_), plane.offset}; }
   static SectionTrace across_axis(double z) { return {1, 0, z}; }
 
-  /// "y"; "x"; "y turned 30 degrees to +x".
+  /// Name of the vertical axis: "y", "x" or, for example, "y turned by 30 degrees towards +x".
   std::string across_name() const {
     const double turn = std::atan2(up_.x, up_.y);
     constexpr double hardly = 0.01;
@@ -146,8 +146,8 @@ class TiltFigure {
     return {section(middle - film_half_ * along), section(middle + film_half_ * along)};
   }
 
-  /// Of the film's line with the rear principal plane: for an ideal lens as high as that of the plane of focus with the
-  /// front one.
+  /// Intersection of the film with the rear principal plane. For an ideal lens it has the same height as the
+  /// intersection of the plane of focus with the front principal plane.
   std::optional<SectionPoint> rear_meeting() const {
     const SectionTrace film = trace(film_.plane());
     const double z = view_.lens.rear_principal_z(), height = (film.offset - film.along * z) / film.across;
@@ -171,7 +171,7 @@ class TiltFigure {
         if (line && std::abs(section(line->point).height) < 0.6 * reach) box.take(section(line->point));
       }
     }
-    // Unused points where they are near.
+    // Unused points are included only if they are near.
     for (const TiltFigurePoint& p : view_.points) {
       if (p.used || p.place.at_infinity) continue;
       const SectionPoint at = section(p.place.position);
@@ -200,9 +200,11 @@ class TiltFigure {
     return box;
   }
 
-  /// Films parallel to this one on which the discs of what is sharp here are just too large, turned into planes: both
-  /// go through the hinge line. (Of a chief ray from the exit pupil's centre E to the image I the disc on a film with
-  /// the normal n is D n.(F - I) / n.(I - E), so that all I of one disc lie in a plane across n.)
+  /// A limit of the sharp region: the plane of focus of the parallel film on which a sharp point has a disc of diameter
+  /// `blur`. It contains the hinge line.
+  ///
+  /// The chief ray from the centre E of the exit pupil to the image I makes a disc of D n.(F - I) / n.(I - E) on a film
+  /// through F with the normal n. All I with equal discs therefore lie in a plane with the normal n.
   std::optional<FocusPlane> limit(double blur) const {
     const Pupil& exit = view_.lens.pupils.exit;
     Film film = ideal_;
@@ -297,7 +299,7 @@ class TiltFigure {
     panel.dot(meeting, "Scheimpflug line", 16);
   }
 
-  /// Towards a point at infinity: a stroke at the frame on the side of the scene.
+  /// Draws the direction to a point at infinity as a stroke at the frame.
   void draw_direction(ScenePanel& panel, const SectionBox& box, std::size_t i) const {
     const SectionPoint d = section(view_.points[i].place.position);
     if (!(d.z < 0)) return;
@@ -354,22 +356,21 @@ class TiltFigure {
     std::string wedge = "Pale green: blurred by at most " + figure_detail::length_text(view_.blur_mm) + ".";
     svg.text(figure_detail::sheet_margin, y + 26, wedge + " " + lines_in_words(), figure_detail::small_text);
     svg.text(figure_detail::sheet_margin, y + 42,
-             "The section holds the axis and the normal of the plane of focus; points are projected into it. Hollow: "
-             "takes no "
-             "part." +
-                 std::string(view_.focus ? " Cardinal points tell all but the film." : ""),
+             "The section contains the axis and the normal of the plane of focus; points are projected into the "
+             "section. Hollow: unused." +
+                 std::string(view_.focus ? " Based on cardinal points, except for the film." : ""),
              figure_detail::small_text);
     if (!thin() && film_.tilted()) {
       svg.text(figure_detail::sheet_margin, y + 58,
-               "The film's plane meets the rear principal plane (H') as far from the axis as the plane of focus meets "
-               "the front one (H)" +
-                   std::string(view_.focus ? ", but for aberrations" : "") + ": the violet line joins the two.",
+               "The film plane meets the rear principal plane (H') at the same height as the plane of focus meets the "
+               "front one (H)" +
+                   std::string(view_.focus ? ", except for aberrations" : "") + ": the violet line joins the two.",
                figure_detail::small_text);
     }
   }
 
   std::string lines_in_words() const {
-    if (!focus_) return "What is in focus lies at infinity.";
+    if (!focus_) return "The plane of focus is at infinity.";
     if (!focus_->hinge || !focus_->scheimpflug) return "An upright film: no hinge line.";
     const auto height = [&](const SpaceLine& line) { return figure_detail::length_text(section(line.point).height); };
     return "Hinge line (in the front focal plane) at " + height(*focus_->hinge) + ", Scheimpflug line at " +
@@ -377,10 +378,10 @@ class TiltFigure {
   }
 
   const TiltView& view_;
-  Film film_;   ///< as it is
-  Film ideal_;  ///< as the ideal lens has it for the plane of focus
+  Film film_;   ///< the actual film
+  Film ideal_;  ///< the film of the ideal lens for the plane of focus
   std::optional<FocusPlane> focus_, focus_before_;
-  Vec3<double> up_{0, 1, 0};  ///< across the axis, in the section
+  Vec3<double> up_{0, 1, 0};  ///< the vertical direction of the section, perpendicular to the axis
   std::vector<std::optional<ImagePoint>> images_;
   double film_half_ = 0, lens_half_ = 0;
   std::vector<figure_detail::GlassBody> bodies_;
