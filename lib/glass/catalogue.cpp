@@ -170,7 +170,7 @@ GlassCatalogue with_glasses(const GlassCatalogue& catalogue, std::vector<Glass> 
 std::vector<const Glass*> nearest_glasses(const GlassCatalogue& catalogue, double nd, std::optional<double> vd,
                                           std::size_t count) {
   if (!std::isfinite(nd) || !std::isfinite(vd.value_or(0))) {
-    throw Error("nearest_glasses: n_d, V_d = " + to_text(nd) + ", " + to_text(vd.value_or(0)) + "; must be finite");
+    throw Error("nearest_glasses: n_d = " + to_text(nd) + ", V_d = " + to_text(vd.value_or(0)) + "; must be finite");
   }
   const auto distance = [&](const Glass& glass) {
     return std::hypot((glass.nd - nd) / 0.001, vd ? (glass.vd - *vd) / 0.5 : 0.0);

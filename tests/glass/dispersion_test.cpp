@@ -193,7 +193,7 @@ TEST(Dispersion, TheEndsOfTheRangeBelongToIt) {
 
 TEST(Dispersion, NoIndexComesFromBeyondAPole) {
   using enum DispersionFormula;
-  const std::string at = "test X: square of the index at 500 nm is ";
+  const std::string at = "test X: square of the index at 500 nm = ";
   expect_error([] { refractive_index(made_up(sellmeier, {0, 1, 0.25}), 500); }, {at, "inf"});
   expect_error([] { refractive_index(made_up(sellmeier, {0, 1, 0.5}), 500); }, {at, 0});
   expect_error([] { refractive_index(made_up(polynomial, {1e-6}), 500); }, {at, "1e-06"});
