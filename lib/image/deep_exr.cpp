@@ -28,9 +28,9 @@
 namespace petzval {
 namespace {
 
-constexpr std::uint64_t most = std::uint64_t(1) << 27;  // pixels, and samples: 3 GiB of numbers
+constexpr std::uint64_t most = std::uint64_t(1) << 27;  // limit of pixels and of samples: 3 GiB of values
 
-/// One number of all samples of some rows, with the pointers to those of a pixel that OpenEXR wants.
+/// One channel of all samples of some rows, with the pointers per pixel that OpenEXR requires.
 struct DeepPlane {
   std::vector<float> values;
   std::vector<float*> begins;
@@ -57,21 +57,21 @@ Imf::Slice count_slice(std::vector<std::uint32_t>& counts, const Imath::Box2i& r
           sizeof(std::uint32_t) * width};
 }
 
-/// Which channel is read as red, green, blue and alpha.
+/// Names of the channels for red, green, blue and alpha; alpha is empty if there is no channel A.
 std::array<std::string, 4> colours_of(const Imf::ChannelList& channels) {
-  if (!channels.findChannel("Z")) throw Error("no channel Z, wanted depths");
+  if (!channels.findChannel("Z")) throw Error("channel Z is missing; must have depths");
   const std::string alpha = channels.findChannel("A") ? "A" : "";
   if (channels.findChannel("R") && channels.findChannel("G") && channels.findChannel("B"))
     return {"R", "G", "B", alpha};
   if (channels.findChannel("Y")) return {"Y", "Y", "Y", alpha};
-  throw Error("neither channels R, G and B nor Y, wanted colours");
+  throw Error("channels R, G and B, or Y, are missing; must have colours");
 }
 
 DeepPicture read(const std::filesystem::path& file, double unit_mm) {
   Imf::MultiPartInputFile in(file.string().c_str(), 0);
   int part = 0;
   while (part < in.parts() && !(in.header(part).hasType() && in.header(part).type() == Imf::DEEPSCANLINE)) ++part;
-  if (part == in.parts()) throw Error("no part with deep scan lines, wanted a deep picture");
+  if (part == in.parts()) throw Error("no part has deep scan lines; must be a deep image");
   const Imf::Header& header = in.header(part);
   const std::array<std::string, 4> names = colours_of(header.channels());
   const bool has_back = header.channels().findChannel("ZBack") != nullptr;
@@ -79,13 +79,13 @@ DeepPicture read(const std::filesystem::path& file, double unit_mm) {
   const auto width = std::uint64_t(std::int64_t(window.max.x) - window.min.x + 1),
              height = std::uint64_t(std::int64_t(window.max.y) - window.min.y + 1);
   if (width > most || height > most || width * height > most) {
-    throw Error("is " + std::to_string(width) + " x " + std::to_string(height) + ", wanted " + std::to_string(most) +
-                " pixels or fewer");
+    throw Error("size = " + std::to_string(width) + " x " + std::to_string(height) + "; must be at most " +
+                std::to_string(most) + " pixels");
   }
-  // Deflate makes 1032 bytes of one: counts of 4 bytes, and samples of 2 and more.
-  const std::string no_room = ", wanted no more than the file has room for";
+  // Deflate expands a byte to at most 1032 bytes. Counts take 4 bytes, samples 2 or more.
+  const std::string no_room = "; must not exceed the size of the file";
   if (!image_detail::has_room_for(width * height, 1 << 9, file)) {
-    throw Error("claims " + std::to_string(width) + " x " + std::to_string(height) + " pixels" + no_room);
+    throw Error("size = " + std::to_string(width) + " x " + std::to_string(height) + " pixels" + no_room);
   }
   DeepPicture picture;
   FragmentLists& lists = picture.lists;
@@ -97,7 +97,8 @@ DeepPicture read(const std::filesystem::path& file, double unit_mm) {
   std::vector<std::uint32_t> counts(static_cast<std::size_t>(width));
   std::array<DeepPlane, 6> planes;  // R, G, B, A, Z, ZBack
   for (int row = window.min.y; row <= window.max.y; ++row) {
-    // One row after the other: a file may claim any number of samples, and what it claims is known before it is read.
+    // Row by row, because a damaged file may state any number of samples: the counts are checked before samples are
+    // read.
     const Imath::Box2i line{{window.min.x, row}, {window.max.x, row}};
     Imf::DeepFrameBuffer buffer;
     buffer.insertSampleCountSlice(count_slice(counts, line, static_cast<std::size_t>(width)));
@@ -116,8 +117,8 @@ DeepPicture read(const std::filesystem::path& file, double unit_mm) {
     deep.readPixelSampleCounts(row, row);
     samples += std::accumulate(counts.begin(), counts.end(), std::uint64_t{0});
     if (samples > most || !image_detail::has_room_for(samples, 1 << 10, file)) {
-      throw Error("claims " + std::to_string(samples) + " samples up to row " + std::to_string(row - window.min.y) +
-                  no_room + " and at most " + std::to_string(most));
+      throw Error("samples = " + std::to_string(samples) + " up to row " + std::to_string(row - window.min.y) +
+                  no_room + " or " + std::to_string(most));
     }
     for (DeepPlane& plane : planes) plane.point(counts);
     deep.readPixels(row, row);
@@ -147,9 +148,9 @@ void check(const FragmentLists& lists) {
       static_cast<std::size_t>(std::max(lists.columns, 0)) * static_cast<std::size_t>(std::max(lists.rows, 0));
   if (pixels == 0 || lists.offsets.size() != pixels + 1 || lists.offsets.front() != 0 ||
       lists.offsets.back() != lists.fragments.size() || !std::is_sorted(lists.offsets.begin(), lists.offsets.end())) {
-    throw Error("found " + std::to_string(lists.offsets.size()) + " offsets of " + std::to_string(lists.columns) +
-                " x " + std::to_string(lists.rows) +
-                " pixels, wanted one more than pixels, rising to the number of fragments");
+    throw Error("offsets = " + std::to_string(lists.offsets.size()) + " for " + std::to_string(lists.columns) + " x " +
+                std::to_string(lists.rows) +
+                " pixels; must be one more than pixels, ascending from 0 to the number of fragments");
   }
 }
 
@@ -158,7 +159,7 @@ void check(const FragmentLists& lists) {
 DeepPicture read_deep_exr(const std::filesystem::path& file, double unit_mm) {
   return image_detail::read_exr_file(file, [&] {
     if (!(unit_mm > 0 && std::isfinite(unit_mm)))
-      throw Error("the unit is " + std::to_string(unit_mm) + " mm, wanted more than 0");
+      throw Error("unit_mm = " + std::to_string(unit_mm) + "; must be positive");
     return read(file, unit_mm);
   });
 }

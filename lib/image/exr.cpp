@@ -33,13 +33,13 @@
 namespace petzval {
 namespace {
 
-// 3 GiB in memory. A damaged header may claim any size.
+// 3 GiB in memory. A damaged header may state any size.
 constexpr std::uint64_t most_values = std::uint64_t(3) << 28;
 
-/// Attributes that OpenEXR writes into every file by itself.
+/// Attributes that OpenEXR writes to every file.
 constexpr std::array<std::string_view, 7> of_every_file{
     "chunkCount", "name", "pixelAspectRatio", "screenWindowCenter", "screenWindowWidth", "type", "version"};
-/// Attributes of lenses that are float by OpenEXR's standard.
+/// Standard attributes of lenses with type float.
 constexpr std::array<std::string_view, 7> standard_floats{"aperture", "effectiveFocalLength", "entrancePupilOffset",
                                                           "focus",    "nominalFocalLength",   "pinholeFocalLength",
                                                           "tStop"};
@@ -53,48 +53,50 @@ std::string size_of(const ExrPart& part) { return std::to_string(part.width) + "
 
 void validate(const ExrPart& part) {
   const std::string where = "part \"" + part.name + "\": ";
-  if (part.width < 1 || part.height < 1) throw Error(where + "is " + size_of(part) + ", wanted at least one pixel");
+  if (part.width < 1 || part.height < 1) throw Error(where + "size = " + size_of(part) + "; must be at least 1 x 1");
   if (part.margin_x < 0 || part.margin_y < 0 || 2 * part.margin_x >= part.width || 2 * part.margin_y >= part.height) {
-    throw Error(where + "has margins of " + std::to_string(part.margin_x) + " and " + std::to_string(part.margin_y) +
-                " pixels, wanted 0 or more, and less than half of " + size_of(part));
+    throw Error(where + "margins = " + std::to_string(part.margin_x) + " and " + std::to_string(part.margin_y) +
+                " pixels; must be 0 or more, and less than half of " + size_of(part));
   }
-  if (part.channels.empty()) throw Error(where + "no channel, wanted one at least");
+  if (part.channels.empty()) throw Error(where + "no channel; must be at least one");
   std::set<std::string_view> names;
   for (const ExrChannel& channel : part.channels) {
-    if (channel.name.empty()) throw Error(where + "a channel has no name, wanted one");
+    if (channel.name.empty()) throw Error(where + "a channel has no name; must not be empty");
     if (!names.insert(channel.name).second)
-      throw Error(where + "channel " + channel.name + " stands twice, wanted once");
+      throw Error(where + "channel " + channel.name + " is a duplicate; must be unique");
     if (channel.values.size() != static_cast<std::size_t>(part.width) * static_cast<std::size_t>(part.height)) {
-      throw Error(where + "channel " + channel.name + " has " + std::to_string(channel.values.size()) +
-                  " values, wanted one for each of " + size_of(part) + " pixels");
+      throw Error(where + "channel " + channel.name + ": values = " + std::to_string(channel.values.size()) +
+                  "; must be one for each of " + size_of(part) + " pixels");
     }
   }
   for (const auto& [name, text] : part.texts) {
-    if (part.numbers.contains(name)) throw Error(where + "attribute " + name + " is a text and a number, wanted one");
+    if (part.numbers.contains(name))
+      throw Error(where + "attribute " + name + " is a text and a number; must be unique");
   }
   for (const auto& [name, pair] : part.pairs) {
     if (part.texts.contains(name) || part.numbers.contains(name)) {
-      throw Error(where + "attribute " + name + " is a pair and something else, wanted one");
+      throw Error(where + "attribute " + name + " is a pair and a text or number; must be unique");
     }
   }
 }
 
 void validate(std::span<const ExrPart> parts) {
-  if (parts.empty()) throw Error("no part, wanted one at least");
+  if (parts.empty()) throw Error("no part; must be at least one");
   std::set<std::string_view> names;
   for (const ExrPart& part : parts) {
     validate(part);
     if (parts.size() == 1) break;
-    if (part.name.empty()) throw Error("one of several parts has no name, wanted one");
-    if (!names.insert(part.name).second) throw Error("part \"" + part.name + "\" stands twice, wanted once");
+    if (part.name.empty()) throw Error("one of several parts has no name; must not be empty");
+    if (!names.insert(part.name).second) throw Error("part \"" + part.name + "\" is a duplicate; must be unique");
   }
 }
 
-/// Refuses names that EXR has a meaning for: it would overwrite their values, or refuse them by a message without name.
+/// Inserts an attribute. Refuses reserved names: OpenEXR would overwrite their values, or fail with a message that does
+/// not contain the name.
 template <class Attribute, class Value>
 void insert(Imf::Header& header, const std::string& name, const Value& value) {
   if (in_every_file(name) || header.find(name) != header.end()) {
-    throw Error("attribute " + name + " is EXR's own, wanted another name");
+    throw Error("attribute " + name + " is reserved by EXR; must have another name");
   }
   header.insert(name, Attribute(value));
 }
@@ -117,7 +119,7 @@ Imf::Header header_of(const ExrPart& part, const Imath::Box2i& display) {
   return header;
 }
 
-/// The first pixel is the upper left corner of the data window.
+/// The frame buffer of the channels. The first pixel is the upper left corner of the data window.
 Imf::FrameBuffer frame(std::span<ExrChannel> channels, const Imath::Box2i& window, int width, int height) {
   Imf::FrameBuffer buffer;
   for (ExrChannel& channel : channels) {
@@ -146,8 +148,8 @@ void read_attributes(const Imf::Header& header, ExrPart& part) {
   }
 }
 
-/// The most values that a byte of a file holds: twice what black pictures of 100,000 columns give, 511 by deflate and
-/// 8566 by DWA.
+/// The largest number of values per byte of a file: twice the number for black images with 100,000 columns, 511 with
+/// deflate and 8566 with DWA.
 std::uint64_t most_in_a_byte(Imf::Compression compression) noexcept {
   return compression == Imf::DWAA_COMPRESSION || compression == Imf::DWAB_COMPRESSION ? 1 << 14 : 1 << 10;
 }
@@ -159,7 +161,7 @@ class Reader {
 
   int parts() const { return file_.parts(); }
 
-  /// Of all channels, or of those, in that order.
+  /// Reads a part with the given channels in their order; all channels if none are given.
   ExrPart part(int index, std::span<const std::string_view> wanted = {}) {
     const Imf::Header& header = file_.header(index);
     ExrPart part;
@@ -173,22 +175,22 @@ class Reader {
       if (header.channels().findChannel(channel.name)) continue;
       std::string all;
       for (const std::string_view name : wanted) all += (all.empty() ? "" : ", ") + std::string(name);
-      throw Error("no channel " + channel.name + ", wanted " + all);
+      throw Error("no channel " + channel.name + "; must have " + all);
     }
 
     const Imath::Box2i window = header.dataWindow();
     const auto width = std::uint64_t(std::int64_t(window.max.x) - window.min.x + 1);
     const auto height = std::uint64_t(std::int64_t(window.max.y) - window.min.y + 1);
-    // Checked in this order, no product overflows: sides are below 2^32.
+    // In this order no product overflows, because sides are below 2^32.
     if (width * height > left_ || width * height * part.channels.size() > left_) {
-      throw Error("part \"" + part.name + "\" is " + std::to_string(width) + " x " + std::to_string(height) + " with " +
-                  std::to_string(part.channels.size()) + " channels, wanted " + std::to_string(most_values) +
-                  " values or fewer in all parts");
+      throw Error("part \"" + part.name + "\": size = " + std::to_string(width) + " x " + std::to_string(height) +
+                  " with " + std::to_string(part.channels.size()) + " channels; must be at most " +
+                  std::to_string(most_values) + " values in all parts");
     }
     const std::uint64_t values = width * height * part.channels.size();
     if (!image_detail::has_room_for(values, most_in_a_byte(header.compression()), path_)) {
-      throw Error("part \"" + part.name + "\" claims " + std::to_string(values) +
-                  " values, wanted no more than the file has room for");
+      throw Error("part \"" + part.name + "\": values = " + std::to_string(values) +
+                  "; must not exceed the size of the file");
     }
     left_ -= values;
     part.width = static_cast<int>(width);
@@ -206,7 +208,7 @@ class Reader {
  private:
   std::filesystem::path path_;
   Imf::MultiPartInputFile file_;
-  std::uint64_t left_ = most_values;  ///< may still be read
+  std::uint64_t left_ = most_values;  ///< remaining values
 };
 
 }  // namespace
@@ -224,7 +226,7 @@ void write_exr(std::span<const ExrPart> parts, const std::filesystem::path& file
     Imf::MultiPartOutputFile out(stream, headers.data(), static_cast<int>(headers.size()), false, 0);
     for (std::size_t i = 0; i < parts.size(); ++i) {
       const ExrPart& part = parts[i];
-      // A frame has no constant pixels; these are only read.
+      // A frame buffer needs mutable pixels; writing does not change the pixels.
       const std::span channels(const_cast<ExrChannel*>(part.channels.data()), part.channels.size());
       Imf::OutputPart out_part(out, static_cast<int>(i));
       out_part.setFrameBuffer(frame(channels, headers[i].dataWindow(), part.width, part.height));

@@ -10,11 +10,12 @@
 
 namespace petzval::image_detail {
 
-/// Reads the first part of an EXR file, of its channels those, in that order. Throws Error that names the file, also
-/// where it has no such channel.
+/// Reads channels of the first part of an EXR file, in the given order.
+///
+/// @throws Error if the file cannot be read or a channel is missing
 ExrPart read_first_part(const std::filesystem::path& file, std::span<const std::string_view> channels);
 
-/// The values of a part's channel; null where it has none of that name. (Files keep channels sorted by name.)
+/// The values of a channel of a part; null if the part has no channel with that name.
 const std::vector<float>* channel(const ExrPart& part, std::string_view name) noexcept;
 
 }  // namespace petzval::image_detail

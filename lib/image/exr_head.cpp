@@ -11,7 +11,7 @@
 namespace petzval::image_detail {
 namespace {
 
-/// Types of which OpenEXR reads so many bytes, whatever size the head states.
+/// Types of fixed size: OpenEXR reads this number of bytes and ignores the size in the header.
 constexpr std::pair<std::uint64_t, std::string_view> fixed_sizes[] = {
     {1, " compression deepImageState envmap lineOrder "},
     {4, " float int "},
@@ -37,7 +37,8 @@ void check_exr_attributes(std::istream& in) {
     in.read(reinterpret_cast<char*>(b), 4);
     return std::uint32_t{b[0]} | std::uint32_t{b[1]} << 8 | std::uint32_t{b[2]} << 16 | std::uint32_t{b[3]} << 24;
   };
-  // A name ends with 0. OpenEXR has at most 255 characters. Messages are to stay in one line.
+  // A name ends with 0; OpenEXR allows 255 characters. Control characters become '?', so that messages stay on one
+  // line.
   const auto text = [&] {
     std::string name;
     for (int c = in.get(); c > 0 && name.size() < 256; c = in.get())
@@ -46,7 +47,7 @@ void check_exr_attributes(std::istream& in) {
   };
   if (!in || word() != 20000630) return;
   const bool several_parts = word() >> 12 & 1;
-  // The attributes of a part end with an empty name, the parts of a file with another one.
+  // An empty name ends the attributes of a part; another empty name ends the parts of a file.
   for (bool first = true; in; first = false) {
     const std::string name = text();
     if (name.empty() && (first || !several_parts)) return;
@@ -58,10 +59,10 @@ void check_exr_attributes(std::istream& in) {
     const std::uint64_t bytes = word(), begin = static_cast<std::uint64_t>(in.tellg());
     if (!in) return;
     if (bytes > size) {
-      throw Error("attribute " + name + " claims " + std::to_string(bytes) + " bytes of a file of " +
-                  std::to_string(size) + ", wanted one within it");
+      throw Error("attribute " + name + ": size = " + std::to_string(bytes) + " bytes in a file of " +
+                  std::to_string(size) + " bytes; must lie within the file");
     }
-    // What OpenEXR reads of it; it goes on from there.
+    // The number of bytes that OpenEXR consumes, independent of the stated size.
     std::uint64_t read = bytes;
     for (const auto& [length, types] : fixed_sizes) {
       if (types.find(" " + type + " ") != types.npos) read = length;
@@ -77,7 +78,7 @@ void check_exr_attributes(std::istream& in) {
         read += std::uint64_t{4} + word();
     }
     if (read != bytes) {
-      throw Error("attribute " + name + " of type " + type + " claims " + std::to_string(bytes) + " bytes, wanted " +
+      throw Error("attribute " + name + " of type " + type + ": size = " + std::to_string(bytes) + " bytes; must be " +
                   std::to_string(read));
     }
     in.seekg(static_cast<std::streamoff>(begin + bytes));
@@ -87,11 +88,11 @@ void check_exr_attributes(std::istream& in) {
 void refuse_exr(const std::filesystem::path& file, const std::exception& error) {
   if (dynamic_cast<const Error*>(&error)) throw Error(file.string() + ": " + error.what());
   std::string reason = error.what();
-  // "Cannot read image file "x.exr". Reason."
+  // OpenEXR writes: Cannot read image file "x.exr". Reason.
   const std::string name = '"' + file.string() + "\". ";
   if (const auto at = reason.find(name); at != reason.npos) reason.erase(0, at + name.size());
   if (reason.ends_with('.')) reason.pop_back();
-  throw Error(file.string() + ": cannot be read (" + reason + "), wanted a whole EXR file");
+  throw Error(file.string() + ": cannot be read (" + reason + "); must be a complete EXR file");
 }
 
 }  // namespace petzval::image_detail

@@ -11,16 +11,18 @@
 
 namespace petzval::image_detail {
 
-/// Refuses an EXR file with an attribute that reaches beyond the file's end, as OpenEXR takes memory for any size that
-/// a damaged head states, or that has not the size of its type. What else is wrong with the head is left to OpenEXR.
-/// Throws Error without the file's name.
+/// Checks the sizes of the attributes in an EXR header, because OpenEXR allocates any size that a damaged header
+/// states. OpenEXR itself reports all other errors of the header.
+///
+/// @throws Error without the file name, if an attribute extends beyond the file or does not have the size of its type
 void check_exr_attributes(std::istream& in);
 
-/// Throws Error of one line for what went wrong with an EXR file: our own Error without the file's name, or an
-/// exception of OpenEXR, which names the file and not what was wanted.
+/// Rethrows an error of an EXR file as an Error of one line with the file name.
+///
+/// @param error  an Error without the file name, or an exception of OpenEXR
 [[noreturn]] void refuse_exr(const std::filesystem::path& file, const std::exception& error);
 
-/// The result of read(), which opens the file by OpenEXR, after its attributes were checked.
+/// Checks the attributes of a file and returns the result of read(), which opens the file with OpenEXR.
 template <class Read>
 auto read_exr_file(const std::filesystem::path& file, const Read& read) {
   std::ifstream in = core_detail::opened(file, "an EXR file");

@@ -34,8 +34,8 @@ void validate(const Image& image, const std::string& where) {
       image.pixels.size() == static_cast<std::size_t>(image.width) * static_cast<std::size_t>(image.height) * 3) {
     return;
   }
-  throw Error(where + ": image is " + std::to_string(image.width) + " x " + std::to_string(image.height) + " with " +
-              std::to_string(image.pixels.size()) + " values, wanted 3 a pixel and at least one pixel");
+  throw Error(where + ": image = " + std::to_string(image.width) + " x " + std::to_string(image.height) + " with " +
+              std::to_string(image.pixels.size()) + " values; must have 3 per pixel and at least one pixel");
 }
 
 float srgb(float linear) noexcept {
@@ -68,7 +68,8 @@ RgbImage read_exr(const std::filesystem::path& file) {
 
 namespace {
 
-/// values: rows from the top, each `row` numbers.
+/// @param row     numbers per row
+/// @param values  rows from the top
 void write_pfm(const char* kind, int width, int height, std::size_t row, std::span<const float> values,
                const std::filesystem::path& file) {
   std::string bytes = std::string(kind) + '\n' + std::to_string(width) + ' ' + std::to_string(height) + "\n-1.0\n";
@@ -81,8 +82,8 @@ void write_pfm(const char* kind, int width, int height, std::size_t row, std::sp
   write_file(bytes, file);
 }
 
-/// Reads the next word of the head of a PFM file, and one white space behind it. Words and white space longer than any
-/// valid head has are cut off, so that the head of an endless file ends.
+/// Reads the next word of the header of a PFM file and one white space after it. Words and white space end after 64
+/// characters, so that reading the header of an endless file terminates.
 std::string next_word(std::istream& in) {
   constexpr std::size_t longest = 64;
   const auto blank = [](int c) { return c == ' ' || (c >= '\t' && c <= '\r'); };
@@ -110,8 +111,8 @@ void write_pfm(const RgbImage& image, const std::filesystem::path& file) {
 
 void write_pfm(int width, int height, std::span<const float> values, const std::filesystem::path& file) {
   if (width < 1 || height < 1 || values.size() != static_cast<std::size_t>(width) * static_cast<std::size_t>(height)) {
-    throw Error(file.string() + ": found " + std::to_string(values.size()) + " values for " + std::to_string(width) +
-                " x " + std::to_string(height) + " pixels, wanted one for each");
+    throw Error(file.string() + ": values = " + std::to_string(values.size()) + " for " + std::to_string(width) +
+                " x " + std::to_string(height) + " pixels; must be one per pixel");
   }
   write_pfm("Pf", width, height, static_cast<std::size_t>(width), values, file);
 }
@@ -123,11 +124,11 @@ RgbImage read_pfm(const std::filesystem::path& file) {
   const std::string kind = next_word(in);
   const bool numbers = parse(next_word(in), width) && parse(next_word(in), height) && parse(next_word(in), scale);
   if (!numbers || (kind != "PF" && kind != "Pf") || width < 1 || height < 1 || scale == 0) {
-    throw Error(file.string() + ": no head of a PFM file, wanted PF or Pf, width, height and scale");
+    throw Error(file.string() + ": PFM header is invalid; must be PF or Pf, width, height and scale");
   }
   image_detail::check_size(static_cast<std::size_t>(width), static_cast<std::size_t>(height), file);
   const std::size_t channels = kind == "PF" ? 3 : 1, row = channels * static_cast<std::size_t>(width);
-  const std::string too_short = file.string() + ": ends before its last value, wanted a whole PFM file";
+  const std::string too_short = file.string() + ": ends before its last value; must be a complete PFM file";
   if (!image_detail::has_room_for(row * static_cast<std::size_t>(height), 1, file)) throw Error(too_short);
   RgbImage image(static_cast<int>(width), static_cast<int>(height));
   std::vector<unsigned char> bytes(4 * row);
@@ -179,11 +180,11 @@ RgbImage desqueezed(const RgbImage& image, double squeeze) {
   const double wide = std::max(squeeze, 1.0), high = 1 / std::min(squeeze, 1.0);
   const double width = std::round(image.width * wide), height = std::round(image.height * high);
   if (!(squeeze > 0 && width * height <= 1 << 30)) {
-    throw Error("image: the squeeze is " + to_text(squeeze) + " of " + std::to_string(image.width) + " x " +
-                std::to_string(image.height) + " pixels, wanted a positive one, and at most 2^30 pixels");
+    throw Error("image: squeeze = " + to_text(squeeze) + " for " + std::to_string(image.width) + " x " +
+                std::to_string(image.height) + " pixels; must be positive and give at most 2^30 pixels");
   }
   RgbImage out(static_cast<int>(width), static_cast<int>(height));
-  // A pixel's place between the middles of two pixels of the image, in a row or a column of `count`.
+  // Position of an output pixel between the centres of two input pixels, along one side of `count` pixels.
   struct Between {
     int low, high;
     float part;
@@ -212,7 +213,7 @@ Rgb8Image to_srgb8(const RgbImage& image, float exposure) {
   out.pixels.reserve(image.pixels.size());
   for (const float linear : image.pixels) {
     const float light = linear * exposure;
-    // Comparisons with NaN are false: it becomes black.
+    // Comparisons with NaN are false: NaN becomes black.
     const float clipped = light > 0 ? (light < 1 ? light : 1.0f) : 0.0f;
     out.pixels.push_back(static_cast<std::uint8_t>(255 * srgb(clipped) + 0.5f));
   }

@@ -12,7 +12,7 @@ namespace {
 
 using image_detail::check_size;
 
-/// As the file has them: weights are no light, and have no gamma.
+/// Reads values without decoding a gamma, because weights are not colours.
 IrisMap read_png_map(const std::filesystem::path& file) {
   const image_detail::PngPicture picture = image_detail::read_png_picture(file);
   IrisMap map{static_cast<int>(picture.width), static_cast<int>(picture.height), {}};
@@ -34,7 +34,7 @@ IrisMap read_exr_map(const std::filesystem::path& file) {
     return map;
   }
   const auto *const red = channel(part, "R"), *const green = channel(part, "G"), *const blue = channel(part, "B");
-  if (!red || !green || !blue) throw Error(file.string() + ": found neither a channel Y nor R, G and B, wanted grey");
+  if (!red || !green || !blue) throw Error(file.string() + ": channels are missing; must have Y, or R, G and B");
   for (std::size_t i = 0; i < red->size(); ++i) map.values.push_back(((*red)[i] + (*green)[i] + (*blue)[i]) / 3);
   return map;
 }

@@ -33,7 +33,7 @@ void add_lens_attributes(ExrPart& part, const LensDistortion& distortion, const 
   part.numbers["entrancePupilOffset"] = state.entrance_pupil_offset_mm;
   part.numbers["aperture"] = state.f_number;
   part.numbers["tStop"] = state.t_number;
-  part.numbers["focus"] = state.focus_distance_mm / 1000;  // metres
+  part.numbers["focus"] = state.focus_distance_mm / 1000;  // in metres by the OpenEXR standard
   const Film& film = distortion.camera().film();
   part.pairs["sensorOverallDimensions"] = Vec2<float>(Vec2<double>(film.width_mm, film.height_mm));
 }

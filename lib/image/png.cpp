@@ -15,13 +15,13 @@
 namespace petzval::image_detail {
 namespace {
 
-/// The rows of an open PNG file, 16 bits a channel. (libpng jumps out of a function on an error; nothing in this one
-/// has a destructor.)
+/// The rows of an open PNG file, 16 bits per channel. No member has a destructor, because libpng leaves functions by
+/// longjmp on an error.
 struct PngRows {
   png_structp png = nullptr;
   png_infop info = nullptr;
   std::uint32_t width = 0, height = 0, channels = 0;
-  std::size_t stored_row = 0;  ///< bytes of a row, as the file has it without compression
+  std::size_t stored_row = 0;  ///< uncompressed bytes of a row in the file
 };
 bool read_head(std::FILE* file, PngRows& rows) noexcept {
   rows.png = png_create_read_struct(
@@ -51,8 +51,8 @@ bool read_rows(PngRows& rows, png_bytepp to) noexcept {
 void check_size(std::size_t width, std::size_t height, const std::filesystem::path& file) {
   constexpr std::size_t most = std::size_t(1) << 26;
   if (width <= most / height) return;
-  throw Error(file.string() + ": found " + std::to_string(width) + " x " + std::to_string(height) + " pixels, wanted " +
-              std::to_string(most) + " or fewer");
+  throw Error(file.string() + ": size = " + std::to_string(width) + " x " + std::to_string(height) +
+              " pixels; must be at most " + std::to_string(most) + " pixels");
 }
 
 PngPicture read_png_picture(const std::filesystem::path& file) {
@@ -62,10 +62,10 @@ PngPicture read_png_picture(const std::filesystem::path& file) {
   PngRows rows;
   const auto end = [](PngRows* own) { png_destroy_read_struct(&own->png, &own->info, nullptr); };
   const std::unique_ptr<PngRows, decltype(end)> ended(&rows, end);
-  const auto refuse = [&] { throw Error(file.string() + ": cannot be read as a PNG file, wanted a whole one"); };
+  const auto refuse = [&] { throw Error(file.string() + ": cannot be read; must be a complete PNG file"); };
   if (!read_head(open.get(), rows)) refuse();
   check_size(rows.width, rows.height, file);
-  // Deflate makes 1032 bytes of one.
+  // Deflate expands a byte to at most 1032 bytes.
   if (!has_room_for(rows.stored_row * rows.height, 1 << 11, file)) refuse();
   const std::size_t row_bytes = std::size_t{2} * rows.channels * rows.width;
   std::vector<std::uint8_t> bytes(row_bytes * rows.height);

@@ -11,7 +11,7 @@
 namespace petzval {
 namespace {
 
-/// The light of a wavelength in each pixel, per mm^2, turned by half a turn.
+/// Irradiance of a wavelength in each pixel, per mm^2, rotated by 180 degrees.
 std::vector<double> irradiance(const Psf& psf, std::size_t wavelength) {
   const std::size_t plane = static_cast<std::size_t>(psf.pixels) * static_cast<std::size_t>(psf.pixels);
   const double per_count = psf.ray_weight(wavelength) / (psf.pixel_mm * psf.pixel_mm);
@@ -26,12 +26,12 @@ std::vector<double> irradiance(const Psf& psf, std::size_t wavelength) {
 
 RgbImage render(const Psf& psf, std::span<const std::array<double, 3>> weights) {
   if (weights.size() != psf.wavelengths_nm.size()) {
-    throw Error("render: " + std::to_string(weights.size()) + " weights, wanted one for each of " +
+    throw Error("render: " + std::to_string(weights.size()) + " weights; must be one for each of " +
                 std::to_string(psf.wavelengths_nm.size()) + " wavelengths");
   }
   RgbImage image(psf.pixels, psf.pixels);
   if (const std::size_t wanted = weights.size() * image.pixels.size() / 3; psf.counts.size() != wanted) {
-    throw Error("render: found " + std::to_string(psf.counts.size()) + " counts, wanted " + std::to_string(wanted) +
+    throw Error("render: counts = " + std::to_string(psf.counts.size()) + "; must be " + std::to_string(wanted) +
                 ", one for each pixel and wavelength");
   }
   std::vector<double> sums(image.pixels.size(), 0.0);

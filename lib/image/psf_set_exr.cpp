@@ -23,7 +23,7 @@ constexpr std::array diffractions{Diffraction::negligible, Diffraction::visible,
 
 using image_detail::channel;
 
-/// Of numbers and channels, and of the texts that tell a number.
+/// The checksum of all numbers and channels and of the texts `anchor` and `diffraction`.
 std::string checksum_of(const ExrPart& part) {
   std::string bytes;
   const auto add = [&bytes](std::uint64_t bits, int count) {
@@ -76,12 +76,12 @@ PsfPart from_exr_part(const ExrPart& part) {
   const std::string where = "part \"" + part.name + "\": ";
   const auto number = [&](const char* key) {
     const auto found = part.numbers.find(key);
-    if (found == part.numbers.end()) throw Error(where + "no number " + key + ", wanted a part of a PSF set");
+    if (found == part.numbers.end()) throw Error(where + "no number " + key + "; must be a part of a PSF set");
     return found->second;
   };
   const auto text = [&](const char* key) {
     const auto found = part.texts.find(key);
-    if (found == part.texts.end()) throw Error(where + "no text " + key + ", wanted a part of a PSF set");
+    if (found == part.texts.end()) throw Error(where + "no text " + key + "; must be a part of a PSF set");
     return found->second;
   };
   PsfPart result;
@@ -101,12 +101,11 @@ PsfPart from_exr_part(const ExrPart& part) {
   std::array<std::vector<float>*, 3> values{&kernel.light, &kernel.hits_x, &kernel.hits_y};
   for (std::size_t c = 0; c < values.size(); ++c) {
     const std::vector<float>* own = channel(part, channel_names[c]);
-    if (!own) throw Error(where + "no channel " + channel_names[c] + ", wanted a part of a PSF set");
+    if (!own) throw Error(where + "no channel " + channel_names[c] + "; must be a part of a PSF set");
     *values[c] = *own;
   }
   if (part.width != part.height || text("checksum") != checksum_of(part)) {
-    throw Error(where + "found checksum " + checksum_of(part) + ", wanted " + text("checksum") +
-                ": the file has changed");
+    throw Error(where + "checksum = " + checksum_of(part) + "; must be " + text("checksum") + ": the file has changed");
   }
   return result;
 }
@@ -132,7 +131,7 @@ PsfSet psf_set_of(std::vector<ExrPart> parts, const std::filesystem::path& file)
     for (std::size_t node = 0; node < axes.size(); ++node) {
       const std::string wanted = psf_part_name(axes.point(node));
       const auto place = places.find(wanted);
-      if (place == places.end()) throw Error("no part \"" + wanted + "\", wanted one for every node of the grid");
+      if (place == places.end()) throw Error("no part \"" + wanted + "\"; must have one for every node of the grid");
       kernels.push_back(std::move(found[place->second].kernel));
     }
     return {std::move(axes), std::move(kernels)};

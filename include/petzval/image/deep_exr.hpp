@@ -26,7 +26,7 @@ struct DeepPicture {
 /// @param file     the EXR file
 /// @param unit_mm  unit of Z in mm (metres: 1000)
 /// @throws Error   if the file is damaged, has no deep part, no channel Z or no colours, or has more than 2^27 pixels
-///                 or samples
+///                 or samples; also if the unit is not positive and finite
 ///
 /// Limitations: files do not state if Z is the depth along the axis or the distance from the pinhole. axial_depths()
 /// converts distances to depths.
@@ -34,7 +34,7 @@ PETZVAL_API DeepPicture read_deep_exr(const std::filesystem::path& file, double 
 
 /// Writes deep scan lines of 32-bit floats with write_file(), lossless.
 ///
-/// @throws Error if the file cannot be written
+/// @throws Error if the lists are empty or inconsistent, or the file cannot be written
 PETZVAL_API void write_deep_exr(const FragmentLists& lists, const std::filesystem::path& file);
 
 }  // namespace petzval
