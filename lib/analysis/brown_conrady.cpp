@@ -16,12 +16,12 @@ namespace {
 
 constexpr double widest_field = radians(88.0);
 
-/// A place of the film: distances from the centre of projection over the focal length, in both pictures.
+/// A film position: distances from the centre of projection divided by the focal length, in both images.
 struct Radii {
   double distorted = 0, undistorted = 0;
 };
 
-/// The radius that the coefficients start from, and the one that they lead to.
+/// A radius before and after the mapping.
 struct Pair {
   double from = 0, to = 0;
 };
@@ -60,9 +60,9 @@ double squares(const std::vector<Pair>& pairs, const Coefficients& k) noexcept {
   return sum;
 }
 
-constexpr double beyond = 1.25;  ///< in largest radii: the range of usable coefficients beyond the film
+constexpr double beyond = 1.25;  ///< largest radii: range in which coefficients must increase, beyond the film
 
-/// False if the denominator falls to 0 before a radius.
+/// True if the denominator stays above 1e-3 up to a radius.
 bool without_pole(const Coefficients& k, double radius) noexcept {
   constexpr int steps = 200;
   for (int i = 1; i <= steps; ++i) {
@@ -72,7 +72,7 @@ bool without_pole(const Coefficients& k, double radius) noexcept {
   return true;
 }
 
-/// The radius, at most `most`, up to which the radius that coefficients lead to rises.
+/// The radius, at most `most`, up to which the mapped radius increases.
 double rises_to(const Coefficients& k, double most) noexcept {
   constexpr int steps = 400;
   double before = 0;
@@ -84,8 +84,9 @@ double rises_to(const Coefficients& k, double most) noexcept {
   return most;
 }
 
-/// True if no term is so large that others cancel it. (A scale over the film that differs from the axis's makes terms
-/// of numerator and denominator 1e12; fisheyes of 150 degrees need 45.) Radii are over the largest one.
+/// True if no term is so large that other terms cancel it; radii are relative to the largest radius. (If the scale over
+/// the film differs from the scale on the axis, terms of numerator and denominator reach 1e12; fisheyes of 150 degrees
+/// need 45.)
 bool bounded(const Coefficients& k) noexcept {
   return std::all_of(k.begin(), k.end(), [](double term) { return std::abs(term) <= 100; });
 }
@@ -95,8 +96,8 @@ struct Terms {
   int in_numerator = 3, in_denominator = 0;
 };
 
-/// The solution of least squares for the first terms of numerator and denominator. row(pair, r2) gives the slopes by
-/// N and by D, and the sum that they have to make.
+/// Least squares solution for the first terms of numerator and denominator. row(pair, r2) gives the derivatives by N
+/// and by D, and the right-hand side.
 template <class Row>
 Coefficients solved(const std::vector<Pair>& pairs, const Terms& terms, const Row& row) {
   const int n = terms.in_numerator, unknowns = n + terms.in_denominator;
@@ -111,7 +112,7 @@ Coefficients solved(const std::vector<Pair>& pairs, const Terms& terms, const Ro
     }
     wanted(at) = sum;
   }
-  // Of least size where numerator and denominator say the same, as they do without distortion.
+  // The solution of least norm if numerator and denominator are redundant, for example without distortion.
   const Eigen::VectorXd solution = core_detail::least_squares(rows, wanted);
   Coefficients k{};
   for (int j = 0; j < unknowns; ++j) k[static_cast<std::size_t>(j < n ? j : j - n + 3)] = solution(j);
@@ -122,8 +123,8 @@ struct Slopes {
   double by_numerator = 0, by_denominator = 0, sum = 0;
 };
 
-/// to = from N / D is linear in the coefficients after it is multiplied by D; the weights 1 / D of the round before
-/// make its errors those of `to` (Sanathanan and Koerner 1963).
+/// to = from N / D is linear in the coefficients after multiplication by D. The weights 1 / D of the previous round
+/// turn its errors into errors of `to` (Sanathanan and Koerner 1963).
 Coefficients linear_round(const std::vector<Pair>& pairs, const Terms& terms, const Coefficients& before) {
   return solved(pairs, terms, [&](const Pair& pair, double r2) {
     const double weight = 1 / polynomial(r2, &before[3]);
@@ -131,7 +132,7 @@ Coefficients linear_round(const std::vector<Pair>& pairs, const Terms& terms, co
   });
 }
 
-/// Gauss and Newton's iteration for the errors of `to`, in steps that lessen them and meet no pole.
+/// Gauss-Newton iteration for the errors of `to`. Each step reduces the errors and avoids poles.
 Coefficients refined(const std::vector<Pair>& pairs, const Terms& terms, Coefficients k, double reach) {
   double now = squares(pairs, k);
   for (int round = 0; round < 30; ++round) {
@@ -154,8 +155,8 @@ Coefficients refined(const std::vector<Pair>& pairs, const Terms& terms, Coeffic
   return k;
 }
 
-/// Coefficients of least squares, of forms without a pole up to `reach` radii; `fewer`: those with a shorter
-/// denominator, from which the search starts too.
+/// Least squares coefficients without a pole up to `reach` radii. fewer: coefficients with a shorter denominator, a
+/// starting point of the search.
 Coefficients fitted(const std::vector<Pair>& pairs, const Terms& terms, const Coefficients& fewer, double reach) {
   if (terms.in_denominator == 0) return linear_round(pairs, terms, {});
   Coefficients best = refined(pairs, terms, fewer, reach), round{};
@@ -168,7 +169,6 @@ Coefficients fitted(const std::vector<Pair>& pairs, const Terms& terms, const Co
   return best;
 }
 
-/// Sets the errors of the coefficients.
 void measure(BrownConrady& model, const std::vector<Pair>& pairs, double focal_length_px) {
   double squares = 0;
   model.largest_px = 0;
@@ -191,14 +191,13 @@ double BrownConrady::radius(double r) const noexcept { return r * polynomial(r *
 BrownConrady fit_brown_conrady(const LensDistortion& distortion, const BrownConradyOptions& options) {
   const Camera& camera = distortion.camera();
   const std::string where = camera.lens().name() + ": Brown-Conrady: ";
-  if (!with_iris(camera.lens(), {}).rotationally_symmetric()) {  // blades bend no ray
-    throw Error(where + "the lens has cylinders, wanted one of revolution, whose distortion is radial");
+  if (!with_iris(camera.lens(), {}).rotationally_symmetric()) {  // blades do not bend rays
+    throw Error(where + "the lens has cylinders; must be a lens of revolution, with radial distortion");
   }
-  if (camera.film().tilted())
-    throw Error(where + "the film is tilted, wanted an upright one, on which distortion is radial");
+  if (camera.film().tilted()) throw Error(where + "the film is tilted; must be upright, with radial distortion");
   if (const double widest = distortion.widest_field_rad(); widest > widest_field) {
     throw Error(where + "the film sees a field of " + to_text(degrees(widest), 3) +
-                " degrees, as a fisheye's does, wanted less than 88, as a pinhole's picture holds");
+                " degrees, as a fisheye's; must be below 88 for a pinhole image");
   }
   const std::vector<Radii> radii = radii_of(distortion);
   if (radii.empty()) throw Error(where + "no light reaches the film");
@@ -212,8 +211,8 @@ BrownConrady fit_brown_conrady(const LensDistortion& distortion, const BrownConr
     farthest = std::max(farthest, pairs.back().from);
     result.field_rad = std::max(result.field_rad, std::atan(r.undistorted));
   }
-  if (!(farthest > 0)) throw Error(where + "no light reaches the film beside its middle");
-  // In radii over the largest one, so that all powers have one magnitude.
+  if (!(farthest > 0)) throw Error(where + "no light reaches the film outside its centre");
+  // Radii relative to the largest one, so that all powers have the same magnitude.
   std::vector<Pair> scaled;
   for (const Pair& pair : pairs) scaled.push_back({pair.from / farthest, pair.to / farthest});
   const double px = distortion.focal_length_px().x;
@@ -227,7 +226,7 @@ BrownConrady fit_brown_conrady(const LensDistortion& distortion, const BrownConr
     model.rises_to_rad = std::atan(to_undistorted ? model.radius(rise) : rise);
     return model;
   };
-  // More terms than need be follow the errors of rounding, and lead astray beyond the film.
+  // More terms than needed follow rounding errors and diverge beyond the film.
   constexpr double exact_px = 2e-5;
   std::vector<Terms> forms{{1, 0}, {2, 0}, {3, 0}};
   if (options.form == RadialForm::rational) forms.insert(forms.end(), {{3, 1}, {3, 2}, {3, 3}});

@@ -20,13 +20,13 @@ double angle(const Vec3<double>& a, const Vec3<double>& b) noexcept {
   return 2 * std::asin(std::min(1.0, glm::length(a - b) / 2));
 }
 
-/// A unit vector across another.
+/// A unit vector perpendicular to another.
 Vec3<double> across(const Vec3<double>& d) noexcept {
   const Vec3<double> least = std::abs(d.x) < std::abs(d.y) ? Vec3<double>{1, 0, 0} : Vec3<double>{0, 1, 0};
   return glm::normalize(least - d * glm::dot(least, d));
 }
 
-/// A ray and its derivatives as the arrays of one, which trace_differentials takes.
+/// A ray and its derivatives as arrays of length 1, for trace_differentials().
 struct OneRay {
   std::array<double, 18> v{};
 
@@ -58,7 +58,7 @@ SceneView::SceneView(double focal_length, double z, const Ray<double>& chief, co
   centre_ = chief.origin + chief.direction * length;
   if (!turned) normal_ = {0, 0, -1}, x_axis_ = {1, 0, 0}, y_axis_ = {0, 1, 0};
 
-  // The hit moves with the ray's point and direction, less what takes it out of the plane.
+  // The hit moves with the ray's origin and direction, minus the component that leaves the plane.
   const auto moves = [&](const Ray<double>& by) {
     const Vec3<double> free = by.origin + by.direction * length;
     const Vec3<double> hit = free - chief.direction * (glm::dot(free, normal_) / glm::dot(chief.direction, normal_));
@@ -103,7 +103,7 @@ ChiefRays::ChiefRays(const Lens& lens, const TwoPlanes& space) : lens_(lens), sp
   const std::size_t wavelength = lens.primary_wavelength();
   const Meridian meridian = main_meridian(lens, wavelength);
   const FirstOrder first = first_order(lens, wavelength, meridian);
-  if (first.afocal) throw Error(lens.name() + ": is afocal, wanted a focal length to measure errors by");
+  if (first.afocal) throw Error(lens.name() + ": the lens is afocal; must have a focal length to measure errors");
   focal_length_ = std::abs(first.effective_focal_length);
   sense_ = signed_index(lens, lens.surface_count(), wavelength) > 0 ? 1 : -1;
   pivot_ = pupils(lens, wavelength, meridian).exit.z - space.film_z;
@@ -111,8 +111,8 @@ ChiefRays::ChiefRays(const Lens& lens, const TwoPlanes& space) : lens_(lens), sp
 }
 
 ChiefRay ChiefRays::through(const FilmPoint& film, const Vec2<double>& pupil, std::size_t wavelength) const {
-  // The line's direction, away from the film; with the film point its slope changes by -1 / pivot, and with it the
-  // direction across itself.
+  // The direction of the line, away from the film. With the film point its slope changes by -1 / pivot, and its unit
+  // vector by the component across itself.
   const Vec3<double> line{(pupil[0] - film.x) / space_.depth(), (pupil[1] - film.y) / space_.depth(), 1};
   const double length = glm::length(line);
   const Vec3<double> unit = line / length;

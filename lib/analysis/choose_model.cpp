@@ -16,7 +16,7 @@ using analysis_detail::Tolerance;
 void check(const ErrorBudget& budget) {
   const auto refuse = [](const char* what, const std::optional<double>& part) {
     if (!part || *part >= 0) return;
-    throw Error(std::string("choose_model: budget: ") + what + " is " + to_text(*part) + ", wanted 0 or more");
+    throw Error(std::string("choose_model: budget: ") + what + " = " + to_text(*part) + "; must be at least 0");
   };
   refuse("max_px", budget.max_px);
   refuse("max_of_blur", budget.max_of_blur);
@@ -26,13 +26,13 @@ void check(const ErrorBudget& budget) {
 
 std::string percent(double fraction) { return to_text(100 * fraction, 3) + " %"; }
 
-/// One part of a budget and what a model needs of it.
+/// One limit of a budget and the error of a model.
 struct Part {
   bool inside = true;
   std::string needs, budget;  ///< in words
 };
 
-/// Errors of rays against a budget; nothing where it does not ask for them. of_tolerance: of this budget.
+/// Ray errors against a budget; nullopt if the budget does not limit them. of_tolerance: relative to this budget.
 std::optional<Part> ray_part(double px, double of_blur, double of_tolerance, const ErrorBudget& budget) {
   if (budget.max_px && budget.max_of_blur) {
     return Part{of_tolerance <= 1, to_text(px, 3) + " px (" + percent(of_tolerance) + " of what is allowed)",
@@ -49,7 +49,7 @@ std::optional<Part> fraction_part(double value, const std::optional<double>& all
   return Part{value <= *allowed, percent(value), percent(*allowed)};
 }
 
-/// Which parts of a budget a model keeps, and which it does not.
+/// The limits of a budget that a model keeps, and the limits that it exceeds.
 struct Judgement {
   bool inside = true;
   std::string kept, missed;  ///< in words
@@ -76,15 +76,14 @@ std::vector<std::string> not_needed(const ModelTable& table, std::size_t budget_
   };
   if (const auto part = rays(table.one_wavelength); part && part->inside) {
     result.push_back(std::to_string(table.wavelengths) + " wavelengths: " + to_text(table.central_nm, 6) +
-                     " nm can stand for all, whose rays are off by up to " + part->needs + " (budget " + part->budget +
-                     ")");
+                     " nm can stand for all, with ray errors up to " + part->needs + " (budget " + part->budget + ")");
   }
   if (const auto part = fraction_part(table.constant_pupil_shape, budget.pupil_shape); part && part->inside) {
-    result.push_back("a pupil for each field: that of the middle of the film is wrong by up to " + part->needs +
+    result.push_back("a pupil for each field: the pupil of the film centre differs by up to " + part->needs +
                      " of the area elsewhere (budget " + part->budget + ")");
   }
   if (const auto part = rays(table.no_distortion); part && part->inside) {
-    result.push_back("distortion: chief rays of first order are off by up to " + part->needs + " (budget " +
+    result.push_back("distortion: chief rays to first order are off by up to " + part->needs + " (budget " +
                      part->budget + ")");
   }
   return result;

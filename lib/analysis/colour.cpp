@@ -19,7 +19,7 @@ using Triple = std::array<double, 3>;
 using Matrix = std::array<Triple, 3>;  // rows
 constexpr double shortest_nm = 420, longest_nm = 680;
 
-/// A line of numbers. Throws Error for anything else.
+/// Parses a line of numbers. Throws Error if the line has any other form.
 template <std::size_t columns>
 std::array<double, columns> parse_line(std::string_view line, const std::string& where) {
   static_assert(columns == 2 || columns == 4);
@@ -30,7 +30,7 @@ std::array<double, columns> parse_line(std::string_view line, const std::string&
     const auto [next, error] = std::from_chars(at, end, values[i]);
     const bool separated = i + 1 < columns ? next != end && *next == ',' : next == end;
     if (error != std::errc() || !separated || !std::isfinite(values[i])) {
-      throw Error(where + ": found \"" + std::string(line) + "\", wanted " +
+      throw Error(where + ": \"" + std::string(line) + "\"; must be " +
                   (columns == 2 ? "two finite numbers with a comma" : "four finite numbers with commas") +
                   " between them");
     }
@@ -39,7 +39,7 @@ std::array<double, columns> parse_line(std::string_view line, const std::string&
   return values;
 }
 
-/// Calls add(row, where) for each row of a table, of which the first number is a wavelength; they increase.
+/// Calls add(row, where) for each row of a table. The first number of a row is a wavelength; wavelengths must increase.
 template <std::size_t columns, class Add>
 void for_each_row(const std::filesystem::path& file, std::string_view header, const char* what, const Add& add) {
   std::istringstream in(read_file(file, std::string("the table of ") + what));
@@ -49,20 +49,20 @@ void for_each_row(const std::filesystem::path& file, std::string_view header, co
     if (!line.empty() && line.back() == '\r') line.pop_back();
     const std::string where = file.string() + ": line " + std::to_string(count);
     if (count == 1) {
-      if (line != header) throw Error(where + ": found \"" + line + "\", wanted \"" + std::string(header) + "\"");
+      if (line != header) throw Error(where + ": header = \"" + line + "\"; must be \"" + std::string(header) + "\"");
       continue;
     }
     const auto row = parse_line<columns>(line, where);
     if (!(row[0] > last)) {
-      throw Error(where + ": wavelength is " + to_text(row[0]) + " nm, wanted more than " +
-                  (last == 0 ? "0" : "the " + to_text(last) + " of the line before"));
+      throw Error(where + ": wavelength = " + to_text(row[0]) + " nm; must be above " +
+                  (last == 0 ? "0" : "the " + to_text(last) + " of the previous line"));
     }
     last = row[0];
     add(row, where);
   }
 }
 
-/// A piecewise linear function between the two samples about a place that lies within them.
+/// A piecewise linear function, interpolated between the two samples around a wavelength in its range.
 template <class Value, class Mix>
 auto between(const std::vector<double>& nodes, const std::vector<Value>& values, double nm, const Mix& mix) {
   const auto upper = std::clamp(std::upper_bound(nodes.begin(), nodes.end(), nm), nodes.begin() + 1, nodes.end() - 1);
@@ -81,7 +81,7 @@ double at(const Spectrum& light, double nm) {
                  [](double a, double b, double t) { return std::lerp(a, b, t); });
 }
 
-/// The tristimulus values of a band. Between two samples of either function the integrand is a parabola, for which
+/// The tristimulus values of a band. Between adjacent samples of both functions the integrand is a parabola, for which
 /// Simpson's rule is exact.
 Triple integral(const Spectrum& light, const ColourMatching& table, double from, double to) {
   from = std::max({from, light.wavelengths_nm.front(), table.wavelengths_nm.front()});
@@ -112,7 +112,7 @@ Triple times(const Matrix& matrix, const Triple& v) {
   return result;
 }
 
-/// To linear light of the sRGB primaries (IEC 61966-2-1).
+/// From XYZ to linear light of the sRGB primaries (IEC 61966-2-1).
 constexpr Matrix rgb_of_xyz{{{3.2406, -1.5372, -0.4986}, {-0.9689, 1.8758, 0.0415}, {0.0557, -0.2040, 1.0570}}};
 
 /// The cone responses of the Bradford transform and their inverse.
@@ -120,54 +120,54 @@ constexpr Matrix cones_of_xyz{{{0.8951, 0.2664, -0.1614}, {-0.7502, 1.7135, 0.03
 constexpr Matrix xyz_of_cones{
     {{0.9869929, -0.1470543, 0.1599627}, {0.4323053, 0.5183603, 0.0492912}, {-0.0085287, 0.0400428, 0.9684867}}};
 
-/// XYZ of sRGB's white, D65.
+/// XYZ of the white point of sRGB, D65.
 constexpr Triple srgb_white{0.9505, 1, 1.089};
 
-/// The nodes of between() for so many values. whose: the type of the table; values: what it has at each wavelength.
+/// Checks the wavelengths of a table with `count` values. whose: the type of the table; values: the name of its values.
 void validate(const std::vector<double>& wavelengths_nm, std::size_t count, const std::string& whose,
               const std::string& values) {
   if (wavelengths_nm.size() < 2 || wavelengths_nm.size() != count) {
-    throw Error(whose + ": number of wavelengths is " + std::to_string(wavelengths_nm.size()) + ", of " + values + " " +
-                std::to_string(count) + ", wanted two or more and as many " + values);
+    throw Error(whose + ": number of wavelengths = " + std::to_string(wavelengths_nm.size()) + ", of " + values +
+                " = " + std::to_string(count) + "; must be at least 2, with as many " + values);
   }
   double last = 0;
   for (std::size_t i = 0; i < count; ++i) {
     const double nm = wavelengths_nm[i];
     if (!(nm > last) || !std::isfinite(nm)) {
-      throw Error(whose + ": wavelength " + std::to_string(i) + " is " + to_text(nm) +
-                  " nm, wanted finite ones above 0 that increase");
+      throw Error(whose + ": wavelength " + std::to_string(i) + " = " + to_text(nm) +
+                  " nm; must be finite, above 0 and increasing");
     }
     last = nm;
   }
 }
 
-/// What load() makes sure of, for a light from elsewhere.
+/// Applies the checks of load() to any light.
 void validate(const Spectrum& light) {
   validate(light.wavelengths_nm, light.power.size(), "Spectrum", "powers");
   for (std::size_t i = 0; i < light.power.size(); ++i) {
     if (!(light.power[i] >= 0) || !std::isfinite(light.power[i])) {
-      throw Error("Spectrum: power " + std::to_string(i) + " is " + to_text(light.power[i]) +
-                  ", wanted finite ones, 0 or more");
+      throw Error("Spectrum: power " + std::to_string(i) + " = " + to_text(light.power[i]) +
+                  "; must be finite and at least 0");
     }
   }
 }
 
-/// The same for a table from elsewhere, which may cover a part of the visible wavelengths.
+/// Applies the checks of load() to any table; it may cover a part of the visible wavelengths.
 void validate(const ColourMatching& table) {
   validate(table.wavelengths_nm, table.xyz.size(), "ColourMatching", "triples");
   for (std::size_t i = 0; i < table.xyz.size(); ++i) {
     for (const double value : table.xyz[i]) {
       if (std::isfinite(value)) continue;
-      throw Error("ColourMatching: a value of triple " + std::to_string(i) + " is " + to_text(value) +
-                  ", wanted finite ones");
+      throw Error("ColourMatching: a value of triple " + std::to_string(i) + " = " + to_text(value) +
+                  "; must be finite");
     }
   }
 }
 
 double luminance(const Triple& xyz, const char* whose) {
   if (xyz[1] > 0 && std::isfinite(xyz[1])) return xyz[1];
-  throw Error(std::string("rgb_weights: luminance of the ") + whose + " is " + to_text(xyz[1]) +
-              ", wanted a light with power at visible wavelengths");
+  throw Error(std::string("rgb_weights: luminance of the ") + whose + " = " + to_text(xyz[1]) +
+              "; must be above 0, from power at visible wavelengths");
 }
 
 }  // namespace
@@ -181,7 +181,7 @@ ColourMatching ColourMatching::load(const std::filesystem::path& file) {
                   });
   if (table.wavelengths_nm.empty() || table.wavelengths_nm.front() > shortest_nm ||
       table.wavelengths_nm.back() < longest_nm) {
-    throw Error(file.string() + ": the table ends early, wanted one from " + to_text(shortest_nm) + " nm or less to " +
+    throw Error(file.string() + ": the table ends early; must extend from " + to_text(shortest_nm) + " nm or less to " +
                 to_text(longest_nm) + " or more");
   }
   return table;
@@ -191,13 +191,13 @@ Spectrum Spectrum::load(const std::filesystem::path& file) {
   Spectrum light;
   for_each_row<2>(file, "wavelength_nm,power", "a light's power",
                   [&](const std::array<double, 2>& row, const std::string& where) {
-                    if (row[1] < 0) throw Error(where + ": power is " + to_text(row[1]) + ", wanted 0 or more");
+                    if (row[1] < 0) throw Error(where + ": power = " + to_text(row[1]) + "; must be at least 0");
                     light.wavelengths_nm.push_back(row[0]);
                     light.power.push_back(row[1]);
                   });
   if (light.power.size() < 2) {
-    throw Error(file.string() + ": number of rows is " + std::to_string(light.power.size()) +
-                ", wanted two or more below \"wavelength_nm,power\"");
+    throw Error(file.string() + ": number of rows = " + std::to_string(light.power.size()) +
+                "; must be at least 2 below \"wavelength_nm,power\"");
   }
   return light;
 }
@@ -214,9 +214,9 @@ Spectrum illuminant(std::string_view name, const std::filesystem::path& daylight
     return light;
   }
   if (name != "D65" && name != "D50") {
-    throw Error("illuminant: found \"" + std::string(name) + "\", wanted D65, D50, A or E");
+    throw Error("illuminant: name = \"" + std::string(name) + "\"; must be D65, D50, A or E");
   }
-  // Of the nominal temperature's chromaticity. The constant of radiation c2 was 14380 when the series was named.
+  // From the chromaticity of the nominal temperature, which was defined with the radiation constant c2 = 14380.
   const double kelvin = (name == "D65" ? 6500 : 5000) * 1.4388 / 1.4380;
   const double x = 0.244063 + 0.09911e3 / kelvin + 2.9678e6 / std::pow(kelvin, 2) - 4.6070e9 / std::pow(kelvin, 3);
   const double y = -3 * x * x + 2.870 * x - 0.275;
@@ -228,7 +228,7 @@ Spectrum illuminant(std::string_view name, const std::filesystem::path& daylight
                     light.wavelengths_nm.push_back(row[0]);
                     light.power.push_back(row[1] + m1 * row[2] + m2 * row[3]);
                   });
-  if (light.power.size() < 2) throw Error(daylight_components.string() + ": the table ends early, wanted rows");
+  if (light.power.size() < 2) throw Error(daylight_components.string() + ": the table ends early; must have rows");
   return light;
 }
 
@@ -241,12 +241,12 @@ Triple tristimulus(const Spectrum& light, const ColourMatching& table) {
 std::vector<Triple> rgb_weights(std::span<const double> wavelengths_nm, const ColourMatching& table,
                                 const Spectrum& light, const Spectrum& white) {
   const std::size_t count = wavelengths_nm.size();
-  if (count == 0) throw Error("rgb_weights: no wavelength, wanted one at least");
+  if (count == 0) throw Error("rgb_weights: no wavelength; must be at least one");
   if (count == 1) return {Triple{1, 1, 1}};
 
   for (const double nm : wavelengths_nm) {
     if (nm >= shortest_nm && nm <= longest_nm) continue;
-    throw Error("rgb_weights: wavelength is " + to_text(nm) + " nm, wanted " + to_text(shortest_nm) + " to " +
+    throw Error("rgb_weights: wavelength = " + to_text(nm) + " nm; must be " + to_text(shortest_nm) + " to " +
                 to_text(longest_nm));
   }
   std::vector<std::size_t> order(count);
@@ -262,7 +262,7 @@ std::vector<Triple> rgb_weights(std::span<const double> wavelengths_nm, const Co
     for (std::size_t k = 0; k < 3; ++k) cones[k] *= to_cones[k] / from_cones[k] * white_level / level;
     return times(rgb_of_xyz, times(xyz_of_cones, cones));
   };
-  // The constants have four digits and more; what they miss of (1, 1, 1) is put right.
+  // The constants have four digits or more; the remaining error of white is corrected to (1, 1, 1).
   Triple neutral = colour(white_xyz);
   for (double& channel : neutral) channel *= level / white_level;
 
@@ -270,7 +270,7 @@ std::vector<Triple> rgb_weights(std::span<const double> wavelengths_nm, const Co
   for (std::size_t i = 0; i < count; ++i) {
     const double nm = wavelengths_nm[order[i]];
     if (i > 0 && nm == wavelengths_nm[order[i - 1]]) {
-      throw Error("rgb_weights: wavelength " + to_text(nm) + " nm stands twice, wanted once");
+      throw Error("rgb_weights: wavelength " + to_text(nm) + " nm occurs twice; must occur once");
     }
     const double from = i == 0 ? table.wavelengths_nm.front() : (wavelengths_nm[order[i - 1]] + nm) / 2;
     const double to = i + 1 == count ? table.wavelengths_nm.back() : (nm + wavelengths_nm[order[i + 1]]) / 2;

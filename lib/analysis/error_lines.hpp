@@ -15,41 +15,42 @@
 /// The lines along which models are compared with the lens.
 namespace petzval::analysis_detail {
 
-/// Lines through each film point: the first half are uniform samples of its pupil, and means are theirs; the others lie
-/// along the pupil's rims, where errors are largest and uniform samples are rare.
+/// Number of lines through each film point. The first half are uniform samples of the pupil and are used for means. The
+/// others lie along the rims of the pupil, where errors are largest and uniform samples are rare.
 inline constexpr std::size_t lines_per_point = 128, uniform_lines = 64;
 
-/// Factors of the largest error found that bound the error of every line: for smooth models; for rays traced in float,
-/// whose errors are noise; against the blur, which has sharp minima over the film.
+/// Factors from the largest measured error to a bound of the error of every line: for smooth models; for rays traced in
+/// float, whose errors are noise; relative to the blur, which has sharp minima over the film.
 inline constexpr double smooth_guard = 1.04, noise_guard = 1.5, blur_guard = 1.15;
 
-/// Film points darker than this part of the brightest one are left out.
+/// Film points below this fraction of the largest irradiance are left out.
 inline constexpr double darkest = 0.01;
 
-/// The radius up to which the film is lit, mm: where it is `darkest`, or the film's. For a lens without rotational
-/// symmetry, the film's.
+/// Radius of the lit area of the film, mm: the irradiance falls to `darkest` of the largest value, or the film ends.
+/// The radius of the film if the lens is not rotationally symmetric.
 double lit_radius(const camera_detail::ExactModel<double>& exact, const Film& film, std::size_t wavelength);
 
-/// Film points: every second one is a uniform sample of the film, the others lie by turns in a corner, on a side, and
-/// mostly near the sides. Unlit ones are moved towards the axis, the farthest of them to the edge of the light.
+/// The film point with an index. Points with even indices are uniform samples of the film; the others alternate between
+/// a corner, a side and, mostly, positions near the sides. Unlit points are moved towards the axis, the farthest to the
+/// edge of the light.
 FilmPoint error_film_point(const Film& film, std::size_t index, std::uint32_t seed, double lit_radius) noexcept;
-/// Whether it is one of the uniform samples.
+/// True if the film point is one of the uniform samples.
 inline bool is_uniform(std::size_t film_point) noexcept { return film_point % 2 == 0; }
 
-/// Film points for pupils, which depend on the distance from the axis most. For a rotationally symmetric lens they lie
-/// at equal steps of it (the seed chooses within each), closer towards the edge of the light, and include the nearest
-/// and the farthest lit point. For other lenses, as above.
+/// Film points for the comparison of pupils, which depend mostly on the distance from the axis. For a rotationally
+/// symmetric lens the distances lie at random (by the seed) in equal steps, denser towards the edge of the light, and
+/// include the nearest and the farthest lit point. For other lenses the points are error_film_point().
 std::vector<FilmPoint> pupil_film_points(const Lens& lens, const Film& film, std::size_t count, std::uint32_t seed,
                                          double lit_radius);
 
-/// Lines of one film point. Float holds all their numbers exactly, so a model in float and the lens in double trace the
-/// same lines.
+/// Lines of one film point. All numbers are exact in float, so a model in float and the lens in double trace the same
+/// lines.
 struct PointLines {
   FilmPoint film;
   alignas(64) std::array<double, lines_per_point> film_x, film_y, pupil_x, pupil_y;
   alignas(64) std::array<float, lines_per_point> film_x_float, film_y_float, pupil_x_float, pupil_y_float;
 
-  /// The film point of all lines; float holds its coordinates.
+  /// The film point of all lines; its coordinates must be exact in float.
   explicit PointLines(const FilmPoint& point) noexcept;
   void put(std::size_t line, double x, double y) noexcept;
 
@@ -61,22 +62,22 @@ struct PointLines {
   }
 };
 
-/// The lines of a film point through the lens's pupil, as above. The film point must have a pupil.
+/// The lines of a film point through the pupil of the lens. The film point must have a pupil.
 PointLines error_lines(const FilmPoint& film, const camera_detail::ExactModel<double>& exact, std::size_t wavelength,
                        std::uint64_t seed) noexcept;
 
-/// The rays that a model makes of such lines.
+/// The rays of a model for such lines.
 struct PointRays {
   std::array<Ray<double>, lines_per_point> rays;
   std::array<bool, lines_per_point> reaches;  ///< the model has a ray for the line
-  std::array<bool, lines_per_point> passes;   ///< and the line lies in the model's pupil
+  std::array<bool, lines_per_point> passes;   ///< also, the line lies in the model's pupil
 };
 using Tracing = std::function<void(const PointLines& lines, std::size_t wavelength, PointRays& rays)>;
 
-/// A model as a renderer runs it: in float, except exact_double. Models that do not clip at apertures pass what lies
-/// within their pupils; the one ray of a pinhole stands for every line. The model must outlive the result.
+/// Traces a model as a renderer does: in float, except exact_double. Models that do not clip at apertures pass the
+/// lines within their pupils; the single ray of a pinhole stands for every line. The model must outlive the result.
 Tracing tracing(const AnyRayModel& model);
-/// The same for lines that lie within the model's own pupils.
+/// tracing() for lines that lie within the model's own pupils.
 Tracing tracing_within(const AnyRayModel& model);
 
 }  // namespace petzval::analysis_detail

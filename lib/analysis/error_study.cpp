@@ -16,9 +16,9 @@
 namespace petzval::analysis_detail {
 namespace {
 
-constexpr std::size_t block = 8;  // film points that a thread takes at once
+constexpr std::size_t block = 8;  // film points per task of a thread
 
-/// Largest extent of the hits in any of 16 directions, which is their diameter within 0.5 %.
+/// Largest extent of the hits in 16 directions: the diameter within 0.5 %.
 double diameter(const PointRays& rays, const SceneView& view) {
   constexpr int directions = 16;
   static const auto units = [] {
@@ -46,7 +46,7 @@ double diameter(const PointRays& rays, const SceneView& view) {
   return largest;
 }
 
-/// RMS and 99 % of errors, in any order.
+/// Computes RMS and 99th percentile. Reorders the errors.
 void summarise(std::vector<double>& errors, double pixel_mm, RayErrors& result) {
   if (!errors.empty()) {
     const double sum =
@@ -74,13 +74,13 @@ std::vector<std::size_t> wavelengths_of(const Lens& lens, const ErrorSamples& sa
   }
   for (const std::size_t w : result) {
     if (w < lens.wavelengths_nm().size()) continue;
-    throw Error(lens.name() + ": model error: wavelength " + std::to_string(w) + ", wanted a position among the " +
-                std::to_string(lens.wavelengths_nm().size()) + " compiled ones");
+    throw Error(lens.name() + ": model error: wavelength index = " + std::to_string(w) + "; must be one of the " +
+                std::to_string(lens.wavelengths_nm().size()) + " compiled wavelengths");
   }
   return result;
 }
 
-/// Of one film point and wavelength.
+/// The errors of one film point and wavelength.
 struct RayStudy::Errors {
   double mm = 0, of_blur = 0;
   std::size_t rays = 0;
@@ -97,18 +97,17 @@ RayStudy::RayStudy(const camera_detail::ExactModel<double>& exact, const Film& f
   const Lens& lens = exact.lens();
   constexpr std::size_t most_points = std::size_t{1} << 20;
   if (samples.film_points < 1 || samples.film_points > most_points) {
-    throw Error(lens.name() + ": model error: film_points is " + std::to_string(samples.film_points) +
-                ", wanted 1 to " + std::to_string(most_points));
+    throw Error(lens.name() + ": model error: film_points = " + std::to_string(samples.film_points) +
+                "; must be 1 to " + std::to_string(most_points));
   }
-  if (samples.depths_z.empty()) throw Error(lens.name() + ": model error: no depths, wanted one or more");
+  if (samples.depths_z.empty()) throw Error(lens.name() + ": model error: no depths; must be at least one");
   for (const double z : samples.depths_z) {
     if (z < 0) continue;
-    throw Error(lens.name() + ": model error: depth z is " + to_text(z) +
-                " mm, wanted it in front of the lens, below 0");
+    throw Error(lens.name() + ": model error: depth z = " + to_text(z) + " mm; must be below 0 (in front of the lens)");
   }
   if (const auto& range = samples.sharpest_between_z; range && !(range->at(0) < 0 && range->at(1) < 0)) {
-    throw Error(lens.name() + ": model error: the sharpest depth is to be found between z = " + to_text(range->at(0)) +
-                " and " + to_text(range->at(1)) + " mm, wanted both in front of the lens, below 0");
+    throw Error(lens.name() + ": model error: sharpest_between_z = " + to_text(range->at(0)) + ", " +
+                to_text(range->at(1)) + " mm; both must be below 0 (in front of the lens)");
   }
   const ChiefRays chief_rays(lens, exact.pupils().space());
   const AnyRayModel any = exact;
@@ -133,7 +132,7 @@ RayStudy::RayStudy(const camera_detail::ExactModel<double>& exact, const Film& f
     const bool light = std::ranges::any_of(
         points, [](const Point& p) { return std::ranges::any_of(p.exact.passes, std::identity()); });
     if (!light)
-      throw Error(lens.name() + ": model error: no ray from the film gets through the lens, wanted light on it");
+      throw Error(lens.name() + ": model error: no ray from the film passes the lens; light must reach the film");
   }
 }
 
@@ -206,7 +205,7 @@ void RayStudy::look(Point& point) const {
   for (const double z : samples_.depths_z) add(z);
   if (!samples_.sharpest_between_z) return;
 
-  // Spots have one waist: steps over the whole range, equal in 1/distance, then finer ones about the least.
+  // A spot has one waist: samples the whole range, equally spaced in 1/distance, then refines around the minimum.
   const double film_z = exact_->pupils().space().film_z;
   const auto& [z0, z1] = *samples_.sharpest_between_z;
   double from = 1 / (film_z - z0), to = 1 / (film_z - z1);
@@ -231,8 +230,8 @@ RayStudy::Errors RayStudy::errors_of(const Point& point, const Tracing& model, s
   model(point.lines, wavelength, rays);
   Errors found;
   found.of_tolerance.resize(tolerances_.size());
-  // A model whose pupil has no line in common with the lens's is compared along the lens's lines all the same: or else
-  // it would do best where it is worst.
+  // If no line passes both the model and the lens, the model is compared along the lines of the lens. Otherwise the
+  // worst models would have no errors.
   bool common = false;
   for (std::size_t i = 0; i < lines_per_point; ++i) common = common || (point.exact.passes[i] && rays.passes[i]);
   const auto& counts = common ? rays.passes : rays.reaches;
@@ -242,7 +241,7 @@ RayStudy::Errors RayStudy::errors_of(const Point& point, const Tracing& model, s
     for (std::size_t d = 0; d < point.blur.size(); ++d) {
       const double error = point.views[d].distance(point.exact.rays[i], rays.rays[i]);
       if (d < samples_.depths_z.size() && i < uniform_lines && is_uniform(point.place)) found.even.push_back(error);
-      if (error == 0) continue;  // also where there is no blur
+      if (error == 0) continue;  // also without a blur
       found.mm = std::max(found.mm, error);
       found.of_blur = std::max(found.of_blur, error / point.blur[d]);
       for (std::size_t t = 0; t < tolerances_.size(); ++t) {

@@ -11,49 +11,49 @@
 #include "petzval/analysis/model_error.hpp"
 #include "petzval/core/film.hpp"
 
-/// Models compared with a lens whose rays are traced once for all of them.
+/// Comparison of models with a lens whose rays are traced once for all models.
 namespace petzval::analysis_detail {
 
-/// The largest error allowed at a film point and depth: a length, or a fraction of the local blur where that is larger.
+/// The largest error allowed at a film point and depth: the larger value of a length and a fraction of the local blur.
 struct Tolerance {
   double mm = 0, of_blur = 0;
 };
 
-/// Errors of rays.
+/// Ray errors of models.
 class RayStudy {
  public:
-  /// Throws Error as model_error does; the exact model must outlive the study.
+  /// Throws the errors of model_error(). The exact model must outlive the study.
   RayStudy(const camera_detail::ExactModel<double>& exact, const Film& film, const ErrorSamples& samples,
            std::span<const Tolerance> tolerances = {});
 
   struct Found {
     RayErrors all;
     std::vector<RayErrors> wavelength;
-    /// Largest of each film point, over lines, depths and wavelengths: mm, fractions of the blur, of each tolerance.
+    /// Largest errors of each film point over lines, depths and wavelengths: mm, fractions of the blur, fractions of
+    /// each tolerance.
     std::vector<double> mm, of_blur;
     std::vector<std::vector<double>> of_tolerance;
   };
   Found measure(const Tracing& model) const;
 
-  /// The largest of all errors, after a closer look at the film points where the largest were found: 16 times as many
-  /// lines.
+  /// The largest errors, refined with 16 times as many lines at the film points with the largest errors.
   struct Largest {
     double mm = 0, of_blur = 0;
     std::vector<double> of_tolerance;
   };
   Largest largest(const Found& found, const Tracing& model) const;
 
-  /// The same film points, depths and blurs, but along chief rays alone.
+  /// The same film points, depths and blurs, but only chief rays.
   RayStudy chief_rays() const;
 
  private:
   struct Point {
-    std::size_t place = 0;  ///< among the film points
+    std::size_t place = 0;  ///< index of the film point
     PointLines lines;
     PointRays exact{};
     ChiefRay chief{};
-    std::vector<SceneView> views{};  ///< one for each depth, and for the sharpest where it is asked for
-    std::vector<double> blur{};      ///< mm on the film, one for each view
+    std::vector<SceneView> views{};  ///< per depth, then for the sharpest depth if sampled
+    std::vector<double> blur{};      ///< mm on the film, per view
   };
   struct Errors;
   void look(Point& point) const;
@@ -65,10 +65,11 @@ class RayStudy {
   ErrorSamples samples_;
   std::vector<Tolerance> tolerances_;
   std::vector<std::size_t> wavelengths_;
-  std::vector<std::vector<Point>> points_;  // [wavelength of the samples], those with light
+  std::vector<std::vector<Point>> points_;  // [wavelength of the samples], lit points
 };
 
-/// Wavelengths that samples name, checked.
+/// The wavelength indices of the samples without duplicates; all wavelengths if the list of the samples is empty.
+/// Throws Error if an index is out of range.
 std::vector<std::size_t> wavelengths_of(const Lens& lens, const ErrorSamples& samples);
 
 }  // namespace petzval::analysis_detail

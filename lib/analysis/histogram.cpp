@@ -8,8 +8,8 @@ namespace petzval::analysis_detail {
 
 void count_points(const PixelGrid& grid, std::span<const double> x, std::span<const double> y,
                   std::span<std::uint64_t> counts, std::span<const std::uint32_t> units) noexcept {
-  // Pixel numbers of a block of points on lanes, then additions one by one: an image for each lane costs more. Points
-  // outside the grid convert a 0: integers cannot hold all of their numbers.
+  // Computes the pixel numbers of a block of points in SIMD lanes, then counts one by one: an image for each lane would
+  // cost more. A point outside the grid converts 0, because integers cannot hold all of its possible numbers.
   constexpr std::size_t block = 256;
   std::array<std::int32_t, block> pixel;
   const double cx = grid.centre.x, cy = grid.centre.y;
@@ -29,7 +29,7 @@ void count_points(const PixelGrid& grid, std::span<const double> x, std::span<co
       }
       continue;
     }
-    // Points outside the grid drop out without a branch, which a cropped picture would mispredict.
+    // Drops points outside the grid without a branch, which a cropped picture would mispredict.
     std::size_t kept = 0;
     for (std::size_t i = 0; i < count; ++i) {
       pixel[kept] = pixel[i];

@@ -9,16 +9,16 @@
 
 namespace petzval::analysis_detail {
 
-/// A square of square pixels on the film: `pixels` a side, 1 to 32768, rows from the top (largest y first).
+/// A square grid of square pixels on the film: `pixels` a side, 1 to 32768, rows from the top (largest y first).
 struct PixelGrid {
   Vec2<double> centre{0, 0};  ///< mm
   double pixel_mm = 1;
   int pixels = 1;
 };
 
-/// Adds 1 to the pixel of each point; points outside the grid are not counted. x, y: N each, film, mm. counts: pixels
-/// squared, [row][column]; integers, which count exactly however full a pixel is. units: what to add in place of 1 for
-/// each point, or none.
+/// Adds 1 to the pixel of each point; points outside the grid are ignored. x, y: film positions, mm, N each. counts:
+/// pixels squared, [row][column]; integers, so that sums are exact. units: amounts to add instead of 1, one per point;
+/// may be empty.
 PETZVAL_API void count_points(const PixelGrid& grid, std::span<const double> x, std::span<const double> y,
                               std::span<std::uint64_t> counts, std::span<const std::uint32_t> units = {}) noexcept;
 

@@ -17,9 +17,9 @@
 namespace petzval {
 namespace {
 
-/// For subjects at infinity: at this distance in mm the chief rays of a point are parallel within rounding.
+/// Distance that stands for infinity, mm: the chief rays of a point are parallel within rounding.
 constexpr double far_mm = 1e9;
-/// The cosine of the widest field that counts as seen by a pinhole, 89 degrees.
+/// Cosine of the widest field that a pinhole image includes, 89 degrees.
 constexpr double least_cosine = 0.0175;
 
 double subject_of(const Lens& lens, const Film& film, const DistortionOptions& options) {
@@ -27,7 +27,7 @@ double subject_of(const Lens& lens, const Film& film, const DistortionOptions& o
   const FocusSolution found = solve_subject(lens, film.z());
   if (found.status == FocusStatus::afocal || found.status == FocusStatus::no_rays) {
     throw Error(lens.name() + ": distortion: no subject is in focus (" + std::string(name(found.status)) +
-                "), wanted a subject_z_mm");
+                "); subject_z_mm must be given");
   }
   return found.subject_z;
 }
@@ -40,13 +40,13 @@ LensDistortion::LensDistortion(const Camera& camera, const DistortionOptions& op
   const std::string where = lens.name() + ": distortion: ";
   pinhole_.z_mm = pupils(lens).entrance.z;
   if (!std::isfinite(pinhole_.z_mm)) {
-    throw Error(where + "the entrance pupil is at infinity, wanted one in which a pinhole may stand");
+    throw Error(where + "the entrance pupil is at infinity; must be at a finite distance for a pinhole");
   }
   pinhole_.subject_z_mm = subject_of(lens, film, options);
   distance_ = std::min(pinhole_.z_mm - pinhole_.subject_z_mm, far_mm);
   if (!(distance_ > 0) || !(pinhole_.subject_z_mm < 0)) {
     throw Error(where + "the subject is at z = " + to_text(pinhole_.subject_z_mm) +
-                " mm, wanted one in front of the lens and of its entrance pupil, at z = " + to_text(pinhole_.z_mm) +
+                " mm; must be in front of the lens and of its entrance pupil, at z = " + to_text(pinhole_.z_mm) +
                 " mm");
   }
 
@@ -54,8 +54,8 @@ LensDistortion::LensDistortion(const Camera& camera, const DistortionOptions& op
   centre_ = film.raster(FilmPoint{});
   pinhole_.centre_mm = {(centre_.x - film.columns / 2.0) * pixel_mm.x, (centre_.y - film.rows / 2.0) * pixel_mm.y};
 
-  // The slope of the picture so close to the axis that distortion of the third order is off by 1e-8. (Aspheres with odd
-  // terms change it by 1 % within a hundredth of a radian.)
+  // The slope of the image this close to the axis differs by 1e-8 due to third-order distortion. (Aspheres with odd
+  // terms change the slope by 1 % within 0.01 rad.)
   constexpr double near = 1e-4;
   const auto on_axis = [&](double x, double y) {
     const auto shown = [&](double sign) {
@@ -68,7 +68,7 @@ LensDistortion::LensDistortion(const Camera& camera, const DistortionOptions& op
   };
   focal_length_px_ = {on_axis(1, 0).x, -on_axis(0, 1).y};
   if (!(focal_length_px_.x > 0 && focal_length_px_.y > 0)) {
-    throw Error(where + "the picture is upside down, wanted an upright one");
+    throw Error(where + "the picture is upside down; must be upright");
   }
   pinhole_.focal_length_mm = focal_length_px_ * pixel_mm;
 }
@@ -85,7 +85,7 @@ Vec2<double> LensDistortion::shown_at(const Vec3<double>& point) const noexcept 
 }
 
 std::optional<CameraSample> LensDistortion::sample_with_light(const FilmPoint& film) const noexcept {
-  // The middle of the pupil first, then all of it: obscurations and folds leave small parts.
+  // Tries the middle of the pupil first, then the whole pupil: obscurations and folds leave small parts.
   const core_detail::Kronecker<2> places(1);
   CameraSample sample{.film = film, .pupil_u = 0, .pupil_v = 1e-3};
   for (std::uint32_t i = 0; i < 32; ++i) {
@@ -97,7 +97,7 @@ std::optional<CameraSample> LensDistortion::sample_with_light(const FilmPoint& f
 }
 
 std::optional<Vec2<double>> LensDistortion::undistorted(const Vec2<double>& distorted_at) const noexcept {
-  // A ray of the film point meets the plane near the wanted point, and those of points beside it say how that moves.
+  // A ray of the film point meets the plane near the searched point. Rays of adjacent film points give the derivatives.
   const Film& film = camera_.film();
   auto sample = sample_with_light(film.point(distorted_at.x, distorted_at.y));
   if (!sample) return {};
@@ -115,7 +115,7 @@ std::optional<Vec2<double>> LensDistortion::undistorted(const Vec2<double>& dist
   Vec2<double> by_x = along_x ? (*along_x - *start) / hx : Vec2<double>(1, 0);
   Vec2<double> by_y = along_y ? (*along_y - *start) / hy : Vec2<double>(0, 1);
 
-  // These derivatives are near enough to begin with; each step tells how much they are off along it (Broyden 1965).
+  // The derivatives are accurate enough for a start. Each step corrects them along its direction (Broyden 1965).
   constexpr double settled = 1e-7, good = 5e-3;  // pixels
   Vec2<double> at = *start, step{0, 0}, last_miss{0, 0};
   double last = std::numeric_limits<double>::infinity();
@@ -179,7 +179,7 @@ double overscan(const LensDistortion& distortion) {
   const Vec2<double> centre = distortion.centre(), size{film.columns, film.rows};
   if (!(centre.x > 0 && centre.x < size.x && centre.y > 0 && centre.y < size.y)) {
     throw Error(where + "the film is shifted by (" + to_text(film.shift_x_mm) + ", " + to_text(film.shift_y_mm) +
-                ") mm, wanted the axis within the picture");
+                ") mm; the axis must lie within the picture");
   }
   const auto box = undistorted_box(distortion);
   if (!box) throw Error(where + "no light reaches the film");

@@ -21,14 +21,14 @@ LensIdentity identity_of(const Prescription& prescription) {
 }
 
 Film film_of(const Prescription& prescription, const Lens& lens) {
-  constexpr double least_part = 0.1;  // of the light on the axis
+  constexpr double least_part = 0.1;  // fraction of the irradiance on the axis
   const bool declared = prescription.image_diagonal_mm.has_value();
   const double diagonal = declared ? *prescription.image_diagonal_mm : image_circle_mm(lens, least_part);
   if (!(diagonal > 0 && std::isfinite(diagonal))) {
     throw Error(lens.name() + ": film: the " +
-                (declared ? "declared image diagonal is " + to_text(diagonal) + " mm, wanted a positive, finite one"
-                          : "prescription declares no image diagonal and the image circle is " + to_text(diagonal) +
-                                " mm wide, wanted a film"));
+                (declared ? "declared image diagonal = " + to_text(diagonal) + " mm; must be finite and above 0"
+                          : "prescription declares no image diagonal and the image circle = " + to_text(diagonal) +
+                                " mm; must be finite and above 0"));
   }
   const double unit = diagonal / std::hypot(3.0, 2.0);
   return {.width_mm = 3 * unit, .height_mm = 2 * unit, .columns = 1920, .rows = 1280};
@@ -58,7 +58,7 @@ double ExposureFalloff::light(double radius_mm) const noexcept {
 ExposureFalloff fit_exposure_falloff(const Lens& lens, const Film& film) {
   constexpr int radii = 24;
   const double farthest = film.radius_mm(), on_axis = film_irradiance(lens, {});
-  if (!(on_axis > 0)) throw Error(lens.name() + ": exposure falloff: the axis is dark, wanted light on it");
+  if (!(on_axis > 0)) throw Error(lens.name() + ": exposure falloff: the axis is dark; light must reach it");
 
   struct Place {
     double radius = 0, light = 0;
@@ -79,7 +79,7 @@ ExposureFalloff fit_exposure_falloff(const Lens& lens, const Film& film) {
   Eigen::VectorXd lost(places.size());
   for (std::size_t i = 0; i < places.size(); ++i) {
     const double r2 = (places[i].radius / farthest) * (places[i].radius / farthest);
-    const double weight = std::sqrt(places[i].radius / farthest);  // of a ring of the film
+    const double weight = std::sqrt(places[i].radius / farthest);  // its square: area of a ring of the film
     rows.row(static_cast<Eigen::Index>(i)) << weight * r2, weight * r2 * r2, weight * r2 * r2 * r2;
     lost(static_cast<Eigen::Index>(i)) = weight * (1 - places[i].light);
   }

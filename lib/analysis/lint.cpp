@@ -36,10 +36,11 @@ void check_stops(const Prescription& prescription, Findings& findings) {
   }
   if (stops == 0) {
     findings.push_back(
-        {Kind::no_stop, {}, 0, 1, "no surface is marked as stop; the one that clips the axial beam first is used"});
+        {Kind::no_stop, {}, 0, 1, "no surface is marked as stop; the surface that clips the axial beam first is used"});
   } else if (stops > 1) {
-    findings.push_back({Kind::several_stops, last, static_cast<double>(stops), 1,
-                        at(last) + "is the last of " + std::to_string(stops) + " marked as stop; the first is used"});
+    findings.push_back(
+        {Kind::several_stops, last, static_cast<double>(stops), 1,
+         at(last) + "is the last of " + std::to_string(stops) + " surfaces marked as stop; the first is used"});
   }
 }
 
@@ -50,17 +51,17 @@ void check_surfaces(const Prescription& rows, const Lens& lens, Findings& findin
     const LensSurface& surface = lens.surfaces()[position];
     const double end = std::min(lens_detail::equator(surface), surface.semi_diameter);
     const std::optional<double> declared = rows.surfaces[position].semi_diameter;
-    // Apertures that end where two surfaces meet are overlaps.
+    // An aperture that ends where two surfaces meet is reported as an overlap.
     const bool meets_another = surface.semi_diameter == surface.edge;
     if (declared && std::isfinite(*declared) && surface.semi_diameter > 0 && *declared > end && !meets_another) {
       findings.push_back(
           {Kind::semi_diameter, i, *declared, end,
-           at(i) + "semi_diameter is " + mm(*declared) + ", wanted at most " + mm(end) + ", where the surface ends"});
+           at(i) + "semi_diameter = " + mm(*declared) + "; must be at most " + mm(end) + ", where the surface ends"});
     }
-    // A stop of 0 is a closed iris. Any other rim of 0 is hardly intended.
+    // A stop of 0 is a closed iris. Any other rim of 0 is probably a mistake.
     if (surface.semi_diameter == 0 && lens.stop() != position) {
       findings.push_back({Kind::semi_diameter, i, 0, lens_detail::equator(surface),
-                          at(i) + "semi_diameter is 0 mm; only the axial ray passes"});
+                          at(i) + "semi_diameter = 0 mm; only the axial ray passes"});
     }
     if (i + 1 == count) break;
     const auto spacing = analysis_detail::least_spacing(lens, position);
@@ -72,14 +73,14 @@ void check_surfaces(const Prescription& rows, const Lens& lens, Findings& findin
   }
 }
 
-/// False for an unlimited stop and for a lens without clear apertures: they do not fix the f-number.
+/// False if the stop is unlimited, or if a lens without stop has no clear apertures: then the f-number is undefined.
 bool limits_the_beam(const Lens& lens) {
   const auto surfaces = lens.stop() ? lens.surfaces().subspan(*lens.stop(), 1) : lens.surfaces();
   return std::any_of(surfaces.begin(), surfaces.end(),
                      [](const LensSurface& s) { return std::isfinite(s.semi_diameter); });
 }
 
-/// 10, 25.4 or 1000, or one over it, if a length is that many times a declared one.
+/// The ratio of a length to a declared length if it is 10, 25.4, 1000 or the inverse of these; nullopt otherwise.
 std::optional<double> unit_between(double length, double declared) {
   for (const double factor : {10.0, 25.4, 1000.0}) {
     for (const double ratio : {factor, 1 / factor}) {
@@ -89,7 +90,7 @@ std::optional<double> unit_between(double length, double declared) {
   return {};
 }
 
-/// The f-number with all clear apertures so many times as large; nothing where it has none.
+/// The f-number after all clear apertures are multiplied by a factor; nullopt if the lens has no pupils.
 std::optional<double> f_number_with(const Prescription& prescription, double factor, const GlassCatalogue* glasses) {
   Prescription scaled = prescription;
   for (SurfaceRow& row : scaled.surfaces) {
@@ -101,7 +102,7 @@ std::optional<double> f_number_with(const Prescription& prescription, double fac
   return real_f_number(lens);
 }
 
-/// By what factor all apertures are too large or too small: 2 or a half, if that gives the declared f-number.
+/// Factor by which all apertures are too large: 2 or 0.5 if that explains the declared f-number; nullopt otherwise.
 std::optional<double> aperture_factor(const Prescription& prescription, double f_number,
                                       const GlassCatalogue* glasses) {
   const double factor = f_number < *prescription.f_number ? 2 : 0.5;
@@ -111,12 +112,12 @@ std::optional<double> aperture_factor(const Prescription& prescription, double f
   return {};
 }
 
-/// The rim that clips the axial beam first, if that is well before the marked stop does.
+/// Reports the rim that clips the axial beam first, if that happens well before the marked stop clips the beam.
 void check_stop(const Lens& lens, Findings& findings) {
   constexpr double well_before = 0.7;
   if (!lens.stop()) return;
   const auto to = ray_matrices_to(lens, {}, main_meridian(lens));
-  // Of a ray that enters at height 1.
+  // Semi-diameter divided by the height of a ray that enters at height 1.
   const auto margin = [&](std::size_t i) { return lens.surfaces()[i].semi_diameter / std::abs(to[i].a); };
   const double of_stop = margin(*lens.stop());
   std::size_t first = *lens.stop();
@@ -125,11 +126,11 @@ void check_stop(const Lens& lens, Findings& findings) {
   }
   if (!(margin(first) < well_before * of_stop) || !std::isfinite(of_stop)) return;
   findings.push_back({Kind::idle_stop, static_cast<int>(*lens.stop()), of_stop, margin(first),
-                      at(static_cast<int>(*lens.stop())) + "the stop lets an axial beam of " + mm(of_stop) +
-                          " radius pass, surface " + std::to_string(first) + " clips it at " + mm(margin(first))});
+                      at(static_cast<int>(*lens.stop())) + "the stop passes an axial beam of " + mm(of_stop) +
+                          " radius, but surface " + std::to_string(first) + " clips it at " + mm(margin(first))});
 }
 
-/// From the last vertex to the paraxial image of the design's object; infinite for an afocal lens.
+/// Distance from the last vertex to the paraxial image of the design object; infinite for an afocal lens.
 double image_distance(const Prescription& prescription, const Lens& lens) {
   const double object_z = -prescription.design.object_distance_mm;
   return paraxial_image_z(lens, object_z, {}, main_meridian(lens)) - lens.surfaces().back().vertex_z;
@@ -146,14 +147,14 @@ void check_first_order(const Prescription& prescription, const Lens& lens, const
                         {},
                         focal_length,
                         *prescription.focal_length_mm,
-                        "focal length is " + mm(focal_length) + ", declared " + mm(*prescription.focal_length_mm) +
-                            ": lengths are " + to_text(*unit, 4) + " times what they should be"});
+                        "focal length = " + mm(focal_length) + ", declared " + mm(*prescription.focal_length_mm) +
+                            ": lengths are " + to_text(*unit, 4) + " times the declared scale"});
   } else if (prescription.focal_length_mm && differs(focal_length, *prescription.focal_length_mm)) {
     findings.push_back({Kind::focal_length,
                         {},
                         focal_length,
                         *prescription.focal_length_mm,
-                        "focal length is " + mm(focal_length) + ", declared " + mm(*prescription.focal_length_mm)});
+                        "focal length = " + mm(focal_length) + ", declared " + mm(*prescription.focal_length_mm)});
   }
   if (prescription.f_number && limits_the_beam(lens)) {
     const double f_number = real_f_number(lens);
@@ -162,14 +163,14 @@ void check_first_order(const Prescription& prescription, const Lens& lens, const
                           {},
                           f_number,
                           *prescription.f_number,
-                          "f-number is " + to_text(f_number, 4) + ", declared " + to_text(*prescription.f_number, 4) +
-                              ": semi-diameters are " + (*factor > 1 ? "diameters" : "halves of them")});
+                          "f-number = " + to_text(f_number, 4) + ", declared " + to_text(*prescription.f_number, 4) +
+                              ": semi-diameters are " + (*factor > 1 ? "diameters" : "half semi-diameters")});
     } else if (differs(f_number, *prescription.f_number)) {
       findings.push_back({Kind::f_number,
                           {},
                           f_number,
                           *prescription.f_number,
-                          "f-number is " + to_text(f_number, 6) + ", declared " + to_text(*prescription.f_number, 6)});
+                          "f-number = " + to_text(f_number, 6) + ", declared " + to_text(*prescription.f_number, 6)});
     }
   }
   const int last = static_cast<int>(lens.surface_count()) - 1;
@@ -178,7 +179,7 @@ void check_first_order(const Prescription& prescription, const Lens& lens, const
   if (std::isfinite(image) && std::abs(distance - image) > tolerance * std::abs(focal_length)) {
     const bool far = std::isinf(prescription.design.object_distance_mm);
     findings.push_back({Kind::image_distance, last, distance, image,
-                        at(last) + "the film is " + mm(distance) + " behind it and the paraxial " +
+                        at(last) + "the film is " + mm(distance) + " behind the surface, the paraxial " +
                             (far ? "focus " : "image of the object ") + mm(image)});
   }
 }
@@ -191,9 +192,9 @@ void check_glasses(const Prescription& prescription, const GlassCatalogue& glass
     const Glass* glass = glasses.find(*medium.glass, *medium.catalogue);
     if (!glass || std::abs(glass->nd - *medium.nd) <= another_glass) continue;
     const int surface = static_cast<int>(i);
-    findings.push_back({Kind::glass_index, surface, *medium.nd, glass->nd,
-                        at(surface) + "n_d is " + to_text(*medium.nd, 6) + ", that of " + glass->name + " is " +
-                            to_text(glass->nd, 6)});
+    findings.push_back(
+        {Kind::glass_index, surface, *medium.nd, glass->nd,
+         at(surface) + "n_d = " + to_text(*medium.nd, 6) + ", n_d of " + glass->name + " = " + to_text(glass->nd, 6)});
   }
 }
 
@@ -208,24 +209,24 @@ void check_size(const Lens& lens, const Film& film, Findings& findings) {
                       diameter,
                       circle,
                       "the film is " + to_text(film.width_mm, 6) + " by " + mm(film.height_mm) +
-                          " and needs an image circle of " + mm(diameter) + "; the lens has one of " +
-                          to_text(circle, 4) + " mm, wanted a " + (larger ? "smaller" : "larger") + " film"});
+                          " and needs an image circle of " + mm(diameter) + "; the image circle of the lens is " +
+                          to_text(circle, 4) + " mm, which requires a " + (larger ? "smaller" : "larger") + " film"});
 }
 
 void check_pixels(const Lens& lens, const Film& film, Findings& findings) {
-  // Pictures of an anamorphic lens are stretched later, or by such pixels.
+  // Images of an anamorphic lens are stretched later, or by such pixels.
   if (!with_iris(lens, {}).rotationally_symmetric()) return;
   const double width = film.width_mm / film.columns, height = film.height_mm / film.rows;
   const double wanted_height = width * film.rows;
-  // Few pixels leave a film of whole ones a little too high or too low.
+  // With few pixels, a film of whole pixels is slightly too high or too low.
   if (std::abs(width / height - 1) <= 0.005 || std::abs(film.height_mm - wanted_height) < width) return;
   findings.push_back({Kind::pixel_shape,
                       {},
                       width / height,
                       1,
                       "pixels are " + to_text(width, 4) + " by " + to_text(height, 4) +
-                          " mm, wanted square ones: " + to_text(film.width_mm, 6) + " by " + mm(wanted_height) +
-                          " fit " + std::to_string(film.columns) + " by " + std::to_string(film.rows)});
+                          " mm; must be square: " + to_text(film.width_mm, 6) + " by " + mm(wanted_height) + " fit " +
+                          std::to_string(film.columns) + " by " + std::to_string(film.rows)});
 }
 
 }  // namespace
@@ -283,7 +284,7 @@ Repaired repair(const Prescription& prescription, const GlassCatalogue* glasses)
   const auto say = [&](const Finding& finding, const std::string& cure) {
     result.changes.push_back({0, std::string(name(finding.kind)), finding.message + "; " + cure});
   };
-  // Makes a change, unless the lens would be invalid with it: whether it was made.
+  // Makes a change unless the lens would be invalid. Returns true if the change was made.
   const auto changed = [&](const std::function<void(Prescription&)>& change) {
     Prescription after = p;
     try {
@@ -311,7 +312,7 @@ Repaired repair(const Prescription& prescription, const GlassCatalogue* glasses)
         if (row.obscuration_semi_diameter) *row.obscuration_semi_diameter *= factor;
       }
     });
-    if (made) say(*apertures, std::string("they are ") + (factor < 1 ? "halved" : "doubled"));
+    if (made) say(*apertures, std::string("semi-diameters are ") + (factor < 1 ? "halved" : "doubled"));
   }
   if (const auto stops = find(Kind::several_stops)) {
     bool first = true;
@@ -319,11 +320,11 @@ Repaired repair(const Prescription& prescription, const GlassCatalogue* glasses)
       row.stop = row.stop && first;
       first = first && !row.stop;
     }
-    say(*stops, "the marks behind the first are taken off");
+    say(*stops, "only the first mark is kept");
   }
   if (const auto film = find(Kind::image_distance); alone && film && film->wanted > 0) {
     if (changed([&](Prescription& lens) { lens.surfaces.back().thickness = film->wanted; }))
-      say(*film, "the film is put there");
+      say(*film, "the film is moved to the image");
   }
   return result;
 }

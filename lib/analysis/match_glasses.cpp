@@ -12,13 +12,13 @@
 namespace petzval {
 namespace {
 
-/// A medium without a name, and its positions in the lens.
+/// A medium without a glass name, and its positions in the lens.
 struct Anonymous {
   Medium medium;
   std::vector<std::string> places;
 };
 
-/// Calls a function for each medium of a lens, with its position in words.
+/// Calls a function for each medium of a lens, with the name of its position.
 void for_each_medium(Prescription& lens, const auto& call) {
   call(lens.object_space, "object_space");
   for (std::size_t i = 0; i < lens.surfaces.size(); ++i) call(lens.surfaces[i].medium, "surface " + std::to_string(i));

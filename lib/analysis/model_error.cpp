@@ -12,7 +12,7 @@ namespace petzval {
 
 namespace {
 
-/// film: placed behind the lens, upright.
+/// film: upright, placed behind the lens.
 std::vector<ModelError> measured(const Lens& lens, const Film& film, std::span<const AnyRayModel> models,
                                  const ErrorSamples& samples) {
   const camera_detail::ExactModel<double> exact(lens, film.radius_mm());

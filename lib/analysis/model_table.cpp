@@ -31,7 +31,7 @@ std::vector<double> depths_of(const Lens& lens, const SceneRequirements& scene) 
                 to_text(std::max(from_z, 0.0), 6) + " mm, in front of the lens, and as far or farther");
   }
   const double nearest = scene.near_mm + (film_z - from_z), farthest = scene.far_mm + (film_z - from_z);
-  // The plane of finite distance that measures as those near infinity do: there it is angles that count.
+  // A finite plane that gives the same errors as planes near infinity, where only angles count.
   const double last = std::isinf(farthest) ? 1e4 * nearest : farthest;
   constexpr int steps = 4;
   std::vector<double> distances;
@@ -49,7 +49,7 @@ std::vector<double> depths_of(const Lens& lens, const SceneRequirements& scene) 
   return depths;
 }
 
-/// The lens as the scene uses it, its samples, and everything exact about it.
+/// The lens with the aperture of the scene, the samples, and the exact measurements.
 struct Setting {
   Setting(const Lens& whole, const SceneRequirements& scene, std::span<const Tolerance> tolerances, int threads)
       : lens(scene.f_number ? with_f_number(whole, *scene.f_number, whole.primary_wavelength()) : whole),
@@ -73,7 +73,7 @@ struct Setting {
   std::optional<PupilStudy> pupils;
 };
 
-/// The bound for lines that were not looked at.
+/// The bound for lines that were not sampled.
 RayStudy::Largest guarded(RayStudy::Largest largest, std::span<const Tolerance> tolerances, double guard) {
   largest.mm *= guard;
   largest.of_blur *= std::max(guard, blur_guard);
@@ -96,14 +96,14 @@ double focal_length(const Lens& lens) {
   return std::abs(first_order(lens, wavelength, main_meridian(lens, wavelength)).effective_focal_length);
 }
 
-/// Of some wavelengths the one that speaks for them: that nearest to the d line.
+/// The wavelength that represents several: the wavelength nearest to the d line.
 std::size_t central_of(const Lens& lens, const std::vector<std::size_t>& wavelengths) {
   return *std::ranges::min_element(wavelengths, {},
                                    [&](std::size_t w) { return std::abs(lens.wavelengths_nm()[w] - d_line_nm); });
 }
 
-/// What models cost, from times with some noise in them: pinhole, thin and thick run the same loops, two discs add the
-/// look-up of a table, and polynomials, the more the more terms they have, a sum of terms.
+/// Costs of models from noisy times. pinhole, thin and thick run the same loops; two discs add the look-up of a table;
+/// polynomials add a sum of terms and cost more with more terms.
 std::vector<double> costs(std::span<const AnyRayModel> models, std::vector<double> times) {
   double discs = std::numeric_limits<double>::infinity(), simpler = 0;
   const auto one_disc = [](ModelKind kind) { return kind.is_first_order() && kind != ModelKind::thin_two_disc; };
@@ -151,10 +151,10 @@ ModelTable model_table(const Lens& given, const SceneRequirements& scene, std::s
                               model == ModelKind::exact_float ? noise_guard : smooth_guard);
     const auto pupils = setting.pupils->measure(pupils_of(*built));
     candidate.error = {found.all, found.wavelength, pupils.shape, pupils.exposure};
-    // In float, rounding adds noise to what is smooth.
+    // Rounding in float adds noise to smooth errors.
     candidate.bound_px = (rays.mm + (model == ModelKind::exact_double ? 0 : rounding)) / film.pixel_mm();
     candidate.bound_of_blur = rays.of_blur;
-    // The reference itself has no errors: nothing to be unsure of.
+    // The exact model is the reference: its errors are 0 without uncertainty.
     candidate.bound_exposure = model == ModelKind::exact_double ? 0 : pupils.exposure_bound;
     candidate.bound_pupil_shape = model == ModelKind::exact_double ? 0 : pupils.shape_bound;
     of_tolerance = rays.of_tolerance;
@@ -179,7 +179,7 @@ ModelTable model_table(const Lens& given, const SceneRequirements& scene, std::s
     };
     table.one_wavelength = guarded(setting.rays->largest(setting.rays->measure(one), one), tolerances, smooth_guard);
   }
-  // The pupil of the middle of the film, everywhere.
+  // Every film point with the pupil of the film centre.
   const FilmPoint middle{film.shift_x_mm, film.shift_y_mm};
   const Tracing from_middle = [&](const PointLines& lines, std::size_t w, PointRays& rays) {
     PointLines moved(middle);

@@ -11,14 +11,14 @@
 
 namespace petzval::analysis_detail {
 
-/// What a choice is based on: every model measured for a scene, and what the scene may do without.
+/// The data for a choice: the measurements of every model for a scene, and of possible simplifications.
 struct ModelTable {
   std::vector<ModelCandidate> models;
-  /// Bounds of errors over tolerances, [model][tolerance].
+  /// Bounds of errors divided by tolerances, [model][tolerance].
   std::vector<std::vector<double>> of_tolerance;
 
-  /// Bounds of the errors of tracing one wavelength for all, and of chief rays to first order. Nothing where they
-  /// cannot be measured.
+  /// Bounds of the errors of tracing one wavelength for all, and of chief rays to first order. nullopt if not
+  /// measurable.
   std::optional<RayStudy::Largest> one_wavelength, no_distortion;
   double pixel_mm = 0;
   std::size_t wavelengths = 1;

@@ -12,10 +12,10 @@
 namespace petzval::analysis_detail {
 namespace {
 
-constexpr std::size_t rays = 8192;  // of float: 0.5 MB, which the second cache holds
+constexpr std::size_t rays = 8192;  // 0.5 MB in float, which fits the second-level cache
 constexpr int rounds = 9;
 
-/// Samples all over a film, and room for the rays.
+/// Samples over the whole film, and memory for the rays.
 template <class T>
 class Work {
  public:

@@ -9,23 +9,23 @@
 
 namespace petzval::analysis_detail {
 
-/// Sums, or maxima, of every eighth point: the compiler may run a loop over points on lanes, and the result does not
-/// depend on whether it does.
+/// Partial sums, or maxima, over every eighth point. A loop over points may run on SIMD lanes, and its result does not
+/// depend on the lanes.
 using PartialSums = std::array<double, 8>;
 
 inline double sum(const PartialSums& parts) noexcept { return std::accumulate(parts.begin(), parts.end(), 0.0); }
 
 inline double largest(const PartialSums& parts) noexcept { return *std::max_element(parts.begin(), parts.end()); }
 
-/// Number of points that have both coordinates, and weights where there are some.
+/// Number of points that have both coordinates and, unless weights are empty, a weight.
 template <class Points>
 std::size_t point_count(const Points& points) noexcept {
   const std::size_t count = std::min(points.x.size(), points.y.size());
   return points.weights.empty() ? count : std::min(count, points.weights.size());
 }
 
-/// Calls see(part, x, y, weight) for all points of sets with coordinates x and y and weights, or none, which are 1; the
-/// points of a set take the parts by turns.
+/// Calls see(part, x, y, weight) for all points of several sets. Weights are 1 if a set has no weights. Consecutive
+/// points of a set go to consecutive parts.
 template <class Sets, class See>
 void for_each(const Sets& sets, See&& see) noexcept {
   constexpr std::size_t parts = std::tuple_size_v<PartialSums>;

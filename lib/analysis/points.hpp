@@ -9,19 +9,18 @@
 
 namespace petzval::analysis_detail {
 
-/// Coordinates of film points, N each, mm, and their weights, or none.
+/// Coordinates of film points, N each, mm, and their weights; weights may be empty.
 struct Points {
   std::span<const double> x, y, weights{};
 };
 
-/// Half the side of a picture for hits up to `farthest` from its centre, mm: 5 % more, at least 0.1 um.
+/// Half the side of an image for hits up to `farthest` from its centre, mm: 5 % more, at least 0.1 um.
 inline double fitting_half_width(double farthest) noexcept { return std::max(1.05 * farthest, 1e-4); }
 
 /// spot_size() of all points of several sets.
 SpotSize spot_size(std::span<const Points> sets) noexcept;
 
-/// Where the chief ray of a point meets the film, x and y, mm; clear apertures do not stop it. Nothing where no such
-/// ray reaches the film.
+/// Film position of the chief ray of a point, mm, not clipped by apertures. nullopt if no such ray reaches the film.
 std::optional<Vec2<double>> chief_point(const Lens& lens, const FieldPoint& point, std::size_t wavelength);
 
 }  // namespace petzval::analysis_detail

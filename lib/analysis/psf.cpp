@@ -24,40 +24,40 @@ namespace petzval {
 namespace {
 
 void validate(const PsfOptions& options) {
-  if (options.samples == 0) throw Error("point_image: samples is 0, wanted 1 or more");
+  if (options.samples == 0) throw Error("point_image: samples = 0; must be at least 1");
   constexpr int most = 1 << 15;
   if (options.pixels < 1 || options.pixels > most) {
-    throw Error("point_image: pixels is " + std::to_string(options.pixels) + ", wanted 1 to " + std::to_string(most));
+    throw Error("point_image: pixels = " + std::to_string(options.pixels) + "; must be 1 to " + std::to_string(most));
   }
   if (!std::isfinite(options.half_width_mm) || options.half_width_mm < 0) {
-    throw Error("point_image: half_width_mm is " + to_text(options.half_width_mm) + ", wanted a length, or 0 to fit");
+    throw Error("point_image: half_width_mm = " + to_text(options.half_width_mm) + "; must be finite and at least 0");
   }
   if (!(options.tolerance >= 0)) {
-    throw Error("point_image: tolerance is " + to_text(options.tolerance) + ", wanted 0 or more");
+    throw Error("point_image: tolerance = " + to_text(options.tolerance) + "; must be at least 0");
   }
   if (options.centre && !(std::isfinite(options.centre->x) && std::isfinite(options.centre->y))) {
-    throw Error("point_image: centre is (" + to_text(options.centre->x) + ", " + to_text(options.centre->y) +
-                "), wanted finite numbers");
+    throw Error("point_image: centre = (" + to_text(options.centre->x) + ", " + to_text(options.centre->y) +
+                "); must be finite");
   }
 }
 
-/// Into how many consecutive parts of one sequence samples are divided to estimate errors. Parts with a scrambling of
-/// their own would estimate theirs without a bias, but the error of eight together is 1.2 to 3.5 times as large, so
-/// that the bound would be no lower and the picture worse (tests/analysis/psf_sampling_test.cpp).
+/// Number of consecutive parts of one sequence, from which errors are estimated. Parts with a scrambling of their own
+/// would give unbiased estimates, but the error of all eight is 1.2 to 3.5 times as large, so that the bound would not
+/// be lower and the image worse (tests/analysis/psf_sampling_test.cpp).
 constexpr std::size_t parts = 8;
 
-/// Rays of a point at a wavelength, samples of a sequence from `first` on.
+/// Rays of a point at a wavelength, for `count` samples of a sequence from `first` on.
 using SendRays = std::function<RayBundle(std::size_t wavelength, std::uint32_t first, std::uint32_t count)>;
 
-/// The rays of a point: of each wavelength, sampled in parts.
+/// The rays of a point at each wavelength, sampled in parts.
 struct Rays {
   std::vector<RayBundle> sets;
-  std::vector<std::size_t> wavelength, part;      ///< of each set
-  std::vector<std::vector<std::uint32_t>> units;  ///< likewise, of each ray with a weight
-  std::uint32_t sent = 0;                         ///< for each wavelength
+  std::vector<std::size_t> wavelength, part;      ///< per set
+  std::vector<std::vector<std::uint32_t>> units;  ///< per set, of each ray with a weight
+  std::uint32_t sent = 0;                         ///< per wavelength
 
-  /// Sends the samples up to a number: the first ones in eight parts; then twice as many, when two parts become one and
-  /// the new samples are four.
+  /// Extends the samples to a number. The first call sends them in eight parts. Later calls must double the number:
+  /// pairs of parts are merged into four, and the new samples are four parts.
   void send(std::size_t wavelengths, std::uint32_t samples, const SendRays& send_rays) {
     const std::size_t first_part = sent == 0 ? 0 : parts / 2;
     for (std::size_t& own : part) own /= 2;
@@ -77,7 +77,7 @@ struct Rays {
     return std::any_of(units.begin(), units.end(), [](const auto& own) { return !own.empty(); });
   }
 
-  /// Some rays weigh far more than others: the variance of weights over their squared mean.
+  /// True if the variance of the weights is above a quarter of their squared mean.
   bool uneven() const noexcept {
     double count = 0, sum = 0, squares = 0;
     for (const RayBundle& set : sets) {
@@ -96,7 +96,7 @@ struct Rays {
   }
 };
 
-/// Half the side of a square about a centre that holds all hits.
+/// Half the side of a square around a centre that contains all hits.
 double fitting_half_width(const std::vector<RayBundle>& sets, const Vec2<double>& centre) {
   const double cx = centre.x, cy = centre.y;
   analysis_detail::PartialSums extent{};
@@ -118,7 +118,7 @@ void fill_counts(Psf& psf, const Rays& rays) {
 
 constexpr std::size_t rings = std::tuple_size_v<decltype(PointImage::radial_profile)>;
 
-/// The counts of hits in each ring of a width about a centre; the last ring has those that rounding puts beyond it.
+/// Counts of hits in rings of equal width around a centre. The last ring includes hits that rounding puts beyond.
 std::array<std::uint64_t, rings> count_by_ring(const RayBundle& hits, std::span<const std::uint32_t> units,
                                                const Vec2<double>& centre, double width) {
   constexpr std::size_t block = 256;
@@ -145,8 +145,8 @@ struct Rings {
   double width;
 };
 
-/// The light in the rings of a part of the rays, about its own centroid and of its own width, as a share of that on the
-/// paraxial entrance pupil.
+/// The light in the rings `own` of a part of the rays, as a fraction of the light on the paraxial entrance pupil. All
+/// rays if part == parts.
 std::array<double, rings> light_by_ring(const Psf& psf, const Rays& rays, const Rings& own, std::size_t part) {
   std::array<double, rings> light{};
   for (std::size_t i = 0; i < rays.sets.size(); ++i) {
@@ -158,12 +158,13 @@ std::array<double, rings> light_by_ring(const Psf& psf, const Rays& rays, const 
   return light;
 }
 
-/// Standard errors to a bound that 95 of 100 fresh runs keep: measured, tests/analysis/psf_error_test.cpp.
+/// Factor from the standard error to a bound that 95 of 100 new runs keep; measured in
+/// tests/analysis/psf_error_test.cpp.
 constexpr double confidence = 1.6;
-/// The same of uneven rays: where a bright rim ends depends on few of them.
+/// The factor for uneven rays, of which few determine the edge of a bright rim.
 constexpr double uneven_confidence = 3.6;
 
-/// Profile and error. Parts have rings of their own: how wide these are is a part of the error.
+/// Sets profile and error. Each part has its own rings, because the width of the rings contributes to the error.
 void fill_profile(PointImage& image, const Rays& rays) {
   const double width = image.size.max_radius / rings;
   image.radial_profile = {};
@@ -182,7 +183,7 @@ void fill_profile(PointImage& image, const Rays& rays) {
     const SpotSize size = analysis_detail::spot_size(own);
     std::array<double, rings> its{};
     if (std::ranges::any_of(own, [](const analysis_detail::Points& points) { return !points.x.empty(); })) {
-      if (size.max_radius == 0) continue;  // a point
+      if (size.max_radius == 0) continue;  // all hits coincide
       its = light_by_ring(image.psf, rays, {size.centroid, size.max_radius / rings}, part);
     }
     for (std::size_t k = 0; k < rings; ++k) errors += (parts * its[k] - light[k]) * (parts * its[k] - light[k]);
@@ -190,13 +191,13 @@ void fill_profile(PointImage& image, const Rays& rays) {
   image.error = (rays.uneven() ? uneven_confidence : confidence) * std::sqrt(errors / (parts * (parts - 1)) / squares);
 }
 
-/// The rays of a camera that connect a point with the entrance pupil, with weights: the area of the pupil plane that a
-/// ray stands for, over the mean one, `area` / count.
+/// The rays of a camera that connect a point with the entrance pupil. The weight of a ray is the area of the pupil
+/// plane that it represents, divided by the mean area `area` / count.
 RayBundle connected_rays(const Camera& camera, const PupilPlane& plane, std::size_t wavelength, double area,
                          std::uint32_t first, std::uint32_t count, const PsfOptions& options) {
   const bool far = plane.reciprocal_distance() == 0;
   const Vec3<double> point = far ? plane.centre() : plane.centre() + plane.towards() / plane.reciprocal_distance();
-  // Importance is a ray's share of the film's mean irradiance.
+  // Importance is the contribution of a ray to the mean irradiance of the film.
   const double index = camera.lens().index(0, wavelength);
   const double per_importance = camera.film().area_mm2() / (index * index) / area;
   std::vector<double> x(count), y(count), weights(count);
@@ -208,7 +209,7 @@ RayBundle connected_rays(const Camera& camera, const PupilPlane& plane, std::siz
                                      : camera.sample_importance(point, at.x, at.y, wavelength);
       if (!(s.pdf > 0)) continue;
       const double cosine = std::abs(glm::dot(s.direction, plane.normal()));
-      // From solid angle, or area across the ray, to the plane.
+      // From solid angle, or area across the ray, to area of the plane.
       const double way = far ? 1 : glm::dot(plane.centre() - point, plane.normal()) / cosine;
       const double spread = way * way / cosine;
       x[i] = s.importance.film.x, y[i] = s.importance.film.y;
@@ -225,7 +226,7 @@ RayBundle connected_rays(const Camera& camera, const PupilPlane& plane, std::siz
   return bundle;
 }
 
-/// The largest weight of some rays, over all wavelengths; 1 for none.
+/// The largest weight of a few rays, over all wavelengths; 1 if no ray has a weight.
 double brightest(const SendRays& send, std::size_t wavelengths) {
   constexpr std::uint32_t some = 256;
   double result = 0;
@@ -242,7 +243,7 @@ double entrance_pupil_area(const Lens& lens) {
   return std::numbers::pi / 4 * diameter(Meridian::x) * diameter(Meridian::y);
 }
 
-/// Positions of the wavelengths of an image.
+/// Indices of the wavelengths of an image.
 std::vector<std::size_t> wavelengths_of(const Lens& lens, const PsfOptions& options) {
   if (options.wavelength) return {lens.compiled_position(*options.wavelength)};
   std::vector<std::size_t> all(lens.wavelengths_nm().size());
@@ -250,7 +251,7 @@ std::vector<std::size_t> wavelengths_of(const Lens& lens, const PsfOptions& opti
   return all;
 }
 
-/// sampled_area: of each wavelength of the image; send_rays takes its place among these.
+/// sampled_area: per wavelength of the image. send_rays takes an index among these wavelengths.
 PointImage image_of(const Lens& lens, const std::vector<double>& sampled_area, const SendRays& send_rays,
                     const PsfOptions& options) {
   PointImage image;
@@ -318,15 +319,15 @@ PointImage point_image(const Camera& camera, const FieldPoint& point, const PsfO
   const Lens& lens = camera.lens();
   const PupilPlane plane(lens, point);
   if (camera.normalisation() != Normalisation::irradiance) {
-    throw Error(lens.name() + ": point_image: the camera's weights are relative, wanted Normalisation::irradiance");
+    throw Error(lens.name() + ": point_image: the camera's weights are relative; must be Normalisation::irradiance");
   }
   double area = entrance_pupil_area(lens);
-  if (!std::isfinite(area)) throw Error(lens.name() + ": point_image: the entrance pupil is infinite, wanted a size");
+  if (!std::isfinite(area)) throw Error(lens.name() + ": point_image: the entrance pupil is infinite; must be finite");
   const std::vector<std::size_t> wavelengths = wavelengths_of(lens, options);
   const auto send = [&](std::size_t w, std::uint32_t first, std::uint32_t count) {
     return connected_rays(camera, plane, wavelengths[w], area, first, count, options);
   };
-  // Counts tell weights apart that are 1/65536 of the brightest.
+  // Counts resolve weights down to 1/65536 of the largest weight.
   area *= brightest(send, wavelengths.size());
   return image_of(lens, std::vector(wavelengths.size(), area), send, options);
 }

@@ -14,13 +14,13 @@ namespace {
 
 using analysis_detail::WeightedKernel;
 
-/// The bundle between those of several kernels: mean hits, and the share of the kernels whose ray passes.
+/// The bundle between the bundles of several kernels: mean hits, and the fraction of kernels whose ray passes.
 struct MeanBundle {
   int side = 0;
   std::vector<double> x, y, passing;
 
-  /// A ray that passes everywhere has smooth means; at the edge of the pupil, where it is lost in some kernels, those
-  /// of the next ones in which it passes.
+  /// A ray that passes in all kernels has smooth means. Near the edge of the pupil, where some kernels lose the ray,
+  /// the linear means of the adjacent kernels with the ray are used.
   explicit MeanBundle(std::span<const WeightedKernel> nodes) : side(nodes.front().kernel->pixels) {
     const std::size_t count = nodes.front().kernel->hits_x.size();
     x.assign(count, 0.0), y = passing = x;
@@ -28,7 +28,7 @@ struct MeanBundle {
     for (const auto& [kernel, smooth, linear] : nodes) {
       for (std::size_t i = 0; i < count; ++i) {
         const auto hit_x = static_cast<double>(kernel->hits_x[i]), hit_y = static_cast<double>(kernel->hits_y[i]);
-        smooth_x[i] += smooth * hit_x, smooth_y[i] += smooth * hit_y;  // NaN where it is lost
+        smooth_x[i] += smooth * hit_x, smooth_y[i] += smooth * hit_y;  // NaN if lost
         if (linear == 0 || std::isnan(hit_x)) continue;
         x[i] += linear * hit_x, y[i] += linear * hit_y, passing[i] += linear;
       }
@@ -39,13 +39,13 @@ struct MeanBundle {
     }
   }
 
-  /// Where the ray of a point of the pupil arrives, and how much of it.
+  /// The hit of a pupil point's ray, and the fraction of its light.
   struct Hit {
     double x = 0, y = 0, light = 0;
   };
 
-  /// u in turns, v the square of the radius, as PupilSampler has them. Linear between rays; beyond the last ones at
-  /// centre and rim too, where all four neighbours pass whole.
+  /// u in turns and v as squared radius, as in PupilSampler. Linear between rays. Extrapolates beyond the last rays at
+  /// centre and rim if all four neighbours pass completely.
   Hit at(double u, double v) const noexcept {
     const double column = u * side - 0.5 + side, row = std::sqrt(v) * side - 0.5;  // u is periodic
     const int c = static_cast<int>(column), r = std::clamp(static_cast<int>(std::floor(row)), 0, side - 2);
@@ -75,8 +75,8 @@ PsfKernel analysis_detail::blend(std::span<const WeightedKernel> nodes) {
   PsfKernel result;
   result.pixels = nodes.front().kernel->pixels;
   result.chief_ray = true;
-  // Light goes with the area of the pupil: the square of what f-numbers and fields change evenly, up to where it is
-  // dark.
+  // The light is proportional to the area of the pupil: the square of an amplitude that is smooth in f-number and field
+  // up to dark nodes.
   double most = 0, amplitude = 0, linear_amplitude = 0;
   bool dark = false;
   for (const auto& [kernel, smooth, linear] : nodes) {
@@ -107,7 +107,7 @@ PsfKernel analysis_detail::blend(std::span<const WeightedKernel> nodes) {
   if (!lit) return result;
   result.pixel_mm = 2 * analysis_detail::fitting_half_width(half) / result.pixels;
 
-  // The bundle is sampled as rays are, from the same points of the pupil each time.
+  // The bundle is sampled as rays are, each time from the same points of the pupil.
   constexpr std::size_t samples = 1u << 20, block = 4096;
   std::vector<double> u(block), v(block), light(plane, 0.0);
   const double per_mm = 1 / result.pixel_mm, middle = result.pixels / 2.0;

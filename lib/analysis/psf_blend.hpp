@@ -7,14 +7,14 @@
 
 namespace petzval::analysis_detail {
 
-/// A kernel and its weights in a blend, which sum to 1: of polynomials through all nodes around, some negative; and of
-/// lines through the next ones, 0 for the others.
+/// A kernel and its weights in two blends, each with the sum 1. smooth: polynomials through all surrounding nodes, with
+/// some negative weights. linear: lines through adjacent nodes, 0 for other nodes.
 struct WeightedKernel {
   const PsfKernel* kernel;
   double smooth, linear;
 };
 
-/// The kernel between several: PsfSet::at(). All have the same number of pixels.
+/// The kernel between several nodes, for PsfSet::at(). All have the same number of pixels.
 PsfKernel blend(std::span<const WeightedKernel> nodes);
 
 }  // namespace petzval::analysis_detail

@@ -20,7 +20,7 @@
 namespace petzval {
 namespace {
 
-/// Traces the kernel's bundle. Lost rays are known by the places of the others: each carries its own as its weight.
+/// Traces the bundle of a kernel. Each ray carries its index as weight, which identifies the rays that are not lost.
 void fill_hits(PsfKernel& kernel, const Lens& lens, const PupilSampler& pupil) {
   const auto side = static_cast<std::size_t>(kernel.pixels), count = side * side;
   kernel.hits_x.assign(count, std::numeric_limits<float>::quiet_NaN());
@@ -52,35 +52,34 @@ void fill_hits(PsfKernel& kernel, const Lens& lens, const PupilSampler& pupil) {
 struct AxisRule {
   const char* name;
   double least, most;
-  bool open;  ///< the least value itself is refused
+  bool open;  ///< true if the least value is excluded
   const char* words;
 };
 constexpr double infinity = std::numeric_limits<double>::infinity(), largest = std::numeric_limits<double>::max();
 
 void check_axis(const std::vector<double>& axis, const AxisRule& rule) {
   const std::string where = std::string("PSF set: ") + rule.name;
-  if (axis.empty()) throw Error(where + ": none, wanted one at least");
+  if (axis.empty()) throw Error(where + ": no value; must be at least one");
   for (std::size_t i = 0; i < axis.size(); ++i) {
     if (!(axis[i] >= rule.least && axis[i] <= rule.most) || (rule.open && axis[i] == rule.least)) {
-      throw Error(where + ": found " + to_text(axis[i]) + ", wanted " + rule.words);
+      throw Error(where + ": value = " + to_text(axis[i]) + "; must be " + rule.words);
     }
     if (i > 0 && !(axis[i] > axis[i - 1])) {
-      throw Error(where + ": found " + to_text(axis[i]) + " after " + to_text(axis[i - 1]) +
-                  ", wanted ascending numbers");
+      throw Error(where + ": value = " + to_text(axis[i]) + " after " + to_text(axis[i - 1]) + "; must be ascending");
     }
   }
 }
 
-/// A node of an axis and its weights, as WeightedKernel has them.
+/// A node of an axis with its weights in a WeightedKernel.
 struct AxisNode {
   std::size_t index;
   double smooth, linear;
 };
 
-/// The node itself, or two before a value and two behind, as far as there are.
+/// The node at the value, or up to two nodes on each side of the value.
 std::vector<AxisNode> around(const std::vector<double>& axis, double at, const char* name, bool inverse) {
   if (!(at >= axis.front() && at <= axis.back())) {
-    throw Error(std::string("PSF set: ") + name + " is " + to_text(at) + ", wanted " +
+    throw Error(std::string("PSF set: ") + name + " = " + to_text(at) + "; must be " +
                 (axis.size() == 1 ? to_text(axis.front()) : to_text(axis.front()) + " to " + to_text(axis.back())));
   }
   const auto upper = static_cast<std::size_t>(std::lower_bound(axis.begin(), axis.end(), at) - axis.begin());
@@ -90,7 +89,7 @@ std::vector<AxisNode> around(const std::vector<double>& axis, double at, const c
   std::vector<AxisNode> nodes;
   for (std::size_t i = first; i < end; ++i) {
     AxisNode node{i, 1, 0};
-    for (std::size_t k = first; k < end; ++k) {  // Lagrange's polynomials
+    for (std::size_t k = first; k < end; ++k) {  // Lagrange polynomials
       if (k == i) continue;
       const double step = (coordinate(at) - coordinate(axis[k])) / (coordinate(axis[i]) - coordinate(axis[k]));
       node.smooth *= step;
@@ -106,8 +105,8 @@ std::vector<AxisNode> around(const std::vector<double>& axis, double at, const c
 PsfKernel psf_kernel(const Lens& lens, const Lens& wide_open, const FieldPoint& point, std::size_t wavelength,
                      const PsfKernelOptions& options) {
   if (options.pixels < 3 || options.pixels % 2 == 0) {
-    throw Error("psf_kernel: pixels is " + std::to_string(options.pixels) +
-                ", wanted an odd number from 3 on: the anchor is the middle of a pixel");
+    throw Error("psf_kernel: pixels = " + std::to_string(options.pixels) +
+                "; must be odd and at least 3, because the anchor is the middle of a pixel");
   }
   const auto chief = analysis_detail::chief_point(lens, point, wavelength);
   const PointImage image = point_image(lens, point,
@@ -133,7 +132,7 @@ PsfKernel psf_kernel(const Lens& lens, const Lens& wide_open, const FieldPoint& 
   if (image.throughput > 0 && axis > 0) {
     kernel.total = film_irradiance(lens, {kernel.anchor_mm.x, kernel.anchor_mm.y}, wavelength) / axis;
   }
-  // A photograph is turned by half a turn.
+  // A photograph is rotated by 180 degrees.
   const double per_ray = psf.transmitted[0] > 0 ? kernel.total / static_cast<double>(psf.transmitted[0]) : 0.0;
   for (auto count = psf.counts.rbegin(); count != psf.counts.rend(); ++count) {
     kernel.light.push_back(static_cast<float>(per_ray * static_cast<double>(*count)));
@@ -145,7 +144,7 @@ PsfKernel psf_kernel(const Lens& lens, const Lens& wide_open, const FieldPoint& 
 double light_moved(const PsfKernel& a, const PsfKernel& b) {
   if (a.pixels != b.pixels || a.pixel_mm != b.pixel_mm) {
     throw Error("light_moved: grids of " + std::to_string(a.pixels) + " pixels of " + to_text(a.pixel_mm) + " mm and " +
-                std::to_string(b.pixels) + " of " + to_text(b.pixel_mm) + " mm, wanted the same");
+                std::to_string(b.pixels) + " of " + to_text(b.pixel_mm) + " mm; must be equal");
   }
   if (a.total == 0 || b.total == 0) return 0;
   double sum = 0;
@@ -171,15 +170,15 @@ PsfSetPoint PsfSet::Axes::point(std::size_t node) const noexcept {
 
 void PsfSet::validate(const Axes& axes) {
   check_axis(axes.fields_deg, {"field_deg", 0, 180, false, "0 to 180"});
-  check_axis(axes.distances_mm, {"distance_mm", 0, infinity, true, "a number above 0, or inf"});
-  check_axis(axes.wavelengths_nm, {"wavelength_nm", 0, largest, true, "a finite number above 0"});
-  check_axis(axes.f_numbers, {"f_number", 0, largest, true, "a finite number above 0"});
+  check_axis(axes.distances_mm, {"distance_mm", 0, infinity, true, "above 0, or inf"});
+  check_axis(axes.wavelengths_nm, {"wavelength_nm", 0, largest, true, "finite and above 0"});
+  check_axis(axes.f_numbers, {"f_number", 0, largest, true, "finite and above 0"});
 }
 
 PsfSet::PsfSet(Axes axes, std::vector<PsfKernel> kernels) : axes_(std::move(axes)), kernels_(std::move(kernels)) {
   validate(axes_);
   if (kernels_.size() != axes_.size()) {
-    throw Error("PSF set: " + std::to_string(kernels_.size()) + " kernels, wanted one for each of " +
+    throw Error("PSF set: " + std::to_string(kernels_.size()) + " kernels; must be one for each of " +
                 std::to_string(axes_.size()) + " nodes");
   }
   const int pixels = kernels_.front().pixels;
@@ -191,7 +190,7 @@ PsfSet::PsfSet(Axes axes, std::vector<PsfKernel> kernels) : axes_(std::move(axes
     }
     throw Error("PSF set: a kernel has " + std::to_string(kernel.pixels) + " pixels with " +
                 std::to_string(kernel.light.size()) + " of light and " + std::to_string(kernel.hits_x.size()) +
-                " hits, wanted " + std::to_string(pixels) + " squared of each, and an odd number");
+                " hits; must be " + std::to_string(pixels) + " squared of each, and odd");
   }
 }
 

@@ -11,9 +11,9 @@
 namespace petzval::analysis_detail {
 namespace {
 
-constexpr std::size_t blocks = 64;  // of lines for each pupil
+constexpr std::size_t blocks = 64;  // of lines, per pupil
 
-/// Calls use(block, lines) for blocks of lines distributed uniformly over a pupil; returns its area.
+/// Calls use(block, lines) for blocks of lines that are uniform over a pupil. Returns the area of the pupil.
 template <class Use>
 double for_lines(const ModelPupils& pupils, const FilmPoint& film, std::size_t wavelength,
                  const core_detail::Kronecker<2>& even, Use use) {
@@ -46,7 +46,7 @@ ModelPupils pupils_of(const AnyRayModel& model) {
   return {model.pupils(), tracing_within(model), tracing(model), model.pinhole(), {}};
 }
 
-/// What a line adds to the irradiance of its film point, per area of the pupil: cos^4 / depth^2.
+/// Contribution of a line to the irradiance of its film point, per area of the pupil: cos^4 / depth^2.
 double PupilStudy::weight(const PointLines& lines, std::size_t line) const noexcept {
   const double x = lines.pupil_x[line] - lines.film.x, y = lines.pupil_y[line] - lines.film.y;
   const double squared = x * x + y * y + depth_ * depth_;
@@ -122,7 +122,7 @@ PupilStudy::Found PupilStudy::measure(const ModelPupils& model) const {
       found.exposure = std::max(found.exposure, e.exposure);
     }
   }
-  // What samples miss shows first where a few of them decide.
+  // Sampling errors matter most if few samples determine the result.
   const double unsure = std::sqrt((found.shape + 16 / total) / total);
   found.shape_bound = model.point ? found.shape : found.shape * smooth_guard + unsure;
   found.exposure_bound = found.exposure * smooth_guard + unsure;

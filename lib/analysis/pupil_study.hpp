@@ -13,37 +13,37 @@
 
 namespace petzval::analysis_detail {
 
-/// The pupils of a model: where its samples lie, which of these pass, and which lines in general.
+/// The pupils of a model: the positions of its samples, the samples that pass, and the lines that pass.
 struct ModelPupils {
   FilmPupilTable map;
   Tracing within, tracing;
   bool point = false;           ///< a pinhole has no area
-  std::optional<FilmPoint> of;  ///< the samples are those of this film point, for all
+  std::optional<FilmPoint> of;  ///< if set, the samples of this film point are used for all
 };
 /// The model must outlive the result.
 ModelPupils pupils_of(const AnyRayModel& model);
 
-/// Errors of pupils and exposures, compared with a lens whose pupils are traced once. All areas and integrals are means
-/// over uniform samples of a pupil times its area, so nothing depends on how large a pupil is.
+/// Errors of pupils and exposures relative to a lens whose pupils are traced once. Areas and integrals are means over
+/// uniform samples of a pupil times its area, so results do not depend on the size of a pupil.
 class PupilStudy {
  public:
-  /// film_points are its own; the exact model must outlive the study.
+  /// Uses its own film points. The exact model must outlive the study.
   PupilStudy(const camera_detail::ExactModel<double>& exact, const Film& film, std::size_t film_points,
              const ErrorSamples& samples);
 
-  /// Largest over film points and wavelengths. Other samples stay below the bounds: samples of a fraction p scatter by
-  /// no more than sqrt(p / samples), and film points in between differ little.
+  /// Largest errors over film points and wavelengths. Other samples stay below the bounds: a sampled fraction p
+  /// scatters by at most sqrt(p / samples), and film points between the samples differ little.
   struct Found {
     double shape = 0, exposure = 0, shape_bound = 0, exposure_bound = 0;
   };
   Found measure(const ModelPupils& model) const;
 
  private:
-  /// A film point's exact pupil at a wavelength.
+  /// The exact pupil of a film point at a wavelength.
   struct Point {
     std::size_t place = 0;
     FilmPoint film;
-    double area = 0, irradiance = 0;  ///< of what passes; n'^2 left out
+    double area = 0, irradiance = 0;  ///< transmitted part of the pupil; without the factor n'^2
     std::vector<std::array<bool, lines_per_point>> passes{};
   };
   struct Errors {
@@ -57,7 +57,7 @@ class PupilStudy {
   const ModelPupils exact_;
   const double depth_;
   std::vector<std::size_t> wavelengths_;
-  std::vector<std::vector<Point>> points_;  // [wavelength of the samples], those with light
+  std::vector<std::vector<Point>> points_;  // [wavelength of the samples], lit points
 };
 
 }  // namespace petzval::analysis_detail

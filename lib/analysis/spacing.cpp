@@ -14,7 +14,7 @@ namespace petzval::analysis_detail {
 
 namespace {
 
-/// The least spacing of two surfaces of a lens.
+/// The least spacing between two surfaces of a lens.
 std::optional<Spacing> spacing_of(const Lens& lens, std::size_t surface, std::size_t next) {
   const LensSurface& front = lens.surfaces()[surface];
   const LensSurface& rear = lens.surfaces()[next];
@@ -22,10 +22,10 @@ std::optional<Spacing> spacing_of(const Lens& lens, std::size_t surface, std::si
   const double front_rim = lens.data().rims[surface], rear_rim = lens.data().rims[next];
   const double distance = rear.vertex_z - front.vertex_z;
   const double from = std::max(front.obscuration_semi_diameter, rear.obscuration_semi_diameter);
-  // Heights on an equator round to beyond it, where a sag has no value.
+  // Slightly inside the equator: rounding must not lead to heights at which a sag has no value.
   const double equator = std::min(lens_detail::equator(front), lens_detail::equator(rear)) * (1 - 1e-15);
   const double to = std::min({front_rim, rear_rim, equator});
-  // Where light runs backwards, behind a mirror, the next surface lies at smaller z.
+  // Behind a mirror light runs backwards, and the next surface lies at smaller z.
   const double direction = lens.light_direction(surface + 1);
   if (!std::isfinite(front_rim) || !std::isfinite(rear_rim)) {
     if (front.mirror && direction * distance < 0) return Spacing{direction * distance, 0};
@@ -33,10 +33,10 @@ std::optional<Spacing> spacing_of(const Lens& lens, std::size_t surface, std::si
   }
   if (to < from) return {};
 
-  // Surfaces with cylinders along x and y differ most along an axis or half way between.
+  // Cylindrical surfaces along x and y differ most along an axis or at 45 degrees.
   constexpr std::array<std::array<double, 2>, 3> azimuths{{{0, 1}, {1, 0}, {0.7071067811865476, 0.7071067811865476}}};
   const std::size_t azimuth_count = lens.rotationally_symmetric() ? 1 : azimuths.size();
-  // Slopes of two spheres differ alike at all heights: the least lies at an end.
+  // The slopes of two spheres differ with the same sign at all heights, so the least spacing lies at an end.
   const auto sphere = [](const LensSurface& s) { return s.conic == 0 && s.aspheric.empty(); };
   const int samples = sphere(front) && sphere(rear) ? 1 : 200;
   Spacing least{std::numeric_limits<double>::infinity(), 0};

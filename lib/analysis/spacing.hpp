@@ -8,15 +8,15 @@
 
 namespace petzval::analysis_detail {
 
-/// The distance between two neighbouring surfaces where they come closest.
+/// The smallest distance between two adjacent surfaces.
 struct Spacing {
-  double width;   ///< along the direction of light, mm; negative where they overlap
+  double width;   ///< along the direction of light, mm; negative if they overlap
   double height;  ///< from the axis, mm
 };
 
-/// The least spacing between a surface and the stop or the next surface that changes rays, within both apertures as the
-/// prescription states them. nullopt if they have no height in common, or if one of them is unlimited: then only a
-/// vertex on the wrong side of a mirror is found.
+/// The least spacing between a surface and the next surface that is the stop or changes rays, within both apertures of
+/// the prescription. nullopt if they have no height in common. If either is unlimited, only a vertex on the wrong side
+/// of a mirror is detected.
 std::optional<Spacing> least_spacing(const Lens& lens, std::size_t surface);
 
 }  // namespace petzval::analysis_detail

@@ -16,7 +16,7 @@
 namespace petzval {
 namespace {
 
-/// Sets: a range of values that have x and y, and weights or none.
+/// Sets: a range of values with x, y and weights; weights may be empty.
 template <class Sets>
 SpotSize size_of(const Sets& sets) noexcept {
   SpotSize size;
@@ -30,7 +30,7 @@ SpotSize size_of(const Sets& sets) noexcept {
   const double n = analysis_detail::sum(weights);
   if (!(n > 0)) return size;
 
-  // Relative to one of the points: rounding errors then scale with the spot and not with its height.
+  // Relative to one of the points: rounding errors then scale with the spot instead of its height.
   const double x0 = size.centroid.x, y0 = size.centroid.y;
   analysis_detail::PartialSums dx{}, dy{};
   analysis_detail::for_each(sets, [&](std::size_t part, double x, double y, double w) {
@@ -61,7 +61,7 @@ std::optional<double> chief_ray_height(const Lens& lens, const FieldPoint& point
   return hit ? std::optional(hit->y) : std::nullopt;
 }
 
-/// The film of least RMS radius in the light of one wavelength.
+/// The film of least RMS radius at one wavelength.
 std::optional<double> sharpest_film(const Lens& lens, double subject_z, std::size_t wavelength) {
   FocusOptions options{.criterion = FocusCriterion::min_rms};
   options.wavelength_weights.assign(lens.wavelengths_nm().size(), 0);
@@ -70,7 +70,7 @@ std::optional<double> sharpest_film(const Lens& lens, double subject_z, std::siz
   return focus ? std::optional(focus.film_z) : std::nullopt;
 }
 
-/// Differences from one of the values, where both are set.
+/// Differences from the value at index `from`; nullopt if either value is not set.
 std::vector<std::optional<double>> differences(const std::vector<std::optional<double>>& values, std::size_t from) {
   std::vector<std::optional<double>> result(values.size());
   for (std::size_t i = 0; i < values.size(); ++i) {

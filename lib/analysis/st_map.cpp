@@ -21,10 +21,10 @@ using ErrorOf = std::function<double(const Vec2<double>&, const Vec2<double>&)>;
 
 constexpr double widest_cell = 16;  // pixels
 constexpr int least_cells = 80;     // along the longer side
-constexpr int most_nodes = 6;       // of a polynomial along one axis
+constexpr int most_nodes = 6;       // per axis of a polynomial
 constexpr float blind = -1;
 
-/// Lagrange's weights of n nodes at 0, 1, 2, ...
+/// Lagrange weights of n nodes at 0, 1, 2, ...
 std::array<double, most_nodes> weights(int n, double x) noexcept {
   std::array<double, most_nodes> result{};
   for (int i = 0; i < n; ++i) {
@@ -36,7 +36,7 @@ std::array<double, most_nodes> weights(int n, double x) noexcept {
   return result;
 }
 
-/// Equally spaced nodes over some pixels, from edge to edge.
+/// Equally spaced nodes over a range of pixels, from edge to edge.
 struct NodeAxis {
   double from = 0, step = 1;
   int nodes = most_nodes;
@@ -46,15 +46,15 @@ struct NodeAxis {
     step = static_cast<double>(pixels) / (nodes - 1);
   }
   double node(int i) const noexcept { return from + i * step; }
-  /// In steps.
+  /// Position in steps.
   double at(double x) const noexcept { return (x - from) / step; }
   int cell(double x) const noexcept { return std::clamp(static_cast<int>(at(x)), 0, nodes - 2); }
 };
 
-/// A function of the raster, which is interpolated in cells where that gives what it gives.
+/// A function of the raster, interpolated in the cells in which interpolation is accurate.
 class NodeGrid {
  public:
-  /// error: of a place against another one, at most 1 where it may stand for it.
+  /// error: error of a position in place of another position; acceptable up to 1.
   NodeGrid(const PlaceOf& place_of, const ErrorOf& error, const NodeAxis& x, const NodeAxis& y, int threads)
       : place_of_(place_of),
         x_(x),
@@ -84,7 +84,7 @@ class NodeGrid {
  private:
   struct Cell {
     enum Kind { dark, rough, smooth } kind = dark;
-    int nodes = 0, left = 0, top = 0;  ///< smooth: of the polynomials
+    int nodes = 0, left = 0, top = 0;  ///< smooth: nodes of the polynomials
   };
 
   Cell cell_at(int column, int row, const ErrorOf& error) const {
@@ -93,7 +93,7 @@ class NodeGrid {
     const Vec2<double> middle{x_.node(column) + x_.step / 2, y_.node(row) + y_.step / 2};
     const Place there = place_of_(middle);
     if (!there) return {.kind = Cell::rough};
-    // Polynomials of many nodes, or of few, with the cell as near to their middle as light allows.
+    // Tries polynomials of many nodes, then of few, with the cell as close to their middle as dark nodes allow.
     for (const int nodes : {most_nodes, 4}) {
       const int before = nodes / 2 - 1;
       for (const int left : {column - before, column - before - 1, column - before + 1}) {
@@ -111,7 +111,7 @@ class NodeGrid {
   const Place& place(int column, int row) const noexcept {
     return places_[static_cast<std::size_t>(row) * x_.nodes + column];
   }
-  /// Nodes with values: for a reach of 1 among the corners of a cell, for 2 among those of the cells around it too.
+  /// Number of nodes with values: for a reach of 1 among the corners of a cell, for 2 also of the adjacent cells.
   int known(int column, int row, int reach) const noexcept {
     int count = 0;
     for (int j = row + 1 - reach; j <= row + reach; ++j) {
@@ -143,7 +143,7 @@ class NodeGrid {
   std::vector<Cell> cells_;
 };
 
-/// Of a film's pixels and a margin. raster: of an interpolated place, its raster position.
+/// The map for the pixels of a film and a margin. raster: converts an interpolated value to its raster position.
 StMap map_of(const PlaceOf& place_of, const PlaceOf& raster, const Film& film, int margin_x, int margin_y,
              int threads) {
   StMap map{.width = film.columns + 2 * margin_x,
@@ -153,7 +153,7 @@ StMap map_of(const PlaceOf& place_of, const PlaceOf& raster, const Film& film, i
   const auto pixels = static_cast<std::size_t>(map.width) * static_cast<std::size_t>(map.height);
   map.s.assign(pixels, blind), map.t.assign(pixels, blind);
   const double cell = std::min(widest_cell, static_cast<double>(std::max(map.width, map.height)) / least_cells);
-  // Half a thousandth of a pixel in the middle of the picture, twice that in its corners, more far outside.
+  // Tolerance: 0.0005 pixels in the middle of the picture, twice as much in its corners, more far outside.
   const Vec2<double> size{film.columns, film.rows};
   const auto error = [&](const Vec2<double>& a, const Vec2<double>& b) {
     const Place at = raster(a), wanted = raster(b);
@@ -189,7 +189,7 @@ Margin margin_of(const LensDistortion& distortion, const StMapOptions& options) 
   if (options.overscan) {
     const double margin = (*options.overscan - 1) / 2;
     if (!(margin >= 0 && *options.overscan <= 10)) {
-      throw Error(where + "the overscan is " + to_text(*options.overscan) + ", wanted 1 to 10");
+      throw Error(where + "overscan = " + to_text(*options.overscan) + "; must be 1 to 10");
     }
     return {either_side(margin * film.columns), either_side(margin * film.rows)};
   }
@@ -215,7 +215,7 @@ StMaps st_maps(const LensDistortion& distortion, const StMapOptions& options) {
   const Film& film = distortion.camera().film();
   const auto [margin_x, margin_y] = margin_of(distortion, options);
   const Vec2<double> centre = distortion.centre(), focal_length = distortion.focal_length_px();
-  // The pinhole's picture of wide fields is no polynomial of the lens's. The sines of its directions are bounded.
+  // The pinhole image of a wide field is not a polynomial of the lens image. The sines of its directions are bounded.
   const auto sines = [&](const Vec2<double>& at) -> Place {
     const auto place = distortion.undistorted(at);
     if (!place) return {};
