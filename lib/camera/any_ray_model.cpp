@@ -18,7 +18,7 @@ RayFate AnyRayModel::Interface::batch_of_one(const TwoPlaneRay& film_ray, Wavele
 
 RayDerivatives AnyRayModel::Interface::differences(const TwoPlaneRayDerivatives& film_ray,
                                                    Wavelength wavelength) const noexcept {
-  // A step of this part of the distance between the planes is off by its square, and by eps over it.
+  // Relative to the distance between the planes: the truncation error is the square of this step, rounding eps / step.
   constexpr double part = 1e-5;
   const double h = part * std::abs(pupils->space().depth());
   const auto moved = [&](const TwoPlaneRay& by, double step) -> TwoPlaneRay {

@@ -8,25 +8,24 @@
 
 namespace petzval::camera_detail {
 
-/// Film and pupil point of a line to its height and slope in the plane z behind the lens.
+/// Maps film and pupil point of a line to height and slope in the plane z behind the lens.
 inline RayMatrix line_at(const TwoPlanes& space, double z) noexcept {
   const double slope = 1 / space.depth(), far = (z - space.film_z) * slope;
   return {1 - far, far, -slope, slope};
 }
 
-/// First-order rays of a lens between the planes of its image space and the scene, by way of the stop.
+/// First-order maps of rays from the planes of the image space to the scene, through the stop.
 struct StopMaps {
   RayMatrix from_film;  ///< film and pupil point to height and slope in the stop, before its surface
-  RayMatrix to_front;   ///< on to the plane of the first vertex, in front of the lens
+  RayMatrix to_front;   ///< from the stop to the plane of the first vertex, in front of the lens
 };
 StopMaps stop_maps(const LensFacts& facts, std::size_t wavelength, const TwoPlanes& space, Meridian section);
 
-/// What a thin lens in the stop adds to slopes on their way to the scene, per height, 1/mm, for rays of first order
-/// from the film's centre to meet the plane in which the exact ones from there are sharpest: their RMS distance from
-/// the axis, as seen from the entrance pupil, is least there. With spherical aberration it is not the paraxial one.
+/// Power (1/mm) of the thin lens in the stop that focuses first-order rays of the film centre where exact rays are
+/// sharpest: in the plane with the smallest RMS distance from the axis, seen from the entrance pupil. Spherical
+/// aberration moves this plane away from the paraxial focus. Chief rays do not change.
 ///
-/// The centre of the stop, and with it every chief ray, stays where it is. Of a lens with cylinders heights are those
-/// along the section. 0 where no exact ray passes.
+/// With cylinders the heights along `section` count. 0 if no exact ray passes.
 double best_focus_power(const LensFacts& facts, std::size_t wavelength, const StopMaps& maps, Meridian section);
 
 }  // namespace petzval::camera_detail

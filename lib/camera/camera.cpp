@@ -23,56 +23,56 @@ using camera_detail::LensFacts;
 using camera_detail::TiltedFilm;
 
 constexpr double same_place_mm = 1e-6;
-constexpr double rounding = 1e-9;  // of radii
+constexpr double rounding = 1e-9;  // relative tolerance of radii
 
-/// Throws Error for a model of another lens or film, as far as its pupils show.
+/// @throws Error  if the pupils of the model belong to other wavelengths, to another film or to a smaller film
 void check_model(const Lens& lens, const FilmPupilTable& pupils, double radius) {
   const std::size_t wavelengths = lens.wavelengths_nm().size();
   if (pupils.wavelengths() != wavelengths) {
-    throw Error(lens.name() + ": camera: the model is one for " + std::to_string(pupils.wavelengths()) +
-                " wavelengths, wanted the lens's " + std::to_string(wavelengths));
+    throw Error(lens.name() + ": camera: the model has " + std::to_string(pupils.wavelengths()) +
+                " wavelengths; must equal the number of the lens, " + std::to_string(wavelengths));
   }
   if (!(std::abs(pupils.space().film_z - lens.film_z()) <= same_place_mm)) {
-    throw Error(lens.name() + ": camera: the model has its film at z = " + to_text(pupils.space().film_z) +
-                " mm, wanted the lens's, " + to_text(lens.film_z()) + " mm");
+    throw Error(lens.name() + ": camera: film_z of the model = " + to_text(pupils.space().film_z) +
+                " mm; must equal film_z of the lens, " + to_text(lens.film_z()) + " mm");
   }
   if (!(radius <= pupils.film_radius() * (1 + rounding))) {
-    throw Error(lens.name() + ": camera: the model is one for film points up to " + to_text(pupils.film_radius()) +
-                " mm from the axis, wanted " + to_text(radius) + " mm or more");
+    throw Error(lens.name() + ": camera: film_radius of the model = " + to_text(pupils.film_radius()) +
+                " mm; must be at least " + to_text(radius) + " mm");
   }
 }
 
-/// Throws Error for polynomials of other wavelengths, of another focus, and that end within the film.
+/// @throws Error  if the polynomials have other wavelengths or planes, or do not cover the film
 void check_polynomials(const Lens& lens, const AnyRayModel& model, double radius) {
   const auto* const polynomials = model.as<PolynomialModel>();
   if (!polynomials) return;
   const std::string where = lens.name() + ": camera: the polynomials ";
   const auto& fits = polynomials->polynomial().fits();
   if (fits.size() != lens.wavelengths_nm().size()) {
-    throw Error(where + "are fits for " + std::to_string(fits.size()) + " wavelengths, wanted the lens's " +
+    throw Error(where + "have " + std::to_string(fits.size()) + " wavelengths; must equal the number of the lens, " +
                 std::to_string(lens.wavelengths_nm().size()));
   }
   for (std::size_t w = 0; w < fits.size(); ++w) {
     if (lens.position(Wavelength::nm(fits[w].wavelength_nm)) == w) continue;
     throw Error(where + "have " + to_text(fits[w].wavelength_nm) + " nm for wavelength " + std::to_string(w) +
-                ", wanted the lens's, " + to_text(lens.wavelengths_nm()[w]) + " nm");
+                "; must be " + to_text(lens.wavelengths_nm()[w]) + " nm, as in the lens");
   }
   const RayPolynomial::Domain& domain = polynomials->polynomial().domain();
   const TwoPlanes& planes = model.pupils().space();
   if (!(std::abs(domain.space.film_z - planes.film_z) <= same_place_mm &&
         std::abs(domain.space.pupil_z - planes.pupil_z) <= same_place_mm)) {
-    throw Error(where + "have their film and pupil at z = " + to_text(domain.space.film_z) + " and " +
-                to_text(domain.space.pupil_z) + " mm, wanted those of the lens, " + to_text(planes.film_z) + " and " +
-                to_text(planes.pupil_z) + " mm");
+    throw Error(where + "have film_z = " + to_text(domain.space.film_z) +
+                " and pupil_z = " + to_text(domain.space.pupil_z) + " mm; must equal the planes of the lens, " +
+                to_text(planes.film_z) + " and " + to_text(planes.pupil_z) + " mm");
   }
   if (!(radius <= domain.film_radius * (1 + rounding))) {
-    throw Error(where + "end " + to_text(domain.film_radius) + " mm from the axis, wanted " + to_text(radius) +
-                " mm or more");
+    throw Error(where + "have film_radius = " + to_text(domain.film_radius) + " mm; must be at least " +
+                to_text(radius) + " mm");
   }
 }
 
-/// Mean weight on the axis. Each sample has a v of its own: a grid has few of them, and the pupil's edge, which passes
-/// between two of them all around, would change the mean in steps.
+/// Mean weight on the axis. Each sample has a different v: a grid has few values of v, and the edge of the pupil, which
+/// lies between two of them, would change the mean in steps.
 double on_axis(const FilmView& view, std::size_t wavelength) {
   constexpr std::size_t count = 4096;
   const std::vector<double> zero(count, 0);
@@ -101,19 +101,19 @@ std::vector<double> scales(const Lens& lens, const Film& film, const AnyRayModel
   }
   if (normalisation == Normalisation::irradiance) return result;
 
-  // A small film about the axis, where a shifted one may not be.
+  // A small film about the axis, because a shifted film may not contain the axis.
   constexpr double part = 1. / 1024;
   Film about = film;
   about.width_mm *= part, about.height_mm *= part;
   about.shift_x_mm = about.shift_y_mm = about.margin_mm = about.travel_mm = 0;
   std::optional<TiltedFilm> tilted;
-  if (film.tilted()) tilted.emplace(about, model.pupils());  // as the shutter opens
+  if (film.tilted()) tilted.emplace(about, model.pupils());  // at the time when the shutter opens
   const camera_detail::WavelengthFacts own(model, result);
   const FilmView view{model, about, tilted ? &*tilted : nullptr, own, weights};
   const auto light = [&](std::size_t wavelength) {
     const double axis = on_axis(view, wavelength);
     if (axis > 0) return axis;
-    throw Error(lens.name() + ": camera: the axis is dark, wanted light there for weights that are unity on it");
+    throw Error(lens.name() + ": camera: the axis is dark; must be lit for weights that are unity on the axis");
   };
   if (normalisation == Normalisation::unity_on_axis) {
     const double axis = light(lens.primary_wavelength());
@@ -121,15 +121,15 @@ std::vector<double> scales(const Lens& lens, const Film& film, const AnyRayModel
     return result;
   }
   if (normalisation != Normalisation::unity_at_each_wavelength) {
-    throw Error(lens.name() + ": camera: found the normalisation " + std::to_string(static_cast<int>(normalisation)) +
-                ", wanted irradiance, unity_on_axis or unity_at_each_wavelength");
+    throw Error(lens.name() + ": camera: normalisation = " + std::to_string(static_cast<int>(normalisation)) +
+                "; must be irradiance, unity_on_axis or unity_at_each_wavelength");
   }
   std::vector<double> each;
   for (std::size_t w = 0; w < wavelengths; ++w) each.push_back(result[w] / light(w));
   return each;
 }
 
-/// The wavelengths between which there are samples.
+/// The wavelengths if samples between them are allowed, else an empty span.
 std::span<const double> nm_of(const Lens& lens, const AnyRayModel& model) {
   const bool any = model.any_wavelength() && std::isfinite(lens.index_error());
   return any ? lens.wavelengths_nm() : std::span<const double>();
@@ -177,8 +177,8 @@ Camera::Camera(const Lens& lens, const Film& film, const AnyRayModel& model, Nor
                const BokehControls& bokeh) {
   if (bokeh.lens_elements != 0 || bokeh.vignettes()) {
     throw Error(lens.name() +
-                ": camera: found lens_elements, lens_ratio or rate_of_change for a model that was built before, wanted "
-                "0, 1 and 0, and a model with such pupils");
+                ": camera: lens_elements, lens_ratio or rate_of_change are set for a given model; must be "
+                "0, 1 and 0, and set for the model");
   }
   const auto [placed_lens, placed_film] = camera_detail::placed(lens, film);
   camera_detail::check_film(placed_lens, placed_film);

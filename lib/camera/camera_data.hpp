@@ -16,7 +16,7 @@
 
 namespace petzval {
 
-/// Everything that a camera works out once: the film's side when it is made, the scene's when it is first asked for.
+/// Data that a camera computes once: the film side in the constructor, the scene side on first use.
 struct Camera::Data {
   /// radius: upright_radius() of the film.
   Data(const camera_detail::LensFacts& facts, const Film& placed, const AnyRayModel& model, double radius,
@@ -31,17 +31,17 @@ struct Camera::Data {
   camera_detail::Front front;
   camera_detail::LocalFocus focus;
   Normalisation normalisation;
-  double pdf_film;  ///< of film points spread uniformly over the film, 1/mm^2
+  double pdf_film;  ///< density of uniform film points, 1/mm^2
 
   const camera_detail::FilmView& view() const noexcept { return view_; }
-  /// A wavelength as the model takes it: a position, or nm where it takes any.
+  /// A wavelength in the form that the model accepts: an index, or nm if the model accepts any wavelength.
   Wavelength resolved(Wavelength given) const noexcept {
     if (!given.in_nm()) return given.position(primary_);
     if (clamp_) given = Wavelength::nm(clamped(*given.in_nm()));
     return model.any_wavelength() ? given : Wavelength(lens.position(given));
   }
-  /// The same for N rays: calls of_rays(begin, count, wavelengths) for consecutive ranges of them, which are one unless
-  /// each ray has a wavelength in nm to clamp.
+  /// The same for N rays: calls of_rays(begin, count, wavelengths) for consecutive ranges; for one range unless each
+  /// ray has a wavelength in nm to clamp.
   template <class OfRays>
   void in_range(std::size_t count, const RayWavelengths& given, const OfRays& of_rays) const {
     RayWavelengths own = given.resolved(primary_);
@@ -58,7 +58,7 @@ struct Camera::Data {
       of_rays(begin, n, own);
     }
   }
-  /// Renderers that trace paths from the film alone never ask for it.
+  /// Built on first use, because many renderers only trace paths from the film.
   const camera_detail::SceneSide& scene() const {
     std::call_once(scene_once_,
                    [&] { scene_.emplace(facts_, film, tilted, front, focus, model, radius_, wavelengths, weights); });

@@ -19,7 +19,7 @@ namespace {
 using Table = CameraTables;
 constexpr float unlimited = 3e38f;
 
-/// The array while it grows.
+/// The array under construction.
 class Numbers {
  public:
   std::vector<float> list = std::vector<float>(Table::head_size, 0.0f);
@@ -28,7 +28,7 @@ class Numbers {
   void set(Table::Position at, T value) {
     list[at] = static_cast<float>(value);
   }
-  /// What is added next belongs to `at`.
+  /// Lets the next numbers be the list of `at`.
   void begin(Table::Position at) { set(at, list.size()); }
   void add(double value) { list.push_back(static_cast<float>(value)); }
   void add(std::span<const double> values) {
@@ -95,7 +95,7 @@ void CameraTables::check(std::span<const float> tables, const std::string& where
   const auto number = [&](Position at) {
     const float value = tables[at];
     if (!(value >= 0 && value <= 1 << 24 && value == std::floor(value))) {
-      refuse(std::to_string(value) + " at position " + std::to_string(at) + ", wanted a whole number");
+      refuse(std::to_string(value) + " at position " + std::to_string(at) + "; must be a whole number");
     }
     return static_cast<std::size_t>(value);
   };
@@ -103,12 +103,12 @@ void CameraTables::check(std::span<const float> tables, const std::string& where
     const std::size_t begin = number(at);
     if (begin >= head_size && begin + size <= tables.size()) return;
     refuse("a list of " + std::to_string(size) + " numbers that begins at " + std::to_string(begin) + " (position " +
-           std::to_string(at) + "), wanted it between " + std::to_string(std::size_t{head_size}) + " and " +
+           std::to_string(at) + "); must lie between " + std::to_string(std::size_t{head_size}) + " and " +
            std::to_string(tables.size()));
   };
   const auto check_number = [&](Position at, std::size_t least, std::size_t most) {
     if (const std::size_t value = number(at); value < least || value > most) {
-      refuse(std::to_string(value) + " at position " + std::to_string(at) + ", wanted " + std::to_string(least) +
+      refuse(std::to_string(value) + " at position " + std::to_string(at) + "; must be " + std::to_string(least) +
              " to " + std::to_string(most));
     }
   };
@@ -140,7 +140,7 @@ void CameraTables::check(std::span<const float> tables, const std::string& where
     case 1: {
       check_number(degree, 3, 11);
       const int n = static_cast<int>(number(degree));
-      if (n % 2 == 0) refuse("polynomials of degree " + std::to_string(n) + ", wanted an odd one");
+      if (n % 2 == 0) refuse("polynomials of degree " + std::to_string(n) + "; must be odd");
       const bool mirrors = tables[domain_pupil_radius_x] != 0;
       const std::size_t each = mirrors ? 2 * RayPolynomial::mirror_terms(n).size() : RayPolynomial::terms(n).size();
       check_list(rays, 4 * w * each);
@@ -150,16 +150,17 @@ void CameraTables::check(std::span<const float> tables, const std::string& where
       check_list(rays, number(surface_count) * surface_size), check_list(indices, w * spaces);
       check_list(edges, 4 * number(edge_count));
       break;
-    default: refuse("rays of kind " + std::to_string(number(rays_kind)) + ", wanted 0, 1 or 2");
+    default: refuse("rays of kind " + std::to_string(number(rays_kind)) + "; must be 0, 1 or 2");
   }
 }
 
 std::vector<float> Camera::tables() const {
   const Data& data = *data_;
   const std::string where = data.lens.name() + ": tables: ";
-  if (data.tilted) throw Error(where + "the film is tilted or travels, wanted an upright one that stays");
-  if (data.weights) throw Error(where + "the pupil has weights, wanted one without: a host weighs its own samples");
-  if (data.focus) throw Error(where + "found a focal surface or an expressive lens, wanted a camera without");
+  if (data.tilted) throw Error(where + "the film is tilted or travels; must be upright and fixed");
+  if (data.weights)
+    throw Error(where + "the pupil has weights; must have no weights, as a host weights its own samples");
+  if (data.focus) throw Error(where + "the camera has a focal surface or an expressive lens; must have neither");
   Numbers to;
   to.set(Table::format, 4);
   to.set(Table::model, std::ranges::find(models(), data.model.kind()) - models().begin());
@@ -198,7 +199,7 @@ std::vector<float> Camera::tables() const {
   } else if (data.model.kind() != ModelKind::custom) {
     put_surfaces(to, data.lens);
   } else {
-    throw Error(where + "the model is a renderer's own, wanted one of models()");
+    throw Error(where + "the model is custom; must be one of models()");
   }
   return std::move(to.list);
 }

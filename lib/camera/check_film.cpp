@@ -17,8 +17,8 @@ namespace petzval::camera_detail {
 
 namespace {
 
-/// Throws Error for a film that reaches into the last surface: points of its edge, and those before which the surface's
-/// rim stands.
+/// Checks points on the edge of the film and points next to the rim of the last surface.
+/// @throws Error  if the film reaches into the last surface
 void check_outside_surface(const Lens& lens, const Film& film) {
   const pupil_detail::Face face = pupil_detail::last_face(lens);
   const std::size_t last = lens.surface_count() - 1;
@@ -28,9 +28,9 @@ void check_outside_surface(const Lens& lens, const Film& film) {
     if (!(std::hypot(place.x, place.y) <= face.half)) return;
     const double surface_z = face.vertex_z + sag(lens, last, place.x, place.y);
     if (!((place.z - surface_z) * side <= 0)) return;
-    throw Error(lens.name() + ": film: its point (" + to_text(point.x) + ", " + to_text(point.y) +
-                ") mm is at z = " + to_text(place.z) + " mm, wanted it " + (side > 0 ? "beyond " : "before ") +
-                to_text(surface_z) + " mm, where the last surface is");
+    throw Error(lens.name() + ": film: point (" + to_text(point.x) + ", " + to_text(point.y) +
+                ") mm is at z = " + to_text(place.z) + " mm; must be " + (side > 0 ? "beyond " : "before ") +
+                to_text(surface_z) + " mm, z of the last surface");
   };
   constexpr int steps = 32;
   const auto [lower_left, lower_right, upper_left, upper_right] = film.corners();
@@ -48,27 +48,27 @@ void check_outside_surface(const Lens& lens, const Film& film) {
   }
 }
 
-/// Throws Error for a corner of a tilted film that is not behind the end of the last surface.
+/// @throws Error  if a corner of a tilted film is not behind the end of the last surface
 void check_tilted(const Lens& lens, const Film& film) {
   const pupil_detail::Face face = pupil_detail::last_face(lens);
   const double film_z = film.z();
-  // Where the last surface ends on the film's side; its vertex, where it reaches around the upright film.
+  // End of the last surface on the film side; its vertex if the surface reaches around the upright film.
   const double side = film_z > face.vertex_z ? 1 : -1, edge = side > 0 ? face.z_max : face.z_min;
   const double end = (film_z - edge) * side > 0 ? edge : face.vertex_z;
   for (const FilmPoint& corner : film.corners()) {
     const double z = film.position(corner).z;
     if ((z - end) * side > 0) continue;
-    throw Error(lens.name() + ": film: tilted by " + to_text(film.tilt_rad) + " and " + to_text(film.swing_rad) +
-                " rad it has its corner (" + to_text(corner.x) + ", " + to_text(corner.y) +
-                ") mm at z = " + to_text(z) + " mm, wanted it " + (side > 0 ? "beyond " : "before ") + to_text(end) +
-                " mm, where the last surface ends");
+    throw Error(lens.name() + ": film: tilt_rad = " + to_text(film.tilt_rad) +
+                ", swing_rad = " + to_text(film.swing_rad) + " rad: corner (" + to_text(corner.x) + ", " +
+                to_text(corner.y) + ") mm is at z = " + to_text(z) + " mm; must be " +
+                (side > 0 ? "beyond " : "before ") + to_text(end) + " mm, the end of the last surface");
   }
 }
 
 }  // namespace
 
 FilmBehindLens placed(const Lens& lens, const Film& film) {
-  // A prescription may have its film anywhere, at a virtual image too.
+  // A prescription may have its film anywhere, even at a virtual image.
   FilmBehindLens result{with_film(lens, film.z_mm.value_or(lens.film_z())), film};
   result.film.z_mm = result.lens.film_z();
   return result;
@@ -82,18 +82,18 @@ void check_film(const Lens& lens, const Film& film) {
   try {
     check_film(lens, placed(lens, film.at(1)).film);
   } catch (const Error& error) {
-    throw Error(std::string(error.what()) + "; there it is when it has travelled " + to_text(film.travel_mm) + " mm");
+    throw Error(std::string(error.what()) + "; the film is there after a travel of " + to_text(film.travel_mm) + " mm");
   }
 }
 
 void check_upright_film(const Lens& lens, const Film& film) {
   check_film(lens, film);
   if (film.travel_mm != 0) {
-    throw Error(lens.name() + ": film: it travels " + to_text(film.travel_mm) + " mm, wanted one that stays");
+    throw Error(lens.name() + ": film: travel = " + to_text(film.travel_mm) + " mm; must be 0");
   }
   if (!film.tilted()) return;
-  throw Error(lens.name() + ": film: it is tilted by " + to_text(film.tilt_rad) + " and " + to_text(film.swing_rad) +
-              " rad, wanted one perpendicular to the axis");
+  throw Error(lens.name() + ": film: tilt_rad = " + to_text(film.tilt_rad) +
+              ", swing_rad = " + to_text(film.swing_rad) + " rad; both must be 0");
 }
 
 }  // namespace petzval::camera_detail

@@ -7,21 +7,21 @@
 
 namespace petzval::camera_detail {
 
-/// Whether a film meets other rays than an upright one at its place.
+/// True if a film meets other rays than the upright film at its position.
 inline bool tilted_or_moving(const Film& film) noexcept { return film.tilted() || film.travel_mm != 0; }
 
-/// Throws Error where core_detail::check_rectangle() does, and for a film that reaches into the last surface or is
-/// tilted into the lens at any time.
+/// @throws Error  as core_detail::check_rectangle(), and if the film reaches into the last surface or is tilted into
+/// the lens at any time
 void check_film(const Lens& lens, const Film& film);
-/// The same, and for any film that is tilted or travels.
+/// @throws Error  as check_film(), and if the film is tilted or travels
 PETZVAL_API void check_upright_film(const Lens& lens, const Film& film);
 
-/// A lens whose film lies where a Film says, and that film with its place set.
+/// A lens with its film at the position of a Film, and that film with its position set.
 struct FilmBehindLens {
   Lens lens;
   Film film;
 };
-/// Throws Error where with_film() does, also for the lens's own film.
+/// @throws Error  as with_film(), also for the lens's own film
 PETZVAL_API FilmBehindLens placed(const Lens& lens, const Film& film);
 
 }  // namespace petzval::camera_detail

@@ -13,15 +13,15 @@
 namespace petzval::camera_detail {
 namespace {
 
-/// The radius of the table, in film radii: a point imaged beside the film differs from one that no ray sees.
+/// Radius of the table, in film radii; distinguishes points imaged outside the film from points that no ray sees.
 constexpr double beyond_film = 1.5;
-constexpr int steps = 24;  // of the table over the film
+constexpr int steps = 24;  // over the radius of the table
 
 struct Heights {
   double film = 0, pupil = 0;
 };
 
-/// Rays of one meridian: heights are along y, or along x.
+/// A meridian; heights are along y, or along x.
 struct Section {
   bool along_x = false;
 
@@ -42,7 +42,7 @@ struct Section {
   }
 };
 
-/// Film and pupil height of the exact ray that leaves the centre of the stop for the film with a slope (a sine).
+/// Film and pupil height of the exact ray that leaves the centre of the stop towards the film with a slope (a sine).
 class FromStop {
  public:
   FromStop(const LensFacts& facts, const TwoPlanes& space, std::size_t wavelength, Section section)
@@ -102,7 +102,7 @@ ChiefRayTable::ChiefRayTable(const LensFacts& facts, const AnyRayModel& model, d
   const TwoPlanes space = model.pupils().space();
   const bool traced =
       model.kind().is_polynomial() || model.kind() == ModelKind::exact_float || model.kind() == ModelKind::exact_double;
-  // Adds a chief ray; false where it does not reach the scene.
+  // Adds a chief ray; false if the ray does not reach the scene.
   const auto add = [&](Meridian& nodes, Section section, const Heights& h, double ratio) {
     const auto ray = traced ? to_scene(lens, space, wavelength, section, h) : to_scene(model, wavelength, section, h);
     if (!ray) return false;
@@ -132,7 +132,7 @@ ChiefRayTable::ChiefRayTable(const LensFacts& facts, const AnyRayModel& model, d
     const auto first = from_stop(small);
     if (!first || !(first->film > 0)) return;
     add(nodes, section, {}, first->pupil / first->film);
-    // Equal steps of slope: as long as the lens keeps to first order, steps of the film too.
+    // Equal steps of slope; to first order these are equal steps on the film.
     const double step = std::min(film_radius * beyond_film / (first->film / small), 1.0) / steps;
     const auto next = [&](double slope) {
       const auto h = from_stop(slope);
@@ -140,7 +140,7 @@ ChiefRayTable::ChiefRayTable(const LensFacts& facts, const AnyRayModel& model, d
     };
     for (int i = 1; i <= 4 * steps && !nodes.empty() && nodes.back().film < beyond_film * film_radius; ++i) {
       if (next(step * i)) continue;
-      // The last ray that gets through, nearly: the edge of a fisheye's picture.
+      // Bisect to the last ray that passes: the edge of a fisheye's image.
       double good = step * (i - 1);
       for (double by = step / 2; by > 1e-4 * step; by /= 2) {
         if (next(good + by)) good += by;
@@ -158,7 +158,7 @@ double ChiefRayTable::ratio(const Meridian& nodes, double film) noexcept {
       std::upper_bound(nodes.begin(), nodes.end(), film, [](double f, const Node& node) { return f < node.film; });
   const auto at = static_cast<std::size_t>(above - nodes.begin());
   const std::size_t first = std::clamp<std::size_t>(at, 2, nodes.size() - 2) - 2;
-  // Lagrange's cubic in the square of the height: the ratio is even.
+  // Lagrange's cubic in the square of the height, because the ratio is an even function.
   const double t = std::min(film, nodes.back().film) * std::min(film, nodes.back().film);
   double sum = 0;
   for (std::size_t i = first; i < first + 4; ++i) {
@@ -179,15 +179,15 @@ std::array<double, 2> ChiefRayTable::pupil_point(const FilmPoint& film) const no
 }
 
 std::optional<double> ChiefRayTable::find(const Meridian& nodes, double height, double z) noexcept {
-  // How much the line of a node, of positive or negative film height, passes the point by on one side: the sine.
+  // Sine of the angle by which the line of a node, of positive or negative film height, misses the point.
   const auto passes_by = [&](const Node& node, double sign) -> std::optional<double> {
     const double h = height - sign * node.height, along = z - node.z;
     const double dh = sign * node.direction_height, dz = node.direction_z;
     if (!(h * dh + along * dz > 0)) return {};
     return (dh * along - dz * h) / std::hypot(h, along);
   };
-  // Film height as a function of that sine, between the nodes k - 1 and k: the cubic through four nodes where it is
-  // one, else the chord.
+  // Film height as a function of that sine, between the nodes k - 1 and k: a cubic through four nodes if the sines are
+  // monotonic, else the chord.
   const auto between = [&](std::size_t k, double sign, double before, double now) {
     if (nodes.size() >= 4) {
       const std::size_t first = std::clamp<std::size_t>(k, 2, nodes.size() - 2) - 2;

@@ -15,36 +15,36 @@
 
 namespace petzval::camera_detail {
 
-/// Where an exact line of the film's space goes, clear apertures ignored.
+/// Traces an image-space line to the scene, ignoring clear apertures.
 TracedRay<double> unclipped(const Lens& lens, const TwoPlanes& space, Wavelength wavelength, const TwoPlaneRay& line);
 
-/// The chief rays of one wavelength as image-space rays: for the exact and polynomial models, exact rays through the
-/// centre of the stop; for the others, the model's rays through the middles of its own pupils.
+/// Chief rays of one wavelength as image-space rays: for exact and polynomial models exact rays through the centre of
+/// the stop, for other models the model's rays through the middles of its pupils.
 class ChiefRayTable {
  public:
-  /// middle: of first-order models, where chief rays pass the plane of the pupil instead, over their film points.
+  /// middle: for first-order models, the ratio of pupil position to film point of chief rays.
   ChiefRayTable(const LensFacts& facts, const AnyRayModel& model, double film_radius, std::size_t wavelength,
                 std::optional<double> middle = {});
 
-  /// Where a film point's chief ray passes the plane of the pupil.
+  /// Intersection of the chief ray of a film point with the pupil plane.
   std::array<double, 2> pupil_point(const FilmPoint& film) const noexcept;
 
-  /// Roughly the film point whose chief ray comes from a point of the scene. Nothing where no chief ray does, or one
-  /// that meets the film's plane beyond 1.5 times the film's radius.
+  /// Approximate film point whose chief ray comes from a scene point. nullopt if there is no such chief ray, or if it
+  /// meets the film plane beyond 1.5 times the film radius.
   std::optional<FilmPoint> about(const Vec3<double>& point) const noexcept;
 
  private:
-  /// Chief rays in the meridian of +y or, for lenses that differ, of +x: heights there and along z.
+  /// A chief ray in the meridian of +y or, for lenses with cylinders, of +x: heights in the meridian, and z.
   struct Node {
-    double film = 0, ratio = 0;  // height on the film, and the height in the pupil over it
-    double height = 0, z = 0, direction_height = 0, direction_z = 0;  // towards the scene
+    double film = 0, ratio = 0;                                       // height on the film; pupil height / film height
+    double height = 0, z = 0, direction_height = 0, direction_z = 0;  // ray towards the scene
   };
   using Meridian = std::vector<Node>;
 
   static double ratio(const Meridian& nodes, double film) noexcept;
   static std::optional<double> find(const Meridian& nodes, double height, double z) noexcept;
 
-  Meridian y_, x_;  // x_ is empty where it is as y_
+  Meridian y_, x_;  // x_ is empty if equal to y_
 };
 
 }  // namespace petzval::camera_detail

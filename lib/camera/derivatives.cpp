@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Rays with their derivatives by two parameters: each model once more, over dual numbers.
+// Rays with derivatives with respect to two parameters: each model evaluated with dual numbers.
 
 #include <cmath>
 
@@ -49,7 +49,7 @@ RayDerivatives ExactModel<R>::to_scene(const TwoPlaneRayDerivatives& line, Wavel
   const Dual per_length = towards_ / sqrt(x * x + y * y + depth * depth);
   RayDerivatives result =
       derivatives_of({pupil_x, pupil_y, Dual(space.pupil_z)}, {x * per_length, y * per_length, depth * per_length});
-  // Ray and derivatives in one trace.
+  // Traces the ray and its derivatives together.
   const auto given = [](const Ray<double>& r) { return Ray<R>{Vec3<R>(r.origin), Vec3<R>(r.direction)}; };
   const auto found = [](const Ray<R>& r) { return Ray<double>{Vec3<double>(r.origin), Vec3<double>(r.direction)}; };
   Ray<R> by_u = given(result.by_u), by_v = given(result.by_v);

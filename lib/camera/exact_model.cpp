@@ -15,7 +15,7 @@ namespace {
 
 constexpr std::size_t block = 256;
 
-/// Rays of a block in memory of their own.
+/// Memory for a block of rays.
 template <class R>
 struct Block {
   alignas(64) std::array<std::array<R, block>, 6> v;
@@ -25,7 +25,7 @@ struct Block {
   }
 };
 
-/// Traces rays in place; a few of them one by one, before a block would have begun.
+/// Traces rays in place; fewer than 8 rays one by one, which is faster than setting up a block.
 template <class R>
 void trace_in_place(const Lens& lens, Travel travel, std::size_t count, const RayArrays<R>& rays,
                     const RayWavelengths& wavelengths, RayFate* fates) noexcept {
@@ -98,7 +98,7 @@ void ExactModel<R>::to_film(std::size_t count, const RayArrays<const double>& ra
   Block<R> own;
   for (std::size_t begin = 0; begin < count; begin += block) {
     const std::size_t n = std::min(block, count - begin);
-    // From where the line is nearest to the first vertex, before anything is rounded.
+    // The nearest point of the line to the first vertex, computed before rounding to R.
     for (std::size_t i = 0; i < n; ++i) {
       const Vec3<double> o{rays.x[begin + i], rays.y[begin + i], rays.z[begin + i]};
       const Vec3<double> d{rays.dx[begin + i], rays.dy[begin + i], rays.dz[begin + i]};

@@ -8,14 +8,14 @@
 
 namespace petzval::camera_detail {
 
-/// The lens itself: rays traced through every surface in R, float or double, whatever the type of samples and rays.
+/// The lens itself: traces rays through every surface in R, float or double, for samples and rays of either type.
 template <class R>
 class ExactModel {
  public:
   static constexpr bool clips_at_apertures = true;
   static constexpr bool any_wavelength = true;
 
-  /// Throws Error where FilmPupilTable::enclosing does.
+  /// @throws Error  as FilmPupilTable::enclosing()
   ExactModel(const Lens& lens, double film_radius, int threads = 1)
       : ExactModel(lens, FilmPupilTable::enclosing(lens, film_radius, threads)) {}
   ExactModel(const Lens& lens, FilmPupilTable enclosing)

@@ -9,12 +9,12 @@
 namespace petzval::camera_detail {
 namespace {
 
-/// base^exponent for base from 0 to 1, by logarithm and exponential to the base 2. A result below the normal numbers
-/// becomes 0. Relative error: some (1 + |exponent log2 base|) roundings. std::pow has other bits on other processors.
+/// base^exponent for base in [0, 1], by binary logarithm and exponential, because std::pow differs between processors.
+/// Results below the normal numbers become 0. Relative error: a few roundings times 1 + |exponent log2 base|.
 inline double power(double base, double exponent) noexcept {
   constexpr double ln2 = 0.693147180559945309417;
   constexpr std::int64_t root_half = 0x3fe6a09e667f3bcd;  // the bits of 0.70710678
-  // base = 2^whole fraction, with the fraction about 1.
+  // base = 2^whole fraction, with a fraction close to 1.
   const auto bits = __builtin_bit_cast(std::int64_t, base);
   const std::int64_t whole = (bits - root_half) >> 52;
   const auto fraction = __builtin_bit_cast(double, bits - (whole << 52));
@@ -32,7 +32,7 @@ inline double power(double base, double exponent) noexcept {
   return __builtin_bit_cast(double, __builtin_bit_cast(std::int64_t, result) + steps);
 }
 
-/// ratio^exponent for ratios from 0 to 1.
+/// ratio^exponent for ratios in [0, 1].
 inline double falling(const FallingPower& by, double ratio) noexcept {
   if (by.wholes < 0) return power(ratio, by.exponent);
   double result = by.half ? std::sqrt(ratio) : ratio;

@@ -20,22 +20,22 @@ using camera_detail::MovingLeastSquares;
 using camera_detail::WeighedValue;
 
 constexpr double margin = 1e-3;        // focal lengths in front of the front focal plane
-constexpr double largest_power = 1e6;  // inverse distances, in 1 / focal length: their squares are numbers
+constexpr double largest_power = 1e6;  // limit of inverse distances, in 1 / focal length: squares are finite
 
 double entrance_pupil(const IdealLens& lens) {
   const double z = lens.pupils.entrance.z;
-  if (!std::isfinite(z)) throw Error("focal surface: the entrance pupil is at infinity, wanted it at a finite place");
+  if (!std::isfinite(z)) throw Error("focal surface: the entrance pupil is at infinity; must be at a finite distance");
   return z;
 }
 
-/// Of the nearest object that a surface may focus on.
+/// Inverse distance of the nearest object that a surface may focus on.
 double nearest_inverse(const IdealLens& lens) {
   const double f = std::abs(lens.front_focal_length);
   const double in_front = entrance_pupil(lens) - std::min(lens.front_focal_z - margin * f, lens.front_z);
   return in_front > 0 ? std::min(1 / in_front, largest_power / f) : largest_power / f;
 }
 
-/// Diameter of the blur on the film, mm, per 1/mm from the plane of focus to the object: linear for an ideal lens.
+/// Diameter of the blur on the film (mm) per 1/mm between plane of focus and object; constant for an ideal lens.
 double blur_per_inverse(const IdealLens& lens, Film film) {
   film.tilt_rad = film.swing_rad = 0;
   const double near = nearest_inverse(lens) / 2;
@@ -46,7 +46,7 @@ double blur_per_inverse(const IdealLens& lens, Film film) {
   return (blur({{0, 0, -1}, true}) - blur({{0, 0, entrance_pupil(lens) - 1 / near}, false})) / near;
 }
 
-/// Where the film is in focus, on the axis.
+/// Inverse distance at which the film is in focus on the axis.
 double inverse_in_focus(const IdealLens& lens, const Film& film) {
   const ScenePoint scene = lens.scene_of({0, 0, film.z()});
   return scene.at_infinity ? 0 : 1 / (entrance_pupil(lens) - scene.position.z);
@@ -57,15 +57,15 @@ std::string point_name(std::size_t i) { return "focal surface: point " + std::to
 void check(const FocalPoint& point, double nearest, double farthest, const std::string& where) {
   if (point.inverse_distance && *point.inverse_distance > nearest) {
     throw Error(where + "the object is " + to_text(1 / *point.inverse_distance) +
-                " mm from the entrance pupil, wanted it farther away than " + to_text(1 / nearest) +
+                " mm from the entrance pupil; must be farther away than " + to_text(1 / nearest) +
                 " mm, in front of the front focal plane");
   }
   if (point.inverse_distance && !(*point.inverse_distance >= farthest)) {
-    throw Error(where + "1 / distance is " + to_text(*point.inverse_distance) + " / mm, wanted " + to_text(farthest) +
-                " / mm or more");
+    throw Error(where + "1 / distance = " + to_text(*point.inverse_distance) + " / mm; must be at least " +
+                to_text(farthest) + " / mm");
   }
   if (!std::isfinite(point.blur_mm)) {
-    throw Error(where + "the blur is " + to_text(point.blur_mm) + " mm, wanted a finite one");
+    throw Error(where + "blur = " + to_text(point.blur_mm) + " mm; must be finite");
   }
   if (point.extent_stops) focus_detail::check_extent(*point.extent_stops, where);
 }
@@ -85,7 +85,7 @@ struct FocalSurface::Fields {
   bool fixes_distance = false;
   double blur_per_inverse = 0;
   MovingLeastSquares distance, extent;
-  /// Through the points' own distances; nothing if no blur is wanted.
+  /// Through the distances of the points without blur; nullopt if no blur is set.
   std::optional<MovingLeastSquares> objects;
 };
 
@@ -93,8 +93,8 @@ FocalSurface::FocalSurface(const IdealLens& lens, const Film& film, std::span<co
                            const FocalSurfaceOptions& options) {
   const double place = film.z() + film.tilt_rad + film.swing_rad;
   if (!(film.width_mm > 0 && film.height_mm > 0 && std::isfinite(film.area_mm2()) && std::isfinite(place))) {
-    throw Error("focal surface: the film is " + to_text(film.width_mm) + " x " + to_text(film.height_mm) +
-                " mm at z = " + to_text(film.z()) + " mm, wanted a size above 0 and finite numbers");
+    throw Error("focal surface: film = " + to_text(film.width_mm) + " x " + to_text(film.height_mm) +
+                " mm at z = " + to_text(film.z()) + " mm; must be finite, with a size above 0");
   }
   const double origin_z = entrance_pupil(lens), side = std::sqrt(film.area_mm2());
   const double nearest = nearest_inverse(lens);
@@ -102,7 +102,7 @@ FocalSurface::FocalSurface(const IdealLens& lens, const Film& film, std::span<co
   const double per_inverse = blur_per_inverse(lens, film);
   bool blurs = false, any = false;
   std::vector<WeighedValue> objects, extents;
-  std::vector<std::size_t> numbers;  // of the points with distances
+  std::vector<std::size_t> numbers;  // indices of the points with distances
   for (std::size_t i = 0; i < points.size(); ++i) {
     const FocalPoint& point = points[i];
     check(point, nearest, farthest, point_name(i));
@@ -123,21 +123,21 @@ FocalSurface::FocalSurface(const IdealLens& lens, const Film& film, std::span<co
     any = any || point.inverse_distance || point.extent_stops;
   }
   if (!any) {
-    throw Error("focal surface: none of " + std::to_string(points.size()) +
-                " points has a weight and a distance or an extent, wanted one at least");
+    throw Error("focal surface: 0 of " + std::to_string(points.size()) +
+                " points have a weight and a distance or an extent; must be at least 1");
   }
   const bool fixes_distance = !objects.empty();
   if (!fixes_distance) {
     const double otherwise = options.otherwise.value_or(inverse_in_focus(lens, film));
     if (!(otherwise >= farthest && otherwise <= nearest)) {
-      throw Error("focal surface: in focus otherwise is " + to_text(otherwise) + " / mm, wanted one from " +
+      throw Error("focal surface: default 1 / distance = " + to_text(otherwise) + " / mm; must be " +
                   to_text(farthest) + " to " + to_text(nearest) + " / mm");
     }
     objects.push_back({{0, 0}, otherwise});
   }
   if (extents.empty()) extents.push_back({{0, 0}, 0});
   const MovingLeastSquares extent("focal surface: ", extents, side, options.kind, options.beta, 0);
-  // Not beyond infinity, unless a point is.
+  // Limited to infinity, unless a point lies beyond.
   const auto field = [&](const std::vector<WeighedValue>& of) {
     MovingLeastSquares result("focal surface: ", of, side, options.kind, options.beta);
     result.keep_within(std::min(0.0, result.least_value()), nearest);
@@ -153,9 +153,9 @@ FocalSurface::FocalSurface(const IdealLens& lens, const Film& film, std::span<co
       const double stopped = focus_detail::pupil_scale(extent.at(moved[k].place));
       if (blur != 0) moved[k].value += blur / (per_inverse * stopped);
       if (!(moved[k].value >= farthest && moved[k].value <= nearest)) {
-        throw Error(point_name(numbers[k]) + "a blur of " + to_text(blur) + " mm wants the surface at " +
-                    to_text(moved[k].value) + " / mm, wanted 1 / distance from " + to_text(farthest) + " to " +
-                    to_text(nearest) + " / mm, in front of the front focal plane");
+        throw Error(point_name(numbers[k]) + "a blur of " + to_text(blur) +
+                    " mm moves the surface to 1 / distance = " + to_text(moved[k].value) + " / mm; must be " +
+                    to_text(farthest) + " to " + to_text(nearest) + " / mm, in front of the front focal plane");
       }
     }
     distance = field(moved);
@@ -217,7 +217,7 @@ std::vector<FocalPoint> focal_points(const IdealLens& lens, const Film& film, st
   focus_detail::check_points(points, moment);
   if (!fades.empty() && fades.size() != points.size()) {
     throw Error("focal_points: " + std::to_string(fades.size()) + " fades for " + std::to_string(points.size()) +
-                " points, wanted as many or none");
+                " points; must be as many or 0");
   }
   const double nearest = nearest_inverse(lens),
                farthest_place = camera_detail::reach_in_sides * std::sqrt(film.area_mm2());
@@ -228,7 +228,7 @@ std::vector<FocalPoint> focal_points(const IdealLens& lens, const Film& film, st
     const double fade = fades.empty() ? (valid ? 1 : 0) : fades[i];
     if (fade == 0) continue;
     if (!(fade > 0 && fade <= 1)) {
-      throw Error("focal_points: fade " + std::to_string(i) + " is " + to_text(fade) + ", wanted one from 0 to 1");
+      throw Error("focal_points: fade " + std::to_string(i) + " = " + to_text(fade) + "; must be 0 to 1");
     }
     const auto target = focus_detail::target_at(lens, points[i], moment);
     const auto image = target ? lens.image(target->place) : std::nullopt;
@@ -263,11 +263,11 @@ std::vector<bool> points_in_view(const IdealLens& lens, const Film& film, std::s
 
 FocusFades::FocusFades(double time_constant_s) : time_constant_(time_constant_s) {
   if (time_constant_s >= 0 && std::isfinite(time_constant_s)) return;
-  throw Error("FocusFades: the time constant is " + to_text(time_constant_s) + " s, wanted a finite one of 0 or more");
+  throw Error("FocusFades: time constant = " + to_text(time_constant_s) + " s; must be finite and at least 0");
 }
 
 void FocusFades::advance(double seconds, const std::vector<bool>& in_view) {
-  if (!(seconds >= 0)) throw Error("FocusFades: the step is " + to_text(seconds) + " s, wanted one of 0 or more");
+  if (!(seconds >= 0)) throw Error("FocusFades: step = " + to_text(seconds) + " s; must be at least 0");
   const double left = time_constant_ > 0 ? std::exp(-seconds / time_constant_) : 0;
   const std::size_t known = std::min(fades_.size(), in_view.size());
   fades_.resize(in_view.size());

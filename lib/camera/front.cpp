@@ -25,7 +25,7 @@ Front front_of(const Lens& lens) {
   }
   constexpr double farthest = 1e12;  // mm
   if (!(std::abs(frontmost) <= farthest)) {
-    throw Error(lens.name() + ": the glass of the lens begins at z = " + to_text(frontmost) + " mm, wanted within " +
+    throw Error(lens.name() + ": the glass of the lens begins at z = " + to_text(frontmost) + " mm; must be within " +
                 to_text(farthest) + " mm for a camera");
   }
   const LensSurface& first = lens.surfaces().front();

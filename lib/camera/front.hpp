@@ -7,18 +7,18 @@
 
 namespace petzval::camera_detail {
 
-/// The front of a lens, on which the rays of every model start: see Camera.
+/// The front of a lens, on which the rays of every model start; see Camera.
 struct Front {
   double vertex_z = 0;
-  double curvature = 0;       ///< of a sphere; 0: a plane
-  bool first_surface = true;  ///< it is the lens's first surface: exact rays start there by themselves
+  double curvature = 0;       ///< curvature of a sphere; 0 for a plane
+  bool first_surface = true;  ///< true if the front is the first surface, where exact rays start
 };
-/// Throws Error where glass reaches beyond 1e12 mm, as steep polynomials may.
+/// @throws Error  if glass extends beyond 1e12 mm, which steep polynomials may cause
 Front front_of(const Lens& lens);
 
-/// How far a ray in the direction of the scene is from the front, along it.
+/// Distance from the origin of a ray to the front, along the ray, which travels towards the scene.
 double way_to_front(const Front& front, const Ray<double>& ray) noexcept;
-/// A ray whose origin is moved there, and its derivatives.
+/// The ray with its origin moved to the front, with derivatives.
 RayDerivatives at_front(const Front& front, const RayDerivatives& ray) noexcept;
 
 }  // namespace petzval::camera_detail

@@ -29,8 +29,9 @@ double z_of(const Lens& lens, FrameOrigin origin) {
   if (origin == FrameOrigin::front_vertex) return 0;
   const double z = pupils(lens, lens.primary_wavelength()).entrance.z;
   if (std::isfinite(z)) return z;
-  throw Error(lens.name() +
-              ": host frame: the entrance pupil is at infinity, wanted one at a finite place, or another origin");
+  throw Error(
+      lens.name() +
+      ": host frame: the entrance pupil is at infinity; must be at a finite distance, or choose another origin");
 }
 
 }  // namespace
@@ -41,12 +42,12 @@ HostFrame::HostFrame(Host host, const Lens& lens, FrameOrigin origin)
 HostFrame::HostFrame(Host host, const Lens& lens, FrameOrigin origin, double units_per_mm)
     : signs_(signs_of(host)), origin_z_(z_of(lens, origin)), units_per_mm_(units_per_mm) {
   if (!(units_per_mm > 0) || !std::isfinite(units_per_mm)) {
-    throw Error(lens.name() + ": host frame: units per mm is " + to_text(units_per_mm) +
-                ", wanted a positive and finite number");
+    throw Error(lens.name() + ": host frame: units per mm = " + to_text(units_per_mm) +
+                "; must be positive and finite");
   }
 }
 
-// Signs are their own inverses, and so each way is the other's, but for the order.
+// Signs are their own inverses, so that both directions differ only in the order of operations.
 Vec3<double> HostFrame::point_to_host(const Vec3<double>& lens_mm) const noexcept {
   return (lens_mm - Vec3<double>{0, 0, origin_z_}) * signs_ * units_per_mm_;
 }

@@ -11,14 +11,14 @@
 
 namespace petzval::camera_detail {
 
-/// Whether the two sections of a lens differ.
+/// True if the two sections of a lens differ.
 inline bool has_cylinders(const Lens& lens) noexcept {
   const auto surfaces = lens.surfaces();
   return std::any_of(surfaces.begin(), surfaces.end(),
                      [](const LensSurface& s) { return s.curved_in != Section::both; });
 }
 
-/// The first-order data of a lens at each wavelength, which the parts of a camera share.
+/// First-order data of a lens at each wavelength, shared by the parts of a camera.
 class LensFacts {
  public:
   LensFacts(const Lens& lens) : lens_(lens) {
@@ -32,7 +32,8 @@ class LensFacts {
   std::size_t wavelengths() const noexcept { return lens_.wavelengths_nm().size(); }
   /// In the section along y.
   const FirstOrder& first_order(std::size_t wavelength) const { return first_order_[wavelength]; }
-  /// In the section along y. Throws Error where petzval::pupils() does.
+  /// In the section along y.
+  /// @throws Error  as petzval::pupils()
   Pupils pupils(std::size_t wavelength) const {
     return pupils_[wavelength] ? *pupils_[wavelength] : petzval::pupils(lens_, wavelength);
   }

@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 // Let X be a film point, H the height of a ray in the plane of the entrance pupil, and u = U(X) + w(X) H its slope
-// there. A bent ray has the height H' = s(X) H and the slope u' = U(X) + w'(X, |H|) H'. With A the derivative of U by
-// X, heights and slopes (H, u) of the model's rays have the area |A| (1 + w_X . A^-1 H) of (X, H), and those of bent
-// ones s^2 |A| (1 + w'_X . A^-1 H'), w'_X taken at the same H'. The quotient is how far bent rays spread: the density
-// of film samples in the scene is that of the model's rays over it. Where 1 + w'_X . A^-1 H' falls to 0, the rays of
+// there. The bent ray has the height H' = s(X) H and the slope u' = U(X) + w'(X, |H|) H'. With A = dU/dX, heights and
+// slopes (H, u) of the model's rays cover |A| (1 + w_X . A^-1 H) times the area of (X, H). Bent rays cover s^2 |A| (1 +
+// w'_X . A^-1 H') times this area, with w'_X at the same H'. The quotient is the spread of the bent rays: the density
+// of film samples in the scene is the density of the model divided by it. If 1 + w'_X . A^-1 H' falls to 0, the rays of
 // neighbouring film points coincide.
 //
-// A ray of the scene has H' and u'. Its film point is where the chief ray's slope u' - t H' has t in focus: one
-// equation for t, whose left side grows with the slope 1 + w'_X . A^-1 H' (t less what is in focus).
+// A ray of the scene has given H' and u'. Its film point is the point whose chief ray has the slope u' - t H' and whose
+// focus w' is t. This is one equation for t: t - w' = 0 at that film point. The derivative of t - w' is 1 + w'_X . A^-1
+// H'.
 #include "local_focus.hpp"
 
 #include <algorithm>
@@ -39,10 +40,10 @@ using focus_detail::pupil_scale;
 
 using kernel::Dual;
 
-/// How much nearer to the pupil than the film, or farther from it, offsets may lead.
+/// Limits of film offsets, relative to the distance of the film from the pupil.
 constexpr double nearest_offset = -0.9, farthest_offset = 9;
 
-/// The film's offsets over its distance from the plane of the pupil.
+/// Film offsets divided by the distance of the film from the pupil plane.
 camera_detail::MovingLeastSquares offsets_of(const std::string& where, const std::vector<FilmOffset>& offsets,
                                              const Film& film, double film_from_pupil) {
   std::vector<camera_detail::WeighedValue> points;
@@ -53,7 +54,7 @@ camera_detail::MovingLeastSquares offsets_of(const std::string& where, const std
   if (!(surface.least() > nearest_offset && surface.most() < farthest_offset)) {
     throw Error(where + "film offsets: the surface reaches from " + to_text(surface.least() * film_from_pupil) +
                 " to " + to_text(surface.most() * film_from_pupil) +
-                " mm, wanted the film between a tenth and ten times its distance from the pupil, " +
+                " mm; must leave the film between a tenth and ten times its distance from the pupil, " +
                 to_text(std::abs(film_from_pupil)) + " mm");
   }
   return surface;
@@ -78,8 +79,10 @@ FocusRules<T> in_type(const FocusRules<double>& rules) {
   return result;
 }
 
-/// A zero of a function that grows on the whole, with a slope of about 1; scale: of its arguments. By the secant, and
-/// where that does not settle, as on steep surfaces, by bisection.
+/// Zero of a function that grows with a slope of about 1, by the secant method; by bisection if the secants do not
+/// settle, as on steep surfaces.
+///
+/// @param scale  typical size of the argument
 double zero_of(const auto& f, double scale) {
   const double settled = 1e-13 * scale;
   double before = 0, at_before = f(before), t = -at_before;
@@ -91,14 +94,14 @@ double zero_of(const auto& f, double scale) {
     before = t, at_before = at_t;
     t -= step;
   }
-  // The span doubles until it holds the zero: what is in focus is bounded.
+  // Doubles the interval until it contains the zero, which exists because the focus is bounded.
   double low = -scale, high = scale;
   for (int i = 0; i < 64 && f(low) > 0; ++i) low *= 2;
   for (int i = 0; i < 64 && f(high) < 0; ++i) high *= 2;
   return focus_detail::root(f, low, high);
 }
 
-/// A number by film x and y.
+/// A dual number with the derivatives with respect to film x and y.
 Dual jet(double value, const Vec2<double>& by) noexcept {
   Dual result(value);
   result.v[0] = by.x, result.v[1] = by.y;
@@ -109,7 +112,7 @@ Dual jet(double value, const Vec2<double>& by) noexcept {
 
 EntranceMaps<double> entrance_maps(const RayMatrix& map, double z, double middle, double radius) noexcept {
   const double slope = map.c + map.d * middle;
-  const double away = -(map.a + map.b * middle) / slope;  // to where chief rays meet the axis
+  const double away = -(map.a + map.b * middle) / slope;  // distance to the point where chief rays meet the axis
   const double b = map.b + map.d * away;
   return {.z = z + away,
           .a = -b * middle,
@@ -121,11 +124,11 @@ EntranceMaps<double> entrance_maps(const RayMatrix& map, double z, double middle
 }
 
 struct LocalFocus::Data {
-  /// What belongs to a wavelength.
+  /// Data of a wavelength.
   struct At {
     EntranceMaps<double> maps;
     double dispersion = 1;
-    double middle = 0;  // of the stop's image, over the film point
+    double middle = 0;  // position of the image of the stop divided by the film point
   };
 
   AnyRayModel model;
@@ -140,14 +143,14 @@ struct LocalFocus::Data {
 
   const ParaxialModel& first_order() const noexcept { return *model.as<ParaxialModel>(); }
 
-  /// Of a wavelength whose stop has its image at `middle` times the film point, as wide as `radius`.
+  /// Data of a wavelength from the image of its stop, centred at `middle` times the film point, of the given radius.
   At at(const SectionMaps& maps, double middle, double radius, double dispersion) const noexcept {
     EntranceMaps<double> found = entrance_maps(maps.y, first_order().z(), middle, radius);
     if (surface) found.from_surface = found.z - surface->origin_z();
     return {found, dispersion, middle};
   }
-  /// The film point whose chief ray has a slope, and how much nearer it is to the plane of the pupil. Nothing for a
-  /// chief ray that does not meet the film's front.
+  /// The film point whose chief ray has a given slope, and its TiltedPlane::nearer_by(); nullopt if the chief ray does
+  /// not meet the front of the film.
   struct Seen {
     FilmPoint place;
     double nearer = 0;
@@ -160,7 +163,7 @@ struct LocalFocus::Data {
     if (!point) return {};
     return Seen{plane->point(*point), plane->nearer_by(*point)};
   }
-  /// By how much film points move for a step of their chief ray's slope.
+  /// Change of the film point for a step of its chief ray's slope.
   Vec2<double> moved(const At& at, const Vec2<double>& slope, const Vec2<double>& step,
                      const std::optional<TiltedPlane>& plane) const noexcept {
     if (!plane) return step / at.maps.chief_slope;
@@ -169,7 +172,7 @@ struct LocalFocus::Data {
     if (!before || !behind) return {0, 0};
     return Vec2<double>{behind->place.x - before->place.x, behind->place.y - before->place.y} / (2 * small);
   }
-  /// Nothing for a wavelength that is not covered.
+  /// nullopt if the wavelength is not covered.
   std::optional<At> at(Wavelength wavelength) const noexcept {
     if (const auto nm = wavelength.in_nm()) {
       const auto maps = first_order().maps(wavelength);
@@ -211,20 +214,21 @@ LocalFocus::LocalFocus(const LensFacts& facts, const Film& film, const AnyRayMod
   const std::string where = lens.name() + ": camera: ";
   if (!surface && expressive.empty()) return;
   if (!model.kind().is_first_order()) {
-    throw Error(where + "found a focal surface or an expressive lens for " + std::string(name(model.kind())) +
-                ", wanted a first-order model: pinhole, thin, thin_two_disc or thick");
+    throw Error(where + "model = " + std::string(name(model.kind())) +
+                "; must be pinhole, thin, thin_two_disc or thick for a focal surface or an expressive lens");
   }
   if (has_cylinders(lens)) {
-    throw Error(where + "found cylinders, wanted a lens of revolution for a focal surface or an expressive lens");
+    throw Error(where +
+                "the lens has cylinders; must be a lens of revolution for a focal surface or an expressive lens");
   }
   const std::size_t wavelengths = facts.wavelengths(), strengths = expressive.dispersion.size();
   if (strengths > 1 && strengths != wavelengths) {
-    throw Error(where + "found " + std::to_string(strengths) + " numbers of dispersion, wanted 1 or one for each of " +
+    throw Error(where + "dispersion has " + std::to_string(strengths) + " numbers; must have 1, or one for each of " +
                 std::to_string(wavelengths) + " wavelengths");
   }
   for (const double strength : expressive.dispersion) {
     if (std::abs(strength) <= 1e6) continue;
-    throw Error(where + "found a dispersion of " + to_text(strength) + ", wanted one from -1e6 to 1e6");
+    throw Error(where + "dispersion = " + to_text(strength) + "; must be -1e6 to 1e6");
   }
   Data data{model, film, surface};
   data.primary = lens.primary_wavelength();
@@ -243,15 +247,15 @@ LocalFocus::LocalFocus(const LensFacts& facts, const Film& film, const AnyRayMod
     const EntranceMaps<double>& maps = data.compiled.back().maps;
     if (!std::isfinite(maps.z)) {
       throw Error(where +
-                  "found an entrance pupil at infinity, wanted it at a finite place for a focal surface or an "
+                  "the entrance pupil is at infinity; must be at a finite distance for a focal surface or an "
                   "expressive lens");
     }
     constexpr double nearest = 0.05;
     const auto reaches = [&](double inverse) { return 1 + inverse * maps.from_surface >= nearest; };
     if (surface && !(reaches(surface->nearest()) && reaches(surface->farthest()))) {
       throw Error(where + "the focal surface has 1 / distance from " + to_text(surface->farthest()) + " to " +
-                  to_text(surface->nearest()) + " / mm, wanted it in front of the pupil of " +
-                  std::string(name(model.kind())) + ", which lies at z = " + to_text(maps.z) + " mm");
+                  to_text(surface->nearest()) + " / mm; must be in front of the pupil of " +
+                  std::string(name(model.kind())) + ", which is at z = " + to_text(maps.z) + " mm");
     }
   }
   data.between = {lens_detail::CompiledWavelengths(lens.wavelengths_nm()), values};
@@ -351,7 +355,7 @@ LocalFocus::Straight LocalFocus::straighten(const Ray<double>& ray, Wavelength w
   const Vec2<double> height{x, y}, slope{slope_x, slope_y};
   if (!(glm::length(height) + glm::length(slope) < 1e12)) return {};
 
-  // What the film point has in focus whose chief ray's slope says that it is t.
+  // Focus of the film point whose chief ray has the slope that belongs to t.
   const double by_radius = data.rules.power * beyond_one(data.rules.spline, glm::length(height) / at->maps.radius);
   const auto asked = [&](double t) -> std::optional<double> {
     const auto from = data.seen(*at, slope - height * t, plane);
@@ -417,8 +421,8 @@ EntrancePupilTable LocalFocus::entrances(const Lens& lens, const AnyRayModel& mo
     least_power = std::min(least_power, power), most_power = std::max(most_power, power);
   }
   std::vector<double> radii(data.compiled.size(), 0);
-  // The rays of all pupils, as wide as the widest extent makes them, to the nearest and to the farthest focus: they
-  // show how far fields reach.
+  // Rays of all pupils, as wide as the largest extent makes them, to the nearest and to the farthest focus; they show
+  // the largest fields.
   const auto to_focus = [&](bool near) {
     const FilmPointFocus<double> point{0,
                                        data.surface ? (near ? data.surface->nearest() : data.surface->farthest()) : 0,

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Compiled for each instruction set: see petzval_loops in cmake/module.cmake.
+// Compiled for each instruction set; see petzval_loops in cmake/module.cmake.
 #include "local_focus_loops.hpp"
 
 namespace petzval::camera_detail {

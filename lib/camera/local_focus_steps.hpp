@@ -4,35 +4,35 @@
 #include "core/loop_math.hpp"
 #include "power_spline.hpp"
 
-/// What a LocalFocus does to one ray, for loops over many, for a single one and for dual numbers.
+/// Steps of LocalFocus for one ray, for loops, single rays and dual numbers.
 ///
-/// To first order the rays of a film point X meet the plane of the entrance pupil at heights H from the axis under
-/// slopes u = U + w H: U is that of the chief ray, and w, the same for all of them, is 1 / distance of the plane in
-/// focus. Another plane in focus is another w, for each film point, radius in the pupil and wavelength; another extent
-/// of the depth of field is another scale s of H.
+/// To first order the rays of a film point X meet the plane of the entrance pupil at heights H with slopes u = U + w H:
+/// U is the slope of the chief ray, and w, equal for all rays, is 1 / distance of the plane in focus. Another plane in
+/// focus means another w, for each film point, radius in the pupil and wavelength; another extent of the depth of field
+/// means another scale s of H.
 namespace petzval::camera_detail {
 
-/// First-order optics of one wavelength, in mm: the maps from film and pupil point to height and slope in the plane of
-/// the entrance pupil, height a X + b P and slope c X + d P.
+/// First-order optics of one wavelength (mm): film point X and pupil point P map to the height a X + b P and the slope
+/// c X + d P in the plane of the entrance pupil.
 template <class T>
 struct EntranceMaps {
-  T z = 0;  ///< of that plane
+  T z = 0;  ///< z of the plane of the entrance pupil
   T a = 0, b = 0, c = 0, d = 0;
   T chief_slope = 0;   ///< per mm on the film
   T radius = 0;        ///< of the pupil
-  T from_surface = 0;  ///< z less that from which a focal surface counts distances
+  T from_surface = 0;  ///< z minus origin_z() of the focal surface
 };
 
-/// What is asked of a film point.
+/// Requested focus of a film point.
 template <class N>
 struct FilmPointFocus {
   N nearer;   ///< TiltedPlane::nearer_by(): 0 on an upright film
-  N surface;  ///< 1 / distance in focus by a focal surface, from where that counts
-  N offset;   ///< of the film, over its distance from the plane of the pupil
+  N surface;  ///< 1 / distance on the focal surface, from its origin
+  N offset;   ///< offset of the film divided by its distance from the pupil plane
   N scale;    ///< of the pupil
 };
 
-/// What does not change from ray to ray.
+/// Data common to all rays.
 template <class T>
 struct FocusRules {
   EntranceMaps<T> primary;
@@ -41,22 +41,22 @@ struct FocusRules {
   PowerSpline<T> spline;
 };
 
-/// A ray by its place in a plane across the axis.
+/// A ray given by its position in a plane across the axis.
 template <class N>
 struct BentRay {
   N x, y, dx, dy, dz;
 };
 
-/// 1 / distance in focus at the middle of the pupil, as the film has it and as it is asked for.
+/// 1 / distance in focus at the middle of the pupil: `own` of the film, `asked` as requested.
 template <class N>
 struct InFocus {
   N own, asked;
 };
 
-// Local names: this is compiled for several instruction sets, and the linker must not take one for another.
+// Local names: compiled for several instruction sets, which the linker must not mix.
 namespace {
 
-/// 1 / distance in focus of a film point that is nearer to the plane of the pupil (TiltedPlane::nearer_by()).
+/// 1 / distance in focus of a film point with the given TiltedPlane::nearer_by().
 template <class T, class N>
 inline N in_focus(const EntranceMaps<T>& maps, N nearer) noexcept {
   return (maps.d - maps.c * nearer) / (maps.b - maps.a * nearer);
@@ -69,7 +69,7 @@ inline InFocus<N> focus_of(const FocusRules<T>& rules, const EntranceMaps<T>& ma
   N asked = primary;
   if (rules.by_surface) asked = point.surface / (T(1) + point.surface * maps.from_surface);
   if (rules.by_offset) {
-    // The film point's distance from the plane of the pupil is 1 / (1 + nearer) of the upright film's.
+    // The distance of the film point from the pupil plane is the upright film's distance divided by 1 + nearer.
     const N moved = T(1) / (T(1) / (T(1) + point.nearer) + point.offset) - T(1);
     asked += in_focus(rules.primary, moved) - primary;
   }
@@ -77,7 +77,7 @@ inline InFocus<N> focus_of(const FocusRules<T>& rules, const EntranceMaps<T>& ma
   return {own, asked};
 }
 
-/// A ray in the plane of the entrance pupil, given in the plane z.
+/// A ray in the plane of the entrance pupil, from a ray in the plane z.
 template <class N>
 struct AtEntrance {
   N x, y, slope_x, slope_y;
@@ -89,15 +89,17 @@ inline AtEntrance<N> at_entrance(const EntranceMaps<T>& maps, T z, const BentRay
   return {ray.x + slope_x * away, ray.y + slope_y * away, slope_x, slope_y};
 }
 
-/// Where a ray of the scaled pupil passes it, over its radius.
+/// Height of a ray in the scaled pupil, divided by the radius of the pupil.
 template <class T, class N>
 inline N radius_of(const EntranceMaps<T>& maps, const FilmPointFocus<N>& point, const AtEntrance<N>& ray) noexcept {
-  // A root of 0 has no derivative.
+  // Avoids the square root of 0, which has no derivative.
   return core_detail::square_root(N(ray.x * ray.x + ray.y * ray.y + T(1e-30))) * point.scale * (T(1) / maps.radius);
 }
 
-/// z: of the plane in which rays are given, before and after; by_radius: what the spline of power adds to what is in
-/// focus.
+/// Bends a ray.
+///
+/// @param z          plane in which the ray is given, before and after
+/// @param by_radius  power that the spline adds at the radius of the ray, 1/mm
 template <class T, class N>
 inline BentRay<N> bent_ray(const FocusRules<T>& rules, const EntranceMaps<T>& maps, T dispersion, T z,
                            const FilmPointFocus<N>& point, N by_radius, const BentRay<N>& ray) noexcept {

@@ -32,8 +32,8 @@ AnyRayModel make_model(ModelKind model, const LensFacts& facts, double film_radi
   const auto enclosing = [&] { return behind_rim(FilmPupilTable::enclosing(facts.lens(), film_radius, threads)); };
   if (model == ModelKind::exact_float) return ExactModel<float>(facts.lens(), enclosing());
   if (model == ModelKind::exact_double) return ExactModel<double>(facts.lens(), enclosing());
-  throw Error(facts.lens().name() + ": camera: model is " + std::string(name(model)) +
-              ", wanted one of models(), or an AnyRayModel");
+  throw Error(facts.lens().name() + ": camera: model = " + std::string(name(model)) +
+              "; must be one of models(), or an AnyRayModel");
 }
 
 }  // namespace camera_detail

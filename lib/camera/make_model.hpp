@@ -10,12 +10,13 @@
 
 namespace petzval::camera_detail {
 
-/// Builds a model for film points up to film_radius (mm) from the axis. rim: cuts its pupils. Throws Error where the
-/// model's own constructor and FilmPupilTable::cut_by_rim() do, and for ModelKind::custom.
+/// Builds a model for film points up to film_radius (mm) from the axis. rim: clips its pupils.
+/// @throws Error  as the constructor of the model and FilmPupilTable::cut_by_rim(), and for ModelKind::custom
 PETZVAL_API AnyRayModel make_model(ModelKind model, const LensFacts& facts, double film_radius, int threads = 1,
                                    const std::optional<PupilRim>& rim = {});
 
-/// What a rim leaves of the pupils of a lens. Throws Error where FilmPupilTable::cut_by_rim() does.
+/// The pupils of a lens clipped by a rim.
+/// @throws Error  as FilmPupilTable::cut_by_rim()
 FilmPupilTable behind(const PupilRim& rim, const FilmPupilTable& pupils, const Lens& lens);
 
 }  // namespace petzval::camera_detail

@@ -16,11 +16,11 @@ namespace petzval::camera_detail {
 namespace {
 
 constexpr double longest_soft = 0.1;                 // sides
-constexpr double full_alpha = 1e-3;                  // of the largest: with less, a point becomes soft
-constexpr double negligible = 1e-9;                  // of the largest
-constexpr double scaled_reach = 2 * reach_in_sides;  // a side is less than 2, scaled
+constexpr double full_alpha = 1e-3;                  // relative to the largest alpha; below it a point becomes soft
+constexpr double negligible = 1e-9;                  // relative to the largest alpha
+constexpr double scaled_reach = 2 * reach_in_sides;  // a scaled side is less than 2
 
-/// The power of two that brings a number into [1, 2), or near.
+/// Power of two that scales a number to about [1, 2).
 double scale_of(double x) { return std::ldexp(1, -std::clamp(std::ilogb(x), -1000, 1000)); }
 
 }  // namespace
@@ -28,22 +28,22 @@ double scale_of(double x) { return std::ldexp(1, -std::clamp(std::ilogb(x), -100
 void check(const WeighedValue& point, double side, const std::string& where) {
   const auto& [place, value, weight, fade] = point;
   if (!(std::abs(place.x) <= reach_in_sides * side && std::abs(place.y) <= reach_in_sides * side)) {
-    throw Error(where + "the place is (" + to_text(place.x) + ", " + to_text(place.y) + ") mm, wanted one within " +
+    throw Error(where + "place = (" + to_text(place.x) + ", " + to_text(place.y) + ") mm; must be within " +
                 to_text(reach_in_sides * side) + " mm");
   }
-  if (!std::isfinite(value)) throw Error(where + "the value is " + to_text(value) + ", wanted a finite one");
+  if (!std::isfinite(value)) throw Error(where + "value = " + to_text(value) + "; must be finite");
   if (!std::isfinite(weight) || weight < 0) {
-    throw Error(where + "the weight is " + to_text(weight) + ", wanted a finite one of 0 or more");
+    throw Error(where + "weight = " + to_text(weight) + "; must be finite and at least 0");
   }
-  if (!(fade >= 0 && fade <= 1)) throw Error(where + "the fade is " + to_text(fade) + ", wanted one from 0 to 1");
+  if (!(fade >= 0 && fade <= 1)) throw Error(where + "fade = " + to_text(fade) + "; must be 0 to 1");
 }
 
 MovingLeastSquares::MovingLeastSquares(const std::string& where, std::span<const WeighedValue> points, double side,
                                        SurfaceKind kind, double beta, double beyond)
     : affine_(kind == SurfaceKind::affine) {
-  if (!(beta >= 1 && beta <= 8)) throw Error(where + "beta is " + to_text(beta) + ", wanted one from 1 to 8");
+  if (!(beta >= 1 && beta <= 8)) throw Error(where + "beta = " + to_text(beta) + "; must be 1 to 8");
   if (!(side > 0 && std::isfinite(side))) {
-    throw Error(where + "the side of the picture is " + to_text(side) + " mm, wanted one above 0");
+    throw Error(where + "side of the picture = " + to_text(side) + " mm; must be finite and above 0");
   }
   double most_weight = 0;
   for (std::size_t i = 0; i < points.size(); ++i) {
@@ -56,9 +56,9 @@ MovingLeastSquares::MovingLeastSquares(const std::string& where, std::span<const
     for (const auto& point : points) most_alpha = std::max(most_alpha, raw_alpha(point));
   }
   if (!(most_alpha > 0)) {
-    throw Error(where + "none of " + std::to_string(points.size()) + " points has a weight, wanted one at least");
+    throw Error(where + "0 of " + std::to_string(points.size()) + " points have a weight; must be at least 1");
   }
-  // Continuous in all weights and fades, and 1 for the point that counts most if all fade alike.
+  // Continuous in all weights and fades; 1 for the most important point if all points fade equally.
   const auto presence = [&](const WeighedValue& point) {
     return point.fade * std::min(1.0, raw_alpha(point) / most_alpha / full_alpha);
   };
@@ -86,7 +86,7 @@ MovingLeastSquares::MovingLeastSquares(const std::string& where, std::span<const
     to.soft2.push_back(soft * soft);
   }
   find_line(shares);
-  // A point that vanishes takes its part of the limits along.
+  // A point that vanishes contributes less and less to the limits.
   double mean = 0, alphas = 0;
   for (std::size_t i = 0; i < to.alpha.size(); ++i) mean += to.alpha[i] * to.value[i], alphas += to.alpha[i];
   mean /= alphas;
@@ -101,8 +101,10 @@ MovingLeastSquares::MovingLeastSquares(const std::string& where, std::span<const
   least_value_ = least;
 }
 
-// A plane through points on a line with one beside it is the same however little that one weighs. So points nearly on a
-// line keep the slope along it alone, and those that fade count for this by the square of their share.
+// Points on a line and one point off the line define the same plane for any weight of that point, however small. So
+// points nearly on a line keep only the slope along the line, and points that fade count here by their squared share.
+// Points count as on a line if their RMS spread across is below 0.02 of the spread along the line, and as in a plane
+// from 0.08 on; results are blended between.
 void MovingLeastSquares::find_line(std::span<const double> shares) {
   constexpr double line_aspect = 0.02, plane_aspect = 0.08;
   double sum = 0, mean_x = 0, mean_y = 0, xx = 0, xy = 0, yy = 0;
@@ -175,17 +177,17 @@ double MovingLeastSquares::at(const FilmPoint& place) const noexcept {
   return value;
 }
 
-// Let h(q) = a + g . (q - p) be the plane of a place p, and L_i = 1 / W + (p - mean) . C^-1 (x_i - mean) the part of
-// point i in a. The normal equations, differentiated, give
+// Let h(q) = a + g . (q - p) be the plane of a position p, and L_i = 1 / W + (p - mean) . C^-1 (x_i - mean) the share
+// of point i in a. Differentiating the normal equations gives
 //
 //     da/dp = g + sum_i dw_i/dp L_i (f_i - h(x_i)),   dw_i/dp = -beta w_i (p - x_i) / r2_i,
 //
-// in which the common factor m of the weights counts as constant.
+// with the common factor m of the weights as a constant.
 Vec2<double> MovingLeastSquares::slopes(const FilmPoint& place) const noexcept {
   using V = Vec2<double>;
   const Columns& points = points_;
   const std::size_t count = points.x.size();
-  // In reach, as at() has it; a coordinate beyond moves nothing.
+  // Clamped as in at(); a clamped coordinate has derivative 0.
   const auto in_reach = [](double x) { return x < scaled_reach ? std::max(x, -scaled_reach) : scaled_reach; };
   const V wanted{place.x * to_scaled_, place.y * to_scaled_}, p{in_reach(wanted.x), in_reach(wanted.y)};
   const double value = at(place) * to_scaled_value_;
@@ -194,7 +196,7 @@ Vec2<double> MovingLeastSquares::slopes(const FilmPoint& place) const noexcept {
   const auto dot = [](const V& a, const V& b) { return a.x * b.x + a.y * b.y; };
   const auto r2_of = [&](std::size_t i) { return dot(away(i), away(i)) + points.soft2[i]; };
 
-  // Squared distance up to which a place counts as at the point: weights of the others stay normal numbers.
+  // Squared distance below which a position coincides with a point; keeps the weights of other points normal numbers.
   constexpr double touching = 1e-60;
   std::size_t nearest = 0;
   double least = std::numeric_limits<double>::infinity(), next = least;
@@ -203,7 +205,7 @@ Vec2<double> MovingLeastSquares::slopes(const FilmPoint& place) const noexcept {
     if (r2 < least) least = r2, nearest = i;
     if (r2 > touching) next = std::min(next, r2);
   }
-  // At a point, the others alone determine the slopes: their weights relative to the nearest of them.
+  // At a point, the other points determine the slopes, with weights relative to the nearest other point.
   const bool on_point = least <= touching;
   if (on_point && !(affine_ && std::isfinite(next))) return {0, 0};
   const auto weight = [&](std::size_t i) {
@@ -229,7 +231,7 @@ Vec2<double> MovingLeastSquares::slopes(const FilmPoint& place) const noexcept {
   const V mean = on_point ? V{0, 0} : wq / w_sum;
   const double mean_value = on_point ? 0 : wf / w_sum, trace = xx + yy;
   const double a = xx - w_sum * mean.x * mean.x, b = xy - w_sum * mean.x * mean.y, c = yy - w_sum * mean.y * mean.y;
-  // As the loops solve it: for planes, and for those that rise along a line alone.
+  // Solved as in the loops: for planes, and for planes that rise along a line only.
   const auto in_planes = [&](const V& right) {
     constexpr double thin2 = 1e-20;
     const double xx1 = a / trace, xy1 = b / trace, yy1 = c / trace, det = xx1 * yy1 - xy1 * xy1, tr = xx1 + yy1;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Compiled for each instruction set, without fused operations: see petzval_loops in cmake/module.cmake. Sums run over
-// the points in their order, so that a place has the same result in every batch.
+// Compiled for each instruction set, without fused operations; see petzval_loops in cmake/module.cmake. Sums run over
+// the points in their order, so that a position has the same result in every batch.
 #include "moving_least_squares_loops.hpp"
 
 #include "falling_power.hpp"
@@ -8,21 +8,21 @@
 namespace petzval::camera_detail {
 namespace {
 
-constexpr std::size_t block = 64;  // points whose weights are computed side by side
+constexpr std::size_t block = 64;  // number of points whose weights are computed together
 
-/// Sums of weights, and of places and values relative to the nearest point. Relative to itself the nearest point adds
-/// 0, however large its weight is, so that no digits cancel near a point.
+/// Sums of weights, and of coordinates and values relative to the nearest point. The nearest point itself adds 0,
+/// however large its weight, so that no digits cancel near a point.
 struct Moments {
-  double x = 0, y = 0, value = 0;  ///< of the nearest point
+  double x = 0, y = 0, value = 0;  ///< coordinates and value of the nearest point
   double w = 0, wf = 0, wx = 0, wy = 0, wxx = 0, wxy = 0, wyy = 0, wxf = 0, wyf = 0;
 };
 
-/// The height of the plane above its mean at a place, (x, y) from the nearest point.
+/// Height of the plane above its mean at a position (x, y) relative to the nearest point.
 ///
-/// C: second moments of places about their mean, b: with values, in parts of the trace. Points on a line leave rounding
-/// errors of their smaller moment. So C (C^2 + thin^2)^-1 stands for C^-1, which for 2 x 2 is
-/// (thin^2 C + det C (tr C - C)) / (det^2 C + thin^2 tr C^2 + thin^4): for points on a line the
-/// result has the slope along the line and no slope across it, in any direction of the line.
+/// C: second moments about the mean; b: cross moments with the values; both divided by tr C. Rounding errors dominate
+/// the smaller moment of points on a line. Therefore C (C^2 + thin^2)^-1 replaces C^-1; for 2 x 2 it is
+///     (thin^2 C + det C (tr C - C)) / (det^2 C + thin^2 tr C^2 + thin^4).
+/// For points on a line the result has the slope along the line and no slope across, for any direction of the line.
 double rise_of(const LeastSquaresJob& job, const Moments& m, double x, double y) noexcept {
   constexpr double thin = 1e-10, thin2 = thin * thin;
   const double trace = m.wxx + m.wyy;
@@ -38,14 +38,14 @@ double rise_of(const LeastSquaresJob& job, const Moments& m, double x, double y)
   const double from_x = x - mean_x, from_y = y - mean_y;
   const double rise = (slope_x * from_x + slope_y * from_y) / (det * det + thin2 * (tr * tr - (det + det) + thin2));
   if (job.plane == 1) return rise;
-  // The same for planes that rise along the line only.
+  // The same for planes that rise only along the line.
   const double ex = job.along_x, ey = job.along_y;
   const double moment = ex * (ex * xx + ey * xy) + ey * (ex * xy + ey * yy);
   const double along = moment > thin ? (ex * bx + ey * by) / moment * (ex * from_x + ey * from_y) : 0;
   return job.plane * rise + (1 - job.plane) * along;
 }
 
-/// The value at a place, all scaled.
+/// Value at a position, all scaled.
 double value_at(const LeastSquaresJob& job, double x, double y) noexcept {
   double r2[block], weights[block];
   const auto distances = [&](std::size_t begin, std::size_t count) {
@@ -93,7 +93,7 @@ double value_at(const LeastSquaresJob& job, double x, double y) noexcept {
   return m.value + (job.affine ? mean + rise_of(job, m, x - m.x, y - m.y) : mean);
 }
 
-/// A coordinate of a place, scaled and within reach. The comparisons replace NaN by a limit.
+/// A coordinate, scaled and clamped to reach. The comparisons replace NaN by a limit.
 double scaled(const LeastSquaresJob& job, double place) noexcept {
   const double x = place * job.to_scaled, below = x < job.reach ? x : job.reach;
   return below > -job.reach ? below : -job.reach;

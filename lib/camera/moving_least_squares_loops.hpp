@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The loop of MovingLeastSquares over places, which moving_least_squares_loops.cpp defines for each instruction set.
+// Loop of MovingLeastSquares over positions; moving_least_squares_loops.cpp defines it for each instruction set.
 #pragma once
 
 #include <cstddef>
@@ -8,26 +8,26 @@
 
 namespace petzval::camera_detail {
 
-/// A power from 1/2 to 4: whole and half ones by products and a root.
+/// A power from 1/2 to 4: multiples of 1/2 by products and a square root.
 struct FallingPower {
   double exponent = 0.5;
   bool half = true;  ///< exponent is wholes + 1/2, or wholes
   int wholes = 0;    ///< negative: any other exponent
 };
 
-/// Places and values are scaled by powers of two, so that squares neither overflow nor vanish.
+/// Coordinates and values are scaled by powers of two, so that squares neither overflow nor underflow.
 struct LeastSquaresJob {
   std::size_t points = 0;
   const double *x = nullptr, *y = nullptr, *value = nullptr;  ///< scaled
   const double *alpha = nullptr, *soft2 = nullptr;            ///< above 0, at most 1; 0 or more
   bool affine = true;
-  double plane = 1, along_x = 1, along_y = 0;  ///< affine: the part that planes have, and the direction of lines (unit)
+  double plane = 1, along_x = 1, along_y = 0;  ///< affine: share of planes, and unit direction of lines
   FallingPower power{};                        ///< beta / 2: the exponent for ratios of squared distances
-  double low = 0, high = 0;                    ///< of the result, scaled
+  double low = 0, high = 0;                    ///< limits of the result, scaled
   double to_scaled = 1, reach = 0, from_scaled = 1;
 };
 
-/// out: the values at `count` places in mm.
+/// out: values at `count` positions in mm.
 struct LeastSquaresLoops {
   void (*values)(const LeastSquaresJob& job, std::size_t count, const double* x, const double* y, double* out) noexcept;
 };

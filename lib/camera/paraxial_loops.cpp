@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Compiled for each instruction set: see petzval_loops in cmake/module.cmake.
+// Compiled for each instruction set; see petzval_loops in cmake/module.cmake.
 #include "paraxial_loops.hpp"
 
 #include <cmath>
@@ -42,7 +42,7 @@ inline Mapped<T> mapped(const Maps<T>& maps, T film_x, T film_y, T pupil_x, T pu
   return {maps.xa * film_x + maps.xb * pupil_x, maps.ya * film_y + maps.yb * pupil_y, ux * down, uy * down, down};
 }
 
-// The promise that nothing overlaps lets a compiler run these loops on lanes; it takes it of parameters only.
+// With __restrict compilers vectorize these loops; they honour it on parameters only.
 template <class T, class MapsOf>
 void fill(std::size_t count, const MapsOf& maps_of, T z, T reach, const T* __restrict film_x,
           const T* __restrict film_y, const T* __restrict pupil_x, const T* __restrict pupil_y, T* __restrict x,
@@ -51,7 +51,7 @@ void fill(std::size_t count, const MapsOf& maps_of, T z, T reach, const T* __res
   for (std::size_t i = 0; i < count; ++i) {
     const Maps<T> maps = maps_of(i);
     const bool good = in_reach(reach, film_x[i], film_y[i], pupil_x[i], pupil_y[i]);
-    // A line that is no good becomes the axis.
+    // An invalid line becomes the axis.
     const T fx = good ? film_x[i] : T(0), fy = good ? film_y[i] : T(0);
     const T px = good ? pupil_x[i] : T(0), py = good ? pupil_y[i] : T(0);
     const Mapped<T> ray = mapped(maps, fx, fy, px, py);

@@ -7,14 +7,14 @@
 
 namespace petzval::camera_detail {
 
-/// Film lines as rays in the plane z, for first-order models.
+/// Maps film lines to rays in the plane z, for first-order models.
 template <class T>
 struct ParaxialJob {
   lens_detail::WavelengthRows<T> maps;  ///< the numbers of two SectionMaps
-  bool sections_alike = false;          ///< those along y are those along x
-  const SectionMaps* shared = nullptr;  ///< at the wavelength of all rays; null: it does not exist
+  bool sections_alike = false;          ///< true if both sections are equal
+  const SectionMaps* shared = nullptr;  ///< at the common wavelength; null if it is not covered
   T z = 0;
-  T reach = 0;  ///< numbers of a line, in all, that give finite rays
+  T reach = 0;  ///< largest sum of absolute coordinates of a line
   RayWavelengths wavelengths;
 };
 
@@ -23,7 +23,7 @@ struct ParaxialLoops {
                    const RayArrays<float>& rays, RayFate* fates) noexcept;
   void (*of_double)(std::size_t count, const ParaxialJob<double>& job, const TwoPlaneRays<const double>& lines,
                     const RayArrays<double>& rays, RayFate* fates) noexcept;
-  /// One line; maps: null as `shared`.
+  /// Maps one line. maps: null like `shared`.
   RayFate (*one)(const SectionMaps* maps, double z, double reach, const TwoPlaneRay& line, Ray<double>& ray) noexcept;
 };
 

@@ -29,17 +29,17 @@ PETZVAL_WIDEST(ParaxialLoops, paraxial_loops)
 
 namespace {
 
-constexpr double farthest = 1e12;  // mm, of lines
-constexpr double largest = 1e18;   // of their rays before these have unit length: its square is finite in float too
+constexpr double farthest = 1e12;  // mm, for lines
+constexpr double largest = 1e18;   // for rays before normalisation; its square is finite in float
 
-/// Film and pupil point to place and slope in the plane of the first vertex, before the lens, with the focus of exact
-/// rays.
+/// Map from film and pupil point to position and slope in the plane of the first vertex, in front of the lens, with the
+/// focus of exact rays.
 RayMatrix to_scene_map(const LensFacts& facts, std::size_t wavelength, const TwoPlanes& space, Meridian section) {
   const StopMaps maps = stop_maps(facts, wavelength, space, section);
   return maps.from_film.then({1, 0, best_focus_power(facts, wavelength, maps, section), 1}).then(maps.to_front);
 }
 
-/// The maps of a model: a pinhole's rays pass the middle of the pupil.
+/// Maps of a model; rays of a pinhole pass the middle of the pupil.
 SectionMaps seen_by(ModelKind model, const SectionMaps& maps, double middle) noexcept {
   if (model != ModelKind::pinhole) return maps;
   const auto through = [middle](const RayMatrix& map) -> RayMatrix {
@@ -53,7 +53,7 @@ SectionMaps maps_of(const std::array<double, 8>& numbers) noexcept {
   return {{xa, xb, xc, xd}, {ya, yb, yc, yd}};
 }
 
-/// The maps at a compiled wavelength or at one in nm, which is written to `own`; null for one that is not covered.
+/// Maps at a compiled wavelength, or at a wavelength in nm, written to `own`; null if the wavelength is not covered.
 const SectionMaps* at_wavelength(Wavelength at, std::size_t primary, const std::vector<SectionMaps>& compiled,
                                  const lens_detail::BetweenWavelengths<8>& between, SectionMaps& own) noexcept {
   if (const auto nm = at.in_nm()) {
@@ -65,16 +65,16 @@ const SectionMaps* at_wavelength(Wavelength at, std::size_t primary, const std::
   return position < compiled.size() ? &compiled[position] : nullptr;
 }
 
-/// Where a film point sees the stop in the plane of the pupil: its centre at shift times the film point.
+/// Image of the stop in the pupil plane as seen from a film point; its centre is at shift times the film point.
 struct StopImage {
   double shift = 0;
-  double size = 0;  ///< over that of the stop; negative: upside down
+  double size = 0;  ///< relative to the stop; negative if inverted
 };
 
-/// height: the first row of a map, the height at which a line meets the stop or, times `scale`, an image of it.
+/// height: the first row of a map to the height at which a line meets the stop, or its image magnified by `scale`.
 StopImage image_of(const Lens& lens, const RayMatrix& height, double scale, const char* where) {
   if (height.b == 0) {
-    throw Error(lens.name() + ": the film lies in " + where + ", wanted it elsewhere for a first-order model");
+    throw Error(lens.name() + ": the film lies in " + where + "; must be elsewhere for a first-order model");
   }
   return {-height.a / height.b, 1 / (height.b * scale)};
 }
@@ -83,7 +83,7 @@ StopImage thick_image(const LensFacts& facts, std::size_t wavelength, const TwoP
   return image_of(facts.lens(), stop_maps(facts, wavelength, space, section).from_film, 1, "the image of the stop");
 }
 
-/// The entrance pupil, in the rear principal plane.
+/// Image for the thin model: the entrance pupil, placed in the rear principal plane.
 StopImage thin_image(const LensFacts& facts, std::size_t wavelength, const TwoPlanes& space, Meridian section) {
   const Lens& lens = facts.lens();
   const double z = first_order(lens, wavelength, section).rear_principal_z;
@@ -97,15 +97,16 @@ StopImage stop_image(ModelKind model, const LensFacts& facts, std::size_t wavele
                                   : thick_image(facts, wavelength, space, section);
 }
 
-/// The numbers of a line, in all, that give finite rays by any of the maps. Throws Error where none do.
+/// Largest sum of absolute coordinates of a line for which all maps give finite rays.
+/// @throws Error  if no line gives finite rays
 double reach_of(const Lens& lens, const std::vector<SectionMaps>& maps) {
   constexpr double wanted = farthest * largest;
   double most = 0;
   for (const SectionMaps& map : maps) {
     for (const double number : map.numbers()) {
       if (!(std::abs(number) <= wanted)) {
-        throw Error(lens.name() + ": found " + to_text(number) + " in the map of its rays to first order, wanted " +
-                    to_text(wanted) + " at most");
+        throw Error(lens.name() + ": first-order map: value = " + to_text(number) + "; must be at most " +
+                    to_text(wanted) + " in absolute value");
       }
       most = std::max(most, std::abs(number));
     }
@@ -113,20 +114,20 @@ double reach_of(const Lens& lens, const std::vector<SectionMaps>& maps) {
   return std::min(farthest, largest / most);
 }
 
-/// Throws Error for a lens that has no model of a kind.
+/// @throws Error  if the lens has no model of this kind
 void check(ModelKind model, const LensFacts& facts) {
   const Lens& lens = facts.lens();
   if (!model.is_first_order()) {
-    throw Error(lens.name() + ": found " + std::string(name(model)) + ", wanted a first-order model");
+    throw Error(lens.name() + ": model = " + std::string(name(model)) + "; must be a first-order model");
   }
   const bool cylinders = has_cylinders(lens);
   if (cylinders && (model == ModelKind::pinhole || model == ModelKind::thin_two_disc)) {
-    throw Error(lens.name() + ": found cylinders, wanted a lens of revolution for " + std::string(name(model)) +
-                ", or another model");
+    throw Error(lens.name() + ": the lens has cylinders; must be a lens of revolution for " + std::string(name(model)) +
+                ", or use another model");
   }
   for (std::size_t w = 0; w < facts.wavelengths(); ++w) {
     if (facts.first_order(w).afocal || (cylinders && first_order(lens, w, Meridian::x).afocal)) {
-      throw Error(lens.name() + ": found an afocal lens, wanted a focal length for a first-order model");
+      throw Error(lens.name() + ": the lens is afocal; must have a focal length for a first-order model");
     }
   }
 }
@@ -142,13 +143,13 @@ FilmPupilTable two_disc_pupils(const Lens& lens, double film_radius) {
   return lens.iris().round() ? reshaped : reshaped.with_stop(lens);
 }
 
-/// The size of the iris's image through which the film's centre gets the light of the exact lens: of its semi-axis
-/// along y. along_x: the other one over that.
+/// Semi-axis along y (mm) of the image of the iris that gives the film centre the irradiance of the exact lens.
+/// along_x: ratio of the semi-axes.
 double axial_radius(const Lens& lens, std::size_t wavelength, const TwoPlanes& space, const Iris& iris,
                     double along_x) {
   const double n = lens.index(lens.surface_count(), wavelength);
   const double wanted = film_irradiance(lens, {}, wavelength) / (n * n);
-  // From that of a disc, pi sin^2: the solid angle grows with the square of the radius, nearly.
+  // Start with a disc, pi sin^2; the solid angle is nearly proportional to the squared radius.
   double radius = std::abs(space.depth()) * std::sqrt(wanted / (std::numbers::pi - wanted) / along_x);
   for (int round = 0; round < 6 && radius > 0; ++round) {
     const PupilImage image{{0, 0}, {along_x * radius, radius}};

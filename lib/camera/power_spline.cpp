@@ -14,26 +14,26 @@ PowerSpline<double> power_spline(const std::string& where, const std::vector<Pow
   const std::size_t n = knots.size();
   if (n == 0) return spline;
   if (n > spline.most_knots) {
-    throw Error(where + "power: found " + std::to_string(n) + " knots, wanted " + std::to_string(spline.most_knots) +
-                " or fewer");
+    throw Error(where + "power: number of knots = " + std::to_string(n) + "; must be " +
+                std::to_string(spline.most_knots) + " or fewer");
   }
   for (std::size_t i = 0; i < n; ++i) {
     const auto [radius, power] = knots[i];
     const std::string knot = where + "power: knot " + std::to_string(i + 1) + ": ";
     constexpr double apart = 1e-3;
     if (!(radius >= 0 && radius <= 1) || (i > 0 && !(radius - knots[i - 1].radius >= (1 - 1e-9) * apart))) {
-      throw Error(knot + "the radius is " + to_text(radius) + ", wanted one from 0 to 1 and " + to_text(apart) +
-                  " above the one before");
+      throw Error(knot + "radius = " + to_text(radius) + "; must be 0 to 1, and at least " + to_text(apart) +
+                  " above the previous radius");
     }
     if (!(std::abs(power) <= 1000)) {
-      throw Error(knot + "the power is " + to_text(power) + ", wanted one from -1000 to 1000");
+      throw Error(knot + "power = " + to_text(power) + "; must be -1000 to 1000");
     }
     spline.at[i] = radius;
   }
   spline.knots = n;
   spline.first = knots[0].power;
   if (n == 1) return spline;
-  // Second derivatives by Thomas's algorithm; rows: below, on and above the diagonal.
+  // Second derivatives by Thomas's algorithm; coefficients below, on and above the diagonal.
   const auto width = [&](std::size_t i) { return knots[i + 1].radius - knots[i].radius; };
   const auto slope = [&](std::size_t i) { return (knots[i + 1].power - knots[i].power) / width(i); };
   std::vector<double> over(n, 0), second(n, 0);

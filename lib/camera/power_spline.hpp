@@ -10,27 +10,28 @@
 
 namespace petzval::camera_detail {
 
-/// A cubic spline as a sum of powers that begin at its knots, so that lanes need no search and no branch:
+/// A cubic spline as a sum of powers that start at its knots, which needs no search and no branch:
 ///
 ///     k(t) = first + square (t - t_0)^2 + sum_j cube_j max(0, t - t_j)^3.
 template <class T>
 struct PowerSpline {
   static constexpr std::size_t most_knots = 32;
 
-  std::size_t knots = 0;  ///< 0: k is 1
+  std::size_t knots = 0;  ///< k is 1 if there are 0 knots
   T first = 1, square = 0;
   std::array<T, most_knots> at{}, cube{};
 };
 
-/// Through knots, flat at the first and without curvature at the last; none: k is 1. Throws Error, beginning with
-/// `where`, for too many knots, radii that do not grow from 0 to 1, and powers beyond 1000.
+/// Spline through knots, with slope 0 at the first and curvature 0 at the last; without knots k is 1.
+/// @throws Error  prefixed with `where` if there are too many knots, radii do not grow from 0 to 1, or powers exceed
+/// 1000
 PowerSpline<double> power_spline(const std::string& where, const std::vector<PowerKnot>& knots);
 
-// Local names: this is compiled for several instruction sets, and the linker must not take one for another.
+// Local names: compiled for several instruction sets, which the linker must not mix.
 namespace {
 
-/// The sum that is k(t) - 1, in parts: t limited to the knots, what begins at the first of them, and the cube of knot
-/// j, which is not the last.
+/// Terms of the sum k(t) - 1: t limited to the knots, the terms that start at the first knot, and the cubic term of
+/// knot j, which must not be the last knot.
 template <class T, class N>
 inline N within_knots(const PowerSpline<T>& spline, N t) noexcept {
   const T first = spline.at[0], last = spline.at[spline.knots - 1];
@@ -48,7 +49,7 @@ inline N of_knot(const PowerSpline<T>& spline, std::size_t j, N t) noexcept {
   return (over < T(0) ? N(T(0)) : N(over * over * over)) * spline.cube[j];
 }
 
-/// k(t) - 1, constant outside the knots. N: T, or a dual number over it.
+/// k(t) - 1, constant outside the knots. N: T or a dual number over T.
 template <class T, class N>
 inline N beyond_one(const PowerSpline<T>& spline, N t) noexcept {
   if (spline.knots == 0) return N(T(0));

@@ -23,7 +23,7 @@ std::string_view name(ProjectionStatus status) noexcept {
 namespace camera_detail {
 namespace {
 
-/// How the chief rays of a film point and of two beside it miss a point: sines of angles, across two axes.
+/// Errors by which the chief rays of a film point and of two neighbours miss a point: sines of angles along two axes.
 struct Misses {
   std::array<std::array<double, 2>, 3> by{};
   bool lost = false;
@@ -52,7 +52,7 @@ Projection SceneSide::project(const AnyRayModel& model, const Vec3<double>& poin
   const auto start = chiefs.about(point);
   if (!start) return result;
 
-  // In points of the upright film; what meets the film is the line in the end.
+  // Iterates over points of the upright film; the final line is intersected with the real film.
   const double beside = 1e-3 * upright_radius_;
   const auto misses = [&](const FilmPoint& film, double hx, double hy) noexcept {
     std::array<std::array<double, 3>, 4> line;
@@ -92,11 +92,11 @@ Projection SceneSide::project(const AnyRayModel& model, const Vec3<double>& poin
     result = {film_.contains(at) ? status : ProjectionStatus::outside_film, at, film_.raster(at)};
     return result;
   };
-  // Newton's iteration, until its steps are as small as the numbers of the model allow.
+  // Newton's iteration, until steps are as small as the precision of the model allows.
   double last = upright_radius_;
   const double settled = 1e-12 * last, good = 1e-5 * last;
   for (;;) {
-    // Beside towards the axis, where rays are less likely to be lost.
+    // Neighbours towards the axis, where rays are less likely to be lost.
     const double hx = std::copysign(beside, -film.x), hy = std::copysign(beside, -film.y);
     const auto [by, lost] = misses(film, hx, hy);
     if (lost) return done(ProjectionStatus::vignetted);

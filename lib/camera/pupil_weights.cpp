@@ -17,12 +17,12 @@ constexpr std::size_t block = 256;
 }  // namespace
 
 struct PupilWeights::Data {
-  FilmPupilTable pupils, whole;  // include the stop, if weights act on the stop
+  FilmPupilTable pupils, whole;  // with the stop if weights act on the stop
   bool on_stop;                  // else weights act on the pupil of each film point
   std::optional<iris_detail::IrisWeights> weights;
-  bool keep_light;  // that the rim which cuts the pupils takes
+  bool keep_light;  // compensate for the light that the rim takes
 
-  /// The weights of any rays that pass.
+  /// Weights of any rays that pass.
   template <class T>
   void weigh(std::size_t count, const TwoPlaneRays<const T>& lines, const RayWavelengths& wavelengths,
              T* values) const noexcept {
@@ -42,7 +42,7 @@ struct PupilWeights::Data {
       values[i] = static_cast<T>(weights->of_sample(at.x, std::min(at.y, 1.0)));
     }
   }
-  /// Multiplies values with what makes up for the rim.
+  /// Multiplies values by the compensation for the rim.
   template <class T>
   void brighten(std::size_t count, const TwoPlaneRays<const T>& lines, const RayWavelengths& wavelengths,
                 T* values) const noexcept {
@@ -67,11 +67,11 @@ PupilWeights::PupilWeights(const Lens& lens, const AnyRayModel& model, const Bok
   const bool traced = model.kind() != ModelKind::custom && !model.kind().is_first_order();
   const bool has_rim = lens.stop() && std::isfinite(lens.surfaces()[*lens.stop()].semi_diameter);
   if (traced && has_rim && !pupils.knows_stop()) pupils = pupils.with_stop(lens);
-  // In closed form pupils are the image of the stop.
+  // Pupils in closed form are images of the stop.
   const auto* const first_order = model.as<ParaxialModel>();
   const bool image = first_order && !first_order->two_discs();
   const auto [along_x, along_y] = image ? first_order->stop_upside_down() : std::array{false, false};
-  // Between the stop and its image, places are nearly alike; behind vignetted pupils they are not.
+  // Positions in the stop and in its image agree nearly, but not behind vignetted pupils.
   const double uniform_part = pupils.knows_stop() ? 0.25 : 0;
   iris_detail::IrisWeights weights(iris_detail::upside_down(lens.iris(), along_x, along_y), controls.edge(),
                                    iris_detail::upside_down(controls.weight_map, along_x, along_y), uniform_part,
@@ -105,7 +105,7 @@ template <class T>
 void PupilWeights::of_samples(std::size_t count, const T* u, const T* v, const TwoPlaneRays<const T>& lines,
                               const RayWavelengths& wavelengths, T* weights) const noexcept {
   const Data& data = *data_;
-  std::array<double, block> scales;  // of the iris that samples are drawn from; 0: they are drawn from a polygon
+  std::array<double, block> scales;  // scale of the iris for samples of the iris; 0 for samples of a polygon
   for (std::size_t begin = 0; begin < count; begin += block) {
     const std::size_t n = std::min(block, count - begin);
     const auto lines_here = lines.from(begin);
@@ -117,7 +117,7 @@ void PupilWeights::of_samples(std::size_t count, const T* u, const T* v, const T
     const bool polygons = std::any_of(scales.begin(), scales.begin() + n, [](double scale) { return scale == 0; });
     if (polygons) data.weigh(n, lines_here, wavelengths_here, weights + begin);
     for (std::size_t i = 0; i < n; ++i) {
-      // For samples of the iris, u and v determine the stop point; v is the share of the area nearer to the centre.
+      // For samples of the iris, u and v determine the stop point; v is the fraction of the area nearer to the centre.
       const double share = std::min(v[begin + i] * scales[i] * scales[i], 1.0);
       if (!data.weights) {
         weights[begin + i] = T(1);

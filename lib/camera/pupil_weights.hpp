@@ -13,15 +13,16 @@
 
 namespace petzval::camera_detail {
 
-/// The weights of a bokeh (BokehControls): which samples of pupils are drawn, and what each counts.
+/// Weights of a bokeh (BokehControls): the density of pupil samples and the weight of each sample.
 ///
-/// Immutable, cheap to copy, shared freely between threads.
+/// Immutable, cheap to copy, thread-safe.
 class PupilWeights {
  public:
   /// No weights.
   PupilWeights() = default;
-  /// Of a model of the lens. Throws Error for a weight map with weights that are not finite or negative, of a size that
-  /// does not fit them, of more than 2^26 pixels or black, and for an edge out of range.
+  /// @throws Error  if the weight map has weights that are not finite or negative, a size that does not match, more
+  /// than
+  ///                2^26 pixels, or is black; or if the edge is out of range
   PupilWeights(const Lens& lens, const AnyRayModel& model, const BokehControls& controls);
 
   /// The pupils to sample instead of the pupils of the model; nullopt if there are no weights.
@@ -32,16 +33,16 @@ class PupilWeights {
   template <class T>
   void draw(std::size_t count, const T* u, const T* v, T* to_u, T* to_v, T* densities) const noexcept;
   using Drawn = iris_detail::IrisWeights::Drawn;
-  /// Without weights: the same numbers.
+  /// Returns u and v unchanged if there are no weights.
   Drawn draw(double u, double v) const noexcept { return data_ ? drawn(u, v) : Drawn{u, v, 1}; }
-  /// Of the samples drawn, over that of uniform ones.
+  /// Density of drawn samples relative to uniform samples.
   double density(const Vec2<double>& sample) const noexcept;
 
-  /// The weights of samples of the model's own pupils. lines: their rays, N, as of an upright film.
+  /// Weights of samples of the model's pupils. lines: the N rays of the samples, as of an upright film.
   template <class T>
   void of_samples(std::size_t count, const T* u, const T* v, const TwoPlaneRays<const T>& lines,
                   const RayWavelengths& wavelengths, T* weights) const noexcept;
-  /// Those of any rays that pass: of a tilted film, or from the scene.
+  /// Weights of any rays that pass: rays of a tilted film, or rays from the scene.
   template <class T>
   void of_lines(std::size_t count, const TwoPlaneRays<const T>& lines, const RayWavelengths& wavelengths,
                 T* weights) const noexcept;

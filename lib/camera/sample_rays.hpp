@@ -18,19 +18,18 @@
 
 namespace petzval::camera_detail {
 
-/// What a camera knows of each wavelength beside its model: the scale of weights, and of a pinhole its shift.
+/// Data of a camera by wavelength, in addition to its model: the scale of weights, and the shift of a pinhole.
 class PETZVAL_API WavelengthFacts {
  public:
-  /// scale: one for each wavelength. nm: the wavelengths; none where there are no samples between them.
+  /// scale: by wavelength. nm: the wavelengths; empty if only compiled wavelengths have samples.
   WavelengthFacts(const AnyRayModel& model, std::vector<double> scale, std::span<const double> nm = {});
 
   std::size_t count() const noexcept { return scale_.size(); }
-  /// Of the compiled wavelengths.
+  /// Scales of the compiled wavelengths.
   std::span<const double> scales() const noexcept { return scale_; }
-  /// Whether there are samples at a wavelength, a position or nm.
+  /// True if there are samples at a wavelength, given by index or in nm.
   bool covers(Wavelength wavelength) const noexcept;
-  /// What weights are multiplied with: the square of the index behind the lens for irradiance; 0 for a wavelength that
-  /// is not covered.
+  /// Factor of weights: for irradiance the squared index behind the lens; 0 if the wavelength is not covered.
   double scale(Wavelength wavelength) const noexcept {
     const std::size_t position = wavelength.position(primary_);
     return position < count() ? scale_[position] : scale_between(wavelength);
@@ -48,43 +47,43 @@ class PETZVAL_API WavelengthFacts {
 
   std::size_t primary_;
   std::vector<double> scale_, shifts_;
-  lens_detail::BetweenWavelengths<1> between_scales_, between_shifts_;  // cover nothing without samples in nm
+  lens_detail::BetweenWavelengths<1> between_scales_, between_shifts_;  // empty range without samples in nm
 };
 
-/// Whether a model's pupils decide which rays pass, and not its apertures alone.
+/// True if the pupils of a model decide which rays pass, and not only its apertures.
 inline bool decide(const FilmPupilTable& pupils, const AnyRayModel& model) noexcept {
   return !model.clips_at_apertures() || pupils.cut();
 }
 
-/// What samples of a film are drawn from.
+/// Everything that film samples depend on.
 struct FilmView {
   const AnyRayModel& model;
   const Film& film;
-  /// Of the same film, with the model's pupils; null for an upright one that stays.
+  /// The tilted film with the model's pupils; null for an upright film that does not travel.
   const TiltedFilm* tilted = nullptr;
   const WavelengthFacts& wavelengths;
   PupilWeights weights = {};
   Front front = {};  ///< of the lens
   LocalFocus focus = {};
-  FilmPupilTable pupils = weights.pupils().value_or(model.pupils());  ///< of the upright film
+  FilmPupilTable pupils = weights.pupils().value_or(model.pupils());  ///< pupils of the upright film
   double depth = model.pupils().space().depth();
   core_detail::FilmBounds<double> bounds = core_detail::bounds_of<double>(film);
 
-  /// Rays of the model start elsewhere.
+  /// True if rays of the model do not start on the front.
   bool moves_rays() const noexcept {
     const bool exact = model.kind() == ModelKind::exact_float || model.kind() == ModelKind::exact_double;
     return !(exact && front.first_surface);
   }
 };
 
-/// Samples N camera rays, block by block: pupil, ray, weight.
+/// Samples N camera rays in blocks: pupil, ray, weight.
 template <class T>
 PETZVAL_API void sample_rays(const FilmView& view, std::size_t count, const CameraSamples<T>& samples,
                              const CameraRays<T>& rays) noexcept;
-/// One ray, within rounding that of a batch. pdf_film is left out.
+/// One ray, equal to the batch result up to rounding. pdf_film is left out.
 CameraRay sample_ray(const FilmView& view, const FilmPoint& film, double u, double v, Wavelength wavelength,
                      double time) noexcept;
-/// The same with its derivatives.
+/// One ray with its derivatives.
 CameraRayDifferential sample_differential(const FilmView& view, const FilmPoint& film, double u, double v,
                                           Wavelength wavelength, double time) noexcept;
 

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// Let D be the distance of the upright film from the plane of the pupil, whose centre is the origin. A film point P
-// lies lambda D from that plane, at its virtual point V times lambda. Its ray through q meets the upright film in X = q
-// + (P - q) / lambda = V - (1 / lambda - 1) q, and 1 / lambda is linear in V: where the film crosses the axis at (1 +
-// travel) D, its normal n, it is (1 + g . V) / (1 + travel) with g = (n_x, n_y) / (n_z D).
+// Let D be the distance of the upright film from the pupil plane, whose centre is the origin. A film point P has the
+// distance lambda D from that plane and lies at lambda times its virtual point V. Its ray through q meets the upright
+// film at X = q + (P - q) / lambda = V - (1 / lambda - 1) q. 1 / lambda is linear in V: if the film crosses the axis at
+// (1 + travel) D with the normal n, it is (1 + g . V) / (1 + travel) with g = (n_x, n_y) / (n_z D).
 //
 // The weight of a film sample is area cos_pupil cos_film / length^2. The ray is lambda times as long as the upright
-// one, at the same angle with the axis, cos_pupil = lambda |D| / length, and at the film n . (q - P) = n_z |D| (1 +
-// travel - g . q) for all its points. So it is the upright weight times n_z (1 + travel - g . q) / lambda^3.
+// ray, at the same angle to the axis, cos_pupil = lambda |D| / length, and for every point of the film n . (q - P) =
+// n_z |D| (1 + travel - g . q). The weight is therefore the upright weight times n_z (1 + travel - g . q) / lambda^3.
 #include "tilted_film.hpp"
 
 #include <algorithm>
@@ -45,7 +45,7 @@ TiltedPlane plane_of(const Film& film, const TwoPlanes& space) {
 
 using kernel::Dual;
 
-/// The virtual point of a film point, by the film point.
+/// A virtual point with derivatives with respect to its film point.
 struct VirtualPoint {
   Dual x, y, nearer;
 
@@ -63,22 +63,22 @@ TwoPlaneRayDerivatives derivatives_of(const Dual& film_x, const Dual& film_y, co
   return {{film_x.a, film_y.a, pupil_x.a, pupil_y.a}, part(0), part(1)};
 }
 
-/// Throws Error for a corner of the film that comes near to the plane of the pupil.
+/// @throws Error  if a corner of the film is close to the pupil plane
 void check_distance(const std::string& where, const FilmPoint& corner, double z, double film_z, double plane_z) {
   constexpr double nearest = 0.1;
   if ((z - plane_z) / (film_z - plane_z) >= nearest) return;
   throw Error(where + ": the corner (" + to_text(corner.x) + ", " + to_text(corner.y) + ") mm is at z = " + to_text(z) +
-              " mm, wanted it at least a tenth of the film's distance from the pupil, " + "z = " + to_text(plane_z) +
-              " mm");
+              " mm; must be at least a tenth of the film's distance away from the pupil plane, " +
+              "z = " + to_text(plane_z) + " mm");
 }
 
-/// A disc across the axis that bounds rays.
+/// A disc across the axis that limits rays.
 struct Rim {
   double half = 0, z = 0;
 };
 
-/// The pupils of a model at every wavelength, twice as wide as to first order: aberrations move and widen them, and the
-/// film's own pupils are sought among points beside the film too. Pupils at infinity are left out.
+/// Pupils of a model at every wavelength, twice as wide as to first order: aberrations move and widen them, and the
+/// search for the pupils of the film also covers points outside the film. Pupils at infinity are left out.
 std::vector<Rim> pupils_of(const LensFacts& facts, ModelKind model) {
   std::vector<Rim> rims;
   const Lens& lens = facts.lens();
@@ -95,7 +95,8 @@ std::vector<Rim> pupils_of(const LensFacts& facts, ModelKind model) {
   return rims;
 }
 
-/// A projection maps a rectangle to what its corners enclose; while the film travels, virtual points keep their lines.
+/// A projection maps a rectangle into the hull of its mapped corners; while the film travels, virtual points stay on
+/// their lines.
 FilmTilt tilt_of(const TiltedFilm& tilted) {
   const TiltedPlane first = tilted.plane(0), last = tilted.plane(1);
   FilmTilt tilt{.slope_x = first.slope_x,
@@ -125,7 +126,7 @@ double upright_radius(const LensFacts& facts, const Film& film, ModelKind model)
   const std::vector<Rim> pupils = pupils_of(facts, model);
   const pupil_detail::Face face = pupil_detail::last_face(lens);
   const bool discs = model.is_first_order() && model != ModelKind::thin_two_disc;
-  // Aberrations move a pupil that lies behind the film by more than its size.
+  // Aberrations move a pupil behind the film by more than its size.
   const bool in_lens = !pupils.empty() && std::all_of(pupils.begin(), pupils.end(), [&](const Rim& rim) {
     return (rim.z - film_z) * (face.vertex_z - film_z) > 0;
   });
@@ -136,13 +137,13 @@ double upright_radius(const LensFacts& facts, const Film& film, ModelKind model)
       return height + (height + rim.half) * std::abs((film_z - place.z) / (rim.z - place.z));
     };
     check_distance(lens.name(), corner, place.z, film_z, pupil_z);
-    radius = std::max(radius, farthest({0, pupil_z}));  // of virtual points
+    radius = std::max(radius, farthest({0, pupil_z}));  // for virtual points
     double through_pupil = 0;
     for (const Rim& rim : pupils) {
       if (discs) check_distance(lens.name(), corner, place.z, film_z, rim.z);
       through_pupil = std::max(through_pupil, farthest(rim));
     }
-    // Light comes through the last surface too, and aberrations have nothing to move there.
+    // Light also comes through the last surface, where aberrations have no effect on positions.
     const double through_last = std::max(farthest({face.half, face.z_min}), farthest({face.half, face.z_max}));
     const double reached = discs ? through_pupil : in_lens ? std::min(through_last, through_pupil) : through_last;
     radius = std::max(radius, reached);
@@ -171,8 +172,8 @@ TiltedFilm::TiltedFilm(const Film& film, const FilmPupilTable& pupils, int threa
   const FilmTilt tilt = tilt_of(*this);
   constexpr double rounding = 1e-9;
   if (!(tilt.radius <= pupils.film_radius() * (1 + rounding))) {
-    throw Error(where + ": the pupils are those of film points up to " + to_text(pupils.film_radius()) +
-                " mm from the axis, wanted " + to_text(tilt.radius) + " mm or more");
+    throw Error(where + ": film radius of the pupils = " + to_text(pupils.film_radius()) + " mm; must be at least " +
+                to_text(tilt.radius) + " mm");
   }
   pupils_ = pupils.for_tilted_film(tilt, threads);
 }

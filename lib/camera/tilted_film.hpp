@@ -13,70 +13,70 @@
 
 namespace petzval::camera_detail {
 
-/// A film at a moment, in its own coordinates: its points, their virtual points, and the rays that meet it.
+/// A film at one time, in its own coordinates: film points, their virtual points, and the rays that meet the film.
 struct PETZVAL_API TiltedPlane {
-  double x_by_x = 1, x_by_y = 0, y_by_y = 1;    ///< position across the axis; y does not change with x
-  double depth_by_x = 0, depth_by_y = 0;        ///< distance from the pupil's plane over that of the upright film
-  double slope_x = 0, slope_y = 0, cosine = 1;  ///< as in FilmTilt; between the film's normal and the axis
-  double travel = 0;                            ///< along the axis, over the upright film's distance from the pupil
+  double x_by_x = 1, x_by_y = 0, y_by_y = 1;    ///< position across the axis; y does not depend on film x
+  double depth_by_x = 0, depth_by_y = 0;        ///< distance from the pupil plane over distance of the upright film
+  double slope_x = 0, slope_y = 0, cosine = 1;  ///< slopes as in FilmTilt; cosine of the angle between normal and axis
+  double travel = 0;                            ///< along the axis, relative to the upright film's distance
 
   FilmPoint virtual_point(const FilmPoint& film) const noexcept;
   /// The film point of a virtual point.
   FilmPoint point(const FilmPoint& virtual_point) const noexcept;
-  /// By how much the upright film's distance from the pupil's plane is larger than that of the film point, in parts of
-  /// the latter.
+  /// Relative excess of the upright film's distance from the pupil plane over the distance of the film point.
   double nearer_by(const FilmPoint& virtual_point) const noexcept;
-  /// The same of a film point, with its derivatives by film x and y.
+  /// nearer_by() of a film point, with its derivatives with respect to film x and y.
   struct Nearer {
     double value = 0;
     Vec2<double> by{0, 0};
   };
   Nearer nearer_at(const FilmPoint& film) const noexcept;
-  /// The image-space ray that runs from the film point of a virtual point through a place in the pupil's plane.
+  /// Image-space ray from the film point of a virtual point through a position in the pupil plane.
   TwoPlaneRay upright(const FilmPoint& virtual_point, const FilmPoint& place) const noexcept;
-  /// The virtual point of the film point that a ray meets. Nothing for a ray that meets the back of the film or is
-  /// parallel to it.
+  /// Virtual point of the film point that a ray meets; nullopt if the ray meets the back of the film or is parallel to
+  /// the film.
   std::optional<FilmPoint> virtual_point_of(const TwoPlaneRay& ray) const noexcept;
-  /// The weight of a film sample over that of the upright film's sample with the same ray; 0: it meets the film's back.
+  /// Weight of a film sample divided by the weight of the upright film's sample with the same ray; 0 if the ray meets
+  /// the back of the film.
   double weight(const FilmPoint& virtual_point, const FilmPoint& place) const noexcept;
 };
 
-/// petzval::upright_radius(), for a film whose place is the lens's.
+/// petzval::upright_radius() for a film at the position of the lens's film.
 double upright_radius(const LensFacts& facts, const Film& film, ModelKind model);
 
-/// A film that is tilted, or moves along the axis while the shutter is open, in front of a model.
+/// A film in front of a model that is tilted, or travels along the axis while the shutter is open.
 ///
-/// A model maps image-space rays, which are given by their points on the planes of the upright film and of the pupil;
-/// whether a ray passes does not depend on the film. A tilted film samples other rays. Each of its points is identified
-/// by its virtual point: its projection, through the centre of the pupil's plane, onto the upright film. The pupils of
-/// the tilted film are a second table, over virtual points: one pupil for each distance from the axis, or with
-/// cylinders for each point and its mirror images, which contains the model's rays to all points there, at all times.
-/// It is larger than theirs where light is limited far from the plane of the pupil: behind a telecentric lens of f/50,
-/// half of the corners' samples of a film of 20 x 20 mm tilted by 18 degrees reach the scene, and two thirds for 8
-/// degrees.
+/// A model maps image-space rays, given by their points in the planes of the upright film and of the pupil; whether a
+/// ray passes does not depend on the film. A tilted film samples other rays: each of its points is identified by its
+/// virtual point, the projection through the centre of the pupil plane onto the upright film. Its pupils are a second
+/// table, over virtual points: one pupil for each distance from the axis, or with cylinders for each point and its
+/// mirror images, that contains the model's rays to all film points there, at all times.
 ///
-/// Immutable, cheap to copy, shared freely between threads.
+/// Limitations: these pupils exceed the real pupils if light is limited far from the pupil plane; samples are lost
+/// then. Behind a telecentric lens of f/50, half of the samples in the corners of a film of 20 x 20 mm reach the scene
+/// at a tilt of 18 degrees, two thirds at 8 degrees. Immutable, cheap to copy, thread-safe.
 class PETZVAL_API TiltedFilm {
  public:
-  /// pupils: those of the model, for a film of upright_radius(). Throws Error for a film that is no rectangle, tilted
-  /// by a quarter turn or more, or near to the plane of the pupil at any time, and for pupils of a smaller film.
+  /// @param pupils  pupils of the model, for a film of upright_radius()
+  /// @throws Error  if the film is no rectangle, is tilted by a quarter turn or more or is close to the pupil plane at
+  ///                any time, or if the pupils cover a smaller film
   TiltedFilm(const Film& film, const FilmPupilTable& pupils, int threads = 1);
 
-  /// With its place.
+  /// The film with its position set.
   const Film& film() const noexcept { return film_; }
-  /// The film's own pupils, over virtual points.
+  /// The pupils of the film, over virtual points.
   const FilmPupilTable& pupils() const noexcept { return pupils_; }
 
-  /// Where the film is at a part of the time that the shutter is open (0 to 1, clamped).
+  /// The film at a fraction (0 to 1, clamped) of the time that the shutter is open.
   TiltedPlane plane(double time) const noexcept;
-  /// The image-space ray of a film sample, with its derivatives by film x and y. area: of the sample.
+  /// Image-space ray of a film sample, with derivatives with respect to film x and y. area: of the sample.
   TwoPlaneRayDerivatives line(const FilmPoint& film, double u, double v, Wavelength wavelength, double time,
                               double& area) const noexcept;
 
  private:
   Film film_;
-  TiltedPlane first_;  // when the shutter opens
-  double travel_ = 0;  // until it closes, as TiltedPlane::travel
+  TiltedPlane first_;  // at the time when the shutter opens
+  double travel_ = 0;  // at the time when it closes, as TiltedPlane::travel
   FilmPupilTable pupils_;
 };
 

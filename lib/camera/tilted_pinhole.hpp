@@ -3,10 +3,10 @@
 
 #include "tilted_film.hpp"
 
-/// A pinhole in front of a tilted film: each film point has one ray, that of the upright film's point `chief` through
-/// the centre of the thick lens's exit pupil, and the weights of the whole pupil. The chief is the virtual point times
-/// 1 / (1 + nearer_by(virtual_point) shift), with shift as ParaxialModel::pinhole_shifts(). By the place where the ray
-/// passes the plane of the pupils it is proportional to 1 + travel - slope . place.
+/// A pinhole in front of a tilted film. Each film point has one ray, the ray of the upright film's point `chief`
+/// through the centre of the thick lens's exit pupil, and the weights of the whole pupil. The chief is the virtual
+/// point times 1 / (1 + nearer_by(virtual_point) shift), with shift from ParaxialModel::pinhole_shifts(). In terms of
+/// the position at which the ray passes the pupil plane, the factor is proportional to 1 + travel - slope . position.
 namespace petzval::camera_detail {
 
 inline double part_of_virtual(const TiltedPlane& plane, const FilmPoint& virtual_point, double shift) noexcept {
@@ -16,7 +16,7 @@ inline double part_by_place(const TiltedPlane& plane, const FilmPoint& place) no
   return 1 + plane.travel - (plane.slope_x * place.x + plane.slope_y * place.y);
 }
 
-/// The image-space ray of a film point, with its derivatives by film x and y.
+/// Image-space ray of a film point, with derivatives with respect to film x and y.
 TwoPlaneRayDerivatives pinhole_line(const TiltedPlane& plane, const FilmPoint& film, double shift) noexcept;
 
 }  // namespace petzval::camera_detail

@@ -21,19 +21,19 @@ namespace {
 
 using Discs = std::array<PupilDisc, 2>;
 
-/// How far outside of a disc a point lies; negative within.
+/// Distance of a point outside a disc; negative inside.
 double outside(const EdgePoint& point, const PupilDisc& disc) noexcept {
   return std::hypot(point.x, point.y - disc.shift * point.field) - disc.radius;
 }
 
-/// The same for what lies in both.
+/// Distance of a point outside the intersection of two discs; negative inside.
 double outside(const EdgePoint& point, const Discs& discs) noexcept {
   return std::max(outside(point, discs[0]), outside(point, discs[1]));
 }
 
-/// Distances of edge points from the edge of what both discs contain, for a solver: five numbers whose squares and
-/// whose products with their derivatives sum to those of all distances. Unknown: centre of each disc at the largest
-/// field, and radius. Lengths in units of `unit`, so that the solver's tolerances mean something.
+/// Distances of edge points from the edge of the intersection of two discs, for a solver: reduced to five residuals
+/// with the same sum of squares and the same products with their derivatives. Unknowns: the centre of each disc at the
+/// largest field, and its radius, in units of `unit`, so that the tolerances of the solver are meaningful.
 struct EdgeDistances {
   using Scalar = double;
 
@@ -82,8 +82,8 @@ struct EdgeDistances {
   }
 };
 
-/// Discs to start from: each touches the pupil of the field on one side, above or below, one of them wider than
-/// the pupil on the axis.
+/// Starting discs: each disc touches the pupil of the field on one side, above or below; one disc may be wider than the
+/// axial pupil.
 void add_starts(std::span<const EdgePoint> pupil, double radius, std::vector<Discs>& starts) {
   const auto [lowest, highest] =
       std::minmax_element(pupil.begin(), pupil.end(), [](const EdgePoint& a, const EdgePoint& b) { return a.y < b.y; });
@@ -98,9 +98,9 @@ void add_starts(std::span<const EdgePoint> pupil, double radius, std::vector<Dis
 
 std::vector<EdgePoint> real_edges(const FilmPupilTable& real, std::size_t wavelength) {
   constexpr int fields = 16, directions = pupil_table_detail::polygon_corners / 2;
-  // Polygons have the area of the pupils; they cross a round one at this part of the way between their corners.
+  // Polygons have the area of the pupils; they cross a round pupil at this fraction of the distance between corners.
   constexpr double crossing = 0.21, step = 2.0 / pupil_table_detail::polygon_corners;
-  constexpr double darkest = 0.01;  // of the pupil's area on the axis
+  constexpr double darkest = 0.01;  // fraction of the axial pupil's area
   std::vector<EdgePoint> edges;
   for (int j = 0; j <= fields; ++j) {
     const FilmPoint film{0, real.lit_radius() * std::sqrt(static_cast<double>(j) / fields)};
@@ -152,7 +152,7 @@ std::array<PupilDisc, 2> fit_two_discs(std::span<const EdgePoint> edges) {
   std::transform(edges.begin(), edges.end(), weights.begin(),
                  [&](const EdgePoint& e) { return std::sqrt(e.share * radius); });
   for (const Discs& start : starts) improve(start);
-  // Squares again, weighted so that their sum becomes that of the distances: the area between the edges.
+  // Squares again, weighted so that their sum approaches the sum of distances: the area between the edges.
   for (int round = 0; round < 4; ++round) {
     std::transform(edges.begin(), edges.end(), weights.begin(), [&](const EdgePoint& e) {
       return std::sqrt(e.share * radius / (0.01 + std::abs(outside(e, best)) / radius));
@@ -167,17 +167,18 @@ std::array<PupilDisc, 2> fit_two_discs(std::span<const EdgePoint> edges) {
 TwoDiscs fit_two_discs(const Lens& lens, double film_radius, Wavelength wavelength) {
   const std::size_t w = lens.position(wavelength);
   if (w >= lens.wavelengths_nm().size()) {
-    throw Error(lens.name() + ": fit_two_discs: found a wavelength that the lens does not have, wanted a compiled one");
+    throw Error(lens.name() + ": fit_two_discs: the lens does not have this wavelength; must be a compiled one");
   }
   if (!(film_radius > 0 && std::isfinite(film_radius))) {
-    throw Error(lens.name() + ": fit_two_discs: film_radius is " + to_text(film_radius) + " mm, wanted a length");
+    throw Error(lens.name() + ": fit_two_discs: film_radius = " + to_text(film_radius) +
+                " mm; must be finite and above 0");
   }
   if (camera_detail::has_cylinders(lens))
-    throw Error(lens.name() + ": fit_two_discs: found cylinders, wanted a lens of revolution");
+    throw Error(lens.name() + ": fit_two_discs: the lens has cylinders; must be a lens of revolution");
   using camera_detail::EdgePoint;
   const FilmPupilTable pupils = FilmPupilTable::equal_area(with_iris(lens, {}), film_radius);
   const std::vector<EdgePoint> edges = camera_detail::real_edges(pupils, w);
-  if (edges.empty()) throw Error(lens.name() + ": fit_two_discs: the lens is dark, wanted one that passes light");
+  if (edges.empty()) throw Error(lens.name() + ": fit_two_discs: the lens is dark; must transmit light");
   auto discs = camera_detail::fit_two_discs(edges);
   if (discs[1].radius < discs[0].radius) std::swap(discs[0], discs[1]);
   TwoDiscs result;

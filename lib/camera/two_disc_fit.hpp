@@ -10,21 +10,21 @@
 
 namespace petzval::camera_detail {
 
-/// A point of a pupil's edge, in the plane of the pupil, of a film point at (0, field), mm.
+/// A point on the edge of a pupil, in the pupil plane, for the film point (0, field) (mm).
 struct EdgePoint {
   double field = 0, x = 0, y = 0;
-  double share = 0;  ///< length of the edge that it represents, mm, over the pupil's area, mm^2
+  double share = 0;  ///< length of the edge that it represents, divided by the pupil's area, 1/mm
 };
 
-/// Edges of the pupils of some film points, at equal steps of film area; none where hardly any light comes.
+/// Edges of the pupils of some film points, at equal steps of film area; dark film points are left out.
 std::vector<EdgePoint> real_edges(const FilmPupilTable& pupils, std::size_t wavelength);
 
-/// The error of the intersection of two discs: the area between its edge and those of some pupils, over the areas of
-/// the pupils.
+/// Error of the intersection of two discs: the area between its edge and the edges of some pupils, divided by the areas
+/// of the pupils.
 double two_disc_error(std::span<const EdgePoint> edges, const std::array<PupilDisc, 2>& discs) noexcept;
 
-/// The two discs whose intersection is nearest to pupils that are mirrored in x. The points of one film point's edge
-/// are consecutive; the axis and other film points are needed.
+/// Fits two discs whose intersection is closest to pupils that are symmetric about x = 0. Edge points of one film point
+/// are consecutive; the axis and other film points are required.
 std::array<PupilDisc, 2> fit_two_discs(std::span<const EdgePoint> edges);
 
 }  // namespace petzval::camera_detail

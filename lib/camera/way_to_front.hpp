@@ -5,14 +5,17 @@
 
 namespace petzval::camera_detail {
 
-// Local names: this is compiled for several instruction sets, and the linker must not take one for another.
+// Local names: compiled for several instruction sets, which the linker must not mix.
 namespace {
 
-/// How far a ray in the direction of the scene is from the front, along it, given from the front's vertex. A sphere of
-/// curvature c is c |p|^2 = 2 p_z, and s = (b + sqrt(b^2 - c e)) / c = e / (b - sqrt(b^2 - c e)) with b = d_z - c p.d
-/// and e = c |p|^2 - 2 p_z is where the ray leaves a convex one and meets a hollow one; the latter form holds for
-/// planes too. A line that passes the sphere by leaves the plane that touches it; one that leaves neither stays where
-/// it is nearest to the vertex.
+/// Distance along a ray, which travels towards the scene, to the front; coordinates relative to the vertex of the
+/// front.
+///
+/// A sphere of curvature c is c |p|^2 = 2 p_z. With b = d_z - c p.d and e = c |p|^2 - 2 p_z, the ray leaves a convex
+/// sphere and meets a concave sphere at the distance
+///     s = (b + sqrt(b^2 - c e)) / c = e / (b - sqrt(b^2 - c e)).
+/// The second form also holds for planes. A line that misses the sphere leaves its tangent plane at the vertex; a line
+/// that leaves neither ends at its point nearest to the vertex.
 template <class T>
 inline T way_to_front(const T& curvature, const T& x, const T& y, const T& z, const T& dx, const T& dy,
                       const T& dz) noexcept {

@@ -229,7 +229,7 @@ TEST(ModelError, RefusesWhatItCannotMeasure) {
     expect_tokens(refusal({}, ModelKind::thick, {.depths_z = {-1000}, .film_points = points}), {"film points", points});
   }
   expect_tokens(refusal({.width_mm = 0}, ModelKind::thick, {.depths_z = {-1000}}), {"film", 0, 24});
-  expect_tokens(refusal({.tilt_rad = 0.1}, ModelKind::thick, {.depths_z = {-1000}}), {"tilted"});
+  expect_tokens(refusal({.tilt_rad = 0.1}, ModelKind::thick, {.depths_z = {-1000}}), {"tilt_rad", 0.1});
   const Lens cylinders = focused("anamorphic_60mm_2x", 3000);
   EXPECT_THROW(model_error(cylinders, {}, ModelKind::pinhole, at(cylinders, {3000})), Error);
 }
