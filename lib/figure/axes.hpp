@@ -23,9 +23,8 @@ class Axes {
  public:
   using Point = std::pair<double, double>;
 
-  /// Draws frame, grid, ticks and titles. Labels need 64 px to the left of the frame and 40 px below.
-  ///
-  /// @param x, y  upper left corner of the frame, px
+  /// Draws a frame with its upper left corner at (x, y), px, with grid, ticks and titles. Labels need 64 px to the left
+  /// of the frame and 40 px below.
   Axes(Svg& svg, double x, double y, double width, double height, Axis horizontal, Axis vertical);
 
   double x(double value) const { return x_ + (value - across_.from) / (across_.to - across_.from) * width_; }

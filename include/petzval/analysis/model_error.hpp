@@ -43,8 +43,8 @@ struct RayErrors {
 /// The deviation of a ray model from the exact lens over film, pupil and depth.
 ///
 /// The error of a ray at depth z is the distance between its hit on the plane z and the hit of the exact double ray
-/// with the same film point and pupil point, divided by the exact magnification of the chief ray. At infinity it is the
-/// angle between the rays times the focal length.
+/// with the same film point and pupil point, scaled to the film by the exact magnification of the chief ray. At
+/// infinity it is the angle between the rays times the focal length.
 ///
 /// Rays that pass only the model or only the lens count in pupil_shape and not in the ray errors, unless no ray of the
 /// film point passes both: then the model is evaluated along the rays of the lens without its own pupil. Models other

@@ -67,7 +67,7 @@ struct PointImage {
   /// the light on the paraxial entrance pupil, per mm^2. Multiplied by the ring areas it sums to the throughput.
   std::array<double, 64> radial_profile{};
   double throughput = 0;  ///< mean over wavelengths
-  /// Bound of the relative RMS error of the light in the rings; 0 if no ray passes.
+  /// Bound of the relative error of the light in the rings (root of the summed squares); 0 if no ray passes.
   ///
   /// Accuracy: 95 of 100 new runs stay below the bound (tests/analysis/psf_error_test.cpp). It is estimated from eight
   /// consecutive parts of the samples, which complement each other. The bound is therefore about twice the error off

@@ -24,7 +24,7 @@ struct SpotSize {
 
 /// The spot size of a set of film points.
 ///
-/// @param x, y  film coordinates (mm); if the lengths differ, the surplus is ignored
+/// @param x,y  film coordinates (mm); if the lengths differ, the surplus is ignored
 PETZVAL_API SpotSize spot_size(std::span<const double> x, std::span<const double> y) noexcept;
 
 /// The spot size of all rays of several bundles; rays without weights count 1.

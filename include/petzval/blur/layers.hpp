@@ -56,8 +56,7 @@ struct LayerPlanes {
 
 /// Converts distances from the pinhole to depths along the axis, in place. Invalid depths and infinity are kept.
 ///
-/// @param camera  the camera of the layers, overscan included
-/// @throws Error  if the number of pixels differs from the layers of the camera
+/// @throws Error if the number of pixels differs from the layers of the camera, overscan included
 PETZVAL_API void axial_depths(const LayerCamera& camera, FragmentLists& lists);
 PETZVAL_API void axial_depths(const LayerCamera& camera, std::span<float> depth_mm);
 
@@ -80,12 +79,10 @@ class PETZVAL_API LayerSet {
   LayerSet& operator=(LayerSet&&) noexcept;
   ~LayerSet();
 
-  /// Renders one layer: in each pixel the nearest surface with an inverse depth less than `below`.
+  /// Renders one layer and returns the number of pixels written.
   ///
-  /// @param layer  index of the layer, from 0
-  /// @param below  limit for each pixel, 1/mm: infinity in the first layer; negative if the pixel needs no surface
-  /// @param out    the planes to write, initially empty and black with alpha 1
-  /// @return       number of pixels written
+  /// Each pixel of `out` receives the nearest surface with an inverse depth less than `below` (1/mm): infinity in the
+  /// first layer, negative if the pixel needs no surface. `out` is initially empty and black with alpha 1.
   using Peel = std::function<std::size_t(int layer, std::span<const float> below, const LayerPlanes& out)>;
   /// Fills the set by rendering layers until no pixel is written.
   ///
@@ -101,6 +98,8 @@ class PETZVAL_API LayerSet {
   /// Fragments within the bias of the layer in front are dropped. If that layer has alpha below 1, they are composited
   /// with it instead.
   ///
+  /// @param lists   fragments of each pixel, in any order
+  /// @param bias    as in PeelPlan (1/mm)
   /// @param layers  largest number of layers, 1 to 64; fragments behind are dropped
   /// @throws Error  if `layers` is out of range, the lists are inconsistent, the bias is negative, or an alpha is
   ///                outside 0 to 1

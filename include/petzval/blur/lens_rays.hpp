@@ -100,12 +100,7 @@ class PETZVAL_API LensRays {
   LensRays(const LensRays&) = default;
   LensRays& operator=(const LensRays&) = default;
 
-  /// Computes the rays of a raster position.
-  ///
-  /// @param channel  0 to channels - 1
-  /// @param raster   raster position
-  /// @param points   pupil points
-  /// @param found    the rays, one per point
+  /// Computes the rays of a raster position in a channel (0 to channels - 1): one ray in `found` per pupil point.
   using Source = std::function<void(int channel, const Vec2<double>& raster, std::span<const PupilPoint> points,
                                     std::span<LayerRay> found)>;
 
