@@ -1,10 +1,11 @@
 # SPDX-License-Identifier: Apache-2.0
-# cmake -DROOT=. -P cmake/check_layers.cmake: do includes point downwards only?
+# cmake -DROOT=. -P cmake/check_layers.cmake: checks that all includes point downwards.
 #
-# A module (a folder of include/petzval and of lib) includes itself and modules of lower layers. Two modules of one layer do not
-# know each other. The edge, formats and figures, may include everything and is included by nothing but examples, tests and
-# itself; include/petzval/petzval.hpp stands above all. Headers in lib/<module> are the inside: the library's own sources name
-# them "module/header.hpp", or "header.hpp" in their own folder; public headers never do, and name no third party but GLM.
+# A module (a folder of include/petzval and of lib) may include its own headers and modules of lower layers, but no other module
+# of its layer. Modules of the edge may include everything; only examples, tests and the edge itself may include them.
+# include/petzval/petzval.hpp is above all modules. Headers in lib/<module> are internal: sources of the library include them as
+# "module/header.hpp", or as "header.hpp" in the same folder. Public headers include no internal header, and no third-party
+# library except GLM.
 #
 # Readers in lib/formats return data: they include no module that computes.
 cmake_minimum_required(VERSION 3.25)
@@ -46,21 +47,21 @@ function(check file line)
     elseif(NOT module STREQUAL other AND layer LESS edge AND NOT layer_of_${other} LESS layer)
       set(fault "${module} (layer ${layer}) includes ${other} (layer ${layer_of_${other}})")
     elseif(NOT target MATCHES "^petzval/" AND NOT EXISTS "${ROOT}/lib/${target}")
-      set(fault "includes \"${target}\", which lib/ does not have")
+      set(fault "includes \"${target}\"; must exist in lib/")
     elseif(file MATCHES "^lib/formats/[a-z]+_(reader|lens|breaks|columns|text)\\.|^lib/formats/import"
            AND NOT file MATCHES "^lib/formats/written_" AND layer_of_${other} GREATER_EQUAL 2
            AND NOT other MATCHES "^(io|formats)$")
-      set(fault "a reader of files includes ${other}: it returns data, and complete() computes")
+      set(fault "a reader of files includes ${other}; must return data only, for complete() to compute")
     endif()
   elseif(target MATCHES "^petzval/")
-    set(fault "${module} includes ${target}, which stands above all modules")
+    set(fault "${module} includes ${target}; must not, as it is above all modules")
   elseif(quote STREQUAL "\"")
     get_filename_component(folder "${ROOT}/${file}" DIRECTORY)
     if(file MATCHES "^include/" OR target MATCHES "\\.\\./" OR NOT EXISTS "${folder}/${target}")
-      set(fault "includes \"${target}\": a public header by its full name, an inside one as module/header.hpp, or one of the same folder is wanted")
+      set(fault "includes \"${target}\"; must be petzval/module/header.hpp, module/header.hpp, or a header of the same folder")
     endif()
   elseif(file MATCHES "^include/" AND NOT target MATCHES "^(glm/.*|[a-z0-9_]+)$")
-    set(fault "a public header includes <${target}>: only GLM and the standard library are wanted")
+    set(fault "a public header includes <${target}>; must be GLM or the standard library")
   endif()
   if(fault)
     set(faults "${faults}\n  ${file}: ${fault}" PARENT_SCOPE)
@@ -76,7 +77,7 @@ foreach(file IN LISTS files)
     set(module all)
   endif()
   if(NOT DEFINED layer_of_${module})
-    string(APPEND faults "\n  ${file}: not in the folder of a module with a layer")
+    string(APPEND faults "\n  ${file}: not in the folder of a module with a layer; must be")
     continue()
   endif()
   set(layer ${layer_of_${module}})
@@ -87,7 +88,7 @@ foreach(file IN LISTS files)
 endforeach()
 
 if(NOT files)
-  message(FATAL_ERROR "no sources below '${ROOT}': -DROOT=<the repository> is wanted")
+  message(FATAL_ERROR "ROOT = ${ROOT} has no sources; must be the repository")
 elseif(faults)
-  message(FATAL_ERROR "Includes that do not point downwards:${faults}")
+  message(FATAL_ERROR "Includes must point downwards:${faults}")
 endif()

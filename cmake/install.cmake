@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-# The installed tree: libraries and headers, data, and how CMake and pkg-config find them. Nothing in it holds an absolute
-# path, so it can be moved as a whole.
+# The installed tree: libraries, headers, data, and files for CMake and pkg-config. It contains no absolute path, so it can be
+# moved as a whole.
 include(CMakePackageConfigHelpers)
 include(GNUInstallDirs)
 
@@ -11,9 +11,9 @@ file(RELATIVE_PATH pc_datadir ${CMAKE_INSTALL_FULL_LIBDIR}/pkgconfig ${CMAKE_INS
 file(RELATIVE_PATH pc_includedir ${CMAKE_INSTALL_FULL_LIBDIR}/pkgconfig ${CMAKE_INSTALL_FULL_INCLUDEDIR})
 
 # petzval_install(image DESCRIPTION "..." STATIC_REQUIRES OpenEXR): installs one component if it was built.
-# Each has an export set of its own, so that a program that asks for core needs none of the libraries that the others link.
-# REQUIRES, STATIC_REQUIRES, STATIC_LIBS: the other libraries that users link, in pkg-config's words. The components that it links
-# publicly come first, in the .pc file and in petzvalConfig.cmake.
+# Each component has its own export set, so that a program that uses core does not need the libraries of other components.
+# REQUIRES, STATIC_REQUIRES, STATIC_LIBS: other libraries that users link, named as in pkg-config. In the .pc file and in
+# petzvalConfig.cmake, publicly linked components precede these.
 function(petzval_install component)
   cmake_parse_arguments(PARSE_ARGV 1 pc "" "DESCRIPTION;REQUIRES;STATIC_REQUIRES;STATIC_LIBS" "")
   set(name petzval-${component})
@@ -34,12 +34,12 @@ function(petzval_install component)
   string(JOIN ", " pc_REQUIRES ${pc_needs} ${pc_REQUIRES})
 
   get_target_property(type ${name} TYPE)
-  if(type STREQUAL SHARED_LIBRARY)  # it has linked them itself
+  if(type STREQUAL SHARED_LIBRARY)  # a shared library has already linked these
     set(pc_STATIC_REQUIRES "")
     set(pc_STATIC_LIBS "")
   endif()
   set(built_components ${built_components} ${component} PARENT_SCOPE)
-  if(type STREQUAL STATIC_LIBRARY AND component STREQUAL "fit")  # Ceres has no .pc file that it could require
+  if(type STREQUAL STATIC_LIBRARY AND component STREQUAL "fit")  # Ceres has no .pc file to require
     return()
   endif()
   configure_file(${PROJECT_SOURCE_DIR}/cmake/petzval.pc.in ${PROJECT_BINARY_DIR}/${name}.pc @ONLY)

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 
-# petzval_look_for(PETZVAL_WITH_CERES Ceres CONFIG): find_package for an option that is ON, OFF or AUTO.
+# petzval_look_for(PETZVAL_WITH_CERES Ceres CONFIG): calls find_package for an option with the values ON, OFF and AUTO.
 macro(petzval_look_for option)
   if(${option} STREQUAL "AUTO")
     find_package(${ARGN} QUIET)
@@ -9,16 +9,16 @@ macro(petzval_look_for option)
   endif()
 endmacro()
 
-# No vectors of numbers that stand side by side: a load of two that were just stored one by one waits until they are in the
-# cache, and with it all that follows (a camera's single sample: 67 instead of 50 ns).
+# Disables vectors of adjacent scalars: a vector load of two values that were just stored separately stalls until both are in the
+# cache (67 instead of 50 ns for a single camera sample).
 set(PETZVAL_NO_PAIRS -fno-tree-slp-vectorize)
 
-# petzval_gnu_options(target PRIVATE -Wall ...): flags in the words of GCC and Clang, which other compilers do not get.
+# petzval_gnu_options(target PRIVATE -Wall ...): adds flags for GCC and Clang only.
 function(petzval_gnu_options target scope)
   target_compile_options(${target} ${scope} "$<$<CXX_COMPILER_ID:GNU,Clang,AppleClang>:${ARGN}>")
 endfunction()
 
-# petzval_library(core): one of the libraries, with what all of them share.
+# petzval_library(core): adds a library with the properties that all libraries share.
 function(petzval_library name)
   add_library(petzval-${name})
   add_library(petzval::${name} ALIAS petzval-${name})
@@ -29,26 +29,26 @@ function(petzval_library name)
     CXX_VISIBILITY_PRESET hidden
     VISIBILITY_INLINES_HIDDEN ON
     POSITION_INDEPENDENT_CODE ON
-    UNITY_BUILD_MODE GROUP  # with CMAKE_UNITY_BUILD: the sources that a module lists under JOINED
+    UNITY_BUILD_MODE GROUP  # with CMAKE_UNITY_BUILD: the JOINED sources of each module
     LIBRARY_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR}/lib
     ARCHIVE_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR}/lib
     WINDOWS_EXPORT_ALL_SYMBOLS ON
     INSTALL_RPATH $<IF:$<PLATFORM_ID:Darwin>,@loader_path,$ORIGIN>)
   target_compile_features(petzval-${name} PUBLIC cxx_std_20)
-  # No contraction into fused operations: the same bits from every compiler and processor.
+  # No contraction into fused operations, so that all compilers and processors give the same bits.
   petzval_gnu_options(petzval-${name} PRIVATE -ffp-contract=off -fno-math-errno -fno-trapping-math ${PETZVAL_NO_PAIRS})
   if(UNIX AND NOT APPLE)  # ELF
     target_link_options(petzval-${name} PRIVATE LINKER:--version-script=${PROJECT_SOURCE_DIR}/cmake/exports.map)
     set_property(TARGET petzval-${name} PROPERTY LINK_DEPENDS ${PROJECT_SOURCE_DIR}/cmake/exports.map)
   endif()
-  target_include_directories(petzval-${name} PRIVATE ${PROJECT_SOURCE_DIR}/lib)  # "module/header.hpp": the inside
+  target_include_directories(petzval-${name} PRIVATE ${PROJECT_SOURCE_DIR}/lib)  # internal headers: "module/header.hpp"
   target_sources(petzval-${name} PUBLIC FILE_SET HEADERS BASE_DIRS ${PROJECT_SOURCE_DIR}/include FILES ${ARGN})
   set_target_properties(petzval-${name} PROPERTIES VERIFY_INTERFACE_HEADER_SETS ON)
   petzval_warnings(petzval-${name})
 endfunction()
 
-# petzval_module(core glass SOURCES dispersion.cpp HEADERS glass.hpp): a module's files, into a library. A unity build
-# (CMAKE_UNITY_BUILD) compiles the sources after JOINED in groups of eight. They define no name of a namespace twice.
+# petzval_module(core glass SOURCES dispersion.cpp HEADERS glass.hpp): adds the files of a module to a library. A unity build
+# (CMAKE_UNITY_BUILD) compiles the sources after JOINED in groups of eight, so no two of them may define the same name.
 function(petzval_module library module)
   cmake_parse_arguments(PARSE_ARGV 2 arg "" "" "JOINED;SOURCES;HEADERS")
   list(TRANSFORM arg_JOINED PREPEND ${PROJECT_SOURCE_DIR}/lib/${module}/)
@@ -68,17 +68,17 @@ if(CMAKE_SYSTEM_PROCESSOR MATCHES "x86_64|AMD64")
   set(PETZVAL_X86_64 ON)
 endif()
 
-# petzval_lanes(core block.cpp tracer_avx2_fast avx2 PETZVAL_FAST=1 ...): loops for one instruction set, as an object of a library
-# with flags and definitions of its own. Fused operations where PETZVAL_FAST=1 is among these. Optimised whatever the kind of build,
-# so that no inline function of a header stays behind for the linker to give to files of another instruction set.
+# petzval_lanes(core block.cpp tracer_avx2_fast avx2 PETZVAL_FAST=1 ...): adds the loops for one instruction set to a library, as an
+# object with its own flags and definitions. PETZVAL_FAST=1 allows fused operations. The object is optimised in every build type:
+# otherwise it would contain inline functions of headers, and the linker could use them in files of another instruction set.
 function(petzval_lanes library file name set)
   set(flags_avx2 -mavx2 -mfma)
   set(flags_avx512 ${flags_avx2} -mavx512f -mavx512dq -mavx512bw -mavx512vl)
   set(contract off)
   if("PETZVAL_FAST=1" IN_LIST ARGN)
     set(contract fast)
-    # Clang's "fast" fuses what the instructions around allow, which are others in a loop's body than in its rest: a ray would have
-    # other bits at another place of its batch.
+    # With "fast", Clang fuses differently in the body and in the remainder of a loop: the bits of a ray would depend on its
+    # position in the batch.
     if(CMAKE_CXX_COMPILER_ID MATCHES "Clang")
       set(contract on)
     endif()
@@ -88,7 +88,8 @@ function(petzval_lanes library file name set)
   target_compile_definitions(petzval-${name} PRIVATE ${ARGN})
   petzval_gnu_options(petzval-${name} PRIVATE -O3 -fno-math-errno -fno-trapping-math -ffp-contract=${contract} ${flags_${set}}
     -Wno-psabi)  # vectors pass between functions of this file only
-  target_compile_options(petzval-${name} PRIVATE $<$<CXX_COMPILER_ID:Clang>:-Wno-pass-failed>)  # clang leaves some loops scalar where the instruction set has no gathers
+  # Clang does not vectorise some loops if the instruction set has no gathers.
+  target_compile_options(petzval-${name} PRIVATE $<$<CXX_COMPILER_ID:Clang>:-Wno-pass-failed>)
   target_include_directories(petzval-${name} PRIVATE ${PROJECT_SOURCE_DIR}/include ${PROJECT_SOURCE_DIR}/lib)
   target_link_libraries(petzval-${name} PRIVATE glm::glm)
   set_target_properties(petzval-${name} PROPERTIES CXX_VISIBILITY_PRESET hidden VISIBILITY_INLINES_HIDDEN ON
@@ -97,9 +98,10 @@ function(petzval_lanes library file name set)
   target_sources(petzval-${library} PRIVATE $<TARGET_OBJECTS:petzval-${name}>)
 endfunction()
 
-# petzval_loops(core film_pupil_table.cpp film_pupil_table): a file of loops for every instruction set; PETZVAL_LOOPS names what each
-# defines: film_pupil_table_baseline, film_pupil_table_avx2, film_pupil_table_avx512. Tuned for processors that gather: tables of pupils are read twice as fast.
-# REPRODUCIBLE: without fused operations, so that all sets give the same bits.
+# petzval_loops(core film_pupil_table.cpp film_pupil_table): compiles a file of loops for every instruction set. PETZVAL_LOOPS is
+# the name that each object defines: film_pupil_table_baseline, film_pupil_table_avx2, film_pupil_table_avx512. The code is tuned
+# for processors with fast gathers, which doubles the speed of pupil tables.
+# REPRODUCIBLE: no fused operations, so that all instruction sets give the same bits.
 function(petzval_loops library file name)
   set(fast PETZVAL_FAST=1)
   if("REPRODUCIBLE" IN_LIST ARGN)
@@ -116,8 +118,8 @@ function(petzval_loops library file name)
   endif()
 endfunction()
 
-# petzval_test(trace/reference_test.cpp core): a file of tests, discovered case by case, and the libraries that it uses. The
-# files of one folder make one program, trace_tests.
+# petzval_test(trace/reference_test.cpp core): adds a file of tests and the libraries that it uses. The files of one folder form one
+# program, trace_tests; each test case becomes a test.
 function(petzval_test file)
   get_filename_component(folder ${file} DIRECTORY)
   set(name ${folder}_tests)
@@ -138,7 +140,7 @@ function(petzval_test file)
   target_link_libraries(${name} PRIVATE ${ARGN})
 endfunction()
 
-# petzval_label_full(): the tests that this folder has added so far have the label "full".
+# petzval_label_full(): adds the label "full" to the tests that this folder has added so far.
 function(petzval_label_full)
   get_property(tests DIRECTORY PROPERTY TESTS)
   set_property(TEST ${tests} APPEND PROPERTY LABELS full)

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 # Headers that nearly every file includes are compiled once for the library, once for the tests and once for the examples.
-# Sources still include what they use: CMAKE_DISABLE_PRECOMPILE_HEADERS=ON builds without. So does a compiler cache, which finds
-# an object again only where the compiled header is the same to the bit: in no other build tree.
+# Sources still include all headers that they use, and CMAKE_DISABLE_PRECOMPILE_HEADERS=ON builds without precompiled headers. A
+# compiler cache needs this setting: precompiled headers differ between build trees, so that cached objects would not be found.
 if(CMAKE_CXX_COMPILER_LAUNCHER MATCHES "ccache")
   set(CMAKE_DISABLE_PRECOMPILE_HEADERS ON)
 endif()
