@@ -33,7 +33,7 @@ struct PupilWeight {
   }
   /// Density of uniform positions in the pupil.
   static T pdf_pupil(T area) noexcept { return limited(T(1) / area); }
-  /// cos / pdf_direction, pdf_direction = pdf_pupil length^3 / depth.
+  /// The weight cos / pdf_direction, with pdf_direction = pdf_pupil length^3 / depth.
   T weight(T length2, T area) const noexcept {
     const T part = depth2 / length2 * per_depth;
     return area * part * part;

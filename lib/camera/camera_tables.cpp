@@ -28,7 +28,7 @@ class Numbers {
   void set(Table::Position at, T value) {
     list[at] = static_cast<float>(value);
   }
-  /// Lets the next numbers be the list of `at`.
+  /// Starts the list of `at`: stores the position of the next number.
   void begin(Table::Position at) { set(at, list.size()); }
   void add(double value) { list.push_back(static_cast<float>(value)); }
   void add(std::span<const double> values) {

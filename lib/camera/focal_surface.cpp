@@ -85,7 +85,7 @@ struct FocalSurface::Fields {
   bool fixes_distance = false;
   double blur_per_inverse = 0;
   MovingLeastSquares distance, extent;
-  /// Through the distances of the points without blur; nullopt if no blur is set.
+  /// Surface through the distances of the points, ignoring their blur; nullopt if no point has a blur.
   std::optional<MovingLeastSquares> objects;
 };
 

@@ -18,8 +18,8 @@ template <class T>
 struct EntranceMaps {
   T z = 0;  ///< z of the plane of the entrance pupil
   T a = 0, b = 0, c = 0, d = 0;
-  T chief_slope = 0;   ///< per mm on the film
-  T radius = 0;        ///< of the pupil
+  T chief_slope = 0;   ///< slope of the chief ray per mm on the film
+  T radius = 0;        ///< radius of the pupil
   T from_surface = 0;  ///< z minus origin_z() of the focal surface
 };
 
@@ -29,7 +29,7 @@ struct FilmPointFocus {
   N nearer;   ///< TiltedPlane::nearer_by(): 0 on an upright film
   N surface;  ///< 1 / distance on the focal surface, from its origin
   N offset;   ///< offset of the film divided by its distance from the pupil plane
-  N scale;    ///< of the pupil
+  N scale;    ///< scale of the pupil
 };
 
 /// Data common to all rays.
@@ -37,7 +37,7 @@ template <class T>
 struct FocusRules {
   EntranceMaps<T> primary;
   bool by_surface = false, by_offset = false;
-  T power = 0;  ///< of the lens, 1/mm
+  T power = 0;  ///< power of the lens, 1/mm
   PowerSpline<T> spline;
 };
 

@@ -11,7 +11,7 @@ namespace petzval::camera_detail {
 /// A power from 1/2 to 4: multiples of 1/2 by products and a square root.
 struct FallingPower {
   double exponent = 0.5;
-  bool half = true;  ///< exponent is wholes + 1/2, or wholes
+  bool half = true;  ///< true: exponent = wholes + 1/2; false: exponent = wholes
   int wholes = 0;    ///< negative: any other exponent
 };
 

@@ -71,7 +71,8 @@ struct StopImage {
   double size = 0;  ///< relative to the stop; negative if inverted
 };
 
-/// height: the first row of a map to the height at which a line meets the stop, or its image magnified by `scale`.
+/// height: first row of a map to the height of a line in the stop or in an image of the stop; `height` times `scale` is
+/// the height in the stop.
 StopImage image_of(const Lens& lens, const RayMatrix& height, double scale, const char* where) {
   if (height.b == 0) {
     throw Error(lens.name() + ": the film lies in " + where + "; must be elsewhere for a first-order model");

@@ -63,7 +63,7 @@ struct FilmView {
   const TiltedFilm* tilted = nullptr;
   const WavelengthFacts& wavelengths;
   PupilWeights weights = {};
-  Front front = {};  ///< of the lens
+  Front front = {};  ///< front of the lens
   LocalFocus focus = {};
   FilmPupilTable pupils = weights.pupils().value_or(model.pupils());  ///< pupils of the upright film
   double depth = model.pupils().space().depth();

@@ -191,7 +191,7 @@ RayPolynomial::Fit fit(const Lens& lens, const RayPolynomial::Domain& domain, in
                 ": use a film within the image circle");
   }
   struct System {
-    Eigen::MatrixXd both;  // sides of the equations
+    Eigen::MatrixXd both;  // left and right sides of the equations
     Eigen::Index rows = 1;
     void add(Eigen::Index row, double weight, const Equations::Row& equation) {
       both.row(row).head(equation.left.size()) += weight * equation.left;

@@ -45,7 +45,7 @@ struct ChartLine {
 
 template <class T>
 struct LocalRay {
-  T x, y, z;  ///< from the reference point
+  T x, y, z;  ///< relative to the reference point
   T dx, dy, dz;
 };
 

@@ -208,7 +208,7 @@ Prescription with_apertures(const Prescription& prescription, const CompileOptio
   const double nm =
       design.wavelengths.empty() ? given.reference_wavelength_nm : design.wavelengths[design.primary_wavelength].nm;
 
-  // Beams change slowly from one zoom position to the next.
+  // Beams change slowly from one zoom position to the next, so that 9 positions suffice.
   constexpr std::size_t most = 9;
   const std::size_t count = std::max<std::size_t>(given.configurations.size(), 1), tried = std::min(count, most);
   for (std::size_t k = 0; k < tried; ++k) {

@@ -22,7 +22,7 @@ struct Face {
 /// @param entrance  sets the size of a surface without a rim, see half_height()
 Face face_of(const Lens& lens, std::size_t surface, const Pupil& entrance) noexcept;
 
-/// The last surface.
+/// Face of the last surface.
 PETZVAL_API Face last_face(const Lens& lens);
 
 }  // namespace petzval::pupil_detail

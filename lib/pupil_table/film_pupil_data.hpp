@@ -59,18 +59,18 @@ struct FilmPupilTable::Data {
   double film_radius = 0;
   std::size_t wavelengths = 0, primary = 0;
   lens_detail::CompiledWavelengths compiled;             // for wavelengths in nm
-  std::optional<pupil_table_detail::IrisImages> images;  // instead of polygons
+  std::optional<pupil_table_detail::IrisImages> images;  // replaces the polygons if set
   int dimensions = 1;                                    // number of grid dimensions
   double reach = 0;                   // distance of the farthest film point of the grid from the axis
   std::size_t rows = 0, columns = 1;  // of cells
   double height = 0;                  // y of the last row, mm
-  std::vector<double> half_widths;    // FilmGrid
+  std::vector<double> half_widths;    // FilmGrid::half_widths
   bool obscured = false, enclosing = false;
   int corrections = 0;
   std::vector<double> cells;  // CellLayout
   std::vector<float> cells_single, half_widths_single;
   std::shared_ptr<const pupil_table_detail::StopCells> stop;  // null for a round or unknown stop
-  std::shared_ptr<const Data> whole;  // the pupils before a rim cut them; null if there is no rim
+  std::shared_ptr<const Data> whole;                          // the unclipped pupils; null if there is no rim
 
   /// A copy of film, planes and wavelengths, without pupils.
   std::shared_ptr<Data> alike() const;

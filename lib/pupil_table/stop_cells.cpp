@@ -32,7 +32,7 @@ struct NodeMap {
   bool known = false, drawn = false;
   double error = 0;       // largest error of stop(), in semi-diameters
   double line_error = 0;  // largest error of stop points on straight lines outwards
-  Place middle;           // the stop points of the polygon
+  Place middle;           // stop points of the middle and of the corners
   std::array<Place, polygon_corners> corners{};
 
   auto number() const noexcept {

@@ -74,8 +74,7 @@ struct Search {
   using V = Lanes<R>;
   using Vector = kernel::Vec<V>;
   static constexpr int width = V::width, room = Bundle<R>::rays + width;
-  /// Values per ray: point, direction, Newton's result, and 1 if this result lies inside the aperture. Decides rays by
-  /// bounds if possible, then packs and searches the other rays.
+  /// Values per ray: point, direction, Newton's result, and 1 if this result lies inside the aperture.
   enum Value { x, y, z, dx, dy, dz, answer, inside, values };
   R v[values][room];
   int count = 0;
@@ -88,7 +87,7 @@ struct Search {
     count += lanes_in(lanes);
   }
 
-  /// Settles what bounds settle; other rays, packed again, are searched.
+  /// Decides rays by bounds if possible, then packs and searches the other rays.
   void run(const kernel::Asphere<R>& surface, R sense) noexcept {
     R from[room], to[room];
     Mask<R> left[Bundle<R>::vectors];

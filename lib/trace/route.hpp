@@ -27,7 +27,7 @@ Route<R> route_of(const kernel::LensView<R>& view, const Options& options, Wavel
     route.wavelength = wavelength;
   } else {
     static constexpr R no_index = std::numeric_limits<R>::quiet_NaN();
-    route.sequence.n_first = &no_index;  // which loses every ray
+    route.sequence.n_first = &no_index;  // loses every ray
   }
   return route;
 }

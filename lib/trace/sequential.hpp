@@ -18,7 +18,7 @@ struct SurfaceRange {
   std::size_t wavelength = 0;
   bool apertures = true;
   std::size_t first = 0;
-  std::size_t last = static_cast<std::size_t>(-1);  ///< beyond the end: all surfaces
+  std::size_t last = static_cast<std::size_t>(-1);  ///< default: all surfaces
 };
 
 /// A ray during a trace, lens frame, any scalar type.
