@@ -10,8 +10,8 @@
 
 namespace petzval::testing {
 
-/// How far within the nearest edge of an iris a point lies, in semi-diameters of the stop: from the corners and the
-/// angles that edges make with the chords between them. Of a round iris, infinite.
+/// Distance of a point inside the nearest edge of an iris, in semi-diameters of the stop; infinite for a round iris.
+/// Computed from the corners and the angles between edges and chords.
 inline double room_between_blades(const Iris& iris, double x, double y) {
   constexpr double pi = std::numbers::pi;
   double room = std::numeric_limits<double>::infinity();

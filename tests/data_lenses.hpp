@@ -13,7 +13,7 @@
 
 namespace petzval::testing {
 
-/// A lens of data/lenses: "double_gauss_100mm_f2.0", or one position of it: "zoom_14-30mm_f4:wide".
+/// A lens of data/lenses, such as "double_gauss_100mm_f2.0", or a position of a zoom, such as "zoom_14-30mm_f4:wide".
 inline Prescription data_prescription(const std::string& id) {
   const std::string file = id.substr(0, id.find(':'));
   const auto lens = read_prescription(std::filesystem::path(PETZVAL_TEST_DATA) / "lenses" / (file + ".json"));
@@ -22,7 +22,7 @@ inline Prescription data_prescription(const std::string& id) {
 
 inline Lens data_lens(const std::string& id) { return compile(data_prescription(id)); }
 
-/// A biconvex 100 mm lens behind its stop: the stop is the entrance pupil, and nothing else clips.
+/// A biconvex 100 mm lens behind its stop. The stop is the entrance pupil and the only limiting aperture.
 inline Lens front_stop_lens(double stop_semi_diameter = 2) {
   Prescription p;
   p.name = "front stop";
@@ -32,7 +32,7 @@ inline Lens front_stop_lens(double stop_semi_diameter = 2) {
   return compile(p);
 }
 
-/// Every lens of data/lenses, in the order of names, and each position of those that zoom ("FILE:POSITION" is its id).
+/// Every lens of data/lenses in the order of names, and each position of zooms with the id "FILE:POSITION".
 inline std::vector<Prescription> data_prescriptions() {
   std::vector<std::filesystem::path> files;
   for (const auto& entry : std::filesystem::directory_iterator(std::filesystem::path(PETZVAL_TEST_DATA) / "lenses")) {
@@ -51,7 +51,7 @@ inline std::vector<Prescription> data_prescriptions() {
   return result;
 }
 
-/// A lens whose stop has no rim, with the stop marked and without the mark: they are the same.
+/// A lens whose stop has no rim, with and without the mark of the stop; both must be equal.
 struct OpenLens {
   Lens marked, unmarked;
 };
@@ -64,8 +64,8 @@ inline OpenLens without_the_rim_of_its_stop(Prescription p) {
   return {marked, compile(p)};
 }
 
-/// An ideal 50 mm lens without thickness, and so without an edge, stopped at its front: without any rim, or with one at
-/// its rear.
+/// An ideal 50 mm lens of thickness 0, and so without an edge, with the stop on its front; without any rim, or with a
+/// rim on its rear.
 inline Prescription open_singlet(std::optional<double> rear_semi_diameter = {}) {
   Prescription p;
   p.name = "open";

@@ -5,7 +5,7 @@
 
 namespace petzval::testing {
 
-/// A film by its place and its angles alone.
+/// A film given by position and angles only.
 inline Film film_at(double z, double tilt_rad = 0, double swing_rad = 0) {
   return {.z_mm = z, .tilt_rad = tilt_rad, .swing_rad = swing_rad};
 }

@@ -8,7 +8,7 @@
 
 namespace petzval::testing {
 
-/// CRC-32 of PNG: ISO 3309, of the polynomial 0xedb88320 in reversed order.
+/// CRC-32 of PNG: ISO 3309, with the reversed polynomial 0xedb88320.
 inline std::uint32_t crc32(std::string_view bytes) noexcept {
   std::uint32_t crc = ~std::uint32_t{0};
   for (const char byte : bytes) {
@@ -18,7 +18,7 @@ inline std::uint32_t crc32(std::string_view bytes) noexcept {
   return ~crc;
 }
 
-/// A PNG whose chunks have changed, with checksums that fit again: readers look beyond them then.
+/// Recomputes the checksums of a PNG with changed chunks, so that readers accept the chunks.
 inline std::string with_checksums(std::string png) {
   const auto byte = [&](std::size_t at) { return std::size_t{static_cast<unsigned char>(png[at])}; };
   for (std::size_t at = 8; at + 12 <= png.size();) {  // length, type, data, checksum

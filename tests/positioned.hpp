@@ -10,8 +10,8 @@
 
 namespace petzval::testing {
 
-/// True if a message begins with the file's name, a line and a column ("x.json:11:8: "), and has these words in this
-/// order behind them. position: "11:8", or empty for any.
+/// True if a message begins with file name, line and column ("x.json:11:8: ") and then contains these words in this
+/// order. position: "11:8", or empty for any.
 inline ::testing::AssertionResult positioned(const std::string& message, std::string_view file,
                                              std::initializer_list<std::string_view> words,
                                              std::string_view position = {}) {

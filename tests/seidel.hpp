@@ -10,7 +10,7 @@
 namespace petzval::testing {
 
 /// Seidel sums of a lens of revolution for an object at infinity: spherical aberration, coma, astigmatism, Petzval
-/// and distortion, of a marginal ray that enters at height 1 and a chief ray of slope 1 through (0, 0, pupil_z).
+/// and distortion, for a marginal ray that enters at height 1 and a chief ray of slope 1 through (0, 0, pupil_z).
 ///
 /// From Welford, Aberrations of Optical Systems: A = n (y c + u), H = n (u ybar - ubar y). The sum of distortion is
 /// rearranged to avoid a division by A. An asphere is its sphere plus G r^4. Indices and thicknesses are signed, which
@@ -19,7 +19,7 @@ struct SeidelSums {
   long double s1 = 0, s2 = 0, s3 = 0, s4 = 0, s5 = 0;
   long double image_z = 0;       ///< paraxial focus, lens frame
   long double image_nu = 0;      ///< n' u' of the marginal ray behind the lens
-  long double chief_height = 0;  ///< of the chief ray there
+  long double chief_height = 0;  ///< height of the chief ray behind the lens
 };
 
 inline SeidelSums seidel_sums(const Lens& lens, long double pupil_z) {

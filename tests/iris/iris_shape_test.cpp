@@ -25,7 +25,7 @@ using testing::room_between_blades;
 
 constexpr double pi = std::numbers::pi;
 
-/// The disc and polygons with straight, rounded and hollow edges.
+/// A disc and polygons with straight, rounded and hollow edges.
 std::vector<Iris> irises() {
   std::vector<Iris> result{{}};
   for (const int blades : {3, 4, 5, 6, 8, 20}) {
@@ -86,7 +86,7 @@ TEST(IrisShape, HasTheMomentsOfARegularPolygon) {
   }
 }
 
-// Samples are counted in equal parts of the square and in the parts of the plane that these become.
+// Samples are counted in equal cells of the square and in the images of these cells.
 TEST(IrisShape, PassesAChiSquareTestInSmallSquares) {
   for (const Iris& iris : irises()) {
     const IrisShape shape(iris);
@@ -111,7 +111,7 @@ TEST(IrisShape, PassesAChiSquareTestInSmallSquares) {
       const Vec2<double> p = shape.sample(u, v);
       found[cell(p.x, p.y)] += 1;
     }
-    // Low-discrepancy samples stay far below the 144 of independent ones.
+    // Low-discrepancy samples stay far below 144, the mean of independent samples.
     double chi = 0;
     for (std::size_t i = 0; i < found.size(); ++i) {
       const double wanted = trials * area[i] / shape.area();
@@ -122,7 +122,7 @@ TEST(IrisShape, PassesAChiSquareTestInSmallSquares) {
   }
 }
 
-// The map of the unit square keeps areas everywhere: its Jacobian is the area of the iris.
+// The map from the unit square preserves areas: its Jacobian is the area of the iris.
 TEST(IrisShape, MapsEqualAreasToEqualAreas) {
   for (const Iris& iris : irises()) {
     const IrisShape shape(iris);
@@ -139,7 +139,7 @@ TEST(IrisShape, MapsEqualAreasToEqualAreas) {
         return (after - before) / (2 * h);
       };
       const Vec2<double> by_u = by(h, 0), by_v = by(0, h);
-      // From +y towards +x is the negative sense.
+      // From +y towards +x the sense is negative.
       const double jacobian = by_v.x * -by_u.y + by_v.y * by_u.x;
       ++checked;
       kept += std::abs(jacobian / shape.area() - 1) < 1e-6;
@@ -248,7 +248,7 @@ double farthest_from_the_circle() {
 
 TEST(IrisShape, KnowsTheCircle) {
   EXPECT_LT(farthest_from_the_circle<float>(), 2e-7);
-  EXPECT_LT(farthest_from_the_circle<double>(), 1e-15);  // half of it the angle's own rounding
+  EXPECT_LT(farthest_from_the_circle<double>(), 1e-15);  // half of it is the rounding of the angle
 }
 
 TEST(IrisShape, RefusesWhatIsOutOfRange) {

@@ -33,7 +33,7 @@ std::vector<Iris> irises() {
           {.blades = 9, .rotation_rad = -1}};
 }
 
-/// The rows of weights in the text.
+/// Published rows of weights.
 std::vector<EdgeWeight> edges_of_the_text() {
   std::vector<EdgeWeight> result;
   for (const double p : {0.8, 0.6, 0.4, 0.2, 0.0}) result.push_back({-4, p}), result.push_back({4, p});
@@ -41,7 +41,7 @@ std::vector<EdgeWeight> edges_of_the_text() {
   return result;
 }
 
-/// A bright half, a dark one and a spot.
+/// A map with a bright half, a dark half and a spot.
 IrisMap some_map(bool keep_mean = false) {
   IrisMap map{32, 24, {}, keep_mean};
   for (int i = 0; i < 32 * 24; ++i) map.values.push_back(i % 32 < 16 ? 0.2f : 0.9f);
@@ -98,7 +98,7 @@ TEST(IrisWeights, AreAlikeForAllSamplesThatFollowThem) {
   }
 }
 
-/// Chi-square of samples in cells of the square against the density that they are said to have.
+/// Chi-square of samples in cells of the square against their stated density.
 TEST(IrisWeights, DrawSamplesOfTheDensityTheySay) {
   constexpr std::size_t columns = 16, rows = 16, count = 1 << 18;
   const core_detail::Kronecker<2> random(3);
@@ -122,7 +122,7 @@ TEST(IrisWeights, DrawSamplesOfTheDensityTheySay) {
         for (std::size_t k = 0; k < found.size(); ++k) {
           if (wanted[k] > 5) chi2 += (found[k] - wanted[k]) * (found[k] - wanted[k]) / wanted[k];
         }
-        // Samples are more even than random ones: 255 would be their mean.
+        // Low-discrepancy samples stay below 255, the mean of random samples.
         EXPECT_LT(chi2, 255);
       }
     }
@@ -150,7 +150,7 @@ TEST(IrisWeights, OfAMapHaveItsMeanOrOne) {
   }
 }
 
-// A slit, and a hole, a pixel wide.
+// A slit and a hole of one pixel.
 TEST(IrisWeights, SeeDetailsOfAPixel) {
   constexpr int pixels = 512;
   IrisMap slit{pixels, pixels, std::vector<float>(pixels * pixels)}, hole = slit;

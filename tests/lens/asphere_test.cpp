@@ -39,7 +39,7 @@ SurfaceRow row(double radius, double conic, double semi_diameter, std::vector<As
   return r;
 }
 
-/// From a gentle camera asphere to gull-wing surfaces of phone lenses and a wavy one.
+/// A weak camera asphere, gull-wing surfaces of phone lenses and a wavy surface.
 std::vector<Named> surfaces() {
   return {
       {"camera", row(40, -0.5, 18, {{4, -2e-6}, {6, 3e-9}, {8, -4e-12}})},
@@ -127,7 +127,7 @@ TYPED_TEST(AsphereOf, FindsTheFirstCrossingOfSteepRays) {
       const auto& [t, cosine] = crossings->front();
       const double error = std::hypot(point.x - (p.x + t * direction.x), point.y - (p.y + t * direction.y),
                                       point.z - (p.z + t * direction.z));
-      // A larger error means another crossing.
+      // A larger error belongs to another crossing.
       if (error > 1e-3 * rim) {
         ++wrong;
       } else {
@@ -147,7 +147,7 @@ TYPED_TEST(AsphereOf, FindsTheFirstCrossingOfSteepRays) {
 
 Asphere<double> described(const SurfaceRow& row) { return petzval::kernel::view<double>(compiled(row)).aspheres[0]; }
 
-// With bounds of 1e50 for sag and slope every ray of these surfaces was searched for: 9 s for a camera.
+// With loose bounds for sag and slope (1e50) every ray would be searched for, and a camera would take 9 s.
 TEST(Asphere, IsDescribedAsFarAsItIsNotSteep) {
   SurfaceRow runaway =
       row(-600, 0.8, 0, {{12, std::pow(20., -11)}, {14, -std::pow(11., -13)}, {37, std::pow(15., -36)}});
@@ -170,7 +170,7 @@ TEST(Asphere, IsDescribedAsFarAsItIsNotSteep) {
     const Asphere<double> a = described(extreme);
     EXPECT_TRUE(a.height > 0 && a.steepest < 5 && std::isfinite(a.highest - a.lowest)) << order;
   }
-  runaway.semi_diameter = 1e-12;  // of less, float has no square
+  runaway.semi_diameter = 1e-12;  // float underflows for smaller squares
   EXPECT_EQ(described(runaway).height, 1e-12);
   for (const Named& named : surfaces()) {
     const double e = 1 + named.row.conic;
@@ -180,8 +180,8 @@ TEST(Asphere, IsDescribedAsFarAsItIsNotSteep) {
   }
 }
 
-/// Compares the bounds of all rings with samples; says how much wider than the samples they are at worst, as a share of
-/// those of the whole surface.
+/// Compares the bounds of all rings with samples. Returns the largest excess over the samples, relative to the bounds
+/// of the whole surface.
 double expect_bounds(const SurfaceRow& row, const std::string& what) {
   constexpr int samples = 200;
   const Asphere<double> a = described(row);
@@ -202,7 +202,7 @@ double expect_bounds(const SurfaceRow& row, const std::string& what) {
       least = std::min(least, bend), most = std::max(most, bend);
       EXPECT_LE(std::abs(bend) * r, a.steepest) << what << " r " << r;
     }
-    const double little = 1e-7 * a.steepest / a.height;  // of the difference quotient
+    const double little = 1e-7 * a.steepest / a.height;  // error of the difference quotient
     EXPECT_LE(ring.lowest, low) << what << " r " << outer;
     EXPECT_GE(ring.highest, high) << what << " r " << outer;
     EXPECT_LE(ring.least_bend, least + little) << what << " r " << outer;
@@ -229,7 +229,7 @@ TEST(Asphere, IsWithinTheBoundsOfItsRings) {
   EXPECT_LT(sum / count, 0.05);
 }
 
-/// Whether a ray stays clear of a surface's aperture: outside its cylinder, or within that above or below its sag.
+/// True if a ray misses the aperture of a surface: it stays outside the cylinder of the rim, or above or below the sag.
 bool clearly_beside(const SurfaceRow& r, const Vec<double>& p, const Vec<double>& d) {
   const double rim = *r.semi_diameter, across = d.x * d.x + d.y * d.y, middle = -(p.x * d.x + p.y * d.y) / across;
   const double closest = std::hypot(p.x + middle * d.x, p.y + middle * d.y);
@@ -274,7 +274,7 @@ TEST(Asphere, ARayPassesBesideWhereItCrossesNothing) {
   EXPECT_GT(misses, 100);
 }
 
-// Newton's iteration finds them from where they meet the vertex plane.
+// Newton iteration from the vertex plane finds the hits.
 TEST(Asphere, RaysThatMissItsBaseMeetItFartherOut) {
   std::mt19937 random(5);
   const auto uniform = [&](double low, double high) {
@@ -282,7 +282,7 @@ TEST(Asphere, RaysThatMissItsBaseMeetItFartherOut) {
   };
   int aimed = 0, met = 0;
   for (int surface = 0; surface < 1000; ++surface) {
-    // Flattened out to nearly a plane, as far as the equator of the base.
+    // Nearly a plane up to the equator of the base.
     const double radius = (surface % 2 ? 1 : -1) * uniform(5, 20);
     const SurfaceRow r = row(radius, 0, uniform(1, 3),
                              {{2, -uniform(0.85, 1.15) / (2 * radius)}, {4, uniform(-1, 1) / (30. * 30 * 30)}});

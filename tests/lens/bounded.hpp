@@ -7,27 +7,26 @@
 #include <cstddef>
 #include <limits>
 
-/// A number that knows all its values over a box of inputs, and how far rounding can take the computed one from each.
+/// A number with enclosures of its exact values over a box of inputs, and a bound for the rounding error.
 ///
-/// Values are those of exact arithmetic: an affine form over the box's coordinates, and an interval, each of which
-/// holds them all. |computed - exact| <= error() everywhere in the box, for every operation in the IEEE type R rounded
-/// to nearest: each adds half an eps of the largest result, and carries the errors of its operands by the largest
-/// derivatives. Products with powers of two and sums with 0 are exact. Underflow is left out.
+/// The exact values lie in an affine form over the coordinates of the box and in an interval. |computed - exact| <=
+/// error() everywhere in the box, with every operation rounded to nearest in the IEEE type R. Each operation adds half
+/// an eps of the largest result and multiplies the errors of its operands by the largest derivatives. Products with
+/// powers of two and sums with 0 are exact. Underflow is ignored.
 ///
-/// The analysis itself computes in double, and instead of a rounding direction has bounds that are wider by more than
-/// its own rounding.
+/// The analysis computes in double and widens its bounds by more than its own rounding.
 ///
-/// A comparison that not all values of the box answer alike sets `ambiguous`, and so do a division by 0 and a root of a
-/// negative number: then nothing that follows is proven, and the box must be divided.
-/// N: coordinates of the box.
+/// A comparison with different results within the box sets `ambiguous`, as does a division by 0 or a root of a negative
+/// number. Nothing is proven from there on, and the box must be divided.
+/// N: number of coordinates of the box.
 template <class R, std::size_t N>
 class Bounded {
  public:
-  using Scalar = Bounded;  // constants of surfaces are boxes too
+  using Scalar = Bounded;  // constants of surfaces are intervals as well
   static inline bool ambiguous = false;
 
   Bounded() = default;
-  Bounded(double exact) : middle_(exact), least_(exact), most_(exact) {}  // as a literal in a kernel
+  Bounded(double exact) : middle_(exact), least_(exact), most_(exact) {}  // literals in kernels
 
   /// One of the coordinates of the box.
   static Bounded coordinate(std::size_t which, double least, double most) {
@@ -36,14 +35,14 @@ class Bounded {
     result.least_ = least, result.most_ = most;
     return result;
   }
-  /// A number that is given, not computed: it carries no error. `off`: how far it may be from these values.
+  /// An input number without rounding error. `off`: largest deviation from these values.
   Bounded given(double off = 0) const {
     Bounded result = *this;
     result.error_ = 0;
     result.rest_ += off, result.least_ -= off, result.most_ += off;
     return result;
   }
-  /// The same with an error that it had before.
+  /// This number with a given error.
   Bounded with_error(double error) const {
     Bounded result = *this;
     result.error_ = error;
@@ -85,7 +84,7 @@ class Bounded {
       ambiguous = true;
       return a;
     }
-    // 1/b over [least, most] between two parallel lines of the slope at the far end.
+    // 1/b over [least, most] lies between two parallel lines with the slope at the far end.
     const double slope = -1 / (b.most_ * b.most_), at_least = 1 / b.least_ - slope * b.least_,
                  at_most = 1 / b.most_ - slope * b.most_;
     Bounded result =
@@ -108,7 +107,7 @@ class Bounded {
     return result;
   }
 
-  /// |a|, also where the values have both signs.
+  /// |a|, also for values of both signs.
   friend Bounded absolute(const Bounded& a) {
     if (a.least_ >= 0) return a;
     if (a.most_ <= 0) return -a;
@@ -132,7 +131,7 @@ class Bounded {
  private:
   static constexpr double unit = std::numeric_limits<R>::epsilon() / 2;
 
-  /// More than a few operations in double can round away.
+  /// More than the rounding of a few operations in double.
   static double widened(double bound) { return bound * (1 + 1e-13) + 1e-300; }
 
   static Bounded sum(const Bounded& a, const Bounded& b, double sign) {
@@ -156,13 +155,13 @@ class Bounded {
     return result;
   }
 
-  /// How far values are from the middle.
+  /// Largest distance of values from the middle.
   double reach() const {
     double sum = rest_;
     for (const double part : parts_) sum += std::abs(part);
     return sum;
   }
-  /// The interval is what both the affine form and these ends allow.
+  /// Sets the interval to the intersection of the affine form and these ends.
   void narrow(double least, double most) {
     const double slack = 1e-14 * (std::abs(middle_) + reach() + std::abs(least) + std::abs(most)) + 1e-300;
     rest_ += slack;
@@ -178,7 +177,7 @@ class Bounded {
   }
 
   double middle_ = 0;
-  std::array<double, N> parts_{};  // by how much each coordinate moves the value
+  std::array<double, N> parts_{};  // change of the value with each coordinate
   double rest_ = 0;
   double least_ = 0, most_ = 0;
   double error_ = 0;

@@ -1,6 +1,5 @@
-// SPDX-License-Identifier: Apache-2.0
-// Proven bounds of rounding: the kernels themselves run over boxes of inputs (bounded.hpp), which are divided until
-// each proves the bound. Together they cover a domain without gaps.
+// SPDX-License-Identifier: Apache-2.0 Proven bounds of rounding. The kernels run over boxes of inputs (bounded.hpp),
+// which are divided until each proves the bound. The boxes cover the domain without gaps.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -47,11 +46,11 @@ std::array<Box<N>, 2> halves(const Box<N>& box, std::size_t coordinate) {
 
 struct Proof {
   std::size_t boxes = 0;
-  double open = 0;  ///< the part of the domain where nothing is proven
+  double open = 0;  ///< fraction of the domain that is not proven
 };
 
-/// Divides a box until every part has a bound of `wanted` or less, by the coordinate whose upper half gains most.
-/// bound(box): infinite where it proves nothing. `volume`: of the box, as a part of the domain.
+/// Divides a box until every part has a bound of at most `wanted`, by the coordinate whose upper half gains most.
+/// bound(box): infinite if the box proves nothing. `volume`: fraction of the domain.
 template <std::size_t N>
 void divide(const auto& bound, const Box<N>& domain, const Box<N>& box, double wanted, double volume, Proof& proof) {
   ++proof.boxes;
@@ -71,7 +70,7 @@ void divide(const auto& bound, const Box<N>& domain, const Box<N>& box, double w
   for (const Box<N>& half : halves(box, best)) divide(bound, domain, half, wanted, volume / 2, proof);
 }
 
-/// Every bound in eps is the larger the larger eps is: what is proven in float holds in double.
+/// Bounds in eps grow with eps, so that a bound proven in float holds in double.
 template <std::size_t N>
 void expect_proven(const auto& bound, const Box<N>& domain, double wanted) {
   Proof proof;
@@ -97,15 +96,14 @@ Vec<T> given(const Vec<T>& v) {
 }
 
 /// Rays towards points of a surface within 1 of its axis; other sizes scale. By symmetry the light runs towards +z, the
-/// surface is curved towards it, and the point lies between the x axis and the bisector of x and y. Coordinates: the
-/// point's height and the tangent of half its azimuth; the sine of the ray's angle with the axis and the same tangent,
-/// which with both signs of the sine makes all azimuths; the curvature; how far before the point the ray starts; and
-/// 1 + k on conics.
+/// surface is curved towards the light, and the point lies between the x axis and the bisector of x and y. Coordinates:
+/// height of the point and tangent of half its azimuth; sine of the angle between ray and axis, with sign, and tangent
+/// of half its azimuth; curvature; distance from the start of the ray to the point; 1 + k on conics.
 const double bisector = std::sqrt(2.0) - 1;
 const Box<6> spheres{{{0, 1}, {0, bisector}, {-0.5, 0.5}, {-1, 1}, {0, 0.6}, {-1, 1}}};
 const Box<7> conics{{{0, 1}, {0, bisector}, {-0.4, 0.4}, {-1, 1}, {0, 0.5}, {-1, 1}, {0, 2}}};
 
-/// Of a hit: |error| cos(incidence) / (height + distance), in eps.
+/// Error of a hit, |error| cos(incidence) / (height + distance), in eps.
 template <class R, std::size_t N>
 double hit_bound(const Box<N>& box) {
   using B = Bounded<R, N>;
@@ -118,7 +116,7 @@ double hit_bound(const Box<N>& box) {
   const auto [dx, dy] = polar(sine, at[3]);
   const B square = height * height, z = c * square / (B(1) + sqrt(B(1) - e * c * c * square));
   const B dz = sqrt(B(1) - sine * sine);
-  const Vec<B> direction{dx.given(), dy.given(), dz.given(eps<R>)};  // of unit length but for rounding
+  const Vec<B> direction{dx.given(), dy.given(), dz.given(eps<R>)};  // unit length up to rounding
   const Vec<B> start = given(Vec<B>{x, y, z} - direction * at[5]);
 
   const Quadric<B> surface{c, e, B(1), B(1), N == 6, false, false};
@@ -130,13 +128,12 @@ double hit_bound(const Box<N>& box) {
   return length(point) * cosine / (eps<R> * (1 + distance));
 }
 
-/// Rays that meet a normal between the x axis and the bisector of x and y, both of unit length but for rounding.
-/// Coordinates: the sine of the normal's angle with the axis and the tangent of half its azimuth; the sine of the angle
-/// in the thinner medium and the tangent of half the azimuth around the normal; n / n', or n' / n into the thinner
-/// medium.
+/// Rays at a normal between the x axis and the bisector of x and y; both have unit length up to rounding. Coordinates:
+/// sine of the angle between normal and axis and tangent of half its azimuth; sine of the angle in the thinner medium
+/// and tangent of half the azimuth around the normal; n / n', or n' / n into the thinner medium.
 const Box<5> interfaces{{{0, 0.7}, {0, bisector}, {-0.9, 0.9}, {-1, 1}, {0.55, 1}}};
 
-/// Of a refracted direction: |error| cos(refraction) / max(1, n / n')^2, in eps.
+/// Error of a refracted direction, |error| cos(refraction) / max(1, n / n')^2, in eps.
 template <class R>
 double refraction_bound(bool into_thinner, const Box<5>& box) {
   using B = Bounded<R, 5>;
@@ -146,7 +143,7 @@ double refraction_bound(bool into_thinner, const Box<5>& box) {
   const B tilt = at[0], upright = sqrt(B(1) - tilt * tilt), cosine = sqrt(B(1) - in * in);
   const auto [cos_a, sin_a] = polar(B(1), at[1]);
   const auto [across, along] = polar(in, at[3]);
-  const auto given = [](const B& exact) { return exact.given(eps<R>); };  // of unit length but for rounding
+  const auto given = [](const B& exact) { return exact.given(eps<R>); };  // unit length up to rounding
   const Vec<B> normal{given(tilt * cos_a), given(tilt * sin_a), given(upright)};
   const Vec<B> direction{given(cosine * tilt * cos_a + across * upright * cos_a - along * sin_a),
                          given(cosine * tilt * sin_a + across * upright * sin_a + along * cos_a),
@@ -169,7 +166,7 @@ TEST(Certified, RefractionIntoTheThinnerMedium) {
   expect_proven(bound, interfaces, 24);
 }
 
-/// A step of arithmetic on two numbers of any kind.
+/// An arithmetic operation on two numbers of any type.
 template <class T>
 T step(unsigned operation, const T& a, const T& b) {
   using std::sqrt;
@@ -191,7 +188,7 @@ T step(unsigned operation, const T& a, const T& b) {
   }
 }
 
-/// The analysis itself: what it says of a box holds at its points.
+/// Checks the analysis: its bounds over a box hold at points of the box.
 template <class R>
 class BoundedIn : public testing::Test {};
 using Plain = testing::Types<float, double>;

@@ -39,7 +39,7 @@ double catalogue_index(const char* name, const char* catalogue, double nm) {
   return petzval::refractive_index(*glasses().find(name, catalogue), nm);
 }
 
-/// A cemented pair: a glass of the tables with a rounded index, and a medium that each test chooses.
+/// A cemented doublet: a glass of the tables with a rounded index, and a medium that each test chooses.
 Prescription doublet(const petzval::Medium& second) {
   Prescription p;
   p.name = "pair";
@@ -98,7 +98,7 @@ TEST(Compile, AGlassNoTableKnowsIsAnErrorThatNamesIt) {
   Prescription immersed = doublet(flint);
   immersed.object_space = {.glass = "SEA WATER", .nd = 1.34};
   expect_error([&] { compile(immersed, visible, strict); }, {"pair", "object space", "\"SEA WATER\""});
-  // Without the glass there is no index from the catalogue, at the d line neither.
+  // Without the glass there is no catalogue index, not even at the d line.
   expect_error(
       [&] {
         compile(doublet(unknown), std::array{d}, {.glasses = &glasses(), .index_policy = IndexPolicy::catalogue});

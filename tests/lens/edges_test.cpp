@@ -16,7 +16,7 @@ namespace edges_test {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
-/// Two spheres of radius `radius` that meet at the height at which their sags add up to the thickness.
+/// Two spheres of radius `radius` that meet at the height where their sags add up to the thickness.
 Prescription biconvex(double radius, double thickness, double rim = infinity) {
   Prescription p;
   p.name = "biconvex";
@@ -65,7 +65,7 @@ TEST(Edges, AreThoseOfAirSpacesToo) {
   EXPECT_EQ(lens.surfaces()[3].semi_diameter, 30);
 }
 
-// A stop changes no ray: the surfaces before and behind it bound the air that it stands in.
+// A stop bends no ray, so that the surfaces on both sides of it bound one air space.
 TEST(Edges, PassOverSurfacesThatChangeNoRay) {
   Prescription p;
   p.surfaces = {{.radius = 60, .thickness = 8, .medium = {.nd = 1.6}, .semi_diameter = 30},
@@ -86,7 +86,7 @@ TEST(Edges, DoNotEndASurfaceWhoseNeighbourIsSmaller) {
   EXPECT_EQ(lens.surfaces()[0].edge, infinity);
 }
 
-// Without a thickness there is no zone in which it is positive: such an element is ideal.
+// Elements of thickness 0 are ideal and have no edge.
 TEST(Edges, AreAbsentOfElementsWithoutThickness) {
   for (const double thickness : {0.0, -1.0}) {
     EXPECT_EQ(compile(biconvex(50, thickness, 10)).surfaces()[0].semi_diameter, 10);
@@ -116,8 +116,8 @@ TEST(Edges, ScaleWithTheLens) {
   }
 }
 
-// Rays that pass meet the surfaces that change them in the order of the prescription, however large the apertures are.
-// A ray that leaves a surface along it may meet the next surface in front of it: 1 in 4000 of one lens.
+// Transmitted rays meet refracting surfaces in the order of the prescription, for apertures of any size. The exception
+// are rays nearly parallel to a surface, which may meet the next surface first: 1 in 4000 of one lens.
 TEST(Edges, LetRaysMeetSurfacesInOrder) {
   for (Prescription p : testing::data_prescriptions()) {
     double size = 0;

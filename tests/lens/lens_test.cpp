@@ -40,7 +40,7 @@ TEST(Lens, SaysWhatThePrescriptionSays) {
   EXPECT_TRUE(lens.rotationally_symmetric());
 }
 
-// A term that has a slope of 4 at 5 mm, and at 12 mm one of 1800.
+// A term with a slope of 4 at 5 mm and of 1800 at 12 mm.
 TEST(Lens, HasTheRimOfAnAsphereWhereItIsAsSteepAsFour) {
   petzval::Prescription p = singlet();
   p.surfaces[1].aspheric = {{8, -std::pow(5, -7) / 2}};
@@ -54,10 +54,10 @@ TEST(Lens, HasTheRimOfAnAsphereWhereItIsAsSteepAsFour) {
         .fate;
   };
   EXPECT_EQ(fate_at(rim + 1e-9), petzval::RayFate::vignetted);
-  EXPECT_NE(fate_at(rim - 1e-9), petzval::RayFate::vignetted);  // though it may not leave the glass
+  EXPECT_NE(fate_at(rim - 1e-9), petzval::RayFate::vignetted);  // although it may not leave the glass
   EXPECT_EQ(petzval::with_semi_diameter(lens, 1, 12).surfaces()[1].semi_diameter, rim);
   EXPECT_EQ(petzval::with_semi_diameter(lens, 1, 3).surfaces()[1].semi_diameter, 3);
-  p.surfaces[0].thickness = 0;  // without an edge
+  p.surfaces[0].thickness = 0;  // no edge
   const petzval::Lens endless = petzval::with_semi_diameter(petzval::compile(p), 1, HUGE_VAL, petzval::RimLimit::none);
   EXPECT_TRUE(std::isinf(endless.surfaces()[1].semi_diameter));
   p.surfaces[1].curved_in = petzval::Section::y;
@@ -181,7 +181,7 @@ TEST(Lens, RefusesAChangeThatMakesNoLens) {
   for (const double inside : {last_z, last_z - 1, -10.0}) {
     expect_error([&] { petzval::with_film(lens, inside); }, {"singlet", "film_z", inside, last_z});
   }
-  // Behind one mirror is in front of it.
+  // Behind one mirror light runs towards -z.
   const petzval::Lens mirror = petzval::testing::data_lens("mirror_newton_200mm_f8");
   EXPECT_EQ(petzval::with_film(mirror, -100).film_z(), -100);
   expect_error([&] { petzval::with_film(mirror, 100); }, {mirror.name(), "film_z", 100});

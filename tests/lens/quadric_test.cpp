@@ -47,7 +47,7 @@ struct Expected {
   Quad cos_incidence = 0;
 };
 
-/// The root in 113 bits on the vertex sheet, crossed in the direction of travel.
+/// The 113-bit root on the vertex sheet that is crossed in the direction of travel.
 template <class R>
 Expected expected(const Quadric<R>& q, const Vec<R>& start, const Vec<R>& direction, int sense) {
   const QuadVec p = exact(start), d = exact(direction);
@@ -69,7 +69,7 @@ Expected expected(const Quadric<R>& q, const Vec<R>& start, const Vec<R>& direct
   return {};
 }
 
-/// A surface point within `reach` of the axis, any azimuth. False beyond the equator.
+/// Sets a surface point within `reach` of the axis at any azimuth. False beyond the equator.
 template <class R>
 bool surface_point(const Quadric<R>& q, double reach, double turn, Vec<R>& point) {
   const Quad c = q.curvature;
@@ -112,7 +112,7 @@ struct Sweep {
   int rays = 400;
 };
 
-/// Worst relative error of random skew rays towards points within the height, from both sides.
+/// Largest relative error of random skew rays towards points within the height, from both sides.
 template <class R>
 double worst(const Quadric<R>& q, double limit, const Sweep& sweep, const std::string& what) {
   std::mt19937 random(7);
@@ -261,7 +261,7 @@ TEST(Quadric, HitOrMissIsDecidedWithinABillionthOfTheEdge) {
     EXPECT_TRUE(at(50 * (1 - 1e-9), sense));
     EXPECT_FALSE(at(50 * (1 + 1e-9), sense));
   }
-  // Past the sphere in front of its vertex, on a line that touches it at 45 degrees of latitude.
+  // A line that touches the sphere at 45 degrees of latitude, in front of its vertex.
   const double s = std::sqrt(0.5);
   const Vec<double> touching{50 * s, 0, 50 - 50 * s};
   const Vec<double> d{s, 0, s};

@@ -58,7 +58,8 @@ Prescription window(const Glass& glass) {
   return p;
 }
 
-/// The largest difference, over a fine comb, of indices in nm from those of a lens compiled for the wavelength.
+/// Largest difference between interpolated indices and the indices of a lens compiled for the wavelength, over a fine
+/// comb.
 double largest_error(const Lens& lens, const Prescription& prescription, const CompileOptions& options) {
   const auto [from, to] = std::minmax_element(lens.wavelengths_nm().begin(), lens.wavelengths_nm().end());
   double largest = 0;
@@ -78,7 +79,7 @@ TEST(Spectrum, IndicesOfAllLensesOfTheDataAreRightFromEightWavelengths) {
     try {
       compile(prescription, steps(400, 700, 8), by_catalogue());
     } catch (const petzval::Error&) {
-      continue;  // of unknown dispersion
+      continue;  // unknown dispersion
     }
     const Lens lens = compile(prescription, steps(400, 700, 8), by_catalogue());
     const double found = largest_error(lens, prescription, by_catalogue());
@@ -122,7 +123,7 @@ TEST(Spectrum, TheErrorDoesNotDependOnNumberOrSpacingOfWavelengths) {
   for (const auto& wavelengths : {steps(550, 550.001, 40), std::vector{550., 550.000002}}) {
     const Lens lens = compile(prescription, wavelengths, by_catalogue());
     EXPECT_LT(lens.index_error(), 1e-13);
-    EXPECT_LT(largest_error(lens, prescription, by_catalogue()), 3e-10);  // within 1e-6 nm compiled ones are meant
+    EXPECT_LT(largest_error(lens, prescription, by_catalogue()), 3e-10);  // compiled wavelengths match within 1e-6 nm
   }
   const Lens one = compile(prescription, std::vector{550.}, by_catalogue());
   EXPECT_EQ(one.index_error(), 0);
@@ -189,7 +190,7 @@ TEST(Spectrum, AMediumWithoutIndicesBetweenCompiledWavelengthsLeavesThese) {
   expect_error([&] { lens.index(1, Wavelength::nm(550)); }, {"POLE", "wavelength", 550});
 }
 
-// Whatever their spacing, what is linear in 1 / nm is found exactly, and what is known at a wavelength stays there.
+// For any spacing, functions linear in 1 / nm are exact, and values at compiled wavelengths are kept.
 TEST(Spectrum, NumbersBetweenWavelengthsFollowThoseOfNeighbours) {
   for (const std::vector<double>& nm : {std::vector{400., 700.}, std::vector{400., 550., 700.},
                                         std::vector{400., 500., 600., 700.}, std::vector{700., 400., 475., 550., 625.},
@@ -212,8 +213,8 @@ TEST(Spectrum, NumbersBetweenWavelengthsFollowThoseOfNeighbours) {
   }
 }
 
-// Cubics, where wavelengths are even. A cubic of 1 / nm over the whole range, of height 0.3, is what 15 parabolas
-// follow worst.
+// Equally spaced wavelengths are interpolated by cubics. The worst case for 15 parabolas is a cubic in 1 / nm of height
+// 0.3 over the whole range.
 TEST(Spectrum, NumbersAtEvenWavelengthsAreInterpolatedByCubics) {
   for (int count = 4; count <= 9; ++count) {
     std::vector<double> nm;

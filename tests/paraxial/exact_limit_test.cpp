@@ -13,7 +13,7 @@ namespace exact_limit_test {
 
 using Jet = ceres::Jet<double, 2>;
 
-// The derivatives of the exact ray along the axis, with respect to its height and slope, are the paraxial matrix.
+// The derivatives of the exact ray at the axis with respect to height and slope are the paraxial matrix.
 TEST(RayMatrix, IsTheDerivativeOfTheExactRayAlongTheAxis) {
   for (const Prescription& prescription : testing::data_prescriptions()) {
     const Lens lens = compile(prescription);

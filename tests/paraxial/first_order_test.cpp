@@ -18,7 +18,7 @@ constexpr double infinity = std::numeric_limits<double>::infinity();
 
 RayMatrix transfer(double distance, double n) { return {1, distance / n, 0, 1}; }
 
-/// From the plane at z_object to the plane at z_image.
+/// The matrix from the plane at z_object to the plane at z_image.
 RayMatrix between(const Lens& lens, double z_object, double z_image, Meridian meridian = Meridian::y) {
   const std::size_t count = lens.surface_count();
   return transfer(-z_object, signed_index(lens, 0))
@@ -168,7 +168,7 @@ TEST(FirstOrder, RaysThroughTheNodalPointsKeepTheirSlope) {
 
 TEST(FirstOrder, OfTheEyeCountsTheVitreousBehindIt) {
   const FirstOrder data = first_order(data_lens("eye_gullstrand_le_grand"));
-  EXPECT_NEAR(data.power * 1000, 59.94, 0.005);  // dioptres, as the file's note has them
+  EXPECT_NEAR(data.power * 1000, 59.94, 0.005);  // dioptres, from the note of the file
   EXPECT_NEAR(data.rear_focal_z - data.rear_principal_z, 1.336 * data.effective_focal_length, 1e-12);
   EXPECT_NEAR(data.front_principal_z - data.front_focal_z, data.effective_focal_length, 1e-12);
 }
@@ -206,7 +206,7 @@ TEST(FirstOrder, ReportsAnAfocalLensAndDividesNothing) {
   plane.name = "plane";
   plane.surfaces = {{.medium = {.nd = 1.7}}};
   afocal.push_back(plane);
-  // Kepler's and Galileo's telescopes: the second lens where the foci meet.
+  // Keplerian and Galilean telescopes: the foci of both lenses coincide.
   for (const double r : {20.0, -12.0}) {
     Prescription telescope = element(1.6, 90, -70, 6), eyepiece = element(1.7, r, -1.3 * r, 3);
     telescope.surfaces.back().thickness =
@@ -238,7 +238,7 @@ TEST(FirstOrder, BeyondTheRangeOfLengthsIsAfocal) {
   for (const double r : {1e101, 1.7e308}) EXPECT_TRUE(first_order(compile(element(1.5, r, -r, 5))).afocal) << r;
   EXPECT_FALSE(first_order(compile(element(1.5, 1e99, -1e99, 5))).afocal);
 
-  Prescription steep;  // powers of 1e12 and distances of 1e9, again and again
+  Prescription steep;  // alternates powers of 1e12 and distances of 1e9
   steep.name = "steep";
   steep.surfaces.assign(40, {.radius = 1e-12, .thickness = 1e9, .medium = {.nd = 1.5}});
   for (std::size_t i = 0; i < 40; i += 2) steep.surfaces[i].medium.nd = 1;

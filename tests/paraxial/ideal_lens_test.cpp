@@ -28,7 +28,7 @@ using Vec = Vec3<double>;
 constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
-/// Numbers computed with 40 digits, for lenses of F = 0.05 and 0.1 units in planes 2 units away. The thin lens lies at
+/// Values computed with 40 digits, for lenses of F = 0.05 and 0.1 with planes at a distance of 2. The thin lens lies at
 /// the origin.
 constexpr double F = 0.05, eps12 = 1e-12, eps9 = 1e-9;
 const double sin30 = 0.5, cos30 = std::sqrt(0.75);
@@ -37,7 +37,7 @@ void expect_near(const Vec& found, const Vec& wanted, double relative) {
   EXPECT_NEAR(glm::length(found - wanted), 0, relative * glm::length(wanted));
 }
 
-/// R = +-100 mm, 20 mm thick.
+/// A biconvex lens of R = +-100 mm and 20 mm thickness.
 Lens biconvex() {
   Prescription p;
   p.name = "biconvex";
@@ -51,7 +51,7 @@ TEST(IdealLens, ThinLensImagesWhereItIsKnownTo) {
   const auto at = [&](double d) { return lens.image({{0, 0, -d}})->position.z; };
   EXPECT_NEAR(at(2), 0.051282051282051282, eps12 * F);
   EXPECT_NEAR(at(0.5), 0.0555555555555556, 1e-15);
-  EXPECT_NEAR(at(0.0500001) / 25000.05, 1, 1e-9);  // what the distance itself leaves: 0.05 / 1e-7 eps
+  EXPECT_NEAR(at(0.0500001) / 25000.05, 1, 1e-9);  // rounding of the distance: 0.05 / 1e-7 eps
   EXPECT_EQ(at(infinity), F);
   EXPECT_FALSE(lens.image({{0, 0, -0.05}}));
   EXPECT_FALSE(lens.image({{0, 0, -0.04}}));
@@ -68,14 +68,14 @@ TEST(IdealLens, ThinLensTiltsWhereItIsKnownTo) {
   const FocusPlane focus = focus_plane(lens, film).value();
   EXPECT_NEAR(focus.hinge->point.y, 3.3774990747593107, 4 * eps9);
   EXPECT_NEAR(focus.hinge->point.z, -F, 1e-15);
-  EXPECT_NEAR(std::hypot(focus.hinge->point.y, F), 3.3778691508109073, 4 * eps9);  // F over the sine of the tilt
+  EXPECT_NEAR(std::hypot(focus.hinge->point.y, F), 3.3778691508109073, 4 * eps9);  // F / sin(tilt)
   EXPECT_NEAR(focus.scheimpflug->point.y, 3.4641016151377546, 4 * eps9);
   EXPECT_NEAR(line_at(film.plane(), 0)->point.y, 3.4641016151377546, 4 * eps9);
   const auto image = lens.image({{0.3, -0.4, -2.2309401076758503}});
   expect_near(image->position, {-0.00687776796217708, 0.00917035728290278, 0.0511462946603628}, eps12);
   EXPECT_NEAR(signed_blur(*image, film), 0, 1e-15);
 
-  // A ground 1.5 below.
+  // The ground is 1.5 below the lens.
   const Film ground = film_in(lens.image_of({{0, -1, 0}, 1.5}).value());
   EXPECT_NEAR(ground.z(), F, eps9 * F);
   EXPECT_NEAR(degrees(ground.angle()), 1.9091524329963762, eps9);
@@ -101,7 +101,7 @@ TEST(IdealLens, ThickLensIsTheLensmakers) {
 }
 
 TEST(IdealLens, ThickLensTiltsWhereItIsKnownTo) {
-  // Known numbers count from the middle of the lens, in metres.
+  // The reference values are metres from the centre of the lens.
   const IdealLens lens = thick_lens(biconvex());
   constexpr double middle = 10, m = 1000;
   EXPECT_NEAR(lens.front_principal_z() - middle, -3.1746205089002949, eps12 * 100);
@@ -110,7 +110,7 @@ TEST(IdealLens, ThickLensTiltsWhereItIsKnownTo) {
   const Film film = film_in(lens.image_of(scene).value());
   EXPECT_NEAR(film.z() - middle, 108.62604046571582, eps9 * 100);
   EXPECT_NEAR(degrees(film.angle()), 1.7463843377726925, eps9);
-  const double z = 2 * m + 400 * std::tan(radians(30));  // of the point on that plane
+  const double z = 2 * m + 400 * std::tan(radians(30));  // z of the point on the plane
   const auto image = lens.image({{300, -400, middle - z}});
   expect_near(image->position - Vec(0, 0, middle), {-14.1232018639333594, 18.8309358185778125, 108.051892778109218},
               eps12);
@@ -133,7 +133,7 @@ TEST(IdealLens, ThickLensIsTheParaxialOneOfEveryLens) {
     const auto image = lens.image({{0, -0.2 * f, z}});
     ASSERT_TRUE(image);
     EXPECT_NEAR(image->position.z, paraxial_image_z(compiled, z), 1e-11 * f);
-    // The chief ray, and one through the upper edge of the entrance pupil, by matrices.
+    // Chief ray and upper marginal ray by matrices.
     const Pupil in = pupils(compiled).entrance;
     if (!std::isfinite(in.z)) continue;
     ++tried;
@@ -221,7 +221,8 @@ TEST(IdealLens, FarPointsRunIntoThoseAtInfinity) {
 }
 
 TEST(IdealLens, TelecentricLensesHaveConesAndChiefRays) {
-  // The stop in the front focal plane: chief rays leave along the axis; seen from the other side, they come so.
+  // The stop lies in the front focal plane, so that chief rays are parallel to the axis in image space, and in object
+  // space of the reversed lens.
   Prescription p = testing::data_prescription("singlet_50mm_biconvex");
   for (auto& s : p.surfaces) s.stop = false;
   const double front = first_order(compile(p)).front_focal_z;
@@ -245,12 +246,12 @@ TEST(IdealLens, BlurIsSignedAndTheChiefRayCarriesItToATiltedFilm) {
   const Film film = film_in(lens.image_of({{0, 0, 1}, -2000}).value());
   EXPECT_LT(signed_blur(*lens.image({{100, 0, -1900}}), film), 0);
   EXPECT_GT(signed_blur(*lens.image({{100, 0, -2100}}), film), 0);
-  // A pencil drawn by hand: the edges of the pupil to the image, on to where the chief ray meets the film.
+  // By construction: from the edges of the pupil through the image to the plane where the chief ray meets the film.
   const Film tilted = film_at(52, radians(12), radians(-7));
   const ImagePoint image = lens.image({{300, 200, -1500}}).value();
   const Vec chief = image.position, n = tilted.normal();
   const double along = tilted.plane().offset / glm::dot(n, chief);
-  const double diameter = 25 * (along - 1);  // of the pupil, 25 mm, seen from the image
+  const double diameter = 25 * (along - 1);  // the pupil of 25 mm, projected through the image
   EXPECT_NEAR(signed_blur(image, tilted), diameter, 1e-13);
 }
 
@@ -268,12 +269,12 @@ TEST(IdealLens, HingeAndScheimpflugLinesStayWhereTheyAre) {
   const FocusPlane focus = focus_plane(lens, film).value();
   EXPECT_NEAR(focus.hinge->point.z, lens.front_focal_z, 1e-12);
   EXPECT_NEAR(focus.scheimpflug->point.z, lens.front_principal_z(), 1e-12);
-  // The film moves along the axis: the plane of focus turns about the hinge line.
+  // As the film moves along the axis, the plane of focus rotates about the hinge line.
   Film moved = film;
   moved.z_mm = moved.z() + 3;
   EXPECT_NEAR(glm::length(focus_plane(lens, moved)->hinge->point - focus.hinge->point), 0, 1e-8);
   EXPECT_NEAR(glm::length(focus_plane(lens, moved)->hinge->direction - focus.hinge->direction), 0, 1e-12);
-  // Film and rear principal plane meet in a line as far from the axis as Scheimpflug's: its conjugate.
+  // Film and rear principal plane intersect in the conjugate of the Scheimpflug line, at equal distance from the axis.
   const SpaceLine behind = line_at(film.plane(), lens.rear_principal_z()).value();
   EXPECT_NEAR(behind.point.x, focus.scheimpflug->point.x, 1e-8);
   EXPECT_NEAR(behind.point.y, focus.scheimpflug->point.y, 1e-8);
@@ -286,7 +287,8 @@ TEST(IdealLens, FindsTheFartherOfTwoObjectsAtASeparation) {
   for (const IdealLens& lens : {thin_lens(50, 2), thick_lens(data_lens("double_gauss_100mm_f2_28deg")),
                                 thick_lens(data_lens("eye_gullstrand_le_grand"))}) {
     const double f = std::sqrt(lens.product()), planes = lens.rear_principal_z() - lens.front_principal_z();
-    const double least = 2 * f + lens.rear_focal_z - lens.front_focal_z;  // in air: 4 f and the planes between
+    const double least =
+        2 * f + lens.rear_focal_z - lens.front_focal_z;  // in air: 4 f plus the distance of the principal planes
     if (lens.front_focal_length == lens.rear_focal_length) {
       EXPECT_NEAR(least, 4 * f + planes, 1e-12 * least);
     }

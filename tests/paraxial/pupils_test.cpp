@@ -91,7 +91,7 @@ TEST(Pupils, OfACylinderWithoutAStopAreThoseOfTheWiderSection) {
   p.name = "cylinder";
   p.surfaces = {{.radius = 50, .thickness = 30, .medium = {.nd = 1.5}, .semi_diameter = 10, .curved_in = Section::y},
                 {.radius = 0, .semi_diameter = 9}};
-  // In y the beam shrinks to 0.8, in x it does not, and meets the second rim first.
+  // The beam shrinks to 0.8 in y and keeps its size in x, where the second rim limits it.
   EXPECT_EQ(pupils(compile(p)).stop, 1u);
   EXPECT_EQ(pupils(compile(p), 0, Meridian::x).stop, 1u);
   p.surfaces[0].curved_in = Section::both;

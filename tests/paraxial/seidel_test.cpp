@@ -20,8 +20,8 @@ namespace seidel_test {
 
 using L = long double;
 
-/// The hit of a ray from infinity on the paraxial image plane, minus its first-order hit. x, y: in the plane of the
-/// entrance pupil; slope: tangent of the field, for light that travels towards +y.
+/// The hit of a ray from infinity on the paraxial image plane, minus its first-order hit. x, y: position in the plane
+/// of the entrance pupil; slope: tangent of the field, for light that travels towards +y.
 class RealRays {
  public:
   RealRays(const Lens& lens, const testing::SeidelSums& sums, L pupil_z)
@@ -42,7 +42,7 @@ class RealRays {
   L pupil_z_;
 };
 
-/// The third-order part of a function of odd order in t: f(t) / t^3 at t, t/2, t/4, extrapolated to 0 in t^2.
+/// Third-order coefficient of an odd function: f(t) / t^3 at t, t/2 and t/4, extrapolated to 0 in t^2.
 template <class Function>
 L third_order(const Function& f, L t) {
   const auto part = [&](L s) { return f(s) / (s * s * s); };
@@ -51,7 +51,7 @@ L third_order(const Function& f, L t) {
   return bc + (bc - ab) / 15;
 }
 
-/// Cylinders have no such sums, and odd aspheric terms belong to other orders.
+/// Cylinders have no Seidel sums, and odd aspheric terms belong to other orders.
 bool has_sums(const Lens& lens) {
   return lens.rotationally_symmetric() &&
          std::none_of(lens.surfaces().begin(), lens.surfaces().end(), [](const LensSurface& s) {

@@ -60,7 +60,7 @@ TEST(ThinLensSubject, IsTheInverseOfTheExtensionWithinFourEps) {
           << extension;
     }
     EXPECT_EQ(thin_lens_subject(f, 0), infinity);
-    // Far from the focus the way back is as good as its two halves.
+    // Far from the focus the round trip has the errors of both functions.
     for (const double u : {3 * f, 100 * f, 1e9 * f}) {
       EXPECT_NEAR(thin_lens_subject(f, thin_lens_extension(f, u)), u, 8 * eps * u);
     }

@@ -34,7 +34,7 @@ using testing::lines_through;
 
 struct Case {
   std::string id;
-  double f_number, film_radius;  ///< 0: wide open
+  double f_number, film_radius;  ///< f-number 0: wide open
 };
 const std::array<Case, 7> cases{{{"double_gauss_100mm_f2.0", 0, 40},
                                  {"double_gauss_100mm_f2.0", 4, 40},
@@ -49,7 +49,7 @@ Lens lens_of(const Case& c) {
   return c.f_number > 0 ? with_f_number(lens, c.f_number) : lens;
 }
 
-/// The exact ray of a line, from the plane of the last vertex.
+/// The exact ray of a line; starts in the plane of the last vertex.
 TracedRay<double> exact(const Lens& lens, const TwoPlanes& space, const Lines<double>& lines, std::size_t i,
                         std::size_t wavelength = 0) {
   const Vec3<double> film(lines.film_x[i], lines.film_y[i], space.film_z);
@@ -62,7 +62,7 @@ TracedRay<double> exact(const Lens& lens, const TwoPlanes& space, const Lines<do
 
 struct Errors {
   double rms_rad = 0, max_rad = 0, rms_mm = 0, max_mm = 0;
-  double share = 0;  ///< of the lines that pass
+  double share = 0;  ///< fraction of the lines that pass
 };
 
 /// Errors of the direction and of the offset from the reference point.
@@ -109,7 +109,7 @@ TEST(PolynomialFit, ErrorsFallWithTheDegreeAndAreWhatIsStated) {
       EXPECT_NEAR(found.rms_mm, fit.rms_mm, 0.1 * fit.rms_mm);
       EXPECT_LT(found.max_rad, fit.max_rad);
       EXPECT_LT(found.max_mm, fit.max_mm);
-      // With cylinders the worst points of the film are few: TheLargestErrorsHoldToTheCornerOfTheFilm.
+      // With cylinders few film points have the largest errors; see LargestErrorsHoldToTheCornerOfTheFilm.
       if (lens.rotationally_symmetric()) {
         EXPECT_GT(found.max_rad, 0.6 * fit.max_rad);
       }
@@ -119,7 +119,7 @@ TEST(PolynomialFit, ErrorsFallWithTheDegreeAndAreWhatIsStated) {
   }
 }
 
-// Fresh rays from the whole film, and as many from its corner, where errors have narrow peaks.
+// Half of the test rays come from the whole film, half from its corner, where errors have narrow peaks.
 TEST(PolynomialFit, TheLargestErrorsHoldToTheCornerOfTheFilm) {
   struct Focused {
     const char* id;
@@ -158,7 +158,7 @@ TEST(PolynomialFit, TheLargestErrorsHoldToTheCornerOfTheFilm) {
   }
 }
 
-// A cylinder so weak that its sections do not differ.
+// A cylinder too weak to change the lens.
 TEST(PolynomialFit, OfALensOfRevolutionIsAsGoodWithMirrorSymmetry) {
   Prescription prescription = data_prescription("double_gauss_100mm_f2.0");
   const Lens lens = compile(prescription);
@@ -179,8 +179,8 @@ TEST(PolynomialFit, OfALensOfRevolutionIsAsGoodWithMirrorSymmetry) {
 
 TEST(PolynomialFit, DoubleGaussIsAsGoodAsKnown) {
   // RMS angle times focal length, in micrometres: least squares over uniform samples give 28.6, 6.2, 1.03, 0.144 and
-  // 0.019 at f/2 and 12.3, 1.28, 0.132, 0.0124 and 0.0011 at f/4. The fit is denser at the edges, and has the film's
-  // centre in focus.
+  // 0.019 at f/2 and 12.3, 1.28, 0.132, 0.0124 and 0.0011 at f/4. The fit has denser samples at the edges and keeps the
+  // centre of the film in focus.
   const std::array<std::array<double, 5>, 2> limits{{{33, 7.4, 1.2, 0.17, 0.023}, {14, 1.4, 0.15, 0.014, 0.0013}}};
   for (std::size_t k = 0; k < limits.size(); ++k) {
     const Lens lens = lens_of(cases[k]);
@@ -217,7 +217,7 @@ TEST(PolynomialFit, TurnsWithTheCylinders) {
   const FilmPupilTable turned_pupils = FilmPupilTable::equal_area(turned, 14.4);
   const TwoPlanes &space = pupils.space(), &turned_space = turned_pupils.space();
   Lines<double> lines = lines_through<double>(pupils, 2000, 7), about;
-  // The pupils lie in other planes.
+  // The pupils of the sections lie in different planes.
   const double part = (turned_space.pupil_z - space.film_z) / space.depth();
   for (std::size_t i = 0; i < lines.size(); ++i) {
     const double fx = lines.film_x[i], fy = lines.film_y[i];
@@ -246,7 +246,7 @@ TEST(PolynomialFit, HoldsThePupilsOfItsMap) {
     const RayPolynomial polynomial = RayPolynomial::fit(lens, pupils, 3);
     Lines<float> lines = lines_through<float>(pupils, 5000, 2);
     double unmoved = 0;               // the radius that discs about the axis would need
-    for (int i = 0; i < 2000; ++i) {  // rims, also those of the film's edge
+    for (int i = 0; i < 2000; ++i) {  // rims at all film points and at the edge of the film
       const double turn = 0.1 * i, r = i % 2 == 0 ? c.film_radius : c.film_radius * i / 2000;
       const FilmPoint film{r * std::sin(turn), r * std::cos(turn)};
       const PupilSample sample = pupils.sample(film, 0.618 * i - std::floor(0.618 * i), 1);
@@ -323,13 +323,13 @@ TEST(PolynomialFit, EveryWavelengthHasItsOwn) {
     const Lines<double> lines = lines_through<double>(pupils, 1000, 5, w);
     Lines<double> rays = lines;
     EXPECT_LT(1e3 * focal_length * errors(lens, polynomial, rays.through(polynomial, {w}), lines, w).rms_rad, 0.1);
-    // The fit of another wavelength is worse by the chromatic aberration.
+    // The fit at another wavelength has the error of the chromatic aberration.
     const std::size_t other = (w + 1) % 3;
     EXPECT_GT(1e3 * focal_length * errors(lens, polynomial, rays.through(polynomial, {other}), lines, w).rms_rad, 1);
   }
 }
 
-// By few modes, which leave out much less than fits are wrong by, or what float adds.
+// Few modes suffice: their error is below the error of the fits and the rounding of float.
 TEST(PolynomialFit, WavelengthsOfFitsInNmAreNearlyTheFits) {
   const GlassCatalogue glasses = GlassCatalogue::load(std::filesystem::path(PETZVAL_TEST_DATA) / "glass");
   const auto even = [](double from, double to, int count) {
@@ -337,7 +337,7 @@ TEST(PolynomialFit, WavelengthsOfFitsInNmAreNearlyTheFits) {
     for (int w = 0; w < count; ++w) nm.push_back(from + (to - from) * w / (count - 1));
     return nm;
   };
-  // Uneven ones are joined by straight lines, and dispersion is steep at the end of a wide range.
+  // Unequally spaced wavelengths are interpolated linearly, and dispersion is steep at the end of a wide range.
   const std::vector<double> lines{404.6565, 435.8343, 632.8, 643.8469, 656.2725}, close{400, 401, 402, 700};
   for (const auto& nm : {even(400, 700, 13), even(380, 780, 21), lines, close}) {
     SCOPED_TRACE(nm[1]);
@@ -379,7 +379,7 @@ TEST(PolynomialFit, SaysWhyThereIsNone) {
   const std::array<double, 2> nm{656.2725, 486.1327};
   const Lens coloured = compile(data_prescription("double_gauss_100mm_f2_28deg"), nm, {.glasses = &glasses});
   expect_tokens(why(coloured, pupils, 5), {lens.name(), "wavelengths", 1, 2});
-  // The pupils of the open lens, traced through an almost closed one.
+  // The lens is almost closed, the pupils are wide open.
   expect_tokens(why(with_f_number(lens, 200), pupils, 11), {lens.name(), "polynomial"});
 }
 

@@ -42,7 +42,7 @@ struct Lines {
   Vec3<double> direction(std::size_t i) const { return {ray[3][i], ray[4][i], ray[5][i]}; }
 };
 
-/// `count` lines uniformly through the pupils of the whole film.
+/// `count` lines, uniform on the film and in its pupils.
 template <class T>
 Lines<T> lines_through(const FilmPupilTable& pupils, std::size_t count, std::uint32_t seed,
                        std::size_t wavelength = 0) {

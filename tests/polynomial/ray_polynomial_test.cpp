@@ -38,7 +38,7 @@ RayPolynomial::Domain domain(bool mirrors = false) {
 
 Section along_x(const RayPolynomial::Domain& d) { return d.along_x.value_or(Section{d.pupil_shift, d.pupil_radius}); }
 
-/// s = slope f + 0.05 p, o = 0.5 f + 8 p, and some higher terms; with mirror symmetry the slope along x is 0.8 of it.
+/// s = slope f + 0.05 p, o = 0.5 f + 8 p, with some higher terms; with mirror symmetry the slope along x is 0.8 slope.
 RayPolynomial::Fit numbers(int degree, double slope, double higher = 0, double nm = 587.5618, bool mirrors = false) {
   const std::size_t each = mirrors ? RayPolynomial::mirror_terms(degree).size() : 0;
   const std::size_t count = mirrors ? 2 * each : RayPolynomial::terms(degree).size();
@@ -59,7 +59,7 @@ RayPolynomial::Fit numbers(int degree, double slope, double higher = 0, double n
   return fit;
 }
 
-/// Lines all over the domain, edges and middle among them.
+/// Lines all over the domain, including its edges and its centre.
 template <class T>
 Lines<T> all_over(bool mirrors = false) {
   Lines<T> lines;
@@ -91,8 +91,7 @@ TEST(RayPolynomial, TermsAreAllOfTheDegree) {
   }
 }
 
-// Half of the monomials in fx, px, fy and py that are odd in the first two together and even in the others: those with
-// fx or with px split off.
+// Monomials in fx, px, fy and py that are odd in the first two together and even in the others.
 TEST(RayPolynomial, MirrorTermsAreAllOfTheDegree) {
   for (int degree = 3; degree <= 11; degree += 2) {
     const auto terms = RayPolynomial::mirror_terms(degree);
@@ -120,8 +119,8 @@ TEST(RayPolynomial, MirrorTermsAreAllOfTheDegree) {
 }
 
 TEST(RayPolynomial, AddsTheTermsInTheirOrder) {
-  // Compared with the explicit sum: the direction by its angle 2 atan |s| from the axis, the offset by its length and
-  // its angle to the plane of axis and direction, which a rotation about the normal keeps. Fields to 130 degrees.
+  // The explicit sum gives the direction by its angle 2 atan |s| to the axis, and the offset by its length and its
+  // angle to the plane of axis and direction, which a rotation about the normal keeps. Fields reach 130 degrees.
   const auto check = [](int degree, bool mirrors) {
     const auto d = domain(mirrors);
     const auto terms = RayPolynomial::terms(degree);
@@ -221,7 +220,7 @@ TEST(RayPolynomial, ComesBackToItsLines) {
                                    {numbers(degree, slope, n < 0 ? 0.005 : 0.02, 587.5618, n < 0)});
     Lines<double> lines = all_over<double>(n < 0);
     lines.through(polynomial);
-    // From anywhere on the ray, in the opposite direction.
+    // Reversed rays may start anywhere on their line.
     for (std::size_t i = 0; i < lines.size(); ++i) {
       const double far = i % 3 == 0 ? 0 : i % 3 == 1 ? 1e3 : 1e6;
       for (std::size_t k = 0; k < 3; ++k) {
@@ -235,7 +234,7 @@ TEST(RayPolynomial, ComesBackToItsLines) {
                        back.fates.data());
     for (std::size_t i = 0; i < lines.size(); ++i) {
       ASSERT_EQ(back.fates[i], RayFate::transmitted) << degree << " " << i;
-      const double far = i % 3 == 2 ? 2e-8 : 1e-10;  // 1e6 mm away a direction's rounding moves the line by 1e-10 mm
+      const double far = i % 3 == 2 ? 2e-8 : 1e-10;  // at 1e6 mm the rounding of a direction moves the line by 1e-10 mm
       EXPECT_NEAR(back.film_x[i], lines.film_x[i], far);
       EXPECT_NEAR(back.film_y[i], lines.film_y[i], far);
       EXPECT_NEAR(back.pupil_x[i], lines.pupil_x[i], far);
@@ -245,7 +244,7 @@ TEST(RayPolynomial, ComesBackToItsLines) {
 }
 
 TEST(RayPolynomial, DerivativesAreDifferences) {
-  // Film and pupil point of all lines move by two parameters; central differences of 1e-4 are right to 1e-7.
+  // Film and pupil points move with two parameters; central differences with step 1e-4 are accurate to 1e-7.
   for (const int n : {3, 7, 11, -3, -7, -11}) {  // negative: with mirror symmetry
     const int degree = std::abs(n);
     const RayPolynomial polynomial(degree, domain(n < 0),
@@ -295,7 +294,7 @@ TEST(RayPolynomial, GivesNothingOutsideItsDomain) {
     lines.add(20.01, 0, 0, 0);
     lines.add(0, -20.01, 0, 0);
     lines.add(0, 0, 7.1, 7.1);
-    lines.add(20, 0, -5.1, 0);  // the domain of the pupil has its middle at x = 5
+    lines.add(20, 0, -5.1, 0);  // the pupil domain is centred at x = 5
     for (const double bad : {nan, infinity, -infinity}) {
       lines.add(bad, 0, 0, 0);
       lines.add(0, 0, 0, bad);
@@ -313,7 +312,7 @@ TEST(RayPolynomial, GivesNothingOutsideItsDomain) {
     edge.through(polynomial, {0, each});
     expect_nothing(edge, 0);
 
-    // An ellipse.
+    // An elliptical domain.
     const RayPolynomial of_mirrors(5, domain(true), {numbers(5, -0.6, 0.02, 587.5618, true)});
     Lines<T> ends;
     ends.add(20, 0, -2 + 13.9, 0), ends.add(0, -20, 0, -5 - 9.9);
@@ -384,7 +383,7 @@ TEST(RayPolynomial, RaysDoNotDependOnTheirNeighbours) {
         EXPECT_EQ(one.ray[k][0], all.ray[k][i]) << i << " of " << fits << " fits, mirrors " << mirrors;
     }
   };
-  // Their coefficients lie in a register, in a pair, and in none.
+  // The coefficients fit one register, two registers, or need memory.
   for (const unsigned fits : {3u, 16u, 20u, 40u}) {
     for (const bool mirrors : {false, true}) check(float(), mirrors, fits), check(double(), mirrors, fits);
   }

@@ -21,7 +21,7 @@ using testing_aspheres::scan;
 using testing_batches::traced;
 using Vec = petzval::kernel::Vec<double>;
 
-/// Through points of the surface and some beside it, most of them far from upright.
+/// Rays through points of the surface or its surroundings, most of them steep.
 template <class T>
 std::vector<Ray<T>> steep_rays(const petzval::SurfaceRow& row, std::mt19937& random, double height, std::size_t count,
                                double sense) {
@@ -49,7 +49,7 @@ struct Count {
   int rays = 0, several = 0, doubtful = 0, wrong = 0, unsettled = 0;
 };
 
-/// Between equal media: the ray is as it was, and starts from its hit.
+/// Between equal media a ray keeps its direction and starts from its hit.
 template <class T>
 void judge(const petzval::SurfaceRow& row, std::mt19937& random, const std::string& what, Count& count) {
   const petzval::Lens lens = testing_lenses::one_surface(row);
@@ -107,8 +107,7 @@ TYPED_TEST(AsphereSearch, FindsTheFirstCrossingOfEveryLane) {
   EXPECT_LT(count.doubtful, count.rays / 5);
 }
 
-/// An asphere without a rim, whose term adds 1e-10 mm, is its base as near as that; and that term has a slope at 1e12
-/// mm.
+/// Without a rim, a term of 1e-10 mm moves hits by at most 1e-10 mm, although its slope is large at 1e12 mm.
 TYPED_TEST(AsphereSearch, AWeakTermChangesLittle) {
   using T = TypeParam;
   constexpr double eps = std::numeric_limits<T>::epsilon();
@@ -148,7 +147,7 @@ TYPED_TEST(AsphereSearch, AWeakTermChangesLittle) {
   EXPECT_GT(missed, 100);
 }
 
-/// The slope of this one is 4 at 5.83 mm, where its description ends.
+/// The slope of this asphere is 4 at 5.83 mm, where its clear aperture ends.
 TYPED_TEST(AsphereSearch, RimsEndWhereAnAsphereIsSteep) {
   petzval::SurfaceRow row;
   row.radius = 177.4, row.semi_diameter = 21.3;

@@ -17,15 +17,14 @@ namespace batch_iris_test {
 using namespace testing_batches;
 using petzval::Iris;
 
-/// Straight, hollow and rounded edges; none is parallel to an axis.
+/// Straight, hollow and rounded edges, not parallel to the axes.
 std::vector<Iris> irises() {
   return {{.blades = 6, .rotation_rad = 0.3},
           {.blades = 4, .roundness = -0.8, .rotation_rad = 0.2},
           {.blades = 5, .roundness = 0.2, .rotation_rad = 0.1}};
 }
 
-/// Distance of a ray's crossing of the stop to the nearest edge, > 0 inside; nothing if the ray does not reach the
-/// stop.
+/// Distance of a ray's crossing of the stop to the nearest edge, above 0 inside; nullopt if the ray misses the stop.
 template <class T>
 std::optional<double> room_at_the_stop(const Lens& lens, const Ray<T>& ray, Travel travel) {
   std::optional<double> room;
@@ -70,7 +69,7 @@ TYPED_TEST(BatchIris, ClipsWhatCrossesTheStopOutsideAnEdge) {
           const bool reached = open.fates[i] == RayFate::transmitted ||
                                (travel == Travel::to_film ? open.surfaces[i] > stop : open.surfaces[i] < stop);
           const auto room = reached ? room_at_the_stop(bladed, rays[i], travel) : std::nullopt;
-          // Either fate is right within the error of the crossing.
+          // Within the error of the crossing either fate is correct.
           if (room && std::abs(*room) < 1000 * std::numeric_limits<T>::epsilon() * sample.size) continue;
           if (room) {
             const auto one = petzval::trace(bladed, rays[i], {.travel = travel});
@@ -93,7 +92,7 @@ TYPED_TEST(BatchIris, ClipsWhatCrossesTheStopOutsideAnEdge) {
   }
 }
 
-/// A plane stop of 10 mm between two more planes, in air.
+/// A plane stop of 10 mm between two planes, in air.
 petzval::Prescription window() {
   petzval::Prescription p;
   p.name = "window";
@@ -101,7 +100,7 @@ petzval::Prescription window() {
   return p;
 }
 
-/// Fates of rays along the axis at places of the stop.
+/// Fates of rays parallel to the axis through points of the stop.
 template <class T>
 std::vector<RayFate> fates_at(const Lens& lens, const std::vector<std::array<T, 2>>& places,
                               const BatchOptions& options) {
@@ -144,7 +143,7 @@ TYPED_TEST(BatchIris, WithoutAperturesEveryRimIsOpen) {
   for (const auto& sample : telling()) {
     petzval::Prescription wide = sample.prescription;
     if (std::any_of(wide.surfaces.begin(), wide.surfaces.end(), [](const auto& s) { return !s.aspheric.empty(); })) {
-      continue;  // their description depends on the aperture
+      continue;  // their tables depend on the aperture
     }
     for (auto& s : wide.surfaces) {
       s.semi_diameter = std::numeric_limits<double>::infinity();
@@ -158,7 +157,7 @@ TYPED_TEST(BatchIris, WithoutAperturesEveryRimIsOpen) {
         options.apertures = false;
         const auto found = traced(sample.lens, rays, options);
         for (std::size_t i = 0; i < rays.size(); ++i) {
-          if (wanted.fates[i] == RayFate::vignetted) continue;  // by the edge of an element
+          if (wanted.fates[i] == RayFate::vignetted) continue;  // by an edge of an element
           ASSERT_EQ(found.fates[i], wanted.fates[i]) << sample.id << " " << text(options) << " ray " << i;
           ASSERT_EQ(found.surfaces[i], wanted.surfaces[i]) << sample.id << " " << text(options) << " ray " << i;
           ASSERT_NE(found.fates[i], RayFate::vignetted) << sample.id << " " << text(options) << " ray " << i;

@@ -37,7 +37,7 @@ bool refused(const Ray<T>& ray) {
   return !finite(ray) || !(std::abs(length - 1) < petzval::unit_direction_tolerance);
 }
 
-/// Rays beyond any lens.
+/// Rays that miss every lens.
 template <class T>
 std::vector<Ray<T>> absurd_rays() {
   constexpr auto limits = std::numeric_limits<T>();
@@ -80,7 +80,7 @@ TYPED_TEST(BatchOf, EveryCountAndPlaceGivesARayTheSameBits) {
       for (const BatchOptions& options : ways(travel)) {
         const Answer<T> whole = traced(sample.lens, rays, options);
         for (std::size_t count = 0; count < 130; ++count) {
-          // Each count puts the rays at another place of the batch, in memory aligned to one element only.
+          // Each count shifts the rays within the batch, in memory that is aligned to one element only.
           const std::size_t start = count * 37 % (rays.size() - count), shift = count % 4;
           const std::vector<Ray<T>> part(rays.begin() + static_cast<std::ptrdiff_t>(start),
                                          rays.begin() + static_cast<std::ptrdiff_t>(start + count));
@@ -128,7 +128,7 @@ TYPED_TEST(BatchOf, DirectionsWithinTheTolerancePassAndAreCorrected) {
             const double x = d.x, y = d.y, z = d.z;
             EXPECT_LE(std::abs(x * x + y * y + z * z - 1), corrected) << sample.id << " " << text(options);
           }
-          // Rims decide otherwise of a few.
+          // A few fates at rims differ.
           EXPECT_EQ(kept >= 0.95 * passed, std::abs(part) < 1)
               << sample.id << " " << text(options) << " " << part << ": " << kept << " of " << passed;
           EXPECT_EQ(std::abs(part) > 1 ? kept : 0, 0) << sample.id;
@@ -205,7 +205,7 @@ TYPED_TEST(BatchOf, ALostRayComesBackAsItWentIn) {
           if (answer.fates[i] == RayFate::transmitted) continue;
           if (finite(rays[i])) {
             ASSERT_TRUE(same_bits(answer.rays[i], rays[i])) << what;
-          } else {  // at the origin along the axis
+          } else {  // the default ray: origin 0 along the axis
             ASSERT_EQ(answer.rays[i].origin, petzval::Vec3<T>(0, 0, 0)) << what;
             ASSERT_EQ(answer.rays[i].direction * answer.rays[i].direction, petzval::Vec3<T>(0, 0, 1)) << what;
           }

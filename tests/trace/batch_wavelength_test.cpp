@@ -73,7 +73,7 @@ TYPED_TEST(BatchWavelengths, MixedInABatchAreWhatEachGivesAlone) {
   }
 }
 
-// Constants of 4 to 32 wavelengths are permuted in one register or two, those of more are gathered.
+// Constants of 4 to 32 wavelengths are permuted in one or two registers, larger tables are gathered.
 TYPED_TEST(BatchWavelengths, MixedInABatchAreWhatEachGivesAloneHoweverManyThereAre) {
   using T = TypeParam;
   static const auto glasses = petzval::GlassCatalogue::load(std::filesystem::path(PETZVAL_TEST_DATA) / "glass");
@@ -135,7 +135,7 @@ TYPED_TEST(BatchWavelengths, ThatWereNotCompiledLoseTheWholeBatch) {
   }
 }
 
-/// nm of all kinds: compiled, between, and (one in 19) none that the lens covers.
+/// Wavelengths in nm: compiled, between compiled ones, and 1 in 19 outside the range of the lens.
 std::vector<float> any_nm(std::size_t count) {
   constexpr float bad[] = {std::numeric_limits<float>::quiet_NaN(), 435, 657, 0,
                            std::numeric_limits<float>::infinity()};
@@ -149,7 +149,7 @@ std::vector<float> any_nm(std::size_t count) {
 
 bool covered(float nm) { return nm >= 435.8342f && nm <= 656.2726f; }
 
-/// The distance of two rays, of points in the size of the lens.
+/// Difference of two rays; positions are relative to the size of the lens.
 template <class T>
 double apart(const Ray<T>& a, const Ray<T>& b, double size) {
   double sum = 0;
@@ -189,7 +189,7 @@ TYPED_TEST(BatchWavelengths, InNmGiveTheRaysOfALensCompiledForThem) {
           worst = std::max(worst, apart(found.rays[i], wanted.ray, sample.size));
           ++passed;
         }
-        // Indices are right within 2e-8, which a lens makes larger as it does the rounding of floats.
+        // Indices are accurate to 2e-8; a lens amplifies this error like the rounding of floats.
         EXPECT_LT(worst, sizeof(T) == 4 ? 2e-4 : 1e-6) << sample.id << " " << text(options);
         EXPECT_GT(passed, 8u) << sample.id << " " << text(options);
         EXPECT_LE(lost, sizeof(T) == 4 ? 2u : 0u) << sample.id << " " << text(options);

@@ -26,7 +26,7 @@ using petzval::RayArrays;
 using petzval::RayFate;
 using petzval::Travel;
 
-/// Every arithmetic on every instruction set of this machine, as options.
+/// Options for every arithmetic on every instruction set of this machine.
 inline std::vector<BatchOptions> ways(Travel travel = Travel::to_film) {
   std::vector<BatchOptions> result;
   for (const Arithmetic arithmetic : {Arithmetic::fast, Arithmetic::reproducible}) {
@@ -59,7 +59,7 @@ inline const std::vector<testing_lenses::Sample>& telling() {
   return samples;
 }
 
-/// Random numbers from integer operations, the same on every machine (splitmix64).
+/// Random numbers from integer operations (splitmix64), equal on every machine.
 class Numbers {
  public:
   explicit Numbers(std::uint64_t seed) : state_(seed) {}
@@ -85,8 +85,8 @@ Ray<T> through(const petzval::Vec3<double>& target, const petzval::Vec3<double>&
           {static_cast<T>(d.x), static_cast<T>(d.y), static_cast<T>(d.z)}};
 }
 
-/// Rays from film or scene towards a lens. Many pass, some end at every kind of edge, and one in eight is steep or runs
-/// against the light. The same on every machine.
+/// Rays from film or scene towards a lens. Many pass, some end at every kind of edge, and every eighth is steep or runs
+/// against the light. Equal on every machine.
 template <class T>
 std::vector<Ray<T>> rays_for(const testing_lenses::Sample& sample, Travel travel, std::size_t count,
                              std::uint64_t seed = 1) {
@@ -99,7 +99,7 @@ std::vector<Ray<T>> rays_for(const testing_lenses::Sample& sample, Travel travel
   const double before = lens.film_z() - met.vertex_z;
   const double ahead = to_film       ? sample.size
                        : before == 0 ? -sample.size
-                                     : -before;  // to the plane that a ray comes from or goes to
+                                     : -before;  // distance to the plane at which a ray starts or ends
   Numbers random(seed);
   std::vector<Ray<T>> rays;
   for (std::size_t i = 0; i < count; ++i) {
@@ -114,7 +114,7 @@ std::vector<Ray<T>> rays_for(const testing_lenses::Sample& sample, Travel travel
   return rays;
 }
 
-/// Rays as arrays, `shift` elements into their memory, with guard elements around them.
+/// Rays as arrays that start `shift` elements into their memory, between guard elements.
 template <class T>
 class Arrays {
  public:

@@ -15,7 +15,7 @@
 namespace petzval {
 namespace clearances_test {
 
-/// Rays towards and beside the rear of a lens, as columns.
+/// Rays towards and past the rear of a lens, as columns.
 struct Columns {
   std::array<std::vector<double>, 6> values;
 
@@ -67,7 +67,7 @@ TEST(Clearances, AreNotNegativeExactlyForRaysThatPass) {
 }
 
 TEST(Clearances, AreTheLeastRoomAtARim) {
-  // A stop alone limits, with a rim of 2, an obscuration of 1 and six straight edges, one at x = sqrt 3.
+  // The only aperture is a stop with a rim of 2, an obscuration of 1 and six straight edges, the first at x = sqrt 3.
   Prescription p;
   p.name = "one rim";
   p.surfaces = {{.thickness = 1, .semi_diameter = 2, .obscuration_semi_diameter = 1, .stop = true},
@@ -86,13 +86,13 @@ TEST(Clearances, AreTheLeastRoomAtARim) {
     EXPECT_NEAR(clearance(0, 1.2, apertures), (1.44 - 1) / 4, 1e-12);
     EXPECT_NEAR(clearance(1.4, 0, apertures), edge - 0.7, 1e-12);
     EXPECT_NEAR(clearance(-1.2, 0, apertures), (1.44 - 1) / 4, 1e-12);
-    EXPECT_NEAR(clearance(0, 4, apertures), -3.0 / 4, 1e-12);  // v / (1 - v) of v = -3
+    EXPECT_NEAR(clearance(0, 4, apertures), -3.0 / 4, 1e-12);  // v / (1 - v) for v = -3
     EXPECT_NEAR(clearance(1.8, 0, apertures), (edge - 0.9) / (1.9 - edge), 1e-12);
   }
 }
 
 TEST(Clearances, WithoutAperturesAreTheLeastOfAll) {
-  // The first rim is passed by little room, the second is missed by much.
+  // The ray passes just inside the first rim and far outside the second.
   Prescription p;
   p.name = "two rims";
   p.surfaces = {{.thickness = 1, .semi_diameter = 2, .stop = true}, {.thickness = 50, .semi_diameter = 1}};

@@ -25,12 +25,12 @@ using Jet = ceres::Jet<double, 1>;
 using kernel::Vec;
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
-/// Reciprocal distances from the last hit, along the ray, of its sagittal and tangential focus.
+/// Inverse distances of the sagittal and tangential focus from the last hit, along the ray.
 struct Vergences {
   double sagittal = 0, tangential = 0;
 };
 
-/// Principal curvatures of a surface of revolution at a height, from the prescription: across the meridian and in it.
+/// Sagittal and tangential curvature of a surface of revolution at a height, from the prescription.
 struct Curvatures {
   double sagittal, tangential, slope;
 };
@@ -46,8 +46,8 @@ Curvatures curvatures(const LensSurface& s, double r) {
   return {slope_over_r / length, bend / (length * length * length), slope};
 }
 
-/// The foci of the rays about one in the meridian of y that comes from z (infinite, or of a point), by Coddington:
-/// n'/s' = n/s + (n' cos I' - n cos I) c_s, and with cos^2 at both ends and c_t in the meridian.
+/// Foci of the pencil around a ray in the y-z plane from a point at z or at infinity, by Coddington: n'/s' = n/s + (n'
+/// cos I' - n cos I) c_s in the sagittal section. The tangential section has c_t and the factors cos^2 I' and cos^2 I.
 Vergences by_coddington(const Lens& lens, const Ray<double>& ray, double z) {
   std::vector<Vec<double>> hits;
   kernel::trace(petzval::kernel::view<double>(lens), kernel::to_kernel(ray.origin), kernel::to_kernel(ray.direction),
@@ -67,7 +67,7 @@ Vergences by_coddington(const Lens& lens, const Ray<double>& ray, double z) {
       const double d = along(hits[i - 1], hits[i]);
       v = {v.sagittal / (1 - d * v.sagittal), v.tangential / (1 - d * v.tangential)};
     }
-    // The normal along the ray; curvatures count from there.
+    // The normal is oriented along the ray, and curvatures follow its sign.
     const double height = hits[i].y;
     const auto [c_s, c_t, slope] = curvatures(s, std::abs(height));
     const double signed_slope = std::copysign(slope, slope * height), length = std::hypot(1, slope);
@@ -90,7 +90,7 @@ Vergences by_coddington(const Lens& lens, const Ray<double>& ray, double z) {
   return v;
 }
 
-/// The same from neighbours of the ray, from the same object point.
+/// Foci from derivatives of the ray with respect to its direction from the object point.
 Vergences by_derivatives(const Lens& lens, const Ray<double>& ray, double z) {
   Vergences v;
   for (const bool sagittal : {true, false}) {
@@ -98,7 +98,7 @@ Vergences by_derivatives(const Lens& lens, const Ray<double>& ray, double z) {
     Vec<Jet> direction{Jet(ray.direction.x), Jet(ray.direction.y), Jet(ray.direction.z)};
     (sagittal ? origin.x : origin.y).v[0] = 1;
     if (std::isfinite(z)) {
-      // d = (o - point) / |o - point|: its derivative is that of o, without the part along d, over the distance.
+      // d = (o - point) / |o - point|, so that dd is the component of do perpendicular to d, divided by the distance.
       const double distance = (ray.origin.z - z) / ray.direction.z;
       const double part = sagittal ? ray.direction.x : ray.direction.y;
       direction.x.v[0] = ((sagittal ? 1 : 0) - part * ray.direction.x) / distance;
@@ -117,7 +117,7 @@ Vergences by_derivatives(const Lens& lens, const Ray<double>& ray, double z) {
   return v;
 }
 
-// Spherical and aspheric lenses, mirrors, an eye and fisheyes, to the edges of their fields.
+// Spherical and aspheric lenses, mirrors, an eye and fisheyes, up to the edge of their fields.
 TEST(Coddington, FociAreThoseOfTheNeighbouringRays) {
   double worst = 0;
   int rays = 0;

@@ -33,7 +33,7 @@ struct State {
   std::array<T, 4> v;  ///< x, y, L, M
 };
 
-/// From the plane z_in to the plane z_out. sign: of the z component of the direction in front of the lens.
+/// Traces from the plane z_in to the plane z_out. sign: sign of the z component of the direction in front of the lens.
 template <class T>
 State<T> through(const LensView<petzval::kernel::Storage<T>>& lens, const State<T>& in,
                  petzval::kernel::Storage<T> z_in, petzval::kernel::Storage<T> z_out, bool& transmitted,
@@ -88,7 +88,7 @@ TEST(Derivative, AgreesWithCentralDifferences) {
       bool passed = false;
       const State<Jet> with = through(view, seeded(ray), z, out, passed, static_cast<Vec<Jet>*>(nullptr), towards);
       for (int j = 0; j < 4; ++j) {
-        // Differences over long double, of fourth order.
+        // Fourth-order differences in long double.
         const long double unit = j < 2 ? s.size : 1, h = 2e-6L * unit;
         const auto at = [&](long double step) {
           State<long double> in{{ray.origin.x, ray.origin.y, ray.direction.x, ray.direction.y}};

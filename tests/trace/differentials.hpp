@@ -27,7 +27,7 @@ class DifferentialsOf : public testing::Test {};
 template <class T>
 using Tangents = std::vector<Ray<T>>;
 
-/// Random changes of rays: of positions up to the size of the lens, of directions up to 1, perpendicular to them.
+/// Random tangents of rays: positions change by up to the size of the lens, directions by up to 1, perpendicularly.
 template <class T>
 Tangents<T> tangents_for(const std::vector<Ray<T>>& rays, double size, std::uint64_t seed) {
   Numbers random(seed);
@@ -42,7 +42,7 @@ Tangents<T> tangents_for(const std::vector<Ray<T>>& rays, double size, std::uint
   return tangents;
 }
 
-/// Rays and their changes with two parameters.
+/// Rays and their tangents for two parameters.
 template <class T>
 struct Beam {
   std::vector<Ray<T>> rays;
@@ -85,7 +85,7 @@ bool is_zero(const Ray<T>& tangent) {
   return tangent.origin == none && tangent.direction == none;
 }
 
-/// A lens of one surface of a kind that the data do not have.
+/// A lens with one surface of a kind that is missing in data/.
 inline testing_lenses::Sample one_surface(const std::string& id, petzval::SurfaceRow row, double rim) {
   row.semi_diameter = rim;
   row.thickness = row.mirror ? -3 * rim : 3 * rim;
@@ -96,7 +96,7 @@ inline testing_lenses::Sample one_surface(const std::string& id, petzval::Surfac
   return {id, p, petzval::compile(p), rim};
 }
 
-/// Kinds of surfaces that the data do not have.
+/// Kinds of surfaces that are missing in data/.
 inline const std::vector<testing_lenses::Sample>& made() {
   using petzval::Section;
   static const std::vector<testing_lenses::Sample> samples{

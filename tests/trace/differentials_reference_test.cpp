@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Derivatives of batches compared with those of the kernel with dual numbers (ceres::Jet over long double).
+// Derivatives of batches, compared with dual numbers in the kernel (ceres::Jet over long double).
 #include <gtest/gtest.h>
 
 #pragma GCC diagnostic push
@@ -26,12 +26,12 @@ using Jet = ceres::Jet<L, 6>;
 constexpr double infinity = std::numeric_limits<double>::infinity();
 using petzval::kernel::Vec;
 
-/// The end of a ray and the derivatives of its six numbers by the six in front of the lens.
+/// The end of a ray and the Jacobian of its six numbers with respect to the six numbers in front of the lens.
 struct Exactly {
   RayFate fate;
   std::array<Jet, 6> v;
 
-  /// Number k of the change of the ray by a tangent.
+  /// Component k of the derivative along a tangent.
   L along(std::size_t k, const std::array<L, 6>& tangent) const {
     L sum = 0;
     for (int i = 0; i < 6; ++i) sum += v[k].v[i] * tangent[static_cast<std::size_t>(i)];
@@ -44,7 +44,7 @@ std::array<L, 6> numbers(const Ray<T>& r) {
   return {r.origin.x, r.origin.y, r.origin.z, r.direction.x, r.direction.y, r.direction.z};
 }
 
-/// Through surfaces [first, last) in the order of travel.
+/// Traces through surfaces [first, last) in the order of travel.
 Exactly exactly(const petzval::kernel::LensView<L>& lens, std::array<L, 6> ray, Travel travel, std::size_t first,
                 std::size_t last) {
   const L length = std::sqrt(ray[3] * ray[3] + ray[4] * ray[4] + ray[5] * ray[5]);
@@ -72,7 +72,7 @@ L distance(const std::array<L, 6>& a, const std::array<L, 6>& b, std::size_t fir
   return std::sqrt(sum);
 }
 
-/// The change of the derivatives for one eps in each number of the ray, or of its tangent in front of any surface.
+/// Change of the derivatives for a change of one eps in each number of the ray or of its tangent, at any surface.
 struct Unit {
   L place = 0, turn = 0;
 };
@@ -98,7 +98,7 @@ class Truth {
     }
   }
 
-  /// Whether it and the rays one eps away pass the surfaces.
+  /// True if the ray and the rays one eps away pass the surfaces.
   bool steady() const { return steady_; }
 
   std::array<L, 6> end(const std::array<L, 6>& tangent) const { return change(before_.back(), tangent); }
@@ -135,7 +135,7 @@ struct Worst {
   std::string where;
 };
 
-/// The worst errors of batches, fast and reproducible, on a lens.
+/// Largest errors of fast and reproducible batches on a lens.
 template <class T>
 void judge(const testing_lenses::Sample& sample, std::array<Worst, 2>& worst, int& judged) {
   const L eps = std::numeric_limits<T>::epsilon();

@@ -31,7 +31,7 @@ Ray<double> in_double(const Ray<T>& r) {
   return {Vec3<double>(r.origin), Vec3<double>(r.direction)};
 }
 
-/// The worst errors of both arithmetics, eps.
+/// Largest errors of both arithmetics, in eps.
 template <class T>
 class Most {
  public:
@@ -55,7 +55,7 @@ class Most {
   std::string where_[2];
 };
 
-/// Every ray of every lens in both directions and arithmetics: take(sample, options, beam, answer, ray).
+/// Calls take(sample, options, beam, answer, ray) for every ray of every lens in both directions and arithmetics.
 template <class T, class Take>
 void on_every_ray(std::size_t rays, const Take& take) {
   for (const auto* samples : {&testing_lenses::all(), &made()}) {
@@ -70,7 +70,7 @@ void on_every_ray(std::size_t rays, const Take& take) {
 
 // ---- Laws
 
-// n (x_u d_v - x_v d_u) is the same in front of a lens and behind it: J^T Omega J = Omega for two changes.
+// The Lagrange invariant n (x_u d_v - x_v d_u) of two tangents is equal on both sides of a lens: J^T Omega J = Omega.
 TYPED_TEST(DifferentialsOf, TheInvariantOfLagrangeIsKept) {
   using T = TypeParam;
   Most<T> most;
@@ -109,7 +109,7 @@ TYPED_TEST(DifferentialsOf, DirectionsKeepTheirLength) {
   most.close("differentials: unit length of directions", 32);
 }
 
-// Doubled changes give doubled derivatives to the bit; a sum of changes gives the sum.
+// Doubled tangents give doubled derivatives to the bit; a sum of tangents gives the sum.
 TYPED_TEST(DifferentialsOf, AreLinear) {
   using T = TypeParam;
   Most<T> most;
@@ -248,8 +248,8 @@ TYPED_TEST(DifferentialsOf, ResultsMayReplaceWhatCameIn) {
   }
 }
 
-// Invalid rays and tangents do not change their neighbours; an invalid tangent changes neither its ray nor the other
-// one.
+// Invalid rays and tangents do not change other lanes; an invalid tangent changes neither its ray nor the other
+// tangent.
 TYPED_TEST(DifferentialsOf, NoNumbersStayInTheirLane) {
   using T = TypeParam;
   const T nan = std::numeric_limits<T>::quiet_NaN(), infinity = std::numeric_limits<T>::infinity();

@@ -1,6 +1,5 @@
-// SPDX-License-Identifier: Apache-2.0
-// Fates on both sides of every edge and on the edge itself: one ray a call, and batches of both arithmetics on every
-// instruction set.
+// SPDX-License-Identifier: Apache-2.0 Fates on both sides of every edge and on the edge itself, for single rays and for
+// batches of both arithmetics on every instruction set.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -19,7 +18,7 @@ using testing_lenses::one_surface;
 template <class T>
 class EdgesOf : public testing::Test {
  public:
-  /// The relative distance from an edge at which fates must be right.
+  /// Relative distance from an edge at which fates must be correct.
   static constexpr double near = sizeof(T) == 4 ? 1e-5 : 1e-9;
 };
 using Plain = testing::Types<float, double>;
@@ -39,7 +38,7 @@ Ray<T> ray_of(double x, double y, double z, double dx, double dy, double dz) {
           {static_cast<T>(dx), static_cast<T>(dy), static_cast<T>(dz)}};
 }
 
-/// Every tracer gives the ray this fate.
+/// Checks that every tracer gives the ray this fate.
 template <class T>
 void expect_fate(const Lens& lens, const Ray<T>& ray, Travel travel, RayFate fate, const std::string& what) {
   EXPECT_EQ(name(petzval::trace(lens, ray, {.travel = travel}).fate), name(fate)) << what << ", one ray";
@@ -82,7 +81,7 @@ TYPED_TEST(EdgesOf, TheCriticalAngle) {
     expect_fate(flat, ray_of<TypeParam>(-3, 1, -2, sine, 0, cosine), Travel::to_film, fate, what);
     expect_fate(behind, ray_of<TypeParam>(3, 1, 2, 0.6 * sine, 0.8 * sine, -cosine), Travel::to_scene, fate, what);
   }
-  // The same on a sphere: for rays along the axis the sine of incidence is height over radius.
+  // On a sphere, the sine of incidence of rays parallel to the axis is height divided by radius.
   const Lens round = one_surface(surface(-30, 0, 1), 1.5);
   for (const double off : {-this->near, this->near}) {
     expect_fate(round, ray_of<TypeParam>(20 * (1 + off), 0, -30, 0, 0, 1), Travel::to_film,
@@ -101,7 +100,7 @@ std::vector<SurfaceRow> kinds() {
   return rows;
 }
 
-// All these squares are exact in binary: only the comparison decides.
+// All squares are exact in binary, so that only the comparison decides.
 TYPED_TEST(EdgesOf, RimAndHoleThemselvesBelongToTheClearAperture) {
   struct Place {
     double x, y;

@@ -9,7 +9,7 @@
 
 namespace testing_lenses {
 
-/// The tables of a lens in another floating-point type, and a view of them.
+/// The tables of a lens in another floating-point type, with a view.
 template <class R>
 struct Tables {
   std::vector<petzval::kernel::SurfaceTable<R>> surfaces;

@@ -1,9 +1,9 @@
-// SPDX-License-Identifier: Apache-2.0
-// One surface at a time, at the limits of surfaces and rays: one ray a call, and batches of both arithmetics on every
-// instruction set, compared with rays in long double.
+// SPDX-License-Identifier: Apache-2.0 Single surfaces at the limits of surfaces and rays. Single rays and batches of
+// both arithmetics on every instruction set are compared with rays in long double.
 //
 // The unit of errors is the change of the exact ray for a change of one eps in each of its numbers, plus one eps of the
-// height or of a unit direction: on a single surface about |dP| cos(incidence) / (eps (height + distance slope)).
+// height or of a unit direction. On a single surface an error is about
+// |dP| cos(incidence) / (eps (height + distance slope)) units.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -57,7 +57,7 @@ struct Sweep {
   std::size_t rays = 200;
 };
 
-/// Skew rays to points within the height, from 0.5 to 1.5 of the distance. side: the sign of z of their directions.
+/// Skew rays to points within the height, from 0.5 to 1.5 of the distance. side: sign of z of their directions.
 template <class T>
 std::vector<Ray<T>> skew_rays(const SurfaceRow& row, const Sweep& sweep, double side) {
   Numbers random(7);
@@ -72,7 +72,7 @@ std::vector<Ray<T>> skew_rays(const SurfaceRow& row, const Sweep& sweep, double 
   return rays;
 }
 
-/// Skew rays through a surface, both ways.
+/// Skew rays through a surface in both directions.
 template <class T>
 void both_ways(Judge<T>& judge, const SurfaceRow& row, Sweep sweep, const std::string& what, double n_in = 1) {
   const double limit = 0.95 * equator(row);
@@ -272,7 +272,7 @@ TYPED_TEST(ExtremesOf, EqualMediaLeaveDirectionsWithinOneEps) {
                       "1 eps");
 }
 
-// From one surface to the next, which may lie in front of the start: sags of prescriptions overlap.
+// The next surface may lie in front of the start of the ray, as sags of prescriptions overlap.
 TYPED_TEST(ExtremesOf, FromSurfaceToSurface) {
   Judge<TypeParam> judge;
   for (const double first : {20.0, -20.0, 60.0, 0.0}) {
@@ -331,7 +331,7 @@ TYPED_TEST(ExtremesOf, AThousandSurfaces) {
 TYPED_TEST(ExtremesOf, BackwardRaysIntoAFisheye) {
   using T = TypeParam;
   const auto sample = testing_lenses::load("fisheye_6.3mm_f2.8");
-  // Rays from the stop outwards: of rays to the whole front, few with direction -z pass.
+  // Rays start at the stop, as few rays with direction -z that meet the front would pass.
   const auto view = petzval::kernel::view<double>(sample.lens);
   const std::size_t stop = sample.lens.stop().value();
   Numbers random(12);

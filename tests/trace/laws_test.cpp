@@ -67,7 +67,7 @@ class LawsOf : public testing::Test {};
 using Plain = testing::Types<float, double>;
 TYPED_TEST_SUITE(LawsOf, Plain);
 
-// The lenses include mirrors, cylinders, aspheres and the eye, with water behind it.
+// The lenses include mirrors, cylinders, aspheres and an eye with water in image space.
 TYPED_TEST(LawsOf, ATurnedRayComesBack) {
   using T = TypeParam;
   const double eps = std::numeric_limits<T>::epsilon();
@@ -201,7 +201,7 @@ TYPED_TEST(LawsOf, EqualMediaLeaveARayAsItIs) {
   const petzval::Lens lens = petzval::compile(p);
   std::mt19937 random(4);
   std::uniform_real_distribution<T> uniform(T(-0.3), T(0.3));
-  for (int i = 0; i < 200; ++i) {  // some directions are off unit length by rounding
+  for (int i = 0; i < 200; ++i) {  // rounding takes some directions off unit length
     const T x = uniform(random), y = uniform(random);
     const Ray<T> ray{{1, 2, -4}, {x, y, std::sqrt(1 - x * x - y * y)}};
     for (const Travel travel : {Travel::to_film, Travel::to_scene}) {

@@ -14,7 +14,7 @@
 #include "petzval/trace/trace.hpp"
 #include "trace/sequential.hpp"
 
-/// The lenses of data/lenses and rays that pass them.
+/// The lenses of data/lenses and transmitted rays.
 namespace testing_lenses {
 
 struct Sample {
@@ -35,7 +35,7 @@ inline Sample sample_of(petzval::Prescription prescription, const std::string& i
 
 inline Sample load(const std::string& id) { return sample_of(petzval::testing::data_prescription(id), id); }
 
-/// Every lens of data/lenses, in the order of names, each position of those that zoom.
+/// Every lens of data/lenses in the order of names; zooms in each position.
 inline const std::vector<Sample>& all() {
   static const std::vector<Sample> samples = [] {
     std::vector<Sample> result;

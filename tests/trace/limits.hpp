@@ -14,7 +14,7 @@
 #include "core/text.hpp"
 #include "extended.hpp"
 
-/// Compares tracers with exact rays: one ray a call, and batches of both arithmetics on every instruction set.
+/// Compares single rays and batches of both arithmetics on every instruction set with exact rays.
 namespace testing_limits {
 
 using petzval::Arithmetic;
@@ -26,7 +26,7 @@ using petzval::Travel;
 using L = long double;
 using Exactly = petzval::kernel::TraceState<L>;
 
-/// A fate must be that of an exact ray whose numbers differ by at most this many eps.
+/// A fate must equal the fate of an exact ray whose numbers differ by at most this many eps.
 inline constexpr int eps_beside = 64;
 
 /// The scale of one eps: a coordinate moves by eps x max(|it|, place), a component of the direction by eps x max(|it|,
@@ -46,7 +46,7 @@ class Exact {
     return traced(tables_, exact(ray.origin), exact(ray.direction), travel);
   }
 
-  /// Whether a ray within some eps of this one, with rims changed by as much, has this end.
+  /// True if a ray within some eps of this ray, with rims changed by as much, has this end.
   template <class T>
   bool ends_so_nearby(const Ray<T>& ray, Travel travel, const Floors& floors, RayFate fate, int surface) {
     const L eps = std::numeric_limits<T>::epsilon() * L(eps_beside);
@@ -74,7 +74,7 @@ class Exact {
   /// The unit of errors: the change of the end for changes of one eps of T in each number of the ray, and eps x floors.
   struct Unit {
     double place = 0, turn = 0;
-    bool steady = true;  ///< whether the changed rays pass too
+    bool steady = true;  ///< true if the changed rays pass
   };
   template <class T>
   Unit unit(const Ray<T>& ray, Travel travel, const Floors& floors, const Exactly& end) const {
@@ -112,7 +112,7 @@ class Exact {
   testing_lenses::Tables<L> tables_, wider_, narrower_;
 };
 
-/// The worst errors of the tracers in one case, in the unit above.
+/// Largest errors of the tracers in one case, in the unit above.
 template <class T>
 class Judge {
  public:
@@ -162,7 +162,7 @@ class Judge {
     }
   }
 
-  /// Compares the worst errors with the bound, eps, and reports them.
+  /// Compares the largest errors with a bound in eps and reports the errors.
   void close(const std::string& row, double bound, double least_measured = 0.2) const {
     EXPECT_EQ(wrong_, 0u) << row << ": fates that no ray within " << eps_beside << " eps has";
     EXPECT_GE(static_cast<double>(measured_), least_measured * static_cast<double>(judged_)) << row;
@@ -173,7 +173,7 @@ class Judge {
     testing_report::put(row, testing_report::batch<T>, number(1) + " / " + number(2), limit);
   }
 
-  /// Share of the fates that differ from those of the exact rays.
+  /// Fraction of the fates that differ from exact rays.
   double beside() const { return static_cast<double>(beside_) / static_cast<double>(judged_); }
 
  private:
@@ -192,7 +192,7 @@ class Judge {
     double error = 0;
     std::string where;
   };
-  std::array<Worst, 3> worst_;  // one ray a call, batch fast, batch reproducible
+  std::array<Worst, 3> worst_;  // single rays, fast batches, reproducible batches
   std::size_t judged_ = 0, measured_ = 0, beside_ = 0, wrong_ = 0;
 };
 

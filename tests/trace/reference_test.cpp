@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Rays computed with 60 digits by tests/reference/make_rays.py, with formulas independent of the library.
+// Compares rays with the 60-digit rays of tests/reference/make_rays.py, whose formulas are independent of the library.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -64,15 +64,15 @@ class ReferenceRays : public testing::Test {
 using Plain = testing::Types<float, double>;
 TYPED_TEST_SUITE(ReferenceRays, Plain);
 
-/// Compares the end of a ray with its row and updates the worst error.
+/// Compares the end of a ray with its row and updates the largest error.
 template <class T>
 void judge(const TracedRay<T>& end, const Row& row, double size, double bound, double& worst, const std::string& how) {
   ASSERT_EQ(name(end.fate), row.fate) << "rays.csv:" << row.line << " " << how;
   ASSERT_EQ(end.surface, row.surface) << "rays.csv:" << row.line << " " << how;
   const std::array<T, 6> out{end.ray.origin.x,    end.ray.origin.y,    end.ray.origin.z,
                              end.ray.direction.x, end.ray.direction.y, end.ray.direction.z};
-  // Positions relative to the size of the lens (of a ray lost far outside: to its distance from the axis), directions
-  // absolute.
+  // Errors of positions are relative to the size of the lens, or to the distance from the axis if larger; errors of
+  // directions are absolute.
   const double scale = std::max(size, std::hypot(row.out[0], row.out[1]));
   for (std::size_t i = 0; i < 6; ++i) {
     const double error = std::abs(static_cast<double>(out[i]) - row.out[i]) / (i < 3 ? scale : 1);

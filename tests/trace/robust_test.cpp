@@ -106,7 +106,7 @@ TYPED_TEST(Robust, NothingButFiniteNumbersComesOutOfAnyLens) {
       ++fates[static_cast<std::size_t>(end.fate)];
     }
   }
-  // Every fate except the last, which should be rare, occurred.
+  // Every fate occurred except the last, which should be rare.
   for (std::size_t i = 0; i < 4; ++i) EXPECT_GT(fates[i], 1000) << petzval::name(static_cast<RayFate>(i));
   EXPECT_LT(fates[4], 50);
   this->RecordProperty("no_convergence", fates[4]);
@@ -155,7 +155,7 @@ TEST(Robust, AWavelengthThatWasNotCompiledLosesEveryRay) {
   }
 }
 
-// Reproducible batches agree on every instruction set, also when the fates of lanes differ.
+// Reproducible batches are equal on every instruction set, also if the fates of lanes differ.
 TYPED_TEST(Robust, NothingButFiniteNumbersComesOutOfAnyBatch) {
   using T = TypeParam;
   Random random(2025);
@@ -192,10 +192,10 @@ TYPED_TEST(Robust, NothingButFiniteNumbersComesOutOfAnyBatch) {
   this->RecordProperty("otherwise", static_cast<int>(otherwise));
 }
 
-/// Whether the point behind the lens lies on its last surface, a sphere, and the direction is one.
+/// True if the end of the ray lies on the last surface, a sphere, and its direction has unit length.
 template <class T>
 void expect_right(const petzval::Lens& lens, const Ray<T>& end, const std::string& what) {
-  // What half of the digits leave, twice over.
+  // Twice the error of half the digits.
   const double near = 8 * std::sqrt(double{std::numeric_limits<T>::epsilon()});
   const petzval::Vec3<double> o(end.origin), d(end.direction);
   const auto& last = lens.surfaces().back();
@@ -204,11 +204,11 @@ void expect_right(const petzval::Lens& lens, const Ray<T>& end, const std::strin
   EXPECT_NEAR(std::hypot(o.x, o.y, z) * std::abs(last.curvature), 1, near) << what;
 }
 
-// A grazing ray meets a plane far out. From there the next sphere is a point, and the digits of its hit may be lost.
+// A grazing ray meets a plane so far out that the next sphere is a point, and the digits of its hit may be lost.
 TYPED_TEST(Robust, ARayThatMeetsAPlaneFarOutIsLostOrRight) {
   using T = TypeParam;
   std::vector<petzval::Lens> lenses{testing_lenses::load("ball_10mm").lens};
-  // The plane refracts, and the radius of the sphere after next is large.
+  // The plane refracts, and the second sphere has a large radius.
   petzval::Prescription p;
   p.name = "window and ball";
   p.surfaces = {{.radius = 0, .thickness = 5, .medium = {.nd = 1.0000001}},
@@ -244,7 +244,7 @@ TYPED_TEST(Robust, ARayThatMeetsAPlaneFarOutIsLostOrRight) {
   }
   EXPECT_GT(passed, 10);
   EXPECT_GT(lost, 10);
-  // The ray of the report: every tracer loses it at the plane.
+  // A ray that fuzzing found: every tracer loses it at the plane.
   if constexpr (std::is_same_v<T, double>) {
     const Ray<double> ray{{6.2, 0, 9.05}, {std::sqrt(1 - 1e-24), 0, 1e-12}};
     for (auto options : testing_batches::ways()) {
@@ -256,7 +256,7 @@ TYPED_TEST(Robust, ARayThatMeetsAPlaneFarOutIsLostOrRight) {
   }
 }
 
-// Along a cylinder's axis nothing else bounds the place: 4e25 mm away directions lost their length.
+// Cylinders are unbounded along their axis: at 4e25 mm directions lost their unit length.
 TEST(Robust, ARayThatMeetsASurfaceBeyond1e15MillimetresIsLost) {
   petzval::Prescription p;
   p.name = "cylinder";

@@ -24,13 +24,13 @@ Vec<double> cross(const Vec<double>& a, const Vec<double>& b) {
   return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
 }
 
-/// Distance of a point of the axis from the line of a ray.
+/// Distance of a point on the axis from the line of a ray.
 double miss(const petzval::kernel::TraceState<double>& ray, double z) {
   const auto c = cross(Vec<double>{-ray.origin.x, -ray.origin.y, z - ray.origin.z}, ray.direction);
   return std::sqrt(dot(c, c));
 }
 
-// A beam aimed at R (1 + n'/n) behind the vertex meets at R (1 + n/n') and obeys the sine condition,
+// Rays aimed at the point R (1 + n'/n) behind the vertex meet at R (1 + n/n') and obey the sine condition,
 // n' sin u = n sin u', from the axis to the equator of the sphere.
 TEST(Stigmatic, TheAplanaticSphereLetsAllRaysMeet) {
   double worst = 0, worst_sine = 0;
