@@ -15,7 +15,7 @@ set(petzval_long_tests
   ChooseModel.SaysWhatElseIsNotNeeded
   ChooseModel.StopsTheLensDown
   Cylinders.Polynomials*
-  DifferentialsOf*.EveryLensAreThoseOfExactRays
+  DifferentialsOf*.EveryLensEqualsExactRays
   EndlessFiles.*
   Exposure.EveryModelIsExactOnTheAxis
   Extremes.FieldsBeyondTheLensAreDark
@@ -24,15 +24,15 @@ set(petzval_long_tests
   Gather.IsTheReference
   ImageCircle.EndsWhereTheLightDoes
   IrisShape.PassesAChiSquareTestInSmallSquares
-  IrisWeights.DrawSamplesOfTheDensityTheySay
+  IrisWeights.SamplesHaveTheStatedDensity
   LargestInputs.*
   LensFile.ASampleCutOffAtAnyByteIsReadOrRefused
   MemoryEnds.*
   OslCamera.*
-  PolynomialFit.TheLargestErrorsHoldToTheCornerOfTheFilm
+  PolynomialFit.LargestErrorsHoldToTheCornerOfTheFilm
   RayTiltFit.NoSearchFindsBetterBlurs
   Reciprocity.HoldsFor*
-  Spectrum.TheStatedErrorOfEveryGlassHolds
+  Spectrum.StatedErrorOfEveryGlassHolds
   StMap.IsTheDistortionUpToTheEndOfTheLight
   TiltFitLimit.PlaneThroughTheViewVectorNeitherFlipsNorJumps
   TwentyLenses/Promise.*

@@ -59,8 +59,8 @@ if [ "${1-}" = --report ]; then
   by_type='float;double;batch float, fast / reproducible;batch double, fast / reproducible'
   printf '\nAccuracy'
   table "$by_type" 'lens/Quadric*' 'lens/Asphere*' 'lens/Snell*' 'trace/ReferenceRays*' 'trace/BatchReference*' \
-    'trace/Laws*' 'trace/Derivative*' 'trace/DifferentialsOf*AreThoseOfExactRays' \
-    'trace/DifferentialsOf*-*AreThoseOfExactRays' 'pupil/Aim*'
+    'trace/Laws*' 'trace/Derivative*' 'trace/DifferentialsOf*EqualsExactRays' \
+    'trace/DifferentialsOf*-*EqualsExactRays' 'pupil/Aim*'
   printf '\nLimits'
   table "$by_type" 'trace/Extremes*'
   printf '\nMemory'

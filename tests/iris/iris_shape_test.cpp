@@ -40,7 +40,7 @@ std::vector<Iris> irises() {
   return ::testing::Message() << iris.blades << " blades, roundness " << iris.roundness;
 }
 
-TEST(Iris, HasTheAreaOfItsCircularSegments) {
+TEST(Iris, AreaEqualsPolygonAndCircularSegments) {
   EXPECT_EQ(iris_area({}), pi);
   for (const int n : {3, 4, 5, 6, 7, 12, 20}) {
     const double straight = n / 2.0 * std::sin(2 * pi / n);
@@ -149,7 +149,7 @@ TEST(IrisShape, MapsEqualAreasToEqualAreas) {
   }
 }
 
-TEST(IrisShape, SamplesWhatItContains) {
+TEST(IrisShape, SamplesAreContained) {
   for (const Iris& iris : irises()) {
     const IrisShape shape(iris);
     const core_detail::Kronecker<2> random(3);
@@ -170,7 +170,7 @@ TEST(IrisShape, SamplesWhatItContains) {
   }
 }
 
-TEST(IrisShape, KnowsThePlaceOfAPointInTheSquare) {
+TEST(IrisShape, PositionsMapBackToTheSquare) {
   for (const Iris& iris : irises()) {
     const IrisShape shape(iris);
     const core_detail::Kronecker<2> random(7);
@@ -185,7 +185,7 @@ TEST(IrisShape, KnowsThePlaceOfAPointInTheSquare) {
   }
 }
 
-TEST(IrisShape, InFloatIsTheSameShape) {
+TEST(IrisShape, FloatEqualsDouble) {
   for (const Iris& iris : irises()) {
     if (iris.round()) continue;
     const IrisShape shape(iris);
@@ -200,7 +200,7 @@ TEST(IrisShape, InFloatIsTheSameShape) {
   }
 }
 
-TEST(IrisShape, BeginsAtTheFirstCornerAndRunsClockwise) {
+TEST(IrisShape, StartsAtTheFirstCornerAndRunsClockwise) {
   for (const Iris& iris : irises()) {
     const IrisShape shape(iris);
     const double corner = iris.round() ? 0 : -iris.rotation_rad;
@@ -246,12 +246,12 @@ double farthest_from_the_circle() {
   return farthest;
 }
 
-TEST(IrisShape, KnowsTheCircle) {
+TEST(IrisShape, RoundIrisIsACircle) {
   EXPECT_LT(farthest_from_the_circle<float>(), 2e-7);
   EXPECT_LT(farthest_from_the_circle<double>(), 1e-15);  // half of it is the rounding of the angle
 }
 
-TEST(IrisShape, RefusesWhatIsOutOfRange) {
+TEST(IrisShape, RefusesInvalidIrises) {
   const auto refusal = [](const Iris& iris) { return message([&] { IrisShape{iris}; }); };
   for (const int blades : {-1, 1, 2, 21}) {
     expect_tokens(refusal({.blades = blades}), {"iris", "blades", blades});

@@ -49,7 +49,7 @@ IrisMap some_map(bool keep_mean = false) {
   return map;
 }
 
-TEST(EdgeWeight, IsThePrintedFormula) {
+TEST(EdgeWeight, EqualsThePublishedFormula) {
   EXPECT_DOUBLE_EQ((EdgeWeight{4, 0.6}.at(0)), 0.4);
   EXPECT_DOUBLE_EQ((EdgeWeight{4, 0.6}.at(1)), 3.4);
   EXPECT_DOUBLE_EQ((EdgeWeight{4, 0.6}.at(0.5)), 0.4 + 3.0 / 16);
@@ -58,7 +58,7 @@ TEST(EdgeWeight, IsThePrintedFormula) {
   EXPECT_EQ((EdgeWeight{7, 0}.at(0.3)), 1);
 }
 
-TEST(EdgeWeight, ConservesLightOnEveryShape) {
+TEST(EdgeWeight, ConservesTheMeanOnEveryShape) {
   for (const EdgeWeight& edge : edges_of_the_text()) {
     EXPECT_NEAR(edge.light_added(), 0, 1e-12);
     for (const Iris& iris : irises()) {
@@ -76,7 +76,7 @@ TEST(EdgeWeight, ConservesLightOnEveryShape) {
   }
 }
 
-TEST(EdgeWeight, SaysWhatTheCutAdds) {
+TEST(EdgeWeight, ReportsTheChangeByClipping) {
   for (const EdgeWeight& edge : {EdgeWeight{4, 1.5}, EdgeWeight{-3, 2}, EdgeWeight{4, -0.9}, EdgeWeight{0.5, 3}}) {
     double sum = 0;
     constexpr int count = 1 << 16;
@@ -87,7 +87,7 @@ TEST(EdgeWeight, SaysWhatTheCutAdds) {
   }
 }
 
-TEST(IrisWeights, AreAlikeForAllSamplesThatFollowThem) {
+TEST(IrisWeights, WeightOverDensityIsConstant) {
   for (const EdgeWeight& edge : edges_of_the_text()) {
     const IrisWeights weights({.blades = 7}, edge, {}, 0, "");
     for (std::size_t i = 0; i < 10000; ++i) {
@@ -99,7 +99,7 @@ TEST(IrisWeights, AreAlikeForAllSamplesThatFollowThem) {
 }
 
 /// Chi-square of samples in cells of the square against their stated density.
-TEST(IrisWeights, DrawSamplesOfTheDensityTheySay) {
+TEST(IrisWeights, SamplesHaveTheStatedDensity) {
   constexpr std::size_t columns = 16, rows = 16, count = 1 << 18;
   const core_detail::Kronecker<2> random(3);
   for (const EdgeWeight& edge : {EdgeWeight{20.7, 0.6}, EdgeWeight{-4, 0.8}, EdgeWeight{}}) {
@@ -129,7 +129,7 @@ TEST(IrisWeights, DrawSamplesOfTheDensityTheySay) {
   }
 }
 
-TEST(IrisWeights, OfAMapHaveItsMeanOrOne) {
+TEST(IrisWeights, MapsHaveTheirMeanOrOne) {
   const auto mean = [](const IrisWeights& weights, const Iris& iris) {
     const IrisShape shape(iris);
     double sum = 0;
@@ -151,7 +151,7 @@ TEST(IrisWeights, OfAMapHaveItsMeanOrOne) {
 }
 
 // A slit and a hole of one pixel.
-TEST(IrisWeights, SeeDetailsOfAPixel) {
+TEST(IrisWeights, ResolveDetailsOfAPixel) {
   constexpr int pixels = 512;
   IrisMap slit{pixels, pixels, std::vector<float>(pixels * pixels)}, hole = slit;
   for (int i = 0; i < pixels; ++i) slit.values[static_cast<std::size_t>(i * pixels + pixels / 2)] = 1;
@@ -160,7 +160,7 @@ TEST(IrisWeights, SeeDetailsOfAPixel) {
   EXPECT_NEAR(iris_area({}, hole), 4.0 / (pixels * pixels), 0.02 * 4 / (pixels * pixels));
 }
 
-TEST(IrisWeights, ShowTheMapWithXToTheRightAndYUp) {
+TEST(IrisWeights, MapHasXToTheRightAndYUp) {
   IrisMap map{2, 2, {1, 2, 3, 4}};
   const IrisWeights weights({}, {}, map, 0, "");
   EXPECT_FLOAT_EQ(weights.at({-0.6, 0.6}), 1);
@@ -173,7 +173,7 @@ TEST(IrisWeights, ShowTheMapWithXToTheRightAndYUp) {
   EXPECT_EQ(iris_detail::upside_down(map, false, true).values, (std::vector<float>{3, 4, 1, 2}));
 }
 
-TEST(OnionRings, HaveThePeriodTheySay) {
+TEST(OnionRings, HaveTheStatedPeriod) {
   const IrisMap map = onion_rings({.period = 0.1, .contrast = 0.3, .jitter = 0}, 500);
   const auto at = [&](double radius) {
     return map.values[250 * 500 + static_cast<std::size_t>((radius + 1) / 2 * 500)];
@@ -184,7 +184,7 @@ TEST(OnionRings, HaveThePeriodTheySay) {
   }
 }
 
-TEST(IrisWeights, OfWhatIsNoNumberAreNone) {
+TEST(IrisWeights, InvalidNumbersHaveWeightZero) {
   for (const double no_number : {std::nan(""), std::numeric_limits<double>::infinity()}) {
     for (const IrisMap& map : {IrisMap{}, some_map()}) {
       const IrisWeights weights({.blades = 5}, {4, 0.6}, map, 0, "");
@@ -195,7 +195,7 @@ TEST(IrisWeights, OfWhatIsNoNumberAreNone) {
   }
 }
 
-TEST(IrisWeights, RefuseWhatIsNoMap) {
+TEST(IrisWeights, RefuseInvalidMaps) {
   const auto refused = [](const IrisMap& map) {
     return message([&] {
       iris_detail::check(map, "");

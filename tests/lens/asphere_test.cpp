@@ -148,7 +148,7 @@ TYPED_TEST(AsphereOf, FindsTheFirstCrossingOfSteepRays) {
 Asphere<double> described(const SurfaceRow& row) { return petzval::kernel::view<double>(compiled(row)).aspheres[0]; }
 
 // With loose bounds for sag and slope (1e50) every ray would be searched for, and a camera would take 9 s.
-TEST(Asphere, IsDescribedAsFarAsItIsNotSteep) {
+TEST(Asphere, DescriptionEndsWhereTheSurfaceIsSteep) {
   SurfaceRow runaway =
       row(-600, 0.8, 0, {{12, std::pow(20., -11)}, {14, -std::pow(11., -13)}, {37, std::pow(15., -36)}});
   runaway.semi_diameter.reset();
@@ -245,7 +245,7 @@ bool clearly_beside(const SurfaceRow& r, const Vec<double>& p, const Vec<double>
   return std::min(one, other) > high + margin || std::max(one, other) < low - margin;
 }
 
-TEST(Asphere, ARayPassesBesideWhereItCrossesNothing) {
+TEST(Asphere, ClearRaysCrossNothing) {
   int beside = 0, misses = 0;
   for (const auto& [name, r] : surfaces()) {
     const Asphere<double> asphere = described(r);
@@ -275,7 +275,7 @@ TEST(Asphere, ARayPassesBesideWhereItCrossesNothing) {
 }
 
 // Newton iteration from the vertex plane finds the hits.
-TEST(Asphere, RaysThatMissItsBaseMeetItFartherOut) {
+TEST(Asphere, RaysThatMissTheBaseMayHitTheAsphere) {
   std::mt19937 random(5);
   const auto uniform = [&](double low, double high) {
     return low + (high - low) * std::uniform_real_distribution<double>(0, 1)(random);

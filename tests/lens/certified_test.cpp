@@ -194,7 +194,7 @@ class BoundedIn : public testing::Test {};
 using Plain = testing::Types<float, double>;
 TYPED_TEST_SUITE(BoundedIn, Plain);
 
-TYPED_TEST(BoundedIn, HasAllValuesAndErrors) {
+TYPED_TEST(BoundedIn, EnclosesAllValuesAndErrors) {
   using R = TypeParam;
   using B = Bounded<R, 3>;
   std::mt19937_64 engine(5);

@@ -55,7 +55,7 @@ const petzval::Medium unknown{.glass = "MYSTERIUM", .catalogue = "atlantis", .nd
 const petzval::Medium nameless{.nd = 1.673, .vd = 32.2};
 const petzval::Medium bare{.nd = 1.673};
 
-TEST(Compile, PrintedIndicesStandAtDAndTheCatalogueAddsDispersion) {
+TEST(Compile, PrintedIndexHoldsAtDAndCatalogueAddsDispersion) {
   const auto lens = compile(doublet(flint), visible, {.glasses = &glasses()});
   EXPECT_EQ(lens.index(1, 1), 1.517);
   EXPECT_EQ(lens.index(2, 1), 1.673);
@@ -71,7 +71,7 @@ TEST(Compile, PrintedIndicesStandAtDAndTheCatalogueAddsDispersion) {
   EXPECT_TRUE(lens.missing_glasses().empty());
 }
 
-TEST(Compile, TheCataloguePolicyTakesTheCatalogueAloneAtDToo) {
+TEST(Compile, CataloguePolicyUsesTheCatalogueIndexAtD) {
   const auto lens = compile(doublet(flint), visible, {.glasses = &glasses(), .index_policy = IndexPolicy::catalogue});
   for (std::size_t w = 0; w < 3; ++w) {
     EXPECT_EQ(lens.index(0, w), 1);
@@ -80,7 +80,7 @@ TEST(Compile, TheCataloguePolicyTakesTheCatalogueAloneAtDToo) {
   }
 }
 
-TEST(Compile, TheReferenceWavelengthIsThatOfTheTable) {
+TEST(Compile, ReferenceWavelengthIsTheWavelengthOfTheTable) {
   Prescription p = doublet(flint);
   p.reference_wavelength_nm = 546.074;
   const auto lens = compile(p, std::array{546.074, d}, {.glasses = &glasses()});
@@ -89,7 +89,7 @@ TEST(Compile, TheReferenceWavelengthIsThatOfTheTable) {
                    catalogue_index("N-BK7", "schott", d) - catalogue_index("N-BK7", "schott", 546.074));
 }
 
-TEST(Compile, AGlassNoTableKnowsIsAnErrorThatNamesIt) {
+TEST(Compile, UnknownGlassIsRefusedByName) {
   const petzval::CompileOptions strict{.glasses = &glasses()};
   expect_error([&] { compile(doublet(unknown), visible, strict); },
                {"pair", "surface 1", "\"MYSTERIUM\"", "\"atlantis\"", "glass", 486.1327, "MissingGlass::abbe"});
@@ -148,7 +148,7 @@ TEST(Compile, GlassWithoutAnIndex_OfSeveralMeanings_IsAnErrorThatListsThem) {
   EXPECT_EQ(compile(doublet({.glass = "F2", .catalogue = "cdgm"})).index(2), catalogue_index("F2", "cdgm", d));
 }
 
-TEST(Compile, TablesOfTheLibrary_AreTakenWhereNoneAreGiven) {
+TEST(Compile, TablesOfTheLibrary_AreTheDefault) {
   const auto by_default = compile(doublet(flint), visible);
   const auto given = compile(doublet(flint), visible, {.glasses = &glasses()});
   for (std::size_t w = 0; w < visible.size(); ++w) {
@@ -161,7 +161,7 @@ TEST(Compile, TablesOfTheLibrary_AreTakenWhereNoneAreGiven) {
   EXPECT_EQ(compile(doublet(flint), {.glasses = &none}).missing_glasses().size(), 2u);
 }
 
-TEST(Compile, AtTheReferenceWavelengthNoGlassIsNeeded) {
+TEST(Compile, ReferenceWavelengthNeedsNoGlass) {
   const auto lens = compile(doublet(unknown));
   EXPECT_EQ(lens.index(2, 0), 1.673);
   EXPECT_EQ(lens.dispersion(), Dispersion::abbe);
@@ -183,7 +183,7 @@ TEST(Compile, MediumOfVd0_HasItsIndexAtEveryWavelength) {
   EXPECT_TRUE(compile(plate).missing_glasses().empty());
 }
 
-TEST(Compile, TheAbbeModelStandsInOnRequest) {
+TEST(Compile, AbbeModelReplacesMissingGlassOnRequest) {
   const petzval::CompileOptions options{.glasses = &glasses(), .missing_glass = MissingGlass::abbe};
   for (const auto& medium : {unknown, nameless}) {
     const auto lens = compile(doublet(medium), visible, options);
@@ -197,7 +197,7 @@ TEST(Compile, TheAbbeModelStandsInOnRequest) {
   }
 }
 
-TEST(Compile, WithoutAnAbbeNumberOnlyTheReferenceWavelengthCanBeUsed) {
+TEST(Compile, MediumWithoutAbbeNumberHasTheReferenceWavelengthOnly) {
   const petzval::CompileOptions options{.glasses = &glasses(), .missing_glass = MissingGlass::abbe};
   expect_error([&] { compile(doublet(bare), visible, options); },
                {"pair", "surface 1", "nd", 1.673, "V_d", 486.1327, 587.5618});
@@ -206,13 +206,13 @@ TEST(Compile, WithoutAnAbbeNumberOnlyTheReferenceWavelengthCanBeUsed) {
   EXPECT_EQ(lens.dispersion(), Dispersion::none);
 }
 
-TEST(Compile, TheReferenceLineMayBeWrittenWithOneDecimal) {
+TEST(Compile, ReferenceLineMatchesWithOneDecimal) {
   const petzval::CompileOptions options{.glasses = &glasses(), .missing_glass = MissingGlass::abbe};
   EXPECT_EQ(compile(doublet(bare), std::array{587.6}, options).index(2, 0), 1.673);
   expect_error([&] { compile(doublet(bare), std::array{587.7}, options); }, {"pair", "surface 1", 587.7});
 }
 
-TEST(Compile, TheStandInAtTheReferenceWavelengthIsThePrintedIndex) {
+TEST(Compile, AbbeModelHasThePrintedIndexAtTheReferenceWavelength) {
   for (const auto& medium : {unknown, nameless, bare}) {
     const auto lens =
         compile(doublet(medium), std::array{d},
@@ -222,7 +222,7 @@ TEST(Compile, TheStandInAtTheReferenceWavelengthIsThePrintedIndex) {
   }
 }
 
-TEST(Compile, AGlassWithoutACatalogueIsTheOneWithTheNearestIndex) {
+TEST(Compile, GlassWithoutCatalogueHasTheNearestIndex) {
   petzval::Medium medium{.glass = "F2", .nd = 1.62};
   const petzval::CompileOptions options{.glasses = &glasses(), .index_policy = IndexPolicy::catalogue};
   EXPECT_NEAR(compile(doublet(medium), std::array{d}, options).index(2, 0), 1.62004, 1e-5);
@@ -232,7 +232,7 @@ TEST(Compile, AGlassWithoutACatalogueIsTheOneWithTheNearestIndex) {
   expect_error([&] { compile(doublet(medium), std::array{d}, options); }, {"\"F2\"", 1.7});
 }
 
-TEST(Compile, WavelengthsNoGlassKnowsAreRefusedWithSurfaceAndRange) {
+TEST(Compile, RefusesWavelengthsOutsideTheRangeOfAGlass) {
   const petzval::CompileOptions options{.glasses = &glasses()};
   EXPECT_NO_THROW(compile(doublet(flint), std::array{d, 2400.0}, options));
   expect_error(
@@ -247,7 +247,7 @@ TEST(Compile, WavelengthsNoGlassKnowsAreRefusedWithSurfaceAndRange) {
       {"pair", "surface 1", "n_d 1.673", "V_d 32.2", "wavelength", 350});
 }
 
-TEST(Compile, WavelengthsThatAreNoneAreRefusedForMirrorsToo) {
+TEST(Compile, RefusesInvalidWavelengthsForMirrorsToo) {
   Prescription mirror;
   mirror.surfaces = {{.radius = -400, .thickness = -200, .mirror = true}};
   for (const double nm : {std::nan(""), std::numeric_limits<double>::infinity(), 0.0, -d, 0.5876, 587561.8}) {
@@ -257,7 +257,7 @@ TEST(Compile, WavelengthsThatAreNoneAreRefusedForMirrorsToo) {
   EXPECT_EQ(compile(mirror, std::array{400.0, 10000.0}).index(1, 1), 1);
 }
 
-TEST(Compile, AWavelengthIsCompiledOnce) {
+TEST(Compile, RefusesRepeatedWavelengths) {
   Prescription mirror;
   mirror.surfaces = {{.radius = -400, .thickness = -200, .mirror = true}};
   for (const double twice : {d, d + 1e-7}) {
@@ -266,7 +266,7 @@ TEST(Compile, AWavelengthIsCompiledOnce) {
   EXPECT_EQ(compile(mirror, std::array{d, d + 1e-5}).wavelengths_nm().size(), 2u);
 }
 
-TEST(Compile, IndicesNoGlassHasAreRefused) {
+TEST(Compile, RefusesIndicesOutOfRange) {
   petzval::Glass heavy;
   heavy.catalogue = "atlantis", heavy.name = "MYSTERIUM";
   heavy.shortest_nm = 300, heavy.longest_nm = 900;
@@ -287,7 +287,7 @@ TEST(Compile, DispersionHasAName) {
 }
 
 // Most of the 75 lenses have a medium that is in no table: the n_d/V_d model is the normal case.
-TEST(Compile, EveryLensOfTheDataCompilesAsFarAsItsGlassesAreKnown) {
+TEST(Compile, LensesOfTheDataCompileIfTheirGlassesAreKnown) {
   int by_catalogue = 0, by_abbe = 0, at_d_only = 0;
   for (const Prescription& p : petzval::testing::data_prescriptions()) {
     SCOPED_TRACE(p.id);
@@ -316,13 +316,13 @@ TEST(Compile, EveryLensOfTheDataCompilesAsFarAsItsGlassesAreKnown) {
   EXPECT_EQ(at_d_only, 11);
 }
 
-TEST(Compile, AnIndexTheLensHasNotIsAnError) {
+TEST(Compile, RefusesMissingIndices) {
   const auto lens = compile(doublet(bare));
   expect_error([&] { lens.index(0, 1); }, {"pair", "wavelength 1"});
   expect_error([&] { lens.index(lens.surface_count() + 1, 0); }, {"pair", "space 4"});
 }
 
-TEST(Compile, TheWavelengthNearestTheDLineSpeaksForTheLens) {
+TEST(Compile, PrimaryWavelengthIsNearestToTheDLine) {
   EXPECT_EQ(compile(doublet(flint), std::array{f, c, d}, {.glasses = &glasses()}).primary_wavelength(), 2u);
 }
 

@@ -36,7 +36,7 @@ RayFate fate_at(const Lens& lens, double y, Travel travel) {
   return trace(lens, Ray<double>{{0, y, z}, {0, 0, to_film ? 1.0 : -1.0}}, {.travel = travel}).fate;
 }
 
-TEST(Edges, EndTheAperturesOfBothSurfacesOfAnElement) {
+TEST(Edges, LimitTheAperturesOfBothSurfacesOfAnElement) {
   for (const double rim : {infinity, 25.0}) {
     const Lens lens = compile(biconvex(50, 4, rim));
     const double height = meeting_height(50, 4);
@@ -51,7 +51,7 @@ TEST(Edges, EndTheAperturesOfBothSurfacesOfAnElement) {
   }
 }
 
-TEST(Edges, AreThoseOfAirSpacesToo) {
+TEST(Edges, LimitAirSpaces) {
   // A plane and a concave surface that bends towards it through 2 mm of air.
   Prescription p;
   p.surfaces = {{.radius = 60, .thickness = 8, .medium = {.nd = 1.6}, .semi_diameter = 30},
@@ -66,7 +66,7 @@ TEST(Edges, AreThoseOfAirSpacesToo) {
 }
 
 // A stop bends no ray, so that the surfaces on both sides of it bound one air space.
-TEST(Edges, PassOverSurfacesThatChangeNoRay) {
+TEST(Edges, IgnoreSurfacesThatBendNoRay) {
   Prescription p;
   p.surfaces = {{.radius = 60, .thickness = 8, .medium = {.nd = 1.6}, .semi_diameter = 30},
                 {.radius = 0, .thickness = 1, .semi_diameter = 30},
@@ -78,7 +78,7 @@ TEST(Edges, PassOverSurfacesThatChangeNoRay) {
   EXPECT_EQ(lens.surfaces()[2].semi_diameter, 28);
 }
 
-TEST(Edges, DoNotEndASurfaceWhoseNeighbourIsSmaller) {
+TEST(Edges, DoNotLimitSurfacesNextToSmallerOnes) {
   Prescription p = biconvex(50, 4, 25);
   p.surfaces[1].semi_diameter = 0.9 * meeting_height(50, 4);
   const Lens lens = compile(p);
@@ -87,13 +87,13 @@ TEST(Edges, DoNotEndASurfaceWhoseNeighbourIsSmaller) {
 }
 
 // Elements of thickness 0 are ideal and have no edge.
-TEST(Edges, AreAbsentOfElementsWithoutThickness) {
+TEST(Edges, AreMissingOnElementsWithoutThickness) {
   for (const double thickness : {0.0, -1.0}) {
     EXPECT_EQ(compile(biconvex(50, thickness, 10)).surfaces()[0].semi_diameter, 10);
   }
 }
 
-TEST(Edges, FollowTheGroupsThatMove) {
+TEST(Edges, FollowMovingGroups) {
   Prescription p;
   p.surfaces = {{.radius = 60, .thickness = 8, .medium = {.nd = 1.6}, .semi_diameter = 30},
                 {.radius = 0, .thickness = 2, .semi_diameter = 30},
@@ -118,7 +118,7 @@ TEST(Edges, ScaleWithTheLens) {
 
 // Transmitted rays meet refracting surfaces in the order of the prescription, for apertures of any size. The exception
 // are rays nearly parallel to a surface, which may meet the next surface first: 1 in 4000 of one lens.
-TEST(Edges, LetRaysMeetSurfacesInOrder) {
+TEST(Edges, RaysMeetSurfacesInOrder) {
   for (Prescription p : testing::data_prescriptions()) {
     double size = 0;
     for (SurfaceRow& row : p.surfaces) {

@@ -22,7 +22,7 @@ using testing::expect_error;
 using testing::expect_tokens;
 using testing::message;
 
-TEST(Iris, IsRefusedWhereTheStopCannotHaveIt) {
+TEST(Iris, RefusesStopsThatCannotHaveAnIris) {
   const Lens lens = testing::front_stop_lens();
   Prescription p = testing::data_prescription("double_gauss_100mm_f2.0");
   for (auto& surface : p.surfaces) surface.stop = false;
@@ -62,7 +62,7 @@ TEST(Iris, KeepsItsShapeWhenTheLensIsStoppedDown) {
   }
 }
 
-TEST(Iris, AnEmptyOneIsTheRoundLensAgain) {
+TEST(Iris, EmptyIrisRestoresTheRoundLens) {
   const Lens lens = testing::data_lens("double_gauss_100mm_f2.0");
   const Lens round = with_iris(with_iris(lens, {.blades = 6}), {});
   EXPECT_TRUE(round.iris().round());
@@ -76,7 +76,7 @@ TEST(Iris, AnEmptyOneIsTheRoundLensAgain) {
   }
 }
 
-TEST(Lens, StaysItselfWhenItIsMovedFrom) {
+TEST(Lens, MovedFromLensStaysValid) {
   Lens lens = testing::front_stop_lens();
   const Lens moved = std::move(lens);
   EXPECT_EQ(lens.name(), "front stop");  // NOLINT: what the test is about

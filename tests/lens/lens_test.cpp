@@ -26,7 +26,7 @@ petzval::Prescription singlet() {
   return p;
 }
 
-TEST(Lens, SaysWhatThePrescriptionSays) {
+TEST(Lens, HasTheValuesOfThePrescription) {
   const petzval::Lens lens = petzval::compile(singlet());
   EXPECT_EQ(lens.name(), "singlet");
   EXPECT_EQ(lens.surface_count(), 2u);
@@ -41,7 +41,7 @@ TEST(Lens, SaysWhatThePrescriptionSays) {
 }
 
 // A term with a slope of 4 at 5 mm and of 1800 at 12 mm.
-TEST(Lens, HasTheRimOfAnAsphereWhereItIsAsSteepAsFour) {
+TEST(Lens, AsphericRimsEndAtASlopeOf4) {
   petzval::Prescription p = singlet();
   p.surfaces[1].aspheric = {{8, -std::pow(5, -7) / 2}};
   const petzval::Lens lens = petzval::compile(p);
@@ -64,7 +64,7 @@ TEST(Lens, HasTheRimOfAnAsphereWhereItIsAsSteepAsFour) {
   EXPECT_EQ(petzval::compile(p).surfaces()[1].semi_diameter, 12);
 }
 
-TEST(Lens, FindsItsWavelengthsAndNamesThemWhereItDoesNot) {
+TEST(Lens, FindsWavelengthsOrNamesThem) {
   petzval::Prescription p = singlet();
   p.surfaces[0].medium.vd = 64.2;
   const petzval::Lens lens =
@@ -75,7 +75,7 @@ TEST(Lens, FindsItsWavelengthsAndNamesThemWhereItDoesNot) {
   expect_error([&] { return lens.wavelength(500); }, {"singlet", "wavelength", 500});
 }
 
-TEST(Lens, ItsPrimaryWavelengthIsTheReferenceElseTheOneNearestTheDLine) {
+TEST(Lens, PrimaryWavelengthIsTheReferenceOrNearestToTheDLine) {
   petzval::Prescription p = singlet();
   p.surfaces[0].medium.vd = 64.2;
   const auto primary = [&](std::vector<double> wavelengths_nm) {
@@ -95,7 +95,7 @@ TEST(Lens, ItsPrimaryWavelengthIsTheReferenceElseTheOneNearestTheDLine) {
   expect_error([&] { chosen(500); }, {"primary_nm", 500});
 }
 
-TEST(Lens, ItsWavelengthsAreFoundByPositionByNanometresAndByDefault) {
+TEST(Lens, FindsWavelengthsByIndexByNmAndByDefault) {
   petzval::Prescription p = singlet();
   p.surfaces[0].medium.vd = 64.2;
   const petzval::Lens lens = petzval::compile(p, std::array{486.1327, petzval::d_line_nm, 656.2725},
@@ -111,7 +111,7 @@ TEST(Lens, ItsWavelengthsAreFoundByPositionByNanometresAndByDefault) {
                {"singlet", "wavelength", "nan"});
 }
 
-TEST(Lens, LightRunsBackwardsBehindAnOddNumberOfMirrors) {
+TEST(Lens, LightRunsTowardsMinusZBehindAnOddNumberOfMirrors) {
   petzval::Prescription p;
   p.name = "two mirrors";
   p.surfaces = {{.thickness = 10},
@@ -123,7 +123,7 @@ TEST(Lens, LightRunsBackwardsBehindAnOddNumberOfMirrors) {
   expect_error([&] { lens.light_direction(4); }, {"two mirrors", "space 4"});
 }
 
-TEST(Lens, AChangeMakesANewLens) {
+TEST(Lens, ChangesMakeANewLens) {
   const petzval::Lens lens = petzval::compile(singlet());
   const petzval::Lens stopped = petzval::with_semi_diameter(lens, 0, 3), moved = petzval::with_film(lens, 60);
   const petzval::Ray<float> ray{{0, 5, -10}, {0, 0, 1}};
@@ -134,7 +134,7 @@ TEST(Lens, AChangeMakesANewLens) {
   EXPECT_EQ(moved.film_z(), 60);
 }
 
-TEST(Lens, RimsOfNoSizeAreClosedAndRimsBeyondAllRaysAreNone) {
+TEST(Lens, TinyRimsAreClosedAndHugeRimsAreIgnored) {
   petzval::Prescription p = singlet();
   for (const auto& [wanted, found] : {std::pair{1e-160, 0.0}, {1e-12, 1e-12}, {1e15, 1e15}, {1e160, HUGE_VAL}}) {
     p.surfaces[0].semi_diameter = wanted;
@@ -146,7 +146,7 @@ TEST(Lens, RimsOfNoSizeAreClosedAndRimsBeyondAllRaysAreNone) {
   }
 }
 
-TEST(Lens, ARimOpensNoFurtherThanThePrescriptionSays) {
+TEST(Lens, RimsOpenUpToThePrescription) {
   const petzval::Lens lens = petzval::compile(singlet());
   EXPECT_EQ(lens.surfaces()[0].widest_semi_diameter, 12);
   const petzval::Lens stopped = petzval::with_semi_diameter(lens, 0, 3);
@@ -162,7 +162,7 @@ TEST(Lens, ARimOpensNoFurtherThanThePrescriptionSays) {
   EXPECT_EQ(petzval::with_semi_diameter(petzval::compile(p), 0, 20).surfaces()[0].semi_diameter, 20);
 }
 
-TEST(Sag, IsNanWhereThereIsNoSurface) {
+TEST(Sag, IsNanOutsideTheSurface) {
   const petzval::Lens lens = petzval::compile(singlet());
   EXPECT_EQ(petzval::sag(lens, 1, 0, 0), 0);
   EXPECT_TRUE(std::isnan(petzval::sag(lens, 0, 1e9, 0)));
@@ -171,7 +171,7 @@ TEST(Sag, IsNanWhereThereIsNoSurface) {
   }
 }
 
-TEST(Lens, RefusesAChangeThatMakesNoLens) {
+TEST(Lens, RefusesInvalidChanges) {
   const petzval::Lens lens = petzval::compile(singlet());
   expect_error([&] { petzval::with_semi_diameter(lens, 2, 3); }, {"singlet", "surface 2"});
   expect_error([&] { petzval::with_semi_diameter(lens, 1, -3); }, {"singlet", "surface 1", "semi_diameter", -3});

@@ -252,7 +252,7 @@ TEST(Quadric, HitFromAKilometreAwayLiesOnTheSurface) {
   }
 }
 
-TEST(Quadric, HitOrMissIsDecidedWithinABillionthOfTheEdge) {
+TEST(Quadric, HitOrMissIsCorrectWithinABillionthOfTheEdge) {
   const auto sphere = conic<double>(0.02, 0);
   const auto at = [&](double x, double sense) {
     return intersect(sphere, Vec<double>{x, 0, -3}, Vec<double>{0, 0, sense}, sense).hit;
@@ -283,7 +283,7 @@ TEST(Quadric, FarSideOfTheSphereAndSecondSheetAreMissed) {
   EXPECT_TRUE(intersect(hyperboloid, Vec<double>{-200, 3, 10}, Vec<double>{1, 0, 0}, 1.0).hit);
 }
 
-TEST(Quadric, SenseOfTravelAndNotTheSignOfZPicksTheRoot) {
+TEST(Quadric, DirectionOfTravelSelectsTheRoot) {
   const auto sphere = conic<double>(0.02, 0);
   const auto d = unit_direction<double>(1, 0, -0.1);
   const Vec<double> start{-60, 0, 30};
@@ -293,13 +293,13 @@ TEST(Quadric, SenseOfTravelAndNotTheSignOfZPicksTheRoot) {
   EXPECT_GT(to_scene.point.x, 0);
 }
 
-TEST(Quadric, MayBeMetBehindTheStartOfTheRay) {
+TEST(Quadric, HitsMayLieBehindTheStartOfTheRay) {
   const auto [p, hit, slant] = intersect(conic<double>(-0.02, 0), Vec<double>{0, 20, 1}, Vec<double>{0, 0, 1}, 1.0);
   ASSERT_TRUE(hit);
   EXPECT_LT(p.z, 0);
 }
 
-TYPED_TEST(QuadricOf, NormalsAreUnitAndPointToTheFilmAtTheVertex) {
+TYPED_TEST(QuadricOf, NormalsHaveUnitLengthAndPointToTheFilmAtTheVertex) {
   for (const double k : {-100.0, -1.0, -0.5, 0.0, 2.0}) {
     for (const auto& q : {conic<TypeParam>(0.02, k), conic<TypeParam>(-0.02, k), cylinder<TypeParam>(0.02, k, 'y')}) {
       for (const double reach : {0.0, 5.0, 20.0}) {
@@ -335,7 +335,7 @@ TYPED_TEST(QuadricOf, TheSlantIsTheCosineOfIncidence) {
   }
 }
 
-TYPED_TEST(QuadricOf, AbsurdStartsGiveAFiniteAnswerOrAMiss) {
+TYPED_TEST(QuadricOf, ExtremeStartsGiveFiniteHitsOrMisses) {
   const TypeParam big = std::numeric_limits<TypeParam>::max(), tiny = std::numeric_limits<TypeParam>::denorm_min();
   const TypeParam nan = std::numeric_limits<TypeParam>::quiet_NaN(), inf = std::numeric_limits<TypeParam>::infinity();
   const std::array<TypeParam, 9> values{0, 1, -1, big, -big, tiny, nan, inf, TypeParam(1e-3)};

@@ -84,7 +84,7 @@ TYPED_TEST(SnellOf, DirectionIsWithinFourEpsOverTheCosine) {
   testing_report::put("refraction, x cos(refraction)", testing_report::one_ray<TypeParam>, most, "4 eps");
 }
 
-TYPED_TEST(SnellOf, DirectionIsOfUnitLength) {
+TYPED_TEST(SnellOf, DirectionHasUnitLength) {
   constexpr double eps = std::numeric_limits<TypeParam>::epsilon();
   Sampler<TypeParam> sampler;
   for (const auto& [n_in, n_out] : {Case{1, 1.5}, {1.5, 1}, {1, 4}, {1.5, 1.5 + 1e-9}}) {
@@ -101,7 +101,7 @@ TYPED_TEST(SnellOf, DirectionIsOfUnitLength) {
   }
 }
 
-TYPED_TEST(SnellOf, ATiltedLengthIsRepairedWithinAThousandSurfaces) {
+TYPED_TEST(SnellOf, LengthErrorsAreCorrectedWithin1000Surfaces) {
   const TypeParam eps = std::numeric_limits<TypeParam>::epsilon();
   Sampler<TypeParam> sampler;
   const auto in = make_interface<TypeParam>(1, 1.7), out = make_interface<TypeParam>(1.7, 1);
@@ -114,7 +114,7 @@ TYPED_TEST(SnellOf, ATiltedLengthIsRepairedWithinAThousandSurfaces) {
   }
 }
 
-TYPED_TEST(SnellOf, TheWayBackIsTheWayIn) {
+TYPED_TEST(SnellOf, RefractionIsReversible) {
   const double eps = std::numeric_limits<TypeParam>::epsilon();
   Sampler<TypeParam> sampler;
   const auto in = make_interface<TypeParam>(1, 1.7), out = make_interface<TypeParam>(1.7, 1);
@@ -130,7 +130,7 @@ TYPED_TEST(SnellOf, TheWayBackIsTheWayIn) {
   }
 }
 
-TYPED_TEST(SnellOf, NeitherSideOfTheNormalMatters) {
+TYPED_TEST(SnellOf, SignOfTheNormalIsIrrelevant) {
   Sampler<TypeParam> sampler;
   for (int i = 0; i < 1000; ++i) {
     const Vec<TypeParam> d = sampler.unit_vector(), n = sampler.unit_vector();
@@ -142,7 +142,7 @@ TYPED_TEST(SnellOf, NeitherSideOfTheNormalMatters) {
   }
 }
 
-TEST(Snell, TotalReflectionIsDecidedWithinABillionthOfTheCriticalAngle) {
+TEST(Snell, TotalReflectionIsCorrectWithinABillionthOfTheCriticalAngle) {
   const auto interface = make_interface<double>(1.5, 1);
   const double critical = std::asin(1 / 1.5);
   for (const double off : {1e-9, -1e-9}) {
@@ -154,7 +154,7 @@ TEST(Snell, TotalReflectionIsDecidedWithinABillionthOfTheCriticalAngle) {
   }
 }
 
-TEST(Snell, AtTheCriticalAngleItselfTheRayRunsAlongTheSurface) {
+TEST(Snell, AtTheCriticalAngleTheRayIsTangential) {
   // sin = 4/5, cos = 3/5 at n/n' = 5/4: every step is exact.
   const Interface<double> interface { 1.25, -0.5625 };
   const auto [t, transmitted] = refract(Vec<double>{0.8, 0, 0.6}, Vec<double>{0, 0, 1}, interface);
@@ -163,7 +163,7 @@ TEST(Snell, AtTheCriticalAngleItselfTheRayRunsAlongTheSurface) {
   EXPECT_NEAR(t.z, 0, 1e-15);
 }
 
-TEST(Snell, ReflectionTurnsTheNormalComponentAlone) {
+TEST(Snell, ReflectionReversesTheNormalComponentOnly) {
   Sampler<double> sampler;
   for (int i = 0; i < 1000; ++i) {
     const auto d = sampler.unit_vector(), n = sampler.unit_vector();

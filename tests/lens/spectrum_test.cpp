@@ -72,7 +72,7 @@ double largest_error(const Lens& lens, const Prescription& prescription, const C
   return largest;
 }
 
-TEST(Spectrum, IndicesOfAllLensesOfTheDataAreRightFromEightWavelengths) {
+TEST(Spectrum, EightWavelengthsGiveTheIndicesOfAllLenses) {
   double worst = 0;
   std::size_t lenses = 0;
   for (const Prescription& prescription : petzval::testing::data_prescriptions()) {
@@ -92,7 +92,7 @@ TEST(Spectrum, IndicesOfAllLensesOfTheDataAreRightFromEightWavelengths) {
   EXPECT_GT(worst, 1e-9) << "the comparison shows nothing";
 }
 
-TEST(Spectrum, TheStatedErrorOfEveryGlassHolds) {
+TEST(Spectrum, StatedErrorOfEveryGlassHolds) {
   for (const auto& [from, to, limit] :
        {std::tuple(400., 700., 7e-7), std::tuple(380., 780., 6e-6), std::tuple(400., 1000., 4e-6)}) {
     double worst = 0;
@@ -110,7 +110,7 @@ TEST(Spectrum, TheStatedErrorOfEveryGlassHolds) {
   }
 }
 
-TEST(Spectrum, TheErrorDoesNotDependOnNumberOrSpacingOfWavelengths) {
+TEST(Spectrum, ErrorIsIndependentOfNumberAndSpacingOfWavelengths) {
   const Prescription prescription = petzval::read_prescription(data / "lenses/double_gauss_100mm_f2.0.json");
   std::vector<double> cluster = steps(550, 550.001, 40);
   cluster.push_back(400), cluster.push_back(700);
@@ -131,7 +131,7 @@ TEST(Spectrum, TheErrorDoesNotDependOnNumberOrSpacingOfWavelengths) {
   EXPECT_FALSE(one.covers(Wavelength::nm(550.01)));
 }
 
-TEST(Spectrum, CompiledWavelengthsInNmHaveTheirOwnIndices) {
+TEST(Spectrum, CompiledWavelengthsInNmHaveTheirIndices) {
   const Prescription prescription = petzval::read_prescription(data / "lenses/double_gauss_100mm_f2.0.json");
   const Lens lens = compile(prescription, steps(400, 700, 8), by_catalogue());
   for (std::size_t w = 0; w < 8; ++w) {
@@ -171,7 +171,7 @@ TEST(Spectrum, OtherWavelengthsAreRefused) {
   EXPECT_TRUE(lens.covers(2));
 }
 
-TEST(Spectrum, AMediumWithoutIndicesBetweenCompiledWavelengthsLeavesThese) {
+TEST(Spectrum, MediumWithoutIndicesBetweenWavelengthsKeepsCompiledOnes) {
   // A formula with a pole at 500 nm.
   const Glass odd{.catalogue = "test",
                   .name = "POLE",
@@ -191,7 +191,7 @@ TEST(Spectrum, AMediumWithoutIndicesBetweenCompiledWavelengthsLeavesThese) {
 }
 
 // For any spacing, functions linear in 1 / nm are exact, and values at compiled wavelengths are kept.
-TEST(Spectrum, NumbersBetweenWavelengthsFollowThoseOfNeighbours) {
+TEST(Spectrum, ValuesAreInterpolatedBetweenWavelengths) {
   for (const std::vector<double>& nm : {std::vector{400., 700.}, std::vector{400., 550., 700.},
                                         std::vector{400., 500., 600., 700.}, std::vector{700., 400., 475., 550., 625.},
                                         std::vector{400., 405., 700.}, std::vector{400., 550., 555., 560., 700.},
@@ -215,7 +215,7 @@ TEST(Spectrum, NumbersBetweenWavelengthsFollowThoseOfNeighbours) {
 
 // Equally spaced wavelengths are interpolated by cubics. The worst case for 15 parabolas is a cubic in 1 / nm of height
 // 0.3 over the whole range.
-TEST(Spectrum, NumbersAtEvenWavelengthsAreInterpolatedByCubics) {
+TEST(Spectrum, EquallySpacedValuesAreInterpolatedByCubics) {
   for (int count = 4; count <= 9; ++count) {
     std::vector<double> nm;
     for (int i = 0; i < count; ++i) nm.push_back(400 + 300. * i / (count - 1));
@@ -227,7 +227,7 @@ TEST(Spectrum, NumbersAtEvenWavelengthsAreInterpolatedByCubics) {
   }
 }
 
-TEST(Spectrum, WavelengthsOfRaysAreTheirOwn) {
+TEST(Spectrum, EachRayHasItsWavelength) {
   constexpr float nm[] = {450, 550.5f, 650};
   constexpr std::uint16_t positions[] = {2, 0, 1};
   const RayWavelengths any{.each_nm = nm}, each{.each = positions}, all{.all = Wavelength::nm(500)}, primary{};

@@ -14,7 +14,7 @@ namespace exact_limit_test {
 using Jet = ceres::Jet<double, 2>;
 
 // The derivatives of the exact ray at the axis with respect to height and slope are the paraxial matrix.
-TEST(RayMatrix, IsTheDerivativeOfTheExactRayAlongTheAxis) {
+TEST(RayMatrix, EqualsTheDerivativeOfTheExactRay) {
   for (const Prescription& prescription : testing::data_prescriptions()) {
     const Lens lens = compile(prescription);
     const double n = signed_index(lens, 0), n_image = signed_index(lens, lens.surface_count());

@@ -51,7 +51,7 @@ void expect_no_nan(const FirstOrder& data) {
   for (const double value : numbers(data)) EXPECT_FALSE(std::isnan(value));
 }
 
-TEST(FirstOrder, KnowsTheSqueeze) {
+TEST(FirstOrder, SqueezeEqualsTheDeclaredOne) {
   EXPECT_NEAR(squeeze(data_lens("anamorphic_60mm_2x")), 60.55 / 31.49, 1e-3);  // as declared
   EXPECT_EQ(squeeze(data_lens("double_gauss_100mm_f2.0")), 1);
   EXPECT_EQ(squeeze(data_lens("cylinder_3.9mm")), 0);  // power in one section only
@@ -77,7 +77,7 @@ TEST(RayMatrix, FollowedByItsInverseIsTheIdentity) {
   EXPECT_NEAR(identity.d, 1, 1e-14);
 }
 
-TEST(RayMatrix, OfPartsMakesTheMatrixOfTheWhole) {
+TEST(RayMatrix, ProductOfPartsIsTheWhole) {
   const Lens lens = data_lens("double_gauss_100mm_f1.35");
   const RayMatrix whole = ray_matrix(lens, 0, lens.surface_count());
   const auto all = ray_matrices_to(lens);
@@ -105,7 +105,7 @@ TEST(FirstOrder, OfEveryLensInDataIsWithinTwoPercentOfTheDeclared) {
   }
 }
 
-TEST(FirstOrder, StaysWhenTheLensIsTurnedRound) {
+TEST(FirstOrder, ReversedLensHasEqualPower) {
   for (const Prescription& p : data_prescriptions()) {
     SCOPED_TRACE(p.id);
     for (const Meridian meridian : {Meridian::y, Meridian::x}) {
@@ -166,14 +166,14 @@ TEST(FirstOrder, RaysThroughTheNodalPointsKeepTheirSlope) {
   }
 }
 
-TEST(FirstOrder, OfTheEyeCountsTheVitreousBehindIt) {
+TEST(FirstOrder, EyeIncludesTheVitreous) {
   const FirstOrder data = first_order(data_lens("eye_gullstrand_le_grand"));
   EXPECT_NEAR(data.power * 1000, 59.94, 0.005);  // dioptres, from the note of the file
   EXPECT_NEAR(data.rear_focal_z - data.rear_principal_z, 1.336 * data.effective_focal_length, 1e-12);
   EXPECT_NEAR(data.front_principal_z - data.front_focal_z, data.effective_focal_length, 1e-12);
 }
 
-TEST(FirstOrder, OfAMirrorLiesInFrontOfIt) {
+TEST(FirstOrder, MirrorFocusesInFront) {
   const FirstOrder data = first_order(data_lens("mirror_newton_200mm_f8"));
   EXPECT_EQ(data.effective_focal_length, 200);
   EXPECT_EQ(data.back_focal_distance, -200);
@@ -182,14 +182,14 @@ TEST(FirstOrder, OfAMirrorLiesInFrontOfIt) {
   EXPECT_EQ(data.petzval_sum, -1.0 / 200);
 }
 
-TEST(FirstOrder, AddsTheSquareTermOfAnAsphereToTheCurvature) {
+TEST(FirstOrder, SquareTermOfAnAsphereAddsToTheCurvature) {
   Prescription sphere = element(1.5, 40, -60, 7), asphere = sphere;
   asphere.surfaces[0].radius = 0;
   asphere.surfaces[0].aspheric = {{.order = 2, .coefficient = 1.0 / 80}};
   EXPECT_NEAR(first_order(compile(asphere)).power, first_order(compile(sphere)).power, 1e-17);
 }
 
-TEST(FirstOrder, SeesACylinderInItsOwnMeridianOnly) {
+TEST(FirstOrder, CylinderHasPowerInItsMeridianOnly) {
   const Lens lens = data_lens("cylinder_3.9mm");
   EXPECT_FALSE(first_order(lens, 0, Meridian::y).afocal);
   EXPECT_TRUE(first_order(lens, 0, Meridian::x).afocal);
@@ -200,7 +200,7 @@ TEST(FirstOrder, SeesACylinderInItsOwnMeridianOnly) {
   EXPECT_EQ(first_order(compile(turned), 0, Meridian::x).power, first_order(lens).power);
 }
 
-TEST(FirstOrder, ReportsAnAfocalLensAndDividesNothing) {
+TEST(FirstOrder, ReportsAfocalLenses) {
   std::vector<Prescription> afocal{element(1.5, 0, 0, 10), element(1.0, 30, -30, 5)};
   Prescription plane;
   plane.name = "plane";
@@ -228,13 +228,13 @@ TEST(FirstOrder, ReportsAnAfocalLensAndDividesNothing) {
   }
 }
 
-TEST(FirstOrder, OfAWeakLensIsNotTakenForAfocal) {
+TEST(FirstOrder, WeakLensIsNotAfocal) {
   const FirstOrder data = first_order(compile(element(1.5, 1e9, 0, 1)));
   EXPECT_FALSE(data.afocal);
   EXPECT_NEAR(data.effective_focal_length, 2e9, 1e-3);
 }
 
-TEST(FirstOrder, BeyondTheRangeOfLengthsIsAfocal) {
+TEST(FirstOrder, FocalLengthsBeyondTheRangeAreAfocal) {
   for (const double r : {1e101, 1.7e308}) EXPECT_TRUE(first_order(compile(element(1.5, r, -r, 5))).afocal) << r;
   EXPECT_FALSE(first_order(compile(element(1.5, 1e99, -1e99, 5))).afocal);
 
@@ -256,7 +256,7 @@ TEST(FirstOrder, IsNeverNaN) {
   }
 }
 
-TEST(FirstOrder, OfConcentricSurfacesCentresOnTheirCentre) {
+TEST(FirstOrder, ConcentricSurfacesHavePrincipalPlanesAtTheCentre) {
   const FirstOrder shell = first_order(compile(element(1.5, 50, 40, 10)));
   EXPECT_NEAR(shell.front_nodal_z, 50, 1e-12);
   EXPECT_NEAR(shell.rear_nodal_z, 50, 1e-12);

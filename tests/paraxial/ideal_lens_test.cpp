@@ -46,7 +46,7 @@ Lens biconvex() {
   return compile(p);
 }
 
-TEST(IdealLens, ThinLensImagesWhereItIsKnownTo) {
+TEST(IdealLens, ThinLensHasKnownImages) {
   const IdealLens lens = thin_lens(F, 2);
   const auto at = [&](double d) { return lens.image({{0, 0, -d}})->position.z; };
   EXPECT_NEAR(at(2), 0.051282051282051282, eps12 * F);
@@ -59,7 +59,7 @@ TEST(IdealLens, ThinLensImagesWhereItIsKnownTo) {
   EXPECT_FALSE(lens.image({{0, 0, 3}}));
 }
 
-TEST(IdealLens, ThinLensTiltsWhereItIsKnownTo) {
+TEST(IdealLens, ThinLensHasKnownTilts) {
   const IdealLens lens = thin_lens(F, 2);
   const Plane scene{{0, sin30, -cos30}, 2 * cos30};
   const Film film = film_in(lens.image_of(scene).value());
@@ -83,7 +83,7 @@ TEST(IdealLens, ThinLensTiltsWhereItIsKnownTo) {
   EXPECT_NEAR(std::hypot(hinge.point.y, F), 1.5008331019803634, 2 * eps9);
 }
 
-TEST(IdealLens, ThickLensIsTheLensmakers) {
+TEST(IdealLens, ThickLensObeysTheLensmakersEquation) {
   const IdealLens lens = thick_lens(biconvex());
   EXPECT_NEAR(lens.rear_focal_length, 100.16191575174180, eps12 * 100);
   EXPECT_NEAR(lens.front_principal_z(), 6.8253794910997051, eps12 * 100);
@@ -100,7 +100,7 @@ TEST(IdealLens, ThickLensIsTheLensmakers) {
   EXPECT_NEAR(other.rear_principal_z() - 6, -9.1743119266055, 1e-12 * 200);
 }
 
-TEST(IdealLens, ThickLensTiltsWhereItIsKnownTo) {
+TEST(IdealLens, ThickLensHasKnownTilts) {
   // The reference values are metres from the centre of the lens.
   const IdealLens lens = thick_lens(biconvex());
   constexpr double middle = 10, m = 1000;
@@ -117,7 +117,7 @@ TEST(IdealLens, ThickLensTiltsWhereItIsKnownTo) {
   EXPECT_NEAR(signed_blur(*image, film), 0, 1e-12);
 }
 
-TEST(IdealLens, ThickLensIsTheParaxialOneOfEveryLens) {
+TEST(IdealLens, ThickLensEqualsParaxialImagesOfEveryLens) {
   int tried = 0;
   for (const Prescription& p : data_prescriptions()) {
     SCOPED_TRACE(p.id);
@@ -157,7 +157,7 @@ TEST(IdealLens, ThickLensIsTheParaxialOneOfEveryLens) {
   EXPECT_GT(tried, 60);
 }
 
-TEST(IdealLens, BlurIsThatOfTheFocusSolvers) {
+TEST(IdealLens, BlurEqualsTheFocusSolvers) {
   const FocusOptions paraxial{.criterion = FocusCriterion::paraxial};
   const Lens compiled = with_focus(data_lens("double_gauss_100mm_f2_28deg"), 2000, paraxial);
   const Film film = film_at(compiled.film_z());
@@ -201,7 +201,7 @@ TEST(IdealLens, MapsPointsOnAPlaneToPointsOnItsImageAndBack) {
   }
 }
 
-TEST(IdealLens, FarPointsRunIntoThoseAtInfinity) {
+TEST(IdealLens, FarPointsTendToInfinity) {
   for (const IdealLens& lens : {thin_lens(50, 2), thick_lens(data_lens("double_gauss_100mm_f2_28deg"))}) {
     const Vec direction(0.2, -0.1, -1);
     const ImagePoint ideal = lens.image({3e5 * direction, true}).value();
@@ -255,7 +255,7 @@ TEST(IdealLens, BlurIsSignedAndTheChiefRayCarriesItToATiltedFilm) {
   EXPECT_NEAR(signed_blur(image, tilted), diameter, 1e-13);
 }
 
-TEST(IdealLens, GrowsImagesAsChiefRaysHaveThem) {
+TEST(IdealLens, MagnificationEqualsChiefRays) {
   const IdealLens lens = thick_lens(data_lens("double_gauss_100mm_f2_28deg"));
   const ImagePoint image = lens.image({{200, -100, -1500}}).value();
   const auto height = [&](double film_z) { return image.position.x + image.slope_x * (film_z - image.position.z); };
@@ -263,7 +263,7 @@ TEST(IdealLens, GrowsImagesAsChiefRaysHaveThem) {
   EXPECT_TRUE(std::isnan(lens.growth(150, lens.pupils.exit.z)));
 }
 
-TEST(IdealLens, HingeAndScheimpflugLinesStayWhereTheyAre) {
+TEST(IdealLens, HingeAndScheimpflugLinesAreFixed) {
   const IdealLens lens = thick_lens(data_lens("double_gauss_100mm_f2_28deg"));
   const Film film = film_at(lens.rear_focal_z + 8, radians(6), radians(-4));
   const FocusPlane focus = focus_plane(lens, film).value();
@@ -302,7 +302,7 @@ TEST(IdealLens, FindsTheFartherOfTwoObjectsAtASeparation) {
   }
 }
 
-TEST(IdealLens, MarginalRaysRunThroughPupilAndImage) {
+TEST(IdealLens, MarginalRaysPassPupilAndImage) {
   const IdealLens lens = thick_lens(data_lens("double_gauss_100mm_f2_28deg"));
   for (const double p : {1.0, 50.0, 1e3, 1e9, infinity}) {
     const MarginalRay ray = lens.marginal_ray(p);
@@ -312,7 +312,7 @@ TEST(IdealLens, MarginalRaysRunThroughPupilAndImage) {
   }
 }
 
-TEST(IdealLens, RefusesWhatIsNoLens) {
+TEST(IdealLens, RefusesInvalidLenses) {
   expect_error([] { thin_lens(0, 2); }, {"thin_lens", "focal", 0});
   expect_error([] { thin_lens(nan, 2); }, {"thin_lens", "focal", "nan"});
   expect_error([] { thin_lens(50, 0); }, {"thin_lens", "f-number", 0});

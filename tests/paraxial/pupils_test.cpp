@@ -55,7 +55,7 @@ TEST(Pupils, ImageEachOtherThroughTheWholeLens) {
   }
 }
 
-TEST(Pupils, OfATelecentricLensAreInfinite) {
+TEST(Pupils, TelecentricPupilsAreInfinite) {
   for (const double radius : {20.0, 60.0, 61.3, 70.7, 100.0, 333.3}) {
     Prescription p;
     p.name = "telecentric";
@@ -70,7 +70,7 @@ TEST(Pupils, OfATelecentricLensAreInfinite) {
   }
 }
 
-TEST(Pupils, WithoutAStopAreThoseOfTheRimThatClipsFirst) {
+TEST(Pupils, WithoutAStopAreImagesOfTheLimitingRim) {
   Prescription p;
   p.name = "unmarked";
   p.surfaces = {{.radius = 50, .thickness = 30, .medium = {.nd = 1.5}, .semi_diameter = 10},
@@ -86,7 +86,7 @@ TEST(Pupils, WithoutAStopAreThoseOfTheRimThatClipsFirst) {
   EXPECT_EQ(pupils(compile(p)).stop, 0u);
 }
 
-TEST(Pupils, OfACylinderWithoutAStopAreThoseOfTheWiderSection) {
+TEST(Pupils, CylinderWithoutAStopIsLimitedInTheWiderSection) {
   Prescription p;
   p.name = "cylinder";
   p.surfaces = {{.radius = 50, .thickness = 30, .medium = {.nd = 1.5}, .semi_diameter = 10, .curved_in = Section::y},
@@ -98,7 +98,7 @@ TEST(Pupils, OfACylinderWithoutAStopAreThoseOfTheWiderSection) {
   EXPECT_EQ(pupils(compile(p)).stop, 0u);
 }
 
-TEST(Pupils, WithoutAStopLetTheMarginalRayThroughEveryRim) {
+TEST(Pupils, MarginalRayPassesEveryRimWithoutAStop) {
   for (Prescription p : data_prescriptions()) {
     SCOPED_TRACE(p.id);
     for (SurfaceRow& row : p.surfaces) row.stop = false;
@@ -111,7 +111,7 @@ TEST(Pupils, WithoutAStopLetTheMarginalRayThroughEveryRim) {
   }
 }
 
-TEST(Pupils, WithoutAnyRimAreAnError) {
+TEST(Pupils, RefuseLensesWithoutAnyRim) {
   Prescription p;
   p.name = "endless";
   p.surfaces = {{.radius = 50, .medium = {.nd = 1.5}}};
@@ -121,7 +121,7 @@ TEST(Pupils, WithoutAnyRimAreAnError) {
   EXPECT_EQ(message([&] { paraxial_f_number(compile(p)); }), message([&] { pupils(compile(p)); }));
 }
 
-TEST(Pupils, OfAStopWithoutARimAreThoseOfALensWithoutAStop) {
+TEST(Pupils, StopWithoutRimIsLimitedByOtherRims) {
   for (Prescription p : data_prescriptions()) {
     SCOPED_TRACE(p.id);
     const auto [marked, unmarked] = testing::without_the_rim_of_its_stop(p);
@@ -139,13 +139,13 @@ TEST(Pupils, OfAStopWithoutARimAreThoseOfALensWithoutAStop) {
   }
 }
 
-TEST(Pupils, OfAClosedStopOnTheFilmHaveNoCone) {
+TEST(Pupils, ClosedStopOnTheFilmHasNoCone) {
   Prescription p = testing::open_singlet(0);
   p.surfaces.back().thickness = 0;
   EXPECT_EQ(film_side_f_number(compile(p)), infinity);
 }
 
-TEST(Pupils, OfAClosedStopAreEmpty) {
+TEST(Pupils, ClosedStopHasEmptyPupils) {
   const Lens lens = with_semi_diameter(data_lens("double_gauss_100mm_f1.35"), 5, 0);
   EXPECT_EQ(pupils(lens).entrance.diameter, 0);
   EXPECT_EQ(pupils(lens).exit.diameter, 0);

@@ -61,7 +61,7 @@ bool has_sums(const Lens& lens) {
 
 // Transverse aberrations are the derivatives of
 // W = S1/8 r^4 + S2/2 h y r^2 + S3/2 h^2 y^2 + (S3 + S4)/4 h^2 r^2 + S5/2 h^3 y over n' u'.
-TEST(Seidel, SumsAreTheLimitsOfRealRays) {
+TEST(Seidel, SumsEqualLimitsOfExactRays) {
   int lenses = 0;
   double worst = 0;
   for (const Prescription& p : testing::data_prescriptions()) {

@@ -82,7 +82,7 @@ TEST(ThinLensFilmDistance, IsWithinEightEpsFromFourFocalLengthsToTheStars) {
   }
 }
 
-TEST(ThinLens, RefusesWhatHasNoImage) {
+TEST(ThinLens, RefusesSubjectsWithoutAnImage) {
   expect_error([] { thin_lens_extension(50, 50); }, {"thin_lens_extension", "subject", 50});
   expect_error([] { thin_lens_extension(50, std::nan("")); }, {"thin_lens_extension", "subject", "nan"});
   expect_error([] { thin_lens_extension(-50, 10); }, {"thin_lens_extension", "focal", -50});
@@ -93,7 +93,7 @@ TEST(ThinLens, RefusesWhatHasNoImage) {
   expect_error([] { thin_lens_film_distance(50, 199); }, {"thin_lens_film_distance", "distance", 199});
 }
 
-TEST(ThinLensBlurDiameter, RefusesNumbersThatNoLensHas) {
+TEST(ThinLensBlurDiameter, RefusesInvalidNumbers) {
   for (const double bad : {infinity, -infinity, std::nan("")}) {
     expect_error([&] { thin_lens_blur_diameter(50, bad, 1000, 400); }, {"diameter", bad});
     expect_error([&] { thin_lens_blur_diameter(bad, 25, 1000, 400); }, {"focal", bad});
@@ -101,7 +101,7 @@ TEST(ThinLensBlurDiameter, RefusesNumbersThatNoLensHas) {
   EXPECT_EQ(thin_lens_blur_diameter(50, 0, 1000, 400), 0);
 }
 
-TEST(ThinLensBlurDiameter, IsANumberAtTheEndsOfTheRange) {
+TEST(ThinLensBlurDiameter, IsFiniteAtTheEndsOfTheRange) {
   EXPECT_EQ(thin_lens_blur_diameter(1e300, 0, 1e-10, infinity), 0);
   EXPECT_NEAR(thin_lens_blur_diameter(1e-300, 1, 1e-10, 1e300), 1e-290, 1e-305);
   for (const double f : {1e-300, 1e-20, 1., 1e300}) {

@@ -90,7 +90,7 @@ Errors errors(const Lens& lens, const RayPolynomial& polynomial, const Lines<T>&
   return result;
 }
 
-TEST(PolynomialFit, ErrorsFallWithTheDegreeAndAreWhatIsStated) {
+TEST(PolynomialFit, ErrorsFallWithTheDegreeAndEqualTheStatedOnes) {
   for (const Case& c : cases) {
     SCOPED_TRACE(c.id);
     const Lens lens = lens_of(c);
@@ -120,7 +120,7 @@ TEST(PolynomialFit, ErrorsFallWithTheDegreeAndAreWhatIsStated) {
 }
 
 // Half of the test rays come from the whole film, half from its corner, where errors have narrow peaks.
-TEST(PolynomialFit, TheLargestErrorsHoldToTheCornerOfTheFilm) {
+TEST(PolynomialFit, LargestErrorsHoldToTheCornerOfTheFilm) {
   struct Focused {
     const char* id;
     double f_number, distance, film_radius;
@@ -159,7 +159,7 @@ TEST(PolynomialFit, TheLargestErrorsHoldToTheCornerOfTheFilm) {
 }
 
 // A cylinder too weak to change the lens.
-TEST(PolynomialFit, OfALensOfRevolutionIsAsGoodWithMirrorSymmetry) {
+TEST(PolynomialFit, MirrorSymmetryIsAsAccurateAsRotationalSymmetry) {
   Prescription prescription = data_prescription("double_gauss_100mm_f2.0");
   const Lens lens = compile(prescription);
   SurfaceRow weak = {.radius = 1e12, .thickness = 0.01, .curved_in = Section::x};
@@ -177,7 +177,7 @@ TEST(PolynomialFit, OfALensOfRevolutionIsAsGoodWithMirrorSymmetry) {
   }
 }
 
-TEST(PolynomialFit, DoubleGaussIsAsGoodAsKnown) {
+TEST(PolynomialFit, DoubleGaussHasTheKnownErrors) {
   // RMS angle times focal length, in micrometres: least squares over uniform samples give 28.6, 6.2, 1.03, 0.144 and
   // 0.019 at f/2 and 12.3, 1.28, 0.132, 0.0124 and 0.0011 at f/4. The fit has denser samples at the edges and keeps the
   // centre of the film in focus.
@@ -193,7 +193,7 @@ TEST(PolynomialFit, DoubleGaussIsAsGoodAsKnown) {
   }
 }
 
-TEST(PolynomialFit, AnamorphicIsAsGoodAsStated) {
+TEST(PolynomialFit, AnamorphicHasTheStatedErrors) {
   const std::array<std::array<double, 5>, 2> limits{{{42, 7.5, 1.6, 0.33, 0.071}, {34, 3.1, 0.32, 0.034, 0.004}}};
   for (std::size_t k = 0; k < limits.size(); ++k) {
     const Case& c = cases[5 + k];
@@ -206,7 +206,7 @@ TEST(PolynomialFit, AnamorphicIsAsGoodAsStated) {
   }
 }
 
-TEST(PolynomialFit, TurnsWithTheCylinders) {
+TEST(PolynomialFit, RotatesWithTheCylinders) {
   Prescription prescription = data_prescription("anamorphic_60mm_2x");
   const Lens lens = compile(prescription);
   for (SurfaceRow& row : prescription.surfaces) {
@@ -239,7 +239,7 @@ TEST(PolynomialFit, TurnsWithTheCylinders) {
   }
 }
 
-TEST(PolynomialFit, HoldsThePupilsOfItsMap) {
+TEST(PolynomialFit, DomainContainsThePupils) {
   for (const Case& c : cases) {
     const Lens lens = lens_of(c);
     const FilmPupilTable pupils = FilmPupilTable::enclosing(lens, c.film_radius);
@@ -259,7 +259,7 @@ TEST(PolynomialFit, HoldsThePupilsOfItsMap) {
   }
 }
 
-TEST(PolynomialFit, FindsTheWayBack) {
+TEST(PolynomialFit, ReversedRaysReturn) {
   for (const Case& c : cases) {
     const Lens lens = lens_of(c);
     const FilmPupilTable pupils = FilmPupilTable::equal_area(lens, c.film_radius);
@@ -310,7 +310,7 @@ TEST(PolynomialFit, FloatAddsLittle) {
   }
 }
 
-TEST(PolynomialFit, EveryWavelengthHasItsOwn) {
+TEST(PolynomialFit, EveryWavelengthHasItsFit) {
   const GlassCatalogue glasses = GlassCatalogue::load(std::filesystem::path(PETZVAL_TEST_DATA) / "glass");
   const std::array<double, 3> nm{656.2725, 587.5618, 486.1327};
   const Lens lens = compile(data_prescription("double_gauss_100mm_f2_28deg"), nm, {.glasses = &glasses});
@@ -330,7 +330,7 @@ TEST(PolynomialFit, EveryWavelengthHasItsOwn) {
 }
 
 // Few modes suffice: their error is below the error of the fits and the rounding of float.
-TEST(PolynomialFit, WavelengthsOfFitsInNmAreNearlyTheFits) {
+TEST(PolynomialFit, FittedWavelengthsInNmEqualTheirFits) {
   const GlassCatalogue glasses = GlassCatalogue::load(std::filesystem::path(PETZVAL_TEST_DATA) / "glass");
   const auto even = [](double from, double to, int count) {
     std::vector<double> nm;
@@ -367,7 +367,7 @@ TEST(PolynomialFit, WavelengthsOfFitsInNmAreNearlyTheFits) {
   }
 }
 
-TEST(PolynomialFit, SaysWhyThereIsNone) {
+TEST(PolynomialFit, RefusesInvalidLensesAndDegrees) {
   const Lens lens = data_lens("double_gauss_100mm_f2_28deg");
   const FilmPupilTable pupils = FilmPupilTable::equal_area(lens, 20);
   const auto why = [&](const Lens& of, const FilmPupilTable& map, int degree) {

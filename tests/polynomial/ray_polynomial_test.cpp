@@ -77,7 +77,7 @@ Lines<T> all_over(bool mirrors = false) {
   return lines;
 }
 
-TEST(RayPolynomial, TermsAreAllOfTheDegree) {
+TEST(RayPolynomial, TermsAreAllMonomialsOfTheDegree) {
   const std::size_t counts[] = {4, 10, 20, 35, 56};
   for (int degree = 3; degree <= 11; degree += 2) {
     const auto terms = RayPolynomial::terms(degree);
@@ -92,7 +92,7 @@ TEST(RayPolynomial, TermsAreAllOfTheDegree) {
 }
 
 // Monomials in fx, px, fy and py that are odd in the first two together and even in the others.
-TEST(RayPolynomial, MirrorTermsAreAllOfTheDegree) {
+TEST(RayPolynomial, MirrorTermsAreAllMonomialsOfTheDegree) {
   for (int degree = 3; degree <= 11; degree += 2) {
     const auto terms = RayPolynomial::mirror_terms(degree);
     std::set<std::array<int, 4>> monomials;
@@ -118,7 +118,7 @@ TEST(RayPolynomial, MirrorTermsAreAllOfTheDegree) {
   }
 }
 
-TEST(RayPolynomial, AddsTheTermsInTheirOrder) {
+TEST(RayPolynomial, EqualsTheExplicitSum) {
   // The explicit sum gives the direction by its angle 2 atan |s| to the axis, and the offset by its length and its
   // angle to the plane of axis and direction, which a rotation about the normal keeps. Fields reach 130 degrees.
   const auto check = [](int degree, bool mirrors) {
@@ -172,7 +172,7 @@ TEST(RayPolynomial, AddsTheTermsInTheirOrder) {
   for (int degree = 3; degree <= 11; degree += 2) check(degree, false), check(degree, true);
 }
 
-TEST(RayPolynomial, MirrorsWithItsLines) {
+TEST(RayPolynomial, HasMirrorSymmetry) {
   for (int degree = 3; degree <= 11; degree += 2) {
     const RayPolynomial polynomial(degree, domain(true), {numbers(degree, -0.6, 0.02, 587.5618, true)});
     Lines<float> lines = all_over<float>(true), in_x, in_y;
@@ -190,7 +190,7 @@ TEST(RayPolynomial, MirrorsWithItsLines) {
   }
 }
 
-TEST(RayPolynomial, TurnsAndMirrorsWithItsLines) {
+TEST(RayPolynomial, HasRotationalAndMirrorSymmetry) {
   const RayPolynomial polynomial(7, domain(), {numbers(7, -0.6, 0.02)});
   Lines<double> lines = all_over<double>(), mirrored, turned;
   const double c = std::cos(0.4), s = std::sin(0.4);
@@ -212,7 +212,7 @@ TEST(RayPolynomial, TurnsAndMirrorsWithItsLines) {
   }
 }
 
-TEST(RayPolynomial, ComesBackToItsLines) {
+TEST(RayPolynomial, ToFilmInvertsToScene) {
   for (const int n : {3, 5, 7, 9, 11, -3, -5, -7, -9, -11}) {  // negative: with mirror symmetry
     const int degree = std::abs(n);
     const double slope = n < 0 ? -0.9 : -1.6;
@@ -243,7 +243,7 @@ TEST(RayPolynomial, ComesBackToItsLines) {
   }
 }
 
-TEST(RayPolynomial, DerivativesAreDifferences) {
+TEST(RayPolynomial, DerivativesEqualFiniteDifferences) {
   // Film and pupil points move with two parameters; central differences with step 1e-4 are accurate to 1e-7.
   for (const int n : {3, 7, 11, -3, -7, -11}) {  // negative: with mirror symmetry
     const int degree = std::abs(n);
@@ -286,7 +286,7 @@ void expect_nothing(const Lines<T>& lines, std::size_t i) {
   EXPECT_EQ(lines.direction(i), Vec3<double>(0, 0, -1)) << i;
 }
 
-TEST(RayPolynomial, GivesNothingOutsideItsDomain) {
+TEST(RayPolynomial, RefusesLinesOutsideItsDomain) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   const RayPolynomial polynomial(5, domain(), {numbers(5, -0.6, 0.02)});
   const auto check = [&]<class T>(T) {
@@ -326,7 +326,7 @@ TEST(RayPolynomial, GivesNothingOutsideItsDomain) {
   check(float()), check(double());
 }
 
-TEST(RayPolynomial, FindsNoLinesForRaysFromElsewhere) {
+TEST(RayPolynomial, RefusesRaysOutsideItsDomain) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   const RayPolynomial polynomial(5, domain(), {numbers(5, -0.6, 0.02)});
   struct Case {
@@ -356,7 +356,7 @@ TEST(RayPolynomial, FindsNoLinesForRaysFromElsewhere) {
   }
 }
 
-TEST(RayPolynomial, RaysDoNotDependOnTheirNeighbours) {
+TEST(RayPolynomial, BatchResultIndependentOfNeighbours) {
   const auto check = [&]<class T>(T, bool mirrors, unsigned fits) {
     std::vector<RayPolynomial::Fit> all_fits;
     for (unsigned w = 0; w < fits; ++w) {
@@ -389,7 +389,7 @@ TEST(RayPolynomial, RaysDoNotDependOnTheirNeighbours) {
   }
 }
 
-TEST(RayPolynomial, MapsOneLineAsMany) {
+TEST(RayPolynomial, BatchEqualsSingleLines) {
   for (const bool mirrors : {false, true}) {
     for (const int degree : {3, 5, 7, 9, 11}) {
       const auto fit = [&](double slope, double nm) { return numbers(degree, slope, 0.02, nm, mirrors); };
@@ -411,7 +411,7 @@ TEST(RayPolynomial, MapsOneLineAsMany) {
   }
 }
 
-TEST(RayPolynomial, RefusesWhatIsNotConsistent) {
+TEST(RayPolynomial, RefusesInconsistentFits) {
   using Domain = RayPolynomial::Domain;
   using Fits = std::vector<RayPolynomial::Fit>;
   struct Case {

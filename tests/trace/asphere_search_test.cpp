@@ -108,7 +108,7 @@ TYPED_TEST(AsphereSearch, FindsTheFirstCrossingOfEveryLane) {
 }
 
 /// Without a rim, a term of 1e-10 mm moves hits by at most 1e-10 mm, although its slope is large at 1e12 mm.
-TYPED_TEST(AsphereSearch, AWeakTermChangesLittle) {
+TYPED_TEST(AsphereSearch, WeakTermsChangeHitsByTheirSize) {
   using T = TypeParam;
   constexpr double eps = std::numeric_limits<T>::epsilon();
   testing_batches::Numbers random(5);
@@ -148,7 +148,7 @@ TYPED_TEST(AsphereSearch, AWeakTermChangesLittle) {
 }
 
 /// The slope of this asphere is 4 at 5.83 mm, where its clear aperture ends.
-TYPED_TEST(AsphereSearch, RimsEndWhereAnAsphereIsSteep) {
+TYPED_TEST(AsphereSearch, RimsEndWhereAspheresAreSteep) {
   petzval::SurfaceRow row;
   row.radius = 177.4, row.semi_diameter = 21.3;
   row.aspheric = {{7, -1.451e-5}};

@@ -46,7 +46,7 @@ class BatchIris : public testing::Test {};
 using Plain = testing::Types<float, double>;
 TYPED_TEST_SUITE(BatchIris, Plain);
 
-TYPED_TEST(BatchIris, ClipsWhatCrossesTheStopOutsideAnEdge) {
+TYPED_TEST(BatchIris, ClipsRaysOutsideAnEdge) {
   using T = TypeParam;
   const std::vector<Iris> shapes = irises();
   std::size_t turn = 0;
@@ -111,7 +111,7 @@ std::vector<RayFate> fates_at(const Lens& lens, const std::vector<std::array<T, 
   return traced(lens, rays, options).fates;
 }
 
-TYPED_TEST(BatchIris, CountsItsEdgesAsInside) {
+TYPED_TEST(BatchIris, EdgesAreInside) {
   using T = TypeParam;
   const Iris square{.blades = 4, .rotation_rad = std::numbers::pi / 4};
   const Lens lens = petzval::with_iris(petzval::compile(window()), square);
@@ -138,7 +138,7 @@ TYPED_TEST(BatchIris, IsIgnoredWithoutApertures) {
   }
 }
 
-TYPED_TEST(BatchIris, WithoutAperturesEveryRimIsOpen) {
+TYPED_TEST(BatchIris, RimsAreIgnoredWithoutApertures) {
   using T = TypeParam;
   for (const auto& sample : telling()) {
     petzval::Prescription wide = sample.prescription;

@@ -14,7 +14,7 @@ class BatchReference : public testing::Test {};
 using Plain = testing::Types<float, double>;
 TYPED_TEST_SUITE(BatchReference, Plain);
 
-TYPED_TEST(BatchReference, RaysAndFatesOfEveryLensAreThoseOfExactRays) {
+TYPED_TEST(BatchReference, RaysAndFatesOfEveryLensEqualExactRays) {
   using T = TypeParam;
   Judge<T> judge;
   for (const auto& sample : testing_lenses::all()) {

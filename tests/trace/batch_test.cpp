@@ -56,7 +56,7 @@ std::vector<Ray<T>> absurd_rays() {
   return rays;
 }
 
-TEST(Batch, TheTellingLensesLetRaysPassAndLoseSome) {
+TEST(Batch, TestRaysHaveSeveralFatesOnEveryLens) {
   std::array<int, 4> fates{};
   for (const auto& sample : telling()) {
     for (const Travel travel : both_ways) {
@@ -72,7 +72,7 @@ TEST(Batch, TheTellingLensesLetRaysPassAndLoseSome) {
   for (std::size_t i = 0; i < 4; ++i) EXPECT_GE(fates[i], 50) << petzval::name(static_cast<RayFate>(i));
 }
 
-TYPED_TEST(BatchOf, EveryCountAndPlaceGivesARayTheSameBits) {
+TYPED_TEST(BatchOf, BitsAreIndependentOfCountAndPosition) {
   using T = TypeParam;
   for (const auto& sample : telling()) {
     for (const Travel travel : both_ways) {
@@ -105,7 +105,7 @@ TYPED_TEST(BatchOf, EveryCountAndPlaceGivesARayTheSameBits) {
   }
 }
 
-TYPED_TEST(BatchOf, DirectionsWithinTheTolerancePassAndAreCorrected) {
+TYPED_TEST(BatchOf, DirectionsWithinToleranceAreNormalised) {
   using T = TypeParam;
   const double corrected = std::max(4e-12, 20.0 * std::numeric_limits<T>::epsilon());
   for (const auto& sample : telling()) {
@@ -138,7 +138,7 @@ TYPED_TEST(BatchOf, DirectionsWithinTheTolerancePassAndAreCorrected) {
   }
 }
 
-TYPED_TEST(BatchOf, ResultsMayReplaceTheRaysAndFatesMayStayUnasked) {
+TYPED_TEST(BatchOf, ResultsMayReplaceRaysAndFatesAreOptional) {
   using T = TypeParam;
   for (const auto& sample : telling()) {
     for (const Travel travel : both_ways) {
@@ -166,7 +166,7 @@ TYPED_TEST(BatchOf, ResultsMayReplaceTheRaysAndFatesMayStayUnasked) {
   }
 }
 
-TYPED_TEST(BatchOf, AnArrayOfStructuresGivesTheSameBits) {
+TYPED_TEST(BatchOf, ArrayOfStructuresHasEqualBits) {
   using T = TypeParam;
   for (const auto& sample : telling()) {
     for (const Travel travel : both_ways) {
@@ -189,7 +189,7 @@ TYPED_TEST(BatchOf, AnArrayOfStructuresGivesTheSameBits) {
   }
 }
 
-TYPED_TEST(BatchOf, ALostRayComesBackAsItWentIn) {
+TYPED_TEST(BatchOf, LostRaysAreReturnedUnchanged) {
   using T = TypeParam;
   for (const auto& sample : telling()) {
     for (const Travel travel : both_ways) {
@@ -215,7 +215,7 @@ TYPED_TEST(BatchOf, ALostRayComesBackAsItWentIn) {
   }
 }
 
-TYPED_TEST(BatchOf, ARayThatIsNoneIsAMissAndLeavesItsNeighboursAlone) {
+TYPED_TEST(BatchOf, InvalidRaysAreMissesAndDoNotChangeOtherLanes) {
   using T = TypeParam;
   const auto absurd = absurd_rays<T>();
   for (const auto& sample : telling()) {
@@ -243,7 +243,7 @@ TYPED_TEST(BatchOf, ARayThatIsNoneIsAMissAndLeavesItsNeighboursAlone) {
   }
 }
 
-TYPED_TEST(BatchOf, EveryRayThatIsNoneIsRefusedAsForOneRay) {
+TYPED_TEST(BatchOf, InvalidRaysHaveTheFateOfSingleRays) {
   using T = TypeParam;
   const auto rays = absurd_rays<T>();
   for (const auto& sample : telling()) {
@@ -282,7 +282,7 @@ TYPED_TEST(BatchOf, ThreadsDoNotChangeABit) {
   }
 }
 
-TEST(Batch, OfNothingNeedsNoArrays) {
+TEST(Batch, EmptyBatchNeedsNoArrays) {
   const auto lens = testing_lenses::load("ball_10mm").lens;
   for (const BatchOptions& options : ways()) {
     petzval::trace<double>(lens, 0, {}, {}, nullptr, nullptr, options);

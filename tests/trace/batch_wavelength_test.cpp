@@ -32,7 +32,7 @@ class BatchWavelengths : public testing::Test {};
 using Plain = testing::Types<float, double>;
 TYPED_TEST_SUITE(BatchWavelengths, Plain);
 
-TYPED_TEST(BatchWavelengths, MixedInABatchAreWhatEachGivesAlone) {
+TYPED_TEST(BatchWavelengths, MixedBatchEqualsBatchesOfOneWavelength) {
   using T = TypeParam;
   constexpr std::uint16_t beyond[] = {5, 6, 64, 4096, 65535};
   for (const char* id : {"double_gauss_100mm_f2.0", "modern_58mm_f0.95", "fisheye_6.3mm_f2.8",
@@ -74,7 +74,7 @@ TYPED_TEST(BatchWavelengths, MixedInABatchAreWhatEachGivesAlone) {
 }
 
 // Constants of 4 to 32 wavelengths are permuted in one or two registers, larger tables are gathered.
-TYPED_TEST(BatchWavelengths, MixedInABatchAreWhatEachGivesAloneHoweverManyThereAre) {
+TYPED_TEST(BatchWavelengths, MixedBatchEqualsBatchesForAnyNumberOfWavelengths) {
   using T = TypeParam;
   static const auto glasses = petzval::GlassCatalogue::load(std::filesystem::path(PETZVAL_TEST_DATA) / "glass");
   auto sample = testing_lenses::load("double_gauss_100mm_f2.0");
@@ -100,7 +100,7 @@ TYPED_TEST(BatchWavelengths, MixedInABatchAreWhatEachGivesAloneHoweverManyThereA
   }
 }
 
-TYPED_TEST(BatchWavelengths, GivenForEachRayTakeThePlaceOfTheCommonOne) {
+TYPED_TEST(BatchWavelengths, OnesPerRayReplaceTheCommonOne) {
   using T = TypeParam;
   const auto sample = colourful(testing_lenses::load("double_gauss_100mm_f2.0"));
   const auto rays = rays_for<T>(sample, Travel::to_film, 70);
@@ -114,7 +114,7 @@ TYPED_TEST(BatchWavelengths, GivenForEachRayTakeThePlaceOfTheCommonOne) {
   }
 }
 
-TYPED_TEST(BatchWavelengths, ThatWereNotCompiledLoseTheWholeBatch) {
+TYPED_TEST(BatchWavelengths, MissingIndicesLoseTheWholeBatch) {
   using T = TypeParam;
   for (const auto& sample : telling()) {
     for (const Travel travel : {Travel::to_film, Travel::to_scene}) {
@@ -160,7 +160,7 @@ double apart(const Ray<T>& a, const Ray<T>& b, double size) {
   return sum;
 }
 
-TYPED_TEST(BatchWavelengths, InNmGiveTheRaysOfALensCompiledForThem) {
+TYPED_TEST(BatchWavelengths, InNmEqualALensCompiledForThem) {
   using T = TypeParam;
   for (const char* id : {"double_gauss_100mm_f2.0", "modern_58mm_f0.95", "fisheye_6.3mm_f2.8",
                          "catadioptric_mangin_1000mm_f7.5", "zoom_14-30mm_f4:wide", "anamorphic_60mm_2x"}) {
@@ -198,7 +198,7 @@ TYPED_TEST(BatchWavelengths, InNmGiveTheRaysOfALensCompiledForThem) {
   }
 }
 
-TYPED_TEST(BatchWavelengths, InNmHaveTheSameBitsInEveryBatchAndAlone) {
+TYPED_TEST(BatchWavelengths, InNmHaveEqualBitsInBatchesAndSingleRays) {
   using T = TypeParam;
   for (const char* id : {"double_gauss_100mm_f2.0", "modern_58mm_f0.95", "catadioptric_mangin_1000mm_f7.5"}) {
     const auto sample = colourful(testing_lenses::load(id));
@@ -231,7 +231,7 @@ TYPED_TEST(BatchWavelengths, InNmHaveTheSameBitsInEveryBatchAndAlone) {
   }
 }
 
-TYPED_TEST(BatchWavelengths, CompiledOnesInNmAreThoseByPosition) {
+TYPED_TEST(BatchWavelengths, CompiledOnesInNmEqualTheirIndices) {
   using T = TypeParam;
   const auto sample = colourful(testing_lenses::load("modern_58mm_f0.95"));
   const auto rays = rays_for<T>(sample, Travel::to_film, 333);

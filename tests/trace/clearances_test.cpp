@@ -41,7 +41,7 @@ Columns rays_to_scene(const Lens& lens, std::size_t count) {
   return rays;
 }
 
-TEST(Clearances, AreNotNegativeExactlyForRaysThatPass) {
+TEST(Clearances, AreNonNegativeExactlyForTransmittedRays) {
   for (const Prescription& p : testing::data_prescriptions()) {
     for (const bool bladed : {false, true}) {
       const Lens round = compile(p);
@@ -66,7 +66,7 @@ TEST(Clearances, AreNotNegativeExactlyForRaysThatPass) {
   }
 }
 
-TEST(Clearances, AreTheLeastRoomAtARim) {
+TEST(Clearances, AreTheSmallestDistanceToARim) {
   // The only aperture is a stop with a rim of 2, an obscuration of 1 and six straight edges, the first at x = sqrt 3.
   Prescription p;
   p.name = "one rim";
@@ -91,7 +91,7 @@ TEST(Clearances, AreTheLeastRoomAtARim) {
   }
 }
 
-TEST(Clearances, WithoutAperturesAreTheLeastOfAll) {
+TEST(Clearances, WithoutAperturesAreTheMinimumOverAllRims) {
   // The ray passes just inside the first rim and far outside the second.
   Prescription p;
   p.name = "two rims";
@@ -110,7 +110,7 @@ TEST(Clearances, WithoutAperturesAreTheLeastOfAll) {
   EXPECT_NEAR(clearance(0.5, false), 0.75, 1e-12);
 }
 
-TEST(Clearances, OfRaysThatMissASurfaceLieBelowThoseOfRims) {
+TEST(Clearances, MissedSurfacesGiveLowerValuesThanRims) {
   Prescription p;
   p.name = "ball";
   p.surfaces = {{.radius = 5, .thickness = 9, .medium = {.nd = 1.5}, .semi_diameter = 4.9, .stop = true},

@@ -118,7 +118,7 @@ Vergences by_derivatives(const Lens& lens, const Ray<double>& ray, double z) {
 }
 
 // Spherical and aspheric lenses, mirrors, an eye and fisheyes, up to the edge of their fields.
-TEST(Coddington, FociAreThoseOfTheNeighbouringRays) {
+TEST(Coddington, FociEqualDerivativesOfRays) {
   double worst = 0;
   int rays = 0;
   for (const Prescription& p : testing::data_prescriptions()) {

@@ -57,7 +57,7 @@ State<Jet> seeded(const petzval::Ray<double>& ray) {
 
 double sign(double x) { return x < 0 ? -1 : 1; }
 
-TEST(Derivative, ValueIsThatOfThePlainRayToTheBit) {
+TEST(Derivative, ValueEqualsThePlainRayToTheBit) {
   for (const Sample& s : all()) {
     const auto view = petzval::kernel::view<double>(s.lens);
     for (const auto& ray : passing_rays(s.lens, 8)) {
@@ -113,7 +113,7 @@ TEST(Derivative, AgreesWithCentralDifferences) {
 }
 
 // Rays between planes in (x, y, nL, nM) are a canonical map: J^T Omega J = Omega. Cylinders and mirrors included.
-TEST(Derivative, RaysMoveSymplectically) {
+TEST(Derivative, JacobianIsSymplectic) {
   double most = 0;
   for (const Sample& s : all()) {
     const auto view = petzval::kernel::view<double>(s.lens);

@@ -187,11 +187,11 @@ void judge_all(const std::vector<testing_lenses::Sample>& samples, const std::st
                       petzval::to_text(bound) + " eps");
 }
 
-TYPED_TEST(DifferentialsOf, EveryLensAreThoseOfExactRays) {
+TYPED_TEST(DifferentialsOf, EveryLensEqualsExactRays) {
   judge_all<TypeParam>(testing_lenses::all(), "differentials: all 75 lenses, both ways", 16);
 }
 
-TYPED_TEST(DifferentialsOf, EveryKindOfSurfaceAreThoseOfExactRays) {
+TYPED_TEST(DifferentialsOf, EveryKindOfSurfaceEqualsExactRays) {
   judge_all<TypeParam>(made(), "differentials: single surfaces, both ways", 8);
 }
 

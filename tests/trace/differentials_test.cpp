@@ -71,7 +71,7 @@ void on_every_ray(std::size_t rays, const Take& take) {
 // ---- Laws
 
 // The Lagrange invariant n (x_u d_v - x_v d_u) of two tangents is equal on both sides of a lens: J^T Omega J = Omega.
-TYPED_TEST(DifferentialsOf, TheInvariantOfLagrangeIsKept) {
+TYPED_TEST(DifferentialsOf, LagrangeInvariantIsConserved) {
   using T = TypeParam;
   Most<T> most;
   on_every_ray<T>(100, [&](const auto& sample, const auto& options, const auto& beam, const auto& found) {
@@ -93,7 +93,7 @@ TYPED_TEST(DifferentialsOf, TheInvariantOfLagrangeIsKept) {
   most.close("differentials: Lagrange invariant", 128);
 }
 
-TYPED_TEST(DifferentialsOf, DirectionsKeepTheirLength) {
+TYPED_TEST(DifferentialsOf, DirectionsKeepUnitLength) {
   using T = TypeParam;
   Most<T> most;
   on_every_ray<T>(100, [&](const auto& sample, const auto& options, const auto& beam, const auto& found) {
@@ -135,7 +135,7 @@ TYPED_TEST(DifferentialsOf, AreLinear) {
 }
 
 // A ray and its neighbours, reversed behind the lens, return along their own lines.
-TYPED_TEST(DifferentialsOf, TurnedRoundComeBack) {
+TYPED_TEST(DifferentialsOf, ReversedRaysReturn) {
   using T = TypeParam;
   Most<T> most;
   on_every_ray<T>(60, [&](const auto& sample, auto options, const auto& beam, const auto& found) {
@@ -169,7 +169,7 @@ TYPED_TEST(DifferentialsOf, TurnedRoundComeBack) {
 
 // ---- Slots
 
-TYPED_TEST(DifferentialsOf, RaysAreThoseOfTheTraceWithoutDerivatives) {
+TYPED_TEST(DifferentialsOf, RaysEqualTheTraceWithoutDerivatives) {
   using T = TypeParam;
   Most<T> most;
   on_every_ray<T>(150, [&](const auto& sample, const auto& options, const auto& beam, const auto& found) {
@@ -189,7 +189,7 @@ TYPED_TEST(DifferentialsOf, RaysAreThoseOfTheTraceWithoutDerivatives) {
   most.close("differentials: rays against those of the trace", 16);
 }
 
-TYPED_TEST(DifferentialsOf, OfLostRaysAreZeroAndEverySlotIsFinite) {
+TYPED_TEST(DifferentialsOf, LostRaysGiveZerosAndFiniteLanes) {
   using T = TypeParam;
   std::size_t lost = 0;
   on_every_ray<T>(150, [&](const auto& sample, const auto& options, const auto& beam, const auto& found) {
@@ -206,7 +206,7 @@ TYPED_TEST(DifferentialsOf, OfLostRaysAreZeroAndEverySlotIsFinite) {
   EXPECT_GT(lost, 1000u);
 }
 
-TYPED_TEST(DifferentialsOf, EveryCountGivesARayTheSameBits) {
+TYPED_TEST(DifferentialsOf, BitsAreIndependentOfTheCount) {
   using T = TypeParam;
   for (const auto& sample : telling()) {
     for (const Travel travel : both_ways) {
@@ -227,7 +227,7 @@ TYPED_TEST(DifferentialsOf, EveryCountGivesARayTheSameBits) {
   }
 }
 
-TYPED_TEST(DifferentialsOf, ResultsMayReplaceWhatCameIn) {
+TYPED_TEST(DifferentialsOf, ResultsMayReplaceTheInput) {
   using T = TypeParam;
   for (const auto& sample : telling()) {
     for (const Travel travel : both_ways) {
@@ -250,7 +250,7 @@ TYPED_TEST(DifferentialsOf, ResultsMayReplaceWhatCameIn) {
 
 // Invalid rays and tangents do not change other lanes; an invalid tangent changes neither its ray nor the other
 // tangent.
-TYPED_TEST(DifferentialsOf, NoNumbersStayInTheirLane) {
+TYPED_TEST(DifferentialsOf, InvalidNumbersDoNotChangeOtherLanes) {
   using T = TypeParam;
   const T nan = std::numeric_limits<T>::quiet_NaN(), infinity = std::numeric_limits<T>::infinity();
   for (const auto& sample : telling()) {
@@ -279,7 +279,7 @@ TYPED_TEST(DifferentialsOf, NoNumbersStayInTheirLane) {
   }
 }
 
-TYPED_TEST(DifferentialsOf, WavelengthsMixedInABatchAreWhatEachGivesAlone) {
+TYPED_TEST(DifferentialsOf, MixedBatchEqualsBatchesOfOneWavelength) {
   using T = TypeParam;
   Most<T> most;
   for (const char* id : {"double_gauss_100mm_f2.0", "catadioptric_mangin_1000mm_f7.5", "phone_5.6mm_f3.5"}) {
@@ -315,7 +315,7 @@ TYPED_TEST(DifferentialsOf, WavelengthsMixedInABatchAreWhatEachGivesAlone) {
   most.close("differentials: wavelengths mixed", 64);
 }
 
-TYPED_TEST(DifferentialsOf, ReproducibleOnesAreTheSameOnEveryInstructionSet) {
+TYPED_TEST(DifferentialsOf, ReproducibleBitsAreEqualOnEveryInstructionSet) {
   using T = TypeParam;
   on_every_ray<T>(130, [&](const auto& sample, auto options, const auto& beam, const auto& found) {
     if (options.arithmetic == Arithmetic::fast) return;

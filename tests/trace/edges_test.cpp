@@ -101,7 +101,7 @@ std::vector<SurfaceRow> kinds() {
 }
 
 // All squares are exact in binary, so that only the comparison decides.
-TYPED_TEST(EdgesOf, RimAndHoleThemselvesBelongToTheClearAperture) {
+TYPED_TEST(EdgesOf, RimAndObscurationEdgeBelongToTheClearAperture) {
   struct Place {
     double x, y;
     RayFate fate;
@@ -126,7 +126,7 @@ TYPED_TEST(EdgesOf, RimAndHoleThemselvesBelongToTheClearAperture) {
   }
 }
 
-TYPED_TEST(EdgesOf, AClosedApertureLetsTheAxisThroughAndNothingElse) {
+TYPED_TEST(EdgesOf, ClosedApertureTransmitsTheAxisOnly) {
   for (SurfaceRow row : kinds()) {
     row.semi_diameter = 0;
     const Lens lens = one_surface(row);
@@ -160,7 +160,7 @@ TYPED_TEST(EdgesOf, TheSecondSheetOfAHyperboloidIsMissed) {
   }
 }
 
-TYPED_TEST(EdgesOf, TheWayOfTravelAndNotTheSignOfZPicksTheCrossing) {
+TYPED_TEST(EdgesOf, DirectionOfTravelSelectsTheCrossing) {
   const Lens sphere = one_surface(surface(50, 0, 1));
   const double length = std::sqrt(1.01);
   const Ray<TypeParam> ray = ray_of<TypeParam>(-60, 0, 30, 1 / length, 0, -0.1 / length);

@@ -238,7 +238,7 @@ TEST(Extremes, HitsFromAKilometreAwayLieOnTheSurface) {
                       petzval::to_text(most, 2) + " mm", "2e-14 mm");
 }
 
-TYPED_TEST(ExtremesOf, IndicesThatNearlyAgree) {
+TYPED_TEST(ExtremesOf, NearlyEqualIndices) {
   Judge<TypeParam> judge;
   for (const double difference : {1e-9, -1e-9, 1e-6, -1e-6, 1e-3, -1e-3, 0.0}) {
     for (const double radius : {50.0, -30.0, 0.0}) {
@@ -248,7 +248,7 @@ TYPED_TEST(ExtremesOf, IndicesThatNearlyAgree) {
   judge.close("index ratio to 1 +- 1e-9", 4);
 }
 
-TYPED_TEST(ExtremesOf, EqualMediaLeaveDirectionsWithinOneEps) {
+TYPED_TEST(ExtremesOf, EqualMediaKeepDirectionsWithinOneEps) {
   using T = TypeParam;
   double most = 0;
   for (const double n : {1.0, 1.5, 1.7283}) {

@@ -57,7 +57,7 @@ void same_bits(const TracedRay<T>& a, const TracedRay<T>& b, const std::string& 
   }
 }
 
-TEST(Laws, EveryLensLetsRaysThrough) {
+TEST(Laws, EveryLensTransmitsRays) {
   EXPECT_GE(all().size(), 70u);
   for (const Sample& s : all()) EXPECT_GE(passing_rays(s.lens, 12).size(), 4u) << s.id;
 }
@@ -68,7 +68,7 @@ using Plain = testing::Types<float, double>;
 TYPED_TEST_SUITE(LawsOf, Plain);
 
 // The lenses include mirrors, cylinders, aspheres and an eye with water in image space.
-TYPED_TEST(LawsOf, ATurnedRayComesBack) {
+TYPED_TEST(LawsOf, ReversedRaysReturn) {
   using T = TypeParam;
   const double eps = std::numeric_limits<T>::epsilon();
   double place = 0, turn = 0;
@@ -92,7 +92,7 @@ TYPED_TEST(LawsOf, ATurnedRayComesBack) {
   testing_report::put("reversed rays return, all 75 lenses, direction", testing_report::one_ray<T>, turn, "20 eps");
 }
 
-TEST(Laws, TheReversedLensIsTheLensTakenTheOtherWay) {
+TEST(Laws, ReversedLensEqualsReversedRays) {
   for (const Sample& s : all()) {
     if (std::any_of(s.prescription.surfaces.begin(), s.prescription.surfaces.end(),
                     [](const auto& r) { return r.mirror; }))
@@ -115,7 +115,7 @@ TEST(Laws, TheReversedLensIsTheLensTakenTheOtherWay) {
   }
 }
 
-TYPED_TEST(LawsOf, ALensScaledByAPowerOfTwoScalesItsRaysToTheBit) {
+TYPED_TEST(LawsOf, ScalingByAPowerOfTwoIsExact) {
   using T = TypeParam;
   for (const double factor : {0.25, 8.0}) {
     for (const Sample& s : all()) {
@@ -131,7 +131,7 @@ TYPED_TEST(LawsOf, ALensScaledByAPowerOfTwoScalesItsRaysToTheBit) {
   }
 }
 
-TYPED_TEST(LawsOf, TheMirroredRayIsTheMirrorImageToTheBit) {
+TYPED_TEST(LawsOf, MirroredRaysAreExact) {
   using T = TypeParam;
   for (const Sample& s : all()) {
     for (const Ray<double>& in : passing_rays(s.lens, 6)) {
@@ -188,7 +188,7 @@ TYPED_TEST(LawsOf, RotationAboutTheAxisIsWithinRounding) {
   testing_report::put("rays rotated about the axis, position", testing_report::one_ray<T>, most, "50 eps");
 }
 
-TYPED_TEST(LawsOf, EqualMediaLeaveARayAsItIs) {
+TYPED_TEST(LawsOf, EqualMediaKeepDirections) {
   using T = TypeParam;
   petzval::Prescription p;
   p.name = "air";
@@ -215,7 +215,7 @@ TYPED_TEST(LawsOf, EqualMediaLeaveARayAsItIs) {
   }
 }
 
-TEST(Laws, RimAndHoleBelongToTheClearAperture) {
+TEST(Laws, RimAndObscurationEdgeBelongToTheClearAperture) {
   petzval::Prescription p;
   p.name = "ring";
   p.surfaces = {{.radius = 0, .thickness = 1, .semi_diameter = 12.7, .obscuration_semi_diameter = 3.3}};

@@ -81,7 +81,7 @@ void judge(const TracedRay<T>& end, const Row& row, double size, double bound, d
   }
 }
 
-TYPED_TEST(ReferenceRays, AgreeInPlaceDirectionFateAndSurface) {
+TYPED_TEST(ReferenceRays, EqualTheReference) {
   using T = TypeParam;
   const auto reference = rows();
   ASSERT_GT(reference.size(), 600u);

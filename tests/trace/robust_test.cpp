@@ -87,7 +87,7 @@ class Robust : public testing::Test {};
 using Plain = testing::Types<float, double>;
 TYPED_TEST_SUITE(Robust, Plain);
 
-TYPED_TEST(Robust, NothingButFiniteNumbersComesOutOfAnyLens) {
+TYPED_TEST(Robust, ResultsAreFiniteForAnyLens) {
   using T = TypeParam;
   Random random(2024);
   std::array<int, 5> fates{};
@@ -112,7 +112,7 @@ TYPED_TEST(Robust, NothingButFiniteNumbersComesOutOfAnyLens) {
   this->RecordProperty("no_convergence", fates[4]);
 }
 
-TEST(Robust, AMissLeavesTheRayOnTheSurfaceBefore) {
+TEST(Robust, MissedRaysEndOnTheSurfaceBefore) {
   petzval::Prescription p;
   p.name = "window and ball";
   p.surfaces = {{.radius = 0, .thickness = 5}, {.radius = 10, .thickness = 20, .medium = {.nd = 1.5}}};
@@ -127,7 +127,7 @@ TEST(Robust, AMissLeavesTheRayOnTheSurfaceBefore) {
   }
 }
 
-TEST(Robust, RaysThatAreNoRaysAreMisses) {
+TEST(Robust, InvalidRaysAreMisses) {
   const auto lens = testing_lenses::load("double_gauss_100mm_f2.0").lens;
   const double nan = std::numeric_limits<double>::quiet_NaN(), inf = std::numeric_limits<double>::infinity();
   const int last = static_cast<int>(lens.surface_count()) - 1;
@@ -144,7 +144,7 @@ TEST(Robust, RaysThatAreNoRaysAreMisses) {
   }
 }
 
-TEST(Robust, AWavelengthThatWasNotCompiledLosesEveryRay) {
+TEST(Robust, MissingWavelengthLosesEveryRay) {
   const auto lens = testing_lenses::load("double_gauss_100mm_f2.0").lens;
   const Ray<double> axial{{0, 0, -9}, {0, 0, 1}};
   EXPECT_TRUE(petzval::trace(lens, axial, {.wavelength = 0}).transmitted());
@@ -156,7 +156,7 @@ TEST(Robust, AWavelengthThatWasNotCompiledLosesEveryRay) {
 }
 
 // Reproducible batches are equal on every instruction set, also if the fates of lanes differ.
-TYPED_TEST(Robust, NothingButFiniteNumbersComesOutOfAnyBatch) {
+TYPED_TEST(Robust, ResultsAreFiniteForAnyBatch) {
   using T = TypeParam;
   Random random(2025);
   std::size_t rays_met = 0, otherwise = 0;
@@ -205,7 +205,7 @@ void expect_right(const petzval::Lens& lens, const Ray<T>& end, const std::strin
 }
 
 // A grazing ray meets a plane so far out that the next sphere is a point, and the digits of its hit may be lost.
-TYPED_TEST(Robust, ARayThatMeetsAPlaneFarOutIsLostOrRight) {
+TYPED_TEST(Robust, RaysThatMeetAPlaneFarOutAreLostOrCorrect) {
   using T = TypeParam;
   std::vector<petzval::Lens> lenses{testing_lenses::load("ball_10mm").lens};
   // The plane refracts, and the second sphere has a large radius.
@@ -257,7 +257,7 @@ TYPED_TEST(Robust, ARayThatMeetsAPlaneFarOutIsLostOrRight) {
 }
 
 // Cylinders are unbounded along their axis: at 4e25 mm directions lost their unit length.
-TEST(Robust, ARayThatMeetsASurfaceBeyond1e15MillimetresIsLost) {
+TEST(Robust, RaysThatMeetASurfaceBeyond1e15MmAreLost) {
   petzval::Prescription p;
   p.name = "cylinder";
   p.surfaces = {

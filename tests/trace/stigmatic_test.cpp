@@ -32,7 +32,7 @@ double miss(const petzval::kernel::TraceState<double>& ray, double z) {
 
 // Rays aimed at the point R (1 + n'/n) behind the vertex meet at R (1 + n/n') and obey the sine condition,
 // n' sin u = n sin u', from the axis to the equator of the sphere.
-TEST(Stigmatic, TheAplanaticSphereLetsAllRaysMeet) {
+TEST(Stigmatic, AplanaticSphereIsSharp) {
   double worst = 0, worst_sine = 0;
   for (const double n_in : {1.0, 1.33, 1.5}) {
     for (const double n_out : {1.0, 1.5, 1.9}) {
