@@ -17,11 +17,8 @@
 
 namespace petzval::camera_detail {
 
-/// Maps from the film to the entrance pupil.
-///
-/// @param map     from film and pupil point to height and slope in the plane z of the scene
-/// @param middle  centre of the image of the stop, divided by the film point
-/// @param radius  of the image of the stop, mm
+/// Maps from the film to the entrance pupil. map: from film and pupil point to height and slope in the plane z of the
+/// scene. middle: centre of the image of the stop, divided by the film point. radius: of the image of the stop, mm.
 EntranceMaps<double> entrance_maps(const RayMatrix& map, double z, double middle, double radius) noexcept;
 
 /// Individual focus for every film point, radius in the pupil and wavelength, in front of a first-order model: a focal
@@ -40,10 +37,8 @@ class LocalFocus {
 
   explicit operator bool() const noexcept { return data_ != nullptr; }
 
-  /// Bends N rays of the model to the scene, in place.
-  ///
-  /// @param film_x, film_y  on the film itself (mm)
-  /// @param nearer          TiltedPlane::nearer_by(); null for an upright film
+  /// Bends N rays of the model to the scene, in place. film_x, film_y: on the film itself, mm. nearer:
+  /// TiltedPlane::nearer_by(); null for an upright film.
   template <class T>
   void bend(std::size_t count, const T* film_x, const T* film_y, const T* nearer, const RayWavelengths& wavelengths,
             const RayArrays<T>& rays) const noexcept;

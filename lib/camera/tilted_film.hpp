@@ -54,10 +54,12 @@ double upright_radius(const LensFacts& facts, const Film& film, ModelKind model)
 ///
 /// Limitations: these pupils exceed the real pupils if light is limited far from the pupil plane; samples are lost
 /// then. Behind a telecentric lens of f/50, half of the samples in the corners of a film of 20 x 20 mm reach the scene
-/// at a tilt of 18 degrees, two thirds at 8 degrees. Immutable, cheap to copy, thread-safe.
+/// at a tilt of 18 degrees, two thirds at 8 degrees.
+///
+/// Immutable, cheap to copy, thread-safe.
 class PETZVAL_API TiltedFilm {
  public:
-  /// @param pupils  pupils of the model, for a film of upright_radius()
+  /// pupils: pupils of the model, for a film of upright_radius().
   /// @throws Error  if the film is no rectangle, is tilted by a quarter turn or more or is close to the pupil plane at
   ///                any time, or if the pupils cover a smaller film
   TiltedFilm(const Film& film, const FilmPupilTable& pupils, int threads = 1);

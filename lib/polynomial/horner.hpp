@@ -26,8 +26,7 @@ PETZVAL_INLINE auto horner(const C& c) noexcept {
 /// Order of coefficients: terms without the first variable, then the first variable times terms with one factor less;
 /// the same within each group, so that powers of the last variable change fastest.
 ///
-/// @tparam T  float, double, lanes or a dual number
-/// @tparam C  pointer to constants, or a type that is read like a pointer
+/// T: float, double, lanes or a dual number. C: pointer to constants, or a type that is read like a pointer.
 template <int n, class C, class T, class... Rest>
 PETZVAL_INLINE auto horner(const C& c, const T& first, const Rest&... rest) noexcept {
   if constexpr (n == 0) {

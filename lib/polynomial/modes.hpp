@@ -15,13 +15,11 @@ struct FitModes {
   std::vector<std::array<double, most_modes>> weights;  ///< 1 for the first mode, 0 for missing modes
 };
 
-/// Finds modes by singular values.
+/// Finds modes by singular values. coefficients: by fit, the half for directions first.
 ///
 /// It takes as many modes as reduce the norm of the residual coefficients of every fit to a twentieth of the error of
 /// the fit, plus 5e-8 rad, which is less than float adds; at most most_modes. Fits of a lens follow the dispersion of
 /// its glasses: four or five modes represent any number of fits.
-///
-/// @param coefficients  by fit, the half for directions first
 FitModes find_modes(const std::vector<RayPolynomial::Fit>& fits, const std::vector<std::vector<double>>& coefficients);
 
 }  // namespace petzval::polynomial_detail

@@ -21,10 +21,7 @@ struct FilmAndPupil {
   PETZVAL_INLINE T pupil_square() const noexcept { return sum_of_products(px, px, py, py); }
 };
 
-/// Scales a line from mm to the domain.
-///
-/// @tparam R        plain type of T
-/// @tparam Scaling  Scales<R>
+/// Scales a line from mm to the domain. R: plain type of T. Scaling: Scales<R>.
 template <class R, class T, class Scaling>
 PETZVAL_INLINE FilmAndPupil<T> in_domain(const Scaling& scales, const FilmAndPupil<T>& line) noexcept {
   const auto& [film_x, film_y, pupil_x, pupil_y] = line;

@@ -40,9 +40,8 @@ struct ConnectedPupils {
 /// Accuracy: 2e-5 of the half axes. In a direction with several obscurations only the widest has this accuracy; the
 /// others are as coarse as the samples. The RimPoints have no surface.
 ///
-/// @param directions  even
-/// @param mirrored    true if the pupils are symmetric about x = 0; half of the directions are traced then
-/// @param connected   selects one component; null keeps all components that the searched lines meet
+/// directions: even. mirrored: true if the pupils are symmetric about x = 0; half of the directions are traced then.
+/// connected: selects one component; null keeps all components that the searched lines meet.
 std::vector<PupilRegion> find_regions(std::span<const PupilGuess> points, const SearchOrder& order,
                                       std::size_t directions, bool mirrored, const PlaceClearances& clearances,
                                       const ConnectedPupils* connected = nullptr);

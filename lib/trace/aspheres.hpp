@@ -178,8 +178,7 @@ struct Meeting {
 /// A result counts if it lies inside the aperture and the ray rises over the surface along the whole part that can lie
 /// on the aperture. For other rays the intervals are searched, as in kernel::intersect.
 ///
-/// @param at      in: q, the start values; out: the results
-/// @param per_n2  one over the squared index in front of the surface
+/// at: in: q, the start values; out: the results. per_n2: one over the squared index in front of the surface.
 template <class R>
 [[gnu::noinline]] void meet(const kernel::Step<R>& s, const Route<R>& route, std::uint8_t* unsettled,
                             const Bundle<R>& b, const Lanes<R>* per_n2, Meeting<R>& at) noexcept {

@@ -51,10 +51,8 @@ struct Bundle {
   typename Native<R>::Bits tally[vectors];
 };
 
-/// Fate of a lost ray, as a number so that loops vectorize.
-///
-/// @param beyond     excess of its tally over the surfaces passed
-/// @param unsettled  true if the search for a hit did not converge
+/// Fate of a lost ray, as a number so that loops vectorize. beyond: excess of its tally over the surfaces passed.
+/// unsettled: true if the search for a hit did not converge.
 PETZVAL_INLINE std::int32_t lost_by(std::int32_t beyond, bool unsettled) noexcept {
   std::int32_t fate = beyond == 0 ? static_cast<std::int32_t>(RayFate::missed_surface)
                                   : static_cast<std::int32_t>(RayFate::totally_reflected);

@@ -16,8 +16,7 @@ namespace petzval::trace_detail {
 /// stopped by a rim has v / (1 - v), in (-1, 0), with v < 0 the value at that rim: the first such rim with apertures,
 /// the narrowest without. A ray lost for another reason has a value below -1, the lower the earlier.
 ///
-/// @param rays        `count` rays; replaced by their results, as by a batch with out = in
-/// @param clearances  `count` values
+/// rays: `count` rays; replaced by their results, as by a batch with out = in. clearances: `count` values.
 template <class T>
 void clearances(const Lens& lens, std::size_t count, const RayArrays<T>& rays, T* clearances,
                 const BatchOptions& options) noexcept;
