@@ -40,8 +40,8 @@ void keep_finite(const Ray<R>& found, Ray<R>& ray) noexcept {
   if (finite(o.x) && finite(o.y) && finite(o.z) && finite(d.x) && finite(d.y) && finite(d.z)) ray = found;
 }
 
-/// Sets the end of a ray that was lost at step j. per_n2: one over the squared index in front of the step. before, after:
-/// states in front of the step and behind, copies of values in registers.
+/// Sets the end of a ray that was lost at step j. per_n2: one over the squared index in front of the step. before,
+/// after: states in front of the step and behind, copies of values in registers.
 template <class R>
 void put_at_end(const Route<R>& route, const R* vertex_z, std::size_t j, R per_n2, bool unsettled, Bundle<R> before,
                 Bundle<R> after, TracedRay<R>& end) noexcept {
