@@ -8,11 +8,12 @@
 
 namespace petzval {
 
-/// Thrown if an object cannot be built or read. The message names the object, the parameter, its value and the rule:
-/// `data/lenses/x.json: surface 4: thickness = nan; must be finite and below 1e10 mm`.
+/// Thrown if an object cannot be built or read.
 ///
-/// A function that throws leaves no half-built object. what() is one line of at most 1,000 bytes: control characters
-/// become spaces, and longer messages lose their middle.
+/// The message names the object, the parameter, its value and the rule, for example
+/// `data/lenses/x.json: surface 4: thickness = nan; must be finite and below 1e10 mm`. A function that throws leaves no
+/// half-built object. what() is one line of at most 1,000 bytes: control characters become spaces, and longer messages
+/// lose their middle.
 class PETZVAL_API Error : public std::runtime_error {
  public:
   explicit Error(std::string message);

@@ -10,8 +10,10 @@
 
 namespace petzval {
 
-/// A point on the film (mm): coordinates along Film::right() and Film::up() from the point where the axis meets the
-/// film. For an upright film these are x and y of the lens frame.
+/// A point on the film, mm.
+///
+/// The coordinates are along Film::right() and Film::up(), from the point where the axis meets the film. For an upright
+/// film they are x and y of the lens frame.
 struct FilmPoint {
   double x = 0, y = 0;
 };
@@ -30,10 +32,10 @@ struct PETZVAL_API Film {
   double width_mm = 36, height_mm = 24;
   int columns = 3840, rows = 2560;
   double shift_x_mm = 0, shift_y_mm = 0;  ///< film point at the centre of the rectangle
-  /// Width of a margin around the rectangle, for overscan and for pixel filters that reach over the edge: a filter of
-  /// radius r pixels needs r * width_mm / columns. Film points in the margin see the scene; connections reach film
-  /// points there, too. Size, area and raster refer to the rectangle; raster positions in the margin lie outside the
-  /// image.
+  /// Width of a margin around the rectangle, for overscan and for pixel filters that reach over the edge.
+  ///
+  /// A filter of radius r pixels needs r * width_mm / columns. Film points in the margin see the scene, and connections
+  /// can end there. Size, area and raster refer to the rectangle; raster positions in the margin lie outside the image.
   double margin_mm = 0;
   std::optional<double> z_mm = {};  ///< position on the axis, lens frame; nullopt: Lens::film_z()
   double tilt_rad = 0, swing_rad = 0;

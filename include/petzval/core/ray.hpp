@@ -36,7 +36,9 @@ struct RayArrays {
   T* dz = nullptr;
 };
 
-/// Direction of travel through the lens. It determines the order of surfaces and indices and the root of each
+/// Direction of travel through the lens.
+///
+/// It determines the order of surfaces and indices and the root of each
 /// intersection. The sign of the ray's z component does not: a fisheye accepts rays that run towards -z.
 enum class Travel : std::uint8_t { to_film, to_scene };
 

@@ -49,8 +49,9 @@ PETZVAL_API std::string_view name(FocusStatus status) noexcept;
 ///               plane, if the lens is afocal
 PETZVAL_API double origin_z(const Lens& lens, DistanceOrigin origin);
 
-/// A field and its weight in the focus criterion. The subjects of all fields lie in one plane perpendicular to the
-/// axis.
+/// A field and its weight in the focus criterion.
+///
+/// The subjects of all fields lie in one plane perpendicular to the axis.
 struct FocusField {
   double field_rad = 0;  ///< field angle at the entrance pupil, as in FieldPoint
   double weight = 1;

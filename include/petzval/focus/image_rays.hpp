@@ -23,8 +23,9 @@ struct BundleBlur {
   /// rays meet behind the film; positive if defocus causes less than a tenth of the diameter.
   double signed_diameter = 0;
 };
-/// The blur of a bundle on a film; nullopt if the bundle is empty, or if its rays do not all cross the film from one
-/// side.
+/// The blur of a bundle on a film; nullopt if the bundle is empty.
+///
+/// Also nullopt if the rays do not all cross the film from the same side.
 ///
 /// @throws Error if film.z_mm is not set, or if the bundle has no slopes
 PETZVAL_API std::optional<BundleBlur> blur_on(const RayBundle& bundle, const Film& film);

@@ -41,11 +41,11 @@ enum class Meridian { y, x };
 /// Signed index of the medium before surface `space`: negative if light runs backwards, after an odd number of mirrors.
 PETZVAL_API double signed_index(const Lens& lens, std::size_t space, Wavelength wavelength = {});
 
-/// The matrix from the vertex of surface `first`, before refraction, to the vertex of surface `last - 1`, after
-/// refraction.
+/// The matrix of the surfaces from `first` to `last - 1`.
 ///
-/// Each surface acts by its curvature at the vertex, including aspheric terms of order 2. A cylinder acts in one
-/// meridian only.
+/// It leads from the vertex of the first of these surfaces, before refraction, to the vertex of the last, after
+/// refraction. Each surface acts by its curvature at the vertex, including aspheric terms of order 2. A cylinder acts
+/// in one meridian only.
 ///
 /// @param lens        the lens
 /// @param first       the first surface, from 0
@@ -116,8 +116,9 @@ PETZVAL_API double paraxial_image_z(const Lens& lens, double object_z, Wavelengt
 /// @return           the focal length in the same unit; infinite if the power is 0
 PETZVAL_API double lensmaker_focal_length(double n, double c1, double c2, double thickness = 0) noexcept;
 
-/// A paraxial pupil: the image of the aperture stop. z and diameter are infinite if the lens is telecentric on its
-/// side.
+/// A paraxial pupil: the image of the aperture stop.
+///
+/// z and diameter are infinite if the lens is telecentric on this side.
 struct Pupil {
   double z = 0;         ///< lens frame, mm
   double diameter = 0;  ///< mm

@@ -31,12 +31,12 @@ struct MarginalRay {
   double slope = 0;   ///< slope per mm of z
 };
 
-/// A lens that images points to points and planes to planes: a thin lens, or a lens reduced to its cardinal points and
-/// pupils. Lens frame, mm.
+/// A lens that images points to points and planes to planes. Lens frame, mm.
 ///
-/// Light enters along +z. If the focal lengths differ in sign, light leaves along -z, after an odd number of mirrors.
-/// All results are computed from the focal points (Newton's form), which is exact for objects and images at infinity:
-/// an axial object at front_focal_z - p has its image at rear_focal_z + product() / p.
+/// It is a thin lens, or a lens reduced to its cardinal points and pupils. Light enters along +z. If the focal lengths
+/// differ in sign, light leaves along -z, after an odd number of mirrors. All results are computed from the focal
+/// points (Newton's form), which is also valid at infinity: an axial object at front_focal_z - p has its image at
+/// rear_focal_z + product() / p.
 struct PETZVAL_API IdealLens {
   double front_focal_z = 0, rear_focal_z = 0;
   double front_focal_length = 0, rear_focal_length = 0;  ///< n / power and n' / power; equal in air; may be negative
@@ -71,14 +71,15 @@ struct PETZVAL_API IdealLens {
   /// plane, if the position is in front of the rear focal plane.
   ScenePoint scene_of(const Vec3<double>& image) const noexcept;
 
-  /// Relative growth of the image if the film moves from z = `before` to film_z, along the chief ray through the exit
-  /// pupil.
+  /// Relative growth of the image if the film moves from z = `before` to film_z.
   ///
-  /// 0 for a lens telecentric in image space; NaN if `before` lies in the exit pupil.
+  /// The image grows along the chief ray through the exit pupil: 0 for a lens telecentric in image space; NaN if
+  /// `before` lies in the exit pupil.
   double growth(double film_z, double before) const noexcept;
 
-  /// The image of a scene plane, and the scene plane that is imaged to a film plane (Scheimpflug); nullopt if the
-  /// result is the plane at infinity.
+  /// The image of a scene plane, and the scene plane that is imaged to a film plane (Scheimpflug).
+  ///
+  /// nullopt if the result is the plane at infinity.
   std::optional<Plane> image_of(const Plane& scene) const noexcept;
   std::optional<Plane> scene_of(const Plane& film) const noexcept;
 };
@@ -104,11 +105,11 @@ PETZVAL_API IdealLens thin_lens(const Lens& lens, Wavelength wavelength = {});
 /// @throws Error if the lens is afocal, if light leaves the lens along -z, or if pupils() throws
 PETZVAL_API IdealLens thick_lens(const Lens& lens, Wavelength wavelength = {});
 
-/// Signed diameter of the blur of an image point on a film (mm), perpendicular to the axis where the chief ray meets
-/// the film.
+/// Signed blur diameter of an image point on a film (mm).
 ///
-/// Negative for subjects in front of the plane of focus (the image lies behind the film), positive for subjects beyond
-/// the plane. Infinite if the chief ray is parallel to the film.
+/// The diameter is measured perpendicular to the axis, where the chief ray meets the film. Negative for subjects in
+/// front of the plane of focus (the image lies behind the film), positive for subjects beyond the plane. Infinite if
+/// the chief ray is parallel to the film.
 ///
 /// @throws Error if film.z_mm is not set
 PETZVAL_API double signed_blur(const ImagePoint& image, const Film& film);

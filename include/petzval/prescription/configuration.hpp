@@ -41,8 +41,9 @@ struct Configuration {
   bool operator==(const Configuration&) const = default;
 };
 
-/// A configuration, chosen by name or by number from 0. Fractions interpolate: 0.5 is halfway from the first to the
-/// second configuration.
+/// A configuration, chosen by name or by number from 0.
+///
+/// Fractions interpolate: 0.5 is halfway from the first to the second configuration.
 class ConfigurationChoice {
  public:
   ConfigurationChoice() = default;
