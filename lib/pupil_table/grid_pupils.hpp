@@ -33,7 +33,7 @@ std::vector<PupilPolygon> node_polygons(std::span<const PupilRegion> pupils, std
 /// Makes the corners symmetric about x = 0, or about y = 0: the outer corner of each pair counts.
 void mirror(PupilPolygon& polygon, bool x) noexcept;
 
-/// The smallest convex polygon around some others.
+/// A polygon that contains the convex hull of some others.
 PupilPolygon hull(const std::vector<PupilPolygon>& polygons);
 
 /// Weights of the nodes at a probe given by three or four numbers in [0, 1].
