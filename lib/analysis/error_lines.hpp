@@ -15,8 +15,8 @@
 /// The lines along which models are compared with the lens.
 namespace petzval::analysis_detail {
 
-/// Number of lines through each film point. The first half are uniform samples of the pupil and are used for means. The
-/// others lie along the rims of the pupil, where errors are largest and uniform samples are rare.
+/// Number of lines through each film point. The first half are uniform samples of the pupil, used for means. The others
+/// lie along the rims of the pupil, where errors are largest and uniform samples are rare.
 inline constexpr std::size_t lines_per_point = 128, uniform_lines = 64;
 
 /// Factors from the largest measured error to a bound of the error of every line: for smooth models; for rays traced in
@@ -31,19 +31,19 @@ inline constexpr double darkest = 0.01;
 double lit_radius(const camera_detail::ExactModel<double>& exact, const Film& film, std::size_t wavelength);
 
 /// The film point with an index. Points with even indices are uniform samples of the film; the others alternate between
-/// a corner, a side and, mostly, positions near the sides. Unlit points are moved towards the axis, the farthest to the
-/// edge of the light.
+/// a corner, a side and, mostly, positions near the sides. Unlit points move towards the axis, the farthest to the edge
+/// of the light.
 FilmPoint error_film_point(const Film& film, std::size_t index, std::uint32_t seed, double lit_radius) noexcept;
 /// True if the film point is one of the uniform samples.
 inline bool is_uniform(std::size_t film_point) noexcept { return film_point % 2 == 0; }
 
 /// Film points for the comparison of pupils, which depend mostly on the distance from the axis. For a rotationally
-/// symmetric lens the distances lie at random (by the seed) in equal steps, denser towards the edge of the light, and
-/// include the nearest and the farthest lit point. For other lenses the points are error_film_point().
+/// symmetric lens the distances are random (by the seed) within equal steps, denser towards the edge of the light, and
+/// include the nearest and the farthest lit point. For other lenses: error_film_point().
 std::vector<FilmPoint> pupil_film_points(const Lens& lens, const Film& film, std::size_t count, std::uint32_t seed,
                                          double lit_radius);
 
-/// Lines of one film point. All numbers are exact in float, so a model in float and the lens in double trace the same
+/// Lines of one film point. All numbers are exact in float, so models in float and the lens in double trace equal
 /// lines.
 struct PointLines {
   FilmPoint film;

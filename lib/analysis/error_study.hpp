@@ -68,8 +68,7 @@ class RayStudy {
   std::vector<std::vector<Point>> points_;  // [wavelength of the samples], lit points
 };
 
-/// The wavelength indices of the samples without duplicates; all wavelengths if the list of the samples is empty.
-/// Throws Error if an index is out of range.
+/// The wavelength indices of the samples without duplicates; all if empty. Throws Error if out of range.
 std::vector<std::size_t> wavelengths_of(const Lens& lens, const ErrorSamples& samples);
 
 }  // namespace petzval::analysis_detail

@@ -54,8 +54,8 @@ LensDistortion::LensDistortion(const Camera& camera, const DistortionOptions& op
   centre_ = film.raster(FilmPoint{});
   pinhole_.centre_mm = {(centre_.x - film.columns / 2.0) * pixel_mm.x, (centre_.y - film.rows / 2.0) * pixel_mm.y};
 
-  // The slope of the image this close to the axis differs by 1e-8 due to third-order distortion. (Aspheres with odd
-  // terms change the slope by 1 % within 0.01 rad.)
+  // Angle at which third-order distortion changes the slope of the image by 1e-8. (Aspheres with odd terms change the
+  // slope by 1 % within 0.01 rad.)
   constexpr double near = 1e-4;
   const auto on_axis = [&](double x, double y) {
     const auto shown = [&](double sign) {

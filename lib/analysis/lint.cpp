@@ -38,9 +38,8 @@ void check_stops(const Prescription& prescription, Findings& findings) {
     findings.push_back(
         {Kind::no_stop, {}, 0, 1, "no surface is marked as stop; the surface that clips the axial beam first is used"});
   } else if (stops > 1) {
-    findings.push_back(
-        {Kind::several_stops, last, static_cast<double>(stops), 1,
-         at(last) + "is the last of " + std::to_string(stops) + " surfaces marked as stop; the first is used"});
+    findings.push_back({Kind::several_stops, last, static_cast<double>(stops), 1,
+                        at(last) + "is the last of " + std::to_string(stops) + " stops; the first is used"});
   }
 }
 

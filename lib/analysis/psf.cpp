@@ -56,8 +56,8 @@ struct Rays {
   std::vector<std::vector<std::uint32_t>> units;  ///< per set, of each ray with a weight
   std::uint32_t sent = 0;                         ///< per wavelength
 
-  /// Extends the samples to a number. The first call sends them in eight parts. Later calls must double the number:
-  /// pairs of parts are merged into four, and the new samples are four parts.
+  /// Sends the samples up to a number. The first call sends eight parts. Later calls must double the number: the eight
+  /// parts are merged in pairs, and the new samples are four more parts.
   void send(std::size_t wavelengths, std::uint32_t samples, const SendRays& send_rays) {
     const std::size_t first_part = sent == 0 ? 0 : parts / 2;
     for (std::size_t& own : part) own /= 2;
@@ -158,8 +158,7 @@ std::array<double, rings> light_by_ring(const Psf& psf, const Rays& rays, const 
   return light;
 }
 
-/// Factor from the standard error to a bound that 95 of 100 new runs keep; measured in
-/// tests/analysis/psf_error_test.cpp.
+/// Factor from the standard error to a bound that 95 of 100 new runs keep (tests/analysis/psf_error_test.cpp).
 constexpr double confidence = 1.6;
 /// The factor for uneven rays, of which few determine the edge of a bright rim.
 constexpr double uneven_confidence = 3.6;

@@ -69,8 +69,7 @@ struct Apart {
 };
 using Beside = Apart<1>;
 
-/// Loads a pixel for each active lane. Other lanes are beyond the ends of their rays, where there may be no pixels, and
-/// get 0.
+/// Loads a pixel for each active lane; 0 for other lanes, which are beyond the ends of their rays.
 struct Anywhere {
   Places offsets;
   Mask lanes;
@@ -121,8 +120,7 @@ PETZVAL_INLINE Numbers larger(Numbers a, Numbers b) noexcept { return select(a >
 /// The value of Found::front for a pixel that a ray passes in front of.
 PETZVAL_INLINE Numbers in_front(Numbers w) noexcept { return select(w >= Numbers(0.0f), w, Numbers(no_surface)); }
 
-/// Lanes of `hit` meet the surfaces of a layer in the pixels that `at` loads. Removes lanes from `here` if their rays
-/// end.
+/// Lanes of `hit` meet a layer in the pixels that `at` loads. Removes lanes from `here` if their rays end.
 template <bool opaque, int colours, class At>
 PETZVAL_INLINE void take(const LayerWindow& window, const At& at, std::ptrdiff_t layer, Numbers low, Numbers weight,
                          Mask hit, Mask& here, Found<opaque, colours>& found) noexcept {
@@ -145,9 +143,9 @@ PETZVAL_INLINE void take(const LayerWindow& window, const At& at, std::ptrdiff_t
 /// before: the pixels of the previous step.
 ///
 /// A ray that passed in front of a surface in the previous pixel and is behind a surface in this pixel went between
-/// their centres. If their inverse depths differ by less than `gap`, the layers lack everything between both surfaces,
-/// and the ray meets the farther surface. (At the edge of a small object the ray passes the object; on a single surface
-/// the colours are nearly equal.)
+/// their centres. If their inverse depths differ by less than `gap`, the layers lack all that lies between, and the ray
+/// meets the farther surface. (At the edge of a small object it passes the object; on one surface the colours are
+/// nearly equal.)
 template <bool opaque, int colours, class At>
 PETZVAL_INLINE void meet(const LayerWindow& window, const At& at, const At& before, Numbers low, Numbers high,
                          Numbers gap, Numbers weight, Mask here, Found<opaque, colours>& found) noexcept {
@@ -174,7 +172,7 @@ PETZVAL_INLINE void meet(const LayerWindow& window, const At& at, const At& befo
     }
     if (any(hit)) take(window, at, layer, low, weight, hit, here, found);
     front = larger(front, select(w < low, in_front(w), none));
-    // Surfaces of later layers are farther still: rays in front of this layer do not reach these surfaces.
+    // Later layers are farther still: rays in front of this layer do not reach a surface of a later one yet.
     if (!any(all_of(here, w >= low))) break;
   }
   found.front = front;

@@ -30,7 +30,7 @@ struct LayerWindow {
 /// Sums over the rays of each pixel of a tile: weights, and weights times the colour or alpha of the ray.
 struct TileSums {
   static constexpr int columns = 64, rows = 16, pixels = columns * rows;
-  /// Index of the sums of a pixel. side: pixels `side` columns and rows apart get adjacent indices, as lanes need them.
+  /// Index of the sums of a pixel. side: pixels `side` columns and rows apart get adjacent indices, for SIMD lanes.
   static constexpr int place(int row, int column, int side) noexcept {
     return (row % side * (rows / side) + row / side) * columns + column % side * (columns / side) + column / side;
   }
@@ -41,8 +41,7 @@ struct TileSums {
   float unknown[pixels];  ///< weight of missed rays without even a guess
 };
 
-/// A step of a ray that all pixels share: the ray passes the pixel at `offset` from its own in a range of inverse
-/// depths.
+/// A step of a ray that all pixels share: it passes the pixel at `offset` from its own in a range of inverse depths.
 struct Step {
   std::ptrdiff_t offset;
   float low, high;  ///< low >= 0

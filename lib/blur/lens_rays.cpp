@@ -145,7 +145,7 @@ LensRays::LensRays(const LayerCamera& camera, std::span<const PupilPoint> points
     return ray_table({0, 0, d->camera.columns, d->camera.rows}, points, count, d->source, step, options.threads);
   };
   // A step above the picture's side would leave no node inside the picture for an error estimate. Pixels of small
-  // pictures are large on the film, so the steps are small.
+  // pictures are large on the film, so their steps are small.
   const auto power_of_two = [](int length) { return static_cast<int>(std::bit_floor(static_cast<unsigned>(length))); };
   const int last_step = std::clamp(power_of_two(std::max(camera.columns, camera.rows)) / 16, 2, narrowest_step);
   const int first_step = std::clamp(power_of_two(std::min(camera.columns, camera.rows)), last_step, widest_step);
@@ -180,7 +180,7 @@ double LensRays::reach_px(double least_inverse_depth, double most_inverse_depth)
   for (std::size_t channel = 0; channel < t.channels; ++channel) {
     for (std::size_t row = 0; row < t.node_rows; ++row) {
       for (std::size_t column = 0; column < t.node_columns; ++column) {
-        // The distance of an inner node to the edge does not count.
+        // Inner nodes count only with the part of their reach that exceeds their distance to the edge.
         const double x = t.column_of(column), y = t.row_of(row);
         const float* const node = t.node(channel, row, column);
         for (std::size_t i = 0; i < n; ++i) {

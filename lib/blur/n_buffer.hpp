@@ -23,8 +23,7 @@ struct DepthRange {
 };
 
 /// Ranges of inverse depth below any rectangle of pixels: N-buffers (Decoret 2005) over blocks of 8 x 8 pixels. Each
-/// level holds, for every position of a block, the range of a square with twice the side of the squares in the previous
-/// level.
+/// level holds, for every block position, the range of a square with twice the side of the previous level.
 class NBuffer {
  public:
   static constexpr int block = 8;

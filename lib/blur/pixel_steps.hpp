@@ -20,23 +20,22 @@ PETZVAL_INLINE T size_of(T x) noexcept {
   return select(x < T(0.0f), -x, x);
 }
 
-/// The largest whole number at or below x, after x is rounded to 1/256 px. Rays of regular pupils pass exactly between
+/// The largest whole number at or below x, after x is rounded to 1/256 px: rays of regular pupils pass exactly between
 /// two pixels at half a step, and rounding errors must not choose the pixel.
 template <class T>
 struct WholePixel {
   static PETZVAL_INLINE T below(T x) noexcept { return std::floor(std::floor(256 * x + 0.5) / 256); }
 };
 
-/// The pixels that a line passes while its inverse depth falls, by steps along the main direction, the direction of the
-/// larger slope. A step ends where the line leaves the pixel. So each inverse depth belongs to one step, and a surface
-/// is met in the pixel that the line passes at the depth of the surface.
+/// The pixels that a line passes while its inverse depth falls, by steps along the direction of the larger slope. A
+/// step ends where the line leaves the pixel, so each inverse depth belongs to one step, and a surface is met in the
+/// pixel that the line passes at the depth of the surface.
 ///
 /// Positions are relative to the centre of pixel (0, 0). T: double, or lanes of float.
 template <class T>
 class PixelSteps {
  public:
-  /// The line at + slope w from inverse depth `from` to `to`. farthest, nearest: inverse depths of all surfaces;
-  /// nearest > 0.
+  /// The line at + slope w from inverse depth `from` to `to`. farthest, nearest: limits of all surfaces; nearest > 0.
   PETZVAL_INLINE PixelSteps(T at_x, T at_y, T slope_x, T slope_y, T from, T to, T farthest, T nearest) noexcept
       : along_columns_(size_of(slope_x) >= size_of(slope_y)), farthest_(farthest), nearest_(nearest) {
     const T at = select(along_columns_, at_x, at_y), zero(0.0f), one(1.0f), half(0.5f);
@@ -61,8 +60,7 @@ class PixelSteps {
     T column, row;
   };
   PETZVAL_INLINE Pixel pixel(T n) const noexcept {
-    // The middle of a step, clamped to the depths of the scene: a line that moves by less than a pixel stays in its
-    // pixel.
+    // The middle of a step, clamped to the scene's depths: a line that moves by less than a pixel stays in its pixel.
     T w = middle_ - n * length_;
     w = select(w < farthest_, farthest_, w), w = select(w > nearest_, nearest_, w);
     const T main = first_ + towards_ * n, other = WholePixel<T>::below(other_at_ + other_slope_ * w + T(0.5f));

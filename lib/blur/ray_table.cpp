@@ -66,8 +66,7 @@ bool lead_on(RayTable& table, std::size_t channel, const std::vector<char>& lit,
   return true;
 }
 
-/// Between a lit and a dark node rays fade, but they must keep their positions. Arbitrary lines of the dark node would
-/// displace rays.
+/// Rays fade between a lit and a dark node without moving; arbitrary lines of the dark node would displace rays.
 void lead_into_the_dark(RayTable& table) {
   for (std::size_t channel = 0; channel < table.channels; ++channel) {
     const std::vector<char> lit = lit_nodes(table, channel);

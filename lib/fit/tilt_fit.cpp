@@ -37,8 +37,7 @@ TiltOptions checked(TiltOptions options, double unset_z) {
   return options;
 }
 
-/// The point of `film` on the chief ray through the centre of the picture on the film `before`; nullopt if they do not
-/// meet.
+/// The point of `film` on the chief ray through the picture's centre on the film `before`; nullopt if parallel.
 std::optional<FilmPoint> carried_centre(const IdealLens& lens, const Film& before, const Film& film) {
   const Vec3<double> middle = before.position({before.shift_x_mm, before.shift_y_mm});
   const double pupil_z = lens.pupils.exit.z;

@@ -9,8 +9,8 @@ namespace petzval::fit_detail {
 namespace {
 
 /// The film that focuses a plane of the scene. At a distance v behind the rear principal plane, the inverse distance is
-/// (1 - f' / v) / f and the picture is -f' (X, Y) / (f v), so the plane a x + b y + c of inverse distances becomes v (1
-/// - c f) = f' (1 - a X - b Y).
+/// (1 - f' / v) / f and the picture is -f' (X, Y) / (f v). The plane a x + b y + c of inverse distances becomes
+/// v (1 - c f) = f' (1 - a X - b Y).
 FilmSlopes film_of(const focus_detail::PlaneFit& fit, const IdealLens& lens, const TiltFrame& frame) {
   const double at_axis = lens.rear_focal_length / (1 - fit.c * lens.front_focal_length);
   const double p = -fit.a * at_axis, q = -fit.b * at_axis;

@@ -22,7 +22,7 @@ struct FilmSlopes {
 };
 
 /// The coordinates of a fit: in focal lengths, relative to the centroid of the image points that the film should
-/// contain. Relative to the centroid, z and the slopes of a film are independent.
+/// contain, which makes z and the slopes of a film independent.
 struct TiltFrame {
   Vec3<double> origin{0, 0, 0};
   double unit = 1;
@@ -67,7 +67,7 @@ class IdealBlur final : public BlurErrors {
   bool operator()(const FilmSlopes& film, double* errors, double* derivatives) const noexcept override;
 };
 
-/// A focus target with its image.
+/// A focus target with its image and its use.
 struct SeenTarget {
   TargetUse use = TargetUse::used;
   double weight = 0;  ///< 0 unless `use` is TargetUse::used
@@ -93,8 +93,7 @@ struct TiltSolution {
   FilmSlopes film;
   double restraint = 0;  ///< Lagrange multiplier of the slope limit
 };
-/// The film of least squared errors within the slope limit. If `start` converged for nearly the same errors, few steps
-/// are needed.
+/// The film of least squared errors within the slope limit. Few steps if `start` converged for nearly the same errors.
 TiltSolution least_blur(std::span<const BlurErrors* const> errors, const TiltSpace& space, const TiltSolution& start);
 /// The film of least Tukey loss (biweight; errors above `reach` have no weight), without a slope limit. nullopt if the
 /// search does not converge.

@@ -27,8 +27,7 @@ RayBlur::RayBlur(const RayBundle& bundle, const TiltFrame& frame, double root, d
 
 bool RayBlur::operator()(const FilmSlopes& film, double* errors, double* derivatives) const {
   // A ray with slopes s from (x, y) at z = 0 meets the film at z = (z0 + p x + q y) / (1 - p s_x - q s_y). The
-  // derivatives of this hit (X, Y, z) with respect to z0, p and q are (1, X, Y) / (1 - p s_x - q s_y) times (s_x, s_y,
-  // 1).
+  // derivatives of this hit (X, Y, z) by z0, p and q are (1, X, Y) / (1 - p s_x - q s_y) times (s_x, s_y, 1).
   const Eigen::Index count = x_.size();
   const double scale = 8 / static_cast<double>(count);
   const Eigen::ArrayXd facing = 1 - film.p * slope_x_ - film.q * slope_y_;

@@ -135,8 +135,7 @@ FilmSlopes polished(std::span<const BlurErrors* const> errors, const FilmChart& 
   return chart(place.data());
 }
 
-/// Moves `film` to the least sum of losses over the first `parameter_count` parameters. Returns false and leaves `film`
-/// if the search does not converge.
+/// Moves `film` to the least sum of losses over the first parameters. Returns false, without a move, if not converged.
 bool minimise(std::span<const BlurErrors* const> errors, std::span<ceres::LossFunction* const> losses,
               const TiltSpace& space, int parameter_count, FilmSlopes& film) {
   const FilmChart chart(space, film, parameter_count);
@@ -180,9 +179,8 @@ double part_of_limit(const TiltSpace& space, const FilmSlopes& film) {
 }
 
 /// The minimum of a sum of squares within the slope limit, starting at a film nearby. Each Gauss-Newton step goes to
-/// the best film within the limit by the normal equations of the previous film. nullopt if the steps do not shrink
-/// fast. If they do, they end at a minimum, because the neglected second derivatives are then smaller than the other
-/// terms.
+/// the best film within the limit by the last normal equations. nullopt if the steps do not shrink fast; if they do,
+/// they end at a minimum, because the neglected second derivatives are small.
 std::optional<TiltSolution> least_nearby(std::span<const BlurErrors* const> errors, const TiltSpace& space,
                                          FilmSlopes film) {
   TiltSolution result;
@@ -250,10 +248,9 @@ TiltSolution least_blur(std::span<const BlurErrors* const> errors, const TiltSpa
   if (part_of_limit(space, result.film) > 1) bring_to_limit();
 
   // The best film within the limit is either the unrestricted minimum or lies on the limit. A film on the limit is also
-  // the unrestricted minimum after a penalty on squared slopes is added; its price is the Lagrange multiplier. The
-  // slopes decrease monotonically with the price, and their reciprocals are nearly linear in it. Unlike an angle around
-  // the limit, the price has one solution, which is continuous in the targets even if the unrestricted minimum is far
-  // away.
+  // the unrestricted minimum with a penalty on squared slopes, whose price is the Lagrange multiplier. Slopes decrease
+  // monotonically with the price, and their reciprocals are nearly linear in the price. Unlike an angle around the
+  // limit, the price has one solution, continuous in the targets even if the unrestricted minimum is far away.
   const double wide = std::max(space.spread_along, space.spread_across) * space.largest_slope;
   const double scale = wide * wide;  // price that approximately halves the slopes
   constexpr double infinity = std::numeric_limits<double>::infinity();

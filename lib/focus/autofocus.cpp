@@ -100,7 +100,7 @@ Autofocus described(const IdealLens& lens, std::span<const FocusTarget> targets,
   return result;
 }
 
-/// The bundle of a place relative to its centroid, with weights of the sum 1; empty if the lens does not see the place.
+/// The bundle of a scene point about its centroid, with weights of the sum 1; empty if the lens does not see the point.
 RayBundle centred_bundle(const ImageRays& lens, const ScenePoint& place) {
   RayBundle bundle = lens.bundle(place);
   focus_detail::centre(bundle);

@@ -68,7 +68,7 @@ DepthOfField depth_of_field(const Lens& lens, double blur_mm, const FocusOptions
   const auto distance = [&](double vergence) {
     return vergence > 0 ? c.distance(c.subject_at(vergence), film_z) : infinity;
   };
-  const double rounding = 1e-12 * blur_mm;  // focused at the hyperfocal distance, a lens is sharp to infinity
+  const double rounding = 1e-12 * blur_mm;  // at the hyperfocal distance, the blur of infinity is blur_mm
   const double far = excess(0) > rounding ? focus_detail::root(excess, 0, middle) : 0;
   double near = middle;
   for (double low = middle, step = (vertex - middle) / 1024; near < vertex && near == low; step *= 2) {

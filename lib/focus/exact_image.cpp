@@ -12,8 +12,7 @@
 namespace petzval::focus_detail {
 namespace {
 
-/// The rays of one field at all wavelengths; if `rims`, also rays along the rims of its pupils. nullopt if no light
-/// passes.
+/// The rays of one field at all wavelengths and, if `rims`, along the rims of its pupils. nullopt if no light passes.
 std::optional<RayBundle> field_rays(const Lens& lens, const FieldPoint& point,
                                     std::span<const WavelengthWeight> wavelengths, double plane_z, bool rims) {
   // On the axis of a lens of revolution one meridian represents all, and the centroid is the axis.

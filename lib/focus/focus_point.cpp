@@ -110,7 +110,7 @@ const OnTriangle* only_triangle(const FocusPoint& point) {
   return first && std::all_of(point.keys.begin(), point.keys.end(), same) ? first : nullptr;
 }
 
-/// The place as seen from the front principal point; z is the inverse distance.
+/// The scene point as seen from the front principal point; z is the inverse distance.
 Vec3<double> seen(const ScenePoint& place, double principal_z) {
   const focus_detail::PicturePoint point = focus_detail::picture_point(place, principal_z);
   return {point.x, point.y, point.inverse_distance};

@@ -20,7 +20,7 @@
 namespace petzval {
 namespace {
 
-/// The point to which rays are sent for a place; nullopt if its coordinates are invalid.
+/// The point to which rays are sent for a scene point; nullopt if its coordinates are invalid.
 std::optional<Vec3<double>> seen_at(const ScenePoint& place) noexcept {
   const auto& [p, at_infinity] = place;
   constexpr double infinity = std::numeric_limits<double>::infinity();
@@ -122,8 +122,7 @@ RayBundle ImageRays::Data::send(const Vec3<double>& point, std::size_t count) co
 }
 
 ImageRays::ImageRays(const Lens& lens, double film_radius, std::size_t rays) {
-  if (rays < 16)
-    throw Error(lens.name() + ": point bundles: number of rays = " + std::to_string(rays) + "; must be at least 16");
+  if (rays < 16) throw Error(lens.name() + ": point bundles: rays = " + std::to_string(rays) + "; must be at least 16");
   data_ = std::make_shared<const Data>(Data{
       .lens = lens,
       .ideal = thick_lens(lens, lens.primary_wavelength()),

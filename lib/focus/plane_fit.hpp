@@ -18,12 +18,11 @@ struct PicturePoint {
   double weight = 1;
 };
 
-/// Points are collinear in the picture if their RMS spread across the line is at most this fraction of the spread along
-/// it.
+/// Points of the picture are collinear up to this ratio of the RMS spreads across and along their line.
 inline constexpr double line_aspect = 0.02;
 
-/// Points coincide in the picture if their RMS spread is at most this value: half a micrometre on the film of a 50 mm
-/// lens, below the resolution of films and eyes.
+/// Points of the picture coincide up to this RMS spread: half a micrometre on the film of a 50 mm lens, below the
+/// resolution of films and eyes.
 inline constexpr double one_place = 1e-5;
 
 /// A scene point in front of a pinhole at (0, 0, z), as seen by the pinhole.
@@ -41,8 +40,7 @@ struct PlaneFit {
 
 /// The weighted least squares plane in inverse distance. For a thin lens it is the plane of focus of least squared
 /// blur; it exists for all points. If the points are collinear in the picture (line_aspect), the slope across the line
-/// is 0; if they coincide (one_place), both slopes are 0. The result is then the plane of least tilt. Weights: finite,
-/// at least 0.
+/// is 0; if they coincide (one_place), both slopes are 0. Both give the plane of least tilt. Weights: finite, >= 0.
 PETZVAL_API PlaneFit fit_plane(std::span<const PicturePoint> points);
 
 /// The plane in the scene, with depths counted from z towards -z; normal.z >= 0. nullopt if the plane is at infinity.

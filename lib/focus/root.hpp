@@ -7,11 +7,9 @@
 
 namespace petzval::focus_detail {
 
-/// A zero of f between a and b, where f has opposite signs or is 0. Uses bisection, and inverse quadratic interpolation
-/// if the last three points show f to be nearly linear. f must be finite; it may jump, and may be constant far from the
-/// root.
-///
-/// Accuracy: 2 eps of x plus eps^2 of |b - a|, with at most five evaluations for each halving.
+/// A zero of f between a and b, where f has opposite signs or is 0, within 2 eps of x plus eps^2 of |b - a|. Bisection,
+/// with inverse quadratic interpolation if the last three points show f to be nearly linear: at most five evaluations
+/// for each halving. f must be finite; it may jump, and may be constant far from the root.
 template <class Function>
 double root(const Function& f, double a, double b) {
   double at_a = f(a), at_b = f(b);

@@ -35,7 +35,7 @@ std::optional<double> Search::film(double vergence) const {
 
 /// The vergence of the subject that belongs to a film, limited to cap_. A virtual image counts as a subject that is too
 /// near (cap_), a real image with a vergence beyond vergence_of_infinite_film as a subject that is too far (-cap_). If
-/// the lens images distant subjects inside itself, the sign of the vergence decides instead.
+/// the lens images distant subjects inside itself, only the vergence decides.
 double Search::film_vergence(double film_z) const noexcept {
   const double vergence = c_.vergence_of_film(film_z), infinite = c_.vergence_of_infinite_film();
   if (!c_.real(*infinite_film_)) return vergence < -infinite / 2 ? cap_ : std::min(vergence, cap_);

@@ -137,7 +137,7 @@ std::optional<Image> FocusSolver::image(double subject_z) const {
   }
   const auto unlimited = [](const LensSurface& s) { return std::isinf(s.semi_diameter); };
   if (std::ranges::all_of(lens_.surfaces(), unlimited)) {
-    throw Error(lens_.name() + ": no surface limits the beam; at least one must have a semi_diameter");
+    throw Error(lens_.name() + ": no surface limits the beam; one must have a semi_diameter");
   }
   if (exact()) return exact_image(lens_, subject_z, fields_, wavelengths_, options_.criterion);
   return cone(subject_z);

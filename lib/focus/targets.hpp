@@ -22,8 +22,7 @@ void check_extent(double stops, const std::string& where);
 
 /// Throws the errors of focus_targets().
 void check_points(std::span<const FocusPoint> points, const FocusMoment& moment);
-/// The target of a checked point at a moment, which may lie outside its period of validity. nullopt if the point has no
-/// image or its image lies outside the film of the moment.
+/// The target of a checked point at a moment, valid then or not. nullopt if it has no image on the moment's film.
 std::optional<FocusTarget> target_at(const IdealLens& lens, const FocusPoint& point, const FocusMoment& moment);
 /// Applies FocusMoment::nearer_weighs_more.
 void weigh_nearer_more(const IdealLens& lens, std::span<FocusTarget> targets);

@@ -55,8 +55,7 @@ double Blade::twice_area(double across) const noexcept {
   return middle * across + per_curvature * per_curvature * angle * excess(angle);
 }
 
-// Newton's method from the side on which it does not overshoot: if the edge bends outwards, the rate of the area grows
-// with `across`.
+// Newton's method from the side on which it does not overshoot: the area grows ever faster if the edge bends outwards.
 double Blade::across_at(double part) const noexcept {
   const double wanted = part * twice_area(half_chord);
   double across = curvature > 0 ? half_chord : 0;

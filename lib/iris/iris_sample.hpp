@@ -15,13 +15,13 @@ namespace petzval::iris_detail {
 template <class R>
 inline constexpr std::size_t edge_terms = sizeof(R) == sizeof(float) ? 8 : 17;
 
-/// Squared radius of the rim, with a tolerance for rounding at the corners. Needed because an edge that bends inwards
-/// is a circle, and its condition holds again farther out.
+/// Squared radius of the rim, with a tolerance for rounding at the corners. Needed for edges that bend inwards: they
+/// are circles, and their condition holds again farther out.
 template <class R>
 inline constexpr R rim_squared = 1 + 8 * std::numeric_limits<R>::epsilon();
 
-/// The sectors of a bladed iris in order from +y towards +x, each between the centre and the edge of one blade. Does
-/// not own the arrays.
+/// The sectors of a bladed iris in order from +y towards +x, each between the centre and a blade's edge. Arrays are
+/// borrowed.
 template <class R>
 struct IrisSectors {
   std::size_t count = 0;     ///< 0 for the unit disc

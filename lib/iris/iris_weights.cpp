@@ -119,7 +119,7 @@ namespace {
 /// Rows and columns of the cells in which maps are sampled.
 constexpr std::size_t map_cells = 256;
 
-/// True if both are finite. NaN must not be cast to an index: the result is undefined.
+/// True if both are finite; a cast of NaN to an index is undefined.
 bool finite(double a, double b) noexcept { return (a + b) * 0 == 0; }
 
 /// Index of the last part that begins at or below `value`, by bisection of cumulative sums that start at 0.

@@ -7,8 +7,7 @@
 
 namespace petzval::paraxial_detail {
 
-/// The ideal lens with the cardinal points in `data` and without pupils. The lens must not be afocal; light may leave
-/// it along -z.
+/// The ideal lens by the cardinal points in `data`, without pupils. Not for afocal lenses; light may leave along -z.
 IdealLens focal_points(const Lens& lens, const FirstOrder& data) noexcept;
 
 }  // namespace petzval::paraxial_detail

@@ -37,8 +37,7 @@ std::size_t limiting_surface(const Lens& lens, Wavelength wavelength) {
 
 /// The image of the stop, from a ray through the centre of the stop with optical slope 1, which has height y and
 /// optical slope nu at a vertex. By the Lagrange invariant, nu is the size of the stop divided by the size of its
-/// image. An image more than 1e12 times as large as the stop counts as infinitely distant: a telecentric design up to
-/// rounding.
+/// image. An image more than 1e12 times as large counts as infinitely distant: telecentric up to rounding.
 Pupil pupil(double vertex_z, double n, double y, double nu, double semi_diameter) {
   if (std::abs(nu) < 1e-12) return {infinity, infinity};
   return {vertex_z - n * y / nu, 2 * semi_diameter / std::abs(nu)};
