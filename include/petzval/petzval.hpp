@@ -1,26 +1,26 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-/// Start here: petzval in one page.
+/// Start here: petzval on one page.
 ///
-/// A Prescription is a lens as its source prints it: plain data, read from a file or written in a program. `compile`
-/// makes a Lens of it for some wavelengths: an immutable value, cheap to copy, shared by threads. Functions take a
-/// Lens; `with_...` functions return a changed one.
+/// A Prescription is a lens as printed in its source: plain data, from a file or a program. `compile` turns it into a
+/// Lens for some wavelengths: an immutable value, cheap to copy and thread-safe. Functions take a Lens; `with_...`
+/// functions return a modified copy.
 ///
 ///     Prescription --compile--> Lens --> first_order, pupils, real_f_number   cardinal points, pupils, f-numbers
 ///                                    --> chief_ray, aim, pupil_boundary       rays through the stop, vignetted pupils
-///                                    --> film_irradiance, image_circle_mm     light on the film
+///                                    --> film_irradiance, image_circle_mm     irradiance of the film
 ///                                    --> solve_focus, depth_of_field          film positions for subjects
-///                                    --> autofocus                            the film of several points
+///                                    --> autofocus                            film position for several points
 ///                                    --> trace, trace_differentials           rays to film or scene, float or double,
-///                                                                             one or in batches on SIMD lanes
+///                                                                             single or in batches on SIMD lanes
 ///                                    --> Camera                               rays, importance and projection for a
-///                                                                             renderer, by any model of the lens
-///                                    --> fit_two_discs                        its cat's eyes as two discs
+///                                                                             renderer, with a choice of ray models
+///                                    --> fit_two_discs                        cat's eyes as two discs
 ///
 /// Lens frame: right-handed, millimetres. Light travels towards +z, the origin is the vertex of the first surface, the
-/// scene lies at negative z, and the image on the film is upside down. Surfaces count from 0. Angles are in radians,
-/// wavelengths in nanometres; names say so. The default wavelength is the primary one of the lens.
+/// scene lies at negative z, and the image on the film is inverted. Surfaces count from 0. Angles are in radians,
+/// wavelengths in nanometres, as the names say. The default wavelength is the primary wavelength of the lens.
 ///
 /// Invalid input throws Error. A solver without a solution returns a status. A lost ray has a RayFate.
 ///
@@ -29,13 +29,13 @@
 ///     double f = first_order(lens).effective_focal_length;  // 100.437
 ///     lens = with_focus(with_f_number(lens, 2.0), 1000.0);  // f/2, focused at 1 m
 ///
-/// This header declares petzval::core, and dot, cross, length and normalize of Vec2 and Vec3. A program that links
-/// petzval::core gets GLM and nothing else. The other components have headers of their own:
+/// This header declares petzval::core, and dot, cross, length and normalize for Vec2 and Vec3. petzval::core depends on
+/// GLM only. The other components have separate headers:
 ///
 ///     petzval::analysis   petzval/analysis/   spots, PSFs, colour, distortion, errors of ray models, lint
 ///     petzval::formats    petzval/formats/    lenses and glasses in files of other programs
-///     petzval::fit        petzval/fit/        the tilted film that serves several points
-///     petzval::blur       petzval/blur/       lens blur of pictures with depth
+///     petzval::fit        petzval/fit/        tilted films that focus several points
+///     petzval::blur       petzval/blur/       lens blur of images with depth
 ///     petzval::figure     petzval/figure/     SVG figures
 ///     petzval::image      petzval/image/      EXR and PNG files
 
@@ -75,7 +75,7 @@
 #include "petzval/pupil/pupil_boundary.hpp"
 #include "petzval/trace/trace.hpp"
 
-// The functions of its vectors, for hosts without a vector library of their own.
+// Vector functions, for hosts without a vector library.
 #include <glm/geometric.hpp>
 
 namespace petzval {
