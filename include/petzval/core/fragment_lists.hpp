@@ -10,6 +10,7 @@ namespace petzval {
 ///
 /// Pixel p has fragments[offsets[p]] to fragments[offsets[p + 1] - 1], in any order.
 struct FragmentLists {
+  /// One surface seen in a pixel.
   struct Fragment {
     float depth_mm = 0;                             ///< along the axis; infinity for the sky
     float red = 0, green = 0, blue = 0, alpha = 1;  ///< premultiplied by alpha

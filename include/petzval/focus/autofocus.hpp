@@ -16,6 +16,7 @@
 
 namespace petzval {
 
+/// The result of autofocus().
 enum class AutofocusStatus : std::uint8_t {
   solved,
   no_targets,   ///< no target is usable

@@ -27,6 +27,7 @@ enum class DistanceOrigin : std::uint8_t {
   front_principal,  ///< paraxial; of the thick lens, even for FocusCriterion::thin
 };
 
+/// The result of a focus computation, or the reason for its failure.
 enum class FocusStatus : std::uint8_t {
   solved,
   unreachable,  ///< no real image: the subject is too near, or the film is too close to the lens
@@ -57,6 +58,7 @@ struct FocusField {
   double weight = 1;
 };
 
+/// Criterion, origin of distances, fields and wavelengths of a focus computation.
 struct FocusOptions {
   /// The default agrees with cameras: every ray model is sharpest at the distance of min_rms. A lens with its entrance
   /// pupil at infinity requires `paraxial` or `thin`.

@@ -13,6 +13,7 @@ namespace petzval {
 
 class GlassCatalogue;
 
+/// Options of read_lens().
 struct ReadOptions {
   /// True: every assumption is an error; the first of Prescription::imported->warnings is thrown.
   bool strict = false;

@@ -11,6 +11,7 @@ namespace petzval {
 
 class Lens;
 
+/// Options of format_osl_camera().
 struct OslCameraOptions {
   /// The largest film that the shader supports; its width and height are the defaults of the shader's parameters.
   /// nullopt: 36 x 24 mm, or the largest 3:2 film inside the circle with at least a tenth of the axial irradiance.

@@ -44,6 +44,7 @@ enum class Dispersion {
 /// "catalogue", "abbe" or "none".
 PETZVAL_API std::string_view name(Dispersion dispersion) noexcept;
 
+/// Options of compile(): glasses, configuration and wavelengths.
 struct CompileOptions {
   const GlassCatalogue* glasses = nullptr;  ///< nullptr: glass_tables(), loaded if a medium names a glass
   IndexPolicy index_policy = IndexPolicy::printed;

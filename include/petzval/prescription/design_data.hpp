@@ -22,6 +22,7 @@ enum class ApertureSetting : std::uint8_t {
   stop_size,                ///< the table states the semi-diameter of the stop
 };
 
+/// The width of the beam of a design.
 struct DesignAperture {
   ApertureSetting setting = ApertureSetting::entrance_pupil_diameter;
   double value = 0;
@@ -55,6 +56,7 @@ struct DesignField {
   bool operator==(const DesignField&) const = default;
 };
 
+/// One wavelength of a design and its weight.
 struct DesignWavelength {
   double nm = 0;
   double weight = 1;
