@@ -8,6 +8,7 @@ set(petzval_long_tests
   BokehControls.MapHasOneOrientationInAllModels
   BrownConrady.HasNoPoleWithinTheFilm
   BrownConrady.TermsAreBoundedAndRadiiRiseAsFarAsItSays
+  Camera/Batches.*catadioptric*
   Camera.SetUpIndependentOfThreads
   Certified.*
   ChooseModel.DistancesCountFromTheirOrigin

@@ -18,27 +18,19 @@
 #include "petzval/camera/camera.hpp"
 #include "petzval/pupil/f_number.hpp"
 #include "petzval/trace/trace.hpp"
+#include "settings.hpp"
 
 namespace petzval {
 namespace bokeh_controls_test {
 
 using testing::data_lens;
 using testing::expect_error;
+using testing::mapped;
+using testing::ring;
 using testing::Samples;
 
 const Film film{.width_mm = 36, .height_mm = 24};
-const BokehControls ring{.weight_distribution = 12.7, .weight_strength = 0.6};
 const BokehControls soft{.weight_distribution = -4, .weight_strength = 0.8};
-
-/// Controls with a weight map without symmetries.
-BokehControls mapped() {
-  BokehControls result;
-  result.weight_map = {16, 16, {}, false};
-  for (int i = 0; i < 256; ++i) {
-    result.weight_map.values.push_back(static_cast<float>(0.3 + 0.04 * (i % 16) + 0.01 * (i / 16)));
-  }
-  return result;
-}
 
 template <class T>
 Samples<T> some_samples(const Film& on, std::size_t count) {
@@ -283,29 +275,6 @@ INSTANTIATE_TEST_SUITE_P(BokehControls, CatsEyes,
                          ::testing::Values(ModelKind::pinhole, ModelKind::thin, ModelKind::thin_two_disc,
                                            ModelKind::thick, ModelKind::polynomial(5), ModelKind::exact_float,
                                            ModelKind::exact_double));
-
-TEST(BokehControls, BatchEqualsSingleSamples) {
-  const Lens lens = data_lens("double_gauss_100mm_f2.0");
-  Film tilted = film;
-  tilted.tilt_rad = 0.05;
-  for (const Film& on : {film, tilted}) {
-    for (const ModelKind model : models()) {
-      for (const BokehControls& controls :
-           {ring, mapped(), BokehControls{.lens_ratio = 1.2, .rate_of_change = 0.8, .keep_light = true}}) {
-        const Camera camera(lens, on, {.model = model, .bokeh = controls});
-        auto samples = some_samples<double>(on, 77);
-        samples.run(camera);
-        for (std::size_t i = 0; i < samples.size(); ++i) {
-          const CameraRay one = camera.sample(samples.one(i));
-          const double near = model == ModelKind::exact_float ? 2e-4 : 1e-8;
-          EXPECT_NEAR(samples.weights[i], one.weight, near * (one.weight + 1e-3)) << name(model);
-          EXPECT_NEAR(samples.pdf_pupil[i], one.pdf_pupil, 1e-9 * one.pdf_pupil) << name(model);
-          EXPECT_EQ(samples.fates[i], one.fate) << name(model);
-        }
-      }
-    }
-  }
-}
 
 TEST(BokehControls, ActOnThePupilOfAStopWithoutARim) {
   Prescription p = testing::data_prescription("double_gauss_100mm_f2.0");

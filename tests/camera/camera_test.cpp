@@ -5,7 +5,6 @@
 
 #include <array>
 #include <cmath>
-#include <filesystem>
 #include <glm/geometric.hpp>
 #include <limits>
 #include <numbers>
@@ -24,8 +23,8 @@
 #include "petzval/camera/camera_tables.hpp"
 #include "petzval/camera/ray_model.hpp"
 #include "petzval/focus/focus.hpp"
-#include "petzval/glass/glass.hpp"
 #include "petzval/paraxial/first_order.hpp"
+#include "settings.hpp"
 #include "tilted_films.hpp"
 
 namespace petzval {
@@ -54,82 +53,11 @@ TEST(Camera, MovedFromCameraStaysValid) {
   }
 }
 
-TEST(Camera, BatchEqualsSingleSamples) {
-  const Lens lens = focused("double_gauss_100mm_f2.0");
+TEST(Camera, RaysDependOnTheWavelength) {
+  const Lens lens =
+      testing::compiled(testing::data_prescription("double_gauss_100mm_f2.0"), {486.1327, 587.5618, 656.2725});
   for (const ModelKind model : models()) {
     const Camera camera(lens, {}, {.model = model});
-    EXPECT_EQ(camera.model(), model);
-    auto samples = random_samples(camera.film(), 300);
-    samples.run(camera);
-    int other_fates = 0;
-    for (std::size_t i = 0; i < samples.size(); ++i) {
-      const CameraRay one = camera.sample(samples.one(i));
-      other_fates += one.fate != samples.fates[i];
-      if (one.fate != samples.fates[i]) continue;
-      const double eps = precision(model);
-      EXPECT_NEAR(one.weight, samples.weights[i], eps * std::max(one.weight, 1e-3)) << name(model) << ' ' << i;
-      EXPECT_NEAR(one.pdf_pupil, samples.pdf_pupil[i], eps * one.pdf_pupil);
-      EXPECT_NEAR(one.pdf_direction, samples.pdf_direction[i], eps * one.pdf_direction);
-      EXPECT_NEAR(one.pdf_film, 1 / camera.film().area_mm2(), 1e-15);
-      EXPECT_EQ(one.weight > 0, one.fate == RayFate::transmitted);
-      if (!one) continue;
-      EXPECT_NEAR(glm::length(one.ray.direction - samples.ray(i).direction), 0, eps) << name(model);
-      EXPECT_NEAR(glm::length(one.ray.origin - samples.ray(i).origin), 0, 100 * eps) << name(model);
-      EXPECT_NEAR(glm::length(one.ray.direction), 1, eps);
-    }
-    EXPECT_LE(other_fates, 1) << name(model);
-  }
-}
-
-/// Checks that results do not depend on the batch of a sample and its index, to the bit.
-template <class T>
-void expect_same_whatever_the_neighbours(const Camera& camera) {
-  auto whole = random_samples<T>(camera.film(), 1000), parts = whole;
-  whole.run(camera);
-  std::size_t first = 0;
-  for (const std::size_t count : {1, 2, 3, 7, 8, 15, 16, 17, 64, 255, 256, 257, 99}) {
-    parts.run(camera, first, count);
-    first += count;
-  }
-  ASSERT_EQ(first, whole.size());
-  EXPECT_EQ(whole.fates, parts.fates);
-  for (const auto column :
-       {&Samples<T>::x, &Samples<T>::y, &Samples<T>::z, &Samples<T>::dx, &Samples<T>::dy, &Samples<T>::dz,
-        &Samples<T>::weights, &Samples<T>::pdf_pupil, &Samples<T>::pdf_direction}) {
-    EXPECT_EQ(whole.*column, parts.*column);
-  }
-}
-
-TEST(Camera, BatchResultIndependentOfNeighbours) {
-  const Lens tessar = focused("tessar_100mm_f2.8"), aspheric = focused("modern_58mm_f0.95");
-  for (const Film& film : {Film{}, tilted_by(testing::shifted, 3, -2)}) {
-    for (const ModelKind model : models()) {
-      for (const Lens& lens : {tessar, aspheric}) {
-        SCOPED_TRACE(lens.name() + ' ' + std::string(name(model)) + (film.tilted() ? ", tilted" : ""));
-        const Camera camera(lens, film, {.model = model});
-        expect_same_whatever_the_neighbours<float>(camera);
-        expect_same_whatever_the_neighbours<double>(camera);
-      }
-    }
-  }
-}
-
-TEST(Camera, BatchHasOneWavelengthPerRay) {
-  const GlassCatalogue glasses = GlassCatalogue::load(std::filesystem::path(PETZVAL_TEST_DATA) / "glass");
-  const std::array lines_nm{486.1327, 587.5618, 656.2725};
-  const Lens lens = compile(testing::data_prescription("double_gauss_100mm_f2.0"), lines_nm,
-                            {.glasses = &glasses, .missing_glass = MissingGlass::abbe});
-  for (const ModelKind model : models()) {
-    const Camera camera(lens, {}, {.model = model});
-    auto mixed = random_samples(camera.film(), 300);
-    for (std::size_t i = 0; i < mixed.size(); ++i) mixed.wavelengths.push_back(static_cast<std::uint16_t>(i * i % 3));
-    mixed.run(camera);
-    for (std::size_t i = 0; i < mixed.size(); ++i) {
-      const CameraRay one = camera.sample(mixed.one(i));
-      if (one.fate != mixed.fates[i]) continue;
-      EXPECT_NEAR(one.weight, mixed.weights[i], precision(model) * one.weight) << name(model);
-      EXPECT_NEAR(glm::length(one.ray.direction - mixed.ray(i).direction), 0, precision(model)) << name(model);
-    }
     CameraSample s{{4, 11}, 0.3, 0.4};
     const CameraRay blue = camera.sample(s);
     s.wavelength = 2;
@@ -395,34 +323,6 @@ TEST(Camera, InvalidSamplesHaveFates) {
       const CameraRay corner = camera.sample({{18, -12}, u, 1 - u});
       EXPECT_NE(corner.fate, RayFate::outside_film);
       EXPECT_NE(corner.fate, RayFate::invalid);
-    }
-  };
-  for (const ModelKind model : models()) {
-    fates(model, {});
-    fates(model, {.tilt_rad = 0.15, .swing_rad = -0.1});
-  }
-}
-
-TEST(Camera, InvalidSamplesInBatchesHaveFates) {
-  const double nan = std::numeric_limits<double>::quiet_NaN();
-  const Lens lens = focused("double_gauss_100mm_f2.0");
-  const auto fates = [&](ModelKind model, const Film& film) {
-    const Camera camera(lens, film, {.model = model});
-    auto samples = random_samples<float>(camera.film(), 100);
-    samples.wavelengths.assign(100, 0);
-    samples.film_x[3] = static_cast<float>(nan), samples.film_y[40] = 13, samples.pupil_u[50] = static_cast<float>(nan);
-    samples.wavelengths[60] = 1, samples.film_x[99] = std::numeric_limits<float>::infinity();
-    samples.run(camera);
-    EXPECT_EQ(samples.fates[3], RayFate::outside_film) << name(model);
-    EXPECT_EQ(samples.fates[40], RayFate::outside_film) << name(model);
-    EXPECT_EQ(samples.fates[50], RayFate::vignetted) << name(model);
-    EXPECT_EQ(samples.fates[60], RayFate::outside_spectrum) << name(model);
-    EXPECT_EQ(samples.fates[99], RayFate::outside_film) << name(model);
-    for (std::size_t i = 0; i < samples.size(); ++i) {
-      const auto& [origin, direction] = samples.ray(i);
-      for (int k = 0; k < 3; ++k) EXPECT_TRUE(std::isfinite(origin[k]) && std::isfinite(direction[k]));
-      EXPECT_TRUE(std::isfinite(samples.weights[i]) && std::isfinite(samples.pdf_direction[i]));
-      EXPECT_EQ(samples.weights[i] > 0, samples.fates[i] == RayFate::transmitted) << name(model) << ' ' << i;
     }
   };
   for (const ModelKind model : models()) {

@@ -46,35 +46,6 @@ TEST(Cylinders, SamplesOfPolynomialsPassTheExactLens) {
   }
 }
 
-TEST(Cylinders, PolynomialsGiveEqualBatchesAndSingleSamples) {
-  Film tilted = film, travelling = film;
-  tilted.tilt_rad = 0.1, tilted.swing_rad = -0.05;
-  travelling.travel_mm = 0.5;
-  for (const Film& any : {film, tilted, travelling}) {
-    for (const ModelKind model : {ModelKind::polynomial(3), ModelKind::polynomial(7), ModelKind::polynomial(11)}) {
-      const Camera camera(anamorphic(), any, {.model = model});
-      auto samples = random_samples(any, 500);
-      auto in_float = random_samples<float>(any, 500);
-      for (auto* times : {&samples.times}) times->assign(samples.size(), 0.3);
-      in_float.times.assign(in_float.size(), 0.3f);
-      samples.run(camera), in_float.run(camera);
-      std::size_t passed = 0;
-      for (std::size_t i = 0; i < samples.size(); ++i) {
-        const CameraRay one = camera.sample(samples.one(i));
-        ASSERT_EQ(one.fate, samples.fates[i]);
-        passed += one ? 1 : 0;
-        EXPECT_NEAR(one.weight, samples.weights[i], 1e-12);
-        EXPECT_LT(glm::distance(one.ray.direction, samples.ray(i).direction), 1e-12);
-        EXPECT_LT(glm::distance(one.ray.origin, samples.ray(i).origin), 1e-10);
-        if (!one || in_float.fates[i] != one.fate) continue;
-        EXPECT_NEAR(one.weight, in_float.weights[i], 1e-4 * one.weight);
-        EXPECT_LT(glm::distance(one.ray.direction, in_float.ray(i).direction), 1e-5);
-      }
-      EXPECT_GT(passed, 400u);
-    }
-  }
-}
-
 // In each section, rays cross the plane of the entrance pupil at p with slopes s. At the distance `away` from this
 // plane they miss the axis by s + p / away, seen from the pupil; the mean square is smallest at away = -pp / ps.
 TEST(Cylinders, PolynomialsFocusWithExactRaysInBothSections) {

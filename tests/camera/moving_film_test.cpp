@@ -152,25 +152,6 @@ TEST(MovingFilm, ImportanceEqualsWeightOfSamples) {
   }
 }
 
-TEST(MovingFilm, BatchEqualsSingleSamples) {
-  for (const auto& [id, film] : cases()) {
-    const Lens lens = testing::data_lens(id);
-    for (const ModelKind model :
-         {ModelKind::pinhole, ModelKind::thick, ModelKind::polynomial(5), ModelKind::exact_double}) {
-      const Camera camera(lens, film, {.model = model});
-      auto samples = testing::random_samples(film, 300);
-      for (std::size_t i = 0; i < samples.size(); ++i) samples.times.push_back(static_cast<double>(i % 100) / 80 - 0.1);
-      samples.run(camera);
-      for (std::size_t i = 0; i < samples.size(); ++i) {
-        const CameraRay one = camera.sample(samples.one(i));
-        ASSERT_EQ(one.fate, samples.fates[i]) << name(model);
-        EXPECT_NEAR(samples.weights[i], one.weight, 1e-12);
-        EXPECT_NEAR(glm::length(samples.ray(i).direction - one.ray.direction), 0, 1e-12);
-      }
-    }
-  }
-}
-
 TEST(MovingFilm, DifferentialsEqualFiniteDifferences) {
   const auto [id, film] = cases()[1];
   const Camera camera(testing::data_lens(id), film, {.model = ModelKind::exact_double});

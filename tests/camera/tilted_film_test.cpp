@@ -223,35 +223,6 @@ TEST(TiltedFilm, ObeysTheScheimpflugPrinciple) {
   EXPECT_LT(std::abs(normal.z), 0.7);
 }
 
-TEST(TiltedFilm, BatchEqualsSingleSamples) {
-  const Lens lens = testing::data_lens("double_gauss_100mm_f2.0");
-  for (const ModelKind model : models()) {
-    const Camera camera(lens, tilted_by(shifted, 8, 5), {.model = model});
-    auto samples = random_samples(camera.film(), 600);
-    auto in_float = random_samples<float>(camera.film(), 600);
-    samples.film_x[7] = in_float.film_x[7] = 40;
-    samples.run(camera);
-    in_float.run(camera);
-    const double eps = model == ModelKind::exact_float ? 2e-5 : 1e-11;
-    int others = 0;
-    for (std::size_t i = 0; i < samples.size(); ++i) {
-      const CameraRay one = camera.sample(samples.one(i));
-      others += one.fate != samples.fates[i] || in_float.fates[i] != samples.fates[i];
-      EXPECT_EQ(one.weight > 0, one.fate == RayFate::transmitted);
-      if (one.fate != samples.fates[i]) continue;
-      EXPECT_NEAR(one.weight, samples.weights[i], eps * std::max(one.weight, 1e-3)) << name(model);
-      EXPECT_NEAR(one.pdf_direction, samples.pdf_direction[i], eps * one.pdf_direction);
-      EXPECT_NEAR(one.pdf_pupil, samples.pdf_pupil[i], eps * one.pdf_pupil);
-      if (!one || in_float.fates[i] != one.fate) continue;
-      EXPECT_NEAR(in_float.weights[i] / one.weight, 1, 1e-4) << name(model);
-      EXPECT_NEAR(glm::length(one.ray.direction - samples.ray(i).direction), 0, eps);
-      EXPECT_NEAR(glm::length(one.ray.direction - in_float.ray(i).direction), 0, 1e-4);
-    }
-    EXPECT_LE(others, 4) << name(model);
-    EXPECT_EQ(samples.fates[7], RayFate::outside_film);
-  }
-}
-
 TEST(TiltedFilm, RefusesFilmsInsideTheLens) {
   const auto camera = [](const char* id, const Film& film, ModelKind model = ModelKind::exact_float) {
     return [=] { Camera(testing::data_lens(id), film, {.model = model}); };
