@@ -149,7 +149,7 @@ class PETZVAL_API Lens {
   /// Refractive index of the medium before surface `space`.
   ///
   /// @param space       0 is object space, surface_count() is image space
-  /// @param wavelength  a wavelength that covers() accepts
+  /// @param wavelength  a wavelength index, or a value in nm within the compiled range
   /// @throws Error if the lens does not have the space or the wavelength
   double index(std::size_t space, Wavelength wavelength = {}) const;
   /// Bound on the error of index() at wavelengths in nm, relative to the dispersion formulas of all media.
@@ -195,7 +195,7 @@ class PETZVAL_API Lens {
 /// @param prescription    the lens; options.configuration selects one of its configurations
 /// @param wavelengths_nm  at least one wavelength (nm)
 /// @param options         glasses, their treatment, configuration and primary wavelength
-/// @throws Error, naming lens and surface, if the prescription is invalid; if a wavelength occurs twice (within
+/// @throws Error with lens and surface if the prescription is invalid; if a wavelength occurs twice (within
 ///               1e-6 nm) or lies outside the range of a glass (unless clamp_wavelengths is set); if a glass is missing
 ///               (see MissingGlass; always if the medium states no index); if an index is outside 0.1 to 5; if
 ///               primary_nm is not a compiled wavelength
