@@ -56,14 +56,14 @@ struct CameraOptions {
 ///     CameraRay r = camera.sample({.film = camera.film().point(column, row), .pupil_u = u, .pupil_v = v});
 ///     if (r) pixel += r.weight * radiance(r.ray);
 ///
-/// Immutable, cheap to copy, thread-safe. Calls neither allocate nor retry: a lost sample has weight 0 and a fate. The
-/// first call of importance or projection builds tables while other threads wait for them; it may throw std::bad_alloc,
-/// and the next call tries again.
+/// Immutable, cheap to copy, thread-safe. Calls do not allocate, draw random numbers or loop until a ray passes: a lost
+/// sample has weight 0 and a fate. Only the first call of importance or projection builds tables, while other threads
+/// wait; it may throw std::bad_alloc, and the next call tries again.
 ///
 /// Rays start on the front of the lens, and shadow rays end there: the sphere through the vertex and the rim of the
-/// first surface. A line that misses the sphere starts in the tangent plane at the vertex. If a mirror stands in front
-/// of the first surface, or this surface is a cylinder, the front is a plane perpendicular to the axis before all
-/// surfaces.
+/// first surface. A line that misses the sphere starts in the tangent plane at the vertex. If another surface, such as
+/// a mirror, stands in front of the first one, or the first one is a cylinder, the front is a plane perpendicular to
+/// the axis before all surfaces.
 class PETZVAL_API Camera {
  public:
   /// Copies. Moves also copy, so that a Camera is never empty.

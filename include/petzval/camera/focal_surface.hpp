@@ -147,7 +147,9 @@ PETZVAL_API std::vector<FocalPoint> focal_points(const IdealLens& lens, const Fi
 
 /// For each point: true if it is valid at the moment, has an image and lies on the film.
 ///
-/// Input of FocusFades, after the renderer has cleared hidden points. @throws Error if focus_targets() does.
+/// The input of FocusFades::advance(), in which the renderer may clear hidden points.
+///
+/// @throws Error  if focus_targets() does
 PETZVAL_API std::vector<bool> points_in_view(const IdealLens& lens, const Film& film,
                                              std::span<const FocusPoint> points, const FocusMoment& moment);
 

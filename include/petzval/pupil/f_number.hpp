@@ -18,22 +18,23 @@ namespace petzval {
 /// @throws Error  if pupils() does
 PETZVAL_API double real_f_number(const Lens& lens, Wavelength wavelength = {});
 
-/// f-number of the widest axial beam, below which with_f_number() refuses: real_f_number() if the stop has a rim. If
-/// the marked stop has no rim, the last axis-parallel ray that reaches the stop sets the limit, 0 if there is no last
-/// ray.
+/// f-number of the widest axial beam: the limit of with_f_number().
 ///
-/// @throws Error  if the lens is afocal or nothing limits the axial beam
+/// It equals real_f_number() if the stop has a rim. If the marked stop has no rim, the last axis-parallel ray that
+/// reaches the stop sets the limit; 0 if every ray reaches the stop.
+///
+/// @throws Error  if the lens is afocal or no surface limits the axial beam
 PETZVAL_API double fastest_f_number(const Lens& lens, Wavelength wavelength = {});
 
 /// The lens stopped down to the f-number N.
 ///
 /// The axis-parallel ray of height |EFL| / (2 N) meets the new rim of the stop; a marked stop without a rim gets a rim.
-/// The lens stays wide open if N is too fast by up to 0.5 %, because declared f-numbers are rounded; real_f_number()
-/// gives the exact value.
+/// The lens stays wide open if N is too fast by up to 0.5 % (1e-9 if the marked stop has no rim), because declared
+/// f-numbers are rounded; real_f_number() gives the exact value.
 ///
 /// @throws Error  if N is faster than that (fastest_f_number() gives the limit), not positive or not finite; if the
-///                lens is afocal; if N is so slow that a central obscuration covers the axial beam; or if no stop gives
-///                N, because spherical aberration folds the beam
+///                lens is afocal or transmits no axial beam; if N is so slow that a central obscuration covers the
+///                axial beam; or if no stop gives N, because spherical aberration folds the beam
 ///
 /// Accuracy: real_f_number() returns N within 1e-12.
 PETZVAL_API Lens with_f_number(const Lens& lens, double f_number, Wavelength wavelength = {});
