@@ -60,14 +60,14 @@ TEST(BrownConrady, FindsTheCoefficientOfAPlate) {
 struct Case {
   std::string lens;
   double film_mm;
-  double polynomial_px, rational_px;  ///< largest errors, of films of 480 pixels
+  double polynomial_px, rational_px;  ///< largest errors on films of 480 pixels
 };
 
 void PrintTo(const Case& test, std::ostream* out) { *out << test.lens; }
 
 class BrownConradyFits : public ::testing::TestWithParam<Case> {};
 
-// The errors are those of exact chief rays, aimed from the scene, at places that the fit has not seen.
+// Errors are measured with exact chief rays from the scene, at points that the fit does not use.
 TEST_P(BrownConradyFits, PredictChiefRaysWithinTheirError) {
   const auto& [id, film_mm, polynomial_px, rational_px] = GetParam();
   const Lens lens = data_lens(id);
@@ -116,7 +116,7 @@ TEST(BrownConrady, HasNoPoleWithinTheFilm) {
         distortion_of(lens, small_film(0.83 * std::min(p.image_diagonal_mm.value_or(400), image_circle_mm(lens, 0.1))));
     for (const auto direction : directions) {
       const BrownConrady fit = fit_brown_conrady(distortion, {.direction = direction});
-      // Up to the edge of the field, which lies at another radius in the other picture.
+      // Up to the edge of the field, whose radius differs between both images.
       const double tangent = std::tan(fit.field_rad), step = tangent / 200;
       const bool in = direction == BrownConradyDirection::to_undistorted;
       double r = 0;
@@ -130,11 +130,11 @@ TEST(BrownConrady, HasNoPoleWithinTheFilm) {
   }
 }
 
-// A host that asks beyond the image, or calculates in float, gets a picture that goes on as it should.
+// Hosts may evaluate outside the image or in float, and get a monotonic continuation.
 TEST(BrownConrady, TermsAreBoundedAndRadiiRiseAsFarAsItSays) {
   int number = 0;
   for (const Prescription& p : testing::data_prescriptions()) {
-    if (number++ % 4 != 0) continue;  // a quarter tells enough
+    if (number++ % 4 != 0) continue;  // every fourth suffices
     const Lens lens = compile(p);
     if (!lens.rotationally_symmetric() || p.id.find("fisheye") != std::string::npos) continue;
     SCOPED_TRACE(p.id);
@@ -143,7 +143,7 @@ TEST(BrownConrady, TermsAreBoundedAndRadiiRiseAsFarAsItSays) {
     for (const auto direction : directions) {
       const BrownConrady fit = fit_brown_conrady(distortion, {.direction = direction});
       const bool in = direction == BrownConradyDirection::to_undistorted;
-      // The largest radius that the fit starts from, in the picture of that side.
+      // The largest radius of the fit, in the image of that side.
       double largest = 0;
       for (const auto& corner : {Vec2<double>{0, 0}, Vec2<double>{240, 0}, Vec2<double>{0, 160}}) {
         const auto other = distortion.undistorted(corner);
@@ -165,7 +165,7 @@ TEST(BrownConrady, TermsAreBoundedAndRadiiRiseAsFarAsItSays) {
   }
 }
 
-// Where a linear fit has a pole, or is not that of least squares.
+// Cases in which a linear fit has a pole or is not the least-squares fit.
 TEST(BrownConrady, FindsTheRationalFormOfLeastSquares) {
   using enum BrownConradyDirection;
   for (const auto& [id, direction, rms_px] :
@@ -189,7 +189,7 @@ TEST(BrownConrady, RefusesWhatIsNotRadialOrNoPinholesPicture) {
   }
 }
 
-// Blades bend no ray; the middle of what passes between five of them is a little beside that of a disc.
+// Blades bend no ray; the centre of a pupil of five blades differs slightly from the centre of a disc.
 TEST(BrownConrady, HardlyDependsOnTheBlades) {
   const Lens lens = data_lens("biogon_35mm_f2.8");
   const auto fit = [](const Lens& l) { return fit_brown_conrady(distortion_of(l, small_film(36))); };

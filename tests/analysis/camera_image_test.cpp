@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Images of points by cameras.
+// Images of points through cameras.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -34,7 +34,7 @@ void PrintTo(const Light& light, std::ostream* out) { *out << light.lens << " at
 
 class CameraImages : public ::testing::TestWithParam<Light> {};
 
-// The exact camera connects the rays that a lens is traced with.
+// Connections of the exact camera equal traced rays.
 TEST_P(CameraImages, AreThoseOfTheLens) {
   const auto& [id, field_deg, z] = GetParam();
   const Lens lens = with_focus(data_lens(id), 3000, {.origin = DistanceOrigin::front_vertex});
@@ -54,7 +54,7 @@ INSTANTIATE_TEST_SUITE_P(PointImage, CameraImages,
                                            Light{"tessar_100mm_f2.8", 15, -INFINITY},
                                            Light{"fisheye_8mm_f2.8", 60, -2000}));
 
-// Weights move light within the blur; most of it stays.
+// Weights redistribute light within the blur and keep most of it.
 TEST(CameraImages, HaveTheWeightsOfTheCamera) {
   const Lens lens = with_f_number(with_focus(data_lens("double_gauss_100mm_f2.0"), 3000), 5.6);
   const FieldPoint point{0, -1000};
@@ -76,7 +76,7 @@ TEST(CameraImages, HaveTheWeightsOfTheCamera) {
         << name(model);
     EXPECT_NEAR(soft.size.rms_radius * soft.size.rms_radius / plain_square / (2 * mean_square(-4, 0.8)), 1, 0.02)
         << name(model);
-    // All light is in the picture, in exact numbers.
+    // The image contains the total light exactly.
     EXPECT_EQ(std::accumulate(ring.psf.counts.begin(), ring.psf.counts.end(), std::uint64_t{0}),
               ring.psf.transmitted[0]);
     EXPECT_NEAR(ring.psf.throughput(0), ring.throughput, 1e-12);
@@ -114,7 +114,7 @@ TEST(CameraImages, KeepTheBoundOfTheirError) {
   }
 }
 
-// Whatever the unit of a map is.
+// The unit of a map is irrelevant.
 TEST(CameraImages, CountWeightsOfAnySize) {
   const Lens lens = with_f_number(with_focus(data_lens("double_gauss_100mm_f2.0"), 3000), 5.6);
   const auto light = [&](float value) {

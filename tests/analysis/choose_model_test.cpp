@@ -36,7 +36,7 @@ const ModelCandidate& candidate_of(const ModelChoice& choice, ModelKind model) {
   return *std::ranges::find(choice.table, model, &ModelCandidate::model);
 }
 
-/// Budgets hold for samples that the choice has not seen, and no faster model is within them.
+/// Budgets hold for samples that the choice did not use, and no faster model meets the budgets.
 struct Scene {
   const char* id;
   double width, focus, near, far;
@@ -101,7 +101,7 @@ TEST_P(Promise, HoldsOnFreshSamples) {
       if (candidate.model == choices[k].model) {
         EXPECT_TRUE(inside(1)) << "budget " << k;
       }
-      // Samples may miss sharp minima of the blur: there the bound is only an upper one.
+      // Samples may miss sharp minima of the blur, where the result is only an upper bound.
       if (!budget.max_of_blur && candidate.ns_per_ray < candidate_of(choices[k], choices[k].model).ns_per_ray) {
         EXPECT_FALSE(inside(0.9)) << "budget " << k;
       }
@@ -188,7 +188,7 @@ TEST(ChooseModel, TakesTheFastestInside) {
   EXPECT_EQ(std::ranges::count_if(usual_choices()[zero_px].table, &ModelCandidate::inside), 1);
 }
 
-/// Each ray must be within one part of the pair: a model within one of them is accepted.
+/// Each ray must meet one budget of the pair, so that a model that meets one budget is accepted.
 TEST(ChooseModel, AllowsPixelsOrAPartOfTheBlur) {
   const auto& choices = usual_choices();
   for (std::size_t k = 0; k < models().size(); ++k) {
@@ -218,8 +218,8 @@ bool says(const std::vector<std::string>& lines, const std::string& part) {
   return std::ranges::any_of(lines, [&](const std::string& l) { return l.find(part) != std::string::npos; });
 }
 
-// A ray that only one of model and lens passes counts in pupil_shape alone: pixels do not see that a thin lens is round
-// where the lens has cat's eyes.
+// A ray that only the model or only the lens transmits counts in pupil_shape only: the limit in pixels ignores that a
+// thin lens has a round pupil where the lens has cat's eyes.
 TEST(ChooseModel, WantsThePupilsOfTheLensUnlessToldOtherwise) {
   const Lens lens = focused("modern_41mm_f1.45", 3000);
   const std::vector<ErrorBudget> budgets{{.max_px = 40}, {.max_px = 40, .pupil_shape = {}}, {}};
@@ -274,7 +274,7 @@ TEST(ChooseModel, StopsTheLensDown) {
   EXPECT_LT(stopped, 0.5 * open);
 }
 
-// The origin shifts the distances of a scene and nothing else.
+// The origin only shifts the distances of a scene.
 TEST(ChooseModel, DistancesCountFromTheirOrigin) {
   const Lens lens = usual_lens();
   const auto bound = [&](double near, DistanceOrigin origin) {

@@ -32,7 +32,7 @@ Lens compiled(const Prescription& prescription, std::span<const double> waveleng
 
 Lens compiled(const char* id) { return compiled(testing::data_prescription(id)); }
 
-/// A thin singlet of f = 100 and V = 50 with its stop at some distance in front of it.
+/// A thin singlet of f = 100 and V = 50 with a stop in front.
 Lens thin_singlet(double stop_distance) {
   Prescription p;
   p.name = "thin";
@@ -43,7 +43,7 @@ Lens thin_singlet(double stop_distance) {
   return compile(p, f_d_c, {.missing_glass = MissingGlass::abbe});
 }
 
-// Gauss's equation with the focal length of each wavelength, which between F and C differs by f / V.
+// The Gaussian lens equation for each wavelength; the focal lengths at F and C differ by f / V.
 TEST(ChromaticAberration, OfAThinLensIsThatOfItsFocalLength) {
   const Lens lens = thin_singlet(0.1);
   const auto focal_length = [](double nm) { return 100 * 0.5 / (abbe_index(1.5, 50, nm) - 1); };
@@ -61,9 +61,9 @@ TEST(ChromaticAberration, OfAThinLensIsThatOfItsFocalLength) {
   }
 }
 
-// With the stop at a thin lens no ray through its centre is bent. With the stop at d in front of it the chief ray from
-// above crosses the lens at -d tan w and is bent upwards by d tan w / f, F more than C by a share of 1 / V; the film is
-// f away.
+// With the stop at a thin lens, chief rays are not bent. With the stop at d in front of the lens, the chief ray from
+// above crosses the lens at -d tan w and is bent upwards by d tan w / f. At F the angle is larger than at C by a
+// fraction 1 / V. The film is at distance f.
 TEST(ChromaticAberration, LateralComesFromTheDistanceOfTheStop) {
   const std::array fields{0.0, 0.02, -0.02};
   for (const double distance : {1e-6, 10.0, 20.0}) {
@@ -116,7 +116,7 @@ TEST(ChromaticAberration, AgreesWithSpotsAndFirstOrder) {
   }
 }
 
-// Closed down, the sharpest film is the paraxial one.
+// Stopped down, the sharpest film is the paraxial film.
 TEST(ChromaticAberration, TheSharpestFilmTendsToTheParaxialOne) {
   const Lens open = compiled("double_gauss_100mm_f1.35");
   const auto distance = [&](double f_number) {

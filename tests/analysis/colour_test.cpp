@@ -68,7 +68,7 @@ std::array<double, 3> times(const std::array<std::array<double, 3>, 3>& matrix, 
 
 const std::vector<double> f_d_c{486.1, 587.6, 656.3}, coarse{420, 680}, fine{430, 470, 510, 550, 590, 630, 670};
 
-// The chromaticities that CIE 15 prints for its illuminants, to five digits, of sums in steps of 5 nm.
+// Chromaticities of the illuminants in CIE 15, with five digits, from sums in steps of 5 nm.
 TEST(Illuminant, HasItsPrintedChromaticity) {
   constexpr std::array<std::array<double, 2>, 4> printed{
       {{0.31272, 0.32903}, {0.34567, 0.35851}, {0.44758, 0.40745}, {1 / 3.0, 1 / 3.0}}};
@@ -96,7 +96,7 @@ TEST(Illuminant, HasItsPrintedPower) {
 
 TEST(Tristimulus, IsLinearInTheLight) {
   const auto& [d65, d50, a, e] = lights();
-  Spectrum mixed = d65;  // samples of the lamp are taken where daylight has its own, so it is linear between these too
+  Spectrum mixed = d65;  // the lamp is resampled at the wavelengths of daylight
   Spectrum lamp{d65.wavelengths_nm, {}};
   for (std::size_t i = 0; i < mixed.power.size(); ++i) {
     lamp.power.push_back(a.power[2 * i]);
@@ -133,7 +133,7 @@ TEST(RgbWeights, TheUnitOfPowerDoesNotMatter) {
   EXPECT_EQ(weights_of(fine, lights()[0], bright), weights_of(fine, lights()[0], lights()[2]));
 }
 
-// The sum of a set is the colour of the light: linear sRGB of its chromaticity at luminance 1.
+// The weights of a set add up to the colour of the light: linear sRGB of its chromaticity at luminance 1.
 TEST(RgbWeights, ShowTheColourOfALight) {
   constexpr std::array<std::array<double, 3>, 3> srgb{
       {{3.2406, -1.5372, -0.4986}, {-0.9689, 1.8758, 0.0415}, {0.0557, -0.2040, 1.0570}}};
@@ -141,11 +141,11 @@ TEST(RgbWeights, ShowTheColourOfALight) {
   for (const auto& set : {f_d_c, coarse, fine}) {
     const auto lamp = sum(weights_of(set, lights()[2], lights()[0]));
     for (std::size_t k = 0; k < 3; ++k) EXPECT_NEAR(lamp[k], expected[k], 5e-4);
-    EXPECT_GT(sum(weights_of(set, lights()[0], lights()[2]))[2], 1.5);  // daylight is blue in a lamp's white
+    EXPECT_GT(sum(weights_of(set, lights()[0], lights()[2]))[2], 1.5);  // daylight is blue relative to a lamp
   }
 }
 
-// D50 as ICC profiles hold it, adapted to D65: Lindbloom's published matrix, of the Bradford transform.
+// D50 of ICC profiles, adapted to D65 by the Bradford transform; matrix published by Lindbloom.
 TEST(RgbWeights, AdaptColoursByTheBradfordTransform) {
   constexpr std::array<std::array<double, 3>, 3> d50_to_d65{
       {{0.9555766, -0.0230393, 0.0631636}, {-0.0282895, 1.0099416, 0.0210077}, {0.0122982, -0.0204830, 1.3299098}}};
@@ -170,7 +170,7 @@ TEST(RgbWeights, FollowTheOrderOfTheSet) {
 
 TEST(RgbWeights, BandsEndHalfWayBetweenWavelengths) {
   // Trapezoidal sums over the 5 nm table for the bands 360-500, 500-580 and 580-830 nm, in light of equal power.
-  // Daylight as white changes them by one map of colours for all.
+  // Daylight as white point changes all by one colour transform.
   constexpr std::array<double, 4> edges{360, 500, 580, 830};
   std::array<double, 3> luminance{};
   for (std::size_t band = 0; band < 3; ++band) {
@@ -225,7 +225,7 @@ TEST(RgbTriple, GivesEachChannelItsOwnWavelength) {
   }
 }
 
-/// What load says about a file of that text, without the file's name.
+/// The message of load for a file with this text, without the file name.
 template <class Load>
 std::string complaint(const std::string& text, const Load& load) {
   const auto file = std::filesystem::path(::testing::TempDir()) / "petzval_colour_test.csv";

@@ -8,8 +8,8 @@
 
 namespace petzval::testing {
 
-/// A ball with its stop in its centre: chief rays pass it undeviated. A plate may stand behind it, which they enter at
-/// their angle in the scene: distortion in closed form.
+/// A ball lens with the stop at its centre, which does not bend chief rays. A plate behind the ball is met at the field
+/// angle, which gives distortion in closed form.
 struct BallAndPlate {
   double plate_mm = 0;
   static constexpr double radius_mm = 10, index = 1.5, plate_index = 1.8, to_plate_mm = 2, to_film_mm = 3;
@@ -24,7 +24,7 @@ struct BallAndPlate {
                   {.thickness = to_film_mm, .semi_diameter = 60}};
     return compile(p);
   }
-  /// Between the centre of the ball and the film, without the plate.
+  /// Distance from the centre of the ball to the film, without the plate.
   double in_air_mm() const { return radius_mm + to_plate_mm + to_film_mm; }
   double focal_length_mm() const { return in_air_mm() + plate_mm / plate_index; }
   /// Height of the chief ray of a field on the film, by Snell's law.
@@ -34,7 +34,7 @@ struct BallAndPlate {
   }
 };
 
-/// 3:2, of few pixels.
+/// A 3:2 film with few pixels.
 inline Film small_film(double width_mm) {
   return {.width_mm = width_mm, .height_mm = width_mm / 1.5, .columns = 480, .rows = 320};
 }

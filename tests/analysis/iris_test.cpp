@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What passes a lens with a hexagonal iris, against the same lens with a round stop: the ratio of both is the hexagon's
-// area over the disc's, 0.826993.
+// Light through a lens with a hexagonal iris, relative to the round stop: the ratio of the areas of hexagon and disc,
+// 0.826993.
 #include <gtest/gtest.h>
 
 #include <cmath>

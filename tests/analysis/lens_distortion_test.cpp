@@ -28,7 +28,7 @@ using testing::small_film;
 
 double far_apart(const Vec2<double>& a, const Vec2<double>& b) { return std::hypot(a.x - b.x, a.y - b.y); }
 
-/// Places of the picture, uniform.
+/// Uniform image positions.
 std::vector<Vec2<double>> places(const Film& film, int count = 60) {
   std::vector<Vec2<double>> result;
   const core_detail::Kronecker<2> random(3);
@@ -54,7 +54,7 @@ TEST(LensDistortion, IsNoneForLinearModels) {
 }
 
 TEST(LensDistortion, KeepsTheScaleOnTheAxis) {
-  // Of the phone's lens, with odd aspheres, chief rays have another slope a thousandth of a radian off the axis.
+  // In the phone lens, odd aspheric terms change the slope of chief rays at 1e-3 rad from the axis.
   for (const auto& [id, within] : {std::pair("phone_5.6mm_f3.5", 1e-4), std::pair("fisheye_8mm_f2.8", 1e-6),
                                    std::pair("tessar_100mm_f2.8", 1e-6)}) {
     const Lens lens = data_lens(id);
@@ -124,7 +124,7 @@ TEST(LensDistortion, OfAPlateBehindItIsThatOfSnellsLaw) {
   EXPECT_GT(most, 5);
 }
 
-// A plate behind a stop has no focal length, and a picture.
+// A plate behind a stop has no focal length, but an image.
 TEST(LensDistortion, NeedsNoFocalLength) {
   Prescription p;
   p.name = "plate";
@@ -138,7 +138,7 @@ TEST(LensDistortion, NeedsNoFocalLength) {
   EXPECT_NEAR(distortion.pinhole().focal_length_mm.x, 24 + 6 / 1.5, 1e-4);
 }
 
-// The same chief rays by other code, aimed at the stop from the scene.
+// The reference aims chief rays at the stop from the scene.
 TEST(LensDistortion, IsThatOfExactChiefRays) {
   for (const char* id : {"double_gauss_100mm_f2_28deg", "biogon_35mm_f2.8", "zoom_14-30mm_f4:wide"}) {
     for (const double focus : {1000.0, std::numeric_limits<double>::infinity()}) {
@@ -224,7 +224,7 @@ TEST(LensDistortion, KeepsTheSqueezeOfAnamorphicLenses) {
   const Lens lens = data_lens("anamorphic_60mm_2x");
   const LensDistortion distortion(Camera(lens, small_film(24), {.model = ModelKind::exact_double}));
   const Vec2<double> focal_length = distortion.pinhole().focal_length_mm;
-  EXPECT_NEAR(focal_length.y / focal_length.x, squeeze(lens), 0.01);  // which is that of focal lengths
+  EXPECT_NEAR(focal_length.y / focal_length.x, squeeze(lens), 0.01);  // the ratio of the focal lengths
 }
 
 TEST(LensDistortion, KnowsTheFieldOfItsFilm) {
@@ -237,7 +237,7 @@ TEST(LensDistortion, KnowsTheFieldOfItsFilm) {
   ASSERT_TRUE(corner);
   const Vec2<double> tangent = (*corner - biogon.centre()) / biogon.focal_length_px();
   EXPECT_NEAR(biogon.widest_field_rad(), std::atan(std::hypot(tangent.x, tangent.y)), 0.02);
-  // Whichever corner is the farthest.
+  // For any farthest corner.
   for (const double x : {4.0, -4.0}) {
     for (const double y : {3.0, -3.0}) {
       Film shifted = small_film(20);
@@ -253,7 +253,7 @@ TEST(LensDistortion, SeesNothingOfDarkPlaces) {
   const LensDistortion fisheye(Camera(data_lens("fisheye_8mm_f2.8"), small_film(36)));
   EXPECT_FALSE(fisheye.undistorted({1, 1}));
   EXPECT_TRUE(fisheye.undistorted({240, 150}));
-  EXPECT_FALSE(fisheye.undistorted({-20, 160}));  // beside the film
+  EXPECT_FALSE(fisheye.undistorted({-20, 160}));  // outside the film
 }
 
 TEST(LensDistortion, OverscanHoldsAllThatTheFilmSees) {

@@ -59,7 +59,7 @@ TEST(LensMetadata, StateIsThatOfTheFocusedLens) {
   EXPECT_NEAR(state.f_number, 4, 0.01);
   EXPECT_NEAR(state.focus_distance_mm, 2000, 1e-6);
   EXPECT_EQ(state.entrance_pupil_offset_mm, lens.film_z() - pupils(lens).entrance.z);
-  // Of the paraxial chief ray: the image of a point at distance s from the entrance pupil is F / s times as large.
+  // For paraxial chief rays, the magnification of a point at distance s from the entrance pupil is F / s.
   EXPECT_GT(state.pinhole_focal_length_mm, state.effective_focal_length_mm);
   const Lens far = with_focus(lens, std::numeric_limits<double>::infinity());
   EXPECT_TRUE(std::isinf(state_of(far).focus_distance_mm));
@@ -70,13 +70,13 @@ TEST(LensMetadata, TNumberCountsBladesAndObscurations) {
   const Lens lens = with_f_number(data_lens("double_gauss_100mm_f2_28deg"), 4);
   const LensState round = state_of(lens), square = state_of(with_iris(lens, {.blades = 4}));
   EXPECT_NEAR(round.t_number, round.f_number, 2e-3 * round.f_number);
-  // A square in the circle has 2 / pi of its area.
+  // The square inscribed in a circle has 2 / pi of its area.
   EXPECT_NEAR(square.t_number / square.f_number, std::sqrt(std::numbers::pi / 2), 3e-3);
   const LensState mirrors = state_of(data_lens("catadioptric_mangin_1000mm_f7.5"));
   EXPECT_GT(mirrors.t_number, 1.05 * mirrors.f_number);
 }
 
-// Light through a small stop in the centre of a ball falls as cos^4: (1 + x^2)^-2 = 1 - 2 x^2 + 3 x^4 - ...
+// Irradiance through a small stop at the centre of a ball falls as cos^4: (1 + x^2)^-2 = 1 - 2 x^2 + 3 x^4 - ...
 TEST(ExposureFalloff, OfABallIsCosineToTheFourth) {
   const testing::BallAndPlate ball;
   const double focal_length = ball.focal_length_mm();

@@ -27,7 +27,7 @@ using testing::data_prescription;
 using testing::expect_tokens;
 using testing::Token;
 
-/// f = 100 mm, f/5, the film at the paraxial focus: no findings.
+/// f = 100 mm, f/5, with the film at the paraxial focus; has no findings.
 Prescription singlet() {
   Prescription p;
   p.name = "singlet";
@@ -38,7 +38,7 @@ Prescription singlet() {
   return p;
 }
 
-// In metres, or in inches of a hundredth: the film that a host has its units wrong for.
+// Films in metres or in hundredths of an inch, as by hosts with wrong units.
 TEST(Lint, FindsAFilmFarFromTheImageCircle) {
   const Lens lens = testing::data_lens("double_gauss_100mm_f2_28deg");
   const double circle = image_circle_mm(lens);
@@ -52,7 +52,7 @@ TEST(Lint, FindsAFilmFarFromTheImageCircle) {
   for (const double width : {1.8, 6.4, 36.0, 60.0, 110.0}) {
     EXPECT_TRUE(lint(lens, {.width_mm = width, .height_mm = width / 1.5}).empty()) << width;
   }
-  // One that is shifted out of the circle.
+  // A film shifted out of the image circle.
   EXPECT_EQ(lint(lens, {.shift_x_mm = 200}).size(), 1u);
 }
 
@@ -67,7 +67,7 @@ TEST(Lint, FindsPixelsThatAreNotSquare) {
   EXPECT_EQ(lint(lens, {.width_mm = 360, .height_mm = 240, .columns = 1080, .rows = 1920}).size(), 2u);
   EXPECT_EQ(lint(with_iris(lens, {.blades = 6}), {.columns = 1920, .rows = 1080}).size(), 1u);
   EXPECT_EQ(lint(lens, {.columns = 3840, .rows = 2590}).size(), 1u);
-  // Within 0.5 %; as near as whole pixels come; and a lens that squeezes the picture.
+  // Within 0.5 %, within the rounding to whole pixels, and an anamorphic lens.
   EXPECT_TRUE(lint(lens, {.columns = 3840, .rows = 2570}).empty());
   EXPECT_TRUE(lint(lens, {.columns = 10, .rows = 7}).empty());
   EXPECT_TRUE(lint(testing::data_lens("anamorphic_60mm_2x"), {.columns = 1920, .rows = 1080}).empty());
@@ -108,14 +108,14 @@ TEST(Lint, FindsAnotherFocalLengthThanDeclared) {
   EXPECT_TRUE(lint(p).empty());
 }
 
-/// The singlet, so many times as large as it is declared.
+/// The singlet scaled by a factor, with the declared data unchanged.
 Prescription in_another_unit(double factor) {
   Prescription p = scale(singlet(), factor);
   p.focal_length_mm = 100;
   return p;
 }
 
-/// The singlet with all rims so many times as wide.
+/// The singlet with all rims scaled by a factor.
 Prescription with_rims(double factor) {
   Prescription p = singlet();
   p.surfaces[0].thickness = 8;  // room for the widest
@@ -133,7 +133,8 @@ TEST(Lint, FindsLengthsInAnotherUnit) {
 
 TEST(Lint, FindsEveryLensInInches) {
   for (const Prescription& millimetres : testing::data_prescriptions()) {
-    if (!millimetres.focal_length_mm || !millimetres.configurations.empty()) continue;  // theirs are scaled with them
+    if (!millimetres.focal_length_mm || !millimetres.configurations.empty())
+      continue;  // declared data scale with configurations
     SCOPED_TRACE(millimetres.name);
     Prescription p = scale(millimetres, 1 / 25.4);
     p.focal_length_mm = millimetres.focal_length_mm, p.image_diagonal_mm = millimetres.image_diagonal_mm;
@@ -146,7 +147,7 @@ TEST(Lint, FindsDiametersInThePlaceOfSemiDiameters) {
   expect_one(with_rims(2), Kind::apertures, {}, {"f-number", 2.5, 5, "diameters"});
   expect_one(with_rims(0.5), Kind::apertures, {}, {"f-number", 10, 5, "halves"});
   EXPECT_EQ(lint(with_rims(1.5)).at(0).kind, Kind::f_number);
-  // Were it so, the f-number would be another.
+  // Otherwise the f-number would differ.
   EXPECT_EQ(lint(with_rims(1.8)).at(0).kind, Kind::f_number);
 }
 
@@ -263,7 +264,7 @@ TEST(Lint, FindsSurfacesThatCross) {
 TEST(Lint, LooksForOverlapsOutsideCentralObscurationsOnly) {
   Prescription p = singlet();
   p.f_number.reset();
-  p.surfaces[0].thickness = -1;  // the rear surface lies in front of the other up to a height of 10 mm
+  p.surfaces[0].thickness = -1;  // the surfaces cross at a height of 10 mm
   p.surfaces[1].radius = 50.5;
   p.focal_length_mm.reset();
   p.surfaces[1].thickness = first_order(compile(p)).back_focal_distance;
@@ -278,7 +279,7 @@ TEST(Lint, LooksForOverlapsOutsideCentralObscurationsOnly) {
 TEST(Lint, FollowsTheLightBehindMirrors) {
   Prescription p = data_prescription("catadioptric_mangin_1000mm_f7.5");
   EXPECT_TRUE(lint(p).empty());
-  p.surfaces[3].thickness = 2;  // as if light went on through the mirror
+  p.surfaces[3].thickness = 2;  // as if light passed through the mirror
   bool crosses = false;
   for (const Finding& finding : lint(p)) crosses = crosses || (finding.kind == Kind::overlap && finding.surface == 3);
   EXPECT_TRUE(crosses);
@@ -320,7 +321,7 @@ TEST(Lint, FindsARimBeyondTheEndOfAnAsphere) {
   ASSERT_NE(rim, findings.end());
   EXPECT_EQ(rim->surface, 1);
   EXPECT_EQ(rim->found, 12);
-  EXPECT_NEAR(rim->wanted, 4.95, 0.05);  // where it is as steep as 4
+  EXPECT_NEAR(rim->wanted, 4.95, 0.05);  // height at which the slope is 4
 }
 
 TEST(Lint, FindsASemiDiameterBeyondTheSurface) {

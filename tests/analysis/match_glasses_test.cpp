@@ -37,7 +37,7 @@ Prescription doublet() {
   return p;
 }
 
-// The printed index stays, and the glass gives the dispersion.
+// The printed index is kept, and the glass gives the dispersion.
 TEST(MatchGlasses, MediaGetTheNearestGlassAndKeepTheirNumbers) {
   const auto matched = match_glasses(doublet(), glasses());
   const auto& rows = matched.prescription.surfaces;

@@ -55,7 +55,7 @@ TEST(ModelError, OfExactDoubleIsNone) {
   }
 }
 
-/// Hits of rays in float lie within 0.01 or 0.02 um of those in double.
+/// Hits in float lie within 0.01 or 0.02 um of hits in double.
 TEST(ModelError, OfExactFloatIsRounding) {
   for (const double f_number : {2.0, 4.0}) {
     const Lens lens = focused("double_gauss_52mm_f1.8", 3000, f_number);
@@ -80,7 +80,7 @@ TEST(ModelError, CountsInPixelsToo) {
   EXPECT_LE(fine.p99_mm, fine.max_mm);
 }
 
-/// Directly from the definition: rays at the rim of the corner's pupil through both models.
+/// From the definition: rays through the rim of the pupil of the corner, by both models.
 TEST(ModelError, IsTheDistanceInThePlaneOverTheMagnification) {
   const Lens lens = focused("double_gauss_52mm_f1.8", 3000, 5.6);
   const camera_detail::ExactModel<double> exact(lens, 22);
@@ -167,7 +167,8 @@ TEST(ModelError, HardlyDependsOnTheSamples) {
   }
 }
 
-/// The error of a pinhole is half the blur and what first order does to the chief ray; a large blur leaves the first.
+/// The error of a pinhole is half the blur plus the first-order error of the chief ray; for large blurs the first term
+/// dominates.
 TEST(ModelError, OfAPinholeIsHalfTheBlurFarFromTheFocus) {
   const Lens lens = focused("double_gauss_52mm_f1.8", 1000, 5.6);
   const ModelError error = model_error(lens, {.width_mm = 6, .height_mm = 4}, ModelKind::pinhole, at(lens, {infinity}));

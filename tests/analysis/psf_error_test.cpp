@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The stated error of a PSF's profile, against a run of far more rays.
+// The stated error of a PSF profile, compared with a run of far more rays.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -74,7 +74,7 @@ TEST(PsfError, StopsAtTheMostSamples) {
   expect_error([&] { sent(100, std::nan("")); }, {"point_image", "tolerance", "nan"});
 }
 
-// Rays that are sent in steps are those that are sent at once.
+// Rays sent in steps equal rays sent at once.
 TEST(PsfError, DoesNotChangeThePicture) {
   const Lens lens = testing::data_lens("double_gauss_100mm_f2.0");
   const auto image = [&](double tolerance) {
@@ -86,7 +86,7 @@ TEST(PsfError, DoesNotChangeThePicture) {
   EXPECT_NEAR(at_once.error, in_steps.error, 1e-9);
 }
 
-// Parts of the samples without a ray count as darkness, not as agreement.
+// Parts of the samples without a transmitted ray count as dark.
 TEST(PsfError, IsNotZeroForFewSamples) {
   const Lens lens = testing::data_lens("double_gauss_100mm_f2.0");
   for (const std::uint32_t samples : {2u, 3u, 5u}) {

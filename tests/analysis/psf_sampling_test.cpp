@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// How many rays a PSF needs: Owen-scrambled Sobol points against uniform random ones and against independent
-// replicates, in the bins of a profile and of a picture that stay the same for all runs.
+// Number of rays for a PSF: Owen-scrambled Sobol points, compared with uniform random points and with independent
+// replicates, in the bins of a profile and of an image that are equal for all runs.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -30,7 +30,7 @@ struct Case {
   FieldPoint point;
 };
 
-/// The pictures of figure 7 of Wu et al. 2010 and a fourth lens, as wu_figure7 draws them.
+/// The images of figure 7 of Wu et al. (2010) and a fourth lens, as in the program wu_figure7.
 std::vector<Case> figure_7() {
   std::vector<Case> cases;
   for (const char* id : {"double_gauss_100mm_f1.35", "double_gauss_100mm_f1.7_substitute",
@@ -42,7 +42,7 @@ std::vector<Case> figure_7() {
   return cases;
 }
 
-/// Where both profile and pupil are harder: vignetted, and with corners.
+/// Harder profiles and pupils: vignetted, and with corners.
 std::vector<Case> off_axis() {
   const Lens lens = with_focus(with_f_number(testing::data_lens("tessar_100mm_f2.8"), 5.6), 2000);
   return {{"off axis", lens, {0.15, -1000}}, {"six blades", with_iris(lens, {.blades = 6}), {0.15, -1000}}};
@@ -134,7 +134,7 @@ class Sampling {
   std::vector<double> profile_, picture_;
 };
 
-/// RMS errors of profile and picture over runs with seeds of their own.
+/// RMS errors of profile and image over runs with different seeds.
 template <class Send>
 std::array<double, 2> rms_error(const Sampling& sampling, const Send& send) {
   std::array<double, 2> sums{};
@@ -169,9 +169,9 @@ TEST(PsfSampling, ErrorsFallFasterThanThoseOfRandomRays) {
   }
 }
 
-// Why PointImage::error comes from parts of one sequence: eight replicates of an eighth of the rays estimate their
-// error without a bias, but it is larger, so that the bound is no lower. Measured at 4096 to 65536 rays: 1.4 to 3.5
-// times as large on the axis, 1.15 to 1.9 off it and with blades.
+// PointImage::error is estimated from parts of one sequence. Eight replicates with an eighth of the rays each give an
+// unbiased estimate, but larger errors. Measured at 4096 to 65536 rays: 1.4 to 3.5 times as large on the axis, 1.15 to
+// 1.9 times off the axis and with blades.
 TEST(PsfSampling, OneSequenceBeatsEightReplicates) {
   double product = 1;
   const auto cases = figure_7();

@@ -36,7 +36,7 @@ constexpr PsfKernelOptions small{.samples = 1 << 15, .pixels = 33};
 
 double sum(const PsfKernel& kernel) { return std::accumulate(kernel.light.begin(), kernel.light.end(), 0.0); }
 
-/// Mean of the hits of a kernel's bundle, by the light of its rays.
+/// Mean of the hits of a kernel, weighted by the light of its rays.
 Vec2<double> mean_hit(const PsfKernel& kernel) {
   Vec2<double> mean{0, 0};
   double light = 0;
@@ -60,7 +60,7 @@ TEST(PsfKernel, LightIsTheIrradianceOfItsPlaceAndThroughputThatOfThePoint) {
       EXPECT_EQ(kernel.throughput, image.throughput);
       EXPECT_EQ(kernel.error, image.error);
       EXPECT_NEAR(sum(kernel), kernel.total, 1e-5 * kernel.total);
-      // A photographic lens keeps the sine condition: on the axis the film sees a solid angle that goes with 1 / N^2.
+      // Photographic lenses obey the sine condition, so that the solid angle on the axis is proportional to 1 / N^2.
       const double stop = 4 / (f_number * f_number);
       EXPECT_NEAR(kernel.total, stop * *relative_illumination(lens, point), 1e-3 * stop) << f_number << ' ' << field;
     }
@@ -93,8 +93,7 @@ TEST(PsfKernel, IsAnchoredAtTheChiefRayAndStandsUpright) {
   }
 }
 
-/// The pupil's azimuth runs from +y to +x, and the lens is the same on both sides of its meridian. Of a blur 1.5 mm
-/// wide.
+/// Azimuths of the pupil run from +y to +x, and the lens is symmetric about the meridian. The blur is 1.5 mm wide.
 TEST(PsfKernel, ItsRaysAreMirrored) {
   const Lens open = data_lens("double_gauss_100mm_f2_28deg");
   const PsfKernel kernel = psf_kernel(open, open, {radians(12), -1200}, 0, small);
@@ -133,7 +132,7 @@ TEST(PsfKernel, RefusesEvenPixels) {
   expect_error([&] { psf_kernel(lens, lens, {0, -1000}, 7, small); }, {"wavelength", 7});
 }
 
-/// Sets of a lens over some axes, and points between their nodes, traced.
+/// PSF sets of a lens over some axes, compared with traced points between the nodes.
 struct Study {
   Lens open;
   double focus_mm;
@@ -152,7 +151,7 @@ struct Study {
     for (std::size_t i = 0; i < axes.size(); ++i) kernels.push_back(kernel(axes.point(i)));
     return {axes, kernels};
   }
-  /// Percent of light moved from the traced kernel, less the median noise of two traced ones.
+  /// Per cent of light that differs from the traced kernel, minus the median noise between two traced kernels.
   double error(const PsfSet& set, const PsfSetPoint& point) const {
     const PsfKernel between = set.at(point);
     const double half = between.pixels * between.pixel_mm / 2;
@@ -178,7 +177,7 @@ TEST(PsfSet, ANodeIsItsKernelBitForBit) {
   EXPECT_EQ(axes.point(4).f_number, 2.8);
 }
 
-/// The mean of pictures on a grid, as a compositor blends them.
+/// The mean of images on a grid, as blended by a compositor.
 PsfKernel plain_mean(const std::vector<PsfKernel>& kernels, const PsfKernel& grid) {
   constexpr int samples = 8;  // along each side of a pixel
   PsfKernel mean = grid;
@@ -201,7 +200,7 @@ PsfKernel plain_mean(const std::vector<PsfKernel>& kernels, const PsfKernel& gri
   return mean;
 }
 
-/// Blurs shrink to the focus and grow again turned over.
+/// Blurs shrink towards the focus and grow inverted behind it.
 TEST(PsfSet, IsNearTracedKernelsBetweenItsNodes) {
   const Study study{data_lens("double_gauss_100mm_f2_28deg"), 2000};
   const PsfSet::Axes axes{{0, 5, 10, 14}, {1000, 1400, 2000, 4000, infinity}, {d_line_nm}, {2.8}};
@@ -235,7 +234,8 @@ TEST(PsfSet, InterpolatesStopsAndColours) {
   const Lens colours = compile(data_prescription("double_gauss_100mm_f2_28deg"), std::array{486.1327, 520.0, 550.0},
                                {.glasses = &glasses});
   const Study coloured{colours, 2000};
-  // The focus of the colours bends: between nodes 64 nm apart it is seen near the focus, and from F to C it takes 40 %.
+  // The focal position is a curved function of the wavelength: the error shows near the focus between nodes 64 nm
+  // apart, and is 40 % between F and C.
   for (const auto& [distance, most] : {std::pair{1400, 1}, {1900, 18}}) {
     const double mm = distance;
     const PsfSet set = coloured.set({{8}, {mm}, {486.1327, 550}, {2.8}});

@@ -134,7 +134,7 @@ TEST(PointImage, MirrorsWithTheField) {
 }
 
 TEST(PointImage, RowsRunFromTheTop) {
-  // Coma puts the light on one side of the spot. The first moments of picture and hits must agree.
+  // Coma moves the light to one side of the spot. The first moments of image and hits must agree.
   const Lens lens = data_lens("double_gauss_100mm_f2.0");
   const FieldPoint point{radians(10), -infinity};
   const PointImage image = point_image(lens, point, {.samples = 1 << 14, .pixels = 40, .half_width_mm = 0.05});
@@ -201,7 +201,7 @@ TEST(PointImage, NothingGetsThroughAFieldTooWide) {
   for (const double value : image.radial_profile) EXPECT_EQ(value, 0);
 }
 
-/// RMS error of the light in a bin, over 12 x 12 bins of a vignetted bokeh and some seeds, against a mean of many rays.
+/// RMS error of the light per bin, over 12 x 12 bins of a vignetted bokeh and several seeds, compared with many rays.
 class BinError {
  public:
   BinError() {

@@ -47,7 +47,7 @@ TEST(SpotSize, LeavesOutPointsWithoutBothCoordinates) {
 }
 
 TEST(SpotSize, KeepsSmallSpotsFarFromTheAxis) {
-  // A ring of a nanometre at a height of 40 mm: the coordinates resolve 1e-8 of it.
+  // A ring of 1 nm at a height of 40 mm, resolved by the coordinates to 1e-8.
   std::vector<double> x, y;
   for (int i = 0; i < 100000; ++i) {
     x.push_back(1e-6 * std::cos(radians(i * 0.36)));
@@ -64,7 +64,7 @@ TEST(SpotSize, SetsCountAsOne) {
   EXPECT_DOUBLE_EQ(spot_size(sets).centroid.y, 5);
 }
 
-/// 0.61 wavelengths over the numerical aperture, of slopes as first order has them.
+/// 0.61 wavelengths divided by the numerical aperture, from first-order slopes.
 double radius_by_aperture(const Lens& lens, double wavelength_nm) {
   const Pupil exit = pupils(lens).exit;
   const double index = lens.index(lens.surface_count()), slope = exit.diameter / 2 / std::abs(lens.film_z() - exit.z);
@@ -131,7 +131,7 @@ TEST(SpotDiagram, GoesFieldByFieldAndByWavelengthWithin) {
     EXPECT_EQ(spots[i].point.field_rad, fields[i / 3]);
     EXPECT_EQ(spots[i].wavelength, i % 3);
   }
-  // One scene point for all: the differences on the film are chromatic aberration.
+  // One scene point for all wavelengths, so that differences on the film are chromatic aberration.
   EXPECT_NE(spots[3].chief_ray_height.value(), spots[5].chief_ray_height.value());
   EXPECT_NEAR(spots[3].chief_ray_height.value(), spots[5].chief_ray_height.value(), 0.1);
 }
@@ -163,7 +163,7 @@ TEST(SpotDiagram, ReachesTheEdgeOfA220DegreeFisheye) {
     height = *spot.chief_ray_height;
     light = *spot.relative_illumination;
   }
-  EXPECT_NEAR(height, -11.7, 0.2);  // half of the 23.4 mm that the file declares
+  EXPECT_NEAR(height, -11.7, 0.2);  // half of the declared 23.4 mm
 }
 
 TEST(SpotDiagram, ChiefRayIsThatThroughTheCentreOfTheStop) {

@@ -33,7 +33,7 @@ Vec2<double> shown(const StMap& map, const Film& film, int column, int row) {
   return {map.s[i] * static_cast<double>(film.columns), (1 - static_cast<double>(map.t[i])) * film.rows};
 }
 
-/// The same at any raster position of the film, linear between centres of pixels, as programs that apply a map do it.
+/// The map at any raster position, interpolated between centres of pixels like in programs that apply maps.
 std::optional<Vec2<double>> shown_at(const StMap& map, const Film& film, const Vec2<double>& at) {
   const double x = at.x + map.margin_x - 0.5, y = at.y + map.margin_y - 0.5;
   const int column = static_cast<int>(std::floor(x)), row = static_cast<int>(std::floor(y));
@@ -139,7 +139,7 @@ INSTANTIATE_TEST_SUITE_P(Lenses, StMapsOf,
                                            Case{"double_gauss_100mm_f2_28deg", tilted_film()},
                                            Case{"biogon_35mm_f2.8", small_film(36), ModelKind::thin}));
 
-// Chief rays end within these pictures.
+// The chief rays end within these images.
 TEST(StMap, IsTheDistortionUpToTheEndOfTheLight) {
   for (const char* id : {"anamorphic_60mm_2x", "tessar_100mm_f3.5", "primoplan_100mm_f1.9", "fisheye_16mm_f2.8"}) {
     SCOPED_TRACE(id);
@@ -176,7 +176,7 @@ TEST(StMap, MarksWhatSeesNothing) {
   for (int row = 0; row < film.rows; ++row) {
     for (int column = 0; column < film.columns; ++column) seen += lens.sees(column, row);
   }
-  // The image circle of 89 degrees, which is within the film.
+  // The image circle of 89 degrees lies within the film.
   int wanted = 0;
   for (int row = 0; row < film.rows; row += 4) {
     for (int column = 0; column < film.columns; column += 4) {
@@ -184,7 +184,7 @@ TEST(StMap, MarksWhatSeesNothing) {
     }
   }
   EXPECT_NEAR(seen / (wanted * 16.0), 1, 0.02);
-  EXPECT_EQ(maps.undistort.margin_x, film.columns / 2);  // cut
+  EXPECT_EQ(maps.undistort.margin_x, film.columns / 2);  // limited
 }
 
 TEST(StMap, SeesNothingOutsideItself) {
@@ -207,7 +207,7 @@ TEST(StMap, MarginsHoldTheOverscan) {
   EXPECT_EQ(wide.undistort.margin_y, film.rows / 4);
   const StMaps fitting = st_maps(distortion);
   EXPECT_EQ(fitting.redistort.width, film.columns);
-  // Every pixel of the lens's picture is found in the pinhole's.
+  // Every pixel of the distorted image lies in the pinhole image.
   for (int row : {0, film.rows / 2, film.rows - 1}) {
     for (int column : {0, film.columns / 2, film.columns - 1}) {
       const Vec2<double> at = shown(fitting.redistort, film, column, row);
@@ -217,7 +217,7 @@ TEST(StMap, MarginsHoldTheOverscan) {
       EXPECT_LE(at.y, film.rows + fitting.undistort.margin_y);
     }
   }
-  // The same places, whatever the margin.
+  // Positions are independent of the margin.
   for (int row = 7; row < film.rows; row += 50) {
     for (int column = 3; column < film.columns; column += 50) {
       const Vec2<double> a = shown(tight.undistort, film, column, row);

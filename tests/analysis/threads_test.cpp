@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Threads share a lens and a glass catalogue and use them at the same time. Each must get the results of a single
-// thread. Built with -fsanitize=thread, the test also finds races that do not change the numbers.
+// Threads that use one lens and one glass catalogue at the same time get the results of a single thread. Built with
+// -fsanitize=thread, the tests also find races that do not change results.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -78,7 +78,7 @@ std::vector<double> all_about(const Shared& shared) {
   return numbers;
 }
 
-/// Results of one function on so many threads.
+/// Results of one function with this number of threads.
 struct Threaded {
   const char* name;
   std::vector<double> (*results)(int threads);

@@ -29,7 +29,7 @@ namespace wavelength_order_test {
 constexpr std::array<double, 3> lines_nm{486.1327, d_line_nm, 656.2725};
 constexpr double off_axis = radians(4.0);
 
-/// Numbers that must be equal to the bit. NaN: the lens does not have it.
+/// Numbers that must be equal to the bit; NaN if the lens does not have a value.
 using Numbers = std::vector<double>;
 
 std::vector<std::uint64_t> bits(const Numbers& numbers) {
@@ -38,7 +38,7 @@ std::vector<std::uint64_t> bits(const Numbers& numbers) {
   return result;
 }
 
-/// The lens stopped down and focused: the same stop and film for every order.
+/// The lens stopped down and focused, with equal stop and film for every order.
 Lens set(const Lens& lens) {
   const double f_number = 1.5 * real_f_number(lens);
   if (!std::isfinite(f_number)) return lens;
@@ -94,7 +94,7 @@ std::optional<Numbers> camera_numbers(const Lens& lens) {
   return found;
 }
 
-/// By wavelength, in the order of lines_nm: what was sampled, what passed, and the picture.
+/// Samples, transmitted rays and image by wavelength, in the order of lines_nm.
 struct Picture {
   std::array<double, 3> area{};
   std::array<std::uint64_t, 3> transmitted{};
@@ -115,8 +115,8 @@ Picture picture(const Lens& lens) {
   return result;
 }
 
-/// Hits that one picture has in another pixel than the other one: the centre of both is a mean over wavelengths, whose
-/// last bit depends on their order.
+/// Number of hits in different pixels of two images. The centre of the images is a mean over wavelengths, whose last
+/// bit depends on the order.
 std::uint64_t moved(const Picture& a, const Picture& b) {
   std::uint64_t result = 0;
   for (std::size_t line = 0; line < 3; ++line) {

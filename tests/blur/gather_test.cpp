@@ -28,13 +28,13 @@ using blur_detail::GatherPath;
 
 constexpr float infinity = std::numeric_limits<float>::infinity();
 
-/// What a scene shows at a place of the tangents x and y (up) of the layer camera.
+/// Surfaces of a scene in the direction with tangents x and y (up) of the layer camera.
 struct Surface {
   float inverse_depth = -1, red = 0, green = 0, blue = 0, alpha = 1;
 };
 using Scene = std::vector<Surface> (*)(double x, double y);
 
-/// A floor, two boards with holes, a sky: occlusion at edges, and depths that change along a pixel.
+/// A floor, two boards with holes and a sky: occlusion at edges, and depths that vary within a pixel.
 std::vector<Surface> boards(double x, double y) {
   std::vector<Surface> seen;
   const auto wave = [](double a) { return static_cast<float>(0.5 + 0.5 * std::sin(a)); };
@@ -52,7 +52,7 @@ std::vector<Surface> boards(double x, double y) {
   return seen;
 }
 
-/// The same with glass instead of the first board.
+/// The scene with glass instead of the first board.
 std::vector<Surface> panes(double x, double y) {
   std::vector<Surface> seen = boards(x, y);
   for (Surface& s : seen) {
@@ -95,7 +95,7 @@ LensRays thin_rays(double radius, int points = 61, const LensRaysOptions& option
   return LensRays::thin(small_camera(), {.radius_mm = radius, .inverse_focus = 1 / 2000.0},
                         vogel_points(points * options.sets), options);
 }
-/// Rays that differ from pixel to pixel.
+/// Rays that differ between pixels.
 LensRays tilted_rays(double radius, int points = 61, const LensRaysOptions& options = {.nearest_mm = 1000}) {
   return LensRays::thin(small_camera(),
                         {.radius_mm = radius,
@@ -144,7 +144,7 @@ TEST(Gather, ThroughAPinholeIsTheFirstLayer) {
   }
 }
 
-// Rays that move by a hundredth of a pixel over all depths: a step is a hundred times as long as the scene.
+// Rays that move by 0.01 pixel over all depths: a step is a hundred times as long as the scene.
 TEST(Gather, ThroughATinyLensIsTheFirstLayer) {
   for (const LensRays& rays : {thin_rays(0.05, 12), tilted_rays(0.05, 12)}) {
     const LayerSet layers = layers_of(boards, rays);
@@ -179,7 +179,7 @@ TEST(Gather, IsTheReference) {
       for (const GatherPath path : {GatherPath::coherent, GatherPath::general}) {
         if (path == GatherPath::coherent && rays.sets() > 1) continue;
         const Difference d = difference(blur_detail::gather(layers, rays, {}, {path}), reference);
-        // Rounding in float takes a few rays to the pixel beside.
+        // Rounding in float takes a few rays to an adjacent pixel.
         EXPECT_LT(d.mean, 2e-4) << name(path) << (scene == Scene(panes) ? ", panes" : "");
         EXPECT_LT(d.most, 0.06) << name(path);
       }
@@ -187,7 +187,7 @@ TEST(Gather, IsTheReference) {
   }
 }
 
-// A lens that passes 70 % of the light on the right, none on the left.
+// A lens that transmits 70 % on the right side and 0 on the left.
 TEST(Gather, DarkensColoursAndKeepsAlpha) {
   const LensRays rays(small_camera(), vogel_points(24), 1,
                       [](int, const Vec2<double>& raster, std::span<const PupilPoint>, std::span<LayerRay> found) {
@@ -199,7 +199,7 @@ TEST(Gather, DarkensColoursAndKeepsAlpha) {
                       },
                       {.nearest_mm = 1000});
   for (const Scene scene : {Scene(boards), Scene(panes)}) {
-    const LayerSet layers = layers_of(scene, rays, 1);  // of which much is missed
+    const LayerSet layers = layers_of(scene, rays, 1);  // rays miss many of its surfaces
     const Blurred reference = petzval::testing::reference_gather(layers, rays);
     for (const GatherPath path : {GatherPath::coherent, GatherPath::general}) {
       const Blurred picture = blur_detail::gather(layers, rays, {.highlights_above = 0}, {path});
@@ -218,7 +218,7 @@ TEST(Gather, DarkensColoursAndKeepsAlpha) {
   }
 }
 
-// Rays of which nothing is known leave the mean of the others: what has one colour keeps it.
+// Rays without a known surface take the mean of the others, so that a scene of one colour keeps its colour.
 TEST(Gather, KeepsAnEvenColourWhereSurfacesAreMissing) {
   const Scene grey_boards = [](double x, double y) {
     std::vector<Surface> seen;
@@ -258,7 +258,7 @@ TEST(Gather, PathsAgreeTo55Decibels) {
   }
 }
 
-// Rays that end in the void far beside their pixels: the window of their tile holds none of its own pixels.
+// Rays that end in the void far from their pixels: the window of the tile contains no pixel of the tile.
 TEST(Gather, ReadsNoPixelBesideItsWindow) {
   const LayerCamera camera = layer_camera(6, 6, radians(20));
   const LensRays rays(camera, vogel_points(6), 1,
@@ -271,7 +271,7 @@ TEST(Gather, ReadsNoPixelBesideItsWindow) {
                       },
                       {.nearest_mm = 400});
   const PeelPlan plan = plan_peel(rays, 450, infinity);
-  // Nothing in the first rows, and surfaces nearer than planned in the last ones.
+  // The first rows are empty, and the last rows have surfaces nearer than planned.
   const int columns = plan.camera.layer_columns(), rows = plan.camera.layer_rows();
   FragmentLists lists{.columns = columns, .rows = rows, .offsets = {0}, .fragments = {}};
   for (int i = 0; i < columns * rows; ++i) {
@@ -320,7 +320,7 @@ TEST(Gather, SeesThroughTheVoid) {
   const double blur = 60 * (1 / 1500.0 - 1 / 2000.0) * rays.camera().focal_px;
   ASSERT_GT(blur, 2);
   for (int column = 0; column < 150; ++column) {
-    // The part of the disc about the pixel that lies left of the edge at 75.
+    // Fraction of the disc around the pixel to the left of the edge at 75.
     const double s = std::clamp((75 - (column + 0.5)) / blur, -1.0, 1.0);
     const double wanted = 0.5 + (s * std::sqrt(1 - s * s) + std::asin(s)) / std::numbers::pi;
     const float* const pixel = &picture.rgba[static_cast<std::size_t>(4 * (50 * 150 + column))];
@@ -363,7 +363,7 @@ TEST(Gather, RefusesWhatDoesNotFit) {
   refuses(layers, tilted_rays(9, 4, {.nearest_mm = 1000, .sets = 4}), GatherPath::coherent);
   says(layers, rays, {.highlights_above = -1}, {"highlights_above", -1});
   says(layers, rays, {.threads = 0}, {"threads", 0});
-  // A surface a hundredth of a mm before a lens of 18 mm.
+  // A surface 0.01 mm in front of a lens of 18 mm.
   FragmentLists near{
       .columns = 150, .rows = 100, .offsets = std::vector<std::size_t>(15001, 1), .fragments = {{0.01f, 1, 1, 1, 1}}};
   near.offsets[0] = 0;
@@ -377,7 +377,7 @@ TEST(Gather, RefusesWhatDoesNotFit) {
 }
 
 TEST(Highlights, AreEvenDiscs) {
-  // One pixel of 1000 at 1 m, seen by 32 rays: a disc of the formula's radius, without holes.
+  // One pixel of value 1000 at 1 m, seen by 32 rays, becomes a disc without holes with the radius of the formula.
   const Scene lamp = [](double x, double y) {
     std::vector<Surface> seen;
     if (std::abs(x) < 0.0014 && std::abs(y) < 0.0014) seen.push_back({1 / 1000.0f, 1000, 500, 0.5f});
@@ -422,7 +422,7 @@ TEST(Highlights, AreLightsWhoseBlurHasMorePixelsThanRays) {
     if (std::abs(x) < 0.0014 && std::abs(y) < 0.0014) seen.push_back({lamp_at, 1000, 1000, 1000});
     return seen;
   };
-  for (const double radius_px : {-5.0, -4.0, -2.5, 0.0, 2.5, 4.0, 5.0}) {  // above 0: nearer than the focus
+  for (const double radius_px : {-5.0, -4.0, -2.5, 0.0, 2.5, 4.0, 5.0}) {  // positive: nearer than the focus
     lamp_at = static_cast<float>(1 / 2000.0 + radius_px / (30 * rays.camera().focal_px));
     const bool spread = std::numbers::pi * radius_px * radius_px > 32;
     EXPECT_EQ(gather(layers_of(lamp, rays), rays).statistics.highlights > 0, spread) << radius_px;
@@ -430,7 +430,7 @@ TEST(Highlights, AreLightsWhoseBlurHasMorePixelsThanRays) {
 }
 
 TEST(Highlights, HideBehindWhatIsNearer) {
-  // A far lamp behind a near board that covers the left half of its disc.
+  // A distant lamp; a near board covers the left half of its disc.
   const Scene lamp = [](double x, double y) {
     std::vector<Surface> seen;
     if (x < 0) seen.push_back({1 / 2000.0f, 0.1f, 0.1f, 0.1f});

@@ -45,7 +45,7 @@ FragmentLists random_lists(int columns, int rows, int most, unsigned seed) {
   return lists;
 }
 
-/// A renderer that knows lists of surfaces.
+/// A renderer of given lists of surfaces.
 LayerSet::Peel renderer_of(const FragmentLists& lists) {
   return [&lists](int, std::span<const float> below, const LayerPlanes& out) {
     std::size_t written = 0;
@@ -66,9 +66,9 @@ LayerSet::Peel renderer_of(const FragmentLists& lists) {
 }
 
 TEST(PeelPlans, HaveTheBiasOfTheUmbra) {
-  // x = d s / (E - s), s = 2 pixels of the sample's depth, in mm: numbers of 40 digits.
+  // x = d s / (E - s), s = 2 pixels at the depth of the sample, in mm; computed with 40 digits.
   const PeelPlan plan = plan_peel(rays_of_paper(), 1000, infinity);
-  EXPECT_GE(plan.bias * 1000, 0.099240441641156558);  // of 100 points, none lies at the very rim
+  EXPECT_GE(plan.bias * 1000, 0.099240441641156558);  // the 100 points stay inside the rim
   EXPECT_LE(plan.bias * 1000, 1.06 * 0.099240441641156558);
   const LensRays rim =
       LensRays::thin(layer_camera(800, 600, radians(30)), {.radius_mm = 9}, std::vector<PupilPoint>{{0.25, 1}});
@@ -125,7 +125,7 @@ TEST(Peeling, RefusesASurfaceThatIsNotFarther) {
 }
 
 TEST(Lists, ComposeWhatAlphaLetsThrough) {
-  // A pane of alpha 1/2, a wall closely behind it, one far behind it.
+  // A pane of alpha 1/2, a wall close behind the pane and a wall far behind the pane.
   const FragmentLists lists{.columns = 1,
                             .rows = 1,
                             .offsets = {0, 3},
@@ -212,7 +212,7 @@ TEST(Images, AreRefusedWhereTheyDoNotFit) {
        "layer 1: column 1, row 0: inverse depth = 0 / mm");  // behind an empty pixel
 }
 
-// Points at one depth, given by their distances: the raster position of each is the middle of its pixel.
+// Points at one depth, given by their distances. Their raster positions are centres of pixels.
 TEST(AxialDepths, AreThoseOfPointsInOnePlane) {
   const LayerCamera camera{.columns = 24, .rows = 16, .focal_px = 20, .axis = {9, 6.5}, .overscan = 3};
   constexpr double depth = 700;
@@ -228,7 +228,7 @@ TEST(AxialDepths, AreThoseOfPointsInOnePlane) {
     }
   }
   FragmentLists lists{.columns = camera.layer_columns(), .rows = camera.layer_rows(), .offsets = {0}, .fragments = {}};
-  for (const float distance : distances) {  // none, one and two of a pixel
+  for (const float distance : distances) {  // 0, 1 and 2 points in a pixel
     for (std::size_t k = 0; k < lists.offsets.size() % 3; ++k) lists.fragments.push_back({.depth_mm = distance});
     lists.offsets.push_back(lists.fragments.size());
   }

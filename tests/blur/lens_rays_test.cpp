@@ -75,7 +75,7 @@ TEST(ThinLensRays, BlurAsTheFormulaSays) {
       EXPECT_NEAR(std::hypot(off.x, off.y), std::abs(w - in_focus) * 20 * 120 / std::tan(radians(15)), 1e-3);
     }
   }
-  // u = 0 is up: farther than focus, an upper part of the pupil looks down.
+  // u = 0 is up; beyond the focus, rays of the upper half of the pupil point down.
   EXPECT_LT(found[0].slope.y, 0);
   EXPECT_GT(found[1].slope.x, 0);
 }
@@ -86,7 +86,7 @@ TEST(ThinLensRays, FollowAFocusOfTheirOwn) {
                         }};
   const LensRays rays = LensRays::thin(small_camera(), tilted, vogel_points(32));
   EXPECT_FALSE(rays.shift_invariant());
-  EXPECT_LT(rays.error_px(), 1e-2);  // linear in the raster: interpolation is exact
+  EXPECT_LT(rays.error_px(), 1e-2);  // linear in the raster, so that interpolation is exact
   EXPECT_NEAR(rays.largest_slope(), 0.5 * 20 * rays.camera().focal_px, 0.04 * 20 * rays.camera().focal_px);
 }
 
@@ -116,7 +116,7 @@ TEST(ThinLensRays, RefuseWhatIsNoLens) {
        {});
 }
 
-/// RMS error of the share of points that lie on one side of lines through the pupil.
+/// RMS error of the fraction of points on one side of lines through the pupil.
 double half_plane_error(std::span<const PupilPoint> points) {
   constexpr int lines = 400;
   double squares = 0;
@@ -167,7 +167,7 @@ TEST(Rays, AreRefusedWhereOptionsDoNotFit) {
   expect_error([&] { LensRays::thin(camera, {}, vogel_points(4)); }, {2000000000});
 }
 
-// Pencils that vary over the picture in a way that no table follows, each through its place at the depth in focus.
+// Pencils that vary too fast over the image for any table; each passes its position at the depth in focus.
 TEST(Rays, AreJudgedAtTheDepthWhereTheyMeet) {
   const auto source = [](int, const Vec2<double>& raster, std::span<const PupilPoint> points,
                          std::span<LayerRay> found) {
@@ -203,7 +203,7 @@ TEST_P(CameraRays, AreThoseOfTheCamera) {
       const CameraRay ray =
           camera.sample({.film = film.point(column + 0.5, row + 0.5), .pupil_u = points[i].u, .pupil_v = points[i].v});
       if (!ray) continue;
-      // Two points of the ray, where the layers see them and where the line has them.
+      // Two points of the ray: raster positions seen by the layers and on the line.
       for (const double depth : {1000.0, 5e4}) {
         const double way = (origin - depth - ray.ray.origin.z) / ray.ray.direction.z;
         const Vec3<double> point = ray.ray.origin + way * ray.ray.direction;
@@ -216,7 +216,7 @@ TEST_P(CameraRays, AreThoseOfTheCamera) {
 }
 
 TEST_P(CameraRays, SeeTheSharpObjectWhereTheLayersDo) {
-  // Within the distortion of the lens: the middle of a pixel's rays in the plane of focus.
+  // The centre of the rays of a pixel in the plane of focus, up to the distortion of the lens.
   const Camera camera(double_gauss(), film, {.model = GetParam().kind});
   const LensRays rays = LensRays::of(camera, layer_camera(camera), vogel_points(256));
   std::vector<LayerRay> found(256);
@@ -265,7 +265,7 @@ TEST(CameraRays, HaveTheLightOfTheCameraInSmallPictures) {
         worst = std::max(worst, std::abs(light_of(found) - light_of(exact)) / middle);
       }
     }
-    EXPECT_LT(worst, columns < 20 ? 0.04 : 0.01) << columns;  // 0.11 with steps of 16 px
+    EXPECT_LT(worst, columns < 20 ? 0.04 : 0.01) << columns;  // steps of 16 px give 0.11
   }
 }
 
@@ -289,7 +289,7 @@ TEST(LensRays, AreAskedForAtFewPlacesWhereTheyChangeEvenly) {
     }
   };
   const LensRays rays(layer_camera(512, 512, radians(30)), vogel_points(16), 1, source, {.threads = 1});
-  EXPECT_EQ(places, 3 * 3 + 5 * 5);  // nodes in steps of 256 px, and those halfway between them
+  EXPECT_EQ(places, 3 * 3 + 5 * 5);  // nodes in steps of 256 px, and midpoints between nodes
   EXPECT_LT(rays.error_px(), 1e-3);
 }
 
@@ -297,7 +297,7 @@ TEST(LensRays, RefuseAnEmptySource) {
   expect_error([] { LensRays(small_camera(), vogel_points(4), 1, {}); }, {"lens rays", "source"});
 }
 
-// A lens that squeezes the picture and leaves its left third dark: at the edge of the light rays stay where they are.
+// A lens that squeezes the image and leaves the left third dark: rays next to the dark third do not move.
 TEST(LensRays, AreNotDrawnAsideByTheDark) {
   const LayerCamera camera = small_camera();
   const auto source = [&](int, const Vec2<double>& raster, std::span<const PupilPoint> at, std::span<LayerRay> found) {

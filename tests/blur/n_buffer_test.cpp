@@ -21,7 +21,7 @@ struct Planes {
   std::vector<std::span<const float>> spans() const { return {layers.begin(), layers.end()}; }
 };
 
-/// Random depths; `full` of the pixels of the first layer have a surface, half of those behind it too.
+/// Random depths. The first layer has a surface in a fraction `full` of the pixels, the second in half of these pixels.
 Planes random_planes(int columns, int rows, int count, double full, unsigned seed) {
   std::mt19937 engine(seed);
   std::uniform_real_distribution<float> number(0, 1);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What optics says of blurred pictures, whatever made them.
+// Laws of optics for blurred images, independent of the algorithm.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -21,7 +21,7 @@ namespace physics_test {
 using namespace petzval;
 using blur_detail::GatherPath;
 
-/// Layers of one plane across the axis, with what it shows at raster positions of the picture.
+/// Layers of one plane across the axis, textured by raster position.
 template <class Light>
 LayerSet plane(const PeelPlan& plan, float depth, const Light& light) {
   LayerSet layers;
@@ -74,14 +74,15 @@ TEST_P(Planes, AreConvolutionsWithThePointImage) {
       worst = std::max(worst, std::abs(found - wanted)), spread = std::max(spread, std::abs(wanted - 0.5));
     }
   }
-  // Rays and points of the PSF land in pixels; half a contrast of the plane is 0.5.
+  // Rays and points of the PSF are rounded to pixels; the plane deviates from its mean by 0.5.
   EXPECT_LT(worst, 0.025);
-  EXPECT_GT(spread, 0.02);  // not everything is blurred away
+  EXPECT_GT(spread, 0.02);  // contrast remains
 }
 INSTANTIATE_TEST_SUITE_P(Depths, Planes, ::testing::Values(1300.0, 1600.0, 2000.0, 4000.0));
 
 TEST(HalfPlanes, HideWhatIsBehindByTheAnalyticEdge) {
-  // A dark half plane at 1 m before a light wall in focus at 2 m: the part of the pupil that looks past the edge.
+  // A dark half plane at 1 m in front of a light wall in focus at 2 m: the fraction of the pupil that sees past the
+  // edge.
   const LayerCamera camera = layer_camera(120, 90, radians(10));
   const LensRays rays =
       LensRays::thin(camera, {.radius_mm = 30, .inverse_focus = 1 / 2000.0}, vogel_points(2000), {.nearest_mm = 900});
@@ -123,8 +124,8 @@ TEST(Points, FarBehindFocusCoverTheirCircleOfConfusion) {
   }
 }
 
-/// A grey pixel at an inverse depth before a black wall; something far nearer and something far behind stand in
-/// corners, so that the pixel is neither the nearest nor the farthest surface.
+/// A grey pixel at an inverse depth in front of a black wall. Much nearer and farther surfaces in corners make sure
+/// that the pixel is neither the nearest nor the farthest surface.
 LayerSet grey_pixel(const PeelPlan& plan, double inverse_depth, double wall) {
   const int columns = plan.camera.layer_columns(), rows = plan.camera.layer_rows();
   const int middle = columns / 2, centre = rows / 2;
@@ -143,7 +144,7 @@ LayerSet grey_pixel(const PeelPlan& plan, double inverse_depth, double wall) {
   return layers;
 }
 
-/// The radius of the disc that has the second moments of a picture, and its light.
+/// The total light of an image and the radius of the disc with its second moments.
 struct Disc {
   double radius = 0, light = 0;
 };
@@ -165,14 +166,14 @@ Disc disc_of(const Blurred& picture) {
   return {std::sqrt(2 * squares / light), light};
 }
 
-// Rays land in whole pixels: along the main direction of a ray the places of a disc are rounded to them, across it
-// those of its steps are. The mean square of both is 1/12 and (1 + 4 / pi - 1) / 12 px^2.
+// Rays land in whole pixels: along the main direction of a ray the position on the disc is rounded, across it the
+// position of each step. The mean squares of the errors are 1/12 and (1 + 4 / pi - 1) / 12 px^2.
 TEST(Points, HaveTheRadiusOfTheirCircleOfConfusionOnEveryPath) {
   constexpr double pi = std::numbers::pi, focus = 1 / 1000.0, rounding = 2 * (1 / 12.0 + 4 / (12 * pi));
   const LayerCamera camera = layer_camera(60, 44, radians(10));
   const LensRays rays =
       LensRays::thin(camera, {.radius_mm = 25, .inverse_focus = focus}, vogel_points(2000), {.nearest_mm = 250});
-  const double px = 25 * camera.focal_px;  // of the radius for each 1/mm off focus
+  const double px = 25 * camera.focal_px;  // change of the radius per 1/mm of defocus
   for (const double wanted : {7.81, 3.35, -3.35, -5.2}) {
     const double w = focus + wanted / px;
     ASSERT_GT(w, 0);

@@ -10,8 +10,8 @@
 
 namespace petzval::testing {
 
-/// The picture by the shortest code that could be right, in double: each ray of a pixel, pixel after pixel through all
-/// depths, layer after layer. Without highlights.
+/// The image by the simplest correct code, in double: each ray of a pixel steps through all pixels on its path and all
+/// layers. Without highlights.
 inline Blurred reference_gather(const LayerSet& layers, const LensRays& rays) {
   const LayerCamera& camera = rays.camera();
   const int overscan = (layers.columns() - camera.columns) / 2;
@@ -46,7 +46,7 @@ inline Blurred reference_gather(const LayerSet& layers, const LensRays& rays) {
           };
           const Vec2<double> end = ray.at + ray.slope * static_cast<double>(least);
           const bool empty = layers.inverse_depth(0)[index_of(floor_of(end.x), floor_of(end.y))] < 0;
-          // Pixel after pixel along the main direction: m and s are the ray's there, o and t across it.
+          // Steps along the main direction: m and s are position and slope of the ray along it, o and t across.
           const bool along_x = std::abs(ray.slope.x) >= std::abs(ray.slope.y);
           const double m = along_x ? ray.at.x : ray.at.y, o = along_x ? ray.at.y : ray.at.x,
                        t = along_x ? ray.slope.y : ray.slope.x, hardly = 1e-6 / std::max(most, 1e-30f);
@@ -56,10 +56,10 @@ inline Blurred reference_gather(const LayerSet& layers, const LensRays& rays) {
                        first = floor_of(m + s * most - towards * before_first),
                        last = floor_of(m + s * least + towards * before_first);
           const double gap = rays.largest_slope() > 0 ? 1 / rays.largest_slope() : 0;
-          // What the ray passed in front of in the pixel before.
+          // Layers that the ray passed in front of in the previous pixel.
           double below = 1e30, front = -1e30, front_colour = 0, front_alpha = 0;
           for (double k = first; towards * k <= towards * last && through > 1e-3; k += towards) {
-            // A pixel holds the depths between those of its two ends.
+            // A pixel holds the depths between its two ends.
             const double low = std::max((k + (s > 0 ? 0 : 1) - m) / s, 0.0), high = (k + (s > 0 ? 1 : 0) - m) / s,
                          w_middle = std::clamp<double>((k + 0.5 - m) / s, least, most),
                          across = floor_of(o + t * w_middle);
@@ -103,7 +103,7 @@ inline Blurred reference_gather(const LayerSet& layers, const LensRays& rays) {
           alpha += covered / known / 3;
           continue;
         }
-        // Of rays that met what nothing is known of, the first layer is the nearest thing.
+        // Rays without a known surface take the first layer.
         const auto below = static_cast<std::size_t>((row + overscan) * layers.columns() + column + overscan);
         if (layers.inverse_depth(0)[below] < 0) continue;
         colour[channel] = layers.channel(0, channel)[below] * total / static_cast<double>(found.size());

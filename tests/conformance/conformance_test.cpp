@@ -39,7 +39,7 @@ using petzval::Vec3;
 
 const std::filesystem::path kit = PETZVAL_TEST_CONFORMANCE;
 
-/// What the kit says of a lens.
+/// Description of a lens in the kit.
 struct Setting {
   std::string lens;
   double width_mm, height_mm;
@@ -74,7 +74,7 @@ class Conformance : public testing::TestWithParam<Setting> {
             .columns = columns,
             .rows = static_cast<int>(std::lround(columns * height / width))};
   }
-  /// Nothing for a model that this lens does not have.
+  /// nullopt if the lens does not have the model.
   std::optional<LensCamera> camera(const Lens& lens, ModelKind model, const petzval::Film& f, const Pose& pose = {},
                                    Normalisation normalisation = Normalisation::unity_on_axis) const {
     try {
@@ -89,7 +89,7 @@ class Conformance : public testing::TestWithParam<Setting> {
   Lens lens_;
 };
 
-/// A picture, on one thread.
+/// An image, rendered on one thread.
 PictureSums picture(const Scene& scene, const LensCamera& lens, Integrator integrator, std::uint32_t samples,
                     std::uint64_t seed = 1) {
   static const PathColourSource colours(ColourMode::d);
@@ -112,8 +112,8 @@ SceneDescription light_at(const glm::vec3& place, float radius, float radiance =
   return scene;
 }
 
-/// World places of lights whose chief rays meet the film at these shares of the way to its corner, at a distance (mm)
-/// from the front of the lens.
+/// World positions of lights at a distance (mm) from the front of the lens. Their chief rays meet the film at these
+/// fractions of the diagonal from centre to corner.
 constexpr std::array<double, 8> shares{0.02, 0.15, 0.28, 0.42, 0.56, 0.7, 0.8, 0.9};
 std::vector<glm::vec3> light_places(const LensCamera& lens, double distance_mm) {
   std::vector<glm::vec3> places;
@@ -122,7 +122,7 @@ std::vector<glm::vec3> light_places(const LensCamera& lens, double distance_mm) 
   for (std::size_t i = 0; i < shares.size(); ++i) {
     batch.raster_x[i] = static_cast<float>((1 + shares[i]) / 2 * lens.film().columns);
     batch.raster_y[i] = static_cast<float>((1 - shares[i]) / 2 * lens.film().rows);
-    batch.u[i] = 0.25f, batch.v[i] = 0;  // the middle of the pupil
+    batch.u[i] = 0.25f, batch.v[i] = 0;  // the centre of the pupil
   }
   lens.sample(batch);
   for (const WorldRay& ray : batch.rays) {
@@ -131,7 +131,7 @@ std::vector<glm::vec3> light_places(const LensCamera& lens, double distance_mm) 
   return places;
 }
 
-/// What expected.json holds of a lens; CONFORMANCE_OUT=FILE writes it anew.
+/// The entry of a lens in expected.json; CONFORMANCE_OUT=FILE writes a new file.
 Json measured(const Setting& setting, const Lens& lens, const std::vector<Lens>& stopped, const LensCamera& exact) {
   Json sky = Json::array(), exposure = Json::array(), lights = Json::array(), blurs = Json::array();
   const double axis = petzval::film_irradiance(lens, {0, 0});
@@ -199,7 +199,7 @@ TEST_P(Conformance, AnEvenSkyIsAsBrightAsQuadratureSays) {
     for (const Json& point : sky) {
       const petzval::FilmPoint at{point["film_mm"][0], point["film_mm"][1]};
       const double over_axis = point["over_axis"];
-      // First-order models have the light of their own pupils: that of the axis alone is the lens's.
+      // First-order models have their own pupils; only their irradiance on the axis equals the exact lens.
       if (is_first_order(model) && at.x > 0) continue;
       const petzval::Vec2<double> raster = lens->film().raster(at);
       const int x = std::clamp(static_cast<int>(raster.x), 0, image.width - 1);
@@ -224,7 +224,7 @@ TEST_P(Conformance, FilmAndSceneHoldTheSameLightOfAnEmitter) {
       const Scene scene(light_at(places[i], 12));
       const Estimate by_film = picture(scene, *lens, Integrator::path, 96).mean()[1];
       const Estimate by_scene = picture(scene, *lens, Integrator::light, 32).mean()[1];
-      if (by_film.mean == 0 && by_scene.mean == 0) continue;  // beside what this model sees
+      if (by_film.mean == 0 && by_scene.mean == 0) continue;  // outside the field of this model
       EXPECT_NEAR(by_film.mean, by_scene.mean,
                   0.002 * by_scene.mean + 4 * std::hypot(by_film.standard_error, by_scene.standard_error))
           << petzval::name(model) << " light " << i;
@@ -252,14 +252,14 @@ TEST_P(Conformance, ATinyLightIsWhereItsChiefRayMeetsTheFilm) {
         }
       }
       ASSERT_GT(sum, 0);
-      // A pixel: the centroid of a comatic blur is not on its chief ray.
+      // The tolerance is a pixel, as the centroid of a comatic blur is not on the chief ray.
       EXPECT_NEAR(x_sum / sum, light["raster"][0].get<double>() * image.width, 1.2) << place.x;
       EXPECT_NEAR(y_sum / sum, light["raster"][1].get<double>() * image.height, 1.2) << place.x;
     }
   }
 }
 
-/// Differences of two estimates in standard errors, over many settings: a bias that one setting does not show adds up.
+/// Differences of two estimates in standard errors. Over many settings a small bias adds up.
 class Differences {
  public:
   void add(const Estimate& a, const Estimate& b) {
@@ -274,8 +274,8 @@ class Differences {
   int count_ = 0;
 };
 
-/// Tiles whose means differ by more than 3 standard errors. Scatter of 16 rounds gives Student's t with about 25
-/// degrees of freedom for a difference: .6 % of tiles are beyond.
+/// Number of tiles whose means differ by more than 3 standard errors. With 16 rounds, differences follow Student's t
+/// with about 25 degrees of freedom: 0.6 % of the tiles exceed 3.
 int tiles_beyond(const PictureSums& a, const PictureSums& b) {
   int beyond = 0;
   for (std::size_t t = 0; t < a.tiles(); ++t) {
@@ -350,8 +350,8 @@ TEST_P(Conformance, BlursAreAsLargeAsTheLensMakesThem) {
         }
       }
       ASSERT_GT(sum, 0);
-      const double rms = std::sqrt(squares / sum - 1.0 / 6) * f.pixel_mm();  // pixels have a size
-      // A thin lens has no spherical aberration, which counts near the focus.
+      const double rms = std::sqrt(squares / sum - 1.0 / 6) * f.pixel_mm();  // minus the variance of a pixel
+      // A thin lens lacks spherical aberration, which matters near the focus.
       const double wanted = blur["rms_radius_mm"], share = model == ModelKind::thin ? 0.1 : 0.03;
       EXPECT_NEAR(rms, wanted, share * wanted + (model == ModelKind::thin ? 0.2 : 0.01) * widest)
           << petzval::name(model) << ' ' << mm;
@@ -418,7 +418,7 @@ INSTANTIATE_TEST_SUITE_P(Lenses, Conformance, testing::ValuesIn(settings), [](co
   return name;
 });
 
-/// A matt floor under a lamp, lit once, through every lens of data/.
+/// A diffuse floor under a lamp with direct light only, through every lens of data/.
 TEST(OneBounce, IsTheSameByThreeIntegratorsForEveryLens) {
   int compared = 0;
   Differences by_light, by_both;

@@ -19,7 +19,7 @@ TEST(Kronecker, StepsAreThePowersOfTheGeneralisedGoldenRatio) {
   for (const double step : kronecker_steps<5>()) EXPECT_TRUE(step > 0 && step < 1) << step;
 }
 
-/// The largest error of the share of points in the boxes [0, x) x [0, y).
+/// Largest error of the fraction of points in boxes [0, x) x [0, y).
 template <class PointAt>
 double discrepancy(std::size_t first, std::size_t count, const PointAt& point_at) {
   constexpr int steps = 16;
@@ -39,7 +39,7 @@ double discrepancy(std::size_t first, std::size_t count, const PointAt& point_at
 }
 
 TEST(Kronecker, AnyStretchIsUniform) {
-  // Boxes miss at most 8 of 1000 points; of random points they miss 40.
+  // Boxes are off by at most 8 of 1000 points; with random points by 40.
   for (const std::uint64_t seed : {0u, 1u, 77u}) {
     const Kronecker<2> points(seed);
     for (const std::size_t first : {0u, 5u, 1000u, 123457u}) {

@@ -85,7 +85,7 @@ TEST(ParallelFor, StartsNoThreadForOneOrASingleBlock) {
 }
 
 TEST(ParallelFor, WorksOnAsManyThreadsAsAskedForAndBlocksGo) {
-  // Every block waits until all have begun: fewer threads, with the caller's, would hang the test.
+  // Every block waits until all have begun, so that too few threads would hang the test.
   const auto caller = std::this_thread::get_id();
   for (const int threads : {3, 50}) {
     const std::size_t together = std::min(threads, 6);

@@ -12,7 +12,7 @@ namespace petzval {
 namespace sobol_test {
 
 TEST(OwenSobol, AlignedBlocksAreNets) {
-  // Of 2^k points that start at a multiple of 2^k, one lies in each box of 2^-i by 2^(i - k).
+  // Each box of 2^-i by 2^(i - k) contains one of 2^k points that start at a multiple of 2^k.
   for (const std::uint32_t seed : {0u, 1u, 77u, 0xffffffffu}) {
     for (int k = 0; k <= 12; ++k) {
       const std::uint32_t count = 1u << k;
@@ -57,7 +57,7 @@ TEST(OwenSobol, BlocksHoldThePointsOneByOne) {
 }
 
 TEST(OwenSobol, KeepsItsPoints) {
-  // By the first version, point by point: a seed goes on to mean the same picture.
+  // Points of the first version, so that seeds keep their images.
   EXPECT_EQ(owen_sobol(0, 0), Vec2<double>(0x1.cc53569ep-1, 0x1.603b991p-4));
   EXPECT_EQ(owen_sobol(123456789, 42), Vec2<double>(0x1.27296c98p-2, 0x1.34a4f066p-1));
   EXPECT_EQ(owen_sobol(0xffffffff, 0xffffffff), Vec2<double>(0x1.bab421ep-5, 0x1.cb7b1ecp-4));
@@ -73,7 +73,7 @@ TEST(OwenSobol, IsAFunctionOfIndexAndSeed) {
 }
 
 TEST(OwenSobol, EverySampleIsUniformOverTheSeeds) {
-  // A scrambled point is uniform in the square by itself. Sums of 4096 uniform numbers: 5 standard deviations are
+  // Each scrambled point is uniform in the square. Sums of 4096 uniform numbers: 5 standard deviations are
   // 0.0226; of the products of centred coordinates, independent, 0.0065.
   constexpr int seeds = 4096;
   for (const std::uint32_t index : {0u, 1u, 2u, 3u, 1000u, 65535u, 0xffffffffu}) {

@@ -46,7 +46,7 @@ TEST(Number, RoundsToSignificantDigits) {
 }
 
 TEST(Number, DoesNotFollowTheLocale) {
-  const char* before = std::setlocale(LC_NUMERIC, "de_DE.UTF-8");  // where the system has it
+  const char* before = std::setlocale(LC_NUMERIC, "de_DE.UTF-8");  // if the locale is installed
   EXPECT_EQ(to_text(0.5), "0.5");
   if (before != nullptr) std::setlocale(LC_NUMERIC, "C");
 }
@@ -62,7 +62,7 @@ TEST(Utf8, OnlyWholeCharactersHaveALength) {
       EXPECT_EQ(utf8_length(whole, cut), 0u);
     }
   }
-  // Longer than need be, surrogates, beyond U+10FFFF, and no first byte.
+  // Overlong encodings, surrogates, code points above U+10FFFF, and invalid first bytes.
   for (const char* none : {"\xC0\x80", "\xC1\xBF", "\xE0\x9F\xBF", "\xED\xA0\x80", "\xF0\x8F\xBF\xBF",
                            "\xF4\x90\x80\x80", "\xF5\x80\x80\x80", "\x80", "\xFF", ""}) {
     EXPECT_EQ(utf8_length(none, 0), 0u);

@@ -21,9 +21,9 @@ constexpr long never = std::numeric_limits<long>::max() / 2;
 constexpr long all_of_the_first = 200, of_the_rest = 40;
 
 std::atomic<long> made = 0, living = 0;
-/// Allocations until one fails.
+/// Number of allocations until the next failure.
 std::atomic<long> left = never;
-/// Whether all fail that follow.
+/// True if all further allocations fail.
 std::atomic<bool> lasting = false;
 
 void* allocate(std::size_t size, std::size_t alignment) {
@@ -44,7 +44,7 @@ void release(void* place) noexcept {
 
 }  // namespace
 
-// Not inlined: a compiler that sees only one of them takes it for a mismatch.
+// Not inlined, as compilers that see only one of the operators report a mismatch.
 [[gnu::noinline]] void* operator new(std::size_t size) { return allocate(std::max<std::size_t>(size, 1), 0); }
 [[gnu::noinline]] void* operator new(std::size_t size, const std::nothrow_t&) noexcept try {
   return operator new(size);
@@ -64,7 +64,7 @@ namespace {
 
 using Work = std::function<std::string()>;
 
-/// What is wrong when one allocation fails; empty: nothing. once_more: whether the work is done again.
+/// Describes the fault if one allocation fails; empty if there is no fault. once_more: repeats the work.
 std::string fault(const Work& work, const std::string& whole, long allocation, bool all_that_follow, bool once_more) {
   const long before = living;
   std::string found;
@@ -94,7 +94,7 @@ std::string fault(const Work& work, const std::string& whole, long allocation, b
   return {};
 }
 
-/// Of as many allocations.
+/// The next allocation to fail, of `count`.
 long next(long allocation, long count) {
   return allocation < all_of_the_first ? allocation + 1
                                        : allocation + std::max(1L, (count - all_of_the_first) / of_the_rest);
@@ -115,7 +115,7 @@ void expect_all_or_nothing(const Work& work) {
 }
 
 void expect_all_or_nothing_at_first(const Work& work) {
-  /// Status 0: the allocation failed and all was well; 1: a fault; 2: the work makes no such allocation.
+  /// Status 0: the allocation failed without a fault; 1: a fault; 2: the work makes fewer allocations.
   const auto in_a_process = [&](long allocation) {
     std::fflush(nullptr);
     const pid_t child = fork();

@@ -7,15 +7,15 @@
 
 namespace petzval::testing {
 
-/// Does `work` again and again, each time with another allocation of operator new that fails, in whichever thread it
-/// comes: alone, and with all that follow. The first 200 allocations fail in turn, and some of the later ones.
+/// Repeats `work` with failing allocations of operator new in any thread: each of the first 200 allocations and some
+/// later ones, failing once or together with all further allocations.
 ///
-/// Expects that nothing but std::bad_alloc or Error comes out; that where nothing comes out, the result is the whole
-/// one; that nothing is left allocated; and that the work done once more, every now and then, gives the whole result.
-/// `work` returns what it made as text, and must not depend on what it did before, apart from caches.
+/// Checks that only std::bad_alloc or Error is thrown, that work that does not throw returns the complete result, that
+/// no memory leaks, and that repeated work gives the complete result. `work` returns its result as text, which must not
+/// depend on previous calls.
 void expect_all_or_nothing(const std::function<std::string()>& work);
 
-/// The same where the process does the work for the first time: each in a process of its own.
+/// Like above, but each run is the first in its own process.
 void expect_all_or_nothing_at_first(const std::function<std::string()>& work);
 
 /// Numbers as text, to the bit.

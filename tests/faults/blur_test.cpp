@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Where memory ends while layers are filled and blurred.
+// Failing allocations while layers are filled and blurred.
 #include <gtest/gtest.h>
 
 #include <functional>
@@ -26,7 +26,7 @@ constexpr float infinity = std::numeric_limits<float>::infinity();
 
 LayerCamera small_camera() { return layer_camera(64, 96, radians(15)); }
 
-/// Rays that all pixels share, or that differ.
+/// Rays that are equal for all pixels, or differ.
 LensRays rays_of(bool shared) {
   ThinLens lens{.radius_mm = 15, .inverse_focus = 1 / 2000.0};
   if (!shared) lens.focus = [](const Vec2<double>& at) { return FocusAt{(1 + 0.01 * at.y) / 2000, 1}; };
@@ -70,7 +70,7 @@ TEST(MemoryEnds, WhileLayersAreFilled) {
                                                                layers.set({&image, 1});
                                                              }};
   for (const auto& filling : fillings) {
-    // Grown over the layers of another picture.
+    // Reuses the layers of another image.
     const LayerImage small{4, 4, std::span(rgba).first(64), std::span(depths).first(16)};
     expect_all_or_nothing([&] {
       LayerSet layers;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Where memory ends while lenses, cameras and sets of PSFs are built.
+// Failing allocations while lenses, cameras and PSF sets are built.
 #include <gtest/gtest.h>
 
 #include <filesystem>
@@ -50,7 +50,7 @@ TEST(MemoryEnds, WhileALensIsFocused) {
   expect_all_or_nothing([&] { return bits({with_focus(with_f_number(lens, 4), 2000).film_z()}); });
 }
 
-/// A ray for the film and a place for the scene.
+/// A ray to the film and a scene point.
 std::string seen_by(const Camera& camera) {
   const CameraRay ray = camera.sample({.film = {3, 2}, .pupil_u = 0.3, .pupil_v = 0.4});
   const Projection place = camera.project({100, 50, -2000});
@@ -102,7 +102,7 @@ TEST(MemoryEnds, WhileASetOfPsfsIsMade) {
   expect_all_or_nothing([&] { return shown(set.at({3, infinity, d_line_nm, 2})); });
 }
 
-/// A table that ends early would be another light.
+/// A truncated table would be another illuminant.
 TEST(MemoryEnds, WhileTablesOfColoursAreRead) {
   const std::filesystem::path glass = std::filesystem::path(PETZVAL_TEST_DATA) / "glass";
   expect_all_or_nothing([&] {

@@ -20,7 +20,7 @@ namespace killed_test {
 namespace fs = std::filesystem;
 using testing::bytes_of;
 
-/// A picture of one colour: 300 KB as EXR, of which compression leaves less.
+/// An image of one colour: 300 KB as EXR before compression.
 RgbImage picture(float value) {
   RgbImage image(160, 160);
   for (std::size_t i = 0; i < image.pixels.size(); ++i) image.pixels[i] = value + static_cast<float>(i * i % 977);
@@ -48,7 +48,7 @@ TEST(Killed, AWriterLeavesTheOldFileOrTheNewOne) {
     if (child == 0) {
       for (;;) write_exr(one, file), write_exr(other, file);
     }
-    std::this_thread::sleep_for(both * (random() % 1000) / 250);  // up to four times what both take
+    std::this_thread::sleep_for(both * (random() % 1000) / 250);  // up to four times the duration of both writes
     ASSERT_EQ(kill(child, SIGKILL), 0);
     int status = 0;
     ASSERT_EQ(waitpid(child, &status, 0), child);
@@ -57,7 +57,7 @@ TEST(Killed, AWriterLeavesTheOldFileOrTheNewOne) {
     const std::string found = bytes_of(file);
     ASSERT_TRUE(found == ones || found == others) << "round " << round << ": " << found.size() << " bytes";
     found_ones += found == ones;
-    // What it leaves behind has the name that write_file() says, and is in nobody's way.
+    // Leftover files have the name that write_file() states, and do not disturb later writes.
     const std::string own = ".petzval-" + std::to_string(child) + '-';
     for (const std::string& name : testing::names_in(folder)) {
       if (name == "a.exr") continue;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Where memory ends while a lens is read or written as text.
+// Failing allocations while a lens is read or written as text.
 #include <gtest/gtest.h>
 
 #include <filesystem>
@@ -46,7 +46,7 @@ const std::string optiland = R"({"version": 1.0,
     {"type": "Surface", "geometry": {"type": "Plane", "cs": {"z": 4}, "radius": Infinity}, "material_post": {"type": "IdealMaterial", "index": 1.0}},
     {"type": "Surface", "geometry": {"type": "Plane", "cs": {"z": 90}, "radius": Infinity}, "material_post": {"type": "IdealMaterial", "index": 1.0}}]}})";
 
-/// A short lens of each format, whose glasses are looked up.
+/// A short lens with catalogue glasses in each format.
 std::vector<std::pair<std::string, std::string>> files() {
   const Prescription lens = data_prescription("double_gauss_100mm_f2_28deg"), simple = testing::open_singlet(8);
   return {{"petzval", format_prescription(data_prescription("phone_5.6mm_f3.5"))},
@@ -66,7 +66,7 @@ TEST(MemoryEnds, WhileALensOfAnyFormatIsRead) {
   }
 }
 
-/// The message of a refusal is whole too.
+/// Messages of errors are complete as well.
 TEST(MemoryEnds, WhileALensIsRefused) {
   for (const auto& [format, text] : files()) {
     SCOPED_TRACE(format);

@@ -25,7 +25,7 @@ struct Writer {
   std::function<void(const std::filesystem::path&)> write;
 };
 
-/// One for each kind of file. All write more than 256 bytes.
+/// A writer for each kind of file. Each writes more than 256 bytes.
 inline std::vector<Writer> writers() {
   const Prescription lens = data_prescription("double_gauss_100mm_f2_28deg");
   const Lens compiled = compile(lens);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Where memory or the disk ends while a file of any kind is written, and memory while it is read.
+// Failing allocations and full disks while files are written, and failing allocations while files are read.
 #include <gtest/gtest.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
@@ -29,8 +29,8 @@ using testing::expect_error;
 using testing::message;
 using testing::Writer;
 
-/// OpenEXR 3.1 does not survive the end of memory: its constructors forget what they hold, the destructor of a deep
-/// picture that was not opened reads through null.
+/// OpenEXR 3.1 does not survive failing allocations: constructors leak their members, and the destructor of an unopened
+/// deep image dereferences null.
 bool by_openexr(const std::string& name) { return name.ends_with(".exr"); }
 
 /// A folder for the test.
@@ -45,7 +45,7 @@ class Writing : public ::testing::Test {
   fs::path folder_ = fs::path(::testing::TempDir()) / ("petzval_writing_" + std::to_string(getpid()));
 };
 
-/// Without operator new.
+/// Allocates nothing.
 void write_old(const fs::path& file) {
   std::FILE* const out = std::fopen(file.c_str(), "w");
   std::fputs("old", out);
@@ -96,7 +96,7 @@ TEST_F(Writing, ReadsAllOrNothingWithoutMemory) {
   }
 }
 
-/// The status of a process that does this work: 0 where it returns true.
+/// Exit status of a process that runs this work; 0 if the work returns true.
 int status_of_process(const std::function<bool()>& work) {
   const pid_t child = fork();
   if (child == 0) _exit(work() ? 0 : 1);
@@ -110,7 +110,7 @@ TEST_F(Writing, OnAFullDiskSaysSoAndLeavesTheOldFile) {
     SCOPED_TRACE(writer.name);
     const fs::path file = folder_ / writer.name;
     write_file("old", file);
-    // A process that may write files of 256 bytes stops in the middle.
+    // The process may write files of at most 256 bytes, so that writes fail midway.
     const auto refused = [&] {
       signal(SIGXFSZ, SIG_IGN);
       const rlimit limit{256, 256};

@@ -54,7 +54,7 @@ TEST(FocalSurfaceFigure, PointsLieAtTheirDistancesToScale) {
     const double near = at[panel].first - at[panel + 1].first, far = at[panel + 1].first - at[panel + 2].first;
     EXPECT_NEAR(far / near, (6000.0 - 3000) / (3000 - 1500), 0.01);
   }
-  // The pinhole's picture of a point at (0, y) of the film: across the axis y distance / film distance, turned over.
+  // Through a pinhole the film point (0, y) shows the height y distance / film distance, inverted.
   const double per_mm = (at[0].first - at[2].first) / 4500;
   const double across = 9 * 1500 / 51.2 + 8 * 6000 / 51.2;
   EXPECT_NEAR((at[2].second - at[0].second) / per_mm, across, 0.02 * across);

@@ -169,7 +169,7 @@ TEST(LayoutFigure, CutsACylinderInBothSections) {
     return body[24].first - body[0].first;
   };
   EXPECT_EQ(front(Meridian::y), 0);  // straight
-  EXPECT_GT(front(Meridian::x), 5);  // hollow: the vertex lies behind the rim
+  EXPECT_GT(front(Meridian::x), 5);  // concave: the vertex lies behind the rim
 }
 
 TEST(LayoutFigure, LetsRaysGoBehindALensWithAVirtualImage) {

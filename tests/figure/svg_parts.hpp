@@ -11,7 +11,7 @@ namespace petzval::testing {
 
 using Points = std::vector<std::pair<double, double>>;
 
-/// A match of a regular expression: where it begins in the text, and its groups; group 0 is all of it.
+/// A match of a regular expression: its position in the text, and its groups; group 0 is the whole match.
 struct Match {
   std::size_t position = 0;
   std::vector<std::string> groups;
@@ -23,10 +23,10 @@ struct Match {
 /// All matches of a regular expression, in the order of the text.
 std::vector<Match> matches(const std::string& text, const std::string& expression);
 
-/// How often a part occurs in a text.
+/// Number of occurrences of a part in a text.
 std::size_t count(const std::string& text, const std::string& part);
 
-/// Middles of the numbered points of a figure of a scene, px, in order.
+/// Centres of the numbered points in a figure of a scene, px, in order.
 Points marks(const std::string& svg);
 
 /// The corners of each path whose attributes contain `style`, px.

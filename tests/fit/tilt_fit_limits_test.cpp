@@ -107,7 +107,7 @@ double largest_change(const auto& targets_at, int steps, const TiltOptions& opti
   return largest;
 }
 
-/// Half the steps give half the changes: no jumps.
+/// Halved steps give half the changes, so that there are no jumps.
 void expect_continuous(const auto& targets_at, const TiltOptions& options, int steps = 400) {
   const double coarse = largest_change(targets_at, steps, options);
   const double fine = largest_change(targets_at, 8 * steps, options);
@@ -182,7 +182,7 @@ TEST(TiltFitLimit, TargetsThatPassEachOtherMakeNoJump) {
   EXPECT_EQ(fit_tilt(normal_lens(), passing(0.061)(1), behind(normal_lens())).rank, PlaneRank::line);
   const TiltFit wide = fit_tilt(normal_lens(), passing(0.13)(1), behind(normal_lens()));
   EXPECT_NEAR(wide.film.angle(), radians(20), 1e-12);
-  // Three of them, on a circle that shrinks and turns inside out.
+  // Three points on a circle that shrinks and is inverted.
   expect_continuous(
       [](double t) {
         const double r = 0.3 * (2 * t - 1);
@@ -204,7 +204,7 @@ TEST(TiltFitSets, OnePlaceGivesAnUprightFilm) {
 }
 
 TEST(TiltFitSets, TwoPointsAndLinesGiveThePlaneOfLeastTilt) {
-  // Any film through both images; the least tilt rises along the line between them.
+  // Any film through both images is exact; the smallest tilt rises along the line between the images.
   const Vec one(-300, 100, -2000), two(500, -200, -3000);
   const Vec a = normal_lens().image({one})->position, b = normal_lens().image({two})->position;
   const double least = std::abs(b.z - a.z) / std::hypot(b.x - a.x, b.y - a.y);
@@ -306,7 +306,7 @@ TEST(TiltFitSets, WhatCannotBeServedTakesNoPart) {
       }
     }
   }
-  // Without weight, but with a blur to show.
+  // The blur of a target without weight is reported.
   const TiltFit shown = fit_tilt(normal_lens(), Targets{good[0], target(0, 0, -1000, 0)}, behind(normal_lens()));
   EXPECT_LT(shown.blurs[1].blur_mm, -0.01);
 }

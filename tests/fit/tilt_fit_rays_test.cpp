@@ -48,8 +48,8 @@ Parabola parabola(const RayBundle& bundle, const Film& film) {
   return {film.z() + foot, here - by_z * foot * foot, by_z};
 }
 
-/// Weighted RMS of diameters. For a target with a wanted blur the film is nearer, so that defocus adds what aberrations
-/// lack of that blur.
+/// Weighted RMS of diameters. For a target with a blur the film is nearer, so that defocus and aberrations add up to
+/// the blur.
 double rms(const Targets& targets, const Film& film) {
   double sum = 0, weights = 0;
   for (const FocusTarget& t : targets) {
@@ -88,7 +88,7 @@ TEST(RayTiltFit, IsTheLeastSumOfSquaredBlurs) {
     }
     const auto square = [&](const Film& film) { return rms(targets, film) * rms(targets, film); };
     EXPECT_LT(off_least(square, fit.film, 50), 1e-7);
-    // The film of the thick lens is only a good start.
+    // The film of the thick lens is only an initial value.
     const TiltFit thick = fit_tilt(bundles().ideal(), targets, behind(bundles().ideal()));
     EXPECT_GT(rms(targets, thick.film), least);
   }
@@ -156,7 +156,7 @@ TEST(RayTiltFit, BlursThatAreWantedMakeNoJump) {
   }
   EXPECT_GT(sharp, 0);
   EXPECT_LT(blurred, 2 * sharp);
-  // The same for a growing wanted blur.
+  // The blur of the target grows.
   Film last = film_at(900, 0, -1);
   for (double want = 0; want < 0.05; want += 1e-4) {
     const Film film = film_at(900, want, -1);
@@ -206,7 +206,7 @@ TEST(RayTiltFit, ThreeTargetsGetTheBlursTheyWant) {
   targets[0].blur_mm = 0.3, targets[1].blur_mm = -0.2, targets[2].blur_mm = 0.4;
   const TiltFit fit = fit_tilt(bundles(), targets, behind(bundles().ideal()));
   ASSERT_EQ(fit.status, Status::solved);
-  // But for what aberrations make on a tilted film, compared with an upright one.
+  // Up to the effect of aberrations on a tilted film, compared with an upright film.
   for (const TargetBlur& blur : fit.blurs) EXPECT_NEAR(blur.blur_mm, blur.wanted_mm, 2e-5);
 }
 
@@ -262,7 +262,8 @@ TEST(RayTiltFit, HoldsTheLimitAsBestItCan) {
 }
 
 TEST(RayTiltFit, LimitIsThatOfItsOwnFilm) {
-  // The film for curved images is tilted less or more than for ideal ones: the limit then holds one of both fits.
+  // The film for curved images has another tilt than the film for ideal images, so that the limit holds one of both
+  // fits.
   bool less = false, more = false;
   for (const unsigned seed : {1u, 2u, 3u, 4u, 5u, 6u}) {
     const Targets targets = tilted_plane(bundles().ideal()).targets(4, 0.25, 0.18, seed);
@@ -286,7 +287,7 @@ TEST(RayTiltFit, LimitIsThatOfItsOwnFilm) {
 }
 
 TEST(RayTiltFit, FilmThatNoRaysCrossIsNoEnd) {
-  // The film through both ideal images is tilted so much that rays of both would reach it from behind.
+  // The film through both ideal images is so steep that rays of both targets would reach it from behind.
   const Targets targets{target(0, 10, -1000), target(0, 30, -4000)};
   TiltOptions options = behind(bundles().ideal(), 89.9);
   options.film = {.width_mm = 0, .height_mm = 0};

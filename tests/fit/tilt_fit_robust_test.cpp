@@ -27,8 +27,8 @@ TiltOptions robust(const IdealLens& lens) {
 }
 
 TEST(RobustTiltFit, FindsThePlaneAmongGrossOutliers) {
-  // The plane of the scene within 1 degree in 200 of 200 draws: 24 points over the frame, 1 to 4 m, noise of 3 mm, 3 or
-  // 8 of them outliers.
+  // The plane of the scene is found within 1 degree in 200 of 200 draws: 24 points over the frame at 1 to 4 m with a
+  // noise of 3 mm; 3 or 8 points are outliers.
   for (const bool thick : {false, true}) {
     const IdealLens lens = thick ? thick_lens(data_lens("double_gauss_52mm_f1.8")) : normal_lens();
     const double half_x = 18 / lens.rear_focal_length, half_y = 12 / lens.rear_focal_length;
@@ -126,8 +126,8 @@ TEST(RobustTiltFit, TargetsBecomeOutliersByAndBy) {
   std::normal_distribution<double> noise(1, 2e-3);
   for (FocusTarget& t : targets) t.place.position *= noise(random);
   const Vec still = targets[0].place.position;
-  // Steps of 0.05 mm: the film changes by no more than the noise of the median. A target that kept its weight up to the
-  // border would leave with a jump.
+  // In steps of 0.05 mm the film changes by at most the noise of the median. A target with full weight up to the border
+  // would vanish with a jump.
   constexpr int steps = 2000;
   double last = 0;
   for (int i = 0; i <= steps; ++i) {

@@ -146,7 +146,7 @@ TEST(TiltFit, MeetsWhatThreeTargetsWant) {
 }
 
 TEST(TiltFit, IsTheLeastSumOfSquares) {
-  // No film nearby, moved or tilted, has a lower cost for inexact targets with wanted blurs.
+  // No adjacent film, moved or tilted, has a lower cost for inexact targets with blurs.
   std::mt19937_64 random(3);
   std::uniform_real_distribution<double> unit(-1, 1);
   const IdealLens lens = thick_lens(data_lens("double_gauss_100mm_f2.0"));

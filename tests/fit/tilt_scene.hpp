@@ -44,7 +44,7 @@ struct Scene {
   Plane plane() const {
     return focus_detail::plane_of({.rank = PlaneRank::plane, .a = a, .b = b, .c = c}, lens.front_principal_z()).value();
   }
-  /// Points all over the picture.
+  /// Points all over the image.
   std::vector<FocusTarget> targets(int count, double half_x, double half_y, unsigned seed = 1) const {
     std::mt19937_64 random(seed);
     std::uniform_real_distribution<double> unit(-1, 1);
@@ -57,7 +57,7 @@ struct Scene {
   }
 };
 
-/// Targets that no film satisfies, with weights; a third of them have a wanted blur.
+/// Weighted targets that no film satisfies; a third of the targets have a blur.
 inline std::vector<FocusTarget> inexact_targets(int count, unsigned seed) {
   std::mt19937_64 random(seed);
   std::uniform_real_distribution<double> unit(-1, 1);

@@ -97,7 +97,7 @@ TEST(Autofocus, SharesTheBlurBetweenTwoTargets) {
   ASSERT_TRUE(focus);
   EXPECT_LT(focus.blurs[0].blur_mm, 0);  // in front of the plane of focus
   EXPECT_GT(focus.blurs[1].blur_mm, 0);
-  // In proportion to the slopes of their cones.
+  // Proportional to the slopes of their cones.
   const double steep = lens.image(targets[0].place)->cone, flat = lens.image(targets[1].place)->cone;
   EXPECT_NEAR(steep * focus.blurs[0].blur_mm, -flat * focus.blurs[1].blur_mm, 1e-13);
   EXPECT_NEAR(focus.rms_mm, std::hypot(focus.blurs[0].blur_mm, focus.blurs[1].blur_mm) / std::numbers::sqrt2, 1e-15);
@@ -166,7 +166,7 @@ TEST(Autofocus, BlursOneTargetAsWanted) {
     EXPECT_NEAR(autofocus(bundles, target, {}, min_rms).blurs[0].blur_mm, wanted, 1e-12);
     EXPECT_NEAR(autofocus(bundles, target, {}, min_max).blurs[0].blur_mm, wanted, 1e-12);
   }
-  // Less than the least possible blur: as sharp as possible.
+  // Below the smallest possible blur the film is as sharp as possible.
   for (const auto criterion : {min_rms, min_max}) {
     EXPECT_EQ(autofocus(bundles, std::vector{at(50, -100, -1500, 1e-4)}, {}, criterion).film.z(),
               autofocus(bundles, std::vector{at(50, -100, -1500)}, {}, criterion).film.z());
@@ -210,7 +210,7 @@ TEST(Autofocus, ReportsBreathingAndTheChangeOfMagnification) {
   const double before = lens.film_z(), exit_z = pupils(lens).exit.z;
   const Autofocus focus = autofocus(ImageRays(lens, 22), std::vector{at(0, 0, -1000)}, {}, min_rms);
   EXPECT_GT(focus.breathing, 0.05);
-  // Infinity focus of bundles is within 4 um of that of the solver.
+  // Infinity focus of bundles is within 4 um of the solver.
   EXPECT_NEAR(focus.breathing, *breathing(lens, focus.film.z(), {.criterion = min_rms}), 1e-4);
   EXPECT_NEAR(1 + focus.magnification_change, (focus.film.z() - exit_z) / (before - exit_z), 1e-12);
   const Autofocus ideal = autofocus(thick_lens(lens), std::vector{at(0, 0, -1000)}, focus.film);
@@ -218,7 +218,7 @@ TEST(Autofocus, ReportsBreathingAndTheChangeOfMagnification) {
   EXPECT_NEAR(1 + ideal.magnification_change, (ideal.film.z() - exit_z) / (focus.film.z() - exit_z), 1e-12);
   // A film in the exit pupil has no magnification.
   EXPECT_TRUE(std::isnan(autofocus(thin_lens(50, 2), std::vector{at(0, 0, -1000)}, film_at(0)).magnification_change));
-  // A stop in the front focal plane: the exit pupil at infinity.
+  // With the stop in the front focal plane the exit pupil is at infinity.
   IdealLens telecentric = thin_lens(50, 2);
   telecentric.pupils.entrance = {telecentric.front_focal_z, 10};
   telecentric.pupils.exit = {infinity, infinity};
@@ -255,7 +255,7 @@ TEST(Autofocus, LeavesTheFilmWhereNothingCanBeDone) {
   EXPECT_EQ(autofocus(bundles, beside).blurs[0].use, TargetUse::no_rays);
   EXPECT_EQ(autofocus(bundles.ideal(), beside, film_at(lens.film_z())).blurs[0].use, TargetUse::used);
 
-  // With so much blur in front of the plane of focus the film would lie inside the lens.
+  // For this blur in front of the plane of focus the film would lie inside the lens.
   const std::vector blurred{at(0, 0, -1000, -70)};
   for (const Autofocus& focus : {autofocus(bundles.ideal(), blurred, film_at(lens.film_z())),
                                  autofocus(bundles, blurred, {}, min_rms), autofocus(bundles, blurred, {}, min_max)}) {

@@ -47,7 +47,7 @@ void expect_round_trips(const Lens& lens, const FocusOptions& options, double to
     EXPECT_NEAR(solve_focus(lens, back.distance, options).film_z, there.film_z,
                 tolerance * (f + std::abs(there.film_z)))
         << multiple;
-    // Monotone: the film moves away from the lens as the subject comes nearer.
+    // The film moves monotonically away from the lens as the subject comes nearer.
     EXPECT_GE(sense * there.film_z, before) << multiple;
     before = sense * there.film_z;
   }
@@ -141,7 +141,7 @@ TEST(BothWays, AFilmTooFarInSeesNothingBeyondInfinity) {
 TEST(BothWays, AFilmBeyondTheLimitNamesTheNearestSubject) {
   const Lens lens = data_lens("achromat_100mm");
   const FocusSolution nearest = nearest_focus(lens, {min_rms});
-  // Aberrated rays never all leave parallel: the film has its farthest place 5.6 m behind the lens.
+  // Aberrated rays never leave parallel, so that the film has a farthest position, 5.6 m behind the lens.
   EXPECT_TRUE(std::isfinite(nearest.film_z));
   const FocusSolution beyond = solve_subject(lens, 2 * nearest.film_z, {min_rms});
   EXPECT_EQ(beyond.status, FocusStatus::unreachable);
@@ -150,8 +150,7 @@ TEST(BothWays, AFilmBeyondTheLimitNamesTheNearestSubject) {
   EXPECT_EQ(nearest_focus(lens, {paraxial}).film_z, infinity);
 }
 
-// From the film, which moves away as the subject comes nearer, the nearest is imaged in its own size; behind a mirror
-// the two meet.
+// Measured from the film, the nearest subject has magnification 1; with a mirror, subject and film coincide there.
 TEST(BothWays, TheNearestSubjectFromTheFilmIsAsLargeAsItsImage) {
   for (const char* id : {"double_gauss_100mm_f2.0", "telephoto_100mm_f5"}) {
     const Lens lens = data_lens(id);

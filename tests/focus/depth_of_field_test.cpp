@@ -169,8 +169,8 @@ TEST(Hyperfocal, IsTheNearestFocusWithInfinityAtTheLimit) {
       EXPECT_EQ(far(at.distance * 1.001), infinity);
       EXPECT_LT(far(at.distance * 0.999), infinity);
 
-      // The near limit is about half of it: closer if the pupil is near the principal plane and the aberrations are
-      // small compared with the blur.
+      // The near limit is about half the hyperfocal distance: closer if the pupil is near the principal plane and the
+      // aberrations are small compared with the blur.
       const double near = depth_of_field(set, blur * (1 + 1e-9), options).near_distance;
       EXPECT_NEAR(near / at.distance, 0.5, 0.12);
     }
@@ -277,7 +277,7 @@ TEST(Breathing, IsNothingWhereNoRayComesFromInfinity) {
   }
 }
 
-// A mirror of 3 um radius in front of which images of near subjects end before a film comes so far out.
+// A mirror of 3 um radius; images of near subjects end before the film.
 TEST(SolveSubject, SaysWhereImagesEnd) {
   Prescription p;
   p.name = "images that end";

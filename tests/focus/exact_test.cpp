@@ -28,7 +28,7 @@ struct Spread {
   double rms = 0, largest = 0;
 };
 
-/// The blur about the centroid of a square grid of rays over the plane of the pupil.
+/// Blur about the centroid, by a square grid of rays over the pupil plane.
 Spread spread(const Lens& lens, const FieldPoint& point, double film_z, const std::vector<double>& colours = {1},
               int across = 201) {
   const PupilPlane plane(lens, point);
@@ -103,9 +103,9 @@ TEST(ExactFocus, HasTheLeastBlurOfAllFilms) {
 }
 
 TEST(ExactFocus, OfTheLeastLargestRadiusIsAtThreeQuartersOfTheAberration) {
-  // Longitudinal aberration in proportion to h^2 (third order): the film of least largest radius lies three quarters of
-  // the way from the paraxial to the marginal focus, that of least RMS radius two thirds. Classical results; here in
-  // the limit of a small aperture.
+  // For third-order longitudinal aberration, proportional to h^2, the film with the smallest maximum radius lies at 3/4
+  // of the distance from paraxial to marginal focus, the film with the smallest RMS radius at 2/3. These classical
+  // results hold in the limit of a small aperture.
   Prescription p = data_prescription("singlet_50mm_biconvex");
   for (SurfaceRow& row : p.surfaces) row.semi_diameter = 30;
   p.surfaces[0].semi_diameter = 1;
@@ -127,7 +127,7 @@ TEST(ExactFocus, OfSeveralFieldsLiesBetweenTheirOwn) {
     const double axis = film({{0, 1}}, criterion), edge = film({{radians(18), 1}}, criterion);
     const double both = film({{0, 1}, {radians(18), 1}}, criterion);
     EXPECT_GT(std::abs(edge - axis), 0.01);
-    EXPECT_GE(both, std::min(axis, edge));  // equal if one of them alone has the largest radius
+    EXPECT_GE(both, std::min(axis, edge));  // equal if a single field has the largest radius
     EXPECT_LE(both, std::max(axis, edge));
     EXPECT_NEAR(film({{0, 1}, {radians(18), 1e-9}}, criterion), axis, 1e-6);
     EXPECT_EQ(film({{0, 3}, {radians(18), 0}}, criterion), axis);
@@ -146,13 +146,13 @@ TEST(ExactFocus, OfSeveralColoursWeighsTheirLight) {
   const double blue = film({1, 0, 0}), green = film({0, 1, 0}), red = film({0, 0, 1});
   EXPECT_LT(blue, green);
   EXPECT_LT(green, red);
-  EXPECT_EQ(film({}), green);  // the central one
+  EXPECT_EQ(film({}), green);  // the central wavelength
   EXPECT_NEAR(film({0, 5, 0}), green, 1e-12);
   EXPECT_GT(film({1, 0, 1}), blue);
   EXPECT_LT(film({1, 0, 1}), red);
   EXPECT_GT(film({1, 0, 2}), film({1, 0, 1}));
 
-  // To first order the wavelength of the largest weight counts, of several the central one.
+  // To first order the wavelength of the largest weight counts; of equal weights the central wavelength.
   const auto first = [&](std::vector<double> weights) {
     return solve_focus(lens, 1000, {.criterion = paraxial, .wavelength_weights = std::move(weights)}).film_z;
   };

@@ -74,7 +74,7 @@ TEST(ThinFocus, StandsAtTheRearPrincipalPlane) {
   const FirstOrder data = first_order(lens);
   const double f = data.effective_focal_length, from_plane = 1000 + data.rear_principal_z;
   EXPECT_NEAR(solve_focus(lens, 1000, {thin}).film_z, data.rear_focal_z + thin_lens_extension(f, from_plane), 1e-12);
-  // From the film, the distance is that of lens to film plus subject to lens: the film lies
+  // The distance T from the film is the sum of the distances of film and subject from the lens, so that the film lies
   // 2 f T / (T + sqrt(T (T - 4 f))) behind the lens.
   const double t = 1000;
   EXPECT_NEAR(solve_focus(lens, t, {thin, film}).film_z,
@@ -248,7 +248,7 @@ TEST(Focus, RefusesNumbersThatAreNoCriterionOrOrigin) {
   expect_error([&] { solve_subject(lens, 60, {.origin = static_cast<DistanceOrigin>(99)}); }, {"origin", 99});
 }
 
-// A subject is one plane, wherever its distance counts from: the film, the limits and the blur are the same.
+// Film, limits and blur are independent of the origin of the distance of a subject.
 TEST(Focus, OriginsShiftDistancesAndNothingElse) {
   for (const char* id : {"double_gauss_100mm_f2.0", "retrofocus_100mm_f2", "telephoto_250mm_f5.6"}) {
     const Lens lens = data_lens(id);

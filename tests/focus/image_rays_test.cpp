@@ -28,7 +28,7 @@ constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 constexpr double degree = std::numbers::pi / 180;
 
-/// A place as a FieldPoint: the field seen from the entrance pupil, azimuth from +y to +x.
+/// The FieldPoint of a scene point: field seen from the entrance pupil, azimuth from +y to +x.
 Vec3<double> place_at(const Lens& lens, double field_deg, double z, double azimuth = 0) {
   const double height = (pupils(lens).entrance.z - z) * std::tan(field_deg * degree);
   return {height * std::sin(azimuth), height * std::cos(azimuth), z};
@@ -61,7 +61,7 @@ TEST(ImageRays, OfALensStoppedDownBlurAsTheThickLensDoes) {
   }
 }
 
-// Two ways through other code: outlines of each point and scrambled points; tables of all points and a lattice.
+// Compares two independent computations: boundaries and scrambled points, or tables and a lattice.
 TEST(ImageRays, HaveTheSpotsOfOutlines) {
   for (const char* id :
        {"double_gauss_100mm_f2.0", "modern_50mm_f1.0", "zoom_57-143mm_f2.8:tele", "fisheye_8mm_f2.8"}) {
@@ -69,7 +69,7 @@ TEST(ImageRays, HaveTheSpotsOfOutlines) {
     const Lens lens = compile(prescription);
     const double f = std::abs(thick_lens(lens).rear_focal_length), film_z = lens.film_z() + 0.01 * f;
     for (const std::size_t rays : {256, 1024}) {
-      // The fisheye's spot has few rays far from most: from .0244 to .0251 mm with 256, .0248 mm with 65536.
+      // The spot of the fisheye has a few distant rays: 0.0244 to 0.0251 mm with 256 rays, 0.0248 mm with 65536.
       const double relative = rays == 256 ? 0.015 : 0.01;
       const ImageRays bundles(lens, 0.4 * f, rays);
       for (const double field : {0.0, 0.5, 0.9}) {

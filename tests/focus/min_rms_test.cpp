@@ -104,8 +104,8 @@ TEST(MinRms, OfTheDoubleGaussLiesWhereAnIndependentTraceFoundIt) {
   EXPECT_NEAR(difference_um(1000), 76, 2.5);
   EXPECT_NEAR(difference_um(10000), -37, 0.5);
   EXPECT_NEAR(difference_um(infinity), -53, 0.5);
-  // There the image of least RMS becomes virtual at 55 mm, before the paraxial one at 54.245 mm: the film has passed
-  // its farthest place.
+  // At 55 mm the image of least RMS becomes virtual, before the paraxial image at 54.245 mm, as the film has passed its
+  // farthest position.
   const double nearest = nearest_focus(lens, {min_rms}).distance;
   EXPECT_GT(nearest, 55);
   EXPECT_LT(nearest, 57);
@@ -132,7 +132,7 @@ TEST(MinRms, IsSmoothInTheDistance) {
   const Lens lens = data_lens("double_gauss_100mm_f1.35");
   std::vector<double> films;
   for (int i = 0; i < 40; ++i) films.push_back(solve_focus(lens, 1000 + 0.01 * i, {min_rms}).film_z);
-  // The step is so small that third differences are noise.
+  // Third differences are noise at this step.
   for (std::size_t i = 0; i + 3 < films.size(); ++i) {
     EXPECT_NEAR(films[i + 3] - 3 * films[i + 2] + 3 * films[i + 1] - films[i], 0, 1e-10);
   }
@@ -150,7 +150,7 @@ TEST(MinRms, WithoutAnyRimIsAnError) {
   Prescription p = testing::open_singlet();
   p.name = "endless";
   expect_error([&] { solve_focus(compile(p), 1000, {min_rms}); }, {"endless", "semi_diameter"});
-  // Any rim limits the beam, marked as stop or not.
+  // Every rim limits the beam, with or without the mark of the stop.
   p.surfaces[1].semi_diameter = 5;
   p.surfaces[0].stop = false;
   EXPECT_EQ(solve_focus(compile(p), 1000, {min_rms}).status, Status::solved);

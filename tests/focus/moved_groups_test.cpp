@@ -20,8 +20,8 @@ using petzval::testing::expect_error;
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
-/// Two thin groups, in air and 20 mm apart at infinity: the first one moves forward to focus, the film keeps its
-/// distance from the second.
+/// Two thin groups in air, 20 mm apart at infinity focus. The first group moves forward to focus, and the film keeps
+/// its distance from the second group.
 Prescription front_focusing() {
   Prescription p;
   p.name = "groups";

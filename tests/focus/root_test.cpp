@@ -32,7 +32,7 @@ TEST(Root, IsWhereTheSignChanges) {
   EXPECT_EQ(root([](double x) { return x; }, 0, 1).at, 0);
 }
 
-// It looks straight there, with a root at the next number.
+// The function looks linear, with a root at the next number.
 TEST(Root, TakesFewStepsBeforeAJump) {
   for (const double small : {1e-3, 1e-9, 1e-15, 1e-30}) {
     const auto jump = [small](double x) { return x < 0.3 ? -small * (1 + 1e-3 * (0.3 - x)) : 1e9; };

@@ -11,9 +11,9 @@
 
 namespace petzval::fuzz {
 
-/// Numbers made of the bytes of a fuzzer; zeros when the bytes end. A byte more or less changes what follows, so few
-/// bytes stand for each number. Compilers choose the order of a call's arguments: at most one of them asks for bytes,
-/// so that an input is the same work everywhere. Between braces the order is that of the text.
+/// Numbers made of the bytes of a fuzzer; zeros after the last byte. Few bytes are used per number, as an inserted byte
+/// changes all further numbers. Compilers choose the order in which arguments are evaluated, so at most one argument of
+/// a call may take bytes. In braces the order is fixed.
 class Bytes {
  public:
   Bytes(const std::uint8_t* data, std::size_t size) noexcept : left_(data, size) {}
@@ -26,16 +26,16 @@ class Bytes {
     left_ = left_.subspan(1);
     return first;
   }
-  /// least to most, both included, at most 256 of them.
+  /// An integer from least to most, both included, of at most 256 values.
   int count(int least, int most) noexcept { return least + byte() % (most - least + 1); }
   bool one_in(int n) noexcept { return byte() % n == n - 1; }
 
-  /// From least to most in 2^16 steps.
+  /// A number from least to most in 2^16 steps.
   double between(double least, double most) noexcept {
     const int high = byte(), low = byte();
     return least + (most - least) * (high * 256 + low) / 65535;
   }
-  /// Any double: a number that is known to be hard, a power of ten, or eight bytes as they are.
+  /// Any double: a known hard number, a power of ten, or eight raw bytes.
   double wild() noexcept {
     constexpr double infinity = std::numeric_limits<double>::infinity();
     constexpr std::array hard{
@@ -52,7 +52,7 @@ class Bytes {
     for (int i = 0; i < 8; ++i) bits = bits << 8 | byte();
     return std::bit_cast<double>(bits);
   }
-  /// Mostly from least to most; one in sixteen is wild.
+  /// A number from least to most; every sixteenth is any double.
   double number(double least, double most) noexcept { return byte() < 16 ? wild() : between(least, most); }
 
  private:

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Any calls of some cameras, which are built once: samples, importance, connections and projections of any numbers.
+// Calls of cameras that are built once: samples, importance, connections and projections with any numbers.
 #include <array>
 #include <cmath>
 #include <functional>
@@ -24,7 +24,7 @@ Camera focused(const char* id, const CameraOptions& options, const Film& film, c
   return {with_focus(with_iris(fuzz::coloured(id), iris), 10000), film, options};
 }
 
-/// Each kind of model, of pupil and of film.
+/// Cameras with each kind of model, pupil and film.
 const Camera& some_camera(fuzz::Bytes& bytes) {
   using Make = std::function<Camera()>;
   constexpr const char *usual = "double_gauss_100mm_f2.0", *wide = "fisheye_8mm_f2.8", *flat = "anamorphic_60mm_2x";
@@ -95,8 +95,8 @@ Vec3<double> wild_direction(fuzz::Bytes& bytes) {
   return {x, y, std::sqrt(1 - x * x - y * y)};
 }
 
-/// Within rounding, in the precision of the model. Rays at an edge may have either fate. A film point may count as on
-/// the axis in float and not in double: its pupil's polygon then turns by a part of a sector.
+/// Checks equality up to rounding in the precision of the model. Rays at an edge may have either fate. A film point may
+/// be on the axis in float and off it in double, which rotates its pupil polygon by a fraction of a sector.
 void alike(const CameraRay& one, const Ray<double>& other, double weight) {
   constexpr double rounding = 1e-2;
   if (!one || !(weight > 0)) return;
@@ -166,10 +166,10 @@ void connections(const Camera& camera, fuzz::Bytes& bytes) {
   if (found) {
     const double again = camera.pdf_importance(point, found.direction, wavelength);
     fuzz::require(fuzz::density(again), "the density of a direction is a number");
-    // From far away rays are too rough to be told.
+    // Rays from far away are too inaccurate to compare.
     constexpr double farthest = 1e9;  // mm
     const bool near = glm::length(point) < farthest;
-    // Densities step between the 64 sectors of a pupil, which meet in its middle.
+    // Densities have steps between the 64 sectors of a pupil, which meet in its centre.
     const double in_sector = 64 * u - std::floor(64 * u);
     const bool inside = u > 0 && u < 1 && in_sector > 1e-6 && in_sector < 1 - 1e-6 && v > 1e-6 && v < 1 - 1e-6;
     if (near && inside && camera.model() != ModelKind::pinhole) {
@@ -182,7 +182,7 @@ void connections(const Camera& camera, fuzz::Bytes& bytes) {
       fuzz::require(std::abs(met.we - found.importance.we) <= 1e-3 * met.we, "a connection has its ray's importance");
     }
   }
-  constexpr double as_given = 1.001e-3;  // what cameras take for unit length
+  constexpr double as_given = 1.001e-3;  // accepted deviation from unit length
   fuzz::check(camera.sample_distant_importance(direction, u, v, wavelength, time), as_given);
   fuzz::require(fuzz::density(camera.pdf_importance(point, direction, wavelength)),
                 "the density of a direction is a number");

@@ -8,7 +8,7 @@
 #include "laws.hpp"
 #include "petzval/camera/camera.hpp"
 
-/// What every answer of a camera keeps.
+/// Laws for all results of a camera.
 namespace petzval::fuzz {
 
 inline bool finite(const FilmPoint& point) noexcept { return std::isfinite(point.x) && std::isfinite(point.y); }
@@ -24,7 +24,7 @@ inline void check(const CameraRay& ray) {
   require(unit(ray.ray.direction, 2e-5), "a camera ray has unit length");
 }
 
-/// Of samples that were run.
+/// Checks the results of samples.
 template <class T>
 void check(const testing::Samples<T>& samples) {
   for (std::size_t i = 0; i < samples.size(); ++i) {
@@ -42,7 +42,7 @@ inline void check(const Importance& found) {
   require(finite(found.film) && finite(found.raster), "a ray with importance meets the film");
 }
 
-/// rounding: of |direction|^2.
+/// rounding: tolerance of |direction|^2.
 inline void check(const ImportanceSample& found, double rounding) {
   check(found.importance);
   require(density(found.pdf), "the density of a connection is finite and not negative");

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Any lens: first-order optics is infinite where it has to be, and never not a number.
+// Any lens: first-order data may be infinite, but never NaN.
 #include "petzval/paraxial/first_order.hpp"
 
 #include <initializer_list>

@@ -16,7 +16,7 @@ inline Lens coloured(const char* id) {
                  {.missing_glass = MissingGlass::abbe});
 }
 
-/// Of those lenses: the default, a position or one too many, or any in nm.
+/// A wavelength for these lenses: the default, an index that may be one too large, or any number of nm.
 inline Wavelength wild_wavelength(Bytes& bytes) {
   const int kind = bytes.byte();
   if (kind < 128) return {};

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Any lens: focus by every criterion, and what follows from it.
+// Any lens: focus by every criterion, and derived results.
 #include "petzval/focus/focus.hpp"
 
 #include "laws.hpp"
@@ -20,7 +20,7 @@ void check(const FocusSolution& found) {
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   fuzz::Bytes bytes(data, size);
   fuzz::done([&] {
-    const int exact = bytes.byte();  // few, as they trace thousands of rays
+    const int exact = bytes.byte();  // rare, as they trace thousands of rays
     FocusOptions options{.criterion = exact < 16    ? FocusCriterion::min_max
                                       : exact < 64  ? FocusCriterion::min_rms
                                       : exact < 160 ? FocusCriterion::paraxial

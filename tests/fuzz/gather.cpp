@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Small pictures of any layers through any rays: finite, and on the whole those of the reference.
+// Small images of any layers through any rays: finite, and close to the reference.
 #include "blur/gather_way.hpp"
 
 #include <algorithm>
@@ -33,7 +33,7 @@ FragmentLists wild_lists(fuzz::Bytes& bytes, int columns, int rows, bool tame) {
   return lists;
 }
 
-/// A thin lens, or a line for each point and place that no lens has.
+/// A thin lens, or random lines for every point and position.
 LensRays wild_rays(fuzz::Bytes& bytes, const LayerCamera& camera, bool tame) {
   const int sets = bytes.one_in(8) ? 4 : 1, kind = bytes.count(0, 3);
   const int count = sets * bytes.count(1, 6);
@@ -48,12 +48,12 @@ LensRays wild_rays(fuzz::Bytes& bytes, const LayerCamera& camera, bool tame) {
     return LensRays::thin(camera, lens, points, options);
   }
   const double slope = number(-2000, 2000), turn = number(-30, 30), weight = number(0, 1);
-  const double least = weight < 0.25 ? 0 : 1;  // 0: a lens that leaves pixels nearly dark
+  const double least = weight < 0.25 ? 0 : 1;  // 0 gives nearly dark pixels
   return LensRays(
       camera, points, 1,
       [=](int, const Vec2<double>& raster, std::span<const PupilPoint> at, std::span<LayerRay> found) {
         for (std::size_t i = 0; i < at.size(); ++i) {
-          found[i].at = raster + Vec2<double>{0.0137, 0.0291};  // not between two pixels
+          found[i].at = raster + Vec2<double>{0.0137, 0.0291};  // off the borders of pixels
           found[i].slope = {slope * at[i].u + turn * raster.y, slope * at[i].v - turn * raster.x};
           found[i].weight = least + weight * at[i].v;
         }
@@ -61,7 +61,7 @@ LensRays wild_rays(fuzz::Bytes& bytes, const LayerCamera& camera, bool tame) {
       options);
 }
 
-/// Of bounded pictures without the pixels in which rays met nothing: what is guessed for those depends on the bounds.
+/// Difference of bounded images, without pixels whose rays met no surface, as their guesses depend on the bounds.
 double mean_difference(const Blurred& a, const Blurred& b, bool bounded) {
   double sum = 0;
   for (std::size_t i = 0; i < a.rgba.size(); ++i) {
@@ -90,7 +90,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     const LayerCamera camera = layer_camera(columns, rows, bytes.between(0.3, 1.2));
     const LensRays rays = wild_rays(bytes, camera, tame);
     const PeelPlan plan = plan_peel(rays, 450, infinity);
-    if (plan.camera.overscan > 40) return;  // larger pictures, and no other work
+    if (plan.camera.overscan > 40) return;  // larger images do no other work
     LayerSet layers;
     const FragmentLists lists = wild_lists(bytes, plan.camera.layer_columns(), plan.camera.layer_rows(), tame);
     const double bias = bytes.one_in(2) ? plan.bias : 0;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Glass files of every format: an index is finite, or it is refused.
+// Glass files of every format: an index is finite or refused.
 #include "petzval/formats/glass_files.hpp"
 
 #include "laws.hpp"

@@ -11,15 +11,14 @@
 
 namespace petzval::fuzz {
 
-/// Ends the program with the law that is broken: a fuzzer keeps the input.
+/// Aborts with the broken law, so that the fuzzer keeps the input.
 inline void require(bool holds, const char* law) {
   if (holds) return;
   std::fprintf(stderr, "broken law: %s\n", law);
   std::abort();
 }
 
-/// Does work that may be refused: by Error, in one line of at most 1000 bytes, and by nothing else. Whether it was
-/// done.
+/// Runs work that may throw Error with one line of at most 1000 bytes, and nothing else. True if it did not throw.
 bool done(const auto& work) {
   try {
     work();
@@ -44,7 +43,7 @@ template <class T>
 bool finite(const Ray<T>& ray) noexcept {
   return finite(ray.origin) && finite(ray.direction);
 }
-/// Whether a direction has unit length, as far as rounding of `eps` allows.
+/// True if a direction has unit length within a rounding error of `eps`.
 template <class T>
 bool unit(const Vec3<T>& v, double eps) noexcept {
   const double x = v.x, y = v.y, z = v.z;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Lens files of every format: what is read is a valid lens, and this library's own JSON keeps it to the byte.
+// Lens files of every format: a lens that is read is valid, and the JSON of the library reproduces it to the byte.
 #include "petzval/formats/lens_file.hpp"
 
 #include "laws.hpp"

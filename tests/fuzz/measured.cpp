@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A target as libFuzzer calls it, with the time of its slowest input, which libFuzzer itself tells in whole seconds.
+// A target for libFuzzer with the time of its slowest input; libFuzzer itself reports whole seconds.
 #include <algorithm>
 #include <chrono>
 #include <cstddef>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// EXR, PNG and PFM files, flat and deep: numbers of the size that the file says, or an Error.
+// EXR, PNG and PFM files, flat and deep: as many values as the file states, or an Error.
 #include "petzval/blur/layers.hpp"
 #include "petzval/image/deep_exr.hpp"
 #include "petzval/image/image.hpp"
@@ -14,7 +14,7 @@
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace petzval;
   static const fuzz::ScratchFile file(".picture");
-  // Nobody guesses the checksums of a PNG.
+  // Fuzzers cannot guess the checksums of a PNG.
   const std::string read(reinterpret_cast<const char*>(data), size);
   const std::string bytes = read.starts_with("\x89PNG") ? testing::with_checksums(read) : read;
   const auto& path = file.holding(bytes);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Pictures of a few pixels, by this library's own writers.
+// Images of a few pixels, written by the library.
 #include "petzval/image/deep_exr.hpp"
 #include "petzval/image/image.hpp"
 #include "petzval/image/psf_set_exr.hpp"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Pictures of point lights through any lens.
+// Images of point lights through any lens.
 #include "petzval/analysis/psf.hpp"
 
 #include <array>

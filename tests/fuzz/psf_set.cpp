@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Parts of PSF sets with entries that were changed: a kernel comes back bit for bit, or the part is refused.
+// Parts of PSF sets with changed entries: a kernel keeps every bit, or the part is refused.
 #include "petzval/image/psf_set_exr.hpp"
 
 #include <string>
@@ -25,7 +25,7 @@ PsfKernel kernel_of(fuzz::Bytes& bytes) {
   return kernel;
 }
 
-/// Changes an entry. Of the checksum too, which nobody guesses: what stands behind it is met by the kernels above.
+/// Changes an entry and updates the checksum, which fuzzers cannot guess.
 void damage(ExrPart& part, fuzz::Bytes& bytes) {
   const auto some = [&](auto& map) { return std::next(map.begin(), bytes.byte() % static_cast<long>(map.size())); };
   switch (bytes.count(0, 7)) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Files of ray polynomials: they come back to the byte, and their rays are finite.
+// Files of ray polynomials: they round-trip to the byte, and their rays are finite.
 #include "petzval/polynomial/ray_polynomial.hpp"
 
 #include <array>

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-// The fuzz targets without a fuzzer, for the tests of every build:
+// Runs fuzz targets without a fuzzer, for the tests of every build:
 //
-//     fuzz_replay TARGET              its seeds, cut off and changed, the same on every machine;
-//                                     an input that fails is kept in crash-TARGET
-//     fuzz_replay TARGET FILE...      inputs that a fuzzer has kept
-//     fuzz_replay TARGET --random N SEED   N inputs: random bytes, changes of seeds and of what took long;
-//                                     the slowest is kept in slowest-TARGET, one that fails in crash-TARGET
-//     fuzz_replay --list              a target, its libFuzzer program and its largest input a line
-//     fuzz_replay --write-seeds DIR   the seeds of each target in a folder of its own
+//     fuzz_replay TARGET              its seeds, truncated and changed, equal on every machine;
+//                                     failing inputs are kept in crash-TARGET
+//     fuzz_replay TARGET FILE...      inputs kept by a fuzzer
+//     fuzz_replay TARGET --random N SEED   N inputs: random bytes, changes of seeds and of slow inputs;
+//                                     the slowest is kept in slowest-TARGET, failing ones in crash-TARGET
+//     fuzz_replay --list              a line with target, libFuzzer program and largest input each
+//     fuzz_replay --write-seeds DIR   the seeds of each target in its own folder
 #include <algorithm>
 #include <chrono>
 #include <csignal>
@@ -27,11 +27,11 @@ namespace {
 
 using petzval::fuzz::Target;
 
-/// The input that runs, for the handler of a crash.
+/// The current input, for the crash handler.
 const std::string* current = nullptr;
 std::string kept_in;
 
-/// Keeps the input as fuzzers do.
+/// Keeps the input in a file like fuzzers.
 void keep_input(int signal) {
   std::signal(signal, SIG_DFL);
   if (current != nullptr) std::ofstream(kept_in, std::ios::binary) << *current;
@@ -43,7 +43,7 @@ void run(const Target& target, const std::string& input) {
   target.function(reinterpret_cast<const std::uint8_t*>(input.data()), input.size());
 }
 
-/// One to four changes: a byte, a piece that goes, comes twice or comes from elsewhere.
+/// Makes one to four changes: a byte, or a piece that is removed, repeated or taken from another input.
 std::string changed(std::string text, const std::vector<std::string>& seeds, std::mt19937& engine) {
   static constexpr std::string_view hard = "0123456789.-+eE\t\n ;\"/[]{}:,xN";
   const auto below = [&](std::size_t n) { return n == 0 ? 0 : engine() % n; };
@@ -64,11 +64,11 @@ std::string changed(std::string text, const std::vector<std::string>& seeds, std
 
 std::string bytes_of(const std::filesystem::path& file) {
   std::ifstream stream(file, std::ios::binary);
-  if (!stream) throw petzval::Error(file.string() + ": cannot be read, wanted an input");
+  if (!stream) throw petzval::Error(file.string() + ": cannot be read; must be an input");
   return {std::istreambuf_iterator<char>(stream), {}};
 }
 
-/// With the inputs that have failed once, in seeds/failed.
+/// Includes earlier failures, in seeds/failed.
 std::vector<std::string> seeds_of(const Target& target) {
   std::vector<std::string> seeds = target.seeds();
   const auto folder = std::filesystem::path(PETZVAL_FUZZ_SEEDS) / "failed" / target.name;
@@ -82,7 +82,7 @@ std::vector<std::string> seeds_of(const Target& target) {
 
 void run_fixed(const Target& target) {
   const std::vector<std::string> seeds = seeds_of(target);
-  std::mt19937 engine(7);  // its numbers are those of every compiler
+  std::mt19937 engine(7);  // equal numbers with every compiler
   run(target, "");
   for (const std::string& seed : seeds) run(target, seed);
   for (int i = 0; i < target.changed_seeds; ++i) {
@@ -91,7 +91,7 @@ void run_fixed(const Target& target) {
   }
 }
 
-/// A quarter of the bytes are 0: numbers of them are simple.
+/// A quarter of the bytes are 0, which gives simple numbers.
 std::string random_text(std::size_t largest, std::mt19937& engine) {
   std::string text(std::min<std::size_t>(40 + engine() % 300, largest), '\0');
   for (char& byte : text) {

@@ -10,7 +10,7 @@
 
 namespace petzval::fuzz {
 
-/// A file of this process, in memory where the system has a file system there, for readers that take no bytes.
+/// A file of this process for readers that take paths only; in memory if the system has such a file system.
 class ScratchFile {
  public:
   explicit ScratchFile(std::string_view ending) {

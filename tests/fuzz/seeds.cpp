@@ -22,13 +22,13 @@ using Texts = std::vector<std::string>;
 
 std::string bytes_of(const fs::path& file) {
   std::ifstream stream(file, std::ios::binary);
-  if (!stream) throw Error(file.string() + ": cannot be read, wanted a seed");
+  if (!stream) throw Error(file.string() + ": cannot be read; must be a seed");
   return {std::istreambuf_iterator<char>(stream), {}};
 }
 std::string seed(const char* name) { return bytes_of(fs::path(PETZVAL_FUZZ_SEEDS) / name); }
 std::string sample(const char* name) { return bytes_of(fs::path(PETZVAL_TEST_SAMPLES) / name); }
 
-/// Lenses that together have spheres, cylinders, mirrors, obscurations, aspheres, configurations and media other than
+/// Lenses that together cover spheres, cylinders, mirrors, obscurations, aspheres, configurations and media other than
 /// air.
 std::vector<Prescription> small_lenses() {
   std::vector<Prescription> result;
@@ -81,7 +81,7 @@ Texts all_lens_texts() {
     const Texts some = texts();
     result.insert(result.end(), some.begin(), some.begin() + 1);
   }
-  std::string wide = "\xff\xfe";  // UTF-16, as Zemax writes it
+  std::string wide = "\xff\xfe";  // UTF-16, as written by Zemax
   for (const char c : result[1]) wide += {c, '\0'};
   result.push_back(wide);
   return result;
@@ -107,7 +107,7 @@ Texts obj_texts() { return {seed("mesh.obj")}; }
 
 Texts random_bytes() {
   Texts result;
-  std::mt19937 engine(1);  // its numbers are those of every compiler
+  std::mt19937 engine(1);  // equal numbers with every compiler
   for (int i = 0; i < 24; ++i) {
     std::string bytes;
     for (int k = 0; k < 64 + 16 * i; ++k) bytes += static_cast<char>(engine() & 255);

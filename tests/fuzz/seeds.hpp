@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
-/// Where fuzzing starts: lenses of data/, small, in every format that is written here; texts of tests/fuzz/seeds and
-/// tests/formats/samples in the others; pictures of a few pixels; bytes for targets that make lenses of them.
+/// Seeds of fuzzing: small lenses of data/ in every format with a writer; texts of tests/fuzz/seeds and
+/// tests/formats/samples in other formats; images of a few pixels; bytes for targets that make lenses of bytes.
 namespace petzval::fuzz {
 
 std::vector<std::string> own_json();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Any calls of tables that are built once: pupils of films, polynomials, distortions and focal surfaces.
+// Calls of tables that are built once: film pupils, polynomials, distortions and focal surfaces.
 #include <array>
 #include <cmath>
 #include <cstdint>
@@ -20,7 +20,7 @@ namespace {
 using namespace petzval;
 
 constexpr std::size_t count = 5;
-constexpr double radius = 15;  // mm, of all films
+constexpr double radius = 15;  // radius of all films, mm
 
 template <class T>
 const T& one_of(const std::vector<T>& all, fuzz::Bytes& bytes) {
@@ -32,7 +32,8 @@ FilmPoint wild_place(fuzz::Bytes& bytes) {
   return {x, y};
 }
 
-/// Strips, with an obscuration too, cells, a bladed iris, images of one, discs, a rim, and two of tilted films.
+/// Tables of strips, with and without an obscuration, of cells, a bladed iris, images of an iris, discs, a rim, and two
+/// tilted films.
 std::vector<FilmPupilTable> pupil_tables() {
   const Lens usual = fuzz::coloured("double_gauss_100mm_f2.0"), flat = fuzz::coloured("anamorphic_60mm_2x");
   const FilmPupilTable strips = FilmPupilTable::enclosing(usual, radius),
@@ -75,7 +76,7 @@ void samples(const FilmPupilTable& table, fuzz::Bytes& bytes) {
                   "a sample of a pupil is finite");
     if (!(one.area > 0)) continue;
     const Vec2<double> at = table.position(film[i], one.x, one.y, wavelength);
-    constexpr double fold = 0.02;  // of a bladed iris, at whose corners sectors of interpolated polygons may overlap
+    constexpr double fold = 0.02;  // sectors of interpolated polygons may overlap at corners of a bladed iris
     fuzz::require(fuzz::finite(at) && at.x >= 0 && at.x <= 1 && at.y >= 0 && at.y <= 1 + fold,
                   "a sample lies within its pupil");
   }
@@ -99,7 +100,7 @@ void places(const FilmPupilTable& table, fuzz::Bytes& bytes) {
     const FilmPoint film{n[0][i], n[1][i]};
     const bool one = table.contains(film, n[2][i], n[3][i], wavelength);
     fuzz::require(clearances[i] >= -1 && clearances[i] <= 1, "a clearance is -1 to 1");
-    // Beside edges, and where the way to the middle of a polygon is a denormal number.
+    // Skips points next to edges, and at denormal distances from the centre of a polygon.
     constexpr double edge = 1e-9;
     const Vec2<double> middle = table.middle(film, wavelength);
     const bool in_the_middle = std::hypot(n[2][i] - middle.x, n[3][i] - middle.y) < 1e-300;

@@ -10,17 +10,17 @@
 
 namespace petzval::fuzz {
 
-/// A function to be fuzzed, and where it starts.
+/// A function to be fuzzed, and its seeds.
 struct Target {
   std::string_view name;
-  std::string_view program;  ///< its libFuzzer program, which several targets may share
+  std::string_view program;  ///< libFuzzer program; several targets may share it
   int (*function)(const std::uint8_t* data, std::size_t size);
-  std::vector<std::string> (*seeds)();  ///< inputs that reach far
-  std::size_t largest;                  ///< input, bytes
-  int changed_seeds;                    ///< that the test of every build runs
+  std::vector<std::string> (*seeds)();  ///< inputs that reach deep code
+  std::size_t largest;                  ///< largest input, bytes
+  int changed_seeds;                    ///< number run by the test of every build
 };
 
-/// All of them: files first, then those that make lenses of bytes.
+/// All targets: files first, then targets that make lenses of bytes.
 std::span<const Target> targets();
 
 }  // namespace petzval::fuzz

@@ -18,9 +18,9 @@ namespace {
 using namespace petzval;
 
 constexpr std::size_t count = 9;   // more than a register of AVX-512 holds in double
-constexpr double farthest = 1e15;  // mm; where rims end all rays, unless they are ignored
+constexpr double farthest = 1e15;  // mm; beyond it rims end all rays unless apertures are ignored
 
-/// From any place near the lens, mostly in the direction of travel.
+/// Rays from anywhere near the lens, mostly in the direction of travel.
 Ray<double> wild_ray(fuzz::Bytes& bytes, const Lens& lens, Travel travel) {
   const double z = travel == Travel::to_film ? 0 : lens.surfaces().back().vertex_z;
   Ray<double> ray{{bytes.number(-10, 10), bytes.number(-10, 10), z + bytes.number(-20, 20)}, {0, 0, 1}};
@@ -75,14 +75,13 @@ void one_against_batches(const Lens& lens, const std::array<Ray<double>, count>&
   }
 }
 
-/// How far the end of a ray is from that of another.
+/// Distance between the ends of two rays.
 double apart(const Ray<double>& a, const Ray<double>& b) {
   return glm::length(a.origin - b.origin) + glm::length(a.direction - b.direction);
 }
 
-/// A ray in float ends where one in double does, within 1000 times what an eps of float in any number of the ray moves
-/// the end, and 1000 eps of the numbers themselves. Constants of a lens are rounded too, which is as good as another
-/// ray in front of that surface.
+/// Checks that a float ray ends like the double ray within 1000 times the effect of one float eps in any number of the
+/// ray, plus 1000 eps. Rounding of the constants of the lens is equivalent to another ray in front of the surface.
 void float_against_double(const Lens& lens, const Ray<double>& wanted, const TraceOptions& options) {
   constexpr double eps = std::numeric_limits<float>::epsilon();
   const Ray<float> narrow = rounded<float>(wanted);
@@ -95,7 +94,7 @@ void float_against_double(const Lens& lens, const Ray<double>& wanted, const Tra
   if (std::ranges::any_of(lens.surfaces(), [](const LensSurface& s) { return std::abs(s.curvature) > most_curved; })) {
     return;
   }
-  bool beyond = false;  // the rim of an asphere, where any crossing will do
+  bool beyond = false;  // at the rim of an asphere any crossing is accepted
   trace<double>(lens, wide, options, [&](int i, const Vec3<double>& hit) {
     const LensSurface& surface = lens.surfaces()[static_cast<std::size_t>(i)];
     beyond |= !surface.aspheric.empty() && !(std::hypot(hit.x, hit.y) <= surface.semi_diameter);
@@ -108,7 +107,7 @@ void float_against_double(const Lens& lens, const Ray<double>& wanted, const Tra
     double& number = k < 6 ? beside.origin[k / 2] : beside.direction[k / 2 - 3];
     number += (k % 2 ? eps : -eps) * std::max(std::abs(number), 1.0);
     const TracedRay<double> end = trace(lens, beside, options);
-    if (!end.transmitted()) return;  // at an edge, where a ray may do anything
+    if (!end.transmitted()) return;  // at an edge any end is accepted
     moved += apart(end.ray, in_double.ray);
   }
   const Ray<double> end{Vec3<double>(in_float.ray.origin), Vec3<double>(in_float.ray.direction)};

@@ -14,7 +14,7 @@
 
 namespace petzval::fuzz {
 
-/// A row of any kind, mostly of numbers that lenses have.
+/// A random surface of any kind, mostly with plausible numbers.
 inline SurfaceRow wild_row(Bytes& bytes, bool in_glass) {
   SurfaceRow row;
   const int kind = bytes.byte();
@@ -41,7 +41,7 @@ inline SurfaceRow wild_row(Bytes& bytes, bool in_glass) {
   return row;
 }
 
-/// A lens of 1 to 40 surfaces that nobody has designed.
+/// A random lens of 1 to 40 surfaces.
 inline Prescription invented_lens(Bytes& bytes) {
   Prescription p;
   p.name = "invented";
@@ -58,7 +58,7 @@ inline Prescription invented_lens(Bytes& bytes) {
   return p;
 }
 
-/// A lens of data/lenses with up to four numbers that do not belong to it.
+/// A lens of data/lenses with up to four changed numbers.
 inline Prescription damaged_lens(Bytes& bytes) {
   static const std::vector<Prescription> lenses = testing::data_prescriptions();
   Prescription p = lenses[bytes.byte() % lenses.size()];
@@ -84,7 +84,7 @@ inline Prescription wild_prescription(Bytes& bytes) {
   return bytes.one_in(2) ? damaged_lens(bytes) : invented_lens(bytes);
 }
 
-/// That lens at one wavelength or three, with blades sometimes. Throws Error where it cannot be built.
+/// The lens at one or three wavelengths, sometimes with blades. Throws Error if it cannot be compiled.
 inline Lens wild_lens(Bytes& bytes) {
   const Prescription p = wild_prescription(bytes);
   constexpr std::array several{d_line_nm, 486.1327, 656.2725};

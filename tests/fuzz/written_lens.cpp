@@ -15,7 +15,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   fuzz::Bytes bytes(data, size);
   const int work = bytes.count(0, 7);
   Prescription lens = fuzz::wild_prescription(bytes);
-  for (SurfaceRow& row : lens.surfaces) {  // JSON has no infinity: unlimited is none
+  for (SurfaceRow& row : lens.surfaces) {  // JSON has no infinity; unlimited rims are left out
     if (row.semi_diameter && std::isinf(*row.semi_diameter)) row.semi_diameter.reset();
   }
   if (!fuzz::done([&] { validate(lens, "x"); })) return 0;

@@ -37,7 +37,7 @@ FragmentLists some_lists(int columns, int rows) {
   std::uniform_real_distribution<float> number(0, 1);
   FragmentLists lists{.columns = columns, .rows = rows, .offsets = {0}, .fragments = {}};
   for (int i = 0; i < columns * rows; ++i) {
-    for (int k = static_cast<int>(5 * number(engine)); k > 0; --k) {  // in no order, some empty
+    for (int k = static_cast<int>(5 * number(engine)); k > 0; --k) {  // unsorted, some empty
       const float alpha = number(engine);
       lists.fragments.push_back({number(engine) < 0.1f ? infinity : 1e4f * number(engine) + 1e-3f, 50 * number(engine),
                                  -number(engine), 1e-30f, alpha});
@@ -165,7 +165,7 @@ TEST(Pfm, ComesBack) {
   write_pfm(3, 2, grey, file);
   const RgbImage back = read_pfm(file);
   for (std::size_t i = 0; i < 6; ++i) EXPECT_EQ(back.pixels[3 * i + 2], grey[i]);
-  // The other order of bytes.
+  // The opposite byte order.
   write_bytes(file, std::string("Pf\n1 1\n1.0\n") + "\x3f\x80" + std::string(2, '\0'));
   EXPECT_EQ(read_pfm(file).pixels[0], 1);
 }

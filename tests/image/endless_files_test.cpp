@@ -47,7 +47,7 @@ const std::vector<std::pair<std::string, Read>> of_bytes = {
     {"spectrum", [](const fs::path& file) { Spectrum::load(file); }},
     {"colour matching functions", [](const fs::path& file) { ColourMatching::load(file); }},
 };
-/// Readers of pictures, whose heads say how much is to be read.
+/// Image readers; the header states the size to read.
 const std::vector<std::pair<std::string, Read>> of_pictures = {
     {"PFM", [](const fs::path& file) { read_pfm(file); }},
     {"PNG", [](const fs::path& file) { read_png(file); }},

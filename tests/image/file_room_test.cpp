@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Heads of pictures that claim more than their files hold are refused before memory is taken.
+// Image headers that claim more data than the file holds are refused before memory is allocated.
 #include "image/file_room.hpp"
 
 #include <gtest/gtest.h>
@@ -31,10 +31,11 @@ void write_bytes(const std::filesystem::path& file, const std::string& bytes) {
   std::ofstream(file, std::ios::binary) << bytes;
 }
 
-/// An EXR file whose data window begins at 0 and is so wide.
+/// An EXR file with a data window from 0 of this width.
 std::string with_width(std::string exr, std::uint32_t width) {
   const std::string key = "dataWindow";
-  const std::size_t most_x = exr.find(key) + key.size() + 1 + 6 + 4 + 8;  // its type, "box2i", size, and two numbers
+  const std::size_t most_x =
+      exr.find(key) + key.size() + 1 + 6 + 4 + 8;  // after its type, "box2i", the size and two numbers
   for (std::size_t i = 0; i < 4; ++i) exr[most_x + i] = static_cast<char>((width - 1) >> (8 * i) & 255);
   return exr;
 }
@@ -57,7 +58,7 @@ TEST(FileRoom, IsAskedByEveryReaderOfPictures) {
   write_bytes(file, with_width(bytes_of(file), 10'000'000));
   expect_error([&] { read_exr(file); }, {file, 60000000});
 
-  // OpenEXR reads 16 bytes, whatever the head says, and takes what follows for the next attribute.
+  // OpenEXR reads 16 bytes in any case and takes the following bytes for the next attribute.
   write_exr(RgbImage(3, 2), file);
   std::string longer = bytes_of(file);
   longer[longer.find("box2i") + 6] = 17;
@@ -68,8 +69,7 @@ TEST(FileRoom, IsAskedByEveryReaderOfPictures) {
   write_bytes(deep, with_width(bytes_of(deep), 10'000'000));
   expect_error([&] { read_deep_exr(deep); }, {deep, 10000000, 1});
 
-  // The same for its samples. Behind the place of the only row in the file: its number, three sizes, the table of
-  // counts.
+  // Likewise for the samples. The only row consists of its number, three sizes and the table of counts.
   write_deep_exr({.columns = 1, .rows = 1, .offsets = {0, 1}, .fragments = {{.depth_mm = 5}}}, deep);
   std::string counted = bytes_of(deep);
   std::uint64_t place = 0, size = 0;
@@ -81,7 +81,7 @@ TEST(FileRoom, IsAskedByEveryReaderOfPictures) {
   write_bytes(deep, counted);
   expect_error([&] { read_deep_exr(deep); }, {deep, 2000000, 0});
 
-  // Before that, more than any file may have.
+  // Sizes beyond any file are refused first.
   write_deep_exr({.columns = 1, .rows = 1, .offsets = {0, 1}, .fragments = {{.depth_mm = 5}}}, deep);
   write_bytes(deep, with_width(bytes_of(deep), 1 << 28));
   expect_error([&] { read_deep_exr(deep); }, {268435456, 1});
@@ -91,7 +91,7 @@ TEST(FileRoom, IsAskedByEveryReaderOfPictures) {
 
   write_png({3, 1, {0, 128, 255, 10, 188, 64, 255, 255, 255}}, png);
   std::string bytes = bytes_of(png);
-  bytes[18] = bytes[22] = 0x1f;  // of the width and the height
+  bytes[18] = bytes[22] = 0x1f;  // width and height
   write_bytes(png, testing::with_checksums(bytes));
   expect_error([&] { read_png(png); }, {png});
 

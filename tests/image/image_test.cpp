@@ -116,7 +116,7 @@ TEST_F(ImageFiles, ExrKeepsMarginsPairsAndStandardFloats) {
   for (const std::size_t count : {1u, 2u}) {
     write_exr(std::span(parts).first(count), file);
     const std::vector<ExrPart> back = read_exr_parts(file);
-    // Beside a higher part the first one is no longer in the middle of the display window.
+    // Next to a taller part the first part is not centred in the display window.
     EXPECT_EQ(back[0].margin_x, count == 1 ? 2 : 0);
     EXPECT_EQ(back[0].margin_y, count == 1 ? 1 : 0);
     EXPECT_EQ(back[0].pairs, parts[0].pairs);
@@ -208,7 +208,7 @@ TEST_F(ImageFiles, RefusesImagesWithoutPixelsOrWithTooFew) {
   expect_error([&] { write_exr(torn, file); }, {file, "image", 3, 2, 17});
   expect_error([&] { write_png(Rgb8Image{}, file); }, {file, "image", 0, 0, 0});
   expect_error([&] { write_pfm(2, 2, std::vector<float>(3), file); }, {file, 3, 2, 2});
-  constexpr int wide = 1'000'001;  // libpng writes no more than a million
+  constexpr int wide = 1'000'001;  // libpng writes at most a million
   expect_error([&] { write_png(Rgb8Image{wide, 1, std::vector<std::uint8_t>(3 * wide)}, file); }, {file});
   EXPECT_EQ(files(), 0u);
 }
@@ -252,7 +252,7 @@ TEST(Image, IsDesqueezed) {
     for (int y = 0; y < out.height; ++y) {
       for (int x = 0; x < out.width; ++x) {
         EXPECT_FLOAT_EQ(out.pixel(x, y)[0], 1);
-        // Places scale, but for the outer halves of the pixels at the edge.
+        // Positions scale except in the outer halves of the edge pixels.
         EXPECT_NEAR(out.pixel(x, y)[1], std::clamp((x + 0.5) * 20 / out.width, 0.5, 19.5), 1e-5);
         EXPECT_NEAR(out.pixel(x, y)[2], std::clamp((y + 0.5) * 10 / out.height, 0.5, 9.5), 1e-5);
       }
@@ -274,7 +274,7 @@ TEST(Image, HasNoNegativeSize) {
 
 TEST(Image, SrgbOfLinearLight) {
   RgbImage image(3, 1);
-  // IEC 61966-2-1 by hand: 0.5 is 0.735 of full scale. The last three lie at the linear part.
+  // IEC 61966-2-1 by hand: 0.5 is 0.735 of full scale. The last three values test the linear segment.
   image.pixels = {0.0f, 1.0f, 0.5f, -1.0f, 7.0f, 0.0031308f, std::numeric_limits<float>::quiet_NaN(), 0.25f, 0.002f};
   EXPECT_EQ(to_srgb8(image).pixels, (std::vector<std::uint8_t>{0, 255, 188, 0, 255, 10, 0, 137, 7}));
   EXPECT_EQ(to_srgb8(image, 2).pixels, (std::vector<std::uint8_t>{0, 255, 255, 0, 255, 18, 0, 188, 13}));

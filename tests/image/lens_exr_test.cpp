@@ -28,7 +28,7 @@ using testing::data_lens;
 using testing::data_prescription;
 using testing::small_film;
 
-/// A file that goes with the test.
+/// A temporary file for the test.
 struct TemporaryFile {
   std::filesystem::path path;
 
@@ -79,7 +79,7 @@ const std::vector<float>& channel(const ExrPart& part, const std::string& name) 
       ->values;
 }
 
-/// What a pixel of a part shows: raster position on the film, (0, 0) its upper left corner.
+/// The raster position that a pixel of a part shows; (0, 0) is the upper left corner of the film.
 Vec2<double> shown(const ExrPart& part, const Film& film, int column, int row) {
   const std::size_t i = static_cast<std::size_t>(row + part.margin_y) * static_cast<std::size_t>(part.width) +
                         static_cast<std::size_t>(column + part.margin_x);
@@ -111,7 +111,7 @@ TEST(StMapExr, LeadsBackFromTheFile) {
   int compared = 0;
   for (int row = 0; row < film.rows; row += 5) {
     for (int column = 0; column < film.columns; column += 5) {
-      // Linear between the four pixels around the place that the first map names.
+      // Bilinear interpolation at the position in the first map.
       const Vec2<double> at = shown(redistort, film, column, row) - 0.5;
       const int left = static_cast<int>(std::floor(at.x)), top = static_cast<int>(std::floor(at.y));
       if (left < -undistort.margin_x || left + 1 >= film.columns + undistort.margin_x) continue;
@@ -132,7 +132,7 @@ TEST(StMapExr, HasTheLightOfTheSceneTheRightWayUp) {
   const Film film = small_film(36);
   const LensDistortion distortion(Camera(data_lens("zoom_14-30mm_f4:wide"), film, {.model = ModelKind::exact_double}));
   const auto parts = to_exr_parts(st_maps(distortion), distortion);
-  // Barrel distortion: the corner of the lens's picture is beyond that of the pinhole's, to the upper left.
+  // Barrel distortion: the corner of the distorted image shows a point outside the pinhole image, to the upper left.
   const Vec2<double> corner = shown(parts[1], film, 0, 0);
   EXPECT_LT(corner.x, 0);
   EXPECT_LT(corner.y, 0);

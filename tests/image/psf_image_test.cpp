@@ -63,8 +63,7 @@ TEST(Render, WeighsWavelengths) {
   for (std::size_t i = 0; i < expected.size(); ++i) EXPECT_NEAR(image.pixels[i], expected[i], 1e-7f) << i;
 }
 
-// The layout's own pattern of names (Fichet et al. 2021; its Stokes component 0), with the wavelength in its first
-// group.
+// The pattern of names of the layout (Fichet et al. 2021, Stokes component 0), with the wavelength in its first group.
 TEST(SpectralImage, IsReadBackBitForBitByTheNamesOfItsLayout) {
   const std::vector<double> set{587.5618, 430, 656.2725};
   Psf psf;
@@ -107,7 +106,7 @@ TEST(SpectralImage, IsReadBackBitForBitByTheNamesOfItsLayout) {
   EXPECT_EQ(parts[0].channels.size(), 6u);
 }
 
-// As a photograph does: the triangle stands on its edge behind the focus and on its corner in front of it.
+// As in photographs, the triangle stands on an edge behind the focus and on a corner in front of the focus.
 TEST(Render, ShowsTheIrisUprightForALightBeyondTheFocus) {
   const std::vector<std::array<double, 3>> white{{1, 1, 1}};
   const Lens lens = with_iris(

@@ -49,9 +49,9 @@ const std::string row = R"({"radius": 50, "thickness": 5.5, "nd": 1.5})";
 
 /// A lens file with these members and the format.
 std::string file(const std::string& members) { return head + members + "}"; }
-/// A lens of one valid surface and this one.
+/// A lens with a valid surface and this surface.
 std::string with_surface(const std::string& surface) { return file("\"surfaces\": [" + row + ", " + surface + "]"); }
-/// The same with one member added to a valid surface.
+/// A lens with a valid surface to which one member is added.
 std::string with_member(const std::string& member) {
   return with_surface(R"({"radius": 50, "thickness": 5.5, "nd": 1.5, )" + member + "}");
 }
@@ -60,7 +60,7 @@ std::string refusal(const std::string& text) {
   return message([&] { parse_prescription(text, "x.json"); });
 }
 
-/// Checks that a text is refused with a line and a column, and these words behind them.
+/// Checks that a text is refused with line and column, followed by these words.
 void expect_refused(const std::string& text, std::initializer_list<std::string_view> words,
                     std::string_view position = {}, int line = __builtin_LINE()) {
   const auto result = positioned(refusal(text), "x.json", words, position);
@@ -95,7 +95,7 @@ TEST(PrescriptionJson, SaysWhatTheFileSays) {
   EXPECT_EQ(zoom.surfaces[1].aspheric[2], (petzval::AsphereTerm{8, 6.9126e-11}));
 }
 
-/// A double of any size that a lens may have.
+/// A random double from the range of lens data.
 double random_number(std::mt19937_64& random, double smallest, double largest) {
   std::uniform_real_distribution<double> exponent(std::log(smallest), std::log(largest));
   const double value = std::exp(exponent(random));
@@ -460,7 +460,7 @@ TEST(PrescriptionJson, HugeTextsAreRefusedEarly) {
   std::string aliases = "\"\"";
   for (int i = 0; i < 10'000; ++i) aliases += ",\"\"";
   expect_tokens(refusal(file("\"aliases\": [" + aliases + "]")), {"x.json", 10000, "entries"});
-  // The reader stops at the first bracket that the format does not have, of one or a hundred thousand.
+  // The reader stops at the first bracket that the format does not allow.
   const std::string deep(100'000, '[');
   expect_refused(deep, {"document", "a list"});
   expect_refused(file("\"surfaces\": [" + deep), {"surface 0", "a list"});
@@ -477,7 +477,7 @@ struct DecimalComma : std::numpunct<char> {
 };
 
 TEST(PrescriptionJson, TheLocaleDoesNotMatter) {
-  // Sets the locale of streams, and of the C library if the machine has it.
+  // Sets the locale of streams, and of the C library if it is installed.
   const std::locale before = std::locale::global(std::locale(std::locale::classic(), new DecimalComma));
   for (const char* name : {"de_DE.UTF-8", "fr_FR.UTF-8"}) {
     if (std::setlocale(LC_ALL, name) != nullptr) break;

@@ -61,7 +61,7 @@ std::string why(const std::string& text) {
   return message([&] { parse_ray_polynomial(text, "x.json"); });
 }
 
-/// Checks that a text is refused with a line and a column, and these words behind them.
+/// Checks that a text is refused with line and column, followed by these words.
 void expect_refused(const std::string& text, std::initializer_list<std::string_view> words,
                     std::string_view position = {}, int line = __builtin_LINE()) {
   const auto result = positioned(why(text), "x.json", words, position);

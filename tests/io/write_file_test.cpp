@@ -67,8 +67,8 @@ TEST_F(WriteFile, WhoReadsTheOldFileReadsItToItsEnd) {
   EXPECT_EQ(text(file_), "new!");
 }
 
-/// The message of a write in a process of its own, for limits and rights that would stay with this one; empty: it
-/// wrote.
+/// Message of a write in a child process, as limits and rights would persist in this process; empty if the write
+/// succeeds.
 std::string message_in_process(const std::function<void()>& prepare, const fs::path& file, const std::string& bytes) {
   std::array<int, 2> ends{};
   EXPECT_EQ(pipe(ends.data()), 0);
@@ -101,7 +101,7 @@ std::vector<Token> refusal(const fs::path& file, int reason) { return {file, std
 
 TEST_F(WriteFile, AFailureSaysTheSystemsReasonAndLeavesTheOldFile) {
   write_file("old", file_);
-  // No room: the process may write files of a thousand bytes.
+  // The process may write files of at most a thousand bytes.
   const auto limited = [] {
     signal(SIGXFSZ, SIG_IGN);
     const rlimit limit{1000, 1000};
@@ -109,7 +109,7 @@ TEST_F(WriteFile, AFailureSaysTheSystemsReasonAndLeavesTheOldFile) {
   };
   expect_tokens(message_in_process(limited, file_, std::string(4000, 'x')), refusal(file_, EFBIG));
   EXPECT_EQ(text(file_), "old");
-  // No right: a folder that belongs to another user, or without the right to write.
+  // A folder of another user, or without write permission.
   fs::permissions(folder_,
                   fs::perms::owner_read | fs::perms::owner_exec | fs::perms::others_read | fs::perms::others_exec);
   const auto nobody = [] {
@@ -167,7 +167,7 @@ TEST_F(WriteFile, LeavesOtherFilesAlone) {
   write_file("untouched", other);
   fs::remove(part);
   fs::create_symlink("other", part);
-  // Links under the names that the new file gets first.
+  // Links at the first names of the temporary file.
   const std::string first = ".petzval-" + std::to_string(getpid()) + '-';
   for (const char* i : {"0", "1"}) fs::create_symlink("other", folder_ / (first + i));
   write_file("newer", file_);
@@ -177,7 +177,7 @@ TEST_F(WriteFile, LeavesOtherFilesAlone) {
   EXPECT_EQ(files(), 5u);
 }
 
-/// Writers of one file, each with texts of one letter and one length of its own.
+/// Concurrent writers of one file, each with its own letter and length.
 std::string own_text(int writer) {
   return std::string(100'000 + 37'000 * static_cast<std::size_t>(writer), 'a' + char(writer));
 }
@@ -248,7 +248,7 @@ TEST_F(WriteFile, WritesIntoAPipe) {
   EXPECT_TRUE(fs::is_fifo(pipe));
 }
 
-/// Values of the authors' test program.
+/// Values of the test program of the authors.
 TEST(Checksum, IsFnv1a) {
   EXPECT_EQ(checksum(""), "cbf29ce484222325");
   EXPECT_EQ(checksum("a"), "af63dc4c8601ec8c");

@@ -38,10 +38,10 @@ TEST(BlurScenes, HaveTheNamesThatTheProgramLists) {
 
 struct Wanted {
   const char* name;
-  std::size_t least_triangles, most_triangles;  ///< of meshes
-  double nearest_mm;                            ///< at least
-  double near_mm;                               ///< at most, of the nearest thing
-  double deep;                                  ///< surfaces behind each other in the mean, at least
+  std::size_t least_triangles, most_triangles;  ///< of the meshes
+  double nearest_mm;                            ///< lower bound
+  double near_mm;                               ///< upper bound for the nearest surface
+  double deep;                                  ///< lower bound for the mean number of surfaces behind each other
 };
 
 void PrintTo(const Wanted& scene, std::ostream* out) { *out << scene.name; }
@@ -59,7 +59,7 @@ TEST_P(BlurScene, HasThingsBeforeAndBehindTheFocus) {
   EXPECT_GE(nearest, GetParam().nearest_mm);
   EXPECT_LE(nearest, GetParam().near_mm);
 
-  // All surfaces: the bias is as good as none.
+  // A tiny bias peels all surfaces.
   petzval::LayerSet layers;
   layers.peel({.camera = camera, .bias = 1e-8}, 64, lit.peel(camera, 2));
   const auto first = layers.inverse_depth(0);

@@ -36,7 +36,7 @@ std::vector<LayerRay> rays_at(const LensRays& rays, int channel, int column, int
   return found;
 }
 
-/// Where rays of a pixel are at an inverse depth: how far from their mean, the farthest one, px.
+/// Largest distance of the rays of a pixel from their mean at an inverse depth, px.
 double spread(const std::vector<LayerRay>& rays, double inverse_depth) {
   petzval::Vec2<double> mean{0, 0};
   for (const LayerRay& ray : rays)
@@ -49,7 +49,7 @@ double spread(const std::vector<LayerRay>& rays, double inverse_depth) {
   return most;
 }
 
-/// The inverse depth at which all rays of a pixel's centre meet, by their lines.
+/// Inverse depth at which the rays of the central pixel meet.
 double focus_of(const LensRays& rays, int channel, int column, int row) {
   const std::vector<LayerRay> found = rays_at(rays, channel, column, row);
   double up = 0, down = 0;
@@ -71,7 +71,7 @@ TEST(BlurLens, BlursAPointIntoADiscOfTheFormula) {
 }
 
 TEST(BlurLens, FocusesATiltedFilmOnThePlaneOfItsHinge) {
-  // The plane (0, sin 30, cos 30) . x = 2 cos 30 m has its image 0.848 degrees from the upright film.
+  // The image of the plane (0, sin 30, cos 30) . x = 2 cos 30 m is tilted by 0.848 degrees.
   LensFlags flags = thin_lens();
   flags.lens_diameter_mm = 20, flags.focus_mm = 2000, flags.tilt_deg = -0.848136346759917;
   BlurLens lens = lens_of(flags);
@@ -81,7 +81,7 @@ TEST(BlurLens, FocusesATiltedFilmOnThePlaneOfItsHinge) {
     const double up = -(row + 0.5 - lens.layers().axis.y) / lens.layers().focal_px;
     EXPECT_NEAR(focus_of(rays, 0, 70, row) * d, 0.5 * up + std::cos(petzval::radians(30.0)), 1e-9) << row;
   }
-  // A swing is the same across, its right side nearer or farther.
+  // A swing moves the right side nearer or farther.
   flags.tilt_deg = 0, flags.swing_deg = 0.848136346759917;
   const LensRays swung = lens_of(flags).rays(500, 1);
   const double left = focus_of(swung, 0, 0, 30), right = focus_of(swung, 0, 79, 30);
@@ -95,7 +95,7 @@ TEST(BlurLens, HasAFocusForEachColour) {
   const LensRays rays = lens_of(flags).rays(1000, 1);
   ASSERT_EQ(rays.channels(), 3);
   const double red = focus_of(rays, 0, 40, 30), green = focus_of(rays, 1, 40, 30), blue = focus_of(rays, 2, 40, 30);
-  // BK7 at 650, 510 and 475 nm, and at the d line, at which the lens has 50 mm.
+  // BK7 at 650, 510 and 475 nm and at the d line, where the focal length is 50 mm.
   const auto shifted = [](double n) { return 1 / 5000.0 + ((n - 1) / 0.516800034500588 - 1) / 50; };
   EXPECT_NEAR(red, shifted(1.514520308564780), 2e-8);
   EXPECT_NEAR(green, shifted(1.520768869927823), 2e-8);

@@ -36,13 +36,13 @@ using renderer::SceneDescription;
 constexpr double infinity = std::numeric_limits<double>::infinity();
 const Rgb sky{0.25f, 0.5f, 1};
 
-/// A thing that shines in one colour, whatever light falls on it.
+/// A material that emits one colour and reflects nothing.
 renderer::Object lamp(renderer::Shape shape, const Rgb& colour) {
   return {"lamp", std::move(shape), renderer::Diffuse{{.colour = {0, 0, 0}}}, colour};
 }
 
-/// Triangles of all sizes that shine, and the surfaces of any ray by the plain formula (Moeller, Trumbore 1997), to
-/// compare with. In front of the plain pose: x to the right, y up, depth -z.
+/// Emitting triangles of all sizes, and reference intersections by the formula of Moeller and Trumbore (1997). They lie
+/// in front of the default pose: x to the right, y up, depth -z.
 struct Soup {
   struct Triangle {
     glm::dvec3 a, b, c;
@@ -54,7 +54,7 @@ struct Soup {
   };
   std::vector<Triangle> triangles;
 
-  /// Even in inverse depth from 1 / nearest to 1 / farthest; about `deep` of them behind each other.
+  /// Uniform in inverse depth from 1 / nearest to 1 / farthest, with about `deep` triangles behind each other.
   Soup(unsigned seed, int count, double deep, double nearest, double farthest, double tangent) {
     std::mt19937 engine(seed);
     std::uniform_real_distribution<double> number(0, 1);
@@ -63,7 +63,7 @@ struct Soup {
       const double w = 1 / farthest + number(engine) * (1 / nearest - 1 / farthest);
       const double x = (2 * number(engine) - 1) * tangent, y = (2 * number(engine) - 1) * tangent;
       const auto corner = [&] {
-        // Tilted, but no corner is nearer than the nearest depth.
+        // Tilted, with all corners beyond the nearest depth.
         const double depth = 1 / std::clamp(w * (1 + 0.1 * (number(engine) - 0.5)), 1 / farthest, 1 / nearest);
         return depth * glm::dvec3{x + size * (2 * number(engine) - 1), y + size * (2 * number(engine) - 1), -1};
       };
@@ -79,7 +79,7 @@ struct Soup {
     return result;
   }
 
-  /// From near to far; the sky is not among them. from, run: in the space of LayerCamera, run.z 1.
+  /// Hits from near to far, without the sky. from, run: in the space of LayerCamera; run.z = 1.
   std::vector<Hit> hits(const glm::dvec3& from, const glm::dvec3& run) const {
     const glm::dvec3 turned{run.x, run.y, -run.z}, start{from.x, from.y, -from.z};
     std::vector<Hit> found;
@@ -94,7 +94,7 @@ struct Soup {
   }
 };
 
-/// Where pixels of a picture with overscan look to.
+/// Directions of the pixels of an image with overscan.
 glm::dvec3 run_of(const LayerCamera& camera, double column, double row) {
   return {(column + 0.5 - camera.overscan - camera.axis.x) / camera.focal_px,
           -(row + 0.5 - camera.overscan - camera.axis.y) / camera.focal_px, 1};
@@ -109,7 +109,7 @@ Rgb colour_of(const LayerSet& layers, int layer, std::size_t pixel) {
 Rgb colour_of(const RgbImage& image, int x, int y) {
   return {image.pixel(x, y)[0], image.pixel(x, y)[1], image.pixel(x, y)[2]};
 }
-/// How many pixels of two pictures differ by more than rounding.
+/// Number of pixels that differ between two images by more than rounding.
 int different(const RgbImage& a, const RgbImage& b, float tolerance) {
   int count = 0;
   for (int y = 0; y < a.height; ++y) {
@@ -118,7 +118,7 @@ int different(const RgbImage& a, const RgbImage& b, float tolerance) {
   return count;
 }
 
-/// The middle of the picture of Lee, Eisemann, Seidel 2010: 800 x 600 pixels of a vertical angle of 30 degrees.
+/// The centre of the image of Lee, Eisemann and Seidel (2010): 800 x 600 pixels, vertical field of view 30 degrees.
 LayerCamera crop_of_paper(int columns, int rows) {
   LayerCamera camera = petzval::layer_camera(800, 600, petzval::radians(30.0));
   camera.columns = columns, camera.rows = rows, camera.axis = {columns / 2.0, rows / 2.0};
@@ -126,7 +126,7 @@ LayerCamera crop_of_paper(int columns, int rows) {
 }
 
 TEST(LitScene, IsSeenFromItsPose) {
-  // The camera looks along +x, tilted by nothing; a lamp to its right (+z) and above, and one 3 m ahead.
+  // The camera looks along +x; one lamp is to its right (+z) and above, another 3 m ahead.
   SceneDescription scene{.name = "two", .sky = {.colour = sky}, .pose = {}};
   scene.pose = {.position = {100, 50, 20}, .look_at = {200, 50, 20}};
   scene.objects = {lamp(renderer::Quad{{3100, 250, 270}, {0, 100, 0}, {0, 0, 100}}, {1, 0, 0}),
@@ -135,7 +135,7 @@ TEST(LitScene, IsSeenFromItsPose) {
   const LitScene lit(scene);
   LayerSet layers;
   layers.peel({.camera = camera, .bias = 1e-6}, 4, lit.peel(camera, 1));
-  ASSERT_EQ(layers.count(), 2);  // lamps, the sky behind them
+  ASSERT_EQ(layers.count(), 2);  // lamps and sky
 
   const auto pixel_at = [&](double right, double up) {
     const petzval::Vec2<double> at = camera.raster({right, up, 3000});
@@ -147,14 +147,14 @@ TEST(LitScene, IsSeenFromItsPose) {
   EXPECT_TRUE(alike(colour_of(layers, 0, beside), sky));
   EXPECT_NEAR(layers.inverse_depth(0)[right_lamp] * 3000, 1, 1e-6);  // along the axis
   EXPECT_EQ(layers.inverse_depth(0)[beside], 0);
-  EXPECT_LT(layers.inverse_depth(1)[beside], 0);  // nothing behind the sky
+  EXPECT_LT(layers.inverse_depth(1)[beside], 0);  // empty behind the sky
   EXPECT_EQ(layers.inverse_depth(1)[right_lamp], 0);
   EXPECT_TRUE(alike(colour_of(layers, 1, right_lamp), sky));
   EXPECT_NEAR(lit.nearest_mm(camera, 1), 3000, 0.01);
 }
 
 TEST(LitScene, ShowsTheSkyOfEachDirection) {
-  // One pixel for each quarter of the horizon: ahead, right, behind, left of direction -z.
+  // One pixel for each quarter of the horizon: ahead (-z), right, behind, left.
   auto image = std::make_shared<RgbImage>(4, 1);
   for (int i = 0; i < 4; ++i) image->pixel(i, 0)[0] = static_cast<float>(i + 1);
   SceneDescription scene{.name = "sky", .sky = {.colour = {1, 1, 1}, .image = image}, .pose = {}};
@@ -197,7 +197,7 @@ TEST(LitScene, HasTheLayersOfAllSurfacesThinned) {
     ASSERT_EQ(peeled.count(), thinned.count());
     EXPECT_GE(peeled.count(), 6);
 
-    // Rounding decides at edges, and where a surface lies at the very bias.
+    // At edges, and for surfaces exactly at the bias, rounding decides.
     std::size_t same = 0, pixels = 0;
     for (int layer = 0; layer < peeled.count(); ++layer) {
       for (std::size_t i = 0; i < peeled.inverse_depth(layer).size(); ++i) {
@@ -213,7 +213,7 @@ TEST(LitScene, HasTheLayersOfAllSurfacesThinned) {
 }
 
 TEST(LitScene, NeverNeedsMoreThanTenLayersThroughTheLensOfThePaper) {
-  // From 1 m to 100 m, 10.05 times the bias: whatever stands there, and however much of it.
+  // From 1 m to 100 m there are 10.05 offsets of the bias, a bound for the layers of any scene.
   const LayerCamera picture = crop_of_paper(48, 36);
   const LensRays rays = LensRays::thin(picture, {.radius_mm = 9, .inverse_focus = 1 / 5000.0},
                                        petzval::vogel_points(100), {.nearest_mm = 1000});
@@ -223,14 +223,14 @@ TEST(LitScene, NeverNeedsMoreThanTenLayersThroughTheLensOfThePaper) {
   for (unsigned seed = 1; seed <= 12; ++seed) {
     const Soup soup(seed, 600, 5.0 * seed, 1000, 1e5, 0.04);
     SceneDescription scene = soup.scene();
-    // A wall, so that no ray runs to the sky.
+    // A wall hides the sky.
     scene.objects.push_back(lamp(renderer::Quad{{-2e4f, -2e4f, -1e5f}, {4e4f, 0, 0}, {0, 4e4f, 0}}, {0, 1, 1}));
     const LitScene lit(scene);
     LayerSet layers;
     layers.peel(plan, 16, lit.peel(plan.camera, 2));
     EXPECT_LE(layers.count(), 10) << "seed " << seed;
     most = std::max(most, layers.count());
-    // And these are enough: no ray finds a hole.
+    // The layers are sufficient: no ray finds a hole.
     const petzval::Blurred blurred = petzval::gather(layers, rays, {.threads = 2, .highlights_above = 0});
     EXPECT_LE(static_cast<double>(blurred.statistics.missed), 1e-4 * static_cast<double>(blurred.statistics.rays));
   }
@@ -238,7 +238,7 @@ TEST(LitScene, NeverNeedsMoreThanTenLayersThroughTheLensOfThePaper) {
 }
 
 TEST(References, ThroughAPinholeAreTheFirstLayer) {
-  const LayerCamera camera = crop_of_paper(51, 38);  // no multiples of the packets
+  const LayerCamera camera = crop_of_paper(51, 38);  // not multiples of the packet size
   const LitScene lit(Soup(7, 300, 4, 1000, 10000, 0.04).scene());
   LayerSet layers;
   layers.peel({.camera = camera, .bias = 1}, 1, lit.peel(camera, 1));
@@ -251,7 +251,7 @@ TEST(References, ThroughAPinholeAreTheFirstLayer) {
   EXPECT_GE(same, 51 * 38 * 0.998);
 }
 
-/// Rays of a lens of one's own, of weights of their own.
+/// Rays of a custom lens with custom weights.
 LensRays own_rays(const LayerCamera& camera, int channels) {
   const petzval::LensRays::Source source = [=](int channel, const petzval::Vec2<double>& raster,
                                                std::span<const petzval::PupilPoint> points, std::span<LayerRay> found) {
@@ -265,7 +265,7 @@ LensRays own_rays(const LayerCamera& camera, int channels) {
   return LensRays(camera, petzval::vogel_points(9), channels, source, {.nearest_mm = 1000});
 }
 
-/// The same by the plain formula.
+/// The reference image by the plain formula.
 RgbImage plain_reference(const Soup& soup, const LensRays& rays) {
   const LayerCamera& camera = rays.camera();
   RgbImage picture(camera.columns, camera.rows);
@@ -313,7 +313,7 @@ TEST(References, DoNotDependOnThreads) {
 }
 
 TEST(LitScene, MovesItsCamera) {
-  // A camera that moves to the right sees what it sees of a scene that moves to the left.
+  // Moving the camera to the right equals moving the scene to the left.
   const LayerCamera camera = crop_of_paper(40, 30);
   const Soup soup(9, 200, 4, 1000, 10000, 0.04);
   Soup moved = soup;
@@ -334,7 +334,7 @@ TEST(LitScene, MovesItsCamera) {
 }
 
 TEST(LitScene, IsBrighterTowardsTheSun) {
-  // The light is that of the surface alone: the same from wherever it is seen.
+  // Diffuse emission is independent of the viewing direction.
   const auto seen = [](const glm::vec3& u, const glm::vec3& v) {
     SceneDescription scene{.name = "square", .sky = {.colour = {0.5f, 0.5f, 0.5f}}, .pose = {}};
     scene.objects.push_back({"square", renderer::Quad{glm::vec3{0, 0, -2000} - 0.5f * (u + v), u, v}});

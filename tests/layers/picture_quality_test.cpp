@@ -36,7 +36,7 @@ RgbImage painted(int width, int height, const F& colour) {
 RgbImage even(const Colour& colour, int width = 12, int height = 9) {
   return painted(width, height, [&](int, int) { return colour; });
 }
-/// A pattern of sixteenths, which are the same numbers everywhere.
+/// A pattern of multiples of 1/16, which are exact on every machine.
 RgbImage pattern(int kind, int width = 30, int height = 20) {
   return painted(width, height, [&](int x, int y) {
     return Colour{static_cast<float>((7 * x + 3 * y + 5 * kind) % 16) / 16,
@@ -61,7 +61,7 @@ TEST(PictureQuality, OfEvenPicturesIsThatOfTheFormulas) {
   const Likeness grey = likeness(even({0.5f, 0.5f, 0.5f}), even({0.625f, 0.625f, 0.625f}));
   EXPECT_NEAR(grey.psnr_db, -20 * std::log10(b - a), 1e-9);
   EXPECT_NEAR(grey.ssim, (2 * a * b + c1) / (a * a + b * b + c1), 1e-9);
-  // An error in one channel of three.
+  // An error in one of three channels.
   EXPECT_NEAR(likeness(even({0.5f, 0.5f, 0.5f}), even({0.5f, 0.5f, 0.625f})).psnr_db,
               -20 * std::log10((b - a) / std::sqrt(3.0)), 1e-9);
   EXPECT_NEAR(energy_drift(even({0.5f, 1, 2}), even({0.5f, 0.5f, 1})), 0.75, 1e-12);
@@ -73,7 +73,7 @@ TEST(PictureQuality, IsThatOfLightUpToWhite) {
 }
 
 TEST(PictureQuality, SeesLessContrastAsStructureThatIsLost) {
-  // Pixels to and fro about one brightness: the mean under the window does not change, the deviation does.
+  // Pixels alternate about one brightness: the mean under the window is constant, the deviation changes.
   const auto chess = [](float swing) {
     return painted(40, 40, [&](int x, int y) {
       const float value = 0.5f + ((x + y) % 2 == 0 ? swing : -swing);
@@ -100,11 +100,11 @@ TEST(PictureQuality, CountsPixelsOfTheMask) {
   EXPECT_LT(likeness(picture, reference, right).ssim, 0.9);
 }
 
-// Numbers of the paper's formulas by dense filters of two dimensions, in double.
+// The formulas of the paper by dense two-dimensional filters in double.
 TEST(Flip, OfEvenPicturesIsThatOfTheirColours) {
   const auto of = [](const Colour& a, const Colour& b) { return flip(even(a), even(b))[50]; };
   EXPECT_NEAR(of({0, 0, 0}, {1, 1, 1}), 0.96738, 2e-5);
-  EXPECT_NEAR(of({0, 1, 0}, {0, 0, 1}), 1, 2e-5);  // the two colours that differ most
+  EXPECT_NEAR(of({0, 1, 0}, {0, 0, 1}), 1, 2e-5);  // the two most different colours
   EXPECT_NEAR(of({0.25f, 0.25f, 0.25f}, {0.5f, 0.5f, 0.5f}), 0.45185, 2e-5);
   EXPECT_NEAR(of({1, 0, 0}, {0.75f, 0.125f, 0.0625f}), 0.53854, 2e-5);
 }
@@ -152,11 +152,11 @@ TEST(DepthEdges, ReachOneCircleOfConfusion) {
   ASSERT_GT(circle, 6);
   const std::vector<unsigned char> mask = near_depth_edges(layers_of(static_cast<float>(far)), rays);
   for (std::size_t i = 0; i < mask.size(); ++i) {
-    const double off = std::abs(static_cast<double>(i % 120) - 59.5);  // of the pixel from the edge
-    if (std::abs(off - circle - 0.5) <= 1.5) continue;                 // half pixels and whole ones
+    const double off = std::abs(static_cast<double>(i % 120) - 59.5);  // distance of the pixel from the edge
+    if (std::abs(off - circle - 0.5) <= 1.5) continue;                 // partly covered pixels
     EXPECT_EQ(mask[i], off < circle) << i % 120 << ' ' << i / 120;
   }
-  // A step that rays follow is none.
+  // Steps that rays can follow are not edges.
   const double follows = 0.9 / rays.largest_slope();
   for (const unsigned char m : near_depth_edges(layers_of(static_cast<float>(1 / (1 / near - follows))), rays)) {
     EXPECT_EQ(m, 0);

@@ -35,7 +35,7 @@ TEST(Albedo, OfAnImageIsItsPixelsAtTheirCentresUpsideUpAndRepeated) {
         EXPECT_NEAR(renderer::at(albedo, {}, {u + turn, v - turn}).r, image->pixel(x, y)[0], 1e-5f) << x << " " << y;
     }
   }
-  // Between the last column and the first, in the upper row.
+  // Between the last and the first column, in the upper row.
   EXPECT_NEAR(renderer::at(albedo, {}, {0, 0.75f}).r, 0.15f, 1e-5f);
 }
 

@@ -63,7 +63,7 @@ TEST_P(Scattering, SamplesHaveTheirDensityAndTheirMean) {
     const double error = std::sqrt(squares / count);
     EXPECT_NEAR(density, kept, 0.02) << cosine;
     EXPECT_NEAR(mean, integral, 5 * error + 1e-3) << cosine;
-    // Into glass radiance grows by the square of the index, which is no gain of light.
+    // Radiance grows by the square of the index in glass, without a gain of power.
     const bool glass = std::holds_alternative<Glass>(GetParam().material);
     EXPECT_LT(mean, glass ? 2.26 : 1.001) << cosine;
   }
@@ -118,7 +118,7 @@ TEST(SmoothGlass, SplitsLightAsFresnelSays) {
 }
 
 TEST(InterpolatedNormals, KeepThePowerOfLightPaths) {
-  // Power that a surface scatters is that of the other way, weighed by both normals (Veach 1997, section 5.3).
+  // Scattered power equals the reverse direction, weighted by both normals (Veach 1997, section 5.3).
   Object object;
   object.material = Diffuse{{.colour = {0.5f, 0.5f, 0.5f}}};
   SurfacePoint point;

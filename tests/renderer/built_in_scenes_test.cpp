@@ -16,7 +16,7 @@ using namespace renderer;
 
 bool emits(const Object& object) { return object.emission != Rgb(0, 0, 0); }
 
-/// Tangents of a place as the camera sees it, and how far it is along the axis.
+/// Tangents of the direction to a point from the camera, and its depth.
 struct Seen {
   double right, up, depth;
 };
@@ -27,7 +27,7 @@ Seen seen(const SceneDescription& scene, const glm::vec3& place) {
   const double depth = glm::dot(way, forward);
   return {glm::dot(way, right) / depth, glm::dot(way, up) / depth, depth};
 }
-/// In the picture of a lens of 100 mm at some focus, on 36 x 24 mm.
+/// Position in the image of a lens of 100 mm on 36 x 24 mm at some focus.
 bool in_picture(const Seen& at) { return at.depth > 0 && std::abs(at.right) < 0.18 && std::abs(at.up) < 0.12; }
 
 TEST(BuiltInScenes, HaveTheNamesThatTheProgramLists) {
@@ -83,7 +83,7 @@ TEST(ChessScene, HasItsPiecesOnTheBoardFromTheForegroundToTheBackground) {
     for (const glm::vec3& p : std::get<Mesh>(object.shape).positions)
       if (p.y == 0) foot += p, ++of_foot;
     foot /= static_cast<float>(of_foot);
-    // In the middle of a square: the lines are at odd multiples of 20.
+    // Centres of squares; the lines are at odd multiples of 20.
     EXPECT_NEAR(std::remainder(foot.x, 40.0f), 0, 1e-3) << object.name;
     EXPECT_NEAR(std::remainder(foot.z, 40.0f), 0, 1e-3) << object.name;
     const double depth = seen(scene, foot).depth;
@@ -120,7 +120,7 @@ TEST(StatuesScene, HasAnAngelNearAndOneFarAndFiguresBetween) {
   }
   EXPECT_EQ(lanterns, 20);
   ASSERT_EQ(statues.size(), 6u);
-  // In the picture of a lens of 50 mm, half of its height each, on either side of the middle.
+  // In the image of a lens of 50 mm, half of the height on either side of the centre.
   const Statue &near = statues[0], &far = statues[1];
   EXPECT_LT(near.right, 0);
   EXPECT_GT(far.left, 0);
@@ -147,7 +147,7 @@ TEST(StreetScene, HasItsLightsInThePictureAndItsWindowsOnTheStreet) {
     }
     if (object.name == "window") {
       const auto& quad = std::get<Quad>(object.shape);
-      EXPECT_LT(glm::cross(quad.edge_u, quad.edge_v).x * quad.corner.x, 0);  // towards the middle
+      EXPECT_LT(glm::cross(quad.edge_u, quad.edge_v).x * quad.corner.x, 0);  // towards the centre
       ++windows;
     }
   }

@@ -103,7 +103,7 @@ TEST_F(CheckpointFile, RefusesWhatIsNoneOrWasCut) {
   }
 }
 
-/// Any byte: a wrong one is refused, or it has changed nothing (some bytes of the format are not read).
+/// A changed byte is refused or has no effect, as some bytes of the format are not read.
 TEST_F(CheckpointFile, NoFlippedByteGoesUnseen) {
   Checkpoint::write(sums_, job_, file_);
   const std::string whole = examples::read_text(file_);

@@ -13,7 +13,7 @@ namespace {
 using renderer::FixedSum;
 __extension__ using Int128 = __int128;
 
-/// Numbers of both signs and of all sizes that light has.
+/// Numbers of both signs and of any magnitude of radiance.
 std::vector<float> numbers(std::size_t count) {
   std::mt19937 random(5);
   std::uniform_real_distribution<float> power(-18, 11), sign(-1, 1);
@@ -22,7 +22,7 @@ std::vector<float> numbers(std::size_t count) {
   return result;
 }
 
-/// In multiples of 2^-64, rounded towards zero.
+/// The value in multiples of 2^-64, rounded towards zero.
 Int128 fixed(float x) {
   int exponent = 0;
   const float mantissa = std::frexp(std::abs(x), &exponent);

@@ -8,7 +8,7 @@
 namespace renderer {
 namespace {
 
-/// Discs of light, stretched across the radius and drawn out along it, on an even background.
+/// Discs of light on a uniform background, stretched across the radius or elongated along it.
 petzval::RgbImage row_of_lights(double stretch, double comet, double background) {
   petzval::RgbImage image(650, 60);
   std::fill(image.pixels.begin(), image.pixels.end(), static_cast<float>(background));
@@ -19,7 +19,7 @@ petzval::RgbImage row_of_lights(double stretch, double comet, double background)
       for (int x = 0; x < image.width; ++x) {
         const double dx = (x + 0.5 - middle) * outwards, dy = (y + 0.5 - 30) / tall;
         if (dx * dx + dy * dy > 100) continue;
-        // Bright inside, with a tail outwards: the moment of a slope over the disc.
+        // Bright inside with a tail outwards: the first moment of a linear slope over the disc.
         const double value = 2 - comet * share * dx / 10;
         for (int c = 0; c < 3; ++c) image.pixel(x, y)[c] += static_cast<float>(value);
       }
@@ -47,7 +47,7 @@ TEST(Highlights, HaveTheAxesAndTheTailsTheyWereGiven) {
     ASSERT_TRUE(found[edge]);
     EXPECT_NEAR(found[edge]->axis_ratio, 1.4, 0.08);
     EXPECT_NEAR(found[edge]->to_radius_deg, 90, 3);
-    // Of a disc whose light falls from 3 inside to 1 outside: the tail is outwards on both sides.
+    // A disc whose radiance falls from 3 inside to 1 outside has an outward tail on both sides.
     EXPECT_GT(found[edge]->outward_skewness, 0.1);
   }
   ASSERT_TRUE(found[6]);

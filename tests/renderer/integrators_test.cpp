@@ -56,7 +56,7 @@ TEST(Integrators, AgreeThroughWusLenses) {
       }
     }
   }
-  // Errors from 16 rounds each: at worst Student's t with 15 degrees of freedom, which is beyond 3 in 0.9 % of tiles.
+  // Errors come from 16 rounds each: Student's t with 15 degrees of freedom exceeds 3 in 0.9 % of the tiles.
   const double chance = 0.009 * tiles;
   RecordProperty("tiles", tiles);
   RecordProperty("beyond", beyond);

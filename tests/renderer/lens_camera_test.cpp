@@ -33,10 +33,10 @@ petzval::Lens double_gauss() {
 
 TEST(LensCamera, DensitiesOfLightFromAfarIntegrateToOne) {
   for (const ModelKind model : petzval::models()) {
-    if (model == ModelKind::pinhole) continue;  // no ray meets it by chance
+    if (model == ModelKind::pinhole) continue;  // no random ray meets a pinhole
     const LensCamera lens = camera(double_gauss(), model);
     for (const glm::vec3 travel : {glm::vec3{0, 0, 1}, glm::normalize(glm::vec3{-0.1f, 0.06f, 1})}) {
-      // Places on a disc across the light, about the front of the lens.
+      // Points on a disc around the front of the lens, perpendicular to the light.
       const Frame frame(travel);
       constexpr float radius = 60;
       constexpr std::uint32_t count = 1u << 15;
@@ -55,8 +55,8 @@ TEST(LensCamera, DensitiesOfLightFromAfarIntegrateToOne) {
 }
 
 TEST(LensCamera, BlursOfAThinLensHaveTheirClosedForm) {
-  // c = |U - Uf| f D / (U (Uf - f)), distances from the lens. Film samples tell where the lens is, its diameter and
-  // what is sharp; connections have to land accordingly.
+  // c = |U - Uf| f D / (U (Uf - f)) with distances from the lens. Film samples give position, diameter and focus of the
+  // lens, which connections must reproduce.
   const petzval::Lens real = double_gauss();
   const LensCamera lens = camera(real, ModelKind::thin);
   constexpr std::uint32_t count = 4096;
@@ -68,7 +68,7 @@ TEST(LensCamera, BlursOfAThinLensHaveTheirClosedForm) {
     batch.u[i] = static_cast<float>(s.x), batch.v[i] = static_cast<float>(s.y);
   }
   batch.raster_x[count] = 28, batch.raster_y[count] = 12;
-  batch.u[count] = 0.25f, batch.v[count] = 0;  // the middle of the pupil
+  batch.u[count] = 0.25f, batch.v[count] = 0;  // the centre of the pupil
   lens.sample(batch);
   const auto slope = [](const WorldRay& ray) { return static_cast<double>(ray.direction.x / ray.direction.z); };
   const auto axis_z = [&](const WorldRay& ray) {

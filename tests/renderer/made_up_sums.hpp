@@ -11,7 +11,7 @@
 
 namespace renderer {
 
-/// What a unit might add: most of it to its own pixels, some anywhere, of both signs and of all sizes that light has.
+/// Random contributions of a work unit: most in its own pixels, some anywhere, of both signs and any magnitude.
 inline std::vector<Contribution> made_up_unit(const PictureSums& sums, std::size_t tile, std::uint32_t pass) {
   std::mt19937 random(static_cast<std::uint32_t>(1000 * tile) + pass);
   std::uniform_real_distribution<float> power(-18, 11), sign(-0.1f, 1);
@@ -28,7 +28,7 @@ inline std::vector<Contribution> made_up_unit(const PictureSums& sums, std::size
   return unit;
 }
 
-/// Passes of these tiles, of so many samples.
+/// Passes over these tiles with this number of samples.
 inline PictureSums made_up_sums(int width, int height, std::span<const std::size_t> tiles, std::uint32_t passes,
                                 std::uint32_t samples = 3) {
   PictureSums sums(width, height);
@@ -39,7 +39,7 @@ inline PictureSums made_up_sums(int width, int height, std::span<const std::size
   return sums;
 }
 
-/// Of all tiles of which a shard's index is the rest modulo their number.
+/// Tiles whose index modulo the number of shards equals the index of the shard.
 inline PictureSums made_up_part(int width, int height, std::size_t index, std::size_t count, std::uint32_t passes) {
   std::vector<std::size_t> tiles;
   for (std::size_t t = index - 1; t < PictureSums(width, height).tiles(); t += count) tiles.push_back(t);

@@ -10,7 +10,7 @@
 namespace renderer {
 namespace {
 
-/// The mean picture colour of a light, or a surface in white light, over all paths.
+/// Mean image colour of a light, or of a surface in white light, over all paths.
 glm::dvec3 seen(const PathColourSource& source, const Rgb& rgb, int bounces = 1) {
   constexpr int count = 20'000;
   glm::dvec3 sum(0);
@@ -33,7 +33,7 @@ TEST(PathColours, GiveBackTheColoursOfLightsAndSurfaces) {
       for (int c = 0; c < 3; ++c)
         EXPECT_NEAR(mean[c], rgb[c], 2e-3 * std::max({rgb.r, rgb.g, rgb.b})) << static_cast<int>(mode) << c;
     }
-    const glm::dvec3 grey = seen(source, Rgb(0.5f, 0.5f, 0.5f), 3);  // stays grey, however often it is scattered
+    const glm::dvec3 grey = seen(source, Rgb(0.5f, 0.5f, 0.5f), 3);  // stays grey after any number of scatterings
     for (int c = 0; c < 3; ++c) EXPECT_NEAR(grey[c], 0.125, 5e-4);
   }
 }
@@ -59,7 +59,7 @@ TEST(PathColours, ReflectancesAreThoseOfRealSurfaces) {
 }
 
 TEST(PathColours, AnyLaneMayBeTheHero) {
-  // A quarter further on, the same wavelengths come in another order.
+  // Shifted by a quarter, the same wavelengths appear in another order.
   const PathColourSource source(ColourMode::hero);
   const PathColours a = source.draw(0.1f), b = source.draw(0.35f);
   for (std::size_t lane = 0; lane < 4; ++lane) EXPECT_NEAR(a.nm[(lane + 1) % 4], b.nm[lane], 0.01f);

@@ -18,7 +18,7 @@ namespace {
 using namespace renderer;
 using petzval::testing::expect_error;
 
-constexpr int width = 40, height = 35;  // 3 x 3 tiles, those at the edges cut
+constexpr int width = 40, height = 35;  // 3 x 3 tiles, clipped at the edges
 
 TEST(PictureSums, TilesCoverEachPixelOnce) {
   const PictureSums sums(width, height);
@@ -95,7 +95,7 @@ TEST(PictureSums, APixelIsItsSumOverItsOwnSamples) {
   EXPECT_EQ(sums.samples(2, 0), 0u);
 }
 
-/// Of pixels over the samples of their tile, of luminance over its area, which is smaller at the edges.
+/// Means of pixels over the samples of the tile, and of luminance over the area of the tile, which is smaller at edges.
 TEST(PictureSums, MeansArePlainMeans) {
   constexpr std::uint32_t passes = 5;
   constexpr double samples = 1 + 2 + 1 + 2 + 1;
@@ -144,7 +144,7 @@ TEST(PictureSums, MeansArePlainMeans) {
   }
 }
 
-/// Contributions of a known scatter: standard errors, and how often the mean is beyond them, are as the theory says.
+/// For contributions of known variance, standard errors and their coverage agree with theory.
 TEST(PictureSums, StandardErrorsAreThoseOfTheScatter) {
   constexpr int side = PictureSums::tile_pixels, runs = 400;
   constexpr std::uint32_t samples = 4;
@@ -172,14 +172,14 @@ TEST(PictureSums, StandardErrorsAreThoseOfTheScatter) {
     beyond += std::abs(green.mean - true_mean) > 2.131 * green.standard_error;
     ASSERT_NEAR(green.mean, tile.mean, 1e-6) << "weights of luminance sum to one";
   }
-  // Of a variance with 15 degrees of freedom and 400 runs: sqrt(2 / 15 / 400) = 1.8 %.
+  // Standard error of a variance with 15 degrees of freedom over 400 runs: sqrt(2 / 15 / 400) = 1.8 %.
   EXPECT_NEAR(squares / runs / (true_error * true_error), 1, 0.07);
   EXPECT_NEAR(tile_squares / runs / (true_error * true_error), 1, 0.07);
-  // Student's t of 15 degrees: 5 % beyond 2.131, 20 +- 4.4 of 400.
+  // Student's t with 15 degrees of freedom exceeds 2.131 in 5 % of the cases, 20 +- 4.4 of 400.
   EXPECT_NEAR(beyond, 20, 14);
 }
 
-/// Fewer passes than rounds, and more, of different numbers of samples.
+/// Fewer or more passes than rounds, with different numbers of samples.
 TEST(PictureSums, StandardErrorsFollowTheSamplesOfEachRound) {
   constexpr int runs = 4000;
   constexpr double spread = 0.25;

@@ -52,7 +52,7 @@ TEST(Scene, SamplesLampsWithTheirDensity) {
 }
 
 TEST(Scene, LightOfPathsIsThatOfConnections) {
-  // The light that a small panel gets, by light that is sent out and by looking at the lamps.
+  // Irradiance of a small panel by emitted light and by sampling the lamps.
   SceneDescription d = lamps();
   const Quad target{{-150, -100, -950}, {100, 0, 0}, {0, 0, -100}};
   d.objects.push_back({"target", target, Diffuse{}});
@@ -92,7 +92,7 @@ TEST(Scene, MeetsSpheresFromInsideAndOutside) {
   ASSERT_TRUE(inside);
   EXPECT_NEAR(inside->position.z, -3007, 1e-3);
   EXPECT_FALSE(scene.meet(Scene::leave(*inside, {0, 0, -1}), {0, 0, -1}));
-  EXPECT_EQ(scene.around({1000, 2000, -3000}), nullptr);  // glass is no wall
+  EXPECT_EQ(scene.around({1000, 2000, -3000}), nullptr);  // glass is not a wall
 }
 
 TEST(Scene, KnowsWhatStandsAroundAPlace) {
@@ -123,7 +123,7 @@ TEST(SkyLight, DrawsAnImageByItsLight) {
   }
   EXPECT_NEAR(solid_angle, 1, 0.02);
   EXPECT_NEAR(total / sky.total(), 1, 0.02);
-  // The middle of the image is ahead, along -z; its right half is on the right.
+  // The centre of the image is ahead, along -z, and its right half is on the right.
   EXPECT_EQ(sky.radiance({0, 1e-3f, 1}), 2.0f * Rgb(0, image->pixel(4, 2)[1], 0));
   EXPECT_EQ(sky.radiance(glm::normalize(glm::vec3(-1, -0.9f, 0.1f))), 2.0f * Rgb(0, image->pixel(5, 1)[1], 0));
   image->pixel(3, 2)[0] = -1;

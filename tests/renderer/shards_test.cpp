@@ -49,7 +49,7 @@ class Shards : public testing::Test {
 
 TEST_F(Shards, MergeToTheBitsOfTheWhole) {
   const PictureSums whole = made_up_part(width, height, 1, 1, passes);
-  for (const std::size_t count : {1u, 3u, 11u}) {  // of 9 tiles: two of 11 shards are empty
+  for (const std::size_t count : {1u, 3u, 11u}) {  // 9 tiles leave two of 11 shards empty
     SetUp();
     for (std::size_t i = 1; i <= count; ++i) write(i % 2 > 0 ? here_ : there_, {i, count});
     write(there_, {1, count});

@@ -32,8 +32,8 @@ double volume(const Mesh& mesh) {
   return sum;
 }
 
-/// Every edge is passed once each way, so the mesh is closed and turns one side outward; no triangle is a line; normals
-/// have length 1 and lie on the side of their triangles.
+/// Checks that every edge is used once in each direction, so that the mesh is closed and consistently oriented, that no
+/// triangle is degenerate, and that normals have unit length and lie on the front side of their triangles.
 void expect_closed(const Mesh& mesh, const std::string& name) {
   std::map<std::pair<Place, Place>, int> passes;
   for (const auto& triangle : mesh.triangles) {
@@ -65,7 +65,7 @@ TEST(Lathe, TurnsASemicircleIntoASphere) {
     EXPECT_NEAR(glm::length(mesh.positions[i]), 10, 1e-4);
     EXPECT_NEAR(glm::dot(mesh.positions[i], mesh.normals[i]), 10, 1e-4);
   }
-  // Chords of angle h lose a share of about h^2 / 6 of a circle around and h^2 / 4 of the sphere along its outline.
+  // Chords of angle h reduce the area of a circle by about h^2 / 6 and of the sphere along its outline by h^2 / 4.
   const double exact = 4.0 / 3 * pi * 1000;
   EXPECT_LT(volume(mesh), exact);
   EXPECT_GT(volume(mesh), exact * (1 - std::pow(2 * pi / 64, 2) / 6 - std::pow(pi / 18, 2) / 4));
