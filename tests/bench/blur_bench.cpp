@@ -1,11 +1,10 @@
-// SPDX-License-Identifier: Apache-2.0
-// Pictures of layers through lenses: time and likeness, beside those of the same rays through the scene itself and of a
-// post-process on a single picture. All threads of the processor, minima of interleaved rounds; all figures of a table
-// are of one run.
+// SPDX-License-Identifier: Apache-2.0 Images of layers through lenses: time and similarity, compared with the same rays
+// through the scene and with a post-process of a single image. All threads of the processor, minima of interleaved
+// rounds; the figures of a table come from one run.
 //
 //   build/tests/bench/blur_bench [--full] [--pictures FOLDER]
 //
-// 400 x 300 pixels, one round, 100 mm; --full: 800 x 600, three rounds, and what layers, rays and other lenses change.
+// 400 x 300 pixels, one round, 100 mm; --full: 800 x 600, three rounds, and variations of layers, rays and lenses.
 #include <algorithm>
 #include <array>
 #include <chrono>
@@ -44,7 +43,7 @@ struct Settings {
   std::optional<std::filesystem::path> pictures;
 };
 
-/// Milliseconds of work.
+/// Duration of work in milliseconds.
 template <class Work>
 double time_of(const Work& work) {
   const auto begin = std::chrono::steady_clock::now();
@@ -69,7 +68,7 @@ lens_blur::LensFlags thin_lens(double diameter_mm) {
   return lens;
 }
 
-/// A lens before a scene.
+/// A lens in front of a scene.
 class View {
  public:
   View(const Settings& settings, const lens_blur::LitScene& scene, const renderer::Pose& pose,
@@ -118,7 +117,7 @@ void write(const Settings& settings, const RgbImage& image, const std::string& n
   if (settings.pictures) petzval::write_png(petzval::to_srgb8(image), *settings.pictures / (name + ".png"));
 }
 
-/// Four layers, every way to gather them, the reference and the single picture.
+/// Four layers, every method of gathering, the reference and the single image.
 void report_thin(const Settings& settings, const LoadedScene& scene, double diameter_mm) {
   const View view = scene.through(settings, thin_lens(diameter_mm));
   petzval::LayerSet layers;
@@ -176,7 +175,7 @@ void report_layers(const Settings& settings, const LoadedScene& scene) {
   std::fflush(stdout);
 }
 
-/// Likeness to a reference of 512 rays, at half the size.
+/// Similarity to a reference of 512 rays, at half the size.
 void report_rays(Settings settings, const LoadedScene& scene) {
   settings.columns /= 2, settings.rows /= 2;
   lens_blur::LensFlags flags = thin_lens(100);
@@ -198,7 +197,7 @@ void report_rays(Settings settings, const LoadedScene& scene) {
   std::fflush(stdout);
 }
 
-/// Lenses whose rays differ from pixel to pixel, and the paper's largest one.
+/// Lenses whose rays differ between pixels, and the largest lens of the paper.
 void report_lenses(const Settings& settings, const LoadedScene& scene) {
   struct Row {
     const char* name;
@@ -231,7 +230,7 @@ void report_lenses(const Settings& settings, const LoadedScene& scene) {
   }
 }
 
-/// The shortest code that could be right, on a small picture.
+/// The simplest correct code, on a small image.
 void report_scalar(const Settings& settings, const LoadedScene& scene) {
   Settings small = settings;
   small.columns = 200, small.rows = 150, small.threads = 1;
@@ -244,7 +243,7 @@ void report_scalar(const Settings& settings, const LoadedScene& scene) {
     keep_least(gather, time_of([&] { view.gather(layers, picture); }));
   }
   const double scalar = time_of([&] { petzval::testing::reference_gather(layers, view.rays); });
-  std::printf("\n%s, 200 x 150, one thread: gather %.1f ms, in scalars of double %.0f ms, %.0fx (wanted 50x)\n",
+  std::printf("\n%s, 200 x 150, one thread: gather %.1f ms, in scalars of double %.0f ms, %.0fx (aim 50x)\n",
               scene.name.c_str(), gather, scalar, scalar / gather);
 }
 
@@ -253,7 +252,7 @@ int run(std::vector<char*> arguments) {
   if (const auto folder = take_option(arguments, "--pictures")) settings.pictures = *folder;
   for (std::size_t i = 1; i < arguments.size(); ++i) {
     if (std::string(arguments[i]) != "--full") {
-      throw petzval::Error(std::string(arguments[0]) + ": found " + arguments[i] + ", wanted --full or --pictures");
+      throw petzval::Error(std::string(arguments[0]) + ": " + arguments[i] + "; must be --full or --pictures");
     }
     settings.full = true, settings.columns = 800, settings.rows = 600, settings.rounds = 3;
   }
@@ -270,8 +269,8 @@ int run(std::vector<char*> arguments) {
       "single image, ms | missed, %% | general, coherent path: times as slow | unbounded: the "
       "same, general |\n"
       "|---|---|---|---|---|---|---|---|---|---|---|\n"
-      "| wanted, 18 mm | | | | 15x | 33.5/.960 | | 3 dB less | .01 | | |\n"
-      "| wanted, 100 mm | | | | 6x; 10x statues, knot | 39/.985; leaves .955 | | 3 dB less | .01; leaves .5 | 3.5x | "
+      "| aim, 18 mm | | | | 15x | 33.5/.960 | | 3 dB less | .01 | | |\n"
+      "| aim, 100 mm | | | | 6x; 10x statues, knot | 39/.985; leaves .955 | | 3 dB less | .01; leaves .5 | 3.5x | "
       "4x |\n");
   for (const double diameter : {18.0, 100.0}) {
     if (diameter < 100 && !settings.full) continue;
@@ -288,7 +287,7 @@ int run(std::vector<char*> arguments) {
   std::printf(
       "\n| lens | peel, N-buffer | gather | reference, times as slow as gather, as both | PSNR/SSIM | missed, %% | "
       "general path |\n|---|---|---|---|---|---|---|\n"
-      "| wanted | | | singlet 10x | 300 mm 42/.985, tilt 41/.985, singlet 44/.98, colours 45/.985 | | 2.3x |\n");
+      "| aim | | | singlet 10x | 300 mm 42/.985, tilt 41/.985, singlet 44/.98, colours 45/.985 | | 2.3x |\n");
   report_lenses(settings, *scenes[0]);
   report_scalar(settings, *scenes[0]);
   return 0;

@@ -1,12 +1,11 @@
-// SPDX-License-Identifier: Apache-2.0
-// Time of a camera ray, one thread: pupil sample, ray and weight by every model of a lens, in batches of 4096 samples,
-// one by one, on a tilted film, with what shapes a bokeh, and with a focus of its own at each place; and the set-up
-// time of cameras, of all lenses too.
+// SPDX-License-Identifier: Apache-2.0 Time of a camera ray on one thread: pupil sample, ray and weight for every model
+// of a lens. Measures batches of 4096 samples, single samples, tilted films, bokeh controls and focal surfaces, and the
+// set-up time of cameras of all lenses.
 //
 //   camera_bench [--json FILE] [options of Google Benchmark]
 //
 // A useful ray reaches the scene; lost samples count in the time. The textbook tracer is timed in the same run on the
-// ray mix of trace_bench. Samples lie all over a frame of 3:2 at the lens's full aperture.
+// ray mix of trace_bench. Samples cover a 3:2 frame at full aperture.
 #include <benchmark/benchmark.h>
 
 #include <algorithm>
@@ -47,7 +46,7 @@ constexpr std::size_t sample_count = 16384, batch_size = 4096;
 template <class T>
 using Column = std::vector<T, OnCacheLines<T>>;
 
-/// Samples all over the film, and memory for their rays.
+/// Samples on the whole film, with memory for their rays.
 template <class T>
 struct Samples {
   Column<T> film_x, film_y, pupil_u, pupil_v;
@@ -74,7 +73,7 @@ struct Row {
   ModelKind model;
   bool in_double;
   Camera camera;
-  double textbook_ns = 0, useful = 0, ns = 0;  ///< useful: share of the samples
+  double textbook_ns = 0, useful = 0, ns = 0;  ///< useful: fraction of the samples
 
   std::string name() const { return lens + '/' + std::string(petzval::name(model)) + '/' + call; }
   const char* precision() const { return in_double ? "double" : "float"; }
@@ -132,7 +131,7 @@ double useful_share(const Camera& camera) {
   return static_cast<double>(useful) / static_cast<double>(sample_count);
 }
 
-/// The least of three times, ms.
+/// The minimum of three times, ms.
 double setup_ms(const std::function<void()>& work) {
   double least = std::numeric_limits<double>::infinity();
   for (int i = 0; i < 3; ++i) {
@@ -159,7 +158,7 @@ struct Bench {
   }
 };
 
-/// Sixteen points all over the film.
+/// Sixteen points spread over the film.
 petzval::FocalSurface surface_of(const Bench& bench, bool extents) {
   Film film = bench.film;
   film.z_mm = bench.lens.lens.film_z();
@@ -273,7 +272,7 @@ int run(std::vector<char*> arguments) {
       benchmark::RegisterBenchmark(rows.back().name().c_str(), in_double ? time_batches<double> : time_batches<float>,
                                    rows.back());
     }
-    // What shapes a bokeh.
+    // Bokeh controls.
     struct Shape {
       const char* call;
       petzval::BokehControls controls;
@@ -290,7 +289,7 @@ int run(std::vector<char*> arguments) {
         benchmark::RegisterBenchmark(rows.back().name().c_str(), time_batches<float>, rows.back());
       }
     }
-    // A focus of its own at each place.
+    // Focal surfaces.
     const auto add = [&](const char* call, const petzval::CameraOptions& options, bool single) {
       rows.push_back({bench.lens.id, call, options.model, single, Camera(bench.lens.lens, bench.film, options)});
       benchmark::RegisterBenchmark(rows.back().name().c_str(), single ? time_single : time_batches<float>, rows.back());
@@ -306,7 +305,7 @@ int run(std::vector<char*> arguments) {
   Rounds rounds;
   benchmark::RunSpecifiedBenchmarks(&rounds);
 
-  // Only rows that ran: the caller may have filtered.
+  // Only rows that ran, as the caller may filter.
   const auto ns_of = [&](const std::string& name) {
     const auto line = std::find_if(rounds.lines().begin(), rounds.lines().end(),
                                    [&](const Rounds::Line& l) { return l.name == name; });

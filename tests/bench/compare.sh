@@ -11,7 +11,7 @@ set -eu
 root=$(CDPATH= cd -- "$(dirname -- "$0")/../.." && pwd)
 . "$root/cmake/build.sh"
 
-[ $# -ge 1 ] || { echo "wanted: sh tests/bench/compare.sh COMMIT [PROGRAM [options]]" >&2; exit 2; }
+[ $# -ge 1 ] || { echo "usage: sh tests/bench/compare.sh COMMIT [PROGRAM [options]]" >&2; exit 2; }
 commit=$(git -C "$root" rev-parse --short --verify "$1^{commit}")
 shift
 program=${1:-trace_bench}

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// How times changed between two builds that ran by turns. For tests/bench/compare.sh:
+// Compares the times of two builds that ran alternately. For tests/bench/compare.sh:
 //
 //   compare_rounds COMMIT FOLDER ROUNDS
 //
 // Reads old1.json, new1.json, old2.json, ... of Google Benchmark from the folder. Prints for every benchmark of both
-// the fastest time of all rounds, their ratio, and the smallest and largest ratio of one round: how far to trust it.
+// the fastest time of all rounds, the ratio of both times, and the smallest and largest ratio of a round as its
+// uncertainty.
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
@@ -22,7 +23,7 @@ namespace {
 /// The fastest time of each benchmark in a file, ns per item.
 std::map<std::string, double> fastest_times(const std::string& file) {
   std::ifstream in(file);
-  if (!in) throw petzval::Error(file + ": cannot be opened, wanted the results of a round");
+  if (!in) throw petzval::Error(file + ": cannot be opened; must be the results of a round");
   const nlohmann::json results = nlohmann::json::parse(in);
   std::map<std::string, double> fastest;
   for (const nlohmann::json& run : results.at("benchmarks")) {
@@ -40,7 +41,7 @@ struct Change {
 };
 
 int run(std::vector<char*> arguments) {
-  if (arguments.size() != 4) throw petzval::Error("compare_rounds: wanted COMMIT FOLDER ROUNDS");
+  if (arguments.size() != 4) throw petzval::Error("compare_rounds: arguments must be COMMIT FOLDER ROUNDS");
   const std::string commit = arguments[1], folder = arguments[2];
   const int rounds = std::stoi(arguments[3]);
 

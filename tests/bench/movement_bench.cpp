@@ -1,7 +1,6 @@
-// SPDX-License-Identifier: Apache-2.0
-// Time of tilting a film to 24 focus points, one thread: fits with an ideal lens, thin and thick, robust and not,
-// within the limit of tilt and at it; with exact rays, bundles included; and the whole loop of a host that follows a
-// mouse: points over time, keyframes and mesh to a film.
+// SPDX-License-Identifier: Apache-2.0 Time of tilting a film to 24 focus points on one thread. Measures fits with ideal
+// thin and thick lenses, robust or not, within and at the limit of tilt; fits with exact rays, including their bundles;
+// and the whole loop of an interactive host from keyframed points on a mesh to a film.
 #include <benchmark/benchmark.h>
 
 #include <array>
@@ -24,7 +23,7 @@ using namespace petzval;
 constexpr std::size_t point_count = 24;
 constexpr double film_radius = 21.7;
 
-/// Points near an inclined plane over the frame, 1 to 4 m away; every fourth lies elsewhere.
+/// Points near an inclined plane over the frame at 1 to 4 m; every fourth is an outlier.
 std::vector<Vec3<double>> scene(const IdealLens& lens, unsigned seed) {
   std::mt19937 random(seed);
   std::uniform_real_distribution<double> unit(-1, 1);
@@ -38,7 +37,7 @@ std::vector<Vec3<double>> scene(const IdealLens& lens, unsigned seed) {
   return points;
 }
 
-/// Several draws, so that branch prediction does not learn one.
+/// Several draws, so that branch prediction does not learn the data.
 constexpr unsigned draws = 8;
 
 template <class Lens>

@@ -1,7 +1,6 @@
-// SPDX-License-Identifier: Apache-2.0
-// Time of the image of a point light, one thread: point_image as a whole, from the pupil to the size of the spot, and
-// its three parts: making rays (points of the sequence, places in the pupil, directions), tracing them, and the
-// histogram of 512 x 512 pixels.
+// SPDX-License-Identifier: Apache-2.0 Time of the image of a point light on one thread: point_image as a whole, from
+// the pupil to the size of the spot, and its three parts. The parts are making rays (sequence, pupil points,
+// directions), tracing rays, and the histogram of 512 x 512 pixels.
 #include <benchmark/benchmark.h>
 
 #include <algorithm>
@@ -22,7 +21,7 @@ namespace {
 
 constexpr std::uint32_t samples = petzval::PsfOptions{}.samples;
 
-/// Rays that fit in the first cache, like those of a bundle.
+/// Rays that fit in the first-level cache, like in a bundle.
 struct Block {
   static constexpr std::uint32_t size = 512;
   std::array<double, size> x, y, z, dx, dy, dz;

@@ -22,7 +22,7 @@ using petzval::FieldPoint;
 
 struct Setup {
   petzval::Lens lens;
-  std::vector<FieldPoint> near_field;  ///< 64 fields within 1 % of the one measured, so that no two runs are the same
+  std::vector<FieldPoint> near_field;  ///< 64 fields within 1 % of the measured field, so that runs differ
   std::vector<FieldPoint> all_fields;  ///< 64 from the axis to the edge
 };
 
@@ -43,7 +43,7 @@ Setup setup(const std::string& id, double field_deg, double edge_deg) {
   return result;
 }
 
-/// Rays all over the pupil of the field, ray by ray: the unit of the other times.
+/// Rays over the pupil of the field, one at a time; the unit of the other times.
 void traced(benchmark::State& state, const Setup& setup) {
   const petzval::PupilSampler sampler(petzval::pupil_boundary(setup.lens, setup.near_field.front()));
   std::vector<petzval::Ray<double>> rays;

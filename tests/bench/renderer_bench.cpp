@@ -1,7 +1,6 @@
-// SPDX-License-Identifier: Apache-2.0
-// What a lens costs in a renderer: paths in equal time through the models of a lens, by three integrators, and the
-// share of time spent in the lens; and what bidirectional path tracing gains on small lights. One thread, minima of
-// interleaved rounds.
+// SPDX-License-Identifier: Apache-2.0 Cost of a lens in a renderer: paths in equal time through the models of a lens,
+// by three integrators, and the fraction of time spent in the lens. Also measures the gain of bidirectional path
+// tracing for small lights. One thread, minima of interleaved rounds.
 //
 //   build/tests/bench/renderer_bench [ROUNDS]
 #include <algorithm>
@@ -48,7 +47,7 @@ struct Pass {
   double seconds = 0, lens_seconds = 0;
 };
 
-/// Another pass over the film, of some samples of each pixel.
+/// Another pass over the film with some samples per pixel.
 Pass add_pass(const Scene& scene, const LensCamera& lens, const PathColourSource& colours, Integrator integrator,
               std::uint32_t samples, std::uint64_t seed, PictureSums& sums) {
   const UnitTracer tracer(scene, lens, colours, integrator, seed);
@@ -115,7 +114,8 @@ double squared_error(const petzval::RgbImage& image, const petzval::RgbImage& re
   return sum / static_cast<double>(image.pixels.size());
 }
 
-/// Errors against a picture with many samples, after as many seconds of each integrator; of values up to white as well.
+/// Errors relative to an image with many samples, after equal time of each integrator; also with values clipped to
+/// white.
 void report_small_lights(double seconds) {
   std::printf("\nerrors after %.0f s, over those of bidirectional path tracing; of pictures clipped at white\n",
               seconds);

@@ -19,7 +19,7 @@ struct Offset {
   float x, y, distance;
 };
 
-/// Light and its share of a pixel.
+/// Light and its fraction of a pixel.
 struct Sum {
   float colour[3] = {}, share = 0;
 
@@ -61,10 +61,10 @@ class SingleImage {
     const bool once = near <= own;
 
     Sum behind, before;
-    // The pixel itself, so that there is always something.
+    // The pixel itself, so that the sum is never empty.
     behind.add(&pixels_[3 * middle], 1 / own / own);
     gather(column, row, own, [&](std::size_t i, float distance) {
-      // Shares of discs; the area of a tap is that of the disc over the number of taps.
+      // Fractions of discs; the area of a tap is the area of the disc divided by the number of taps.
       if (is_before(i, middle)) {
         if (once) before.add(&pixels_[3 * i], disc(i, distance));
       } else if (is_before(middle, i)) {
@@ -88,7 +88,7 @@ class SingleImage {
 
  private:
   static constexpr int tile = 16;
-  static constexpr float least_radius = 0.5f;  // of a pixel in focus
+  static constexpr float least_radius = 0.5f;  // radius of a pixel in focus
 
   std::size_t at(int column, int row) const {
     return static_cast<std::size_t>(std::clamp(row, 0, height_ - 1)) * static_cast<std::size_t>(width_) +
@@ -105,16 +105,16 @@ class SingleImage {
     }
   }
 
-  /// Whether a surface lies before another one by so much that their discs differ.
+  /// True if a surface is so far in front of another surface that their discs differ.
   bool is_before(std::size_t i, std::size_t other) const { return off_focus_[i] > off_focus_[other] + 1; }
 
-  /// How strongly a pixel's disc lights a place this far from it: the disc has an edge of one pixel.
+  /// Intensity of the disc of a pixel at a distance; the edge of the disc is one pixel wide.
   float disc(std::size_t i, float distance) const {
     const float radius = std::max(std::abs(off_focus_[i]), least_radius);
     return std::clamp(radius + 0.5f - distance, 0.0f, 1.0f) / (radius * radius);
   }
 
-  /// For each tile, the radius of the largest disc of a near thing that may reach it.
+  /// For each tile, the radius of the largest disc of near surfaces that may reach the tile.
   void find_reach() {
     tiles_ = static_cast<std::size_t>((width_ + tile - 1) / tile);
     const int across = static_cast<int>(tiles_), down = (height_ + tile - 1) / tile;
@@ -141,7 +141,7 @@ class SingleImage {
   }
 
   int width_, height_, left_, top_;
-  std::vector<float> off_focus_;  ///< radius of the disc, px: above 0 before the focus, below behind it
+  std::vector<float> off_focus_;  ///< radius of the disc, px: above 0 in front of the focus, below 0 behind
   std::vector<float> pixels_;
   std::vector<Offset> spiral_;
   std::size_t tiles_ = 0;

@@ -1,6 +1,5 @@
-// SPDX-License-Identifier: Apache-2.0
-// Time of a focal surface: whole frames in float on one thread and two, 800 x 600 places by the loops of each
-// instruction set on one thread, and single places in double.
+// SPDX-License-Identifier: Apache-2.0 Time of a focal surface: frames in float on one and two threads, 800 x 600 film
+// points by the loops of each instruction set on one thread, and single film points in double.
 #include <benchmark/benchmark.h>
 
 #include <cstdio>

@@ -18,7 +18,7 @@
 #include "petzval/core/error.hpp"
 #include "petzval/core/instruction_set.hpp"
 
-/// Prints what times depend on: processor, compiler, date.
+/// Prints the conditions of times: processor, compiler, date.
 inline void print_conditions() {
   std::string processor = "unknown processor";
   std::ifstream cpuinfo("/proc/cpuinfo");
@@ -54,20 +54,19 @@ inline void initialize(int argc, char** argv, int rounds = 15, double round_time
   print_conditions();
 }
 
-/// Removes an option of the program and its value from the command line. Nothing if it is not
-/// there.
+/// Removes an option of the program and its value from the command line. nullopt if the option is missing.
 inline std::optional<std::string> take_option(std::vector<char*>& arguments, const std::string& flag) {
   const auto at = std::find(arguments.begin() + 1, arguments.end(), flag);
   if (at == arguments.end()) return {};
   if (at + 1 == arguments.end()) {
-    throw petzval::Error(std::string(arguments[0]) + ": " + flag + ": found nothing behind it, wanted a value");
+    throw petzval::Error(std::string(arguments[0]) + ": " + flag + ": has no value; must have one");
   }
   std::string value = *(at + 1);
   arguments.erase(at, at + 2);
   return value;
 }
 
-/// A program whose errors are one line.
+/// Runs a program and prints its errors in one line.
 inline int guarded(int (*run)(std::vector<char*> arguments), int argc, char** argv) {
   try {
     return run({argv, argv + argc});
@@ -85,7 +84,7 @@ inline std::string digits(double value, int count = 4) {
   return text;
 }
 
-/// Keeps the time per item of every round of every benchmark.
+/// Records the time per item of every round of every benchmark.
 class Rounds : public benchmark::BenchmarkReporter {
  public:
   struct Line {

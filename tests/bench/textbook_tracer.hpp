@@ -7,9 +7,9 @@
 
 #include "petzval/lens/lens.hpp"
 
-/// The baseline of the benchmarks: a tracer by the textbook, in float. Spheres in the frame of their centre, the
-/// quadratic solved without cancellation, conics and aspheres by Newton's method on the sag, glm::refract, everything
-/// normalised, returns at the first failure.
+/// The baseline of the benchmarks: a textbook tracer in float. Spheres are intersected in the frame of their centre by
+/// a quadratic without cancellation, conics and aspheres by Newton iteration on the sag. Uses glm::refract, normalises
+/// every direction, and returns at the first failure.
 class TextbookTracer {
  public:
   struct Ray {
@@ -19,13 +19,13 @@ class TextbookTracer {
   /// Rotationally symmetric surfaces without odd terms, no mirrors.
   explicit TextbookTracer(const petzval::Lens& lens);
 
-  /// From the film to the scene; false if the ray is lost.
+  /// Traces from the film to the scene; false if the ray is lost.
   bool trace(const Ray& film_ray, Ray& scene_ray) const;
 
  private:
   struct Element {
     float radius, thickness, index, aperture_radius;  ///< index of the medium behind, thickness to the next surface
-    int shape = -1;  ///< position among the shapes, or -1: a sphere, or a plane by a radius of 0
+    int shape = -1;  ///< index of the shape; -1 for a sphere, or a plane if the radius is 0
   };
   struct Shape {
     float conic;

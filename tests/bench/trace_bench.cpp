@@ -4,9 +4,9 @@
 //
 //   trace_bench [--isa baseline|avx2|avx512] [--json FILE] [options of Google Benchmark]
 //
-// Every round traces all rays of a set; rounds of all rows are interleaved and threads pinned. Ratios are of the
-// fastest rounds: on a shared machine slow rounds measure the neighbours. One thread is timed by its own clock, two by
-// wall time. Errors of directions are those of the row's own results.
+// Every round traces all rays of a set; rounds of all rows are interleaved and threads pinned. Ratios compare the
+// fastest rounds, as slow rounds on a shared machine measure other users. One thread is timed by its own clock, two by
+// wall time. Errors of directions are measured on the results of each row.
 #include <benchmark/benchmark.h>
 #include <pthread.h>
 #include <sched.h>
@@ -66,7 +66,7 @@ void measure(benchmark::State& state, const Row& row, const std::vector<int>& co
   state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(ray_count));
 }
 
-/// Over rays that pass in this row and in long double.
+/// Errors over rays that pass in this row and in long double.
 template <class T>
 DirectionError direction_error(const Work& work, const RaySet::Of<T>& set) {
   DirectionError error;
@@ -91,7 +91,7 @@ DirectionError direction_error(const Row& row) {
   return row.in_double ? direction_error(*work, row.set->in_double) : direction_error(*work, row.set->in_float);
 }
 
-// ---- What is measured
+// ---- Measurements
 
 template <template <class> class Single, class T>
 Row one_by_one(const BenchLens& bench, const RaySet& set, const std::string& rays, const std::string& code) {
@@ -109,8 +109,7 @@ Row batch(const BenchLens& bench, const RaySet& set, const std::string& rays, co
   return row;
 }
 
-/// Every code on one lens and set; extra: also what needs to be shown once: two threads, arrays of
-/// structures, derivatives.
+/// Measures every code on one lens and set; extra: also two threads, arrays of structures and derivatives.
 std::vector<Row> rows_of(const BenchLens& bench, const RaySet& set, const std::string& rays,
                          const std::vector<InstructionSet>& sets, bool extra, bool two_threads) {
   std::vector<Row> rows;
@@ -165,7 +164,7 @@ struct Options {
   std::string json_file;
 };
 
-/// Takes this program's own options out of the command line.
+/// Removes the options of this program from the command line.
 Options own_options(std::vector<char*>& arguments) {
   Options options;
   const auto available = petzval::instruction_sets();
@@ -174,7 +173,7 @@ Options own_options(std::vector<char*>& arguments) {
   if (const auto isa = take_option(arguments, "--isa")) {
     std::erase_if(options.sets, [&](InstructionSet set) { return petzval::name(set) != *isa; });
     if (options.sets.empty()) {
-      throw petzval::Error("trace_bench: --isa: found \"" + *isa + "\", wanted one that this processor has");
+      throw petzval::Error("trace_bench: --isa = \"" + *isa + "\"; must be an instruction set of this processor");
     }
   }
   return options;
@@ -220,7 +219,7 @@ int run(std::vector<char*> arguments) {
   Rounds rounds;
   benchmark::RunSpecifiedBenchmarks(&rounds);
 
-  // Only rows that ran: the caller may have filtered.
+  // Only rows that ran, as the caller may filter.
   const auto results_of = [&](const std::vector<Row>& asked) {
     std::vector<Result> results;
     for (const Row& row : asked) {

@@ -27,8 +27,8 @@ struct Box {
   double x0, x1, y0, y1;
 };
 
-/// Of a grid over a part of the plane of the rear vertex, the box of what gets out from a ring of the film at
-/// (radius, 0), and a cell more; all of it where nothing does.
+/// Bounding box of the transmitted rays from the film point (radius, 0), on a grid over a region of the plane of the
+/// rear vertex, enlarged by a cell; the whole region if no ray passes.
 Box passing_box(const petzval::Lens& lens, double inner, double outer, const Box& searched, std::mt19937& random) {
   constexpr int cells = 72;
   const double width = (searched.x1 - searched.x0) / cells, height = (searched.y1 - searched.y0) / cells;
@@ -56,17 +56,16 @@ Box passing_box(const petzval::Lens& lens, double inner, double outer, const Box
   return box.x0 < box.x1 ? box : searched;
 }
 
-/// Looked for in half as much again as the rear element, and once more in what was found: behind a rear element near
-/// the film a narrow cone of it gets out.
+/// Searches 1.5 times the rear element, then the box that was found, as only a narrow cone passes if the rear element
+/// is near the film.
 Box box_of_ring(const petzval::Lens& lens, double inner, double outer, std::mt19937& random) {
   const double half = 1.5 * lens.surfaces().back().semi_diameter;
   const Box coarse = passing_box(lens, inner, outer, {-half, half, -half, half}, random);
   return passing_box(lens, inner, outer, coarse, random);
 }
 
-/// The lens over long double: what the compiled lens says in double, with the constants of refraction anew from the
-/// indices, since no code under test shares their rounding. Curvatures and coefficients stay the doubles that every
-/// code gets.
+/// The lens in long double. Curvatures and coefficients are the doubles of the compiled lens, which every code gets;
+/// the constants of refraction are recomputed from the indices, as the tested codes round them differently.
 testing_lenses::Tables<long double> exact_tables(const petzval::Lens& lens) {
   auto tables = testing_lenses::extended(petzval::kernel::view<double>(lens));
   for (std::size_t i = 0; i < lens.surface_count(); ++i) {
@@ -76,7 +75,7 @@ testing_lenses::Tables<long double> exact_tables(const petzval::Lens& lens) {
   return tables;
 }
 
-/// Uses a ray as a line: the length of a rounded direction does not matter.
+/// Uses a ray as a line, independent of the length of its rounded direction.
 template <class T>
 void add_exact(const petzval::kernel::LensView<long double>& view, RaySet::Of<T>& set) {
   using L = petzval::kernel::Vec<long double>;
@@ -105,7 +104,7 @@ BenchLens::BenchLens(const petzval::Prescription& prescription, double half_diag
   std::uniform_real_distribution<double> uniform;
   std::size_t tried = 0, passed = 0;
   while (pass.in_double.rays.size() < count) {
-    // The film point is exact in float, so that both precisions start from it.
+    // The film point is exact in float, so that both precisions have the same start.
     const Vec3<double> film(Vec3<float>(
         Vec3<double>(half_width * (2 * uniform(random) - 1), half_height * (2 * uniform(random) - 1), lens.film_z())));
     const double r = std::hypot(film.x, film.y);

@@ -12,7 +12,7 @@
 #include "trace_rays.hpp"
 #include "trace_work.hpp"
 
-/// A row of the tables. Codes without lanes are IEEE code compiled for the baseline.
+/// A row of the tables. Scalar codes are IEEE code compiled for the baseline.
 struct Row {
   const BenchLens* bench;
   const RaySet* set;
@@ -53,5 +53,5 @@ void print_results(const std::vector<Result>& results);
 /// Lenses of one kind of surface each, the first of them spheres, as a table in Markdown.
 void print_kinds(const std::vector<Result>& results);
 
-/// An array of flat objects; null: a ratio that was not measured.
+/// An array of flat objects; null for ratios that were not measured.
 std::string json(const std::vector<Result>& results);

@@ -13,8 +13,8 @@
 #include "trace/sequential.hpp"
 #include "trace_rays.hpp"
 
-/// One way to trace a set of rays to the scene: timed in rounds, its results compared afterwards. Every thread has its
-/// own, with its own copy of the rays.
+/// A method of tracing a set of rays to the scene, timed in rounds; its results are compared afterwards. Every thread
+/// has its own object with a copy of the rays.
 class Work {
  public:
   virtual ~Work() = default;
@@ -22,7 +22,7 @@ class Work {
   /// Traces all rays once and writes all results to memory.
   virtual void trace() = 0;
 
-  /// The direction of a ray after trace(); nothing if it was lost.
+  /// Direction of a ray after trace(); nullopt if the ray was lost.
   virtual std::optional<petzval::Vec3<double>> direction(std::size_t ray) const = 0;
 };
 
@@ -162,7 +162,7 @@ class ArraysWork : public Work {
   std::vector<int> surfaces_;
 };
 
-/// A batch over structures of arrays, with derivatives by the film point.
+/// A batch over structures of arrays, with derivatives with respect to the film point.
 template <class T>
 class DifferentialsWork : public ArraysWork<T> {
  public:

@@ -76,7 +76,7 @@ TEST(Codev, CurvaturesAndUnitsAreLengthsAndTheirInverses) {
   EXPECT_NEAR(*inches.surfaces[1].semi_diameter, 8 * 25.4, 1e-9);
   EXPECT_EQ(read(with(singlet, "DIM M", "DIM C")).surfaces[1].radius, 500);
   EXPECT_NE(refusal(with(singlet, "DIM M", "DIM F")), "no error");
-  // Without RDM: what would be too steep is a radius.
+  // Without RDM, a number that is too large for a curvature is a radius.
   EXPECT_EQ(read(with(singlet, "RDM;", "")).surfaces[1].radius, 50);
   EXPECT_NE(warning(with(singlet, "RDM;", ""), "RDM"), "no warning");
   curved = with(curved, "RDM N;", "");
@@ -159,7 +159,7 @@ TEST(Codev, PickupsSolvesAndLaterWordsAreHonoured) {
   EXPECT_EQ(p.surfaces[2].radius, -60);
   EXPECT_NE(warning(p, "PIK"), "no warning");
   const Prescription image = read(with(with(singlet, "  48\n", "  49.324\n"), "SI 0 0.5", "PIM\nSI 0 0"));
-  EXPECT_NEAR(image.surfaces[2].thickness, 49.324, 1e-12);  // near the focus: as the file states it
+  EXPECT_NEAR(image.surfaces[2].thickness, 49.324, 1e-12);  // near the focus: the value of the file
   const double focus = petzval::first_order(compile(read(singlet))).back_focal_distance;
   const Prescription far = read(with(with(singlet, "  48\n", "  10\n"), "SI 0 0.5", "PIM\nSI 0 0"));
   EXPECT_NEAR(far.surfaces[2].thickness, focus, 1e-3);  // at 587.6 nm
@@ -206,7 +206,7 @@ TEST(Codev, WordsMayNameTheirSurface) {
   EXPECT_EQ(surface(1, "PIK THI S2 THI S1").thickness, 2);
   EXPECT_NE(warning(with(singlet, "\nGO", "\nPIK THI S2 THI S1 1 2\nGO"), "PIK"), "no warning");
   EXPECT_TRUE(surface(1, "STO S2").stop);
-  // The object, by its number or its name, and a distance of its own for each position.
+  // The object by number or name, and a distance for each position.
   const Prescription p = read(with(singlet, "\nGO", "\nTHI SO 300\nZOO 2\nZOO THI SO 300 200\nCUY S2 0.02 0.025\nGO"));
   EXPECT_EQ(p.design.object_distance_mm, 300);
   EXPECT_EQ(p.configurations.at(1).subject_distance_mm, 200);

@@ -57,7 +57,7 @@ TEST(FlareSim, SaysWhatTheFileSays) {
             expected);
 }
 
-// In the public collection most files have full diameters in the column of semi-diameters.
+// Most files of the public collection have diameters in the column of semi-diameters.
 TEST(FlareSim, DiametersAreToldByTheDeclaredFNumber) {
   std::string diameters = lens;
   for (const auto& [old, now] :
@@ -65,7 +65,7 @@ TEST(FlareSim, DiametersAreToldByTheDeclaredFNumber) {
     diameters = with(diameters, old, now);
   EXPECT_EQ(read(diameters).surfaces, read(lens).surfaces);
   expect_tokens(warning(diameters, "aperture"), {"diameters", 4.98});
-  // Without an f-number the name of the column counts, and that is said.
+  // Without an f-number the name of the column decides, with a warning.
   std::string silent = lens;
   while (silent.find("f/") != std::string::npos) silent = with(silent, "f/", "n=");
   EXPECT_EQ(read(silent).surfaces, read(lens).surfaces);

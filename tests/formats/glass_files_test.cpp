@@ -76,7 +76,7 @@ void expect_index(const Glass& glass, const std::function<double(double)>& formu
   }
 }
 
-// n^2 or n of each formula as its maker prints it, with the numbers of the sample.
+// n^2 or n by the published formula of each maker, with the numbers of the sample.
 TEST_F(GlassFiles, EveryFormulaOfACatalogueGivesItsIndex) {
   const auto file = read(every_formula);
   ASSERT_EQ(file.glasses.size(), 15u);
@@ -129,7 +129,7 @@ TEST_F(GlassFiles, EveryFormulaOfACatalogueGivesItsIndex) {
               1e-12);
 }
 
-// The n_d and V_d of calcite, beta barium borate and aluminium nitride are those of public catalogues.
+// n_d and V_d of calcite, beta barium borate and aluminium nitride come from public catalogues.
 TEST_F(GlassFiles, ACatalogueKeepsWhatItPrints) {
   const auto file = read(every_formula);
   for (const Glass& glass : file.glasses) EXPECT_EQ(glass.catalogue, "made-up");
@@ -365,7 +365,7 @@ TEST_F(GlassPages, BombsOfAPageAreRefused) {
   expect_tokens(refusal("---\nDATA:\n---\n", "x.yml"), {"line 3", "second"});
 }
 
-// An Error or glasses, and never anything else.
+// Reading throws Error or gives glasses.
 TEST_F(GlassFiles, AFileCutAnywhereIsReadOrRefused) {
   const std::string nk = table("nk", "        0.4 1.53 0.001\n        0.5 1.52 1e-5\n        0.7 1.51 0\n");
   int refused = 0, taken = 0;
@@ -410,7 +410,7 @@ TEST_F(GlassFiles, WarningsEndAfterAThousand) {
   expect_tokens(file.warnings.back().message, {2999});
 }
 
-// The samples beside the repository, where they are.
+// The samples next to the repository, if installed.
 TEST(GlassFilesOfOthers, AreReadWithTheirPrintedIndices) {
   const fs::path formats = PETZVAL_TEST_FORMATS;
   if (!fs::exists(formats)) GTEST_SKIP() << formats << " is missing";

@@ -37,7 +37,7 @@ double focal_length(const Prescription& p, double nm = petzval::d_line_nm, const
   return first_order(lens).effective_focal_length;
 }
 
-/// A double Gauss lens of 84 mm with named glasses. sk4, f2: the words after the names.
+/// A double Gauss lens of 84 mm with named glasses. sk4, f2: text after the names.
 std::string double_gauss(const std::string& catalogues, const std::string& sk4, const std::string& f2) {
   struct Row {
     double radius, thickness;
@@ -86,7 +86,7 @@ TEST(GlassNames, ZemaxFixedGlass_IgnoresLeftoverNumbers) {
   }
   EXPECT_EQ(named.surfaces[0].medium.catalogue, "schott-legacy");
   EXPECT_EQ(named.surfaces[3].medium.catalogue, "schott");
-  // The numbers of a model count.
+  // The numbers of a model glass are used.
   const Prescription model = read(double_gauss("SCHOTT", "1 0 1.9 20 0 0 0 0 0 0", dummy));
   EXPECT_EQ(model.surfaces[0].medium, (Medium{.nd = 1.9, .vd = 20}));
   EXPECT_GT(std::abs(focal_length(model) - f), 1);
@@ -128,7 +128,7 @@ TEST(GlassNames, NameThatSeveralCataloguesHave_IsAWarningUnlessTheFileTellsWhich
 }
 
 // Radii, thicknesses and glasses of the Cooke triplet that OpticStudio ships; its primary wavelength is 0.55 um, where
-// OpticStudio prints a focal length of 49.9997831 mm. In the words of optiland.
+// OpticStudio prints a focal length of 49.9997831 mm. In the format of optiland.
 std::string cooke_triplet() {
   struct Row {
     double radius, thickness;
@@ -175,7 +175,7 @@ TEST(GlassNames, NamedGlass_HasTheIndexOfItsFormula) {
   EXPECT_NEAR(focal_length(read(zmx.text), 550), focal_length(schott, 550), 1e-11 * 50);
 }
 
-// SK16 of hikari and F2 of schott: whichever catalogue is first has a glass of the other's name.
+// SK16 of hikari and F2 of schott: each catalogue also has a glass with the other name.
 TEST(GlassNames, ZemaxWriter_OffsetsAGlassWhoseNameIsHidden) {
   const Prescription p = read(cooke_triplet());
   const auto zmx = petzval::format_zemax(p);

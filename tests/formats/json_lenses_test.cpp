@@ -23,7 +23,7 @@ using petzval::testing::refusal;
 using petzval::testing::warning;
 using petzval::testing::with;
 
-/// A singlet behind its stop, in the words of optiland.
+/// A singlet behind its stop, in the format of optiland.
 const std::string optiland = R"({
   "version": 1.0,
   "aperture": {"type": "EPD", "value": 10, "object_space_telecentric": false},
@@ -285,7 +285,7 @@ TEST(Lentil, OneLensOfADatabaseIsChosenByItsKeyOrItsName) {
     EXPECT_EQ(chosen(both, entry).imported->entry, "0002") << entry;
   }
   EXPECT_EQ(chosen(both, "0001").surfaces[1].radius, 50.6);
-  // A single lens need not be chosen, and the word may be the name of a configuration.
+  // A single lens needs no choice, so that the word may name a configuration.
   EXPECT_EQ(chosen(lentil, "long").imported->entry, "");
   EXPECT_EQ(chosen(lentil, "0001").imported->entry, "0001");
   for (const char* entry : {"", "0003"}) {
@@ -317,7 +317,7 @@ TEST(Lentil, WhatIsMissingOrOfAnotherKindIsSaid) {
             0);
   EXPECT_EQ(read(with(lentil, "\"fstop\": 5", "\"fstop\": \"five\"")).f_number, std::nullopt);
   EXPECT_EQ(read(with(lentil, "\"company\": \"none\"", "\"company\": 7")).name, "7 singlet 2000");
-  // A lens alone, without a number.
+  // A single lens without a number.
   const std::string alone = lentil.substr(9, lentil.size() - 10);
   EXPECT_EQ(read(alone).surfaces, read(lentil).surfaces);
 }

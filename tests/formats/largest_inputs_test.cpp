@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Memory that reading takes, at the limits of what is read, in a process of its own each.
+// Memory for reading the largest accepted inputs, each in its own process.
 #include <gtest/gtest.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -34,7 +34,7 @@ Prescription ten_thousand_surfaces() {
   return p;
 }
 
-/// `count` times a piece of text, between two others.
+/// A piece of text repeated `count` times, between two others.
 std::string repeated(const std::string& first, const std::string& piece, std::size_t count, const std::string& last) {
   std::string text = first;
   text.reserve(first.size() + count * piece.size() + last.size());
@@ -42,7 +42,7 @@ std::string repeated(const std::string& first, const std::string& piece, std::si
   return text + last;
 }
 
-/// A line of /proc/self/status, in MB; negative: there is none.
+/// A line of /proc/self/status in MB; negative if the line is missing.
 double status_megabytes(const std::string& key) {
   std::ifstream status("/proc/self/status");
   for (std::string line; std::getline(status, line);) {
@@ -51,13 +51,13 @@ double status_megabytes(const std::string& key) {
   return -1;
 }
 
-/// The most memory that reading takes beside its text, in MB.
+/// Peak memory of reading minus the text, in MB.
 double peak_of(const std::string& text, const std::function<void(const std::string&)>& read) noexcept {
   int ends[2];
   if (pipe(ends) != 0) return -1;
   const pid_t child = fork();
   if (child == 0) {
-    std::ofstream("/proc/self/clear_refs") << 5;  // the peak begins anew
+    std::ofstream("/proc/self/clear_refs") << 5;  // resets the peak
     const double before = status_megabytes("VmHWM");
     try {
       read(text);
@@ -114,7 +114,7 @@ TEST_F(LargestInputs, OfLenses) {
       lens);
   expect_frugal("a million unknown commands, .zmx",
                 format_zemax(p).text + repeated("", "  WHAT 1 2 3 4 5\n", 1'000'000, ""), lens);
-  // As deep in entries as 16 MiB can be.
+  // The most entries that fit 16 MiB.
   const std::size_t entries = ((16 << 20) - 400) / 3;
   const std::string brackets = repeated("[[]", ",[]", entries, "]");
   expect_frugal("16 MiB of brackets, lentil", R"({"1": {"optical-elements-patent": )" + brackets + "}}", refused);

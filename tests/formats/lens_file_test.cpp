@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Files of other kinds, of other programs, and of hostile ones.
+// Files of unknown kinds, of other programs, and hostile files.
 #include <gtest/gtest.h>
 
 #include <clocale>
@@ -33,7 +33,7 @@ std::string bytes_of(const fs::path& file) {
 
 TEST(LensFile, TheSamplesOfOtherProgramsHaveTheirFocalLengths) {
   if (!fs::exists(formats)) GTEST_SKIP() << "no samples";
-  // Focal lengths by the tables of the same lenses in data/README.md, and of lenses that it lacks by their makers.
+  // Focal lengths from data/README.md, or from the makers of lenses that are missing there.
   const std::map<std::string, double> focal_lengths = {{"cooke_triplet.zmx", 50.0213},
                                                        {"cooke_triplet.len", 50.0213},
                                                        {"cooke_triplet_utf16.zmx", 50.0213},
@@ -80,7 +80,7 @@ TEST(LensFile, ASampleCutOffAtAnyByteIsReadOrRefused) {
   for (const auto& entry : fs::recursive_directory_iterator(formats)) {
     if (!entry.is_regular_file() || entry.file_size() > 40'000) continue;
     const std::string whole = bytes_of(entry.path());
-    // Every byte of short files, and steps through long ones: the test suite is no fuzzer.
+    // Every byte of short files, and steps through long files.
     const std::size_t step = 1 + whole.size() / 100;
     for (std::size_t length = 0; length < whole.size(); length += step) {
       refusal(whole.substr(0, length));  // any exception but Error ends the test

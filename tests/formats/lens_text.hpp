@@ -17,14 +17,14 @@ inline std::string refusal(const std::string& text) {
   return message([&] { read(text); });
 }
 
-/// The message of the warning about a command; "no warning" if there is none.
+/// The message of the warning about a command; "no warning" without a warning.
 inline std::string warning(const Prescription& lens, std::string_view command) {
   const auto found = std::ranges::find(lens.imported->warnings, command, &ImportWarning::command);
   return found == lens.imported->warnings.end() ? "no warning" : found->message;
 }
 inline std::string warning(const std::string& text, std::string_view command) { return warning(read(text), command); }
 
-/// A text so many times.
+/// A text repeated `count` times.
 inline std::string repeated(int times, std::string_view text) {
   std::string result;
   for (int i = 0; i < times; ++i) result += text;

@@ -60,7 +60,7 @@ void PrintTo(const Case& test, std::ostream* out) { *out << test.lens; }
 
 class OpenTrackIo : public ::testing::TestWithParam<Case> {};
 
-// Equations 3 and 4: a point of the scene at the tangent x is at F x in the picture without distortion.
+// Equations 3 and 4: without distortion a scene point at the tangent x is at F x in the image.
 TEST_P(OpenTrackIo, LeadsFromTheFilmToTheSceneAndBack) {
   const auto& [id, film_mm, largest_px] = GetParam();
   const Lens lens = with_focus(data_lens(id), 3000);

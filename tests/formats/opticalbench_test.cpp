@@ -40,7 +40,7 @@ TEST(OpticalBench, TheZoomHasItsFocalLengthInEachPosition) {
     EXPECT_EQ(lens.configurations[i].focal_length_mm, focal_lengths[i]);
     const auto compiled = compile(configured(lens, static_cast<double>(i)));
     EXPECT_NEAR(first_order(compiled).effective_focal_length, focal_lengths[i],
-                3e-4 * focal_lengths[i]);  // as the patent rounds
+                3e-4 * focal_lengths[i]);  // rounding of the patent
     EXPECT_NEAR(real_f_number(compiled), 4.0, 1e-4);
   }
   EXPECT_TRUE(lens.configurations[0].changes.empty());
@@ -90,7 +90,7 @@ TEST(OpticalBench, EveryWordOfTheFormIsHonouredOrNamed) {
   EXPECT_EQ(lens.configurations[2].focus_of, "far");
 }
 
-// A position that states its magnification only is focused where the lens has it.
+// A position with a magnification only is focused to this magnification.
 TEST(OpticalBench, AMagnificationTellsTheSubject) {
   const auto lens = read_sample("opticalbench_macro.txt");
   const auto& near = lens.configurations.at(2);
@@ -170,7 +170,7 @@ TEST(OpticalBench, EachPositionHasItsOwnUnknownFilm) {
   EXPECT_EQ(std::ranges::count(lens.imported->warnings, "thickness", &petzval::ImportWarning::command), 2);
 }
 
-// Two zoom positions, each focused twice; the near ones are told apart by their distances.
+// Two zoom positions with two focus settings each; near settings are named by their distances.
 TEST(OpticalBench, NearPositionsFocusTheZoomPositionThatTheyAreLike) {
   const auto lens = parse_lens(
       "[descriptive data]\n[variable distances]\nFocal Length\t50\t70\n"
@@ -182,7 +182,7 @@ TEST(OpticalBench, NearPositionsFocusTheZoomPositionThatTheyAreLike) {
   for (const auto& c : lens.configurations) names.push_back(c.name + " < " + c.focus_of.value_or("-"));
   EXPECT_EQ(names, (Said{"50 mm < -", "70 mm < -", "70 mm at 900 mm < 70 mm", "50 mm at 300 mm < 50 mm",
                          "50 mm at 900 mm < 50 mm"}));
-  EXPECT_EQ(said(lens).size(), 4u);  // the focal length, which the words only declare
+  EXPECT_EQ(said(lens).size(), 4u);  // the focal length is declared only
   expect_tokens(said(lens)[0], {"4 d0", "position", 900, 70});
 }
 

@@ -1,6 +1,5 @@
-// SPDX-License-Identifier: Apache-2.0
-// The text of an OSL camera is turned into C++ by a few replacements, compiled, and its rays compared with those of the
-// library.
+// SPDX-License-Identifier: Apache-2.0 The text of an OSL camera is converted to C++ by a few replacements and compiled;
+// its rays are compared with the library.
 #include <gtest/gtest.h>
 #include <sys/wait.h>
 
@@ -34,7 +33,7 @@ using petzval::Lens;
 using petzval::testing::data_lens;
 using petzval::testing::expect_tokens;
 
-/// The shader as a function: metadata and defaults of its parameters go, outputs become references.
+/// The shader as a function, without metadata and defaults of parameters; outputs become references.
 std::string as_cpp(const std::string& osl) {
   const std::size_t start = osl.find("shader petzval_camera("), end = osl.find("{\n", start);
   std::string parameters = osl.substr(start, end - start);
@@ -78,7 +77,7 @@ struct Found {
   double p[3], d[3], c;
 };
 
-/// The rays of a lens's shader; nothing without a compiler.
+/// The rays of the shader of a lens; empty without a compiler.
 std::vector<Found> run(const Lens& lens, const Setting& s, const std::vector<Sample>& samples) {
   const fs::path folder = fs::path(::testing::TempDir()) / ("osl_" + std::to_string(::getpid()));
   fs::create_directories(folder);
@@ -113,13 +112,13 @@ std::vector<Sample> random_samples(std::size_t count, unsigned seed = 1) {
   return samples;
 }
 
-/// The lens that the shader stands for: focused from its origin, stopped down.
+/// The lens of the shader: focused from its origin, stopped down.
 Lens set(const Lens& lens, const Setting& s) {
   const double origin = petzval::pupils(lens).entrance.z;
   return petzval::with_focus(petzval::with_f_number(lens, s.f_number), s.focus / s.units - origin);
 }
 
-/// Traces each ray of the shader that passes back to the film: it comes out where the sample says.
+/// Traces each transmitted ray of the shader back to the film point of its sample.
 void expect_rays_of(const Lens& lens, const Setting& s, double tolerance_mm) {
   if (std::system("c++ --version > /dev/null 2>&1") != 0) GTEST_SKIP() << "no compiler";
   const auto samples = random_samples(4000);
@@ -229,7 +228,7 @@ TEST(OslCamera, BladesAreThoseOfTheIris) {
     }
     EXPECT_GT(passed, 2000u);
     EXPECT_LT(static_cast<double>(clipped), 0.005 * static_cast<double>(passed)) << iris.blades;
-    EXPECT_NEAR(sum / 20'000, 1, 0.04) << iris.blades;  // the middle of the film, whatever the iris
+    EXPECT_NEAR(sum / 20'000, 1, 0.04) << iris.blades;  // the centre of the film for any iris
   }
 }
 
@@ -250,7 +249,7 @@ TEST(OslCamera, WhatTheShaderCannotTraceIsRefused) {
   expect_tokens(refusal(data_lens("mirror_newton_200mm_f8")), {"mirror"});
   expect_tokens(refusal(data_lens("anamorphic_60mm_2x")), {"cylinder"});
   expect_tokens(refusal(petzval::compile(petzval::testing::open_singlet())), {"stop"});
-  // Its distant subjects are in focus within the space that the stop leaves.
+  // Distant subjects are in focus within the travel that the stop leaves.
   petzval::Prescription behind;
   behind.surfaces = {{.radius = 50, .thickness = 5, .medium = {.nd = 1.5168}, .semi_diameter = 12},
                      {.radius = -50, .thickness = 48, .semi_diameter = 12},

@@ -154,7 +154,7 @@ TEST(Oslo, IndicesNeedNotBeThoseOfTheHeliumLine) {
 TEST(Oslo, AThicknessThatItsSolveContradictsIsNamed) {
   expect_said(said(parse_lens(with(plain, "TH 50", "TH 50\nPY 0"), "x.len")), {});
   expect_said(said(parse_lens(with(plain, "TH 50", "TH 49\nPY 0"), "x.len")), {{"13 PY", "file", 49, 50}});
-  // Half the height of the beam, half of the way.
+  // Half the beam height halves the distance.
   const auto lens = parse_lens(with(plain, "TH 50", "PY 2.5"), "x.len");
   EXPECT_NEAR(lens.surfaces[1].thickness, 25, 1e-12);
   expect_tokens(said(parse_lens(with(with(plain, "TH 50", "TH 1\nPY 2"), "EBR 5", "FNO 5"), "x.len")).at(0),
@@ -162,7 +162,7 @@ TEST(Oslo, AThicknessThatItsSolveContradictsIsNamed) {
 }
 
 TEST(Oslo, AWrongFocalLengthIsNamed) {
-  expect_said(said(parse_lens(with(plain, "\" 50", "\" 100"), "x.len")), {});  // what OSLO writes for new lenses
+  expect_said(said(parse_lens(with(plain, "\" 50", "\" 100"), "x.len")), {});  // default of OSLO for new lenses
   expect_said(said(parse_lens(with(plain, "\" 50", "\" 60"), "x.len")), {{"1 LEN", 60, "focal", 50}});
 }
 

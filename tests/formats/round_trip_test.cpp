@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Every lens of data/lenses goes into another program's format and comes back as the same lens.
+// Every lens of data/lenses, written in the format of another program and read again, is equal.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -33,7 +33,7 @@ const petzval::GlassCatalogue& glasses() {
   return tables;
 }
 
-/// Whole lenses, with the configurations of those that zoom.
+/// All lenses, with the configurations of zooms.
 std::vector<Prescription> lenses() {
   std::vector<Prescription> result;
   for (const Prescription& p : petzval::testing::data_prescriptions()) {
@@ -47,7 +47,7 @@ Prescription read(const WrittenLens& written) {
   return petzval::parse_lens(written.text, "back", {.glasses = &glasses()});
 }
 
-/// The largest distance on the film between rays of both, over heights and fields.
+/// Largest distance on the film between rays of both lenses, over heights and fields.
 double largest_difference(const Lens& a, const Lens& b, bool rims) {
   double worst = 0;
   const double size = a.surfaces()[0].semi_diameter;
@@ -72,8 +72,8 @@ double largest_difference(const Lens& a, const Lens& b, bool rims) {
   return worst;
 }
 
-/// The lens with indices of the formulas where it states those that the tables print: formats that name glasses cannot
-/// tell them apart.
+/// The lens with the indices of the glass formulas in place of printed indices, as formats that name glasses cannot
+/// distinguish them.
 Prescription by_formulas(Prescription p) {
   const auto change = [&](petzval::Medium& medium) {
     const petzval::Glass* glass = glass_of(medium, glasses());
@@ -89,7 +89,7 @@ Prescription by_formulas(Prescription p) {
   return p;
 }
 
-/// Writes and reads each lens; how many the format takes.
+/// Writes and reads each lens. Returns the number of lenses that the format can hold.
 int compare(const std::function<WrittenLens(const Prescription&)>& write, double tolerance, bool colours) {
   int compared = 0;
   for (const Prescription& printed : lenses()) {
@@ -154,7 +154,7 @@ TEST(RoundTrip, ZemaxTakesWhatItWroteAsItIs) {
   }
 }
 
-/// A glass as readers give it: n_d and V_d of its formula.
+/// A glass in the form of readers: n_d and V_d from its formula.
 petzval::Medium schott(const char* name) {
   const petzval::Glass& glass = *glasses().find(name, "schott");
   const auto n = [&](double nm) { return petzval::refractive_index(glass, nm); };
@@ -172,7 +172,7 @@ Prescription singlet() {
   return p;
 }
 
-/// Whether a loss of this kind is said.
+/// True if a loss of this kind is reported.
 bool lost(const WrittenLens& written, std::string_view what) {
   return std::ranges::find(written.losses, what, &petzval::ImportWarning::command) != written.losses.end();
 }
@@ -182,7 +182,7 @@ const Write table = [](const Prescription& p) { return petzval::format_table(p);
 const Write zemax = [](const Prescription& p) { return petzval::format_zemax(p, &glasses()); };
 const Write codev = [](const Prescription& p) { return petzval::format_codev(p, &glasses()); };
 
-/// A lens of catalogue glasses: current, discontinued ones of Schott, and of other makers.
+/// A lens of catalogue glasses: current and discontinued glasses of Schott, and glasses of other makers.
 Prescription catalogue_lens() {
   Prescription p = singlet();
   p.name = "catalogue";
@@ -221,7 +221,7 @@ TEST(RoundTrip, CodevKeepsCatalogueGlassesAtEveryWavelength) {
   EXPECT_TRUE(back.imported->warnings.empty()) << back.imported->warnings.front().message;
 }
 
-// An index of its own, and a medium without a name, have no place in a catalogue.
+// Custom indices and media without a name cannot be written as catalogue glasses.
 TEST(RoundTrip, CodevNamesTheMediaThatBecomePrivate) {
   Prescription lens = catalogue_lens();
   lens.surfaces[0].medium.nd = 1.5168 + 0.0005;
@@ -266,7 +266,7 @@ TEST(RoundTrip, TheDesignsApertureComesBack) {
       for (const Write write : {zemax, codev}) {
         const Prescription back = read(write(p));
         EXPECT_EQ(back.design.object_distance_mm, object);
-        // At infinity CODE V's f-numbers are those of the focal length.
+        // At infinity the f-numbers of CODE V are based on the focal length.
         const bool same = write != codev || setting != working_f_number || std::isfinite(object);
         EXPECT_EQ(back.design.aperture, (petzval::DesignAperture{same ? setting : f_number, value})) << write(p).text;
       }
@@ -452,7 +452,7 @@ TEST(RoundTrip, GlassesAndRimsOfConfigurationsComeBack) {
   p.configurations = {{.name = "a"}, {.name = "b", .changes = {{.surface = 1, .medium = schott("F2")}}}};
   EXPECT_EQ(configured(read(zemax(p)), 1).surfaces[1].medium.glass, "F2");
   EXPECT_EQ(configured(read(zemax(p)), 0).surfaces[1].medium.glass, "N-BK7");
-  // A rim in one configuration alone.
+  // A rim in one configuration only.
   p.surfaces[2].semi_diameter.reset();
   p.configurations[1].changes = {{.surface = 2, .semi_diameter = 6}};
   const Prescription back = read(zemax(p));
@@ -460,11 +460,11 @@ TEST(RoundTrip, GlassesAndRimsOfConfigurationsComeBack) {
   EXPECT_TRUE(configured(back, 0).surfaces[2].semi_diameter_computed);
   p.configurations[1].changes = {{.surface = 2, .semi_diameter = HUGE_VAL}};
   EXPECT_TRUE(configured(read(zemax(p)), 1).surfaces[2].semi_diameter_computed);
-  // Air in the place of a lens.
+  // An air space instead of a lens.
   p.configurations[1].changes = {{.surface = 1, .medium = petzval::Medium{}}};
   EXPECT_EQ(configured(read(zemax(p)), 1).surfaces[1].medium, petzval::Medium{});
   EXPECT_TRUE(zemax(p).losses.empty());
-  // A glass that no table has.
+  // A glass that is in no table.
   p.configurations[1].changes = {{.surface = 1, .medium = petzval::Medium{.nd = 1.7, .vd = 40}}};
   EXPECT_TRUE(lost(zemax(p), "configurations"));
   EXPECT_EQ(configured(read(zemax(p)), 1).surfaces[1].medium.glass, "N-BK7");
@@ -480,7 +480,7 @@ TEST(RoundTrip, PrintedIndexOfAGlass_BecomesThatOfItsFormulaAndIsSaidToBeLost) {
     EXPECT_TRUE(lost(write(p), "nd"));
     EXPECT_EQ(read(write(p)).surfaces[1].medium, formula);
   }
-  // The index of another melt stays.
+  // The index of another melt is kept.
   p.surfaces[1].medium.nd = 1.517;
   EXPECT_FALSE(lost(zemax(p), "nd"));
   EXPECT_NEAR(read(zemax(p)).surfaces[1].medium.nd.value(), 1.517, 1e-14);
@@ -545,7 +545,7 @@ TEST(RoundTrip, IndicesOfAnyLineComeBackAtThatLine) {
                               {.glasses = &glasses(), .missing_glass = petzval::MissingGlass::abbe});
     for (const std::size_t wavelength : {0, 1}) {
       for (const std::size_t space : {2, 3}) {
-        // CODE V's private glasses have three indices, with a curve through them.
+        // Private glasses of CODE V have three indices, interpolated by a curve.
         EXPECT_NEAR(same.index(space, wavelength), lens.index(space, wavelength), 1e-4) << write(p).text;
       }
     }
@@ -568,7 +568,7 @@ TEST(RoundTrip, TheApertureOfASeqIsThatOfItsStop) {
 
 TEST(RoundTrip, TablesWantAirInFrontAndSayWhatTheirAperturesAre) {
   Prescription p = singlet();
-  p.f_number = 2.5;  // of the lens wide open: twice the stop
+  p.f_number = 2.5;  // the lens wide open, with twice the stop
   EXPECT_EQ(read(table(p)).surfaces[0].semi_diameter, 5);
   p.object_space.nd = 1.33;
   expect_error([&] { table(p); }, {"singlet", "medium", 1.33});
@@ -652,7 +652,7 @@ TEST(RoundTrip, ClosedStopsComeBackOrAreRefused) {
   for (const Write write : {table, zemax}) {
     expect_error([&] { write(p); }, {"singlet", "surface 0", "semi_diameter"});
   }
-  // In one position alone.
+  // In one position only.
   p.surfaces[0].semi_diameter = 5;
   p.configurations = {{.name = "open"}, {.name = "closed", .changes = {{.surface = 0, .semi_diameter = 0}}}};
   expect_error([&] { zemax(p); }, {"surface 0", "semi_diameter"});

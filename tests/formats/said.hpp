@@ -35,7 +35,7 @@ inline Prescription read_sample(std::string_view name) {
   return read_lens(std::filesystem::path(PETZVAL_TEST_SAMPLES) / name);
 }
 
-/// The text with `old` replaced where it stands first. Throws Error where it does not stand.
+/// The text with the first `old` replaced. Throws Error if `old` is missing.
 inline std::string with(std::string text, std::string_view old, std::string_view replacement) {
   const std::size_t at = text.find(old);
   if (at == std::string::npos) throw Error("the text has no \"" + std::string(old) + '"');

@@ -340,7 +340,7 @@ TEST(Table, WhatIsAssumedIsSaid) {
   EXPECT_NE(warning("r;d;nd\n50;5;1,5168\n-50;90,5;1\n", "numbers"), "no warning");
 }
 
-/// A number as it is typed, in one of the words for a plane if it is 0.
+/// A number as typed by hand; 0 is written as a random word for a plane.
 std::string typed_radius(double radius, std::mt19937& random) {
   static const std::vector<std::string> planes = {"0", "inf", "Infinity", "plano", "flat", "\u221e", "-inf"};
   return radius != 0 ? petzval::to_text(radius) : planes[random() % planes.size()];
@@ -370,8 +370,7 @@ struct TypedColumn {
   std::function<std::string(const petzval::SurfaceRow&)> cell;
 };
 
-// Columns in any order, separators of all kinds, words for planes, rows for air, one stop: each row comes out, and each
-// number.
+// With columns in any order, any separators, words for planes, rows for air and one stop, every row and number is read.
 TEST(Table, AnyOrderOfColumnsAndRowsIsTheSameLens) {
   std::mt19937 random(7);
   for (int i = 0; i < 600; ++i) {
@@ -422,7 +421,7 @@ TEST(Table, AnyOrderOfColumnsAndRowsIsTheSameLens) {
   }
 }
 
-// The same without heads, as patents and renderers print tables.
+// Tables without column heads, as in patents and renderers.
 TEST(Table, EveryRowWithoutHeadsIsASurface) {
   std::mt19937 random(8);
   for (int i = 0; i < 600; ++i) {
@@ -458,7 +457,7 @@ TEST(Table, EveryRowWithoutHeadsIsASurface) {
   }
 }
 
-// A lens of the data, typed by its numbers, is that lens.
+// Lenses of data/, typed as tables, are equal.
 TEST(Table, LensesOfTheDataComeBackFromATypedTable) {
   int compared = 0;
   for (const Prescription& p : petzval::testing::data_prescriptions()) {
@@ -507,7 +506,7 @@ TEST(Table, LensesOfTheDataComeBackFromATypedTable) {
   EXPECT_GE(compared, 55);
 }
 
-// The example of data/README.md, its first indented block behind the heading.
+// The example of data/README.md: the first indented block after the heading.
 TEST(Table, TheExampleOfTheManualIsTheCookeTriplet) {
   std::ifstream file(std::filesystem::path(PETZVAL_TEST_DATA) / "README.md");
   std::string text, line;

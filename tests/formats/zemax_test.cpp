@@ -207,7 +207,7 @@ TEST(Zemax, OpaqueRings_ReachTheRimOrAreRefused) {
 }
 
 TEST(Zemax, DummyPlanes_ClipByClearAperturesAlone) {
-  // Behind the lens, with the user's semi-diameter.
+  // Behind the lens, with a semi-diameter of the user.
   const auto dummy = [](const std::string& lines) {
     return read(with(with(singlet, "SURF 4\n", "SURF 5\n"), "  DIAM 7 0 0 0 1 \"\"\n",
                      "  DIAM 7 0 0 0 1 \"\"\nSURF 4\n  TYPE STANDARD\n  CURV 0\n  DISZ 0\n" + lines));
@@ -342,7 +342,7 @@ TEST(Zemax, SolvesWhoseSolutionIsStatedAreSilent) {
         with(singlet, "  DISZ 48\n", "  DISZ 49.33\n  MAZH 0 0\n")}) {
     EXPECT_TRUE(read(text).imported->warnings.empty()) << text;
   }
-  // A film elsewhere than its solve says stays, and is named with both distances.
+  // A film that contradicts its solve is kept, with a warning that states both distances.
   const Prescription p = read(with(singlet, "  DISZ 48\n", "  DISZ 48\n  MAZH 0 0\n"));
   EXPECT_EQ(p.surfaces[2].thickness, 48);
   const double focus = petzval::first_order(compile(p)).back_focal_distance;
@@ -361,11 +361,11 @@ TEST(Zemax, TheStopIsAsWideAsTheDesignSays) {
   };
   EXPECT_NEAR(paraxial("FNUM 6 0"), 6, 1e-6);
   EXPECT_NEAR(paraxial("ENPD 5"), petzval::first_order(compile(read(singlet))).effective_focal_length / 5, 1e-6);
-  // With a size of its own.
+  // The stop has its own size.
   const auto fixed =
       read(with(with(singlet, "ENPD 10", "FLOA 0"), "  DISZ 2\n", "  DISZ 2\n  DIAM 3.5 1 0 0 1 \"\"\n"));
   EXPECT_EQ(fixed.surfaces[0].semi_diameter, 3.5);
-  // The cone from the object: n sin u of the ray to the rim of the stop, which stands 98 mm behind it.
+  // The cone from the object: n sin u of the ray to the rim of the stop, at a distance of 98 mm.
   const auto near = read(with(with(singlet, "ENPD 10", "OBNA 0.1 0"), "DISZ INFINITY", "DISZ 98"));
   EXPECT_EQ(near.design.object_distance_mm, 98);
   EXPECT_NEAR(*near.surfaces[0].semi_diameter, 98 * std::tan(std::asin(0.1)), 1e-9);
@@ -401,7 +401,7 @@ TEST(Zemax, GlassesAreFoundOrNamed) {
   const double formula = petzval::refractive_index(*petzval::glass_tables().find("N-BK7"), petzval::d_line_nm);
   EXPECT_EQ(bk7.nd, formula);
   EXPECT_EQ(read(glass("NBK7 0 0 0 0 0")).surfaces[1].medium.glass, "N-BK7");
-  // The dummy index of a glass that nobody knows.
+  // The placeholder index of an unknown glass.
   expect_tokens(refusal(glass("XYZ12 0 0 1.5 40 0 0 0 0 0 0")), {"x", "line 40", "XYZ12"});
   expect_tokens(refusal(glass("XYZ12 0 0 1.5 40 0")), {"--glasses FILE"});
   const Prescription known = read(glass("XYZ12 0 0 1.62 60.3 0 0 0 0 0 0"));
@@ -422,7 +422,7 @@ TEST(Zemax, MirrorsKeepTheMediumInFront) {
   EXPECT_EQ(p.surfaces[1].medium, petzval::Medium{});
 }
 
-/// A break in front of surface 2 and one behind it.
+/// A coordinate break on each side of surface 2.
 std::string with_breaks(const std::string& first, const std::string& between, const std::string& second) {
   const auto surface = [](int n, const std::string& lines) { return "SURF " + std::to_string(n) + "\n" + lines; };
   const std::size_t start = singlet.find("SURF 2");
@@ -484,7 +484,7 @@ YFIE 1 2 6 0 0 0 1 1 1 0 0 "" 0
   EXPECT_NE(warning(p, "YFIE"), "no warning");
   expect_tokens(refusal(singlet + table + "THIC 9 1 4\n"), {"surface", 9});
   expect_tokens(refusal(singlet + table + "THIC 2 4 4\n"), {"configuration", 4});
-  // One position at infinity: the others focus it.
+  // One position is at infinity; the others focus.
   const Prescription near = read(singlet + "MNUM 2 1\nTHIC 0 1 1e10\nTHIC 0 2 500\nTHIC 3 1 48\nTHIC 3 2 53\n");
   EXPECT_EQ(near.configurations[1].focus_of, "position 1");
   EXPECT_EQ(near.configurations[1].subject_distance_mm, 500);

@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
-// What an Open Shading Language shader finds in its host, for a shader that a test has turned into C++. Floats, as
-// there.
+// The host environment of an Open Shading Language shader, for a shader that a test has converted to C++. All numbers
+// are floats, as in OSL.
 
 struct Triple {
   float value[3] = {0, 0, 0};
