@@ -186,7 +186,7 @@ TYPED_TEST(DifferentialsOf, RaysEqualTheTraceWithoutDerivatives) {
       most(options, length(a.direction - b.direction), what + " direction");
     }
   });
-  most.close("differentials: rays against those of the trace", 16);
+  most.close("differentials: rays, compared with the trace", 16);
 }
 
 TYPED_TEST(DifferentialsOf, LostRaysGiveZerosAndFiniteLanes) {
