@@ -7,13 +7,13 @@ set(petzval_long_tests
   AsphereOf/*.FindsTheFirstCrossingOfSteepRays
   BokehControls.MapHasOneOrientationInAllModels
   BrownConrady.HasNoPoleWithinTheFilm
-  BrownConrady.TermsAreBoundedAndRadiiRiseAsFarAsItSays
+  BrownConrady.TermsAreBoundedAndRadiiAreMonotonic
   Camera/Batches.*catadioptric*
   Camera.SetUpIndependentOfThreads
   Certified.*
   ChooseModel.DistancesCountFromTheirOrigin
-  ChooseModel.LeavesOutWhatCannotBeBuilt
-  ChooseModel.SaysWhatElseIsNotNeeded
+  ChooseModel.SkipsModelsThatCannotBeBuilt
+  ChooseModel.ReportsUnneededFeatures
   ChooseModel.StopsTheLensDown
   Cylinders.Polynomials*
   DifferentialsOf*.EveryLensEqualsExactRays
@@ -22,7 +22,7 @@ set(petzval_long_tests
   Extremes.FieldsBeyondTheLensAreDark
   FilmIrradiance.FilmInsideTheLastSurfaceEqualsRaysInAllDirections
   FilmIrradiance.EveryLensEqualsRaysInAllDirections
-  Gather.IsTheReference
+  Gather.EqualsTheReference
   ImageCircle.EndsWhereTheLightDoes
   IrisShape.PassesAChiSquareTestInSmallSquares
   IrisWeights.SamplesHaveTheStatedDensity
@@ -34,7 +34,7 @@ set(petzval_long_tests
   RayTiltFit.NoSearchFindsBetterBlurs
   Reciprocity.HoldsFor*
   Spectrum.StatedErrorOfEveryGlassHolds
-  StMap.IsTheDistortionUpToTheEndOfTheLight
+  StMap.EqualsTheDistortionUpToTheImageCircle
   TiltFitLimit.PlaneThroughTheViewVectorNeitherFlipsNorJumps
   TwentyLenses/Promise.*
   WavelengthOrder.*)

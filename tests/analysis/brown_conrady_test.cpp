@@ -32,7 +32,7 @@ LensDistortion distortion_of(const Lens& lens, const Film& film) {
   return LensDistortion(Camera(lens, film, {.model = ModelKind::exact_double}));
 }
 
-TEST(BrownConrady, IsZeroForAPinhole) {
+TEST(BrownConrady, PinholeHasNoDistortion) {
   const LensDistortion none(Camera(data_lens("biogon_35mm_f2.8"), small_film(36), {.model = ModelKind::pinhole}));
   for (const auto direction : directions) {
     for (const auto form : forms) {
@@ -131,7 +131,7 @@ TEST(BrownConrady, HasNoPoleWithinTheFilm) {
 }
 
 // Hosts may evaluate outside the image or in float, and get a monotonic continuation.
-TEST(BrownConrady, TermsAreBoundedAndRadiiRiseAsFarAsItSays) {
+TEST(BrownConrady, TermsAreBoundedAndRadiiAreMonotonic) {
   int number = 0;
   for (const Prescription& p : testing::data_prescriptions()) {
     if (number++ % 4 != 0) continue;  // every fourth suffices
@@ -166,7 +166,7 @@ TEST(BrownConrady, TermsAreBoundedAndRadiiRiseAsFarAsItSays) {
 }
 
 // Cases in which a linear fit has a pole or is not the least-squares fit.
-TEST(BrownConrady, FindsTheRationalFormOfLeastSquares) {
+TEST(BrownConrady, FindsTheRationalLeastSquaresFit) {
   using enum BrownConradyDirection;
   for (const auto& [id, direction, rms_px] :
        {std::tuple("tessar_100mm_f5.5_1902", to_distorted, 0.03), std::tuple("heliar_100mm_f4", to_distorted, 0.001),
@@ -177,7 +177,7 @@ TEST(BrownConrady, FindsTheRationalFormOfLeastSquares) {
   }
 }
 
-TEST(BrownConrady, RefusesWhatIsNotRadialOrNoPinholesPicture) {
+TEST(BrownConrady, RefusesOtherDistortions) {
   Film tilted = small_film(36);
   tilted.tilt_rad = 0.01;
   for (const auto& [id, film, word] :
@@ -190,7 +190,7 @@ TEST(BrownConrady, RefusesWhatIsNotRadialOrNoPinholesPicture) {
 }
 
 // Blades bend no ray; the centre of a pupil of five blades differs slightly from the centre of a disc.
-TEST(BrownConrady, HardlyDependsOnTheBlades) {
+TEST(BrownConrady, IsNearlyIndependentOfBlades) {
   const Lens lens = data_lens("biogon_35mm_f2.8");
   const auto fit = [](const Lens& l) { return fit_brown_conrady(distortion_of(l, small_film(36))); };
   const BrownConrady bladed = fit(with_iris(lens, {.blades = 5})), round = fit(lens);
@@ -198,7 +198,7 @@ TEST(BrownConrady, HardlyDependsOnTheBlades) {
   EXPECT_NEAR(bladed.largest_px, round.largest_px, 0.01);
 }
 
-TEST(BrownConrady, SaysItsDirection) {
+TEST(BrownConrady, NamesItsDirection) {
   EXPECT_EQ(name(BrownConradyDirection::to_undistorted), "Brown-Conrady D-U");
   EXPECT_EQ(name(BrownConradyDirection::to_distorted), "Brown-Conrady U-D");
 }

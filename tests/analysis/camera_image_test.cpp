@@ -35,7 +35,7 @@ void PrintTo(const Light& light, std::ostream* out) { *out << light.lens << " at
 class CameraImages : public ::testing::TestWithParam<Light> {};
 
 // Connections of the exact camera equal traced rays.
-TEST_P(CameraImages, AreThoseOfTheLens) {
+TEST_P(CameraImages, EqualTheLens) {
   const auto& [id, field_deg, z] = GetParam();
   const Lens lens = with_focus(data_lens(id), 3000, {.origin = DistanceOrigin::front_vertex});
   const FieldPoint point{radians(field_deg), z, 0.3};
@@ -125,7 +125,7 @@ TEST(CameraImages, CountWeightsOfAnySize) {
   for (const float value : {1e-6f, 1e-3f, 1e6f}) EXPECT_NEAR(light(value) / value / light(1), 1, 1e-3) << value;
 }
 
-TEST(CameraImages, WantIrradiance) {
+TEST(CameraImages, RequireIrradiance) {
   const Lens lens = data_lens("double_gauss_100mm_f2.0");
   const Camera camera(lens, film, {.normalisation = Normalisation::unity_on_axis});
   expect_error([&] { point_image(camera, {0, -1000}, options); }, {lens.name(), "point_image", "weights"});

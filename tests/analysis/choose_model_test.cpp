@@ -46,7 +46,7 @@ void PrintTo(const Scene& scene, std::ostream* out) { *out << scene.id; }
 
 class Promise : public ::testing::TestWithParam<Scene> {};
 
-TEST_P(Promise, HoldsOnFreshSamples) {
+TEST_P(Promise, HoldsForOtherSamples) {
   const Scene& scene = GetParam();
   const Lens lens = focused(scene.id, scene.focus);
   const Film film{.width_mm = scene.width, .height_mm = scene.width / 1.5};
@@ -159,7 +159,7 @@ const std::vector<ModelChoice>& usual_choices() {
   return choices;
 }
 
-TEST(ChooseModel, MeasuresEveryRungInOrder) {
+TEST(ChooseModel, MeasuresEveryModelInOrder) {
   const ModelChoice& choice = usual_choices()[one_px];
   ASSERT_EQ(choice.table.size(), models().size());
   for (std::size_t k = 0; k < models().size(); ++k) {
@@ -176,7 +176,7 @@ TEST(ChooseModel, MeasuresEveryRungInOrder) {
   EXPECT_TRUE(candidate_of(choice, choice.model).inside);
 }
 
-TEST(ChooseModel, TakesTheFastestInside) {
+TEST(ChooseModel, ChoosesTheFastestWithinTheBudget) {
   for (const ModelChoice& choice : usual_choices()) {
     for (const ModelCandidate& c : choice.table) {
       if (!c.inside) continue;
@@ -189,7 +189,7 @@ TEST(ChooseModel, TakesTheFastestInside) {
 }
 
 /// Each ray must meet one budget of the pair, so that a model that meets one budget is accepted.
-TEST(ChooseModel, AllowsPixelsOrAPartOfTheBlur) {
+TEST(ChooseModel, AcceptsPixelsOrAFractionOfTheBlur) {
   const auto& choices = usual_choices();
   for (std::size_t k = 0; k < models().size(); ++k) {
     const bool px = choices[half_px].table[k].inside, blur = choices[tenth_of_blur].table[k].inside;
@@ -220,7 +220,7 @@ bool says(const std::vector<std::string>& lines, const std::string& part) {
 
 // A ray that only the model or only the lens transmits counts in pupil_shape only: the limit in pixels ignores that a
 // thin lens has a round pupil where the lens has cat's eyes.
-TEST(ChooseModel, WantsThePupilsOfTheLensUnlessToldOtherwise) {
+TEST(ChooseModel, RequiresThePupilsOfTheLensByDefault) {
   const Lens lens = focused("modern_41mm_f1.45", 3000);
   const std::vector<ErrorBudget> budgets{{.max_px = 40}, {.max_px = 40, .pupil_shape = {}}, {}};
   const auto choices = choose_models(lens, {.near_mm = 1500}, budgets);
@@ -235,7 +235,7 @@ TEST(ChooseModel, WantsThePupilsOfTheLensUnlessToldOtherwise) {
   EXPECT_TRUE(says(choices[0].reasons, "pupil shape"));
 }
 
-TEST(ChooseModel, SaysWhatElseIsNotNeeded) {
+TEST(ChooseModel, ReportsUnneededFeatures) {
   const auto glasses = GlassCatalogue::load(std::filesystem::path(PETZVAL_TEST_DATA) / "glass");
   const Lens lens = with_focus(compile(data_prescription("cooke_triplet_50mm_f5"), std::array{486.1, 587.6, 656.3},
                                        {.glasses = &glasses, .missing_glass = MissingGlass::abbe}),
@@ -255,7 +255,7 @@ TEST(ChooseModel, SaysWhatElseIsNotNeeded) {
   EXPECT_FALSE(says(loose[2].not_needed, "pupil"));
 }
 
-TEST(ChooseModel, LeavesOutWhatCannotBeBuilt) {
+TEST(ChooseModel, SkipsModelsThatCannotBeBuilt) {
   const Lens lens = focused("anamorphic_60mm_2x", 5000);
   const ModelChoice choice =
       choose_model(lens, {.near_mm = 3000, .film = {.width_mm = 20, .height_mm = 13}}, {.max_px = 4});

@@ -44,7 +44,7 @@ Lens thin_singlet(double stop_distance) {
 }
 
 // The Gaussian lens equation for each wavelength; the focal lengths at F and C differ by f / V.
-TEST(ChromaticAberration, OfAThinLensIsThatOfItsFocalLength) {
+TEST(ChromaticAberration, ThinLensFollowsItsFocalLength) {
   const Lens lens = thin_singlet(0.1);
   const auto focal_length = [](double nm) { return 100 * 0.5 / (abbe_index(1.5, 50, nm) - 1); };
   EXPECT_NEAR(focal_length(f_d_c[2]) - focal_length(f_d_c[0]), 100.0 / 50, 0.02);
@@ -64,7 +64,7 @@ TEST(ChromaticAberration, OfAThinLensIsThatOfItsFocalLength) {
 // With the stop at a thin lens, chief rays are not bent. With the stop at d in front of the lens, the chief ray from
 // above crosses the lens at -d tan w and is bent upwards by d tan w / f. At F the angle is larger than at C by a
 // fraction 1 / V. The film is at distance f.
-TEST(ChromaticAberration, LateralComesFromTheDistanceOfTheStop) {
+TEST(ChromaticAberration, LateralColourFollowsTheDistanceOfTheStop) {
   const std::array fields{0.0, 0.02, -0.02};
   for (const double distance : {1e-6, 10.0, 20.0}) {
     const Lens lens = thin_singlet(distance);
@@ -80,7 +80,7 @@ TEST(ChromaticAberration, LateralComesFromTheDistanceOfTheStop) {
   }
 }
 
-TEST(ChromaticAberration, OfAnAchromatIsAFractionOfThatOfASinglet) {
+TEST(ChromaticAberration, AchromatHasAFractionOfTheSinglet) {
   const auto spread = [](const auto& shift) { return std::abs(*shift[2] - *shift[0]); };
   const Lens achromat = compiled("achromat_100mm"), singlet = compiled("singlet_50mm_biconvex");
   const double corrected = spread(chromatic_aberration(achromat, -infinity, {}).paraxial_focus_shift);
@@ -117,7 +117,7 @@ TEST(ChromaticAberration, AgreesWithSpotsAndFirstOrder) {
 }
 
 // Stopped down, the sharpest film is the paraxial film.
-TEST(ChromaticAberration, TheSharpestFilmTendsToTheParaxialOne) {
+TEST(ChromaticAberration, SharpestFilmTendsToTheParaxialFilm) {
   const Lens open = compiled("double_gauss_100mm_f1.35");
   const auto distance = [&](double f_number) {
     const auto colour = chromatic_aberration(with_f_number(open, f_number), -infinity, {});
@@ -127,7 +127,7 @@ TEST(ChromaticAberration, TheSharpestFilmTendsToTheParaxialOne) {
   EXPECT_LT(distance(32), 1e-3);
 }
 
-TEST(ChromaticAberration, HasNoLateralColourWithoutAChiefRay) {
+TEST(ChromaticAberration, LateralColourNeedsAChiefRay) {
   const std::array fields{radians(89.5)};
   const auto colour = chromatic_aberration(compiled("double_gauss_100mm_f2.0"), -infinity, fields);
   for (const auto& lateral : colour.lateral[0]) EXPECT_FALSE(lateral);

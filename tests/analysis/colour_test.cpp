@@ -69,7 +69,7 @@ std::array<double, 3> times(const std::array<std::array<double, 3>, 3>& matrix, 
 const std::vector<double> f_d_c{486.1, 587.6, 656.3}, coarse{420, 680}, fine{430, 470, 510, 550, 590, 630, 670};
 
 // Chromaticities of the illuminants in CIE 15, with five digits, from sums in steps of 5 nm.
-TEST(Illuminant, HasItsPrintedChromaticity) {
+TEST(Illuminant, HasThePublishedChromaticity) {
   constexpr std::array<std::array<double, 2>, 4> printed{
       {{0.31272, 0.32903}, {0.34567, 0.35851}, {0.44758, 0.40745}, {1 / 3.0, 1 / 3.0}}};
   for (std::size_t i = 0; i < lights().size(); ++i) {
@@ -79,7 +79,7 @@ TEST(Illuminant, HasItsPrintedChromaticity) {
   }
 }
 
-TEST(Illuminant, HasItsPrintedPower) {
+TEST(Illuminant, HasThePublishedPower) {
   const auto at = [&](const Spectrum& light, double nm) {
     const auto& list = light.wavelengths_nm;
     return light.power[static_cast<std::size_t>(std::find(list.begin(), list.end(), nm) - list.begin())];
@@ -117,7 +117,7 @@ TEST(RgbWeights, OneWavelengthIsWhite) {
   for (const double nm : {587.5618, 435.8, 1000.0}) EXPECT_EQ(weights_of({nm}), (Weights{{1, 1, 1}}));
 }
 
-TEST(RgbWeights, ALightIsItsOwnWhite) {
+TEST(RgbWeights, LightIsItsWhitePoint) {
   const Spectrum led{{440, 455, 470, 560, 700}, {0, 10, 2, 6, 0}};
   for (const auto& set : {f_d_c, coarse, fine}) {
     for (const Spectrum& light : {lights()[0], lights()[1], lights()[2], lights()[3], led}) {
@@ -126,7 +126,7 @@ TEST(RgbWeights, ALightIsItsOwnWhite) {
   }
 }
 
-TEST(RgbWeights, TheUnitOfPowerDoesNotMatter) {
+TEST(RgbWeights, IndependentOfTheUnitOfPower) {
   Spectrum bright = lights()[2];
   for (double& power : bright.power) power *= 1024;
   EXPECT_EQ(weights_of(fine, bright, lights()[0]), weights_of(fine, lights()[2], lights()[0]));
@@ -188,7 +188,7 @@ TEST(RgbWeights, BandsEndHalfWayBetweenWavelengths) {
   }
 }
 
-TEST(RgbWeights, RefusesSetsWithoutAMeaning) {
+TEST(RgbWeights, RefusesInvalidSets) {
   const auto of = [](const std::vector<double>& set) { return message([&] { weights_of(set); }); };
   expect_tokens(of({}), {"rgb_weights", "no wavelength"});
   expect_tokens(of({486.1, 700}), {"rgb_weights", "wavelength", 700});
@@ -204,7 +204,7 @@ TEST(RgbWeights, RefusesLightsWithoutLuminance) {
   expect_tokens(of({{400, 700}, {1}}), {"Spectrum", "number", 2, "powers", 1});
 }
 
-TEST(Tristimulus, RefusesTablesThatLoadWouldRefuse) {
+TEST(Tristimulus, RefusesInvalidTables) {
   const auto refusal = [](const ColourMatching& bad) {
     const std::array set{500.0, 600.0};
     const std::string said = message([&] { tristimulus(lights()[3], bad); });
@@ -218,7 +218,7 @@ TEST(Tristimulus, RefusesTablesThatLoadWouldRefuse) {
   EXPECT_DOUBLE_EQ(tristimulus({{400, 700}, {1, 1}}, {{500, 600}, {{1, 2, 3}, {1, 2, 3}}})[1], 200);
 }
 
-TEST(RgbTriple, GivesEachChannelItsOwnWavelength) {
+TEST(RgbTriple, GivesEachChannelAWavelength) {
   EXPECT_EQ(rgb_triple_nm, (std::array<double, 3>{650, 510, 475}));
   for (std::size_t i = 0; i < 3; ++i) {
     for (std::size_t k = 0; k < 3; ++k) EXPECT_EQ(rgb_triple_weights[i][k], i == k ? 1 : 0);
@@ -235,7 +235,7 @@ std::string complaint(const std::string& text, const Load& load) {
   return found.rfind(file.string() + ": ", 0) == 0 ? found.substr(file.string().size() + 2) : found;
 }
 
-TEST(Spectrum, SaysWhatIsWrongWithAFile) {
+TEST(Spectrum, RefusesInvalidFiles) {
   const auto of = [](const std::string& text) { return complaint(text, [](const auto& f) { Spectrum::load(f); }); };
   const std::string header = "wavelength_nm,power\n";
   EXPECT_EQ(of(header + "400,1\r\n700,0\r\n"), "no error");
@@ -253,7 +253,7 @@ TEST(Spectrum, SaysWhatIsWrongWithAFile) {
   expect_error([] { Spectrum::load("no/such.csv"); }, {"no/such.csv", "No such file"});
 }
 
-TEST(ColourMatching, SaysWhatIsWrongWithATable) {
+TEST(ColourMatching, RefusesInvalidTables) {
   const auto of = [](const std::string& text) {
     return complaint(text, [](const auto& file) { ColourMatching::load(file); });
   };

@@ -42,7 +42,7 @@ TEST(CountPoints, HoldsEveryPointOnce) {
   }
 }
 
-TEST(CountPoints, LeavesOutWhatLiesBeside) {
+TEST(CountPoints, IgnoresPointsOutside) {
   std::vector<std::uint64_t> counts(16, 0);
   const double nan = std::numeric_limits<double>::quiet_NaN();
   const std::vector<double> x{-2.001, 2, 0, 0, infinity, -infinity, 1e300, nan, 0};
@@ -51,7 +51,7 @@ TEST(CountPoints, LeavesOutWhatLiesBeside) {
   EXPECT_EQ(std::accumulate(counts.begin(), counts.end(), std::uint64_t(0)), 0u);
 }
 
-TEST(CountPoints, LosesNothingInAFullPixel) {
+TEST(CountPoints, CountsExactlyInFullPixels) {
   // At the limits of integers in float (2^24), 32 bits and double (2^53).
   for (const std::uint64_t full : {std::uint64_t(1) << 24, std::uint64_t(1) << 32, std::uint64_t(1) << 53}) {
     std::vector<std::uint64_t> counts{full};

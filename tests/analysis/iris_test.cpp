@@ -34,7 +34,7 @@ Pair double_gauss(double f_number) {
   return pair_of(with_focus(with_f_number(testing::data_lens("double_gauss_100mm_f2.0"), f_number), 3000));
 }
 
-TEST(LensWithIris, ItsPupilsHaveTheAreaOfThePolygon) {
+TEST(LensWithIris, PupilsHaveTheAreaOfThePolygon) {
   const auto [round, bladed] = pair_of(testing::front_stop_lens());
   const double disc = pupil_boundary(round, {0, -500}).area(), polygon = pupil_boundary(bladed, {0, -500}).area();
   EXPECT_NEAR(polygon / disc, hexagon_over_disc, 5e-4 * hexagon_over_disc);
@@ -44,7 +44,7 @@ TEST(LensWithIris, ItsPupilsHaveTheAreaOfThePolygon) {
               hexagon_over_disc, 2e-3);
 }
 
-TEST(LensWithIris, EveryRimPointOfItsBoundaryIsOneOfTheIris) {
+TEST(LensWithIris, BoundaryLiesOnTheIris) {
   const Lens lens = double_gauss(5.6).bladed;
   const PupilBoundary boundary = pupil_boundary(lens, {0.05, -3000});
   const double radius = lens.surfaces()[*lens.stop()].semi_diameter;
@@ -63,13 +63,13 @@ TEST(LensWithIris, EveryRimPointOfItsBoundaryIsOneOfTheIris) {
   EXPECT_EQ(beside, 0u);
 }
 
-TEST(LensWithIris, TheFilmGetsLessLightByTheSameRatio) {
+TEST(LensWithIris, IrradianceFollowsTheArea) {
   for (const auto& [round, bladed] : {pair_of(testing::front_stop_lens()), double_gauss(8)}) {
     EXPECT_NEAR(film_irradiance(bladed, {}) / film_irradiance(round, {}), hexagon_over_disc, 2e-3) << round.name();
   }
 }
 
-TEST(LensWithIris, APointImageHasItsShapeAndItsShareOfTheLight) {
+TEST(LensWithIris, PointImageHasItsShapeAndIrradiance) {
   const auto [round, bladed] = double_gauss(4);
   const FieldPoint near{0, -1500};  // well out of focus
   const auto disc = point_image(round, near, {.samples = 1 << 15, .pixels = 64});
@@ -79,7 +79,7 @@ TEST(LensWithIris, APointImageHasItsShapeAndItsShareOfTheLight) {
   EXPECT_GT(polygon.size.max_radius, 0.97 * disc.size.max_radius);  // the corners reach the rim
 }
 
-TEST(LensWithIris, SpotsLoseTheRaysBesideThePolygon) {
+TEST(LensWithIris, SpotsLoseRaysOutsideThePolygon) {
   const auto [round, bladed] = double_gauss(4);
   const std::vector<double> fields{0.0, 0.1};
   const auto discs = spot_diagram(round, -1500, fields, 4096), polygons = spot_diagram(bladed, -1500, fields, 4096);
@@ -89,7 +89,7 @@ TEST(LensWithIris, SpotsLoseTheRaysBesideThePolygon) {
   }
 }
 
-TEST(LensWithIris, AnExactCameraSeesIt) {
+TEST(LensWithIris, ExactCameraHasIt) {
   const auto [round, bladed] = double_gauss(4);
   const Film film{.width_mm = 30, .height_mm = 20, .columns = 30, .rows = 20};
   const auto mean = [&](const Lens& lens, const FilmPoint& at) {
@@ -107,7 +107,7 @@ TEST(LensWithIris, AnExactCameraSeesIt) {
   }
 }
 
-TEST(LensWithIris, AnExactCameraConnectsTheSceneThroughIt) {
+TEST(LensWithIris, ExactConnectionsPassIt) {
   const Camera camera(double_gauss(4).bladed, {.width_mm = 30, .height_mm = 20, .columns = 30, .rows = 20},
                       {.model = ModelKind::exact_double});
   const Vec3<double> point{20, 30, -1500};
@@ -121,7 +121,7 @@ TEST(LensWithIris, AnExactCameraConnectsTheSceneThroughIt) {
   EXPECT_NEAR(passed / static_cast<double>(passed + stopped), hexagon_over_disc, 0.04);
 }
 
-TEST(LensWithIris, FittedModelsSeeIt) {
+TEST(LensWithIris, FittedModelsHaveIt) {
   const Lens lens = double_gauss(4).bladed;
   const Film film{.width_mm = 30, .height_mm = 20, .columns = 30, .rows = 20};
   for (const ModelKind model : {ModelKind::thin_two_disc, ModelKind::polynomial(3), ModelKind::polynomial(7)}) {
@@ -141,7 +141,7 @@ TEST(LensWithIris, FittedModelsSeeIt) {
   }
 }
 
-TEST(LensWithIris, FittedModelsConnectTheSceneThroughIt) {
+TEST(LensWithIris, FittedConnectionsPassIt) {
   const Film film{.width_mm = 30, .height_mm = 20, .columns = 30, .rows = 20};
   const auto [round, bladed] = double_gauss(4);
   for (const ModelKind model : {ModelKind::thin_two_disc, ModelKind::polynomial(5)}) {
@@ -160,7 +160,7 @@ TEST(LensWithIris, FittedModelsConnectTheSceneThroughIt) {
   }
 }
 
-TEST(LensWithIris, FocusOfExactRaysMovesWithItAndParaxialFocusDoesNot) {
+TEST(LensWithIris, MovesExactFocusAndKeepsParaxialFocus) {
   const Lens lens = testing::data_lens("double_gauss_100mm_f2.0");
   const Lens bladed = with_iris(lens, hexagon);
   const FocusOptions paraxial{.criterion = FocusCriterion::paraxial};

@@ -39,7 +39,7 @@ std::vector<Vec2<double>> places(const Film& film, int count = 60) {
   return result;
 }
 
-TEST(LensDistortion, IsNoneForLinearModels) {
+TEST(LensDistortion, IsZeroForLinearModels) {
   const Film film = small_film(36);
   for (const ModelKind model : {ModelKind::pinhole, ModelKind::thin, ModelKind::thick}) {
     SCOPED_TRACE(name(model));
@@ -70,7 +70,7 @@ TEST(LensDistortion, KeepsTheScaleOnTheAxis) {
   }
 }
 
-TEST(LensDistortion, IsUndoneToTheCornersOfThePicture) {
+TEST(LensDistortion, IsInvertedUpToTheCorners) {
   for (const char* id : {"anamorphic_60mm_2x", "biogon_35mm_f2.8", "double_gauss_100mm_f2.0"}) {
     SCOPED_TRACE(id);
     const Prescription prescription = petzval::testing::data_prescription(id);
@@ -92,7 +92,7 @@ TEST(LensDistortion, IsUndoneToTheCornersOfThePicture) {
   }
 }
 
-TEST(LensDistortion, OfABallWithItsStopInTheCentreIsNone) {
+TEST(LensDistortion, IsZeroForABallWithACentralStop) {
   const Film film = small_film(18);
   const LensDistortion distortion(Camera(BallAndPlate{}.lens(), film, {.model = ModelKind::exact_double}));
   EXPECT_NEAR(distortion.pinhole().focal_length_mm.x, BallAndPlate{}.focal_length_mm(), 1e-6);
@@ -105,7 +105,7 @@ TEST(LensDistortion, OfABallWithItsStopInTheCentreIsNone) {
   }
 }
 
-TEST(LensDistortion, OfAPlateBehindItIsThatOfSnellsLaw) {
+TEST(LensDistortion, PlateFollowsSnellsLaw) {
   const Film film = small_film(24);
   const BallAndPlate plate{.plate_mm = 8};
   const LensDistortion distortion(Camera(plate.lens(), film, {.model = ModelKind::exact_double}));
@@ -139,7 +139,7 @@ TEST(LensDistortion, NeedsNoFocalLength) {
 }
 
 // The reference aims chief rays at the stop from the scene.
-TEST(LensDistortion, IsThatOfExactChiefRays) {
+TEST(LensDistortion, EqualsExactChiefRays) {
   for (const char* id : {"double_gauss_100mm_f2_28deg", "biogon_35mm_f2.8", "zoom_14-30mm_f4:wide"}) {
     for (const double focus : {1000.0, std::numeric_limits<double>::infinity()}) {
       SCOPED_TRACE(id + std::string(", ") + std::to_string(focus));
@@ -167,7 +167,7 @@ TEST(LensDistortion, IsThatOfExactChiefRays) {
   }
 }
 
-TEST(LensDistortion, TheInverseLeadsBack) {
+TEST(LensDistortion, InverseRoundTrips) {
   Film tilted = small_film(36), shifted = small_film(24);
   tilted.tilt_rad = 0.03, tilted.swing_rad = -0.02;
   shifted.shift_x_mm = 5, shifted.shift_y_mm = -3;
@@ -193,7 +193,7 @@ TEST(LensDistortion, TheInverseLeadsBack) {
   }
 }
 
-TEST(LensDistortion, GrowsWithLensAndFilm) {
+TEST(LensDistortion, ScalesWithLensAndFilm) {
   Prescription p = testing::data_prescription("biogon_35mm_f2.8");
   const Film film = small_film(36);
   const LensDistortion one(Camera(compile(p), film, {.model = ModelKind::exact_double}));
@@ -227,7 +227,7 @@ TEST(LensDistortion, KeepsTheSqueezeOfAnamorphicLenses) {
   EXPECT_NEAR(focal_length.y / focal_length.x, squeeze(lens), 0.01);  // the ratio of the focal lengths
 }
 
-TEST(LensDistortion, KnowsTheFieldOfItsFilm) {
+TEST(LensDistortion, ReportsTheFieldOfItsFilm) {
   const Film film = small_film(24);
   const LensDistortion fisheye(Camera(data_lens("fisheye_8mm_f2.8"), film));
   EXPECT_GT(fisheye.widest_field_rad(), 1.55);
@@ -249,14 +249,14 @@ TEST(LensDistortion, KnowsTheFieldOfItsFilm) {
   }
 }
 
-TEST(LensDistortion, SeesNothingOfDarkPlaces) {
+TEST(LensDistortion, DarkPositionsAreNullopt) {
   const LensDistortion fisheye(Camera(data_lens("fisheye_8mm_f2.8"), small_film(36)));
   EXPECT_FALSE(fisheye.undistorted({1, 1}));
   EXPECT_TRUE(fisheye.undistorted({240, 150}));
   EXPECT_FALSE(fisheye.undistorted({-20, 160}));  // outside the film
 }
 
-TEST(LensDistortion, OverscanHoldsAllThatTheFilmSees) {
+TEST(LensDistortion, OverscanContainsTheFieldOfTheFilm) {
   const Film film = small_film(36);
   const LensDistortion barrel(Camera(data_lens("zoom_14-30mm_f4:wide"), film, {.model = ModelKind::exact_double}));
   const double size = overscan(barrel);
@@ -268,7 +268,7 @@ TEST(LensDistortion, OverscanHoldsAllThatTheFilmSees) {
   EXPECT_NEAR(overscan(none), 1, 1e-8);
 }
 
-TEST(LensDistortion, RefusesWhatHasNoPinhole) {
+TEST(LensDistortion, RefusesLensesWithoutAPinhole) {
   const Lens lens = data_lens("biogon_35mm_f2.8");
   const auto behind = [&] { LensDistortion(Camera(lens, small_film(36)), {.subject_z_mm = 5.0}); };
   expect_error(behind, {lens.name(), "distortion", "subject", 5});

@@ -45,13 +45,13 @@ TEST(LensMetadata, FilmHasTheDeclaredDiagonalOrTheImageCircle) {
   expect_error([&] { film_of(p, compile(p)); }, {p.name, "film", "declared", -1});
 }
 
-TEST(LensMetadata, IdentityIsThatOfThePrescription) {
+TEST(LensMetadata, IdentityEqualsThePrescription) {
   const Prescription p = data_prescription("biogon_35mm_f2.8");
   EXPECT_EQ(identity_of(p).model, p.name);
   EXPECT_EQ(identity_of(p).nominal_focal_length_mm, p.focal_length_mm);
 }
 
-TEST(LensMetadata, StateIsThatOfTheFocusedLens) {
+TEST(LensMetadata, StateEqualsTheFocusedLens) {
   const Lens lens =
       with_focus(with_f_number(data_lens("double_gauss_100mm_f2_28deg"), 4), 2000, {.origin = DistanceOrigin::film});
   const LensState state = state_of(lens);
@@ -66,7 +66,7 @@ TEST(LensMetadata, StateIsThatOfTheFocusedLens) {
   EXPECT_NEAR(state_of(far).pinhole_focal_length_mm, first_order(lens).effective_focal_length, 0.3);
 }
 
-TEST(LensMetadata, TNumberCountsBladesAndObscurations) {
+TEST(LensMetadata, TNumberIncludesBladesAndObscurations) {
   const Lens lens = with_f_number(data_lens("double_gauss_100mm_f2_28deg"), 4);
   const LensState round = state_of(lens), square = state_of(with_iris(lens, {.blades = 4}));
   EXPECT_NEAR(round.t_number, round.f_number, 2e-3 * round.f_number);
@@ -77,7 +77,7 @@ TEST(LensMetadata, TNumberCountsBladesAndObscurations) {
 }
 
 // Irradiance through a small stop at the centre of a ball falls as cos^4: (1 + x^2)^-2 = 1 - 2 x^2 + 3 x^4 - ...
-TEST(ExposureFalloff, OfABallIsCosineToTheFourth) {
+TEST(ExposureFalloff, BallFollowsCosineToTheFourth) {
   const testing::BallAndPlate ball;
   const double focal_length = ball.focal_length_mm();
   const ExposureFalloff falloff = fit_exposure_falloff(ball.lens(), small_film(6));
@@ -87,7 +87,7 @@ TEST(ExposureFalloff, OfABallIsCosineToTheFourth) {
   EXPECT_EQ(falloff.light(0), 1);
 }
 
-TEST(ExposureFalloff, FollowsTheLightOnTheFilmWithinItsError) {
+TEST(ExposureFalloff, EqualsIrradianceWithinItsError) {
   for (const char* id : {"double_gauss_100mm_f2_28deg", "biogon_35mm_f2.8", "anamorphic_60mm_2x"}) {
     SCOPED_TRACE(id);
     const Lens lens = data_lens(id);

@@ -56,7 +56,7 @@ TEST(Lint, FindsAFilmFarFromTheImageCircle) {
   EXPECT_EQ(lint(lens, {.shift_x_mm = 200}).size(), 1u);
 }
 
-TEST(Lint, FindsPixelsThatAreNotSquare) {
+TEST(Lint, FindsNonSquarePixels) {
   const Lens lens = testing::data_lens("double_gauss_100mm_f2_28deg");
   const std::vector<Finding> findings = lint(lens, {.columns = 1920, .rows = 1080});
   ASSERT_EQ(findings.size(), 1u);
@@ -73,7 +73,7 @@ TEST(Lint, FindsPixelsThatAreNotSquare) {
   EXPECT_TRUE(lint(testing::data_lens("anamorphic_60mm_2x"), {.columns = 1920, .rows = 1080}).empty());
 }
 
-TEST(Lint, RefusesAFilmThatNoCameraTakes) {
+TEST(Lint, RefusesInvalidFilms) {
   const Lens lens = testing::data_lens("double_gauss_100mm_f2.0");
   const auto refusal = [&](const Film& film) { return testing::message([&] { lint(lens, film); }); };
   expect_tokens(refusal({.width_mm = 0}), {lens.name(), "film", 0, 24});
@@ -94,9 +94,9 @@ void expect_one(const Prescription& p, Kind kind, std::optional<int> surface, st
   expect_tokens(findings[0].message, tokens);
 }
 
-TEST(Lint, FindsNothingInASoundLens) { EXPECT_TRUE(lint(singlet()).empty()); }
+TEST(Lint, ValidLensHasNoFindings) { EXPECT_TRUE(lint(singlet()).empty()); }
 
-TEST(Lint, FindsAnotherFocalLengthThanDeclared) {
+TEST(Lint, FindsAWrongFocalLength) {
   Prescription p = singlet();
   p.focal_length_mm = 101.9;
   EXPECT_TRUE(lint(p).empty());
@@ -125,7 +125,7 @@ Prescription with_rims(double factor) {
   return p;
 }
 
-TEST(Lint, FindsLengthsInAnotherUnit) {
+TEST(Lint, FindsWrongUnits) {
   expect_one(in_another_unit(25.4), Kind::units, {}, {"focal length", 2540, 100, 25.4});
   expect_one(in_another_unit(0.1), Kind::units, {}, {"focal length", 10, 100, 0.1});
   EXPECT_EQ(lint(in_another_unit(20)).at(0).kind, Kind::focal_length);
@@ -143,7 +143,7 @@ TEST(Lint, FindsEveryLensInInches) {
   }
 }
 
-TEST(Lint, FindsDiametersInThePlaceOfSemiDiameters) {
+TEST(Lint, FindsDiametersInsteadOfSemiDiameters) {
   expect_one(with_rims(2), Kind::apertures, {}, {"f-number", 2.5, 5, "diameters"});
   expect_one(with_rims(0.5), Kind::apertures, {}, {"f-number", 10, 5, "halves"});
   EXPECT_EQ(lint(with_rims(1.5)).at(0).kind, Kind::f_number);
@@ -162,7 +162,7 @@ TEST(Lint, FindsAStopThatDoesNotLimitTheBeam) {
   EXPECT_TRUE(lint(p).empty());
 }
 
-TEST(Lint, FindsIndicesThatAreNotThoseOfTheGlass) {
+TEST(Lint, FindsIndicesThatContradictTheGlass) {
   const auto glasses = GlassCatalogue::load(std::filesystem::path(PETZVAL_TEST_DATA) / "glass");
   Prescription p = singlet();
   p.focal_length_mm.reset();
@@ -183,7 +183,7 @@ TEST(Lint, FindsIndicesThatAreNotThoseOfTheGlass) {
   EXPECT_TRUE(index_of({.glass = "N-NONE", .catalogue = "schott", .nd = 1.6}).empty());
 }
 
-TEST(Lint, KindsHaveNamesOfTheirOwn) {
+TEST(Lint, KindsHaveDistinctNames) {
   std::set<std::string_view> names;
   for (int kind = 0; kind <= static_cast<int>(Kind::pixel_shape); ++kind) {
     names.insert(name(static_cast<Kind>(kind)));
@@ -192,7 +192,7 @@ TEST(Lint, KindsHaveNamesOfTheirOwn) {
   EXPECT_FALSE(names.contains("unknown"));
 }
 
-TEST(Repair, MendsWhatHasOneCure) {
+TEST(Repair, RepairsFindingsWithOneSolution) {
   const auto expect_changes = [](const Repaired& repaired, const std::vector<std::vector<Token>>& tokens) {
     ASSERT_EQ(repaired.changes.size(), tokens.size());
     for (std::size_t i = 0; i < tokens.size(); ++i) {
@@ -223,7 +223,7 @@ TEST(Repair, MendsWhatHasOneCure) {
   expect_changes(repaired, {{"several_stops", "surface 1", 2}, {"image_distance", "surface 1", 90, 100}});
 }
 
-TEST(Repair, LeavesWhatItWouldMakeInvalidAndPositions) {
+TEST(Repair, KeepsPositionsAndAvoidsInvalidLenses) {
   Prescription p = singlet();
   p.surfaces[1].radius = -1e12;  // focused beyond the longest thickness
   p.focal_length_mm.reset();
@@ -242,7 +242,7 @@ TEST(Repair, LeavesWhatItWouldMakeInvalidAndPositions) {
   EXPECT_TRUE(repair(p).changes.empty());
 }
 
-TEST(Lint, FindsAnotherFNumberThanDeclared) {
+TEST(Lint, FindsAWrongFNumber) {
   Prescription p = singlet();
   p.f_number = 4;
   expect_one(p, Kind::f_number, {}, {"f-number", 5, 4});
@@ -261,7 +261,7 @@ TEST(Lint, FindsSurfacesThatCross) {
   expect_one(p, Kind::overlap, 0, {0.623795, 21});
 }
 
-TEST(Lint, LooksForOverlapsOutsideCentralObscurationsOnly) {
+TEST(Lint, IgnoresOverlapsInsideObscurations) {
   Prescription p = singlet();
   p.f_number.reset();
   p.surfaces[0].thickness = -1;  // the surfaces cross at a height of 10 mm
@@ -351,7 +351,7 @@ TEST(Lint, FindsARimThatOnlyTheAxisPasses) {
   EXPECT_TRUE(found);
 }
 
-TEST(Lint, FindsNoStopAndSeveral) {
+TEST(Lint, FindsMissingAndMultipleStops) {
   Prescription p = singlet();
   p.surfaces[0].stop = false;
   expect_one(p, Kind::no_stop, {}, {"stop"});
@@ -367,7 +367,7 @@ TEST(Lint, FindsAFilmAwayFromTheFocus) {
   EXPECT_TRUE(lint(p).empty());
 }
 
-TEST(Lint, TakesALensWithoutFocalLengthOrRims) {
+TEST(Lint, AcceptsLensesWithoutFocalLengthOrRims) {
   Prescription p;
   p.surfaces = {{.medium = {.nd = 1.5}, .stop = true}};
   EXPECT_TRUE(lint(p).empty());
@@ -375,14 +375,14 @@ TEST(Lint, TakesALensWithoutFocalLengthOrRims) {
   expect_one(p, Kind::focal_length, {}, {"focal length", "inf", 50});
 }
 
-TEST(Lint, RefusesAnInvalidPrescriptionOnly) {
+TEST(Lint, RefusesInvalidPrescriptionsOnly) {
   Prescription p = singlet();
   p.surfaces[0].thickness = std::nan("");
   EXPECT_THROW(lint(p), Error);
 }
 
 // Known overlaps in the data. Most of these lenses have estimated diameters.
-TEST(Lint, FindsInDataTheKnownOverlapsAndNothingElse) {
+TEST(Lint, DataHasTheKnownOverlapsOnly) {
   const std::map<std::string, std::vector<int>> known{
       {"anamorphic_60mm_2x", {11}},       {"speed_panchro_26mm_f2", {4}},
       {"biotar_100mm_f1.4", {4}},         {"double_gauss_100mm_f1.7_substitute", {3}},

@@ -65,7 +65,7 @@ TEST(MatchGlasses, MediaGetTheNearestGlassAndKeepTheirNumbers) {
               petzval::first_order(compile(doublet())).effective_focal_length, 1e-9);
 }
 
-TEST(MatchGlasses, MediaFarFromEveryGlassStay) {
+TEST(MatchGlasses, MediaFarFromEveryGlassAreKept) {
   Prescription p = doublet();
   p.surfaces[0].medium = {.nd = 1.5168, .vd = 30};
   p.surfaces[1].medium = {.nd = 1.62004};

@@ -43,7 +43,7 @@ ErrorSamples at(const Lens& lens, std::vector<double> distances, std::uint32_t s
   return samples;
 }
 
-TEST(ModelError, OfExactDoubleIsNone) {
+TEST(ModelError, ExactDoubleIsZero) {
   for (const char* id : {"double_gauss_52mm_f1.8", "anamorphic_60mm_2x", "fisheye_8mm_f2.8"}) {
     const Lens lens = focused(id, 3000);
     const ModelError error = model_error(lens, {}, ModelKind::exact_double, at(lens, {1500, infinity}));
@@ -56,7 +56,7 @@ TEST(ModelError, OfExactDoubleIsNone) {
 }
 
 /// Hits in float lie within 0.01 or 0.02 um of hits in double.
-TEST(ModelError, OfExactFloatIsRounding) {
+TEST(ModelError, ExactFloatIsRounding) {
   for (const double f_number : {2.0, 4.0}) {
     const Lens lens = focused("double_gauss_52mm_f1.8", 3000, f_number);
     const ModelError error = model_error(lens, {}, ModelKind::exact_float, at(lens, {1500, 3000, infinity}));
@@ -67,7 +67,7 @@ TEST(ModelError, OfExactFloatIsRounding) {
   }
 }
 
-TEST(ModelError, CountsInPixelsToo) {
+TEST(ModelError, IsAlsoInPixels) {
   const Lens lens = focused("double_gauss_52mm_f1.8", 3000);
   Film film;
   const RayErrors fine = model_error(lens, film, ModelKind::thick, at(lens, {1500, infinity})).all;
@@ -81,7 +81,7 @@ TEST(ModelError, CountsInPixelsToo) {
 }
 
 /// From the definition: rays through the rim of the pupil of the corner, by both models.
-TEST(ModelError, IsTheDistanceInThePlaneOverTheMagnification) {
+TEST(ModelError, EqualsDistanceInThePlaneTimesMagnification) {
   const Lens lens = focused("double_gauss_52mm_f1.8", 3000, 5.6);
   const camera_detail::ExactModel<double> exact(lens, 22);
   const camera_detail::ParaxialModel thick(ModelKind::thick, lens, 22);
@@ -127,7 +127,7 @@ TEST(ModelError, IsTheDistanceInThePlaneOverTheMagnification) {
 }
 
 /// A thin lens of weak power: first order is exact in the limit, and errors fall with the square of the size.
-TEST(ModelError, OfFirstOrderFallsWithTheCubeOfTheSize) {
+TEST(ModelError, FirstOrderFallsWithTheCubeOfTheSize) {
   const Lens lens = with_focus(testing::front_stop_lens(4), 3000, {.origin = DistanceOrigin::film});
   const Lens stopped = with_focus(testing::front_stop_lens(2), 3000, {.origin = DistanceOrigin::film});
   const Film film{.width_mm = 8, .height_mm = 6}, half{.width_mm = 4, .height_mm = 3};
@@ -136,7 +136,7 @@ TEST(ModelError, OfFirstOrderFallsWithTheCubeOfTheSize) {
   EXPECT_NEAR(large / small, 8, 0.4);
 }
 
-TEST(ModelError, OfPolynomialsFallsWithTheDegree) {
+TEST(ModelError, PolynomialsFallWithTheDegree) {
   const Lens lens = focused("double_gauss_52mm_f1.8", 3000, 2);
   double before = infinity;
   for (const ModelKind model :
@@ -149,7 +149,7 @@ TEST(ModelError, OfPolynomialsFallsWithTheDegree) {
 }
 
 /// Two sets of samples find the same largest errors.
-TEST(ModelError, HardlyDependsOnTheSamples) {
+TEST(ModelError, IsNearlyIndependentOfSamples) {
   const Lens lens = focused("double_gauss_52mm_f1.8", 3000);
   for (const ModelKind model : {ModelKind::thick, ModelKind::polynomial(5), ModelKind::polynomial(9)}) {
     std::vector<ModelError> found;
@@ -169,14 +169,14 @@ TEST(ModelError, HardlyDependsOnTheSamples) {
 
 /// The error of a pinhole is half the blur plus the first-order error of the chief ray; for large blurs the first term
 /// dominates.
-TEST(ModelError, OfAPinholeIsHalfTheBlurFarFromTheFocus) {
+TEST(ModelError, PinholeIsHalfTheBlurFarFromFocus) {
   const Lens lens = focused("double_gauss_52mm_f1.8", 1000, 5.6);
   const ModelError error = model_error(lens, {.width_mm = 6, .height_mm = 4}, ModelKind::pinhole, at(lens, {infinity}));
   EXPECT_NEAR(error.all.max_of_blur, 0.5, 0.03);
   EXPECT_EQ(error.pupil_shape, 1);
 }
 
-TEST(ModelError, TellsWavelengthsApart) {
+TEST(ModelError, DistinguishesWavelengths) {
   const auto glasses = GlassCatalogue::load(std::filesystem::path(PETZVAL_TEST_DATA) / "glass");
   const Lens lens = with_focus(compile(data_prescription("cooke_triplet_50mm_f5"), std::array{486.1, 587.6, 656.3},
                                        {.glasses = &glasses, .missing_glass = MissingGlass::abbe}),
@@ -215,7 +215,7 @@ TEST(ModelError, IsFiniteForEveryKindOfLens) {
   }
 }
 
-TEST(ModelError, RefusesWhatItCannotMeasure) {
+TEST(ModelError, RefusesInvalidInput) {
   const Lens lens = focused("double_gauss_52mm_f1.8", 3000);
   const auto refusal = [&](const Film& film, ModelKind model, const ErrorSamples& samples) {
     return testing::message([&] { model_error(lens, film, model, samples); });

@@ -35,7 +35,7 @@ double relative_error(const std::array<double, 64>& found, const std::array<doub
   return std::sqrt(errors / squares);
 }
 
-TEST(PsfError, IsKeptByFreshRuns) {
+TEST(PsfError, HoldsInOtherRuns) {
   int runs = 0, kept = 0;
   for (const char* id : {"double_gauss_100mm_f1.35", "tessar_100mm_f2.8"}) {
     for (const double field : {0.0, 0.15}) {
@@ -60,7 +60,7 @@ TEST(PsfError, IsKeptByFreshRuns) {
   EXPECT_GE(kept, 190);
 }
 
-TEST(PsfError, StopsAtTheMostSamples) {
+TEST(PsfError, StopsAtTheMaximumOfSamples) {
   const Lens lens = testing::data_lens("double_gauss_100mm_f2.0");
   const auto sent = [&](std::uint32_t samples, double tolerance) {
     return point_image(lens, {0, -1000}, {.samples = samples, .tolerance = tolerance, .pixels = 8}).psf.sent[0];
@@ -75,7 +75,7 @@ TEST(PsfError, StopsAtTheMostSamples) {
 }
 
 // Rays sent in steps equal rays sent at once.
-TEST(PsfError, DoesNotChangeThePicture) {
+TEST(PsfError, DoesNotChangeTheImage) {
   const Lens lens = testing::data_lens("double_gauss_100mm_f2.0");
   const auto image = [&](double tolerance) {
     return point_image(lens, {0.1, -1000}, {.samples = 1u << 16, .tolerance = tolerance, .pixels = 64});

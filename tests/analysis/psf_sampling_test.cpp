@@ -158,7 +158,7 @@ TEST(PsfSampling, NeedsAFractionOfUniformRandomRays) {
 }
 
 // Measured: profiles -0.96 to -1.04, off the axis -0.74 to -0.80; pictures -0.73 to -0.78.
-TEST(PsfSampling, ErrorsFallFasterThanThoseOfRandomRays) {
+TEST(PsfSampling, ErrorsFallFasterThanWithRandomRays) {
   auto cases = figure_7();
   for (const Case& c : off_axis()) cases.push_back(c);
   for (const Case& c : cases) {
@@ -172,7 +172,7 @@ TEST(PsfSampling, ErrorsFallFasterThanThoseOfRandomRays) {
 // PointImage::error is estimated from parts of one sequence. Eight replicates with an eighth of the rays each give an
 // unbiased estimate, but larger errors. Measured at 4096 to 65536 rays: 1.4 to 3.5 times as large on the axis, 1.15 to
 // 1.9 times off the axis and with blades.
-TEST(PsfSampling, OneSequenceBeatsEightReplicates) {
+TEST(PsfSampling, OneSequenceIsBetterThanEightReplicates) {
   double product = 1;
   const auto cases = figure_7();
   for (const Case& c : cases) {

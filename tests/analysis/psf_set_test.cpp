@@ -49,7 +49,7 @@ Vec2<double> mean_hit(const PsfKernel& kernel) {
   return mean / light;
 }
 
-TEST(PsfKernel, LightIsTheIrradianceOfItsPlaceAndThroughputThatOfThePoint) {
+TEST(PsfKernel, LightAndThroughputHaveTheirDefinitions) {
   const Lens open = data_lens("double_gauss_100mm_f2_28deg");
   for (const double f_number : {2.0, 4.0}) {
     const Lens lens = with_focus(with_f_number(open, f_number), 2000);
@@ -94,7 +94,7 @@ TEST(PsfKernel, IsAnchoredAtTheChiefRayAndStandsUpright) {
 }
 
 /// Azimuths of the pupil run from +y to +x, and the lens is symmetric about the meridian. The blur is 1.5 mm wide.
-TEST(PsfKernel, ItsRaysAreMirrored) {
+TEST(PsfKernel, RaysAreMirrored) {
   const Lens open = data_lens("double_gauss_100mm_f2_28deg");
   const PsfKernel kernel = psf_kernel(open, open, {radians(12), -1200}, 0, small);
   float worst = 0;
@@ -110,7 +110,7 @@ TEST(PsfKernel, ItsRaysAreMirrored) {
   EXPECT_LT(worst, 0.05);
 }
 
-TEST(PsfKernel, OfADarkPointIsDark) {
+TEST(PsfKernel, DarkPointIsDark) {
   const Lens lens = data_lens("cooke_triplet_50mm_f5");
   const PsfKernel kernel = psf_kernel(lens, lens, {radians(80), -infinity}, 0, small);
   EXPECT_EQ(kernel.total, 0);
@@ -162,7 +162,7 @@ struct Study {
   }
 };
 
-TEST(PsfSet, ANodeIsItsKernelBitForBit) {
+TEST(PsfSet, NodesEqualTheirKernelsToTheBit) {
   const Study study{data_lens("double_gauss_100mm_f2_28deg"), 2000, small};
   const PsfSet::Axes axes{{0, 7.1}, {1000, infinity}, {d_line_nm}, {2, 2.8}};
   const PsfSet set = study.set(axes);
@@ -243,7 +243,7 @@ TEST(PsfSet, InterpolatesStopsAndColours) {
   }
 }
 
-TEST(PsfSet, RefusesAxesThatAreNoGridAndPointsOutside) {
+TEST(PsfSet, RefusesInvalidAxesAndPointsOutside) {
   const Study study{data_lens("double_gauss_100mm_f2_28deg"), 2000, small};
   const PsfSet::Axes good{{0, 7}, {1000, infinity}, {d_line_nm}, {2.8}};
   const PsfSet set = study.set(good);

@@ -45,7 +45,7 @@ double profile_light(const PointImage& image) {
   return light;
 }
 
-TEST(PointImage, PictureHoldsEveryTransmittedRay) {
+TEST(PointImage, ImageContainsEveryTransmittedRay) {
   const Lens lens = data_lens("double_gauss_100mm_f1.35");
   for (const double field : {0.0, 14.0}) {
     for (const double z : {-infinity, -1000.0}) {
@@ -59,7 +59,7 @@ TEST(PointImage, PictureHoldsEveryTransmittedRay) {
   }
 }
 
-TEST(PointImage, ACentreMovesThePictureAlone) {
+TEST(PointImage, CentreShiftsTheImageOnly) {
   const Lens lens = data_lens("double_gauss_100mm_f1.35");
   const FieldPoint point{radians(10), -700};
   const PointImage own = point_image(lens, point, {.samples = 1 << 14, .pixels = 64});
@@ -75,7 +75,7 @@ TEST(PointImage, ACentreMovesThePictureAlone) {
   }
 }
 
-TEST(PointImage, OfOneWavelengthIsItsPlaneOfAll) {
+TEST(PointImage, OneWavelengthEqualsItsPlane) {
   const auto glasses = GlassCatalogue::load(std::filesystem::path(PETZVAL_TEST_DATA) / "glass");
   const Lens lens = compile(testing::data_prescription("cooke_triplet_50mm_f5"),
                             std::array{656.2725, 486.1327, 587.5618}, {.glasses = &glasses});
@@ -96,7 +96,7 @@ TEST(PointImage, OfOneWavelengthIsItsPlaneOfAll) {
   expect_error([&] { point_image(lens, point, none); }, {"wavelength"});
 }
 
-TEST(PointImage, CropTakesNothingFromThroughputOrProfile) {
+TEST(PointImage, CropKeepsThroughputAndProfile) {
   const Lens lens = data_lens("double_gauss_100mm_f1.35");
   const FieldPoint point{radians(10), -700};
   const PointImage whole = point_image(lens, point, {.samples = 1 << 14, .pixels = 64});
@@ -192,7 +192,7 @@ TEST(PointImage, PerfectFocusIsAPoint) {
   EXPECT_EQ(image.psf.pixel_mm, 2e-4 / 5);
 }
 
-TEST(PointImage, NothingGetsThroughAFieldTooWide) {
+TEST(PointImage, FieldsOutsideTheLensAreDark) {
   const PointImage image =
       point_image(data_lens("double_gauss_100mm_f1.35"), {radians(50), -infinity}, {.samples = 1000, .pixels = 8});
   EXPECT_EQ(image.throughput, 0);
@@ -267,7 +267,7 @@ class BinError {
   Bins reference_{};
 };
 
-TEST(PointImage, BinsConvergeFasterThanRandomOnes) {
+TEST(PointImage, BinsConvergeFasterThanRandomSampling) {
   // The rim of the pupil is a step, so the slope is near -3/4 and not -1; random sampling has -1/2.
   const BinError error;
   const double slope = std::log2(error.sobol(1 << 14) / error.sobol(1 << 6)) / 8;
@@ -276,7 +276,7 @@ TEST(PointImage, BinsConvergeFasterThanRandomOnes) {
   RecordProperty("slope", std::to_string(slope));
 }
 
-TEST(Psf, AWavelengthThatDoesNotExistHasNoLight) {
+TEST(Psf, MissingWavelengthHasNoLight) {
   EXPECT_EQ(Psf{}.ray_weight(0), 0);
   EXPECT_EQ(Psf{}.throughput(0), 0);
   Psf one;
@@ -285,7 +285,7 @@ TEST(Psf, AWavelengthThatDoesNotExistHasNoLight) {
   EXPECT_EQ(one.throughput(1), 0);
 }
 
-TEST(PointImage, RefusesOptionsWithoutAMeaning) {
+TEST(PointImage, RefusesInvalidOptions) {
   const Lens lens = front_stop_lens();
   const auto refusal = [&](const PsfOptions& options) {
     return message([&] { point_image(lens, {0, -infinity}, options); });
@@ -296,7 +296,7 @@ TEST(PointImage, RefusesOptionsWithoutAMeaning) {
   expect_tokens(refusal({.threads = 0}), {"trace_bundle", "threads", 0});
 }
 
-TEST(PointImage, OfAStopWithoutARimHasTheLightThatRimsLetThrough) {
+TEST(PointImage, StopWithoutRimIsLimitedByOtherRims) {
   const auto [marked, unmarked] = testing::without_the_rim_of_its_stop(testing::open_singlet(10));
   const FieldPoint point{0, -1000};
   const PsfOptions options{.samples = 1 << 12, .pixels = 21};

@@ -22,7 +22,7 @@ using testing::data_lens;
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
-TEST(SpotSize, OfACross) {
+TEST(SpotSize, CrossOfPoints) {
   const std::vector<double> x{1, 3, 2, 2}, y{5, 5, 4, 6};
   const SpotSize size = spot_size(x, y);
   EXPECT_DOUBLE_EQ(size.centroid.x, 2);
@@ -31,13 +31,13 @@ TEST(SpotSize, OfACross) {
   EXPECT_DOUBLE_EQ(size.max_radius, 1);
 }
 
-TEST(SpotSize, OfNoneAndOne) {
+TEST(SpotSize, ZeroPointsAndOnePoint) {
   EXPECT_EQ(spot_size({}, {}).max_radius, 0);
   EXPECT_EQ(spot_size(std::array{4.0}, std::array{-7.0}).centroid, Vec2<double>(4, -7));
   EXPECT_EQ(spot_size(std::array{4.0}, std::array{-7.0}).rms_radius, 0);
 }
 
-TEST(SpotSize, LeavesOutPointsWithoutBothCoordinates) {
+TEST(SpotSize, IgnoresPointsWithoutBothCoordinates) {
   const std::vector<double> x{1, 3, 2, 2}, y{5, 5, 4, 6}, longer{1, 3, 2, 2, 1e9};
   EXPECT_EQ(spot_size(longer, y).rms_radius, spot_size(x, y).rms_radius);
   EXPECT_EQ(spot_size(y, longer).centroid, spot_size(y, x).centroid);
@@ -58,7 +58,7 @@ TEST(SpotSize, KeepsSmallSpotsFarFromTheAxis) {
   EXPECT_NEAR(size.max_radius / 1e-6, 1, 2e-8);
 }
 
-TEST(SpotSize, SetsCountAsOne) {
+TEST(SpotSize, SetsAreCombined) {
   const std::vector<RayBundle> sets{{.x = {1, 3}, .y = {5, 5}}, {.x = {}, .y = {}}, {.x = {2, 2}, .y = {4, 6}}};
   EXPECT_DOUBLE_EQ(spot_size(sets).rms_radius, 1);
   EXPECT_DOUBLE_EQ(spot_size(sets).centroid.y, 5);
@@ -71,7 +71,7 @@ double radius_by_aperture(const Lens& lens, double wavelength_nm) {
   return 0.61 * 1e-6 * wavelength_nm / (index * slope);
 }
 
-TEST(AiryRadius, IsThatOfTheNumericalApertureOfTheFilm) {
+TEST(AiryRadius, FollowsTheNumericalApertureOnTheFilm) {
   const Lens lens = data_lens("double_gauss_100mm_f2.0");
   EXPECT_NEAR(airy_radius(lens), 1.22 * 587.5618e-6 * 2, 4e-5);
   // Near objects, other stops, and media behind the lens.
@@ -87,7 +87,7 @@ TEST(AiryRadius, IsThatOfTheNumericalApertureOfTheFilm) {
   EXPECT_EQ(airy_radius(with_semi_diameter(lens, *lens.stop(), 0)), infinity);
 }
 
-TEST(AiryRadius, AgainstTheBlurTellsWhatDiffractionDoes) {
+TEST(AiryRadius, ComparedWithTheBlurShowsTheEffectOfDiffraction) {
   const SpotSize size{.centroid = {0, 0}, .rms_radius = 0.01, .max_radius = 0.02};
   const double blur = 0.01 * std::sqrt(2.0);  // radius of the uniform disc
   EXPECT_EQ(diffraction(0.099 * blur, size), Diffraction::negligible);
@@ -116,7 +116,7 @@ TEST(SpotDiagram, ImagesTheFieldUpsideDown) {
   EXPECT_DOUBLE_EQ(spots[2].chief_ray_height.value(), -spots[3].chief_ray_height.value());
 }
 
-TEST(SpotDiagram, GoesFieldByFieldAndByWavelengthWithin) {
+TEST(SpotDiagram, IsOrderedByFieldThenWavelength) {
   Prescription p = testing::data_prescription("double_gauss_100mm_f2.0");
   for (auto& row : p.surfaces) {
     row.medium = {.nd = row.medium.nd, .vd = row.medium.vd};
@@ -136,7 +136,7 @@ TEST(SpotDiagram, GoesFieldByFieldAndByWavelengthWithin) {
   EXPECT_NEAR(spots[3].chief_ray_height.value(), spots[5].chief_ray_height.value(), 0.1);
 }
 
-TEST(SpotDiagram, PerfectLensMakesAPoint) {
+TEST(SpotDiagram, PerfectLensGivesAPoint) {
   const Lens lens = data_lens("analytic_plano_hyperbolic_100mm");
   const std::array axis{0.0};
   const auto spots = spot_diagram(lens, -infinity, axis);
@@ -144,7 +144,7 @@ TEST(SpotDiagram, PerfectLensMakesAPoint) {
   EXPECT_LT(spots[0].size.max_radius, 1e-12);
 }
 
-TEST(SpotDiagram, ChiefRayPassesTheHoleOfAMirror) {
+TEST(SpotDiagram, ChiefRayPassesAnObscuration) {
   const std::array fields{radians(0.5)};
   const auto spots = spot_diagram(data_lens("catadioptric_mangin_1000mm_f7.5"), -infinity, fields, 256);
   EXPECT_NEAR(spots[0].chief_ray_height.value(), -1000 * std::tan(radians(0.5)), 0.2);
@@ -166,7 +166,7 @@ TEST(SpotDiagram, ReachesTheEdgeOfA220DegreeFisheye) {
   EXPECT_NEAR(height, -11.7, 0.2);  // half of the declared 23.4 mm
 }
 
-TEST(SpotDiagram, ChiefRayIsThatThroughTheCentreOfTheStop) {
+TEST(SpotDiagram, ChiefRayPassesTheCentreOfTheStop) {
   const Lens lens = data_lens("fisheye_10mm_f4");
   const std::array fields{radians(70.0)};
   const auto spots = spot_diagram(lens, -infinity, fields, 256);
@@ -177,7 +177,7 @@ TEST(SpotDiagram, ChiefRayIsThatThroughTheCentreOfTheStop) {
               ray.origin.y + (lens.film_z() - ray.origin.z) / ray.direction.z * ray.direction.y, 1e-13);
 }
 
-TEST(SpotDiagram, SaysWhereThereIsNoChiefRay) {
+TEST(SpotDiagram, ReportsMissingChiefRays) {
   const std::array fields{radians(0.0), radians(89.5)};
   const auto spots = spot_diagram(data_lens("double_gauss_100mm_f2.0"), -infinity, fields, 256);
   EXPECT_EQ(spots[0].relative_illumination.value(), 1);

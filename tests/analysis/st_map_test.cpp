@@ -51,7 +51,7 @@ std::optional<Vec2<double>> shown_at(const StMap& map, const Film& film, const V
 
 double far_apart(const Vec2<double>& a, const Vec2<double>& b) { return std::hypot(a.x - b.x, a.y - b.y); }
 
-TEST(StMap, OfAPinholeIsTheIdentity) {
+TEST(StMap, PinholeIsTheIdentity) {
   const Film film = small_film(36);
   const StMaps maps = st_maps(distortion_of("biogon_35mm_f2.8", film, ModelKind::pinhole));
   for (const StMap* map : {&maps.undistort, &maps.redistort}) {
@@ -87,7 +87,7 @@ void PrintTo(const Case& test, std::ostream* out) { *out << test.lens; }
 
 class StMapsOf : public ::testing::TestWithParam<Case> {};
 
-TEST_P(StMapsOf, AreTheDistortionInBothDirections) {
+TEST_P(StMapsOf, EqualTheDistortionInBothDirections) {
   const auto& [id, film, model, largest_px] = GetParam();
   const LensDistortion distortion = distortion_of(id, film, model);
   const StMaps maps = st_maps(distortion);
@@ -108,7 +108,7 @@ TEST_P(StMapsOf, AreTheDistortionInBothDirections) {
   }
 }
 
-TEST_P(StMapsOf, LeadBackOneAfterTheOther) {
+TEST_P(StMapsOf, InvertEachOther) {
   const auto& [id, film, model, largest_px] = GetParam();
   const StMaps maps = st_maps(distortion_of(id, film, model));
   int compared = 0;
@@ -140,7 +140,7 @@ INSTANTIATE_TEST_SUITE_P(Lenses, StMapsOf,
                                            Case{"biogon_35mm_f2.8", small_film(36), ModelKind::thin}));
 
 // The chief rays end within these images.
-TEST(StMap, IsTheDistortionUpToTheEndOfTheLight) {
+TEST(StMap, EqualsTheDistortionUpToTheImageCircle) {
   for (const char* id : {"anamorphic_60mm_2x", "tessar_100mm_f3.5", "primoplan_100mm_f1.9", "fisheye_16mm_f2.8"}) {
     SCOPED_TRACE(id);
     const Lens lens = data_lens(id);
@@ -163,7 +163,7 @@ TEST(StMap, IsTheDistortionUpToTheEndOfTheLight) {
   }
 }
 
-TEST(StMap, MarksWhatSeesNothing) {
+TEST(StMap, MarksPixelsWithoutLight) {
   const Film film = small_film(36);
   const LensDistortion distortion = distortion_of("fisheye_8mm_f2.8", film);
   const StMaps maps = st_maps(distortion);
@@ -187,7 +187,7 @@ TEST(StMap, MarksWhatSeesNothing) {
   EXPECT_EQ(maps.undistort.margin_x, film.columns / 2);  // limited
 }
 
-TEST(StMap, SeesNothingOutsideItself) {
+TEST(StMap, IsEmptyOutsideTheMap) {
   EXPECT_FALSE(StMap{}.sees(0, 0));
   const StMap map{.width = 2, .height = 1, .s = {0.5f, 0.5f}, .t = {0.5f, 0.5f}};
   EXPECT_TRUE(map.sees(1, 0));
@@ -197,7 +197,7 @@ TEST(StMap, SeesNothingOutsideItself) {
   EXPECT_FALSE((StMap{.width = 2, .height = 1, .s = {0.5f}, .t = {0.5f}}.sees(1, 0)));
 }
 
-TEST(StMap, MarginsHoldTheOverscan) {
+TEST(StMap, MarginsContainTheOverscan) {
   const Film film = small_film(36);
   const LensDistortion distortion = distortion_of("zoom_14-30mm_f4:wide", film);
   const StMaps tight = st_maps(distortion, {.overscan = 1});

@@ -94,7 +94,7 @@ std::vector<double> numbers(const PointImage& image) {
 
 class AnyThreads : public ::testing::TestWithParam<Threaded> {};
 
-TEST_P(AnyThreads, GiveTheSameNumbers) {
+TEST_P(AnyThreads, GiveEqualResults) {
   const auto one = GetParam().results(1);
   EXPECT_FALSE(one.empty());
   for (const int threads : {3, 5}) EXPECT_EQ(GetParam().results(threads), one) << threads;
@@ -133,7 +133,7 @@ INSTANTIATE_TEST_SUITE_P(
                  }}),
     [](const auto& test) { return std::string(test.param.name); });
 
-TEST(Threads, ShareALensAndAGlassCatalogue) {
+TEST(Threads, MayShareALensAndAGlassCatalogue) {
   const Prescription prescription = testing::data_prescription("double_gauss_100mm_f1.35");
   const Shared shared{prescription, GlassCatalogue::load(std::filesystem::path(PETZVAL_TEST_DATA) / "glass"),
                       compile(prescription)};

@@ -128,7 +128,7 @@ std::uint64_t moved(const Picture& a, const Picture& b) {
   return result;
 }
 
-TEST(WavelengthOrder, ChangesNothingThatALensSays) {
+TEST(WavelengthOrder, ChangesNoResult) {
   const auto glasses = GlassCatalogue::load(std::filesystem::path(PETZVAL_TEST_DATA) / "glass");
   const CompileOptions options{.glasses = &glasses, .missing_glass = MissingGlass::abbe};
   int compiled = 0, limited = 0, cameras = 0;

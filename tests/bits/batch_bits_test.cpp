@@ -87,7 +87,7 @@ std::string text(const Row& row) {
   return line.str();
 }
 
-TEST(BatchBits, HashesAreThoseOfTheTable) {
+TEST(BatchBits, HashesEqualTheTable) {
   std::string found, wanted;
   for (const auto& sample : telling()) {
     found += text({sample.id.c_str(), hashes_of(sample, {.arithmetic = Arithmetic::reproducible})});
@@ -112,7 +112,7 @@ void expect_rays_one_by_one(const testing_lenses::Sample& sample, Travel travel)
   }
 }
 
-TEST(BatchBits, AreThoseOfRaysOneByOne) {
+TEST(BatchBits, EqualSingleRays) {
   for (const auto& sample : testing_lenses::all()) {
     for (const Travel travel : {Travel::to_film, Travel::to_scene}) {
       SCOPED_TRACE(sample.id + (travel == Travel::to_film ? " to_film" : " to_scene"));
@@ -122,7 +122,7 @@ TEST(BatchBits, AreThoseOfRaysOneByOne) {
   }
 }
 
-TEST(BatchBits, AreTheSameOnEveryInstructionSet) {
+TEST(BatchBits, EqualOnEveryInstructionSet) {
   for (const auto& sample : testing_lenses::all()) {
     const auto wanted = hashes_of(
         sample, {.arithmetic = Arithmetic::reproducible, .instruction_set = petzval::InstructionSet::baseline});

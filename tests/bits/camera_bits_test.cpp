@@ -119,7 +119,7 @@ std::string text(const Row& row) {
   return line.str();
 }
 
-TEST(CameraBits, AreThoseOfTheTable) {
+TEST(CameraBits, EqualTheTable) {
   if (instruction_sets().size() > 1) GTEST_SKIP() << "wider sets have bits of their own";
   constexpr std::uint64_t of_the_table = 0x4935b4f378316858;
   if (c_library() != of_the_table) GTEST_SKIP() << "this C library has bits of its own: 0x" << std::hex << c_library();

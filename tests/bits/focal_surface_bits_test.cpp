@@ -13,7 +13,7 @@
 namespace petzval {
 namespace focal_surface_bits_test {
 
-TEST(FocalSurfaceBits, AreThoseOfTheTable) {
+TEST(FocalSurfaceBits, EqualTheTable) {
   const Film film{.width_mm = 36, .height_mm = 24, .columns = 90, .rows = 60, .z_mm = 50};
   std::vector<FocalPoint> points;
   for (int i = 0; i < 70; ++i) {

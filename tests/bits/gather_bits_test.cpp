@@ -53,7 +53,7 @@ std::uint64_t hash(const Blurred& picture) {
   return h.value();
 }
 
-TEST(GatherBits, AreThoseOfTheTable) {
+TEST(GatherBits, EqualTheTable) {
   if (instruction_sets().size() > 1) GTEST_SKIP() << "wider sets have bits of their own";
   const LayerCamera camera = layer_camera(120, 90, radians(15));
   const LensRays same =

@@ -136,7 +136,7 @@ double from_first_layer(const Blurred& picture, const LayerSet& layers) {
   return worst;
 }
 
-TEST(Gather, ThroughAPinholeIsTheFirstLayer) {
+TEST(Gather, PinholeEqualsTheFirstLayer) {
   const LensRays rays = thin_rays(0, 5);
   const LayerSet layers = layers_of(boards, rays);
   for (const GatherPath path : {GatherPath::shift_invariant, GatherPath::coherent, GatherPath::general}) {
@@ -145,7 +145,7 @@ TEST(Gather, ThroughAPinholeIsTheFirstLayer) {
 }
 
 // Rays that move by 0.01 pixel over all depths: a step is a hundred times as long as the scene.
-TEST(Gather, ThroughATinyLensIsTheFirstLayer) {
+TEST(Gather, TinyLensEqualsTheFirstLayer) {
   for (const LensRays& rays : {thin_rays(0.05, 12), tilted_rays(0.05, 12)}) {
     const LayerSet layers = layers_of(boards, rays);
     for (const GatherPath path : {GatherPath::coherent, GatherPath::general}) {
@@ -154,7 +154,7 @@ TEST(Gather, ThroughATinyLensIsTheFirstLayer) {
   }
 }
 
-TEST(Gather, KeepsAnEvenColour) {
+TEST(Gather, KeepsAUniformColour) {
   const Scene even = [](double x, double y) {
     std::vector<Surface> seen = boards(x, y);
     for (Surface& s : seen) s.red = 3, s.green = 0.25f, s.blue = 1e-3f;
@@ -170,7 +170,7 @@ TEST(Gather, KeepsAnEvenColour) {
   }
 }
 
-TEST(Gather, IsTheReference) {
+TEST(Gather, EqualsTheReference) {
   for (const Scene scene : {Scene(boards), Scene(panes)}) {
     for (const LensRays& rays :
          {thin_rays(25), tilted_rays(25), tilted_rays(25, 20, {.nearest_mm = 1000, .sets = 4})}) {
@@ -219,7 +219,7 @@ TEST(Gather, DarkensColoursAndKeepsAlpha) {
 }
 
 // Rays without a known surface take the mean of the others, so that a scene of one colour keeps its colour.
-TEST(Gather, KeepsAnEvenColourWhereSurfacesAreMissing) {
+TEST(Gather, KeepsAUniformColourWithMissingSurfaces) {
   const Scene grey_boards = [](double x, double y) {
     std::vector<Surface> seen;
     if (std::abs(x) < 0.02) seen.push_back({1 / 1000.0f, 0.5f, 0.5f, 0.5f});
@@ -259,7 +259,7 @@ TEST(Gather, PathsAgreeTo55Decibels) {
 }
 
 // Rays that end in the void far from their pixels: the window of the tile contains no pixel of the tile.
-TEST(Gather, ReadsNoPixelBesideItsWindow) {
+TEST(Gather, ReadsNoPixelOutsideItsWindow) {
   const LayerCamera camera = layer_camera(6, 6, radians(20));
   const LensRays rays(camera, vogel_points(6), 1,
                       [](int, const Vec2<double>& raster, std::span<const PupilPoint> at, std::span<LayerRay> found) {
@@ -287,7 +287,7 @@ TEST(Gather, ReadsNoPixelBesideItsWindow) {
   }
 }
 
-TEST(Gather, FindsTheSameWithAndWithoutBounds) {
+TEST(Gather, IndependentOfBounds) {
   for (const LensRays& rays : {thin_rays(25), tilted_rays(25)}) {
     const LayerSet layers = layers_of(boards, rays);
     for (const GatherPath path : {GatherPath::shift_invariant, GatherPath::coherent, GatherPath::general}) {
@@ -300,7 +300,7 @@ TEST(Gather, FindsTheSameWithAndWithoutBounds) {
   }
 }
 
-TEST(Gather, DoesNotDependOnThreads) {
+TEST(Gather, IndependentOfThreads) {
   for (const LensRays& rays : {thin_rays(25), tilted_rays(25), tilted_rays(9, 20, {.nearest_mm = 1000, .sets = 4})}) {
     const LayerSet layers = layers_of(boards, rays);
     const Blurred one = gather(layers, rays), three = gather(layers, rays, {.threads = 3});
@@ -329,7 +329,7 @@ TEST(Gather, SeesThroughTheVoid) {
   }
 }
 
-TEST(Gather, SaysWhatLayersDoNotKnow) {
+TEST(Gather, ReportsMissingSurfaces) {
   const LensRays rays = thin_rays(25);
   const LayerSet one = layers_of(boards, rays, 1), all = layers_of(boards, rays, 8);
   const Blurred of_one = gather(one, rays), of_all = gather(all, rays);
@@ -338,7 +338,7 @@ TEST(Gather, SaysWhatLayersDoNotKnow) {
   EXPECT_LT(difference(of_one, of_all).mean, 0.01);
 }
 
-TEST(Gather, KeepsItsMemory) {
+TEST(Gather, ReusesMemory) {
   const LensRays rays = thin_rays(25);
   const LayerSet layers = layers_of(boards, rays);
   Blurred picture;
@@ -348,7 +348,7 @@ TEST(Gather, KeepsItsMemory) {
   EXPECT_EQ(before, picture.rgba.data());
 }
 
-TEST(Gather, RefusesWhatDoesNotFit) {
+TEST(Gather, RefusesInconsistentInput) {
   const LensRays rays = thin_rays(9), tilted = tilted_rays(9);
   const LayerSet layers = layers_of(boards, rays);
   const auto says = [&](const LayerSet& l, const LensRays& r, const GatherOptions& options,
@@ -376,7 +376,7 @@ TEST(Gather, RefusesWhatDoesNotFit) {
   EXPECT_EQ(gather(layers, rays).columns, 150);
 }
 
-TEST(Highlights, AreEvenDiscs) {
+TEST(Highlights, AreUniformDiscs) {
   // One pixel of value 1000 at 1 m, seen by 32 rays, becomes a disc without holes with the radius of the formula.
   const Scene lamp = [](double x, double y) {
     std::vector<Surface> seen;
@@ -414,7 +414,7 @@ TEST(Highlights, AreEvenDiscs) {
   }
 }
 
-TEST(Highlights, AreLightsWhoseBlurHasMorePixelsThanRays) {
+TEST(Highlights, AreLightsWithMoreBlurPixelsThanRays) {
   const LensRays rays = thin_rays(30, 32);  // focused at 2 m
   static float lamp_at;
   const Scene lamp = [](double x, double y) {
@@ -429,7 +429,7 @@ TEST(Highlights, AreLightsWhoseBlurHasMorePixelsThanRays) {
   }
 }
 
-TEST(Highlights, HideBehindWhatIsNearer) {
+TEST(Highlights, AreHiddenByNearerSurfaces) {
   // A distant lamp; a near board covers the left half of its disc.
   const Scene lamp = [](double x, double y) {
     std::vector<Surface> seen;

@@ -65,7 +65,7 @@ LayerSet::Peel renderer_of(const FragmentLists& lists) {
   };
 }
 
-TEST(PeelPlans, HaveTheBiasOfTheUmbra) {
+TEST(PeelPlans, BiasEqualsTheUmbra) {
   // x = d s / (E - s), s = 2 pixels at the depth of the sample, in mm; computed with 40 digits.
   const PeelPlan plan = plan_peel(rays_of_paper(), 1000, infinity);
   EXPECT_GE(plan.bias * 1000, 0.099240441641156558);  // the 100 points stay inside the rim
@@ -81,19 +81,19 @@ TEST(PeelPlans, HaveTheBiasOfTheUmbra) {
   EXPECT_LE(plan.camera.overscan, 14);
 }
 
-TEST(PeelPlans, OfAPinholeWantOneLayer) {
+TEST(PeelPlans, PinholeNeedsOneLayer) {
   const LensRays pinhole = LensRays::thin(layer_camera(80, 60, radians(30)), {.radius_mm = 0}, vogel_points(4));
   EXPECT_EQ(plan_peel(pinhole, 1000, infinity).most_layers, 1);
 }
 
-TEST(PeelPlans, RefuseDepthsThatMakeNoSense) {
+TEST(PeelPlans, RefuseInvalidDepths) {
   const LensRays rays = rays_of_paper();
   expect_error([&] { plan_peel(rays, 0, 100); }, {0, 100});
   expect_error([&] { plan_peel(rays, 100, 100); }, {100});
   expect_error([&] { plan_peel(rays, 0.001, 100); }, {"px"});
 }
 
-TEST(Peeling, IsThinningOfFullLists) {
+TEST(Peeling, EqualsThinningOfFullLists) {
   PeelPlan plan = plan_peel(rays_of_paper(), 1000, infinity);
   plan.camera.columns = 37, plan.camera.rows = 23, plan.camera.overscan = 0;
   for (unsigned seed = 0; seed < 8; ++seed) {
@@ -111,7 +111,7 @@ TEST(Peeling, IsThinningOfFullLists) {
   }
 }
 
-TEST(Peeling, RefusesASurfaceThatIsNotFarther) {
+TEST(Peeling, RefusesSurfacesThatAreNotFarther) {
   PeelPlan plan{.camera = {.columns = 2, .rows = 1, .focal_px = 1}, .bias = 0.1};
   LayerSet layers;
   const auto same_again = [](int, std::span<const float>, const LayerPlanes& out) {
@@ -124,7 +124,7 @@ TEST(Peeling, RefusesASurfaceThatIsNotFarther) {
   expect_error([&] { layers.peel(plan, 2, {}); }, {"layers", "peel"});
 }
 
-TEST(Lists, ComposeWhatAlphaLetsThrough) {
+TEST(Lists, ComposeByAlpha) {
   // A pane of alpha 1/2, a wall close behind the pane and a wall far behind the pane.
   const FragmentLists lists{.columns = 1,
                             .rows = 1,
@@ -140,7 +140,7 @@ TEST(Lists, ComposeWhatAlphaLetsThrough) {
   EXPECT_TRUE(layers.opaque());
 }
 
-TEST(Lists, LeaveOutWhatIsNoSurfaceAndKeepTheSky) {
+TEST(Lists, IgnoreInvalidSurfacesAndKeepTheSky) {
   const FragmentLists lists{
       .columns = 2,
       .rows = 1,
@@ -154,7 +154,7 @@ TEST(Lists, LeaveOutWhatIsNoSurfaceAndKeepTheSky) {
   EXPECT_LT(layers.inverse_depth(0)[1], 0);
 }
 
-TEST(Lists, ComeBackFromLayers) {
+TEST(Lists, RoundTripThroughLayers) {
   const FragmentLists lists = random_lists(19, 11, 5, 4);
   LayerSet layers, again;
   layers.thin(lists, 1e-6, 8);
@@ -168,7 +168,7 @@ TEST(Lists, ComeBackFromLayers) {
   }
 }
 
-TEST(Lists, AreRefusedWhereNumbersDoNotFit) {
+TEST(Lists, RefuseInvalidNumbers) {
   LayerSet layers;
   FragmentLists lists{.columns = 1, .rows = 1, .offsets = {0, 1}, .fragments = {{100, 1, 1, 1, 1.5f}}};
   expect_error([&] { layers.thin(lists, 0, 4); }, {"alpha", 1.5});
@@ -192,7 +192,7 @@ TEST(Images, BecomeLayers) {
   EXPECT_LT(layers.inverse_depth(1)[1], 0);
 }
 
-TEST(Images, AreRefusedWhereTheyDoNotFit) {
+TEST(Images, RefuseInconsistentImages) {
   const std::vector<float> rgba{1, 2, 3, 1, 4, 5, 6, 1}, depth{100, infinity}, nearer{50, none}, empty{none, none};
   LayerSet layers;
   const auto says = [&](std::vector<LayerImage> images, const std::string& what) {
@@ -213,7 +213,7 @@ TEST(Images, AreRefusedWhereTheyDoNotFit) {
 }
 
 // Points at one depth, given by their distances. Their raster positions are centres of pixels.
-TEST(AxialDepths, AreThoseOfPointsInOnePlane) {
+TEST(AxialDepths, EqualPointsInOnePlane) {
   const LayerCamera camera{.columns = 24, .rows = 16, .focal_px = 20, .axis = {9, 6.5}, .overscan = 3};
   constexpr double depth = 700;
   std::vector<float> distances;

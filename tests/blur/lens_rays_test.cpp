@@ -39,7 +39,7 @@ double light_of(const std::vector<LayerRay>& rays) {
 
 LayerCamera small_camera() { return layer_camera(320, 240, radians(30)); }
 
-TEST(VogelPoints, AreEven) {
+TEST(VogelPoints, AreUniform) {
   // The mean of u-periodic and of radial functions.
   const std::vector<PupilPoint> points = vogel_points(1000);
   double wave = 0, share = 0;
@@ -80,7 +80,7 @@ TEST(ThinLensRays, BlurAsTheFormulaSays) {
   EXPECT_GT(found[1].slope.x, 0);
 }
 
-TEST(ThinLensRays, FollowAFocusOfTheirOwn) {
+TEST(ThinLensRays, FollowAFocusPerPixel) {
   const ThinLens tilted{.radius_mm = 20, .focus = [](const Vec2<double>& raster) {
                           return FocusAt{(1 + raster.x / 320) / 2000.0, 0.5};
                         }};
@@ -100,7 +100,7 @@ TEST(ThinLensRays, KeepTheLightOfWeights) {
   }
 }
 
-TEST(ThinLensRays, RefuseWhatIsNoLens) {
+TEST(ThinLensRays, RefuseInvalidLenses) {
   const auto says = [](const ThinLens& lens, const std::vector<petzval::testing::Token>& tokens) {
     expect_error([&] { LensRays::thin(small_camera(), lens, vogel_points(4)); }, tokens);
   };
@@ -149,7 +149,7 @@ TEST(VogelSets, CoverThePupilEachAndTogether) {
   expect_error([] { vogel_sets(1 << 19, 4); }, {4, 1 << 19});
 }
 
-TEST(Rays, AreRefusedWhereOptionsDoNotFit) {
+TEST(Rays, RefuseInconsistentOptions) {
   const auto says = [](std::vector<PupilPoint> points, const LensRaysOptions& options,
                        const std::vector<petzval::testing::Token>& tokens) {
     expect_error([&] { LensRays::thin(small_camera(), {}, points, options); }, tokens);
@@ -168,7 +168,7 @@ TEST(Rays, AreRefusedWhereOptionsDoNotFit) {
 }
 
 // Pencils that vary too fast over the image for any table; each passes its position at the depth in focus.
-TEST(Rays, AreJudgedAtTheDepthWhereTheyMeet) {
+TEST(Rays, ErrorIsMeasuredAtTheDepthInFocus) {
   const auto source = [](int, const Vec2<double>& raster, std::span<const PupilPoint> points,
                          std::span<LayerRay> found) {
     for (std::size_t i = 0; i < points.size(); ++i) {
@@ -188,7 +188,7 @@ void PrintTo(const Model& model, std::ostream* out) { *out << name(model.kind); 
 
 class CameraRays : public ::testing::TestWithParam<Model> {};
 
-TEST_P(CameraRays, AreThoseOfTheCamera) {
+TEST_P(CameraRays, EqualTheCamera) {
   const Camera camera(double_gauss(), film, {.model = GetParam().kind, .normalisation = Normalisation::unity_on_axis});
   const LayerCamera layers = layer_camera(camera);
   const std::vector<PupilPoint> points = vogel_points(64);
@@ -215,7 +215,7 @@ TEST_P(CameraRays, AreThoseOfTheCamera) {
   EXPECT_LT(worst, 0.1);
 }
 
-TEST_P(CameraRays, SeeTheSharpObjectWhereTheLayersDo) {
+TEST_P(CameraRays, ShowSharpObjectsAtTheirRasterPositions) {
   // The centre of the rays of a pixel in the plane of focus, up to the distortion of the lens.
   const Camera camera(double_gauss(), film, {.model = GetParam().kind});
   const LensRays rays = LensRays::of(camera, layer_camera(camera), vogel_points(256));
@@ -230,7 +230,7 @@ TEST_P(CameraRays, SeeTheSharpObjectWhereTheLayersDo) {
   }
 }
 
-TEST_P(CameraRays, HaveTheLightOfTheCamera) {
+TEST_P(CameraRays, HaveTheIrradianceOfTheCamera) {
   const Camera camera(double_gauss(), film, {.model = GetParam().kind, .normalisation = Normalisation::unity_on_axis});
   const LensRays rays = LensRays::of(camera, layer_camera(camera), vogel_points(64));
   std::vector<LayerRay> found(64);
@@ -250,7 +250,7 @@ INSTANTIATE_TEST_SUITE_P(Models, CameraRays,
                                            Model{ModelKind::polynomial(7)}, Model{ModelKind::exact_float}),
                          [](const auto& model) { return std::string(name(model.param.kind)); });
 
-TEST(CameraRays, HaveTheLightOfTheCameraInSmallPictures) {
+TEST(CameraRays, HaveTheIrradianceOfTheCameraInSmallImages) {
   for (const auto& [columns, rows] : {std::array{12, 8}, {36, 24}, {150, 100}}) {
     const Film small{.width_mm = 36, .height_mm = 24, .columns = columns, .rows = rows};
     const Camera camera(double_gauss(), small);
@@ -269,7 +269,7 @@ TEST(CameraRays, HaveTheLightOfTheCameraInSmallPictures) {
   }
 }
 
-TEST(CameraRays, RefuseAFilmThatTravelsAndOtherPictures) {
+TEST(CameraRays, RefuseTravellingFilmsAndOtherImages) {
   Film travelling = film;
   travelling.travel_mm = 1;
   const Camera moving(double_gauss(), travelling, {.model = ModelKind::thick}),
@@ -279,7 +279,7 @@ TEST(CameraRays, RefuseAFilmThatTravelsAndOtherPictures) {
   expect_error([&] { LensRays::of(still, small_camera(), vogel_points(4)); }, {320, 240});
 }
 
-TEST(LensRays, AreAskedForAtFewPlacesWhereTheyChangeEvenly) {
+TEST(LensRays, SampleFewPositionsIfRaysAreLinear) {
   int places = 0;
   const LensRays::Source source = [&](int, const Vec2<double>& raster, std::span<const PupilPoint> points,
                                       std::span<LayerRay> found) {
@@ -298,7 +298,7 @@ TEST(LensRays, RefuseAnEmptySource) {
 }
 
 // A lens that squeezes the image and leaves the left third dark: rays next to the dark third do not move.
-TEST(LensRays, AreNotDrawnAsideByTheDark) {
+TEST(LensRays, AreNotMovedByDarkAreas) {
   const LayerCamera camera = small_camera();
   const auto source = [&](int, const Vec2<double>& raster, std::span<const PupilPoint> at, std::span<LayerRay> found) {
     const Vec2<double> off = raster - camera.axis;
@@ -321,7 +321,7 @@ TEST(LensRays, AreNotDrawnAsideByTheDark) {
   }
 }
 
-TEST(LensRays, RefuseNumbersThatFloatsLose) {
+TEST(LensRays, RefuseNumbersBeyondFloat) {
   for (const double weight : {1e16, 1e300}) {
     const auto source = [&](int, const Vec2<double>& raster, std::span<const PupilPoint>, std::span<LayerRay> found) {
       for (LayerRay& ray : found) ray = {.at = raster, .weight = weight};

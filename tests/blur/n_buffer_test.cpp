@@ -57,7 +57,7 @@ DepthRange by_hand(const Planes& planes, const PixelRect& rect) {
 
 class NBuffers : public ::testing::TestWithParam<std::pair<int, int>> {};
 
-TEST_P(NBuffers, AreTheRangesOfRectangles) {
+TEST_P(NBuffers, EqualTheRangesOfRectangles) {
   const auto [columns, rows] = GetParam();
   NBuffer buffer;
   std::mt19937 engine(3);

@@ -40,7 +40,7 @@ LayerSet plane(const PeelPlan& plan, float depth, const Light& light) {
 
 class Planes : public ::testing::TestWithParam<double> {};
 
-TEST_P(Planes, AreConvolutionsWithThePointImage) {
+TEST_P(Planes, EqualConvolutionsWithThePointImage) {
   constexpr double pixel = 0.075;
   const Film film{.width_mm = 96 * pixel, .height_mm = 64 * pixel, .columns = 96, .rows = 64};
   const Lens lens =
@@ -80,7 +80,7 @@ TEST_P(Planes, AreConvolutionsWithThePointImage) {
 }
 INSTANTIATE_TEST_SUITE_P(Depths, Planes, ::testing::Values(1300.0, 1600.0, 2000.0, 4000.0));
 
-TEST(HalfPlanes, HideWhatIsBehindByTheAnalyticEdge) {
+TEST(HalfPlanes, OcclusionEqualsTheAnalyticEdge) {
   // A dark half plane at 1 m in front of a light wall in focus at 2 m: the fraction of the pupil that sees past the
   // edge.
   const LayerCamera camera = layer_camera(120, 90, radians(10));

@@ -175,7 +175,7 @@ bool alike(const Json& a, const Json& b) {
   return a == b;
 }
 
-TEST_P(Conformance, TheTableIsThatOfTheLibrary) {
+TEST_P(Conformance, TheTableEqualsTheLibrary) {
   std::vector<Lens> stopped;
   for (const double f_number : {4.0, 5.6, 8.0, 16.0}) stopped.push_back(focused(f_number));
   const auto exact = camera(lens_, ModelKind::exact_double, film(900));
@@ -189,7 +189,7 @@ TEST_P(Conformance, TheTableIsThatOfTheLibrary) {
   EXPECT_TRUE(alike(found, expected())) << found.dump(1);
 }
 
-TEST_P(Conformance, AnEvenSkyIsAsBrightAsQuadratureSays) {
+TEST_P(Conformance, UniformSkyEqualsQuadrature) {
   const Scene scene(read_scene(kit / "scenes/sky.json"));
   for (const ModelKind model : petzval::models()) {
     const auto lens = camera(lens_, model, film(60));
@@ -211,7 +211,7 @@ TEST_P(Conformance, AnEvenSkyIsAsBrightAsQuadratureSays) {
   }
 }
 
-TEST_P(Conformance, FilmAndSceneHoldTheSameLightOfAnEmitter) {
+TEST_P(Conformance, FilmAndSceneSideAgreeForAnEmitter) {
   const petzval::Film f = film(48);
   const auto exact = camera(lens_, ModelKind::exact_double, f);
   const auto places = light_places(*exact, 900);
@@ -234,7 +234,7 @@ TEST_P(Conformance, FilmAndSceneHoldTheSameLightOfAnEmitter) {
   EXPECT_GT(seen, 15);
 }
 
-TEST_P(Conformance, ATinyLightIsWhereItsChiefRayMeetsTheFilm) {
+TEST_P(Conformance, TinyLightLiesOnItsChiefRay) {
   const petzval::Film f = film(120);
   for (const ModelKind model : {ModelKind::exact_float, ModelKind::polynomial(7)}) {
     const auto lens = camera(lens_, model, f);
@@ -285,7 +285,7 @@ int tiles_beyond(const PictureSums& a, const PictureSums& b) {
   return beyond;
 }
 
-TEST_P(Conformance, ThreeIntegratorsSeeTheSameRoom) {
+TEST_P(Conformance, ThreeIntegratorsAgreeInARoom) {
   const SceneDescription room = read_scene(kit / "scenes/room.json");
   const Scene scene(room);
   Differences by_light, by_both;
@@ -328,7 +328,7 @@ TEST_P(Conformance, ExposureFollowsTheStop) {
   }
 }
 
-TEST_P(Conformance, BlursAreAsLargeAsTheLensMakesThem) {
+TEST_P(Conformance, BlursEqualExactRays) {
   double widest = 0;
   const Json blurs = expected()["blur"];
   for (const Json& blur : blurs) widest = std::max(widest, blur["rms_radius_mm"].get<double>());
@@ -359,7 +359,7 @@ TEST_P(Conformance, BlursAreAsLargeAsTheLensMakesThem) {
   }
 }
 
-TEST_P(Conformance, RightIsRightAndUpIsUp) {
+TEST_P(Conformance, ImagesAreUpright) {
   const SceneDescription colours = read_scene(kit / "scenes/colours.json");
   const Scene scene(colours);
   for (const ModelKind model : petzval::models()) {
@@ -419,7 +419,7 @@ INSTANTIATE_TEST_SUITE_P(Lenses, Conformance, testing::ValuesIn(settings), [](co
 });
 
 /// A diffuse floor under a lamp with direct light only, through every lens of data/.
-TEST(OneBounce, IsTheSameByThreeIntegratorsForEveryLens) {
+TEST(OneBounce, ThreeIntegratorsAgreeForEveryLens) {
   int compared = 0;
   Differences by_light, by_both;
   for (const petzval::Prescription& prescription : petzval::testing::data_prescriptions()) {

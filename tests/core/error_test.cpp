@@ -8,11 +8,9 @@
 namespace petzval {
 namespace error_test {
 
-TEST(Error, SaysWhatItWasTold) { EXPECT_STREQ(Error("x.json: surface 4: é").what(), "x.json: surface 4: é"); }
+TEST(Error, HasItsMessage) { EXPECT_STREQ(Error("x.json: surface 4: é").what(), "x.json: surface 4: é"); }
 
-TEST(Error, IsOneLineWhateverAFileHadInIt) {
-  EXPECT_STREQ(Error("key \"a\nb\x1b[31m\x7f\"").what(), "key \"a b [31m \"");
-}
+TEST(Error, IsOneLineForAnyFile) { EXPECT_STREQ(Error("key \"a\nb\x1b[31m\x7f\"").what(), "key \"a b [31m \""); }
 
 TEST(Error, KeepsBothEndsOfALongMessage) {
   const std::string what = Error("begin" + std::string(1 << 20, 'x') + "end").what();

@@ -45,7 +45,7 @@ TEST(Film, TiltsAboutXFirstAndThenSwingsAboutY) {
   EXPECT_NEAR(glm::length(film.up() - Vec(h * s, c, h * s)), 0, 1e-15);
 }
 
-TEST(Film, AngleIsThatOfTheNormal) {
+TEST(Film, AngleEqualsTheAngleOfTheNormal) {
   EXPECT_EQ(Film{}.angle(), 0);
   EXPECT_NEAR(film_at(0, radians(8), 0).angle(), radians(8), 1e-15);
   EXPECT_NEAR(film_at(0, 3e-12, 4e-12).angle(), 5e-12, 1e-24);
@@ -53,7 +53,7 @@ TEST(Film, AngleIsThatOfTheNormal) {
               1e-15);
 }
 
-TEST(Film, PointsComeBack) {
+TEST(Film, PointsRoundTrip) {
   for (const Film& film : films) {
     const FilmPoint p{12.5, -7}, back = film.point(film.position(p));
     EXPECT_NEAR(back.x, p.x, 1e-15 * (std::abs(film.z()) + 15));
@@ -63,7 +63,7 @@ TEST(Film, PointsComeBack) {
   }
 }
 
-TEST(Film, InItsOwnPlaneComesBackWhicheverWayTheNormalPoints) {
+TEST(Film, InItsPlaneRoundTripsForEitherNormal) {
   for (const Film& film : films) {
     for (const double side : {1.0, -1.0}) {
       const Plane plane = film.plane();
@@ -87,7 +87,7 @@ TEST(Film, InAPlaneAlongTheAxisIsRefused) {
   expect_error([&] { film_in(no_offset); }, {"offset", "nan"});
 }
 
-TEST(Film, TurnsItsImageTheRightWayUp) {
+TEST(Film, RasterIsUpright) {
   const Film film{.width_mm = 36, .height_mm = 24, .columns = 360, .rows = 240, .shift_x_mm = 5, .shift_y_mm = -3};
   const FilmPoint upper_left = film.point(0, 0), lower_right = film.point(360, 240), middle = film.point(180, 120);
   EXPECT_EQ(upper_left.x, 5 + 18);
@@ -103,7 +103,7 @@ TEST(Film, TurnsItsImageTheRightWayUp) {
   EXPECT_NEAR(raster.y, 200.5, 1e-12);
 }
 
-TEST(Film, HasAMarginBesideItsRaster) {
+TEST(Film, HasAMarginAroundItsRaster) {
   Film film{.width_mm = 36, .height_mm = 24, .columns = 360, .rows = 240, .shift_x_mm = 5};
   const double radius = film.radius_mm();
   const FilmPoint beside = film.point(-1.5, 120), corner = film.point(361.5, -1.5);
@@ -118,7 +118,7 @@ TEST(Film, HasAMarginBesideItsRaster) {
   EXPECT_NEAR(film.raster(film.corners()[0]).x, 361.5, 1e-12);
 }
 
-TEST(Film, PlacesManyPointsAsOne) {
+TEST(Film, BatchEqualsSinglePoints) {
   const Film film{.width_mm = 36, .height_mm = 24, .columns = 360, .rows = 240, .shift_y_mm = -3};
   const float raster_x[]{0, 12.5f, 360}, raster_y[]{240, 7, -1};
   float x[3], y[3];
@@ -129,7 +129,7 @@ TEST(Film, PlacesManyPointsAsOne) {
   }
 }
 
-TEST(Film, WithoutAPlaceHasAxesAndNoPositions) {
+TEST(Film, WithoutZHasAxesAndNoPositions) {
   const Film film{.tilt_rad = 0.1};
   EXPECT_NEAR(film.angle(), 0.1, 1e-15);
   expect_error([&] { film.plane(); }, {"film", "z_mm"});

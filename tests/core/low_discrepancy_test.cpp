@@ -51,7 +51,7 @@ TEST(Kronecker, AnyStretchIsUniform) {
   }
 }
 
-TEST(Kronecker, SeedsGiveOtherShiftsOfTheSameSequence) {
+TEST(Kronecker, SeedsShiftTheSequence) {
   const Kronecker<3> one(1), other(2);
   const auto a = one(0), b = other(0), c = one(40), d = other(40);
   for (std::size_t k = 0; k < 3; ++k) {
@@ -62,7 +62,7 @@ TEST(Kronecker, SeedsGiveOtherShiftsOfTheSameSequence) {
   }
 }
 
-TEST(FibonacciPoint, TakesEveryHeightOnceAndIsUniform) {
+TEST(FibonacciPoint, HasEveryHeightOnceAndIsUniform) {
   constexpr std::size_t count = 610;
   const auto point = [](std::size_t i) { return fibonacci_point(i, count); };
   for (std::size_t i = 0; i < count; ++i) EXPECT_EQ(static_cast<std::size_t>(point(i)[1] * count), i);

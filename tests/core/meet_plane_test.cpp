@@ -44,7 +44,7 @@ TYPED_TEST(MeetPlane, PointsLieInThePlaneAndOnTheRay) {
   }
 }
 
-TYPED_TEST(MeetPlane, SlopesGiveTheSamePoints) {
+TYPED_TEST(MeetPlane, SlopesGiveEqualPoints) {
   using T = TypeParam;
   std::mt19937 random(2);
   const T tolerance = std::is_same_v<T, float> ? T(2e-4) : T(1e-12);
@@ -66,7 +66,7 @@ TEST(MeetPlaneAlong, IsNotFiniteForARayAlongThePlane) {
   EXPECT_FALSE(std::isfinite(meet_plane(ray, {0, 0, 5}, {0, 0, 1}).y));
 }
 
-TEST(RayAt, TakesOneRayOfManyArrays) {
+TEST(RayAt, ReadsOneRayOfArrays) {
   const std::array<double, 12> v{0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11};
   const RayArrays<const double> rays{&v[0], &v[2], &v[4], &v[6], &v[8], &v[10]};
   const Ray<double> ray = ray_at(rays, 1);

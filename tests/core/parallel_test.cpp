@@ -19,7 +19,7 @@
 namespace petzval {
 namespace parallel_test {
 
-TEST(ParallelFor, DoesEveryThingOnce) {
+TEST(ParallelFor, RunsEveryIndexOnce) {
   for (const std::size_t count : {1u, 2u, 63u, 64u, 65u, 1000u, 4099u}) {
     for (const std::size_t block : {1u, 7u, 64u, 4099u, 5000u}) {
       for (const int threads : {1, 2, 3, 8}) {
@@ -34,7 +34,7 @@ TEST(ParallelFor, DoesEveryThingOnce) {
   }
 }
 
-TEST(ParallelFor, CutsTheSameBlocksForAnyNumberOfThreads) {
+TEST(ParallelFor, BlocksAreIndependentOfThreads) {
   for (const int threads : {1, 4}) {
     std::vector<std::size_t> ends(100, 0);
     parallel_for(100, 30, threads, [&](std::size_t begin, std::size_t end) { ends[begin] = end; });
@@ -44,7 +44,7 @@ TEST(ParallelFor, CutsTheSameBlocksForAnyNumberOfThreads) {
   }
 }
 
-TEST(ParallelFor, SumsOfBlocksDoNotDependOnThreads) {
+TEST(ParallelFor, SumsOfBlocksAreIndependentOfThreads) {
   // The rounding of sums depends on their order. Sums of blocks, each in its place, are equal to the bit.
   const auto sum = [](int threads) {
     std::vector<double> parts(101, 0);
@@ -56,20 +56,20 @@ TEST(ParallelFor, SumsOfBlocksDoNotDependOnThreads) {
   for (const int threads : {2, 5, 16}) EXPECT_EQ(sum(threads), sum(1)) << threads;
 }
 
-TEST(ParallelFor, DoesNothingOfNothing) {
+TEST(ParallelFor, EmptyRangeDoesNothing) {
   int calls = 0;
   for (const int threads : {1, 4}) parallel_for(0, 64, threads, [&](std::size_t, std::size_t) { ++calls; });
   EXPECT_EQ(calls, 0);
 }
 
-TEST(ParallelFor, TakesBlocksAsLargeAsNumbersGo) {
+TEST(ParallelFor, AcceptsHugeBlocks) {
   constexpr std::size_t largest = std::numeric_limits<std::size_t>::max();
   std::vector<std::size_t> seen;
   parallel_for(10, largest, 2, [&](std::size_t begin, std::size_t end) { seen.insert(seen.end(), {begin, end}); });
   EXPECT_EQ(seen, (std::vector<std::size_t>{0, 10}));
 }
 
-TEST(ParallelFor, RefusesWorkThatIsEmpty) { EXPECT_THROW(parallel_for(1, 1, 1, {}), petzval::Error); }
+TEST(ParallelFor, RefusesAnEmptyFunction) { EXPECT_THROW(parallel_for(1, 1, 1, {}), petzval::Error); }
 
 TEST(ParallelFor, StartsNoThreadForOneOrASingleBlock) {
   const auto caller = std::this_thread::get_id();
@@ -84,7 +84,7 @@ TEST(ParallelFor, StartsNoThreadForOneOrASingleBlock) {
   EXPECT_TRUE(all_by_the_caller(10, 8));
 }
 
-TEST(ParallelFor, WorksOnAsManyThreadsAsAskedForAndBlocksGo) {
+TEST(ParallelFor, UsesTheRequestedThreadsUpToTheNumberOfBlocks) {
   // Every block waits until all have begun, so that too few threads would hang the test.
   const auto caller = std::this_thread::get_id();
   for (const int threads : {3, 50}) {
@@ -103,7 +103,7 @@ TEST(ParallelFor, WorksOnAsManyThreadsAsAskedForAndBlocksGo) {
   }
 }
 
-TEST(ParallelFor, LetsTheFirstExceptionOut) {
+TEST(ParallelFor, RethrowsTheFirstException) {
   for (const int threads : {1, 2, 7}) {
     std::atomic<int> begun = 0;
     try {
@@ -123,7 +123,7 @@ TEST(ParallelFor, LetsTheFirstExceptionOut) {
 
 TEST(ProcessorThreads, AreAtLeastOne) { EXPECT_GE(processor_threads(), 1); }
 
-TEST(ParallelFor, RefusesWhatMakesNoSense) {
+TEST(ParallelFor, RefusesInvalidArguments) {
   const auto nothing = [](std::size_t, std::size_t) {};
   testing::expect_error([&] { parallel_for(0, 0, 1, nothing); }, {"parallel_for", "block", 0});
   testing::expect_error([&] { parallel_for(0, 1, 0, nothing); }, {"parallel_for", "threads", 0});

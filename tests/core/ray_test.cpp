@@ -12,7 +12,7 @@ namespace ray_test {
 
 using petzval::RayFate;
 
-TEST(Ray, EveryFateHasItsOwnName) {
+TEST(Ray, FatesHaveDistinctNames) {
   std::set<std::string_view> names;
   for (const RayFate fate : {RayFate::transmitted, RayFate::missed_surface, RayFate::totally_reflected,
                              RayFate::vignetted, RayFate::no_convergence, RayFate::outside_fit, RayFate::outside_film,
@@ -24,13 +24,13 @@ TEST(Ray, EveryFateHasItsOwnName) {
                                                "outside_spectrum"}));
 }
 
-TEST(Ray, RunsTowardsTheFilmAlongTheAxisUnlessSaid) {
+TEST(Ray, DefaultRunsAlongTheAxisToTheFilm) {
   const petzval::Ray<float> ray;
   EXPECT_EQ(ray.origin, petzval::Vec3<float>(0, 0, 0));
   EXPECT_EQ(ray.direction, petzval::Vec3<float>(0, 0, 1));
 }
 
-TEST(Error, IsCaughtAcrossTheBorderOfTheLibraryWithItsMessage) {
+TEST(Error, IsCaughtOutsideTheLibrary) {
   try {
     throw petzval::Error("lens: thickness = nan");
   } catch (const std::runtime_error& error) {

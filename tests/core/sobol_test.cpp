@@ -44,7 +44,7 @@ TEST(OwenSobol, LiesInTheUnitSquare) {
   }
 }
 
-TEST(OwenSobol, BlocksHoldThePointsOneByOne) {
+TEST(OwenSobol, BlocksEqualSinglePoints) {
   for (const std::uint32_t first : {0u, 5u, 4096u, 0xfffffff0u}) {
     for (const std::size_t count : {0u, 1u, 3u, 64u, 101u}) {
       std::vector<double> u(count, -1), v(count, -1);
@@ -56,7 +56,7 @@ TEST(OwenSobol, BlocksHoldThePointsOneByOne) {
   }
 }
 
-TEST(OwenSobol, KeepsItsPoints) {
+TEST(OwenSobol, PointsAreFixed) {
   // Points of the first version, so that seeds keep their images.
   EXPECT_EQ(owen_sobol(0, 0), Vec2<double>(0x1.cc53569ep-1, 0x1.603b991p-4));
   EXPECT_EQ(owen_sobol(123456789, 42), Vec2<double>(0x1.27296c98p-2, 0x1.34a4f066p-1));

@@ -30,7 +30,7 @@ TEST(Number, ReadsBackToTheSameDouble) {
   }
 }
 
-TEST(Number, IsAsShortAsItCanBe) {
+TEST(Number, IsShortest) {
   EXPECT_EQ(to_text(0.1), "0.1");
   EXPECT_EQ(to_text(50), "50");
   EXPECT_EQ(to_text(-0.0), "-0");
@@ -45,13 +45,13 @@ TEST(Number, RoundsToSignificantDigits) {
   EXPECT_EQ(to_text(123456, 2), "1.2e+05");
 }
 
-TEST(Number, DoesNotFollowTheLocale) {
+TEST(Number, IndependentOfTheLocale) {
   const char* before = std::setlocale(LC_NUMERIC, "de_DE.UTF-8");  // if the locale is installed
   EXPECT_EQ(to_text(0.5), "0.5");
   if (before != nullptr) std::setlocale(LC_NUMERIC, "C");
 }
 
-TEST(Utf8, OnlyWholeCharactersHaveALength) {
+TEST(Utf8, OnlyCompleteCharactersHaveALength) {
   using petzval::utf8_length;
   for (const std::string_view whole : {"a", "\xC2\x80", "\xDF\xBF", "\xE0\xA0\x80", "\xED\x9F\xBF", "\xEF\xBF\xBF",
                                        "\xF0\x90\x80\x80", "\xF4\x8F\xBF\xBF"}) {

@@ -78,7 +78,7 @@ TEST(TiltFitLimit, IsTheBestFilmWithinTheLimit) {
   }
 }
 
-TEST(TiltFitLimit, OfZeroIsAnUprightFilm) {
+TEST(TiltFitLimit, ZeroGivesAnUprightFilm) {
   const Targets targets = inexact_targets(9, 1);
   const TiltFit fit = fit_tilt(normal_lens(), targets, behind(normal_lens(), 0));
   EXPECT_EQ(fit.status, Status::limited);
@@ -191,7 +191,7 @@ TEST(TiltFitLimit, TargetsThatPassEachOtherMakeNoJump) {
       behind(normal_lens()), 800);
 }
 
-TEST(TiltFitSets, OnePlaceGivesAnUprightFilm) {
+TEST(TiltFitSets, OnePositionGivesAnUprightFilm) {
   for (const Targets& targets : {Targets{target(300, 200, -2000)}, Targets(3, target(300, 200, -2000)),
                                  Targets{target(300, 200, -2000, 1, 0.1), target(300, 200, -2000, 1, -0.1)}}) {
     const TiltFit fit = fit_tilt(normal_lens(), targets, behind(normal_lens()));
@@ -219,7 +219,7 @@ TEST(TiltFitSets, TwoPointsAndLinesGiveThePlaneOfLeastTilt) {
   }
 }
 
-TEST(TiltFitSets, TwoPointsMayAskForMoreThanTheLimit) {
+TEST(TiltFitSets, TwoPointsMayExceedTheLimit) {
   const TiltFit fit =
       fit_tilt(normal_lens(), Targets{target(0, 10, -1000), target(0, 30, -4000)}, behind(normal_lens()));
   EXPECT_EQ(fit.status, Status::limited);
@@ -246,7 +246,7 @@ TEST(TiltFitSets, PointsAtInfinityBelongToPlanes) {
   EXPECT_LT(far.rms_mm, 1e-13);
 }
 
-TEST(TiltFitSets, WithoutTargetsTheFilmStays) {
+TEST(TiltFitSets, WithoutTargetsTheFilmIsKept) {
   TiltOptions options = behind(normal_lens());
   options.film = film_at(51, 0.1, -0.05);
   options.film.shift_x_mm = 4;
@@ -265,7 +265,7 @@ TEST(TiltFitSets, WithoutTargetsTheFilmStays) {
   }
 }
 
-TEST(TiltFitSets, WhatCannotBeServedTakesNoPart) {
+TEST(TiltFitSets, UnreachableTargetsAreIgnored) {
   const Targets good = inexact_targets(5, 2);
   const TiltFit wanted = fit_tilt(normal_lens(), good, behind(normal_lens()));
   using enum TargetUse;
@@ -311,7 +311,7 @@ TEST(TiltFitSets, WhatCannotBeServedTakesNoPart) {
   EXPECT_LT(shown.blurs[1].blur_mm, -0.01);
 }
 
-TEST(TiltFitSets, ExtremesAreNumbersAndStatuses) {
+TEST(TiltFitSets, ExtremesGiveFiniteFilmsOrStatuses) {
   const std::vector<double> values{0, 1, -1, 1e-300, -1e-300, 1e8, -1e8, 1e300, -1e300, -50, -50.000001, infinity, nan};
   std::mt19937 random(9);
   std::uniform_int_distribution<std::size_t> any(0, values.size() - 1);
@@ -336,13 +336,13 @@ TEST(TiltFitSets, ExtremesAreNumbersAndStatuses) {
   }
 }
 
-TEST(TiltFitSets, PinholeLeavesTheFilm) {
+TEST(TiltFitSets, PinholeKeepsTheFilm) {
   const TiltFit fit = fit_tilt(thin_lens(F, infinity), inexact_targets(5, 1), behind(normal_lens()));
   EXPECT_EQ(fit.status, Status::no_targets);
   EXPECT_EQ(fit.blurs[1].blur_mm, 0);
 }
 
-TEST(TiltFitSets, FilmDoesNotDependOnTheSizeOfCones) {
+TEST(TiltFitSets, FilmIsIndependentOfTheSizeOfCones) {
   Targets sharp = inexact_targets(6, 3);
   for (FocusTarget& t : sharp) t.blur_mm = 0;
   for (const bool robust : {false, true}) {
@@ -364,7 +364,7 @@ TEST(TiltFitSets, FilmDoesNotDependOnTheSizeOfCones) {
   }
 }
 
-TEST(TiltFitFrame, ShiftKeepsTheMiddleOfThePicture) {
+TEST(TiltFitFrame, ShiftKeepsTheCentreOfTheImage) {
   const IdealLens gauss = thick_lens(data_lens("double_gauss_52mm_f1.8"));
   for (const IdealLens& lens : {normal_lens(), gauss}) {
     TiltOptions options = behind(lens, 40);
@@ -390,7 +390,7 @@ TEST(TiltFitFrame, ShiftKeepsTheMiddleOfThePicture) {
   }
 }
 
-TEST(TiltFitFrame, FilmThatWouldTouchTheLensStays) {
+TEST(TiltFitFrame, FilmThatWouldTouchTheLensIsKept) {
   const Scene scene{0, 1 / F - 1e-3, 1e-3, normal_lens()};  // a tilt of 45 degrees
   TiltOptions options = behind(normal_lens(), 50);
   EXPECT_EQ(fit_tilt(normal_lens(), scene.targets(9, 0.01, 0.01), options).status, Status::solved);

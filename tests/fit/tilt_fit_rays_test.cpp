@@ -63,7 +63,7 @@ double rms(const Targets& targets, const Film& film) {
   return std::sqrt(sum / weights);
 }
 
-TEST(RayTiltFit, IsTheLeastSumOfSquaredBlurs) {
+TEST(RayTiltFit, MinimisesTheSumOfSquaredBlurs) {
   for (const double blurred : {0.0, 0.2}) {
     Targets targets = tilted_plane(bundles().ideal()).targets(9, 0.25, 0.18);
     for (std::size_t i = 0; i < targets.size(); ++i) {
@@ -132,7 +132,7 @@ TEST(RayTiltFit, NoSearchFindsBetterBlurs) {
   }
 }
 
-TEST(RayTiltFit, BlursThatAreWantedMakeNoJump) {
+TEST(RayTiltFit, GrowingBlursMakeNoJump) {
   // A table, whose third point moves towards the lens.
   const auto film_at = [](double depth, double want, double turned = 1) {
     Targets targets{target(-75, -73, -720), target(95, -54, -766), target(0, 2, -depth), target(-150, 86, -1100),
@@ -201,7 +201,7 @@ TEST(RayTiltFit, OnePointGetsItsSharpestFilm) {
   EXPECT_NEAR(fit.film.z(), bundle.plane_z - covariance / variance, 1e-10);
 }
 
-TEST(RayTiltFit, ThreeTargetsGetTheBlursTheyWant) {
+TEST(RayTiltFit, ThreeTargetsGetTheirBlurs) {
   Targets targets = tilted_plane(bundles().ideal()).targets(3, 0.25, 0.18, 5);
   targets[0].blur_mm = 0.3, targets[1].blur_mm = -0.2, targets[2].blur_mm = 0.4;
   const TiltFit fit = fit_tilt(bundles(), targets, behind(bundles().ideal()));
@@ -227,7 +227,7 @@ TEST(RayTiltFit, TendsToTheThickLensAsApertureAndFieldShrink) {
   }
 }
 
-TEST(RayTiltFit, UnitOfLengthDoesNotMatter) {
+TEST(RayTiltFit, IndependentOfTheUnitOfLength) {
   const Targets targets = tilted_plane(bundles().ideal()).targets(9, 0.25, 0.18);
   const TiltFit base = fit_tilt(bundles(), targets, behind(bundles().ideal()));
   for (const double unit : {0x1p-20, 0x1p20}) {  // exact, so that no fate at a rim changes
@@ -243,7 +243,7 @@ TEST(RayTiltFit, UnitOfLengthDoesNotMatter) {
   }
 }
 
-TEST(RayTiltFit, HoldsTheLimitAsBestItCan) {
+TEST(RayTiltFit, HoldsTheLimitOptimally) {
   const Targets targets = tilted_plane(bundles().ideal()).targets(9, 0.25, 0.18);
   const double limit = radians(1);
   const TiltFit fit = fit_tilt(bundles(), targets, behind(bundles().ideal(), 1));
@@ -261,7 +261,7 @@ TEST(RayTiltFit, HoldsTheLimitAsBestItCan) {
   EXPECT_GT(upright.rms_mm, fit.rms_mm);
 }
 
-TEST(RayTiltFit, LimitIsThatOfItsOwnFilm) {
+TEST(RayTiltFit, LimitAppliesToItsFilm) {
   // The film for curved images has another tilt than the film for ideal images, so that the limit holds one of both
   // fits.
   bool less = false, more = false;
@@ -286,7 +286,7 @@ TEST(RayTiltFit, LimitIsThatOfItsOwnFilm) {
   EXPECT_TRUE(more);
 }
 
-TEST(RayTiltFit, FilmThatNoRaysCrossIsNoEnd) {
+TEST(RayTiltFit, ContinuesFromFilmsThatNoRaysCross) {
   // The film through both ideal images is so steep that rays of both targets would reach it from behind.
   const Targets targets{target(0, 10, -1000), target(0, 30, -4000)};
   TiltOptions options = behind(bundles().ideal(), 89.9);
@@ -298,7 +298,7 @@ TEST(RayTiltFit, FilmThatNoRaysCrossIsNoEnd) {
   EXPECT_TRUE(fit_tilt(bundles(), targets, options));
 }
 
-TEST(RayTiltFit, TakesTheOutliersOfTheThickLens) {
+TEST(RayTiltFit, UsesTheOutliersOfTheThickLens) {
   Targets targets = tilted_plane(bundles().ideal()).targets(12, 0.25, 0.18);
   const Targets good(targets.begin() + 2, targets.end());
   targets[0].place.position *= 1.5, targets[1].place.position *= 0.6;
@@ -313,7 +313,7 @@ TEST(RayTiltFit, TakesTheOutliersOfTheThickLens) {
   EXPECT_NEAR(fit.rms_mm, wanted.rms_mm, 1e-8);
 }
 
-TEST(RayTiltFit, WhatTheLensDoesNotSeeTakesNoPart) {
+TEST(RayTiltFit, InvisibleTargetsAreIgnored) {
   const Targets good = tilted_plane(bundles().ideal()).targets(6, 0.25, 0.18);
   const Film wanted = fit_tilt(bundles(), good, behind(bundles().ideal())).film;
   Targets targets = good;

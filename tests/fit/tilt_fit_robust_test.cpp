@@ -92,7 +92,7 @@ TEST(RobustTiltFit, ExactPointsLoseNoWeightAndOutliersAll) {
   }
 }
 
-TEST(RobustTiltFit, OfFourTargetsNoneIsAnOutlier) {
+TEST(RobustTiltFit, FourTargetsHaveNoOutliers) {
   const Scene scene{1e-3, -5e-4, 5e-4, normal_lens()};
   const Targets targets = with_outliers(scene, 4, 1);
   const TiltFit plain = fit_tilt(scene.lens, targets, behind(scene.lens));
@@ -102,7 +102,7 @@ TEST(RobustTiltFit, OfFourTargetsNoneIsAnOutlier) {
   for (const TargetBlur& blur : fit.blurs) EXPECT_EQ(blur.use, TargetUse::used);
 }
 
-TEST(RobustTiltFit, NoiseAloneMakesNoOutliersAndLittleDifference) {
+TEST(RobustTiltFit, NoiseMakesNoOutliers) {
   const Scene scene{1e-3, -5e-4, 5e-4, normal_lens()};
   int outliers = 0;
   for (unsigned seed = 0; seed < 50; ++seed) {
@@ -119,7 +119,7 @@ TEST(RobustTiltFit, NoiseAloneMakesNoOutliersAndLittleDifference) {
   EXPECT_LE(outliers, 12);  // of 1200
 }
 
-TEST(RobustTiltFit, TargetsBecomeOutliersByAndBy) {
+TEST(RobustTiltFit, TargetsBecomeOutliersContinuously) {
   const Scene scene{1e-3, -5e-4, 5e-4, normal_lens()};
   Targets targets = scene.targets(24, 0.3, 0.2);
   std::mt19937 random(1);
@@ -143,7 +143,7 @@ TEST(RobustTiltFit, TargetsBecomeOutliersByAndBy) {
   }
 }
 
-TEST(RobustTiltFit, ServesLinesAndPlacesToo) {
+TEST(RobustTiltFit, FitsLinesAndSinglePositions) {
   // Most targets lie on a line of the picture, or in one place of it; the others are too near.
   Targets line, place;
   for (int i = 0; i < 11; ++i) {

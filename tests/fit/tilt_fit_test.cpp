@@ -88,7 +88,7 @@ Targets points_of(const Plane& plane, double z) {
   return targets;
 }
 
-TEST(TiltFit, GivesTheTiltsThatAreKnown) {
+TEST(TiltFit, GivesKnownTilts) {
   // Computed with 40 digits, for F = 0.05 and 2 m.
   const Vec normal(0, 0.5, -std::sqrt(0.75));
   const IdealLens thin = thin_lens(0.05, 2);
@@ -133,7 +133,7 @@ TEST(TiltFit, GivesThePlaneOfThreePoints) {
   EXPECT_NEAR(std::abs(fit.focus->plane.offset), 1 / std::sqrt(1.41), 1e-9);
 }
 
-TEST(TiltFit, MeetsWhatThreeTargetsWant) {
+TEST(TiltFit, MeetsTheBlursOfThreeTargets) {
   const IdealLens lens = thin_lens(50, 2);
   const std::vector<FocusTarget> targets{
       {.place = {{-300, -200, -1500}}}, {.place = {{400, -100, -2500}}}, {.place = {{0, 300, -4000}}, .blur_mm = 0.05}};
@@ -145,7 +145,7 @@ TEST(TiltFit, MeetsWhatThreeTargetsWant) {
   EXPECT_GT(fit.film.angle(), radians(1));
 }
 
-TEST(TiltFit, IsTheLeastSumOfSquares) {
+TEST(TiltFit, MinimisesTheSumOfSquares) {
   // No adjacent film, moved or tilted, has a lower cost for inexact targets with blurs.
   std::mt19937_64 random(3);
   std::uniform_real_distribution<double> unit(-1, 1);
@@ -178,7 +178,7 @@ TEST(TiltFit, IsTheLeastSumOfSquares) {
   }
 }
 
-TEST(TiltFit, UnitOfLengthDoesNotMatter) {
+TEST(TiltFit, IndependentOfTheUnitOfLength) {
   for (const bool robust : {false, true}) {
     TiltOptions options = behind(normal_lens(), 40);
     options.robust = robust;
@@ -202,7 +202,7 @@ TEST(TiltFit, UnitOfLengthDoesNotMatter) {
   }
 }
 
-TEST(TiltFit, OrderAndScaleOfWeightsDoNotMatterAndRepetitionIsWeight) {
+TEST(TiltFit, IndependentOfOrderAndScaleOfWeights) {
   Targets targets = inexact_targets(9, 6);
   const TiltOptions options = behind(normal_lens(), 40);
   const Film base = fit_tilt(normal_lens(), targets, options).film;

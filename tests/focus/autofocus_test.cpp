@@ -32,7 +32,7 @@ FocusTarget at(double x, double y, double z, double blur_mm = 0, double weight =
   return {{{x, y, z}, false}, blur_mm, weight};
 }
 
-TEST(Autofocus, OfAThinLensFollowsItsFormula) {
+TEST(Autofocus, ThinLensFollowsItsFormula) {
   const IdealLens lens = thin_lens(50, 2);
   EXPECT_NEAR(autofocus(lens, std::vector{at(0, 0, -2000)}, film_at(60)).film.z(), 51.282051282051282, 1e-12 * 51);
   EXPECT_NEAR(autofocus(lens, std::vector{at(0, 0, -500)}, film_at(60)).film.z(), 55.555555555555556, 1e-12 * 55);
@@ -47,7 +47,7 @@ TEST(Autofocus, OfAThinLensFollowsItsFormula) {
   }
 }
 
-TEST(Autofocus, OfOneTargetOnTheAxisIsSolveFocus) {
+TEST(Autofocus, OneAxialTargetEqualsSolveFocus) {
   for (const char* id : {"double_gauss_100mm_f2.0", "telephoto_100mm_f5.6", "retrofocus_100mm_f2.8", "fisheye_8mm_f2.8",
                          "zoom_57-143mm_f2.8:tele", "anamorphic_60mm_2x"}) {
     const Lens lens = data_lens(id);
@@ -66,7 +66,7 @@ TEST(Autofocus, OfOneTargetOnTheAxisIsSolveFocus) {
   }
 }
 
-TEST(Autofocus, ByExactRaysIsSolveFocusAsFarAsTheRaysTell) {
+TEST(Autofocus, ExactRaysEqualSolveFocusWithinTheirNoise) {
   const Lens lens = data_lens("double_gauss_100mm_f2.0");
   struct Case {
     std::size_t rays;
@@ -112,7 +112,7 @@ double squares(const Autofocus& focus, const std::vector<FocusTarget>& targets) 
   return sum;
 }
 
-TEST(Autofocus, HasNoBetterNeighbour) {
+TEST(Autofocus, IsALocalMinimum) {
   const std::vector targets{at(0, 0, -1000, 0, 2), at(150, 60, -1300, 0, 1), at(-100, 20, -2500, 0.05, 0.5),
                             at(40, -90, -800, -0.1, 1)};
   const Lens lens = data_lens("double_gauss_100mm_f2.0");
@@ -130,7 +130,7 @@ TEST(Autofocus, HasNoBetterNeighbour) {
   }
 }
 
-TEST(Autofocus, ByExactRaysHasNoBetterNeighbour) {
+TEST(Autofocus, ExactRaysGiveALocalMinimum) {
   const std::vector targets{at(0, 0, -1000, 0, 2), at(150, 60, -1300, 0, 1), at(-100, 20, -1100, 0, 0.5)};
   const Lens lens = data_lens("double_gauss_100mm_f2.0");
   const ImageRays bundles(lens, 22);
@@ -156,7 +156,7 @@ TEST(Autofocus, ByExactRaysHasNoBetterNeighbour) {
   }
 }
 
-TEST(Autofocus, BlursOneTargetAsWanted) {
+TEST(Autofocus, BlursOneTargetAsRequested) {
   const Lens lens = data_lens("double_gauss_100mm_f2.0");
   const IdealLens ideal = thick_lens(lens);
   const ImageRays bundles(lens, 22);
@@ -173,7 +173,7 @@ TEST(Autofocus, BlursOneTargetAsWanted) {
   }
 }
 
-TEST(Autofocus, DoesNotDependOnOrderAndCountsDuplicatesAsWeight) {
+TEST(Autofocus, IndependentOfOrderAndDuplicatesAreWeights) {
   const Lens lens = data_lens("double_gauss_100mm_f2.0");
   const ImageRays bundles(lens, 22);
   const FocusTarget a = at(0, 0, -1000), b = at(100, 50, -1500, 0.02, 3), c = at(-50, 0, -4000, 0, 0.2);
@@ -226,7 +226,7 @@ TEST(Autofocus, ReportsBreathingAndTheChangeOfMagnification) {
   EXPECT_EQ(autofocus(telecentric, std::vector{at(0, 0, -1000)}, film_at(60)).magnification_change, 0);
 }
 
-TEST(Autofocus, LeavesTheFilmWhereNothingCanBeDone) {
+TEST(Autofocus, KeepsTheFilmWithoutReachableTargets) {
   const Lens lens = data_lens("double_gauss_100mm_f2.0");
   const ImageRays bundles(lens, 22);
   const std::vector useless{at(0, 0, 100),
@@ -266,7 +266,7 @@ TEST(Autofocus, LeavesTheFilmWhereNothingCanBeDone) {
   }
 }
 
-TEST(Autofocus, SaysWhatIsWrong) {
+TEST(Autofocus, RefusesInvalidInput) {
   const ImageRays bundles(data_lens("double_gauss_100mm_f2.0"), 22);
   expect_error([&] { autofocus(bundles.ideal(), {}, film_at(nan)); }, {"autofocus", "film", "nan"});
   expect_error([&] { autofocus(bundles, {}, {}, paraxial); }, {"autofocus", "criterion", "paraxial"});
@@ -276,7 +276,7 @@ TEST(Autofocus, SaysWhatIsWrong) {
   expect_error([] { region_targets({}, {}, {}, 1024, 1025); }, {"region_targets", 1024, 1025});
 }
 
-TEST(RegionTargets, AreTheMiddlesOfItsParts) {
+TEST(RegionTargets, AreTheCentresOfItsParts) {
   const auto targets = region_targets({0, 0, -1000}, {30, 0, 0}, {0, 20, 5}, 4, 2);
   ASSERT_EQ(targets.size(), 8u);
   EXPECT_EQ(targets[0].place.position, (Vec3<double>{-22.5, -10, -1002.5}));

@@ -101,7 +101,7 @@ TEST(BothWays, ParaxialSubjectIsTheOneImagedThere) {
   }
 }
 
-TEST(BothWays, OriginsAreThreePlacesForOneSubject) {
+TEST(BothWays, OriginsDescribeOneSubject) {
   const Lens lens = data_lens("double_gauss_100mm_f2.0");
   const FirstOrder data = first_order(lens);
   for (const FocusCriterion criterion : {thin, paraxial, min_rms, min_max}) {
@@ -124,7 +124,7 @@ TEST(BothWays, OriginsAreThreePlacesForOneSubject) {
   EXPECT_NEAR(1 / 400.0 + 1 / v, 1 / data.effective_focal_length, 1e-16);
 }
 
-TEST(BothWays, AFilmTooFarInSeesNothingBeyondInfinity) {
+TEST(BothWays, FilmTooFarInHasNoSubject) {
   const Lens lens = data_lens("double_gauss_100mm_f2.0");
   for (const FocusCriterion criterion : {thin, paraxial, min_rms, min_max}) {
     const double infinite = solve_focus(lens, infinity, {criterion}).film_z;
@@ -151,7 +151,7 @@ TEST(BothWays, AFilmBeyondTheLimitNamesTheNearestSubject) {
 }
 
 // Measured from the film, the nearest subject has magnification 1; with a mirror, subject and film coincide there.
-TEST(BothWays, TheNearestSubjectFromTheFilmIsAsLargeAsItsImage) {
+TEST(BothWays, NearestSubjectFromTheFilmHasMagnificationOne) {
   for (const char* id : {"double_gauss_100mm_f2.0", "telephoto_100mm_f5"}) {
     const Lens lens = data_lens(id);
     const IdealLens thick = thick_lens(lens);
@@ -169,7 +169,7 @@ TEST(BothWays, TheNearestSubjectFromTheFilmIsAsLargeAsItsImage) {
   EXPECT_NEAR(nearest_focus(mirror, {.criterion = paraxial}).distance, 200, 1e-9);
 }
 
-TEST(BothWays, RefuseWhatIsNoFieldAndNoWeight) {
+TEST(BothWays, RefuseInvalidFieldsAndWeights) {
   const Lens lens = data_lens("double_gauss_100mm_f2.0");
   const auto error = [&](const FocusOptions& options) { return message([&] { solve_focus(lens, 1000, options); }); };
   const std::string where = lens.name();
@@ -193,7 +193,7 @@ TEST(BothWays, AFieldBeyondTheLensHasNoRays) {
   expect_error([&] { with_focus(lens, 1000, beyond); }, {lens.name(), 1000});
 }
 
-TEST(BothWays, FieldsPastTheLensCountAtInfinityAlone) {
+TEST(BothWays, FieldsBeyond90DegreesCountAtInfinityOnly) {
   const Lens lens = data_lens("fisheye_6.3mm_f2.8");
   const FocusOptions wide{.criterion = min_rms, .fields = {{0, 1}, {radians(80), 1}, {radians(100), 1}}};
   const FocusSolution infinite = solve_focus(lens, infinity, wide);

@@ -33,7 +33,7 @@ Lens thin_singlet(double semi_diameter = 2.5) {
   return compile(p);
 }
 
-TEST(BlurDiameter, OfTheThinCriterionIsTheFormula) {
+TEST(BlurDiameter, ThinCriterionEqualsTheFormula) {
   const Lens lens = data_lens("double_gauss_100mm_f2.0");
   const FirstOrder data = first_order(lens);
   const double f = data.effective_focal_length, diameter = pupils(lens).entrance.diameter;
@@ -48,7 +48,7 @@ TEST(BlurDiameter, OfTheThinCriterionIsTheFormula) {
   }
 }
 
-TEST(BlurDiameter, OfTheParaxialCriterionIsTheConeOfTheExitPupil) {
+TEST(BlurDiameter, ParaxialCriterionEqualsTheConeOfTheExitPupil) {
   for (const char* id : {"double_gauss_100mm_f2.0", "retrofocus_100mm_f2", "mirror_newton_200mm_f8", "cylinder_3.9mm",
                          "eye_gullstrand_le_grand"}) {
     SCOPED_TRACE(id);
@@ -66,7 +66,7 @@ TEST(BlurDiameter, OfTheParaxialCriterionIsTheConeOfTheExitPupil) {
   }
 }
 
-TEST(BlurDiameter, OfAllCriteriaIsThatOfTheThinLensWhereTheLensIsOne) {
+TEST(BlurDiameter, AllCriteriaAgreeForAThinLens) {
   const Lens lens = thin_singlet(1.25);
   const double f = first_order(lens).effective_focal_length;
   const Lens set = with_focus(lens, 1000);
@@ -79,7 +79,7 @@ TEST(BlurDiameter, OfAllCriteriaIsThatOfTheThinLensWhereTheLensIsOne) {
   }
 }
 
-TEST(BlurDiameter, GrowsInProportionToTheStopFarFromFocus) {
+TEST(BlurDiameter, IsProportionalToTheStopFarFromFocus) {
   for (const FocusCriterion criterion : criteria) {
     const auto blur = [&](double semi_diameter) {
       return blur_diameter(with_focus(thin_singlet(semi_diameter), 500, {paraxial}), infinity, {criterion}).value();
@@ -114,7 +114,7 @@ TEST(DepthOfField, HasTheBlurAtItsLimits) {
   }
 }
 
-TEST(DepthOfField, OfAThinLensIsTheTextbooks) {
+TEST(DepthOfField, ThinLensEqualsTheTextbook) {
   // Near and far limit: U D f / (D f +- c (U - f)), distances from the lens.
   const Lens lens = thin_singlet();
   const double f = first_order(lens).effective_focal_length, diameter = 5, u = 2000, c = 0.05;
@@ -123,7 +123,7 @@ TEST(DepthOfField, OfAThinLensIsTheTextbooks) {
   EXPECT_NEAR(depth.far_distance, u * diameter * f / (diameter * f - c * (u - f)), 1e-5);
 }
 
-TEST(DepthOfField, IsNoneWhereEvenTheFocusIsBlurred) {
+TEST(DepthOfField, IsEmptyIfTheFocusIsTooBlurred) {
   const Lens lens = with_focus(data_lens("singlet_50mm_biconvex"), 2000, {min_rms});
   const double sharpest = blur_diameter(lens, 2000, {min_rms}).value();
   EXPECT_EQ(depth_of_field(lens, 0.99 * sharpest, {min_rms}).status, FocusStatus::too_blurred);
@@ -132,7 +132,7 @@ TEST(DepthOfField, IsNoneWhereEvenTheFocusIsBlurred) {
   EXPECT_EQ(hyperfocal(lens, 1e-3, {min_rms}).status, FocusStatus::too_blurred);
 }
 
-TEST(DepthOfField, OfAFilmTooFarInIsAboutInfinity) {
+TEST(DepthOfField, FilmTooFarInIncludesInfinity) {
   const Lens lens = data_lens("double_gauss_100mm_f2.0");
   const Lens inside = with_film(lens, first_order(lens).rear_focal_z - 0.01);
   const DepthOfField depth = depth_of_field(inside, 0.03, {paraxial});
@@ -142,7 +142,7 @@ TEST(DepthOfField, OfAFilmTooFarInIsAboutInfinity) {
             depth_of_field(with_film(lens, first_order(lens).rear_focal_z), 0.03, {paraxial}).near_distance);
 }
 
-TEST(DepthOfField, ReachesTheLensWhereNothingIsBlurredEnough) {
+TEST(DepthOfField, ReachesTheLensForLargeLimits) {
   const DepthOfField depth = depth_of_field(with_focus(data_lens("double_gauss_100mm_f2.0"), 1000), 1e4, {paraxial});
   ASSERT_TRUE(depth);
   EXPECT_NEAR(depth.near_distance, 0, 1e-9);
@@ -190,7 +190,7 @@ TEST(Hyperfocal, RunsToInfinityAsTheBlurGoesToZero) {
   }
 }
 
-TEST(Hyperfocal, OfAThinLensIsTheTextbooks) {
+TEST(Hyperfocal, ThinLensEqualsTheTextbook) {
   const Lens lens = thin_singlet();
   const double f = first_order(lens).effective_focal_length, diameter = 5, c = 0.03;
   const FocusSolution at = hyperfocal(lens, c, {thin});
@@ -226,7 +226,7 @@ TEST(Breathing, FollowsTheChiefRayThroughTheExitPupil) {
   }
 }
 
-TEST(Breathing, IsNoneBehindATelecentricLens) {
+TEST(Breathing, IsZeroForTelecentricLenses) {
   Prescription p = data_prescription("singlet_50mm_biconvex");
   const Lens bare = compile(p);
   // The stop in the front focal plane.
@@ -238,7 +238,7 @@ TEST(Breathing, IsNoneBehindATelecentricLens) {
   EXPECT_EQ(breathing(lens, solve_focus(lens, 300).film_z), 0);
 }
 
-TEST(DepthOfField, SaysWhatIsMissing) {
+TEST(DepthOfField, ReportsMissingInput) {
   const Lens lens = data_lens("double_gauss_100mm_f2.0");
   for (const double blur : {0.0, -1.0, std::nan(""), infinity}) {
     expect_error([&] { depth_of_field(lens, blur); }, {lens.name(), "blur", blur});
@@ -267,7 +267,7 @@ TEST(DepthOfField, SaysWhatIsMissing) {
   EXPECT_EQ(solve_subject(afocal, 100).status, FocusStatus::afocal);
 }
 
-TEST(Breathing, IsNothingWhereNoRayComesFromInfinity) {
+TEST(Breathing, IsNulloptWithoutRaysFromInfinity) {
   const Lens open = data_lens("double_gauss_100mm_f2.0");
   const Lens closed = with_semi_diameter(open, *open.stop(), 0);
   for (const FocusCriterion criterion : {min_rms, min_max}) {
@@ -278,7 +278,7 @@ TEST(Breathing, IsNothingWhereNoRayComesFromInfinity) {
 }
 
 // A mirror of 3 um radius; images of near subjects end before the film.
-TEST(SolveSubject, SaysWhereImagesEnd) {
+TEST(SolveSubject, ReportsWhereImagesEnd) {
   Prescription p;
   p.name = "images that end";
   p.surfaces = {{.radius = -2.338e7, .thickness = 3.8507},

@@ -63,7 +63,7 @@ Spread spread(const Lens& lens, const FieldPoint& point, double film_z, const st
   return result;
 }
 
-TEST(ExactBlur, IsWhatAGridOfRaysHas) {
+TEST(ExactBlur, EqualsAGridOfRays) {
   for (const char* id : {"cooke_triplet_50mm_f5", "double_gauss_100mm_f2.0"}) {
     for (const double field : {0.0, radians(8), radians(14)}) {
       SCOPED_TRACE(std::string(id) + ' ' + std::to_string(field));
@@ -84,7 +84,7 @@ TEST(ExactBlur, IsWhatAGridOfRaysHas) {
   }
 }
 
-TEST(ExactFocus, HasTheLeastBlurOfAllFilms) {
+TEST(ExactFocus, MinimisesTheBlur) {
   const std::vector<FocusField> fields{{0, 1}, {radians(10), 2}, {radians(-17), 0.5}};
   for (const char* id : {"cooke_triplet_50mm_f5", "double_gauss_100mm_f2.0", "anamorphic_60mm_2x"}) {
     for (const FocusCriterion criterion : {min_rms, min_max}) {
@@ -102,7 +102,7 @@ TEST(ExactFocus, HasTheLeastBlurOfAllFilms) {
   }
 }
 
-TEST(ExactFocus, OfTheLeastLargestRadiusIsAtThreeQuartersOfTheAberration) {
+TEST(ExactFocus, MinMaxIsAtThreeQuartersOfTheAberration) {
   // For third-order longitudinal aberration, proportional to h^2, the film with the smallest maximum radius lies at 3/4
   // of the distance from paraxial to marginal focus, the film with the smallest RMS radius at 2/3. These classical
   // results hold in the limit of a small aperture.
@@ -118,7 +118,7 @@ TEST(ExactFocus, OfTheLeastLargestRadiusIsAtThreeQuartersOfTheAberration) {
   EXPECT_NEAR((solve_focus(lens, infinity, {min_max}).film_z - paraxial_z) / aberration, 3.0 / 4, 2e-3);
 }
 
-TEST(ExactFocus, OfSeveralFieldsLiesBetweenTheirOwn) {
+TEST(ExactFocus, SeveralFieldsGiveAFilmBetweenTheirFilms) {
   const Lens lens = data_lens("cooke_triplet_50mm_f5");
   const auto film = [&](std::vector<FocusField> fields, FocusCriterion criterion) {
     return solve_focus(lens, infinity, {.criterion = criterion, .fields = std::move(fields)}).film_z;
@@ -136,7 +136,7 @@ TEST(ExactFocus, OfSeveralFieldsLiesBetweenTheirOwn) {
   }
 }
 
-TEST(ExactFocus, OfSeveralColoursWeighsTheirLight) {
+TEST(ExactFocus, SeveralWavelengthsAreWeighted) {
   const auto glasses = GlassCatalogue::load(std::filesystem::path(PETZVAL_TEST_DATA) / "glass");
   const std::vector<double> nm{486.1327, 587.5618, 656.2725};
   const Lens lens = compile(data_prescription("singlet_50mm_biconvex"), nm, {.glasses = &glasses});
@@ -166,7 +166,7 @@ TEST(ExactFocus, OfSeveralColoursWeighsTheirLight) {
   EXPECT_NEAR(blur_diameter(set, 1000, options).value(), found, 0.02 * found);
 }
 
-TEST(ExactFocus, OfAPerfectLensIsTheParaxialOneByBothCriteria) {
+TEST(ExactFocus, PerfectLensFocusesParaxially) {
   for (const char* id : {"analytic_ellipsoid_concentric_150mm", "mirror_newton_200mm_f8"}) {
     const Lens lens = data_lens(id);
     EXPECT_NEAR(solve_focus(lens, infinity, {min_max}).film_z, solve_focus(lens, infinity, {paraxial}).film_z, 1e-10)

@@ -66,7 +66,7 @@ TEST(FocusPoints, AreAtTheirKeys) {
   EXPECT_EQ(only(one, moment(-1e9)).place.position, (Vec{1, 2, -300.1}));
 }
 
-TEST(FocusPoints, HaveAnExtentInAllKeysOrInNone) {
+TEST(FocusPoints, HaveExtentsInAllKeysOrNoKeys) {
   FocusPoint p = point({key(0, {0, 0, -1000}), key(2, {0, 0, -1000})});
   EXPECT_FALSE(only(p, moment(1)).extent_stops);
   p.keys[0].extent_stops = -2;
@@ -83,7 +83,7 @@ TEST(FocusPoints, HaveAnExtentInAllKeysOrInNone) {
   EXPECT_FALSE(only(p, moment(0)).fixes_distance);
 }
 
-TEST(FocusPoints, MoveEvenlyInReciprocalDepthAlongStraightLines) {
+TEST(FocusPoints, MoveLinearlyInInverseDepth) {
   const Vec from{-100, 20, -500}, to{900, -50, -4000};
   const FocusPoint p = point({key(0, from), key(1, to)});
   const FocusTarget half = only(p, moment(0.5));
@@ -98,7 +98,7 @@ TEST(FocusPoints, MoveEvenlyInReciprocalDepthAlongStraightLines) {
   }
 }
 
-TEST(FocusPoints, NeverOvershootInThePicture) {
+TEST(FocusPoints, DoNotOvershootInTheImage) {
   const FocusPoint p =
       point({key(0, {0, 0, -1000}), key(1, {0, 0, -1010}), key(1.5, {0, 0, -5000}), key(9, {0, 0, -5000})});
   double last = -1000;
@@ -136,7 +136,7 @@ TEST(FocusPoints, CountDepthFromTheFrontPrincipalPoint) {
   EXPECT_NEAR(only(p, moment(0.5), lens).place.position.z, z - 640, 1e-9);
 }
 
-TEST(FocusPoints, MoveInSpaceWhereTheyComeFromBehindTheLens) {
+TEST(FocusPoints, MoveInSpaceFromBehindTheLens) {
   const FocusPoint p = point({key(0, {0, 0, 500}), key(1, {100, 0, -1500})});
   EXPECT_TRUE(targets({p}, moment(0)).empty());
   EXPECT_TRUE(targets({p}, moment(0.2)).empty());
@@ -145,7 +145,7 @@ TEST(FocusPoints, MoveInSpaceWhereTheyComeFromBehindTheLens) {
   EXPECT_TRUE(targets({point({key(0, {0, 0, 500}), far_key(1, {0, 0, -1})})}, moment(1)).empty());
 }
 
-TEST(FocusPoints, KeepOrderAndDoNotKnowEachOther) {
+TEST(FocusPoints, KeepOrderAndAreIndependent) {
   std::vector<FocusPoint> points;
   for (int i = 0; i < 6; ++i) points.push_back(point({key(0, {i * 10.0, 0, -1000}), key(1, {0, i * 10.0, -900. - i})}));
   const auto all = targets(points, moment(0.3));
@@ -186,7 +186,7 @@ TEST(FocusPoints, FollowTheirTrianglesUnderRigidMotion) {
   expect_near(only(p, at_key).place.position, {50, 30, -980}, 1e-9);
 }
 
-TEST(FocusPoints, GoFromTriangleToTriangleAndToPlaces) {
+TEST(FocusPoints, MoveBetweenTrianglesAndPositions) {
   std::vector<Vec> mesh{{0, 0, -900}, {100, 0, -900}, {0, 100, -900}, {0, 0, -1800}, {90, 0, -1800}, {0, 90, -1800}};
   const double third = 1.0 / 3;
   const FocusPoint p = point({on_triangle(0, {0, 1, 2}, {third, third, third}),
@@ -217,7 +217,7 @@ TEST(FocusPoints, AreValidFromTheFirstToTheLastMomentOfTheirInterval) {
   EXPECT_TRUE(targets({p}, moment(std::nextafter(3, 4))).empty());
 }
 
-TEST(FocusPoints, WithoutAnImageAreLeftOut) {
+TEST(FocusPoints, WithoutAnImageAreSkipped) {
   std::vector<FocusPoint> points;
   for (const double z : {10.0, 0.0, -20.0, -50.0, -50.1, -1e9}) points.push_back(point({key(0, {1, 0, z})}));
   points.push_back(point({far_key(0, {0, 0, 1})}));
@@ -225,7 +225,7 @@ TEST(FocusPoints, WithoutAnImageAreLeftOut) {
   EXPECT_EQ(targets(points, moment(0)).size(), 3u);
 }
 
-TEST(FocusPoints, OutsideThePictureAreLeftOut) {
+TEST(FocusPoints, OutsideTheImageAreSkipped) {
   FocusMoment when = moment(0);
   // Chief rays pass straight through a thin lens: from x at depth 1000 to -0.052 x.
   const auto seen = [&](double x, double y) { return targets({point({key(0, {x, y, -1000})})}, when).size() == 1; };
@@ -260,14 +260,14 @@ TEST(FocusPoints, MayWeighMoreWhenNearer) {
   EXPECT_EQ(only(points[2], when).weight, 1);  // without nearer points
 }
 
-TEST(FocusPoints, NeverWeighLessThanNothing) {
+TEST(FocusPoints, WeightsAreNotNegative) {
   const FocusPoint p = point({key(0, {0, 0, -1000}, 0, 5), key(1, {0, 0, -1000}, 0, 0), key(1.1, {0, 0, -1000}, 0, 0),
                               key(2, {0, 0, -1000}, 0, 9)});
   for (double time = 0; time < 2; time += 1e-3) EXPECT_GE(only(p, moment(time)).weight, 0);
   EXPECT_EQ(only(p, moment(1.05)).weight, 0);
 }
 
-TEST(FocusPoints, SayWhatIsWrongWithThem) {
+TEST(FocusPoints, RefuseInvalidPoints) {
   const FocusPoint good = point({key(0, {0, 0, -1000})});
   const std::vector<Vec> mesh{{0, 0, -900}, {100, 0, -900}, {0, 100, -900}};
   FocusMoment when = moment(0);

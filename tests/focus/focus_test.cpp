@@ -82,7 +82,7 @@ TEST(ThinFocus, StandsAtTheRearPrincipalPlane) {
   EXPECT_NEAR(solve_focus(lens, infinity, {thin}).film_z, data.rear_focal_z, 0);
 }
 
-TEST(ThinFocus, AgreesWithTheThickOneWhereTheLensIsThin) {
+TEST(ThinFocus, EqualsThickFocusForThinLenses) {
   const Lens lens = compile(element(1.5, 80, -120, 0));
   for (const DistanceOrigin origin : {front_vertex, film}) {
     for (const double distance : {500.0, 3000.0, 1e7, infinity}) {
@@ -143,7 +143,7 @@ TEST(Focus, NamesTheNearestDistanceThatCanBeReached) {
   }
 }
 
-TEST(ParaxialFocus, EndsAtTheFrontFocusAndAtFourFocalLengthsAndThePlanesBetween) {
+TEST(ParaxialFocus, EndsAtItsLimits) {
   const Lens lens = data_lens("double_gauss_100mm_f2.0");
   const FirstOrder data = first_order(lens);
   const FocusSolution at_focus = solve_focus(lens, -data.front_focal_z, {paraxial});
@@ -169,7 +169,7 @@ TEST(ParaxialFocus, BehindOneMirrorReachesAnyDistanceFromTheFilm) {
   }
 }
 
-TEST(Focus, OfADivergingLensIsNowhere) {
+TEST(Focus, DivergingLensHasNone) {
   const Lens lens = compile(element(1.5, -80, 80, 3));
   for (const FocusCriterion criterion : {thin, paraxial, min_rms}) {
     for (const DistanceOrigin origin : {front_vertex, film}) {
@@ -184,7 +184,7 @@ TEST(Focus, OfADivergingLensIsNowhere) {
   expect_error([&] { with_focus(lens, 1000); }, {"element", "subject", 1000, "min_rms", "image"});
 }
 
-TEST(Focus, OfAnAfocalLensIsReportedAsSuch) {
+TEST(Focus, AfocalLensIsReported) {
   for (const FocusCriterion criterion : {thin, paraxial, min_rms}) {
     EXPECT_EQ(solve_focus(compile(element(1.5, 0, 0, 3)), 1000, {criterion}).status, Status::afocal);
     EXPECT_EQ(solve_focus(compile(element(1.0, 50, -50, 3)), 1000, {criterion, film}).status, Status::afocal);
@@ -193,7 +193,7 @@ TEST(Focus, OfAnAfocalLensIsReportedAsSuch) {
                {"element", "subject", 1000, "min_rms", "afocal"});
 }
 
-TEST(Focus, OfALensThatIsTelecentricInTheSceneIsParaxial) {
+TEST(Focus, ObjectSpaceTelecentricLensIsParaxial) {
   Prescription p = element(1.5168, 100, -100, 4);
   for (SurfaceRow& row : p.surfaces) row.semi_diameter = 30, row.stop = false;
   p.surfaces.push_back({.thickness = 50, .semi_diameter = 5, .stop = true});
@@ -204,7 +204,7 @@ TEST(Focus, OfALensThatIsTelecentricInTheSceneIsParaxial) {
   expect_error([&] { with_focus(lens, 300); }, {"element", "entrance pupil", "min_rms"});
 }
 
-TEST(Focus, OfOneSurfaceOfConcentricSurfacesAndOfABallIsFound) {
+TEST(Focus, SingleSurfacesConcentricSurfacesAndBallsFocus) {
   Prescription single;
   single.name = "single";
   single.surfaces = {{.radius = 50, .medium = {.nd = 1.5}, .semi_diameter = 1}};
@@ -232,14 +232,14 @@ TEST(Focus, InsideTheLensIsNoFocus) {
   expect_error([&] { with_focus(lens, 1000); }, {"element", "subject", 1000});
 }
 
-TEST(Focus, RefusesWhatIsNoDistance) {
+TEST(Focus, RefusesInvalidDistances) {
   const Lens lens = compile(element(1.5, 50, -50, 4));
   expect_error([&] { solve_focus(lens, 0); }, {"element", "subject", 0});
   expect_error([&] { solve_focus(lens, -5, {min_rms, film}); }, {"element", "subject", -5});
   expect_error([&] { solve_focus(lens, std::nan("")); }, {"element", "subject", "nan"});
 }
 
-TEST(Focus, RefusesNumbersThatAreNoCriterionOrOrigin) {
+TEST(Focus, RefusesInvalidCriteriaAndOrigins) {
   const Lens lens = compile(element(1.5, 50, -50, 4));
   const FocusOptions by_99{.criterion = static_cast<FocusCriterion>(99)};
   expect_error([&] { solve_focus(lens, 1000, by_99); }, {"element", "criterion", 99});
@@ -249,7 +249,7 @@ TEST(Focus, RefusesNumbersThatAreNoCriterionOrOrigin) {
 }
 
 // Film, limits and blur are independent of the origin of the distance of a subject.
-TEST(Focus, OriginsShiftDistancesAndNothingElse) {
+TEST(Focus, OriginsShiftDistancesOnly) {
   for (const char* id : {"double_gauss_100mm_f2.0", "retrofocus_100mm_f2", "telephoto_250mm_f5.6"}) {
     const Lens lens = data_lens(id);
     const double subject_z = -1500;
@@ -280,7 +280,7 @@ TEST(Focus, OriginsLieWhereTheLensHasThem) {
   EXPECT_EQ(origin_z(lens, front_principal), first_order(lens).front_principal_z);
 }
 
-TEST(Focus, RefusesToCountFromAnEntrancePupilAtInfinity) {
+TEST(Focus, RefusesAnEntrancePupilAtInfinityAsOrigin) {
   // The stop in the rear focal plane of a thin element: telecentric in object space.
   Prescription p = element(1.5, 50, -50, 0);
   p.surfaces[0].stop = false;
@@ -292,7 +292,7 @@ TEST(Focus, RefusesToCountFromAnEntrancePupilAtInfinity) {
   expect_error([&] { solve_focus(lens, 500, {paraxial, entrance_pupil}); }, {"entrance pupil"});
 }
 
-TEST(WithFocus, MovesTheFilmOrSaysHowNearItCan) {
+TEST(WithFocus, MovesTheFilmOrReportsTheNearestDistance) {
   const Lens lens = data_lens("double_gauss_100mm_f2.0");
   EXPECT_EQ(with_focus(lens, 1000).film_z(), solve_focus(lens, 1000).film_z);
   expect_error([&] { with_focus(lens, 50, {paraxial}); }, {lens.name(), "subject", 50, "paraxial", 54.2448912});
@@ -304,7 +304,7 @@ TEST(WithFocus, MovesTheFilmOrSaysHowNearItCan) {
       {lens.name(), "subject", 40, "film", "paraxial", to_text(nearest, 9)});
 }
 
-TEST(WithFocus, TellsMetresFromMillimetres) {
+TEST(WithFocus, DistinguishesMetresFromMillimetres) {
   const auto refusal = [&](double distance) {
     return message([&] { with_focus(data_lens("double_gauss_100mm_f2.0"), distance); });
   };

@@ -40,7 +40,7 @@ BundleBlur blur(const ImageRays& bundles, const Vec3<double>& place, const Film&
   return result.value_or(BundleBlur{});
 }
 
-TEST(ImageRays, OfALensStoppedDownBlurAsTheThickLensDoes) {
+TEST(ImageRays, StoppedDownBlursEqualTheThickLens) {
   for (const char* id : {"double_gauss_100mm_f2.0", "telephoto_100mm_f5.6", "retrofocus_100mm_f2.8",
                          "zoom_57-143mm_f2.8:tele", "singlet_50mm_biconvex"}) {
     SCOPED_TRACE(id);
@@ -62,7 +62,7 @@ TEST(ImageRays, OfALensStoppedDownBlurAsTheThickLensDoes) {
 }
 
 // Compares two independent computations: boundaries and scrambled points, or tables and a lattice.
-TEST(ImageRays, HaveTheSpotsOfOutlines) {
+TEST(ImageRays, SpotsEqualBoundaries) {
   for (const char* id :
        {"double_gauss_100mm_f2.0", "modern_50mm_f1.0", "zoom_57-143mm_f2.8:tele", "fisheye_8mm_f2.8"}) {
     const Prescription prescription = testing::data_prescription(id);
@@ -93,7 +93,7 @@ TEST(ImageRays, HaveTheSpotsOfOutlines) {
   }
 }
 
-TEST(ImageRays, OnTheSharpestFilmFindTheRmsThatTheyPromise) {
+TEST(ImageRays, SharpestFilmHasTheStatedRms) {
   for (const char* id : {"modern_50mm_f1.0", "petzval_100mm_f1.6", "double_gauss_52mm_f1.8", "zoom_57-143mm_f2.8",
                          "speed_panchro_26mm_f2", "retrofocus_100mm_f2.8"}) {
     const Lens lens = data_lens(id);
@@ -111,7 +111,7 @@ TEST(ImageRays, OnTheSharpestFilmFindTheRmsThatTheyPromise) {
   }
 }
 
-TEST(ImageRays, TurnWithTheirPoints) {
+TEST(ImageRays, RotateWithTheirPoints) {
   const Lens lens = data_lens("double_gauss_100mm_f2.0");
   const ImageRays bundles(lens, 22);
   const Film film = film_at(lens.film_z());
@@ -140,7 +140,7 @@ TEST(ImageRays, AreMirroredWithTheirPoints) {
   }
 }
 
-TEST(ImageRays, OfFarPointsAreThoseOfInfinity) {
+TEST(ImageRays, FarPointsTendToInfinity) {
   const Lens lens = data_lens("double_gauss_100mm_f2.0");
   const ImageRays bundles(lens, 22);
   for (const Vec3<double>& direction : {Vec3<double>{0, 0, -1}, Vec3<double>{0.1, 0.15, -1}}) {
@@ -165,7 +165,7 @@ TEST(ImageRays, KeepHalfOfTheirRays) {
   }
 }
 
-TEST(ImageRays, AreEmptyWhereTheLensSeesNothing) {
+TEST(ImageRays, AreEmptyOutsideTheField) {
   const Lens lens = data_lens("double_gauss_100mm_f2.0");
   const ImageRays bundles(lens, 22);
   for (const ScenePoint& place :
@@ -188,7 +188,7 @@ TEST(ImageRays, AreRefusedWithoutRaysOrFilm) {
   EXPECT_THROW(ImageRays(data_lens("mirror_newton_200mm_f8"), 10), Error);  // light leaves the lens towards -z
 }
 
-TEST(BundleBlur, WantsSlopes) {
+TEST(BundleBlur, RequiresSlopes) {
   const Lens lens = data_lens("double_gauss_100mm_f2.0");
   const RayBundle spots = trace_bundle(lens, PupilSampler(pupil_boundary(lens, FieldPoint{.z = -infinity})), 64);
   ASSERT_FALSE(spots.empty());
@@ -229,7 +229,7 @@ TEST(BundleBlur, IsPositiveBehindWhereRaysMeet) {
   }
 }
 
-TEST(BundleBlur, HasASignThatFewRaysAgreeOnNextToTheSharpestFilm) {
+TEST(BundleBlur, SignIsIndependentOfTheNumberOfRays) {
   const Lens lens = with_f_number(data_lens("double_gauss_100mm_f2_28deg"), 4);
   const ScenePoint place{{-150, 86, -1100}};
   const RayBundle few = ImageRays(lens, 22, 256).bundle(place), many = ImageRays(lens, 22, 4096).bundle(place);
@@ -243,7 +243,7 @@ TEST(BundleBlur, HasASignThatFewRaysAgreeOnNextToTheSharpestFilm) {
   EXPECT_LT(blur_on(few, film_at(sharpest - 0.1))->signed_diameter, 0);
 }
 
-TEST(BundleBlur, IsNothingOnAFilmThatRaysRunAlong) {
+TEST(BundleBlur, IsNulloptOnFilmsParallelToTheRays) {
   const RayBundle bundle = ImageRays(data_lens("double_gauss_100mm_f2.0"), 22).bundle({{0, 0, -1200}, false});
   EXPECT_FALSE(blur_on(bundle, film_at(100, std::numbers::pi / 2)));
   EXPECT_FALSE(blur_on(bundle, film_at(nan)));

@@ -41,7 +41,7 @@ Keys random_keys(std::mt19937& random) {
   return keys;
 }
 
-TEST(Keyframes, NeverLeaveTheSpanOfTheTwoKeysAbout) {
+TEST(Keyframes, StayBetweenAdjacentKeys) {
   std::mt19937 random(1);
   for (int draw = 0; draw < 500; ++draw) {
     const Keys keys = random_keys(random);
@@ -91,7 +91,7 @@ TEST(Keyframes, HaveAContinuousDerivative) {
   EXPECT_GT(curve.at(1.25 + 1e-3) - curve.at(1.25 - 1e-3), 2e-3);
 }
 
-TEST(Keyframes, OfTwoKeysAreTheSmoothStep) {
+TEST(Keyframes, TwoKeysGiveTheSmoothStep) {
   const Keyframes curve({-1, 3}, {10, 20});
   for (double s = 0; s <= 1; s += 0.125) EXPECT_NEAR(curve.at(4 * s - 1), 10 + 10 * s * s * (3 - 2 * s), 1e-13);
 }
@@ -106,7 +106,7 @@ TEST(Keyframes, PassKeysAtTheHarmonicMeanOfTheSlopes) {
   EXPECT_NEAR(uneven.at(0.5), 0.5 - 24.0 / 19 / 8, 1e-15);
 }
 
-TEST(Keyframes, FollowShiftAndScale) {
+TEST(Keyframes, CommuteWithShiftAndScale) {
   std::mt19937 random(3);
   for (int draw = 0; draw < 50; ++draw) {
     const Keys keys = random_keys(random);
@@ -118,7 +118,7 @@ TEST(Keyframes, FollowShiftAndScale) {
   }
 }
 
-TEST(Keyframes, SayWhatIsWrongWithTheirKeys) {
+TEST(Keyframes, RefuseInvalidKeys) {
   expect_error([] { Keyframes({}, {}); }, {"keyframes", 0, "times", 0});
   expect_error([] { Keyframes({1, 2}, {1}); }, {"keyframes", 2, "times", 1});
   expect_error([] { Keyframes({0, 2, 2}, {1, 1, 1}); }, {"keyframes", "key 2", "time", 2});

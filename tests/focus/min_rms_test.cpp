@@ -25,7 +25,7 @@ using enum FocusCriterion;
 using enum DistanceOrigin;
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
-TEST(MinRms, OfALensFreeOfSphericalAberrationIsTheParaxialFocus) {
+TEST(MinRms, WithoutSphericalAberrationIsTheParaxialFocus) {
   for (const char* id :
        {"analytic_ellipsoid_concentric_150mm", "analytic_plano_hyperbolic_100mm", "mirror_newton_200mm_f8"}) {
     const Lens lens = data_lens(id);
@@ -44,7 +44,7 @@ double spread(const std::vector<TracedRay<double>>& rays, double film_z) {
   return sum / static_cast<double>(rays.size());
 }
 
-TEST(MinRms, HasTheLeastSpreadOfABundleOverTheWholeAperture) {
+TEST(MinRms, MinimisesTheSpreadOverTheAperture) {
   struct Case {
     const char* id;
     double distance, tolerance;
@@ -80,7 +80,7 @@ TEST(MinRms, HasTheLeastSpreadOfABundleOverTheWholeAperture) {
   }
 }
 
-TEST(MinRms, OfANarrowZoneIsWhereItsRaysCrossTheAxis) {
+TEST(MinRms, NarrowZoneFocusesWhereItsRaysCrossTheAxis) {
   Prescription p = data_prescription("singlet_50mm_biconvex");
   p.surfaces[0].obscuration_semi_diameter = 0.93 * p.surfaces[0].semi_diameter.value();
   const Lens lens = compile(p);
@@ -94,7 +94,7 @@ TEST(MinRms, OfANarrowZoneIsWhereItsRaysCrossTheAxis) {
 }
 
 // An independent Python program with other pupil samples gives -0.9 mm, 88, 76, -37 and -53 um.
-TEST(MinRms, OfTheDoubleGaussLiesWhereAnIndependentTraceFoundIt) {
+TEST(MinRms, DoubleGaussEqualsAnIndependentTrace) {
   const Lens lens = data_lens("double_gauss_100mm_f2.0");
   const auto difference_um = [&](double distance) {
     return 1000 * (solve_focus(lens, distance, {paraxial}).film_z - solve_focus(lens, distance, {min_rms}).film_z);
@@ -138,7 +138,7 @@ TEST(MinRms, IsSmoothInTheDistance) {
   }
 }
 
-TEST(MinRms, WithoutRaysSaysSo) {
+TEST(MinRms, WithoutRaysIsReported) {
   const Lens closed = with_semi_diameter(data_lens("double_gauss_100mm_f1.35"), 5, 0);
   EXPECT_EQ(solve_focus(closed, 1000, {min_rms}).status, Status::no_rays);
   EXPECT_EQ(solve_focus(closed, 1000, {min_rms, film}).status, Status::no_rays);

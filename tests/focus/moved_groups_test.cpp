@@ -54,7 +54,7 @@ Prescription front_focusing() {
   return p;
 }
 
-TEST(MovedGroups, StandWhereTheTableSays) {
+TEST(MovedGroups, FollowTheTable) {
   const Prescription p = front_focusing();
   const Lens lens = petzval::compile(p);
   ASSERT_EQ(lens.focus_positions().size(), 4u);

@@ -78,7 +78,7 @@ TEST(PlaneFit, PlaneHoldsThePointsItWasFittedTo) {
   EXPECT_FALSE(plane_of(fit_plane(Points{{0.1, 0.2, 0}}), 0));
 }
 
-TEST(PlaneFit, TakesWeightsAsRepetitionsAndNoUnits) {
+TEST(PlaneFit, WeightsAreRepetitionsAndUnitsAreIrrelevant) {
   std::mt19937 random(3);
   std::uniform_real_distribution<double> unit(0, 1);
   Points base, repeated;
@@ -96,7 +96,7 @@ TEST(PlaneFit, TakesWeightsAsRepetitionsAndNoUnits) {
   }
 }
 
-TEST(PlaneFit, IsTheLeast) {
+TEST(PlaneFit, IsTheMinimum) {
   std::mt19937 random(4);
   std::normal_distribution<double> noise(0, 1);
   Points points;

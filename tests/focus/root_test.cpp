@@ -63,7 +63,7 @@ TEST(Highest, IsTheMaximum) {
   EXPECT_NEAR(highest([](double x) { return -x; }).at, 0, 4e-9);
 }
 
-TEST(Highest, TakesFewStepsWhereItIsSmooth) {
+TEST(Highest, TakesFewStepsOnSmoothFunctions) {
   EXPECT_LT(highest([](double x) { return std::sin(x); }, 0, 3).evaluations, 20);
   EXPECT_LT(highest([](double x) { return -std::abs(x - 0.2); }).evaluations, 60);
 }
