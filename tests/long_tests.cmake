@@ -27,7 +27,7 @@ set(petzval_long_tests
   IrisShape.PassesAChiSquareTestInSmallSquares
   IrisWeights.SamplesHaveTheStatedDensity
   LargestInputs.*
-  LensFile.ASampleCutOffAtAnyByteIsReadOrRefused
+  LensFile.TruncatedSamplesAreReadOrRefused
   MemoryEnds.*
   OslCamera.*
   PolynomialFit.LargestErrorsHoldToTheCornerOfTheFilm

@@ -60,7 +60,7 @@ TEST(FocalSurfaceFigure, PointsLieAtTheirDistancesToScale) {
   EXPECT_NEAR((at[2].second - at[0].second) / per_mm, across, 0.02 * across);
 }
 
-TEST(FocalSurfaceFigure, ShowsPointsWithADistanceAndHollowOnesWithABlur) {
+TEST(FocalSurfaceFigure, ShowsPointsWithADistanceAndOpenOnesWithABlur) {
   std::vector<FocalPoint> points = in_section;
   points[1].blur_mm = 0.05;
   points.push_back({.place = {3, 3}, .inverse_distance = 0});
@@ -74,7 +74,7 @@ TEST(FocalSurfaceFigure, ShowsPointsWithADistanceAndHollowOnesWithABlur) {
   EXPECT_EQ(svg, drawn(points));
 }
 
-TEST(FocalSurfaceFigure, WantsAFilmWithAPlaceAndASize) {
+TEST(FocalSurfaceFigure, RequiresAPositionedFilmWithASize) {
   Film bad = film;
   bad.z_mm.reset();
   EXPECT_THROW(drawn(in_section, bad), Error);

@@ -64,7 +64,7 @@ TEST(FocusFigure, TheParabolaIsTheSpotAtEveryFilmPosition) {
   }
 }
 
-TEST(FocusFigure, TheAxisIsBestWhereTheSolverSays) {
+TEST(FocusFigure, AxisIsSharpestAtTheSolvedFilm) {
   const Lens lens = data_lens("double_gauss_100mm_f1.35");
   const double paraxial = paraxial_image_z(lens, -infinity);
   const double best = solve_focus(lens, infinity, {FocusCriterion::min_rms}).film_z - paraxial;
@@ -112,7 +112,7 @@ TEST(FocusFigure, CurvesStayWithinTheFrame) {
   EXPECT_EQ(curves, 3u);
 }
 
-TEST(FocusFigure, SaysWhatHasNoFocus) {
+TEST(FocusFigure, ReportsMissingFocus) {
   // No ray passes beyond the field; a window has no focus.
   const Lens lens = data_lens("double_gauss_100mm_f1.35");
   const std::string svg = focus_figure(lens, -infinity, std::array{0.0, radians(60.0)});

@@ -27,7 +27,7 @@ std::vector<FocusPullFrame> pull() {
   return frames;
 }
 
-TEST(FocusPullFigure, ShowsReciprocalDistancesSoThatInfinityHasAPlace) {
+TEST(FocusPullFigure, ShowsInverseDistances) {
   const auto frames = pull();
   const std::string svg = focus_pull_figure("A <lens>", "", frames, std::vector<double>{1, 2});
   const auto curve = paths(svg, "stroke=\"#1a8f3c\"").at(0);
@@ -42,7 +42,7 @@ TEST(FocusPullFigure, ShowsReciprocalDistancesSoThatInfinityHasAPlace) {
   EXPECT_EQ(count(svg, "A &lt;lens&gt;"), 1u);
 }
 
-TEST(FocusPullFigure, LeavesTheColourOutWhereTheFilmStayed) {
+TEST(FocusPullFigure, OmitsTheColourIfTheFilmIsKept) {
   auto frames = pull();
   frames[1].rms_mm = frames[2].rms_mm = std::nan("");
   const std::string svg = focus_pull_figure("", "", frames, {});
@@ -50,7 +50,7 @@ TEST(FocusPullFigure, LeavesTheColourOutWhereTheFilmStayed) {
   EXPECT_EQ(paths(svg, "stroke=\"#aaa\"").at(1).size(), 4u);
 }
 
-TEST(FocusPullFigure, ShowsTiltWhereThereIsSome) {
+TEST(FocusPullFigure, ShowsTilt) {
   auto frames = pull();
   frames[2].film.tilt_rad = 0.1;
   EXPECT_NE(focus_pull_figure("", "", frames, {}).find(">tilt, swing"), std::string::npos);
@@ -61,7 +61,7 @@ TEST(FocusPullFigure, DrawsOneFrame) {
   EXPECT_EQ(focus_pull_figure("", "", one, {}).find("nan"), std::string::npos);
 }
 
-TEST(FocusPullFigure, WantsFramesInOrderWithNumbers) {
+TEST(FocusPullFigure, RequiresFiniteFramesInOrder) {
   EXPECT_THROW(focus_pull_figure("", "", {}, {}), Error);
   const auto refuses = [](auto change) {
     auto frames = pull();

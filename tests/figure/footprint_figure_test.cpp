@@ -27,7 +27,7 @@ using testing::paths;
 constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr const char* edges = "stroke-linecap=\"round\"";
 
-TEST(FootprintFigure, TellsAreaAndIllumination) {
+TEST(FootprintFigure, StatesAreaAndIllumination) {
   const Lens lens = data_lens("double_gauss_100mm_f1.35");
   const std::array fields{0.0, radians(12.95)};
   const std::string svg = footprint_figure(lens, -infinity, fields);
@@ -68,7 +68,7 @@ TEST(FootprintFigure, DrawsTheEdgeToScale) {
   }
 }
 
-TEST(FootprintFigure, ShowsTheHoleOfAMirror) {
+TEST(FootprintFigure, ShowsTheObscurationOfAMirror) {
   const std::string svg = footprint_figure(data_lens("mirror_ritchey_chretien_57.6m_f24"), -infinity, std::array{0.0});
   double nearest = infinity;
   for (const auto& path : paths(svg, edges)) {
@@ -97,7 +97,7 @@ TEST(FootprintFigure, DrawsEveryLensWithinItsCells) {
   }
 }
 
-TEST(FootprintFigure, SaysWhereNothingPasses) {
+TEST(FootprintFigure, ReportsDarkFields) {
   const Lens shut = with_semi_diameter(data_lens("double_gauss_100mm_f1.35"), 5, 0);
   EXPECT_EQ(footprint_figure(shut, -infinity, std::array{0.0, 0.1}).find("nan"), std::string::npos);
   const std::string svg = footprint_figure(data_lens("double_gauss_100mm_f1.35"), -infinity, std::array{radians(60.0)});

@@ -27,7 +27,7 @@ double last(const std::string& svg, const std::string& style) {
   return (foot - curve.back().second) / (foot - curve.front().second);
 }
 
-TEST(IlluminationFigure, EndsAtTheLibrarysNumber) {
+TEST(IlluminationFigure, EndsAtTheComputedValue) {
   for (const char* id : {"biogon_35mm_f2.8", "double_gauss_100mm_f1.35"}) {
     const Lens lens = data_lens(id);
     const double field = radians(12.0);
@@ -45,7 +45,7 @@ TEST(IlluminationFigure, GoesBeyondNinetyDegrees) {
   EXPECT_EQ(last(svg, "stroke=\"#888\" stroke-width=\"1\""), 0);
 }
 
-TEST(IlluminationFigure, WantsAField) {
+TEST(IlluminationFigure, RequiresAField) {
   const Lens lens = data_lens("cooke_triplet_50mm_f5");
   EXPECT_THROW(illumination_figure(lens, -infinity, 0), Error);
   EXPECT_THROW(illumination_figure(lens, -infinity, -0.1), Error);

@@ -65,7 +65,7 @@ TEST(LayoutFigure, IsToScale) {
   EXPECT_NEAR(drawn[1][0].second - drawn[0][0].second, 2 * stop.semi_diameter * scale(svg), 0.03);
 }
 
-TEST(LayoutFigure, RaysEndWhereTheTracerPutsThem) {
+TEST(LayoutFigure, RaysEndAtTracedPoints) {
   const Lens lens = data_lens("double_gauss_100mm_f1.35");
   const double field = radians(5.0);
   const std::string svg = layout_figure(lens, -infinity, std::array{field});
@@ -91,14 +91,14 @@ TEST(LayoutFigure, VignettedRaysStopAtTheirSurface) {
   EXPECT_EQ(thin[0].size(), static_cast<std::size_t>(lost.surface) + 2);
 }
 
-TEST(LayoutFigure, FisheyeTakesRaysFromBehind) {
+TEST(LayoutFigure, FisheyeHasRaysBeyond90Degrees) {
   const Lens lens = data_lens("fisheye_6.3mm_f2.8");
   const auto rays = paths(layout_figure(lens, -infinity, std::array{radians(110.0)}), first_field);
   ASSERT_FALSE(rays.empty());
   for (const Points& ray : rays) EXPECT_GT(ray[0].first, ray[1].first);
 }
 
-TEST(LayoutFigure, LeavesHolesOpen) {
+TEST(LayoutFigure, LeavesObscurationsOpen) {
   const auto pieces =
       paths(layout_figure(data_lens("mirror_ritchey_chretien_57.6m_f24"), -infinity, {}), "stroke-width=\"3.5\"");
   EXPECT_EQ(pieces.size(), 3u);  // two of the primary, one of the secondary
@@ -126,7 +126,7 @@ TEST(LayoutFigure, JoinsRimsOfDifferentHeightByAFlatRing) {
   EXPECT_NEAR(body[50].second - body[49].second, 4 * scale(svg), 0.02);
 }
 
-TEST(LayoutFigure, MarksAnInferredStopAndSaysSo) {
+TEST(LayoutFigure, MarksAndNamesAnInferredStop) {
   Prescription p = testing::data_prescription("cooke_triplet_50mm_f5");
   for (auto& row : p.surfaces) row.stop = false;
   const std::string svg = layout_figure(compile(p), -infinity, std::array{0.0});
@@ -172,7 +172,7 @@ TEST(LayoutFigure, CutsACylinderInBothSections) {
   EXPECT_GT(front(Meridian::x), 5);  // concave: the vertex lies behind the rim
 }
 
-TEST(LayoutFigure, LetsRaysGoBehindALensWithAVirtualImage) {
+TEST(LayoutFigure, ContinuesRaysBehindALensWithAVirtualImage) {
   Prescription p;
   p.surfaces = {{.radius = -50, .thickness = 3, .medium = {.nd = 1.5}, .semi_diameter = 10, .stop = true},
                 {.radius = 50, .thickness = -48, .semi_diameter = 12}};

@@ -50,7 +50,7 @@ TEST(ParetoFigure, DrawsOneModelWithoutError) {
   EXPECT_EQ(count(svg, "r=\"5\""), 1u);
 }
 
-TEST(ParetoFigure, WantsNumbersThatHaveLogarithms) {
+TEST(ParetoFigure, RequiresPositiveNumbers) {
   EXPECT_THROW(pareto_figure("", "", {}), Error);
   for (const double bad : {-1.0, std::nan(""), std::numeric_limits<double>::infinity()}) {
     EXPECT_THROW(pareto_figure("", "", std::vector<ParetoPoint>{{"a", bad, 1, 1, true}}), Error) << bad;

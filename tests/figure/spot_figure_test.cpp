@@ -86,7 +86,7 @@ TEST(SpotFigure, DrawsWithinItsCells) {
   EXPECT_EQ(marks, 2u * 600u);
 }
 
-TEST(SpotFigure, SaysWhereThereIsNothing) {
+TEST(SpotFigure, ReportsEmptyCells) {
   const std::array wavelengths{587.5618};
   const Lens lens = lens_of("double_gauss_100mm_f1.35", wavelengths);
   const std::array fields{0.0, radians(60.0)};
@@ -96,7 +96,7 @@ TEST(SpotFigure, SaysWhereThereIsNothing) {
   EXPECT_EQ(svg.find("inf "), std::string::npos);
 }
 
-TEST(SpotFigure, OfAShutStopHasNoAiryCircle) {
+TEST(SpotFigure, ClosedStopHasNoAiryCircle) {
   const std::array wavelengths{587.5618};
   const Lens lens = with_semi_diameter(lens_of("double_gauss_100mm_f1.35", wavelengths), 5, 0);
   const std::array fields{0.0};
@@ -106,7 +106,7 @@ TEST(SpotFigure, OfAShutStopHasNoAiryCircle) {
   EXPECT_EQ(count(svg, "inf "), 0u);
 }
 
-TEST(SpotFigure, OfAPerfectLensShowsTheAiryCircle) {
+TEST(SpotFigure, PerfectLensShowsTheAiryCircle) {
   const std::array wavelengths{587.5618};
   const Lens lens = lens_of("analytic_plano_hyperbolic_100mm", wavelengths);
   const std::array fields{0.0};
@@ -123,7 +123,7 @@ TEST(SpotFigure, EscapesTheNameOfTheLens) {
   EXPECT_NE(svg.find(">A &lt; B &amp; C</text>"), std::string::npos);
 }
 
-TEST(SpotFigure, ReplacesWhatXmlDoesNotHaveInTheNameOfTheLens) {
+TEST(SpotFigure, ReplacesInvalidXmlInTheNameOfTheLens) {
   const std::array wavelengths{587.5618}, fields{0.0};
   // A control character, U+FFFE, a surrogate's three bytes, Latin-1, and a character cut off.
   const Lens lens =
@@ -134,7 +134,7 @@ TEST(SpotFigure, ReplacesWhatXmlDoesNotHaveInTheNameOfTheLens) {
             std::string::npos);
 }
 
-TEST(SpotFigure, RefusesSpotsOfAnotherSet) {
+TEST(SpotFigure, RefusesSpotsOfOtherFields) {
   const std::array wavelengths{486.1, 656.3};
   const Lens lens = lens_of("double_gauss_100mm_f1.35", wavelengths);
   const std::array fields{0.0};

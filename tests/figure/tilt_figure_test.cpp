@@ -69,7 +69,7 @@ TEST(TiltFigure, FilmLensAndPlaneOfFocusMeetInOnePoint) {
   EXPECT_FALSE(testing::matches(svg, "<circle cx=\"" + std::to_string(static_cast<int>(x1)) + "[0-9.]*\"").empty());
 }
 
-TEST(TiltFigure, AThickLensHasTheTwoMeetingsAtOneHeight) {
+TEST(TiltFigure, ThickLensHasBothIntersectionsAtOneHeight) {
   const Lens glass = testing::data_lens("double_gauss_100mm_f2_28deg");
   const auto points = points_of(table);
   TiltView thick = view(thick_lens(glass), table, points);
@@ -102,7 +102,7 @@ TEST(TiltFigure, PointsOfThePlaneLieOnItsLineAndTheirImagesOnTheFilm) {
   }
 }
 
-TEST(TiltFigure, TheWedgeEndsWhereTheBlurIsAsLargeAsAskedFor) {
+TEST(TiltFigure, WedgeEndsAtTheRequestedBlur) {
   const IdealLens lens = thin_lens(100, 4);
   const auto points = points_of(table);
   TiltView shown = view(lens, table, points);
@@ -129,7 +129,7 @@ TEST(TiltFigure, TheWedgeEndsWhereTheBlurIsAsLargeAsAskedFor) {
   EXPECT_GE(corners.size(), 3u);
 }
 
-TEST(TiltFigure, AKnownPlaneOfFocusIsDrawnWhereverTheFilmIs) {
+TEST(TiltFigure, PlaneOfFocusIsDrawnForAnyFilm) {
   const auto points = points_of(table);
   const TiltView ideal = view(thin_lens(100, 4), table, points);
   TiltView real = ideal;
@@ -170,7 +170,7 @@ TEST(TiltFigure, AnUprightFilmHasNoLinesAndPointsAtInfinityArrows) {
   EXPECT_NE(tilt_figure(upright).find("infinity"), std::string::npos);
 }
 
-TEST(TiltFigure, WantsFiniteFilmsABlurAndAFrame) {
+TEST(TiltFigure, RequiresFiniteFilmsABlurAndAFrame) {
   const auto points = points_of(table);
   const TiltView good = view(thin_lens(100, 4), table, points);
   for (const double bad : {std::nan(""), std::numeric_limits<double>::infinity()}) {

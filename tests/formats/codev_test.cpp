@@ -44,7 +44,7 @@ GO
 
 std::string with_line(const std::string& line) { return with(singlet, "  CIR 8;", "  " + line + "\n  CIR 8;"); }
 
-TEST(Codev, SaysWhatTheFileSays) {
+TEST(Codev, HasTheValuesOfTheFile) {
   const Prescription p = read(singlet);
   EXPECT_EQ(p.imported->format, "codev");
   EXPECT_EQ(p.imported->title, "A singlet; of glass");
@@ -224,7 +224,7 @@ TEST(Codev, CylindersAreCurvedInOneSection) {
   EXPECT_EQ(row("0", "CYL; RDX 40").curved_in, petzval::Section::x);
 }
 
-TEST(Codev, WhatNoLensHasIsRefused) {
+TEST(Codev, InvalidLensesAreRefused) {
   const auto refused = [](const std::string& words) { return refusal(with(singlet, "\nGO", '\n' + words + "\nGO")); };
   expect_tokens(refused("PIK RDY S9 Z1 RDY S2 Z1"), {"PIK", "surface"});
   expect_tokens(refused("GLA"), {"GLA"});
@@ -262,7 +262,7 @@ TEST(Codev, ThreeLettersOfAWordAreEnough) {
   EXPECT_NEAR(p.design.fields[1].compress_y, 0.3, 1e-15);
 }
 
-TEST(Codev, ATextCutOffAtAnyByteIsReadOrRefused) {
+TEST(Codev, TruncatedTextsAreReadOrRefused) {
   int refused = 0;
   for (std::size_t length = 0; length < singlet.size(); ++length)
     refused += refusal(singlet.substr(0, length)) != "no error";

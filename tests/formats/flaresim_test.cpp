@@ -33,7 +33,7 @@ surfaces:
   stop         46.1         1.00000  0.00     4.7       0
 )";
 
-TEST(FlareSim, SaysWhatTheFileSays) {
+TEST(FlareSim, HasTheValuesOfTheFile) {
   const Prescription p = read(lens);
   EXPECT_EQ(p.imported->format, "flaresim");
   EXPECT_EQ(p.imported->title, "Singlet 50mm f/4.98");
@@ -58,7 +58,7 @@ TEST(FlareSim, SaysWhatTheFileSays) {
 }
 
 // Most files of the public collection have diameters in the column of semi-diameters.
-TEST(FlareSim, DiametersAreToldByTheDeclaredFNumber) {
+TEST(FlareSim, DiametersAreRecognisedByTheDeclaredFNumber) {
   std::string diameters = lens;
   for (const auto& [old, now] :
        {std::pair("12.7      1", "25.4  1"), std::pair("12.7      0", "25.4  0"), std::pair("4.7 ", "9.4 ")})
@@ -82,7 +82,7 @@ TEST(FlareSim, PlanesAndCylindersHaveWords) {
   expect_tokens(refusal(type("toric -95")), {"x:12", "row"});
 }
 
-TEST(FlareSim, WhatIsNotUnderstoodIsRefusedOrNamed) {
+TEST(FlareSim, UnknownInputIsRefusedOrNamed) {
   expect_tokens(refusal(lens + "asphere 0 0 1e-6\n"), {"x:14", "row", "\"asphere\""});
   expect_tokens(refusal(with(lens, "5.2 ", "5,2 ")), {"x:11", "thickness", "\"5,2\""});
   expect_tokens(refusal(with(lens, "49.83", "long")), {"x:7", "focal_length", "\"long\""});

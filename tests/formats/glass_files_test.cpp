@@ -130,7 +130,7 @@ TEST_F(GlassFiles, EveryFormulaOfACatalogueGivesItsIndex) {
 }
 
 // n_d and V_d of calcite, beta barium borate and aluminium nitride come from public catalogues.
-TEST_F(GlassFiles, ACatalogueKeepsWhatItPrints) {
+TEST_F(GlassFiles, CatalogueKeepsItsPrintedValues) {
   const auto file = read(every_formula);
   for (const Glass& glass : file.glasses) EXPECT_EQ(glass.catalogue, "made-up");
   EXPECT_EQ(file.glasses[1].name, "F2-SELLMEIER1");
@@ -159,7 +159,7 @@ std::string utf16(std::string_view latin, bool big, bool mark) {
   return bytes;
 }
 
-TEST_F(GlassFiles, EncodingAndLineEndsDoNotMatter) {
+TEST_F(GlassFiles, IndependentOfEncodingAndLineEnds) {
   std::string dos;
   for (const char c : every_formula) dos += c == '\n' ? "\r\n" : std::string(1, c);
   std::string latin = every_formula;
@@ -187,7 +187,7 @@ const std::string crown =
     "NM K 2 0 1.5168 64.17 0 1\nCD 1.03961212 0.00600069867 0.231792344 0.0200179144 1.01046945 "
     "103.560653\nLD 0.3 2.5\n";
 
-TEST_F(GlassFiles, WhatAFormulaContradictsIsNamed) {
+TEST_F(GlassFiles, ContradictionsWithTheFormulaAreNamed) {
   std::string wrong = crown;
   wrong.replace(wrong.find("1.5168"), 6, "1.5178");
   expect_said(said(read(wrong)), {{"1 K", "formula", "n_d", 1.5168, 1.5178}});
@@ -200,7 +200,7 @@ TEST_F(GlassFiles, WhatAFormulaContradictsIsNamed) {
   EXPECT_NEAR(only(read(wrong)).vd, 64.167, 1e-3);
 }
 
-TEST_F(GlassFiles, WhatHasNoIndexIsLeftOutByName) {
+TEST_F(GlassFiles, EntriesWithoutAnIndexAreSkippedByName) {
   const auto others = [&](std::string_view text) { return said(read(crown + std::string(text))); };
   expect_said(others("NM Y 14 0 1.5 60 0 1\nCD 2\nLD 0.4 0.7\n"), {{"4 Y", "left out", "formula", 14, "known", 1, 13}});
   expect_said(others("NM Y 2.5 0 1.5 60 0 1\nCD 2\nLD 0.4 0.7\n"),
@@ -291,7 +291,7 @@ TEST_F(GlassPages, EveryFormulaOfAPageGivesItsIndex) {
   });
 }
 
-TEST_F(GlassPages, APageKeepsWhatItPrints) {
+TEST_F(GlassPages, PageKeepsItsPrintedValues) {
   const std::string cauchy = "  - type: formula 5\n    wavelength_range: 0.4 0.7\n    coefficients: 1.5 0.004 -2\n";
   for (const char* section : {"PROPERTIES", "SPECS"}) {
     const auto file = read(page(cauchy, std::string(section) + ":\n    nd: 1.5116\n    Vd: 68\n"), "x.yml");
@@ -307,7 +307,7 @@ TEST_F(GlassPages, APageKeepsWhatItPrints) {
       {{"15 n_is_absolute", "index"}, {10, "tabulated", "absorption", "glasses"}, {"7 x", "n_d", 1.511587, 587.5618}});
 }
 
-TEST_F(GlassPages, OfTwoEntriesOfAPageTheFirstIsTaken) {
+TEST_F(GlassPages, FirstOfTwoEntriesIsUsed) {
   const std::string entry = "  - type: formula 5\n    wavelength_range: 0.4 0.7\n    coefficients: 1.5 0.004 -2\n";
   expect_tokens(said(read(page(entry + entry), "x.yml")).at(0), {10, "formula", 5, "left out", "indices"});
 }
@@ -327,7 +327,7 @@ TEST_F(GlassPages, TablesOfAPageAreInterpolated) {
   expect_tokens(said(file).at(0), {"7 data", 1, "rows"});
 }
 
-TEST_F(GlassPages, OfATableWithAbsorptionTheClearStretchIsTaken) {
+TEST_F(GlassPages, TransparentRangeOfATableWithAbsorptionIsUsed) {
   const auto file = read(table("nk",
                                "        0.2 1.9 1.5\n        0.3 1.6 0.02\n        0.4 1.53 0.001\n"
                                "        0.5 1.52 1e-5\n        0.7 1.51 0\n        3 1.4 0.3\n        4 1.4 0\n"),

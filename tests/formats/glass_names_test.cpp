@@ -120,7 +120,7 @@ TEST(GlassNames, ZemaxGlassOfAnotherCatalogue_IsAWarningThatNamesBoth) {
   expect_tokens(other("L-TIM28_MOLD"), {"L-TIM28", "ohara"});
 }
 
-TEST(GlassNames, NameThatSeveralCataloguesHave_IsAWarningUnlessTheFileTellsWhich) {
+TEST(GlassNames, NameInSeveralCatalogues_IsAWarningUnlessTheFileNamesOne) {
   const std::string seq = "RDM;LEN\nDIM M\nWL 587.56\nEPD 5\nSO 0 1e13\nS 50 4 F2\nSTO\nS -50 40\nSI 0 0\nGO\n";
   expect_tokens(warning(read(seq), "F2"), {"schott", "cdgm"});
   EXPECT_EQ(warning(read(with(seq, "F2", "F2_SCHOTT")), "F2"), "no warning");
@@ -188,7 +188,7 @@ TEST(GlassNames, ZemaxWriter_OffsetsAGlassWhoseNameIsHidden) {
   EXPECT_EQ(read(petzval::format_zemax(one).text).surfaces, one.surfaces);
 }
 
-TEST(GlassNames, PrintedIndex_StaysBesideTheGlass) {
+TEST(GlassNames, PrintedIndex_IsKeptWithTheGlass) {
   // A table with an index: the rounded index of the catalogue, and the index of another melt.
   const auto nd = [](const std::string& index) {
     return read("[descriptive data]\ntitle\tx\n[lens data]\n1\t50\t4\t" + index +
@@ -282,7 +282,7 @@ TEST_F(InfraredGlass, WithoutIndexAtTheDLine_IsReadAtThePrimaryWavelength) {
   EXPECT_EQ(petzval::parse_lens(zmx.text, "x", {.glasses = &all}).surfaces, p.surfaces);
 }
 
-TEST_F(InfraredGlass, OfAConstantIndex_KeepsItWithoutItsCatalogue) {
+TEST_F(InfraredGlass, WithAConstantIndex_KeepsItWithoutItsCatalogue) {
   const GlassCatalogue all = glasses("NM N15 1 000000 1.5 0 0 0\nCD 2.25 0 0 0 0 0 0 0 0 0\nLD 0.3 20\n");
   const Prescription p = petzval::parse_lens(infrared_lens("N15 0 0 1.5 40 0 0 0 0 0 0"), "x", {.glasses = &all});
   EXPECT_EQ(p.surfaces[0].medium, (Medium{.glass = "N15", .catalogue = "infrared", .nd = 1.5, .vd = 0}));

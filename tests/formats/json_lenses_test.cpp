@@ -44,7 +44,7 @@ const std::string optiland = R"({
   ]}
 })";
 
-TEST(Optiland, SaysWhatTheFileSays) {
+TEST(Optiland, HasTheValuesOfTheFile) {
   const Prescription p = read(optiland);
   EXPECT_EQ(p.imported->format, "optiland");
   EXPECT_TRUE(p.imported->warnings.empty()) << p.imported->warnings[0].command;
@@ -65,7 +65,7 @@ TEST(Optiland, SaysWhatTheFileSays) {
   EXPECT_EQ(p.design.primary_wavelength, 1u);
 }
 
-TEST(Optiland, WhatIsNotALensOfRevolutionIsRefused) {
+TEST(Optiland, RefusesLensesWithoutRotationalSymmetry) {
   expect_tokens(refusal(with(optiland, "\"cs\": {\"z\": 6}", "\"cs\": {\"z\": 6, \"rx\": 0.1}")), {"rx", 0.1});
   expect_tokens(refusal(with(optiland, "EvenAsphere", "Toroidal")), {"\"Toroidal\""});
   EXPECT_EQ(read(with(optiland, "EvenAsphere", "OddAsphere")).surfaces[1].aspheric,
@@ -78,7 +78,7 @@ TEST(Optiland, WhatIsNotALensOfRevolutionIsRefused) {
   EXPECT_NE(refusal("{\"surface_group\": " + std::string(100'000, '[')), "no error");
 }
 
-TEST(Optiland, WhatIsMissingOrUnknownIsSaid) {
+TEST(Optiland, MissingAndUnknownValuesAreReported) {
   expect_tokens(refusal(with(optiland, "\"EPD\"", "\"EPX\"")), {"type", "\"EPX\""});
   expect_tokens(refusal(with(optiland, "\"value\": 10", "\"value\": \"ten\"")), {"value", "\"ten\""});
   expect_tokens(refusal(with(optiland, "\"value\": 10,", "")), {"value", "missing"});
@@ -96,7 +96,7 @@ TEST(Optiland, WhatIsMissingOrUnknownIsSaid) {
   expect_tokens(refusal(optiland + std::string(1 << 24, ' ')), {"bytes"});
 }
 
-TEST(Optiland, OtherWordsForTheSameAreRead) {
+TEST(Optiland, SynonymsAreRead) {
   using petzval::FieldKind;
   const auto kind = [](const std::string& word) {
     return read(with(optiland, "\"angle\"", '"' + word + '"')).design.field_kind;
@@ -164,7 +164,7 @@ TEST(Optiland, MaterialsAreNamesFilesAndNumbers) {
   EXPECT_TRUE(positioned(refused(R"({"type": "Jelly"})"), "x", {where + ".type", "\"Jelly\""}));
 }
 
-TEST(Optiland, MirrorsAreSaidInThreeWays) {
+TEST(Optiland, MirrorsHaveThreeForms) {
   for (const auto& [old, now] :
        {std::pair(R"("index": 1.3, "abbe": 55})", R"("index": 1.3, "abbe": 55}, "is_reflective": true)"),
         std::pair(R"({"type": "AbbeMaterial", "index": 1.3, "abbe": 55})", R"({"type": "Mirror"})"),
@@ -177,7 +177,7 @@ TEST(Optiland, MirrorsAreSaidInThreeWays) {
   }
 }
 
-TEST(Optiland, WhatIsOfAnotherKindIsRefusedWithItsPlace) {
+TEST(Optiland, WrongTypesAreRefusedWithTheirPosition) {
   const auto refused = [](const std::string& old, const std::string& now) { return refusal(with(optiland, old, now)); };
   const std::string surface = "file.surface_group.surfaces[1]";
   EXPECT_TRUE(positioned(refused("\"is_stop\": true", "\"is_stop\": 1"), "x", {surface + ".is_stop", "1"}));
@@ -213,7 +213,7 @@ const std::string lentil =
   {"radius": 50.6, "thickness": 5.2, "material": "BK7", "ior": 1.5168, "abbe": 64.2, "housing-radius": 12, "lens-geometry": "spherical"},
   {"radius": -50.6, "thickness": 47, "material": "air", "ior": 1, "abbe": 0, "housing-radius": 12, "lens-geometry": "spherical"}]}})";
 
-TEST(Lentil, SaysWhatTheFileSays) {
+TEST(Lentil, HasTheValuesOfTheFile) {
   const Prescription p = read(lentil);
   EXPECT_EQ(p.imported->format, "lentil");
   EXPECT_EQ(p.name, "none singlet 2000");
@@ -228,7 +228,7 @@ TEST(Lentil, SaysWhatTheFileSays) {
   EXPECT_EQ(configured(p, "long").surfaces[0].thickness, 4);
 }
 
-TEST(Lentil, WhatTheFormatDoesNotSayIsRefused) {
+TEST(Lentil, RefusesUnknownValues) {
   EXPECT_TRUE(positioned(refusal(with(lentil, "\"spherical\"", "\"toric\"")), "x", {"lens-geometry", "toric"}));
   EXPECT_NE(refusal(with(lentil, "\"spherical\"", "\"aspherical\"")), "no error");
   EXPECT_NE(warning(with(lentil, "\"year\"", "\"mass\": 5, \"year\""), "0001.mass"), "no warning");
@@ -297,7 +297,7 @@ TEST(Lentil, OneLensOfADatabaseIsChosenByItsKeyOrItsName) {
   expect_tokens(twins, {"2 lenses"});
 }
 
-TEST(Lentil, WhatIsMissingOrOfAnotherKindIsSaid) {
+TEST(Lentil, MissingValuesAndWrongTypesAreReported) {
   const auto refused = [](const std::string& old, const std::string& now) { return refusal(with(lentil, old, now)); };
   EXPECT_TRUE(positioned(refused("\"radius\": 50.6", "\"radius\": \"flat\""), "x",
                          {"0001.optical-elements-patent[1].radius", "\"flat\""}));
@@ -322,7 +322,7 @@ TEST(Lentil, WhatIsMissingOrOfAnotherKindIsSaid) {
   EXPECT_EQ(read(alone).surfaces, read(lentil).surfaces);
 }
 
-TEST(Lentil, ListsAreOfNumbersAndSurfaces) {
+TEST(Lentil, ListsHaveNumbersAndSurfaces) {
   expect_tokens(refusal(with(lentil, "[2, 3, 4]", "[2, 3]")), {"thickness", "[2,3]"});
   const std::string both =
       with(lentil, "\"year\"", "\"optical-elements-adjusted\": [{\"radius\": 50, \"thickness\": 5}], \"year\"");

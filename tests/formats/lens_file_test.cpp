@@ -31,7 +31,7 @@ std::string bytes_of(const fs::path& file) {
   return {std::istreambuf_iterator<char>(stream), {}};
 }
 
-TEST(LensFile, TheSamplesOfOtherProgramsHaveTheirFocalLengths) {
+TEST(LensFile, SamplesOfOtherProgramsHaveTheirFocalLengths) {
   if (!fs::exists(formats)) GTEST_SKIP() << "no samples";
   // Focal lengths from data/README.md, or from the makers of lenses that are missing there.
   const std::map<std::string, double> focal_lengths = {{"cooke_triplet.zmx", 50.0213},
@@ -74,7 +74,7 @@ TEST(LensFile, TheSamplesOfOtherProgramsHaveTheirFocalLengths) {
   EXPECT_EQ(lenses, 27u);
 }
 
-TEST(LensFile, ASampleCutOffAtAnyByteIsReadOrRefused) {
+TEST(LensFile, TruncatedSamplesAreReadOrRefused) {
   if (!fs::exists(formats)) GTEST_SKIP() << "no samples";
   std::size_t texts = 0;
   for (const auto& entry : fs::recursive_directory_iterator(formats)) {
@@ -90,7 +90,7 @@ TEST(LensFile, ASampleCutOffAtAnyByteIsReadOrRefused) {
   EXPECT_GT(texts, 1500u);
 }
 
-TEST(LensFile, ASampleWithAnyBytesChangedIsReadOrRefused) {
+TEST(LensFile, ChangedSamplesAreReadOrRefused) {
   if (!fs::exists(formats)) GTEST_SKIP() << "no samples";
   std::mt19937 random(5);
   for (const char* name : {"zemax/cooke_triplet.zmx", "codev/questar35.seq", "pbrt/dgauss.50mm.dat"}) {
@@ -106,7 +106,7 @@ TEST(LensFile, ASampleWithAnyBytesChangedIsReadOrRefused) {
   }
 }
 
-TEST(LensFile, OtherFilesAreNamed) {
+TEST(LensFile, OtherFilesAreRefusedByKind) {
   using namespace std::string_literals;
   expect_tokens(refusal("PK\x03\x04 and more"s), {"x", "zip"});
   expect_tokens(refusal("\x89PNG\r\n\x1a\n"s), {"x", "PNG"});

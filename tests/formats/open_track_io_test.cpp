@@ -61,7 +61,7 @@ void PrintTo(const Case& test, std::ostream* out) { *out << test.lens; }
 class OpenTrackIo : public ::testing::TestWithParam<Case> {};
 
 // Equations 3 and 4: without distortion a scene point at the tangent x is at F x in the image.
-TEST_P(OpenTrackIo, LeadsFromTheFilmToTheSceneAndBack) {
+TEST_P(OpenTrackIo, RoundTripsBetweenFilmAndScene) {
   const auto& [id, film_mm, largest_px] = GetParam();
   const Lens lens = with_focus(data_lens(id), 3000);
   const Film film = small_film(film_mm);
@@ -128,14 +128,14 @@ TEST(OpenTrackIo, HasTheKeysAndUnitsOfTheStandard) {
   EXPECT_NEAR(found, wanted, 0.03);
 }
 
-TEST(OpenTrackIo, LeavesOutWhatIsUnknown) {
+TEST(OpenTrackIo, OmitsUnknownValues) {
   const Lens lens = with_focus(data_lens("biogon_35mm_f2.8"), std::numeric_limits<double>::infinity());
   const json file = written(lens, small_film(36));
   EXPECT_FALSE(file.at("lens").contains("focusDistance"));
   EXPECT_EQ(keys(file.at("static").at("lens")), (std::set<std::string>{"calibrationHistory", "distortionOverscanMax"}));
 }
 
-TEST(OpenTrackIo, SaysWhereAShiftedFilmHasItsCentre) {
+TEST(OpenTrackIo, StatesTheCentreOfAShiftedFilm) {
   Film shifted = small_film(24);
   shifted.shift_x_mm = 3, shifted.shift_y_mm = -2;
   const json sample = written(data_lens("biogon_35mm_f2.8"), shifted).at("lens");

@@ -91,7 +91,7 @@ TEST(OpticalBench, EveryWordOfTheFormIsHonouredOrNamed) {
 }
 
 // A position with a magnification only is focused to this magnification.
-TEST(OpticalBench, AMagnificationTellsTheSubject) {
+TEST(OpticalBench, MagnificationGivesTheSubject) {
   const auto lens = read_sample("opticalbench_macro.txt");
   const auto& near = lens.configurations.at(2);
   petzval::Prescription rows = lens;
@@ -119,7 +119,7 @@ std::vector<int> orders(const std::string& constant) {
   return result;
 }
 
-TEST(OpticalBench, ConstantsSayWhichPowersTheCoefficientsHave) {
+TEST(OpticalBench, ConstantsGiveThePowersOfCoefficients) {
   using Orders = std::vector<int>;
   EXPECT_EQ(orders(""), (Orders{4, 6, 8, 10, 12}));
   EXPECT_EQ(orders("AsphericalA2"), (Orders{2, 4, 6, 8, 10}));
@@ -139,14 +139,14 @@ TEST(OpticalBench, PlanesHaveASignAndLinesHaveComments) {
   EXPECT_EQ(parse_lens(with(plain, "title\tplain", "title\thttps://x"), "x.txt").imported->title, "https://x");
 }
 
-TEST(OpticalBench, OnePositionIsNoConfiguration) {
+TEST(OpticalBench, OnePositionGivesNoConfigurations) {
   const auto lens = parse_lens(plain, "x.txt");
   EXPECT_TRUE(lens.configurations.empty());
   EXPECT_TRUE(said(lens).empty());
   EXPECT_EQ(lens.surfaces[2].thickness, 97);
 }
 
-TEST(OpticalBench, AnUnknownFilmIsPutAtTheFocus) {
+TEST(OpticalBench, UnknownFilmIsPlacedAtTheFocus) {
   auto lens = parse_lens(with(plain, "d2\t97", "d2\tundefined"), "x.txt");
   EXPECT_NEAR(lens.surfaces[2].thickness, 100 - 5 / 1.5 + 5 * (1 - 1 / 1.0), 1e-9);
   ASSERT_EQ(said(lens).size(), 1u);
@@ -171,7 +171,7 @@ TEST(OpticalBench, EachPositionHasItsOwnUnknownFilm) {
 }
 
 // Two zoom positions with two focus settings each; near settings are named by their distances.
-TEST(OpticalBench, NearPositionsFocusTheZoomPositionThatTheyAreLike) {
+TEST(OpticalBench, NearPositionsFocusTheirZoomPosition) {
   const auto lens = parse_lens(
       "[descriptive data]\n[variable distances]\nFocal Length\t50\t70\n"
       "d0\tInfinity\tInfinity\t900\t300\t900\nd2\t10\t20\t20.5\t9\t11\nBf\t60\t80\t81\t62\t61\n[lens data]\n"
@@ -186,7 +186,7 @@ TEST(OpticalBench, NearPositionsFocusTheZoomPositionThatTheyAreLike) {
   expect_tokens(said(lens)[0], {"4 d0", "position", 900, 70});
 }
 
-TEST(OpticalBench, APositionWithoutItsDistancesIsLeftOut) {
+TEST(OpticalBench, PositionsWithoutDistancesAreSkipped) {
   const auto lens = parse_lens(
       "[descriptive data]\n[variable distances]\nd2\t10\tundefined\nBf\t60\t80\n[lens data]\n"
       "1\tAS\t1\t\t9\n2\t50\td2\t\t30\n3\t40\t5\t1.5\t30\t60\n4\tInfinity\tBf\t\t30\n",
@@ -195,7 +195,7 @@ TEST(OpticalBench, APositionWithoutItsDistancesIsLeftOut) {
   expect_tokens(said(lens).at(0), {0, "variable", "column", 2, "state"});
 }
 
-TEST(OpticalBench, WithoutDistancesOrAFocusThereIsNoLens) {
+TEST(OpticalBench, RefusesLensesWithoutDistancesOrFocus) {
   const auto refusal = [](const std::string& text) { return message([&] { parse_lens(text, "x.txt"); }); };
   expect_tokens(refusal(with(with(plain, "\t5\t1.5", "\td1\t1.5"), "d2\t97", "d1\tundefined\nd2\t97")),
                 {"x.txt", "variable distances"});
@@ -204,7 +204,7 @@ TEST(OpticalBench, WithoutDistancesOrAFocusThereIsNoLens) {
   expect_tokens(refusal(with(afocal, "d2\t97", "d2\tundefined")), {"x.txt", "line 10", "thickness"});
 }
 
-TEST(OpticalBench, WhatIsInvalidIsRefusedWithItsLine) {
+TEST(OpticalBench, InvalidInputIsRefusedWithItsLine) {
   const auto refusal = [](std::string_view old, std::string_view text) {
     return message([&] { parse_lens(with(plain, old, text), "x.txt"); });
   };

@@ -149,7 +149,7 @@ void expect_rays_of(const Lens& lens, const Setting& s, double tolerance_mm) {
   EXPECT_GT(worst, 0) << lens.name();
 }
 
-TEST(OslCamera, RaysAreThoseOfTheLens) {
+TEST(OslCamera, RaysEqualTheLens) {
   const Setting far{.focus = 1e4, .f_number = 2}, near{.focus = 1, .f_number = 2.8};
   expect_rays_of(data_lens("double_gauss_100mm_f1.35"), {.focus = 3, .f_number = 1.4}, 0.01);
   expect_rays_of(data_lens("double_gauss_100mm_f1.35"), far, 0.01);
@@ -182,7 +182,7 @@ TEST(OslCamera, MovingGroupsMove) {
   expect_rays_of(lens, {.focus = 2, .f_number = 2.8}, 0.02);
 }
 
-TEST(OslCamera, TheMeanThroughputIsTheIrradianceOverThatOfTheMiddle) {
+TEST(OslCamera, MeanThroughputIsRelativeIrradiance) {
   if (std::system("c++ --version > /dev/null 2>&1") != 0) GTEST_SKIP() << "no compiler";
   const Lens lens = data_lens("double_gauss_100mm_f1.35");
   for (const double f_number : {1.4, 2.3, 5.6}) {
@@ -200,7 +200,7 @@ TEST(OslCamera, TheMeanThroughputIsTheIrradianceOverThatOfTheMiddle) {
   }
 }
 
-TEST(OslCamera, BladesAreThoseOfTheIris) {
+TEST(OslCamera, BladesEqualTheIris) {
   if (std::system("c++ --version > /dev/null 2>&1") != 0) GTEST_SKIP() << "no compiler";
   const Lens lens = data_lens("double_gauss_52mm_f1.8");
   for (const petzval::Iris iris : {petzval::Iris{6, 0, 0.3}, petzval::Iris{5, 0.5, -0.2}, petzval::Iris{9, -0.6, 0},
@@ -232,7 +232,7 @@ TEST(OslCamera, BladesAreThoseOfTheIris) {
   }
 }
 
-TEST(OslCamera, NumbersDoNotDependOnTheLocale) {
+TEST(OslCamera, IndependentOfTheLocale) {
   const std::string text = petzval::format_osl_camera(data_lens("double_gauss_100mm_f2.0"));
   EXPECT_EQ(text.find(",0"), std::string::npos);
   for (std::size_t at = 0; at < text.size();) {
@@ -242,7 +242,7 @@ TEST(OslCamera, NumbersDoNotDependOnTheLocale) {
   }
 }
 
-TEST(OslCamera, WhatTheShaderCannotTraceIsRefused) {
+TEST(OslCamera, RefusesUnsupportedLenses) {
   const auto refusal = [](const Lens& lens) {
     return petzval::testing::message([&] { petzval::format_osl_camera(lens); });
   };
@@ -257,7 +257,7 @@ TEST(OslCamera, WhatTheShaderCannotTraceIsRefused) {
   expect_tokens(refusal(petzval::compile(behind)), {"subject", "inf mm"});
 }
 
-TEST(OslCamera, CompilesWhereACompilerIsInstalled) {
+TEST(OslCamera, CompilesIfACompilerIsInstalled) {
   if (std::system("oslc --version > /dev/null 2>&1") != 0) GTEST_SKIP() << "oslc is not installed";
   const fs::path file = fs::path(::testing::TempDir()) / "camera.osl";
   petzval::write_file(petzval::format_osl_camera(data_lens("modern_50mm_f1.0")), file);

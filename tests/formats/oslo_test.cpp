@@ -96,7 +96,7 @@ const std::string plain =
     "0\n"
     "TH 50\nAP 8\nNXT\nAIR\nEND 3\n";
 
-TEST(Oslo, ThePlainLensIsReadWithoutAWord) {
+TEST(Oslo, PlainLensIsReadWithoutWarnings) {
   const auto lens = parse_lens(plain, "x.len");
   EXPECT_TRUE(said(lens).empty());
   EXPECT_EQ(lens.focal_length_mm, 50);
@@ -106,7 +106,7 @@ TEST(Oslo, ThePlainLensIsReadWithoutAWord) {
 }
 
 // The same lens with semicolons, in lower case, and with blank lines in the place of NXT.
-TEST(Oslo, LayoutDoesNotMatter) {
+TEST(Oslo, IndependentOfLayout) {
   auto expected = parse_lens(plain, "x.len");
   std::string blank = plain, semicolons, low;
   for (std::size_t at = 0; (at = blank.find("NXT\n")) != std::string::npos;) blank.replace(at, 4, "\n");
@@ -128,7 +128,7 @@ TEST(Oslo, AFiniteObjectHasAnAngleForItsBeam) {
   EXPECT_NEAR(*lens.surfaces[0].semi_diameter, 5, 1e-9);
 }
 
-TEST(Oslo, ApertureAndFieldMayBeGivenOtherwise) {
+TEST(Oslo, ApertureAndFieldHaveOtherForms) {
   using petzval::ApertureSetting;
   const auto setting = [](std::string_view command) {
     const auto aperture = parse_lens(with(plain, "EBR 5", command), "x.len").design.aperture.value();
@@ -141,7 +141,7 @@ TEST(Oslo, ApertureAndFieldMayBeGivenOtherwise) {
   EXPECT_EQ(lens.image_diagonal_mm, 14);
 }
 
-TEST(Oslo, IndicesNeedNotBeThoseOfTheHeliumLine) {
+TEST(Oslo, IndicesMayHaveOtherWavelengths) {
   // n = 1.5 + 0.004 / l^2 at three other wavelengths.
   const auto n = [](double um) { return 1.5 + 0.004 / (um * um); };
   const std::string glass = "WV 0.55 0.45 0.65\nGLA " + std::to_string(n(0.55)) + " " + std::to_string(n(0.45)) + " " +
@@ -166,7 +166,7 @@ TEST(Oslo, AWrongFocalLengthIsNamed) {
   expect_said(said(parse_lens(with(plain, "\" 50", "\" 60"), "x.len")), {{"1 LEN", 60, "focal", 50}});
 }
 
-TEST(Oslo, WhatWouldBeAnotherLensIsRefusedWithItsLine) {
+TEST(Oslo, UnsupportedCommandsAreRefusedWithTheirLine) {
   const auto refusal = [](std::string_view old, std::string_view text) {
     return message([&] { parse_lens(with(plain, old, text), "x.len"); });
   };
@@ -190,7 +190,7 @@ TEST(Oslo, WhatWouldBeAnotherLensIsRefusedWithItsLine) {
   expect_said(said(parse_lens(with(plain, "RD 25", "RD 25\nPK XX 0"), "x.len")), {{"10 PK", "unknown"}});
 }
 
-TEST(Oslo, SolvesWithoutAnAnswerAndListsTooLongAreSaid) {
+TEST(Oslo, UnsolvedSolvesAndLongListsAreReported) {
   expect_tokens(said(parse_lens(with(with(plain, "RD 25", "RD 0"), "TH 50", "TH 50\nPY 0"), "x.len")).at(0),
                 {"13 PY", "thickness", "file"});
   expect_error([] { parse_lens(with(plain, "EBR 5", "EBR 5\nWV101 0.5"), "x.len"); }, {"x.len", "line 3", "WV101"});

@@ -133,7 +133,7 @@ TEST(RoundTrip, ZemaxKeepsTheRaysOfEveryLens) {
   EXPECT_GE(compare([](const Prescription& p) { return petzval::format_zemax(p, &glasses()); }, 1e-9, true), 68);
 }
 
-TEST(RoundTrip, CodevKeepsTheRaysOfEveryLensItCanSay) {
+TEST(RoundTrip, CodevKeepsTheRaysOfEveryLensItCanHold) {
   EXPECT_GE(compare([](const Prescription& p) { return petzval::format_codev(p, &glasses()); }, 1e-9, true), 66);
 }
 
@@ -142,7 +142,7 @@ TEST(RoundTrip, TablesKeepTheRaysOfEveryLensOfSpheres) {
   EXPECT_GE(compare([](const Prescription& p) { return petzval::format_table(p); }, 3e-5, false), 40);
 }
 
-TEST(RoundTrip, ZemaxTakesWhatItWroteAsItIs) {
+TEST(RoundTrip, ZemaxReadsItsOutputWithoutWarnings) {
   for (const Prescription& p : lenses()) {
     std::optional<WrittenLens> written;
     petzval::testing::message([&] { written = petzval::format_zemax(p, &glasses()); });
@@ -255,7 +255,7 @@ TEST(RoundTrip, CodevWritesNoApertureOfZero) {
   }
 }
 
-TEST(RoundTrip, TheDesignsApertureComesBack) {
+TEST(RoundTrip, ApertureOfTheDesignRoundTrips) {
   using enum petzval::ApertureSetting;
   for (const double object : {HUGE_VAL, 200.0}) {
     for (const auto& [setting, value] :
@@ -286,7 +286,7 @@ TEST(RoundTrip, TheDesignsApertureComesBack) {
   EXPECT_TRUE(lost(codev(p), "aperture"));
 }
 
-TEST(RoundTrip, NominalDataComeBackOrAreSaidToBeLost) {
+TEST(RoundTrip, NominalDataRoundTripOrAreReported) {
   Prescription p = singlet();
   for (const Write write : {zemax, codev}) EXPECT_FALSE(lost(write(p), "nominal data"));
   p.focal_length_mm = 50, p.f_number = 4, p.half_field_deg = 10, p.image_diagonal_mm = 17, p.notes = "sharp";
@@ -316,7 +316,7 @@ TEST(RoundTrip, NominalDataComeBackOrAreSaidToBeLost) {
   }
 }
 
-TEST(RoundTrip, ThePrimaryWavelengthStaysWhereOthersAreLost) {
+TEST(RoundTrip, PrimaryWavelengthIsKeptIfOthersAreLost) {
   Prescription p = singlet();
   for (int i = 0; i < 30; ++i) p.design.wavelengths.push_back({450.0 + 5 * i, 1});
   p.design.primary_wavelength = 28;
@@ -327,7 +327,7 @@ TEST(RoundTrip, ThePrimaryWavelengthStaysWhereOthersAreLost) {
   EXPECT_EQ(back.design.wavelengths[back.design.primary_wavelength].nm, 590);
 }
 
-TEST(RoundTrip, FieldsAndWavelengthsComeBack) {
+TEST(RoundTrip, FieldsAndWavelengthsRoundTrip) {
   using petzval::FieldKind;
   Prescription p = singlet();
   p.design.fields = {{.x = 1, .y = 0},
@@ -358,7 +358,7 @@ TEST(RoundTrip, FieldsAndWavelengthsComeBack) {
   EXPECT_EQ(read(zemax(p)).design.wavelengths.size(), 24u);
 }
 
-TEST(RoundTrip, RowsComeBack) {
+TEST(RoundTrip, RowsRoundTrip) {
   Prescription p = singlet();
   p.object_space = {.nd = 1.333, .vd = 55};
   p.surfaces[0].comment = "the stop";
@@ -378,7 +378,7 @@ TEST(RoundTrip, RowsComeBack) {
   }
 }
 
-TEST(RoundTrip, AspheresOfEveryTypeComeBack) {
+TEST(RoundTrip, AspheresOfEveryTypeRoundTrip) {
   using Terms = std::vector<petzval::AsphereTerm>;
   for (const Terms& terms : {Terms{{4, 1e-6}, {16, 1e-22}}, Terms{{4, 1e-6}, {18, 1e-24}}, Terms{{3, 1e-6}, {8, 1e-11}},
                              Terms{{3, 1e-6}, {11, 1e-15}}}) {
@@ -400,7 +400,7 @@ TEST(RoundTrip, AspheresOfEveryTypeComeBack) {
   expect_error([&] { codev(p); }, {"order", 2});
 }
 
-TEST(RoundTrip, CylindersComeBackOrAreRefused) {
+TEST(RoundTrip, CylindersRoundTripOrAreRefused) {
   Prescription p = singlet();
   p.surfaces[1].curved_in = petzval::Section::y;
   for (const Write write : {zemax, codev}) {
@@ -413,7 +413,7 @@ TEST(RoundTrip, CylindersComeBackOrAreRefused) {
   expect_error([&] { codev(p); }, {"singlet", "surface 1", "cylinder"});
 }
 
-TEST(RoundTrip, WhatConfigurationsChangeComesBack) {
+TEST(RoundTrip, ConfigurationsRoundTrip) {
   Prescription p = singlet();
   p.configurations = {{.name = "wide"},
                       {.name = "tele",
@@ -447,7 +447,7 @@ TEST(RoundTrip, WhatConfigurationsChangeComesBack) {
   EXPECT_TRUE(lost(zemax(p), "stop"));
 }
 
-TEST(RoundTrip, GlassesAndRimsOfConfigurationsComeBack) {
+TEST(RoundTrip, GlassesAndRimsOfConfigurationsRoundTrip) {
   Prescription p = singlet();
   p.configurations = {{.name = "a"}, {.name = "b", .changes = {{.surface = 1, .medium = schott("F2")}}}};
   EXPECT_EQ(configured(read(zemax(p)), 1).surfaces[1].medium.glass, "F2");
@@ -470,7 +470,7 @@ TEST(RoundTrip, GlassesAndRimsOfConfigurationsComeBack) {
   EXPECT_EQ(configured(read(zemax(p)), 1).surfaces[1].medium.glass, "N-BK7");
 }
 
-TEST(RoundTrip, PrintedIndexOfAGlass_BecomesThatOfItsFormulaAndIsSaidToBeLost) {
+TEST(RoundTrip, PrintedIndexOfAGlass_BecomesTheFormulaAndIsReported) {
   Prescription p = singlet();
   for (const Write write : {zemax, codev}) EXPECT_FALSE(lost(write(p), "nd"));
   EXPECT_EQ(read(zemax(p)).surfaces, p.surfaces);
@@ -488,7 +488,7 @@ TEST(RoundTrip, PrintedIndexOfAGlass_BecomesThatOfItsFormulaAndIsSaidToBeLost) {
   EXPECT_EQ(read(zemax(p)).surfaces[1].medium, formula);
 }
 
-TEST(RoundTrip, WhatIsLostIsSaid) {
+TEST(RoundTrip, LossesAreReported) {
   const auto glass = petzval::testing::data_prescription("double_gauss_100mm_f1.35");
   EXPECT_TRUE(lost(petzval::format_table(glass), "vd"));
   const auto zoom = petzval::testing::data_prescription("zoom_57-143mm_f2.8");
@@ -496,7 +496,7 @@ TEST(RoundTrip, WhatIsLostIsSaid) {
   EXPECT_TRUE(lost(petzval::format_table(petzval::testing::data_prescription("achromat_100mm")), "stop"));
 }
 
-TEST(RoundTrip, AStopThatNoneHasMarkedIsTheOneThatLimitsTheBeam) {
+TEST(RoundTrip, UnmarkedStopIsTheLimitingSurface) {
   Prescription p = singlet();
   std::rotate(p.surfaces.begin(), p.surfaces.begin() + 1, p.surfaces.end());  // the stop is the last
   p.surfaces[1].thickness = 2, p.surfaces[2].thickness = 46;
@@ -524,13 +524,13 @@ TEST(RoundTrip, ConfigurationsChangeBackWhatTheFirstOneChanges) {
   }
 }
 
-TEST(RoundTrip, AStopWithoutARimIsSaidToGetOne) {
+TEST(RoundTrip, StopWithoutARimGetsOneWithAReport) {
   Prescription p = singlet();
   p.surfaces[0].semi_diameter.reset();
   for (const Write write : {zemax, codev, table}) EXPECT_TRUE(lost(write(p), "stop"));
 }
 
-TEST(RoundTrip, IndicesOfAnyLineComeBackAtThatLine) {
+TEST(RoundTrip, IndicesOfAnyLineRoundTrip) {
   constexpr double e_line_nm = 546.074;
   Prescription p = singlet();
   p.surfaces[2].medium = {.nd = 1.7, .vd = 40};
@@ -552,7 +552,7 @@ TEST(RoundTrip, IndicesOfAnyLineComeBackAtThatLine) {
   }
 }
 
-TEST(RoundTrip, TheApertureOfASeqIsThatOfItsStop) {
+TEST(RoundTrip, ApertureOfASeqEqualsItsStop) {
   int warned = 0, written = 0;
   for (const Prescription& p : lenses()) {
     petzval::testing::message([&] {
@@ -566,7 +566,7 @@ TEST(RoundTrip, TheApertureOfASeqIsThatOfItsStop) {
   EXPECT_EQ(warned, 0);
 }
 
-TEST(RoundTrip, TablesWantAirInFrontAndSayWhatTheirAperturesAre) {
+TEST(RoundTrip, TablesRequireAirInFrontAndNameTheirApertures) {
   Prescription p = singlet();
   p.f_number = 2.5;  // the lens wide open, with twice the stop
   EXPECT_EQ(read(table(p)).surfaces[0].semi_diameter, 5);
@@ -574,7 +574,7 @@ TEST(RoundTrip, TablesWantAirInFrontAndSayWhatTheirAperturesAre) {
   expect_error([&] { table(p); }, {"singlet", "medium", 1.33});
 }
 
-TEST(RoundTrip, RowsOfATableWithoutARimGetTheWidestOne) {
+TEST(RoundTrip, RowsOfATableWithoutARimGetTheWidestRim) {
   Prescription p;
   p.name = "small";
   p.surfaces = {{.radius = 5, .thickness = 1, .medium = {.nd = 1.5}},
@@ -587,7 +587,7 @@ TEST(RoundTrip, RowsOfATableWithoutARimGetTheWidestOne) {
   EXPECT_EQ(back.surfaces[2].semi_diameter, 0.4);
 }
 
-TEST(RoundTrip, TextsWithControlCharactersComeBackOnOneLine) {
+TEST(RoundTrip, TextsWithControlCharactersRoundTripOnOneLine) {
   using namespace std::string_literals;
   Prescription p = singlet();
   p.name = "a\0b\nSURF 9\r\n!\x1B\x7F\xC2\x85z"s;
@@ -616,7 +616,7 @@ double first_order_difference(const Prescription& a, const Prescription& b) {
                   std::abs(of_b.back_focal_distance - of_a.back_focal_distance) / of_a.effective_focal_length);
 }
 
-TEST(RoundTrip, ThicknessesOfZeroComeBackFromATable) {
+TEST(RoundTrip, ThicknessesOfZeroRoundTripThroughATable) {
   const Prescription whole = singlet();
   for (const bool first : {false, true}) {
     for (const bool stop_in_front : {false, true}) {
@@ -645,7 +645,7 @@ TEST(RoundTrip, ThicknessesOfZeroComeBackFromATable) {
   EXPECT_NEAR(read(table(p)).surfaces.back().thickness, 0, 2e-9);
 }
 
-TEST(RoundTrip, ClosedStopsComeBackOrAreRefused) {
+TEST(RoundTrip, ClosedStopsRoundTripOrAreRefused) {
   Prescription p = singlet();
   p.surfaces[0].semi_diameter = 0;
   EXPECT_EQ(read(codev(p)).surfaces[0].semi_diameter, 0);
@@ -658,7 +658,7 @@ TEST(RoundTrip, ClosedStopsComeBackOrAreRefused) {
   expect_error([&] { zemax(p); }, {"surface 0", "semi_diameter"});
 }
 
-TEST(RoundTrip, RimsOfDummyPlanesComeBackWithTheirObscurations) {
+TEST(RoundTrip, RimsOfDummyPlanesRoundTripWithObscurations) {
   Prescription p = singlet();
   p.surfaces.insert(p.surfaces.begin(), {.thickness = 3, .semi_diameter = 6, .obscuration_semi_diameter = 2});
   for (const Write write : {zemax, codev}) {
@@ -668,7 +668,7 @@ TEST(RoundTrip, RimsOfDummyPlanesComeBackWithTheirObscurations) {
   }
 }
 
-TEST(RoundTrip, AStopWiderThanTheDeclaredBeamIsSaidToBeLost) {
+TEST(RoundTrip, StopWiderThanTheDeclaredBeamIsReportedAsLost) {
   Prescription p = singlet();
   p.design.aperture = {petzval::ApertureSetting::entrance_pupil_diameter, 8};
   for (const Write write : {zemax, codev}) {

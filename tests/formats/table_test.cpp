@@ -70,7 +70,7 @@ TEST(Table, FiveColumnsHaveVNumbersInEitherOrder) {
   EXPECT_NE(warning(other, "columns"), "no warning");
 }
 
-TEST(Table, GapsInFrontAreToldByAGlassWithoutThickness) {
+TEST(Table, GlassWithoutThicknessShowsGapsInFront) {
   const Prescription p = read("50.6 0 1.5168 25.4\n-50.6 5.2 1 25.4\n0 1 0 9.7\n");
   EXPECT_EQ(p.surfaces[0].thickness, 5.2);
   EXPECT_EQ(p.surfaces[1].thickness, 1);
@@ -78,7 +78,7 @@ TEST(Table, GapsInFrontAreToldByAGlassWithoutThickness) {
   EXPECT_NEAR(p.surfaces[2].thickness, petzval::first_order(compile(p)).back_focal_distance, 1e-9);
 }
 
-TEST(Table, APlaneOfGlassIsNoStop) {
+TEST(Table, PlanesOfGlassAreNoStops) {
   const Prescription p = read("50.6 5.2 1.5168 25.4\n0 1 1 25.4\n0 47 0 9.7\n");
   EXPECT_FALSE(p.surfaces[1].stop);
   EXPECT_TRUE(p.surfaces[2].stop);
@@ -205,7 +205,7 @@ TEST(Table, ConicsAndAsphericTermsHaveHeads) {
   EXPECT_NEAR(cm.surfaces.at(0).aspheric.at(0).coefficient, 1e-6, 1e-18);
 }
 
-TEST(Table, HeadsThatAreNotKnownAreNamedOrRefused) {
+TEST(Table, UnknownHeadsAreNamedOrRefused) {
   const std::string rows = "\n50 5 1.5 60 3 12\n-50 90 1 0 4 12\n";
   expect_tokens(warning("r d nd vd transmission semi" + rows, "head"), {"\"transmission\""});
   EXPECT_EQ(read("r d nd vd transmission semi" + rows).surfaces.at(0).semi_diameter, 12);
@@ -235,7 +235,7 @@ TEST(Table, MarksTitlesAndLastRowsAreTypedInManyWays) {
 }
 
 // A marked stop without a size stays the stop.
-TEST(Table, AMarkedStopWithoutASizeIsAsWideAsTheBeam) {
+TEST(Table, MarkedStopWithoutASizeHasTheWidthOfTheBeam) {
   const Prescription p = read("40 4 1.62041 60.3\n-300 5\nstop 3\n-30 2 1.6727 32.2\ninf 60\n");
   const petzval::Pupils pupils = petzval::pupils(compile(p));
   EXPECT_FALSE(pupils.stop_inferred);
@@ -305,7 +305,7 @@ TEST(Table, GlassesHaveNames) {
   EXPECT_TRUE(mirror.surfaces[0].mirror && mirror.surfaces[1].mirror);
 }
 
-TEST(Table, OfSeveralStopsTheFirstIsTaken) {
+TEST(Table, FirstOfSeveralStopsIsUsed) {
   const Prescription p = read("r d nd semi\n50 5 1.5 9\n-50 2 1 9\nstop 1 1 5\nstop 90 1 6\n");
   EXPECT_TRUE(p.surfaces[2].stop);
   EXPECT_FALSE(p.surfaces[3].stop);
@@ -329,7 +329,7 @@ TEST(Table, TheFilmMayBeARow) {
   EXPECT_EQ(read("r d nd semi\n50 5 1.5 9\n-50 10 1 9\n0 0 1 5\n").surfaces.size(), 3u);
 }
 
-TEST(Table, WhatIsAssumedIsSaid) {
+TEST(Table, AssumptionsAreReported) {
   const std::string plain = "50 5 1.5168 25\n-50 90 1 25\n";
   for (const char* assumed : {"columns", "aperture", "stop"})
     EXPECT_NE(warning(plain, assumed), "no warning") << assumed;
@@ -371,7 +371,7 @@ struct TypedColumn {
 };
 
 // With columns in any order, any separators, words for planes, rows for air and one stop, every row and number is read.
-TEST(Table, AnyOrderOfColumnsAndRowsIsTheSameLens) {
+TEST(Table, LensIsIndependentOfTheOrderOfColumns) {
   std::mt19937 random(7);
   for (int i = 0; i < 600; ++i) {
     Prescription lens = random_lens(random);
@@ -458,7 +458,7 @@ TEST(Table, EveryRowWithoutHeadsIsASurface) {
 }
 
 // Lenses of data/, typed as tables, are equal.
-TEST(Table, LensesOfTheDataComeBackFromATypedTable) {
+TEST(Table, LensesOfTheDataRoundTripAsTables) {
   int compared = 0;
   for (const Prescription& p : petzval::testing::data_prescriptions()) {
     const auto refused = [](const petzval::SurfaceRow& row) {
@@ -507,7 +507,7 @@ TEST(Table, LensesOfTheDataComeBackFromATypedTable) {
 }
 
 // The example of data/README.md: the first indented block after the heading.
-TEST(Table, TheExampleOfTheManualIsTheCookeTriplet) {
+TEST(Table, ExampleOfTheManualIsTheCookeTriplet) {
   std::ifstream file(std::filesystem::path(PETZVAL_TEST_DATA) / "README.md");
   std::string text, line;
   while (std::getline(file, line) && line != "## Lenses as tables") continue;

@@ -80,7 +80,7 @@ SURF 4
 /// One more line in the block of surface 2.
 std::string with_line(const std::string& line) { return with(singlet, "  DISZ 4\n", "  DISZ 4\n  " + line + "\n"); }
 
-TEST(Zemax, SaysWhatTheFileSays) {
+TEST(Zemax, HasTheValuesOfTheFile) {
   const Prescription p = read(singlet);
   EXPECT_EQ(p.imported->format, "zemax");
   EXPECT_EQ(p.imported->title, "A singlet");
@@ -122,7 +122,7 @@ TEST(Zemax, UnitsScaleEveryLength) {
   expect_tokens(refusal(with(singlet, "UNIT MM", "UNIT FURLONG")), {"x", "line 8", "UNIT", "\"FURLONG\""});
 }
 
-TEST(Zemax, EncodingsAndLineEndsDoNotMatter) {
+TEST(Zemax, IgnoresEncodingsAndLineEnds) {
   const Prescription p = read(singlet);
   const auto utf16 = [](const std::string& text, bool big, bool mark) {
     std::string bytes = mark ? (big ? "\xFE\xFF" : "\xFF\xFE") : "";
@@ -175,7 +175,7 @@ TEST(Zemax, AspheresAreTheirTerms) {
                 {"TOROIDAL"});
 }
 
-TEST(Zemax, SurfacesThatAreNotThereAreRefusedByName) {
+TEST(Zemax, MissingSurfacesAreRefusedByName) {
   for (const char* type : {"PARAXIAL", "BICONICX", "DGRATING", "USERSURF", "FRESNELS"}) {
     expect_tokens(refusal(with(singlet, "TYPE STANDARD\n  CURV 0.02", std::string("TYPE ") + type + "\n  CURV 0.02")),
                   {"x", "line 36", "TYPE", type});
@@ -206,7 +206,7 @@ TEST(Zemax, OpaqueRings_ReachTheRimOrAreRefused) {
   EXPECT_EQ(read(with_line("OBSC 3 3 0")).surfaces, read(singlet).surfaces);  // no ring
 }
 
-TEST(Zemax, DummyPlanes_ClipByClearAperturesAlone) {
+TEST(Zemax, DummyPlanes_ClipByClearAperturesOnly) {
   // Behind the lens, with a semi-diameter of the user.
   const auto dummy = [](const std::string& lines) {
     return read(with(with(singlet, "SURF 4\n", "SURF 5\n"), "  DIAM 7 0 0 0 1 \"\"\n",
@@ -246,7 +246,7 @@ const petzval::GlassCatalogue& glasses() {
 }
 
 // A Cooke triplet of 50 mm that is published as f/5: its rims are wider than the beam.
-TEST(Zemax, ATripletIsAsFastAsItsEntrancePupil) {
+TEST(Zemax, TripletHasTheFNumberOfItsEntrancePupil) {
   std::string text =
       "VERS 140730 0 0\nMODE SEQ\nNAME triplet\nUNIT MM X W X CM\nENPD 10\nGCAT SCHOTT\n"
       "FTYP 0 0 1 1\nYFLN 0\nWAVM 1 0.55 1\nPWAV 1\nSURF 0\n  CURV 0\n  DISZ INFINITY\n";
@@ -271,7 +271,7 @@ TEST(Zemax, ATripletIsAsFastAsItsEntrancePupil) {
   EXPECT_TRUE(p.imported->warnings.empty());
 }
 
-TEST(Zemax, TheStopOfEachPositionIsThatOfItsBeam) {
+TEST(Zemax, StopOfEachPositionFollowsItsBeam) {
   const std::string rim = "  DISZ 2\n  DIAM 6 1 0 0 1 \"\"\n";
   const Prescription p = read(with(singlet, "  DISZ 2\n", rim) +
                               "MNUM 4 1\nAPER 0 1 10\nAPER 0 2 8\nAPER 0 3 14\nAPER 0 4 12\nSDIA 1 4 2\n");
@@ -354,7 +354,7 @@ TEST(Zemax, SolvesWhoseSolutionIsStatedAreSilent) {
   EXPECT_NEAR(near.surfaces[2].thickness, petzval::paraxial_image_z(lens, -200) - lens.surfaces()[2].vertex_z, 1e-9);
 }
 
-TEST(Zemax, TheStopIsAsWideAsTheDesignSays) {
+TEST(Zemax, StopFollowsTheDeclaredAperture) {
   const auto paraxial = [](const std::string& line) {
     const petzval::Lens lens = compile(read(with(singlet, "ENPD 10", line)));
     return petzval::real_f_number(lens);
@@ -433,7 +433,7 @@ std::string with_breaks(const std::string& first, const std::string& between, co
   return head + rest;
 }
 
-TEST(Zemax, BreaksThatChangeNothingGo) {
+TEST(Zemax, CoordinateBreaksWithoutEffectAreRemoved) {
   const Prescription p = read(singlet);
   const auto moved = [](double by) { return "  TYPE COORDBRK\n  PARM 3 " + std::to_string(by) + "\n  DISZ 0\n"; };
   const std::string plane = "  TYPE STANDARD\n  CURV 0\n  DISZ 0\n";
@@ -491,7 +491,7 @@ YFIE 1 2 6 0 0 0 1 1 1 0 0 "" 0
   EXPECT_EQ(compile(near).focus_positions().size(), 2u);
 }
 
-TEST(Zemax, ACutFileAndDoubledWordsAreSaid) {
+TEST(Zemax, TruncatedFilesAndRepeatedCommandsAreReported) {
   expect_tokens(refusal(singlet.substr(0, singlet.find("  DIAM 8"))), {"x"});
   EXPECT_NE(warning(singlet.substr(0, singlet.find("  DISZ 48")), "SURF"), "no warning");
   EXPECT_NE(warning(with(singlet, "  DISZ 4\n", ""), "DISZ"), "no warning");
@@ -500,7 +500,7 @@ TEST(Zemax, ACutFileAndDoubledWordsAreSaid) {
   EXPECT_NE(warning(with(singlet, "PWAV 2", "PWAV 9"), "PWAV"), "no warning");
 }
 
-TEST(Zemax, AnImageAtInfinityAndAMissingUnitAreSaid) {
+TEST(Zemax, ImagesAtInfinityAndMissingUnitsAreReported) {
   const Prescription p = read(with(singlet, "DISZ 48", "DISZ INFINITY"));
   EXPECT_NEAR(p.surfaces[2].thickness, petzval::first_order(compile(p)).back_focal_distance, 1e-9);
   EXPECT_NE(warning(p, "DISZ"), "no warning");
@@ -552,7 +552,7 @@ TEST(Zemax, ConfigurationsChangeShapesGlassesAndFNumbers) {
   EXPECT_EQ(warning(p, "WLWT"), "no warning");  // the same in both
 }
 
-TEST(Zemax, MarginalHeightsAreOfAZoneOfThePupil) {
+TEST(Zemax, MarginalHeightsUseTheZoneOfThePupil) {
   const auto thickness = [](const std::string& aperture, const std::string& solve) {
     return read(with(with(singlet, "  DISZ 48\n", "  DISZ 0\n  " + solve + "\n"), "ENPD 10", aperture))
         .surfaces[2]
@@ -582,7 +582,7 @@ TEST(Zemax, NamesASecondAperture) {
   EXPECT_EQ(p.imported->warnings[0].command, "FNUM");
 }
 
-TEST(Zemax, WhatNoLensHasIsRefused) {
+TEST(Zemax, InvalidLensesAreRefused) {
   const auto of_type = [](const std::string& type, const std::string& lines) {
     return with(singlet, "TYPE STANDARD\n  CURV 0.02", "TYPE " + type + "\n" + lines + "  CURV 0.02");
   };
@@ -606,7 +606,7 @@ TEST(Zemax, WhatNoLensHasIsRefused) {
             petzval::Medium{});
 }
 
-TEST(Zemax, WhatIsNotEvaluatedIsSaid) {
+TEST(Zemax, UnevaluatedCommandsAreReported) {
   expect_tokens(
       warning(with(singlet, "GLAS ___BLANK 1 0 1.5 60 0 0 0 0 0 0", "GLAS N-BK7 4 0 0 0 0 0 0 0 0 0.5"), "GLAS"),
       {"V_d", 0.5, "N-BK7"});
@@ -623,7 +623,7 @@ TEST(Zemax, NumbersAreFiniteAndHaveDecimalPoints) {
   }
 }
 
-TEST(Zemax, ATextCutOffAtAnyByteIsReadOrRefused) {
+TEST(Zemax, TruncatedTextsAreReadOrRefused) {
   int refused = 0;
   for (std::size_t length = 0; length < singlet.size(); ++length) {
     refused += refusal(singlet.substr(0, length)) != "no error";  // any other exception would end the test

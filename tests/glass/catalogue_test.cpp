@@ -49,7 +49,7 @@ class TableFolder : public ::testing::Test {
   fs::path folder;
 };
 
-TEST(GlassCatalogue, FindsByNameAndCatalogueWhateverTheCase) {
+TEST(GlassCatalogue, FindsByNameAndCatalogueInAnyCase) {
   const auto glasses = GlassCatalogue::load(fs::path(PETZVAL_TEST_DATA) / "glass");
   const auto* glass = glasses.find("n-bk7", "SCHOTT");
   ASSERT_NE(glass, nullptr);
@@ -61,7 +61,7 @@ TEST(GlassCatalogue, FindsByNameAndCatalogueWhateverTheCase) {
   EXPECT_EQ(glasses.find("", "schott"), nullptr);
 }
 
-TEST(GlassCatalogue, TakesTheGlassWithTheNearestIndexWhereOnlyTheNameIsKnown) {
+TEST(GlassCatalogue, NameWithoutCatalogueFindsTheNearestIndex) {
   const auto glasses = GlassCatalogue::load(fs::path(PETZVAL_TEST_DATA) / "glass");
   ASSERT_NE(glasses.find("F2", 1.62004), nullptr);
   EXPECT_NEAR(glasses.find("F2", 1.62004)->nd, 1.62004, 1e-5);
@@ -101,7 +101,7 @@ Glass named(const std::string& catalogue, const std::string& name, double nd, do
   return glass;
 }
 
-TEST(GlassCatalogue, AnAddedGlassComesBeforeThoseOfItsName) {
+TEST(GlassCatalogue, AddedGlassPrecedesOthersOfItsName) {
   const GlassCatalogue tables({named("schott", "F2", 1.62004), named("cdgm", "F2", 1.61293), named("a", "K", 1.5)});
   const auto more = with_glasses(tables, {named("Schott", "f2", 1.62), named("mine", "F2", 1.6205)});
   EXPECT_EQ(tables.glasses().size(), 3u);
@@ -138,7 +138,7 @@ TEST(GlassTables, AreLoadedOnce) {
   EXPECT_EQ(tables.find("BK7")->catalogue, "schott-legacy");
 }
 
-TEST(GlassCatalogue, WhatWasAddedLastIsFoundFirst) {
+TEST(GlassCatalogue, LastAddedIsFoundFirst) {
   const auto first = with_glasses(GlassCatalogue(), {named("mine", "X", 1.5), named("mine", "A", 1.4)});
   const auto second = with_glasses(first, {named("mine", "X", 1.6), named("mine", "Z", 1.7)});
   EXPECT_EQ(second.find("x", "mine")->nd, 1.6);
@@ -166,7 +166,7 @@ TEST(GlassCatalogue, NamesTheGlassesNearestByIndexAndAbbeNumber) {
   EXPECT_TRUE(nearest_glasses(GlassCatalogue(), 1.5, 60, 3).empty());
 }
 
-TEST_F(TableFolder, LineEndsOfAnyKindReadTheSame) {
+TEST_F(TableFolder, LineEndsAreIrrelevant) {
   write("glass_unix.csv", header + row + "mine,X2,1.6,40,buchdahl,0.4,0.7,1.6 -0.05 0.01,me");
   std::string dos = header + row;
   for (std::size_t i = 0; (i = dos.find('\n', i)) != std::string::npos; i += 2) dos.replace(i, 1, "\r\n");

@@ -90,7 +90,7 @@ TEST(Dispersion, BoroCrownHasTheIndicesOfItsDataSheet) {
 }
 
 // One glass per formula, computed by hand at a wavelength that gives round numbers.
-TEST(Dispersion, EachFormulaIsTheOneOfItsName) {
+TEST(Dispersion, FormulasEqualTheirDefinitions) {
   using enum DispersionFormula;
   EXPECT_DOUBLE_EQ(refractive_index(made_up(sellmeier, {0.5, 1, 0.5}), 1000), std::sqrt(1 + 0.5 + 1 / (1 - 0.5)));
   EXPECT_DOUBLE_EQ(refractive_index(made_up(sellmeier_squared, {0.5, 1, 0.5}), 1000),
@@ -116,7 +116,7 @@ Glass table_of(const Glass& glass, const std::vector<double>& wavelengths_nm) {
   return table;
 }
 
-TEST(Dispersion, ATableGivesItsOwnIndicesAndFallsBetweenThem) {
+TEST(Dispersion, TableIsExactAtItsIndicesAndMonotonicBetween) {
   const Glass& flint = *glasses().find("SF6", "schott");
   const std::vector<double> lines = {404.6561, 435.8343, 486.1327, 587.5618, 656.2725, 706.5188};
   const Glass table = table_of(flint, lines);
@@ -130,7 +130,7 @@ TEST(Dispersion, ATableGivesItsOwnIndicesAndFallsBetweenThem) {
 }
 
 // Half the step, less than a quarter of the error: the cubic is better than chords.
-TEST(Dispersion, ATableIsBetterTheFinerItIs) {
+TEST(Dispersion, FinerTablesAreMoreAccurate) {
   const Glass& flint = *glasses().find("SF6", "schott");
   const auto worst = [&](double step) {
     std::vector<double> nodes;
@@ -152,7 +152,7 @@ TEST(Dispersion, ATableOfTwoIndicesIsALineOverTheInverseSquare) {
   EXPECT_NEAR(refractive_index(table, 1000 / std::sqrt(2.5)), 1.625, 1e-15);
 }
 
-TEST(Dispersion, ATableThatRisesAndFallsHasNoIndexBeyondItsOwn) {
+TEST(Dispersion, TableStaysWithinItsIndices) {
   const Glass table = made_up(DispersionFormula::tabulated, {0.4, 1.5, 0.5, 1.75, 0.6, 1.5, 0.7, 1.5});
   for (double nm = 400; nm <= 700; ++nm) {
     const double n = refractive_index(table, nm);
@@ -161,7 +161,7 @@ TEST(Dispersion, ATableThatRisesAndFallsHasNoIndexBeyondItsOwn) {
   }
 }
 
-TEST(Dispersion, SpectralLinesAreThoseOfTheTable) {
+TEST(Dispersion, SpectralLinesEqualTheTable) {
   std::ifstream table(std::filesystem::path(PETZVAL_TEST_DATA) / "glass" / "spectral_lines.csv");
   std::string line;
   std::getline(table, line);
@@ -191,7 +191,7 @@ TEST(Dispersion, TheEndsOfTheRangeBelongToIt) {
   EXPECT_GT(refractive_index(*glasses().find("BAC4", "hoya"), spectral_line_nm("t")), 1.5);
 }
 
-TEST(Dispersion, NoIndexComesFromBeyondAPole) {
+TEST(Dispersion, NoIndexBeyondAPole) {
   using enum DispersionFormula;
   const std::string at = "test X: square of the index at 500 nm = ";
   expect_error([] { refractive_index(made_up(sellmeier, {0, 1, 0.25}), 500); }, {at, "inf"});
@@ -201,7 +201,7 @@ TEST(Dispersion, NoIndexComesFromBeyondAPole) {
   expect_error([] { refractive_index(made_up(cauchy, {nan}), 500); }, {at, "nan"});
 }
 
-TEST(Dispersion, AFormulaWithAPieceMissingIsRefused) {
+TEST(Dispersion, IncompleteFormulasAreRefused) {
   using enum DispersionFormula;
   expect_error([] { refractive_index(made_up(sellmeier, {0, 1}), 500); }, {"test X", "formula", 2});
   expect_error([] { refractive_index(made_up(cauchy, {}), 500); }, {"test X", "formula", 0});
@@ -221,7 +221,7 @@ TEST(Dispersion, TheAbbeModelKeepsIndexAndAbbeNumber) {
   }
 }
 
-TEST(Dispersion, TheAbbeModelIsAsGoodAsItSays) {
+TEST(Dispersion, AbbeModelHasTheStatedError) {
   std::vector<double> errors;
   for (const Glass& glass : glasses().glasses()) {
     double worst = 0;
@@ -236,7 +236,7 @@ TEST(Dispersion, TheAbbeModelIsAsGoodAsItSays) {
   EXPECT_LT(errors.back(), 0.0165);
 }
 
-TEST(Dispersion, TheAbbeModelRefusesWhatItCannotStandFor) {
+TEST(Dispersion, AbbeModelRefusesInvalidNumbers) {
   expect_error([] { petzval::abbe_index(1.5, 0, 500); }, {"n_d 1.5", "V_d 0", "V_d", 0});
   expect_error([] { petzval::abbe_index(1.5, nan, 500); }, {"n_d 1.5", "V_d nan", "V_d", "nan"});
   expect_error([] { petzval::abbe_index(-1, 60, 500); }, {"n_d -1", "V_d 60", "n_d", -1});

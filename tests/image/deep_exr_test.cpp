@@ -55,7 +55,7 @@ void write_bytes(const std::filesystem::path& file, const std::string& bytes) {
   std::ofstream(file, std::ios::binary) << bytes;
 }
 
-TEST(DeepExr, ComesBackToTheBit) {
+TEST(DeepExr, RoundTripsToTheBit) {
   const auto file = file_named("round_trip.exr");
   const FragmentLists lists = some_lists(67, 41);
   write_deep_exr(lists, file);
@@ -76,7 +76,7 @@ TEST(DeepExr, ComesBackToTheBit) {
   EXPECT_FLOAT_EQ(read_deep_exr(file, 1000).lists.fragments[0].depth_mm, 1000 * lists.fragments[0].depth_mm);
 }
 
-TEST(DeepExr, LeavesOutWhatHasNoDepth) {
+TEST(DeepExr, SkipsSamplesWithoutDepth) {
   const auto file = file_named("no_depth.exr");
   write_deep_exr({.columns = 2,
                   .rows = 1,
@@ -105,7 +105,7 @@ TEST(DeepExr, RefusesOtherFiles) {
       {"offsets"});
 }
 
-TEST(DeepExr, RefusesChannelsThatAreMissing) {
+TEST(DeepExr, RefusesMissingChannels) {
   const auto file = file_named("channels.exr");
   write_deep_exr(some_lists(5, 4), file);
   const std::string whole = bytes_of(file);
@@ -127,7 +127,7 @@ TEST(DeepExr, RefusesChannelsThatAreMissing) {
   expect_tokens(renamed("R", "S"), {"R", "G", "B", "Y"});
 }
 
-TEST(DeepExr, IsRefusedWhereItIsCutOff) {
+TEST(DeepExr, RefusesTruncatedFiles) {
   const auto file = file_named("cut.exr");
   write_deep_exr(some_lists(23, 19), file);
   const std::string whole = bytes_of(file);
@@ -155,7 +155,7 @@ TEST(DeepExr, SurvivesDamage) {
   EXPECT_GT(refused, 100);
 }
 
-TEST(Pfm, ComesBack) {
+TEST(Pfm, RoundTrips) {
   const auto file = file_named("back.pfm");
   RgbImage image(5, 3);
   for (std::size_t i = 0; i < image.pixels.size(); ++i) image.pixels[i] = 0.37f * static_cast<float>(i) - 2;
@@ -170,7 +170,7 @@ TEST(Pfm, ComesBack) {
   EXPECT_EQ(read_pfm(file).pixels[0], 1);
 }
 
-TEST(Pfm, IsRefusedWhereItIsDamaged) {
+TEST(Pfm, RefusesDamagedFiles) {
   const auto file = file_named("bad.pfm");
   for (const char* bytes :
        {"", "P6\n1 1\n255\n", "PF\n-1 1\n-1\n", "PF\n2 2\n-1.0\nabcd", "PF\n1000000 1000000\n-1.0\n"}) {

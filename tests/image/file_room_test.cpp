@@ -40,7 +40,7 @@ std::string with_width(std::string exr, std::uint32_t width) {
   return exr;
 }
 
-TEST(FileRoom, IsThatOfTheFileOrAMillionNumbers) {
+TEST(FileRoom, IsTheSizeOfTheFileOrAMillionNumbers) {
   const auto file = file_named("thousand");
   write_bytes(file, std::string(1000, 'x'));
   EXPECT_TRUE(image_detail::has_room_for(1 << 20, 1, file));
@@ -51,7 +51,7 @@ TEST(FileRoom, IsThatOfTheFileOrAMillionNumbers) {
   std::filesystem::remove(file);
 }
 
-TEST(FileRoom, IsAskedByEveryReaderOfPictures) {
+TEST(FileRoom, IsCheckedByEveryImageReader) {
   const auto file = file_named("flat.exr"), deep = file_named("deep.exr"), png = file_named("x.png"),
              pfm = file_named("x.pfm");
   write_exr(RgbImage(3, 2), file);

@@ -79,7 +79,7 @@ std::vector<ExrPart> two_parts() {
           {"second", 2, 40, {{"Z", values(80, 3)}}, {{"empty", ""}}, {{"field_deg", 0.1}, {"distance_mm", HUGE_VAL}}}};
 }
 
-TEST_F(ImageFiles, ExrPartsComeBackBitForBit) {
+TEST_F(ImageFiles, ExrPartsRoundTripToTheBit) {
   const auto same = [](const std::vector<float>& a, const std::vector<float>& b) {
     return std::equal(a.begin(), a.end(), b.begin(), b.end(), [](float x, float y) {
       return std::bit_cast<std::uint32_t>(x) == std::bit_cast<std::uint32_t>(y);
@@ -137,7 +137,7 @@ TEST_F(ImageFiles, RgbIsReadFromTheFirstPart) {
   expect_error([&] { read_exr(file); }, {file, "channel"});
 }
 
-TEST_F(ImageFiles, RefusesExrPartsThatNoFileHolds) {
+TEST_F(ImageFiles, RefusesInvalidExrParts) {
   const auto file = folder_ / "a.exr";
   const auto refused = [&](auto&& change, std::vector<testing::Token> tokens) {
     std::vector<ExrPart> parts = two_parts();
@@ -163,7 +163,7 @@ TEST_F(ImageFiles, RefusesExrPartsThatNoFileHolds) {
   EXPECT_EQ(files(), 0u);
 }
 
-TEST_F(ImageFiles, PngDecodesToTheSamePixels) {
+TEST_F(ImageFiles, PngDecodesToEqualPixels) {
   Rgb8Image image{19, 7, {}};
   for (int i = 0; i < 19 * 7 * 3; ++i) image.pixels.push_back(static_cast<std::uint8_t>(i * 37));
   const auto file = folder_ / "a.png";
@@ -213,7 +213,7 @@ TEST_F(ImageFiles, RefusesImagesWithoutPixelsOrWithTooFew) {
   EXPECT_EQ(files(), 0u);
 }
 
-TEST_F(ImageFiles, ReadingSaysWhichFileIsBad) {
+TEST_F(ImageFiles, ReadingNamesBadFiles) {
   const auto absent = folder_ / "absent.exr";
   expect_error([&] { read_exr(absent); }, {absent, "No such file"});
   expect_error([&] { read_exr_parts(absent); }, {absent, "No such file"});
@@ -272,7 +272,7 @@ TEST(Image, HasNoNegativeSize) {
   EXPECT_TRUE(RgbImage(0, 5).pixels.empty());
 }
 
-TEST(Image, SrgbOfLinearLight) {
+TEST(Image, ConvertsToSrgb) {
   RgbImage image(3, 1);
   // IEC 61966-2-1 by hand: 0.5 is 0.735 of full scale. The last three values test the linear segment.
   image.pixels = {0.0f, 1.0f, 0.5f, -1.0f, 7.0f, 0.0031308f, std::numeric_limits<float>::quiet_NaN(), 0.25f, 0.002f};

@@ -38,7 +38,7 @@ struct TemporaryFile {
   ~TemporaryFile() { std::filesystem::remove(path); }
 };
 
-TEST(LensExr, HasTheStandardAttributesInTheirTypesAndUnits) {
+TEST(LensExr, HasStandardAttributesWithTypesAndUnits) {
   const Prescription p = data_prescription("biogon_35mm_f2.8");
   const Lens lens = with_focus(compile(p), 2000, {.origin = DistanceOrigin::film});
   const LensDistortion distortion(Camera(lens, small_film(36), {.model = ModelKind::exact_double}));
@@ -86,7 +86,7 @@ Vec2<double> shown(const ExrPart& part, const Film& film, int column, int row) {
   return {double{channel(part, "R")[i]} * film.columns, (1 - double{channel(part, "G")[i]}) * film.rows};
 }
 
-TEST(StMapExr, LeadsBackFromTheFile) {
+TEST(StMapExr, RoundTrips) {
   const Film film = small_film(36);
   const TemporaryFile file("lens.stmap.exr");
   const Lens lens = data_lens("zoom_14-30mm_f4:wide");
@@ -128,7 +128,7 @@ TEST(StMapExr, LeadsBackFromTheFile) {
   EXPECT_LT(worst, 0.005);  // pixels
 }
 
-TEST(StMapExr, HasTheLightOfTheSceneTheRightWayUp) {
+TEST(StMapExr, IsUpright) {
   const Film film = small_film(36);
   const LensDistortion distortion(Camera(data_lens("zoom_14-30mm_f4:wide"), film, {.model = ModelKind::exact_double}));
   const auto parts = to_exr_parts(st_maps(distortion), distortion);

@@ -64,7 +64,7 @@ TEST(Render, WeighsWavelengths) {
 }
 
 // The pattern of names of the layout (Fichet et al. 2021, Stokes component 0), with the wavelength in its first group.
-TEST(SpectralImage, IsReadBackBitForBitByTheNamesOfItsLayout) {
+TEST(SpectralImage, RoundTripsToTheBitByLayoutNames) {
   const std::vector<double> set{587.5618, 430, 656.2725};
   Psf psf;
   psf.pixels = 3;
@@ -107,7 +107,7 @@ TEST(SpectralImage, IsReadBackBitForBitByTheNamesOfItsLayout) {
 }
 
 // As in photographs, the triangle stands on an edge behind the focus and on a corner in front of the focus.
-TEST(Render, ShowsTheIrisUprightForALightBeyondTheFocus) {
+TEST(Render, IrisIsUprightForLightsBeyondTheFocus) {
   const std::vector<std::array<double, 3>> white{{1, 1, 1}};
   const Lens lens = with_iris(
       compile(read_prescription(std::filesystem::path(PETZVAL_TEST_DATA) / "lenses" / "double_gauss_100mm_f2.0.json")),
@@ -128,7 +128,7 @@ TEST(Render, ShowsTheIrisUprightForALightBeyondTheFocus) {
   }
 }
 
-TEST(Render, WantsACountForEachPixelAndWavelength) {
+TEST(Render, RequiresACountForEachPixelAndWavelength) {
   Psf psf;
   psf.pixels = 2;
   psf.wavelengths_nm = {450, 650};
@@ -138,7 +138,7 @@ TEST(Render, WantsACountForEachPixelAndWavelength) {
   expect_error([&] { spectral_image(psf, weights); }, {"render", "counts", 7, 8});
 }
 
-TEST(Render, WantsAWeightForEachWavelength) {
+TEST(Render, RequiresAWeightForEachWavelength) {
   Psf psf;
   psf.wavelengths_nm = {450, 650};
   try {

@@ -37,7 +37,7 @@ std::vector<std::uint32_t> bits(const std::vector<float>& values) {
   return result;
 }
 
-TEST(PsfSetExr, KernelsComeBackBitForBitFromPartsInAnyOrder) {
+TEST(PsfSetExr, KernelsRoundTripFromPartsInAnyOrder) {
   const auto file = std::filesystem::path(::testing::TempDir()) / "petzval_psf_set.exr";
   std::vector<ExrPart> parts;
   for (const std::size_t node : {2u, 0u, 3u, 1u}) {
@@ -70,7 +70,7 @@ TEST(PsfSetExr, KernelsComeBackBitForBitFromPartsInAnyOrder) {
   std::filesystem::remove(file);
 }
 
-TEST(PsfSetExr, RefusesPartsThatHaveChangedOrAreSomethingElse) {
+TEST(PsfSetExr, RefusesChangedAndOtherParts) {
   const auto refused = [&](auto&& change, const testing::Token& token) {
     ExrPart part = to_exr_part(kernel(1), axes.point(0));
     change(part);

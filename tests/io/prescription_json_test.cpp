@@ -67,14 +67,14 @@ void expect_refused(const std::string& text, std::initializer_list<std::string_v
   if (!result) ADD_FAILURE_AT(__FILE__, line) << result.message();
 }
 
-TEST(PrescriptionJson, EveryLensOfTheDataIsWrittenBackByteForByte) {
+TEST(PrescriptionJson, EveryLensOfTheDataRoundTripsToTheByte) {
   const auto files = lens_files();
   EXPECT_EQ(files.size(), 70u);
   for (const auto& lens : files)
     EXPECT_EQ(format_prescription(petzval::read_prescription(lens)), text_of(lens)) << lens;
 }
 
-TEST(PrescriptionJson, SaysWhatTheFileSays) {
+TEST(PrescriptionJson, HasTheValuesOfTheFile) {
   const auto lens =
       petzval::read_prescription(fs::path(PETZVAL_TEST_DATA) / "lenses" / "catadioptric_mangin_1000mm_f7.5.json");
   EXPECT_EQ(lens.id, "catadioptric_mangin_1000mm_f7.5");
@@ -180,7 +180,7 @@ Prescription random_prescription(std::mt19937_64& random) {
   return p;
 }
 
-TEST(PrescriptionJson, AnyLensComesBackAsItWas) {
+TEST(PrescriptionJson, AnyLensRoundTrips) {
   std::mt19937_64 random(1);
   for (int i = 0; i < 2000; ++i) {
     const Prescription p = random_prescription(random);
@@ -246,7 +246,7 @@ TEST(PrescriptionJson, FilesThatCannotBeOpenedAreNamed) {
   fs::remove(written);
 }
 
-TEST(PrescriptionJson, SpaceByteOrderMarkAndLineEndsDoNotMatter) {
+TEST(PrescriptionJson, IgnoresSpaceByteOrderMarkAndLineEnds) {
   const fs::path lens = fs::path(PETZVAL_TEST_DATA) / "lenses" / "compact_31mm_f2.1.json";
   const std::string text = text_of(lens);
   const Prescription p = parse_prescription(text, "x.json");
@@ -335,7 +335,7 @@ TEST(PrescriptionJson, UnknownAndDuplicateKeysAreRefused) {
       {"surface 1", "aspheric", "4"}));
 }
 
-TEST(PrescriptionJson, WhatIsNotALensIsRefusedWithTheSurface) {
+TEST(PrescriptionJson, InvalidLensesAreRefusedWithTheSurface) {
   expect_refused(with_surface(R"({"radius": 50, "thickness": 5, "nd": -1})"), {"surface 1", "nd", "-1"});
   expect_refused(with_member(R"("semi_diameter": -3)"), {"surface 1", "semi_diameter", "-3"});
   expect_refused(file(R"("zoom": {"variable_gaps": {"1": 5}}, "surfaces": [)" + row + "]"),
@@ -415,7 +415,7 @@ TEST(PrescriptionJson, MistakesOfPeople_AreNamedWithLineAndColumn) {
   expect_refused("\xEF\xBB\xBF{\"name\": \"\u00b5\", \"f_number\": \"a\"}", {"f_number"}, "1:27");
 }
 
-TEST(PrescriptionJson, ValuesThatNoLensHas_AreFoundInConfigurationsAndDesign) {
+TEST(PrescriptionJson, InvalidValues_AreFoundInConfigurationsAndDesign) {
   const auto refused = [](const std::string& members) {
     return refusal("{\"format\": \"petzval-lens 1\",\n" + members + ",\n\"surfaces\": [" + row + "]}");
   };
@@ -476,7 +476,7 @@ struct DecimalComma : std::numpunct<char> {
   std::string do_grouping() const override { return "\3"; }
 };
 
-TEST(PrescriptionJson, TheLocaleDoesNotMatter) {
+TEST(PrescriptionJson, IndependentOfTheLocale) {
   // Sets the locale of streams, and of the C library if it is installed.
   const std::locale before = std::locale::global(std::locale(std::locale::classic(), new DecimalComma));
   for (const char* name : {"de_DE.UTF-8", "fr_FR.UTF-8"}) {

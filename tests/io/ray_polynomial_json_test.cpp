@@ -68,7 +68,7 @@ void expect_refused(const std::string& text, std::initializer_list<std::string_v
   if (!result) ADD_FAILURE_AT(__FILE__, line) << result.message();
 }
 
-TEST(RayPolynomialJson, ReadsBackTheSameNumbersAndWritesTheSameBytes) {
+TEST(RayPolynomialJson, RoundTripsToTheByte) {
   const auto file = std::filesystem::path(::testing::TempDir()) / "ray_polynomial_json_test.json";
   for (const int n : {3, 5, 7, 9, 11, -3, -7, -11}) {  // negative: with mirror symmetry
     const int degree = std::abs(n);
@@ -109,7 +109,7 @@ TEST(RayPolynomialJson, ReadsBackTheSameNumbersAndWritesTheSameBytes) {
   std::filesystem::remove(file);
 }
 
-TEST(RayPolynomialJson, SaysWhatIsWrongAndWhere) {
+TEST(RayPolynomialJson, RefusesInvalidFilesWithPosition) {
   const std::string format = "\"format\": \"petzval-ray-polynomial 1\"";
   expect_refused(with(format, "\"format\": \"petzval-lens 1\""), {"format", "\"petzval-lens 1\""});
   expect_refused(with(format + ",", ""), {"\"format\"", "missing"});
@@ -144,7 +144,7 @@ TEST(RayPolynomialJson, SaysWhatIsWrongAndWhere) {
   expect_error([] { read_ray_polynomial("/nowhere/x.json"); }, {"/nowhere/x.json", "No such file"});
 }
 
-TEST(RayPolynomialJson, EndsWhereFilesAreTooLarge) {
+TEST(RayPolynomialJson, RefusesLargeFiles) {
   std::string numbers;
   for (int i = 0; i < 400; ++i) numbers += "1.0, ";
   expect_refused(with("\"offset_by_film\": [", "\"offset_by_film\": [" + numbers), {"fit 1", "offset_by_film", "392"});

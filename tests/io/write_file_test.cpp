@@ -50,7 +50,7 @@ class WriteFile : public ::testing::Test {
   fs::path file_ = folder_ / "a.txt";
 };
 
-TEST_F(WriteFile, WritesEveryByteAndNothingBeside) {
+TEST_F(WriteFile, WritesEveryByteAndNoOtherFile) {
   const std::string bytes("a\0\r\n\xff", 5);
   for (const std::string& wanted : {bytes, std::string(), std::string(1 << 20, 'x')}) {
     write_file(wanted, file_);
@@ -59,7 +59,7 @@ TEST_F(WriteFile, WritesEveryByteAndNothingBeside) {
   EXPECT_EQ(files(), 1u);
 }
 
-TEST_F(WriteFile, WhoReadsTheOldFileReadsItToItsEnd) {
+TEST_F(WriteFile, ReadersOfTheOldFileReachItsEnd) {
   write_file("old", file_);
   std::ifstream reader(file_, std::ios::binary);
   write_file("new!", file_);
@@ -99,7 +99,7 @@ std::string message_in_process(const std::function<void()>& prepare, const fs::p
 
 std::vector<Token> refusal(const fs::path& file, int reason) { return {file, std::generic_category().message(reason)}; }
 
-TEST_F(WriteFile, AFailureSaysTheSystemsReasonAndLeavesTheOldFile) {
+TEST_F(WriteFile, FailureStatesTheReasonAndKeepsTheOldFile) {
   write_file("old", file_);
   // The process may write files of at most a thousand bytes.
   const auto limited = [] {
@@ -138,7 +138,7 @@ TEST_F(WriteFile, AFailureSaysTheSystemsReasonAndLeavesTheOldFile) {
 #endif
 }
 
-TEST_F(WriteFile, ANameWithAZeroIsNoOtherName) {
+TEST_F(WriteFile, RefusesNamesWithZeros) {
   write_file("old", file_);
   fs::path longer = file_;
   longer += std::string("\0.bak", 5);

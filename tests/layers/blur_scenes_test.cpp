@@ -24,7 +24,7 @@ std::size_t triangles(const renderer::SceneDescription& scene) {
   return count;
 }
 
-TEST(BlurScenes, HaveTheNamesThatTheProgramLists) {
+TEST(BlurScenes, HaveTheNamesInTheHelp) {
   std::string names;
   for (const char* name : {"town", "statues", "knot", "leaves", "street"}) {
     const auto scene = blur_scene(name);
@@ -48,7 +48,7 @@ void PrintTo(const Wanted& scene, std::ostream* out) { *out << scene.name; }
 
 class BlurScene : public ::testing::TestWithParam<Wanted> {};
 
-TEST_P(BlurScene, HasThingsBeforeAndBehindTheFocus) {
+TEST_P(BlurScene, HasSurfacesInFrontOfAndBehindTheFocus) {
   const renderer::SceneDescription scene = blur_scene(GetParam().name).value();
   EXPECT_GE(triangles(scene), GetParam().least_triangles);
   EXPECT_LE(triangles(scene), GetParam().most_triangles);
@@ -83,7 +83,7 @@ INSTANTIATE_TEST_SUITE_P(BlurScenes, BlurScene,
                                            Wanted{"leaves", 240000, 240000, 1000, 2600, 12}),
                          [](const auto& scene) { return std::string(scene.param.name); });
 
-TEST(BlurScenes, AreTheSameEachTime) {
+TEST(BlurScenes, AreDeterministic) {
   const renderer::SceneDescription a = town_scene(), b = town_scene();
   ASSERT_EQ(a.objects.size(), b.objects.size());
   for (std::size_t i = 0; i < a.objects.size(); ++i) {

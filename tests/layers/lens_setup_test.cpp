@@ -117,7 +117,7 @@ TEST(BlurLens, FocusesASingletAndAPrescription) {
   }
 }
 
-TEST(BlurLens, SaysWhatItWants) {
+TEST(BlurLens, RefusesInvalidOptions) {
   const auto said = [](const auto& change) {
     LensFlags flags = thin_lens();
     change(flags);

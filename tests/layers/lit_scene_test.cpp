@@ -172,7 +172,7 @@ TEST(LitScene, ShowsTheSkyOfEachDirection) {
   EXPECT_EQ(sum, 10);  // all four
 }
 
-TEST(LitScene, HasTheLayersOfAllSurfacesThinned) {
+TEST(LitScene, LayersEqualThinnedSurfaces) {
   const LayerCamera picture = crop_of_paper(40, 30);
   const LensRays rays = LensRays::thin(picture, {.radius_mm = 9, .inverse_focus = 1 / 5000.0},
                                        petzval::vogel_points(100), {.nearest_mm = 1000});
@@ -237,7 +237,7 @@ TEST(LitScene, NeverNeedsMoreThanTenLayersThroughTheLensOfThePaper) {
   EXPECT_GE(most, 8);
 }
 
-TEST(References, ThroughAPinholeAreTheFirstLayer) {
+TEST(References, PinholeEqualsTheFirstLayer) {
   const LayerCamera camera = crop_of_paper(51, 38);  // not multiples of the packet size
   const LitScene lit(Soup(7, 300, 4, 1000, 10000, 0.04).scene());
   LayerSet layers;
@@ -290,7 +290,7 @@ RgbImage plain_reference(const Soup& soup, const LensRays& rays) {
 
 class ReferencesOf : public ::testing::TestWithParam<int> {};
 
-TEST_P(ReferencesOf, AnyRaysAreTheirMeanThroughTheTriangles) {
+TEST_P(ReferencesOf, AnyRaysEqualTheMeanOverTriangles) {
   const LayerCamera camera = crop_of_paper(25, 18);
   const Soup soup(3, 150, 4, 1000, 10000, 0.03);
   const LensRays rays = GetParam() > 0 ? own_rays(camera, GetParam())
@@ -305,7 +305,7 @@ std::string name_of(int channels) { return channels == 0 ? "AThinLens" : channel
 INSTANTIATE_TEST_SUITE_P(References, ReferencesOf, ::testing::Values(0, 1, 3),
                          [](const auto& channels) { return name_of(channels.param); });
 
-TEST(References, DoNotDependOnThreads) {
+TEST(References, IndependentOfThreads) {
   const LayerCamera camera = crop_of_paper(40, 30);
   const LitScene lit(Soup(5, 200, 6, 1000, 10000, 0.03).scene());
   const LensRays rays = own_rays(camera, 3);
@@ -350,7 +350,7 @@ TEST(LitScene, IsBrighterTowardsTheSun) {
   EXPECT_NE(left, right);
 }
 
-TEST(LitScene, RefusesScenesThatCannotBeSeen) {
+TEST(LitScene, RefusesInvalidScenes) {
   SceneDescription scene{.name = "flawed", .pose = {}};
   scene.objects.push_back({"ghost", renderer::Mesh{}});
   expect_error([&] { LitScene lit(scene); }, {"ghost"});

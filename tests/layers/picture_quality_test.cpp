@@ -48,7 +48,7 @@ double mean(const std::vector<float>& values) {
   return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
 }
 
-TEST(PictureQuality, OfAPictureAgainstItselfIsPerfect) {
+TEST(PictureQuality, EqualImagesArePerfect) {
   const RgbImage picture = pattern(0);
   EXPECT_EQ(likeness(picture, picture).psnr_db, std::numeric_limits<double>::infinity());
   EXPECT_NEAR(likeness(picture, picture).ssim, 1, 1e-12);
@@ -56,7 +56,7 @@ TEST(PictureQuality, OfAPictureAgainstItselfIsPerfect) {
   for (const float f : flip(picture, picture)) EXPECT_EQ(f, 0);
 }
 
-TEST(PictureQuality, OfEvenPicturesIsThatOfTheFormulas) {
+TEST(PictureQuality, UniformImagesEqualTheFormulas) {
   const double a = 0.5, b = 0.625, c1 = 1e-4;
   const Likeness grey = likeness(even({0.5f, 0.5f, 0.5f}), even({0.625f, 0.625f, 0.625f}));
   EXPECT_NEAR(grey.psnr_db, -20 * std::log10(b - a), 1e-9);
@@ -67,12 +67,12 @@ TEST(PictureQuality, OfEvenPicturesIsThatOfTheFormulas) {
   EXPECT_NEAR(energy_drift(even({0.5f, 1, 2}), even({0.5f, 0.5f, 1})), 0.75, 1e-12);
 }
 
-TEST(PictureQuality, IsThatOfLightUpToWhite) {
+TEST(PictureQuality, ClipsToWhite) {
   EXPECT_EQ(likeness(even({3, 7, 1}), even({1, 1, 9})).psnr_db, std::numeric_limits<double>::infinity());
   EXPECT_NEAR(likeness(even({3, 3, 3}), even({0.5f, 0.5f, 0.5f})).psnr_db, -20 * std::log10(0.5), 1e-9);
 }
 
-TEST(PictureQuality, SeesLessContrastAsStructureThatIsLost) {
+TEST(PictureQuality, LowerContrastIsLostStructure) {
   // Pixels alternate about one brightness: the mean under the window is constant, the deviation changes.
   const auto chess = [](float swing) {
     return painted(40, 40, [&](int x, int y) {
@@ -101,7 +101,7 @@ TEST(PictureQuality, CountsPixelsOfTheMask) {
 }
 
 // The formulas of the paper by dense two-dimensional filters in double.
-TEST(Flip, OfEvenPicturesIsThatOfTheirColours) {
+TEST(Flip, UniformImagesEqualTheirColours) {
   const auto of = [](const Colour& a, const Colour& b) { return flip(even(a), even(b))[50]; };
   EXPECT_NEAR(of({0, 0, 0}, {1, 1, 1}), 0.96738, 2e-5);
   EXPECT_NEAR(of({0, 1, 0}, {0, 0, 1}), 1, 2e-5);  // the two most different colours
@@ -109,7 +109,7 @@ TEST(Flip, OfEvenPicturesIsThatOfTheirColours) {
   EXPECT_NEAR(of({1, 0, 0}, {0.75f, 0.125f, 0.0625f}), 0.53854, 2e-5);
 }
 
-TEST(Flip, OfPatternsIsThatOfThePaper) {
+TEST(Flip, PatternsEqualThePaper) {
   const std::vector<float> map = flip(pattern(0), pattern(1));
   EXPECT_NEAR(mean(map), 0.68957, 5e-5);
   EXPECT_NEAR(map[0], 0.67848, 5e-5);
@@ -124,9 +124,7 @@ TEST(Flip, OfPatternsIsThatOfThePaper) {
   EXPECT_NEAR(blue[10 * 30 + 15], 0.19573, 5e-5);
 }
 
-TEST(Flip, DoesNotTellWhichPictureIsTheReference) {
-  EXPECT_EQ(flip(pattern(0), pattern(1)), flip(pattern(1), pattern(0)));
-}
+TEST(Flip, IsSymmetric) { EXPECT_EQ(flip(pattern(0), pattern(1)), flip(pattern(1), pattern(0))); }
 
 TEST(PictureQuality, RefusesPicturesOfDifferentSizes) {
   const RgbImage a = even({0, 0, 0}, 4, 3), b = even({0, 0, 0}, 3, 4);

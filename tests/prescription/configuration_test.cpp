@@ -69,7 +69,7 @@ TEST(Configured, AppliesOneByNameOrNumber) {
   expect_error([] { configured(zoom(), -0.5); }, {"z", "configuration", -0.5});
 }
 
-TEST(Configured, TwiceIsOnce) {
+TEST(Configured, IsIdempotent) {
   for (const char* name : {"wide", "tele", "wide, near"}) {
     const Prescription once = configured(zoom(), name);
     EXPECT_EQ(configured(once, 0), once) << name;
@@ -132,7 +132,7 @@ std::string refusal_of_rows(const Prescription& p) {
   return "no error";
 }
 
-TEST(Validate, RefusesTheConfigurationsWhoseRowsAreNoLens) {
+TEST(Validate, RefusesInvalidConfigurations) {
   using Fault = std::function<void(Prescription&, petzval::SurfaceChange&)>;
   const std::vector<Fault> faults = {
       [](auto&, auto&) {},
@@ -166,7 +166,7 @@ TEST(Validate, RefusesTheConfigurationsWhoseRowsAreNoLens) {
 }
 
 // A copy of all positions for each of them would be 5e8 changes.
-TEST(Configured, TakesTheMostPositionsThereMayBe) {
+TEST(Configured, AcceptsTheMaximumOfPositions) {
   constexpr int positions = 1000, surfaces = 500;
   Prescription p;
   for (int i = 0; i < surfaces; ++i) p.surfaces.push_back({.radius = 1e4 + i, .thickness = 1, .semi_diameter = 10});

@@ -53,7 +53,7 @@ TEST(Validate, AcceptsEveryLensOfTheData) {
   for (const Prescription& p : petzval::testing::data_prescriptions()) EXPECT_NO_THROW(petzval::validate(p, p.id));
 }
 
-TEST(Validate, NumbersThatNoSurfaceHasAreRefusedByNameAndSurface) {
+TEST(Validate, RefusesInvalidNumbersByNameAndSurface) {
   for (const double value : {nan, infinity, -infinity}) {
     expect_refused([&](auto& p) { p.surfaces[1].radius = value; }, {"surface 1", "radius", value});
     expect_refused([&](auto& p) { p.surfaces[0].thickness = value; }, {"surface 0", "thickness", value});
@@ -156,7 +156,7 @@ TEST(Validate, FieldsThatContradictEachOtherAreRefused) {
   expect_refused([](auto& p) { p.design.wavelengths = {{.nm = 0.5876}}; }, {"design", "wavelength 0", 0.5876});
 }
 
-TEST(Validate, DesignsAndPositionsThatNoLensHasAreRefused) {
+TEST(Validate, RefusesInvalidDesignsAndPositions) {
   using petzval::ApertureSetting;
   for (const double value : {nan, infinity, -1.0}) {
     expect_refused(
@@ -210,7 +210,7 @@ TEST(Validate, StrangeButLegalLensesPass) {
   for (std::size_t i = 0; i < changes.size(); ++i) EXPECT_EQ(refusal(changes[i]), "no error") << "change " << i;
 }
 
-TEST(Scale, PowersOfTwoComeBackBitForBit) {
+TEST(Scale, PowersOfTwoRoundTripToTheBit) {
   for (const Prescription& p : petzval::testing::data_prescriptions()) {
     for (const double factor : {2.0, 0x1p-10, 0x1p20}) {
       const Prescription scaled = petzval::scale(p, factor);
@@ -233,7 +233,7 @@ TEST(Scale, AspheresStaySimilar) {
   }
 }
 
-TEST(Scale, LengthsFollowAndRatiosStay) {
+TEST(Scale, ScalesLengthsAndKeepsRatios) {
   const Prescription p = petzval::testing::data_prescription("zoom_14-30mm_f4:middle");
   const Prescription whole = petzval::testing::data_prescription("zoom_14-30mm_f4");
   const Prescription scaled = petzval::scale(p, 2);
@@ -246,7 +246,7 @@ TEST(Scale, LengthsFollowAndRatiosStay) {
   EXPECT_EQ(scaled.surfaces[0].semi_diameter, 2 * 29.285);
 }
 
-TEST(Scale, TheDesignsLengthsFollow) {
+TEST(Scale, ScalesLengthsOfTheDesign) {
   using enum petzval::ApertureSetting;
   Prescription p = singlet();
   p.design.object_distance_mm = 300;
@@ -263,7 +263,7 @@ TEST(Scale, TheDesignsLengthsFollow) {
   EXPECT_EQ(petzval::scale(p, 3).design.fields[0].y, 6);
 }
 
-TEST(Scale, RefusesFactorsThatMakeNoLens) {
+TEST(Scale, RefusesInvalidFactors) {
   for (const double factor : {0.0, -1.0, nan, infinity}) {
     expect_error([&] { petzval::scale(singlet(), factor); }, {"singlet", "scale", factor});
   }

@@ -48,7 +48,7 @@ bool expect_same_way(const petzval::Lens& lens, const petzval::Lens& reversed, c
 
 // A ray that travels to the scene through a lens travels to the film through the reversed lens: refracting lenses, even
 // and odd numbers of mirrors, aspheres, cylinders, an eye with water behind it.
-TEST(Reverse, LightTakesTheSameWay) {
+TEST(Reverse, LightTakesTheReversedPath) {
   std::mt19937 random(20);
   std::uniform_real_distribution<double> uniform(-1, 1);
   for (const Prescription& p : petzval::testing::data_prescriptions()) {
@@ -108,7 +108,7 @@ TEST(Reverse, SwapsPrincipalPlanesAndPupils) {
 
 // A chief ray is the same line from both sides: aimed from a point behind the lens through the reversed lens, it comes
 // out as the line that entered.
-TEST(Reverse, ChiefRaysAreTheSameLines) {
+TEST(Reverse, ChiefRaysKeepTheirLines) {
   int compared = 0;
   for (const Prescription& p : petzval::testing::data_prescriptions()) {
     const petzval::Lens lens = petzval::compile(p), reversed = petzval::compile(petzval::reverse(p));
@@ -141,7 +141,7 @@ TEST(Reverse, ChiefRaysAreTheSameLines) {
   EXPECT_GT(compared, 150);
 }
 
-TEST(Reverse, TwiceGivesTheLensBackButForWhatOneSideHas) {
+TEST(Reverse, TwiceRestoresTheLensExceptOneSidedData) {
   for (const Prescription& p : petzval::testing::data_prescriptions()) {
     Prescription expected = p;
     expected.surfaces.back().thickness = 0;

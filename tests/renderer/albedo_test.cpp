@@ -10,7 +10,7 @@ namespace {
 using renderer::Albedo;
 using renderer::Rgb;
 
-TEST(Albedo, OfACheckerChangesFromEachCubeToItsNeighbours) {
+TEST(Albedo, CheckerAlternatesBetweenCubes) {
   Albedo albedo{.colour = {1, 0, 0}, .checker = Albedo::Checker{{0, 1, 0}, 10}};
   for (const glm::vec3 axis : {glm::vec3{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}) {
     for (int cube = -5; cube <= 5; ++cube) {
@@ -23,7 +23,7 @@ TEST(Albedo, OfACheckerChangesFromEachCubeToItsNeighbours) {
   }
 }
 
-TEST(Albedo, OfAnImageIsItsPixelsAtTheirCentresUpsideUpAndRepeated) {
+TEST(Albedo, ImageIsUprightAndRepeated) {
   auto image = std::make_shared<petzval::RgbImage>(4, 2);
   for (int y = 0; y < 2; ++y)
     for (int x = 0; x < 4; ++x) image->pixel(x, y)[0] = 0.1f * static_cast<float>(x + 4 * y);
@@ -39,7 +39,7 @@ TEST(Albedo, OfAnImageIsItsPixelsAtTheirCentresUpsideUpAndRepeated) {
   EXPECT_NEAR(renderer::at(albedo, {}, {0, 0.75f}).r, 0.15f, 1e-5f);
 }
 
-TEST(Albedo, OfAnImageStaysInside0To1) {
+TEST(Albedo, ImageIsClampedTo0To1) {
   auto image = std::make_shared<petzval::RgbImage>(1, 1);
   image->pixel(0, 0)[0] = 3, image->pixel(0, 0)[1] = -1, image->pixel(0, 0)[2] = 0.5f;
   EXPECT_EQ(renderer::at({.image = image}, {}, {0.3f, 0.9f}), Rgb(1, 0, 0.5f));

@@ -39,7 +39,7 @@ class Scattering : public testing::TestWithParam<Case> {
   PathColours colours_;
 };
 
-TEST_P(Scattering, SamplesHaveTheirDensityAndTheirMean) {
+TEST_P(Scattering, SamplesHaveTheStatedDensityAndMean) {
   for (const float cosine : {0.95f, 0.3f, -0.6f}) {
     const Bsdf bsdf = from(direction(cosine, 0.4f));
     Random random(1, 2, static_cast<std::uint64_t>(100 * (cosine + 1)));
@@ -69,7 +69,7 @@ TEST_P(Scattering, SamplesHaveTheirDensityAndTheirMean) {
   }
 }
 
-TEST_P(Scattering, IsTheSameForPowerTheOtherWay) {
+TEST_P(Scattering, IsReciprocalForPower) {
   Random random(3, 4, 5);
   int both = 0;
   for (int i = 0; i < 2000; ++i) {
@@ -93,7 +93,7 @@ INSTANTIATE_TEST_SUITE_P(Materials, Scattering,
                                          Case{"rough_glass", Glass{1.5f, 0.35f}}),
                          [](const auto& tested) { return std::string(tested.param.name); });
 
-TEST(SmoothGlass, SplitsLightAsFresnelSays) {
+TEST(SmoothGlass, SplitsLightByFresnel) {
   Object object;
   object.material = Glass{1.5f, 0};
   SurfacePoint point;
@@ -117,7 +117,7 @@ TEST(SmoothGlass, SplitsLightAsFresnelSays) {
   EXPECT_NEAR(total->wi.x, -inside.sample(0, 0, 0, Carries::power)->wi.x * -1, 1e-6);
 }
 
-TEST(InterpolatedNormals, KeepThePowerOfLightPaths) {
+TEST(InterpolatedNormals, ConserveThePowerOfLightPaths) {
   // Scattered power equals the reverse direction, weighted by both normals (Veach 1997, section 5.3).
   Object object;
   object.material = Diffuse{{.colour = {0.5f, 0.5f, 0.5f}}};

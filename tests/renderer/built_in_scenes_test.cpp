@@ -30,7 +30,7 @@ Seen seen(const SceneDescription& scene, const glm::vec3& place) {
 /// Position in the image of a lens of 100 mm on 36 x 24 mm at some focus.
 bool in_picture(const Seen& at) { return at.depth > 0 && std::abs(at.right) < 0.18 && std::abs(at.up) < 0.12; }
 
-TEST(BuiltInScenes, HaveTheNamesThatTheProgramLists) {
+TEST(BuiltInScenes, HaveTheNamesInTheHelp) {
   std::string names;
   for (const char* name : {"balls", "chess", "statues", "street"}) {
     const auto scene = built_in_scene(name);
@@ -42,7 +42,7 @@ TEST(BuiltInScenes, HaveTheNamesThatTheProgramLists) {
   EXPECT_FALSE(built_in_scene("ball"));
 }
 
-TEST(BallsScene, IsARowAtOneDistanceToTheEdgeOfThePicture) {
+TEST(BallsScene, IsARowAtOneDistanceToTheEdgeOfTheImage) {
   const SceneDescription scene = balls_scene();
   int balls = 0;
   double last = 0;
@@ -95,7 +95,7 @@ TEST(ChessScene, HasItsPiecesOnTheBoardFromTheForegroundToTheBackground) {
   EXPECT_NEAR(farthest, 1110, 5);
 }
 
-TEST(StatuesScene, HasAnAngelNearAndOneFarAndFiguresBetween) {
+TEST(StatuesScene, HasANearAndAFarAngelAndFiguresBetween) {
   const SceneDescription scene = statues_scene();
   struct Statue {
     double nearest = 1e9, farthest = 0, left = 1e9, right = -1e9, low = 1e9, high = -1e9;
@@ -135,7 +135,7 @@ TEST(StatuesScene, HasAnAngelNearAndOneFarAndFiguresBetween) {
   }
 }
 
-TEST(StreetScene, HasItsLightsInThePictureAndItsWindowsOnTheStreet) {
+TEST(StreetScene, HasItsLightsInTheImageAndItsWindowsOnTheStreet) {
   const SceneDescription scene = street_scene();
   int lights = 0, windows = 0;
   double nearest = 1e9, farthest = 0;

@@ -41,7 +41,7 @@ TEST_F(CheckpointFile, KeepsAllBits) {
   EXPECT_EQ(examples::read_text(file_), bytes);
 }
 
-TEST_F(CheckpointFile, KeepsLargeCountsAndNothing) {
+TEST_F(CheckpointFile, KeepsLargeCountsAndEmptySums) {
   Checkpoint::write(PictureSums(3, 1), job_, file_);
   EXPECT_EQ(Checkpoint::read(file_, job_), PictureSums(3, 1));
   PictureSums many(1, 1);
@@ -51,7 +51,7 @@ TEST_F(CheckpointFile, KeepsLargeCountsAndNothing) {
   EXPECT_EQ(many.rejected(), 3u);
 }
 
-TEST_F(CheckpointFile, GoesOnToTheSameBits) {
+TEST_F(CheckpointFile, ResumesToEqualBits) {
   Checkpoint::write(made_up_part(width, height, 1, 1, 7), job_, file_);
   PictureSums resumed = Checkpoint::read(file_, job_);
   for (std::uint32_t pass = 7; pass < 18; ++pass) {
@@ -85,7 +85,7 @@ TEST_F(CheckpointFile, RefusesAnotherJob) {
   expect_error([&] { Checkpoint::read(file_, larger); }, {file_, "width", 40, 41});
 }
 
-TEST_F(CheckpointFile, RefusesWhatIsNoneOrWasCut) {
+TEST_F(CheckpointFile, RefusesOtherAndTruncatedFiles) {
   const auto refused = [&](const std::string& bytes) {
     examples::write_text(file_, bytes);
     expect_error([&] { Checkpoint::read(file_, job_); }, {file_});
@@ -104,7 +104,7 @@ TEST_F(CheckpointFile, RefusesWhatIsNoneOrWasCut) {
 }
 
 /// A changed byte is refused or has no effect, as some bytes of the format are not read.
-TEST_F(CheckpointFile, NoFlippedByteGoesUnseen) {
+TEST_F(CheckpointFile, DetectsChangedBytes) {
   Checkpoint::write(sums_, job_, file_);
   const std::string whole = examples::read_text(file_);
   std::size_t refused = 0, flips = 0;

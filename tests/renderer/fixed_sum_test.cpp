@@ -32,7 +32,7 @@ Int128 fixed(float x) {
   return x < 0 ? -value : value;
 }
 
-TEST(FixedSum, IsTheSumOfWholeNumbers) {
+TEST(FixedSum, EqualsTheSumOfIntegers) {
   FixedSum sum;
   Int128 whole = 0;
   for (const float x : numbers(100'000)) {
@@ -44,7 +44,7 @@ TEST(FixedSum, IsTheSumOfWholeNumbers) {
   }
 }
 
-TEST(FixedSum, HasTheSameBitsInAnyOrderAndPartition) {
+TEST(FixedSum, BitsAreIndependentOfOrderAndPartition) {
   std::vector<float> values = numbers(10'000);
   const auto add = [](auto from, auto to) {
     FixedSum sum;
@@ -62,7 +62,7 @@ TEST(FixedSum, HasTheSameBitsInAnyOrderAndPartition) {
   }
 }
 
-TEST(FixedSum, ValuesAreTheNumbersThemselves) {
+TEST(FixedSum, SingleValuesAreExact) {
   for (const float x : numbers(10'000)) {
     const auto wanted = static_cast<double>(static_cast<long double>(fixed(x)) * 0x1p-64L);
     EXPECT_EQ(FixedSum(static_cast<double>(x)).value(), wanted) << x;

@@ -28,7 +28,7 @@ petzval::RgbImage row_of_lights(double stretch, double comet, double background)
   return image;
 }
 
-TEST(Highlights, OfDiscsAreRound) {
+TEST(Highlights, DiscsAreRound) {
   const auto found = ball_highlights(row_of_lights(1, 0, 0.1));
   ASSERT_EQ(found.size(), 13u);
   for (std::size_t i = 0; i < found.size(); ++i) {
@@ -40,7 +40,7 @@ TEST(Highlights, OfDiscsAreRound) {
   }
 }
 
-TEST(Highlights, HaveTheAxesAndTheTailsTheyWereGiven) {
+TEST(Highlights, HaveTheGivenAxesAndTails) {
   const auto found = ball_highlights(row_of_lights(1.4, 1, 0.3));
   ASSERT_EQ(found.size(), 13u);
   for (const std::size_t edge : {std::size_t{0}, std::size_t{12}}) {
@@ -54,7 +54,7 @@ TEST(Highlights, HaveTheAxesAndTheTailsTheyWereGiven) {
   EXPECT_NEAR(found[6]->axis_ratio, 1, 0.03);
 }
 
-TEST(Highlights, ReflectionsOfOtherBallsDoNotCount) {
+TEST(Highlights, IgnoreReflectionsOfOtherBalls) {
   petzval::RgbImage image = row_of_lights(1, 0, 0.1);
   for (int y = 28; y < 32; ++y) {
     for (int x = 341; x < 345; ++x) image.pixel(x, y)[0] = image.pixel(x, y)[1] = image.pixel(x, y)[2] = 3;
@@ -69,7 +69,7 @@ TEST(Highlights, ReflectionsOfOtherBallsDoNotCount) {
   EXPECT_TRUE(found[7]->trusted());
 }
 
-TEST(Highlights, OfAFewPixelsAreNotTrusted) {
+TEST(Highlights, IgnoreSmallSpots) {
   petzval::RgbImage image(24, 24);
   for (int y = 11; y < 13; ++y) {
     for (int x = 10; x < 14; ++x) image.pixel(x, y)[0] = image.pixel(x, y)[1] = image.pixel(x, y)[2] = 3;
@@ -79,7 +79,7 @@ TEST(Highlights, OfAFewPixelsAreNotTrusted) {
   EXPECT_FALSE(found->trusted());
 }
 
-TEST(Highlights, AreNotFoundInTheDark) {
+TEST(Highlights, DarkImagesHaveNoHighlights) {
   EXPECT_FALSE(highlight_in(petzval::RgbImage(40, 30), 0, 39));
   const auto none = ball_highlights(petzval::RgbImage(200, 30));
   for (const auto& h : none) EXPECT_FALSE(h);

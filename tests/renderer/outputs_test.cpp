@@ -12,7 +12,7 @@ namespace {
 using namespace renderer;
 using examples::Json;
 
-TEST(Outputs, PicturesOfAllFormatsAreTheSame) {
+TEST(Outputs, ImagesOfAllFormatsAreEqual) {
   const std::filesystem::path folder = std::filesystem::path(testing::TempDir()) / "petzval_outputs";
   std::filesystem::remove_all(folder);
   std::filesystem::create_directories(folder);
@@ -32,7 +32,7 @@ TEST(Outputs, PicturesOfAllFormatsAreTheSame) {
   EXPECT_EQ(examples::read_text(folder / "picture.png"), examples::read_text(folder / "wanted.png"));
 }
 
-TEST(Outputs, StatisticsAreThoseOfTheSums) {
+TEST(Outputs, StatisticsEqualTheSums) {
   const PictureSums sums = made_up_part(40, 20, 1, 1, 5);
   const Json json = statistics(sums);
   EXPECT_EQ(json["samples"], 15);
@@ -51,7 +51,7 @@ TEST(Outputs, StatisticsAreThoseOfTheSums) {
   EXPECT_EQ(tiles["standard_error"][0][2], sums.luminance(2).standard_error);
 }
 
-TEST(Outputs, WhatIsNotKnownIsNull) {
+TEST(Outputs, UnknownValuesAreNull) {
   PictureSums sums(32, 16);
   sums.add(1, 0, 6, {});
   const Json json = statistics(sums);

@@ -24,7 +24,7 @@ glm::dvec3 seen(const PathColourSource& source, const Rgb& rgb, int bounces = 1)
   return sum;
 }
 
-TEST(PathColours, GiveBackTheColoursOfLightsAndSurfaces) {
+TEST(PathColours, EqualTheColoursOfLightsAndSurfaces) {
   for (const ColourMode mode : {ColourMode::d, ColourMode::rgb, ColourMode::hero}) {
     const PathColourSource source(mode);
     for (const Rgb& rgb :
@@ -38,7 +38,7 @@ TEST(PathColours, GiveBackTheColoursOfLightsAndSurfaces) {
   }
 }
 
-TEST(PathColours, ReflectancesAreThoseOfRealSurfaces) {
+TEST(PathColours, ReflectancesAreBetween0And1) {
   const PathColourSource source(ColourMode::hero);
   for (int i = 0; i < 1000; ++i) {
     const PathColours c = source.draw(static_cast<float>(i) / 1000);

@@ -34,7 +34,7 @@ TEST(PictureSums, TilesCoverEachPixelOnce) {
   EXPECT_EQ(std::count(seen.begin(), seen.end(), 1), width * height);
 }
 
-TEST(PictureSums, HaveTheSameBitsInAnyOrder) {
+TEST(PictureSums, BitsAreIndependentOfTheOrder) {
   const PictureSums forwards = made_up_part(width, height, 1, 1, 20);
   PictureSums backwards(width, height);
   std::mt19937 random(3);
@@ -59,7 +59,7 @@ TEST(PictureSums, PartsMakeTheWhole) {
   }
 }
 
-TEST(PictureSums, RefuseOtherSizesAndTilesThatStandTwice) {
+TEST(PictureSums, RefuseOtherSizesAndRepeatedTiles) {
   PictureSums sums = made_up_part(width, height, 1, 3, 1);
   const PictureSums before = sums;
   expect_error([&] { sums.add(PictureSums(width, height + 1)); }, {40, 36, 35});
@@ -68,7 +68,7 @@ TEST(PictureSums, RefuseOtherSizesAndTilesThatStandTwice) {
   EXPECT_EQ(sums, before);
 }
 
-TEST(PictureSums, LeaveOutWhatIsNoLight) {
+TEST(PictureSums, IgnoreInvalidRadiance) {
   PictureSums sums(width, height);
   constexpr float infinity = std::numeric_limits<float>::infinity();
   sums.add(0, 0, 1,
@@ -83,7 +83,7 @@ TEST(PictureSums, LeaveOutWhatIsNoLight) {
   EXPECT_EQ(both.rejected(), 4u);
 }
 
-TEST(PictureSums, APixelIsItsSumOverItsOwnSamples) {
+TEST(PictureSums, PixelIsItsSumOverItsSamples) {
   PictureSums sums(width, height);
   sums.add(0, 0, 4, std::vector<Contribution>{{1, {8, 0, 0}}, {static_cast<std::uint32_t>(width - 1), {3, 0, 0}}});
   EXPECT_EQ(sums.picture().pixel(1, 0)[0], 2);
@@ -145,7 +145,7 @@ TEST(PictureSums, MeansArePlainMeans) {
 }
 
 /// For contributions of known variance, standard errors and their coverage agree with theory.
-TEST(PictureSums, StandardErrorsAreThoseOfTheScatter) {
+TEST(PictureSums, StandardErrorsEqualTheVariance) {
   constexpr int side = PictureSums::tile_pixels, runs = 400;
   constexpr std::uint32_t samples = 4;
   constexpr double true_mean = 1, samples_in_all = PictureSums::rounds * samples * side * side;
@@ -205,7 +205,7 @@ TEST(PictureSums, StandardErrorsFollowTheSamplesOfEachRound) {
   }
 }
 
-TEST(PictureSums, AreNotANumberWithoutAnythingToCompare) {
+TEST(PictureSums, StandardErrorsOfOneRoundAreNan) {
   PictureSums sums(width, height);
   EXPECT_EQ(sums.mean()[0].mean, 0);
   EXPECT_TRUE(std::isnan(sums.mean()[0].standard_error));

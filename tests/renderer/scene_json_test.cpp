@@ -124,7 +124,7 @@ TEST(SceneJson, ReadsEveryKey) {
   EXPECT_EQ(std::get<Diffuse>(s.objects[5].material).albedo.colour, Rgb(0.1f, 0.2f, 0.3f));
 }
 
-TEST(SceneJson, RefusesWhatIsNoScene) {
+TEST(SceneJson, RefusesInvalidScenes) {
   expect_error([] { read_scene(folder() / "missing.json"); }, {"missing.json", "No such file"});
   refuses_scene(R"({"objects": [)", {"scene.json", "JSON"});
   refuses_scene(R"({"sky": [NaN, 0, 0]})", {"scene.json", "JSON"});
@@ -224,7 +224,7 @@ TEST(ReadObj, CutsFacesIntoTrianglesAndCountsIndicesFromBothEnds) {
   EXPECT_EQ(area, glm::vec3(0, 0, 4));
 }
 
-TEST(ReadObj, GivesCornersWithoutNormalThatOfTheirTriangle) {
+TEST(ReadObj, CornersWithoutNormalGetTheTriangleNormal) {
   const Mesh mesh = read_obj(file("mesh.obj", triangle + "v 0 0 5\nvn 0 3 4\nf 1//1 2//1 3//1\nf 1 2 4\n"));
   ASSERT_EQ(mesh.triangles.size(), 2u);
   ASSERT_EQ(mesh.normals.size(), mesh.positions.size());

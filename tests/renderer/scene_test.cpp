@@ -51,7 +51,7 @@ TEST(Scene, SamplesLampsWithTheirDensity) {
   EXPECT_NEAR(sky / (4 * pi), 1, 0.02);
 }
 
-TEST(Scene, LightOfPathsIsThatOfConnections) {
+TEST(Scene, PathsEqualConnections) {
   // Irradiance of a small panel by emitted light and by sampling the lamps.
   SceneDescription d = lamps();
   const Quad target{{-150, -100, -950}, {100, 0, 0}, {0, 0, -100}};
@@ -95,7 +95,7 @@ TEST(Scene, MeetsSpheresFromInsideAndOutside) {
   EXPECT_EQ(scene.around({1000, 2000, -3000}), nullptr);  // glass is not a wall
 }
 
-TEST(Scene, KnowsWhatStandsAroundAPlace) {
+TEST(Scene, FindsTheSolidAroundAPoint) {
   SceneDescription d;
   d.objects.push_back({"stone", Sphere{{0, 0, 0}, 100}, Diffuse{}});
   const Scene scene(std::move(d));
@@ -104,7 +104,7 @@ TEST(Scene, KnowsWhatStandsAroundAPlace) {
   EXPECT_EQ(scene.around({0, 0, 110}), nullptr);
 }
 
-TEST(SkyLight, DrawsAnImageByItsLight) {
+TEST(SkyLight, SamplesAnImageByItsRadiance) {
   auto image = std::make_shared<petzval::RgbImage>(8, 4);
   for (int y = 0; y < 4; ++y)
     for (int x = 0; x < 8; ++x) image->pixel(x, y)[1] = static_cast<float>((x * 5 + y * 3) % 7);

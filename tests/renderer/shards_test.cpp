@@ -47,7 +47,7 @@ class Shards : public testing::Test {
   Json job_{{"lens", "a lens"}, {"samples", 3 * passes}};
 };
 
-TEST_F(Shards, MergeToTheBitsOfTheWhole) {
+TEST_F(Shards, MergeToEqualBits) {
   const PictureSums whole = made_up_part(width, height, 1, 1, passes);
   for (const std::size_t count : {1u, 3u, 11u}) {  // 9 tiles leave two of 11 shards empty
     SetUp();
@@ -81,7 +81,7 @@ TEST_F(Shards, MissingAndUnfinishedOnesAreNamed) {
   expect_tokens(refusal({folder_ / "nowhere"}), {folder_ / "nowhere"});
 }
 
-TEST_F(Shards, OfAPictureByTimeHaveAPassAtLeast) {
+TEST_F(Shards, TimedImagesHaveAtLeastOnePass) {
   job_["samples"] = nullptr;
   write(here_, {1, 2}, 1);
   write(here_, {2, 2}, 3);
@@ -91,7 +91,7 @@ TEST_F(Shards, OfAPictureByTimeHaveAPassAtLeast) {
   expect_tokens(refusal({here_}), {"tile_2_of_2.exr", 4});
 }
 
-TEST_F(Shards, OfOtherPicturesAreRefused) {
+TEST_F(Shards, OtherImagesAreRefused) {
   write(here_, {1, 3});
   write(here_, {3, 3});
   job_["lens"] = "another lens";
@@ -102,7 +102,7 @@ TEST_F(Shards, OfOtherPicturesAreRefused) {
   expect_tokens(both, {"tile_1_of_2.exr"});
 }
 
-TEST_F(Shards, ThatDifferOrAreCorruptAreRefused) {
+TEST_F(Shards, DifferentAndCorruptOnesAreRefused) {
   write(here_, {1, 2});
   write(here_, {2, 2});
   PictureSums other = made_up_part(width, height, 2, 2, passes);

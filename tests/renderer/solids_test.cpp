@@ -94,7 +94,7 @@ TEST(Lathe, RefusesProfilesThatAreOpenOrCrossTheAxis) {
   EXPECT_THROW(lathe(std::array{ProfilePoint{0, 0}, ProfilePoint{-2, 1}, ProfilePoint{0, 1}}), petzval::Error);
 }
 
-TEST(Tube, AroundAStraightLineIsAnEllipticCylinder) {
+TEST(Tube, AroundALineIsAnEllipticCylinder) {
   const Mesh mesh = tube(std::array{TubeStation{{-2, 0}, {4, 0}, 2}, TubeStation{{-2, 10}, {4, 10}, 2}}, 64);
   expect_closed(mesh, "tube");
   EXPECT_NEAR(volume(mesh) / (10 * pi * 6), 1, 0.002);
@@ -129,7 +129,7 @@ TEST(ChessPieces, AreClosedAndStandOnTheBoard) {
   }
 }
 
-TEST(Angels, AreClosedAndAsHighAsAskedFor) {
+TEST(Angels, AreClosedWithTheRequestedHeight) {
   for (const AngelPose pose : {AngelPose::praying, AngelPose::calling}) {
     const Mesh mesh = angel(pose, 500);
     expect_closed(mesh, "angel");
