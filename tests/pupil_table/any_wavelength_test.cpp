@@ -6,7 +6,6 @@
 #include <array>
 #include <cmath>
 #include <filesystem>
-#include <limits>
 #include <numbers>
 #include <random>
 #include <vector>
@@ -124,51 +123,6 @@ TEST(AnyWavelength, ClosedFormPupilsAreInterpolated) {
     const PupilSample edge = table.sample(film, 0.25, 1, Wavelength::nm(at));
     EXPECT_NEAR(std::hypot(edge.x - wanted.shift.x * film.x, edge.y - wanted.shift.y * film.y), wanted.radius.x, 1e-3);
     EXPECT_TRUE(table.contains(film, 0.999 * edge.x, 0.999 * edge.y, Wavelength::nm(at)));
-  }
-}
-
-TEST(AnyWavelength, PupilBatchEqualsSingleSamples) {
-  const Prescription prescription = petzval::testing::data_prescription("double_gauss_100mm_f2.0");
-  const Lens lens = compiled(prescription, {550, 400, 700});
-  const std::vector<PupilImage> discs{{{0.1, 0.1}, {10, 10}}, {{0.12, 0.1}, {11, 10}}, {{0.09, 0.08}, {9, 8}}};
-  for (const FilmPupilTable& table :
-       {FilmPupilTable::enclosing(lens, 20), FilmPupilTable::equal_area(lens, 20),
-        FilmPupilTable::of_iris(two_planes(lens), {}, discs, 20, 0, lens.wavelengths_nm())}) {
-    constexpr std::size_t count = 999;
-    std::vector<double> film_x, film_y, u, v, x(count), y(count), areas(count);
-    std::vector<float> nm;
-    std::mt19937_64 random(3);
-    std::uniform_real_distribution<double> unit(0, 1);
-    for (std::size_t i = 0; i < count; ++i) {
-      film_x.push_back(28 * unit(random) - 14), film_y.push_back(28 * unit(random) - 14);
-      u.push_back(unit(random)), v.push_back(unit(random));
-      nm.push_back(static_cast<float>(390 + 320 * unit(random)));
-    }
-    nm[5] = std::numeric_limits<float>::quiet_NaN();
-    const RayWavelengths wavelengths{.each_nm = nm.data()};
-    table.sample(count, film_x.data(), film_y.data(), u.data(), v.data(), wavelengths, x.data(), y.data(),
-                 areas.data());
-    std::vector<std::uint8_t> within(count);
-    table.contains<double>(count, {film_x.data(), film_y.data(), x.data(), y.data()}, wavelengths, within.data());
-    std::size_t covered = 0;
-    for (std::size_t i = 0; i < count; ++i) {
-      const Wavelength own = wavelengths.at(i);
-      const FilmPoint film{film_x[i], film_y[i]};
-      const PupilSample s = table.sample(film, u[i], v[i], own);
-      ASSERT_NEAR(x[i], s.x, 1e-6) << nm[i];
-      ASSERT_NEAR(y[i], s.y, 1e-6) << nm[i];
-      ASSERT_NEAR(areas[i], s.area, 1e-9 * s.area) << nm[i];
-      const bool known = nm[i] >= 400 && nm[i] <= 700;
-      ASSERT_EQ(table.covers(own), known) << nm[i];
-      ASSERT_EQ(s.area > 0, known) << nm[i];
-      if (!known) {
-        ASSERT_FALSE(within[i]);
-      }
-      covered += known;
-    }
-    EXPECT_GT(covered, 800u);
-    EXPECT_TRUE(table.covers(2));
-    EXPECT_FALSE(table.covers(3));
   }
 }
 

@@ -9,7 +9,6 @@
 #include <random>
 #include <string>
 #include <tuple>
-#include <vector>
 
 #include "../data_lenses.hpp"
 #include "../declared_radius.hpp"
@@ -129,48 +128,6 @@ TEST(BladedPupils, AreContinuousOverTheFilm) {
     const double radius = std::sqrt(before.area / pi);
     EXPECT_LT(longest, 0.01 * radius) << r;
   }
-}
-
-TEST(BladedPupils, BatchEqualsSingleSamples) {
-  const FilmPupilTable table = FilmPupilTable::enclosing(vignetting(), corner);
-  constexpr std::size_t count = 3000;
-  std::mt19937 random(5);
-  std::uniform_real_distribution<double> unit(0, 1);
-  std::array<std::vector<double>, 7> twice;
-  std::array<std::vector<float>, 7> single;
-  for (auto& a : twice) a.resize(count);
-  for (auto& a : single) a.resize(count);
-  for (std::size_t i = 0; i < count; ++i) {
-    const double r = 1.02 * corner * std::sqrt(unit(random)), azimuth = 2 * pi * unit(random);
-    const std::array in{r * std::sin(azimuth), r * std::cos(azimuth), unit(random), unit(random)};
-    for (std::size_t k = 0; k < 4; ++k) twice[k][i] = single[k][i] = static_cast<float>(in[k]);
-  }
-  const auto run = [&](auto& a) {
-    table.sample(count, a[0].data(), a[1].data(), a[2].data(), a[3].data(), {}, a[4].data(), a[5].data(), a[6].data());
-  };
-  run(twice), run(single);
-  std::vector<std::uint8_t> within(count);
-  table.contains<double>(count, {twice[0].data(), twice[1].data(), twice[4].data(), twice[5].data()}, {},
-                         within.data());
-  int lit = 0;
-  for (std::size_t i = 0; i < count; ++i) {
-    const FilmPoint film{twice[0][i], twice[1][i]};
-    const PupilSample one = table.sample(film, twice[2][i], twice[3][i]);
-    EXPECT_NEAR(one.x, twice[4][i], 1e-9);
-    EXPECT_NEAR(one.y, twice[5][i], 1e-9);
-    EXPECT_NEAR(one.area, twice[6][i], 1e-9 * one.area);
-    if (one.area == 0) continue;
-    ++lit;
-    EXPECT_NEAR(single[4][i], one.x, 2e-3);
-    EXPECT_NEAR(single[5][i], one.y, 2e-3);
-    EXPECT_NEAR(single[6][i], one.area, 1e-5 * one.area);
-    if (twice[3][i] < 0.999) {
-      EXPECT_NEAR(table.sample_area(film, one.x, one.y), one.area, 1e-6 * one.area);
-    }
-    EXPECT_EQ(table.contains(film, one.x, one.y), within[i] != 0) << i;
-    EXPECT_TRUE(within[i] != 0 || twice[3][i] > 1 - 1e-9) << i;
-  }
-  EXPECT_GT(lit, 0.9 * count);
 }
 
 TEST(BladedPupils, DerivativesEqualFiniteDifferences) {

@@ -127,38 +127,6 @@ TEST(FilmPupilTable, IsContinuousNextToTheAxis) {
 
 class SampledTable : public ::testing::TestWithParam<const char*> {};
 
-TEST_P(SampledTable, BatchEqualsSinglePoints) {
-  const Lens lens = data_lens(GetParam());
-  const FilmPupilTable table = FilmPupilTable::enclosing(lens, 20);
-  std::mt19937_64 random(5);
-  std::uniform_real_distribution<double> unit(0, 1);
-  for (const std::size_t count : {1u, 7u, 8u, 63u, 64u, 129u}) {
-    std::vector<double> x(count), y(count), u(count), v(count), px(count), py(count), areas(count);
-    for (std::size_t i = 0; i < count; ++i) {
-      x[i] = 26 * unit(random) - 13, y[i] = 26 * unit(random) - 13, u[i] = unit(random), v[i] = unit(random);
-    }
-    table.sample<double>(count, x.data(), y.data(), u.data(), v.data(), {}, px.data(), py.data(), areas.data());
-    const std::vector<float> fx(x.begin(), x.end()), fy(y.begin(), y.end()), fu(u.begin(), u.end()),
-        fv(v.begin(), v.end());
-    std::vector<float> fpx(count), fpy(count), fareas(count);
-    table.sample<float>(count, fx.data(), fy.data(), fu.data(), fv.data(), {}, fpx.data(), fpy.data(), fareas.data());
-    for (std::size_t i = 0; i < count; ++i) {
-      const PupilSample s = table.sample({x[i], y[i]}, u[i], v[i]);
-      const double size = std::sqrt(s.area);
-      EXPECT_NEAR(px[i], s.x, 1e-12 * size);
-      EXPECT_NEAR(py[i], s.y, 1e-12 * size);
-      EXPECT_NEAR(areas[i], s.area, 1e-13 * s.area);
-      EXPECT_NEAR(fpx[i], s.x, 2e-4 * size);
-      EXPECT_NEAR(fpy[i], s.y, 2e-4 * size);
-      EXPECT_NEAR(fareas[i], s.area, 1e-5 * s.area);
-    }
-    // Output may overwrite the input.
-    table.sample<double>(count, x.data(), y.data(), u.data(), v.data(), {}, u.data(), v.data(), areas.data());
-    EXPECT_EQ(u, px);
-    EXPECT_EQ(v, py);
-  }
-}
-
 INSTANTIATE_TEST_SUITE_P(FilmPupilTable, SampledTable,
                          ::testing::Values("catadioptric_mangin_1000mm_f7.5", "anamorphic_60mm_2x"));
 

@@ -130,47 +130,6 @@ TEST(FilmPupilTable, BatchClearancesEqualSingleOnes) {
   }
 }
 
-TEST(FilmPupilTable, BatchContainsEqualsSinglePoints) {
-  const std::vector<double> nm{450, 650};
-  const auto with = [&](const char* id) {
-    return compile(petzval::testing::data_prescription(id), nm, {.missing_glass = MissingGlass::abbe});
-  };
-  for (const FilmPupilTable& table : {FilmPupilTable::enclosing(with("double_gauss_100mm_f1.35"), 22),
-                                      FilmPupilTable::equal_area(with("fisheye_8mm_f2.8"), 9),
-                                      FilmPupilTable::enclosing(with("catadioptric_mangin_1000mm_f7.5"), 22),
-                                      FilmPupilTable::enclosing(with("anamorphic_60mm_2x"), 22),
-                                      FilmPupilTable::enclosing(with("biogon_35mm_f2.8"), 30)}) {
-    const double radius = table.film_radius(), size = std::sqrt(table.area({0, 0}));
-    std::mt19937_64 random(5);
-    std::uniform_real_distribution<double> unit(-1.1, 1.1);
-    constexpr std::size_t count = 5000;
-    std::vector<double> fx(count), fy(count), x(count), y(count);
-    std::vector<std::uint16_t> wavelengths(count);
-    for (std::size_t i = 0; i < count; ++i) {
-      fx[i] = 0.8 * radius * unit(random), fy[i] = 0.8 * radius * unit(random);
-      const Vec2<double> middle = table.middle({fx[i], fy[i]});
-      x[i] = middle.x + size * unit(random), y[i] = middle.y + size * unit(random);
-      wavelengths[i] = static_cast<std::uint16_t>(i % 3);
-    }
-    fx[0] = std::numeric_limits<double>::quiet_NaN(), x[1] = std::numeric_limits<double>::quiet_NaN();
-    std::vector<std::uint8_t> within(count), within_float(count);
-    table.contains<double>(count, {fx.data(), fy.data(), x.data(), y.data()}, {.each = wavelengths.data()},
-                           within.data());
-    const std::vector<float> ffx(fx.begin(), fx.end()), ffy(fy.begin(), fy.end()), px(x.begin(), x.end()),
-        py(y.begin(), y.end());
-    table.contains<float>(count, {ffx.data(), ffy.data(), px.data(), py.data()}, {.each = wavelengths.data()},
-                          within_float.data());
-    int inside = 0, other_float = 0;
-    for (std::size_t i = 0; i < count; ++i) {
-      EXPECT_EQ(within[i] == 1, table.contains({fx[i], fy[i]}, x[i], y[i], wavelengths[i])) << i;
-      other_float += within_float[i] != within[i];
-      inside += within[i];
-    }
-    EXPECT_GT(inside, 300);
-    EXPECT_LE(other_float, 5);
-  }
-}
-
 // The pupils of a tilted film contain every line of the table that meets the film, and few other lines. The pupil of a
 // virtual film point consists of the lines through it that belong to the pupil of their upright film point.
 TEST(FilmPupilTable, TiltedFilmPupilsAreCovered) {
@@ -262,47 +221,6 @@ TEST(FilmPupilTable, ImagesOfAnIris) {
       EXPECT_EQ(table.contains(film, shift * 7 + 0.9 * radius * std::cos(edge),
                                shift * -5 + 0.9 * radius * std::sin(edge), w),
                 iris.round());
-    }
-  }
-}
-
-template <class T>
-void expect_batch_as_single_samples(const FilmPupilTable& table, double eps) {
-  constexpr std::size_t count = 301;
-  std::array<std::vector<T>, 7> v;
-  for (auto& values : v) values.resize(count);
-  std::vector<std::uint16_t> each(count);
-  std::vector<std::uint8_t> within(count);
-  const T nan = std::numeric_limits<T>::quiet_NaN();
-  std::mt19937 random(5);
-  std::uniform_real_distribution<double> unit;
-  for (std::size_t i = 0; i < count; ++i) {
-    for (std::size_t k : {0, 1}) v[k][i] = static_cast<T>(20 * unit(random) - 10);
-    for (std::size_t k : {2, 3}) v[k][i] = static_cast<T>(unit(random));
-    each[i] = static_cast<std::uint16_t>(i % 3);
-  }
-  v[0][6] = nan, v[2][9] = nan, v[3][12] = nan, v[0][15] = 13, v[2][18] = v[3][18] = 1, v[2][21] = v[3][21] = 0;
-  table.sample<T>(count, v[0].data(), v[1].data(), v[2].data(), v[3].data(), {.each = each.data()}, v[4].data(),
-                  v[5].data(), v[6].data());
-  table.contains<T>(count, {v[0].data(), v[1].data(), v[4].data(), v[5].data()}, {.each = each.data()}, within.data());
-  for (std::size_t i = 0; i < count; ++i) {
-    const PupilSample s = table.sample({v[0][i], v[1][i]}, v[2][i], v[3][i], each[i]);
-    EXPECT_NEAR(v[4][i], s.x, 20 * eps) << i;
-    EXPECT_NEAR(v[5][i], s.y, 20 * eps) << i;
-    EXPECT_NEAR(v[6][i], s.area, 2 * s.area * eps) << i;
-    if (v[3][i] < T(0.999)) {
-      EXPECT_EQ(within[i] == 1, table.area({v[0][i], v[1][i]}, each[i]) > 0) << i;
-    }
-  }
-  EXPECT_EQ(v[6][15] + v[6][6] + v[6][9] + v[6][12], T(0));
-}
-
-TEST(FilmPupilTable, IrisBatchEqualsSingleSamples) {
-  for (const Iris& iris : {Iris{}, Iris{.blades = 6, .rotation_rad = 0.2}, Iris{.blades = 3, .roundness = -1}}) {
-    for (const FilmPupilTable& table :
-         {hexagons(iris), hexagons(iris).for_tilted_film({.slope_x = 0.01, .slope_y = -0.02, .radius = 11})}) {
-      expect_batch_as_single_samples<double>(table, 1e-15);
-      expect_batch_as_single_samples<float>(table, 5e-7);
     }
   }
 }
