@@ -5,6 +5,7 @@
 library_packages="g++ cmake ninja-build pkg-config libglm-dev nlohmann-json3-dev libeigen3-dev libyaml-cpp-dev libceres-dev libopenexr-dev libpng-dev"
 example_packages="libcli11-dev libfreetype-dev libfontconfig-dev fonts-dejavu-core libembree-dev libtinyobjloader-dev"
 test_packages="libgtest-dev"
+docs_packages="doxygen"  # of the target docs; install them yourself
 
 # Sources are compiled in groups: a third to a half less work from nothing, more after a change of one source.
 unity=-DCMAKE_UNITY_BUILD=${UNITY:-ON}

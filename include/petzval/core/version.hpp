@@ -5,7 +5,7 @@
 #error "petzval needs a C++20 compiler: compile with -std=c++20 (/std:c++20)"
 #endif
 
-/// Version of these headers, as numbers for #if and as a string. The build system reads these lines.
+/// Version of these headers, as numbers for the preprocessor and as a string. The build system reads these lines.
 #define PETZVAL_VERSION_MAJOR 0
 #define PETZVAL_VERSION_MINOR 1
 #define PETZVAL_VERSION_PATCH 0

@@ -1,0 +1,46 @@
+# SPDX-License-Identifier: Apache-2.0
+# The target `docs`: pages of the public interface in build/docs/html, made by Doxygen. A class page links the examples that
+# use the class.
+find_package(Doxygen QUIET)
+if(NOT DOXYGEN_FOUND)
+  add_custom_target(docs
+    COMMAND ${CMAKE_COMMAND} -E echo "docs: Doxygen was not found; install it (apt-get install doxygen) and configure again"
+    COMMAND ${CMAKE_COMMAND} -E false
+    VERBATIM)
+  return()
+endif()
+
+# Each source file of the examples becomes a page, linked from the classes that it uses.
+file(GLOB_RECURSE programs RELATIVE ${PROJECT_SOURCE_DIR}/examples CONFIGURE_DEPENDS
+  ${PROJECT_SOURCE_DIR}/examples/*.cpp ${PROJECT_SOURCE_DIR}/examples/*.hpp)
+set(example_pages "")
+foreach(program IN LISTS programs)
+  string(APPEND example_pages "/** @example ${program} */\n")
+endforeach()
+file(CONFIGURE OUTPUT ${PROJECT_BINARY_DIR}/docs/examples.dox CONTENT "${example_pages}" @ONLY)
+
+set(DOXYGEN_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR}/docs)
+set(DOXYGEN_PROJECT_BRIEF "${PROJECT_DESCRIPTION}")
+set(DOXYGEN_USE_MDFILE_AS_MAINPAGE ${PROJECT_SOURCE_DIR}/README.md)
+set(DOXYGEN_IMAGE_PATH ${PROJECT_SOURCE_DIR} ${PROJECT_SOURCE_DIR}/lib/docs)
+set(DOXYGEN_EXAMPLE_PATH ${PROJECT_SOURCE_DIR}/examples)
+set(DOXYGEN_EXAMPLE_RECURSIVE YES)
+set(DOXYGEN_STRIP_FROM_PATH ${PROJECT_SOURCE_DIR}/include ${PROJECT_SOURCE_DIR})
+set(DOXYGEN_STRIP_FROM_INC_PATH ${PROJECT_SOURCE_DIR}/include)
+set(DOXYGEN_FILE_PATTERNS *.hpp *.md *.dox)
+set(DOXYGEN_JAVADOC_AUTOBRIEF YES)  # the first sentence of a comment is its summary
+set(DOXYGEN_BUILTIN_STL_SUPPORT YES)
+set(DOXYGEN_MACRO_EXPANSION YES)
+set(DOXYGEN_EXPAND_ONLY_PREDEF YES)
+set(DOXYGEN_PREDEFINED "PETZVAL_API=")
+set(DOXYGEN_EXCLUDE_SYMBOLS *detail* kernel*)
+set(DOXYGEN_HAVE_DOT NO)
+set(DOXYGEN_EXTRACT_ALL YES)
+set(DOXYGEN_WARN_AS_ERROR FAIL_ON_WARNINGS)
+file(GLOB pages CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/lib/docs/*.md)
+set(sources ${PROJECT_SOURCE_DIR}/README.md ${pages})
+foreach(folder lib data tests tests/bench tests/conformance examples/hosts examples/renderer)
+  list(APPEND sources ${PROJECT_SOURCE_DIR}/${folder}/README.md)
+endforeach()
+doxygen_add_docs(docs ${PROJECT_SOURCE_DIR}/include ${PROJECT_BINARY_DIR}/docs/examples.dox ${sources}
+  WORKING_DIRECTORY ${PROJECT_SOURCE_DIR} COMMENT "Pages of the public interface: docs/html/index.html")
