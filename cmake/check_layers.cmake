@@ -70,6 +70,7 @@ endfunction()
 
 get_filename_component(ROOT "${ROOT}" ABSOLUTE)
 file(GLOB_RECURSE files RELATIVE "${ROOT}" "${ROOT}/include/*.hpp" "${ROOT}/lib/*.hpp" "${ROOT}/lib/*.cpp")
+list(FILTER files EXCLUDE REGEX "^lib/docs/")  # programs of the guides, which use the library from outside
 set(layer_of_all 11)
 foreach(file IN LISTS files)
   string(REGEX REPLACE "^(include/petzval|lib)/([^/]+)/.*$" "\\2" module "${file}")

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The pages of the repository: their code is code of programs, their output is printed by them, their paths exist.
+// The pages of the repository: programs print the output that they show, and their paths exist.
+// (tests/house/guides.cmake checks their code.)
 #include <algorithm>
 #include <filesystem>
 #include <regex>
@@ -12,19 +13,6 @@ class Readme : public Programs {
  protected:
   static std::filesystem::path root() { return std::filesystem::path(PETZVAL_TEST_DATA).parent_path(); }
 
-  /// The code between ```cpp and ```, block by block.
-  static std::vector<std::string> blocks(const std::string& page) {
-    const std::string open = "```cpp\n", close = "```";
-    std::vector<std::string> result;
-    for (std::size_t at = page.find(open); at != std::string::npos; at = page.find(open, at)) {
-      at += open.size();
-      const std::size_t end = page.find(close, at);
-      result.push_back(page.substr(at, end - at));
-      at = end;
-    }
-    return result;
-  }
-
   /// Every line indented, without trailing blanks.
   static std::string indented(const std::string& text, std::size_t columns) {
     std::string result;
@@ -35,13 +23,6 @@ class Readme : public Programs {
     return result;
   }
 };
-
-TEST_F(Readme, ShowsTheCodeOfPrograms) {
-  const auto code = blocks(read(root() / "README.md"));
-  ASSERT_EQ(code.size(), 2u);
-  EXPECT_NE(read(root() / "examples/hello_lens.cpp").find(code[0]), std::string::npos) << code[0];
-  EXPECT_NE(read(root() / "examples/hello_camera.cpp").find(indented(code[1], 2)), std::string::npos) << code[1];
-}
 
 TEST_F(Readme, ShowsWhatTheProgramsPrint) {
   const std::string page = read(root() / "README.md");
