@@ -28,6 +28,7 @@
 #include "camera_data.hpp"
 #include "make_model.hpp"
 #include "petzval/camera/polynomial_model.hpp"
+#include "pupil_table/scene_grid.hpp"
 #include "scene_side.hpp"
 #include "tilted_pinhole.hpp"
 
@@ -336,46 +337,34 @@ void SceneSide::sample_importance(const AnyRayModel& model, std::size_t count, c
                                   const double* u, const double* v, const RayWavelengths& wavelengths,
                                   const double* times, ImportanceSample* found) const noexcept {
   constexpr std::size_t block = 64;
+  if (model.pinhole()) {
+    for (std::size_t i = 0; i < count; ++i) {
+      found[i] = sample_importance(model, points[i], u[i], v[i], wavelengths.at(i), times ? times[i] : 0);
+    }
+    return;
+  }
+  std::array<std::array<double, block>, 8> columns;
+  auto& [x, y, z, dx, dy, dz, distance, pdf] = columns;
+  std::array<Importance, block> importances;
   for (std::size_t begin = 0; begin < count; begin += block) {
     const std::size_t n = std::min(block, count - begin);
-    // The rays of connections that have one, side by side.
-    std::array<std::array<double, block>, 7> columns;
-    auto& [x, y, z, dx, dy, dz, rays_times] = columns;
-    std::array<std::size_t, block> which;
-    std::array<float, block> nm;
-    std::array<std::uint16_t, block> positions;
-    std::size_t rays = 0;
-    const bool in_nm = wavelengths.in_nm();
-    for (std::size_t i = begin; i < begin + n; ++i) {
-      const Wavelength wavelength = wavelengths.at(i);
-      if (model.pinhole() || !wavelengths_.covers(wavelength) || !finite(points[i])) {
-        found[i] = sample_importance(model, points[i], u[i], v[i], wavelength, times ? times[i] : 0);
+    const RayWavelengths own = wavelengths.from(begin);
+    // Rays of points without a connection are valid too.
+    entrance_.sample(n, points + begin, u + begin, v + begin, own,
+                     {x.data(), y.data(), z.data(), dx.data(), dy.data(), dz.data(), distance.data(), pdf.data()});
+    importance(model, n, {x.data(), y.data(), z.data(), dx.data(), dy.data(), dz.data()}, own,
+               times ? times + begin : nullptr, importances.data());
+    for (std::size_t i = 0; i < n; ++i) {
+      ImportanceSample& sample = found[begin + i];
+      const Vec3<double>& point = points[begin + i];
+      if (!(pdf[i] > 0)) {
+        const bool known = wavelengths_.covers(own.at(i)) && finite(point);
+        sample = known ? ImportanceSample{} : ImportanceSample{.importance = {.fate = refused(own.at(i))}};
         continue;
       }
-      const EntranceSample s = entrance_.sample(points[i], u[i], v[i], wavelength);
-      found[i] = s.pdf > 0 ? connection(s.place, s.direction, s.distance, s.pdf) : ImportanceSample{};
-      if (!(s.pdf > 0)) continue;
-      which[rays] = i;
-      x[rays] = s.place.x, y[rays] = s.place.y, z[rays] = s.place.z;
-      dx[rays] = s.direction.x, dy[rays] = s.direction.y, dz[rays] = s.direction.z;
-      rays_times[rays] = times ? times[i] : 0;
-      if (in_nm) {
-        nm[rays] = static_cast<float>(*wavelength.in_nm());
-      } else {
-        positions[rays] = static_cast<std::uint16_t>(wavelength.position(primary_));
-      }
-      ++rays;
+      sample = connection({x[i], y[i], z[i]}, {dx[i], dy[i], dz[i]}, distance[i], pdf[i]);
+      sample.importance = importances[i];
     }
-    RayWavelengths of_rays;
-    if (in_nm) {
-      of_rays.each_nm = nm.data();
-    } else {
-      of_rays.each = positions.data();
-    }
-    std::array<Importance, block> importances;
-    importance(model, rays, {x.data(), y.data(), z.data(), dx.data(), dy.data(), dz.data()}, of_rays,
-               times ? rays_times.data() : nullptr, importances.data());
-    for (std::size_t r = 0; r < rays; ++r) found[which[r]].importance = importances[r];
   }
 }
 

@@ -18,6 +18,9 @@
 #include "petzval/trace/trace.hpp"
 
 namespace petzval {
+namespace pupil_table_detail {
+struct EntranceRays;
+}
 
 /// A ray from a scene point into the lens.
 struct EntranceSample {
@@ -51,8 +54,8 @@ using ScenePassing = std::function<void(std::size_t count, const RayArrays<const
 /// A point is identified by its distance from the pupil's centre and by its field, the angle between the axis and the
 /// line to that centre. Its pupil lies in the plane perpendicular to that line, so that fields of 90 degrees and more
 /// are like any other. Pupils are interpolated polygons of 64 corners that contain every ray that passes and few
-/// others; samples take their sectors alike and are uniform within each. Points nearer to the lens than the table
-/// reaches, and all points of lenses without symmetry of revolution, get a cone about a ball that all rays meet. Every
+/// others; all sectors get the same number of samples, uniform within each. Points nearer to the lens than the table
+/// reaches get a cone about a ball that all rays meet. Every
 /// ray that passes can be sampled: estimates have no bias.
 ///
 /// Immutable, cheap to copy, free to share between threads.
@@ -68,6 +71,9 @@ class PETZVAL_API EntrancePupilTable {
   /// A ray from a point (lens frame, mm) for u and v in [0, 1]. pdf 0 for a point that is not in front of the lens or
   /// beyond all fields, numbers that are not finite, and wavelengths that are not in the table.
   EntranceSample sample(const Vec3<double>& point, double u, double v, Wavelength wavelength = {}) const noexcept;
+  /// The same for N points; `rays` hold what single samples give.
+  void sample(std::size_t count, const Vec3<double>* points, const double* u, const double* v,
+              const RayWavelengths& wavelengths, const pupil_table_detail::EntranceRays& rays) const noexcept;
   /// Many rays of one point, uniform over its pupil in the plane that faces the point; their pdf is that of this.
   /// u, v, samples: N each.
   void spread(const Vec3<double>& point, std::size_t count, const double* u, const double* v, Wavelength wavelength,
@@ -79,10 +85,6 @@ class PETZVAL_API EntrancePupilTable {
 
  private:
   struct Data;
-
-  template <class Pupil>
-  void draw(const Vec3<double>& point, std::size_t count, const double* u, const double* v, Wavelength wavelength,
-            EntranceSample* samples) const noexcept;
 
   std::shared_ptr<const Data> data_;
 };

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "entrance_grid.hpp"
+#include "scene_nodes.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -27,16 +27,18 @@ struct Bounds {
   }
 };
 
-/// The two angles of a bearing, in the quadrant.
-Vec2<double> angles(const Bearing& bearing) noexcept {
-  return {bearing.field * std::abs(bearing.azimuth.x), bearing.field * std::abs(bearing.azimuth.y)};
+Bearing towards(const Vec2<double>& angles) noexcept {
+  const double field = std::hypot(angles.x, angles.y);
+  const Vec2<double> azimuth = field > 0 ? angles / field : Vec2<double>{0, 1};
+  return {field, std::sin(field), std::cos(field), azimuth.x, azimuth.y};
 }
 
-Bearing towards(const Vec2<double>& angles) noexcept {
-  Bearing bearing({0, 0, -1});
-  bearing.field = std::hypot(angles.x, angles.y);
-  if (bearing.field > 0) bearing.azimuth = angles / bearing.field;
-  return bearing;
+/// The position of a ray in the plane that faces a point, in the frame of the polygons.
+Vec2<double> place_in_grid(const Vec3<double>& centre, const Bearing& bearing, double reciprocal,
+                           const Ray<double>& ray) noexcept {
+  const Vec2<double> met = plane_facing(centre, bearing, reciprocal).meet(ray);
+  const Point<double> place = to_grid<3>(bearing, {met.x, met.y});
+  return {place.x, place.y};
 }
 
 /// Where to look for the pupils of the points of a grid over angles at a distance: about what the rays of these fields
@@ -46,11 +48,10 @@ std::vector<pupil_detail::PupilGuess> guesses_from(const std::vector<Ray<double>
   std::vector<Bounds> bounds(columns * columns);
   const double last = static_cast<double>(columns - 1);
   for (const Ray<double>& ray : rays) {
-    const Bearing bearing(centre, ray, reciprocal);
-    const Vec2<double> place =
-        bearing.in_quadrant(PupilPlane::facing(centre, bearing.field, bearing.azimuth, reciprocal).meet(ray));
+    const Bearing bearing = bearing_on_sphere(centre, ray, reciprocal);
+    const Vec2<double> place = place_in_grid(centre, bearing, reciprocal, ray);
     // Of the points of the cell and those around it.
-    const Vec2<double> at = angles(bearing) / widest * last;
+    const Vec2<double> at = angles<3>(bearing) / widest * last;
     const auto first = [](double x) { return static_cast<std::size_t>(std::max(x - 1, 0.0)); };
     for (std::size_t i = first(at.y); i < std::min(first(at.y) + 4, columns); ++i) {
       for (std::size_t j = first(at.x); j < std::min(first(at.x) + 4, columns); ++j) {
@@ -76,43 +77,14 @@ std::vector<pupil_detail::PupilGuess> guesses_from(const std::vector<Ray<double>
 
 }  // namespace
 
-void RayClearances::test(std::size_t count, double* clearances) {
-  through_.resize(count);
-  const auto at = [this](std::size_t k) { return components_[k].data(); };
-  passing_(count, {at(0), at(1), at(2), at(3), at(4), at(5)}, wavelength_, through_.data());
-  std::transform(through_.begin(), through_.end(), clearances, pupil_detail::clearance_of);
-}
-
-Bearing::Bearing(const Vec3<double>& unit) noexcept {
-  const double across = std::hypot(unit.x, unit.y);
-  field = std::atan2(across, -unit.z);
-  if (across > 0) azimuth = {unit.x / across, unit.y / across};
-}
-
-Bearing::Bearing(const Vec3<double>& centre, const Ray<double>& ray, double reciprocal_radius) noexcept
-    : Bearing([&] {
-        const Vec3<double> from = ray.origin - centre;
-        const double b = glm::dot(from, ray.direction), beside2 = glm::dot(from, from) - b * b;
-        const double along =
-            std::sqrt(std::max(1 - beside2 * (reciprocal_radius * reciprocal_radius), 0.0)) - b * reciprocal_radius;
-        return from * reciprocal_radius + ray.direction * along;
-      }()) {}
-
-Vec2<double> Bearing::in_quadrant(const Vec2<double>& place) const noexcept {
-  const double x = azimuth.y * place.x + azimuth.x * place.y, y = azimuth.y * place.y - azimuth.x * place.x;
-  return {azimuth.x < 0 ? -x : x, azimuth.y < 0 ? -y : y};
-}
-
-Vec2<double> Bearing::from_quadrant(const Vec2<double>& place) const noexcept {
-  const double x = azimuth.x < 0 ? -place.x : place.x, y = azimuth.y < 0 ? -place.y : place.y;
-  return {azimuth.y * x - azimuth.x * y, azimuth.x * x + azimuth.y * y};
-}
-
-EntranceGrid::EntranceGrid(const Vec3<double>& centre, double steepest, const std::vector<Ray<double>>& rays,
-                           std::size_t wavelength, const ScenePassing& passing)
-    : steepest_(steepest) {
+SceneNodes<3> nodes_with_cylinders(const Vec3<double>& centre, double steepest, const std::vector<Ray<double>>& rays,
+                                   std::size_t wavelength, const ScenePassing& passing) {
+  using L = SceneLayout<3>;
+  constexpr std::size_t steps = L::fields, nodes = L::row, distances = L::distances + 1;
+  SceneNodes<3> result;
+  std::vector<PupilPolygon>& polygons = result.polygons;
   // The nodes and, at their distances, the points halfway between.
-  constexpr std::size_t rows = 2 * distance_steps + 1, columns = 2 * steps + 1;
+  constexpr std::size_t rows = 2 * L::distances + 1, columns = 2 * steps + 1;
   const auto part = [](std::size_t i, std::size_t count) {
     return static_cast<double>(i) / static_cast<double>(count - 1);
   };
@@ -122,11 +94,14 @@ EntranceGrid::EntranceGrid(const Vec3<double>& centre, double steepest, const st
   for (std::size_t i = 0; i < rows; ++i) {
     Vec2<double> reach{0, 0};
     for (const Ray<double>& ray : rays) {
-      const Vec2<double> own = angles(Bearing(centre, ray, steepest * part(i, rows)));
+      const Vec2<double> own = angles<3>(bearing_on_sphere(centre, ray, steepest * part(i, rows)));
       for (int k : {0, 1}) reach[k] = std::max(reach[k], between_rays * own[k] + on_axis);
     }
     for (const std::size_t node : {i / 2, (i + 1) / 2}) {
-      for (int k : {0, 1}) widest_[node][k] = std::max(widest_[node][k], reach[k]);
+      for (std::size_t k : {0, 1}) {
+        double& widest = result.widest[2 * node + k];
+        widest = std::max(widest, reach[static_cast<int>(k)]);
+      }
     }
   }
 
@@ -135,14 +110,14 @@ EntranceGrid::EntranceGrid(const Vec3<double>& centre, double steepest, const st
     PupilPlane plane;
   };
   const auto place_at = [&](double distance, double down, double across) {
-    const Bearing bearing = towards(widest(distance) * Vec2<double>{across, down});
-    return Place{bearing, PupilPlane::facing(centre, bearing.field, bearing.azimuth, steepest_ * distance)};
+    const Bearing bearing = towards(result.last(distance) * Vec2<double>{across, down});
+    return Place{bearing, plane_facing(centre, bearing, steepest * distance)};
   };
   RayClearances clearances_of(passing, wavelength);
   const auto test = [&](std::size_t count, const auto& place, const double* x, const double* y, double* clearances) {
     const auto ray_at = [&](std::size_t r) {
       const auto& [bearing, plane] = place(r);
-      const Vec2<double> p = bearing.from_quadrant({x[r], y[r]});
+      const Point<double> p = from_grid<3>(bearing, {x[r], y[r]});
       return plane.ray(p.x, p.y);
     };
     clearances_of(count, ray_at, clearances);
@@ -155,7 +130,7 @@ EntranceGrid::EntranceGrid(const Vec3<double>& centre, double steepest, const st
     for (std::size_t p = 0; p < columns * columns; ++p) {
       places.push_back(place_at(part(i, rows), part(p / columns, columns), part(p % columns, columns)));
     }
-    const auto guesses = guesses_from(rays, centre, steepest * part(i, rows), widest(part(i, rows)), columns);
+    const auto guesses = guesses_from(rays, centre, steepest * part(i, rows), result.last(part(i, rows)), columns);
     const pupil_detail::PlaceClearances clearances = [&](std::size_t count, const std::uint32_t* which, const double* x,
                                                          const double* y, double* values) {
       test(
@@ -168,23 +143,24 @@ EntranceGrid::EntranceGrid(const Vec3<double>& centre, double steepest, const st
   constexpr std::size_t plane = columns * columns;
   for (std::size_t i = 0; i < distances; ++i) {
     const auto own = node_polygons(std::span(pupils).subspan(i * plane, plane), columns, PolygonFit::enclosing);
-    polygons_.insert(polygons_.end(), own.begin(), own.end());
+    polygons.insert(polygons.end(), own.begin(), own.end());
   }
   std::vector<InterpolationCheck> checks;
   for (std::size_t p = 0; p < pupils.size(); ++p) {
-    checks.push_back({&pupils[p], weights_at(part(p / plane, distances), part(p % plane / columns, columns),
-                                             part(p % columns, columns))});
+    checks.push_back(
+        {&pupils[p], SceneNodes<3>::weights_at(part(p / plane, distances), part(p % plane / columns, columns),
+                                               part(p % columns, columns))});
   }
-  expand_to_cover(polygons_, checks);
+  expand_to_cover(polygons, checks);
   // Where the light ends within a cell its pupils are slivers that move fast: anywhere in those of the nodes around.
-  std::vector<bool> ending(polygons_.size(), false);
+  std::vector<bool> ending(polygons.size(), false);
   for (const auto& [pupil, at] : checks) {
     for (std::size_t j = 0; j < at.polygons.size(); ++j) {
       if (pupil->empty() && at.weights[j] != 0) ending[at.polygons[j]] = true;
     }
   }
-  const std::vector<PupilPolygon> between_ends = polygons_;
-  for (std::size_t k = 0; k < polygons_.size(); ++k) {
+  const std::vector<PupilPolygon> between_ends = polygons;
+  for (std::size_t k = 0; k < polygons.size(); ++k) {
     if (!ending[k]) continue;
     std::vector<PupilPolygon> around;
     const std::size_t row = k / nodes % nodes, column = k % nodes, first = k - row * nodes - column;
@@ -193,11 +169,11 @@ EntranceGrid::EntranceGrid(const Vec3<double>& centre, double steepest, const st
         around.push_back(between_ends[first + i * nodes + j]);
       }
     }
-    polygons_[k] = hull(around);
+    polygons[k] = hull(around);
   }
   constexpr std::size_t probes = 32768;
   expand_to_probes(
-      polygons_, probes, [](const std::array<double, 4>& at) { return weights_at(at[0], at[1], at[2]); },
+      polygons, probes, [](const std::array<double, 4>& at) { return SceneNodes<3>::weights_at(at[0], at[1], at[2]); },
       [&](std::span<const std::array<double, 4>> at, std::span<const std::uint32_t> which, const double* x,
           const double* y, double* clearances) {
         const auto place = [&](std::size_t r) { return place_at(at[which[r]][0], at[which[r]][1], at[which[r]][2]); };
@@ -210,60 +186,24 @@ EntranceGrid::EntranceGrid(const Vec3<double>& centre, double steepest, const st
   for (std::size_t r = 0; r < rays.size(); ++r) {
     for (std::size_t i = 0; i < rows; ++i) {
       const double distance = part(i, rows), reciprocal = steepest * distance;
-      const Bearing bearing(centre, rays[r], reciprocal);
-      const Vec2<double> at = angles(bearing) / widest(distance);
+      const Bearing bearing = bearing_on_sphere(centre, rays[r], reciprocal);
+      const Vec2<double> at = angles<3>(bearing) / result.last(distance);
       const double out = std::hypot(at.x, at.y), room = out < last_fields ? about_rays : about_last_rays;
       if (i != r % rows && out < outer_fields) continue;
-      const Vec2<double> place =
-          bearing.in_quadrant(PupilPlane::facing(centre, bearing.field, bearing.azimuth, reciprocal).meet(rays[r]));
-      const PolygonWeights nodes_about = weights_at(distance, std::min(at.y, 1.0), std::min(at.x, 1.0));
-      const double way = interpolated(polygons_, nodes_about).way_to(place.x, place.y);
+      const Vec2<double> place = place_in_grid(centre, bearing, reciprocal, rays[r]);
+      const PolygonWeights nodes_about = SceneNodes<3>::weights_at(distance, std::min(at.y, 1.0), std::min(at.x, 1.0));
+      const double way = interpolated(polygons, nodes_about).way_to(place.x, place.y);
       if (std::isinf(way)) {  // a pupil that no polygon about a middle describes
-        polygons_.clear();
-        return;
+        polygons.clear();
+        return result;
       }
       if (room * way <= 1) continue;
       for (std::size_t j = 0; j < nodes_about.polygons.size(); ++j) {
-        if (nodes_about.weights[j] != 0) polygons_[nodes_about.polygons[j]].widen(room * way);
+        if (nodes_about.weights[j] != 0) polygons[nodes_about.polygons[j]].widen(room * way);
       }
     }
   }
-}
-
-Vec2<double> EntranceGrid::widest(double distance) const noexcept {
-  const double row = distance * distance_steps;
-  const auto i = std::min(static_cast<std::size_t>(row), distance_steps - 1);
-  return widest_[i] + (row - static_cast<double>(i)) * (widest_[i + 1] - widest_[i]);
-}
-
-PolygonWeights EntranceGrid::weights_at(double distance, double down, double across) noexcept {
-  const auto cell = [](double part, std::size_t count) {
-    const double at = part * static_cast<double>(count);
-    const auto i = std::min(static_cast<std::size_t>(at), count - 1);
-    return std::pair(i, at - static_cast<double>(i));
-  };
-  const auto [i, d] = cell(distance, distance_steps);
-  const auto [j, s] = cell(down, steps);
-  const auto [k, t] = cell(across, steps);
-  PolygonWeights result;
-  for (std::size_t corner = 0; corner < 8; ++corner) {
-    const std::size_t far = corner / 4, up = corner / 2 % 2, right = corner % 2;
-    result.polygons[corner] = ((i + far) * nodes + j + up) * nodes + k + right;
-    result.weights[corner] = (far ? d : 1 - d) * (up ? s : 1 - s) * (right ? t : 1 - t);
-  }
   return result;
-}
-
-std::optional<PolygonWeights> EntranceGrid::weights(const Bearing& bearing, double reciprocal_distance) const noexcept {
-  const double distance = std::min(reciprocal_distance / steepest_, 1.0);
-  const Vec2<double> at = angles(bearing) / widest(distance);
-  if (!(at.x <= 1 && at.y <= 1)) return {};
-  return weights_at(distance, at.y, at.x);
-}
-
-PupilPolygon EntranceGrid::polygon(const Bearing& bearing, double reciprocal_distance) const noexcept {
-  const auto at = weights(bearing, reciprocal_distance);
-  return at ? interpolated(polygons_, *at) : PupilPolygon{};
 }
 
 }  // namespace petzval::pupil_table_detail

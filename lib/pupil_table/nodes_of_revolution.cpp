@@ -1,0 +1,190 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <cmath>
+#include <glm/geometric.hpp>
+#include <numbers>
+#include <utility>
+
+#include "pupil/boundary_search.hpp"
+#include "scene_nodes.hpp"
+
+namespace petzval::pupil_table_detail {
+namespace {
+
+/// Bounds of the places where the rays of one node and its neighbours cross its plane.
+struct Bounds {
+  double low = 0, high = 0, across = 0;
+  bool any = false;
+
+  void take(double x, double y) noexcept {
+    low = any ? std::min(low, y) : y;
+    high = any ? std::max(high, y) : y;
+    across = std::max(across, std::abs(x));
+    any = true;
+  }
+};
+
+/// Instead of a polygon where nothing passes any more: between it and the last one, which has `before` others before
+/// it, the pupil ends and moves on as it did, and faster.
+PupilPolygon beyond(const PupilPolygon* polygon, std::size_t before) noexcept {
+  constexpr double room = 1.2;
+  PupilPolygon result = polygon[-1];
+  if (before > 1) {
+    for (int i : {0, 1}) result.middle[i] += polygon[-1].middle[i] - polygon[-2].middle[i];
+  }
+  result.widen(room);
+  return result;
+}
+
+/// Whether a pupil is a ring about its middle.
+bool is_ring(const PupilPolygon& polygon) noexcept {
+  const auto& [middle, corners, from, width] = polygon;
+  return *std::max_element(from.begin(), from.end()) == 0 && *std::min_element(width.begin(), width.end()) > 0;
+}
+
+}  // namespace
+
+void RayClearances::test(std::size_t count, double* clearances) {
+  through_.resize(count);
+  const auto at = [this](std::size_t k) { return components_[k].data(); };
+  passing_(count, {at(0), at(1), at(2), at(3), at(4), at(5)}, wavelength_, through_.data());
+  std::transform(through_.begin(), through_.end(), clearances, pupil_detail::clearance_of);
+}
+
+Bearing bearing_on_sphere(const Vec3<double>& centre, const Ray<double>& ray, double reciprocal_radius) noexcept {
+  const Vec3<double> from = ray.origin - centre;
+  const double b = glm::dot(from, ray.direction), beside2 = glm::dot(from, from) - b * b;
+  const double along =
+      std::sqrt(std::max(1 - beside2 * (reciprocal_radius * reciprocal_radius), 0.0)) - b * reciprocal_radius;
+  const Vec3<double> unit = from * reciprocal_radius + ray.direction * along;
+  return bearing_of(unit.x, unit.y, unit.z);
+}
+
+PupilPlane plane_facing(const Vec3<double>& centre, const Bearing& bearing, double reciprocal_distance) noexcept {
+  return PupilPlane::facing(centre, bearing.field, {bearing.azimuth_x, bearing.azimuth_y}, reciprocal_distance);
+}
+
+SceneNodes<2> nodes_of_revolution(const Vec3<double>& centre, double steepest, const std::vector<Ray<double>>& rays,
+                                  std::size_t wavelength, const ScenePassing& passing, ClippedBy clipped_by) {
+  using L = SceneLayout<2>;
+  constexpr std::size_t fields = L::row, distances = L::distances + 1;
+  SceneNodes<2> result;
+  std::vector<PupilPolygon>& polygons = result.polygons;
+  // The nodes, and places half way between them to look whether means of nodes contain what they should.
+  constexpr std::size_t rows = 2 * L::distances + 1, columns = 2 * L::fields + 1;
+  const auto reciprocal_of = [&](std::size_t row) { return steepest * static_cast<double>(row) / (rows - 1); };
+
+  // How far fields reach at each distance; the rays leave room between them.
+  constexpr double between_rays = 1.05, on_axis = 1e-6;
+  std::array<double, rows> widest{};
+  for (std::size_t row = 0; row < rows; ++row) {
+    for (const Ray<double>& ray : rays) {
+      widest[row] = std::max(widest[row], bearing_on_sphere(centre, ray, reciprocal_of(row)).field);
+    }
+    widest[row] = std::min(between_rays * widest[row] + on_axis, std::numbers::pi);
+  }
+  for (std::size_t row = 1; row < rows; row += 2) {
+    const double lacking = widest[row] - (widest[row - 1] + widest[row + 1]) / 2;
+    if (lacking > 0) widest[row - 1] += lacking, widest[row + 1] += lacking;
+  }
+  for (std::size_t row = 1; row < rows; row += 2) widest[row] = (widest[row - 1] + widest[row + 1]) / 2;
+  for (std::size_t i = 0; i < distances; ++i) result.widest[i] = widest[2 * i];
+
+  // Where to look for the pupil of a field: about what the rays take of its plane at the distance at which those of a
+  // film point are most nearly of one field.
+  const auto sharpest = static_cast<std::size_t>(std::min_element(widest.begin(), widest.end()) - widest.begin());
+  std::vector<Bounds> bounds(columns);
+  for (const Ray<double>& ray : rays) {
+    const Bearing bearing = bearing_on_sphere(centre, ray, reciprocal_of(sharpest));
+    const Vec2<double> place = plane_facing(centre, bearing, 0).meet(ray);
+    const auto nearest = static_cast<std::size_t>(std::lround(bearing.field / widest[sharpest] * (columns - 1)));
+    for (std::size_t j = nearest - std::min<std::size_t>(nearest, 2); j <= std::min(nearest + 2, columns - 1); ++j) {
+      bounds[j].take(place.x, place.y);
+    }
+  }
+  // The axis may be dark.
+  const auto lit = std::find_if(bounds.begin(), bounds.end(), [](const Bounds& b) { return b.any; });
+  std::fill(bounds.begin(), lit, *lit);
+  double room = 0, across = 0;
+  for (std::size_t j = 0; j < columns; ++j) {
+    if (!bounds[j].any) bounds[j] = bounds[j - 1];
+    room = std::max(room, (bounds[j].high - bounds[j].low) / 2);
+    across = std::max(across, bounds[j].across);
+  }
+  std::vector<pupil_detail::PupilGuess> guesses;  // rows x columns
+  std::vector<PupilPlane> planes;
+  for (std::size_t row = 0; row < rows; ++row) {
+    for (std::size_t j = 0; j < columns; ++j) {
+      const double field = widest[row] * static_cast<double>(j) / (columns - 1);
+      const double known = std::min(field / widest[sharpest], 1.0) * (columns - 1);
+      const Bounds& b = bounds[static_cast<std::size_t>(std::lround(known))];
+      guesses.push_back({0, b.low - room, b.high + room, std::max(across, room)});
+      planes.push_back(PupilPlane::facing(centre, field, {0, 1}, reciprocal_of(row)));
+    }
+  }
+
+  constexpr std::size_t directions = 32;
+  RayClearances clearances_of(passing, wavelength);
+  const auto passes = [&](std::size_t count, const std::uint32_t* which, const double* x, const double* y,
+                          double* clearances) {
+    clearances_of(
+        count, [&](std::size_t r) { return planes[which[r]].ray(x[r], y[r]); }, clearances);
+  };
+  const auto pupils = pupil_detail::find_regions(guesses, pupil_detail::SearchOrder::rows(guesses.size(), columns),
+                                                 directions, true, passes);
+
+  const auto node = [](std::size_t place) { return place / columns / 2 * fields + place % columns / 2; };
+  polygons.resize(distances * fields);
+  std::vector<InterpolationCheck> checks;
+  for (std::size_t p = 0; p < pupils.size(); ++p) {
+    const std::size_t row = p / columns, column = p % columns, at = node(p);
+    if (row % 2 == 0 && column % 2 == 0) {
+      PupilPolygon& polygon = polygons[at];
+      polygon = pupils[p].empty() && at % fields > 0 ? beyond(&polygon, at % fields)
+                                                     : polygon_of(pupils[p], PolygonFit::enclosing);
+    } else {
+      const std::size_t down = row % 2 * fields, right = column % 2;
+      checks.push_back({&pupils[p], {{at, at + right, at + down, at + down + right}, {0.25, 0.25, 0.25, 0.25}}});
+    }
+  }
+  expand_to_cover(polygons, checks);
+  constexpr double elsewhere = 1.008;  // in cells, away from the places looked at
+  for (PupilPolygon& polygon : polygons) polygon.widen(elsewhere);
+  // An obscuration is worth leaving out that all pupils have around their middles. Others move and are clipped sooner
+  // than a few places show.
+  const bool rings = std::all_of(polygons.begin(), polygons.end(), is_ring);
+  if (!rings) {
+    for (PupilPolygon& polygon : polygons) polygon.obscured.fill(0);
+  }
+
+  // Where pupils dwindle, in the last fields, their boundaries bend more than a few places show: the sampled rays
+  // themselves do, and do everywhere where nothing else clips a pupil.
+  const bool all = rings || clipped_by == ClippedBy::samples;
+  constexpr double about_rays = 1.08, last_fields = 0.75, in_obscurations = 0.8;
+  for (std::size_t row = 0; row < rows; ++row) {
+    const double reciprocal = reciprocal_of(row);
+    for (const Ray<double>& ray : rays) {
+      const Bearing bearing = bearing_on_sphere(centre, ray, reciprocal);
+      if (!all && bearing.field < last_fields * widest[row]) continue;
+      const Vec2<double> place = plane_facing(centre, bearing, reciprocal).meet(ray);
+      const PolygonWeights at = result.weights(angles<2>(bearing), reciprocal / steepest).value_or(PolygonWeights{});
+      const double way = interpolated(polygons, at).way_to(place.x, place.y);
+      if (std::isinf(way)) {  // a pupil that no polygon about a middle describes
+        polygons.clear();
+        return result;
+      }
+      for (std::size_t j = 0; j < at.polygons.size(); ++j) {
+        if (at.weights[j] == 0) continue;
+        PupilPolygon& polygon = polygons[at.polygons[j]];
+        if (way < 0) {
+          for (double& width : polygon.obscured) width *= in_obscurations;
+        } else if (about_rays * way > 1) {
+          polygon.widen(about_rays * way);
+        }
+      }
+    }
+  }
+  return result;
+}
+
+}  // namespace petzval::pupil_table_detail

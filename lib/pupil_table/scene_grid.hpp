@@ -1,0 +1,302 @@
+// SPDX-License-Identifier: Apache-2.0
+// Pupils of scene points, interpolated between the polygons at the nodes of a grid, for one sample or for blocks of
+// many. Names are local: this is compiled for several instruction sets, and the linker must not mix functions of two
+// sets.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+
+#include "core/widest.hpp"
+#include "polygon_grid.hpp"
+
+namespace petzval::pupil_table_detail {
+
+/// Nodes over the reciprocal distance and the field of scene points, seen from the centre of a table. With two
+/// dimensions the field is one angle, and polygons turn with the azimuth of the point. With three it is a pair of
+/// angles in the quadrant x, y >= 0, field times azimuth, and the pupils of the other quadrants are mirror images.
+/// Polygons lie in the planes that face their points (PupilPlane::facing).
+template <int dimensions>
+struct SceneLayout {
+  static constexpr std::int32_t angles = dimensions - 1;
+  static constexpr std::int32_t distances = 2, fields = dimensions == 2 ? 12 : 6;  ///< cells along each axis
+  static constexpr std::int32_t row = fields + 1, layer = dimensions == 2 ? row : row * row;
+  static constexpr std::int32_t nodes = (distances + 1) * layer, limits = (distances + 1) * angles;
+  static constexpr std::size_t about = std::size_t{1} << dimensions;  ///< nodes of a cell
+  /// From the first node of a cell to node j of it.
+  static constexpr std::int32_t offset(std::size_t j) noexcept {
+    const auto bit = [j](std::size_t k) { return static_cast<std::int32_t>(j >> k & 1); };
+    return dimensions == 2 ? bit(1) * layer + bit(0) : bit(2) * layer + bit(1) * row + bit(0);
+  }
+};
+
+/// The numbers of one node. Corners count from the middle; corner 64 is corner 0.
+struct NodeLayout {
+  static constexpr std::int32_t middle = 0, corners = 2;
+  static constexpr std::int32_t obscured = corners + 2 * (static_cast<std::int32_t>(polygon_corners) + 1);
+  static constexpr std::int32_t size = obscured + 2 * static_cast<std::int32_t>(polygon_corners);
+};
+
+/// The nodes of all wavelengths, borrowed.
+template <int number_of_dimensions>
+struct SceneGrid {
+  static constexpr int dimensions = number_of_dimensions;
+  const double* nodes = nullptr;   ///< [wavelength][SceneLayout::nodes] NodeLayout
+  const double* widest = nullptr;  ///< [wavelength][distance][angle] rad: the last field; 0: no pupils
+  std::int32_t wavelengths = 0;
+  double centre_z = 0, steepest = 0;  ///< mm, 1/mm: largest reciprocal distance
+  double front_half = 0;              ///< half height of the front surface, mm
+  bool obscured = false;              ///< at least one sector has an obscured part
+};
+
+/// Rays of samples: N of each.
+struct EntranceRays {
+  double *x, *y, *z;       ///< on the plane of the pupil, lens frame, mm
+  double *dx, *dy, *dz;    ///< unit, towards the lens
+  double *distance, *pdf;  ///< from the point, mm; 1/sr
+
+  EntranceRays from(std::size_t begin) const noexcept {
+    return {x + begin, y + begin, z + begin, dx + begin, dy + begin, dz + begin, distance + begin, pdf + begin};
+  }
+};
+
+/// A direction from the centre of a table: its angle with the axis (-z), rad, and its azimuth.
+struct Bearing {
+  double field, sine, cosine;  ///< sine and cosine: of the field
+  double azimuth_x, azimuth_y;
+};
+
+namespace {
+
+/// The cell of a grid that contains a point, by fractions in [0, 1] of the largest reciprocal distance and of the last
+/// field there. With two dimensions `down` is not used.
+template <int dimensions>
+struct SceneCell {
+  std::int32_t first;  ///< node of the wavelength
+  double distance, down, across;
+
+  PETZVAL_INLINE double weight(std::size_t j) const noexcept {
+    const auto part = [j](std::size_t k, double t) { return (j >> k & 1) != 0 ? t : 1 - t; };
+    if constexpr (dimensions == 2) {
+      return part(1, distance) * part(0, across);
+    } else {
+      return part(2, distance) * (part(1, down) * part(0, across));
+    }
+  }
+};
+template <int dimensions>
+PETZVAL_INLINE SceneCell<dimensions> cell_of(double distance, double down, double across) noexcept {
+  using L = SceneLayout<dimensions>;
+  const auto split = [](double part, std::int32_t cells, double& rest) {
+    const double place = part * static_cast<double>(cells);
+    const auto above = static_cast<std::int32_t>(place);
+    const std::int32_t i = above < cells - 1 ? above : cells - 1;
+    rest = place - static_cast<double>(i);
+    return i;
+  };
+  SceneCell<dimensions> cell{0, 0, 0, 0};
+  const std::int32_t i = split(distance, L::distances, cell.distance), k = split(across, L::fields, cell.across);
+  const std::int32_t j = dimensions == 2 ? 0 : split(down, L::fields, cell.down);
+  cell.first = i * L::layer + j * L::row + k;
+  return cell;
+}
+
+/// The last field at a fraction of the largest reciprocal distance. widest: of one wavelength.
+template <int dimensions>
+PETZVAL_INLINE double last_field(const double* widest, double distance, std::int32_t angle) noexcept {
+  using L = SceneLayout<dimensions>;
+  const double place = distance * static_cast<double>(L::distances);
+  const auto above = static_cast<std::int32_t>(place);
+  const std::int32_t i = above < L::distances - 1 ? above : L::distances - 1;
+  const double near = widest[i * L::angles + angle], far = widest[(i + 1) * L::angles + angle];
+  return near + (place - static_cast<double>(i)) * (far - near);
+}
+
+PETZVAL_INLINE Bearing bearing_of(double unit_x, double unit_y, double unit_z) noexcept {
+  const double across2 = unit_x * unit_x + unit_y * unit_y, sine = core_detail::square_root(across2);
+  constexpr double whole_turn = 6.283185307179586;
+  const bool off_axis = across2 > axis_r2<double>;
+  const double per_sine = 1 / (off_axis ? sine : 1.0);
+  return {whole_turn * turn_of(sine, -unit_z), sine, -unit_z, off_axis ? unit_x * per_sine : 0.0,
+          off_axis ? unit_y * per_sine : 1.0};
+}
+/// The angles of SceneLayout.
+template <int dimensions>
+PETZVAL_INLINE double angle_of(const Bearing& b, std::int32_t k) noexcept {
+  if constexpr (dimensions == 2) {
+    return b.field;
+  } else {
+    const double part = k == 0 ? b.azimuth_x : b.azimuth_y;
+    return b.field * (part < 0 ? -part : part);
+  }
+}
+/// A point of the plane that faces the direction, from the frame of the polygons, and back.
+template <int dimensions>
+PETZVAL_INLINE Point<double> from_grid(const Bearing& b, const Point<double>& p) noexcept {
+  if constexpr (dimensions == 2) {
+    return p;
+  } else {
+    const double x = b.azimuth_x < 0 ? -p.x : p.x, y = b.azimuth_y < 0 ? -p.y : p.y;
+    return {b.azimuth_y * x - b.azimuth_x * y, b.azimuth_x * x + b.azimuth_y * y};
+  }
+}
+template <int dimensions>
+PETZVAL_INLINE Point<double> to_grid(const Bearing& b, const Point<double>& p) noexcept {
+  if constexpr (dimensions == 2) {
+    return p;
+  } else {
+    const double x = b.azimuth_y * p.x + b.azimuth_x * p.y, y = b.azimuth_y * p.y - b.azimuth_x * p.x;
+    return {b.azimuth_x < 0 ? -x : x, b.azimuth_y < 0 ? -y : y};
+  }
+}
+
+/// Points of the scene as a grid has them.
+template <std::size_t block, int dimensions>
+struct ScenePlaces {
+  std::int32_t numbers[block];  ///< position of the numbers of a cell's first node
+  double weights[SceneLayout<dimensions>::about][block], known[block];  ///< known: 1 or 0
+  double distance[block], field[block], sine[block], cosine[block], azimuth_x[block], azimuth_y[block];
+
+  PETZVAL_INLINE Bearing bearing(std::size_t i) const noexcept {
+    return {field[i], sine[i], cosine[i], azimuth_x[i], azimuth_y[i]};
+  }
+};
+
+/// wavelength: a position, or -1 if the table does not cover the wavelength.
+template <std::size_t block, int dimensions>
+PETZVAL_INLINE void find_scene_places(const SceneGrid<dimensions>& grid, const double* x, const double* y,
+                                      const double* z, const std::int32_t* wavelength,
+                                      ScenePlaces<block, dimensions>& places) noexcept {
+  using L = SceneLayout<dimensions>;
+  PETZVAL_INDEPENDENT
+  for (std::size_t i = 0; i < block; ++i) {
+    constexpr double farthest = 1e100;  // mm: squares of distances must be numbers
+    // Comparisons with NaN are false.
+    const auto bounded = [](double a) -> std::int32_t { return (a < 0 ? -a : a) <= farthest; };
+    const std::int32_t sound = bounded(x[i]) & bounded(y[i]) & bounded(z[i]);
+    const double px = sound ? x[i] : 0.0, py = sound ? y[i] : 0.0, pz = sound ? z[i] - grid.centre_z : 0.0;
+    const double r2 = px * px + py * py, distance = core_detail::square_root(r2 + pz * pz);
+    const double per_distance = 1 / (distance > 0 ? distance : 1.0), part = per_distance / grid.steepest;
+    const Bearing bearing = bearing_of(px * per_distance, py * per_distance, pz * per_distance);
+    // Beside the front surface, fields of more than 90 degrees see past it.
+    const std::int32_t beside = r2 > grid.front_half * grid.front_half, before = pz < 0;
+    const std::int32_t far_enough = grid.steepest * distance >= 1, compiled = wavelength[i] >= 0;
+    const std::int32_t possible = sound & (beside | before) & far_enough & compiled;
+    const double* const widest = grid.widest + (possible ? wavelength[i] : 0) * L::limits;
+    const double at = possible ? (part < 1 ? part : 1.0) : 0.0;
+    const double last_x = last_field<dimensions>(widest, at, 0),
+                 last_y = last_field<dimensions>(widest, at, L::angles - 1);
+    const double across = angle_of<dimensions>(bearing, 0) / last_x;
+    const double down = angle_of<dimensions>(bearing, L::angles - 1) / last_y;
+    const std::int32_t in_columns = across <= 1, in_rows = down <= 1;
+    const std::int32_t known = possible & in_columns & in_rows;
+    const SceneCell<dimensions> cell = cell_of<dimensions>(at, known ? down : 0.0, known ? across : 0.0);
+    places.numbers[i] = ((known ? wavelength[i] : 0) * L::nodes + cell.first) * NodeLayout::size;
+    for (std::size_t j = 0; j < L::about; ++j) places.weights[j][i] = cell.weight(j);
+    places.known[i] = known ? 1.0 : 0.0;
+    places.distance[i] = distance;
+    places.field[i] = bearing.field;
+    places.sine[i] = bearing.sine, places.cosine[i] = bearing.cosine;
+    places.azimuth_x[i] = bearing.azimuth_x, places.azimuth_y[i] = bearing.azimuth_y;
+  }
+}
+
+/// The ray of a point through a place in the plane that faces it, from the centre of the table.
+struct RayToLens {
+  double x, y, z, dx, dy, dz;
+  double distance, per_area;  ///< to the place, mm; solid angle over area of the plane, inverted: 1/sr for 1/mm^2
+};
+PETZVAL_INLINE RayToLens ray_to_lens(const Bearing& b, double distance, const Point<double>& p) noexcept {
+  const double x = b.azimuth_y * p.x + b.azimuth_x * b.cosine * p.y;
+  const double y = b.azimuth_y * b.cosine * p.y - b.azimuth_x * p.x, z = b.sine * p.y;
+  const double per_distance = 1 / (distance > 0 ? distance : 1.0);
+  const double dx = x * per_distance - b.azimuth_x * b.sine, dy = y * per_distance - b.azimuth_y * b.sine;
+  const double dz = z * per_distance + b.cosine;
+  const double per_length = 1 / core_detail::square_root(dx * dx + dy * dy + dz * dz);
+  const double far2 = distance * distance + (p.x * p.x + p.y * p.y), far = core_detail::square_root(far2);
+  return {x, y, z, dx * per_length, dy * per_length, dz * per_length, far, far2 * (far * per_distance)};
+}
+
+/// The polygon of one point.
+template <bool obscured, std::size_t block, int dimensions>
+struct ScenePolygon {
+  const double* nodes;
+  const ScenePlaces<block, dimensions>& places;
+  std::size_t i;
+
+  PETZVAL_INLINE double number(std::int32_t k) const noexcept {
+    using L = SceneLayout<dimensions>;
+    double sum = 0;
+    for (std::size_t j = 0; j < L::about; ++j) {
+      sum += places.weights[j][i] * nodes[places.numbers[i] + (L::offset(j) * NodeLayout::size + k)];
+    }
+    return sum;
+  }
+  PETZVAL_INLINE Point<double> middle() const noexcept {
+    return {number(NodeLayout::middle), number(NodeLayout::middle + 1)};
+  }
+  PETZVAL_INLINE Point<double> corner(std::int32_t k) const noexcept {
+    return {number(NodeLayout::corners + 2 * k), number(NodeLayout::corners + 2 * k + 1)};
+  }
+  PETZVAL_INLINE Sector<double> sector(std::int32_t k) const noexcept {
+    Sector<double> result{corner(k), corner(k + 1), 0, 0};
+    if constexpr (obscured) {
+      result.obscured_from = number(NodeLayout::obscured + 2 * k);
+      result.obscured = number(NodeLayout::obscured + 2 * k + 1);
+    }
+    return result;
+  }
+  /// The ray through a place, in the frame of the polygons.
+  PETZVAL_INLINE RayToLens ray(const Point<double>& place) const noexcept {
+    const Bearing bearing = places.bearing(i);
+    return ray_to_lens(bearing, places.distance[i], from_grid<dimensions>(bearing, place));
+  }
+  /// The place of a point of the plane, given from the centre.
+  PETZVAL_INLINE Point<double> place(const std::array<double, 3>& p) const noexcept {
+    const Bearing b = places.bearing(i);
+    return to_grid<dimensions>(b, {b.azimuth_y * p[0] - b.azimuth_x * p[1],
+                                   b.cosine * (b.azimuth_x * p[0] + b.azimuth_y * p[1]) + b.sine * p[2]});
+  }
+};
+
+/// The density of samples in a sector, 1/mm^2. Sectors have nearly the same area and get the same share of the samples,
+/// so that samples need not know the area of the whole polygon.
+PETZVAL_INLINE double density_in(const Sector<double>& sector) noexcept {
+  const double area = sector.area();
+  return area > 0 ? 1 / (static_cast<double>(polygon_corners) * area) : 0.0;
+}
+
+/// Samples one block of rays; pdf 0 for points that the grid does not know.
+template <std::size_t block, bool obscured, int dimensions>
+PETZVAL_INLINE void sample_scene_block(const SceneGrid<dimensions>& given, const double* x, const double* y,
+                                       const double* z, const double* u, const double* v,
+                                       const std::int32_t* wavelength, const EntranceRays& rays) noexcept {
+  const SceneGrid<dimensions> grid = given;  // which nothing that is written overlaps
+  const auto [ox, oy, oz, dx, dy, dz, distances, pdfs] = rays;
+  ScenePlaces<block, dimensions> places;
+  find_scene_places(grid, x, y, z, wavelength, places);
+  PETZVAL_INDEPENDENT
+  for (std::size_t i = 0; i < block; ++i) {
+    const ScenePolygon<obscured, block, dimensions> polygon{grid.nodes, places, i};
+    const double turn = core_detail::clamped(u[i]) * static_cast<double>(polygon_corners);
+    constexpr auto last = static_cast<std::int32_t>(polygon_corners - 1);
+    const auto above = static_cast<std::int32_t>(turn);
+    const std::int32_t k = above < last ? above : last;
+    const Sector<double> sector = polygon.sector(k);
+    const double way = core_detail::square_root(sector.squared_way(core_detail::clamped(v[i])));
+    const Point<double> in_grid = polygon.middle() + sector.at(way, turn - static_cast<double>(k));
+    const RayToLens ray = polygon.ray(in_grid);
+    // Numbers that are not finite are no sample.
+    const double sound = (u[i] + v[i]) * 0;
+    const double density = places.known[i] * density_in(sector);
+    const std::int32_t some = density > 0, finite = sound >= 0, drawn = some & finite;
+    ox[i] = drawn ? ray.x : 0.0, oy[i] = drawn ? ray.y : 0.0, oz[i] = (drawn ? ray.z : 0.0) + grid.centre_z;
+    dx[i] = drawn ? ray.dx : 0.0, dy[i] = drawn ? ray.dy : 0.0, dz[i] = drawn ? ray.dz : 1.0;
+    distances[i] = drawn ? ray.distance : 0.0;
+    pdfs[i] = drawn ? ray.per_area * density : 0.0;
+  }
+}
+
+}  // namespace
+}  // namespace petzval::pupil_table_detail

@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "petzval/core/geometry.hpp"
+#include "petzval/core/ray.hpp"
+#include "petzval/pupil/pupil_plane.hpp"
+#include "pupil_table/entrance_pupil_table.hpp"
+#include "pupil_table/pupil_polygon.hpp"
+#include "scene_grid.hpp"
+
+/// The polygons at the nodes of a SceneGrid, while a table is made.
+namespace petzval::pupil_table_detail {
+
+/// Clearances of positions in planes, from the rays through the positions.
+class RayClearances {
+ public:
+  /// passing has to outlive the object.
+  RayClearances(const ScenePassing& passing, std::size_t wavelength) : passing_(passing), wavelength_(wavelength) {}
+  /// ray_at(i): one of `count` rays. clearances: as PlaceClearances, of which only the signs are known.
+  template <class RayAt>
+  void operator()(std::size_t count, const RayAt& ray_at, double* clearances) {
+    for (auto& component : components_) component.resize(count);
+    for (std::size_t r = 0; r < count; ++r) {
+      const Ray<double> ray = ray_at(r);
+      for (int i : {0, 1, 2}) components_[i][r] = ray.origin[i], components_[3 + i][r] = ray.direction[i];
+    }
+    test(count, clearances);
+  }
+
+ private:
+  void test(std::size_t count, double* clearances);
+
+  const ScenePassing& passing_;
+  std::size_t wavelength_;
+  std::array<std::vector<double>, 6> components_;
+  std::vector<std::uint8_t> through_;
+};
+
+/// The point in which a ray leaves the sphere of a radius about a centre, seen from the centre.
+Bearing bearing_on_sphere(const Vec3<double>& centre, const Ray<double>& ray, double reciprocal_radius) noexcept;
+/// The plane that faces a point.
+PupilPlane plane_facing(const Vec3<double>& centre, const Bearing& bearing, double reciprocal_distance) noexcept;
+
+/// The nodes of one wavelength.
+template <int dimensions>
+struct SceneNodes {
+  using L = SceneLayout<dimensions>;
+  std::array<double, L::limits> widest{};  ///< SceneGrid::widest
+  std::vector<PupilPolygon> polygons;      ///< empty: no polygon about a middle describes the pupils
+
+  /// By the fractions of cell_of().
+  static PolygonWeights weights_at(double distance, double down, double across) noexcept {
+    const SceneCell<dimensions> cell = cell_of<dimensions>(distance, down, across);
+    PolygonWeights result;
+    for (std::size_t j = 0; j < L::about; ++j) {
+      result.polygons[j] = static_cast<std::size_t>(cell.first + L::offset(j));
+      result.weights[j] = cell.weight(j);
+    }
+    return result;
+  }
+  /// The last field, by angle.
+  Vec2<double> last(double distance) const noexcept {
+    return {last_field<dimensions>(widest.data(), distance, 0),
+            last_field<dimensions>(widest.data(), distance, L::angles - 1)};
+  }
+  /// nullopt if the field lies outside the grid. distance: fraction of the largest reciprocal distance.
+  std::optional<PolygonWeights> weights(const Vec2<double>& field, double distance) const noexcept {
+    const Vec2<double> part = field / last(distance);
+    if (!(part.x <= 1 && part.y <= 1)) return {};
+    return weights_at(distance, part.y, part.x);
+  }
+};
+
+/// The angles of SceneLayout.
+template <int dimensions>
+Vec2<double> angles(const Bearing& bearing) noexcept {
+  return {angle_of<dimensions>(bearing, 0), angle_of<dimensions>(bearing, dimensions - 2)};
+}
+
+/// The nodes of a lens of revolution. rays: the rays that leave the lens. steepest: the largest reciprocal distance,
+/// 1/mm.
+SceneNodes<2> nodes_of_revolution(const Vec3<double>& centre, double steepest, const std::vector<Ray<double>>& rays,
+                                  std::size_t wavelength, const ScenePassing& passing, ClippedBy clipped_by);
+/// The nodes of a lens that is symmetric in x and in y.
+SceneNodes<3> nodes_with_cylinders(const Vec3<double>& centre, double steepest, const std::vector<Ray<double>>& rays,
+                                   std::size_t wavelength, const ScenePassing& passing);
+
+}  // namespace petzval::pupil_table_detail
