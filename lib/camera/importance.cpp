@@ -26,6 +26,8 @@
 #include <numbers>
 
 #include "camera_data.hpp"
+#include "camera_steps.hpp"
+#include "core/meet_plane.hpp"
 #include "make_model.hpp"
 #include "petzval/camera/polynomial_model.hpp"
 #include "pupil_table/scene_grid.hpp"
@@ -38,7 +40,7 @@ namespace {
 
 constexpr double pi = std::numbers::pi;
 
-constexpr double infinity = std::numeric_limits<double>::infinity();
+constexpr double infinity = std::numeric_limits<double>::infinity(), largest = std::numeric_limits<double>::max();
 
 double squared(double x) noexcept { return x * x; }
 
@@ -133,6 +135,7 @@ SceneSide::SceneSide(const LensFacts& facts, const Film& film, std::optional<Til
       tilted_(std::move(tilted)),
       upright_radius_(radius),
       pdf_film_(1 / film.area_mm2()),
+      bounds_(core_detail::bounds_of<double>(film)),
       space_(model.pupils().space()),
       front_(front),
       focus_(focus),
@@ -189,148 +192,156 @@ bool SceneSide::valid(const Ray<double>& ray, Wavelength wavelength) const noexc
   return wavelengths_.covers(wavelength) && finite(ray.origin) && unit_length(ray.direction);
 }
 
-SceneSide::Arrival SceneSide::arrive(const AnyRayModel& model, const Ray<double>& ray, Wavelength wavelength,
-                                     double time) const noexcept {
-  Arrival result;
-  if (!valid(ray, wavelength)) {
-    result.fate = refused(wavelength);
-    return result;
-  }
-  Ray<double> arrives{nearest_to_lens(ray), ray.direction};
-  if (focus_) {
-    const LocalFocus::Straight straight = focus_.straighten(arrives, wavelength, plane(time));
-    result.fate = RayFate::vignetted;
-    if (!(straight.spread > 0)) return result;
-    arrives = straight.ray, result.spread = straight.spread;
-  }
-  const auto& [o, d] = arrives;
-  const TwoPlaneRays<double> line{&result.upright.x, &result.upright.y, &result.pupil.x, &result.pupil.y};
-  model.to_film(1, {&o.x, &o.y, &o.z, &d.x, &d.y, &d.z}, {.all = wavelength}, line, &result.fate);
-  return result;
-}
-
 std::optional<TiltedPlane> SceneSide::plane(double time) const noexcept {
   if (!tilted_) return {};
   return tilted_->plane(time);
 }
 
-std::optional<SceneSide::OnFilm> SceneSide::on_film(const FilmPoint& upright, const FilmPoint& pupil,
-                                                    const std::optional<TiltedPlane>& plane) const noexcept {
-  if (!plane) return OnFilm{upright, upright};
-  const auto point = plane->virtual_point_of({upright.x, upright.y, pupil.x, pupil.y});
+std::optional<SceneSide::OnFilm> SceneSide::meet_film(const TwoPlaneRay& ray,
+                                                      const std::optional<TiltedPlane>& plane) noexcept {
+  if (!plane) return OnFilm{{ray.film_x, ray.film_y}, {ray.film_x, ray.film_y}};
+  const auto point = plane->virtual_point_of(ray);
   if (!point) return {};
   return OnFilm{plane->point(*point), *point};
 }
 
-Importance SceneSide::met_by(const Arrival& arrival, const std::optional<OnFilm>& met) const noexcept {
-  Importance result{.fate = arrival.fate};
-  if (arrival.fate != RayFate::transmitted) return result;
-  if (met) {
-    result.film = met->point;
-    result.raster = film_.raster(met->point);
+template <std::size_t block>
+void SceneSide::arrive(const AnyRayModel& model, std::size_t count, const RayArrays<const double>& rays,
+                       const RayWavelengths& wavelengths, const double* times, Arrivals<block>& found) const noexcept {
+  std::array<double, block> x, y, z, dx, dy, dz;
+  std::array<RayFate, block> refusals;
+  const auto put = [&](std::size_t i, const Ray<double>& ray) {
+    x[i] = ray.origin.x, y[i] = ray.origin.y, z[i] = ray.origin.z;
+    dx[i] = ray.direction.x, dy[i] = ray.direction.y, dz[i] = ray.direction.z;
+  };
+  for (std::size_t i = 0; i < count; ++i) {
+    const Ray<double> ray = core_detail::ray_at(rays, i);
+    const bool usable = valid(ray, wavelengths.at(i));
+    refusals[i] = usable ? RayFate::transmitted : refused(wavelengths.at(i));
+    found.cosine[i] = ray.direction.z, found.spread[i] = found.facing[i] = 1;
+    put(i, usable ? Ray<double>{nearest_to_lens(ray), ray.direction} : Ray<double>{{0, 0, 0}, {0, 0, 1}});
   }
-  if (!met || !film_.contains(met->point)) result.fate = RayFate::outside_film;
-  return result;
+  for (std::size_t i = 0; i < count && focus_; ++i) {
+    if (refusals[i] != RayFate::transmitted) continue;
+    const Ray<double> ray{{x[i], y[i], z[i]}, {dx[i], dy[i], dz[i]}};
+    const auto straight = focus_.straighten(ray, wavelengths.at(i), plane(times ? times[i] : 0));
+    if (straight.spread > 0) {
+      found.spread[i] = straight.spread;
+      put(i, straight.ray);
+    } else {
+      refusals[i] = RayFate::vignetted;
+    }
+  }
+  model.to_film(count, {x.data(), y.data(), z.data(), dx.data(), dy.data(), dz.data()}, wavelengths, found.lines(),
+                found.fates.data());
+  for (std::size_t i = 0; i < count; ++i) {
+    if (refusals[i] != RayFate::transmitted) found.fates[i] = refusals[i];
+    found.met_x[i] = found.virtual_x[i] = found.upright_x[i];
+    found.met_y[i] = found.virtual_y[i] = found.upright_y[i];
+  }
+  for (std::size_t i = 0; i < count && tilted_; ++i) {
+    const auto placed = plane(times ? times[i] : 0);
+    const FilmPoint pupil{found.pupil_x[i], found.pupil_y[i]};
+    // A ray that does not meet the film plane lies outside the film.
+    const auto [met, virtual_point] = meet_film({found.upright_x[i], found.upright_y[i], pupil.x, pupil.y}, placed)
+                                          .value_or(OnFilm{{infinity, infinity}, {0, 0}});
+    found.met_x[i] = met.x, found.met_y[i] = met.y;
+    found.virtual_x[i] = virtual_point.x, found.virtual_y[i] = virtual_point.y;
+    found.facing[i] = placed->weight(virtual_point, pupil);
+  }
+  for (std::size_t i = 0; i < count; ++i) {
+    const bool misses = !on_film(bounds_, found.met_x[i], found.met_y[i]);
+    if (misses && found.fates[i] == RayFate::transmitted) found.fates[i] = RayFate::outside_film;
+  }
 }
 
-void SceneSide::weigh(Importance& result, const AnyRayModel& model, const Arrival& arrival, double facing,
-                      double cosine, double area, const Facts& at) const noexcept {
-  const auto& [fate, upright, pupil, spread] = arrival;
+template <std::size_t block>
+void SceneSide::weigh(const AnyRayModel& model, std::size_t count, const RayWavelengths& wavelengths,
+                      const Arrivals<block>& arrivals, const double* areas, Importance* found) const noexcept {
+  std::array<Facts, block> facts;
+  std::array<double, block> we, pdf_pupil, pdf_position, pdf_direction;
+  const bool shared = !wavelengths.each && !wavelengths.each_nm;
+  const Facts all = shared ? facts_at(wavelengths.all) : Facts{};
+  for (std::size_t i = 0; i < count; ++i) {
+    facts[i] = shared ? all : arrivals.lit(i) ? facts_at(wavelengths.at(i)) : Facts{};
+  }
   const double depth2 = squared(space_.depth());
-  const double length2 = squared(pupil.x - upright.x) + squared(pupil.y - upright.y) + depth2;
-  const double slopes = model.linear_in_slopes() ? squared(depth2 / (length2 * squared(cosine))) : 1;
-  result.we = at.we * slopes / spread;
-  result.pdf_film = pdf_film_;
-  result.pdf_pupil = area > 0 ? 1 / area : 0;
-  // A pupil at infinity has no place; all of the density is the direction's.
-  result.pdf_position = std::isfinite(at.entrance_area) ? 1 / at.entrance_area : 1;
-  result.pdf_direction =
-      at.density * squared(length2) / facing * slopes / spread * result.pdf_pupil / result.pdf_position;
-}
-
-Importance SceneSide::importance(const AnyRayModel& model, const Ray<double>& ray, Wavelength wavelength,
-                                 double time) const noexcept {
-  // No ray meets a point but one that was aimed at it.
-  if (model.pinhole()) return {.fate = valid(ray, wavelength) ? RayFate::vignetted : refused(wavelength)};
-  return arrived(model, arrive(model, ray, wavelength, time), ray.direction.z, wavelength, time);
+  const bool linear = model.linear_in_slopes();
+  for (std::size_t i = 0; i < count; ++i) {
+    const double length2 = squared(arrivals.pupil_x[i] - arrivals.upright_x[i]) +
+                           squared(arrivals.pupil_y[i] - arrivals.upright_y[i]) + depth2;
+    const double slope = depth2 / (length2 * squared(arrivals.cosine[i]));
+    const double slopes = (linear ? squared(slope) : 1) / arrivals.spread[i];
+    const double entrance = facts[i].entrance_area, position = entrance <= largest ? 1 / entrance : 1;
+    we[i] = facts[i].we * slopes;
+    pdf_pupil[i] = areas[i] > 0 ? 1 / areas[i] : 0;
+    // A pupil at infinity has no position; all of the density is the direction's.
+    pdf_position[i] = position;
+    pdf_direction[i] = facts[i].density * squared(length2) / arrivals.facing[i] * slopes * pdf_pupil[i] / position;
+  }
+  for (std::size_t i = 0; i < count; ++i) {
+    Importance& result = found[i] = {.fate = arrivals.fates[i]};
+    const FilmPoint film{arrivals.met_x[i], arrivals.met_y[i]};
+    const bool meets = result.fate == RayFate::transmitted || result.fate == RayFate::outside_film;
+    if (meets && film.x < infinity) result.film = film, result.raster = film_.raster(film);
+    if (result.fate != RayFate::transmitted) continue;
+    if (facts[i].entrance_area == 0 || !(areas[i] > 0)) {
+      result.fate = RayFate::vignetted;
+      continue;
+    }
+    result.we = we[i], result.pdf_film = pdf_film_, result.pdf_pupil = pdf_pupil[i];
+    result.pdf_position = pdf_position[i], result.pdf_direction = pdf_direction[i];
+  }
 }
 
 void SceneSide::importance(const AnyRayModel& model, std::size_t count, const RayArrays<const double>& rays,
                            const RayWavelengths& wavelengths, const double* times, Importance* found) const noexcept {
   constexpr std::size_t block = 64;
-  const auto ray_at = [&](std::size_t i) -> Ray<double> {
-    return {{rays.x[i], rays.y[i], rays.z[i]}, {rays.dx[i], rays.dy[i], rays.dz[i]}};
-  };
-  for (std::size_t begin = 0; begin < count; begin += block) {
-    const std::size_t n = std::min(block, count - begin);
-    std::array<std::array<double, block>, 10> columns;
-    auto& [x, y, z, dx, dy, dz, film_x, film_y, pupil_x, pupil_y] = columns;
-    bool side_by_side = !model.pinhole() && !focus_;
-    for (std::size_t i = 0; i < n; ++i) {
-      const Ray<double> ray = ray_at(begin + i);
-      side_by_side = side_by_side && valid(ray, wavelengths.at(begin + i));
-      const Vec3<double> near = nearest_to_lens(ray);
-      x[i] = near.x, y[i] = near.y, z[i] = near.z;
-      dx[i] = ray.direction.x, dy[i] = ray.direction.y, dz[i] = ray.direction.z;
-    }
-    const auto time = [&](std::size_t i) { return times ? times[begin + i] : 0; };
-    if (!side_by_side) {
-      for (std::size_t i = 0; i < n; ++i) {
-        found[begin + i] = importance(model, ray_at(begin + i), wavelengths.at(begin + i), time(i));
-      }
-      continue;
-    }
-    std::array<RayFate, block> fates;
-    model.to_film(n, {x.data(), y.data(), z.data(), dx.data(), dy.data(), dz.data()}, wavelengths.from(begin),
-                  {film_x.data(), film_y.data(), pupil_x.data(), pupil_y.data()}, fates.data());
-    std::array<double, block> areas;
-    if (!tilted_) {
-      pupils_.sample_areas<double>(n, {film_x.data(), film_y.data(), pupil_x.data(), pupil_y.data()},
-                                   wavelengths.from(begin), areas.data());
-    }
-    for (std::size_t i = 0; i < n; ++i) {
-      const Arrival arrival{fates[i], {film_x[i], film_y[i]}, {pupil_x[i], pupil_y[i]}};
-      found[begin + i] =
-          arrived(model, arrival, dz[i], wavelengths.at(begin + i), time(i), tilted_ ? nullptr : &areas[i]);
-    }
+  std::size_t begin = 0;
+  for (; begin + 1 < count; begin += block) {
+    importance_block<block>(model, std::min(block, count - begin), rays.from(begin), wavelengths.from(begin),
+                            times ? times + begin : nullptr, found + begin);
+  }
+  if (begin < count) {
+    importance_block<1>(model, 1, rays.from(begin), wavelengths.from(begin), times ? times + begin : nullptr,
+                        found + begin);
   }
 }
 
-Importance SceneSide::arrived(const AnyRayModel& model, const Arrival& arrival, double cosine, Wavelength wavelength,
-                              double time, const double* upright_area) const noexcept {
-  const FilmPoint &upright = arrival.upright, &pupil = arrival.pupil;
-  const auto placed = plane(time);
-  const auto met = on_film(upright, pupil, placed);
-  Importance result = met_by(arrival, met);
-  if (result.fate != RayFate::transmitted) return result;
-  const Facts at = facts_at(wavelength);
+template <std::size_t block>
+void SceneSide::importance_block(const AnyRayModel& model, std::size_t count, const RayArrays<const double>& rays,
+                                 const RayWavelengths& wavelengths, const double* times,
+                                 Importance* found) const noexcept {
+  // No ray meets a point but one that was aimed at it.
+  if (model.pinhole()) {
+    for (std::size_t i = 0; i < count; ++i) {
+      const bool usable = valid(core_detail::ray_at(rays, i), wavelengths.at(i));
+      found[i] = {.fate = usable ? RayFate::vignetted : refused(wavelengths.at(i))};
+    }
+    return;
+  }
+  Arrivals<block> arrivals;
+  arrive(model, count, rays, wavelengths, times, arrivals);
   // Film points send no rays through other zones of the surfaces, as of a ball lens.
   const FilmPupilTable& sampled = tilted_ ? tilted_->pupils() : pupils_;
-  const double area =
-      upright_area ? *upright_area : sampled.sample_area(met->virtual_point, pupil.x, pupil.y, wavelength);
-  const bool passes = !tilted_ || !decide(pupils_, model) || pupils_.contains(upright, pupil.x, pupil.y, wavelength);
-  if (at.entrance_area == 0 || !(area > 0) || !passes) {
-    result.fate = RayFate::vignetted;
-    return result;
+  std::array<double, block> areas;
+  sampled.sample_areas<double>(count, arrivals.virtual_lines(), wavelengths, areas.data());
+  if (tilted_ && decide(pupils_, model)) {
+    std::array<std::uint8_t, block> passes;
+    pupils_.contains<double>(count, arrivals.upright_lines(), wavelengths, passes.data());
+    for (std::size_t i = 0; i < count; ++i) areas[i] = passes[i] ? areas[i] : 0;
   }
-  weigh(result, model, arrival, placed ? placed->weight(met->virtual_point, pupil) : 1, cosine, area, at);
-  if (!weights_) return result;
-  const double density = weights_.density(sampled.position(met->virtual_point, pupil.x, pupil.y, wavelength));
-  result.we *= weights_.of_line({upright.x, upright.y, pupil.x, pupil.y}, wavelength);
-  result.pdf_pupil *= density, result.pdf_direction *= density;
-  if (!(result.we > 0)) result.fate = RayFate::vignetted;
-  return result;
-}
-
-ImportanceSample SceneSide::sample_importance(const AnyRayModel& model, const Vec3<double>& point, double u, double v,
-                                              Wavelength wavelength, double time) const noexcept {
-  if (!wavelengths_.covers(wavelength) || !finite(point)) return {.importance = {.fate = refused(wavelength)}};
-  if (model.pinhole()) return through_pinhole(model, point, u, v, wavelength, time);
-  const EntranceSample s = entrance_.sample(point, u, v, wavelength);
-  if (!(s.pdf > 0)) return {};
-  ImportanceSample result = connection(s.place, s.direction, s.distance, s.pdf);
-  result.importance = importance(model, {s.place, s.direction}, wavelength, time);
-  return result;
+  weigh(model, count, wavelengths, arrivals, areas.data(), found);
+  for (std::size_t i = 0; i < count && weights_; ++i) {
+    Importance& result = found[i];
+    if (result.fate != RayFate::transmitted) continue;
+    const FilmPoint virtual_point{arrivals.virtual_x[i], arrivals.virtual_y[i]};
+    const FilmPoint pupil{arrivals.pupil_x[i], arrivals.pupil_y[i]};
+    const double density = weights_.density(sampled.position(virtual_point, pupil.x, pupil.y, wavelengths.at(i)));
+    result.we *= weights_.of_line({arrivals.upright_x[i], arrivals.upright_y[i], pupil.x, pupil.y}, wavelengths.at(i));
+    result.pdf_pupil *= density, result.pdf_direction *= density;
+    if (!(result.we > 0)) result.fate = RayFate::vignetted;
+  }
 }
 
 void SceneSide::sample_importance(const AnyRayModel& model, std::size_t count, const Vec3<double>* points,
@@ -339,31 +350,45 @@ void SceneSide::sample_importance(const AnyRayModel& model, std::size_t count, c
   constexpr std::size_t block = 64;
   if (model.pinhole()) {
     for (std::size_t i = 0; i < count; ++i) {
-      found[i] = sample_importance(model, points[i], u[i], v[i], wavelengths.at(i), times ? times[i] : 0);
+      found[i] = through_pinhole(model, points[i], u[i], v[i], wavelengths.at(i), times ? times[i] : 0);
     }
     return;
   }
-  std::array<std::array<double, block>, 8> columns;
-  auto& [x, y, z, dx, dy, dz, distance, pdf] = columns;
+  std::size_t begin = 0;
+  for (; begin + 1 < count; begin += block) {
+    connect<block>(model, std::min(block, count - begin), points + begin, u + begin, v + begin, wavelengths.from(begin),
+                   times ? times + begin : nullptr, found + begin);
+  }
+  if (begin < count) {
+    connect<1>(model, 1, points + begin, u + begin, v + begin, wavelengths.from(begin), times ? times + begin : nullptr,
+               found + begin);
+  }
+}
+
+template <std::size_t block>
+void SceneSide::connect(const AnyRayModel& model, std::size_t count, const Vec3<double>* points, const double* u,
+                        const double* v, const RayWavelengths& wavelengths, const double* times,
+                        ImportanceSample* found) const noexcept {
+  std::array<double, block> x, y, z, dx, dy, dz, distance, pdf, way;
   std::array<Importance, block> importances;
-  for (std::size_t begin = 0; begin < count; begin += block) {
-    const std::size_t n = std::min(block, count - begin);
-    const RayWavelengths own = wavelengths.from(begin);
-    // Rays of points without a connection are valid too.
-    entrance_.sample(n, points + begin, u + begin, v + begin, own,
-                     {x.data(), y.data(), z.data(), dx.data(), dy.data(), dz.data(), distance.data(), pdf.data()});
-    importance(model, n, {x.data(), y.data(), z.data(), dx.data(), dy.data(), dz.data()}, own,
-               times ? times + begin : nullptr, importances.data());
-    for (std::size_t i = 0; i < n; ++i) {
-      ImportanceSample& sample = found[begin + i];
-      const Vec3<double>& point = points[begin + i];
-      if (!(pdf[i] > 0)) {
-        const bool known = wavelengths_.covers(own.at(i)) && finite(point);
-        sample = known ? ImportanceSample{} : ImportanceSample{.importance = {.fate = refused(own.at(i))}};
-        continue;
-      }
-      sample = connection({x[i], y[i], z[i]}, {dx[i], dy[i], dz[i]}, distance[i], pdf[i]);
-      sample.importance = importances[i];
+  // Rays of points without a connection are valid too.
+  entrance_.sample(count, points, u, v, wavelengths,
+                   {x.data(), y.data(), z.data(), dx.data(), dy.data(), dz.data(), distance.data(), pdf.data()});
+  importance_block<block>(model, count, {x.data(), y.data(), z.data(), dx.data(), dy.data(), dz.data()}, wavelengths,
+                          times, importances.data());
+  for (std::size_t i = 0; i < count; ++i) {
+    const Vec3<double> direction{dx[i], dy[i], dz[i]};
+    way[i] = std::min(way_to_front(front_, {{x[i], y[i], z[i]}, -direction}), distance[i]);
+  }
+  for (std::size_t i = 0; i < count; ++i) {
+    if (pdf[i] > 0) {
+      const Vec3<double> direction{dx[i], dy[i], dz[i]};
+      found[i] = {direction, distance[i] - way[i], Vec3<double>{x[i], y[i], z[i]} - direction * way[i], pdf[i],
+                  importances[i]};
+    } else {
+      const bool known = wavelengths_.covers(wavelengths.at(i)) && finite(points[i]);
+      found[i] = {};
+      if (!known) found[i].importance.fate = refused(wavelengths.at(i));
     }
   }
 }
@@ -384,7 +409,8 @@ ImportanceSample SceneSide::sample_distant(const AnyRayModel& model, const Vec3<
   const EntranceSample s = entrance_.sample(point, u, v, wavelength);
   if (!(s.pdf > 0)) return result;
   result = connection(s.place, direction, infinity, s.pdf / squared(far));
-  result.importance = importance(model, {s.place, direction}, wavelength, time);
+  const auto& [o, d] = Ray<double>{s.place, direction};
+  importance(model, 1, {&o.x, &o.y, &o.z, &d.x, &d.y, &d.z}, {.all = wavelength}, &time, &result.importance);
   return result;
 }
 
@@ -397,7 +423,8 @@ ImportanceSample SceneSide::connection(const Vec3<double>& place, const Vec3<dou
 ImportanceSample SceneSide::through_pinhole(const AnyRayModel& model, const Vec3<double>& point, double u, double v,
                                             Wavelength wavelength, double time) const noexcept {
   ImportanceSample result;
-  if (!wavelengths_.covers(wavelength) || !entrance_.in_front(point)) return result;
+  if (!wavelengths_.covers(wavelength) || !finite(point)) return {.importance = {.fate = refused(wavelength)}};
+  if (!entrance_.in_front(point)) return result;
   const Facts at = facts_at(wavelength);
   const Vec3<double> pupil{0, 0, at.entrance_z}, to = pupil - point;
   const double distance = glm::length(to);
@@ -406,46 +433,40 @@ ImportanceSample SceneSide::through_pinhole(const AnyRayModel& model, const Vec3
   // The weights are those of all the thick lens's pupil, and so are the places in it that the film sees it through.
   const Vec3<double> direction = to / distance;
   result = connection(pupil, direction, distance, squared(distance) / (at.entrance_area * direction.z));
-  Arrival arrival = arrive(model, {pupil, result.direction}, wavelength, time);
-  const auto placed = plane(time);
-  const auto met = on_film(arrival.upright, arrival.pupil, placed);
-  Importance& seen = result.importance = met_by(arrival, met);
-  if (seen.fate != RayFate::transmitted) return result;
-  const FilmPupilTable& pupils = tilted_ ? tilted_->pupils() : pupils_;
+  Arrivals<1> arrival;
+  arrive(model, 1, {&pupil.x, &pupil.y, &pupil.z, &direction.x, &direction.y, &direction.z}, {.all = wavelength}, &time,
+         arrival);
   const auto drawn = weights_.draw(u, v);
-  const PupilSample s = pupils.sample(met->virtual_point, drawn.u, drawn.v, wavelength);
+  const FilmPupilTable& pupils = tilted_ ? tilted_->pupils() : pupils_;
+  const FilmPoint met{arrival.virtual_x[0], arrival.virtual_y[0]};
+  const PupilSample s = pupils.sample(met, drawn.u, drawn.v, wavelength);
   const FilmPoint place{s.x, s.y};
-  double spread = 1, facing = 1;
-  bool passes = s.area > 0;
-  if (placed) {
+  double spread = 1, area = s.area;
+  if (const auto placed = plane(time); placed && arrival.lit(0)) {
     // Lines through the place spread over the film otherwise than those of the pinhole do.
-    spread = part_by_place(*placed, place) / part_by_place(*placed, arrival.pupil);
-    facing = placed->weight(met->virtual_point, place);
-    const TwoPlaneRay line = placed->upright(met->virtual_point, place);
-    arrival.upright = {line.film_x, line.film_y};
-    passes = passes && spread > 0 &&
-             (model.clips_at_apertures() || pupils_.contains(arrival.upright, place.x, place.y, wavelength));
+    spread = part_by_place(*placed, place) / part_by_place(*placed, {arrival.pupil_x[0], arrival.pupil_y[0]});
+    arrival.facing[0] = placed->weight(met, place);
+    const TwoPlaneRay line = placed->upright(met, place);
+    arrival.upright_x[0] = line.film_x, arrival.upright_y[0] = line.film_y;
+    const bool clipped =
+        !model.clips_at_apertures() && !pupils_.contains({line.film_x, line.film_y}, place.x, place.y, wavelength);
+    if (clipped || !(spread > 0)) area = 0;
   }
-  arrival.pupil = place;
-  if (!passes) {
-    seen.fate = RayFate::vignetted;
-    return result;
-  }
+  arrival.pupil_x[0] = place.x, arrival.pupil_y[0] = place.y;
+  Importance& seen = result.importance;
+  weigh(model, 1, {.all = wavelength}, arrival, &area, &seen);
+  if (seen.fate != RayFate::transmitted) return result;
   // A rim leaves a part of the entrance pupil too.
-  Facts left = at;
   if (whole_) {
     // Tilted films sample the round stop, of whose rays the iris clips some.
-    const double sampled = tilted_ ? s.area : pupils.polygon_area(met->virtual_point, wavelength);
-    const double all =
-        tilted_ ? whole_->area(met->virtual_point, wavelength) : whole_->polygon_area(met->virtual_point, wavelength);
+    const double sampled = tilted_ ? s.area : pupils.polygon_area(met, wavelength);
+    const double all = tilted_ ? whole_->area(met, wavelength) : whole_->polygon_area(met, wavelength);
     const double part = sampled / all;
-    left.entrance_area *= part;
-    result.pdf /= part;
+    result.pdf /= part, seen.pdf_position /= part, seen.pdf_direction *= part;
   }
-  weigh(seen, model, arrival, facing, result.direction.z, s.area, left);
   seen.we *= spread, seen.pdf_direction *= spread;
   if (weights_) {
-    const TwoPlaneRay line{arrival.upright.x, arrival.upright.y, place.x, place.y};
+    const TwoPlaneRay line{arrival.upright_x[0], arrival.upright_y[0], place.x, place.y};
     seen.we *= weights_.of_sample(drawn.u, drawn.v, line, wavelength) / drawn.density;
     seen.pdf_pupil *= drawn.density, seen.pdf_direction *= drawn.density;
   }
@@ -466,22 +487,26 @@ double SceneSide::pdf_distant(const AnyRayModel& model, const Ray<double>& ray, 
 }  // namespace camera_detail
 
 Importance Camera::importance(const Ray<double>& ray, Wavelength wavelength, double time) const {
-  return data_->scene().importance(data_->model, ray, data_->resolved(wavelength), time);
+  const auto& [o, d] = ray;
+  Importance found;
+  data_->scene().importance(data_->model, 1, {&o.x, &o.y, &o.z, &d.x, &d.y, &d.z}, {.all = data_->resolved(wavelength)},
+                            &time, &found);
+  return found;
 }
 
 void Camera::importance(std::size_t count, const RayArrays<const double>& rays, const RayWavelengths& wavelengths,
                         Importance* found, const double* times) const {
   data_->in_range(count, wavelengths, [&](std::size_t begin, std::size_t n, const RayWavelengths& own) {
-    const auto from = [begin](const double* column) { return column + begin; };
-    data_->scene().importance(data_->model, n,
-                              {from(rays.x), from(rays.y), from(rays.z), from(rays.dx), from(rays.dy), from(rays.dz)},
-                              own, times ? times + begin : nullptr, found + begin);
+    data_->scene().importance(data_->model, n, rays.from(begin), own, times ? times + begin : nullptr, found + begin);
   });
 }
 
 ImportanceSample Camera::sample_importance(const Vec3<double>& point, double u, double v, Wavelength wavelength,
                                            double time) const {
-  return data_->scene().sample_importance(data_->model, point, u, v, data_->resolved(wavelength), time);
+  ImportanceSample found;
+  data_->scene().sample_importance(data_->model, 1, &point, &u, &v, {.all = data_->resolved(wavelength)}, &time,
+                                   &found);
+  return found;
 }
 
 void Camera::sample_importance(std::size_t count, const Vec3<double>* points, const double* u, const double* v,

@@ -86,7 +86,7 @@ Projection SceneSide::project(const AnyRayModel& model, const Vec3<double>& poin
   FilmPoint film = *start;
   const auto done = [&](ProjectionStatus status) {
     const auto [x, y] = chiefs.pupil_point(film);
-    const auto met = on_film(film, {x, y}, plane(time));
+    const auto met = meet_film({film.x, film.y, x, y}, plane(time));
     if (!met) return result;
     const FilmPoint& at = met->point;
     result = {film_.contains(at) ? status : ProjectionStatus::outside_film, at, film_.raster(at)};

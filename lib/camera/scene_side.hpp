@@ -27,12 +27,8 @@ class SceneSide {
             const LocalFocus& focus, const AnyRayModel& model, double radius, const WavelengthFacts& wavelengths,
             const PupilWeights& weights);
 
-  Importance importance(const AnyRayModel& model, const Ray<double>& ray, Wavelength wavelength,
-                        double time) const noexcept;
   void importance(const AnyRayModel& model, std::size_t count, const RayArrays<const double>& rays,
                   const RayWavelengths& wavelengths, const double* times, Importance* found) const noexcept;
-  ImportanceSample sample_importance(const AnyRayModel& model, const Vec3<double>& point, double u, double v,
-                                     Wavelength wavelength, double time) const noexcept;
   void sample_importance(const AnyRayModel& model, std::size_t count, const Vec3<double>* points, const double* u,
                          const double* v, const RayWavelengths& wavelengths, const double* times,
                          ImportanceSample* found) const noexcept;
@@ -63,37 +59,55 @@ class SceneSide {
   Facts facts_at(Wavelength wavelength) const noexcept;
   const Compiled& nearest(Wavelength wavelength) const noexcept;
 
-  /// The image-space ray that a scene ray becomes.
-  struct Arrival {
-    RayFate fate = RayFate::invalid;
-    FilmPoint upright, pupil;
-    double spread = 1;  // LocalFocus::Straight
+  /// Up to N rays of the scene at the film.
+  template <std::size_t block>
+  struct Arrivals {
+    using Column = std::array<double, block>;
+    Column upright_x, upright_y, pupil_x, pupil_y;  // image-space rays
+    Column met_x, met_y, virtual_x, virtual_y;      // points of the film, virtual points; of an upright film, the same
+    Column facing, spread, cosine;  // TiltedPlane::weight(), LocalFocus::Straight, angle with the axis in the scene
+    std::array<RayFate, block> fates;
+
+    bool lit(std::size_t i) const noexcept { return fates[i] == RayFate::transmitted; }
+    TwoPlaneRays<double> lines() noexcept {
+      return {upright_x.data(), upright_y.data(), pupil_x.data(), pupil_y.data()};
+    }
+    TwoPlaneRays<const double> upright_lines() const noexcept {
+      return {upright_x.data(), upright_y.data(), pupil_x.data(), pupil_y.data()};
+    }
+    TwoPlaneRays<const double> virtual_lines() const noexcept {
+      return {virtual_x.data(), virtual_y.data(), pupil_x.data(), pupil_y.data()};
+    }
   };
-  /// Where an image-space ray meets the film, and the virtual point of that; of an upright film, the point itself.
+  /// The place of a film that is tilted or travels, at a time; nullopt for another film.
+  std::optional<TiltedPlane> plane(double time) const noexcept;
+  /// The intersection of an image-space ray with the film plane, and its virtual point; for an upright film, the same
+  /// point. nullopt if there is no intersection.
   struct OnFilm {
     FilmPoint point, virtual_point;
   };
-  /// Where a tilted film, or one that travels, is at a time; nothing for another one.
-  std::optional<TiltedPlane> plane(double time) const noexcept;
-  std::optional<OnFilm> on_film(const FilmPoint& upright, const FilmPoint& pupil,
-                                const std::optional<TiltedPlane>& plane) const noexcept;
+  static std::optional<OnFilm> meet_film(const TwoPlaneRay& ray, const std::optional<TiltedPlane>& plane) noexcept;
   /// A unit direction, numbers that are finite, and a wavelength that is covered.
   bool valid(const Ray<double>& ray, Wavelength wavelength) const noexcept;
   /// The fate of a ray or point that is not valid.
   RayFate refused(Wavelength wavelength) const noexcept {
     return wavelengths_.covers(wavelength) ? RayFate::invalid : RayFate::outside_spectrum;
   }
-  Arrival arrive(const AnyRayModel& model, const Ray<double>& ray, Wavelength wavelength, double time) const noexcept;
-  /// The importance of a ray that arrives. cosine: of its angle with the axis in the scene. upright_area: the area that
-  /// its sample on an upright film stands for, or null.
-  Importance arrived(const AnyRayModel& model, const Arrival& arrival, double cosine, Wavelength wavelength,
-                     double time, const double* upright_area = nullptr) const noexcept;
-  /// Film point, raster and fate of a ray that arrives.
-  Importance met_by(const Arrival& arrival, const std::optional<OnFilm>& met) const noexcept;
-  /// Weight and densities of a ray that meets the film. facing: TiltedPlane::weight(); cosine: of its angle with the
-  /// axis in the scene; area: of the pupil that its film point samples, 0 where no sample is this ray.
-  void weigh(Importance& result, const AnyRayModel& model, const Arrival& arrival, double facing, double cosine,
-             double area, const Facts& at) const noexcept;
+  /// The stages of a sample: rays to the film, weights and densities, and connections from points. count: at most
+  /// `block`. areas: of the pupil that the sample of each ray stands for, 0 if there is no such sample.
+  template <std::size_t block>
+  void arrive(const AnyRayModel& model, std::size_t count, const RayArrays<const double>& rays,
+              const RayWavelengths& wavelengths, const double* times, Arrivals<block>& found) const noexcept;
+  template <std::size_t block>
+  void weigh(const AnyRayModel& model, std::size_t count, const RayWavelengths& wavelengths,
+             const Arrivals<block>& arrivals, const double* areas, Importance* found) const noexcept;
+  template <std::size_t block>
+  void importance_block(const AnyRayModel& model, std::size_t count, const RayArrays<const double>& rays,
+                        const RayWavelengths& wavelengths, const double* times, Importance* found) const noexcept;
+  template <std::size_t block>
+  void connect(const AnyRayModel& model, std::size_t count, const Vec3<double>* points, const double* u,
+               const double* v, const RayWavelengths& wavelengths, const double* times,
+               ImportanceSample* found) const noexcept;
   /// A connection to a place in the lens from a point at a distance from it. The shadow ray ends at the front.
   ImportanceSample connection(const Vec3<double>& place, const Vec3<double>& direction, double distance,
                               double pdf) const noexcept;
@@ -103,6 +117,7 @@ class SceneSide {
   Film film_;
   std::optional<TiltedFilm> tilted_;
   double upright_radius_ = 0, pdf_film_ = 0;
+  core_detail::FilmBounds<double> bounds_;
   TwoPlanes space_;
   Front front_;
   LocalFocus focus_;

@@ -289,7 +289,7 @@ TEST(Importance, BatchEqualsSingleRays) {
                                                  Wavelength::nm(static_cast<double>(wavelengths[i])));
         EXPECT_EQ(found[i].fate, one.fate) << name(model) << i;
         EXPECT_NEAR(found[i].we, one.we, 1e-9 * one.we);
-        EXPECT_NEAR(found[i].pdf_direction, one.pdf_direction, 1e-6 * one.pdf_direction);
+        EXPECT_NEAR(found[i].pdf_direction, one.pdf_direction, 5e-6 * one.pdf_direction);  // rays in float
         EXPECT_NEAR(found[i].raster.x, one.raster.x, 1e-2);
       }
       std::vector<Vec3<double>> points(count);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <string_view>
 
@@ -34,6 +35,9 @@ struct RayArrays {
   T* dx = nullptr;
   T* dy = nullptr;
   T* dz = nullptr;
+
+  /// The rays from a position on.
+  RayArrays from(std::size_t ray) const noexcept { return {x + ray, y + ray, z + ray, dx + ray, dy + ray, dz + ray}; }
 };
 
 /// Direction of travel through the lens.
