@@ -72,8 +72,8 @@ void FilmPupilTable::sample(std::size_t count, const T* film_x, const T* film_y,
   }
   data_->by_position(count, wavelengths, [&](std::size_t o, std::size_t n, const RayWavelengths& known) {
     data_->with_grid<T>([&](const auto& grid, const auto&) {
-      const auto loop = sample_loops<std::decay_t<decltype(grid)>::dimensions>().template of<T>();
-      loop(grid, n, film_x + o, film_y + o, u + o, v + o, known, x + o, y + o, areas + o);
+      const auto& loops = sample_loops<std::decay_t<decltype(grid)>::dimensions>().template of<T>();
+      loops.sample(grid, n, film_x + o, film_y + o, u + o, v + o, known, x + o, y + o, areas + o);
     });
   });
 }
@@ -133,17 +133,20 @@ bool FilmPupilTable::contains(const FilmPoint& film, double x, double y, Wavelen
 template <class T>
 void FilmPupilTable::sample_areas(std::size_t count, const TwoPlaneRays<const T>& lines,
                                   const RayWavelengths& wavelengths, T* areas) const noexcept {
+  if (count == 1) {
+    areas[0] = static_cast<T>(
+        sample_area({lines.film_x[0], lines.film_y[0]}, lines.pupil_x[0], lines.pupil_y[0], wavelengths.at(0)));
+    return;
+  }
   if (data_->images) {
-    for (std::size_t i = 0; i < count; ++i) {
-      areas[i] = static_cast<T>(
-          sample_area({lines.film_x[i], lines.film_y[i]}, lines.pupil_x[i], lines.pupil_y[i], wavelengths.at(i)));
-    }
+    data_->images->sample_areas(count, lines, wavelengths, areas);
     return;
   }
   data_->by_position(count, wavelengths, [&](std::size_t o, std::size_t n, const RayWavelengths& known) {
-    data_->with_grid<T>([&](const auto& grid, const auto& loops) {
+    data_->with_grid<T>([&](const auto& grid, const auto&) {
       const auto [film_x, film_y, x, y] = lines.from(o);
-      loops.template of<T>().areas(grid, n, film_x, film_y, x, y, known, areas + o);
+      const auto& loops = sample_loops<std::decay_t<decltype(grid)>::dimensions>().template of<T>();
+      loops.areas(grid, n, film_x, film_y, x, y, known, areas + o);
     });
   });
 }
@@ -151,10 +154,6 @@ void FilmPupilTable::sample_areas(std::size_t count, const TwoPlaneRays<const T>
 template <class T>
 void FilmPupilTable::contains(std::size_t count, const TwoPlaneRays<const T>& lines, const RayWavelengths& wavelengths,
                               std::uint8_t* within) const noexcept {
-  if (data_->images) {
-    data_->images->contains(count, lines, wavelengths, within);
-    return;
-  }
   constexpr std::size_t block = 256;
   std::array<T, block> areas;
   for (std::size_t begin = 0; begin < count; begin += block) {

@@ -144,15 +144,15 @@ void IrisImages::sample(std::size_t count, const T* film_x, const T* film_y, con
 }
 
 template <class T>
-void IrisImages::contains(std::size_t count, const TwoPlaneRays<const T>& lines, const RayWavelengths& wavelengths,
-                          std::uint8_t* within) const noexcept {
-  iris_images().of<T>().contains(table<T>(wavelengths.all), count, lines, wavelengths, within);
+void IrisImages::sample_areas(std::size_t count, const TwoPlaneRays<const T>& lines, const RayWavelengths& wavelengths,
+                              T* areas) const noexcept {
+  iris_images().of<T>().sample_areas(table<T>(wavelengths.all), count, lines, wavelengths, areas);
 }
 
 #define PETZVAL_IRIS_IMAGES(T)                                                                                         \
   template void IrisImages::sample(std::size_t, const T*, const T*, const T*, const T*, const RayWavelengths&, T*, T*, \
                                    T*) const noexcept;                                                                 \
-  template void IrisImages::contains(std::size_t, const TwoPlaneRays<const T>&, const RayWavelengths&, std::uint8_t*)  \
+  template void IrisImages::sample_areas(std::size_t, const TwoPlaneRays<const T>&, const RayWavelengths&, T*)         \
       const noexcept;
 PETZVAL_IRIS_IMAGES(float)
 PETZVAL_IRIS_IMAGES(double)

@@ -58,8 +58,8 @@ class IrisImages {
   void sample(std::size_t count, const T* film_x, const T* film_y, const T* u, const T* v,
               const RayWavelengths& wavelengths, T* x, T* y, T* areas) const noexcept;
   template <class T>
-  void contains(std::size_t count, const TwoPlaneRays<const T>& lines, const RayWavelengths& wavelengths,
-                std::uint8_t* within) const noexcept;
+  void sample_areas(std::size_t count, const TwoPlaneRays<const T>& lines, const RayWavelengths& wavelengths,
+                    T* areas) const noexcept;
 
  private:
   using Image = ImageSections<double>;

@@ -98,34 +98,38 @@ PupilSample sample_one(const SeenIris<double>& given, const ImageSections<double
 }
 
 template <class R>
-void contains(const IrisImageTable<R>& given, std::size_t count, const TwoPlaneRays<const R>& lines,
-              const RayWavelengths& wavelengths, std::uint8_t* within) noexcept {
+void sample_areas(const IrisImageTable<R>& given, std::size_t count, const TwoPlaneRays<const R>& lines,
+                  const RayWavelengths& wavelengths, R* areas) noexcept {
   const IrisImageTable<R> table = given;
-  const TwoPlaneRays<const R> own = lines;
+  const auto [film_x, film_y, pupil_x, pupil_y] = lines;
   constexpr std::size_t block = 64;
   R x[block], y[block];
-  std::int32_t inside[block];
-  with_images(table, count, wavelengths, [&](std::size_t first, std::size_t last, const auto& image_of) {
-    for (std::size_t begin = first; begin < last; begin += block) {
-      const std::size_t n = last - begin < block ? last - begin : block;
-      for (std::size_t i = 0; i < n; ++i) {
-        const std::size_t o = begin + i;
-        const auto [fx, fy, image] = seen(table, image_of(o), own.film_x[o], own.film_y[o], true);
-        x[i] = (own.pupil_x[o] - image.shift_x * fx) / image.radius_x;
-        y[i] = (own.pupil_y[o] - image.shift_y * fy) / image.radius_y;
-        const bool in_rim = x[i] * x[i] + y[i] * y[i] <= iris_detail::rim_squared<R>;
-        inside[i] = (image.area > R(0)) & in_rim;
-      }
-      for (std::size_t k = 0; k < table.iris.count; ++k) {
-        for (std::size_t i = 0; i < n; ++i) inside[i] &= iris_detail::within_edge(table.iris, k, x[i], y[i]);
-      }
-      for (std::size_t i = 0; i < n; ++i) within[begin + i] = static_cast<std::uint8_t>(inside[i]);
-    }
-  });
+  with_images(table, count, wavelengths,
+              [&, film_x = film_x, film_y = film_y, pupil_x = pupil_x, pupil_y = pupil_y](
+                  std::size_t first, std::size_t last, const auto& image_of) {
+                for (std::size_t begin = first; begin < last; begin += block) {
+                  const std::size_t n = last - begin < block ? last - begin : block;
+                  PETZVAL_INDEPENDENT
+                  for (std::size_t i = 0; i < n; ++i) {
+                    const std::size_t o = begin + i;
+                    const auto [fx, fy, image] = seen(table, image_of(o), film_x[o], film_y[o], true);
+                    x[i] = (pupil_x[o] - image.shift_x * fx) / image.radius_x;
+                    y[i] = (pupil_y[o] - image.shift_y * fy) / image.radius_y;
+                    areas[o] = x[i] * x[i] + y[i] * y[i] <= iris_detail::rim_squared<R> ? image.area : R(0);
+                  }
+                  for (std::size_t k = 0; k < table.iris.count; ++k) {
+                    PETZVAL_INDEPENDENT
+                    for (std::size_t i = 0; i < n; ++i) {
+                      areas[begin + i] = iris_detail::within_edge(table.iris, k, x[i], y[i]) ? areas[begin + i] : R(0);
+                    }
+                  }
+                }
+              });
 }
 
 }  // namespace
 
-const IrisImageLoops PETZVAL_LOOPS{{sample<float>, contains<float>}, {sample<double>, contains<double>}, sample_one};
+const IrisImageLoops PETZVAL_LOOPS{
+    {sample<float>, sample_areas<float>}, {sample<double>, sample_areas<double>}, sample_one};
 
 }  // namespace petzval::pupil_table_detail

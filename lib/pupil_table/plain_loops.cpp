@@ -7,20 +7,6 @@ namespace petzval::pupil_table_detail {
 namespace {
 
 template <int dimensions, class R>
-void areas(const PolygonGrid<dimensions, R>& grid, std::size_t count, const R* film_x, const R* film_y, const R* x,
-           const R* y, const RayWavelengths& wavelengths, R* found) noexcept {
-  const R* const in[4] = {film_x, film_y, x, y};
-  R* const out[1] = {found};
-  with_kind(grid, [&](auto obscured, auto stopped) {
-    by_blocks(grid, count, in, wavelengths, out,
-              [&grid](auto block, const R* const* of, const std::int32_t* w, R* const* to) {
-                areas_block<decltype(block)::value, decltype(obscured)::value, decltype(stopped)::value>(
-                    grid, of[0], of[1], of[2], of[3], w, to[0]);
-              });
-  });
-}
-
-template <int dimensions, class R>
 void stop_points(const PolygonGrid<dimensions, R>& grid, std::size_t count, const R* film_x, const R* film_y,
                  const R* x, const R* y, const RayWavelengths& wavelengths, R* stop_x, R* stop_y) noexcept {
   const R* const in[4] = {film_x, film_y, x, y};
@@ -43,14 +29,15 @@ double area_of_one(const PolygonGrid<dimensions, double>& grid, double film_x, d
 }
 
 template <int dimensions>
-constexpr PlainLoops<dimensions> loops{{areas<dimensions, float>, stop_points<dimensions, float>},
-                                       {areas<dimensions, double>, stop_points<dimensions, double>},
+constexpr PlainLoops<dimensions> loops{{stop_points<dimensions, float>},
+                                       {stop_points<dimensions, double>},
                                        sample_one<dimensions, kernel::Dual>,
                                        area_of_one<dimensions>};
 
 }  // namespace
 
-const SampleLoops<2> quadrant_samples{sample<2, float>, sample<2, double>, sample_one<2, double>};
+const SampleLoops<2> quadrant_samples{
+    {sample<2, float>, areas<2, float>}, {sample<2, double>, areas<2, double>}, sample_one<2, double>};
 const PlainLoops<1> plain_polar_loops = loops<1>;
 const PlainLoops<2> plain_quadrant_loops = loops<2>;
 

@@ -6,6 +6,8 @@
 
 namespace petzval::pupil_table_detail {
 
-const PolarLoops PETZVAL_LOOPS{{sample<1, float>, sample<1, double>, sample_one<1, double>}, lens_detail::find_nearest};
+const PolarLoops PETZVAL_LOOPS{
+    {{sample<1, float>, areas<1, float>}, {sample<1, double>, areas<1, double>}, sample_one<1, double>},
+    lens_detail::find_nearest};
 
 }  // namespace petzval::pupil_table_detail

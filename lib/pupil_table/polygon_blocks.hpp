@@ -491,6 +491,20 @@ void sample(const PolygonGrid<dimensions, R>& grid, std::size_t count, const R* 
   });
 }
 
+template <int dimensions, class R>
+void areas(const PolygonGrid<dimensions, R>& grid, std::size_t count, const R* film_x, const R* film_y, const R* x,
+           const R* y, const RayWavelengths& wavelengths, R* found) noexcept {
+  const R* const in[4] = {film_x, film_y, x, y};
+  R* const out[1] = {found};
+  with_kind(grid, [&](auto obscured, auto stopped) {
+    by_blocks(grid, count, in, wavelengths, out,
+              [&grid](auto block, const R* const* of, const std::int32_t* w, R* const* to) {
+                areas_block<decltype(block)::value, decltype(obscured)::value, decltype(stopped)::value>(
+                    grid, of[0], of[1], of[2], of[3], w, to[0]);
+              });
+  });
+}
+
 /// Samples one ray. wavelength: a position, or -1 if the table does not cover the wavelength.
 template <int dimensions, class T>
 void sample_one(const PolygonGrid<dimensions, double>& grid, T film_x, T film_y, T u, T v, std::int32_t wavelength,

@@ -12,19 +12,25 @@
 
 namespace petzval::pupil_table_detail {
 
-/// Samples N rays, or one ray, of a grid.
+/// Samples of a grid for N rays.
 template <int dimensions, class R>
-using SampleLoop = void (*)(const PolygonGrid<dimensions, R>&, std::size_t, const R* film_x, const R* film_y,
-                            const R* u, const R* v, const RayWavelengths&, R* x, R* y, R* areas) noexcept;
+struct SampleLoopsOf {
+  void (*sample)(const PolygonGrid<dimensions, R>&, std::size_t, const R* film_x, const R* film_y, const R* u,
+                 const R* v, const RayWavelengths&, R* x, R* y, R* areas) noexcept;
+  /// The areas that samples at positions stand for; 0 if there is no sample.
+  void (*areas)(const PolygonGrid<dimensions, R>&, std::size_t, const R* film_x, const R* film_y, const R* x,
+                const R* y, const RayWavelengths&, R* areas) noexcept;
+};
 template <int dimensions>
 struct SampleLoops {
-  SampleLoop<dimensions, float> single;
-  SampleLoop<dimensions, double> twice;
+  SampleLoopsOf<dimensions, float> single;
+  SampleLoopsOf<dimensions, double> twice;
+  /// One sample.
   void (*one)(const PolygonGrid<dimensions, double>&, double film_x, double film_y, double u, double v,
               std::int32_t wavelength, double& x, double& y, double& area) noexcept;
 
   template <class R>
-  SampleLoop<dimensions, R> of() const noexcept {
+  const SampleLoopsOf<dimensions, R>& of() const noexcept {
     if constexpr (sizeof(R) == sizeof(float)) {
       return single;
     } else {
@@ -54,8 +60,6 @@ const SampleLoops<dimensions>& sample_loops() noexcept {
 
 template <int dimensions, class R>
 struct PlainLoopsOf {
-  void (*areas)(const PolygonGrid<dimensions, R>&, std::size_t, const R* film_x, const R* film_y, const R* x,
-                const R* y, const RayWavelengths&, R* areas) noexcept;
   void (*stop_points)(const PolygonGrid<dimensions, R>&, std::size_t, const R* film_x, const R* film_y, const R* x,
                       const R* y, const RayWavelengths&, R* stop_x, R* stop_y) noexcept;
 };
