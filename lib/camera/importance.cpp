@@ -33,6 +33,7 @@
 #include "pupil_table/scene_grid.hpp"
 #include "scene_side.hpp"
 #include "tilted_pinhole.hpp"
+#include "way_to_front.hpp"
 
 namespace petzval {
 namespace camera_detail {
@@ -214,9 +215,12 @@ void SceneSide::arrive(const AnyRayModel& model, std::size_t count, const RayArr
     x[i] = ray.origin.x, y[i] = ray.origin.y, z[i] = ray.origin.z;
     dx[i] = ray.direction.x, dy[i] = ray.direction.y, dz[i] = ray.direction.z;
   };
+  const bool shared = !wavelengths.each && !wavelengths.each_nm;
+  const bool all_covered = shared && wavelengths_.covers(wavelengths.all);
   for (std::size_t i = 0; i < count; ++i) {
     const Ray<double> ray = core_detail::ray_at(rays, i);
-    const bool usable = valid(ray, wavelengths.at(i));
+    const bool covered = shared ? all_covered : wavelengths_.covers(wavelengths.at(i));
+    const bool usable = covered && finite(ray.origin) && unit_length(ray.direction);
     refusals[i] = usable ? RayFate::transmitted : refused(wavelengths.at(i));
     found.cosine[i] = ray.direction.z, found.spread[i] = found.facing[i] = 1;
     put(i, usable ? Ray<double>{nearest_to_lens(ray), ray.direction} : Ray<double>{{0, 0, 0}, {0, 0, 1}});
@@ -258,12 +262,12 @@ void SceneSide::arrive(const AnyRayModel& model, std::size_t count, const RayArr
 template <std::size_t block>
 void SceneSide::weigh(const AnyRayModel& model, std::size_t count, const RayWavelengths& wavelengths,
                       const Arrivals<block>& arrivals, const double* areas, Importance* found) const noexcept {
-  std::array<Facts, block> facts;
-  std::array<double, block> we, pdf_pupil, pdf_position, pdf_direction;
+  std::array<double, block> we, density, entrance_area, pdf_pupil, pdf_position, pdf_direction;
   const bool shared = !wavelengths.each && !wavelengths.each_nm;
-  const Facts all = shared ? facts_at(wavelengths.all) : Facts{};
+  const Facts all = shared && wavelengths_.covers(wavelengths.all) ? facts_at(wavelengths.all) : Facts{};
   for (std::size_t i = 0; i < count; ++i) {
-    facts[i] = shared ? all : arrivals.lit(i) ? facts_at(wavelengths.at(i)) : Facts{};
+    const Facts own = shared || !arrivals.lit(i) ? all : facts_at(wavelengths.at(i));
+    we[i] = own.we, density[i] = own.density, entrance_area[i] = own.entrance_area;
   }
   const double depth2 = squared(space_.depth());
   const bool linear = model.linear_in_slopes();
@@ -272,12 +276,12 @@ void SceneSide::weigh(const AnyRayModel& model, std::size_t count, const RayWave
                            squared(arrivals.pupil_y[i] - arrivals.upright_y[i]) + depth2;
     const double slope = depth2 / (length2 * squared(arrivals.cosine[i]));
     const double slopes = (linear ? squared(slope) : 1) / arrivals.spread[i];
-    const double entrance = facts[i].entrance_area, position = entrance <= largest ? 1 / entrance : 1;
-    we[i] = facts[i].we * slopes;
+    const double position = entrance_area[i] <= largest ? 1 / entrance_area[i] : 1;
+    we[i] *= slopes;
     pdf_pupil[i] = areas[i] > 0 ? 1 / areas[i] : 0;
     // A pupil at infinity has no position; all of the density is the direction's.
     pdf_position[i] = position;
-    pdf_direction[i] = facts[i].density * squared(length2) / arrivals.facing[i] * slopes * pdf_pupil[i] / position;
+    pdf_direction[i] = density[i] * squared(length2) / arrivals.facing[i] * slopes * pdf_pupil[i] / position;
   }
   for (std::size_t i = 0; i < count; ++i) {
     Importance& result = found[i] = {.fate = arrivals.fates[i]};
@@ -285,7 +289,7 @@ void SceneSide::weigh(const AnyRayModel& model, std::size_t count, const RayWave
     const bool meets = result.fate == RayFate::transmitted || result.fate == RayFate::outside_film;
     if (meets && film.x < infinity) result.film = film, result.raster = film_.raster(film);
     if (result.fate != RayFate::transmitted) continue;
-    if (facts[i].entrance_area == 0 || !(areas[i] > 0)) {
+    if (entrance_area[i] == 0 || !(areas[i] > 0)) {
       result.fate = RayFate::vignetted;
       continue;
     }
@@ -377,8 +381,8 @@ void SceneSide::connect(const AnyRayModel& model, std::size_t count, const Vec3<
   importance_block<block>(model, count, {x.data(), y.data(), z.data(), dx.data(), dy.data(), dz.data()}, wavelengths,
                           times, importances.data());
   for (std::size_t i = 0; i < count; ++i) {
-    const Vec3<double> direction{dx[i], dy[i], dz[i]};
-    way[i] = std::min(way_to_front(front_, {{x[i], y[i], z[i]}, -direction}), distance[i]);
+    const double to_front = way_to_front(front_.curvature, x[i], y[i], z[i] - front_.vertex_z, -dx[i], -dy[i], -dz[i]);
+    way[i] = to_front < distance[i] ? to_front : distance[i];
   }
   for (std::size_t i = 0; i < count; ++i) {
     if (pdf[i] > 0) {

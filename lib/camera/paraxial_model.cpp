@@ -274,21 +274,26 @@ RayFate ParaxialModel::to_scene(const TwoPlaneRay& line, Wavelength wavelength, 
 
 void ParaxialModel::to_film(std::size_t count, const RayArrays<const double>& rays, const RayWavelengths& wavelengths,
                             const TwoPlaneRays<double>& lines, RayFate* fates) const noexcept {
-  const bool shared = !wavelengths.each && !wavelengths.each_nm;
+  const auto fill = [&](std::size_t begin, std::size_t end, const SectionMaps* map) {
+    const auto [mx, my] = map ? *map : SectionMaps{};
+    const auto [film_x, film_y, pupil_x, pupil_y] = lines;
+    const double reach = map ? farthest : -1;
+    for (std::size_t i = begin; i < end; ++i) {
+      const auto [x, y, slope_x, slope_y] = core_detail::slope_ray(core_detail::ray_at(rays, i), z_);
+      const bool good = rays.dz[i] > 0 && std::abs(x) + std::abs(y) + std::abs(slope_x) + std::abs(slope_y) <= reach;
+      fates[i] = good ? RayFate::transmitted : RayFate::missed_surface;
+      film_x[i] = good ? mx.a * x + mx.b * slope_x : 0;
+      film_y[i] = good ? my.a * y + my.b * slope_y : 0;
+      pupil_x[i] = good ? mx.c * x + mx.d * slope_x : 0;
+      pupil_y[i] = good ? my.c * y + my.d * slope_y : 0;
+    }
+  };
   SectionMaps own;
-  const SectionMaps* map = shared ? inverse_at(wavelengths.all, own) : nullptr;
-  for (std::size_t i = 0; i < count; ++i) {
-    const auto [x, y, slope_x, slope_y] = core_detail::slope_ray(core_detail::ray_at(rays, i), z_);
-    if (!shared) map = inverse_at(wavelengths.at(i), own);
-    const bool good =
-        map && rays.dz[i] > 0 && std::abs(x) + std::abs(y) + std::abs(slope_x) + std::abs(slope_y) <= farthest;
-    const auto [mx, my] = good ? *map : SectionMaps{};
-    fates[i] = good ? RayFate::transmitted : RayFate::missed_surface;
-    lines.film_x[i] = good ? mx.a * x + mx.b * slope_x : 0;
-    lines.film_y[i] = good ? my.a * y + my.b * slope_y : 0;
-    lines.pupil_x[i] = good ? mx.c * x + mx.d * slope_x : 0;
-    lines.pupil_y[i] = good ? my.c * y + my.d * slope_y : 0;
+  if (!wavelengths.each && !wavelengths.each_nm) {
+    fill(0, count, inverse_at(wavelengths.all, own));
+    return;
   }
+  for (std::size_t i = 0; i < count; ++i) fill(i, i + 1, inverse_at(wavelengths.at(i), own));
 }
 
 template PETZVAL_API void ParaxialModel::to_scene(std::size_t, const TwoPlaneRays<const float>&, const RayWavelengths&,
