@@ -9,10 +9,33 @@ namespace {
 
 using V = trace_detail::Lanes<double>;
 
+/// Newton's iteration with whole steps. Returns the lanes that have converged, inside the domain or not.
+template <int n>
+auto converge(const double* coefficients, const Four<V>& line, Four<V>& x) noexcept {
+  const V none(0.0), one(1.0);
+  Four<V> value;
+  Slopes<V> slope;
+  auto active = none < one, done = one < none;
+  V last(1e300);
+  constexpr int most = 12;  // converging iterations take three or four
+  for (int i = 0; i < most && any(active); ++i) {
+    evaluate(OfRevolution<n>{}, coefficients, x, value, slope);
+    const Four<V> move =
+        solution(slope, Four<V>{line[0] - value[0], line[1] - value[1], line[2] - value[2], line[3] - value[3]});
+    for (std::size_t k = 0; k < 4; ++k) x[k] = select(active, x[k] + move[k], x[k]);
+    const V length = sqrt((move[0] * move[0] + move[1] * move[1]) + (move[2] * move[2] + move[3] * move[3]));
+    active = active & within(x, far_square);
+    const auto halved = length < last * V(0.5), stands = length < V(rounding);
+    done = done | (active & (length < V(settled))) | without(active & stands, halved);
+    active = without(active & halved, done);
+    last = length;
+  }
+  return done;
+}
+
 template <int n>
 void invert(const double* coefficients, const InverseColumns& wanted, InverseColumns& at,
             std::array<double, inverse_block>& found) noexcept {
-  using Symmetry = OfRevolution<n>;
   const V none(0.0), one(1.0);
   for (std::size_t o = 0; o < inverse_block; o += V::width) {
     const auto load = [o](const std::array<double, inverse_block>& from) {
@@ -24,26 +47,19 @@ void invert(const double* coefficients, const InverseColumns& wanted, InverseCol
       __builtin_memcpy(to.data() + o, &v.v, sizeof v.v);
     };
     const Four<V> line{load(wanted[0]), load(wanted[1]), load(wanted[2]), load(wanted[3])};
-    Four<V> x = chief(Symmetry{}, coefficients, line), value;
-    Slopes<V> slope;
-    auto active = none < one, done = one < none;
-    V last(1e300);
-    constexpr int most = 12;  // iterations; converging ones take three or four
-    for (int i = 0; i < most; ++i) {
-      evaluate(Symmetry{}, coefficients, x, value, slope);
-      const Four<V> move =
-          solution(slope, Four<V>{line[0] - value[0], line[1] - value[1], line[2] - value[2], line[3] - value[3]});
-      for (std::size_t k = 0; k < 4; ++k) x[k] = select(active, x[k] + move[k], x[k]);
-      const V length = sqrt((move[0] * move[0] + move[1] * move[1]) + (move[2] * move[2] + move[3] * move[3]));
-      active = active & within(x, far_square);
-      const auto halved = length < last * V(0.5), stands = length < V(rounding);
-      done = done | (active & (length < V(settled))) | without(active & stands, halved);
-      active = without(active & halved, done);
-      if (!any(active)) break;
-      last = length;
+    Four<V> x = chief(OfRevolution<n>{}, coefficients, line);
+    const auto done = converge<n>(coefficients, line, x);
+    auto lit = done & within(x, within_domain), lost = one < none;
+    if (any(without(none < one, lit))) {
+      Four<V> y{none, none, none, none};
+      const auto again = converge<n>(coefficients, line, y);
+      const auto second = without(again & within(y, within_domain), lit);
+      for (std::size_t k = 0; k < 4; ++k) x[k] = select(second, y[k], x[k]);
+      lit = lit | second;
+      lost = without(done & again, lit);
     }
     for (std::size_t k = 0; k < 4; ++k) store(x[k], at[k]);
-    store(select(done & within(x, within_domain), one, none), found);
+    store(select(lit, one, select(lost, -one, none)), found);
   }
 }
 

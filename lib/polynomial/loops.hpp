@@ -78,8 +78,8 @@ PETZVAL_WIDEST(PolynomialLoops, polynomial_loops)
 /// Number of lines of one call of an inverse loop; fills the widest registers.
 inline constexpr std::size_t inverse_block = 8;
 using InverseColumns = std::array<std::array<double, inverse_block>, 4>;
-/// Finds (f, p) of lines (s, o), for lenses of revolution; by degree. found: 1 or 0. 0 does not mean that there is no
-/// solution: the iteration has only one start and takes whole steps.
+/// Finds (f, p) of lines (s, o), for lenses of revolution; by degree. found: 1, or -1 if there is no solution in the
+/// domain, or 0 if an iteration does not converge in whole steps.
 using InverseLoops = std::array<void (*)(const double* coefficients, const InverseColumns& wanted, InverseColumns& at,
                                          std::array<double, inverse_block>& found) noexcept,
                                 degree_count>;

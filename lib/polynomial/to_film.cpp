@@ -134,7 +134,7 @@ void RayPolynomial::to_film(std::size_t count, const RayArrays<const double>& ra
       const std::size_t o = begin + i;
       Place x{at[0][i], at[1][i], at[2][i], at[3][i]};
       bool lit = sound[i] && found[i] > 0;
-      if (sound[i] && !lit) {
+      if (sound[i] && found[i] == 0) {
         const double* const c = shared ? coefficients : data_->coefficients(wavelengths.at(o), room);
         lit = c && solve(c, {wanted[0][i], wanted[1][i], wanted[2][i], wanted[3][i]}, x);
       }
