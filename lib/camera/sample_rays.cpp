@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "camera_loops.hpp"
+#include "petzval/core/instruction_set.hpp"
 #include "tilted_pinhole.hpp"
 
 namespace petzval::camera_detail {
@@ -17,6 +18,12 @@ constexpr std::size_t block = 256;
 /// In the widest registers.
 template <class T>
 constexpr std::size_t lanes = 64 / sizeof(T);
+/// In the widest registers of this processor; at least 8, since fewer rays are not traced on lanes.
+template <class T>
+std::size_t lanes_here() noexcept {
+  static const bool widest = instruction_sets().back() == InstructionSet::avx512;
+  return widest ? lanes<T> : 8;
+}
 
 template <class T>
 using Values = std::array<T, block>;
@@ -179,7 +186,7 @@ void sample_rest(const FilmView& view, std::size_t count, const CameraSamples<T>
   }
   const auto at = [&](std::size_t k) { return out[k].data(); };
   sample_block<T>(
-      view, lanes<T>, count,
+      view, lanes_here<T>(), count,
       {in[0].data(), in[1].data(), in[2].data(), in[3].data(), wavelengths, samples.times ? in[4].data() : nullptr},
       {{at(0), at(1), at(2), at(3), at(4), at(5)},
        at(6),
@@ -232,7 +239,7 @@ void sample_rays(const FilmView& view, std::size_t count, const CameraSamples<T>
   CameraSamples<T> samples = given;
   samples.wavelengths = given.wavelengths.resolved(view.model.pupils().primary_wavelength());
   if (samples.wavelengths.in_nm() && !view.model.any_wavelength()) samples.wavelengths = {view.wavelengths.count()};
-  const std::size_t whole = count - count % lanes<T>;
+  const std::size_t whole = count - count % lanes_here<T>();
   for (std::size_t begin = 0; begin < whole; begin += block) {
     const std::size_t n = std::min(block, whole - begin);
     sample_block(view, n, n, samples.from(begin), rays.from(begin));

@@ -411,7 +411,7 @@ void stop_points_block(const PolygonGrid<dimensions, R>& given, const R* film_x,
 }
 
 /// Sizes of blocks: both fill the widest registers; the small one takes the rest of a batch.
-constexpr std::size_t whole_block = 64, small_block = 16;
+constexpr std::size_t whole_block = 64, small_block = core_detail::lane_bytes == 64 ? 16 : 8;
 
 template <std::size_t rays>
 using Block = std::integral_constant<std::size_t, rays>;
