@@ -156,7 +156,9 @@ Camera::Data::Data(const LensFacts& facts, const Film& placed, const AnyRayModel
       clamp_(options.clamp_wavelengths),
       shortest_nm_(std::ranges::min(lens.wavelengths_nm())),
       longest_nm_(std::ranges::max(lens.wavelengths_nm())),
-      view_{model, film, tilted ? &*tilted : nullptr, wavelengths, weights, front, focus} {}
+      view_{model, film, tilted ? &*tilted : nullptr, wavelengths, weights, front, focus} {
+  if (options.importance_tables) scene(options.threads);
+}
 
 Camera::Camera(const Lens& lens, const Film& film, const CameraOptions& options) {
   const int blades = options.bokeh.lens_elements;

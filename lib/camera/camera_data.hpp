@@ -59,9 +59,10 @@ struct Camera::Data {
     }
   }
   /// Built on first use, because many renderers only trace paths from the film.
-  const camera_detail::SceneSide& scene() const {
-    std::call_once(scene_once_,
-                   [&] { scene_.emplace(facts_, film, tilted, front, focus, model, radius_, wavelengths, weights); });
+  const camera_detail::SceneSide& scene(int threads = 1) const {
+    std::call_once(scene_once_, [&] {
+      scene_.emplace(facts_, film, tilted, front, focus, model, radius_, wavelengths, weights, threads);
+    });
     return *scene_;
   }
 

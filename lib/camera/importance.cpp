@@ -30,6 +30,7 @@
 #include "core/meet_plane.hpp"
 #include "make_model.hpp"
 #include "petzval/camera/polynomial_model.hpp"
+#include "petzval/core/parallel.hpp"
 #include "pupil_table/scene_grid.hpp"
 #include "scene_side.hpp"
 #include "tilted_pinhole.hpp"
@@ -52,11 +53,13 @@ bool unit_length(const Vec3<double>& direction) noexcept {
 bool finite(const Vec3<double>& v) noexcept { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); }
 
 /// The rays that leave a model for the scene.
-std::vector<std::vector<Ray<double>>> leaving_rays_of(const Lens& lens, const AnyRayModel& model) {
-  return leaving_rays(model.pupils(), lens.rotationally_symmetric(),
-                      [&](std::size_t count, const TwoPlaneRays<const double>& lines, std::size_t wavelength,
-                          const RayArrays<double>& rays,
-                          RayFate* fates) { model.to_scene(count, lines, {.all = wavelength}, rays, fates); });
+std::vector<std::vector<Ray<double>>> leaving_rays_of(const Lens& lens, const AnyRayModel& model, int threads) {
+  return leaving_rays(
+      model.pupils(), lens.rotationally_symmetric(),
+      [&](std::size_t count, const TwoPlaneRays<const double>& lines, std::size_t wavelength,
+          const RayArrays<double>& rays,
+          RayFate* fates) { model.to_scene(count, lines, {.all = wavelength}, rays, fates); },
+      threads);
 }
 
 /// Whether a model passes rays of the scene, wherever they meet the film's plane.
@@ -82,23 +85,24 @@ ScenePassing passing(const AnyRayModel& model) {
 
 /// The pupils that points of the scene see. Rays count wherever they meet the film's plane: pupils would end abruptly
 /// with the film.
-EntrancePupilTable entrance_of(const Lens& lens, const AnyRayModel& model) {
+EntrancePupilTable entrance_of(const Lens& lens, const AnyRayModel& model, int threads) {
   const bool exact = model.kind() == ModelKind::exact_float || model.kind() == ModelKind::exact_double;
-  if (exact) return traced_entrances(lens, model.pupils());
+  if (exact) return traced_entrances(lens, model.pupils(), threads);
   if (model.kind().is_first_order() && !lens.iris().round()) {  // whose pupils the round stop's enclose
     const Lens round = with_iris(lens, {});
-    return entrance_of(round, make_model(model.kind(), round, model.pupils().film_radius()));
+    return entrance_of(round, make_model(model.kind(), round, model.pupils().film_radius()), threads);
   }
   if (const auto* polynomial = model.as<PolynomialModel>(); polynomial && !lens.iris().round()) {
-    return entrance_of(with_iris(lens, {}), PolynomialModel(polynomial->polynomial(), model.pupils().of_round_stop()));
+    return entrance_of(with_iris(lens, {}), PolynomialModel(polynomial->polynomial(), model.pupils().of_round_stop()),
+                       threads);
   }
   // A pinhole only needs to know what lies in front of the lens.
   if (model.pinhole()) {
     return EntrancePupilTable(lens, std::vector<std::vector<Ray<double>>>(model.pupils().wavelengths()), {});
   }
-  return EntrancePupilTable(lens, leaving_rays_of(lens, model),
+  return EntrancePupilTable(lens, leaving_rays_of(lens, model, threads),
                             model.kind().is_polynomial() ? traced_passing(lens) : passing(model),
-                            model.clips_at_apertures() ? ClippedBy::apertures : ClippedBy::samples);
+                            model.clips_at_apertures() ? ClippedBy::apertures : ClippedBy::samples, threads);
 }
 
 /// The pupil that a point so far away sees is that of infinity within rounding, mm.
@@ -131,7 +135,7 @@ double pinhole_entrance_area(const AnyRayModel& model, double entrance_z, std::s
 
 SceneSide::SceneSide(const LensFacts& facts, const Film& film, std::optional<TiltedFilm> tilted, const Front& front,
                      const LocalFocus& focus, const AnyRayModel& model, double radius,
-                     const WavelengthFacts& wavelengths, const PupilWeights& weights)
+                     const WavelengthFacts& wavelengths, const PupilWeights& weights, int threads)
     : film_(film),
       tilted_(std::move(tilted)),
       upright_radius_(radius),
@@ -145,12 +149,16 @@ SceneSide::SceneSide(const LensFacts& facts, const Film& film, std::optional<Til
       pupils_(weights.pupils().value_or(model.pupils())),
       in_nm_(facts.lens().wavelengths_nm()),
       primary_(model.pupils().primary_wavelength()),
-      entrance_(focus ? focus.entrances(facts.lens(), model) : entrance_of(facts.lens(), model)) {
+      entrance_(focus ? focus.entrances(facts.lens(), model, threads) : entrance_of(facts.lens(), model, threads)) {
   const Lens& lens = facts.lens();
   if (model.kind() == ModelKind::exact_float || model.kind() == ModelKind::exact_double) traced_ = lens;
   if (model.pinhole() && pupils_.cut()) {
     whole_ = tilted_ ? TiltedFilm(film, pupils_.whole()).pupils() : pupils_.whole();
   }
+  std::vector<std::optional<ChiefRayTable>> chiefs(wavelengths.count());
+  parallel_for(wavelengths.count(), 1, threads, [&](std::size_t w, std::size_t) {
+    chiefs[w].emplace(facts, model, upright_radius_, w, focus ? std::optional(focus.middle(w)) : std::nullopt);
+  });
   std::vector<std::array<double, 3>> values;
   for (std::size_t w = 0; w < wavelengths.count(); ++w) {
     const double n = lens.index(0, w), n_film = lens.index(lens.surface_count(), w), etendue = squared(n / n_film);
@@ -160,12 +168,11 @@ SceneSide::SceneSide(const LensFacts& facts, const Film& film, std::optional<Til
         model.pinhole() ? pinhole_entrance_area(model, entrance.z, w) : pi / 4 * across * entrance.diameter;
     // Nothing passes a pupil whose density has no number.
     const double area = found >= std::numeric_limits<double>::min() ? found : 0;
-    compiled_.push_back(
-        {{.we = etendue * wavelengths.scale(w) / film.area_mm2(),
-          .density = etendue / film.area_mm2() / squared(space_.depth()),
-          .entrance_z = entrance.z,
-          .entrance_area = area},
-         ChiefRayTable(facts, model, upright_radius_, w, focus ? std::optional(focus.middle(w)) : std::nullopt)});
+    compiled_.push_back({{.we = etendue * wavelengths.scale(w) / film.area_mm2(),
+                          .density = etendue / film.area_mm2() / squared(space_.depth()),
+                          .entrance_z = entrance.z,
+                          .entrance_area = area},
+                         *std::move(chiefs[w])});
     values.push_back({etendue, entrance.z, area});
   }
   between_ = {in_nm_, values};

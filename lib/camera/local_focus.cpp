@@ -409,7 +409,7 @@ FocalSteepness LocalFocus::steepness(const std::optional<TiltedPlane>& plane) co
   return result;
 }
 
-EntrancePupilTable LocalFocus::entrances(const Lens& lens, const AnyRayModel& model) const {
+EntrancePupilTable LocalFocus::entrances(const Lens& lens, const AnyRayModel& model, int threads) const {
   const Data& data = *data_;
   const double widest = data.surface ? pupil_scale(data.surface->least_extent()) : 1;
   double least_power = 0, most_power = 0;
@@ -456,7 +456,7 @@ EntrancePupilTable LocalFocus::entrances(const Lens& lens, const AnyRayModel& mo
           passes[i] = from.dz[i] > 0 && std::hypot(line.x, line.y) <= radii[wavelength] * widest * (1 + rounding);
         }
       },
-      ClippedBy::samples);
+      ClippedBy::samples, threads);
 }
 
 double LocalFocus::middle(std::size_t wavelength) const noexcept { return data_->compiled[wavelength].middle; }

@@ -58,7 +58,7 @@ class LocalFocus {
   /// See Camera::focal_steepness(). plane: for a film that is tilted or travels.
   FocalSteepness steepness(const std::optional<TiltedPlane>& plane) const noexcept;
   /// The entrance pupils seen from the scene: discs that enclose the pupils of all film points.
-  EntrancePupilTable entrances(const Lens& lens, const AnyRayModel& model) const;
+  EntrancePupilTable entrances(const Lens& lens, const AnyRayModel& model, int threads) const;
   /// Intersection of chief rays with the pupil plane, divided by the film point.
   double middle(std::size_t wavelength) const noexcept;
 

@@ -25,7 +25,7 @@ class SceneSide {
   /// radius: upright_radius() of the film; wavelengths, weights: as in FilmView.
   SceneSide(const LensFacts& facts, const Film& film, std::optional<TiltedFilm> tilted, const Front& front,
             const LocalFocus& focus, const AnyRayModel& model, double radius, const WavelengthFacts& wavelengths,
-            const PupilWeights& weights);
+            const PupilWeights& weights, int threads);
 
   void importance(const AnyRayModel& model, std::size_t count, const RayArrays<const double>& rays,
                   const RayWavelengths& wavelengths, const double* times, Importance* found) const noexcept;

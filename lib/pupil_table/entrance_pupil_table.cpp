@@ -10,6 +10,7 @@
 
 #include "core/meet_plane.hpp"
 #include "lens/between_wavelengths.hpp"
+#include "petzval/core/parallel.hpp"
 #include "petzval/lens/lens.hpp"
 #include "petzval/paraxial/first_order.hpp"
 #include "polygon_place.hpp"
@@ -95,11 +96,11 @@ struct EntrancePupilTable::Data {
 
   /// Makes the nodes of all wavelengths. of_wavelength(w): the nodes of one.
   template <int dimensions, class OfWavelength>
-  void fill(std::size_t wavelengths, const OfWavelength& of_wavelength) {
-    std::vector<SceneNodes<dimensions>> tables;
-    for (std::size_t w = 0; w < wavelengths; ++w) {
-      tables.push_back(balls[w] > 0 ? of_wavelength(w) : SceneNodes<dimensions>());
-    }
+  void fill(std::size_t wavelengths, int threads, const OfWavelength& of_wavelength) {
+    std::vector<SceneNodes<dimensions>> tables(wavelengths);
+    parallel_for(wavelengths, 1, threads, [&](std::size_t w, std::size_t) {
+      if (balls[w] > 0) tables[w] = of_wavelength(w);
+    });
     if (compiled.count() == wavelengths) expand_to_neighbours(tables, compiled);
     for (SceneNodes<dimensions>& table : tables) {
       if (table.polygons.empty()) {
@@ -206,7 +207,7 @@ EntranceSample EntrancePupilTable::Data::in_cone(const Vec3<double>& point, std:
 }
 
 EntrancePupilTable::EntrancePupilTable(const Lens& lens, std::span<const std::vector<Ray<double>>> rays,
-                                       const ScenePassing& passing, ClippedBy clipped_by) {
+                                       const ScenePassing& passing, ClippedBy clipped_by, int threads) {
   auto data = std::make_shared<Data>(lens);
   data->primary = lens.primary_wavelength();
   data->compiled = lens_detail::CompiledWavelengths(lens.wavelengths_nm());
@@ -236,11 +237,11 @@ EntrancePupilTable::EntrancePupilTable(const Lens& lens, std::span<const std::ve
   }
   data->cylinders = !lens.rotationally_symmetric();
   if (data->cylinders) {
-    data->fill<3>(rays.size(), [&](std::size_t w) {
+    data->fill<3>(rays.size(), threads, [&](std::size_t w) {
       return nodes_with_cylinders(data->centre, data->steepest, rays[w], w, passing);
     });
   } else {
-    data->fill<2>(rays.size(), [&](std::size_t w) {
+    data->fill<2>(rays.size(), threads, [&](std::size_t w) {
       return nodes_of_revolution(data->centre, data->steepest, rays[w], w, passing, clipped_by);
     });
   }

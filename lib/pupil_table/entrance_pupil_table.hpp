@@ -30,14 +30,14 @@ struct EntranceSample {
   double pdf = 0;                   ///< of the direction at the point, 1/sr; 0: the point does not see the pupil
 };
 
-/// Image-space rays as rays that leave the lens towards the scene: N of each.
+/// Image-space rays as rays that leave the lens towards the scene: N of each. Called from several threads.
 using TwoPlaneRaysToScene = std::function<void(std::size_t count, const TwoPlaneRays<const double>& lines,
                                                std::size_t wavelength, const RayArrays<double>& rays, RayFate* fates)>;
 
 /// Rays that leave the lens, for each wavelength: those of samples of the pupils of a film, boundaries included, to
 /// build an EntrancePupilTable from. azimuths_alike: film points on +y stand for all.
 PETZVAL_API std::vector<std::vector<Ray<double>>> leaving_rays(const FilmPupilTable& pupils, bool azimuths_alike,
-                                                               const TwoPlaneRaysToScene& to_scene);
+                                                               const TwoPlaneRaysToScene& to_scene, int threads = 1);
 
 /// What clips a pupil.
 enum class ClippedBy : std::uint8_t {
@@ -45,7 +45,7 @@ enum class ClippedBy : std::uint8_t {
   samples     ///< The sampled rays do, as in models of a lens that have no rims.
 };
 
-/// Which of N rays from the scene pass the lens, at a wavelength: passes[i].
+/// Which of N rays from the scene pass the lens, at a wavelength: passes[i]. Called from several threads.
 using ScenePassing = std::function<void(std::size_t count, const RayArrays<const double>& rays, std::size_t wavelength,
                                         std::uint8_t* passes)>;
 
@@ -55,15 +55,14 @@ using ScenePassing = std::function<void(std::size_t count, const RayArrays<const
 /// line to that centre. Its pupil lies in the plane perpendicular to that line, so that fields of 90 degrees and more
 /// are like any other. Pupils are interpolated polygons of 64 corners that contain every ray that passes and few
 /// others; all sectors get the same number of samples, uniform within each. Points nearer to the lens than the table
-/// reaches get a cone about a ball that all rays meet. Every
-/// ray that passes can be sampled: estimates have no bias.
+/// reaches get a cone about a ball that all rays meet. Every ray that passes can be sampled: estimates have no bias.
 ///
 /// Immutable, cheap to copy, free to share between threads.
 class PETZVAL_API EntrancePupilTable {
  public:
   /// rays: leaving_rays(). They show how far fields reach and where pupils are.
   EntrancePupilTable(const Lens& lens, std::span<const std::vector<Ray<double>>> rays, const ScenePassing& passing,
-                     ClippedBy clipped_by = ClippedBy::apertures);
+                     ClippedBy clipped_by = ClippedBy::apertures, int threads = 1);
 
   /// Whether a point lies where the lens may see it, finite and not behind its first surface.
   bool in_front(const Vec3<double>& point) const noexcept;
@@ -93,6 +92,6 @@ class PETZVAL_API EntrancePupilTable {
 PETZVAL_API ScenePassing traced_passing(const Lens& lens);
 
 /// The table of a lens by exact rays. pupils: FilmPupilTable::enclosing() of its film.
-PETZVAL_API EntrancePupilTable traced_entrances(const Lens& lens, const FilmPupilTable& pupils);
+PETZVAL_API EntrancePupilTable traced_entrances(const Lens& lens, const FilmPupilTable& pupils, int threads = 1);
 
 }  // namespace petzval

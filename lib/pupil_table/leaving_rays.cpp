@@ -6,6 +6,7 @@
 
 #include "core/bisect.hpp"
 #include "core/low_discrepancy.hpp"
+#include "petzval/core/parallel.hpp"
 #include "pupil_table/entrance_pupil_table.hpp"
 
 namespace petzval {
@@ -65,9 +66,9 @@ FilmSamples film_samples(const FilmPupilTable& pupils, bool azimuths_alike, std:
 }  // namespace
 
 std::vector<std::vector<Ray<double>>> leaving_rays(const FilmPupilTable& pupils, bool azimuths_alike,
-                                                   const TwoPlaneRaysToScene& to_scene) {
+                                                   const TwoPlaneRaysToScene& to_scene, int threads) {
   std::vector<std::vector<Ray<double>>> result(pupils.wavelengths());
-  for (std::size_t w = 0; w < result.size(); ++w) {
+  parallel_for(result.size(), 1, threads, [&](std::size_t w, std::size_t) {
     const auto [film_x, film_y, pupil_x, pupil_y] = film_samples(pupils, azimuths_alike, w);
     const std::size_t count = film_x.size();
     std::array<std::vector<double>, 6> ray;
@@ -79,7 +80,7 @@ std::vector<std::vector<Ray<double>>> leaving_rays(const FilmPupilTable& pupils,
       if (fates[i] != RayFate::transmitted) continue;
       result[w].push_back({{ray[0][i], ray[1][i], ray[2][i]}, {ray[3][i], ray[4][i], ray[5][i]}});
     }
-  }
+  });
   return result;
 }
 

@@ -19,7 +19,7 @@ ScenePassing traced_passing(const Lens& lens) {
   };
 }
 
-EntrancePupilTable traced_entrances(const Lens& bladed, const FilmPupilTable& of_iris) {
+EntrancePupilTable traced_entrances(const Lens& bladed, const FilmPupilTable& of_iris, int threads) {
   const Lens lens = with_iris(bladed, {});  // the pupils of a round iris enclose the pupils of any iris
   const FilmPupilTable pupils = of_iris.of_round_stop();
   const TwoPlanes& space = pupils.space();
@@ -36,7 +36,8 @@ EntrancePupilTable traced_entrances(const Lens& bladed, const FilmPupilTable& of
     trace<double>(lens, count, {x, y, z, dx, dy, dz}, rays, fates, nullptr,
                   {.travel = Travel::to_scene, .wavelengths = {wavelength}});
   };
-  return EntrancePupilTable(lens, leaving_rays(pupils, lens.rotationally_symmetric(), to_scene), traced_passing(lens));
+  return EntrancePupilTable(lens, leaving_rays(pupils, lens.rotationally_symmetric(), to_scene, threads),
+                            traced_passing(lens), ClippedBy::apertures, threads);
 }
 
 }  // namespace petzval

@@ -79,7 +79,8 @@ TEST(Camera, SetUpIndependentOfThreads) {
       if (model == ModelKind::polynomial(3) && !lens.rotationally_symmetric()) continue;
       const std::vector<double> alone = answers({lens, film, {.model = model}});
       for (const int threads : {2, 8}) {
-        EXPECT_EQ(answers({lens, film, {.model = model, .threads = threads}}), alone) << id << ' ' << name(model);
+        EXPECT_EQ(answers({lens, film, {.model = model, .threads = threads, .importance_tables = true}}), alone)
+            << id << ' ' << name(model);
       }
       testing::expect_error([&, &film = film] { Camera(lens, film, {.model = model, .threads = 0}); }, {"threads", 0});
     }

@@ -47,6 +47,9 @@ struct CameraOptions {
   /// true: wavelengths in nm outside the compiled range are clamped to the range, for samples, rays and connections.
   /// false: they are lost as RayFate::outside_spectrum.
   bool clamp_wavelengths = false;
+  /// true: the tables of importance, connections and projection are built in the constructor, on `threads`.
+  /// false: they are built at their first use, on the thread of the caller.
+  bool importance_tables = false;
 };
 
 /// A focused lens and its film, seen through a ray model: generates the rays of a renderer. Lens frame, mm.
