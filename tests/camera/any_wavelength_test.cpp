@@ -145,12 +145,16 @@ TEST_P(AnyWavelength, DifferentialsEqualFiniteDifferences) {
     Samples samples(film_, 3);
     for (int i = 0; i < 300; ++i) {
       const CameraSample sample = samples(Wavelength::nm(samples.nm()));
-      CameraSample beside = sample;
-      beside.film.x += 1e-4;
-      const CameraRay one = camera.sample(sample), after = camera.sample(beside);
-      if (!one || !after) continue;
-      const double slope = (after.ray.direction.x - one.ray.direction.x) / 1e-4;
-      ASSERT_NEAR(camera.sample_differential(sample).by_film_x.direction.x, slope, 2e-3 * std::abs(slope) + 1e-6)
+      constexpr double step = 1e-4;
+      CameraSample next = sample, previous = sample;
+      next.film.x += step, previous.film.x -= step;
+      const CameraRay one = camera.sample(sample), after = camera.sample(next), before = camera.sample(previous);
+      if (!one || !after || !before) continue;
+      // Derivatives of samples jump between the cells of a pupil table: one side is enough.
+      const double slope = (after.ray.direction.x - one.ray.direction.x) / step;
+      const double other = (one.ray.direction.x - before.ray.direction.x) / step;
+      const double found = camera.sample_differential(sample).by_film_x.direction.x;
+      ASSERT_LT(std::min(std::abs(found - slope), std::abs(found - other)), 2e-3 * std::abs(slope) + 1e-6)
           << name(model);
     }
   }
