@@ -7,6 +7,6 @@
 
 /// Version of these headers, as numbers for the preprocessor and as a string. The build system reads these lines.
 #define PETZVAL_VERSION_MAJOR 0
-#define PETZVAL_VERSION_MINOR 1
+#define PETZVAL_VERSION_MINOR 2
 #define PETZVAL_VERSION_PATCH 0
-#define PETZVAL_VERSION "0.1.0"
+#define PETZVAL_VERSION "0.2.0"
