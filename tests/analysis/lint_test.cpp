@@ -145,7 +145,7 @@ TEST(Lint, FindsEveryLensInInches) {
 
 TEST(Lint, FindsDiametersInsteadOfSemiDiameters) {
   expect_one(with_rims(2), Kind::apertures, {}, {"f-number", 2.5, 5, "diameters"});
-  expect_one(with_rims(0.5), Kind::apertures, {}, {"f-number", 10, 5, "halves"});
+  expect_one(with_rims(0.5), Kind::apertures, {}, {"f-number", 10, 5, "half"});
   EXPECT_EQ(lint(with_rims(1.5)).at(0).kind, Kind::f_number);
   // Otherwise the f-number would differ.
   EXPECT_EQ(lint(with_rims(1.8)).at(0).kind, Kind::f_number);
@@ -356,7 +356,7 @@ TEST(Lint, FindsMissingAndMultipleStops) {
   p.surfaces[0].stop = false;
   expect_one(p, Kind::no_stop, {}, {"stop"});
   p.surfaces[0].stop = p.surfaces[1].stop = true;
-  expect_one(p, Kind::several_stops, 1, {"stop", 2});
+  expect_one(p, Kind::several_stops, 1, {"stops", 2});
 }
 
 TEST(Lint, FindsAFilmAwayFromTheFocus) {

@@ -224,7 +224,7 @@ TEST(ModelError, RefusesInvalidInput) {
   for (const double z : {0.0, 10.0, std::nan("")}) {
     expect_tokens(refusal({}, ModelKind::thick, {.depths_z = {z}}), {z, "front"});
   }
-  expect_tokens(refusal({}, ModelKind::thick, {.depths_z = {-1000}, .wavelengths = {1}}), {"wavelength 1"});
+  expect_tokens(refusal({}, ModelKind::thick, {.depths_z = {-1000}, .wavelengths = {1}}), {"wavelength", 1});
   for (const std::size_t points :
        {std::size_t{0}, (std::size_t{1} << 20) + 1, std::numeric_limits<std::size_t>::max()}) {
     expect_tokens(refusal({}, ModelKind::thick, {.depths_z = {-1000}, .film_points = points}), {"film points", points});

@@ -253,7 +253,7 @@ TEST(Compile, RefusesInvalidWavelengthsForMirrorsToo) {
   for (const double nm : {std::nan(""), std::numeric_limits<double>::infinity(), 0.0, -d, 0.5876, 587561.8}) {
     expect_error([&] { compile(mirror, std::array{nm}); }, {"lens", "wavelength", nm});
   }
-  expect_error([&] { compile(mirror, std::span<const double>{}); }, {"lens", "wavelength"});
+  expect_error([&] { compile(mirror, std::span<const double>{}); }, {"lens", "wavelengths"});
   EXPECT_EQ(compile(mirror, std::array{400.0, 10000.0}).index(1, 1), 1);
 }
 
