@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a camera does to blocks of samples before and after their rays are found, compiled once for each instruction
-// set. Names are local, and no other library is called, as in lib/trace/lanes.hpp.
+// Loops over blocks of camera samples, before and after ray computation, compiled once for each instruction set. Names
+// are local, and no other library is called, as in lib/trace/lanes.hpp.
 #include "camera_loops.hpp"
 
 #include "camera_steps.hpp"
@@ -29,7 +29,7 @@ void start(const TwoPlanes& space, T towards, std::size_t count, const TwoPlaneR
   const T depth2 = depth * depth;
   const auto [film_x, film_y, pupil_x, pupil_y] = lines;
   const auto [ox, oy, oz, dx, dy, dz] = rays;
-  // Rays lie where nothing else does.
+  // The output arrays do not overlap the input.
   PETZVAL_INDEPENDENT
   for (std::size_t i = 0; i < count; ++i) {
     const T x = pupil_x[i] - film_x[i], y = pupil_y[i] - film_y[i];
@@ -114,7 +114,7 @@ void weigh_one(const Front* front, double depth, const TwoPlaneRay& line, double
   ray.pdf_direction = of.pdf_direction(length2, ray.pdf_pupil);
 }
 
-/// A film that stays where it is, and one where it is at a moment.
+/// A fixed film, and a moving film at one time.
 template <class T>
 struct StillPlane : TiltedBounds<T> {
   static constexpr T travel = 0;
@@ -124,7 +124,7 @@ struct MovingPlane : TiltedBounds<T> {
   T travel;
 };
 
-/// Calls body(plane_of), which says where the film is for a sample.
+/// Calls body(plane_of); plane_of(i) is the film plane of sample i.
 template <class T, class Body>
 inline void with_planes(const TiltedBounds<T>& tilted, const Body& body) noexcept {
   if (const T* const times = tilted.times) {

@@ -13,12 +13,12 @@
 
 namespace petzval::camera_detail {
 
-/// A tilted film in numbers of type T: see TiltedPlane. It stays where it is unless it has times.
+/// A TiltedPlane in numbers of type T. The film moves only if `times` is set.
 template <class T>
 struct TiltedBounds {
   T x_by_x, x_by_y, y_by_y, depth_by_x, depth_by_y, slope_x, slope_y, cosine;
-  T whole_travel;            ///< until the shutter closes
-  const T* times = nullptr;  ///< of the samples
+  T whole_travel;            ///< travel over the whole exposure
+  const T* times = nullptr;  ///< one for each sample
 };
 
 /// Loops over samples, for float or double.
@@ -26,17 +26,17 @@ template <class T>
 struct CameraLoopsOf {
   void (*keep_on_film)(const FilmBounds<T>&, std::size_t, const T* film_x, const T* film_y, T* kept_x,
                        T* kept_y) noexcept;
-  /// Lines as rays that start in the plane of the pupil. towards: as towards_scene().
+  /// Turns lines into rays that start in the pupil plane. towards: as towards_scene().
   void (*start)(const TwoPlanes&, T towards, std::size_t, const TwoPlaneRays<const T>&, const RayArrays<T>&) noexcept;
-  /// Moves the origins of rays to a lens's front, along them.
+  /// Moves the origins of rays along the rays to the front of the lens.
   void (*move_to_front)(T vertex_z, T curvature, std::size_t, const RayArrays<T>&) noexcept;
-  /// The number of each ray's own wavelength; 0 where there is none.
+  /// Looks up a value for the wavelength of each ray; 0 if the wavelength is not covered.
   void (*look_up)(const lens_detail::WavelengthRows<T>&, std::size_t, const RayWavelengths&, T*) noexcept;
-  /// scale: one for each ray, 0 for a ray without a wavelength.
+  /// scale: one value for each ray; 0 if the wavelength is not covered.
   void (*weigh)(const FilmBounds<T>&, T depth, std::size_t, const T* film_x, const T* film_y,
                 const TwoPlaneRays<const T>&, const T* areas, const T* scale, RayFate*, const CameraRays<T>&) noexcept;
-  /// For a tilted film: the virtual points of film points, the upright film points of lines through the pupil, and the
-  /// tilted film's weights from those of such lines.
+  /// For a tilted film: virtual points of film points, upright film points of lines through the pupil, and conversion
+  /// of upright weights to weights of the tilted film.
   void (*to_virtual)(const TiltedBounds<T>&, std::size_t, const T* film_x, const T* film_y, T* virtual_x,
                      T* virtual_y) noexcept;
   void (*to_upright)(const TiltedBounds<T>&, std::size_t, const T* virtual_x, const T* virtual_y, const T* pupil_x,
@@ -47,8 +47,7 @@ struct CameraLoopsOf {
 struct CameraLoops {
   CameraLoopsOf<float> single;
   CameraLoopsOf<double> twice;
-  /// The ray of one sample with an area, whatever its fate: moves it to a lens's front, unless that is null, and sets
-  /// its weight and densities.
+  /// Moves the ray of one sample to the front (if not null) and sets its weight and densities, for every fate.
   void (*weigh_one)(const Front* front, double depth, const TwoPlaneRay&, double area, double scale,
                     CameraRay&) noexcept;
 

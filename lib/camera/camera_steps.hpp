@@ -23,7 +23,7 @@ inline bool on_film(const FilmBounds<T>& film, T x, T y) noexcept {
 /// Weight of a pupil sample, and its density in solid angle at the film point.
 template <class T>
 struct PupilWeight {
-  T depth2, per_depth;  ///< square of the distance between the planes, and one over the distance
+  T depth2, per_depth;  ///< squared distance between film and pupil plane, and reciprocal distance
 
   explicit PupilWeight(T depth) noexcept : depth2(depth * depth), per_depth(T(1) / (depth < T(0) ? -depth : depth)) {}
   /// Squared distance between the film point and the position in the pupil.

@@ -1,22 +1,23 @@
 // SPDX-License-Identifier: Apache-2.0
-// Film and scene hold the same light. With the radiance L divided by the square of the index (as every weight here
-// takes it), it is the same all along a ray, and so is the etendue n^2 cos dA dw of a pencil about it. Hence
+// Importance is defined by reciprocity: the integral over the film equals the integral over the scene. Let L be the
+// radiance divided by the squared refractive index, as in all weights of this library. L is constant along a ray, and
+// the etendue n^2 cos dA dw of a pencil is constant as well. Hence
 //
 //     mean over the film of (n'^2 L cos dw) = 1/A integral n'^2 cos L dw dA = integral (n^2 / A) L cos' dA' dw',
 //
-// n' behind the lens and n before it: We = n^2 / A for every ray that arrives, whatever the film lies in.
+// with n' behind the lens and n in front of it: We = n^2 / A for every ray that reaches the film, for any medium at the
+// film.
 //
-// A film sample has the density p_film p_pupil in film point and place in the pupil's plane. Over that plane, seen
-// under the angle t from len away, dw = cos t dA_pupil / len^2 with cos t = |depth| / len, so that it has the density
-// p_film p_pupil len^4 / depth^2 in cos dA dw at the film, and n^2 / n'^2 times that in cos' dA' dw' of the scene. We
-// divided by it is the weight of the film sample: reciprocity.
+// A film sample has the density p_film p_pupil in film point and pupil position. Let len be the distance between both
+// and t the angle between ray and axis, cos t = |depth| / len. Then dw = cos t dA_pupil / len^2. The sample has the
+// density p_film p_pupil len^4 / depth^2 in cos dA dw at the film, and n^2 / n'^2 times this density in cos' dA' dw' of
+// the scene. We divided by the scene density is the weight of the film sample.
 //
-// Where the film is tilted or has travelled, its sample's density is that of the upright line over
-// TiltedPlane::weight().
+// For a tilted or moved film, the density is the density of the upright line divided by TiltedPlane::weight().
 //
-// Models of first order are linear in slopes and conserve the area of heights and slopes instead; in cos dA dw they
-// lack (cos t / cos t')^4, t' the angle of the ray in the scene. It belongs to both, for theirs to be the weights that
-// their film samples have.
+// First-order models are linear in slopes and conserve the area of heights and slopes instead. In cos dA dw they lack
+// the factor (cos t / cos t')^4, t' the angle of the ray in the scene. We and the density both get this factor, so that
+// We divided by the density remains the weight of the film sample.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -52,7 +53,7 @@ bool unit_length(const Vec3<double>& direction) noexcept {
 
 bool finite(const Vec3<double>& v) noexcept { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); }
 
-/// The rays that leave a model for the scene.
+/// The rays of a model in the scene.
 std::vector<std::vector<Ray<double>>> leaving_rays_of(const Lens& lens, const AnyRayModel& model, int threads) {
   return leaving_rays(
       model.pupils(), lens.rotationally_symmetric(),
@@ -62,7 +63,7 @@ std::vector<std::vector<Ray<double>>> leaving_rays_of(const Lens& lens, const An
       threads);
 }
 
-/// Whether a model passes rays of the scene, wherever they meet the film's plane.
+/// Tests if a model passes rays of the scene; rays may meet the film plane outside the film.
 ScenePassing passing(const AnyRayModel& model) {
   return
       [&model](std::size_t count, const RayArrays<const double>& rays, std::size_t wavelength, std::uint8_t* passes) {
@@ -73,7 +74,7 @@ ScenePassing passing(const AnyRayModel& model) {
         model.to_film(count, rays, {.all = wavelength},
                       {line[0].data(), line[1].data(), line[2].data(), line[3].data()}, fates.data());
         for (std::size_t i = 0; i < count; ++i) {
-          // Points beside the film see the pupil of its edge.
+          // Points outside the film have the pupil of the film's edge.
           const double radius = std::hypot(line[0][i], line[1][i]);
           const double part = radius > pupils.film_radius() ? pupils.film_radius() / radius : 1;
           passes[i] = fates[i] == RayFate::transmitted &&
@@ -83,12 +84,12 @@ ScenePassing passing(const AnyRayModel& model) {
       };
 }
 
-/// The pupils that points of the scene see. Rays count wherever they meet the film's plane: pupils would end abruptly
-/// with the film.
+/// The entrance pupils of scene points. Rays that meet the film plane outside the film count too; otherwise pupils
+/// would end abruptly at the edge of the film.
 EntrancePupilTable entrance_of(const Lens& lens, const AnyRayModel& model, int threads) {
   const bool exact = model.kind() == ModelKind::exact_float || model.kind() == ModelKind::exact_double;
   if (exact) return traced_entrances(lens, model.pupils(), threads);
-  if (model.kind().is_first_order() && !lens.iris().round()) {  // whose pupils the round stop's enclose
+  if (model.kind().is_first_order() && !lens.iris().round()) {  // the round stop's pupils enclose the pupils
     const Lens round = with_iris(lens, {});
     return entrance_of(round, make_model(model.kind(), round, model.pupils().film_radius()), threads);
   }
@@ -96,7 +97,7 @@ EntrancePupilTable entrance_of(const Lens& lens, const AnyRayModel& model, int t
     return entrance_of(with_iris(lens, {}), PolynomialModel(polynomial->polynomial(), model.pupils().of_round_stop()),
                        threads);
   }
-  // A pinhole only needs to know what lies in front of the lens.
+  // A pinhole needs the front of the lens only: no rays.
   if (model.pinhole()) {
     return EntrancePupilTable(lens, std::vector<std::vector<Ray<double>>>(model.pupils().wavelengths()), {});
   }
@@ -105,17 +106,17 @@ EntrancePupilTable entrance_of(const Lens& lens, const AnyRayModel& model, int t
                             model.clips_at_apertures() ? ClippedBy::apertures : ClippedBy::samples, threads);
 }
 
-/// The pupil that a point so far away sees is that of infinity within rounding, mm.
+/// Distance from which the pupil equals the pupil at infinity up to rounding, mm.
 constexpr double far = 1e12;
 
-/// The point of a ray's line from which nothing is lost on the way to the lens, however far it comes.
+/// The point of a ray's line nearest to the vertex: keeps the precision of rays from distant origins.
 Vec3<double> nearest_to_lens(const Ray<double>& ray) noexcept {
   return ray.origin - ray.direction * glm::dot(ray.origin, ray.direction);
 }
 
-/// The area of the entrance pupil that a pinhole's pupil on the axis is the image of, mm^2. Film and pupil points are
-/// linear in height and slope of a ray at the entrance pupil; of a film point on the axis, so is the height in the
-/// pupil point.
+/// Area of the entrance pupil whose image is a pinhole's pupil on the axis, mm^2. Film point and pupil position are
+/// linear in height and slope of a ray at the entrance pupil. For a film point on the axis, the height is therefore
+/// linear in the pupil position.
 double pinhole_entrance_area(const AnyRayModel& model, double entrance_z, std::size_t wavelength) noexcept {
   const auto image = [&](double height, double slope) {
     const double z = 1 / std::hypot(slope, 1.0), direction = slope * z, zero = 0;
@@ -166,7 +167,7 @@ SceneSide::SceneSide(const LensFacts& facts, const Film& film, std::optional<Til
     const double across = has_cylinders(lens) ? pupils(lens, w, Meridian::x).entrance.diameter : entrance.diameter;
     const double found =
         model.pinhole() ? pinhole_entrance_area(model, entrance.z, w) : pi / 4 * across * entrance.diameter;
-    // Nothing passes a pupil whose density has no number.
+    // Below the smallest normal number 1 / area is not finite: vignette all rays.
     const double area = found >= std::numeric_limits<double>::min() ? found : 0;
     compiled_.push_back({{.we = etendue * wavelengths.scale(w) / film.area_mm2(),
                           .density = etendue / film.area_mm2() / squared(space_.depth()),
@@ -188,7 +189,7 @@ SceneSide::Facts SceneSide::facts_at(Wavelength wavelength) const noexcept {
   const auto nm = wavelength.in_nm();
   if (!nm) return beside;
   const auto [etendue, entrance_z, area] = between_(*nm);
-  // A pupil at infinity has no place between others.
+  // Positions cannot be interpolated if a pupil lies at infinity.
   const bool placed = std::isfinite(entrance_z) && std::isfinite(area) && beside.entrance_area > 0;
   return {.we = etendue * wavelengths_.scale(wavelength) / film_.area_mm2(),
           .density = etendue / film_.area_mm2() / squared(space_.depth()),
@@ -253,7 +254,7 @@ void SceneSide::arrive(const AnyRayModel& model, std::size_t count, const RayArr
   for (std::size_t i = 0; i < count && tilted_; ++i) {
     const auto placed = plane(times ? times[i] : 0);
     const FilmPoint pupil{found.pupil_x[i], found.pupil_y[i]};
-    // A ray that does not meet the film plane lies outside the film.
+    // A ray that misses the film plane is outside the film.
     const auto [met, virtual_point] = meet_film({found.upright_x[i], found.upright_y[i], pupil.x, pupil.y}, placed)
                                           .value_or(OnFilm{{infinity, infinity}, {0, 0}});
     found.met_x[i] = met.x, found.met_y[i] = met.y;
@@ -286,7 +287,7 @@ void SceneSide::weigh(const AnyRayModel& model, std::size_t count, const RayWave
     const double position = entrance_area[i] <= largest ? 1 / entrance_area[i] : 1;
     we[i] *= slopes;
     pdf_pupil[i] = areas[i] > 0 ? 1 / areas[i] : 0;
-    // A pupil at infinity has no position; all of the density is the direction's.
+    // A pupil at infinity has no position: the direction carries all of the density.
     pdf_position[i] = position;
     pdf_direction[i] = density[i] * squared(length2) / arrivals.facing[i] * slopes * pdf_pupil[i] / position;
   }
@@ -323,7 +324,7 @@ template <std::size_t block>
 void SceneSide::importance_block(const AnyRayModel& model, std::size_t count, const RayArrays<const double>& rays,
                                  const RayWavelengths& wavelengths, const double* times,
                                  Importance* found) const noexcept {
-  // No ray meets a point but one that was aimed at it.
+  // A ray meets the pinhole only if it was aimed at it: probability 0.
   if (model.pinhole()) {
     for (std::size_t i = 0; i < count; ++i) {
       const bool usable = valid(core_detail::ray_at(rays, i), wavelengths.at(i));
@@ -333,7 +334,8 @@ void SceneSide::importance_block(const AnyRayModel& model, std::size_t count, co
   }
   Arrivals<block> arrivals;
   arrive(model, count, rays, wavelengths, times, arrivals);
-  // Film points send no rays through other zones of the surfaces, as of a ball lens.
+  // Rays may arrive outside the sampled pupil, through other zones of the surfaces (for example of a ball lens): area
+  // 0.
   const FilmPupilTable& sampled = tilted_ ? tilted_->pupils() : pupils_;
   std::array<double, block> areas;
   sampled.sample_areas<double>(count, arrivals.virtual_lines(), wavelengths, areas.data());
@@ -382,7 +384,7 @@ void SceneSide::connect(const AnyRayModel& model, std::size_t count, const Vec3<
                         ImportanceSample* found) const noexcept {
   std::array<double, block> x, y, z, dx, dy, dz, distance, pdf, way;
   std::array<Importance, block> importances;
-  // Rays of points without a connection are valid too.
+  // Points without a connection get valid rays too, with pdf = 0.
   entrance_.sample(count, points, u, v, wavelengths,
                    {x.data(), y.data(), z.data(), dx.data(), dy.data(), dz.data(), distance.data(), pdf.data()});
   importance_block<block>(model, count, {x.data(), y.data(), z.data(), dx.data(), dy.data(), dz.data()}, wavelengths,
@@ -441,7 +443,7 @@ ImportanceSample SceneSide::through_pinhole(const AnyRayModel& model, const Vec3
   const double distance = glm::length(to);
   if (!std::isfinite(distance) || !std::isfinite(at.entrance_area) || !(at.entrance_area > 0 && to.z > 0))
     return result;
-  // The weights are those of all the thick lens's pupil, and so are the places in it that the film sees it through.
+  // Weights and pupil positions represent the whole pupil of the thick lens.
   const Vec3<double> direction = to / distance;
   result = connection(pupil, direction, distance, squared(distance) / (at.entrance_area * direction.z));
   Arrivals<1> arrival;
@@ -454,7 +456,7 @@ ImportanceSample SceneSide::through_pinhole(const AnyRayModel& model, const Vec3
   const FilmPoint place{s.x, s.y};
   double spread = 1, area = s.area;
   if (const auto placed = plane(time); placed && arrival.lit(0)) {
-    // Lines through the place spread over the film otherwise than those of the pinhole do.
+    // Lines through this pupil position spread over the tilted film differently from lines through the pinhole.
     spread = part_by_place(*placed, place) / part_by_place(*placed, {arrival.pupil_x[0], arrival.pupil_y[0]});
     arrival.facing[0] = placed->weight(met, place);
     const TwoPlaneRay line = placed->upright(met, place);
@@ -467,9 +469,9 @@ ImportanceSample SceneSide::through_pinhole(const AnyRayModel& model, const Vec3
   Importance& seen = result.importance;
   weigh(model, 1, {.all = wavelength}, arrival, &area, &seen);
   if (seen.fate != RayFate::transmitted) return result;
-  // A rim leaves a part of the entrance pupil too.
+  // A rim clips the entrance pupil by the same fraction.
   if (whole_) {
-    // Tilted films sample the round stop, of whose rays the iris clips some.
+    // Tilted films sample the round stop; the iris clips some of these rays.
     const double sampled = tilted_ ? s.area : pupils.polygon_area(met, wavelength);
     const double all = tilted_ ? whole_->area(met, wavelength) : whole_->polygon_area(met, wavelength);
     const double part = sampled / all;

@@ -15,10 +15,10 @@ namespace petzval::camera_detail {
 namespace {
 
 constexpr std::size_t block = 256;
-/// In the widest registers.
+/// Lanes of the widest registers of any instruction set.
 template <class T>
 constexpr std::size_t lanes = 64 / sizeof(T);
-/// In the widest registers of this processor; at least 8, since fewer rays are not traced on lanes.
+/// Lanes of the widest registers of this processor; at least 8, because fewer rays are not traced on lanes.
 template <class T>
 std::size_t lanes_here() noexcept {
   static const bool widest = instruction_sets().back() == InstructionSet::avx512;
@@ -47,8 +47,7 @@ void fill_scales(std::size_t count, const WavelengthFacts& facts, const RayWavel
   camera_loops().of<T>().look_up(facts.scale_rows<T>(), count, wavelengths, scales);
 }
 
-/// The points of the upright film whose rays through the middles of their pupils are those of a pinhole in front of a
-/// tilted film.
+/// Points of the upright film whose chief rays equal the rays of a pinhole in front of a tilted film.
 template <class T>
 void find_chiefs(std::size_t count, const FilmView& view, const RayWavelengths& wavelengths, const T* times,
                  const T* virtual_x, const T* virtual_y, T* film_x, T* film_y) noexcept {
@@ -60,7 +59,7 @@ void find_chiefs(std::size_t count, const FilmView& view, const RayWavelengths& 
   }
 }
 
-/// Rays beside a model's pupils become vignetted.
+/// Sets the fate of rays outside their pupils to vignetted.
 template <class T>
 void keep_within(std::size_t count, const FilmPupilTable& pupils, const TwoPlaneRays<const T>& lines,
                  const RayWavelengths& wavelengths, RayFate* fates) noexcept {
@@ -69,7 +68,8 @@ void keep_within(std::size_t count, const FilmPupilTable& pupils, const TwoPlane
   for (std::size_t i = 0; i < count; ++i) fates[i] = within[i] ? fates[i] : RayFate::vignetted;
 }
 
-/// Gives rays the weights of their places in the stop, and samples the densities with which they were drawn.
+/// Multiplies weights by the weights of the stop positions, and densities by the densities of the drawn positions.
+/// wanted: the first `wanted` rays are set.
 template <class T>
 void weigh_pupil(const FilmView& view, std::size_t count, std::size_t wanted, const T* u, const T* v,
                  const TwoPlaneRays<const T>& lines, const RayWavelengths& wavelengths, const T* densities,
@@ -103,8 +103,8 @@ void bend(const FilmView& view, std::size_t count, const CameraSamples<T>& sampl
                   rays);
 }
 
-/// One block, of a number of rays that fills lanes: each has the same bits wherever it stands. The first `wanted` of
-/// them get weights.
+/// Samples one block. n: a multiple of the lanes, so that a ray has the same bits at every position. Only the first
+/// `wanted` rays get weights.
 template <class T>
 void sample_block(const FilmView& view, std::size_t n, std::size_t wanted, const CameraSamples<T>& samples,
                   const CameraRays<T>& rays) noexcept {
@@ -160,7 +160,7 @@ void sample_block(const FilmView& view, std::size_t n, std::size_t wanted, const
   loops.weigh_tilted(plane, wanted, virtual_x.data(), virtual_y.data(), x.data(), y.data(), fates, rays);
 }
 
-/// Less than fills the lanes: in a block of their own, filled up with the last one.
+/// Samples fewer rays than lanes: pads them with copies of the last sample.
 template <class T>
 void sample_rest(const FilmView& view, std::size_t count, const CameraSamples<T>& samples,
                  const CameraRays<T>& rays) noexcept {
@@ -256,7 +256,7 @@ namespace {
 
 /// A sample of the film before its ray is known.
 struct Start {
-  bool kept = false;  ///< the point lies on the film; otherwise `film` is the middle of the film
+  bool kept = false;  ///< true if the point is on the film; otherwise `film` is its centre
   FilmPoint film, virtual_point;
   TiltedPlane plane;  ///< of a tilted film
   PupilWeights::Drawn drawn{};
@@ -265,12 +265,12 @@ struct Start {
   double area = 0;
 };
 
-/// with_derivatives: whether to set the derivatives of `leaving`.
+/// with_derivatives: true to set the derivatives of `leaving`.
 Start start(const FilmView& view, const FilmPoint& film, double u, double v, Wavelength wavelength, double time,
             bool with_derivatives) noexcept {
   Start s;
   s.kept = on_film(view.bounds, film.x, film.y);
-  // Number by number: a load of two that a caller has just stored one by one waits until they are in the cache.
+  // Copied one number at a time: one load of two numbers that were stored separately just before would stall.
   s.drawn = view.weights.draw(u, v);
   const double x = s.kept ? film.x : view.bounds.centre_x, y = s.kept ? film.y : view.bounds.centre_y;
   s.film = {x, y};
@@ -310,7 +310,8 @@ Start start(const FilmView& view, const FilmPoint& film, double u, double v, Wav
   return s;
 }
 
-/// Weight, densities and fate of a sample whose ray has left the lens. front: to move it there; null: it has been.
+/// Sets weight, densities and fate of a sample. front: moves the ray to this front; null if the ray starts at the
+/// front.
 void weigh(const FilmView& view, const Start& s, Wavelength wavelength, const Front* front, CameraRay& out) noexcept {
   const bool decides = view.tilted && decide(view.pupils, view.model);
   if (decides && !view.pupils.contains({s.line.film_x, s.line.film_y}, s.line.pupil_x, s.line.pupil_y, wavelength)) {

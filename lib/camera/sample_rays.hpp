@@ -55,7 +55,7 @@ inline bool decide(const FilmPupilTable& pupils, const AnyRayModel& model) noexc
   return !model.clips_at_apertures() || pupils.cut();
 }
 
-/// Everything that film samples depend on.
+/// Inputs of film sampling.
 struct FilmView {
   const AnyRayModel& model;
   const Film& film;
@@ -80,7 +80,7 @@ struct FilmView {
 template <class T>
 PETZVAL_API void sample_rays(const FilmView& view, std::size_t count, const CameraSamples<T>& samples,
                              const CameraRays<T>& rays) noexcept;
-/// One ray, equal to the batch result up to rounding. pdf_film is left out.
+/// One ray, equal to the batch result up to rounding. pdf_film is not set.
 CameraRay sample_ray(const FilmView& view, const FilmPoint& film, double u, double v, Wavelength wavelength,
                      double time) noexcept;
 /// One ray with its derivatives.

@@ -19,7 +19,7 @@
 
 namespace petzval::camera_detail {
 
-/// The scene's side of a camera: importance.cpp and projection.cpp.
+/// Importance and projection of a camera, implemented in importance.cpp and projection.cpp.
 class SceneSide {
  public:
   /// radius: upright_radius() of the film; wavelengths, weights: as in FilmView.
@@ -41,31 +41,31 @@ class SceneSide {
                      double time) const noexcept;
 
  private:
-  /// Chief rays, which the exact models trace whatever clips them.
+  /// Chief rays. The exact models trace them through all apertures, without clipping.
   void chief_rays(const AnyRayModel& model, std::size_t count, const TwoPlaneRays<const double>& lines,
                   Wavelength wavelength, const RayArrays<double>& rays, RayFate* fates) const noexcept;
 
-  /// What differs with the wavelength.
+  /// Data that depend on the wavelength.
   struct Facts {
     double we = 0;       // 1/mm^2
-    double density = 0;  // of film samples in the scene, less what depends on the ray
+    double density = 0;  // density of film samples in the scene, without the factors of the ray
     double entrance_z = 0, entrance_area = 0;
   };
-  /// Those of a compiled one.
+  /// Data of a compiled wavelength.
   struct Compiled : Facts {
     ChiefRayTable chiefs;
   };
-  /// Of a wavelength that is covered.
+  /// wavelength: must be covered.
   Facts facts_at(Wavelength wavelength) const noexcept;
   const Compiled& nearest(Wavelength wavelength) const noexcept;
 
-  /// Up to N rays of the scene at the film.
+  /// Up to `block` scene rays at the film.
   template <std::size_t block>
   struct Arrivals {
     using Column = std::array<double, block>;
     Column upright_x, upright_y, pupil_x, pupil_y;  // image-space rays
-    Column met_x, met_y, virtual_x, virtual_y;      // points of the film, virtual points; of an upright film, the same
-    Column facing, spread, cosine;  // TiltedPlane::weight(), LocalFocus::Straight, angle with the axis in the scene
+    Column met_x, met_y, virtual_x, virtual_y;      // film points, virtual points; equal for an upright film
+    Column facing, spread, cosine;  // TiltedPlane::weight(), LocalFocus::Straight::spread, cos of the angle to the axis
     std::array<RayFate, block> fates;
 
     bool lit(std::size_t i) const noexcept { return fates[i] == RayFate::transmitted; }
@@ -79,22 +79,22 @@ class SceneSide {
       return {virtual_x.data(), virtual_y.data(), pupil_x.data(), pupil_y.data()};
     }
   };
-  /// The place of a film that is tilted or travels, at a time; nullopt for another film.
+  /// Plane of a tilted or moving film at a time; nullopt for a fixed upright film.
   std::optional<TiltedPlane> plane(double time) const noexcept;
-  /// The intersection of an image-space ray with the film plane, and its virtual point; for an upright film, the same
-  /// point. nullopt if there is no intersection.
+  /// Intersection of an image-space ray with the film plane, and its virtual point; equal for an upright film. nullopt
+  /// if there is no intersection.
   struct OnFilm {
     FilmPoint point, virtual_point;
   };
   static std::optional<OnFilm> meet_film(const TwoPlaneRay& ray, const std::optional<TiltedPlane>& plane) noexcept;
-  /// A unit direction, numbers that are finite, and a wavelength that is covered.
+  /// True if the origin is finite, the direction has unit length and the wavelength is covered.
   bool valid(const Ray<double>& ray, Wavelength wavelength) const noexcept;
-  /// The fate of a ray or point that is not valid.
+  /// Fate of an invalid ray or point.
   RayFate refused(Wavelength wavelength) const noexcept {
     return wavelengths_.covers(wavelength) ? RayFate::invalid : RayFate::outside_spectrum;
   }
   /// The stages of a sample: rays to the film, weights and densities, and connections from points. count: at most
-  /// `block`. areas: of the pupil that the sample of each ray stands for, 0 if there is no such sample.
+  /// `block`. areas: areas of the sampled pupils, one for each ray; 0 if no film sample has this ray.
   template <std::size_t block>
   void arrive(const AnyRayModel& model, std::size_t count, const RayArrays<const double>& rays,
               const RayWavelengths& wavelengths, const double* times, Arrivals<block>& found) const noexcept;
@@ -108,7 +108,8 @@ class SceneSide {
   void connect(const AnyRayModel& model, std::size_t count, const Vec3<double>* points, const double* u,
                const double* v, const RayWavelengths& wavelengths, const double* times,
                ImportanceSample* found) const noexcept;
-  /// A connection to a place in the lens from a point at a distance from it. The shadow ray ends at the front.
+  /// Connection from a scene point to the position `place` in the lens, at a distance. The shadow ray ends at the
+  /// front.
   ImportanceSample connection(const Vec3<double>& place, const Vec3<double>& direction, double distance,
                               double pdf) const noexcept;
   ImportanceSample through_pinhole(const AnyRayModel& model, const Vec3<double>& point, double u, double v,
@@ -125,12 +126,12 @@ class SceneSide {
   PupilWeights weights_;
   FilmPupilTable pupils_;  // of the upright film
   lens_detail::CompiledWavelengths in_nm_;
-  lens_detail::BetweenWavelengths<3> between_;  // etendue, place and area of the entrance pupil
+  lens_detail::BetweenWavelengths<3> between_;  // etendue, entrance_z, entrance_area
   std::size_t primary_ = 0;
   std::vector<Compiled> compiled_;
   EntrancePupilTable entrance_;
-  std::optional<Lens> traced_;           // of the exact models
-  std::optional<FilmPupilTable> whole_;  // of a pinhole whose pupils a rim has cut: those before, of the same film
+  std::optional<Lens> traced_;           // for exact models
+  std::optional<FilmPupilTable> whole_;  // unclipped pupils of a pinhole with rims, same film
 };
 
 }  // namespace petzval::camera_detail
