@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 # cmake -DROOT=... -DBUILD=... -DWORK=... -DPAGE=lib/docs/renderers.md -P guide_commands.cmake: runs the commands of a guide.
 #
-# Every line of a block ```sh is run in a shell, in a folder that looks like the repository with its build: the links data, examples,
-# lib, tests and build. Commands write to out. A command whose example program is not built, for want of a library, is left out.
+# Every line of a block ```sh is run in a shell, in a folder that looks like the repository with its build: links to its folders and
+# to README.md. Commands write to out. A command whose example program is not built, for want of a library, is left out.
 # A block ```text must be a part of the output of the last block ```sh, or of the guide's own program (lib/docs/renderers.cpp), line by
 # line, apart from the indentation.
 cmake_minimum_required(VERSION 3.25)
@@ -10,7 +10,7 @@ include(${CMAKE_CURRENT_LIST_DIR}/guide_blocks.cmake)
 
 file(REMOVE_RECURSE ${WORK})
 file(MAKE_DIRECTORY ${WORK})
-foreach(folder data examples lib tests)
+foreach(folder README.md cmake data examples include lib tests)
   file(CREATE_LINK ${ROOT}/${folder} ${WORK}/${folder} SYMBOLIC)
 endforeach()
 file(CREATE_LINK ${BUILD} ${WORK}/build SYMBOLIC)
