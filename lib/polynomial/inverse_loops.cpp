@@ -9,7 +9,7 @@ namespace {
 
 using V = trace_detail::Lanes<double>;
 
-/// Newton's iteration with whole steps. Returns the lanes that have converged, inside the domain or not.
+/// Newton's iteration with whole steps. Returns the converged lanes, inside or outside the domain.
 template <int n>
 auto converge(const double* coefficients, const Four<V>& line, Four<V>& x) noexcept {
   const V none(0.0), one(1.0);
@@ -17,7 +17,7 @@ auto converge(const double* coefficients, const Four<V>& line, Four<V>& x) noexc
   Slopes<V> slope;
   auto active = none < one, done = one < none;
   V last(1e300);
-  constexpr int most = 12;  // converging iterations take three or four
+  constexpr int most = 12;  // iterations that converge take three or four steps
   for (int i = 0; i < most && any(active); ++i) {
     evaluate(OfRevolution<n>{}, coefficients, x, value, slope);
     const Four<V> move =

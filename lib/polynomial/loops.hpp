@@ -16,7 +16,7 @@ namespace petzval::polynomial_detail {
 
 /// Degrees 3, 5, 7, 9, 11.
 inline constexpr std::size_t degree_count = 5;
-/// Coefficients for degree 11 and two mirror symmetries, the largest number at a wavelength.
+/// Largest number of coefficients of a wavelength: degree 11 with two mirror symmetries.
 inline constexpr std::size_t most_coefficients = 1568;
 
 /// The constants of a domain, rounded once from double.
@@ -29,13 +29,13 @@ struct Scales {
   Section along_x, along_y;
 };
 
-/// Limit of |f|^2 and |p|^2. It exceeds 1, so that lines on the rim of the domain belong to the domain in float too.
+/// Limit of |f|^2 and |p|^2; exceeds 1, so that lines on the rim belong to the domain in float as well.
 inline constexpr double within_domain = 1 + 1e-5;
 
 /// Largest number of modes of a polynomial.
 inline constexpr std::size_t most_modes = 8;
-/// Fits at any wavelength, borrowed: a mode holds coefficients like a fit, and a sum of modes with weights by
-/// wavelength is the fit at that wavelength. The weight of the first mode is 1.
+/// Fits at any wavelength, borrowed. A mode holds as many coefficients as a fit; the fit at a wavelength is the sum of
+/// the modes with the weights of the wavelength. The weight of the first mode is 1.
 template <class R>
 struct Modes {
   const R* coefficients = nullptr;  ///< by mode
@@ -61,7 +61,7 @@ struct ToSceneJob {
 template <class R>
 using ToSceneLoops = std::array<void (*)(const ToSceneJob<R>&) noexcept, 2 * degree_count>;
 
-/// Maps one line. coefficients: of its wavelength; null if there is no fit.
+/// Maps one line. coefficients: of the wavelength of the line; null if there is no fit.
 using OneToScene = std::array<RayFate (*)(const double* coefficients, const Scales<double>&, const TwoPlaneRay&,
                                           Ray<double>&) noexcept,
                               2 * degree_count>;
@@ -78,8 +78,8 @@ PETZVAL_WIDEST(PolynomialLoops, polynomial_loops)
 /// Number of lines of one call of an inverse loop; fills the widest registers.
 inline constexpr std::size_t inverse_block = 8;
 using InverseColumns = std::array<std::array<double, inverse_block>, 4>;
-/// Finds (f, p) of lines (s, o), for lenses of revolution; by degree. found: 1, or -1 if there is no solution in the
-/// domain, or 0 if an iteration does not converge in whole steps.
+/// Finds (f, p) of lines (s, o), for lenses of revolution; one loop for each degree. found: 1; -1 if there is no
+/// solution in the domain; 0 if an iteration does not converge in whole steps.
 using InverseLoops = std::array<void (*)(const double* coefficients, const InverseColumns& wanted, InverseColumns& at,
                                          std::array<double, inverse_block>& found) noexcept,
                                 degree_count>;

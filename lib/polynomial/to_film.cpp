@@ -20,14 +20,14 @@ Place sum(const Place& a, double factor, const Place& b) noexcept {
   return {a[0] + factor * b[0], a[1] + factor * b[1], a[2] + factor * b[2], a[3] + factor * b[3]};
 }
 
-/// A polynomial's value and slope at a place.
+/// Value and derivatives of a polynomial at one point.
 struct At {
   Place value;
   polynomial_detail::Slopes<double> slope;
 };
 
-/// Newton's iteration, from a place where the polynomial has been evaluated. Returns false if a step is more than half
-/// of the step before it, since it may then reach another branch of the polynomial, and if the iteration leaves the
+/// Newton's iteration from a point with known value and derivatives. Returns false if a step is more than half of the
+/// previous step, because the iteration may then reach another branch of the polynomial, or if the iteration leaves the
 /// neighbourhood of the domain.
 template <class Symmetry>
 bool correct(const double* c, const Place& wanted, const At& begin, Place& x) noexcept {
@@ -62,7 +62,7 @@ Place start(OfMirrors<n>, const double* c, const Place& line) noexcept {
   return {x / within, y / within, 0, 0};
 }
 
-/// Moves from the line of x to the line of `wanted` over intermediate lines, in steps that the iteration can follow:
+/// Moves from the line of x to the line `wanted` over intermediate lines, in steps for which the iteration converges:
 /// mostly one step, several for a fisheye. Returns false if an iteration fails or the result is outside the domain.
 template <class Symmetry>
 bool follow(const double* c, const Place& wanted, Place& x) noexcept {
@@ -125,7 +125,7 @@ void RayPolynomial::to_film(std::size_t count, const RayArrays<const double>& ra
       wanted[0][i] = line.sx, wanted[1][i] = line.sy, wanted[2][i] = line.ox, wanted[3][i] = line.oy;
       found[i] = 0;
     }
-    constexpr std::size_t few = 2;  // which a block costs more than
+    constexpr std::size_t few = 2;  // cheaper one by one than as a block
     if (coefficients && n > few && loop < polynomial_detail::degree_count) {
       for (auto& column : wanted) std::fill(column.begin() + n, column.end(), column[0]);
       polynomial_detail::inverse_loops()[loop](coefficients, wanted, at, found);

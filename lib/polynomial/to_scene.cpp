@@ -183,7 +183,7 @@ __attribute__((noinline)) void map_whole(const ToSceneJob<R>& job) noexcept {
   }
 }
 
-/// The last rays fill unused lanes with copies of the first of them.
+/// Copies of the first remaining ray fill unused lanes.
 template <class Symmetry, class R>
 void to_scene(const ToSceneJob<R>& job) noexcept {
   constexpr std::size_t lanes = lane_count<R>;

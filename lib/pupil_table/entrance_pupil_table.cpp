@@ -27,15 +27,14 @@ constexpr double pi = std::numbers::pi;
 
 double squared(double x) noexcept { return x * x; }
 
-/// The solid angle of the cone about a ball of some radius, seen from some distance; 4 pi inside the ball.
+/// Solid angle of a ball at a distance; 4 pi inside the ball.
 double cone(double radius, double distance) noexcept {
   if (!(distance > radius)) return 4 * pi;
   const double sine2 = squared(radius / distance);
   return 2 * pi * sine2 / (1 + std::sqrt(1 - sine2));  // 1 - cosine, without cancellation
 }
 
-/// Expands the nodes of each wavelength until they contain the pupils of wavelengths up to the middles between it and
-/// its neighbours.
+/// Expands the nodes of each wavelength to contain the pupils up to halfway to the adjacent wavelengths.
 template <int dimensions>
 void expand_to_neighbours(std::vector<SceneNodes<dimensions>>& tables,
                           const lens_detail::CompiledWavelengths& compiled) {
@@ -46,7 +45,7 @@ void expand_to_neighbours(std::vector<SceneNodes<dimensions>>& tables,
     for (std::int32_t node = 0; node < L::nodes; ++node) {
       const double distance = static_cast<double>(node / L::layer) / L::distances;
       const double down = static_cast<double>(node % L::layer / L::row), across = node % L::row;
-      // The same field, or the last field of the other wavelength.
+      // The same field, limited to the last field of the other wavelength.
       const Vec2<double> part{across / L::fields, dimensions == 2 ? across / L::fields : down / L::fields};
       const Vec2<double> field = glm::min(table.last(distance) * part, other.last(distance));
       const auto at = other.weights(field, distance);
@@ -66,7 +65,7 @@ struct EntrancePupilTable::Data {
   Lens lens;
   Vec3<double> centre{0, 0, 0};
   double front_half = 0, steepest = 0;  // steepest: largest reciprocal distance of the table, 1/mm
-  std::vector<double> balls;            // by wavelength: radius about the centre, mm; 0: nothing passes
+  std::vector<double> balls;            // by wavelength: radius about the centre, mm; 0 if no ray passes
   bool cylinders = false, obscured = false;
   std::vector<double> nodes, widest;  // SceneGrid
   std::size_t primary = 0;
@@ -75,11 +74,11 @@ struct EntrancePupilTable::Data {
   explicit Data(const Lens& l) : lens(l) {}
 
   bool in_front(const Vec3<double>& point) const noexcept {
-    constexpr double farthest = 1e100;  // mm: squares of distances must be numbers
+    constexpr double farthest = 1e100;  // mm: squares of distances must be finite
     const auto near_enough = [](double x) { return std::abs(x) <= farthest; };
     if (!near_enough(point.x) || !near_enough(point.y) || !near_enough(point.z)) return false;
     const double r = std::hypot(point.x, point.y);
-    // Beside the front element fields of more than 90 degrees see past it.
+    // Points outside the front element's rim may lie behind its vertex: fields of more than 90 degrees.
     return r > front_half || point.z < sag(lens, 0, point.x, point.y);
   }
   double widest_of(const std::vector<Ray<double>>& rays, double reciprocal_radius) const noexcept {
@@ -89,12 +88,12 @@ struct EntrancePupilTable::Data {
     }
     return widest_field;
   }
-  /// From a place on the axis to the farthest of some rays.
+  /// Largest distance of rays from the point z on the axis.
   double farthest(const std::vector<Ray<double>>& rays, double z) const noexcept;
-  /// The place on the axis with the least ball that all rays meet.
+  /// Position on the axis of the centre of the smallest ball that all rays meet.
   double least_ball(std::span<const std::vector<Ray<double>>> rays, double first, double last) const noexcept;
 
-  /// Makes the nodes of all wavelengths. of_wavelength(w): the nodes of one.
+  /// Makes the nodes of all wavelengths. of_wavelength(w): makes the nodes of wavelength w.
   template <int dimensions, class OfWavelength>
   void fill(std::size_t wavelengths, int threads, const OfWavelength& of_wavelength) {
     std::vector<SceneNodes<dimensions>> tables(wavelengths);
@@ -131,7 +130,7 @@ struct EntrancePupilTable::Data {
   auto with_grid(const Body& body) const noexcept {
     return cylinders ? body(grid<3>()) : body(grid<2>());
   }
-  /// Calls body(polygon) with the polygon that a point sees, a ScenePolygon. False if the grid does not know the point.
+  /// Calls body(polygon) with the ScenePolygon of a point. Returns false if the grid has no polygon for the point.
   template <class Body>
   bool with_polygon(const Vec3<double>& point, std::size_t wavelength, const Body& body) const noexcept {
     return with_grid([&](const auto& grid) {
@@ -145,20 +144,20 @@ struct EntrancePupilTable::Data {
     });
   }
 
-  /// Position of the pupils to use; balls.size() for a wavelength that is not covered.
+  /// Index of the pupils for a wavelength; balls.size() or more if the wavelength is not covered.
   std::size_t position(Wavelength at) const noexcept {
     const auto nm = at.in_nm();
     return nm ? compiled.nearest(*nm) : at.position(primary);
   }
-  /// Whether a point may see a pupil at a wavelength.
+  /// True if a point may see a pupil at a wavelength.
   bool sees(const Vec3<double>& point, std::size_t wavelength) const noexcept {
     return wavelength < balls.size() && balls[wavelength] > 0 && in_front(point);
   }
-  /// Whether the grid has the pupils of points at a distance; those of others are cones about the ball.
+  /// True if the grid has the pupils of points at a distance; otherwise pupils are cones about the ball.
   bool covers(std::size_t wavelength, double distance) const noexcept {
     return widest[wavelength * (widest.size() / balls.size())] > 0 && steepest * distance >= 1;
   }
-  /// A sample of the cone about the ball, of a point that has no other pupil.
+  /// A sample of the cone about the ball, for points without a pupil in the grid.
   EntranceSample in_cone(const Vec3<double>& point, std::size_t wavelength, double u, double v) const noexcept;
 };
 
@@ -177,7 +176,7 @@ double EntrancePupilTable::Data::least_ball(std::span<const std::vector<Ray<doub
     for (const auto& own : rays) largest = std::max(largest, farthest(own, z));
     return largest;
   };
-  // The distance from a line is convex along the axis, and so is the largest of them.
+  // Distances from lines are convex along the axis, and so is their maximum: ternary search.
   for (int i = 0; i < 24; ++i) {
     const double a = first + (last - first) / 3, b = last - (last - first) / 3;
     if (radius(a) < radius(b)) {
@@ -214,22 +213,22 @@ EntrancePupilTable::EntrancePupilTable(const Lens& lens, std::span<const std::ve
   const Pupil entrance = pupils(lens, lens.primary_wavelength()).entrance;
   const pupil_detail::Face face = pupil_detail::face_of(lens, 0, entrance);
   data->front_half = face.half;
-  // Any centre does; fields look best from the pupil's. It must not lie before the lens, where points may be, nor so
-  // far behind that all of them are alike.
+  // Every centre gives correct tables; the centre of the pupil separates fields best. It must not lie in front of the
+  // lens, among scene points, nor so far behind the lens that all points have nearly the same field.
   const double length = std::abs(lens.surfaces().back().vertex_z) + face.half;
   const double first = face.z_min, last = face.z_max + 4 * length;
   data->centre.z = std::clamp(entrance.z, first, last);
   if (!lens.rotationally_symmetric()) data->centre.z = data->least_ball(rays, first, last);
   const double along = std::max(data->centre.z - face.z_min, face.z_max - data->centre.z);
-  double reach = std::hypot(face.half, along);  // of the front surface: points of the grid lie in front of it or beside
+  double reach = std::hypot(face.half, along);  // contains the front surface; grid points lie farther out
   for (const auto& own : rays) {
     const double between_rays = lens.rotationally_symmetric() ? 1.15 : 1.2;
     data->balls.push_back(between_rays * data->farthest(own, data->centre.z));
     reach = std::max(reach, data->balls.back());
   }
-  // With cylinders the pupils of near points move too fast for few nodes.
+  // With cylinders, pupils of near points move too fast for the small number of nodes.
   data->steepest = (lens.rotationally_symmetric() ? 0.8 : 0.25) / reach;
-  // Where the film sees a point through a small part of the pupil only, fields lose their meaning.
+  // Near points that the film sees through a small part of the pupil have fields far beyond the film's: exclude them.
   for (const auto& own : rays) {
     constexpr double no_field = 1e-6;
     const double farthest = data->widest_of(own, 0) + no_field;

@@ -26,8 +26,8 @@ constexpr std::size_t grid_steps = 8;  // steps between the nodes of an axis
 constexpr std::size_t probes = 16384;
 constexpr std::size_t grid_directions = 64;  // directions of the regions behind the polygons
 
-/// Guesses from aimed rays to the centre and the rim of the stop. Aiming is slow: some points of each row are aimed,
-/// about as many as are searched in full, and the points between them are interpolated.
+/// Guesses from aimed rays to the centre and the rim of the stop. Aiming is slow: about as many points of each row are
+/// aimed as are searched in full; guesses between them are interpolated.
 std::vector<PupilGuess> aimed_guesses(const Lens& lens, const TwoPlanes& space, std::span<const FilmPoint> points,
                                       std::size_t row, std::size_t wavelength) {
   std::vector<PupilGuess> guesses = first_order_guesses(lens, space, points, wavelength);

@@ -18,9 +18,9 @@ void put_iris(const iris_detail::IrisShape& shape, FilmPupilArrays& arrays);
 
 /// Pupils in closed form: images of an iris, by wavelength, that move with the film point.
 ///
-/// On a tilted film the ray of a virtual film point V (FilmTilt) through q meets the upright film at V - (slope . V) q.
-/// That point sees q in the image centred at shift (V - (slope . V) q). Solved for q, this is the upright image of V
-/// scaled about the origin, in each section, by 1 / (1 + shift slope . V).
+/// On a tilted film, the ray of a virtual film point V (FilmTilt) through q meets the upright film at V - (slope . V)
+/// q. The image for this point is centred at shift (V - (slope . V) q). Solved for q, the image is the upright image of
+/// V scaled about the origin, in each section, by 1 / (1 + shift slope . V).
 class IrisImages {
  public:
   IrisImages(const Iris& iris, std::span<const PupilImage> images, double film_radius, std::size_t primary,

@@ -53,7 +53,7 @@ template <class R, class ImageOf, class SampleAt>
 inline void fill(const SeenIris<R>& given, const ImageOf& image_of, const SampleAt& sample_at, std::size_t begin,
                  std::size_t end, const R* film_x, const R* film_y, const R* u, const R* v, R* x, R* y,
                  R* areas) noexcept {
-  const SeenIris<R> table = given;  // a copy, which no output can alias
+  const SeenIris<R> table = given;  // a copy that no output can alias
   PETZVAL_INDEPENDENT
   for (std::size_t i = begin; i < end; ++i) {
     // Comparisons with NaN are false.

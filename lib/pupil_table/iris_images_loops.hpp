@@ -52,7 +52,7 @@ template <class R>
 struct IrisImageLoopsOf {
   void (*sample)(const IrisImageTable<R>&, std::size_t, const R* film_x, const R* film_y, const R* u, const R* v,
                  const RayWavelengths&, R* x, R* y, R* areas) noexcept;
-  /// The areas that samples at positions in the pupil stand for; 0 outside the image.
+  /// Pupil areas that samples at given positions represent; 0 outside the image.
   void (*sample_areas)(const IrisImageTable<R>&, std::size_t, const TwoPlaneRays<const R>&, const RayWavelengths&,
                        R* areas) noexcept;
 };

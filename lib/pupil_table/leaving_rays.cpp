@@ -43,7 +43,7 @@ FilmSamples film_samples(const FilmPupilTable& pupils, bool azimuths_alike, std:
   const core_detail::Kronecker<3> points;
   std::size_t index = 0;
   for (int i = 0; i <= radii; ++i) {
-    // Denser near the edge of the light.
+    // Denser near the largest lit radius.
     const double part = 1 - std::pow(1 - static_cast<double>(i) / radii, 1.5);
     if (azimuths_alike) {
       for (int k = 0; k <= around / 2; ++k) {  // pupils are symmetric

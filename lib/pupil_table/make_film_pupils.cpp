@@ -24,7 +24,7 @@ namespace {
 
 using namespace pupil_table_detail;
 
-/// Scales a polygon until its projected solid angle, seen from its film point, is `wanted`.
+/// Scales a polygon until its projected solid angle at its film point equals `wanted`.
 void scale_to_light(PupilPolygon& polygon, const TwoPlanes& space, const FilmPoint& film, double wanted) {
   // The solid angle is nearly proportional to the squared scale.
   for (int round = 0; round < 3; ++round) {
@@ -40,8 +40,8 @@ void scale_to_light(PupilPolygon& polygon, const TwoPlanes& space, const FilmPoi
   }
 }
 
-/// The disc that contains the axial pupil and moves like pupils near the axis. beside: the pupil of a film point at
-/// `height`.
+/// The disc that contains the axial pupil and moves like pupils near the axis. beside: pupil of the film
+/// point at `height`.
 PupilDisc disc_about(const PupilPolygon& on_axis, const PupilPolygon& beside, double height) noexcept {
   double radius = 0;
   for (const auto& corner : on_axis.corners) radius = std::max(radius, std::hypot(corner.x, corner.y));

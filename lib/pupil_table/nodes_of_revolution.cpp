@@ -11,7 +11,7 @@
 namespace petzval::pupil_table_detail {
 namespace {
 
-/// Bounds of the places where the rays of one node and its neighbours cross its plane.
+/// Bounds of the intersections of a node's plane with the rays of this node and its neighbours.
 struct Bounds {
   double low = 0, high = 0, across = 0;
   bool any = false;
@@ -24,8 +24,8 @@ struct Bounds {
   }
 };
 
-/// Instead of a polygon where nothing passes any more: between it and the last one, which has `before` others before
-/// it, the pupil ends and moves on as it did, and faster.
+/// Polygon for a node without a pupil. polygon[-1] is the previous node's; `before` nodes precede this node in the row.
+/// The pupil ends between both nodes; extrapolates its motion and widens the polygon, because the motion accelerates.
 PupilPolygon beyond(const PupilPolygon* polygon, std::size_t before) noexcept {
   constexpr double room = 1.2;
   PupilPolygon result = polygon[-1];
@@ -36,7 +36,7 @@ PupilPolygon beyond(const PupilPolygon* polygon, std::size_t before) noexcept {
   return result;
 }
 
-/// Whether a pupil is a ring about its middle.
+/// True if a pupil is a ring about its middle.
 bool is_ring(const PupilPolygon& polygon) noexcept {
   const auto& [middle, corners, from, width] = polygon;
   return *std::max_element(from.begin(), from.end()) == 0 && *std::min_element(width.begin(), width.end()) > 0;
@@ -70,11 +70,11 @@ SceneNodes<2> nodes_of_revolution(const Vec3<double>& centre, double steepest, c
   constexpr std::size_t fields = L::row, distances = L::distances + 1;
   SceneNodes<2> result;
   std::vector<PupilPolygon>& polygons = result.polygons;
-  // The nodes, and places half way between them to look whether means of nodes contain what they should.
+  // The nodes, and points halfway between them, at which interpolated polygons are checked.
   constexpr std::size_t rows = 2 * L::distances + 1, columns = 2 * L::fields + 1;
   const auto reciprocal_of = [&](std::size_t row) { return steepest * static_cast<double>(row) / (rows - 1); };
 
-  // How far fields reach at each distance; the rays leave room between them.
+  // Largest field at each distance, with a margin because the rays are samples.
   constexpr double between_rays = 1.05, on_axis = 1e-6;
   std::array<double, rows> widest{};
   for (std::size_t row = 0; row < rows; ++row) {
@@ -90,8 +90,8 @@ SceneNodes<2> nodes_of_revolution(const Vec3<double>& centre, double steepest, c
   for (std::size_t row = 1; row < rows; row += 2) widest[row] = (widest[row - 1] + widest[row + 1]) / 2;
   for (std::size_t i = 0; i < distances; ++i) result.widest[i] = widest[2 * i];
 
-  // Where to look for the pupil of a field: about what the rays take of its plane at the distance at which those of a
-  // film point are most nearly of one field.
+  // Search area for the pupil of a field: bounds of the rays in its plane, at the distance at which all rays of a film
+  // point have most nearly the same field.
   const auto sharpest = static_cast<std::size_t>(std::min_element(widest.begin(), widest.end()) - widest.begin());
   std::vector<Bounds> bounds(columns);
   for (const Ray<double>& ray : rays) {
@@ -102,7 +102,7 @@ SceneNodes<2> nodes_of_revolution(const Vec3<double>& centre, double steepest, c
       bounds[j].take(place.x, place.y);
     }
   }
-  // The axis may be dark.
+  // The pupil on the axis may be empty.
   const auto lit = std::find_if(bounds.begin(), bounds.end(), [](const Bounds& b) { return b.any; });
   std::fill(bounds.begin(), lit, *lit);
   double room = 0, across = 0;
@@ -148,17 +148,17 @@ SceneNodes<2> nodes_of_revolution(const Vec3<double>& centre, double steepest, c
     }
   }
   expand_to_cover(polygons, checks);
-  constexpr double elsewhere = 1.008;  // in cells, away from the places looked at
+  constexpr double elsewhere = 1.008;  // scale of polygons, for points that are not checked
   for (PupilPolygon& polygon : polygons) polygon.widen(elsewhere);
-  // An obscuration is worth leaving out that all pupils have around their middles. Others move and are clipped sooner
-  // than a few places show.
+  // Exclude obscurations only if all pupils are rings. Other obscurations move, and are clipped between the points that
+  // are checked.
   const bool rings = std::all_of(polygons.begin(), polygons.end(), is_ring);
   if (!rings) {
     for (PupilPolygon& polygon : polygons) polygon.obscured.fill(0);
   }
 
-  // Where pupils dwindle, in the last fields, their boundaries bend more than a few places show: the sampled rays
-  // themselves do, and do everywhere where nothing else clips a pupil.
+  // In the last fields pupils shrink, and their boundaries bend more than the checked points show: expand polygons to
+  // the sampled rays. Do so in all fields if the sampled rays bound the pupils.
   const bool all = rings || clipped_by == ClippedBy::samples;
   constexpr double about_rays = 1.08, last_fields = 0.75, in_obscurations = 0.8;
   for (std::size_t row = 0; row < rows; ++row) {
@@ -169,7 +169,7 @@ SceneNodes<2> nodes_of_revolution(const Vec3<double>& centre, double steepest, c
       const Vec2<double> place = plane_facing(centre, bearing, reciprocal).meet(ray);
       const PolygonWeights at = result.weights(angles<2>(bearing), reciprocal / steepest).value_or(PolygonWeights{});
       const double way = interpolated(polygons, at).way_to(place.x, place.y);
-      if (std::isinf(way)) {  // a pupil that no polygon about a middle describes
+      if (std::isinf(way)) {  // the pupil is not star-shaped about a middle
         polygons.clear();
         return result;
       }

@@ -13,7 +13,7 @@
 namespace petzval::pupil_table_detail {
 namespace {
 
-/// Bounds of the places where rays cross the planes that they face.
+/// Bounds of intersections of rays with facing planes.
 struct Bounds {
   Vec2<double> low{0, 0}, high{0, 0};
   bool any = false;
@@ -33,7 +33,7 @@ Bearing towards(const Vec2<double>& angles) noexcept {
   return {field, std::sin(field), std::cos(field), azimuth.x, azimuth.y};
 }
 
-/// The position of a ray in the plane that faces a point, in the frame of the polygons.
+/// Intersection of a ray with the plane that faces a point, in the frame of the polygons.
 Vec2<double> place_in_grid(const Vec3<double>& centre, const Bearing& bearing, double reciprocal,
                            const Ray<double>& ray) noexcept {
   const Vec2<double> met = plane_facing(centre, bearing, reciprocal).meet(ray);
@@ -41,8 +41,8 @@ Vec2<double> place_in_grid(const Vec3<double>& centre, const Bearing& bearing, d
   return {place.x, place.y};
 }
 
-/// Where to look for the pupils of the points of a grid over angles at a distance: about what the rays of these fields
-/// take of their planes.
+/// Search areas for the pupils of a grid over angles at one distance: bounds of the rays of these fields in the facing
+/// planes.
 std::vector<pupil_detail::PupilGuess> guesses_from(const std::vector<Ray<double>>& rays, const Vec3<double>& centre,
                                                    double reciprocal, const Vec2<double>& widest, std::size_t columns) {
   std::vector<Bounds> bounds(columns * columns);
@@ -50,7 +50,7 @@ std::vector<pupil_detail::PupilGuess> guesses_from(const std::vector<Ray<double>
   for (const Ray<double>& ray : rays) {
     const Bearing bearing = bearing_on_sphere(centre, ray, reciprocal);
     const Vec2<double> place = place_in_grid(centre, bearing, reciprocal, ray);
-    // Of the points of the cell and those around it.
+    // Each ray counts for the nodes of its cell and of the adjacent cells.
     const Vec2<double> at = angles<3>(bearing) / widest * last;
     const auto first = [](double x) { return static_cast<std::size_t>(std::max(x - 1, 0.0)); };
     for (std::size_t i = first(at.y); i < std::min(first(at.y) + 4, columns); ++i) {
@@ -83,13 +83,13 @@ SceneNodes<3> nodes_with_cylinders(const Vec3<double>& centre, double steepest, 
   constexpr std::size_t steps = L::fields, nodes = L::row, distances = L::distances + 1;
   SceneNodes<3> result;
   std::vector<PupilPolygon>& polygons = result.polygons;
-  // The nodes and, at their distances, the points halfway between.
+  // The nodes, and points halfway between adjacent nodes.
   constexpr std::size_t rows = 2 * L::distances + 1, columns = 2 * steps + 1;
   const auto part = [](std::size_t i, std::size_t count) {
     return static_cast<double>(i) / static_cast<double>(count - 1);
   };
 
-  // How far fields reach at each distance; the rays leave room between them.
+  // Largest field at each distance, with a margin because the rays are samples.
   constexpr double between_rays = 1.05, on_axis = 1e-6;
   for (std::size_t i = 0; i < rows; ++i) {
     Vec2<double> reach{0, 0};
@@ -152,7 +152,7 @@ SceneNodes<3> nodes_with_cylinders(const Vec3<double>& centre, double steepest, 
                                                part(p % columns, columns))});
   }
   expand_to_cover(polygons, checks);
-  // Where the light ends within a cell its pupils are slivers that move fast: anywhere in those of the nodes around.
+  // In cells with empty pupils, the other pupils are narrow and move fast: use the hull of the surrounding nodes.
   std::vector<bool> ending(polygons.size(), false);
   for (const auto& [pupil, at] : checks) {
     for (std::size_t j = 0; j < at.polygons.size(); ++j) {
@@ -180,8 +180,8 @@ SceneNodes<3> nodes_with_cylinders(const Vec3<double>& centre, double steepest, 
         test(which.size(), place, x, y, clearances);
       });
 
-  // Where pupils dwindle, in the last fields, their boundaries bend more than places between nodes show: the sampled
-  // rays themselves do, at every distance; the others each at one.
+  // In the last fields pupils shrink, and their boundaries bend more than the checked points show: expand polygons to
+  // the sampled rays. Outer rays are used at every distance, each inner ray at one distance.
   constexpr double about_rays = 1.01, about_last_rays = 1.08, outer_fields = 0.6, last_fields = 0.85;
   for (std::size_t r = 0; r < rays.size(); ++r) {
     for (std::size_t i = 0; i < rows; ++i) {
@@ -193,7 +193,7 @@ SceneNodes<3> nodes_with_cylinders(const Vec3<double>& centre, double steepest, 
       const Vec2<double> place = place_in_grid(centre, bearing, reciprocal, rays[r]);
       const PolygonWeights nodes_about = SceneNodes<3>::weights_at(distance, std::min(at.y, 1.0), std::min(at.x, 1.0));
       const double way = interpolated(polygons, nodes_about).way_to(place.x, place.y);
-      if (std::isinf(way)) {  // a pupil that no polygon about a middle describes
+      if (std::isinf(way)) {  // the pupil is not star-shaped about a middle
         polygons.clear();
         return result;
       }

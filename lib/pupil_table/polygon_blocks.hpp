@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Blocks of samples of the pupils in a grid, in loops without branches, which the compiler runs on its lanes; a block
-// of one is a single sample. Names are local, and no other library is called, as in lib/trace/lanes.hpp.
+// Blocks of samples of the pupils in a grid: loops without branches that the compiler vectorizes. A block of one is a
+// single sample. Names are local, and no other library is called, as in lib/trace/lanes.hpp.
 #pragma once
 
 #include <type_traits>
@@ -33,16 +33,16 @@ PETZVAL_INLINE void find_places(const PolygonGrid<dimensions, R>& grid, const T*
   }
 }
 
-/// Lines outwards through the polygons of some film points, from the middle (0) to the outer edge (1).
+/// Lines through the polygons of film points, from the middle (0) to the outer edge (1).
 template <std::size_t block, class T>
 struct Lines {
   std::int32_t sector[block];
   T along[block], edge_x[block],
       edge_y[block];         // intersection with the edge: fraction along the edge, and position from the middle
-  T from[block], to[block];  // the part that the iris leaves
+  T from[block], to[block];  // interval inside the iris
 };
 
-/// The parts of lines, by stop points over the iris's scale in the frame of the film, that lie within the iris.
+/// Intervals of lines inside the iris. Lines are in the frame of the film, divided by the scale of the iris.
 template <std::size_t block, class R, class T>
 PETZVAL_INLINE void cut_by_edges(const iris_detail::IrisSectors<R>& iris, const T* begin_x, const T* begin_y,
                                  const T* line_x, const T* line_y, T* from, T* to) noexcept {
@@ -65,8 +65,8 @@ PETZVAL_INLINE void cut_by_edges(const iris_detail::IrisSectors<R>& iris, const 
   }
 }
 
-/// Cuts lines at the iris. They are straight in the plane of the pupil, and at the stop nearly: the first cut, between
-/// the stop points of the middle and of the edge, tells where to look again.
+/// Clips lines at the iris. Lines are straight in the pupil plane and nearly straight at the stop. The first pass clips
+/// the straight line between the stop points of both ends; the second pass corrects the line at the clipped end.
 template <std::size_t block, int dimensions, class R, class T>
 PETZVAL_INLINE void cut_by_iris(const PolygonGrid<dimensions, R>& grid, const Places<block, T>& places,
                                 Lines<block, T>& lines) noexcept {
@@ -117,7 +117,7 @@ PETZVAL_INLINE void cut_by_iris(const PolygonGrid<dimensions, R>& grid, const Pl
   }
 }
 
-/// Samples of the polygons, or of the part of each polygon inside the iris.
+/// Samples the polygons, or the part of each polygon inside the iris.
 template <std::size_t block, bool obscured, bool stopped, int dimensions, class R, class T>
 PETZVAL_INLINE void sample_polygons(const PolygonGrid<dimensions, R>& grid, const Places<block, T>& places, const T* u,
                                     const T* v, T* x, T* y, T* area) noexcept {
@@ -133,7 +133,7 @@ PETZVAL_INLINE void sample_polygons(const PolygonGrid<dimensions, R>& grid, cons
   for (std::size_t i = 0; i < block; ++i) {
     const auto own = polygon(i);
     whole[i] = places.lit[i] * own.whole();
-    // Areas between nodes may turn over: a share is then anything, and a sector any of the polygon's.
+    // Interpolated areas may become negative; shares are then arbitrary, and the clamp keeps the sector valid.
     target[i] =
         core_detail::clamped(own.share_of(core_detail::clamped(u[i]), whole[i], places.cosine[i], places.sine[i]));
     const T expected = own.expected(target[i], whole[i]) - early;
@@ -141,7 +141,7 @@ PETZVAL_INLINE void sample_polygons(const PolygonGrid<dimensions, R>& grid, cons
     sector[i] = static_cast<std::int32_t>(value_of(above < last ? above : T(last)));
     target[i] = target[i] * whole[i];
   }
-  // Sectors have nearly equal shares: the right one is this or the next, or else near.
+  // Sectors have nearly equal areas: the target lies in this sector, the next, or near both.
   for (int step = 0; step < grid.corrections; ++step) {
     const std::int32_t first = sector[0];
     PETZVAL_INDEPENDENT
@@ -161,7 +161,7 @@ PETZVAL_INLINE void sample_polygons(const PolygonGrid<dimensions, R>& grid, cons
     sector[i] = k + next;
     beyond[i] = T(static_cast<R>(1 - next));
   }
-  // From the sector's first corner, or back from its second.
+  // Fraction from the first corner of the sector, or back from the second corner.
   const auto along_edge = [&behind, &beyond](std::size_t i, const Sector<T>& own) {
     const T own_area = own.area();
     return core_detail::clamped(T(behind[i] / (own_area > R(0) ? own_area : T(1)) + beyond[i]));
@@ -176,7 +176,7 @@ PETZVAL_INLINE void sample_polygons(const PolygonGrid<dimensions, R>& grid, cons
     area[i] = some * lit;
   };
   if constexpr (!stopped) {
-    // The results overlap nothing that is read here.
+    // The output arrays do not overlap the input.
     PETZVAL_INDEPENDENT
     for (std::size_t i = 0; i < block; ++i) {
       const Sector<T> own = polygon(i).sector(sector[i]);
@@ -196,7 +196,7 @@ PETZVAL_INLINE void sample_polygons(const PolygonGrid<dimensions, R>& grid, cons
     cut_by_iris<block>(grid, places, lines);
     PETZVAL_INDEPENDENT
     for (std::size_t i = 0; i < block; ++i) {
-      Sector<T> own{};  // only what is obscured
+      Sector<T> own{};  // for the obscured interval only
       if constexpr (obscured) own = polygon(i).sector(sector[i]);
       const T first = own.share_within(lines.from[i] * lines.from[i]);
       const T share = own.share_within(lines.to[i] * lines.to[i]) - first;
@@ -206,7 +206,7 @@ PETZVAL_INLINE void sample_polygons(const PolygonGrid<dimensions, R>& grid, cons
   }
 }
 
-/// Samples of the iris, mapped to the plane of the pupil.
+/// Samples the iris and maps the samples to the pupil plane.
 template <std::size_t block, int dimensions, class R, class T>
 PETZVAL_INLINE void sample_iris(const PolygonGrid<dimensions, R>& grid, const Places<block, T>& places, const T* u,
                                 const T* v, T* x, T* y, T* area) noexcept {
@@ -241,7 +241,7 @@ PETZVAL_INLINE void sample_iris(const PolygonGrid<dimensions, R>& grid, const Pl
 template <std::size_t block, bool obscured, bool stopped, int dimensions, class R, class T>
 PETZVAL_INLINE void sample_block(const PolygonGrid<dimensions, R>& given, const T* film_x, const T* film_y, const T* u,
                                  const T* v, const std::int32_t* wavelength, T* x, T* y, T* area) noexcept {
-  const PolygonGrid<dimensions, R> grid = given;  // which nothing that is written overlaps
+  const PolygonGrid<dimensions, R> grid = given;  // a copy that no output can alias
   Places<block, T> places;
   find_places(grid, film_x, film_y, u, v, wavelength, places);
   if constexpr (!stopped) {
@@ -272,7 +272,7 @@ PETZVAL_INLINE void sample_block(const PolygonGrid<dimensions, R>& given, const 
   }
 }
 
-/// The sectors that face places, given from the middle: found by halving.
+/// Finds the sectors that contain the directions of positions relative to the middle, by bisection.
 template <std::size_t block, int dimensions, class R>
 PETZVAL_INLINE void find_sectors(const PolygonGrid<dimensions, R>& grid, const Places<block, R>& places,
                                  const Point<R>* q, std::int32_t* sector) noexcept {
@@ -284,7 +284,7 @@ PETZVAL_INLINE void find_sectors(const PolygonGrid<dimensions, R>& grid, const P
   };
   std::int32_t half[block];
   R first_x[block], first_y[block];
-  // Half turns count from the first corner.
+  // half: 1 if q lies in the second half turn from the first corner.
   PETZVAL_INDEPENDENT
   for (std::size_t i = 0; i < block; ++i) {
     const Point<R> first = corner(i, 0);
@@ -302,8 +302,8 @@ PETZVAL_INLINE void find_sectors(const PolygonGrid<dimensions, R>& grid, const P
   }
 }
 
-/// The stop points of places in the plane of the pupil, in the frame of the film and over the iris's scale, and the
-/// area of the pupil that a sample there stands for.
+/// Stop points of positions in the pupil plane, in the frame of the film and divided by the scale of the iris, and the
+/// pupil areas that samples at these positions represent.
 template <std::size_t block, int dimensions, class R>
 PETZVAL_INLINE void find_stop_points(const PolygonGrid<dimensions, R>& grid, const Places<block, R>& places, const R* x,
                                      const R* y, Point<R>* points, R* area) noexcept {
@@ -323,7 +323,7 @@ PETZVAL_INLINE void find_stop_points(const PolygonGrid<dimensions, R>& grid, con
   }
 }
 
-/// The areas that samples at places stand for; 0 where there is no sample.
+/// Pupil areas that samples at given positions represent; 0 if there is no such sample.
 template <std::size_t block, bool obscured, bool stopped, int dimensions, class R>
 void areas_block(const PolygonGrid<dimensions, R>& given, const R* film_x, const R* film_y, const R* x, const R* y,
                  const std::int32_t* wavelength, R* area) noexcept {
@@ -393,7 +393,7 @@ void areas_block(const PolygonGrid<dimensions, R>& given, const R* film_x, const
   }
 }
 
-/// Intersections with the stop, in semi-diameters, of rays through places in the plane of the pupil.
+/// Intersections with the stop, in semi-diameters, of rays through positions in the pupil plane.
 template <std::size_t block, int dimensions, class R>
 void stop_points_block(const PolygonGrid<dimensions, R>& given, const R* film_x, const R* film_y, const R* x,
                        const R* y, const std::int32_t* wavelength, R* stop_x, R* stop_y) noexcept {
@@ -410,14 +410,13 @@ void stop_points_block(const PolygonGrid<dimensions, R>& given, const R* film_x,
   }
 }
 
-/// Sizes of blocks: both fill the widest registers; the small one takes the rest of a batch.
+/// Block sizes: both fill the widest registers; the small block takes the rest of a batch.
 constexpr std::size_t whole_block = 64, small_block = core_detail::lane_bytes == 64 ? 16 : 8;
 
 template <std::size_t rays>
 using Block = std::integral_constant<std::size_t, rays>;
 
-/// Calls body(block, four inputs, positions of wavelengths or -1, outputs) for blocks of N rays; unused slots hold
-/// zeros.
+/// Calls body(block, four inputs, wavelength indices or -1, outputs) for blocks of N rays; unused slots hold zeros.
 template <std::size_t outputs, class Grid, class R, class Body>
 inline void by_blocks(const Grid& grid, std::size_t count, const R* const (&in)[4], const RayWavelengths& wavelengths,
                       R* const (&out)[outputs], const Body& body) noexcept {
@@ -460,7 +459,7 @@ inline void by_blocks(const Grid& grid, std::size_t count, const R* const (&in)[
   }
 }
 
-/// Calls body(obscured, stopped) with constants.
+/// Calls body(obscured, stopped) with compile-time constants.
 template <int dimensions, class R, class Body>
 inline void with_kind(const PolygonGrid<dimensions, R>& grid, const Body& body) noexcept {
   const auto by_stop = [&](auto obscured) {
@@ -505,7 +504,7 @@ void areas(const PolygonGrid<dimensions, R>& grid, std::size_t count, const R* f
   });
 }
 
-/// Samples one ray. wavelength: a position, or -1 if the table does not cover the wavelength.
+/// Samples one ray. wavelength: wavelength index, -1 if the table does not cover the wavelength.
 template <int dimensions, class T>
 void sample_one(const PolygonGrid<dimensions, double>& grid, T film_x, T film_y, T u, T v, std::int32_t wavelength,
                 T& x, T& y, T& area) noexcept {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Pupils of film points, interpolated between the polygons at the nodes of a grid: for one sample or for loops over
-// many, in float, in double, or with derivatives (kernel::Dual). Names are local: this is compiled for several
-// instruction sets, and the linker must not mix functions of two sets.
+// Pupils of film points, interpolated between polygons at the nodes of a grid: for single samples and for loops, in
+// float, in double, or with derivatives (kernel::Dual). Names are local: compiled for several instruction sets, which
+// the linker must not mix.
 #pragma once
 
 #include <cmath>
@@ -16,63 +16,63 @@
 
 namespace petzval::pupil_table_detail {
 
-/// The numbers of one cell of a grid with one or two dimensions. Values are linear in the fraction t of the way along
-/// a row of the cell and in the fraction s from row to row: by 1, t, s and st (one dimension: by 1 and t). Areas are
-/// polynomials: by 1, t, t^2 and t^3, or by 1, t, t^2, s, st, st^2, s^2, s^2 t and s^2 t^2.
+/// Numbers of one cell of a grid with one or two dimensions. Values are linear in t, the fraction along a row of the
+/// cell, and in s, the fraction from row to row: coefficients of 1, t, s, st (one dimension: 1, t). Areas are
+/// polynomials: coefficients of 1, t, t^2, t^3, or of 1, t, t^2, s, st, st^2, s^2, s^2 t, s^2 t^2.
 template <int dimensions>
 struct CellLayout {
   static constexpr std::int32_t linear = 1 << dimensions, area_terms = dimensions == 1 ? 4 : 9;
   static constexpr std::int32_t middle = 0;          ///< x and y
   static constexpr std::int32_t whole = 2 * linear;  ///< area
   static constexpr std::int32_t sectors = whole + area_terms, sector = 2 * linear + area_terms;
-  static constexpr std::int32_t area = 2 * linear;  ///< in a sector, after its first corner's x and y from the middle
-  /// [64] begin and width of the obscured part of each sector, only with one dimension.
+  static constexpr std::int32_t area = 2 * linear;  ///< in a sector, after x and y of its first corner
+  /// [64] begin and width of the obscured interval of each sector; only with one dimension.
   static constexpr std::int32_t obscured = sectors + sector * (static_cast<std::int32_t>(polygon_corners) + 1);
   static constexpr std::int32_t size =
       obscured + (dimensions == 1 ? 2 * linear * static_cast<std::int32_t>(polygon_corners) : 0);
 };
 
-/// The data of one cell about the stop, in semi-diameters.
+/// Stop data of one cell, in semi-diameters.
 template <int dimensions>
 struct StopLayout {
   static constexpr std::int32_t linear = 1 << dimensions;
-  /// Terms of the place in the pupil by the stop point (x, y), with r = x^2 + y^2: of y, even in x: 1, y, x^2, y^2,
-  /// x^2 y, y^3, r^2, r y^2, r^2 y; of x over x: 1, y, x^2, y^2, r y, r^2. With two dimensions of x, then of y: 1, x,
-  /// y, x^2, xy, y^2, x^3, x^2 y, x y^2, y^3.
+  /// Terms of the map from stop point (x, y) to pupil position, with r = x^2 + y^2. One dimension: for pupil y (even in
+  /// x) 1, y, x^2, y^2, x^2 y, y^3, r^2, r y^2, r^2 y; for pupil x divided by x: 1, y, x^2, y^2, r y, r^2. Two
+  /// dimensions: for pupil x, then for pupil y: 1, x, y, x^2, xy, y^2, x^3, x^2 y, x y^2, y^3.
   static constexpr std::int32_t terms = dimensions == 1 ? 15 : 20;
-  static constexpr std::int32_t drawn = 0;  ///< 1: samples are points of the iris; 0: of the polygon within the iris
-  static constexpr std::int32_t scale = 1;  ///< by which the iris is larger, so that no ray is missed
-  static constexpr std::int32_t map = 2;    ///< the terms, linear in t and s each
+  static constexpr std::int32_t drawn = 0;  ///< 1 to sample the iris; 0 to sample the polygon inside the iris
+  static constexpr std::int32_t scale = 1;  ///< enlarges the iris, so that no ray is missed
+  static constexpr std::int32_t map = 2;    ///< the terms, each linear in t and s
   static constexpr std::int32_t middle = map + linear * terms, corners = middle + 2 * linear;
   static constexpr std::int32_t size = corners + 2 * linear * (static_cast<std::int32_t>(polygon_corners) + 1);
 };
 
-/// The stop of a lens behind the pupils of a grid, borrowed. The stop is round where `cells` is null.
+/// The stop of a lens for the pupils of a grid, borrowed. cells: null if the stop is round.
 template <class R>
 struct GridStop {
-  const R* cells = nullptr;  ///< in the order of PolygonGrid::cells: StopLayout
+  const R* cells = nullptr;  ///< StopLayout, in the order of PolygonGrid::cells
   iris_detail::IrisSectors<R> iris;
   R area = 0;  ///< area of the iris, in squares of the semi-diameter
 };
 
-/// The cells of all wavelengths, borrowed. With one dimension, rows lie at equal steps of the distance from the axis;
-/// polygons belong to film points on +y and turn with the point. With two dimensions, cells cover the quadrant x, y >=
-/// 0: rows lie at equal steps of y, the nodes of a row at equal steps of x up to half_widths. The pupils of the other
-/// quadrants are mirror images. Corner 0 lies towards +y of the middle, corner 32 towards -y.
+/// The cells of all wavelengths, borrowed. With one dimension, rows are equally spaced in the distance from the axis;
+/// polygons belong to film points on +y and rotate with the film point. With two dimensions, cells cover the quadrant
+/// x, y >= 0: rows are equally spaced in y, the nodes of a row in x up to half_widths; pupils of the other quadrants
+/// are mirror images. Corner 0 is in the direction +y from the middle, corner 32 in the direction -y.
 template <int number_of_dimensions, class R>
 struct PolygonGrid {
   static constexpr int dimensions = number_of_dimensions;
   const R* cells = nullptr;        ///< [(wavelength * rows + row) * columns + column] CellLayout
-  const R* half_widths = nullptr;  ///< [rows + 1] mm, with two dimensions
+  const R* half_widths = nullptr;  ///< [rows + 1] mm; only with two dimensions
   std::int32_t rows = 0, columns = 1, wavelengths = 0, primary = 0;
   R reach = 0, rows_per_mm = 0;  ///< distance of the farthest film point, mm
-  bool obscured = false;         ///< at least one sector has an obscured part
-  int corrections = 0;  ///< largest error, in sectors, of the sector found by equal shares; 0: less than half a sector
+  bool obscured = false;         ///< true if at least one sector is partly obscured
+  int corrections = 0;           ///< largest error, in sectors, of the sector expected for equal areas; 0 if below half
   GridStop<R> stop;
 };
 
-/// Squared distances from the axis, mm^2, up to which film points count as on it: smaller ones have too few digits for
-/// a direction.
+/// Film points up to this squared distance from the axis, mm^2, count as on the axis: smaller squares have too few
+/// digits for a direction.
 template <class R>
 inline constexpr R axis_r2 = std::numeric_limits<R>::min() / std::numeric_limits<R>::epsilon();
 
@@ -85,7 +85,7 @@ inline double value_of(const T& x) noexcept {
   return x.a;
 }
 
-/// The square root; its derivatives are set to 0 at 0.
+/// Square root, with derivatives 0 at 0.
 inline float root_of(float x) noexcept { return core_detail::square_root(x); }
 inline double root_of(double x) noexcept { return core_detail::square_root(x); }
 template <class T>
@@ -93,16 +93,15 @@ inline T root_of(const T& x) noexcept {
   return x > 0.0 ? core_detail::square_root(x) : T(0.0);
 }
 
-/// The angle of a direction from +y to +x, of its sine and cosine, as a part of the whole turn (|turn| <= 1/2), within
-/// 6e-8: u counts from +y of the film's frame, not from the direction of the film point, so that near the axis the
-/// samples of neighbours are neighbours.
+/// Angle of a direction from +y towards +x, as a fraction of a whole turn in [-1/2, 1/2], within 6e-8. u counts from +y
+/// of the film, not from the direction of the film point: near the axis, adjacent film points get adjacent samples.
 template <class T>
 PETZVAL_INLINE T turn_of(const T& sine, const T& cosine) noexcept {
-  // In forms without branches, which nobody could predict.
+  // Without branches, which would be unpredictable.
   using core_detail::sign_of, std::abs;
   const T across = abs(sine), along = abs(cosine), a = along < across ? along : across;
   const T s = a * a;
-  // asin(a) / 2 pi within an eighth of a turn, by least squares of the largest error, 1/8 at its end.
+  // asin(a) / 2 pi up to an eighth of a turn: fit of least maximum error, exactly 1/8 at the end.
   const T s2 = s * s;
   const T first = T(0.15915393812486814) + s * T(0.0265771964583);
   const T second = T(0.0111934983367) + s * T(0.0116048821993);
@@ -121,16 +120,16 @@ PETZVAL_INLINE T fraction_of(const T& x) noexcept {
   return from_0 - T(0.5) * (T(1) - core_detail::sign_of(T(T(1) - from_0)));
 }
 
-/// The cell that contains a film point; else cell 0.
+/// The cell that contains a film point; cell 0 if there is no such cell.
 template <class T>
 struct FilmPlace {
   T t, s;                    ///< fractions in the cell
-  T cosine, sine;            ///< the film point's direction; with two dimensions the signs of its y and x
-  std::int32_t known, cell;  ///< position of the cell
+  T cosine, sine;            ///< direction of the film point; with two dimensions, signs of its y and x
+  std::int32_t known, cell;  ///< known: 1 if the film point has a cell; cell: index
 };
 
-// Inlined, or a call would take a copy of the grid, which compilers make with wide registers and without emptying
-// them: code for narrow ones then waits for each.
+// Inlined: a call would copy the grid with wide registers, which compilers do not clear (vzeroupper), and later code
+// for narrow registers would stall.
 template <class R, class T>
 PETZVAL_INLINE FilmPlace<T> place_of(const PolygonGrid<1, R>& grid, const T& film_x, const T& film_y,
                                      std::int32_t sound, std::int32_t wavelength) noexcept {
@@ -156,7 +155,7 @@ PETZVAL_INLINE FilmPlace<T> place_of(const PolygonGrid<2, R>& grid, const T& fil
                                      std::int32_t sound, std::int32_t wavelength) noexcept {
   const T sign_x = film_x < R(0) ? T(-1) : T(1), sign_y = film_y < R(0) ? T(-1) : T(1);
   const T x = film_x < R(0) ? T(-film_x) : film_x, y = film_y < R(0) ? T(-film_y) : film_y;
-  constexpr R end = R(1) + R(1e-6);  // the edge itself, rounded, still belongs to the film
+  constexpr R end = R(1) + R(1e-6);  // the rounded edge still belongs to the film
   const T row = y * grid.rows_per_mm;
   const std::int32_t on_film = x * x + y * y <= grid.reach * grid.reach;
   const std::int32_t below_last = row <= end * static_cast<R>(grid.rows);
@@ -173,7 +172,7 @@ PETZVAL_INLINE FilmPlace<T> place_of(const PolygonGrid<2, R>& grid, const T& fil
   return {column - static_cast<R>(j), s, sign_y, sign_x, known, cell};
 }
 
-/// Turn a point from the frame of the grid to the frame of the film, and back.
+/// Rotates a point from the frame of the grid to the frame of the film, and back.
 template <int dimensions, class T>
 PETZVAL_INLINE Point<T> to_film(const T& cosine, const T& sine, const Point<T>& p) noexcept {
   if constexpr (dimensions == 1) {
@@ -191,7 +190,7 @@ PETZVAL_INLINE Point<T> to_grid(const T& cosine, const T& sine, const Point<T>& 
   }
 }
 
-/// A value of a cell. Indices have 32 bits, which lanes can gather by.
+/// An interpolated value of a cell. Indices have 32 bits, as gather instructions need.
 template <int dimensions, class R, class T>
 PETZVAL_INLINE T linear_in_cell(const R* all, std::int32_t at, const T& t, const T& s) noexcept {
   if constexpr (dimensions == 1) {
@@ -206,7 +205,7 @@ PETZVAL_INLINE Point<T> point_in_cell(const R* all, std::int32_t at, const T& t,
   return {linear_in_cell<dimensions>(all, at, t, s), linear_in_cell<dimensions>(all, at + y, t, s)};
 }
 
-/// The polygon of one place in the grid. obscured: whether the grid has obscured parts.
+/// The polygon of one position in the grid. obscured: PolygonGrid::obscured.
 template <int dimensions, bool obscured, class R, class T>
 struct CellPolygon {
   using L = CellLayout<dimensions>;
@@ -214,7 +213,7 @@ struct CellPolygon {
   std::int32_t begin;
   T t, s;
 
-  /// From the middle.
+  /// Corner relative to the middle.
   Point<T> corner(std::int32_t k) const noexcept {
     return point_in_cell<dimensions>(all, begin + L::sectors + L::sector * k, t, s);
   }
@@ -236,24 +235,25 @@ struct CellPolygon {
     }
     return result;
   }
-  /// The share of the half at +x, of a polygon with a whole area.
+  /// Fraction of the polygon's area in the half at +x. whole: area of the polygon.
   T right_share(const T& whole) const noexcept {
     return area_before(static_cast<std::int32_t>(polygon_corners / 2)) / (whole > R(0) ? whole : T(1));
   }
-  /// In sectors, where a share of the area is expected to end: all have nearly equal areas, or in each of two halves.
+  /// Sector number at which a fraction `share` of the area ends if all sectors (or the sectors of each half) have equal
+  /// areas.
   T expected(const T& share, const T& whole) const noexcept {
     if constexpr (dimensions == 1) {
       return share * R(polygon_corners);
     } else {
-      // Without branches: within the half in which the share ends, and after the other.
+      // Branch-free: select the half that contains the share, then scale within the half.
       const T right = right_share(whole);
       const T in_left = share < right ? T(0) : T(1);
       const T first = in_left * right, own = right + in_left * (T(1) - T(2) * right);
       return T(polygon_corners) / T(2) * (in_left + (share - first) / (own > R(0) ? own : T(1)));
     }
   }
-  /// u from where the polygon begins, in the direction of its corners, and back. u counts from +y of the film; with two
-  /// dimensions it runs the other way round in every second quadrant.
+  /// Converts u, which counts from +y of the film, to the fraction of area from corner 0 in the order of corners, and
+  /// back. With two dimensions, the direction is reversed in every second quadrant.
   T share_of(const T& u, const T& whole, const T& cosine, const T& sine) const noexcept {
     if constexpr (dimensions == 1) {
       return fraction_of(T(u - turn_of(sine, cosine)));
@@ -285,8 +285,7 @@ struct CellPolygon {
   }
 };
 
-/// The image of a stop point in the plane of the pupil, in the frame of the grid, and its derivatives by the stop
-/// point.
+/// Image of a stop point in the pupil plane, in the frame of the grid, with derivatives by the stop point.
 template <class T>
 struct SeenPoint {
   Point<T> place, by_x, by_y;
@@ -350,7 +349,7 @@ PETZVAL_INLINE StopPlace<T> stop_place(const Number& number, const Point<T>& pla
   for (int i = 0; i < 4; ++i) {
     const Point<T> step = step_to_place(seen_point<dimensions>(number, result.point), place);
     result.step2 = step.x * step.x + step.y * step.y;
-    // Not far beyond the rim, where the polynomials are not known.
+    // Stay near the rim: the polynomials are not fitted farther outside.
     const T x = result.point.x + step.x, y = result.point.y + step.y, r2 = x * x + y * y;
     constexpr double farthest = 1.5;
     const T shorter = r2 > T(farthest * farthest) ? T(T(farthest) / root_of(r2)) : T(1);
@@ -359,7 +358,7 @@ PETZVAL_INLINE StopPlace<T> stop_place(const Number& number, const Point<T>& pla
   return result;
 }
 
-/// The part of a line from a to a + d that lies within a straight edge of the iris, cut to [from, to].
+/// Clips the interval [from, to] of a line from a to a + d to the inside of a straight edge of the iris.
 template <class R, class T>
 PETZVAL_INLINE void cut_by_edge(R nx, R ny, R distance, const Point<T>& a, const Point<T>& d, T& from, T& to) noexcept {
   const T outside = nx * a.x + ny * a.y - distance, linear = nx * d.x + ny * d.y;
@@ -371,7 +370,7 @@ PETZVAL_INLINE void cut_by_edge(R nx, R ny, R distance, const Point<T>& a, const
   to = last < to ? last : to;
   from = first > from ? first : from;
 }
-/// The part of a line from a to a + d that lies within an edge of the iris (IrisEdge), cut to [from, to].
+/// Clips the interval [from, to] of a line from a to a + d to the inside of an edge of the iris (IrisEdge).
 template <class R, class T>
 PETZVAL_INLINE void cut_by_edge(R nx, R ny, R bend, R distance, const Point<T>& a, const Point<T>& d, T& from,
                                 T& to) noexcept {

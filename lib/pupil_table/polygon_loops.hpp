@@ -17,7 +17,7 @@ template <int dimensions, class R>
 struct SampleLoopsOf {
   void (*sample)(const PolygonGrid<dimensions, R>&, std::size_t, const R* film_x, const R* film_y, const R* u,
                  const R* v, const RayWavelengths&, R* x, R* y, R* areas) noexcept;
-  /// The areas that samples at positions stand for; 0 if there is no sample.
+  /// Pupil areas that samples at given positions represent; 0 if there is no such sample.
   void (*areas)(const PolygonGrid<dimensions, R>&, std::size_t, const R* film_x, const R* film_y, const R* x,
                 const R* y, const RayWavelengths&, R* areas) noexcept;
 };

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Pupils of scene points, interpolated between the polygons at the nodes of a grid, for one sample or for blocks of
-// many. Names are local: this is compiled for several instruction sets, and the linker must not mix functions of two
-// sets.
+// Pupils of scene points, interpolated between polygons at the nodes of a grid, for single samples and for blocks.
+// Names are local: compiled for several instruction sets, which the linker must not mix.
 #pragma once
 
 #include <array>
@@ -13,10 +12,10 @@
 
 namespace petzval::pupil_table_detail {
 
-/// Nodes over the reciprocal distance and the field of scene points, seen from the centre of a table. With two
-/// dimensions the field is one angle, and polygons turn with the azimuth of the point. With three it is a pair of
-/// angles in the quadrant x, y >= 0, field times azimuth, and the pupils of the other quadrants are mirror images.
-/// Polygons lie in the planes that face their points (PupilPlane::facing).
+/// Nodes over reciprocal distance and field of scene points, relative to the centre of a table. With two dimensions,
+/// the field is one angle, and polygons rotate with the azimuth of the point. With three dimensions, the field is a
+/// pair of angles (field times azimuth direction) in the quadrant x, y >= 0, and pupils of the other quadrants are
+/// mirror images. Polygons lie in the planes that face their points (PupilPlane::facing).
 template <int dimensions>
 struct SceneLayout {
   static constexpr std::int32_t angles = dimensions - 1;
@@ -24,14 +23,14 @@ struct SceneLayout {
   static constexpr std::int32_t row = fields + 1, layer = dimensions == 2 ? row : row * row;
   static constexpr std::int32_t nodes = (distances + 1) * layer, limits = (distances + 1) * angles;
   static constexpr std::size_t about = std::size_t{1} << dimensions;  ///< nodes of a cell
-  /// From the first node of a cell to node j of it.
+  /// Offset of node j of a cell from the first node of the cell.
   static constexpr std::int32_t offset(std::size_t j) noexcept {
     const auto bit = [j](std::size_t k) { return static_cast<std::int32_t>(j >> k & 1); };
     return dimensions == 2 ? bit(1) * layer + bit(0) : bit(2) * layer + bit(1) * row + bit(0);
   }
 };
 
-/// The numbers of one node. Corners count from the middle; corner 64 is corner 0.
+/// Numbers of one node. Corners are relative to the middle; corner 64 is corner 0.
 struct NodeLayout {
   static constexpr std::int32_t middle = 0, corners = 2;
   static constexpr std::int32_t obscured = corners + 2 * (static_cast<std::int32_t>(polygon_corners) + 1);
@@ -43,18 +42,18 @@ template <int number_of_dimensions>
 struct SceneGrid {
   static constexpr int dimensions = number_of_dimensions;
   const double* nodes = nullptr;   ///< [wavelength][SceneLayout::nodes] NodeLayout
-  const double* widest = nullptr;  ///< [wavelength][distance][angle] rad: the last field; 0: no pupils
+  const double* widest = nullptr;  ///< [wavelength][distance][angle] last field, rad; 0 without pupils
   std::int32_t wavelengths = 0;
   double centre_z = 0, steepest = 0;  ///< mm, 1/mm: largest reciprocal distance
   double front_half = 0;              ///< half height of the front surface, mm
-  bool obscured = false;              ///< at least one sector has an obscured part
+  bool obscured = false;              ///< true if at least one sector is partly obscured
 };
 
-/// Rays of samples: N of each.
+/// Sampled rays, N of each.
 struct EntranceRays {
-  double *x, *y, *z;       ///< on the plane of the pupil, lens frame, mm
+  double *x, *y, *z;       ///< position in the pupil plane, lens frame, mm
   double *dx, *dy, *dz;    ///< unit, towards the lens
-  double *distance, *pdf;  ///< from the point, mm; 1/sr
+  double *distance, *pdf;  ///< distance from the scene point, mm; density, 1/sr
 
   EntranceRays from(std::size_t begin) const noexcept {
     return {x + begin, y + begin, z + begin, dx + begin, dy + begin, dz + begin, distance + begin, pdf + begin};
@@ -63,17 +62,17 @@ struct EntranceRays {
 
 /// A direction from the centre of a table: its angle with the axis (-z), rad, and its azimuth.
 struct Bearing {
-  double field, sine, cosine;  ///< sine and cosine: of the field
+  double field, sine, cosine;  ///< sine, cosine: of the field
   double azimuth_x, azimuth_y;
 };
 
 namespace {
 
-/// The cell of a grid that contains a point, by fractions in [0, 1] of the largest reciprocal distance and of the last
-/// field there. With two dimensions `down` is not used.
+/// The cell of a grid that contains a point. distance, down, across: fractions within the cell, in [0, 1]. With two
+/// dimensions, `down` is not used.
 template <int dimensions>
 struct SceneCell {
-  std::int32_t first;  ///< node of the wavelength
+  std::int32_t first;  ///< first node of the cell, within the wavelength
   double distance, down, across;
 
   PETZVAL_INLINE double weight(std::size_t j) const noexcept {
@@ -85,6 +84,7 @@ struct SceneCell {
     }
   }
 };
+/// distance, down, across: fractions in [0, 1] of the largest reciprocal distance and of its last fields.
 template <int dimensions>
 PETZVAL_INLINE SceneCell<dimensions> cell_of(double distance, double down, double across) noexcept {
   using L = SceneLayout<dimensions>;
@@ -102,7 +102,7 @@ PETZVAL_INLINE SceneCell<dimensions> cell_of(double distance, double down, doubl
   return cell;
 }
 
-/// The last field at a fraction of the largest reciprocal distance. widest: of one wavelength.
+/// The last field at a fraction of the largest reciprocal distance. widest: SceneGrid::widest of one wavelength.
 template <int dimensions>
 PETZVAL_INLINE double last_field(const double* widest, double distance, std::int32_t angle) noexcept {
   using L = SceneLayout<dimensions>;
@@ -131,7 +131,7 @@ PETZVAL_INLINE double angle_of(const Bearing& b, std::int32_t k) noexcept {
     return b.field * (part < 0 ? -part : part);
   }
 }
-/// A point of the plane that faces the direction, from the frame of the polygons, and back.
+/// Rotates a point of the facing plane from the frame of the polygons to the frame of the scene point, and back.
 template <int dimensions>
 PETZVAL_INLINE Point<double> from_grid(const Bearing& b, const Point<double>& p) noexcept {
   if constexpr (dimensions == 2) {
@@ -151,10 +151,10 @@ PETZVAL_INLINE Point<double> to_grid(const Bearing& b, const Point<double>& p) n
   }
 }
 
-/// Points of the scene as a grid has them.
+/// Scene points in grid coordinates.
 template <std::size_t block, int dimensions>
 struct ScenePlaces {
-  std::int32_t numbers[block];  ///< position of the numbers of a cell's first node
+  std::int32_t numbers[block];  ///< index of the numbers of the cell's first node
   double weights[SceneLayout<dimensions>::about][block], known[block];  ///< known: 1 or 0
   double distance[block], field[block], sine[block], cosine[block], azimuth_x[block], azimuth_y[block];
 
@@ -171,7 +171,7 @@ PETZVAL_INLINE void find_scene_places(const SceneGrid<dimensions>& grid, const d
   using L = SceneLayout<dimensions>;
   PETZVAL_INDEPENDENT
   for (std::size_t i = 0; i < block; ++i) {
-    constexpr double farthest = 1e100;  // mm: squares of distances must be numbers
+    constexpr double farthest = 1e100;  // mm: squares of distances must be finite
     // Comparisons with NaN are false.
     const auto bounded = [](double a) -> std::int32_t { return (a < 0 ? -a : a) <= farthest; };
     const std::int32_t sound = bounded(x[i]) & bounded(y[i]) & bounded(z[i]);
@@ -179,7 +179,7 @@ PETZVAL_INLINE void find_scene_places(const SceneGrid<dimensions>& grid, const d
     const double r2 = px * px + py * py, distance = core_detail::square_root(r2 + pz * pz);
     const double per_distance = 1 / (distance > 0 ? distance : 1.0), part = per_distance / grid.steepest;
     const Bearing bearing = bearing_of(px * per_distance, py * per_distance, pz * per_distance);
-    // Beside the front surface, fields of more than 90 degrees see past it.
+    // Points outside the front surface's rim may have fields of more than 90 degrees.
     const std::int32_t beside = r2 > grid.front_half * grid.front_half, before = pz < 0;
     const std::int32_t far_enough = grid.steepest * distance >= 1, compiled = wavelength[i] >= 0;
     const std::int32_t possible = sound & (beside | before) & far_enough & compiled;
@@ -202,10 +202,10 @@ PETZVAL_INLINE void find_scene_places(const SceneGrid<dimensions>& grid, const d
   }
 }
 
-/// The ray of a point through a place in the plane that faces it, from the centre of the table.
+/// Ray from a scene point through a position in the facing plane, relative to the centre of the table.
 struct RayToLens {
   double x, y, z, dx, dy, dz;
-  double distance, per_area;  ///< to the place, mm; solid angle over area of the plane, inverted: 1/sr for 1/mm^2
+  double distance, per_area;  ///< distance to the position, mm; area of the plane per solid angle, mm^2/sr
 };
 PETZVAL_INLINE RayToLens ray_to_lens(const Bearing& b, double distance, const Point<double>& p) noexcept {
   const double x = b.azimuth_y * p.x + b.azimuth_x * b.cosine * p.y;
@@ -247,12 +247,12 @@ struct ScenePolygon {
     }
     return result;
   }
-  /// The ray through a place, in the frame of the polygons.
+  /// The ray through a position, given in the frame of the polygons.
   PETZVAL_INLINE RayToLens ray(const Point<double>& place) const noexcept {
     const Bearing bearing = places.bearing(i);
     return ray_to_lens(bearing, places.distance[i], from_grid<dimensions>(bearing, place));
   }
-  /// The place of a point of the plane, given from the centre.
+  /// Position, in the frame of the polygons, of a point in the plane relative to the centre.
   PETZVAL_INLINE Point<double> place(const std::array<double, 3>& p) const noexcept {
     const Bearing b = places.bearing(i);
     return to_grid<dimensions>(b, {b.azimuth_y * p[0] - b.azimuth_x * p[1],
@@ -260,19 +260,19 @@ struct ScenePolygon {
   }
 };
 
-/// The density of samples in a sector, 1/mm^2. Sectors have nearly the same area and get the same share of the samples,
-/// so that samples need not know the area of the whole polygon.
+/// Density of samples in a sector, 1/mm^2. Sectors have nearly equal areas and get equal numbers of samples, so that
+/// the area of the whole polygon is not needed.
 PETZVAL_INLINE double density_in(const Sector<double>& sector) noexcept {
   const double area = sector.area();
   return area > 0 ? 1 / (static_cast<double>(polygon_corners) * area) : 0.0;
 }
 
-/// Samples one block of rays; pdf 0 for points that the grid does not know.
+/// Samples one block of rays; pdf = 0 for points outside the grid.
 template <std::size_t block, bool obscured, int dimensions>
 PETZVAL_INLINE void sample_scene_block(const SceneGrid<dimensions>& given, const double* x, const double* y,
                                        const double* z, const double* u, const double* v,
                                        const std::int32_t* wavelength, const EntranceRays& rays) noexcept {
-  const SceneGrid<dimensions> grid = given;  // which nothing that is written overlaps
+  const SceneGrid<dimensions> grid = given;  // a copy that no output can alias
   const auto [ox, oy, oz, dx, dy, dz, distances, pdfs] = rays;
   ScenePlaces<block, dimensions> places;
   find_scene_places(grid, x, y, z, wavelength, places);
@@ -287,7 +287,7 @@ PETZVAL_INLINE void sample_scene_block(const SceneGrid<dimensions>& given, const
     const double way = core_detail::square_root(sector.squared_way(core_detail::clamped(v[i])));
     const Point<double> in_grid = polygon.middle() + sector.at(way, turn - static_cast<double>(k));
     const RayToLens ray = polygon.ray(in_grid);
-    // Numbers that are not finite are no sample.
+    // NaN unless u and v are finite: comparisons are then false, and there is no sample.
     const double sound = (u[i] + v[i]) * 0;
     const double density = places.known[i] * density_in(sector);
     const std::int32_t some = density > 0, finite = sound >= 0, drawn = some & finite;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Samples of the pupils that scene points see, compiled once for each instruction set.
+// Samples of the entrance pupils of scene points, compiled once for each instruction set.
 #include "scene_loops.hpp"
 
 #include <type_traits>

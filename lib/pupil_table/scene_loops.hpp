@@ -9,7 +9,7 @@
 
 namespace petzval::pupil_table_detail {
 
-/// Samples of N scene points; pdf 0 for points that the grid does not know. wavelength: positions, or -1.
+/// Samples N scene points; pdf = 0 for points outside the grid. wavelength: wavelength indices, -1 if not covered.
 template <int dimensions>
 using SceneLoop = void (*)(const SceneGrid<dimensions>&, std::size_t, const double* x, const double* y, const double* z,
                            const double* u, const double* v, const std::int32_t* wavelength,

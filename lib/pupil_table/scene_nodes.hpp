@@ -20,9 +20,9 @@ namespace petzval::pupil_table_detail {
 /// Clearances of positions in planes, from the rays through the positions.
 class RayClearances {
  public:
-  /// passing has to outlive the object.
+  /// passing: must outlive this object.
   RayClearances(const ScenePassing& passing, std::size_t wavelength) : passing_(passing), wavelength_(wavelength) {}
-  /// ray_at(i): one of `count` rays. clearances: as PlaceClearances, of which only the signs are known.
+  /// ray_at(i): ray i of `count` rays. clearances: as PlaceClearances; only the signs count.
   template <class RayAt>
   void operator()(std::size_t count, const RayAt& ray_at, double* clearances) {
     for (auto& component : components_) component.resize(count);
@@ -42,9 +42,9 @@ class RayClearances {
   std::vector<std::uint8_t> through_;
 };
 
-/// The point in which a ray leaves the sphere of a radius about a centre, seen from the centre.
+/// Direction from a centre to the point where a ray leaves a sphere about the centre.
 Bearing bearing_on_sphere(const Vec3<double>& centre, const Ray<double>& ray, double reciprocal_radius) noexcept;
-/// The plane that faces a point.
+/// The plane that faces a scene point.
 PupilPlane plane_facing(const Vec3<double>& centre, const Bearing& bearing, double reciprocal_distance) noexcept;
 
 /// The nodes of one wavelength.
@@ -52,9 +52,9 @@ template <int dimensions>
 struct SceneNodes {
   using L = SceneLayout<dimensions>;
   std::array<double, L::limits> widest{};  ///< SceneGrid::widest
-  std::vector<PupilPolygon> polygons;      ///< empty: no polygon about a middle describes the pupils
+  std::vector<PupilPolygon> polygons;      ///< empty if pupils are not star-shaped about a middle
 
-  /// By the fractions of cell_of().
+  /// Weights for the fractions of cell_of().
   static PolygonWeights weights_at(double distance, double down, double across) noexcept {
     const SceneCell<dimensions> cell = cell_of<dimensions>(distance, down, across);
     PolygonWeights result;
@@ -83,7 +83,7 @@ Vec2<double> angles(const Bearing& bearing) noexcept {
   return {angle_of<dimensions>(bearing, 0), angle_of<dimensions>(bearing, dimensions - 2)};
 }
 
-/// The nodes of a lens of revolution. rays: the rays that leave the lens. steepest: the largest reciprocal distance,
+/// The nodes of a lens of revolution. rays: leaving_rays() of the wavelength. steepest: largest reciprocal distance,
 /// 1/mm.
 SceneNodes<2> nodes_of_revolution(const Vec3<double>& centre, double steepest, const std::vector<Ray<double>>& rays,
                                   std::size_t wavelength, const ScenePassing& passing, ClippedBy clipped_by);
