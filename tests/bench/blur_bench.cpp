@@ -1,6 +1,7 @@
-// SPDX-License-Identifier: Apache-2.0 Images of layers through lenses: time and similarity, compared with the same rays
-// through the scene and with a post-process of a single image. All threads of the processor, minima of interleaved
-// rounds; the figures of a table come from one run.
+// SPDX-License-Identifier: Apache-2.0
+// Images of layers through lenses: time and similarity, compared with the same rays through the scene and with a
+// post-process of a single image. All threads of the processor, minima of interleaved rounds; the figures of a table
+// come from one run.
 //
 //   build/tests/bench/blur_bench [--full] [--pictures FOLDER]
 //

@@ -1,6 +1,7 @@
-// SPDX-License-Identifier: Apache-2.0 Time of a camera ray on one thread: pupil sample, ray and weight for every model
-// of a lens. Measures batches of 4096 samples, single samples, tilted films, bokeh controls and focal surfaces, and the
-// set-up time of cameras of all lenses.
+// SPDX-License-Identifier: Apache-2.0
+// Time of a camera ray on one thread: pupil sample, ray and weight for every model of a lens. Measures batches of 4096
+// samples, single samples, tilted films, connections, bokeh controls and focal surfaces, and the set-up time of cameras
+// of all lenses.
 //
 //   camera_bench [--json FILE] [options of Google Benchmark]
 //
@@ -109,6 +110,31 @@ void time_single(benchmark::State& state, const Row& row) {
     for (std::size_t i = 0; i < sample_count; ++i) {
       rays[i] =
           row.camera.sample({.film = {s.film_x[i], s.film_y[i]}, .pupil_u = s.pupil_u[i], .pupil_v = s.pupil_v[i]});
+    }
+    benchmark::ClobberMemory();
+  }
+  state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(sample_count));
+}
+
+/// Connections from points of the scene 2 m away; single: one per call, otherwise 4096.
+void time_connections(benchmark::State& state, const Row& row, bool single) {
+  const Samples<double> s(row.camera.film());
+  std::vector<petzval::Vec3<double>> points;
+  for (std::size_t i = 0; i < sample_count; ++i) {
+    const auto ray = row.camera.sample({.film = {s.film_x[i], s.film_y[i]}, .pupil_u = 0.3, .pupil_v = 0.4}).ray;
+    points.push_back(ray.origin + ray.direction * 2000.0);
+  }
+  const std::size_t at_once = single ? 1 : batch_size;
+  std::vector<petzval::ImportanceSample> found(sample_count);
+  row.camera.sample_importance(points[0], 0.5, 0.5);  // builds the tables
+  for (auto _ : state) {
+    for (std::size_t i = 0; i < sample_count; i += at_once) {
+      if (single) {
+        found[i] = row.camera.sample_importance(points[i], s.pupil_u[i], s.pupil_v[i]);
+      } else {
+        row.camera.sample_importance(at_once, points.data() + i, s.pupil_u.data() + i, s.pupil_v.data() + i, {},
+                                     found.data() + i);
+      }
     }
     benchmark::ClobberMemory();
   }
@@ -271,6 +297,15 @@ int run(std::vector<char*> arguments) {
           {bench.lens.id, "tilted", model, in_double, Camera(bench.lens.lens, bench.tilted, {.model = model})});
       benchmark::RegisterBenchmark(rows.back().name().c_str(), in_double ? time_batches<double> : time_batches<float>,
                                    rows.back());
+    }
+    // Connections.
+    for (const ModelKind model :
+         {ModelKind::thin, ModelKind::polynomial(7), ModelKind::exact_float, ModelKind::exact_double}) {
+      for (const bool single : {false, true}) {
+        rows.push_back({bench.lens.id, single ? "connection, single" : "connection", model, true,
+                        Camera(bench.lens.lens, bench.film, {.model = model})});
+        benchmark::RegisterBenchmark(rows.back().name().c_str(), time_connections, rows.back(), single);
+      }
     }
     // Bokeh controls.
     struct Shape {

@@ -1,6 +1,7 @@
-// SPDX-License-Identifier: Apache-2.0 Time of the image of a point light on one thread: point_image as a whole, from
-// the pupil to the size of the spot, and its three parts. The parts are making rays (sequence, pupil points,
-// directions), tracing rays, and the histogram of 512 x 512 pixels.
+// SPDX-License-Identifier: Apache-2.0
+// Time of the image of a point light on one thread: point_image as a whole, from the pupil to the size of the spot, and
+// its three parts. The parts are making rays (sequence, pupil points, directions), tracing rays, and the histogram of
+// 512 x 512 pixels.
 #include <benchmark/benchmark.h>
 
 #include <algorithm>

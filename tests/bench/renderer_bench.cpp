@@ -1,6 +1,7 @@
-// SPDX-License-Identifier: Apache-2.0 Cost of a lens in a renderer: paths in equal time through the models of a lens,
-// by three integrators, and the fraction of time spent in the lens. Also measures the gain of bidirectional path
-// tracing for small lights. One thread, minima of interleaved rounds.
+// SPDX-License-Identifier: Apache-2.0
+// Cost of a lens in a renderer: paths in equal time through the models of a lens, by three integrators, and the
+// fraction of time spent in the lens. Also measures the gain of bidirectional path tracing for small lights. One
+// thread, minima of interleaved rounds.
 //
 //   build/tests/bench/renderer_bench [ROUNDS]
 #include <algorithm>

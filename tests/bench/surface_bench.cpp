@@ -1,5 +1,6 @@
-// SPDX-License-Identifier: Apache-2.0 Time of a focal surface: frames in float on one and two threads, 800 x 600 film
-// points by the loops of each instruction set on one thread, and single film points in double.
+// SPDX-License-Identifier: Apache-2.0
+// Time of a focal surface: frames in float on one and two threads, 800 x 600 film points by the loops of each
+// instruction set on one thread, and single film points in double.
 #include <benchmark/benchmark.h>
 
 #include <cstdio>

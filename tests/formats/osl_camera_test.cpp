@@ -1,5 +1,6 @@
-// SPDX-License-Identifier: Apache-2.0 The text of an OSL camera is converted to C++ by a few replacements and compiled;
-// its rays are compared with the library.
+// SPDX-License-Identifier: Apache-2.0
+// The text of an OSL camera is converted to C++ by a few replacements and compiled; its rays are compared with the
+// library.
 #include <gtest/gtest.h>
 #include <sys/wait.h>
 

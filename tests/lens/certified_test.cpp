@@ -1,5 +1,6 @@
-// SPDX-License-Identifier: Apache-2.0 Proven bounds of rounding. The kernels run over boxes of inputs (bounded.hpp),
-// which are divided until each proves the bound. The boxes cover the domain without gaps.
+// SPDX-License-Identifier: Apache-2.0
+// Proven bounds of rounding. The kernels run over boxes of inputs (bounded.hpp), which are divided until each proves
+// the bound. The boxes cover the domain without gaps.
 #include <gtest/gtest.h>
 
 #include <algorithm>

@@ -1,5 +1,6 @@
-// SPDX-License-Identifier: Apache-2.0 Computed apertures of a prescription without apertures. As long as the stop
-// limits the beam, the images equal the images with the given apertures.
+// SPDX-License-Identifier: Apache-2.0
+// Computed apertures of a prescription without apertures. As long as the stop limits the beam, the images equal the
+// images with the given apertures.
 #include "petzval/pupil/apertures.hpp"
 
 #include <gtest/gtest.h>

@@ -1,5 +1,6 @@
-// SPDX-License-Identifier: Apache-2.0 Fates on both sides of every edge and on the edge itself, for single rays and for
-// batches of both arithmetics on every instruction set.
+// SPDX-License-Identifier: Apache-2.0
+// Fates on both sides of every edge and on the edge itself, for single rays and for batches of both arithmetics on
+// every instruction set.
 #include <gtest/gtest.h>
 
 #include <cmath>

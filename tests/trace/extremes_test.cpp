@@ -1,5 +1,6 @@
-// SPDX-License-Identifier: Apache-2.0 Single surfaces at the limits of surfaces and rays. Single rays and batches of
-// both arithmetics on every instruction set are compared with rays in long double.
+// SPDX-License-Identifier: Apache-2.0
+// Single surfaces at the limits of surfaces and rays. Single rays and batches of both arithmetics on every instruction
+// set are compared with rays in long double.
 //
 // The unit of errors is the change of the exact ray for a change of one eps in each of its numbers, plus one eps of the
 // height or of a unit direction. On a single surface an error is about
