@@ -18,7 +18,7 @@ namespace batch_bits_test {
 
 using namespace testing_batches;
 
-/// Of rays, fates and surfaces.
+/// Hash of rays, fates and surfaces.
 template <class T>
 std::uint64_t hash(const Answer<T>& answer) {
   testing_bits::Hash h;
@@ -78,7 +78,7 @@ std::array<std::uint64_t, 4> hashes_of(const testing_lenses::Sample& sample, Bat
   return result;
 }
 
-/// A row in the form of the table.
+/// A row formatted as in the table.
 std::string text(const Row& row) {
   std::ostringstream line;
   line << "    {\"" << row.lens << "\",\n     {" << std::hex << std::setfill('0');

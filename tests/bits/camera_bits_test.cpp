@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// Single samples of a camera have the same bits on every instruction set and compiler; its batches have those of a
-// constant where the baseline alone is used (PETZVAL_INSTRUCTION_SET=baseline). Both need a C library whose sines and
-// powers have the bits of glibc's on a processor with FMA. After an intended change of the arithmetic or of a lens in
-// the table, the failing test prints the new table.
+// Single samples of a camera have the same bits on every instruction set and compiler. Batches have constant bits on
+// the baseline instruction set (PETZVAL_INSTRUCTION_SET=baseline). Both need a C library whose sines and powers equal
+// the results of glibc on a processor with FMA. After an intended change of the arithmetic or of a lens in the table,
+// the failing test prints the new table.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -64,7 +64,7 @@ const std::vector<Row> table = {
 
 struct Scene {
   const char* lens;
-  double side;  ///< of the film, mm
+  double side;  ///< side of the film, mm
 };
 constexpr Scene scenes[] = {{"double_gauss_100mm_f2.0", 24}, {"phone_5.6mm_f3.5", 3}, {"mirror_newton_200mm_f8", 15}};
 
@@ -99,7 +99,7 @@ std::uint64_t batches(const Camera& camera) {
   return h.value();
 }
 
-/// Lenses, irises and tables are built with these.
+/// Math functions that lenses, irises and tables use.
 std::uint64_t c_library() {
   testing_bits::Hash h;
   for (int i = 1; i <= 1000; ++i) {

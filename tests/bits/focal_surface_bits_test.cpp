@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Focal surfaces have the same bits on every instruction set and compiler: pictures that several machines make together
-// show no edges.
+// Focal surfaces have the same bits on every instruction set and compiler, so that an image rendered on several
+// machines shows no seams.
 #include <gtest/gtest.h>
 
 #include <vector>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Blurred pictures have the bits of a constant where the baseline alone is used (PETZVAL_INSTRUCTION_SET=baseline).
+// Blurred images have constant bits on the baseline instruction set (PETZVAL_INSTRUCTION_SET=baseline).
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -17,7 +17,7 @@ namespace gather_bits_test {
 
 using blur_detail::GatherPath;
 
-/// Two boards with stripes before a wall, from integers alone: the same on every machine.
+/// Two striped boards in front of a wall, from integers only: equal on every machine.
 LayerSet boards(const LensRays& rays) {
   const PeelPlan plan = plan_peel(rays, 1000, 8000);
   LayerSet layers;

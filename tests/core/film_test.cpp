@@ -37,7 +37,7 @@ TEST(Film, IsARotation) {
 }
 
 TEST(Film, TiltsAboutXFirstAndThenSwingsAboutY) {
-  // A quarter of a right angle each: Rx takes e_z to (0, -sin, cos), Ry takes that to (cos sin, -sin, cos cos).
+  // A quarter of a right angle each: Rx takes e_z to (0, -sin, cos), Ry takes the result to (cos sin, -sin, cos cos).
   const Film film = film_at(0, radians(22.5), radians(45));
   const double s = std::sin(radians(22.5)), c = std::cos(radians(22.5)), h = std::sqrt(0.5);
   EXPECT_NEAR(glm::length(film.normal() - Vec(c * h, -s, c * h)), 0, 1e-15);

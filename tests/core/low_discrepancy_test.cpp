@@ -39,7 +39,7 @@ double discrepancy(std::size_t first, std::size_t count, const PointAt& point_at
 }
 
 TEST(Kronecker, AnyStretchIsUniform) {
-  // Boxes are off by at most 8 of 1000 points; with random points by 40.
+  // Boxes are off by at most 8 of 1000 points; 40 with random points.
   for (const std::uint64_t seed : {0u, 1u, 77u}) {
     const Kronecker<2> points(seed);
     for (const std::size_t first : {0u, 5u, 1000u, 123457u}) {

@@ -45,7 +45,7 @@ TEST(ParallelFor, BlocksAreIndependentOfThreads) {
 }
 
 TEST(ParallelFor, SumsOfBlocksAreIndependentOfThreads) {
-  // The rounding of sums depends on their order. Sums of blocks, each in its place, are equal to the bit.
+  // The rounding of sums depends on their order. Sums over blocks in fixed order are bitwise equal.
   const auto sum = [](int threads) {
     std::vector<double> parts(101, 0);
     parallel_for(10007, 100, threads, [&](std::size_t begin, std::size_t end) {
@@ -85,7 +85,7 @@ TEST(ParallelFor, StartsNoThreadForOneOrASingleBlock) {
 }
 
 TEST(ParallelFor, UsesTheRequestedThreadsUpToTheNumberOfBlocks) {
-  // Every block waits until all have begun, so that too few threads would hang the test.
+  // Every block waits until all blocks have begun: too few threads would hang the test.
   const auto caller = std::this_thread::get_id();
   for (const int threads : {3, 50}) {
     const std::size_t together = std::min(threads, 6);
@@ -115,7 +115,7 @@ TEST(ParallelFor, RethrowsTheFirstException) {
     } catch (const std::runtime_error& e) {
       EXPECT_STREQ(e.what(), "40") << threads;
     }
-    // Blocks that had not begun are skipped: at most one more runs on each other thread.
+    // Blocks that have not begun are skipped: at most one more block runs on each other thread.
     EXPECT_GE(begun, 41);
     EXPECT_LE(begun, 40 + threads);
   }

@@ -12,7 +12,7 @@ namespace petzval {
 namespace sobol_test {
 
 TEST(OwenSobol, AlignedBlocksAreNets) {
-  // Each box of 2^-i by 2^(i - k) contains one of 2^k points that start at a multiple of 2^k.
+  // Each box of 2^-i by 2^(i - k) contains exactly one point of 2^k points that start at a multiple of 2^k.
   for (const std::uint32_t seed : {0u, 1u, 77u, 0xffffffffu}) {
     for (int k = 0; k <= 12; ++k) {
       const std::uint32_t count = 1u << k;
@@ -57,7 +57,7 @@ TEST(OwenSobol, BlocksEqualSinglePoints) {
 }
 
 TEST(OwenSobol, PointsAreFixed) {
-  // Points of the first version, so that seeds keep their images.
+  // Points of the first version: seeds must keep their images.
   EXPECT_EQ(owen_sobol(0, 0), Vec2<double>(0x1.cc53569ep-1, 0x1.603b991p-4));
   EXPECT_EQ(owen_sobol(123456789, 42), Vec2<double>(0x1.27296c98p-2, 0x1.34a4f066p-1));
   EXPECT_EQ(owen_sobol(0xffffffff, 0xffffffff), Vec2<double>(0x1.bab421ep-5, 0x1.cb7b1ecp-4));
@@ -94,7 +94,8 @@ TEST(OwenSobol, EverySampleIsUniformOverTheSeeds) {
 }
 
 TEST(OwenSobol, IntegratesSmoothFunctionsFasterThanAnUnscrambledGrid) {
-  // The error over scramblings falls as N^-3/2 for a smooth integrand (Owen 1997), where plain Sobol has N^-1 log N.
+  // The error over scramblings falls as N^-3/2 for a smooth integrand (Owen 1997), for plain Sobol points as N^-1 log
+  // N.
   const auto error = [](std::uint32_t count) {
     double squares = 0;
     for (std::uint32_t seed = 0; seed < 64; ++seed) {

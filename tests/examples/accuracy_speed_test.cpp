@@ -39,7 +39,7 @@ TEST_F(AccuracySpeed, PrintsARowForEveryModel) {
     EXPECT_GT(row["ns_per_ray"], 0);
     EXPECT_GT(row["setup_ms"], 0);
     EXPECT_NEAR(row["max_px"].get<double>() * 9.375, row["max_um"].get<double>(), 1e-9 * row["max_um"].get<double>());
-    // A row is on the front if no other row beats it.
+    // A row is on the Pareto front if no other row is both faster and more accurate.
     const bool beaten = std::ranges::any_of(rows, [&](const auto& other) {
       return other["ns_per_ray"] <= row["ns_per_ray"] && other["max_um"] <= row["max_um"] &&
              (other["ns_per_ray"] < row["ns_per_ray"] || other["max_um"] < row["max_um"]);

@@ -18,7 +18,7 @@ using petzval::ScenePoint;
 
 const petzval::Plane table{{0.1, std::cos(0.3), std::sqrt(1 - 0.01 - std::cos(0.3) * std::cos(0.3))}, -300};
 
-/// Places of a plane, spread over the picture of a 100 mm lens.
+/// Points of a plane, spread over the image of a 100 mm lens.
 std::vector<ScenePoint> places_of(const petzval::Plane& plane) {
   std::vector<ScenePoint> result;
   for (const auto& [x, z] :
@@ -125,7 +125,7 @@ TEST(BlurMap, ExactRaysAgreeWithTheThickLensStoppedDown) {
 TEST(BlurMap, ScalesReachNearlyAll) {
   const std::vector<examples::BlurMap> maps{{2, 1, {0.012, -0.034}}, {1, 1, {std::nan("")}}};
   EXPECT_DOUBLE_EQ(examples::scale_of(std::vector<examples::BlurMap>{{1, 2, {0.012, -0.012}}}), 0.02);
-  EXPECT_DOUBLE_EQ(examples::scale_of(maps), 0.02);  // the 99th percentile of two values is the lower one
+  EXPECT_DOUBLE_EQ(examples::scale_of(maps), 0.02);  // the 99th percentile of two values is the lower value
   EXPECT_DOUBLE_EQ(examples::scale_of(std::vector<examples::BlurMap>{maps[1]}), 1e-3);
 }
 

@@ -71,7 +71,7 @@ TEST_F(BokehPsf, BlursAsTheThinLensSaysWhenStoppedDown) {
   EXPECT_NEAR(json["f_number_real"].get<double>(), 16, 1e-10);
 }
 
-// A run that is cut off keeps the pictures that are whole, with their numbers.
+// An aborted run keeps the complete images and their data.
 TEST_F(BokehPsf, KeepsWholePicturesWhenItIsKilled) {
   const std::string first = path("cut/") + id + "_focus_900mm.exr", numbers = path("cut/") + id + "_bokeh.json";
   write("kill.sh", "'" + std::string(PETZVAL_TEST_PROGRAMS) + "/bokeh_psf' '" + lens(id) +
@@ -110,7 +110,7 @@ TEST_F(BokehPsf, HasTheShapeOfTheIris) {
     EXPECT_EQ(bladed.at("diffraction"), "visible");
     EXPECT_NEAR(number(bladed, "airy_radius_mm"), 1.22 * 587.5618e-6 * 16 * 1581.11 / (1581.11 - 100.44), 2e-4);
 
-    // Throughputs are shares of the paraxial pupil, which opens with the corners.
+    // Throughputs are fractions of the paraxial pupil, which grows with the corners of the iris.
     const auto equal = all({"--blades", std::to_string(n), "--iris-area", "equal"});
     const double opened = 16 / equal.at("f_number_real").get<double>();
     EXPECT_NEAR(opened * opened * share, 1, 1e-11);
@@ -147,8 +147,8 @@ TEST_F(BokehPsf, WritesTheFormatsThatAreAskedFor) {
   EXPECT_GT(lit, 10000);
 }
 
-// Whatever the light is, its picture is white in all and holds all of it; wavelengths differ in throughput by a
-// percent.
+// For any spectrum of the light, the total of the image is white and contains all light; throughputs of wavelengths
+// differ by one percent.
 TEST_F(BokehPsf, ShowsTheLightOfTheWhitePointWhite) {
   std::ofstream(path("led.csv")) << "wavelength_nm,power\n440,0\n455,10\n470,2\n560,6\n700,0\n";
   const auto reddest = [&](const std::string& white) {
@@ -205,7 +205,7 @@ TEST_F(BokehPsf, TakesAPictureAsIris) {
     const auto& result = json["results"][0];
     EXPECT_NEAR(result["iris_area_share"].get<double>(), 0.5, 0.01);
     EXPECT_NEAR(result["throughput"].get<double>(), 0.5, 0.02);
-    // Focused nearer than the light: rays cross in front of the film, and the picture of the stop is upside down there.
+    // Focused nearer than the light: rays cross in front of the film, and the image of the stop is inverted.
     EXPECT_GT(result["centroid_mm"][0].get<double>(), 0.3 * result["radius_mm"].get<double>());
   }
 }

@@ -29,7 +29,7 @@ class BokehScene : public Programs {
                   {"sphere": {"centre_mm": [-60, 40, -900], "radius_mm": 40},
                    "material": {"varnish": {"diffuse": [0.1, 0.3, 0.1], "roughness": 0.2}}}]})");
   }
-  /// Later values take the place of earlier ones.
+  /// Later values replace earlier values.
   Arguments arguments(const std::string& out, const Arguments& more = {}) const {
     Arguments all{"--scene",    path("scene.json"),
                   "--lens",     lens("double_gauss_100mm_f2_28deg"),
@@ -75,7 +75,7 @@ TEST_F(BokehScene, WritesAPictureAndWhatItIs) {
   EXPECT_EQ(report["tiles"]["mean"][0].size(), 5);
   EXPECT_GT(report["lens_seconds_share"], 0);
   EXPECT_GT(report["paths_per_second"], 0);
-  // Up in the sky of radiance 0.5, near the axis's column: the lens keeps most of it.
+  // In the sky of radiance 0.5, near the column of the axis: the lens transmits most of the light.
   const petzval::RgbImage image = petzval::read_exr(path("a/picture.exr"));
   EXPECT_NEAR(static_cast<double>(image.pixel(36, 6)[1]), 0.45, 0.06);
 }
@@ -93,7 +93,7 @@ TEST_F(BokehScene, HasTheBitsOfOneRunHoweverItIsCutUp) {
   EXPECT_NE(read(path("resumed/picture.exr")), whole);
   EXPECT_TRUE(render("resumed", {"--resume"})["finished"]);
   EXPECT_EQ(read(path("resumed/picture.exr")), whole);
-  // Light falls on all tiles, in a picture that is not finished too.
+  // All tiles receive light, in an unfinished image as well.
   const petzval::RgbImage image = petzval::read_exr(path("resumed/picture.exr"));
   EXPECT_GT(image.pixel(36, 45)[1], 0);
   const Outcome anew = run("bokeh_scene", arguments("resumed"));
@@ -111,7 +111,7 @@ TEST_F(BokehScene, HasTheBitsOfOneRunHoweverItIsCutUp) {
   }());
 }
 
-// A finished picture that gets more samples has the bits of a picture rendered with all samples at once.
+// A finished image that gets more samples equals, bit by bit, an image rendered with all samples at once.
 TEST_F(BokehScene, AddsSamplesToAFinishedPicture) {
   for (const char* integrator : {"path", "bidirectional"}) {
     const std::string at_once = std::string("once_") + integrator, grown = std::string("grown_") + integrator;
@@ -132,7 +132,7 @@ TEST_F(BokehScene, AddsSamplesToAFinishedPicture) {
   EXPECT_EQ(read(path("grown_path/picture.exr")), read(path("once_path/picture.exr")));
 }
 
-// An interrupt writes the sums and the picture so far; --resume continues to the bits of one run.
+// An interrupt writes the sums and the unfinished image; --resume gives the bits of an uninterrupted run.
 TEST_F(BokehScene, KeepsItsWorkAtAnInterrupt) {
   const Arguments many{"--spp", "400", "--threads", "1"};
   std::string command = "'" + std::string(PETZVAL_TEST_PROGRAMS) + "/bokeh_scene'";
@@ -190,8 +190,8 @@ TEST_F(BokehScene, SeesTheSameByEveryIntegratorAndModel) {
       }
     }
   }
-  // The exposure of the middle is that of all models; corners of first-order ones are brighter. (A pinhole's picture
-  // has no blur of the lamp beside it.)
+  // All models have the same exposure at the centre; corners of first-order models are brighter. The pinhole is left
+  // out: it does not blur the nearby lamp into the film.
   for (const char* model : {"thin", "thin_two_disc", "polynomial_5", "exact_double"}) {
     const json report = render("model", {"--model", model, "--film-mm", "6x4", "--spp", "64"});
     const json exact = render("exact", {"--film-mm", "6x4", "--spp", "64"});
@@ -208,7 +208,7 @@ TEST_F(BokehScene, ChoosesAModelAndSaysWhy) {
   EXPECT_EQ(read_json(path("rough/render.json"))["model"], rough["model"]);
   EXPECT_NE(rough["model"], fine["model"]);
   EXPECT_NE(fine["why"].dump().find("0.01"), std::string::npos);
-  // With more samples there is less noise, and less room for bias.
+  // With more samples there is less noise, so that less bias is allowed.
   const json clean = render("clean", {"--model", "auto", "--spp", "16000000", "--time-s", "0.01"});
   EXPECT_NE(clean["model"], "pinhole");
   EXPECT_NE(clean["model"], "thin");
@@ -232,8 +232,8 @@ TEST_F(BokehScene, RefusesOtherAndDamagedCheckpoints) {
   expect_failure("bokeh_scene", {"merge", path("b"), "--out", path("c")}, {"2/2"});
 }
 
-// A focal surface and aberrations change the picture, and not its exposure; the sphere that a point of the world stands
-// for is sharper than without.
+// A focal surface and aberrations change the image but not the exposure; a sphere that contains a key point is sharper
+// with the focal surface.
 TEST_F(BokehScene, TakesAFocalSurfaceAndAberrations) {
   write("points.json", R"({"points": [{"world_mm": [40, 60, -1200]}, {"world_mm": [-60, 40, -900], "extent_stops": 1},
     {"pixel": [36, 2], "distance_mm": null}, {"pixel": [36, 46], "distance_mm": 700, "blur_px": 2, "weight": 0.5}]})");
@@ -260,7 +260,7 @@ TEST_F(BokehScene, TakesAFocalSurfaceAndAberrations) {
   for (const json& report : {surface, lens}) {
     EXPECT_NEAR(mean(report, 0), mean(plain, 0), 5 * std::hypot(error(report, 0), error(plain, 0)));
   }
-  // Light paths see the same picture.
+  // Light tracing gives the same image.
   const json light = render("light", with({"--focal-surface", path("points.json"), "--integrator", "bidirectional"}));
   EXPECT_NEAR(mean(light, 0), mean(surface, 0), 5 * std::hypot(error(light, 0), error(surface, 0)));
 }

@@ -80,7 +80,7 @@ TEST_F(CameraRays, FocusesByTheCriterionAsked) {
   }
 }
 
-// Tilting moves the upper edge of the film; it sees what a film point at its new place sees.
+// Tilting moves the upper edge of the film; its rays equal the rays of a film point at the new position.
 TEST_F(CameraRays, TiltsItsFilm) {
   const petzval::Lens lens_3m =
       petzval::with_focus(petzval::compile(petzval::read_prescription(lens("double_gauss_100mm_f2.0"))), 3000);
@@ -94,7 +94,7 @@ TEST_F(CameraRays, TiltsItsFilm) {
     EXPECT_EQ(rows.at(0)[9], "transmitted");
     EXPECT_NEAR(std::stod(rows[0][4]), r.ray.direction.y, 1e-12);
     EXPECT_NEAR(std::stod(rows[0][6]), r.weight, 1e-12);
-    // The upright film sees something else.
+    // The rays of the upright film differ.
     const auto upright = rays("double_gauss_100mm_f2.0", csv, std::string(petzval::name(model)));
     EXPECT_GT(std::abs(std::stod(rows[0][4]) - std::stod(upright[0][4])), 1e-4);
   }

@@ -37,7 +37,7 @@ class ChromaticBokeh : public Programs {
 
 TEST_F(ChromaticBokeh, WritesAChannelForEachWavelength) {
   const auto json = colours({"--focus-mm", "1800,2200", "--f-number", "1.35"});
-  EXPECT_NEAR(json["f_number_real"].get<double>(), 1.35352, 1e-5);  // at 590 nm; the declared one is rounded
+  EXPECT_NEAR(json["f_number_real"].get<double>(), 1.35352, 1e-5);  // at 590 nm; the declared f-number is rounded
   EXPECT_EQ(json["subject_distance_mm"], 2000);
   EXPECT_EQ(json["white_point"], "D65");
   ASSERT_EQ(json["pictures"].size(), 4u);  // two fields
@@ -46,7 +46,7 @@ TEST_F(ChromaticBokeh, WritesAChannelForEachWavelength) {
     const auto file = channels(picture);
     ASSERT_EQ(file.size(), 3 + 26u);
     for (const char* name : {"S0.430nm", "S0.475nm", "S0.670nm"}) EXPECT_EQ(file.count(name), 1u) << name;
-    // R, G and B are what the channels and the weights make of it, and all light is there.
+    // R, G and B are the weighted sums of the channels, and no light is lost.
     const double area = std::pow(picture["picture_pixel_mm"].get<double>(), 2);
     double throughput = 0;
     for (std::size_t k = 0; k < 3; ++k) {
@@ -67,8 +67,8 @@ TEST_F(ChromaticBokeh, WritesAChannelForEachWavelength) {
   }
 }
 
-// Blue light has the shorter focus in this lens: its image is the larger one where the film is too far from the lens,
-// and the smaller one where it is too near.
+// Blue light focuses nearer to this lens: the blue image is larger if the film is too far from the lens, and smaller if
+// the film is too near.
 TEST_F(ChromaticBokeh, TheOutlineIsBlueNearerThanTheLightAndRedBeyond) {
   const auto json = colours({"--focus-mm", "1600,2400", "--field-deg", "0"});
   EXPECT_LT(json["longitudinal"][0]["paraxial_focus_shift_mm"], -0.2);

@@ -118,7 +118,7 @@ TEST_F(ConvertLens, MissingGlassesComeFromFilesOfTheUser) {
   const auto back = petzval::read_lens(path("lens.json"));
   EXPECT_EQ(back.configurations.size(), 2u);
   EXPECT_NEAR(back.surfaces[0].medium.nd.value(), 1.5168, 1e-7);  // by the formula
-  // One position alone.
+  // A single position.
   EXPECT_EQ(
       run("convert_lens", {path("lens.zmx"), path("far.json"), "--glasses", path("my.agf"), "--configuration", "far"})
           .status,
@@ -126,7 +126,7 @@ TEST_F(ConvertLens, MissingGlassesComeFromFilesOfTheUser) {
   EXPECT_NEAR(petzval::read_lens(path("far.json")).surfaces[1].thickness, 2.1 * 25.4, 1e-9);
 }
 
-// Germanium is opaque at the d line: its V_d is 0, and the lens is one for 10.6 um.
+// Germanium is opaque at the d line: V_d is 0, and the lens is made for 10.6 um.
 TEST_F(ConvertLens, InfraredGlassOfAUsersFile_IsReadByEveryProgramThatRecommendsIt) {
   write("ge.zmx", R"(MODE SEQ
 UNIT MM X W X CM MR CPMM
@@ -193,7 +193,7 @@ TEST_F(ConvertLens, EveryProgramTakesEveryFormat) {
   EXPECT_NEAR(nlohmann::json::parse(zoom.out)["effective_focal_length_mm"].get<double>(), 205.265, 1e-3);
 }
 
-// The lens that data/README.md types, with the glasses that its numbers mean.
+// The example lens of data/README.md, with the glasses of its index numbers.
 TEST_F(ConvertLens, TablesAsPeopleTypeThemGetTheirGlasses) {
   write("cooke.txt",
         "# Cooke triplet 50 mm f/5\nR d nd vd semi\n22.01359 3.25896 1.62041 60.3 9.5\n-435.76044 6.00755\n"

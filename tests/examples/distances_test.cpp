@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The options that mean the same in every program: distances, focus, f-numbers, lists.
+// Options with the same meaning in every program: distances, focus, f-numbers, lists.
 #include <cmath>
 #include <string>
 #include <vector>
@@ -22,7 +22,7 @@ class Distances : public Programs {
     EXPECT_EQ(outcome.status, 0) << outcome.err;
     return nlohmann::json::parse(outcome.out);
   }
-  /// The film on which programs put a subject at 1000 mm, by the name of the program.
+  /// Film positions for a subject at 1000 mm, by program.
   std::vector<std::pair<std::string, double>> films(const std::string& id, const Arguments& more) const {
     const std::string file = lens(id);
     std::vector<std::pair<std::string, double>> result;
@@ -43,7 +43,7 @@ class Distances : public Programs {
     add("bokeh_psf", read_json(path("bokeh/" + id + "_bokeh.json"))["results"][0]["film_z_mm"]);
     add("focus_report",
         printed("focus_report", joined({file, "--json", "--distance-mm", "1000"}, more))[0]["film_z_mm"]);
-    // The film's distance from a subject at 1 m, less where it counts from.
+    // Distance of the film from a subject at 1 m, minus the origin of distances.
     EXPECT_EQ(run("lens_metadata", joined({file, "--focus-mm", "1000", "--out", path("data")}, more)).status, 0);
     add("lens_metadata",
         1000 * read_json(path("data/" + id + ".opentrackio.json"))["lens"]["focusDistance"].get<double>());
@@ -69,10 +69,10 @@ TEST_F(Distances, OneDistanceIsOneFilmInEveryProgram) {
       }
     }
   }
-  // By another criterion all agree as well.
+  // All programs agree for another criterion as well.
   const petzval::Lens paraxial = petzval::with_focus(whole, 1000, {petzval::FocusCriterion::paraxial});
   for (const auto& [program, found] : films(id, {"--criterion", "paraxial"})) {
-    // The file format's distance means the sharpest subject.
+    // In the file format, the distance is the distance of the sharpest subject.
     if (program == "lens_metadata") continue;
     EXPECT_NEAR(found, paraxial.film_z(), 1e-9) << program;
   }
@@ -123,7 +123,7 @@ TEST_F(Distances, ALensTakesTheFNumberOfItsName) {
   }
   const std::string file = lens("double_gauss_52mm_f1.8");
   expect_failure("lens_report", {file, "--f-number", "1.77"}, {"--f-number", 1.77});
-  // The others take it in the same way.
+  // The other programs accept it in the same way.
   for (const auto& [program, more] : std::vector<std::pair<std::string, Arguments>>{
            {"focus_report", {"--json"}},
            {"bokeh_psf",

@@ -21,7 +21,7 @@ class ExpressiveLensProgram : public Programs {
   }
 };
 
-// Without options the aberrations are those of the lens, and the highlights have its size.
+// Without options, the aberrations and the sizes of highlights equal the real lens.
 TEST_F(ExpressiveLensProgram, BeginsWithTheRealLens) {
   const auto json = draw("double_gauss_100mm_f1.35", {"--light-mm", "850,1300"});
   EXPECT_EQ(json["power"].size(), 13u);

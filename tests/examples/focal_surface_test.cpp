@@ -83,9 +83,9 @@ TEST_F(FocalSurfaceProgram, AnswersWhatThePointsAskFor) {
   EXPECT_NEAR(answers[1][2], 1150, 1e-9);
   EXPECT_EQ(answers[2][2], std::numeric_limits<double>::infinity());
   EXPECT_NEAR(answers[2][3], -1, 1e-12);
-  EXPECT_LT(answers[3][2], 950);  // what lies beyond the plane of focus has a positive blur
+  EXPECT_LT(answers[3][2], 950);  // points beyond the plane of focus have a positive blur
   EXPECT_NEAR(answers[3][4], 12, 1e-9);
-  // The picture has what the queries answer.
+  // The image equals the answers of the queries.
   const auto picture = pfm("out/surface.pfm", 300, 200);
   for (const float value : picture) EXPECT_TRUE(std::isfinite(value));
   for (std::size_t i = 0; i < 4; ++i) {
@@ -94,7 +94,7 @@ TEST_F(FocalSurfaceProgram, AnswersWhatThePointsAskFor) {
   }
 }
 
-// Points of the world are where the camera sees them; other flags change what they say.
+// World points lie where the camera sees them; other flags change the answers.
 TEST_F(FocalSurfaceProgram, TakesPointsOfTheWorldAndKinds) {
   write("points.json", R"({"points": [{"world_mm": [0, 0, -2000]}, {"world_mm": [200, 100, -3000]}]})");
   write("q.csv", "x_px,y_px\n150,100\n");

@@ -41,7 +41,7 @@ TEST_F(Gallery, TheProfilesAgreeWithThePapersWordsExceptWhereKnown) {
   EXPECT_EQ(disagree.count("double_gauss_100mm_f1.35"), 0u);
   EXPECT_EQ(disagree.count("double_gauss_100mm_f1.7_substitute"), 0u);
   // The third row at the paraxial focus is sharpest when focused at 1100 mm, not at 1000; focused at 800 mm its disc is
-  // nearly even, but has a bright core.
+  // nearly uniform, but has a bright core.
   EXPECT_EQ(disagree["double_gauss_100mm_f2_28deg"], 6) << outcome.out;
   // The Tronnier does the opposite at every distance except 1000 mm.
   EXPECT_EQ(disagree["double_gauss_100mm_f2.0"], 16) << outcome.out;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The adapters of examples/hosts with stand-ins for the types of pbrt and Mitsuba: three coloured lamps, placed in the
-// camera space of the host, lie where they belong in its picture.
+// camera space of the host, appear at the expected pixels.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -105,8 +105,8 @@ Camera camera_at_3m() {
                 {.width_mm = 36, .height_mm = 24, .columns = columns, .rows = rows});
 }
 
-/// Where in the picture a lamp lies: the mean raster position of its light. ray_at(x, y, u, v): a ray in host space and
-/// its weight.
+/// Image position of a lamp: the mean raster position of its light. ray_at(x, y, u, v): a ray in host space and its
+/// weight.
 template <class RayAt>
 Vec2<double> place_of(const Vec3<double>& lamp, double radius, const RayAt& ray_at) {
   const core_detail::Kronecker<4> points;
@@ -129,7 +129,8 @@ struct HostRay {
   double weight;
 };
 
-/// Lamps 0.3 m to the right of the axis, 0.2 m above it, and on it, all 3 m in front of the film; right: of the host.
+/// Lamps 0.3 m to the right of the axis, 0.2 m above it, and on the axis, all 3 m in front of the film. right:
+/// direction in host space.
 template <class RayAt>
 void expect_lamps_in_place(double right, const RayAt& ray_at) {
   const double image_mm_per_m = 1000 * 103.4 / 2862;  // f + extension over the object's distance, thick lens
@@ -159,7 +160,7 @@ TEST(HostAdapters, OfPbrtHaveRedOnTheRightAndGreenAbove) {
   ASSERT_TRUE(ray);
   EXPECT_EQ(ray->ray.time, 0.25f);
 
-  // The rays of the neighbouring pixels lead to the right and down, as far as the next sample does.
+  // Differential rays equal the rays of the samples one pixel to the right and one pixel down.
   const auto differential = camera.GenerateRayDifferential(sample(20, 10, 0.4, 0.3));
   const auto right = camera.GenerateRay(sample(21, 10, 0.4, 0.3)), below = camera.GenerateRay(sample(20, 11, 0.4, 0.3));
   ASSERT_TRUE(differential && differential->ray.hasDifferentials && right && below);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Every program, with one bad value for each of its flags: it exits with 1, and its one line says which flag is at
-// fault.
+// Runs every program with one bad value for each of its flags: it must exit with 1 and print one line that names the
+// flag.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -13,7 +13,7 @@
 
 namespace {
 
-/// A program and a command line with which it runs. LENS and names that begin with "@" stand for files.
+/// A program and a valid command line. LENS and names that begin with "@" stand for files.
 struct Command {
   std::string program;
   Arguments arguments;
@@ -58,8 +58,8 @@ const std::vector<Command> commands = {
 #endif
 };
 
-/// Values that no program takes. All other numbers get nan, which is no number of a command line, and all other names a
-/// name that is too long.
+/// Values that no program accepts. Other numeric flags get nan, which is not a valid number; other names get a name
+/// that is too long.
 const std::map<std::string, Arguments> bad_values = {
     {"--blades", {"1", "2", "21"}},
     {"--configuration", {"nowhere", "1e308"}},
@@ -73,7 +73,7 @@ const std::map<std::string, Arguments> bad_values = {
     {"--wavelengths-nm", {"1e-300", "1e6", "550,550"}},
 };
 
-/// Flags of --help that take a value, by the word that stands for it.
+/// Flags of --help that take a value, with the placeholder of the value.
 std::map<std::string, std::string> flags_of(const std::string& help) {
   static const std::regex line("(?:^|\\n) +(?:-[a-z],)?(--[a-z0-9-]+) ([A-Z][^ \\n]*)");
   std::map<std::string, std::string> flags;

@@ -33,7 +33,7 @@ class LensBlurProgram : public Programs {
   }
   RgbImage picture(const std::string& name) const { return petzval::read_pfm(path(name)); }
 
-  /// A picture of 24 x 16 pixels that is all different, and one depth for each pixel.
+  /// An image of 24 x 16 different pixels, and a depth for each pixel.
   void write_files(double left_mm, double right_mm) const {
     RgbImage image(24, 16);
     for (std::size_t i = 0; i < image.pixels.size(); ++i) image.pixels[i] = static_cast<float>(i * 7 % 64) / 32;
@@ -65,8 +65,8 @@ TEST_F(LensBlurProgram, WritesPicturesAndTheirMeasures) {
   }
   EXPECT_EQ(result["rays"], 16);
   EXPECT_LE(result["layers"], 4);
-  EXPECT_GT(result["psnr_db"], 22);                       // so few pixels are far from smooth
-  EXPECT_LT(result["psnr_edges_db"], result["psnr_db"]);  // edges of depths are what is hard
+  EXPECT_GT(result["psnr_db"], 22);                       // a coarse image is not smooth
+  EXPECT_LT(result["psnr_edges_db"], result["psnr_db"]);  // depth edges are the difficult part
   EXPECT_GT(result["ssim"], 0.75);
   EXPECT_LT(result["flip_mean"], 0.2);
   EXPECT_LT(std::abs(result["energy_drift"].get<double>()), 0.01);
@@ -85,7 +85,7 @@ TEST_F(LensBlurProgram, LeavesAPlaneInFocusAsItIs) {
 }
 
 TEST_F(LensBlurProgram, ReadsLayersAndDeepPicturesAlike) {
-  // A near half over a plane of another colour, as parts of an EXR and as lists; what the near half hides is known.
+  // A near half over a plane of another colour, as parts of an EXR and as lists; the hidden part is known.
   petzval::FragmentLists lists{.columns = 24, .rows = 16, .offsets = {0}, .fragments = {}};
   std::vector<petzval::ExrPart> parts;
   for (const char* name : {"near", "far"}) {
@@ -99,7 +99,7 @@ TEST_F(LensBlurProgram, ReadsLayersAndDeepPicturesAlike) {
       parts[part].channels[3].values[i] = depth;
       lists.fragments.push_back({depth, value, value, value, 1});
     };
-    // A part without a surface at a pixel has the depth 0 there.
+    // A part without a surface at a pixel has the depth 0.
     if (i % 24 < 12) put(0, 1000, 0.75f);
     put(1, 4000, static_cast<float>(i % 5) / 4);
     lists.offsets.push_back(lists.fragments.size());
@@ -124,7 +124,7 @@ TEST_F(LensBlurProgram, FollowsKeysOverFrames) {
   ASSERT_EQ(result["frames"].size(), 3u);
   const RgbImage first = picture("frames/blur_0001.pfm"), last = picture("frames/blur_0003.pfm");
   EXPECT_NE(first.pixels, last.pixels);
-  // The frames are those of lenses that stand still.
+  // The frames equal frames of fixed lenses.
   const auto difference = [](const RgbImage& a, const RgbImage& b) {
     double sum = 0;
     for (std::size_t i = 0; i < a.pixels.size(); ++i) sum += static_cast<double>(std::abs(a.pixels[i] - b.pixels[i]));
@@ -154,7 +154,7 @@ TEST_F(LensBlurProgram, RefusesWhatItCannotBlur) {
   refused(joined({focus, {"--rgb", path("rgb.pfm"), "--depth", path("turned.pfm")}}), {"turned.pfm", 16, 24});
 }
 
-// The film of 24 mm height is for lenses of that picture; --fov-deg makes it smaller.
+// The default film of 24 mm height suits lenses with this image size; --fov-deg makes it smaller.
 TEST_F(LensBlurProgram, SaysThatTheLensDoesNotLightTheFilm) {
   const Arguments phone =
       joined({small, {"--scene", "town", "--focus-mm", "1000", "--lens", lens("phone_5.6mm_f3.5")}});
@@ -171,7 +171,7 @@ TEST_F(LensBlurProgram, SaysThatTheLensDoesNotLightTheFilm) {
   EXPECT_EQ(notes({"--fov-deg", "20"}), 0);
 }
 
-// The pupil of a fisheye moves with the field, and rays between the nodes of a table with it.
+// The pupil of a fisheye moves with the field: rays between the nodes of a table have errors.
 TEST_F(LensBlurProgram, SaysHowFarInterpolatedRaysAreOff) {
   const auto outcome = run("lens_blur", {"--scene",       "town", "--lens",     lens("fisheye_10mm_f4"),
                                          "--fov-deg",     "60",   "--focus-mm", "3000",

@@ -23,7 +23,8 @@ TEST_F(LensMetadata, WritesBothFilesOfTheFocusedLens) {
   EXPECT_NEAR(parts[1].numbers.at("focus"), 2, 1e-6);
 }
 
-// The files have the distance from the film, as their formats say, whatever the command line counts from.
+// The files contain the distance from the film, as the formats require, for any origin of distances on the command
+// line.
 TEST_F(LensMetadata, TurnsDistancesIntoThoseOfTheFormat) {
   const petzval::Lens whole = petzval::compile(petzval::read_prescription(lens("biogon_35mm_f2.8")));
   const double film_z = petzval::with_focus(whole, 2000).film_z();

@@ -74,7 +74,7 @@ TEST_F(LensReport, SaysOnceThatTheAbbeModelStandsIn) {
   EXPECT_EQ(lines(outcome.err).size(), 1u);
 }
 
-// Indices at the reference wavelength are those that the file prints, whatever the glass tables hold.
+// Indices at the reference wavelength equal the printed indices of the file, not the glass tables.
 TEST_F(LensReport, SaysNothingAboutGlassesAtTheReferenceWavelength) {
   for (const char* program : {"lens_report", "focus_report"}) {
     const auto outcome = run(program, {lens("petzval_portrait_100mm_f3.4"), "--json"});
@@ -202,7 +202,7 @@ TEST_F(LensReport, DrawsTheFieldsAskedForAndBothSections) {
   EXPECT_NE(spots.find("550 nm"), std::string::npos);
   EXPECT_EQ(spots.find("656"), std::string::npos);
 
-  // The d line alone, if it is asked for.
+  // Only the d line, if requested.
   const std::string triplet = lens("cooke_triplet_50mm_f5");
   const auto of_triplet = [&](const std::vector<std::string>& more) {
     std::vector<std::string> arguments{triplet, "--out", path("d")};
@@ -224,7 +224,7 @@ TEST_F(LensReport, PrintsTheApertureOfTheFileBesideTheComputedOne) {
     const char *aperture, *object, *setting;
     double declared, computed;
   };
-  // A front stop of 6 mm clips what is wider.
+  // A front stop of 6 mm clips wider beams.
   for (const Case& c :
        {Case{"ENPD 10", "INFINITY", "entrance_pupil_diameter", 10, 10},
         Case{"ENPD 14", "INFINITY", "entrance_pupil_diameter", 14, 12}, Case{"FNUM 8 0", "INFINITY", "f_number", 8, 8},

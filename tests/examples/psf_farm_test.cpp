@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What farms run: each where its program is installed, and what can be checked without it.
+// Render farm scripts: run if the scheduler is installed; otherwise only their form is checked.
 #include <sys/wait.h>
 
 #include <cstdlib>
@@ -71,7 +71,7 @@ TEST_F(PsfFarm, ASlurmArrayMakesTheSetOfOneRun) {
   EXPECT_EQ(read(path("out/psf_set.exr")), whole());
 }
 
-/// As root, on a Slurm of one node that lives as long as the test.
+/// Runs as root, on a Slurm of one node that is started for the test.
 TEST_F(PsfFarm, SlurmRunsTheArray) {
   if (std::system("command -v sbatch slurmctld slurmd > /dev/null && [ $(id -u) = 0 ]") != 0) {
     GTEST_SKIP() << "no Slurm, or not root";
@@ -88,7 +88,7 @@ TEST_F(PsfFarm, SlurmRunsTheArray) {
   EXPECT_EQ(read(path("out/psf_set.exr")), whole());
 }
 
-/// A program that writes down how it was called stands for the renderer, which is not built everywhere.
+/// Replaces the renderer, which is not built everywhere, by a program that records its arguments.
 TEST_F(PsfFarm, TheScriptsCallBokehSceneByItsOwnFlags) {
   write("bokeh_scene", "#!/bin/sh\necho \"$@\" >> '" + path("calls") + "'\n");
   std::filesystem::permissions(path("bokeh_scene"), std::filesystem::perms::owner_all);
@@ -108,7 +108,7 @@ TEST_F(PsfFarm, TheScriptsCallBokehSceneByItsOwnFlags) {
                                       "merge " + out + " --out " + out}));
 }
 
-/// The rules of the specification "jobtemplate-2023-09" that the template makes use of: keys, names, references.
+/// The rules of the specification "jobtemplate-2023-09" that the template uses: keys, names, references.
 /// Source: Open Job Description, Template Schemas 2023-09, sections 1 to 3 and 7.
 class OpenJobDescription : public PsfFarm {
  protected:
@@ -139,8 +139,8 @@ class OpenJobDescription : public PsfFarm {
     }
     return text;
   }
-  /// What a scheduler does with a template: values for names, a task for each value of the range, steps in the order of
-  /// their dependencies.
+  /// Executes a template like a scheduler: replaces names by values, runs a task for each value of the range, and steps
+  /// in the order of their dependencies.
   void run_tasks(const Json& job, const std::map<std::string, std::string>& chosen) const {
     std::map<std::string, std::string> values = chosen;
     for (const Json& parameter : job["parameterDefinitions"]) {
@@ -181,7 +181,7 @@ TEST_P(OpenJobTemplate, FollowsTheSchema) {
   const Json job = read_json(farm(GetParam() + std::string(".openjd.json")));
   only_keys(job, {"specificationVersion", "name", "steps"}, {"description", "parameterDefinitions"});
   EXPECT_EQ(job["specificationVersion"], "jobtemplate-2023-09");
-  // A path is mapped on the worker: only scripts know it, but its raw value is known everywhere.
+  // A path is mapped on the worker: only scripts know the mapped path; the raw value is known everywhere.
   std::set<std::string> known, of_scripts;
   ASSERT_LE(job["parameterDefinitions"].size(), 50u);
   for (const Json& parameter : job["parameterDefinitions"]) {

@@ -86,7 +86,7 @@ TEST_F(PsfSets, ShardsHaveTheBitsOfOneRun) {
   merged.erase("exr"), one.erase("exr");
   EXPECT_EQ(merged, one);
   EXPECT_EQ(read(path("ab.png")), read(path("whole/psf_set.png")));
-  // More shards than PSFs: some have nothing to do.
+  // More shards than PSFs: some shards are empty.
   for (int i = 1; i <= 13; ++i) succeed(set("many", {"--shard", std::to_string(i) + "/13"}));
   succeed({"merge", path("many"), "--out", path("many.exr")});
   EXPECT_EQ(read(path("many.exr")), exr);
@@ -113,7 +113,7 @@ TEST_F(PsfSets, AFaultyShardIsNamedAndRepaired) {
   const std::size_t at = changed.find("throughput") + 25;
   changed[at] = static_cast<char>(changed[at] ^ 1);
   refused(changed);
-  // A whole copy in another folder stands in for it; without one its shard computes it again, and nothing else.
+  // A valid copy in another folder replaces the corrupt file; without a copy, its shard computes only this file again.
   succeed({"merge", path("s"), path("whole"), "--out", path("s.exr")});
   EXPECT_EQ(read(path("s.exr")), exr);
   const auto before = fs::last_write_time(path("s/" + psf("0deg_1000mm")));

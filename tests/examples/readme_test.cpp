@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The pages of the repository: programs print the output that they show, and their paths exist.
+// Checks the pages of the repository: programs print the output shown, and paths exist.
 // (tests/house/guides.cmake checks their code.)
 #include <algorithm>
 #include <filesystem>
@@ -53,8 +53,7 @@ TEST_F(Readme, CommandsOfAllPagesCanBeCopied) {
 
 TEST_F(Readme, HasAtMost150Lines) { EXPECT_LE(lines(read(root() / "README.md")).size(), 150u); }
 
-/// A path in back quotes, or one that a link leads to, is looked up from the root of the repository or from the page's
-/// own folder.
+/// Paths in back quotes and targets of links are relative to the root of the repository or to the folder of the page.
 TEST_F(Readme, PathsOfAllPagesExist) {
   const std::regex path("(`|\\]\\()((cmake|data|examples|include|lib|tests)/[A-Za-z0-9_./-]*)[`)]");
   std::size_t found = 0;

@@ -5,8 +5,8 @@
 
 namespace examples_testing {
 
-/// A .zmx of a singlet 200 mm behind its object, of two wavelengths of which the second is the primary one. head: the
-/// lines up to the fields.
+/// A .zmx of a singlet 200 mm behind its object, with two wavelengths; the second is primary. head: the lines before
+/// the fields.
 inline std::string relay_zmx(const std::string& head) {
   return head + R"(WAVM 1 0.55 1.0
 WAVM 2 0.45 0.25

@@ -83,7 +83,7 @@ TEST_F(SpotDiagram, PutsTheFilmInFocusAtTheDLine) {
   EXPECT_NEAR(film_z({"--f-number", "11"}), petzval::solve_focus(stopped, HUGE_VAL).film_z, 1e-9);
 }
 
-// Without flags a lens of another program is seen in its own light, from its own fields, at its own object.
+// Without flags, a lens of another program uses the wavelengths, fields and object distance of its file.
 TEST_F(SpotDiagram, TakesTheConditionsOfTheFile) {
   write("relay.zmx", examples_testing::relay_zmx(R"(VERS 140124 258 36214 0 0
 MODE SEQ

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The textbook method, its bounds and its faults in numbers.
+// The textbook method: accuracy, limits and errors, measured.
 #include "support/textbook_pupil.hpp"
 
 #include <gtest/gtest.h>
@@ -25,7 +25,7 @@ constexpr double infinity = std::numeric_limits<double>::infinity();
 /// The marked stop is surface 5; surface 2 is a little too small.
 Lens double_gauss() { return data_lens("double_gauss_100mm_f2.0"); }
 
-/// Half the diagonal of the film that goes with a focal length of 100 mm as 24 x 36 mm goes with 50.
+/// Half the diagonal of a film of 48 x 72 mm: relative to 100 mm as 24 x 36 mm to a focal length of 50 mm.
 constexpr double film_corner = 43.27;
 
 Ray<double> from_film(const Lens& lens, double film_height, double x, double y, double z) {
@@ -35,8 +35,8 @@ Ray<double> from_film(const Lens& lens, double film_height, double x, double y, 
 
 /// A disc in the plane of the exit pupil, compared with the rays from a film point that pass the lens.
 struct Cover {
-  double of_passing = 0;  ///< share of the passing rays that lie in the disc
-  double of_disc = 0;     ///< share of the disc that passes
+  double of_passing = 0;  ///< fraction of the passing rays that lie in the disc
+  double of_disc = 0;     ///< fraction of the disc that passes
 };
 
 Cover cover(const Lens& lens, const TextbookPupil& exit, double film_height) {
@@ -65,7 +65,7 @@ Ray<double> outwards(const Ray<double>& ray, double object_z, double by) {
   return {{0, y, ray.origin.z}, {0, y / length, z / length}};
 }
 
-// The repaired method: its ray was traced and passes, and the next one does not.
+// The corrected method: the returned ray passes, and the next ray outwards is clipped.
 TEST(TextbookPupil, ReturnsARayThatPassesAndIsTheLast) {
   for (const Prescription& p : data_prescriptions()) {
     const Lens lens = compile(p);
@@ -92,7 +92,7 @@ TEST(TextbookPupil, ReturnsARayThatPassesAndIsTheLast) {
   }
 }
 
-// It is right for a thin beam: there the disc is the paraxial pupil.
+// The method is correct for thin beams: the disc tends to the paraxial pupil.
 TEST(TextbookPupil, TendsToTheParaxialOneAsTheStopCloses) {
   for (const Prescription& p : data_prescriptions()) {
     SCOPED_TRACE(p.id);
@@ -113,7 +113,7 @@ TEST(TextbookPupil, TendsToTheParaxialOneAsTheStopCloses) {
   }
 }
 
-// Fault one: the ray depends on the first rim that clips.
+// Error one: the ray depends on the first rim that clips.
 TEST(TextbookPupil, IsThatOfTheFirstRimNotOfTheStop) {
   const Lens lens = double_gauss();
   const double focal_length = first_order(lens).effective_focal_length;
@@ -121,16 +121,16 @@ TEST(TextbookPupil, IsThatOfTheFirstRimNotOfTheStop) {
   EXPECT_EQ(lens.stop(), 5u);
   EXPECT_EQ(far.limiting, 2u);
   EXPECT_NEAR(far.diameter / 2, 24.956, 1e-3);
-  EXPECT_NEAR(focal_length / (2 * real_f_number(lens)), 25.132, 1e-3);  // of the ray to the rim of the stop
+  EXPECT_NEAR(focal_length / (2 * real_f_number(lens)), 25.132, 1e-3);  // height of the ray to the rim of the stop
   EXPECT_NEAR(pupils(lens).entrance.diameter / 2, 24.805, 1e-3);
-  // At 1 m it is a rim of the rear group. No setting of the stop has a part in either.
+  // At 1 m a rim of the rear group clips. The setting of the stop changes neither result.
   const TextbookPupil near = textbook_entrance_pupil(lens, -1000);
   EXPECT_EQ(near.limiting, 8u);
   EXPECT_NEAR(near.diameter / 2, 25.132, 1e-3);
   EXPECT_EQ(textbook_entrance_pupil(with_semi_diameter(lens, 5, 17.5, RimLimit::none), -1000).diameter, near.diameter);
 }
 
-// Fault two: it is axial, but off the axis rims clip and shift the pupil.
+// Error two: the pupil is found on the axis, but off the axis rims clip and shift the pupil.
 TEST(TextbookPupil, WideOpenIsMostlyBlockedAtTheEdgeOfTheField) {
   const Lens lens = double_gauss();
   const TextbookPupil exit = textbook_exit_pupil(lens, lens.film_z());
@@ -141,7 +141,7 @@ TEST(TextbookPupil, WideOpenIsMostlyBlockedAtTheEdgeOfTheField) {
   EXPECT_GT(edge.of_passing, 0.999);
 }
 
-// Fault three: stopped down, when only the stop limits, the disc is at the wrong place and misses light.
+// Error three: stopped down, if only the stop clips, the disc is at the wrong position and misses light.
 TEST(TextbookPupil, StoppedDownMissesAFifthOfTheLightAtTheEdgeOfTheField) {
   const Lens whole = double_gauss();
   const Lens lens = with_semi_diameter(whole, 5, whole.surfaces()[5].semi_diameter / 4);

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// Random work in great numbers: rays through random lenses, samples of cameras, blurred pixels. Counts how they end,
-// and says the seed and the case of each that breaks a law; exit status 1 then.
+// Large numbers of random rays, camera samples and blurred pixels. Counts the results, prints seed and case of each
+// violated rule, and exits with status 1 if there is a violation.
 //
 //   flood [--rays 1e9] [--samples 1e8] [--gathers 1e7] [--seed 1] [--threads N]
-//   flood --rays 1 --from 4711         the case 4711 of the rays alone
+//   flood --rays 1 --from 4711         only case 4711 of the rays
 #include "flood.hpp"
 
 #include <algorithm>
@@ -26,7 +26,7 @@ struct Work {
   double wanted;
 };
 
-/// Cases from the first on until as many things are done as are wanted.
+/// Runs cases from `first` until enough items are done. Returns false if a case violates a rule.
 bool flooded(const Work& work, std::uint32_t seed, std::uint64_t first, int threads) {
   flood::Counts sum;
   std::vector<std::pair<std::uint64_t, std::string>> faults;

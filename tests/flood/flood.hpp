@@ -12,17 +12,17 @@
 #include "../fuzz/wild_lens.hpp"
 #include "core/low_discrepancy.hpp"
 
-/// Random work of one kind, in cases that depend on the seed and their number alone.
+/// Random tests in cases. A case depends only on the seed and its number.
 namespace petzval::flood {
 
-/// Random bytes of a case, and random numbers.
+/// Random bytes and numbers of one case.
 class Case {
  public:
   Case(std::uint32_t seed, std::uint64_t number) : state_(core_detail::mixed(seed) ^ number) {
     for (auto& byte : bytes_) byte = static_cast<std::uint8_t>(draw());
   }
 
-  /// What makes lenses and options, as the fuzz targets do.
+  /// Input for the generators of lenses and options of the fuzz targets.
   fuzz::Bytes bytes() const noexcept { return {bytes_.data(), bytes_.size()}; }
   double between(double least, double most) noexcept {
     return least + (most - least) * static_cast<double>(draw() >> 11) * 0x1p-53;
@@ -35,12 +35,12 @@ class Case {
   std::array<std::uint8_t, 1024> bytes_;
 };
 
-/// What a case found.
+/// Results of a case.
 struct Counts {
   std::uint64_t done = 0;                      ///< rays, samples or pixels
-  std::map<std::string, std::uint64_t> kinds;  ///< how they ended
-  std::map<std::string, double> worst;         ///< measured errors, the largest of each
-  std::optional<std::string> fault;            ///< the first broken law
+  std::map<std::string, std::uint64_t> kinds;  ///< numbers of items by result
+  std::map<std::string, double> worst;         ///< largest errors by name
+  std::optional<std::string> fault;            ///< first violated rule
 
   void fail_unless(bool holds, const char* law) {
     if (!holds && !fault) fault = law;
@@ -56,13 +56,14 @@ struct Counts {
   }
 };
 
-/// Rays through lenses that nobody has designed and through those of data/, damaged or whole, in both directions, float
-/// and double, fast and reproducible: finite, of unit length where they pass.
+/// Traces rays through random lenses and through lenses of data/, intact or damaged, in both directions, in float and
+/// double, fast and reproducible: results are finite, directions of rays that pass have unit length.
 Counts rays(Case& at);
-/// Samples of cameras of all models of lenses of data/, with blades, weights and tilted films, at any aperture and
-/// focus: finite, no negative light, no more than a film can get, and on the axis that of the exact lens.
+/// Samples cameras of all models with lenses of data/, with blades, weights and tilted films, at any aperture and
+/// focus: weights are finite, not negative, at most the irradiance of a half sphere, and on the axis equal to the exact
+/// lens.
 Counts samples(Case& at);
-/// Pixels of blurred pictures of random layers: finite, no brighter than the layers, and even where these are.
+/// Blurs images of random layers: pixels are finite, not brighter than the layers, and uniform for uniform layers.
 Counts gathers(Case& at);
 
 }  // namespace petzval::flood

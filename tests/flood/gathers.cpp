@@ -16,7 +16,7 @@ namespace {
 constexpr int side = 32;
 constexpr float infinity = std::numeric_limits<float>::infinity();
 
-/// Up to four surfaces a pixel anywhere behind 500 mm, and one behind all.
+/// Up to four surfaces per pixel at any distance beyond 500 mm, and a background.
 FragmentLists random_lists(const LayerCamera& camera, bool even, bool opaque, Case& at) {
   FragmentLists lists{.columns = camera.layer_columns(), .rows = camera.layer_rows(), .offsets = {0}, .fragments = {}};
   for (int i = 0; i < lists.columns * lists.rows; ++i) {

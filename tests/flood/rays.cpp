@@ -29,7 +29,7 @@ struct Arrays {
   }
 };
 
-/// Into the lens from just before it, over a half sphere of directions and somewhat more than its width.
+/// Rays that start just in front of the lens, over a half sphere of directions and 1.2 times the semi-diameter.
 template <class T>
 void fill(Arrays<T>& rays, const Lens& lens, Travel travel, Case& at) {
   const LensSurface& face = travel == Travel::to_film ? lens.surfaces().front() : lens.surfaces().back();
@@ -64,7 +64,7 @@ void traced(const Lens& lens, const BatchOptions& options, Case& at, Counts& cou
     longest = std::max(longest, error);
     beyond += error > 8 * eps;
   }
-  // As the docstring of trace() states; rays that graze a surface have the worst.
+  // Bound of the documentation of trace(); rays that graze a surface have the largest errors.
   counts.fail_unless(longest <= 1000 * eps, "a ray that passes has unit length");
   counts.measure(sizeof(T) == 4 ? "|d|^2 - 1 in eps of float" : "|d|^2 - 1 in eps of double", longest / eps);
   counts.kinds["(beyond 8 eps of unit length)"] += beyond;

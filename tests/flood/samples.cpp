@@ -43,7 +43,7 @@ void check(const testing::Samples<float>& found, double brightest, Counts& count
   counts.done += found.size();
 }
 
-/// The mean weight of the film's centre against the exact lens's irradiance there.
+/// Compares the mean weight at the film's centre with the irradiance of the exact lens.
 void check_exposure(const Camera& camera, Counts& counts) {
   const double exact = film_irradiance(camera.lens(), {});
   if (!(exact > 0)) return;
@@ -84,7 +84,8 @@ Counts samples(Case& at) {
     found.run(camera);
     const double n = lens.index(lens.surface_count());
     check(found, 1.01 * std::numbers::pi * n * n, counts);
-    // A ball lens's pupil has parts that the tables of these models do not follow (FilmPupilTable::equal_area).
+    // Ball lenses have disconnected pupils, which the tables of these models do not contain
+    // (FilmPupilTable::equal_area).
     if (!weighted && film.tilt_rad == 0 && !p.name.starts_with("Ball lens")) check_exposure(camera, counts);
   } catch (const Error&) {
     ++counts.kinds["(cameras refused)"];

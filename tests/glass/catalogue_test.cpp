@@ -110,7 +110,7 @@ TEST(GlassCatalogue, AddedGlassPrecedesOthersOfItsName) {
   EXPECT_EQ(more.find("F2", "MINE")->nd, 1.6205);
   EXPECT_EQ(more.find("F2", "cdgm")->nd, 1.61293);
   EXPECT_EQ(more.find("K", "a")->nd, 1.5);
-  // By index alone: an added one within what moulding changes, else the nearest of all.
+  // Search by index: an added glass within the tolerance for moulding, otherwise the nearest glass of all.
   EXPECT_EQ(more.find("F2", 1.62004)->nd, 1.62);
   EXPECT_EQ(more.find("F2", 1.6204)->nd, 1.6205);
   EXPECT_EQ(more.find("F2", 1.613)->nd, 1.61293);

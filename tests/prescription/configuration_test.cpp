@@ -22,7 +22,7 @@ using petzval::testing::data_prescription;
 using petzval::testing::expect_error;
 using petzval::testing::message;
 
-/// Two zoom positions, each with one that focuses it at 500 mm.
+/// Two zoom positions, each with a second configuration that is focused at 500 mm.
 Prescription zoom() {
   Prescription p;
   p.name = "z";
@@ -119,7 +119,7 @@ TEST(Configured, ScalesAndReverses) {
   EXPECT_TRUE(configured(reversed, "tele").surfaces[1].stop);
 }
 
-/// The rows of each configuration, validated as a lens of their own: the first refusal.
+/// Validates the rows of each configuration as a separate lens; returns the first refusal.
 std::string refusal_of_rows(const Prescription& p) {
   for (std::size_t i = 0; i < p.configurations.size(); ++i) {
     const std::string refusal = message([&] {
@@ -165,7 +165,7 @@ TEST(Validate, RefusesInvalidConfigurations) {
   EXPECT_LT(refused, 390);
 }
 
-// A copy of all positions for each of them would be 5e8 changes.
+// Copying all positions for each position would give 5e8 changes.
 TEST(Configured, AcceptsTheMaximumOfPositions) {
   constexpr int positions = 1000, surfaces = 500;
   Prescription p;
@@ -182,7 +182,7 @@ TEST(Configured, AcceptsTheMaximumOfPositions) {
     ASSERT_EQ(rows.configurations.size(), 1u);
     ASSERT_EQ(rows.surfaces.back().thickness, 1 + 1e-3 * c);
   }
-  // All of them focus the first.
+  // All configurations focus the first position.
   for (int c = 1; c < positions; ++c) {
     p.configurations[static_cast<std::size_t>(c)].focus_of = p.configurations[0].name;
     p.configurations[static_cast<std::size_t>(c)].subject_distance_mm = 100 + c;

@@ -30,8 +30,8 @@ Ray<double> turned(const petzval::Lens& lens, const Ray<double>& ray) {
           {ray.direction.x, ray.direction.y, sign * ray.direction.z}};
 }
 
-/// Traces a ray to the scene through the lens and the same ray to the film through the reversed lens. Returns whether
-/// it passed.
+/// Traces a ray to the scene through the lens and the same ray to the film through the reversed lens. Returns true
+/// if the ray passed.
 bool expect_same_way(const petzval::Lens& lens, const petzval::Lens& reversed, const Ray<double>& ray) {
   const auto there = petzval::trace(lens, ray, {.travel = Travel::to_scene});
   const auto back = petzval::trace(reversed, turned(lens, ray));
@@ -46,8 +46,8 @@ bool expect_same_way(const petzval::Lens& lens, const petzval::Lens& reversed, c
   return there.transmitted();
 }
 
-// A ray that travels to the scene through a lens travels to the film through the reversed lens: refracting lenses, even
-// and odd numbers of mirrors, aspheres, cylinders, an eye with water behind it.
+// A ray to the scene through a lens equals a ray to the film through the reversed lens: refracting lenses, even and odd
+// numbers of mirrors, aspheres, cylinders, an eye with water as image medium.
 TEST(Reverse, LightTakesTheReversedPath) {
   std::mt19937 random(20);
   std::uniform_real_distribution<double> uniform(-1, 1);
@@ -66,7 +66,7 @@ TEST(Reverse, LightTakesTheReversedPath) {
       if (!exit.transmitted()) continue;
       const auto& d = exit.ray.direction;
       through += expect_same_way(lens, reversed, {exit.ray.origin, {-d.x, -d.y, -d.z}});
-      // And a random ray, which mostly does not pass.
+      // Also a random ray; most of these do not pass.
       const double bend = 0.1 * uniform(random), norm = std::sqrt(1 + 2 * bend * d.x + bend * bend);
       expect_same_way(lens, reversed, {exit.ray.origin, {-(d.x + bend) / norm, -d.y / norm, -d.z / norm}});
     }
@@ -74,7 +74,7 @@ TEST(Reverse, LightTakesTheReversedPath) {
   }
 }
 
-/// Whether the signed index in front of a reversed lens is positive: with an odd number of mirrors it is not.
+/// True if the signed index in front of a reversed lens is positive: false for an odd number of mirrors.
 bool ends_forwards(const petzval::Lens& lens) { return petzval::signed_index(lens, lens.surface_count()) > 0; }
 
 TEST(Reverse, SwapsPrincipalPlanesAndPupils) {
@@ -106,8 +106,8 @@ TEST(Reverse, SwapsPrincipalPlanesAndPupils) {
   }
 }
 
-// A chief ray is the same line from both sides: aimed from a point behind the lens through the reversed lens, it comes
-// out as the line that entered.
+// A chief ray is the same line in both directions: aimed from a point behind the lens through the reversed lens, it
+// leaves along the original line.
 TEST(Reverse, ChiefRaysKeepTheirLines) {
   int compared = 0;
   for (const Prescription& p : petzval::testing::data_prescriptions()) {
@@ -119,8 +119,8 @@ TEST(Reverse, ChiefRaysKeepTheirLines) {
       const double field = share * petzval::radians(p.half_field_deg.value_or(1));
       const auto chief = petzval::chief_ray(lens, {field, -std::numeric_limits<double>::infinity()});
       if (!chief || !chief.end.transmitted()) continue;
-      // A point of the ray behind the lens, in the reversed frame. Farther out chief rays of the phone lens cross, and
-      // a point has two.
+      // A point of the ray behind the lens, in the reversed frame. Farther out, chief rays of the phone lens cross:
+      // a point has two chief rays.
       const Ray<double> behind = turned(lens, chief.end.ray);
       const double focal_length = std::abs(*p.focal_length_mm);
       const double t = (std::min(0.0, pupil_z) - 2 * focal_length - behind.origin.z) / behind.direction.z;
