@@ -410,8 +410,8 @@ void stop_points_block(const PolygonGrid<dimensions, R>& given, const R* film_x,
   }
 }
 
-/// Block sizes: both fill the widest registers; the small block takes the rest of a batch.
-constexpr std::size_t whole_block = 64, small_block = core_detail::lane_bytes == 64 ? 16 : 8;
+/// Sizes of blocks. All fill the widest registers; the smallest takes the rest of a batch.
+constexpr std::size_t whole_block = 64, half_block = 16, small_block = core_detail::lane_bytes == 64 ? 16 : 8;
 
 template <std::size_t rays>
 using Block = std::integral_constant<std::size_t, rays>;
@@ -442,7 +442,8 @@ inline void by_blocks(const Grid& grid, std::size_t count, const R* const (&in)[
     }
   };
   whole(Block<whole_block>());
-  whole(Block<small_block>());
+  whole(Block<half_block>());
+  if constexpr (small_block < half_block) whole(Block<small_block>());
   const std::size_t n = count - begin;
   if (n == 0) return;
   find_wavelengths(begin, n);
