@@ -19,15 +19,24 @@ foreach(program IN LISTS programs)
 endforeach()
 file(CONFIGURE OUTPUT ${PROJECT_BINARY_DIR}/docs/examples.dox CONTENT "${example_pages}" @ONLY)
 
+# Doxygen resolves links to pages, not to their sections, and collects pictures in one folder.
+file(CONFIGURE OUTPUT ${PROJECT_BINARY_DIR}/docs/page_filter @ONLY CONTENT [[#!/bin/sh
+exec sed -e 's/[.]md#[a-z0-9_-]*)/.md)/g' -e 's,([./]*examples/pictures/,(,g' "$1"
+]])
+file(CHMOD ${PROJECT_BINARY_DIR}/docs/page_filter PERMISSIONS OWNER_READ OWNER_WRITE OWNER_EXECUTE)
+file(GLOB pictures CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/examples/pictures/*)
+
 set(DOXYGEN_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR}/docs)
 set(DOXYGEN_PROJECT_BRIEF "${PROJECT_DESCRIPTION}")
 set(DOXYGEN_USE_MDFILE_AS_MAINPAGE ${PROJECT_SOURCE_DIR}/README.md)
-set(DOXYGEN_IMAGE_PATH ${PROJECT_SOURCE_DIR} ${PROJECT_SOURCE_DIR}/lib/docs)
+set(DOXYGEN_IMAGE_PATH ${PROJECT_SOURCE_DIR}/examples/pictures)
+set(DOXYGEN_HTML_EXTRA_FILES ${pictures})
 set(DOXYGEN_EXAMPLE_PATH ${PROJECT_SOURCE_DIR}/examples)
 set(DOXYGEN_EXAMPLE_RECURSIVE YES)
 set(DOXYGEN_STRIP_FROM_PATH ${PROJECT_SOURCE_DIR}/include ${PROJECT_SOURCE_DIR})
 set(DOXYGEN_STRIP_FROM_INC_PATH ${PROJECT_SOURCE_DIR}/include)
 set(DOXYGEN_FILE_PATTERNS *.hpp *.md *.dox)
+set(DOXYGEN_FILTER_PATTERNS *.md=${PROJECT_BINARY_DIR}/docs/page_filter)
 set(DOXYGEN_JAVADOC_AUTOBRIEF YES)  # the first sentence of a comment is its summary
 set(DOXYGEN_BUILTIN_STL_SUPPORT YES)
 set(DOXYGEN_MACRO_EXPANSION YES)
