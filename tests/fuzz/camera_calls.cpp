@@ -104,7 +104,7 @@ void alike(const CameraRay& one, const Ray<double>& other, double weight) {
   fuzz::require(glm::length(one.ray.direction - other.direction) <= rounding &&
                     glm::length(one.ray.origin - other.origin) <= rounding * size &&
                     std::abs(one.weight - weight) <= rounding * (one.weight + 1e-3),
-                "a ray of a batch is that of a single call");
+                "a ray of a batch equals the single call");
 }
 
 template <class T>
@@ -151,7 +151,7 @@ void importance(const Camera& camera, fuzz::Bytes& bytes) {
     const Importance alone = camera.importance(ray, wavelength, in[6][i]);
     fuzz::check(alone), fuzz::check(together[i]);
     if (alone && together[i]) {
-      fuzz::require(std::abs(alone.we - together[i].we) <= 1e-3 * alone.we, "importance is that of a single call");
+      fuzz::require(std::abs(alone.we - together[i].we) <= 1e-3 * alone.we, "importance equals the single call");
     }
     fuzz::require(fuzz::density(camera.pdf_distant_importance(ray, wavelength)), "the density of a ray is a number");
   }
@@ -193,7 +193,7 @@ void projections(const Camera& camera, fuzz::Bytes& bytes) {
   const Wavelength wavelength = fuzz::wild_wavelength(bytes);
   const Projection seen = camera.project(point, wavelength, bytes.number(0, 1));
   fuzz::check(seen);
-  if (seen) fuzz::require(camera.film().contains(seen.film), "what is seen lies on the film");
+  if (seen) fuzz::require(camera.film().contains(seen.film), "visible points lie on the film");
 }
 
 }  // namespace

@@ -103,7 +103,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     if (!tame || options.highlights_above > 0 || path == GatherPath::shift_invariant || layers.count() == 0) return;
     if (path == GatherPath::automatic && rays.shift_invariant()) return;
     fuzz::require(mean_difference(picture, testing::reference_gather(layers, rays), way.bounded) < 0.1,
-                  "a picture is that of the reference");
+                  "a picture equals the reference");
   });
   return 0;
 }

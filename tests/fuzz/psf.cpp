@@ -42,7 +42,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
       fuzz::require(std::isfinite(psf.throughput(w)) && psf.throughput(w) >= 0, "throughput is 0 or more");
     }
     for (const double ring : image.radial_profile)
-      fuzz::require(!std::isnan(ring) && ring >= 0, "a ring has light or none");
+      fuzz::require(!std::isnan(ring) && ring >= 0, "a ring has light or is empty");
   });
   return 0;
 }

@@ -151,7 +151,7 @@ int main(int argc, char** argv) {
   if (words.size() == 2 && words[0] == "--write-seeds") return write_seeds(words[1]), 0;
   const auto target = words.empty() ? targets.end() : std::ranges::find(targets, words[0], &Target::name);
   if (target == targets.end()) {
-    std::cerr << "fuzz_replay: wanted a target of --list, --list or --write-seeds DIR\n";
+    std::cerr << "fuzz_replay: arguments must be a target of --list, --list or --write-seeds DIR\n";
     return 2;
   }
   const bool random = words.size() == 4 && words[1] == "--random";

@@ -105,7 +105,7 @@ void places(const FilmPupilTable& table, fuzz::Bytes& bytes) {
     const Vec2<double> middle = table.middle(film, wavelength);
     const bool in_the_middle = std::hypot(n[2][i] - middle.x, n[3][i] - middle.y) < 1e-300;
     if (std::abs(clearances[i]) > edge && !in_the_middle) {
-      fuzz::require(one == (clearances[i] > 0) && one == (within[i] != 0), "what a pupil contains has a clearance");
+      fuzz::require(one == (clearances[i] > 0) && one == (within[i] != 0), "points inside a pupil have a clearance");
     }
     const double area = table.area(film, wavelength), angle = table.projected_solid_angle(film, wavelength);
     fuzz::require(
@@ -139,7 +139,7 @@ void lines(const RayPolynomial& polynomial, fuzz::Bytes& bytes) {
       {&many.origin.x, &many.origin.y, &many.origin.z, &many.direction.x, &many.direction.y, &many.direction.z}, &fate);
   fuzz::require(alone == fate, "a line has one fate");
   for (const auto& ray : {one, many}) {
-    fuzz::require(fuzz::finite(ray) && fuzz::unit(ray.direction, 1e-12), "a polynomial's ray is one");
+    fuzz::require(fuzz::finite(ray) && fuzz::unit(ray.direction, 1e-12), "a polynomial's ray is valid");
   }
   TwoPlaneRay back;
   const Ray<double> in{one.origin, -one.direction};
@@ -169,7 +169,7 @@ void pixels(const LensDistortion& distortion, fuzz::Bytes& bytes) {
   if (!seen) return;
   fuzz::require(fuzz::finite(*seen), "an undistorted place is finite");
   const auto again = distortion.distorted(*seen);
-  fuzz::require(again && std::hypot(again->x - at.x, again->y - at.y) < 0.02, "distortion undoes what is undistorted");
+  fuzz::require(again && std::hypot(again->x - at.x, again->y - at.y) < 0.02, "distortion inverts undistortion");
 }
 
 void surface(fuzz::Bytes& bytes) {
@@ -206,7 +206,7 @@ void surface(fuzz::Bytes& bytes) {
                   "a focal surface stays within its limits");
     const double range = found.nearest() - found.farthest();
     fuzz::require(std::abs(one.inverse_distance - n[2][i]) <= 1e-6 * (range + std::abs(one.inverse_distance)),
-                  "a place in a batch is that of a single call");
+                  "a position of a batch equals the single call");
     const auto slopes = found.slopes(place);
     fuzz::require(fuzz::finite(slopes.inverse_distance) && fuzz::finite(slopes.extent_stops),
                   "slopes of a surface are finite");
