@@ -20,9 +20,9 @@ endforeach()
 file(CONFIGURE OUTPUT ${PROJECT_BINARY_DIR}/docs/examples.dox CONTENT "${example_pages}" @ONLY)
 
 # Doxygen resolves links to pages, not to their sections, and collects pictures in one folder.
-file(CONFIGURE OUTPUT ${PROJECT_BINARY_DIR}/docs/page_filter @ONLY CONTENT [[#!/bin/sh
-exec sed -e 's/[.]md#[a-z0-9_-]*)/.md)/g' -e 's,([./]*examples/pictures/,(,g' "$1"
-]])
+file(CONFIGURE OUTPUT ${PROJECT_BINARY_DIR}/docs/page_filter @ONLY CONTENT [=[#!/bin/sh
+exec sed -e 's/\[\([^]]*\)\](#[a-z0-9_-]*)/\1/g' -e 's/[.]md#[a-z0-9_-]*)/.md)/g' -e 's,([./]*examples/pictures/,(,g' "$1"
+]=])
 file(CHMOD ${PROJECT_BINARY_DIR}/docs/page_filter PERMISSIONS OWNER_READ OWNER_WRITE OWNER_EXECUTE)
 file(GLOB pictures CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/examples/pictures/*)
 
