@@ -28,9 +28,6 @@ constexpr std::size_t longest_sentence = 45;  // words
 
 const std::string whole_tree = "tree";
 
-// Folders that are not rewritten yet, with their limits in percent.
-const std::map<std::string, double> interim_limits{{"tests/examples", 23}};
-
 /// Stands in a message for the values between its literals.
 constexpr std::string_view placeholder = "<value>";
 
@@ -352,10 +349,7 @@ int check(const std::filesystem::path& root, const std::string& listed) {
   bool failed = false;
   for (const auto& [key, count] : counts) {
     const auto& [group, kind] = key;
-    const auto interim = interim_limits.find(group);
-    const double limit = interim != interim_limits.end() ? interim->second
-                         : group == whole_tree           ? tree_limit_percent
-                                                         : folder_limit_percent;
+    const double limit = group == whole_tree ? tree_limit_percent : folder_limit_percent;
     const bool high = count.sentences >= smallest_sample && count.percent() > limit;
     failed = failed || high;
     if (high || group == whole_tree || group == listed)
