@@ -10,7 +10,7 @@ include(${CMAKE_CURRENT_LIST_DIR}/guide_blocks.cmake)
 
 file(REMOVE_RECURSE ${WORK})
 file(MAKE_DIRECTORY ${WORK})
-foreach(folder README.md cmake data examples include lib tests)
+foreach(folder .github README.md cmake data examples include lib tests)
   file(CREATE_LINK ${ROOT}/${folder} ${WORK}/${folder} SYMBOLIC)
 endforeach()
 file(CREATE_LINK ${BUILD} ${WORK}/build SYMBOLIC)
