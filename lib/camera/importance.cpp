@@ -25,6 +25,7 @@
 #include <glm/geometric.hpp>
 #include <limits>
 #include <numbers>
+#include <type_traits>
 
 #include "camera_data.hpp"
 #include "camera_steps.hpp"
@@ -52,6 +53,25 @@ bool unit_length(const Vec3<double>& direction) noexcept {
 }
 
 bool finite(const Vec3<double>& v) noexcept { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); }
+
+/// True if the origin is finite and the direction a unit vector.
+bool sound(const Ray<double>& ray) noexcept { return finite(ray.origin) && unit_length(ray.direction); }
+
+/// Calls body(size, begin, count) for consecutive blocks of N rays; size: a constant, 1 for a single ray.
+template <class Body>
+void in_blocks(std::size_t count, const Body& body) noexcept {
+  using Block = std::integral_constant<std::size_t, 64>;
+  std::size_t begin = 0;
+  for (; begin + 1 < count; begin += Block()) body(Block(), begin, std::min<std::size_t>(Block(), count - begin));
+  if (begin < count) body(std::integral_constant<std::size_t, 1>(), begin, 1);
+}
+
+/// A connection to a position in the lens; the distance and the end of the shadow ray are reduced by `way`, the
+/// distance between the front of the lens and the position.
+ImportanceSample connected(const Vec3<double>& place, const Vec3<double>& direction, double distance, double way,
+                           double pdf) noexcept {
+  return {direction, distance - way, place - direction * way, pdf, {}};
+}
 
 /// The rays of a model in the scene.
 std::vector<std::vector<Ray<double>>> leaving_rays_of(const Lens& lens, const AnyRayModel& model, int threads) {
@@ -198,7 +218,7 @@ SceneSide::Facts SceneSide::facts_at(Wavelength wavelength) const noexcept {
 }
 
 bool SceneSide::valid(const Ray<double>& ray, Wavelength wavelength) const noexcept {
-  return wavelengths_.covers(wavelength) && finite(ray.origin) && unit_length(ray.direction);
+  return wavelengths_.covers(wavelength) && sound(ray);
 }
 
 std::optional<TiltedPlane> SceneSide::plane(double time) const noexcept {
@@ -223,12 +243,12 @@ void SceneSide::arrive(const AnyRayModel& model, std::size_t count, const RayArr
     x[i] = ray.origin.x, y[i] = ray.origin.y, z[i] = ray.origin.z;
     dx[i] = ray.direction.x, dy[i] = ray.direction.y, dz[i] = ray.direction.z;
   };
-  const bool shared = !wavelengths.each && !wavelengths.each_nm;
+  const bool shared = wavelengths.shared();
   const bool all_covered = shared && wavelengths_.covers(wavelengths.all);
   for (std::size_t i = 0; i < count; ++i) {
     const Ray<double> ray = core_detail::ray_at(rays, i);
     const bool covered = shared ? all_covered : wavelengths_.covers(wavelengths.at(i));
-    const bool usable = covered && finite(ray.origin) && unit_length(ray.direction);
+    const bool usable = covered && sound(ray);
     refusals[i] = usable ? RayFate::transmitted : refused(wavelengths.at(i));
     found.cosine[i] = ray.direction.z, found.spread[i] = found.facing[i] = 1;
     put(i, usable ? Ray<double>{nearest_to_lens(ray), ray.direction} : Ray<double>{{0, 0, 0}, {0, 0, 1}});
@@ -271,7 +291,7 @@ template <std::size_t block>
 void SceneSide::weigh(const AnyRayModel& model, std::size_t count, const RayWavelengths& wavelengths,
                       const Arrivals<block>& arrivals, const double* areas, Importance* found) const noexcept {
   std::array<double, block> we, density, entrance_area, pdf_pupil, pdf_position, pdf_direction;
-  const bool shared = !wavelengths.each && !wavelengths.each_nm;
+  const bool shared = wavelengths.shared();
   const Facts all = shared && wavelengths_.covers(wavelengths.all) ? facts_at(wavelengths.all) : Facts{};
   for (std::size_t i = 0; i < count; ++i) {
     const Facts own = shared || !arrivals.lit(i) ? all : facts_at(wavelengths.at(i));
@@ -308,16 +328,10 @@ void SceneSide::weigh(const AnyRayModel& model, std::size_t count, const RayWave
 
 void SceneSide::importance(const AnyRayModel& model, std::size_t count, const RayArrays<const double>& rays,
                            const RayWavelengths& wavelengths, const double* times, Importance* found) const noexcept {
-  constexpr std::size_t block = 64;
-  std::size_t begin = 0;
-  for (; begin + 1 < count; begin += block) {
-    importance_block<block>(model, std::min(block, count - begin), rays.from(begin), wavelengths.from(begin),
-                            times ? times + begin : nullptr, found + begin);
-  }
-  if (begin < count) {
-    importance_block<1>(model, 1, rays.from(begin), wavelengths.from(begin), times ? times + begin : nullptr,
-                        found + begin);
-  }
+  in_blocks(count, [&](auto size, std::size_t begin, std::size_t n) {
+    importance_block<decltype(size)::value>(model, n, rays.from(begin), wavelengths.from(begin),
+                                            times ? times + begin : nullptr, found + begin);
+  });
 }
 
 template <std::size_t block>
@@ -360,22 +374,16 @@ void SceneSide::importance_block(const AnyRayModel& model, std::size_t count, co
 void SceneSide::sample_importance(const AnyRayModel& model, std::size_t count, const Vec3<double>* points,
                                   const double* u, const double* v, const RayWavelengths& wavelengths,
                                   const double* times, ImportanceSample* found) const noexcept {
-  constexpr std::size_t block = 64;
   if (model.pinhole()) {
     for (std::size_t i = 0; i < count; ++i) {
       found[i] = through_pinhole(model, points[i], u[i], v[i], wavelengths.at(i), times ? times[i] : 0);
     }
     return;
   }
-  std::size_t begin = 0;
-  for (; begin + 1 < count; begin += block) {
-    connect<block>(model, std::min(block, count - begin), points + begin, u + begin, v + begin, wavelengths.from(begin),
-                   times ? times + begin : nullptr, found + begin);
-  }
-  if (begin < count) {
-    connect<1>(model, 1, points + begin, u + begin, v + begin, wavelengths.from(begin), times ? times + begin : nullptr,
-               found + begin);
-  }
+  in_blocks(count, [&](auto size, std::size_t begin, std::size_t n) {
+    connect<decltype(size)::value>(model, n, points + begin, u + begin, v + begin, wavelengths.from(begin),
+                                   times ? times + begin : nullptr, found + begin);
+  });
 }
 
 template <std::size_t block>
@@ -395,9 +403,8 @@ void SceneSide::connect(const AnyRayModel& model, std::size_t count, const Vec3<
   }
   for (std::size_t i = 0; i < count; ++i) {
     if (pdf[i] > 0) {
-      const Vec3<double> direction{dx[i], dy[i], dz[i]};
-      found[i] = {direction, distance[i] - way[i], Vec3<double>{x[i], y[i], z[i]} - direction * way[i], pdf[i],
-                  importances[i]};
+      found[i] = connected({x[i], y[i], z[i]}, {dx[i], dy[i], dz[i]}, distance[i], way[i], pdf[i]);
+      found[i].importance = importances[i];
     } else {
       const bool known = wavelengths_.covers(wavelengths.at(i)) && finite(points[i]);
       found[i] = {};
@@ -429,8 +436,7 @@ ImportanceSample SceneSide::sample_distant(const AnyRayModel& model, const Vec3<
 
 ImportanceSample SceneSide::connection(const Vec3<double>& place, const Vec3<double>& direction, double distance,
                                        double pdf) const noexcept {
-  const double way = std::min(way_to_front(front_, {place, -direction}), distance);
-  return {direction, distance - way, place - direction * way, pdf, {}};
+  return connected(place, direction, distance, std::min(way_to_front(front_, {place, -direction}), distance), pdf);
 }
 
 ImportanceSample SceneSide::through_pinhole(const AnyRayModel& model, const Vec3<double>& point, double u, double v,

@@ -294,7 +294,7 @@ void LocalFocus::bend(std::size_t count, const T* film_x, const T* film_y, const
            {rays.x + begin + from, rays.y + begin + from, rays.z + begin + from, rays.dx + begin + from,
             rays.dy + begin + from, rays.dz + begin + from});
     };
-    if (!wavelengths.each && !wavelengths.each_nm) {
+    if (wavelengths.shared()) {
       if (const auto at = data.at(wavelengths.all)) run(0, n, *at);
       continue;
     }

@@ -77,7 +77,7 @@ void to_scene(std::size_t count, const ParaxialJob<T>& job, const TwoPlaneRays<c
     fill(n, maps_of, job.z, job.reach, lines.film_x + o, lines.film_y + o, lines.pupil_x + o, lines.pupil_y + o,
          rays.x + o, rays.y + o, rays.z + o, rays.dx + o, rays.dy + o, rays.dz + o, fates + o);
   };
-  if (!job.wavelengths.each && !job.wavelengths.each_nm) {
+  if (job.wavelengths.shared()) {
     run(0, count, [shared = job.shared ? maps_in<T>(*job.shared) : Maps<T>{}](std::size_t) { return shared; });
     return;
   }

@@ -289,7 +289,7 @@ void ParaxialModel::to_film(std::size_t count, const RayArrays<const double>& ra
     }
   };
   SectionMaps own;
-  if (!wavelengths.each && !wavelengths.each_nm) {
+  if (wavelengths.shared()) {
     fill(0, count, inverse_at(wavelengths.all, own));
     return;
   }

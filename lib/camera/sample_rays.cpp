@@ -40,7 +40,7 @@ TiltedBounds<T> bounds_of(const TiltedFilm& film, const T* times) noexcept {
 /// The scale of each ray; 0 for a wavelength that is not covered.
 template <class T>
 void fill_scales(std::size_t count, const WavelengthFacts& facts, const RayWavelengths& wavelengths, T* scales) {
-  if (!wavelengths.each && !wavelengths.each_nm) {
+  if (wavelengths.shared()) {
     std::fill_n(scales, count, static_cast<T>(facts.scale(wavelengths.all)));
     return;
   }

@@ -108,7 +108,7 @@ void RayPolynomial::to_film(std::size_t count, const RayArrays<const double>& ra
   const Solve solve = solvers[loop];
   const Domain& domain = data_->domain;
   const auto [along_x, along_y] = polynomial_detail::sections(domain);
-  const bool shared = !wavelengths.each && !wavelengths.each_nm;
+  const bool shared = wavelengths.shared();
   Data::Room<double> room;
   const double* coefficients = shared ? data_->coefficients(wavelengths.all, room) : nullptr;
   std::array<std::array<double, inverse_block>, 4> wanted, at;
@@ -132,9 +132,11 @@ void RayPolynomial::to_film(std::size_t count, const RayArrays<const double>& ra
     }
     for (std::size_t i = 0; i < n; ++i) {
       const std::size_t o = begin + i;
-      Place x{at[0][i], at[1][i], at[2][i], at[3][i]};
+      Place x{};
       bool lit = sound[i] && found[i] > 0;
-      if (sound[i] && found[i] == 0) {
+      if (lit) {
+        x = {at[0][i], at[1][i], at[2][i], at[3][i]};
+      } else if (sound[i] && found[i] == 0) {
         const double* const c = shared ? coefficients : data_->coefficients(wavelengths.at(o), room);
         lit = c && solve(c, {wanted[0][i], wanted[1][i], wanted[2][i], wanted[3][i]}, x);
       }

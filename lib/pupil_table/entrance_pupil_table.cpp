@@ -74,19 +74,11 @@ struct EntrancePupilTable::Data {
   explicit Data(const Lens& l) : lens(l) {}
 
   bool in_front(const Vec3<double>& point) const noexcept {
-    constexpr double farthest = 1e100;  // mm: squares of distances must be finite
-    const auto near_enough = [](double x) { return std::abs(x) <= farthest; };
+    const auto near_enough = [](double x) { return std::abs(x) <= farthest_point; };
     if (!near_enough(point.x) || !near_enough(point.y) || !near_enough(point.z)) return false;
     const double r = std::hypot(point.x, point.y);
     // Points outside the front element's rim may lie behind its vertex: fields of more than 90 degrees.
     return r > front_half || point.z < sag(lens, 0, point.x, point.y);
-  }
-  double widest_of(const std::vector<Ray<double>>& rays, double reciprocal_radius) const noexcept {
-    double widest_field = 0;
-    for (const Ray<double>& ray : rays) {
-      widest_field = std::max(widest_field, bearing_on_sphere(centre, ray, reciprocal_radius).field);
-    }
-    return widest_field;
   }
   /// Largest distance of rays from the point z on the axis.
   double farthest(const std::vector<Ray<double>>& rays, double z) const noexcept;
@@ -231,8 +223,8 @@ EntrancePupilTable::EntrancePupilTable(const Lens& lens, std::span<const std::ve
   // Near points that the film sees through a small part of the pupil have fields far beyond the film's: exclude them.
   for (const auto& own : rays) {
     constexpr double no_field = 1e-6;
-    const double farthest = data->widest_of(own, 0) + no_field;
-    while (data->widest_of(own, data->steepest) > 1.5 * farthest) data->steepest *= 0.7;
+    const double farthest = widest_field(data->centre, own, 0) + no_field;
+    while (widest_field(data->centre, own, data->steepest) > 1.5 * farthest) data->steepest *= 0.7;
   }
   data->cylinders = !lens.rotationally_symmetric();
   if (data->cylinders) {

@@ -13,7 +13,7 @@ namespace {
 template <class R, class Body>
 inline void with_images(const IrisImageTable<R>& table, std::size_t count, const RayWavelengths& wavelengths,
                         const Body& body) noexcept {
-  if (!wavelengths.each && !wavelengths.each_nm) {
+  if (wavelengths.shared()) {
     body(0, count, [image = table.image](std::size_t) { return image; });
     return;
   }

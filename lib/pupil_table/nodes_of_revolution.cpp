@@ -44,26 +44,6 @@ bool is_ring(const PupilPolygon& polygon) noexcept {
 
 }  // namespace
 
-void RayClearances::test(std::size_t count, double* clearances) {
-  through_.resize(count);
-  const auto at = [this](std::size_t k) { return components_[k].data(); };
-  passing_(count, {at(0), at(1), at(2), at(3), at(4), at(5)}, wavelength_, through_.data());
-  std::transform(through_.begin(), through_.end(), clearances, pupil_detail::clearance_of);
-}
-
-Bearing bearing_on_sphere(const Vec3<double>& centre, const Ray<double>& ray, double reciprocal_radius) noexcept {
-  const Vec3<double> from = ray.origin - centre;
-  const double b = glm::dot(from, ray.direction), beside2 = glm::dot(from, from) - b * b;
-  const double along =
-      std::sqrt(std::max(1 - beside2 * (reciprocal_radius * reciprocal_radius), 0.0)) - b * reciprocal_radius;
-  const Vec3<double> unit = from * reciprocal_radius + ray.direction * along;
-  return bearing_of(unit.x, unit.y, unit.z);
-}
-
-PupilPlane plane_facing(const Vec3<double>& centre, const Bearing& bearing, double reciprocal_distance) noexcept {
-  return PupilPlane::facing(centre, bearing.field, {bearing.azimuth_x, bearing.azimuth_y}, reciprocal_distance);
-}
-
 SceneNodes<2> nodes_of_revolution(const Vec3<double>& centre, double steepest, const std::vector<Ray<double>>& rays,
                                   std::size_t wavelength, const ScenePassing& passing, ClippedBy clipped_by) {
   using L = SceneLayout<2>;
@@ -78,10 +58,8 @@ SceneNodes<2> nodes_of_revolution(const Vec3<double>& centre, double steepest, c
   constexpr double between_rays = 1.05, on_axis = 1e-6;
   std::array<double, rows> widest{};
   for (std::size_t row = 0; row < rows; ++row) {
-    for (const Ray<double>& ray : rays) {
-      widest[row] = std::max(widest[row], bearing_on_sphere(centre, ray, reciprocal_of(row)).field);
-    }
-    widest[row] = std::min(between_rays * widest[row] + on_axis, std::numbers::pi);
+    const double field = widest_field(centre, rays, reciprocal_of(row));
+    widest[row] = std::min(between_rays * field + on_axis, std::numbers::pi);
   }
   for (std::size_t row = 1; row < rows; row += 2) {
     const double lacking = widest[row] - (widest[row - 1] + widest[row + 1]) / 2;

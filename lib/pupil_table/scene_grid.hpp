@@ -12,6 +12,9 @@
 
 namespace petzval::pupil_table_detail {
 
+/// Largest coordinate of a scene point, mm: squares of distances must be finite.
+inline constexpr double farthest_point = 1e100;
+
 /// Nodes over reciprocal distance and field of scene points, relative to the centre of a table. With two dimensions,
 /// the field is one angle, and polygons rotate with the azimuth of the point. With three dimensions, the field is a
 /// pair of angles (field times azimuth direction) in the quadrant x, y >= 0, and pupils of the other quadrants are
@@ -171,9 +174,8 @@ PETZVAL_INLINE void find_scene_places(const SceneGrid<dimensions>& grid, const d
   using L = SceneLayout<dimensions>;
   PETZVAL_INDEPENDENT
   for (std::size_t i = 0; i < block; ++i) {
-    constexpr double farthest = 1e100;  // mm: squares of distances must be finite
     // Comparisons with NaN are false.
-    const auto bounded = [](double a) -> std::int32_t { return (a < 0 ? -a : a) <= farthest; };
+    const auto bounded = [](double a) -> std::int32_t { return (a < 0 ? -a : a) <= farthest_point; };
     const std::int32_t sound = bounded(x[i]) & bounded(y[i]) & bounded(z[i]);
     const double px = sound ? x[i] : 0.0, py = sound ? y[i] : 0.0, pz = sound ? z[i] - grid.centre_z : 0.0;
     const double r2 = px * px + py * py, distance = core_detail::square_root(r2 + pz * pz);

@@ -44,6 +44,9 @@ class RayClearances {
 
 /// Direction from a centre to the point where a ray leaves a sphere about the centre.
 Bearing bearing_on_sphere(const Vec3<double>& centre, const Ray<double>& ray, double reciprocal_radius) noexcept;
+/// Largest field of rays, rad, where the rays leave a sphere about a centre.
+double widest_field(const Vec3<double>& centre, const std::vector<Ray<double>>& rays,
+                    double reciprocal_radius) noexcept;
 /// The plane that faces a scene point.
 PupilPlane plane_facing(const Vec3<double>& centre, const Bearing& bearing, double reciprocal_distance) noexcept;
 

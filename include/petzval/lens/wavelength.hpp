@@ -71,6 +71,8 @@ struct RayWavelengths {
   }
   /// True if the wavelengths are given in nm.
   constexpr bool in_nm() const noexcept { return each_nm || (!each && all.in_nm()); }
+  /// True if all rays have the wavelength `all`.
+  constexpr bool shared() const noexcept { return !each && !each_nm; }
   /// The same wavelengths, with the index of the primary wavelength filled in.
   constexpr RayWavelengths resolved(std::size_t of_primary) const noexcept {
     return {all.in_nm() ? all : Wavelength(all.position(of_primary)), each, each_nm};
