@@ -17,9 +17,9 @@ double last_with(double with, double without, const Property& property) {
   }
 }
 
-/// Search for the last parameter, within `tolerance`, at which a function is not negative.
-/// Evaluate the function at next() and pass the value to take(), until done(); many searches can run side by side.
-/// Superlinear if the function is smooth, at most one evaluation more than bisection if it jumps.
+/// Searches for the last parameter, within `tolerance`, at which a function is not negative. Evaluate the function at
+/// next() and pass the value to take(), until done(). Several searches can run alternately. Superlinear if the function
+/// is smooth; at most one evaluation more than bisection if it jumps.
 /// Source: Oliveira and Takahashi 2020, "An enhancement of the bisection method average performance preserving minmax
 /// optimality" (ITP, kappa1 = 0.2 / interval, kappa2 = 2, n0 = 1).
 class LastAbove {

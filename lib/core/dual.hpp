@@ -25,7 +25,8 @@ struct Gradient {
   PETZVAL_INLINE friend Gradient operator*(double s, const Gradient& a) noexcept { return a * s; }
 };
 
-/// A number with its derivatives by two variables, as a scalar of the kernels. Comparisons use only the values.
+/// A number with its derivatives with respect to two variables: a scalar type of the kernels. Comparisons use only the
+/// values.
 struct Dual {
   using Scalar = double;
 

@@ -8,8 +8,8 @@
 
 namespace petzval::core_detail {
 
-/// Rectangle of a film with its margin, in numbers of type T.
-/// The half widths are enlarged by the rounding of T, so that they contain edge points that were rounded to T.
+/// Rectangle of a film with its margin, in numbers of type T. The half widths are enlarged by the rounding error of T,
+/// so that edge points that were rounded to T lie inside.
 template <class T>
 struct FilmBounds {
   T centre_x, centre_y, half_width, half_height;

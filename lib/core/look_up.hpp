@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Look-up in a short table by lane. For sources compiled once per instruction set, like core/simd.hpp.
+// Look-up in a short table, one index per lane. For sources compiled once per instruction set, like core/simd.hpp.
 #pragma once
 
 #include <cstddef>
@@ -25,7 +25,7 @@ template <class R>
 inline constexpr std::size_t permuted = 0;
 #endif
 
-/// Entries of a table that fills `registers` registers (1 or 2), which are loaded in full. Requires permuted<R> > 0.
+/// Looks up a table that fills `registers` registers (1 or 2); all of it is loaded. Requires permuted<R> > 0.
 template <int registers, class R>
 PETZVAL_INLINE typename Native<R>::Values permute(const R* table,
                                                   [[maybe_unused]] const typename Native<R>::Bits& places) noexcept {
@@ -53,8 +53,8 @@ PETZVAL_INLINE typename Native<R>::Values permute(const R* table,
   return low;
 }
 
-/// Entries of a table of `count` numbers: permuted if registers can hold the table, otherwise gathered.
-/// A permuted table is read in full registers, one or two, beyond `count`.
+/// Looks up a table of `count` numbers: by permutation if registers can hold the table, otherwise by gathering. For a
+/// permutation one or two full registers are read, beyond `count`.
 template <class R>
 PETZVAL_INLINE typename Native<R>::Values look_up(const R* table, std::size_t count,
                                                   const typename Native<R>::Bits& places) noexcept {

@@ -38,8 +38,8 @@ constexpr std::array<double, N> kronecker_steps() noexcept {
   return steps;
 }
 
-/// Kronecker sequence in the N-dimensional unit cube. Unlike Sobol points, any run of it is uniform, of any length and
-/// from any index, and N is not limited to 2.
+/// Kronecker sequence in the N-dimensional unit cube. Unlike with Sobol points, a run of any length is uniform from any
+/// index on, and N is not limited to 2.
 ///
 /// The steps are the powers of 1 / g, where g^(N + 1) = g + 1. Source: Roberts 2018, "The unreasonable effectiveness of
 /// quasirandom sequences".
@@ -69,8 +69,9 @@ class Kronecker {
   std::array<double, N> shift_{};
 };
 
-/// Point `index` of a Fibonacci lattice of `count` points. With u around a disc and v the squared radius it is a
-/// sunflower spiral: every v is used once, so that the rim of the disc is sampled more finely than by Sobol points.
+/// Point `index` of a Fibonacci lattice of `count` points. With u as the angle and v as the squared radius on a disc,
+/// it is a sunflower spiral. Every v occurs once, so that the rim of the disc is sampled more finely than by Sobol
+/// points.
 inline std::array<double, 2> fibonacci_point(std::size_t index, std::size_t count) noexcept {
   const double i = static_cast<double>(index);
   return {std::fmod(i * std::numbers::phi, 1.0), (i + 0.5) / static_cast<double>(count)};

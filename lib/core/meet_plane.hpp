@@ -31,13 +31,13 @@ Vec3<T> meet_plane(const Ray<T>& ray, const Vec3<T>& point, const Vec3<T>& norma
   return ray.origin + ray.direction * t;
 }
 
-/// A ray given by its point in a plane perpendicular to the axis and its slopes per mm of z.
-/// For rays that meet several such planes: after the division that makes the slopes, each plane costs two products.
+/// A ray given by its point in a plane perpendicular to the axis and its slopes per mm of z. For rays that meet several
+/// such planes: the slopes need one division, and each plane only two products.
 template <class T>
 struct SlopeRay {
   T x, y, slope_x, slope_y;
 
-  /// The same ray in the plane at distance `away` along z.
+  /// The same ray, with its point in the plane at the distance `away` along z.
   SlopeRay moved(T away) const noexcept { return {x + away * slope_x, y + away * slope_y, slope_x, slope_y}; }
 };
 

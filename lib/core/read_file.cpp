@@ -37,7 +37,7 @@ std::string read_file(const std::filesystem::path& file, const std::string& kind
   errno = 0;
   while (stream.read(block.data(), block.size()), stream.gcount() > 0) {
     const auto count = static_cast<std::size_t>(stream.gcount());
-    // Devices and pipes report no size, and files may grow.
+    // The size is checked again while reading: devices and pipes report no size, and files may grow.
     if (count > most - bytes.size()) refuse(bytes.size() + count, " or more");
     bytes.append(block.data(), count);
   }

@@ -71,8 +71,8 @@ Mask<T> finite(const T& x) noexcept {
   return absolute(x) <= std::numeric_limits<Storage<T>>::max();
 }
 
-/// a / b. Numbers with derivatives often divide by multiplying with 1/b, which adds a rounding. Here the value is the
-/// plain quotient, so that a ray traced with derivatives equals the plain ray bit by bit.
+/// a / b. Numbers with derivatives often compute a * (1 / b), which adds a rounding. Here the value is the plain
+/// quotient, so that a ray traced with derivatives equals the plain ray bit by bit.
 template <class T>
 T quotient(const T& a, const T& b) noexcept {
   if constexpr (requires {

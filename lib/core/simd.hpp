@@ -43,11 +43,11 @@ struct Native<double> {
 template <class R>
 inline constexpr int lane_count = lane_bytes / static_cast<int>(sizeof(R));
 
-/// For functions over vectors, whose arguments a call would pass through memory.
+/// For functions with vector arguments, which a call would pass through memory.
 #define PETZVAL_INLINE inline __attribute__((always_inline))
 
-/// a b + c d, in which only the first product may be fused with the sum.
-/// Compilers choose either product, not everywhere the same, and results would then depend on the code path of a ray.
+/// a b + c d, in which only the first product may be fused with the sum. A compiler may fuse either product and choose
+/// differently in each place; results would then depend on the code path of a ray.
 template <class T>
 PETZVAL_INLINE T sum_of_products(const T& a, const T& b, const T& c, const T& d) noexcept {
   T second = c * d;

@@ -9,8 +9,8 @@ namespace {
 
 using core_detail::mixed;
 
-/// The bits of x in reverse order. The swap of nibbles separates the swaps of bytes and half words: compilers would
-/// merge adjacent ones into a single instruction that baseline vectors lack.
+/// The bits of x in reverse order. The swap of nibbles comes between the swaps of bytes and half words: compilers would
+/// merge two adjacent swaps into a single instruction that baseline vectors lack.
 constexpr std::uint32_t reversed(std::uint32_t x) noexcept {
   x = ((x >> 1) & 0x55555555u) | ((x & 0x55555555u) << 1);
   x = ((x >> 2) & 0x33333333u) | ((x & 0x33333333u) << 2);
@@ -34,8 +34,8 @@ constexpr std::uint32_t pascal(std::uint32_t x) noexcept {
 
 /// Owen scrambling of digits that start at the lowest bit: a hash of the lower bits decides if a bit is flipped.
 ///
-/// Adding a key, multiplying by an odd number and x ^= x * (even number) change a bit depending only on the bits below
-/// it and the key, and each can be inverted. After three rounds with fresh keys every bit affects all bits above it.
+/// Adding a key, multiplying by an odd number and x ^= x * (even number) change a bit depending only on the key and the
+/// bits below, and each step can be inverted. After three rounds with new keys every bit affects all bits above it.
 class Scrambling {
  public:
   explicit constexpr Scrambling(std::uint64_t key) noexcept
@@ -76,7 +76,8 @@ constexpr double unit(std::uint32_t digits) noexcept {
 }
 
 #if defined(__x86_64__) && defined(__GNUC__)
-// Baseline vectors lack the multiplication of the scrambling. All steps are exact: every set gives the same points.
+// Baseline vectors have no instruction for the multiplication in the scrambling. All steps are exact: every instruction
+// set gives the same points.
 [[gnu::target("avx2")]] void fill_avx2(std::uint32_t first, std::uint32_t seed, std::span<double> u,
                                        std::span<double> v) noexcept {
   fill(first, seed, u, v);

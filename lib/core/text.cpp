@@ -32,7 +32,7 @@ std::size_t utf8_length(std::string_view text, std::size_t at) noexcept {
                                             : 0;
   if (length < 2) return length;
   if (length > text.size() - at) return 0;
-  // The Unicode Standard, table 3-7: after four of the first bytes the second byte has a smaller range.
+  // The Unicode Standard, table 3-7: the second byte has a smaller range after four of the possible first bytes.
   const unsigned least = first == 0xE0 ? 0xA0 : first == 0xF0 ? 0x90 : 0x80;
   const unsigned most = first == 0xED ? 0x9F : first == 0xF4 ? 0x8F : 0xBF;
   if (byte(at + 1) < least || byte(at + 1) > most) return 0;

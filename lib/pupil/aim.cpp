@@ -24,7 +24,8 @@ namespace {
 using kernel::Dual;
 using kernel::Vec;
 
-/// The unknown: transverse components of the unit direction in which a ray leaves the stop towards the point.
+/// The unknown: transverse components of the unit direction in which a ray leaves the stop, towards the side of the
+/// point.
 struct Slope {
   double x = 0, y = 0;
 
@@ -69,7 +70,7 @@ class Aimer {
     outwards_ = across > 0 ? Slope{towards.x / across, towards.y / across} : Slope{0, 1};
     lateral_ = {outwards_.y, -outwards_.x, 0};
     meridian_ = glm::cross(lateral_, towards);
-    // A stop of radius 0 counts as hit within rounding.
+    // With a stop of radius 0, a target counts as met within rounding.
     acceptance_ = 1e-6 * std::max(unit(), 1e-3 * pupil_detail::half_height(lens, 0, p.entrance));
     if (const auto axis = differentiated({}, {})) mirrored_ = mirrored(*axis);
   }
@@ -109,7 +110,7 @@ class Aimer {
 
   std::optional<Slope> solve(const StopPoint& target) const noexcept {
     const StopPoint centre{};
-    // For fields within 45 degrees of the axis Newton's iteration converges from the axial ray.
+    // Within 45 degrees of the axis Newton's iteration converges from the axial ray.
     const bool narrow = plane_.towards().z * at_point_ > std::numbers::sqrt2 / 2;
     auto chief = narrow ? newton(centre, Slope{}) : std::nullopt;
     if (!chief) {
@@ -142,8 +143,8 @@ class Aimer {
     return dot(Vec<double>{a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x}, d) < 0;
   }
 
-  /// Damped Newton iteration: every step reduces the error and keeps the ray inside the lens. Far outside their rims
-  /// surfaces bend rays back, so that a second, mirrored ray has the same angle; the mirrored ray is rejected.
+  /// Damped Newton iteration: every step reduces the error and keeps the ray inside the lens. Surfaces far outside
+  /// their rims can bend a ray back to the same angle; such a ray is mirrored (see mirrored()) and rejected.
   std::optional<Slope> newton(const StopPoint& from, Slope slope) const noexcept {
     constexpr double rounding = 1e-15, good = 1e-9;
     const auto at = [&](const Slope& s) { return differentiated(from, s); };
@@ -202,8 +203,8 @@ class Aimer {
   AimedRay tested(const StopPoint& target, const Slope& slope) const noexcept {
     const auto out = leave(target, slope.x, slope.y);
     if (!out) return {};
-    // The origin is the point of the ray nearest to the centre of the pupil: rays of a steep field meet the pupil plane
-    // far away, with rounding errors that are large compared with a small stop.
+    // The origin is the point of the ray nearest to the centre of the pupil. The intersection with the pupil plane of a
+    // ray of a steep field is far away, with rounding errors that are large compared with a small stop.
     const Vec3<double> exit = kernel::to_public(out->origin), backwards = kernel::to_public(out->direction);
     const Vec3<double> start = exit + backwards * glm::dot(plane_.centre() - exit, backwards);
     AimedRay result;

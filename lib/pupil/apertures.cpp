@@ -42,7 +42,8 @@ void for_heights(const Lens& lens, const Ray<double>& ray, const auto& take) {
                 });
 }
 
-/// The lens with a stop as large as the axial beam that the other apertures and the edges pass, if they limit the beam.
+/// Returns the lens with a stop as large as the axial beam through the other apertures and the edges, if they limit the
+/// beam.
 Lens with_widest_stop(const Lens& lens, const Prescription& rows) {
   if (!lacks_aperture(rows.surfaces[*lens.stop()]) || !has_pupils(lens)) return lens;
   const PupilPlane axis(lens, {.z = object_z(rows)});
@@ -63,7 +64,7 @@ Lens with_widest_stop(const Lens& lens, const Prescription& rows) {
   return height > 0 ? with_semi_diameter(lens, *lens.stop(), height) : lens;
 }
 
-/// The lens with the stop set to the declared beam, if the stop is marked and has no aperture.
+/// Returns the lens with the stop sized for the declared beam, if the stop is marked and has no aperture.
 Lens with_declared_stop(const Lens& lens, const Prescription& rows) {
   if (!lens.stop() || std::isfinite(lens.data().rims[*lens.stop()])) return lens;
   std::optional<double> f_number = rows.f_number;
@@ -86,8 +87,8 @@ class BeamHeights {
  public:
   explicit BeamHeights(const Lens& lens) : lens_(lens), heights_(lens.surface_count(), 0.0) {}
 
-  /// Adds the beam of a field: rays through the rim of the stop, or through the last point towards the rim that rays
-  /// pass. mirrored: true if the beam is symmetric about the meridian x = 0.
+  /// Adds the beam of a field: rays through the rim of the stop, or through the last passing point on the way to the
+  /// rim. mirrored: true if the beam is symmetric about the meridian x = 0.
   void add(const FieldPoint& point, bool mirrored) {
     const PupilPlane plane(lens_, point);
     if (!pupil_detail::aim(lens_, plane, {}, {})) return;
@@ -148,7 +149,7 @@ std::vector<double> rims_of(const Lens& given, const Prescription& rows) {
       beam.add({.field_rad = part * half, .z = z, .azimuth_rad = std::numbers::pi / 4}, false);
     }
   } catch (const Error&) {
-    // Field angles are undefined, or no stop limits the beam: no rims are computed.
+    // Field angles are undefined, or no stop limits the beam: semi-diameters stay missing.
   }
   for (std::size_t i = 0; i < rims.size(); ++i) {
     const bool computed = lacks_aperture(rows.surfaces[i]) && lens.stop() != i &&

@@ -45,7 +45,7 @@ class Search {
     return result;
   }
 
-  /// The found pupils minus the obscurations, which `clearances` includes.
+  /// The pupils that were found, minus the obscurations, which `clearances` includes.
   std::vector<PupilRegion> obscured_regions(const PlaceClearances& clearances) {
     const std::vector<PupilRegion> open = regions();
     clearances_ = &clearances;
@@ -85,8 +85,8 @@ class Search {
     return lit;
   }
 
-  /// Finds pupils about halfway between two known pupils: the search starts from the mean of their ends. Pupils that
-  /// are not near this prediction are searched in full.
+  /// Finds pupils about halfway between two known pupils: the search starts from the mean of their ends. Pupils far
+  /// from this prediction are searched in full.
   void between(std::span<const Halfway> which) {
     std::vector<std::uint32_t> points, in_parts;
     for (const Halfway& place : which) {
@@ -131,8 +131,8 @@ class Search {
  private:
   enum class Reach { near, far };
 
-  /// Finds outer ends whose clearance has a predicted slope: directly by that slope if the end is close enough, else by
-  /// one Newton step and one secant step. by_slope_ is true for the ends that were found in this way.
+  /// Finds outer ends for which the slope of the clearance is predicted: from the slope directly if the end is close
+  /// enough, else by one Newton step and one secant step. by_slope_ is true for the ends found in this way.
   void step_to_ends(std::span<const std::uint32_t> which, double beside) {
     struct Step {
       std::uint32_t point;
@@ -186,7 +186,7 @@ class Search {
     }
   }
 
-  /// Finds the ends of some pupils close to their predicted positions. Returns the pupils that were not found.
+  /// Finds the ends of some pupils close to their predicted positions. Returns the pupils without success.
   std::vector<std::uint32_t> settle(std::span<const std::uint32_t> which) {
     constexpr double beside = 0.01;
     step_to_ends(which, beside);
@@ -232,8 +232,8 @@ class Search {
     return lost;
   }
 
-  /// Moves both sides of each bracket that does not enclose its end, twice as far in every round. Returns the brackets
-  /// that still enclose no end.
+  /// Moves both sides of each bracket that does not enclose its end, with a step that doubles in every round. Returns
+  /// the brackets that still enclose no end.
   std::vector<Bracket> widened(std::vector<Bracket>& brackets, const std::vector<Line>& lines) {
     std::vector<std::size_t> open(brackets.size());
     std::iota(open.begin(), open.end(), std::size_t{0});
@@ -264,17 +264,18 @@ class Search {
     return lost;
   }
 
-  /// Extents along y, as along_y(), in finer and finer steps. Returns the points without any ray that passes.
+  /// Extents along y, as in along_y(), with smaller and smaller steps. Returns the points without any ray that passes.
   std::vector<std::uint32_t> look_along_y(std::span<const std::uint32_t> which, std::vector<std::uint32_t>& seen,
                                           std::vector<std::uint32_t>& rings) {
-    // The pupil may be far from its predicted position, or a sliver: repeat on the whole line and in smaller steps.
+    // The pupil may be far from its predicted position, or narrower than a step: repeat on the whole line with smaller
+    // steps.
     auto dark = along_y(which, Reach::near, 128, seen, rings);
     dark = along_y(dark, Reach::far, 256, seen, rings);
     return along_y(dark, Reach::far, 1024, seen, rings);
   }
 
   /// Extents along y. Appends points with rays that pass to `seen`, and also to `rings` if they have an obscuration.
-  /// Returns the other points, including points whose extent exceeds the near range.
+  /// Returns the other points, including points whose extent leaves the range near the prediction.
   std::vector<std::uint32_t> along_y(std::span<const std::uint32_t> which, Reach reach, int samples,
                                      std::vector<std::uint32_t>& seen, std::vector<std::uint32_t>& rings) {
     std::vector<Line> lines;
@@ -296,7 +297,7 @@ class Search {
       const double half = lines[i].dy, low = lines[i].y + half * e.from, high = lines[i].y + half * e.to;
       found.middle = {lines[i].x, (low + high) / 2};
       found.half_axes[1] = (high - low) / 2;
-      // A clipped ring keeps the middle of the ring, although the middle is dark.
+      // A clipped ring keeps the centre of the ring as its origin, although no ray passes there.
       if (g.ring && g.y > low - g.radius && g.y < high + g.radius) {
         found.middle[1] = g.y;
         found.half_axes[1] = std::max(high - g.y, g.y - low);
@@ -316,8 +317,8 @@ class Search {
     };
   }
 
-  /// Extents along x through the middle of the extents along y. Tiny pupils are searched close to the middle first, as
-  /// the tolerance of the ends is relative to the length of the line.
+  /// Extents along x through the middle of the extents along y. The tolerance of the ends is relative to the length of
+  /// the line, so tiny pupils are searched on a short line around the middle first.
   void across(std::span<const std::uint32_t> which, Reach reach) {
     constexpr double tiny = 1e-4, near = 32;
     std::vector<Line> lines;
@@ -351,14 +352,14 @@ class Search {
     if (!far.empty()) across(far, Reach::far);
   }
 
-  /// Line from the middle in a direction, in coordinates in which the pupil is roughly a unit disc.
+  /// Line outwards from the middle in a direction, in coordinates in which the pupil is roughly a unit disc.
   Line outward(std::uint32_t point, std::size_t direction) const noexcept {
     const Found& found = found_[point];
     const Vec2<double> half = found.half_axes * units_[direction];
     return {point, found.middle.x, found.middle.y, half.x, half.y};
   }
 
-  /// All ends along every `apart`-th traced direction and along the last direction.
+  /// Finds the ends along every `apart`-th traced direction and along the last direction.
   void outwards(std::span<const std::uint32_t> which, int samples, double reach, std::size_t apart = 1) {
     std::vector<std::size_t> looked;
     for (std::size_t k = 0; k < traced_; ++k) {
@@ -376,7 +377,7 @@ class Search {
       if (!e.any) continue;
       Found& found = found_[lines[i].point];
       const std::size_t direction = looked[i % looked.size()];
-      // If the middle is dark, the dark interval around it is the obscuration.
+      // If no ray passes at the middle, the interval without rays around the middle is the obscuration.
       const bool dark = e.from > 0, both = dark && e.obscured_from < e.obscured_to;
       for (const std::size_t k : {direction, directions_ - 1 - direction}) {
         if (k != direction && !mirrored_) break;
@@ -391,13 +392,13 @@ class Search {
 
   static constexpr double near_reach = 1.6;  // length of outward lines, in half axes
 
-  /// True if the ends in a direction are typical for a disc, or for a ring if `ring`.
+  /// True if a direction has the ends of a disc, or of a ring if `ring`.
   static bool is_usual(const Found::Ends& e, bool ring) noexcept {
     return e.to > 0 && e.to < near_reach - 0.01 && (ring || e.obscured_from == e.obscured_to);
   }
 
-  /// The ends in every direction, up to near_reach: first along a few directions; if these show a disc or a ring, then
-  /// along the others, close to interpolated positions.
+  /// Finds the ends in every direction, up to near_reach. A few directions are searched first; if these show a disc or
+  /// a ring, the ends in the other directions are searched close to interpolated positions.
   void outwards_near(std::span<const std::uint32_t> which, int samples, bool rings) {
     constexpr std::size_t apart = 4, worth_it = 16;
     if (traced_ < worth_it) {
@@ -411,7 +412,8 @@ class Search {
     outwards(others, samples, near_reach);
   }
 
-  /// Predicts ends between every `apart`-th direction by interpolation. Returns false if their ends differ in kind.
+  /// Predicts the ends between every `apart`-th direction by interpolation. Returns false if the searched directions do
+  /// not all have the ends of a disc or ring.
   bool fill_between(Found& found, std::size_t apart, bool ring) const {
     if (!found.gaps.empty()) return false;
     for (std::size_t k = 0; k + 1 < traced_; k += apart) {
@@ -465,7 +467,7 @@ std::vector<PupilRegion> find_regions(std::span<const PupilGuess> points, const 
     std::vector<Halfway> halfway;
     std::vector<std::uint32_t> full;
     for (const Halfway& place : round) {
-      // A point between two dark points is dark.
+      // A point between two points without passing rays is assumed to have none.
       const bool before = search.lit(place.before), after = search.lit(place.after);
       if (before && after) {
         halfway.push_back(place);

@@ -15,7 +15,7 @@
 namespace petzval::pupil_detail {
 
 /// Predicted position of the pupil of a point. The search looks near (x, y) first, then along a line across the whole
-/// searched part of the plane.
+/// region of the plane that may contain the pupil.
 struct PupilGuess {
   double x = 0, low = -1, high = 1;  ///< the line runs from (x, low) to (x, high)
   double radius = 1;                 ///< approximate radius of the pupil
@@ -32,16 +32,15 @@ struct ConnectedPupils {
   PlaceClearances obscured{};
 };
 
-/// Finds the pupils of many points at once, in batches.
-///
+/// Finds the pupils of many points together, in batches.
 /// pupil_boundary() is exact to 2e-13 and knows the rims. This search also works for models without rims, and uses
 /// neighbouring pupils as predictions.
 ///
-/// Accuracy: 2e-5 of the half axes. In a direction with several obscurations only the widest has this accuracy; the
-/// others are as coarse as the samples. The RimPoints have no surface.
+/// Accuracy: 2e-5 of the half axes. In a direction with several obscurations only the widest obscuration has this
+/// accuracy; the others are as coarse as the samples. The RimPoints of the result name no surface.
 ///
-/// directions: even. mirrored: true if the pupils are symmetric about x = 0; half of the directions are traced then.
-/// connected: selects one component; null keeps all components that the searched lines meet.
+/// directions: even. mirrored: true if the pupils are symmetric about x = 0; only half of the directions are traced
+/// then. connected: selects one component; null keeps all components that the search lines meet.
 std::vector<PupilRegion> find_regions(std::span<const PupilGuess> points, const SearchOrder& order,
                                       std::size_t directions, bool mirrored, const PlaceClearances& clearances,
                                       const ConnectedPupils* connected = nullptr);

@@ -47,14 +47,15 @@ class HeightAt {
 };
 
 /// Largest entering height of the beam within the rim of the stop: the height of the ray that meets the rim or, if rays
-/// are lost before, of the last ray that reaches the stop. expected: first-order estimate, sets the step size.
+/// are lost before the rim, of the last ray that reaches the stop. expected: first-order estimate, which sets the step
+/// size.
 double entering_height(const HeightAt& height_at, double rim, double expected) {
   const auto inside = [&](double y) {
     const auto height = height_at(y);
     return height && *height <= rim;
   };
-  // Spherical aberration may bring the heights back below the rim farther out: steps that are small compared with the
-  // beam find the first crossing. The steps grow in case the estimate is far too small or underflows.
+  // With spherical aberration, rays farther out may meet the stop inside its rim again. Steps that are small compared
+  // with the beam find the first crossing. The steps grow, because the estimate may be far too small or underflow.
   double step = std::max(expected / 16, std::numeric_limits<double>::min());
   double low = 0, high = step;
   while (inside(high)) {
@@ -168,15 +169,16 @@ Lens with_f_number(const Lens& lens, double f_number, Wavelength wavelength) {
                 std::to_string(obscuration.surface) + " is that large");
   }
   Lens stopped = with_semi_diameter(lens, beam.stop, std::min(*height, stop.semi_diameter), RimLimit::none);
-  // With strong spherical aberration other rays may meet the stop as far out as the ray of height y.
+  // With strong spherical aberration, rays at other heights may meet the stop as far out as the ray of height y.
   const double found = real_f_number(stopped, wavelength);
   if (std::isinf(found)) {
-    throw Error(lens.name() + ": f-number = " + to_text(f_number) + "; must be smaller: its stop of " +
-                to_text(*height) + " mm is closed");
+    throw Error(lens.name() + ": f-number = " + to_text(f_number) + "; must be smaller: no ray passes a stop of " +
+                to_text(*height) + " mm");
   }
   if (!(std::abs(found - f_number) <= 1e-6 * f_number)) {
-    throw Error(lens.name() + ": f-number = " + to_text(f_number) + "; must belong to a stop, such as " +
-                to_text(found, 10) + ": spherical aberration folds the beam, and other rays meet the rim");
+    throw Error(lens.name() + ": f-number = " + to_text(f_number) +
+                "; must be an f-number that a stop can give, such as " + to_text(found, 10) +
+                ": with spherical aberration, other rays meet the rim of the stop");
   }
   return stopped;
 }

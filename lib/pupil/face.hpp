@@ -13,7 +13,7 @@ namespace petzval::pupil_detail {
 /// largest semi-diameter of any rim or pupil.
 double half_height(const Lens& lens, std::size_t surface, const Pupil& entrance) noexcept;
 
-/// An outer surface as a box around its clear part, lens frame, mm.
+/// An outer surface of the lens as a bounding box of its clear part, lens frame, mm.
 struct Face {
   double half = 0;  ///< half height
   double vertex_z = 0, z_min = 0, z_max = 0;

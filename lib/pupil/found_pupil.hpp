@@ -12,8 +12,8 @@
 
 namespace petzval::pupil_detail {
 
-/// A pupil during the search: middle, half axes and, in each direction, an interval that passes from the middle to
-/// `to`, minus one obscuration and other gaps. to = 0: no ray passes in this direction; without directions no ray
+/// A pupil during the search: middle, half axes and, for each direction, the interval of passing rays from the middle
+/// to `to`, minus one obscuration and other gaps. to = 0: no ray passes in this direction. Without directions no ray
 /// passes.
 struct Found {
   struct Ends {
@@ -27,13 +27,13 @@ struct Found {
   bool empty() const noexcept { return ends.empty(); }
 };
 
-/// Moves the origin of a pupil to its own middle if it was found far from there. units: unit vectors of the directions.
-/// Returns false if the pupil stays as it is, because the origin is close to the middle or a direction is obscured.
+/// Moves the origin of a pupil to its centre if the search started far from the centre. units: unit vectors of the
+/// directions. Returns false and changes nothing if the origin is close to the centre or a direction is obscured.
 bool recentre(Found& found, std::span<const Vec2<double>> units);
 
 PupilRegion region_of(const Found& found, std::span<const Vec2<double>> units);
 
-/// Interpolates halfway between two found pupils, with the next pupils on both sides if these were found.
+/// Interpolates halfway between two pupils, also with the next pupil on either side if the search found it.
 class Interpolation {
  public:
   Interpolation(const Found& far_before, const Found& before, const Found& after, const Found& far_after) noexcept
@@ -53,7 +53,7 @@ class Interpolation {
     }
     return sum;
   }
-  /// For a non-negative value; the mean of both neighbours if one is 0 or the values change too fast.
+  /// Interpolates a non-negative value; the mean of both neighbours if one of them is 0 or the values change too fast.
   template <class Value>
   double positive(const Value& value) const noexcept {
     const double sum = (*this)(value), a = value(*found_[1]), b = value(*found_[2]);

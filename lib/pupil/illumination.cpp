@@ -25,7 +25,7 @@ double film_irradiance(const Lens& lens, const FilmPoint& point, Wavelength wave
     return pupil_detail::directions_seen(lens, point, wavelength, directions);
   };
   PupilRegion region = seen(alike_all_round ? 1 : 256);
-  // A pupil with several spans in one direction is rare and needs more directions.
+  // A pupil with several spans in one direction is rare; it needs more directions.
   const bool parts = !region.empty() && region.spans.size() != region.directions;
   if (parts && !alike_all_round) region = seen(1024);
   if (region.empty()) return 0;

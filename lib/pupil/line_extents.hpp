@@ -13,15 +13,15 @@
 /// Intervals that pass along lines in pupil planes, for the search of pupil boundaries.
 namespace petzval::pupil_detail {
 
-/// Computes the clearances of N rays, each through (x[i], y[i]) in the plane of points[i]: not negative if the ray
-/// passes, as in trace/clearances.hpp; 1 and -1 if only the sign is known.
+/// Computes the clearances of N rays, each through (x[i], y[i]) in the plane of points[i], as in trace/clearances.hpp:
+/// not negative if the ray passes. A source that knows only the sign gives 1 and -1.
 using PlaceClearances = std::function<void(std::size_t count, const std::uint32_t* points, const double* x,
                                            const double* y, double* clearances)>;
 
 /// The clearance of a ray if only its sign is known.
 inline double clearance_of(bool passes) noexcept { return passes ? 1 : -1; }
 
-/// A line in the plane of one point.
+/// A line in the pupil plane of one point.
 struct Line {
   std::uint32_t point = 0;
   double x = 0, y = 0;    // at parameter 0
@@ -55,8 +55,8 @@ struct Gap {
   double from = 0, to = 0;
 };
 
-/// The interval that passes along a line, from the first to the last parameter, minus the widest obscuration and other
-/// gaps. The other gaps are as coarse as the samples.
+/// The extent of passing rays along a line, from the first to the last parameter, minus the widest obscuration and
+/// other gaps. The other gaps are as coarse as the samples.
 struct LineExtent {
   double from = 0, obscured_from = 0, obscured_to = 0, to = 0;
   double slope = 0;  // d clearance / d parameter at `to`; 0 if unknown
@@ -64,7 +64,7 @@ struct LineExtent {
   std::vector<Gap> gaps;
 };
 
-/// An end of an extent during the search: a parameter that passes, a parameter that is stopped, and both clearances.
+/// A bracket around an end of an extent: a parameter that passes, a parameter that is blocked, and both clearances.
 struct Bracket {
   std::size_t line = 0;
   double with = 0, without = 0, at_with = 1, at_without = -1;
@@ -83,12 +83,12 @@ struct Bracket {
 void close_in(std::vector<Bracket>& brackets, const std::vector<Line>& lines, double tolerance,
               const PlaceClearances& clearances);
 
-/// Parameter near the component of a line to keep; nullopt keeps the widest component.
+/// Parameter close to the component of a line that is to be kept; nullopt keeps the widest component.
 using PartOfLine = std::function<std::optional<double>(std::size_t line)>;
 
-/// Finds the extents along some lines from `samples` + 1 parameters between `low` and `high`; an extent begins at the
-/// first sample if the first sample passes. tolerance: of the ends, in units of the parameter. part: selects a
-/// component of lines with several components; if empty, the extent covers all components.
+/// Finds the extents along lines from `samples` + 1 parameters between `low` and `high`; an extent starts at `low` if
+/// the first sample passes. tolerance: of the ends, in units of the parameter. part: selects one component of lines
+/// with several components; if empty, the extent covers all components.
 PETZVAL_API std::vector<LineExtent> extents_along(const std::vector<Line>& lines, double low, double high, int samples,
                                                   double tolerance, const PlaceClearances& clearances,
                                                   const PartOfLine& part = {});

@@ -42,7 +42,7 @@ Box box_of(const PupilRegion& region) noexcept {
   return box;
 }
 
-/// A box inside the pupil and a box around it, from some rays that pass, by successively finer grids.
+/// A box inside the pupil and a box around it, computed from some passing rays on finer and finer grids.
 std::pair<Box, Box> boxes_about(Sight& sight, const std::vector<SeenPlace>& passing) {
   Box seen, box;
   for (const auto& [at, beside] : passing) {
@@ -71,7 +71,7 @@ std::pair<Box, Box> boxes_about(Sight& sight, const std::vector<SeenPlace>& pass
   return {seen, box};
 }
 
-/// Searches the boundary along all its directions at once. Radii are in units of the half axes.
+/// Searches the boundary along all its directions together. Radii are in units of the half axes.
 class Tracer {
  public:
   /// near: a point of the component to keep; nullopt keeps all components.
@@ -82,8 +82,8 @@ class Tracer {
     bool disc = true;   ///< one span in each direction, beginning at the middle
     bool whole = true;  ///< no span reaches the end of the scan
   };
-  /// All spans between the middle and `reach` that `steps` samples of each of `directions` show, and slivers between
-  /// two samples that the clearance indicates.
+  /// Finds all spans between the middle and `reach` that show in `steps` samples along each of `directions`, and spans
+  /// between two samples where the clearance indicates a passing ray.
   Seen scan(std::size_t directions, double reach, int steps, double tolerance) {
     begin(directions);
     sample(steps + 1, [&](std::size_t, int i) { return reach * i / steps; });
@@ -125,7 +125,7 @@ class Tracer {
     return seen;
   }
 
-  /// One span in each direction, beginning at the middle; the ends are predicted from `few`, which has fewer
+  /// Finds one span in each direction, beginning at the middle. The ends are predicted from `few`, which has fewer
   /// directions. Returns false if an end is not close to its prediction.
   bool disc(std::size_t directions, const PupilBoundary& few) {
     begin(directions);
@@ -155,7 +155,7 @@ class Tracer {
   static constexpr double finest = 4e-14;
 
  private:
-  /// An end of a span during the search; ends come in pairs, the inner one first.
+  /// An end of a span during the search. Ends come in pairs: the inner end, then the outer end.
   struct End {
     std::size_t direction;
     core_detail::LastAbove radius;
@@ -229,7 +229,7 @@ class Tracer {
     const auto values = sight_.clearances(x_, y_);
     values_.assign(values.begin(), values.end());
   }
-  /// Same arithmetic as PupilRegion::at(), so that results are equal to the bit.
+  /// Uses the same arithmetic as PupilRegion::at(), so that results are equal to the bit.
   void add(const Point& unit, double radius) {
     x_.push_back(boundary_.middle.x + boundary_.half_axes.x * radius * unit.x);
     y_.push_back(boundary_.middle.y + boundary_.half_axes.y * radius * unit.y);
@@ -255,7 +255,7 @@ class Tracer {
       }
       open.resize(left);
     }
-    // Rays just outside tell which surface limits each end.
+    // Rays just outside the pupil show which surface limits each end.
     x_.clear(), y_.clear();
     for (const End& end : ends_) add(units[end.direction], end.radius.below());
     const auto [fates, surfaces] = sight_.ends(x_, y_);
@@ -282,9 +282,10 @@ class Tracer {
 /// Reach of a scan in half axes; the corners of the bounding box are at sqrt(2).
 constexpr double farthest = 1.6;
 
-/// Traces the boundary, starting from some rays that pass. The boundary stays empty if the pupil is too small for rays.
+/// Traces the boundary, starting from some passing rays. The boundary stays empty if the pupil is too small to trace.
 ///
-/// The pupil is connected: the component nearest to the chief ray, or else to the middle of the given rays, is kept.
+/// The pupil is connected: the component nearest to the chief ray is kept, or nearest to the mean of the given rays if
+/// there is no chief ray.
 void trace_boundary(Sight& sight, PupilBoundary& boundary, const std::vector<SeenPlace>& passing,
                     std::size_t directions) {
   const auto [inner, box] = boxes_about(sight, passing);
@@ -298,11 +299,12 @@ void trace_boundary(Sight& sight, PupilBoundary& boundary, const std::vector<See
     tracer.scan(1, farthest, 512, Tracer::finest);
     return;
   }
-  // Middle and half axes from the ends along a few directions, until they settle.
+  // Compute the middle and the half axes from the ends along a few directions, repeatedly until they settle.
   Tracer::Seen shape;
   for (int pass = 0; pass < 6; ++pass) {
     if (!(boundary.half_axes.x > 0 && boundary.half_axes.y > 0)) break;
-    // The tips of horseshoes and crescents lie behind their own edges and need more directions and steps.
+    // The tips of horseshoes and crescents are hidden behind other parts of the pupil and need more directions and
+    // steps.
     const int samples = shape.disc ? 32 : 96;
     const bool simple = shape.disc;
     shape = tracer.scan(samples, farthest, samples, 1e-10);
@@ -340,7 +342,7 @@ PupilBoundary open_boundary(const Lens& lens, const PupilPlane& plane, std::size
   const auto closed = [](const LensSurface& s) { return s.semi_diameter == 0; };
   if (std::any_of(lens.surfaces().begin(), lens.surfaces().end(), closed)) return boundary;
   Sight sight(lens, plane, wavelength, coordinates);
-  if (directions == 1) {  // one line is enough, unless the pupil lies between two samples
+  if (directions == 1) {  // one line suffices, unless the pupil is narrower than a step
     const double reach = sight.reach();
     boundary.half_axes = {reach, reach};
     if (reach > 0) Tracer(sight, boundary, Point{0, 0}).scan(1, 1, 512, Tracer::finest);

@@ -26,7 +26,7 @@ struct PupilPoints {
 
 RayBundle trace_points(const Lens& lens, const PupilBoundary& boundary, double plane_z, const PupilPoints& points) {
   const std::span<const double> x = points.x, y = points.y;
-  // Reproducible batches equal single rays to the bit, so that edges found with single rays pass in a batch.
+  // Reproducible batches equal single rays to the bit: edges found with single rays also pass in a batch.
   return trace_rays(lens, plane_z, x.size(),
                     {.wavelength = boundary.wavelength, .slopes = true, .weights = points.weights},
                     [&](std::size_t begin, std::size_t end, const RayArrays<double>& rays) {
@@ -35,8 +35,8 @@ RayBundle trace_points(const Lens& lens, const PupilBoundary& boundary, double p
                     });
 }
 
-/// Adds the corners of a pupil, where the limiting rim changes: each lies between the last direction with the one rim
-/// and the first direction with the next rim.
+/// Adds the corners of a pupil, where the limiting rim changes. Each corner lies between the last direction limited by
+/// one rim and the first direction limited by the next rim.
 void add_corners(const Lens& lens, const PupilBoundary& boundary, PupilPoints& points) {
   using Place = Vec2<double>;
   const std::size_t count = boundary.spans.size();
@@ -47,7 +47,7 @@ void add_corners(const Lens& lens, const PupilBoundary& boundary, PupilPoints& p
   for (std::size_t k = 0; k < count; ++k) {
     const PupilSpan &one = boundary.spans[k], &other = boundary.spans[(k + 1) % count];
     if (one.to.surface == other.to.surface || one.from_radius > 0 || other.from_radius > 0) continue;
-    // Search along the chord, which every line from the middle crosses once.
+    // Search along the chord, which every line outwards from the middle crosses once.
     const auto edge = [&](double part) {
       const Place chord{one.to.x + part * (other.to.x - one.to.x), one.to.y + part * (other.to.y - one.to.y)};
       const auto at = [&](double reach) {

@@ -14,7 +14,7 @@ namespace petzval::pupil_detail {
 /// are not smooth. Weights: mm^2 of the pupil plane, up to a constant factor.
 PETZVAL_API RayBundle trace_nodes(const Lens& lens, const PupilBoundary& boundary, double plane_z);
 
-/// Traces the rays along the rim of the same pupil, with weight 0: its edges and its corners, which lie farther out.
+/// Traces the edges and the corners of the same pupil, with weight 0. Corners lie farther out than the adjacent edges.
 PETZVAL_API RayBundle trace_rim(const Lens& lens, const PupilBoundary& boundary, double plane_z);
 
 }  // namespace petzval::pupil_detail

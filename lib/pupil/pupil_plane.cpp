@@ -56,9 +56,9 @@ void check(const Lens& lens, const FieldPoint& point, const Pupil& entrance) {
   }
 }
 
-/// Direction of the ray of the point through a position in the plane; `place` is relative to the centre. The form
+/// Direction of the ray between the point and a position in the plane; `place` is relative to the centre. The form
 /// (place - point) / distance contains no large numbers, and at infinity its first term is 0. A negative distance
-/// stands for a point that the rays have not reached yet, and reverses place - point.
+/// stands for a point that the rays reach after the plane, and reverses place - point.
 Vec3<double> direction_from(const Vec3<double>& place, const Vec3<double>& towards,
                             double reciprocal_distance) noexcept {
   const Vec3<double> d = place * reciprocal_distance - towards;
@@ -102,7 +102,7 @@ PupilPlane PupilPlane::of_film(const Lens& lens, const FilmPoint& point) {
     throw Error(where + "film z = " + to_text(last_z) + " mm; must differ from z of the last vertex");
   }
   const Vec3<double> to_point{point.x, point.y, lens.film_z() - last_z};
-  // A film in front of the last vertex receives a virtual image: its rays run as if the film lay behind the lens.
+  // A film in front of the last vertex receives a virtual image: its rays behave as if the film stood behind the lens.
   const double sense = signed_index(lens, lens.surface_count()) > 0 ? 1 : -1;
   const double distance = std::copysign(glm::length(to_point), to_point.z * sense);
   PupilPlane plane;

@@ -73,7 +73,7 @@ void keep_connected(PupilRegion& region, const Vec2<double>& place) {
   const auto take = [&](std::size_t i) {
     if (!kept[i]) kept[i] = true, open.push_back(i);
   };
-  // Between two directions the ends of a crescent's tip may move by more than its width.
+  // Between two directions, the ends of the tip of a crescent may move by more than its width.
   const double steep = region.directions == 1 ? 0 : 0.1;
   while (!open.empty()) {
     const PupilSpan span = spans[open.back()];

@@ -26,8 +26,8 @@ PupilSampler::PupilSampler(const PupilBoundary& boundary)
   const double turn = 2 * std::numbers::pi / static_cast<double>(n * parts);
   half_turn_ = turn / 2;
 
-  // Between two directions an edge may exceed both: at a corner where two rims meet by half of the change per
-  // direction, and by the bulge of an arc.
+  // Between two directions an edge may lie outside both: at a corner where two rims meet, by half of the change per
+  // direction; on an arc, by the sagitta of the chord.
   constexpr double margin = 0.002;
   double sum = 0;
   for (std::size_t k = 0; k < n; ++k) {

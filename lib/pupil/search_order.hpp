@@ -7,13 +7,13 @@
 
 namespace petzval::pupil_detail {
 
-/// A point about halfway between two neighbours, whose pupils predict its pupil. The two far neighbours have the same
-/// spacing on both sides; equal to `point` if there is no far neighbour.
+/// A point about halfway between two neighbours, from whose pupils its pupil is predicted. The far neighbours continue
+/// the same spacing on both sides; equal to `point` if there is no far neighbour.
 struct Halfway {
   std::uint32_t point, before, after, far_before, far_after;
 };
 
-/// Order in which pupils are searched: some points in full, then the points halfway between, in rounds.
+/// Order in which pupils are searched: some points in full, then the points halfway between them, in rounds.
 struct SearchOrder {
   std::vector<std::uint32_t> full;
   std::vector<std::vector<Halfway>> rounds;

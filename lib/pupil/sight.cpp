@@ -35,7 +35,7 @@ Box hemisphere(const Sines& sines) noexcept {
   return {{-all, -all}, {all, all}};
 }
 
-/// The box that contains, in sines, the surface through which rays enter, seen from the point of a plane.
+/// The box, in sines, of the surface through which rays enter, seen from the point of a plane.
 Box seen_face(const Lens& lens, const PupilPlane& plane, const Sines& sines) {
   const std::size_t entered = plane.travel() == Travel::to_film ? 0 : lens.surface_count() - 1;
   const double vertex_z = lens.surfaces()[entered].vertex_z;
@@ -52,7 +52,7 @@ Box seen_face(const Lens& lens, const PupilPlane& plane, const Sines& sines) {
       const double z = revolved ? revolved_z : sag(lens, entered, x, y);
       if (std::isnan(z)) continue;
       const Vec3<double> place{x, y, vertex_z + z};
-      // A surface that bends around the point is seen at any angle.
+      // Such a surface surrounds the point and may be seen at any angle.
       const double before =
           glm::dot(plane.towards() - (place - plane.centre()) * plane.reciprocal_distance(), plane.normal());
       if (facing == 0) facing = before;
@@ -64,7 +64,7 @@ Box seen_face(const Lens& lens, const PupilPlane& plane, const Sines& sines) {
   return {box.low - margin, box.high + margin};
 }
 
-/// Points in equal steps over a box of sines, row by row.
+/// Points at equal steps in a box of sines, row by row.
 struct Grid {
   int side;
   Place low, cell;  // in sines
@@ -149,7 +149,7 @@ RayArrays<double> Sight::rays(std::span<const double> x, std::span<const double>
 
 std::span<const double> Sight::clearances(std::span<const double> x, std::span<const double> y, bool apertures) {
   values_.resize(x.size());
-  // Blocks fit into the cache.
+  // A block fits into the cache.
   constexpr std::size_t block = 1024;
   for (std::size_t begin = 0; begin < x.size(); begin += block) {
     const std::size_t count = std::min(block, x.size() - begin);
@@ -213,9 +213,9 @@ std::vector<SeenPlace> Sight::passing_places() {
   constexpr std::size_t enough = 32;
   if (result.size() >= enough) return result;
 
-  // Components that lie between the grid points: search near the rays with the largest clearance. Without apertures the
-  // clearance is continuous and has a maximum in each component. Aspheres may have any shape beyond their apertures,
-  // though, and their intersections take long to find.
+  // A component may lie between grid points: search near the rays with the largest clearance. If apertures are ignored,
+  // the clearance is continuous and has a maximum in each component. Aspheres are an exception: beyond their apertures
+  // they may have any shape, and intersections there take long to find.
   const auto surfaces = lens_.surfaces();
   const bool aspheric =
       std::any_of(surfaces.begin(), surfaces.end(), [](const LensSurface& s) { return !s.aspheric.empty(); });
@@ -266,7 +266,7 @@ std::vector<SeenPlace> Sight::passing_places() {
         result.push_back({middle, half / static_cast<double>(half_side)});
         break;
       }
-      // On a ridge the gain per pass roughly halves.
+      // Along a ridge of the clearance, the gain per pass roughly halves.
       if (!result.empty() && 4 * (closer[best] - before[0]) < -closer[best]) break;
       before = {before[1], closer[best]};
       half = half * (2.0 / half_side);

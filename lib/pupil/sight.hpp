@@ -14,17 +14,17 @@
 
 namespace petzval::pupil_detail {
 
-/// A point of the pupil plane and the approximate distances to the neighbouring points that are tried.
+/// A point of the pupil plane and the approximate distances to its neighbours in the search.
 struct SeenPlace {
   Vec2<double> at{0, 0}, beside{0, 0};
 };
 
-/// Indices of local maxima among negative values on a grid with rows of length `row`: near a maximum a component of a
-/// pupil may lie between grid points. Border points are left out.
+/// Indices of local maxima among negative values on a grid with rows of length `row`. Near such a maximum a component
+/// of a pupil may lie between grid points. Border points are left out.
 std::vector<std::size_t> summits(std::span<const double> values, std::size_t row);
 
-/// Meaning of x and y: positions in the plane (mm), or angles (rad, sines.hpp) at which the point, at a finite
-/// distance, sees these positions.
+/// Meaning of x and y: positions in the plane (mm), or the angles (rad, sines.hpp) of these positions, seen from a
+/// point at a finite distance.
 enum class Coordinates { plane, angles };
 
 /// Traces rays of one point in batches and keeps the buffers.
@@ -47,15 +47,15 @@ class Sight {
   };
   Ends ends(std::span<const double> x, std::span<const double> y);
 
-  /// Largest absolute coordinate of the positions in which the point sees the surface through which rays enter.
+  /// Largest absolute coordinate in which the point sees the surface through which rays enter.
   double reach() const;
 
   /// Position of the chief ray, ignoring apertures; nullopt if no ray goes through the centre of the stop.
   std::optional<Vec2<double>> chief() const;
 
   /// Finds positions whose rays pass, within the visible part of the surface through which rays enter: on a grid of 48
-  /// x 48 steps and, if few rays pass, near maxima of the clearance on a grid of 96 x 96. Of several components it
-  /// returns the component nearest to the chief ray, or the largest if there is no chief ray.
+  /// x 48 steps and, if few rays pass, near maxima of the clearance on a grid of 96 x 96. If there are several
+  /// components, it returns the component nearest to the chief ray, or the largest component if there is no chief ray.
   std::vector<SeenPlace> passing_places();
 
  private:

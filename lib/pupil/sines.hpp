@@ -11,7 +11,7 @@
 namespace petzval::pupil_detail {
 
 /// Maps positions in a plane to the sines of the angles at which the point sees them, times the distance of the point.
-/// A surface close to the point has a bounded image. For a point at infinity the map is the identity.
+/// The image of a surface close to the point stays bounded. For a point at infinity the map is the identity.
 class Sines {
  public:
   explicit Sines(const PupilPlane& plane) noexcept {
@@ -28,7 +28,7 @@ class Sines {
     const Vec2<double> s = sines * per_distance_;
     return foot_ + sines / std::sqrt(1 - s.x * s.x - s.y * s.y);
   }
-  /// Largest factor by which a step in sines is longer in the plane.
+  /// Largest factor by which a small step in sines is stretched in the plane.
   double stretch(const Vec2<double>& p) const noexcept {
     const double square = secant2(p);
     return square * std::sqrt(square);

@@ -28,8 +28,8 @@ struct RayBlock {
   }
 };
 
-/// Intersects the rays that arrive with the plane and stores them in their order from index `first` on. Returns the
-/// number of rays that arrive.
+/// Intersects the rays that passed the lens with the plane and stores the hits in their order from index `first` on.
+/// Returns the number of hits.
 std::size_t meet(const RayBlock& rays, std::size_t count, double light_direction, std::span<const double> weights,
                  std::size_t first, RayBundle& bundle) noexcept {
   std::array<double, block_rays> x, y, slope_x, slope_y;
@@ -46,8 +46,8 @@ std::size_t meet(const RayBlock& rays, std::size_t count, double light_direction
       x[i] = hit.x, y[i] = hit.y;
     }
   }
-  // Branch-free: every ray is written, and overwritten by the next one if it does not arrive. Few rays are lost, but no
-  // branch predictor knows which.
+  // Branch-free: every ray is written and, if it does not reach the plane, overwritten by the next ray. Few rays are
+  // lost, but the processor cannot predict which.
   std::size_t kept = first;
   for (std::size_t i = 0; i < count; ++i) {
     bundle.x[kept] = x[i], bundle.y[kept] = y[i];
@@ -58,7 +58,7 @@ std::size_t meet(const RayBlock& rays, std::size_t count, double light_direction
   return kept - first;
 }
 
-/// Moves the results of all blocks together at the front.
+/// Removes the gaps between the results of the blocks.
 void close_gaps(std::vector<double>& values, const std::vector<std::size_t>& kept) {
   if (values.empty()) return;
   auto end = values.begin();

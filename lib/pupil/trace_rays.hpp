@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Makes all ray bundles: rays started block by block are traced and intersected with a plane behind the lens.
+// Makes all ray bundles: rays are started in blocks, traced, and intersected with a plane behind the lens.
 #pragma once
 
 #include <array>
@@ -35,14 +35,14 @@ struct TraceRaysOptions {
 };
 
 /// Traces `count` rays and keeps the rays that pass the lens and run towards the film. A plane in front of the last
-/// surface is intersected with the prolonged rays.
+/// surface is intersected with the rays extended backwards.
 ///
 /// The result does not depend on the number of threads. sampled_area stays 0.
 /// @throws Error if options.threads < 1
 PETZVAL_API RayBundle trace_rays(const Lens& lens, double plane_z, std::size_t count, const TraceRaysOptions& options,
                                  const StartRays& start);
 
-/// Adds the rays of another bundle in the same plane. Both bundles have the same arrays.
+/// Appends the rays of another bundle in the same plane. Both bundles must have the same arrays.
 PETZVAL_API void append(RayBundle& bundle, const RayBundle& more);
 
 /// Intersection of a ray behind the lens with the film; nullopt if the ray is parallel to the film or recedes.
