@@ -1,11 +1,11 @@
 #!/bin/sh
 # SPDX-License-Identifier: Apache-2.0
-# Compares what two commits install: the binary interface of the libraries and the list of files.
+# Compares the installations of two commits: the binary interface of the libraries and the list of files.
 #
-#   sh tests/abi.sh OLD [NEW]      commits, tags or branches; NEW is HEAD where it is not named
+#   sh tests/abi.sh OLD [NEW]      commits, tags or branches; NEW is HEAD by default
 #
-# Prints what changed. The exit status is 0 where programs that were linked with OLD run with NEW, 1 where they may not: then the
-# version wants another MINOR (lib/README.md, Versions).
+# Prints the changes. The exit status is 0 if programs linked with OLD run with NEW, and 1 if they may fail: then the version
+# must get a new MINOR (lib/README.md, Versions).
 set -eu
 root=$(CDPATH= cd -- "$(dirname -- "$0")/.." && pwd)
 . "$root/cmake/build.sh"
@@ -15,9 +15,9 @@ need $library_packages git abigail-tools
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 
-# installed SIDE COMMIT: the libraries of a commit with their debug information, under $work/SIDE/usr.
+# installed SIDE COMMIT: installs a commit with debug information to $work/SIDE/usr.
 installed() {
-  commit=$(git -C "$root" rev-parse --verify --quiet "$2^{commit}") || { echo "tests/abi.sh: found $2, wanted a commit" >&2; exit 2; }
+  commit=$(git -C "$root" rev-parse --verify --quiet "$2^{commit}") || { echo "tests/abi.sh: OLD or NEW = $2; must be a commit" >&2; exit 2; }
   mkdir -p "$work/$1/source"
   git -C "$root" archive "$commit" | tar -x -C "$work/$1/source"
   (root=$work/$1/source BUILD_DIR=$work/$1/build
@@ -25,7 +25,7 @@ installed() {
   cmake --install "$work/$1/build" --prefix "$work/$1/usr" >"$work/$1/log"
   (cd "$work/$1/usr" && find . -type f -o -type l) | sort >"$work/$1/files"
 }
-# What a class keeps behind its pointer may change.
+# Private data behind the pointer of a class may change.
 printf '[suppress_type]\n  name_regexp = ::Data$\n' >"$work/private"
 
 installed old "$1"
@@ -44,7 +44,7 @@ for library in "$work"/old/usr/lib/*/libpetzval-*.so "$work"/old/usr/lib/libpetz
   status=0
   abidiff --headers-dir1 "$work/old/usr/include" --headers-dir2 "$work/new/usr/include" --drop-private-types \
     --suppressions "$work/private" "$library" "$work/new/$name" || status=$?
-  # Bits of the status (abidiff's manual): 1 and 2 a failure, 4 a change, 8 one that breaks programs.
+  # Bits of the status (manual of abidiff): 1 and 2: failure, 4: change, 8: change that breaks programs.
   [ $((status & 3)) -eq 0 ] || exit 2
   [ $((status & 8)) -eq 0 ] || changed=1
 done

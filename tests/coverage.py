@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""coverage.py REPORT ROOT: the figures of tests/coverage.sh, from the JSON of gcovr."""
+"""coverage.py REPORT ROOT: prints the tables of tests/coverage.sh from the JSON of gcovr."""
 import collections
 import json
 import pathlib
@@ -8,7 +8,7 @@ import sys
 
 LINES, BRANCHES = 95.0, 85.0
 PARSERS = ("lib/formats/", "lib/io/", "lib/image/", "lib/glass/glass_table")
-# Such code has a copy at each call and for each instruction set, each copy its branches: they are counted apart.
+# Such code is compiled once per call and instruction set. The branches of all copies are counted separately.
 COPIED = re.compile(r"PETZVAL_(INLINE|LOOPS)\b")
 ERROR = re.compile(r"\bthrow\b|\b(refuse|fail|reject|error)[a-z_]*\(|\.warn\(")
 
@@ -45,7 +45,7 @@ for name, (lines, seen, branches, taken) in sorted(modules.items()):
     print(f"| {name} | {lines} | {share(seen, lines):.1f} % | {branches} | {share(taken, branches):.1f} % |")
 lines, seen, branches, taken = (sum(m[i] for m in modules.values()) for i in range(4))
 print(f"| all | {lines} | {share(seen, lines):.2f} % | {branches} | {share(taken, branches):.2f} % |")
-print(f"\nBranches of copied code: {copied[2]}, {share(copied[3], copied[2]):.1f} % of them taken")
+print(f"\nBranches of copied code: {copied[2]}, {share(copied[3], copied[2]):.1f} % taken")
 print(f"Lines of importers that report an error: {errors}, {errors - len(unseen)} of them run")
 for line in unseen:
     print("  " + line)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-# Tests that take more than three seconds, as filters of GoogleTest. They have the label "full".
+# Tests that take more than three seconds, as GoogleTest filters; their label is "full".
 set(petzval_long_tests
   AnyWavelength.NearestCompiledPupilsEncloseIt
   AnyWavelengthOf.ExposureEqualsExposureOfACompiledWavelength

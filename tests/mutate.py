@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""mutate.py ROOT COPY [options]: what tests/mutate.sh does."""
+"""mutate.py ROOT COPY [options]: the mutation tests of tests/mutate.sh."""
 import argparse
 import collections
 import difflib
@@ -19,30 +19,30 @@ import time
 
 MODULES = ("surface", "trace", "pupil", "pupil_table", "focus", "polynomial", "camera", "iris", "blur")
 OTHERS = ("accuracy", "core", "distortion", "figure", "files", "film", "io", "lens", "lint", "media", "movement", "paraxial",
-          "prescription", "psf", "rays")  # by --modules
-# Programs that see these modules. Hashes of bits notice every change of rounding: they come last, and what they alone notice is
-# counted by itself.
+          "prescription", "psf", "rays")  # only with --modules
+# Test programs that depend on these modules. Hashes of bits detect every change of rounding: they run last, and changes that only
+# they detect are counted separately.
 PROGRAMS = MODULES + ("lens", "paraxial", "rays", "movement", "accuracy", "psf", "bits")
 LIBRARIES = ("petzval-core", "petzval-blur", "petzval-figure", "petzval-fit", "petzval-image")
 WANTED = 90.0  # per cent
-QUICK = 0.5  # seconds: a program's quick tests run before its others
-LONGEST = 1.0  # seconds: longer tests of other modules are left out
-MOST_OBJECTS = 150  # of a header's; others are left out
-MEMORY = 16 << 30  # bytes of addresses that a test program may take
+QUICK = 0.5  # seconds: tests up to this time run first
+LONGEST = 1.0  # seconds: longer tests of other modules do not run
+MOST_OBJECTS = 150  # headers that more objects include are not changed
+MEMORY = 16 << 30  # address space of a test program, bytes
 
 OPERATORS = {"+": "-", "-": "+", "*": "/", "/": "*", "+=": "-=", "-=": "+=", "*=": "/=", "/=": "*=", "&&": "||", "||": "&&"}
-# Not < into !=, which is the same in most loops.
+# < does not become !=, which has no effect in most loops.
 COMPARISONS = {"<": ("<=", ">", ">=", "=="), "<=": ("<", ">", ">=", "=="), ">": (">=", "<", "<=", "=="),
                ">=": (">", "<", "<=", "=="), "==": ("!=", "<", ">"), "!=": ("==", "<", ">")}
 HIDDEN = re.compile(r'//[^\n]*|/\*.*?\*/|"(?:\\.|[^"\\\n])*"|(?<!\w)\'(?:\\.|[^\'\\\n])*\'|^[ \t]*#(?:\\\n|[^\n])*', re.M | re.S)
-# With spaces about them, as clang-format sets them: brackets of templates and references have none.
+# clang-format writes spaces around binary operators, but not around the brackets of templates and the marks of references.
 BINARY = re.compile(r"(?<= )(\+=|-=|\*=|/=|<=|>=|==|!=|&&|\|\||[-+*/<>])(?=[ \n])")
 NOT = re.compile(r"(?<=[\s(])!(?=[\w(])")
 NUMBER = re.compile(r"(?<![\w.'])(\d+\.\d*(?:e[-+]?\d+)?|\d+(?:e[-+]?\d+)?)(?![\w.'])")
 CONDITION = re.compile(r"\bif \(")
 STATEMENT = re.compile(
     r"^ +(?!return\b|throw\b|using\b|delete\b)(?:[\w.:>\[\]()-]+ (?:[-+*/|&]?=) .*|[\w.:>\[\]-]+\(.*\));$", re.M)
-# Statements that say something of types or to people, not of numbers.
+# Statements about types and messages are not changed.
 ASIDE = re.compile(r"\bstatic_assert\b|\bthrow\b|\bError\b|\busing\b|\boperator\b|\brequires\b|\bconcept\b|\benum\b|\btemplate\b"
                    r"|\bvirtual\b|\breserve\(|\bcase\b|@")
 
@@ -50,8 +50,8 @@ Mutant = collections.namedtuple("Mutant", "module file line before after text ke
 
 
 def blank(match):
-    """Text is hidden where it stands: places keep their numbers."""
-    sign = "@" if match.group().startswith('"') else " "  # a statement with a message is aside
+    """Replaces comments and strings by characters of the same number, so that positions stay."""
+    sign = "@" if match.group().startswith('"') else " "  # ASIDE excludes statements with a message
     return "".join("\n" if c == "\n" else sign for c in match.group())
 
 
@@ -65,7 +65,7 @@ def closing(code, start, pair):
 
 
 def without_template_arguments(code):
-    """Blanks what stands in <> directly behind a name."""
+    """Blanks template arguments: <> directly after a name."""
     out = list(code)
     for match in re.finditer(r"(?<=\w)<(?=[\w:])|\btemplate <", code):
         start = match.end() - 1
@@ -76,7 +76,7 @@ def without_template_arguments(code):
 
 
 def places(module, name, text):
-    """All places of a file: (start, end, what may stand there instead)."""
+    """All positions of a file that may change: (start, end, replacements)."""
     code = without_template_arguments(HIDDEN.sub(blank, text))
 
     def aside(at):
@@ -126,8 +126,8 @@ def mutant(module, name, text, place, chance):
 
 
 def read_equivalent(path):
-    """Blocks between blank lines: the file, -lines, +lines, then the reason in lines that are indented. file#2: the second of
-    the lines that are alike."""
+    """Blocks between blank lines: the file, - lines, + lines, and the reason in indented lines. file#2: the second of several
+    equal lines."""
     known = {}
     for block in re.split(r"\n\s*\n", path.read_text()):
         lines = [line for line in block.splitlines() if line and not line.startswith("#")]
@@ -137,7 +137,7 @@ def read_equivalent(path):
         after = [line[1:].strip() for line in lines[1:] if line.startswith("+")]
         reason = " ".join(line.strip() for line in lines[1:] if line.startswith(" "))
         if not (before and after and reason):
-            sys.exit(f"{path}: found\n{block}\nwanted a file, lines with - and +, and a reason")
+            sys.exit(f"{path}: block =\n{block}\nmust be a file, lines with - and +, and a reason")
         known[key(lines[0], before, after)] = reason
     return known
 
@@ -147,7 +147,7 @@ def key(file, before, after):
 
 
 def copy_tree(root, copy):
-    """What git knows or would take; files that are the same stay as old as they are."""
+    """Copies tracked and new files; equal files keep their times, so that they are not compiled again."""
     names = subprocess.run(["git", "-C", root, "ls-files", "-z", "--cached", "--others", "--exclude-standard"], check=True,
                            capture_output=True, text=True).stdout.split("\0")
     for name in filter(None, names):
@@ -160,7 +160,7 @@ class Tests:
     def __init__(self, copy, jobs, modules):
         self.copy, self.build, self.jobs = copy, copy / "build", jobs
         self.programs = PROGRAMS + tuple(sorted(set(modules) - set(PROGRAMS)))
-        # What is put back was compiled before.
+        # The restored source of a change was compiled before: a cache saves time.
         launcher = ["-DCMAKE_CXX_COMPILER_LAUNCHER=ccache"] if shutil.which("ccache") else []
         subprocess.run(["cmake", "-S", copy, "-B", self.build, "-G", "Ninja", "-DCMAKE_BUILD_TYPE=Release",
                         "-DBUILD_SHARED_LIBS=ON", "-DPETZVAL_BUILD_EXAMPLES=OFF", "-DCMAKE_LINK_DEPENDS_NO_SHARED=ON", *launcher],
@@ -175,7 +175,7 @@ class Tests:
         self.seconds = {program: self.measured(program) for program in self.programs}
 
     def measured(self, program):
-        """The seconds of each test where nothing is changed; kept as long as no file changes that the program is made of."""
+        """Seconds of each test of the unchanged program, measured again only if its files change."""
         made_of = hashlib.sha256()
         for folder in ("lib", "include", "data", f"tests/{program}"):
             for path in sorted((self.copy / folder).rglob("*.*")):
@@ -190,7 +190,7 @@ class Tests:
                 for suite in json.loads(told.read_text())["testsuites"] for test in suite["testsuite"]}
 
     def rounds(self, module):
-        """Programs with the tests to run, likeliest and quickest first."""
+        """Programs with the tests to run: most likely and fastest tests first."""
         def some(program, wanted):
             names = [name for name, seconds in self.seconds[program].items() if wanted(seconds)]
             if names:
@@ -210,7 +210,7 @@ class Tests:
         return subprocess.run(["ninja", "-C", self.build, "-j", str(self.jobs), *targets], check=False, **silent).returncode == 0
 
     def passes(self, program, names, limit, *arguments):
-        """Within the limit of seconds."""
+        """True if the tests pass within `limit` seconds."""
         process = subprocess.Popen(
             [self.build / "tests" / program / f"{program}_tests", "--gtest_fail_fast", f"--gtest_filter={names}", *arguments],
             cwd=self.build, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, start_new_session=True,
@@ -227,7 +227,7 @@ class Tests:
             process.wait()
 
     def killer(self, change):
-        """The program that notices a change, "" for none, None where the change does not compile."""
+        """The program that detects a change; "" if no program does, None if the change does not compile."""
         path = self.copy / change.file
         before = path.read_text()
         try:
@@ -235,7 +235,7 @@ class Tests:
             if not self.make(LIBRARIES):
                 return None
             rounds = list(self.rounds(change.module))
-            # What tests compile into themselves, headers and a file or two, is the last to see.
+            # Tests that compile the changed file themselves (headers and a few sources) run last.
             for own in (False, True) if self.objects[str(path)] > 1 else (False,):
                 if own and not self.make([f"{change.module}_tests"]):
                     return change.module
@@ -264,7 +264,7 @@ def diff(change):
 
 
 def sample(root, modules, seed):
-    """Mutants of the modules in an order by chance."""
+    """Changes of the modules in random order."""
     files = {}
     for module in modules:
         for path in sorted((root / "lib" / module).glob("*.[ch]pp")):
@@ -288,12 +288,12 @@ def main():
     options = parser.parse_args()
     for name in ("count", "jobs"):
         if getattr(options, name) < 1:
-            parser.error(f"--{name}: found {getattr(options, name)}, wanted 1 or more")
+            parser.error(f"--{name} = {getattr(options, name)}; must be 1 or more")
     for module in options.modules:
         if module not in MODULES + OTHERS:
-            parser.error(f"--modules: found {module}, wanted some of {', '.join(MODULES + OTHERS)}")
+            parser.error(f"--modules = {module}; must be among {', '.join(MODULES + OTHERS)}")
 
-    signal.signal(signal.SIGTERM, lambda *_: sys.exit("stopped"))  # with the report and the file put back
+    signal.signal(signal.SIGTERM, lambda *_: sys.exit("stopped"))  # the finally blocks restore the file and print the report
     known = read_equivalent(options.root / "tests" / "mutants.txt")
     copy_tree(options.root, options.copy)
     tests = Tests(options.copy, options.jobs, options.modules)
@@ -320,10 +320,10 @@ def main():
                 survivors.append(change)
     finally:
         report(counts, survivors)
-        tests.make(LIBRARIES)  # the copy is as the tree again
+        tests.make(LIBRARIES)  # builds the restored copy
     total = sum(counts.values(), collections.Counter())
     if score(total) < WANTED:
-        sys.exit(f"wanted {WANTED:g} %")
+        sys.exit(f"score = {score(total):.1f} %; must be at least {WANTED:g} %")
 
 
 def score(count):

@@ -1,12 +1,13 @@
 #!/bin/sh
 # SPDX-License-Identifier: Apache-2.0
-# Changes single places of the library, one after the other, and counts which changes the tests notice. Prints a table of modules
-# and every change that no test noticed; fails where they notice less than 90 % of those that change what the library says.
+# Mutation tests: makes single changes to the sources of the library, one at a time, and counts the changes that a test detects.
+# Prints a table of modules and every undetected change. Fails if less than 90 % of the changes with an effect are detected.
 #
 #   sh tests/mutate.sh [--seed S] [--count N] [--modules focus,iris] [--jobs J]
 #
-# A sample of N places (60), the same for the same seed (1) and sources. The work is done in a copy of the tree, in
-# build/mutants or MUTATE_DIR=..., by J compilers at a time. tests/mutants.txt has the changes that change nothing, with the reason.
+# Takes a random sample of N changes (default 60), which depends only on the seed (default 1) and the sources. Works in a copy of
+# the tree, in build/mutants or MUTATE_DIR=..., with J compilers at a time. tests/mutants.txt lists changes without effect, with
+# reasons.
 set -eu
 root=$(CDPATH= cd -- "$(dirname -- "$0")/.." && pwd)
 BUILD_DIR=${MUTATE_DIR:-$root/build/mutants}

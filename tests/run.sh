@@ -1,18 +1,18 @@
 #!/bin/sh
 # SPDX-License-Identifier: Apache-2.0
-# Builds petzval and runs its tests; installs what a bare Debian 12 lacks.
+# Builds petzval and runs its tests. Installs missing packages on Debian 12.
 #
 #   sh tests/run.sh [arguments of ctest, such as -R Snell]    the tests of the library
-#   sh tests/run.sh -L full      the tests of programs, packages and fuzz targets; clang compiles all sources, if it is there
-#   sh tests/run.sh --report    prints the worst cases of the accuracy tests: the tables of tests/README.md
+#   sh tests/run.sh -L full      the tests of programs, packages and fuzz targets; clang, if installed, compiles all sources
+#   sh tests/run.sh --report    prints the tables of tests/README.md: worst cases of the accuracy tests
 #
-# BUILD_DIR=... builds elsewhere than in build/. UNITY=OFF compiles the sources separately: faster after a change of one.
+# BUILD_DIR=... replaces build/. UNITY=OFF compiles the sources separately, which is faster after a change of one source.
 set -eu
 root=$(CDPATH= cd -- "$(dirname -- "$0")/.." && pwd)
 . "$root/cmake/build.sh"
 
-# table COLUMNS MODULE/CASES...: what these cases report (tests/report.hpp), a row for each name in the order of appearance.
-# COLUMNS are divided by ";"; what follows a comma is for the head alone.
+# table COLUMNS MODULE/CASES...: prints the values that these cases report (tests/report.hpp), one row per name. COLUMNS are
+# separated by ";"; the key of a column ends at a comma, its heading does not.
 table() {
   columns=$1
   shift

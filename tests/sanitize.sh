@@ -5,8 +5,8 @@
 #
 #   sh tests/sanitize.sh [asan] [tsan] [-- arguments of ctest, such as -R Camera]
 #
-# Division of floating-point numbers by zero is not trapped: it has a defined result, which planes (1/0 = infinite radius) and
-# rays that are parallel to a plane use on purpose.
+# Floating-point division by zero is allowed: its result is defined, and planes (1/0 = infinite radius) and rays parallel to a
+# plane depend on it.
 set -eu
 root=$(CDPATH= cd -- "$(dirname -- "$0")/.." && pwd)
 . "$root/cmake/build.sh"
@@ -16,7 +16,7 @@ while [ $# -gt 0 ]; do
   case $1 in
     asan | tsan) kinds="$kinds $1" ;;
     --) shift; break ;;
-    *) echo "tests/sanitize.sh: found $1, wanted asan, tsan or --" >&2; exit 2 ;;
+    *) echo "tests/sanitize.sh: sanitizer = $1; must be asan, tsan or --" >&2; exit 2 ;;
   esac
   shift
 done
@@ -39,6 +39,6 @@ for kind in ${kinds:-asan tsan}; do
   BUILD_DIR=$BUILD_ROOT/$kind
   build -DCMAKE_BUILD_TYPE=RelWithDebInfo "-DCMAKE_CXX_FLAGS_RELWITHDEBINFO=-O1 -g1" "-DCMAKE_CXX_FLAGS=$flags"
   echo "== Testing"
-  # The source tree and the installed tree are the same in every build.
+  # Sanitizers do not change the source tree and the installed tree.
   ctest --test-dir "$BUILD_DIR" -j "$(nproc)" --output-on-failure --no-tests=error -E '^(house|packaging)' "$@"
 done

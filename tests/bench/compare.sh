@@ -1,12 +1,12 @@
 #!/bin/sh
 # SPDX-License-Identifier: Apache-2.0
-# Builds the benchmarks of a commit and of this tree side by side, runs them by turns and prints how the times changed.
+# Builds the benchmarks of a commit and of this tree, runs them alternately and prints the changes of the times.
 #
 #   sh tests/bench/compare.sh COMMIT [PROGRAM [options of the program]]
 #   sh tests/bench/compare.sh HEAD~1 camera_bench --benchmark_filter=exact
 #
-# PROGRAM: trace_bench unless given. ROUNDS=5 runs of each, by turns, so that neighbours on the machine slow both. The commit is
-# built in build/compare/ (BUILD_DIR=... elsewhere than in build/).
+# PROGRAM is trace_bench by default. ROUNDS=5 runs alternate, so that other users of the machine slow both builds. The commit is
+# built in build/compare/; BUILD_DIR=... replaces build/.
 set -eu
 root=$(CDPATH= cd -- "$(dirname -- "$0")/../.." && pwd)
 . "$root/cmake/build.sh"

@@ -1,11 +1,11 @@
 #!/bin/sh
 # SPDX-License-Identifier: Apache-2.0
-# Builds the benchmarks and prints their tables; two minutes when built.
+# Builds the benchmarks and prints their tables; the tables take two minutes.
 #
-#   sh tests/bench/run.sh [--json FILE] [--isa baseline|avx2|avx512] [--benchmark_filter=... and others of the library]
+#   sh tests/bench/run.sh [--json FILE] [--isa baseline|avx2|avx512] [options of Google Benchmark]
 #
-# --json writes the rows of the trace as an array of objects, --isa measures its batches on one instruction set alone.
-# BUILD_DIR=... builds elsewhere than in build/.
+# --json writes the rows of trace_bench as an array of objects, --isa selects the only instruction set of its batches.
+# BUILD_DIR=... replaces build/.
 set -eu
 root=$(CDPATH= cd -- "$(dirname -- "$0")/../.." && pwd)
 . "$root/cmake/build.sh"
@@ -16,7 +16,7 @@ build -DPETZVAL_BUILD_BENCHMARKS=ON -DPETZVAL_BUILD_TESTS=OFF -DPETZVAL_BUILD_EX
 echo
 "$BUILD_DIR/tests/bench/trace_bench" "$@"
 
-# What the trace alone knows is taken out for the others.
+# Only trace_bench has these options.
 left=$#
 while [ "$left" -gt 0 ]; do
   case $1 in
@@ -25,11 +25,11 @@ while [ "$left" -gt 0 ]; do
   esac
 done
 for bench in camera pupil psf surface movement; do
-  [ -x "$BUILD_DIR/tests/bench/${bench}_bench" ] || continue  # movement: built with Ceres alone
+  [ -x "$BUILD_DIR/tests/bench/${bench}_bench" ] || continue  # movement_bench needs Ceres
   echo
   "$BUILD_DIR/tests/bench/${bench}_bench" "$@"
 done
-if [ -x "$BUILD_DIR/tests/bench/blur_bench" ]; then  # built with Embree alone
+if [ -x "$BUILD_DIR/tests/bench/blur_bench" ]; then  # needs Embree
   echo
   "$BUILD_DIR/tests/bench/blur_bench"
 fi

@@ -1,11 +1,11 @@
 #!/bin/sh
 # SPDX-License-Identifier: Apache-2.0
-# Builds the tests of reproducible bits with each compiler that is installed, without and with optimisation, and runs them on every
-# instruction set of this processor. The hashes are constants, so each run is compared with all others.
+# Builds the tests of reproducible bits with each installed compiler, with and without optimisation, and runs them on every
+# instruction set of this processor. The hashes are constants, so that each run is compared with all others.
 #
 #   sh tests/bits/run.sh [g++-O0] [g++-O3] [clang++-O0] [clang++-O3]
 #
-# BITS_DIR=... builds elsewhere than in build/bits/. tests/platforms/run.sh runs the same tests on other processors and systems.
+# BITS_DIR=... replaces build/bits/. tests/platforms/run.sh runs the same tests on other processors and systems.
 set -eu
 root=$(CDPATH= cd -- "$(dirname -- "$0")/../.." && pwd)
 . "$root/cmake/build.sh"
@@ -18,7 +18,7 @@ for way; do
   case $way in
     g++-O[0-3]) ;;
     clang++-O[0-3]) compiler=$(command -v clang++-14 || command -v clang++ || true) ;;
-    *) echo "tests/bits/run.sh: found $way, wanted g++-O0 to g++-O3 or clang++-O0 to clang++-O3" >&2; exit 2 ;;
+    *) echo "tests/bits/run.sh: compiler = $way; must be g++-O0 to g++-O3 or clang++-O0 to clang++-O3" >&2; exit 2 ;;
   esac
   if [ -z "$compiler" ]; then
     echo "== $way: clang++ is not installed, skipped"

@@ -1,10 +1,10 @@
 #!/bin/sh
 # SPDX-License-Identifier: Apache-2.0
-# Runs a command with a Slurm of its own: one node on the loopback interface, as root, without authentication.
+# Starts Slurm for one command: one node on the loopback interface, as root, without authentication.
 #
 #   sh slurm_on_loopback.sh FOLDER COMMAND...
 #
-# FOLDER takes its state and logs. Ends with the status of the command, or 77 where Slurm does not start.
+# FOLDER gets the state and the logs of Slurm. The exit status is the status of the command, or 77 if Slurm does not start.
 set -eu
 folder=$1
 shift

@@ -1,10 +1,10 @@
 #!/bin/sh
 # SPDX-License-Identifier: Apache-2.0
-# Builds the flood and runs it: 1e9 random rays, 1e8 camera samples, 1e7 blurred pixels, unless flags say otherwise.
+# Builds and runs flood: by default 1e9 random rays, 1e8 camera samples and 1e7 blurred pixels.
 #
 #   sh tests/flood/run.sh [--rays N] [--samples N] [--gathers N] [--seed S] [--from CASE] [--threads N]
 #
-# BUILD_DIR=... builds elsewhere than in build/.
+# BUILD_DIR=... replaces build/.
 set -eu
 root=$(CDPATH= cd -- "$(dirname -- "$0")/../.." && pwd)
 . "$root/cmake/build.sh"

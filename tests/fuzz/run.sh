@@ -1,15 +1,15 @@
 #!/bin/sh
 # SPDX-License-Identifier: Apache-2.0
-# Fuzzes petzval with libFuzzer under ASan and UBSan, and prints what was run; installs what a bare Debian 12 lacks.
+# Fuzzes petzval with libFuzzer under ASan and UBSan and prints a table of the runs. Installs missing packages on Debian 12.
 #
 #   sh tests/fuzz/run.sh --runs N [--targets zemax,trace] [--jobs J]
 #
-# N inputs for each target, J targets at once (by default 1). An input may take 512 MB, and 10 s: the sanitizers make it ten
-# times as slow and more. Exit status 1 where one crashes, breaks a law or takes more; it is kept in BUILD_DIR/found/TARGET,
-# and BUILD_DIR/tests/fuzz/fuzz_replay TARGET FILE runs it again. Inputs that reach something new stay in
-# BUILD_DIR/corpus/TARGET, where the next run starts.
+# Runs N inputs for each target, J targets at once (by default 1). The limits for an input are 512 MB and 10 s; sanitizers make
+# the code ten or more times as slow. The exit status is 1 if an input crashes, violates a rule or exceeds a limit. Such inputs are
+# kept in BUILD_DIR/found/TARGET, and BUILD_DIR/tests/fuzz/fuzz_replay TARGET FILE runs one of them again. Inputs that reach new
+# code are kept in BUILD_DIR/corpus/TARGET for the next run.
 #
-# BUILD_DIR=... builds elsewhere than in build/fuzz/.
+# BUILD_DIR=... replaces build/fuzz/.
 set -eu
 root=$(CDPATH= cd -- "$(dirname -- "$0")/../.." && pwd)
 BUILD_DIR=${BUILD_DIR:-$root/build/fuzz}
@@ -26,13 +26,13 @@ while [ $# -gt 1 ]; do
   shift 2
 done
 if [ $# -gt 0 ] || [ -z "$runs" ]; then
-  echo "wanted: run.sh --runs N [--targets A,B] [--jobs J]" >&2
+  echo "usage: sh tests/fuzz/run.sh --runs N [--targets A,B] [--jobs J]" >&2
   exit 2
 fi
 
 for number in "$runs" "$jobs"; do
   case $number in
-    *[!0-9]* | 0*) echo "tests/fuzz/run.sh: found $number, wanted a whole number of 1 or more for --runs and --jobs" >&2; exit 2 ;;
+    *[!0-9]* | 0*) echo "tests/fuzz/run.sh: --runs or --jobs = $number; must be a whole number of 1 or more" >&2; exit 2 ;;
   esac
 done
 
@@ -42,13 +42,13 @@ target=fuzz build -DCMAKE_CXX_COMPILER=clang++-14 -DBUILD_SHARED_LIBS=OFF -DPETZ
 programs=$BUILD_DIR/tests/fuzz
 "$programs/fuzz_replay" --write-seeds "$BUILD_DIR/seeds"
 
-# What ASan keeps of freed memory is not the library's.
+# Freed memory that ASan holds must not count as memory of the library.
 export ASAN_OPTIONS=quarantine_size_mb=8
 logs=$(mktemp -d)
 trap 'rm -rf "$logs"' EXIT
 trap 'exit 130' INT TERM
 
-# fuzz NAME PROGRAM LARGEST: a target, its log in $logs.
+# fuzz NAME PROGRAM LARGEST: runs a target; its log is in $logs.
 fuzz() {
   mkdir -p "$BUILD_DIR/corpus/$1" "$BUILD_DIR/found/$1"
   status=0
@@ -58,7 +58,7 @@ fuzz() {
   echo "$status" >"$logs/$1.status"
 }
 
-# The inputs so far of the targets that run, on a terminal.
+# Shows the number of inputs of the running targets if standard error is a terminal.
 progress() {
   [ -t 2 ] || return 0
   line=
@@ -69,14 +69,14 @@ progress() {
   printf '\r\033[K%.110s' "$line" >&2
 }
 
-# stat NAME LOG: a number that libFuzzer prints at its end.
+# stat NAME LOG: a number from the final statistics of libFuzzer.
 stat() { sed -n "s/^stat::$1: *//p" "$2" | tail -n 1; }
 
 "$programs/fuzz_replay" --list >"$logs/list"
 if [ -n "$targets" ]; then
   : >"$logs/wanted"
   for name in $(echo "$targets" | tr , ' '); do
-    grep "^$name " "$logs/list" >>"$logs/wanted" || { echo "no target $name, wanted some of:" $(cut -d ' ' -f 1 "$logs/list") >&2; exit 2; }
+    grep "^$name " "$logs/list" >>"$logs/wanted" || { echo "tests/fuzz/run.sh: --targets = $name; must be among:" $(cut -d ' ' -f 1 "$logs/list") >&2; exit 2; }
   done
   mv "$logs/wanted" "$logs/list"
 fi

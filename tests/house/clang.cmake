@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
-# cmake -DCLANG=clang++-14 -DCOMPILER=/usr/bin/c++ -DBUILD=... -DWORK=... [-DOBJECTS=regex] -P clang.cmake: another compiler
-# accepts the sources of the objects that match, with the flags with which COMPILER built them. Without OBJECTS it precompiles
-# the headers of the build into WORK, if it has any; the other calls need them.
+# cmake -DCLANG=clang++-14 -DCOMPILER=/usr/bin/c++ -DBUILD=... -DWORK=... [-DOBJECTS=regex] -P clang.cmake: checks that CLANG
+# compiles the sources of the matching objects with the flags that COMPILER got. Without OBJECTS it precompiles the headers of the
+# build, if any, into WORK; the other calls need them.
 cmake_minimum_required(VERSION 3.25)
 
 file(STRINGS ${BUILD}/compile_commands.json lines REGEX "^ *\"command\": ")
@@ -22,7 +22,7 @@ foreach(line IN LISTS lines)
   if(command MATCHES " -include ([^ ]*/cmake_pch\\.hxx)")
     set(include "${CMAKE_MATCH_1}")
     string(MD5 name "${include}")
-    if(header)  # a copy: clang would look for a precompiled header beside the original, and find that of the compiler
+    if(header)  # a copy: next to the original clang would find the precompiled header of the other compiler
       configure_file(${include} ${WORK}/${name}.hxx COPYONLY)
       string(REPLACE "${include} " "${WORK}/${name}.hxx -o ${WORK}/${name}.pch " command "${command}")
     else()
@@ -32,7 +32,7 @@ foreach(line IN LISTS lines)
     string(APPEND command " -fsyntax-only")
   endif()
   separate_arguments(arguments UNIX_COMMAND "${command}")
-  list(FIND arguments ${COMPILER} position)  # a launcher such as ccache may stand before it
+  list(FIND arguments ${COMPILER} position)  # a launcher such as ccache may precede the compiler
   math(EXPR position "${position} + 1")
   list(SUBLIST arguments ${position} -1 arguments)
   execute_process(COMMAND ${CLANG} ${arguments} -Werror -Wno-unknown-warning-option WORKING_DIRECTORY ${BUILD}

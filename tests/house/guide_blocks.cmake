@@ -2,8 +2,12 @@
 
 # petzval_guide_blocks(page count prose): splits a Markdown page into its fenced blocks and the rest.
 #
-# Sets, in the caller: <count>, the number of blocks; block_<i>, kind_<i> and line_<i>, the text of block i, the word behind ``` and
-# the line of its first line; <prose>, the text outside the blocks; lines, the number of lines of the page.
+# Sets in the scope of the caller:
+#   <count>               number of blocks
+#   block_<i>             text of block i
+#   kind_<i>, line_<i>    the word after ``` and the number of the block's first line
+#   <prose>               text outside the blocks
+#   lines                 number of lines of the page
 function(petzval_guide_blocks page count prose)
   file(READ ${page} text)
   # Semicolons and brackets would split or join the elements of a list.
@@ -42,7 +46,7 @@ function(petzval_guide_blocks page count prose)
     endif()
   endforeach()
   if(inside)
-    message(FATAL_ERROR "${page}:${first}: a block without an end; must end in a line ```")
+    message(FATAL_ERROR "${page}:${first}: block has no end; must end with a line ```")
   endif()
   set(${count} ${blocks} PARENT_SCOPE)
   set(${prose} "${outside}" PARENT_SCOPE)

@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
 # cmake -DROOT=... -DBUILD=... -DWORK=... -DPAGE=lib/docs/renderers.md -P guide_commands.cmake: runs the commands of a guide.
 #
-# Every line of a block ```sh is run in a shell, in a folder that looks like the repository with its build: links to its folders and
-# to README.md. Commands write to out. A command whose example program is not built, for want of a library, is left out.
-# A block ```text must be a part of the output of the last block ```sh, or of the guide's own program (lib/docs/renderers.cpp), line by
-# line, apart from the indentation.
+# Each line of a block ```sh runs in a shell, in a folder with links to the folders of the repository and its build and to
+# README.md. Commands write to out. A command is skipped if its example program is not built because a library is missing.
+# The output of the last block ```sh, or of the program of the guide (lib/docs/renderers.cpp), must contain the lines of a block
+# ```text, apart from the indentation.
 cmake_minimum_required(VERSION 3.25)
 include(${CMAKE_CURRENT_LIST_DIR}/guide_blocks.cmake)
 
@@ -25,7 +25,7 @@ function(run command line)
   set(printed "${printed}${out}" PARENT_SCOPE)
 endfunction()
 
-# plain(text): the lines of a text without indentation and without blanks at their ends.
+# plain(text): the lines of a text without indentation and trailing blanks.
 function(plain variable)
   string(REGEX REPLACE " *\n *" "\n" text "\n${${variable}}\n")
   string(STRIP "${text}" text)
@@ -39,7 +39,7 @@ if(EXISTS ${BUILD}/guides/${name})
   run(build/guides/${name} 1)
   set(own "${printed}")
 elseif(EXISTS ${ROOT}/lib/docs/${name}.cpp)
-  message(STATUS "${PAGE}: blocks text are not compared, as the program ${name} is not built")
+  message(STATUS "${PAGE}: blocks ```text are not compared, because the program ${name} is not built")
   set(own "not built")
 endif()
 
@@ -54,7 +54,7 @@ foreach(index RANGE ${blocks})
     set(printed "")
     set(skipped FALSE)
     set(text "${block_${index}}")
-    string(REGEX REPLACE "\\\\\n *" "" text "${text}")  # a line that ends in a backslash goes on
+    string(REGEX REPLACE "\\\\\n *" "" text "${text}")  # a backslash at the end of a line continues the line
     set(line ${line_${index}})
     while(NOT text STREQUAL "")
       string(FIND "${text}" "\n" end)
@@ -67,7 +67,7 @@ foreach(index RANGE ${blocks})
         if(NOT source)
           message(FATAL_ERROR "${PAGE}:${line}: ${command}\nprogram = ${program}; must be one of examples/")
         elseif(NOT EXISTS ${BUILD}/examples/${program})
-          message(STATUS "${PAGE}:${line}: left out, as ${program} is not built")
+          message(STATUS "${PAGE}:${line}: skipped, because ${program} is not built")
           set(skipped TRUE)
           continue()
         endif()

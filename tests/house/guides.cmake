@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
 # cmake -DROOT=... -P guides.cmake: checks README.md and the guides, lib/docs/*.md, without a build.
 #
-# - A block ```cpp is a part of a compiled source, line by line, apart from the indentation.
-# - Files that links and paths in back quotes name exist.
-# - Blocks have a known kind and an end. guide_commands.cmake runs those of kind sh and compares those of kind text.
+# - A compiled source contains the lines of each block ```cpp, apart from the indentation.
+# - The targets of links and the paths in back quotes exist.
+# - Blocks have a known kind and an end. guide_commands.cmake runs blocks of kind sh and compares blocks of kind text.
 # - A guide has at most 350 lines.
 cmake_minimum_required(VERSION 3.25)
 include(${CMAKE_CURRENT_LIST_DIR}/guide_blocks.cmake)
@@ -11,7 +11,7 @@ include(${CMAKE_CURRENT_LIST_DIR}/guide_blocks.cmake)
 get_filename_component(ROOT "${ROOT}" ABSOLUTE)
 file(GLOB guides RELATIVE ${ROOT} ${ROOT}/lib/docs/*.md)
 set(sources "")
-foreach(folders "lib/docs;examples" "lib;include;tests")  # most blocks are found in the first two
+foreach(folders "lib/docs;examples" "lib;include;tests")  # the first two have most blocks
   set(patterns "")
   foreach(folder IN LISTS folders)
     list(APPEND patterns ${ROOT}/${folder}/*.cpp ${ROOT}/${folder}/*.hpp)
@@ -21,7 +21,7 @@ foreach(folders "lib/docs;examples" "lib;include;tests")  # most blocks are foun
 endforeach()
 list(REMOVE_DUPLICATES sources)
 
-# in_a_source(block found): true if a source has the lines of the block, apart from the indentation.
+# in_a_source(block found): true if a source contains the lines of the block, apart from the indentation.
 function(in_a_source block found)
   set(${found} FALSE PARENT_SCOPE)
   string(STRIP "${block}" block)
@@ -37,7 +37,7 @@ function(in_a_source block found)
   endforeach()
 endfunction()
 
-# check_path(page path): appends to the faults if a path, from the root or from the folder of the page, does not exist.
+# check_path(page path): adds a fault if the path exists neither in the root nor in the folder of the page.
 function(check_path page path)
   get_filename_component(folder ${ROOT}/${page} DIRECTORY)
   if(NOT EXISTS ${ROOT}/${path} AND NOT EXISTS ${folder}/${path})

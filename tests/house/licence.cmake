@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-# cmake -DROOT=... -P licence.cmake: every source and script states its licence in its first line (its second, after #!).
+# cmake -DROOT=... -P licence.cmake: checks that every source and script states its licence in its first line (after #! in its
+# second line).
 cmake_minimum_required(VERSION 3.25)
 
 set(patterns "")
@@ -29,7 +30,7 @@ endforeach()
 
 list(LENGTH files count)
 if(count LESS 20)
-  message(FATAL_ERROR "only ${count} files below '${ROOT}': -DROOT=<the repository> is wanted")
+  message(FATAL_ERROR "ROOT = ${ROOT}: only ${count} files; must be the repository")
 elseif(faults)
   message(FATAL_ERROR "Without \"SPDX-License-Identifier: Apache-2.0\" in the first line:${faults}")
 endif()

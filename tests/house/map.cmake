@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-# cmake -DROOT=... -P map.cmake: lib/README.md shows the modules in the layers that cmake/check_layers.cmake has: in its table, a
-# row "| layer | module | ..." for each, and in its picture, a line for each layer, the highest first.
+# cmake -DROOT=... -P map.cmake: checks that lib/README.md shows the modules in the layers of cmake/check_layers.cmake: a row
+# "| layer | module | ..." of its table for each module, and a line of its picture for each layer, the highest layer first.
 cmake_minimum_required(VERSION 3.25)
 
 set(modules "")
@@ -35,12 +35,12 @@ endforeach()
 list(SORT modules)
 list(SORT shown)
 if(NOT shown STREQUAL modules)
-  message(FATAL_ERROR "lib/README.md: the table of modules: found ${shown}, wanted ${modules}")
+  message(FATAL_ERROR "lib/README.md: table of modules = ${shown}; must be ${modules}")
 endif()
 
 list(JOIN picture "\n" picture)
 file(READ ${ROOT}/lib/README.md text)
 string(FIND "${text}" "\n${picture}\n" position)
 if(position EQUAL -1)
-  message(FATAL_ERROR "lib/README.md: the picture of the modules is wanted so:\n\n${picture}\n")
+  message(FATAL_ERROR "lib/README.md: picture of the modules; must be:\n\n${picture}\n")
 endif()

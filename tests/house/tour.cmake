@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-# cmake -DROOT=... -P tour.cmake: users meet every public header: petzval.hpp, an example or the consumer includes it, directly or
+# cmake -DROOT=... -P tour.cmake: checks that petzval.hpp, an example or the consumer includes each public header, directly or
 # through other public headers.
 cmake_minimum_required(VERSION 3.25)
 
@@ -22,7 +22,7 @@ endwhile()
 list(LENGTH headers count)
 list(REMOVE_ITEM headers ${met})
 if(count LESS 20)
-  message(FATAL_ERROR "only ${count} headers below '${ROOT}/include': -DROOT=<the repository> is wanted")
+  message(FATAL_ERROR "ROOT = ${ROOT}: only ${count} headers; must be the repository")
 elseif(headers)
   list(JOIN headers "\n  " faults)
   message(FATAL_ERROR "Public headers that petzval.hpp, the examples and the consumer do not include:\n  ${faults}")

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-# cmake -DROOT=... -P version.cmake: the pages that name the version agree with include/petzval/core/version.hpp.
+# cmake -DROOT=... -P version.cmake: checks that the version in the pages equals include/petzval/core/version.hpp.
 cmake_minimum_required(VERSION 3.25)
 
 file(STRINGS ${ROOT}/include/petzval/core/version.hpp line REGEX "define PETZVAL_VERSION ")

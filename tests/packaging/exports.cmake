@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-# cmake -DLIBRARY=libpetzval-core.so [-DNEEDED=regex] -P exports.cmake: a shared library exports what belongs to petzval and
-# nothing else, and needs only the libraries that match.
+# cmake -DLIBRARY=libpetzval-core.so [-DNEEDED=regex] -P exports.cmake: checks that a shared library exports only symbols of petzval
+# and needs only libraries that match.
 cmake_minimum_required(VERSION 3.25)
 
 execute_process(COMMAND nm --dynamic --defined-only --format=posix ${LIBRARY}
@@ -16,9 +16,9 @@ foreach(symbol IN LISTS symbols)
   endif()
 endforeach()
 if(faults)
-  message(FATAL_ERROR "${LIBRARY} exports what is not petzval's (c++filt makes it readable):${faults}")
+  message(FATAL_ERROR "${LIBRARY} exports foreign symbols (c++filt makes them readable):${faults}")
 elseif(functions EQUAL 0)
-  message(FATAL_ERROR "${LIBRARY} exports nothing")
+  message(FATAL_ERROR "${LIBRARY} exports no symbol")
 endif()
 
 if(NEEDED)
@@ -27,7 +27,7 @@ if(NEEDED)
   foreach(entry IN LISTS entries)
     string(REGEX REPLACE "^.*\\[(.*)\\]$" "\\1" needed "${entry}")
     if(NOT needed MATCHES "^(${NEEDED})$")
-      message(FATAL_ERROR "${LIBRARY} needs ${needed}; wanted none but ${NEEDED}")
+      message(FATAL_ERROR "${LIBRARY} needs ${needed}; must match ${NEEDED}")
     endif()
   endforeach()
 endif()

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-# cmake -DCOMPILER=g++ -DSOURCE=... -DSTAGE=... -DWORK=... -P headers.cmake: every public header below SOURCE is also below STAGE,
-# where it was installed, and compiles there as the first thing a file includes, twice, with the standard library and GLM at hand.
+# cmake -DCOMPILER=g++ -DSOURCE=... -DSTAGE=... -DWORK=... -P headers.cmake: checks that every public header below SOURCE is
+# installed below STAGE and compiles there as the first include of a file, included twice, with only the standard library and GLM.
 cmake_minimum_required(VERSION 3.25)
 
 file(GLOB_RECURSE headers RELATIVE "${SOURCE}" "${SOURCE}/*.hpp")

@@ -1,15 +1,15 @@
 # SPDX-License-Identifier: Apache-2.0
-# cmake -DHOST=... -DSOURCE=... -DWORK=... -DGENERATOR=... -DOPTIONS=... -P host.cmake: petzval as a subproject of HOST changes
-# neither the kind of the host's libraries, nor its `all` target, nor the files that the host installs.
+# cmake -DHOST=... -DSOURCE=... -DWORK=... -DGENERATOR=... -DOPTIONS=... -P host.cmake: checks that petzval as a subproject of HOST
+# changes neither the kind of the host's libraries, nor its `all` target, nor its installed files.
 cmake_minimum_required(VERSION 3.25)
 
 file(REMOVE_RECURSE ${WORK})
-foreach(time first second)  # a cache entry of the first run would act on the second
+foreach(time first second)  # cache entries of the first run must not change the second run
   execute_process(COMMAND ${CMAKE_COMMAND} -S ${HOST} -B ${WORK}/build -G ${GENERATOR} -DPETZVAL_SOURCE=${SOURCE} ${OPTIONS}
     COMMAND_ERROR_IS_FATAL ANY OUTPUT_QUIET)
 endforeach()
 
-# expect(what found wanted): lists, compared after sorting.
+# expect(what found wanted): compares two lists, sorted.
 function(expect what found wanted)
   list(SORT found)
   list(SORT wanted)
@@ -18,7 +18,7 @@ function(expect what found wanted)
   endif()
 endfunction()
 
-# build(target result): the targets of petzval that a target of the host builds, without building them.
+# build(target result): lists the targets of petzval that a target of the host would build.
 function(build target result)
   execute_process(COMMAND ${CMAKE_COMMAND} --build ${WORK}/build --target ${target} -- -n
     OUTPUT_VARIABLE commands COMMAND_ERROR_IS_FATAL ANY)

@@ -1,6 +1,6 @@
 #!/bin/sh
 # SPDX-License-Identifier: Apache-2.0
-# pkg_config.sh COMPILER LIBDIR SOURCE WORK [ARGUMENT...]: builds a program with what pkg-config says, and runs it.
+# pkg_config.sh COMPILER LIBDIR SOURCE WORK [ARGUMENT...]: builds a program with the flags of pkg-config and runs it.
 set -eu
 compiler=$1 libdir=$2 source=$3 work=$4
 shift 4

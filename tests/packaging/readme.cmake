@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-# cmake -DSOURCE=... -DWORK=... -DOPTIONS=... -P readme.cmake: the command of README.md, "Linking", configures petzval where the
-# packages of the library alone are installed.
+# cmake -DSOURCE=... -DWORK=... -DOPTIONS=... -P readme.cmake: checks that the command of README.md, "Linking", configures petzval
+# if only the packages of the library are installed.
 cmake_minimum_required(VERSION 3.25)
 
 file(READ ${SOURCE}/README.md text)
@@ -18,5 +18,5 @@ endforeach()
 execute_process(COMMAND ${command} ${missing} ${OPTIONS} COMMAND_ERROR_IS_FATAL ANY OUTPUT_QUIET)
 file(STRINGS ${WORK}/CMakeCache.txt generator REGEX "^CMAKE_GENERATOR:.*=Ninja")
 if(NOT generator)  # run.sh installs no make
-  message(FATAL_ERROR "README.md, Linking: the generator is not Ninja; must be")
+  message(FATAL_ERROR "README.md, Linking: generator is not Ninja; must be Ninja")
 endif()

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-# Linux on 64-bit ARM, by Debian's cross compiler; programs run by qemu-user.
+# Linux on 64-bit ARM with Debian's cross compiler; qemu-user runs the programs.
 set(CMAKE_SYSTEM_NAME Linux)
 set(CMAKE_SYSTEM_PROCESSOR aarch64)
 set(CMAKE_C_COMPILER aarch64-linux-gnu-gcc)

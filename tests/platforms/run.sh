@@ -1,11 +1,11 @@
 #!/bin/sh
 # SPDX-License-Identifier: Apache-2.0
-# Builds the core, the blur and their tests for other platforms with Debian's cross compilers, and runs the tests where an emulator
-# (qemu-user, wine) is installed.
+# Builds core, blur and their tests for other platforms with Debian's cross compilers, and runs the tests if an emulator (qemu-user,
+# wine) is installed.
 #
 #   sh tests/platforms/run.sh [aarch64] [windows] [-- arguments of the test programs, such as --gtest_filter='*Bits*']
 #
-# PLATFORMS_DIR=... builds elsewhere than in build/platforms/. Needs the network once, for the sources of yaml-cpp.
+# PLATFORMS_DIR=... replaces build/platforms/. Downloads the sources of yaml-cpp once.
 set -eu
 here=$(CDPATH= cd -- "$(dirname -- "$0")" && pwd)
 root=$(dirname "$(dirname "$here")")
@@ -17,13 +17,13 @@ while [ $# -gt 0 ]; do
   case $1 in
     aarch64 | windows) platforms="$platforms $1" ;;
     --) shift; break ;;
-    *) echo "tests/platforms/run.sh: found $1, wanted aarch64, windows or --" >&2; exit 2 ;;
+    *) echo "tests/platforms/run.sh: platform = $1; must be aarch64, windows or --" >&2; exit 2 ;;
   esac
   shift
 done
 platforms=${platforms:-aarch64 windows}
 
-# What is the same for every platform: headers, with the files by which CMake finds them, and sources.
+# Shared by all platforms: headers with their CMake packages, and sources.
 prepare() {
   need $library_packages googletest
   [ -e "$work/prepared" ] && return
@@ -46,7 +46,7 @@ prepare() {
   touch "$work/prepared"
 }
 
-# library PLATFORM NAME SOURCE OPTION...: a static library that the core or the tests link.
+# library PLATFORM NAME SOURCE OPTION...: builds a static library that core or the tests link.
 library() {
   platform=$1 name=$2 source=$3
   shift 3
@@ -72,11 +72,11 @@ for platform in $platforms; do
     -DBUILD_SHARED_LIBS=OFF -DPETZVAL_WITH_CERES=OFF -DPETZVAL_WITH_OPENEXR=OFF -DPETZVAL_BUILD_EXAMPLES=OFF
   NINJA_STATUS="[%f/%t, %es] " cmake --build "$work/$platform/petzval"
   if ! command -v "${emulator%% *}" >/dev/null; then
-    echo "== ${emulator%% *} is not installed: the tests for $platform are built and not run"
+    echo "== ${emulator%% *} is not installed: the tests for $platform are built, but not run"
     continue
   fi
   echo "== Testing for $platform"
-  # Whole programs: an emulator takes longer to start than most tests take.
+  # Runs whole programs, because an emulator starts more slowly than most tests run.
   failed=
   for program in "$work/$platform/petzval"/tests/*/*_tests "$work/$platform/petzval"/tests/*/*_tests.exe; do
     [ -x "$program" ] || continue
@@ -88,7 +88,7 @@ for platform in $platforms; do
       failed="$failed fuzz_replay"
   fi
   if [ -n "$failed" ]; then
-    echo "tests/platforms/run.sh: on $platform fail$failed" >&2
+    echo "tests/platforms/run.sh: failed on $platform:$failed" >&2
     exit 1
   fi
 done

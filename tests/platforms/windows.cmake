@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-# Windows on x86-64, by MinGW-w64 with POSIX threads; programs run by Wine. Their own libraries are linked in, so that a program
-# finds all it needs.
+# Windows on x86-64 with MinGW-w64 and POSIX threads; Wine runs the programs. The libraries of the compiler are linked statically,
+# so that Wine does not search for them.
 set(CMAKE_SYSTEM_NAME Windows)
 set(CMAKE_SYSTEM_PROCESSOR x86_64)
 set(CMAKE_C_COMPILER x86_64-w64-mingw32-gcc-posix)

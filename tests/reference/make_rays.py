@@ -4,11 +4,10 @@
 
     python3 tests/reference/make_rays.py            (needs python3-mpmath)
 
-It shares no formula with the library. Quadrics are met in the frame of their centre (of an axis where they have none), both
-roots are computed and the hit is the one that a description in words asks for: on the sheet through the vertex, crossed in
-the sense of travel. Aspheres are scanned densely for their first crossing, which mpmath.findroot then sharpens. Refraction
-is Snell's law by angles in the plane of incidence. A ray whose fate hangs on less than a few 1e-5 is not taken, so that fates can be
-compared exactly, in float too.
+It shares no formula with the library. Quadrics are intersected in the frame of their centre (paraboloids in the frame of an axis):
+both roots are computed, and the hit is the root on the sheet through the vertex, crossed in the direction of travel. Aspheres are
+scanned densely for their first crossing, which mpmath.findroot refines. Refraction is Snell's law by angles in the plane of
+incidence. A ray is skipped if its fate changes within a few 1e-5, so that fates can be compared exactly, also in float.
 """
 import json
 import math
@@ -28,7 +27,7 @@ NAMES = """double_gauss_100mm_f1.35 double_gauss_100mm_f2.0 fisheye_10mm_f4 fish
 
 
 class Doubtful(Exception):
-    """The fate of the ray hangs on a rounding."""
+    """Rounding decides the fate of the ray."""
 
 
 class Lost(Exception):
@@ -73,7 +72,7 @@ class Surface:
         return (z + sum(a * r ** n for n, a in self.terms), slope + sum(n * a * r ** (n - 1) for n, a in self.terms))
 
     def normal(self, p):
-        """Unit, towards +z at the vertex."""
+        """Unit normal, towards +z at the vertex."""
         ax, ay = self.section
         if self.terms:
             r = sqrt(ax * p[0] ** 2 + ay * p[1] ** 2)
@@ -81,7 +80,7 @@ class Surface:
             return unit([-slope * ax * p[0] / r, -slope * ay * p[1] / r, mpf(1)]) if r != 0 else [mpf(0), mpf(0), mpf(1)]
         if self.radius == 0:
             return [mpf(0), mpf(0), mpf(1)]
-        # Gradient of x^2 + y^2 + (1 + k) z^2 - 2 R z, pointing towards the inside; turned to +z at the vertex.
+        # Minus half the gradient of x^2 + y^2 + (1 + k) z^2 - 2 R z, times the sign of R, so that it points to +z at the vertex.
         g = [-ax * p[0], -ay * p[1], self.radius - (1 + self.conic) * p[2]]
         return unit([mp.sign(self.radius) * x for x in g])
 
@@ -118,7 +117,7 @@ class Surface:
         raise Lost
 
     def asphere_hit(self, p, d, sense):
-        """The first crossing in the sense of travel within the clear aperture."""
+        """The first crossing in the direction of travel within the clear aperture."""
         q = along(p, d, -dot(p, d))
         px, py, pz, dx, dy, dz = map(float, q + d)
         rim = float(self.rim)
@@ -145,7 +144,7 @@ class Surface:
                 if abs(dot(self.normal(hit), d)) < mpf("0.02"):
                     raise Doubtful  # grazing: another crossing may be within rounding
                 return hit
-        raise Doubtful  # lost, but whether past the rim or past the surface is not defined beyond the rim
+        raise Doubtful  # lost beyond the rim, where either fate is correct
 
     def hit(self, p, d, sense):
         return self.asphere_hit(p, d, sense) if self.terms else self.quadric_hit(p, d, sense)
@@ -194,7 +193,7 @@ class Lens:
                 sense = -sense
             else:
                 before, behind = (self.index[i], self.index[i + 1]) if forward else (self.index[i + 1], self.index[i])
-                across = along(d, n, -c)  # component in the surface, length sin I
+                across = along(d, n, -c)  # component along the surface, length sin I
                 sine = sqrt(dot(across, across))
                 refracted = before / behind * sine
                 if abs(refracted - 1) < MARGIN:
@@ -213,7 +212,7 @@ def rounded(v):
 
 
 def through_stop(lens, rng, spread, side):
-    """A ray aimed from a point of the stop out to one side, then turned round: most of these pass."""
+    """A ray from a point of the stop to one side of the lens, reversed: most of these rays pass."""
     i = lens.stop()
     s = lens.surfaces[i]
     radius, turn = float(s.rim) * math.sqrt(rng.random()) * 0.999, 2 * math.pi * rng.random()
@@ -223,7 +222,7 @@ def through_stop(lens, rng, spread, side):
     if sag is None:
         return None
     d = [math.sin(slope) * math.cos(heading), math.sin(slope) * math.sin(heading), math.cos(slope)]
-    if side == "scene":  # out through the front part
+    if side == "scene":  # through the surfaces in front of the stop
         part, travel, towards = (0, i), "to_scene", -1
         mirrors = sum(t.mirror for t in lens.surfaces[:i])
     else:
@@ -238,7 +237,7 @@ def through_stop(lens, rng, spread, side):
 
 
 def at_random(lens, rng, travel, spread):
-    """A ray at an outer surface, often one that is lost."""
+    """A ray that starts at an outer surface; many of these rays are lost."""
     forward = travel == "to_film"
     s = lens.surfaces[0 if forward else -1]
     reach = float(s.rim) * 1.15
@@ -256,7 +255,7 @@ def rays(lens, rng):
     yield "to_film", [0.0, 0.0, -10.0], [0.0, 0.0, 1.0]
     yield "to_scene", [0.0, 0.0, float(lens.film_z)], [0.0, 0.0, -1.0 * film_sense]
     steep = 2.0 if mirrors else 30.0
-    hard = "fisheye" in lens.name or "mangin" in lens.name  # few of the tries get out of these
+    hard = "fisheye" in lens.name or "mangin" in lens.name  # few random rays pass these lenses
     for k in range(200 if hard else 60):
         ray = through_stop(lens, rng, steep if k % 3 else steep / 4, "scene" if k % 3 else "film")
         if ray:
