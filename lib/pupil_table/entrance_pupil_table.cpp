@@ -27,7 +27,7 @@ constexpr double pi = std::numbers::pi;
 
 double squared(double x) noexcept { return x * x; }
 
-/// Solid angle of a ball at a distance; 4 pi inside the ball.
+/// Solid angle of a ball seen from a distance; 4 pi inside the ball.
 double cone(double radius, double distance) noexcept {
   if (!(distance > radius)) return 4 * pi;
   const double sine2 = squared(radius / distance);
@@ -77,7 +77,7 @@ struct EntrancePupilTable::Data {
     const auto near_enough = [](double x) { return std::abs(x) <= farthest_point; };
     if (!near_enough(point.x) || !near_enough(point.y) || !near_enough(point.z)) return false;
     const double r = std::hypot(point.x, point.y);
-    // Points outside the front element's rim may lie behind its vertex: fields of more than 90 degrees.
+    // Points outside the rim of the front element may lie behind its vertex: their fields exceed 90 degrees.
     return r > front_half || point.z < sag(lens, 0, point.x, point.y);
   }
   /// Largest distance of rays from the point z on the axis.
@@ -141,15 +141,15 @@ struct EntrancePupilTable::Data {
     const auto nm = at.in_nm();
     return nm ? compiled.nearest(*nm) : at.position(primary);
   }
-  /// True if a point may see a pupil at a wavelength.
+  /// True if a ray at a wavelength may reach the pupil from a point.
   bool sees(const Vec3<double>& point, std::size_t wavelength) const noexcept {
     return wavelength < balls.size() && balls[wavelength] > 0 && in_front(point);
   }
-  /// True if the grid has the pupils of points at a distance; otherwise pupils are cones about the ball.
+  /// True if the grid has pupils for points at a distance; otherwise samples fill the cone of the ball.
   bool covers(std::size_t wavelength, double distance) const noexcept {
     return widest[wavelength * (widest.size() / balls.size())] > 0 && steepest * distance >= 1;
   }
-  /// A sample of the cone about the ball, for points without a pupil in the grid.
+  /// Samples the cone of the ball, for points without a pupil in the grid.
   EntranceSample in_cone(const Vec3<double>& point, std::size_t wavelength, double u, double v) const noexcept;
 };
 
@@ -168,7 +168,8 @@ double EntrancePupilTable::Data::least_ball(std::span<const std::vector<Ray<doub
     for (const auto& own : rays) largest = std::max(largest, farthest(own, z));
     return largest;
   };
-  // Distances from lines are convex along the axis, and so is their maximum: ternary search.
+  // The distance from a line is a convex function of the position on the axis, and so is the maximum over lines:
+  // ternary search.
   for (int i = 0; i < 24; ++i) {
     const double a = first + (last - first) / 3, b = last - (last - first) / 3;
     if (radius(a) < radius(b)) {
@@ -205,8 +206,8 @@ EntrancePupilTable::EntrancePupilTable(const Lens& lens, std::span<const std::ve
   const Pupil entrance = pupils(lens, lens.primary_wavelength()).entrance;
   const pupil_detail::Face face = pupil_detail::face_of(lens, 0, entrance);
   data->front_half = face.half;
-  // Every centre gives correct tables; the centre of the pupil separates fields best. It must not lie in front of the
-  // lens, among scene points, nor so far behind the lens that all points have nearly the same field.
+  // Tables are correct for every centre; the centre of the pupil separates fields best. The centre must not lie in
+  // front of the lens, among scene points, nor so far behind the lens that all points have nearly the same field.
   const double length = std::abs(lens.surfaces().back().vertex_z) + face.half;
   const double first = face.z_min, last = face.z_max + 4 * length;
   data->centre.z = std::clamp(entrance.z, first, last);
@@ -218,9 +219,10 @@ EntrancePupilTable::EntrancePupilTable(const Lens& lens, std::span<const std::ve
     data->balls.push_back(between_rays * data->farthest(own, data->centre.z));
     reach = std::max(reach, data->balls.back());
   }
-  // With cylinders, pupils of near points move too fast for the small number of nodes.
+  // With cylinders, the pupils of near points move too fast for the small number of nodes.
   data->steepest = (lens.rotationally_symmetric() ? 0.8 : 0.25) / reach;
-  // Near points that the film sees through a small part of the pupil have fields far beyond the film's: exclude them.
+  // Exclude near points that the film sees only through a small part of the pupil: their fields are far larger than the
+  // fields of the film.
   for (const auto& own : rays) {
     constexpr double no_field = 1e-6;
     const double farthest = widest_field(data->centre, own, 0) + no_field;

@@ -34,14 +34,14 @@ struct EntranceSample {
 using TwoPlaneRaysToScene = std::function<void(std::size_t count, const TwoPlaneRays<const double>& lines,
                                                std::size_t wavelength, const RayArrays<double>& rays, RayFate* fates)>;
 
-/// Rays that leave the lens towards the scene, for each wavelength: samples of the pupils of a film, boundaries
-/// included. An EntrancePupilTable is made from these rays.
+/// Rays that leave the lens towards the scene, for each wavelength: samples of the pupils of a film, including points
+/// on their boundaries. An EntrancePupilTable is made from these rays.
 ///
-/// @param azimuths_alike  true if film points on +y represent all azimuths
+/// @param azimuths_alike  true if film points on +y are representative of all azimuths
 PETZVAL_API std::vector<std::vector<Ray<double>>> leaving_rays(const FilmPupilTable& pupils, bool azimuths_alike,
                                                                const TwoPlaneRaysToScene& to_scene, int threads = 1);
 
-/// Decides which part of a lens clips a pupil.
+/// The part of a lens that clips a pupil.
 enum class ClippedBy : std::uint8_t {
   apertures,  ///< Apertures clip the pupil; sampled rays only bound the pupil from inside.
   samples     ///< The sampled rays bound the pupil: for models without apertures.
@@ -56,8 +56,8 @@ using ScenePassing = std::function<void(std::size_t count, const RayArrays<const
 /// A point has a distance from the pupil centre and a field: the angle between the axis and the line to the centre. Its
 /// pupil lies in the plane perpendicular to this line, so that fields of 90 degrees and more need no special case.
 /// Pupils are interpolated polygons of 64 corners that contain every ray that passes and few others. All sectors get
-/// the same number of samples, uniform within a sector. Points nearer to the lens than the table reaches get a cone
-/// about a ball that all rays meet. Every ray that passes can be sampled: estimates are unbiased.
+/// the same number of samples, uniform within a sector. For points that are too near to the lens for the table, samples
+/// fill a cone around a ball that all rays meet. Every ray that passes can be sampled: estimates are unbiased.
 ///
 /// Immutable, cheap to copy, thread-safe.
 class PETZVAL_API EntrancePupilTable {

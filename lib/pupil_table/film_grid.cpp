@@ -26,8 +26,8 @@ constexpr std::size_t grid_steps = 8;  // steps between the nodes of an axis
 constexpr std::size_t probes = 16384;
 constexpr std::size_t grid_directions = 64;  // directions of the regions behind the polygons
 
-/// Guesses from aimed rays to the centre and the rim of the stop. Aiming is slow: about as many points of each row are
-/// aimed as are searched in full; guesses between them are interpolated.
+/// Predictions from rays aimed at the centre and the rim of the stop. Aiming is slow: in each row, only about as many
+/// points are aimed as are searched in full, and predictions between them are interpolated.
 std::vector<PupilGuess> aimed_guesses(const Lens& lens, const TwoPlanes& space, std::span<const FilmPoint> points,
                                       std::size_t row, std::size_t wavelength) {
   std::vector<PupilGuess> guesses = first_order_guesses(lens, space, points, wavelength);
@@ -82,7 +82,7 @@ std::vector<PupilRegion> film_pupils(const Lens& lens, const TwoPlanes& space, c
   return grid_pupils({guesses, row}, directions, traced_lines(lens, space, points, wavelength));
 }
 
-/// True for each film point that gets light at any wavelength.
+/// True for each film point that rays reach at any wavelength.
 std::vector<bool> lit_points(const Lens& lens, const TwoPlanes& space, const std::vector<FilmPoint>& points) {
   std::vector<bool> lit(points.size(), false);
   constexpr std::size_t few_directions = 4;
@@ -93,7 +93,8 @@ std::vector<bool> lit_points(const Lens& lens, const TwoPlanes& space, const std
   return lit;
 }
 
-/// Lengths of the lit parts of lines from (0, y) towards +x, or from (x, 0) towards +y; exact to 2^-8 of the line.
+/// Lengths of the lines from (0, y) towards +x, or from (x, 0) towards +y, up to the last film point that rays reach;
+/// exact to 2^-8 of the line.
 std::vector<double> lit_lengths(const Lens& lens, const TwoPlanes& space, const std::vector<double>& heights,
                                 const std::vector<double>& lengths, bool along_x) {
   const auto point = [&](std::size_t line, double along) {
@@ -121,7 +122,7 @@ std::vector<double> lit_lengths(const Lens& lens, const TwoPlanes& space, const 
 
 constexpr std::size_t half_steps = 2 * grid_steps;
 
-/// Half the chord lengths of a disc at half steps of rows up to a height.
+/// Half the chord lengths of a disc, at half steps of the rows up to a height.
 std::vector<double> half_chords(double radius, double height) {
   std::vector<double> widths;
   for (std::size_t i = 0; i <= half_steps; ++i) {
@@ -131,7 +132,8 @@ std::vector<double> half_chords(double radius, double height) {
   return widths;
 }
 
-/// The grid whose rows, connected by straight lines, enclose a convex area. widths: of the area at half steps of rows.
+/// The grid whose rows, connected by straight lines, enclose a convex area. widths: half widths of the area, at half
+/// steps of the rows.
 FilmGrid grid_within(double height, const std::vector<double>& widths) {
   FilmGrid grid;
   grid.columns = grid_steps;
@@ -140,7 +142,7 @@ FilmGrid grid_within(double height, const std::vector<double>& widths) {
   for (int round = 0; round < 2; ++round) {
     for (std::size_t i = 0; i < grid.rows(); ++i) {
       double &before = grid.half_widths[i], &after = grid.half_widths[i + 1];
-      // An arc exceeds the chords to its middle by a quarter as much.
+      // A chord over half of an arc has a quarter of the sagitta of the whole arc.
       const double chord = (before + after) / 2, beyond = 1.35 * std::max(widths[2 * i + 1] - chord, 0.0);
       before += beyond, after += beyond;
     }
@@ -169,7 +171,7 @@ PolygonWeights weights_of_point(const FilmGrid& grid, std::size_t point) noexcep
   return {{low, low + right, up, up + right}, {0.25, 0.25, 0.25, 0.25}};
 }
 
-/// A probe in a grid, given as fractions of the height and of the row width.
+/// A probe in a grid, as fractions of the height and of the row width.
 struct ProbedPoint {
   FilmPoint film;
   PolygonWeights weights;
@@ -190,7 +192,7 @@ void mirror_at_axes(std::span<PupilPolygon> polygons, const FilmGrid& grid) noex
   for (std::size_t i = 0; i <= grid.rows(); ++i) mirror(polygons[i * (grid.columns + 1)], true);
 }
 
-/// Expands polygons to traced rays at probes all over a grid.
+/// Expands polygons to traced rays at probes in all parts of a grid.
 void expand_to_traced_probes(std::span<PupilPolygon> polygons, const Lens& lens, const TwoPlanes& space,
                              const FilmGrid& grid, std::size_t wavelength) {
   const auto weights = [&](const std::array<double, 4>& at) { return ProbedPoint(grid, at[0], at[1]).weights; };
@@ -247,7 +249,8 @@ std::vector<PupilPolygon> grid_polygons(const Lens& lens, const TwoPlanes& space
 
 std::vector<PupilPolygon> tilted_grid_polygons(const FilmPupilTable& upright, const FilmTilt& tilt,
                                                const FilmGrid& grid, std::size_t wavelength) {
-  // Pupils for several values of `nearer` at each point; the middle value first, as it is the most likely to be lit.
+  // Pupils for several values of `nearer` at each point. The middle value is the first, because its pupil is the least
+  // likely to be empty.
   const std::size_t columns = 2 * grid.columns + 1;
   const std::vector<FilmPoint> points = points_of(grid);
   constexpr std::array parts{0.5, 0.0, 0.25, 0.75, 1.0};

@@ -11,9 +11,9 @@
 
 namespace petzval::pupil_table_detail {
 
-/// A grid over the quadrant x, y >= 0 of a film, for lenses that are symmetric about x = 0 and y = 0. Rows have equal
-/// steps of y, and the nodes of a row equal steps of x, so that interpolation is exact for a pupil that moves in
-/// proportion to the film point.
+/// A grid over the quadrant x, y >= 0 of a film, for lenses that are symmetric about x = 0 and y = 0. Rows are equally
+/// spaced in y, and the nodes of a row in x, so that interpolation is exact for a pupil that moves in proportion to the
+/// film point.
 struct FilmGrid {
   std::size_t columns = 0;          ///< steps between the nodes of a row
   double height = 0;                ///< y of the last row, mm
@@ -25,7 +25,7 @@ struct FilmGrid {
 
 /// Grid over a disc about the axis.
 FilmGrid disc_grid(double film_radius);
-/// Grid over the part of a film that gets light at any wavelength.
+/// Grid over the part of a film that rays reach at any wavelength.
 FilmGrid film_grid(const Lens& lens, const TwoPlanes& space, double film_radius);
 
 /// Pupils at the nodes of a grid, row by row, without obscurations. With PolygonFit::enclosing the interpolated pupils
@@ -33,8 +33,8 @@ FilmGrid film_grid(const Lens& lens, const TwoPlanes& space, double film_radius)
 std::vector<PupilPolygon> grid_polygons(const Lens& lens, const TwoPlanes& space, const FilmGrid& grid, PolygonFit fit,
                                         std::size_t wavelength);
 
-/// Pupils of a tilted film by virtual film point. Each contains the pupils of all positions at which the film point or
-/// its mirror images can lie. upright: the table of a lens with two mirror symmetries.
+/// Pupils of a tilted film by virtual film point. A pupil contains the pupils of all possible positions of the film
+/// point and of its mirror images. upright: the table of a lens with two mirror symmetries.
 std::vector<PupilPolygon> tilted_grid_polygons(const FilmPupilTable& upright, const FilmTilt& tilt,
                                                const FilmGrid& grid, std::size_t wavelength);
 

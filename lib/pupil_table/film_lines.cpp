@@ -62,7 +62,7 @@ std::vector<pupil_detail::PupilGuess> first_order_guesses(const Lens& lens, cons
   for (const FilmPoint& p : points) {
     double low = std::numeric_limits<double>::infinity(), high = -low;
     for (const double z : {face.z_min, face.z_max, last_z}) {
-      // A face that reaches the film is seen at any angle; a face beyond the film counts as close to the film.
+      // A face at the film would be seen at any angle; a face beyond the film counts as close to the film.
       const double least = 0.02 * std::abs(space.film_z - last_z);
       const double from_film = z - space.film_z;
       const double at = space.film_z + std::copysign(std::max(std::abs(from_film), least), last_z - space.film_z);

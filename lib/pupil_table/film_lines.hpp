@@ -16,7 +16,8 @@ namespace petzval::pupil_table_detail {
 pupil_detail::PlaceClearances traced_lines(const Lens& lens, const TwoPlanes& space, std::vector<FilmPoint> points,
                                            std::size_t wavelength);
 
-/// First-order guesses of the pupils of film points. Rays pass the last surface, which limits the size of a pupil.
+/// First-order predictions of the pupils of film points. The last surface, which all rays pass, limits the size of a
+/// pupil.
 std::vector<pupil_detail::PupilGuess> first_order_guesses(const Lens& lens, const TwoPlanes& space,
                                                           std::span<const FilmPoint> points, std::size_t wavelength);
 

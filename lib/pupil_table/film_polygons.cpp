@@ -41,7 +41,7 @@ FilmPupils traced_pupils(const Lens& lens, const TwoPlanes& space, std::size_t w
     for (const double height : heights) points.push_back({0, height});
     std::vector<pupil_detail::PupilGuess> guesses = first_order_guesses(open, space, points, wavelength);
     for (std::size_t i = 0; i < points.size(); ++i) {
-      // Aberrations move the image of a tiny stop by more than its size.
+      // Aberrations move the image of a tiny stop by more than the size of the image.
       constexpr double tiny = 1e-3;
       pupil_detail::PupilGuess& guess = guesses[i];
       if (guess.radius > tiny * (guess.high - guess.low)) continue;
@@ -67,11 +67,11 @@ FilmPupils traced_pupils(const Lens& lens, const TwoPlanes& space, std::size_t w
 
 namespace {
 
-/// Height up to which a film gets light at a wavelength, at most film_radius; 0 if the film is dark.
+/// Height up to which rays reach the film at a wavelength, at most film_radius; 0 if no rays reach the film.
 double lit_radius(double film_radius, const FilmPupils& pupils) {
   const auto lit_at = [&](double height) { return bool{pupils.lit(std::array{height})[0]}; };
   if (lit_at(film_radius)) return film_radius;
-  // From the edge inwards: the outer edge of a lit ring counts.
+  // Search from the edge inwards: for a lit ring, the outer edge counts.
   constexpr int parts = 16;
   for (int i = parts; --i >= 0;) {
     double low = film_radius * i / parts, high = film_radius * (i + 1) / parts;
@@ -87,7 +87,7 @@ double lit_radius(double film_radius, const FilmPupils& pupils) {
 
 /// The polygons of one wavelength.
 std::vector<PupilPolygon> polygons_of(double lit_radius, PolygonFit fit, const FilmPupils& film) {
-  // Heights at the strips and, if interpolated polygons must enclose pupils, halfway between.
+  // Heights at the nodes and, if interpolated polygons must enclose pupils, halfway between.
   const std::size_t strips = film_strips(fit), parts = fit == PolygonFit::enclosing ? 2 : 1;
   std::vector<double> heights;
   for (std::size_t i = 0; i <= parts * strips; ++i) {
@@ -109,7 +109,8 @@ std::vector<PupilPolygon> polygons_of(double lit_radius, PolygonFit fit, const F
       polygons[i] = polygon_of(*shown[i], fit);
       continue;
     }
-    // The light ends within a strip: an enclosing pupil continues to the end, a pupil of equal area shrinks to a point.
+    // The pupil becomes empty between this node and a neighbour: an enclosing polygon continues to this node, a polygon
+    // of equal area shrinks to a point.
     for (const std::size_t beside : {at - 1, at + 1, at - 2, at + 2}) {
       const PupilRegion* lit = beside < heights.size() ? first_lit(beside) : nullptr;
       if (!lit) continue;
@@ -129,7 +130,7 @@ std::vector<PupilPolygon> polygons_of(double lit_radius, PolygonFit fit, const F
     const std::size_t at = j % heights.size();
     if (at % 2 == 1 || &pupils[j] != shown[at / 2]) check(pupils[j], static_cast<double>(at) / 2);
   }
-  // Pupils shrink fast where the light ends.
+  // Pupils shrink fast near the last height with light: check more heights.
   std::vector<PupilRegion> shrinking;
   if (pupils.back().empty()) {
     constexpr std::size_t steps = 16;
@@ -165,7 +166,7 @@ std::vector<PupilPolygon> disc_polygons(std::span<const PupilDisc> discs, double
   std::vector<PupilPolygon> polygons;
   for (std::size_t i = 0; i <= strips; ++i) {
     const double height = film_radius * static_cast<double>(i) / strips;
-    // The discs overlap up to the nearest end of any disc.
+    // The overlap reaches up to the nearest end of any disc.
     double low = -std::numeric_limits<double>::infinity(), high = -low;
     for (const PupilDisc& disc : discs) {
       low = std::max(low, disc.shift * height - disc.radius);
@@ -174,7 +175,7 @@ std::vector<PupilPolygon> disc_polygons(std::span<const PupilDisc> discs, double
     PupilRegion overlap{.directions = region_directions};
     if (low < high) {
       overlap.middle = {0, (low + high) / 2};
-      // Fraction of (x, y) at which a line from the middle leaves the first disc.
+      // Fraction of (x, y) at which a line outwards from the middle leaves the first disc.
       const auto leaves = [&](double x, double y) {
         double nearest = std::numeric_limits<double>::infinity();
         for (const PupilDisc& disc : discs) {

@@ -39,7 +39,7 @@ inline double solid_angle_at(const TwoPlanes& space, const FilmPoint& film, doub
   return 1 / (length2 * length2);
 }
 
-/// Coefficients of a value that is linear in a cell (CellLayout), from the corner nodes: first row, then second row.
+/// Coefficients of a value that is bilinear in a cell (CellLayout), from the corner nodes: first row, then second row.
 template <int dimensions, class Nodes, class Number>
 std::array<double, CellLayout<dimensions>::linear> linear(const Nodes& nodes, const Number& number) {
   const double a = number(*nodes[0]), b = number(*nodes[1]);
@@ -79,7 +79,7 @@ struct FilmPupilTable::Data {
   /// Adds a wavelength with its polygons at the nodes.
   void add(const std::vector<pupil_table_detail::PupilPolygon>& polygons);
 
-  /// The same pupils with a stop of this iris.
+  /// The same pupils with the stop of an iris.
   FilmPupilTable with_stop(const Iris& iris, const pupil_table_detail::StopOf& stop_of, int threads = 1) const;
 
   std::size_t nodes() const noexcept { return (rows + 1) * (dimensions == 1 ? 1 : columns + 1); }
@@ -124,12 +124,12 @@ struct FilmPupilTable::Data {
     const auto nm = at.in_nm();
     return !nm ? at.position(primary) : compiled.covers(*nm) ? compiled.nearest(*nm) : wavelengths;
   }
-  /// The same for loops; -1 if the wavelength is not covered.
+  /// The same index for loops; -1 if the wavelength is not covered.
   std::int32_t known(Wavelength at) const noexcept {
     const std::size_t found = position(at);
     return found < wavelengths ? static_cast<std::int32_t>(found) : -1;
   }
-  /// Calls body(begin, count, positions) for parts of N rays.
+  /// Calls body(begin, count, positions) for batches of the N rays.
   template <class Body>
   void by_position(std::size_t count, const RayWavelengths& given, const Body& body) const noexcept {
     if (!given.in_nm()) {

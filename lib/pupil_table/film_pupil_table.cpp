@@ -99,7 +99,7 @@ double FilmPupilTable::projected_solid_angle(const FilmPoint& film, Wavelength w
 
 template <class Value>
 double FilmPupilTable::mean_over_samples(const FilmPoint& film, Wavelength wavelength, const Value& value) const {
-  // Areas change fast with u if an iris clips the polygon.
+  // If an iris clips the polygon, areas change fast with u.
   return pupil_table_detail::mean_over_samples(data_->stop ? 128 : 16, [&](double u, double v) {
     const PupilSample s = sample(film, u, v, wavelength);
     return s.area > 0 ? s.area * value(s) : 0;
@@ -250,7 +250,7 @@ PupilSample FilmPupilTable::sample(const FilmPoint& film, double u, double v, Wa
     by = images->derivatives(film, result, wavelength);
     return result;
   }
-  // The direction of the film point is undefined on the axis; use a point close to the axis instead.
+  // The direction of the film point is undefined on the axis: use a point close to the axis.
   const double beside = 1e-4 * data_->film_radius;
   if (data_->dimensions == 1 && std::hypot(film.x, film.y) < beside) {
     sample({0, beside}, u, v, wavelength, by);

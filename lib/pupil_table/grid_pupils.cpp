@@ -24,7 +24,8 @@ class PupilFinder {
     const auto order =
         row_ == 1 ? SearchOrder::rows(guesses_.size(), 1) : SearchOrder::grid(guesses_.size() / row_, row_);
     std::vector<PupilRegion> pupils = pupil_detail::find_regions(guesses_, order, directions_, false, clearances_);
-    // If the chief ray is lost, other light may pass: search near the pupils of neighbours, else everywhere.
+    // If the chief ray is lost, other rays may pass: search near the pupils of neighbours, or everywhere if no
+    // neighbour has a pupil.
     if (std::all_of(pupils.begin(), pupils.end(), [](const PupilRegion& p) { return p.empty(); })) {
       std::vector<std::uint32_t> ends;
       for (std::size_t i = 0; i < guesses_.size(); ++i) {
@@ -60,7 +61,7 @@ class PupilFinder {
     double x, y, half_x, half_y;
   };
 
-  /// The search box at the extrapolated pupil of a lit neighbour, as large as that pupil.
+  /// The search box: the extrapolated pupil of a neighbour, in its size.
   std::optional<Box> lit_neighbour(const std::vector<PupilRegion>& pupils, std::size_t i) const {
     const std::size_t column = i % row_;
     const auto lit = [&](std::size_t at) { return at < pupils.size() && !pupils[at].empty(); };
@@ -78,7 +79,7 @@ class PupilFinder {
     return {};
   }
 
-  /// Tests positions all over the boxes of some points and finds the pupils of the points where a ray passes.
+  /// Tests positions in the whole search boxes of some points, and finds the pupils of points for which a ray passes.
   bool look_again(std::vector<PupilRegion>& pupils, const std::vector<std::uint32_t>& which,
                   const std::vector<Box>& boxes, int side) {
     std::vector<std::uint32_t> points;
@@ -154,7 +155,7 @@ std::vector<PupilPolygon> node_polygons(std::span<const PupilRegion> pupils, std
   const auto node = [&](std::size_t i, std::size_t j) { return i * nodes + j; };
   for (std::size_t i = 0; i < rows; i += 2) {
     for (std::size_t j = 0; j < columns; j += 2) {
-      // If the light ends next to a node, the node takes the pupil of a lit point nearby.
+      // If the pupil of a node is empty, the node takes the pupil of a neighbouring point that has one.
       const PupilRegion* lit = nullptr;
       for (const auto& [up, right] :
            {std::pair{0, 0}, {0, -1}, {-1, 0}, {-1, -1}, {0, 1}, {1, 0}, {-1, 1}, {1, -1}, {1, 1}}) {
@@ -174,7 +175,7 @@ std::vector<PupilPolygon> node_polygons(std::span<const PupilRegion> pupils, std
       for (auto& corner : polygon.corners) corner *= scale;
     }
   }
-  // Dark nodes farther out take the polygon of the nearest lit node.
+  // Nodes farther away take the polygon of the nearest node with a pupil.
   for (const std::size_t dark : unknown) {
     const auto away = [&](std::size_t k) {
       const auto step = [](std::size_t a, std::size_t b) { return a < b ? b - a : a - b; };
@@ -210,7 +211,7 @@ PupilPolygon hull(const std::vector<PupilPolygon>& polygons) {
     }
   }
   if (places.empty()) return {};
-  // Convex hull, starting at the lowest x: the upper side first, then the lower side.
+  // Convex hull, starting at the lowest x: upper side, then lower side.
   std::sort(places.begin(), places.end(), [](const auto& a, const auto& b) { return a.x < b.x; });
   std::vector<Point<double>> edge;
   const auto go = [&](auto begin, auto end) {
@@ -243,7 +244,7 @@ PupilPolygon hull(const std::vector<PupilPolygon>& polygons) {
     }
   }
   PupilPolygon polygon = polygon_of(region, PolygonFit::enclosing, CornerSteps::even_in_halves);
-  // Includes corners of the hull between two directions.
+  // Include the corners of the hull that lie between two directions.
   double way = 1;
   for (const auto& p : edge) way = std::max(way, polygon.way_to(p.x, p.y));
   polygon.widen(way);
@@ -283,7 +284,7 @@ void expand_to_probes(std::span<PupilPolygon> polygons, std::size_t probes, cons
           edges[p] = edges[p] + at[p].weights[j] * polygon.sector(k).at(1, along - static_cast<double>(k));
         }
       }
-      // Steps outwards while probes still pass.
+      // Step outwards while probes still pass.
       std::fill(scales.begin(), scales.end(), 1);
       open.resize(count);
       std::iota(open.begin(), open.end(), 0u);

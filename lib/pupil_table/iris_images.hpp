@@ -40,7 +40,7 @@ class IrisImages {
   /// True if discs stay discs, so that rotations about the axis change nothing. For round irises.
   bool of_revolution() const noexcept { return sections_alike_; }
 
-  /// Writes the images as numbers. Call it for images of an upright film.
+  /// Writes the images to the arrays. Call it for images of an upright film.
   void put(FilmPupilArrays& arrays) const;
 
   PupilSample sample(const FilmPoint& film, double u, double v, Wavelength wavelength) const noexcept;
@@ -63,7 +63,7 @@ class IrisImages {
 
  private:
   using Image = ImageSections<double>;
-  /// The image that a film point sees; area 0 if it sees no image.
+  /// The image for a film point; area 0 if there is no image.
   Image image(const FilmPoint& film, Wavelength wavelength) const noexcept;
   /// The image at a wavelength, seen from the axis.
   Image image(Wavelength wavelength) const noexcept;

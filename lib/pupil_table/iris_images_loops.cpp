@@ -32,7 +32,7 @@ inline void with_images(const IrisImageTable<R>& table, std::size_t count, const
   }
 }
 
-/// A film point and the image that it sees, all finite.
+/// A film point and its image, all finite.
 template <class R>
 struct Seen {
   R film_x, film_y;
@@ -67,7 +67,7 @@ inline void fill(const SeenIris<R>& given, const ImageOf& image_of, const Sample
   }
 }
 
-/// Calls body(sample_at) with the function for fill().
+/// Calls body(sample_at) with the sample function for fill().
 template <class R, class Body>
 inline void with_places(const iris_detail::IrisSectors<R>& iris, const Body& body) noexcept {
   if (iris.count == 0) {

@@ -22,7 +22,7 @@ struct ImageSections {
 // Local names: compiled for several instruction sets, which the linker must not mix.
 namespace {
 
-/// The image that a virtual point of a tilted film sees. nearer: slope . virtual point.
+/// The image for a virtual point of a tilted film. nearer: slope . virtual point.
 template <class R>
 inline ImageSections<R> on_tilted(const ImageSections<R>& image, R nearer) noexcept {
   const R x = R(1) / (R(1) + image.shift_x * nearer), y = R(1) / (R(1) + image.shift_y * nearer);
@@ -31,7 +31,7 @@ inline ImageSections<R> on_tilted(const ImageSections<R>& image, R nearer) noexc
 
 }  // namespace
 
-/// An iris and the film that sees its images, in numbers of type R, borrowed.
+/// An iris, its images and the film, in numbers of type R, borrowed.
 template <class R>
 struct SeenIris {
   iris_detail::IrisSectors<R> iris;

@@ -40,8 +40,8 @@ void scale_to_light(PupilPolygon& polygon, const TwoPlanes& space, const FilmPoi
   }
 }
 
-/// The disc that contains the axial pupil and moves like pupils near the axis. beside: pupil of the film
-/// point at `height`.
+/// The disc that contains the axial pupil and moves with the film point as pupils near the axis do. beside: pupil of
+/// the film point at `height`.
 PupilDisc disc_about(const PupilPolygon& on_axis, const PupilPolygon& beside, double height) noexcept {
   double radius = 0;
   for (const auto& corner : on_axis.corners) radius = std::max(radius, std::hypot(corner.x, corner.y));
@@ -97,7 +97,7 @@ void check_table(const TwoPlanes& space, double film_radius, std::size_t count, 
   }
 }
 
-/// @throws Error  if an outline in the pupil plane is no disc or not finite; larger numbers overflow in float
+/// @throws Error  if the outline in the pupil plane is not a finite disc; larger numbers overflow in float
 void check_outline(std::size_t wavelength, double shift, double radius) {
   constexpr double largest = 1e15;
   if (std::abs(shift) <= largest && radius >= 0 && radius <= largest) return;
@@ -279,7 +279,8 @@ FilmPupilTable FilmPupilTable::for_tilted_film(const FilmTilt& tilt, int threads
     data->images = data_->images->tilted(tilt);
     return FilmPupilTable(std::move(data));
   }
-  // Blades break the rotational and mirror symmetry: samples come from the round stop, and the iris clips their rays.
+  // Blades break the rotational and mirror symmetry: samples are taken from the round stop, and the iris clips the
+  // rays.
   if (data_->stop || (data_->images && !data_->images->round())) return of_round_stop().for_tilted_film(tilt, threads);
   data->space = data_->space;
   data->primary = data_->primary;

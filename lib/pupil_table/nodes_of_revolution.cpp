@@ -24,8 +24,9 @@ struct Bounds {
   }
 };
 
-/// Polygon for a node without a pupil. polygon[-1] is the previous node's; `before` nodes precede this node in the row.
-/// The pupil ends between both nodes; extrapolates its motion and widens the polygon, because the motion accelerates.
+/// Makes a polygon for a node without a pupil. polygon[-1] belongs to the previous node; `before` nodes precede this
+/// node in the row. The pupil becomes empty between both nodes: the polygon moves on by the last step, and is widened
+/// because the motion accelerates.
 PupilPolygon beyond(const PupilPolygon* polygon, std::size_t before) noexcept {
   constexpr double room = 1.2;
   PupilPolygon result = polygon[-1];
@@ -68,8 +69,8 @@ SceneNodes<2> nodes_of_revolution(const Vec3<double>& centre, double steepest, c
   for (std::size_t row = 1; row < rows; row += 2) widest[row] = (widest[row - 1] + widest[row + 1]) / 2;
   for (std::size_t i = 0; i < distances; ++i) result.widest[i] = widest[2 * i];
 
-  // Search area for the pupil of a field: bounds of the rays in its plane, at the distance at which all rays of a film
-  // point have most nearly the same field.
+  // Search area for the pupil of a field: bounds of the rays in its plane, at the distance at which the fields of all
+  // rays of a film point differ least.
   const auto sharpest = static_cast<std::size_t>(std::min_element(widest.begin(), widest.end()) - widest.begin());
   std::vector<Bounds> bounds(columns);
   for (const Ray<double>& ray : rays) {
@@ -128,15 +129,15 @@ SceneNodes<2> nodes_of_revolution(const Vec3<double>& centre, double steepest, c
   expand_to_cover(polygons, checks);
   constexpr double elsewhere = 1.008;  // scale of polygons, for points that are not checked
   for (PupilPolygon& polygon : polygons) polygon.widen(elsewhere);
-  // Exclude obscurations only if all pupils are rings. Other obscurations move, and are clipped between the points that
-  // are checked.
+  // Exclude obscurations only if all pupils are rings. Other obscurations move, and polygons without them are correct
+  // only at the points that are checked.
   const bool rings = std::all_of(polygons.begin(), polygons.end(), is_ring);
   if (!rings) {
     for (PupilPolygon& polygon : polygons) polygon.obscured.fill(0);
   }
 
-  // In the last fields pupils shrink, and their boundaries bend more than the checked points show: expand polygons to
-  // the sampled rays. Do so in all fields if the sampled rays bound the pupils.
+  // In the outermost fields pupils shrink, and their boundaries are more curved between the points that are checked:
+  // expand polygons to the sampled rays. Do so in all fields if the sampled rays bound the pupils.
   const bool all = rings || clipped_by == ClippedBy::samples;
   constexpr double about_rays = 1.08, last_fields = 0.75, in_obscurations = 0.8;
   for (std::size_t row = 0; row < rows; ++row) {
@@ -147,7 +148,7 @@ SceneNodes<2> nodes_of_revolution(const Vec3<double>& centre, double steepest, c
       const Vec2<double> place = plane_facing(centre, bearing, reciprocal).meet(ray);
       const PolygonWeights at = result.weights(angles<2>(bearing), reciprocal / steepest).value_or(PolygonWeights{});
       const double way = interpolated(polygons, at).way_to(place.x, place.y);
-      if (std::isinf(way)) {  // the pupil is not star-shaped about a middle
+      if (std::isinf(way)) {  // a line outwards meets the edge of the pupil more than once
         polygons.clear();
         return result;
       }

@@ -50,7 +50,7 @@ std::vector<pupil_detail::PupilGuess> guesses_from(const std::vector<Ray<double>
   for (const Ray<double>& ray : rays) {
     const Bearing bearing = bearing_on_sphere(centre, ray, reciprocal);
     const Vec2<double> place = place_in_grid(centre, bearing, reciprocal, ray);
-    // Each ray counts for the nodes of its cell and of the adjacent cells.
+    // A ray is used for the nodes of its cell and of the adjacent cells.
     const Vec2<double> at = angles<3>(bearing) / widest * last;
     const auto first = [](double x) { return static_cast<std::size_t>(std::max(x - 1, 0.0)); };
     for (std::size_t i = first(at.y); i < std::min(first(at.y) + 4, columns); ++i) {
@@ -152,7 +152,7 @@ SceneNodes<3> nodes_with_cylinders(const Vec3<double>& centre, double steepest, 
                                                part(p % columns, columns))});
   }
   expand_to_cover(polygons, checks);
-  // In cells with empty pupils, the other pupils are narrow and move fast: use the hull of the surrounding nodes.
+  // In cells with some empty pupils, the other pupils are narrow and move fast: use the hull of the surrounding nodes.
   std::vector<bool> ending(polygons.size(), false);
   for (const auto& [pupil, at] : checks) {
     for (std::size_t j = 0; j < at.polygons.size(); ++j) {
@@ -180,8 +180,8 @@ SceneNodes<3> nodes_with_cylinders(const Vec3<double>& centre, double steepest, 
         test(which.size(), place, x, y, clearances);
       });
 
-  // In the last fields pupils shrink, and their boundaries bend more than the checked points show: expand polygons to
-  // the sampled rays. Outer rays are used at every distance, each inner ray at one distance.
+  // In the outermost fields pupils shrink, and their boundaries are more curved between the points that are checked:
+  // expand polygons to the sampled rays. Outer rays are used at every distance, each inner ray at one distance.
   constexpr double about_rays = 1.01, about_last_rays = 1.08, outer_fields = 0.6, last_fields = 0.85;
   for (std::size_t r = 0; r < rays.size(); ++r) {
     for (std::size_t i = 0; i < rows; ++i) {
@@ -193,7 +193,7 @@ SceneNodes<3> nodes_with_cylinders(const Vec3<double>& centre, double steepest, 
       const Vec2<double> place = place_in_grid(centre, bearing, reciprocal, rays[r]);
       const PolygonWeights nodes_about = SceneNodes<3>::weights_at(distance, std::min(at.y, 1.0), std::min(at.x, 1.0));
       const double way = interpolated(polygons, nodes_about).way_to(place.x, place.y);
-      if (std::isinf(way)) {  // the pupil is not star-shaped about a middle
+      if (std::isinf(way)) {  // a line outwards meets the edge of the pupil more than once
         polygons.clear();
         return result;
       }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Loops over pupils that gain less than 15 % from wider registers, because they gather or search.
+// Loops over pupils that gain less than 15 % from wider registers, because gathering or searching dominates.
 #include "polygon_blocks.hpp"
 #include "polygon_loops.hpp"
 

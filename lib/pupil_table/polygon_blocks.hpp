@@ -133,7 +133,7 @@ PETZVAL_INLINE void sample_polygons(const PolygonGrid<dimensions, R>& grid, cons
   for (std::size_t i = 0; i < block; ++i) {
     const auto own = polygon(i);
     whole[i] = places.lit[i] * own.whole();
-    // Interpolated areas may become negative; shares are then arbitrary, and the clamp keeps the sector valid.
+    // Interpolated areas may be negative and give meaningless fractions; the clamp keeps the sector number valid.
     target[i] =
         core_detail::clamped(own.share_of(core_detail::clamped(u[i]), whole[i], places.cosine[i], places.sine[i]));
     const T expected = own.expected(target[i], whole[i]) - early;
@@ -141,7 +141,7 @@ PETZVAL_INLINE void sample_polygons(const PolygonGrid<dimensions, R>& grid, cons
     sector[i] = static_cast<std::int32_t>(value_of(above < last ? above : T(last)));
     target[i] = target[i] * whole[i];
   }
-  // Sectors have nearly equal areas: the target lies in this sector, the next, or near both.
+  // Sectors have nearly equal areas: the target lies in this sector, in the next, or close to these.
   for (int step = 0; step < grid.corrections; ++step) {
     const std::int32_t first = sector[0];
     PETZVAL_INDEPENDENT
@@ -151,7 +151,7 @@ PETZVAL_INLINE void sample_polygons(const PolygonGrid<dimensions, R>& grid, cons
       const std::int32_t on = (target[i] > polygon(i).area_before(k + 1)) & (k < corners - 1);
       sector[i] = k + on - back;
     }
-    if (block == 1 && sector[0] == first) break;  // in a large block some sectors always move
+    if (block == 1 && sector[0] == first) break;  // in a large block nearly every step moves some sector
   }
   PETZVAL_INDEPENDENT
   for (std::size_t i = 0; i < block; ++i) {
@@ -161,7 +161,7 @@ PETZVAL_INLINE void sample_polygons(const PolygonGrid<dimensions, R>& grid, cons
     sector[i] = k + next;
     beyond[i] = T(static_cast<R>(1 - next));
   }
-  // Fraction from the first corner of the sector, or back from the second corner.
+  // Fraction along the edge from the first corner of the sector, or backwards from the second corner.
   const auto along_edge = [&behind, &beyond](std::size_t i, const Sector<T>& own) {
     const T own_area = own.area();
     return core_detail::clamped(T(behind[i] / (own_area > R(0) ? own_area : T(1)) + beyond[i]));
@@ -284,7 +284,7 @@ PETZVAL_INLINE void find_sectors(const PolygonGrid<dimensions, R>& grid, const P
   };
   std::int32_t half[block];
   R first_x[block], first_y[block];
-  // half: 1 if q lies in the second half turn from the first corner.
+  // half: 1 if q lies more than 180 degrees after the first corner.
   PETZVAL_INDEPENDENT
   for (std::size_t i = 0; i < block; ++i) {
     const Point<R> first = corner(i, 0);
@@ -410,7 +410,7 @@ void stop_points_block(const PolygonGrid<dimensions, R>& given, const R* film_x,
   }
 }
 
-/// Sizes of blocks. All fill the widest registers; the smallest takes the rest of a batch.
+/// Sizes of blocks. All fill the widest registers; the smallest size is for the rest of a batch.
 constexpr std::size_t whole_block = 64, half_block = 16, small_block = core_detail::lane_bytes == 64 ? 16 : 8;
 
 template <std::size_t rays>

@@ -71,7 +71,7 @@ struct PolygonGrid {
   GridStop<R> stop;
 };
 
-/// Film points up to this squared distance from the axis, mm^2, count as on the axis: smaller squares have too few
+/// Film points within this squared distance from the axis, mm^2, count as on the axis: smaller squares have too few
 /// digits for a direction.
 template <class R>
 inline constexpr R axis_r2 = std::numeric_limits<R>::min() / std::numeric_limits<R>::epsilon();
@@ -93,8 +93,8 @@ inline T root_of(const T& x) noexcept {
   return x > 0.0 ? core_detail::square_root(x) : T(0.0);
 }
 
-/// Angle of a direction from +y towards +x, as a fraction of a whole turn in [-1/2, 1/2], within 6e-8. u counts from +y
-/// of the film, not from the direction of the film point: near the axis, adjacent film points get adjacent samples.
+/// Angle of a direction from +y towards +x, as a fraction of a full turn in [-1/2, 1/2], within 6e-8. u starts at +y of
+/// the film, not at the direction of the film point: near the axis, adjacent film points get adjacent samples.
 template <class T>
 PETZVAL_INLINE T turn_of(const T& sine, const T& cosine) noexcept {
   // Without branches, which would be unpredictable.
@@ -128,8 +128,8 @@ struct FilmPlace {
   std::int32_t known, cell;  ///< known: 1 if the film point has a cell; cell: index
 };
 
-// Inlined: a call would copy the grid with wide registers, which compilers do not clear (vzeroupper), and later code
-// for narrow registers would stall.
+// Inlined: a call would copy the grid with wide registers. Compilers do not clear these registers (vzeroupper), and
+// later code for narrow registers would stall.
 template <class R, class T>
 PETZVAL_INLINE FilmPlace<T> place_of(const PolygonGrid<1, R>& grid, const T& film_x, const T& film_y,
                                      std::int32_t sound, std::int32_t wavelength) noexcept {
@@ -235,12 +235,12 @@ struct CellPolygon {
     }
     return result;
   }
-  /// Fraction of the polygon's area in the half at +x. whole: area of the polygon.
+  /// Fraction of the polygon's area in the half towards +x. whole: area of the polygon.
   T right_share(const T& whole) const noexcept {
     return area_before(static_cast<std::int32_t>(polygon_corners / 2)) / (whole > R(0) ? whole : T(1));
   }
-  /// Sector number at which a fraction `share` of the area ends if all sectors (or the sectors of each half) have equal
-  /// areas.
+  /// Expected sector number at which a fraction `share` of the area ends, if all sectors (or the sectors of each half)
+  /// have equal areas.
   T expected(const T& share, const T& whole) const noexcept {
     if constexpr (dimensions == 1) {
       return share * R(polygon_corners);
@@ -252,8 +252,8 @@ struct CellPolygon {
       return T(polygon_corners) / T(2) * (in_left + (share - first) / (own > R(0) ? own : T(1)));
     }
   }
-  /// Converts u, which counts from +y of the film, to the fraction of area from corner 0 in the order of corners, and
-  /// back. With two dimensions, the direction is reversed in every second quadrant.
+  /// Converts u, which starts at +y of the film, to the fraction of the area from corner 0 in the order of corners, and
+  /// back. With two dimensions, the order is reversed in every second quadrant.
   T share_of(const T& u, const T& whole, const T& cosine, const T& sine) const noexcept {
     if constexpr (dimensions == 1) {
       return fraction_of(T(u - turn_of(sine, cosine)));
@@ -274,7 +274,7 @@ struct CellPolygon {
  private:
   T area_at(std::int32_t at) const noexcept {
     if constexpr (dimensions == 1) {
-      const R cubic = obscured ? all[at + 3] : R(0);  // triangles are quadratic in t
+      const R cubic = obscured ? all[at + 3] : R(0);  // areas of triangles are quadratic in t
       return all[at] + t * (all[at + 1] + t * (all[at + 2] + t * cubic));
     } else {
       const T one = all[at] + t * (all[at + 1] + t * all[at + 2]);
@@ -349,7 +349,7 @@ PETZVAL_INLINE StopPlace<T> stop_place(const Number& number, const Point<T>& pla
   for (int i = 0; i < 4; ++i) {
     const Point<T> step = step_to_place(seen_point<dimensions>(number, result.point), place);
     result.step2 = step.x * step.x + step.y * step.y;
-    // Stay near the rim: the polynomials are not fitted farther outside.
+    // Stay near the rim: outside, the polynomials are not fitted.
     const T x = result.point.x + step.x, y = result.point.y + step.y, r2 = x * x + y * y;
     constexpr double farthest = 1.5;
     const T shorter = r2 > T(farthest * farthest) ? T(T(farthest) / root_of(r2)) : T(1);

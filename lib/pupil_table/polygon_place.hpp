@@ -53,7 +53,7 @@ double clearance_of_place(const Polygon& polygon, const Point<double>& q, std::s
   return least < 0 ? least / (1 - least) : least;
 }
 
-/// Largest distance, in sectors, between the sector guessed from equal areas and the right one; see
+/// Largest difference, in sectors, between the sector expected for equal areas and the true sector; see
 /// PolygonGrid::corrections.
 template <class Polygon>
 int corrections_of(const Polygon& polygon) {

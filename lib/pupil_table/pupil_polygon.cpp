@@ -24,8 +24,8 @@ struct Edge {
   double area = 0;  // inside the outer edge
 };
 
-/// Intersection of the prolonged chords before and behind the chord from b to c: between b and c the boundary of a
-/// convex region stays inside. Returns b if there is no such intersection.
+/// Intersection of the extended chords before and after the chord from b to c: between b and c the boundary of a convex
+/// region stays inside. Returns b if there is no such intersection.
 Place apex(const Place& a, const Place& b, const Place& c, const Place& d) noexcept {
   const Place u = b - a, v = c - d, w = c - b;
   const double determinant = turn(u, v);
@@ -52,7 +52,7 @@ Edge edge_of(const PupilRegion& region, PolygonFit fit) {
   for (std::size_t k = 0; k < n; ++k) {
     if (found[k].lit) p[k] = {found[k].rim.x - region.middle[0], found[k].rim.y - region.middle[1]};
   }
-  // A tip may lie between a lit direction and a dark direction.
+  // Between a direction with passing rays and an empty direction, the region may have a tip.
   for (std::size_t k = 0; enclosing && k < n; ++k) {
     if (found[k].lit) continue;
     for (const std::size_t beside : {(k + 1) % n, (k + n - 1) % n}) {
@@ -78,7 +78,8 @@ Edge edge_of(const PupilRegion& region, PolygonFit fit) {
     edge.area += turn(p[k], p[next]) / 2;
     const Place tip = apex(p[(k + n - 1) % n], p[k], p[next], p[(k + 2) % n]);
     if (tip.x == p[k].x && tip.y == p[k].y) continue;
-    // A smooth arc exceeds the chord by a third of the triangle (chords meet twice as far out as tangents).
+    // A smooth arc exceeds the chord by a third of the area of the triangle with the tip: tangents would meet at half
+    // its height, and the arc fills two thirds of that triangle.
     edge.area += (turn(p[k], tip) + turn(tip, p[next]) - turn(p[k], p[next])) / 6;
     if (!(enclosing && turn(p[k], tip) > 0 && turn(tip, p[next]) > 0)) continue;
     if (next > 0) {
@@ -90,7 +91,7 @@ Edge edge_of(const PupilRegion& region, PolygonFit fit) {
   return edge;
 }
 
-/// Scale of the corners with which a sector contains a position that it faces.
+/// Scale of the corners at which a sector just contains a position that it faces.
 double scale_for(const Sector<double>& sector, const Place& q) noexcept {
   return turn(sector.a, sector.b) > 0 ? sector.way_to(q) : 1;
 }
@@ -99,9 +100,9 @@ double scale_for(const Sector<double>& sector, const Place& q) noexcept {
 struct Obscured {
   double from = 0, to = 1;
 
-  /// Intersects with the obscuration between two points that the sector faces, narrowed by a margin; narrowed further
-  /// by the amount by which it is smaller than `expected`, the obscuration of the neighbours. dark: obscured from the
-  /// middle on.
+  /// Intersects with the obscuration between two points that the sector faces, narrowed by a margin. If this
+  /// obscuration is smaller than `expected`, the obscuration of the neighbours, it is narrowed by the difference once
+  /// more. dark: obscured from the middle on.
   void keep(const Sector<double>& sector, bool dark, const Place& begin, const Place& end,
             const Obscured& expected) noexcept {
     if (!(from < to)) return;  // already empty
@@ -277,7 +278,7 @@ PupilPolygon interpolated(std::span<const PupilPolygon> polygons, const PolygonW
 }
 
 void expand_to_cover(std::span<PupilPolygon> polygons, std::span<const InterpolationCheck> checks) {
-  // Margin for boundaries between the tested points.
+  // Margin for boundaries between the tested points, and a constant margin.
   constexpr double beyond = 1.4, always = 2e-4;
   std::vector<std::array<double, polygon_corners>> scales(polygons.size());
   std::vector<std::array<Obscured, polygon_corners>> obscured(polygons.size());

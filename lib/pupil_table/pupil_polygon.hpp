@@ -10,7 +10,7 @@
 
 namespace petzval::pupil_table_detail {
 
-/// A pupil in a table: a middle and 64 corners around it, with an obscuration in each sector (sector.hpp).
+/// A pupil in a table: a middle point and 64 corners around it, with an obscuration in each sector (sector.hpp).
 struct PupilPolygon {
   Vec2<double> middle{0, 0};
   std::array<Vec2<double>, polygon_corners> corners{};              ///< relative to the middle
@@ -27,13 +27,13 @@ struct PupilPolygon {
   /// Scales the corners outwards; obscurations shrink by the same factor, at their outer ends.
   void widen(double by) noexcept;
 
-  /// Radial fraction of a position: 0 at the middle, 1 at the outer edge; -1 if it is obscured, infinite if no sector
-  /// faces the position.
+  /// Radial fraction of a position: 0 at the middle, 1 at the outer edge; -1 if the position is obscured, infinite if
+  /// no sector faces it.
   double way_to(double x, double y) const noexcept;
 };
 
-/// Maps uniform numbers to uniform points of a polygon, like PupilSampler for a PupilBoundary, with triangles instead
-/// of ring sectors. Keeps a reference to the polygon.
+/// Maps uniform numbers to uniform points of a polygon, as PupilSampler does for a PupilBoundary, but with triangles
+/// instead of ring sectors. Keeps a reference to the polygon.
 class PolygonSampler {
  public:
   explicit PolygonSampler(const PupilPolygon& polygon) noexcept;
@@ -76,8 +76,8 @@ struct InterpolationCheck {
 /// Expands polygons until every check holds.
 void expand_to_cover(std::span<PupilPolygon> polygons, std::span<const InterpolationCheck> checks);
 
-/// Expands the polygon of one wavelength to contain the pupils up to halfway to an adjacent wavelength, with the
-/// polygon `other`. Assumes that edges move nearly linearly with the wavelength.
+/// Expands the polygon of one wavelength to contain the pupils up to halfway to an adjacent wavelength, whose polygon
+/// is `other`. Assumes that edges move nearly linearly with the wavelength.
 void expand_towards(PupilPolygon& polygon, const PupilPolygon& other) noexcept;
 
 }  // namespace petzval::pupil_table_detail

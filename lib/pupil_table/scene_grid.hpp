@@ -87,7 +87,8 @@ struct SceneCell {
     }
   }
 };
-/// distance, down, across: fractions in [0, 1] of the largest reciprocal distance and of its last fields.
+/// distance, down, across: position as fractions in [0, 1] of the largest reciprocal distance and of the last fields at
+/// this distance.
 template <int dimensions>
 PETZVAL_INLINE SceneCell<dimensions> cell_of(double distance, double down, double across) noexcept {
   using L = SceneLayout<dimensions>;
@@ -262,8 +263,8 @@ struct ScenePolygon {
   }
 };
 
-/// Density of samples in a sector, 1/mm^2. Sectors have nearly equal areas and get equal numbers of samples, so that
-/// the area of the whole polygon is not needed.
+/// Density of samples in a sector, 1/mm^2. All sectors get equal numbers of samples, because their areas are nearly
+/// equal; the area of the whole polygon is not needed.
 PETZVAL_INLINE double density_in(const Sector<double>& sector) noexcept {
   const double area = sector.area();
   return area > 0 ? 1 / (static_cast<double>(polygon_corners) * area) : 0.0;

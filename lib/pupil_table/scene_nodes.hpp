@@ -42,9 +42,9 @@ class RayClearances {
   std::vector<std::uint8_t> through_;
 };
 
-/// Direction from a centre to the point where a ray leaves a sphere about the centre.
+/// Direction from a centre to the point at which a ray leaves a sphere about the centre.
 Bearing bearing_on_sphere(const Vec3<double>& centre, const Ray<double>& ray, double reciprocal_radius) noexcept;
-/// Largest field of rays, rad, where the rays leave a sphere about a centre.
+/// Largest field, in rad, of the points at which rays leave a sphere about a centre.
 double widest_field(const Vec3<double>& centre, const std::vector<Ray<double>>& rays,
                     double reciprocal_radius) noexcept;
 /// The plane that faces a scene point.

@@ -3,12 +3,13 @@
 
 #include <cstddef>
 
-/// Geometry of pupil polygons, for a table of one polygon and for loops over many: float, double, derivatives.
+/// Geometry of pupil polygons, for one polygon of a table and for loops over many polygons, in float, in double, or
+/// with derivatives.
 ///
-/// A polygon has a middle and corners around it, in order from +y towards +x; sector k is the triangle between the
-/// middle and the corners k and k + 1. A part of a sector may be obscured, between two lines parallel to its outer
-/// edge. Way: the radial fraction, 0 at the middle and 1 at the outer edge. Samples (u, v) are uniform by area: u
-/// selects the sector and the position along its edge, v the squared way.
+/// A polygon has a middle point and corners around it, in order from +y towards +x; sector k is the triangle between
+/// the middle and the corners k and k + 1. An interval of a sector may be obscured, between two lines parallel to its
+/// outer edge. The "way" of a point is its radial fraction: 0 at the middle and 1 at the outer edge. Samples (u, v) are
+/// uniform by area: u selects the sector and the position along its edge, v the squared way.
 namespace petzval::pupil_table_detail {
 
 inline constexpr std::size_t polygon_corners = 64;
@@ -68,8 +69,8 @@ struct Sector {
   }
 };
 
-/// Index of the sector that contains a sample, for sectors of nearly equal areas. area: before the sample; before(k):
-/// area before sector k; before(polygon_corners): area of the polygon.
+/// Index of the sector that contains a sample, for sectors of nearly equal areas. area: area before the sample;
+/// before(k): area before sector k; before(polygon_corners): area of the polygon.
 template <class AreaBefore>
 inline std::size_t sector_of_area(double area, const AreaBefore& before) noexcept {
   constexpr double last = polygon_corners - 1;

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// The stop behind the pupils of a grid. At each node, polynomials of third order, with the largest terms of the fifth,
-// are fitted to the positions at which the film point sees points of the stop. These polynomials map samples of the
-// iris to the pupil at film points without vignetting. At other film points the iris clips the lines of the polygon's
-// samples: between the stop points of the middle and of the edge, which is nearly straight.
+// The stop, as seen through the pupils of a grid. For each node, polynomials of third order, with the largest terms of
+// the fifth, are fitted: they map points of the stop to the positions in the pupil plane at which the film point sees
+// them. At film points without vignetting they map samples of the iris to the pupil. At other film points the iris
+// clips the straight lines of the polygon's samples; at the stop, such a line is nearly straight from the stop point of
+// the middle to that of the edge.
 #include "stop_cells.hpp"
 
 #include <algorithm>
@@ -39,7 +40,7 @@ struct NodeMap {
     return [this](int k) { return terms[static_cast<std::size_t>(k)]; };
   }
   SeenPoint<double> seen(const Place& stop) const noexcept { return seen_point<dimensions>(number(), stop); }
-  /// The stop point with its image at `place`; nullopt if it is far from the iris.
+  /// The stop point whose image is `place`; nullopt if it is far from the iris.
   std::optional<Place> stop(const Place& place) const noexcept {
     const StopPlace<double> found = stop_place<dimensions>(number(), place);
     constexpr double close = 1e-6;
@@ -47,7 +48,7 @@ struct NodeMap {
   }
 };
 
-/// Terms of the coordinate `axis` of a position (StopLayout), at a stop point.
+/// Terms for the coordinate `axis` of a position (StopLayout), at a stop point.
 template <int dimensions>
 std::vector<double> products(int axis, const Place& stop) {
   const auto& [x, y] = stop;
@@ -57,7 +58,7 @@ std::vector<double> products(int axis, const Place& stop) {
   return {1, y, x * x, y * y, x * x * y, y * y * y, r * r, r * y * y, r * r * y};
 }
 
-/// A ray on the line from the middle of a polygon to a corner.
+/// A ray through the line from the middle of a polygon to a corner.
 struct StopSample {
   Place place, stop;
   std::size_t corner = 0;
@@ -87,7 +88,8 @@ Place corner(const PupilPolygon& polygon, std::size_t k) {
   return {polygon.corners[k % polygon_corners].x, polygon.corners[k % polygon_corners].y};
 }
 
-/// Calls take() for rays at fractions of the lines from the middle of a polygon to its corners.
+/// Calls take() for rays through points of the lines from the middle of a polygon to its corners, at some fractions of
+/// the lines.
 template <class Take>
 void for_rays(const PupilPolygon& polygon, std::size_t step, std::span<const double> parts, const Take& take) {
   for (std::size_t k = 0, i = 0; k < polygon_corners; k += step, ++i) {
@@ -108,7 +110,7 @@ NodeMap<dimensions> map_at(const StopOf& stop_of, const FilmPoint& film, const P
     if (stop) samples.push_back({place, {stop->x, stop->y}, k, part});
   };
   take(0, 0, {polygon.middle.x, polygon.middle.y});
-  // Enough distances from the middle to determine all terms for a circular pupil.
+  // Enough distances from the middle to determine all terms, even for a circular pupil.
   constexpr std::array parts{0.99, 0.85, 0.65, 0.4};
   for_rays(polygon, 2, parts, take);
   constexpr std::size_t least = 24;
@@ -133,7 +135,7 @@ NodeMap<dimensions> map_at(const StopOf& stop_of, const FilmPoint& film, const P
   return map;
 }
 
-/// True if the image of the iris lies within the polygon; nearly within suffices if `enclosing`.
+/// True if the image of the iris lies within the polygon. If `enclosing`, the image may exceed the polygon slightly.
 template <int dimensions>
 bool whole_iris_within(const NodeMap<dimensions>& map, const PupilPolygon& polygon, const iris_detail::IrisShape& shape,
                        bool enclosing) {
@@ -142,7 +144,7 @@ bool whole_iris_within(const NodeMap<dimensions>& map, const PupilPolygon& polyg
   const auto sectors = [&](std::size_t k) { return polygon.sector(k); };
   std::size_t facing = 0;
   int within = 0, all = 0;
-  // A film point of a lens of revolution sees the iris rotated by any angle.
+  // Film points of a lens of revolution see the iris at any rotation.
   const int turns = dimensions == 1 && !shape.round() ? 2 : 1;
   for (int turned = 0; turned < turns; ++turned) {
     const double angle = turned * std::numbers::pi / std::max(shape.iris().blades, 1);
@@ -160,7 +162,7 @@ bool whole_iris_within(const NodeMap<dimensions>& map, const PupilPolygon& polyg
   return enclosing ? within >= most * all : within == all;
 }
 
-/// Error of the stop points in the middle of a cell.
+/// Error of the stop points at the centre of a cell.
 template <int dimensions>
 double error_in_middle(const StopOf& stop_of, const FilmPoint& film, const PupilPolygon& polygon,
                        const NodeMap<dimensions>& map, std::size_t wavelength) {
@@ -188,7 +190,7 @@ NodeMap<dimensions> mean_of(std::span<const NodeMap<dimensions>* const> maps) {
 /// Largest change of stop points up to halfway to the next wavelength.
 template <int dimensions>
 double change_of(const NodeMap<dimensions>& map, const NodeMap<dimensions>& next, const PupilPolygon& polygon) {
-  constexpr double middle = 0.6;  // fraction of the step, with a margin for uneven changes
+  constexpr double middle = 0.6;  // fraction of the step, with a margin for nonlinear changes
   constexpr std::array parts{0.95};
   double change = 0;
   for_rays(polygon, 8, parts, [&](std::size_t, double, const Place& place) {
@@ -238,7 +240,7 @@ std::vector<double> stop_cells(const Data& data, const iris_detail::IrisShape& s
     for (std::size_t i = 0; i < data.nodes(); ++i) {
       const PupilPolygon& polygon = polygons[w].emplace_back(data.node(w, i));
       Map& map = maps[w].emplace_back(map_at<dimensions>(stop_of, data.node_point(i), polygon, w));
-      // Beyond the end of the light, use the map of the previous node.
+      // A node without a pupil uses the map of the previous node.
       if (!map.known && i > 0 && dimensions == 1 && !(polygon.area() > 0)) map = maps[w][i - 1];
       map.drawn = map.known && !data.obscured && whole_iris_within(map, polygon, shape, data.enclosing);
     }
@@ -281,11 +283,11 @@ std::vector<double> stop_cells(const Data& data, const iris_detail::IrisShape& s
           }
           double error = error_in_middle(stop_of, middle, interpolated(own, weights), mean_of<dimensions>(at), w);
           for (const Map* map : at) error = std::max(error, map->error);
-          // Fraction of the line error that remains after the second cut.
+          // Fraction of the line error that remains after the second pass of clipping.
           constexpr double left = 0.1;
           double of_lines = 0;
           for (const Map* map : at) of_lines = std::max(of_lines, drawn ? 0 : left * map->line_error);
-          // Margin for rays between the tested rays, and more if the map is less accurate.
+          // Margin for rays between the tested rays; it grows with the error of the map.
           constexpr double room = 1.25, more = 100, always = 2e-4;
           scale += (room + more * error) * error + of_lines + always;
         }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Pupils of a tilted film. A virtual film point stands for a line through the centre of the pupil plane, on which the
-// position of the film point depends on the azimuth; its pupil is the union over all these positions.
+// Pupils of a tilted film. A virtual film point stands for a line through the centre of the pupil plane, and the
+// position of the film point on this line depends on the azimuth. The pupil of the virtual film point is the union over
+// all these positions.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -42,8 +43,8 @@ FilmPupils tilted_film_pupils(const FilmPupilTable& upright, const FilmTilt& til
   const auto search = [upright, tilt, wavelength, expected](std::span<const double> heights, const auto& find) {
     const double steepest = std::hypot(tilt.slope_x, tilt.slope_y);
     std::vector<VirtualFilmPoint> fields;
-    // The middle first, as it is the most likely to be lit. Five positions, because pupils in a plane far from the
-    // limiting aperture, as for a thin lens, move by more than their size.
+    // The middle position is the first, because its pupil is the least likely to be empty. Five positions are needed,
+    // because pupils in a plane far from the limiting aperture, as for a thin lens, move by more than their size.
     for (const double part : {0.5, 0.0, 0.25, 0.75, 1.0}) {
       for (const double height : heights) {
         const auto within = [&](double value) { return std::clamp(value, tilt.low, tilt.high); };

@@ -14,7 +14,7 @@ struct VirtualFilmPoint {
   FilmPoint at;
   double nearer = 0;
 
-  /// Intersection with the upright film of the ray from that film point through (x, y) in the pupil plane.
+  /// Intersection of the upright film with the ray from that film point through (x, y) in the pupil plane.
   FilmPoint on_upright(double x, double y) const noexcept { return {at.x - nearer * x, at.y - nearer * y}; }
 };
 
