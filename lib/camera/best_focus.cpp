@@ -18,19 +18,19 @@ StopMaps stop_maps(const LensFacts& facts, std::size_t wavelength, const TwoPlan
   const RayMatrix lens_map = ray_matrix(lens, 0, last, wavelength, section).on_slopes(n_front, n_behind);
   const RayMatrix from_stop =
       ray_matrix(lens, stop, last, wavelength, section).on_slopes(signed_index(lens, stop, wavelength), n_behind);
-  // Heights are taken in the stop itself, so that a pupil at infinity is no special case.
+  // Heights are taken in the stop itself, so that a pupil at infinity needs no special case.
   const RayMatrix behind_lens = line_at(space, lens.surfaces().back().vertex_z);
   return {behind_lens.then(from_stop.inverse()), from_stop.then(lens_map.inverse())};
 }
 
 /// A plane of the scene corresponds to a slope v per height in the stop, for the first-order rays from its axial point.
 /// Exact rays, continued to the stop to first order, meet the stop at heights y with slopes u. Seen from the entrance
-/// pupil they miss the point by u - v y, up to a constant factor. The sum of squares is minimal for v = sum(u y) /
-/// sum(y y).
+/// pupil, their distances from the axial point are proportional to u - v y. The sum of squares is minimal for v = sum(u
+/// y) / sum(y y).
 double best_focus_power(const LensFacts& facts, std::size_t wavelength, const StopMaps& maps, Meridian section) {
   const Lens& lens = facts.lens();
   const bool cylinders = has_cylinders(lens);
-  // One meridian represents a lens of revolution.
+  // For a lens of revolution one meridian suffices.
   const PupilBoundary boundary = lens.rotationally_symmetric() ? exit_pupil_boundary(lens, {}, wavelength, 1)
                                                                : exit_pupil_boundary(lens, {}, wavelength);
   const RayMatrix to_stop = maps.to_front.inverse();

@@ -8,7 +8,7 @@
 
 namespace petzval::camera_detail {
 
-/// Maps film and pupil point of a line to height and slope in the plane z behind the lens.
+/// Maps film and pupil point of an image-space ray to height and slope in the plane z behind the lens.
 inline RayMatrix line_at(const TwoPlanes& space, double z) noexcept {
   const double slope = 1 / space.depth(), far = (z - space.film_z) * slope;
   return {1 - far, far, -slope, slope};
@@ -25,7 +25,7 @@ StopMaps stop_maps(const LensFacts& facts, std::size_t wavelength, const TwoPlan
 /// sharpest: in the plane with the smallest RMS distance from the axis, seen from the entrance pupil. Spherical
 /// aberration moves this plane away from the paraxial focus. Chief rays do not change.
 ///
-/// With cylinders the heights along `section` count. 0 if no exact ray passes.
+/// With cylinders only the heights along `section` are used. 0 if no exact ray passes.
 double best_focus_power(const LensFacts& facts, std::size_t wavelength, const StopMaps& maps, Meridian section);
 
 }  // namespace petzval::camera_detail

@@ -71,8 +71,8 @@ void check_polynomials(const Lens& lens, const AnyRayModel& model, double radius
   }
 }
 
-/// Mean weight on the axis. Each sample has a different v: a grid has few values of v, and the edge of the pupil, which
-/// lies between two of them, would change the mean in steps.
+/// Mean weight on the axis. Every sample has a different v. With the few values of v of a grid, the mean would change
+/// in steps as the edge of the pupil crosses one of them.
 double on_axis(const FilmView& view, std::size_t wavelength) {
   constexpr std::size_t count = 4096;
   const std::vector<double> zero(count, 0);
@@ -101,7 +101,7 @@ std::vector<double> scales(const Lens& lens, const Film& film, const AnyRayModel
   }
   if (normalisation == Normalisation::irradiance) return result;
 
-  // A small film about the axis, because a shifted film may not contain the axis.
+  // The film is small and centred on the axis, because a shifted film may not contain the axis.
   constexpr double part = 1. / 1024;
   Film about = film;
   about.width_mm *= part, about.height_mm *= part;
@@ -129,7 +129,7 @@ std::vector<double> scales(const Lens& lens, const Film& film, const AnyRayModel
   return each;
 }
 
-/// The wavelengths if samples between them are allowed, else an empty span.
+/// The wavelengths in nm if samples may lie between them, else an empty span.
 std::span<const double> nm_of(const Lens& lens, const AnyRayModel& model) {
   const bool any = model.any_wavelength() && std::isfinite(lens.index_error());
   return any ? lens.wavelengths_nm() : std::span<const double>();

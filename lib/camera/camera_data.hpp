@@ -40,8 +40,8 @@ struct Camera::Data {
     if (clamp_) given = Wavelength::nm(clamped(*given.in_nm()));
     return model.any_wavelength() ? given : Wavelength(lens.position(given));
   }
-  /// The same for N rays: calls of_rays(begin, count, wavelengths) for consecutive ranges; for one range unless each
-  /// ray has a wavelength in nm to clamp.
+  /// Resolves the wavelengths of N rays and calls of_rays(begin, count, wavelengths) for consecutive ranges. One call
+  /// covers all rays unless each ray has a wavelength in nm that must be clamped.
   template <class OfRays>
   void in_range(std::size_t count, const RayWavelengths& given, const OfRays& of_rays) const {
     RayWavelengths own = given.resolved(primary_);
@@ -58,7 +58,7 @@ struct Camera::Data {
       of_rays(begin, n, own);
     }
   }
-  /// Built on first use, because many renderers only trace paths from the film.
+  /// The scene side is built on first use, because many renderers only trace paths from the film.
   const camera_detail::SceneSide& scene(int threads = 1) const {
     std::call_once(scene_once_, [&] {
       scene_.emplace(facts_, film, tilted, front, focus, model, radius_, wavelengths, weights, threads);

@@ -17,7 +17,7 @@ namespace petzval::camera_detail {
 template <class T>
 struct TiltedBounds {
   T x_by_x, x_by_y, y_by_y, depth_by_x, depth_by_y, slope_x, slope_y, cosine;
-  T whole_travel;            ///< travel over the whole exposure
+  T whole_travel;            ///< travel during the complete exposure
   const T* times = nullptr;  ///< one for each sample
 };
 

@@ -47,7 +47,7 @@ struct PupilWeight {
   static T limited(T pdf) noexcept { return pdf < T(1e36) ? pdf : T(1e36); }
 };
 
-/// Fate of a sample: the fate of its ray, unless the sample has no ray.
+/// Fate of a sample: the fate of its ray if the sample has a ray.
 inline RayFate fate_of(RayFate fate, bool kept, bool wanted, bool seen) noexcept {
   fate = seen ? fate : RayFate::vignetted;
   fate = wanted ? fate : RayFate::outside_spectrum;
@@ -66,7 +66,7 @@ inline PlanePoint<T> virtual_of(const Plane& plane, T x, T y) noexcept {
   return {(plane.x_by_x * x + plane.x_by_y * y) * per_distance, plane.y_by_y * y * per_distance};
 }
 
-/// Relative excess of the upright film's distance from the pupil plane over the distance of the film point.
+/// Distance of the upright film from the pupil plane divided by the distance of the film point, minus 1.
 template <class T, class Plane>
 inline T nearer_by(const Plane& plane, T virtual_x, T virtual_y) noexcept {
   return ((plane.slope_x * virtual_x + plane.slope_y * virtual_y) - plane.travel) / (T(1) + plane.travel);
@@ -79,8 +79,8 @@ inline PlanePoint<T> upright_of(const Plane& plane, T virtual_x, T virtual_y, T 
   return {virtual_x - nearer * pupil_x, virtual_y - nearer * pupil_y};
 }
 
-/// Weight of a film sample divided by the weight of the upright film's sample with the same ray; not positive if the
-/// ray meets the back of the film.
+/// Weight of a film sample divided by the weight of the sample of an upright film with the same ray; zero or negative
+/// if the ray meets the back of the film.
 template <class T, class Plane>
 inline T facing_of(const Plane& plane, T virtual_x, T virtual_y, T pupil_x, T pupil_y) noexcept {
   const T near = T(1) + nearer_by(plane, virtual_x, virtual_y);

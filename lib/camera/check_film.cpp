@@ -52,7 +52,7 @@ void check_outside_surface(const Lens& lens, const Film& film) {
 void check_tilted(const Lens& lens, const Film& film) {
   const pupil_detail::Face face = pupil_detail::last_face(lens);
   const double film_z = film.z();
-  // End of the last surface on the film side; its vertex if the surface reaches around the upright film.
+  // End of the last surface on the side of the film; its vertex if the surface extends past the upright film.
   const double side = film_z > face.vertex_z ? 1 : -1, edge = side > 0 ? face.z_max : face.z_min;
   const double end = (film_z - edge) * side > 0 ? edge : face.vertex_z;
   for (const FilmPoint& corner : film.corners()) {
@@ -68,7 +68,7 @@ void check_tilted(const Lens& lens, const Film& film) {
 }  // namespace
 
 FilmBehindLens placed(const Lens& lens, const Film& film) {
-  // A prescription may have its film anywhere, even at a virtual image.
+  // A prescription may place its film anywhere, even at a virtual image.
   FilmBehindLens result{with_film(lens, film.z_mm.value_or(lens.film_z())), film};
   result.film.z_mm = result.lens.film_z();
   return result;

@@ -7,7 +7,7 @@
 
 namespace petzval::camera_detail {
 
-/// True if a film meets other rays than the upright film at its position.
+/// True if the rays that meet a film can differ from the rays that meet the upright film at its position.
 inline bool tilted_or_moving(const Film& film) noexcept { return film.tilted() || film.travel_mm != 0; }
 
 /// @throws Error  as core_detail::check_rectangle(), and if the film reaches into the last surface or is tilted into
@@ -21,7 +21,7 @@ struct FilmBehindLens {
   Lens lens;
   Film film;
 };
-/// @throws Error  as with_film(), also for the lens's own film
+/// @throws Error  as with_film(), even if the film keeps the position of the lens's film
 PETZVAL_API FilmBehindLens placed(const Lens& lens, const Film& film);
 
 }  // namespace petzval::camera_detail

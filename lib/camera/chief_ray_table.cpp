@@ -13,7 +13,8 @@
 namespace petzval::camera_detail {
 namespace {
 
-/// Radius of the table, in film radii; distinguishes points imaged outside the film from points that no ray sees.
+/// Radius of the table, in film radii. It exceeds 1 to distinguish points imaged outside the film from points without
+/// an image.
 constexpr double beyond_film = 1.5;
 constexpr int steps = 24;  // over the radius of the table
 
@@ -140,7 +141,7 @@ ChiefRayTable::ChiefRayTable(const LensFacts& facts, const AnyRayModel& model, d
     };
     for (int i = 1; i <= 4 * steps && !nodes.empty() && nodes.back().film < beyond_film * film_radius; ++i) {
       if (next(step * i)) continue;
-      // Bisect to the last ray that passes: the edge of a fisheye's image.
+      // Bisect to the last ray that passes, at the edge of the image of a fisheye.
       double good = step * (i - 1);
       for (double by = step / 2; by > 1e-4 * step; by /= 2) {
         if (next(good + by)) good += by;
@@ -179,15 +180,16 @@ std::array<double, 2> ChiefRayTable::pupil_point(const FilmPoint& film) const no
 }
 
 std::optional<double> ChiefRayTable::find(const Meridian& nodes, double height, double z) noexcept {
-  // Sine of the angle by which the line of a node, of positive or negative film height, misses the point.
+  // Sine of the angle between the ray of a node, of positive or negative film height, and the line from the node to the
+  // point.
   const auto passes_by = [&](const Node& node, double sign) -> std::optional<double> {
     const double h = height - sign * node.height, along = z - node.z;
     const double dh = sign * node.direction_height, dz = node.direction_z;
     if (!(h * dh + along * dz > 0)) return {};
     return (dh * along - dz * h) / std::hypot(h, along);
   };
-  // Film height as a function of that sine, between the nodes k - 1 and k: a cubic through four nodes if the sines are
-  // monotonic, else the chord.
+  // Film height at which this sine is 0, between the nodes k - 1 and k: by a cubic through four nodes if the sines are
+  // monotonic, else by the chord.
   const auto between = [&](std::size_t k, double sign, double before, double now) {
     if (nodes.size() >= 4) {
       const std::size_t first = std::clamp<std::size_t>(k, 2, nodes.size() - 2) - 2;

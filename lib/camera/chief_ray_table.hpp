@@ -18,8 +18,8 @@ namespace petzval::camera_detail {
 /// Traces an image-space line to the scene, ignoring clear apertures.
 TracedRay<double> unclipped(const Lens& lens, const TwoPlanes& space, Wavelength wavelength, const TwoPlaneRay& line);
 
-/// Chief rays of one wavelength as image-space rays: for exact and polynomial models exact rays through the centre of
-/// the stop, for other models the model's rays through the middles of its pupils.
+/// Chief rays of one wavelength as image-space rays. For exact and polynomial models they are exact rays through the
+/// centre of the stop, for other models rays of the model through the centres of its pupils.
 class ChiefRayTable {
  public:
   /// middle: for first-order models, the ratio of pupil position to film point of chief rays.
@@ -29,8 +29,8 @@ class ChiefRayTable {
   /// Intersection of the chief ray of a film point with the pupil plane.
   std::array<double, 2> pupil_point(const FilmPoint& film) const noexcept;
 
-  /// Approximate film point whose chief ray comes from a scene point. nullopt if there is no such chief ray, or if it
-  /// meets the film plane beyond 1.5 times the film radius.
+  /// Approximate film point whose chief ray comes from a scene point. nullopt if there is no such chief ray, or if the
+  /// film point is farther from the axis than 1.5 film radii.
   std::optional<FilmPoint> about(const Vec3<double>& point) const noexcept;
 
  private:

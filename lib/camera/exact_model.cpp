@@ -25,7 +25,7 @@ struct Block {
   }
 };
 
-/// Traces rays in place; fewer than 8 rays one by one, which is faster than setting up a block.
+/// Traces rays in place; fewer than 8 rays one by one, which is faster than filling a block.
 template <class R>
 void trace_in_place(const Lens& lens, Travel travel, std::size_t count, const RayArrays<R>& rays,
                     const RayWavelengths& wavelengths, RayFate* fates) noexcept {

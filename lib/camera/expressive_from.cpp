@@ -17,7 +17,7 @@
 namespace petzval {
 namespace {
 
-/// The plane of focus of exact rays from a film point, as the change of slope per height in the plane z; least squares
+/// Focus of the exact rays from a film point, as the change of slope per height in the plane z: a least-squares fit
 /// weighted by irradiance over the pupil. nullopt if no ray passes.
 std::optional<double> in_focus(const Lens& lens, const FilmPoint& film, double z) {
   const PupilBoundary boundary = exit_pupil_boundary(lens, film, lens.primary_wavelength());
@@ -41,7 +41,7 @@ std::optional<double> in_focus(const Lens& lens, const FilmPoint& film, double z
   return std::isfinite(focus) ? std::optional(focus) : std::nullopt;
 }
 
-/// Radius of the lit film, up to `radius`.
+/// Largest radius, up to `radius`, at which rays reach the film.
 double lit_radius(const Lens& lens, double radius, double z) {
   if (in_focus(lens, {0, radius}, z)) return radius;
   double lit = 0, dark = radius;
@@ -79,13 +79,14 @@ ExpressiveLens expressive_from(const Lens& given, const Film& given_film) {
     const Ray<double> start{{0, place, space.pupil_z}, along * (towards_scene(lens, space) / glm::length(along))};
     const auto end = trace(lens, start, {.travel = Travel::to_scene, .apertures = false});
     if (!end.transmitted()) break;
-    // In the plane of focus the model's ray has the same distance from the axis as the exact ray.
+    // The exact ray defines the power: in the plane of focus, the model's ray must have the same distance from the
+    // axis.
     const auto line = core_detail::slope_ray(end.ray, maps.z);
     const double beyond = (line.slope_y - own * line.y) / (maps.b * place);
     found.power.push_back({i == 0 ? 0 : part, 1 + beyond * focal_length});
   }
 
-  // Rings about the axis, out to the farthest corner, with more points in outer rings.
+  // Film points on rings about the axis, out to the farthest corner, with more points in outer rings.
   const auto centre = in_focus(lens, {}, maps.z);
   constexpr int rings = 4, first_ring = 6;
   const double reach = centre ? lit_radius(lens, film.radius_mm(), maps.z) : 0;
@@ -93,7 +94,7 @@ ExpressiveLens expressive_from(const Lens& given, const Film& given_film) {
     const double height = reach * ring / rings;
     const auto focus = in_focus(lens, {0, height}, maps.z);
     if (!focus) break;
-    // Inverts in_focus(maps, nearer).
+    // Inverse of in_focus(maps, nearer).
     const double asked = own + *focus - *centre, nearer = (maps.b * asked - maps.d) / (maps.a * asked - maps.c);
     const double part = 1 / (1 + nearer) - 1, offset = part * -space.depth();
     constexpr double largest = 0.2;

@@ -28,14 +28,15 @@ double entrance_pupil(const IdealLens& lens) {
   return z;
 }
 
-/// Inverse distance of the nearest object that a surface may focus on.
+/// Inverse of the smallest distance at which a surface may focus.
 double nearest_inverse(const IdealLens& lens) {
   const double f = std::abs(lens.front_focal_length);
   const double in_front = entrance_pupil(lens) - std::min(lens.front_focal_z - margin * f, lens.front_z);
   return in_front > 0 ? std::min(1 / in_front, largest_power / f) : largest_power / f;
 }
 
-/// Diameter of the blur on the film (mm) per 1/mm between plane of focus and object; constant for an ideal lens.
+/// Diameter of the blur on the film (mm) per 1/mm of difference between the inverse distances of focus and object;
+/// constant for an ideal lens.
 double blur_per_inverse(const IdealLens& lens, Film film) {
   film.tilt_rad = film.swing_rad = 0;
   const double near = nearest_inverse(lens) / 2;
@@ -85,7 +86,7 @@ struct FocalSurface::Fields {
   bool fixes_distance = false;
   double blur_per_inverse = 0;
   MovingLeastSquares distance, extent;
-  /// Surface through the distances of the points, ignoring their blur; nullopt if no point has a blur.
+  /// Surface through the distances of the points without the shifts by `blur_mm`; nullopt if no point has a blur.
   std::optional<MovingLeastSquares> objects;
 };
 
@@ -137,7 +138,7 @@ FocalSurface::FocalSurface(const IdealLens& lens, const Film& film, std::span<co
   }
   if (extents.empty()) extents.push_back({{0, 0}, 0});
   const MovingLeastSquares extent("focal surface: ", extents, side, options.kind, options.beta, 0);
-  // Limited to infinity, unless a point lies beyond.
+  // Inverse distances are not negative, unless a point has a negative inverse distance.
   const auto field = [&](const std::vector<WeighedValue>& of) {
     MovingLeastSquares result("focal surface: ", of, side, options.kind, options.beta);
     result.keep_within(std::min(0.0, result.least_value()), nearest);

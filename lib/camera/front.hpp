@@ -16,7 +16,7 @@ struct Front {
 /// @throws Error  if glass extends beyond 1e12 mm, which steep polynomials may cause
 Front front_of(const Lens& lens);
 
-/// Distance from the origin of a ray to the front, along the ray, which travels towards the scene.
+/// Distance from the origin of a ray to the front, along the ray. The ray must travel towards the scene.
 double way_to_front(const Front& front, const Ray<double>& ray) noexcept;
 /// The ray with its origin moved to the front, with derivatives.
 RayDerivatives at_front(const Front& front, const RayDerivatives& ray) noexcept;

@@ -47,7 +47,7 @@ HostFrame::HostFrame(Host host, const Lens& lens, FrameOrigin origin, double uni
   }
 }
 
-// Signs are their own inverses, so that both directions differ only in the order of operations.
+// A sign is its own inverse, so both directions differ only in the order of operations.
 Vec3<double> HostFrame::point_to_host(const Vec3<double>& lens_mm) const noexcept {
   return (lens_mm - Vec3<double>{0, 0, origin_z_}) * signs_ * units_per_mm_;
 }

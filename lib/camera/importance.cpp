@@ -66,14 +66,14 @@ void in_blocks(std::size_t count, const Body& body) noexcept {
   if (begin < count) body(std::integral_constant<std::size_t, 1>(), begin, 1);
 }
 
-/// A connection to a position in the lens; the distance and the end of the shadow ray are reduced by `way`, the
-/// distance between the front of the lens and the position.
+/// A connection to a position in the lens. `way` is the distance from the front of the lens to the position; the
+/// distance and the end of the shadow ray are reduced by it.
 ImportanceSample connected(const Vec3<double>& place, const Vec3<double>& direction, double distance, double way,
                            double pdf) noexcept {
   return {direction, distance - way, place - direction * way, pdf, {}};
 }
 
-/// The rays of a model in the scene.
+/// Rays of a model in the scene, for each wavelength.
 std::vector<std::vector<Ray<double>>> leaving_rays_of(const Lens& lens, const AnyRayModel& model, int threads) {
   return leaving_rays(
       model.pupils(), lens.rotationally_symmetric(),
@@ -94,7 +94,7 @@ ScenePassing passing(const AnyRayModel& model) {
         model.to_film(count, rays, {.all = wavelength},
                       {line[0].data(), line[1].data(), line[2].data(), line[3].data()}, fates.data());
         for (std::size_t i = 0; i < count; ++i) {
-          // Points outside the film have the pupil of the film's edge.
+          // Points outside the film are assigned the pupil of the edge of the film.
           const double radius = std::hypot(line[0][i], line[1][i]);
           const double part = radius > pupils.film_radius() ? pupils.film_radius() / radius : 1;
           passes[i] = fates[i] == RayFate::transmitted &&
@@ -104,12 +104,12 @@ ScenePassing passing(const AnyRayModel& model) {
       };
 }
 
-/// The entrance pupils of scene points. Rays that meet the film plane outside the film count too; otherwise pupils
+/// The entrance pupils of scene points. They include rays that meet the film plane outside the film; otherwise pupils
 /// would end abruptly at the edge of the film.
 EntrancePupilTable entrance_of(const Lens& lens, const AnyRayModel& model, int threads) {
   const bool exact = model.kind() == ModelKind::exact_float || model.kind() == ModelKind::exact_double;
   if (exact) return traced_entrances(lens, model.pupils(), threads);
-  if (model.kind().is_first_order() && !lens.iris().round()) {  // the round stop's pupils enclose the pupils
+  if (model.kind().is_first_order() && !lens.iris().round()) {  // the pupils of a round stop enclose the others
     const Lens round = with_iris(lens, {});
     return entrance_of(round, make_model(model.kind(), round, model.pupils().film_radius()), threads);
   }
@@ -117,7 +117,7 @@ EntrancePupilTable entrance_of(const Lens& lens, const AnyRayModel& model, int t
     return entrance_of(with_iris(lens, {}), PolynomialModel(polynomial->polynomial(), model.pupils().of_round_stop()),
                        threads);
   }
-  // A pinhole needs the front of the lens only: no rays.
+  // A pinhole needs only the front of the lens, and no rays.
   if (model.pinhole()) {
     return EntrancePupilTable(lens, std::vector<std::vector<Ray<double>>>(model.pupils().wavelengths()), {});
   }
@@ -129,13 +129,13 @@ EntrancePupilTable entrance_of(const Lens& lens, const AnyRayModel& model, int t
 /// Distance from which the pupil equals the pupil at infinity up to rounding, mm.
 constexpr double far = 1e12;
 
-/// The point of a ray's line nearest to the vertex: keeps the precision of rays from distant origins.
+/// The point of a ray's line nearest to the vertex; it keeps the precision of rays from distant origins.
 Vec3<double> nearest_to_lens(const Ray<double>& ray) noexcept {
   return ray.origin - ray.direction * glm::dot(ray.origin, ray.direction);
 }
 
-/// Area of the entrance pupil whose image is a pinhole's pupil on the axis, mm^2. Film point and pupil position are
-/// linear in height and slope of a ray at the entrance pupil. For a film point on the axis, the height is therefore
+/// Area of the entrance pupil whose image is the pupil of a pinhole on the axis, mm^2. Film point and pupil position
+/// are linear in height and slope of a ray at the entrance pupil. For a film point on the axis, the height is therefore
 /// linear in the pupil position.
 double pinhole_entrance_area(const AnyRayModel& model, double entrance_z, std::size_t wavelength) noexcept {
   const auto image = [&](double height, double slope) {
@@ -187,7 +187,7 @@ SceneSide::SceneSide(const LensFacts& facts, const Film& film, std::optional<Til
     const double across = has_cylinders(lens) ? pupils(lens, w, Meridian::x).entrance.diameter : entrance.diameter;
     const double found =
         model.pinhole() ? pinhole_entrance_area(model, entrance.z, w) : pi / 4 * across * entrance.diameter;
-    // Below the smallest normal number 1 / area is not finite: vignette all rays.
+    // If the area is below the smallest normal number, 1 / area is not finite: vignette all rays.
     const double area = found >= std::numeric_limits<double>::min() ? found : 0;
     compiled_.push_back({{.we = etendue * wavelengths.scale(w) / film.area_mm2(),
                           .density = etendue / film.area_mm2() / squared(space_.depth()),
@@ -338,7 +338,7 @@ template <std::size_t block>
 void SceneSide::importance_block(const AnyRayModel& model, std::size_t count, const RayArrays<const double>& rays,
                                  const RayWavelengths& wavelengths, const double* times,
                                  Importance* found) const noexcept {
-  // A ray meets the pinhole only if it was aimed at it: probability 0.
+  // Only connections meet the pinhole: a given ray has probability 0.
   if (model.pinhole()) {
     for (std::size_t i = 0; i < count; ++i) {
       const bool usable = valid(core_detail::ray_at(rays, i), wavelengths.at(i));
@@ -348,8 +348,8 @@ void SceneSide::importance_block(const AnyRayModel& model, std::size_t count, co
   }
   Arrivals<block> arrivals;
   arrive(model, count, rays, wavelengths, times, arrivals);
-  // Rays may arrive outside the sampled pupil, through other zones of the surfaces (for example of a ball lens): area
-  // 0.
+  // Rays may arrive outside the sampled pupil, through other zones of the surfaces (for example of a ball lens): their
+  // area is 0.
   const FilmPupilTable& sampled = tilted_ ? tilted_->pupils() : pupils_;
   std::array<double, block> areas;
   sampled.sample_areas<double>(count, arrivals.virtual_lines(), wavelengths, areas.data());
@@ -392,7 +392,7 @@ void SceneSide::connect(const AnyRayModel& model, std::size_t count, const Vec3<
                         ImportanceSample* found) const noexcept {
   std::array<double, block> x, y, z, dx, dy, dz, distance, pdf, way;
   std::array<Importance, block> importances;
-  // Points without a connection get valid rays too, with pdf = 0.
+  // Points without a connection also get valid rays, with pdf = 0.
   entrance_.sample(count, points, u, v, wavelengths,
                    {x.data(), y.data(), z.data(), dx.data(), dy.data(), dz.data(), distance.data(), pdf.data()});
   importance_block<block>(model, count, {x.data(), y.data(), z.data(), dx.data(), dy.data(), dz.data()}, wavelengths,
@@ -449,7 +449,7 @@ ImportanceSample SceneSide::through_pinhole(const AnyRayModel& model, const Vec3
   const double distance = glm::length(to);
   if (!std::isfinite(distance) || !std::isfinite(at.entrance_area) || !(at.entrance_area > 0 && to.z > 0))
     return result;
-  // Weights and pupil positions represent the whole pupil of the thick lens.
+  // Weights and pupil positions are those of the complete pupil of the thick lens.
   const Vec3<double> direction = to / distance;
   result = connection(pupil, direction, distance, squared(distance) / (at.entrance_area * direction.z));
   Arrivals<1> arrival;
@@ -462,7 +462,8 @@ ImportanceSample SceneSide::through_pinhole(const AnyRayModel& model, const Vec3
   const FilmPoint place{s.x, s.y};
   double spread = 1, area = s.area;
   if (const auto placed = plane(time); placed && arrival.lit(0)) {
-    // Lines through this pupil position spread over the tilted film differently from lines through the pinhole.
+    // Film points of rays through this pupil position are spaced differently on the tilted film than film points of
+    // rays through the pinhole.
     spread = part_by_place(*placed, place) / part_by_place(*placed, {arrival.pupil_x[0], arrival.pupil_y[0]});
     arrival.facing[0] = placed->weight(met, place);
     const TwoPlaneRay line = placed->upright(met, place);
@@ -475,9 +476,9 @@ ImportanceSample SceneSide::through_pinhole(const AnyRayModel& model, const Vec3
   Importance& seen = result.importance;
   weigh(model, 1, {.all = wavelength}, arrival, &area, &seen);
   if (seen.fate != RayFate::transmitted) return result;
-  // A rim clips the entrance pupil by the same fraction.
+  // A rim clips the entrance pupil by the same fraction as the exit pupil.
   if (whole_) {
-    // Tilted films sample the round stop; the iris clips some of these rays.
+    // Tilted films sample the round stop, and the iris clips some of these rays.
     const double sampled = tilted_ ? s.area : pupils.polygon_area(met, wavelength);
     const double all = tilted_ ? whole_->area(met, wavelength) : whole_->polygon_area(met, wavelength);
     const double part = sampled / all;

@@ -18,7 +18,7 @@ inline bool has_cylinders(const Lens& lens) noexcept {
                      [](const LensSurface& s) { return s.curved_in != Section::both; });
 }
 
-/// First-order data of a lens at each wavelength, shared by the parts of a camera.
+/// First-order data of a lens at each wavelength, shared by the components of a camera.
 class LensFacts {
  public:
   LensFacts(const Lens& lens) : lens_(lens) {

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-// Let X be a film point, H the height of a ray in the plane of the entrance pupil, and u = U(X) + w(X) H its slope
-// there. The bent ray has the height H' = s(X) H and the slope u' = U(X) + w'(X, |H|) H'. With A = dU/dX, heights and
-// slopes (H, u) of the model's rays cover |A| (1 + w_X . A^-1 H) times the area of (X, H). Bent rays cover s^2 |A| (1 +
-// w'_X . A^-1 H') times this area, with w'_X at the same H'. The quotient is the spread of the bent rays: the density
-// of film samples in the scene is the density of the model divided by it. If 1 + w'_X . A^-1 H' falls to 0, the rays of
-// neighbouring film points coincide.
+// Let X be a film point, H the height of a ray in the plane of the entrance pupil, and u = U(X) + w(X) H its slope in
+// this plane. The bent ray has the height H' = s(X) H and the slope u' = U(X) + w'(X, |H|) H'. With A = dU/dX, an area
+// of (X, H) is mapped by the model to |A| (1 + w_X . A^-1 H) times this area of heights and slopes (H, u), and by the
+// bent rays to s^2 |A| (1 + w'_X . A^-1 H') times this area, with w'_X at the same H'. The quotient of both factors is
+// the spread of the bent rays: the density of film samples in the scene is the density of the model divided by the
+// spread. If 1 + w'_X . A^-1 H' falls to 0, the rays of neighbouring film points coincide.
 //
-// A ray of the scene has given H' and u'. Its film point is the point whose chief ray has the slope u' - t H' and whose
-// focus w' is t. This is one equation for t: t - w' = 0 at that film point. The derivative of t - w' is 1 + w'_X . A^-1
-// H'.
+// For a ray of the scene, H' and u' are given. Its film point is the point whose chief ray has the slope u' - t H' and
+// whose focus w' is t. This is one equation for t: t - w' = 0 at that film point. The derivative of t - w' with respect
+// to t is 1 + w'_X . A^-1 H'.
 #include "local_focus.hpp"
 
 #include <algorithm>
@@ -79,8 +79,8 @@ FocusRules<T> in_type(const FocusRules<double>& rules) {
   return result;
 }
 
-/// Zero of a function that grows with a slope of about 1, by the secant method; by bisection if the secants do not
-/// settle, as on steep surfaces. scale: typical size of the argument.
+/// Zero of a function that grows with a slope of about 1: by the secant method, or by bisection if the secants do not
+/// converge, as on steep surfaces. scale: typical size of the argument.
 double zero_of(const auto& f, double scale) {
   const double settled = 1e-13 * scale;
   double before = 0, at_before = f(before), t = -at_before;
@@ -353,7 +353,7 @@ LocalFocus::Straight LocalFocus::straighten(const Ray<double>& ray, Wavelength w
   const Vec2<double> height{x, y}, slope{slope_x, slope_y};
   if (!(glm::length(height) + glm::length(slope) < 1e12)) return {};
 
-  // Focus of the film point whose chief ray has the slope that belongs to t.
+  // Focus at the film point whose chief ray has the slope that belongs to t.
   const double by_radius = data.rules.power * beyond_one(data.rules.spline, glm::length(height) / at->maps.radius);
   const auto asked = [&](double t) -> std::optional<double> {
     const auto from = data.seen(*at, slope - height * t, plane);
@@ -419,8 +419,8 @@ EntrancePupilTable LocalFocus::entrances(const Lens& lens, const AnyRayModel& mo
     least_power = std::min(least_power, power), most_power = std::max(most_power, power);
   }
   std::vector<double> radii(data.compiled.size(), 0);
-  // Rays of all pupils, as wide as the largest extent makes them, to the nearest and to the farthest focus; they show
-  // the largest fields.
+  // Rays of all pupils, enlarged by the largest extent, to the nearest and to the farthest focus: they have the largest
+  // fields.
   const auto to_focus = [&](bool near) {
     const FilmPointFocus<double> point{0,
                                        data.surface ? (near ? data.surface->nearest() : data.surface->farthest()) : 0,

@@ -21,8 +21,8 @@ namespace petzval::camera_detail {
 /// scene. middle: centre of the image of the stop, divided by the film point. radius: of the image of the stop, mm.
 EntranceMaps<double> entrance_maps(const RayMatrix& map, double z, double middle, double radius) noexcept;
 
-/// Individual focus for every film point, radius in the pupil and wavelength, in front of a first-order model: a focal
-/// surface and the aberrations of an expressive lens. It bends the rays of the model in the plane of the entrance pupil
+/// Individual focus for every film point, radius in the pupil and wavelength, for a first-order model: a focal surface
+/// and the aberrations of an expressive lens. Rays of the model are bent in the plane of the entrance pupil
 /// (local_focus_steps.hpp), so that film points, pupils and weights stay the same. Pinholes do not change.
 ///
 /// Immutable, cheap to copy, thread-safe.
@@ -47,7 +47,7 @@ class LocalFocus {
   void bend(const FilmPoint& film, double nearer, const Vec2<double>& nearer_by, Wavelength wavelength,
             RayDerivatives& ray) const noexcept;
 
-  /// The model's ray that is bent to a ray of the scene, which travels towards the lens.
+  /// The ray of the model that is bent to a given ray of the scene. The ray travels towards the lens.
   struct Straight {
     Ray<double> ray{};
     double spread = 0;  ///< area of heights and slopes of bent rays over area of the model's; 0 if there is no ray
@@ -57,7 +57,7 @@ class LocalFocus {
 
   /// See Camera::focal_steepness(). plane: for a film that is tilted or travels.
   FocalSteepness steepness(const std::optional<TiltedPlane>& plane) const noexcept;
-  /// The entrance pupils seen from the scene: discs that enclose the pupils of all film points.
+  /// The entrance pupils for points of the scene: discs that enclose the pupils of all film points.
   EntrancePupilTable entrances(const Lens& lens, const AnyRayModel& model, int threads) const;
   /// Intersection of chief rays with the pupil plane, divided by the film point.
   double middle(std::size_t wavelength) const noexcept;

@@ -7,9 +7,9 @@
 /// Steps of LocalFocus for one ray, for loops, single rays and dual numbers.
 ///
 /// To first order the rays of a film point X meet the plane of the entrance pupil at heights H with slopes u = U + w H:
-/// U is the slope of the chief ray, and w, equal for all rays, is 1 / distance of the plane in focus. Another plane in
-/// focus means another w, for each film point, radius in the pupil and wavelength; another extent of the depth of field
-/// means another scale s of H.
+/// U is the slope of the chief ray, and w is 1 / distance of the plane in focus, the same for all rays. To focus on
+/// another plane, w is replaced, for each film point, radius in the pupil and wavelength. To change the depth of field,
+/// H is scaled by a factor s.
 namespace petzval::camera_detail {
 
 /// First-order optics of one wavelength (mm): film point X and pupil point P map to the height a X + b P and the slope
@@ -47,7 +47,7 @@ struct BentRay {
   N x, y, dx, dy, dz;
 };
 
-/// 1 / distance in focus at the middle of the pupil: `own` of the film, `asked` as requested.
+/// 1 / distance in focus at the centre of the pupil: `own` of the film, `asked` as requested.
 template <class N>
 struct InFocus {
   N own, asked;

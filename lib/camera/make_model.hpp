@@ -15,7 +15,7 @@ namespace petzval::camera_detail {
 PETZVAL_API AnyRayModel make_model(ModelKind model, const LensFacts& facts, double film_radius, int threads = 1,
                                    const std::optional<PupilRim>& rim = {});
 
-/// The pupils of a lens clipped by a rim.
+/// Clips the pupils of a lens by a rim.
 /// @throws Error  as FilmPupilTable::cut_by_rim()
 FilmPupilTable behind(const PupilRim& rim, const FilmPupilTable& pupils, const Lens& lens);
 

@@ -58,7 +58,7 @@ MovingLeastSquares::MovingLeastSquares(const std::string& where, std::span<const
   if (!(most_alpha > 0)) {
     throw Error(where + "0 of " + std::to_string(points.size()) + " points have a weight; must be at least 1");
   }
-  // Continuous in all weights and fades; 1 for the most important point if all points fade equally.
+  // Continuous in all weights and fades; if all points fade equally, the most important point keeps the value 1.
   const auto presence = [&](const WeighedValue& point) {
     return point.fade * std::min(1.0, raw_alpha(point) / most_alpha / full_alpha);
   };
@@ -86,7 +86,7 @@ MovingLeastSquares::MovingLeastSquares(const std::string& where, std::span<const
     to.soft2.push_back(soft * soft);
   }
   find_line(shares);
-  // A point that vanishes contributes less and less to the limits.
+  // A point that vanishes has less and less influence on the limits.
   double mean = 0, alphas = 0;
   for (std::size_t i = 0; i < to.alpha.size(); ++i) mean += to.alpha[i] * to.value[i], alphas += to.alpha[i];
   mean /= alphas;
@@ -101,10 +101,10 @@ MovingLeastSquares::MovingLeastSquares(const std::string& where, std::span<const
   least_value_ = least;
 }
 
-// Points on a line and one point off the line define the same plane for any weight of that point, however small. So
-// points nearly on a line keep only the slope along the line, and points that fade count here by their squared share.
-// Points count as on a line if their RMS spread across is below 0.02 of the spread along the line, and as in a plane
-// from 0.08 on; results are blended between.
+// Together with points on a line, one point off the line determines the plane, however small its weight. Therefore
+// points nearly on a line determine only the slope along the line, and fading points are counted here by their squared
+// share. Points count as on a line if their RMS spread across the line is below 0.02 of the spread along the line, and
+// as in a plane from 0.08 on; between these values the results are blended.
 void MovingLeastSquares::find_line(std::span<const double> shares) {
   constexpr double line_aspect = 0.02, plane_aspect = 0.08;
   double sum = 0, mean_x = 0, mean_y = 0, xx = 0, xy = 0, yy = 0;
@@ -205,7 +205,7 @@ Vec2<double> MovingLeastSquares::slopes(const FilmPoint& place) const noexcept {
     if (r2 < least) least = r2, nearest = i;
     if (r2 > touching) next = std::min(next, r2);
   }
-  // At a point, the other points determine the slopes, with weights relative to the nearest other point.
+  // At a point, the other points determine the slopes, with weights relative to the nearest of them.
   const bool on_point = least <= touching;
   if (on_point && !(affine_ && std::isfinite(next))) return {0, 0};
   const auto weight = [&](std::size_t i) {

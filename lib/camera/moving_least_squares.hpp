@@ -33,11 +33,11 @@ void check(const WeighedValue& point, double side, const std::string& where);
 /// the point, or the mean value of coincident points.
 ///
 /// Weights are alpha (m / r2)^(beta / 2) with r2 = d^2 + soft^2 and m the smallest r2, so that they do not overflow. A
-/// point that fades, or whose alpha = weight * fade falls below 1e-3 of the largest, becomes soft, up to a tenth of the
-/// side, and vanishes without a jump. Only ratios of alphas count; points below 1e-9 of the largest are left out.
-/// Points on a line determine the slope along the line only, coincident points no slope. Results stay within [least -
-/// m, most + m] of the values, with m = `beyond` * (most - least); points that fade widen this partly. They are equal
-/// for all instruction sets and batch sizes, and finite for any position; constant beyond 1e6 sides.
+/// point that fades, or whose alpha = weight * fade falls below 1e-3 of the largest alpha, becomes soft, up to a tenth
+/// of the side, and vanishes without a jump. Only ratios of alphas matter; points below 1e-9 of the largest alpha are
+/// left out. Points on a line determine only the slope along the line, coincident points no slope. Results stay within
+/// [least - m, most + m] of the values, with m = `beyond` * (most - least); fading points widen these limits slightly.
+/// Results are equal for all instruction sets and batch sizes, finite for any position, and constant beyond 1e6 sides.
 ///
 /// Accuracy: planes are reproduced within 1e-13 of the range of values for beta up to 4, within 1e-11 for 8. Floats are
 /// computed in double. Sources: Lancaster and Salkauskas 1981; weights of Lee et al. 2010, section 5.2.
@@ -68,8 +68,8 @@ class PETZVAL_API MovingLeastSquares {
   void find_line(std::span<const double> shares);
   LeastSquaresJob job() const noexcept;
 
-  /// Points that count: coordinates and values scaled by powers of two, alphas relative to the largest, squared
-  /// softness.
+  /// The points with enough weight: coordinates and values scaled by powers of two, alphas relative to the largest,
+  /// squared softness.
   struct Columns {
     std::vector<double> x, y, value, alpha, soft2;
   };

@@ -51,7 +51,7 @@ void fill(std::size_t count, const MapsOf& maps_of, T z, T reach, const T* __res
   for (std::size_t i = 0; i < count; ++i) {
     const Maps<T> maps = maps_of(i);
     const bool good = in_reach(reach, film_x[i], film_y[i], pupil_x[i], pupil_y[i]);
-    // An invalid line becomes the axis.
+    // An invalid line is replaced by the axis.
     const T fx = good ? film_x[i] : T(0), fy = good ? film_y[i] : T(0);
     const T px = good ? pupil_x[i] : T(0), py = good ? pupil_y[i] : T(0);
     const Mapped<T> ray = mapped(maps, fx, fy, px, py);
@@ -64,7 +64,7 @@ void fill(std::size_t count, const MapsOf& maps_of, T z, T reach, const T* __res
   }
   for (std::size_t i = 0; i < count; ++i) {
     const Maps<T> maps = maps_of(i);
-    const bool known = (maps.xa != T(0)) | (maps.xc != T(0));  // no map of a lens is zero
+    const bool known = (maps.xa != T(0)) | (maps.xc != T(0));  // a map of a lens is never zero
     const bool good = known & in_reach(reach, film_x[i], film_y[i], pupil_x[i], pupil_y[i]);
     fates[i] = good ? RayFate::transmitted : RayFate::missed_surface;
   }

@@ -32,8 +32,8 @@ namespace {
 constexpr double farthest = 1e12;  // mm, for lines
 constexpr double largest = 1e18;   // for rays before normalisation; its square is finite in float
 
-/// Map from film and pupil point to position and slope in the plane of the first vertex, in front of the lens, with the
-/// focus of exact rays.
+/// Map from film and pupil point to position and slope in the plane of the first vertex, in front of the lens, focused
+/// where exact rays are sharpest.
 RayMatrix to_scene_map(const LensFacts& facts, std::size_t wavelength, const TwoPlanes& space, Meridian section) {
   const StopMaps maps = stop_maps(facts, wavelength, space, section);
   return maps.from_film.then({1, 0, best_focus_power(facts, wavelength, maps, section), 1}).then(maps.to_front);
@@ -65,14 +65,14 @@ const SectionMaps* at_wavelength(Wavelength at, std::size_t primary, const std::
   return position < compiled.size() ? &compiled[position] : nullptr;
 }
 
-/// Image of the stop in the pupil plane as seen from a film point; its centre is at shift times the film point.
+/// Image of the stop in the pupil plane for a film point; its centre is at `shift` times the film point.
 struct StopImage {
   double shift = 0;
   double size = 0;  ///< relative to the stop; negative if inverted
 };
 
-/// height: first row of a map to the height of a line in the stop or in an image of the stop; `height` times `scale` is
-/// the height in the stop.
+/// height: first row of a map from film and pupil point to the height in the stop or in an image of the stop. scale:
+/// factor from this height to the height in the stop.
 StopImage image_of(const Lens& lens, const RayMatrix& height, double scale, const char* where) {
   if (height.b == 0) {
     throw Error(lens.name() + ": the film lies in " + where + "; must be elsewhere for a first-order model");
@@ -144,13 +144,13 @@ FilmPupilTable two_disc_pupils(const Lens& lens, double film_radius) {
   return lens.iris().round() ? reshaped : reshaped.with_stop(lens);
 }
 
-/// Semi-axis along y (mm) of the image of the iris that gives the film centre the irradiance of the exact lens.
+/// Semi-axis along y (mm) of the image of the iris for which the film centre has the irradiance of the exact lens.
 /// along_x: ratio of the semi-axes.
 double axial_radius(const Lens& lens, std::size_t wavelength, const TwoPlanes& space, const Iris& iris,
                     double along_x) {
   const double n = lens.index(lens.surface_count(), wavelength);
   const double wanted = film_irradiance(lens, {}, wavelength) / (n * n);
-  // Start with a disc, pi sin^2; the solid angle is nearly proportional to the squared radius.
+  // Start with a disc of projected solid angle pi sin^2; the solid angle is nearly proportional to the squared radius.
   double radius = std::abs(space.depth()) * std::sqrt(wanted / (std::numbers::pi - wanted) / along_x);
   for (int round = 0; round < 6 && radius > 0; ++round) {
     const PupilImage image{{0, 0}, {along_x * radius, radius}};

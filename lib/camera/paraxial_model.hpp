@@ -43,9 +43,9 @@ IrisImages iris_images(ModelKind model, const LensFacts& facts);
 ///     thin_two_disc   the intersection of two discs fitted to the real pupils
 ///     pinhole         the centre of the thick lens's pupil for every sample, with the weights of the thick lens
 ///
-/// Pupils have the size that gives the film centre the irradiance of the exact lens; two discs give every film point
-/// its exact irradiance. Bladed irises are seen as images; two discs are clipped by the iris. Rays are given in the
-/// plane of the first vertex.
+/// The size of the pupils gives the film centre the irradiance of the exact lens; two discs give every film point its
+/// exact irradiance. The iris of a lens with blades is mapped to the pupil as an image; two discs are clipped by the
+/// iris. Rays are given in the plane of the first vertex.
 ///
 /// Limitations: central obscurations are ignored. Lenses with cylinders have no pinhole and no two discs.
 class ParaxialModel {
@@ -72,8 +72,8 @@ class ParaxialModel {
   double z() const noexcept { return z_; }
   /// As in RayModel; empty unless this is the pinhole.
   std::span<const double> pinhole_shifts() const noexcept { return pinhole_shifts_; }
-  /// missed_surface if numbers are not finite or beyond 1e12 mm, rays are beyond 1e18, or the lens does not cover the
-  /// wavelength.
+  /// The fate is missed_surface if numbers are not finite or beyond 1e12 mm, if rays are beyond 1e18, or if the lens
+  /// does not cover the wavelength.
   template <class T>
   PETZVAL_API void to_scene(std::size_t count, const TwoPlaneRays<const T>& lines, const RayWavelengths& wavelengths,
                             const RayArrays<T>& rays, RayFate* fates) const noexcept;
@@ -81,8 +81,8 @@ class ParaxialModel {
   PETZVAL_API RayFate to_scene(const TwoPlaneRay& line, Wavelength wavelength, Ray<double>& ray) const noexcept;
   /// One ray with its derivatives.
   PETZVAL_API RayDerivatives to_scene(const TwoPlaneRayDerivatives& line, Wavelength wavelength) const noexcept;
-  /// Inverse of to_scene(); for the pinhole, inverse of the thick lens. missed_surface also for rays that do not travel
-  /// towards the lens.
+  /// Inverse of to_scene(); for the pinhole, inverse of the thick lens. The fate is missed_surface also for rays that
+  /// do not travel towards the lens.
   PETZVAL_API void to_film(std::size_t count, const RayArrays<const double>& rays, const RayWavelengths& wavelengths,
                            const TwoPlaneRays<double>& lines, RayFate* fates) const noexcept;
 

@@ -23,7 +23,7 @@ std::string_view name(ProjectionStatus status) noexcept {
 namespace camera_detail {
 namespace {
 
-/// Errors by which the chief rays of a film point and of two neighbours miss a point: sines of angles along two axes.
+/// Angles by which the chief rays of a film point and of two neighbours miss a point, as sines along two axes.
 struct Misses {
   std::array<std::array<double, 2>, 3> by{};
   bool lost = false;
@@ -52,7 +52,7 @@ Projection SceneSide::project(const AnyRayModel& model, const Vec3<double>& poin
   const auto start = chiefs.about(point);
   if (!start) return result;
 
-  // Iterates over points of the upright film; the final line is intersected with the real film.
+  // Iterate over points of the upright film, and intersect the final ray with the real film.
   const double beside = 1e-3 * upright_radius_;
   const auto misses = [&](const FilmPoint& film, double hx, double hy) noexcept {
     std::array<std::array<double, 3>, 4> line;

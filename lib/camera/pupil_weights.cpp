@@ -71,7 +71,7 @@ PupilWeights::PupilWeights(const Lens& lens, const AnyRayModel& model, const Bok
   const auto* const first_order = model.as<ParaxialModel>();
   const bool image = first_order && !first_order->two_discs();
   const auto [along_x, along_y] = image ? first_order->stop_upside_down() : std::array{false, false};
-  // Positions in the stop and in its image agree nearly, but not behind vignetted pupils.
+  // Positions in the stop and in its image are nearly equal, unless the pupil is vignetted.
   const double uniform_part = pupils.knows_stop() ? 0.25 : 0;
   iris_detail::IrisWeights weights(iris_detail::upside_down(lens.iris(), along_x, along_y), controls.edge(),
                                    iris_detail::upside_down(controls.weight_map, along_x, along_y), uniform_part,

@@ -13,16 +13,15 @@
 
 namespace petzval::camera_detail {
 
-/// Weights of a bokeh (BokehControls): the density of pupil samples and the weight of each sample.
+/// Weights of the bokeh controls (BokehControls): the density of pupil samples and the weight of each sample.
 ///
 /// Immutable, cheap to copy, thread-safe.
 class PupilWeights {
  public:
   /// No weights.
   PupilWeights() = default;
-  /// @throws Error  if the weight map has weights that are not finite or negative, a size that does not match, more
-  /// than
-  ///                2^26 pixels, or is black; or if the edge is out of range
+  /// @throws Error  if the weight map is black, has more than 2^26 pixels, a size that does not match, or weights that
+  /// are negative or not finite; or if the edge is out of range
   PupilWeights(const Lens& lens, const AnyRayModel& model, const BokehControls& controls);
 
   /// The pupils to sample instead of the pupils of the model; nullopt if there are no weights.
@@ -35,7 +34,7 @@ class PupilWeights {
   using Drawn = iris_detail::IrisWeights::Drawn;
   /// Returns u and v unchanged if there are no weights.
   Drawn draw(double u, double v) const noexcept { return data_ ? drawn(u, v) : Drawn{u, v, 1}; }
-  /// Density of drawn samples relative to uniform samples.
+  /// Density of the drawn samples relative to uniform samples.
   double density(const Vec2<double>& sample) const noexcept;
 
   /// Weights of samples of the model's pupils. lines: the N rays of the samples, as of an upright film.

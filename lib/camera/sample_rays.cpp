@@ -15,10 +15,10 @@ namespace petzval::camera_detail {
 namespace {
 
 constexpr std::size_t block = 256;
-/// Lanes of the widest registers of any instruction set.
+/// Number of lanes of the widest registers of any instruction set.
 template <class T>
 constexpr std::size_t lanes = 64 / sizeof(T);
-/// Lanes of the widest registers of this processor; at least 8, because fewer rays are not traced on lanes.
+/// Number of lanes of the widest registers of this processor, but at least 8: fewer rays are not traced on lanes.
 template <class T>
 std::size_t lanes_here() noexcept {
   static const bool widest = instruction_sets().back() == InstructionSet::avx512;
@@ -47,7 +47,7 @@ void fill_scales(std::size_t count, const WavelengthFacts& facts, const RayWavel
   camera_loops().of<T>().look_up(facts.scale_rows<T>(), count, wavelengths, scales);
 }
 
-/// Points of the upright film whose chief rays equal the rays of a pinhole in front of a tilted film.
+/// Finds points of the upright film whose chief rays equal the rays of a pinhole in front of a tilted film.
 template <class T>
 void find_chiefs(std::size_t count, const FilmView& view, const RayWavelengths& wavelengths, const T* times,
                  const T* virtual_x, const T* virtual_y, T* film_x, T* film_y) noexcept {
@@ -68,8 +68,8 @@ void keep_within(std::size_t count, const FilmPupilTable& pupils, const TwoPlane
   for (std::size_t i = 0; i < count; ++i) fates[i] = within[i] ? fates[i] : RayFate::vignetted;
 }
 
-/// Multiplies weights by the weights of the stop positions, and densities by the densities of the drawn positions.
-/// wanted: the first `wanted` rays are set.
+/// Multiplies the weights of the first `wanted` rays by the weights of the stop positions, and their densities by the
+/// densities of the drawn positions.
 template <class T>
 void weigh_pupil(const FilmView& view, std::size_t count, std::size_t wanted, const T* u, const T* v,
                  const TwoPlaneRays<const T>& lines, const RayWavelengths& wavelengths, const T* densities,
@@ -270,8 +270,8 @@ Start start(const FilmView& view, const FilmPoint& film, double u, double v, Wav
             bool with_derivatives) noexcept {
   Start s;
   s.kept = on_film(view.bounds, film.x, film.y);
-  // Copied one number at a time: one load of two numbers that were stored separately just before would stall.
   s.drawn = view.weights.draw(u, v);
+  // x and y are copied one at a time: a load of both numbers would stall if they were stored separately just before.
   const double x = s.kept ? film.x : view.bounds.centre_x, y = s.kept ? film.y : view.bounds.centre_y;
   s.film = {x, y};
   if (!view.tilted) {

@@ -79,10 +79,10 @@ class SceneSide {
       return {virtual_x.data(), virtual_y.data(), pupil_x.data(), pupil_y.data()};
     }
   };
-  /// Plane of a tilted or moving film at a time; nullopt for a fixed upright film.
+  /// Plane of a tilted or moving film at a given time; nullopt for a fixed upright film.
   std::optional<TiltedPlane> plane(double time) const noexcept;
-  /// Intersection of an image-space ray with the film plane, and its virtual point; equal for an upright film. nullopt
-  /// if there is no intersection.
+  /// Intersection of an image-space ray with the film plane, and the virtual point of this film point; both are equal
+  /// for an upright film. nullopt if there is no intersection.
   struct OnFilm {
     FilmPoint point, virtual_point;
   };

@@ -77,7 +77,7 @@ struct Rim {
   double half = 0, z = 0;
 };
 
-/// Pupils of a model at every wavelength, twice as wide as to first order: aberrations move and widen them, and the
+/// Pupils of a model at every wavelength, with twice the first-order width: aberrations move and widen them, and the
 /// search for the pupils of the film also covers points outside the film. Pupils at infinity are left out.
 std::vector<Rim> pupils_of(const LensFacts& facts, ModelKind model) {
   std::vector<Rim> rims;
@@ -95,8 +95,8 @@ std::vector<Rim> pupils_of(const LensFacts& facts, ModelKind model) {
   return rims;
 }
 
-/// A projection maps a rectangle into the hull of its mapped corners; while the film travels, virtual points stay on
-/// their lines.
+/// A projection maps a rectangle into the hull of its mapped corners, and a travelling film moves its virtual points
+/// along straight lines: the corners at both times suffice.
 FilmTilt tilt_of(const TiltedFilm& tilted) {
   const TiltedPlane first = tilted.plane(0), last = tilted.plane(1);
   FilmTilt tilt{.slope_x = first.slope_x,
@@ -126,7 +126,7 @@ double upright_radius(const LensFacts& facts, const Film& film, ModelKind model)
   const std::vector<Rim> pupils = pupils_of(facts, model);
   const pupil_detail::Face face = pupil_detail::last_face(lens);
   const bool discs = model.is_first_order() && model != ModelKind::thin_two_disc;
-  // Aberrations move a pupil behind the film by more than its size.
+  // Behind the film, aberrations move a pupil by more than its size.
   const bool in_lens = !pupils.empty() && std::all_of(pupils.begin(), pupils.end(), [&](const Rim& rim) {
     return (rim.z - film_z) * (face.vertex_z - film_z) > 0;
   });
@@ -143,7 +143,7 @@ double upright_radius(const LensFacts& facts, const Film& film, ModelKind model)
       if (discs) check_distance(lens.name(), corner, place.z, film_z, rim.z);
       through_pupil = std::max(through_pupil, farthest(rim));
     }
-    // Light also comes through the last surface, where aberrations have no effect on positions.
+    // Rays also pass the last surface, whose position does not depend on aberrations.
     const double through_last = std::max(farthest({face.half, face.z_min}), farthest({face.half, face.z_max}));
     const double reached = discs ? through_pupil : in_lens ? std::min(through_last, through_pupil) : through_last;
     radius = std::max(radius, reached);

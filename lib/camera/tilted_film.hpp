@@ -23,7 +23,7 @@ struct PETZVAL_API TiltedPlane {
   FilmPoint virtual_point(const FilmPoint& film) const noexcept;
   /// The film point of a virtual point.
   FilmPoint point(const FilmPoint& virtual_point) const noexcept;
-  /// Relative excess of the upright film's distance from the pupil plane over the distance of the film point.
+  /// Distance of the upright film from the pupil plane divided by the distance of the film point, minus 1.
   double nearer_by(const FilmPoint& virtual_point) const noexcept;
   /// nearer_by() of a film point, with its derivatives with respect to film x and y.
   struct Nearer {
@@ -36,25 +36,25 @@ struct PETZVAL_API TiltedPlane {
   /// Virtual point of the film point that a ray meets; nullopt if the ray meets the back of the film or is parallel to
   /// the film.
   std::optional<FilmPoint> virtual_point_of(const TwoPlaneRay& ray) const noexcept;
-  /// Weight of a film sample divided by the weight of the upright film's sample with the same ray; 0 if the ray meets
-  /// the back of the film.
+  /// Weight of a film sample divided by the weight of the sample of an upright film with the same ray; 0 if the ray
+  /// meets the back of the film.
   double weight(const FilmPoint& virtual_point, const FilmPoint& place) const noexcept;
 };
 
 /// petzval::upright_radius() for a film at the position of the lens's film.
 double upright_radius(const LensFacts& facts, const Film& film, ModelKind model);
 
-/// A film in front of a model that is tilted, or travels along the axis while the shutter is open.
+/// A film that is tilted, or that travels along the axis while the shutter is open, for any ray model.
 ///
-/// A model maps image-space rays, given by their points in the planes of the upright film and of the pupil; whether a
-/// ray passes does not depend on the film. A tilted film samples other rays: each of its points is identified by its
-/// virtual point, the projection through the centre of the pupil plane onto the upright film. Its pupils are a second
-/// table, over virtual points: one pupil for each distance from the axis, or with cylinders for each point and its
-/// mirror images, that contains the model's rays to all film points there, at all times.
+/// A model maps image-space rays, given by their points in the planes of the upright film and of the pupil; the film
+/// does not affect which rays pass. Each point of a tilted film is identified by its virtual point, the projection
+/// through the centre of the pupil plane onto the upright film. The pupils of a tilted film are a second table, over
+/// virtual points: one pupil for each distance from the axis or, with cylinders, for each point and its mirror images.
+/// A pupil contains the model's rays to all film points with this virtual point, at all times.
 ///
-/// Limitations: these pupils exceed the real pupils if light is limited far from the pupil plane; samples are lost
-/// then. Behind a telecentric lens of f/50, half of the samples in the corners of a film of 20 x 20 mm reach the scene
-/// at a tilt of 18 degrees, two thirds at 8 degrees.
+/// Limitations: these pupils exceed the real pupils if light is limited far from the pupil plane, and samples are lost.
+/// Behind a telecentric lens of f/50, half of the samples in the corners of a film of 20 x 20 mm reach the scene at a
+/// tilt of 18 degrees, two thirds at 8 degrees.
 ///
 /// Immutable, cheap to copy, thread-safe.
 class PETZVAL_API TiltedFilm {

@@ -16,11 +16,12 @@ struct EdgePoint {
   double share = 0;  ///< length of the edge that it represents, divided by the pupil's area, 1/mm
 };
 
-/// Edges of the pupils of some film points, at equal steps of film area; dark film points are left out.
+/// Edge points of the pupils of some film points, which are equally spaced in film area; film points without light are
+/// left out.
 std::vector<EdgePoint> real_edges(const FilmPupilTable& pupils, std::size_t wavelength);
 
-/// Error of the intersection of two discs: the area between its edge and the edges of some pupils, divided by the areas
-/// of the pupils.
+/// Error of the intersection of two discs: the area between its edge and the edges of the given pupils, divided by the
+/// areas of the pupils.
 double two_disc_error(std::span<const EdgePoint> edges, const std::array<PupilDisc, 2>& discs) noexcept;
 
 /// Fits two discs whose intersection is closest to pupils that are symmetric about x = 0. Edge points of one film point

@@ -8,14 +8,14 @@ namespace petzval::camera_detail {
 // Local names: compiled for several instruction sets, which the linker must not mix.
 namespace {
 
-/// Distance along a ray, which travels towards the scene, to the front; coordinates relative to the vertex of the
+/// Distance along a ray to the front. The ray travels towards the scene; coordinates are relative to the vertex of the
 /// front.
 ///
 /// A sphere of curvature c is c |p|^2 = 2 p_z. With b = d_z - c p.d and e = c |p|^2 - 2 p_z, the ray leaves a convex
 /// sphere and meets a concave sphere at the distance
 ///     s = (b + sqrt(b^2 - c e)) / c = e / (b - sqrt(b^2 - c e)).
-/// The second form also holds for planes. A line that misses the sphere leaves its tangent plane at the vertex; a line
-/// that leaves neither ends at its point nearest to the vertex.
+/// The second form also holds for planes. A ray that misses the sphere starts on the tangent plane at the vertex; a ray
+/// that leaves neither starts at its point nearest to the vertex.
 template <class T>
 inline T way_to_front(const T& curvature, const T& x, const T& y, const T& z, const T& dx, const T& dy,
                       const T& dz) noexcept {
