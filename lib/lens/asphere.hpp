@@ -19,13 +19,14 @@ struct AsphereRing {
   R least_bend, most_bend;  ///< bounds of (dz/dr) / r
 };
 
-/// Number of rings. They have equal areas, so that they are finer towards the edge, where high orders matter.
+/// Number of rings. Rings have equal areas, so that they are narrower towards the edge, where high orders matter.
 inline constexpr int asphere_rings = 16;
 
 /// A quadric with a polynomial in r added to its sag. r is measured in the curved section.
 ///
-/// The polynomial is stored over rho = r / height with coefficients a_i height^i: raw coefficients such as 1e-41 mm^-13
-/// are denormal in float, and r^16 overflows float if r is outside about 10^(+-2.4) mm.
+/// The polynomial is stored as a function of rho = r / height, with coefficients a_i height^i: raw coefficients such as
+/// 1e-41 mm^-13 are denormal in float, and r^16 is outside the range of float unless r is between about 10^-2.4 and
+/// 10^2.4 mm.
 template <class R>
 struct Asphere {
   Quadric<R> base;

@@ -13,7 +13,7 @@ struct AsphereHit {
   Vec<T> point;
   bool hit;
   bool converged;
-  bool beside = false;  ///< no hit, as the ray passes outside the described height of the surface
+  bool beside = false;  ///< no hit, because the ray passes outside the described height of the surface
 };
 
 namespace trace_detail {
@@ -79,7 +79,7 @@ Span<T> sags(const Asphere<Storage<T>>& s, const Span<T>& radii2) noexcept {
   return bounds;
 }
 
-/// Bounds of the rate at which a part of a ray rises above the surface.
+/// Bounds of the rate at which the ray rises above the surface over a part of its length.
 ///
 /// The rate is d.z - (slope / r) (r r'), and r r' = across2 (t - middle) increases along the ray; within a ring its
 /// magnitude is at most the outer radius times the speed across the axis.
@@ -114,7 +114,7 @@ Span<T> between(const T& z, const T& dz, const Span<T>& heights, const Span<T>& 
   return {select(enter > part.from, enter, part.from), select(leave < part.to, leave, part.to)};
 }
 
-/// The part of a ray that can lie on the surface up to its height: inside the cylinder and between the bounds of the
+/// The part of a ray that may meet the surface within its height: inside the cylinder and between the bounds of the
 /// sag. Slightly enlarged for rounding; from > to if the part is empty.
 template <class T>
 Span<T> reachable(const Asphere<Storage<T>>& s, const Passage<T>& ray, const Vec<T>& p, const Vec<T>& d) noexcept {
@@ -135,11 +135,11 @@ Span<T> reachable(const Asphere<Storage<T>>& s, const Passage<T>& ray, const Vec
 /// Properties of a ray that follow from the bounds of the surface.
 template <class T>
 struct Prospect {
-  Span<T> part;           ///< can lie on the surface up to its height
-  Mask<T> empty, rising;  ///< no such part; the ray rises along all of it: at most one crossing
+  Span<T> part;           ///< may meet the surface within its height
+  Mask<T> empty, rising;  ///< no such part; rising along the complete part: at most one crossing
 };
 
-/// @param sense +1 or -1, the direction of travel; rising is relative to it
+/// @param sense +1 or -1, the direction of travel, which defines `rising`
 template <class T>
 Prospect<T> prospect(const Asphere<Storage<T>>& s, const Passage<T>& ray, const Vec<T>& p, const Vec<T>& d,
                      Storage<T> sense) noexcept {
@@ -157,8 +157,8 @@ struct Crossing {
   Mask<T> found, converged;
 };
 
-/// Steps of the search. The shortest interval is 1/64 of the part; after each settled interval an interval of twice the
-/// length may be tried in vain, and six halvings come first.
+/// Steps of the search. The shortest interval is 1/64 of the part. After each decided interval an interval of twice the
+/// length may be tried without success, and six halvings come first.
 inline constexpr int search_intervals = 64, search_steps = 2 * search_intervals + 8;
 
 /// Refines the crossing between `low` (below the surface in the sense of travel) and `high` (above the surface).
@@ -191,11 +191,11 @@ void close_in(const Asphere<Storage<T>>& s, const Vec<T>& p, const Vec<T>& d, St
   crossing.t = t;
 }
 
-/// The first crossing of a part of the ray in the sense of travel; it is guaranteed to be the first.
+/// Finds the first crossing on a part of the ray in the sense of travel; no earlier crossing exists.
 ///
-/// An interval of the ray has no crossing if the rates over its rings do not let it reach the surface from its ends,
-/// and at most one if the ray rises throughout. Other intervals are halved down to 1/64 of the part, at which two
-/// crossings may be missed as a near touch.
+/// An interval of the ray has no crossing if, by the bounds of the rates in its rings, the surface cannot be reached
+/// from its ends. It has at most one crossing if the ray rises throughout. Other intervals are halved down to 1/64 of
+/// the part; two crossings within such an interval may be missed.
 /// @param guess result of Newton's iteration
 template <class T>
 Crossing<T> first_crossing(const Asphere<Storage<T>>& s, const Passage<T>& ray, const Vec<T>& p, const Vec<T>& d,
@@ -266,7 +266,8 @@ Candidate<T> newton(const Asphere<Storage<T>>& s, const Hit<T>& base, const Vec<
     const T scale = s.height + offset + absolute(t);
     t = t - step;
     if (!finite(t)) break;
-    // The step from a point that is already on the surface is the last: by then the derivatives are accurate.
+    // A step from a point that is already on the surface is the last step, because the derivatives are accurate by
+    // then.
     const bool arrived = absolute(f.value) <= R(4) * eps * scale && step * step <= eps * scale * scale;
     if (arrived && !(f.rate * sense > R(0))) break;
     usable = arrived;
@@ -280,20 +281,20 @@ Candidate<T> newton(const Asphere<Storage<T>>& s, const Hit<T>& base, const Vec<
 /// Intersects a ray with an asphere: the first crossing inside the clear aperture in the sense of travel.
 ///
 /// Newton's iteration starts at the hit on the base conic. Its result is accepted if it lies inside the aperture and
-/// the ray rises above the surface, in the sense of travel, along the whole part that can lie on the surface: then
+/// the ray rises above the surface, in the sense of travel, along the complete part that may meet the surface: then
 /// there is no other crossing. (On gull-wing surfaces plain iteration takes a wrong crossing for 2.6 % of steep rays.)
 ///
-/// Otherwise this part is searched from its beginning, in intervals that are settled by bounds over rings of the
+/// Otherwise this part is searched from its beginning, in intervals that are decided by bounds over rings of the
 /// surface: at most 136 intervals, and 100 steps to refine the crossing. The phone lens of data/lenses needs one
-/// interval and four steps. Arguments as for the quadric.
+/// interval and four steps. The arguments are those of intersect() for a quadric.
 ///
 /// Accuracy: |error| cos(incidence) <= 4 eps (height + distance slope); see tests/lens.
-/// Limitations: two crossings closer than 1/64 of the part may be missed as a near touch.
+/// Limitations: two crossings closer than 1/64 of the part may be missed.
 template <class T>
 AsphereHit<T> intersect(const Asphere<Storage<T>>& s, const Vec<T>& start, const Vec<T>& d, Storage<T> sense) noexcept {
   const auto base = intersect(s.base, start, d, sense);
-  // Distances are measured from the point of the ray nearest to the vertex, so that neither they nor this point exceed
-  // the distance of the hit from the vertex.
+  // Distances are measured from the point of the ray nearest to the vertex. Neither the distances nor the coordinates
+  // of this point then exceed the distance of the hit from the vertex.
   const Vec<T> p = start + d * T(-dot(start, d));
   const auto candidate = trace_detail::newton(s, base, p, d, sense);
   const T x = s.base.ax * candidate.point.x, y = s.base.ay * candidate.point.y;

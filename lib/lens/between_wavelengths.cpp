@@ -25,7 +25,7 @@ CompiledWavelengths::CompiledWavelengths(std::span<const double> wavelengths_nm)
                       static_cast<std::int32_t>(ranked_[r + 1].position) - static_cast<std::int32_t>(position)});
     const std::size_t nodes = std::min(most_nodes, count()), before = nodes / 2 - 1;
     const Interval cubic = interval(r, std::min(r - std::min(r, before), count() - nodes), nodes);
-    // Largest amplification of errors between the nodes; it is 2.6 at the ends of a row that is uniform in nm.
+    // Largest allowed amplification of errors between the nodes. It is 2.6 at the ends of a row that is uniform in nm.
     constexpr double much_larger = 4;
     double sum = 0;
     for (const double w : about(cubic, (ranked_[r].place + ranked_[r + 1].place) / 2).weights) sum += std::abs(w);

@@ -14,7 +14,8 @@
 
 namespace petzval::lens_detail {
 
-/// Compiled wavelengths sorted by wavelength (their rank), to find the neighbours of any wavelength.
+/// Compiled wavelengths in ascending order, to find the neighbours of any wavelength. The rank of a wavelength is its
+/// position in this order.
 class PETZVAL_API CompiledWavelengths {
  public:
   /// Covers no wavelength.
@@ -32,7 +33,7 @@ class PETZVAL_API CompiledWavelengths {
   double longest() const noexcept { return place_.longest; }
   /// True if a wavelength lies in the range, extended by the rounding of a float.
   bool covers(double nm) const noexcept { return place_.covers(nm); }
-  /// Position in the range, from -1 to 1.
+  /// The wavelength mapped to -1 to 1 over the range.
   double place(double nm) const noexcept { return place_.at(nm); }
 
   /// Position of the nearest compiled wavelength; count() if the wavelength is not covered.
@@ -43,13 +44,13 @@ class PETZVAL_API CompiledWavelengths {
             ranked_.empty() ? 0 : static_cast<std::int32_t>(ranked_.front().position)};
   }
 
-  /// Ranks around a wavelength and their weights in the interpolated value.
+  /// Neighbours of a wavelength, by rank, and their weights in the interpolated value.
   struct Neighbours {
     std::size_t first = 0;
     std::array<double, 4> weights{0, 0, 0, 0};
   };
-  /// Interpolates by a cubic through four neighbours (fewer if there are fewer), or by a straight line if neighbours
-  /// are spaced so unevenly that a cubic would amplify their errors. Requires a covered wavelength.
+  /// Interpolates by a cubic through four neighbours (fewer if there are fewer), or by a straight line if the
+  /// neighbours are spaced so unevenly that a cubic would amplify their errors. The wavelength must be covered.
   Neighbours about(double nm) const noexcept {
     std::size_t rank = 0;
     for (std::size_t r = 1; r < intervals_.size(); ++r) rank += nm >= ranked_[r].nm;
@@ -82,9 +83,10 @@ class PETZVAL_API CompiledWavelengths {
   std::vector<NearestPosition::Step> steps_;  // at the middles between neighbours
 };
 
-/// Numbers of a lens that are known at its compiled wavelengths, interpolated at any wavelength between.
-/// Stored as parabolas over equal cells, small enough to add little error: few_cells for uniform wavelengths; 2047 for
-/// uneven wavelengths, between which straight lines meet, and for a wide range, at whose end dispersion is steep.
+/// Numbers of a lens that are known at its compiled wavelengths, interpolated at any wavelength between. They are
+/// stored as parabolas over equal cells, which are so small that they add little error: few_cells cells for uniform
+/// wavelengths; 2047 for uneven wavelengths, whose straight lines meet at corners, and for wide ranges, at whose ends
+/// dispersion is steep.
 template <std::size_t numbers>
 class BetweenWavelengths {
  public:

@@ -12,17 +12,17 @@ namespace {
 /// intersected: the direct form loses digits with the square of the distance.
 constexpr double far_gap = 1;
 
-/// Squared height of a hit, in radii of curvature of the next sphere, beyond which the direct form would lose half of
+/// Squared height of a hit, in radii of curvature of the next sphere, above which the direct form would lose half of
 /// the digits: its quadratic subtracts squares of the height. Only rays nearly perpendicular to the axis reach such
-/// heights, and such a ray could hit a sphere that is at most its radius away only by continuing in this direction.
+/// heights, and they can hit the next sphere, at most a radius away, only if they keep this direction.
 template <class R>
 double furthest2() noexcept {
   return 1 / std::sqrt(double{std::numeric_limits<R>::epsilon()});
 }
 
-/// Directions are normalised after this number of surfaces, and before rims so steep that an error of the length counts
-/// twice. Normalising more often would only add rounding errors. (Without it, 3.1e-7 rad rms on the fisheye of the
-/// benchmark.)
+/// Directions are normalised after this number of surfaces, and before very steep rims, where an error of the length
+/// has twice the effect. Normalising more often would only add rounding errors. (Without normalisation the error is
+/// 3.1e-7 rad RMS on the fisheye of the benchmark.)
 constexpr std::size_t surfaces_per_refresh = 16;
 constexpr double steep_rim = 0.75;
 
@@ -73,7 +73,7 @@ SurfaceSequenceTables<R> build_sequence(std::span<const LensSurface> surfaces, s
   }
   for (std::size_t j = 0; j < count; ++j) {
     kernel::Step<R>& step = tables.steps[j];
-    double reach2 = 1e15 * 1e15;  // mm^2: farther out, height and direction no longer resolve each other
+    double reach2 = 1e15 * 1e15;  // mm^2: farther out, height and direction lack digits
     if (j + 1 < count && tables.steps[j + 1].kind == StepKind::sphere && !tables.steps[j + 1].far) {
       const double curvature = surfaces[static_cast<std::size_t>(tables.steps[j + 1].surface)].curvature;
       reach2 = std::min(reach2, furthest2<R>() / (curvature * curvature));

@@ -63,7 +63,7 @@ struct Tables {
   }
 };
 
-/// Tables and the view of them, which is built once because that costs more than tracing a ray.
+/// Tables and the view of them. The view is built once, because building it takes longer than tracing a ray.
 template <class R>
 struct SharedTables {
   const Tables<R> tables;

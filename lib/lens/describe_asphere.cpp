@@ -17,9 +17,10 @@ double power(double x, int n) {
   return result;
 }
 
-/// Largest slope to which an asphere is described. Beyond it, polynomials of high order diverge, and bounds of sag and
-/// slope that include such parts would force a search for every ray. A rim ends there; if there is no rim, rays beyond
-/// hit the surface if Newton's iteration converges. (The steepest asphere of data/lenses has a slope of 3.)
+/// Largest slope up to which an asphere is described. Beyond it, polynomials of high order diverge; bounds of sag and
+/// slope that include such zones would force a search for every ray. A rim is limited to this height. Without a rim,
+/// rays farther out hit the surface if Newton's iteration converges. (The steepest asphere of data/lenses has a slope
+/// of 3.)
 constexpr double steepest = 4;
 
 /// Least height at which a single aspheric term reaches a slope.
@@ -32,10 +33,10 @@ double term_height(const LensSurface& s, double slope) {
   return least;
 }
 
-/// Limit of the height to which an asphere is described: its clear aperture, within the domain of the base conic.
-/// An unlimited asphere ends where its strongest term reaches a slope of one, or where a paraboloid with the radius of
-/// the base reaches the steepest slope. Farther out a hyperboloid is nearly straight, and a weak term causes crossings
-/// of its own.
+/// Limit of the height up to which an asphere is described: its clear aperture, within the domain of the base conic. An
+/// unlimited asphere ends where its strongest term reaches a slope of one, or where a paraboloid with the radius of the
+/// base reaches the steepest slope. Farther out a hyperboloid is nearly straight, and even a weak term would cause
+/// additional crossings.
 double height(const LensSurface& s) {
   constexpr double runs_away = 1e6;  // slope that the other terms cannot compensate
   const double curvature = std::abs(s.curvature) * std::sqrt(std::max(0.0, 1 + s.conic));
@@ -114,8 +115,8 @@ class Polynomial {
   std::vector<AsphereTerm> terms_;
 };
 
-/// Sets the bounds over the rings and over the whole surface. Each ring is divided into intervals, in each of which the
-/// sag and slope / r of the base are monotone and therefore bounded by their values at the ends.
+/// Sets the bounds over the rings and over the complete surface. Each ring is divided into intervals. In an interval
+/// the sag and the slope / r of the base are monotonic, and therefore bounded by their values at the ends.
 void bound(const LensSurface& s, kernel::Asphere<double>& a) {
   constexpr int intervals = 8;
   constexpr double wider = 1e-5;  // allows for rounding of radii in float

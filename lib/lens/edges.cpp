@@ -47,7 +47,7 @@ double meeting_height(const LensSurface& front, const LensSurface& rear, double 
   double least = meet_along(0, 1);
   const auto round = [](const LensSurface& s) { return s.curved_in == Section::both; };
   if (round(front) && round(rear)) return least;
-  // Cylinders along x and y differ most along an axis or on a diagonal.
+  // Cylinders along x and y differ most along an axis or along a diagonal.
   constexpr double diagonal = std::numbers::sqrt2 / 2;
   return std::min({least, meet_along(1, 0), meet_along(diagonal, diagonal)});
 }
@@ -59,7 +59,7 @@ double sag_of(const LensSurface& s, double x, double y) noexcept {
   double z = s.curvature * r2 / (1 + std::sqrt(1 - (1 + s.conic) * s.curvature * s.curvature * r2));
   const double r = std::sqrt(r2);
   for (const auto& [order, coefficient] : s.aspheric) {
-    double power = order % 2 == 0 ? 1 : r;  // by multiplication: exact under scaling by powers of two
+    double power = order % 2 == 0 ? 1 : r;  // by multiplication, which is exact under scaling by powers of two
     for (int i = 0; i < order / 2; ++i) power *= r2;
     z += coefficient * power;
   }

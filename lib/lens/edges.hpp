@@ -21,9 +21,9 @@ PETZVAL_API bool changes_rays(std::span<const LensSurface> surfaces, std::span<c
 /// which two surfaces of an element meet.
 ///
 /// Light passes a surface and the next surface that changes rays (another index, or a mirror) in this order only if the
-/// second lies behind the first. Both end at the height at which they meet, unless an aperture is smaller: a ray that
-/// hits a surface inside this height meets them in order, as long as their distance has a single zero. Surfaces that
-/// touch or overlap at their vertices (thickness <= 0) are ideal and have no edge.
+/// second surface lies behind the first. Both end at the height at which they meet, unless an aperture is smaller. A
+/// ray that hits one of them below this height meets both in order, provided that the distance between the surfaces has
+/// a single zero. Surfaces that touch or overlap at their vertices (thickness <= 0) are ideal and have no edge.
 ///
 /// @param surfaces vertices, shapes and thicknesses are set; `semi_diameter` and `edge` are written
 /// @param rims semi-diameter of each surface (mm); infinite if unlimited

@@ -19,8 +19,8 @@ const Medium& medium(const Prescription& p, std::size_t space) {
   return space == 0 ? p.object_space : p.surfaces[space - 1].medium;
 }
 
-/// Spectral lines are often written with one decimal, the d line as 587.6 nm. Within half a unit of this decimal no
-/// index changes by 1e-5.
+/// Spectral lines are often written with one decimal, the d line as 587.6 nm. Within half a unit of this decimal,
+/// indices change by less than 1e-5.
 constexpr double rounded_line_nm = 0.05;
 
 /// Glass tables for the look-up of media, or the error that explains their absence.
@@ -100,7 +100,7 @@ Indices indices(const Prescription& prescription, std::span<const double> wavele
   for (std::size_t space = 0; space < spaces; ++space) {
     const Medium& m = medium(prescription, space);
     const std::string here = where + (space == 0 ? ": object space" : ": surface " + std::to_string(space - 1));
-    // Adds the surface to messages of errors, which name only the glass.
+    // Adds the surface to error messages, which otherwise name only the glass.
     const auto ask = [&](const auto& question) {
       try {
         return question();

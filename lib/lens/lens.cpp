@@ -159,7 +159,8 @@ std::vector<FocusPosition> focus_positions(const Prescription& prescription) {
   return result;
 }
 
-/// A semi-diameter whose square is representable in float (1e-38 to 1e38); rays beyond 1e15 mm are lost.
+/// A semi-diameter limited to the range in which its square is representable in float (1e-38 to 1e38); rays beyond 1e15
+/// mm are lost.
 double usable_rim(double semi_diameter) noexcept {
   if (semi_diameter < 1e-12) return 0;
   return semi_diameter > 1e15 ? std::numeric_limits<double>::infinity() : semi_diameter;

@@ -65,8 +65,8 @@ struct RefractionConstants {
   R per_n2 = 1;  ///< 1 / n^2, n in front of the surface
 };
 
-/// Maps any wavelength in the range of the compiled ones to t from -1 to 1, linear in 1 / nm. In 1 / nm the poles of
-/// dispersion formulas in the ultraviolet and the infrared are about equally far away.
+/// Maps any wavelength in the range of the compiled wavelengths to t from -1 to 1, linear in 1 / nm. In 1 / nm, the
+/// ultraviolet and the infrared poles of dispersion formulas are about equally far from the range.
 template <class R>
 struct SpectralPlace {
   R shortest = 1, longest = 0;  ///< the range, nm; empty if indices between compiled wavelengths are unknown
@@ -79,8 +79,8 @@ struct SpectralPlace {
   }
 };
 
-/// The squared index of a medium at any wavelength: a polynomial of t.
-/// The square, because refraction needs it and dispersion formulas are written for it.
+/// The squared index of a medium at any wavelength: a polynomial in t. The square is used because dispersion formulas
+/// give it and refraction needs it.
 template <class R>
 struct SquaredIndex {
   static constexpr std::size_t terms = 8;

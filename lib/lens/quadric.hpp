@@ -6,8 +6,8 @@
 
 namespace petzval::kernel {
 
-/// Plane, sphere, conic or cylinder: c (ax x^2 + ay y^2 + e z^2) = 2 z in the vertex frame, e = 1 + k.
-/// With the curvature instead of the radius a plane is no special case, and R = 1e12 loses no digits.
+/// Plane, sphere, conic or cylinder: c (ax x^2 + ay y^2 + e z^2) = 2 z in the vertex frame, e = 1 + k. With the
+/// curvature c instead of the radius, a plane needs no special case, and R = 1e12 loses no digits.
 template <class R>
 struct Quadric {
   R curvature = 0;
@@ -50,8 +50,8 @@ Vec<T> gradient(const Quadric<Storage<T>>& q, const Vec<T>& point) noexcept {
   return {T(-c * q.ax * point.x), T(-c * q.ay * point.y), T(R(1) - c * q.e * point.z)};
 }
 
-/// A point of the ray near the surface, from which the quadratic loses no digits: the point nearest to the vertex (to
-/// the axis of a cylinder), or for a steep conic the point in the vertex plane.
+/// A point of the ray near the surface, from which the quadratic loses no digits: the point nearest to the vertex (for
+/// a cylinder, nearest to its axis) or, for a steep conic, the point in the vertex plane.
 template <class T>
 Vec<T> approach(const Quadric<Storage<T>>& q, const Vec<T>& p, const Vec<T>& d) noexcept {
   using R = Storage<T>;
@@ -73,9 +73,9 @@ Vec<T> approach(const Quadric<Storage<T>>& q, const Vec<T>& p, const Vec<T>& d) 
 /// Intersects a ray with the vertex sheet of a quadric.
 ///
 /// The root is chosen by `sense`, not by the sign of d.z: in a fisheye, rays towards the film may have d.z < 0. The
-/// distance may be negative (a start behind the surface is legal: neighbouring surfaces overlap on paper). No hit if
-/// there is no real root, or if it lies on the far side of the sphere or the second sheet of the hyperboloid; the point
-/// is then the start.
+/// distance may be negative, because neighbouring surfaces may overlap and a ray may start behind the surface. There is
+/// no hit if there is no real root, or if the root lies on the far side of the sphere or on the second sheet of the
+/// hyperboloid; the returned point is then the start.
 /// @param start, d a point of the ray and its unit direction, vertex frame
 /// @param sense +1 if light travels towards +z in the unfolded lens, otherwise -1
 ///
@@ -94,8 +94,8 @@ Hit<T> intersect(const Quadric<Storage<T>>& q, const Vec<T>& start, const Vec<T>
   const T f = c * product(q, p, p) - R(2) * p.z;
   const T root = sqrt(T(b * b - a * f));
 
-  // One root of a t^2 - 2 b t + f in two forms: s f / (s b + root) if s b > 0, else (s b - root) / (s a), for rays
-  // beyond 90 degrees. If there is no root, t is NaN and fails every test.
+  // One root of a t^2 - 2 b t + f in two forms: s f / (s b + root) if s b > 0; otherwise, for rays beyond 90 degrees,
+  // (s b - root) / (s a). If there is no root, t is NaN and fails every comparison.
   const T sb = sense * b;
   const auto near_form = sb >= R(0);
   const T t = quotient(select(near_form, T(sense * f), T(sb - root)), select(near_form, T(sb + root), T(sense * a)));

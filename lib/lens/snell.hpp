@@ -43,8 +43,8 @@ Vec<T> renormalised(const Vec<T>& d) noexcept {
 /// second line for Gamma printed by Wu et al. 2010, section 5.1.1, lacks the factor n/n'.)
 ///
 /// The length of the incoming direction is corrected here, off the critical path, so that its error never exceeds the
-/// error of one surface. Otherwise it would grow like a random walk over many surfaces, and the errors of the hits with
-/// it. The last direction of a lens must be normalised by renormalised().
+/// error of one surface. Without the correction, this error and the errors of the hits would grow like a random walk
+/// over many surfaces. The last direction of a lens must be normalised by renormalised().
 /// @param normal unit normal
 /// @param cosine |direction . normal|
 /// @param side 1 if the direction points along the normal, otherwise -1

@@ -88,7 +88,7 @@ void Spectrum::add(const std::function<double(double)>& index_at, std::span<cons
     };
     for (std::size_t k = 0; k <= terms; ++k) check(nm_at(static_cast<double>(k)));
     for (const double nm : compiled_nm_) check(nm);
-    // The error of a smooth function peaks at the extrema of T_8. With kinks it may peak anywhere.
+    // The error of a smooth function is largest at the extrema of T_8; with kinks it may be largest anywhere.
     constexpr std::size_t places = 32 * terms;
     for (const double nm : kinks) {
       if (nm >= nm_at(0) && nm <= nm_at(terms)) check(nm);

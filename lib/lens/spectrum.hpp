@@ -14,8 +14,8 @@ namespace petzval::lens_detail {
 kernel::SpectralPlace<double> spectral_place(std::span<const double> wavelengths_nm);
 
 /// The indices of the media of a lens at every wavelength from the shortest to the longest compiled wavelength.
-/// Polynomials are fitted to the dispersion formulas themselves, at Chebyshev nodes of the range, so that the number
-/// and spacing of the compiled wavelengths do not matter.
+/// Polynomials are fitted to the dispersion formulas themselves, at Chebyshev nodes of the range; the number and
+/// spacing of the compiled wavelengths therefore do not matter.
 class Spectrum {
  public:
   Spectrum() = default;

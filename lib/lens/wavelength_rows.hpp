@@ -9,7 +9,8 @@
 
 namespace petzval::lens_detail {
 
-/// Rows of numbers in the layout of core_detail::look_up(): aligned to registers and padded with zeros to whole pairs.
+/// Rows of numbers in the layout of core_detail::look_up(): aligned to registers and padded with zeros to pairs of
+/// registers.
 template <class R>
 class AlignedRows {
  public:
@@ -35,11 +36,11 @@ class AlignedRows {
   std::vector<Register> registers_;
 };
 
-/// Number of cells between uniform wavelengths: with the zero entry, register permutations can read them.
+/// Number of cells between uniform wavelengths: with the entry of zeros, register permutations can read all cells.
 inline constexpr std::int32_t few_cells = 15;
 
-/// Numbers per wavelength, borrowed, for loops over rays of mixed wavelengths (lens/look_up.hpp).
-/// Each number has a row over compiled wavelengths, and parabolas over equal cells of the range in nm.
+/// Numbers per wavelength, borrowed, for loops over rays of mixed wavelengths (lens/look_up.hpp). Each number has a row
+/// over the compiled wavelengths, and parabolas over equal cells of the range in nm.
 template <class R>
 struct WavelengthRows {
   const R* by_position = nullptr;  ///< [number] rows, padded with zeros
@@ -52,8 +53,8 @@ struct WavelengthRows {
   R cells_per_nm = 0;
 };
 
-/// Finds the compiled wavelength nearest to another one; borrowed. Starts at the position of the shortest wavelength
-/// and adds a step for each midpoint between neighbours that the wavelength exceeds.
+/// Finds the compiled wavelength nearest to a given one; borrowed. Starts at the position of the shortest wavelength
+/// and adds a step for each midpoint between neighbours that the given wavelength exceeds.
 struct NearestPosition {
   struct Step {
     float middle;  ///< nm

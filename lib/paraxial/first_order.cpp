@@ -88,7 +88,8 @@ FirstOrder first_order(const Lens& lens, Wavelength wavelength, Meridian meridia
   const double n = result.object_index = signed_index(lens, 0, wavelength);
   const double n_image = result.image_index = signed_index(lens, count, wavelength);
 
-  // A focal length beyond 1e100 mm counts as infinite, and so does a matrix outside the range of double.
+  // A focal length beyond 1e100 mm counts as infinite; so does the focal length of a matrix outside the range of
+  // double.
   const bool in_range = std::isfinite(m.a) && std::isfinite(m.b) && std::isfinite(m.c) && std::isfinite(m.d);
   result.afocal = !(in_range && std::abs(m.c) > std::max(1e-12 * contributions, 1e-100));
   if (result.afocal) {
@@ -109,7 +110,7 @@ FirstOrder first_order(const Lens& lens, Wavelength wavelength, Meridian meridia
   result.rear_focal_z = rear_z + result.back_focal_distance;
   result.front_principal_z = front_z + n * (m.d - 1) / m.c;
   result.rear_principal_z = rear_z + n_image * (1 - m.a) / m.c;
-  // From a focal point to the nodal point on its side it is the focal length of the other side.
+  // The distance from a focal point to the nodal point on the same side is the focal length of the other side.
   result.front_nodal_z = front_z + (n * m.d - n_image) / m.c;
   result.rear_nodal_z = rear_z + (n - n_image * m.a) / m.c;
   return result;
@@ -138,7 +139,7 @@ double paraxial_image_z(const Lens& lens, double object_z, Wavelength wavelength
   const double q = distant ? 0 : 1;
   const double y = m.a * p + m.b * q;
   const double nu = m.c * p + m.d * q;
-  // An object within rounding of the front focal point has its image at infinity.
+  // If the object lies within rounding of the front focal point, its image is at infinity.
   const double rounding = 4 * std::numeric_limits<double>::epsilon() * (std::abs(m.c * p) + std::abs(m.d * q));
   if (std::abs(nu) <= rounding) return infinity;
   return lens.surfaces().back().vertex_z - data.image_index * y / nu;

@@ -7,7 +7,8 @@
 
 namespace petzval::paraxial_detail {
 
-/// The ideal lens by the cardinal points in `data`, without pupils. Not for afocal lenses; light may leave along -z.
+/// The ideal lens with the cardinal points in `data`, without pupils. The lens must not be afocal; light may leave
+/// along -z.
 IdealLens focal_points(const Lens& lens, const FirstOrder& data) noexcept;
 
 }  // namespace petzval::paraxial_detail

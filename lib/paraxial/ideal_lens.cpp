@@ -3,8 +3,8 @@
 //
 //     Z Z' = -f f',   x' = x f / Z,   y' = y f / Z.
 //
-// The equations map planes to planes, also at infinity: Z = 0 maps to infinity and infinity to Z' = 0. A point at
-// infinity is a direction with the fourth coordinate 0.
+// The equations map planes to planes, even at infinity: Z = 0 maps to infinity and infinity to Z' = 0. A point at
+// infinity is a direction, with the fourth coordinate 0.
 #include "petzval/paraxial/ideal_lens.hpp"
 
 #include <algorithm>
@@ -34,7 +34,7 @@ std::optional<Plane> plane(const Vec3<double>& normal, double offset) {
 }  // namespace
 
 double IdealLens::object_at_separation(double separation) const noexcept {
-  // The larger root of p + product / p = sum, factored so that squares do not overflow and nothing cancels near the
+  // The larger root of p + product / p = sum, factored so that squares do not overflow and no digits cancel near the
   // turning point, where sum is twice the root of the product.
   const double turning = 2 * std::sqrt(std::abs(product())), sum = separation - (rear_focal_z - front_focal_z);
   if (product() < 0) return (sum + std::hypot(sum, turning)) / 2;

@@ -12,8 +12,9 @@ namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
-/// The surface that clips the axial beam from infinity first: the least ratio of its semi-diameter to the height of a
-/// ray that enters at height 1. In a lens with cylinders the larger height of both meridians counts.
+/// The surface that clips the axial beam from infinity first: the surface with the least ratio of its semi-diameter to
+/// the height of a ray that enters at height 1. In a lens with cylinders the height is the larger one of both
+/// meridians.
 std::size_t limiting_surface(const Lens& lens, Wavelength wavelength) {
   std::size_t limiting = lens.surface_count();
   double least = infinity;
@@ -35,9 +36,9 @@ std::size_t limiting_surface(const Lens& lens, Wavelength wavelength) {
   return limiting;
 }
 
-/// The image of the stop, from a ray through the centre of the stop with optical slope 1, which has height y and
-/// optical slope nu at a vertex. By the Lagrange invariant, nu is the size of the stop divided by the size of its
-/// image. An image more than 1e12 times as large counts as infinitely distant: telecentric up to rounding.
+/// The image of the stop, from a ray through the centre of the stop with optical slope 1. At a vertex, this ray has
+/// height y and optical slope nu. By the Lagrange invariant, nu is the size of the stop divided by the size of its
+/// image. An image more than 1e12 times as large as the stop counts as infinitely distant: telecentric up to rounding.
 Pupil pupil(double vertex_z, double n, double y, double nu, double semi_diameter) {
   if (std::abs(nu) < 1e-12) return {infinity, infinity};
   return {vertex_z - n * y / nu, 2 * semi_diameter / std::abs(nu)};

@@ -23,7 +23,7 @@ double thin_lens_blur_diameter(double focal_length, double diameter, double subj
   require(subject > 0, where, "subject distance", subject, "above 0");
   require(focused > focal_length, where, "focused distance", focused, "above the focal length");
 
-  // The given distances are subtracted: a difference of reciprocals would lose digits near the focus.
+  // Distances are subtracted, not their reciprocals: a difference of reciprocals would lose digits near the focus.
   if (diameter == 0) return 0;
   if (std::isinf(focused)) return std::isinf(subject) ? 0 : diameter * (focal_length / subject);
   if (std::isinf(subject)) return diameter * (focal_length / (focused - focal_length));
@@ -51,7 +51,7 @@ double thin_lens_film_distance(double focal_length, double subject_to_film) {
   require(focal_length > 0 && std::isfinite(focal_length), where, "focal length", focal_length, "finite and above 0");
   require(subject_to_film >= 4 * focal_length, where, "distance from subject to film", subject_to_film,
           "at least 4 focal lengths");
-  // Ratios do not overflow, and the difference to 4 f is exact near 4 f.
+  // Ratios do not overflow, and the difference from 4 f is exact near 4 f.
   const double root = std::sqrt((subject_to_film - 4 * focal_length) / subject_to_film);
   return std::isinf(subject_to_film) ? focal_length : 2 * focal_length / (1 + root);
 }

@@ -5,7 +5,7 @@
 
 namespace petzval::polynomial_detail {
 
-/// A line in object space as two vectors that rotate with the line about the axis.
+/// A line in object space as two vectors, which rotate with the line about the axis.
 ///
 /// s is the stereographic projection of its direction d towards the scene, d = (2 s, |s|^2 - 1) / (1 + |s|^2): 0 along
 /// the axis, of length 1 at 90 degrees, infinite only for a line along +z. o points from a reference point on the axis

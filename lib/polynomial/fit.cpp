@@ -20,7 +20,7 @@ namespace {
 
 using polynomial_detail::Lines;
 
-/// Samples of pupils of film points, in the part of the film that the symmetry maps to the whole film.
+/// Samples of the pupils of film points, over the part of the film that represents the rest by symmetry.
 class Samples {
  public:
   Samples(const FilmPupilTable& pupils, bool mirrors) : pupils_(pupils), mirrors_(mirrors) {}
@@ -72,8 +72,8 @@ class Samples {
   std::vector<double> film_x_, film_y_, u_, v_;
 };
 
-/// Uniform lines over film and pupils, from index `first` on. Uniform by area or, if `dense`, denser towards the edges
-/// of film and pupil like Chebyshev nodes: this reduces the largest errors by some tenths and raises the RMS by one
+/// Lines over film and pupils, from index `first` on: uniform by area or, if `dense`, denser towards the edges of film
+/// and pupil, like Chebyshev nodes. Denser lines reduce the largest errors by some tenths and raise the RMS by one
 /// tenth.
 Samples spread(Samples samples, std::size_t first, std::size_t count, bool dense) {
   constexpr double quarter = std::numbers::pi / 2;
@@ -96,7 +96,7 @@ Samples axial(Samples samples) {
   return samples;
 }
 
-/// Equal steps from 0 to 1; 0 if count is 1.
+/// Equal steps from 0 to 1; 0 if there is one step.
 double part(int k, int count) noexcept { return count > 1 ? static_cast<double>(k) / (count - 1) : 0; }
 
 /// The rims of the pupils. turns: number of film points of equal height.
@@ -113,8 +113,8 @@ Samples rims(Samples samples, int steps, int turns) {
   return samples;
 }
 
-/// Lines with the largest errors: just inside the rims of all pupils, and from the edge of the film on the rims and
-/// through the rest of their pupils. turns: number of points at the edge.
+/// Lines with the largest errors: just inside the rims of all pupils and, from the edge of the film, on the rims and
+/// across the pupils. turns: number of film points at the edge.
 Samples edges(Samples samples, int turns) {
   constexpr std::size_t near_rims = 8192, on_rim = 1024, within = 3072;
   constexpr double margin = 0.02;  // fraction of the area of the pupil
@@ -136,11 +136,11 @@ Samples edges(Samples samples, int turns) {
 }
 
 /// Shift and radius of the smallest disc that moves with the film point and contains the rims of all wavelengths; the
-/// smallest interval if only x or only y counts.
+/// smallest interval if only x or only y is used.
 RayPolynomial::Domain::Section smallest(const std::vector<Lines>& rims, double film_radius, bool x_counts,
                                         bool y_counts) {
   struct Farthest {
-    double square = 0, side = 0;  ///< side: > 0 if a larger shift brings the centre of the disc nearer
+    double square = 0, side = 0;  ///< side: > 0 if a larger shift brings the centre of the disc nearer to the point
   };
   const auto farthest = [&](double shift) {
     Farthest result;
@@ -154,7 +154,7 @@ RayPolynomial::Domain::Section smallest(const std::vector<Lines>& rims, double f
     }
     return result;
   };
-  // The radius is convex in the shift, and the farthest point tells on which side the best shift lies.
+  // The radius is a convex function of the shift, and the farthest point shows on which side the best shift lies.
   double high = 2 * std::sqrt(farthest(0).square) / film_radius, low = -high;
   for (int halving = 0; halving < 30; ++halving) {
     const double middle = (low + high) / 2;
@@ -185,7 +185,7 @@ void enclose(const std::vector<Lines>& rims, bool mirrors, RayPolynomial::Domain
   domain.pupil_radius = between * along_y.pupil_radius;
 }
 
-/// z of the entrance pupil, near which rays begin; 0 if the pupil is far from the lens.
+/// z of the entrance pupil, near which rays are given; 0 if the pupil is far from the lens.
 double reference_of(const Lens& lens) {
   const double longest = 10 * std::abs(lens.film_z() - lens.surfaces().front().vertex_z);
   const double z = has_pupils(lens) ? pupils(lens, lens.primary_wavelength()).entrance.z : 0;
@@ -196,7 +196,7 @@ double reference_of(const Lens& lens) {
 
 RayPolynomial RayPolynomial::fit(const Lens& lens, const FilmPupilTable& pupils, int degree) {
   const std::string where = lens.name() + ": polynomial: ";
-  // Rays do not depend on the iris.
+  // Rays do not depend on the shape of the iris.
   if (!lens.iris().round()) return fit(with_iris(lens, {}), pupils.of_round_stop(), degree);
   polynomial_detail::check_degree(where, degree);
   if (pupils.wavelengths() != lens.wavelengths_nm().size()) {
@@ -218,7 +218,7 @@ RayPolynomial RayPolynomial::fit(const Lens& lens, const FilmPupilTable& pupils,
   domain.film_radius = pupils.film_radius();
   domain.reference_z = reference_of(lens);
   enclose(all_rims, mirrors, domain);
-  // The additional dimension needs more lines; there are enough for 12 equations per coefficient.
+  // Lenses with two sections need more lines: 12 equations per coefficient.
   const std::size_t fitted = mirrors ? std::max<std::size_t>(3072, 24 * mirror_terms(degree).size()) : 1536;
   constexpr std::size_t judged = 4096;
   const Samples to_fit = spread(none, 0, fitted, true), on_axis = axial(none),

@@ -23,8 +23,8 @@ PETZVAL_INLINE auto horner(const C& c) noexcept {
 
 /// Evaluates a polynomial of all products of at most n variables.
 ///
-/// Order of coefficients: terms without the first variable, then the first variable times terms with one factor less;
-/// the same within each group, so that powers of the last variable change fastest.
+/// Order of coefficients: first the terms without the first variable, then the terms with it, as a polynomial with one
+/// factor less; the same order within each group. Powers of the last variable change fastest.
 ///
 /// T: float, double, lanes or a dual number. C: pointer to constants, or a type that is read like a pointer.
 template <int n, class C, class T, class... Rest>

@@ -23,8 +23,8 @@ using Four = std::array<V, 4>;
 template <class V>
 using Slopes = std::array<Four<V>, 4>;
 
-/// Value of a polynomial and its derivatives with respect to the last N variables, in their order. Horner's rule
-/// multiplies by the last variable most often, with only one derivative to carry then.
+/// Value of a polynomial and its derivatives with respect to the last N variables, in their order. Most multiplications
+/// of Horner's rule are by the last variable, and there only one derivative must be computed.
 template <std::size_t N, class V>
 struct Gradient {
   V value;
@@ -101,8 +101,8 @@ template <int n, class V>
   put(2, horner<n>(c + 2 * terms, w, v, u), horner<n>(c + 3 * terms, w, v, u));
 }
 
-/// The same through the derivatives of A and B with respect to the squares of fx, fy, px and py and to the product of
-/// film and pupil coordinate along the other axis.
+/// The same, with derivatives of A and B with respect to the squares of fx, fy, px and py and to the product of film
+/// and pupil coordinates along the other axis.
 template <int n, class V>
 [[gnu::flatten]] void evaluate(OfMirrors<n>, const double* c, const Four<V>& x, Four<V>& value,
                                Slopes<V>& slope) noexcept {
@@ -175,8 +175,9 @@ PETZVAL_INLINE Four<V> solution(Slopes<V> a, Four<V> b) noexcept {
 }
 
 /// Smallest film height, along one axis, at which the line through the centre of the pupil has the slope `length` >= 0
-/// (in the chart). Stops at the height where slopes no longer grow: light may end there, and a polynomial bends back
-/// outside the fitted range. slope: function of height, divided by the height; positive at 0.
+/// (in the chart). The search ends at the height at which slopes stop growing: the lit film may end there, and outside
+/// the fitted range a polynomial bends back. slope: the slope divided by the height, as a function of the height;
+/// positive at 0.
 template <class V, class Slope>
 PETZVAL_INLINE V chief_height(const V& length, const Slope& slope) noexcept {
   constexpr int steps = 32, halvings = 7;

@@ -9,7 +9,7 @@ namespace {
 
 using V = trace_detail::Lanes<double>;
 
-/// Newton's iteration with whole steps. Returns the converged lanes, inside or outside the domain.
+/// Newton's iteration with full steps. Returns the lanes that converged, inside or outside the domain.
 template <int n>
 auto converge(const double* coefficients, const Four<V>& line, Four<V>& x) noexcept {
   const V none(0.0), one(1.0);

@@ -34,7 +34,7 @@ struct Rays {
   Vec3<double> direction(std::size_t i) const noexcept { return {v[3][i], v[4][i], v[5][i]}; }
 };
 
-/// Traces lines through the lens. Rays start at the last vertex, so that a distant film or pupil costs no digits.
+/// Traces lines through the lens. Rays start at the last vertex, so that a distant film or pupil does not lose digits.
 Rays trace(const Lens& lens, const TwoPlanes& space, const Lines& lines, std::size_t wavelength) {
   const double last_z = lens.surfaces().back().vertex_z;
   const double part = (last_z - space.film_z) / space.depth();  // fraction of the distance from film to pupil
@@ -72,7 +72,7 @@ struct Errors {
   double max() const noexcept { return std::sqrt(largest); }
 };
 
-/// Errors of a fit for some lines, in direction and offset.
+/// Errors of a fit for some lines, in direction and in offset.
 std::array<Errors, 2> errors_of(const Lens& lens, const RayPolynomial& polynomial, std::size_t wavelength,
                                 const Lines& lines) {
   const double reference_z = polynomial.domain().reference_z;
@@ -86,7 +86,7 @@ std::array<Errors, 2> errors_of(const Lens& lens, const RayPolynomial& polynomia
     if (exact.fates[i] != RayFate::transmitted || rays.fates[i] != RayFate::transmitted) continue;
     const Vec3<double> towards = exact.direction(i);
     direction.see(square(rays.direction(i) - towards));
-    const Vec3<double> apart = rays.origin(i) - exact.origin(i);  // difference of the feet of the perpendiculars
+    const Vec3<double> apart = rays.origin(i) - exact.origin(i);  // difference of the feet of both perpendiculars
     const Vec3<double> from_reference = exact.origin(i) - Vec3<double>(0, 0, reference_z);
     offset.see(square(apart + glm::dot(from_reference, towards) * towards));
   }
@@ -111,9 +111,9 @@ class Powers {
   std::array<std::array<double, 11>, N> powers_;
 };
 
-/// Equations of lines for the coefficients by film, followed by the coefficients by pupil. In a lens of revolution both
-/// axes share the coefficients; with mirror symmetry each axis has its own. Direction and offset are two right-hand
-/// sides.
+/// Equations of lines for the coefficients: the film coefficients, followed by the pupil coefficients. In a lens of
+/// revolution both axes share the coefficients; with mirror symmetry each axis has its own. Direction and offset are
+/// two right-hand sides.
 class Equations {
  public:
   struct Row {
@@ -130,7 +130,7 @@ class Equations {
     for (Row& row : rows_) row.left.resize(2 * count());
   }
 
-  /// Number of coefficients by film.
+  /// Number of film coefficients.
   Eigen::Index count() const noexcept { return static_cast<Eigen::Index>(terms_.size() + mirror_terms_.size()); }
   /// Index of the system that holds the coefficients of an axis.
   std::size_t system(std::size_t axis) const noexcept { return domain_.along_x ? axis : 0; }
@@ -201,9 +201,9 @@ RayPolynomial::Fit fit(const Lens& lens, const RayPolynomial::Domain& domain, in
   std::vector<System> all(equations.systems());
   for (System& system : all) system.both.setZero(1 + 2 * passed / systems, 2 * count + 2);
 
-  // Focus of the film centre: the first moments of direction and offset over its pupil equal the moments of the lens,
-  // so that the rays meet the axis in the same plane on average. The weight makes this row hold almost exactly; heavy
-  // rows come first for the stability of QR.
+  // Focus of the film centre: over its pupil, the first moments of direction and offset must equal the moments of the
+  // lens, so that the rays meet the axis in the same plane on average. The large weight makes this equation hold almost
+  // exactly. Heavy rows come first for the stability of QR.
   const Rays axial = trace(lens, domain.space, lines.axial, wavelength);
   const double heavy = 1e4 / static_cast<double>(std::max<std::size_t>(1, axial.size()));
   for (std::size_t i = 0; i < axial.size(); ++i) {

@@ -20,13 +20,13 @@ struct Lines {
 struct FitLines {
   Lines fitted;
   Lines axial;  ///< from the film centre, uniform over its pupil
-  Lines fresh;  ///< independent lines to measure errors
+  Lines fresh;  ///< lines that the fit does not use, to measure errors
   Lines rims;   ///< lines on the rims of the pupils, for the largest errors
   Lines edges;  ///< lines near the rims and from the edge of the film, for the largest errors
 };
 
-/// Fits the lines that pass the lens at one wavelength. The film centre is in focus at the plane where exact rays are
-/// sharpest; with mirror symmetry in both sections.
+/// Fits the lines that pass the lens at one wavelength. The film centre is in focus in the plane in which exact rays
+/// are sharpest; with mirror symmetry, in the plane of each section.
 RayPolynomial::Fit fit(const Lens& lens, const RayPolynomial::Domain& domain, int degree, std::size_t wavelength,
                        const FitLines& lines);
 

@@ -34,8 +34,8 @@ inline constexpr double within_domain = 1 + 1e-5;
 
 /// Largest number of modes of a polynomial.
 inline constexpr std::size_t most_modes = 8;
-/// Fits at any wavelength, borrowed. A mode holds as many coefficients as a fit; the fit at a wavelength is the sum of
-/// the modes with the weights of the wavelength. The weight of the first mode is 1.
+/// Fits at any wavelength, borrowed. A mode has as many coefficients as a fit. The fit at a wavelength is the sum of
+/// the modes, multiplied by the weights of the wavelength. The weight of the first mode is 1.
 template <class R>
 struct Modes {
   const R* coefficients = nullptr;  ///< by mode
@@ -45,7 +45,7 @@ struct Modes {
 
 template <class R>
 struct ToSceneJob {
-  const R* coefficients;  ///< by wavelength: direction by film and by pupil, offset by film and by pupil
+  const R* coefficients;  ///< by wavelength: film and pupil coefficients of direction, then of offset
   const R* rows;          ///< one row for each coefficient, by wavelength
   std::size_t row_length;
   std::size_t fits, primary;
@@ -78,8 +78,8 @@ PETZVAL_WIDEST(PolynomialLoops, polynomial_loops)
 /// Number of lines of one call of an inverse loop; fills the widest registers.
 inline constexpr std::size_t inverse_block = 8;
 using InverseColumns = std::array<std::array<double, inverse_block>, 4>;
-/// Finds (f, p) of lines (s, o), for lenses of revolution; one loop for each degree. found: 1; -1 if there is no
-/// solution in the domain; 0 if an iteration does not converge in whole steps.
+/// Finds (f, p) of lines (s, o), for lenses of revolution; one loop for each degree. found: 1 if there is a solution;
+/// -1 if there is no solution in the domain; 0 if the iteration does not converge with full steps.
 using InverseLoops = std::array<void (*)(const double* coefficients, const InverseColumns& wanted, InverseColumns& at,
                                          std::array<double, inverse_block>& found) noexcept,
                                 degree_count>;

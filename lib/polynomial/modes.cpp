@@ -27,7 +27,8 @@ FitModes find_modes(const std::vector<RayPolynomial::Fit>& fits, const std::vect
   Eigen::MatrixXd left = all.colwise() - mean;
   left.topRows(each / 2) /= part * most_rad + least_rad;
   left.bottomRows(each / 2) /= part * most_mm + least_mm + 1e-300;
-  // The lazy product has the same bits on every processor; the blocked product sums in an order set by cache sizes.
+  // The lazy product has the same bits on every processor; a blocked product sums in an order that depends on the cache
+  // sizes.
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(left.transpose().lazyProduct(left));
 
   FitModes result;

@@ -60,7 +60,7 @@ PETZVAL_INLINE LocalRay<T> out_of_chart(const ChartLine<T>& line) noexcept {
 template <int n>
 struct OfRevolution {
   static constexpr int terms = term_count(n, 3), coefficients = 4 * terms;
-  /// True: these sums have the same bits in all code, because no compiler can choose which of two products it fuses.
+  /// True: these sums have the same bits in all code, because they leave a compiler no choice of products to fuse.
   static constexpr bool same_bits = true;
 
   template <class T>
@@ -87,9 +87,9 @@ struct OfRevolution {
   }
 };
 
-/// For a lens that is symmetric about x = 0 and about y = 0. Components along x are odd in fx and px together and even
-/// in fy and py together: fx or px times the sum of a polynomial of the four squares and fy py times a polynomial with
-/// one factor less. Components along y are the same with x and y exchanged.
+/// For a lens that is symmetric about x = 0 and about y = 0. Components along x are odd in (fx, px) and even in (fy,
+/// py): fx or px times the sum of a polynomial in the four squares and of fy py times such a polynomial with one factor
+/// less. Components along y are the same with x and y exchanged.
 template <int n>
 struct OfMirrors {
   static constexpr int even = term_count(n, 4), terms = even + term_count(n - 1, 4), coefficients = 8 * terms;
@@ -119,7 +119,7 @@ struct OfMirrors {
   }
 
  private:
-  /// across: product of film and pupil coordinate along the other axis.
+  /// across: product of film and pupil coordinates along the other axis.
   template <class R, class T>
   static PETZVAL_INLINE T even_sum(const R* c, const T& across, const T& other_pupil2, const T& other_film2,
                                    const T& pupil2, const T& film2) noexcept {

@@ -26,9 +26,9 @@ struct At {
   polynomial_detail::Slopes<double> slope;
 };
 
-/// Newton's iteration from a point with known value and derivatives. Returns false if a step is more than half of the
-/// previous step, because the iteration may then reach another branch of the polynomial, or if the iteration leaves the
-/// neighbourhood of the domain.
+/// Newton's iteration from a point with known value and derivatives. Returns false if a step is longer than half of the
+/// previous step, because the iteration may then reach another branch of the polynomial, or if the iteration moves far
+/// from the domain.
 template <class Symmetry>
 bool correct(const double* c, const Place& wanted, const At& begin, Place& x) noexcept {
   At at = begin;
@@ -50,7 +50,7 @@ Place start(OfRevolution<n> symmetry, const double* c, const Place& line) noexce
 }
 template <int n>
 Place start(OfMirrors<n>, const double* c, const Place& line) noexcept {
-  // Treats the sections as independent; the combination may lie outside the film.
+  // Solves both sections independently; the combined point may lie outside the film.
   const auto along = [](double s, const double* of) {
     const double sign = of[0] < 0 ? -1 : 1;
     const double height =
@@ -63,7 +63,8 @@ Place start(OfMirrors<n>, const double* c, const Place& line) noexcept {
 }
 
 /// Moves from the line of x to the line `wanted` over intermediate lines, in steps for which the iteration converges:
-/// mostly one step, several for a fisheye. Returns false if an iteration fails or the result is outside the domain.
+/// one step in most cases, several for a fisheye. Returns false if an iteration fails or the result is outside the
+/// domain.
 template <class Symmetry>
 bool follow(const double* c, const Place& wanted, Place& x) noexcept {
   At at;
@@ -86,7 +87,7 @@ bool follow(const double* c, const Place& wanted, Place& x) noexcept {
 }
 
 /// Finds (f, p) of a line; returns false if no solution in the domain is found. Starts at a line of similar direction
-/// and, if this fails, at the axis: the first start may lie outside the fitted light.
+/// and, if this fails, at the axis, because the first start may lie outside the fitted region.
 template <class Symmetry>
 bool solve(const double* c, const Place& wanted, Place& x) noexcept {
   x = start(Symmetry{}, c, wanted);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Compiled once for each instruction set; PETZVAL_LOOPS names the result. Each result depends on its own line only: the
-// remainder of a batch goes through the same vector code.
+// Compiled once for each instruction set; PETZVAL_LOOPS names the result. A result depends only on its own line: the
+// rest of a batch that does not fill a block uses the same vector code.
 #include <cstddef>
 #include <cstdint>
 #include <type_traits>
@@ -23,8 +23,8 @@ using Sums = FourSums<typename Native<R>::Values>;
 
 static_assert(OfMirrors<degree_count>::coefficients == most_coefficients);
 
-/// Sums for one wavelength per lane: evaluates all lanes at each wavelength that occurs, smallest first, and keeps the
-/// lanes of that wavelength. known: lanes whose wavelength has a fit.
+/// Sums with one wavelength per lane: all lanes are evaluated at each wavelength that occurs, in ascending order, and
+/// the lanes of that wavelength are kept. known: lanes whose wavelength has a fit.
 template <class Symmetry, class R>
 PETZVAL_INLINE Sums<R> mixed_sums(const ToSceneJob<R>& job, const std::uint16_t* each,
                                   const Variables<Symmetry, R>& at_place, typename Native<R>::Bits& known) noexcept {
@@ -54,8 +54,8 @@ PETZVAL_INLINE Sums<R> mixed_sums(const ToSceneJob<R>& job, const std::uint16_t*
   return result;
 }
 
-/// Coefficients of each lane's own wavelength, read like a pointer to the coefficients of one wavelength. Rows have two
-/// registers even if one would do, because the code for one register is slower.
+/// Coefficients of each lane's own wavelength, read like a pointer to the coefficients of one wavelength. Rows always
+/// have two registers, because the code for one register is slower.
 template <class R>
 struct CoefficientsByLane {
   const R* rows;
@@ -78,7 +78,7 @@ template <class Symmetry, class R>
 PETZVAL_INLINE Sums<R> permuted_sums(const ToSceneJob<R>& job, const std::uint16_t* each,
                                      const Variables<Symmetry, R>& at_place, typename Native<R>::Bits& known) noexcept {
   using Bit = typename Native<R>::Bit;
-  // Converted as a whole: element-wise stores would stall the load that follows.
+  // Converted in one operation: stores of single elements would stall the load that follows.
   using Positions = std::conditional_t<sizeof(R) == 4, lens_detail::Positions, HalfPositions>;
   Positions positions;
   __builtin_memcpy(&positions, each, sizeof positions);
@@ -168,8 +168,8 @@ PETZVAL_INLINE void map_lanes(const ToSceneJob<R>& job, std::size_t o, const Mod
   __builtin_memcpy(job.fates + o, &fates, sizeof fates);
 }
 
-/// Maps a number of rays that fills lanes. Not inlined: all rays run through the same code, in which the compiler chose
-/// once which of two products to fuse.
+/// Maps a number of rays that fills all lanes. Not inlined: all rays then run through the same code, in which the
+/// compiler decided once which of two products is fused.
 template <class Symmetry, class R>
 __attribute__((noinline)) void map_whole(const ToSceneJob<R>& job) noexcept {
   constexpr std::size_t lanes = lane_count<R>, block = lens_detail::look_up_block;
@@ -183,7 +183,7 @@ __attribute__((noinline)) void map_whole(const ToSceneJob<R>& job) noexcept {
   }
 }
 
-/// Copies of the first remaining ray fill unused lanes.
+/// Fills unused lanes with copies of the first remaining ray.
 template <class Symmetry, class R>
 void to_scene(const ToSceneJob<R>& job) noexcept {
   constexpr std::size_t lanes = lane_count<R>;

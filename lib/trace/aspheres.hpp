@@ -56,7 +56,8 @@ PETZVAL_INLINE Height<R> height(const kernel::Step<R>& s, const kernel::Asphere<
   return {z - V(s.sense) * sag.z, pz - slope * (ux * px + uy * py), slope, sag.defined};
 }
 
-/// Result of a search. stands: Newton's result is the first crossing. beside: the ray passes outside the aperture.
+/// Result of a search. stands: the result of Newton's iteration is the first crossing. beside: the ray passes outside
+/// the aperture.
 enum class Outcome : std::uint8_t { open, stands, crosses, beside, lost };
 
 template <class R>
@@ -99,7 +100,7 @@ struct Search {
       const auto ray = kernel::trace_detail::passage(surface, p, d);
       const auto [part, empty, rising] = kernel::trace_detail::prospect(surface, ray, p, d, sense);
       const Mask<R> stands = rising & (at(inside, o) > V(R(0)));
-      // Without a crossing on the aperture, a ray that can have at most one crossing passes outside.
+      // Without a crossing inside the aperture, a ray that can have at most one crossing passes outside.
       const V nothing = select(empty | rising, code<R>(Outcome::beside), code<R>(Outcome::open));
       store(outcome + o, select(stands, code<R>(Outcome::stands), nothing));
       left[o / width] = without(part.from <= part.to, stands);
@@ -143,8 +144,8 @@ struct Search {
   }
 };
 
-/// True if both ends of the ray inside the cylinder of the aperture lie on the same side of the rim; only for rays too
-/// upright to cross the surface twice.
+/// True if both ends of the part of the ray inside the cylinder of the aperture lie on the same side of the rim. Only
+/// for rays so close to the axial direction that they cross the surface at most once.
 template <class R>
 PETZVAL_INLINE Mask<R> beside_edge(const kernel::Asphere<R>& surface,
                                    const kernel::trace_detail::Passage<Lanes<R>>& ray, Lanes<R> z,
@@ -157,7 +158,7 @@ PETZVAL_INLINE Mask<R> beside_edge(const kernel::Asphere<R>& surface,
   return (within2 < V(-unsure * surface.height)) | ((one > over) & (other > over)) | ((one < under) & (other < under));
 }
 
-/// Numbers of Newton steps from the hit on the base conic: usual_steps for all rays; after first_steps only if the last
+/// Numbers of Newton steps from the hit on the base conic: at most usual_steps; more than first_steps only if the last
 /// step was shorter than 1/16 of the height; up to newton_steps if the search shows no crossing inside the aperture.
 template <class R>
 inline constexpr int usual_steps = sizeof(R) == sizeof(float) ? 4 : 6;
@@ -170,15 +171,15 @@ struct Meeting {
   static constexpr int vectors = Bundle<R>::vectors;
   V q[vectors], rate[vectors], slope[vectors];
   Mask<R> found[vectors];
-  Mask<R> beside[vectors];  ///< no crossing inside the aperture: vignetted, whether or not the ray hits
+  Mask<R> beside[vectors];  ///< no crossing inside the aperture: vignetted, even if the ray hits farther out
 };
 
 /// Newton's iteration in each lane; a converged lane keeps its value, so that results do not depend on other lanes.
+/// A result is accepted if it lies inside the aperture and the ray rises above the surface along the complete part that
+/// may meet the surface inside the aperture. For other rays the intervals are searched, as in kernel::intersect.
 ///
-/// A result counts if it lies inside the aperture and the ray rises over the surface along the whole part that can lie
-/// on the aperture. For other rays the intervals are searched, as in kernel::intersect.
 ///
-/// at: in: q, the start values; out: the results. per_n2: one over the squared index in front of the surface.
+/// at: in: the start values of q; out: the results. per_n2: one over the squared index in front of the surface.
 template <class R>
 [[gnu::noinline]] void meet(const kernel::Step<R>& s, const Route<R>& route, std::uint8_t* unsettled,
                             const Bundle<R>& b, const Lanes<R>* per_n2, Meeting<R>& at) noexcept {
@@ -226,7 +227,7 @@ template <class R>
   };
   iterate(0, usual_steps<R>);
 
-  // Upright rays with a result inside the aperture need no search.
+  // Rays close to the axial direction with a result inside the aperture need no search.
   Mask<R> inside[vectors], doubtful[vectors];
   bool doubts = false;
   const V steepest2(surface.steepest * surface.steepest);
@@ -284,7 +285,7 @@ void asphere(const kernel::Step<R>& s, const Lanes<R>& rim2, const Route<R>& rou
   V per_n2[vectors];
   for (int i = 0; i < vectors; ++i) {
     approach(s, media, b, i, follow);
-    // Hit on the base conic, or else the point found by approach().
+    // The hit on the base conic or, if there is no hit, the point found by approach().
     const auto [a, slant, f] = quadratic(s, b, i);
     const V disc = slant * slant - a * f;
     const Mask<R> on_base = (disc > none) & (slant > none);

@@ -65,7 +65,7 @@ struct Block {
   std::array<std::uint16_t, block> wavelengths{};
   std::array<float, block> nm{};
 
-  /// Unused rays lie on the axis.
+  /// Unused rays are placed on the axis.
   explicit Block(bool with_tangents = false) noexcept {
     for (std::size_t k = 0; k < (with_tangents ? 18 : 6); ++k) v[k].fill(R(0));
     v[5].fill(R(1));

@@ -45,7 +45,7 @@ void report(const BlockJob<R>& job, const Bundle<R>& b, const std::uint8_t* unse
   }
 }
 
-/// Passes all steps, or ends early if all rays are lost; checked at every fourth step.
+/// Passes all steps, but ends early if all rays are lost; this is tested at every fourth step.
 template <class R, class MediaAt, class Follow>
 PETZVAL_INLINE void march(const BlockJob<R>& job, MediaAt&& media_at, std::uint8_t* unsettled, Bundle<R>& b,
                           Follow& follow) {
@@ -58,8 +58,8 @@ PETZVAL_INLINE void march(const BlockJob<R>& job, MediaAt&& media_at, std::uint8
   }
 }
 
-/// Traces one bundle of a job, from ray o on. index, per_index: by ray, the index in front of the lens and one over the
-/// index behind the lens.
+/// Traces one bundle of a job, from ray `o` on. index: for each ray, the index in front of the lens. per_index: one
+/// over the index behind the lens.
 template <class R, class MediaAt>
 void trace_bundle(const BlockJob<R>& job, std::size_t o, const R* index, const R* per_index, MediaAt&& media_at) {
   const auto in = from<R>(job.in, o);

@@ -46,12 +46,12 @@ struct Bundle {
   V px[vectors], py[vectors], pz[vectors];
   V r2[vectors];  ///< x^2 + y^2
   Mask<R> alive[vectors];
-  /// Adds four for every surface passed: one for the hit, one for the rim, two for the refraction. The remainder at the
-  /// last surface encodes the fate of a lost ray.
+  /// Four is added for every surface passed: one for the hit, one for the rim, two for the refraction. The remainder at
+  /// the last surface tells the fate of a lost ray.
   typename Native<R>::Bits tally[vectors];
 };
 
-/// Fate of a lost ray, as a number so that loops vectorize. beyond: excess of its tally over the surfaces passed.
+/// Fate of a lost ray, as a number so that loops vectorise. beyond: its tally minus four for each surface passed.
 /// unsettled: true if the search for a hit did not converge.
 PETZVAL_INLINE std::int32_t lost_by(std::int32_t beyond, bool unsettled) noexcept {
   std::int32_t fate = beyond == 0 ? static_cast<std::int32_t>(RayFate::missed_surface)

@@ -22,7 +22,7 @@ using core_detail::Native;
 template <class R>
 inline constexpr int rays_in_bundle = 256 / static_cast<int>(sizeof(R));
 
-/// The lanes in which a comparison holds.
+/// A mask: the lanes in which a comparison holds.
 template <class R>
 struct Mask {
 #if defined(__AVX512F__)
@@ -160,7 +160,7 @@ PETZVAL_INLINE Lanes<R> sqrt(Lanes<R> x) noexcept {
 #endif
 }
 
-/// True if a mask, made by comparisons, has every lane.
+/// True if every lane of a mask, made by comparisons, is set.
 template <class R>
 PETZVAL_INLINE bool every(Mask<R> mask) noexcept {
 #if defined(__AVX512F__)
@@ -220,8 +220,8 @@ PETZVAL_INLINE Lanes<R> quotient(Lanes<R> a, Lanes<R> b) noexcept {
 #endif
 }
 
-/// A second root next to root(): double roots under AVX2 start from the float approximation, so that the two roots do
-/// not compete for the only divider. For values within the range of float.
+/// A second root to be computed together with root(). Under AVX2, double roots start from the float approximation, so
+/// that the two roots do not compete for the only divider. For values within the range of float.
 template <class R>
 PETZVAL_INLINE Lanes<R> second_root(Lanes<R> x) noexcept {
 #if PETZVAL_FAST && defined(__AVX2__) && !defined(__AVX512F__)
@@ -249,7 +249,7 @@ PETZVAL_INLINE Mask<R> has_root(Lanes<R> x) noexcept {
 #endif
 }
 
-/// Adds a small number to a counter in the lanes of the mask.
+/// Adds a small number to a counter, in the lanes of a mask.
 template <int by, class R>
 PETZVAL_INLINE void count(typename Native<R>::Bits& counter, Mask<R> mask) noexcept {
 #if defined(__AVX512F__)
@@ -266,7 +266,7 @@ PETZVAL_INLINE void count(typename Native<R>::Bits& counter, Mask<R> mask) noexc
 #endif
 }
 
-/// Replaces the counter by another one in the lanes of the mask.
+/// Replaces a counter by another one, in the lanes of a mask.
 template <class R>
 PETZVAL_INLINE void keep(typename Native<R>::Bits& counter, Mask<R> mask, typename Native<R>::Bits other) noexcept {
 #if defined(__AVX512F__)
@@ -311,7 +311,7 @@ PETZVAL_INLINE int lanes_in(Mask<R> mask) noexcept {
 #endif
 }
 
-/// Stores the lanes of a mask contiguously. It may write a whole vector.
+/// Stores the lanes of a mask contiguously. The function may write a full vector.
 template <class R>
 PETZVAL_INLINE void pack(R* to, Mask<R> mask, Lanes<R> x) noexcept {
 #if defined(__AVX512F__)
@@ -328,7 +328,7 @@ PETZVAL_INLINE void pack(R* to, Mask<R> mask, Lanes<R> x) noexcept {
 #endif
 }
 
-/// Reads lanes that pack() stored; the other lanes come from `others`.
+/// Reads lanes that were stored by pack(); the other lanes come from `others`.
 template <class R>
 PETZVAL_INLINE Lanes<R> unpack(const R* from, Mask<R> mask, Lanes<R> others) noexcept {
 #if defined(__AVX512F__)

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// How close a bundle of rays comes to the rims. Included like lanes.hpp.
+// Distance of a bundle of rays from the rims. Included like lanes.hpp.
 #pragma once
 
 #include <limits>
@@ -26,7 +26,8 @@ class LeastClearance : public NoTangents {
   /// Called behind each step.
   void watch(const Route<R>& route, std::size_t j, const Bundle<R>& b) noexcept {
     const kernel::Step<R>& s = route.sequence.steps[j];
-    // A difference of squares has the same sign as the comparison with the rim in the trace; scaling keeps the sign.
+    // The sign of a difference of squares equals the result of the comparison with the rim in the trace; scaling does
+    // not change the sign.
     const R scale = s.rim2 > 4 * std::numeric_limits<R>::min() ? 1 / s.rim2 : R(1);
     const auto iris = s.stop ? route.iris : std::span<const kernel::StopEdge<R>>{};
     const V left(R(-1) - static_cast<R>(route.steps - j) / static_cast<R>(route.steps)), none(R(0));
@@ -57,7 +58,7 @@ class LeastClearance : public NoTangents {
   static PETZVAL_INLINE V smaller(V a, V b) noexcept { return select(a < b, a, b); }
 
   V least_[Bundle<R>::vectors];  ///< minimum over the rims so far
-  V lost_[Bundle<R>::vectors];   ///< below 0 for rays lost for another reason than a rim
+  V lost_[Bundle<R>::vectors];   ///< below 0 for rays that were not lost at a rim
   Mask<R> alive_[Bundle<R>::vectors];
 };
 

@@ -137,7 +137,8 @@ void put_on_axis(const Route<R>& route, int rays, const RayArrays<R>& out) noexc
   }
 }
 
-/// Calls body with the bundle for rarely needed work; a single ray is passed as a copy, so that it stays in registers.
+/// Calls body with the bundle, for work that is rarely needed. A single ray is passed as a copy, so that it stays in
+/// registers.
 template <class R, class Body>
 PETZVAL_INLINE void in_memory(Bundle<R>& b, const Body& body) noexcept {
   if constexpr (Bundle<R>::rays == 1) {

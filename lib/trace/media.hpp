@@ -44,7 +44,7 @@ class MediaByRay {
   PETZVAL_INLINE MediaByRay(const kernel::SurfaceSequence<R>& sequence, const std::uint16_t* wavelengths,
                             std::size_t count) noexcept
       : sequence_(sequence), count_(count), length_(kernel::row_length<R>(count)) {
-    // 32 bits, as wide as float, vectorize best.
+    // Numbers of 32 bits, as wide as float, vectorise best.
     const auto compiled = static_cast<std::int32_t>(count <= 0xffff ? count : 0x10000);
     typename Native<R>::Bit places[Bundle<R>::rays];
     for (int l = 0; l < Bundle<R>::rays; ++l) {
@@ -55,8 +55,8 @@ class MediaByRay {
     __builtin_memcpy(places_, places, sizeof places);
   }
 
-  /// Indices in front of the first step and one over the indices behind the last step. NaN, which loses the ray, if the
-  /// wavelength was not compiled.
+  /// Indices in front of the first step and one over the indices behind the last step. They are NaN, and the ray is
+  /// lost, if the wavelength was not compiled.
   PETZVAL_INLINE void indices(R* first, R* per_last) const noexcept {
     for (int i = 0; i < Bundle<R>::vectors; ++i) {
       const int o = i * V::width;
@@ -106,8 +106,8 @@ class SpectralMedia {
     fill(0);
   }
 
-  /// Indices in front of the first step and one over the indices behind the last step. NaN, which loses the ray, if the
-  /// lens does not cover the wavelength.
+  /// Indices in front of the first step and one over the indices behind the last step. They are NaN, and the ray is
+  /// lost, if the lens does not cover the wavelength.
   PETZVAL_INLINE void indices(std::size_t steps, R* first, R* per_last) const noexcept {
     for (int i = 0; i < vectors; ++i) {
       const auto index = [&](std::size_t medium) { return sqrt(square(sequence_.media[medium], i)); };

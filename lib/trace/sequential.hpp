@@ -71,7 +71,7 @@ TraceState<T> trace(const LensView<Storage<T>>& lens, const Vec<T>& origin, cons
   Vec<T> p{origin.x, origin.y, T(origin.z - lens.vertex_z[i])};
   for (;;) {
     const SurfaceTable<R>& surface = lens.surfaces[i];
-    // Towards the scene the sense is reversed; at a mirror the spaces in front and behind are the same.
+    // Towards the scene the sense is reversed, except at mirrors, which have the same medium on both sides.
     const R sense = to_film || surface.mirror ? surface.sense : -surface.sense;
     const auto end = [&](RayFate fate) {
       ray.fate = fate;

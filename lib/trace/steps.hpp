@@ -108,7 +108,8 @@ PETZVAL_INLINE void approach(const kernel::Step<R>& s, const Media& media, Bundl
   follow.shift(i, t);
 }
 
-/// The second vector of a pair may be empty; separate code for a single vector would round differently.
+/// Number of vectors that are processed together. The second vector of a pair may hold no rays, because separate code
+/// for a single vector would round differently.
 template <class R>
 inline constexpr int vectors_together = Bundle<R>::vectors % 2 == 0 ? 2 : 1;
 

@@ -14,7 +14,7 @@ struct TwoTangents {
   static constexpr bool wanted = true;
   Tangent<R> u, v;
 
-  /// Moves the start of a ray along the ray: x + t p. The derivative of t does not matter before the next contact.
+  /// Moves the start of a ray along the ray: x + t p. The derivative of t has no effect before the next surface.
   PETZVAL_INLINE void shift(int i, V t) noexcept {
     shift(u, i, t);
     shift(v, i, t);
@@ -30,7 +30,7 @@ struct TwoTangents {
   PETZVAL_INLINE void watch(const Route<R>&, std::size_t, const Bundle<R>&) noexcept {}
 
  private:
-  /// Shared by both derivatives: 1 / xi, and the derivatives of gamma with respect to xi and nn.
+  /// Values common to both derivatives: 1 / xi, and the derivatives of gamma with respect to xi and nn.
   struct Rates {
     V per_xi, with_xi, with_nn;
   };
@@ -50,7 +50,7 @@ struct TwoTangents {
     d.y[i] = d.y[i] + on * at.py;
     d.z[i] = d.z[i] + on * at.pz;
 
-    // N. = -(ngx, ngy, ngz), and the change of gamma. On planes and spheres N keeps its length.
+    // N. = -(ngx, ngy, ngz), and the change of gamma. On planes and spheres the length of N is constant.
     V ngx = at.cx * d.x[i], ngy = at.cy * d.y[i];
     const V ngz = at.cz * d.z[i];
     if (s.kind == kernel::StepKind::asphere) {
