@@ -23,7 +23,7 @@ set(petzval_long_tests
   FilmIrradiance.FilmInsideTheLastSurfaceEqualsRaysInAllDirections
   FilmIrradiance.EveryLensEqualsRaysInAllDirections
   Gather.EqualsTheReference
-  ImageCircle.EndsWhereTheLightDoes
+  ImageCircle.EndsWithTheLight
   IrisShape.PassesAChiSquareTestInSmallSquares
   IrisWeights.SamplesHaveTheStatedDensity
   LargestInputs.*

@@ -89,7 +89,7 @@ TEST(LensWithIris, SpotsLoseRaysOutsideThePolygon) {
   }
 }
 
-TEST(LensWithIris, ExactCameraHasIt) {
+TEST(LensWithIris, ExactCameraClipsAtTheIris) {
   const auto [round, bladed] = double_gauss(4);
   const Film film{.width_mm = 30, .height_mm = 20, .columns = 30, .rows = 20};
   const auto mean = [&](const Lens& lens, const FilmPoint& at) {
@@ -107,7 +107,7 @@ TEST(LensWithIris, ExactCameraHasIt) {
   }
 }
 
-TEST(LensWithIris, ExactConnectionsPassIt) {
+TEST(LensWithIris, ExactConnectionsPassTheIris) {
   const Camera camera(double_gauss(4).bladed, {.width_mm = 30, .height_mm = 20, .columns = 30, .rows = 20},
                       {.model = ModelKind::exact_double});
   const Vec3<double> point{20, 30, -1500};
@@ -121,7 +121,7 @@ TEST(LensWithIris, ExactConnectionsPassIt) {
   EXPECT_NEAR(passed / static_cast<double>(passed + stopped), hexagon_over_disc, 0.04);
 }
 
-TEST(LensWithIris, FittedModelsHaveIt) {
+TEST(LensWithIris, FittedModelsHaveTheIris) {
   const Lens lens = double_gauss(4).bladed;
   const Film film{.width_mm = 30, .height_mm = 20, .columns = 30, .rows = 20};
   for (const ModelKind model : {ModelKind::thin_two_disc, ModelKind::polynomial(3), ModelKind::polynomial(7)}) {
@@ -141,7 +141,7 @@ TEST(LensWithIris, FittedModelsHaveIt) {
   }
 }
 
-TEST(LensWithIris, FittedConnectionsPassIt) {
+TEST(LensWithIris, FittedConnectionsPassTheIris) {
   const Film film{.width_mm = 30, .height_mm = 20, .columns = 30, .rows = 20};
   const auto [round, bladed] = double_gauss(4);
   for (const ModelKind model : {ModelKind::thin_two_disc, ModelKind::polynomial(5)}) {

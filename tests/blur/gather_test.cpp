@@ -309,7 +309,7 @@ TEST(Gather, IndependentOfThreads) {
   }
 }
 
-TEST(Gather, SeesThroughTheVoid) {
+TEST(Gather, EmptyPixelsAreTransparent) {
   const Scene alone = [](double x, double y) {
     std::vector<Surface> seen;
     if (x < 0) seen.push_back({1 / 1500.0f, 0.5f, 0.5f, static_cast<float>(0.5 + y)});

@@ -63,7 +63,7 @@ TEST(ThinLensRays, MeetInThePlaneOfFocus) {
   }
 }
 
-TEST(ThinLensRays, BlurAsTheFormulaSays) {
+TEST(ThinLensRays, BlurEqualsTheFormula) {
   // A disc of radius |w - 1 / focus| x E / 2 x (rows / 2) / tan(fov / 2).
   const std::vector<PupilPoint> rim{{0, 1}, {0.25, 1}, {0.5, 1}, {0.75, 1}};
   const LensRays rays = LensRays::thin(small_camera(), {.radius_mm = 20, .inverse_focus = in_focus}, rim);

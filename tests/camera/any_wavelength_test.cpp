@@ -377,7 +377,7 @@ class ByPosition {
   PolynomialModel model_;
 };
 
-TEST(AnyWavelengthOf, ModelsWithoutItAcceptCompiledWavelengthsOnly) {
+TEST(AnyWavelengthOf, ModelsByPositionAcceptOnlyCompiledWavelengths) {
   const Prescription prescription = petzval::testing::data_prescription("double_gauss_100mm_f2.0");
   const Lens lens = compiled(prescription, eight_wavelengths());
   const Film film = film_for(prescription, lens);

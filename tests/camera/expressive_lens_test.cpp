@@ -185,13 +185,13 @@ INSTANTIATE_TEST_SUITE_P(Lenses, ExpressiveFromLens,
                            return name;
                          });
 
-TEST(ExpressiveLens, LensWithoutAberrationsGivesAnEmptyOne) {
+TEST(ExpressiveLens, LensWithoutAberrationsGivesAnEmptyExpressiveLens) {
   const ExpressiveLens found = expressive_from(thin_50mm(), {.width_mm = 1, .height_mm = 1});
   for (const PowerKnot& knot : found.power) EXPECT_NEAR(knot.power, 1, 1e-6);
   for (const FilmOffset& offset : found.film_offsets) EXPECT_NEAR(offset.offset_mm, 0, 0.02);
 }
 
-TEST(ExpressiveLens, CameraAcceptsTheOneOfEveryLens) {
+TEST(ExpressiveLens, CameraAcceptsTheExpressiveLensOfEveryLens) {
   for (const char* id : {"phone_5.6mm_f3.5", "ball_10mm", "eye_gullstrand_le_grand", "fisheye_16mm_f2.8",
                          "catadioptric_mangin_1000mm_f7.5", "landscape_meniscus_10mm", "modern_58mm_f0.95"}) {
     const Lens lens = testing::data_lens(id);

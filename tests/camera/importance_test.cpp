@@ -358,7 +358,7 @@ TEST(Importance, DistantLightSeesTheAreaOfTheEntrancePupil) {
   EXPECT_EQ(camera.pdf_distant_importance({s.on_front, direction}), 0);  // no ray meets a pinhole
 }
 
-TEST(Importance, IndependentOfTheThreadThatAsksFirst) {
+TEST(Importance, IndependentOfTheFirstCallingThread) {
   const Lens lens = testing::data_lens("double_gauss_100mm_f2.0");
   const Vec3<double> point{10, 20, -3000};
   const double wanted = Camera(lens, film).sample_importance(point, 0.3, 0.4).importance.we;
@@ -369,7 +369,7 @@ TEST(Importance, IndependentOfTheThreadThatAsksFirst) {
   for (const double we : found) EXPECT_EQ(we, wanted);
 }
 
-TEST(Importance, RayBesideTheFilmHasItsFilmPoint) {
+TEST(Importance, RayOutsideTheFilmHasAFilmPoint) {
   const Camera camera(testing::data_lens("double_gauss_100mm_f2_28deg"), film, {.model = ModelKind::exact_double});
   const double angle = 0.21;  // 21 mm off the axis upwards, where the film ends at 12
   const Importance i = camera.importance({{0, 0, 0}, {0, -std::sin(angle), std::cos(angle)}});

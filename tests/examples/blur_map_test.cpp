@@ -58,12 +58,12 @@ TEST(PointScene, GoesThroughItsPoints) {
   }
 }
 
-TEST(PointScene, WantsAPointInFront) {
+TEST(PointScene, RequiresAPointInFrontOfTheLens) {
   const std::vector<ScenePoint> behind{{{0, 0, 100}, false}};
   EXPECT_THROW(PointScene(petzval::thin_lens(50, 2), behind), petzval::Error);
 }
 
-TEST(BlurMap, APlaneIsSharpAllOverOnItsFilm) {
+TEST(BlurMap, PlaneOfFocusIsSharpEverywhere) {
   const petzval::IdealLens lens = petzval::thin_lens(100, 4);
   const auto places = places_of(table);
   const PointScene scene(lens, places);
@@ -80,7 +80,7 @@ TEST(BlurMap, APlaneIsSharpAllOverOnItsFilm) {
   EXPECT_EQ(examples::blur_map(film, scene, lens, nullptr, 1).diameter_mm, upright.diameter_mm);
 }
 
-TEST(BlurMap, IsTheRightWayUpAndSigned) {
+TEST(BlurMap, IsUprightAndSigned) {
   const petzval::IdealLens lens = petzval::thin_lens(50, 2);
   // Near at the lower left, far at the upper right.
   const std::vector<ScenePoint> places{{{-200, -150, -1000}, false}, {{600, 450, -3000}, false}};
@@ -122,7 +122,7 @@ TEST(BlurMap, ExactRaysAgreeWithTheThickLensStoppedDown) {
   EXPECT_LT(all, 0.03);  // curvature of field
 }
 
-TEST(BlurMap, ScalesReachNearlyAll) {
+TEST(BlurMap, ScaleCovers99PercentOfThePixels) {
   const std::vector<examples::BlurMap> maps{{2, 1, {0.012, -0.034}}, {1, 1, {std::nan("")}}};
   EXPECT_DOUBLE_EQ(examples::scale_of(std::vector<examples::BlurMap>{{1, 2, {0.012, -0.012}}}), 0.02);
   EXPECT_DOUBLE_EQ(examples::scale_of(maps), 0.02);  // the 99th percentile of two values is the lower value

@@ -64,7 +64,7 @@ TEST_F(BokehPsf, KeepsAllTheLight) {
   EXPECT_TRUE(read(path(std::string("bokeh/") + id + "_bokeh.png")).starts_with("\x89PNG"));
 }
 
-TEST_F(BokehPsf, BlursAsTheThinLensSaysWhenStoppedDown) {
+TEST_F(BokehPsf, StoppedDownBlurEqualsTheThinLens) {
   const auto json = bokeh({"--subject-distance-mm", "3000", "--focus-mm", "1500", "--f-number", "16"});
   const double expected = petzval::thin_lens_blur_diameter(100.437, 100.437 / 16, 3081.11, 1581.11) / 2;
   EXPECT_NEAR(json["results"][0]["radius_mm"].get<double>(), expected, 0.01 * expected);
@@ -72,7 +72,7 @@ TEST_F(BokehPsf, BlursAsTheThinLensSaysWhenStoppedDown) {
 }
 
 // An aborted run keeps the complete images and their data.
-TEST_F(BokehPsf, KeepsWholePicturesWhenItIsKilled) {
+TEST_F(BokehPsf, KilledRunKeepsCompletePictures) {
   const std::string first = path("cut/") + id + "_focus_900mm.exr", numbers = path("cut/") + id + "_bokeh.json";
   write("kill.sh", "'" + std::string(PETZVAL_TEST_PROGRAMS) + "/bokeh_psf' '" + lens(id) +
                        "' --subject-distance-mm 1000 --focus-mm 900,1000,1100 --samples 4194304 --out '" + path("cut") +
@@ -123,7 +123,7 @@ TEST_F(BokehPsf, HasTheShapeOfTheIris) {
             number(result({"--blades", "5", "--roundness", "-0.5"}), "throughput"));
 }
 
-TEST_F(BokehPsf, WritesTheFormatsThatAreAskedFor) {
+TEST_F(BokehPsf, WritesTheRequestedFormats) {
   bokeh({"--subject-distance-mm", "1000", "--focus-mm", "900", "--format", "exr,pfm"});
   const std::string stem = path(std::string("bokeh/") + id + "_focus_900mm");
   EXPECT_FALSE(std::filesystem::exists(stem + ".png"));
@@ -149,7 +149,7 @@ TEST_F(BokehPsf, WritesTheFormatsThatAreAskedFor) {
 
 // For any spectrum of the light, the total of the image is white and contains all light; throughputs of wavelengths
 // differ by one percent.
-TEST_F(BokehPsf, ShowsTheLightOfTheWhitePointWhite) {
+TEST_F(BokehPsf, LightOfTheWhitePointIsWhite) {
   std::ofstream(path("led.csv")) << "wavelength_nm,power\n440,0\n455,10\n470,2\n560,6\n700,0\n";
   const auto reddest = [&](const std::string& white) {
     const auto json = bokeh({"--subject-distance-mm", "1000", "--focus-mm", "900", "--wavelengths-nm",
@@ -170,7 +170,7 @@ TEST_F(BokehPsf, ShowsTheLightOfTheWhitePointWhite) {
   EXPECT_NE(reddest("D65"), reddest(path("led.csv")));
 }
 
-TEST_F(BokehPsf, LooksThroughAnyModelWithItsWeights) {
+TEST_F(BokehPsf, AcceptsEveryModelWithWeights) {
   const std::vector<std::string> plain{"--subject-distance-mm", "2000", "--focus-mm", "1000", "--f-number", "4"};
   const auto with = [&](std::vector<std::string> more) {
     more.insert(more.begin(), plain.begin(), plain.end());
@@ -194,7 +194,7 @@ TEST_F(BokehPsf, LooksThroughAnyModelWithItsWeights) {
               with({"--model", "thin", "--field-deg", "8"})["throughput"].get<double>(), 0.01);
 }
 
-TEST_F(BokehPsf, TakesAPictureAsIris) {
+TEST_F(BokehPsf, AcceptsAnImageAsIris) {
   petzval::RgbImage half(8, 8);  // the part at -x passes
   for (int y = 0; y < 8; ++y) std::fill_n(half.pixel(0, y), 12, 1.0f);
   petzval::write_exr(half, path("half.exr"));

@@ -60,7 +60,7 @@ class BokehScene : public Programs {
   static double error(const json& report, int channel) { return report["mean_radiance"][channel]["standard_error"]; }
 };
 
-TEST_F(BokehScene, WritesAPictureAndWhatItIs) {
+TEST_F(BokehScene, WritesAPictureWithItsMetadata) {
   const json report = render("a", {"--format", "exr,png,pfm"});
   const auto part = petzval::read_exr_parts(path("a/picture.exr")).front();
   EXPECT_EQ(part.width, 72);
@@ -80,7 +80,7 @@ TEST_F(BokehScene, WritesAPictureAndWhatItIs) {
   EXPECT_NEAR(static_cast<double>(image.pixel(36, 6)[1]), 0.45, 0.06);
 }
 
-TEST_F(BokehScene, HasTheBitsOfOneRunHoweverItIsCutUp) {
+TEST_F(BokehScene, ShardsAndResumedRunsEqualOneRunToTheBit) {
   render("whole", {"--threads", "1"});
   const std::string whole = read(path("whole/picture.exr"));
   render("threads", {"--threads", "3"});
@@ -133,7 +133,7 @@ TEST_F(BokehScene, AddsSamplesToAFinishedPicture) {
 }
 
 // An interrupt writes the sums and the unfinished image; --resume gives the bits of an uninterrupted run.
-TEST_F(BokehScene, KeepsItsWorkAtAnInterrupt) {
+TEST_F(BokehScene, InterruptedRunKeepsItsSamples) {
   const Arguments many{"--spp", "400", "--threads", "1"};
   std::string command = "'" + std::string(PETZVAL_TEST_PROGRAMS) + "/bokeh_scene'";
   for (const std::string& argument : arguments("cut", many)) command += " '" + argument + "'";
@@ -154,7 +154,7 @@ TEST_F(BokehScene, KeepsItsWorkAtAnInterrupt) {
 }
 
 // Without --film-mm the film has the shape of the picture; without --height the picture has the shape of the film.
-TEST_F(BokehScene, PixelsAreSquareUnlessToldOtherwise) {
+TEST_F(BokehScene, PixelsAreSquareByDefault) {
   const auto shape = [&](const std::string& out, const Arguments& more) {
     Arguments all{"--scene",    path("scene.json"),
                   "--lens",     lens("double_gauss_100mm_f2_28deg"),
@@ -178,7 +178,7 @@ TEST_F(BokehScene, PixelsAreSquareUnlessToldOtherwise) {
   for (const char* flag : {"--film-mm", "--width", "--height"}) EXPECT_NE(note.find(flag), std::string::npos) << note;
 }
 
-TEST_F(BokehScene, SeesTheSameByEveryIntegratorAndModel) {
+TEST_F(BokehScene, IntegratorsAndModelsAgree) {
   for (const char* colours : {"d", "rgb", "hero"}) {
     const json reference = render("path", {"--integrator", "path", "--wavelengths", colours, "--spp", "256"});
     for (const char* integrator : {"light", "bidirectional"}) {
@@ -199,7 +199,7 @@ TEST_F(BokehScene, SeesTheSameByEveryIntegratorAndModel) {
   }
 }
 
-TEST_F(BokehScene, ChoosesAModelAndSaysWhy) {
+TEST_F(BokehScene, ChoosesAModelWithReasons) {
   const json rough = render("rough", {"--model", "auto", "--spp", "1"});
   const json fine = render("fine", {"--model", "auto", "--budget-px", "0.01", "--spp", "1"});
   EXPECT_GE(rough["why"].size(), 2);
@@ -214,7 +214,7 @@ TEST_F(BokehScene, ChoosesAModelAndSaysWhy) {
   EXPECT_NE(clean["model"], "thin");
 }
 
-TEST_F(BokehScene, UnityAndIrradianceAreOnePictureToTheEye) {
+TEST_F(BokehScene, NormalisationScalesTheImageAndKeepsThePng) {
   const json unity = render("unity"), irradiance = render("irradiance", {"--normalisation", "irradiance"});
   EXPECT_NEAR(mean(irradiance, 1) / mean(unity, 1), irradiance["job"]["white"].get<double>(), 1e-3);
   const std::string a = read(path("unity/picture.png")), b = read(path("irradiance/picture.png"));
@@ -234,7 +234,7 @@ TEST_F(BokehScene, RefusesOtherAndDamagedCheckpoints) {
 
 // A focal surface and aberrations change the image but not the exposure; a sphere that contains a key point is sharper
 // with the focal surface.
-TEST_F(BokehScene, TakesAFocalSurfaceAndAberrations) {
+TEST_F(BokehScene, AcceptsFocalSurfacesAndAberrations) {
   write("points.json", R"({"points": [{"world_mm": [40, 60, -1200]}, {"world_mm": [-60, 40, -900], "extent_stops": 1},
     {"pixel": [36, 2], "distance_mm": null}, {"pixel": [36, 46], "distance_mm": 700, "blur_px": 2, "weight": 0.5}]})");
   const Arguments thick{"--model", "thick", "--integrator", "path", "--focus-mm", "3000"};
@@ -265,7 +265,7 @@ TEST_F(BokehScene, TakesAFocalSurfaceAndAberrations) {
   EXPECT_NEAR(mean(light, 0), mean(surface, 0), 5 * std::hypot(error(light, 0), error(surface, 0)));
 }
 
-TEST_F(BokehScene, GoesOnSheets) {
+TEST_F(BokehScene, PicturesAreLaidOutOnSheets) {
   render("a"), render("b", {"--focus-mm", "1500"});
   const Outcome done = run("bokeh_sheet", {path("a"), path("b"), "--columns", "2", "--out", path("sheet.png"),
                                            "--balls", path("balls.csv")});

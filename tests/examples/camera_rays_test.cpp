@@ -51,7 +51,7 @@ class CameraRays : public Programs {
   }
 };
 
-TEST_F(CameraRays, GivesTheLibrarysNumbers) {
+TEST_F(CameraRays, NumbersEqualTheLibrary) {
   const petzval::Lens wide_open = petzval::compile(petzval::read_prescription(lens("double_gauss_100mm_f2.0")));
   const petzval::Lens lens_f4 = petzval::with_focus(petzval::with_f_number(wide_open, 4), 3000);
   const petzval::Camera camera(lens_f4, {}, {.model = petzval::ModelKind::exact_double});
@@ -68,7 +68,7 @@ TEST_F(CameraRays, GivesTheLibrarysNumbers) {
   EXPECT_EQ(rows[0][9], "transmitted");
 }
 
-TEST_F(CameraRays, FocusesByTheCriterionAsked) {
+TEST_F(CameraRays, FocusesByTheGivenCriterion) {
   const petzval::Lens whole = petzval::compile(petzval::read_prescription(lens("double_gauss_100mm_f2_28deg")));
   for (const auto criterion : {petzval::FocusCriterion::paraxial, petzval::FocusCriterion::min_rms}) {
     const petzval::Camera camera(petzval::with_focus(whole, 3000, {.criterion = criterion}), {},
@@ -100,7 +100,7 @@ TEST_F(CameraRays, TiltsItsFilm) {
   }
 }
 
-TEST_F(CameraRays, TakesIrisAndWeights) {
+TEST_F(CameraRays, AcceptsIrisAndWeights) {
   std::string csv = header;
   for (int i = 0; i < 64; ++i) csv += "5,-3," + std::to_string(i / 64.) + ",0.9,587.5618\n";
   const petzval::Lens hexagon = petzval::with_focus(
@@ -119,7 +119,7 @@ TEST_F(CameraRays, TakesIrisAndWeights) {
   }
 }
 
-TEST_F(CameraRays, GivesAFateToWhatTheFilmDoesNotHave) {
+TEST_F(CameraRays, PointsOutsideTheFilmHaveAFate) {
   const std::string csv = std::string(header) + "0,0,0.5,0.5,587.5618\n0,12.5,0.5,0.5,587.5618\n";
   auto rows = rays("double_gauss_100mm_f2.0", csv);
   EXPECT_EQ(rows[0][9], "transmitted");
@@ -129,7 +129,7 @@ TEST_F(CameraRays, GivesAFateToWhatTheFilmDoesNotHave) {
   EXPECT_EQ(rows[1][9], "transmitted");
 }
 
-TEST_F(CameraRays, NamesLineAndColumnOfWhatItCannotTake) {
+TEST_F(CameraRays, InvalidValuesAreNamedWithLineAndColumn) {
   const std::string good = std::string(header) + "0,0,0.5,0.5,587.5618\n";
   expect_refusal("x,y\n", {"samples.csv", "line 1", "\"x,y\""});
   expect_refusal(good + "0,0,0.5,0.5\n", {"samples.csv", "line 3", 4, 5});

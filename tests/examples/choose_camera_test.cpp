@@ -23,7 +23,7 @@ nlohmann::json row_of(const nlohmann::json& choice, const std::string& model) {
   return *std::ranges::find_if(choice["table"], [&](const auto& row) { return row["model"] == model; });
 }
 
-TEST_F(ChooseCamera, KeepsTheBudgetAndProvesIt) {
+TEST_F(ChooseCamera, ChosenModelKeepsTheBudgetForFreshSamples) {
   for (const char* budget : {"2", "0.2", "0.01"}) {
     const auto json = choice({"--near-mm", "1000", "--far-mm", "inf", "--budget-px", budget});
     SCOPED_TRACE(json.dump());
@@ -45,7 +45,7 @@ TEST_F(ChooseCamera, KeepsTheBudgetAndProvesIt) {
   }
 }
 
-TEST_F(ChooseCamera, LooksAtTheSceneOnly) {
+TEST_F(ChooseCamera, ErrorsDependOnDepthsAndStop) {
   // The error of a pinhole grows far behind the plane of focus.
   const auto all = choice({"--near-mm", "1000", "--far-mm", "inf", "--budget-px", "1"});
   const auto focus = choice({"--near-mm", "2900", "--far-mm", "3100", "--budget-px", "1"});

@@ -69,7 +69,7 @@ TEST_F(ChromaticBokeh, WritesAChannelForEachWavelength) {
 
 // Blue light focuses nearer to this lens: the blue image is larger if the film is too far from the lens, and smaller if
 // the film is too near.
-TEST_F(ChromaticBokeh, TheOutlineIsBlueNearerThanTheLightAndRedBeyond) {
+TEST_F(ChromaticBokeh, OutlineIsBlueIfFocusedNearerAndRedIfFarther) {
   const auto json = colours({"--focus-mm", "1600,2400", "--field-deg", "0"});
   EXPECT_LT(json["longitudinal"][0]["paraxial_focus_shift_mm"], -0.2);
   EXPECT_GT(json["longitudinal"][25]["paraxial_focus_shift_mm"], 0.1);
@@ -87,7 +87,7 @@ TEST_F(ChromaticBokeh, TheOutlineIsBlueNearerThanTheLightAndRedBeyond) {
   EXPECT_LT(1.3 * rms_radius(farther, "S0.450nm"), rms_radius(farther, "S0.650nm"));
 }
 
-TEST_F(ChromaticBokeh, LateralColourIsNoneOnTheAxis) {
+TEST_F(ChromaticBokeh, LateralColourIsZeroOnTheAxis) {
   const auto json = colours({"--focus-mm", "2000", "--field-deg", "0,9", "--f-number", "4"});
   EXPECT_EQ(json["primary_nm"], 590);
   EXPECT_NEAR(json["f_number_real"].get<double>(), 4, 1e-10);
@@ -97,7 +97,7 @@ TEST_F(ChromaticBokeh, LateralColourIsNoneOnTheAxis) {
   EXPECT_GT(json["lateral"][1]["wavelengths"][0]["chief_ray_shift_mm"], 0.01);
 }
 
-TEST_F(ChromaticBokeh, FocusesAsItIsTold) {
+TEST_F(ChromaticBokeh, OriginAndCriterionMoveTheFilm) {
   const auto film = [&](const std::vector<std::string>& more) {
     std::vector<std::string> all{"--focus-mm", "2000", "--field-deg", "0"};
     all.insert(all.end(), more.begin(), more.end());

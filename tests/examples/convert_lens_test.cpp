@@ -43,7 +43,7 @@ CD 1.03961212 0.00600069867 0.231792344 0.0200179144 1.01046945 103.560653 0 0 0
 LD 0.3 2.5
 )";
 
-TEST_F(ConvertLens, WritesEveryFormatByItsEnding) {
+TEST_F(ConvertLens, ExtensionChoosesTheFormat) {
   for (const char* ending : {".json", ".dat", ".zmx", ".seq"}) {
     const auto outcome = run("convert_lens", {lens("double_gauss_100mm_f2.0"), path(std::string("lens") + ending)});
     EXPECT_EQ(outcome.status, 0) << outcome.err;
@@ -64,7 +64,7 @@ TEST_F(ConvertLens, WritesEveryFormatByItsEnding) {
   expect_failure("convert_lens", {lens("double_gauss_100mm_f2.0"), path("lens.doc")}, {"lens.doc"});
 }
 
-TEST_F(ConvertLens, ReportsWhatItRead) {
+TEST_F(ConvertLens, JsonReportDescribesTheInput) {
   write("lens.dat", table);
   const auto outcome = run("convert_lens", {path("lens.dat"), path("lens.json"), "--json"});
   ASSERT_EQ(outcome.status, 0) << outcome.err;
@@ -81,7 +81,7 @@ TEST_F(ConvertLens, ReportsWhatItRead) {
   EXPECT_EQ(json["configurations"].size(), 0u);
 }
 
-TEST_F(ConvertLens, SaysThatPositionsAreLost) {
+TEST_F(ConvertLens, ReportsLostZoomPositions) {
   for (const char* name : {"zoom.dat", "zoom.osl", "zoom.opentrackio.json", "zoom.stmap.exr"}) {
     const std::string lost = path(name) + ": configurations";
     const auto whole = run("convert_lens", {lens("zoom_70-210mm_f4"), path(name)});
@@ -103,7 +103,7 @@ TEST_F(ConvertLens, StrictRefusesWithStatus3AndWritesNothing) {
   EXPECT_EQ(run("convert_lens", {path("lens.dat"), path("lens.json"), "--strict"}).status, 0);
 }
 
-TEST_F(ConvertLens, MissingGlassesComeFromFilesOfTheUser) {
+TEST_F(ConvertLens, MissingGlassesAreReadFromFilesOfTheUser) {
   write("lens.zmx", zemax);
   write("my.agf", glasses);
   expect_failure("convert_lens", {path("lens.zmx"), path("lens.json")}, {"MYGLASS"});
@@ -170,7 +170,7 @@ SURF 3
   }
 }
 
-TEST_F(ConvertLens, RepairsWhatIsCertain) {
+TEST_F(ConvertLens, RepairsUnambiguousFaults) {
   // A lens of 50 mm that declares 50 mm and f/5, with diameters in the place of semi-diameters, ten times too large.
   write("lens.json", R"({"format": "petzval-lens 1", "name": "bad", "focal_length_mm": 50, "f_number": 5, "surfaces": [
     {"radius": 506, "thickness": 52, "nd": 1.5168, "semi_diameter": 100, "stop": true},
@@ -184,7 +184,7 @@ TEST_F(ConvertLens, RepairsWhatIsCertain) {
   EXPECT_EQ(json["lint"].size(), 0u);
 }
 
-TEST_F(ConvertLens, EveryProgramTakesEveryFormat) {
+TEST_F(ConvertLens, EveryProgramReadsEveryFormat) {
   write("lens.dat", table);
   const auto outcome = run("lens_report", {path("lens.dat"), "--json"});
   ASSERT_EQ(outcome.status, 0) << outcome.err;
@@ -194,7 +194,7 @@ TEST_F(ConvertLens, EveryProgramTakesEveryFormat) {
 }
 
 // The example lens of data/README.md, with the glasses of its index numbers.
-TEST_F(ConvertLens, TablesAsPeopleTypeThemGetTheirGlasses) {
+TEST_F(ConvertLens, TypedTablesGetTheirGlasses) {
   write("cooke.txt",
         "# Cooke triplet 50 mm f/5\nR d nd vd semi\n22.01359 3.25896 1.62041 60.3 9.5\n-435.76044 6.00755\n"
         "-22.21328 0.99997 1.62004 36.4 5\n20.29192 4.75041 1 - 4.8 stop\n79.6836 2.95208 1.62041 60.3 8\n"

@@ -51,7 +51,7 @@ class Distances : public Programs {
   }
 };
 
-TEST_F(Distances, OneDistanceIsOneFilmInEveryProgram) {
+TEST_F(Distances, EveryProgramHasTheSameFilmForADistance) {
   const std::string id = "double_gauss_100mm_f2.0";
   const petzval::Lens whole = petzval::compile(petzval::read_prescription(lens(id)));
   using enum petzval::DistanceOrigin;
@@ -78,7 +78,7 @@ TEST_F(Distances, OneDistanceIsOneFilmInEveryProgram) {
   }
 }
 
-TEST_F(Distances, EveryProgramWithADistanceSaysWhereItCountsFrom) {
+TEST_F(Distances, EveryProgramNamesTheOriginOfDistances) {
   const std::vector<Arguments> programs{
       {"lens_report"},      {"spot_diagram"},    {"focus_report"},  {"bokeh_psf"},       {"psf_set"},
       {"psf_set", "query"}, {"chromatic_bokeh"}, {"focal_surface"}, {"expressive_lens"}, {"lens_metadata"},
@@ -108,7 +108,7 @@ TEST_F(Distances, EveryProgramWithADistanceSaysWhereItCountsFrom) {
 }
 
 // A lens opens to the f-number of its own name, which is rounded.
-TEST_F(Distances, ALensTakesTheFNumberOfItsName) {
+TEST_F(Distances, LensOpensToTheFNumberOfItsName) {
   const std::vector<std::pair<std::string, std::string>> lenses{{"double_gauss_52mm_f1.8", "1.8"},
                                                                 {"modern_58mm_f0.95", "0.95"},
                                                                 {"telephoto_200mm_f1.8", "1.8"},
@@ -135,7 +135,7 @@ TEST_F(Distances, ALensTakesTheFNumberOfItsName) {
   }
 }
 
-TEST_F(Distances, ListsTakeBlanksAndSpectralLines) {
+TEST_F(Distances, ListsAcceptBlanksAndSpectralLines) {
   const auto of = [&](const std::string& distances, const std::string& wavelengths) {
     return printed("focus_report", {lens("cooke_triplet_50mm_f5"), "--json", "--criterion", "min_rms", "--distance-mm",
                                     distances, "--wavelengths-nm", wavelengths});
@@ -147,7 +147,7 @@ TEST_F(Distances, ListsTakeBlanksAndSpectralLines) {
 }
 
 // Programs refuse an output that cannot be written before they compute anything.
-TEST_F(Distances, EveryProgramChecksWhereItWrites) {
+TEST_F(Distances, EveryProgramRefusesUnwritableOutputs) {
   write("taken", "");
   const std::string file = lens("double_gauss_100mm_f2.0"), taken = path("taken");
   write("points.json", R"({"points": [{"pixel": [10, 10], "distance_mm": 2000}]})");

@@ -22,7 +22,7 @@ class ExpressiveLensProgram : public Programs {
 };
 
 // Without options, the aberrations and the sizes of highlights equal the real lens.
-TEST_F(ExpressiveLensProgram, BeginsWithTheRealLens) {
+TEST_F(ExpressiveLensProgram, DefaultsEqualTheRealLens) {
   const auto json = draw("double_gauss_100mm_f1.35", {"--light-mm", "850,1300"});
   EXPECT_EQ(json["power"].size(), 13u);
   EXPECT_GT(json["film_offsets_mm"].size(), 30u);
@@ -41,7 +41,7 @@ TEST_F(ExpressiveLensProgram, BeginsWithTheRealLens) {
   EXPECT_TRUE(none["film_offsets_mm"].empty());
 }
 
-TEST_F(ExpressiveLensProgram, TakesASplinePointsAndADispersion) {
+TEST_F(ExpressiveLensProgram, AcceptsSplinePointsAndDispersion) {
   const auto json = draw("double_gauss_100mm_f2_28deg",
                          {"--power-spline", "0:1", "0.7:1.02", "1:0.97", "--curvature-points", "0,0:0", "-18,12:1.5",
                           "--dispersion", "3", "--light-mm", "1200", "--model", "thick"});

@@ -64,7 +64,7 @@ class FocalSurfaceProgram : public Programs {
   }
 };
 
-TEST_F(FocalSurfaceProgram, AnswersWhatThePointsAskFor) {
+TEST_F(FocalSurfaceProgram, QueriesEqualTheValuesOfThePoints) {
   write("points.json", points);
   write("q.csv", "x_px,y_px\n60.5,100.5\n220.5,75.5\n150.5,50.5\n150.5,175.5\n10,190\n");
   const auto outcome = run("focal_surface", arguments({"--queries", path("q.csv")}));
@@ -95,7 +95,7 @@ TEST_F(FocalSurfaceProgram, AnswersWhatThePointsAskFor) {
 }
 
 // World points lie where the camera sees them; other flags change the answers.
-TEST_F(FocalSurfaceProgram, TakesPointsOfTheWorldAndKinds) {
+TEST_F(FocalSurfaceProgram, AcceptsWorldPointsAndKinds) {
   write("points.json", R"({"points": [{"world_mm": [0, 0, -2000]}, {"world_mm": [200, 100, -3000]}]})");
   write("q.csv", "x_px,y_px\n150,100\n");
   for (const char* kind : {"affine", "shepard"}) {

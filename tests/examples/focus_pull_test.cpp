@@ -65,7 +65,7 @@ TEST_F(FocusPull, CountsDistancesFromTheirOrigin) {
   }
 }
 
-TEST_F(FocusPull, SaysWhatTheLibraryFinds) {
+TEST_F(FocusPull, NumbersEqualTheLibrary) {
   const std::string id = "double_gauss_100mm_f2.0";
   const petzval::Lens lens =
       petzval::with_f_number(petzval::compile(petzval::read_prescription(Programs::lens(id))), 4);
@@ -92,7 +92,7 @@ TEST_F(FocusPull, SaysWhatTheLibraryFinds) {
   }
 }
 
-TEST_F(FocusPull, KeepsTheFilmWhereNothingIsToBeServed) {
+TEST_F(FocusPull, FilmStaysBetweenThePointsInTime) {
   const json all =
       frames(thin_50, R"([{"from_s": 1, "until_s": 2, "keys": [{"time_s": 1, "position_mm": [0, 0, -800]}]},
     {"from_s": 3, "until_s": 4, "keys": [{"time_s": 0, "position_mm": [0, 0, -1600]}]}])",
@@ -107,7 +107,7 @@ TEST_F(FocusPull, KeepsTheFilmWhereNothingIsToBeServed) {
   }
 }
 
-TEST_F(FocusPull, TiltsWhereAskedTo) {
+TEST_F(FocusPull, TiltOptionTiltsTheFilm) {
   const std::string moving =
       R"([{"keys": [{"time_s": 0, "position_mm": [0, -100, -800]}, {"time_s": 1, "position_mm": [0, -50, -800]}]},
     {"keys": [{"time_s": 0, "position_mm": [0, 100, -1500]}]}, {"keys": [{"time_s": 0, "position_mm": [200, 100, -1500]}]}])";

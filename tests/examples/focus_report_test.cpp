@@ -25,7 +25,7 @@ class FocusReport : public Programs {
 
 double or_infinity(const nlohmann::json& value) { return value.is_null() ? infinity : value.get<double>(); }
 
-TEST_F(FocusReport, SaysWhatTheLibraryFinds) {
+TEST_F(FocusReport, NumbersEqualTheLibrary) {
   const std::string id = "double_gauss_100mm_f2.0";
   const petzval::Lens lens = petzval::compile(petzval::read_prescription(Programs::lens(id)));
   const auto json = rows(id, {"--distance-mm", "700,3000,inf", "--criterion", "thin,paraxial,min_rms,min_max",
@@ -58,7 +58,7 @@ TEST_F(FocusReport, SaysWhatTheLibraryFinds) {
   }
 }
 
-TEST_F(FocusReport, HasRowsForUsualDistancesUnasked) {
+TEST_F(FocusReport, HasRowsForUsualDistancesByDefault) {
   const auto json = rows("double_gauss_100mm_f2.0");
   ASSERT_EQ(json.size(), 15u);
   std::set<std::string> criteria;
@@ -77,7 +77,7 @@ TEST_F(FocusReport, HasRowsForUsualDistancesUnasked) {
   EXPECT_TRUE(json[9]["far_limit_mm"].is_null());
 }
 
-TEST_F(FocusReport, CountsFieldsAndWavelengths) {
+TEST_F(FocusReport, FieldsAndWavelengthsChangeTheFocus) {
   const auto film = [&](const Arguments& more) {
     Arguments arguments{"--distance-mm", "2000", "--criterion", "min_rms"};
     arguments.insert(arguments.end(), more.begin(), more.end());
@@ -87,7 +87,7 @@ TEST_F(FocusReport, CountsFieldsAndWavelengths) {
   EXPECT_NE(film({}), film({"--wavelengths-nm", "486.1327,587.5618,656.2725"}));
 }
 
-TEST_F(FocusReport, SaysWhatIsOutOfReach) {
+TEST_F(FocusReport, ReportsSubjectsOutOfReach) {
   const auto json = rows("double_gauss_100mm_f2.0", {"--distance-mm", "40,1000", "--criterion", "paraxial"});
   EXPECT_EQ(json[0]["status"], "unreachable");
   for (const char* key : {"film_z_mm", "focus_blur_mm", "near_limit_mm", "far_limit_mm", "breathing"}) {
@@ -97,7 +97,7 @@ TEST_F(FocusReport, SaysWhatIsOutOfReach) {
   EXPECT_EQ(json[1]["status"], "solved");
 }
 
-TEST_F(FocusReport, LosesOneRowWhereTheLensRefusesASubject) {
+TEST_F(FocusReport, RefusedSubjectCostsOneRow) {
   const auto json = rows("zoom_14-30mm_f4", {"--criterion", "paraxial,min_rms", "--distance-mm", "0.001,1000"});
   ASSERT_EQ(json.size(), 4u);
   EXPECT_EQ(json[0]["status"], "solved");

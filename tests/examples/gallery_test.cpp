@@ -27,7 +27,7 @@ TEST_F(Gallery, DrawsTheShapesOfBokeh) {
 
 /// Wu et al. 2010 describe their figure 7 in words, tested here for four readings of "in focus" and "distance from the
 /// lens".
-TEST_F(Gallery, TheProfilesAgreeWithThePapersWordsExceptWhereKnown) {
+TEST_F(Gallery, ProfilesAgreeWithThePaperExceptKnownCases) {
   const auto outcome = run("wu_statements", {"--samples", "16384", "--html", path("table.html")});
   ASSERT_EQ(outcome.status, 0) << outcome.err;
   const auto rows = lines(outcome.out);

@@ -73,7 +73,7 @@ TEST_F(LensBlurProgram, WritesPicturesAndTheirMeasures) {
   EXPECT_NE(picture("out/sharp.pfm").pixels, picture("out/blur.pfm").pixels);
 }
 
-TEST_F(LensBlurProgram, LeavesAPlaneInFocusAsItIs) {
+TEST_F(LensBlurProgram, PlaneInFocusIsUnchanged) {
   write_files(2000, 2000);
   const json result = blur(joined({files(), thin, {"--focus-mm", "2000", "--highlights-above", "0"}}));
   const RgbImage given = picture("rgb.pfm"), blurred = picture("out/blur.pfm");
@@ -84,7 +84,7 @@ TEST_F(LensBlurProgram, LeavesAPlaneInFocusAsItIs) {
   EXPECT_EQ(result["layers"], 1);
 }
 
-TEST_F(LensBlurProgram, ReadsLayersAndDeepPicturesAlike) {
+TEST_F(LensBlurProgram, LayersAndDeepImagesGiveEqualPictures) {
   // A near half over a plane of another colour, as parts of an EXR and as lists; the hidden part is known.
   petzval::FragmentLists lists{.columns = 24, .rows = 16, .offsets = {0}, .fragments = {}};
   std::vector<petzval::ExrPart> parts;
@@ -137,7 +137,7 @@ TEST_F(LensBlurProgram, FollowsKeysOverFrames) {
   EXPECT_GT(difference(first, last), 1e-2);
 }
 
-TEST_F(LensBlurProgram, RefusesWhatItCannotBlur) {
+TEST_F(LensBlurProgram, RefusesInvalidInput) {
   write_files(1000, 2000);
   const auto refused = [&](const Arguments& arguments, const std::vector<petzval::testing::Token>& tokens) {
     expect_failure("lens_blur", joined({thin, arguments, {"--out", path("out")}}), tokens);
@@ -155,7 +155,7 @@ TEST_F(LensBlurProgram, RefusesWhatItCannotBlur) {
 }
 
 // The default film of 24 mm height suits lenses with this image size; --fov-deg makes it smaller.
-TEST_F(LensBlurProgram, SaysThatTheLensDoesNotLightTheFilm) {
+TEST_F(LensBlurProgram, ReportsFilmsLargerThanTheImageCircle) {
   const Arguments phone =
       joined({small, {"--scene", "town", "--focus-mm", "1000", "--lens", lens("phone_5.6mm_f3.5")}});
   const auto notes = [&](const Arguments& more) {
@@ -172,7 +172,7 @@ TEST_F(LensBlurProgram, SaysThatTheLensDoesNotLightTheFilm) {
 }
 
 // The pupil of a fisheye moves with the field: rays between the nodes of a table have errors.
-TEST_F(LensBlurProgram, SaysHowFarInterpolatedRaysAreOff) {
+TEST_F(LensBlurProgram, ReportsTheErrorOfInterpolatedRays) {
   const auto outcome = run("lens_blur", {"--scene",       "town", "--lens",     lens("fisheye_10mm_f4"),
                                          "--fov-deg",     "60",   "--focus-mm", "3000",
                                          "--width",       "320",  "--height",   "240",

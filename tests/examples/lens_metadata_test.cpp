@@ -25,7 +25,7 @@ TEST_F(LensMetadata, WritesBothFilesOfTheFocusedLens) {
 
 // The files contain the distance from the film, as the formats require, for any origin of distances on the command
 // line.
-TEST_F(LensMetadata, TurnsDistancesIntoThoseOfTheFormat) {
+TEST_F(LensMetadata, ConvertsDistancesToTheFormat) {
   const petzval::Lens whole = petzval::compile(petzval::read_prescription(lens("biogon_35mm_f2.8")));
   const double film_z = petzval::with_focus(whole, 2000).film_z();
   ASSERT_EQ(run("lens_metadata", {lens("biogon_35mm_f2.8"), "--focus-mm", "2000", "--out", path("out")}).status, 0);

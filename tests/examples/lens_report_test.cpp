@@ -12,7 +12,7 @@ namespace {
 
 class LensReport : public Programs {};
 
-TEST_F(LensReport, SaysWhatTheLibraryFinds) {
+TEST_F(LensReport, NumbersEqualTheLibrary) {
   const std::string file = lens("double_gauss_100mm_f1.35");
   const auto outcome = run("lens_report", {file, "--json"});
   ASSERT_EQ(outcome.status, 0) << outcome.err;
@@ -52,7 +52,7 @@ constexpr const char* two_planes = R"({"format": "petzval-lens 1", "id": "window
   ]
 })";
 
-TEST_F(LensReport, HasNoFocalLengthForAWindowAndFindingsAreNoFailure) {
+TEST_F(LensReport, WindowHasNoFocalLengthAndFindingsAreNoFailure) {
   write("window.json", two_planes);
   const auto outcome = run("lens_report", {path("window.json"), "--json"});
   ASSERT_EQ(outcome.status, 0) << outcome.err;
@@ -66,7 +66,7 @@ TEST_F(LensReport, HasNoFocalLengthForAWindowAndFindingsAreNoFailure) {
   EXPECT_FALSE(json["lint"][0]["message"].get<std::string>().empty());
 }
 
-TEST_F(LensReport, SaysOnceThatTheAbbeModelStandsIn) {
+TEST_F(LensReport, ReportsTheAbbeModelOnce) {
   const auto outcome = run("lens_report", {lens("petzval_portrait_100mm_f3.4"), "--json", "--wavelength-nm", "500"});
   EXPECT_EQ(outcome.status, 0);
   EXPECT_EQ(nlohmann::json::parse(outcome.out)["dispersion"], "abbe");
@@ -75,7 +75,7 @@ TEST_F(LensReport, SaysOnceThatTheAbbeModelStandsIn) {
 }
 
 // Indices at the reference wavelength equal the printed indices of the file, not the glass tables.
-TEST_F(LensReport, SaysNothingAboutGlassesAtTheReferenceWavelength) {
+TEST_F(LensReport, HasNoNoteAboutGlassesAtTheReferenceWavelength) {
   for (const char* program : {"lens_report", "focus_report"}) {
     const auto outcome = run(program, {lens("petzval_portrait_100mm_f3.4"), "--json"});
     EXPECT_EQ(outcome.status, 0);
@@ -96,7 +96,7 @@ YFLN 0.0 6.0
 )");
 
 // The file gives the object distance, the wavelengths with weights, the primary wavelength and the fields.
-TEST_F(LensReport, TakesTheConditionsOfTheFile) {
+TEST_F(LensReport, UsesTheConditionsOfTheFile) {
   write("relay.zmx", litho);
   const auto outcome = run("lens_report", {path("relay.zmx"), "--json"});
   ASSERT_EQ(outcome.status, 0) << outcome.err;
@@ -189,7 +189,7 @@ TEST_F(LensReport, DrawsFiguresAndAPage) {
   EXPECT_EQ(read(path("again/cooke_triplet_50mm_f5.html")), page);
 }
 
-TEST_F(LensReport, DrawsTheFieldsAskedForAndBothSections) {
+TEST_F(LensReport, DrawsRequestedFieldsAndBothSections) {
   const auto outcome = run("lens_report", {lens("anamorphic_60mm_2x"), "--out", path("out"), "--field-deg", "3,6",
                                            "--wavelength-nm", "550", "--f-number", "8"});
   ASSERT_EQ(outcome.status, 0) << outcome.err;
@@ -214,7 +214,7 @@ TEST_F(LensReport, DrawsTheFieldsAskedForAndBothSections) {
   EXPECT_EQ(of_triplet({"--wavelength-nm", "587.5618"}).find("656.273 nm"), std::string::npos);
 }
 
-TEST_F(LensReport, PrintsTheApertureOfTheFileBesideTheComputedOne) {
+TEST_F(LensReport, PrintsDeclaredAndComputedApertures) {
   const auto zmx = [](const std::string& aperture, const std::string& object) {
     return "MODE SEQ\nUNIT MM\n" + aperture + "\nSURF 0\n  CURV 0\n  DISZ " + object +
            "\nSURF 1\n  STOP\n  CURV 0\n  DISZ 2\n  DIAM 6 1\nSURF 2\n  CURV 0.02\n  DISZ 4\n"

@@ -46,7 +46,7 @@ class PsfFarm : public Programs {
   }
 };
 
-TEST_F(PsfFarm, GnuParallelMakesTheSetOfOneRun) {
+TEST_F(PsfFarm, GnuParallelGivesTheSetOfOneRun) {
   if (std::system("parallel --version 2> /dev/null | grep -q 'GNU parallel'") != 0) GTEST_SKIP() << "no GNU parallel";
   ASSERT_EQ(shell("sh '" + farm("psf_set.parallel.sh") + "' 3 '" + path("out") + "'" + quoted(grid())), 0)
       << read(path("stderr"));
@@ -56,7 +56,7 @@ TEST_F(PsfFarm, GnuParallelMakesTheSetOfOneRun) {
 }
 
 /// The script as Slurm runs it: with these variables, once for each task of the array.
-TEST_F(PsfFarm, ASlurmArrayMakesTheSetOfOneRun) {
+TEST_F(PsfFarm, SlurmArrayGivesTheSetOfOneRun) {
   const auto task = [&](int first, int last, int count, int id) {
     return shell("SLURM_ARRAY_TASK_MIN=" + std::to_string(first) + " SLURM_ARRAY_TASK_MAX=" + std::to_string(last) +
                  " SLURM_ARRAY_TASK_COUNT=" + std::to_string(count) + " SLURM_ARRAY_TASK_ID=" + std::to_string(id) +
@@ -89,7 +89,7 @@ TEST_F(PsfFarm, SlurmRunsTheArray) {
 }
 
 /// Replaces the renderer, which is not built everywhere, by a program that records its arguments.
-TEST_F(PsfFarm, TheScriptsCallBokehSceneByItsOwnFlags) {
+TEST_F(PsfFarm, ScriptsRunBokehSceneWithItsFlags) {
   write("bokeh_scene", "#!/bin/sh\necho \"$@\" >> '" + path("calls") + "'\n");
   std::filesystem::permissions(path("bokeh_scene"), std::filesystem::perms::owner_all);
   const std::string renderer = "PROGRAM=bokeh_scene PATH='" + folder.string() + "':\"$PATH\" ", out = path("an out"),
@@ -241,7 +241,7 @@ TEST_P(OpenJobTemplate, FollowsTheSchema) {
   }
 }
 
-TEST_F(OpenJobDescription, TheTasksOfTheTemplateMakeTheSetOfOneRun) {
+TEST_F(OpenJobDescription, TasksOfTheTemplateGiveTheSetOfOneRun) {
   run_tasks(read_json(farm("psf_set.openjd.json")), {{"Param.Lens", lens("double_gauss_100mm_f2_28deg")},
                                                      {"Param.Out", path("out")},
                                                      {"Param.Fields", "0,7"},
@@ -258,7 +258,7 @@ TEST_F(OpenJobDescription, TheTasksOfTheTemplateMakeTheSetOfOneRun) {
 }
 
 /// The reference implementation's own check.
-TEST_P(OpenJobTemplate, IsWhatOpenjdAccepts) {
+TEST_P(OpenJobTemplate, IsAcceptedByOpenjd) {
   if (std::system("openjd --version > /dev/null 2>&1") != 0) GTEST_SKIP() << "no openjd";
   EXPECT_EQ(shell("openjd check '" + farm(GetParam() + std::string(".openjd.json")) + "'"), 0)
       << read(path("stdout")) << read(path("stderr"));

@@ -42,7 +42,7 @@ class PsfSets : public Programs {
   static std::string psf(const std::string& name) { return "psfs/" + name + "_587.5618nm_f2.8.exr"; }
 };
 
-TEST_F(PsfSets, IndexTellsWhatTheSetHolds) {
+TEST_F(PsfSets, IndexDescribesTheSet) {
   const auto outcome = run("psf_set", set("whole", {"--check"}));
   ASSERT_EQ(outcome.status, 0) << outcome.err;
   EXPECT_EQ(lines(outcome.out),
@@ -73,7 +73,7 @@ TEST_F(PsfSets, IndexTellsWhatTheSetHolds) {
   EXPECT_LT(error["noise_of_two_traced_percent"]["median"], error["light_moved_percent"]["worst"]);
 }
 
-TEST_F(PsfSets, ShardsHaveTheBitsOfOneRun) {
+TEST_F(PsfSets, ShardsEqualOneRunToTheBit) {
   const std::string exr = whole();
   for (const char* shard : {"1/3", "3/3"}) succeed(set("a", {"--shard", shard}));
   succeed(set("b", {"--shard", "2/3"}));
@@ -92,7 +92,7 @@ TEST_F(PsfSets, ShardsHaveTheBitsOfOneRun) {
   EXPECT_EQ(read(path("many.exr")), exr);
 }
 
-TEST_F(PsfSets, AFaultyShardIsNamedAndRepaired) {
+TEST_F(PsfSets, FaultyShardIsNamedAndRepaired) {
   const std::string exr = whole();
   for (const char* shard : {"1/4", "2/4", "4/4"}) succeed(set("s", {"--shard", shard}));
   expect_failure("psf_set", {"merge", path("s"), "--out", path("s.exr")},
@@ -125,7 +125,7 @@ TEST_F(PsfSets, AFaultyShardIsNamedAndRepaired) {
   EXPECT_EQ(read(path("s.exr")), exr);
 }
 
-TEST_F(PsfSets, AKilledRunGoesOnAtItsLastWholePsf) {
+TEST_F(PsfSets, KilledRunContinuesAfterItsLastCompletePsf) {
   const std::string exr = whole();
   std::string command = "'" + std::string(PETZVAL_TEST_PROGRAMS) + "/psf_set'";
   for (const std::string& argument : set("killed")) command += " '" + argument + "'";
@@ -175,7 +175,7 @@ TEST_F(PsfSets, QueriesGiveNodesBitForBitAndPointsBetween) {
                  {path("text.exr")});
 }
 
-TEST_F(PsfSets, QueriesCountDistancesAsTheSetDoes) {
+TEST_F(PsfSets, QueriesUseTheOriginOfTheSet) {
   succeed(set("film", {"--distance-from", "film"}));
   const std::vector<std::string> query{"query", path("film/psf_set.exr"), "--field-deg", "7", "--distance-mm", "1000",
                                        "--out", path("psf.exr")};

@@ -24,7 +24,7 @@ class Readme : public Programs {
   }
 };
 
-TEST_F(Readme, ShowsWhatTheProgramsPrint) {
+TEST_F(Readme, ShowsTheOutputOfThePrograms) {
   const std::string page = read(root() / "README.md");
   const auto outcome = run("hello_lens", {});
   EXPECT_EQ(outcome.status, 0) << outcome.err;

@@ -28,7 +28,7 @@ class SpotDiagram : public Programs {
   }
 };
 
-TEST_F(SpotDiagram, ItsNumbersAreThoseOfItsHits) {
+TEST_F(SpotDiagram, NumbersEqualTheHits) {
   const auto json = rows("cooke_triplet_50mm_f5", {"--field-deg", "0,14", "--wavelengths-nm", "486.1,587.6,656.3"});
   ASSERT_EQ(json.size(), 6u);
   std::map<std::string, std::vector<std::array<double, 2>>> spots;
@@ -62,7 +62,7 @@ TEST_F(SpotDiagram, ItsNumbersAreThoseOfItsHits) {
   EXPECT_TRUE(read(path("spots/cooke_triplet_50mm_f5_spots.svg")).starts_with("<"));
 }
 
-TEST_F(SpotDiagram, PutsTheFilmInFocusAtTheDLine) {
+TEST_F(SpotDiagram, FocusesTheFilmAtTheDLine) {
   const petzval::Lens triplet = petzval::compile(petzval::read_prescription(lens("cooke_triplet_50mm_f5")));
   const auto film_z = [&](std::vector<std::string> more) {
     more.insert(more.end(), {"--field-deg", "0", "--wavelengths-nm", "500, d", "--samples", "64"});
@@ -84,7 +84,7 @@ TEST_F(SpotDiagram, PutsTheFilmInFocusAtTheDLine) {
 }
 
 // Without flags, a lens of another program uses the wavelengths, fields and object distance of its file.
-TEST_F(SpotDiagram, TakesTheConditionsOfTheFile) {
+TEST_F(SpotDiagram, UsesTheConditionsOfTheFile) {
   write("relay.zmx", examples_testing::relay_zmx(R"(VERS 140124 258 36214 0 0
 MODE SEQ
 NAME Relay

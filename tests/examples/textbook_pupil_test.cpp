@@ -66,7 +66,7 @@ Ray<double> outwards(const Ray<double>& ray, double object_z, double by) {
 }
 
 // The corrected method: the returned ray passes, and the next ray outwards is clipped.
-TEST(TextbookPupil, ReturnsARayThatPassesAndIsTheLast) {
+TEST(TextbookPupil, ReturnsTheLastRayThatPasses) {
   for (const Prescription& p : data_prescriptions()) {
     const Lens lens = compile(p);
     if (!trace(lens, Ray<double>{}).transmitted() || main_meridian(lens) != Meridian::y)
@@ -93,7 +93,7 @@ TEST(TextbookPupil, ReturnsARayThatPassesAndIsTheLast) {
 }
 
 // The method is correct for thin beams: the disc tends to the paraxial pupil.
-TEST(TextbookPupil, TendsToTheParaxialOneAsTheStopCloses) {
+TEST(TextbookPupil, TendsToTheParaxialPupilAsTheStopCloses) {
   for (const Prescription& p : data_prescriptions()) {
     SCOPED_TRACE(p.id);
     const Lens whole = compile(p);
@@ -114,7 +114,7 @@ TEST(TextbookPupil, TendsToTheParaxialOneAsTheStopCloses) {
 }
 
 // Error one: the ray depends on the first rim that clips.
-TEST(TextbookPupil, IsThatOfTheFirstRimNotOfTheStop) {
+TEST(TextbookPupil, BelongsToTheFirstRimNotToTheStop) {
   const Lens lens = double_gauss();
   const double focal_length = first_order(lens).effective_focal_length;
   const TextbookPupil far = textbook_entrance_pupil(lens, -infinity);

@@ -96,7 +96,7 @@ TEST_F(TiltShift, SolvesAThinLensExactly) {
   EXPECT_GT(found["before"]["rms_um"], 40);
 }
 
-TEST_F(TiltShift, HasTheKeysThatReadersRelyOn) {
+TEST_F(TiltShift, JsonHasTheDocumentedKeys) {
   const json found = gauss(table);
   for (const char* key : {"plane_offset_mm", "film_tilt_deg", "film_swing_deg", "film_z_mm", "rms_um"}) {
     EXPECT_TRUE(found[key].is_number()) << key;
@@ -113,7 +113,7 @@ TEST_F(TiltShift, HasTheKeysThatReadersRelyOn) {
   EXPECT_EQ(found["files"].size(), 3u);
 }
 
-TEST_F(TiltShift, SaysWhatTheLibraryFinds) {
+TEST_F(TiltShift, NumbersEqualTheLibrary) {
   const std::string id = "double_gauss_100mm_f2_28deg";
   const petzval::Lens lens =
       petzval::with_f_number(petzval::compile(petzval::read_prescription(Programs::lens(id))), 4);
@@ -137,7 +137,7 @@ TEST_F(TiltShift, SaysWhatTheLibraryFinds) {
   }
 }
 
-TEST_F(TiltShift, SaysWhatBecameOfEveryPoint) {
+TEST_F(TiltShift, ReportsTheUseOfEveryPoint) {
   const std::string points = R"([{"position_mm": [-200, -100, -1000]}, {"position_mm": [200, -100, -1000]},
     {"position_mm": [0, 150, -1400]}, {"position_mm": [0, 0, 500]}, {"position_mm": [0, 0, -20]},
     {"position_mm": [10, 20, -1300], "weight": 0}, {"position_mm": [0, 3000, -1000]}])";
@@ -154,7 +154,7 @@ TEST_F(TiltShift, SaysWhatBecameOfEveryPoint) {
   EXPECT_EQ(framed["rank"], "plane");
 }
 
-TEST_F(TiltShift, TakesPointsAtInfinityAndWantedBlurs) {
+TEST_F(TiltShift, AcceptsPointsAtInfinityAndBlurs) {
   const json far = result(thin_50, R"([{"position_mm": [0, -150, -1000]}, {"position_mm": [100, -150, -3000]},
     {"position_mm": [0, 0.1, -2], "at_infinity": true}])");
   EXPECT_EQ(far["status"], "solved");
@@ -168,7 +168,7 @@ TEST_F(TiltShift, TakesPointsAtInfinityAndWantedBlurs) {
   EXPECT_TRUE(infinity["plane_offset_mm"].is_null());
 }
 
-TEST_F(TiltShift, WritesThreePicturesAndNothingElse) {
+TEST_F(TiltShift, WritesOnlyThreePictures) {
   const auto outcome = run("tilt_shift", command(thin_50, table, {}));
   ASSERT_EQ(outcome.status, 0) << outcome.err;
   std::set<std::string> names;

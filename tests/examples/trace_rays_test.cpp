@@ -41,7 +41,7 @@ class TraceRays : public Programs {
   }
 };
 
-TEST_F(TraceRays, GivesTheLibrarysNumbersToTheLastBit) {
+TEST_F(TraceRays, NumbersEqualTheLibraryToTheBit) {
   const petzval::Lens lens_f135 = petzval::compile(petzval::read_prescription(lens("double_gauss_100mm_f1.35")));
   const petzval::Ray<double> ray{{1.1, 20.3, -40}, {0.03125, -0.0625, std::sqrt(1 - 0.0048828125)}};
   std::string csv = header;
@@ -84,7 +84,7 @@ TEST_F(TraceRays, IgnoresAperturesOnRequest) {
   EXPECT_NE(traced("double_gauss_100mm_f2.0", csv, {"--ignore-apertures"})[0][6], "vignetted");
 }
 
-TEST_F(TraceRays, GoesBackToWhereItCameFrom) {
+TEST_F(TraceRays, ReversedRaysReturn) {
   const auto there = traced("double_gauss_100mm_f1.35", std::string(header) + "0,10,-50,0,0.02,1\n")[0];
   std::string csv = header;
   for (std::size_t i = 0; i < 6; ++i) {
@@ -106,7 +106,7 @@ TEST_F(TraceRays, TracesInFloatToFloatAccuracy) {
   EXPECT_EQ(static_cast<double>(static_cast<float>(y)), y);
 }
 
-TEST_F(TraceRays, ReadsWhatSpreadsheetsWrite) {
+TEST_F(TraceRays, ReadsFilesOfSpreadsheets) {
   EXPECT_TRUE(traced("double_gauss_100mm_f1.35", header).empty());
   const auto rows = traced("double_gauss_100mm_f1.35", std::string(header) + "0,10,-50,0,0,1");
   EXPECT_EQ(traced("double_gauss_100mm_f1.35", "\xEF\xBB\xBFx_mm,y_mm,z_mm,dx,dy,dz\r\n0, 10.0 ,-50,0,0,1\r\n"), rows);
@@ -122,7 +122,7 @@ TEST_F(TraceRays, SkipsBlankLinesAtTheEnd) {
   }
 }
 
-TEST_F(TraceRays, NamesLineAndColumnOfWhatItCannotRead) {
+TEST_F(TraceRays, InvalidValuesAreNamedWithLineAndColumn) {
   expect_refusal("", {"rays.csv", "line 1"});
   expect_refusal("x,y,z,dx,dy,dz\n", {"line 1", "\"x,y,z,dx,dy,dz\""});
   expect_refusal(std::string(header) + "0,0,0,0,0,1\n0,0,0,0,1\n", {"line 3", 5, 6});

@@ -49,7 +49,7 @@ class TwoProcesses : public Programs {
   }
 };
 
-TEST_F(TwoProcesses, OfOneSetOfPsfsBothMakeIt) {
+TEST_F(TwoProcesses, WithOnePsfSetBothSucceed) {
   ASSERT_EQ(run("psf_set", set("whole")).status, 0);
   for (int round = 0; round < 3; ++round) {
     const std::string out = "both" + std::to_string(round);
@@ -60,7 +60,7 @@ TEST_F(TwoProcesses, OfOneSetOfPsfsBothMakeIt) {
   }
 }
 
-TEST_F(TwoProcesses, OfTwoShardsOfASetTogetherMakeIt) {
+TEST_F(TwoProcesses, WithTwoShardsCompleteTheSet) {
   ASSERT_EQ(run("psf_set", set("whole")).status, 0);
   run_both("psf_set", set("shards", {"--shard", "1/2"}), set("shards", {"--shard", "2/2"}));
   const std::vector<std::string> merge{"merge", path("shards"), "--out", path("shards/psf_set.exr")};
@@ -69,7 +69,7 @@ TEST_F(TwoProcesses, OfTwoShardsOfASetTogetherMakeIt) {
   EXPECT_EQ(read(path("shards/psf_set.png")), read(path("whole/psf_set.png")));
 }
 
-TEST_F(TwoProcesses, OfOneBokehBothMakeIt) {
+TEST_F(TwoProcesses, WithEqualPicturesBothSucceed) {
   const auto bokeh = [&](const std::string& out) {
     return std::vector<std::string>{lens("double_gauss_100mm_f1.35"),
                                     "--subject-distance-mm",

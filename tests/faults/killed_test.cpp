@@ -27,7 +27,7 @@ RgbImage picture(float value) {
   return image;
 }
 
-TEST(Killed, AWriterLeavesTheOldFileOrTheNewOne) {
+TEST(Killed, WriterLeavesTheOldOrTheNewFile) {
   const fs::path folder = fs::path(::testing::TempDir()) / ("petzval_killed_" + std::to_string(getpid()));
   fs::remove_all(folder);
   fs::create_directories(folder);

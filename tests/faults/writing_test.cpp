@@ -52,7 +52,7 @@ void write_old(const fs::path& file) {
   std::fclose(out);
 }
 
-TEST_F(Writing, WithoutMemoryLeavesTheOldFileOrTheNewOne) {
+TEST_F(Writing, WithoutMemoryKeepsTheOldFileOrWritesTheNewFile) {
   for (const Writer& writer : testing::writers()) {
     if (by_openexr(writer.name)) continue;
     SCOPED_TRACE(writer.name);
@@ -74,7 +74,7 @@ TEST_F(Writing, WithoutMemoryLeavesTheOldFileOrTheNewOne) {
   }
 }
 
-TEST_F(Writing, ReadsAllOrNothingWithoutMemory) {
+TEST_F(Writing, WithoutMemoryReadsCompletelyOrFails) {
   std::map<std::string, fs::path> files;
   for (const Writer& writer : testing::writers()) {
     files[writer.name] = folder_ / writer.name;
@@ -105,7 +105,7 @@ int status_of_process(const std::function<bool()>& work) {
   return status;
 }
 
-TEST_F(Writing, OnAFullDiskSaysSoAndLeavesTheOldFile) {
+TEST_F(Writing, FullDiskIsReportedAndKeepsTheOldFile) {
   for (const Writer& writer : testing::writers()) {
     SCOPED_TRACE(writer.name);
     const fs::path file = folder_ / writer.name;

@@ -60,7 +60,7 @@ TEST(FocalSurfaceFigure, PointsLieAtTheirDistancesToScale) {
   EXPECT_NEAR((at[2].second - at[0].second) / per_mm, across, 0.02 * across);
 }
 
-TEST(FocalSurfaceFigure, ShowsPointsWithADistanceAndOpenOnesWithABlur) {
+TEST(FocalSurfaceFigure, MarksPointsWithADistanceAndRingsPointsWithABlur) {
   std::vector<FocalPoint> points = in_section;
   points[1].blur_mm = 0.05;
   points.push_back({.place = {3, 3}, .inverse_distance = 0});

@@ -87,7 +87,7 @@ TEST(BothWays, ReturnToTheFilmForFieldsAndColours) {
   }
 }
 
-TEST(BothWays, ParaxialSubjectIsTheOneImagedThere) {
+TEST(BothWays, ParaxialSubjectIsImagedOnTheFilm) {
   for (const char* id : {"double_gauss_100mm_f2.0", "mirror_newton_200mm_f8", "eye_gullstrand_le_grand"}) {
     const Lens lens = data_lens(id);
     const FirstOrder data = first_order(lens);

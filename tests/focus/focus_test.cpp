@@ -169,7 +169,7 @@ TEST(ParaxialFocus, BehindOneMirrorReachesAnyDistanceFromTheFilm) {
   }
 }
 
-TEST(Focus, DivergingLensHasNone) {
+TEST(Focus, DivergingLensHasNoFocus) {
   const Lens lens = compile(element(1.5, -80, 80, 3));
   for (const FocusCriterion criterion : {thin, paraxial, min_rms}) {
     for (const DistanceOrigin origin : {front_vertex, film}) {
@@ -215,7 +215,7 @@ TEST(Focus, SingleSurfacesConcentricSurfacesAndBallsFocus) {
               5 + 1.5168 * 10 / (4 * 0.5168), 1e-13);
 }
 
-TEST(Focus, InsideTheLensIsNoFocus) {
+TEST(Focus, SubjectInsideTheLensHasNoFocus) {
   // A ball of index 2.5 focuses a distant subject inside itself and a near one behind itself.
   const Lens lens = compile(element(2.5, 5, -5, 10));
   for (const FocusCriterion criterion : {paraxial, min_rms}) {
@@ -272,7 +272,7 @@ TEST(Focus, OriginsShiftDistancesOnly) {
   }
 }
 
-TEST(Focus, OriginsLieWhereTheLensHasThem) {
+TEST(Focus, OriginsEqualTheLens) {
   const Lens lens = data_lens("double_gauss_100mm_f2.0");
   EXPECT_EQ(origin_z(lens, front_vertex), 0);
   EXPECT_EQ(origin_z(lens, film), lens.film_z());

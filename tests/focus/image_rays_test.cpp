@@ -195,7 +195,7 @@ TEST(BundleBlur, RequiresSlopes) {
   EXPECT_THROW(blur_on(spots, film_at(lens.film_z())), Error);
 }
 
-TEST(BundleBlur, OnATiltedFilmIsWhereRaysMeetItsPlane) {
+TEST(BundleBlur, TiltedFilmUsesTheHitsInItsPlane) {
   const Lens lens = data_lens("double_gauss_100mm_f2.0");
   const RayBundle bundle = ImageRays(lens, 22).bundle({{150, -250, -1200}, false});
   for (const auto& [tilt, swing] : {std::pair(0.0, 0.0), std::pair(0.2, 0.0), std::pair(-0.15, 0.3)}) {
@@ -219,7 +219,7 @@ TEST(BundleBlur, OnATiltedFilmIsWhereRaysMeetItsPlane) {
   }
 }
 
-TEST(BundleBlur, IsPositiveBehindWhereRaysMeet) {
+TEST(BundleBlur, IsPositiveBehindTheFocus) {
   const Lens lens = data_lens("double_gauss_100mm_f2.0");
   const RayBundle bundle = ImageRays(lens, 22).bundle({{0, 100, -1200}, false});
   const double film_z = solve_focus(lens, 1200, {.criterion = FocusCriterion::min_rms}).film_z;

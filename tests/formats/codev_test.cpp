@@ -131,7 +131,7 @@ TEST(Codev, ApertureSettingsSizeTheStop) {
   EXPECT_EQ(read(with(singlet, "EPD 10", "NAO 0.05")).design.aperture->setting, petzval::ApertureSetting::object_na);
 }
 
-TEST(Codev, GlassesAreNamesCodesAndPrivateOnes) {
+TEST(Codev, GlassesAreNamesCodesOrPrivate) {
   const auto medium = [](const std::string& glass) { return read(with(singlet, "1.5:60", glass)).surfaces[1].medium; };
   EXPECT_EQ(medium("NBK7_SCHOTT").glass, "N-BK7");
   EXPECT_EQ(medium("nbk7_schott").catalogue, "schott");
@@ -150,7 +150,7 @@ TEST(Codev, GlassesAreNamesCodesAndPrivateOnes) {
   EXPECT_TRUE(mirror.surfaces[1].mirror);
 }
 
-TEST(Codev, PickupsSolvesAndLaterWordsAreHonoured) {
+TEST(Codev, PickupsSolvesAndLaterWordsAreApplied) {
   const Prescription p =
       read(with(singlet, "GO", "THI S2 5\nRDY S2 60\nGLA S2 NSK16_SCHOTT\nPIK RDY S3 Z1 RDY S2 Z1 -1\nGO"));
   EXPECT_EQ(p.surfaces[1].thickness, 5);
@@ -179,7 +179,7 @@ TEST(Codev, ZoomPositionsAreConfigurations) {
   expect_tokens(refusal(with(singlet, "GO", "ZOO 3\nZOO THI S2 4 5\nGO")), {"ZOO", 2});
 }
 
-TEST(Codev, EveryWordIsHonouredOrNamed) {
+TEST(Codev, EveryWordIsReadOrReported) {
   EXPECT_NE(warning(with_line("XYZ 5"), "XYZ"), "no warning");
   EXPECT_NE(warning(with_line("'' 5"), ""), "no warning");  // a word of no letters
   expect_tokens(refusal(with(singlet, "GO", "SCA 2\nGO")), {"SCA"});

@@ -216,7 +216,7 @@ TEST_F(GlassFiles, EntriesWithoutAnIndexAreSkippedByName) {
   expect_said(others("XX 1\nXX 2\n"), {{"4 XX", "unknown"}});
 }
 
-TEST_F(GlassFiles, ACatalogueThatIsBrokenIsRefusedWithItsLine) {
+TEST_F(GlassFiles, BrokenCatalogueIsRefusedWithItsLine) {
   expect_tokens(refusal("CC a\nNM\n"), {"line 2", "NM", 0});
   expect_tokens(refusal("NM K 2 0 1,5168 64.17\n"), {"line 1", "NM", "\"1,5168\""});
   expect_tokens(refusal("NM K 2 0 nan 64.17\n"), {"line 1", "NM", "\"nan\""});
@@ -236,7 +236,7 @@ TEST_F(GlassFiles, OtherFilesAreRefused) {
   expect_error([&] { read_glasses(folder / "absent.agf"); }, {folder / "absent.agf"});
 }
 
-TEST_F(GlassFiles, ATableOfThisLibraryIsReadToo) {
+TEST_F(GlassFiles, TablesOfThisLibraryAreRead) {
   const std::string table = "catalogue,name,nd,vd,formula,wl_min_um,wl_max_um,coefficients,origin\n";
   const auto file = read(table + "mine,X1,1.5,60,cauchy,0.4,0.7,1.49 0.0034525 -2,me\n", "x.csv");
   EXPECT_EQ(only(file).catalogue, "mine");
@@ -265,7 +265,7 @@ std::string formula(int number, const std::string& coefficients) {
               "\n    wavelength_range: 0.4 0.7\n    coefficients: " + coefficients + "\n");
 }
 
-TEST_F(GlassFiles, APageIsRefusedWithoutYaml) {
+TEST_F(GlassFiles, PagesAreRefusedWithoutYaml) {
   if (PETZVAL_TEST_YAML) GTEST_SKIP() << "built with yaml-cpp";
   const std::string said = refusal(formula(2, "0 1 2"), "x.yml");
   EXPECT_NE(said.find("refractiveindex.info"), std::string::npos) << said;
@@ -339,7 +339,7 @@ TEST_F(GlassPages, TransparentRangeOfATableWithAbsorptionIsUsed) {
                 {"line 7", "table", 0, "k", 0.01});
 }
 
-TEST_F(GlassPages, APageThatIsBrokenIsRefusedWithItsLine) {
+TEST_F(GlassPages, BrokenPageIsRefusedWithItsLine) {
   expect_tokens(refusal(formula(6, "0 1 2"), "x.yml"), {"line 7", "type", "\"formula 6\""});
   expect_tokens(refusal(formula(2, "0 1"), "x.yml"), {"line 9", "2 coefficients"});
   expect_tokens(refusal(formula(2, ""), "x.yml"), {"line 7", "formula", 2});
@@ -353,7 +353,7 @@ TEST_F(GlassPages, APageThatIsBrokenIsRefusedWithItsLine) {
   expect_tokens(refusal("DATA: 5\n", "x.yml"), {"line 1", "DATA"});
 }
 
-TEST_F(GlassPages, BombsOfAPageAreRefused) {
+TEST_F(GlassPages, AliasesAndDeepOrLongPagesAreRefused) {
   expect_tokens(refusal("a: &a [x, x]\nb: &b [*a, *a]\nDATA: [*b]\n", "x.yml"), {"line 2", "alias"});
   for (const char* opening : {"[", "{a: ", "- ", "? "}) {
     std::string deep = "DATA:\n  ";
@@ -366,7 +366,7 @@ TEST_F(GlassPages, BombsOfAPageAreRefused) {
 }
 
 // Reading throws Error or gives glasses.
-TEST_F(GlassFiles, AFileCutAnywhereIsReadOrRefused) {
+TEST_F(GlassFiles, TruncatedFilesAreReadOrRefused) {
   const std::string nk = table("nk", "        0.4 1.53 0.001\n        0.5 1.52 1e-5\n        0.7 1.51 0\n");
   int refused = 0, taken = 0;
   for (const std::string& whole : {every_formula.substr(0, 1500), utf16(every_formula.substr(0, 400), false, true), nk,

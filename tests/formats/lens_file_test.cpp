@@ -146,7 +146,7 @@ TEST(LensFile, HugeFilesAreReadOrRefusedSoon) {
   expect_tokens(refusal(statements), {"x", 10000, "surfaces"});
 }
 
-TEST(LensFile, StrictRefusesAssumptionsAndTheOwnFormatHasNone) {
+TEST(LensFile, StrictRefusesAssumptionsExceptInTheOwnFormat) {
   const std::string table = "50.6 5.2 1.5168 25.4\n-50.6 0 1 25.4\n";
   expect_error([&] { petzval::parse_lens(table, "x", {.strict = true}); }, {"strict"});
   const Prescription lens = petzval::testing::read(table);

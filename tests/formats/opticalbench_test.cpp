@@ -49,7 +49,7 @@ TEST(OpticalBench, TheZoomHasItsFocalLengthInEachPosition) {
   EXPECT_EQ(lens.half_field_deg, 34.1 / 2);
 }
 
-TEST(OpticalBench, EveryWordOfTheFormIsHonouredOrNamed) {
+TEST(OpticalBench, EveryWordOfTheFormIsReadOrReported) {
   const auto lens = read_sample("opticalbench_macro.txt");
   EXPECT_EQ(lens.name, "Two groups that focus");
   EXPECT_EQ(lens.focal_length_mm, 100);

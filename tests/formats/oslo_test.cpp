@@ -35,7 +35,7 @@ void expect_terms(const std::vector<AsphereTerm>& found, const std::vector<Asphe
   }
 }
 
-TEST(Oslo, EveryKnownCommandIsHonouredOrNamed) {
+TEST(Oslo, EveryKnownCommandIsReadOrReported) {
   const auto lens = read_sample("oslo_words.len");
   EXPECT_EQ(lens.imported->format, "oslo");
   EXPECT_EQ(lens.name, "words of a lens");
@@ -151,7 +151,7 @@ TEST(Oslo, IndicesMayHaveOtherWavelengths) {
   EXPECT_NEAR(*lens.surfaces[0].medium.vd, (n(0.5875618) - 1) / (n(0.4861327) - n(0.6562725)), 2e-2);
 }
 
-TEST(Oslo, AThicknessThatItsSolveContradictsIsNamed) {
+TEST(Oslo, ThicknessThatContradictsItsSolveIsReported) {
   expect_said(said(parse_lens(with(plain, "TH 50", "TH 50\nPY 0"), "x.len")), {});
   expect_said(said(parse_lens(with(plain, "TH 50", "TH 49\nPY 0"), "x.len")), {{"13 PY", "file", 49, 50}});
   // Half the beam height halves the distance.
@@ -161,7 +161,7 @@ TEST(Oslo, AThicknessThatItsSolveContradictsIsNamed) {
                 {"13 PY", "EBR", "thickness"});
 }
 
-TEST(Oslo, AWrongFocalLengthIsNamed) {
+TEST(Oslo, WrongFocalLengthIsReported) {
   expect_said(said(parse_lens(with(plain, "\" 50", "\" 100"), "x.len")), {});  // default of OSLO for new lenses
   expect_said(said(parse_lens(with(plain, "\" 50", "\" 60"), "x.len")), {{"1 LEN", 60, "focal", 50}});
 }

@@ -50,7 +50,7 @@ TEST(Table, FourColumnsAreRadiusThicknessIndexAndDiameter) {
   EXPECT_EQ(p.surfaces[2].semi_diameter, 4.7);
 }
 
-TEST(Table, SemiDiametersAreToldByTheDeclaredFNumber) {
+TEST(Table, DeclaredFNumberDecidesBetweenDiameterAndSemiDiameter) {
   const std::string radii =
       with(with(with(table, "1.5168  25.4", "1.5168  12.7"), "1       25.4", "1       12.7"), "9.4", "4.7");
   const Prescription p = read(radii);
@@ -183,7 +183,7 @@ TEST(Table, GapsInFrontHaveAHead) {
   }
 }
 
-TEST(Table, UnitsAreThoseOfTheHeads) {
+TEST(Table, HeadsGiveTheUnits) {
   for (const char* head : {"R (in) d (cm) nd semi (in)", "radius thickness index semi\n(in) cm - in"}) {
     const Prescription p = read(std::string(head) + "\n2 0.5 1.5 0.5\n-2 9 1 0.5\n");
     EXPECT_NEAR(p.surfaces.at(0).radius, 50.8, 1e-12) << head;

@@ -392,7 +392,7 @@ TEST(Zemax, PickupsAndSumsAreEvaluated) {
   EXPECT_EQ(warning(with(singlet, "  DISZ 48\n", "  DISZ 49.324\n  MAZH 0 0\n"), "MAZH"), "no warning");
 }
 
-TEST(Zemax, GlassesAreFoundOrNamed) {
+TEST(Zemax, GlassesAreFoundOrReported) {
   const auto glass = [](const std::string& line) {
     return with(singlet, "GLAS ___BLANK 1 0 1.5 60 0 0 0 0 0 0", "GLAS " + line);
   };
@@ -516,7 +516,7 @@ TEST(Zemax, TheStopOpensAsTheLensZooms) {
   }
 }
 
-TEST(Zemax, EveryCommandIsHonouredOrNamed) {
+TEST(Zemax, EveryCommandIsReadOrReported) {
   EXPECT_NE(warning(singlet + "XYZZ 1 2 3\n", "XYZZ"), "no warning");
   EXPECT_NE(warning(with_line("ABCD 1"), "ABCD"), "no warning");
   const Prescription p = read(with_line("ABCD 1"));

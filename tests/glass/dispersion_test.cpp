@@ -147,7 +147,7 @@ TEST(Dispersion, FinerTablesAreMoreAccurate) {
   EXPECT_LT(worst(10), worst(20) / 5);
 }
 
-TEST(Dispersion, ATableOfTwoIndicesIsALineOverTheInverseSquare) {
+TEST(Dispersion, TableOfTwoIndicesIsALineOverTheInverseSquare) {
   const Glass table = made_up(DispersionFormula::tabulated, {0.5, 1.75, 1, 1.5});
   EXPECT_NEAR(refractive_index(table, 1000 / std::sqrt(2.5)), 1.625, 1e-15);
 }

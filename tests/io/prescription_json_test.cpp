@@ -215,13 +215,13 @@ TEST(PrescriptionJson, NumbersAreTheShortestThatReadBack) {
   for (const auto& [value, text] : numbers) EXPECT_EQ(written(value), text);
 }
 
-TEST(PrescriptionJson, UnlimitedAperturesAreWrittenAsNone) {
+TEST(PrescriptionJson, UnlimitedAperturesAreWrittenAsNull) {
   Prescription p = parse_prescription(file("\"surfaces\": [" + row + "]"), "x.json");
   p.surfaces[0].semi_diameter = std::numeric_limits<double>::infinity();
   EXPECT_NE(format_prescription(p).find("\"semi_diameter\": null"), std::string::npos);
 }
 
-TEST(PrescriptionJson, WhatCannotBeReadIsNotWritten) {
+TEST(PrescriptionJson, LensesThatCannotBeReadAreNotWritten) {
   Prescription p;
   p.name = "empty";
   expect_error([&] { format_prescription(p); }, {"empty", "surfaces"});
@@ -263,7 +263,7 @@ TEST(PrescriptionJson, IgnoresSpaceByteOrderMarkAndLineEnds) {
   EXPECT_EQ(parse_prescription(std::string(1'000'000, ' ') + text, "x.json"), p);
 }
 
-TEST(PrescriptionJson, MembersMayBeLeftOutButNotTheSurfaceItself) {
+TEST(PrescriptionJson, OptionalMembersMayBeMissing) {
   const Prescription p = parse_prescription(file("\"surfaces\": [" + row + "]"), "x.json");
   petzval::Prescription expected;
   expected.surfaces = {{.radius = 50, .thickness = 5.5, .medium = {.nd = 1.5}}};
@@ -426,7 +426,7 @@ TEST(PrescriptionJson, InvalidValues_AreFoundInConfigurationsAndDesign) {
                          "x.json", {"configuration 1", "4"}, "2:35"));
 }
 
-TEST(PrescriptionJson, ATextCutOffAtAnyByteIsRefused) {
+TEST(PrescriptionJson, TruncatedTextsAreRefused) {
   for (const char* id : {"zoom_14-30mm_f4", "catadioptric_mangin_1000mm_f7.5", "double_gauss_100mm_f1.35"}) {
     std::string text = text_of(fs::path(PETZVAL_TEST_DATA) / "lenses" / (std::string(id) + ".json"));
     text.resize(text.find_last_of('}') + 1);
@@ -436,7 +436,7 @@ TEST(PrescriptionJson, ATextCutOffAtAnyByteIsRefused) {
   }
 }
 
-TEST(PrescriptionJson, ATextWithAnyByteChangedIsReadOrRefused) {
+TEST(PrescriptionJson, TextsWithAChangedByteAreReadOrRefused) {
   std::mt19937 random(3);
   const std::string good = text_of(fs::path(PETZVAL_TEST_DATA) / "lenses" / "zoom_14-30mm_f4.json");
   int refused = 0;

@@ -106,7 +106,7 @@ TEST(Compile, UnknownGlassIsRefusedByName) {
       {"pair", "surface 1", 587.5618});
 }
 
-TEST(Compile, MissingGlass_OfAnotherCatalogueOrIndexOrSpelling_SaysSo) {
+TEST(Compile, MissingGlass_OfAnotherCatalogueOrIndexOrSpelling_IsExplained) {
   const auto said = [](const petzval::Medium& medium) { return message([&] { compile(doublet(medium), visible); }); };
   const std::string other_catalogue = said({.glass = "N-BK7", .catalogue = "hoya", .nd = 1.5168});
   expect_tokens(other_catalogue, {"\"N-BK7\"", "\"hoya\"", "schott"});

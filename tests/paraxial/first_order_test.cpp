@@ -51,7 +51,7 @@ void expect_no_nan(const FirstOrder& data) {
   for (const double value : numbers(data)) EXPECT_FALSE(std::isnan(value));
 }
 
-TEST(FirstOrder, SqueezeEqualsTheDeclaredOne) {
+TEST(FirstOrder, SqueezeEqualsTheDeclaredSqueeze) {
   EXPECT_NEAR(squeeze(data_lens("anamorphic_60mm_2x")), 60.55 / 31.49, 1e-3);  // as declared
   EXPECT_EQ(squeeze(data_lens("double_gauss_100mm_f2.0")), 1);
   EXPECT_EQ(squeeze(data_lens("cylinder_3.9mm")), 0);  // power in one section only
@@ -93,7 +93,7 @@ TEST(RayMatrix, ProductOfPartsIsTheWhole) {
   EXPECT_NEAR(parts.d, whole.d, 1e-14);
 }
 
-TEST(FirstOrder, OfEveryLensInDataIsWithinTwoPercentOfTheDeclared) {
+TEST(FirstOrder, EveryLensIsWithinTwoPercentOfTheDeclaredFocalLength) {
   for (const Prescription& p : data_prescriptions()) {
     SCOPED_TRACE(p.id);
     const Lens lens = compile(p);

@@ -90,7 +90,7 @@ Errors errors(const Lens& lens, const RayPolynomial& polynomial, const Lines<T>&
   return result;
 }
 
-TEST(PolynomialFit, ErrorsFallWithTheDegreeAndEqualTheStatedOnes) {
+TEST(PolynomialFit, ErrorsFallWithTheDegreeAndEqualTheStatedErrors) {
   for (const Case& c : cases) {
     SCOPED_TRACE(c.id);
     const Lens lens = lens_of(c);

@@ -51,7 +51,7 @@ Prescription zoom() {
   return p;
 }
 
-TEST(Configured, AppliesOneByNameOrNumber) {
+TEST(Configured, AppliesAConfigurationByNameOrNumber) {
   const Prescription tele = configured(zoom(), "tele");
   EXPECT_EQ(tele.name, "z, tele");
   EXPECT_EQ(tele.surfaces[1].thickness, 30);
@@ -92,7 +92,7 @@ TEST(Configured, ThicknessesAreLinearBetweenZoomPositions) {
   expect_error([&] { configured(p, 1.5); }, {"configuration", 1.5});
 }
 
-TEST(Configured, CompilesTheChosenOne) {
+TEST(Configured, CompilesTheChosenConfiguration) {
   const Prescription p = data_prescription("zoom_70-210mm_f4");
   const auto focal_length = [&](const petzval::ConfigurationChoice& choice) {
     return petzval::first_order(compile(p, {.configuration = choice})).effective_focal_length;

@@ -40,7 +40,7 @@ TEST(WithFNumber, RefusesClosedLenses) {
   expect_error([&] { with_f_number(closed, 8); }, {lens.name(), "number", "axis"});
 }
 
-TEST(RealFNumber, OfEveryLensInDataIsWithinTwoPercentOfTheDeclared) {
+TEST(RealFNumber, EveryLensIsWithinTwoPercentOfTheDeclaredFNumber) {
   for (const Prescription& p : data_prescriptions()) {
     if (!p.f_number) continue;
     EXPECT_NEAR(real_f_number(compile(p)), *p.f_number, 0.02 * *p.f_number) << p.id;

@@ -288,7 +288,7 @@ double seen_along_the_film(const Lens& lens, double y, int side) {
 }
 
 // Most of the flux arrives nearly parallel to the film, in crescents that are narrow in direction cosines.
-TEST(FilmIrradiance, PointsBesideTheGlassEqualRaysInAllDirections) {
+TEST(FilmIrradiance, PointsNextToTheGlassEqualRaysInAllDirections) {
   for (const double radius : {0.0, -60.0}) {
     for (const double y : {11.0, 12.0}) {  // farther out the pupil is disconnected
       const Lens lens = bowl(radius, 1.5);
@@ -378,7 +378,7 @@ TEST(RelativeIllumination, ReachesBeyond90Degrees) {
   }
 }
 
-TEST(ImageCircle, EndsWhereTheLightDoes) {
+TEST(ImageCircle, EndsWithTheLight) {
   for (const char* id : {"double_gauss_100mm_f2_28deg", "biogon_35mm_f2.8", "fisheye_10mm_f4", "telephoto_200mm_f1.8",
                          "catadioptric_mangin_1000mm_f7.5", "phone_5.6mm_f3.5"}) {
     SCOPED_TRACE(id);

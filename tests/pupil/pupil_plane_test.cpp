@@ -112,7 +112,7 @@ TEST(PupilPlane, FindsThePupilPointOfItsRays) {
   }
 }
 
-TEST(PupilPlane, AcceptsPlanesBesideTheLensBeyond90Degrees) {
+TEST(PupilPlane, AcceptsPlanesNextToTheLensBeyond90Degrees) {
   const Lens lens = data_lens("fisheye_6.3mm_f2.8");
   const double pupil_z = pupils(lens).entrance.z, z = pupil_z + 200;
   const Ray<double> ray = PupilPlane(lens, {radians(100), z}).ray(0.4, 0.2);

@@ -32,7 +32,7 @@ double clearance(const FilmPupilTable& table, const FilmPoint& film, double x, d
   return result;
 }
 
-TEST(FilmPupilTable, SeesThroughAGlassCloseToTheFilm) {
+TEST(FilmPupilTable, AcceptsAPlateCloseToTheFilm) {
   Prescription p = petzval::testing::data_prescription("double_gauss_100mm_f2.0");
   // A plate of 2 mm in front of the film, at 0.1 mm; the film is moved by the focus shift of the plate.
   const Lens bare = compile(p);
@@ -98,7 +98,7 @@ TEST(FilmPupilTable, ClearanceIsTheDistanceToTheEdge) {
   }
 }
 
-TEST(FilmPupilTable, BatchClearancesEqualSingleOnes) {
+TEST(FilmPupilTable, BatchClearancesEqualSingleClearances) {
   const Lens lens = data_lens("double_gauss_100mm_f2.0");
   const FilmPupilTable tables[]{FilmPupilTable::enclosing(lens, 20),
                                 FilmPupilTable::enclosing(data_lens("catadioptric_mangin_1000mm_f7.5"), 20),

@@ -135,7 +135,7 @@ TEST(FilmPupilTable, CoversDisconnectedPupils) {
 }
 
 // The table finds the edge of the image circle on films of any size.
-TEST(FilmPupilTable, FindsWhereTheLightEnds) {
+TEST(FilmPupilTable, FindsTheEdgeOfTheImageCircle) {
   for (const auto& [id, radius] : {std::pair{"fisheye_8mm_f2.8", 13.0},
                                    {"phone_5.6mm_f3.5", 5.0},
                                    {"zoom_57-143mm_f2.8:wide", 60.0},

@@ -64,7 +64,7 @@ TEST(BallsScene, IsARowAtOneDistanceToTheEdgeOfTheImage) {
   EXPECT_GT(last, 0.14);
 }
 
-TEST(ChessScene, HasItsPiecesOnTheBoardFromTheForegroundToTheBackground) {
+TEST(ChessScene, PiecesStandOnTheBoardAtManyDepths) {
   const SceneDescription scene = chess_scene();
   int pieces = 0, lamps = 0;
   double nearest = 1e9, farthest = 0;
@@ -135,7 +135,7 @@ TEST(StatuesScene, HasANearAndAFarAngelAndFiguresBetween) {
   }
 }
 
-TEST(StreetScene, HasItsLightsInTheImageAndItsWindowsOnTheStreet) {
+TEST(StreetScene, LightsAreInTheImageAndWindowsFaceTheStreet) {
   const SceneDescription scene = street_scene();
   int lights = 0, windows = 0;
   double nearest = 1e9, farthest = 0;

@@ -71,7 +71,7 @@ TEST_F(Shards, KeepTheirFilesByName) {
   EXPECT_NO_THROW(gather({here_}, job));
 }
 
-TEST_F(Shards, MissingAndUnfinishedOnesAreNamed) {
+TEST_F(Shards, MissingAndUnfinishedShardsAreNamed) {
   write(here_, {2, 5});
   write(there_, {3, 5}, passes - 1);
   write(there_, {5, 5});
@@ -102,7 +102,7 @@ TEST_F(Shards, OtherImagesAreRefused) {
   expect_tokens(both, {"tile_1_of_2.exr"});
 }
 
-TEST_F(Shards, DifferentAndCorruptOnesAreRefused) {
+TEST_F(Shards, DifferentAndCorruptShardsAreRefused) {
   write(here_, {1, 2});
   write(here_, {2, 2});
   PictureSums other = made_up_part(width, height, 2, 2, passes);

@@ -100,7 +100,7 @@ TYPED_TEST(BatchWavelengths, MixedBatchEqualsBatchesForAnyNumberOfWavelengths) {
   }
 }
 
-TYPED_TEST(BatchWavelengths, OnesPerRayReplaceTheCommonOne) {
+TYPED_TEST(BatchWavelengths, WavelengthsPerRayReplaceTheCommonWavelength) {
   using T = TypeParam;
   const auto sample = colourful(testing_lenses::load("double_gauss_100mm_f2.0"));
   const auto rays = rays_for<T>(sample, Travel::to_film, 70);
@@ -231,7 +231,7 @@ TYPED_TEST(BatchWavelengths, InNmHaveEqualBitsInBatchesAndSingleRays) {
   }
 }
 
-TYPED_TEST(BatchWavelengths, CompiledOnesInNmEqualTheirIndices) {
+TYPED_TEST(BatchWavelengths, CompiledWavelengthsInNmEqualTheirIndices) {
   using T = TypeParam;
   const auto sample = colourful(testing_lenses::load("modern_58mm_f0.95"));
   const auto rays = rays_for<T>(sample, Travel::to_film, 333);
