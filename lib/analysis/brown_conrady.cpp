@@ -84,9 +84,9 @@ double rises_to(const Coefficients& k, double most) noexcept {
   return most;
 }
 
-/// True if no term is so large that other terms cancel it; radii are relative to the largest radius. (If the scale over
-/// the film differs from the scale on the axis, terms of numerator and denominator reach 1e12; fisheyes of 150 degrees
-/// need 45.)
+/// True if no term is so large that other terms must cancel it; radii are relative to the largest radius. (Terms of
+/// fisheyes of 150 degrees reach 45. If the scale over the film differs from the scale on the axis, terms of numerator
+/// and denominator reach 1e12.)
 bool bounded(const Coefficients& k) noexcept {
   return std::all_of(k.begin(), k.end(), [](double term) { return std::abs(term) <= 100; });
 }
@@ -112,7 +112,7 @@ Coefficients solved(const std::vector<Pair>& pairs, const Terms& terms, const Ro
     }
     wanted(at) = sum;
   }
-  // The solution of least norm if numerator and denominator are redundant, for example without distortion.
+  // The solution of least norm, because numerator and denominator may be redundant, for example without distortion.
   const Eigen::VectorXd solution = core_detail::least_squares(rows, wanted);
   Coefficients k{};
   for (int j = 0; j < unknowns; ++j) k[static_cast<std::size_t>(j < n ? j : j - n + 3)] = solution(j);
@@ -123,8 +123,8 @@ struct Slopes {
   double by_numerator = 0, by_denominator = 0, sum = 0;
 };
 
-/// to = from N / D is linear in the coefficients after multiplication by D. The weights 1 / D of the previous round
-/// turn its errors into errors of `to` (Sanathanan and Koerner 1963).
+/// After multiplication by D, the equation to = from N / D is linear in the coefficients. Weights 1 / D of the previous
+/// round convert its errors to errors of `to` (Sanathanan and Koerner 1963).
 Coefficients linear_round(const std::vector<Pair>& pairs, const Terms& terms, const Coefficients& before) {
   return solved(pairs, terms, [&](const Pair& pair, double r2) {
     const double weight = 1 / polynomial(r2, &before[3]);
@@ -155,8 +155,8 @@ Coefficients refined(const std::vector<Pair>& pairs, const Terms& terms, Coeffic
   return k;
 }
 
-/// Least squares coefficients without a pole up to `reach` radii. fewer: coefficients with a shorter denominator, a
-/// starting point of the search.
+/// Least-squares coefficients without a pole up to the radius `reach`. fewer: coefficients with a shorter denominator,
+/// from which the search also starts.
 Coefficients fitted(const std::vector<Pair>& pairs, const Terms& terms, const Coefficients& fewer, double reach) {
   if (terms.in_denominator == 0) return linear_round(pairs, terms, {});
   Coefficients best = refined(pairs, terms, fewer, reach), round{};
@@ -226,7 +226,7 @@ BrownConrady fit_brown_conrady(const LensDistortion& distortion, const BrownConr
     model.rises_to_rad = std::atan(to_undistorted ? model.radius(rise) : rise);
     return model;
   };
-  // More terms than needed follow rounding errors and diverge beyond the film.
+  // Unnecessary terms would follow rounding errors and diverge beyond the film.
   constexpr double exact_px = 2e-5;
   std::vector<Terms> forms{{1, 0}, {2, 0}, {3, 0}};
   if (options.form == RadialForm::rational) forms.insert(forms.end(), {{3, 1}, {3, 2}, {3, 3}});

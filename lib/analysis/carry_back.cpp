@@ -58,7 +58,7 @@ SceneView::SceneView(double focal_length, double z, const Ray<double>& chief, co
   centre_ = chief.origin + chief.direction * length;
   if (!turned) normal_ = {0, 0, -1}, x_axis_ = {1, 0, 0}, y_axis_ = {0, 1, 0};
 
-  // The hit moves with the ray's origin and direction, minus the component that leaves the plane.
+  // The motion of the hit is the motion of the ray's origin and direction, minus the component out of the plane.
   const auto moves = [&](const Ray<double>& by) {
     const Vec3<double> free = by.origin + by.direction * length;
     const Vec3<double> hit = free - chief.direction * (glm::dot(free, normal_) / glm::dot(chief.direction, normal_));
@@ -111,8 +111,8 @@ ChiefRays::ChiefRays(const Lens& lens, const TwoPlanes& space) : lens_(lens), sp
 }
 
 ChiefRay ChiefRays::through(const FilmPoint& film, const Vec2<double>& pupil, std::size_t wavelength) const {
-  // The direction of the line, away from the film. With the film point its slope changes by -1 / pivot, and its unit
-  // vector by the component across itself.
+  // The direction of the line, away from the film. If the film point moves by 1 mm, the slope of the line changes by -1
+  // / pivot, and its unit vector by the perpendicular component of this change.
   const Vec3<double> line{(pupil[0] - film.x) / space_.depth(), (pupil[1] - film.y) / space_.depth(), 1};
   const double length = glm::length(line);
   const Vec3<double> unit = line / length;

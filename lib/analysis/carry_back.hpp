@@ -13,13 +13,13 @@
 /// Ray errors in the scene, expressed as lengths on the film.
 namespace petzval::analysis_detail {
 
-/// A scene plane as seen from one film point, measured on the film.
+/// A scene plane as seen from one film point, in film coordinates.
 ///
 /// Hits on a plane z are mapped to the film by the exact magnification of the chief ray, the inverse of the derivative
-/// of its hit by the film point; the magnification differs along and across the radius. Beyond 80 degrees the plane is
-/// seen nearly edge-on. It is then replaced by a plane across the chief ray, at the distance along the ray that the
-/// plane z has at 80 degrees. At infinity, and for rays that do not run towards the plane, the length is the angle
-/// times the focal length.
+/// of its hit with respect to the film point; the magnification differs along and across the radius. Beyond 80 degrees
+/// the plane is seen nearly edge-on. It is then replaced by a plane perpendicular to the chief ray, at the distance
+/// along the ray that the plane z has at 80 degrees. At infinity, and for rays that do not run towards the plane,
+/// lengths are angles times the focal length.
 class SceneView {
  public:
   /// Measures angles only.
@@ -28,7 +28,7 @@ class SceneView {
   SceneView(double focal_length, double z, const Ray<double>& chief, const Ray<double>& by_film_x,
             const Ray<double>& by_film_y);
 
-  /// The hit of a ray relative to the hit of the chief ray, mm on the film.
+  /// The hit of a ray relative to the hit of the chief ray, mapped to the film, mm.
   Vec2<double> place(const Ray<double>& ray) const noexcept;
   /// Distance on the film between two rays of the film point, mm.
   double distance(const Ray<double>& a, const Ray<double>& b) const noexcept;
@@ -43,8 +43,8 @@ class SceneView {
   std::array<double, 4> to_film_{1, 0, 0, 1};  // rows: film x and y; columns: x and y in the plane
 };
 
-/// The chief ray of a film point: the ray through the middle of the pupil, not clipped by apertures. If the film point
-/// moves, the ray turns about its point in the plane of the paraxial exit pupil.
+/// The chief ray of a film point: the ray through the centre of the pupil, not clipped by apertures. If the film point
+/// moves, the ray rotates about its point in the plane of the paraxial exit pupil.
 struct ChiefRay {
   Vec2<double> pupil{0, 0};
   bool found = false;  ///< false: all planes are measured by angles
@@ -57,7 +57,7 @@ struct ChiefRay {
 
 class ChiefRays {
  public:
-  /// Throws Error if the lens has no focal length, with which angles are measured.
+  /// Throws Error if the lens has no focal length, because it scales angles to lengths.
   ChiefRays(const Lens& lens, const TwoPlanes& space);
   ChiefRay through(const FilmPoint& film, const Vec2<double>& pupil, std::size_t wavelength) const;
 

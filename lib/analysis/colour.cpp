@@ -81,8 +81,8 @@ double at(const Spectrum& light, double nm) {
                  [](double a, double b, double t) { return std::lerp(a, b, t); });
 }
 
-/// The tristimulus values of a band. Between adjacent samples of both functions the integrand is a parabola, for which
-/// Simpson's rule is exact.
+/// The tristimulus values of a band. Between adjacent samples of either function, the integrand is a parabola, for
+/// which Simpson's rule is exact.
 Triple integral(const Spectrum& light, const ColourMatching& table, double from, double to) {
   from = std::max({from, light.wavelengths_nm.front(), table.wavelengths_nm.front()});
   to = std::min({to, light.wavelengths_nm.back(), table.wavelengths_nm.back()});
@@ -152,7 +152,7 @@ void validate(const Spectrum& light) {
   }
 }
 
-/// Applies the checks of load() to any table; it may cover a part of the visible wavelengths.
+/// Applies the checks of load() to any table; the table may cover only a part of the visible wavelengths.
 void validate(const ColourMatching& table) {
   validate(table.wavelengths_nm, table.xyz.size(), "ColourMatching", "triples");
   for (std::size_t i = 0; i < table.xyz.size(); ++i) {
@@ -262,7 +262,7 @@ std::vector<Triple> rgb_weights(std::span<const double> wavelengths_nm, const Co
     for (std::size_t k = 0; k < 3; ++k) cones[k] *= to_cones[k] / from_cones[k] * white_level / level;
     return times(rgb_of_xyz, times(xyz_of_cones, cones));
   };
-  // The constants have four digits or more; the remaining error of white is corrected to (1, 1, 1).
+  // The constants have only four digits or more; scale the result so that white is exactly (1, 1, 1).
   Triple neutral = colour(white_xyz);
   for (double& channel : neutral) channel *= level / white_level;
 

@@ -18,7 +18,7 @@ double to_the_ends(double t) noexcept {
   return std::copysign(1 - inner * inner * inner, a);
 }
 
-/// The nearest float that is not farther from 0, so that rounding moves no corner beyond the radius of the film.
+/// The nearest float that is not farther from 0, so that rounding moves no corner outside the radius of the film.
 double towards_zero(double x) noexcept {
   const float f = static_cast<float>(x);
   return std::abs(static_cast<double>(f)) > std::abs(x) ? std::nextafter(f, 0.0f) : f;
@@ -85,7 +85,7 @@ std::vector<FilmPoint> pupil_film_points(const Lens& lens, const Film& film, std
     const bool end = k == 0 || k + 1 == count;
     const double step = static_cast<double>(k) + (end ? 0 : chance(k)[0] - 0.5);
     const double even = step / static_cast<double>(std::max<std::size_t>(count - 1, 1));
-    // Pupils shrink fast where the lit area ends on the film.
+    // Pupils shrink fast near the edge of the lit area of the film.
     const double t = part < 1 ? 1 - (1 - even) * (1 - even) * (1 - even) : even;
     points.push_back({towards_zero(near_x + t * (far_x - near_x)), towards_zero(near_y + t * (far_y - near_y))});
   }
@@ -122,8 +122,9 @@ PointLines error_lines(const FilmPoint& film, const camera_detail::ExactModel<do
   }
   put(0);
 
-  // The pupils of the table are slightly larger than the pupils of the lens. Bisection between the middle and the rims
-  // of a table's pupil finds the rim of the lens's pupil; every fourth line searches the rim of a central obscuration.
+  // The pupils of the table are slightly larger than the pupils of the lens. Bisection between the middle and the rim
+  // of the table's pupil finds the rim of the lens's pupil; every fourth line searches the rim of a central
+  // obscuration.
   std::array<double, count> passing, beyond, chance;
   passing.fill(0.5);
   for (std::size_t i = 0; i < count; ++i) {
@@ -143,7 +144,7 @@ PointLines error_lines(const FilmPoint& film, const camera_detail::ExactModel<do
       v[i] = (passing[i] + beyond[i]) / 2;
     }
   }
-  // At the rim or at a random position inside: the pupil of a model may be slightly smaller.
+  // Use positions at the rim or, at random, slightly inside, because the pupil of a model may be slightly smaller.
   for (std::size_t i = 0; i < count; ++i) {
     v[i] = passing[i] + 0.05 * chance[i] * chance[i] * chance[i] * (0.5 - passing[i]);
   }

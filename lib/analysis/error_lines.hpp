@@ -19,8 +19,9 @@ namespace petzval::analysis_detail {
 /// lie along the rims of the pupil, where errors are largest and uniform samples are rare.
 inline constexpr std::size_t lines_per_point = 128, uniform_lines = 64;
 
-/// Factors from the largest measured error to a bound of the error of every line: for smooth models; for rays traced in
-/// float, whose errors are noise; relative to the blur, which has sharp minima over the film.
+/// Factors from the largest measured error to a bound of the error of every line: smooth_guard for smooth models,
+/// noise_guard for rays traced in float, whose errors are noise, and blur_guard for errors relative to the blur, which
+/// has sharp minima over the film.
 inline constexpr double smooth_guard = 1.04, noise_guard = 1.5, blur_guard = 1.15;
 
 /// Film points below this fraction of the largest irradiance are left out.
@@ -30,16 +31,16 @@ inline constexpr double darkest = 0.01;
 /// The radius of the film if the lens is not rotationally symmetric.
 double lit_radius(const camera_detail::ExactModel<double>& exact, const Film& film, std::size_t wavelength);
 
-/// The film point with an index. Points with even indices are uniform samples of the film; the others alternate between
-/// a corner, a side and, mostly, positions near the sides. Unlit points move towards the axis, the farthest to the edge
-/// of the light.
+/// The film point with an index. Points with even indices are uniform samples of the film. The others alternate between
+/// a corner, a side and, for most of them, positions near the sides. Points without light move towards the axis, the
+/// farthest of them to the edge of the lit area.
 FilmPoint error_film_point(const Film& film, std::size_t index, std::uint32_t seed, double lit_radius) noexcept;
 /// True if the film point is one of the uniform samples.
 inline bool is_uniform(std::size_t film_point) noexcept { return film_point % 2 == 0; }
 
 /// Film points for the comparison of pupils, which depend mostly on the distance from the axis. For a rotationally
-/// symmetric lens the distances are random (by the seed) within equal steps, denser towards the edge of the light, and
-/// include the nearest and the farthest lit point. For other lenses: error_film_point().
+/// symmetric lens the distances are random (by the seed) within equal steps, denser towards the edge of the lit area,
+/// and include the smallest and the largest distance. For other lenses: error_film_point().
 std::vector<FilmPoint> pupil_film_points(const Lens& lens, const Film& film, std::size_t count, std::uint32_t seed,
                                          double lit_radius);
 
@@ -70,7 +71,7 @@ PointLines error_lines(const FilmPoint& film, const camera_detail::ExactModel<do
 struct PointRays {
   std::array<Ray<double>, lines_per_point> rays;
   std::array<bool, lines_per_point> reaches;  ///< the model has a ray for the line
-  std::array<bool, lines_per_point> passes;   ///< also, the line lies in the model's pupil
+  std::array<bool, lines_per_point> passes;   ///< the model has a ray, and the line lies in the model's pupil
 };
 using Tracing = std::function<void(const PointLines& lines, std::size_t wavelength, PointRays& rays)>;
 

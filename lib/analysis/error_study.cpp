@@ -205,7 +205,7 @@ void RayStudy::look(Point& point) const {
   for (const double z : samples_.depths_z) add(z);
   if (!samples_.sharpest_between_z) return;
 
-  // A spot has one waist: samples the whole range, equally spaced in 1/distance, then refines around the minimum.
+  // A spot has one waist: sample the complete range, equally spaced in 1/distance, then refine around the minimum.
   const double film_z = exact_->pupils().space().film_z;
   const auto& [z0, z1] = *samples_.sharpest_between_z;
   double from = 1 / (film_z - z0), to = 1 / (film_z - z1);
@@ -241,7 +241,7 @@ RayStudy::Errors RayStudy::errors_of(const Point& point, const Tracing& model, s
     for (std::size_t d = 0; d < point.blur.size(); ++d) {
       const double error = point.views[d].distance(point.exact.rays[i], rays.rays[i]);
       if (d < samples_.depths_z.size() && i < uniform_lines && is_uniform(point.place)) found.even.push_back(error);
-      if (error == 0) continue;  // also without a blur
+      if (error == 0) continue;  // avoids 0 / 0 if there is no blur
       found.mm = std::max(found.mm, error);
       found.of_blur = std::max(found.of_blur, error / point.blur[d]);
       for (std::size_t t = 0; t < tolerances_.size(); ++t) {

@@ -8,8 +8,9 @@ namespace petzval::analysis_detail {
 
 void count_points(const PixelGrid& grid, std::span<const double> x, std::span<const double> y,
                   std::span<std::uint64_t> counts, std::span<const std::uint32_t> units) noexcept {
-  // Computes the pixel numbers of a block of points in SIMD lanes, then counts one by one: an image for each lane would
-  // cost more. A point outside the grid converts 0, because integers cannot hold all of its possible numbers.
+  // The pixel numbers of a block of points are computed in SIMD lanes, and the points are then counted one by one: a
+  // separate image for each lane would take longer. A point outside the grid converts 0, because its pixel number may
+  // not fit into an integer.
   constexpr std::size_t block = 256;
   std::array<std::int32_t, block> pixel;
   const double cx = grid.centre.x, cy = grid.centre.y;

@@ -85,7 +85,8 @@ Vec2<double> LensDistortion::shown_at(const Vec3<double>& point) const noexcept 
 }
 
 std::optional<CameraSample> LensDistortion::sample_with_light(const FilmPoint& film) const noexcept {
-  // Tries the middle of the pupil first, then the whole pupil: obscurations and folds leave small parts.
+  // Tries the centre of the pupil first, then positions all over the pupil, because obscurations and folds may leave
+  // only a small part of it.
   const core_detail::Kronecker<2> places(1);
   CameraSample sample{.film = film, .pupil_u = 0, .pupil_v = 1e-3};
   for (std::uint32_t i = 0; i < 32; ++i) {
@@ -97,7 +98,8 @@ std::optional<CameraSample> LensDistortion::sample_with_light(const FilmPoint& f
 }
 
 std::optional<Vec2<double>> LensDistortion::undistorted(const Vec2<double>& distorted_at) const noexcept {
-  // A ray of the film point meets the plane near the searched point. Rays of adjacent film points give the derivatives.
+  // The ray of the film point meets the subject plane near the searched point. Rays of adjacent film points give the
+  // derivatives.
   const Film& film = camera_.film();
   auto sample = sample_with_light(film.point(distorted_at.x, distorted_at.y));
   if (!sample) return {};

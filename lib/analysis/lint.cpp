@@ -50,7 +50,7 @@ void check_surfaces(const Prescription& rows, const Lens& lens, Findings& findin
     const LensSurface& surface = lens.surfaces()[position];
     const double end = std::min(lens_detail::equator(surface), surface.semi_diameter);
     const std::optional<double> declared = rows.surfaces[position].semi_diameter;
-    // An aperture that ends where two surfaces meet is reported as an overlap.
+    // If an aperture ends because two surfaces meet, an overlap is reported instead.
     const bool meets_another = surface.semi_diameter == surface.edge;
     if (declared && std::isfinite(*declared) && surface.semi_diameter > 0 && *declared > end && !meets_another) {
       findings.push_back(
@@ -101,7 +101,8 @@ std::optional<double> f_number_with(const Prescription& prescription, double fac
   return real_f_number(lens);
 }
 
-/// Factor by which all apertures are too large: 2 or 0.5 if that explains the declared f-number; nullopt otherwise.
+/// Factor by which all apertures are too large: 2 or 0.5 if such a factor explains the declared f-number; nullopt
+/// otherwise.
 std::optional<double> aperture_factor(const Prescription& prescription, double f_number,
                                       const GlassCatalogue* glasses) {
   const double factor = f_number < *prescription.f_number ? 2 : 0.5;
@@ -111,7 +112,7 @@ std::optional<double> aperture_factor(const Prescription& prescription, double f
   return {};
 }
 
-/// Reports the rim that clips the axial beam first, if that happens well before the marked stop clips the beam.
+/// Reports the rim that clips the axial beam first, if its beam is clearly narrower than the beam of the marked stop.
 void check_stop(const Lens& lens, Findings& findings) {
   constexpr double well_before = 0.7;
   if (!lens.stop()) return;
@@ -213,11 +214,11 @@ void check_size(const Lens& lens, const Film& film, Findings& findings) {
 }
 
 void check_pixels(const Lens& lens, const Film& film, Findings& findings) {
-  // Images of an anamorphic lens are stretched later, or by such pixels.
+  // Images of an anamorphic lens are stretched afterwards, or have pixels of such a shape.
   if (!with_iris(lens, {}).rotationally_symmetric()) return;
   const double width = film.width_mm / film.columns, height = film.height_mm / film.rows;
   const double wanted_height = width * film.rows;
-  // With few pixels, a film of whole pixels is slightly too high or too low.
+  // With few pixels, rounding to whole pixels changes the height of the film slightly.
   if (std::abs(width / height - 1) <= 0.005 || std::abs(film.height_mm - wanted_height) < width) return;
   findings.push_back({Kind::pixel_shape,
                       {},

@@ -31,7 +31,7 @@ std::vector<double> depths_of(const Lens& lens, const SceneRequirements& scene) 
                 to_text(std::max(from_z, 0.0), 6) + " mm, in front of the lens, and as far or farther");
   }
   const double nearest = scene.near_mm + (film_z - from_z), farthest = scene.far_mm + (film_z - from_z);
-  // A finite plane that gives the same errors as planes near infinity, where only angles count.
+  // A finite plane, with nearly the same errors as planes at infinity, where errors are angles.
   const double last = std::isinf(farthest) ? 1e4 * nearest : farthest;
   constexpr int steps = 4;
   std::vector<double> distances;
@@ -49,7 +49,7 @@ std::vector<double> depths_of(const Lens& lens, const SceneRequirements& scene) 
   return depths;
 }
 
-/// The lens with the aperture of the scene, the samples, and the exact measurements.
+/// The lens stopped down to the aperture of the scene, the samples, and the exact measurements.
 struct Setting {
   Setting(const Lens& whole, const SceneRequirements& scene, std::span<const Tolerance> tolerances, int threads)
       : lens(scene.f_number ? with_f_number(whole, *scene.f_number, whole.primary_wavelength()) : whole),
@@ -103,7 +103,7 @@ std::size_t central_of(const Lens& lens, const std::vector<std::size_t>& wavelen
 }
 
 /// Costs of models from noisy times. pinhole, thin and thick run the same loops; two discs add the look-up of a table;
-/// polynomials add a sum of terms and cost more with more terms.
+/// polynomials add a sum of terms and take longer with more terms.
 std::vector<double> costs(std::span<const AnyRayModel> models, std::vector<double> times) {
   double discs = std::numeric_limits<double>::infinity(), simpler = 0;
   const auto one_disc = [](ModelKind kind) { return kind.is_first_order() && kind != ModelKind::thin_two_disc; };
@@ -151,7 +151,7 @@ ModelTable model_table(const Lens& given, const SceneRequirements& scene, std::s
                               model == ModelKind::exact_float ? noise_guard : smooth_guard);
     const auto pupils = setting.pupils->measure(pupils_of(*built));
     candidate.error = {found.all, found.wavelength, pupils.shape, pupils.exposure};
-    // Rounding in float adds noise to smooth errors.
+    // Rounding in float adds noise to the smooth errors.
     candidate.bound_px = (rays.mm + (model == ModelKind::exact_double ? 0 : rounding)) / film.pixel_mm();
     candidate.bound_of_blur = rays.of_blur;
     // The exact model is the reference: its errors are 0 without uncertainty.
@@ -179,7 +179,7 @@ ModelTable model_table(const Lens& given, const SceneRequirements& scene, std::s
     };
     table.one_wavelength = guarded(setting.rays->largest(setting.rays->measure(one), one), tolerances, smooth_guard);
   }
-  // Every film point with the pupil of the film centre.
+  // Assign the pupil of the film centre to every film point.
   const FilmPoint middle{film.shift_x_mm, film.shift_y_mm};
   const Tracing from_middle = [&](const PointLines& lines, std::size_t w, PointRays& rays) {
     PointLines moved(middle);

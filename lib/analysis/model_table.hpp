@@ -17,7 +17,8 @@ struct ModelTable {
   /// Bounds of errors divided by tolerances, [model][tolerance].
   std::vector<std::vector<double>> of_tolerance;
 
-  /// Bounds of the errors of one wavelength for all, and of chief rays to first order. nullopt if not measurable.
+  /// Bounds of the errors if one wavelength represents all, and if chief rays are traced to first order. nullopt if not
+  /// measurable.
   std::optional<RayStudy::Largest> one_wavelength, no_distortion;
   double pixel_mm = 0;
   std::size_t wavelengths = 1;

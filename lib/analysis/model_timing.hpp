@@ -9,8 +9,8 @@
 
 namespace petzval::analysis_detail {
 
-/// Time per ray of each model, ns, in batches of float (exact_double: double) on this thread. The best of several
-/// rounds in which the models alternate, so that other load on the machine affects all models equally.
+/// Time per ray of each model, ns, in batches of float (exact_double: double) on this thread. Each time is the minimum
+/// over several rounds. A round times every model once, so that other load on the machine affects all models equally.
 std::vector<double> time_rays(std::span<const AnyRayModel> models, const Film& film);
 
 }  // namespace petzval::analysis_detail

@@ -9,8 +9,8 @@
 
 namespace petzval::analysis_detail {
 
-/// Partial sums, or maxima, over every eighth point. A loop over points may run on SIMD lanes, and its result does not
-/// depend on the lanes.
+/// Partial sums, or maxima, each over every eighth point. A loop over points may run on SIMD lanes, and its result does
+/// not depend on the number of lanes.
 using PartialSums = std::array<double, 8>;
 
 inline double sum(const PartialSums& parts) noexcept { return std::accumulate(parts.begin(), parts.end(), 0.0); }

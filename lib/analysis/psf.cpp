@@ -41,9 +41,9 @@ void validate(const PsfOptions& options) {
   }
 }
 
-/// Number of consecutive parts of one sequence, from which errors are estimated. Parts with a scrambling of their own
-/// would give unbiased estimates, but the error of all eight is 1.2 to 3.5 times as large, so that the bound would not
-/// be lower and the image worse (tests/analysis/psf_sampling_test.cpp).
+/// Number of consecutive parts of one sequence, from which errors are estimated. Separately scrambled parts would give
+/// unbiased estimates, but their common error would be 1.2 to 3.5 times as large: the bound would not be lower, and the
+/// image would be worse (tests/analysis/psf_sampling_test.cpp).
 constexpr std::size_t parts = 8;
 
 /// Rays of a point at a wavelength, for `count` samples of a sequence from `first` on.
@@ -56,8 +56,8 @@ struct Rays {
   std::vector<std::vector<std::uint32_t>> units;  ///< per set, of each ray with a weight
   std::uint32_t sent = 0;                         ///< per wavelength
 
-  /// Sends the samples up to a number. The first call sends eight parts. Later calls must double the number: the eight
-  /// parts are merged in pairs, and the new samples are four more parts.
+  /// Sends the samples up to a number. The first call sends eight parts. Each later call must double the number: the
+  /// eight parts are merged in pairs, and the new samples are four more parts.
   void send(std::size_t wavelengths, std::uint32_t samples, const SendRays& send_rays) {
     const std::size_t first_part = sent == 0 ? 0 : parts / 2;
     for (std::size_t& own : part) own /= 2;
@@ -118,7 +118,8 @@ void fill_counts(Psf& psf, const Rays& rays) {
 
 constexpr std::size_t rings = std::tuple_size_v<decltype(PointImage::radial_profile)>;
 
-/// Counts of hits in rings of equal width around a centre. The last ring includes hits that rounding puts beyond.
+/// Counts of hits in rings of equal width around a centre. Hits outside the last ring, due to rounding, are counted in
+/// it.
 std::array<std::uint64_t, rings> count_by_ring(const RayBundle& hits, std::span<const std::uint32_t> units,
                                                const Vec2<double>& centre, double width) {
   constexpr std::size_t block = 256;
@@ -145,8 +146,8 @@ struct Rings {
   double width;
 };
 
-/// The light in the rings `own` of a part of the rays, as a fraction of the light on the paraxial entrance pupil. All
-/// rays if part == parts.
+/// The light in the rings `own`, of one part of the rays, as a fraction of the light on the paraxial entrance pupil.
+/// All rays are used if part == parts.
 std::array<double, rings> light_by_ring(const Psf& psf, const Rays& rays, const Rings& own, std::size_t part) {
   std::array<double, rings> light{};
   for (std::size_t i = 0; i < rays.sets.size(); ++i) {
@@ -158,12 +159,12 @@ std::array<double, rings> light_by_ring(const Psf& psf, const Rays& rays, const 
   return light;
 }
 
-/// Factor from the standard error to a bound that 95 of 100 new runs keep (tests/analysis/psf_error_test.cpp).
+/// Factor from the standard error to a bound that holds in 95 of 100 repeated runs (tests/analysis/psf_error_test.cpp).
 constexpr double confidence = 1.6;
-/// The factor for uneven rays, of which few determine the edge of a bright rim.
+/// The same factor for uneven rays, of which only a few determine the edge of a bright rim.
 constexpr double uneven_confidence = 3.6;
 
-/// Sets profile and error. Each part has its own rings, because the width of the rings contributes to the error.
+/// Sets profile and error. Each part has rings of its own width, because the width contributes to the error.
 void fill_profile(PointImage& image, const Rays& rays) {
   const double width = image.size.max_radius / rings;
   image.radial_profile = {};
@@ -208,7 +209,7 @@ RayBundle connected_rays(const Camera& camera, const PupilPlane& plane, std::siz
                                      : camera.sample_importance(point, at.x, at.y, wavelength);
       if (!(s.pdf > 0)) continue;
       const double cosine = std::abs(glm::dot(s.direction, plane.normal()));
-      // From solid angle, or area across the ray, to area of the plane.
+      // Factor from solid angle, or from area across the ray, to area of the plane.
       const double way = far ? 1 : glm::dot(plane.centre() - point, plane.normal()) / cosine;
       const double spread = way * way / cosine;
       x[i] = s.importance.film.x, y[i] = s.importance.film.y;

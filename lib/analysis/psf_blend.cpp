@@ -14,13 +14,14 @@ namespace {
 
 using analysis_detail::WeightedKernel;
 
-/// The bundle between the bundles of several kernels: mean hits, and the fraction of kernels whose ray passes.
+/// The bundle interpolated between the bundles of several kernels: mean hits, and the fraction of kernels in which the
+/// ray passes.
 struct MeanBundle {
   int side = 0;
   std::vector<double> x, y, passing;
 
-  /// A ray that passes in all kernels has smooth means. Near the edge of the pupil, where some kernels lose the ray,
-  /// the linear means of the adjacent kernels with the ray are used.
+  /// If the ray passes in all kernels, smooth means are used. Near the edge of the pupil, where some kernels lose the
+  /// ray, linear means over the adjacent kernels with the ray are used.
   explicit MeanBundle(std::span<const WeightedKernel> nodes) : side(nodes.front().kernel->pixels) {
     const std::size_t count = nodes.front().kernel->hits_x.size();
     x.assign(count, 0.0), y = passing = x;
@@ -45,7 +46,7 @@ struct MeanBundle {
   };
 
   /// u in turns and v as squared radius, as in PupilSampler. Linear between rays. Extrapolates beyond the last rays at
-  /// centre and rim if all four neighbours pass completely.
+  /// the centre and the rim if all four neighbours pass in all kernels.
   Hit at(double u, double v) const noexcept {
     const double column = u * side - 0.5 + side, row = std::sqrt(v) * side - 0.5;  // u is periodic
     const int c = static_cast<int>(column), r = std::clamp(static_cast<int>(std::floor(row)), 0, side - 2);
@@ -75,8 +76,8 @@ PsfKernel analysis_detail::blend(std::span<const WeightedKernel> nodes) {
   PsfKernel result;
   result.pixels = nodes.front().kernel->pixels;
   result.chief_ray = true;
-  // The light is proportional to the area of the pupil: the square of an amplitude that is smooth in f-number and field
-  // up to dark nodes.
+  // The light is proportional to the area of the pupil: the square of an amplitude that is a smooth function of
+  // f-number and field up to nodes without light.
   double most = 0, amplitude = 0, linear_amplitude = 0;
   bool dark = false;
   for (const auto& [kernel, smooth, linear] : nodes) {
@@ -107,7 +108,7 @@ PsfKernel analysis_detail::blend(std::span<const WeightedKernel> nodes) {
   if (!lit) return result;
   result.pixel_mm = 2 * analysis_detail::fitting_half_width(half) / result.pixels;
 
-  // The bundle is sampled as rays are, each time from the same points of the pupil.
+  // The bundle is sampled like a pupil, always at the same pupil points.
   constexpr std::size_t samples = 1u << 20, block = 4096;
   std::vector<double> u(block), v(block), light(plane, 0.0);
   const double per_mm = 1 / result.pixel_mm, middle = result.pixels / 2.0;

@@ -14,7 +14,7 @@ struct WeightedKernel {
   double smooth, linear;
 };
 
-/// The kernel between several nodes, for PsfSet::at(). All have the same number of pixels.
+/// Interpolates a kernel between several nodes, for PsfSet::at(). All nodes must have the same number of pixels.
 PsfKernel blend(std::span<const WeightedKernel> nodes);
 
 }  // namespace petzval::analysis_detail

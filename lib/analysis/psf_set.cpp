@@ -20,7 +20,7 @@
 namespace petzval {
 namespace {
 
-/// Traces the bundle of a kernel. Each ray carries its index as weight, which identifies the rays that are not lost.
+/// Traces the bundle of a kernel. Each ray has its index as weight, which identifies the rays that pass.
 void fill_hits(PsfKernel& kernel, const Lens& lens, const PupilSampler& pupil) {
   const auto side = static_cast<std::size_t>(kernel.pixels), count = side * side;
   kernel.hits_x.assign(count, std::numeric_limits<float>::quiet_NaN());
@@ -76,7 +76,7 @@ struct AxisNode {
   double smooth, linear;
 };
 
-/// The node at the value, or up to two nodes on each side of the value.
+/// The node at the value, or up to two nodes on either side of the value.
 std::vector<AxisNode> around(const std::vector<double>& axis, double at, const char* name, bool inverse) {
   if (!(at >= axis.front() && at <= axis.back())) {
     throw Error(std::string("PSF set: ") + name + " = " + to_text(at) + "; must be " +

@@ -24,15 +24,16 @@ struct ModelPupils {
 ModelPupils pupils_of(const AnyRayModel& model);
 
 /// Errors of pupils and exposures relative to a lens whose pupils are traced once. Areas and integrals are means over
-/// uniform samples of a pupil times its area, so results do not depend on the size of a pupil.
+/// uniform samples of a pupil times its area, so that the relative accuracy does not depend on the size of a pupil.
 class PupilStudy {
  public:
   /// Uses its own film points. The exact model must outlive the study.
   PupilStudy(const camera_detail::ExactModel<double>& exact, const Film& film, std::size_t film_points,
              const ErrorSamples& samples);
 
-  /// Largest errors over film points and wavelengths. Other samples stay below the bounds: a sampled fraction p
-  /// scatters by at most sqrt(p / samples), and film points between the samples differ little.
+  /// Largest errors over film points and wavelengths, with bounds for the other film points and samples: a sampled
+  /// fraction p has a standard deviation of at most sqrt(p / samples), and film points between the samples differ
+  /// little.
   struct Found {
     double shape = 0, exposure = 0, shape_bound = 0, exposure_bound = 0;
   };

@@ -22,7 +22,7 @@ std::optional<Spacing> spacing_of(const Lens& lens, std::size_t surface, std::si
   const double front_rim = lens.data().rims[surface], rear_rim = lens.data().rims[next];
   const double distance = rear.vertex_z - front.vertex_z;
   const double from = std::max(front.obscuration_semi_diameter, rear.obscuration_semi_diameter);
-  // Slightly inside the equator: rounding must not lead to heights at which a sag has no value.
+  // Slightly below the equator: rounding must not lead to heights at which the sag is undefined.
   const double equator = std::min(lens_detail::equator(front), lens_detail::equator(rear)) * (1 - 1e-15);
   const double to = std::min({front_rim, rear_rim, equator});
   // Behind a mirror light runs backwards, and the next surface lies at smaller z.

@@ -14,9 +14,9 @@ struct Spacing {
   double height;  ///< from the axis, mm
 };
 
-/// The least spacing between a surface and the next surface that is the stop or changes rays, within both apertures of
-/// the prescription. nullopt if they have no height in common. If either is unlimited, only a vertex on the wrong side
-/// of a mirror is detected.
+/// The least spacing between a surface and the next surface that is the stop or changes rays, up to the smaller of both
+/// apertures in the prescription. nullopt if the surfaces have no height in common. If either aperture is unlimited,
+/// only a vertex on the wrong side of a mirror is detected.
 std::optional<Spacing> least_spacing(const Lens& lens, std::size_t surface);
 
 }  // namespace petzval::analysis_detail

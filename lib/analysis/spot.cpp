@@ -30,7 +30,8 @@ SpotSize size_of(const Sets& sets) noexcept {
   const double n = analysis_detail::sum(weights);
   if (!(n > 0)) return size;
 
-  // Relative to one of the points: rounding errors then scale with the spot instead of its height.
+  // Sums are relative to one of the points: rounding errors are then proportional to the size of the spot and not to
+  // its height.
   const double x0 = size.centroid.x, y0 = size.centroid.y;
   analysis_detail::PartialSums dx{}, dy{};
   analysis_detail::for_each(sets, [&](std::size_t part, double x, double y, double w) {
@@ -61,7 +62,7 @@ std::optional<double> chief_ray_height(const Lens& lens, const FieldPoint& point
   return hit ? std::optional(hit->y) : std::nullopt;
 }
 
-/// The film of least RMS radius at one wavelength.
+/// The film with the least RMS radius at one wavelength.
 std::optional<double> sharpest_film(const Lens& lens, double subject_z, std::size_t wavelength) {
   FocusOptions options{.criterion = FocusCriterion::min_rms};
   options.wavelength_weights.assign(lens.wavelengths_nm().size(), 0);

@@ -54,7 +54,7 @@ struct NodeAxis {
 /// A function of the raster, interpolated in the cells in which interpolation is accurate.
 class NodeGrid {
  public:
-  /// error: error of a position in place of another position; acceptable up to 1.
+  /// error: error of using one position instead of another; acceptable up to 1.
   NodeGrid(const PlaceOf& place_of, const ErrorOf& error, const NodeAxis& x, const NodeAxis& y, int threads)
       : place_of_(place_of),
         x_(x),
@@ -93,7 +93,8 @@ class NodeGrid {
     const Vec2<double> middle{x_.node(column) + x_.step / 2, y_.node(row) + y_.step / 2};
     const Place there = place_of_(middle);
     if (!there) return {.kind = Cell::rough};
-    // Tries polynomials of many nodes, then of few, with the cell as close to their middle as dark nodes allow.
+    // Try polynomials of many nodes, then of few nodes. The cell is as close to the middle of the nodes as nodes
+    // without values allow.
     for (const int nodes : {most_nodes, 4}) {
       const int before = nodes / 2 - 1;
       for (const int left : {column - before, column - before - 1, column - before + 1}) {
@@ -153,7 +154,7 @@ StMap map_of(const PlaceOf& place_of, const PlaceOf& raster, const Film& film, i
   const auto pixels = static_cast<std::size_t>(map.width) * static_cast<std::size_t>(map.height);
   map.s.assign(pixels, blind), map.t.assign(pixels, blind);
   const double cell = std::min(widest_cell, static_cast<double>(std::max(map.width, map.height)) / least_cells);
-  // Tolerance: 0.0005 pixels in the middle of the picture, twice as much in its corners, more far outside.
+  // Tolerance: 0.0005 pixels in the middle of the picture, twice as much in its corners, and more outside.
   const Vec2<double> size{film.columns, film.rows};
   const auto error = [&](const Vec2<double>& a, const Vec2<double>& b) {
     const Place at = raster(a), wanted = raster(b);
@@ -215,7 +216,7 @@ StMaps st_maps(const LensDistortion& distortion, const StMapOptions& options) {
   const Film& film = distortion.camera().film();
   const auto [margin_x, margin_y] = margin_of(distortion, options);
   const Vec2<double> centre = distortion.centre(), focal_length = distortion.focal_length_px();
-  // The pinhole image of a wide field is not a polynomial of the lens image. The sines of its directions are bounded.
+  // For a wide field, the pinhole image is not a polynomial of the lens image; the sines of its directions are bounded.
   const auto sines = [&](const Vec2<double>& at) -> Place {
     const auto place = distortion.undistorted(at);
     if (!place) return {};

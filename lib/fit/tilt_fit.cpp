@@ -37,7 +37,8 @@ TiltOptions checked(TiltOptions options, double unset_z) {
   return options;
 }
 
-/// The point of `film` on the chief ray through the picture's centre on the film `before`; nullopt if parallel.
+/// The point at which the chief ray of the picture centre on the film `before` meets `film`; nullopt if the ray is
+/// parallel to `film`.
 std::optional<FilmPoint> carried_centre(const IdealLens& lens, const Film& before, const Film& film) {
   const Vec3<double> middle = before.position({before.shift_x_mm, before.shift_y_mm});
   const double pupil_z = lens.pupils.exit.z;
@@ -88,7 +89,7 @@ TiltFit described(const IdealLens& lens, std::span<const FocusTarget> targets, c
   return fit;
 }
 
-/// The problem with outliers weighted down or removed.
+/// The problem with reduced weights for outliers, or without outliers.
 fit_detail::TiltProblem problem_without_outliers(const IdealLens& lens, std::span<fit_detail::SeenTarget> seen,
                                                  const TiltOptions& options) {
   constexpr std::size_t fewest = 5;  // targets needed to identify an outlier
@@ -165,8 +166,8 @@ TiltFit fit_tilt(const ImageRays& lens, std::span<const FocusTarget> targets, co
     const std::optional<BundleBlur> blur = blur_on(bundles[i], film);
     return blur ? blur->signed_diameter : std::numeric_limits<double>::quiet_NaN();
   });
-  // Aberrations move the film by nearly the same distance for all subjects. The plane of focus is therefore taken from
-  // the film that the cardinal points give for the same targets.
+  // Aberrations move the film by nearly the same distance for all subjects. The plane of focus is therefore computed
+  // from the film of the thick lens for the same targets.
   if (fit) fit.focus = focus_plane(ideal, problem.frame.film(thick.film, options.film));
   return fit;
 }

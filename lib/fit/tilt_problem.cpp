@@ -18,9 +18,9 @@ FilmSlopes film_of(const focus_detail::PlaneFit& fit, const IdealLens& lens, con
   return {(z - frame.origin.z) / frame.unit, p, q};
 }
 
-/// Main direction and spreads of the images, and the limits of the slopes. The limits fall to 0 as the targets shrink
-/// to one point of the picture, and the limit across the main direction as they approach a line. The film then passes
-/// continuously through the film of least tilt when the plane of the targets turns over.
+/// Main direction and spreads of the images, and the limits of the slopes. The limits fall to 0 as the images of the
+/// targets move together, and the limit across the main direction falls to 0 as the images approach a line. When the
+/// plane of the targets turns through a line of sight, the film therefore changes continuously.
 TiltSpace tilt_space(const focus_detail::PlaneFit& fit, std::span<const IdealBlur> blurs, double max_tilt) {
   TiltSpace space;
   space.parameters = static_cast<int>(fit.rank);
@@ -100,7 +100,7 @@ std::vector<SeenTarget> seen_targets(const IdealLens& lens, std::span<const Focu
 
 TiltProblem tilt_problem(const IdealLens& lens, std::span<const SeenTarget> targets, double max_tilt) {
   TiltProblem problem;
-  // Cones and weights are divided by the largest to keep their squares from overflowing.
+  // Cones and weights are divided by their largest values so that their squares do not overflow.
   double largest = 0, largest_cone = 0, weights = 0;
   for (const SeenTarget& target : targets) {
     if (!(target.weight > 0)) continue;

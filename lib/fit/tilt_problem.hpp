@@ -21,17 +21,17 @@ struct FilmSlopes {
   double z = 0, p = 0, q = 0;
 };
 
-/// The coordinates of a fit: in focal lengths, relative to the centroid of the image points that the film should
-/// contain, which makes z and the slopes of a film independent.
+/// The coordinates of a fit: in focal lengths, relative to the centroid of the points at which chief rays should meet
+/// the film. With this origin, z and the slopes of a film are determined independently.
 struct TiltFrame {
   Vec3<double> origin{0, 0, 0};
   double unit = 1;
 
-  /// `like` with the position, tilt and swing given by `slopes`.
+  /// A copy of the film `like`, with the position, tilt and swing of `slopes`.
   Film film(const FilmSlopes& slopes, const Film& like) const;
 };
 
-/// The films among which a fit chooses. parameters: 1, 2 or 3, the number that the targets determine.
+/// The set of films that a fit searches. parameters: 1, 2 or 3, the number that the targets determine.
 struct TiltSpace {
   int parameters = 1;                                  ///< z; slope along the main direction; slope across
   double along_x = 1, along_y = 0;                     ///< unit vector: main direction of the images of the targets
@@ -53,12 +53,12 @@ class BlurErrors {
  public:
   virtual ~BlurErrors() = default;
   virtual int rows() const noexcept = 0;
-  /// errors: rows() values. derivatives: rows() x 3, with respect to z, p and q; may be null. Returns false if light
-  /// does not reach the front of the film.
+  /// errors: rows() values. derivatives: rows() x 3, with respect to z, p and q; may be null. Returns false if the rays
+  /// do not reach the front of the film.
   virtual bool operator()(const FilmSlopes& film, double* errors, double* derivatives) const = 0;
 };
 
-/// The blur of an ideal lens: root k (z - V), measured along the chief ray, which should meet the film at V.
+/// The blur of an ideal lens: root * k (z - V), measured along the chief ray, which should meet the film at V.
 class IdealBlur final : public BlurErrors {
  public:
   double x = 0, y = 0, z = 0, slope_x = 0, slope_y = 0;  ///< in coordinates of the frame
@@ -93,14 +93,15 @@ struct TiltSolution {
   FilmSlopes film;
   double restraint = 0;  ///< Lagrange multiplier of the slope limit
 };
-/// The film of least squared errors within the slope limit. Few steps if `start` converged for nearly the same errors.
+/// The film with the least sum of squared errors within the slope limit. It takes few steps if `start` is the solution
+/// for nearly the same errors.
 TiltSolution least_blur(std::span<const BlurErrors* const> errors, const TiltSpace& space, const TiltSolution& start);
-/// The film of least Tukey loss (biweight; errors above `reach` have no weight), without a slope limit. nullopt if the
-/// search does not converge.
+/// The film with the least Tukey loss (biweight; errors above `reach` have no weight), without a slope limit. nullopt
+/// if the search does not converge.
 std::optional<FilmSlopes> least_tukey_loss(std::span<const BlurErrors* const> errors, std::span<const double> weights,
                                            const TiltSpace& space, const FilmSlopes& start, double reach);
 
-/// The fraction of its weight that each target of problem.used keeps, 0 to 1.
+/// The fraction of its weight, 0 to 1, that each target of problem.used keeps.
 std::vector<double> robust_weights(const TiltProblem& problem, std::span<const SeenTarget> targets);
 
 }  // namespace petzval::fit_detail

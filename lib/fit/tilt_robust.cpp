@@ -92,7 +92,7 @@ LeastMedian least_median(std::span<const IdealBlur> blurs, const TiltSpace& spac
 }  // namespace
 
 std::vector<double> robust_weights(const TiltProblem& problem, std::span<const SeenTarget> targets) {
-  // In units of the mean cone, to which `rounding` below refers.
+  // In units of the mean cone, to which the constant `rounding` below is relative.
   std::vector<IdealBlur> blurs = problem.blurs;
   std::vector<double> weights;
   double cones = 0;
@@ -105,7 +105,7 @@ std::vector<double> robust_weights(const TiltProblem& problem, std::span<const S
   const double largest = *std::max_element(weights.begin(), weights.end());
   for (double& weight : weights) weight /= largest;
 
-  // The median of exact targets is a rounding error and must not set the scale for outliers.
+  // The median for exact targets is a rounding error, which must not set the scale for outliers.
   constexpr double rounding = 1e-11;
   const LeastMedian start = least_median(blurs, problem.space);
   const double spare = static_cast<double>(blurs.size()) - problem.space.parameters;

@@ -41,7 +41,7 @@ class FilmChart {
   int parameters_;
 };
 
-/// A penalty on slopes, whose square grows from 0 to `strength` at the slope limit.
+/// A penalty on slopes; its square grows from 0 to `strength` at the slope limit.
 class Restraint final : public BlurErrors {
  public:
   Restraint(const TiltSpace& space, double strength) : root_(std::sqrt(strength)) {
@@ -65,7 +65,7 @@ class Restraint final : public BlurErrors {
   double root_;
 };
 
-/// Error of a film whose front is not reached by light, so large that the solver rejects the step.
+/// Error of a film whose front the rays do not reach: so large that the solver rejects the step.
 constexpr double hopeless = 1e100;
 
 class ChartedErrors final : public ceres::CostFunction {
@@ -101,7 +101,7 @@ struct NormalEquations {
   Eigen::Matrix3d products = Eigen::Matrix3d::Identity();
   Eigen::Vector3d gradient = Eigen::Vector3d::Zero();
 };
-/// nullopt if light does not reach the front of the film.
+/// nullopt if the rays do not reach the front of the film.
 std::optional<NormalEquations> normal_equations(std::span<const BlurErrors* const> errors, const FilmChart& chart,
                                                 const FilmSlopes& film) {
   const int columns = chart.parameters();
@@ -118,8 +118,8 @@ std::optional<NormalEquations> normal_equations(std::span<const BlurErrors* cons
   return result;
 }
 
-/// Gauss-Newton steps without a test of descent: below half of the digits the sum of squares no longer distinguishes
-/// films, but the gradient still differs.
+/// Gauss-Newton steps without a test of descent: differences between films below half of the digits do not change the
+/// sum of squares, but they change the gradient.
 FilmSlopes polished(std::span<const BlurErrors* const> errors, const FilmChart& chart) {
   Eigen::Vector3d place = Eigen::Vector3d::Zero();
   for (int i = 0; i < 8; ++i) {
@@ -135,7 +135,8 @@ FilmSlopes polished(std::span<const BlurErrors* const> errors, const FilmChart& 
   return chart(place.data());
 }
 
-/// Moves `film` to the least sum of losses over the first parameters. Returns false, without a move, if not converged.
+/// Moves `film` to the least sum of losses over the first parameters. Returns false, and leaves `film` unchanged, if
+/// the search does not converge.
 bool minimise(std::span<const BlurErrors* const> errors, std::span<ceres::LossFunction* const> losses,
               const TiltSpace& space, int parameter_count, FilmSlopes& film) {
   const FilmChart chart(space, film, parameter_count);
@@ -179,8 +180,8 @@ double part_of_limit(const TiltSpace& space, const FilmSlopes& film) {
 }
 
 /// The minimum of a sum of squares within the slope limit, starting at a film nearby. Each Gauss-Newton step goes to
-/// the best film within the limit by the last normal equations. nullopt if the steps do not shrink fast; if they do,
-/// they end at a minimum, because the neglected second derivatives are small.
+/// the best film within the limit by the latest normal equations. nullopt if the steps do not become shorter quickly;
+/// if they do, they end at a minimum, because the neglected second derivatives are small.
 std::optional<TiltSolution> least_nearby(std::span<const BlurErrors* const> errors, const TiltSpace& space,
                                          FilmSlopes film) {
   TiltSolution result;
@@ -248,9 +249,10 @@ TiltSolution least_blur(std::span<const BlurErrors* const> errors, const TiltSpa
   if (part_of_limit(space, result.film) > 1) bring_to_limit();
 
   // The best film within the limit is either the unrestricted minimum or lies on the limit. A film on the limit is also
-  // the unrestricted minimum with a penalty on squared slopes, whose price is the Lagrange multiplier. Slopes decrease
-  // monotonically with the price, and their reciprocals are nearly linear in the price. Unlike an angle around the
-  // limit, the price has one solution, continuous in the targets even if the unrestricted minimum is far away.
+  // the unrestricted minimum with a penalty on squared slopes, whose factor (the price) is the Lagrange multiplier.
+  // Slopes decrease monotonically with the price, and their reciprocals are nearly linear in the price. Unlike an angle
+  // along the limit, the price has a single solution, which is continuous in the targets even if the unrestricted
+  // minimum is far away.
   const double wide = std::max(space.spread_along, space.spread_across) * space.largest_slope;
   const double scale = wide * wide;  // price that approximately halves the slopes
   constexpr double infinity = std::numeric_limits<double>::infinity();
@@ -261,7 +263,7 @@ TiltSolution least_blur(std::span<const BlurErrors* const> errors, const TiltSpa
     std::vector<const BlurErrors*> all(errors.begin(), errors.end());
     if (price > 0) all.push_back(&restraint);
     result.converged = minimise(all, {}, space, space.parameters, result.film);
-    // A search that diverged did so beyond the limit.
+    // If the search diverged, the slopes exceeded the limit.
     const double excess = result.converged ? 1 - std::min(1 / part_of_limit(space, result.film), 1e100) : 1;
     if (price == 0 && excess <= 1e-14) {
       result.limited = false;

@@ -28,7 +28,7 @@ Film moved(Film film, double z) noexcept {
   return film;
 }
 
-/// The film before the move. Throws Error if the film is tilted or its position is not finite.
+/// The film before the move, with its position set. Throws Error if the film is tilted or its position is not finite.
 Film standing(const Film& film, double unset_z) {
   const double z = film.z_mm.value_or(unset_z);
   if (!std::isfinite(z)) throw Error("autofocus: film: z = " + to_text(z) + " mm; must be finite");
@@ -43,10 +43,10 @@ Film standing(const Film& film, double unset_z) {
 struct Request {
   TargetUse use = TargetUse::used;
   double film_z = nan;   ///< position at which the blur equals the target's blur; NaN if there is no image
-  double steepness = 0;  ///< derivative of the blur diameter by the film position
+  double steepness = 0;  ///< derivative of the blur diameter with respect to the film position
 };
 
-/// The request with its use set; film_z is NaN if the target is rejected.
+/// The request after a check of its target; film_z is NaN if the target is rejected.
 Request checked(const IdealLens& lens, const FocusTarget& target, Request request) {
   const double farthest = focus_detail::farthest_film * std::abs(lens.rear_focal_length);
   if (!focus_detail::well_formed(target)) return {TargetUse::not_finite, nan, 0};
@@ -64,7 +64,7 @@ double largest_weight(std::span<const FocusTarget> targets, std::span<const Requ
   return largest;
 }
 
-/// The film position of least squares; nullopt if no target can be used.
+/// The least-squares film position; nullopt if no target can be used.
 std::optional<double> least_squares(std::span<const FocusTarget> targets, std::span<const Request> requests) {
   const double largest = largest_weight(targets, requests);
   double weights = 0, sum = 0, from = 0;
@@ -79,8 +79,8 @@ std::optional<double> least_squares(std::span<const FocusTarget> targets, std::s
   return from + sum / weights;
 }
 
-/// before: the film before the move. infinity_z: the film that focuses infinity. blur_of: the blur on a film of a
-/// target that has an image.
+/// before: the film before the move. infinity_z: the film position that focuses infinity. blur_of: the blur, on a film,
+/// of a target that has an image.
 Autofocus described(const IdealLens& lens, std::span<const FocusTarget> targets, std::span<const Request> requests,
                     const Film& before, double infinity_z, std::optional<double> found, const auto& blur_of) {
   using enum AutofocusStatus;
@@ -100,7 +100,8 @@ Autofocus described(const IdealLens& lens, std::span<const FocusTarget> targets,
   return result;
 }
 
-/// The bundle of a scene point about its centroid, with weights of the sum 1; empty if the lens does not see the point.
+/// The bundle of a scene point relative to its centroid, with weights of the sum 1; empty if no ray of the point passes
+/// the lens.
 RayBundle centred_bundle(const ImageRays& lens, const ScenePoint& place) {
   RayBundle bundle = lens.bundle(place);
   focus_detail::centre(bundle);
@@ -114,7 +115,7 @@ double signed_diameter(const focus_detail::Image& image, double film_z) noexcept
                             : std::copysign(diameter, away);
 }
 
-/// The film with the given signed blur diameter; the sharpest film if every diameter is larger.
+/// The film position with the given signed blur diameter, or the sharpest film position if every diameter is larger.
 double film_of(const focus_detail::Image& image, double wanted) noexcept {
   if (wanted == 0) return image.film_z;
   if (image.rays.empty()) {
@@ -175,7 +176,7 @@ Autofocus autofocus(const ImageRays& lens, std::span<const FocusTarget> targets,
     } else {
       image = focus_detail::least_rms(rays);
       request.steepness = image.slope;
-      // At a smaller z the rays diverge behind the lens.
+      // Nearer to the lens, the rays diverge behind the lens.
       if (image.film_z > lens.ideal().rear_z) {
         request.film_z = film_of(image, target.blur_mm);
         if (!rms) image = focus_detail::least_maximum(rays);

@@ -55,7 +55,7 @@ Conjugates::Conjugates(const IdealLens& thick, FocusCriterion criterion, Distanc
     focal_distance = pupil_z - lens.front_focal_z;
   } else if (origin == DistanceOrigin::front_principal) {
     origin_z = thick.front_principal_z();
-    // For the thick lens one focal length, free of the rounding error in a difference of positions.
+    // A focal length is free of the rounding error that the difference of two positions would have.
     focal_distance = criterion == FocusCriterion::thin ? origin_z - lens.front_focal_z : lens.front_focal_length;
   }
 }

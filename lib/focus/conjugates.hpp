@@ -6,8 +6,8 @@
 
 namespace petzval::focus_detail {
 
-/// Subject and film as axial conjugates of an ideal lens, and the origin of distances. p is the distance of a subject
-/// in front of the front focal point; it is positive for every subject that can be focused.
+/// Subject and film as axial conjugates of an ideal lens, and the origin of distances. p is the distance of the subject
+/// from the front focal point, towards the scene; it is positive for every subject that can be focused.
 ///
 /// Searches use the vergence of the subject, its inverse distance to near_z. The vergence is continuous at infinity,
 /// and for equal vergences the paraxial and the exact film nearly coincide.
@@ -36,14 +36,14 @@ struct Conjugates {
   double subject_at(double vergence) const noexcept { return near_z - 1 / vergence; }
   double vergence_of_vertex() const noexcept { return 1 / near_z; }
 
-  /// Vergence of the subject whose paraxial image lies on a film. Continuous as the film moves to infinity
-  /// (vergence_of_infinite_film) and reappears in front of the lens.
+  /// Vergence of the subject whose paraxial image lies on a film. It stays continuous when the film moves to infinity
+  /// (vergence_of_infinite_film) and then comes back from in front of the lens.
   double vergence_of_film(double film_z) const noexcept;
   double vergence_of_infinite_film() const noexcept { return 1 / (near_z - lens.front_focal_z); }
 };
 
-/// The least p that can be focused. The subject must lie in front of the lens and, if distances count from the film,
-/// beyond the turning point, at which the distance between subject and film is least.
+/// The least p that can be focused. The subject must lie in front of the lens and, if distances are measured from the
+/// film, beyond the turning point, at which the distance between subject and film is least.
 double nearest_p(const Conjugates& c) noexcept;
 
 /// The solution if no subject has a real image.

@@ -31,7 +31,7 @@ class Excess {
 
   double operator()(double vergence) const {
     const auto image = solver_.image_at(vergence);
-    // Capped, because root() needs finite numbers.
+    // Limited, because root() needs finite numbers.
     return image ? std::min(image->diameter(film_z_), 4 * blur_) - blur_ : 3 * blur_;
   }
 
@@ -91,7 +91,7 @@ FocusSolution hyperfocal(const Lens& lens, double blur_mm, const FocusOptions& o
   // The film moves behind the infinity focus until the blur of infinity reaches blur_mm.
   const focus_detail::Conjugates& c = solver.conjugates();
   const auto excess = [&](double shift) { return infinite->diameter(focus + c.direction * shift) - blur_mm; };
-  // Large enough to change `focus` despite rounding.
+  // The shift must be large enough to change `focus` despite rounding.
   double shift = std::max(blur_mm, 4 * std::numeric_limits<double>::epsilon() * std::abs(focus));
   for (int i = 0; i < 100 && excess(shift) <= 0; ++i) shift *= 2;
   if (excess(shift) <= 0) return solver.nearest();

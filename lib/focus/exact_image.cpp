@@ -12,10 +12,11 @@
 namespace petzval::focus_detail {
 namespace {
 
-/// The rays of one field at all wavelengths and, if `rims`, along the rims of its pupils. nullopt if no light passes.
+/// The rays of one field at all wavelengths and, if `rims`, the rays along the rims of its pupils. nullopt if no ray
+/// passes.
 std::optional<RayBundle> field_rays(const Lens& lens, const FieldPoint& point,
                                     std::span<const WavelengthWeight> wavelengths, double plane_z, bool rims) {
-  // On the axis of a lens of revolution one meridian represents all, and the centroid is the axis.
+  // On the axis of a lens of revolution one meridian suffices, and the centroid is on the axis.
   const bool on_axis = point.field_rad == 0 && lens.rotationally_symmetric();
   constexpr std::size_t directions = 96;
   RayBundle bundle;

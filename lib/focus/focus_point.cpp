@@ -116,7 +116,7 @@ Vec3<double> seen(const ScenePoint& place, double principal_z) {
   return {point.x, point.y, point.inverse_distance};
 }
 
-/// nullopt if a vertex is not finite, or if the path leads from behind the lens to infinity.
+/// nullopt if a vertex is not finite, or if the path runs from a position behind the lens to infinity.
 std::optional<ScenePoint> place_at(const IdealLens& lens, const FocusPoint& point, const FocusMoment& moment) {
   if (const OnTriangle* triangle = only_triangle(point)) {
     std::array<double, 3> parts{};
@@ -126,7 +126,7 @@ std::optional<ScenePoint> place_at(const IdealLens& lens, const FocusPoint& poin
                          [&](std::size_t k) { return std::get<OnTriangle>(point.keys[k].anchor).barycentric[i]; });
       sum += parts[i];
     }
-    // Each coordinate stays within the range of its keys, but their sum may differ from 1.
+    // Each coordinate stays within the range of its keys, but the sum of the coordinates may differ from 1.
     for (double& part : parts) part /= sum;
     return ScenePoint{place_of(*triangle, parts, moment), false};
   }

@@ -9,7 +9,7 @@ namespace petzval::focus_detail {
 
 /// The image of one subject by a focus criterion: the position of the sharpest film, and the blur diameter on any film.
 struct PETZVAL_API Image {
-  double film_z = 0;  ///< infinite if the rays leave parallel
+  double film_z = 0;  ///< infinite if the rays behind the lens are parallel
   /// min_rms: the diameter is a hyperbola over the film position, with this minimum and this asymptotic slope.
   double least = 0, slope = 0;
   /// Other criteria: the diameter is twice the largest radius of these rays, relative to the centroids of their fields.
@@ -18,15 +18,15 @@ struct PETZVAL_API Image {
   double diameter(double film_z) const noexcept;
 };
 
-/// Scales the weights of a bundle with slopes to the sum 1 (equal weights if it has no weights) and makes points and
-/// slopes relative to their centroid. centroid_on_axis: points and slopes stay, because the centroid is the axis.
-/// Returns false if no ray has a weight.
+/// Scales the weights of a bundle with slopes to the sum 1 (equal weights if the bundle has none), and makes points and
+/// slopes relative to their centroid. centroid_on_axis: leaves points and slopes unchanged, because the centroid lies
+/// on the axis. Returns false if no ray has a weight.
 PETZVAL_API bool centre(RayBundle& bundle, bool centroid_on_axis = false);
 
-/// The image of least RMS radius. rays: a centred bundle, or several bundles whose weights sum to 1. film_z is infinite
-/// for parallel rays.
+/// The image with the least RMS radius. rays: a centred bundle, or several bundles whose weights sum to 1. film_z is
+/// infinite for parallel rays.
 PETZVAL_API Image least_rms(const RayBundle& rays);
-/// The image whose largest radius is least; ignores weights.
+/// The image with the least maximum radius; ignores weights.
 PETZVAL_API Image least_maximum(RayBundle rays);
 
 }  // namespace petzval::focus_detail

@@ -20,7 +20,7 @@
 namespace petzval {
 namespace {
 
-/// The point to which rays are sent for a scene point; nullopt if its coordinates are invalid.
+/// The point from which rays are sent for a scene point; nullopt if its coordinates are invalid.
 std::optional<Vec3<double>> seen_at(const ScenePoint& place) noexcept {
   const auto& [p, at_infinity] = place;
   constexpr double infinity = std::numeric_limits<double>::infinity();
@@ -52,7 +52,7 @@ std::optional<BundleBlur> blur_on(const RayBundle& bundle, const Film& film) {
   const auto rise = [&](std::size_t i) {
     return normal.x * bundle.slope_x[i] + normal.y * bundle.slope_y[i] + normal.z;
   };
-  // Relative to the point of the film on the axis.
+  // Relative to the point at which the film meets the axis.
   const auto hit = [&](std::size_t i) {
     const Ray<double> ray{{bundle.x[i], bundle.y[i], -to_film}, {bundle.slope_x[i], bundle.slope_y[i], 1}};
     return core_detail::meet_plane(ray, {0, 0, 0}, normal);
@@ -143,7 +143,7 @@ RayBundle ImageRays::bundle(const ScenePoint& place) const {
   }
   const std::size_t rays = data_->wanted;
   RayBundle bundle = data_->send(*point, rays);
-  // More rays if the lens blocks most of them, which happens without rotational symmetry.
+  // Send more rays if the lens blocks most of them, as can happen without rotational symmetry.
   const std::size_t kept = bundle.x.size();
   if (kept == 0 || 2 * kept >= rays) return bundle;
   return data_->send(*point, std::min(rays * rays / kept, 16 * rays));

@@ -8,7 +8,7 @@
 namespace petzval::focus_detail {
 
 /// A number over time: a piecewise cubic through keys, with a continuous derivative, that stays between the values of
-/// adjacent keys. Constant before the first key and after the last; the derivative is 0 at both.
+/// adjacent keys. It is constant before the first key and after the last key; the derivative at these two keys is 0.
 ///
 /// The slope at any other key is the weighted harmonic mean of the slopes on both sides, and 0 if they differ in sign.
 /// Source: Brodlie's formula in Fritsch and Butland 1984, "A method for constructing local monotone piecewise cubic

@@ -33,7 +33,7 @@ Lens with_moved_groups(const Lens& lens, double distance, const FocusOptions& op
   };
 
   // The error of the film position is nearly linear in the inverse distance of the group positions. The secant method
-  // ends at the rounding error of the film position.
+  // stops at the rounding error of the film position.
   double x = std::clamp(1 / distance, first, last), x_before = x;
   double error = 0, error_before = 0;
   for (int step = 0; step < 40; ++step) {

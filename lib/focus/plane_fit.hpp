@@ -38,9 +38,10 @@ struct PlaneFit {
   double aspect = 0;                ///< spread across divided by spread along
 };
 
-/// The weighted least squares plane in inverse distance. For a thin lens it is the plane of focus of least squared
-/// blur; it exists for all points. If the points are collinear in the picture (line_aspect), the slope across the line
-/// is 0; if they coincide (one_place), both slopes are 0. Both give the plane of least tilt. Weights: finite, >= 0.
+/// The weighted least-squares plane in inverse distance. For a thin lens it is the plane of focus with the least
+/// squared blur; it exists for all points. If the points are collinear in the picture (line_aspect), the slope across
+/// the line is set to 0; if they coincide (one_place), both slopes are set to 0. The result is then the plane of least
+/// tilt. Weights: finite, >= 0.
 PETZVAL_API PlaneFit fit_plane(std::span<const PicturePoint> points);
 
 /// The plane in the scene, with depths counted from z towards -z; normal.z >= 0. nullopt if the plane is at infinity.

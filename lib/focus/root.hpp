@@ -7,9 +7,9 @@
 
 namespace petzval::focus_detail {
 
-/// A zero of f between a and b, where f has opposite signs or is 0, within 2 eps of x plus eps^2 of |b - a|. Bisection,
-/// with inverse quadratic interpolation if the last three points show f to be nearly linear: at most five evaluations
-/// for each halving. f must be finite; it may jump, and may be constant far from the root.
+/// A zero of f between a and b, where f has opposite signs or is 0, within 2 eps of x plus eps^2 of |b - a|. Uses
+/// bisection and, if f is nearly linear between the last three points, inverse quadratic interpolation: at most five
+/// evaluations for each halving. f must be finite; it may jump, and may be constant far from the root.
 template <class Function>
 double root(const Function& f, double a, double b) {
   double at_a = f(a), at_b = f(b);
@@ -34,7 +34,7 @@ double root(const Function& f, double a, double b) {
 
     const double xi = (a - b) / (c - b), phi = (at_a - at_b) / (at_c - at_b);
     const bool straight = phi * phi < xi && (1 - phi) * (1 - phi) < 1 - xi;
-    // Next to a jump f looks linear, with a root at the next number.
+    // Close to a jump f appears linear, with a root at the next number.
     slow = std::abs(b - a) > width / 2 ? slow + 1 : 0;
     t = straight && slow < 4 ? at_a / (at_b - at_a) * at_c / (at_b - at_c) +
                                    (c - a) / (b - a) * at_a / (at_c - at_a) * at_b / (at_c - at_b)
@@ -44,9 +44,9 @@ double root(const Function& f, double a, double b) {
 }
 
 /// The maximum of f between from and to, from < to. Each step goes to the vertex of the parabola through the three
-/// highest points if these steps shrink, otherwise to a golden section. Between two equal values the search continues
-/// near `from`. f may be -infinity; a search that finds no other value ends within a thousandth of the range. Source:
-/// Brent 1973, "Algorithms for Minimization without Derivatives", chapter 5.
+/// highest points if these steps become shorter, otherwise to a golden section. If two values are equal, the search
+/// continues on the side of `from`. f may be -infinity; a search that finds no other value ends within a thousandth of
+/// the range. Source: Brent 1973, "Algorithms for Minimization without Derivatives", chapter 5.
 template <class Function>
 double highest(const Function& f, double from, double to, double tolerance) {
   constexpr double golden = 0.3819660112501051;

@@ -34,8 +34,8 @@ std::optional<double> Search::film(double vergence) const {
 }
 
 /// The vergence of the subject that belongs to a film, limited to cap_. A virtual image counts as a subject that is too
-/// near (cap_), a real image with a vergence beyond vergence_of_infinite_film as a subject that is too far (-cap_). If
-/// the lens images distant subjects inside itself, only the vergence decides.
+/// near (cap_); a real image with a vergence above vergence_of_infinite_film counts as a subject that is too far
+/// (-cap_). If the lens images distant subjects inside itself, only the vergence is used.
 double Search::film_vergence(double film_z) const noexcept {
   const double vergence = c_.vergence_of_film(film_z), infinite = c_.vergence_of_infinite_film();
   if (!c_.real(*infinite_film_)) return vergence < -infinite / 2 ? cap_ : std::min(vergence, cap_);
@@ -49,7 +49,7 @@ double Search::separation(double vergence) const {
   return film_z && c_.real(*film_z) ? *film_z - subject_at(vergence) : infinity;
 }
 
-/// The subject of a film farther out than the film for infinity; nullopt beyond the limit.
+/// The subject of a film that is farther from the lens than the film for infinity; nullopt beyond the limit.
 std::optional<double> Search::vergence_for(double wanted) const {
   const auto excess = [&](double vergence) {
     const auto film_z = film(vergence);
@@ -132,14 +132,14 @@ FocusSolution Search::focus(double distance) const {
   const double subject_z = std::isinf(distance) ? -infinity : c_.origin_z - distance;
   if (!(subject_z < 0)) return too_near();
   const double vergence = c_.vergence(subject_z);
-  // The pupil is not visible from points next to the front of the lens.
+  // Points close to the front of the lens may not see the pupil.
   const bool near = vergence > c_.vergence_of_infinite_film();
   const auto image = near ? solver_.image_seen(subject_z) : solver_.image(subject_z);
   if (!image) return near ? too_near() : FocusSolution{.status = no_rays};
   const double film_z = image->film_z;
   if (!c_.real(film_z)) return film_vergence(film_z) < c_.vergence_of_infinite_film() ? farthest() : too_near();
 
-  // Close to the limit the film may already have turned back.
+  // Close to the limit, the film may already move back towards the lens.
   if (vergence > c_.vergence_of_infinite_film() / 16) {
     const auto before = film(vergence * (1 - 1e-7));
     if (before && c_.vergence_of_film(*before) > c_.vergence_of_film(film_z)) return too_near();
@@ -155,7 +155,7 @@ FocusSolution Search::focus_from_film(double distance) const {
     low = c_.vergence(far.subject_z);
   }
 
-  // The separation falls from this vergence to the turning point; behind a single mirror there is no turning point.
+  // The separation decreases from this vergence to the turning point; behind a single mirror there is no turning point.
   double high = c_.vergence_of_infinite_film();
   if (c_.lens.product() > 0) {
     high = c_.vergence(c_.subject_z(nearest_p(c_)));

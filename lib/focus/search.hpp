@@ -7,12 +7,12 @@
 
 namespace petzval::focus_detail {
 
-/// Focus solvers by exact rays. Tracing gives the film of a subject; every other question is a search over the vergence
-/// of the subject (Conjugates), for which the paraxial film nearly equals the exact one.
+/// Focus solvers by exact rays. Tracing gives the film of a subject. All other results are found by a search over the
+/// vergence of the subject (Conjugates), for which the paraxial film nearly equals the exact film.
 ///
-/// The film moves out as the subject comes nearer, up to a limit. At the limit the film is at infinity or, because rays
-/// with aberrations never all leave parallel, turns back. Nearer subjects count as unreachable, so that film and
-/// subject determine each other.
+/// The film moves away from the lens as the subject comes nearer, up to a limit. At the limit the film is at infinity
+/// or, because rays with aberrations are never all parallel, starts to move back. Nearer subjects count as unreachable,
+/// so that each film has one subject.
 class Search {
  public:
   /// Throws Error as FocusSolver::image() does for a subject at infinity.

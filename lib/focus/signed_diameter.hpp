@@ -3,9 +3,9 @@
 
 namespace petzval::focus_detail {
 
-/// The blur diameter with its sign, negative in front of the plane of focus. defocus: the signed diameter due to
-/// defocus. The sign is positive if defocus is less than a tenth of the diameter: aberrations then dominate, and the
-/// sign would depend on single rays.
+/// The blur diameter with its sign, negative for points nearer than the plane of focus. defocus: the signed diameter
+/// due to defocus. The sign is positive if the absolute value of defocus is less than a tenth of the diameter:
+/// aberrations then dominate, and the sign would depend on single rays.
 inline double signed_diameter(double diameter, double defocus) noexcept {
   constexpr double least = 0.1;
   return defocus < -least * diameter ? -diameter : diameter;

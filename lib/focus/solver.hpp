@@ -14,7 +14,7 @@
 
 namespace petzval::focus_detail {
 
-/// Throw Error if the distance is NaN or not above 0, and if film_z is not finite.
+/// Throws Error if the distance is NaN or not above 0, or if film_z is not finite.
 void check_distance(const Lens& lens, double distance);
 void check_film(const Lens& lens, double film_z);
 
@@ -44,7 +44,8 @@ class FocusSolver {
   /// The image of a subject; nullopt if no ray of a field passes. Throws Error if the subject is not in front of the
   /// lens or nothing limits the beam.
   std::optional<Image> image(double subject_z) const;
-  /// nullopt also if image() throws, for example if the subject lies behind the rim of a concave first surface.
+  /// As image(), but nullopt instead of an Error, for example if the subject lies behind the rim of a concave first
+  /// surface.
   std::optional<Image> image_seen(double subject_z) const;
   /// image_seen() of the subject with this vergence (Conjugates).
   std::optional<Image> image_at(double vergence) const;

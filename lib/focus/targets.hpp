@@ -22,13 +22,14 @@ void check_extent(double stops, const std::string& where);
 
 /// Throws the errors of focus_targets().
 void check_points(std::span<const FocusPoint> points, const FocusMoment& moment);
-/// The target of a checked point at a moment, valid then or not. nullopt if it has no image on the moment's film.
+/// The target of a checked point at a moment, even if the point is not valid at this moment. nullopt if it has no image
+/// on the film of the moment.
 std::optional<FocusTarget> target_at(const IdealLens& lens, const FocusPoint& point, const FocusMoment& moment);
 /// Applies FocusMoment::nearer_weighs_more.
 void weigh_nearer_more(const IdealLens& lens, std::span<FocusTarget> targets);
 
-/// Largest distance of a film from the rear focal point, in focal lengths. An image farther away belongs to a point in
-/// the front focal plane or far off the axis.
+/// Largest distance of a film from the rear focal point, in focal lengths. The image of a point in the front focal
+/// plane, or far off the axis, is farther away.
 inline constexpr double farthest_film = 1e9;
 
 /// Pupil size for an extent of the depth of field in stops, relative to an extent of 0.
