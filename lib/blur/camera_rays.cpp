@@ -71,7 +71,8 @@ class RaysOfCamera {
       std::fill(found.begin(), found.end(), LayerRay{raster, {0, 0}, 0});
       return;
     }
-    // The pupil of the samples is slightly larger than the transmitted part. More samples measure the fraction.
+    // The pupil of the samples is slightly larger than the part that transmits rays. More samples measure the
+    // transmitted fraction.
     if (clips_) light = Bundle(camera_, film, light_points_, wavelength).mean_weight();
     const double scale = light * static_cast<double>(found.size()) / sum;
     for (LayerRay& ray : found) {
@@ -88,7 +89,7 @@ class RaysOfCamera {
             layers_.focal_px * Vec2<double>{o.x - run_x * way, -(o.y - run_y * way)}, weight};
   }
 
-  /// The ray of a lost sample, moved towards the middle of the pupil until it passes; weight 0 if no ray passes.
+  /// Moves a lost sample towards the centre of the pupil until its ray passes; weight 0 if no ray passes.
   LayerRay pulled_in(const FilmPoint& film, const PupilPoint& point, Wavelength wavelength) const {
     double passes = 0, lost = 1;  // fractions of v
     CameraRay found;

@@ -64,7 +64,7 @@ class Gathering {
         farthest_(all_.empty() ? 0 : all_.least) {}
 
   void run() {
-    // The corners of a tile lie in one cell of the table: rays are interpolated between the corners.
+    // The corners of a tile lie in one cell of the table, and its rays are interpolated between the corners.
     tile_columns_ = std::min(rays_.table.step, TileSums::columns);
     tile_rows_ = std::min(rays_.table.step, TileSums::rows);
     const int across = (picture_.columns + tile_columns_ - 1) / tile_columns_,
@@ -120,7 +120,7 @@ class Gathering {
     const auto rect_of = [&](const DepthRange& range) {
       const Limits reach = loops.limits(corners, corner_count, stride, stride, range.least, range.most);
       const int left = tile.left + overscan_, top = tile.top + overscan_;
-      // One pixel more, because positions are rounded.
+      // One more pixel on each side, because positions are rounded.
       return PixelRect{left + floor_of(reach.left) - 1, top + floor_of(reach.top) - 1,
                        left + tile.columns + floor_of(reach.right) + 1, top + tile.rows + floor_of(reach.bottom) + 1};
     };
@@ -135,7 +135,7 @@ class Gathering {
       rect = rect_of(range);
     }
 
-    // A ray without a hit is followed to the farthest of all depths, to see if it ends in the void.
+    // A ray without a hit is followed to the farthest of all depths, to detect if it ends in the void.
     const PixelRect all_read = rect_of({farthest_, range.empty() ? farthest_ : range.most, 1});
     TileJob job{.window = window(tile, all_read, range.empty() ? 1 : range.layers, channel, memory),
                 .columns = tile.columns,
@@ -204,7 +204,7 @@ class Gathering {
       for (int c = 0; c < 3; ++c) w.colour[c] = d.plane(0, 1 + (one ? static_cast<int>(channel) : c)) + at;
       return w;
     }
-    // A copy with repeated edges and without highlights.
+    // A copy with repeated edge pixels and without highlights.
     constexpr std::size_t slack = LayerData::slack;
     const std::size_t columns = static_cast<std::size_t>(rect.right - rect.left + 1),
                       rows = static_cast<std::size_t>(rect.bottom - rect.top + 1), plane = columns * rows + slack;
@@ -266,7 +266,7 @@ class Gathering {
           }
           const float known = total - sums.unknown[at];
           if (total > 0) unseen += sums.missed[at] / total;  // total is 0 in dark corners of the lens
-          // If nothing is known of the rays, the first layer is the best guess.
+          // If no ray is known, the first layer is the best guess.
           if (known > 1e-6f * total) {
             rgba[c] = colour / known * total * per_ray;
             alpha += layers_.opaque ? std::max(1 - sums.open[at] / known, 0.0f) : sums.alpha[at] / known;

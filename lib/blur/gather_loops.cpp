@@ -58,7 +58,7 @@ PETZVAL_INLINE Numbers load_every(const float* from, std::integer_sequence<int, 
   }
 }
 
-/// Loads pixels `side` columns apart, one for each lane.
+/// Loads pixels `side` columns apart, one per lane.
 template <int side>
 struct Apart {
   std::ptrdiff_t offset;
@@ -69,7 +69,7 @@ struct Apart {
 };
 using Beside = Apart<1>;
 
-/// Loads a pixel for each active lane; 0 for other lanes, which are beyond the ends of their rays.
+/// Loads a pixel for each active lane, and 0 for the other lanes, whose rays have ended.
 struct Anywhere {
   Places offsets;
   Mask lanes;
@@ -95,13 +95,13 @@ struct Anywhere {
 template <bool opaque, int colours>
 struct Found {
   Numbers colour[colours], missed{0.0f}, unknown{0.0f}, open{0.0f};
-  Mask seeking;  ///< lanes whose rays continue
+  Mask seeking;  ///< lanes whose rays have not ended
   // For transparent surfaces:
   Numbers alpha{0.0f};
   Numbers through{1.0f};  ///< remaining fraction of a ray
-  Numbers below{1e30f};   ///< keeps a ray from meeting one surface again in the next pixel
+  Numbers below{1e30f};   ///< prevents a second hit on the same surface in the next pixel
 
-  /// Inverse depth of the nearest surface that the ray passed in front of in the previous pixel.
+  /// Inverse depth of the nearest surface in the previous pixel that the ray passed in front of.
   Numbers front{no_surface};
 
   /// Keeps the sums.
@@ -120,7 +120,7 @@ PETZVAL_INLINE Numbers larger(Numbers a, Numbers b) noexcept { return select(a >
 /// The value of Found::front for a pixel that a ray passes in front of.
 PETZVAL_INLINE Numbers in_front(Numbers w) noexcept { return select(w >= Numbers(0.0f), w, Numbers(no_surface)); }
 
-/// Lanes of `hit` meet a layer in the pixels that `at` loads. Removes lanes from `here` if their rays end.
+/// Lets the lanes of `hit` meet a layer in the pixels that `at` loads. Removes lanes from `here` if their rays end.
 template <bool opaque, int colours, class At>
 PETZVAL_INLINE void take(const LayerWindow& window, const At& at, std::ptrdiff_t layer, Numbers low, Numbers weight,
                          Mask hit, Mask& here, Found<opaque, colours>& found) noexcept {
@@ -142,10 +142,10 @@ PETZVAL_INLINE void take(const LayerWindow& window, const At& at, std::ptrdiff_t
 /// One step of seeking rays: lanes of `here` pass the pixels that `at` loads, between the inverse depths low and high.
 /// before: the pixels of the previous step.
 ///
-/// A ray that passed in front of a surface in the previous pixel and is behind a surface in this pixel went between
-/// their centres. If their inverse depths differ by less than `gap`, the layers lack all that lies between, and the ray
-/// meets the farther surface. (At the edge of a small object it passes the object; on one surface the colours are
-/// nearly equal.)
+/// A ray that passed in front of a surface in the previous pixel and is behind a surface in this pixel went between the
+/// centres of both pixels. If the inverse depths of both surfaces differ by less than `gap`, the layers contain no
+/// surface between them, and the ray meets the farther surface. (At the edge of a small object the ray passes the
+/// object; on one surface both colours are nearly equal.)
 template <bool opaque, int colours, class At>
 PETZVAL_INLINE void meet(const LayerWindow& window, const At& at, const At& before, Numbers low, Numbers high,
                          Numbers gap, Numbers weight, Mask here, Found<opaque, colours>& found) noexcept {
@@ -172,13 +172,13 @@ PETZVAL_INLINE void meet(const LayerWindow& window, const At& at, const At& befo
     }
     if (any(hit)) take(window, at, layer, low, weight, hit, here, found);
     front = larger(front, select(w < low, in_front(w), none));
-    // Later layers are farther still: rays in front of this layer do not reach a surface of a later one yet.
+    // Later layers are farther away: a ray in front of this layer cannot reach them in this step.
     if (!any(all_of(here, w >= low))) break;
   }
   found.front = front;
 }
 
-/// Rays without a hit see the void if the first layer is empty at the depth of the farthest surface.
+/// Rays without a hit end in the void if the first layer is empty at the depth of the farthest surface.
 template <bool opaque, int colours, class At>
 PETZVAL_INLINE void end_in_void(const LayerWindow& window, const At& end, Numbers weight, Mask here,
                                 Found<opaque, colours>& found) noexcept {
@@ -187,7 +187,7 @@ PETZVAL_INLINE void end_in_void(const LayerWindow& window, const At& end, Number
   found.seeking = without(found.seeking, empty);
 }
 
-/// Other rays slipped behind a surface. The best guess is the surface that they passed last.
+/// Other rays slipped behind a surface. The best guess for such a ray is the last surface that it passed.
 template <bool opaque, int colours, class At>
 PETZVAL_INLINE void guess(const LayerWindow& window, const At& at, Numbers low, Numbers weight, Mask here,
                           Found<opaque, colours>& found) noexcept {
@@ -209,7 +209,7 @@ PETZVAL_INLINE void guess(const LayerWindow& window, const At& at, Numbers low, 
   }
 }
 
-/// The rest of a ray that met a surface with alpha below 1, even 0, ends in the void.
+/// The rest of a ray that met a surface with alpha below 1, even with alpha 0, ends in the void.
 template <bool opaque, int colours>
 PETZVAL_INLINE void end_partly(Found<opaque, colours>& found) noexcept {
   if constexpr (!opaque) found.seeking = all_of(found.seeking, found.below >= Numbers(1e30f));
@@ -238,7 +238,7 @@ PETZVAL_INLINE std::uint64_t follow_ray(const LayerWindow& window, const Step* b
                                         std::ptrdiff_t last, Numbers gap, Numbers weight, Mask lanes,
                                         Found<opaque, colours>& found) noexcept {
   found.begin_ray(lanes);
-  // In the previous step all pixels passed in front of the first layer.
+  // In the previous step, all pixels passed in front of the first layer.
   if (from != begin) found.front = in_front(Apart<side>{from[-1].offset}(window.depth));
   std::uint64_t made = 0;
   for (const Step* step = from; step != end && any(found.seeking); ++step, ++made) {
@@ -255,8 +255,8 @@ PETZVAL_INLINE std::uint64_t follow_ray(const LayerWindow& window, const Step* b
   return made;
 }
 
-/// Follows the rays of `at_once` rows of pixels `side` columns apart. Usually all pixels meet the first layer in the
-/// same step and need no masks.
+/// Follows the rays of `at_once` rows of pixels `side` columns apart. In most cases all pixels meet the first layer in
+/// the same step and need no masks.
 template <int side, bool opaque, int colours, int at_once>
 std::uint64_t follow_rows(const TileJob& job, const SameRays& rays, int row, int column) noexcept {
   LayerWindow windows[at_once];
@@ -370,8 +370,8 @@ PETZVAL_INLINE Places pixels_at(const Numbers (&line)[row_count], Numbers w, std
                     WholePixel<Numbers>::below(line[at_y] + line[slope_y] * w + half), stride);
 }
 
-/// Follows the rays of the lanes to their ends. load: calls visit(at, before, here) for all given lanes, with loaders
-/// of the planes at two lists of offsets. Returns the number of steps of the longest ray.
+/// Follows the rays of the lanes to their ends. load: calls visit(at, before, here) for all given lanes, where `at` and
+/// `before` load the planes at two lists of offsets. Returns the number of steps of the longest ray.
 template <bool opaque, int colours, class Load>
 PETZVAL_INLINE std::uint64_t follow(const LayerWindow& window, const DifferentRays& rays, float gap,
                                     const Numbers (&line)[row_count], const Load& load,
@@ -419,7 +419,7 @@ PETZVAL_INLINE Mask lanes_of(Places numbers, std::int32_t number) noexcept {
 #endif
 }
 
-/// Pixels of adjacent lanes. Usually all lanes have equal offsets from their own pixels, and one load is enough.
+/// Pixels of adjacent lanes. In most cases all lanes have equal offsets from their own pixels, and one load suffices.
 template <class Visit>
 PETZVAL_INLINE void load_beside(Places offsets, Places before, Mask lanes, const Visit& visit) noexcept {
   const std::int32_t first = offsets[0], first_before = before[0];

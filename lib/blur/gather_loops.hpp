@@ -9,8 +9,8 @@
 
 namespace petzval::blur_detail {
 
-/// Layers around a tile: a view of the layers, or a copy with repeated edges if rays leave the layers. Lanes read up to
-/// 66 numbers beyond the pixels that rays reach.
+/// Layers around a tile: a view of the layers, or a copy with repeated edge pixels if rays leave the layers. Lanes read
+/// up to 66 numbers beyond the pixels that rays reach.
 struct LayerWindow {
   int layers = 0;
   std::ptrdiff_t stride = 0;        ///< from row to row
@@ -37,11 +37,12 @@ struct TileSums {
   float colour[3][pixels], alpha[pixels];
   float total[pixels];    ///< weight of all rays
   float open[pixels];     ///< weight of rays that end in the void, where alpha is 0
-  float missed[pixels];   ///< weight of rays that meet parts of the scene that the layers lack
-  float unknown[pixels];  ///< weight of missed rays without even a guess
+  float missed[pixels];   ///< weight of rays that meet parts of the scene that are not in the layers
+  float unknown[pixels];  ///< weight of missed rays for which there is no guess
 };
 
-/// A step of a ray that all pixels share: it passes the pixel at `offset` from its own in a range of inverse depths.
+/// A step of a ray that is common to all pixels: at an offset from its own pixel, the ray passes a pixel in a range of
+/// inverse depths.
 struct Step {
   std::ptrdiff_t offset;
   float low, high;  ///< low >= 0

@@ -28,7 +28,7 @@ struct Blurred::Memory {
     explicit Loan(Memory& memory) : memory_(memory) {
       const std::lock_guard guard(memory_.mutex_);
       if (memory_.free_.empty()) {
-        memory_.free_.reserve(memory_.lent_ + 1);  // room for all, because the destructor must not allocate
+        memory_.free_.reserve(memory_.lent_ + 1);  // reserved for all loans, because the destructor must not allocate
         memory_.free_.push_back(std::make_unique<OfThread>());
       }
       mine_ = std::move(memory_.free_.back());

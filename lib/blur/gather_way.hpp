@@ -21,8 +21,8 @@ PETZVAL_API std::string_view name(GatherPath path) noexcept;
 
 struct GatherWay {
   GatherPath path = GatherPath::automatic;
-  /// Limits the steps of a tile's rays to the depths below the rays. The limit changes no surface that a ray meets, but
-  /// it may change the guess for a ray that meets no surface.
+  /// Limits the steps of a tile's rays to the depths that occur below the rays. The limit does not change the surface
+  /// that a ray meets, but it may change the guess for a ray that meets no surface.
   bool bounded = true;
 };
 

@@ -72,7 +72,7 @@ std::uint32_t CountsIn::operator()(const PixelRect& rect) const noexcept {
          before_[bottom * stride_ + left];
 }
 
-/// The light that a highlight of 1 adds to a rectangle of the picture, relative to the pixel of the highlight.
+/// The light that a highlight of value 1 adds to a rectangle of the picture, relative to the pixel of the highlight.
 struct Highlights::Stamp {
   int left = 0, top = 0, columns = 0, rows = 0;
   bool hidden = false;  ///< some rays do not see the highlight
@@ -116,7 +116,7 @@ void Highlights::find(float above) {
     }
   }
   if (bright.empty()) return;
-  // Blocks of one pixel: the borders of larger blocks would treat neighbours differently.
+  // Blocks of one pixel: with larger blocks, the count would depend on the position of a pixel in its block.
   CountsIn bright_in;
   bright_in.fill(layers_.columns, layers_.rows, 1, bright);
 
@@ -136,7 +136,7 @@ void Highlights::find(float above) {
     h.area = static_cast<float>(areas[node(h.row, table.area.rows, table.node_rows) * table.node_columns +
                                       node(h.column, table.area.columns, table.node_columns)]
                                     .at(h.inverse_depth));
-    // A wide bright surface needs no stamps: enough rays of each pixel meet the surface.
+    // A wide bright surface needs no stamps, because enough rays of each pixel meet it.
     const int reach = static_cast<int>(std::sqrt(h.area / std::numbers::pi));
     const double covered =
         bright_in({h.column - reach, h.row - reach, h.column + reach, h.row + reach}) / std::max(h.area, 1.0f);
@@ -152,7 +152,7 @@ void Highlights::find(float above) {
 
 void Highlights::make_groups() {
   constexpr int cell = group_cell;
-  // Blurs of one group differ by less than a pixel.
+  // Highlights of one group have blurs that differ by less than a pixel.
   const auto key_of = [&](const Highlight& h) {
     return std::tuple(h.row / cell, h.column / cell, h.layer, static_cast<int>(h.inverse_depth * rays_.largest_slope));
   };
@@ -189,9 +189,9 @@ float Highlights::visible(const float* line, double x, double y, const Highlight
         static_cast<int>(std::floor(std::min(a.x, b.x))) - 1, static_cast<int>(std::floor(std::min(a.y, b.y))) - 1,
         static_cast<int>(std::ceil(std::max(a.x, b.x))) + 1, static_cast<int>(std::ceil(std::max(a.y, b.y))) + 1};
   };
-  // Starts at the nearest of all surfaces, then at the nearest surface below this path.
+  // Start at the nearest of all surfaces, then at the nearest surface below the path that follows from it.
   double from = nearest_;
-  // A surface nearer by less than this margin, the umbra's offset, hides the highlight from no ray.
+  // A surface that is nearer by less than this margin, the offset of the umbra, hides the highlight from no ray.
   const double margin = 0.5 / std::max(rays_.largest_slope, 1e-30);
   for (int i = 0; i < 2; ++i) {
     from = layers_.n_buffer.below(rect_to(from)).most;
@@ -231,7 +231,7 @@ float Highlights::visible(const float* line, double x, double y, const Highlight
 
 Highlights::Stamp Highlights::stamp_of(const Highlight& h, double rays_of_pixel, const RayTable& table) const {
   const auto rays = static_cast<std::size_t>(std::clamp<double>(rays_of_pixel * h.area, least_rays, table.rays));
-  // The light of a ray is spread over a tent that overlaps the tents of its neighbours, so that the sum is uniform.
+  // The light of a ray is spread over a tent. The tent overlaps the tents of adjacent rays, so that the sum is uniform.
   const double half = std::max(0.75, 2.1 * std::sqrt(h.area / static_cast<double>(rays)));
   const double x = h.column + 0.5 - overscan_, y = h.row + 0.5 - overscan_, w = h.inverse_depth;
 
@@ -326,7 +326,7 @@ RasterArea Highlights::area_of(const Group& group, std::size_t channel) const {
     const int x = column - along(at_x, slope_x), y = row - along(at_y, slope_y);
     left = std::min(left, x), right = std::max(right, x), top = std::min(top, y), bottom = std::max(bottom, y);
   }
-  // The blur changes over the picture, and members of a group are up to a cell apart.
+  // The blur changes over the picture, and highlights of one group are up to a cell apart.
   const int margin = 2 + group_cell + std::max(right - left, bottom - top) / 8;
   left = std::max(left - margin, 0), right = std::min(right + margin, table.area.columns);
   top = std::max(top - margin, 0), bottom = std::min(bottom + margin, table.area.rows);
@@ -336,8 +336,8 @@ RasterArea Highlights::area_of(const Group& group, std::size_t channel) const {
 std::vector<Highlights::Alike> Highlights::stamps_of(const Group& group, std::size_t channel) const {
   constexpr double rays_of_pixel = 2.5;
   constexpr int cell = 4;
-  // Nearer surfaces hide different rays of each highlight. Highlights of one cell share their rays, which moves the
-  // edge of the shadow by less than a cell.
+  // For each highlight, nearer surfaces hide different rays. The highlights of one cell are treated as if the same rays
+  // were hidden, which moves the edge of the shadow by less than a cell.
   std::map<std::pair<int, int>, Group> cells;
   for (const std::size_t member : group) {
     cells[{found_[member].row / cell, found_[member].column / cell}].push_back(member);

@@ -32,7 +32,7 @@ class CountsIn {
 };
 
 /// Bright pixels that few rays would show as patterns of dots. They are removed from the layers, and the light of each
-/// is spread over the pixels that see it through the lens.
+/// is distributed over the pixels whose rays meet it.
 class Highlights {
  public:
   Highlights(const LayerData& layers, const LensRays& rays, const GatherOptions& options, int overscan);
@@ -47,7 +47,7 @@ class Highlights {
   void spread(int threads, Blurred& picture) const;
 
  private:
-  /// Adjacent highlights of nearly equal depth, which the same rays see: indices in found_.
+  /// Adjacent highlights of nearly equal depth, which the same rays meet: indices in found_.
   using Group = std::vector<std::size_t>;
   struct Stamp;
   struct Alike;
@@ -57,7 +57,7 @@ class Highlights {
   /// rays_of_pixel: rays for each pixel covered by the blur.
   Stamp stamp_of(const Highlight& highlight, double rays_of_pixel, const RayTable& rays) const;
   const Highlight& brightest(const Group& group) const;
-  /// The part of the picture over which a group is spread; without columns if it lies outside the picture.
+  /// The part of the picture over which a group is distributed; it has no columns if it lies outside the picture.
   RasterArea area_of(const Group& group, std::size_t channel) const;
   std::vector<Alike> stamps_of(const Group& group, std::size_t channel) const;
   void add(const Stamp& stamp, const Highlight& highlight, std::size_t channel, Blurred& picture) const;

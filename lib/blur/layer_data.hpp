@@ -36,7 +36,7 @@ struct LayerSet::Data {
   /// Counts the layer of begin_layer() if it contains a surface. where: prefix of messages.
   void end_layer(const std::string& where);
 
-  /// Scope of a filling. If the scope ends without finish(), the set has no layers.
+  /// Guard of a filling: if its scope ends without finish(), the set has no layers.
   class Filling {
    public:
     /// Allocates memory for `layers` layers and discards earlier contents.

@@ -179,7 +179,7 @@ void LayerSet::thin(const FragmentLists& lists, double bias, int layers) {
   }
   if (!(bias >= 0)) throw wrong("bias = " + to_text(bias) + "; must be at least 0");
 
-  // Filling the layers one by one would sort each list again. One pass over the pixels writes to all layers.
+  // Filling layer by layer would sort each list again. One pass over the pixels writes to all layers.
   Data& d = *data_;
   Data::Filling filling(d, lists.columns, lists.rows, layers);
   struct Planes {
@@ -216,7 +216,7 @@ void LayerSet::thin(const FragmentLists& lists, double bias, int layers) {
         for (int p = 0; p < Data::planes; ++p) out[kept].p[p][pixel] = values[p];
         ++kept, last = w;
       } else {
-        // Behind a transparent surface: adds the transmitted part.
+        // Behind a transparent surface: add the transmitted part.
         float* const* const front = out[kept - 1].p;
         const float through = 1 - front[4][pixel];
         for (int p = 1; p < Data::planes; ++p) front[p][pixel] += through * values[p];

@@ -18,7 +18,7 @@ namespace {
 
 using namespace blur_detail;
 
-constexpr int widest_step = 256, narrowest_step = 16;  // for large pictures
+constexpr int widest_step = 256, narrowest_step = 16;  // limits of the step for large pictures
 constexpr double same_px = 1e-3;                       // lines that differ by less count as equal
 
 /// Largest error, over all positions, of a coarse table interpolated to the nodes of a fine table.
@@ -144,8 +144,8 @@ LensRays::LensRays(const LayerCamera& camera, std::span<const PupilPoint> points
   const auto table = [&](int step) {
     return ray_table({0, 0, d->camera.columns, d->camera.rows}, points, count, d->source, step, options.threads);
   };
-  // A step above the picture's side would leave no node inside the picture for an error estimate. Pixels of small
-  // pictures are large on the film, so their steps are small.
+  // With a step above the side of the picture, no node would lie inside the picture for an error estimate. Pixels of
+  // small pictures are large on the film, so that their steps are small.
   const auto power_of_two = [](int length) { return static_cast<int>(std::bit_floor(static_cast<unsigned>(length))); };
   const int last_step = std::clamp(power_of_two(std::max(camera.columns, camera.rows)) / 16, 2, narrowest_step);
   const int first_step = std::clamp(power_of_two(std::min(camera.columns, camera.rows)), last_step, widest_step);
@@ -180,7 +180,8 @@ double LensRays::reach_px(double least_inverse_depth, double most_inverse_depth)
   for (std::size_t channel = 0; channel < t.channels; ++channel) {
     for (std::size_t row = 0; row < t.node_rows; ++row) {
       for (std::size_t column = 0; column < t.node_columns; ++column) {
-        // Inner nodes count only with the part of their reach that exceeds their distance to the edge.
+        // Inside the area, a node's offset reaches beyond the area only by the part that exceeds its distance from the
+        // edge.
         const double x = t.column_of(column), y = t.row_of(row);
         const float* const node = t.node(channel, row, column);
         for (std::size_t i = 0; i < n; ++i) {
@@ -204,7 +205,7 @@ RayTable LensRays::Data::dense(const RasterArea& area, std::size_t channel, std:
                               std::span<LayerRay> rays) {
     source(static_cast<int>(channel), raster, points_of_area, rays);
   };
-  // Three nodes along a side suffice for the width of a blur.
+  // For the width of a blur, three nodes along a side suffice.
   const int step = std::max(2 * table.step, (std::max(area.columns, area.rows) + 1) / 2);
   return ray_table(area, many, 1, of_channel, step, 1);
 }

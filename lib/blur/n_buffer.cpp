@@ -83,7 +83,7 @@ DepthRange NBuffer::below(const PixelRect& rect) const noexcept {
   const int left = std::clamp(rect.left, 0, columns_ - 1) / block,
             right = std::clamp(rect.right, 0, columns_ - 1) / block, top = std::clamp(rect.top, 0, rows_ - 1) / block,
             bottom = std::clamp(rect.bottom, 0, rows_ - 1) / block;
-  // Squares as wide as the shorter side cover exactly the rectangle; the last squares overlap the squares before.
+  // Squares as wide as the shorter side cover exactly the rectangle; the last square overlaps the square before it.
   const int level = last_power(std::min(right - left, bottom - top) + 1), size = 1 << level;
   const Level& l = levels_[static_cast<std::size_t>(level)];
   float least = infinity, most = -1, layers = 0;

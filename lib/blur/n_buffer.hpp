@@ -30,8 +30,8 @@ class NBuffer {
 
   /// planes: inverse depth of each layer, columns x rows, negative if empty. Allocates only to grow.
   void fill(int columns, int rows, std::span<const std::span<const float>> planes);
-  /// The range below a rectangle, clipped to the picture and widened to whole blocks. A rectangle outside the picture
-  /// has the range of the nearest edge.
+  /// The range below a rectangle, clipped to the picture and widened to full blocks. A rectangle outside the picture
+  /// has the range at the nearest edge.
   DepthRange below(const PixelRect& rect) const noexcept;
 
  private:

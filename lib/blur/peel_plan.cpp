@@ -24,7 +24,7 @@ PeelPlan plan_peel(const LensRays& rays, double nearest_mm, double farthest_mm) 
                 to_text(most_reach_px) + " (nearest depth: " + to_text(nearest_mm) + " mm)");
   }
   PeelPlan plan{.camera = rays.camera(), .nearest_mm = nearest_mm, .farthest_mm = farthest_mm};
-  // The pixel of a ray may be half a pixel off its line, and rounding may choose the next pixel.
+  // The pixel of a ray may be half a pixel away from its line, and rounding may select the next pixel.
   plan.camera.overscan = static_cast<int>(std::ceil(reach)) + 2;
   // A pinhole sees only the first layer.
   plan.bias = rays.largest_slope() > 0 ? 1 / rays.largest_slope() : 2 * nearest;

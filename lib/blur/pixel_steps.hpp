@@ -8,7 +8,7 @@
 
 namespace petzval::blur_detail {
 
-/// Inverse depth that stands for a pixel without a surface in front of the ray.
+/// Inverse depth that means: the pixel has no surface behind the ray.
 inline constexpr float no_surface = -1e30f;
 
 // Anonymous namespace: the code is compiled for several instruction sets, and the linker must not merge the versions.
@@ -20,16 +20,16 @@ PETZVAL_INLINE T size_of(T x) noexcept {
   return select(x < T(0.0f), -x, x);
 }
 
-/// The largest whole number at or below x, after x is rounded to 1/256 px: rays of regular pupils pass exactly between
-/// two pixels at half a step, and rounding errors must not choose the pixel.
+/// The largest integer at or below x, after x is rounded to 1/256 px: rays of regular pupils pass exactly between two
+/// pixels at half a step, and rounding errors must not select the pixel.
 template <class T>
 struct WholePixel {
   static PETZVAL_INLINE T below(T x) noexcept { return std::floor(std::floor(256 * x + 0.5) / 256); }
 };
 
-/// The pixels that a line passes while its inverse depth falls, by steps along the direction of the larger slope. A
-/// step ends where the line leaves the pixel, so each inverse depth belongs to one step, and a surface is met in the
-/// pixel that the line passes at the depth of the surface.
+/// The pixels that a line passes as its inverse depth decreases, by steps along the direction of the larger slope. A
+/// step ends where the line leaves the pixel. Each inverse depth therefore belongs to one step, and a surface is met in
+/// the pixel that the line passes at the depth of the surface.
 ///
 /// Positions are relative to the centre of pixel (0, 0). T: double, or lanes of float.
 template <class T>
@@ -41,10 +41,10 @@ class PixelSteps {
     const T at = select(along_columns_, at_x, at_y), zero(0.0f), one(1.0f), half(0.5f);
     other_at_ = select(along_columns_, at_y, at_x), other_slope_ = select(along_columns_, slope_y, slope_x);
     T slope = select(along_columns_, slope_x, slope_y);
-    const T least = T(1e-6f) / nearest;  // for lines that hardly lean, one step covers all depths
+    const T least = T(1e-6f) / nearest;  // if a line has nearly no slope, one step covers all depths
     slope = select(size_of(slope) < least, least, slope);
     towards_ = select(slope > zero, -one, one);
-    // By more than rounding errors: the first step begins before `from`, the last step ends after `to`.
+    // The margin exceeds rounding errors: the first step begins before `from`, the last step ends after `to`.
     const T margin(1.0f / 64);
     first_ = WholePixel<T>::below(at + slope * from + half - towards_ * margin);
     last_ = size_of(WholePixel<T>::below(at + slope * to + half + towards_ * margin) - first_);
@@ -60,7 +60,8 @@ class PixelSteps {
     T column, row;
   };
   PETZVAL_INLINE Pixel pixel(T n) const noexcept {
-    // The middle of a step, clamped to the scene's depths: a line that moves by less than a pixel stays in its pixel.
+    // The middle of a step, clamped to the depths of the scene: a line that moves by less than a pixel stays in its
+    // pixel.
     T w = middle_ - n * length_;
     w = select(w < farthest_, farthest_, w), w = select(w > nearest_, nearest_, w);
     const T main = first_ + towards_ * n, other = WholePixel<T>::below(other_at_ + other_slope_ * w + T(0.5f));

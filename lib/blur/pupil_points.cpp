@@ -29,7 +29,7 @@ std::vector<PupilPoint> vogel_sets(int count, int sets) {
   }
   std::vector<PupilPoint> points;
   for (int set = 0; set < sets; ++set) {
-    // The radii and directions of each set lie between the radii and directions of the other sets.
+    // The radii and directions of a set lie between the radii and directions of the other sets.
     const double outwards = ((set + 0.5) / sets - 0.5) / count;
     for (const PupilPoint& p : vogel_points(count, static_cast<double>(set) / sets)) {
       points.push_back({p.u, p.v + outwards});

@@ -7,8 +7,8 @@
 
 namespace petzval::blur_detail {
 
-/// Lines of the rays of a position, in rows of equal length: raster position of the line at infinity minus the position
-/// itself (along columns and rows), slope (along columns and rows), and weight.
+/// Lines of the rays of a position, in rows of equal length: raster position of the line at infinity relative to the
+/// position (along columns and rows), slope (along columns and rows), and weight.
 enum Row : std::size_t { at_x, at_y, slope_x, slope_y, weight, row_count };
 
 /// The ray set of a pixel: the side x side sets alternate over blocks of side x side pixels.

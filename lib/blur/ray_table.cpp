@@ -12,7 +12,7 @@
 namespace petzval::blur_detail {
 namespace {
 
-/// The cell that contains a position along one side, and the fraction of the cell before the position.
+/// The cell that contains a position along one side, and the position within the cell as a fraction.
 struct Cell {
   std::size_t first = 0;
   float part = 0;
@@ -35,8 +35,8 @@ std::vector<char> lit_nodes(const RayTable& table, std::size_t channel) {
   return lit;
 }
 
-/// Gives a node without light the mean of the lines extrapolated from adjacent lit nodes: linearly from two nodes in a
-/// row, or constant from a single node. Returns false, without a change, if there are no such nodes.
+/// Gives a node without light the mean of the lines extrapolated from adjacent nodes with light: linearly from two
+/// nodes in a row, or unchanged from a single node. Returns false, and changes nothing, if there are no such nodes.
 bool lead_on(RayTable& table, std::size_t channel, const std::vector<char>& lit, int column, int row, bool two) {
   const int columns = static_cast<int>(table.node_columns), rows = static_cast<int>(table.node_rows);
   const auto is_lit = [&](int x, int y) {
@@ -66,7 +66,8 @@ bool lead_on(RayTable& table, std::size_t channel, const std::vector<char>& lit,
   return true;
 }
 
-/// Rays fade between a lit and a dark node without moving; arbitrary lines of the dark node would displace rays.
+/// Between a node with light and a node without light, rays fade and do not move: arbitrary lines of the node without
+/// light would displace the rays.
 void lead_into_the_dark(RayTable& table) {
   for (std::size_t channel = 0; channel < table.channels; ++channel) {
     const std::vector<char> lit = lit_nodes(table, channel);

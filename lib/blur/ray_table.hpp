@@ -57,15 +57,15 @@ struct LensRays::Data {
   bool shift_invariant = false;
 
   /// Rays of a channel over an area of the picture, for light that few rays would show as dots. The pupil points are
-  /// the first points of a sequence whose runs all cover the pupil uniformly.
+  /// the first points of a sequence in which every run of points covers the pupil uniformly.
   blur_detail::RayTable dense(const blur_detail::RasterArea& area, std::size_t channel, std::size_t count) const;
 
   std::size_t sets() const noexcept { return static_cast<std::size_t>(options.sets); }
-  /// Side of the blocks over which sets alternate, px.
+  /// Side of the square blocks in which the sets alternate, px.
   int side() const noexcept { return options.sets == 16 ? 4 : options.sets == 4 ? 2 : 1; }
   std::size_t rays_of_set() const noexcept { return points.size() / sets(); }
-  /// Largest difference of inverse depths at which the layers may lack the surfaces between adjacent pixels: the bias
-  /// of peeling.
+  /// Largest difference of inverse depths between adjacent pixels for which surfaces between them may be missing in the
+  /// layers: the bias of peeling.
   float gap() const noexcept { return largest_slope > 0 ? static_cast<float>(std::min(1 / largest_slope, 1e20)) : 0; }
 };
 

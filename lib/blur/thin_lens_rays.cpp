@@ -11,7 +11,8 @@
 namespace petzval {
 namespace {
 
-/// Samples of an iris that follow its weights. A tenth of the samples is uniform, so that no sample weight is large.
+/// Samples of an iris, distributed by its weights. A tenth of the samples is uniform, so that no sample weight is
+/// large.
 struct WeightedIris {
   iris_detail::IrisShape shape;
   iris_detail::IrisWeights weights;

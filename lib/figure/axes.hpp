@@ -33,8 +33,8 @@ class Axes {
   /// Draws a polyline, clipped to the frame and interrupted at points that are not finite.
   void curve(std::span<const Point> points, std::string_view attributes);
 
-  /// Vertical lines through the frame with names above, in a row of 15 px each. The leftmost is on top, so that no line
-  /// crosses a name. Marks outside the frame are left out.
+  /// Vertical lines through the frame with names above it, each in a row of its own (15 px). The name of the leftmost
+  /// line is at the top, so that no line crosses a name. Marks outside the frame are left out.
   struct Mark {
     double value = 0;
     std::string_view name, attributes;
@@ -42,7 +42,7 @@ class Axes {
   void marks(std::vector<Mark> marks);
 
  private:
-  /// The part of a segment within the frame, as fractions of its length; empty if from > to.
+  /// The part of a segment that lies inside the frame, as fractions of its length; empty if from > to.
   struct Part {
     double from = 0, to = 1;
   };

@@ -110,7 +110,7 @@ class FocalSurfaceFigure {
     }
     for (const double beside : {-0.8, -0.4, 0.4, 0.8}) draw_surface(panel, across_x, beside, beside_style);
     draw_surface(panel, across_x, 0, focus_style);
-    // At least 10 px: to scale, lens and film could be too small to see.
+    // At least 10 px: lens and film could be too small to see at the true scale.
     const double least = 10 / frame.px_per_mm;
     const double pupil = std::max(view_.lens.pupils.entrance.diameter / 2, least);
     panel.stroke({entrance_z(), -pupil}, {entrance_z(), pupil}, lens_style);

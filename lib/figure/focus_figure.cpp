@@ -31,8 +31,8 @@ struct Parabola {
   double least_rms() const { return std::sqrt(std::max(0.0, least)); }
 };
 
-/// The parabola through the values at z - step, z and z + step. nullopt if it has no minimum: there are no rays, or the
-/// rays are parallel.
+/// The parabola through the values at z - step, z and z + step. nullopt if it has no minimum, because there are no rays
+/// or the rays are parallel.
 std::optional<Parabola> parabola(const std::array<double, 3>& values, double z, double step) {
   const double bend = (values[0] - 2 * values[1] + values[2]) / 2, slope = (values[2] - values[0]) / 2;
   if (!(bend > 0)) return std::nullopt;
@@ -162,7 +162,7 @@ class FocusFigure {
     return (mm >= 0 ? "+" : "\u2212") + to_text(std::abs(mm) < 5e-7 ? 0.0 : std::abs(mm), 3) + " mm";
   }
 
-  /// Sets the ranges of the axes: all marks, and a part of the curves on both sides.
+  /// Sets the ranges of the axes: they include all marks, and a part of the curves on both sides.
   void measure() {
     from_ = to_ = lens_.film_z();
     const auto take = [&](double z) { from_ = std::min(from_, z), to_ = std::max(to_, z); };
@@ -173,8 +173,8 @@ class FocusFigure {
     for (const auto& p : curves_) {
       if (p) take(p->best);
     }
-    // On both sides at least the range in which the axial curve rises to three times its minimum, and a depth of focus,
-    // 4 lambda N^2: the RMS radius of a uniform cone grows by 1 / sqrt(8) / N.
+    // The range includes, on both sides, the interval in which the axial curve rises to three times its minimum, and a
+    // depth of focus of 4 lambda N^2. The RMS radius of a uniform cone grows by 1 / sqrt(8) / N.
     double pad = 0.25 * (to_ - from_);
     if (axis_) {
       const double lambda = lens_.wavelengths_nm()[lens_.primary_wavelength()] * 1e-6;

@@ -97,7 +97,7 @@ std::string focus_pull_figure(std::string_view title, std::string_view remark, F
     }
     double key_x = left + 10;
     for (const Curve& curve : diagram.curves) {
-      // The whole curve in grey, overdrawn by the parts with focus points.
+      // The complete curve is drawn in grey, and the parts with focus points are drawn over it.
       std::vector<figure_detail::Axes::Point> all, served;
       for (const FocusPullFrame& f : frames) {
         const double value = curve.value(f);

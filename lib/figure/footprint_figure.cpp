@@ -79,7 +79,7 @@ class FootprintFigure {
         }
       }
     }
-    // The stop first: it is black in every lens.
+    // The stop is the first entry, so that it is black for every lens.
     const int stop = static_cast<int>(pupils(lens, wavelength_).stop);
     std::ranges::sort(limits_, {}, [&](const Limit& a) { return std::tuple(a.surface != stop, a.surface, a.fate); });
     half_ = half_ > 0 ? 1.1 * half_ : 1;  // 1 if the stop is closed
@@ -115,7 +115,8 @@ class FootprintFigure {
   }
 
  private:
-  /// Sets the shown area: both pupils, or the real pupil only if it would be too small.
+  /// Sets the shown area: both pupils, or only the real pupil if it would be too small together with the paraxial
+  /// pupil.
   Cell framed(Cell c) const {
     Box paraxial{-half_x_, half_x_, -half_y_, half_y_};
     c.shown = paraxial;
@@ -152,7 +153,7 @@ class FootprintFigure {
     const auto at = [&](const RimPoint& e) { return svg_number(x(e.x)) + " " + svg_number(y(e.y)); };
     svg.rect(left, upper, cell, cell, "fill=\"none\" stroke=\"#bbb\"");
 
-    // A span is joined to the span of the same rank in the next direction, if both directions have as many spans.
+    // A span is joined to the span of the same rank in the next direction if both directions have equally many spans.
     const auto& spans = c.outline.spans;
     std::vector<std::pair<std::size_t, std::size_t>> of(c.outline.directions, {0, 0});  // first span, number of spans
     for (std::size_t i = 0; i < spans.size(); ++i) {

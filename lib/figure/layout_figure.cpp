@@ -107,7 +107,8 @@ class LayoutFigure {
     return {last.z + tail_ * ray.behind.z, last.height + tail_ * ray.behind.height};
   }
 
-  /// Sets bounds and scale. Lens and film come first: the length of rays in front of the lens depends on their size.
+  /// Sets bounds and scale. Lens and film are measured first, because the length of rays in front of the lens depends
+  /// on their size.
   void measure() {
     for (std::size_t i = 0; i < lens_.surface_count(); ++i) {
       for (const SectionLine& line : section_.surface(i)) {
@@ -120,8 +121,8 @@ class LayoutFigure {
     body_half_ = box_.high;
     box_.take({lens_.film_z(), 0});
     for (std::size_t field = 0; field < fields_.size(); ++field) {
-      // The ray nearest to the chief ray gives the height of the film: a marginal ray may be almost parallel to the
-      // film.
+      // The height of the film is taken from the ray nearest to the chief ray, because a marginal ray may be nearly
+      // parallel to the film.
       const RayPath* nearest = nullptr;
       for (const RayPath& ray : rays_) {
         if (ray.field != field || !arrives(ray)) continue;
@@ -152,8 +153,8 @@ class LayoutFigure {
     left_ = (width - (box_.z_max - box_.z_min) * scale_) / 2;
   }
 
-  /// Rays start in one plane in front of the lens, or at the subject if it is nearer. Rays of a steep field come from
-  /// the side or from behind and start on a wavefront.
+  /// Rays start in a common plane in front of the lens, or at the subject if it is nearer. Rays of a steep field start
+  /// on a wavefront, because they come from the side or from behind.
   void start_rays(std::size_t field, double z_front) {
     const bool steep = std::abs(fields_[field]) > 0.95;  // rad
     double wavefront = 0;
@@ -184,7 +185,7 @@ class LayoutFigure {
     const std::size_t count = lens_.surface_count();
     const double image_index = lens_.index(count, wavelength_);
     if (image_index > 1.01 && lens_.film_z() > lens_.surfaces()[count - 1].vertex_z) {
-      // Glass or another medium up to the film, as in the eye.
+      // The glass, or another medium, reaches up to the film, as in an eye.
       SectionLine outline = section_.surface(count - 1).front();
       const double rim = outline.back().height;
       outline.push_back({lens_.film_z(), rim});

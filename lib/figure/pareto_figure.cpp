@@ -77,7 +77,7 @@ std::string pareto_figure(std::string_view title, std::string_view remark, std::
     svg.circle(x, low, 3, "fill=\"#fff\" stroke=\"#888\"");
     svg.circle(x, high, 5, p.on_front ? "fill=\"#1f5fc4\"" : "fill=\"#fff\" stroke=\"#1f5fc4\" stroke-width=\"1.5\"");
   }
-  // Names are to the right of their points. Names of points that nearly coincide are stacked.
+  // Names stand to the right of their points. Names of points that nearly coincide are stacked.
   std::vector<std::pair<double, double>> taken;
   for (const ParetoPoint& p : points) {
     const double x = axes.x(std::log10(p.ns_per_ray)) + 9;

@@ -23,7 +23,7 @@ class Fan {
   }
   bool passes(double height) const { return at(height).status == AimStatus::converged; }
 
-  /// The limit of the transmitted heights between a transmitted and a lost height, by bisection.
+  /// The limit of transmitted heights between a height that is transmitted and a height that is lost, by bisection.
   double edge(double passing, double lost) const {
     for (int i = 0; i < 20; ++i) {
       const double middle = (passing + lost) / 2;
@@ -47,7 +47,7 @@ class Fan {
     for (std::size_t k = 0; k < count; ++k) {
       result.push_back(from + (to - from) * static_cast<double>(k) / static_cast<double>(count - 1));
     }
-    // The chief ray replaces the nearest inner ray; rays through the rim of the stop come last.
+    // The chief ray replaces the nearest inner ray; the rays through the rim of the stop are added last.
     if (from < 0 && to > 0) {
       *std::min_element(result.begin() + 1, result.end() - 1,
                         [](double a, double b) { return std::abs(a) < std::abs(b); }) = 0;

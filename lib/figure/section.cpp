@@ -60,7 +60,7 @@ SectionLine LensSection::line(std::size_t surface, double from, double to) const
   constexpr int steps = 48;
   SectionLine result;
   for (int k = 0; k <= steps; ++k) {
-    // Denser towards the ends, because a deep surface is steep there and needs more points.
+    // Points are denser towards the ends, because a deep surface is steep there.
     const double t = std::sin(std::numbers::pi * (static_cast<double>(k) / steps - 0.5)) / 2 + 0.5;
     const double height = k == steps ? to : from + t * (to - from);
     result.push_back({z(surface, height), height});
@@ -83,8 +83,8 @@ std::vector<SectionLine> LensSection::mirrors() const {
   return result;
 }
 
-/// Extends cemented surfaces to the rims of their neighbours. The elements of a cemented group have one diameter, but
-/// tables often list the clear height of each surface. Polynomials are not extrapolated beyond their rim.
+/// Extends cemented surfaces to the rims of their neighbours: the elements of a cemented group have the same diameter,
+/// but tables often list the clear height of each surface. Polynomials are not extrapolated beyond their rims.
 void LensSection::extend_cemented(const std::vector<std::size_t>& bending) {
   for (std::size_t k = 1; k + 1 < bending.size(); ++k) {
     const std::size_t before = bending[k - 1], i = bending[k], after = bending[k + 1];
@@ -106,7 +106,7 @@ void LensSection::extend_cemented(const std::vector<std::size_t>& bending) {
 SectionLine LensSection::edge(std::size_t front, std::size_t back, const Edge& edge) const {
   const auto [f, b] = edge;
   if (f == b) return {};
-  // The flat ring is at the rim of the lower surface, if it does not cut the higher surface.
+  // The flat ring is at the rim of the lower surface, unless it would cut the higher surface.
   const bool front_lower = f < b;
   const double flat_z = front_lower ? z(front, f) : z(back, b);
   const SectionLine higher = front_lower ? line(back, f, b) : line(front, b, f);

@@ -32,7 +32,7 @@ class LensSection {
   /// The glass between surfaces at which the index changes.
   ///
   /// Rims of different height are joined by a flat ring at the lower rim and a cylinder at the higher rim, or by a
-  /// straight edge if the ring would cut the other surface. Cemented surfaces extend to their neighbours' rims.
+  /// straight edge if the ring would cut the other surface. Cemented surfaces extend to the rims of their neighbours.
   std::vector<GlassBody> bodies() const;
 
   std::vector<SectionLine> mirrors() const;

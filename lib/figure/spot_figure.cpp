@@ -27,8 +27,8 @@ constexpr double cell = 190, gap = 14, under = 22;  // side of a cell, space bet
 constexpr double left = 118, top = 112, bottom = 76;
 constexpr std::size_t drawn_rays = 600;
 
-/// Colour and marker of a wavelength: blue, green and red for up to three wavelengths, as is customary for F, d and C;
-/// from violet to brown by rank for more.
+/// Colour and marker of a wavelength. Up to three wavelengths are blue, green and red, as is customary for F, d and C;
+/// more wavelengths have colours from violet to brown, in ascending order.
 struct Look {
   std::string_view colour;
   std::size_t marker;

@@ -22,8 +22,8 @@ bool is_in_xml(std::string_view character) noexcept {
   return first >= ' ' || first == '\t' || first == '\n' || first == '\r';
 }
 
-/// Escapes text as the content of an XML element. Invalid characters become U+FFFD, because programs refuse a figure
-/// with a single invalid character.
+/// Escapes text as the content of an XML element. Invalid characters become U+FFFD, because programs refuse to show a
+/// figure with a single invalid character.
 std::string escaped_xml(std::string_view words) {
   std::string result;
   for (std::size_t i = 0; i < words.size();) {

@@ -51,7 +51,7 @@ void check(const TiltView& view) {
   if (!(view.blur_mm > 0)) throw Error("tilt_figure: blur = " + to_text(view.blur_mm) + " mm; must be positive");
 }
 
-/// An angle, rounded to 1e-5 degrees because fits converge within less; never "-0".
+/// An angle as text, rounded to 1e-5 degrees because the error of fits is smaller; never "-0".
 std::string degrees_text(double angle_rad) {
   return to_text(std::round(1e5 * degrees(angle_rad)) / 1e5 + 0.0, 4) + "\u00b0";
 }
@@ -200,11 +200,12 @@ class TiltFigure {
     return box;
   }
 
-  /// A limit of the sharp region: the plane of focus of the parallel film on which a sharp point has a disc of diameter
-  /// `blur`. It contains the hinge line.
+  /// A limit of the sharp region: the plane of focus of a film parallel to the actual film, for which a sharp point has
+  /// a disc of diameter `blur` on the actual film. It contains the hinge line.
   ///
-  /// The chief ray from the centre E of the exit pupil to the image I makes a disc of D n.(F - I) / n.(I - E) on a film
-  /// through F with the normal n. All I with equal discs therefore lie in a plane with the normal n.
+  /// The chief ray runs from the centre E of the exit pupil to the image I. On a film through F with the normal n, the
+  /// disc has the diameter D n.(F - I) / n.(I - E). All images I with equal discs therefore lie in a plane with the
+  /// normal n.
   std::optional<FocusPlane> limit(double blur) const {
     const Pupil& exit = view_.lens.pupils.exit;
     Film film = ideal_;
@@ -223,7 +224,8 @@ class TiltFigure {
     if (!focus_ || !(view_.blur_mm < 0.5 * exit.diameter)) return {};
     SectionLine region{{b.z_min, b.low}, {b.z_max, b.low}, {b.z_max, b.high}, {b.z_min, b.high}};
     region = cut_off(region, {-1, 0, -view_.lens.front_focal_z});
-    // A point of the plane of focus in front of the front focal plane shows the sharp side of the limits.
+    // A point of the plane of focus in front of the front focal plane defines the side of the limits on which points
+    // are sharp.
     const SectionTrace plane = trace(focus_->plane);
     const double squared = plane.along * plane.along + plane.across * plane.across;
     SectionPoint inside{plane.offset * plane.along / squared, plane.offset * plane.across / squared};
@@ -299,7 +301,7 @@ class TiltFigure {
     panel.dot(meeting, "Scheimpflug line", 16);
   }
 
-  /// Draws the direction to a point at infinity as a stroke at the frame.
+  /// Draws a point at infinity as a stroke at the frame, in the direction of the point.
   void draw_direction(ScenePanel& panel, const SectionBox& box, std::size_t i) const {
     const SectionPoint d = section(view_.points[i].place.position);
     if (!(d.z < 0)) return;

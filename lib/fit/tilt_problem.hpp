@@ -58,7 +58,8 @@ class BlurErrors {
   virtual bool operator()(const FilmSlopes& film, double* errors, double* derivatives) const = 0;
 };
 
-/// The blur of an ideal lens: root * k (z - V), measured along the chief ray, which should meet the film at V.
+/// The blur of an ideal lens: `root` times the distance, along the chief ray, between the film and the point at which
+/// the ray should meet the film.
 class IdealBlur final : public BlurErrors {
  public:
   double x = 0, y = 0, z = 0, slope_x = 0, slope_y = 0;  ///< in coordinates of the frame

@@ -68,8 +68,8 @@ void CodevBuilder::evaluate_pickups() {
   }
 }
 
-/// Without RDM, CODE V reads curvatures, but other programs write radii without RDM. The numbers are radii if, as
-/// curvatures, they would make a surface impossibly steep.
+/// Without RDM, CODE V reads curvatures, but other programs write radii without RDM. The numbers are taken as radii if
+/// a surface would be impossibly steep with these numbers as curvatures.
 void CodevBuilder::choose_shapes() {
   if (lens_.curvatures) return;
   const auto& aperture = in_.lens.design.aperture;
@@ -178,7 +178,7 @@ void CodevBuilder::build() {
     if (s.shape != 0 && (s.cylinder_x || s.cylinder_y)) row.curved_in = s.cylinder_x ? Section::x : Section::y;
     before = row.medium;
   }
-  // The thickness of the image surface moves the film away from the position given by the last surface.
+  // The thickness of the image surface moves the film away from the position that the last surface gives.
   in_.lens.surfaces.back().thickness += lens_.surfaces.back().thickness * lens_.unit;
   // PIM puts the film at the paraxial image. The file states its distance if CODE V saved the solution.
   if (lens_.paraxial_image > 0) {
@@ -208,7 +208,7 @@ void CodevBuilder::build_zooms() {
   auto& list = in_.lens.configurations;
   list.resize(lens_.zoom_positions);
   for (std::size_t i = 0; i < list.size(); ++i) list[i].name = "position " + std::to_string(i + 1);
-  std::map<int, std::size_t> change_of;  // all positions change the same surfaces, in the same order
+  std::map<int, std::size_t> change_of;  // the same in all positions
   for (const CodevZoom& z : lens_.zooms) {
     const bool lens_value = z.what == "thi" || z.what == "rdy" || z.what == "cuy";
     const auto setting = aperture_setting(z.what);

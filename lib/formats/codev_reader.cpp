@@ -234,7 +234,7 @@ void CodevReader::lens_surface(Words w) {
   if (lens_.ended) in_.refuse(line_, w[0], "a surface after SI, the image", "before SI");
   if (lens_.surfaces.empty() && !same(w[0], "SO")) in_.refuse(line_, w[0], "a surface before SO", "after SO");
   in_.limit(lens_.surfaces.size() + 1, "surfaces", 2);
-  // Other programs write planes and infinite distances as "inf"; if there is no RDM, this number is not a curvature.
+  // Other programs write planes and infinite distances as "inf". Without RDM, such a number is not a curvature.
   const bool plane = w.size() > 1 && is_infinite(w[1]), endless = w.size() > 2 && is_infinite(w[2]);
   if (plane && lens_.curvatures.value_or(false)) in_.must_be(line_, w[0], in_quotes(w[1]), "a finite curvature");
   CodevSurface s{.line = line_, .shape = plane ? 0 : value(w, 1), .thickness = endless ? codev_endless : value(w, 2)};
@@ -413,7 +413,7 @@ void CodevReader::statement(std::string_view text) {
   const auto w = words(text);
   if (w.empty()) return;
   if (in_private_) return private_statement(w);
-  // TITLE is TIT, LENS is LEN: only the first three letters count.
+  // Only the first three letters count: TITLE is TIT, LENS is LEN.
   const std::string name = upper(w[0]);
   for (const std::string& word : {name, name.substr(0, 3)}) {
     for (const Command& command : commands()) {

@@ -60,7 +60,7 @@ class CodevWriter {
   void surface(std::size_t i);
   std::string glass(const Medium& medium) const;
   std::optional<double> beam_diameter(std::size_t position);
-  /// True if every zoom position has a beam and they differ.
+  /// True if every zoom position has a beam and the beams differ.
   bool zoomed_beam() const {
     return std::ranges::all_of(beams_, [](const auto& beam) { return beam.has_value(); }) &&
            std::ranges::adjacent_find(beams_, std::ranges::not_equal_to()) != beams_.end();
@@ -83,7 +83,7 @@ std::string codev_name(const Glass& glass) {
   return name + '_' + maker_of(glass);
 }
 
-/// A catalogue glass keeps its name if name and maker identify it; other media become private glasses.
+/// A catalogue glass keeps its name if name and maker identify it. Other media become private glasses.
 void CodevWriter::name_media() {
   std::optional<GlassNames> names;
   std::vector<Medium> media{p_.object_space};
@@ -221,7 +221,7 @@ void CodevWriter::surface(std::size_t i) {
   out_.line("S " + to_text(row.radius) + ' ' + to_text(row.thickness) + (row.mirror ? " REFL" : glass(row.medium)));
   if (row.stop) out_.line("  STO");
   if (row.comment) out_.line("  SLB " + quoted(*row.comment));
-  // The beams of the zoom positions determine the size of the stop.
+  // The size of the stop is determined by the beams of the zoom positions.
   const bool limited = row.semi_diameter && std::isfinite(*row.semi_diameter) && !row.semi_diameter_computed &&
                        !(row.stop && zoomed_beam());
   if (limited) out_.line("  CIR " + to_text(*row.semi_diameter));

@@ -21,14 +21,15 @@
 namespace petzval::formats_detail {
 namespace {
 
-/// The stop in one position: the rim in the file and the declared marginal ray.
+/// The size of the stop in one position: the rim in the file and the height of the declared marginal ray.
 struct StopSize {
   std::size_t surface = 0;
   std::optional<double> rim{};     ///< nullopt if open
   std::optional<double> height{};  ///< marginal ray at the stop; nullopt if undetermined by the aperture
 
   bool clips_the_beam() const { return rim && height && *rim < 0.99 * *height; }
-  /// The smaller of rim and height; nullopt if both are unknown. The rim if they are equal within the digits of files.
+  /// The smaller of rim and height; nullopt if both are unknown. If both are equal within the digits of files, it is
+  /// the rim.
   std::optional<double> semi_diameter() const {
     constexpr double digits = 1e-6;
     if (!height || (rim && *rim <= *height * (1 + digits))) return rim;
@@ -52,13 +53,14 @@ void set_the_stop(Prescription& lens, std::span<const StopSize> sizes) {
       change_of(c, static_cast<int>(sizes[i].surface)).semi_diameter = size;
     }
     if (sizes[i].surface == marked || !changed) continue;
-    SurfaceChange& other = change_of(c, static_cast<int>(marked));  // not the stop in this position: keeps its rim
+    SurfaceChange& other = change_of(
+        c, static_cast<int>(marked));  // another surface is the stop in this position, and this one keeps its rim
     if (!other.semi_diameter) other.semi_diameter = old.value_or(std::numeric_limits<double>::infinity());
   }
 }
 
-/// Position, from the last surface, at which a ray crosses the axis that enters at a height parallel to the axis; NaN
-/// if the ray is lost or does not cross.
+/// Position, from the last surface, at which the ray that enters parallel to the axis at a height crosses the axis; NaN
+/// if the ray is lost or does not cross the axis.
 double crossing(const Lens& lens, double height) {
   const double start = -10 - std::abs(height);
   const auto exit = trace(lens, Ray<double>{{0, height, start}, {0, 0, 1}});
@@ -210,7 +212,7 @@ void Completion::mark_a_stop() {
   in_.warn(0, "stop", "no surface is marked as the stop; the first one is taken");
 }
 
-/// The declared f-number distinguishes diameters from semi-diameters.
+/// Decides by the declared f-number if the column has diameters or semi-diameters.
 void Completion::choose_apertures() {
   const auto& [line, likely_diameters] = *asked_.unknown_apertures;
   const auto scaled = [&](double factor) {
@@ -259,7 +261,8 @@ void Completion::solve(const ThicknessSolve& solve) {
   if (!(std::abs(solved) < 1e10)) {
     return in_.warn(solve.line, solve.command, "no thickness satisfies the solve; the thickness in the file is taken");
   }
-  // Allow for the digits of files and for editions of a glass catalogue. A film stays if it is in focus.
+  // The tolerance allows for the digits of files and for editions of a glass catalogue. If the film is in focus, its
+  // position is kept.
   const double tolerance = solve.is_taken ? 2e-4 * std::abs(first_order_of(lens_).effective_focal_length)
                                           : 1e-3 * std::max(std::abs(solved), std::abs(stated));
   if (solve.is_stated && std::abs(stated - solved) <= tolerance) return;
@@ -311,8 +314,8 @@ void Completion::compare_focal_length() {
   }
 }
 
-/// A telecentric object space has its pupil at infinity, at any position of the stop: the lens must image its stop to
-/// at least 100 object distances.
+/// A telecentric object space has its pupil at infinity, but a file may ask for it with any position of the stop. The
+/// stop must therefore be imaged to at least 100 object distances.
 void Completion::check_telecentric() const {
   const double object = lens_.design.object_distance_mm;
   const std::size_t stop = stop_of(lens_);
@@ -383,7 +386,7 @@ void Completion::name_positions() {
   }
 }
 
-/// Sizes the stop: the declared aperture defines the beam and the rim clips it, so the smaller of both counts.
+/// Sizes the stop: the declared aperture defines the beam and the rim clips it, so the smaller size is used.
 void Completion::size_the_stop() {
   const auto& aperture = lens_.design.aperture;
   const bool declared = aperture && aperture->setting != ApertureSetting::stop_size && aperture->value > 0 &&
@@ -414,7 +417,7 @@ void Completion::size_the_stop() {
   const std::string beam =
       "the declared " + std::string(name(aperture->setting)) + " of " + to_text(aperture->value, 6);
   if (asked_.nominal_aperture && first.rim) {
-    // lint() compares f-numbers
+    // lint() compares f-numbers.
     if (aperture->setting == ApertureSetting::f_number || std::abs(*first.height / *first.rim - 1) <= 0.01) return;
     return in_.warn(0, "stop",
                     "its rim has a semi-diameter of " + to_text(*first.rim, 6) + " mm; " + beam + " needs " +
@@ -467,7 +470,7 @@ void Completion::compare_the_declared() try {
     if (declared) in_.warn(0, name(finding.kind), finding.message);
   }
 } catch (const Error&) {
-  // the f-number of the lens cannot be computed
+  // The f-number of the lens cannot be computed.
 }
 
 Prescription Completion::run() {

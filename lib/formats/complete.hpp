@@ -6,7 +6,7 @@
 
 namespace petzval::formats_detail {
 
-/// Completes the data of a reader to a valid lens by means of the library's optics.
+/// Turns the data of a reader into a valid lens, with the optics of the library.
 ///
 /// Carries out the requests of the file: film, solved thicknesses, meaning of apertures, names of positions. Sizes the
 /// stop by the aperture of the design, sets nominal data from the fields, and computes missing apertures. Each

@@ -14,8 +14,8 @@
 namespace petzval::formats_detail {
 namespace {
 
-/// Position of the stop's image in object space, from the first surface: a ray through the centre of this image passes
-/// the centre of the stop.
+/// Position of the image of the stop in object space, from the first surface: a ray through the centre of this image
+/// passes the centre of the stop.
 double entrance_pupil_z(const RayMatrix& to_stop, double object_index) {
   return to_stop.a == 0 ? std::numeric_limits<double>::infinity() : to_stop.b * object_index / to_stop.a;
 }
@@ -37,7 +37,7 @@ Lens at_primary_wavelength(const Prescription& rows, const GlassCatalogue* glass
                      {.glasses = glasses, .missing_glass = MissingGlass::abbe});
     }
   } catch (const Error&) {
-    // outside the range of a glass
+    // The wavelength is outside the range of a glass.
   }
   return compile(rows, {.glasses = glasses});
 }
@@ -85,10 +85,11 @@ double marginal_height_at_the_stop(const Lens& compiled, std::size_t position, d
           height = with_f_number(wide, n).surfaces()[position].semi_diameter;
           break;
         } catch (const Error&) {
-          // rays of this height miss a surface: use first order
+          // Rays of this height miss a surface: use the first-order height.
         }
       }
-      // A parallel beam, or the cone from the object to the rim of the entrance pupil, the image of the stop.
+      // The beam is a parallel beam, or the cone from the object to the rim of the entrance pupil, the image of the
+      // stop.
       height = std::abs(unit) * diameter / 2;
       if (!far) height *= 1 / std::abs(object + entrance_pupil_z(to_stop, first.object_index));
       break;

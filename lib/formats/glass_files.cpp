@@ -29,7 +29,7 @@ std::optional<double> index_at(const Glass& glass, double nm) {
   }
 }
 
-/// V_d of a glass with this n_d; 0 if the formula does not reach the F and C lines.
+/// V_d of a glass with this n_d; 0 if the formula is not valid at the F and C lines.
 double abbe_number(const Glass& glass, double nd) {
   const double n_f = index_at(glass, spectral_line_nm("F")).value_or(0);
   const double n_c = index_at(glass, spectral_line_nm("C")).value_or(0);

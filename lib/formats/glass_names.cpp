@@ -32,7 +32,8 @@ bool same_maker(std::string_view catalogue, std::string_view own) {
 
 int age(const Glass& glass) { return glass_detail::age(glass.catalogue); }
 
-/// Rank of the maker if nothing else decides: names without a prefix (F2, SK16) are Schott's; CDGM reuses names.
+/// Rank of the maker if the name is still ambiguous: names without a prefix (F2, SK16) are names of Schott; CDGM reuses
+/// names of others.
 int maker(const Glass& glass) { return same_maker(glass.catalogue, "schott") ? 0 : glass.catalogue == "cdgm" ? 2 : 1; }
 
 /// Index of a glass's catalogue in a list; the size of the list if it is not listed.

@@ -13,7 +13,7 @@ namespace petzval::formats_detail {
 
 /// Meaning of the n_d and V_d that a file states after the name of a glass.
 enum class Numbers {
-  stated,    ///< distinguish glasses of one name, and override the glass if different
+  stated,    ///< select among glasses of one name, and replace n_d and V_d of the glass if different
   leftovers  ///< only the name counts
 };
 
@@ -37,8 +37,8 @@ class GlassNames {
   const Glass* find(std::string_view name, std::span<const std::string> catalogues, std::optional<double> nd,
                     Numbers numbers) const;
 
-  /// Text for messages: glasses with the name of `found` in equally new catalogues that differ by more than 1e-4 in
-  /// n_d. Empty if the file names the catalogue or states the n_d of `found`.
+  /// Text for messages: other glasses named like `found`, in catalogues that are equally new, whose n_d differs by more
+  /// than 1e-4. Empty if the file names the catalogue or states the n_d of `found`.
   std::string others(const Glass& found, std::span<const std::string> catalogues, std::optional<double> nd) const;
 
  private:

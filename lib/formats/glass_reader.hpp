@@ -16,7 +16,7 @@ class GlassReader {
   /// @param where file name, for messages
   explicit GlassReader(std::string where) : where_(std::move(where)) {}
 
-  /// Adds a warning; after a thousand only their number is kept.
+  /// Adds a warning. After a thousand warnings, further warnings are only counted.
   void warn(int line, std::string_view command, const std::string& message);
   /// Throws Error: "file: line 7: CD = "1,5"; must be a finite number".
   [[noreturn]] void refuse(int line, const std::string& found, const std::string& wanted) const;
@@ -25,8 +25,8 @@ class GlassReader {
   /// @throws Error if the word is not a finite number
   double number(int line, std::string_view what, std::string_view word) const;
 
-  /// Adds a glass, or leaves it out with a warning if its range is empty or its index is not real. If nd is 1 or less
-  /// (not printed in the file), n_d is computed.
+  /// Adds a glass, or leaves it out with a warning if its range is empty or its index is not real. If nd is 1 or less,
+  /// which means that the file does not state it, n_d is computed.
   void add(Glass glass, int line);
   /// @throws Error if the file has no usable glass
   GlassFile finish();

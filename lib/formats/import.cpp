@@ -111,7 +111,7 @@ Medium medium_of(const Glass& glass) {
   return medium;
 }
 
-// Difference of n_d that separates two glasses of one name; half a unit of the fourth decimal.
+// Difference of n_d between two glasses of one name, and half a unit of the fourth decimal.
 constexpr double another_glass = 0.01, rounded_index = 5e-5;
 
 }  // namespace
@@ -155,7 +155,7 @@ Medium Import::glass(int line, std::string_view name, std::span<const std::strin
       warn(line, name, "is in several catalogues; " + describe(*found) + " is taken, not " + others);
     }
     Medium medium = medium_of(*found);
-    // Other melts and moulded glasses have different indices.
+    // Other melts, and moulded glasses, have different indices.
     if (numbers == Numbers::stated && nd && medium.nd && std::abs(*medium.nd - *nd) > rounded_index) medium.nd = nd;
     return medium;
   }

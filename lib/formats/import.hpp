@@ -26,7 +26,7 @@ class Import {
   Prescription lens;  ///< `imported` is set
   ImportRequests requests;
 
-  /// Adds a warning about an assumption or omitted data; after a thousand only their number is kept.
+  /// Adds a warning about an assumption or omitted data. After a thousand warnings, further warnings are only counted.
   void warn(int line, std::string_view command, const std::string& message);
   /// Throws Error: "file: line 7: CURV = found; must be wanted".
   [[noreturn]] void refuse(int line, std::string_view command, const std::string& found,
@@ -48,7 +48,7 @@ class Import {
   /// Warns if a glass of another catalogue or name is used.
   ///
   /// @param catalogues catalogues that the file names, in order of preference; may be empty
-  /// @param nd, vd numbers after the name: used if no table has the name, and as `numbers` says
+  /// @param nd, vd numbers after the name; used if no table has the name, or as `numbers` defines
   /// @throws Error, with similar names, if no table has the glass and the file states no index
   Medium glass(int line, std::string_view name, std::span<const std::string> catalogues, std::optional<double> nd,
                std::optional<double> vd, Numbers numbers = Numbers::stated);

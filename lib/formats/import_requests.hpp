@@ -26,7 +26,7 @@ struct FilmAtFocus {
   int line = 0;
   std::string command;
   std::string reason;       ///< for the warning
-  bool is_needed = false;   ///< true if a lens without this focus is refused
+  bool is_needed = false;   ///< true: the lens is refused if it has no such focus
   bool in_the_rows = true;  ///< false if only `configurations` lack the film position
   std::vector<std::size_t> configurations{};
 };
@@ -39,7 +39,8 @@ struct StatedFocalLength {
   bool is_default = false;  ///< true if the program writes this number for every new lens
 };
 
-/// A column of apertures that may be diameters or semi-diameters. The rows contain half of the numbers.
+/// A column of apertures that may be diameters or semi-diameters. The surfaces of the lens already have half of the
+/// numbers.
 struct UnknownApertures {
   int line = 0;
   bool likely_diameters = true;  ///< the meaning if the f-number does not decide
@@ -60,19 +61,19 @@ struct UnnamedPositions {
 /// Requests of a file beyond its prescription; complete() carries them out.
 struct ImportRequests {
   std::vector<int> surface_lines;  ///< lines of the surfaces in the file; empty if unknown
-  /// True if the design's aperture is a rounded number that describes the lens. It then defines no beam, and the rim of
-  /// the stop, if given in the file, is the size of the stop.
+  /// True if the aperture of the design is a rounded number that only describes the lens. It then defines no beam, and
+  /// the rim of the stop, if the file states it, is the size of the stop.
   bool nominal_aperture = false;
   /// Value of the design's aperture per configuration; nullopt or too short if equal to the design.
   std::vector<std::optional<double>> position_apertures;
-  bool last_plane_may_be_film = false;  ///< a plane in focus, if last, is the film
+  bool last_plane_may_be_film = false;  ///< a plane in focus is the film if it is the last surface
   bool plane_may_be_stop = false;       ///< a plane in one medium is the stop if none is marked
   bool names_missing_apertures = false;
   std::optional<UnknownApertures> unknown_apertures;
   std::vector<ThicknessSolve> solves;  ///< from the first surface to the last
   std::optional<FilmAtFocus> film_at_focus;
   std::optional<StatedFocalLength> focal_length;
-  int telecentric_line = 0;  ///< line that asks for a telecentric object space; 0 if absent
+  int telecentric_line = 0;  ///< line that declares a telecentric object space; 0 if absent
   std::string telecentric_command;
   std::optional<UnnamedPositions> positions;
 };

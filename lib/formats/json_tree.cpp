@@ -112,8 +112,8 @@ class Builder {
   io_detail::JsonTokens tokens_;
 };
 
-/// Empties a value from the leaves up: the destructor of a non-empty list or object allocates, and terminates the
-/// program if memory runs out.
+/// Empties a value from the leaves up: the destructor of a list or object that is not empty allocates memory, and
+/// terminates the program if memory runs out.
 void empty(nlohmann::json& value) noexcept {
   if (!value.is_structured()) return;
   for (nlohmann::json& entry : value) empty(entry);

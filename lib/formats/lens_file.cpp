@@ -85,7 +85,7 @@ Prescription parse_lens(std::string bytes, const std::string& where, const ReadO
     return lens;
   }
   if (trimmed(text).empty()) throw Error(where + ": is empty; must be " + wanted);
-  // Most likely a damaged file of this library: its messages name line and column.
+  // Probably a damaged file of this library: the messages of its parser name line and column.
   if (const std::string_view start = trimmed(text); start.starts_with('{')) {
     return parse_prescription(text, where);
   }

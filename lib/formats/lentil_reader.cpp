@@ -120,7 +120,7 @@ void LentilReader::element(const JsonObject& e) {
     e.refuse("lens-geometry", "aspherical",
              "spherical, planar, cyl-x or cyl-y: the format does not define its coefficients");
   }
-  // The letter names the axis of the cylinder: normals of cyl-y have no y component.
+  // The letter names the axis of the cylinder: the normals of cyl-y have no y component.
   if (geometry == "cyl-y") {
     row.curved_in = Section::x;
   } else if (geometry == "cyl-x") {

@@ -23,8 +23,8 @@ namespace {
 
 constexpr std::size_t most_columns = 100;
 
-/// The cells of a line without empty cells at its end, at most one more than allowed. A comment after "//" ends the
-/// line, unless "//" is part of a word ("https://...").
+/// The cells of a line without the empty cells at its end; at most one more cell than allowed. A comment after "//"
+/// ends the line, unless "//" is part of a word ("https://...").
 std::vector<std::string_view> cells_of(std::string_view line) {
   for (std::size_t at = line.find("//"); at != std::string_view::npos; at = line.find("//", at + 1)) {
     if (at > 0 && line[at - 1] != ' ' && line[at - 1] != '\t') continue;
@@ -102,7 +102,7 @@ class OpticalBenchReader {
   std::vector<std::string> scenarios_, names_;
 };
 
-/// Names of rows that state a property of each position rather than a distance of the lens.
+/// Names of rows that state a property of each position and not a distance of the lens.
 constexpr std::array<std::string_view, 9> quantities = {
     "Focal Length", "F-Number", "Angle of View", "Image Height",      "Magnification",
     "NA",           "WD",       "Total Length",  "Aperture Diameter",
@@ -216,7 +216,7 @@ void OpticalBenchReader::take_surface(int line, const Cells& cells) {
   in_.lens.surfaces.push_back(std::move(surface));
 }
 
-/// Number of odd powers, from the third on, between the even powers.
+/// Number of odd powers, from the third power on, between the even powers.
 int OpticalBenchReader::odd_count() const {
   const auto found = constants_.find("AsphericalOddCount");
   if (found == constants_.end()) return 0;

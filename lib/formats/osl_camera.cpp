@@ -23,7 +23,7 @@ namespace petzval {
 namespace {
 
 constexpr std::size_t focus_nodes = 33, stop_nodes = 9, rings = 12, light_nodes = 5;
-constexpr double spare = 1.02;  ///< enlarges boxes about pupils, which are computed at sample points
+constexpr double spare = 1.02;  ///< enlarges boxes around pupils, because they are computed from samples
 
 /// A number that reads back as the same float, with a point so that it is not an integer.
 std::string number(double value) {
@@ -40,8 +40,8 @@ std::string array(const std::string& name, std::span<const double> values) {
   return text + " };\n";
 }
 
-/// Bounds of the exit pupil as seen from a film point, in the plane of the last vertex: along the film point's
-/// direction from the axis (from, to), and perpendicular to it (across).
+/// Bounds of the exit pupil as seen from a film point, in the plane of the last vertex: from, to along the direction of
+/// the film point from the axis; across perpendicular to it.
 struct Box {
   double from = std::numeric_limits<double>::infinity(), to = -std::numeric_limits<double>::infinity(), across = 0;
 
@@ -228,7 +228,8 @@ void OslCamera::boxes(std::string& text) const {
         at[k].take(box_at(set, film_radius_ * static_cast<double>(k) / static_cast<double>(at.size() - 1)));
       }
     }
-    // Edges are interpolated linearly between rings: they are moved out until the boxes halfway lie inside.
+    // Edges are interpolated linearly between rings, so they are moved outwards until the boxes halfway between rings
+    // lie inside.
     const auto widen = [&](double Box::*edge, double sign) {
       for (std::size_t k = 1; k + 1 < at.size(); k += 2) {
         if (at[k].empty()) continue;

@@ -47,7 +47,7 @@ void Builder::pick_up() {
       if (p.what == "CV" || p.what == "CVM") {
         const double sign = p.what == "CV" ? 1 : -1;
         s.curvature = sign * from.curvature + p.constant;
-        // The rest of the shape is picked up too, unless the surface has its own.
+        // The rest of the shape is picked up too, unless the surface has a shape of its own.
         if (s.conic == 0) s.conic = from.conic;
         if (s.terms.empty()) {
           for (const auto& [order, coefficient] : from.terms) s.terms[order] = sign * coefficient;
@@ -128,8 +128,8 @@ SurfaceRow Builder::row(const OsloSurface& s, const Medium& before) {
   row.mirror = s.medium.kind == OsloMedium::Kind::mirror;
   row.medium = medium(s.medium, before);
   row.stop = s.stop;
-  // AP is the width of the design's beams. It becomes a rim of elements, and of the stop and dummy surfaces only if
-  // rays are checked there.
+  // AP is the width of the beams of the design. At elements it becomes a rim; at the stop and at dummy surfaces it
+  // becomes a rim only if rays are checked there.
   const bool dummy = !row.mirror && row.medium == before;
   const bool counts = s.checked || !(dummy || s.stop);
   if (counts && s.aperture && *s.aperture > 0 && *s.aperture < 1e6) row.semi_diameter = *s.aperture * unit;

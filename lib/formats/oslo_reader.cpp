@@ -107,7 +107,7 @@ void OsloReader::take(int line, std::string_view text) {
   const std::string command = upper(w[0]);
   if (take_general(line, command, w)) return;
   if (ended_) {
-    // Rays, variables and merit functions follow the lens.
+    // The sections after the lens contain rays, variables and merit functions.
     if (command == "CFG") warn_once(line, command, "configurations are left out; the first one is read");
     return;
   }
@@ -271,7 +271,7 @@ bool OsloReader::take_asphere(int line, std::string_view command, const Words& w
   return true;
 }
 
-/// Refuses commands without which the lens would be a different one, and skips commands that do not affect it.
+/// Refuses commands that define another kind of lens, and skips commands that do not affect the lens.
 bool OsloReader::refuse_or_skip(int line, std::string_view command, const Words& w) {
   if (is_one_of(command, "DCX DCY DCZ TLA TLB TLC CVX RDX CCX")) {
     if (value(line, w) != 0) {

@@ -34,8 +34,8 @@ struct Page {
   Value nd, vd, absolute;
 };
 
-/// Keeps the few values of a page that define a glass, while yaml-cpp walks through it. No tree is built, so that
-/// neither aliases nor depth cost memory.
+/// Keeps the few values of a page that define a glass, while yaml-cpp reads it. No tree is built, so that neither
+/// aliases nor nested lists use memory.
 class PageReader : public YAML::EventHandler {
  public:
   PageReader(Page& page, const GlassReader& reader) : page_(page), reader_(reader) {}
@@ -83,7 +83,7 @@ class PageReader : public YAML::EventHandler {
     value_ends();
   }
 
-  /// A value inside an object is complete: a key comes next.
+  /// Called after a value inside an object: a key comes next.
   void value_ends() {
     if (!inside_.empty() && inside_.back().map) inside_.back().at_key = true;
   }
@@ -125,8 +125,8 @@ class PageReader : public YAML::EventHandler {
   int documents_ = 0;
 };
 
-/// Limits lines and documents: yaml-cpp holds the tokens of a line, hundreds of bytes each, until it knows if they are
-/// a key, and all tokens of a document that is followed by another one.
+/// Limits lines and documents: yaml-cpp stores the tokens of a line, hundreds of bytes each, until it knows if they are
+/// a key. It also stores all tokens of a document that is followed by another one.
 void check_lines(std::string_view text, const GlassReader& reader) {
   constexpr std::size_t most_bytes = 8 << 20, longest_line = 64 << 10;
   if (text.size() > most_bytes) {
@@ -277,7 +277,7 @@ class RiiReader {
       rows.erase(same, rows.end());
     }
 
-    // If k exceeds 0.01, a millimetre is opaque; the longest clear range is the glass.
+    // If k exceeds 0.01, a millimetre is opaque; the longest range of clear wavelengths is used.
     constexpr double clear = 0.01;
     std::size_t first = 0, count = 0;
     for (std::size_t i = 0, start = 0; i < rows.size(); ++i) {

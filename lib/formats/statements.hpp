@@ -9,7 +9,8 @@
 namespace petzval::formats_detail {
 
 /// The statements of a .seq, one after the other: lines, or parts of lines between semicolons. "!" begins a comment,
-/// "&" at the end continues the statement on the next line; quoted text keeps these characters.
+/// and "&" at the end of a line continues the statement on the next line. In quoted text these characters have no
+/// special meaning.
 class Statements {
  public:
   explicit Statements(std::string_view text) : lines_(text) {}

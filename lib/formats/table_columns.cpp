@@ -42,7 +42,7 @@ constexpr Heads all_heads[] = {
     {Column::comment, "comment description element label name note notes remark remarks surfacetype type"},
 };
 
-/// The kind of column of a head; nullopt if the head is not known.
+/// The kind of column for a head; nullopt if the head is not known.
 std::optional<Column> kind_of(std::string_view head) {
   const auto found = std::ranges::find_if(all_heads, [&](const Heads& h) { return is_one_of(head, h.names); });
   return found == std::end(all_heads) ? std::nullopt : std::optional(found->kind);
@@ -177,7 +177,7 @@ std::vector<TableColumn> columns_of(std::span<const std::string_view> cells, boo
     columns.push_back(std::move(column));
     i += taken;
   }
-  // Two heads are ambiguous: "index" is a row number if there is "nd", and a second "d" ("r d n D") is a diameter.
+  // Two heads are ambiguous: "index" is a row number if there is also "nd", and a second "d" ("r d n D") is a diameter.
   const auto find = [&](Column kind) { return std::ranges::find(columns, kind, &TableColumn::kind); };
   const auto second = [&](Column kind) {
     const auto first = find(kind);
@@ -234,7 +234,7 @@ bool has_glass(const Tail& tail) {
   return tail.number(0).value_or(0) > 1.01;
 }
 
-/// True if a column can contain the V-numbers of glasses, with 0 or nothing for air.
+/// True if a column may be the V-numbers of glasses, with 0 or no number for air.
 bool could_be_abbe(std::span<const Tail> tails, std::size_t column, bool strict_air) {
   return std::ranges::all_of(tails, [&](const Tail& tail) {
     const auto value = tail.number(column);

@@ -50,7 +50,7 @@ void TableBuilder::check(const TableRow& row) const {
   if (row.aperture && !(*row.aperture >= 0)) in_.must_be(row.line, "aperture", to_text(*row.aperture), "at least 0");
 }
 
-/// Moves distances behind their surfaces if the column states gaps in front of surfaces: if the table says so, or if
+/// Moves distances to the previous surface if the column states gaps in front of surfaces: if the table says so, or if
 /// the first glass would otherwise have no thickness.
 void TableBuilder::move_gaps_behind() {
   const TableRow& first = rows_.front();

@@ -43,7 +43,7 @@ std::optional<int> label_of(std::string_view cell) {
 bool is_object_word(std::string_view cell) { return is_one_of(cell, "obj object"); }
 bool is_image_word(std::string_view cell) { return is_one_of(cell, "ima img image film sensor si"); }
 
-/// In a column of comments "ASP" means an asphere, and "aperture" any rim.
+/// In a column of comments, "ASP" means an asphere, and "aperture" may mean any rim.
 bool marks_stop_in_comment(std::string_view cell) {
   return is_stop_word(cell) && !is_one_of(cell, "asp as ast aperture");
 }
@@ -128,7 +128,7 @@ void TableReader::take_titles() {
   for (const RawRow& row : std::exchange(rows_, {})) take_text({row.line, row.cells, {}});
 }
 
-/// The last row may end after its radius, or describe its thickness in words: the film is at the paraxial focus.
+/// The last row may end after its radius, or have a word for its thickness: the film is then at the paraxial focus.
 void TableReader::end_last_row() {
   const std::size_t thickness = find(Column::thickness);
   auto& cells = rows_.back().cells;
@@ -194,8 +194,8 @@ void TableReader::take_lines() {
   }
 }
 
-/// Takes a comment before the rows as the head ("# radius  thickness  n  aperture") if all its words are heads and
-/// their number equals the number of cells.
+/// Uses a comment before the rows as the head ("# radius  thickness  n  aperture") if all its words are heads and their
+/// number equals the number of cells.
 void TableReader::use_comment_as_head() {
   if (head_line_ != 0 || rows_.empty()) return;
   std::size_t widest = 0;
@@ -262,7 +262,7 @@ void TableReader::name_star(int line, std::string_view label) {
   }
 }
 
-/// Heads must name radius, thickness and medium. Other heads are read if known; unknown heads are named in a warning.
+/// Heads must name radius, thickness and medium. Other known heads are read; unknown heads are listed in a warning.
 void TableReader::check_head() const {
   std::string unknown;
   for (const TableColumn& column : columns_) {
@@ -311,7 +311,7 @@ void TableReader::guess() {
   }
   columns_ = std::move(found.columns);
   guessed_ = true;
-  // Index 0 marks tables of renderers, which have these columns and no heads.
+  // An index of 0 marks tables of renderers, which have these columns and no heads.
   const bool renderers =
       columns_.size() == 4 && columns_[2].kind == Column::index && columns_[3].kind == Column::aperture &&
       std::ranges::any_of(plain, [&](const auto& cells) { return cells.size() == 4 && text_.number(cells[2]) == 0.0; });
@@ -332,7 +332,7 @@ void TableReader::take_marks(RawRow& row) {
     cells.erase(cells.begin() + static_cast<std::ptrdiff_t>(at));
   };
   const auto kind = [&](std::size_t at) { return at < width ? columns_[at].kind : Column::left_out; };
-  // The mark follows the row, or precedes a complete row.
+  // The mark is the last cell of the row, or precedes a complete row.
   const Column last = kind(cells.size() - 1);
   const bool of_words = last == Column::comment || last == Column::stop || last == Column::number;
   if (cells.size() > 1 && is_stop_word(cells.back()) && !of_words && cells.size() - 1 != radius) take(cells.size() - 1);
@@ -353,8 +353,8 @@ void TableReader::take_marks(RawRow& row) {
   cells[radius] = "inf";
 }
 
-/// Rows with cells separated by blanks may end early: after the distances (air), or if only words, V-numbers and
-/// aspheric terms would follow. Otherwise the missing cell is ambiguous.
+/// Rows with cells separated by blanks may have fewer cells: they may end after the distances (air), or if only words,
+/// V-numbers and aspheric terms are missing. In all other rows a missing cell is ambiguous.
 void TableReader::check_width(const RawRow& row) const {
   const std::size_t width = columns_.size(), cells = row.cells.size();
   if (cells == width || (cells < width && text_.has_empty_cells() && !guessed_)) return;
@@ -441,7 +441,7 @@ void TableReader::put(TableRow& row, const TableColumn& column, std::string_view
 TableRow TableReader::row_of(const RawRow& raw) {
   TableRow row{.line = raw.line, .stop = raw.stop, .in_medium = raw.stop_in_front};
   std::vector<std::string_view> cells = raw.cells;
-  // In a row without a glass the cell may be missing: its position then has the next number.
+  // In a row without a glass the cell may be missing; the next number then stands in its position.
   const std::size_t glass = find(Column::glass);
   if (!text_.has_empty_cells() && cells.size() + 1 == columns_.size() && glass < cells.size() &&
       looks_like_a_number(cells[glass])) {
@@ -476,7 +476,7 @@ void TableReader::take_object(const TableRow& row, const RawRow& raw) {
   if (!far && row.thickness) in_.lens.design.object_distance_mm = *row.thickness;
 }
 
-/// True if a row has only a radius. A comment "film" does not make a surface the film.
+/// True if a row has only a radius. A row with the comment "film" does not become the film by its comment.
 bool TableReader::is_bare_plane(const RawRow& raw) const {
   for (std::size_t i = 0; i < std::min(raw.cells.size(), columns_.size()); ++i) {
     const Column kind = columns_[i].kind;
@@ -486,7 +486,7 @@ bool TableReader::is_bare_plane(const RawRow& raw) const {
   return true;
 }
 
-/// The last row may be the image. The previous row states its distance.
+/// Checks that a row for the image is the last row. The previous row states its distance.
 void TableReader::take_image(const RawRow& raw, bool last) const {
   if (!last) in_.must_be(raw.line, "row", "the image", "the last row");
   const std::size_t radius = find(Column::radius);

@@ -14,7 +14,7 @@ bool is_comment(std::string_view line) {
   return line.starts_with('#') || line.starts_with("//") || line.starts_with(';') || line.starts_with('%');
 }
 
-/// The position of a comment after a row: "#" or "//" after a blank. A "#" between separators is a head.
+/// The position of a comment after a row: "#" or "//" after a blank. A "#" between separators is the head of a column.
 std::size_t remark_start(std::string_view line) {
   for (std::size_t i = 1; i < line.size(); ++i) {
     const bool mark = line[i] == '#' || line.substr(i, 2) == "//";

@@ -37,7 +37,7 @@ class TableText {
   std::vector<TableComment> comments;
 
   char separator() const noexcept { return separator_; }  ///< ' ', '\t', ',', ';' or '|'
-  /// True if an empty cell keeps its column: the separator is not a blank.
+  /// True if an empty cell is possible, because the separator is not a blank.
   bool has_empty_cells() const noexcept { return separator_ != ' '; }
   /// True if numbers have a decimal comma: cells are separated by semicolons, and no number has a point.
   bool has_decimal_commas() const noexcept { return decimal_commas_; }
@@ -56,7 +56,7 @@ class TableText {
   bool decimal_commas_ = false;
 };
 
-/// True if a cell is a number or was meant to be: "1,5", "nan", "5x".
+/// True if a cell is a number, or probably should be one: "1,5", "nan", "5x".
 bool looks_like_a_number(std::string_view cell);
 /// True for the words for the radius of a plane, with or without a sign: "inf", "Infinity", "plano", "flat", ...
 bool is_plane_word(std::string_view cell);

@@ -12,8 +12,8 @@ namespace {
 
 using namespace formats_detail;
 
-/// Readers interpret a thickness of 0 of the first glass as gaps in front of surfaces, and of the last surface as a
-/// film without a position.
+/// Readers interpret a thickness of 0 in a special way: at the first glass as gaps in front of surfaces, and at the
+/// last surface as a film without a position.
 constexpr double nearly_zero = 1e-9;
 
 /// Renderers interpret radius 0 as the stop. A sphere this flat departs from a plane by 5e-5 mm at 10 mm from the axis.
@@ -75,7 +75,7 @@ WrittenLens format_table(const Prescription& prescription, const GlassCatalogue*
     } else {
       const double radius = row.radius == 0 ? nearly_plane : row.radius;
       planes = planes || row.radius == 0;
-      // A stop on a lens surface becomes a separate row, on the side of the surface that is air.
+      // If a lens surface is the stop, the stop is written as a separate row, on the side of the surface with air.
       if (is_stop && before == 1) {
         out.line(cells(0, 0, 0, diameter));
         out.line(cells(radius, thickness, index, diameter));

@@ -95,7 +95,7 @@ std::string as_utf8(std::string bytes, const std::string& where, const std::stri
   if (bytes.starts_with("\xFE\xFF")) return from_utf16(std::string_view(bytes).substr(2), true);
   if (bytes.starts_with("\xEF\xBB\xBF")) bytes.erase(0, 3);
 
-  // UTF-16 of Latin letters has a zero in every other byte, and nowhere else.
+  // In UTF-16 text of Latin letters, every second byte is zero, and no other byte is.
   const std::size_t looked_at = std::min<std::size_t>(bytes.size() & ~std::size_t{1}, 4096);
   std::array<std::size_t, 2> zeros{};
   for (std::size_t i = 0; i < looked_at; ++i) zeros[i % 2] += bytes[i] == '\0';

@@ -50,7 +50,7 @@ Writer::Writer(const Prescription& lens, const GlassCatalogue* glasses)
   mark_the_stop();
 }
 
-/// Marks the stop, as other programs use the first surface if no stop is marked.
+/// Marks the stop, because other programs use the first surface if no stop is marked.
 void Writer::mark_the_stop() {
   const auto marked = std::ranges::find_if(lens_.surfaces, &SurfaceRow::stop);
   if (marked != lens_.surfaces.end()) {
@@ -100,7 +100,7 @@ void Writer::state_indices_at_d() {
     if (!medium.nd) return;
     double& nd = *medium.nd;
     if (const Glass* found = glass(medium)) {
-      // An index equal to the formula or to the printed table means the glass itself.
+      // If the index equals the formula or the printed table, the medium is the glass itself.
       const bool printed = reference == d_line_nm && nd == found->nd;
       const double off = std::abs(nd - index_at(*found, reference).value_or(HUGE_VAL));
       if (printed || off <= 1e-10) {

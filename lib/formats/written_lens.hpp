@@ -27,15 +27,15 @@ class Writer {
   [[noreturn]] void refuse(std::size_t surface, const std::string& found, const std::string& wanted) const;
   void line(const std::string& text) { text_ += text + '\n'; }
   void lose(std::string_view what, const std::string& message) { losses_.push_back({0, std::string(what), message}); }
-  /// Records the loss of nominal data and sources, except the `kept` ones and, in a format with design data, the data
-  /// that its aperture and its fields declare.
+  /// Records the loss of nominal data and sources, except the `kept` data and, in a format with design data, the data
+  /// that the format stores as its aperture and its fields.
   void lose_nominal_data(bool design_data, std::initializer_list<std::string_view> kept);
-  /// Records the loss of a rim of the stop that is wider than the declared beam: programs launch the declared beam.
+  /// Records the loss of a stop rim that is wider than the declared beam: other programs use only the declared beam.
   void lose_the_wider_stop();
-  /// Throws Error if a semi-diameter is 0 in any configuration: such formats have no closed rim.
+  /// Throws Error if a semi-diameter is 0 in any configuration, because such formats cannot store a closed rim.
   void refuse_closed_rims(const std::string& format) const;
-  /// Restates the indices at the d line, for formats with glasses. A medium with the index of its glass keeps no stated
-  /// index. The reference wavelength becomes the wavelength of the design.
+  /// Converts indices to the d line, for formats with glasses. If the index of a medium equals the index of its glass,
+  /// no index is stated. The reference wavelength becomes the wavelength of the design.
   /// @throws Error if the index of a glass is stated and the glass does not reach the d line
   void state_indices_at_d();
   Lens at_primary_wavelength(const Prescription& rows) const {

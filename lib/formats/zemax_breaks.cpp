@@ -28,7 +28,7 @@ bool changes_nothing(const ZemaxSurface& s) {
   return std::ranges::all_of(s.parameters, [](const auto& p) { return p.first > 5 || p.second == 0; });
 }
 
-/// True for a plane without glass on either side, which only positions breaks.
+/// True for a plane without glass on either side, whose only purpose is to position breaks.
 bool is_dummy(const ZemaxSurface& s, const ZemaxSurface& before) {
   return s.type == "STANDARD" && s.curvature == 0 && !s.stop && !s.glass && !before.glass && !s.aperture &&
          !s.obscuration && !s.ring;
@@ -65,7 +65,7 @@ bool is_fold(std::span<const ZemaxSurface> three) {
          three[1].glass->name == "MIRROR" && !three[1].stop;
 }
 
-/// Warns of surface data at a break, which is not a surface.
+/// Warns of surface data at a coordinate break, which is not a surface.
 void warn_of_surface(const ZemaxSurface& found, Import& in) {
   std::string said;
   const auto add = [&](bool is_there, std::string_view what) {
@@ -78,7 +78,7 @@ void warn_of_surface(const ZemaxSurface& found, Import& in) {
   if (!said.empty()) in.warn(found.line, "COORDBRK", "is not a surface; its " + said + " is left out");
 }
 
-/// Inverts a surface behind a removed mirror, where light travels the other way along z.
+/// Inverts a surface behind a removed mirror, where light travels in the opposite direction along z.
 void turn(ZemaxSurface& s) {
   const auto opposite = [](double& value) { value = 0.0 - value; };
   opposite(s.thickness);
@@ -102,7 +102,7 @@ void fold_breaks(Surfaces& surfaces, std::vector<int>& place, Import& in) {
     kept.push_back(std::move(surfaces[i]));
     kept_place.push_back(place[i]);
   };
-  // Removes surfaces up to `end`: the surface in front gets the thickness of the last.
+  // Removes surfaces up to `end`. The surface in front of them gets the thickness of the last one.
   const auto take_out = [&](std::size_t end) {
     const double thickness = surfaces[end - 1].thickness;
     kept.back().thickness += turned ? 0.0 - thickness : thickness;

@@ -50,7 +50,7 @@ class Pickups {
     in_.refuse(line, command, "a pickup from surface " + std::to_string(surface), "a pickup from an earlier surface");
   }
 
-  /// Sets the value of a pickup or solve; keeps the digits of the file if they agree.
+  /// Sets the value of a pickup or solve. If both agree, the digits of the file are kept.
   void set(int line, const char* command, double& value, double wanted) const {
     if (agree(value, wanted)) return;
     in_.warn(line, command,
@@ -64,7 +64,8 @@ class Pickups {
     set(pickup.line, command, surfaces_[i].*member, picked * pickup.scale + pickup.offset);
   }
 
-  /// Sets a thickness so that its sum with one thickness, or with all from a surface on, equals the total.
+  /// Sets a thickness so that its sum with one other thickness, or with all thicknesses from a surface on, equals the
+  /// total.
   void complete(std::size_t i, const ZemaxPickup& sum, const char* command, bool all) {
     source(i, sum.line, command, sum.surface);
     double rest = sum.offset;
@@ -162,7 +163,7 @@ void Rows::asphere(const ZemaxSurface& s, SurfaceRow& row) const {
     return;
   }
   if (s.type == "XASPHERE" || s.type == "XOSPHERE") {
-    // Terms in (r / r0); the first number is their count.
+    // The terms are powers of (r / r0); the first number is the number of terms.
     const auto extra = [&](int i) {
       const auto found = s.extra.find(i);
       return found == s.extra.end() ? 0.0 : found->second;
@@ -191,9 +192,10 @@ void Rows::asphere(const ZemaxSurface& s, SurfaceRow& row) const {
              "STANDARD, EVENASPH, ODDASPHE, XASPHERE, XOSPHERE, COORDBRK, or a TOROIDAL that is a cylinder");
 }
 
-/// Sets the rim and the obscuration of a surface. Clear apertures (CLAP, FLAP) clip. Semi-diameters (DIAM) clip at
-/// elements, whether set by the user or by the width of the design's beams, and at the stop if set by the user or if
-/// the stop's size is the aperture. Dummy surfaces, with the same medium on both sides, clip only by a clear aperture.
+/// Sets the rim and the obscuration of a surface. Clear apertures (CLAP, FLAP) clip at any surface. Semi-diameters
+/// (DIAM), set by the user or computed from the beams of the design, clip at elements. At the stop they clip if they
+/// were set by the user or if the aperture of the design is the size of the stop. At dummy surfaces, with the same
+/// medium on both sides, they do not clip.
 void Rows::rims(const ZemaxSurface& s, const Medium& before, SurfaceRow& row) const {
   row.obscuration_semi_diameter = s.obscuration;
   const bool dummy = !row.mirror && row.medium == before;
@@ -201,16 +203,16 @@ void Rows::rims(const ZemaxSurface& s, const Medium& before, SurfaceRow& row) co
   const bool floats = aperture && aperture->setting == ApertureSetting::stop_size;
   if (s.semi_diameter > 0 && (s.stop ? s.fixed_semi_diameter || floats : !dummy)) row.semi_diameter = s.semi_diameter;
   if (s.aperture) {
-    // A clear aperture of the stop clips the beam launched by the size of the stop.
+    // If the size of the stop defines the beam, a clear aperture at the stop clips that beam.
     row.semi_diameter = s.stop && floats ? std::min(*s.aperture, row.semi_diameter.value_or(*s.aperture)) : *s.aperture;
   }
   if (s.ring) clip_by_ring(s, row);
   if (row.obscuration_semi_diameter && row.semi_diameter && *row.semi_diameter <= *row.obscuration_semi_diameter) {
-    row.semi_diameter.reset();  // the width of the beam passing outside
+    row.semi_diameter.reset();  // here DIAM is the width of the beam that passes outside the ring
   }
 }
 
-/// An opaque ring that reaches the rim leaves an opening with its inner radius.
+/// A ring that blocks light up to the rim leaves an opening of its inner radius.
 void Rows::clip_by_ring(const ZemaxSurface& s, SurfaceRow& row) const {
   const double rim = s.aperture.value_or(s.semi_diameter);
   if (!(rim > 0) || s.ring->outer < rim * (1 - 1e-9)) {
@@ -333,7 +335,7 @@ void Configurations::build() {
     const auto earlier = std::ranges::find(list, list[i].name, &Configuration::name);
     if (earlier != list.begin() + static_cast<std::ptrdiff_t>(i)) list[i].name += " (" + std::to_string(i + 1) + ")";
   }
-  // If exactly one position is at infinity, the others focus it.
+  // If exactly one position is at infinity, the others are focus positions of it.
   const auto far = [](const Configuration& c) { return !c.subject_distance_mm; };
   if (std::ranges::count_if(list, far) != 1 || !far(list[0])) return;
   for (Configuration& c : list) {
@@ -344,7 +346,8 @@ void Configurations::build() {
 // --- solves ---------------------------------------------------------------------------------------------------------
 
 /// MAZH behind the last surface: the film is at the axial crossing of the marginal ray, and the file states its
-/// distance. A missing distance is computed. A distance that differs from the rays of this lens is kept with a warning.
+/// distance. If the distance is missing, it is computed. If it differs from the rays of this lens, it is kept and a
+/// warning is added.
 void solve_the_film(const ZemaxSurface& last, Import& in) {
   const auto [height, zone] = *last.marginal_height;
   const DesignData& design = in.lens.design;
@@ -418,7 +421,7 @@ void build_lens(ZemaxLens zemax, double unit, Import& in) {
   if (stops > 1) in.warn(0, "STOP", "is marked on " + std::to_string(stops) + " surfaces; the first one is taken");
   check_ends(object, image, in);
 
-  // Light that leaves as a parallel beam has no film.
+  // If light leaves as a parallel beam, there is no film.
   ZemaxSurface& last = zemax.surfaces[zemax.surfaces.size() - 2];
   const bool image_at_infinity = std::abs(last.thickness) >= endless;
   if (image_at_infinity) last.thickness = 0;

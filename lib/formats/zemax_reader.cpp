@@ -343,7 +343,7 @@ void ZemaxReader::f_number(Words words) {
 }
 
 void ZemaxReader::object_aperture(Words words) {
-  // The second number is 1 if the first is an angle.
+  // The second number is 1 if the first number is an angle.
   const bool angle = value(words, 2) == 1;
   aperture(words, ApertureSetting::object_na, 1);
   if (angle) in_.lens.design.aperture->value = std::sin(value(words, 1) * std::acos(-1.0) / 180);
@@ -423,7 +423,7 @@ void ZemaxReader::configurations(Words words) {
 void ZemaxReader::curvature(Words words) {
   ZemaxSurface& s = surface();
   s.curvature = stated(words, 1) / unit_;
-  // The file states the results of all other solves.
+  // For other solves, the file states the results.
   if (const int solve = words.size() > 2 ? whole(words, 2, 0, 100) : 0; solve == 4) {
     s.curvature_pickup = ZemaxPickup{line_, whole(words, 3, 0, 100'000), value(words, 4), value(words, 5) / unit_};
   }
@@ -444,13 +444,13 @@ void ZemaxReader::glass(Words words) {
   ZemaxGlass glass{.line = line_, .name = std::string(words[1])};
   const int mode = words.size() > 2 ? whole(words, 2, 0, 100) : 0;
   // Words: name, solve type (0 fixed, 1 model, 2 pickup, 4 offset), surface of a pickup, n_d, V_d, dPgF, three flags of
-  // variables, offsets of n_d and V_d. n_d and V_d apply to a model. For other types they are leftovers of an earlier
+  // variables, offsets of n_d and V_d. n_d and V_d are valid for a model. For other types they are values of an earlier
   // model, or 1.5 and 40.
   glass.model = mode == 1 || glass.name == "___BLANK";
   const double nd = value(words, 4), vd = value(words, 5);
   const bool known = nd != 0 && (glass.model || !(nd == 1.5 && vd == 40));
   if (known) glass.nd = nd;
-  // A model with V_d 0 has the same index at all wavelengths.
+  // A model with V_d = 0 has the same index at all wavelengths.
   if (known && (vd > 0 || (glass.model && vd == 0))) glass.vd = vd;
   if (mode == 2) glass.pickup = whole(words, 3, 0, 100'000);
   if (mode == 4) glass.nd_offset = value(words, 10), glass.vd_offset = value(words, 11);
@@ -487,7 +487,7 @@ void ZemaxReader::other_aperture(Words words) {
 }
 
 void ZemaxReader::thickness_pickup(Words words) {
-  // Pickups of a curvature or a glass are on the line of the value; here the offset is the third number.
+  // Pickups of a curvature or a glass are on the line of the value; for a thickness, the offset is the third number.
   surface().thickness_pickup = ZemaxPickup{line_, whole(words, 1, 0, 100'000), value(words, 2), length(words, 3)};
 }
 

@@ -22,7 +22,7 @@ struct ZemaxGlass {
   int line = 0;
   std::string name;
   std::optional<int> pickup{};  ///< surface from which the glass is picked up
-  bool model = false;           ///< n_d and V_d count, not the name
+  bool model = false;           ///< n_d and V_d define the medium, not the name
   std::optional<double> nd{}, vd{};
   double nd_offset = 0, vd_offset = 0;
 };

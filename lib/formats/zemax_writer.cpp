@@ -71,7 +71,7 @@ void ZemaxWriter::header() {
   if (!catalogues_.empty()) out_.line(catalogues);
 }
 
-/// Orders the makers of all glasses so that each name means its own glass, if possible.
+/// Orders the makers of all glasses so that readers find the right glass for each name, if possible.
 void ZemaxWriter::choose_catalogues() {
   std::vector<const Glass*> used;
   const auto use = [&](const Medium& medium) {
@@ -87,7 +87,7 @@ void ZemaxWriter::choose_catalogues() {
   std::set<std::string> makers;
   for (const Glass* glass : used) makers.insert(maker_of(*glass));
   catalogues_.assign(makers.begin(), makers.end());
-  // If an earlier maker has another glass of the same name, the maker of the glass moves before it.
+  // If an earlier maker has another glass of the same name, the maker of this glass moves before the earlier maker.
   for (std::size_t moves = 0; moves < catalogues_.size() * catalogues_.size(); ++moves) {
     const auto hidden = std::ranges::find_if(used, [&](const Glass* g) { return resolved(*g) != g; });
     if (hidden == used.end()) break;
@@ -195,7 +195,7 @@ std::string ZemaxWriter::glass(const Medium& medium) {
   const Glass* meant = resolved(*found);
   const std::string numbers = " 0 " + to_text(meant->nd) + ' ' + to_text(meant->vd) + " 0 0 0 0 ";
   if (!medium.nd && meant == found) return one_word(found->name) + " 0" + numbers + "0 0";
-  // The printed n_d of a table differs from the catalogue: type 4 states the offset.
+  // If the n_d printed in a table differs from the catalogue, type 4 states the offset.
   const double offset = medium.nd.value_or(refractive_index(*found, d_line_nm)) - refractive_index(*meant, d_line_nm);
   return one_word(found->name) + " 4" + numbers + to_text(offset) + " 0";
 }

@@ -75,7 +75,7 @@ struct CloseFolder {
   void operator()(DIR* folder) const noexcept { ::closedir(folder); }
 };
 
-/// std::filesystem::directory_iterator would terminate the program if memory runs out (libstdc++).
+/// std::filesystem::directory_iterator (libstdc++) would terminate the program if memory runs out.
 std::vector<std::string> names_in(const std::filesystem::path& directory) {
   const std::unique_ptr<DIR, CloseFolder> folder(::opendir(directory.c_str()));
   std::vector<std::string> names;

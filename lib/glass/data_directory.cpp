@@ -32,7 +32,7 @@ std::filesystem::path loaded_from() {
   Dl_info info{};
   if (dladdr(&anchor, &info) != 0 && info.dli_fname != nullptr) name = info.dli_fname;
 #endif
-  // A bare name was looked up in PATH; the kernel knows the result.
+  // The shell looked up a bare name in PATH; the kernel knows the result.
   return name.find('/') == std::string::npos ? "/proc/self/exe" : name;
 }
 #endif

@@ -15,7 +15,7 @@
 namespace petzval {
 namespace {
 
-// Tolerance for the ends of a range, which converting micrometres to nanometres rounds.
+// Tolerance for the ends of a range, which are rounded by the conversion from micrometres to nanometres.
 constexpr double edge_nm = 1e-6;
 
 constexpr std::array<std::pair<std::string_view, double>, 14> lines = {{
@@ -49,14 +49,14 @@ double sum(std::span<const double> c, double first, Shape shape) {
   return total;
 }
 
-/// One point of a table of indices, over x = 1 / l^2, in which n of a glass is nearly linear.
+/// One point of a table of indices over x = 1 / l^2; n of a glass is a nearly linear function of x.
 struct TablePoint {
   double x, n;
 };
 
 double secant(const TablePoint& a, const TablePoint& b) { return (b.n - a.n) / (b.x - a.x); }
 
-/// The slope at a point between two others: the mean of the secants that keeps the cubics monotone; 0 at an extremum.
+/// The slope at a point between two others: the mean of the secants that keeps the cubics monotonic; 0 at an extremum.
 /// Source: Fritsch and Butland, A method for constructing local monotone piecewise cubic interpolants, 1984.
 double slope_between(const TablePoint& before, const TablePoint& at, const TablePoint& after) {
   const double left = secant(before, at), right = secant(at, after);

@@ -9,7 +9,8 @@
 
 namespace petzval::glass_detail {
 
-/// Name of a formula in tables and its number of coefficients: `first`, then any number of terms of `each`.
+/// Name of a formula in tables and its number of coefficients: `first` coefficients, then any number of terms with
+/// `each` coefficients.
 struct FormulaForm {
   DispersionFormula formula;
   std::string_view name;

@@ -97,8 +97,8 @@ DeepPicture read(const std::filesystem::path& file, double unit_mm) {
   std::vector<std::uint32_t> counts(static_cast<std::size_t>(width));
   std::array<DeepPlane, 6> planes;  // R, G, B, A, Z, ZBack
   for (int row = window.min.y; row <= window.max.y; ++row) {
-    // Row by row, because a damaged file may state any number of samples: the counts are checked before samples are
-    // read.
+    // Read row by row, because a damaged file may state any number of samples: the counts are checked before the
+    // samples are read.
     const Imath::Box2i line{{window.min.x, row}, {window.max.x, row}};
     Imf::DeepFrameBuffer buffer;
     buffer.insertSampleCountSlice(count_slice(counts, line, static_cast<std::size_t>(width)));

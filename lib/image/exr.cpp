@@ -33,7 +33,7 @@
 namespace petzval {
 namespace {
 
-// 3 GiB in memory. A damaged header may state any size.
+// 3 GiB in memory. The limit is needed because a damaged header may state any size.
 constexpr std::uint64_t most_values = std::uint64_t(3) << 28;
 
 /// Attributes that OpenEXR writes to every file.
@@ -91,8 +91,8 @@ void validate(std::span<const ExrPart> parts) {
   }
 }
 
-/// Inserts an attribute. Refuses reserved names: OpenEXR would overwrite their values, or fail with a message that does
-/// not contain the name.
+/// Inserts an attribute. Refuses reserved names: OpenEXR would overwrite their values, or fail with a message without
+/// the name.
 template <class Attribute, class Value>
 void insert(Imf::Header& header, const std::string& name, const Value& value) {
   if (in_every_file(name) || header.find(name) != header.end()) {

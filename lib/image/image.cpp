@@ -82,8 +82,8 @@ void write_pfm(const char* kind, int width, int height, std::size_t row, std::sp
   write_file(bytes, file);
 }
 
-/// Reads the next word of the header of a PFM file and one white space after it. Words and white space end after 64
-/// characters, so that reading the header of an endless file terminates.
+/// Reads the next word of the header of a PFM file and one white space after it. A word, or the white space before it,
+/// has at most 64 characters, so that reading the header of an endless file terminates.
 std::string next_word(std::istream& in) {
   constexpr std::size_t longest = 64;
   const auto blank = [](int c) { return c == ' ' || (c >= '\t' && c <= '\r'); };
@@ -166,7 +166,7 @@ void write_png(const Rgb8Image& image, const std::filesystem::path& file) {
   png.width = static_cast<png_uint_32>(image.width);
   png.height = static_cast<png_uint_32>(image.height);
   png.format = PNG_FORMAT_RGB;
-  // This bound on the packed size avoids packing twice, once only for the size.
+  // This upper bound of the packed size avoids packing the picture twice, the first time only for its size.
   png_alloc_size_t size = PNG_IMAGE_PNG_SIZE_MAX(png);
   std::string bytes(size, '\0');
   if (!png_image_write_to_memory(&png, bytes.data(), &size, 0, image.pixels.data(), 0, nullptr)) {
@@ -184,7 +184,7 @@ RgbImage desqueezed(const RgbImage& image, double squeeze) {
                 std::to_string(image.height) + " pixels; must be positive and give at most 2^30 pixels");
   }
   RgbImage out(static_cast<int>(width), static_cast<int>(height));
-  // Position of an output pixel between the centres of two input pixels, along one side of `count` pixels.
+  // Position of an output pixel between the centres of two input pixels, along a side of `count` pixels.
   struct Between {
     int low, high;
     float part;

@@ -16,7 +16,7 @@ namespace petzval::image_detail {
 namespace {
 
 /// The rows of an open PNG file, 16 bits per channel. No member has a destructor, because libpng leaves functions by
-/// longjmp on an error.
+/// longjmp if an error occurs.
 struct PngRows {
   png_structp png = nullptr;
   png_infop info = nullptr;

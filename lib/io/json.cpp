@@ -31,7 +31,7 @@ constexpr std::string_view byte_order_mark = "\xEF\xBB\xBF";
 
 bool is_digit(char c) { return c >= '0' && c <= '9'; }
 
-/// True for words of non-finite numbers, which JSON lacks: "Infinity", "NaN".
+/// True for words that stand for non-finite numbers, which JSON does not allow: "Infinity", "NaN".
 bool is_not_finite(std::string_view word) {
   if (word.starts_with('-') || word.starts_with('+')) word.remove_prefix(1);
   std::string lower(word);
@@ -74,7 +74,8 @@ class JsonEvents {
 };
 
 bool JsonEvents::number_float(double, const std::string& token) {
-  // Read the digits again: the value of the parser depends on the decimal point of the C locale and hides an underflow.
+  // Read the digits again: the number from the parser depends on the decimal point of the C locale and hides an
+  // underflow.
   std::string digits = token;
   for (char& c : digits) {
     if (!is_digit(c) && c != '-' && c != '+' && c != 'e' && c != 'E') c = '.';
@@ -92,7 +93,7 @@ bool JsonEvents::parse_error(std::size_t, const std::string&, const nlohmann::js
   tokens.next();
   const std::string_view token = tokens.token();
   const bool overflow = dynamic_cast<const nlohmann::json::out_of_range*>(&error) != nullptr;
-  // Common mistakes in lenses typed by hand: the message names the key and the rule of its value.
+  // Common mistakes in lenses typed by hand; the message names the key and the rule for its value.
   if (tokens.separator() == ':' && (overflow || is_not_finite(token))) {
     reader_.assign(JsonWord{shortened(token)});
   }
@@ -207,7 +208,7 @@ std::string describe(const JsonValue& value) {
 
 void JsonReader::parse(std::string_view json) {
   tokens_ = JsonTokens(json);
-  // nlohmann's parser treats a zero byte as the end of the text and ignores the rest.
+  // nlohmann's parser treats a zero byte as the end of the text and ignores the rest of the text.
   if (const auto zero = json.find('\0'); zero != std::string_view::npos) {
     throw Error(where_ + ':' + tokens_.line_and_column(zero) + ": not JSON: a byte is 0; must be UTF-8");
   }

@@ -12,7 +12,7 @@
 
 namespace petzval::io_detail {
 
-/// A word in the position of a value that is not JSON ("Infinity"), or a number outside double.
+/// A word that stands for a value but is not JSON ("Infinity"), or a number outside the range of double.
 struct JsonWord {
   std::string text;
 };
@@ -20,7 +20,7 @@ struct JsonWord {
 /// A value other than a list or an object.
 using JsonValue = std::variant<std::nullptr_t, bool, double, std::string, JsonWord>;
 
-/// The tokens of a JSON text for which the parser has events (values, keys and brackets), in order. A parser that calls
+/// The tokens of a JSON text for which the parser has events (values, keys and brackets), in order. A class that calls
 /// `next` once per event knows the position of each event.
 class PETZVAL_API JsonTokens {
  public:
@@ -64,7 +64,7 @@ class JsonReader {
   virtual void assign(JsonValue value) = 0;
   virtual void open(bool list) = 0;  ///< a list or an object
   virtual void close() = 0;
-  /// The position in words, from brackets and key ("surface 1: radius"); empty for the whole document.
+  /// The position as text, from brackets and keys ("surface 1: radius"); empty for the document itself.
   virtual std::string here() const = 0;
   /// Throws Error: "file:11:8: surface 1: radius = value; must be rule".
   [[noreturn]] void refuse(const std::string& value, const std::string& rule) const;
@@ -92,7 +92,8 @@ class JsonReader {
 };
 
 /// Line and column (":11:8") of the value at a path ("surfaces[1].radius") in a JSON text, for messages. If the text
-/// has no such value: the position of the nearest list or object on the path. The text may contain Infinity and NaN.
+/// has no such value, the result is the position of the nearest list or object on the path. The text may contain
+/// Infinity and NaN.
 PETZVAL_API std::string json_position(std::string_view json, std::string path);
 
 /// The shortest decimals that read back, without an exponent from 1e-4 to 1e16, and always with a point.

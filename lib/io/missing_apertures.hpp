@@ -7,8 +7,8 @@
 
 namespace petzval::io_detail {
 
-/// The lens with the apertures that are missing in its file (with_apertures). Unchanged if a medium has no index at the
-/// lens's wavelength, which compile() refuses.
+/// Adds the apertures that are missing in the file of a lens (with_apertures). The lens stays unchanged if a medium has
+/// no index at the wavelength of the lens; compile() refuses such a lens.
 PETZVAL_API Prescription with_missing_apertures(Prescription lens, const GlassCatalogue* glasses = nullptr);
 
 }  // namespace petzval::io_detail

@@ -33,7 +33,7 @@ void check(bool done) {
   if (!done) throw std::system_error(errno, std::generic_category());
 }
 
-/// Functions whose names differ between systems. All return the results of write(2) and its relatives, and set errno.
+/// Functions whose names differ between systems. All return the results of the POSIX functions, and set errno.
 #if defined(_WIN32)
 
 using Mode = int;
@@ -41,7 +41,7 @@ int open_file(const fs::path& file, int flags, Mode mode) {
   return ::_wopen(file.c_str(), flags | _O_BINARY | _O_NOINHERIT, mode & (_S_IREAD | _S_IWRITE));
 }
 int sync(int descriptor) { return ::_commit(descriptor); }
-std::optional<Mode> mode_of(const fs::path&) { return {}; }  // access rights are lists that folders pass on
+std::optional<Mode> mode_of(const fs::path&) { return {}; }  // Windows: access rights are inherited from the folder
 void set_mode(int, Mode) {}
 int remove_file(const fs::path& file) { return ::_wunlink(file.c_str()); }
 
@@ -100,7 +100,7 @@ class NewFile {
 
   void write(std::string_view bytes) {
     file_.write(bytes);
-    check(sync(file_.descriptor()) == 0 || errno == EINVAL);  // some file systems cannot sync
+    check(sync(file_.descriptor()) == 0 || errno == EINVAL);  // EINVAL: the file system cannot sync
     file_.close();
   }
 
@@ -138,7 +138,7 @@ std::optional<fs::path> place(fs::path file) {
 }  // namespace
 
 void write_file(std::string_view bytes, const fs::path& file) {
-  // The system would cut the name at a zero and overwrite another file.
+  // The system would cut the name at a zero byte and overwrite another file.
   if (file.native().find(fs::path::value_type{}) != fs::path::string_type::npos) {
     throw Error(file.string() + ": the name contains a zero byte; must not");
   }

@@ -41,21 +41,22 @@ void check(const Iris& iris, const std::string& where) {
 }
 
 Blade::Blade(const Iris& iris) : half_angle(pi / iris.blades), half_chord(std::sin(half_angle)) {
-  // Bent inwards, corners keep at least half of the straight polygon's angle.
+  // If edges are bent inwards, corners keep at least half of the angle of the straight polygon.
   const double most = iris.roundness < 0 ? std::min(half_angle, (pi / 2 - half_angle) / 2) : half_angle;
   const double at_corner = iris.roundness * most;
   curvature = std::sin(at_corner) / half_chord;
   middle = std::cos(half_angle) + half_chord * std::tan(at_corner / 2);
 }
 
-// A triangle to the middle of the edge, and the area between the edge and its tangent at the middle.
+// The sum of a triangle to the middle of the edge and the area between the edge and its tangent at the middle.
 double Blade::twice_area(double across) const noexcept {
   const double angle = std::asin(std::clamp(curvature * across, -1.0, 1.0));
   const double per_curvature = curvature == 0 ? across : angle / curvature;
   return middle * across + per_curvature * per_curvature * angle * excess(angle);
 }
 
-// Newton's method from the side on which it does not overshoot: the area grows ever faster if the edge bends outwards.
+// Newton's method from the side on which it does not overshoot: if the edge is bent outwards, the area grows faster and
+// faster.
 double Blade::across_at(double part) const noexcept {
   const double wanted = part * twice_area(half_chord);
   double across = curvature > 0 ? half_chord : 0;

@@ -9,7 +9,7 @@
 
 namespace petzval::iris_detail {
 
-/// The edge of one blade, a straight line or a circle, in semi-diameters of the stop. Within the rim it transmits if
+/// The edge of one blade, a straight line or a circle, in semi-diameters of the stop. Light passes inside the rim if
 ///     x nx + y ny + bend (x^2 + y^2) <= distance.
 /// The left side grows at the rate 1 across the edge.
 struct IrisEdge {

@@ -15,8 +15,8 @@ namespace petzval::iris_detail {
 template <class R>
 inline constexpr std::size_t edge_terms = sizeof(R) == sizeof(float) ? 8 : 17;
 
-/// Squared radius of the rim, with a tolerance for rounding at the corners. Needed for edges that bend inwards: they
-/// are circles, and their condition holds again farther out.
+/// Squared radius of the rim, with a tolerance for rounding at the corners. It is needed for edges that are bent
+/// inwards: they are circles, and points on the far side of a circle also satisfy the condition of the edge.
 template <class R>
 inline constexpr R rim_squared = 1 + 8 * std::numeric_limits<R>::epsilon();
 
@@ -26,8 +26,9 @@ template <class R>
 struct IrisSectors {
   std::size_t count = 0;     ///< 0 for the unit disc
   const R* turns = nullptr;  ///< [count] sine and cosine of the angle from +y towards +x to the middle of the edge
-  /// The edge point that has the fraction (1 + q) / 2 of the sector's area before it lies at q across(2 q^2 - 1) across
-  /// and along(2 q^2 - 1) along the direction to the middle of the edge. Coefficients by ascending power, [edge_terms].
+  /// The edge point with the fraction (1 + q) / 2 of the sector's area before it lies at the distance q across(2 q^2 -
+  /// 1) across, and at along(2 q^2 - 1) along, the direction to the middle of the edge. Coefficients by ascending
+  /// power, [edge_terms].
   const R *across = nullptr, *along = nullptr;
   const R* edges = nullptr;  ///< [count] the four members of each IrisEdge
 };

@@ -78,7 +78,7 @@ Vec2<double> IrisShape::position(double x, double y) const noexcept {
   const double sectors = fraction((turn + iris_.rotation_rad) / (2 * pi)) * iris_.blades;
   const double sector = std::min(std::floor(sectors), iris_.blades - 1.0);
   const double angle = (2 * (sectors - sector) - 1) * blade.half_angle;
-  // The point at which the ray from the centre meets the edge.
+  // The point at which the line from the centre through the given point meets the edge.
   const double way = share(x, y), to_edge = std::sqrt(square / way);
   const double across = std::clamp(to_edge * std::sin(angle), -blade.half_chord, blade.half_chord);
   const double part = blade.twice_area(across) / blade.twice_area(blade.half_chord);
@@ -89,7 +89,7 @@ double IrisShape::share(double x, double y) const noexcept {
   const double square = x * x + y * y;
   const IrisSectors<double> s = sectors<double>();
   if (s.count == 0) return square;
-  // The point divided by `part` lies on the edge: distance part^2 - across part - bend square = 0.
+  // The point divided by `part` lies on the edge if distance part^2 - across part - bend square = 0.
   double largest = 0;
   for (std::size_t k = 0; k < s.count; ++k) {
     const double* edge = s.edges + 4 * k;

@@ -17,7 +17,7 @@
 namespace petzval {
 namespace {
 
-/// The published formula without the cut at 0, and its integral from 0 to x, with |d| for d.
+/// The published formula before it is limited to 0, and its integral from 0 to x, with |d| for d.
 double uncut(const EdgeWeight& w, double x) noexcept {
   const double d = std::abs(w.distribution);
   return 1 + w.strength * ((d + 1) * std::pow(x, d) - 1);
@@ -39,12 +39,12 @@ std::array<double, 2> lit(const EdgeWeight& w) noexcept {
   return first ? std::array{0.0, low} : std::array{high, 1.0};
 }
 
-/// The integral of an edge weight, cut at 0.
+/// The integral of an edge weight, limited to 0.
 class EdgeLight {
  public:
   explicit EdgeLight(const EdgeWeight& weight) noexcept : weight_(weight), lit_(lit(weight)) {}
 
-  /// The integral over the points with a fraction of the area below x.
+  /// The integral over all points whose fraction of the area is below x.
   double below(double x) const noexcept {
     if (weight_.even()) return x;
     return weight_.distribution < 0 ? from_begin(1) - from_begin(1 - x) : from_begin(x);
@@ -116,14 +116,14 @@ IrisMap onion_rings(const OnionRings& rings, int pixels) {
 namespace iris_detail {
 namespace {
 
-/// Rows and columns of the cells in which maps are sampled.
+/// Number of rows and of columns of the cells in which maps are sampled.
 constexpr std::size_t map_cells = 256;
 
 /// True if both are finite; a cast of NaN to an index is undefined.
 bool finite(double a, double b) noexcept { return (a + b) * 0 == 0; }
 
 /// Index of the last part that begins at or below `value`, by bisection of cumulative sums that start at 0.
-/// Branch-free, because branches on random numbers are mispredicted.
+/// Branch-free, because the processor would mispredict branches on random numbers.
 std::size_t part_at(const double* begins, double value) noexcept {
   std::size_t part = 0;
   for (std::size_t step = map_cells / 2; step > 0; step /= 2) part += begins[part + step] <= value ? step : 0;
@@ -240,7 +240,7 @@ std::vector<double> IrisWeights::light_of_cells() {
 }
 
 void IrisWeights::divide_columns(const std::vector<double>& parts, double uniform_part) {
-  // Weights between the grid points may be larger, and small cells may contain no grid point.
+  // Between the grid points weights may be larger, and a small cell may contain no grid point.
   const double floor = std::max(uniform_part, 0.02);
   before_rows_.push_back(0);
   for (std::size_t i = 0; i < map_cells; ++i) {

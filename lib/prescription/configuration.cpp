@@ -34,9 +34,11 @@ double place_of(const Prescription& p, const ConfigurationChoice& choice) {
   return static_cast<double>(found - p.configurations.begin());
 }
 
-/// Copies everything except the configurations: copying all of them for each configuration would take quadratic time.
+/// Copies everything except the configurations: for many configurations, copying them for each one would take quadratic
+/// time.
 Prescription without_configurations(const Prescription& p) {
-  // A new member does not compile until it is named here.
+  // The structured binding names every member: after a new member is added, this line does not compile until it is
+  // changed.
   const auto& [id, name, source_design, source_numbers, focal_length_mm, f_number, half_field_deg, image_diagonal_mm,
                reference_wavelength_nm, semi_diameters, stop_size, image_distance, glass_names, notes, aliases,
                imported, design, object_space, surfaces, configurations] = p;
@@ -88,7 +90,8 @@ std::optional<double> between(const std::optional<double>& a, const std::optiona
   return std::lerp(*a, *b, t);
 }
 
-/// Interpolates the radius, or the curvature for a plane or opposite signs, as a radius would pass through 0.
+/// Interpolates the radius. For a plane, or for radii of opposite signs, it interpolates the curvature, because a
+/// radius would pass through 0.
 double radius_between(double a, double b, double t) {
   if (a != 0 && b != 0 && (a > 0) == (b > 0)) return std::lerp(a, b, t);
   const double curvature = std::lerp(a == 0 ? 0 : 1 / a, b == 0 ? 0 : 1 / b, t);

@@ -78,10 +78,10 @@ Prescription reverse(const Prescription& prescription) {
   Prescription p = prescription;
   if (p.surfaces.empty()) throw Error(name_of(p) + ": no surfaces; must be at least one to reverse");
 
-  // Light must enter towards +z. With an even number of mirrors it leaves the lens towards +z, so that the reversed
-  // lens is a mirror image in z: sags change sign, thicknesses keep theirs (the ends of each are exchanged and
-  // mirrored). With an odd number it leaves towards -z and the reversed light travels towards +z: sags stay,
-  // thicknesses change sign.
+  // Light must enter towards +z. With an even number of mirrors, light leaves the lens towards +z, and the reversed
+  // lens is a mirror image in z: sags change sign; thicknesses keep their sign, because both ends of a thickness are
+  // exchanged and mirrored. With an odd number, light leaves the lens towards -z, and the reversed light travels
+  // towards +z: sags keep their sign, and thicknesses change sign.
   const auto mirrors =
       std::count_if(p.surfaces.begin(), p.surfaces.end(), [](const SurfaceRow& row) { return row.mirror; });
   const bool turned = mirrors % 2 == 0;
@@ -114,7 +114,7 @@ Prescription reverse(const Prescription& prescription) {
     if (c.stop) c.stop = last - *c.stop;
     std::map<int, SurfaceChange> changes;
     for (const SurfaceChange& old : c.changes) {
-      // The space behind a surface is the space behind the previous surface of the reversed lens.
+      // The space behind a surface becomes the space behind the previous surface of the reversed lens.
       if (old.surface < last && (old.thickness || old.medium)) {
         SurfaceChange& gap = changes[last - 1 - old.surface];
         gap.medium = old.medium;

@@ -13,7 +13,7 @@
 namespace petzval {
 namespace {
 
-// The squared curvature of a smaller radius overflows float. File formats write infinity as longer thicknesses.
+// The squared curvature of a smaller radius overflows in float. File formats use longer thicknesses for infinity.
 constexpr double smallest_radius = 1e-12;
 constexpr double smallest_bend = 1e-15;
 constexpr double longest_thickness = 1e10;
@@ -73,7 +73,7 @@ void check_surface(const std::string& where, const SurfaceRow& row, const Medium
   }
 
   check_finite(where, "conic", row.conic, "a finite number");
-  // Transverse semi-axis of the conic; float cannot hold the square of a smaller length.
+  // Transverse semi-axis of the conic: the square of a smaller length underflows in float.
   if (row.radius != 0 && std::abs(row.radius) / std::sqrt(std::abs(1 + row.conic)) < smallest_bend)
     refuse(where, "conic", row.conic, "such that radius / sqrt|1 + conic| is at least 1e-15 mm");
   std::set<int> orders;
@@ -81,7 +81,7 @@ void check_surface(const std::string& where, const SurfaceRow& row, const Medium
     if (order < 2 || order > 40) refuse(where, "aspheric order", order, "2 to 40");
     const std::string term = "aspheric coefficient of order " + std::to_string(order);
     check_finite(where, term.c_str(), coefficient, "a finite number");
-    // The limit of radii: a term of order 2 is a curvature.
+    // The limit is that of radii, because a term of order 2 is a curvature.
     if (std::pow(order * std::abs(coefficient), 1.0 / (order - 1)) > 1 / smallest_radius) {
       refuse(where, term, coefficient, "such that the slope is below 1 up to 1e-12 mm");
     }
@@ -194,7 +194,8 @@ void ConfigurationCheck::check_rows(const std::string& here, const Configuration
   for (const SurfaceChange& change : c.changes) {
     const auto surface = static_cast<std::size_t>(change.surface);
     check_row(here, surface);
-    // A mirror has the medium of the surface in front, and may follow.
+    // If a surface changes its medium, check the next surface too: a mirror must have the medium of the surface in
+    // front.
     if (change.medium && surface + 1 < p_.surfaces.size()) check_row(here, surface + 1);
   }
   for (const SurfaceChange& change : c.changes) change_of_[static_cast<std::size_t>(change.surface)] = nullptr;
