@@ -31,7 +31,7 @@ struct Options : examples::ModelOptions {
 double nearest_mm(const petzval::Lens& lens, const Options& options) {
   const double far = 100 * std::abs(petzval::first_order(lens, 0, petzval::main_meridian(lens)).effective_focal_length);
   const double half = std::min(options.setup.focus_mm, far) / 2;
-  // If half the distance is inside the lens (macro), the midpoint between its front and the focus.
+  // Macro: if half the distance is inside the lens, use the midpoint between its front and the focus.
   const double front = petzval::origin_z(lens, options.setup.focus.distance_origin());
   return half > front ? half : (front + std::min(options.setup.focus_mm, far)) / 2;
 }
@@ -49,12 +49,12 @@ std::string figure(const std::vector<examples::ModelRow>& rows, const petzval::L
 int main(int argc, char** argv) {
   Options options;
   examples::App app(
-      "Compares every model of a lens with exact rays in double. Prints the errors on the film (RMS, 99 %, maximum; "
-      "for planes from half the focus distance to infinity, and for the plane in focus; at infinity the angle times "
-      "the focal length), of the pupil's shape (symmetric difference over area) and of the exposure (maximum over the "
-      "film), ns per ray in batches on one thread, and set-up time. Then chooses the fastest model whose rays are "
-      "within 4, 1, 0.25 and 0.05 pixels and whose pupils have the lens's shape within 10 %. With --json prints only "
-      "the rows.\n"
+      "Compares every model of a lens with exact rays in double. Prints a row for each model: errors of rays on the "
+      "film (RMS, 99 %, maximum), error of the pupil's shape (symmetric difference divided by area), largest error of "
+      "the exposure over the film, ns per ray in batches on one thread, and set-up time. Ray errors cover planes from "
+      "half the focus distance to infinity, and the plane in focus; at infinity they are angles times the focal "
+      "length. Then chooses the fastest model for ray errors of at most 4, 1, 0.25 and 0.05 pixels and pupil errors "
+      "of at most 10 %. --json prints only the rows.\n"
       "front: no other model is both faster and more accurate (max_um). At the d line (587.5618 nm).\n"
       "--out writes DIR/LENS_accuracy_speed.csv and .svg and prints their paths (with --json on standard error).",
       "accuracy_speed");

@@ -211,9 +211,10 @@ int main(int argc, char** argv) {
       "linear: fraction of the light in the paraxial entrance pupil, per mm^2 of film), LENS_focus_<D>mm.png (each "
       "with its own exposure), LENS_bokeh.png (all at one scale) and LENS_bokeh.json. Images show the film as a "
       "photograph does, rotated by 180 degrees (+x to the left, +y down); centroids are in the axes of the film. "
-      "throughput is relative to the light on the paraxial entrance pupil of the open stop, throughput_of_round_iris "
-      "to that pupil of a round iris with the same f-number: --iris-area equal opens the stop. The lens is focused at "
-      "the primary wavelength: the one nearest to the d line (587.5618 nm).",
+      "throughput is the light on the film divided by the light on the paraxial entrance pupil of the open stop; "
+      "throughput_of_round_iris is divided by the light on the pupil of a round iris with the same f-number, which is "
+      "smaller with --iris-area equal. The lens is focused at the primary wavelength, which is nearest to the d line "
+      "(587.5618 nm).",
       "bokeh_psf");
   examples::add_lens(app, options.lens_file);
   examples::add_number(app, "--subject-distance-mm", options.subject_mm, examples::positive_length,

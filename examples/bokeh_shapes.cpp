@@ -42,7 +42,7 @@ petzval::PsfOptions tile_options(double half_width_mm) {
           .threads = petzval::processor_threads()};
 }
 
-/// An empty row whose tiles have one scale.
+/// A row without tiles; all tiles of a row have one scale.
 examples::SheetRow row(const std::string& title, const std::string& subtitle, double half_width_mm) {
   return {.title = title, .subtitle = subtitle, .pixel_mm = 2 * half_width_mm / tile_pixels, .tiles = {}};
 }
@@ -139,7 +139,7 @@ examples::Sheet cats_eyes() {
   return sheet;
 }
 
-/// The three kinds of weights in the text.
+/// Rows for the kinds of edge weights.
 examples::Sheet weights() {
   const AxialScene scene;
   examples::Sheet sheet{

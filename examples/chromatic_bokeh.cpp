@@ -36,7 +36,7 @@ struct Options {
   examples::LensInput lens_file;
   std::string out_folder, white_point = "D65";
   double subject_mm = 0;                    ///< 0: twenty focal lengths
-  std::vector<double> focus_mm, field_deg;  ///< empty: around the light; the axis and 0.7 of the field
+  std::vector<double> focus_mm, field_deg;  ///< if empty: distances around the light; the axis and 0.7 of the field
   examples::FocusFlags focus;
   examples::IrisSetup iris;
   std::uint32_t samples = 1u << 18;
@@ -98,7 +98,7 @@ struct Picture {
   petzval::PointImage image;
 };
 
-/// The pictures before they are traced. @throws petzval::Error  if a focus is out of reach or a field is dark
+/// The pictures with their lenses, not traced. @throws petzval::Error  if a focus is out of reach or a field is dark
 std::vector<Picture> prepared(const petzval::Lens& lens, const Options& options) {
   std::vector<Picture> pictures;
   for (const double field : options.field_deg) {

@@ -38,7 +38,7 @@ constexpr std::array film_parts{0.0, 0.3, 0.55, 0.75, 0.9};  // fractions of the
 struct Options {
   examples::LensInput lens_file;
   std::string out_folder, model = "thin_two_disc";
-  std::vector<double> light_mm;  // empty: nearer and farther than the focus
+  std::vector<double> light_mm;  // if empty: one nearer and one farther than the focus
   examples::CameraSetup setup;
   examples::ExpressiveFlags expressive;
   bool from_lens_given = false;
@@ -53,8 +53,8 @@ std::vector<double> wavelengths_nm(const Options& options) {
   return set;
 }
 
-/// Mean angles under which film points between the axis and the corner see the scene, by exact rays. Film points
-/// without light are skipped.
+/// Mean directions, by exact rays, in which film points between the axis and the corner see the scene, as angles to the
+/// axis. Skips film points without light.
 /// @throws petzval::Error if no film point has light
 std::vector<double> fields_rad(const petzval::Lens& lens, const petzval::Film& film) {
   const petzval::Camera exact(lens, film, {.model = petzval::ModelKind::exact_double});
@@ -155,7 +155,7 @@ void draw(Options options) {
            ". A point light over the field, as in a photograph. The tiles of a light have one scale, and each its own "
            "exposure.",
        "Fields of film points on the diagonal of " + options.setup.film_mm +
-           " mm. RMS: distance of film points of rays from their centroid."}};
+           " mm. RMS: distance between the film points of rays and their centroid."}};
   Json highlights_json = Json::array();
   examples::Progress progress("expressive lens", lights.size() * rows.size());
   for (const double light_mm : lights) {

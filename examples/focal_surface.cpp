@@ -157,7 +157,7 @@ petzval::Rgb8Image map_of(const Surface& surface, const Options& options) {
   add("Distance in focus from the " + options.setup.focus.from() + ", on a scale of 1/distance", frame.inverses,
       distance_levels, distance_in_words, "farther", "nearer", &petzval::FocalPoint::inverse_distance);
   if (surface.has_extents()) {
-    add("Extent of the depth of field, in stops: more is sharp above 0, less below", frame.extents, stop_levels,
+    add("Extent of the depth of field, in stops: deeper above 0, shallower below 0", frame.extents, stop_levels,
         stops_in_words, "less is sharp", "more is sharp", &petzval::FocalPoint::extent_stops);
   }
   const std::string points_file = std::filesystem::path(options.surface.points_file).filename().string();
@@ -211,10 +211,10 @@ void write(const Options& options) {
 int main(int argc, char** argv) {
   Options options;
   examples::App app(
-      "Sets the distance in focus at each point of a picture from focus points. Writes to DIR: surface.png, the "
-      "distance over the picture, and the extent of the depth of field if points give one; side.svg, lens, film and "
-      "surface in section; surface.pfm, 1/distance in 1/mm for each pixel, rows from the bottom as in all PFM files; "
-      "and with --queries answers.csv (x_px,y_px,distance_mm,extent_stops,blur_px). Distances count from "
+      "Sets the distance in focus at each point of a picture from focus points. Writes to DIR: surface.png (distance "
+      "over the picture, and extent of the depth of field if points give one), side.svg (section of lens, film and "
+      "surface), surface.pfm (1/distance of each pixel in 1/mm, rows from the bottom as in all PFM files) and with "
+      "--queries answers.csv (x_px,y_px,distance_mm,extent_stops,blur_px). Distances count from "
       "--distance-from; infinity is inf, and distances beyond infinity, which a blur can cause, are negative. blur_px "
       "is the signed diameter of the requested blur for an object at the distance of the points, negative in front of "
       "the focus. Points that fix a distance override --focus-mm.",

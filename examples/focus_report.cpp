@@ -215,10 +215,11 @@ std::string in_words(double value, int decimals) {
 
 std::string to_text(const Report& report, const Options& options) {
   std::ostringstream text;
-  text << report.lens.name() << "\ndistances in mm from the "
-       << examples::in_words(examples::named(options.origin, examples::distance_origins))
-       << "; film_z from the front vertex; depth of field for a blur of " << examples::number(options.blur_mm)
-       << " mm in diameter\n";
+  text
+      << report.lens.name() << "\ndistances in mm from the "
+      << examples::in_words(examples::named(options.origin, examples::distance_origins))
+      << "; film_z from the front vertex; depth of field for a blur of " << examples::number(options.blur_mm)
+      << " mm in diameter (too_blurred: even the sharpest image has a larger blur; increase --f-number or --blur-mm)\n";
   std::string before;
   for (const Row& r : report.rows) {
     if (r.criterion != before) {
@@ -266,7 +267,8 @@ int main(int argc, char** argv) {
   app.add_flag(
       "--json", options.json,
       "print an array of rows, one per criterion and distance; null is an infinite or absent value, explained by "
-      "status and depth_status (refused: see message); blur_mm is the value of --blur-mm; breathing is a fraction");
+      "status and depth_status (refused: see message; too_blurred: even the sharpest image has a larger blur than "
+      "--blur-mm); blur_mm is the value of --blur-mm; breathing is a fraction");
   examples::add_numbers(app, "--distance-mm", options.distance_mm, examples::positive_length,
                         "subject distances (mm), or inf")
       ->default_str("the object of the file if finite, else 10, 20, 50, 100 focal lengths, rounded, and inf");

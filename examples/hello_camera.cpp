@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The camera of README.md in a renderer of one page: three round lamps of equal angular size at 0.7 m, 1 m and 5 m,
-// seen through a lens that is focused at 1 m.
+// A complete renderer in one page: three round lamps of equal angular size at 0.7 m, 1 m and 5 m, seen through a lens
+// that is focused at 1 m.
 //
 //   hello_camera
 #include <algorithm>

@@ -36,7 +36,7 @@ struct Options {
   std::vector<double> field_deg;
 };
 
-/// The subject, film and light by the command line; by default the values of the file.
+/// Subject, film and light from the command line; by default from the file.
 examples::ReportSubject subject_of(const examples::LensFile& file, const Options& options) {
   examples::ReportSubject subject{.focus = options.focus};
   const petzval::DesignData& design = file.prescription.design;

@@ -138,13 +138,13 @@ Json to_json(const std::vector<petzval::Spot>& all, const Setting& setting, cons
 int main(int argc, char** argv) {
   Options options;
   examples::App app(
-      "Draws spot diagrams. The film is at the focus of the subject at the primary wavelength (of the file, else the "
-      "wavelength nearest to the d line, 587.5618 nm), or with --film file at the position in the file, plus "
-      "--defocus-mm.\n"
+      "Draws spot diagrams. The film is at the focus of the subject, or with --film file at the position in the file; "
+      "--defocus-mm shifts it. The focus is computed at the primary wavelength of the file, or at the wavelength "
+      "nearest to the d line (587.5618 nm).\n"
       "Writes to DIR and prints the paths: LENS_spots.svg, LENS_spots.csv (film points of rays: "
-      "field_deg,wavelength_nm,x_mm,y_mm) and LENS_spots.json (one row per field and wavelength: height of the chief "
-      "ray through the centre of the stop; illumination of the film relative to the axis; RMS and maximum radius about "
-      "the centroid; null if no such ray exists).",
+      "field_deg,wavelength_nm,x_mm,y_mm) and LENS_spots.json. Its rows have for each field and wavelength the height "
+      "of the chief ray, the illumination of the film relative to the axis, and the RMS and maximum radius about the "
+      "centroid; values are null if no ray passes.",
       "spot_diagram");
   examples::add_lens(app, options.lens_file);
   examples::add_numbers(app, "--field-deg", options.field_deg, examples::field_angle,

@@ -183,12 +183,15 @@ int main(int argc, char** argv) {
   examples::App app(
       "Compares the statements of Wu et al. 2010 about their figure 7 with radial profiles, and prints a table.\n"
       "Irradiances are relative to the mean of the disc: core (within 0.2 of the radius), brightest of ten rings, "
-      "darkest ring inside the brightest ring; deviation: RMS over the area. Uniform: the deviation is below 0.25, "
-      "and core and innermost tenth are below 1.25; nearly uniform with a bright core: core or innermost tenth is "
-      "above 1.25. Ring: the brightest ring is in the outer half; with a slight core if the core is 1.5 times as "
-      "bright as the darkest ring. Core: the brightest ring is in the inner half; with a dark centre if the innermost "
-      "tenth is below 0.95 of it. Sharpest: smallest RMS radius. A second table has the entrance pupils by the "
-      "paper's steps 1 to 8.",
+      "darkest ring inside the brightest ring, and deviation (RMS over the area). Appearances:\n"
+      "uniform: deviation below 0.25, core and innermost tenth below 1.25\n"
+      "nearly uniform with a bright core: core or innermost tenth above 1.25\n"
+      "ring: the brightest ring is in the outer half; with a slight core if the core is at least 1.5 times as bright "
+      "as the darkest ring\n"
+      "core: the brightest ring is in the inner half; with a dark centre if the innermost tenth is below 0.95 of the "
+      "brightest ring\n"
+      "sharpest: smallest RMS radius\n"
+      "A second table has the entrance pupils by the paper's steps 1 to 8.",
       "wu_statements");
   examples::add_samples(app, samples);
   examples::add_out_file(app, html_file, "HTML file for the table", "FILE", "--html");

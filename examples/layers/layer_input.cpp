@@ -59,7 +59,9 @@ void add_input(examples::App& app, InputFlags& flags) {
       ->type_name("RGBAZ.exr");
   app.add_option("--deep", flags.deep, "deep picture")->type_name("DEEP.exr");
   app.add_option("--rgb", flags.rgb, "picture: PNG (sRGB) or PFM (linear); needs --depth")->type_name("A.png");
-  app.add_option("--depth", flags.depth, "depths of --rgb (mm): EXR or PFM")->type_name("D.exr");
+  app.add_option("--depth", flags.depth,
+                 "depths of --rgb (mm): EXR, or PFM with one channel (Pf) and rows from the bottom")
+      ->type_name("D.exr");
   app.add_option("--depth-kind", flags.depth_kind,
                  "meaning of depths in files: along the axis (axial) or along rays (distance)")
       ->one_of({"axial", "distance"})

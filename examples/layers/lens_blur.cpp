@@ -94,8 +94,9 @@ lens_blur::LensFlags with_supersample(lens_blur::LensFlags flags, int side) {
 }
 
 /// Default of --highlights-above, the radiance above which small lights become uniform discs. A light much brighter
-/// than its surroundings would show the dots of single rays. The threshold is 6 times the mean of the first layer, at
-/// most 1 (white), or at most 0.75 for files that end at white, like PNGs, where white pixels may be lights.
+/// than its surroundings would show the dots of single rays. The threshold is 6 times the mean of the first layer, and
+/// at most 1 (white). It is at most 0.75 for files without values above white, such as PNG, whose white pixels may be
+/// lights.
 double threshold_of(const petzval::LayerSet& layers, bool of_file) {
   double sum = 0;
   float brightest = 0;
@@ -165,7 +166,7 @@ class Job {
     if (!std::isfinite(nearest))
       throw petzval::Error("layers: all depths are infinite; must have at least one finite depth");
     auto start = std::chrono::steady_clock::now();
-    // Overscan: layers extend beyond the picture, where nearer objects may be.
+    // A smaller depth than the nearest surface: layers extend beyond the picture, where objects may be nearer.
     const petzval::LensRays rays = lens_.rays(0.8 * nearest, threads_, time);
     const double rays_ms = ms_since(start);
     rays_error_px_ = std::max(rays_error_px_, rays.error_px());
@@ -293,7 +294,7 @@ int main(int argc, char** argv) {
       ->default_str("2; files: 1");
   examples::add_number(app, "--highlights-above", options.highlights_above, {0, 1e9, "a number from 0 to 1e9"},
                        "radiance above which small lights become uniform discs; 0: never")
-      ->default_str("6 times the mean; at most 1, or 0.75 in files that end at 1");
+      ->default_str("6 times the mean; at most 1, or 0.75 in files without values above 1");
   auto* frames = examples::add_count(
       app, "--frames", options.frames, {1, 100000, "a whole number from 1 to 100000"},
       "number of frames, written as blur_0001.* and so on; --points then gives focus points with keys");

@@ -80,10 +80,11 @@ petzval::Prescription thin_singlet(double focal_length, double diameter) {
 }  // namespace
 
 void add_lens(examples::App& app, LensFlags& flags) {
-  add_number(app, "--thin-lens-mm", flags.thin_lens_mm, examples::positive_number, "focal length of a thin lens (mm)")
+  add_number(app, "--thin-lens-mm", flags.thin_lens_mm, examples::positive_number,
+             "focal length of a thin lens (mm); needs --lens-diameter-mm")
       ->default_str("");
   add_number(app, "--lens-diameter-mm", flags.lens_diameter_mm, examples::positive_number,
-             "diameter of a thin lens (mm)")
+             "diameter of a thin lens (mm), instead of --f-number: focal length divided by f-number")
       ->default_str("");
   examples::add_lens(app, flags.lens_file, "--lens", "traced by exact rays");
   app.add_option("--singlet", flags.singlet,
@@ -124,7 +125,9 @@ BlurLens::BlurLens(const LensFlags& flags, int columns, int rows, const renderer
     throw Error("lens: " + std::to_string(kinds) + " of --thin-lens-mm, --lens and --singlet are given; must be 1");
   }
   if ((flags.thin_lens_mm > 0) != (flags.lens_diameter_mm > 0)) {
-    throw Error("--thin-lens-mm and --lens-diameter-mm must be given together");
+    throw Error(
+        "--thin-lens-mm and --lens-diameter-mm must be given together; the diameter is the focal length divided by the "
+        "f-number");
   }
   thin_ = flags.thin_lens_mm > 0;
   if (flags.rays == 0) {
@@ -132,7 +135,9 @@ BlurLens::BlurLens(const LensFlags& flags, int columns, int rows, const renderer
     flags_.jitter = flags_.jitter || !thin_;
   }
   if (thin_ && flags.iris.f_number > 0)
-    throw Error("--f-number must not be used with --thin-lens-mm; use --lens-diameter-mm");
+    throw Error(
+        "--f-number must not be used with --thin-lens-mm; use --lens-diameter-mm, the focal length divided by the "
+        "f-number");
   load();
   const petzval::Camera plain = camera({}, flags.supersample);
   film_ = plain.film();

@@ -15,7 +15,7 @@ struct Likeness {
   double ssim = 0;     ///< mean structural similarity of luma, 11 x 11 window. Source: Wang et al. 2004
 };
 
-/// The likeness over pixels where `mask` is not 0, or over all pixels if `mask` is empty.
+/// The similarity over pixels where `mask` is not 0, or over all pixels if `mask` is empty.
 /// @throws petzval::Error if the sizes of the pictures differ
 Likeness likeness(const petzval::RgbImage& picture, const petzval::RgbImage& reference,
                   const std::vector<unsigned char>& mask = {});

@@ -27,8 +27,8 @@ struct FilmSample {
 
 /// A ray of the scene, seen by the lens at the wavelengths of a path.
 ///
-/// A ray is found from the film or by a connection at the hero wavelength, and any lane may be the hero. The densities
-/// are therefore means over the lanes (Wilkie et al. 2014), and all lanes share one path.
+/// A ray is sampled from the film or by a connection, at the hero wavelength. Any lane may be the hero, so that the
+/// densities are means over the lanes (Wilkie et al. 2014), and all lanes share one path.
 struct SeenRay {
   glm::vec3 direction{0, 0, 1};  ///< towards the lens
   glm::vec3 on_front{0, 0, 0};   ///< end point of the shadow ray of a connection

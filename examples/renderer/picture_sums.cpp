@@ -84,7 +84,7 @@ void PictureSums::add(const PictureSums& part) {
   }
   for (std::size_t t = 0; t < tiles_.size(); ++t) {
     if (samples(t) > 0 && part.samples(t) > 0) {
-      throw petzval::Error("tile " + std::to_string(t) + " is in two parts; must be in only one part");
+      throw petzval::Error("tile " + std::to_string(t) + " is in both pictures; must be in only one of them");
     }
   }
   for (std::size_t p = 0; p < pixels_.size(); ++p) {

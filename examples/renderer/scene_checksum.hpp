@@ -7,7 +7,7 @@
 
 namespace renderer {
 
-/// Equal for scenes that look the same, independent of their files and names.
+/// Checksum of the visible properties of a scene, independent of its files and names.
 std::string checksum(const SceneDescription& scene);
 
 }  // namespace renderer

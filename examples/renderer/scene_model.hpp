@@ -26,10 +26,13 @@ ModelForScene model_within(const Scene& scene, const LensCamera& exact, double b
 /// root mean squares over the picture, of values up to white.
 ///
 /// A pilot picture through the exact lens gives the noise of a sample, and the RMS slope and contrast. Slope and
-/// contrast are products of two independent halves, which are free of noise. The errors of a model
-/// (petzval::choose_model()) give its bias: rays with an error of e pixels change a pixel by e times the slope over
-/// sqrt 2; a pupil whose area is wrong by a fraction s, by s times the contrast; an exposure error, by the error times
-/// the brightness. The number of edges per length is assumed to be the same below the resolution of the pilot picture.
+/// contrast are products of two independent halves of the samples, so that noise does not bias them. The errors of a
+/// model (petzval::choose_model()) give its bias of a pixel:
+/// - an error of e pixels of rays: e times the slope, divided by sqrt 2
+/// - a fraction s of wrong area of the pupil: s times the contrast
+/// - an exposure error: the error times the brightness
+///
+/// Below the resolution of the pilot picture the number of edges per length is assumed to be the same.
 ModelForScene model_below_noise(const Scene& scene, const LensCamera& exact, const PathColourSource& colours,
                                 Integrator integrator, std::uint32_t samples, int threads);
 

@@ -27,7 +27,7 @@ class UnitTracer {
 
   /// Traces one path for each sample of each pixel of a block; the light tracer starts as many paths at the lamps.
   ///
-  /// @param lens_seconds  gets the time spent in the lens added
+  /// @param lens_seconds  sum to which the time spent in the lens is added (s)
   void trace(const PixelBlock& block, const SampleRange& samples, Splats& splats, double& lens_seconds) const;
 
  private:

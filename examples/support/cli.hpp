@@ -119,7 +119,7 @@ Option* add_out_folder(App& app, std::string& folder, const std::string& help = 
 Option* add_out_file(App& app, std::string& file, const std::string& help, const std::string& type_name,
                      const std::string& flag = "--out");
 
-/// Adds a whole number. The range has whole ends from 0 on.
+/// Adds a whole number. The ends of the range are whole numbers of at least 0.
 Option* add_count(App& app, const std::string& flag, std::uint32_t& value, const Range& range, const std::string& help);
 
 /// The focus criteria and the origins of distances.
