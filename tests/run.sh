@@ -64,7 +64,7 @@ if [ "${1-}" = --report ]; then
   printf '\nLimits'
   table "$by_type" 'trace/Extremes*'
   printf '\nMemory'
-  table 'text, MB;beside it, MB' 'formats/LargestInputs*'
+  table 'text, MB;memory, MB' 'formats/LargestInputs*'
   exit
 fi
 echo "== Testing"

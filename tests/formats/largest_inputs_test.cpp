@@ -85,7 +85,7 @@ void expect_frugal(const std::string& what, const std::string& text,
   EXPECT_GE(taken, 0);
   EXPECT_LE(taken, 512);
   testing_report::put(what, "text", static_cast<double>(text.size()) / megabyte, "512 MB");
-  testing_report::put(what, "beside it", taken, "512 MB");
+  testing_report::put(what, "memory", taken, "512 MB");
 }
 
 class LargestInputs : public ::testing::Test {
