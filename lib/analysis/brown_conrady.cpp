@@ -155,8 +155,8 @@ Coefficients refined(const std::vector<Pair>& pairs, const Terms& terms, Coeffic
   return k;
 }
 
-/// Least-squares coefficients without a pole up to the radius `reach`. fewer: coefficients with a shorter denominator,
-/// from which the search also starts.
+/// Least-squares coefficients without a pole up to the radius `reach`.
+/// @param fewer coefficients with a shorter denominator, a second starting point of the search
 Coefficients fitted(const std::vector<Pair>& pairs, const Terms& terms, const Coefficients& fewer, double reach) {
   if (terms.in_denominator == 0) return linear_round(pairs, terms, {});
   Coefficients best = refined(pairs, terms, fewer, reach), round{};

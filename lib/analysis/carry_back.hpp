@@ -24,7 +24,8 @@ class SceneView {
  public:
   /// Measures angles only.
   explicit SceneView(double focal_length, const Vec3<double>& chief = {0, 0, -1});
-  /// The plane `z`. chief, by_film_x, by_film_y: the chief ray and its derivatives by the film point.
+  /// The plane `z`.
+  /// @param chief, by_film_x, by_film_y the chief ray and its derivatives by the film point
   SceneView(double focal_length, double z, const Ray<double>& chief, const Ray<double>& by_film_x,
             const Ray<double>& by_film_y);
 

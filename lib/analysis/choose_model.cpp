@@ -32,8 +32,8 @@ struct Part {
   std::string needs, budget;  ///< in words
 };
 
-/// Ray errors compared with a budget; nullopt if the budget does not limit them. of_tolerance: error divided by the
-/// allowed error.
+/// Ray errors compared with a budget; nullopt if the budget does not limit them.
+/// @param of_tolerance error divided by the allowed error
 std::optional<Part> ray_part(double px, double of_blur, double of_tolerance, const ErrorBudget& budget) {
   if (budget.max_px && budget.max_of_blur) {
     return Part{of_tolerance <= 1, to_text(px, 3) + " px (" + percent(of_tolerance) + " of what is allowed)",

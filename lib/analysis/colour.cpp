@@ -123,7 +123,9 @@ constexpr Matrix xyz_of_cones{
 /// XYZ of the white point of sRGB, D65.
 constexpr Triple srgb_white{0.9505, 1, 1.089};
 
-/// Checks the wavelengths of a table with `count` values. whose: the type of the table; values: the name of its values.
+/// Checks the wavelengths of a table with `count` values.
+/// @param whose the type of the table
+/// @param values the name of its values
 void validate(const std::vector<double>& wavelengths_nm, std::size_t count, const std::string& whose,
               const std::string& values) {
   if (wavelengths_nm.size() < 2 || wavelengths_nm.size() != count) {

@@ -16,9 +16,10 @@ struct PixelGrid {
   int pixels = 1;
 };
 
-/// Adds 1 to the pixel of each point; points outside the grid are ignored. x, y: film positions, mm, N each. counts:
-/// array of `pixels` x `pixels`, [row][column]; integers, so that sums are exact. units: amounts to add instead of 1,
-/// one per point; may be empty.
+/// Adds 1 to the pixel of each point; points outside the grid are ignored.
+/// @param x, y film positions, mm, N each
+/// @param counts array of `pixels` x `pixels`, [row][column]; integers, so that sums are exact
+/// @param units amounts to add instead of 1, one per point; may be empty
 PETZVAL_API void count_points(const PixelGrid& grid, std::span<const double> x, std::span<const double> y,
                               std::span<std::uint64_t> counts, std::span<const std::uint32_t> units = {}) noexcept;
 

@@ -79,7 +79,7 @@ bool limits_the_beam(const Lens& lens) {
                      [](const LensSurface& s) { return std::isfinite(s.semi_diameter); });
 }
 
-/// The ratio of a length to a declared length if it is 10, 25.4, 1000 or the inverse of these; nullopt otherwise.
+/// The ratio of a length to a declared length if it is 10, 25.4, 1000 or one of their inverses; nullopt otherwise.
 std::optional<double> unit_between(double length, double declared) {
   for (const double factor : {10.0, 25.4, 1000.0}) {
     for (const double ratio : {factor, 1 / factor}) {

@@ -12,7 +12,7 @@ namespace petzval {
 
 namespace {
 
-/// film: upright, with its position set.
+/// @param film an upright film with its position set
 std::vector<ModelError> measured(const Lens& lens, const Film& film, std::span<const AnyRayModel> models,
                                  const ErrorSamples& samples) {
   const camera_detail::ExactModel<double> exact(lens, film.radius_mm());

@@ -251,7 +251,8 @@ std::vector<std::size_t> wavelengths_of(const Lens& lens, const PsfOptions& opti
   return all;
 }
 
-/// sampled_area: per wavelength of the image. send_rays takes an index among these wavelengths.
+/// @param sampled_area one value for each wavelength of the image
+/// @param send_rays takes an index among these wavelengths
 PointImage image_of(const Lens& lens, const std::vector<double>& sampled_area, const SendRays& send_rays,
                     const PsfOptions& options) {
   PointImage image;

@@ -54,7 +54,7 @@ struct NodeAxis {
 /// A function of the raster, interpolated in the cells in which interpolation is accurate.
 class NodeGrid {
  public:
-  /// error: error of using one position instead of another; acceptable up to 1.
+  /// @param error gives the error if one position is used instead of another; acceptable up to 1
   NodeGrid(const PlaceOf& place_of, const ErrorOf& error, const NodeAxis& x, const NodeAxis& y, int threads)
       : place_of_(place_of),
         x_(x),
@@ -144,7 +144,8 @@ class NodeGrid {
   std::vector<Cell> cells_;
 };
 
-/// The map for the pixels of a film and a margin. raster: converts an interpolated value to its raster position.
+/// The map for the pixels of a film and a margin.
+/// @param raster converts an interpolated value to its raster position
 StMap map_of(const PlaceOf& place_of, const PlaceOf& raster, const Film& film, int margin_x, int margin_y,
              int threads) {
   StMap map{.width = film.columns + 2 * margin_x,

@@ -7,7 +7,8 @@
 
 namespace petzval::blur_detail {
 
-/// Throws Error if a picture has no pixels or more than 32768 columns or rows. what: the picture, for the message.
+/// Throws Error if a picture has no pixels or more than 32768 columns or rows.
+/// @param what name of the picture, for the message
 inline void check_sides(const std::string& what, int columns, int rows) {
   constexpr int most = 32768;
   if (columns >= 1 && rows >= 1 && columns <= most && rows <= most) return;

@@ -34,7 +34,8 @@ struct Tile {
   int left = 0, top = 0, columns = 0, rows = 0;
 };
 
-/// Adds the steps of a ray that all pixels share, within a range of depths. all: the range of all layers.
+/// Adds the steps of a ray that all pixels share, within a range of depths.
+/// @param all the range of all layers
 void add_steps(const float* rows, std::size_t stride, std::size_t i, const DepthRange& range, const DepthRange& all,
                std::ptrdiff_t row_stride, std::vector<Step>& steps) {
   const PixelSteps<double> of_ray(rows[at_x * stride + i], rows[at_y * stride + i], rows[slope_x * stride + i],
@@ -265,7 +266,7 @@ class Gathering {
             continue;
           }
           const float known = total - sums.unknown[at];
-          if (total > 0) unseen += sums.missed[at] / total;  // total is 0 in dark corners of the lens
+          if (total > 0) unseen += sums.missed[at] / total;  // total is 0 in corners that the lens does not illuminate
           // If no ray is known, the first layer is the best guess.
           if (known > 1e-6f * total) {
             rgba[c] = colour / known * total * per_ray;

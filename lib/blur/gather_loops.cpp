@@ -140,12 +140,12 @@ PETZVAL_INLINE void take(const LayerWindow& window, const At& at, std::ptrdiff_t
 }
 
 /// One step of seeking rays: lanes of `here` pass the pixels that `at` loads, between the inverse depths low and high.
-/// before: the pixels of the previous step.
 ///
 /// A ray that passed in front of a surface in the previous pixel and is behind a surface in this pixel went between the
 /// centres of both pixels. If the inverse depths of both surfaces differ by less than `gap`, the layers contain no
 /// surface between them, and the ray meets the farther surface. (At the edge of a small object the ray passes the
 /// object; on one surface both colours are nearly equal.)
+/// @param before the pixels of the previous step
 template <bool opaque, int colours, class At>
 PETZVAL_INLINE void meet(const LayerWindow& window, const At& at, const At& before, Numbers low, Numbers high,
                          Numbers gap, Numbers weight, Mask here, Found<opaque, colours>& found) noexcept {
@@ -370,8 +370,10 @@ PETZVAL_INLINE Places pixels_at(const Numbers (&line)[row_count], Numbers w, std
                     WholePixel<Numbers>::below(line[at_y] + line[slope_y] * w + half), stride);
 }
 
-/// Follows the rays of the lanes to their ends. load: calls visit(at, before, here) for all given lanes, where `at` and
-/// `before` load the planes at two lists of offsets. Returns the number of steps of the longest ray.
+/// Follows the rays of the lanes to their ends.
+/// @param load calls visit(at, before, here) for all given lanes, where `at` and `before` load the planes at two lists
+///   of offsets
+/// @return the number of steps of the longest ray
 template <bool opaque, int colours, class Load>
 PETZVAL_INLINE std::uint64_t follow(const LayerWindow& window, const DifferentRays& rays, float gap,
                                     const Numbers (&line)[row_count], const Load& load,

@@ -30,7 +30,8 @@ struct LayerWindow {
 /// Sums over the rays of each pixel of a tile: weights, and weights times the colour or alpha of the ray.
 struct TileSums {
   static constexpr int columns = 64, rows = 16, pixels = columns * rows;
-  /// Index of the sums of a pixel. side: pixels `side` columns and rows apart get adjacent indices, for SIMD lanes.
+  /// Index of the sums of a pixel.
+  /// @param side pixels `side` columns and rows apart get adjacent indices, for SIMD lanes
   static constexpr int place(int row, int column, int side) noexcept {
     return (row % side * (rows / side) + row / side) * columns + column % side * (columns / side) + column / side;
   }

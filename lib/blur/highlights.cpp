@@ -75,7 +75,7 @@ std::uint32_t CountsIn::operator()(const PixelRect& rect) const noexcept {
 /// The light that a highlight of value 1 adds to a rectangle of the picture, relative to the pixel of the highlight.
 struct Highlights::Stamp {
   int left = 0, top = 0, columns = 0, rows = 0;
-  bool hidden = false;  ///< some rays do not see the highlight
+  bool hidden = false;  ///< true if some rays do not reach the highlight
   std::vector<float> light;
 };
 

@@ -21,7 +21,8 @@ struct Highlight {
 /// Counts highlights in rectangles.
 class CountsIn {
  public:
-  /// columns, rows: size of the layers. Rectangles are widened to whole blocks of `block` pixels.
+  /// Rectangles are widened to full blocks of `block` x `block` pixels.
+  /// @param columns, rows size of the layers
   void fill(int columns, int rows, int block, const std::vector<Highlight>& of);
   std::uint32_t operator()(const PixelRect& rect) const noexcept;
 
@@ -38,7 +39,7 @@ class Highlights {
   Highlights(const LayerData& layers, const LensRays& rays, const GatherOptions& options, int overscan);
 
   std::size_t count() const noexcept { return found_.size(); }
-  /// Number of highlights in a rectangle of the layers, widened to whole blocks.
+  /// Number of highlights in a rectangle of the layers, widened to full blocks.
   std::uint32_t count_in(const PixelRect& rect) const noexcept { return found_in_(rect); }
   /// Subtracts the highlights from a copy of a rectangle: `layers` layers of `planes` planes, `plane_stride` apart,
   /// with rows of `columns` pixels.
@@ -54,7 +55,7 @@ class Highlights {
 
   void find(float above);
   void make_groups();
-  /// rays_of_pixel: rays for each pixel covered by the blur.
+  /// @param rays_of_pixel rays for each pixel covered by the blur
   Stamp stamp_of(const Highlight& highlight, double rays_of_pixel, const RayTable& rays) const;
   const Highlight& brightest(const Group& group) const;
   /// The part of the picture over which a group is distributed; it has no columns if it lies outside the picture.

@@ -33,7 +33,8 @@ struct LayerSet::Data {
 
   /// Adds a layer that is empty and black with alpha 1. end_layer() counts it.
   LayerPlanes begin_layer();
-  /// Counts the layer of begin_layer() if it contains a surface. where: prefix of messages.
+  /// Counts the layer of begin_layer() if it contains a surface.
+  /// @param where prefix of messages
   void end_layer(const std::string& where);
 
   /// Guard of a filling: if its scope ends without finish(), the set has no layers.

@@ -262,7 +262,7 @@ void LayerSet::set(std::span<const LayerImage> images) {
     d.end_layer("layer " + std::to_string(layer));
     if (d.count == number) break;
     std::copy_n(d.plane(number, 0), pixels, d.below.begin());
-    // A surface may have the same depth as the surface before; there is no surface behind an empty pixel.
+    // A surface may have the same depth as the surface in front of it; behind an empty pixel there is no surface.
     for (float& w : d.below) w = w >= 0 ? std::nextafter(w, infinity) : -1.0f;
   }
   filling.finish();

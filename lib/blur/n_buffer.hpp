@@ -28,7 +28,8 @@ class NBuffer {
  public:
   static constexpr int block = 8;
 
-  /// planes: inverse depth of each layer, columns x rows, negative if empty. Allocates only to grow.
+  /// Allocates memory only if the picture or the number of layers grows.
+  /// @param planes inverse depth of each layer, columns x rows, negative if empty
   void fill(int columns, int rows, std::span<const std::span<const float>> planes);
   /// The range below a rectangle, clipped to the picture and widened to full blocks. A rectangle outside the picture
   /// has the range at the nearest edge.

@@ -35,7 +35,8 @@ struct WholePixel {
 template <class T>
 class PixelSteps {
  public:
-  /// The line at + slope w from inverse depth `from` to `to`. farthest, nearest: limits of all surfaces; nearest > 0.
+  /// The line at + slope w from inverse depth `from` to `to`.
+  /// @param farthest, nearest limits of all surfaces; nearest > 0
   PETZVAL_INLINE PixelSteps(T at_x, T at_y, T slope_x, T slope_y, T from, T to, T farthest, T nearest) noexcept
       : along_columns_(size_of(slope_x) >= size_of(slope_y)), farthest_(farthest), nearest_(nearest) {
     const T at = select(along_columns_, at_x, at_y), zero(0.0f), one(1.0f), half(0.5f);

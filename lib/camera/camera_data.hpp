@@ -18,7 +18,7 @@ namespace petzval {
 
 /// Data that a camera computes once: the film side in the constructor, the scene side on first use.
 struct Camera::Data {
-  /// radius: upright_radius() of the film.
+  /// @param radius upright_radius() of the film
   Data(const camera_detail::LensFacts& facts, const Film& placed, const AnyRayModel& model, double radius,
        const CameraOptions& options);
 

@@ -26,13 +26,14 @@ template <class T>
 struct CameraLoopsOf {
   void (*keep_on_film)(const FilmBounds<T>&, std::size_t, const T* film_x, const T* film_y, T* kept_x,
                        T* kept_y) noexcept;
-  /// Turns lines into rays that start in the pupil plane. towards: as towards_scene().
+  /// Turns lines into rays that start in the pupil plane.
+  /// @param towards as towards_scene()
   void (*start)(const TwoPlanes&, T towards, std::size_t, const TwoPlaneRays<const T>&, const RayArrays<T>&) noexcept;
   /// Moves the origins of rays along the rays to the front of the lens.
   void (*move_to_front)(T vertex_z, T curvature, std::size_t, const RayArrays<T>&) noexcept;
   /// Looks up a value for the wavelength of each ray; 0 if the wavelength is not covered.
   void (*look_up)(const lens_detail::WavelengthRows<T>&, std::size_t, const RayWavelengths&, T*) noexcept;
-  /// scale: one value for each ray; 0 if the wavelength is not covered.
+  /// @param scale one value for each ray; 0 if the wavelength is not covered
   void (*weigh)(const FilmBounds<T>&, T depth, std::size_t, const T* film_x, const T* film_y,
                 const TwoPlaneRays<const T>&, const T* areas, const T* scale, RayFate*, const CameraRays<T>&) noexcept;
   /// For a tilted film: virtual points of film points, upright film points of lines through the pupil, and conversion

@@ -59,7 +59,8 @@ struct PlanePoint {
   T x, y;
 };
 
-/// The virtual point of a film point. plane: a TiltedPlane or its numbers in T.
+/// The virtual point of a film point.
+/// @param plane a TiltedPlane or its numbers in T
 template <class T, class Plane>
 inline PlanePoint<T> virtual_of(const Plane& plane, T x, T y) noexcept {
   const T per_distance = T(1) / ((T(1) + plane.travel) + (plane.depth_by_x * x + plane.depth_by_y * y));

@@ -21,7 +21,7 @@ struct FilmBehindLens {
   Lens lens;
   Film film;
 };
-/// @throws Error  as with_film(), even if the film keeps the position of the lens's film
+/// @throws Error  as with_film(), also if the film has no position of its own
 PETZVAL_API FilmBehindLens placed(const Lens& lens, const Film& film);
 
 }  // namespace petzval::camera_detail

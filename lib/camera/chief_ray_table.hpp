@@ -22,7 +22,7 @@ TracedRay<double> unclipped(const Lens& lens, const TwoPlanes& space, Wavelength
 /// centre of the stop, for other models rays of the model through the centres of its pupils.
 class ChiefRayTable {
  public:
-  /// middle: for first-order models, the ratio of pupil position to film point of chief rays.
+  /// @param middle for first-order models: pupil position divided by film point, for chief rays
   ChiefRayTable(const LensFacts& facts, const AnyRayModel& model, double film_radius, std::size_t wavelength,
                 std::optional<double> middle = {});
 

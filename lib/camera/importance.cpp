@@ -449,7 +449,7 @@ ImportanceSample SceneSide::through_pinhole(const AnyRayModel& model, const Vec3
   const double distance = glm::length(to);
   if (!std::isfinite(distance) || !std::isfinite(at.entrance_area) || !(at.entrance_area > 0 && to.z > 0))
     return result;
-  // Weights and pupil positions are those of the complete pupil of the thick lens.
+  // Weights and pupil positions represent the complete pupil of the thick lens.
   const Vec3<double> direction = to / distance;
   result = connection(pupil, direction, distance, squared(distance) / (at.entrance_area * direction.z));
   Arrivals<1> arrival;

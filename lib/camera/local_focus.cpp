@@ -80,7 +80,8 @@ FocusRules<T> in_type(const FocusRules<double>& rules) {
 }
 
 /// Zero of a function that grows with a slope of about 1: by the secant method, or by bisection if the secants do not
-/// converge, as on steep surfaces. scale: typical size of the argument.
+/// converge, as on steep surfaces.
+/// @param scale typical size of the argument
 double zero_of(const auto& f, double scale) {
   const double settled = 1e-13 * scale;
   double before = 0, at_before = f(before), t = -at_before;

@@ -17,8 +17,10 @@
 
 namespace petzval::camera_detail {
 
-/// Maps from the film to the entrance pupil. map: from film and pupil point to height and slope in the plane z of the
-/// scene. middle: centre of the image of the stop, divided by the film point. radius: of the image of the stop, mm.
+/// Maps from the film to the entrance pupil.
+/// @param map from film and pupil point to height and slope in the plane z of the scene
+/// @param middle centre of the image of the stop, divided by the film point
+/// @param radius radius of the image of the stop, mm
 EntranceMaps<double> entrance_maps(const RayMatrix& map, double z, double middle, double radius) noexcept;
 
 /// Individual focus for every film point, radius in the pupil and wavelength, for a first-order model: a focal surface
@@ -37,13 +39,15 @@ class LocalFocus {
 
   explicit operator bool() const noexcept { return data_ != nullptr; }
 
-  /// Bends N rays of the model to the scene, in place. film_x, film_y: on the film itself, mm. nearer:
-  /// TiltedPlane::nearer_by(); null for an upright film.
+  /// Bends N rays of the model to the scene, in place.
+  /// @param film_x, film_y positions on the (tilted) film, mm
+  /// @param nearer TiltedPlane::nearer_by(); null for an upright film
   template <class T>
   void bend(std::size_t count, const T* film_x, const T* film_y, const T* nearer, const RayWavelengths& wavelengths,
             const RayArrays<T>& rays) const noexcept;
   void bend(const FilmPoint& film, double nearer, Wavelength wavelength, Ray<double>& ray) const noexcept;
-  /// Bends a ray with its derivatives with respect to film x and y. nearer_by: derivatives of `nearer`.
+  /// Bends a ray with its derivatives with respect to film x and y.
+  /// @param nearer_by derivatives of `nearer`
   void bend(const FilmPoint& film, double nearer, const Vec2<double>& nearer_by, Wavelength wavelength,
             RayDerivatives& ray) const noexcept;
 
@@ -55,7 +59,8 @@ class LocalFocus {
   Straight straighten(const Ray<double>& ray, Wavelength wavelength,
                       const std::optional<TiltedPlane>& plane) const noexcept;
 
-  /// See Camera::focal_steepness(). plane: for a film that is tilted or travels.
+  /// See Camera::focal_steepness().
+  /// @param plane plane of a film that is tilted or travels
   FocalSteepness steepness(const std::optional<TiltedPlane>& plane) const noexcept;
   /// The entrance pupils for points of the scene: discs that enclose the pupils of all film points.
   EntrancePupilTable entrances(const Lens& lens, const AnyRayModel& model, int threads) const;

@@ -20,7 +20,8 @@ struct FilmPointFocuses {
 
 constexpr std::size_t bend_block = 256;
 
-/// Bends up to bend_block rays of one wavelength, in place. z: of the plane in which the rays are given.
+/// Bends up to bend_block rays of one wavelength, in place.
+/// @param z plane in which the rays are given
 template <class T>
 using BendLoop = void (*)(const FocusRules<T>& rules, const EntranceMaps<T>& maps, T dispersion, T z, std::size_t count,
                           const FilmPointFocuses<T>& points, const RayArrays<T>& rays) noexcept;

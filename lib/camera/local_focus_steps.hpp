@@ -96,8 +96,9 @@ inline N radius_of(const EntranceMaps<T>& maps, const FilmPointFocus<N>& point, 
   return core_detail::square_root(N(ray.x * ray.x + ray.y * ray.y + T(1e-30))) * point.scale * (T(1) / maps.radius);
 }
 
-/// Bends a ray. z: plane in which the ray is given, before and after. by_radius: power that the spline adds at the
-/// radius of the ray, 1/mm.
+/// Bends a ray.
+/// @param z plane in which the ray is given and returned
+/// @param by_radius power that the spline adds at the radius of the ray, 1/mm
 template <class T, class N>
 inline BentRay<N> bent_ray(const FocusRules<T>& rules, const EntranceMaps<T>& maps, T dispersion, T z,
                            const FilmPointFocus<N>& point, N by_radius, const BentRay<N>& ray) noexcept {

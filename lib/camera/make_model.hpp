@@ -10,7 +10,8 @@
 
 namespace petzval::camera_detail {
 
-/// Builds a model for film points up to film_radius (mm) from the axis. rim: clips its pupils.
+/// Builds a model for film points up to film_radius (mm) from the axis.
+/// @param rim clips its pupils
 /// @throws Error  as the constructor of the model and FilmPupilTable::cut_by_rim(), and for ModelKind::custom
 PETZVAL_API AnyRayModel make_model(ModelKind model, const LensFacts& facts, double film_radius, int threads = 1,
                                    const std::optional<PupilRim>& rim = {});

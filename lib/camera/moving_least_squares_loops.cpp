@@ -71,7 +71,7 @@ double value_at(const LeastSquaresJob& job, double x, double y) noexcept {
   blocks([&](std::size_t begin, std::size_t count) {
     if (job.points > block) distances(begin, count);
     for (std::size_t i = 0; i < count; ++i) {
-      const double ratio = r2[i] > least ? least / r2[i] : 1;  // 0 / 0 at the point counts as 1
+      const double ratio = r2[i] > least ? least / r2[i] : 1;  // at the point, 0 / 0 is replaced by 1
       weights[i] = job.alpha[begin + i] * falling(job.power, ratio);
     }
     for (std::size_t i = 0; i < count; ++i) {

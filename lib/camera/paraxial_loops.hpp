@@ -23,7 +23,8 @@ struct ParaxialLoops {
                    const RayArrays<float>& rays, RayFate* fates) noexcept;
   void (*of_double)(std::size_t count, const ParaxialJob<double>& job, const TwoPlaneRays<const double>& lines,
                     const RayArrays<double>& rays, RayFate* fates) noexcept;
-  /// Maps one line. maps: null like `shared`.
+  /// Maps one line.
+  /// @param maps null like `shared`
   RayFate (*one)(const SectionMaps* maps, double z, double reach, const TwoPlaneRay& line, Ray<double>& ray) noexcept;
 };
 

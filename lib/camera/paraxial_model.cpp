@@ -71,8 +71,8 @@ struct StopImage {
   double size = 0;  ///< relative to the stop; negative if inverted
 };
 
-/// height: first row of a map from film and pupil point to the height in the stop or in an image of the stop. scale:
-/// factor from this height to the height in the stop.
+/// @param height first row of a map from film and pupil point to the height in the stop or in an image of the stop
+/// @param scale factor from this height to the height in the stop
 StopImage image_of(const Lens& lens, const RayMatrix& height, double scale, const char* where) {
   if (height.b == 0) {
     throw Error(lens.name() + ": the film lies in " + where + "; must be elsewhere for a first-order model");
@@ -145,7 +145,7 @@ FilmPupilTable two_disc_pupils(const Lens& lens, double film_radius) {
 }
 
 /// Semi-axis along y (mm) of the image of the iris for which the film centre has the irradiance of the exact lens.
-/// along_x: ratio of the semi-axes.
+/// @param along_x ratio of the semi-axes
 double axial_radius(const Lens& lens, std::size_t wavelength, const TwoPlanes& space, const Iris& iris,
                     double along_x) {
   const double n = lens.index(lens.surface_count(), wavelength);

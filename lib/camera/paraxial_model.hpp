@@ -88,7 +88,8 @@ class ParaxialModel {
 
  private:
   /// Maps to the scene, and to the film; for a pinhole the latter is the map of the thick lens. null if the wavelength
-  /// is not covered. own: buffer for maps at a wavelength in nm.
+  /// is not covered.
+  /// @param own buffer for maps at a wavelength in nm
   const SectionMaps* map_at(Wavelength wavelength, SectionMaps& own) const noexcept;
   const SectionMaps* inverse_at(Wavelength wavelength, SectionMaps& own) const noexcept;
 

@@ -30,7 +30,7 @@ PowerSpline<double> power_spline(const std::string& where, const std::vector<Pow
 // Local names: compiled for several instruction sets, which the linker must not mix.
 namespace {
 
-/// Terms of the sum k(t) - 1: t limited to the knots, the terms that start at the first knot, and the cubic term of
+/// The terms of the sum k(t) - 1: t limited to the knots, the terms that start at the first knot, and the cubic term of
 /// knot j, which must not be the last knot.
 template <class T, class N>
 inline N within_knots(const PowerSpline<T>& spline, N t) noexcept {

@@ -37,7 +37,8 @@ class PupilWeights {
   /// Density of the drawn samples relative to uniform samples.
   double density(const Vec2<double>& sample) const noexcept;
 
-  /// Weights of samples of the model's pupils. lines: the N rays of the samples, as of an upright film.
+  /// Weights of samples of the model's pupils.
+  /// @param lines the N rays of the samples, in terms of the upright film
   template <class T>
   void of_samples(std::size_t count, const T* u, const T* v, const TwoPlaneRays<const T>& lines,
                   const RayWavelengths& wavelengths, T* weights) const noexcept;

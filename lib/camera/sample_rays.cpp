@@ -103,8 +103,8 @@ void bend(const FilmView& view, std::size_t count, const CameraSamples<T>& sampl
                   rays);
 }
 
-/// Samples one block. n: a multiple of the lanes, so that a ray has the same bits at every position. Only the first
-/// `wanted` rays get weights.
+/// Samples one block. Only the first `wanted` rays get weights.
+/// @param n a multiple of the number of lanes, so that a ray has the same bits at every position
 template <class T>
 void sample_block(const FilmView& view, std::size_t n, std::size_t wanted, const CameraSamples<T>& samples,
                   const CameraRays<T>& rays) noexcept {
@@ -265,7 +265,7 @@ struct Start {
   double area = 0;
 };
 
-/// with_derivatives: true to set the derivatives of `leaving`.
+/// @param with_derivatives true to set the derivatives of `leaving`
 Start start(const FilmView& view, const FilmPoint& film, double u, double v, Wavelength wavelength, double time,
             bool with_derivatives) noexcept {
   Start s;
@@ -310,8 +310,8 @@ Start start(const FilmView& view, const FilmPoint& film, double u, double v, Wav
   return s;
 }
 
-/// Sets weight, densities and fate of a sample. front: moves the ray to this front; null if the ray starts at the
-/// front.
+/// Sets weight, densities and fate of a sample.
+/// @param front moves the ray to this front; null if the ray starts at the front
 void weigh(const FilmView& view, const Start& s, Wavelength wavelength, const Front* front, CameraRay& out) noexcept {
   const bool decides = view.tilted && decide(view.pupils, view.model);
   if (decides && !view.pupils.contains({s.line.film_x, s.line.film_y}, s.line.pupil_x, s.line.pupil_y, wavelength)) {

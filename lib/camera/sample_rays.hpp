@@ -21,7 +21,8 @@ namespace petzval::camera_detail {
 /// Data of a camera by wavelength, in addition to its model: the scale of weights, and the shift of a pinhole.
 class PETZVAL_API WavelengthFacts {
  public:
-  /// scale: by wavelength. nm: the wavelengths; empty if only compiled wavelengths have samples.
+  /// @param scale one value for each wavelength of the model
+  /// @param nm the wavelengths; empty if only compiled wavelengths have samples
   WavelengthFacts(const AnyRayModel& model, std::vector<double> scale, std::span<const double> nm = {});
 
   std::size_t count() const noexcept { return scale_.size(); }

@@ -22,7 +22,8 @@ namespace petzval::camera_detail {
 /// Importance and projection of a camera, implemented in importance.cpp and projection.cpp.
 class SceneSide {
  public:
-  /// radius: upright_radius() of the film; wavelengths, weights: as in FilmView.
+  /// @param radius upright_radius() of the film
+  /// @param wavelengths, weights as in FilmView
   SceneSide(const LensFacts& facts, const Film& film, std::optional<TiltedFilm> tilted, const Front& front,
             const LocalFocus& focus, const AnyRayModel& model, double radius, const WavelengthFacts& wavelengths,
             const PupilWeights& weights, int threads);
@@ -55,7 +56,7 @@ class SceneSide {
   struct Compiled : Facts {
     ChiefRayTable chiefs;
   };
-  /// wavelength: must be covered.
+  /// @param wavelength must be covered
   Facts facts_at(Wavelength wavelength) const noexcept;
   const Compiled& nearest(Wavelength wavelength) const noexcept;
 
@@ -93,8 +94,9 @@ class SceneSide {
   RayFate refused(Wavelength wavelength) const noexcept {
     return wavelengths_.covers(wavelength) ? RayFate::invalid : RayFate::outside_spectrum;
   }
-  /// The stages of a sample: rays to the film, weights and densities, and connections from points. count: at most
-  /// `block`. areas: areas of the sampled pupils, one for each ray; 0 if no film sample has this ray.
+  /// The stages of a sample: rays to the film, weights and densities, and connections from points.
+  /// @param count at most `block`
+  /// @param areas areas of the sampled pupils, one for each ray; 0 if no film sample has this ray
   template <std::size_t block>
   void arrive(const AnyRayModel& model, std::size_t count, const RayArrays<const double>& rays,
               const RayWavelengths& wavelengths, const double* times, Arrivals<block>& found) const noexcept;

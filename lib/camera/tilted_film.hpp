@@ -71,7 +71,8 @@ class PETZVAL_API TiltedFilm {
 
   /// The film at a fraction (0 to 1, clamped) of the time that the shutter is open.
   TiltedPlane plane(double time) const noexcept;
-  /// Image-space ray of a film sample, with derivatives with respect to film x and y. area: of the sample.
+  /// Image-space ray of a film sample, with derivatives with respect to film x and y.
+  /// @param area receives the area of the sample
   TwoPlaneRayDerivatives line(const FilmPoint& film, double u, double v, Wavelength wavelength, double time,
                               double& area) const noexcept;
 

@@ -35,7 +35,7 @@ constexpr std::uint32_t pascal(std::uint32_t x) noexcept {
 /// Owen scrambling of digits that start at the lowest bit: a hash of the lower bits decides if a bit is flipped.
 ///
 /// Adding a key, multiplying by an odd number and x ^= x * (even number) change a bit depending only on the key and the
-/// bits below, and each step can be inverted. After three rounds with new keys every bit affects all bits above it.
+/// bits below it, and each step can be inverted. After three rounds with new keys every bit affects all bits above it.
 class Scrambling {
  public:
   explicit constexpr Scrambling(std::uint64_t key) noexcept

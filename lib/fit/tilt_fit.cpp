@@ -57,7 +57,8 @@ bool clear_of_lens(const IdealLens& lens, const Film& film) {
                      [&](const FilmPoint& corner) { return film.position(corner).z > lens.rear_z; });
 }
 
-/// The result for a solution; the given film if there is no solution. blur_of: the blur of a target on a film.
+/// The result for a solution; the given film if there is no solution.
+/// @param blur_of the blur of a target on a film
 TiltFit described(const IdealLens& lens, std::span<const FocusTarget> targets, const TiltOptions& options,
                   std::span<const fit_detail::SeenTarget> seen, const fit_detail::TiltProblem& problem,
                   const fit_detail::TiltSolution& solution, const auto& blur_of) {

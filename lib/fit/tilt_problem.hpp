@@ -53,8 +53,9 @@ class BlurErrors {
  public:
   virtual ~BlurErrors() = default;
   virtual int rows() const noexcept = 0;
-  /// errors: rows() values. derivatives: rows() x 3, with respect to z, p and q; may be null. Returns false if the rays
-  /// do not reach the front of the film.
+  /// @param errors rows() values
+  /// @param derivatives rows() x 3, with respect to z, p and q; may be null
+  /// @return false if the rays do not reach the front of the film
   virtual bool operator()(const FilmSlopes& film, double* errors, double* derivatives) const = 0;
 };
 

@@ -14,7 +14,7 @@ namespace petzval::fit_detail {
 /// the sum of the squared defocus and the least squared diameter.
 class RayBlur final : public BlurErrors {
  public:
-  /// wanted: signed diameter in units of the frame.
+  /// @param wanted signed diameter in units of the frame
   RayBlur(const RayBundle& bundle, const TiltFrame& frame, double root, double wanted);
   int rows() const noexcept override { return 4; }
   bool operator()(const FilmSlopes& film, double* errors, double* derivatives) const override;

@@ -79,8 +79,9 @@ std::optional<double> least_squares(std::span<const FocusTarget> targets, std::s
   return from + sum / weights;
 }
 
-/// before: the film before the move. infinity_z: the film position that focuses infinity. blur_of: the blur, on a film,
-/// of a target that has an image.
+/// @param before the film before the move
+/// @param infinity_z the film position that focuses infinity
+/// @param blur_of the blur, on a film, of a target that has an image
 Autofocus described(const IdealLens& lens, std::span<const FocusTarget> targets, std::span<const Request> requests,
                     const Film& before, double infinity_z, std::optional<double> found, const auto& blur_of) {
   using enum AutofocusStatus;

@@ -12,8 +12,10 @@ namespace petzval::focus_detail {
 /// Searches use the vergence of the subject, its inverse distance to near_z. The vergence is continuous at infinity,
 /// and for equal vergences the paraxial and the exact film nearly coincide.
 struct Conjugates {
-  /// lens: thick lens. The criterion `thin` replaces it by its thin equivalent; distances from the front principal
-  /// plane still refer to the thick lens. pupil_z: entrance pupil, for DistanceOrigin::entrance_pupil.
+  /// The criterion `thin` replaces the lens by its thin equivalent; distances from the front principal plane still
+  /// refer to the thick lens.
+  /// @param lens the thick lens
+  /// @param pupil_z z of the entrance pupil, for DistanceOrigin::entrance_pupil
   Conjugates(const IdealLens& lens, FocusCriterion criterion, DistanceOrigin origin, double pupil_z) noexcept;
   Conjugates() = default;
 

@@ -83,7 +83,8 @@ void check(const FocusMoment& moment) {
   }
 }
 
-/// Interpolates a number over the keys. of(k): its value at key k.
+/// Interpolates a number over the keys.
+/// @param of of(k): its value at key k
 double at_time(const FocusPoint& point, double time, const auto& of) {
   if (point.keys.size() == 1) return of(0);
   std::vector<double> times, values;

@@ -19,12 +19,14 @@ struct PETZVAL_API Image {
 };
 
 /// Scales the weights of a bundle with slopes to the sum 1 (equal weights if the bundle has none), and makes points and
-/// slopes relative to their centroid. centroid_on_axis: leaves points and slopes unchanged, because the centroid lies
-/// on the axis. Returns false if no ray has a weight.
+/// slopes relative to their centroid.
+/// @param centroid_on_axis leaves points and slopes unchanged, because the centroid lies on the axis
+/// @return false if no ray has a weight
 PETZVAL_API bool centre(RayBundle& bundle, bool centroid_on_axis = false);
 
-/// The image with the least RMS radius. rays: a centred bundle, or several bundles whose weights sum to 1. film_z is
-/// infinite for parallel rays.
+/// The image with the least RMS radius.
+/// @param rays a centred bundle, or several bundles whose weights sum to 1
+/// @return film_z is infinite if the rays are parallel
 PETZVAL_API Image least_rms(const RayBundle& rays);
 /// The image with the least maximum radius; ignores weights.
 PETZVAL_API Image least_maximum(RayBundle rays);

@@ -15,8 +15,10 @@ namespace petzval::focus_detail {
 /// interpolants".
 class PETZVAL_API Keyframes {
  public:
-  /// times: s, strictly increasing. values: one per time. Throws Error if the lists are empty or differ in length, a
-  /// number is not finite, or a difference or slope between keys overflows.
+  /// @param times strictly increasing (s)
+  /// @param values one for each time
+  /// @throws Error if the lists are empty or differ in length, a number is not finite, or a difference or slope between
+  ///   keys overflows
   Keyframes(std::vector<double> times, std::vector<double> values);
   /// Exact at keys; NaN for NaN.
   double at(double time) const noexcept;

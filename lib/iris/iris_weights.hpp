@@ -23,8 +23,9 @@ PETZVAL_API IrisMap upside_down(IrisMap map, bool along_x, bool along_y);
 /// Weights over an iris, and importance sampling of the weights.
 class PETZVAL_API IrisWeights {
  public:
-  /// map: must satisfy check(). uniform_part: fraction of the samples that is spread uniformly, independent of the
-  /// weights. Throws Error, prefixed with `where`, if the edge is out of range or the map is black on the iris.
+  /// @param map a map that passes check()
+  /// @param uniform_part fraction of the samples that is spread uniformly, independent of the weights
+  /// @throws Error, prefixed with `where`, if the edge is out of range or the map is black on the iris
   IrisWeights(const Iris& iris, const EdgeWeight& edge, const IrisMap& map, double uniform_part,
               const std::string& where);
 
@@ -50,7 +51,8 @@ class PETZVAL_API IrisWeights {
   void divide_rows(std::size_t count, double uniform_part);
   /// The contribution of each cell to the mean weight, [row][column]. Scales the map to mean 1 if it keeps its mean.
   std::vector<double> light_of_cells();
-  /// Distributes samples over the cells. parts: contributions to the mean weight, scaled to the sum 1.
+  /// Distributes samples over the cells.
+  /// @param parts contributions to the mean weight, scaled to the sum 1
   void divide_columns(const std::vector<double>& parts, double uniform_part);
 
   double edge_at(double share) const noexcept;

@@ -286,7 +286,7 @@ Candidate<T> newton(const Asphere<Storage<T>>& s, const Hit<T>& base, const Vec<
 ///
 /// Otherwise this part is searched from its beginning, in intervals that are decided by bounds over rings of the
 /// surface: at most 136 intervals, and 100 steps to refine the crossing. The phone lens of data/lenses needs one
-/// interval and four steps. The arguments are those of intersect() for a quadric.
+/// interval and four steps. The arguments are the same as for a quadric.
 ///
 /// Accuracy: |error| cos(incidence) <= 4 eps (height + distance slope); see tests/lens.
 /// Limitations: two crossings closer than 1/64 of the part may be missed.

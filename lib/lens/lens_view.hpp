@@ -87,7 +87,8 @@ struct SquaredIndex {
   std::array<R, terms> by_power{1};
   bool constant = true;  ///< only the first coefficient is not zero
 
-  /// Uses Estrin's scheme, whose dependency chain is shorter than Horner's. T: R or lanes of R; t2, t4: powers of t.
+  /// Uses Estrin's scheme, whose dependency chain is shorter than Horner's. T: R or lanes of R.
+  /// @param t2, t4 powers of t
   template <class T>
   T at(const T& t, const T& t2, const T& t4) const noexcept {
     const auto pair = [&](std::size_t k) { return T(by_power[k]) + T(by_power[k + 1]) * t; };

@@ -16,7 +16,8 @@ struct SceneLine {
   double sx = 0, sy = 0, ox = 0, oy = 0;
 };
 
-/// direction: unit length, towards the scene; point: on the line, relative to the reference point.
+/// @param direction a unit vector towards the scene
+/// @param point a point of the line, relative to the reference point
 inline SceneLine scene_line(const Vec3<double>& direction, const Vec3<double>& point) noexcept {
   const double per_length = 1 / (1 - direction.z);
   const double sx = direction.x * per_length, sy = direction.y * per_length;

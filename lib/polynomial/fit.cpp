@@ -29,8 +29,9 @@ class Samples {
     for (auto* numbers : {&film_x_, &film_y_, &u_, &v_}) numbers->reserve(count);
   }
 
-  /// Adds a film point. height: fraction of the film radius; turn: with mirror symmetry, fraction of a right angle from
-  /// +y to +x.
+  /// Adds a film point.
+  /// @param height fraction of the film radius
+  /// @param turn with mirror symmetry, fraction of a right angle from +y to +x
   void add(double height, double turn, double u, double v) {
     constexpr double right_angle = std::numbers::pi / 2;
     const double radius = pupils_.film_radius() * height;
@@ -99,7 +100,8 @@ Samples axial(Samples samples) {
 /// Equal steps from 0 to 1; 0 if there is one step.
 double part(int k, int count) noexcept { return count > 1 ? static_cast<double>(k) / (count - 1) : 0; }
 
-/// The rims of the pupils. turns: number of film points of equal height.
+/// The rims of the pupils.
+/// @param turns number of film points of equal height
 Samples rims(Samples samples, int steps, int turns) {
   constexpr int around = 128;
   samples.reserve(static_cast<std::size_t>((steps + 1) * turns * around));
@@ -114,7 +116,8 @@ Samples rims(Samples samples, int steps, int turns) {
 }
 
 /// Lines with the largest errors: just inside the rims of all pupils and, from the edge of the film, on the rims and
-/// across the pupils. turns: number of film points at the edge.
+/// across the pupils.
+/// @param turns number of film points at the edge
 Samples edges(Samples samples, int turns) {
   constexpr std::size_t near_rims = 8192, on_rim = 1024, within = 3072;
   constexpr double margin = 0.02;  // fraction of the area of the pupil

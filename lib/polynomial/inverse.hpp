@@ -176,8 +176,8 @@ PETZVAL_INLINE Four<V> solution(Slopes<V> a, Four<V> b) noexcept {
 
 /// Smallest film height, along one axis, at which the line through the centre of the pupil has the slope `length` >= 0
 /// (in the chart). The search ends at the height at which slopes stop growing: the lit film may end there, and outside
-/// the fitted range a polynomial bends back. slope: the slope divided by the height, as a function of the height;
-/// positive at 0.
+/// the fitted range a polynomial bends back.
+/// @param slope the slope divided by the height, as a function of the height; positive at 0
 template <class V, class Slope>
 PETZVAL_INLINE V chief_height(const V& length, const Slope& slope) noexcept {
   constexpr int steps = 32, halvings = 7;

@@ -61,7 +61,8 @@ struct ToSceneJob {
 template <class R>
 using ToSceneLoops = std::array<void (*)(const ToSceneJob<R>&) noexcept, 2 * degree_count>;
 
-/// Maps one line. coefficients: of the wavelength of the line; null if there is no fit.
+/// Maps one line.
+/// @param coefficients coefficients at the wavelength of the line; null if there is no fit
 using OneToScene = std::array<RayFate (*)(const double* coefficients, const Scales<double>&, const TwoPlaneRay&,
                                           Ray<double>&) noexcept,
                               2 * degree_count>;
@@ -78,8 +79,9 @@ PETZVAL_WIDEST(PolynomialLoops, polynomial_loops)
 /// Number of lines of one call of an inverse loop; fills the widest registers.
 inline constexpr std::size_t inverse_block = 8;
 using InverseColumns = std::array<std::array<double, inverse_block>, 4>;
-/// Finds (f, p) of lines (s, o), for lenses of revolution; one loop for each degree. found: 1 if there is a solution;
-/// -1 if there is no solution in the domain; 0 if the iteration does not converge with full steps.
+/// Finds (f, p) of lines (s, o), for lenses of revolution; one loop for each degree.
+/// @param found 1 if there is a solution; -1 if there is no solution in the domain; 0 if the iteration does not
+///   converge with full steps
 using InverseLoops = std::array<void (*)(const double* coefficients, const InverseColumns& wanted, InverseColumns& at,
                                          std::array<double, inverse_block>& found) noexcept,
                                 degree_count>;

@@ -71,7 +71,8 @@ struct OfRevolution {
   static PETZVAL_INLINE Variables<T> variables(const FilmAndPupil<T>& at) noexcept {
     return {at.film_square(), sum_of_products(at.fx, at.px, at.fy, at.py), at.pupil_square()};
   }
-  /// A, B, C and D. c: as in horner().
+  /// A, B, C and D.
+  /// @param c as in horner()
   template <class C, class T>
   static PETZVAL_INLINE FourSums<T> sums(const C& c, const Variables<T>& at) noexcept {
     const auto& [u, v, w] = at;
@@ -119,7 +120,7 @@ struct OfMirrors {
   }
 
  private:
-  /// across: product of film and pupil coordinates along the other axis.
+  /// @param across product of film and pupil coordinates along the other axis
   template <class R, class T>
   static PETZVAL_INLINE T even_sum(const R* c, const T& across, const T& other_pupil2, const T& other_film2,
                                    const T& pupil2, const T& film2) noexcept {

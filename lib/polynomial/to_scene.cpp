@@ -24,7 +24,8 @@ using Sums = FourSums<typename Native<R>::Values>;
 static_assert(OfMirrors<degree_count>::coefficients == most_coefficients);
 
 /// Sums with one wavelength per lane: all lanes are evaluated at each wavelength that occurs, in ascending order, and
-/// the lanes of that wavelength are kept. known: lanes whose wavelength has a fit.
+/// the lanes of that wavelength are kept.
+/// @param known lanes whose wavelength has a fit
 template <class Symmetry, class R>
 PETZVAL_INLINE Sums<R> mixed_sums(const ToSceneJob<R>& job, const std::uint16_t* each,
                                   const Variables<Symmetry, R>& at_place, typename Native<R>::Bits& known) noexcept {
@@ -92,7 +93,8 @@ PETZVAL_INLINE Sums<R> permuted_sums(const ToSceneJob<R>& job, const std::uint16
 template <class R>
 using ModeWeights = R[most_modes][lens_detail::look_up_block];
 
-/// Sums for any wavelengths. weights: of the lanes, from `at` on.
+/// Sums for any wavelengths.
+/// @param weights mode weights; the lanes start at the index `at`
 template <class Symmetry, class R>
 PETZVAL_INLINE Sums<R> mode_sums(const ToSceneJob<R>& job, const ModeWeights<R>& weights, std::size_t at,
                                  const Variables<Symmetry, R>& at_place, typename Native<R>::Bits& known) noexcept {

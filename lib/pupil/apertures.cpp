@@ -88,7 +88,8 @@ class BeamHeights {
   explicit BeamHeights(const Lens& lens) : lens_(lens), heights_(lens.surface_count(), 0.0) {}
 
   /// Adds the beam of a field: rays through the rim of the stop, or through the last passing point on the way to the
-  /// rim. mirrored: true if the beam is symmetric about the meridian x = 0.
+  /// rim.
+  /// @param mirrored true if the beam is symmetric about the meridian x = 0
   void add(const FieldPoint& point, bool mirrored) {
     const PupilPlane plane(lens_, point);
     if (!pupil_detail::aim(lens_, plane, {}, {})) return;

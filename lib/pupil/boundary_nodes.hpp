@@ -10,7 +10,7 @@ namespace petzval::pupil_detail {
 
 /// Calls visit(place, area, weight) at N Gauss-Legendre nodes between the edges of each span of a pupil. The nodes are
 /// spaced in the squared radius, so that equal steps have equal areas. area * weight is the fraction of the pupil, in
-/// squared radii, that a node stands for.
+/// squared radii, that a node represents.
 template <int N, class Visit>
 void for_each_node(const PupilRegion& region, const Visit& visit) {
   static const auto nodes = core_detail::gauss_legendre<N>();

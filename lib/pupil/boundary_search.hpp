@@ -32,15 +32,14 @@ struct ConnectedPupils {
   PlaceClearances obscured{};
 };
 
-/// Finds the pupils of many points together, in batches.
-/// pupil_boundary() is exact to 2e-13 and knows the rims. This search also works for models without rims, and uses
-/// neighbouring pupils as predictions.
+/// Finds the pupils of many points together, in batches. pupil_boundary() is exact to 2e-13 and knows the rims. This
+/// search also works for models without rims, and uses neighbouring pupils as predictions.
 ///
 /// Accuracy: 2e-5 of the half axes. In a direction with several obscurations only the widest obscuration has this
 /// accuracy; the others are as coarse as the samples. The RimPoints of the result name no surface.
-///
-/// directions: even. mirrored: true if the pupils are symmetric about x = 0; only half of the directions are traced
-/// then. connected: selects one component; null keeps all components that the search lines meet.
+/// @param directions number of directions; even
+/// @param mirrored true if the pupils are symmetric about x = 0; only half of the directions are traced then
+/// @param connected selects one component; null keeps all components that the search lines meet
 std::vector<PupilRegion> find_regions(std::span<const PupilGuess> points, const SearchOrder& order,
                                       std::size_t directions, bool mirrored, const PlaceClearances& clearances,
                                       const ConnectedPupils* connected = nullptr);

@@ -47,8 +47,8 @@ class HeightAt {
 };
 
 /// Largest entering height of the beam within the rim of the stop: the height of the ray that meets the rim or, if rays
-/// are lost before the rim, of the last ray that reaches the stop. expected: first-order estimate, which sets the step
-/// size.
+/// are lost before the rim, of the last ray that reaches the stop.
+/// @param expected first-order estimate, which sets the step size
 double entering_height(const HeightAt& height_at, double rim, double expected) {
   const auto inside = [&](double y) {
     const auto height = height_at(y);

@@ -19,7 +19,7 @@ struct Face {
   double vertex_z = 0, z_min = 0, z_max = 0;
 };
 
-/// entrance: sets the size of a surface without a rim, see half_height().
+/// @param entrance sets the size of a surface without a rim, see half_height()
 Face face_of(const Lens& lens, std::size_t surface, const Pupil& entrance) noexcept;
 
 /// Face of the last surface.

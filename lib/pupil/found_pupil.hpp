@@ -27,8 +27,9 @@ struct Found {
   bool empty() const noexcept { return ends.empty(); }
 };
 
-/// Moves the origin of a pupil to its centre if the search started far from the centre. units: unit vectors of the
-/// directions. Returns false and changes nothing if the origin is close to the centre or a direction is obscured.
+/// Moves the origin of a pupil to its centre if the search started far from the centre.
+/// @param units unit vectors of the directions
+/// @return false and changes nothing if the origin is close to the centre or a direction is obscured
 bool recentre(Found& found, std::span<const Vec2<double>> units);
 
 PupilRegion region_of(const Found& found, std::span<const Vec2<double>> units);

@@ -41,7 +41,8 @@ void close_in(std::vector<Bracket>& brackets, const std::vector<Line>& lines, do
 
 namespace {
 
-/// Narrows the range from `first` to `last` to one component. near: called if there are several components.
+/// Narrows the range from `first` to `last` to one component.
+/// @param near called if there are several components
 template <class Passes, class Near>
 void narrow(int& first, int& last, const Passes& passes, const Near& near, double low, double step) {
   std::vector<std::array<int, 2>> parts;
@@ -85,7 +86,7 @@ std::vector<LineExtent> extents_along(const std::vector<Line>& lines, double low
     }
     const double* values = batch.clearances.data() + l % some * a_line;
     const auto passes = [&](int i) { return values[i] >= 0; };
-    int first = 0, last = samples, dark = 0, light = 0;  // dark, light: samples that enclose the widest obscuration
+    int first = 0, last = samples, dark = 0, light = 0;  // dark, light: samples around the widest obscuration
     while (first <= samples && !passes(first)) ++first;
     if (first > samples) continue;
     while (!passes(last)) --last;

@@ -87,8 +87,9 @@ void close_in(std::vector<Bracket>& brackets, const std::vector<Line>& lines, do
 using PartOfLine = std::function<std::optional<double>(std::size_t line)>;
 
 /// Finds the extents along lines from `samples` + 1 parameters between `low` and `high`; an extent starts at `low` if
-/// the first sample passes. tolerance: of the ends, in units of the parameter. part: selects one component of lines
-/// with several components; if empty, the extent covers all components.
+/// the first sample passes.
+/// @param tolerance tolerance of the ends, in units of the parameter
+/// @param part selects one component of lines with several components; if empty, the extent covers all components
 PETZVAL_API std::vector<LineExtent> extents_along(const std::vector<Line>& lines, double low, double high, int samples,
                                                   double tolerance, const PlaceClearances& clearances,
                                                   const PartOfLine& part = {});

@@ -74,7 +74,7 @@ std::pair<Box, Box> boxes_about(Sight& sight, const std::vector<SeenPlace>& pass
 /// Searches the boundary along all its directions together. Radii are in units of the half axes.
 class Tracer {
  public:
-  /// near: a point of the component to keep; nullopt keeps all components.
+  /// @param near a point of the component to keep; nullopt keeps all components
   Tracer(Sight& sight, PupilBoundary& boundary, const std::optional<Point>& near)
       : sight_(sight), boundary_(boundary), near_(near) {}
 

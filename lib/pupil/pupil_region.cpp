@@ -39,7 +39,7 @@ std::vector<Extent> extents(const PupilRegion& region) {
     Extent& e = result[span.direction];
     if (!e.lit) {
       e.obscured_to = span.from_radius;
-    } else if (e.obscured_from > 0 || e.obscured_to == 0) {  // the middle is not dark
+    } else if (e.obscured_from > 0 || e.obscured_to == 0) {  // rays pass at the middle
       if (span.from_radius - e.to > e.obscured_to - e.obscured_from) {
         e.obscured_from = e.to, e.obscured_to = span.from_radius;
       }

@@ -36,8 +36,9 @@ class Sight {
   const PupilPlane& plane() const noexcept { return plane_; }
   Coordinates coordinates() const noexcept { return coordinates_; }
 
-  /// Clearances of the rays through (x[i], y[i]), as in trace/clearances.hpp, reproducible. apertures: as in
-  /// BatchOptions. Returns N values, valid until the next call.
+  /// Clearances of the rays through (x[i], y[i]), as in trace/clearances.hpp, reproducible.
+  /// @param apertures as in BatchOptions
+  /// @return N values, valid until the next call
   std::span<const double> clearances(std::span<const double> x, std::span<const double> y, bool apertures = true);
 
   /// Fates and surfaces at the ends of N rays, valid until the next call.

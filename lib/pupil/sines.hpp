@@ -23,7 +23,7 @@ class Sines {
   }
 
   Vec2<double> of(const Vec2<double>& p) const noexcept { return (p - foot_) / std::sqrt(secant2(p)); }
-  /// Not finite for directions that are parallel to the plane or point away.
+  /// Not finite if the direction is parallel to the plane or points away from it.
   Vec2<double> place(const Vec2<double>& sines) const noexcept {
     const Vec2<double> s = sines * per_distance_;
     return foot_ + sines / std::sqrt(1 - s.x * s.x - s.y * s.y);
@@ -40,7 +40,7 @@ class Sines {
     const double tangent = glm::length(t);
     return tangent == 0 ? t : t * (std::atan(tangent) / tangent);
   }
-  /// Not finite for directions that are parallel to the plane or point away.
+  /// Not finite if the direction is parallel to the plane or points away from it.
   Vec2<double> place_at_angles(const Vec2<double>& angles) const noexcept {
     const double angle = glm::length(angles);
     if (angle == 0) return foot_;

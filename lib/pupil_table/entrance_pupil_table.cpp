@@ -85,7 +85,8 @@ struct EntrancePupilTable::Data {
   /// Position on the axis of the centre of the smallest ball that all rays meet.
   double least_ball(std::span<const std::vector<Ray<double>>> rays, double first, double last) const noexcept;
 
-  /// Makes the nodes of all wavelengths. of_wavelength(w): makes the nodes of wavelength w.
+  /// Makes the nodes of all wavelengths.
+  /// @param of_wavelength of_wavelength(w): makes the nodes of wavelength w
   template <int dimensions, class OfWavelength>
   void fill(std::size_t wavelengths, int threads, const OfWavelength& of_wavelength) {
     std::vector<SceneNodes<dimensions>> tables(wavelengths);
@@ -221,8 +222,8 @@ EntrancePupilTable::EntrancePupilTable(const Lens& lens, std::span<const std::ve
   }
   // With cylinders, the pupils of near points move too fast for the small number of nodes.
   data->steepest = (lens.rotationally_symmetric() ? 0.8 : 0.25) / reach;
-  // Exclude near points that the film sees only through a small part of the pupil: their fields are far larger than the
-  // fields of the film.
+  // Exclude near points whose rays reach the film only through a small part of the pupil: their fields are far larger
+  // than the fields of other points.
   for (const auto& own : rays) {
     constexpr double no_field = 1e-6;
     const double farthest = widest_field(data->centre, own, 0) + no_field;

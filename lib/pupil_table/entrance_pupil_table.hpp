@@ -62,7 +62,7 @@ using ScenePassing = std::function<void(std::size_t count, const RayArrays<const
 /// Immutable, cheap to copy, thread-safe.
 class PETZVAL_API EntrancePupilTable {
  public:
-  /// rays: leaving_rays(); they determine the largest fields and the positions of pupils.
+  /// @param rays leaving_rays(); they determine the largest fields and the positions of pupils
   EntrancePupilTable(const Lens& lens, std::span<const std::vector<Ray<double>>> rays, const ScenePassing& passing,
                      ClippedBy clipped_by = ClippedBy::apertures, int threads = 1);
 
@@ -76,7 +76,8 @@ class PETZVAL_API EntrancePupilTable {
   void sample(std::size_t count, const Vec3<double>* points, const double* u, const double* v,
               const RayWavelengths& wavelengths, const pupil_table_detail::EntranceRays& rays) const noexcept;
   /// Samples N rays of one point, uniform over its pupil in the plane that faces the point; pdf is the density of
-  /// spread(), not of sample(). u, v, samples: N each.
+  /// spread(), not of sample().
+  /// @param u, v, samples arrays of length N
   void spread(const Vec3<double>& point, std::size_t count, const double* u, const double* v, Wavelength wavelength,
               EntranceSample* samples) const noexcept;
 
@@ -93,7 +94,8 @@ class PETZVAL_API EntrancePupilTable {
 /// Tests by tracing if rays pass a lens. The lens must outlive the result.
 PETZVAL_API ScenePassing traced_passing(const Lens& lens);
 
-/// Makes the table of a lens from traced rays. pupils: FilmPupilTable::enclosing() of the film.
+/// Makes the table of a lens from traced rays.
+/// @param pupils FilmPupilTable::enclosing() of the film
 PETZVAL_API EntrancePupilTable traced_entrances(const Lens& lens, const FilmPupilTable& pupils, int threads = 1);
 
 }  // namespace petzval

@@ -132,8 +132,8 @@ std::vector<double> half_chords(double radius, double height) {
   return widths;
 }
 
-/// The grid whose rows, connected by straight lines, enclose a convex area. widths: half widths of the area, at half
-/// steps of the rows.
+/// The grid whose rows, connected by straight lines, enclose a convex area.
+/// @param widths half widths of the area, at half steps of the rows
 FilmGrid grid_within(double height, const std::vector<double>& widths) {
   FilmGrid grid;
   grid.columns = grid_steps;

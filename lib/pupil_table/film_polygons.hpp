@@ -29,12 +29,13 @@ struct FilmPupils {
 /// Traced pupils of a lens of revolution.
 FilmPupils traced_pupils(const Lens& lens, const TwoPlanes& space, std::size_t wavelength);
 /// Pupils of a tilted film by virtual film point: for the farthest and the nearest film point of each virtual point,
-/// and for three between. upright: table that tells which rays pass.
+/// and for three between.
+/// @param upright table that tells which rays pass
 FilmPupils tilted_film_pupils(const FilmPupilTable& upright, const FilmTilt& tilt, std::size_t wavelength);
 
 /// Pupils of film points on +y at equal steps of the height, from the axis on.
 struct FilmPolygons {
-  double lit_radius = 0;  ///< the last height; the film is dark beyond it at all wavelengths
+  double lit_radius = 0;  ///< the last height; at larger heights no ray of any wavelength reaches the film
   std::vector<std::vector<PupilPolygon>> by_wavelength;
 };
 

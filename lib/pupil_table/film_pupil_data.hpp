@@ -72,7 +72,7 @@ struct FilmPupilTable::Data {
   std::shared_ptr<const pupil_table_detail::StopCells> stop;  // null for a round or unknown stop
   std::shared_ptr<const Data> whole;                          // the unclipped pupils; null if there is no rim
 
-  /// A copy of film, planes and wavelengths, without pupils.
+  /// A table with the same film, planes and wavelengths, but without pupils.
   std::shared_ptr<Data> alike() const;
   /// Sets the grid of a lens with two sections.
   void set(const pupil_table_detail::FilmGrid& grid);

@@ -22,7 +22,8 @@ struct GridOfPoints {
 };
 
 /// Finds pupils near the pupils of neighbours. A lost pupil is searched near the pupils of all neighbours, or in the
-/// whole plane if no pupil has been found. directions: number of directions of the regions, even.
+/// whole plane if no pupil has been found.
+/// @param directions number of directions of the regions; even
 std::vector<PupilRegion> grid_pupils(const GridOfPoints& grid, std::size_t directions,
                                      const pupil_detail::PlaceClearances& clearances);
 
@@ -45,7 +46,8 @@ using ProbeClearances =
                        const double* x, const double* y, double* clearances)>;
 
 /// Tests positions just outside the interpolated polygons of probes in all parts of a table, and expands the polygons
-/// if a ray passes there. probes: number of probes in each of up to four rounds.
+/// if a ray passes there.
+/// @param probes number of probes in each of up to four rounds
 void expand_to_probes(std::span<PupilPolygon> polygons, std::size_t probes, const ProbeWeights& weights,
                       const ProbeClearances& clearances);
 

@@ -69,7 +69,7 @@ class IrisImages {
   Image image(Wavelength wavelength) const noexcept;
   template <class R>
   SeenIris<R> seen() const noexcept;
-  /// all: common wavelength of all rays.
+  /// @param all the common wavelength of all rays
   template <class R>
   IrisImageTable<R> table(Wavelength all) const noexcept;
 

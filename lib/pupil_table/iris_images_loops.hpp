@@ -22,7 +22,8 @@ struct ImageSections {
 // Local names: compiled for several instruction sets, which the linker must not mix.
 namespace {
 
-/// The image for a virtual point of a tilted film. nearer: slope . virtual point.
+/// The image for a virtual point of a tilted film.
+/// @param nearer slope . virtual point
 template <class R>
 inline ImageSections<R> on_tilted(const ImageSections<R>& image, R nearer) noexcept {
   const R x = R(1) / (R(1) + image.shift_x * nearer), y = R(1) / (R(1) + image.shift_y * nearer);

@@ -40,8 +40,8 @@ void scale_to_light(PupilPolygon& polygon, const TwoPlanes& space, const FilmPoi
   }
 }
 
-/// The disc that contains the axial pupil and moves with the film point as pupils near the axis do. beside: pupil of
-/// the film point at `height`.
+/// The disc that contains the axial pupil and moves with the film point as pupils near the axis do.
+/// @param beside pupil of the film point at `height`
 PupilDisc disc_about(const PupilPolygon& on_axis, const PupilPolygon& beside, double height) noexcept {
   double radius = 0;
   for (const auto& corner : on_axis.corners) radius = std::max(radius, std::hypot(corner.x, corner.y));

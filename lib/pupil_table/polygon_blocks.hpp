@@ -505,7 +505,8 @@ void areas(const PolygonGrid<dimensions, R>& grid, std::size_t count, const R* f
   });
 }
 
-/// Samples one ray. wavelength: wavelength index, -1 if the table does not cover the wavelength.
+/// Samples one ray.
+/// @param wavelength wavelength index, -1 if the table does not cover the wavelength
 template <int dimensions, class T>
 void sample_one(const PolygonGrid<dimensions, double>& grid, T film_x, T film_y, T u, T v, std::int32_t wavelength,
                 T& x, T& y, T& area) noexcept {

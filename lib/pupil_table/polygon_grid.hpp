@@ -235,7 +235,8 @@ struct CellPolygon {
     }
     return result;
   }
-  /// Fraction of the polygon's area in the half towards +x. whole: area of the polygon.
+  /// Fraction of the polygon's area in the half towards +x.
+  /// @param whole area of the polygon
   T right_share(const T& whole) const noexcept {
     return area_before(static_cast<std::int32_t>(polygon_corners / 2)) / (whole > R(0) ? whole : T(1));
   }
@@ -295,7 +296,8 @@ struct SeenPoint {
   }
 };
 
-/// The polynomials of StopLayout. number(i): term i.
+/// The polynomials of StopLayout.
+/// @param number number(i): term i
 template <int dimensions, class T, class Number>
 PETZVAL_INLINE SeenPoint<T> seen_point(const Number& number, const Point<T>& stop) noexcept {
   const T &x = stop.x, &y = stop.y;

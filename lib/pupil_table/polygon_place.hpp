@@ -10,7 +10,7 @@
 /// Positions in the polygon of one film point, in double.
 namespace petzval::pupil_table_detail {
 
-/// Index of the last corner before a position, seen from the middle, by bisection.
+/// Index of the last corner whose direction from the middle is before the direction of a position, by bisection.
 template <class Polygon>
 std::size_t corner_before(const Polygon& polygon, const Point<double>& q) {
   const Point<double> first = polygon.corner(0);
@@ -25,15 +25,15 @@ std::size_t corner_before(const Polygon& polygon, const Point<double>& q) {
   return low;
 }
 
-/// Index of the sector that faces a position, seen from the middle; polygon_corners if there is no such sector.
+/// Index of the sector in the direction of a position from the middle; polygon_corners if there is no such sector.
 template <class Polygon>
 std::size_t sector_towards(const Polygon& polygon, const Point<double>& q) {
   return sector_facing(
       q, [&](std::size_t k) { return polygon.sector(static_cast<std::int32_t>(k)); }, corner_before(polygon, q));
 }
 
-/// Clearance as in FilmPupilTable::clearances(). facing: in: first sector to try; out: the sector that faces the
-/// position.
+/// Clearance as in FilmPupilTable::clearances().
+/// @param facing on input, the first sector to try; on output, the sector that faces the position
 template <class Polygon>
 double clearance_of_place(const Polygon& polygon, const Point<double>& q, std::size_t& facing) {
   Sector<double> sector = polygon.sector(static_cast<std::int32_t>(facing));

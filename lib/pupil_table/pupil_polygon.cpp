@@ -16,8 +16,8 @@ using Place = Point<double>;  // in the plane, relative to a middle
 
 Place place_of(const Vec2<double>& p) noexcept { return {p[0], p[1]}; }
 
-/// The outer edge of a region as a closed line about its middle, starting at +y, and for each of its points the ends of
-/// the obscuration as fractions of the distance from the middle.
+/// The outer edge of a region: a closed line around its middle, starting at +y. For each of its points, the ends of the
+/// obscuration are given as fractions of the distance from the middle.
 struct Edge {
   std::vector<Place> points;
   std::vector<double> obscured_from, obscured_to;
@@ -102,7 +102,8 @@ struct Obscured {
 
   /// Intersects with the obscuration between two points that the sector faces, narrowed by a margin. If this
   /// obscuration is smaller than `expected`, the obscuration of the neighbours, it is narrowed by the difference once
-  /// more. dark: obscured from the middle on.
+  /// more.
+  /// @param dark true if the obscuration starts at the middle
   void keep(const Sector<double>& sector, bool dark, const Place& begin, const Place& end,
             const Obscured& expected) noexcept {
     if (!(from < to)) return;  // already empty

@@ -87,8 +87,8 @@ struct SceneCell {
     }
   }
 };
-/// distance, down, across: position as fractions in [0, 1] of the largest reciprocal distance and of the last fields at
-/// this distance.
+/// @param distance, down, across position as fractions in [0, 1] of the largest reciprocal distance and of the last
+///   fields at this distance
 template <int dimensions>
 PETZVAL_INLINE SceneCell<dimensions> cell_of(double distance, double down, double across) noexcept {
   using L = SceneLayout<dimensions>;
@@ -106,7 +106,8 @@ PETZVAL_INLINE SceneCell<dimensions> cell_of(double distance, double down, doubl
   return cell;
 }
 
-/// The last field at a fraction of the largest reciprocal distance. widest: SceneGrid::widest of one wavelength.
+/// The last field at a fraction of the largest reciprocal distance.
+/// @param widest SceneGrid::widest of one wavelength
 template <int dimensions>
 PETZVAL_INLINE double last_field(const double* widest, double distance, std::int32_t angle) noexcept {
   using L = SceneLayout<dimensions>;
@@ -167,7 +168,7 @@ struct ScenePlaces {
   }
 };
 
-/// wavelength: a position, or -1 if the table does not cover the wavelength.
+/// @param wavelength index of the wavelength, or -1 if the table does not cover it
 template <std::size_t block, int dimensions>
 PETZVAL_INLINE void find_scene_places(const SceneGrid<dimensions>& grid, const double* x, const double* y,
                                       const double* z, const std::int32_t* wavelength,

@@ -9,7 +9,8 @@
 
 namespace petzval::pupil_table_detail {
 
-/// Samples N scene points; pdf = 0 for points outside the grid. wavelength: wavelength indices, -1 if not covered.
+/// Samples N scene points; pdf = 0 for points outside the grid.
+/// @param wavelength wavelength indices, -1 if not covered
 template <int dimensions>
 using SceneLoop = void (*)(const SceneGrid<dimensions>&, std::size_t, const double* x, const double* y, const double* z,
                            const double* u, const double* v, const std::int32_t* wavelength,

@@ -20,9 +20,10 @@ namespace petzval::pupil_table_detail {
 /// Clearances of positions in planes, from the rays through the positions.
 class RayClearances {
  public:
-  /// passing: must outlive this object.
+  /// @param passing must outlive this object
   RayClearances(const ScenePassing& passing, std::size_t wavelength) : passing_(passing), wavelength_(wavelength) {}
-  /// ray_at(i): ray i of `count` rays. clearances: as PlaceClearances; only the signs count.
+  /// @param ray_at ray_at(i): ray i of `count` rays
+  /// @param clearances results as of PlaceClearances; only the signs are meaningful
   template <class RayAt>
   void operator()(std::size_t count, const RayAt& ray_at, double* clearances) {
     for (auto& component : components_) component.resize(count);
@@ -72,7 +73,8 @@ struct SceneNodes {
     return {last_field<dimensions>(widest.data(), distance, 0),
             last_field<dimensions>(widest.data(), distance, L::angles - 1)};
   }
-  /// nullopt if the field lies outside the grid. distance: fraction of the largest reciprocal distance.
+  /// nullopt if the field lies outside the grid.
+  /// @param distance fraction of the largest reciprocal distance
   std::optional<PolygonWeights> weights(const Vec2<double>& field, double distance) const noexcept {
     const Vec2<double> part = field / last(distance);
     if (!(part.x <= 1 && part.y <= 1)) return {};
@@ -86,8 +88,9 @@ Vec2<double> angles(const Bearing& bearing) noexcept {
   return {angle_of<dimensions>(bearing, 0), angle_of<dimensions>(bearing, dimensions - 2)};
 }
 
-/// The nodes of a lens of revolution. rays: leaving_rays() of the wavelength. steepest: largest reciprocal distance,
-/// 1/mm.
+/// The nodes of a lens of revolution.
+/// @param rays leaving_rays() of the wavelength
+/// @param steepest largest reciprocal distance, 1/mm
 SceneNodes<2> nodes_of_revolution(const Vec3<double>& centre, double steepest, const std::vector<Ray<double>>& rays,
                                   std::size_t wavelength, const ScenePassing& passing, ClippedBy clipped_by);
 /// The nodes of a lens that is symmetric in x and in y.

@@ -200,7 +200,8 @@ double change_of(const NodeMap<dimensions>& map, const NodeMap<dimensions>& next
   return change;
 }
 
-/// Makes a cell. drawn: StopLayout::drawn.
+/// Makes a cell.
+/// @param drawn StopLayout::drawn
 template <int dimensions>
 std::vector<double> cell_of(std::span<const NodeMap<dimensions>* const> at, bool drawn, double scale) {
   using S = StopLayout<dimensions>;

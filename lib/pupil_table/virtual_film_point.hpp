@@ -18,8 +18,8 @@ struct VirtualFilmPoint {
   FilmPoint on_upright(double x, double y) const noexcept { return {at.x - nearer * x, at.y - nearer * y}; }
 };
 
-/// Clearances, in the pupils of the upright film, of N rays through positions in the pupil plane. from(i): the
-/// VirtualFilmPoint of ray i.
+/// Clearances, in the pupils of the upright film, of N rays through positions in the pupil plane.
+/// @param from from(i): the VirtualFilmPoint of ray i
 template <class From>
 void upright_clearances(const FilmPupilTable& upright, std::size_t wavelength, std::size_t count, const From& from,
                         const double* x, const double* y, double* clearances) {

@@ -174,12 +174,11 @@ struct Meeting {
   Mask<R> beside[vectors];  ///< no crossing inside the aperture: vignetted, even if the ray hits farther out
 };
 
-/// Newton's iteration in each lane; a converged lane keeps its value, so that results do not depend on other lanes.
-/// A result is accepted if it lies inside the aperture and the ray rises above the surface along the complete part that
+/// Newton's iteration in each lane; a converged lane keeps its value, so that results do not depend on other lanes. A
+/// result is accepted if it lies inside the aperture and the ray rises above the surface along the complete part that
 /// may meet the surface inside the aperture. For other rays the intervals are searched, as in kernel::intersect.
-///
-///
-/// at: in: the start values of q; out: the results. per_n2: one over the squared index in front of the surface.
+/// @param at on input, the start values of q; on output, the results
+/// @param per_n2 one over the squared index in front of the surface
 template <class R>
 [[gnu::noinline]] void meet(const kernel::Step<R>& s, const Route<R>& route, std::uint8_t* unsettled,
                             const Bundle<R>& b, const Lanes<R>* per_n2, Meeting<R>& at) noexcept {

@@ -58,8 +58,9 @@ PETZVAL_INLINE void march(const BlockJob<R>& job, MediaAt&& media_at, std::uint8
   }
 }
 
-/// Traces one bundle of a job, from ray `o` on. index: for each ray, the index in front of the lens. per_index: one
-/// over the index behind the lens.
+/// Traces one bundle of a job, from ray `o` on.
+/// @param index for each ray, the index in front of the lens
+/// @param per_index one over the index behind the lens
 template <class R, class MediaAt>
 void trace_bundle(const BlockJob<R>& job, std::size_t o, const R* index, const R* per_index, MediaAt&& media_at) {
   const auto in = from<R>(job.in, o);

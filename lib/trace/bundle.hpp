@@ -51,8 +51,9 @@ struct Bundle {
   typename Native<R>::Bits tally[vectors];
 };
 
-/// Fate of a lost ray, as a number so that loops vectorise. beyond: its tally minus four for each surface passed.
-/// unsettled: true if the search for a hit did not converge.
+/// Fate of a lost ray, as a number so that loops vectorise.
+/// @param beyond its tally minus four for each surface passed
+/// @param unsettled true if the search for a hit did not converge
 PETZVAL_INLINE std::int32_t lost_by(std::int32_t beyond, bool unsettled) noexcept {
   std::int32_t fate = beyond == 0 ? static_cast<std::int32_t>(RayFate::missed_surface)
                                   : static_cast<std::int32_t>(RayFate::totally_reflected);

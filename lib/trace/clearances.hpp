@@ -16,8 +16,8 @@ namespace petzval::trace_detail {
 /// blocked by a rim has the clearance v / (1 - v), in (-1, 0), where v < 0 is the value at that rim: at the first such
 /// rim with apertures, at the rim with the least value without apertures. A ray lost for another reason has a clearance
 /// below -1; the earlier the ray is lost, the lower it is.
-///
-/// rays: `count` rays, which are replaced by their results, as by a batch with out = in. clearances: `count` values.
+/// @param rays `count` rays, which are replaced by their results, as by a batch with out = in
+/// @param clearances `count` values
 template <class T>
 void clearances(const Lens& lens, std::size_t count, const RayArrays<T>& rays, T* clearances,
                 const BatchOptions& options) noexcept;

@@ -40,7 +40,8 @@ class MediaByRay {
     PETZVAL_INLINE V per_n2(int i) const noexcept { return look_up(rows + 2 * length, count, places[i]); }
   };
 
-  /// wavelengths: by ray; count: number of compiled wavelengths.
+  /// @param wavelengths indices of wavelengths, one for each ray
+  /// @param count number of compiled wavelengths
   PETZVAL_INLINE MediaByRay(const kernel::SurfaceSequence<R>& sequence, const std::uint16_t* wavelengths,
                             std::size_t count) noexcept
       : sequence_(sequence), count_(count), length_(kernel::row_length<R>(count)) {
@@ -92,7 +93,7 @@ class SpectralMedia {
     PETZVAL_INLINE V per_n2(int i) const noexcept { return V(R(1)) / front[i]; }
   };
 
-  /// nm: by ray.
+  /// @param nm wavelengths, one for each ray
   PETZVAL_INLINE SpectralMedia(const kernel::SurfaceSequence<R>& sequence, const R* nm) noexcept : sequence_(sequence) {
     const auto& place = sequence.place;
     for (int i = 0; i < vectors; ++i) {

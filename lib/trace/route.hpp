@@ -8,7 +8,9 @@
 
 namespace petzval::trace_detail {
 
-/// The path of rays through a lens. options: of one ray or of a batch; all: the common wavelength.
+/// The path of rays through a lens.
+/// @param options options of one ray or of a batch
+/// @param all the common wavelength
 template <class R, class Options>
 Route<R> route_of(const kernel::LensView<R>& view, const Options& options, Wavelength all) noexcept {
   Route<R> route;

@@ -52,9 +52,8 @@ struct NoObserver {
 ///
 /// One loop serves both directions of travel and every scalar type: derivatives, parts of a lens and drawings. The
 /// faster recurrence of trace() and of batches is tested against it.
-///
-/// direction: unit length within a few ulp, also in the result of a transmitted ray. observer: called as
-/// observer(surface, point) for each hit, lens frame.
+/// @param direction a unit vector within a few ulp; the direction of a transmitted ray is too
+/// @param observer called as observer(surface, point) for each hit, lens frame
 template <class T, class Observer = NoObserver>
 TraceState<T> trace(const LensView<Storage<T>>& lens, const Vec<T>& origin, const Vec<T>& direction,
                     const SurfaceRange& path, Observer&& observer = {}) noexcept {

@@ -51,7 +51,8 @@ PETZVAL_INLINE void book(Bundle<R>& b, int i, Mask<R> found, Mask<R> inside, Mas
   count<2>(b.tally[i], b.alive[i]);
 }
 
-/// Clips at a central obscuration and the iris, which few surfaces have. j: the step.
+/// Clips at a central obscuration and the iris, which few surfaces have.
+/// @param j index of the step
 template <class R>
 void clip(const kernel::Step<R>& s, std::span<const kernel::StopEdge<R>> iris, std::size_t j, Bundle<R>& b) noexcept {
   using V = Lanes<R>;

@@ -40,8 +40,9 @@ void keep_finite(const Ray<R>& found, Ray<R>& ray) noexcept {
   if (finite(o.x) && finite(o.y) && finite(o.z) && finite(d.x) && finite(d.y) && finite(d.z)) ray = found;
 }
 
-/// Sets the end of a ray that was lost at step j. per_n2: one over the squared index in front of the step. before,
-/// after: the states in front of the step and behind it, copied so that the values stay in registers.
+/// Sets the end of a ray that was lost at step j.
+/// @param per_n2 one over the squared index in front of the step
+/// @param before, after the states in front of the step and behind it, copied so that the values stay in registers
 template <class R>
 void put_at_end(const Route<R>& route, const R* vertex_z, std::size_t j, R per_n2, bool unsettled, Bundle<R> before,
                 Bundle<R> after, TracedRay<R>& end) noexcept {
@@ -78,8 +79,8 @@ RayArrays<T> arrays_of(R& ray) noexcept {
   return {&o.x, &o.y, &o.z, &d.x, &d.y, &d.z};
 }
 
-/// index, per_index: the index in front of the lens, and one over the index behind the lens. media_at: called once for
-/// each step, in order.
+/// @param index, per_index the index in front of the lens, and one over the index behind the lens
+/// @param media_at called once for each step, in order
 template <class R, class Seen, class By, class MediaAt>
 TracedRay<R> trace_one(const Route<R>& route, const R* vertex_z, const Ray<R>& ray, const Seen& seen, const By& by,
                        R index, R per_index, MediaAt&& media_at) {
