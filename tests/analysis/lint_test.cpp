@@ -251,7 +251,8 @@ TEST(Lint, FindsAWrongFNumber) {
 }
 
 TEST(Lint, FindsSurfacesThatCross) {
-  // The rear surface bends forward by 50 - sqrt(50^2 - h^2), the glass is 4 mm thick: room up to a height of 19.6 mm.
+  // The rear surface bends forward by 50 - sqrt(50^2 - h^2) in a glass of 4 mm: it meets the front at a height of 19.6
+  // mm.
   Prescription p = singlet();
   p.f_number.reset();
   p.surfaces[0].semi_diameter = 25;

@@ -234,8 +234,8 @@ TEST(PsfSet, InterpolatesStopsAndColours) {
   const Lens colours = compile(data_prescription("double_gauss_100mm_f2_28deg"), std::array{486.1327, 520.0, 550.0},
                                {.glasses = &glasses});
   const Study coloured{colours, 2000};
-  // The focal position is a curved function of the wavelength: the error shows near the focus between nodes 64 nm
-  // apart, and is 40 % between F and C.
+  // The focal position is a curved function of the wavelength. Near the focus the interpolation error is visible
+  // between nodes 64 nm apart, and 40 % between F and C.
   for (const auto& [distance, most] : {std::pair{1400, 1}, {1900, 18}}) {
     const double mm = distance;
     const PsfSet set = coloured.set({{8}, {mm}, {486.1327, 550}, {2.8}});

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Images of layers through lenses: time and similarity, compared with the same rays through the scene and with a
-// post-process of a single image. All threads of the processor, minima of interleaved rounds; the figures of a table
-// come from one run.
+// post-process of a single image. Uses all threads of the processor; times are minima of interleaved rounds; the
+// numbers of a table come from one run.
 //
 //   build/tests/bench/blur_bench [--full] [--pictures FOLDER]
 //
@@ -244,7 +244,7 @@ void report_scalar(const Settings& settings, const LoadedScene& scene) {
     keep_least(gather, time_of([&] { view.gather(layers, picture); }));
   }
   const double scalar = time_of([&] { petzval::testing::reference_gather(layers, view.rays); });
-  std::printf("\n%s, 200 x 150, one thread: gather %.1f ms, in scalars of double %.0f ms, %.0fx (aim 50x)\n",
+  std::printf("\n%s, 200 x 150, one thread: gather %.1f ms, scalar code in double %.0f ms, %.0fx (goal 50x)\n",
               scene.name.c_str(), gather, scalar, scalar / gather);
 }
 
@@ -270,8 +270,8 @@ int run(std::vector<char*> arguments) {
       "single image, ms | missed, %% | general, coherent path: times as slow | unbounded: the "
       "same, general |\n"
       "|---|---|---|---|---|---|---|---|---|---|---|\n"
-      "| aim, 18 mm | | | | 15x | 33.5/.960 | | 3 dB less | .01 | | |\n"
-      "| aim, 100 mm | | | | 6x; 10x statues, knot | 39/.985; leaves .955 | | 3 dB less | .01; leaves .5 | 3.5x | "
+      "| goal, 18 mm | | | | 15x | 33.5/.960 | | 3 dB less | .01 | | |\n"
+      "| goal, 100 mm | | | | 6x; 10x statues, knot | 39/.985; leaves .955 | | 3 dB less | .01; leaves .5 | 3.5x | "
       "4x |\n");
   for (const double diameter : {18.0, 100.0}) {
     if (diameter < 100 && !settings.full) continue;
@@ -288,7 +288,7 @@ int run(std::vector<char*> arguments) {
   std::printf(
       "\n| lens | peel, N-buffer | gather | reference, times as slow as gather, as both | PSNR/SSIM | missed, %% | "
       "general path |\n|---|---|---|---|---|---|---|\n"
-      "| aim | | | singlet 10x | 300 mm 42/.985, tilt 41/.985, singlet 44/.98, colours 45/.985 | | 2.3x |\n");
+      "| goal | | | singlet 10x | 300 mm 42/.985, tilt 41/.985, singlet 44/.98, colours 45/.985 | | 2.3x |\n");
   report_lenses(settings, *scenes[0]);
   report_scalar(settings, *scenes[0]);
   return 0;

@@ -66,7 +66,7 @@ int run(std::vector<char*> arguments) {
   if (changes.empty()) throw petzval::Error("compare_rounds: " + commit + " and this tree have no benchmark in common");
 
   print_conditions();
-  std::printf("%d rounds by turns; ns: the fastest; one round: the smallest and the largest ratio of minima\n\n",
+  std::printf("%d alternating rounds; ns: fastest round; one round: smallest and largest ratio within a round\n\n",
               rounds);
   std::printf("%-72s %10s %10s %7s   %s\n", "", (commit + " ns").c_str(), "now, ns", "ratio", "one round");
   std::vector<double> ratios;

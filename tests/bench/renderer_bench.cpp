@@ -79,7 +79,7 @@ void report_models(int rounds) {
     const petzval::Lens lens = lens_for(colours, focus_mm);
     std::vector<LensCamera> cameras;
     for (const petzval::ModelKind model : models) cameras.push_back(camera_of(lens, model, scene));
-    std::printf("\nchess, %s: us a path, samples in equal time over those of thin, share of time in the lens\n",
+    std::printf("\nchess, %s: us per path, samples in equal time relative to thin, fraction of time in the lens\n",
                 mode == ColourMode::d ? "one wavelength" : "hero wavelengths");
     std::printf("| model |");
     for (const Integrator integrator : integrators) std::printf(" %s |", name(integrator));
@@ -118,7 +118,7 @@ double squared_error(const petzval::RgbImage& image, const petzval::RgbImage& re
 /// Errors relative to an image with many samples, after equal time of each integrator; also with values clipped to
 /// white.
 void report_small_lights(double seconds) {
-  std::printf("\nerrors after %.0f s, over those of bidirectional path tracing; of pictures clipped at white\n",
+  std::printf("\nRMS errors after %.0f s relative to bidirectional path tracing; of pictures clipped at white\n",
               seconds);
   std::printf("| scene | path | light | bidirectional: samples, rms error of white |\n|---|---|---|---|\n");
   const PathColourSource colours(ColourMode::d);

@@ -121,7 +121,7 @@ class Rounds : public benchmark::BenchmarkReporter {
   std::vector<Line> lines_;
 };
 
-/// The comparison with the first benchmark of the same group in the last column of a table.
+/// Kind of comparison with the first benchmark of the same group, in the last column of a table.
 enum class Compare {
   speed,  ///< the first over the fastest round; times in nanoseconds
   cost    ///< the fastest round over the first; times in microseconds
@@ -131,7 +131,7 @@ enum class Compare {
 /// with the first benchmark of the same group (the part of the name behind '/').
 class Table : public Rounds {
  public:
-  /// unit: what a time is for; comparison: the heading of the last column.
+  /// unit: the item of a time, as in "ns per ray"; comparison: heading of the last column.
   explicit Table(std::string unit, Compare compare = Compare::speed, std::string comparison = "times as fast (minima)")
       : unit_(std::move(unit)), compare_(compare), comparison_(std::move(comparison)) {}
 

@@ -15,7 +15,7 @@ std::string rounds(const Result& r) {
 void print_heading(const Row& row) {
   std::printf("\n%s, %zu surfaces, ray set %s", row.bench->name.c_str(), row.bench->lens.surface_count(),
               row.rays.c_str());
-  if (row.rays == "mix") std::printf(" (%.1f %% get out)", 100 * row.set->passing);
+  if (row.rays == "mix") std::printf(" (%.1f %% reach the scene)", 100 * row.set->passing);
   std::printf(
       "\n\n"
       "| code          | isa      | precision | mode         | threads | ns per ray: min [median, max] | per surface "
@@ -61,16 +61,16 @@ void print_results(const std::vector<Result>& results) {
   }
   const auto any = [&](const auto& what) { return std::any_of(results.begin(), results.end(), what); };
   if (any([](const Result& r) { return r.less_exact(); })) {
-    std::printf("\n* less exact than the textbook tracer, by rms or by the largest error.\n");
+    std::printf("\n* larger error than the textbook tracer (rms or maximum).\n");
   } else if (any([](const Result& r) { return r.textbook != nullptr; })) {
-    std::printf("\nIn no row is a direction less exact than the textbook tracer's.\n");
+    std::printf("\nNo row has a larger direction error than the textbook tracer.\n");
   }
 }
 
 void print_kinds(const std::vector<Result>& results) {
   if (results.empty()) return;
   std::printf(
-      "\nLenses of 11 equal surfaces, every ray gets out, batch, fast, %s\n\n"
+      "\nLenses of 11 equal surfaces, every ray passes, batch, fast, %s\n\n"
       "| surfaces | precision | ns per ray: min [median, max] | per surface | x sphere |\n"
       "|----------|-----------|------------------------------:|------------:|---------:|\n",
       petzval::name(results.front().row.isa).data());

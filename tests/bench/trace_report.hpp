@@ -34,7 +34,7 @@ struct DirectionError {
   double rms = 0, max = 0;
 };
 
-/// A row and its results.
+/// The results of a row.
 struct Result {
   Row row;
   Rounds::Line times;

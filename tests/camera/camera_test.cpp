@@ -360,7 +360,7 @@ TEST(Camera, OptionsHaveDefaults) {
   EXPECT_EQ(Camera(lens, {}, {}).model(), Camera(lens, {}).model());
 }
 
-// A list that starts at the last number ends beyond the tables, where a device must not read.
+// A list that starts at the last number of the tables ends beyond the tables; a device must not read it.
 TEST(CameraTables, ListsBeyondTheEndAreRefused) {
   for (const char* id : {"double_gauss_100mm_f2.0", "anamorphic_60mm_2x"}) {
     const Camera camera(petzval::testing::data_lens(id), {}, {.model = ModelKind::exact_float});

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The irradiance by a small light is equal by rays from the film and by connections to the lens.
+// Rays from the film and connections to the lens give the same irradiance for a small light.
 #include <gtest/gtest.h>
 
 #include <algorithm>

@@ -27,13 +27,13 @@ bool throws_an_error_that_can_be_caught() {
   try {
     petzval::parse_prescription("{", "nothing");
   } catch (const petzval::Error& error) {
-    std::cout << "an error, as wanted: " << error.what() << '\n';
+    std::cout << "an error, as expected: " << error.what() << '\n';
     return true;
   }
   return false;
 }
 
-/// petzval.hpp brings the functions of its vectors, with and without their namespace.
+/// petzval.hpp also includes the vector functions of GLM, which are found with and without their namespace.
 bool vectors_have_functions() {
   const petzval::Vec3<double> x{2, 0, 0}, y{0, 3, 0};
   const petzval::Vec2<double> across{3, 4};

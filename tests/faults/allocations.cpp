@@ -94,7 +94,7 @@ std::string fault(const Work& work, const std::string& whole, long allocation, b
   return {};
 }
 
-/// The next allocation to fail, of `count`.
+/// The next allocation that is made to fail, out of `count`.
 long next(long allocation, long count) {
   return allocation < all_of_the_first ? allocation + 1
                                        : allocation + std::max(1L, (count - all_of_the_first) / of_the_rest);

@@ -58,7 +58,7 @@ bool flooded(const Work& work, std::uint32_t seed, std::uint64_t first, int thre
   for (const auto& [name, error] : sum.worst) std::printf("| worst: %s | %.3g |\n", name.c_str(), error);
   std::printf("| faults | %zu |\n", faults.size());
   for (std::size_t i = 0; i < std::min<std::size_t>(faults.size(), 20); ++i) {
-    std::printf("case %llu: broken law: %s\n", static_cast<unsigned long long>(faults[i].first),
+    std::printf("case %llu: violated rule: %s\n", static_cast<unsigned long long>(faults[i].first),
                 faults[i].second.c_str());
   }
   std::fflush(stdout);
@@ -71,7 +71,8 @@ int main(int argc, char** argv) {
   double rays = 1e9, samples = 1e8, gathers = 1e7;
   std::uint32_t seed = 1, first = 0, threads = static_cast<std::uint32_t>(processor_threads());
   bool whole = true;
-  examples::App app("Random rays, camera samples and gathers in great numbers; says which case breaks a law", "flood");
+  examples::App app(
+      "Traces, samples and blurs large numbers of random cases, and prints each case that violates a rule", "flood");
   const examples::Range number{0, 1e15, "a number from 0 to 1e15"};
   examples::add_number(app, "--rays", rays, number, "rays through random lenses");
   examples::add_number(app, "--samples", samples, number, "camera samples of all models");

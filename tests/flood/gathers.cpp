@@ -66,12 +66,13 @@ Counts gathers(Case& at) {
     }
     counts.fail_unless(least >= 0 && most <= 1 + 1e-4f, "a picture is no brighter than its layers");
     if (even && opaque) {
-      counts.fail_unless(std::abs(least - 0.5f) < 1e-4f && std::abs(most - 0.5f) < 1e-4f, "even layers stay even");
+      counts.fail_unless(std::abs(least - 0.5f) < 1e-4f && std::abs(most - 0.5f) < 1e-4f,
+                         "uniform layers stay uniform");
       counts.measure("even colours", std::max(0.5f - least, most - 0.5f));
     }
     counts.kinds["pixels"] += picture.missed.size();
     counts.kinds["rays"] += picture.statistics.rays;
-    counts.kinds["rays that met what the layers do not know"] += picture.statistics.missed;
+    counts.kinds["rays that met no known surface"] += picture.statistics.missed;
     counts.done += picture.missed.size();
   } catch (const Error&) {
     ++counts.kinds["(layers refused)"];

@@ -39,7 +39,7 @@ void check(const testing::Samples<float>& found, double brightest, Counts& count
   }
   const double mean =
       std::accumulate(found.weights.begin(), found.weights.end(), 0.0) / static_cast<double>(found.size());
-  counts.fail_unless(mean <= brightest, "a film gets no more light than from a half sphere");
+  counts.fail_unless(mean <= brightest, "irradiance is at most the irradiance of a half sphere");
   counts.done += found.size();
 }
 
@@ -54,8 +54,8 @@ void check_exposure(const Camera& camera, Counts& counts) {
   }
   samples.run(camera);
   const double mean = std::accumulate(samples.weights.begin(), samples.weights.end(), 0.0) / on_axis;
-  counts.measure("light on the axis, part of the exact lens's", std::abs(mean / exact - 1));
-  counts.fail_unless(std::abs(mean / exact - 1) <= 0.01, "light on the axis is that of the exact lens within 1 %");
+  counts.measure("light on the axis, deviation from the exact lens", std::abs(mean / exact - 1));
+  counts.fail_unless(std::abs(mean / exact - 1) <= 0.01, "light on the axis equals the exact lens within 1 %");
   counts.done += on_axis;
 }
 

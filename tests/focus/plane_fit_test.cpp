@@ -45,7 +45,7 @@ TEST(PlaneFit, GivesTheKnownPlanes) {
 TEST(PlaneFit, IsAPlaneInTheSceneAndOfTheFilm) {
   const PlaneFit fit =
       fit_plane(Points{{-0.2, 0.05, 1 / 2.0}, {0.15, 0.1, 1 / 3.0}, {0.02, -0.12, 1 / 2.4}, {0.2, -0.1, 1 / 4.0}});
-  // Known for a scene at positive z.
+  // The reference values are for a scene at positive z.
   const Plane plane = plane_of(fit, 0).value();
   const double sign = plane.normal.x < 0 ? 1 : -1;
   EXPECT_NEAR(sign * plane.offset, 1.4278670618130103, 1e-12);
@@ -56,14 +56,14 @@ TEST(PlaneFit, IsAPlaneInTheSceneAndOfTheFilm) {
   const IdealLens lens = thin_lens(0.05, 2);
   const Film film = film_in(lens.image_of(plane).value());
   EXPECT_NEAR(degrees(film.angle()), 1.6799842871979173, 1e-9);
-  // A steeper one, and the slope at which the film's tilt reaches 20 degrees.
+  // A steeper plane, and the slope at which the tilt of the film reaches 20 degrees.
   const double steepest = 7.1338165916175663;
   const Plane steep = plane_of({PlaneRank::plane, steepest * 0.6, steepest * -0.8, 0.4}, 0).value();
   EXPECT_NEAR(degrees(film_in(lens.image_of(steep).value()).angle()), 20, 1e-9);
 }
 
 TEST(PlaneFit, PlaneHoldsThePointsItWasFittedTo) {
-  // Depths from z = 7, planes through "contains the view direction" (c = 0) and one focused beyond infinity (c < 0).
+  // Depths from z = 7, planes that contain the view direction (c = 0), and a plane focused beyond infinity (c < 0).
   for (const double c : {1e-3, 0.0, -1e-4}) {
     Points points;
     std::vector<Vec> places;

@@ -11,9 +11,9 @@
 
 namespace petzval::fuzz {
 
-/// Numbers made of the bytes of a fuzzer; zeros after the last byte. Few bytes are used per number, as an inserted byte
-/// changes all further numbers. Compilers choose the order in which arguments are evaluated, so at most one argument of
-/// a call may take bytes. In braces the order is fixed.
+/// Numbers made of the bytes of a fuzzer; zeros after the last byte. A number uses few bytes, because an inserted byte
+/// changes all further numbers. The evaluation order of arguments is unspecified, so that at most one argument of a
+/// call may take bytes; in braces the order is fixed.
 class Bytes {
  public:
   Bytes(const std::uint8_t* data, std::size_t size) noexcept : left_(data, size) {}

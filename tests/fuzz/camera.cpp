@@ -28,7 +28,7 @@ Film wild_film(fuzz::Bytes& bytes) {
   return film;
 }
 
-/// Models with fits are rare, as they take a hundred times as long as the others.
+/// Models with fits are rare, because they take a hundred times as long as the others.
 ModelKind wild_model(fuzz::Bytes& bytes) {
   const int kind = bytes.byte();
   const ModelKind model = models()[static_cast<std::size_t>(kind) % models().size()];
@@ -45,7 +45,7 @@ CameraOptions wild_options(fuzz::Bytes& bytes) {
   if (kind % 16 == 1) options.bokeh.lens_elements = bytes.count(0, 21);
   if (kind % 16 == 2)
     options.bokeh.lens_ratio = bytes.number(0.5, 3), options.bokeh.rate_of_change = bytes.number(0, 2);
-  if (kind % 64 == 3) {  // rare, as maps take most of the time
+  if (kind % 64 == 3) {  // rare, because maps take most of the time
     options.bokeh.weight_map = {.width = 2, .height = 3, .values = {}, .keep_mean = bytes.one_in(2)};
     for (int i = 0; i < 6; ++i) options.bokeh.weight_map.values.push_back(static_cast<float>(bytes.number(0, 1)));
   }
@@ -97,7 +97,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     }
     if (tables) {
       fuzz::done([&] {
-        for (const float number : camera.tables()) fuzz::require(!std::isnan(number), "tables are made of numbers");
+        for (const float number : camera.tables()) fuzz::require(!std::isnan(number), "tables contain no NaN");
       });
     }
     if (scene) from_the_scene(camera, bytes);

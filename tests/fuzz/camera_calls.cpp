@@ -96,7 +96,7 @@ Vec3<double> wild_direction(fuzz::Bytes& bytes) {
 }
 
 /// Checks equality up to rounding in the precision of the model. Rays at an edge may have either fate. A film point may
-/// be on the axis in float and off it in double, which rotates its pupil polygon by a fraction of a sector.
+/// be on the axis in float and off the axis in double, which rotates its pupil polygon by a fraction of a sector.
 void alike(const CameraRay& one, const Ray<double>& other, double weight) {
   constexpr double rounding = 1e-2;
   if (!one || !(weight > 0)) return;
@@ -153,7 +153,7 @@ void importance(const Camera& camera, fuzz::Bytes& bytes) {
     if (alone && together[i]) {
       fuzz::require(std::abs(alone.we - together[i].we) <= 1e-3 * alone.we, "importance equals the single call");
     }
-    fuzz::require(fuzz::density(camera.pdf_distant_importance(ray, wavelength)), "the density of a ray is a number");
+    fuzz::require(fuzz::density(camera.pdf_distant_importance(ray, wavelength)), "the density of a ray is not NaN");
   }
 }
 
@@ -165,7 +165,7 @@ void connections(const Camera& camera, fuzz::Bytes& bytes) {
   fuzz::check(found, 1e-9);
   if (found) {
     const double again = camera.pdf_importance(point, found.direction, wavelength);
-    fuzz::require(fuzz::density(again), "the density of a direction is a number");
+    fuzz::require(fuzz::density(again), "the density of a direction is not NaN");
     // Rays from far away are too inaccurate to compare.
     constexpr double farthest = 1e9;  // mm
     const bool near = glm::length(point) < farthest;
@@ -179,13 +179,14 @@ void connections(const Camera& camera, fuzz::Bytes& bytes) {
     fuzz::check(met);
     // At an edge a ray may have either fate.
     if (met && near) {
-      fuzz::require(std::abs(met.we - found.importance.we) <= 1e-3 * met.we, "a connection has its ray's importance");
+      fuzz::require(std::abs(met.we - found.importance.we) <= 1e-3 * met.we,
+                    "a connection has the importance of its ray");
     }
   }
   constexpr double as_given = 1.001e-3;  // accepted deviation from unit length
   fuzz::check(camera.sample_distant_importance(direction, u, v, wavelength, time), as_given);
   fuzz::require(fuzz::density(camera.pdf_importance(point, direction, wavelength)),
-                "the density of a direction is a number");
+                "the density of a direction is not NaN");
 }
 
 void projections(const Camera& camera, fuzz::Bytes& bytes) {

@@ -21,7 +21,7 @@ void cardinal_points(const Lens& lens, Meridian meridian) {
   const FirstOrder f = first_order(lens, {}, meridian);
   numbers({f.power, f.effective_focal_length, f.front_focal_z, f.rear_focal_z, f.front_principal_z, f.rear_principal_z,
            f.front_nodal_z, f.rear_nodal_z, f.front_focal_distance, f.back_focal_distance, f.petzval_sum},
-          "first-order data are numbers");
+          "first-order data are not NaN");
   fuzz::require(f.afocal == (f.power == 0), "an afocal lens has power 0");
 }
 
@@ -31,7 +31,7 @@ void ideal(const Lens& lens, fuzz::Bytes& bytes) {
   const auto image = thick.image({place});
   if (!image) return;
   numbers({image->position.x, image->position.y, image->position.z, image->slope_x, image->slope_y, image->cone},
-          "an image is made of numbers");
+          "an image contains no NaN");
 }
 
 }  // namespace
@@ -43,10 +43,11 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     for (const Meridian meridian : {Meridian::y, Meridian::x}) {
       cardinal_points(lens, meridian);
       const double object = bytes.number(-1e4, 100);
-      if (!std::isnan(object)) numbers({paraxial_image_z(lens, object, {}, meridian)}, "a paraxial image has a place");
+      if (!std::isnan(object))
+        numbers({paraxial_image_z(lens, object, {}, meridian)}, "the position of a paraxial image is not NaN");
       fuzz::done([&] {
         const Pupils p = pupils(lens, {}, meridian);
-        numbers({p.entrance.z, p.entrance.diameter, p.exit.z, p.exit.diameter}, "pupils are made of numbers");
+        numbers({p.entrance.z, p.entrance.diameter, p.exit.z, p.exit.diameter}, "pupils contain no NaN");
         fuzz::require(p.stop < lens.surface_count(), "the stop is a surface");
       });
     }

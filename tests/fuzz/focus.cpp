@@ -12,7 +12,7 @@ using namespace petzval;
 
 void check(const FocusSolution& found) {
   fuzz::require(!std::isnan(found.film_z) && !std::isnan(found.subject_z) && !std::isnan(found.distance),
-                "a focus is made of numbers");
+                "a focus contains no NaN");
 }
 
 }  // namespace
@@ -20,7 +20,7 @@ void check(const FocusSolution& found) {
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   fuzz::Bytes bytes(data, size);
   fuzz::done([&] {
-    const int exact = bytes.byte();  // rare, as they trace thousands of rays
+    const int exact = bytes.byte();  // rare, because they trace thousands of rays
     FocusOptions options{.criterion = exact < 16    ? FocusCriterion::min_max
                                       : exact < 64  ? FocusCriterion::min_rms
                                       : exact < 160 ? FocusCriterion::paraxial
@@ -34,7 +34,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     switch (work) {
       case 0: {
         const FocusSolution found = solve_focus(lens, distance, options);
-        if (found) fuzz::require(std::isfinite(found.film_z), "a film in focus has a place");
+        if (found) fuzz::require(std::isfinite(found.film_z), "the position of a film in focus is finite");
         return check(found);
       }
       case 1: return check(solve_subject(lens, film_z, options));
@@ -45,13 +45,13 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
       }
       case 4: {
         const DepthOfField found = depth_of_field(lens, blur, options);
-        if (found) fuzz::require(found.near_distance <= found.far_distance, "a depth of field is not turned over");
+        if (found) fuzz::require(found.near_distance <= found.far_distance, "the near limit is at most the far limit");
         return;
       }
       case 5: return check(hyperfocal(lens, blur, options));
       default: {
         const Lens focused = with_focus(lens, distance, options);
-        fuzz::require(std::isfinite(focused.film_z()), "a focused lens has its film");
+        fuzz::require(std::isfinite(focused.film_z()), "a focused lens has the film of its focus");
         const auto growth = breathing(focused, film_z, options);
         fuzz::require(!growth || !std::isnan(*growth), "breathing is a number");
       }

@@ -37,7 +37,7 @@ void tilt(const auto& lens, const std::vector<FocusTarget>& targets, const TiltO
   fuzz::require(!std::isnan(fit.rms_mm), "a fit has an error");
   check(fit.film);
   if (!fit) return;
-  fuzz::require(fit.film.z_mm && std::isfinite(*fit.film.z_mm), "a fitted film has a place");
+  fuzz::require(fit.film.z_mm && std::isfinite(*fit.film.z_mm), "the position of a fitted film is finite");
   fuzz::require(fit.film.angle() <= options.max_tilt_rad + 1e-6, "a fit keeps the limit of tilt");
 }
 

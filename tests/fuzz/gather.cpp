@@ -61,7 +61,8 @@ LensRays wild_rays(fuzz::Bytes& bytes, const LayerCamera& camera, bool tame) {
       options);
 }
 
-/// Difference of bounded images, without pixels whose rays met no surface, as their guesses depend on the bounds.
+/// Mean difference of two images. Bounded images are compared without the pixels whose rays met no surface, because the
+/// guessed colours of these pixels depend on the bounds.
 double mean_difference(const Blurred& a, const Blurred& b, bool bounded) {
   double sum = 0;
   for (std::size_t i = 0; i < a.rgba.size(); ++i) {
@@ -72,7 +73,8 @@ double mean_difference(const Blurred& a, const Blurred& b, bool bounded) {
 }
 
 void check(const Blurred& picture, bool tame) {
-  for (const float share : picture.missed) fuzz::require(share >= 0 && share <= 1.001f, "rays that missed are a share");
+  for (const float share : picture.missed)
+    fuzz::require(share >= 0 && share <= 1.001f, "the fraction of missed rays is from 0 to 1");
   if (!tame) return;
   for (std::size_t i = 0; i < picture.rgba.size(); ++i) {
     fuzz::require(std::isfinite(picture.rgba[i]), "a picture of finite colours is finite");
@@ -90,7 +92,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     const LayerCamera camera = layer_camera(columns, rows, bytes.between(0.3, 1.2));
     const LensRays rays = wild_rays(bytes, camera, tame);
     const PeelPlan plan = plan_peel(rays, 450, infinity);
-    if (plan.camera.overscan > 40) return;  // larger images do no other work
+    if (plan.camera.overscan > 40) return;  // larger images do not test more
     LayerSet layers;
     const FragmentLists lists = wild_lists(bytes, plan.camera.layer_columns(), plan.camera.layer_rows(), tame);
     const double bias = bytes.one_in(2) ? plan.bias : 0;

@@ -11,10 +11,10 @@
 
 namespace petzval::fuzz {
 
-/// Aborts with the broken law, so that the fuzzer keeps the input.
+/// Aborts with the violated rule, so that the fuzzer keeps the input.
 inline void require(bool holds, const char* law) {
   if (holds) return;
-  std::fprintf(stderr, "broken law: %s\n", law);
+  std::fprintf(stderr, "violated rule: %s\n", law);
   std::abort();
 }
 

@@ -41,8 +41,9 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     fuzz::done([&] {
       const FragmentLists lists = read_deep_exr(path).lists;
       fuzz::require(lists.offsets.size() == std::size_t(lists.columns) * std::size_t(lists.rows) + 1,
-                    "a deep picture is whole");
-      fuzz::require(lists.offsets.back() == lists.fragments.size(), "a deep picture has the samples it counts");
+                    "a deep picture has an offset for each pixel");
+      fuzz::require(lists.offsets.back() == lists.fragments.size(),
+                    "a deep picture has as many samples as its offsets state");
       LayerSet layers;
       layers.thin(lists, 1e-6, 4);
     });

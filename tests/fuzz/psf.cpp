@@ -37,8 +37,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     for (std::size_t w = 0; w < psf.wavelengths_nm.size(); ++w) {
       const auto begin = psf.counts.begin() + static_cast<std::ptrdiff_t>(w * plane);
       const std::uint64_t sum = std::accumulate(begin, begin + static_cast<std::ptrdiff_t>(plane), std::uint64_t{0});
-      fuzz::require(sum <= psf.transmitted[w], "a picture has no more light than passes the lens");
-      fuzz::require(psf.transmitted[w] <= psf.sent[w] * psf.units_per_ray, "no more light passes than was sent");
+      fuzz::require(sum <= psf.transmitted[w], "an image has at most the light that passes the lens");
+      fuzz::require(psf.transmitted[w] <= psf.sent[w] * psf.units_per_ray, "at most the emitted light passes");
       fuzz::require(std::isfinite(psf.throughput(w)) && psf.throughput(w) >= 0, "throughput is 0 or more");
     }
     for (const double ring : image.radial_profile)

@@ -52,7 +52,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     }
     const PsfPart read = from_exr_part(part);
     const ExrPart again = to_exr_part(read.kernel, read.point);
-    fuzz::require(again.texts == part.texts, "a part that was read is written with the same checksum");
+    fuzz::require(again.texts == part.texts, "a part round-trips with the same checksum");
 
     const PsfSet set(
         {{read.point.field_deg}, {read.point.distance_mm}, {read.point.wavelength_nm}, {read.point.f_number}},

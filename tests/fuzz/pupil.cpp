@@ -26,13 +26,13 @@ void aimed(const Lens& lens, fuzz::Bytes& bytes) {
   fuzz::require(fuzz::finite(ray.ray) && fuzz::unit(ray.ray.direction, 1e-12), "an aimed ray has unit length");
   fuzz::require(fuzz::finite(ray.end.ray), "the end of an aimed ray is finite");
   const double rim = lens.surfaces()[pupils(lens).stop].semi_diameter;
-  fuzz::require(ray.residual < 1e-3 || ray.residual * rim < 1e-6, "an aimed ray meets the stop where it is aimed at");
+  fuzz::require(ray.residual < 1e-3 || ray.residual * rim < 1e-6, "an aimed ray meets its target on the stop");
 }
 
 void boundary(const Lens& lens, const PupilBoundary& found, fuzz::Bytes& bytes) {
   fuzz::require(std::isfinite(found.area()) && found.area() >= 0, "a pupil has an area");
   for (const PupilSpan& span : found.spans) {
-    fuzz::require(span.from_radius <= span.to_radius, "a span ends where it begins or farther out");
+    fuzz::require(span.from_radius <= span.to_radius, "the end of a span is not inside its start");
     const Ray<double> ray = found.plane.ray(span.to.x, span.to.y);
     // Limits (README): rays start within 1e9 mm.
     if (!(std::hypot(span.to.x, span.to.y) < 1e9)) continue;
@@ -48,7 +48,7 @@ void boundary(const Lens& lens, const PupilBoundary& found, fuzz::Bytes& bytes) 
 void light(const Lens& lens, const FilmPoint& film) {
   const double irradiance = film_irradiance(lens, film), n = lens.index(lens.surface_count());
   fuzz::require(irradiance >= 0 && irradiance <= 1.001 * pi * n * n,
-                "a film has no more light than all directions hold");
+                "irradiance is at most the irradiance of a half space");
 }
 
 }  // namespace

@@ -13,7 +13,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     const RayPolynomial read = parse_ray_polynomial({reinterpret_cast<const char*>(data), size}, "x");
     const std::string json = format_ray_polynomial(read);
     fuzz::require(format_ray_polynomial(parse_ray_polynomial(json, "x")) == json,
-                  "a polynomial that was written and read is written as the same bytes");
+                  "a polynomial round-trips to the same bytes");
     const auto& domain = read.domain();
     for (const double part : {0.0, 0.3, -0.9, 2.0}) {
       const TwoPlaneRay line{part * domain.film_radius, 0.1, part * domain.pupil_radius, 0.2};

@@ -104,7 +104,7 @@ while read -r name program largest; do
   echo "| $name | $(stat number_of_executed_units "$log") | $(stat average_exec_per_sec "$log") | $2 | $4 | $(stat slowest_ms "$log") | $(stat peak_rss_mb "$log") |"
   if [ "$(cat "$log.status")" -ne 0 ]; then
     failed=1
-    grep -E '^broken law|ERROR|SUMMARY|runtime error|what\(\)|Test unit written' "$log" | sed "s/^/    /"
+    grep -E '^violated rule|ERROR|SUMMARY|runtime error|what\(\)|Test unit written' "$log" | sed "s/^/    /"
   fi
 done <"$logs.list"
 [ $failed -eq 0 ] || echo "Inputs that failed are in $BUILD_DIR/found"

@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
-/// Seeds of fuzzing: small lenses of data/ in every format with a writer; texts of tests/fuzz/seeds and
-/// tests/formats/samples in other formats; images of a few pixels; bytes for targets that make lenses of bytes.
+/// Seeds of fuzzing: small lenses of data/ in every format with a writer, texts of tests/fuzz/seeds and
+/// tests/formats/samples in other formats, images of a few pixels, and bytes for targets that derive lenses from bytes.
 namespace petzval::fuzz {
 
 std::vector<std::string> own_json();

@@ -105,13 +105,14 @@ void places(const FilmPupilTable& table, fuzz::Bytes& bytes) {
     const Vec2<double> middle = table.middle(film, wavelength);
     const bool in_the_middle = std::hypot(n[2][i] - middle.x, n[3][i] - middle.y) < 1e-300;
     if (std::abs(clearances[i]) > edge && !in_the_middle) {
-      fuzz::require(one == (clearances[i] > 0) && one == (within[i] != 0), "points inside a pupil have a clearance");
+      fuzz::require(one == (clearances[i] > 0) && one == (within[i] != 0),
+                    "points inside a pupil have a positive clearance");
     }
     const double area = table.area(film, wavelength), angle = table.projected_solid_angle(film, wavelength);
     fuzz::require(
         std::isfinite(area) && area >= 0 && std::isfinite(angle) && angle >= 0 && angle < 2 * std::numbers::pi,
         "a pupil has an area");
-    if (one) fuzz::require(area > 0, "a pupil that contains a place has an area");
+    if (one) fuzz::require(area > 0, "a pupil that contains a point has an area");
     fuzz::require(fuzz::finite(table.middle(film, wavelength)), "a pupil has a middle");
     const auto by = table.derivatives(film, bytes.number(0, 1), n[3][i], wavelength);
     fuzz::require(fuzz::finite(by.by_film_x) && fuzz::finite(by.by_film_y), "derivatives of a sample are finite");
@@ -137,7 +138,7 @@ void lines(const RayPolynomial& polynomial, fuzz::Bytes& bytes) {
   polynomial.to_scene<double>(
       1, {&line.film_x, &line.film_y, &line.pupil_x, &line.pupil_y}, {.all = wavelength},
       {&many.origin.x, &many.origin.y, &many.origin.z, &many.direction.x, &many.direction.y, &many.direction.z}, &fate);
-  fuzz::require(alone == fate, "a line has one fate");
+  fuzz::require(alone == fate, "a line has the same fate in a batch");
   for (const auto& ray : {one, many}) {
     fuzz::require(fuzz::finite(ray) && fuzz::unit(ray.direction, 1e-12), "a polynomial's ray is valid");
   }
@@ -165,9 +166,9 @@ std::vector<LensDistortion> distortions() {
 void pixels(const LensDistortion& distortion, fuzz::Bytes& bytes) {
   const Vec2<double> at{bytes.number(-20, 260), bytes.number(-20, 180)};
   const auto shown = distortion.distorted(at), seen = distortion.undistorted(at);
-  if (shown) fuzz::require(fuzz::finite(*shown), "a distorted place is finite");
+  if (shown) fuzz::require(fuzz::finite(*shown), "a distorted position is finite");
   if (!seen) return;
-  fuzz::require(fuzz::finite(*seen), "an undistorted place is finite");
+  fuzz::require(fuzz::finite(*seen), "an undistorted position is finite");
   const auto again = distortion.distorted(*seen);
   fuzz::require(again && std::hypot(again->x - at.x, again->y - at.y) < 0.02, "distortion inverts undistortion");
 }

@@ -20,7 +20,7 @@ struct Target {
   int changed_seeds;                    ///< number run by the test of every build
 };
 
-/// All targets: files first, then targets that make lenses of bytes.
+/// All targets: first the targets for files, then the targets that derive lenses from bytes.
 std::span<const Target> targets();
 
 }  // namespace petzval::fuzz

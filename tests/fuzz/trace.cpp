@@ -111,7 +111,7 @@ void float_against_double(const Lens& lens, const Ray<double>& wanted, const Tra
     moved += apart(end.ray, in_double.ray);
   }
   const Ray<double> end{Vec3<double>(in_float.ray.origin), Vec3<double>(in_float.ray.direction)};
-  fuzz::require(apart(end, in_double.ray) <= 1000 * moved, "float and double end at one place");
+  fuzz::require(apart(end, in_double.ray) <= 1000 * moved, "float and double rays end at the same point");
 }
 
 }  // namespace

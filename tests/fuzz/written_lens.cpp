@@ -38,7 +38,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
       const std::string json = format_prescription(lens);
       const Prescription back = parse_prescription(json, "x");
       fuzz::require(back == lens, "JSON keeps a lens");
-      fuzz::require(format_prescription(back) == json, "JSON that was written and read is written as the same bytes");
+      fuzz::require(format_prescription(back) == json, "JSON round-trips to the same bytes");
     }
   }
   return 0;

@@ -96,10 +96,13 @@ Vec<T> given(const Vec<T>& v) {
   return {v.x.given(), v.y.given(), v.z.given()};
 }
 
-/// Rays towards points of a surface within 1 of its axis; other sizes scale. By symmetry the light runs towards +z, the
+/// Rays towards points of a surface at heights up to 1; other sizes scale. By symmetry the light runs towards +z, the
 /// surface is curved towards the light, and the point lies between the x axis and the bisector of x and y. Coordinates:
-/// height of the point and tangent of half its azimuth; sine of the angle between ray and axis, with sign, and tangent
-/// of half its azimuth; curvature; distance from the start of the ray to the point; 1 + k on conics.
+/// - height of the point, and tangent of half its azimuth
+/// - signed sine of the angle between ray and axis, and tangent of half the azimuth of the ray
+/// - curvature
+/// - distance from the start of the ray to the point
+/// - for conics: 1 + k
 const double bisector = std::sqrt(2.0) - 1;
 const Box<6> spheres{{{0, 1}, {0, bisector}, {-0.5, 0.5}, {-1, 1}, {0, 0.6}, {-1, 1}}};
 const Box<7> conics{{{0, 1}, {0, bisector}, {-0.4, 0.4}, {-1, 1}, {0, 0.5}, {-1, 1}, {0, 2}}};
@@ -129,9 +132,12 @@ double hit_bound(const Box<N>& box) {
   return length(point) * cosine / (eps<R> * (1 + distance));
 }
 
-/// Rays at a normal between the x axis and the bisector of x and y; both have unit length up to rounding. Coordinates:
-/// sine of the angle between normal and axis and tangent of half its azimuth; sine of the angle in the thinner medium
-/// and tangent of half the azimuth around the normal; n / n', or n' / n into the thinner medium.
+/// Rays and normals of unit length up to rounding; by symmetry the azimuth of the normal lies between the x axis and
+/// the bisector of x and y. Coordinates:
+/// - sine of the angle between normal and axis, and tangent of half the azimuth of the normal
+/// - sine of the angle of incidence or refraction in the thinner medium, and tangent of half the azimuth of the ray
+///   around the normal
+/// - ratio of the lower to the higher index: n / n', or n' / n into the thinner medium
 const Box<5> interfaces{{{0, 0.7}, {0, bisector}, {-0.9, 0.9}, {-1, 1}, {0.55, 1}}};
 
 /// Error of a refracted direction, |error| cos(refraction) / max(1, n / n')^2, in eps.
