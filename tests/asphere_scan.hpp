@@ -39,8 +39,8 @@ struct Sag {
   }
 };
 
-/// Crossings in the direction of travel within a height, by a scan in small steps.
-/// Empty if two crossings are too close for the scan or closer than 1/50 of it, as a search may take them for a touch.
+/// Crossings in the direction of travel within a height, by a scan in small steps. nullopt if two crossings are closer
+/// than the steps or than 1/50 of the scan, because a search may miss such pairs.
 inline std::optional<std::vector<Crossing>> scan(const petzval::SurfaceRow& r, double rim,
                                                  const petzval::kernel::Vec<double>& p,
                                                  const petzval::kernel::Vec<double>& d, int sense) {
@@ -82,8 +82,8 @@ inline std::optional<std::vector<Crossing>> scan(const petzval::SurfaceRow& r, d
   return found;
 }
 
-/// Every third is a wave, down and up again. The others have up to five terms up to order 40; each term has a slope of
-/// up to 5 at the rim.
+/// Every third surface is a wave, down and up again. The others have up to five terms up to order 40; each term has a
+/// slope of up to 5 at the rim.
 inline petzval::SurfaceRow wild(std::mt19937& random) {
   const auto uniform = [&](double low, double high) {
     return low + (high - low) * std::uniform_real_distribution<double>(0, 1)(random);

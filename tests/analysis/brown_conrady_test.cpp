@@ -43,7 +43,8 @@ TEST(BrownConrady, PinholeHasNoDistortion) {
   }
 }
 
-// tan' = x / n (1 + x^2 (1 - 1 / n^2))^(-1/2) in a plate of index n, x the tangent of the field: the term of x^3.
+// A plate of index n refracts a field of tangent x to tan' = x / n (1 + x^2 (1 - 1 / n^2))^(-1/2), whose term of x^3
+// gives k1.
 TEST(BrownConrady, FindsTheCoefficientOfAPlate) {
   const BallAndPlate plate{.plate_mm = 8};
   const double n = BallAndPlate::plate_index;
@@ -143,7 +144,7 @@ TEST(BrownConrady, TermsAreBoundedAndRadiiAreMonotonic) {
     for (const auto direction : directions) {
       const BrownConrady fit = fit_brown_conrady(distortion, {.direction = direction});
       const bool in = direction == BrownConradyDirection::to_undistorted;
-      // The largest radius of the fit, in the image of that side.
+      // The largest radius of the fit, in the image from which the fit maps.
       double largest = 0;
       for (const auto& corner : {Vec2<double>{0, 0}, Vec2<double>{240, 0}, Vec2<double>{0, 160}}) {
         const auto other = distortion.undistorted(corner);

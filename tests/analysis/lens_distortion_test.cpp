@@ -124,7 +124,7 @@ TEST(LensDistortion, PlateFollowsSnellsLaw) {
   EXPECT_GT(most, 5);
 }
 
-// A plate behind a stop has no focal length, but an image.
+// A plate behind a stop has no focal length, but forms an image.
 TEST(LensDistortion, NeedsNoFocalLength) {
   Prescription p;
   p.name = "plate";

@@ -38,7 +38,7 @@ Prescription singlet() {
   return p;
 }
 
-// Films in metres or in hundredths of an inch, as by hosts with wrong units.
+// Films in metres or in hundredths of an inch, from hosts with wrong units.
 TEST(Lint, FindsAFilmFarFromTheImageCircle) {
   const Lens lens = testing::data_lens("double_gauss_100mm_f2_28deg");
   const double circle = image_circle_mm(lens);
@@ -67,7 +67,7 @@ TEST(Lint, FindsNonSquarePixels) {
   EXPECT_EQ(lint(lens, {.width_mm = 360, .height_mm = 240, .columns = 1080, .rows = 1920}).size(), 2u);
   EXPECT_EQ(lint(with_iris(lens, {.blades = 6}), {.columns = 1920, .rows = 1080}).size(), 1u);
   EXPECT_EQ(lint(lens, {.columns = 3840, .rows = 2590}).size(), 1u);
-  // Within 0.5 %, within the rounding to whole pixels, and an anamorphic lens.
+  // No finding: square within 0.5 %, square within the rounding to whole pixels, and an anamorphic lens.
   EXPECT_TRUE(lint(lens, {.columns = 3840, .rows = 2570}).empty());
   EXPECT_TRUE(lint(lens, {.columns = 10, .rows = 7}).empty());
   EXPECT_TRUE(lint(testing::data_lens("anamorphic_60mm_2x"), {.columns = 1920, .rows = 1080}).empty());

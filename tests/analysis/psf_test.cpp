@@ -180,7 +180,7 @@ TEST(PointImage, DefocusOfAPerfectLensIsAUniformDisc) {
     EXPECT_NEAR(image.size.max_radius / radius, 1, 3e-3);
     EXPECT_NEAR(image.size.rms_radius / (radius / std::sqrt(2.0)), 1, 3e-3);
     const double flat = image.throughput / (std::numbers::pi * image.size.max_radius * image.size.max_radius);
-    // Except rings of few rays and the rim; the sampling error of a ring of 16,000 rays is below 1 %.
+    // Skips rings with few rays and the rim; the sampling error of a ring of 16,000 rays is below 1 %.
     for (std::size_t k = 4; k < 63; ++k) EXPECT_NEAR(image.radial_profile[k] / flat, 1, 0.015) << k;
   }
 }

@@ -33,7 +33,7 @@ Vec2<double> shown(const StMap& map, const Film& film, int column, int row) {
   return {map.s[i] * static_cast<double>(film.columns), (1 - static_cast<double>(map.t[i])) * film.rows};
 }
 
-/// The map at any raster position, interpolated between centres of pixels like in programs that apply maps.
+/// The map at any raster position, interpolated between centres of pixels, as programs apply maps.
 std::optional<Vec2<double>> shown_at(const StMap& map, const Film& film, const Vec2<double>& at) {
   const double x = at.x + map.margin_x - 0.5, y = at.y + map.margin_y - 0.5;
   const int column = static_cast<int>(std::floor(x)), row = static_cast<int>(std::floor(y));

@@ -63,7 +63,8 @@ Numbers first_order_numbers(const Lens& lens) {
   return found;
 }
 
-/// Rays of a small film at the primary wavelength and at each line, and other results of a camera by default.
+/// Rays of a small film at the primary wavelength and at each line, and results of other camera functions with default
+/// options.
 std::optional<Numbers> camera_numbers(const Lens& lens) {
   std::optional<Camera> camera;
   try {

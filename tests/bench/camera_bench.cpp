@@ -68,7 +68,7 @@ struct Samples {
   }
 };
 
-/// One way to sample rays of a camera.
+/// A method of sampling camera rays.
 struct Row {
   std::string lens, call;
   ModelKind model;
@@ -340,7 +340,7 @@ int run(std::vector<char*> arguments) {
   Rounds rounds;
   benchmark::RunSpecifiedBenchmarks(&rounds);
 
-  // Only rows that ran, as the caller may filter.
+  // Skips rows that a filter of the command line excluded.
   const auto ns_of = [&](const std::string& name) {
     const auto line = std::find_if(rounds.lines().begin(), rounds.lines().end(),
                                    [&](const Rounds::Line& l) { return l.name == name; });

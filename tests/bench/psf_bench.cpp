@@ -98,7 +98,7 @@ void histogram(benchmark::State& state, const Light& light) {
   state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(hits.x.size()));
 }
 
-/// One line per light: the fastest rounds of the whole and of its parts, and their ratios.
+/// One line per light: the fastest times of point_image and of its parts, and their ratios.
 void print(const std::vector<Rounds::Line>& lines) {
   std::printf("%-34s %9s %9s %9s %9s %9s   %s\n", "ns per ray of a PSF (minima)", "picture", "rays", "trace",
               "histogram", "million/s", "histogram / trace");

@@ -97,7 +97,7 @@ class SingleImage {
 
   template <class Tap>
   void gather(int column, int row, float radius, const Tap& tap) const {
-    constexpr int far = 1 << 15;  // keeps what is rounded by truncation above 0
+    constexpr int far = 1 << 15;  // keeps numbers positive, so that truncation rounds down
     for (const Offset& o : spiral_) {
       tap(at(column + static_cast<int>(radius * o.x + (far + 0.5f)) - far,
              row + static_cast<int>(radius * o.y + (far + 0.5f)) - far),

@@ -56,7 +56,7 @@ TextbookTracer::TextbookTracer(const petzval::Lens& lens) {
   rear_z_ = static_cast<float>(surfaces.back().vertex_z);
 }
 
-// Passed by value, as the loop below keeps its ray in registers only if its address is not taken.
+// Passed by value, because the loop below keeps its ray in registers only if no code takes the address.
 TextbookTracer::Hit TextbookTracer::intersect_sag(float radius, const Shape& shape, float vertex_z, Ray ray) {
   const glm::vec3 o = ray.origin - glm::vec3(0, 0, vertex_z);
   const float c = radius == 0 ? 0.f : 1 / radius;
@@ -67,7 +67,7 @@ TextbookTracer::Hit TextbookTracer::intersect_sag(float radius, const Shape& sha
     const float inside = 1 - (1 + shape.conic) * c * c * r2;
     if (inside < 0) break;
     const float root = std::sqrt(inside);
-    float polynomial = 0, derivative = 0;  // in r^2, and with respect to r^2
+    float polynomial = 0, derivative = 0;  // of r^2; derivative with respect to r^2
     for (std::size_t k = shape.even.size(); k-- > 0;) {
       derivative = derivative * r2 + polynomial;
       polynomial = polynomial * r2 + shape.even[k];

@@ -5,8 +5,8 @@
 //   trace_bench [--isa baseline|avx2|avx512] [--json FILE] [options of Google Benchmark]
 //
 // Every round traces all rays of a set; rounds of all rows are interleaved and threads pinned. Ratios compare the
-// fastest rounds, as slow rounds on a shared machine measure other users. One thread is timed by its own clock, two by
-// wall time. Errors of directions are measured on the results of each row.
+// fastest rounds, because slow rounds on a shared machine include the load of other users. One thread is timed by its
+// own clock, two by wall time. Errors of directions are measured on the results of each row.
 #include <benchmark/benchmark.h>
 #include <pthread.h>
 #include <sched.h>
@@ -109,7 +109,8 @@ Row batch(const BenchLens& bench, const RaySet& set, const std::string& rays, co
   return row;
 }
 
-/// Measures every code on one lens and set; extra: also two threads, arrays of structures and derivatives.
+/// Measures every implementation on one lens and set of rays; extra: also two threads, arrays of structures and
+/// derivatives.
 std::vector<Row> rows_of(const BenchLens& bench, const RaySet& set, const std::string& rays,
                          const std::vector<InstructionSet>& sets, bool extra, bool two_threads) {
   std::vector<Row> rows;
@@ -219,7 +220,7 @@ int run(std::vector<char*> arguments) {
   Rounds rounds;
   benchmark::RunSpecifiedBenchmarks(&rounds);
 
-  // Only rows that ran, as the caller may filter.
+  // Skips rows that a filter of the command line excluded.
   const auto results_of = [&](const std::vector<Row>& asked) {
     std::vector<Result> results;
     for (const Row& row : asked) {

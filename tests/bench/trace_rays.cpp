@@ -56,8 +56,8 @@ Box passing_box(const petzval::Lens& lens, double inner, double outer, const Box
   return box.x0 < box.x1 ? box : searched;
 }
 
-/// Searches 1.5 times the rear element, then the box that was found, as only a narrow cone passes if the rear element
-/// is near the film.
+/// Searches 1.5 times the rear element, then the box of the first search, because only a narrow cone passes if the rear
+/// element is near the film.
 Box box_of_ring(const petzval::Lens& lens, double inner, double outer, std::mt19937& random) {
   const double half = 1.5 * lens.surfaces().back().semi_diameter;
   const Box coarse = passing_box(lens, inner, outer, {-half, half, -half, half}, random);
@@ -65,7 +65,7 @@ Box box_of_ring(const petzval::Lens& lens, double inner, double outer, std::mt19
 }
 
 /// The lens in long double. Curvatures and coefficients are the doubles of the compiled lens, which every code gets;
-/// the constants of refraction are recomputed from the indices, as the tested codes round them differently.
+/// the constants of refraction are recomputed from the indices, because the tested codes round them differently.
 testing_lenses::Tables<long double> exact_tables(const petzval::Lens& lens) {
   auto tables = testing_lenses::extended(petzval::kernel::view<double>(lens));
   for (std::size_t i = 0; i < lens.surface_count(); ++i) {

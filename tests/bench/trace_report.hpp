@@ -25,7 +25,7 @@ struct Row {
 
   const char* precision() const { return in_double ? "double" : "float"; }
   std::string name() const;
-  /// The same lens and rays.
+  /// True if both rows have the same lens and rays.
   bool beside(const Row& other) const { return bench == other.bench && rays == other.rays; }
 };
 

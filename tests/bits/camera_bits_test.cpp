@@ -120,9 +120,9 @@ std::string text(const Row& row) {
 }
 
 TEST(CameraBits, EqualTheTable) {
-  if (instruction_sets().size() > 1) GTEST_SKIP() << "wider sets have bits of their own";
+  if (instruction_sets().size() > 1) GTEST_SKIP() << "wider instruction sets give other bits";
   constexpr std::uint64_t of_the_table = 0x4935b4f378316858;
-  if (c_library() != of_the_table) GTEST_SKIP() << "this C library has bits of its own: 0x" << std::hex << c_library();
+  if (c_library() != of_the_table) GTEST_SKIP() << "this C library gives other bits: 0x" << std::hex << c_library();
   std::string found, wanted;
   for (const Row& row : table) wanted += text(row);
   for (const Scene& scene : scenes) {

@@ -54,7 +54,7 @@ std::uint64_t hash(const Blurred& picture) {
 }
 
 TEST(GatherBits, EqualTheTable) {
-  if (instruction_sets().size() > 1) GTEST_SKIP() << "wider sets have bits of their own";
+  if (instruction_sets().size() > 1) GTEST_SKIP() << "wider instruction sets give other bits";
   const LayerCamera camera = layer_camera(120, 90, radians(15));
   const LensRays same =
       LensRays::thin(camera, {.radius_mm = 20, .inverse_focus = 1 / 2000.0}, vogel_points(31), {.nearest_mm = 1000});

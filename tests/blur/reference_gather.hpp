@@ -59,7 +59,7 @@ inline Blurred reference_gather(const LayerSet& layers, const LensRays& rays) {
           // Layers that the ray passed in front of in the previous pixel.
           double below = 1e30, front = -1e30, front_colour = 0, front_alpha = 0;
           for (double k = first; towards * k <= towards * last && through > 1e-3; k += towards) {
-            // A pixel holds the depths between its two ends.
+            // Inverse depths at which the ray enters and leaves the pixel.
             const double low = std::max((k + (s > 0 ? 0 : 1) - m) / s, 0.0), high = (k + (s > 0 ? 1 : 0) - m) / s,
                          w_middle = std::clamp<double>((k + 0.5 - m) / s, least, most),
                          across = floor_of(o + t * w_middle);

@@ -40,7 +40,7 @@ struct Case {
   std::function<void(CameraOptions&, const Lens&, const Film&)> options = [](auto&&...) {};
   Wavelengths wavelengths = Wavelengths::primary;
   std::string id{};  ///< if set, the film lies within the declared field of this prescription
-  /// Relative tolerance of weights and densities; of rays in double and float, mm or for directions.
+  /// Tolerances: weights and densities (relative), rays in double, rays in float (mm, or components of directions).
   double weight = 1e-11, ray = 1e-11, in_float = 1e-4;
 };
 

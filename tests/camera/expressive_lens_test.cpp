@@ -56,7 +56,7 @@ CameraRay ray_at(const Camera& camera, double share, Wavelength wavelength = {})
   return {};
 }
 
-// Thin-lens formulas: 1/F - 1/(u + D) for film offsets and (k - 1)/F for powers.
+// Changes of the inverse distance by thin-lens formulas: 1/F - 1/(u + D) for film offsets, (k - 1)/F for powers.
 TEST(ExpressiveLens, FilmOffsetsAndPowerFollowThinLensFormulas) {
   const Lens lens = thin_50mm();
   const Film film{.width_mm = 10, .height_mm = 10};

@@ -54,7 +54,7 @@ TEST(FocalSurface, MissesBlurredPointsByTheirBlur) {
       const IdealLens stopped = thin_lens(50, 2 * std::exp2(stops / 2));
       const auto image = stopped.image({{0, 0, -1 / object}});
       const double found = signed_blur(*image, {.z_mm = 50 + 2500 / (focused - 50)});
-      // Divided by the image distance, as the blur grows with the distance of the film.
+      // Divided by the image distance, because the blur grows with the distance of the film.
       EXPECT_NEAR(found * film.z() / (50 + 2500 / (focused - 50)), blur, 1e-12);
     }
   }
@@ -253,7 +253,7 @@ TEST(FocalSurface, BatchesAndFramesEqualSingleFilmPoints) {
     EXPECT_EQ(single.inverse_distance, distances[i]);
     EXPECT_EQ(single.extent_stops, extents[i]);
   }
-  // In float up to rounding.
+  // Float results agree up to rounding.
   const std::vector<float> xf(x.begin(), x.end()), yf(y.begin(), y.end());
   std::vector<float> in_float(count);
   surface.at<float>(count, xf.data(), yf.data(), in_float.data(), nullptr);

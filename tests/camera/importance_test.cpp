@@ -166,7 +166,7 @@ TEST(Importance, PinholeEqualsThickLensThroughOnePoint) {
       EXPECT_NEAR(glm::length(glm::cross(to_pupil, p.direction)), 0, 1e-10);
       EXPECT_EQ(pinhole.importance({point, p.direction}).we, 0);
     }
-    // The results differ slightly, as the scene side has the cosines of its own rays.
+    // The results differ slightly, because the scene side uses the cosines of its own rays.
     EXPECT_NEAR(one / all, 1, 1e-2);
   }
 }

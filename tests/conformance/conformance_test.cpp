@@ -252,7 +252,7 @@ TEST_P(Conformance, TinyLightLiesOnItsChiefRay) {
         }
       }
       ASSERT_GT(sum, 0);
-      // The tolerance is a pixel, as the centroid of a comatic blur is not on the chief ray.
+      // The tolerance is a pixel, because the centroid of a comatic blur is not on the chief ray.
       EXPECT_NEAR(x_sum / sum, light["raster"][0].get<double>() * image.width, 1.2) << place.x;
       EXPECT_NEAR(y_sum / sum, light["raster"][1].get<double>() * image.height, 1.2) << place.x;
     }

@@ -171,7 +171,7 @@ SURF 3
 }
 
 TEST_F(ConvertLens, RepairsUnambiguousFaults) {
-  // A lens of 50 mm that declares 50 mm and f/5, with diameters in the place of semi-diameters, ten times too large.
+  // A lens of 50 mm that declares 50 mm and f/5, with diameters instead of semi-diameters, and ten times too large.
   write("lens.json", R"({"format": "petzval-lens 1", "name": "bad", "focal_length_mm": 50, "f_number": 5, "surfaces": [
     {"radius": 506, "thickness": 52, "nd": 1.5168, "semi_diameter": 100, "stop": true},
     {"radius": -506, "thickness": 600, "nd": 1, "semi_diameter": 120, "stop": true}]})");

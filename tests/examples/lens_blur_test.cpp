@@ -85,7 +85,8 @@ TEST_F(LensBlurProgram, PlaneInFocusIsUnchanged) {
 }
 
 TEST_F(LensBlurProgram, LayersAndDeepImagesGiveEqualPictures) {
-  // A near half over a plane of another colour, as parts of an EXR and as lists; the hidden part is known.
+  // A near half plane in front of a plane of another colour, as parts of an EXR and as lists; the files contain the
+  // hidden part of the plane.
   petzval::FragmentLists lists{.columns = 24, .rows = 16, .offsets = {0}, .fragments = {}};
   std::vector<petzval::ExrPart> parts;
   for (const char* name : {"near", "far"}) {

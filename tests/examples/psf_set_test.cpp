@@ -98,7 +98,7 @@ TEST_F(PsfSets, FaultyShardIsNamedAndRepaired) {
   expect_failure("psf_set", {"merge", path("s"), "--out", path("s.exr")},
                  {"shard 3/4", 3, "14deg_1000mm_587.5618nm_f2.8"});
   succeed(set("s", {"--shard", "3/4"}));
-  const std::string corrupt = path("s/" + psf("7deg_inf"));  // the fifth: of the first shard
+  const std::string corrupt = path("s/" + psf("7deg_inf"));  // the fifth PSF, which belongs to the first shard
   const std::string bytes = read(corrupt);
   const auto refused = [&](const std::string& content) {
     write("s/" + psf("7deg_inf"), content);

@@ -44,7 +44,7 @@ void release(void* place) noexcept {
 
 }  // namespace
 
-// Not inlined, as compilers that see only one of the operators report a mismatch.
+// Not inlined, because compilers that see only one of the operators report a mismatch.
 [[gnu::noinline]] void* operator new(std::size_t size) { return allocate(std::max<std::size_t>(size, 1), 0); }
 [[gnu::noinline]] void* operator new(std::size_t size, const std::nothrow_t&) noexcept try {
   return operator new(size);

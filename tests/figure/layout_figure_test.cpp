@@ -107,7 +107,7 @@ TEST(LayoutFigure, LeavesObscurationsOpen) {
 TEST(LayoutFigure, FillsEachGlassBodyAndNoAir) {
   EXPECT_EQ(count(layout_figure(data_lens("cooke_triplet_50mm_f5"), -infinity, {}), "fill=\"rgb("), 3u);
   EXPECT_EQ(count(layout_figure(data_lens("tessar_100mm_f2.8"), -infinity, {}), "fill=\"rgb("), 4u);
-  // A stop inside the ball is not a surface of it; the eye is filled to the retina.
+  // The stop inside the ball is not a surface of the glass; the eye is filled to the retina.
   EXPECT_EQ(count(layout_figure(data_lens("ball_10mm"), -infinity, {}), "fill=\"rgb("), 1u);
   EXPECT_EQ(count(layout_figure(data_lens("eye_gullstrand_le_grand"), -infinity, {}), "fill=\"rgb("), 4u);
   EXPECT_EQ(count(layout_figure(data_lens("mirror_newton_200mm_f8"), -infinity, {}), "fill=\"rgb("), 0u);

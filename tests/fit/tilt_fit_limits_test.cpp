@@ -115,7 +115,7 @@ void expect_continuous(const auto& targets_at, const TiltOptions& options, int s
 }
 
 TEST(TiltFitLimit, PlaneThroughTheViewVectorNeitherFlipsNorJumps) {
-  // A wall x = s, seen from the side, edge-on at s = 0, from the other side.
+  // A wall x = s, seen from one side, edge-on at s = 0, then from the other side.
   const auto wall = [](double noise) {
     return [noise](double t) {
       Targets targets;
@@ -173,7 +173,7 @@ TEST(TiltFitLimit, TargetsThatPassEachOtherMakeNoJump) {
   const auto passing = [](double reach) {
     return [reach](double t) { return Targets{target(0, 0, -1500), target(reach * (2 * t - 1), 0, -3000)}; };
   };
-  // Their spread is x / 6000: it fades from 0.12 to 0.06 mm.
+  // The spread of the images is x / 6000; the slope fades out from a spread of 0.12 to 0.06 mm.
   expect_continuous(passing(0.3), behind(normal_lens()));
   for (const double reach : {1e-5, 1e-2}) {
     EXPECT_LT(largest_change(passing(reach), 100, behind(normal_lens())), 1e-9) << reach;

@@ -77,7 +77,7 @@ TEST(TiltFit, ExactPointsGiveTheirPlaneForEveryThickLens) {
   EXPECT_GT(lenses, 60);
 }
 
-/// The points of a scene plane normal . p = offset on the lines of sight through places of the picture, from z.
+/// The points of a scene plane normal . p = offset on the lines of sight from z through positions of the picture.
 Targets points_of(const Plane& plane, double z) {
   Targets targets;
   for (const auto& [x, y] : {std::pair{-0.2, 0.05}, {0.15, 0.1}, {0.02, -0.12}, {0.2, -0.1}}) {

@@ -76,7 +76,7 @@ TEST(ExactBlur, EqualsAGridOfRays) {
         const double rms = blur_diameter(set, 2000, {.criterion = min_rms, .fields = fields}).value();
         const double largest = blur_diameter(set, 2000, {.criterion = min_max, .fields = fields}).value();
         EXPECT_NEAR(rms, std::sqrt(8) * found.rms, 0.02 * rms);
-        // A grid ends before the edges, and the rays of the quadrature miss a largest zone inside.
+        // The grid misses the edges of the pupil; the rays of the quadrature may miss the largest radius inside.
         EXPECT_GE(largest, 2 * found.largest * (1 - 2e-3));
         EXPECT_NEAR(largest, 2 * found.largest, 0.05 * largest);
       }

@@ -203,7 +203,7 @@ TEST(FocusPoints, MoveBetweenTrianglesAndPositions) {
   const FocusPoint across =
       point({on_triangle(0, {0, 1, 2}, {third, third, third}), on_triangle(2, {3, 4, 5}, {0, 1, 0})});
   expect_near(only(across, when).place.position, {90, 0, -1800}, 1e-9);
-  // A vertex that is not finite removes the point while it lasts.
+  // A vertex that is not finite removes the point for this time.
   mesh[4].x = nan;
   EXPECT_TRUE(targets({p}, when).empty());
 }

@@ -49,7 +49,7 @@ TEST(MinRms, MinimisesTheSpreadOverTheAperture) {
     const char* id;
     double distance, tolerance;
   };
-  // Within the steps of the grid along the rims.
+  // The tolerance covers the steps of the grid along the rims.
   for (const auto& [id, distance, tolerance] :
        {Case{"double_gauss_100mm_f2.0", 1000, 1e-4}, Case{"singlet_50mm_biconvex", infinity, 1e-3},
         Case{"catadioptric_maksutov_1280mm_f14.4", 3e4, 5e-4}, Case{"anamorphic_60mm_2x", 2000, 1e-3},
@@ -104,8 +104,8 @@ TEST(MinRms, DoubleGaussEqualsAnIndependentTrace) {
   EXPECT_NEAR(difference_um(1000), 76, 2.5);
   EXPECT_NEAR(difference_um(10000), -37, 0.5);
   EXPECT_NEAR(difference_um(infinity), -53, 0.5);
-  // At 55 mm the image of least RMS becomes virtual, before the paraxial image at 54.245 mm, as the film has passed its
-  // farthest position.
+  // At 55 mm the image of least RMS becomes virtual, before the paraxial image at 54.245 mm, because the film has
+  // passed its farthest position.
   const double nearest = nearest_focus(lens, {min_rms}).distance;
   EXPECT_GT(nearest, 55);
   EXPECT_LT(nearest, 57);

@@ -112,7 +112,7 @@ TEST(GlassNames, ZemaxGlassOfAnotherCatalogue_IsAWarningThatNamesBoth) {
   EXPECT_EQ(p.surfaces[3].medium.catalogue, "cdgm");
   const std::string said = warning(p, "H-ZF1");
   expect_tokens(said, {"OHARA", "H-ZF1", "cdgm"});
-  // Under another name, or moulded.
+  // The tables list the glass by another name, or without the suffix of moulded versions.
   const auto other = [](const std::string& name) {
     return warning(with(double_gauss("SCHOTT MISC OHARA", dummy, dummy), "GLAS F2", "GLAS " + name), name);
   };

@@ -161,7 +161,7 @@ TEST(Zemax, AspheresAreTheirTerms) {
   }
   EXPECT_EQ(terms("ODDASPHE", "  PARM 3 2e-5\n  PARM 4 1e-6\n").aspheric,
             (std::vector<petzval::AsphereTerm>{{3, 2e-5}, {4, 1e-6}}));
-  // Terms in r / 2.
+  // Terms in r / 2: XDAT 2 is the normalisation radius.
   const auto extended = terms("XASPHERE", "  XDAT 1 3 0 0 1 0 0 \"\"\n  XDAT 2 2 0 0 1 0 0 \"\"\n  XDAT 4 1.6e-5 0\n");
   EXPECT_EQ(extended.aspheric, (std::vector<petzval::AsphereTerm>{{4, 1e-6}}));
   EXPECT_EQ(terms("XOSPHERE", "  XDAT 1 3\n  XDAT 2 1\n  XDAT 5 1.5e-5\n").aspheric,

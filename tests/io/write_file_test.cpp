@@ -67,7 +67,7 @@ TEST_F(WriteFile, ReadersOfTheOldFileReachItsEnd) {
   EXPECT_EQ(text(file_), "new!");
 }
 
-/// Message of a write in a child process, as limits and rights would persist in this process; empty if the write
+/// Message of a write in a child process, because limits and rights would persist in this process; empty if the write
 /// succeeds.
 std::string message_in_process(const std::function<void()>& prepare, const fs::path& file, const std::string& bytes) {
   std::array<int, 2> ends{};

@@ -54,7 +54,7 @@ TEST(Lens, AsphericRimsEndAtASlopeOf4) {
         .fate;
   };
   EXPECT_EQ(fate_at(rim + 1e-9), petzval::RayFate::vignetted);
-  EXPECT_NE(fate_at(rim - 1e-9), petzval::RayFate::vignetted);  // although it may not leave the glass
+  EXPECT_NE(fate_at(rim - 1e-9), petzval::RayFate::vignetted);  // the ray may still be lost by total reflection
   EXPECT_EQ(petzval::with_semi_diameter(lens, 1, 12).surfaces()[1].semi_diameter, rim);
   EXPECT_EQ(petzval::with_semi_diameter(lens, 1, 3).surfaces()[1].semi_diameter, 3);
   p.surfaces[0].thickness = 0;  // no edge

@@ -83,7 +83,7 @@ TEST(Extremes, AreaOfEveryLensEqualsAGridOfRays) {
   }
 }
 
-// Areas are compared, as the directions of the boundary cut the rotated pupil elsewhere.
+// Areas are compared, because the directions of the boundary meet the rotated pupil at other points.
 TEST(Extremes, PupilsRotateWithTheAzimuth) {
   for (const Prescription& p : data_prescriptions()) {
     const Lens lens = compile(p);

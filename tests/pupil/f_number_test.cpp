@@ -277,7 +277,7 @@ TEST(WithFNumber, NamesTheFastestFNumber) {
   const std::string said = message([&] { with_f_number(lens, 1.2); });
   testing::expect_tokens(said, {lens.name(), 1.2, "fastest"});
   EXPECT_NEAR(stated_in(said, lens, 1.2), 1.3535, 5e-4);
-  // A larger stop does not help, as faster rays miss the glass.
+  // A larger stop does not help, because faster rays miss the glass.
   const Lens open = with_semi_diameter(lens, 5, infinity, RimLimit::none);
   expect_error([&] { with_f_number(open, 0.1); }, {lens.name(), 0.1, 1.013132236});
 }

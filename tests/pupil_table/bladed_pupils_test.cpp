@@ -124,7 +124,7 @@ TEST(BladedPupils, AreContinuousOverTheFilm) {
       longest = std::max(longest, std::hypot(here.x - before.x, here.y - before.y));
       before = here;
     }
-    // The path around the edge has a few radii of the pupil; a jump would be a fraction of a radius.
+    // The path around the edge is a few pupil radii long; a jump would be a fraction of a radius.
     const double radius = std::sqrt(before.area / pi);
     EXPECT_LT(longest, 0.01 * radius) << r;
   }

@@ -237,7 +237,7 @@ TEST(FilmPupilTable, SolidAngleEqualsIntegral) {
   }
   const Lens lens = data_lens("double_gauss_100mm_f2.0");
   const FilmPupilTable table = FilmPupilTable::equal_area(lens, 20);
-  // Other shapes at other positions with the same irradiance.
+  // Pupils with other shapes and positions keep the irradiance.
   const std::vector<std::vector<PupilDisc>> discs{{{0.3, 30}, {-0.2, 20}}};
   const FilmPupilTable other = table.reshaped(discs);
   for (const FilmPoint& film : {FilmPoint{0, 0}, FilmPoint{3, -9}, FilmPoint{14, 14}}) {

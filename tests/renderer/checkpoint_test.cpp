@@ -103,7 +103,7 @@ TEST_F(CheckpointFile, RefusesOtherAndTruncatedFiles) {
   }
 }
 
-/// A changed byte is refused or has no effect, as some bytes of the format are not read.
+/// A changed byte is refused or has no effect, because some bytes of the format are not read.
 TEST_F(CheckpointFile, DetectsChangedBytes) {
   Checkpoint::write(sums_, job_, file_);
   const std::string whole = examples::read_text(file_);

@@ -231,7 +231,7 @@ TYPED_TEST(BatchOf, InvalidRaysAreMissesAndDoNotChangeOtherLanes) {
           for (std::size_t i = 0; i < rays.size(); ++i) {
             if (i == lane) continue;
             ASSERT_TRUE(same_bits(answer, i, wanted, i))
-                << sample.id << " " << text(options) << " ray " << i << " beside an absurd one at " << lane;
+                << sample.id << " " << text(options) << " ray " << i << " next to an invalid ray in lane " << lane;
           }
           if (refused(bad)) {
             EXPECT_EQ(answer.fates[lane], RayFate::missed_surface) << text(options) << " lane " << lane;

@@ -43,7 +43,7 @@ inline std::string text(const BatchOptions& o) {
 }
 
 /// Lenses that together have spheres, planes, conics, cylinders, aspheres, one or two mirrors, central obscurations,
-/// many surfaces, steep ones, and water behind the last.
+/// many surfaces, steep surfaces, and water behind the last surface.
 inline const std::vector<testing_lenses::Sample>& telling() {
   static const std::vector<testing_lenses::Sample> samples = [] {
     std::vector<testing_lenses::Sample> result;

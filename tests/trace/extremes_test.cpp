@@ -273,7 +273,7 @@ TYPED_TEST(ExtremesOf, EqualMediaKeepDirectionsWithinOneEps) {
                       "1 eps");
 }
 
-// The next surface may lie in front of the start of the ray, as sags of prescriptions overlap.
+// The next surface may lie in front of the start of the ray, because sags of prescriptions may overlap.
 TYPED_TEST(ExtremesOf, FromSurfaceToSurface) {
   Judge<TypeParam> judge;
   for (const double first : {20.0, -20.0, 60.0, 0.0}) {
@@ -332,7 +332,7 @@ TYPED_TEST(ExtremesOf, AThousandSurfaces) {
 TYPED_TEST(ExtremesOf, BackwardRaysIntoAFisheye) {
   using T = TypeParam;
   const auto sample = testing_lenses::load("fisheye_6.3mm_f2.8");
-  // Rays start at the stop, as few rays with direction -z that meet the front would pass.
+  // Rays start at the stop, because few rays that meet the front in direction -z pass.
   const auto view = petzval::kernel::view<double>(sample.lens);
   const std::size_t stop = sample.lens.stop().value();
   Numbers random(12);
