@@ -60,7 +60,7 @@ double squares(const std::vector<Pair>& pairs, const Coefficients& k) noexcept {
   return sum;
 }
 
-constexpr double beyond = 1.25;  ///< r' should rise up to this multiple of the largest radius
+constexpr double beyond = 1.25;  ///< the mapped radius should increase up to this multiple of the largest radius
 
 /// True if the denominator stays above 1e-3 up to a radius.
 bool without_pole(const Coefficients& k, double radius) noexcept {

@@ -65,7 +65,7 @@ class ChiefRays {
  private:
   Lens lens_;
   TwoPlanes space_;
-  double focal_length_ = 0, pivot_ = 0;  // pivot_: from the film to the exit pupil; infinite if telecentric
+  double focal_length_ = 0, pivot_ = 0;  // pivot_: distance from the film to the exit pupil; infinite if telecentric
   double sense_ = 1;                     // 1 if light behind the lens runs towards +z, else -1
 };
 

@@ -9,8 +9,8 @@ namespace petzval::analysis_detail {
 void count_points(const PixelGrid& grid, std::span<const double> x, std::span<const double> y,
                   std::span<std::uint64_t> counts, std::span<const std::uint32_t> units) noexcept {
   // The pixel numbers of a block of points are computed in SIMD lanes, and the points are then counted one by one: a
-  // separate image for each lane would take longer. A point outside the grid converts 0, because its pixel number may
-  // not fit into an integer.
+  // separate image for each lane would take longer. For points outside the grid 0 is converted, because their pixel
+  // numbers may not fit into an integer.
   constexpr std::size_t block = 256;
   std::array<std::int32_t, block> pixel;
   const double cx = grid.centre.x, cy = grid.centre.y;
@@ -30,7 +30,7 @@ void count_points(const PixelGrid& grid, std::span<const double> x, std::span<co
       }
       continue;
     }
-    // Drops points outside the grid without a branch, which a cropped picture would mispredict.
+    // Drops points outside the grid without a branch, because the branch would be mispredicted for a cropped picture.
     std::size_t kept = 0;
     for (std::size_t i = 0; i < count; ++i) {
       pixel[kept] = pixel[i];

@@ -179,7 +179,7 @@ ModelTable model_table(const Lens& given, const SceneRequirements& scene, std::s
     };
     table.one_wavelength = guarded(setting.rays->largest(setting.rays->measure(one), one), tolerances, smooth_guard);
   }
-  // Assign the pupil of the film centre to every film point.
+  // Every film point uses the pupil of the film centre.
   const FilmPoint middle{film.shift_x_mm, film.shift_y_mm};
   const Tracing from_middle = [&](const PointLines& lines, std::size_t w, PointRays& rays) {
     PointLines moved(middle);

@@ -18,7 +18,7 @@ struct ModelPupils {
   FilmPupilTable map;
   Tracing within, tracing;
   bool point = false;           ///< a pinhole has no area
-  std::optional<FilmPoint> of;  ///< if set, the samples of this film point are used for all
+  std::optional<FilmPoint> of;  ///< if set, the samples of this film point are used for all film points
 };
 /// The model must outlive the result.
 ModelPupils pupils_of(const AnyRayModel& model);
@@ -32,7 +32,7 @@ class PupilStudy {
              const ErrorSamples& samples);
 
   /// Largest errors over film points and wavelengths, with bounds for the other film points and samples: a sampled
-  /// fraction p has a standard deviation of at most sqrt(p / samples), and film points between the samples differ
+  /// fraction p has a standard deviation of at most sqrt(p / samples), and the pupils of adjacent film points differ
   /// little.
   struct Found {
     double shape = 0, exposure = 0, shape_bound = 0, exposure_bound = 0;

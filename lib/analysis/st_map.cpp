@@ -112,7 +112,8 @@ class NodeGrid {
   const Place& place(int column, int row) const noexcept {
     return places_[static_cast<std::size_t>(row) * x_.nodes + column];
   }
-  /// Number of nodes with values: for a reach of 1 among the corners of a cell, for 2 also of the adjacent cells.
+  /// Number of nodes with values: among the corners of a cell if reach = 1, also among those of the adjacent cells if
+  /// reach = 2.
   int known(int column, int row, int reach) const noexcept {
     int count = 0;
     for (int j = row + 1 - reach; j <= row + reach; ++j) {

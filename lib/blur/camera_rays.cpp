@@ -71,8 +71,8 @@ class RaysOfCamera {
       std::fill(found.begin(), found.end(), LayerRay{raster, {0, 0}, 0});
       return;
     }
-    // The pupil of the samples is slightly larger than the part that transmits rays. More samples measure the
-    // transmitted fraction.
+    // The pupil of the samples is slightly larger than the part that transmits rays. The transmitted fraction is
+    // measured with more samples.
     if (clips_) light = Bundle(camera_, film, light_points_, wavelength).mean_weight();
     const double scale = light * static_cast<double>(found.size()) / sum;
     for (LayerRay& ray : found) {

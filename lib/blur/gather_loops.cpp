@@ -139,7 +139,8 @@ PETZVAL_INLINE void take(const LayerWindow& window, const At& at, std::ptrdiff_t
   found.seeking = without(found.seeking, ended), here = without(here, ended);
 }
 
-/// One step of seeking rays: lanes of `here` pass the pixels that `at` loads, between the inverse depths low and high.
+/// One step of rays without a hit so far: lanes of `here` pass the pixels that `at` loads, between the inverse depths
+/// low and high.
 ///
 /// A ray that passed in front of a surface in the previous pixel and is behind a surface in this pixel went between the
 /// centres of both pixels. If the inverse depths of both surfaces differ by less than `gap`, the layers contain no

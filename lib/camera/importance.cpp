@@ -16,8 +16,8 @@
 // For a tilted or moved film, the density is the density of the upright line divided by TiltedPlane::weight().
 //
 // First-order models are linear in slopes and conserve the area of heights and slopes instead. In cos dA dw they lack
-// the factor (cos t / cos t')^4, t' the angle of the ray in the scene. We and the density both get this factor, so that
-// We divided by the density remains the weight of the film sample.
+// the factor (cos t / cos t')^4, where t' is the angle of the ray in the scene. We and the density both get this
+// factor, so that We divided by the density remains the weight of the film sample.
 #include <algorithm>
 #include <array>
 #include <cmath>

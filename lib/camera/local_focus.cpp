@@ -142,7 +142,7 @@ struct LocalFocus::Data {
 
   const ParaxialModel& first_order() const noexcept { return *model.as<ParaxialModel>(); }
 
-  /// Data of a wavelength from the image of its stop, centred at `middle` times the film point, of the given radius.
+  /// Data of a wavelength whose image of the stop has the given radius and is centred at `middle` times the film point.
   At at(const SectionMaps& maps, double middle, double radius, double dispersion) const noexcept {
     EntranceMaps<double> found = entrance_maps(maps.y, first_order().z(), middle, radius);
     if (surface) found.from_surface = found.z - surface->origin_z();

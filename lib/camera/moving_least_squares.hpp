@@ -53,7 +53,8 @@ class PETZVAL_API MovingLeastSquares {
   /// Values at N positions.
   void at(std::size_t count, const double* x, const double* y, double* out) const noexcept;
   void at(std::size_t count, const float* x, const float* y, float* out) const noexcept;
-  /// Derivatives of at() with respect to x and y. At a point: of the plane there (for beta 1 the function has a cusp).
+  /// Derivatives of at() with respect to x and y. At a point they are the derivatives of the plane at this point (for
+  /// beta = 1 the function has a cusp).
   Vec2<double> slopes(const FilmPoint& place) const noexcept;
 
   /// Limits of the results.

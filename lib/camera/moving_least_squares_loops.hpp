@@ -8,7 +8,7 @@
 
 namespace petzval::camera_detail {
 
-/// A power from 1/2 to 4: multiples of 1/2 by products and a square root.
+/// A power from 1/2 to 4; multiples of 1/2 are computed by products and a square root.
 struct FallingPower {
   double exponent = 0.5;
   bool half = true;  ///< true: exponent = wholes + 1/2; false: exponent = wholes
@@ -21,9 +21,10 @@ struct LeastSquaresJob {
   const double *x = nullptr, *y = nullptr, *value = nullptr;  ///< scaled
   const double *alpha = nullptr, *soft2 = nullptr;            ///< above 0, at most 1; 0 or more
   bool affine = true;
-  double plane = 1, along_x = 1, along_y = 0;  ///< affine: share of planes, and unit direction of lines
-  FallingPower power{};                        ///< beta / 2: the exponent for ratios of squared distances
-  double low = 0, high = 0;                    ///< limits of the result, scaled
+  double plane = 1, along_x = 1,
+         along_y = 0;        ///< for affine surfaces: weight of the plane, and unit direction of the line
+  FallingPower power{};      ///< beta / 2: the exponent for ratios of squared distances
+  double low = 0, high = 0;  ///< limits of the result, scaled
   double to_scaled = 1, reach = 0, from_scaled = 1;
 };
 

@@ -62,7 +62,7 @@ class ParaxialModel {
 
   ModelKind kind() const noexcept { return kind_; }
   bool two_discs() const noexcept { return kind_ == ModelKind::thin_two_disc; }
-  /// True along x, along y if the pupil is an inverted image of the stop; not for two discs.
+  /// Along x and along y: true if the pupil is an inverted image of the stop. False for two discs.
   std::array<bool, 2> stop_upside_down() const noexcept { return stop_upside_down_; }
   const FilmPupilTable& pupils() const noexcept { return pupils_; }
   /// Maps from film and pupil points to position and slope in the plane z(), by wavelength.

@@ -32,8 +32,8 @@ double outside(const EdgePoint& point, const Discs& discs) noexcept {
 }
 
 /// Distances of edge points from the edge of the intersection of two discs, for a solver. They are reduced to five
-/// residuals with the same sum of squares and the same products with their derivatives. Unknowns: the centre of each
-/// disc at the largest field and its radius, in units of `unit`, so that the tolerances of the solver are meaningful.
+/// residuals with the same sum of squares, gradient and Gauss-Newton matrix. Unknowns: the centre of each disc at the
+/// largest field and its radius, in units of `unit`, so that the tolerances of the solver are meaningful.
 struct EdgeDistances {
   using Scalar = double;
 
@@ -152,8 +152,8 @@ std::array<PupilDisc, 2> fit_two_discs(std::span<const EdgePoint> edges) {
   std::transform(edges.begin(), edges.end(), weights.begin(),
                  [&](const EdgePoint& e) { return std::sqrt(e.share * radius); });
   for (const Discs& start : starts) improve(start);
-  // Minimise squares once more, with weights for which their sum approaches the sum of distances, the area between the
-  // edges.
+  // Minimise squares once more, with weights: their sum then approaches the sum of distances, which is the area between
+  // the edges.
   for (int round = 0; round < 4; ++round) {
     std::transform(edges.begin(), edges.end(), weights.begin(), [&](const EdgePoint& e) {
       return std::sqrt(e.share * radius / (0.01 + std::abs(outside(e, best)) / radius));

@@ -11,7 +11,7 @@
 
 namespace petzval::core_detail {
 
-/// Increment of the state of splitmix64; mixed() of successive states are its random numbers.
+/// Increment of the state of splitmix64; its random numbers are mixed(state) for successive states.
 inline constexpr std::uint64_t splitmix_step = 0x9e3779b97f4a7c15u;
 
 /// A hash in which every output bit depends on every input bit: the finaliser of splitmix64.

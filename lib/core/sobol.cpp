@@ -22,8 +22,8 @@ constexpr std::uint32_t reversed(std::uint32_t x) noexcept {
 /// Coordinate 1 of the sequence, its first binary digit in the lowest bit. In this order coordinate 0 is the index.
 ///
 /// The generating matrix is Pascal's triangle modulo 2, and by Lucas's theorem binomial(k, j) is odd if the bits of j
-/// are a subset of the bits of k. Digit j is therefore the parity of the bits k of the index with j within k: a sum
-/// over supersets, computed one bit of the bit numbers at a time.
+/// are a subset of the bits of k. Digit j is therefore the parity of all bits k of the index for which the bits of k
+/// include the bits of j. This sum over supersets is computed one bit of the bit numbers at a time.
 constexpr std::uint32_t pascal(std::uint32_t x) noexcept {
   x ^= (x >> 1) & 0x55555555u;
   x ^= (x >> 2) & 0x33333333u;

@@ -35,7 +35,7 @@ struct TiltFrame {
 struct TiltSpace {
   int parameters = 1;                                  ///< z; slope along the main direction; slope across
   double along_x = 1, along_y = 0;                     ///< unit vector: main direction of the images of the targets
-  double spread_along = 1, spread_across = 1;          ///< RMS; slope times spread has the size of z
+  double spread_along = 1, spread_across = 1;          ///< RMS; slope times spread has the magnitude of z
   double largest_slope = 0, largest_slope_across = 0;  ///< half axes of the ellipse of the allowed slopes
 
   FilmSlopes film(double z, double along, double across) const noexcept {

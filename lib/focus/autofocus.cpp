@@ -46,7 +46,7 @@ struct Request {
   double steepness = 0;  ///< derivative of the blur diameter with respect to the film position
 };
 
-/// The request after a check of its target; film_z is NaN if the target is rejected.
+/// Checks the target of a request and returns the request; film_z is NaN if the target is rejected.
 Request checked(const IdealLens& lens, const FocusTarget& target, Request request) {
   const double farthest = focus_detail::farthest_film * std::abs(lens.rear_focal_length);
   if (!focus_detail::well_formed(target)) return {TargetUse::not_finite, nan, 0};

@@ -63,8 +63,8 @@ Image least_rms(const RayBundle& rays) {
   return {.film_z = rays.plane_z + shift, .least = std::sqrt(8 * least), .slope = std::sqrt(8 * variance)};
 }
 
-/// The largest squared radius is the maximum of parabolas over the film position, and therefore convex. It decreases
-/// where the parabola with the largest value decreases.
+/// The largest squared radius as a function of the film position is the maximum of several parabolas, and therefore
+/// convex. It decreases where the parabola with the largest value decreases.
 Image least_maximum(RayBundle rays) {
   const auto rises = [&](double shift) {
     double largest = -1, slope = 0;

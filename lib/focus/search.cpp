@@ -103,7 +103,8 @@ double Search::turning_point() const {
 FocusSolution Search::nearest() const {
   if (!infinite_film_) return {.status = no_rays};
   const bool turns = c_.origin == DistanceOrigin::film && c_.lens.product() > 0;
-  if (c_.origin == DistanceOrigin::film && !turns) return focus_from_film(0);  // behind a mirror: both coincide
+  if (c_.origin == DistanceOrigin::film && !turns)
+    return focus_from_film(0);  // behind a mirror, subject and film coincide
   const double vergence = turns ? turning_point() : limit();
   if (std::isinf(separation(vergence))) return no_focus(c_);
   FocusSolution result = at(solved, vergence);

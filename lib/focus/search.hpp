@@ -39,7 +39,7 @@ class Search {
   const FocusSolver& solver_;
   const Conjugates& c_;
   std::optional<double> infinite_film_;  ///< film of a subject at infinity
-  double cap_;                           ///< bound of film vergences, beyond all films
+  double cap_;                           ///< limit of film vergences, above the vergence of every film
 };
 
 }  // namespace petzval::focus_detail

@@ -44,8 +44,8 @@ class FocusSolver {
   /// The image of a subject; nullopt if no ray of a field passes. Throws Error if the subject is not in front of the
   /// lens or nothing limits the beam.
   std::optional<Image> image(double subject_z) const;
-  /// As image(), but nullopt instead of an Error, for example if the subject lies behind the rim of a concave first
-  /// surface.
+  /// Like image(), but returns nullopt instead of throwing an Error, for example if the subject lies behind the rim of
+  /// a concave first surface.
   std::optional<Image> image_seen(double subject_z) const;
   /// image_seen() of the subject with this vergence (Conjugates).
   std::optional<Image> image_at(double vergence) const;

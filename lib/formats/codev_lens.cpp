@@ -208,7 +208,7 @@ void CodevBuilder::build_zooms() {
   auto& list = in_.lens.configurations;
   list.resize(lens_.zoom_positions);
   for (std::size_t i = 0; i < list.size(); ++i) list[i].name = "position " + std::to_string(i + 1);
-  std::map<int, std::size_t> change_of;  // the same in all positions
+  std::map<int, std::size_t> change_of;  // surface to index of its change; the same in all positions
   for (const CodevZoom& z : lens_.zooms) {
     const bool lens_value = z.what == "thi" || z.what == "rdy" || z.what == "cuy";
     const auto setting = aperture_setting(z.what);

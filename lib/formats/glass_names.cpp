@@ -60,7 +60,7 @@ GlassNames::GlassNames(const GlassCatalogue& glasses) {
 const Glass* GlassNames::find(std::string_view name, std::span<const std::string> catalogues, std::optional<double> nd,
                               Numbers numbers) const {
   const auto rank = [&](const Glass& glass) {
-    double off = nd ? std::round(std::abs(glass.nd - *nd) / 1e-6) : 0;  // to the digits of the file
+    double off = nd ? std::round(std::abs(glass.nd - *nd) / 1e-6) : 0;  // rounded to the digits of the file
     constexpr double another_glass = 2e-3 / 1e-6;
     if (numbers == Numbers::leftovers) off = std::min(off, another_glass);
     const std::ptrdiff_t place = place_in(catalogues, glass);

@@ -130,7 +130,7 @@ Medium Import::glass(int line, std::string_view name, std::span<const std::strin
         std::ranges::find_if(other_names, [&](const auto& entry) { return same_bare(entry.first, name); });
     if (other != other_names.end()) found = names().find(other->second, catalogues, nd, numbers);
   }
-  // "L-TIM28_MOLD" is a moulded L-TIM28, "NBK7_SCHOTT" is an N-BK7.
+  // Examples: "L-TIM28_MOLD" is a moulded L-TIM28, "NBK7_SCHOTT" is an N-BK7.
   bool names_its_maker = false;
   if (const std::size_t tail = name.find_last_of('_'); !found && tail != std::string_view::npos && tail > 0) {
     const std::string maker_name(name.substr(tail + 1));

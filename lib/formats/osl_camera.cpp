@@ -40,8 +40,8 @@ std::string array(const std::string& name, std::span<const double> values) {
   return text + " };\n";
 }
 
-/// Bounds of the exit pupil as seen from a film point, in the plane of the last vertex: from, to along the direction of
-/// the film point from the axis; across perpendicular to it.
+/// Bounds of the exit pupil for a film point, in the plane of the last vertex. `from` and `to` are along the direction
+/// of the film point from the axis, `across` is perpendicular to this direction.
 struct Box {
   double from = std::numeric_limits<double>::infinity(), to = -std::numeric_limits<double>::infinity(), across = 0;
 

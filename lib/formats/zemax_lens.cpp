@@ -149,7 +149,7 @@ void Rows::term(const ZemaxSurface& s, int order, double coefficient, SurfaceRow
 void Rows::asphere(const ZemaxSurface& s, SurfaceRow& row) const {
   if (s.type == "STANDARD") return;
   if (s.type == "EVENASPH" || s.type == "ODDASPHE") {
-    // Powers of r up to r^20 and r^8.
+    // EVENASPH has even powers up to r^20, ODDASPHE all powers up to r^8.
     const int step = s.type == "EVENASPH" ? 2 : 1, last = s.type == "EVENASPH" ? 10 : 8;
     for (const auto& [number, value] : s.parameters) {
       if (value == 0) continue;

@@ -26,9 +26,9 @@ template <class R>
 struct IrisSectors {
   std::size_t count = 0;     ///< 0 for the unit disc
   const R* turns = nullptr;  ///< [count] sine and cosine of the angle from +y towards +x to the middle of the edge
-  /// The edge point with the fraction (1 + q) / 2 of the sector's area before it lies at the distance q across(2 q^2 -
-  /// 1) across, and at along(2 q^2 - 1) along, the direction to the middle of the edge. Coefficients by ascending
-  /// power, [edge_terms].
+  /// Edge points, in a frame across and along the direction to the middle of the edge. If the fraction (1 + q) / 2 of
+  /// the area of the sector lies before a point, its coordinates are (q across(2 q^2 - 1), along(2 q^2 - 1)).
+  /// Coefficients by ascending power, [edge_terms].
   const R *across = nullptr, *along = nullptr;
   const R* edges = nullptr;  ///< [count] the four members of each IrisEdge
 };

@@ -89,7 +89,7 @@ double IrisShape::share(double x, double y) const noexcept {
   const double square = x * x + y * y;
   const IrisSectors<double> s = sectors<double>();
   if (s.count == 0) return square;
-  // The point divided by `part` lies on the edge if distance part^2 - across part - bend square = 0.
+  // The point divided by `part` lies on the edge if distance * part^2 - across * part - bend * square = 0.
   double largest = 0;
   for (std::size_t k = 0; k < s.count; ++k) {
     const double* edge = s.edges + 4 * k;

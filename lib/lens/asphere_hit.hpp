@@ -157,8 +157,8 @@ struct Crossing {
   Mask<T> found, converged;
 };
 
-/// Steps of the search. The shortest interval is 1/64 of the part. After each decided interval an interval of twice the
-/// length may be tried without success, and six halvings come first.
+/// Steps of the search. The shortest interval is 1/64 of the part. After each interval that is decided, an interval of
+/// twice the length may be tried in vain; in addition, the first interval may need six halvings.
 inline constexpr int search_intervals = 64, search_steps = 2 * search_intervals + 8;
 
 /// Refines the crossing between `low` (below the surface in the sense of travel) and `high` (above the surface).

@@ -33,7 +33,7 @@ class PETZVAL_API CompiledWavelengths {
   double longest() const noexcept { return place_.longest; }
   /// True if a wavelength lies in the range, extended by the rounding of a float.
   bool covers(double nm) const noexcept { return place_.covers(nm); }
-  /// The wavelength mapped to -1 to 1 over the range.
+  /// Maps a wavelength of the range linearly to -1 to 1.
   double place(double nm) const noexcept { return place_.at(nm); }
 
   /// Position of the nearest compiled wavelength; count() if the wavelength is not covered.

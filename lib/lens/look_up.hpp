@@ -32,7 +32,7 @@ inline void look_up(const WavelengthRows<R>& given, const RayWavelengths& wavele
   const auto store = [&](std::size_t k, std::size_t o, const Values& values) {
     __builtin_memcpy(&to[k][o], &values, sizeof values);
   };
-  // First the table positions of all rays, in loops that vectorise best if the number of rays is a constant.
+  // Compute the table positions of all rays first, in loops that vectorise best if the number of rays is a constant.
   typename Native::Bit places[look_up_block];
   const auto for_each = [&](const auto& body) {
     if (count == look_up_block) {

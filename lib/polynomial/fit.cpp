@@ -97,7 +97,7 @@ Samples axial(Samples samples) {
   return samples;
 }
 
-/// Equal steps from 0 to 1; 0 if there is one step.
+/// Equal steps from 0 to 1; 0 if count is 1.
 double part(int k, int count) noexcept { return count > 1 ? static_cast<double>(k) / (count - 1) : 0; }
 
 /// The rims of the pupils.

@@ -134,7 +134,7 @@ class Aimer {
     return leave(from, Dual(s.x, 0), Dual(s.y, 1));
   }
 
-  /// True if directions in object space rotate in the opposite sense when directions at the stop rotate.
+  /// True if directions at the stop and directions in object space rotate in opposite senses.
   static bool mirrored(const Departure<Dual>& ray) noexcept {
     const Vec<Dual> e = ray.direction - ray.wanted;
     const auto part = [&](int i) { return Vec<double>{e.x.v[i], e.y.v[i], e.z.v[i]}; };

@@ -87,8 +87,8 @@ class BeamHeights {
  public:
   explicit BeamHeights(const Lens& lens) : lens_(lens), heights_(lens.surface_count(), 0.0) {}
 
-  /// Adds the beam of a field: rays through the rim of the stop, or through the last passing point on the way to the
-  /// rim.
+  /// Adds the beam of a field: rays through the rim of the stop or, if these are lost, through the last points before
+  /// the rim whose rays pass.
   /// @param mirrored true if the beam is symmetric about the meridian x = 0
   void add(const FieldPoint& point, bool mirrored) {
     const PupilPlane plane(lens_, point);

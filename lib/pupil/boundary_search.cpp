@@ -186,7 +186,7 @@ class Search {
     }
   }
 
-  /// Finds the ends of some pupils close to their predicted positions. Returns the pupils without success.
+  /// Finds the ends of some pupils close to their predicted positions. Returns the pupils whose ends were not found.
   std::vector<std::uint32_t> settle(std::span<const std::uint32_t> which) {
     constexpr double beside = 0.01;
     step_to_ends(which, beside);
@@ -297,7 +297,7 @@ class Search {
       const double half = lines[i].dy, low = lines[i].y + half * e.from, high = lines[i].y + half * e.to;
       found.middle = {lines[i].x, (low + high) / 2};
       found.half_axes[1] = (high - low) / 2;
-      // A clipped ring keeps the centre of the ring as its origin, although no ray passes there.
+      // A clipped ring keeps the centre of the complete ring as its origin, although no ray passes there.
       if (g.ring && g.y > low - g.radius && g.y < high + g.radius) {
         found.middle[1] = g.y;
         found.half_axes[1] = std::max(high - g.y, g.y - low);

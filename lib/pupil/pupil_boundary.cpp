@@ -82,8 +82,8 @@ class Tracer {
     bool disc = true;   ///< one span in each direction, beginning at the middle
     bool whole = true;  ///< no span reaches the end of the scan
   };
-  /// Finds all spans between the middle and `reach` that show in `steps` samples along each of `directions`, and spans
-  /// between two samples where the clearance indicates a passing ray.
+  /// Finds all spans between the middle and `reach` from `steps` samples along each of `directions`, and also spans
+  /// between two samples if the clearance indicates a passing ray.
   Seen scan(std::size_t directions, double reach, int steps, double tolerance) {
     begin(directions);
     sample(steps + 1, [&](std::size_t, int i) { return reach * i / steps; });

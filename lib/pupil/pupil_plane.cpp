@@ -57,8 +57,8 @@ void check(const Lens& lens, const FieldPoint& point, const Pupil& entrance) {
 }
 
 /// Direction of the ray between the point and a position in the plane; `place` is relative to the centre. The form
-/// (place - point) / distance contains no large numbers, and at infinity its first term is 0. A negative distance
-/// stands for a point that the rays reach after the plane, and reverses place - point.
+/// (place - point) / distance contains no large numbers, and at infinity its first term is 0. A negative distance means
+/// that the rays reach the point after the plane; it reverses place - point.
 Vec3<double> direction_from(const Vec3<double>& place, const Vec3<double>& towards,
                             double reciprocal_distance) noexcept {
   const Vec3<double> d = place * reciprocal_distance - towards;

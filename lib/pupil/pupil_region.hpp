@@ -10,8 +10,8 @@ namespace petzval::pupil_detail {
 /// Area of a region (mm^2) from the sum of its squared radii over all directions.
 double area_of(const PupilRegion& region, double squared_radii) noexcept;
 
-/// One direction of a region as a single interval from the middle with a single obscuration: the blocked interval
-/// around the middle if there is one, else the widest gap between two spans.
+/// One direction of a region, simplified to an interval from the middle and one obscuration. If rays are blocked at the
+/// middle, the obscuration is the blocked interval there, otherwise the widest gap between two spans.
 struct Extent {
   double obscured_from = 0, obscured_to = 0;  ///< radii; equal if there is no obscuration
   double to = 0;                              ///< radius of the outermost point that passes

@@ -48,7 +48,7 @@ class Sight {
   };
   Ends ends(std::span<const double> x, std::span<const double> y);
 
-  /// Largest absolute coordinate in which the point sees the surface through which rays enter.
+  /// Largest absolute coordinate, seen from the point, of the surface through which rays enter.
   double reach() const;
 
   /// Position of the chief ray, ignoring apertures; nullopt if no ray goes through the centre of the stop.

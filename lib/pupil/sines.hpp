@@ -10,8 +10,8 @@
 
 namespace petzval::pupil_detail {
 
-/// Maps positions in a plane to the sines of the angles at which the point sees them, times the distance of the point.
-/// The image of a surface close to the point stays bounded. For a point at infinity the map is the identity.
+/// Maps positions in a plane to the sines of their angles, seen from the point, times the distance of the point. The
+/// image of a surface close to the point stays bounded. For a point at infinity the map is the identity.
 class Sines {
  public:
   explicit Sines(const PupilPlane& plane) noexcept {

@@ -33,8 +33,8 @@ FilmGrid film_grid(const Lens& lens, const TwoPlanes& space, double film_radius)
 std::vector<PupilPolygon> grid_polygons(const Lens& lens, const TwoPlanes& space, const FilmGrid& grid, PolygonFit fit,
                                         std::size_t wavelength);
 
-/// Pupils of a tilted film by virtual film point. A pupil contains the pupils of all possible positions of the film
-/// point and of its mirror images.
+/// Pupils of a tilted film, for each virtual film point. A pupil contains the pupils of all possible positions of the
+/// film point and of its mirror images.
 /// @param upright the table of a lens with two mirror symmetries
 std::vector<PupilPolygon> tilted_grid_polygons(const FilmPupilTable& upright, const FilmTilt& tilt,
                                                const FilmGrid& grid, std::size_t wavelength);

@@ -166,7 +166,7 @@ std::vector<PupilPolygon> disc_polygons(std::span<const PupilDisc> discs, double
   std::vector<PupilPolygon> polygons;
   for (std::size_t i = 0; i <= strips; ++i) {
     const double height = film_radius * static_cast<double>(i) / strips;
-    // The overlap ends at the disc whose end is nearest.
+    // The overlap ends where the first of the discs ends.
     double low = -std::numeric_limits<double>::infinity(), high = -low;
     for (const PupilDisc& disc : discs) {
       low = std::max(low, disc.shift * height - disc.radius);

@@ -61,7 +61,7 @@ class PupilFinder {
     double x, y, half_x, half_y;
   };
 
-  /// The search box: the extrapolated pupil of a neighbour, in its size.
+  /// The search box: centred at the extrapolated pupil of a neighbour, and of the size of this pupil.
   std::optional<Box> lit_neighbour(const std::vector<PupilRegion>& pupils, std::size_t i) const {
     const std::size_t column = i % row_;
     const auto lit = [&](std::size_t at) { return at < pupils.size() && !pupils[at].empty(); };

@@ -19,7 +19,7 @@ struct FilmSamples {
 
 FilmSamples film_samples(const FilmPupilTable& pupils, bool azimuths_alike, std::size_t wavelength) {
   constexpr int radii = 32, around = 16, azimuths = 64;
-  // Lit radius of the film by azimuth.
+  // Radius of the lit film for each azimuth.
   const auto lit_at = [&](double turn) {
     const auto seen = [&](double radius) {
       return pupils.area({radius * std::sin(turn), radius * std::cos(turn)}, wavelength) > 0;
@@ -51,7 +51,8 @@ FilmSamples film_samples(const FilmPupilTable& pupils, bool azimuths_alike, std:
       }
       continue;
     }
-    // The pupil may be the union over all points and pass little: sample all of it, and its edge more densely.
+    // The pupil may be the union over many film points, of which a single point uses a small part: sample all of it,
+    // and its edge more densely.
     for (int k = 0; k < 16 * around; ++k, ++index) {
       const auto [turn, u, v] = points(index);
       const double azimuth = turn * azimuths;

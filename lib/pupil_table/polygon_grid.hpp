@@ -67,7 +67,7 @@ struct PolygonGrid {
   std::int32_t rows = 0, columns = 1, wavelengths = 0, primary = 0;
   R reach = 0, rows_per_mm = 0;  ///< distance of the farthest film point, mm
   bool obscured = false;         ///< true if at least one sector is partly obscured
-  int corrections = 0;           ///< largest error, in sectors, of the sector expected for equal areas; 0 if below half
+  int corrections = 0;  ///< largest error, in sectors, of the sector number expected for equal areas; 0 if below half
   GridStop<R> stop;
 };
 

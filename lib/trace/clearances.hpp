@@ -15,7 +15,7 @@ namespace petzval::trace_detail {
 /// obscurations of radius i, and of distance / R over the edges of the iris. It is continuous, and 0 at a rim. A ray
 /// blocked by a rim has the clearance v / (1 - v), in (-1, 0), where v < 0 is the value at that rim: at the first such
 /// rim with apertures, at the rim with the least value without apertures. A ray lost for another reason has a clearance
-/// below -1; the earlier the ray is lost, the lower it is.
+/// below -1, which is lower the earlier the ray is lost.
 /// @param rays `count` rays, which are replaced by their results, as by a batch with out = in
 /// @param clearances `count` values
 template <class T>

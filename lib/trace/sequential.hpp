@@ -52,7 +52,7 @@ struct NoObserver {
 ///
 /// One loop serves both directions of travel and every scalar type: derivatives, parts of a lens and drawings. The
 /// faster recurrence of trace() and of batches is tested against it.
-/// @param direction a unit vector within a few ulp; the direction of a transmitted ray is too
+/// @param direction a unit vector within a few ulp; the same holds for the direction of a transmitted ray
 /// @param observer called as observer(surface, point) for each hit, lens frame
 template <class T, class Observer = NoObserver>
 TraceState<T> trace(const LensView<Storage<T>>& lens, const Vec<T>& origin, const Vec<T>& direction,
