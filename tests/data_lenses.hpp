@@ -64,8 +64,7 @@ inline OpenLens without_the_rim_of_its_stop(Prescription p) {
   return {marked, compile(p)};
 }
 
-/// An ideal 50 mm lens of thickness 0, and so without an edge, with the stop on its front; without any rim, or with a
-/// rim on its rear.
+/// An ideal 50 mm lens of thickness 0, which has no edge. The stop is its front surface; only the rear may have a rim.
 inline Prescription open_singlet(std::optional<double> rear_semi_diameter = {}) {
   Prescription p;
   p.name = "open";

@@ -14,7 +14,7 @@
 
 namespace petzval::testing {
 
-/// Image height of the declared field, at most of 60 degrees.
+/// Image height of the declared field, which is limited to 60 degrees.
 inline double declared_radius(const Prescription& p, const Lens& lens) {
   const double field = radians(std::min(p.half_field_deg.value_or(10.0), 60.0));
   try {

@@ -34,7 +34,7 @@ struct CameraSetup {
   /// for an upright picture. A missing number of pixels follows from the film and square pixels.
   ///
   /// @param usual_columns  columns if neither number is given
-  /// @throws petzval::Error if --film-mm is invalid, or so slim that the picture would need more than 16384 pixels
+  /// @throws petzval::Error if --film-mm is invalid, or so narrow that the picture would need more than 16384 pixels
   petzval::Film film(std::uint32_t columns, std::uint32_t rows, std::uint32_t usual_columns) const;
 };
 

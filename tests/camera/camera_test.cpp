@@ -102,7 +102,7 @@ TEST(Camera, MarginSeesTheScene) {
     const CameraRay ray = camera.sample(beside);
     ASSERT_TRUE(ray) << name(model);
     EXPECT_EQ(ray.pdf_film, 1 / (24. * 16));
-    // Reciprocity holds on the margin: We divided by the densities is the weight.
+    // Reciprocity holds on the margin: the importance divided by the densities equals the weight.
     const Importance back = camera.importance({ray.ray.origin, -ray.ray.direction});
     ASSERT_TRUE(back) << name(model);
     EXPECT_NEAR(back.raster.x, -2, 1e-3);

@@ -164,8 +164,8 @@ TEST(FocalSurface, IsContinuousWhereAPointVanishes) {
   }
 }
 
-// A plane through three points is independent of their weights. Yet a point has to vanish without a jump, by its fade
-// and by its weight, in both precisions.
+// A plane through three points is independent of their weights. Nevertheless the surface must be continuous while the
+// fade or the weight of a point goes to 0, in both precisions.
 TEST(FocalSurface, IsContinuousWherePointsBecomeCollinear) {
   const auto value = [&](double fade, double weight, const FilmPoint& place) {
     const FocalPoint points[]{{.place = {-9, 0}, .inverse_distance = 1 / 1500.0},

@@ -160,7 +160,7 @@ TEST(ParaxialModel, FocusedPointsHavePointImages) {
       EXPECT_LT(ray.direction.z, 0);
       EXPECT_NEAR(glm::length(ray.direction), 1, 1e-15);
     }
-    // The image is upside down, and smaller by the distances from the principal points.
+    // The image is inverted; the magnification is the ratio of the distances from the principal points.
     const double magnification = behind / (z - data.front_principal_z);
     EXPECT_NEAR(point[0], 10 / magnification, 1e-9);
   }

@@ -19,7 +19,7 @@ double focus_behind(const petzval::Lens& lens) {
 }
 
 bool near(const char* what, double found, double wanted) {
-  std::cout << what << ": focus " << found << " mm behind the last vertex, wanted " << wanted << " mm\n";
+  std::cout << what << ": focus " << found << " mm behind the last vertex, expected " << wanted << " mm\n";
   return std::abs(found - wanted) < 1e-6 * wanted;
 }
 

@@ -190,8 +190,8 @@ TEST_F(BokehScene, IntegratorsAndModelsAgree) {
       }
     }
   }
-  // All models have the same exposure at the centre; corners of first-order models are brighter. The pinhole is left
-  // out: it does not blur the nearby lamp into the film.
+  // All models have the same exposure at the centre; corners of first-order models are brighter. The pinhole is not
+  // tested: without blur the light of the nearby lamp does not reach the film.
   for (const char* model : {"thin", "thin_two_disc", "polynomial_5", "exact_double"}) {
     const json report = render("model", {"--model", model, "--film-mm", "6x4", "--spp", "64"});
     const json exact = render("exact", {"--film-mm", "6x4", "--spp", "64"});

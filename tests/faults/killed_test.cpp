@@ -68,7 +68,7 @@ TEST(Killed, WriterLeavesTheOldOrTheNewFile) {
   }
   EXPECT_GT(found_ones, 0);
   EXPECT_LT(found_ones, 60);
-  EXPECT_GT(left_behind, 0) << "none was killed while it wrote";
+  EXPECT_GT(left_behind, 0) << "no process was killed during a write";
   fs::remove_all(folder);
 }
 

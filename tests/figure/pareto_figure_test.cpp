@@ -27,7 +27,7 @@ TEST(ParetoFigure, JoinsTheFrontOnLogarithmicAxes) {
   const auto front = paths(svg, "stroke-width=\"1.5\" stroke-linejoin").at(0);
   ASSERT_EQ(front.size(), 3u);
   EXPECT_NEAR(front[1].first - front[0].first, front[2].first - front[1].first, 0.05);  // a decade each
-  // Two decades down, then to the bottom, half a decade below the least error.
+  // The front falls by two decades, then to the lower edge of the frame.
   EXPECT_NEAR((front[2].second - front[1].second) / (front[1].second - front[0].second), 0.75, 0.01);
   EXPECT_NEAR(front[2].second, 70 + 420, 0.05);
 }

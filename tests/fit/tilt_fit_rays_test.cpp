@@ -262,8 +262,8 @@ TEST(RayTiltFit, HoldsTheLimitOptimally) {
 }
 
 TEST(RayTiltFit, LimitAppliesToItsFilm) {
-  // The film for curved images has another tilt than the film for ideal images, so that the limit holds one of both
-  // fits.
+  // The film for curved images has another tilt than the film for ideal images, so that only one of both fits may reach
+  // the limit.
   bool less = false, more = false;
   for (const unsigned seed : {1u, 2u, 3u, 4u, 5u, 6u}) {
     const Targets targets = tilted_plane(bundles().ideal()).targets(4, 0.25, 0.18, seed);

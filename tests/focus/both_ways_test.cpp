@@ -69,7 +69,8 @@ TEST(BothWays, ReturnToTheFilmInEveryLens) {
 
 TEST(BothWays, ReturnToTheFilmByExactRaysInEveryLens) {
   for (const Prescription& p : data_prescriptions()) {
-    // A rod lens lit to its equator: the blur across has the width of the rod on every film and is least inside.
+    // Not for a rod lens whose full width is lit: on every film the blur is as wide as the rod, and the smallest blur
+    // lies inside the rod.
     if (p.id == "cylinder_3.9mm") continue;
     SCOPED_TRACE(p.id);
     const Lens lens = compile(p);

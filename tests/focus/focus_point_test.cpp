@@ -50,7 +50,7 @@ FocusTarget only(const FocusPoint& p, const FocusMoment& when, const IdealLens& 
 }
 void expect_near(const Vec& a, const Vec& b, double tolerance) {
   EXPECT_LE(glm::length(a - b), tolerance)
-      << a.x << " " << a.y << " " << a.z << ", wanted " << b.x << " " << b.y << " " << b.z;
+      << a.x << " " << a.y << " " << a.z << ", expected " << b.x << " " << b.y << " " << b.z;
 }
 
 TEST(FocusPoints, AreAtTheirKeys) {

@@ -78,7 +78,7 @@ struct Found {
   double p[3], d[3], c;
 };
 
-/// The rays of the shader of a lens; empty without a compiler.
+/// Rays of the compiled shader of a lens; empty if there is no compiler.
 std::vector<Found> run(const Lens& lens, const Setting& s, const std::vector<Sample>& samples) {
   const fs::path folder = fs::path(::testing::TempDir()) / ("osl_" + std::to_string(::getpid()));
   fs::create_directories(folder);

@@ -310,7 +310,7 @@ TEST(Table, FirstOfSeveralStopsIsUsed) {
   EXPECT_TRUE(p.surfaces[2].stop);
   EXPECT_FALSE(p.surfaces[3].stop);
   EXPECT_NE(warning(p, "stop"), "no warning");
-  // Marks of aspheres, not of the stop.
+  // The stars mark aspheres, not the stop.
   const Prescription stars = read("r d nd semi note\n50 5 1.5 9 *\n-50 2 1 9 *\n0 90 1 5 -\n");
   EXPECT_TRUE(stars.surfaces[2].stop);
   EXPECT_NE(warning(stars, "*"), "no warning");
@@ -325,7 +325,7 @@ TEST(Table, TheFilmMayBeARow) {
   EXPECT_EQ(lens.surfaces.size(), 2u);
   EXPECT_EQ(lens.surfaces[1].thickness, 47.5);
   EXPECT_NE(warning(lens, "row"), "no warning");
-  // A stop behind the lens is no film.
+  // The last row is a stop, not the film.
   EXPECT_EQ(read("r d nd semi\n50 5 1.5 9\n-50 10 1 9\n0 0 1 5\n").surfaces.size(), 3u);
 }
 

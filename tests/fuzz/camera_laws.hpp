@@ -47,9 +47,9 @@ inline void check(const ImportanceSample& found, double rounding) {
   check(found.importance);
   require(density(found.pdf), "the density of a connection is finite and not negative");
   if (!found) return;
-  require(found.pdf > 0, "a connection has a density");
+  require(found.pdf > 0, "the density of a connection is positive");
   require(unit(found.direction, rounding) && finite(found.on_front), "a connection is finite");
-  require(found.distance >= 0, "a connection has a length");
+  require(found.distance >= 0, "the length of a connection is 0 or more");
 }
 
 inline void check(const Projection& seen) {

@@ -52,7 +52,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
       });
     }
     fuzz::done([&] { ideal(lens, bytes); });
-    fuzz::done([&] { numbers({paraxial_f_number(lens), film_side_f_number(lens)}, "f-numbers are numbers"); });
+    fuzz::done([&] { numbers({paraxial_f_number(lens), film_side_f_number(lens)}, "f-numbers are not NaN"); });
     fuzz::done([&] { fuzz::require(real_f_number(lens) >= 0, "an f-number is 0 or more"); });
     fuzz::done([&] {
       const double wanted = bytes.between(0.5, 64), found = real_f_number(with_f_number(lens, wanted));

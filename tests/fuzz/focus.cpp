@@ -41,7 +41,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
       case 2: return check(nearest_focus(lens, options));
       case 3: {
         const auto found = blur_diameter(lens, distance, options);
-        return fuzz::require(!found || *found >= 0, "a blur has a diameter");
+        return fuzz::require(!found || *found >= 0, "a blur diameter is 0 or more");
       }
       case 4: {
         const DepthOfField found = depth_of_field(lens, blur, options);
@@ -51,9 +51,9 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
       case 5: return check(hyperfocal(lens, blur, options));
       default: {
         const Lens focused = with_focus(lens, distance, options);
-        fuzz::require(std::isfinite(focused.film_z()), "a focused lens has the film of its focus");
+        fuzz::require(std::isfinite(focused.film_z()), "the film of a focused lens is finite");
         const auto growth = breathing(focused, film_z, options);
-        fuzz::require(!growth || !std::isnan(*growth), "breathing is a number");
+        fuzz::require(!growth || !std::isnan(*growth), "breathing is not NaN");
       }
     }
   });

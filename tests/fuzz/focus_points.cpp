@@ -27,14 +27,14 @@ std::vector<FocusTarget> wild_targets(fuzz::Bytes& bytes) {
 }
 
 void check(const Film& film) {
-  fuzz::require(!film.z_mm || !std::isnan(*film.z_mm), "a film has a place");
-  fuzz::require(std::isfinite(film.tilt_rad) && std::isfinite(film.swing_rad), "a film has a tilt");
+  fuzz::require(!film.z_mm || !std::isnan(*film.z_mm), "the position of a film is not NaN");
+  fuzz::require(std::isfinite(film.tilt_rad) && std::isfinite(film.swing_rad), "tilt and swing of a film are finite");
 }
 
 void tilt(const auto& lens, const std::vector<FocusTarget>& targets, const TiltOptions& options) {
   const TiltFit fit = fit_tilt(lens, targets, options);
   fuzz::require(fit.blurs.size() == targets.size(), "each target has a blur");
-  fuzz::require(!std::isnan(fit.rms_mm), "a fit has an error");
+  fuzz::require(!std::isnan(fit.rms_mm), "the error of a fit is not NaN");
   check(fit.film);
   if (!fit) return;
   fuzz::require(fit.film.z_mm && std::isfinite(*fit.film.z_mm), "the position of a fitted film is finite");

@@ -78,7 +78,7 @@ void check(const Blurred& picture, bool tame) {
   if (!tame) return;
   for (std::size_t i = 0; i < picture.rgba.size(); ++i) {
     fuzz::require(std::isfinite(picture.rgba[i]), "a picture of finite colours is finite");
-    if (i % 4 == 3) fuzz::require(picture.rgba[i] >= 0 && picture.rgba[i] <= 1.001f, "alpha is a share");
+    if (i % 4 == 3) fuzz::require(picture.rgba[i] >= 0 && picture.rgba[i] <= 1.001f, "alpha is from 0 to 1");
   }
 }
 

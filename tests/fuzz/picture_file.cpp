@@ -20,7 +20,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   const auto& path = file.holding(bytes);
   const auto whole = [](const RgbImage& image) {
     fuzz::require(image.pixels.size() == std::size_t(image.width) * std::size_t(image.height) * 3,
-                  "a picture is whole");
+                  "an image has a value for each pixel and channel");
   };
   if (bytes.starts_with('P')) {
     fuzz::done([&] { whole(read_pfm(path)); });
@@ -33,7 +33,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
       for (const ExrPart& part : read_exr_parts(path)) {
         for (const ExrChannel& channel : part.channels) {
           fuzz::require(channel.values.size() == std::size_t(part.width) * std::size_t(part.height),
-                        "a channel is whole");
+                        "a channel has a value for each pixel");
         }
       }
     });

@@ -30,13 +30,14 @@ void aimed(const Lens& lens, fuzz::Bytes& bytes) {
 }
 
 void boundary(const Lens& lens, const PupilBoundary& found, fuzz::Bytes& bytes) {
-  fuzz::require(std::isfinite(found.area()) && found.area() >= 0, "a pupil has an area");
+  fuzz::require(std::isfinite(found.area()) && found.area() >= 0, "the area of a pupil is finite and not negative");
   for (const PupilSpan& span : found.spans) {
     fuzz::require(span.from_radius <= span.to_radius, "the end of a span is not inside its start");
     const Ray<double> ray = found.plane.ray(span.to.x, span.to.y);
     // Limits (README): rays start within 1e9 mm.
     if (!(std::hypot(span.to.x, span.to.y) < 1e9)) continue;
-    fuzz::require(trace(lens, ray, {.travel = found.plane.travel()}).transmitted(), "the ray of a rim passes");
+    fuzz::require(trace(lens, ray, {.travel = found.plane.travel()}).transmitted(),
+                  "a ray to the end of a span passes");
   }
   const PupilSampler sampler(found);
   if (sampler.empty()) return;

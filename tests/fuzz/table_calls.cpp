@@ -99,7 +99,7 @@ void places(const FilmPupilTable& table, fuzz::Bytes& bytes) {
   for (std::size_t i = 0; i < count; ++i) {
     const FilmPoint film{n[0][i], n[1][i]};
     const bool one = table.contains(film, n[2][i], n[3][i], wavelength);
-    fuzz::require(clearances[i] >= -1 && clearances[i] <= 1, "a clearance is -1 to 1");
+    fuzz::require(clearances[i] >= -1 && clearances[i] <= 1, "a clearance is from -1 to 1");
     // Skips points next to edges, and at denormal distances from the centre of a polygon.
     constexpr double edge = 1e-9;
     const Vec2<double> middle = table.middle(film, wavelength);
@@ -111,9 +111,9 @@ void places(const FilmPupilTable& table, fuzz::Bytes& bytes) {
     const double area = table.area(film, wavelength), angle = table.projected_solid_angle(film, wavelength);
     fuzz::require(
         std::isfinite(area) && area >= 0 && std::isfinite(angle) && angle >= 0 && angle < 2 * std::numbers::pi,
-        "a pupil has an area");
-    if (one) fuzz::require(area > 0, "a pupil that contains a point has an area");
-    fuzz::require(fuzz::finite(table.middle(film, wavelength)), "a pupil has a middle");
+        "area and solid angle of a pupil are finite and not negative");
+    if (one) fuzz::require(area > 0, "the area of a pupil that contains a point is positive");
+    fuzz::require(fuzz::finite(table.middle(film, wavelength)), "the centre of a pupil is finite");
     const auto by = table.derivatives(film, bytes.number(0, 1), n[3][i], wavelength);
     fuzz::require(fuzz::finite(by.by_film_x) && fuzz::finite(by.by_film_y), "derivatives of a sample are finite");
   }

@@ -323,7 +323,7 @@ TEST(PolynomialFit, EveryWavelengthHasItsFit) {
     const Lines<double> lines = lines_through<double>(pupils, 1000, 5, w);
     Lines<double> rays = lines;
     EXPECT_LT(1e3 * focal_length * errors(lens, polynomial, rays.through(polynomial, {w}), lines, w).rms_rad, 0.1);
-    // The fit at another wavelength has the error of the chromatic aberration.
+    // With the fit of another wavelength the error is the chromatic aberration.
     const std::size_t other = (w + 1) % 3;
     EXPECT_GT(1e3 * focal_length * errors(lens, polynomial, rays.through(polynomial, {other}), lines, w).rms_rad, 1);
   }

@@ -137,8 +137,8 @@ TYPED_TEST(AsphereSearch, WeakTermsChangeHitsByTheirSize) {
           if (found_one != passes || (passes && !(std::hypot(off.x, off.y, off.z) < near))) {
             ADD_FAILURE() << "R " << radius << ", conic " << conic << ", " << testing_batches::text(options) << ", ray "
                           << i << ": " << petzval::name(found.fates[i]) << " at " << other.x << " " << other.y << " "
-                          << other.z << ", wanted " << petzval::name(wanted.fates[i]) << " at " << hit.x << " " << hit.y
-                          << " " << hit.z;
+                          << other.z << ", expected " << petzval::name(wanted.fates[i]) << " at " << hit.x << " "
+                          << hit.y << " " << hit.z;
           }
         }
       }

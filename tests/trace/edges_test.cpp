@@ -134,7 +134,7 @@ TYPED_TEST(EdgesOf, ClosedApertureTransmitsTheAxisOnly) {
     for (const Travel travel : {Travel::to_film, Travel::to_scene}) {
       const double sense = travel == Travel::to_film ? 1 : -1;
       expect_fate(lens, ray_of<TypeParam>(0, 0, -9 * sense, 0, 0, sense), travel, passes, "axis");
-      expect_fate(lens, ray_of<TypeParam>(1e-6, 0, -9 * sense, 0, 0, sense), travel, clipped, "beside the axis");
+      expect_fate(lens, ray_of<TypeParam>(1e-6, 0, -9 * sense, 0, 0, sense), travel, clipped, "next to the axis");
     }
   }
 }
