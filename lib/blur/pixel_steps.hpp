@@ -8,7 +8,7 @@
 
 namespace petzval::blur_detail {
 
-/// Inverse depth that means: the pixel has no surface behind the ray.
+/// Stands for the inverse depth of a surface behind the ray if the pixel has no such surface.
 inline constexpr float no_surface = -1e30f;
 
 // Anonymous namespace: the code is compiled for several instruction sets, and the linker must not merge the versions.

@@ -14,7 +14,7 @@ inline RayMatrix line_at(const TwoPlanes& space, double z) noexcept {
   return {1 - far, far, -slope, slope};
 }
 
-/// First-order maps of rays from the planes of the image space to the scene, through the stop.
+/// First-order maps of rays from the two planes of image space (TwoPlanes) through the stop to the scene.
 struct StopMaps {
   RayMatrix from_film;  ///< film and pupil point to height and slope in the stop, before its surface
   RayMatrix to_front;   ///< from the stop to the plane of the first vertex, in front of the lens

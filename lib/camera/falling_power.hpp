@@ -14,7 +14,7 @@ namespace {
 inline double power(double base, double exponent) noexcept {
   constexpr double ln2 = 0.693147180559945309417;
   constexpr std::int64_t root_half = 0x3fe6a09e667f3bcd;  // the bits of 0.70710678
-  // base = 2^whole fraction, with a fraction close to 1.
+  // base = 2^whole * fraction, with a fraction close to 1.
   const auto bits = __builtin_bit_cast(std::int64_t, base);
   const std::int64_t whole = (bits - root_half) >> 52;
   const auto fraction = __builtin_bit_cast(double, bits - (whole << 52));

@@ -84,7 +84,7 @@ void check(const FocusMoment& moment) {
 }
 
 /// Interpolates a number over the keys.
-/// @param of of(k): its value at key k
+/// @param of function; of(k) is the number at key k
 double at_time(const FocusPoint& point, double time, const auto& of) {
   if (point.keys.size() == 1) return of(0);
   std::vector<double> times, values;

@@ -96,7 +96,8 @@ class JsonReader {
 /// Infinity and NaN.
 PETZVAL_API std::string json_position(std::string_view json, std::string path);
 
-/// The shortest decimals that read back, without an exponent from 1e-4 to 1e16, and always with a point.
+/// The shortest decimal number that is read back as the same double. It always has a decimal point, and no exponent
+/// from 1e-4 to 1e16.
 PETZVAL_API std::string json_number(double value);
 
 /// A text in quotes, with escapes.

@@ -47,7 +47,8 @@ struct WavelengthRows {
   std::size_t length = 0;          ///< length of the rows by_position
   std::int32_t compiled = 0;
   std::int32_t cells = 0;
-  const R* by_nm = nullptr;     ///< [number][power of the fraction in a cell] rows of one number per cell and a zero
+  const R* by_nm =
+      nullptr;  ///< rows [number][power of the fraction in a cell], each with one number per cell and a zero
   std::size_t cell_length = 0;  ///< length of the rows by_nm
   R shortest = 1, longest = 0;  ///< the range, nm; empty if only compiled wavelengths are known
   R cells_per_nm = 0;

@@ -86,7 +86,7 @@ struct EntrancePupilTable::Data {
   double least_ball(std::span<const std::vector<Ray<double>>> rays, double first, double last) const noexcept;
 
   /// Makes the nodes of all wavelengths.
-  /// @param of_wavelength of_wavelength(w): makes the nodes of wavelength w
+  /// @param of_wavelength function; of_wavelength(w) makes the nodes of wavelength w
   template <int dimensions, class OfWavelength>
   void fill(std::size_t wavelengths, int threads, const OfWavelength& of_wavelength) {
     std::vector<SceneNodes<dimensions>> tables(wavelengths);

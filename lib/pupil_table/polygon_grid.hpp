@@ -297,7 +297,7 @@ struct SeenPoint {
 };
 
 /// The polynomials of StopLayout.
-/// @param number number(i): term i
+/// @param number function; number(i) is term i
 template <int dimensions, class T, class Number>
 PETZVAL_INLINE SeenPoint<T> seen_point(const Number& number, const Point<T>& stop) noexcept {
   const T &x = stop.x, &y = stop.y;

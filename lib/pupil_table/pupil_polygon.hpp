@@ -24,7 +24,7 @@ struct PupilPolygon {
   /// Area, mm^2.
   double area() const noexcept;
 
-  /// Scales the corners outwards; obscurations shrink by the same factor, at their outer ends.
+  /// Scales the corners outwards, and divides the outer radii of obscurations by the same factor.
   void widen(double by) noexcept;
 
   /// Radial fraction of a position: 0 at the middle, 1 at the outer edge; -1 if the position is obscured, infinite if

@@ -22,7 +22,7 @@ class RayClearances {
  public:
   /// @param passing must outlive this object
   RayClearances(const ScenePassing& passing, std::size_t wavelength) : passing_(passing), wavelength_(wavelength) {}
-  /// @param ray_at ray_at(i): ray i of `count` rays
+  /// @param ray_at function; ray_at(i) is ray i of `count` rays
   /// @param clearances results as of PlaceClearances; only the signs are meaningful
   template <class RayAt>
   void operator()(std::size_t count, const RayAt& ray_at, double* clearances) {

@@ -71,7 +71,7 @@ struct Sector {
 
 /// Index of the sector that contains a sample, for sectors of nearly equal areas.
 /// @param area area before the sample
-/// @param before before(k): area before sector k; before(polygon_corners): area of the polygon
+/// @param before function; before(k) is the area before sector k, before(polygon_corners) the area of the polygon
 template <class AreaBefore>
 inline std::size_t sector_of_area(double area, const AreaBefore& before) noexcept {
   constexpr double last = polygon_corners - 1;

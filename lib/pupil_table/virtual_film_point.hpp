@@ -19,7 +19,7 @@ struct VirtualFilmPoint {
 };
 
 /// Clearances, in the pupils of the upright film, of N rays through positions in the pupil plane.
-/// @param from from(i): the VirtualFilmPoint of ray i
+/// @param from function; from(i) is the VirtualFilmPoint of ray i
 template <class From>
 void upright_clearances(const FilmPupilTable& upright, std::size_t wavelength, std::size_t count, const From& from,
                         const double* x, const double* y, double* clearances) {
