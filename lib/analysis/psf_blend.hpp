@@ -7,8 +7,9 @@
 
 namespace petzval::analysis_detail {
 
-/// A kernel and its weights in two blends, each with the sum 1. smooth: polynomials through all surrounding nodes, with
-/// some negative weights. linear: lines through adjacent nodes, 0 for other nodes.
+/// A kernel and its weights in two blends. In each blend the sum of the weights is 1. The weights `smooth` belong to
+/// polynomials through all surrounding nodes, and some are negative. The weights `linear` belong to lines through
+/// adjacent nodes, and are 0 for other nodes.
 struct WeightedKernel {
   const PsfKernel* kernel;
   double smooth, linear;

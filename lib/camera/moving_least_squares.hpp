@@ -43,7 +43,8 @@ void check(const WeighedValue& point, double side, const std::string& where);
 /// computed in double. Sources: Lancaster and Salkauskas 1981; weights of Lee et al. 2010, section 5.2.
 class PETZVAL_API MovingLeastSquares {
  public:
-  /// where: prefix of messages. side: side of the picture, mm: the root of its area.
+  /// @param where prefix of messages
+  /// @param side square root of the area of the picture, mm
   /// @throws Error if numbers are not finite, coordinates exceed 1e6 sides, weights are negative, fades are outside
   ///               [0, 1], all weights are 0, beta is outside [1, 8], or side is not above 0
   MovingLeastSquares(const std::string& where, std::span<const WeighedValue> points, double side, SurfaceKind kind,

@@ -28,7 +28,7 @@ struct LeastSquaresJob {
   double to_scaled = 1, reach = 0, from_scaled = 1;
 };
 
-/// out: values at `count` positions in mm.
+/// Computes the values `out` at `count` positions (mm).
 struct LeastSquaresLoops {
   void (*values)(const LeastSquaresJob& job, std::size_t count, const double* x, const double* y, double* out) noexcept;
 };

@@ -53,7 +53,8 @@ class ParaxialModel {
   static constexpr bool linear_in_slopes = true;
   static constexpr bool any_wavelength = true;
 
-  /// film_radius: distance of the farthest film point from the axis, mm. rim: clips the pupils.
+  /// @param film_radius distance of the farthest film point from the axis, mm
+  /// @param rim clips the pupils
   /// @throws Error  if the model is not of first order; if the lens is afocal, has no pupils or no finite pupil that
   ///                the model needs; for a pinhole or two discs if it has cylinders; if the film lies in the image of
   ///                the stop or, for thin lenses, in the rear principal plane; and as FilmPupilTable::cut_by_rim()

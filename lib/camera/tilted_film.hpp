@@ -59,7 +59,7 @@ double upright_radius(const LensFacts& facts, const Film& film, ModelKind model)
 /// Immutable, cheap to copy, thread-safe.
 class PETZVAL_API TiltedFilm {
  public:
-  /// pupils: pupils of the model, for a film of upright_radius().
+  /// @param pupils pupils of the model, for a film of radius upright_radius()
   /// @throws Error  if the film is no rectangle, is tilted by a quarter turn or more or is close to the pupil plane at
   ///                any time, or if the pupils cover a smaller film
   TiltedFilm(const Film& film, const FilmPupilTable& pupils, int threads = 1);

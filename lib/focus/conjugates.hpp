@@ -51,7 +51,7 @@ double nearest_p(const Conjugates& c) noexcept;
 /// The solution if no subject has a real image.
 FocusSolution no_focus(const Conjugates& c) noexcept;
 
-// Paraxial solvers. distance: positive or infinite.
+// Paraxial solvers. `distance` must be positive and may be infinite.
 FocusSolution paraxial_focus(const Conjugates& c, double distance) noexcept;
 FocusSolution paraxial_subject(const Conjugates& c, double film_z) noexcept;
 FocusSolution paraxial_nearest(const Conjugates& c) noexcept;

@@ -117,7 +117,8 @@ Vec3<double> seen(const ScenePoint& place, double principal_z) {
   return {point.x, point.y, point.inverse_distance};
 }
 
-/// nullopt if a vertex is not finite, or if the path runs from a position behind the lens to infinity.
+/// The position of a point at a moment; nullopt if a vertex is not finite, or if the path runs from behind the lens to
+/// infinity.
 std::optional<ScenePoint> place_at(const IdealLens& lens, const FocusPoint& point, const FocusMoment& moment) {
   if (const OnTriangle* triangle = only_triangle(point)) {
     std::array<double, 3> parts{};

@@ -34,7 +34,8 @@ struct RayPolynomial::Data {
 
   Data(int degree, const Domain& domain, std::vector<Fit> fits, std::optional<std::size_t> primary);
 
-  /// Coefficients at a wavelength; null if there is no fit. nm: buffer for interpolated coefficients.
+  /// Coefficients at a wavelength; null if there is no fit.
+  /// @param nm buffer for interpolated coefficients
   template <class R>
   struct Room {
     std::array<R, polynomial_detail::most_coefficients> coefficients;

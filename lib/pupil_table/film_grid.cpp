@@ -24,7 +24,7 @@ using pupil_detail::PupilGuess;
 
 constexpr std::size_t grid_steps = 8;  // steps between the nodes of an axis
 constexpr std::size_t probes = 16384;
-constexpr std::size_t grid_directions = 64;  // directions of the regions behind the polygons
+constexpr std::size_t grid_directions = 64;  // directions of the regions from which polygons are made
 
 /// Predictions from rays aimed at the centre and the rim of the stop. Aiming is slow: in each row, only about as many
 /// points are aimed as are searched in full, and predictions between them are interpolated.

@@ -101,7 +101,7 @@ std::vector<PupilPolygon> polygons_of(double lit_radius, PolygonFit fit, const F
     return nullptr;
   };
   std::vector<PupilPolygon> polygons(strips + 1);
-  std::vector<const PupilRegion*> shown(strips + 1);  // the pupils behind the polygons
+  std::vector<const PupilRegion*> shown(strips + 1);  // the pupils from which the polygons were made
   for (std::size_t i = 0; i <= strips; ++i) {
     const std::size_t at = parts * i;
     shown[i] = first_lit(at);

@@ -13,7 +13,7 @@
 
 namespace petzval::pupil_table_detail {
 
-inline constexpr std::size_t region_directions = 128;  ///< directions of the regions behind the polygons
+inline constexpr std::size_t region_directions = 128;  ///< directions of the regions from which polygons are made
 
 /// Number of strips between the heights of polygons. Polygons of equal area define the irradiance, up to the edge of
 /// the lit film. Enclosing polygons may be coarser: they lose 3 samples in 10,000 more than with 64 strips.

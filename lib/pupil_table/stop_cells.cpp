@@ -88,8 +88,8 @@ Place corner(const PupilPolygon& polygon, std::size_t k) {
   return {polygon.corners[k % polygon_corners].x, polygon.corners[k % polygon_corners].y};
 }
 
-/// Calls take() for rays through points of the lines from the middle of a polygon to its corners, at some fractions of
-/// the lines.
+/// Calls take() for rays through points between the middle of a polygon and its corners, at the given fractions of the
+/// distance.
 template <class Take>
 void for_rays(const PupilPolygon& polygon, std::size_t step, std::span<const double> parts, const Take& take) {
   for (std::size_t k = 0, i = 0; k < polygon_corners; k += step, ++i) {

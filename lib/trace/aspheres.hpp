@@ -56,8 +56,8 @@ PETZVAL_INLINE Height<R> height(const kernel::Step<R>& s, const kernel::Asphere<
   return {z - V(s.sense) * sag.z, pz - slope * (ux * px + uy * py), slope, sag.defined};
 }
 
-/// Result of a search. stands: the result of Newton's iteration is the first crossing. beside: the ray passes outside
-/// the aperture.
+/// Result of a search. `stands`: the result of Newton's iteration is the first crossing. `beside`: the ray passes
+/// outside the aperture.
 enum class Outcome : std::uint8_t { open, stands, crosses, beside, lost };
 
 template <class R>
