@@ -32,8 +32,8 @@ class CountsIn {
   std::vector<std::uint32_t> before_;  ///< number of highlights in the blocks above and to the left
 };
 
-/// Bright pixels that few rays would show as patterns of dots. They are removed from the layers, and the light of each
-/// is distributed over the pixels whose rays meet it.
+/// Bright pixels that would appear as patterns of dots with few rays. They are removed from the layers, and the light
+/// of each is distributed over the pixels whose rays meet it.
 class Highlights {
  public:
   Highlights(const LayerData& layers, const LensRays& rays, const GatherOptions& options, int overscan);

@@ -56,8 +56,8 @@ struct LensRays::Data {
   double error_px = 0, largest_slope = 0;
   bool shift_invariant = false;
 
-  /// Rays of a channel over an area of the picture, for light that few rays would show as dots. The pupil points are
-  /// the first points of a sequence in which every run of points covers the pupil uniformly.
+  /// Rays of a channel over an area of the picture, for lights that would appear as dots with few rays. The pupil
+  /// points are the first points of a sequence in which every run of points covers the pupil uniformly.
   blur_detail::RayTable dense(const blur_detail::RasterArea& area, std::size_t channel, std::size_t count) const;
 
   std::size_t sets() const noexcept { return static_cast<std::size_t>(options.sets); }

@@ -29,7 +29,6 @@ class ExactModel {
   void to_film(std::size_t count, const RayArrays<const double>& rays, const RayWavelengths& wavelengths,
                const TwoPlaneRays<double>& lines, RayFate* fates) const noexcept;
 
-  /// One ray.
   RayFate to_scene(const TwoPlaneRay& line, Wavelength wavelength, Ray<double>& ray) const noexcept;
   /// One ray with its derivatives, in double.
   RayDerivatives to_scene(const TwoPlaneRayDerivatives& line, Wavelength wavelength) const noexcept;

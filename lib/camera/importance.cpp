@@ -117,7 +117,7 @@ EntrancePupilTable entrance_of(const Lens& lens, const AnyRayModel& model, int t
     return entrance_of(with_iris(lens, {}), PolynomialModel(polynomial->polynomial(), model.pupils().of_round_stop()),
                        threads);
   }
-  // A pinhole needs only the front of the lens, and no rays.
+  // A pinhole needs no rays, only the front of the lens.
   if (model.pinhole()) {
     return EntrancePupilTable(lens, std::vector<std::vector<Ray<double>>>(model.pupils().wavelengths()), {});
   }

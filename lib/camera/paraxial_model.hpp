@@ -78,7 +78,6 @@ class ParaxialModel {
   template <class T>
   PETZVAL_API void to_scene(std::size_t count, const TwoPlaneRays<const T>& lines, const RayWavelengths& wavelengths,
                             const RayArrays<T>& rays, RayFate* fates) const noexcept;
-  /// One ray.
   PETZVAL_API RayFate to_scene(const TwoPlaneRay& line, Wavelength wavelength, Ray<double>& ray) const noexcept;
   /// One ray with its derivatives.
   PETZVAL_API RayDerivatives to_scene(const TwoPlaneRayDerivatives& line, Wavelength wavelength) const noexcept;

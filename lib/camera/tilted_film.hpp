@@ -21,7 +21,6 @@ struct PETZVAL_API TiltedPlane {
   double travel = 0;                            ///< along the axis, relative to the upright film's distance
 
   FilmPoint virtual_point(const FilmPoint& film) const noexcept;
-  /// The film point of a virtual point.
   FilmPoint point(const FilmPoint& virtual_point) const noexcept;
   /// Distance of the upright film from the pupil plane divided by the distance of the film point, minus 1.
   double nearer_by(const FilmPoint& virtual_point) const noexcept;

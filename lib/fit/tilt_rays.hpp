@@ -10,8 +10,8 @@ namespace petzval::fit_detail {
 
 /// The blur of a bundle of exact rays: the distances of all hits from their centroid, scaled so that the sum of their
 /// squares is the squared diameter. Unlike the diameter, the distances are smooth at the minimum. A target with a blur
-/// is fitted as a sharp target on a nearer film, at the distance whose defocus causes the blur: its squared diameter is
-/// the sum of the squared defocus and the least squared diameter.
+/// is fitted as a sharp target on a nearer film, at the distance whose defocus causes the blur. (The square of a
+/// diameter is the square of the defocus plus the square of the least diameter.)
 class RayBlur final : public BlurErrors {
  public:
   /// @param wanted signed diameter in units of the frame

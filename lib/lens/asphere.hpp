@@ -30,7 +30,7 @@ inline constexpr int asphere_rings = 16;
 template <class R>
 struct Asphere {
   Quadric<R> base;
-  R height = 1;  ///< described up to this height: the clear semi-diameter, or less if steep
+  R height = 1;  ///< described up to this height: the clear semi-diameter, or less if the surface is too steep
   R rim2 = std::numeric_limits<R>::infinity();  ///< height^2 if there is a rim, which vignettes rays
   int even_count = 0, odd_count = 0;
   std::array<R, max_asphere_order / 2> even{};  ///< coefficients of rho^2, rho^4, ...

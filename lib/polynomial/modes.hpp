@@ -20,7 +20,7 @@ struct FitModes {
 /// It takes as many modes as are needed to reduce the norm of the residual coefficients of every fit to a twentieth of
 /// the error of the fit plus 5e-8 rad, which is below the rounding of float; at most most_modes. The fits of a lens
 /// change with the dispersion of its glasses: for any number of fits, four or five modes suffice.
-/// @param coefficients by fit, the half for directions first
+/// @param coefficients for each fit; the first half is for directions, the second half for offsets
 FitModes find_modes(const std::vector<RayPolynomial::Fit>& fits, const std::vector<std::vector<double>>& coefficients);
 
 }  // namespace petzval::polynomial_detail

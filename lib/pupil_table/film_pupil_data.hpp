@@ -83,7 +83,6 @@ struct FilmPupilTable::Data {
   FilmPupilTable with_stop(const Iris& iris, const pupil_table_detail::StopOf& stop_of, int threads = 1) const;
 
   std::size_t nodes() const noexcept { return (rows + 1) * (dimensions == 1 ? 1 : columns + 1); }
-  /// The film point of a node.
   FilmPoint node_point(std::size_t node) const noexcept;
   /// The polygon at a node as passed to add(), without obscurations.
   pupil_table_detail::PupilPolygon node(std::size_t wavelength, std::size_t node) const noexcept;

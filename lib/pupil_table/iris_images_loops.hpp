@@ -60,7 +60,6 @@ struct IrisImageLoopsOf {
 struct IrisImageLoops {
   IrisImageLoopsOf<float> single;
   IrisImageLoopsOf<double> twice;
-  /// One sample.
   PupilSample (*one)(const SeenIris<double>&, const ImageSections<double>&, double film_x, double film_y, double u,
                      double v) noexcept;
 

@@ -12,7 +12,6 @@
 namespace petzval {
 namespace {
 
-/// Samples of the pupils of a film.
 struct FilmSamples {
   std::vector<double> film_x, film_y, pupil_x, pupil_y;
 };
