@@ -117,7 +117,7 @@ TEST(BrownConrady, HasNoPoleWithinTheFilm) {
         distortion_of(lens, small_film(0.83 * std::min(p.image_diagonal_mm.value_or(400), image_circle_mm(lens, 0.1))));
     for (const auto direction : directions) {
       const BrownConrady fit = fit_brown_conrady(distortion, {.direction = direction});
-      // Up to the edge of the field, whose radius differs between both images.
+      // The range ends at the edge of the field, whose radius differs between both images.
       const double tangent = std::tan(fit.field_rad), step = tangent / 200;
       const bool in = direction == BrownConradyDirection::to_undistorted;
       double r = 0;

@@ -101,7 +101,7 @@ TEST_P(Promise, HoldsForOtherSamples) {
       if (candidate.model == choices[k].model) {
         EXPECT_TRUE(inside(1)) << "budget " << k;
       }
-      // Samples may miss sharp minima of the blur, where the result is only an upper bound.
+      // Samples may miss sharp minima of the blur; then the result is only an upper bound.
       if (!budget.max_of_blur && candidate.ns_per_ray < candidate_of(choices[k], choices[k].model).ns_per_ray) {
         EXPECT_FALSE(inside(0.9)) << "budget " << k;
       }
@@ -218,8 +218,8 @@ bool says(const std::vector<std::string>& lines, const std::string& part) {
   return std::ranges::any_of(lines, [&](const std::string& l) { return l.find(part) != std::string::npos; });
 }
 
-// A ray that only the model or only the lens transmits counts in pupil_shape only: the limit in pixels ignores that a
-// thin lens has a round pupil where the lens has cat's eyes.
+// A ray that only one of model and lens transmits counts in pupil_shape only. The limit in pixels therefore ignores
+// that the pupil of a thin lens is round where the lens has cat's eyes.
 TEST(ChooseModel, RequiresThePupilsOfTheLensByDefault) {
   const Lens lens = focused("modern_41mm_f1.45", 3000);
   const std::vector<ErrorBudget> budgets{{.max_px = 40}, {.max_px = 40, .pupil_shape = {}}, {}};

@@ -169,8 +169,8 @@ TEST(RgbWeights, FollowTheOrderOfTheSet) {
 }
 
 TEST(RgbWeights, BandsEndHalfWayBetweenWavelengths) {
-  // Trapezoidal sums over the 5 nm table for the bands 360-500, 500-580 and 580-830 nm, in light of equal power.
-  // Daylight as white point changes all by one colour transform.
+  // Trapezoidal sums over the 5 nm table for the bands 360-500, 500-580 and 580-830 nm, in light of equal power. A
+  // white point of daylight applies one colour transform to all weights.
   constexpr std::array<double, 4> edges{360, 500, 580, 830};
   std::array<double, 3> luminance{};
   for (std::size_t band = 0; band < 3; ++band) {
@@ -225,7 +225,7 @@ TEST(RgbTriple, GivesEachChannelAWavelength) {
   }
 }
 
-/// The message of load for a file with this text, without the file name.
+/// The error message for a file with this text, without the file name.
 template <class Load>
 std::string complaint(const std::string& text, const Load& load) {
   const auto file = std::filesystem::path(::testing::TempDir()) / "petzval_colour_test.csv";

@@ -52,7 +52,7 @@ TEST(CountPoints, IgnoresPointsOutside) {
 }
 
 TEST(CountPoints, CountsExactlyInFullPixels) {
-  // At the limits of integers in float (2^24), 32 bits and double (2^53).
+  // Counts at the limits of integers in float (2^24), 32 bits and double (2^53).
   for (const std::uint64_t full : {std::uint64_t(1) << 24, std::uint64_t(1) << 32, std::uint64_t(1) << 53}) {
     std::vector<std::uint64_t> counts{full};
     const std::vector<double> places(3, 0.0);

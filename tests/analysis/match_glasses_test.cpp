@@ -76,7 +76,7 @@ TEST(MatchGlasses, MediaFarFromEveryGlassAreKept) {
   ASSERT_EQ(matched.unmatched.size(), 2u);
   EXPECT_EQ(matched.unmatched[0].command, "surface 0");
   EXPECT_EQ(matched.unmatched[1].command, "surface 1");
-  // A wide tolerance takes the first medium.
+  // With a wide tolerance the first medium has a match.
   EXPECT_EQ(match_glasses(p, glasses(), {.nd = 0.1, .vd = 100}).matched.size(), 1u);
   EXPECT_LE(match_glasses(doublet(), glasses(), {.nd = 0, .vd = 0}).matched.size(), 2u);
   EXPECT_EQ(match_glasses(doublet(), GlassCatalogue()).unmatched.size(), 2u);

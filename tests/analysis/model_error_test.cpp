@@ -80,7 +80,7 @@ TEST(ModelError, IsAlsoInPixels) {
   EXPECT_LE(fine.p99_mm, fine.max_mm);
 }
 
-/// From the definition: rays through the rim of the pupil of the corner, by both models.
+/// Computed from the definition: rays of both models through the rim of the pupil of the film corner.
 TEST(ModelError, EqualsDistanceInThePlaneTimesMagnification) {
   const Lens lens = focused("double_gauss_52mm_f1.8", 3000, 5.6);
   const camera_detail::ExactModel<double> exact(lens, 22);

@@ -42,7 +42,7 @@ std::vector<Case> figure_7() {
   return cases;
 }
 
-/// Harder profiles and pupils: vignetted, and with corners.
+/// Harder cases: vignetted pupils, and pupils with corners.
 std::vector<Case> off_axis() {
   const Lens lens = with_focus(with_f_number(testing::data_lens("tessar_100mm_f2.8"), 5.6), 2000);
   return {{"off axis", lens, {0.15, -1000}}, {"six blades", with_iris(lens, {.blades = 6}), {0.15, -1000}}};

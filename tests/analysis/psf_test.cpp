@@ -268,7 +268,7 @@ class BinError {
 };
 
 TEST(PointImage, BinsConvergeFasterThanRandomSampling) {
-  // The rim of the pupil is a step, so the slope is near -3/4 and not -1; random sampling has -1/2.
+  // The rim of the pupil is a step, so that the slope is near -3/4 instead of -1; random sampling has -1/2.
   const BinError error;
   const double slope = std::log2(error.sobol(1 << 14) / error.sobol(1 << 6)) / 8;
   EXPECT_LE(slope, -0.65);

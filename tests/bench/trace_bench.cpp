@@ -186,7 +186,7 @@ int run(std::vector<char*> arguments) {
   const auto file = [](const char* id) {
     return petzval::read_prescription(std::string(PETZVAL_BENCH_DATA) + "/lenses/" + id + ".json");
   };
-  // Half diagonals: 22 degrees, 9 degrees, the image circle, the frame of 24 x 36 mm.
+  // The half diagonals are 22 degrees, 9 degrees, the image circle, and the frame of 24 x 36 mm.
   std::deque<BenchLens> lenses;
   lenses.emplace_back(file("double_gauss_100mm_f2.0"), 40.4, ray_count);
   lenses.emplace_back(file("petzval_100mm_f1.6"), 16, ray_count);

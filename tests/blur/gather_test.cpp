@@ -144,7 +144,7 @@ TEST(Gather, PinholeEqualsTheFirstLayer) {
   }
 }
 
-// Rays that move by 0.01 pixel over all depths: a step is a hundred times as long as the scene.
+// Rays that move by 0.01 pixel over all depths: a step of one pixel is a hundred times as long as the scene.
 TEST(Gather, TinyLensEqualsTheFirstLayer) {
   for (const LensRays& rays : {thin_rays(0.05, 12), tilted_rays(0.05, 12)}) {
     const LayerSet layers = layers_of(boards, rays);

@@ -150,7 +150,7 @@ TEST_P(AnyWavelength, DifferentialsEqualFiniteDifferences) {
       next.film.x += step, previous.film.x -= step;
       const CameraRay one = camera.sample(sample), after = camera.sample(next), before = camera.sample(previous);
       if (!one || !after || !before) continue;
-      // Derivatives of samples jump between the cells of a pupil table: one side is enough.
+      // Derivatives of samples jump between the cells of a pupil table, so that agreement on one side is enough.
       const double slope = (after.ray.direction.x - one.ray.direction.x) / step;
       const double other = (one.ray.direction.x - before.ray.direction.x) / step;
       const double found = camera.sample_differential(sample).by_film_x.direction.x;

@@ -134,7 +134,7 @@ TEST(Projection, ClippedChiefRaysAreExact) {
   }
 }
 
-// The lens passes chief rays to the corners of the film and clips the ones just outside.
+// The lens passes chief rays to the corners of the film and clips chief rays just outside.
 TEST(Projection, CylindersReachTheEndOfTheLight) {
   const Lens lens = testing::data_lens("anamorphic_60mm_2x");
   const Film film{.width_mm = 29.54, .height_mm = 19.69};

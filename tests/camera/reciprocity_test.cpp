@@ -225,7 +225,7 @@ TEST(Reciprocity, HoldsForTiltedFilms) {
     SCOPED_TRACE(name(model));
     expect_reciprocity(lens, film, {.model = model}, 6, 2500, model == ModelKind::polynomial(7) ? 1e-3 : 0);
   }
-  // Far off the axis a pinhole ray differs from the mean ray of the pupil it stands for.
+  // Far off the axis a pinhole ray differs from the mean ray of the pupil that it represents.
   expect_reciprocity(lens, {.width_mm = 30, .height_mm = 30, .shift_y_mm = -14, .tilt_rad = 20 * degree},
                      {.model = ModelKind::pinhole}, 13, 2500);
   expect_reciprocity(testing::data_lens("fisheye_8mm_f2.8"),

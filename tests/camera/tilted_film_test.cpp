@@ -186,7 +186,7 @@ TEST(TiltedFilm, RaysFromBehindHaveNoWeight) {
 }
 
 // The film and the plane of focus of a thin lens intersect in the plane of the lens. With 1/s + 1/s' = 1/f, film points
-// (y, s' + y tan) have images on one plane, and all rays of a film point meet in its image.
+// (y, s' + y tan(tilt)) have images on one plane, and all rays of a film point meet in its image.
 TEST(TiltedFilm, ObeysTheScheimpflugPrinciple) {
   const Lens lens = with_focus(testing::data_lens("double_gauss_100mm_f2.0"), 2000);
   const Film film = tilted_by(wide, 7, -4);

@@ -86,7 +86,7 @@ TEST_F(BokehPsf, KilledRunKeepsCompletePictures) {
   EXPECT_EQ(json["results"][0]["focus_mm"], 900);
 }
 
-// Well out of focus at f/16 the blur is the iris: its area and its moments.
+// Far out of focus at f/16 the blur has the shape of the iris: area and moments agree.
 TEST_F(BokehPsf, HasTheShapeOfTheIris) {
   const auto all = [&](std::vector<std::string> iris) {
     iris.insert(iris.end(), {"--subject-distance-mm", "3000", "--focus-mm", "1500", "--f-number", "16"});

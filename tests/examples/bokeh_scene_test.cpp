@@ -75,7 +75,7 @@ TEST_F(BokehScene, WritesAPictureWithItsMetadata) {
   EXPECT_EQ(report["tiles"]["mean"][0].size(), 5);
   EXPECT_GT(report["lens_seconds_share"], 0);
   EXPECT_GT(report["paths_per_second"], 0);
-  // In the sky of radiance 0.5, near the column of the axis: the lens transmits most of the light.
+  // A pixel of the sky of radiance 0.5, in the column of the axis: the lens transmits most of the light.
   const petzval::RgbImage image = petzval::read_exr(path("a/picture.exr"));
   EXPECT_NEAR(static_cast<double>(image.pixel(36, 6)[1]), 0.45, 0.06);
 }

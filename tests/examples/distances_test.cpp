@@ -62,7 +62,7 @@ TEST_F(Distances, EveryProgramHasTheSameFilmForADistance) {
     for (const auto& [program, found] : films(id, flags)) {
       SCOPED_TRACE(program + " from " + std::string(petzval::name(origin)));
       if (program == "lens_metadata") {
-        // In metres of the file, to a micrometre.
+        // The file has metres, rounded to a micrometre.
         EXPECT_NEAR(found, focused.film_z() + 1000 - petzval::origin_z(focused, origin), 2e-3);
       } else {
         EXPECT_NEAR(found, focused.film_z(), 1e-9);
@@ -123,7 +123,7 @@ TEST_F(Distances, LensOpensToTheFNumberOfItsName) {
   }
   const std::string file = lens("double_gauss_52mm_f1.8");
   expect_failure("lens_report", {file, "--f-number", "1.77"}, {"--f-number", 1.77});
-  // The other programs accept it in the same way.
+  // The other programs accept the rounded f-number too.
   for (const auto& [program, more] : std::vector<std::pair<std::string, Arguments>>{
            {"focus_report", {"--json"}},
            {"bokeh_psf",

@@ -257,7 +257,7 @@ TEST_F(OpenJobDescription, TasksOfTheTemplateGiveTheSetOfOneRun) {
   EXPECT_EQ(read(path("out/psf_set.exr")), read(path("whole/psf_set.exr")));
 }
 
-/// The reference implementation's own check.
+/// Checks the template with the reference implementation.
 TEST_P(OpenJobTemplate, IsAcceptedByOpenjd) {
   if (std::system("openjd --version > /dev/null 2>&1") != 0) GTEST_SKIP() << "no openjd";
   EXPECT_EQ(shell("openjd check '" + farm(GetParam() + std::string(".openjd.json")) + "'"), 0)

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Command lines that a program must refuse: flags that need or exclude each other, and values that the lens or a file
-// makes wrong. The program exits with 1, writes nothing, and one line of standard error names the flag (or the file)
-// and the value. hostile_flags_test.cpp has one bad value for each flag of each program.
+// Command lines that a program must refuse: flags that need or exclude each other, and values that are invalid for the
+// lens or for a file. The program exits with 1, writes nothing, and one line of standard error names the flag (or the
+// file) and the value. hostile_flags_test.cpp has one bad value for each flag of each program.
 #include <algorithm>
 #include <map>
 #include <ostream>

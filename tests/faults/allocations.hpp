@@ -15,7 +15,7 @@ namespace petzval::testing {
 /// depend on previous calls.
 void expect_all_or_nothing(const std::function<std::string()>& work);
 
-/// Like above, but each run is the first in its own process.
+/// Like expect_all_or_nothing(), but each repetition runs as the first work of a new process.
 void expect_all_or_nothing_at_first(const std::function<std::string()>& work);
 
 /// Numbers as text, to the bit.

@@ -144,7 +144,7 @@ TEST(RobustTiltFit, TargetsBecomeOutliersContinuously) {
 }
 
 TEST(RobustTiltFit, FitsLinesAndSinglePositions) {
-  // Most targets lie on a line of the picture, or in one place of it; the others are too near.
+  // Most targets lie on a line or at one position of the picture; the others are too near.
   Targets line, place;
   for (int i = 0; i < 11; ++i) {
     const double inverse = 4e-4 + 1e-5 * i, off = i % 4 == 3 ? 1.4 : 1.0;

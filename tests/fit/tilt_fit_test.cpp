@@ -34,7 +34,7 @@ void expect_same_film(const Film& found, const Film& wanted, double tolerance, d
 }
 
 TEST(TiltFit, ExactPointsGiveTheirPlane) {
-  // Up to the limit: the film's tilt is |(a, b)| F / (1 - c F).
+  // Tilts up to the limit; the tangent of the film's tilt is |(a, b)| F / (1 - c F).
   for (const double tilt_deg : {0.0, 0.1, 2.0, 10.0, 19.999}) {
     for (const double towards : {0.0, 1.0, 2.5, 4.0}) {
       const double c = 1 / 2000.0, slope = std::tan(radians(tilt_deg)) * (1 / F - c);

@@ -97,7 +97,7 @@ TEST(Autofocus, SharesTheBlurBetweenTwoTargets) {
   ASSERT_TRUE(focus);
   EXPECT_LT(focus.blurs[0].blur_mm, 0);  // in front of the plane of focus
   EXPECT_GT(focus.blurs[1].blur_mm, 0);
-  // Proportional to the slopes of their cones.
+  // At the minimum the blurs, weighted by the slopes of their cones, cancel.
   const double steep = lens.image(targets[0].place)->cone, flat = lens.image(targets[1].place)->cone;
   EXPECT_NEAR(steep * focus.blurs[0].blur_mm, -flat * focus.blurs[1].blur_mm, 1e-13);
   EXPECT_NEAR(focus.rms_mm, std::hypot(focus.blurs[0].blur_mm, focus.blurs[1].blur_mm) / std::numbers::sqrt2, 1e-15);

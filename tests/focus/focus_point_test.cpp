@@ -122,7 +122,7 @@ TEST(FocusPoints, MayPullFocusToInfinity) {
   // The images move continuously.
   const auto image_z = [&](double time) { return thin.image(only(p, moment(time)).place)->position.z; };
   EXPECT_NEAR(image_z(2 - 1e-4), image_z(2), 1e-6);
-  // Two directions work as well.
+  // Both keys may be directions.
   const FocusPoint pan = point({far_key(0, {-0.5, 0, -1}), far_key(1, {0.5, 0, -1})});
   EXPECT_TRUE(only(pan, moment(0.5)).place.at_infinity);
   EXPECT_NEAR(only(pan, moment(0.5)).place.position.x, 0, 1e-15);

@@ -108,7 +108,7 @@ TEST(Codev, AperturesAreRims) {
 
 TEST(Codev, ApertureSettingsSizeTheStop) {
   const double focal = petzval::first_order(compile(read(singlet))).effective_focal_length;
-  // At the reference wavelength of the design.
+  // The f-number at the primary wavelength of the design.
   const auto f_number = [](const Prescription& p) {
     return petzval::real_f_number(compile(p, std::array{p.design.wavelengths.at(p.design.primary_wavelength).nm},
                                           {.missing_glass = petzval::MissingGlass::abbe}));
@@ -119,7 +119,7 @@ TEST(Codev, ApertureSettingsSizeTheStop) {
   const auto with_rim = [](const std::string& rim) {
     return *read(with(singlet, "STO", "STO; CIR " + rim)).surfaces[0].semi_diameter;
   };
-  // Zoomed, each position has its own beam.
+  // Each zoom position has its own beam.
   const Prescription zoom = read(with(singlet, "GO\n", "ZOO 3\nZOO EPD 10 8 4\nGO\n"));
   ASSERT_EQ(zoom.configurations.size(), 3u);
   const double sizes[] = {5, 4, 2};
@@ -159,7 +159,7 @@ TEST(Codev, PickupsSolvesAndLaterWordsAreApplied) {
   EXPECT_EQ(p.surfaces[2].radius, -60);
   EXPECT_NE(warning(p, "PIK"), "no warning");
   const Prescription image = read(with(with(singlet, "  48\n", "  49.324\n"), "SI 0 0.5", "PIM\nSI 0 0"));
-  EXPECT_NEAR(image.surfaces[2].thickness, 49.324, 1e-12);  // near the focus: the value of the file
+  EXPECT_NEAR(image.surfaces[2].thickness, 49.324, 1e-12);  // the file's value, because it is near the focus
   const double focus = petzval::first_order(compile(read(singlet))).back_focal_distance;
   const Prescription far = read(with(with(singlet, "  48\n", "  10\n"), "SI 0 0.5", "PIM\nSI 0 0"));
   EXPECT_NEAR(far.surfaces[2].thickness, focus, 1e-3);  // at 587.6 nm

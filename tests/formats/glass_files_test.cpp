@@ -53,7 +53,7 @@ class GlassFiles : public ::testing::Test {
   GlassFile read(std::string_view bytes, const std::string& name = "Made-Up.agf") const {
     return read_glasses(written(name, bytes));
   }
-  /// The message of reading it, without the name of the folder.
+  /// The error message for the file, without the name of the folder.
   std::string refusal(std::string_view bytes, const std::string& name = "x.agf") const {
     const std::string all = message([&] { read(bytes, name); });
     const std::string prefix = (folder / name).string();

@@ -57,7 +57,7 @@ TEST(LensFile, SamplesOfOtherProgramsHaveTheirFocalLengths) {
   for (const char* folder : {"zemax", "codev", "oslo", "pbrt", "table"}) {
     for (const auto& entry : fs::directory_iterator(formats / folder)) {
       if (entry.path().filename() == "finite_conjugate_uv.zmx") {
-        // Telecentric object space, with a stop elsewhere.
+        // The file declares a telecentric object space, but its stop is elsewhere.
         expect_error([&] { petzval::read_lens(entry.path()); }, {"line 38", "FTYP"});
         continue;
       }

@@ -105,7 +105,7 @@ TEST(Oslo, PlainLensIsReadWithoutWarnings) {
   EXPECT_NEAR(*lens.surfaces[0].semi_diameter, 5, 0.01);
 }
 
-// The same lens with semicolons, in lower case, and with blank lines in the place of NXT.
+// The same lens with semicolons, in lower case, and with blank lines instead of NXT.
 TEST(Oslo, IndependentOfLayout) {
   auto expected = parse_lens(plain, "x.len");
   std::string blank = plain, semicolons, low;

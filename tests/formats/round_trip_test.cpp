@@ -72,7 +72,7 @@ double largest_difference(const Lens& a, const Lens& b, bool rims) {
   return worst;
 }
 
-/// The lens with the indices of the glass formulas in place of printed indices, as formats that name glasses cannot
+/// The lens with the indices of the glass formulas instead of printed indices, because formats that name glasses cannot
 /// distinguish them.
 Prescription by_formulas(Prescription p) {
   const auto change = [&](petzval::Medium& medium) {

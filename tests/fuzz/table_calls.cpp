@@ -32,8 +32,8 @@ FilmPoint wild_place(fuzz::Bytes& bytes) {
   return {x, y};
 }
 
-/// Tables of strips, with and without an obscuration, of cells, a bladed iris, images of an iris, discs, a rim, and two
-/// tilted films.
+/// One table of each kind: strips with and without an obscuration, cells, a bladed iris, images of an iris, discs, a
+/// rim, and two tilted films.
 std::vector<FilmPupilTable> pupil_tables() {
   const Lens usual = fuzz::coloured("double_gauss_100mm_f2.0"), flat = fuzz::coloured("anamorphic_60mm_2x");
   const FilmPupilTable strips = FilmPupilTable::enclosing(usual, radius),

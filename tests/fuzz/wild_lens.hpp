@@ -84,7 +84,7 @@ inline Prescription wild_prescription(Bytes& bytes) {
   return bytes.one_in(2) ? damaged_lens(bytes) : invented_lens(bytes);
 }
 
-/// The lens at one or three wavelengths, sometimes with blades. Throws Error if it cannot be compiled.
+/// The lens at one or three wavelengths, sometimes with blades. Throws Error if the lens cannot be compiled.
 inline Lens wild_lens(Bytes& bytes) {
   const Prescription p = wild_prescription(bytes);
   constexpr std::array several{d_line_nm, 486.1327, 656.2725};

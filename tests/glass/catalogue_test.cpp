@@ -38,7 +38,7 @@ class TableFolder : public ::testing::Test {
     std::ofstream(folder / name, std::ios::binary) << text;
   }
 
-  /// The message of loading one table, without the name of the folder.
+  /// The error message for one table, without the name of the folder.
   std::string refusal(const std::string& text) const {
     write("glass_a.csv", text);
     const std::string all = message([&] { GlassCatalogue::load(folder); });

@@ -187,7 +187,7 @@ TEST(Dispersion, TheEndsOfTheRangeBelongToIt) {
     EXPECT_GT(refractive_index(glass, glass.shortest_nm), 1) << glass.name;
     EXPECT_GT(refractive_index(glass, glass.longest_nm), 1) << glass.name;
   }
-  // The t line, 1013.98 nm, is the printed end of ranges that micrometres round to 1013.9799999999999.
+  // The t line, 1013.98 nm, is the printed end of ranges; converted from micrometres it becomes 1013.9799999999999.
   EXPECT_GT(refractive_index(*glasses().find("BAC4", "hoya"), spectral_line_nm("t")), 1.5);
 }
 

@@ -31,7 +31,7 @@ void write_bytes(const std::filesystem::path& file, const std::string& bytes) {
   std::ofstream(file, std::ios::binary) << bytes;
 }
 
-/// An EXR file with a data window from 0 of this width.
+/// An EXR file whose data window starts at 0 and has this width.
 std::string with_width(std::string exr, std::uint32_t width) {
   const std::string key = "dataWindow";
   const std::size_t most_x =

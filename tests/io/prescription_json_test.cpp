@@ -390,7 +390,7 @@ TEST(PrescriptionJson, TextThatIsNotJson_IsRefusedWithLineAndColumn) {
   }
 }
 
-/// A lens of three lines, with a surface in line 3.
+/// A lens file of three lines, with a surface in line 3.
 std::string third_line(const std::string& radius, const std::string& rest = ", \"thickness\": 5, \"nd\": 1.5") {
   return "{\"format\": \"petzval-lens 1\",\n \"surfaces\": [\r\n  {\"radius\": " + radius + rest + "}]}";
 }
@@ -400,7 +400,7 @@ TEST(PrescriptionJson, MistakesOfPeople_AreNamedWithLineAndColumn) {
   for (const char* wrong : {"\"abc\"", "null", "Infinity", "-Infinity", "inf", "NaN", "true", "1e999"}) {
     expect_refused(third_line(wrong), {"surface 0", "radius", wrong}, "3:14");
   }
-  // A plane has a number, which the message tells.
+  // The radius of a plane is 0, as the message says.
   for (const char* plane : {"Infinity", "null", "\"inf\""}) {
     expect_refused(third_line(plane), {"radius", plane, "0"});
   }

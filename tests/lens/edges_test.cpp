@@ -116,8 +116,8 @@ TEST(Edges, ScaleWithTheLens) {
   }
 }
 
-// Transmitted rays meet refracting surfaces in the order of the prescription, for apertures of any size. The exception
-// are rays nearly parallel to a surface, which may meet the next surface first: 1 in 4000 of one lens.
+// Transmitted rays meet refracting surfaces in the order of the prescription, for apertures of any size. Rays nearly
+// parallel to a surface may meet the next surface first: 1 in 4000 of one lens.
 TEST(Edges, RaysMeetSurfacesInOrder) {
   for (Prescription p : testing::data_prescriptions()) {
     double size = 0;

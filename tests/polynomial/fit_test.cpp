@@ -379,7 +379,7 @@ TEST(PolynomialFit, RefusesInvalidLensesAndDegrees) {
   const std::array<double, 2> nm{656.2725, 486.1327};
   const Lens coloured = compile(data_prescription("double_gauss_100mm_f2_28deg"), nm, {.glasses = &glasses});
   expect_tokens(why(coloured, pupils, 5), {lens.name(), "wavelengths", 1, 2});
-  // The lens is almost closed, the pupils are wide open.
+  // The pupils of the open lens do not fit the almost closed lens.
   expect_tokens(why(with_f_number(lens, 200), pupils, 11), {lens.name(), "polynomial"});
 }
 

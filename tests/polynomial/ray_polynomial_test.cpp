@@ -119,8 +119,9 @@ TEST(RayPolynomial, MirrorTermsAreAllMonomialsOfTheDegree) {
 }
 
 TEST(RayPolynomial, EqualsTheExplicitSum) {
-  // The explicit sum gives the direction by its angle 2 atan |s| to the axis, and the offset by its length and its
-  // angle to the plane of axis and direction, which a rotation about the normal keeps. Fields reach 130 degrees.
+  // The explicit sum gives the angle 2 atan |s| of the direction to the axis, the length of the offset, and the angle
+  // of the offset to the plane of axis and direction. A rotation about the normal keeps the latter angle. Fields reach
+  // 130 degrees.
   const auto check = [](int degree, bool mirrors) {
     const auto d = domain(mirrors);
     const auto terms = RayPolynomial::terms(degree);

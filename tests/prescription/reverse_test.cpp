@@ -66,7 +66,7 @@ TEST(Reverse, LightTakesTheReversedPath) {
       if (!exit.transmitted()) continue;
       const auto& d = exit.ray.direction;
       through += expect_same_way(lens, reversed, {exit.ray.origin, {-d.x, -d.y, -d.z}});
-      // Also a random ray; most of these do not pass.
+      // Also traces a random ray; most random rays do not pass.
       const double bend = 0.1 * uniform(random), norm = std::sqrt(1 + 2 * bend * d.x + bend * bend);
       expect_same_way(lens, reversed, {exit.ray.origin, {-(d.x + bend) / norm, -d.y / norm, -d.z / norm}});
     }

@@ -208,7 +208,7 @@ TEST(ChiefRay, EqualsTheParaxialChiefRayAtSmallFields) {
 }
 
 TEST(ChiefRay, PassesFisheyesBeyondTheParaxialPupil) {
-  // From 40 degrees on, a ray through the centre of the paraxial pupil misses the front of this lens, as pupil
+  // From 40 degrees on, a ray through the centre of the paraxial pupil misses the front of this lens, because pupil
   // aberration moves the pupil. The chief ray passes up to 74 degrees; at larger fields it is vignetted by the rim of
   // the front.
   const Lens lens = data_lens("fisheye_10mm_f4");

@@ -102,7 +102,7 @@ TEST(RealFNumber, RayHasToReachTheStopOnly) {
   EXPECT_NEAR(real_f_number(compile(p)), 1, 1e-14);
 }
 
-/// The number that the message about an f-number states after it: the limit, or an f-number that is possible.
+/// The number after the given f-number in a message: the limit, or a possible f-number.
 double stated_in(std::string message, const Lens& lens, double f_number) {
   message.erase(0, lens.name().size());
   const std::string given = testing::Token(f_number).text();

@@ -147,7 +147,7 @@ TEST(TraceRim, CornersLieWhereRimsMeet) {
   };
   const PupilBoundary fine = pupil_boundary(lens, point, 0, 2048);
   PupilBoundary boundary = pupil_boundary(lens, point, 0, 32);
-  // A read beyond the last span would find this span of another rim and give one more corner.
+  // A read beyond the last span would reach this span of another rim and add a corner.
   PupilSpan beyond;
   beyond.to.surface = 1000;
   boundary.spans.push_back(beyond);

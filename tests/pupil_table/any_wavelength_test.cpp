@@ -39,7 +39,7 @@ struct Shares {
   double missed = 0, passing = 0;  // fraction of passing rays outside the samples; fraction of samples that pass
 };
 
-/// From samples of the table and rays in a band around its polygons with a tenth of their area.
+/// Measured with samples of the table, and with rays in a band around its polygons that has a tenth of their area.
 Shares shares(const Lens& lens, const FilmPupilTable& table, double radius, Wavelength wavelength) {
   constexpr int points = 24, samples = 1500;
   const TwoPlanes& space = table.space();

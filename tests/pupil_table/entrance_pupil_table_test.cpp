@@ -153,7 +153,7 @@ TEST(EntrancePupilTable, DensityIntegratesToOne) {
         solid += 1 / sample.pdf / draws;
         widest = std::max(widest, 1 - glm::dot(axis, sample.direction));
       }
-      // Uniform directions in a cone around it give the same solid angle.
+      // Uniform directions in a cone around the pupil give the same solid angle.
       const double cone = std::min(1.01 * widest, 2.0);
       const Vec3<double> x = glm::normalize(glm::cross(axis, Vec3<double>{0.3, 1, 0.2})), y = glm::cross(axis, x);
       double met = 0, whole = 0;

@@ -110,7 +110,8 @@ TEST(FilmPupilTable, BatchClearancesEqualSingleClearances) {
     std::mt19937_64 random(5);
     std::uniform_real_distribution<double> unit(-1, 1);
     std::array<std::vector<double>, 4> at;
-    // Radial lines, as in the search for pupils of tilted films, and points anywhere, inside and outside the film.
+    // Compares points on radial lines, as in the search for pupils of tilted films, and points anywhere inside and
+    // outside the film.
     for (int line = 0; line < 100; ++line) {
       const double film_x = 22 * unit(random), film_y = 22 * unit(random), x = unit(random), y = unit(random);
       for (int i = 0; i < 30; ++i) {

@@ -118,7 +118,8 @@ TEST(SmoothGlass, SplitsLightByFresnel) {
 }
 
 TEST(InterpolatedNormals, ConserveThePowerOfLightPaths) {
-  // Scattered power equals the reverse direction, weighted by both normals (Veach 1997, section 5.3).
+  // Scattered power equals the power scattered in the reverse direction, weighted by both normals (Veach 1997, section
+  // 5.3).
   Object object;
   object.material = Diffuse{{.colour = {0.5f, 0.5f, 0.5f}}};
   SurfacePoint point;

@@ -27,7 +27,7 @@ Seen seen(const SceneDescription& scene, const glm::vec3& place) {
   const double depth = glm::dot(way, forward);
   return {glm::dot(way, right) / depth, glm::dot(way, up) / depth, depth};
 }
-/// Position in the image of a lens of 100 mm on 36 x 24 mm at some focus.
+/// True if a point is in the image of a lens of 100 mm on a film of 36 x 24 mm, for any focus.
 bool in_picture(const Seen& at) { return at.depth > 0 && std::abs(at.right) < 0.18 && std::abs(at.up) < 0.12; }
 
 TEST(BuiltInScenes, HaveTheNamesInTheHelp) {
@@ -120,7 +120,8 @@ TEST(StatuesScene, HasANearAndAFarAngelAndFiguresBetween) {
   }
   EXPECT_EQ(lanterns, 20);
   ASSERT_EQ(statues.size(), 6u);
-  // In the image of a lens of 50 mm, half of the height on either side of the centre.
+  // In the image of a lens of 50 mm the near angel is left and the far angel right of the centre, and each fills at
+  // least half of the height.
   const Statue &near = statues[0], &far = statues[1];
   EXPECT_LT(near.right, 0);
   EXPECT_GT(far.left, 0);

@@ -29,8 +29,8 @@ using Exactly = petzval::kernel::TraceState<L>;
 /// A fate must equal the fate of an exact ray whose numbers differ by at most this many eps.
 inline constexpr int eps_beside = 64;
 
-/// The scale of one eps: a coordinate moves by eps x max(|it|, place), a component of the direction by eps x max(|it|,
-/// turn).
+/// The change for one eps: eps x max(|coordinate|, place) for a coordinate, eps x max(|component|, turn) for a
+/// component of the direction.
 struct Floors {
   double place = 1, turn = 0;
 };

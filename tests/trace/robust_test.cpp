@@ -195,7 +195,7 @@ TYPED_TEST(Robust, ResultsAreFiniteForAnyBatch) {
 /// True if the end of the ray lies on the last surface, a sphere, and its direction has unit length.
 template <class T>
 void expect_right(const petzval::Lens& lens, const Ray<T>& end, const std::string& what) {
-  // Twice the error of half the digits.
+  // A hit may lose half of its digits; the tolerance is twice the largest error.
   const double near = 8 * std::sqrt(double{std::numeric_limits<T>::epsilon()});
   const petzval::Vec3<double> o(end.origin), d(end.direction);
   const auto& last = lens.surfaces().back();
