@@ -46,7 +46,7 @@ class BlurLens {
 
   const petzval::LayerCamera& layers() const noexcept { return layers_; }
   const std::string& name() const noexcept { return name_; }
-  /// The rays at a time (s). nearest_mm: depth of the nearest surface.
+  /// The rays of the lens at a time (s). nearest_mm: depth of the nearest surface.
   petzval::LensRays rays(double nearest_mm, int threads, double time = 0);
 
  private:

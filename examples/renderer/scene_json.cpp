@@ -92,7 +92,8 @@ struct Entry {
   }
 };
 
-/// The key of this list that an entry has; empty if the entry has no such key. Throws if it has several.
+/// The key of this list that an entry has; empty if the entry has no such key. Throws if the entry has several of the
+/// keys.
 std::string_view one_of(const Entry& entry, std::initializer_list<const char*> keys, const std::string& words) {
   std::string_view found;
   for (const char* const key : keys) {

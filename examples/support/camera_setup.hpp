@@ -31,7 +31,7 @@ struct CameraSetup {
   /// A film with the given numbers of pixels; 0: not given.
   ///
   /// Without --film-mm the film is the largest with the shape of the picture within 36 x 24 mm, or within 24 x 36 mm
-  /// for an upright picture. A missing number of pixels follows from the film and square pixels.
+  /// for a picture in portrait format. A missing number of pixels follows from the film and square pixels.
   ///
   /// @param usual_columns  columns if neither number is given
   /// @throws petzval::Error if --film-mm is invalid, or so narrow that the picture would need more than 16384 pixels

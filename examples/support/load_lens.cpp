@@ -28,7 +28,7 @@ void say_what_is_known(const LensFile& file, const petzval::Lens& lens) {
   }
   const std::string line = number(reference) + " nm";
   const std::size_t missing = lens.missing_glasses().size();
-  if (missing == 0) return note(file.id + ": no medium disperses");
+  if (missing == 0) return note(file.id + ": no medium has dispersion");
   note(file.id + ": " + std::to_string(missing) + (missing == 1 ? " medium has" : " media have") +
        " no glass in the tables; " +
        (lens.dispersion() == petzval::Dispersion::abbe ? "the n_d/V_d model is used away from " + line

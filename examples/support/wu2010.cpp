@@ -40,20 +40,20 @@ std::span<const WuRow> wu_rows() {
   static constexpr std::array<WuRow, 4> rows{{
       {"double_gauss_100mm_f1.35",
        "f/1.35  double Gauss (Lowenthal)",
-       "their row (a); agrees with the paper's source in page, speed and focal length",
+       "row (a) of the paper; agrees with the paper's source in page, speed and focal length",
        {ring, ring, point, hollow_core, hollow_core}},
       {"double_gauss_100mm_f1.7_substitute",
        "f/1.7  double Gauss (substitute)",
-       "their row (b); the paper's own f/1.7 lens is not known: another six-element double Gauss, scaled and opened, "
-       "stands in",
+       "row (b) of the paper; its f/1.7 lens is not known: replaced by another six-element double Gauss, scaled and "
+       "opened",
        {ring, ring_and_core, point, hollow_core, hollow_core}},
       {"double_gauss_100mm_f2_28deg",
        "f/2  double Gauss, 28° field",
-       "their row (c); of two candidates, this lens behaves as the paper says",
+       "row (c) of the paper; of two candidates, this lens behaves as the paper says",
        {uniform, core, point, ring, ring}},
       {"double_gauss_100mm_f2.0",
        "f/2  double Gauss (Tronnier)",
-       "the other candidate for their row (c): it does the opposite, a ring when focused nearer, a core when farther",
+       "the other candidate for row (c): it does the opposite, a ring when focused nearer, a core when farther",
        {uniform, core, point, ring, ring}},
   }};
   return rows;

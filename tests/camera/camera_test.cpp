@@ -165,8 +165,8 @@ TEST(Camera, FilmContainsItsEdges) {
   }
 }
 
-// A sample (film x, y, u, v) and its ray in the phase space of the scene (x, y and the direction cosines) are two
-// coordinates of the same light. As etendue is conserved, the Jacobian between them is the weight n'^2 cos / pdf.
+// A sample (film x, y, u, v) and its ray in the scene (x, y and direction cosines) are coordinates of the same point of
+// phase space. As etendue is conserved, the Jacobian between them is the weight n'^2 cos / pdf.
 TEST(Camera, ConservesEtendue) {
   const double angle = 0.2;
   for (const auto& [id, film] :

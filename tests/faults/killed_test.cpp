@@ -52,7 +52,7 @@ TEST(Killed, WriterLeavesTheOldOrTheNewFile) {
     ASSERT_EQ(kill(child, SIGKILL), 0);
     int status = 0;
     ASSERT_EQ(waitpid(child, &status, 0), child);
-    ASSERT_TRUE(WIFSIGNALED(status)) << "it stopped by itself";
+    ASSERT_TRUE(WIFSIGNALED(status)) << "the process ended before the signal";
 
     const std::string found = bytes_of(file);
     ASSERT_TRUE(found == ones || found == others) << "round " << round << ": " << found.size() << " bytes";

@@ -154,7 +154,7 @@ TEST(RoundTrip, ZemaxReadsItsOutputWithoutWarnings) {
   }
 }
 
-/// A glass in the form of readers: n_d and V_d from its formula.
+/// A glass as readers return it, with n_d and V_d from its formula.
 petzval::Medium schott(const char* name) {
   const petzval::Glass& glass = *glasses().find(name, "schott");
   const auto n = [&](double nm) { return petzval::refractive_index(glass, nm); };

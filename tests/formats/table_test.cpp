@@ -213,7 +213,7 @@ TEST(Table, UnknownHeadsAreNamedOrRefused) {
   expect_tokens(refusal("r d nd vd n semi" + rows), {"x:1", "head", "\"nd\""});
   expect_tokens(refusal("r d nd vd dia semi" + rows), {"x:1", "head"});
   expect_tokens(refusal("d nd vd x y semi" + rows), {"x:1", "head"});
-  expect_tokens(warning("r d nd vd n(e) semi" + rows, "head"), {"\"n(e)\""});  // an index at another line
+  expect_tokens(warning("r d nd vd n(e) semi" + rows, "head"), {"\"n(e)\""});  // the index at another spectral line
   expect_tokens(warning("Cooke triplet of 1893\n" + table, "line"), {"\"Cooke triplet of 1893\""});
   EXPECT_EQ(read("My lens\n50 5 1.5 12\n-50 90 1 12\n").imported->title, "My lens");
 }
