@@ -298,7 +298,7 @@ TEST(Lint, FollowsTheLightBehindMirrorsWithoutRims) {
   EXPECT_TRUE(crosses());
 }
 
-TEST(Lint, SeesCylindersInBothSections) {
+TEST(Lint, ChecksCylindersInBothSections) {
   Prescription p = singlet();
   p.focal_length_mm.reset();
   p.f_number.reset();

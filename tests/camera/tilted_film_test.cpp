@@ -157,7 +157,7 @@ TEST(TiltedFilm, DensitiesEqualPositionsInSpace) {
   }
 }
 
-TEST(TiltedFilm, BackSideSeesNothing) {
+TEST(TiltedFilm, BackSideReceivesNoLight) {
   const Lens lens = testing::data_lens("double_gauss_100mm_f2.0");
   const Film film = tilted_by({.width_mm = 4, .height_mm = 4}, 80, 0);
   const TiltedFilm tilted(film, FilmPupilTable::enclosing(lens, upright_radius(lens, film, ModelKind::exact_double)));

@@ -54,7 +54,7 @@ void expect_round_trips(const Lens& lens, const FocusOptions& options, double to
   EXPECT_TRUE(std::isfinite(before));
 }
 
-TEST(BothWays, ReturnToTheFilmInEveryLens) {
+TEST(FocusRoundTrip, ReturnsToTheFilmInEveryLens) {
   for (const Prescription& p : data_prescriptions()) {
     const Lens lens = compile(p);
     for (const DistanceOrigin origin : {front_vertex, film, entrance_pupil, front_principal}) {
@@ -67,7 +67,7 @@ TEST(BothWays, ReturnToTheFilmInEveryLens) {
   }
 }
 
-TEST(BothWays, ReturnToTheFilmByExactRaysInEveryLens) {
+TEST(FocusRoundTrip, ReturnsToTheFilmByExactRaysInEveryLens) {
   for (const Prescription& p : data_prescriptions()) {
     // Not for a rod lens whose full width is lit: on every film the blur is as wide as the rod, and the smallest blur
     // lies inside the rod.
@@ -79,7 +79,7 @@ TEST(BothWays, ReturnToTheFilmByExactRaysInEveryLens) {
   }
 }
 
-TEST(BothWays, ReturnToTheFilmForFieldsAndColours) {
+TEST(FocusRoundTrip, ReturnsToTheFilmForFieldsAndColours) {
   const Lens triplet = data_lens("cooke_triplet_50mm_f5");
   const std::vector<FocusField> fields{{0, 1}, {radians(14), 0.5}};
   for (const FocusCriterion criterion : {min_rms, min_max}) {
@@ -88,7 +88,7 @@ TEST(BothWays, ReturnToTheFilmForFieldsAndColours) {
   }
 }
 
-TEST(BothWays, ParaxialSubjectIsImagedOnTheFilm) {
+TEST(FocusRoundTrip, ParaxialSubjectIsImagedOnTheFilm) {
   for (const char* id : {"double_gauss_100mm_f2.0", "mirror_newton_200mm_f8", "eye_gullstrand_le_grand"}) {
     const Lens lens = data_lens(id);
     const FirstOrder data = first_order(lens);
@@ -102,7 +102,7 @@ TEST(BothWays, ParaxialSubjectIsImagedOnTheFilm) {
   }
 }
 
-TEST(BothWays, OriginsDescribeOneSubject) {
+TEST(FocusRoundTrip, OriginsDescribeOneSubject) {
   const Lens lens = data_lens("double_gauss_100mm_f2.0");
   const FirstOrder data = first_order(lens);
   for (const FocusCriterion criterion : {thin, paraxial, min_rms, min_max}) {
@@ -125,7 +125,7 @@ TEST(BothWays, OriginsDescribeOneSubject) {
   EXPECT_NEAR(1 / 400.0 + 1 / v, 1 / data.effective_focal_length, 1e-16);
 }
 
-TEST(BothWays, FilmTooFarInHasNoSubject) {
+TEST(FocusRoundTrip, FilmTooFarInHasNoSubject) {
   const Lens lens = data_lens("double_gauss_100mm_f2.0");
   for (const FocusCriterion criterion : {thin, paraxial, min_rms, min_max}) {
     const double infinite = solve_focus(lens, infinity, {criterion}).film_z;
@@ -139,7 +139,7 @@ TEST(BothWays, FilmTooFarInHasNoSubject) {
   }
 }
 
-TEST(BothWays, AFilmBeyondTheLimitNamesTheNearestSubject) {
+TEST(FocusRoundTrip, FilmBeyondTheLimitNamesTheNearestSubject) {
   const Lens lens = data_lens("achromat_100mm");
   const FocusSolution nearest = nearest_focus(lens, {min_rms});
   // Aberrated rays never leave parallel, so that the film has a farthest position, 5.6 m behind the lens.
@@ -152,7 +152,7 @@ TEST(BothWays, AFilmBeyondTheLimitNamesTheNearestSubject) {
 }
 
 // Measured from the film, the nearest subject has magnification 1; with a mirror, subject and film coincide there.
-TEST(BothWays, NearestSubjectFromTheFilmHasMagnificationOne) {
+TEST(FocusRoundTrip, NearestSubjectFromTheFilmHasMagnificationOne) {
   for (const char* id : {"double_gauss_100mm_f2.0", "telephoto_100mm_f5"}) {
     const Lens lens = data_lens(id);
     const IdealLens thick = thick_lens(lens);
@@ -170,7 +170,7 @@ TEST(BothWays, NearestSubjectFromTheFilmHasMagnificationOne) {
   EXPECT_NEAR(nearest_focus(mirror, {.criterion = paraxial}).distance, 200, 1e-9);
 }
 
-TEST(BothWays, RefuseInvalidFieldsAndWeights) {
+TEST(FocusRoundTrip, RefusesInvalidFieldsAndWeights) {
   const Lens lens = data_lens("double_gauss_100mm_f2.0");
   const auto error = [&](const FocusOptions& options) { return message([&] { solve_focus(lens, 1000, options); }); };
   const std::string where = lens.name();
@@ -185,7 +185,7 @@ TEST(BothWays, RefuseInvalidFieldsAndWeights) {
   expect_error([&] { nearest_focus(lens, {.fields = {}}); }, {where, "field"});
 }
 
-TEST(BothWays, AFieldBeyondTheLensHasNoRays) {
+TEST(FocusRoundTrip, FieldBeyondTheLensHasNoRays) {
   const Lens lens = data_lens("cooke_triplet_50mm_f5");
   const FocusOptions beyond{.criterion = min_rms, .fields = {{0, 1}, {radians(75), 1}}};
   EXPECT_EQ(solve_focus(lens, 1000, beyond).status, FocusStatus::no_rays);
@@ -194,7 +194,7 @@ TEST(BothWays, AFieldBeyondTheLensHasNoRays) {
   expect_error([&] { with_focus(lens, 1000, beyond); }, {lens.name(), 1000});
 }
 
-TEST(BothWays, FieldsBeyond90DegreesCountAtInfinityOnly) {
+TEST(FocusRoundTrip, FieldsBeyond90DegreesCountAtInfinityOnly) {
   const Lens lens = data_lens("fisheye_6.3mm_f2.8");
   const FocusOptions wide{.criterion = min_rms, .fields = {{0, 1}, {radians(80), 1}, {radians(100), 1}}};
   const FocusSolution infinite = solve_focus(lens, infinity, wide);

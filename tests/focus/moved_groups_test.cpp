@@ -70,7 +70,7 @@ TEST(MovedGroups, FollowTheTable) {
   }
 }
 
-TEST(MovedGroups, ASubjectBetweenThePositionsIsSharp) {
+TEST(MovedGroups, SubjectBetweenThePositionsIsSharp) {
   const Lens lens = petzval::compile(front_focusing());
   for (const double distance : {infinity, 5000.0, 2000.0, 1100.0, 850.0}) {
     for (const FocusCriterion criterion : {FocusCriterion::paraxial, FocusCriterion::min_rms}) {

@@ -411,7 +411,7 @@ TEST_F(GlassFiles, WarningsEndAfterAThousand) {
 }
 
 // The samples next to the repository, if installed.
-TEST(GlassFilesOfOthers, AreReadWithTheirPrintedIndices) {
+TEST(PublicGlassFiles, AreReadWithTheirPrintedIndices) {
   const fs::path formats = PETZVAL_TEST_FORMATS;
   if (!fs::exists(formats)) GTEST_SKIP() << formats << " is missing";
   std::size_t count = 0;

@@ -26,7 +26,7 @@ using petzval::testing::said;
 using petzval::testing::with;
 using Said = std::vector<std::string>;
 
-TEST(OpticalBench, TheZoomHasItsFocalLengthInEachPosition) {
+TEST(OpticalBench, ZoomHasItsFocalLengthInEachPosition) {
   const auto lens = read_sample("opticalbench_zoom.txt");
   EXPECT_EQ(lens.imported->format, "opticalbench");
   EXPECT_EQ(lens.name, "Zoom 70-210 mm f/4");

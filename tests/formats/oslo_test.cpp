@@ -84,7 +84,7 @@ TEST(Oslo, EveryKnownCommandIsReadOrReported) {
                            {"65 RD", "image"}});
 }
 
-TEST(Oslo, TheAxialRaySolveFindsTheFocus) {
+TEST(Oslo, AxialRaySolveGivesTheFocus) {
   const auto lens = read_sample("oslo_words.len");
   const auto first = first_order(
       compile(lens, std::array{lens.design.wavelengths[0].nm}, {.missing_glass = petzval::MissingGlass::abbe}));
@@ -119,7 +119,7 @@ TEST(Oslo, IndependentOfLayout) {
   }
 }
 
-TEST(Oslo, AFiniteObjectHasAnAngleForItsBeam) {
+TEST(Oslo, FiniteObjectHasAnAngleForItsBeam) {
   const auto lens = parse_lens(with(with(plain, "TH 1e20", "TH 100"), "ANG 10", "OBH 4"), "x.len");
   EXPECT_EQ(lens.design.object_distance_mm, 100);
   EXPECT_EQ(lens.design.aperture->setting, petzval::ApertureSetting::object_na);
@@ -199,7 +199,7 @@ TEST(Oslo, UnsolvedSolvesAndLongListsAreReported) {
   expect_error([&] { parse_lens(many, "x.len"); }, {"x.len", 10000, "surfaces"});
 }
 
-TEST(OsloOfOthers, TheCookeTripletHasItsFocalLength) {
+TEST(PublicOsloFiles, CookeTripletHasItsFocalLength) {
   const std::filesystem::path file = std::filesystem::path(PETZVAL_TEST_FORMATS) / "oslo" / "cooke_triplet.len";
   if (!std::filesystem::exists(file)) GTEST_SKIP() << file << " is missing";
   const auto lens = petzval::read_lens(file);

@@ -511,7 +511,7 @@ TEST(RoundTrip, UnmarkedStopIsTheLimitingSurface) {
   }
 }
 
-TEST(RoundTrip, ConfigurationsChangeBackWhatTheFirstOneChanges) {
+TEST(RoundTrip, ConfigurationsRestoreChangesOfTheFirstConfiguration) {
   Prescription p = singlet();
   p.configurations = {
       {.name = "a", .changes = {{.surface = 1, .thickness = 5, .radius = 60, .conic = -1, .semi_diameter = 6}}},
@@ -524,7 +524,7 @@ TEST(RoundTrip, ConfigurationsChangeBackWhatTheFirstOneChanges) {
   }
 }
 
-TEST(RoundTrip, StopWithoutARimGetsOneWithAReport) {
+TEST(RoundTrip, StopWithoutARimGetsARimWithAReport) {
   Prescription p = singlet();
   p.surfaces[0].semi_diameter.reset();
   for (const Write write : {zemax, codev, table}) EXPECT_TRUE(lost(write(p), "stop"));

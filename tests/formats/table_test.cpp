@@ -100,7 +100,7 @@ TEST(Table, BadRowsAreRefusedWithTheirLine) {
 }
 
 // The first row of a lens may be a plane, in every spelling.
-TEST(Table, APlaneIsASurfaceInEveryRow) {
+TEST(Table, PlaneInAnyRowIsASurface) {
   const double focal_length = 50 / 0.5168;
   for (const char* plane : {"Infinity", "inf", "INF", "-inf", "+Infinity", "\u221e", "-\u221e", "plano", "flat",
                             "infinite", "0", "-0.0", "pl", "\u2212inf"}) {
@@ -320,7 +320,7 @@ TEST(Table, FirstOfSeveralStopsIsUsed) {
   EXPECT_EQ(read("r d nd semi\n50 5 1.5 9\nstop 2 - 5\n-50 90 1 9\n").surfaces[1].medium.nd, 1.5);
 }
 
-TEST(Table, TheFilmMayBeARow) {
+TEST(Table, FilmMayBeARow) {
   const Prescription lens = read("r d nd semi\n50 5 1.5 9\n-50 47.5 1 9\n0 0 1 12\n");
   EXPECT_EQ(lens.surfaces.size(), 2u);
   EXPECT_EQ(lens.surfaces[1].thickness, 47.5);

@@ -508,7 +508,7 @@ TEST(Zemax, ImagesAtInfinityAndMissingUnitsAreReported) {
   EXPECT_NE(warning(with(singlet, "UNIT MM X W X CM MR CPMM\n", ""), "UNIT"), "no warning");
 }
 
-TEST(Zemax, TheStopOpensAsTheLensZooms) {
+TEST(Zemax, StopOpensAsTheLensZooms) {
   const std::string text = with(singlet, "ENPD 10", "FNUM 5 0") + "MNUM 2 1\nCRVT 2 1 0.02\nCRVT 2 2 0.03\n";
   const Prescription p = read(text);
   for (const int i : {0, 1}) {

@@ -180,7 +180,7 @@ TEST_F(TableFolder, LineEndsAreIrrelevant) {
   EXPECT_EQ(glasses.find("X2", "mine")->formula, petzval::DispersionFormula::buchdahl);
 }
 
-TEST_F(TableFolder, ABadTableIsRefusedWithFileLineAndReason) {
+TEST_F(TableFolder, BadTableIsRefusedWithFileLineAndReason) {
   expect_tokens(refusal(""), {"line 1", "header", "\"\""});
   expect_tokens(refusal("name,nd\n"), {"line 1", "header", "\"name,nd\""});
   expect_tokens(refusal(header + row + "mine,X2,1.5\n"), {"line 3", "3 columns"});
@@ -202,12 +202,12 @@ TEST_F(TableFolder, ABadTableIsRefusedWithFileLineAndReason) {
   EXPECT_EQ(refusal(header + row), "no error");
 }
 
-TEST_F(TableFolder, AFolderWithoutTablesIsRefused) {
+TEST_F(TableFolder, FolderWithoutTablesIsRefused) {
   expect_error([&] { GlassCatalogue::load(folder); }, {folder, "file", "glass_*.csv"});
   expect_error([&] { GlassCatalogue::load(folder / "absent"); }, {folder / "absent", "No such file"});
 }
 
-TEST_F(TableFolder, AFolderWithTheNameOfATableIsRefused) {
+TEST_F(TableFolder, FolderWithTheNameOfATableIsRefused) {
   fs::create_directory(folder / "glass_x.csv");
   expect_error([&] { GlassCatalogue::load(folder); }, {folder / "glass_x.csv", "folder"});
 }

@@ -342,7 +342,7 @@ TEST(PrescriptionJson, InvalidLensesAreRefusedWithTheSurface) {
                  {"configuration 0", "surface", "1"});
 }
 
-TEST(PrescriptionJson, TheOldFormOfZoomPositionsIsAConfiguration) {
+TEST(PrescriptionJson, OldFormOfZoomPositionsIsAConfiguration) {
   const Prescription old = parse_prescription(
       file(R"("zoom": {"position": "tele", "variable_gaps": {"0": 5.5}}, "surfaces": [)" + row + "]"), "x.json");
   ASSERT_EQ(old.configurations.size(), 1u);
@@ -350,7 +350,7 @@ TEST(PrescriptionJson, TheOldFormOfZoomPositionsIsAConfiguration) {
   EXPECT_EQ(old.configurations[0].changes, (std::vector<petzval::SurfaceChange>{{.surface = 0, .thickness = 5.5}}));
 }
 
-TEST(PrescriptionJson, TheOldFormOfZoomPositionsStandsAloneAndHasNumbers) {
+TEST(PrescriptionJson, InvalidOldFormsOfZoomPositionsAreRefused) {
   expect_refused(file(R"("zoom": {"position": "wide"}, "configurations": [{"name": "a"}])"),
                  {"\"zoom\"", "\"configurations\""});
   expect_refused(file(R"("zoom": {"variable_gaps": {"3": {}}})"), {"zoom", "variable_gaps", "an object"});

@@ -129,7 +129,7 @@ TEST(IrisWeights, SamplesHaveTheStatedDensity) {
   }
 }
 
-TEST(IrisWeights, MapsHaveTheirMeanOrOne) {
+TEST(IrisWeights, MapsKeepTheirMeanOrAreNormalisedToOne) {
   const auto mean = [](const IrisWeights& weights, const Iris& iris) {
     const IrisShape shape(iris);
     double sum = 0;

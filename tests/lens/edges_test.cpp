@@ -78,7 +78,7 @@ TEST(Edges, IgnoreSurfacesThatBendNoRay) {
   EXPECT_EQ(lens.surfaces()[2].semi_diameter, 28);
 }
 
-TEST(Edges, DoNotLimitSurfacesNextToSmallerOnes) {
+TEST(Edges, DoNotLimitSurfacesNextToSmallerSurfaces) {
   Prescription p = biconvex(50, 4, 25);
   p.surfaces[1].semi_diameter = 0.9 * meeting_height(50, 4);
   const Lens lens = compile(p);

@@ -171,7 +171,7 @@ TEST(Spectrum, OtherWavelengthsAreRefused) {
   EXPECT_TRUE(lens.covers(2));
 }
 
-TEST(Spectrum, MediumWithoutIndicesBetweenWavelengthsKeepsCompiledOnes) {
+TEST(Spectrum, MediumWithoutIndicesBetweenWavelengthsKeepsCompiledIndices) {
   // A formula with a pole at 500 nm.
   const Glass odd{.catalogue = "test",
                   .name = "POLE",

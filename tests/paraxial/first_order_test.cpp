@@ -77,7 +77,7 @@ TEST(RayMatrix, FollowedByItsInverseIsTheIdentity) {
   EXPECT_NEAR(identity.d, 1, 1e-14);
 }
 
-TEST(RayMatrix, ProductOfPartsIsTheWhole) {
+TEST(RayMatrix, ProductOfSectionsIsTheMatrixOfTheLens) {
   const Lens lens = data_lens("double_gauss_100mm_f1.35");
   const RayMatrix whole = ray_matrix(lens, 0, lens.surface_count());
   const auto all = ray_matrices_to(lens);

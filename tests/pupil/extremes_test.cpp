@@ -201,7 +201,7 @@ TEST(Extremes, StopOfRadiusZeroPassesItsCentreOnly) {
   }
 }
 
-TEST(Extremes, StopsFromHugeToTinyAreFound) {
+TEST(Extremes, StopsOfAnySizeHavePupils) {
   const Lens open = data_lens("double_gauss_100mm_f2.0");
   for (const double semi_diameter : {1e6, infinity, 1.0, 1e-3, 1e-6}) {
     SCOPED_TRACE(semi_diameter);

@@ -197,9 +197,9 @@ struct Parts {
 
 std::ostream& operator<<(std::ostream& out, const Parts& p) { return out << p.lens << " f/" << p.f_number; }
 
-class PupilsBesideOthers : public ::testing::TestWithParam<Parts> {};
+class DisconnectedPupils : public ::testing::TestWithParam<Parts> {};
 
-TEST_P(PupilsBesideOthers, IrradianceCountsTheConnectedPupilOnly) {
+TEST_P(DisconnectedPupils, IrradianceCountsTheConnectedPupilOnly) {
   const auto& [id, f_number, low, high, side] = GetParam();
   const Lens lens = with_f_number(data_lens(id), f_number);
   constexpr int heights = 4;
@@ -211,7 +211,7 @@ TEST_P(PupilsBesideOthers, IrradianceCountsTheConnectedPupilOnly) {
 }
 
 // Clipped rings; disconnected pupils with crescents and slivers.
-INSTANTIATE_TEST_SUITE_P(Lenses, PupilsBesideOthers,
+INSTANTIATE_TEST_SUITE_P(Lenses, DisconnectedPupils,
                          ::testing::Values(Parts{"catadioptric_mangin_1000mm_f7.5", 16, 9, 11.5},
                                            Parts{"primoplan_100mm_f1.9", 45, 38.5, 39.25},
                                            Parts{"ball_10mm", 8, 0, 0.38}, Parts{"ball_10mm", 16, 0, 0.38},
@@ -423,7 +423,7 @@ TEST(ImageCircle, HoldsInEveryDirectionForCylinders) {
   }
 }
 
-TEST(ImageCircle, IsZeroForDarkLensesAndLargeForOpenOnes) {
+TEST(ImageCircle, IsZeroForDarkLensesAndLargeForOpenLenses) {
   const Lens lens = data_lens("tessar_100mm_f2.8");
   EXPECT_EQ(image_circle_mm(with_semi_diameter(lens, *lens.stop(), 0)), 0);
   Prescription p;

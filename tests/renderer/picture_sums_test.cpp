@@ -50,7 +50,7 @@ TEST(PictureSums, BitsAreIndependentOfTheOrder) {
   EXPECT_NE(made_up_part(width, height, 1, 1, 19), forwards);
 }
 
-TEST(PictureSums, PartsMakeTheWhole) {
+TEST(PictureSums, PartsAddUpToThePicture) {
   const PictureSums whole = made_up_part(width, height, 1, 1, 17);
   for (const std::size_t count : {2u, 3u, 12u}) {
     PictureSums merged(width, height);
