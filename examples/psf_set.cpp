@@ -252,7 +252,7 @@ void merge(const std::vector<std::string>& names, const std::string& out) {
   const auto job = examples::PsfJob::read(folders.front());
   for (const fs::path& folder : folders) {
     if (examples::PsfJob::read(folder).description() == job.description()) continue;
-    throw petzval::Error(folder.string() + ": describes another set than " + folders.front().string() +
+    throw petzval::Error(folder.string() + ": the set differs from the set in " + folders.front().string() +
                          "; must be a shard of the same set");
   }
   say(examples::write_psf_set(job, job.gather(folders), out));

@@ -8,7 +8,7 @@
 
 namespace examples {
 
-/// Command line of the programs that shape a bokeh beyond its iris.
+/// Options for iris images, cat's eyes and weights of the pupil, shared by several programs.
 struct BokehFlags {
   petzval::BokehControls controls;  ///< without a weight map
   std::string iris_image, weight_map;

@@ -236,7 +236,7 @@ std::vector<petzval::ExrPart> PsfJob::gather(const std::vector<fs::path>& folder
         corrupt.push_back(of_shard(node) + error.what());
       }
     }
-    if (found) {  // an intact copy replaces a corrupt one
+    if (found) {  // an intact copy replaces a corrupt file
       parts.push_back(std::move(*found));
     } else if (corrupt.empty()) {
       missing[of_shard(node)].push_back(name(node));

@@ -62,7 +62,7 @@ class AxialFan {
 
   bool at_vertex() const noexcept { return distance_ == 0; }
 
-  /// The start height: the rim of the first surface, or the widest rim if that surface has none itself.
+  /// The start height: the rim of the first surface, or the widest rim if the first surface has no rim.
   double rim() const noexcept {
     const double own = lens_.surfaces()[first_].semi_diameter;
     if (std::isfinite(own)) return own;

@@ -200,7 +200,7 @@ PsfKernel plain_mean(const std::vector<PsfKernel>& kernels, const PsfKernel& gri
   return mean;
 }
 
-/// Blurs shrink towards the focus and grow inverted behind it.
+/// Blurs shrink towards the focus; behind the focus they are inverted and grow.
 TEST(PsfSet, IsNearTracedKernelsBetweenItsNodes) {
   const Study study{data_lens("double_gauss_100mm_f2_28deg"), 2000};
   const PsfSet::Axes axes{{0, 5, 10, 14}, {1000, 1400, 2000, 4000, infinity}, {d_line_nm}, {2.8}};

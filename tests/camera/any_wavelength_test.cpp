@@ -185,7 +185,7 @@ TEST(AnyWavelengthOf, ExposureEqualsExposureOfACompiledWavelength) {
       const Camera camera(lens, film, {.model = model});
       const FilmPoint point = film.point(0.7 * film.columns, 0.7 * film.rows);
       double largest = 0;
-      for (const double nm : {421.2, 421.6, 443., 550., 635.}) {  // 421.4 nm is midway between compiled ones
+      for (const double nm : {421.2, 421.6, 443., 550., 635.}) {  // 421.4 nm is midway between compiled wavelengths
         const Camera own(with_film(compiled(prescription, {nm}), lens.film_z()), film, {.model = model});
         const double found = exposure(camera, point, Wavelength::nm(nm)), wanted = exposure(own, point, {});
         largest = std::max(largest, std::abs(found / wanted - 1));

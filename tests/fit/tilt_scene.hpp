@@ -44,7 +44,7 @@ struct Scene {
   Plane plane() const {
     return focus_detail::plane_of({.rank = PlaneRank::plane, .a = a, .b = b, .c = c}, lens.front_principal_z()).value();
   }
-  /// Points all over the image.
+  /// Points spread over the image.
   std::vector<FocusTarget> targets(int count, double half_x, double half_y, unsigned seed = 1) const {
     std::mt19937_64 random(seed);
     std::uniform_real_distribution<double> unit(-1, 1);

@@ -46,7 +46,7 @@ class Exact {
     return traced(tables_, exact(ray.origin), exact(ray.direction), travel);
   }
 
-  /// True if a ray within some eps of this ray, with rims changed by as much, has this end.
+  /// True if a ray within eps_beside eps of this ray, with rims changed by as many eps, has this end.
   template <class T>
   bool ends_so_nearby(const Ray<T>& ray, Travel travel, const Floors& floors, RayFate fate, int surface) {
     const L eps = std::numeric_limits<T>::epsilon() * L(eps_beside);
