@@ -16,8 +16,8 @@
 #include <vector>
 
 #include "petzval/core/error.hpp"
+#include "petzval/core/geometry.hpp"
 #include "petzval/core/parallel.hpp"
-#include "petzval/core/units.hpp"
 #include "petzval/pupil/f_number.hpp"
 #include "support/bokeh.hpp"
 #include "support/bokeh_flags.hpp"

@@ -9,9 +9,9 @@
 #include <string>
 #include <vector>
 
-#include "petzval/camera/two_discs.hpp"
+#include "petzval/camera/bokeh.hpp"
+#include "petzval/core/geometry.hpp"
 #include "petzval/core/parallel.hpp"
-#include "petzval/core/units.hpp"
 #include "petzval/glass/glass.hpp"
 #include "petzval/io/lens_json.hpp"
 #include "petzval/pupil/f_number.hpp"

@@ -13,7 +13,7 @@
 
 #include "petzval/camera/camera.hpp"
 #include "petzval/core/error.hpp"
-#include "petzval/core/units.hpp"
+#include "petzval/core/geometry.hpp"
 #include "support/bokeh_flags.hpp"
 #include "support/camera_setup.hpp"
 #include "support/cli.hpp"

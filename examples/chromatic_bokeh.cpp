@@ -12,8 +12,8 @@
 #include <vector>
 
 #include "petzval/core/error.hpp"
+#include "petzval/core/geometry.hpp"
 #include "petzval/core/parallel.hpp"
-#include "petzval/core/units.hpp"
 #include "petzval/image/psf_image.hpp"
 #include "petzval/paraxial/first_order.hpp"
 #include "petzval/pupil/f_number.hpp"

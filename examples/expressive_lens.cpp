@@ -14,9 +14,9 @@
 
 #include "petzval/camera/camera.hpp"
 #include "petzval/core/error.hpp"
+#include "petzval/core/geometry.hpp"
 #include "petzval/core/parallel.hpp"
 #include "petzval/core/sobol.hpp"
-#include "petzval/core/units.hpp"
 #include "petzval/image/image.hpp"
 #include "petzval/pupil/f_number.hpp"
 #include "support/bokeh.hpp"

@@ -13,7 +13,7 @@
 #include <vector>
 
 #include "petzval/core/error.hpp"
-#include "petzval/core/units.hpp"
+#include "petzval/core/geometry.hpp"
 #include "petzval/figure/focus_figures.hpp"
 #include "petzval/fit/tilt_fit.hpp"
 #include "petzval/focus/autofocus.hpp"
@@ -71,12 +71,6 @@ class Pull {
   Pull(const Options& options, const examples::MovingLens& lens, const std::vector<petzval::FocusPoint>& points)
       : options_(options), lens_(lens), points_(points), film_(lens.film) {
     film_.z_mm = lens.ideal.rear_focal_z;
-    if (!lens.exact) return;
-    std::vector<petzval::ScenePoint> places;
-    for (const auto& point : points) {
-      for (const auto& key : point.keys) places.push_back(std::get<petzval::ScenePoint>(key.anchor));
-    }
-    bundles_ = lens.bundles(places, 4096);  // blurs within 2 %
   }
 
   Frame at(double time) {
@@ -93,11 +87,13 @@ class Pull {
   }
 
  private:
+  static constexpr std::size_t rays = 4096;  // blurs within 2 %
+
   petzval::FocusCriterion criterion() const { return options_.focus.options().criterion; }
 
   void focus(const std::vector<petzval::FocusTarget>& targets, Frame& frame) {
-    const auto found = bundles_ ? petzval::autofocus(*bundles_, targets, film_, criterion())
-                                : petzval::autofocus(lens_.ideal, targets, film_);
+    const auto found = lens_.exact ? petzval::autofocus(*lens_.lens, targets, film_, criterion(), rays)
+                                   : petzval::autofocus(lens_.ideal, targets, film_);
     frame.status = petzval::name(found.status);
     if (!found) return;
     film_ = found.film;
@@ -105,9 +101,9 @@ class Pull {
   }
 
   void tilt(const std::vector<petzval::FocusTarget>& targets, Frame& frame) {
-    const petzval::TiltOptions tilt{.film = film_};
+    const petzval::TiltOptions tilt{.film = film_, .rays = rays};
     const auto found =
-        bundles_ ? petzval::fit_tilt(*bundles_, targets, tilt) : petzval::fit_tilt(lens_.ideal, targets, tilt);
+        lens_.exact ? petzval::fit_tilt(*lens_.lens, targets, tilt) : petzval::fit_tilt(lens_.ideal, targets, tilt);
     frame.status = petzval::name(found.status);
     if (!found) return;
     film_ = found.film;
@@ -143,7 +139,6 @@ class Pull {
   const Options& options_;
   const examples::MovingLens& lens_;
   const std::vector<petzval::FocusPoint>& points_;
-  std::optional<petzval::ImageRays> bundles_;
   petzval::Film film_;  // film of the previous frame
 };
 

@@ -6,10 +6,9 @@
 #include <vector>
 
 #include "petzval/blur/gather.hpp"
-#include "petzval/blur/layer_camera.hpp"
 #include "petzval/blur/layers.hpp"
 #include "petzval/blur/lens_rays.hpp"
-#include "petzval/core/units.hpp"
+#include "petzval/core/geometry.hpp"
 
 int main() try {
   const petzval::LayerCamera camera = petzval::layer_camera(320, 240, petzval::radians(30));

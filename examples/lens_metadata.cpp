@@ -9,12 +9,12 @@
 #include <iostream>
 #include <string>
 
-#include "petzval/analysis/brown_conrady.hpp"
+#include "petzval/analysis/distortion.hpp"
 #include "petzval/core/error.hpp"
+#include "petzval/core/geometry.hpp"
 #include "petzval/core/parallel.hpp"
-#include "petzval/core/units.hpp"
 #include "petzval/formats/open_track_io.hpp"
-#include "petzval/image/lens_exr.hpp"
+#include "petzval/image/exr.hpp"
 #include "support/camera_setup.hpp"
 #include "support/cli.hpp"
 #include "support/files.hpp"

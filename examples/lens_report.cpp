@@ -13,7 +13,7 @@
 #include <vector>
 
 #include "petzval/core/error.hpp"
-#include "petzval/core/units.hpp"
+#include "petzval/core/geometry.hpp"
 #include "petzval/focus/focus.hpp"
 #include "petzval/pupil/f_number.hpp"
 #include "support/cli.hpp"

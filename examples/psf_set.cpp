@@ -16,9 +16,9 @@
 #include <vector>
 
 #include "petzval/core/error.hpp"
+#include "petzval/core/geometry.hpp"
 #include "petzval/core/parallel.hpp"
-#include "petzval/core/units.hpp"
-#include "petzval/image/psf_set_exr.hpp"
+#include "petzval/image/exr.hpp"
 #include "petzval/io/lens_json.hpp"
 #include "petzval/pupil/f_number.hpp"
 #include "support/bokeh.hpp"
@@ -75,7 +75,7 @@ class Scenes {
                                           .origin = options_.focus.distance_origin(),
                                           .criterion = options_.focus.options().criterion,
                                           .field_rad = petzval::radians(point.field_deg)});
-    examples::for_flag("--fields", [&] { return petzval::PupilPlane(scene.lens, scene.light); });
+    examples::for_flag("--fields", [&] { return petzval::scene_point(scene.lens, scene.light); });
     return scene;
   }
 

@@ -10,8 +10,8 @@
 #include <vector>
 
 #include "petzval/analysis/spot.hpp"
-#include "petzval/core/units.hpp"
-#include "petzval/figure/spot_figure.hpp"
+#include "petzval/core/geometry.hpp"
+#include "petzval/figure/lens_figures.hpp"
 #include "petzval/focus/focus.hpp"
 #include "support/cli.hpp"
 #include "support/design.hpp"
@@ -100,8 +100,8 @@ std::string hits_csv(const std::vector<petzval::Spot>& all, const Setting& setti
   for (std::size_t i = 0; i < all.size(); ++i) {
     const std::string start = examples::number(field_deg(setting, i)) + ',' +
                               examples::number(setting.light.wavelengths_nm[all[i].wavelength]) + ',';
-    for (std::size_t k = 0; k < all[i].hits.x.size(); ++k) {
-      csv += start + examples::number(all[i].hits.x[k]) + ',' + examples::number(all[i].hits.y[k]) + '\n';
+    for (std::size_t k = 0; k < all[i].x.size(); ++k) {
+      csv += start + examples::number(all[i].x[k]) + ',' + examples::number(all[i].y[k]) + '\n';
     }
   }
   return csv;
@@ -112,7 +112,7 @@ Json to_json(const std::vector<petzval::Spot>& all, const Setting& setting, cons
   Json rows = Json::array();
   for (std::size_t i = 0; i < all.size(); ++i) {
     const petzval::Spot& spot = all[i];
-    const bool empty = spot.hits.x.empty();  // no ray passes
+    const bool empty = spot.x.empty();  // no ray passes
     rows.push_back({{"field_deg", field_deg(setting, i)},
                     {"wavelength_nm", setting.light.wavelengths_nm[spot.wavelength]},
                     {"wavelength_weight", setting.light.weights[spot.wavelength]},
@@ -121,8 +121,8 @@ Json to_json(const std::vector<petzval::Spot>& all, const Setting& setting, cons
                     {"rms_radius_mm", empty ? Json(nullptr) : Json(spot.size.rms_radius)},
                     {"max_radius_mm", empty ? Json(nullptr) : Json(spot.size.max_radius)},
                     {"reference", "centroid"},
-                    {"rays_sent", spot.hits.sent},
-                    {"rays_transmitted", spot.hits.x.size()},
+                    {"rays_sent", spot.sent},
+                    {"rays_transmitted", spot.x.size()},
                     {"film_z_mm", setting.lens.film_z()},
                     {"film", options.film},
                     {"criterion", options.film == "focus" ? Json(options.focus.criterion) : Json()},

@@ -13,8 +13,8 @@
 #include <vector>
 
 #include "petzval/core/error.hpp"
+#include "petzval/core/geometry.hpp"
 #include "petzval/core/parallel.hpp"
-#include "petzval/core/units.hpp"
 #include "petzval/figure/focus_figures.hpp"
 #include "petzval/fit/tilt_fit.hpp"
 #include "petzval/focus/autofocus.hpp"
@@ -39,7 +39,7 @@ using petzval::TiltFitStatus;
 using Vector = petzval::Vec3<double>;
 
 constexpr double none = std::numeric_limits<double>::quiet_NaN();
-constexpr std::size_t rays_to_fit = 1024, rays_to_check = 4096, rays_of_map = 96;
+constexpr std::size_t rays_to_fit = 1024, rays_to_check = 4096;
 
 struct Options : examples::MovementOptions {
   std::string points_file, out_folder;
@@ -68,7 +68,6 @@ struct Point {
 struct Result {
   examples::MovingLens lens;
   std::vector<Point> points = {};
-  std::optional<petzval::ImageRays> bundles = {};  // rays of the real model
   petzval::Autofocus before = {};
   TiltFit after = {};
 };
@@ -105,8 +104,9 @@ petzval::Autofocus focused(const Options& options, Result& result) {
     return {.film = film, .blurs = {}};
   }
   const auto served = targets(result.points);
-  const petzval::Autofocus focus = result.bundles ? petzval::autofocus(*result.bundles, served, result.lens.film)
-                                                  : petzval::autofocus(result.lens.ideal, served, result.lens.film);
+  const petzval::Autofocus focus = result.lens.exact ? petzval::autofocus(*result.lens.lens, served, result.lens.film,
+                                                                          petzval::FocusCriterion::min_rms, rays_to_fit)
+                                                     : petzval::autofocus(result.lens.ideal, served, result.lens.film);
   std::size_t k = 0;
   for (Point& p : result.points) {
     if (!p.in_picture) continue;
@@ -131,19 +131,20 @@ void leave_out_what_is_beside(const petzval::Film& film, Result& result) {
 Result solve(const Options& options) {
   Result result{.lens = examples::moving_lens(options)};
   for (const auto& target : examples::read_targets(options.points_file)) result.points.push_back({target});
-  if (result.lens.exact) result.bundles = result.lens.bundles(places(result.points), rays_to_fit);
 
   result.before = focused(options, result);
   if (options.film_given) {
     leave_out_what_is_beside(petzval::Film(result.before.film), result);
     result.before = focused(options, result);
   }
-  petzval::TiltOptions tilt{
-      .max_tilt_rad = petzval::radians(options.max_tilt_deg), .robust = options.robust, .film = result.before.film};
+  petzval::TiltOptions tilt{.max_tilt_rad = petzval::radians(options.max_tilt_deg),
+                            .robust = options.robust,
+                            .film = result.before.film,
+                            .rays = rays_to_fit};
   if (!options.film_given) tilt.film.width_mm = tilt.film.height_mm = 0;  // only its centre must stay behind the lens
   const auto served = targets(result.points);
-  result.after = result.bundles ? petzval::fit_tilt(*result.bundles, served, tilt)
-                                : petzval::fit_tilt(result.lens.ideal, served, tilt);
+  result.after = result.lens.exact ? petzval::fit_tilt(*result.lens.lens, served, tilt)
+                                   : petzval::fit_tilt(result.lens.ideal, served, tilt);
   result.after.film.width_mm = result.before.film.width_mm;
   result.after.film.height_mm = result.before.film.height_mm;
   std::size_t k = 0;
@@ -165,11 +166,11 @@ Result solve(const Options& options) {
     default: break;
   }
   if (result.lens.lens) {
-    const auto check = result.lens.bundles(places(result.points), rays_to_check);
-    for (Point& p : result.points) {
-      if (std::isnan(p.predicted_mm)) continue;
-      const auto blur = petzval::blur_on(check.bundle(p.target.place), result.after.film);
-      if (blur) p.traced_mm = blur->signed_diameter;
+    const auto traced =
+        petzval::exact_blurs(*result.lens.lens, result.after.film, places(result.points), rays_to_check);
+    for (std::size_t i = 0; i < result.points.size(); ++i) {
+      Point& p = result.points[i];
+      if (!std::isnan(p.predicted_mm) && traced[i]) p.traced_mm = traced[i]->signed_diameter;
     }
   }
   return result;
@@ -294,7 +295,7 @@ std::string side_view(const Result& result) {
                                .glass = result.lens.lens ? &*result.lens.lens : nullptr,
                                .before = result.before.film,
                                .after = result.after.film,
-                               .focus = result.bundles ? result.after.focus : std::nullopt,
+                               .focus = result.lens.exact ? result.after.focus : std::nullopt,
                                .blur_mm = sharp_mm(result.lens.film),
                                .points = points});
 }
@@ -305,18 +306,17 @@ std::vector<petzval::Rgb8Image> blur_pictures(const Result& result) {
   const petzval::IdealLens& ideal = result.lens.ideal;
   const examples::PointScene scene(ideal, places(result.points, &Point::shows));
   const petzval::Film films[]{examples::with_pixels(result.before.film), examples::with_pixels(result.after.film)};
-  std::optional<petzval::ImageRays> rays;
-  if (result.lens.exact) rays = result.lens.bundles({}, rays_of_map);
+  const petzval::Lens* const exact = result.lens.exact ? &*result.lens.lens : nullptr;
   std::vector<examples::BlurMap> maps;
   for (const petzval::Film& film : films) {
-    maps.push_back(examples::blur_map(film, scene, ideal, rays ? &*rays : nullptr, petzval::processor_threads()));
+    maps.push_back(examples::blur_map(film, scene, ideal, exact, petzval::processor_threads()));
   }
 
   examples::BlurSheet sheet{.scale_mm = examples::scale_of(maps), .sharp_mm = sharp_mm(result.lens.film)};
   sheet.subtitle = result.lens.title + ", " + result.lens.conditions + ", film " + number(result.lens.film.width_mm) +
                    " x " + number(result.lens.film.height_mm) + " mm; picture upright";
   sheet.notes = {"Signed diameter of the blur on the film" +
-                     std::string(rays ? ": the uniform disc with the RMS radius of the traced rays." : ".") +
+                     std::string(exact ? ": the uniform disc with the RMS radius of the traced rays." : ".") +
                      " Thin lines: " + number(1e3 * sheet.sharp_mm, 3) + " \u00b5m. Both pictures have the same scale.",
                  "Circles: the focus points and their blurs (grey: not used). Between them 1/distance is "
                  "interpolated."};

@@ -13,7 +13,7 @@
 #include <vector>
 
 #include "petzval/core/error.hpp"
-#include "petzval/core/units.hpp"
+#include "petzval/core/geometry.hpp"
 #include "support/cli.hpp"
 #include "support/files.hpp"
 #include "support/load_lens.hpp"

@@ -9,8 +9,8 @@
 #include <string>
 #include <vector>
 
+#include "petzval/core/geometry.hpp"
 #include "petzval/core/parallel.hpp"
-#include "petzval/core/units.hpp"
 #include "petzval/glass/glass.hpp"
 #include "support/bokeh.hpp"
 #include "support/cli.hpp"

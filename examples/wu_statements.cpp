@@ -10,8 +10,8 @@
 #include <string>
 #include <vector>
 
+#include "petzval/core/geometry.hpp"
 #include "petzval/core/parallel.hpp"
-#include "petzval/core/units.hpp"
 #include "petzval/glass/glass.hpp"
 #include "petzval/paraxial/first_order.hpp"
 #include "support/bokeh.hpp"

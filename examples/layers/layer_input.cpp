@@ -11,7 +11,7 @@
 
 #include "layers/blur_scenes.hpp"
 #include "petzval/core/error.hpp"
-#include "petzval/image/deep_exr.hpp"
+#include "petzval/image/exr.hpp"
 #include "petzval/image/image.hpp"
 
 namespace lens_blur {

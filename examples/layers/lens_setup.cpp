@@ -9,7 +9,7 @@
 #include <utility>
 
 #include "petzval/core/error.hpp"
-#include "petzval/core/units.hpp"
+#include "petzval/core/geometry.hpp"
 #include "petzval/focus/focus.hpp"
 #include "petzval/glass/glass.hpp"
 #include "petzval/lens/lens.hpp"

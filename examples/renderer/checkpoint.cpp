@@ -11,8 +11,8 @@
 #include <vector>
 
 #include "petzval/core/error.hpp"
+#include "petzval/core/files.hpp"
 #include "petzval/image/image.hpp"
-#include "petzval/io/write_file.hpp"
 
 namespace renderer {
 namespace {

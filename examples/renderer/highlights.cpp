@@ -6,7 +6,7 @@
 #include <numbers>
 #include <utility>
 
-#include "petzval/core/units.hpp"
+#include "petzval/core/geometry.hpp"
 #include "renderer/luminance.hpp"
 
 namespace renderer {

@@ -7,7 +7,7 @@
 #include <glm/glm.hpp>
 
 #include "petzval/analysis/colour.hpp"
-#include "petzval/core/units.hpp"
+#include "petzval/core/geometry.hpp"
 #include "support/bokeh.hpp"
 
 namespace renderer {

@@ -3,7 +3,7 @@
 
 #include <type_traits>
 
-#include "petzval/io/write_file.hpp"
+#include "petzval/core/files.hpp"
 
 namespace renderer {
 namespace {

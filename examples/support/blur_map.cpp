@@ -6,8 +6,6 @@
 #include <limits>
 #include <utility>
 
-#include "petzval/core/parallel.hpp"
-
 namespace examples {
 namespace {
 
@@ -17,27 +15,39 @@ std::size_t at(int x, int y, int width) {
   return static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x);
 }
 
-double ideal_blur(const petzval::Film& film, const PointScene& scene, const petzval::IdealLens& lens, double x,
-                  double y) {
-  const auto place = scene.at(film, film.point(x, y));
+double ideal_blur(const petzval::Film& film, const PointScene& scene, const petzval::IdealLens& lens,
+                  const petzval::FilmPoint& point) {
+  const auto place = scene.at(film, point);
   const auto image = place ? lens.image(*place) : std::nullopt;
   return image ? petzval::signed_blur(*image, film) : none;
 }
 
-/// The signed blur diameter of the scene point whose rays have their centroid at (x, y), pixels; NaN if no light
-/// arrives. `beside` is the offset of the chief ray of the ideal lens from that film point, updated here. It changes
-/// slowly, so the offset of a neighbour is a good start.
-double exact_blur(const petzval::Film& film, const PointScene& scene, const petzval::ImageRays& lens, double x,
-                  double y, petzval::FilmPoint& beside) {
-  const petzval::FilmPoint wanted = film.point(x, y);
-  double result = none;
-  for (int step = 0; step < 2; ++step) {
-    const auto place = scene.at(film, {wanted.x + beside.x, wanted.y + beside.y});
-    const auto blur = place ? petzval::blur_on(lens.bundle(*place), film) : std::nullopt;
-    if (!blur) return result;
-    result = blur->signed_diameter;
-    beside.x += wanted.x - blur->centroid.x;
-    beside.y += wanted.y - blur->centroid.y;
+/// The signed blur diameters of the scene points whose rays have their centroids at film points; NaN if no light
+/// arrives. The chief ray of the ideal lens gives a first scene point; the offset of its centroid gives the next.
+std::vector<double> exact_blurs(const petzval::Film& film, const PointScene& scene, const petzval::Lens& lens,
+                                const std::vector<petzval::FilmPoint>& wanted, int threads) {
+  constexpr int steps = 3;
+  constexpr std::size_t rays = 96;
+  std::vector<double> result(wanted.size(), none);
+  std::vector<petzval::FilmPoint> sought = wanted;
+  for (int step = 0; step < steps; ++step) {
+    std::vector<std::size_t> nodes;
+    std::vector<petzval::ScenePoint> points;
+    for (std::size_t i = 0; i < wanted.size(); ++i) {
+      if (step > 0 && std::isnan(result[i])) continue;
+      const auto point = scene.at(film, sought[i]);
+      if (!point) continue;
+      nodes.push_back(i);
+      points.push_back(*point);
+    }
+    const auto blurs = petzval::exact_blurs(lens, film, points, rays, threads);
+    for (std::size_t k = 0; k < nodes.size(); ++k) {
+      if (!blurs[k]) continue;
+      const std::size_t i = nodes[k];
+      result[i] = blurs[k]->signed_diameter;
+      sought[i].x += wanted[i].x - blurs[k]->centroid.x;
+      sought[i].y += wanted[i].y - blurs[k]->centroid.y;
+    }
   }
   return result;
 }
@@ -69,19 +79,19 @@ petzval::Film with_pixels(petzval::Film film, int longer_side) {
 }
 
 BlurMap blur_map(const petzval::Film& film, const PointScene& scene, const petzval::IdealLens& lens,
-                 const petzval::ImageRays* exact, int threads) {
+                 const petzval::Lens* exact, int threads) {
   constexpr int step = 8;  // pixels between nodes; the last node is beyond the last pixel
   const int width = film.columns, height = film.rows, columns = width / step + 2, rows = height / step + 2;
-  std::vector<double> nodes(static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows), none);
-  petzval::parallel_for(nodes.size(), static_cast<std::size_t>(columns), threads, [&](std::size_t begin, std::size_t) {
-    const int row = static_cast<int>(begin / static_cast<std::size_t>(columns));
-    petzval::FilmPoint beside;
-    for (int column = 0; column < columns; ++column) {
-      const double x = step * column, y = step * row;
-      nodes[at(column, row, columns)] =
-          exact ? exact_blur(film, scene, *exact, x, y, beside) : ideal_blur(film, scene, lens, x, y);
-    }
-  });
+  std::vector<petzval::FilmPoint> points;
+  for (int row = 0; row < rows; ++row) {
+    for (int column = 0; column < columns; ++column) points.push_back(film.point(step * column, step * row));
+  }
+  std::vector<double> nodes;
+  if (exact) {
+    nodes = exact_blurs(film, scene, *exact, points, threads);
+  } else {
+    for (const petzval::FilmPoint& point : points) nodes.push_back(ideal_blur(film, scene, lens, point));
+  }
   BlurMap result{width, height, {}};
   for (int y = 0; y < height; ++y) {
     for (int x = 0; x < width; ++x) {

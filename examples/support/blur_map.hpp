@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "petzval/core/film.hpp"
-#include "petzval/focus/image_rays.hpp"
+#include "petzval/focus/autofocus.hpp"
 #include "petzval/image/image.hpp"
 #include "point_scene.hpp"
 
@@ -22,10 +22,10 @@ struct BlurMap {
 /// The film with square pixels, given the number of pixels along its longer side.
 petzval::Film with_pixels(petzval::Film film, int longer_side = 1080);
 
-/// The blur at each pixel of the film, by the ideal lens or, if `exact` is not null, by ray bundles. It is computed at
+/// The blur at each pixel of the film, by the ideal lens or, if `exact` is not null, by exact rays. It is computed at
 /// every 8th pixel and interpolated. The result does not depend on the number of threads.
 BlurMap blur_map(const petzval::Film& film, const PointScene& scene, const petzval::IdealLens& lens,
-                 const petzval::ImageRays* exact, int threads);
+                 const petzval::Lens* exact, int threads);
 
 /// Upper end of a colour scale: the smallest 1, 2 or 5 times a power of ten that 99 % of the pixels do not exceed.
 double scale_of(std::span<const BlurMap> maps);

@@ -13,7 +13,7 @@
 #include "petzval/glass/glass.hpp"
 #include "petzval/image/psf_image.hpp"
 #include "petzval/paraxial/first_order.hpp"
-#include "petzval/pupil/pupil_plane.hpp"
+#include "petzval/pupil/aim.hpp"
 #include "text.hpp"
 
 namespace examples {
@@ -22,7 +22,7 @@ namespace {
 /// True if z lies in front of the whole first surface, even if that surface bulges forward.
 bool in_front(const petzval::Lens& lens, double z) {
   try {
-    petzval::PupilPlane(lens, {.z = z});
+    petzval::scene_point(lens, {.z = z});
     return true;
   } catch (const petzval::Error&) {
     return false;
@@ -40,7 +40,7 @@ void check_light(const petzval::Lens& lens, const BokehSetup& setup, double orig
     }
     return;
   }
-  petzval::PupilPlane(lens, {.z = -std::numeric_limits<double>::infinity()});  // throws if the lens has no pupil
+  petzval::scene_point(lens, {.z = -std::numeric_limits<double>::infinity()});  // throws if the lens has no pupil
   double refused = setup.light_mm, enough = std::max(1.0, refused);
   while (!in_front(lens, origin_z - enough)) enough *= 2;
   while (enough - refused > 1e-7 * enough) {
@@ -66,9 +66,7 @@ petzval::Camera camera_of(const BokehScene& scene, petzval::CameraOptions option
   constexpr double half_of_36 = 18, longest = 1e4;  // mm
   constexpr std::uint32_t few = 1 << 10;
   const double rate_per_mm = options.bokeh.rate_of_change / half_of_36;
-  const petzval::PupilPlane plane(scene.lens, scene.light);
-  const bool far = plane.reciprocal_distance() == 0;
-  const auto point = far ? plane.centre() : plane.centre() + plane.towards() / plane.reciprocal_distance();
+  const petzval::ScenePoint light = petzval::scene_point(scene.lens, scene.light);
   const auto exact = petzval::point_image(scene.lens, scene.light, {.samples = few}).size;
   double side = 1 + 2.2 * (std::hypot(exact.centroid.x, exact.centroid.y) + exact.max_radius);
   for (; side <= longest; side *= 2) {
@@ -77,8 +75,8 @@ petzval::Camera camera_of(const BokehScene& scene, petzval::CameraOptions option
     bool holds = true;
     for (std::uint32_t i = 0; i < few && holds; ++i) {
       const petzval::Vec2<double> at = petzval::owen_sobol(i, 0);
-      const auto s = far ? camera.sample_distant_importance(-plane.towards(), at.x, at.y)
-                         : camera.sample_importance(point, at.x, at.y);
+      const auto s = light.at_infinity ? camera.sample_distant_importance(-light.position, at.x, at.y)
+                                       : camera.sample_importance(light.position, at.x, at.y);
       holds = s.importance.fate != petzval::RayFate::outside_film;
     }
     if (holds) return camera;

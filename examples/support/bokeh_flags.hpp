@@ -4,7 +4,7 @@
 #include <string>
 
 #include "cli.hpp"
-#include "petzval/camera/bokeh_controls.hpp"
+#include "petzval/camera/bokeh.hpp"
 
 namespace examples {
 

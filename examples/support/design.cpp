@@ -7,12 +7,12 @@
 #include <limits>
 
 #include "cli.hpp"
+#include "petzval/analysis/spot.hpp"
 #include "petzval/core/error.hpp"
-#include "petzval/core/units.hpp"
+#include "petzval/core/geometry.hpp"
 #include "petzval/glass/glass.hpp"
 #include "petzval/pupil/aim.hpp"
-#include "petzval/pupil/apertures.hpp"
-#include "petzval/pupil/pupil_boundary.hpp"
+#include "petzval/pupil/f_number.hpp"
 #include "text.hpp"
 
 namespace examples {
@@ -177,10 +177,8 @@ std::optional<DeclaredPupil> declared_pupil(const petzval::DesignData& design, c
 }
 
 bool reached_by_light(const petzval::Lens& lens, const petzval::FieldPoint& point) {
-  for (std::size_t w = 0; w < lens.wavelengths_nm().size(); ++w) {
-    if (!petzval::pupil_boundary(lens, point, w, 8).empty()) return true;
-  }
-  return false;
+  const auto spots = petzval::spot_diagram(lens, point.z, {&point.field_rad, 1}, 64);
+  return std::ranges::any_of(spots, [](const petzval::Spot& spot) { return !spot.x.empty(); });
 }
 
 void want_light(const petzval::Lens& lens, const petzval::FieldPoint& point, const std::string& flag) {

@@ -7,7 +7,7 @@
 
 #include "load_lens.hpp"
 #include "petzval/paraxial/first_order.hpp"
-#include "petzval/pupil/pupil_plane.hpp"
+#include "petzval/pupil/aim.hpp"
 
 namespace examples {
 

@@ -5,8 +5,7 @@
 #include <system_error>
 
 #include "petzval/core/error.hpp"
-#include "petzval/core/read_file.hpp"
-#include "petzval/io/write_file.hpp"
+#include "petzval/core/files.hpp"
 
 namespace examples {
 

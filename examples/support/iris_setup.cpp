@@ -2,7 +2,7 @@
 #include "iris_setup.hpp"
 
 #include "petzval/core/error.hpp"
-#include "petzval/core/units.hpp"
+#include "petzval/core/geometry.hpp"
 #include "petzval/pupil/f_number.hpp"
 #include "text.hpp"
 

@@ -8,10 +8,9 @@
 #include <utility>
 
 #include "petzval/analysis/spot.hpp"
-#include "petzval/core/units.hpp"
+#include "petzval/core/geometry.hpp"
 #include "petzval/figure/focus_figures.hpp"
 #include "petzval/figure/lens_figures.hpp"
-#include "petzval/figure/spot_figure.hpp"
 #include "petzval/focus/focus.hpp"
 #include "text.hpp"
 

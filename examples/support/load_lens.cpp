@@ -9,11 +9,10 @@
 #include <utility>
 
 #include "petzval/analysis/match_glasses.hpp"
-#include "petzval/core/units.hpp"
-#include "petzval/formats/glass_files.hpp"
+#include "petzval/core/geometry.hpp"
 #include "petzval/formats/lens_file.hpp"
 #include "petzval/paraxial/first_order.hpp"
-#include "petzval/pupil/apertures.hpp"
+#include "petzval/pupil/f_number.hpp"
 #include "text.hpp"
 
 namespace examples {

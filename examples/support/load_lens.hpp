@@ -9,7 +9,6 @@
 #include "cli.hpp"
 #include "petzval/glass/glass.hpp"
 #include "petzval/lens/lens.hpp"
-#include "petzval/lens/medium.hpp"
 #include "petzval/prescription/prescription.hpp"
 
 namespace examples {

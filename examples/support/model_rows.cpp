@@ -11,7 +11,7 @@
 
 #include "load_lens.hpp"
 #include "petzval/core/error.hpp"
-#include "petzval/core/units.hpp"
+#include "petzval/core/geometry.hpp"
 #include "petzval/pupil/f_number.hpp"
 #include "text.hpp"
 

@@ -9,7 +9,7 @@
 #include "iris_setup.hpp"
 #include "load_lens.hpp"
 #include "petzval/core/error.hpp"
-#include "petzval/core/units.hpp"
+#include "petzval/core/geometry.hpp"
 #include "petzval/pupil/f_number.hpp"
 #include "text.hpp"
 
@@ -69,20 +69,6 @@ MovingLens moving_lens(const MovementOptions& options) {
   result.exact = options.model == "real";
   result.lens = std::move(lens);
   return result;
-}
-
-petzval::ImageRays MovingLens::bundles(std::span<const petzval::ScenePoint> places, std::size_t rays) const {
-  // Margin for a tilted and shifted film and for points slightly outside the picture. No light of points far outside
-  // passes the lens.
-  const double corner = std::hypot(film.width_mm, film.height_mm) / 2;
-  double farthest = 1.3 * corner;
-  for (const petzval::ScenePoint& place : places) {
-    const auto image = ideal.image(place);
-    if (image) farthest = std::max(farthest, 1.1 * std::hypot(image->position.x, image->position.y));
-  }
-  constexpr std::size_t most_rays = std::size_t{1} << 22, fewest = 64;
-  const std::size_t share = std::max(most_rays / std::max<std::size_t>(places.size(), 1), fewest);
-  return {*lens, std::min(farthest, 3 * corner), std::min(rays, share)};
 }
 
 const char* in_words(petzval::TargetUse use) {

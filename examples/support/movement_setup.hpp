@@ -10,7 +10,6 @@
 #include "load_lens.hpp"
 #include "petzval/core/film.hpp"
 #include "petzval/focus/focus_point.hpp"
-#include "petzval/focus/image_rays.hpp"
 #include "petzval/lens/lens.hpp"
 #include "petzval/paraxial/ideal_lens.hpp"
 
@@ -33,10 +32,6 @@ struct MovingLens {
   petzval::IdealLens ideal;           ///< thin lens, or the cardinal points for thick and real
   bool exact = false;                 ///< the model is real: exact rays
   petzval::Film film;                 ///< the film size of the options
-
-  /// Exact rays for images of scene points on the film and around it. The number of rays per point is at most `rays`,
-  /// and less for many points (2^22 in total, but at least 64 per point). The lens must not be nullopt.
-  petzval::ImageRays bundles(std::span<const petzval::ScenePoint> places, std::size_t rays) const;
 };
 MovingLens moving_lens(const MovementOptions& options);
 

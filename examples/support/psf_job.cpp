@@ -11,9 +11,9 @@
 #include "bokeh.hpp"
 #include "contact_sheet.hpp"
 #include "petzval/core/error.hpp"
-#include "petzval/core/units.hpp"
-#include "petzval/image/psf_set_exr.hpp"
-#include "petzval/io/write_file.hpp"
+#include "petzval/core/files.hpp"
+#include "petzval/core/geometry.hpp"
+#include "petzval/image/exr.hpp"
 #include "text.hpp"
 
 namespace examples {

@@ -8,7 +8,7 @@
 /// functions return a modified copy.
 ///
 ///     Prescription --compile--> Lens --> first_order, pupils, real_f_number   cardinal points, pupils, f-numbers
-///                                    --> chief_ray, aim, pupil_boundary       rays through the stop, vignetted pupils
+///                                    --> chief_ray, aim                       rays through the stop
 ///                                    --> film_irradiance, image_circle_mm     irradiance of the film
 ///                                    --> solve_focus, depth_of_field          film positions for subjects
 ///                                    --> autofocus                            film position for several points
@@ -39,40 +39,32 @@
 ///     petzval::figure     petzval/figure/     SVG figures
 ///     petzval::image      petzval/image/      EXR and PNG files
 
+#include "petzval/camera/bokeh.hpp"
 #include "petzval/camera/camera.hpp"
-#include "petzval/camera/camera_tables.hpp"
+#include "petzval/camera/camera_ray.hpp"
 #include "petzval/camera/expressive_lens.hpp"
 #include "petzval/camera/focal_surface.hpp"
-#include "petzval/camera/host_frame.hpp"
-#include "petzval/camera/polynomial_model.hpp"
-#include "petzval/camera/ray_model.hpp"
-#include "petzval/camera/two_discs.hpp"
+#include "petzval/core/config.hpp"
 #include "petzval/core/error.hpp"
+#include "petzval/core/files.hpp"
 #include "petzval/core/film.hpp"
+#include "petzval/core/geometry.hpp"
 #include "petzval/core/parallel.hpp"
 #include "petzval/core/ray.hpp"
-#include "petzval/core/read_file.hpp"
 #include "petzval/core/sobol.hpp"
-#include "petzval/core/units.hpp"
-#include "petzval/core/version.hpp"
 #include "petzval/focus/autofocus.hpp"
 #include "petzval/focus/focus.hpp"
 #include "petzval/focus/focus_point.hpp"
 #include "petzval/glass/glass.hpp"
 #include "petzval/io/lens_json.hpp"
-#include "petzval/io/write_file.hpp"
 #include "petzval/iris/iris.hpp"
 #include "petzval/lens/lens.hpp"
-#include "petzval/lens/medium.hpp"
 #include "petzval/paraxial/first_order.hpp"
 #include "petzval/paraxial/ideal_lens.hpp"
-#include "petzval/polynomial/ray_polynomial.hpp"
 #include "petzval/prescription/prescription.hpp"
 #include "petzval/pupil/aim.hpp"
-#include "petzval/pupil/apertures.hpp"
 #include "petzval/pupil/f_number.hpp"
 #include "petzval/pupil/illumination.hpp"
-#include "petzval/pupil/pupil_boundary.hpp"
 #include "petzval/trace/trace.hpp"
 
 // Vector functions, for hosts without a vector library.

@@ -7,8 +7,8 @@
 #include "petzval/core/film.hpp"
 #include "petzval/core/ray.hpp"
 #include "petzval/lens/lens.hpp"
-#include "petzval/pupil/pupil_plane.hpp"
-#include "petzval/pupil_table/two_plane_rays.hpp"
+#include "pupil/pupil_plane.hpp"
+#include "pupil_table/two_plane_rays.hpp"
 
 /// Ray errors in the scene, expressed as lengths on the film.
 namespace petzval::analysis_detail {

@@ -8,9 +8,9 @@
 #include <vector>
 
 #include "camera/exact_model.hpp"
-#include "petzval/camera/ray_model.hpp"
+#include "camera/ray_model.hpp"
 #include "petzval/core/film.hpp"
-#include "petzval/pupil_table/two_plane_rays.hpp"
+#include "pupil_table/two_plane_rays.hpp"
 
 /// The lines along which models are compared with the lens.
 namespace petzval::analysis_detail {

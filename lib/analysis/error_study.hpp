@@ -8,7 +8,7 @@
 #include "camera/exact_model.hpp"
 #include "carry_back.hpp"
 #include "error_lines.hpp"
-#include "petzval/analysis/model_error.hpp"
+#include "petzval/analysis/choose_model.hpp"
 #include "petzval/core/film.hpp"
 
 /// Comparison of models with a lens whose rays are traced once for all models.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "petzval/analysis/lens_distortion.hpp"
+#include "petzval/analysis/distortion.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -12,7 +12,7 @@
 #include "petzval/core/error.hpp"
 #include "petzval/paraxial/first_order.hpp"
 #include "petzval/pupil/illumination.hpp"
-#include "petzval/pupil/pupil_boundary.hpp"
+#include "pupil/pupil_boundary.hpp"
 
 namespace petzval {
 

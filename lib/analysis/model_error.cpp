@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "petzval/analysis/model_error.hpp"
+#include "analysis/model_errors.hpp"
 
 #include <algorithm>
 

@@ -12,7 +12,7 @@
 #include "core/text.hpp"
 #include "model_timing.hpp"
 #include "petzval/core/error.hpp"
-#include "petzval/core/units.hpp"
+#include "petzval/core/geometry.hpp"
 #include "petzval/focus/focus.hpp"
 #include "petzval/paraxial/first_order.hpp"
 #include "petzval/pupil/f_number.hpp"

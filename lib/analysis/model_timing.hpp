@@ -4,7 +4,7 @@
 #include <span>
 #include <vector>
 
-#include "petzval/camera/ray_model.hpp"
+#include "camera/ray_model.hpp"
 #include "petzval/core/film.hpp"
 
 namespace petzval::analysis_detail {

@@ -6,6 +6,7 @@
 #include <span>
 
 #include "petzval/analysis/spot.hpp"
+#include "pupil/ray_bundle.hpp"
 
 namespace petzval::analysis_detail {
 
@@ -24,3 +25,10 @@ SpotSize spot_size(std::span<const Points> sets) noexcept;
 std::optional<Vec2<double>> chief_point(const Lens& lens, const FieldPoint& point, std::size_t wavelength);
 
 }  // namespace petzval::analysis_detail
+
+namespace petzval {
+
+/// The spot size of all rays of several bundles; rays without weights count 1.
+PETZVAL_API SpotSize spot_size(std::span<const RayBundle> sets) noexcept;
+
+}  // namespace petzval

@@ -7,9 +7,9 @@
 
 #include "camera/exact_model.hpp"
 #include "error_lines.hpp"
-#include "petzval/analysis/model_error.hpp"
+#include "petzval/analysis/choose_model.hpp"
 #include "petzval/core/film.hpp"
-#include "petzval/pupil_table/film_pupil_table.hpp"
+#include "pupil_table/film_pupil_table.hpp"
 
 namespace petzval::analysis_detail {
 

@@ -126,8 +126,10 @@ std::vector<Spot> spot_diagram(const Lens& lens, double subject_z, std::span<con
       Spot spot;
       spot.point = point;
       spot.wavelength = w;
-      spot.hits = trace_bundle(lens, PupilSampler(pupil_boundary(lens, point, w)), samples);
-      spot.size = spot_size(spot.hits.x, spot.hits.y);
+      RayBundle rays = trace_bundle(lens, PupilSampler(pupil_boundary(lens, point, w)), samples);
+      spot.x = std::move(rays.x), spot.y = std::move(rays.y);
+      spot.sent = rays.sent;
+      spot.size = spot_size(spot.x, spot.y);
       spot.relative_illumination = relative_illumination(lens, point, w);
       spot.chief_ray_height = chief_ray_height(lens, point, w);
       spots.push_back(std::move(spot));

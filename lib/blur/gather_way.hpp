@@ -5,7 +5,7 @@
 #include <string_view>
 
 #include "petzval/blur/gather.hpp"
-#include "petzval/core/export.hpp"
+#include "petzval/core/config.hpp"
 
 namespace petzval::blur_detail {
 

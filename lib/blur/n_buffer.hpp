@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-#include "petzval/core/version.hpp"
+#include "petzval/core/config.hpp"
 
 namespace petzval::blur_detail {
 

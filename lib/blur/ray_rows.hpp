@@ -3,7 +3,7 @@
 
 #include <cstddef>
 
-#include "petzval/core/version.hpp"
+#include "petzval/core/config.hpp"
 
 namespace petzval::blur_detail {
 

@@ -2,7 +2,7 @@
 #include <array>
 #include <cmath>
 
-#include "petzval/camera/ray_model.hpp"
+#include "camera/ray_model.hpp"
 
 namespace petzval {
 

@@ -5,9 +5,9 @@
 #include <cmath>
 
 #include "core/meet_plane.hpp"
-#include "petzval/pupil/pupil_boundary.hpp"
 #include "petzval/trace/trace.hpp"
 #include "pupil/boundary_nodes.hpp"
+#include "pupil/pupil_boundary.hpp"
 
 namespace petzval::camera_detail {
 

@@ -4,7 +4,7 @@
 #include <cstddef>
 
 #include "lens_facts.hpp"
-#include "petzval/pupil_table/two_plane_rays.hpp"
+#include "pupil_table/two_plane_rays.hpp"
 
 namespace petzval::camera_detail {
 

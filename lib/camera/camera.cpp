@@ -7,12 +7,12 @@
 #include <span>
 #include <string>
 
+#include "camera/polynomial_model.hpp"
 #include "camera_data.hpp"
 #include "check_film.hpp"
 #include "core/low_discrepancy.hpp"
 #include "core/text.hpp"
 #include "make_model.hpp"
-#include "petzval/camera/polynomial_model.hpp"
 #include "petzval/core/error.hpp"
 
 namespace petzval {
@@ -175,8 +175,10 @@ Camera::Camera(const Lens& lens, const Film& film, const CameraOptions& options)
   data_ = std::make_shared<const Data>(facts, placed_film, model, radius, options);
 }
 
-Camera::Camera(const Lens& lens, const Film& film, const AnyRayModel& model, Normalisation normalisation,
-               const BokehControls& bokeh) {
+Camera::Camera(std::shared_ptr<const Data> data) noexcept : data_(std::move(data)) {}
+
+Camera camera_with(const Lens& lens, const Film& film, const AnyRayModel& model, Normalisation normalisation,
+                   const BokehControls& bokeh) {
   if (bokeh.lens_elements != 0 || bokeh.vignettes()) {
     throw Error(lens.name() +
                 ": camera: lens_elements, lens_ratio or rate_of_change are set for a given model; must be "
@@ -188,8 +190,8 @@ Camera::Camera(const Lens& lens, const Film& film, const AnyRayModel& model, Nor
   const double radius = camera_detail::upright_radius(facts, placed_film, model.kind());
   check_model(placed_lens, model.pupils(), radius);
   check_polynomials(placed_lens, model, radius);
-  data_ = std::make_shared<const Data>(facts, placed_film, model, radius,
-                                       CameraOptions{.normalisation = normalisation, .bokeh = bokeh});
+  return CameraAccess::camera(std::make_shared<const CameraAccess::Data>(
+      facts, placed_film, model, radius, CameraOptions{.normalisation = normalisation, .bokeh = bokeh}));
 }
 
 const Lens& Camera::lens() const noexcept { return data_->lens; }

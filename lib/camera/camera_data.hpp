@@ -7,14 +7,21 @@
 #include <mutex>
 #include <optional>
 
+#include "camera/ray_model.hpp"
 #include "petzval/camera/camera.hpp"
-#include "petzval/camera/ray_model.hpp"
 #include "petzval/lens/lens.hpp"
 #include "sample_rays.hpp"
 #include "scene_side.hpp"
 #include "tilted_film.hpp"
 
 namespace petzval {
+
+/// Access of the library to the data of a camera.
+struct CameraAccess {
+  using Data = Camera::Data;
+  static const Data& data(const Camera& camera) noexcept { return *camera.data_; }
+  static Camera camera(std::shared_ptr<const Data> data) noexcept { return Camera(std::move(data)); }
+};
 
 /// Data that a camera computes once: the film side in the constructor, the scene side on first use.
 struct Camera::Data {

@@ -9,7 +9,7 @@
 #include "front.hpp"
 #include "lens/wavelength_rows.hpp"
 #include "petzval/camera/camera_ray.hpp"
-#include "petzval/pupil_table/two_plane_rays.hpp"
+#include "pupil_table/two_plane_rays.hpp"
 
 namespace petzval::camera_detail {
 

@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "petzval/camera/camera_tables.hpp"
+#include "camera/camera_tables.hpp"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <string>
 
+#include "camera/polynomial_model.hpp"
 #include "camera_data.hpp"
 #include "lens/lens_view.hpp"
 #include "make_model.hpp"
 #include "paraxial_model.hpp"
-#include "petzval/camera/polynomial_model.hpp"
 #include "petzval/core/error.hpp"
 
 namespace petzval {
@@ -154,8 +154,8 @@ void CameraTables::check(std::span<const float> tables, const std::string& where
   }
 }
 
-std::vector<float> Camera::tables() const {
-  const Data& data = *data_;
+std::vector<float> camera_tables(const Camera& camera) {
+  const CameraAccess::Data& data = CameraAccess::data(camera);
   const std::string where = data.lens.name() + ": tables: ";
   if (data.tilted) throw Error(where + "the film is tilted or travels; must be upright and fixed");
   if (data.weights)

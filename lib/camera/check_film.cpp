@@ -10,8 +10,8 @@
 #include "core/text.hpp"
 #include "petzval/core/error.hpp"
 #include "petzval/core/film.hpp"
-#include "petzval/pupil_table/two_plane_rays.hpp"
 #include "pupil/face.hpp"
+#include "pupil_table/two_plane_rays.hpp"
 
 namespace petzval::camera_detail {
 

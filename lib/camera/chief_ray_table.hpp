@@ -6,12 +6,12 @@
 #include <optional>
 #include <vector>
 
+#include "camera/ray_model.hpp"
 #include "lens_facts.hpp"
-#include "petzval/camera/ray_model.hpp"
 #include "petzval/core/film.hpp"
 #include "petzval/core/geometry.hpp"
-#include "petzval/pupil_table/two_plane_rays.hpp"
 #include "petzval/trace/trace.hpp"
+#include "pupil_table/two_plane_rays.hpp"
 
 namespace petzval::camera_detail {
 

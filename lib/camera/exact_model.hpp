@@ -3,7 +3,7 @@
 
 #include <utility>
 
-#include "petzval/camera/ray_model.hpp"
+#include "camera/ray_model.hpp"
 #include "petzval/lens/lens.hpp"
 
 namespace petzval::camera_detail {

@@ -10,9 +10,9 @@
 #include "paraxial_model.hpp"
 #include "petzval/camera/expressive_lens.hpp"
 #include "petzval/core/error.hpp"
-#include "petzval/pupil/pupil_boundary.hpp"
 #include "petzval/trace/trace.hpp"
 #include "pupil/boundary_nodes.hpp"
+#include "pupil/pupil_boundary.hpp"
 
 namespace petzval {
 namespace {

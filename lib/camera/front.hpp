@@ -3,7 +3,7 @@
 
 #include "petzval/core/ray.hpp"
 #include "petzval/lens/lens.hpp"
-#include "petzval/pupil_table/two_plane_rays.hpp"
+#include "pupil_table/two_plane_rays.hpp"
 
 namespace petzval::camera_detail {
 

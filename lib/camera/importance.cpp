@@ -27,11 +27,11 @@
 #include <numbers>
 #include <type_traits>
 
+#include "camera/polynomial_model.hpp"
 #include "camera_data.hpp"
 #include "camera_steps.hpp"
 #include "core/meet_plane.hpp"
 #include "make_model.hpp"
-#include "petzval/camera/polynomial_model.hpp"
 #include "petzval/core/parallel.hpp"
 #include "pupil_table/scene_grid.hpp"
 #include "scene_side.hpp"

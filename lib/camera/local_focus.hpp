@@ -5,12 +5,12 @@
 #include <memory>
 #include <optional>
 
+#include "camera/ray_model.hpp"
 #include "lens_facts.hpp"
 #include "local_focus_steps.hpp"
 #include "petzval/camera/camera_ray.hpp"
 #include "petzval/camera/expressive_lens.hpp"
 #include "petzval/camera/focal_surface.hpp"
-#include "petzval/camera/ray_model.hpp"
 #include "petzval/core/film.hpp"
 #include "pupil_table/entrance_pupil_table.hpp"
 #include "tilted_film.hpp"

@@ -3,9 +3,9 @@
 
 #include <string>
 
+#include "camera/polynomial_model.hpp"
 #include "exact_model.hpp"
 #include "paraxial_model.hpp"
-#include "petzval/camera/polynomial_model.hpp"
 #include "petzval/core/error.hpp"
 
 namespace petzval {

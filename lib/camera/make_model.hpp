@@ -3,10 +3,10 @@
 
 #include <optional>
 
+#include "camera/ray_model.hpp"
 #include "lens_facts.hpp"
 #include "petzval/camera/model_kind.hpp"
-#include "petzval/camera/ray_model.hpp"
-#include "petzval/core/export.hpp"
+#include "petzval/core/config.hpp"
 
 namespace petzval::camera_detail {
 

@@ -8,7 +8,7 @@
 
 #include "moving_least_squares_loops.hpp"
 #include "petzval/camera/focal_surface.hpp"
-#include "petzval/core/export.hpp"
+#include "petzval/core/config.hpp"
 #include "petzval/core/film.hpp"
 #include "petzval/core/geometry.hpp"
 

@@ -19,7 +19,7 @@
 #include "paraxial_loops.hpp"
 #include "petzval/core/error.hpp"
 #include "petzval/pupil/illumination.hpp"
-#include "petzval/pupil_table/film_pupil_table.hpp"
+#include "pupil_table/film_pupil_table.hpp"
 #include "pupil_table/sector.hpp"
 #include "two_disc_fit.hpp"
 

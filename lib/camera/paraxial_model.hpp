@@ -7,10 +7,10 @@
 #include <span>
 #include <vector>
 
+#include "camera/ray_model.hpp"
 #include "lens/between_wavelengths.hpp"
 #include "lens_facts.hpp"
-#include "petzval/camera/ray_model.hpp"
-#include "petzval/core/export.hpp"
+#include "petzval/core/config.hpp"
 #include "petzval/paraxial/first_order.hpp"
 #include "petzval/trace/trace.hpp"
 

@@ -5,10 +5,10 @@
 #include <memory>
 #include <optional>
 
+#include "camera/ray_model.hpp"
 #include "iris/iris_weights.hpp"
-#include "petzval/camera/bokeh_controls.hpp"
-#include "petzval/camera/ray_model.hpp"
-#include "petzval/core/export.hpp"
+#include "petzval/camera/bokeh.hpp"
+#include "petzval/core/config.hpp"
 #include "petzval/lens/lens.hpp"
 
 namespace petzval::camera_detail {

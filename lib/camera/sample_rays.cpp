@@ -8,7 +8,7 @@
 #include <utility>
 
 #include "camera_loops.hpp"
-#include "petzval/core/instruction_set.hpp"
+#include "core/instruction_set.hpp"
 #include "tilted_pinhole.hpp"
 
 namespace petzval::camera_detail {

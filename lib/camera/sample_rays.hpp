@@ -5,13 +5,13 @@
 #include <span>
 #include <vector>
 
+#include "camera/ray_model.hpp"
 #include "core/film_bounds.hpp"
 #include "front.hpp"
 #include "lens/between_wavelengths.hpp"
 #include "local_focus.hpp"
 #include "petzval/camera/camera_ray.hpp"
-#include "petzval/camera/ray_model.hpp"
-#include "petzval/core/export.hpp"
+#include "petzval/core/config.hpp"
 #include "petzval/core/film.hpp"
 #include "pupil_weights.hpp"
 #include "tilted_film.hpp"

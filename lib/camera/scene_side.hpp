@@ -5,13 +5,13 @@
 #include <optional>
 #include <vector>
 
+#include "camera/ray_model.hpp"
 #include "chief_ray_table.hpp"
 #include "front.hpp"
 #include "lens/between_wavelengths.hpp"
 #include "lens_facts.hpp"
 #include "local_focus.hpp"
 #include "petzval/camera/camera_ray.hpp"
-#include "petzval/camera/ray_model.hpp"
 #include "petzval/core/film.hpp"
 #include "pupil_table/entrance_pupil_table.hpp"
 #include "sample_rays.hpp"

@@ -6,10 +6,10 @@
 
 #include "lens_facts.hpp"
 #include "petzval/camera/model_kind.hpp"
-#include "petzval/core/export.hpp"
+#include "petzval/core/config.hpp"
 #include "petzval/core/film.hpp"
-#include "petzval/pupil_table/film_pupil_table.hpp"
-#include "petzval/pupil_table/two_plane_rays.hpp"
+#include "pupil_table/film_pupil_table.hpp"
+#include "pupil_table/two_plane_rays.hpp"
 
 namespace petzval::camera_detail {
 

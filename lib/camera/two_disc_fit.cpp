@@ -11,7 +11,7 @@
 #include "core/householder.hpp"
 #include "core/text.hpp"
 #include "lens_facts.hpp"
-#include "petzval/camera/two_discs.hpp"
+#include "petzval/camera/bokeh.hpp"
 #include "petzval/core/error.hpp"
 #include "pupil_table/pupil_polygon.hpp"
 

@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "petzval/pupil_table/film_pupil_table.hpp"
+#include "pupil_table/film_pupil_table.hpp"
 
 namespace petzval::camera_detail {
 

@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "petzval/core/export.hpp"
+#include "petzval/core/config.hpp"
 #include "petzval/core/film.hpp"
 
 namespace petzval::core_detail {

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "petzval/core/instruction_set.hpp"
+#include "core/instruction_set.hpp"
 
 #include <algorithm>
 #include <cstddef>
 #include <cstdlib>
+#include <utility>
 
 namespace petzval {
 
@@ -17,6 +18,8 @@ std::string_view name(InstructionSet set) noexcept {
 }
 
 namespace {
+
+thread_local InstructionSet limit_of_thread = InstructionSet::avx512;
 
 constexpr InstructionSet all[] = {InstructionSet::baseline, InstructionSet::avx2, InstructionSet::avx512};
 
@@ -45,5 +48,9 @@ std::span<const InstructionSet> instruction_sets() noexcept {
   return {all, 1};
 #endif
 }
+
+InstructionSet batch_instruction_set() noexcept { return std::min(limit_of_thread, instruction_sets().back()); }
+
+InstructionSet limit_batches(InstructionSet widest) noexcept { return std::exchange(limit_of_thread, widest); }
 
 }  // namespace petzval

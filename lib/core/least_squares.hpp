@@ -3,7 +3,7 @@
 
 #include <Eigen/Core>
 
-#include "petzval/core/export.hpp"
+#include "petzval/core/config.hpp"
 
 namespace petzval::core_detail {
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "petzval/core/sobol.hpp"
 
+#include "core/instruction_set.hpp"
 #include "low_discrepancy.hpp"
-#include "petzval/core/instruction_set.hpp"
 
 namespace petzval {
 namespace {

@@ -5,7 +5,7 @@
 #include <string>
 #include <string_view>
 
-#include "petzval/core/export.hpp"
+#include "petzval/core/config.hpp"
 
 namespace petzval {
 

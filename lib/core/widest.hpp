@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "petzval/core/instruction_set.hpp"
+#include "core/instruction_set.hpp"
 
 /// PETZVAL_WIDEST(Type, name) defines name(): the loops compiled for the widest instruction set of this processor.
 /// For files that petzval_loops (cmake/module.cmake) compiles for every instruction set. The objects define constants

@@ -8,9 +8,9 @@
 #include <utility>
 #include <vector>
 
+#include "analysis/points.hpp"
 #include "axes.hpp"
 #include "core/text.hpp"
-#include "petzval/analysis/spot.hpp"
 #include "petzval/core/error.hpp"
 #include "petzval/paraxial/first_order.hpp"
 #include "sheet.hpp"

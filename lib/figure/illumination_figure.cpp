@@ -10,7 +10,7 @@
 #include "axes.hpp"
 #include "core/text.hpp"
 #include "petzval/core/error.hpp"
-#include "petzval/core/units.hpp"
+#include "petzval/core/geometry.hpp"
 #include "petzval/pupil/illumination.hpp"
 #include "sheet.hpp"
 

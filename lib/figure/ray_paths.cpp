@@ -19,7 +19,7 @@ class Fan {
 
   AimedRay at(double height) const {
     const double inside = height * (1 - 1e-9);  // rounding must not vignette the ray through the rim
-    return aim(lens_, point_, in_y_ ? StopPoint{0, inside} : StopPoint{inside, 0}, wavelength_);
+    return aim(lens_, point_, in_y_ ? Vec2<double>{0, inside} : Vec2<double>{inside, 0}, wavelength_);
   }
   bool passes(double height) const { return at(height).status == AimStatus::converged; }
 

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "petzval/lens/lens.hpp"
-#include "petzval/pupil/ray_bundle.hpp"
+#include "pupil/ray_bundle.hpp"
 #include "svg.hpp"
 
 /// Shared elements of figures: head line, colours of fields, scale bar, lengths as text.

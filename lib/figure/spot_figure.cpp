@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "petzval/figure/spot_figure.hpp"
+#include "petzval/figure/lens_figures.hpp"
 
 #include <algorithm>
 #include <array>
@@ -9,9 +9,10 @@
 #include <utility>
 #include <vector>
 
+#include "analysis/points.hpp"
 #include "core/text.hpp"
 #include "petzval/core/error.hpp"
-#include "petzval/core/units.hpp"
+#include "petzval/core/geometry.hpp"
 #include "petzval/paraxial/first_order.hpp"
 #include "sheet.hpp"
 
@@ -82,7 +83,8 @@ class SpotFigure {
     middle_ = order[wavelengths_ / 2];
     for (std::size_t row = 0; row < rows_; ++row) {
       std::vector<RayBundle> hits;
-      for (const Spot& spot : of(row)) hits.push_back(figure_detail::weighted(spot.hits, weights_[spot.wavelength]));
+      for (const Spot& spot : of(row))
+        hits.push_back(figure_detail::weighted({.x = spot.x, .y = spot.y}, weights_[spot.wavelength]));
       sizes_.push_back(spot_size(hits));
     }
     limit_ = 1.08 * std::max(extent(), airy(middle_));
@@ -110,8 +112,8 @@ class SpotFigure {
     double farthest = 0;
     for (std::size_t row = 0; row < rows_; ++row) {
       for (const Spot& spot : of(row)) {
-        for (const double x : spot.hits.x) farthest = std::max(farthest, std::abs(x - sizes_[row].centroid.x));
-        for (const double y : spot.hits.y) farthest = std::max(farthest, std::abs(y - sizes_[row].centroid.y));
+        for (const double x : spot.x) farthest = std::max(farthest, std::abs(x - sizes_[row].centroid.x));
+        for (const double y : spot.y) farthest = std::max(farthest, std::abs(y - sizes_[row].centroid.y));
       }
     }
     return farthest;
@@ -156,7 +158,7 @@ class SpotFigure {
               "stroke=\"#e4e4e4\"");
     const std::size_t first = column == 0 ? 0 : column - 1, last = column == 0 ? wavelengths_ : column;
     for (std::size_t w = first; w < last; ++w) {
-      const RayBundle& hits = of(row)[w].hits;
+      const Spot& hits = of(row)[w];
       std::string d;
       for (std::size_t i = 0; i < std::min(drawn_rays, hits.x.size()); ++i) {
         d += marker(looks_[w].marker, cx + (hits.x[i] - origin_x) * scale, cy - (hits.y[i] - origin_y) * scale);
@@ -169,7 +171,7 @@ class SpotFigure {
     }
     const bool empty = std::all_of(of(row).begin() + static_cast<std::ptrdiff_t>(first),
                                    of(row).begin() + static_cast<std::ptrdiff_t>(last),
-                                   [](const Spot& spot) { return spot.hits.x.empty(); });
+                                   [](const Spot& spot) { return spot.x.empty(); });
     const SpotSize& size = column == 0 ? sizes_[row] : of(row)[first].size;
     svg_.text(cx, y + cell + 15,
               empty ? "no rays"
@@ -194,7 +196,7 @@ class SpotFigure {
                                          " on the film side; " + figure_detail::length_text(airy(middle_)) + " at " +
                                          to_text(lens_.wavelengths_nm()[middle_], 6) + " nm. ";
     svg_.text(gap, y + 40,
-              circle + std::to_string(spots_.front().hits.sent) + " rays sent per spot, at most " +
+              circle + std::to_string(spots_.front().sent) + " rays sent per spot, at most " +
                   std::to_string(drawn_rays) + " drawn.",
               small_text);
   }

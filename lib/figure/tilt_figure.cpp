@@ -9,7 +9,7 @@
 
 #include "core/text.hpp"
 #include "petzval/core/error.hpp"
-#include "petzval/core/units.hpp"
+#include "petzval/core/geometry.hpp"
 #include "scene_panel.hpp"
 #include "sheet.hpp"
 

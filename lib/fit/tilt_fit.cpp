@@ -8,6 +8,7 @@
 #include <numbers>
 
 #include "core/text.hpp"
+#include "fit/fit_to_rays.hpp"
 #include "focus/targets.hpp"
 #include "petzval/core/error.hpp"
 #include "tilt_problem.hpp"
@@ -135,6 +136,10 @@ TiltFit fit_tilt(const IdealLens& lens, std::span<const FocusTarget> targets, co
   });
 }
 
+TiltFit fit_tilt(const Lens& lens, std::span<const FocusTarget> targets, const TiltOptions& options) {
+  return fit_tilt(image_rays(lens, options.film, targets, options.rays), targets, options);
+}
+
 TiltFit fit_tilt(const ImageRays& lens, std::span<const FocusTarget> targets, const TiltOptions& given) {
   const TiltOptions options = checked(given, lens.lens().film_z());
   const IdealLens& ideal = lens.ideal();
@@ -164,7 +169,7 @@ TiltFit fit_tilt(const ImageRays& lens, std::span<const FocusTarget> targets, co
     solution = least_blur(errors, problem.space, thick);
   }
   TiltFit fit = described(ideal, targets, options, seen, problem, solution, [&](std::size_t i, const Film& film) {
-    const std::optional<BundleBlur> blur = blur_on(bundles[i], film);
+    const std::optional<ExactBlur> blur = blur_on(bundles[i], film);
     return blur ? blur->signed_diameter : std::numeric_limits<double>::quiet_NaN();
   });
   // Aberrations move the film by nearly the same distance for all subjects. The plane of focus is therefore computed

@@ -3,7 +3,7 @@
 
 #include <Eigen/Core>
 
-#include "petzval/focus/image_rays.hpp"
+#include "focus/image_rays.hpp"
 #include "tilt_problem.hpp"
 
 namespace petzval::fit_detail {

@@ -11,6 +11,7 @@
 #include "core/bisect.hpp"
 #include "core/text.hpp"
 #include "focus/image.hpp"
+#include "focus/image_rays.hpp"
 #include "petzval/core/error.hpp"
 #include "pupil/trace_rays.hpp"
 #include "signed_diameter.hpp"
@@ -155,6 +156,11 @@ Autofocus autofocus(const IdealLens& lens, std::span<const FocusTarget> targets,
   }
   return described(lens, targets, requests, before, lens.rear_focal_z, least_squares(targets, requests),
                    [&](std::size_t i, const Film& last) { return signed_blur(*images[i], last); });
+}
+
+Autofocus autofocus(const Lens& lens, std::span<const FocusTarget> targets, const Film& film, FocusCriterion criterion,
+                    std::size_t rays) {
+  return autofocus(image_rays(lens, film, targets, rays), targets, film, criterion);
 }
 
 Autofocus autofocus(const ImageRays& lens, std::span<const FocusTarget> targets, const Film& film,

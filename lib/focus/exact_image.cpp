@@ -4,9 +4,9 @@
 #include <algorithm>
 #include <utility>
 
-#include "petzval/pupil/pupil_boundary.hpp"
-#include "petzval/pupil/pupil_plane.hpp"
+#include "pupil/pupil_boundary.hpp"
 #include "pupil/pupil_nodes.hpp"
+#include "pupil/pupil_plane.hpp"
 #include "pupil/trace_rays.hpp"
 
 namespace petzval::focus_detail {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "petzval/focus/focus_plane.hpp"
+#include "petzval/focus/focus.hpp"
 
 namespace petzval {
 

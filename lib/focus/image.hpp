@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "petzval/core/export.hpp"
-#include "petzval/pupil/ray_bundle.hpp"
+#include "petzval/core/config.hpp"
+#include "pupil/ray_bundle.hpp"
 
 /// The blur of rays as a function of the position of an upright film.
 namespace petzval::focus_detail {

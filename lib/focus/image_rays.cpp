@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "petzval/focus/image_rays.hpp"
+#include "focus/image_rays.hpp"
 
 #include <algorithm>
 #include <array>
@@ -12,9 +12,10 @@
 #include "core/low_discrepancy.hpp"
 #include "core/meet_plane.hpp"
 #include "petzval/core/error.hpp"
-#include "petzval/pupil_table/film_pupil_table.hpp"
+#include "petzval/core/parallel.hpp"
 #include "pupil/trace_rays.hpp"
 #include "pupil_table/entrance_pupil_table.hpp"
+#include "pupil_table/film_pupil_table.hpp"
 #include "signed_diameter.hpp"
 
 namespace petzval {
@@ -39,7 +40,7 @@ std::optional<Vec3<double>> seen_at(const ScenePoint& place) noexcept {
 
 }  // namespace
 
-std::optional<BundleBlur> blur_on(const RayBundle& bundle, const Film& film) {
+std::optional<ExactBlur> blur_on(const RayBundle& bundle, const Film& film) {
   const std::size_t count = bundle.x.size();
   for (const auto* numbers : {&bundle.y, &bundle.slope_x, &bundle.slope_y}) {
     if (numbers->size() == count) continue;
@@ -82,10 +83,10 @@ std::optional<BundleBlur> blur_on(const RayBundle& bundle, const Film& film) {
   if (!std::isfinite(rms)) return {};
   constexpr double diameter = 2 * std::numbers::sqrt2;  // diameter of a uniform disc divided by its RMS radius
   const double defocus = steepness > 0 ? spreads * each / std::sqrt(steepness * each) : 0;
-  return BundleBlur{.centroid = {glm::dot(middle, right), glm::dot(middle, up)},
-                    .rms_radius = rms,
-                    .largest_radius = std::sqrt(largest),
-                    .signed_diameter = focus_detail::signed_diameter(diameter * rms, diameter * defocus)};
+  return ExactBlur{.centroid = {glm::dot(middle, right), glm::dot(middle, up)},
+                   .rms_radius = rms,
+                   .largest_radius = std::sqrt(largest),
+                   .signed_diameter = focus_detail::signed_diameter(diameter * rms, diameter * defocus)};
 }
 
 struct ImageRays::Data {
@@ -147,6 +148,37 @@ RayBundle ImageRays::bundle(const ScenePoint& place) const {
   const std::size_t kept = bundle.x.size();
   if (kept == 0 || 2 * kept >= rays) return bundle;
   return data_->send(*point, std::min(rays * rays / kept, 16 * rays));
+}
+
+ImageRays image_rays(const Lens& lens, const Film& film, std::span<const ScenePoint> points, std::size_t rays) {
+  const IdealLens ideal = thick_lens(lens, lens.primary_wavelength());
+  // 1.3: margin for a tilted and shifted film. No light of points far outside the film passes the lens.
+  const double corner = std::hypot(film.width_mm, film.height_mm) / 2, focal_length = std::abs(ideal.rear_focal_length);
+  const double limit = corner > 0 ? 3 * corner : 2 * focal_length;
+  double farthest = std::max(1.3 * corner, 0.01 * focal_length);
+  for (const ScenePoint& point : points) {
+    const auto image = ideal.image(point);
+    if (image) farthest = std::max(farthest, 1.1 * std::hypot(image->position.x, image->position.y));
+  }
+  constexpr std::size_t most_rays = std::size_t{1} << 22, fewest = 64;
+  const std::size_t affordable = std::max(most_rays / std::max<std::size_t>(points.size(), 1), fewest);
+  return {lens, std::min(farthest, limit), std::min(rays, affordable)};
+}
+
+ImageRays image_rays(const Lens& lens, const Film& film, std::span<const FocusTarget> targets, std::size_t rays) {
+  std::vector<ScenePoint> points;
+  for (const FocusTarget& target : targets) points.push_back(target.place);
+  return image_rays(lens, film, points, rays);
+}
+
+std::vector<std::optional<ExactBlur>> exact_blurs(const Lens& lens, const Film& film,
+                                                  std::span<const ScenePoint> points, std::size_t rays, int threads) {
+  const ImageRays bundles = image_rays(lens, film, points, rays);
+  std::vector<std::optional<ExactBlur>> result(points.size());
+  parallel_for(points.size(), 16, threads, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) result[i] = blur_on(bundles.bundle(points[i]), film);
+  });
+  return result;
 }
 
 }  // namespace petzval

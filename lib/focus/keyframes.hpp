@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "petzval/core/export.hpp"
+#include "petzval/core/config.hpp"
 
 namespace petzval::focus_detail {
 

@@ -4,7 +4,7 @@
 #include <optional>
 #include <span>
 
-#include "petzval/core/export.hpp"
+#include "petzval/core/config.hpp"
 #include "petzval/core/geometry.hpp"
 #include "petzval/focus/focus_point.hpp"
 #include "petzval/paraxial/ideal_lens.hpp"

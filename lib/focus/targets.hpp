@@ -7,7 +7,7 @@
 #include <span>
 #include <string>
 
-#include "petzval/core/export.hpp"
+#include "petzval/core/config.hpp"
 #include "petzval/focus/focus_point.hpp"
 
 namespace petzval::focus_detail {

@@ -12,7 +12,7 @@
 #include "core/text.hpp"
 #include "glass_reader.hpp"
 #include "petzval/core/error.hpp"
-#include "petzval/core/units.hpp"
+#include "petzval/core/geometry.hpp"
 #include "text_file.hpp"
 
 namespace petzval::formats_detail {

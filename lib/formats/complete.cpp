@@ -14,7 +14,6 @@
 #include "petzval/analysis/lint.hpp"
 #include "petzval/core/error.hpp"
 #include "petzval/lens/lens.hpp"
-#include "petzval/lens/medium.hpp"
 #include "petzval/paraxial/first_order.hpp"
 #include "petzval/trace/trace.hpp"
 

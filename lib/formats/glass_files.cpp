@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "petzval/formats/glass_files.hpp"
+#include "petzval/formats/lens_file.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -11,7 +11,7 @@
 #include "glass/glass_table.hpp"
 #include "glass_reader.hpp"
 #include "petzval/core/error.hpp"
-#include "petzval/core/units.hpp"
+#include "petzval/core/geometry.hpp"
 #include "text_file.hpp"
 
 namespace petzval {

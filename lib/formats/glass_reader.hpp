@@ -6,7 +6,7 @@
 #include <string_view>
 #include <unordered_set>
 
-#include "petzval/formats/glass_files.hpp"
+#include "petzval/formats/lens_file.hpp"
 
 namespace petzval::formats_detail {
 

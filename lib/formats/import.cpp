@@ -11,7 +11,7 @@
 #include "glass/similar_names.hpp"
 #include "io/json.hpp"
 #include "petzval/core/error.hpp"
-#include "petzval/core/units.hpp"
+#include "petzval/core/geometry.hpp"
 #include "text_file.hpp"
 
 namespace petzval::formats_detail {

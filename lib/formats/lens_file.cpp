@@ -8,7 +8,7 @@
 #include "io/json.hpp"
 #include "io/missing_apertures.hpp"
 #include "petzval/core/error.hpp"
-#include "petzval/core/read_file.hpp"
+#include "petzval/core/files.hpp"
 #include "petzval/io/lens_json.hpp"
 #include "readers.hpp"
 #include "text_file.hpp"

@@ -9,10 +9,10 @@
 
 #include "core/text.hpp"
 #include "io/json.hpp"
-#include "petzval/analysis/brown_conrady.hpp"
+#include "petzval/analysis/distortion.hpp"
 #include "petzval/core/error.hpp"
-#include "petzval/core/units.hpp"
-#include "petzval/io/write_file.hpp"
+#include "petzval/core/files.hpp"
+#include "petzval/core/geometry.hpp"
 
 namespace petzval {
 namespace {

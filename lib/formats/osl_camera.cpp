@@ -10,13 +10,13 @@
 
 #include "core/text.hpp"
 #include "petzval/core/error.hpp"
-#include "petzval/core/units.hpp"
+#include "petzval/core/geometry.hpp"
 #include "petzval/focus/focus.hpp"
 #include "petzval/lens/lens.hpp"
 #include "petzval/paraxial/first_order.hpp"
 #include "petzval/pupil/f_number.hpp"
 #include "petzval/pupil/illumination.hpp"
-#include "petzval/pupil/pupil_boundary.hpp"
+#include "pupil/pupil_boundary.hpp"
 #include "text_file.hpp"
 
 namespace petzval {

@@ -5,7 +5,7 @@
 
 #include "core/text.hpp"
 #include "oslo_surface.hpp"
-#include "petzval/core/units.hpp"
+#include "petzval/core/geometry.hpp"
 #include "petzval/glass/glass.hpp"
 
 namespace petzval::formats_detail {

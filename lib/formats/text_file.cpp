@@ -10,7 +10,7 @@
 
 #include "core/text.hpp"
 #include "petzval/core/error.hpp"
-#include "petzval/core/read_file.hpp"
+#include "petzval/core/files.hpp"
 
 namespace petzval::formats_detail {
 namespace {

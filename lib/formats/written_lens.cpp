@@ -10,7 +10,6 @@
 #include "import.hpp"
 #include "petzval/core/error.hpp"
 #include "petzval/lens/lens.hpp"
-#include "petzval/lens/medium.hpp"
 #include "petzval/paraxial/first_order.hpp"
 #include "text_file.hpp"
 

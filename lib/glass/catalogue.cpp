@@ -16,7 +16,7 @@
 #include "core/text.hpp"
 #include "glass_table.hpp"
 #include "petzval/core/error.hpp"
-#include "petzval/core/read_file.hpp"
+#include "petzval/core/files.hpp"
 #include "petzval/glass/glass.hpp"
 
 namespace petzval {

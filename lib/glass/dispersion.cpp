@@ -10,7 +10,7 @@
 #include "core/text.hpp"
 #include "formulas.hpp"
 #include "petzval/core/error.hpp"
-#include "petzval/core/units.hpp"
+#include "petzval/core/geometry.hpp"
 
 namespace petzval {
 namespace {

@@ -6,7 +6,7 @@
 #include <string_view>
 #include <vector>
 
-#include "petzval/core/export.hpp"
+#include "petzval/core/config.hpp"
 #include "petzval/glass/glass.hpp"
 
 namespace petzval::glass_detail {

@@ -4,7 +4,7 @@
 #include <string>
 #include <string_view>
 
-#include "petzval/core/export.hpp"
+#include "petzval/core/config.hpp"
 #include "petzval/glass/glass.hpp"
 
 namespace petzval::glass_detail {

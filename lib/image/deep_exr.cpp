@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "petzval/image/deep_exr.hpp"
+#include "petzval/image/exr.hpp"
 
 #include <ImathBox.h>
 #include <ImfArray.h>
@@ -23,7 +23,7 @@
 #include "image/exr_head.hpp"
 #include "image/file_room.hpp"
 #include "petzval/core/error.hpp"
-#include "petzval/io/write_file.hpp"
+#include "petzval/core/files.hpp"
 
 namespace petzval {
 namespace {

@@ -28,7 +28,7 @@
 #include "image/exr_head.hpp"
 #include "image/file_room.hpp"
 #include "petzval/core/error.hpp"
-#include "petzval/io/write_file.hpp"
+#include "petzval/core/files.hpp"
 
 namespace petzval {
 namespace {

@@ -7,7 +7,7 @@
 #include <istream>
 
 #include "core/open_file.hpp"
-#include "petzval/core/version.hpp"
+#include "petzval/core/config.hpp"
 
 namespace petzval::image_detail {
 

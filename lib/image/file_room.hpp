@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <filesystem>
 
-#include "petzval/core/version.hpp"
+#include "petzval/core/config.hpp"
 
 namespace petzval::image_detail {
 

@@ -21,7 +21,7 @@
 #include "image/file_room.hpp"
 #include "image/png.hpp"
 #include "petzval/core/error.hpp"
-#include "petzval/io/write_file.hpp"
+#include "petzval/core/files.hpp"
 
 namespace petzval {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "petzval/image/lens_exr.hpp"
+#include "petzval/image/exr.hpp"
 
 #include <algorithm>
 #include <string>

@@ -6,7 +6,7 @@
 #include <filesystem>
 #include <vector>
 
-#include "petzval/core/version.hpp"
+#include "petzval/core/config.hpp"
 
 namespace petzval::image_detail {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "petzval/image/psf_set_exr.hpp"
+#include "petzval/image/exr.hpp"
 
 #include <array>
 #include <bit>
@@ -13,7 +13,7 @@
 #include "core/text.hpp"
 #include "image/exr.hpp"
 #include "petzval/core/error.hpp"
-#include "petzval/io/write_file.hpp"
+#include "petzval/core/files.hpp"
 
 namespace petzval {
 namespace {

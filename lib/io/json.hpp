@@ -8,7 +8,7 @@
 #include <utility>
 #include <variant>
 
-#include "petzval/core/export.hpp"
+#include "petzval/core/config.hpp"
 
 namespace petzval::io_detail {
 

@@ -2,7 +2,7 @@
 #include "missing_apertures.hpp"
 
 #include "petzval/core/error.hpp"
-#include "petzval/pupil/apertures.hpp"
+#include "petzval/pupil/f_number.hpp"
 
 namespace petzval::io_detail {
 

@@ -12,7 +12,7 @@
 #include "json.hpp"
 #include "missing_apertures.hpp"
 #include "petzval/core/error.hpp"
-#include "petzval/core/read_file.hpp"
+#include "petzval/core/files.hpp"
 
 namespace petzval {
 namespace {

@@ -2,8 +2,8 @@
 #include <cmath>
 
 #include "json.hpp"
+#include "petzval/core/files.hpp"
 #include "petzval/io/lens_json.hpp"
-#include "petzval/io/write_file.hpp"
 
 namespace petzval {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "petzval/io/lens_json.hpp"
+#include "io/ray_polynomial_json.hpp"
 
 #include <algorithm>
 #include <array>
@@ -11,8 +11,7 @@
 
 #include "json.hpp"
 #include "petzval/core/error.hpp"
-#include "petzval/core/read_file.hpp"
-#include "petzval/io/write_file.hpp"
+#include "petzval/core/files.hpp"
 
 namespace petzval {
 namespace {

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "petzval/core/export.hpp"
+#include "petzval/core/config.hpp"
 #include "petzval/iris/iris.hpp"
 
 namespace petzval::iris_detail {

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "iris/iris_sample.hpp"
-#include "petzval/core/export.hpp"
+#include "petzval/core/config.hpp"
 #include "petzval/core/geometry.hpp"
 #include "petzval/iris/iris.hpp"
 

@@ -7,9 +7,9 @@
 #include <vector>
 
 #include "iris/iris_shape.hpp"
-#include "petzval/core/export.hpp"
+#include "petzval/core/config.hpp"
 #include "petzval/core/geometry.hpp"
-#include "petzval/iris/iris_weights.hpp"
+#include "petzval/iris/iris.hpp"
 
 namespace petzval::iris_detail {
 

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "lens_view.hpp"
-#include "petzval/core/export.hpp"
+#include "petzval/core/config.hpp"
 #include "wavelength_rows.hpp"
 
 namespace petzval::lens_detail {

@@ -3,7 +3,7 @@
 
 #include <span>
 
-#include "petzval/core/export.hpp"
+#include "petzval/core/config.hpp"
 #include "petzval/lens/lens.hpp"
 
 namespace petzval::lens_detail {

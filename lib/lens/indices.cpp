@@ -9,7 +9,7 @@
 #include "glass/similar_names.hpp"
 #include "petzval/core/error.hpp"
 #include "petzval/glass/glass.hpp"
-#include "petzval/lens/medium.hpp"
+#include "petzval/lens/lens.hpp"
 
 namespace petzval::lens_detail {
 namespace {

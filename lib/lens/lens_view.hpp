@@ -9,7 +9,7 @@
 #include "lens/asphere.hpp"
 #include "lens/quadric.hpp"
 #include "lens/snell.hpp"
-#include "petzval/core/export.hpp"
+#include "petzval/core/config.hpp"
 
 namespace petzval {
 class Lens;

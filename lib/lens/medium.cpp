@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "petzval/lens/medium.hpp"
+#include "petzval/lens/lens.hpp"
 
 namespace petzval {
 

@@ -9,7 +9,7 @@
 
 #include "lens/between_wavelengths.hpp"
 #include "loops.hpp"
-#include "petzval/polynomial/ray_polynomial.hpp"
+#include "polynomial/ray_polynomial.hpp"
 
 namespace petzval {
 

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "petzval/lens/lens.hpp"
-#include "petzval/polynomial/ray_polynomial.hpp"
+#include "polynomial/ray_polynomial.hpp"
 
 namespace petzval::polynomial_detail {
 

@@ -10,7 +10,7 @@
 #include "lens/wavelength_rows.hpp"
 #include "petzval/core/ray.hpp"
 #include "petzval/lens/wavelength.hpp"
-#include "petzval/pupil_table/two_plane_rays.hpp"
+#include "pupil_table/two_plane_rays.hpp"
 
 namespace petzval::polynomial_detail {
 

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "loops.hpp"
-#include "petzval/polynomial/ray_polynomial.hpp"
+#include "polynomial/ray_polynomial.hpp"
 
 namespace petzval::polynomial_detail {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "petzval/polynomial/ray_polynomial.hpp"
+#include "polynomial/ray_polynomial.hpp"
 
 #include <algorithm>
 #include <array>
@@ -13,7 +13,7 @@
 #include "data.hpp"
 #include "modes.hpp"
 #include "petzval/core/error.hpp"
-#include "petzval/core/units.hpp"
+#include "petzval/core/geometry.hpp"
 #include "pupil_table/repeated_wavelength.hpp"
 
 namespace petzval {

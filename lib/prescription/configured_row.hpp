@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "petzval/prescription/configuration.hpp"
-#include "petzval/prescription/surface_row.hpp"
+#include "petzval/prescription/prescription.hpp"
 
 namespace petzval::prescription_detail {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "petzval/prescription/design_data.hpp"
+#include "petzval/prescription/prescription.hpp"
 
 namespace petzval {
 

@@ -75,21 +75,21 @@ class Aimer {
     if (const auto axis = differentiated({}, {})) mirrored_ = mirrored(*axis);
   }
 
-  /// The unit of a StopPoint, mm: the semi-diameter of the stop, or 1 if the stop has no rim.
+  /// The unit of a Vec2<double>, mm: the semi-diameter of the stop, or 1 if the stop has no rim.
   double unit() const noexcept {
     const double semi_diameter = lens_.surfaces()[stop_].semi_diameter;
     return semi_diameter > 0 && std::isfinite(semi_diameter) ? semi_diameter : 1;
   }
 
-  AimedRay operator()(const StopPoint& target) const noexcept {
-    const StopPoint place{target.x * unit(), target.y * unit()};
+  AimedRay operator()(const Vec2<double>& target) const noexcept {
+    const Vec2<double> place{target.x * unit(), target.y * unit()};
     const auto slope = solve(place);
     return slope ? tested(place, *slope) : AimedRay{};
   }
 
  private:
   template <class T>
-  std::optional<Departure<T>> leave(const StopPoint& from, const T& x, const T& y) const noexcept {
+  std::optional<Departure<T>> leave(const Vec2<double>& from, const T& x, const T& y) const noexcept {
     using std::sqrt;
     const T squared = T(1) - x * x - y * y;
     const double z = lens_.surfaces()[stop_].vertex_z + sag(lens_, stop_, from.x, from.y);
@@ -108,8 +108,8 @@ class Aimer {
     return Departure<T>{end.origin, d, wanted, dot(turn, vector(lateral_)), dot(turn, vector(meridian_))};
   }
 
-  std::optional<Slope> solve(const StopPoint& target) const noexcept {
-    const StopPoint centre{};
+  std::optional<Slope> solve(const Vec2<double>& target) const noexcept {
+    const Vec2<double> centre{};
     // Within 45 degrees of the axis Newton's iteration converges from the axial ray.
     const bool narrow = plane_.towards().z * at_point_ > std::numbers::sqrt2 / 2;
     auto chief = narrow ? newton(centre, Slope{}) : std::nullopt;
@@ -130,7 +130,7 @@ class Aimer {
     return edge ? newton(target, *edge) : std::nullopt;
   }
 
-  std::optional<Departure<Dual>> differentiated(const StopPoint& from, const Slope& s) const noexcept {
+  std::optional<Departure<Dual>> differentiated(const Vec2<double>& from, const Slope& s) const noexcept {
     return leave(from, Dual(s.x, 0), Dual(s.y, 1));
   }
 
@@ -145,7 +145,7 @@ class Aimer {
 
   /// Damped Newton iteration: every step reduces the error and keeps the ray inside the lens. Surfaces far outside
   /// their rims can bend a ray back to the same angle; such a ray is mirrored (see mirrored()) and rejected.
-  std::optional<Slope> newton(const StopPoint& from, Slope slope) const noexcept {
+  std::optional<Slope> newton(const Vec2<double>& from, Slope slope) const noexcept {
     constexpr double rounding = 1e-15, good = 1e-9;
     const auto at = [&](const Slope& s) { return differentiated(from, s); };
     const auto miss = [](const Departure<Dual>& d) {
@@ -173,7 +173,7 @@ class Aimer {
   /// The largest slope in the meridian of the field for which the ray from a point on the stop leaves the lens at a
   /// smaller angle to the axis than the angle of the scene or film point. The angle grows with the slope until the ray
   /// misses a surface; a miss counts as too large an angle.
-  std::optional<Slope> bracket(const StopPoint& from) const noexcept {
+  std::optional<Slope> bracket(const Vec2<double>& from) const noexcept {
     // Angle of the point minus angle of the ray, rad.
     const auto missing_angle = [&](double slope) {
       const auto d = leave(from, outwards_.x * slope, outwards_.y * slope);
@@ -200,7 +200,7 @@ class Aimer {
   }
 
   /// Reverses the ray and traces it in its own direction of travel.
-  AimedRay tested(const StopPoint& target, const Slope& slope) const noexcept {
+  AimedRay tested(const Vec2<double>& target, const Slope& slope) const noexcept {
     const auto out = leave(target, slope.x, slope.y);
     if (!out) return {};
     // The origin is the point of the ray nearest to the centre of the pupil. The intersection with the pupil plane of a
@@ -251,11 +251,12 @@ std::string_view name(AimStatus status) noexcept {
   return "unknown";
 }
 
-AimedRay pupil_detail::aim(const Lens& lens, const PupilPlane& plane, const StopPoint& target, Wavelength wavelength) {
+AimedRay pupil_detail::aim(const Lens& lens, const PupilPlane& plane, const Vec2<double>& target,
+                           Wavelength wavelength) {
   return Aimer(lens, plane, lens.compiled_position(wavelength))(target);
 }
 
-AimedRay aim(const Lens& lens, const FieldPoint& point, const StopPoint& target, Wavelength wavelength) {
+AimedRay aim(const Lens& lens, const FieldPoint& point, const Vec2<double>& target, Wavelength wavelength) {
   return pupil_detail::aim(lens, PupilPlane(lens, point), target, wavelength);
 }
 

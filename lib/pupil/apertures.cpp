@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // compile() is defined here and not in the module lens, because aimed rays find apertures that a prescription lacks.
-#include "petzval/pupil/apertures.hpp"
+#include "petzval/pupil/f_number.hpp"
 
 #include <algorithm>
 #include <array>
@@ -16,7 +16,6 @@
 #include "lens/edges.hpp"
 #include "petzval/core/error.hpp"
 #include "petzval/paraxial/first_order.hpp"
-#include "petzval/pupil/f_number.hpp"
 #include "trace/sequential.hpp"
 
 namespace petzval {
@@ -103,7 +102,7 @@ class BeamHeights {
   const std::vector<double>& heights() const noexcept { return heights_; }
 
  private:
-  void add(const PupilPlane& plane, const StopPoint& rim) {
+  void add(const PupilPlane& plane, const Vec2<double>& rim) {
     const auto ray_at = [&](double fraction) {
       return pupil_detail::aim(lens_, plane, {fraction * rim.x, fraction * rim.y}, {});
     };

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "core/quadrature.hpp"
-#include "petzval/pupil/pupil_boundary.hpp"
+#include "pupil/pupil_boundary.hpp"
 
 namespace petzval::pupil_detail {
 

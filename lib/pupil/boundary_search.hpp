@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "line_extents.hpp"
-#include "petzval/pupil/pupil_boundary.hpp"
+#include "pupil/pupil_boundary.hpp"
 #include "search_order.hpp"
 
 namespace petzval::pupil_detail {

@@ -6,7 +6,7 @@
 #include "petzval/core/film.hpp"
 #include "petzval/lens/lens.hpp"
 #include "petzval/lens/wavelength.hpp"
-#include "petzval/pupil/pupil_boundary.hpp"
+#include "pupil/pupil_boundary.hpp"
 
 namespace petzval::pupil_detail {
 

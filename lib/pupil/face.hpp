@@ -3,7 +3,7 @@
 
 #include <cstddef>
 
-#include "petzval/core/export.hpp"
+#include "petzval/core/config.hpp"
 #include "petzval/lens/lens.hpp"
 #include "petzval/paraxial/first_order.hpp"
 

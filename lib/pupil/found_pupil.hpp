@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "line_extents.hpp"
-#include "petzval/pupil/pupil_boundary.hpp"
+#include "pupil/pupil_boundary.hpp"
 
 namespace petzval::pupil_detail {
 

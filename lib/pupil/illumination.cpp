@@ -14,7 +14,7 @@
 #include "petzval/core/error.hpp"
 #include "petzval/paraxial/first_order.hpp"
 #include "petzval/pupil/aim.hpp"
-#include "petzval/pupil/pupil_boundary.hpp"
+#include "pupil/pupil_boundary.hpp"
 #include "pupil_region.hpp"
 
 namespace petzval {

@@ -7,8 +7,7 @@
 #include <optional>
 #include <vector>
 
-#include "petzval/core/export.hpp"
-#include "petzval/core/version.hpp"
+#include "petzval/core/config.hpp"
 
 /// Intervals that pass along lines in pupil planes, for the search of pupil boundaries.
 namespace petzval::pupil_detail {

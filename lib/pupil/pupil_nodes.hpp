@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "petzval/core/export.hpp"
+#include "petzval/core/config.hpp"
 #include "petzval/lens/lens.hpp"
-#include "petzval/pupil/pupil_boundary.hpp"
-#include "petzval/pupil/ray_bundle.hpp"
+#include "pupil/pupil_boundary.hpp"
+#include "pupil/ray_bundle.hpp"
 
 namespace petzval::pupil_detail {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "petzval/pupil/pupil_plane.hpp"
+#include "pupil/pupil_plane.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -12,7 +12,7 @@
 #include "core/text.hpp"
 #include "face.hpp"
 #include "petzval/core/error.hpp"
-#include "petzval/core/units.hpp"
+#include "petzval/core/geometry.hpp"
 #include "petzval/paraxial/first_order.hpp"
 
 namespace petzval {
@@ -66,6 +66,12 @@ Vec3<double> direction_from(const Vec3<double>& place, const Vec3<double>& towar
 }
 
 }  // namespace
+
+ScenePoint scene_point(const Lens& lens, const FieldPoint& point) {
+  const PupilPlane plane(lens, point);
+  if (plane.reciprocal_distance() == 0) return {plane.towards(), true};
+  return {plane.centre() + plane.towards() / plane.reciprocal_distance(), false};
+}
 
 PupilPlane::PupilPlane(const Lens& lens, const FieldPoint& point) {
   const Pupil entrance = pupils(lens, lens.primary_wavelength()).entrance;

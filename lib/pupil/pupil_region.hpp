@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "petzval/pupil/pupil_boundary.hpp"
+#include "pupil/pupil_boundary.hpp"
 
 namespace petzval::pupil_detail {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "petzval/pupil/pupil_boundary.hpp"
+#include "pupil/pupil_boundary.hpp"
 
 #include <algorithm>
 #include <bit>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "petzval/pupil/ray_bundle.hpp"
+#include "pupil/ray_bundle.hpp"
 
 #include <array>
 #include <span>

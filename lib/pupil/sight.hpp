@@ -9,7 +9,7 @@
 
 #include "petzval/core/ray.hpp"
 #include "petzval/lens/lens.hpp"
-#include "petzval/pupil/pupil_plane.hpp"
+#include "pupil/pupil_plane.hpp"
 #include "sines.hpp"
 
 namespace petzval::pupil_detail {

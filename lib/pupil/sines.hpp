@@ -6,7 +6,7 @@
 #include <limits>
 #include <numbers>
 
-#include "petzval/pupil/pupil_plane.hpp"
+#include "pupil/pupil_plane.hpp"
 
 namespace petzval::pupil_detail {
 

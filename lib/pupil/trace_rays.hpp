@@ -8,12 +8,12 @@
 #include <optional>
 #include <span>
 
-#include "petzval/core/export.hpp"
+#include "petzval/core/config.hpp"
 #include "petzval/core/geometry.hpp"
 #include "petzval/core/ray.hpp"
 #include "petzval/lens/lens.hpp"
-#include "petzval/pupil/ray_bundle.hpp"
 #include "petzval/trace/trace.hpp"
+#include "pupil/ray_bundle.hpp"
 
 namespace petzval::pupil_detail {
 

@@ -36,7 +36,7 @@ std::vector<PupilGuess> aimed_guesses(const Lens& lens, const TwoPlanes& space, 
   };
   const auto aimed_at = [&](const FilmPoint& film) -> std::optional<Aimed> {
     const PupilPlane plane = PupilPlane::of_film(lens, film);
-    const auto place = [&](const StopPoint& target) -> std::optional<Vec2<double>> {
+    const auto place = [&](const Vec2<double>& target) -> std::optional<Vec2<double>> {
       const AimedRay aimed = pupil_detail::aim(lens, plane, target, wavelength);
       if (!aimed) return {};
       const Vec3<double> p = core_detail::meet_plane(aimed.ray, space.pupil_z);
@@ -45,7 +45,7 @@ std::vector<PupilGuess> aimed_guesses(const Lens& lens, const TwoPlanes& space, 
     const auto centre = place({});
     if (!centre) return {};
     double radius = 0;
-    for (const StopPoint rim : {StopPoint{1, 0}, StopPoint{0, 1}}) {
+    for (const Vec2<double> rim : {Vec2<double>{1, 0}, Vec2<double>{0, 1}}) {
       if (const auto p = place(rim)) radius = std::max(radius, std::hypot(p->x - centre->x, p->y - centre->y));
     }
     return Aimed{centre->x, centre->y, radius};

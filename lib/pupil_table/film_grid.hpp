@@ -5,9 +5,9 @@
 #include <vector>
 
 #include "petzval/lens/lens.hpp"
-#include "petzval/pupil_table/film_pupil_table.hpp"
-#include "petzval/pupil_table/two_plane_rays.hpp"
+#include "pupil_table/film_pupil_table.hpp"
 #include "pupil_table/pupil_polygon.hpp"
+#include "pupil_table/two_plane_rays.hpp"
 
 namespace petzval::pupil_table_detail {
 

@@ -9,8 +9,8 @@
 #include <utility>
 
 #include "petzval/paraxial/first_order.hpp"
-#include "petzval/pupil/pupil_plane.hpp"
 #include "pupil/face.hpp"
+#include "pupil/pupil_plane.hpp"
 #include "trace/clearances.hpp"
 
 namespace petzval::pupil_table_detail {

@@ -7,8 +7,8 @@
 
 #include "petzval/core/film.hpp"
 #include "petzval/lens/lens.hpp"
-#include "petzval/pupil_table/two_plane_rays.hpp"
 #include "pupil/boundary_search.hpp"
+#include "pupil_table/two_plane_rays.hpp"
 
 namespace petzval::pupil_table_detail {
 

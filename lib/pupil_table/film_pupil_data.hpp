@@ -15,8 +15,8 @@
 #include "iris/iris_shape.hpp"
 #include "iris_images.hpp"
 #include "lens/between_wavelengths.hpp"
-#include "petzval/pupil_table/film_pupil_table.hpp"
 #include "polygon_loops.hpp"
+#include "pupil_table/film_pupil_table.hpp"
 #include "stop_cells.hpp"
 
 namespace petzval {

@@ -9,7 +9,7 @@
 #include "iris/iris_shape.hpp"
 #include "iris_images_loops.hpp"
 #include "lens/between_wavelengths.hpp"
-#include "petzval/pupil_table/film_pupil_table.hpp"
+#include "pupil_table/film_pupil_table.hpp"
 
 namespace petzval::pupil_table_detail {
 

@@ -8,8 +8,8 @@
 #include "iris/iris_sample.hpp"
 #include "lens/wavelength_rows.hpp"
 #include "petzval/lens/wavelength.hpp"
-#include "petzval/pupil_table/film_pupil_table.hpp"
-#include "petzval/pupil_table/two_plane_rays.hpp"
+#include "pupil_table/film_pupil_table.hpp"
+#include "pupil_table/two_plane_rays.hpp"
 
 namespace petzval::pupil_table_detail {
 

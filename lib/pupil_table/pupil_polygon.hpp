@@ -5,7 +5,7 @@
 #include <cstddef>
 #include <span>
 
-#include "petzval/pupil/pupil_boundary.hpp"
+#include "pupil/pupil_boundary.hpp"
 #include "pupil_table/sector.hpp"
 
 namespace petzval::pupil_table_detail {

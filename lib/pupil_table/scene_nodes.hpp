@@ -9,7 +9,7 @@
 
 #include "petzval/core/geometry.hpp"
 #include "petzval/core/ray.hpp"
-#include "petzval/pupil/pupil_plane.hpp"
+#include "pupil/pupil_plane.hpp"
 #include "pupil_table/entrance_pupil_table.hpp"
 #include "pupil_table/pupil_polygon.hpp"
 #include "scene_grid.hpp"

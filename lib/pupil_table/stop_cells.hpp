@@ -9,8 +9,8 @@
 #include "petzval/core/film.hpp"
 #include "petzval/core/geometry.hpp"
 #include "petzval/lens/lens.hpp"
-#include "petzval/pupil_table/two_plane_rays.hpp"
 #include "polygon_grid.hpp"
+#include "pupil_table/two_plane_rays.hpp"
 
 namespace petzval::pupil_table_detail {
 

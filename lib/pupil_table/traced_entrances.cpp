@@ -3,8 +3,8 @@
 #include <glm/geometric.hpp>
 #include <vector>
 
-#include "petzval/pupil_table/two_plane_rays.hpp"
 #include "pupil_table/entrance_pupil_table.hpp"
+#include "pupil_table/two_plane_rays.hpp"
 
 namespace petzval {
 ScenePassing traced_passing(const Lens& lens) {

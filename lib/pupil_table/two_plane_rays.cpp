@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "petzval/pupil_table/two_plane_rays.hpp"
+#include "pupil_table/two_plane_rays.hpp"
 
 #include <cmath>
 

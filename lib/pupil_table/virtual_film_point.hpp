@@ -5,7 +5,7 @@
 #include <array>
 #include <cstddef>
 
-#include "petzval/pupil_table/film_pupil_table.hpp"
+#include "pupil_table/film_pupil_table.hpp"
 
 namespace petzval::pupil_table_detail {
 

@@ -7,6 +7,7 @@
 
 #include "block.hpp"
 #include "clearances.hpp"
+#include "core/instruction_set.hpp"
 #include "lens/lens_view.hpp"
 #include "route.hpp"
 
@@ -18,11 +19,10 @@ using trace_detail::BlockJob;
 
 constexpr std::size_t block = block_rays;
 
-const trace_detail::BlockTracer& tracer([[maybe_unused]] InstructionSet set,
-                                        [[maybe_unused]] Arithmetic arithmetic) noexcept {
+const trace_detail::BlockTracer& tracer([[maybe_unused]] Arithmetic arithmetic) noexcept {
 #if defined(__x86_64__)
   const bool fast = arithmetic == Arithmetic::fast;
-  switch (std::min(set, instruction_sets().back())) {
+  switch (batch_instruction_set()) {
     case InstructionSet::avx512: return fast ? trace_detail::avx512_fast : trace_detail::avx512_reproducible;
     case InstructionSet::avx2: return fast ? trace_detail::avx2_fast : trace_detail::avx2_reproducible;
     case InstructionSet::baseline: break;
@@ -115,7 +115,7 @@ template <class R>
 void trace_all(const Lens& lens, std::size_t count, const RayArrays<const R>& in,
                const RayTangents<const R>* tangents_in, const RayArrays<R>& out, const RayTangents<R>& tangents_out,
                RayFate* fates, int* surfaces, const BatchOptions& options, R* clearances = nullptr) noexcept {
-  const auto trace_blocks = loops<R>(tracer(options.instruction_set, options.arithmetic));
+  const auto trace_blocks = loops<R>(tracer(options.arithmetic));
   auto job = job_for<R>(lens, options);
   job.rays = count - count % block;
   job.in = in;
@@ -181,7 +181,7 @@ void trace_differentials(const Lens& lens, std::size_t count, const RayArrays<co
 
 template <class T>
 void trace(const Lens& lens, std::span<const Ray<T>> rays, TracedRay<T>* traced, const BatchOptions& options) noexcept {
-  const auto trace_blocks = loops<T>(tracer(options.instruction_set, options.arithmetic));
+  const auto trace_blocks = loops<T>(tracer(options.arithmetic));
   auto job = job_for<T>(lens, options);
   Block<T> some;
   use(some, block, job);

@@ -12,7 +12,7 @@
 #include "../expect_error.hpp"
 #include "petzval/analysis/psf.hpp"
 #include "petzval/camera/camera.hpp"
-#include "petzval/core/units.hpp"
+#include "petzval/core/geometry.hpp"
 #include "petzval/focus/focus.hpp"
 #include "petzval/pupil/f_number.hpp"
 

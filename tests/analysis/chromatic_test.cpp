@@ -9,7 +9,7 @@
 
 #include "../data_lenses.hpp"
 #include "petzval/analysis/spot.hpp"
-#include "petzval/core/units.hpp"
+#include "petzval/core/geometry.hpp"
 #include "petzval/focus/focus.hpp"
 #include "petzval/glass/glass.hpp"
 #include "petzval/paraxial/first_order.hpp"

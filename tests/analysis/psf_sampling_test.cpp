@@ -15,9 +15,9 @@
 #include "petzval/core/ray.hpp"
 #include "petzval/focus/focus.hpp"
 #include "petzval/pupil/f_number.hpp"
-#include "petzval/pupil/pupil_boundary.hpp"
-#include "petzval/pupil/ray_bundle.hpp"
 #include "petzval/trace/trace.hpp"
+#include "pupil/pupil_boundary.hpp"
+#include "pupil/ray_bundle.hpp"
 
 namespace petzval {
 namespace psf_sampling_test {

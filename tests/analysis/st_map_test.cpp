@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "petzval/analysis/st_map.hpp"
+#include "petzval/analysis/distortion.hpp"
 
 #include <gtest/gtest.h>
 

@@ -12,14 +12,14 @@
 
 #include "../data_lenses.hpp"
 #include "distorting_lenses.hpp"
+#include "petzval/analysis/choose_model.hpp"
+#include "petzval/analysis/distortion.hpp"
 #include "petzval/analysis/lint.hpp"
-#include "petzval/analysis/model_error.hpp"
 #include "petzval/analysis/psf.hpp"
 #include "petzval/analysis/spot.hpp"
-#include "petzval/analysis/st_map.hpp"
 #include "petzval/camera/camera.hpp"
 #include "petzval/core/error.hpp"
-#include "petzval/core/units.hpp"
+#include "petzval/core/geometry.hpp"
 #include "petzval/focus/focus.hpp"
 #include "petzval/glass/glass.hpp"
 #include "petzval/paraxial/first_order.hpp"
@@ -63,7 +63,7 @@ std::vector<double> all_about(const Shared& shared) {
   traced(changed);
   const std::array fields{0.0, radians(8.0)};
   for (const Spot& spot : spot_diagram(changed, -1500, fields, 512)) {
-    say(spot.size.rms_radius, spot.size.max_radius, spot.chief_ray_height.value_or(0), spot.hits.x.size());
+    say(spot.size.rms_radius, spot.size.max_radius, spot.chief_ray_height.value_or(0), spot.x.size());
   }
   const PointImage image =
       point_image(changed, {.field_rad = fields[1], .z = -1200}, {.samples = 4096, .pixels = 32, .threads = 2});

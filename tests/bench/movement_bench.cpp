@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-#include "petzval/core/units.hpp"
+#include "petzval/core/geometry.hpp"
 #include "petzval/fit/tilt_fit.hpp"
 #include "petzval/focus/focus_point.hpp"
 #include "petzval/io/lens_json.hpp"

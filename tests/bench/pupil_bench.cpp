@@ -8,12 +8,12 @@
 #include <string>
 #include <vector>
 
+#include "petzval/core/geometry.hpp"
 #include "petzval/core/sobol.hpp"
-#include "petzval/core/units.hpp"
 #include "petzval/io/lens_json.hpp"
 #include "petzval/pupil/aim.hpp"
-#include "petzval/pupil/pupil_boundary.hpp"
 #include "petzval/trace/trace.hpp"
+#include "pupil/pupil_boundary.hpp"
 #include "table.hpp"
 
 namespace {

@@ -15,8 +15,8 @@
 #include <string>
 #include <vector>
 
+#include "core/instruction_set.hpp"
 #include "petzval/core/error.hpp"
-#include "petzval/core/instruction_set.hpp"
 
 /// Prints the conditions of times: processor, compiler, date.
 inline void print_conditions() {

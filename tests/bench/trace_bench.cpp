@@ -22,8 +22,8 @@
 #include <vector>
 
 #include "petzval/core/error.hpp"
+#include "petzval/core/files.hpp"
 #include "petzval/io/lens_json.hpp"
-#include "petzval/io/write_file.hpp"
 #include "table.hpp"
 #include "trace_rays.hpp"
 #include "trace_report.hpp"
@@ -58,6 +58,7 @@ void pin(int processor) {
 void measure(benchmark::State& state, const Row& row, const std::vector<int>& cores) {
   const auto thread = static_cast<std::size_t>(state.thread_index());
   if (thread < cores.size()) pin(cores[thread]);
+  petzval::limit_batches(row.isa);
   const auto work = row.make();
   for (auto _ : state) {
     work->trace();
@@ -86,6 +87,7 @@ DirectionError direction_error(const Work& work, const RaySet::Of<T>& set) {
 }
 
 DirectionError direction_error(const Row& row) {
+  petzval::limit_batches(row.isa);
   const auto work = row.make();
   work->trace();
   return row.in_double ? direction_error(*work, row.set->in_double) : direction_error(*work, row.set->in_float);
@@ -104,7 +106,7 @@ template <template <class> class Batch, class T>
 Row batch(const BenchLens& bench, const RaySet& set, const std::string& rays, const std::string& code,
           InstructionSet isa, Arithmetic mode, int threads = 1) {
   Row row{&bench, &set, rays, code, std::is_same_v<T, double>, threads, isa, mode};
-  const BatchOptions options{.travel = petzval::Travel::to_scene, .arithmetic = mode, .instruction_set = isa};
+  const BatchOptions options{.travel = petzval::Travel::to_scene, .arithmetic = mode};
   row.make = [&bench, &set, options] { return std::make_unique<Batch<T>>(bench, set, options); };
   return row;
 }

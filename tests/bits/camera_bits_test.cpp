@@ -13,8 +13,8 @@
 
 #include "../camera/camera_samples.hpp"
 #include "../data_lenses.hpp"
+#include "core/instruction_set.hpp"
 #include "hash.hpp"
-#include "petzval/core/instruction_set.hpp"
 #include "petzval/focus/focus.hpp"
 
 namespace petzval {

@@ -6,11 +6,11 @@
 #include <limits>
 
 #include "blur/gather_way.hpp"
+#include "core/instruction_set.hpp"
 #include "hash.hpp"
 #include "petzval/blur/layers.hpp"
 #include "petzval/blur/lens_rays.hpp"
-#include "petzval/core/instruction_set.hpp"
-#include "petzval/core/units.hpp"
+#include "petzval/core/geometry.hpp"
 
 namespace petzval {
 namespace gather_bits_test {

@@ -13,7 +13,7 @@
 #include "../message.hpp"
 #include "petzval/blur/lens_rays.hpp"
 #include "petzval/core/error.hpp"
-#include "petzval/core/units.hpp"
+#include "petzval/core/geometry.hpp"
 
 namespace layers_test {
 

@@ -16,7 +16,7 @@
 #include "../expect_error.hpp"
 #include "petzval/camera/camera.hpp"
 #include "petzval/core/error.hpp"
-#include "petzval/core/units.hpp"
+#include "petzval/core/geometry.hpp"
 #include "petzval/focus/focus.hpp"
 #include "petzval/lens/lens.hpp"
 

@@ -12,9 +12,9 @@
 
 #include "../data_lenses.hpp"
 #include "../declared_radius.hpp"
+#include "camera/polynomial_model.hpp"
+#include "camera/ray_model.hpp"
 #include "petzval/camera/camera.hpp"
-#include "petzval/camera/polynomial_model.hpp"
-#include "petzval/camera/ray_model.hpp"
 #include "petzval/focus/focus.hpp"
 #include "settings.hpp"
 

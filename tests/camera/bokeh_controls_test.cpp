@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "petzval/camera/bokeh_controls.hpp"
+#include "petzval/camera/bokeh.hpp"
 
 #include <gtest/gtest.h>
 
@@ -309,7 +309,7 @@ TEST(BokehControls, RefuseBadInput) {
   expect_error(with({.lens_ratio = -1}), {lens.name(), -1});
   expect_error(with({.weight_map = {1, 1, {0}}}), {lens.name(), "map", "iris"});
   const Camera weighted(lens, film, {.model = ModelKind::thin, .bokeh = ring});
-  expect_error([&] { weighted.tables(); }, {lens.name(), "weights"});
+  expect_error([&] { camera_tables(weighted); }, {lens.name(), "weights"});
 }
 
 }  // namespace bokeh_controls_test

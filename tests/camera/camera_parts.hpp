@@ -5,8 +5,8 @@
 
 #include "camera/check_film.hpp"
 #include "camera/make_model.hpp"
+#include "camera/ray_model.hpp"
 #include "camera/tilted_film.hpp"
-#include "petzval/camera/ray_model.hpp"
 
 namespace petzval::testing {
 

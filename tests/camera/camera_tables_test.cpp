@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Camera tables for another processor.
-#include "petzval/camera/camera_tables.hpp"
+#include "camera/camera_tables.hpp"
 
 #include <gtest/gtest.h>
 
@@ -12,7 +12,7 @@
 #include "../data_lenses.hpp"
 #include "../expect_error.hpp"
 #include "petzval/camera/camera.hpp"
-#include "petzval/io/write_file.hpp"
+#include "petzval/core/files.hpp"
 
 namespace petzval {
 namespace {
@@ -23,7 +23,7 @@ constexpr Film film{.width_mm = 24, .height_mm = 16, .shift_x_mm = 2};
 
 TEST(CameraTables, RoundTripKeepsEveryByte) {
   const std::vector<float> tables =
-      Camera(testing::data_lens("tessar_100mm_f2.8"), film, {.model = ModelKind::polynomial(5)}).tables();
+      camera_tables(Camera(testing::data_lens("tessar_100mm_f2.8"), film, {.model = ModelKind::polynomial(5)}));
   const auto file = std::filesystem::path(::testing::TempDir()) / "petzval_camera_tables.bin";
   write_floats(tables, file);
   EXPECT_EQ(std::filesystem::file_size(file), 4 * tables.size());
@@ -42,7 +42,7 @@ TEST(CameraTables, InvalidTablesAreRefused) {
         Camera(lens, film, {.model = ModelKind::exact_float}),
         Camera(cylinders, film, {.model = ModelKind::polynomial(5)}),
         Camera(with_iris(lens, {.blades = 7, .rotation_rad = 1}), film, {.model = ModelKind::exact_float})}) {
-    const std::vector<float> good = camera.tables();
+    const std::vector<float> good = camera_tables(camera);
     EXPECT_NO_THROW(check(good));
     expect_error([&] { check({good.begin(), good.end() - 1}); }, {"file"});
     for (std::size_t at = 0; at < CameraTables::head_size; ++at) {
@@ -67,7 +67,7 @@ TEST(CameraTables, InvalidTablesAreRefused) {
   }
   expect_error([&] { check({}); }, {"file", "format", 4});
   const Camera tilted(lens, {.tilt_rad = 0.1}, {.model = ModelKind::thick});
-  expect_error([&] { tilted.tables(); }, {lens.name(), "tilted"});
+  expect_error([&] { camera_tables(tilted); }, {lens.name(), "tilted"});
 }
 
 }  // namespace

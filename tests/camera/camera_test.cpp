@@ -17,11 +17,11 @@
 #include "../data_lenses.hpp"
 #include "../expect_error.hpp"
 #include "../message.hpp"
+#include "camera/camera_tables.hpp"
+#include "camera/ray_model.hpp"
 #include "camera_parts.hpp"
 #include "camera_samples.hpp"
 #include "core/low_discrepancy.hpp"
-#include "petzval/camera/camera_tables.hpp"
-#include "petzval/camera/ray_model.hpp"
 #include "petzval/focus/focus.hpp"
 #include "petzval/paraxial/first_order.hpp"
 #include "settings.hpp"
@@ -364,7 +364,7 @@ TEST(Camera, OptionsHaveDefaults) {
 TEST(CameraTables, ListsBeyondTheEndAreRefused) {
   for (const char* id : {"double_gauss_100mm_f2.0", "anamorphic_60mm_2x"}) {
     const Camera camera(petzval::testing::data_lens(id), {}, {.model = ModelKind::exact_float});
-    const std::vector<float> tables = camera.tables();
+    const std::vector<float> tables = camera_tables(camera);
     for (const auto list : {CameraTables::pupil_list, CameraTables::rays}) {
       std::vector<float> late = tables;
       late[list] = static_cast<float>(tables.size() - 1);

@@ -13,7 +13,7 @@
 
 #include "../data_lenses.hpp"
 #include "camera_samples.hpp"
-#include "petzval/analysis/model_error.hpp"
+#include "petzval/analysis/choose_model.hpp"
 #include "petzval/core/sobol.hpp"
 #include "petzval/focus/focus.hpp"
 #include "petzval/glass/glass.hpp"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "petzval/camera/host_frame.hpp"
+#include "petzval/camera/camera_ray.hpp"
 
 #include <gtest/gtest.h>
 

@@ -18,8 +18,8 @@
 #include "petzval/camera/camera.hpp"
 #include "petzval/core/parallel.hpp"
 #include "petzval/paraxial/first_order.hpp"
-#include "petzval/pupil/pupil_boundary.hpp"
 #include "petzval/trace/trace.hpp"
+#include "pupil/pupil_boundary.hpp"
 
 namespace petzval {
 namespace importance_test {

@@ -14,7 +14,7 @@
 #include "core/low_discrepancy.hpp"
 #include "petzval/camera/camera.hpp"
 #include "petzval/camera/focal_surface.hpp"
-#include "petzval/core/units.hpp"
+#include "petzval/core/geometry.hpp"
 #include "petzval/paraxial/ideal_lens.hpp"
 #include "petzval/pupil/f_number.hpp"
 #include "settings.hpp"

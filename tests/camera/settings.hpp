@@ -4,7 +4,7 @@
 #include <filesystem>
 #include <vector>
 
-#include "petzval/camera/bokeh_controls.hpp"
+#include "petzval/camera/bokeh.hpp"
 #include "petzval/camera/expressive_lens.hpp"
 #include "petzval/camera/focal_surface.hpp"
 #include "petzval/glass/glass.hpp"

@@ -18,7 +18,7 @@
 #include "core/low_discrepancy.hpp"
 #include "petzval/camera/camera.hpp"
 #include "petzval/core/film.hpp"
-#include "petzval/core/units.hpp"
+#include "petzval/core/geometry.hpp"
 #include "petzval/focus/focus.hpp"
 #include "petzval/paraxial/first_order.hpp"
 #include "tilted_films.hpp"

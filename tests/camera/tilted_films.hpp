@@ -2,7 +2,7 @@
 #pragma once
 
 #include "petzval/core/film.hpp"
-#include "petzval/core/units.hpp"
+#include "petzval/core/geometry.hpp"
 #include "petzval/lens/lens.hpp"
 
 namespace petzval::testing {

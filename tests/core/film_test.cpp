@@ -9,7 +9,7 @@
 
 #include "../expect_error.hpp"
 #include "../film_at.hpp"
-#include "petzval/core/units.hpp"
+#include "petzval/core/geometry.hpp"
 
 namespace petzval {
 namespace film_test {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "petzval/core/read_file.hpp"
+#include "petzval/core/files.hpp"
 
 #include <gtest/gtest.h>
 #include <sys/stat.h>

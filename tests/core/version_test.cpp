@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "petzval/core/version.hpp"
+#include "petzval/core/config.hpp"
 
 #include <gtest/gtest.h>
 

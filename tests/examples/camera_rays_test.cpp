@@ -2,7 +2,7 @@
 #include <cmath>
 
 #include "petzval/camera/camera.hpp"
-#include "petzval/core/units.hpp"
+#include "petzval/core/geometry.hpp"
 #include "petzval/focus/focus.hpp"
 #include "petzval/io/lens_json.hpp"
 #include "petzval/pupil/f_number.hpp"

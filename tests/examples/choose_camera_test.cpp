@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "petzval/camera/ray_model.hpp"
+#include "camera/ray_model.hpp"
 #include "program.hpp"
 
 namespace {

@@ -3,7 +3,7 @@
 #include <limits>
 #include <set>
 
-#include "petzval/core/units.hpp"
+#include "petzval/core/geometry.hpp"
 #include "petzval/focus/focus.hpp"
 #include "petzval/io/lens_json.hpp"
 #include "program.hpp"

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "petzval/blur/layers.hpp"
-#include "petzval/image/deep_exr.hpp"
+#include "petzval/image/exr.hpp"
 #include "petzval/image/image.hpp"
 #include "program.hpp"
 

@@ -2,7 +2,7 @@
 #include <cstdlib>
 #include <set>
 
-#include "petzval/image/psf_set_exr.hpp"
+#include "petzval/image/exr.hpp"
 #include "program.hpp"
 
 namespace {

@@ -4,7 +4,7 @@
 #include <map>
 
 #include "core/text.hpp"
-#include "petzval/core/units.hpp"
+#include "petzval/core/geometry.hpp"
 #include "petzval/focus/focus.hpp"
 #include "petzval/io/lens_json.hpp"
 #include "petzval/paraxial/first_order.hpp"

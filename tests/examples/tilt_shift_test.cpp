@@ -3,7 +3,7 @@
 #include <limits>
 #include <set>
 
-#include "petzval/core/units.hpp"
+#include "petzval/core/geometry.hpp"
 #include "petzval/fit/tilt_fit.hpp"
 #include "petzval/focus/autofocus.hpp"
 #include "petzval/io/lens_json.hpp"

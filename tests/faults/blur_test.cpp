@@ -12,7 +12,7 @@
 #include "blur/gather_way.hpp"
 #include "petzval/blur/layers.hpp"
 #include "petzval/blur/lens_rays.hpp"
-#include "petzval/core/units.hpp"
+#include "petzval/core/geometry.hpp"
 
 namespace petzval {
 namespace blur_test {

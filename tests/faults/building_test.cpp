@@ -10,15 +10,15 @@
 
 #include "../data_lenses.hpp"
 #include "allocations.hpp"
+#include "io/ray_polynomial_json.hpp"
 #include "petzval/analysis/colour.hpp"
 #include "petzval/analysis/psf_set.hpp"
 #include "petzval/camera/camera.hpp"
-#include "petzval/core/units.hpp"
+#include "petzval/core/geometry.hpp"
 #include "petzval/focus/focus.hpp"
-#include "petzval/io/lens_json.hpp"
-#include "petzval/polynomial/ray_polynomial.hpp"
 #include "petzval/pupil/f_number.hpp"
 #include "petzval/trace/trace.hpp"
+#include "polynomial/ray_polynomial.hpp"
 
 namespace petzval {
 namespace building_test {

@@ -10,13 +10,13 @@
 #include <vector>
 
 #include "../data_lenses.hpp"
+#include "io/ray_polynomial_json.hpp"
+#include "petzval/core/files.hpp"
 #include "petzval/figure/lens_figures.hpp"
-#include "petzval/image/deep_exr.hpp"
+#include "petzval/image/exr.hpp"
 #include "petzval/image/image.hpp"
-#include "petzval/image/psf_set_exr.hpp"
 #include "petzval/io/lens_json.hpp"
-#include "petzval/io/write_file.hpp"
-#include "petzval/polynomial/ray_polynomial.hpp"
+#include "polynomial/ray_polynomial.hpp"
 
 namespace petzval::testing {
 

@@ -13,7 +13,7 @@
 #include "../data_lenses.hpp"
 #include "petzval/analysis/spot.hpp"
 #include "petzval/core/error.hpp"
-#include "petzval/core/units.hpp"
+#include "petzval/core/geometry.hpp"
 #include "petzval/focus/focus.hpp"
 #include "petzval/paraxial/first_order.hpp"
 #include "svg_parts.hpp"

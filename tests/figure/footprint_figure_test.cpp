@@ -12,10 +12,10 @@
 #include "../data_lenses.hpp"
 #include "core/text.hpp"
 #include "petzval/core/error.hpp"
-#include "petzval/core/units.hpp"
+#include "petzval/core/geometry.hpp"
 #include "petzval/paraxial/first_order.hpp"
 #include "petzval/pupil/illumination.hpp"
-#include "petzval/pupil/pupil_boundary.hpp"
+#include "pupil/pupil_boundary.hpp"
 #include "svg_parts.hpp"
 
 namespace petzval {

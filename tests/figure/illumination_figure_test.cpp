@@ -9,7 +9,7 @@
 
 #include "../data_lenses.hpp"
 #include "petzval/core/error.hpp"
-#include "petzval/core/units.hpp"
+#include "petzval/core/geometry.hpp"
 #include "petzval/pupil/illumination.hpp"
 #include "svg_parts.hpp"
 

@@ -16,7 +16,7 @@
 #include "../expect_error.hpp"
 #include "../film_at.hpp"
 #include "../message.hpp"
-#include "petzval/core/units.hpp"
+#include "petzval/core/geometry.hpp"
 #include "petzval/fit/tilt_fit.hpp"
 #include "tilt_scene.hpp"
 

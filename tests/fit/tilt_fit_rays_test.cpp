@@ -7,7 +7,7 @@
 
 #include "../data_lenses.hpp"
 #include "../film_at.hpp"
-#include "petzval/core/units.hpp"
+#include "petzval/core/geometry.hpp"
 #include "petzval/fit/tilt_fit.hpp"
 #include "petzval/focus/autofocus.hpp"
 #include "petzval/pupil/f_number.hpp"

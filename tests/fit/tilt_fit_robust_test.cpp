@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "../data_lenses.hpp"
-#include "petzval/core/units.hpp"
+#include "petzval/core/geometry.hpp"
 #include "petzval/fit/tilt_fit.hpp"
 #include "tilt_scene.hpp"
 

@@ -13,7 +13,7 @@
 #include "../data_lenses.hpp"
 #include "../film_at.hpp"
 #include "petzval/core/error.hpp"
-#include "petzval/core/units.hpp"
+#include "petzval/core/geometry.hpp"
 #include "tilt_scene.hpp"
 
 namespace petzval {

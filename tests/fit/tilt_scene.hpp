@@ -9,7 +9,7 @@
 
 #include "../film_at.hpp"
 #include "focus/plane_fit.hpp"
-#include "petzval/core/units.hpp"
+#include "petzval/core/geometry.hpp"
 #include "petzval/fit/tilt_fit.hpp"
 
 namespace petzval::testing {

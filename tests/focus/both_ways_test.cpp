@@ -9,7 +9,7 @@
 #include "../data_lenses.hpp"
 #include "../expect_error.hpp"
 #include "../message.hpp"
-#include "petzval/core/units.hpp"
+#include "petzval/core/geometry.hpp"
 #include "petzval/focus/focus.hpp"
 #include "petzval/paraxial/first_order.hpp"
 #include "petzval/paraxial/ideal_lens.hpp"

@@ -10,11 +10,11 @@
 #include <vector>
 
 #include "../data_lenses.hpp"
-#include "petzval/core/units.hpp"
+#include "petzval/core/geometry.hpp"
 #include "petzval/focus/focus.hpp"
 #include "petzval/glass/glass.hpp"
-#include "petzval/pupil/pupil_plane.hpp"
 #include "petzval/trace/trace.hpp"
+#include "pupil/pupil_plane.hpp"
 
 namespace petzval {
 namespace exact_test {

@@ -8,7 +8,7 @@
 #include <random>
 #include <vector>
 
-#include "petzval/core/units.hpp"
+#include "petzval/core/geometry.hpp"
 #include "petzval/paraxial/ideal_lens.hpp"
 
 namespace petzval {

@@ -13,7 +13,7 @@
 
 #include "../expect_error.hpp"
 #include "lens_text.hpp"
-#include "petzval/formats/glass_files.hpp"
+#include "petzval/formats/lens_file.hpp"
 #include "petzval/glass/glass.hpp"
 #include "petzval/io/lens_json.hpp"
 #include "petzval/lens/lens.hpp"

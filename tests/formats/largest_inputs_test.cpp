@@ -13,7 +13,6 @@
 
 #include "../report.hpp"
 #include "petzval/core/error.hpp"
-#include "petzval/formats/glass_files.hpp"
 #include "petzval/formats/lens_file.hpp"
 #include "petzval/io/lens_json.hpp"
 #include "petzval/lens/lens.hpp"

@@ -97,7 +97,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     }
     if (tables) {
       fuzz::done([&] {
-        for (const float number : camera.tables()) fuzz::require(!std::isnan(number), "tables contain no NaN");
+        for (const float number : camera_tables(camera)) fuzz::require(!std::isnan(number), "tables contain no NaN");
       });
     }
     if (scene) from_the_scene(camera, bytes);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Glass files of every format: an index is finite or refused.
-#include "petzval/formats/glass_files.hpp"
+#include "petzval/formats/lens_file.hpp"
 
 #include "laws.hpp"
 #include "scratch_file.hpp"

@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // EXR, PNG and PFM files, flat and deep: as many values as the file states, or an Error.
 #include "petzval/blur/layers.hpp"
-#include "petzval/image/deep_exr.hpp"
+#include "petzval/image/exr.hpp"
 #include "petzval/image/image.hpp"
-#include "petzval/image/psf_set_exr.hpp"
 
 #include <string>
 

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Images of a few pixels, written by the library.
-#include "petzval/image/deep_exr.hpp"
+#include "petzval/image/exr.hpp"
 #include "petzval/image/image.hpp"
-#include "petzval/image/psf_set_exr.hpp"
 #include "scratch_file.hpp"
 #include "seeds.hpp"
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Any lens: rays aimed at the stop, boundaries of pupils, the light on the film.
-#include "petzval/pupil/pupil_boundary.hpp"
+#include "pupil/pupil_boundary.hpp"
 
 #include "laws.hpp"
 #include "petzval/paraxial/first_order.hpp"

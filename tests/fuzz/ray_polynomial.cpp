@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // Files of ray polynomials: they round-trip to the byte, and their rays are finite.
-#include "petzval/polynomial/ray_polynomial.hpp"
+#include "polynomial/ray_polynomial.hpp"
 
 #include <array>
 
+#include "io/ray_polynomial_json.hpp"
 #include "laws.hpp"
-#include "petzval/io/lens_json.hpp"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace petzval;

@@ -8,11 +8,12 @@
 #include <random>
 
 #include "../data_lenses.hpp"
+#include "io/ray_polynomial_json.hpp"
 #include "laws.hpp"
 #include "petzval/formats/lens_file.hpp"
 #include "petzval/glass/glass.hpp"
 #include "petzval/io/lens_json.hpp"
-#include "petzval/polynomial/ray_polynomial.hpp"
+#include "polynomial/ray_polynomial.hpp"
 
 namespace petzval::fuzz {
 namespace {

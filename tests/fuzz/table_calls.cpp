@@ -8,12 +8,12 @@
 
 #include "fixed_lenses.hpp"
 #include "laws.hpp"
-#include "petzval/analysis/lens_distortion.hpp"
+#include "petzval/analysis/distortion.hpp"
 #include "petzval/camera/camera.hpp"
 #include "petzval/camera/focal_surface.hpp"
 #include "petzval/focus/focus.hpp"
-#include "petzval/polynomial/ray_polynomial.hpp"
-#include "petzval/pupil_table/film_pupil_table.hpp"
+#include "polynomial/ray_polynomial.hpp"
+#include "pupil_table/film_pupil_table.hpp"
 
 namespace {
 

@@ -13,7 +13,7 @@
 
 #include "../expect_error.hpp"
 #include "core/text.hpp"
-#include "petzval/core/units.hpp"
+#include "petzval/core/geometry.hpp"
 
 namespace dispersion_test {
 

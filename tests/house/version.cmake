@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-# cmake -DROOT=... -P version.cmake: checks that the version in the pages equals include/petzval/core/version.hpp.
+# cmake -DROOT=... -P version.cmake: checks that the version in the pages equals include/petzval/core/config.hpp.
 cmake_minimum_required(VERSION 3.25)
 
-file(STRINGS ${ROOT}/include/petzval/core/version.hpp line REGEX "define PETZVAL_VERSION ")
+file(STRINGS ${ROOT}/include/petzval/core/config.hpp line REGEX "define PETZVAL_VERSION ")
 string(REGEX REPLACE ".*\"(.*)\"" "\\1" version "${line}")
 string(REGEX MATCH "^[0-9]+\\.[0-9]+" minor "${version}")
 

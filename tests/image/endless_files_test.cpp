@@ -11,16 +11,13 @@
 #include <vector>
 
 #include "../expect_error.hpp"
+#include "io/ray_polynomial_json.hpp"
 #include "petzval/analysis/colour.hpp"
-#include "petzval/core/read_file.hpp"
-#include "petzval/formats/glass_files.hpp"
+#include "petzval/core/files.hpp"
 #include "petzval/formats/lens_file.hpp"
 #include "petzval/glass/glass.hpp"
-#include "petzval/image/deep_exr.hpp"
+#include "petzval/image/exr.hpp"
 #include "petzval/image/image.hpp"
-#include "petzval/image/psf_set_exr.hpp"
-#include "petzval/io/lens_json.hpp"
-#include "petzval/io/write_file.hpp"
 
 namespace petzval {
 namespace endless_files_test {

@@ -12,7 +12,7 @@
 
 #include "../expect_error.hpp"
 #include "../png_checksums.hpp"
-#include "petzval/image/deep_exr.hpp"
+#include "petzval/image/exr.hpp"
 #include "petzval/image/image.hpp"
 
 namespace petzval {

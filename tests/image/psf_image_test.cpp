@@ -14,7 +14,7 @@
 
 #include "../expect_error.hpp"
 #include "petzval/core/error.hpp"
-#include "petzval/core/units.hpp"
+#include "petzval/core/geometry.hpp"
 #include "petzval/focus/focus.hpp"
 #include "petzval/io/lens_json.hpp"
 #include "petzval/pupil/f_number.hpp"

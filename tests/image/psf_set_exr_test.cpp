@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "petzval/image/psf_set_exr.hpp"
+#include "petzval/image/exr.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "petzval/io/write_file.hpp"
+#include "petzval/core/files.hpp"
 
 #include <fcntl.h>
 #include <gtest/gtest.h>

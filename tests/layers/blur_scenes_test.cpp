@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "layers/lit_scene.hpp"
-#include "petzval/core/units.hpp"
+#include "petzval/core/geometry.hpp"
 
 namespace {
 

@@ -10,7 +10,7 @@
 
 #include "../expect_error.hpp"
 #include "../message.hpp"
-#include "petzval/core/units.hpp"
+#include "petzval/core/geometry.hpp"
 
 namespace {
 

@@ -17,7 +17,7 @@
 
 #include "../expect_error.hpp"
 #include "petzval/blur/gather.hpp"
-#include "petzval/core/units.hpp"
+#include "petzval/core/geometry.hpp"
 #include "renderer/sky_light.hpp"
 
 namespace {

@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "../expect_error.hpp"
-#include "petzval/core/units.hpp"
+#include "petzval/core/geometry.hpp"
 
 namespace {
 

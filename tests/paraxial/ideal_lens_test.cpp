@@ -13,9 +13,8 @@
 #include "../expect_error.hpp"
 #include "../film_at.hpp"
 #include "lens/lens_view.hpp"
-#include "petzval/core/units.hpp"
+#include "petzval/core/geometry.hpp"
 #include "petzval/focus/focus.hpp"
-#include "petzval/focus/focus_plane.hpp"
 
 namespace petzval {
 namespace ideal_lens_test {

@@ -11,7 +11,7 @@
 #include "../data_lenses.hpp"
 #include "../seidel.hpp"
 #include "../trace/extended.hpp"
-#include "petzval/core/units.hpp"
+#include "petzval/core/geometry.hpp"
 #include "petzval/paraxial/first_order.hpp"
 #include "trace/sequential.hpp"
 

@@ -8,7 +8,7 @@
 #include <random>
 #include <vector>
 
-#include "petzval/polynomial/ray_polynomial.hpp"
+#include "polynomial/ray_polynomial.hpp"
 
 namespace petzval::testing {
 

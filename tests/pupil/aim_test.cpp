@@ -15,7 +15,7 @@
 #include "../expect_error.hpp"
 #include "../report.hpp"
 #include "core/text.hpp"
-#include "petzval/core/units.hpp"
+#include "petzval/core/geometry.hpp"
 #include "petzval/paraxial/first_order.hpp"
 #include "petzval/pupil/f_number.hpp"
 #include "petzval/trace/trace.hpp"
@@ -29,14 +29,14 @@ using testing::data_prescriptions;
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
 /// The centre of the stop and eight points on its rim.
-std::vector<StopPoint> places() {
-  std::vector<StopPoint> result{{}};
+std::vector<Vec2<double>> places() {
+  std::vector<Vec2<double>> result{{}};
   for (int i = 0; i < 8; ++i) result.push_back({std::sin(radians(45.0 * i)), std::cos(radians(45.0 * i))});
   return result;
 }
 
 /// Distance of a traced ray from its target on the stop, in semi-diameters of the stop.
-double miss(const Lens& lens, const Ray<double>& ray, const StopPoint& target) {
+double miss(const Lens& lens, const Ray<double>& ray, const Vec2<double>& target) {
   const std::size_t stop = pupils(lens).stop;
   Vec3<double> hit{infinity, infinity, infinity};
   kernel::trace(petzval::kernel::view<double>(lens), kernel::to_kernel(ray.origin), kernel::to_kernel(ray.direction),
@@ -57,7 +57,7 @@ TEST(Aim, ReachesStopTargetsOfEveryLens) {
       const double field = radians(part * p.half_field_deg.value_or(10));
       for (const double z : {-infinity, -1e7, -100 * std::abs(first_order(lens).effective_focal_length)}) {
         if (std::isfinite(z) && field > radians(89)) continue;
-        for (const StopPoint& target : places()) {
+        for (const Vec2<double>& target : places()) {
           const AimedRay aimed = aim(lens, {field, z}, target);
           const bool chief = target.x == 0 && target.y == 0;
           EXPECT_TRUE(aimed || !chief) << part;  // rays through the rim may be vignetted by another surface
@@ -79,7 +79,7 @@ TEST(Aim, ReachesStopTargetsOfEveryLens) {
 TEST(Aim, FisheyeFieldsBeyond90DegreesConverge) {
   const Lens lens = data_lens("fisheye_6.3mm_f2.8");
   for (const double field : {95.0, 105.0, 110.0, -110.0}) {
-    for (const StopPoint& target : places()) {
+    for (const Vec2<double>& target : places()) {
       const AimedRay aimed = aim(lens, {radians(field), -infinity}, target);
       ASSERT_TRUE(aimed) << field;
       EXPECT_LT(aimed.ray.direction.z, 0) << field;
@@ -101,7 +101,7 @@ TEST(Aim, StatusEqualsTraceOfTheRay) {
     const Prescription p = testing::data_prescription(id);
     const Lens lens = compile(p);
     for (double part = 0; part <= 1.2; part += 0.1) {
-      for (const StopPoint& target : places()) {
+      for (const Vec2<double>& target : places()) {
         const FieldPoint point{radians(part * *p.half_field_deg), -infinity, 0.3};
         const AimedRay aimed = aim(lens, point, {0.98 * target.x, 0.98 * target.y});
         if (!aimed) continue;
@@ -134,7 +134,7 @@ TEST(Aim, ConvergesAtEveryFNumber) {
   const Lens open = data_lens("modern_58mm_f0.95");
   for (const double f_number : {1.0, 4.0, 64.0}) {
     const Lens lens = with_f_number(open, f_number);
-    for (const StopPoint& target : places()) {
+    for (const Vec2<double>& target : places()) {
       const AimedRay aimed = aim(lens, {radians(10), -infinity}, target);
       ASSERT_TRUE(aimed);
       EXPECT_LE(aimed.residual, 1e-12) << f_number;
@@ -159,7 +159,7 @@ TEST(Aim, FindsTheSmallStopsOfFisheyesAtSteepFields) {
     for (const auto& [f_number, allowed] : {std::pair(5.6, 1e-12), {22.0, 1e-12}, {64.0, 3e-12}}) {
       const Lens lens = with_f_number(data_lens(id), f_number);
       for (double field = 60.5; field <= edge; field += 0.7) {
-        for (const StopPoint& target : places()) {
+        for (const Vec2<double>& target : places()) {
           const AimedRay aimed = aim(lens, {radians(field), -infinity}, target);
           if (!aimed && target.y != 0) continue;  // vignetted by another surface
           ++rays;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Computed apertures of a prescription without apertures. As long as the stop limits the beam, the images equal the
 // images with the given apertures.
-#include "petzval/pupil/apertures.hpp"
+#include "petzval/pupil/f_number.hpp"
 
 #include <gtest/gtest.h>
 
@@ -17,13 +17,12 @@
 
 #include "../data_lenses.hpp"
 #include "petzval/analysis/psf.hpp"
-#include "petzval/core/units.hpp"
+#include "petzval/core/geometry.hpp"
 #include "petzval/focus/focus.hpp"
 #include "petzval/formats/lens_file.hpp"
 #include "petzval/glass/glass.hpp"
 #include "petzval/io/lens_json.hpp"
 #include "petzval/paraxial/first_order.hpp"
-#include "petzval/pupil/f_number.hpp"
 #include "petzval/trace/trace.hpp"
 
 namespace petzval {

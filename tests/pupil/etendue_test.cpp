@@ -14,8 +14,8 @@
 #include "../data_lenses.hpp"
 #include "petzval/core/sobol.hpp"
 #include "petzval/paraxial/first_order.hpp"
-#include "petzval/pupil/pupil_boundary.hpp"
 #include "petzval/trace/trace.hpp"
+#include "pupil/pupil_boundary.hpp"
 
 namespace petzval {
 namespace etendue_test {

@@ -12,12 +12,12 @@
 
 #include "../data_lenses.hpp"
 #include "../expect_error.hpp"
-#include "petzval/core/units.hpp"
+#include "petzval/core/geometry.hpp"
 #include "petzval/paraxial/first_order.hpp"
 #include "petzval/pupil/aim.hpp"
 #include "petzval/pupil/illumination.hpp"
-#include "petzval/pupil/pupil_boundary.hpp"
 #include "petzval/trace/trace.hpp"
+#include "pupil/pupil_boundary.hpp"
 
 namespace petzval {
 namespace extremes_test {
@@ -253,7 +253,8 @@ TEST(Extremes, RefusesMissingWavelengths) {
 
 TEST(Extremes, InvalidTargetsGetNoRay) {
   const Lens lens = data_lens("double_gauss_100mm_f1.35");
-  for (const StopPoint& target : {StopPoint{nan, 0}, StopPoint{0, infinity}, StopPoint{1e300, 0}, StopPoint{0, -1e3}}) {
+  for (const Vec2<double>& target :
+       {Vec2<double>{nan, 0}, Vec2<double>{0, infinity}, Vec2<double>{1e300, 0}, Vec2<double>{0, -1e3}}) {
     EXPECT_EQ(aim(lens, {0.1, -infinity}, target).status, AimStatus::no_ray) << target.x << " " << target.y;
   }
   // A ray reaches a point just outside the rim of the stop, and is vignetted by the stop.

@@ -18,14 +18,14 @@
 #include "../expect_error.hpp"
 #include "../message.hpp"
 #include "lens/without_obscurations.hpp"
-#include "petzval/core/units.hpp"
+#include "petzval/core/geometry.hpp"
 #include "petzval/paraxial/first_order.hpp"
 #include "petzval/pupil/aim.hpp"
 #include "petzval/pupil/f_number.hpp"
-#include "petzval/pupil/pupil_boundary.hpp"
 #include "petzval/trace/trace.hpp"
 #include "pupil/aim.hpp"
 #include "pupil/face.hpp"
+#include "pupil/pupil_boundary.hpp"
 
 namespace petzval {
 namespace illumination_test {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "petzval/pupil/pupil_plane.hpp"
+#include "pupil/pupil_plane.hpp"
 
 #include <gtest/gtest.h>
 
@@ -11,12 +11,12 @@
 
 #include "../data_lenses.hpp"
 #include "../expect_error.hpp"
-#include "petzval/core/units.hpp"
+#include "petzval/core/geometry.hpp"
 #include "petzval/paraxial/first_order.hpp"
 #include "petzval/pupil/aim.hpp"
 #include "petzval/pupil/illumination.hpp"
-#include "petzval/pupil/pupil_boundary.hpp"
 #include "petzval/trace/trace.hpp"
+#include "pupil/pupil_boundary.hpp"
 
 namespace petzval {
 namespace pupil_plane_test {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "petzval/pupil/ray_bundle.hpp"
+#include "pupil/ray_bundle.hpp"
 
 #include <gtest/gtest.h>
 
@@ -11,8 +11,8 @@
 
 #include "../data_lenses.hpp"
 #include "../expect_error.hpp"
+#include "petzval/core/geometry.hpp"
 #include "petzval/core/sobol.hpp"
-#include "petzval/core/units.hpp"
 #include "petzval/trace/trace.hpp"
 
 namespace petzval {

@@ -14,7 +14,7 @@
 #include "../data_lenses.hpp"
 #include "core/meet_plane.hpp"
 #include "petzval/core/error.hpp"
-#include "petzval/core/units.hpp"
+#include "petzval/core/geometry.hpp"
 #include "petzval/trace/trace.hpp"
 #include "pupil/pupil_nodes.hpp"
 

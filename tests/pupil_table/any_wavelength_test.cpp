@@ -13,9 +13,9 @@
 #include "../data_lenses.hpp"
 #include "../declared_radius.hpp"
 #include "petzval/glass/glass.hpp"
-#include "petzval/pupil_table/film_pupil_table.hpp"
 #include "petzval/trace/trace.hpp"
 #include "pupil_table/entrance_pupil_table.hpp"
+#include "pupil_table/film_pupil_table.hpp"
 
 namespace any_wavelength_test {
 

@@ -14,7 +14,7 @@
 #include "../data_lenses.hpp"
 #include "petzval/paraxial/first_order.hpp"
 #include "petzval/pupil/f_number.hpp"
-#include "petzval/pupil_table/film_pupil_table.hpp"
+#include "pupil_table/film_pupil_table.hpp"
 
 namespace petzval {
 namespace pupil_batch_test {

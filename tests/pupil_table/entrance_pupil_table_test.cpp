@@ -18,9 +18,9 @@
 #include "petzval/core/sobol.hpp"
 #include "petzval/paraxial/first_order.hpp"
 #include "petzval/pupil/f_number.hpp"
-#include "petzval/pupil/pupil_boundary.hpp"
-#include "petzval/pupil_table/film_pupil_table.hpp"
 #include "petzval/trace/trace.hpp"
+#include "pupil/pupil_boundary.hpp"
+#include "pupil_table/film_pupil_table.hpp"
 
 namespace petzval {
 namespace entrance_pupil_table_test {

@@ -12,8 +12,8 @@
 #include "petzval/core/sobol.hpp"
 #include "petzval/pupil/f_number.hpp"
 #include "petzval/pupil/illumination.hpp"
-#include "petzval/pupil_table/film_pupil_table.hpp"
 #include "pupil_coverage.hpp"
+#include "pupil_table/film_pupil_table.hpp"
 
 namespace film_cells_test {
 

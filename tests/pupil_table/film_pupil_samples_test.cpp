@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "../data_lenses.hpp"
-#include "petzval/pupil_table/film_pupil_table.hpp"
+#include "pupil_table/film_pupil_table.hpp"
 
 namespace film_pupil_samples_test {
 

@@ -10,8 +10,8 @@
 
 #include "petzval/lens/lens.hpp"
 #include "petzval/paraxial/first_order.hpp"
-#include "petzval/pupil_table/film_pupil_table.hpp"
 #include "petzval/trace/trace.hpp"
+#include "pupil_table/film_pupil_table.hpp"
 
 namespace petzval::testing {
 

@@ -15,7 +15,7 @@
 #include "../data_lenses.hpp"
 #include "../declared_radius.hpp"
 #include "petzval/pupil/f_number.hpp"
-#include "petzval/pupil/pupil_boundary.hpp"
+#include "pupil/pupil_boundary.hpp"
 
 namespace pupil_coverage_test {
 

@@ -11,7 +11,7 @@
 #include "../data_lenses.hpp"
 #include "../expect_error.hpp"
 #include "core/low_discrepancy.hpp"
-#include "petzval/pupil_table/film_pupil_table.hpp"
+#include "pupil_table/film_pupil_table.hpp"
 
 namespace petzval {
 namespace rim_test {

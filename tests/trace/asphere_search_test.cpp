@@ -65,7 +65,7 @@ void judge(const petzval::SurfaceRow& row, std::mt19937& random, const std::stri
       count.doubtful += !crossings.back();
       count.several += crossings.back() && crossings.back()->size() > 1;
     }
-    for (const auto& options : testing_batches::ways(travel)) {
+    for (const auto& options : testing_batches::every_batch(travel)) {
       const auto answer = traced(lens, rays, options);
       for (std::size_t i = 0; i < rays.size(); ++i) {
         count.unsettled += answer.fates[i] == RayFate::no_convergence;
@@ -126,7 +126,7 @@ TYPED_TEST(AsphereSearch, WeakTermsChangeHitsByTheirSize) {
       const petzval::Lens base = testing_lenses::one_surface(row);
       row.aspheric = {{2, 1e-13}};
       const petzval::Lens asphere = testing_lenses::one_surface(row);
-      for (const auto& options : testing_batches::ways()) {
+      for (const auto& options : testing_batches::every_batch()) {
         const auto wanted = traced(base, rays, options), found = traced(asphere, rays, options);
         for (std::size_t i = 0; i < rays.size(); ++i) {
           const petzval::Vec3<double> hit(wanted.rays[i].origin), other(found.rays[i].origin), off = other - hit;
@@ -157,7 +157,7 @@ TYPED_TEST(AsphereSearch, RimsEndWhereAspheresAreSteep) {
   EXPECT_NEAR(height, 5.83, 0.03);
   std::mt19937 random(3);
   const auto rays = steep_rays<TypeParam>(row, random, 1.3 * height, 2000, 1);
-  for (const auto& options : testing_batches::ways()) {
+  for (const auto& options : testing_batches::every_batch()) {
     const auto found = traced(lens, rays, options);
     int passing = 0, beyond = 0;
     for (std::size_t i = 0; i < rays.size(); ++i) {

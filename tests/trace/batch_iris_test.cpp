@@ -58,7 +58,7 @@ TYPED_TEST(BatchIris, ClipsRaysOutsideAnEdge) {
         petzval::with_semi_diameter(sample.lens, surface, sample.lens.surfaces()[surface].semi_diameter / 2);
     for (const Travel travel : {Travel::to_film, Travel::to_scene}) {
       const auto rays = rays_for<T>(sample, travel, 600);
-      for (BatchOptions options : ways(travel)) {
+      for (BatchOptions options : every_batch(travel)) {
         const Iris& iris = shapes[turn++ % shapes.size()];
         const Lens bladed = petzval::with_iris(lens, iris);
         const auto open = traced(lens, rays, options);
@@ -118,7 +118,7 @@ TYPED_TEST(BatchIris, EdgesAreInside) {
   const T edge = static_cast<T>(10 * std::cos(std::numbers::pi / 4)), above = std::nextafter(edge, T(10));
   constexpr auto in = RayFate::transmitted, out = RayFate::vignetted;
   for (const Travel travel : {Travel::to_film, Travel::to_scene}) {
-    for (const BatchOptions& options : ways(travel)) {
+    for (const BatchOptions& options : every_batch(travel)) {
       const auto fates = fates_at<T>(lens, {{0, 0}, {edge, 0}, {above, 0}, {5, 6}, {5, T(7.1)}}, options);
       EXPECT_EQ(fates, (std::vector<RayFate>{in, in, out, in, out})) << text(options);
     }
@@ -129,7 +129,7 @@ TYPED_TEST(BatchIris, IsIgnoredWithoutApertures) {
   using T = TypeParam;
   const Lens lens = petzval::with_iris(petzval::compile(window()), {.blades = 3});  // down to -5 mm
   for (const Travel travel : {Travel::to_film, Travel::to_scene}) {
-    for (BatchOptions options : ways(travel)) {
+    for (BatchOptions options : every_batch(travel)) {
       EXPECT_EQ(fates_at<T>(lens, {{0, -7}}, options), std::vector{RayFate::vignetted});
       options.apertures = false;
       EXPECT_EQ(fates_at<T>(lens, {{0, -7}, {11, 0}}, options),
@@ -152,7 +152,7 @@ TYPED_TEST(BatchIris, RimsAreIgnoredWithoutApertures) {
     const Lens open = petzval::compile(wide);
     for (const Travel travel : {Travel::to_film, Travel::to_scene}) {
       const auto rays = rays_for<T>(sample, travel, 200);
-      for (BatchOptions options : ways(travel)) {
+      for (BatchOptions options : every_batch(travel)) {
         const auto wanted = traced(open, rays, options);
         options.apertures = false;
         const auto found = traced(sample.lens, rays, options);

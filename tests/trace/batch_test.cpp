@@ -77,7 +77,7 @@ TYPED_TEST(BatchOf, BitsAreIndependentOfCountAndPosition) {
   for (const auto& sample : telling()) {
     for (const Travel travel : both_ways) {
       const auto rays = rays_for<T>(sample, travel, 256);
-      for (const BatchOptions& options : ways(travel)) {
+      for (const BatchOptions& options : every_batch(travel)) {
         const Answer<T> whole = traced(sample.lens, rays, options);
         for (std::size_t count = 0; count < 130; ++count) {
           // Each count shifts the rays within the batch, in memory that is aligned to one element only.
@@ -116,7 +116,7 @@ TYPED_TEST(BatchOf, DirectionsWithinToleranceAreNormalised) {
         for (Ray<T>& ray : rays) {
           ray.direction *= static_cast<T>(std::sqrt(1 + part * petzval::unit_direction_tolerance));
         }
-        for (const BatchOptions& options : ways(travel)) {
+        for (const BatchOptions& options : every_batch(travel)) {
           const Answer<T> wanted = traced(sample.lens, unit, options), found = traced(sample.lens, rays, options);
           int passed = 0, kept = 0;
           for (std::size_t i = 0; i < unit.size(); ++i) {
@@ -143,7 +143,7 @@ TYPED_TEST(BatchOf, ResultsMayReplaceRaysAndFatesAreOptional) {
   for (const auto& sample : telling()) {
     for (const Travel travel : both_ways) {
       const auto rays = rays_for<T>(sample, travel, 100);
-      for (const BatchOptions& options : ways(travel)) {
+      for (const BatchOptions& options : every_batch(travel)) {
         const Answer<T> wanted = traced(sample.lens, rays, options);
         Arrays<T> both(rays, 1);
         std::vector<RayFate> fates(rays.size());
@@ -172,7 +172,7 @@ TYPED_TEST(BatchOf, ArrayOfStructuresHasEqualBits) {
     for (const Travel travel : both_ways) {
       auto rays = rays_for<T>(sample, travel, 131);
       for (const auto& ray : absurd_rays<T>()) rays.push_back(ray);
-      for (const BatchOptions& options : ways(travel)) {
+      for (const BatchOptions& options : every_batch(travel)) {
         const Answer<T> wanted = traced(sample.lens, rays, options);
         std::vector<TracedRay<T>> found(rays.size() + 1);
         found.back().surface = -7;
@@ -195,7 +195,7 @@ TYPED_TEST(BatchOf, LostRaysAreReturnedUnchanged) {
     for (const Travel travel : both_ways) {
       auto rays = rays_for<T>(sample, travel, 256);
       for (const auto& ray : absurd_rays<T>()) rays.push_back(ray);
-      for (const BatchOptions& options : ways(travel)) {
+      for (const BatchOptions& options : every_batch(travel)) {
         const Answer<T> answer = traced(sample.lens, rays, options);
         for (std::size_t i = 0; i < rays.size(); ++i) {
           const std::string what = sample.id + " " + text(options) + " ray " + std::to_string(i);
@@ -221,7 +221,7 @@ TYPED_TEST(BatchOf, InvalidRaysAreMissesAndDoNotChangeOtherLanes) {
   for (const auto& sample : telling()) {
     for (const Travel travel : both_ways) {
       const auto rays = rays_for<T>(sample, travel, 129);
-      for (const BatchOptions& options : ways(travel)) {
+      for (const BatchOptions& options : every_batch(travel)) {
         const Answer<T> wanted = traced(sample.lens, rays, options);
         for (std::size_t lane = 0; lane < rays.size(); lane += lane < 20 ? 1 : 9) {
           auto poisoned = rays;
@@ -248,7 +248,7 @@ TYPED_TEST(BatchOf, InvalidRaysHaveTheFateOfSingleRays) {
   const auto rays = absurd_rays<T>();
   for (const auto& sample : telling()) {
     for (const Travel travel : both_ways) {
-      for (const BatchOptions& options : ways(travel)) {
+      for (const BatchOptions& options : every_batch(travel)) {
         const Answer<T> answer = traced(sample.lens, rays, options);
         for (std::size_t i = 0; i < rays.size(); ++i) {
           if (!refused(rays[i])) continue;
@@ -265,7 +265,7 @@ TYPED_TEST(BatchOf, ThreadsDoNotChangeABit) {
   for (const auto& sample : telling()) {
     const auto rays = rays_for<T>(sample, Travel::to_film, 1000);
     const Arrays<T> in(rays);
-    for (const BatchOptions& options : ways()) {
+    for (const BatchOptions& options : every_batch()) {
       const Answer<T> wanted = traced(sample.lens, rays, options);
       for (const int threads : {1, 3}) {
         Answer<T> found{Arrays<T>(rays.size()), std::vector<RayFate>(rays.size()), std::vector<int>(rays.size())};
@@ -284,7 +284,7 @@ TYPED_TEST(BatchOf, ThreadsDoNotChangeABit) {
 
 TEST(Batch, EmptyBatchNeedsNoArrays) {
   const auto lens = testing_lenses::load("ball_10mm").lens;
-  for (const BatchOptions& options : ways()) {
+  for (const BatchOptions& options : every_batch()) {
     petzval::trace<double>(lens, 0, {}, {}, nullptr, nullptr, options);
     petzval::trace<float>(lens, {}, nullptr, options);
   }

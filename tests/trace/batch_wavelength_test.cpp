@@ -45,7 +45,7 @@ TYPED_TEST(BatchWavelengths, MixedBatchEqualsBatchesOfOneWavelength) {
       for (auto& w : mixed) w = static_cast<std::uint16_t>(random() % wavelengths_nm.size());
       for (std::size_t i = 17; i < mixed.size(); i += 19) mixed[i] = beyond[i % 5];
 
-      for (BatchOptions options : ways(travel)) {
+      for (BatchOptions options : every_batch(travel)) {
         std::vector<Answer<T>> alone;
         for (std::size_t w = 0; w < wavelengths_nm.size(); ++w) {
           options.wavelengths = {w};
@@ -86,7 +86,7 @@ TYPED_TEST(BatchWavelengths, MixedBatchEqualsBatchesForAnyNumberOfWavelengths) {
     const auto rays = rays_for<T>(sample, Travel::to_scene, 3 * count);
     std::vector<std::uint16_t> mixed(rays.size());
     for (std::size_t i = 0; i < mixed.size(); ++i) mixed[i] = static_cast<std::uint16_t>(i % count);
-    for (BatchOptions options : ways(Travel::to_scene)) {
+    for (BatchOptions options : every_batch(Travel::to_scene)) {
       options.wavelengths = {.each = mixed.data()};
       const Answer<T> found = traced(sample.lens, rays, options);
       for (std::size_t w = 0; w < count; ++w) {
@@ -105,7 +105,7 @@ TYPED_TEST(BatchWavelengths, WavelengthsPerRayReplaceTheCommonWavelength) {
   const auto sample = colourful(testing_lenses::load("double_gauss_100mm_f2.0"));
   const auto rays = rays_for<T>(sample, Travel::to_film, 70);
   const std::vector<std::uint16_t> second(rays.size(), 1);
-  for (BatchOptions options : ways()) {
+  for (BatchOptions options : every_batch()) {
     options.wavelengths = {1};
     const auto wanted = traced(sample.lens, rays, options);
     options.wavelengths = {static_cast<std::size_t>(-1), second.data()};
@@ -119,7 +119,7 @@ TYPED_TEST(BatchWavelengths, MissingIndicesLoseTheWholeBatch) {
   for (const auto& sample : telling()) {
     for (const Travel travel : {Travel::to_film, Travel::to_scene}) {
       const auto rays = rays_for<T>(sample, travel, 70);
-      for (BatchOptions options : ways(travel)) {
+      for (BatchOptions options : every_batch(travel)) {
         for (const std::size_t beyond : {std::size_t{1}, std::size_t{1} << 32, static_cast<std::size_t>(-1)}) {
           options.wavelengths = {beyond};
           const auto answer = traced(sample.lens, rays, options);
@@ -169,7 +169,7 @@ TYPED_TEST(BatchWavelengths, InNmEqualALensCompiledForThem) {
     for (const Travel travel : {Travel::to_film, Travel::to_scene}) {
       const auto rays = rays_for<T>(sample, travel, 250);
       const auto nm = any_nm(rays.size());
-      for (BatchOptions options : ways(travel)) {
+      for (BatchOptions options : every_batch(travel)) {
         options.wavelengths = {.each_nm = nm.data()};
         const Answer<T> found = traced(sample.lens, rays, options);
         std::size_t passed = 0, lost = 0;
@@ -205,7 +205,7 @@ TYPED_TEST(BatchWavelengths, InNmHaveEqualBitsInBatchesAndSingleRays) {
     for (const Travel travel : {Travel::to_film, Travel::to_scene}) {
       const auto rays = rays_for<T>(sample, travel, 333);
       const auto nm = any_nm(rays.size());
-      for (BatchOptions options : ways(travel)) {
+      for (BatchOptions options : every_batch(travel)) {
         options.wavelengths = {.each_nm = nm.data()};
         const Answer<T> found = traced(sample.lens, rays, options);
         std::vector<petzval::TracedRay<T>> records(rays.size());
@@ -235,7 +235,7 @@ TYPED_TEST(BatchWavelengths, CompiledWavelengthsInNmEqualTheirIndices) {
   using T = TypeParam;
   const auto sample = colourful(testing_lenses::load("modern_58mm_f0.95"));
   const auto rays = rays_for<T>(sample, Travel::to_film, 333);
-  for (BatchOptions options : ways()) {
+  for (BatchOptions options : every_batch()) {
     for (std::size_t w = 0; w < wavelengths_nm.size(); ++w) {
       options.wavelengths = {Wavelength(w)};
       const auto wanted = traced(sample.lens, rays, options);
@@ -266,7 +266,7 @@ TYPED_TEST(BatchWavelengths, InNmHaveDerivatives) {
                                     {out[1].out(), out[2].out()}, fates.data(), surfaces.data(), options);
     return std::pair(std::move(out), std::move(fates));
   };
-  for (const BatchOptions& options : ways()) {
+  for (const BatchOptions& options : every_batch()) {
     const auto [wanted, wanted_fates] = differentials({Wavelength(4)}, options);
     const auto [found, fates] = differentials({.each_nm = nm.data()}, options);
     for (std::size_t i = 0; i < rays.size(); ++i) {

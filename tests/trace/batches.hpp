@@ -11,6 +11,7 @@
 #include <utility>
 #include <vector>
 
+#include "core/instruction_set.hpp"
 #include "core/low_discrepancy.hpp"
 #include "lenses.hpp"
 #include "petzval/trace/trace.hpp"
@@ -26,19 +27,56 @@ using petzval::RayArrays;
 using petzval::RayFate;
 using petzval::Travel;
 
-/// Options for every arithmetic on every instruction set of this machine.
-inline std::vector<BatchOptions> ways(Travel travel = Travel::to_film) {
-  std::vector<BatchOptions> result;
-  for (const Arithmetic arithmetic : {Arithmetic::fast, Arithmetic::reproducible}) {
-    for (const auto set : petzval::instruction_sets()) {
-      result.push_back({.travel = travel, .arithmetic = arithmetic, .instruction_set = set});
+/// Options for both arithmetics, each repeated for every instruction set of this machine.
+///
+///     for (const BatchOptions& options : every_batch(travel)) ...   // runs on the instruction set of the iteration
+///
+/// An iterator limits the batches of the thread to its instruction set; the destructor removes the limit.
+class EveryBatch {
+ public:
+  explicit EveryBatch(Travel travel) {
+    for (const Arithmetic arithmetic : {Arithmetic::fast, Arithmetic::reproducible}) {
+      for (const auto set : petzval::instruction_sets()) {
+        options_.push_back({.travel = travel, .arithmetic = arithmetic});
+        sets_.push_back(set);
+      }
     }
   }
-  return result;
-}
+  EveryBatch(const EveryBatch&) = delete;
+  EveryBatch& operator=(const EveryBatch&) = delete;
+  ~EveryBatch() { petzval::limit_batches(petzval::InstructionSet::avx512); }
+
+  class Iterator {
+   public:
+    Iterator(const EveryBatch& all, std::size_t position) : all_(&all), position_(position) {}
+    const BatchOptions& operator*() const {
+      petzval::limit_batches(all_->sets_[position_]);
+      return all_->options_[position_];
+    }
+    Iterator& operator++() {
+      ++position_;
+      return *this;
+    }
+    bool operator==(const Iterator&) const = default;
+
+   private:
+    const EveryBatch* all_;
+    std::size_t position_;
+  };
+  Iterator begin() const { return {*this, 0}; }
+  Iterator end() const { return {*this, size()}; }
+
+  std::size_t size() const { return options_.size(); }
+  const BatchOptions& operator[](std::size_t position) const { return options_[position]; }
+
+ private:
+  std::vector<BatchOptions> options_;
+  std::vector<petzval::InstructionSet> sets_;
+};
+inline EveryBatch every_batch(Travel travel = Travel::to_film) { return EveryBatch(travel); }
 
 inline std::string text(const BatchOptions& o) {
-  return std::string(name(o.arithmetic)) + " " + std::string(name(o.instruction_set)) +
+  return std::string(name(o.arithmetic)) + " " + std::string(name(petzval::batch_instruction_set())) +
          (o.travel == Travel::to_film ? " to_film" : " to_scene");
 }
 

@@ -14,7 +14,7 @@
 #include <vector>
 
 #include "../data_lenses.hpp"
-#include "petzval/core/units.hpp"
+#include "petzval/core/geometry.hpp"
 #include "petzval/pupil/aim.hpp"
 #include "trace/sequential.hpp"
 

@@ -142,7 +142,7 @@ void judge(const testing_lenses::Sample& sample, std::array<Worst, 2>& worst, in
   const auto tables = testing_lenses::extended(petzval::kernel::view<double>(sample.lens));
   for (const Travel travel : {Travel::to_film, Travel::to_scene}) {
     const Beam<T> beam(rays_for<T>(sample, travel, 48), sample.size);
-    const auto all = ways(travel);
+    const auto all = every_batch(travel);
     std::vector<Followed<T>> found;
     for (const auto& options : all) found.push_back(followed(sample.lens, beam, options));
     for (std::size_t i = 0; i < beam.rays.size(); ++i) {

@@ -43,7 +43,7 @@ Ray<T> ray_of(double x, double y, double z, double dx, double dy, double dz) {
 template <class T>
 void expect_fate(const Lens& lens, const Ray<T>& ray, Travel travel, RayFate fate, const std::string& what) {
   EXPECT_EQ(name(petzval::trace(lens, ray, {.travel = travel}).fate), name(fate)) << what << ", one ray";
-  for (const auto& options : ways(travel)) {
+  for (const auto& options : every_batch(travel)) {
     const auto answer = traced(lens, std::vector<Ray<T>>(3, ray), options);
     for (const RayFate found : answer.fates) EXPECT_EQ(name(found), name(fate)) << what << ", " << text(options);
   }
@@ -165,12 +165,12 @@ TYPED_TEST(EdgesOf, DirectionOfTravelSelectsTheCrossing) {
   const Lens sphere = one_surface(surface(50, 0, 1));
   const double length = std::sqrt(1.01);
   const Ray<TypeParam> ray = ray_of<TypeParam>(-60, 0, 30, 1 / length, 0, -0.1 / length);
-  for (const auto& options : ways(Travel::to_film)) {
+  for (const auto& options : every_batch(Travel::to_film)) {
     const auto answer = traced(sphere, std::vector{ray}, options);
     ASSERT_EQ(answer.fates[0], passes) << text(options);
     EXPECT_LT(answer.rays[0].origin.x, 0) << text(options);
   }
-  for (const auto& options : ways(Travel::to_scene)) {
+  for (const auto& options : every_batch(Travel::to_scene)) {
     const auto answer = traced(sphere, std::vector{ray}, options);
     ASSERT_EQ(answer.fates[0], passes) << text(options);
     EXPECT_GT(answer.rays[0].origin.x, 0) << text(options);

@@ -224,7 +224,7 @@ TEST(Extremes, HitsFromAKilometreAwayLieOnTheSurface) {
       rays.push_back(
           through<double>({random(-14, 14), random(-14, 14), 0}, {random(-0.4, 0.4), random(-0.4, 0.4), 1}, 1e6));
     }
-    for (const auto& options : testing_batches::ways()) {
+    for (const auto& options : testing_batches::every_batch()) {
       const auto answer = testing_batches::traced(lens, rays, options);
       for (std::size_t i = 0; i < rays.size(); ++i) {
         ASSERT_EQ(answer.fates[i], RayFate::transmitted);
@@ -256,7 +256,7 @@ TYPED_TEST(ExtremesOf, EqualMediaKeepDirectionsWithinOneEps) {
     for (SurfaceRow row : {glass(50, 0, n), glass(-30, -2.5, n), glass(0, 0, n)}) {
       const Lens lens = one_surface(row, n);
       const auto rays = skew_rays<T>(row, {}, 1);
-      for (const auto& options : testing_batches::ways()) {
+      for (const auto& options : testing_batches::every_batch()) {
         const auto answer = testing_batches::traced(lens, rays, options);
         for (std::size_t i = 0; i < rays.size(); ++i) {
           ASSERT_EQ(answer.fates[i], RayFate::transmitted) << text(options);

@@ -153,7 +153,7 @@ class Judge {
       const auto one = petzval::trace(lens, rays[i], {.travel = travel});
       take(0, i, one.ray, one.fate, one.surface, "one ray");
     }
-    for (const auto& options : testing_batches::ways(travel)) {
+    for (const auto& options : testing_batches::every_batch(travel)) {
       const auto batch = testing_batches::traced(lens, rays, options);
       for (std::size_t i = 0; i < rays.size(); ++i) {
         take(options.arithmetic == Arithmetic::fast ? 1 : 2, i, batch.rays[i], batch.fates[i], batch.surfaces[i],

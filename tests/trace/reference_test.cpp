@@ -95,7 +95,7 @@ TYPED_TEST(ReferenceRays, EqualTheReference) {
     const Ray<T> ray{{static_cast<T>(in[0]), static_cast<T>(in[1]), static_cast<T>(in[2])},
                      {static_cast<T>(in[3]), static_cast<T>(in[4]), static_cast<T>(in[5])}};
     judge(petzval::trace(sample.lens, ray, {.travel = row.travel}), row, sample.size, this->bound, one, "one ray");
-    for (const auto& options : testing_batches::ways(row.travel)) {
+    for (const auto& options : testing_batches::every_batch(row.travel)) {
       TracedRay<T> end;
       petzval::trace<T>(sample.lens, std::span(&ray, 1), &end, options);
       ASSERT_EQ(name(end.fate), row.fate) << "rays.csv:" << row.line << " " << testing_batches::text(options);

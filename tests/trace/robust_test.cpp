@@ -169,7 +169,7 @@ TYPED_TEST(Robust, ResultsAreFiniteForAnyBatch) {
     const bool apertures = random() % 2 == 0;
     const Travel travel = random() % 2 ? Travel::to_film : Travel::to_scene;
     std::optional<testing_batches::Answer<T>> first;
-    for (auto options : testing_batches::ways(travel)) {  // fast options first
+    for (auto options : testing_batches::every_batch(travel)) {  // fast options first
       options.apertures = apertures;
       const auto answer = testing_batches::traced(lens, rays, options);
       for (std::size_t i = 0; i < rays.size(); ++i) {
@@ -227,7 +227,7 @@ TYPED_TEST(Robust, RaysThatMeetAPlaneFarOutAreLostOrCorrect) {
                         {static_cast<T>(std::sqrt(1 - slope * slope)), T(0), static_cast<T>(slope)}});
       }
     }
-    for (auto options : testing_batches::ways()) {
+    for (auto options : testing_batches::every_batch()) {
       options.apertures = false;
       const auto answer = testing_batches::traced(lens, rays, options);
       for (std::size_t i = 0; i < rays.size(); ++i) {
@@ -247,7 +247,7 @@ TYPED_TEST(Robust, RaysThatMeetAPlaneFarOutAreLostOrCorrect) {
   // A ray that fuzzing found: every tracer loses it at the plane.
   if constexpr (std::is_same_v<T, double>) {
     const Ray<double> ray{{6.2, 0, 9.05}, {std::sqrt(1 - 1e-24), 0, 1e-12}};
-    for (auto options : testing_batches::ways()) {
+    for (auto options : testing_batches::every_batch()) {
       options.apertures = false;
       const auto answer = testing_batches::traced(lenses[0], std::vector<Ray<double>>(3, ray), options);
       EXPECT_EQ(answer.fates[1], RayFate::vignetted) << testing_batches::text(options);

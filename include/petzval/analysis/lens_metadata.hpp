@@ -5,8 +5,8 @@
 #include <optional>
 #include <string>
 
-#include "petzval/analysis/lens_distortion.hpp"
-#include "petzval/core/export.hpp"
+#include "petzval/analysis/distortion.hpp"
+#include "petzval/core/config.hpp"
 #include "petzval/core/film.hpp"
 #include "petzval/lens/lens.hpp"
 #include "petzval/prescription/prescription.hpp"
@@ -44,7 +44,7 @@ struct LensState {
 
 /// The lens settings of a camera, with the subject at Pinhole::subject_z_mm.
 ///
-/// @throws Error under the conditions of pupil_boundary()
+/// @throws Error under the conditions of scene_point()
 PETZVAL_API LensState lens_state(const LensDistortion& distortion);
 
 /// Polynomial falloff of the irradiance towards the edge of the film, relative to the axis.

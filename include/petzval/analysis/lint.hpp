@@ -7,7 +7,7 @@
 #include <string_view>
 #include <vector>
 
-#include "petzval/core/export.hpp"
+#include "petzval/core/config.hpp"
 #include "petzval/core/film.hpp"
 #include "petzval/lens/lens.hpp"
 #include "petzval/prescription/prescription.hpp"

@@ -8,9 +8,9 @@
 #include <vector>
 
 #include "petzval/analysis/spot.hpp"
-#include "petzval/core/export.hpp"
+#include "petzval/core/config.hpp"
 #include "petzval/core/geometry.hpp"
-#include "petzval/pupil/ray_bundle.hpp"
+#include "petzval/pupil/aim.hpp"
 
 namespace petzval {
 class Camera;
@@ -92,7 +92,7 @@ PETZVAL_API PointImage point_image(const Camera& camera, const FieldPoint& point
 /// Traces a point light to the film of a lens at every compiled wavelength. All values are 0 if no ray passes.
 ///
 /// @throws Error if samples, pixels or threads are 0, or half_width_mm, tolerance or centre are invalid; also under the
-///               conditions of pupil_boundary()
+///               conditions of scene_point()
 PETZVAL_API PointImage point_image(const Lens& lens, const FieldPoint& point, const PsfOptions& options = {});
 
 }  // namespace petzval

@@ -9,7 +9,7 @@
 
 #include "petzval/analysis/psf.hpp"
 #include "petzval/analysis/spot.hpp"
-#include "petzval/core/export.hpp"
+#include "petzval/core/config.hpp"
 #include "petzval/core/geometry.hpp"
 
 namespace petzval {
@@ -24,8 +24,9 @@ namespace petzval {
 /// Frame: an upright photograph with +y in the direction of the field, x to the right, rows from the top (largest y
 /// first). On the film both axes are reversed. The anchor is the centre of the middle pixel; `pixels` is odd.
 ///
-/// Hits: a bundle of pixels x pixels rays from which kernels are interpolated. Row j and column i hold the ray of
-/// PupilSampler with u = (i + 1/2) / pixels and v = ((j + 1/2) / pixels)^2; its light is proportional to j + 1/2.
+/// Hits: a bundle of pixels x pixels rays from which kernels are interpolated. Row j and column i hold the ray
+/// at (i + 1/2) / pixels of a turn about the pupil's middle, from +y towards +x; a fraction ((j + 1/2) / pixels)^2 of
+/// the pupil's area lies nearer to the middle. The light of the ray is proportional to j + 1/2.
 struct PsfKernel {
   int pixels = 0;
   double pixel_mm = 0;

@@ -8,9 +8,9 @@
 #include <string_view>
 #include <vector>
 
-#include "petzval/core/export.hpp"
+#include "petzval/core/config.hpp"
 #include "petzval/core/geometry.hpp"
-#include "petzval/pupil/ray_bundle.hpp"
+#include "petzval/pupil/aim.hpp"
 
 namespace petzval {
 
@@ -26,9 +26,6 @@ struct SpotSize {
 ///
 /// @param x,y  film coordinates (mm); if the lengths differ, the surplus is ignored
 PETZVAL_API SpotSize spot_size(std::span<const double> x, std::span<const double> y) noexcept;
-
-/// The spot size of all rays of several bundles; rays without weights count 1.
-PETZVAL_API SpotSize spot_size(std::span<const RayBundle> sets) noexcept;
 
 /// Radius of the first dark ring of an ideal image on the film (mm); infinite if the stop is closed.
 ///
@@ -55,7 +52,8 @@ struct Spot {
   std::optional<double> chief_ray_height;
   /// relative_illumination() of the field; nullopt if the axis is dark or no chief ray reaches the film.
   std::optional<double> relative_illumination;
-  RayBundle hits;
+  std::vector<double> x{}, y{};  ///< film positions of the rays that pass the lens, mm
+  std::size_t sent = 0;          ///< rays started
   SpotSize size;
 };
 
@@ -65,7 +63,7 @@ struct Spot {
 /// @param subject_z   subject plane (lens frame, mm); -inf at infinity
 /// @param fields_rad  field angles (rad)
 /// @param samples     rays per field and wavelength
-/// @throws Error      under the conditions of pupil_boundary()
+/// @throws Error      under the conditions of scene_point()
 PETZVAL_API std::vector<Spot> spot_diagram(const Lens& lens, double subject_z, std::span<const double> fields_rad,
                                            std::uint32_t samples = 4096);
 

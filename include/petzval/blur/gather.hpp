@@ -8,7 +8,7 @@
 
 #include "petzval/blur/layers.hpp"
 #include "petzval/blur/lens_rays.hpp"
-#include "petzval/core/export.hpp"
+#include "petzval/core/config.hpp"
 
 namespace petzval {
 

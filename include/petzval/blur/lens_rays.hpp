@@ -7,10 +7,10 @@
 #include <span>
 #include <vector>
 
-#include "petzval/blur/layer_camera.hpp"
-#include "petzval/core/export.hpp"
+#include "petzval/blur/layers.hpp"
+#include "petzval/core/config.hpp"
 #include "petzval/core/geometry.hpp"
-#include "petzval/iris/iris_weights.hpp"
+#include "petzval/iris/iris.hpp"
 #include "petzval/lens/wavelength.hpp"
 
 namespace petzval {

@@ -5,20 +5,18 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
-#include <vector>
 
-#include "petzval/camera/bokeh_controls.hpp"
+#include "petzval/camera/bokeh.hpp"
 #include "petzval/camera/camera_ray.hpp"
 #include "petzval/camera/expressive_lens.hpp"
 #include "petzval/camera/focal_surface.hpp"
 #include "petzval/camera/model_kind.hpp"
-#include "petzval/core/export.hpp"
+#include "petzval/core/config.hpp"
 #include "petzval/core/film.hpp"
 #include "petzval/lens/wavelength.hpp"
 
 namespace petzval {
 
-class AnyRayModel;
 class Lens;
 
 /// Unit of the weights of a camera.
@@ -88,13 +86,6 @@ class PETZVAL_API Camera {
   /// Limitations: if the film travels, first-order models keep the focus and the pupil size of the position at which
   /// the shutter opens. After a pull from 3 m to infinity with a 100 mm lens the exposure is off by 1 to 4 %.
   Camera(const Lens& lens, const Film& film, const CameraOptions& options = {});
-  /// Sets up a camera with a given model: a model of the renderer, or polynomials from a file (ray_model.hpp).
-  ///
-  /// @throws Error  as above; if the model has other wavelengths or another film position; if its pupils or polynomials
-  ///                end within upright_radius(); if lens_elements, lens_ratio or rate_of_change differ from the
-  ///                default, because the pupils of a given model cannot follow them
-  Camera(const Lens& lens, const Film& film, const AnyRayModel& model,
-         Normalisation normalisation = Normalisation::irradiance, const BokehControls& bokeh = {});
 
   /// The lens with its film at the position of the camera's film.
   const Lens& lens() const noexcept;
@@ -158,12 +149,6 @@ class PETZVAL_API Camera {
   /// perpendicular to it (1/mm^2). ray: any point of the line, and the direction of travel.
   double pdf_distant_importance(const Ray<double>& ray, Wavelength wavelength = {}) const;
 
-  /// The film side of the camera as an array of floats, for sampling on a GPU; CameraTables describes the layout.
-  ///
-  /// @throws Error  if the film is tilted or travels, if the camera has weights of the pupil, a focal surface or an
-  ///                expressive lens, or if the model is custom
-  std::vector<float> tables() const;
-
   /// Projects a scene point: film point and raster position of its chief ray. not_visible if the wavelength is outside
   /// the compiled range.
   Projection project(const Vec3<double>& point, Wavelength wavelength = {}, double time = 0) const;
@@ -178,7 +163,9 @@ class PETZVAL_API Camera {
   FocalSteepness focal_steepness() const noexcept;
 
  private:
+  friend struct CameraAccess;
   struct Data;
+  explicit Camera(std::shared_ptr<const Data> data) noexcept;
   std::shared_ptr<const Data> data_;
 };
 

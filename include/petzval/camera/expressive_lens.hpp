@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "petzval/core/export.hpp"
+#include "petzval/core/config.hpp"
 #include "petzval/core/film.hpp"
 #include "petzval/lens/lens.hpp"
 

@@ -9,7 +9,7 @@
 #include <string_view>
 #include <vector>
 
-#include "petzval/core/export.hpp"
+#include "petzval/core/config.hpp"
 #include "petzval/core/film.hpp"
 #include "petzval/core/geometry.hpp"
 #include "petzval/focus/focus_point.hpp"

@@ -7,7 +7,7 @@
 #include <span>
 #include <string_view>
 
-#include "petzval/core/export.hpp"
+#include "petzval/core/config.hpp"
 
 namespace petzval {
 
@@ -17,7 +17,7 @@ namespace petzval {
 /// thin_two_disc and polynomials have it within 2 % (tests/camera/exposure_test.cpp).
 ///
 /// Limitations: if a central obscuration divides the pupil, as in catadioptrics beyond their field, the exposure of
-/// models that are not exact may be off by a factor (FilmPupilTable::equal_area). Beyond the declared field,
+/// models that are not exact may be off by a factor. Beyond the declared field,
 /// polynomials of lenses with cylinders are up to 20 % too dark. First-order models of lenses faster than f/0.36 are up
 /// to 5 % too bright; for lenses faster than f/0.31 they are useless.
 class ModelKind {
@@ -47,7 +47,7 @@ class ModelKind {
   static constexpr ModelKind polynomial(int degree) noexcept;
   /// Rays traced through every surface, in float or double.
   static const ModelKind exact_float, exact_double;
-  /// A model of the renderer: ray_model.hpp.
+  /// A model added to the library (lib/docs/contributors.md).
   static const ModelKind custom;
 
   constexpr ModelKind() noexcept = default;

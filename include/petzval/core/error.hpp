@@ -4,7 +4,7 @@
 #include <stdexcept>
 #include <string>
 
-#include "petzval/core/export.hpp"
+#include "petzval/core/config.hpp"
 
 namespace petzval {
 

@@ -5,7 +5,7 @@
 #include <cstddef>
 #include <optional>
 
-#include "petzval/core/export.hpp"
+#include "petzval/core/config.hpp"
 #include "petzval/core/geometry.hpp"
 
 namespace petzval {

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <numbers>
 #include <optional>
 
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 
-#include "petzval/core/export.hpp"
-#include "petzval/core/version.hpp"
+#include "petzval/core/config.hpp"
 
 namespace petzval {
 
@@ -41,5 +41,11 @@ struct SpaceLine {
 /// @param z      position of the perpendicular plane on the axis (mm, lens frame)
 /// @return       the common line; nullopt if both planes are parallel within rounding
 PETZVAL_API std::optional<SpaceLine> line_at(const Plane& plane, double z);
+
+/// Wavelength of the helium d line, the usual reference of printed indices (nm).
+inline constexpr double d_line_nm = 587.5618;
+
+constexpr double radians(double degrees) noexcept { return degrees * (std::numbers::pi / 180.0); }
+constexpr double degrees(double radians) noexcept { return radians * (180.0 / std::numbers::pi); }
 
 }  // namespace petzval

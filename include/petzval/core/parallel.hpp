@@ -4,7 +4,7 @@
 #include <cstddef>
 #include <functional>
 
-#include "petzval/core/export.hpp"
+#include "petzval/core/config.hpp"
 
 namespace petzval {
 

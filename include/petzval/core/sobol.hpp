@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <span>
 
-#include "petzval/core/export.hpp"
+#include "petzval/core/config.hpp"
 #include "petzval/core/geometry.hpp"
 
 namespace petzval {

@@ -7,9 +7,9 @@
 #include <string_view>
 
 #include "petzval/camera/focal_surface.hpp"
-#include "petzval/core/export.hpp"
+#include "petzval/core/config.hpp"
 #include "petzval/core/film.hpp"
-#include "petzval/focus/focus_plane.hpp"
+#include "petzval/focus/focus.hpp"
 #include "petzval/lens/lens.hpp"
 #include "petzval/paraxial/ideal_lens.hpp"
 
@@ -27,7 +27,7 @@ namespace petzval {
 /// @param fields_rad          field angles (rad)
 /// @param wavelength_weights  one weight per compiled wavelength; empty: equal weights
 /// @throws Error              if there are no fields, or the weights are negative, all 0 or of the wrong number; also
-///                            under the conditions of pupil_boundary()
+///                            under the conditions of scene_point()
 PETZVAL_API std::string focus_figure(const Lens& lens, double subject_z, std::span<const double> fields_rad,
                                      std::span<const double> wavelength_weights = {});
 

@@ -4,8 +4,10 @@
 #include <cstddef>
 #include <span>
 #include <string>
+#include <string_view>
 
-#include "petzval/core/export.hpp"
+#include "petzval/analysis/spot.hpp"
+#include "petzval/core/config.hpp"
 #include "petzval/lens/lens.hpp"
 #include "petzval/paraxial/first_order.hpp"
 
@@ -34,7 +36,7 @@ PETZVAL_API std::string layout_figure(const Lens& lens, double subject_z, std::s
 
 /// Draws the vignetted pupil of each field at the primary wavelength as SVG text.
 ///
-/// A cell shows the transmitting region of the PupilPlane, its boundary with one colour per limiting surface, and the
+/// A cell shows the transmitting region of the pupil plane, its boundary with one colour per limiting surface, and the
 /// paraxial entrance pupil dashed. All cells have the same scale, x to the right and +y up. The area relative to the
 /// axis and the relative illumination are printed below. If the pupil is far from the paraxial pupil, the cell shows
 /// the pupil only and prints the distance. The output is deterministic.
@@ -42,7 +44,7 @@ PETZVAL_API std::string layout_figure(const Lens& lens, double subject_z, std::s
 /// @param lens        the lens
 /// @param subject_z   subject plane (lens frame, mm); -inf at infinity
 /// @param fields_rad  field angles (rad)
-/// @throws Error      if there are no fields; also under the conditions of pupil_boundary()
+/// @throws Error      if there are no fields; also under the conditions of scene_point()
 PETZVAL_API std::string footprint_figure(const Lens& lens, double subject_z, std::span<const double> fields_rad);
 
 /// Draws relative illumination against field angle at the primary wavelength, with cos^4 for comparison, as SVG text.
@@ -52,5 +54,41 @@ PETZVAL_API std::string footprint_figure(const Lens& lens, double subject_z, std
 /// @param field_rad  largest field angle (rad)
 /// @throws Error     if the field is not positive; also under the conditions of relative_illumination()
 PETZVAL_API std::string illumination_figure(const Lens& lens, double subject_z, double field_rad);
+
+/// Draws a spot diagram as SVG text: one row per field, with a column for all wavelengths and one per wavelength.
+///
+/// All cells have the same scale, shown by a bar; +y is up. The origin of a row is the centroid of all its rays, so
+/// that its cells show lateral colour. Below each cell, the RMS and largest radius about the centroid of its rays are
+/// printed. The dashed Airy circle has the radius 1.22 wavelength N, with the paraxial image-side f-number N. The first
+/// 600 rays of a spot are drawn. The output is deterministic.
+///
+/// @param lens                the lens
+/// @param spots               result of spot_diagram() for this lens
+/// @param wavelength_weights  weights of the compiled wavelengths in the column of all wavelengths; empty: equal
+///                            weights
+/// @throws Error              if there are no spots or a wrong number of spots, or if the weights are negative, all 0
+///                            or of the wrong number
+PETZVAL_API std::string spot_figure(const Lens& lens, std::span<const Spot> spots,
+                                    std::span<const double> wavelength_weights = {});
+
+/// A model in the figure.
+struct ParetoPoint {
+  std::string_view name;
+  double ns_per_ray = 0;
+  double max_um = 0, rms_um = 0;  ///< errors on the film; 0: exact
+  bool on_front = false;          ///< true if no other model is both faster and more accurate
+};
+
+/// Draws accuracy against cost of models as SVG text.
+///
+/// Plots largest and RMS error on the film over ns per ray on logarithmic axes. Models on the Pareto front are filled
+/// and joined by a line. Errors of 0 are drawn at the bottom.
+///
+/// @param title   name of the lens
+/// @param remark  a line about the conditions
+/// @param points  the models
+/// @throws Error  if there are no points, a time is not positive and finite, or an error is negative or not finite
+PETZVAL_API std::string pareto_figure(std::string_view title, std::string_view remark,
+                                      std::span<const ParetoPoint> points);
 
 }  // namespace petzval

@@ -7,11 +7,11 @@
 #include <string_view>
 #include <vector>
 
-#include "petzval/core/export.hpp"
+#include "petzval/core/config.hpp"
 #include "petzval/core/film.hpp"
-#include "petzval/focus/focus_plane.hpp"
+#include "petzval/focus/focus.hpp"
 #include "petzval/focus/focus_point.hpp"
-#include "petzval/focus/image_rays.hpp"
+#include "petzval/lens/lens.hpp"
 #include "petzval/paraxial/ideal_lens.hpp"
 
 namespace petzval {
@@ -23,6 +23,7 @@ struct TiltOptions {
   /// the lens, and returns it unchanged if there is no solution. If z_mm is unset, the film is at the rear focal point
   /// of an ideal lens, or at film_z() of the lens for exact rays.
   Film film = {};
+  std::size_t rays = 256;  ///< exact rays: as in autofocus()
 };
 
 enum class TiltFitStatus : std::uint8_t {
@@ -82,7 +83,7 @@ struct TiltFit {
 PETZVAL_API TiltFit fit_tilt(const IdealLens& lens, std::span<const FocusTarget> targets,
                              const TiltOptions& options = {});
 
-/// Tilts and moves a film with exact rays: minimises the weighted squares of the errors of BundleBlur diameters.
+/// Tilts and moves a film with exact rays: minimises the weighted squares of the errors of ExactBlur diameters.
 ///
 /// Starts from the fit of the thick lens, which also provides outliers, rank and plane of focus, because aberrations
 /// move the film but hardly the plane of focus. As in autofocus(), a blurred target is treated as a sharp target on a
@@ -91,7 +92,6 @@ PETZVAL_API TiltFit fit_tilt(const IdealLens& lens, std::span<const FocusTarget>
 /// counts as sharp.
 ///
 /// Accuracy: target blurs that can all be met are met within a fraction of 1e-4. 24 targets of 256 rays take 1.5 ms.
-PETZVAL_API TiltFit fit_tilt(const ImageRays& lens, std::span<const FocusTarget> targets,
-                             const TiltOptions& options = {});
+PETZVAL_API TiltFit fit_tilt(const Lens& lens, std::span<const FocusTarget> targets, const TiltOptions& options = {});
 
 }  // namespace petzval

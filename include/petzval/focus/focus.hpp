@@ -6,8 +6,11 @@
 #include <string_view>
 #include <vector>
 
-#include "petzval/core/export.hpp"
+#include "petzval/core/config.hpp"
+#include "petzval/core/film.hpp"
+#include "petzval/core/geometry.hpp"
 #include "petzval/lens/lens.hpp"
+#include "petzval/paraxial/ideal_lens.hpp"
 
 namespace petzval {
 
@@ -98,7 +101,7 @@ struct FocusSolution {
 /// @param options   criterion, origin, fields and wavelengths
 /// @return          the film position, or a status that tells why there is no solution
 /// @throws Error    if `distance` is NaN or not positive, or if options are invalid; for exact criteria, also if the
-///                  entrance pupil is at infinity or pupil_boundary() throws
+///                  entrance pupil is at infinity or scene_point() throws
 ///
 /// Accuracy: thin and paraxial to rounding. Exact criteria within 1e-5 mm of infinitely many rays on the axis and 2e-4
 /// mm off axis (double Gauss 100 mm f/2, 10 degrees). The maximum radius of min_max is within 0.2 %.
@@ -191,5 +194,18 @@ PETZVAL_API FocusSolution hyperfocal(const Lens& lens, double blur_mm, const Foc
 /// @return  the growth; nullopt if no film focuses infinity, or if this film lies in the exit pupil
 /// @throws Error if solve_subject() throws
 PETZVAL_API std::optional<double> breathing(const Lens& lens, double film_z, const FocusOptions& options = {});
+
+/// The plane of focus of a film, and the two lines about which the plane rotates.
+struct FocusPlane {
+  Plane plane;  ///< normal.z >= 0
+  /// The plane rotates about `hinge`, in the front focal plane, if the film moves along the axis, and about
+  /// `scheimpflug`, in the front principal plane, if the film rotates about the conjugate line. Both are nullopt for an
+  /// upright film.
+  std::optional<SpaceLine> hinge, scheimpflug;
+};
+/// The plane of focus of a film; nullopt if the plane is at infinity.
+///
+/// @throws Error if film.z_mm is not set
+PETZVAL_API std::optional<FocusPlane> focus_plane(const IdealLens& lens, const Film& film);
 
 }  // namespace petzval

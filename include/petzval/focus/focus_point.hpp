@@ -11,7 +11,7 @@
 #include <variant>
 #include <vector>
 
-#include "petzval/core/export.hpp"
+#include "petzval/core/config.hpp"
 #include "petzval/core/film.hpp"
 #include "petzval/paraxial/ideal_lens.hpp"
 

@@ -5,7 +5,7 @@
 #include <string>
 
 #include "petzval/analysis/lens_metadata.hpp"
-#include "petzval/core/export.hpp"
+#include "petzval/core/config.hpp"
 #include "petzval/core/film.hpp"
 #include "petzval/lens/lens.hpp"
 

@@ -4,7 +4,7 @@
 #include <optional>
 #include <string>
 
-#include "petzval/core/export.hpp"
+#include "petzval/core/config.hpp"
 #include "petzval/core/film.hpp"
 
 namespace petzval {

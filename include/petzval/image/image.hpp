@@ -9,10 +9,10 @@
 #include <string>
 #include <vector>
 
+#include "petzval/core/config.hpp"
 #include "petzval/core/error.hpp"
-#include "petzval/core/export.hpp"
 #include "petzval/core/geometry.hpp"
-#include "petzval/iris/iris_weights.hpp"
+#include "petzval/iris/iris.hpp"
 
 namespace petzval {
 

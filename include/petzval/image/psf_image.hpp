@@ -5,7 +5,7 @@
 #include <span>
 
 #include "petzval/analysis/psf.hpp"
-#include "petzval/core/export.hpp"
+#include "petzval/core/config.hpp"
 #include "petzval/image/image.hpp"
 
 namespace petzval {

@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <optional>
 
-#include "petzval/core/version.hpp"
+#include "petzval/core/config.hpp"
 
 namespace petzval {
 

@@ -4,8 +4,7 @@
 #include <cstddef>
 #include <vector>
 
-#include "petzval/core/export.hpp"
-#include "petzval/core/version.hpp"
+#include "petzval/core/config.hpp"
 #include "petzval/lens/lens.hpp"
 #include "petzval/lens/wavelength.hpp"
 

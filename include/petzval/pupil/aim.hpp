@@ -6,13 +6,32 @@
 #include <limits>
 #include <string_view>
 
-#include "petzval/core/export.hpp"
+#include "petzval/core/config.hpp"
 #include "petzval/core/ray.hpp"
 #include "petzval/lens/lens.hpp"
 #include "petzval/lens/wavelength.hpp"
-#include "petzval/pupil/pupil_plane.hpp"
+#include "petzval/paraxial/ideal_lens.hpp"
 
 namespace petzval {
+
+/// A scene point by its field angle, seen from the centre of the paraxial entrance pupil.
+///
+/// A field of +10 degrees lies towards +y; a lens with an inverted image forms its image at negative y. The entrance
+/// pupil is taken at the primary wavelength in the meridian y, so that a point is the same for every wavelength. At
+/// fields of 90 degrees and more, the plane of a point at a finite distance lies behind the pupil.
+struct FieldPoint {
+  double field_rad = 0;    ///< angle from the axis, within 180 degrees
+  double z = 0;            ///< plane of the point, lens frame, mm; -inf: infinity
+  double azimuth_rad = 0;  ///< from +y towards +x
+};
+
+/// The position of a scene point, or the direction towards it if it is at infinity.
+///
+/// @throws Error  if the field is beyond 180 degrees or not finite; if the entrance pupil is at infinity (an
+///                object-space telecentric lens has no field angles); if the point is not in front of the lens: in the
+///                plane of the entrance pupil, in or behind the first surface, or in a plane that the line of the field
+///                misses
+PETZVAL_API ScenePoint scene_point(const Lens& lens, const FieldPoint& point);
 
 /// Result of the search for a ray.
 enum class AimStatus : std::uint8_t {
@@ -24,16 +43,11 @@ enum class AimStatus : std::uint8_t {
 /// "converged", "vignetted" or "no_ray".
 PETZVAL_API std::string_view name(AimStatus status) noexcept;
 
-/// A point of the aperture stop in units of its semi-diameter: (0, 0) is the centre, the unit circle the rim.
-struct StopPoint {
-  double x = 0, y = 0;
-};
-
 /// A ray from a scene point to a target on the stop, traced through the lens unless the status is no_ray.
 struct AimedRay {
   AimStatus status = AimStatus::no_ray;
   int surface = -1;         ///< vignetted: the surface that blocks the ray
-  Ray<double> ray{};        ///< in object space; the origin is the point nearest to the centre of the PupilPlane
+  Ray<double> ray{};        ///< in object space; the origin is near the centre of the entrance pupil
   TracedRay<double> end{};  ///< behind the lens, traced without clear apertures
   /// Distance of the traced ray from the target on the stop, in stop semi-diameters.
   double residual = std::numeric_limits<double>::infinity();
@@ -47,13 +61,17 @@ struct AimedRay {
 /// meridian of the field and refined by Newton's iteration with exact derivatives. Without a marked stop, the surface
 /// that limits the axial beam is the stop (pupils().stop). A stop of radius 0 consists of its centre.
 ///
-/// @throws Error  if PupilPlane does, if no surface limits the beam, or if the wavelength is not compiled
+/// @param lens        the lens
+/// @param point       the scene point
+/// @param target      position on the stop in units of its semi-diameter: (0, 0) is the centre, the unit circle the rim
+/// @param wavelength  a compiled wavelength
+/// @throws Error  if scene_point() does, if no surface limits the beam, or if the wavelength is not compiled
 ///
 /// Accuracy: residual <= 1e-12; at f/64, with a fisheye whose front is 300 times as large as its stop, 3e-12
 /// (tests/pupil/aim_test.cpp: every lens of data/ to its declared edge, 110 degrees, near and far objects, f/22). Rays
 /// that graze a surface far outside its rim: 1e-7. If the stop is smaller than a thousandth of the lens: 1e-9 of the
 /// lens.
-PETZVAL_API AimedRay aim(const Lens& lens, const FieldPoint& point, const StopPoint& target,
+PETZVAL_API AimedRay aim(const Lens& lens, const FieldPoint& point, const Vec2<double>& target,
                          Wavelength wavelength = {});
 
 /// The chief ray of a scene point: aims at the centre of the stop.

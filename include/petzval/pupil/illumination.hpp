@@ -4,18 +4,18 @@
 #include <cstddef>
 #include <optional>
 
-#include "petzval/core/export.hpp"
+#include "petzval/core/config.hpp"
 #include "petzval/core/film.hpp"
 #include "petzval/lens/lens.hpp"
 #include "petzval/lens/wavelength.hpp"
-#include "petzval/pupil/pupil_plane.hpp"
+#include "petzval/pupil/aim.hpp"
 
 namespace petzval {
 
 /// Irradiance of the film at a point for a uniform scene of radiance 1 (sr): n'^2 times the projected solid angle in
-/// which the point sees the scene through its pupil (pupil_boundary()).
+/// which the point sees the scene through its vignetted pupil.
 ///
-/// @throws Error  if exit_pupil_boundary() does
+/// @throws Error  if the point is not finite or the film lies in the plane of the last vertex
 ///
 /// Accuracy: 5e-4 for stops of at least 1e-6 mm (tests/pupil compares every lens of data/ with rays in all directions);
 /// a stop too small for rays counts as closed. 5 % if the light travels along the film, outside a lens that almost
@@ -25,7 +25,7 @@ PETZVAL_API double film_irradiance(const Lens& lens, const FilmPoint& point, Wav
 /// Irradiance at the film point of a scene point's chief ray, relative to the axis: natural and optical vignetting,
 /// with distortion and pupil aberration. nullopt if the axis is dark or no chief ray reaches the film.
 ///
-/// @throws Error  if PupilPlane does, for the scene point or the film
+/// @throws Error  if scene_point() does, or the film lies in the plane of the last vertex
 PETZVAL_API std::optional<double> relative_illumination(const Lens& lens, const FieldPoint& point,
                                                         Wavelength wavelength = {});
 

@@ -7,8 +7,7 @@
 #include <span>
 #include <string_view>
 
-#include "petzval/core/export.hpp"
-#include "petzval/core/instruction_set.hpp"
+#include "petzval/core/config.hpp"
 #include "petzval/core/ray.hpp"
 #include "petzval/lens/lens.hpp"
 #include "petzval/lens/wavelength.hpp"
@@ -65,7 +64,6 @@ struct BatchOptions {
   RayWavelengths wavelengths = {};
   bool apertures = true;  ///< true: clear apertures and the iris clip rays
   Arithmetic arithmetic = Arithmetic::fast;
-  InstructionSet instruction_set = InstructionSet::avx512;  ///< widest set to use, if supported
 };
 
 /// Traces N rays (double or float) through the whole lens, in blocks of 64 on the lanes of the processor.

@@ -4,43 +4,28 @@
 #include <cstddef>
 #include <memory>
 #include <optional>
-#include <vector>
+#include <span>
 
-#include "petzval/core/export.hpp"
+#include "petzval/core/config.hpp"
 #include "petzval/core/film.hpp"
+#include "petzval/focus/autofocus.hpp"
 #include "petzval/lens/lens.hpp"
 #include "petzval/paraxial/ideal_lens.hpp"
-#include "petzval/pupil/ray_bundle.hpp"
+#include "pupil/ray_bundle.hpp"
 
 namespace petzval {
 
-/// The blur of a bundle of exact rays on a film.
-struct BundleBlur {
-  FilmPoint centroid;
-  double rms_radius = 0;      ///< RMS distance from the centroid, mm
-  double largest_radius = 0;  ///< largest distance from the centroid, mm
-  /// Diameter of the uniform disc with the same RMS radius, 2 sqrt(2) rms_radius. Negative, as in signed_blur(), if the
-  /// rays meet behind the film; positive if defocus causes less than a tenth of the diameter.
-  double signed_diameter = 0;
-};
 /// The blur of a bundle on a film; nullopt if the bundle is empty.
 ///
 /// Also nullopt if the rays do not all cross the film from the same side.
 ///
 /// @throws Error if film.z_mm is not set, or if the bundle has no slopes
-PETZVAL_API std::optional<BundleBlur> blur_on(const RayBundle& bundle, const Film& film);
+PETZVAL_API std::optional<ExactBlur> blur_on(const RayBundle& bundle, const Film& film);
 
 /// Ray bundles from scene points through a lens, at the primary wavelength. Immutable, thread-safe, cheap to copy.
 ///
 /// Setup for a lens and a film takes milliseconds, a bundle some microseconds. Rays are distributed uniformly over the
 /// pupil as seen from the scene point.
-///
-/// Accuracy, for lenses of revolution (tests/focus/image_rays_test.cpp): compared with infinitely many rays, RMS radii
-/// out of focus are within 1.5 % for 256 rays and 1 % for 1024. On the sharpest film, nine of ten points of the lenses
-/// of data/lenses are within 2, 1.5 and 0.4 % for 256, 1024 and 4096 rays, and all points within 7, 5 and 2 %.
-///
-/// Limitations: with cylinders the error of an RMS radius may be a fifth. The largest radius of a bundle is up to 40 %
-/// below the radius at the edge of the pupil.
 class PETZVAL_API ImageRays {
  public:
   /// Copies. A move also copies, so that no ImageRays is ever empty.
@@ -66,5 +51,18 @@ class PETZVAL_API ImageRays {
   struct Data;
   std::shared_ptr<const Data> data_;
 };
+
+/// The rays for points on a film and around it: at most `rays` from each point, fewer (at least 64) if all points have
+/// more than 2^22.
+///
+/// @throws Error  if the constructor of ImageRays does
+PETZVAL_API ImageRays image_rays(const Lens& lens, const Film& film, std::span<const ScenePoint> points,
+                                 std::size_t rays);
+PETZVAL_API ImageRays image_rays(const Lens& lens, const Film& film, std::span<const FocusTarget> targets,
+                                 std::size_t rays);
+
+/// autofocus() with rays that are set up already.
+PETZVAL_API Autofocus autofocus(const ImageRays& lens, std::span<const FocusTarget> targets, const Film& film = {},
+                                FocusCriterion criterion = FocusCriterion::min_rms);
 
 }  // namespace petzval

@@ -3,14 +3,14 @@
 
 #include <utility>
 
-#include "petzval/camera/ray_model.hpp"
-#include "petzval/polynomial/ray_polynomial.hpp"
+#include "camera/ray_model.hpp"
+#include "polynomial/ray_polynomial.hpp"
 
 namespace petzval {
 
 /// A RayModel of fitted polynomials, for example from a file, with pupils of the same area as the real pupils.
 ///
-///     const Camera camera(lens, film, AnyRayModel(PolynomialModel(
+///     const Camera camera = camera_with(lens, film, AnyRayModel(PolynomialModel(
 ///         read_ray_polynomial(path), FilmPupilTable::equal_area(lens, upright_radius(lens, film)))));
 class PolynomialModel {
  public:

@@ -8,13 +8,14 @@
 #include <type_traits>
 #include <utility>
 
+#include "petzval/camera/camera.hpp"
 #include "petzval/camera/model_kind.hpp"
-#include "petzval/core/export.hpp"
+#include "petzval/core/config.hpp"
 #include "petzval/core/film.hpp"
 #include "petzval/core/ray.hpp"
 #include "petzval/lens/wavelength.hpp"
-#include "petzval/pupil_table/film_pupil_table.hpp"
-#include "petzval/pupil_table/two_plane_rays.hpp"
+#include "pupil_table/film_pupil_table.hpp"
+#include "pupil_table/two_plane_rays.hpp"
 
 namespace petzval {
 
@@ -69,7 +70,7 @@ PETZVAL_API double upright_radius(const Lens& lens, const Film& film, ModelKind 
 /// Any RayModel, type-erased for a Camera.
 ///
 ///     struct MyModel { ... };
-///     const Camera camera(lens, film, AnyRayModel(MyModel(lens, upright_radius(lens, film))));
+///     const Camera camera = camera_with(lens, film, AnyRayModel(MyModel(lens, upright_radius(lens, film))));
 ///
 /// Immutable, cheap to copy (copies share the model), thread-safe. One virtual call per batch.
 class AnyRayModel {
@@ -192,5 +193,15 @@ class AnyRayModel {
 
   std::shared_ptr<const Interface> model_;
 };
+
+/// A camera with a given model: a model of the caller, or polynomials from a file.
+///
+/// @throws Error  if the constructor of Camera does; if the model has other wavelengths or another film position; if
+/// its
+///                pupils or polynomials end within upright_radius(); if the number of blades, lens_ratio or
+///                rate_of_change differ from the default, because the pupils of a given model cannot follow them
+PETZVAL_API Camera camera_with(const Lens& lens, const Film& film, const AnyRayModel& model,
+                               Normalisation normalisation = Normalisation::irradiance,
+                               const BokehControls& bokeh = {});
 
 }  // namespace petzval

@@ -4,25 +4,14 @@
 #include <array>
 #include <span>
 
-#include "petzval/core/export.hpp"
+#include "petzval/core/config.hpp"
 #include "petzval/core/film.hpp"
 #include "petzval/core/ray.hpp"
-#include "petzval/core/version.hpp"
 #include "petzval/lens/lens.hpp"
+#include "petzval/pupil/aim.hpp"
 #include "petzval/trace/trace.hpp"
 
 namespace petzval {
-
-/// A scene point by its field angle, seen from the centre of the paraxial entrance pupil.
-///
-/// A field of +10 degrees lies towards +y; a lens with an inverted image forms its image at negative y. The entrance
-/// pupil is taken at the primary wavelength in the meridian y, so that a point is the same for every wavelength. At
-/// fields of 90 degrees and more, the plane of a point at a finite distance lies behind the pupil.
-struct FieldPoint {
-  double field_rad = 0;    ///< angle from the axis, within 180 degrees
-  double z = 0;            ///< plane of the point, lens frame, mm; -inf: infinity
-  double azimuth_rad = 0;  ///< from +y towards +x
-};
 
 /// The plane whose points (x, y) parametrise the rays of a scene or film point.
 ///
@@ -34,9 +23,7 @@ class PETZVAL_API PupilPlane {
  public:
   /// The plane for a scene point.
   ///
-  /// @throws Error  if the field is beyond 180 degrees or not finite; if the entrance pupil is at infinity (an
-  ///                object-space telecentric lens has no field angles); if the point is not in front of the lens: in
-  ///                the pupil plane, in or behind the first surface, or in a plane that the line of the field misses
+  /// @throws Error  if scene_point() does
   PupilPlane(const Lens& lens, const FieldPoint& point);
 
   /// The plane for a film point.

@@ -4,12 +4,14 @@
 #include <cstddef>
 #include <span>
 #include <string>
+#include <vector>
 
-#include "petzval/core/export.hpp"
+#include "petzval/camera/camera.hpp"
+#include "petzval/core/config.hpp"
 
 namespace petzval {
 
-/// Layout of Camera::tables(): one array of floats, ready to be copied to a GPU. Lens frame, mm.
+/// Layout of camera_tables(): one array of floats, ready to be copied to a GPU. Lens frame, mm.
 ///
 /// The array begins with head_size numbers. Counts, kinds and the positions of the lists are whole numbers.
 struct CameraTables {
@@ -67,12 +69,18 @@ struct CameraTables {
   };
   static constexpr std::size_t surface_size = 9 + 39;
 
-  /// Checks tables read from a file (read_floats() in io/write_file.hpp).
+  /// Checks tables read from a file (read_floats()).
   ///
   /// @param tables  the array
   /// @param where   name of the source, which begins the message
   /// @throws Error  if the format differs or a list has the wrong length
   PETZVAL_API static void check(std::span<const float> tables, const std::string& where);
 };
+
+/// The film side of a camera as an array of floats, for sampling on a GPU; CameraTables describes the layout.
+///
+/// @throws Error  if the film is tilted or travels, if the camera has weights of the pupil, a focal surface or an
+///                expressive lens, or if the model is custom
+PETZVAL_API std::vector<float> camera_tables(const Camera& camera);
 
 }  // namespace petzval

@@ -8,13 +8,13 @@
 #include <string>
 #include <vector>
 
-#include "petzval/core/export.hpp"
+#include "petzval/core/config.hpp"
 #include "petzval/core/ray.hpp"
 #include "petzval/lens/lens.hpp"
 #include "petzval/lens/wavelength.hpp"
-#include "petzval/pupil_table/film_pupil_table.hpp"
-#include "petzval/pupil_table/two_plane_rays.hpp"
 #include "petzval/trace/trace.hpp"
+#include "pupil_table/film_pupil_table.hpp"
+#include "pupil_table/two_plane_rays.hpp"
 
 namespace petzval {
 

@@ -5,9 +5,9 @@
 #include <cstdint>
 #include <vector>
 
-#include "petzval/core/export.hpp"
+#include "petzval/core/config.hpp"
 #include "petzval/lens/lens.hpp"
-#include "petzval/pupil/pupil_boundary.hpp"
+#include "pupil/pupil_boundary.hpp"
 
 namespace petzval {
 

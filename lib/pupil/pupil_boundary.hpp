@@ -7,11 +7,11 @@
 #include <span>
 #include <vector>
 
-#include "petzval/core/export.hpp"
+#include "petzval/core/config.hpp"
 #include "petzval/core/ray.hpp"
 #include "petzval/lens/lens.hpp"
 #include "petzval/lens/wavelength.hpp"
-#include "petzval/pupil/pupil_plane.hpp"
+#include "pupil/pupil_plane.hpp"
 
 namespace petzval {
 

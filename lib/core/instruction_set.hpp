@@ -5,7 +5,7 @@
 #include <span>
 #include <string_view>
 
-#include "petzval/core/export.hpp"
+#include "petzval/core/config.hpp"
 
 namespace petzval {
 
@@ -22,5 +22,10 @@ PETZVAL_API std::string_view name(InstructionSet set) noexcept;
 /// bits on every processor and from every compiler, at about half the speed. Wider sets round some results differently;
 /// reproducible batches (trace.hpp) and single calls have the same bits with every set.
 PETZVAL_API std::span<const InstructionSet> instruction_sets() noexcept;
+
+/// The widest set that batches traced by the calling thread use.
+PETZVAL_API InstructionSet batch_instruction_set() noexcept;
+/// Limits the batches of the calling thread to a set, for tests and benchmarks. Returns the previous limit.
+PETZVAL_API InstructionSet limit_batches(InstructionSet widest) noexcept;
 
 }  // namespace petzval

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "petzval/io/write_file.hpp"
+#include "petzval/core/files.hpp"
 
 #include <fcntl.h>
 #include <sys/stat.h>
@@ -22,7 +22,6 @@
 
 #include "core/open_file.hpp"
 #include "petzval/core/error.hpp"
-#include "petzval/core/read_file.hpp"
 
 namespace petzval {
 namespace {

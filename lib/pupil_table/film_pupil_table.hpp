@@ -8,14 +8,14 @@
 #include <span>
 #include <vector>
 
-#include "petzval/core/export.hpp"
+#include "petzval/core/config.hpp"
 #include "petzval/core/film.hpp"
 #include "petzval/core/geometry.hpp"
 #include "petzval/iris/iris.hpp"
 #include "petzval/lens/lens.hpp"
 #include "petzval/lens/wavelength.hpp"
-#include "petzval/pupil/pupil_plane.hpp"
-#include "petzval/pupil_table/two_plane_rays.hpp"
+#include "pupil/pupil_plane.hpp"
+#include "pupil_table/two_plane_rays.hpp"
 
 namespace petzval {
 

@@ -1,0 +1,106 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "petzval/analysis/distortion.hpp"
+#include "petzval/analysis/lens_metadata.hpp"
+#include "petzval/analysis/psf_set.hpp"
+#include "petzval/core/config.hpp"
+#include "petzval/core/fragment_lists.hpp"
+#include "petzval/image/image.hpp"
+
+namespace petzval {
+
+/// The samples of a deep image, with counts of unusual samples.
+struct DeepPicture {
+  FragmentLists lists;
+  /// Number of samples left out because their depth is NaN, negative or 0 (in the pinhole).
+  std::size_t without_depth = 0;
+  /// Number of volume samples (ZBack beyond Z), which are read as surfaces at Z with their alpha.
+  std::size_t volumes = 0;
+};
+
+/// Reads the first part with deep scan lines of an EXR file.
+///
+/// The channels are Z, R, G and B, or Y instead of colours, of type half or float. A defaults to 1. Colours are
+/// premultiplied by alpha, as usual in EXR. Samples keep their order and, with a unit of 1, their exact values.
+///
+/// @param file     the EXR file
+/// @param unit_mm  unit of Z in mm (metres: 1000)
+/// @throws Error   if the file is damaged, has no deep part, no channel Z or no colours, or has more than 2^27 pixels
+///                 or samples; also if the unit is not positive and finite
+///
+/// Limitations: files do not state if Z is the depth along the axis or the distance from the pinhole. axial_depths()
+/// converts distances to depths.
+PETZVAL_API DeepPicture read_deep_exr(const std::filesystem::path& file, double unit_mm = 1);
+
+/// Writes deep scan lines of 32-bit floats with write_file(), lossless.
+///
+/// @throws Error if the lists are empty or inconsistent, or the file cannot be written
+PETZVAL_API void write_deep_exr(const FragmentLists& lists, const std::filesystem::path& file);
+
+/// Adds lens metadata to the attributes of an image.
+///
+/// Uses the standard names of OpenEXR 3.2, which all versions can read: lensMake, lensModel, lensSerialNumber;
+/// nominalFocalLength, pinholeFocalLength, effectiveFocalLength and entrancePupilOffset (mm); aperture (f-number);
+/// tStop; focus (m, from the film; infinite at infinity); sensorOverallDimensions (mm).
+///
+/// @throws Error under the conditions of lens_state()
+PETZVAL_API void add_lens_attributes(ExrPart& part, const LensDistortion& distortion,
+                                     const LensIdentity& identity = {});
+
+/// Converts ST maps to two EXR parts, "undistort" and "redistort", with s in channel R, t in G, and lens metadata.
+///
+/// The display window is the film image. The margin of "undistort" surrounds it like overscan in Nuke, so that Nuke's
+/// STMap accepts a part directly. The attribute `overscan` is the size of the pinhole image relative to the film image.
+PETZVAL_API std::array<ExrPart, 2> to_exr_parts(const StMaps& maps, const LensDistortion& distortion,
+                                                const LensIdentity& identity = {});
+
+/// Writes the ST maps of exact chief rays to an EXR file with the parts of to_exr_parts().
+///
+/// @param lens      the focused lens
+/// @param film      the film, at the focus of the lens
+/// @param identity  names for the metadata
+/// @param file      the EXR file, written with write_file()
+/// @param options   overscan and threads
+/// @throws Error    if the file cannot be written; also under the conditions of LensDistortion and st_maps()
+PETZVAL_API void write_st_map(const Lens& lens, const Film& film, const LensIdentity& identity,
+                              const std::filesystem::path& file, const StMapOptions& options = {});
+
+/// The name of the EXR part of a kernel, for example "10deg_1000mm_587.5618nm_f2.8".
+PETZVAL_API std::string psf_part_name(const PsfSetPoint& point);
+/// Converts a kernel of a PSF set to a part of a multi-part EXR file. The parts of a file may have any order.
+///
+/// Channels: Y (the light, shown by any EXR viewer), hits.x and hits.y. Attributes: the point (field_deg, distance_mm,
+/// wavelength_nm, f_number), the numbers of PsfKernel by their names with anchor_x_mm and anchor_y_mm, `anchor`
+/// (chief_ray or centroid), `diffraction`, and `checksum` over all channels and the other attributes.
+PETZVAL_API ExrPart to_exr_part(const PsfKernel& kernel, const PsfSetPoint& point);
+
+struct PsfPart {
+  PsfSetPoint point;
+  PsfKernel kernel;
+};
+
+/// Converts a part back to its kernel, bit for bit.
+///
+/// @throws Error with the name of the part, if data are missing or have changed
+PETZVAL_API PsfPart from_exr_part(const ExrPart& part);
+
+/// Reads a PSF set from an EXR file.
+///
+/// @throws Error if the file cannot be read, from_exr_part() rejects a part, or a node of the grid has no part
+PETZVAL_API PsfSet read_psf_set(const std::filesystem::path& file);
+
+/// Builds a PSF set from parts that have already been read, for programs that need further attributes of the parts.
+///
+/// @param parts   the parts of a file
+/// @param file    file name for error messages
+/// @throws Error  under the conditions of read_psf_set()
+PETZVAL_API PsfSet psf_set_of(std::vector<ExrPart> parts, const std::filesystem::path& file);
+
+}  // namespace petzval
