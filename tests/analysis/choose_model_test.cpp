@@ -13,6 +13,7 @@
 #include "../data_lenses.hpp"
 #include "../expect_error.hpp"
 #include "../message.hpp"
+#include "analysis/model_errors.hpp"
 #include "camera/make_model.hpp"
 #include "petzval/camera/camera.hpp"
 #include "petzval/core/error.hpp"

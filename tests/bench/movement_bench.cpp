@@ -11,6 +11,7 @@
 #include <string>
 #include <vector>
 
+#include "fit/fit_to_rays.hpp"
 #include "petzval/core/geometry.hpp"
 #include "petzval/fit/tilt_fit.hpp"
 #include "petzval/focus/focus_point.hpp"

@@ -384,7 +384,8 @@ TEST(AnyWavelengthOf, ModelsByPositionAcceptOnlyCompiledWavelengths) {
   const FilmPupilTable pupils = FilmPupilTable::equal_area(lens, upright_radius(lens, film));
   const PolynomialModel model(RayPolynomial::fit(lens, pupils, 5), pupils);
   static_assert(RayModel<ByPosition>);
-  const Camera any(lens, film, AnyRayModel(model)), own(lens, film, AnyRayModel(ByPosition(model)));
+  const Camera any = camera_with(lens, film, AnyRayModel(model)),
+               own = camera_with(lens, film, AnyRayModel(ByPosition(model)));
   EXPECT_TRUE(any.sample({.film = {}, .pupil_u = 0.5, .wavelength = Wavelength::nm(511)}));
   EXPECT_EQ(own.sample({.film = {}, .pupil_u = 0.5, .wavelength = Wavelength::nm(511)}).fate,
             RayFate::outside_spectrum);

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "camera/camera_tables.hpp"
 #include "petzval/camera/bokeh.hpp"
 
 #include <gtest/gtest.h>

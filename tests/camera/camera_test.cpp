@@ -432,7 +432,9 @@ TEST(Camera, RefusesInvalidFilms) {
 
 TEST(Camera, RefusesModelsOfAnotherLensOrFilm) {
   const auto camera = [](const Lens& lens, const Lens& modelled, double radius) {
-    return [&lens, model = camera_detail::make_model(ModelKind::thick, modelled, radius)] { Camera(lens, {}, model); };
+    return [&lens, model = camera_detail::make_model(ModelKind::thick, modelled, radius)] {
+      camera_with(lens, {}, model);
+    };
   };
   const Lens lens = focused("tessar_100mm_f2.8"), elsewhere = testing::data_lens("tessar_100mm_f2.8");
   EXPECT_NO_THROW(camera(lens, lens, Film{}.radius_mm())());

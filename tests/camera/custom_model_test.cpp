@@ -143,7 +143,8 @@ class CustomModel : public ::testing::TestWithParam<Film> {
       std::max(upright_radius(lens_, GetParam()), upright_radius(lens_, GetParam(), ModelKind::thin));
   const AnyRayModel thin_ = camera_detail::make_model(ModelKind::thin, lens_, radius_);
   const Camera built_in_{lens_, GetParam(), thin_};
-  const Camera own_{lens_, GetParam(), AnyRayModel(OwnThinLens(lens_, testing::cardinal_points(thin_), radius_))};
+  const Camera own_ =
+      camera_with(lens_, GetParam(), AnyRayModel(OwnThinLens(lens_, testing::cardinal_points(thin_), radius_)));
 };
 
 TEST_P(CustomModel, SamplesEqualBuiltInModel) {
@@ -230,7 +231,7 @@ TEST(OwnModel, RefusesPolynomialsOfAnotherLensOrFilm) {
   const auto camera = [&](const Lens& fitted, double to) {
     const RayPolynomial polynomial = RayPolynomial::fit(fitted, FilmPupilTable::equal_area(fitted, to), 5);
     const PolynomialModel model(polynomial, FilmPupilTable::equal_area(lens, radius));
-    return [=] { Camera(lens, film, AnyRayModel(model)); };
+    return [=] { camera_with(lens, film, AnyRayModel(model)); };
   };
   EXPECT_NO_THROW(camera(lens, radius)());
   const Lens near = focused({587.5618, 450, 650}, 2000);
@@ -242,7 +243,7 @@ TEST(OwnModel, RefusesPolynomialsOfAnotherLensOrFilm) {
 TEST(OwnModel, MayClipByItself) {
   const Lens lens = testing::data_lens("tessar_100mm_f2.8");
   const Film film{.width_mm = 20, .height_mm = 20};
-  const Camera camera(lens, film, AnyRayModel(Hole(lens.film_z(), film.radius_mm())));
+  const Camera camera = camera_with(lens, film, AnyRayModel(Hole(lens.film_z(), film.radius_mm())));
   // The irradiance of a small hole of 4 mm^2: area cos^4 / 50^2.
   const double square = 2500.0 / (2500 + 100);
   EXPECT_NEAR(mean_weight(camera) / (4 * square * square / 2500), 1, 3e-3);
@@ -259,7 +260,7 @@ TEST(OwnModel, AcceptsATiltedFilm) {
   const double tilt = 0.3;
   const Lens lens = testing::data_lens("tessar_100mm_f2.8");
   const Film film{.width_mm = 20, .height_mm = 20, .tilt_rad = tilt};
-  const Camera camera(lens, film, AnyRayModel(Hole(lens.film_z(), 30)));
+  const Camera camera = camera_with(lens, film, AnyRayModel(Hole(lens.film_z(), 30)));
   // The irradiance of the small hole at the film point (6, -8 cos, 50 - 8 sin) with normal (0, -sin, cos).
   const double y = -8 * std::cos(tilt), z = 50 - 8 * std::sin(tilt), length2 = 36 + y * y + z * z;
   const double at_film = y * -std::sin(tilt) + z * std::cos(tilt);

@@ -13,6 +13,7 @@
 
 #include "../data_lenses.hpp"
 #include "../expect_error.hpp"
+#include "camera/ray_model.hpp"
 #include "camera_parts.hpp"
 #include "camera_samples.hpp"
 #include "core/low_discrepancy.hpp"
@@ -237,7 +238,7 @@ TEST(TiltedFilm, RefusesFilmsInsideTheLens) {
   const Lens lens = testing::data_lens("tessar_100mm_f2.8");
   const Film film = tilted_by(wide, 20, 0);
   const AnyRayModel small = camera_detail::make_model(ModelKind::thick, lens, film.radius_mm());
-  expect_error([&] { Camera(lens, film, small); }, {"model", film.radius_mm()});
+  expect_error([&] { camera_with(lens, film, small); }, {"model", film.radius_mm()});
 }
 
 TEST(TiltedFilm, PartsOfACameraRefuseTheSameFilms) {

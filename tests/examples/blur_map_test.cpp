@@ -102,12 +102,12 @@ TEST(BlurMap, IsUprightAndSigned) {
 
 TEST(BlurMap, ExactRaysAgreeWithTheThickLensStoppedDown) {
   const petzval::Lens lens = petzval::with_f_number(petzval::testing::data_lens("double_gauss_100mm_f2_28deg"), 32);
-  const petzval::ImageRays rays(lens, 30, 96);
+  const petzval::IdealLens thick = petzval::thick_lens(lens);
   const auto places = places_of(table);
-  const PointScene scene(rays.ideal(), places);
-  const petzval::Film film = examples::with_pixels({.z_mm = rays.ideal().image(places[2])->position.z}, 540);
-  const auto exact = examples::blur_map(film, scene, rays.ideal(), &rays, 2);
-  const auto ideal = examples::blur_map(film, scene, rays.ideal(), nullptr, 2);
+  const PointScene scene(thick, places);
+  const petzval::Film film = examples::with_pixels({.z_mm = thick.image(places[2])->position.z}, 540);
+  const auto exact = examples::blur_map(film, scene, thick, &lens, 2);
+  const auto ideal = examples::blur_map(film, scene, thick, nullptr, 2);
   double middle = 0, all = 0, largest = 0;
   for (int y = 0; y < exact.height; ++y) {
     for (int x = 0; x < exact.width; ++x) {

@@ -7,8 +7,8 @@
 
 #include "../data_lenses.hpp"
 #include "../film_at.hpp"
+#include "fit/fit_to_rays.hpp"
 #include "petzval/core/geometry.hpp"
-#include "petzval/fit/tilt_fit.hpp"
 #include "petzval/focus/autofocus.hpp"
 #include "petzval/pupil/f_number.hpp"
 #include "tilt_scene.hpp"

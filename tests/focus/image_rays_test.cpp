@@ -34,10 +34,10 @@ Vec3<double> place_at(const Lens& lens, double field_deg, double z, double azimu
   return {height * std::sin(azimuth), height * std::cos(azimuth), z};
 }
 
-BundleBlur blur(const ImageRays& bundles, const Vec3<double>& place, const Film& film) {
+ExactBlur blur(const ImageRays& bundles, const Vec3<double>& place, const Film& film) {
   const auto result = blur_on(bundles.bundle({place, false}), film);
   EXPECT_TRUE(result);
-  return result.value_or(BundleBlur{});
+  return result.value_or(ExactBlur{});
 }
 
 TEST(ImageRays, StoppedDownBlursEqualTheThickLens) {
@@ -81,7 +81,7 @@ TEST(ImageRays, SpotsEqualBoundaries) {
           const PupilSampler pupil(pupil_boundary(lens, {degrees * degree, seen_at}, lens.primary_wavelength()));
           const RayBundle hits = trace_bundle(with_film(lens, film_z), pupil, 1 << 16);
           const SpotSize expected = spot_size(hits.x, hits.y);
-          const BundleBlur size = blur(bundles, place_at(lens, degrees, -distance), film_at(film_z));
+          const ExactBlur size = blur(bundles, place_at(lens, degrees, -distance), film_at(film_z));
           EXPECT_NEAR(size.rms_radius, expected.rms_radius, relative * expected.rms_radius);
           EXPECT_NEAR(size.centroid.x, 0, 0.02 * expected.rms_radius);
           EXPECT_NEAR(size.centroid.y, expected.centroid.y, 0.02 * expected.rms_radius);
@@ -115,11 +115,11 @@ TEST(ImageRays, RotateWithTheirPoints) {
   const Lens lens = data_lens("double_gauss_100mm_f2.0");
   const ImageRays bundles(lens, 22);
   const Film film = film_at(lens.film_z());
-  const BundleBlur first = blur(bundles, place_at(lens, 10, -1500), film);
+  const ExactBlur first = blur(bundles, place_at(lens, 10, -1500), film);
   const double height = std::hypot(first.centroid.x, first.centroid.y);
   for (int turn = 1; turn < 16; ++turn) {
     const double azimuth = turn * std::numbers::pi / 8;
-    const BundleBlur turned = blur(bundles, place_at(lens, 10, -1500, azimuth), film);
+    const ExactBlur turned = blur(bundles, place_at(lens, 10, -1500, azimuth), film);
     EXPECT_NEAR(turned.rms_radius, first.rms_radius, 1e-9);
     EXPECT_NEAR(turned.centroid.x, -height * std::sin(azimuth), 0.02 * first.rms_radius);
     EXPECT_NEAR(turned.centroid.y, -height * std::cos(azimuth), 0.02 * first.rms_radius);
@@ -131,9 +131,9 @@ TEST(ImageRays, AreMirroredWithTheirPoints) {
   const ImageRays bundles(lens, 12);
   const Film film = film_at(lens.film_z());
   const Vec3<double> place{200, 100, -1500};
-  const BundleBlur one = blur(bundles, place, film);
+  const ExactBlur one = blur(bundles, place, film);
   for (const auto& [x, y] : {std::pair(-1, 1), std::pair(1, -1), std::pair(-1, -1)}) {
-    const BundleBlur other = blur(bundles, {x * place.x, y * place.y, place.z}, film);
+    const ExactBlur other = blur(bundles, {x * place.x, y * place.y, place.z}, film);
     EXPECT_NEAR(other.centroid.x, x * one.centroid.x, 0.1 * one.rms_radius);
     EXPECT_NEAR(other.centroid.y, y * one.centroid.y, 0.1 * one.rms_radius);
     EXPECT_NEAR(other.rms_radius, one.rms_radius, 0.02 * one.rms_radius);
@@ -188,14 +188,14 @@ TEST(ImageRays, AreRefusedWithoutRaysOrFilm) {
   EXPECT_THROW(ImageRays(data_lens("mirror_newton_200mm_f8"), 10), Error);  // light leaves the lens towards -z
 }
 
-TEST(BundleBlur, RequiresSlopes) {
+TEST(ExactBlur, RequiresSlopes) {
   const Lens lens = data_lens("double_gauss_100mm_f2.0");
   const RayBundle spots = trace_bundle(lens, PupilSampler(pupil_boundary(lens, FieldPoint{.z = -infinity})), 64);
   ASSERT_FALSE(spots.empty());
   EXPECT_THROW(blur_on(spots, film_at(lens.film_z())), Error);
 }
 
-TEST(BundleBlur, TiltedFilmUsesTheHitsInItsPlane) {
+TEST(ExactBlur, TiltedFilmUsesTheHitsInItsPlane) {
   const Lens lens = data_lens("double_gauss_100mm_f2.0");
   const RayBundle bundle = ImageRays(lens, 22).bundle({{150, -250, -1200}, false});
   for (const auto& [tilt, swing] : {std::pair(0.0, 0.0), std::pair(0.2, 0.0), std::pair(-0.15, 0.3)}) {
@@ -219,7 +219,7 @@ TEST(BundleBlur, TiltedFilmUsesTheHitsInItsPlane) {
   }
 }
 
-TEST(BundleBlur, IsPositiveBehindTheFocus) {
+TEST(ExactBlur, IsPositiveBehindTheFocus) {
   const Lens lens = data_lens("double_gauss_100mm_f2.0");
   const RayBundle bundle = ImageRays(lens, 22).bundle({{0, 100, -1200}, false});
   const double film_z = solve_focus(lens, 1200, {.criterion = FocusCriterion::min_rms}).film_z;
@@ -229,7 +229,7 @@ TEST(BundleBlur, IsPositiveBehindTheFocus) {
   }
 }
 
-TEST(BundleBlur, SignIsIndependentOfTheNumberOfRays) {
+TEST(ExactBlur, SignIsIndependentOfTheNumberOfRays) {
   const Lens lens = with_f_number(data_lens("double_gauss_100mm_f2_28deg"), 4);
   const ScenePoint place{{-150, 86, -1100}};
   const RayBundle few = ImageRays(lens, 22, 256).bundle(place), many = ImageRays(lens, 22, 4096).bundle(place);
@@ -243,7 +243,7 @@ TEST(BundleBlur, SignIsIndependentOfTheNumberOfRays) {
   EXPECT_LT(blur_on(few, film_at(sharpest - 0.1))->signed_diameter, 0);
 }
 
-TEST(BundleBlur, IsNulloptOnFilmsParallelToTheRays) {
+TEST(ExactBlur, IsNulloptOnFilmsParallelToTheRays) {
   const RayBundle bundle = ImageRays(data_lens("double_gauss_100mm_f2.0"), 22).bundle({{0, 0, -1200}, false});
   EXPECT_FALSE(blur_on(bundle, film_at(100, std::numbers::pi / 2)));
   EXPECT_FALSE(blur_on(bundle, film_at(nan)));

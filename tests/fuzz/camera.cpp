@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Cameras of any lens, by every ray model, with blades, weights and tilted films.
 #include "petzval/camera/camera.hpp"
+#include "camera/camera_tables.hpp"
 
 #include <array>
 #include <span>

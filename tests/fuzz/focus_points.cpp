@@ -2,6 +2,7 @@
 // Films and focal surfaces fitted to any focus points.
 #include <vector>
 
+#include "fit/fit_to_rays.hpp"
 #include "laws.hpp"
 #include "petzval/camera/focal_surface.hpp"
 #include "petzval/fit/tilt_fit.hpp"
