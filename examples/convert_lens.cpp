@@ -56,7 +56,7 @@ void lose_positions(const Prescription& lens, std::vector<ImportWarning>& losses
   if (lens.configurations.size() > 1) losses.push_back({0, "configurations", "only the first is kept"});
 }
 
-std::vector<ImportWarning> write_text(const petzval::WrittenLens& written, const std::filesystem::path& file) {
+std::vector<ImportWarning> write_text(const petzval::ExportedLens& written, const std::filesystem::path& file) {
   examples::write_text(file, written.text);
   return written.losses;
 }

@@ -150,7 +150,7 @@ petzval::Rgb8Image map_of(const Surface& surface, const Options& options) {
         examples::SurfaceMap{std::move(title), std::move(values), std::move(levels), low, high, {}});
     for (std::size_t i = 0; i < surface.points().size(); ++i) {
       const petzval::FocalPoint& point = surface.points()[i];
-      const petzval::Vec2<double> at = film.raster(point.place);
+      const petzval::Vec2<double> at = film.raster(point.film_point);
       if (point.*fixed) map.points.push_back({at.x, at.y, i + 1});
     }
   };

@@ -33,7 +33,7 @@ namespace {
 using examples::finite_or_null;
 using examples::Json;
 using examples::number;
-using petzval::TargetUse;
+using petzval::TargetStatus;
 using petzval::TiltFit;
 using petzval::TiltFitStatus;
 using Vector = petzval::Vec3<double>;
@@ -51,17 +51,17 @@ struct Options : examples::MovementOptions {
 struct Point {
   petzval::FocusTarget target;
   bool in_picture = true;
-  TargetUse use = TargetUse::used;
+  TargetStatus status = TargetStatus::used;
   double before_mm = none, predicted_mm = none, traced_mm = none;
 
-  bool serves() const { return in_picture && use == TargetUse::used; }
+  bool serves() const { return in_picture && status == TargetStatus::used; }
   /// True if the point is on the scene surface. Outliers are not used for the surface.
-  bool shows() const { return in_picture && (use == TargetUse::used || use == TargetUse::no_weight); }
-  std::string use_name() const { return in_picture ? std::string(petzval::name(use)) : "outside_picture"; }
+  bool shows() const { return in_picture && (status == TargetStatus::used || status == TargetStatus::no_weight); }
+  std::string use_name() const { return in_picture ? std::string(petzval::name(status)) : "outside_picture"; }
   std::string use_in_words() const {
     if (!in_picture) return "left out: outside the picture";
-    const bool extent_alone = use == TargetUse::no_weight && !target.fixes_distance;
-    return extent_alone ? "shown only: it fixes no distance" : examples::in_words(use);
+    const bool extent_alone = status == TargetStatus::no_weight && !target.fixes_distance;
+    return extent_alone ? "shown only: it fixes no distance" : examples::in_words(status);
   }
 };
 
@@ -75,7 +75,7 @@ struct Result {
 std::vector<petzval::ScenePoint> places(const std::vector<Point>& points, bool (Point::*which)() const = nullptr) {
   std::vector<petzval::ScenePoint> result;
   for (const Point& p : points) {
-    if (!which || (p.*which)()) result.push_back(p.target.place);
+    if (!which || (p.*which)()) result.push_back(p.target.point);
   }
   return result;
 }
@@ -110,7 +110,7 @@ petzval::Autofocus focused(const Options& options, Result& result) {
   std::size_t k = 0;
   for (Point& p : result.points) {
     if (!p.in_picture) continue;
-    p.use = focus.blurs[k].use;
+    p.status = focus.blurs[k].status;
     p.before_mm = focus.blurs[k++].blur_mm;
   }
   if (focus.status == petzval::AutofocusStatus::no_targets) give_up(options, result.points);
@@ -121,9 +121,9 @@ petzval::Autofocus focused(const Options& options, Result& result) {
 /// Excludes points outside the picture, if the size of the film is given.
 void leave_out_what_is_beside(const petzval::Film& film, Result& result) {
   for (Point& p : result.points) {
-    if (p.use != TargetUse::used && p.use != TargetUse::no_weight) continue;
+    if (p.status != TargetStatus::used && p.status != TargetStatus::no_weight) continue;
     petzval::FocusPoint point;
-    point.keys.push_back({.anchor = p.target.place});
+    point.keys.push_back({.anchor = p.target.point});
     p.in_picture = !petzval::focus_targets(result.lens.ideal, {&point, 1}, {.film = film}).empty();
   }
 }
@@ -150,7 +150,7 @@ Result solve(const Options& options) {
   std::size_t k = 0;
   for (Point& p : result.points) {
     if (!p.in_picture) continue;
-    p.use = result.after.blurs[k].use;
+    p.status = result.after.blurs[k].status;
     p.predicted_mm = result.after.blurs[k++].blur_mm;
   }
   switch (result.after.status) {
@@ -205,10 +205,9 @@ std::string film_in_words(const petzval::Film& film) {
 
 Json vector(const Vector& v) { return {v.x, v.y, v.z}; }
 
-Json line(const std::optional<petzval::FocusPlane>& focus,
-          std::optional<petzval::SpaceLine> petzval::FocusPlane::*which) {
+Json line(const std::optional<petzval::FocusPlane>& focus, std::optional<petzval::Line3> petzval::FocusPlane::*which) {
   if (!focus || !((*focus).*which)) return nullptr;
-  const petzval::SpaceLine& l = *((*focus).*which);
+  const petzval::Line3& l = *((*focus).*which);
   return {{"point_mm", vector(l.point)}, {"direction", vector(l.direction)}};
 }
 
@@ -263,7 +262,7 @@ std::string to_text(const Result& result, const Options& options) {
   text += result.after.focus ? "plane of focus: normal " + triple(result.after.focus->plane.normal) + ", " +
                                    number(result.after.focus->plane.offset, 8) + " mm from the origin along it\n"
                              : "in focus: infinity\n";
-  const auto add_line = [&](const char* name, const std::optional<petzval::SpaceLine>& l) {
+  const auto add_line = [&](const char* name, const std::optional<petzval::Line3>& l) {
     if (l) text += std::string(name) + " through " + triple(l->point) + " mm along " + triple(l->direction) + "\n";
   };
   if (result.after.focus) {
@@ -286,7 +285,7 @@ double sharp_mm(const petzval::Film& film) { return std::hypot(film.width_mm, fi
 
 std::string side_view(const Result& result) {
   std::vector<petzval::TiltFigurePoint> points;
-  for (const Point& p : result.points) points.push_back({p.target.place, p.serves()});
+  for (const Point& p : result.points) points.push_back({p.target.point, p.serves()});
   const std::string remark = result.lens.conditions + ", " + std::to_string(points.size()) +
                              (points.size() == 1 ? " focus point" : " focus points");
   return petzval::tilt_figure({.title = result.lens.title,
@@ -329,7 +328,7 @@ std::vector<petzval::Rgb8Image> blur_pictures(const Result& result) {
     sheet.points.clear();
     for (const Point& p : result.points) {
       sheet.points.push_back(
-          {examples::on_film(ideal, films[k], p.target.place), k == 0 ? p.before_mm : p.predicted_mm, p.serves()});
+          {examples::on_film(ideal, films[k], p.target.point), k == 0 ? p.before_mm : p.predicted_mm, p.serves()});
     }
     sheets.push_back(examples::draw_blur_sheet(maps[k], films[k], sheet));
   }

@@ -46,14 +46,14 @@ std::vector<petzval::FocalPoint> points_of(const std::filesystem::path& file, co
     }
     petzval::FocalPoint point;
     if (pixel) {
-      point.place = camera.film().point((*pixel)[0], (*pixel)[1]);
+      point.film_point = camera.film().point((*pixel)[0], (*pixel)[1]);
     } else {
       const Vec3<double> position = to_lens({(*world)[0], (*world)[1], (*world)[2]});
       const petzval::Projection seen = camera.project(position);
       if (seen.status == petzval::ProjectionStatus::not_visible) {
         refuse(entry.where + ": world_mm", json["world_mm"], "a point that the camera images on or outside its film");
       }
-      point.place = seen.film;
+      point.film_point = seen.film;
       point.inverse_distance = 1 / (entrance_z - position.z);
     }
     if (json.contains("distance_mm") && json["distance_mm"].is_null()) {

@@ -71,14 +71,14 @@ MovingLens moving_lens(const MovementOptions& options) {
   return result;
 }
 
-const char* in_words(petzval::TargetUse use) {
-  switch (use) {
-    case petzval::TargetUse::used: return "";
-    case petzval::TargetUse::no_weight: return "shown only: its weight is 0";
-    case petzval::TargetUse::not_finite: return "left out: not a number";
-    case petzval::TargetUse::no_image: return "left out: no film can reach its image";
-    case petzval::TargetUse::outlier: return "an outlier: given no weight";
-    case petzval::TargetUse::no_rays: return "left out: no ray of the point passes the lens";
+const char* in_words(petzval::TargetStatus status) {
+  switch (status) {
+    case petzval::TargetStatus::used: return "";
+    case petzval::TargetStatus::no_weight: return "shown only: its weight is 0";
+    case petzval::TargetStatus::not_finite: return "left out: not a number";
+    case petzval::TargetStatus::no_image: return "left out: no film can reach its image";
+    case petzval::TargetStatus::outlier: return "an outlier: given no weight";
+    case petzval::TargetStatus::no_rays: return "left out: no ray of the point passes the lens";
   }
   return "";
 }

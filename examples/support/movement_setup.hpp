@@ -36,6 +36,6 @@ struct MovingLens {
 MovingLens moving_lens(const MovementOptions& options);
 
 /// The reason why a point is not used, in words; empty if the point is used.
-const char* in_words(petzval::TargetUse use);
+const char* in_words(petzval::TargetStatus status);
 
 }  // namespace examples

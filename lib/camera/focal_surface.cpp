@@ -107,7 +107,7 @@ FocalSurface::FocalSurface(const IdealLens& lens, const Film& film, std::span<co
   for (std::size_t i = 0; i < points.size(); ++i) {
     const FocalPoint& point = points[i];
     check(point, nearest, farthest, point_name(i));
-    const WeighedValue with{point.place, 0, point.weight, point.fade};
+    const WeighedValue with{point.film_point, 0, point.weight, point.fade};
     camera_detail::check(with, side, point_name(i));
     const bool counts = point.weight > 0 && point.fade > 0;
     if (!counts) continue;
@@ -151,7 +151,7 @@ FocalSurface::FocalSurface(const IdealLens& lens, const Film& film, std::span<co
     std::vector<WeighedValue> moved = objects;
     for (std::size_t k = 0; k < moved.size(); ++k) {
       const double blur = points[numbers[k]].blur_mm;
-      const double stopped = focus_detail::pupil_scale(extent.at(moved[k].place));
+      const double stopped = focus_detail::pupil_scale(extent.at(moved[k].film_point));
       if (blur != 0) moved[k].value += blur / (per_inverse * stopped);
       if (!(moved[k].value >= farthest && moved[k].value <= nearest)) {
         throw Error(point_name(numbers[k]) + "a blur of " + to_text(blur) +
@@ -232,13 +232,14 @@ std::vector<FocalPoint> focal_points(const IdealLens& lens, const Film& film, st
       throw Error("focal_points: fade " + std::to_string(i) + " = " + to_text(fade) + "; must be 0 to 1");
     }
     const auto target = focus_detail::target_at(lens, points[i], moment);
-    const auto image = target ? lens.image(target->place) : std::nullopt;
+    const auto image = target ? lens.image(target->point) : std::nullopt;
     const auto place = image ? chief_point(*image, film) : std::nullopt;
     if (!place || !(std::abs(place->x) <= farthest_place && std::abs(place->y) <= farthest_place)) continue;
-    FocalPoint point{.place = *place, .blur_mm = target->blur_mm, .extent_stops = target->extent_stops, .fade = fade};
+    FocalPoint point{
+        .film_point = *place, .blur_mm = target->blur_mm, .extent_stops = target->extent_stops, .fade = fade};
     if (target->fixes_distance) {
-      const bool at_infinity = target->place.at_infinity;
-      point.inverse_distance = at_infinity ? 0 : 1 / (lens.pupils.entrance.z - target->place.position.z);
+      const bool at_infinity = target->point.at_infinity;
+      point.inverse_distance = at_infinity ? 0 : 1 / (lens.pupils.entrance.z - target->point.position.z);
       if (!(*point.inverse_distance >= 0 && *point.inverse_distance <= nearest)) continue;
     }
     targets.push_back(*target);

@@ -428,8 +428,8 @@ ImportanceSample SceneSide::sample_distant(const AnyRayModel& model, const Vec3<
   }
   const EntranceSample s = entrance_.sample(point, u, v, wavelength);
   if (!(s.pdf > 0)) return result;
-  result = connection(s.place, direction, infinity, s.pdf / squared(far));
-  const auto& [o, d] = Ray<double>{s.place, direction};
+  result = connection(s.origin, direction, infinity, s.pdf / squared(far));
+  const auto& [o, d] = Ray<double>{s.origin, direction};
   importance(model, 1, {&o.x, &o.y, &o.z, &d.x, &d.y, &d.z}, {.all = wavelength}, &time, &result.importance);
   return result;
 }

@@ -151,7 +151,7 @@ struct LocalFocus::Data {
   /// The film point whose chief ray has a given slope, and its TiltedPlane::nearer_by(); nullopt if the chief ray does
   /// not meet the front of the film.
   struct Seen {
-    FilmPoint place;
+    FilmPoint film_point;
     double nearer = 0;
   };
   std::optional<Seen> seen(const At& at, const Vec2<double>& slope,
@@ -169,7 +169,8 @@ struct LocalFocus::Data {
     const double small = 1e-5 / std::max(glm::length(step), std::numeric_limits<double>::min());
     const auto before = seen(at, slope - step * small, plane), behind = seen(at, slope + step * small, plane);
     if (!before || !behind) return {0, 0};
-    return Vec2<double>{behind->place.x - before->place.x, behind->place.y - before->place.y} / (2 * small);
+    return Vec2<double>{behind->film_point.x - before->film_point.x, behind->film_point.y - before->film_point.y} /
+           (2 * small);
   }
   /// nullopt if the wavelength is not covered.
   std::optional<At> at(Wavelength wavelength) const noexcept {
@@ -359,7 +360,7 @@ LocalFocus::Straight LocalFocus::straighten(const Ray<double>& ray, Wavelength w
   const auto asked = [&](double t) -> std::optional<double> {
     const auto from = data.seen(*at, slope - height * t, plane);
     if (!from) return {};
-    const auto point = data.point(from->place, from->nearer);
+    const auto point = data.point(from->film_point, from->nearer);
     return focus_of(data.rules, at->maps, at->dispersion, point).asked + by_radius;
   };
   const double start = data.rules.primary.d / data.rules.primary.b;
@@ -369,8 +370,8 @@ LocalFocus::Straight LocalFocus::straighten(const Ray<double>& ray, Wavelength w
   const Vec2<double> chief = slope - height * t;
   const auto from = data.seen(*at, chief, plane);
   if (!from) return {};
-  const Vec2<double> nearer_by = plane ? plane->nearer_at(from->place).by : Vec2<double>{0, 0};
-  const FilmPointFocus<Dual> point = data.point(from->place, from->nearer, nearer_by);
+  const Vec2<double> nearer_by = plane ? plane->nearer_at(from->film_point).by : Vec2<double>{0, 0};
+  const FilmPointFocus<Dual> point = data.point(from->film_point, from->nearer, nearer_by);
   const auto focus = focus_of(data.rules, at->maps, at->dispersion, point);
   const double scale = point.scale.a;
   const Vec2<double> straight = height / scale;

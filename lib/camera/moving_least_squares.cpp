@@ -79,8 +79,8 @@ MovingLeastSquares::MovingLeastSquares(const std::string& where, std::span<const
     if (!(alpha >= negligible)) continue;
     shares.push_back(presence(point) / most_present);
     const double soft = (1 - shares.back()) * longest_soft * side * to_scaled_;
-    to.x.push_back(point.place.x * to_scaled_);
-    to.y.push_back(point.place.y * to_scaled_);
+    to.x.push_back(point.film_point.x * to_scaled_);
+    to.y.push_back(point.film_point.y * to_scaled_);
     to.value.push_back(point.value * to_scaled_value_);
     to.alpha.push_back(alpha);
     to.soft2.push_back(soft * soft);

@@ -16,7 +16,7 @@ namespace petzval::camera_detail {
 
 /// A value at a film point.
 struct WeighedValue {
-  FilmPoint place;
+  FilmPoint film_point;
   double value = 0;
   double weight = 1;  ///< 0 or more
   double fade = 1;    ///< 0 (invisible) to 1

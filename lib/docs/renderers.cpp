@@ -116,7 +116,7 @@ void focus_pull(const Lens& lens) {
 
 void tilted_film(const Lens& lens) {
   const std::vector<FocusTarget> floor{
-      {.place = {{-300, -800, -7000}}}, {.place = {{400, -800, -7000}}}, {.place = {{0, -800, -15000}}}};  // mm
+      {.point = {{-300, -800, -7000}}}, {.point = {{400, -800, -7000}}}, {.point = {{0, -800, -15000}}}};  // mm
   const TiltFit fit = fit_tilt(thick_lens(lens), floor, {.film = film});
   if (!fit) throw Error("floor: " + std::string(name(fit.status)));
   const Camera camera(lens, fit.film);
@@ -126,9 +126,9 @@ void tilted_film(const Lens& lens) {
 void focal_surface(const Lens& lens) {
   Film frame = film;
   frame.z_mm = lens.film_z();
-  const std::vector<FocalPoint> points{{.place = {-9, 0}, .inverse_distance = 1 / 1500.0},
-                                       {.place = {9, 2}, .inverse_distance = 1 / 4000.0},
-                                       {.place = {0, -8}, .inverse_distance = 1 / 3000.0, .extent_stops = 2}};
+  const std::vector<FocalPoint> points{{.film_point = {-9, 0}, .inverse_distance = 1 / 1500.0},
+                                       {.film_point = {9, 2}, .inverse_distance = 1 / 4000.0},
+                                       {.film_point = {0, -8}, .inverse_distance = 1 / 3000.0, .extent_stops = 2}};
   const FocalSurface surface(thick_lens(lens), frame, points);
   const Camera camera(lens, frame, {.model = ModelKind::thin_two_disc, .focal_surface = surface});
   std::cout << "steepness " << camera.focal_steepness().steepness << '\n';

@@ -119,7 +119,7 @@ class FocalSurfaceFigure {
     for (std::size_t i = 0; i < view_.points.size(); ++i) {
       const FocalPoint& point = view_.points[i];
       if (!(point.inverse_distance.value_or(0) > 0)) continue;
-      panel.mark(at(point.place, 1 / *point.inverse_distance, across_x), i + 1, point.blur_mm == 0, 4);
+      panel.mark(at(point.film_point, 1 / *point.inverse_distance, across_x), i + 1, point.blur_mm == 0, 4);
     }
   }
 

@@ -69,7 +69,7 @@ class TiltFigure {
       up_ = {n.x / lean, n.y / lean, 0};
       if (std::abs(up_.y) >= std::abs(up_.x) ? up_.y < 0 : up_.x < 0) up_ = -up_;
     }
-    for (const TiltFigurePoint& p : view.points) images_.push_back(view.lens.image(p.place));
+    for (const TiltFigurePoint& p : view.points) images_.push_back(view.lens.image(p.point));
     // Half the rectangle's extent along the section.
     film_half_ = (std::abs(up_.x) * view.after.width_mm + std::abs(up_.y) * view.after.height_mm) / 2;
     lens_half_ = std::isfinite(view.lens.pupils.entrance.diameter) ? view.lens.pupils.entrance.diameter / 2 : 0;
@@ -160,7 +160,7 @@ class TiltFigure {
     SectionBox box({film_.z(), 0});
     box.take({lens.front_focal_z, 0});
     for (const TiltFigurePoint& p : view_.points) {
-      if (p.used && !p.place.at_infinity) box.take(section(p.place.position));
+      if (p.used && !p.point.at_infinity) box.take(section(p.point.position));
     }
     const double reach = std::max(box.length(), 5 * std::abs(lens.front_focal_length));
     if (focus_) {
@@ -173,8 +173,8 @@ class TiltFigure {
     }
     // Unused points are included only if they are near.
     for (const TiltFigurePoint& p : view_.points) {
-      if (p.used || p.place.at_infinity) continue;
-      const SectionPoint at = section(p.place.position);
+      if (p.used || p.point.at_infinity) continue;
+      const SectionPoint at = section(p.point.position);
       if (std::abs(at.z - lens.front_focal_z) < 1.5 * reach && std::abs(at.height) < reach) box.take(at);
     }
     if (box.length() < reach) box.take({box.z_max - reach, 0});
@@ -286,8 +286,8 @@ class TiltFigure {
     panel.stroke(low, high, film_style);
     for (std::size_t i = 0; i < view_.points.size(); ++i) {
       const TiltFigurePoint& p = view_.points[i];
-      if (!p.place.at_infinity)
-        panel.mark(section(p.place.position), i + 1, p.used, 4);
+      if (!p.point.at_infinity)
+        panel.mark(section(p.point.position), i + 1, p.used, 4);
       else
         draw_direction(panel, box, i);
     }
@@ -303,7 +303,7 @@ class TiltFigure {
 
   /// Draws a point at infinity as a stroke at the frame, in the direction of the point.
   void draw_direction(ScenePanel& panel, const SectionBox& box, std::size_t i) const {
-    const SectionPoint d = section(view_.points[i].place.position);
+    const SectionPoint d = section(view_.points[i].point.position);
     if (!(d.z < 0)) return;
     const double way = box.z_min - view_.lens.front_principal_z();
     const SectionPoint end{box.z_min, way * d.height / d.z}, start{0.94 * end.z, 0.94 * end.height};
@@ -374,7 +374,7 @@ class TiltFigure {
   std::string lines_in_words() const {
     if (!focus_) return "The plane of focus is at infinity.";
     if (!focus_->hinge || !focus_->scheimpflug) return "An upright film: no hinge line.";
-    const auto height = [&](const SpaceLine& line) { return figure_detail::length_text(section(line.point).height); };
+    const auto height = [&](const Line3& line) { return figure_detail::length_text(section(line.point).height); };
     return "Hinge line (in the front focal plane) at " + height(*focus_->hinge) + ", Scheimpflug line at " +
            height(*focus_->scheimpflug) + " from the axis.";
   }

@@ -85,7 +85,7 @@ TiltFit described(const IdealLens& lens, std::span<const FocusTarget> targets, c
   }
   fit.focus = focus_plane(lens, fit.film);
   for (std::size_t i = 0; i < targets.size(); ++i) {
-    fit.blurs.push_back({seen[i].use, targets[i].blur_mm, blur_of(i, fit.film)});
+    fit.blurs.push_back({seen[i].status, targets[i].blur_mm, blur_of(i, fit.film)});
   }
   fit.rms_mm = focus_detail::rms_error(targets, fit.blurs);
   return fit;
@@ -101,7 +101,7 @@ fit_detail::TiltProblem problem_without_outliers(const IdealLens& lens, std::spa
   for (std::size_t i = 0; i < kept.size(); ++i) {
     fit_detail::SeenTarget& target = seen[problem.used[i]];
     target.weight *= kept[i];
-    if (!(target.weight > 0)) target.use = TargetUse::outlier;
+    if (!(target.weight > 0)) target.status = TargetStatus::outlier;
   }
   return tilt_problem(lens, seen, options.max_tilt_rad);
 }
@@ -147,9 +147,9 @@ TiltFit fit_tilt(const ImageRays& lens, std::span<const FocusTarget> targets, co
   std::vector<RayBundle> bundles(targets.size());
   for (std::size_t i = 0; i < targets.size(); ++i) {
     if (!seen[i].image) continue;
-    bundles[i] = lens.bundle(targets[i].place);
+    bundles[i] = lens.bundle(targets[i].point);
     if (bundles[i].empty() && seen[i].weight > 0) {
-      seen[i].use = TargetUse::no_rays;
+      seen[i].status = TargetStatus::no_rays;
       seen[i].weight = 0;
     }
   }

@@ -70,15 +70,15 @@ std::vector<SeenTarget> seen_targets(const IdealLens& lens, std::span<const Focu
   std::vector<SeenTarget> result;
   result.reserve(targets.size());
   for (const FocusTarget& target : targets) {
-    const ScenePoint& place = target.place;
+    const ScenePoint& place = target.point;
     const double blur = target.blur_mm, weight = target.fixes_distance ? target.weight : 0;
     SeenTarget& seen = result.emplace_back();
     seen.image = lens.image(place);
     if (!focus_detail::well_formed(target)) {
-      seen.use = TargetUse::not_finite;
+      seen.status = TargetStatus::not_finite;
       continue;
     }
-    seen.use = TargetUse::no_image;
+    seen.status = TargetStatus::no_image;
     if (!seen.image) continue;
     const ImagePoint& image = *seen.image;
     const double move = blur == 0 ? 0 : blur / image.cone;
@@ -89,9 +89,9 @@ std::vector<SeenTarget> seen_targets(const IdealLens& lens, std::span<const Focu
     const PicturePoint& d = seen.picture;
     const bool near = away < farthest && std::isfinite(d.x) && std::isfinite(d.y) && std::isfinite(d.inverse_distance);
     if (weight == 0 || image.cone == 0) {  // a pinhole images all distances sharply
-      seen.use = TargetUse::no_weight;
+      seen.status = TargetStatus::no_weight;
     } else if (near) {
-      seen.use = TargetUse::used;
+      seen.status = TargetStatus::used;
       seen.weight = weight;
     }
   }

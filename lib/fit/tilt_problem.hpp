@@ -71,8 +71,8 @@ class IdealBlur final : public BlurErrors {
 
 /// A focus target with its image and its use.
 struct SeenTarget {
-  TargetUse use = TargetUse::used;
-  double weight = 0;  ///< 0 unless `use` is TargetUse::used
+  TargetStatus status = TargetStatus::used;
+  double weight = 0;  ///< 0 unless `status` is TargetStatus::used
   std::optional<ImagePoint> image;
   Vec3<double> wanted{0, 0, 0};  ///< point at which the chief ray should meet the film
   PicturePoint picture;          ///< the scene point whose image is that point

@@ -42,7 +42,7 @@ Film standing(const Film& film, double unset_z) {
 
 /// The film position for one target.
 struct Request {
-  TargetUse use = TargetUse::used;
+  TargetStatus status = TargetStatus::used;
   double film_z = nan;   ///< position at which the blur equals the target's blur; NaN if there is no image
   double steepness = 0;  ///< derivative of the blur diameter with respect to the film position
 };
@@ -50,17 +50,17 @@ struct Request {
 /// Checks the target of a request and returns the request; film_z is NaN if the target is rejected.
 Request checked(const IdealLens& lens, const FocusTarget& target, Request request) {
   const double farthest = focus_detail::farthest_film * std::abs(lens.rear_focal_length);
-  if (!focus_detail::well_formed(target)) return {TargetUse::not_finite, nan, 0};
-  if (request.use != TargetUse::used) return request;
-  if (!(std::abs(request.film_z - lens.rear_focal_z) < farthest)) return {TargetUse::no_image, nan, 0};
-  if (target.weight == 0 || !target.fixes_distance || request.steepness == 0) request.use = TargetUse::no_weight;
+  if (!focus_detail::well_formed(target)) return {TargetStatus::not_finite, nan, 0};
+  if (request.status != TargetStatus::used) return request;
+  if (!(std::abs(request.film_z - lens.rear_focal_z) < farthest)) return {TargetStatus::no_image, nan, 0};
+  if (target.weight == 0 || !target.fixes_distance || request.steepness == 0) request.status = TargetStatus::no_weight;
   return request;
 }
 
 double largest_weight(std::span<const FocusTarget> targets, std::span<const Request> requests) {
   double largest = 0;
   for (std::size_t i = 0; i < targets.size(); ++i) {
-    if (requests[i].use == TargetUse::used) largest = std::max(largest, targets[i].weight);
+    if (requests[i].status == TargetStatus::used) largest = std::max(largest, targets[i].weight);
   }
   return largest;
 }
@@ -70,7 +70,7 @@ std::optional<double> least_squares(std::span<const FocusTarget> targets, std::s
   const double largest = largest_weight(targets, requests);
   double weights = 0, sum = 0, from = 0;
   for (std::size_t i = 0; i < targets.size(); ++i) {
-    if (requests[i].use != TargetUse::used) continue;
+    if (requests[i].status != TargetStatus::used) continue;
     if (weights == 0) from = requests[i].film_z;
     const double weight = targets[i].weight / largest * square(requests[i].steepness);
     weights += weight;
@@ -93,7 +93,7 @@ Autofocus described(const IdealLens& lens, std::span<const FocusTarget> targets,
 
   for (std::size_t i = 0; i < targets.size(); ++i) {
     const double blur = std::isnan(requests[i].film_z) ? nan : blur_of(i, result.film);
-    result.blurs.push_back({requests[i].use, targets[i].blur_mm, blur});
+    result.blurs.push_back({requests[i].status, targets[i].blur_mm, blur});
   }
   result.rms_mm = focus_detail::rms_error(targets, result.blurs);
 
@@ -146,8 +146,8 @@ Autofocus autofocus(const IdealLens& lens, std::span<const FocusTarget> targets,
   std::vector<Request> requests;
   std::vector<std::optional<ImagePoint>> images;
   for (const FocusTarget& target : targets) {
-    const auto image = images.emplace_back(lens.image(target.place));
-    Request request{.use = image ? TargetUse::used : TargetUse::no_image};
+    const auto image = images.emplace_back(lens.image(target.point));
+    Request request{.status = image ? TargetStatus::used : TargetStatus::no_image};
     if (image) {
       request.film_z = image->position.z + (image->cone > 0 ? target.blur_mm / image->cone : 0);
       request.steepness = image->cone;
@@ -175,11 +175,11 @@ Autofocus autofocus(const ImageRays& lens, std::span<const FocusTarget> targets,
   std::vector<RayBundle> bundles;
   std::vector<focus_detail::Image> images;  // by the criterion; empty for targets without an image
   for (const FocusTarget& target : targets) {
-    const RayBundle& rays = bundles.emplace_back(centred_bundle(lens, target.place));
+    const RayBundle& rays = bundles.emplace_back(centred_bundle(lens, target.point));
     focus_detail::Image& image = images.emplace_back();
     Request request;
     if (rays.empty()) {
-      request.use = lens.ideal().image(target.place) ? TargetUse::no_rays : TargetUse::no_image;
+      request.status = lens.ideal().image(target.point) ? TargetStatus::no_rays : TargetStatus::no_image;
     } else {
       image = focus_detail::least_rms(rays);
       request.steepness = image.slope;
@@ -197,7 +197,7 @@ Autofocus autofocus(const ImageRays& lens, std::span<const FocusTarget> targets,
     const double largest = largest_weight(targets, requests);
     RayBundle all;
     for (std::size_t i = 0; i < targets.size(); ++i) {
-      if (requests[i].use != TargetUse::used) continue;
+      if (requests[i].status != TargetStatus::used) continue;
       const double scale = targets[i].weight / largest;
       const double shift = film_of(images[i], targets[i].blur_mm) - images[i].film_z;
       RayBundle& rays = bundles[i];
@@ -230,7 +230,7 @@ std::vector<FocusTarget> region_targets(const Vec3<double>& centre, const Vec3<d
     for (int column = 0; column < columns; ++column) {
       const double across = (2 * column + 1.0) / columns - 1, up = (2 * row + 1.0) / rows - 1;
       FocusTarget& target = targets.emplace_back();
-      target.place.position = centre + half_width * across + half_height * up;
+      target.point.position = centre + half_width * across + half_height * up;
     }
   }
   return targets;

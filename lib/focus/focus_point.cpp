@@ -26,7 +26,7 @@ void check(const ScenePoint& place, const std::string& where) {
               (at_infinity ? "a direction, finite and not 0" : "finite"));
 }
 
-void check(const OnTriangle& place, std::size_t vertices, const std::string& where) {
+void check(const TrianglePoint& place, std::size_t vertices, const std::string& where) {
   const auto& [a, b, c] = place.barycentric;
   constexpr double tolerance = 1e-9;
   // NaN fails both comparisons.
@@ -66,7 +66,7 @@ void check(const FocusPoint& point, std::size_t vertices, const std::string& whe
     if (const auto* place = std::get_if<ScenePoint>(&key.anchor)) {
       check(*place, at);
     } else {
-      check(std::get<OnTriangle>(key.anchor), vertices, at);
+      check(std::get<TrianglePoint>(key.anchor), vertices, at);
     }
   }
 }
@@ -95,17 +95,17 @@ double at_time(const FocusPoint& point, double time, const auto& of) {
   return focus_detail::Keyframes(std::move(times), std::move(values)).at(time);
 }
 
-Vec3<double> place_of(const OnTriangle& on, const std::array<double, 3>& parts, const FocusMoment& moment) {
+Vec3<double> place_of(const TrianglePoint& on, const std::array<double, 3>& parts, const FocusMoment& moment) {
   Vec3<double> sum{0, 0, 0};
   for (std::size_t i = 0; i < 3; ++i) sum += moment.vertices[on.vertices[i]] * parts[i];
   return sum;
 }
 
 /// The triangle on which all keys lie; null if the keys lie on several triangles or on no triangle.
-const OnTriangle* only_triangle(const FocusPoint& point) {
-  const auto* first = std::get_if<OnTriangle>(&point.keys.front().anchor);
+const TrianglePoint* only_triangle(const FocusPoint& point) {
+  const auto* first = std::get_if<TrianglePoint>(&point.keys.front().anchor);
   const auto same = [&](const FocusKey& key) {
-    const auto* on = std::get_if<OnTriangle>(&key.anchor);
+    const auto* on = std::get_if<TrianglePoint>(&key.anchor);
     return on && on->vertices == first->vertices;
   };
   return first && std::all_of(point.keys.begin(), point.keys.end(), same) ? first : nullptr;
@@ -120,12 +120,12 @@ Vec3<double> seen(const ScenePoint& place, double principal_z) {
 /// The position of a point at a moment; nullopt if a vertex is not finite, or if the path runs from behind the lens to
 /// infinity.
 std::optional<ScenePoint> place_at(const IdealLens& lens, const FocusPoint& point, const FocusMoment& moment) {
-  if (const OnTriangle* triangle = only_triangle(point)) {
+  if (const TrianglePoint* triangle = only_triangle(point)) {
     std::array<double, 3> parts{};
     double sum = 0;
     for (std::size_t i = 0; i < 3; ++i) {
       parts[i] = at_time(point, moment.time,
-                         [&](std::size_t k) { return std::get<OnTriangle>(point.keys[k].anchor).barycentric[i]; });
+                         [&](std::size_t k) { return std::get<TrianglePoint>(point.keys[k].anchor).barycentric[i]; });
       sum += parts[i];
     }
     // Each coordinate stays within the range of its keys, but the sum of the coordinates may differ from 1.
@@ -134,7 +134,7 @@ std::optional<ScenePoint> place_at(const IdealLens& lens, const FocusPoint& poin
   }
   std::vector<ScenePoint> places;
   for (const FocusKey& key : point.keys) {
-    const auto* on = std::get_if<OnTriangle>(&key.anchor);
+    const auto* on = std::get_if<TrianglePoint>(&key.anchor);
     places.push_back(on ? ScenePoint{place_of(*on, on->barycentric, moment), false} : std::get<ScenePoint>(key.anchor));
     if (!finite(places.back().position)) return {};
   }
@@ -195,7 +195,7 @@ void focus_detail::check_points(std::span<const FocusPoint> points, const FocusM
 
 void focus_detail::weigh_nearer_more(const IdealLens& lens, std::span<FocusTarget> targets) {
   const auto inverse_distance = [&](const FocusTarget& target) {
-    return seen(target.place, lens.front_principal_z()).z;
+    return seen(target.point, lens.front_principal_z()).z;
   };
   double nearest = 0;
   for (const FocusTarget& target : targets) nearest = std::max(nearest, inverse_distance(target));

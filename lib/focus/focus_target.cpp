@@ -10,14 +10,14 @@
 
 namespace petzval {
 
-std::string_view name(TargetUse use) noexcept {
-  switch (use) {
-    case TargetUse::used: return "used";
-    case TargetUse::no_weight: return "no_weight";
-    case TargetUse::not_finite: return "not_finite";
-    case TargetUse::no_image: return "no_image";
-    case TargetUse::outlier: return "outlier";
-    case TargetUse::no_rays: return "no_rays";
+std::string_view name(TargetStatus status) noexcept {
+  switch (status) {
+    case TargetStatus::used: return "used";
+    case TargetStatus::no_weight: return "no_weight";
+    case TargetStatus::not_finite: return "not_finite";
+    case TargetStatus::no_image: return "no_image";
+    case TargetStatus::outlier: return "outlier";
+    case TargetStatus::no_rays: return "no_rays";
   }
   return "unknown";
 }
@@ -39,7 +39,7 @@ void focus_detail::check_extent(double stops, const std::string& where) {
 }
 
 bool focus_detail::well_formed(const FocusTarget& target) noexcept {
-  const Vec3<double>& p = target.place.position;
+  const Vec3<double>& p = target.point.position;
   const bool place = std::isfinite(p.x) && std::isfinite(p.y) && p.z < std::numeric_limits<double>::infinity();
   return place && std::isfinite(target.blur_mm) && std::isfinite(target.weight) && target.weight >= 0;
 }

@@ -167,7 +167,7 @@ ImageRays image_rays(const Lens& lens, const Film& film, std::span<const ScenePo
 
 ImageRays image_rays(const Lens& lens, const Film& film, std::span<const FocusTarget> targets, std::size_t rays) {
   std::vector<ScenePoint> points;
-  for (const FocusTarget& target : targets) points.push_back(target.place);
+  for (const FocusTarget& target : targets) points.push_back(target.point);
   return image_rays(lens, film, points, rays);
 }
 

@@ -41,9 +41,9 @@ T pupil_scale(T extent_stops) noexcept {
 /// Weighted RMS of the blur errors of the used targets, computed without overflow; 0 if no target is used.
 inline double rms_error(std::span<const FocusTarget> targets, std::span<const TargetBlur> blurs) noexcept {
   const auto error = [&](std::size_t i) {
-    return blurs[i].use == TargetUse::used ? blurs[i].blur_mm - blurs[i].wanted_mm : 0;
+    return blurs[i].status == TargetStatus::used ? blurs[i].blur_mm - blurs[i].wanted_mm : 0;
   };
-  const auto weight = [&](std::size_t i) { return blurs[i].use == TargetUse::used ? targets[i].weight : 0; };
+  const auto weight = [&](std::size_t i) { return blurs[i].status == TargetStatus::used ? targets[i].weight : 0; };
   double largest = 0, most = 0;
   for (std::size_t i = 0; i < blurs.size(); ++i) {
     largest = std::fmax(largest, std::abs(error(i)));

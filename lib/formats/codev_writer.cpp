@@ -36,7 +36,7 @@ class CodevWriter {
  public:
   CodevWriter(const Prescription& p, const GlassCatalogue* glasses) : out_(p, glasses), p_(out_.lens()) {}
 
-  WrittenLens write() {
+  ExportedLens write() {
     out_.lose_the_wider_stop();
     out_.state_indices_at_d();
     name_media();
@@ -294,7 +294,7 @@ void CodevWriter::zooms() {
 
 }  // namespace
 
-WrittenLens format_codev(const Prescription& prescription, const GlassCatalogue* glasses) {
+ExportedLens format_codev(const Prescription& prescription, const GlassCatalogue* glasses) {
   return CodevWriter(prescription, glasses).write();
 }
 

@@ -25,7 +25,7 @@ std::string cells(double radius, double thickness, double index, double diameter
 
 }  // namespace
 
-WrittenLens format_table(const Prescription& prescription, const GlassCatalogue* glasses) {
+ExportedLens format_table(const Prescription& prescription, const GlassCatalogue* glasses) {
   Writer out(prescription, glasses);
   const Prescription& p = out.lens();
   double largest = 0;

@@ -49,7 +49,7 @@ class Writer {
   /// The index at the reference wavelength, as stated or from the glass.
   /// @throws Error if the index is unknown
   double index(const Medium& medium);
-  WrittenLens take() { return {std::move(text_), std::move(losses_)}; }
+  ExportedLens take() { return {std::move(text_), std::move(losses_)}; }
 
  private:
   void mark_the_stop();

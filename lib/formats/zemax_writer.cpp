@@ -21,7 +21,7 @@ class ZemaxWriter {
  public:
   ZemaxWriter(const Prescription& p, const GlassCatalogue* glasses) : out_(p, glasses), p_(out_.lens()) {}
 
-  WrittenLens write() {
+  ExportedLens write() {
     out_.refuse_closed_rims(".zmx");
     out_.lose_the_wider_stop();
     out_.state_indices_at_d();
@@ -323,7 +323,7 @@ void ZemaxWriter::configurations() {
 
 }  // namespace
 
-WrittenLens format_zemax(const Prescription& prescription, const GlassCatalogue* glasses) {
+ExportedLens format_zemax(const Prescription& prescription, const GlassCatalogue* glasses) {
   return ZemaxWriter(prescription, glasses).write();
 }
 

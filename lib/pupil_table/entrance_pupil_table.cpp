@@ -184,7 +184,7 @@ double EntrancePupilTable::Data::least_ball(std::span<const std::vector<Ray<doub
 
 EntranceSample EntrancePupilTable::Data::in_cone(const Vec3<double>& point, std::size_t wavelength, double u,
                                                  double v) const noexcept {
-  EntranceSample sample{.place = centre};
+  EntranceSample sample{.origin = centre};
   if (!sees(point, wavelength) || !std::isfinite(u) || !std::isfinite(v)) return sample;
   const Vec3<double> from_centre = point - centre;
   const double distance = glm::length(from_centre);
@@ -267,7 +267,7 @@ void EntrancePupilTable::sample(std::size_t count, const Vec3<double>* points, c
     for (std::size_t i = 0; i < n; ++i) {
       if (found.pdf[i] > 0) continue;
       const EntranceSample s = data.in_cone(own[i], positions[i], u[begin + i], v[begin + i]);
-      found.x[i] = s.place.x, found.y[i] = s.place.y, found.z[i] = s.place.z;
+      found.x[i] = s.origin.x, found.y[i] = s.origin.y, found.z[i] = s.origin.z;
       found.dx[i] = s.direction.x, found.dy[i] = s.direction.y, found.dz[i] = s.direction.z;
       found.distance[i] = s.distance, found.pdf[i] = s.pdf;
     }
@@ -277,9 +277,9 @@ void EntrancePupilTable::sample(std::size_t count, const Vec3<double>* points, c
 EntranceSample EntrancePupilTable::sample(const Vec3<double>& point, double u, double v,
                                           Wavelength wavelength) const noexcept {
   EntranceSample s;
-  auto& [place, direction, distance, pdf] = s;
+  auto& [origin, direction, distance, pdf] = s;
   sample(1, &point, &u, &v, {.all = wavelength},
-         {&place.x, &place.y, &place.z, &direction.x, &direction.y, &direction.z, &distance, &pdf});
+         {&origin.x, &origin.y, &origin.z, &direction.x, &direction.y, &direction.z, &distance, &pdf});
   return s;
 }
 
@@ -287,7 +287,7 @@ void EntrancePupilTable::spread(const Vec3<double>& point, std::size_t count, co
                                 Wavelength wavelength, EntranceSample* samples) const noexcept {
   const Data& data = *data_;
   const std::size_t position = data.position(wavelength);
-  std::fill_n(samples, count, EntranceSample{.place = data.centre});
+  std::fill_n(samples, count, EntranceSample{.origin = data.centre});
   if (!data.sees(point, position)) return;
   const bool known = data.with_polygon(point, position, [&](const auto& polygon) {
     std::array<Sector<double>, polygon_corners> sectors;
@@ -303,9 +303,9 @@ void EntrancePupilTable::spread(const Vec3<double>& point, std::size_t count, co
       const std::size_t k = sector_of_area(area, [&before](std::size_t j) { return before[j]; });
       const double own = before[k + 1] - before[k];
       const double along = own > 0 ? std::clamp((area - before[k]) / own, 0.0, 1.0) : 0;
-      const Point<double> place =
+      const Point<double> in_grid =
           polygon.middle() + sectors[k].at(std::sqrt(sectors[k].squared_way(squared_way)), along);
-      const RayToLens ray = polygon.ray(place);
+      const RayToLens ray = polygon.ray(in_grid);
       samples[i] = {data.centre + Vec3<double>{ray.x, ray.y, ray.z},
                     {ray.dx, ray.dy, ray.dz},
                     ray.distance,
@@ -334,7 +334,7 @@ double EntrancePupilTable::pdf(const Vec3<double>& point, const Ray<double>& ray
   double density = 0;
   data.with_polygon(point, position, [&](const auto& polygon) {
     const Vec3<double> met = core_detail::meet_plane(ray, data.centre, unit) - data.centre;
-    const Point<double> q = polygon.place({met.x, met.y, met.z}) - polygon.middle();
+    const Point<double> q = polygon.position({met.x, met.y, met.z}) - polygon.middle();
     const std::size_t k = sector_towards(polygon, q);
     if (k == polygon_corners) return;
     const Sector<double> sector = polygon.sector(static_cast<std::int32_t>(k));

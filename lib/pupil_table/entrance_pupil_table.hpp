@@ -24,9 +24,9 @@ struct EntranceRays;
 
 /// A ray from a scene point into the lens.
 struct EntranceSample {
-  Vec3<double> place{0, 0, 0};      ///< intersection of the ray with the pupil plane, lens frame, mm
-  Vec3<double> direction{0, 0, 1};  ///< unit vector from the scene point to `place`
-  double distance = 0;              ///< from the scene point to `place`, mm
+  Vec3<double> origin{0, 0, 0};     ///< intersection of the ray with the pupil plane, lens frame, mm
+  Vec3<double> direction{0, 0, 1};  ///< unit vector from the scene point to `origin`
+  double distance = 0;              ///< from the scene point to `origin`, mm
   double pdf = 0;                   ///< density of the direction, 1/sr; 0 if the point does not see the pupil
 };
 

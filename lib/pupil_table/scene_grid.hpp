@@ -257,7 +257,7 @@ struct ScenePolygon {
     return ray_to_lens(bearing, places.distance[i], from_grid<dimensions>(bearing, place));
   }
   /// Position, in the frame of the polygons, of a point in the plane relative to the centre.
-  PETZVAL_INLINE Point<double> place(const std::array<double, 3>& p) const noexcept {
+  PETZVAL_INLINE Point<double> position(const std::array<double, 3>& p) const noexcept {
     const Bearing b = places.bearing(i);
     return to_grid<dimensions>(b, {b.azimuth_y * p[0] - b.azimuth_x * p[1],
                                    b.cosine * (b.azimuth_x * p[0] + b.azimuth_y * p[1]) + b.sine * p[2]});

@@ -192,7 +192,7 @@ petzval::FocalSurface surface_of(const Bench& bench, bool extents) {
   std::uniform_real_distribution<double> one;
   std::vector<petzval::FocalPoint> points(16);
   for (petzval::FocalPoint& point : points) {
-    point.place = {(one(random) - 0.5) * film.width_mm, (one(random) - 0.5) * film.height_mm};
+    point.film_point = {(one(random) - 0.5) * film.width_mm, (one(random) - 0.5) * film.height_mm};
     point.inverse_distance = 1e-3 * one(random);
     if (extents) point.extent_stops = 2 * one(random);
   }

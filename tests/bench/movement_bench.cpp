@@ -48,7 +48,7 @@ void fit(benchmark::State& state, const Lens& lens, const IdealLens& ideal, bool
   options.film.z_mm = ideal.rear_focal_z;
   std::array<std::vector<FocusTarget>, draws> targets;
   for (unsigned i = 0; i < draws; ++i) {
-    for (const auto& p : scene(ideal, i)) targets[i].push_back({.place = {p}});
+    for (const auto& p : scene(ideal, i)) targets[i].push_back({.point = {p}});
     if (!fit_tilt(lens, targets[i], options)) throw Error("movement_bench: draw " + std::to_string(i) + " has no film");
   }
   unsigned i = 0;
@@ -62,7 +62,7 @@ void loop(benchmark::State& state, const Lens& lens, const IdealLens& ideal) {
   const std::vector<Vec3<double>> first = scene(ideal, 0), last = scene(ideal, 1);
   std::vector<FocusPoint> points;
   for (std::size_t i = 0; i < point_count; ++i) {
-    const OnTriangle on{.vertices = {i, (i + 1) % point_count, (i + 2) % point_count}, .barycentric = {1, 0, 0}};
+    const TrianglePoint on{.vertices = {i, (i + 1) % point_count, (i + 2) % point_count}, .barycentric = {1, 0, 0}};
     points.push_back({.keys = {{.time = 0, .anchor = on}, {.time = 1, .anchor = on, .weight = 2}}});
   }
   TiltOptions options{.robust = true};

@@ -21,7 +21,7 @@ std::vector<FocalPoint> points_on(const Film& film, std::size_t count) {
   std::uniform_real_distribution<double> unit(0, 1);
   std::vector<FocalPoint> points(count);
   for (FocalPoint& point : points) {
-    point.place = film.point(unit(random) * film.columns, unit(random) * film.rows);
+    point.film_point = film.point(unit(random) * film.columns, unit(random) * film.rows);
     point.inverse_distance = 1e-3 * unit(random);
   }
   return points;
@@ -40,7 +40,7 @@ void frame(benchmark::State& state, const Film& film, std::size_t count, int thr
 void values(benchmark::State& state, SurfaceKind kind, double beta) {
   const Film film{.columns = 800, .rows = 600};
   std::vector<camera_detail::WeighedValue> points;
-  for (const FocalPoint& point : points_on(film, 16)) points.push_back({point.place, *point.inverse_distance});
+  for (const FocalPoint& point : points_on(film, 16)) points.push_back({point.film_point, *point.inverse_distance});
   const camera_detail::MovingLeastSquares surface("surface_bench: ", points, 29, kind, beta);
   std::vector<float> x, y;
   for (int r = 0; r < film.rows; ++r) {
@@ -63,7 +63,7 @@ void single(benchmark::State& state) {
   const FocalSurface surface(thin_lens(50, 2), film, points_on(film, 16));
   const std::vector<FocalPoint> places = points_on(film, 1024);
   std::size_t i = 0;
-  for (auto _ : state) benchmark::DoNotOptimize(surface.at(places[i++ % places.size()].place).inverse_distance);
+  for (auto _ : state) benchmark::DoNotOptimize(surface.at(places[i++ % places.size()].film_point).inverse_distance);
   state.SetItemsProcessed(state.iterations());
 }
 

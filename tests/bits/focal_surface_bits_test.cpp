@@ -18,7 +18,7 @@ TEST(FocalSurfaceBits, EqualTheTable) {
   std::vector<FocalPoint> points;
   for (int i = 0; i < 70; ++i) {
     points.push_back(
-        {.place = {-17 + 7 * (i % 6) * 0.9, -11 + 0.3125 * i}, .inverse_distance = 0.0005 + 0.00001 * (i % 13)});
+        {.film_point = {-17 + 7 * (i % 6) * 0.9, -11 + 0.3125 * i}, .inverse_distance = 0.0005 + 0.00001 * (i % 13)});
   }
   testing_bits::Hash hash;
   for (const SurfaceKind kind : {SurfaceKind::affine, SurfaceKind::shepard}) {

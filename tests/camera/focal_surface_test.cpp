@@ -25,14 +25,14 @@ const IdealLens lens = thin_lens(50, 2);
 const Film film{.z_mm = 50 + 50 * 50 / 1950.0};  // focused at 2 m
 
 TEST(FocalSurface, PassesThroughItsPoints) {
-  const std::vector<FocalPoint> points{{.place = {-9, 0}, .inverse_distance = 1 / 1500.0},
-                                       {.place = {9, 2}, .inverse_distance = 1 / 4000.0, .extent_stops = -1},
-                                       {.place = {1, 5}, .extent_stops = 3},
-                                       {.place = {0, -8}, .inverse_distance = 0, .extent_stops = 2}};
+  const std::vector<FocalPoint> points{{.film_point = {-9, 0}, .inverse_distance = 1 / 1500.0},
+                                       {.film_point = {9, 2}, .inverse_distance = 1 / 4000.0, .extent_stops = -1},
+                                       {.film_point = {1, 5}, .extent_stops = 3},
+                                       {.film_point = {0, -8}, .inverse_distance = 0, .extent_stops = 2}};
   const FocalSurface surface(lens, film, points);
   EXPECT_EQ(surface.origin_z(), 0);
   for (const auto& point : points) {
-    const auto values = surface.at(point.place);
+    const auto values = surface.at(point.film_point);
     EXPECT_EQ(values.inverse_distance, point.inverse_distance.value_or(values.inverse_distance));
     EXPECT_EQ(values.extent_stops, point.extent_stops.value_or(values.extent_stops));
     EXPECT_EQ(values.blur_mm, 0);
@@ -44,8 +44,8 @@ TEST(FocalSurface, MissesBlurredPointsByTheirBlur) {
     for (const double blur : {-0.1, 0.2}) {
       const double object = 1 / 2500.0;
       const std::vector<FocalPoint> points{
-          {.place = {3, 4}, .inverse_distance = object, .blur_mm = blur, .extent_stops = stops},
-          {.place = {-3, 4}, .inverse_distance = 1 / 2000.0}};
+          {.film_point = {3, 4}, .inverse_distance = object, .blur_mm = blur, .extent_stops = stops},
+          {.film_point = {-3, 4}, .inverse_distance = 1 / 2000.0}};
       const FocalSurface surface(lens, film, points);
       const auto values = surface.at({3, 4});
       EXPECT_NEAR(values.blur_mm, blur, 1e-14);
@@ -61,7 +61,7 @@ TEST(FocalSurface, MissesBlurredPointsByTheirBlur) {
 }
 
 TEST(FocalSurface, WithoutDistancesKeepsTheFocusOfTheFilm) {
-  const std::vector<FocalPoint> points{{.place = {1, 5}, .extent_stops = 3}};
+  const std::vector<FocalPoint> points{{.film_point = {1, 5}, .extent_stops = 3}};
   const FocalSurface surface(lens, film, points);
   EXPECT_NEAR(surface.at({7, 7}).inverse_distance, 1 / 2000.0, 1e-15);
   EXPECT_EQ(surface.at({7, 7}).extent_stops, 3);
@@ -77,7 +77,7 @@ std::vector<FocalPoint> random_points(unsigned seed, std::size_t count) {
   std::vector<FocalPoint> points;
   for (std::size_t i = 0; i < count; ++i) {
     FocalPoint& point = points.emplace_back();
-    point.place = {18 * unit(random), 12 * unit(random)};
+    point.film_point = {18 * unit(random), 12 * unit(random)};
     if (i % 3 != 1) point.inverse_distance = 1e-3 * std::abs(unit(random));
     if (i % 3 != 2) point.extent_stops = 4 * unit(random);
     point.weight = 0.1 + std::abs(unit(random));
@@ -94,7 +94,7 @@ TEST(FocalSurface, IndependentOfPointOrderAndScaleOfWeights) {
   for (const auto& other : {turned, heavy, faded}) {
     const FocalSurface same(lens, film, other);
     for (const auto& at : random_points(2, 100)) {
-      const auto a = surface.at(at.place), b = same.at(at.place);
+      const auto a = surface.at(at.film_point), b = same.at(at.film_point);
       EXPECT_NEAR(a.inverse_distance, b.inverse_distance, 1e-15);
       EXPECT_NEAR(a.extent_stops, b.extent_stops, 1e-12);
     }
@@ -108,7 +108,7 @@ TEST(FocalSurface, RotatesAndScalesWithTheImage) {
     return FilmPoint{scale * (cosine * p.x - sine * p.y), scale * (sine * p.x + cosine * p.y)};
   };
   auto large = points;
-  for (auto& point : large) point.place = moved(point.place);
+  for (auto& point : large) point.film_point = moved(point.film_point);
   const IdealLens large_lens = thin_lens(150, 2);
   const Film large_film{.width_mm = 72, .height_mm = 108, .z_mm = 3 * *film.z_mm};
   // Near faded points the distance scales with the size of the image.
@@ -117,7 +117,7 @@ TEST(FocalSurface, RotatesAndScalesWithTheImage) {
     from[0].fade = large[0].fade = fade;
     const FocalSurface surface(lens, film, from), other(large_lens, large_film, large);
     for (const auto& at : random_points(4, 100)) {
-      const auto a = surface.at(at.place), b = other.at(moved(at.place));
+      const auto a = surface.at(at.film_point), b = other.at(moved(at.film_point));
       EXPECT_NEAR(a.inverse_distance, b.inverse_distance, 1e-14);
       EXPECT_NEAR(a.extent_stops, b.extent_stops, 1e-11);
     }
@@ -130,12 +130,12 @@ TEST(FocalSurface, ReproducesThePlaneOfFocusOfATiltedFilm) {
   const auto inverse = [&](const FilmPoint& p) { return 5e-4 + 2e-5 * p.x / z * 50 - 1e-5 * p.y; };
   std::vector<FocalPoint> points;
   for (const FilmPoint at : {FilmPoint{-10, -8}, FilmPoint{12, -3}, FilmPoint{2, 9}, FilmPoint{-5, 5}}) {
-    points.push_back({.place = at, .inverse_distance = inverse(at)});
+    points.push_back({.film_point = at, .inverse_distance = inverse(at)});
   }
   const FocalSurface surface(lens, film, points);
   for (const auto& at : random_points(5, 50)) {
-    EXPECT_NEAR(surface.at(at.place).inverse_distance, inverse(at.place), 1e-15);
-    const auto slopes = surface.slopes(at.place);
+    EXPECT_NEAR(surface.at(at.film_point).inverse_distance, inverse(at.film_point), 1e-15);
+    const auto slopes = surface.slopes(at.film_point);
     EXPECT_NEAR(slopes.inverse_distance.x, 2e-5 / z * 50, 1e-15);
     EXPECT_NEAR(slopes.inverse_distance.y, -1e-5, 1e-15);
   }
@@ -143,7 +143,7 @@ TEST(FocalSurface, ReproducesThePlaneOfFocusOfATiltedFilm) {
 
 TEST(FocalSurface, IsContinuousWhereAPointVanishes) {
   auto points = random_points(6, 9);
-  const FilmPoint node = points[0].place;
+  const FilmPoint node = points[0].film_point;
   auto without = points;
   without.erase(without.begin());
   const FocalSurface gone(lens, film, without);
@@ -168,9 +168,9 @@ TEST(FocalSurface, IsContinuousWhereAPointVanishes) {
 // fade or the weight of a point goes to 0, in both precisions.
 TEST(FocalSurface, IsContinuousWherePointsBecomeCollinear) {
   const auto value = [&](double fade, double weight, const FilmPoint& place) {
-    const FocalPoint points[]{{.place = {-9, 0}, .inverse_distance = 1 / 1500.0},
-                              {.place = {0, -8}, .inverse_distance = 0},
-                              {.place = {9, 2}, .inverse_distance = 1 / 2500.0, .weight = weight, .fade = fade}};
+    const FocalPoint points[]{{.film_point = {-9, 0}, .inverse_distance = 1 / 1500.0},
+                              {.film_point = {0, -8}, .inverse_distance = 0},
+                              {.film_point = {9, 2}, .inverse_distance = 1 / 2500.0, .weight = weight, .fade = fade}};
     const FocalSurface surface(lens, film, points);
     const float x = static_cast<float>(place.x), y = static_cast<float>(place.y);
     float in_float = 0;
@@ -197,9 +197,9 @@ TEST(FocalSurface, IsContinuousWherePointsBecomeCollinear) {
 // The points lie next to a line.
 TEST(FocalSurface, FloatEqualsDoubleNextToCollinearPoints) {
   for (const double beside : {1.0, 0.6, 0.3, 0.1, 0.02, 1e-4}) {
-    const FocalPoint points[]{{.place = {-9, 0}, .inverse_distance = 1 / 1500.0},
-                              {.place = {0, beside}, .inverse_distance = 1 / 3000.0},
-                              {.place = {9, 0}, .inverse_distance = 1 / 2000.0}};
+    const FocalPoint points[]{{.film_point = {-9, 0}, .inverse_distance = 1 / 1500.0},
+                              {.film_point = {0, beside}, .inverse_distance = 1 / 3000.0},
+                              {.film_point = {9, 0}, .inverse_distance = 1 / 2000.0}};
     const FocalSurface surface(lens, film, points);
     for (const FilmPoint place : {FilmPoint{4, 9}, {-12, -7}, {1, 1}}) {
       const float x = static_cast<float>(place.x), y = static_cast<float>(place.y);
@@ -282,17 +282,17 @@ TEST(FocalSurface, StaysWithinItsLimits) {
     }
   }
   // Extrapolated points on a slope towards the lens stay outside the front focal length.
-  const std::vector<FocalPoint> steep{{.place = {0, 0}, .inverse_distance = 0},
-                                      {.place = {1, 0}, .inverse_distance = 1 / 52.0}};
+  const std::vector<FocalPoint> steep{{.film_point = {0, 0}, .inverse_distance = 0},
+                                      {.film_point = {1, 0}, .inverse_distance = 1 / 52.0}};
   const FocalSurface near(lens, film, steep);
   EXPECT_TRUE(lens.image({{0, 0, -1 / near.at({10, 0}).inverse_distance}}));
 }
 
 TEST(FocalSurface, RefusesInvalidPoints) {
-  const FocalPoint good{.place = {0, 0}, .inverse_distance = 1e-3, .extent_stops = 0};
+  const FocalPoint good{.film_point = {0, 0}, .inverse_distance = 1e-3, .extent_stops = 0};
   const auto surface = [](const FocalPoint& second) {
     return [second] {
-      FocalSurface(lens, film, std::vector{FocalPoint{.place = {1, 1}, .inverse_distance = 1e-3}, second});
+      FocalSurface(lens, film, std::vector{FocalPoint{.film_point = {1, 1}, .inverse_distance = 1e-3}, second});
     };
   };
   EXPECT_NO_THROW(surface(good)());
@@ -311,7 +311,8 @@ TEST(FocalSurface, RefusesInvalidPoints) {
   expect_error(with(&P::weight, -1), {"focal surface", "point 2", "weight", -1});
   expect_error(with(&P::fade, 1.5), {"focal surface", "point 2", "fade", 1.5});
   expect_error(with(&P::fade, nan), {"focal surface", "point 2", "fade", "nan"});
-  expect_error(surface({.place = {nan, 0}, .inverse_distance = 1e-3}), {"focal surface", "point 2", "place", "nan", 0});
+  expect_error(surface({.film_point = {nan, 0}, .inverse_distance = 1e-3}),
+               {"focal surface", "point 2", "place", "nan", 0});
   const auto points = std::vector{good};
   const auto weightless = std::vector{FocalPoint{.inverse_distance = 1e-3, .weight = 0}, FocalPoint{}};
   expect_error([&] { FocalSurface(lens, film, {}); }, {"focal surface", "points", 0});
@@ -338,10 +339,11 @@ TEST(FocalSurface, IsFiniteForAnyPoints) {
     for (int i = 0; i < count; ++i) {
       const double t = unit(random);
       FocalPoint point;
-      point.place = shape == 0   ? FilmPoint{18 * t, 12 * unit(random)}
-                    : shape == 1 ? FilmPoint{18 * t, -7 * t + 1}                                    // on a line
-                    : shape == 2 ? FilmPoint{double(one_of(2)), 3}                                  // at two positions
-                                 : FilmPoint{5 + 1e-9 * t, std::ldexp(unit(random), -one_of(60))};  // nearly coincident
+      point.film_point = shape == 0   ? FilmPoint{18 * t, 12 * unit(random)}
+                         : shape == 1 ? FilmPoint{18 * t, -7 * t + 1}  // on a line
+                         : shape == 2
+                             ? FilmPoint{double(one_of(2)), 3}                                  // at two positions
+                             : FilmPoint{5 + 1e-9 * t, std::ldexp(unit(random), -one_of(60))};  // nearly coincident
       if (one_of(4)) point.inverse_distance = one_of(5) ? 1e-3 * std::abs(unit(random)) : 0;
       if (one_of(2)) point.extent_stops = 20 * unit(random);
       if (!one_of(4)) point.blur_mm = 0.05 * unit(random);
@@ -351,7 +353,7 @@ TEST(FocalSurface, IsFiniteForAnyPoints) {
     }
     if (spoiled) {
       FocalPoint& point = points[static_cast<std::size_t>(one_of(count))];
-      double* const numbers[] = {&point.place.x, &point.place.y, &point.weight, &point.fade, &point.blur_mm};
+      double* const numbers[] = {&point.film_point.x, &point.film_point.y, &point.weight, &point.fade, &point.blur_mm};
       *numbers[one_of(5)] = one_of(2) ? nan : infinity;
     }
     const FocalSurfaceOptions options{.kind = one_of(2) ? SurfaceKind::affine : SurfaceKind::shepard,
@@ -366,7 +368,7 @@ TEST(FocalSurface, IsFiniteForAnyPoints) {
     ASSERT_FALSE(spoiled) << round;
     std::vector<float> x, y;
     for (int i = 0; i < 40; ++i) {
-      const FilmPoint node = points[static_cast<std::size_t>(one_of(count))].place;
+      const FilmPoint node = points[static_cast<std::size_t>(one_of(count))].film_point;
       const double away = std::ldexp(1, -one_of(70));
       x.push_back(static_cast<float>(i < 20 ? 18 * unit(random) : node.x + away));
       y.push_back(static_cast<float>(i < 20 ? 12 * unit(random) : node.y - away * one_of(2)));
@@ -408,15 +410,15 @@ TEST(FocalPoints, LieWhereChiefRaysMeetTheFilm) {
   ASSERT_EQ(found.size(), 3u);
   for (std::size_t i = 0; i < 3; ++i) {
     const auto image = thick.image(std::get<ScenePoint>(points[i].keys[0].anchor));
-    EXPECT_EQ(found[i].place.x, chief_point(*image, tilted)->x);
-    EXPECT_EQ(found[i].place.y, chief_point(*image, tilted)->y);
+    EXPECT_EQ(found[i].film_point.x, chief_point(*image, tilted)->x);
+    EXPECT_EQ(found[i].film_point.y, chief_point(*image, tilted)->y);
     EXPECT_EQ(found[i].blur_mm, 0.1);
     EXPECT_EQ(found[i].weight, 2);
     EXPECT_EQ(found[i].extent_stops, 3);
     EXPECT_EQ(found[i].fade, 1);
     EXPECT_EQ(found[i].inverse_distance.has_value(), i < 2);
   }
-  EXPECT_FALSE(tilted.contains(found[1].place));  // outside the frame
+  EXPECT_FALSE(tilted.contains(found[1].film_point));  // outside the frame
   EXPECT_DOUBLE_EQ(*found[0].inverse_distance, 1 / (thick.pupils.entrance.z + 2000));
   EXPECT_EQ(points_in_view(thick, tilted, points, {}), (std::vector{true, false, true}));
   EXPECT_EQ(focal_points(thick, tilted, points, {.film = tilted}).size(), 2u);

@@ -98,7 +98,7 @@ TEST(LocalFocus, RaysMeetOnTheFocalSurface) {
 TEST(LocalFocus, ExtentsScaleBlurAndKeepExposure) {
   const Lens lens = double_gauss();
   const auto with = [&](double stops) {
-    const std::array points{FocalPoint{.place = {0, 0}, .inverse_distance = 1 / 2000., .extent_stops = stops}};
+    const std::array points{FocalPoint{.film_point = {0, 0}, .inverse_distance = 1 / 2000., .extent_stops = stops}};
     return Camera(
         lens, wide,
         {.model = ModelKind::thick, .focal_surface = FocalSurface(thick_lens(lens), pose_of(lens, wide), points)});
@@ -243,7 +243,7 @@ TEST(LocalFocus, SurfaceThroughAPlaneFocusesAsATiltedFilm) {
     const double z = through.z - (normal.x * (x - through.x) + normal.y * (y - through.y)) / normal.z;
     const Projection seen = plain.project({x, y, z});
     ASSERT_TRUE(seen);
-    points.push_back({.place = seen.film, .inverse_distance = 1 / (ideal.pupils.entrance.z - z)});
+    points.push_back({.film_point = seen.film, .inverse_distance = 1 / (ideal.pupils.entrance.z - z)});
   }
   const Camera by_surface(lens, upright,
                           {.model = ModelKind::thick, .focal_surface = FocalSurface(ideal, upright, points)});
@@ -294,8 +294,8 @@ TEST(LocalFocus, HoldsAtAnyWavelength) {
 TEST(LocalFocus, SteepSurfacesAreReported) {
   const Lens lens = double_gauss();
   const auto with = [&](double apart) {
-    const std::array points{FocalPoint{.place = {-apart, 0}, .inverse_distance = 1 / 600.},
-                            FocalPoint{.place = {apart, 0}, .inverse_distance = 0}};
+    const std::array points{FocalPoint{.film_point = {-apart, 0}, .inverse_distance = 1 / 600.},
+                            FocalPoint{.film_point = {apart, 0}, .inverse_distance = 0}};
     return Camera(
         lens, wide,
         {.model = ModelKind::thin,
@@ -304,7 +304,7 @@ TEST(LocalFocus, SteepSurfacesAreReported) {
   const auto gentle = with(17).focal_steepness(), steep = with(1).focal_steepness();
   EXPECT_LT(gentle.steepness, 1);
   EXPECT_GT(steep.steepness, 1);
-  EXPECT_LT(std::abs(steep.place.x), 1.5);
+  EXPECT_LT(std::abs(steep.film_point.x), 1.5);
   EXPECT_NEAR(steep.steepness / gentle.steepness, 17, 2);
   const Camera camera = with(1);
   for (const double x : {-0.3, 0.0, 0.4}) EXPECT_TRUE(camera.sample({{x, 0.1}, 0.3, 0.8}));
@@ -313,7 +313,7 @@ TEST(LocalFocus, SteepSurfacesAreReported) {
 
 TEST(LocalFocus, ExtentsWithoutDistancesKeepTheFocus) {
   const Lens lens = testing::data_lens("double_gauss_100mm_f1.1");
-  const std::array points{FocalPoint{.place = {0, 0}, .extent_stops = 2}};
+  const std::array points{FocalPoint{.film_point = {0, 0}, .extent_stops = 2}};
   const FocalSurface surface(thick_lens(lens), pose_of(lens, wide), points);
   EXPECT_FALSE(surface.fixes_distance());
   const Camera plain(lens, wide, {.model = ModelKind::thick}),

@@ -109,8 +109,8 @@ TEST(MovingLeastSquares, IsExactAtItsPoints) {
       const auto points = random_points(1, 16);
       const auto surface = through(points, kind, beta);
       for (const auto& point : points) {
-        EXPECT_EQ(surface.at(point.place), point.value) << name(kind) << beta;
-        const float x = static_cast<float>(point.place.x), y = static_cast<float>(point.place.y);
+        EXPECT_EQ(surface.at(point.film_point), point.value) << name(kind) << beta;
+        const float x = static_cast<float>(point.film_point.x), y = static_cast<float>(point.film_point.y);
         float value = 0;
         surface.at(1, &x, &y, &value);
         EXPECT_NEAR(value, point.value, 1e-5) << name(kind) << beta;  // rounding moves the position off the point
@@ -124,11 +124,11 @@ TEST(MovingLeastSquares, ReproducesPlanes) {
     const double rounding = beta <= 4 ? 1e-13 : 1e-11;
     auto points = random_points(2, 8);
     const auto plane = [](const FilmPoint& p) { return 0.3 - 0.7 * p.x + 0.4 * p.y; };
-    for (auto& point : points) point.value = plane(point.place);
+    for (auto& point : points) point.value = plane(point.film_point);
     const auto surface = through(points, SurfaceKind::affine, beta);
     for (const auto& at : random_points(3, 100)) {
-      EXPECT_NEAR(surface.at(at.place), plane(at.place), rounding) << beta;
-      const float x = static_cast<float>(at.place.x), y = static_cast<float>(at.place.y);
+      EXPECT_NEAR(surface.at(at.film_point), plane(at.film_point), rounding) << beta;
+      const float x = static_cast<float>(at.film_point.x), y = static_cast<float>(at.film_point.y);
       float value = 0;
       surface.at(1, &x, &y, &value);
       EXPECT_NEAR(value, plane({x, y}), 1e-7) << beta;
@@ -140,8 +140,8 @@ TEST(MovingLeastSquares, SlopesAreExactFarFromThePoints) {
   const double infinity = std::numeric_limits<double>::infinity();
   for (const double beta : betas) {
     std::vector<WeighedValue> two = random_points(4, 2);
-    two[0].place = {0, -8}, two[0].value = 0;
-    two[1].place = {0, 8}, two[1].value = 1e-3;
+    two[0].film_point = {0, -8}, two[0].value = 0;
+    two[1].film_point = {0, 8}, two[1].value = 1e-3;
     const auto rising = through(two, SurfaceKind::affine, beta), any = through(random_points(4, 12), kinds[0], beta);
     for (const double far : {1e9, 1e200, infinity, -infinity, std::nan("")}) {
       EXPECT_EQ(rising.slopes({far, 1}).x, 0) << far;
@@ -161,7 +161,7 @@ TEST(MovingLeastSquares, SlopesAreExactNextToThePoints) {
   for (const SurfaceKind kind : kinds) {
     for (const double beta : betas) {
       auto points = random_points(4, 12);
-      points[0].place = {0, 0};
+      points[0].film_point = {0, 0};
       const auto surface = through(points, kind, beta);
       const Vec2<double> at_point = surface.slopes({0, 0});
       const double size = std::hypot(at_point.x, at_point.y);
@@ -182,17 +182,17 @@ TEST(MovingLeastSquares, SlopesEqualFiniteDifferences) {
       const auto points = random_points(4, 12);
       const auto surface = through(points, kind, beta);
       for (const auto& at : random_points(5, 50)) {
-        const auto& [x, y] = at.place;
+        const auto& [x, y] = at.film_point;
         const double h = 1e-6;
-        const Vec2<double> slopes = surface.slopes(at.place);
+        const Vec2<double> slopes = surface.slopes(at.film_point);
         EXPECT_NEAR(slopes.x, (surface.at({x + h, y}) - surface.at({x - h, y})) / (2 * h), 1e-6) << name(kind) << beta;
         EXPECT_NEAR(slopes.y, (surface.at({x, y + h}) - surface.at({x, y - h})) / (2 * h), 1e-6) << name(kind) << beta;
       }
       if (beta <= 1.5) continue;
       for (const auto& at : points) {
-        const auto& [x, y] = at.place;
+        const auto& [x, y] = at.film_point;
         const double h = beta < 3 ? 1e-9 : 1e-6;
-        const Vec2<double> slopes = surface.slopes(at.place);
+        const Vec2<double> slopes = surface.slopes(at.film_point);
         const double tolerance = beta < 3 ? 3e-3 : 1e-3;
         EXPECT_NEAR(slopes.x, (surface.at({x + h, y}) - surface.at({x - h, y})) / (2 * h), tolerance)
             << name(kind) << beta;
@@ -207,8 +207,8 @@ TEST(MovingLeastSquares, BatchEqualsSinglePositions) {
   for (const std::size_t points : {1, 2, 3, 13, 64, 65, 200}) {
     std::vector<double> x, y;
     for (const auto& at : random_points(6, 333)) {
-      x.push_back(static_cast<float>(1.5 * at.place.x));
-      y.push_back(static_cast<float>(1.5 * at.place.y));
+      x.push_back(static_cast<float>(1.5 * at.film_point.x));
+      y.push_back(static_cast<float>(1.5 * at.film_point.y));
     }
     const std::vector<float> float_x(x.begin(), x.end()), float_y(y.begin(), y.end());
     for (const SurfaceKind kind : kinds) {

@@ -196,10 +196,10 @@ TEST(Reciprocity, HoldsForFocalSurfaces) {
   Film placed = wide;
   placed.z_mm = tilted.z_mm = lens.film_z();
   std::vector<FocalPoint> points(4);
-  points[0].place = {-9, -3}, points[0].inverse_distance = 1 / 1500., points[0].extent_stops = 0.5;
-  points[1].place = {8, -9}, points[1].inverse_distance = 0, points[1].extent_stops = 1;
-  points[2].place = {-3, 8}, points[2].inverse_distance = 1 / 4000.;
-  points[3].place = {-1, -11}, points[3].inverse_distance = 1 / 2500.;
+  points[0].film_point = {-9, -3}, points[0].inverse_distance = 1 / 1500., points[0].extent_stops = 0.5;
+  points[1].film_point = {8, -9}, points[1].inverse_distance = 0, points[1].extent_stops = 1;
+  points[2].film_point = {-3, 8}, points[2].inverse_distance = 1 / 4000.;
+  points[3].film_point = {-1, -11}, points[3].inverse_distance = 1 / 2500.;
   const ExpressiveLens expressive{.power = {{0, 1}, {0.7, 1.01}, {1, 0.98}},
                                   .film_offsets = {{{0, 0}, 0}, {{14, 3}, 0.7}, {{-14, 4}, -0.5}}};
   for (const ModelKind model : {ModelKind::thin, ModelKind::thick, ModelKind::thin_two_disc}) {

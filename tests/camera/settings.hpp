@@ -28,11 +28,11 @@ inline BokehControls mapped() {
 
 /// A surface through points at several distances and at infinity. With `extents`, three points set the extent.
 inline FocalSurface surface_of(const Lens& lens, const Film& film, bool extents, double nearest_mm = 1200) {
-  std::vector<FocalPoint> points{{.place = {-12, 6}, .inverse_distance = 1 / nearest_mm},
-                                 {.place = {11, -5}, .inverse_distance = 1 / 4000.},
-                                 {.place = {2, 8}, .inverse_distance = 0},
-                                 {.place = {-4, -9}, .inverse_distance = 1 / 2000.},
-                                 {.place = {14, 9}, .inverse_distance = 1 / 2600., .weight = 2}};
+  std::vector<FocalPoint> points{{.film_point = {-12, 6}, .inverse_distance = 1 / nearest_mm},
+                                 {.film_point = {11, -5}, .inverse_distance = 1 / 4000.},
+                                 {.film_point = {2, 8}, .inverse_distance = 0},
+                                 {.film_point = {-4, -9}, .inverse_distance = 1 / 2000.},
+                                 {.film_point = {14, 9}, .inverse_distance = 1 / 2600., .weight = 2}};
   if (extents) points[0].extent_stops = 2, points[1].extent_stops = -1, points[2].extent_stops = 0.5;
   return {thick_lens(lens), pose_of(lens, film), points};
 }

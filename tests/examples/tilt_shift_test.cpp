@@ -129,7 +129,7 @@ TEST_F(TiltShift, NumbersEqualTheLibrary) {
     EXPECT_EQ(found["film_tilt_deg"], petzval::degrees(after.film.tilt_rad));
     EXPECT_EQ(found["film_swing_deg"], petzval::degrees(after.film.swing_rad));
     std::vector<petzval::ScenePoint> points;
-    for (const petzval::FocusTarget& target : targets) points.push_back(target.place);
+    for (const petzval::FocusTarget& target : targets) points.push_back(target.point);
     const auto traced = petzval::exact_blurs(lens, after.film, points, 4096);
     for (std::size_t i = 0; i < targets.size(); ++i) {
       EXPECT_EQ(found["blur_um"][i]["predicted"], 1e3 * after.blurs[i].blur_mm);

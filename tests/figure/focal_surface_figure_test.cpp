@@ -23,9 +23,9 @@ const IdealLens lens = thin_lens(50, 2);
 const Film film{.width_mm = 36, .height_mm = 24, .z_mm = 51.2};
 
 /// Points in the section from the side.
-const std::vector<FocalPoint> in_section{{.place = {0, -9}, .inverse_distance = 1 / 1500.0},
-                                         {.place = {0, 1}, .inverse_distance = 1 / 3000.0},
-                                         {.place = {0, 8}, .inverse_distance = 1 / 6000.0}};
+const std::vector<FocalPoint> in_section{{.film_point = {0, -9}, .inverse_distance = 1 / 1500.0},
+                                         {.film_point = {0, 1}, .inverse_distance = 1 / 3000.0},
+                                         {.film_point = {0, 8}, .inverse_distance = 1 / 6000.0}};
 
 std::string drawn(const std::vector<FocalPoint>& points, const Film& on = film) {
   const FocalSurface surface(lens, film, points);
@@ -63,8 +63,8 @@ TEST(FocalSurfaceFigure, PointsLieAtTheirDistancesToScale) {
 TEST(FocalSurfaceFigure, MarksPointsWithADistanceAndRingsPointsWithABlur) {
   std::vector<FocalPoint> points = in_section;
   points[1].blur_mm = 0.05;
-  points.push_back({.place = {3, 3}, .inverse_distance = 0});
-  points.push_back({.place = {-3, 3}, .extent_stops = 2});
+  points.push_back({.film_point = {3, 3}, .inverse_distance = 0});
+  points.push_back({.film_point = {-3, 3}, .extent_stops = 2});
   const std::string svg = drawn(points);
   EXPECT_EQ(marks(svg).size(), 6u);
   EXPECT_EQ(count(svg, "r=\"4\" fill=\"#fff\""), 2u);

@@ -110,8 +110,8 @@ TEST(TiltFigure, WedgeEndsAtTheRequestedBlur) {
   const std::string svg = tilt_figure(shown);
   // From pixels back to millimetres, by two known points.
   const Points marked = marks(svg);
-  const auto& p = points.at(0).place.position;
-  const auto& q = points.at(2).place.position;
+  const auto& p = points.at(0).point.position;
+  const auto& q = points.at(2).point.position;
   const double per_z = (q.z - p.z) / (marked.at(2).first - marked.at(0).first),
                per_y = (q.y - p.y) / (marked.at(2).second - marked.at(0).second);
   EXPECT_NEAR(per_z, -per_y, 0.01 * per_z);  // one scale

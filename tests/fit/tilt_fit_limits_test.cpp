@@ -58,7 +58,7 @@ TEST(TiltFitLimit, IsTheBestFilmWithinTheLimit) {
       const double length = std::hypot(p, q, 1.0);
       double weights = 0, by = 0, square = 0;
       for (const FocusTarget& t : targets) {
-        const ImagePoint image = *normal_lens().image(t.place);
+        const ImagePoint image = *normal_lens().image(t.point);
         const auto blur = [&](double z) {
           return signed_blur(image, film_in({Vec(-p, -q, 1) / length, z / length})) - t.blur_mm;
         };
@@ -85,7 +85,7 @@ TEST(TiltFitLimit, ZeroGivesAnUprightFilm) {
   EXPECT_FALSE(fit.film.tilted());
   double weights = 0, sum = 0;  // its z is a weighted mean
   for (const FocusTarget& t : targets) {
-    const ImagePoint image = *normal_lens().image(t.place);
+    const ImagePoint image = *normal_lens().image(t.point);
     const double weight = t.weight * image.cone * image.cone;
     weights += weight, sum += weight * (image.position.z + t.blur_mm / image.cone);
   }
@@ -209,8 +209,8 @@ TEST(TiltFitSets, TwoPointsAndLinesGiveThePlaneOfLeastTilt) {
   const Vec a = normal_lens().image({one})->position, b = normal_lens().image({two})->position;
   const double least = std::abs(b.z - a.z) / std::hypot(b.x - a.x, b.y - a.y);
   Targets line;
-  for (const double t : {0.0, 0.3, 0.5, 1.0}) line.push_back({.place = {one + t * (two - one)}});
-  for (const Targets& targets : {Targets{{.place = {one}}, {.place = {two}, .weight = 3}}, line}) {
+  for (const double t : {0.0, 0.3, 0.5, 1.0}) line.push_back({.point = {one + t * (two - one)}});
+  for (const Targets& targets : {Targets{{.point = {one}}, {.point = {two}, .weight = 3}}, line}) {
     const TiltFit fit = fit_tilt(normal_lens(), targets, behind(normal_lens()));
     EXPECT_EQ(fit.status, Status::least_tilt);
     EXPECT_EQ(fit.rank, PlaneRank::line);
@@ -229,7 +229,7 @@ TEST(TiltFitSets, TwoPointsMayExceedTheLimit) {
 
 TEST(TiltFitSets, PointsAtInfinityBelongToPlanes) {
   // A ground and its horizon.
-  const auto infinitely = [](double x, double y) { return FocusTarget{.place = {{x, y, -1}, true}}; };
+  const auto infinitely = [](double x, double y) { return FocusTarget{.point = {{x, y, -1}, true}}; };
   const Targets ground{target(-300, -1500, -4000), target(500, -1500, -6000), infinitely(0.2, 0), infinitely(-0.3, 0)};
   const TiltFit fit = fit_tilt(normal_lens(), ground, behind(normal_lens()));
   ASSERT_EQ(fit.status, Status::solved);
@@ -268,8 +268,8 @@ TEST(TiltFitSets, WithoutTargetsTheFilmIsKept) {
 TEST(TiltFitSets, UnreachableTargetsAreIgnored) {
   const Targets good = inexact_targets(5, 2);
   const TiltFit wanted = fit_tilt(normal_lens(), good, behind(normal_lens()));
-  using enum TargetUse;
-  const std::vector<std::pair<FocusTarget, TargetUse>> bad{
+  using enum TargetStatus;
+  const std::vector<std::pair<FocusTarget, TargetStatus>> bad{
       {target(nan, 0, -2000), not_finite},
       {target(0, infinity, -2000), not_finite},
       {target(0, 0, infinity), not_finite},
@@ -278,15 +278,15 @@ TEST(TiltFitSets, UnreachableTargetsAreIgnored) {
       {target(0, 0, -2000, infinity), not_finite},
       {target(0, 0, -2000, 1, nan), not_finite},
       {target(0, 0, -2000, 0), no_weight},
-      {{.place = {{0, 0, -2000}}, .extent_stops = 2, .fixes_distance = false}, no_weight},
+      {{.point = {{0, 0, -2000}}, .extent_stops = 2, .fixes_distance = false}, no_weight},
       {target(0, 0, 0), no_image},
       {target(0, 0, -50), no_image},
       {target(0, 0, -50 * (1 + 1e-15)), no_image},
       {target(0, 0, 1e300), no_image},
       {target(1e300, 0, -2000), no_image},
-      {{.place = {{0, 0, 1}, true}}, no_image},
-      {{.place = {{0, 0, 0}, true}}, no_image},
-      {{.place = {{1, 0, 0}, true}}, no_image},
+      {{.point = {{0, 0, 1}, true}}, no_image},
+      {{.point = {{0, 0, 0}, true}}, no_image},
+      {{.point = {{1, 0, 0}, true}}, no_image},
   };
   for (unsigned mix = 1; mix < 1u << bad.size(); mix = mix * 3 + 1) {
     Targets targets;
@@ -302,7 +302,7 @@ TEST(TiltFitSets, UnreachableTargetsAreIgnored) {
     std::size_t at = 0;
     for (std::size_t i = 0; i < bad.size(); ++i) {
       if (mix >> i & 1u) {
-        EXPECT_EQ(fit.blurs[at++].use, bad[i].second) << i;
+        EXPECT_EQ(fit.blurs[at++].status, bad[i].second) << i;
       }
     }
   }
@@ -320,7 +320,7 @@ TEST(TiltFitSets, ExtremesGiveFiniteFilmsOrStatuses) {
     for (int i = 0; i < 5; ++i) {
       FocusTarget t = target(values[any(random)], values[any(random)], -std::abs(values[any(random)]),
                              std::abs(values[any(random)]), draw % 2 ? 0 : values[any(random)]);
-      t.place.at_infinity = any(random) < 3;
+      t.point.at_infinity = any(random) < 3;
       targets.push_back(t);
     }
     TiltOptions options = behind(normal_lens());

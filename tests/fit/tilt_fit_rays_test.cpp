@@ -53,7 +53,7 @@ Parabola parabola(const RayBundle& bundle, const Film& film) {
 double rms(const Targets& targets, const Film& film) {
   double sum = 0, weights = 0;
   for (const FocusTarget& t : targets) {
-    const RayBundle bundle = bundles().bundle(t.place);
+    const RayBundle bundle = bundles().bundle(t.point);
     const Parabola here = parabola(bundle, film), upright = parabola(bundle, film_at(film.z()));
     const double defocus =
         std::copysign(std::sqrt(std::max(t.blur_mm * t.blur_mm - upright.least, 0.0) / here.by_z), t.blur_mm);
@@ -74,7 +74,7 @@ TEST(RayTiltFit, MinimisesTheSumOfSquaredBlurs) {
     ASSERT_EQ(fit.status, Status::solved);
     double squares = 0, weights = 0;
     for (std::size_t i = 0; i < targets.size(); ++i) {
-      const double blur = blur_on(bundles().bundle(targets[i].place), fit.film)->signed_diameter;
+      const double blur = blur_on(bundles().bundle(targets[i].point), fit.film)->signed_diameter;
       EXPECT_EQ(fit.blurs[i].blur_mm, blur);
       squares += targets[i].weight * std::pow(blur - targets[i].blur_mm, 2), weights += targets[i].weight;
     }
@@ -195,7 +195,7 @@ TEST(RayTiltFit, OnePointGetsItsSharpestFilm) {
     covariance += (bundle.x[i] - x) * dx + (bundle.y[i] - y) * dy;
     variance += dx * dx + dy * dy;
   }
-  const TiltFit fit = fit_tilt(bundles(), Targets{{.place = place}}, behind(bundles().ideal()));
+  const TiltFit fit = fit_tilt(bundles(), Targets{{.point = place}}, behind(bundles().ideal()));
   EXPECT_EQ(fit.status, Status::least_tilt);
   EXPECT_FALSE(fit.film.tilted());
   EXPECT_NEAR(fit.film.z(), bundle.plane_z - covariance / variance, 1e-10);
@@ -233,7 +233,7 @@ TEST(RayTiltFit, IndependentOfTheUnitOfLength) {
   for (const double unit : {0x1p-20, 0x1p20}) {  // exact, so that no fate at a rim changes
     const ImageRays scaled(compile(scale(data_prescription("double_gauss_52mm_f1.8"), unit)), 30 * unit);
     Targets there = targets;
-    for (FocusTarget& t : there) t.place.position *= unit;
+    for (FocusTarget& t : there) t.point.position *= unit;
     TiltOptions options = behind(scaled.ideal());
     options.film = {.width_mm = 36 * unit, .height_mm = 24 * unit};
     const TiltFit fit = fit_tilt(scaled, there, options);
@@ -294,20 +294,20 @@ TEST(RayTiltFit, ContinuesFromFilmsThatNoRaysCross) {
   const TiltFit thick = fit_tilt(bundles().ideal(), targets, options);
   ASSERT_TRUE(thick);
   EXPECT_GT(thick.film.angle(), radians(80));
-  EXPECT_FALSE(blur_on(bundles().bundle(targets[0].place), thick.film));
+  EXPECT_FALSE(blur_on(bundles().bundle(targets[0].point), thick.film));
   EXPECT_TRUE(fit_tilt(bundles(), targets, options));
 }
 
 TEST(RayTiltFit, UsesTheOutliersOfTheThickLens) {
   Targets targets = tilted_plane(bundles().ideal()).targets(12, 0.25, 0.18);
   const Targets good(targets.begin() + 2, targets.end());
-  targets[0].place.position *= 1.5, targets[1].place.position *= 0.6;
+  targets[0].point.position *= 1.5, targets[1].point.position *= 0.6;
   TiltOptions options = behind(bundles().ideal());
   const TiltFit wanted = fit_tilt(bundles(), good, options);
   options.robust = true;
   const TiltFit fit = fit_tilt(bundles(), targets, options);
-  EXPECT_EQ(fit.blurs[0].use, TargetUse::outlier);
-  EXPECT_EQ(fit.blurs[1].use, TargetUse::outlier);
+  EXPECT_EQ(fit.blurs[0].status, TargetStatus::outlier);
+  EXPECT_EQ(fit.blurs[1].status, TargetStatus::outlier);
   EXPECT_GT(std::abs(fit.blurs[0].blur_mm), 0.05);
   EXPECT_NEAR(fit.film.z(), wanted.film.z(), 1e-8);
   EXPECT_NEAR(fit.rms_mm, wanted.rms_mm, 1e-8);
@@ -321,10 +321,10 @@ TEST(RayTiltFit, InvisibleTargetsAreIgnored) {
   targets.push_back(target(0, 0, -1));        // inside the focal length
   targets.push_back(target(0, 0, -1000, 0));  // shown only
   const TiltFit fit = fit_tilt(bundles(), targets, behind(bundles().ideal()));
-  EXPECT_EQ(fit.blurs[6].use, TargetUse::no_rays);
+  EXPECT_EQ(fit.blurs[6].status, TargetStatus::no_rays);
   EXPECT_TRUE(std::isnan(fit.blurs[6].blur_mm));
-  EXPECT_EQ(fit.blurs[7].use, TargetUse::no_image);
-  EXPECT_EQ(fit.blurs[8].use, TargetUse::no_weight);
+  EXPECT_EQ(fit.blurs[7].status, TargetStatus::no_image);
+  EXPECT_EQ(fit.blurs[8].status, TargetStatus::no_weight);
   EXPECT_TRUE(std::isfinite(fit.blurs[8].blur_mm));
   EXPECT_EQ(fit.film.z(), wanted.z());
   EXPECT_EQ(fit.film.tilt_rad, wanted.tilt_rad);

@@ -54,14 +54,14 @@ TEST(RobustTiltFit, FindsThePlaneAmongGrossOutliers) {
             while (std::abs(other / depth - 1) < 0.25) other = 2500 + 1500 * unit(random);
             p = Vec(x, y, -1) * other + Vec(0, 0, lens.front_principal_z());
           }
-          targets.push_back({.place = {p + Vec(noise(random), noise(random), noise(random))}});
+          targets.push_back({.point = {p + Vec(noise(random), noise(random), noise(random))}});
         }
         const TiltFit fit = fit_tilt(lens, targets, robust(lens));
         ASSERT_EQ(fit.status, Status::solved) << seed;
         const double error = degrees(angle(fit.focus->plane.normal, scene.plane().normal));
         worst = std::max(worst, error);
         for (int i = 0; i < 24; ++i) {
-          const bool out = fit.blurs[static_cast<std::size_t>(i)].use == TargetUse::outlier;
+          const bool out = fit.blurs[static_cast<std::size_t>(i)].status == TargetStatus::outlier;
           if (i < outliers && !out) ++missed;
         }
       }
@@ -74,7 +74,7 @@ TEST(RobustTiltFit, FindsThePlaneAmongGrossOutliers) {
 /// Exact points of a plane; the first ones are moved far away along their lines of sight.
 Targets with_outliers(const Scene& scene, int count, int outliers) {
   Targets targets = scene.targets(count, 0.3, 0.2, 3);
-  for (int i = 0; i < outliers; ++i) targets[static_cast<std::size_t>(i)].place.position *= 1.5 + 0.1 * i;
+  for (int i = 0; i < outliers; ++i) targets[static_cast<std::size_t>(i)].point.position *= 1.5 + 0.1 * i;
   return targets;
 }
 
@@ -87,7 +87,9 @@ TEST(RobustTiltFit, ExactPointsLoseNoWeightAndOutliersAll) {
     EXPECT_LT(angle(fit.focus->plane.normal, scene.plane().normal), 1e-9) << count;
     EXPECT_LT(fit.rms_mm, 1e-10) << count;
     for (int i = 0; i < count; ++i) {
-      EXPECT_EQ(fit.blurs[static_cast<std::size_t>(i)].use, i < outliers ? TargetUse::outlier : TargetUse::used) << i;
+      EXPECT_EQ(fit.blurs[static_cast<std::size_t>(i)].status,
+                i < outliers ? TargetStatus::outlier : TargetStatus::used)
+          << i;
     }
   }
 }
@@ -99,7 +101,7 @@ TEST(RobustTiltFit, FourTargetsHaveNoOutliers) {
   const TiltFit fit = fit_tilt(scene.lens, targets, robust(scene.lens));
   EXPECT_EQ(fit.film.z(), plain.film.z());
   EXPECT_EQ(fit.film.tilt_rad, plain.film.tilt_rad);
-  for (const TargetBlur& blur : fit.blurs) EXPECT_EQ(blur.use, TargetUse::used);
+  for (const TargetBlur& blur : fit.blurs) EXPECT_EQ(blur.status, TargetStatus::used);
 }
 
 TEST(RobustTiltFit, NoiseMakesNoOutliers) {
@@ -109,12 +111,12 @@ TEST(RobustTiltFit, NoiseMakesNoOutliers) {
     Targets targets = scene.targets(24, 0.3, 0.2, seed);
     std::mt19937 random(seed);
     std::normal_distribution<double> noise(1, 1e-3);
-    for (FocusTarget& t : targets) t.place.position *= noise(random);
+    for (FocusTarget& t : targets) t.point.position *= noise(random);
     const TiltFit plain = fit_tilt(scene.lens, targets, behind(scene.lens));
     const TiltFit fit = fit_tilt(scene.lens, targets, robust(scene.lens));
     EXPECT_NEAR(fit.film.z(), plain.film.z(), 0.01) << seed;
     EXPECT_LT(angle(fit.film.normal(), plain.film.normal()), 1e-3) << seed;
-    for (const TargetBlur& blur : fit.blurs) outliers += blur.use == TargetUse::outlier;
+    for (const TargetBlur& blur : fit.blurs) outliers += blur.status == TargetStatus::outlier;
   }
   EXPECT_LE(outliers, 12);  // of 1200
 }
@@ -124,20 +126,20 @@ TEST(RobustTiltFit, TargetsBecomeOutliersContinuously) {
   Targets targets = scene.targets(24, 0.3, 0.2);
   std::mt19937 random(1);
   std::normal_distribution<double> noise(1, 2e-3);
-  for (FocusTarget& t : targets) t.place.position *= noise(random);
-  const Vec still = targets[0].place.position;
+  for (FocusTarget& t : targets) t.point.position *= noise(random);
+  const Vec still = targets[0].point.position;
   // In steps of 0.05 mm the film changes by at most the noise of the median. A target with full weight up to the border
   // would vanish with a jump.
   constexpr int steps = 2000;
   double last = 0;
   for (int i = 0; i <= steps; ++i) {
-    targets[0].place.position = still * (1 + 0.05 * i / steps);
+    targets[0].point.position = still * (1 + 0.05 * i / steps);
     const TiltFit fit = fit_tilt(scene.lens, targets, robust(scene.lens));
     if (i > 0) {
       EXPECT_NEAR(fit.film.z(), last, 2e-5) << i;
     }
     if (i == 0 || i == steps) {
-      EXPECT_EQ(fit.blurs[0].use, i == 0 ? TargetUse::used : TargetUse::outlier);
+      EXPECT_EQ(fit.blurs[0].status, i == 0 ? TargetStatus::used : TargetStatus::outlier);
     }
     last = fit.film.z();
   }
@@ -150,7 +152,7 @@ TEST(RobustTiltFit, FitsLinesAndSinglePositions) {
     const double inverse = 4e-4 + 1e-5 * i, off = i % 4 == 3 ? 1.4 : 1.0;
     line.push_back(target(0.02 * i / inverse / off, 0, -1 / inverse / off));
     place.push_back(target(100, 50, i % 4 == 3 ? -1000 : -2000));
-    if (i % 4 == 3) place.back().place.position = Vec(50, 25, -1000);
+    if (i % 4 == 3) place.back().point.position = Vec(50, 25, -1000);
   }
   const TiltFit along = fit_tilt(normal_lens(), line, robust(normal_lens()));
   EXPECT_EQ(along.status, Status::least_tilt);
@@ -162,8 +164,8 @@ TEST(RobustTiltFit, FitsLinesAndSinglePositions) {
   EXPECT_FALSE(at.film.tilted());
   EXPECT_NEAR(at.film.z(), 50 * 2000 / 1950.0, 1e-12);
   for (std::size_t i = 0; i < 11; ++i) {
-    EXPECT_EQ(along.blurs[i].use == TargetUse::outlier, i % 4 == 3) << i;
-    EXPECT_EQ(at.blurs[i].use == TargetUse::outlier, i % 4 == 3) << i;
+    EXPECT_EQ(along.blurs[i].status == TargetStatus::outlier, i % 4 == 3) << i;
+    EXPECT_EQ(at.blurs[i].status == TargetStatus::outlier, i % 4 == 3) << i;
   }
 }
 

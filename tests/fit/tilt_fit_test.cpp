@@ -83,7 +83,7 @@ Targets points_of(const Plane& plane, double z) {
   for (const auto& [x, y] : {std::pair{-0.2, 0.05}, {0.15, 0.1}, {0.02, -0.12}, {0.2, -0.1}}) {
     const Vec along(x, y, -1), from(0, 0, z);
     const double steps = (plane.offset - glm::dot(plane.normal, from)) / glm::dot(plane.normal, along);
-    targets.push_back({.place = {from + steps * along}});
+    targets.push_back({.point = {from + steps * along}});
   }
   return targets;
 }
@@ -136,7 +136,7 @@ TEST(TiltFit, GivesThePlaneOfThreePoints) {
 TEST(TiltFit, MeetsTheBlursOfThreeTargets) {
   const IdealLens lens = thin_lens(50, 2);
   const std::vector<FocusTarget> targets{
-      {.place = {{-300, -200, -1500}}}, {.place = {{400, -100, -2500}}}, {.place = {{0, 300, -4000}}, .blur_mm = 0.05}};
+      {.point = {{-300, -200, -1500}}}, {.point = {{400, -100, -2500}}}, {.point = {{0, 300, -4000}}, .blur_mm = 0.05}};
   TiltOptions options;
   options.film.z_mm = lens.rear_focal_z;
   const TiltFit fit = fit_tilt(lens, targets, options);
@@ -162,7 +162,7 @@ TEST(TiltFit, MinimisesTheSumOfSquares) {
     const auto cost = [&](const Film& film) {
       double sum = 0, weights = 0;
       for (const FocusTarget& t : targets) {
-        const double error = signed_blur(*lens.image(t.place), film) - t.blur_mm;
+        const double error = signed_blur(*lens.image(t.point), film) - t.blur_mm;
         sum += t.weight * error * error;
         weights += t.weight;
       }
@@ -188,7 +188,7 @@ TEST(TiltFit, IndependentOfTheUnitOfLength) {
     const double tolerance = robust ? 1e-9 : 1e-12;
     for (const double unit : {1e-6, 1e-3, 1e3, 1e6}) {
       Targets scaled = targets;
-      for (FocusTarget& t : scaled) t.place.position *= unit, t.blur_mm *= unit;
+      for (FocusTarget& t : scaled) t.point.position *= unit, t.blur_mm *= unit;
       TiltOptions scaled_options = options;
       scaled_options.film = {.width_mm = 36 * unit, .height_mm = 24 * unit, .z_mm = unit * options.film.z()};
       const TiltFit fit = fit_tilt(thin_lens(F * unit, 2), scaled, scaled_options);
@@ -231,8 +231,8 @@ TEST(TiltFit, MirroredTargetsGiveTheMirroredFilm) {
       options.robust = robust;
       const Targets targets = inexact_targets(24, 8);
       Targets x = targets, y = targets;
-      for (FocusTarget& t : x) t.place.position.x *= -1;
-      for (FocusTarget& t : y) t.place.position.y *= -1;
+      for (FocusTarget& t : x) t.point.position.x *= -1;
+      for (FocusTarget& t : y) t.point.position.y *= -1;
       const Film base = fit_tilt(normal_lens(), targets, options).film;
       expect_same_film(fit_tilt(normal_lens(), x, options).film, film_at(base.z(), base.tilt_rad, -base.swing_rad),
                        1e-9);

@@ -25,7 +25,7 @@ inline TiltOptions behind(const IdealLens& lens, double max_tilt_deg = 20) {
 }
 
 inline FocusTarget target(double x, double y, double z, double weight = 1, double blur = 0) {
-  return {.place = {{x, y, z}}, .blur_mm = blur, .weight = weight};
+  return {.point = {{x, y, z}}, .blur_mm = blur, .weight = weight};
 }
 
 /// Angle between planes, radians; accurate for small angles.
@@ -51,7 +51,7 @@ struct Scene {
     std::vector<FocusTarget> list;
     for (int i = 0; i < count; ++i) {
       const double x = half_x * unit(random), y = half_y * unit(random);
-      list.push_back({.place = {at(x, y)}});
+      list.push_back({.point = {at(x, y)}});
     }
     return list;
   }

@@ -42,7 +42,7 @@ TEST(Autofocus, ThinLensFollowsItsFormula) {
     const Autofocus none = autofocus(lens, std::vector{at(0, 0, z)}, film_at(60));
     EXPECT_EQ(none.status, no_targets) << z;
     EXPECT_EQ(none.film.z(), 60);
-    EXPECT_EQ(none.blurs[0].use, TargetUse::no_image);
+    EXPECT_EQ(none.blurs[0].status, TargetStatus::no_image);
     EXPECT_TRUE(std::isnan(none.blurs[0].blur_mm));
   }
 }
@@ -98,7 +98,7 @@ TEST(Autofocus, SharesTheBlurBetweenTwoTargets) {
   EXPECT_LT(focus.blurs[0].blur_mm, 0);  // in front of the plane of focus
   EXPECT_GT(focus.blurs[1].blur_mm, 0);
   // At the minimum the blurs, weighted by the slopes of their cones, cancel.
-  const double steep = lens.image(targets[0].place)->cone, flat = lens.image(targets[1].place)->cone;
+  const double steep = lens.image(targets[0].point)->cone, flat = lens.image(targets[1].point)->cone;
   EXPECT_NEAR(steep * focus.blurs[0].blur_mm, -flat * focus.blurs[1].blur_mm, 1e-13);
   EXPECT_NEAR(focus.rms_mm, std::hypot(focus.blurs[0].blur_mm, focus.blurs[1].blur_mm) / std::numbers::sqrt2, 1e-15);
 }
@@ -123,7 +123,7 @@ TEST(Autofocus, IsALocalMinimum) {
   for (const double step : {-1e-3, 1e-3}) {
     double sum = 0;
     for (const FocusTarget& t : targets) {
-      const double blur = signed_blur(*ideal.image(t.place), film_at(focus.film.z() + step));
+      const double blur = signed_blur(*ideal.image(t.point), film_at(focus.film.z() + step));
       sum += t.weight * std::pow(blur - t.blur_mm, 2);
     }
     EXPECT_GT(sum, squares(focus, targets));
@@ -135,7 +135,7 @@ TEST(Autofocus, ExactRaysGiveALocalMinimum) {
   const Lens lens = data_lens("double_gauss_100mm_f2.0");
   const ImageRays bundles(lens, 22);
   const auto blur = [&](std::size_t i, double film_z) {
-    return *blur_on(bundles.bundle(targets[i].place), film_at(film_z));
+    return *blur_on(bundles.bundle(targets[i].point), film_at(film_z));
   };
   const double by_rms = autofocus(bundles, targets, {}, min_rms).film.z();
   const double by_max = autofocus(bundles, targets, {}, min_max).film.z();
@@ -190,7 +190,7 @@ TEST(Autofocus, IndependentOfOrderAndDuplicatesAreWeights) {
   for (const auto& of_one : films) {
     for (const double film_z : of_one) EXPECT_NEAR(film_z, of_one[0], 1e-12 * film_z);
   }
-  EXPECT_EQ(autofocus(bundles, alike[3]).blurs[0].use, TargetUse::no_weight);
+  EXPECT_EQ(autofocus(bundles, alike[3]).blurs[0].status, TargetStatus::no_weight);
   EXPECT_LT(autofocus(bundles, alike[3]).blurs[0].blur_mm, -1);
 }
 
@@ -236,9 +236,10 @@ TEST(Autofocus, KeepsTheFilmWithoutReachableTargets) {
                             at(0, 0, -1000, 0, infinity),
                             at(0, 0, -1000, 0, 0),
                             at(0, 0, -10),
-                            {.place = {{0, 0, -1000}}, .extent_stops = 2, .fixes_distance = false}};
-  const std::vector expected{TargetUse::no_image,   TargetUse::not_finite, TargetUse::not_finite, TargetUse::not_finite,
-                             TargetUse::not_finite, TargetUse::no_weight,  TargetUse::no_image,   TargetUse::no_weight};
+                            {.point = {{0, 0, -1000}}, .extent_stops = 2, .fixes_distance = false}};
+  const std::vector expected{TargetStatus::no_image,   TargetStatus::not_finite, TargetStatus::not_finite,
+                             TargetStatus::not_finite, TargetStatus::not_finite, TargetStatus::no_weight,
+                             TargetStatus::no_image,   TargetStatus::no_weight};
   for (const Autofocus& focus : {autofocus(bundles.ideal(), useless, film_at(lens.film_z())),
                                  autofocus(bundles, useless, {}, min_rms), autofocus(bundles, useless, {}, min_max)}) {
     EXPECT_EQ(focus.status, no_targets);
@@ -246,14 +247,14 @@ TEST(Autofocus, KeepsTheFilmWithoutReachableTargets) {
     EXPECT_EQ(focus.rms_mm, 0);
     EXPECT_EQ(focus.magnification_change, 0);
     for (std::size_t i = 0; i < useless.size(); ++i) {
-      EXPECT_EQ(focus.blurs[i].use, expected[i]) << i;
-      EXPECT_EQ(std::isnan(focus.blurs[i].blur_mm), expected[i] != TargetUse::no_weight) << i;
+      EXPECT_EQ(focus.blurs[i].status, expected[i]) << i;
+      EXPECT_EQ(std::isnan(focus.blurs[i].blur_mm), expected[i] != TargetStatus::no_weight) << i;
     }
   }
   EXPECT_EQ(autofocus(bundles, {}).status, no_targets);
   const std::vector beside{at(900, 0, -1000)};
-  EXPECT_EQ(autofocus(bundles, beside).blurs[0].use, TargetUse::no_rays);
-  EXPECT_EQ(autofocus(bundles.ideal(), beside, film_at(lens.film_z())).blurs[0].use, TargetUse::used);
+  EXPECT_EQ(autofocus(bundles, beside).blurs[0].status, TargetStatus::no_rays);
+  EXPECT_EQ(autofocus(bundles.ideal(), beside, film_at(lens.film_z())).blurs[0].status, TargetStatus::used);
 
   // For this blur in front of the plane of focus the film would lie inside the lens.
   const std::vector blurred{at(0, 0, -1000, -70)};
@@ -279,10 +280,10 @@ TEST(Autofocus, RefusesInvalidInput) {
 TEST(RegionTargets, AreTheCentresOfItsParts) {
   const auto targets = region_targets({0, 0, -1000}, {30, 0, 0}, {0, 20, 5}, 4, 2);
   ASSERT_EQ(targets.size(), 8u);
-  EXPECT_EQ(targets[0].place.position, (Vec3<double>{-22.5, -10, -1002.5}));
-  EXPECT_EQ(targets[1].place.position, (Vec3<double>{-7.5, -10, -1002.5}));
-  EXPECT_EQ(targets[7].place.position, (Vec3<double>{22.5, 10, -997.5}));
-  EXPECT_EQ(region_targets({1, 2, -3}, {9, 9, 9}, {9, 9, 9}, 1, 1)[0].place.position, (Vec3<double>{1, 2, -3}));
+  EXPECT_EQ(targets[0].point.position, (Vec3<double>{-22.5, -10, -1002.5}));
+  EXPECT_EQ(targets[1].point.position, (Vec3<double>{-7.5, -10, -1002.5}));
+  EXPECT_EQ(targets[7].point.position, (Vec3<double>{22.5, 10, -997.5}));
+  EXPECT_EQ(region_targets({1, 2, -3}, {9, 9, 9}, {9, 9, 9}, 1, 1)[0].point.position, (Vec3<double>{1, 2, -3}));
 }
 
 }  // namespace autofocus_test

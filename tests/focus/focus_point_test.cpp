@@ -31,7 +31,7 @@ FocusKey key(double time, const Vec& place, double blur_mm = 0, double weight = 
 }
 FocusKey far_key(double time, const Vec& direction) { return {time, ScenePoint{direction, true}, 0, 1}; }
 FocusKey on_triangle(double time, const std::array<std::size_t, 3>& vertices, const std::array<double, 3>& parts) {
-  return {time, OnTriangle{vertices, parts}, 0, 1};
+  return {time, TrianglePoint{vertices, parts}, 0, 1};
 }
 FocusPoint point(std::vector<FocusKey> keys) { return {.keys = std::move(keys)}; }
 FocusMoment moment(double time) {
@@ -58,12 +58,12 @@ TEST(FocusPoints, AreAtTheirKeys) {
       point({key(0, {10, -20, -1000}, 0.1, 2), key(1, {300, 40, -2500}, -0.05, 0), key(4, {1, 2, -400})});
   for (const FocusKey& k : p.keys) {
     const FocusTarget t = only(p, moment(k.time));
-    expect_near(t.place.position, std::get<ScenePoint>(k.anchor).position, 1e-9);
+    expect_near(t.point.position, std::get<ScenePoint>(k.anchor).position, 1e-9);
     EXPECT_EQ(t.blur_mm, k.blur_mm);
     EXPECT_EQ(t.weight, k.weight);
   }
   const FocusPoint one = point({key(7, {1, 2, -300.1})});
-  EXPECT_EQ(only(one, moment(-1e9)).place.position, (Vec{1, 2, -300.1}));
+  EXPECT_EQ(only(one, moment(-1e9)).point.position, (Vec{1, 2, -300.1}));
 }
 
 TEST(FocusPoints, HaveExtentsInAllKeysOrNoKeys) {
@@ -87,10 +87,10 @@ TEST(FocusPoints, MoveLinearlyInInverseDepth) {
   const Vec from{-100, 20, -500}, to{900, -50, -4000};
   const FocusPoint p = point({key(0, from), key(1, to)});
   const FocusTarget half = only(p, moment(0.5));
-  EXPECT_NEAR(-1 / half.place.position.z, (1 / 500.0 + 1 / 4000.0) / 2, 1e-15);
+  EXPECT_NEAR(-1 / half.point.position.z, (1 / 500.0 + 1 / 4000.0) / 2, 1e-15);
   double last = 0;
   for (double time = 0; time <= 1; time += 1.0 / 32) {
-    const Vec at = only(p, moment(time)).place.position;
+    const Vec at = only(p, moment(time)).point.position;
     EXPECT_LE(glm::length(glm::cross(at - from, to - from)), 1e-9 * glm::dot(to - from, to - from));
     const double along = glm::dot(at - from, to - from);
     EXPECT_GE(along, last);
@@ -103,7 +103,7 @@ TEST(FocusPoints, DoNotOvershootInTheImage) {
       point({key(0, {0, 0, -1000}), key(1, {0, 0, -1010}), key(1.5, {0, 0, -5000}), key(9, {0, 0, -5000})});
   double last = -1000;
   for (double time = 0; time <= 9; time += 0.01) {
-    const double z = only(p, moment(time)).place.position.z;
+    const double z = only(p, moment(time)).point.position.z;
     EXPECT_LE(z, last + 1e-9);
     EXPECT_GE(z, -5000 - 1e-9);
     last = z;
@@ -113,19 +113,19 @@ TEST(FocusPoints, DoNotOvershootInTheImage) {
 TEST(FocusPoints, MayPullFocusToInfinity) {
   const FocusPoint p = point({key(0, {50, 0, -500}), far_key(2, {0.2, 0.1, -2})});
   const FocusTarget half = only(p, moment(1));
-  EXPECT_FALSE(half.place.at_infinity);
-  EXPECT_NEAR(half.place.position.z, -1000, 1e-9);
-  EXPECT_NEAR(half.place.position.x, 1000 * (0.1 + 0.1) / 2, 1e-9);
+  EXPECT_FALSE(half.point.at_infinity);
+  EXPECT_NEAR(half.point.position.z, -1000, 1e-9);
+  EXPECT_NEAR(half.point.position.x, 1000 * (0.1 + 0.1) / 2, 1e-9);
   const FocusTarget end = only(p, moment(2));
-  EXPECT_TRUE(end.place.at_infinity);
-  expect_near(end.place.position / -end.place.position.z, {0.1, 0.05, -1}, 1e-15);
+  EXPECT_TRUE(end.point.at_infinity);
+  expect_near(end.point.position / -end.point.position.z, {0.1, 0.05, -1}, 1e-15);
   // The images move continuously.
-  const auto image_z = [&](double time) { return thin.image(only(p, moment(time)).place)->position.z; };
+  const auto image_z = [&](double time) { return thin.image(only(p, moment(time)).point)->position.z; };
   EXPECT_NEAR(image_z(2 - 1e-4), image_z(2), 1e-6);
   // Both keys may be directions.
   const FocusPoint pan = point({far_key(0, {-0.5, 0, -1}), far_key(1, {0.5, 0, -1})});
-  EXPECT_TRUE(only(pan, moment(0.5)).place.at_infinity);
-  EXPECT_NEAR(only(pan, moment(0.5)).place.position.x, 0, 1e-15);
+  EXPECT_TRUE(only(pan, moment(0.5)).point.at_infinity);
+  EXPECT_NEAR(only(pan, moment(0.5)).point.position.x, 0, 1e-15);
 }
 
 TEST(FocusPoints, CountDepthFromTheFrontPrincipalPoint) {
@@ -133,14 +133,14 @@ TEST(FocusPoints, CountDepthFromTheFrontPrincipalPoint) {
   const double z = lens.front_principal_z();
   ASSERT_GT(std::abs(z), 1);
   const FocusPoint p = point({key(0, {0, 0, z - 400}), key(1, {0, 0, z - 1600})});
-  EXPECT_NEAR(only(p, moment(0.5), lens).place.position.z, z - 640, 1e-9);
+  EXPECT_NEAR(only(p, moment(0.5), lens).point.position.z, z - 640, 1e-9);
 }
 
 TEST(FocusPoints, MoveInSpaceFromBehindTheLens) {
   const FocusPoint p = point({key(0, {0, 0, 500}), key(1, {100, 0, -1500})});
   EXPECT_TRUE(targets({p}, moment(0)).empty());
   EXPECT_TRUE(targets({p}, moment(0.2)).empty());
-  expect_near(only(p, moment(0.5)).place.position, {50, 0, -500}, 1e-9);
+  expect_near(only(p, moment(0.5)).point.position, {50, 0, -500}, 1e-9);
   // But not to infinity.
   EXPECT_TRUE(targets({point({key(0, {0, 0, 500}), far_key(1, {0, 0, -1})})}, moment(1)).empty());
 }
@@ -154,8 +154,8 @@ TEST(FocusPoints, KeepOrderAndAreIndependent) {
   ASSERT_EQ(all.size(), points.size());
   ASSERT_EQ(other.size(), points.size());
   for (std::size_t i = 0; i < all.size(); ++i) {
-    EXPECT_EQ(all[i].place.position, other[all.size() - 1 - i].place.position);
-    EXPECT_EQ(all[i].place.position, only(points[i], moment(0.3)).place.position);
+    EXPECT_EQ(all[i].point.position, other[all.size() - 1 - i].point.position);
+    EXPECT_EQ(all[i].point.position, only(points[i], moment(0.3)).point.position);
   }
 }
 
@@ -174,8 +174,8 @@ TEST(FocusPoints, FollowTheirTrianglesUnderRigidMotion) {
   for (double time = -0.5; time < 3.5; time += 0.0625) {
     FocusMoment before = moment(time), after = before;
     before.vertices = mesh, after.vertices = moved_mesh;
-    const Vec at = only(p, before).place.position;
-    expect_near(only(p, after).place.position, moved(at), 1e-10);
+    const Vec at = only(p, before).point.position;
+    expect_near(only(p, after).point.position, moved(at), 1e-10);
     EXPECT_NEAR(glm::dot(at - mesh[0], normal), 0, 1e-10);  // on the triangle
     EXPECT_GE(at.x, -1e-10);
     EXPECT_GE(at.y, -1e-10);
@@ -183,7 +183,7 @@ TEST(FocusPoints, FollowTheirTrianglesUnderRigidMotion) {
   }
   FocusMoment at_key = moment(1);
   at_key.vertices = mesh;
-  expect_near(only(p, at_key).place.position, {50, 30, -980}, 1e-9);
+  expect_near(only(p, at_key).point.position, {50, 30, -980}, 1e-9);
 }
 
 TEST(FocusPoints, MoveBetweenTrianglesAndPositions) {
@@ -193,16 +193,16 @@ TEST(FocusPoints, MoveBetweenTrianglesAndPositions) {
                               on_triangle(1, {3, 4, 5}, {third, third, third}), key(2, {7, 8, -600})});
   FocusMoment when = moment(0.5);
   when.vertices = mesh;
-  const double depth = only(p, when).place.position.z;
+  const double depth = only(p, when).point.position.z;
   EXPECT_LT(depth, -900);
   EXPECT_GT(depth, -1800);
   when.time = 1;
-  expect_near(only(p, when).place.position, {30, 30, -1800}, 1e-9);
+  expect_near(only(p, when).point.position, {30, 30, -1800}, 1e-9);
   when.time = 2;
-  expect_near(only(p, when).place.position, {7, 8, -600}, 1e-9);
+  expect_near(only(p, when).point.position, {7, 8, -600}, 1e-9);
   const FocusPoint across =
       point({on_triangle(0, {0, 1, 2}, {third, third, third}), on_triangle(2, {3, 4, 5}, {0, 1, 0})});
-  expect_near(only(across, when).place.position, {90, 0, -1800}, 1e-9);
+  expect_near(only(across, when).point.position, {90, 0, -1800}, 1e-9);
   // A vertex that is not finite removes the point for this time.
   mesh[4].x = nan;
   EXPECT_TRUE(targets({p}, when).empty());

@@ -100,7 +100,7 @@ TEST(ImageRays, SharpestFilmHasTheStatedRms) {
     for (const double slope : {0.0, 0.1}) {
       const ScenePoint place{{0, -2000 * slope, -2000}};
       const ImageRays many(lens, 20, 1 << 16);
-      const Film film = autofocus(many, std::vector{FocusTarget{.place = place}}).film;
+      const Film film = autofocus(many, std::vector{FocusTarget{.point = place}}).film;
       const double expected = blur_on(many.bundle(place), film)->rms_radius;
       for (const auto& [rays, within] : {std::pair(256, 0.07), std::pair(1024, 0.05), std::pair(4096, 0.02)}) {
         EXPECT_NEAR(blur_on(ImageRays(lens, 20, static_cast<std::size_t>(rays)).bundle(place), film)->rms_radius,
@@ -233,7 +233,7 @@ TEST(ExactBlur, SignIsIndependentOfTheNumberOfRays) {
   const Lens lens = with_f_number(data_lens("double_gauss_100mm_f2_28deg"), 4);
   const ScenePoint place{{-150, 86, -1100}};
   const RayBundle few = ImageRays(lens, 22, 256).bundle(place), many = ImageRays(lens, 22, 4096).bundle(place);
-  const double sharpest = autofocus(ImageRays(lens, 22), std::vector{FocusTarget{.place = place}}).film.z();
+  const double sharpest = autofocus(ImageRays(lens, 22), std::vector{FocusTarget{.point = place}}).film.z();
   for (const double away : {-2e-3, -1e-3, 0.0, 1e-3, 2e-3}) {
     const double a = blur_on(few, film_at(sharpest + away))->signed_diameter;
     const double b = blur_on(many, film_at(sharpest + away))->signed_diameter;

@@ -23,9 +23,9 @@ namespace round_trip_test {
 using petzval::testing::expect_error;
 using petzval::testing::expect_tokens;
 
+using petzval::ExportedLens;
 using petzval::Lens;
 using petzval::Prescription;
-using petzval::WrittenLens;
 
 const petzval::GlassCatalogue& glasses() {
   static const auto tables = petzval::GlassCatalogue::load(std::filesystem::path(PETZVAL_TEST_DATA) / "glass");
@@ -42,7 +42,7 @@ std::vector<Prescription> lenses() {
   return result;
 }
 
-Prescription read(const WrittenLens& written) {
+Prescription read(const ExportedLens& written) {
   return petzval::parse_lens(written.text, "back", {.glasses = &glasses()});
 }
 
@@ -89,11 +89,11 @@ Prescription by_formulas(Prescription p) {
 }
 
 /// Writes and reads each lens. Returns the number of lenses that the format can hold.
-int compare(const std::function<WrittenLens(const Prescription&)>& write, double tolerance, bool colours) {
+int compare(const std::function<ExportedLens(const Prescription&)>& write, double tolerance, bool colours) {
   int compared = 0;
   for (const Prescription& printed : lenses()) {
     const Prescription p = colours ? by_formulas(printed) : printed;
-    std::optional<WrittenLens> written;
+    std::optional<ExportedLens> written;
     const std::string refusal = petzval::testing::message([&] { written = write(printed); });
     if (!written) {
       expect_tokens(refusal, {printed.name});
@@ -143,7 +143,7 @@ TEST(RoundTrip, TablesKeepTheRaysOfEveryLensOfSpheres) {
 
 TEST(RoundTrip, ZemaxReadsItsOutputWithoutWarnings) {
   for (const Prescription& p : lenses()) {
-    std::optional<WrittenLens> written;
+    std::optional<ExportedLens> written;
     petzval::testing::message([&] { written = petzval::format_zemax(p, &glasses()); });
     if (!written) continue;
     const Prescription back = read(*written);
@@ -172,11 +172,11 @@ Prescription singlet() {
 }
 
 /// True if a loss of this kind is reported.
-bool lost(const WrittenLens& written, std::string_view what) {
+bool lost(const ExportedLens& written, std::string_view what) {
   return std::ranges::find(written.losses, what, &petzval::ImportWarning::command) != written.losses.end();
 }
 
-using Write = WrittenLens (*)(const Prescription&);
+using Write = ExportedLens (*)(const Prescription&);
 const Write table = [](const Prescription& p) { return petzval::format_table(p); };
 const Write zemax = [](const Prescription& p) { return petzval::format_zemax(p, &glasses()); };
 const Write codev = [](const Prescription& p) { return petzval::format_codev(p, &glasses()); };
@@ -201,7 +201,7 @@ Prescription catalogue_lens() {
 
 TEST(RoundTrip, CodevKeepsCatalogueGlassesAtEveryWavelength) {
   const Prescription lens = catalogue_lens();
-  const WrittenLens written = codev(lens);
+  const ExportedLens written = codev(lens);
   for (const char* name :
        {"BK7_SCHOTT", "SK16_SCHOTT", "SK4_SCHOTT", "F2_SCHOTT", "NLAK9_SCHOTT", "SBSL7_OHARA", "F2_CDGM"}) {
     EXPECT_NE(written.text.find(name), std::string::npos) << name;
@@ -225,7 +225,7 @@ TEST(RoundTrip, CodevNamesTheMediaThatBecomePrivate) {
   Prescription lens = catalogue_lens();
   lens.surfaces[0].medium.nd = 1.5168 + 0.0005;
   lens.surfaces[2].medium = {.nd = 1.62, .vd = 60};
-  const WrittenLens written = codev(lens);
+  const ExportedLens written = codev(lens);
   const auto loss = std::ranges::find(written.losses, "glass", &petzval::ImportWarning::command);
   ASSERT_NE(loss, written.losses.end());
   expect_tokens(loss->message, {"PRIVATE1", "BK7", 1.5173, "PRIVATE2", 1.62});
@@ -246,7 +246,7 @@ TEST(RoundTrip, CodevWritesNoApertureOfZero) {
                              petzval::ApertureSetting::image_na}) {
     Prescription p = singlet();
     p.design.aperture = {setting, 0};
-    const WrittenLens written = codev(p);
+    const ExportedLens written = codev(p);
     EXPECT_TRUE(lost(written, "aperture"));
     EXPECT_GT(read(written).design.aperture.value().value, 0) << written.text;
     p.surfaces = {{.radius = 0, .thickness = 1}};  // no pupil
@@ -296,7 +296,7 @@ TEST(RoundTrip, NominalDataRoundTripOrAreReported) {
       p.design.fields = {{.y = 10}};
     }
     for (const Write write : {zemax, codev, table}) {
-      const WrittenLens written = write(p);
+      const ExportedLens written = write(p);
       std::string said;
       for (const petzval::ImportWarning& loss : written.losses) {
         if (loss.command == "nominal data") said += loss.message;
@@ -319,7 +319,7 @@ TEST(RoundTrip, PrimaryWavelengthIsKeptIfOthersAreLost) {
   Prescription p = singlet();
   for (int i = 0; i < 30; ++i) p.design.wavelengths.push_back({450.0 + 5 * i, 1});
   p.design.primary_wavelength = 28;
-  const WrittenLens written = zemax(p);
+  const ExportedLens written = zemax(p);
   EXPECT_TRUE(lost(written, "wavelengths"));
   const Prescription back = read(written);
   ASSERT_EQ(back.design.wavelengths.size(), 24u);
@@ -502,7 +502,7 @@ TEST(RoundTrip, UnmarkedStopIsTheLimitingSurface) {
   p.surfaces[2].stop = false;
   const double f_number = petzval::real_f_number(compile(p));
   for (const Write write : {zemax, codev, table}) {
-    const WrittenLens written = write(p);
+    const ExportedLens written = write(p);
     EXPECT_TRUE(lost(written, "stop"));
     const Prescription back = read(written);
     EXPECT_TRUE(back.surfaces[2].stop);
@@ -555,7 +555,7 @@ TEST(RoundTrip, ApertureOfASeqEqualsItsStop) {
   int warned = 0, written = 0;
   for (const Prescription& p : lenses()) {
     petzval::testing::message([&] {
-      const WrittenLens seq = codev(p);
+      const ExportedLens seq = codev(p);
       ++written;
       warned +=
           static_cast<int>(std::ranges::count(read(seq).imported->warnings, "stop", &petzval::ImportWarning::command));
@@ -594,7 +594,7 @@ TEST(RoundTrip, TextsWithControlCharactersRoundTripOnOneLine) {
   p.surfaces[0].comment = "stop\0\n  DISZ 7"s;
   p.configurations = {{.name = "wide\n\0"s}, {.name = "tele\tX"s, .changes = {{.surface = 0, .thickness = 3}}}};
   for (const Write write : {zemax, codev, table}) {
-    const WrittenLens written = write(p);
+    const ExportedLens written = write(p);
     const Prescription back = read(written);
     EXPECT_EQ(back.name, "a b SURF 9  !   z") << written.text;
     ASSERT_EQ(back.surfaces.size(), p.surfaces.size());
@@ -626,7 +626,7 @@ TEST(RoundTrip, ThicknessesOfZeroRoundTripThroughATable) {
                       {.thickness = 44, .semi_diameter = 5, .stop = true}};
       }
       (first ? p.surfaces.front() : p.surfaces.back()).thickness = 0;
-      const WrittenLens written = table(p);
+      const ExportedLens written = table(p);
       const Prescription back = read(written);
       ASSERT_EQ(back.surfaces.size(), p.surfaces.size());
       for (std::size_t i = 0; i < p.surfaces.size(); ++i) {

@@ -44,9 +44,9 @@ const Camera& some_camera(fuzz::Bytes& bytes) {
         Film placed = film;
         const Lens lens = with_focus(fuzz::coloured(usual), 10000);
         placed.z_mm = lens.film_z();
-        const std::vector<FocalPoint> points{{.place = {-9, 0}, .inverse_distance = 1 / 2000.0},
-                                             {.place = {9, 2}, .inverse_distance = 1 / 9000.0},
-                                             {.place = {0, -8}, .inverse_distance = 0, .extent_stops = 2}};
+        const std::vector<FocalPoint> points{{.film_point = {-9, 0}, .inverse_distance = 1 / 2000.0},
+                                             {.film_point = {9, 2}, .inverse_distance = 1 / 9000.0},
+                                             {.film_point = {0, -8}, .inverse_distance = 0, .extent_stops = 2}};
         return Camera(lens, placed,
                       {.model = ModelKind::thick, .focal_surface = FocalSurface(thick_lens(lens), placed, points)});
       },

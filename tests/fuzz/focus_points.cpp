@@ -16,11 +16,11 @@ using namespace petzval;
 std::vector<FocusTarget> wild_targets(fuzz::Bytes& bytes) {
   std::vector<FocusTarget> targets;
   for (int i = bytes.count(0, 8); i > 0; --i) {
-    FocusTarget target{.place = {{bytes.number(-500, 500), bytes.number(-500, 500), bytes.number(-3000, -60)}}};
+    FocusTarget target{.point = {{bytes.number(-500, 500), bytes.number(-500, 500), bytes.number(-3000, -60)}}};
     const int kind = bytes.byte();
     if (kind < 32) target.blur_mm = bytes.number(-0.2, 0.2);
     if (kind % 8 == 1) target.weight = bytes.number(0, 4);
-    if (kind % 32 == 2) target.place.at_infinity = true;
+    if (kind % 32 == 2) target.point.at_infinity = true;
     if (kind % 32 == 3) target.fixes_distance = false;
     targets.push_back(target);
   }
@@ -45,7 +45,7 @@ void tilt(const auto& lens, const std::vector<FocusTarget>& targets, const TiltO
 void surface(const IdealLens& lens, const Film& film, fuzz::Bytes& bytes) {
   std::vector<FocalPoint> points;
   for (int i = bytes.count(0, 6); i > 0; --i) {
-    FocalPoint point{.place = {bytes.number(-20, 20), bytes.number(-15, 15)}};
+    FocalPoint point{.film_point = {bytes.number(-20, 20), bytes.number(-15, 15)}};
     const int kind = bytes.byte();
     if (kind < 224) point.inverse_distance = bytes.number(0, 1 / 300.0);
     if (kind % 4 == 1) point.extent_stops = bytes.number(-4, 4);

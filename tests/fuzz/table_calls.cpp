@@ -178,7 +178,7 @@ void surface(fuzz::Bytes& bytes) {
   const Film film{.z_mm = 51};
   std::vector<FocalPoint> points(static_cast<std::size_t>(bytes.count(1, 6)));
   for (FocalPoint& point : points) {
-    point.place = wild_place(bytes);
+    point.film_point = wild_place(bytes);
     if (!bytes.one_in(4)) point.inverse_distance = bytes.number(0, 1e-2);
     if (bytes.one_in(2)) point.extent_stops = bytes.number(-3, 3);
     if (bytes.one_in(4)) point.blur_mm = bytes.number(-0.5, 0.5);
@@ -189,7 +189,7 @@ void surface(fuzz::Bytes& bytes) {
   const FocalSurface found(lens, film, points, options);
   std::array<std::array<double, count>, 4> n{};
   for (std::size_t i = 0; i < count; ++i) {
-    const FilmPoint at = i == 0 ? points[0].place : wild_place(bytes);
+    const FilmPoint at = i == 0 ? points[0].film_point : wild_place(bytes);
     n[0][i] = at.x, n[1][i] = at.y;
   }
   found.at<double>(count, n[0].data(), n[1].data(), n[2].data(), n[3].data());

@@ -20,7 +20,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   }
   if (!fuzz::done([&] { validate(lens, "x"); })) return 0;
 
-  const auto returns = [&](const WrittenLens& written) { parse_lens(written.text, "x", {.glasses = &glasses}); };
+  const auto returns = [&](const ExportedLens& written) { parse_lens(written.text, "x", {.glasses = &glasses}); };
   switch (work) {
     case 0: fuzz::done([&] { returns(format_zemax(lens, &glasses)); }); break;
     case 1: fuzz::done([&] { returns(format_codev(lens, &glasses)); }); break;

@@ -78,7 +78,7 @@ TEST(IdealLens, ThinLensHasKnownTilts) {
   const Film ground = film_in(lens.image_of({{0, -1, 0}, 1.5}).value());
   EXPECT_NEAR(ground.z(), F, eps9 * F);
   EXPECT_NEAR(degrees(ground.angle()), 1.9091524329963762, eps9);
-  const SpaceLine hinge = focus_plane(lens, ground)->hinge.value();
+  const Line3 hinge = focus_plane(lens, ground)->hinge.value();
   EXPECT_NEAR(std::hypot(hinge.point.y, F), 1.5008331019803634, 2 * eps9);
 }
 
@@ -274,7 +274,7 @@ TEST(IdealLens, HingeAndScheimpflugLinesAreFixed) {
   EXPECT_NEAR(glm::length(focus_plane(lens, moved)->hinge->point - focus.hinge->point), 0, 1e-8);
   EXPECT_NEAR(glm::length(focus_plane(lens, moved)->hinge->direction - focus.hinge->direction), 0, 1e-12);
   // Film and rear principal plane intersect in the conjugate of the Scheimpflug line, at equal distance from the axis.
-  const SpaceLine behind = line_at(film.plane(), lens.rear_principal_z()).value();
+  const Line3 behind = line_at(film.plane(), lens.rear_principal_z()).value();
   EXPECT_NEAR(behind.point.x, focus.scheimpflug->point.x, 1e-8);
   EXPECT_NEAR(behind.point.y, focus.scheimpflug->point.y, 1e-8);
   EXPECT_FALSE(focus_plane(lens, film_at(film.z()))->hinge);

@@ -17,7 +17,7 @@ struct PowerKnot {
 
 /// Axial offset of the film at one film point.
 struct FilmOffset {
-  FilmPoint place{};
+  FilmPoint film_point{};
   double offset_mm = 0;  ///< positive: away from the lens, so that nearer objects are in focus
   double weight = 1;     ///< relative to the other offsets; at least 0
 };
@@ -70,7 +70,7 @@ PETZVAL_API ExpressiveLens expressive_from(const Lens& lens, const Film& film = 
 /// through the rim of the pupil.
 struct FocalSteepness {
   double steepness = 0;  ///< below 1: every ray of the scene has one film point
-  FilmPoint place{};
+  FilmPoint film_point{};
 };
 
 }  // namespace petzval

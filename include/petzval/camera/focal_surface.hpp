@@ -28,7 +28,7 @@ PETZVAL_API std::string_view name(SurfaceKind kind) noexcept;
 
 /// The distance in focus, the extent of the depth of field, or both, fixed at one film point.
 struct FocalPoint {
-  FilmPoint place = {};  ///< mm; may lie outside the frame
+  FilmPoint film_point = {};  ///< mm; may lie outside the frame
   /// 1 / distance of the object, along the axis from the entrance pupil towards the scene (1/mm); 0: infinity.
   std::optional<double> inverse_distance = {};
   /// Blur diameter that the object shall have, with the sign of FocusTarget::blur_mm; n * Film::pixel_mm() for n
@@ -53,9 +53,9 @@ struct FocalSurfaceOptions {
 ///
 ///     const IdealLens lens = thin_lens(50, 2);
 ///     const Film film{.z_mm = 51.2};
-///     const std::vector<FocalPoint> points{{.place = {-9, 0}, .inverse_distance = 1 / 1500.0},
-///                                          {.place = {9, 2}, .inverse_distance = 1 / 4000.0},
-///                                          {.place = {0, -8}, .inverse_distance = 0, .extent_stops = 2}};
+///     const std::vector<FocalPoint> points{{.film_point = {-9, 0}, .inverse_distance = 1 / 1500.0},
+///                                          {.film_point = {9, 2}, .inverse_distance = 1 / 4000.0},
+///                                          {.film_point = {0, -8}, .inverse_distance = 0, .extent_stops = 2}};
 ///     const FocalSurface surface(lens, film, points);
 ///     const double in_focus = surface.at({3, 1}).inverse_distance;
 ///

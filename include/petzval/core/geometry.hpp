@@ -30,7 +30,7 @@ struct Plane {
 };
 
 /// A line in space. Lens frame, mm.
-struct SpaceLine {
+struct Line3 {
   Vec3<double> point{0, 0, 0};      ///< the point of the line nearest to the axis
   Vec3<double> direction{1, 0, 0};  ///< unit vector; if perpendicular to the axis: x > 0, or x = 0 and y > 0
 };
@@ -40,7 +40,7 @@ struct SpaceLine {
 /// @param plane  the plane
 /// @param z      position of the perpendicular plane on the axis (mm, lens frame)
 /// @return       the common line; nullopt if both planes are parallel within rounding
-PETZVAL_API std::optional<SpaceLine> line_at(const Plane& plane, double z);
+PETZVAL_API std::optional<Line3> line_at(const Plane& plane, double z);
 
 /// Wavelength of the helium d line, the usual reference of printed indices (nm).
 inline constexpr double d_line_nm = 587.5618;

@@ -57,7 +57,7 @@ PETZVAL_API std::string focus_pull_figure(std::string_view title, std::string_vi
 
 /// A focus point in the figure; unused points are drawn hollow.
 struct TiltFigurePoint {
-  ScenePoint place;
+  ScenePoint point;
   bool used = true;
 };
 

@@ -56,9 +56,9 @@ struct TiltFit {
 /// inverse distance, refined by Ceres.
 ///
 ///     const IdealLens lens = thin_lens(50, 2);
-///     const std::vector<FocusTarget> targets{{.place = {{-300, -200, -1500}}},
-///                                            {.place = {{400, -100, -2500}}},
-///                                            {.place = {{0, 300, -4000}}, .blur_mm = 0.05}};
+///     const std::vector<FocusTarget> targets{{.point = {{-300, -200, -1500}}},
+///                                            {.point = {{400, -100, -2500}}},
+///                                            {.point = {{0, 300, -4000}}, .blur_mm = 0.05}};
 ///     const TiltFit fit = fit_tilt(lens, targets, {.film = {.width_mm = 36, .height_mm = 24}});
 ///     if (fit) draw(fit.film);
 ///

@@ -201,7 +201,7 @@ struct FocusPlane {
   /// The plane rotates about `hinge`, in the front focal plane, if the film moves along the axis, and about
   /// `scheimpflug`, in the front principal plane, if the film rotates about the conjugate line. Both are nullopt for an
   /// upright film.
-  std::optional<SpaceLine> hinge, scheimpflug;
+  std::optional<Line3> hinge, scheimpflug;
 };
 /// The plane of focus of a film; nullopt if the plane is at infinity.
 ///

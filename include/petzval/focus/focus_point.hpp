@@ -19,7 +19,7 @@ namespace petzval {
 
 /// A scene point and its requested blur on the film, at one time.
 struct FocusTarget {
-  ScenePoint place;
+  ScenePoint point;
   /// Requested blur diameter; negative in front of the plane of focus, positive beyond the plane of focus.
   double blur_mm = 0;
   double weight = 1;  ///< weight of the squared blur error; 0: the blur is only reported
@@ -29,7 +29,7 @@ struct FocusTarget {
 };
 
 /// The use of a target in a fit, or the reason for its exclusion.
-enum class TargetUse : std::uint8_t {
+enum class TargetStatus : std::uint8_t {
   used,
   no_weight,   ///< the weight is 0, or the target does not fix a distance
   not_finite,  ///< a coordinate, the blur or the weight is not finite, or the weight is negative
@@ -39,11 +39,11 @@ enum class TargetUse : std::uint8_t {
 };
 
 /// "used", "no_weight", ...
-PETZVAL_API std::string_view name(TargetUse use) noexcept;
+PETZVAL_API std::string_view name(TargetStatus status) noexcept;
 
 /// The blur of a target on a film.
 struct TargetBlur {
-  TargetUse use = TargetUse::used;
+  TargetStatus status = TargetStatus::used;
   double wanted_mm = 0;  ///< requested diameter
   double blur_mm = 0;    ///< signed diameter; NaN if the target has no image
 };
@@ -60,7 +60,7 @@ enum class PlaneRank : std::uint8_t {
 PETZVAL_API std::string_view name(PlaneRank rank) noexcept;
 
 /// A point on a triangle of a mesh. The point moves with the vertices.
-struct OnTriangle {
+struct TrianglePoint {
   std::array<std::size_t, 3> vertices{0, 0, 0};  ///< indices into the list of vertices
   std::array<double, 3> barycentric{1, 0, 0};    ///< each at least 0, sum 1 (within 1e-9)
 };
@@ -68,7 +68,7 @@ struct OnTriangle {
 /// A keyframe of a focus point.
 struct FocusKey {
   double time = 0;  ///< s
-  std::variant<ScenePoint, OnTriangle> anchor = ScenePoint{};
+  std::variant<ScenePoint, TrianglePoint> anchor = ScenePoint{};
   double blur_mm = 0;  ///< as in FocusTarget
   double weight = 1;   ///< 0 or more
   /// Extent of the depth of field, as in FocalPoint; up to 20 stops. Either all keys of a point have an extent, or no

@@ -57,7 +57,7 @@ PETZVAL_API Prescription read_lens(const std::filesystem::path& file, const Read
 PETZVAL_API Prescription parse_lens(std::string bytes, const std::string& where, const ReadOptions& options = {});
 
 /// A lens in the format of another program, with the data that the format cannot express.
-struct WrittenLens {
+struct ExportedLens {
   std::string text;
   std::vector<ImportWarning> losses;  ///< command: the lost data ("aspheric", "vd", ...); line: 0
 };
@@ -72,7 +72,7 @@ struct WrittenLens {
 /// @param glasses       indices of media without a stated index, as in ReadOptions
 /// @throws Error        if the table would describe another lens: for mirrors, cylinders, conics, aspheres, a closed
 ///                      stop, a stop inside glass, and a medium other than air in front of the lens
-PETZVAL_API WrittenLens format_table(const Prescription& prescription, const GlassCatalogue* glasses = nullptr);
+PETZVAL_API ExportedLens format_table(const Prescription& prescription, const GlassCatalogue* glasses = nullptr);
 /// Formats a lens as a .zmx file of sequential Zemax, in millimetres.
 ///
 /// Glasses of the tables keep their names, with an offset if n_d differs from the formula and from the printed table.
@@ -80,14 +80,14 @@ PETZVAL_API WrittenLens format_table(const Prescription& prescription, const Gla
 /// format_codev().
 ///
 /// @throws Error for cylinders curved along x, aspheric cylinders and a closed stop
-PETZVAL_API WrittenLens format_zemax(const Prescription& prescription, const GlassCatalogue* glasses = nullptr);
+PETZVAL_API ExportedLens format_zemax(const Prescription& prescription, const GlassCatalogue* glasses = nullptr);
 /// Formats a lens as a .seq file of CODE V, in millimetres.
 ///
 /// Glasses of the tables keep their names (BK7_SCHOTT) if n_d agrees; other media become private glasses with indices
 /// at C, d and F.
 ///
 /// @throws Error for cylinders curved along x, and for aspheric terms of odd order, of order 2 and above order 20
-PETZVAL_API WrittenLens format_codev(const Prescription& prescription, const GlassCatalogue* glasses = nullptr);
+PETZVAL_API ExportedLens format_codev(const Prescription& prescription, const GlassCatalogue* glasses = nullptr);
 
 /// The glasses of a file, with warnings about assumptions and omissions.
 struct GlassFile {
