@@ -212,7 +212,7 @@ bool convert(const Options& options) {
   }
   std::vector<ImportWarning> repairs;
   if (options.repair) {
-    petzval::Repaired repaired = petzval::repair(whole, &glasses);
+    petzval::RepairedPrescription repaired = petzval::repair(whole, &glasses);
     whole = std::move(repaired.prescription);
     repairs = std::move(repaired.changes);
     say("repaired", options.in.file, repairs);

@@ -169,8 +169,8 @@ Json interpolation_error(const std::vector<petzval::ExrPart>& parts, const examp
     const double half_width = between.pixels * between.pixel_mm / 2;
     // Separate seeds, because kernels and their interpolation have the same seed.
     const auto traced = scenes.kernel(point, 1, half_width), again = scenes.kernel(point, 2, half_width);
-    moved.push_back(100 * petzval::light_moved(between, traced));
-    noise.push_back(100 * petzval::light_moved(traced, again));
+    moved.push_back(100 * petzval::total_variation(between, traced));
+    noise.push_back(100 * petzval::total_variation(traced, again));
     light.push_back(traced.total > 0 ? 100 * std::abs(between.total / traced.total - 1) : 0.0);
     if (moved.back() >= *std::max_element(moved.begin(), moved.end())) {
       worst = {{"field_deg", point.field_deg},

@@ -202,7 +202,7 @@ Json to_json(const Report& r) {
     json["lint"].push_back({{"kind", petzval::name(finding.kind)},
                             {"surface", finding.surface ? Json(*finding.surface) : Json(nullptr)},
                             {"found", finite_or_null(finding.found)},
-                            {"wanted", finite_or_null(finding.wanted)},
+                            {"wanted", finite_or_null(finding.expected)},
                             {"message", finding.message}});
   }
   return json;

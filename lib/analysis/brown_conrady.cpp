@@ -27,16 +27,16 @@ struct Pair {
 };
 
 std::vector<Radii> radii_of(const LensDistortion& distortion) {
-  constexpr int places = 33;
+  constexpr int grid_points = 33;
   const Film& film = distortion.camera().film();
   std::vector<Radii> radii;
-  for (int row = 0; row < places; ++row) {
-    for (int column = 0; column < places; ++column) {
-      const Vec2<double> at{film.columns * (column / (places - 1.0)), film.rows * (row / (places - 1.0))};
+  for (int row = 0; row < grid_points; ++row) {
+    for (int column = 0; column < grid_points; ++column) {
+      const Vec2<double> at{film.columns * (column / (grid_points - 1.0)), film.rows * (row / (grid_points - 1.0))};
       const auto undistorted = distortion.undistorted(at);
       if (!undistorted) continue;
-      const auto radius = [&](const Vec2<double>& place) {
-        const Vec2<double> tangent = (place - distortion.centre()) / distortion.focal_length_px();
+      const auto radius = [&](const Vec2<double>& position) {
+        const Vec2<double> tangent = (position - distortion.centre()) / distortion.focal_length_px();
         return std::hypot(tangent.x, tangent.y);
       };
       radii.push_back({radius(at), radius(*undistorted)});
@@ -60,7 +60,8 @@ double squares(const std::vector<Pair>& pairs, const Coefficients& k) noexcept {
   return sum;
 }
 
-constexpr double beyond = 1.25;  ///< the mapped radius should increase up to this multiple of the largest radius
+constexpr double monotone_range =
+    1.25;  ///< the mapped radius should increase up to this multiple of the largest radius
 
 /// True if the denominator stays above 1e-3 up to a radius.
 bool without_pole(const Coefficients& k, double radius) noexcept {
@@ -102,7 +103,7 @@ template <class Row>
 Coefficients solved(const std::vector<Pair>& pairs, const Terms& terms, const Row& row) {
   const int n = terms.in_numerator, unknowns = n + terms.in_denominator;
   Eigen::MatrixXd rows(pairs.size(), unknowns);
-  Eigen::VectorXd wanted(pairs.size());
+  Eigen::VectorXd targets(pairs.size());
   for (std::size_t i = 0; i < pairs.size(); ++i) {
     const double r2 = pairs[i].from * pairs[i].from;
     const auto [by_numerator, by_denominator, sum] = row(pairs[i], r2);
@@ -110,10 +111,10 @@ Coefficients solved(const std::vector<Pair>& pairs, const Terms& terms, const Ro
     for (int j = 0; j < unknowns; ++j) {
       rows(at, j) = j < n ? std::pow(r2, j + 1) * by_numerator : std::pow(r2, j - n + 1) * by_denominator;
     }
-    wanted(at) = sum;
+    targets(at) = sum;
   }
   // The solution of least norm, because numerator and denominator may be redundant, for example without distortion.
-  const Eigen::VectorXd solution = core_detail::least_squares(rows, wanted);
+  const Eigen::VectorXd solution = core_detail::least_squares(rows, targets);
   Coefficients k{};
   for (int j = 0; j < unknowns; ++j) k[static_cast<std::size_t>(j < n ? j : j - n + 3)] = solution(j);
   return k;
@@ -140,10 +141,10 @@ Coefficients refined(const std::vector<Pair>& pairs, const Terms& terms, Coeffic
       const double slope = pair.from / polynomial(r2, &k[3]), value = ratio(k, r2);
       return Slopes{slope, -slope * value, pair.to - pair.from * value};
     });
-    double part = 1, next = now;
+    double step_fraction = 1, next = now;
     Coefficients there = k;
-    for (; part > 1e-3; part /= 2) {
-      for (std::size_t j = 0; j < k.size(); ++j) there[j] = k[j] + part * step[j];
+    for (; step_fraction > 1e-3; step_fraction /= 2) {
+      for (std::size_t j = 0; j < k.size(); ++j) there[j] = k[j] + step_fraction * step[j];
       next = without_pole(there, reach) ? squares(pairs, there) : now;
       if (next < now) break;
     }
@@ -237,7 +238,7 @@ BrownConrady fit_brown_conrady(const LensDistortion& distortion, const BrownConr
     const BrownConrady next = model_of(k);
     if (!bounded(k)) continue;
     if (next.rms_px < within.rms_px) within = next;
-    if (rises_to(k, beyond) >= beyond && next.rms_px < 0.8 * rising.rms_px) rising = next;
+    if (rises_to(k, monotone_range) >= monotone_range && next.rms_px < 0.8 * rising.rms_px) rising = next;
     if (rising.rms_px < exact_px) break;
   }
   return rising.rms_px <= std::max(2 * within.rms_px, 0.001) ? rising : within;

@@ -14,9 +14,9 @@ using analysis_detail::ModelTable;
 using analysis_detail::Tolerance;
 
 void check(const ErrorBudget& budget) {
-  const auto refuse = [](const char* what, const std::optional<double>& part) {
-    if (!part || *part >= 0) return;
-    throw Error(std::string("choose_model: budget: ") + what + " = " + to_text(*part) + "; must be at least 0");
+  const auto refuse = [](const char* what, const std::optional<double>& item) {
+    if (!item || *item >= 0) return;
+    throw Error(std::string("choose_model: budget: ") + what + " = " + to_text(*item) + "; must be at least 0");
   };
   refuse("max_px", budget.max_px);
   refuse("max_of_blur", budget.max_of_blur);
@@ -27,27 +27,27 @@ void check(const ErrorBudget& budget) {
 std::string percent(double fraction) { return to_text(100 * fraction, 3) + " %"; }
 
 /// One limit of a budget and the error of a model.
-struct Part {
+struct BudgetItem {
   bool inside = true;
   std::string needs, budget;  ///< in words
 };
 
 /// Ray errors compared with a budget; nullopt if the budget does not limit them.
 /// @param of_tolerance error divided by the allowed error
-std::optional<Part> ray_part(double px, double of_blur, double of_tolerance, const ErrorBudget& budget) {
+std::optional<BudgetItem> ray_item(double px, double of_blur, double of_tolerance, const ErrorBudget& budget) {
   if (budget.max_px && budget.max_of_blur) {
-    return Part{of_tolerance <= 1, to_text(px, 3) + " px (" + percent(of_tolerance) + " of what is allowed)",
-                to_text(*budget.max_px) + " px, or " + percent(*budget.max_of_blur) + " of the local blur"};
+    return BudgetItem{of_tolerance <= 1, to_text(px, 3) + " px (" + percent(of_tolerance) + " of what is allowed)",
+                      to_text(*budget.max_px) + " px, or " + percent(*budget.max_of_blur) + " of the local blur"};
   }
-  if (budget.max_px) return Part{px <= *budget.max_px, to_text(px, 3) + " px", to_text(*budget.max_px) + " px"};
+  if (budget.max_px) return BudgetItem{px <= *budget.max_px, to_text(px, 3) + " px", to_text(*budget.max_px) + " px"};
   if (!budget.max_of_blur) return {};
-  return Part{of_blur <= *budget.max_of_blur, percent(of_blur) + " of the local blur",
-              percent(*budget.max_of_blur) + " of it"};
+  return BudgetItem{of_blur <= *budget.max_of_blur, percent(of_blur) + " of the local blur",
+                    percent(*budget.max_of_blur) + " of it"};
 }
 
-std::optional<Part> fraction_part(double value, const std::optional<double>& allowed) {
+std::optional<BudgetItem> fraction_item(double value, const std::optional<double>& allowed) {
   if (!allowed) return {};
-  return Part{value <= *allowed, percent(value), percent(*allowed)};
+  return BudgetItem{value <= *allowed, percent(value), percent(*allowed)};
 }
 
 /// The limits of a budget that a model keeps, and the limits that it exceeds.
@@ -57,35 +57,35 @@ struct Judgement {
 };
 Judgement judge(const ModelCandidate& candidate, double of_tolerance, const ErrorBudget& budget) {
   Judgement result;
-  const auto count = [&](const char* what, const std::optional<Part>& part) {
-    if (!part) return;
-    std::string& words = part->inside ? result.kept : result.missed;
-    words += (words.empty() ? "" : "; ") + (what + (' ' + part->needs)) + " (budget " + part->budget + ")";
-    result.inside = result.inside && part->inside;
+  const auto count = [&](const char* what, const std::optional<BudgetItem>& item) {
+    if (!item) return;
+    std::string& words = item->inside ? result.kept : result.missed;
+    words += (words.empty() ? "" : "; ") + (what + (' ' + item->needs)) + " (budget " + item->budget + ")";
+    result.inside = result.inside && item->inside;
   };
-  count("rays are off by up to", ray_part(candidate.bound_px, candidate.bound_of_blur, of_tolerance, budget));
-  count("exposure by up to", fraction_part(candidate.bound_exposure, budget.exposure));
-  count("pupil shape by up to", fraction_part(candidate.bound_pupil_shape, budget.pupil_shape));
+  count("rays are off by up to", ray_item(candidate.bound_px, candidate.bound_of_blur, of_tolerance, budget));
+  count("exposure by up to", fraction_item(candidate.bound_exposure, budget.exposure));
+  count("pupil shape by up to", fraction_item(candidate.bound_pupil_shape, budget.pupil_shape));
   return result;
 }
 
 std::vector<std::string> not_needed(const ModelTable& table, std::size_t budget_number, const ErrorBudget& budget) {
   std::vector<std::string> result;
-  const auto rays = [&](const std::optional<analysis_detail::RayStudy::Largest>& largest) -> std::optional<Part> {
+  const auto rays = [&](const std::optional<analysis_detail::RayStudy::Largest>& largest) -> std::optional<BudgetItem> {
     if (!largest) return {};
-    return ray_part(largest->mm / table.pixel_mm, largest->of_blur, largest->of_tolerance[budget_number], budget);
+    return ray_item(largest->mm / table.pixel_mm, largest->of_blur, largest->of_tolerance[budget_number], budget);
   };
-  if (const auto part = rays(table.one_wavelength); part && part->inside) {
+  if (const auto item = rays(table.one_wavelength); item && item->inside) {
     result.push_back(std::to_string(table.wavelengths) + " wavelengths: " + to_text(table.central_nm, 6) +
-                     " nm can stand for all, with ray errors up to " + part->needs + " (budget " + part->budget + ")");
+                     " nm can stand for all, with ray errors up to " + item->needs + " (budget " + item->budget + ")");
   }
-  if (const auto part = fraction_part(table.constant_pupil_shape, budget.pupil_shape); part && part->inside) {
-    result.push_back("a pupil for each field: the pupil of the film centre differs by up to " + part->needs +
-                     " of the area elsewhere (budget " + part->budget + ")");
+  if (const auto item = fraction_item(table.constant_pupil_shape, budget.pupil_shape); item && item->inside) {
+    result.push_back("a pupil for each field: the pupil of the film centre differs by up to " + item->needs +
+                     " of the area elsewhere (budget " + item->budget + ")");
   }
-  if (const auto part = rays(table.no_distortion); part && part->inside) {
-    result.push_back("distortion: chief rays to first order are off by up to " + part->needs + " (budget " +
-                     part->budget + ")");
+  if (const auto item = rays(table.no_distortion); item && item->inside) {
+    result.push_back("distortion: chief rays to first order are off by up to " + item->needs + " (budget " +
+                     item->budget + ")");
   }
   return result;
 }

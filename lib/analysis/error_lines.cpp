@@ -61,8 +61,8 @@ FilmPoint error_film_point(const Film& film, std::size_t index, std::uint32_t se
   }
   const double film_x = film.shift_x_mm + x * film.width_mm / 2, film_y = film.shift_y_mm + y * film.height_mm / 2;
   const double r = std::hypot(film_x, film_y), room = film.radius_mm() - lit_radius;
-  const double part = r > lit_radius ? lit_radius / r * std::sqrt((r - lit_radius) / room) : 1;
-  return {towards_zero(part * film_x), towards_zero(part * film_y)};
+  const double fraction = r > lit_radius ? lit_radius / r * std::sqrt((r - lit_radius) / room) : 1;
+  return {towards_zero(fraction * film_x), towards_zero(fraction * film_y)};
 }
 
 std::vector<FilmPoint> pupil_film_points(const Lens& lens, const Film& film, std::size_t count, std::uint32_t seed,
@@ -78,15 +78,15 @@ std::vector<FilmPoint> pupil_film_points(const Lens& lens, const Film& film, std
                near_y = nearest(film.shift_y_mm, film.height_mm / 2),
                corner_x = farthest(film.shift_x_mm, film.width_mm / 2),
                corner_y = farthest(film.shift_y_mm, film.height_mm / 2);
-  const double corner = std::hypot(corner_x, corner_y), part = std::min(lit_radius / corner, 1.0);
-  const double far_x = part * corner_x, far_y = part * corner_y;
+  const double corner = std::hypot(corner_x, corner_y), fraction = std::min(lit_radius / corner, 1.0);
+  const double far_x = fraction * corner_x, far_y = fraction * corner_y;
   const Kronecker<2> chance(2ull * seed);
   for (std::size_t k = 0; k < count; ++k) {
     const bool end = k == 0 || k + 1 == count;
     const double step = static_cast<double>(k) + (end ? 0 : chance(k)[0] - 0.5);
     const double even = step / static_cast<double>(std::max<std::size_t>(count - 1, 1));
     // Pupils shrink fast near the edge of the lit area of the film.
-    const double t = part < 1 ? 1 - (1 - even) * (1 - even) * (1 - even) : even;
+    const double t = fraction < 1 ? 1 - (1 - even) * (1 - even) * (1 - even) : even;
     points.push_back({towards_zero(near_x + t * (far_x - near_x)), towards_zero(near_y + t * (far_y - near_y))});
   }
   return points;

@@ -34,9 +34,9 @@ double diameter(const PointRays& rays, const SceneView& view) {
   most.fill(-std::numeric_limits<double>::infinity());
   for (std::size_t i = 0; i < lines_per_point; ++i) {
     if (!rays.passes[i]) continue;
-    const Vec2<double> place = view.place(rays.rays[i]);
+    const Vec2<double> position = view.position(rays.rays[i]);
     for (int k = 0; k < directions; ++k) {
-      const double along = place.x * units[k][0] + place.y * units[k][1];
+      const double along = position.x * units[k][0] + position.y * units[k][1];
       least[k] = along < least[k] ? along : least[k];
       most[k] = along > most[k] ? along : most[k];
     }
@@ -52,9 +52,9 @@ void summarise(std::vector<double>& errors, double pixel_mm, RayErrors& result) 
     const double sum =
         std::transform_reduce(errors.begin(), errors.end(), 0.0, std::plus(), [](double e) { return e * e; });
     result.rms_mm = std::sqrt(sum / static_cast<double>(errors.size()));
-    const auto place = errors.begin() + static_cast<std::ptrdiff_t>(0.99 * static_cast<double>(errors.size() - 1));
-    std::nth_element(errors.begin(), place, errors.end());
-    result.p99_mm = *place;
+    const auto position = errors.begin() + static_cast<std::ptrdiff_t>(0.99 * static_cast<double>(errors.size() - 1));
+    std::nth_element(errors.begin(), position, errors.end());
+    result.p99_mm = *position;
   }
   result.rms_px = result.rms_mm / pixel_mm;
   result.p99_px = result.p99_mm / pixel_mm;
@@ -137,17 +137,17 @@ RayStudy::RayStudy(const camera_detail::ExactModel<double>& exact, const Film& f
 }
 
 std::uint64_t RayStudy::seed_of(const Point& point, std::uint64_t look) const noexcept {
-  return (std::uint64_t{samples_.seed} << 32) + (look << 24) + point.place;
+  return (std::uint64_t{samples_.seed} << 32) + (look << 24) + point.index;
 }
 
-RayStudy::Largest RayStudy::largest(const Found& found, const Tracing& model) const {
-  constexpr std::size_t worst = 8, looks = 16;
+RayStudy::Largest RayStudy::largest(const Measurement& found, const Tracing& model) const {
+  constexpr std::size_t worst_count = 8, repetitions = 16;
   Largest result{found.all.max_mm, found.all.max_of_blur, {}};
   std::vector<bool> looked_at(samples_.film_points);
   const auto look_at_worst = [&](const std::vector<double>& maxima) {
     std::vector<std::size_t> order(maxima.size());
     std::iota(order.begin(), order.end(), std::size_t{0});
-    const auto end = order.begin() + static_cast<std::ptrdiff_t>(std::min(worst, order.size()));
+    const auto end = order.begin() + static_cast<std::ptrdiff_t>(std::min(worst_count, order.size()));
     std::partial_sort(order.begin(), end, order.end(),
                       [&](std::size_t a, std::size_t b) { return maxima[a] > maxima[b]; });
     for (auto k = order.begin(); k != end; ++k) looked_at[*k] = true;
@@ -162,13 +162,13 @@ RayStudy::Largest RayStudy::largest(const Found& found, const Tracing& model) co
   for (std::size_t w = 0; w < points_.size(); ++w) {
     std::vector<const Point*> points;
     for (const Point& point : points_[w]) {
-      if (looked_at[point.place]) points.push_back(&point);
+      if (looked_at[point.index]) points.push_back(&point);
     }
-    std::vector<Errors> errors(points.size() * looks);
+    std::vector<Errors> errors(points.size() * repetitions);
     parallel_for(errors.size(), block, samples_.threads, [&](std::size_t begin, std::size_t end) {
       for (std::size_t k = begin; k < end; ++k) {
-        Point point = *points[k / looks];
-        point.lines = error_lines(point.lines.film, *exact_, wavelengths_[w], seed_of(point, 1 + k % looks));
+        Point point = *points[k / repetitions];
+        point.lines = error_lines(point.lines.film, *exact_, wavelengths_[w], seed_of(point, 1 + k % repetitions));
         trace(point.lines, wavelengths_[w], point.exact);
         errors[k] = errors_of(point, model, wavelengths_[w]);
       }
@@ -240,7 +240,7 @@ RayStudy::Errors RayStudy::errors_of(const Point& point, const Tracing& model, s
     ++found.rays;
     for (std::size_t d = 0; d < point.blur.size(); ++d) {
       const double error = point.views[d].distance(point.exact.rays[i], rays.rays[i]);
-      if (d < samples_.depths_z.size() && i < uniform_lines && is_uniform(point.place)) found.even.push_back(error);
+      if (d < samples_.depths_z.size() && i < uniform_lines && is_uniform(point.index)) found.even.push_back(error);
       if (error == 0) continue;  // avoids 0 / 0 if there is no blur
       found.mm = std::max(found.mm, error);
       found.of_blur = std::max(found.of_blur, error / point.blur[d]);
@@ -253,9 +253,9 @@ RayStudy::Errors RayStudy::errors_of(const Point& point, const Tracing& model, s
   return found;
 }
 
-RayStudy::Found RayStudy::measure(const Tracing& model) const {
+RayStudy::Measurement RayStudy::measure(const Tracing& model) const {
   const std::size_t film_points = samples_.film_points;
-  Found found{{}, {}, std::vector<double>(film_points), std::vector<double>(film_points), {}};
+  Measurement found{{}, {}, std::vector<double>(film_points), std::vector<double>(film_points), {}};
   found.of_tolerance.assign(tolerances_.size(), std::vector<double>(film_points));
   std::vector<double> all_uniform;
   for (std::size_t w = 0; w < points_.size(); ++w) {
@@ -268,7 +268,7 @@ RayStudy::Found RayStudy::measure(const Tracing& model) const {
     RayErrors& here = found.wavelength.emplace_back();
     std::vector<double> even;
     for (std::size_t k = 0; k < points.size(); ++k) {
-      const std::size_t at = points[k].place;
+      const std::size_t at = points[k].index;
       found.mm[at] = std::max(found.mm[at], errors[k].mm);
       found.of_blur[at] = std::max(found.of_blur[at], errors[k].of_blur);
       for (std::size_t t = 0; t < tolerances_.size(); ++t) {

@@ -6,10 +6,10 @@
 #include <vector>
 
 #include "camera/exact_model.hpp"
-#include "carry_back.hpp"
 #include "error_lines.hpp"
 #include "petzval/analysis/choose_model.hpp"
 #include "petzval/core/film.hpp"
+#include "scene_view.hpp"
 
 /// Comparison of models with a lens whose rays are traced once for all models.
 namespace petzval::analysis_detail {
@@ -26,7 +26,7 @@ class RayStudy {
   RayStudy(const camera_detail::ExactModel<double>& exact, const Film& film, const ErrorSamples& samples,
            std::span<const Tolerance> tolerances = {});
 
-  struct Found {
+  struct Measurement {
     RayErrors all;
     std::vector<RayErrors> wavelength;
     /// Largest errors of each film point over lines, depths and wavelengths: mm, fractions of the blur, fractions of
@@ -34,21 +34,21 @@ class RayStudy {
     std::vector<double> mm, of_blur;
     std::vector<std::vector<double>> of_tolerance;
   };
-  Found measure(const Tracing& model) const;
+  Measurement measure(const Tracing& model) const;
 
   /// The largest errors, refined with 16 times as many lines at the film points with the largest errors.
   struct Largest {
     double mm = 0, of_blur = 0;
     std::vector<double> of_tolerance;
   };
-  Largest largest(const Found& found, const Tracing& model) const;
+  Largest largest(const Measurement& found, const Tracing& model) const;
 
   /// The same film points, depths and blurs, but only chief rays.
   RayStudy chief_rays() const;
 
  private:
   struct Point {
-    std::size_t place = 0;  ///< index of the film point
+    std::size_t index = 0;  ///< index of the film point
     PointLines lines;
     PointRays exact{};
     ChiefRay chief{};

@@ -56,15 +56,15 @@ LensDistortion::LensDistortion(const Camera& camera, const DistortionOptions& op
 
   // Angle at which third-order distortion changes the slope of the image by 1e-8. (Aspheres with odd terms change the
   // slope by 1 % within 0.01 rad.)
-  constexpr double near = 1e-4;
+  constexpr double axis_step_rad = 1e-4;
   const auto on_axis = [&](double x, double y) {
     const auto shown = [&](double sign) {
-      const double by = sign * near * distance_;
+      const double by = sign * axis_step_rad * distance_;
       const Projection at = camera_.project({by * x, by * y, pinhole_.z_mm - distance_});
       if (at.status == ProjectionStatus::not_visible) throw Error(where + "the camera sees nothing about its axis");
       return at.raster;
     };
-    return (shown(1) - shown(-1)) / (2 * near);
+    return (shown(1) - shown(-1)) / (2 * axis_step_rad);
   };
   focal_length_px_ = {on_axis(1, 0).x, -on_axis(0, 1).y};
   if (!(focal_length_px_.x > 0 && focal_length_px_.y > 0)) {
@@ -80,19 +80,19 @@ std::optional<Vec2<double>> LensDistortion::distorted(const Vec2<double>& undist
   return at.raster;
 }
 
-Vec2<double> LensDistortion::shown_at(const Vec3<double>& point) const noexcept {
+Vec2<double> LensDistortion::pinhole_raster_of(const Vec3<double>& point) const noexcept {
   return centre_ + focal_length_px_ * Vec2<double>(point.x, -point.y) / distance_;
 }
 
-std::optional<CameraSample> LensDistortion::sample_with_light(const FilmPoint& film) const noexcept {
+std::optional<CameraSample> LensDistortion::lit_sample(const FilmPoint& film) const noexcept {
   // Tries the centre of the pupil first, then positions all over the pupil, because obscurations and folds may leave
   // only a small part of it.
-  const core_detail::Kronecker<2> places(1);
+  const core_detail::Kronecker<2> sequence(1);
   CameraSample sample{.film = film, .pupil_u = 0, .pupil_v = 1e-3};
   for (std::uint32_t i = 0; i < 32; ++i) {
     if (camera_.sample(sample)) return sample;
-    const auto place = places(i);
-    sample.pupil_u = place[0], sample.pupil_v = place[1];
+    const auto sample_point = sequence(i);
+    sample.pupil_u = sample_point[0], sample.pupil_v = sample_point[1];
   }
   return {};
 }
@@ -101,13 +101,13 @@ std::optional<Vec2<double>> LensDistortion::undistorted(const Vec2<double>& dist
   // The ray of the film point meets the subject plane near the searched point. Rays of adjacent film points give the
   // derivatives.
   const Film& film = camera_.film();
-  auto sample = sample_with_light(film.point(distorted_at.x, distorted_at.y));
+  auto sample = lit_sample(film.point(distorted_at.x, distorted_at.y));
   if (!sample) return {};
   const auto near = [&](double x, double y) -> std::optional<Vec2<double>> {
     sample->film = film.point(x, y);
     const CameraRay ray = camera_.sample(*sample);
     if (!ray || ray.ray.direction.z > -least_cosine) return {};
-    return shown_at(core_detail::meet_plane(ray.ray, pinhole_.z_mm - distance_));
+    return pinhole_raster_of(core_detail::meet_plane(ray.ray, pinhole_.z_mm - distance_));
   };
   const auto start = near(distorted_at.x, distorted_at.y);
   if (!start) return {};
@@ -118,7 +118,7 @@ std::optional<Vec2<double>> LensDistortion::undistorted(const Vec2<double>& dist
   Vec2<double> by_y = along_y ? (*along_y - *start) / hy : Vec2<double>(0, 1);
 
   // The derivatives are accurate enough for a start. Each step corrects them along its direction (Broyden 1965).
-  constexpr double settled = 1e-7, good = 5e-3;  // pixels
+  constexpr double converged_px = 1e-7, accepted_px = 5e-3;  // pixels
   Vec2<double> at = *start, step{0, 0}, last_miss{0, 0};
   double last = std::numeric_limits<double>::infinity();
   for (int i = 0; i < 40; ++i) {
@@ -126,8 +126,8 @@ std::optional<Vec2<double>> LensDistortion::undistorted(const Vec2<double>& dist
     if (!shown) return {};
     const Vec2<double> miss = distorted_at - *shown;
     const double length = std::hypot(miss.x, miss.y);
-    if (length < settled) return at;
-    if (!(length < last)) return last < good ? std::optional(at - step) : std::nullopt;
+    if (length < converged_px) return at;
+    if (!(length < last)) return last < accepted_px ? std::optional(at - step) : std::nullopt;
     if (i > 0) {
       const Vec2<double> moved = last_miss - miss, expected = moved.x * by_x + moved.y * by_y;
       if (const double along = glm::dot(step, expected); along != 0) {
@@ -140,17 +140,18 @@ std::optional<Vec2<double>> LensDistortion::undistorted(const Vec2<double>& dist
     step = miss.x * by_x + miss.y * by_y;
     at += step;
   }
-  return last < good ? std::optional(at - step) : std::nullopt;
+  return last < accepted_px ? std::optional(at - step) : std::nullopt;
 }
 
 double LensDistortion::widest_field_rad() const noexcept {
-  constexpr int places = 17;
+  constexpr int grid_points = 17;
   const Film& film = camera_.film();
   double widest = 0;
-  for (int row = 0; row < places; ++row) {
-    for (int column = 0; column < places; ++column) {
-      const double x = static_cast<double>(column) / (places - 1), y = static_cast<double>(row) / (places - 1);
-      const auto sample = sample_with_light(film.point(x * film.columns, y * film.rows));
+  for (int row = 0; row < grid_points; ++row) {
+    for (int column = 0; column < grid_points; ++column) {
+      const double x = static_cast<double>(column) / (grid_points - 1),
+                   y = static_cast<double>(row) / (grid_points - 1);
+      const auto sample = lit_sample(film.point(x * film.columns, y * film.rows));
       if (!sample) continue;
       widest = std::max(widest, std::acos(std::clamp(-camera_.sample(*sample).ray.direction.z, -1.0, 1.0)));
     }
@@ -159,12 +160,13 @@ double LensDistortion::widest_field_rad() const noexcept {
 }
 
 std::optional<RasterBox> undistorted_box(const LensDistortion& distortion) {
-  constexpr int places = 65;
+  constexpr int grid_points = 65;
   const Film& film = distortion.camera().film();
   std::optional<RasterBox> box;
-  for (int row = 0; row < places; ++row) {
-    for (int column = 0; column < places; ++column) {
-      const double x = static_cast<double>(column) / (places - 1), y = static_cast<double>(row) / (places - 1);
+  for (int row = 0; row < grid_points; ++row) {
+    for (int column = 0; column < grid_points; ++column) {
+      const double x = static_cast<double>(column) / (grid_points - 1),
+                   y = static_cast<double>(row) / (grid_points - 1);
       const auto seen = distortion.undistorted({x * film.columns, y * film.rows});
       if (!seen) continue;
       if (!box) box = {*seen, *seen};

@@ -21,9 +21,9 @@ LensIdentity identity_of(const Prescription& prescription) {
 }
 
 Film film_of(const Prescription& prescription, const Lens& lens) {
-  constexpr double least_part = 0.1;  // fraction of the irradiance on the axis
+  constexpr double min_irradiance_fraction = 0.1;  // fraction of the irradiance on the axis
   const bool declared = prescription.image_diagonal_mm.has_value();
-  const double diagonal = declared ? *prescription.image_diagonal_mm : image_circle_mm(lens, least_part);
+  const double diagonal = declared ? *prescription.image_diagonal_mm : image_circle_mm(lens, min_irradiance_fraction);
   if (!(diagonal > 0 && std::isfinite(diagonal))) {
     throw Error(lens.name() + ": film: the " +
                 (declared ? "declared image diagonal = " + to_text(diagonal) + " mm; must be finite and above 0"
@@ -52,7 +52,7 @@ LensState lens_state(const LensDistortion& distortion) {
 
 double ExposureFalloff::light(double radius_mm) const noexcept {
   const double r2 = radius_mm * radius_mm;
-  return 1 - r2 * (a[0] + r2 * (a[1] + r2 * a[2]));
+  return 1 - r2 * (coefficients[0] + r2 * (coefficients[1] + r2 * coefficients[2]));
 }
 
 ExposureFalloff fit_exposure_falloff(const Lens& lens, const Film& film) {
@@ -60,33 +60,34 @@ ExposureFalloff fit_exposure_falloff(const Lens& lens, const Film& film) {
   const double farthest = film.radius_mm(), on_axis = film_irradiance(lens, {});
   if (!(on_axis > 0)) throw Error(lens.name() + ": exposure falloff: the axis is dark; light must reach it");
 
-  struct Place {
+  struct FalloffSample {
     double radius = 0, light = 0;
   };
-  std::vector<Place> places;
+  std::vector<FalloffSample> falloff_samples;
   const int directions = lens.rotationally_symmetric() ? 1 : 4;
   for (int direction = 0; direction < directions; ++direction) {
     const double angle = direction * std::numbers::pi / 6;
     for (int i = 1; i <= radii; ++i) {
       const double radius = farthest * i / radii;
       const double light = film_irradiance(lens, {radius * std::sin(angle), radius * std::cos(angle)}) / on_axis;
-      if (light > 0) places.push_back({radius, light});
+      if (light > 0) falloff_samples.push_back({radius, light});
     }
   }
   ExposureFalloff result;
-  if (places.empty()) return result;
-  Eigen::MatrixXd rows(places.size(), 3);
-  Eigen::VectorXd lost(places.size());
-  for (std::size_t i = 0; i < places.size(); ++i) {
-    const double r2 = (places[i].radius / farthest) * (places[i].radius / farthest);
-    const double weight = std::sqrt(places[i].radius / farthest);  // its square: area of a ring of the film
+  if (falloff_samples.empty()) return result;
+  Eigen::MatrixXd rows(falloff_samples.size(), 3);
+  Eigen::VectorXd lost(falloff_samples.size());
+  for (std::size_t i = 0; i < falloff_samples.size(); ++i) {
+    const double r2 = (falloff_samples[i].radius / farthest) * (falloff_samples[i].radius / farthest);
+    const double weight = std::sqrt(falloff_samples[i].radius / farthest);  // its square: area of a ring of the film
     rows.row(static_cast<Eigen::Index>(i)) << weight * r2, weight * r2 * r2, weight * r2 * r2 * r2;
-    lost(static_cast<Eigen::Index>(i)) = weight * (1 - places[i].light);
+    lost(static_cast<Eigen::Index>(i)) = weight * (1 - falloff_samples[i].light);
   }
   const Eigen::VectorXd a = core_detail::least_squares(rows, lost);
-  for (int i = 0; i < 3; ++i) result.a[static_cast<std::size_t>(i)] = a(i) / std::pow(farthest, 2 * (i + 1));
-  for (const Place& place : places) {
-    result.largest_error = std::max(result.largest_error, std::abs(result.light(place.radius) - place.light));
+  for (int i = 0; i < 3; ++i) result.coefficients[static_cast<std::size_t>(i)] = a(i) / std::pow(farthest, 2 * (i + 1));
+  for (const FalloffSample& falloff_sample : falloff_samples) {
+    result.largest_error =
+        std::max(result.largest_error, std::abs(result.light(falloff_sample.radius) - falloff_sample.light));
   }
   return result;
 }

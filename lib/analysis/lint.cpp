@@ -25,7 +25,7 @@ std::string mm(double value) { return to_text(value, 6) + " mm"; }
 
 std::string at(int surface) { return "surface " + std::to_string(surface) + ": "; }
 
-bool differs(double found, double wanted) { return !(std::abs(found - wanted) <= tolerance * std::abs(wanted)); }
+bool differs(double found, double expected) { return !(std::abs(found - expected) <= tolerance * std::abs(expected)); }
 
 using Findings = std::vector<Finding>;
 
@@ -114,7 +114,7 @@ std::optional<double> aperture_factor(const Prescription& prescription, double f
 
 /// Reports the rim that clips the axial beam first, if its beam is clearly narrower than the beam of the marked stop.
 void check_stop(const Lens& lens, Findings& findings) {
-  constexpr double well_before = 0.7;
+  constexpr double clipping_ratio = 0.7;
   if (!lens.stop()) return;
   const auto to = ray_matrices_to(lens, {}, main_meridian(lens));
   // Semi-diameter divided by the height of a ray that enters at height 1.
@@ -124,7 +124,7 @@ void check_stop(const Lens& lens, Findings& findings) {
   for (std::size_t i = 0; i < lens.surface_count(); ++i) {
     if (lens.surfaces()[i].semi_diameter > 0 && margin(i) < margin(first)) first = i;
   }
-  if (!(margin(first) < well_before * of_stop) || !std::isfinite(of_stop)) return;
+  if (!(margin(first) < clipping_ratio * of_stop) || !std::isfinite(of_stop)) return;
   findings.push_back({Kind::idle_stop, static_cast<int>(*lens.stop()), of_stop, margin(first),
                       at(static_cast<int>(*lens.stop())) + "the stop passes an axial beam of " + mm(of_stop) +
                           " radius, but surface " + std::to_string(first) + " clips it at " + mm(margin(first))});
@@ -185,12 +185,12 @@ void check_first_order(const Prescription& prescription, const Lens& lens, const
 }
 
 void check_glasses(const Prescription& prescription, const GlassCatalogue& glasses, Findings& findings) {
-  constexpr double another_glass = 0.005;
+  constexpr double min_index_difference = 0.005;
   for (std::size_t i = 0; i < prescription.surfaces.size(); ++i) {
     const Medium& medium = prescription.surfaces[i].medium;
     if (!medium.glass || !medium.catalogue || !medium.nd) continue;
     const Glass* glass = glasses.find(*medium.glass, *medium.catalogue);
-    if (!glass || std::abs(glass->nd - *medium.nd) <= another_glass) continue;
+    if (!glass || std::abs(glass->nd - *medium.nd) <= min_index_difference) continue;
     const int surface = static_cast<int>(i);
     findings.push_back(
         {Kind::glass_index, surface, *medium.nd, glass->nd,
@@ -199,11 +199,11 @@ void check_glasses(const Prescription& prescription, const GlassCatalogue& glass
 }
 
 void check_size(const Lens& lens, const Film& film, Findings& findings) {
-  constexpr double too_large = 3, too_small = 0.02;
+  constexpr double max_size_ratio = 3, min_size_ratio = 0.02;
   const double circle = image_circle_mm(with_film(lens, film.z_mm.value_or(lens.film_z())));
   const double diameter = 2 * film.radius_mm();
-  const bool larger = diameter > too_large * circle;
-  if (!larger && !(diameter < too_small * circle && std::isfinite(circle))) return;
+  const bool larger = diameter > max_size_ratio * circle;
+  if (!larger && !(diameter < min_size_ratio * circle && std::isfinite(circle))) return;
   findings.push_back({Kind::film_size,
                       {},
                       diameter,
@@ -217,15 +217,15 @@ void check_pixels(const Lens& lens, const Film& film, Findings& findings) {
   // Images of an anamorphic lens are stretched afterwards, or have pixels of such a shape.
   if (!with_iris(lens, {}).rotationally_symmetric()) return;
   const double width = film.width_mm / film.columns, height = film.height_mm / film.rows;
-  const double wanted_height = width * film.rows;
+  const double expected_height = width * film.rows;
   // With few pixels, rounding to whole pixels changes the height of the film slightly.
-  if (std::abs(width / height - 1) <= 0.005 || std::abs(film.height_mm - wanted_height) < width) return;
+  if (std::abs(width / height - 1) <= 0.005 || std::abs(film.height_mm - expected_height) < width) return;
   findings.push_back({Kind::pixel_shape,
                       {},
                       width / height,
                       1,
                       "pixels are " + to_text(width, 4) + " by " + to_text(height, 4) +
-                          " mm; must be square: " + to_text(film.width_mm, 6) + " by " + mm(wanted_height) + " fit " +
+                          " mm; must be square: " + to_text(film.width_mm, 6) + " by " + mm(expected_height) + " fit " +
                           std::to_string(film.columns) + " by " + std::to_string(film.rows)});
 }
 
@@ -273,8 +273,8 @@ std::vector<Finding> lint(const Prescription& prescription, const GlassCatalogue
   return findings;
 }
 
-Repaired repair(const Prescription& prescription, const GlassCatalogue* glasses) {
-  Repaired result{prescription, {}};
+RepairedPrescription repair(const Prescription& prescription, const GlassCatalogue* glasses) {
+  RepairedPrescription result{prescription, {}};
   Prescription& p = result.prescription;
   const auto find = [&](Kind kind) -> std::optional<Finding> {
     const Findings findings = lint_rows(p, glasses);
@@ -299,13 +299,13 @@ Repaired repair(const Prescription& prescription, const GlassCatalogue* glasses)
   const bool alone = p.configurations.size() < 2;
   if (const auto units = find(Kind::units); alone && units) {
     const bool made = changed([&](Prescription& lens) {
-      lens = scale(lens, 1 / *unit_between(units->found, units->wanted));
+      lens = scale(lens, 1 / *unit_between(units->found, units->expected));
       lens.focal_length_mm = p.focal_length_mm, lens.image_diagonal_mm = p.image_diagonal_mm;
     });
     if (made) say(*units, "all lengths are scaled");
   }
   if (const auto apertures = find(Kind::apertures); alone && apertures) {
-    const double factor = apertures->found < apertures->wanted ? 0.5 : 2;
+    const double factor = apertures->found < apertures->expected ? 0.5 : 2;
     const bool made = changed([&](Prescription& lens) {
       for (SurfaceRow& row : lens.surfaces) {
         if (row.semi_diameter) *row.semi_diameter *= factor;
@@ -322,8 +322,8 @@ Repaired repair(const Prescription& prescription, const GlassCatalogue* glasses)
     }
     say(*stops, "only the first mark is kept");
   }
-  if (const auto film = find(Kind::image_distance); alone && film && film->wanted > 0) {
-    if (changed([&](Prescription& lens) { lens.surfaces.back().thickness = film->wanted; }))
+  if (const auto film = find(Kind::image_distance); alone && film && film->expected > 0) {
+    if (changed([&](Prescription& lens) { lens.surfaces.back().thickness = film->expected; }))
       say(*film, "the film is moved to the image");
   }
   return result;

@@ -15,7 +15,7 @@ namespace {
 /// A medium without a glass name, and its positions in the lens.
 struct Anonymous {
   Medium medium;
-  std::vector<std::string> places;
+  std::vector<std::string> locations;
 };
 
 /// Calls a function for each medium of a lens, with the name of its position.
@@ -30,9 +30,9 @@ void for_each_medium(Prescription& lens, const auto& call) {
   }
 }
 
-std::string joined(const std::vector<std::string>& places) {
+std::string joined(const std::vector<std::string>& locations) {
   std::string text;
-  for (const std::string& place : places) text += (text.empty() ? "" : ", ") + place;
+  for (const std::string& location : locations) text += (text.empty() ? "" : ", ") + location;
   return text;
 }
 
@@ -53,16 +53,16 @@ MatchedGlasses match_glasses(const Prescription& prescription, const GlassCatalo
   }
   MatchedGlasses result{.prescription = prescription, .matched = {}, .unmatched = {}};
   std::vector<Anonymous> media;
-  for_each_medium(result.prescription, [&](const Medium& medium, const std::string& place) {
+  for_each_medium(result.prescription, [&](const Medium& medium, const std::string& location) {
     if (medium.glass || medium.is_air()) return;
     auto known = std::ranges::find(media, medium, &Anonymous::medium);
     if (known == media.end()) known = media.insert(media.end(), {medium, {}});
-    known->places.push_back(place);
+    known->locations.push_back(location);
   });
   for (const Anonymous& entry : media) {
     const double nd = *entry.medium.nd;
-    const std::string places = joined(entry.places);
-    const auto keep = [&](const std::string& reason) { result.unmatched.push_back({0, places, reason}); };
+    const std::string locations = joined(entry.locations);
+    const auto keep = [&](const std::string& reason) { result.unmatched.push_back({0, locations, reason}); };
     if (entry.medium.vd.value_or(0) == 0) {
       keep("n_d " + to_text(nd, 7) + " without V_d: a glass has both");
       continue;
@@ -89,7 +89,7 @@ MatchedGlasses match_glasses(const Prescription& prescription, const GlassCatalo
       medium.catalogue = glass.catalogue;
       medium.glass_origin = "matched";
     });
-    result.matched.push_back({0, places, found + described(glass)});
+    result.matched.push_back({0, locations, found + described(glass)});
   }
   return result;
 }

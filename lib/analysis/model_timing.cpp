@@ -21,9 +21,9 @@ class Work {
  public:
   Work(const Film& film, std::size_t wavelengths)
       : film_(film), scale_(wavelengths, 1.0), values_(11 * rays), fates_(rays) {
-    const core_detail::Kronecker<2> places(0), pupil(1);
+    const core_detail::Kronecker<2> film_sequence(0), pupil(1);
     for (std::size_t i = 0; i < rays; ++i) {
-      const FilmPoint point = film.point(places(i)[0] * film.columns, places(i)[1] * film.rows);
+      const FilmPoint point = film.point(film_sequence(i)[0] * film.columns, film_sequence(i)[1] * film.rows);
       const double sample[] = {point.x, point.y, pupil(i)[0], pupil(i)[1]};
       for (std::size_t k = 0; k < 4; ++k) values_[k * rays + i] = static_cast<T>(sample[k]);
     }

@@ -25,9 +25,10 @@ namespace {
 
 void validate(const PsfOptions& options) {
   if (options.samples == 0) throw Error("point_image: samples = 0; must be at least 1");
-  constexpr int most = 1 << 15;
-  if (options.pixels < 1 || options.pixels > most) {
-    throw Error("point_image: pixels = " + std::to_string(options.pixels) + "; must be 1 to " + std::to_string(most));
+  constexpr int max_pixels = 1 << 15;
+  if (options.pixels < 1 || options.pixels > max_pixels) {
+    throw Error("point_image: pixels = " + std::to_string(options.pixels) + "; must be 1 to " +
+                std::to_string(max_pixels));
   }
   if (!std::isfinite(options.half_width_mm) || options.half_width_mm < 0) {
     throw Error("point_image: half_width_mm = " + to_text(options.half_width_mm) + "; must be finite and at least 0");
@@ -44,7 +45,7 @@ void validate(const PsfOptions& options) {
 /// Number of consecutive parts of one sequence, from which errors are estimated. Separately scrambled parts would give
 /// unbiased estimates, but their common error would be 1.2 to 3.5 times as large: the bound would not be lower, and the
 /// image would be worse (tests/analysis/psf_sampling_test.cpp).
-constexpr std::size_t parts = 8;
+constexpr std::size_t subsets = 8;
 
 /// Rays of a point at a wavelength, for `count` samples of a sequence from `first` on.
 using SendRays = std::function<RayBundle(std::size_t wavelength, std::uint32_t first, std::uint32_t count)>;
@@ -52,21 +53,21 @@ using SendRays = std::function<RayBundle(std::size_t wavelength, std::uint32_t f
 /// The rays of a point at each wavelength, sampled in parts.
 struct Rays {
   std::vector<RayBundle> sets;
-  std::vector<std::size_t> wavelength, part;      ///< per set
+  std::vector<std::size_t> wavelength, subset;    ///< per set
   std::vector<std::vector<std::uint32_t>> units;  ///< per set, of each ray with a weight
   std::uint32_t sent = 0;                         ///< per wavelength
 
   /// Sends the samples up to a number. The first call sends eight parts. Each later call must double the number: the
   /// eight parts are merged in pairs, and the new samples are four more parts.
   void send(std::size_t wavelengths, std::uint32_t samples, const SendRays& send_rays) {
-    const std::size_t first_part = sent == 0 ? 0 : parts / 2;
-    for (std::size_t& own : part) own /= 2;
+    const std::size_t first_subset = sent == 0 ? 0 : subsets / 2;
+    for (std::size_t& own : subset) own /= 2;
     for (std::size_t w = 0; w < wavelengths; ++w) {
-      for (std::size_t k = first_part; k < parts; ++k) {
+      for (std::size_t k = first_subset; k < subsets; ++k) {
         const std::uint32_t begin = begin_of(k, samples), count = begin_of(k + 1, samples) - begin;
         sets.push_back(send_rays(w, begin, count));
         wavelength.push_back(w);
-        part.push_back(k);
+        subset.push_back(k);
         auto& own = units.emplace_back();
         for (const double weight : sets.back().weights) own.push_back(units_of(weight));
       }
@@ -83,16 +84,16 @@ struct Rays {
     for (const RayBundle& set : sets) {
       for (const double weight : set.weights) ++count, sum += weight, squares += weight * weight;
     }
-    constexpr double much = 0.25;
-    return count * squares > (1 + much) * sum * sum;
+    constexpr double max_relative_variance = 0.25;
+    return count * squares > (1 + max_relative_variance) * sum * sum;
   }
 
   static constexpr std::uint32_t units_per_ray = 1u << 16;
   static std::uint32_t units_of(double weight) noexcept {
     return static_cast<std::uint32_t>(std::min(weight * units_per_ray + 0.5, 4294967295.0));
   }
-  static std::uint32_t begin_of(std::size_t part, std::uint32_t samples) noexcept {
-    return static_cast<std::uint32_t>(std::uint64_t{samples} * part / parts);
+  static std::uint32_t begin_of(std::size_t subset, std::uint32_t samples) noexcept {
+    return static_cast<std::uint32_t>(std::uint64_t{samples} * subset / subsets);
   }
 };
 
@@ -100,8 +101,8 @@ struct Rays {
 double fitting_half_width(const std::vector<RayBundle>& sets, const Vec2<double>& centre) {
   const double cx = centre.x, cy = centre.y;
   analysis_detail::PartialSums extent{};
-  analysis_detail::for_each(sets, [&](std::size_t part, double x, double y, double) {
-    extent[part] = std::max(extent[part], std::max(std::abs(x - cx), std::abs(y - cy)));
+  analysis_detail::for_each(sets, [&](std::size_t subset, double x, double y, double) {
+    extent[subset] = std::max(extent[subset], std::max(std::abs(x - cx), std::abs(y - cy)));
   });
   return analysis_detail::fitting_half_width(analysis_detail::largest(extent));
 }
@@ -148,10 +149,10 @@ struct Rings {
 
 /// The light in the rings `own`, of one part of the rays, as a fraction of the light on the paraxial entrance pupil.
 /// All rays are used if part == parts.
-std::array<double, rings> light_by_ring(const Psf& psf, const Rays& rays, const Rings& own, std::size_t part) {
+std::array<double, rings> light_by_ring(const Psf& psf, const Rays& rays, const Rings& own, std::size_t subset) {
   std::array<double, rings> light{};
   for (std::size_t i = 0; i < rays.sets.size(); ++i) {
-    if (part != parts && rays.part[i] != part) continue;
+    if (subset != subsets && rays.subset[i] != subset) continue;
     const auto counts = count_by_ring(rays.sets[i], rays.units[i], own.centre, own.width);
     const double weight = psf.ray_weight(rays.wavelength[i]) / static_cast<double>(psf.wavelengths_nm.size());
     for (std::size_t k = 0; k < rings; ++k) light[k] += weight * static_cast<double>(counts[k]);
@@ -169,26 +170,27 @@ void fill_profile(PointImage& image, const Rays& rays) {
   const double width = image.size.max_radius / rings;
   image.radial_profile = {};
   if (width == 0) return;
-  const auto light = light_by_ring(image.psf, rays, {image.size.centroid, width}, parts);
+  const auto light = light_by_ring(image.psf, rays, {image.size.centroid, width}, subsets);
   double errors = 0, squares = 0;
   for (std::size_t k = 0; k < rings; ++k) {
     squares += light[k] * light[k];
     image.radial_profile[k] = light[k] / (std::numbers::pi * width * width * static_cast<double>(2 * k + 1));
   }
-  for (std::size_t part = 0; part < parts; ++part) {
+  for (std::size_t subset = 0; subset < subsets; ++subset) {
     std::vector<analysis_detail::Points> own;
     for (std::size_t i = 0; i < rays.sets.size(); ++i) {
-      if (rays.part[i] == part) own.push_back({rays.sets[i].x, rays.sets[i].y, rays.sets[i].weights});
+      if (rays.subset[i] == subset) own.push_back({rays.sets[i].x, rays.sets[i].y, rays.sets[i].weights});
     }
     const SpotSize size = analysis_detail::spot_size(own);
     std::array<double, rings> its{};
     if (std::ranges::any_of(own, [](const analysis_detail::Points& points) { return !points.x.empty(); })) {
       if (size.max_radius == 0) continue;  // all hits coincide
-      its = light_by_ring(image.psf, rays, {size.centroid, size.max_radius / rings}, part);
+      its = light_by_ring(image.psf, rays, {size.centroid, size.max_radius / rings}, subset);
     }
-    for (std::size_t k = 0; k < rings; ++k) errors += (parts * its[k] - light[k]) * (parts * its[k] - light[k]);
+    for (std::size_t k = 0; k < rings; ++k) errors += (subsets * its[k] - light[k]) * (subsets * its[k] - light[k]);
   }
-  image.error = (rays.uneven() ? uneven_confidence : confidence) * std::sqrt(errors / (parts * (parts - 1)) / squares);
+  image.error =
+      (rays.uneven() ? uneven_confidence : confidence) * std::sqrt(errors / (subsets * (subsets - 1)) / squares);
 }
 
 /// The rays of a camera that connect a point with the entrance pupil. The weight of a ray is the area of the pupil
@@ -210,8 +212,8 @@ RayBundle connected_rays(const Camera& camera, const PupilPlane& plane, std::siz
       if (!(s.pdf > 0)) continue;
       const double cosine = std::abs(glm::dot(s.direction, plane.normal()));
       // Factor from solid angle, or from area across the ray, to area of the plane.
-      const double way = far ? 1 : glm::dot(plane.centre() - point, plane.normal()) / cosine;
-      const double spread = way * way / cosine;
+      const double distance_ratio = far ? 1 : glm::dot(plane.centre() - point, plane.normal()) / cosine;
+      const double spread = distance_ratio * distance_ratio / cosine;
       x[i] = s.importance.film.x, y[i] = s.importance.film.y;
       weights[i] = s.importance.we / s.pdf * per_importance * spread;
     }
@@ -228,10 +230,10 @@ RayBundle connected_rays(const Camera& camera, const PupilPlane& plane, std::siz
 
 /// The largest weight of a few rays, over all wavelengths; 1 if no ray has a weight.
 double brightest(const SendRays& send, std::size_t wavelengths) {
-  constexpr std::uint32_t some = 256;
+  constexpr std::uint32_t trial_samples = 256;
   double result = 0;
   for (std::size_t w = 0; w < wavelengths; ++w) {
-    for (const double weight : send(w, 0, some).weights) result = std::max(result, weight);
+    for (const double weight : send(w, 0, trial_samples).weights) result = std::max(result, weight);
   }
   return result > 0 ? result : 1;
 }
@@ -260,9 +262,9 @@ PointImage image_of(const Lens& lens, const std::vector<double>& sampled_area, c
   for (const std::size_t w : wavelengths_of(lens, options)) psf.wavelengths_nm.push_back(lens.wavelengths_nm()[w]);
   psf.entrance_pupil_area = entrance_pupil_area(lens);
   psf.sampled_area = sampled_area;
-  constexpr std::uint32_t first = 1u << 14;
+  constexpr std::uint32_t first_samples = 1u << 14;
   Rays rays;
-  for (std::uint32_t samples = options.tolerance > 0 ? std::min(first, options.samples) : options.samples;;) {
+  for (std::uint32_t samples = options.tolerance > 0 ? std::min(first_samples, options.samples) : options.samples;;) {
     rays.send(psf.wavelengths_nm.size(), samples, send_rays);
     psf.sent.assign(psf.wavelengths_nm.size(), samples);
     psf.units_per_ray = rays.weighted() ? Rays::units_per_ray : 1;

@@ -52,18 +52,19 @@ struct MeanBundle {
     const int c = static_cast<int>(column), r = std::clamp(static_cast<int>(std::floor(row)), 0, side - 2);
     const double right = column - c;
     double down = row - r;
-    const auto place = [&](int i, int k) {
+    const auto index = [&](int i, int k) {
       return static_cast<std::size_t>(r + i) * static_cast<std::size_t>(side) +
              static_cast<std::size_t>((c + k) % side);
     };
-    const std::array<std::size_t, 4> near{place(0, 0), place(0, 1), place(1, 0), place(1, 1)};
+    const std::array<std::size_t, 4> near{index(0, 0), index(0, 1), index(1, 0), index(1, 1)};
     const bool whole = std::all_of(near.begin(), near.end(), [&](std::size_t i) { return passing[i] > 1 - 1e-9; });
     if (!whole) down = std::clamp(down, 0.0, 1.0);
-    const std::array<double, 4> part_of{(1 - down) * (1 - right), (1 - down) * right, down * (1 - right), down * right};
+    const std::array<double, 4> corner_weights{(1 - down) * (1 - right), (1 - down) * right, down * (1 - right),
+                                               down * right};
     Hit hit;
     for (std::size_t k = 0; k < near.size(); ++k) {
-      const double part = part_of[k] * passing[near[k]];
-      hit.light += part, hit.x += part * x[near[k]], hit.y += part * y[near[k]];
+      const double weight = corner_weights[k] * passing[near[k]];
+      hit.light += weight, hit.x += weight * x[near[k]], hit.y += weight * y[near[k]];
     }
     if (hit.light > 0) hit.x /= hit.light, hit.y /= hit.light;
     return hit;

@@ -26,11 +26,11 @@ void fill_hits(PsfKernel& kernel, const Lens& lens, const PupilSampler& pupil) {
   kernel.hits_x.assign(count, std::numeric_limits<float>::quiet_NaN());
   kernel.hits_y = kernel.hits_x;
   if (pupil.empty()) return;
-  std::vector<double> places(count);
-  std::iota(places.begin(), places.end(), 0.0);
+  std::vector<double> indices(count);
+  std::iota(indices.begin(), indices.end(), 0.0);
   const auto start = [&](std::size_t begin, std::size_t end, const RayArrays<double>& rays) {
-    std::array<double, pupil_detail::block_rays> room_u, room_v;
-    const std::span u(room_u.data(), end - begin), v(room_v.data(), end - begin);
+    std::array<double, pupil_detail::block_rays> buffer_u, buffer_v;
+    const std::span u(buffer_u.data(), end - begin), v(buffer_v.data(), end - begin);
     for (std::size_t i = begin; i < end; ++i) {
       const double radius = (static_cast<double>(i / side) + 0.5) / static_cast<double>(side);
       u[i - begin] = (static_cast<double>(i % side) + 0.5) / static_cast<double>(side);
@@ -41,11 +41,11 @@ void fill_hits(PsfKernel& kernel, const Lens& lens, const PupilSampler& pupil) {
     return end - begin;
   };
   const RayBundle bundle = pupil_detail::trace_rays(
-      lens, lens.film_z(), count, {.wavelength = pupil.wavelength(), .slopes = false, .weights = places}, start);
+      lens, lens.film_z(), count, {.wavelength = pupil.wavelength(), .slopes = false, .weights = indices}, start);
   for (std::size_t i = 0; i < bundle.size(); ++i) {
-    const auto place = static_cast<std::size_t>(bundle.weights[i]);
-    kernel.hits_x[place] = static_cast<float>(kernel.anchor_mm.x - bundle.x[i]);
-    kernel.hits_y[place] = static_cast<float>(kernel.anchor_mm.y - bundle.y[i]);
+    const auto sample_index = static_cast<std::size_t>(bundle.weights[i]);
+    kernel.hits_x[sample_index] = static_cast<float>(kernel.anchor_mm.x - bundle.x[i]);
+    kernel.hits_y[sample_index] = static_cast<float>(kernel.anchor_mm.y - bundle.y[i]);
   }
 }
 
@@ -141,10 +141,10 @@ PsfKernel psf_kernel(const Lens& lens, const Lens& wide_open, const FieldPoint& 
   return kernel;
 }
 
-double light_moved(const PsfKernel& a, const PsfKernel& b) {
+double total_variation(const PsfKernel& a, const PsfKernel& b) {
   if (a.pixels != b.pixels || a.pixel_mm != b.pixel_mm) {
-    throw Error("light_moved: grids of " + std::to_string(a.pixels) + " pixels of " + to_text(a.pixel_mm) + " mm and " +
-                std::to_string(b.pixels) + " of " + to_text(b.pixel_mm) + " mm; must be equal");
+    throw Error("total_variation: grids of " + std::to_string(a.pixels) + " pixels of " + to_text(a.pixel_mm) +
+                " mm and " + std::to_string(b.pixels) + " of " + to_text(b.pixel_mm) + " mm; must be equal");
   }
   if (a.total == 0 || b.total == 0) return 0;
   double sum = 0;

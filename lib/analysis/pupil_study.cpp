@@ -36,8 +36,8 @@ double for_lines(const ModelPupils& pupils, const FilmPoint& film, std::size_t w
 
 constexpr double total = blocks * lines_per_point;
 
-core_detail::Kronecker<2> uniform_points(const ErrorSamples& samples, std::size_t place) noexcept {
-  return core_detail::Kronecker<2>((std::uint64_t{samples.seed} << 32 | place) + 0x5bd1e995);
+core_detail::Kronecker<2> uniform_points(const ErrorSamples& samples, std::size_t index) noexcept {
+  return core_detail::Kronecker<2>((std::uint64_t{samples.seed} << 32 | index) + 0x5bd1e995);
 }
 
 }  // namespace
@@ -69,7 +69,7 @@ PupilStudy::PupilStudy(const camera_detail::ExactModel<double>& exact, const Fil
     parallel_for(points.size(), 1, samples.threads, [&](std::size_t begin, std::size_t) {
       Point& point = points[begin];
       PointRays rays;
-      const auto even = uniform_points(samples_, point.place);
+      const auto even = uniform_points(samples_, point.index);
       const double whole = for_lines(exact_, point.film, wavelength, even, [&](std::size_t, const PointLines& lines) {
         exact_.tracing(lines, wavelength, rays);
         point.passes.push_back(rays.passes);
@@ -88,7 +88,7 @@ PupilStudy::PupilStudy(const camera_detail::ExactModel<double>& exact, const Fil
 }
 
 PupilStudy::Errors PupilStudy::errors_of(const Point& point, const ModelPupils& model, std::size_t wavelength) const {
-  const core_detail::Kronecker<2> even = uniform_points(samples_, point.place);
+  const core_detail::Kronecker<2> even = uniform_points(samples_, point.index);
   PointRays exact, rays;
   double exact_alone = 0, model_alone = 0, irradiance = 0;
   const double exact_area =
@@ -109,8 +109,8 @@ PupilStudy::Errors PupilStudy::errors_of(const Point& point, const ModelPupils& 
           std::abs(irradiance * model_area / (total * point.irradiance) - 1)};
 }
 
-PupilStudy::Found PupilStudy::measure(const ModelPupils& model) const {
-  Found found;
+PupilStudy::Measurement PupilStudy::measure(const ModelPupils& model) const {
+  Measurement found;
   for (std::size_t w = 0; w < points_.size(); ++w) {
     const std::vector<Point>& points = points_[w];
     std::vector<Errors> errors(points.size());

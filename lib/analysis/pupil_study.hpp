@@ -34,15 +34,15 @@ class PupilStudy {
   /// Largest errors over film points and wavelengths, with bounds for the other film points and samples: a sampled
   /// fraction p has a standard deviation of at most sqrt(p / samples), and the pupils of adjacent film points differ
   /// little.
-  struct Found {
+  struct Measurement {
     double shape = 0, exposure = 0, shape_bound = 0, exposure_bound = 0;
   };
-  Found measure(const ModelPupils& model) const;
+  Measurement measure(const ModelPupils& model) const;
 
  private:
   /// The exact pupil of a film point at a wavelength.
   struct Point {
-    std::size_t place = 0;
+    std::size_t index = 0;
     FilmPoint film;
     double area = 0, irradiance = 0;  ///< transmitted part of the pupil; without the factor n'^2
     std::vector<std::array<bool, lines_per_point>> passes{};

@@ -15,14 +15,14 @@
 namespace petzval {
 namespace {
 
-using Place = std::optional<Vec2<double>>;
-using PlaceOf = std::function<Place(const Vec2<double>&)>;
+using OptionalPosition = std::optional<Vec2<double>>;
+using PositionFunction = std::function<OptionalPosition(const Vec2<double>&)>;
 using ErrorOf = std::function<double(const Vec2<double>&, const Vec2<double>&)>;
 
 constexpr double widest_cell = 16;  // pixels
 constexpr int least_cells = 80;     // along the longer side
 constexpr int most_nodes = 6;       // per axis of a polynomial
-constexpr float blind = -1;
+constexpr float no_source = -1;
 
 /// Lagrange weights of n nodes at 0, 1, 2, ...
 std::array<double, most_nodes> weights(int n, double x) noexcept {
@@ -55,16 +55,16 @@ struct NodeAxis {
 class NodeGrid {
  public:
   /// @param error gives the error if one position is used instead of another; acceptable up to 1
-  NodeGrid(const PlaceOf& place_of, const ErrorOf& error, const NodeAxis& x, const NodeAxis& y, int threads)
-      : place_of_(place_of),
+  NodeGrid(const PositionFunction& position_of, const ErrorOf& error, const NodeAxis& x, const NodeAxis& y, int threads)
+      : position_of_(position_of),
         x_(x),
         y_(y),
-        places_(static_cast<std::size_t>(x.nodes) * y.nodes),
+        positions_(static_cast<std::size_t>(x.nodes) * y.nodes),
         cells_(static_cast<std::size_t>(x.nodes - 1) * (y.nodes - 1)) {
-    parallel_for(places_.size(), 64, threads, [&](std::size_t begin, std::size_t end) {
+    parallel_for(positions_.size(), 64, threads, [&](std::size_t begin, std::size_t end) {
       for (std::size_t i = begin; i < end; ++i) {
         const int column = static_cast<int>(i % x_.nodes), row = static_cast<int>(i / x_.nodes);
-        places_[i] = place_of_({x_.node(column), y_.node(row)});
+        positions_[i] = position_of_({x_.node(column), y_.node(row)});
       }
     });
     parallel_for(cells_.size(), 64, threads, [&](std::size_t begin, std::size_t end) {
@@ -75,10 +75,10 @@ class NodeGrid {
     });
   }
 
-  Place operator()(const Vec2<double>& at) const {
+  OptionalPosition operator()(const Vec2<double>& at) const {
     const Cell& cell = cells_[static_cast<std::size_t>(y_.cell(at.y)) * (x_.nodes - 1) + x_.cell(at.x)];
     if (cell.kind == Cell::dark) return {};
-    return cell.kind == Cell::smooth ? interpolated(cell, at) : place_of_(at);
+    return cell.kind == Cell::smooth ? interpolated(cell, at) : position_of_(at);
   }
 
  private:
@@ -91,7 +91,7 @@ class NodeGrid {
     if (known(column, row, 2) == 0) return {};
     if (known(column, row, 1) < 4) return {.kind = Cell::rough};
     const Vec2<double> middle{x_.node(column) + x_.step / 2, y_.node(row) + y_.step / 2};
-    const Place there = place_of_(middle);
+    const OptionalPosition there = position_of_(middle);
     if (!there) return {.kind = Cell::rough};
     // Try polynomials of many nodes, then of few nodes. The cell is as close to the middle of the nodes as nodes
     // without values allow.
@@ -109,22 +109,22 @@ class NodeGrid {
   bool inside(int column, int row) const noexcept {
     return column >= 0 && row >= 0 && column < x_.nodes && row < y_.nodes;
   }
-  const Place& place(int column, int row) const noexcept {
-    return places_[static_cast<std::size_t>(row) * x_.nodes + column];
+  const OptionalPosition& position(int column, int row) const noexcept {
+    return positions_[static_cast<std::size_t>(row) * x_.nodes + column];
   }
   /// Number of nodes with values: among the corners of a cell if reach = 1, also among those of the adjacent cells if
   /// reach = 2.
   int known(int column, int row, int reach) const noexcept {
     int count = 0;
     for (int j = row + 1 - reach; j <= row + reach; ++j) {
-      for (int i = column + 1 - reach; i <= column + reach; ++i) count += inside(i, j) && place(i, j);
+      for (int i = column + 1 - reach; i <= column + reach; ++i) count += inside(i, j) && position(i, j);
     }
     return count;
   }
   bool all_known(const Cell& cell) const noexcept {
     for (int j = cell.top; j < cell.top + cell.nodes; ++j) {
       for (int i = cell.left; i < cell.left + cell.nodes; ++i) {
-        if (!inside(i, j) || !place(i, j)) return false;
+        if (!inside(i, j) || !position(i, j)) return false;
       }
     }
     return true;
@@ -134,47 +134,47 @@ class NodeGrid {
                down = weights(cell.nodes, y_.at(at.y) - cell.top);
     Vec2<double> sum{0, 0};
     for (int j = 0; j < cell.nodes; ++j) {
-      for (int i = 0; i < cell.nodes; ++i) sum += across[i] * down[j] * *place(cell.left + i, cell.top + j);
+      for (int i = 0; i < cell.nodes; ++i) sum += across[i] * down[j] * *position(cell.left + i, cell.top + j);
     }
     return sum;
   }
 
-  const PlaceOf& place_of_;
+  const PositionFunction& position_of_;
   NodeAxis x_, y_;
-  std::vector<Place> places_;
+  std::vector<OptionalPosition> positions_;
   std::vector<Cell> cells_;
 };
 
 /// The map for the pixels of a film and a margin.
 /// @param raster converts an interpolated value to its raster position
-StMap map_of(const PlaceOf& place_of, const PlaceOf& raster, const Film& film, int margin_x, int margin_y,
-             int threads) {
+StMap map_of(const PositionFunction& position_of, const PositionFunction& raster, const Film& film, int margin_x,
+             int margin_y, int threads) {
   StMap map{.width = film.columns + 2 * margin_x,
             .height = film.rows + 2 * margin_y,
             .margin_x = margin_x,
             .margin_y = margin_y};
   const auto pixels = static_cast<std::size_t>(map.width) * static_cast<std::size_t>(map.height);
-  map.s.assign(pixels, blind), map.t.assign(pixels, blind);
+  map.s.assign(pixels, no_source), map.t.assign(pixels, no_source);
   const double cell = std::min(widest_cell, static_cast<double>(std::max(map.width, map.height)) / least_cells);
   // Tolerance: 0.0005 pixels in the middle of the picture, twice as much in its corners, and more outside.
   const Vec2<double> size{film.columns, film.rows};
   const auto error = [&](const Vec2<double>& a, const Vec2<double>& b) {
-    const Place at = raster(a), wanted = raster(b);
-    if (!at || !wanted) return HUGE_VAL;
-    const double away = 2 * glm::distance(*wanted, size / 2.0) / glm::length(size);
-    return glm::distance(*at, *wanted) / (5e-4 * (1 + away * away));
+    const OptionalPosition at = raster(a), expected = raster(b);
+    if (!at || !expected) return HUGE_VAL;
+    const double away = 2 * glm::distance(*expected, size / 2.0) / glm::length(size);
+    return glm::distance(*at, *expected) / (5e-4 * (1 + away * away));
   };
-  const NodeGrid grid(place_of, error, NodeAxis(-margin_x, map.width, cell), NodeAxis(-margin_y, map.height, cell),
+  const NodeGrid grid(position_of, error, NodeAxis(-margin_x, map.width, cell), NodeAxis(-margin_y, map.height, cell),
                       threads);
   parallel_for(static_cast<std::size_t>(map.height), 8, threads, [&](std::size_t begin, std::size_t end) {
     for (std::size_t row = begin; row < end; ++row) {
       for (int column = 0; column < map.width; ++column) {
         const auto found = grid({column + 0.5 - margin_x, static_cast<double>(row) + 0.5 - margin_y});
-        const auto place = found ? raster(*found) : found;
-        if (!place) continue;
+        const auto position = found ? raster(*found) : found;
+        if (!position) continue;
         const std::size_t i = row * static_cast<std::size_t>(map.width) + static_cast<std::size_t>(column);
-        map.s[i] = static_cast<float>(place->x / film.columns);
-        map.t[i] = static_cast<float>(1 - place->y / film.rows);
+        map.s[i] = static_cast<float>(position->x / film.columns);
+        map.t[i] = static_cast<float>(1 - position->y / film.rows);
       }
     }
   });
@@ -206,12 +206,12 @@ Margin margin_of(const LensDistortion& distortion, const StMapOptions& options) 
 
 }  // namespace
 
-bool StMap::sees(int column, int row) const noexcept {
+bool StMap::has_source(int column, int row) const noexcept {
   if (column < 0 || column >= width || row < 0 || row >= height) return false;
   const std::size_t i =
       static_cast<std::size_t>(row) * static_cast<std::size_t>(width) + static_cast<std::size_t>(column);
   if (i >= std::min(s.size(), t.size())) return false;
-  return s[i] != blind || t[i] != blind;
+  return s[i] != no_source || t[i] != no_source;
 }
 
 StMaps st_maps(const LensDistortion& distortion, const StMapOptions& options) {
@@ -219,20 +219,21 @@ StMaps st_maps(const LensDistortion& distortion, const StMapOptions& options) {
   const auto [margin_x, margin_y] = margin_of(distortion, options);
   const Vec2<double> centre = distortion.centre(), focal_length = distortion.focal_length_px();
   // For a wide field, the pinhole image is not a polynomial of the lens image; the sines of its directions are bounded.
-  const auto sines = [&](const Vec2<double>& at) -> Place {
-    const auto place = distortion.undistorted(at);
-    if (!place) return {};
-    const Vec2<double> tangent = (*place - centre) / focal_length;
+  const auto sines = [&](const Vec2<double>& at) -> OptionalPosition {
+    const auto position = distortion.undistorted(at);
+    if (!position) return {};
+    const Vec2<double> tangent = (*position - centre) / focal_length;
     return tangent / std::sqrt(1 + glm::dot(tangent, tangent));
   };
-  const auto from_sines = [&](const Vec2<double>& sine) -> Place {
+  const auto from_sines = [&](const Vec2<double>& sine) -> OptionalPosition {
     const double cosine2 = 1 - glm::dot(sine, sine);
     if (!(cosine2 > 0)) return {};
     return centre + focal_length * sine / std::sqrt(cosine2);
   };
-  return {map_of([&](const Vec2<double>& at) { return distortion.distorted(at); },
-                 [](const Vec2<double>& at) { return Place(at); }, film, margin_x, margin_y, options.threads),
-          map_of(sines, from_sines, film, 0, 0, options.threads)};
+  return {
+      map_of([&](const Vec2<double>& at) { return distortion.distorted(at); },
+             [](const Vec2<double>& at) { return OptionalPosition(at); }, film, margin_x, margin_y, options.threads),
+      map_of(sines, from_sines, film, 0, 0, options.threads)};
 }
 
 }  // namespace petzval

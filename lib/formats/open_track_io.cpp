@@ -115,7 +115,7 @@ std::string format_open_track_io(const Lens& lens, const Film& film, const LensI
   Object offset, light, sample;
   offset.add("x", picture.pinhole().centre_mm.x);
   offset.add("y", picture.pinhole().centre_mm.y);
-  for (std::size_t i = 0; i < 3; ++i) light.add("a" + std::to_string(i + 1), falloff.a[i]);
+  for (std::size_t i = 0; i < 3; ++i) light.add("a" + std::to_string(i + 1), falloff.coefficients[i]);
   sample.add("distortion", "[\n      " + distortion(in, size) + ",\n      " + distortion(out, size) + "\n    ]");
   sample.add("pinholeFocalLength", state.pinhole_focal_length_mm);
   sample.add("projectionOffset", offset.on_one_line());

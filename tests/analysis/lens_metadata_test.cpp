@@ -81,7 +81,7 @@ TEST(ExposureFalloff, BallFollowsCosineToTheFourth) {
   const testing::BallAndPlate ball;
   const double focal_length = ball.focal_length_mm();
   const ExposureFalloff falloff = fit_exposure_falloff(ball.lens(), small_film(6));
-  EXPECT_NEAR(falloff.a[0] * focal_length * focal_length, 2, 0.02);
+  EXPECT_NEAR(falloff.coefficients[0] * focal_length * focal_length, 2, 0.02);
   EXPECT_LT(falloff.largest_error, 1e-3);
   EXPECT_NEAR(falloff.light(3), std::pow(1 + 9 / (focal_length * focal_length), -2), 1e-3);
   EXPECT_EQ(falloff.light(0), 1);

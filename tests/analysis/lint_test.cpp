@@ -47,7 +47,7 @@ TEST(Lint, FindsAFilmFarFromTheImageCircle) {
     ASSERT_EQ(findings.size(), 1u) << width;
     EXPECT_EQ(findings[0].kind, Kind::film_size);
     EXPECT_NEAR(findings[0].found, width * std::hypot(1, 1 / 1.5), 1e-9 * width);
-    EXPECT_EQ(findings[0].wanted, circle);
+    EXPECT_EQ(findings[0].expected, circle);
   }
   for (const double width : {1.8, 6.4, 36.0, 60.0, 110.0}) {
     EXPECT_TRUE(lint(lens, {.width_mm = width, .height_mm = width / 1.5}).empty()) << width;
@@ -62,7 +62,7 @@ TEST(Lint, FindsNonSquarePixels) {
   ASSERT_EQ(findings.size(), 1u);
   EXPECT_EQ(findings[0].kind, Kind::pixel_shape);
   EXPECT_NEAR(findings[0].found, 0.84375, 1e-15);
-  EXPECT_EQ(findings[0].wanted, 1);
+  EXPECT_EQ(findings[0].expected, 1);
   expect_tokens(findings[0].message, {0.01875, 0.02222, 20.25, 1920, 1080});
   EXPECT_EQ(lint(lens, {.width_mm = 360, .height_mm = 240, .columns = 1080, .rows = 1920}).size(), 2u);
   EXPECT_EQ(lint(with_iris(lens, {.blades = 6}), {.columns = 1920, .rows = 1080}).size(), 1u);
@@ -103,7 +103,7 @@ TEST(Lint, FindsAWrongFocalLength) {
   p.focal_length_mm = 103;
   expect_one(p, Kind::focal_length, {}, {"focal length", 100, 103});
   EXPECT_NEAR(lint(p)[0].found, 100, 1e-12);
-  EXPECT_EQ(lint(p)[0].wanted, 103);
+  EXPECT_EQ(lint(p)[0].expected, 103);
   p.focal_length_mm.reset();
   EXPECT_TRUE(lint(p).empty());
 }
@@ -193,7 +193,7 @@ TEST(Lint, KindsHaveDistinctNames) {
 }
 
 TEST(Repair, RepairsFindingsWithOneSolution) {
-  const auto expect_changes = [](const Repaired& repaired, const std::vector<std::vector<Token>>& tokens) {
+  const auto expect_changes = [](const RepairedPrescription& repaired, const std::vector<std::vector<Token>>& tokens) {
     ASSERT_EQ(repaired.changes.size(), tokens.size());
     for (std::size_t i = 0; i < tokens.size(); ++i) {
       expect_tokens(repaired.changes[i].command + ": " + repaired.changes[i].message, tokens[i]);
@@ -202,7 +202,7 @@ TEST(Repair, RepairsFindingsWithOneSolution) {
   EXPECT_EQ(repair(singlet()).prescription, singlet());
   EXPECT_TRUE(repair(singlet()).changes.empty());
 
-  Repaired repaired = repair(in_another_unit(1000));
+  RepairedPrescription repaired = repair(in_another_unit(1000));
   expect_changes(repaired, {{"units", "focal length", 100000, 100, 1000}});
   EXPECT_NEAR(repaired.prescription.surfaces[1].radius, -50, 1e-12);
   EXPECT_EQ(repaired.prescription.focal_length_mm, 100);
@@ -322,7 +322,7 @@ TEST(Lint, FindsARimBeyondTheEndOfAnAsphere) {
   ASSERT_NE(rim, findings.end());
   EXPECT_EQ(rim->surface, 1);
   EXPECT_EQ(rim->found, 12);
-  EXPECT_NEAR(rim->wanted, 4.95, 0.05);  // height at which the slope is 4
+  EXPECT_NEAR(rim->expected, 4.95, 0.05);  // height at which the slope is 4
 }
 
 TEST(Lint, FindsASemiDiameterBeyondTheSurface) {
@@ -332,7 +332,7 @@ TEST(Lint, FindsASemiDiameterBeyondTheSurface) {
   p.surfaces[1].conic = -1;  // a paraboloid has no equator
   EXPECT_TRUE(lint(p).empty());
   p.surfaces[1].conic = 3;
-  EXPECT_NEAR(lint(p).at(0).wanted, 25, 1e-12);
+  EXPECT_NEAR(lint(p).at(0).expected, 25, 1e-12);
   p.surfaces[1].conic = -0.75;
   EXPECT_TRUE(lint(p).empty());
 }
@@ -342,7 +342,7 @@ TEST(Lint, FindsARimThatOnlyTheAxisPasses) {
   p.surfaces[1].semi_diameter = 0;
   expect_one(p, Kind::semi_diameter, 1, {"semi_diameter", 0});
   EXPECT_EQ(lint(p)[0].found, 0);
-  EXPECT_EQ(lint(p)[0].wanted, 50);
+  EXPECT_EQ(lint(p)[0].expected, 50);
   p = singlet();
   p.surfaces[0].semi_diameter = 0;  // a closed iris
   for (const Finding& finding : lint(p)) EXPECT_NE(finding.kind, Kind::semi_diameter) << finding.message;

@@ -158,7 +158,7 @@ struct Study {
     const PsfKernel traced = kernel(point, half, 1), again = kernel(point, half, 2);
     EXPECT_NEAR(between.total, traced.total, 0.02 * traced.total);
     EXPECT_NEAR(between.anchor_mm.y, traced.anchor_mm.y, 0.005);
-    return 100 * (light_moved(between, traced) - light_moved(traced, again));
+    return 100 * (total_variation(between, traced) - total_variation(traced, again));
   }
 };
 
@@ -215,7 +215,7 @@ TEST(PsfSet, IsNearTracedKernelsBetweenItsNodes) {
       const std::size_t node = 4 * d + f;
       const auto& nodes = set.kernels();
       const PsfKernel mean = plain_mean({nodes[node], nodes[node + 1], nodes[node + 4], nodes[node + 5]}, between);
-      plain.push_back(100 * light_moved(mean, study.kernel(point, between.pixels * between.pixel_mm / 2)));
+      plain.push_back(100 * total_variation(mean, study.kernel(point, between.pixels * between.pixel_mm / 2)));
     }
   }
   std::sort(errors.begin(), errors.end()), std::sort(plain.begin(), plain.end());

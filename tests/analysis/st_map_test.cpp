@@ -41,7 +41,7 @@ std::optional<Vec2<double>> shown_at(const StMap& map, const Film& film, const V
   Vec2<double> sum{0, 0};
   for (int i : {0, 1}) {
     for (int j : {0, 1}) {
-      if (!map.sees(column + i, row + j)) return {};
+      if (!map.has_source(column + i, row + j)) return {};
       const double share = std::abs(1 - i - (x - column)) * std::abs(1 - j - (y - row));
       sum += share * shown(map, film, column + i, row + j);
     }
@@ -95,14 +95,14 @@ TEST_P(StMapsOf, EqualTheDistortionInBothDirections) {
     const int column = i * 7919 % maps.undistort.width, row = i * 6101 % maps.undistort.height;
     const Vec2<double> at{column + 0.5 - maps.undistort.margin_x, row + 0.5 - maps.undistort.margin_y};
     const auto wanted = distortion.distorted(at);
-    ASSERT_EQ(wanted.has_value(), maps.undistort.sees(column, row)) << at.x << ", " << at.y;
+    ASSERT_EQ(wanted.has_value(), maps.undistort.has_source(column, row)) << at.x << ", " << at.y;
     if (!wanted) continue;
     EXPECT_LT(far_apart(shown(maps.undistort, film, column, row), *wanted), largest_px);
   }
   for (int i = 0; i < 300; ++i) {
     const int column = i * 7919 % film.columns, row = i * 6101 % film.rows;
     const auto wanted = distortion.undistorted({column + 0.5, row + 0.5});
-    ASSERT_EQ(wanted.has_value(), maps.redistort.sees(column, row)) << column << ", " << row;
+    ASSERT_EQ(wanted.has_value(), maps.redistort.has_source(column, row)) << column << ", " << row;
     if (!wanted) continue;
     EXPECT_LT(far_apart(shown(maps.redistort, film, column, row), *wanted), largest_px);
   }
@@ -114,7 +114,7 @@ TEST_P(StMapsOf, InvertEachOther) {
   int compared = 0;
   for (int row = 0; row < film.rows; row += 3) {
     for (int column = 0; column < film.columns; column += 3) {
-      if (!maps.redistort.sees(column, row)) continue;
+      if (!maps.redistort.has_source(column, row)) continue;
       const auto back = shown_at(maps.undistort, film, shown(maps.redistort, film, column, row));
       if (!back) continue;
       ++compared;
@@ -153,7 +153,7 @@ TEST(StMap, EqualsTheDistortionUpToTheImageCircle) {
       for (int column = 0; column < film.columns; column += 3) {
         const Vec2<double> at{column + 0.5, row + 0.5};
         const auto back = distortion.undistorted(at);
-        if (!back || !maps.redistort.sees(column, row)) continue;
+        if (!back || !maps.redistort.has_source(column, row)) continue;
         ++seen;
         const double off = far_apart(shown(maps.redistort, film, column, row), *back);
         EXPECT_LT(off, far_apart(*back, distortion.centre()) < film.columns ? 0.005 : 0.1) << column << ' ' << row;
@@ -168,13 +168,13 @@ TEST(StMap, MarksPixelsWithoutLight) {
   const LensDistortion distortion = distortion_of("fisheye_8mm_f2.8", film);
   const StMaps maps = st_maps(distortion);
   const StMap& lens = maps.redistort;
-  EXPECT_FALSE(lens.sees(0, 0));
+  EXPECT_FALSE(lens.has_source(0, 0));
   EXPECT_EQ(lens.s[0], -1);
   EXPECT_EQ(lens.t[0], -1);
-  EXPECT_TRUE(lens.sees(film.columns / 2, film.rows / 2));
+  EXPECT_TRUE(lens.has_source(film.columns / 2, film.rows / 2));
   int seen = 0;
   for (int row = 0; row < film.rows; ++row) {
-    for (int column = 0; column < film.columns; ++column) seen += lens.sees(column, row);
+    for (int column = 0; column < film.columns; ++column) seen += lens.has_source(column, row);
   }
   // The image circle of 89 degrees lies within the film.
   int wanted = 0;
@@ -188,13 +188,13 @@ TEST(StMap, MarksPixelsWithoutLight) {
 }
 
 TEST(StMap, IsEmptyOutsideTheMap) {
-  EXPECT_FALSE(StMap{}.sees(0, 0));
+  EXPECT_FALSE(StMap{}.has_source(0, 0));
   const StMap map{.width = 2, .height = 1, .s = {0.5f, 0.5f}, .t = {0.5f, 0.5f}};
-  EXPECT_TRUE(map.sees(1, 0));
+  EXPECT_TRUE(map.has_source(1, 0));
   for (const auto& [column, row] : {std::pair{-1, 0}, {2, 0}, {0, -1}, {0, 1}, {-1, 1}}) {
-    EXPECT_FALSE(map.sees(column, row)) << column << ' ' << row;
+    EXPECT_FALSE(map.has_source(column, row)) << column << ' ' << row;
   }
-  EXPECT_FALSE((StMap{.width = 2, .height = 1, .s = {0.5f}, .t = {0.5f}}.sees(1, 0)));
+  EXPECT_FALSE((StMap{.width = 2, .height = 1, .s = {0.5f}, .t = {0.5f}}.has_source(1, 0)));
 }
 
 TEST(StMap, MarginsContainTheOverscan) {

@@ -77,9 +77,9 @@ class PETZVAL_API LensDistortion {
 
  private:
   /// Raster position of a scene point in the pinhole image.
-  Vec2<double> shown_at(const Vec3<double>& point) const noexcept;
+  Vec2<double> pinhole_raster_of(const Vec3<double>& point) const noexcept;
   /// A sample of a film point whose ray passes the lens; nullopt if the point is dark.
-  std::optional<CameraSample> sample_with_light(const FilmPoint& film) const noexcept;
+  std::optional<CameraSample> lit_sample(const FilmPoint& film) const noexcept;
 
   Camera camera_;
   Pinhole pinhole_;
@@ -171,7 +171,7 @@ struct PETZVAL_API StMap {
   std::vector<float> s{}, t{};     ///< width x height, rows from the top
 
   /// True if the pixel has a source position; false outside the map.
-  bool sees(int column, int row) const noexcept;
+  bool has_source(int column, int row) const noexcept;
 };
 
 /// The two maps between a lens image and the image of its pinhole.

@@ -52,7 +52,7 @@ PETZVAL_API LensState lens_state(const LensDistortion& distortion);
 /// The relative irradiance at r mm from the axis is 1 - (a1 r^2 + a2 r^4 + a3 r^6). Source: OpenLensIO 1.0, equation
 /// 20.
 struct PETZVAL_API ExposureFalloff {
-  std::array<double, 3> a{};
+  std::array<double, 3> coefficients{};
   double largest_error = 0;  ///< largest error where the film is lit, as a fraction of the irradiance on the axis
 
   /// Relative irradiance at a distance from the axis (mm).

@@ -40,7 +40,7 @@ struct Finding {
   FindingKind kind{};
   std::optional<int> surface;  ///< index of the surface, from 0
   double found = 0;            ///< the value of the prescription, film or lens
-  double wanted = 0;           ///< the value or limit that it should meet
+  double expected = 0;         ///< the value or limit that it should meet
   std::string message;         ///< one line, with units
 };
 
@@ -56,7 +56,7 @@ PETZVAL_API std::vector<Finding> lint(const Prescription& prescription);
 PETZVAL_API std::vector<Finding> lint(const Prescription& prescription, const GlassCatalogue& glasses);
 
 /// A repaired prescription and the list of changes.
-struct Repaired {
+struct RepairedPrescription {
   Prescription prescription;
   std::vector<ImportWarning> changes;  ///< command: the kind of the finding
 };
@@ -70,13 +70,13 @@ struct Repaired {
 /// @param prescription  the lens
 /// @param glasses       as in CompileOptions
 /// @throws Error        under the conditions of lint()
-PETZVAL_API Repaired repair(const Prescription& prescription, const GlassCatalogue* glasses = nullptr);
+PETZVAL_API RepairedPrescription repair(const Prescription& prescription, const GlassCatalogue* glasses = nullptr);
 
 /// Checks the film of a camera against the image circle of its lens, and the shape of its pixels.
 ///
-/// film_size: `found` is the diameter of the circle about the axis that contains the film, `wanted` the diameter of
+/// film_size: `found` is the diameter of the circle about the axis that contains the film, `expected` the diameter of
 /// image_circle_mm() with any light. Films up to three times as large are accepted. pixel_shape: `found` is the width
-/// of a pixel divided by its height, `wanted` is 1. Pixels of lenses with cylindrical surfaces may have any shape.
+/// of a pixel divided by its height, `expected` is 1. Pixels of lenses with cylindrical surfaces may have any shape.
 ///
 /// @throws Error if the film has no area or no pixels or is invalid for a Camera; also under the conditions of
 ///               with_film() and image_circle_mm()

@@ -67,7 +67,7 @@ PETZVAL_API PsfKernel psf_kernel(const Lens& lens, const Lens& wide_open, const 
 ///
 /// @return       0 if the shapes are equal, 1 if they do not overlap; 0 if a kernel is dark
 /// @throws Error if the kernels differ in pixel count or size
-PETZVAL_API double light_moved(const PsfKernel& a, const PsfKernel& b);
+PETZVAL_API double total_variation(const PsfKernel& a, const PsfKernel& b);
 
 /// The coordinates of a kernel in a PSF set.
 struct PsfSetPoint {
@@ -122,7 +122,7 @@ class PETZVAL_API PsfSet {
   ///
   /// @throws Error if the point is outside the axes; an axis with a single value only contains that value
   ///
-  /// Accuracy: light_moved() in percent against traced kernels in the middles of cells, median and largest, with a
+  /// Accuracy: total_variation() in percent against traced kernels in the middles of cells, median and largest, with a
   /// noise of 0.5 to 1.3 (psf_set --check; steps of 5 to 20 degrees, five distances from 1 m to infinity, focused at 2
   /// m): double Gauss f/2 1.8 and 5.8, f/2.8 2.2 and 3.1; fisheye 2.5 and 3.4; Tessar 6 and 21; double Gauss f/1.35 3
   /// and 24. The last two are worst next to the focus, which needs closer nodes. Averaging images gives 70.

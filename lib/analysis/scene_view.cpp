@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "carry_back.hpp"
+#include "scene_view.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -75,12 +75,12 @@ bool SceneView::meets(const Ray<double>& ray) const noexcept {
 }
 
 Vec2<double> SceneView::hit(const Ray<double>& ray) const noexcept {
-  const Vec3<double> place = core_detail::meet_plane(ray, centre_, normal_) - centre_;
-  const double x = glm::dot(place, x_axis_), y = glm::dot(place, y_axis_);
+  const Vec3<double> position = core_detail::meet_plane(ray, centre_, normal_) - centre_;
+  const double x = glm::dot(position, x_axis_), y = glm::dot(position, y_axis_);
   return {to_film_[0] * x + to_film_[1] * y, to_film_[2] * x + to_film_[3] * y};
 }
 
-Vec2<double> SceneView::place(const Ray<double>& ray) const noexcept {
+Vec2<double> SceneView::position(const Ray<double>& ray) const noexcept {
   if (meets(ray)) return hit(ray);
   return {focal_length_ * glm::dot(ray.direction, x_axis_), focal_length_ * glm::dot(ray.direction, y_axis_)};
 }
@@ -94,8 +94,8 @@ double SceneView::distance(const Ray<double>& a, const Ray<double>& b) const noe
 
 SceneView ChiefRay::view(double z) const {
   if (!found) return SceneView(focal_length);
-  constexpr double as_good_as_infinite = 1e15;  // mm
-  if (z < -as_good_as_infinite) return SceneView(focal_length, ray.direction);
+  constexpr double infinite_distance_mm = 1e15;  // mm
+  if (z < -infinite_distance_mm) return SceneView(focal_length, ray.direction);
   return SceneView(focal_length, z, ray, by_film_x, by_film_y);
 }
 

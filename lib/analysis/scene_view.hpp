@@ -30,7 +30,7 @@ class SceneView {
             const Ray<double>& by_film_y);
 
   /// The hit of a ray relative to the hit of the chief ray, mapped to the film, mm.
-  Vec2<double> place(const Ray<double>& ray) const noexcept;
+  Vec2<double> position(const Ray<double>& ray) const noexcept;
   /// Distance on the film between two rays of the film point, mm.
   double distance(const Ray<double>& a, const Ray<double>& b) const noexcept;
 
