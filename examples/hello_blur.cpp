@@ -31,7 +31,7 @@ int main() try {
   petzval::LayerSet layers;
   layers.set({&image, 1});
 
-  const petzval::Blurred picture = petzval::gather(layers, rays);
+  const petzval::BlurredImage picture = petzval::gather(layers, rays);
   for (int column = 144; column <= 176; column += 2) {
     std::printf("%.2f ",
                 static_cast<double>(picture.rgba[static_cast<std::size_t>(4 * (120 * picture.columns + column))]));

@@ -158,7 +158,7 @@ void LayerInput::fill(const petzval::PeelPlan& plan, int layers, int threads, pe
   if (scene_) {
     set.peel(plan, layers, scene_->peel(plan.camera, threads));
   } else {
-    set.thin(lists_, plan.bias, layers);
+    set.peel_fragments(lists_, plan.bias, layers);
   }
 }
 

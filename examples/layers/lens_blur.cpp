@@ -62,13 +62,13 @@ RgbImage averaged(const RgbImage& image, int side) {
   return result;
 }
 
-RgbImage colours_of(const petzval::Blurred& picture) {
+RgbImage colours_of(const petzval::BlurredImage& picture) {
   RgbImage image(picture.columns, picture.rows);
   for (std::size_t i = 0; i < picture.missed.size(); ++i) std::copy_n(&picture.rgba[4 * i], 3, &image.pixels[3 * i]);
   return image;
 }
 
-RgbImage missed_of(const petzval::Blurred& picture) {
+RgbImage missed_of(const petzval::BlurredImage& picture) {
   RgbImage image(picture.columns, picture.rows);
   for (std::size_t i = 0; i < picture.missed.size(); ++i) std::fill_n(&image.pixels[3 * i], 3, picture.missed[i]);
   return image;
@@ -169,7 +169,7 @@ class Job {
     // A smaller depth than the nearest surface: layers extend beyond the picture, where objects may be nearer.
     const petzval::LensRays rays = lens_.rays(0.8 * nearest, threads_, time);
     const double rays_ms = ms_since(start);
-    rays_error_px_ = std::max(rays_error_px_, rays.error_px());
+    rays_error_px_ = std::max(rays_error_px_, rays.interpolation_error_px());
     petzval::PeelPlan plan = petzval::plan_peel(rays, 0.8 * nearest, std::numeric_limits<double>::infinity());
     if (!input_.scene()) plan.camera.overscan = 0;
 
@@ -201,7 +201,7 @@ class Job {
               {"rays", rays.count() * static_cast<std::size_t>(side_ * side_)},
               {"overscan_px", plan.camera.overscan},
               {"rays_ms", rays_ms},
-              {"rays_error_px", rays.error_px()},
+              {"rays_error_px", rays.interpolation_error_px()},
               {"peel_ms", peel_ms},
               {"nbuffer_ms", n_buffer_ms},
               {"gather_ms", gather_ms},
@@ -267,7 +267,7 @@ class Job {
   int side_;
   lens_blur::BlurLens lens_;
   petzval::LayerSet layers_;
-  petzval::Blurred blurred_;
+  petzval::BlurredImage blurred_;
   Json result_;
   std::vector<float> last_error_;
   double flicker_ = 0, rays_error_px_ = 0;  ///< rays_error_px_: maximum over all frames

@@ -233,7 +233,7 @@ petzval::LensRays BlurLens::rays(double nearest_mm, int threads, double time) {
   const int sets = flags_.jitter ? 16 : parts;
   const std::vector<petzval::PupilPoint> points =
       petzval::vogel_sets((static_cast<int>(flags_.rays) + parts - 1) / parts, sets);
-  const petzval::LensRaysOptions options{.nearest_mm = nearest_mm, .sets = sets, .threads = threads};
+  const petzval::LensRaysOptions options{.nearest_mm = nearest_mm, .set_count = sets, .threads = threads};
   if (!thin_ || controls_.vignettes() || !flags_.expressive.change_nothing()) {
     std::vector<petzval::Wavelength> wavelengths;
     for (std::size_t i = 1; flags_.chroma && i <= colours_nm.size(); ++i) wavelengths.emplace_back(i);

@@ -304,15 +304,15 @@ petzval::RgbImage LitScene::reference(const petzval::LensRays& rays, int threads
 
   // Rays shared by all pixels of a set are computed once, like in a renderer with an accumulation buffer.
   const bool same = rays.shift_invariant() && rays.channels() == 1;
-  const int side = rays.sets() == 16 ? 4 : rays.sets() == 4 ? 2 : 1;
-  std::vector<petzval::LayerRay> shared(same ? count * static_cast<std::size_t>(rays.sets()) : 0);
+  const int side = rays.set_count() == 16 ? 4 : rays.set_count() == 4 ? 2 : 1;
+  std::vector<petzval::LayerRay> shared(same ? count * static_cast<std::size_t>(rays.set_count()) : 0);
   const auto of_set = [&](int column, int row) {
     return std::span(shared).subspan(static_cast<std::size_t>(row % side * side + column % side) * count, count);
   };
   for (int row = 0; same && row < side; ++row) {
     for (int column = 0; column < side; ++column) {
-      rays.exact_at(0, column, row, of_set(column, row));
-      for (petzval::LayerRay& ray : of_set(column, row)) ray.at -= petzval::Vec2<double>{column, row};
+      rays.exact_rays_at(0, column, row, of_set(column, row));
+      for (petzval::LayerRay& ray : of_set(column, row)) ray.position -= petzval::Vec2<double>{column, row};
     }
   }
 
@@ -325,15 +325,15 @@ petzval::RgbImage LitScene::reference(const petzval::LensRays& rays, int threads
     for (int channel = 0; channel < rays.channels(); ++channel) {
       for (int lane = 0; !same && lane < packet; ++lane) {
         if (!square.has(lane)) continue;
-        rays.exact_at(channel, square.column_of(lane), square.row_of(lane),
-                      std::span(own).subspan(static_cast<std::size_t>(lane) * count, count));
+        rays.exact_rays_at(channel, square.column_of(lane), square.row_of(lane),
+                           std::span(own).subspan(static_cast<std::size_t>(lane) * count, count));
       }
       for (std::size_t i = 0; i < count; ++i) {
         for (int lane = 0; lane < packet; ++lane) {
           if (!square.has(lane)) continue;
           const petzval::LayerRay& ray = same ? of_set(square.column_of(lane), square.row_of(lane))[i]
                                               : own[static_cast<std::size_t>(lane) * count + i];
-          glm::vec2 at(ray.at);
+          glm::vec2 at(ray.position);
           if (same)
             at += glm::vec2{static_cast<float>(square.column_of(lane)), static_cast<float>(square.row_of(lane))};
           const glm::vec2 run = (at - axis) / focal, from = glm::vec2(ray.slope) / focal;

@@ -263,7 +263,7 @@ std::vector<unsigned char> near_depth_edges(const petzval::LayerSet& layers, con
       for (const petzval::LayerRay& ray : found) {
         for (const float w : {least, most}) {
           const petzval::Vec2<double> off =
-              ray.at + ray.slope * static_cast<double>(w) - petzval::Vec2<double>{column + 0.5, row + 0.5};
+              ray.position + ray.slope * static_cast<double>(w) - petzval::Vec2<double>{column + 0.5, row + 0.5};
           reach = std::max(reach, std::hypot(off.x, off.y));
         }
       }

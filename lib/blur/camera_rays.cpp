@@ -65,7 +65,7 @@ class RaysOfCamera {
         found[i] = pulled_in(film, points[i], wavelength);
       }
       sum += found[i].weight;
-      mean.at += found[i].weight * found[i].at, mean.slope += found[i].weight * found[i].slope;
+      mean.position += found[i].weight * found[i].position, mean.slope += found[i].weight * found[i].slope;
     }
     if (!(sum > 0)) {
       std::fill(found.begin(), found.end(), LayerRay{raster, {0, 0}, 0});
@@ -76,7 +76,7 @@ class RaysOfCamera {
     if (clips_) light = Bundle(camera_, film, light_points_, wavelength).mean_weight();
     const double scale = light * static_cast<double>(found.size()) / sum;
     for (LayerRay& ray : found) {
-      if (ray.weight == 0) ray.at = mean.at / sum, ray.slope = mean.slope / sum;
+      if (ray.weight == 0) ray.position = mean.position / sum, ray.slope = mean.slope / sum;
       ray.weight *= scale;
     }
   }
@@ -84,31 +84,31 @@ class RaysOfCamera {
  private:
   LayerRay line(const Ray<double>& ray, double weight) const noexcept {
     const Vec3<double>&o = ray.origin, &d = ray.direction;
-    const double run_x = d.x / -d.z, run_y = d.y / -d.z, way = origin_z_ - o.z;  // the scene lies towards -z
+    const double run_x = d.x / -d.z, run_y = d.y / -d.z, dz = origin_z_ - o.z;  // the scene lies towards -z
     return {layers_.axis + layers_.focal_px * Vec2<double>{run_x, -run_y},
-            layers_.focal_px * Vec2<double>{o.x - run_x * way, -(o.y - run_y * way)}, weight};
+            layers_.focal_px * Vec2<double>{o.x - run_x * dz, -(o.y - run_y * dz)}, weight};
   }
 
   /// Moves a lost sample towards the centre of the pupil until its ray passes; weight 0 if no ray passes.
   LayerRay pulled_in(const FilmPoint& film, const PupilPoint& point, Wavelength wavelength) const {
     double passes = 0, lost = 1;  // fractions of v
     CameraRay found;
-    for (const double part : {0.98, 0.95, 0.9, 0.8, 0.6, 0.4, 0.2}) {
-      found = sample(film, point.u, part * point.v, wavelength);
+    for (const double radius_fraction : {0.98, 0.95, 0.9, 0.8, 0.6, 0.4, 0.2}) {
+      found = sample(film, point.u, radius_fraction * point.v, wavelength);
       if (found) {
-        passes = part;
+        passes = radius_fraction;
         break;
       }
-      lost = part;
+      lost = radius_fraction;
     }
     if (!found) return {{0, 0}, {0, 0}, 0};
     for (int i = 0; i < 6; ++i) {
-      const double part = 0.5 * (passes + lost);
-      const CameraRay nearer = sample(film, point.u, part * point.v, wavelength);
+      const double radius_fraction = 0.5 * (passes + lost);
+      const CameraRay nearer = sample(film, point.u, radius_fraction * point.v, wavelength);
       if (nearer) {
-        passes = part, found = nearer;
+        passes = radius_fraction, found = nearer;
       } else {
-        lost = part;
+        lost = radius_fraction;
       }
     }
     return line(found.ray, found.weight);

@@ -12,7 +12,7 @@
 #include "core/text.hpp"
 #include "gather_loops.hpp"
 #include "gather_memory.hpp"
-#include "gather_way.hpp"
+#include "gather_method.hpp"
 #include "highlights.hpp"
 #include "layer_data.hpp"
 #include "petzval/core/error.hpp"
@@ -52,12 +52,12 @@ void add_steps(const float* rows, std::size_t stride, std::size_t i, const Depth
 /// One call of gather().
 class Gathering {
  public:
-  Gathering(const LayerSet& layers, const LensRays& rays, const GatherOptions& options, const GatherWay& way,
-            int overscan, const Highlights& highlights, Blurred& picture)
+  Gathering(const LayerSet& layers, const LensRays& rays, const GatherOptions& options, const GatherMethod& method,
+            int overscan, const Highlights& highlights, BlurredImage& picture)
       : layers_(LayerAccess::data(layers)),
         rays_(RayAccess::data(rays)),
         options_(options),
-        way_(way),
+        method_(method),
         overscan_(overscan),
         highlights_(highlights),
         picture_(picture),
@@ -72,7 +72,7 @@ class Gathering {
               down = (picture_.rows + tile_rows_ - 1) / tile_rows_;
     parallel_for(static_cast<std::size_t>(across) * static_cast<std::size_t>(down), 4, options_.threads,
                  [&](std::size_t begin, std::size_t end) {
-                   const Blurred::Memory::Loan loan(*picture_.memory);
+                   const BlurredImage::Memory::Loan loan(*picture_.memory);
                    for (std::size_t t = begin; t < end; ++t) {
                      const int left = static_cast<int>(t) % across * tile_columns_,
                                top = static_cast<int>(t) / across * tile_rows_;
@@ -86,13 +86,13 @@ class Gathering {
   }
 
  private:
-  using Memory = Blurred::Memory::OfThread;
+  using Memory = BlurredImage::Memory::OfThread;
 
   void follow(const Tile& tile, Memory& memory) {
     for (std::size_t channel = 0; channel < rays_.table.channels; ++channel) {
       TileSums& sums = memory.sums[channel];
       for (int row = 0; row < tile.rows; ++row) {
-        const int from = TileSums::place(row, 0, sums_side());
+        const int from = TileSums::index(row, 0, sums_side());
         for (float* plane : {sums.colour[0], sums.colour[1], sums.colour[2], sums.alpha, sums.total, sums.open,
                              sums.missed, sums.unknown}) {
           std::fill_n(plane + from, TileSums::columns, 0.0f);
@@ -106,7 +106,7 @@ class Gathering {
   void follow(const Tile& tile, std::size_t channel, Memory& memory) {
     const std::size_t stride = rays_.table.rays;
     const float* corners[4];
-    if (way_.path == GatherPath::shift_invariant) {
+    if (method_.path == GatherPath::shift_invariant) {
       corners[0] = rays_.table.node(channel, 0, 0);
     } else {
       for (int c = 0; c < 4; ++c) {
@@ -117,7 +117,7 @@ class Gathering {
       }
     }
     const GatherLoops& loops = gather_loops();
-    const std::size_t corner_count = way_.path == GatherPath::shift_invariant ? 1 : 4;
+    const std::size_t corner_count = method_.path == GatherPath::shift_invariant ? 1 : 4;
     const auto rect_of = [&](const DepthRange& range) {
       const Limits reach = loops.limits(corners, corner_count, stride, stride, range.least, range.most);
       const int left = tile.left + overscan_, top = tile.top + overscan_;
@@ -128,7 +128,7 @@ class Gathering {
     DepthRange range = all_;
     PixelRect rect = rect_of(range.empty() ? DepthRange{0, 0, 0} : range);
     constexpr int iterations = 3;
-    for (int i = 0; way_.bounded && i < iterations && !range.empty(); ++i) {
+    for (int i = 0; method_.limit_steps && i < iterations && !range.empty(); ++i) {
       const DepthRange narrower = layers_.n_buffer.below(rect);
       const bool same = narrower.least == range.least && narrower.most == range.most;
       range = narrower;
@@ -149,7 +149,7 @@ class Gathering {
                 .sums = &memory.sums[channel]};
     if (range.empty()) range = {farthest_, farthest_, 1};  // the window holds no other pixels
     std::uint64_t made = 0;
-    if (way_.path == GatherPath::shift_invariant) {
+    if (method_.path == GatherPath::shift_invariant) {
       memory.steps.clear(), memory.ends.clear(), memory.first.assign(1, 0);
       for (std::size_t i = 0; i < stride; ++i) {
         add_steps(corners[0], stride, i, range, all_, job.window.stride, memory.steps);
@@ -167,7 +167,7 @@ class Gathering {
                             begin = set_of(tile.left + column, tile.top + row, side) * count;
           job.window = all.from(row, column);
           job.columns = (tile.columns - column + side - 1) / side, job.rows = (tile.rows - row + side - 1) / side;
-          job.first_sum = TileSums::place(row, column, side);
+          job.first_sum = TileSums::index(row, column, side);
           made += loops.same(job, {.count = count,
                                    .steps = memory.steps.data(),
                                    .first = memory.first.data() + begin,
@@ -186,7 +186,7 @@ class Gathering {
                                .most = std::max(all_.most, 1e-30f),
                                .end = farthest_,
                                .side = rays_.side()};
-      made = way_.path == GatherPath::coherent ? loops.coherent(job, rays) : loops.general(job, rays);
+      made = method_.path == GatherPath::coherent ? loops.coherent(job, rays) : loops.general(job, rays);
     }
     steps_ += made;
   }
@@ -243,8 +243,8 @@ class Gathering {
     return w;
   }
 
-  /// The `side` of TileSums::place().
-  int sums_side() const noexcept { return way_.path == GatherPath::shift_invariant ? rays_.side() : 1; }
+  /// The `side` of TileSums::index().
+  int sums_side() const noexcept { return method_.path == GatherPath::shift_invariant ? rays_.side() : 1; }
 
   void compose(const Tile& tile, const Memory& memory) {
     const std::size_t channels = rays_.table.channels;
@@ -252,7 +252,7 @@ class Gathering {
     double missed = 0;
     for (int row = 0; row < tile.rows; ++row) {
       for (int column = 0; column < tile.columns; ++column) {
-        const int at = TileSums::place(row, column, sums_side());
+        const int at = TileSums::index(row, column, sums_side());
         const std::size_t pixel =
             static_cast<std::size_t>(tile.top + row) * static_cast<std::size_t>(picture_.columns) +
             static_cast<std::size_t>(tile.left + column);
@@ -292,10 +292,10 @@ class Gathering {
   const LayerData& layers_;
   const RayData& rays_;
   const GatherOptions& options_;
-  GatherWay way_;
+  GatherMethod method_;
   int overscan_, tile_columns_ = 0, tile_rows_ = 0;
   const Highlights& highlights_;
-  Blurred& picture_;
+  BlurredImage& picture_;
   DepthRange all_;
   float farthest_;  ///< inverse depth at which rays end
   std::atomic<std::uint64_t> steps_ = 0, missed_ = 0;
@@ -318,7 +318,7 @@ std::string_view blur_detail::name(GatherPath path) noexcept {
 }
 
 void blur_detail::gather(const LayerSet& layers, const LensRays& rays, const GatherOptions& options,
-                         const GatherWay& way, Blurred& picture) {
+                         const GatherMethod& method, BlurredImage& picture) {
   const auto wrong = [](const std::string& what) { return Error("gather: " + what); };
   const LayerCamera& camera = rays.camera();
   const int beyond = layers.columns() - camera.columns;
@@ -330,17 +330,17 @@ void blur_detail::gather(const LayerSet& layers, const LensRays& rays, const Gat
   if (!(options.highlights_above >= 0)) {
     throw wrong("highlights_above = " + to_text(options.highlights_above) + "; must be at least 0 (0: off)");
   }
-  GatherPath path = way.path;
+  GatherPath path = method.path;
   if (path == GatherPath::automatic) {
-    path = rays.shift_invariant() ? GatherPath::shift_invariant
-           : rays.sets() == 1     ? GatherPath::coherent
-                                  : GatherPath::general;
+    path = rays.shift_invariant()  ? GatherPath::shift_invariant
+           : rays.set_count() == 1 ? GatherPath::coherent
+                                   : GatherPath::general;
   }
   if (path == GatherPath::shift_invariant && !rays.shift_invariant()) {
     throw wrong("the rays differ between pixels; the path must not be shift_invariant");
   }
-  if (path == GatherPath::coherent && rays.sets() != 1) {
-    throw wrong("number of ray sets = " + std::to_string(rays.sets()) + "; must be 1 for the path coherent");
+  if (path == GatherPath::coherent && rays.set_count() != 1) {
+    throw wrong("number of ray sets = " + std::to_string(rays.set_count()) + "; must be 1 for the path coherent");
   }
 
   const DepthRange depths = LayerAccess::data(layers).depths();
@@ -356,13 +356,13 @@ void blur_detail::gather(const LayerSet& layers, const LensRays& rays, const Gat
     picture.columns = camera.columns, picture.rows = camera.rows;
     picture.rgba.resize(4 * pixels), picture.missed.resize(pixels);
     picture.statistics = {.rays = pixels * rays.count() * static_cast<std::size_t>(rays.channels())};
-    if (!picture.memory) picture.memory = std::make_shared<Blurred::Memory>();
+    if (!picture.memory) picture.memory = std::make_shared<BlurredImage::Memory>();
 
     auto start = std::chrono::steady_clock::now();
     const Highlights highlights(LayerAccess::data(layers), rays, options, beyond / 2);
     const double finding = seconds_since(start);
     start = std::chrono::steady_clock::now();
-    Gathering(layers, rays, options, {path, way.bounded}, beyond / 2, highlights, picture).run();
+    Gathering(layers, rays, options, {path, method.limit_steps}, beyond / 2, highlights, picture).run();
     picture.statistics.gather_seconds = seconds_since(start);
     start = std::chrono::steady_clock::now();
     highlights.spread(options.threads, picture);
@@ -374,18 +374,18 @@ void blur_detail::gather(const LayerSet& layers, const LensRays& rays, const Gat
   }
 }
 
-Blurred blur_detail::gather(const LayerSet& layers, const LensRays& rays, const GatherOptions& options,
-                            const GatherWay& way) {
-  Blurred picture;
-  gather(layers, rays, options, way, picture);
+BlurredImage blur_detail::gather(const LayerSet& layers, const LensRays& rays, const GatherOptions& options,
+                                 const GatherMethod& method) {
+  BlurredImage picture;
+  gather(layers, rays, options, method, picture);
   return picture;
 }
 
-void gather(const LayerSet& layers, const LensRays& rays, const GatherOptions& options, Blurred& picture) {
+void gather(const LayerSet& layers, const LensRays& rays, const GatherOptions& options, BlurredImage& picture) {
   blur_detail::gather(layers, rays, options, {}, picture);
 }
 
-Blurred gather(const LayerSet& layers, const LensRays& rays, const GatherOptions& options) {
+BlurredImage gather(const LayerSet& layers, const LensRays& rays, const GatherOptions& options) {
   return blur_detail::gather(layers, rays, options, {});
 }
 

@@ -12,15 +12,16 @@ namespace {
 
 using Numbers = trace_detail::Lanes<float>;
 using Mask = trace_detail::Mask<float>;
-using Places = core_detail::Native<float>::Bits;  // 32-bit integers
+using PixelIndices = core_detail::Native<float>::Bits;  // 32-bit integers
 constexpr int width = Numbers::width;
 
 template <>
 struct WholePixel<Numbers> {
   static PETZVAL_INLINE Numbers below(Numbers x) noexcept {
     // The addition rounds to 1/256; conversions truncate towards 0.
-    constexpr int up = 1 << 15;
-    const Places whole = __builtin_convertvector((x + Numbers(static_cast<float>(up))).v, Places) - up;
+    constexpr int rounding_offset = 1 << 15;
+    const PixelIndices whole =
+        __builtin_convertvector((x + Numbers(static_cast<float>(rounding_offset))).v, PixelIndices) - rounding_offset;
     return Numbers(__builtin_convertvector(whole, core_detail::Native<float>::Values));
   }
 };
@@ -67,11 +68,11 @@ struct Apart {
     return load_every<side>(plane + offset, std::make_integer_sequence<int, width>{});
   }
 };
-using Beside = Apart<1>;
+using AdjacentPixels = Apart<1>;
 
 /// Loads a pixel for each active lane, and 0 for the other lanes, whose rays have ended.
 struct Anywhere {
-  Places offsets;
+  PixelIndices offsets;
   Mask lanes;
 
   PETZVAL_INLINE Numbers operator()(const float* plane) const noexcept {
@@ -93,7 +94,7 @@ struct Anywhere {
 
 /// The results of the rays in the lanes.
 template <bool opaque, int colours>
-struct Found {
+struct GatherState {
   Numbers colour[colours], missed{0.0f}, unknown{0.0f}, open{0.0f};
   Mask seeking;  ///< lanes whose rays have not ended
   // For transparent surfaces:
@@ -109,8 +110,8 @@ struct Found {
     seeking = lanes, front = Numbers(no_surface);
     if constexpr (!opaque) through = Numbers(1.0f), below = Numbers(1e30f);
   }
-  PETZVAL_INLINE Found() noexcept : Found(first_lanes(0)) {}
-  PETZVAL_INLINE explicit Found(Mask lanes) noexcept : seeking(lanes) {
+  PETZVAL_INLINE GatherState() noexcept : GatherState(first_lanes(0)) {}
+  PETZVAL_INLINE explicit GatherState(Mask lanes) noexcept : seeking(lanes) {
     for (Numbers& c : colour) c = Numbers(0.0f);
   }
 };
@@ -123,15 +124,15 @@ PETZVAL_INLINE Numbers in_front(Numbers w) noexcept { return select(w >= Numbers
 /// Lets the lanes of `hit` meet a layer in the pixels that `at` loads. Removes lanes from `here` if their rays end.
 template <bool opaque, int colours, class At>
 PETZVAL_INLINE void take(const LayerWindow& window, const At& at, std::ptrdiff_t layer, Numbers low, Numbers weight,
-                         Mask hit, Mask& here, Found<opaque, colours>& found) noexcept {
-  const Numbers share = opaque ? weight : weight * found.through;
+                         Mask hit, Mask& here, GatherState<opaque, colours>& found) noexcept {
+  const Numbers contribution = opaque ? weight : weight * found.through;
   for (int c = 0; c < colours; ++c) {
-    found.colour[c] = found.colour[c] + only(hit, share * at(window.colour[c] + layer));
+    found.colour[c] = found.colour[c] + only(hit, contribution * at(window.colour[c] + layer));
   }
   Mask ended = hit;
   if constexpr (!opaque) {
     const Numbers alpha = at(window.alpha + layer);
-    found.alpha = found.alpha + only(hit, share * alpha);
+    found.alpha = found.alpha + only(hit, contribution * alpha);
     found.through = select(hit, found.through * (Numbers(1.0f) - alpha), found.through);
     found.below = select(hit, low, found.below);
     ended = all_of(hit, found.through <= Numbers(1e-3f));
@@ -149,7 +150,7 @@ PETZVAL_INLINE void take(const LayerWindow& window, const At& at, std::ptrdiff_t
 /// @param before the pixels of the previous step
 template <bool opaque, int colours, class At>
 PETZVAL_INLINE void meet(const LayerWindow& window, const At& at, const At& before, Numbers low, Numbers high,
-                         Numbers gap, Numbers weight, Mask here, Found<opaque, colours>& found) noexcept {
+                         Numbers gap, Numbers weight, Mask here, GatherState<opaque, colours>& found) noexcept {
   const float* depth = window.depth;
   std::ptrdiff_t layer = 0;
   [[maybe_unused]] const Numbers below = found.below;
@@ -182,7 +183,7 @@ PETZVAL_INLINE void meet(const LayerWindow& window, const At& at, const At& befo
 /// Rays without a hit end in the void if the first layer is empty at the depth of the farthest surface.
 template <bool opaque, int colours, class At>
 PETZVAL_INLINE void end_in_void(const LayerWindow& window, const At& end, Numbers weight, Mask here,
-                                Found<opaque, colours>& found) noexcept {
+                                GatherState<opaque, colours>& found) noexcept {
   const Mask empty = all_of(here, end(window.depth) < Numbers(0.0f));
   found.open = found.open + only(empty, weight);
   found.seeking = without(found.seeking, empty);
@@ -191,7 +192,7 @@ PETZVAL_INLINE void end_in_void(const LayerWindow& window, const At& end, Number
 /// Other rays slipped behind a surface. The best guess for such a ray is the last surface that it passed.
 template <bool opaque, int colours, class At>
 PETZVAL_INLINE void guess(const LayerWindow& window, const At& at, Numbers low, Numbers weight, Mask here,
-                          Found<opaque, colours>& found) noexcept {
+                          GatherState<opaque, colours>& found) noexcept {
   const float* depth = window.depth;
   std::ptrdiff_t layer = 0;
   const Numbers none(0.0f);
@@ -212,19 +213,20 @@ PETZVAL_INLINE void guess(const LayerWindow& window, const At& at, Numbers low, 
 
 /// The rest of a ray that met a surface with alpha below 1, even with alpha 0, ends in the void.
 template <bool opaque, int colours>
-PETZVAL_INLINE void end_partly(Found<opaque, colours>& found) noexcept {
+PETZVAL_INLINE void end_partly(GatherState<opaque, colours>& found) noexcept {
   if constexpr (!opaque) found.seeking = all_of(found.seeking, found.below >= Numbers(1e30f));
 }
 
 template <bool opaque, int colours>
-PETZVAL_INLINE void give_up(Numbers weight, Found<opaque, colours>& found) noexcept {
+PETZVAL_INLINE void give_up(Numbers weight, GatherState<opaque, colours>& found) noexcept {
   const Numbers rest = only(found.seeking, weight);
   found.missed = found.missed + rest, found.unknown = found.unknown + rest;
 }
 
 /// Adds the results of adjacent pixels.
 template <bool opaque, int colours>
-PETZVAL_INLINE void keep(TileSums& sums, int pixel, const Found<opaque, colours>& found, Numbers weight) noexcept {
+PETZVAL_INLINE void keep(TileSums& sums, int pixel, const GatherState<opaque, colours>& found,
+                         Numbers weight) noexcept {
   for (int c = 0; c < colours; ++c) add(sums.colour[c] + pixel, found.colour[c]);
   add(sums.total + pixel, weight);
   if constexpr (!opaque) add(sums.alpha + pixel, found.alpha);
@@ -237,7 +239,7 @@ PETZVAL_INLINE void keep(TileSums& sums, int pixel, const Found<opaque, colours>
 template <int side, bool opaque, int colours>
 PETZVAL_INLINE std::uint64_t follow_ray(const LayerWindow& window, const Step* begin, const Step* from, const Step* end,
                                         std::ptrdiff_t last, Numbers gap, Numbers weight, Mask lanes,
-                                        Found<opaque, colours>& found) noexcept {
+                                        GatherState<opaque, colours>& found) noexcept {
   found.begin_ray(lanes);
   // In the previous step, all pixels passed in front of the first layer.
   if (from != begin) found.front = in_front(Apart<side>{from[-1].offset}(window.depth));
@@ -264,7 +266,7 @@ std::uint64_t follow_rows(const TileJob& job, const SameRays& rays, int row, int
   for (int r = 0; r < at_once; ++r) windows[r] = job.window.from((row + r) * side, column * side);
   const Mask lanes = first_lanes(static_cast<std::size_t>(job.columns - column));
   const bool full = opaque && every(lanes);
-  Found<opaque, colours> found[at_once];
+  GatherState<opaque, colours> found[at_once];
   Numbers total(0.0f);
   const Numbers gap(job.gap);
   std::uint64_t made = 0;
@@ -359,13 +361,13 @@ Limits limits(const float* const* corners, std::size_t corner_count, std::size_t
 }
 
 /// Offsets for differences of columns and rows.
-PETZVAL_INLINE Places offsets_of(Numbers column, Numbers row, std::ptrdiff_t stride) noexcept {
-  return __builtin_convertvector(row.v, Places) * static_cast<std::int32_t>(stride) +
-         __builtin_convertvector(column.v, Places);
+PETZVAL_INLINE PixelIndices offsets_of(Numbers column, Numbers row, std::ptrdiff_t stride) noexcept {
+  return __builtin_convertvector(row.v, PixelIndices) * static_cast<std::int32_t>(stride) +
+         __builtin_convertvector(column.v, PixelIndices);
 }
 
 /// Offsets of the pixels that lines pass at an inverse depth.
-PETZVAL_INLINE Places pixels_at(const Numbers (&line)[row_count], Numbers w, std::ptrdiff_t stride) noexcept {
+PETZVAL_INLINE PixelIndices pixels_at(const Numbers (&line)[row_count], Numbers w, std::ptrdiff_t stride) noexcept {
   const Numbers half(0.5f);
   return offsets_of(WholePixel<Numbers>::below(line[at_x] + line[slope_x] * w + half),
                     WholePixel<Numbers>::below(line[at_y] + line[slope_y] * w + half), stride);
@@ -378,7 +380,7 @@ PETZVAL_INLINE Places pixels_at(const Numbers (&line)[row_count], Numbers w, std
 template <bool opaque, int colours, class Load>
 PETZVAL_INLINE std::uint64_t follow(const LayerWindow& window, const DifferentRays& rays, float gap,
                                     const Numbers (&line)[row_count], const Load& load,
-                                    Found<opaque, colours>& found) noexcept {
+                                    GatherState<opaque, colours>& found) noexcept {
   const PixelSteps<Numbers> steps(line[at_x], line[at_y], line[slope_x], line[slope_y], Numbers(rays.from),
                                   Numbers(rays.to), Numbers(rays.end), Numbers(rays.most));
   const Numbers seen = line[weight], zero(0.0f), one(1.0f);
@@ -388,7 +390,7 @@ PETZVAL_INLINE std::uint64_t follow(const LayerWindow& window, const DifferentRa
   };
   std::uint64_t made = 0;
   Numbers n = zero, high = steps.low(-one);
-  Places pixels = pixels_of(n), pixels_before = pixels;
+  PixelIndices pixels = pixels_of(n), pixels_before = pixels;
   for (Mask here = found.seeking; any(here); here = all_of(found.seeking, n <= steps.last()), ++made) {
     const Numbers low = larger(steps.low(n), zero);
     load(pixels, pixels_before, here, [&](const auto& at, const auto& before, Mask lanes) {
@@ -398,7 +400,7 @@ PETZVAL_INLINE std::uint64_t follow(const LayerWindow& window, const DifferentRa
   }
   if (!any(found.seeking)) return made;
   end_partly(found);
-  const Places ends = pixels_at(line, Numbers(rays.end), window.stride);
+  const PixelIndices ends = pixels_at(line, Numbers(rays.end), window.stride);
   load(ends, ends, found.seeking,
        [&](const auto& at, const auto&, Mask lanes) { end_in_void(window, at, seen, lanes, found); });
   n = steps.last();
@@ -414,7 +416,7 @@ PETZVAL_INLINE std::uint64_t follow(const LayerWindow& window, const DifferentRa
 }
 
 /// The lanes equal to a number.
-PETZVAL_INLINE Mask lanes_of(Places numbers, std::int32_t number) noexcept {
+PETZVAL_INLINE Mask lanes_of(PixelIndices numbers, std::int32_t number) noexcept {
 #if defined(__AVX512F__)
   return {_mm512_cmpeq_epi32_mask(reinterpret_cast<__m512i>(numbers), _mm512_set1_epi32(number))};
 #else
@@ -424,11 +426,11 @@ PETZVAL_INLINE Mask lanes_of(Places numbers, std::int32_t number) noexcept {
 
 /// Pixels of adjacent lanes. In most cases all lanes have equal offsets from their own pixels, and one load suffices.
 template <class Visit>
-PETZVAL_INLINE void load_beside(Places offsets, Places before, Mask lanes, const Visit& visit) noexcept {
+PETZVAL_INLINE void load_adjacent(PixelIndices offsets, PixelIndices before, Mask lanes, const Visit& visit) noexcept {
   const std::int32_t first = offsets[0], first_before = before[0];
-  const Mask alike = all_of(lanes_of(offsets, first), lanes_of(before, first_before));
-  if (!any(without(lanes, alike))) return visit(Beside{first}, Beside{first_before}, lanes);
-  Places own;
+  const Mask equal_offsets = all_of(lanes_of(offsets, first), lanes_of(before, first_before));
+  if (!any(without(lanes, equal_offsets))) return visit(AdjacentPixels{first}, AdjacentPixels{first_before}, lanes);
+  PixelIndices own;
   for (int i = 0; i < width; ++i) own[i] = i;
   visit(Anywhere{offsets + own, lanes}, Anywhere{before + own, lanes}, lanes);
 }
@@ -448,20 +450,20 @@ std::uint64_t follow_coherent(const TileJob& job, const DifferentRays& rays) noe
       rise[i] = (rays.corners[1][i] + down * (rays.corners[3][i] - rays.corners[1][i]) - left[i]) * per_column;
     }
     for (int column = 0; column < job.columns; column += width) {
-      const Numbers place = lane + Numbers(static_cast<float>(column));
+      const Numbers lane_column = lane + Numbers(static_cast<float>(column));
       const LayerWindow window = job.window.from(row, column);
       const Mask lanes = first_lanes(static_cast<std::size_t>(job.columns - column));
-      Found<opaque, colours> found;
+      GatherState<opaque, colours> found;
       Numbers total(0.0f);
       for (std::size_t i = 0; i < rays.count; ++i) {
         Numbers line[row_count];
         for (std::size_t r = 0; r < row_count; ++r) {
           const std::size_t at = r * rays.row_stride + i;
-          line[r] = Numbers(left[at]) + place * Numbers(rise[at]);
+          line[r] = Numbers(left[at]) + lane_column * Numbers(rise[at]);
         }
         found.begin_ray(lanes);
-        const auto load_pixels = [&](Places offsets, Places before, Mask here, const auto& visit) {
-          load_beside(offsets, before, here, visit);
+        const auto load_pixels = [&](PixelIndices offsets, PixelIndices before, Mask here, const auto& visit) {
+          load_adjacent(offsets, before, here, visit);
         };
         made += follow(window, rays, job.gap, line, load_pixels, found);
         total = total + line[weight];
@@ -498,8 +500,8 @@ std::uint64_t follow_general(const TileJob& job, const DifferentRays& rays) noex
             line[r] = from + across * (to - from);
           }
           const LayerWindow window = job.window.from(row, column);
-          Found<opaque, colours> found(lanes);
-          const auto load_pixels = [&](Places offsets, Places before, Mask here, const auto& visit) {
+          GatherState<opaque, colours> found(lanes);
+          const auto load_pixels = [&](PixelIndices offsets, PixelIndices before, Mask here, const auto& visit) {
             visit(Anywhere{offsets, here}, Anywhere{before, here}, here);
           };
           made += follow(window, rays, job.gap, line, load_pixels, found);

@@ -32,7 +32,7 @@ struct TileSums {
   static constexpr int columns = 64, rows = 16, pixels = columns * rows;
   /// Index of the sums of a pixel.
   /// @param side pixels `side` columns and rows apart get adjacent indices, for SIMD lanes
-  static constexpr int place(int row, int column, int side) noexcept {
+  static constexpr int index(int row, int column, int side) noexcept {
     return (row % side * (rows / side) + row / side) * columns + column % side * (columns / side) + column / side;
   }
   float colour[3][pixels], alpha[pixels];
@@ -75,7 +75,7 @@ struct TileJob {
   int columns = 0, rows = 0;  ///< number of pixels
   int side = 1;               ///< for `same`: 1, 2 or 4
   int left = 0, top = 0;      ///< position of the first pixel in the picture
-  int first_sum = 0;          ///< TileSums::place() of the first pixel
+  int first_sum = 0;          ///< TileSums::index() of the first pixel
   int colours = 3;            ///< colours per ray, 3 or 1
   bool opaque = true;
   float gap = 0;  ///< surfaces of adjacent pixels are joined up to this difference of inverse depths

@@ -13,7 +13,7 @@
 namespace petzval {
 
 /// Work memory of the threads of gather(), kept between pictures.
-struct Blurred::Memory {
+struct BlurredImage::Memory {
   struct OfThread {
     std::vector<blur_detail::Step> steps;
     std::vector<std::uint32_t> first;

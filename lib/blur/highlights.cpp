@@ -80,7 +80,7 @@ struct Highlights::Stamp {
 };
 
 /// Highlights that share a stamp.
-struct Highlights::Alike {
+struct Highlights::SharedStamp {
   Group members;
   Stamp stamp;
 };
@@ -95,7 +95,7 @@ Highlights::Highlights(const LayerData& layers, const LensRays& rays, const Gath
   if (options.highlights_above == 0) return;
   find(static_cast<float>(options.highlights_above));
   make_groups();
-  if (found_.empty() || !rays_.shift_invariant) return;
+  if (highlights_.empty() || !rays_.shift_invariant) return;
   for (std::size_t channel = 0; channel < rays_.table.channels; ++channel) {
     shared_.push_back(rays_.dense({0, 0, 1, 1}, channel, most_rays));
   }
@@ -140,12 +140,12 @@ void Highlights::find(float above) {
     const int reach = static_cast<int>(std::sqrt(h.area / std::numbers::pi));
     const double covered =
         bright_in({h.column - reach, h.row - reach, h.column + reach, h.row + reach}) / std::max(h.area, 1.0f);
-    if (h.area > rays && covered < 0.5 && covered * rays < 32) found_.push_back(h);
+    if (h.area > rays && covered < 0.5 && covered * rays < 32) highlights_.push_back(h);
   }
-  found_in_.fill(layers_.columns, layers_.rows, NBuffer::block, found_);
+  counts_.fill(layers_.columns, layers_.rows, NBuffer::block, highlights_);
   std::size_t at = 0;
   for (int row = 0; row <= layers_.rows; ++row) {
-    while (at < found_.size() && found_[at].row < row) ++at;
+    while (at < highlights_.size() && highlights_[at].row < row) ++at;
     row_begin_.push_back(at);
   }
 }
@@ -157,8 +157,8 @@ void Highlights::make_groups() {
     return std::tuple(h.row / cell, h.column / cell, h.layer, static_cast<int>(h.inverse_depth * rays_.largest_slope));
   };
   std::map<std::tuple<int, int, int, int>, std::size_t> known;
-  for (std::size_t i = 0; i < found_.size(); ++i) {
-    const auto [at, added] = known.try_emplace(key_of(found_[i]), groups_.size());
+  for (std::size_t i = 0; i < highlights_.size(); ++i) {
+    const auto [at, added] = known.try_emplace(key_of(highlights_[i]), groups_.size());
     if (added) groups_.emplace_back();
     groups_[at->second].push_back(i);
   }
@@ -166,11 +166,11 @@ void Highlights::make_groups() {
 
 void Highlights::cut(const PixelRect& rect, int columns, int layers, int planes, std::size_t plane_stride,
                      float* copy) const {
-  if (found_.empty()) return;
+  if (highlights_.empty()) return;
   for (int row = std::max(rect.top, 0); row <= std::min(rect.bottom, layers_.rows - 1); ++row) {
     for (std::size_t i = row_begin_[static_cast<std::size_t>(row)]; i < row_begin_[static_cast<std::size_t>(row) + 1];
          ++i) {
-      const Highlight& h = found_[i];
+      const Highlight& h = highlights_[i];
       if (h.column < rect.left || h.column > rect.right || h.layer >= layers) continue;
       float* const at = copy + static_cast<std::size_t>(h.layer * planes) * plane_stride +
                         static_cast<std::ptrdiff_t>(row - rect.top) * columns + (h.column - rect.left);
@@ -180,11 +180,11 @@ void Highlights::cut(const PixelRect& rect, int columns, int layers, int planes,
 }
 
 float Highlights::visible(const float* line, double x, double y, const Highlight& h) const {
-  const auto place_at = [&](double w) {
+  const auto position_at = [&](double w) {
     return Vec2<double>{x + line[at_x] + w * line[slope_x] + overscan_, y + line[at_y] + w * line[slope_y] + overscan_};
   };
   const auto rect_to = [&](double w) {
-    const Vec2<double> a = place_at(w), b = place_at(h.inverse_depth);
+    const Vec2<double> a = position_at(w), b = position_at(h.inverse_depth);
     return PixelRect{
         static_cast<int>(std::floor(std::min(a.x, b.x))) - 1, static_cast<int>(std::floor(std::min(a.y, b.y))) - 1,
         static_cast<int>(std::ceil(std::max(a.x, b.x))) + 1, static_cast<int>(std::ceil(std::max(a.y, b.y))) + 1};
@@ -197,7 +197,7 @@ float Highlights::visible(const float* line, double x, double y, const Highlight
     from = layers_.n_buffer.below(rect_to(from)).most;
     if (from <= h.inverse_depth + margin) return 1;
   }
-  const Vec2<double> first_pixel = place_at(0) - 0.5;
+  const Vec2<double> first_pixel = position_at(0) - 0.5;
   const PixelSteps<double> steps(first_pixel.x, first_pixel.y, line[slope_x], line[slope_y], from,
                                  h.inverse_depth + margin, farthest_, nearest_);
   float through = 1, front = no_surface, front_alpha = 0;
@@ -248,31 +248,31 @@ Highlights::Stamp Highlights::stamp_of(const Highlight& h, double rays_of_pixel,
       table.ray_at(0, ray, from.x, from.y, line);
       return Vec2<double>{from.x + line[at_x] + w * line[slope_x], from.y + line[at_y] + w * line[slope_y]};
     };
-    Vec2<double> place{x, y};
+    Vec2<double> landing{x, y};
     double stretch = 1, off = 1;
     if (rays_.shift_invariant) {
       for (std::size_t r = 0; r < row_count; ++r) line[r] = table.node(0, 0, 0)[r * table.rays + ray];
-      place -= Vec2<double>{line[at_x] + w * line[slope_x], line[at_y] + w * line[slope_y]};
+      landing -= Vec2<double>{line[at_x] + w * line[slope_x], line[at_y] + w * line[slope_y]};
     } else {
       for (int k = 0; k < 12 && off > 0.05; ++k) {
-        const Vec2<double> miss = Vec2<double>{x, y} - lead(place);
+        const Vec2<double> miss = Vec2<double>{x, y} - lead(landing);
         off = std::max(std::abs(miss.x), std::abs(miss.y));
-        place += miss;
+        landing += miss;
       }
       if (off > 1) continue;
-      const Vec2<double> here = lead(place), across = lead(place + Vec2<double>{1, 0}) - here,
-                         down = lead(place + Vec2<double>{0, 1}) - here;
+      const Vec2<double> here = lead(landing), across = lead(landing + Vec2<double>{1, 0}) - here,
+                         down = lead(landing + Vec2<double>{0, 1}) - here;
       stretch = std::abs(across.x * down.y - across.y * down.x);
       if (!(stretch > 1e-3)) continue;
-      lead(place);
+      lead(landing);
     }
-    const float through = visible(line, place.x, place.y, h);
+    const float through = visible(line, landing.x, landing.y, h);
     stamp.hidden |= through < 1;
     const double light = through * line[weight] / (static_cast<double>(rays) * stretch);
     if (!(light > 0)) continue;
-    splats.push_back({place.x, place.y, light});
-    left = std::min(left, place.x - half), right = std::max(right, place.x + half);
-    top = std::min(top, place.y - half), bottom = std::max(bottom, place.y + half);
+    splats.push_back({landing.x, landing.y, light});
+    left = std::min(left, landing.x - half), right = std::max(right, landing.x + half);
+    top = std::min(top, landing.y - half), bottom = std::max(bottom, landing.y + half);
   }
   if (splats.empty()) return stamp;
 
@@ -281,20 +281,20 @@ Highlights::Stamp Highlights::stamp_of(const Highlight& h, double rays_of_pixel,
   stamp.columns = static_cast<int>(std::ceil(right)) - first_column;
   stamp.rows = static_cast<int>(std::ceil(bottom)) - first_row;
   stamp.light.resize(static_cast<std::size_t>(stamp.columns) * static_cast<std::size_t>(stamp.rows));
-  const auto share_before = [half](double distance) {  // fraction of a tent's light
+  const auto fraction_before = [half](double distance) {  // fraction of a tent's light
     const double t = std::clamp(distance / half, -1.0, 1.0);
     return t < 0 ? 0.5 * (1 + t) * (1 + t) : 1 - 0.5 * (1 - t) * (1 - t);
   };
   std::vector<double> across, down;
-  const auto shares = [&](double centre, int first, std::vector<double>& of_pixels) {
+  const auto fractions = [&](double centre, int first, std::vector<double>& of_pixels) {
     of_pixels.clear();
     for (int pixel = first; pixel < centre + half; ++pixel) {
-      of_pixels.push_back(share_before(pixel + 1 - centre) - share_before(pixel - centre));
+      of_pixels.push_back(fraction_before(pixel + 1 - centre) - fraction_before(pixel - centre));
     }
   };
   for (const Splat& s : splats) {
     const int column = static_cast<int>(std::floor(s.x - half)), row = static_cast<int>(std::floor(s.y - half));
-    shares(s.x, column, across), shares(s.y, row, down);
+    fractions(s.x, column, across), fractions(s.y, row, down);
     for (std::size_t j = 0; j < down.size(); ++j) {
       float* const light =
           &stamp.light[(static_cast<std::size_t>(row - first_row) + j) * static_cast<std::size_t>(stamp.columns) +
@@ -306,9 +306,11 @@ Highlights::Stamp Highlights::stamp_of(const Highlight& h, double rays_of_pixel,
 }
 
 const Highlight& Highlights::brightest(const Group& group) const {
-  const auto brightness = [&](std::size_t i) { return found_[i].light[0] + found_[i].light[1] + found_[i].light[2]; };
-  return found_[*std::max_element(group.begin(), group.end(),
-                                  [&](std::size_t a, std::size_t b) { return brightness(a) < brightness(b); })];
+  const auto brightness = [&](std::size_t i) {
+    return highlights_[i].light[0] + highlights_[i].light[1] + highlights_[i].light[2];
+  };
+  return highlights_[*std::max_element(group.begin(), group.end(),
+                                       [&](std::size_t a, std::size_t b) { return brightness(a) < brightness(b); })];
 }
 
 RasterArea Highlights::area_of(const Group& group, std::size_t channel) const {
@@ -333,16 +335,16 @@ RasterArea Highlights::area_of(const Group& group, std::size_t channel) const {
   return left < right && top < bottom ? RasterArea{left, top, right - left, bottom - top} : RasterArea{};
 }
 
-std::vector<Highlights::Alike> Highlights::stamps_of(const Group& group, std::size_t channel) const {
+std::vector<Highlights::SharedStamp> Highlights::stamps_of(const Group& group, std::size_t channel) const {
   constexpr double rays_of_pixel = 2.5;
   constexpr int cell = 4;
   // For each highlight, nearer surfaces hide different rays. The highlights of one cell are treated as if the same rays
   // were hidden, which moves the edge of the shadow by less than a cell.
   std::map<std::pair<int, int>, Group> cells;
   for (const std::size_t member : group) {
-    cells[{found_[member].row / cell, found_[member].column / cell}].push_back(member);
+    cells[{highlights_[member].row / cell, highlights_[member].column / cell}].push_back(member);
   }
-  std::vector<Alike> stamps;
+  std::vector<SharedStamp> stamps;
   const Highlight& light = brightest(group);
   RayTable own;
   if (!rays_.shift_invariant) {
@@ -357,31 +359,31 @@ std::vector<Highlights::Alike> Highlights::stamps_of(const Group& group, std::si
     return stamps;
   }
   const double rays = std::max(1.0, rays_of_pixel / static_cast<double>(cells.size()));
-  for (const auto& [place, members] : cells) {
+  for (const auto& [landing, members] : cells) {
     stamps.push_back({members, stamp_of(brightest(members), rays, table)});
   }
   return stamps;
 }
 
-void Highlights::spread(int threads, Blurred& picture) const {
+void Highlights::spread(int threads, BlurredImage& picture) const {
   const std::size_t channels = rays_.table.channels;
-  constexpr std::size_t at_once = 64;
-  std::vector<std::vector<Alike>> stamps(channels * std::min(at_once, groups_.size()));
-  for (std::size_t begin = 0; begin < groups_.size(); begin += at_once) {
-    const std::size_t count = channels * std::min(at_once, groups_.size() - begin);
+  constexpr std::size_t batch_size = 64;
+  std::vector<std::vector<SharedStamp>> stamps(channels * std::min(batch_size, groups_.size()));
+  for (std::size_t begin = 0; begin < groups_.size(); begin += batch_size) {
+    const std::size_t count = channels * std::min(batch_size, groups_.size() - begin);
     parallel_for(count, 1, threads, [&](std::size_t first, std::size_t end) {
       for (std::size_t i = first; i < end; ++i) stamps[i] = stamps_of(groups_[begin + i / channels], i % channels);
     });
     // In sequence, so that the sums do not depend on the number of threads.
     for (std::size_t i = 0; i < count; ++i) {
       for (const auto& [members, stamp] : stamps[i]) {
-        for (const std::size_t member : members) add(stamp, found_[member], i % channels, picture);
+        for (const std::size_t member : members) add(stamp, highlights_[member], i % channels, picture);
       }
     }
   }
 }
 
-void Highlights::add(const Stamp& stamp, const Highlight& h, std::size_t channel, Blurred& picture) const {
+void Highlights::add(const Stamp& stamp, const Highlight& h, std::size_t channel, BlurredImage& picture) const {
   const int left = stamp.left + h.column, top = stamp.top + h.row;
   const int first = std::max(0, -left), last = std::min(stamp.columns, picture.columns - left);
   for (int row = std::max(0, -top); row < std::min(stamp.rows, picture.rows - top); ++row) {

@@ -38,20 +38,20 @@ class Highlights {
  public:
   Highlights(const LayerData& layers, const LensRays& rays, const GatherOptions& options, int overscan);
 
-  std::size_t count() const noexcept { return found_.size(); }
+  std::size_t count() const noexcept { return highlights_.size(); }
   /// Number of highlights in a rectangle of the layers, widened to full blocks.
-  std::uint32_t count_in(const PixelRect& rect) const noexcept { return found_in_(rect); }
+  std::uint32_t count_in(const PixelRect& rect) const noexcept { return counts_(rect); }
   /// Subtracts the highlights from a copy of a rectangle: `layers` layers of `planes` planes, `plane_stride` apart,
   /// with rows of `columns` pixels.
   void cut(const PixelRect& rect, int columns, int layers, int planes, std::size_t plane_stride, float* copy) const;
   /// Adds the light of the highlights to the picture.
-  void spread(int threads, Blurred& picture) const;
+  void spread(int threads, BlurredImage& picture) const;
 
  private:
   /// Adjacent highlights of nearly equal depth, which the same rays meet: indices in found_.
   using Group = std::vector<std::size_t>;
   struct Stamp;
-  struct Alike;
+  struct SharedStamp;
 
   void find(float above);
   void make_groups();
@@ -60,18 +60,18 @@ class Highlights {
   const Highlight& brightest(const Group& group) const;
   /// The part of the picture over which a group is distributed; it has no columns if it lies outside the picture.
   RasterArea area_of(const Group& group, std::size_t channel) const;
-  std::vector<Alike> stamps_of(const Group& group, std::size_t channel) const;
-  void add(const Stamp& stamp, const Highlight& highlight, std::size_t channel, Blurred& picture) const;
+  std::vector<SharedStamp> stamps_of(const Group& group, std::size_t channel) const;
+  void add(const Stamp& stamp, const Highlight& highlight, std::size_t channel, BlurredImage& picture) const;
   float visible(const float* line, double x, double y, const Highlight& highlight) const;
 
   const LayerData& layers_;
   const RayData& rays_;
   float gap_, nearest_, farthest_;  ///< nearest_, farthest_: inverse depths of the nearest and the farthest surface
   int overscan_;
-  std::vector<Highlight> found_;  ///< sorted by rows
+  std::vector<Highlight> highlights_;  ///< sorted by rows
   std::vector<Group> groups_;
   std::vector<std::size_t> row_begin_;  ///< indices in found_ at which the rows of the layers begin, and the end
-  CountsIn found_in_;
+  CountsIn counts_;
   std::vector<RayTable> shared_;  ///< for each channel if all pixels share their rays
 };
 

@@ -50,9 +50,10 @@ LayerCamera layer_camera(const Camera& camera) {
                            .focal_px = std::abs(1 / slope),
                            .axis = film.raster(FilmPoint{0, 0})};
 
-  constexpr int places = 9;  // along each side; positions without light are skipped
-  for (int i = 0; i < places * places; ++i) {
-    const double column = film.columns * (i % places) / (places - 1.0), row = film.rows * (i / places) / (places - 1.0);
+  constexpr int grid_points = 9;  // along each side; positions without light are skipped
+  for (int i = 0; i < grid_points * grid_points; ++i) {
+    const double column = film.columns * (i % grid_points) / (grid_points - 1.0),
+                 row = film.rows * (i / grid_points) / (grid_points - 1.0);
     const CameraRay ray = camera.sample({.film = film.point(column, row)});
     if (!ray || -ray.ray.direction.z >= std::cos(steepest)) continue;
     throw Error("layer camera: the ray of column " + to_text(column) + ", row " + to_text(row) + " runs " +

@@ -34,9 +34,10 @@ void check_size(const std::string& where, int columns, int rows) {
 
 /// Checks the size of a camera's layers, including overscan.
 void check_size(const LayerCamera& camera) {
-  constexpr int most = 1 << 15;  // far below the overflow of the sum
-  if (camera.overscan < 0 || camera.overscan > most) {
-    throw Error("layers: overscan = " + std::to_string(camera.overscan) + " px; must be 0 to " + std::to_string(most));
+  constexpr int max_overscan = 1 << 15;  // far below the overflow of the sum
+  if (camera.overscan < 0 || camera.overscan > max_overscan) {
+    throw Error("layers: overscan = " + std::to_string(camera.overscan) + " px; must be 0 to " +
+                std::to_string(max_overscan));
   }
   check_size("layers", camera.columns, camera.rows);
   check_size("layers", camera.layer_columns(), camera.layer_rows());
@@ -56,8 +57,8 @@ LayerSet::Data::Filling::Filling(Data& data, int columns, int rows, int layers) 
   data.columns = data.rows = data.count = 0, data.opaque = true;  // also if memory runs out
   const std::size_t pixels = static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows);
   data.below.assign(pixels, infinity);
-  const std::size_t wanted = 2 * slack + static_cast<std::size_t>(layers * planes) * (pixels + slack);
-  if (data.memory.size() < wanted) data.memory.resize(wanted);
+  const std::size_t expected = 2 * slack + static_cast<std::size_t>(layers * planes) * (pixels + slack);
+  if (data.memory.size() < expected) data.memory.resize(expected);
   data.columns = columns, data.rows = rows;
 }
 
@@ -113,7 +114,7 @@ void LayerSet::Data::end_layer(const std::string& where) {
 namespace {
 
 /// Depth along the axis divided by the distance along the ray, for a pixel of the layers.
-float axial_share(const LayerCamera& camera, std::size_t pixel) {
+float axial_fraction(const LayerCamera& camera, std::size_t pixel) {
   const auto width = static_cast<std::size_t>(camera.layer_columns());
   const double x = (static_cast<double>(pixel % width) + 0.5 - camera.overscan - camera.axis.x) / camera.focal_px,
                y = (static_cast<double>(pixel / width) + 0.5 - camera.overscan - camera.axis.y) / camera.focal_px;
@@ -122,8 +123,9 @@ float axial_share(const LayerCamera& camera, std::size_t pixel) {
 
 void check_pixels(const LayerCamera& camera, std::size_t pixels) {
   check_size(camera);
-  const auto wanted = static_cast<std::size_t>(camera.layer_columns()) * static_cast<std::size_t>(camera.layer_rows());
-  if (pixels == wanted) return;
+  const auto expected =
+      static_cast<std::size_t>(camera.layer_columns()) * static_cast<std::size_t>(camera.layer_rows());
+  if (pixels == expected) return;
   throw Error("axial_depths: number of pixels = " + std::to_string(pixels) +
               "; must be columns x rows of the layers, " + std::to_string(camera.layer_columns()) + " x " +
               std::to_string(camera.layer_rows()));
@@ -134,14 +136,15 @@ void check_pixels(const LayerCamera& camera, std::size_t pixels) {
 void axial_depths(const LayerCamera& camera, FragmentLists& lists) {
   check_pixels(camera, lists.offsets.empty() ? 0 : lists.offsets.size() - 1);
   for (std::size_t pixel = 0; pixel + 1 < lists.offsets.size(); ++pixel) {
-    const float share = axial_share(camera, pixel);
-    for (std::size_t i = lists.offsets[pixel]; i < lists.offsets[pixel + 1]; ++i) lists.fragments[i].depth_mm *= share;
+    const float fraction = axial_fraction(camera, pixel);
+    for (std::size_t i = lists.offsets[pixel]; i < lists.offsets[pixel + 1]; ++i)
+      lists.fragments[i].depth_mm *= fraction;
   }
 }
 
 void axial_depths(const LayerCamera& camera, std::span<float> depth_mm) {
   check_pixels(camera, depth_mm.size());
-  for (std::size_t pixel = 0; pixel < depth_mm.size(); ++pixel) depth_mm[pixel] *= axial_share(camera, pixel);
+  for (std::size_t pixel = 0; pixel < depth_mm.size(); ++pixel) depth_mm[pixel] *= axial_fraction(camera, pixel);
 }
 
 LayerSet::LayerSet() : data_(std::make_unique<Data>()) {}
@@ -168,7 +171,7 @@ void LayerSet::peel(const PeelPlan& plan, int layers, const Peel& peel) {
   filling.finish();
 }
 
-void LayerSet::thin(const FragmentLists& lists, double bias, int layers) {
+void LayerSet::peel_fragments(const FragmentLists& lists, double bias, int layers) {
   check_number(layers);
   check_size("fragments", lists.columns, lists.rows);
   const auto pixels = static_cast<std::size_t>(lists.columns) * static_cast<std::size_t>(lists.rows);

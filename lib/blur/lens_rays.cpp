@@ -54,18 +54,18 @@ TableError error_of(const RayTable& coarse, const RayTable& fine, double nearest
         coarse.at(channel, fine.column_of(column), fine.row_of(row), found.data());
         const float* const exact = fine.node(channel, row, column);
         const double focus = sharpest(exact, fine.rays, nearest);
-        double light = 0, wanted = 0, sum = 0;
+        double light = 0, expected = 0, sum = 0;
         for (std::size_t i = 0; i < fine.rays; ++i) {
           const auto off = [&](Row r) {
             return static_cast<double>(found[r * fine.rays + i]) - exact[r * fine.rays + i];
           };
-          light += found[weight * fine.rays + i], wanted += exact[weight * fine.rays + i];
+          light += found[weight * fine.rays + i], expected += exact[weight * fine.rays + i];
           if (exact[weight * fine.rays + i] == 0) continue;
           const double x = off(at_x) + focus * off(slope_x), y = off(at_y) + focus * off(slope_y);
           sum += x * x + y * y;
         }
         error.px = std::max(error.px, std::sqrt(sum / static_cast<double>(fine.rays)));
-        error.light = std::max(error.light, std::abs(light - wanted)), brightest = std::max(brightest, wanted);
+        error.light = std::max(error.light, std::abs(light - expected)), brightest = std::max(brightest, expected);
       }
     }
   }
@@ -85,12 +85,12 @@ void check(const LayerCamera& camera, std::span<const PupilPoint> points, int ch
                 " px; must be finite");
   }
   if (channels != 1 && channels != 3) throw wrong(std::to_string(channels) + " channels; must be 1 or 3");
-  if (options.sets != 1 && options.sets != 4 && options.sets != 16) {
-    throw wrong(std::to_string(options.sets) + " sets; must be 1, 4 or 16");
+  if (options.set_count != 1 && options.set_count != 4 && options.set_count != 16) {
+    throw wrong(std::to_string(options.set_count) + " sets; must be 1, 4 or 16");
   }
-  if (points.empty() || points.size() % static_cast<std::size_t>(options.sets) != 0) {
+  if (points.empty() || points.size() % static_cast<std::size_t>(options.set_count) != 0) {
     throw wrong(std::to_string(points.size()) + " points; must be at least 1, and equally many for each of " +
-                std::to_string(options.sets) + " sets");
+                std::to_string(options.set_count) + " sets");
   }
   for (const PupilPoint& p : points) {
     if (p.u >= 0 && p.u <= 1 && p.v >= 0 && p.v <= 1) continue;
@@ -153,7 +153,7 @@ LensRays::LensRays(const LayerCamera& camera, std::span<const PupilPoint> points
   for (int step = first_step / 2;; step /= 2) {
     RayTable fine = table(step);
     const TableError error = error_of(d->table, fine, nearest);
-    d->error_px = error.px;
+    d->interpolation_error_px = error.px;
     if (error.within_limits() || d->table.step == last_step) break;
     d->table = std::move(fine);
   }
@@ -166,10 +166,10 @@ LensRays::LensRays(const LayerCamera& camera, std::span<const PupilPoint> points
 
 const LayerCamera& LensRays::camera() const noexcept { return data_->camera; }
 int LensRays::channels() const noexcept { return static_cast<int>(data_->table.channels); }
-int LensRays::sets() const noexcept { return data_->options.sets; }
+int LensRays::set_count() const noexcept { return data_->options.set_count; }
 std::size_t LensRays::count() const noexcept { return data_->rays_of_set(); }
 bool LensRays::shift_invariant() const noexcept { return data_->shift_invariant; }
-double LensRays::error_px() const noexcept { return data_->error_px; }
+double LensRays::interpolation_error_px() const noexcept { return data_->interpolation_error_px; }
 double LensRays::nearest_mm() const noexcept { return data_->options.nearest_mm; }
 double LensRays::largest_slope() const noexcept { return data_->largest_slope; }
 
@@ -199,30 +199,30 @@ double LensRays::reach_px(double least_inverse_depth, double most_inverse_depth)
 
 RayTable LensRays::Data::dense(const RasterArea& area, std::size_t channel, std::size_t count) const {
   const core_detail::Kronecker<2> points_of;
-  std::vector<PupilPoint> many(count);
-  for (std::size_t i = 0; i < count; ++i) many[i] = {points_of(i)[0], points_of(i)[1]};
+  std::vector<PupilPoint> pupil_points(count);
+  for (std::size_t i = 0; i < count; ++i) pupil_points[i] = {points_of(i)[0], points_of(i)[1]};
   const auto of_channel = [&](int, const Vec2<double>& raster, std::span<const PupilPoint> points_of_area,
                               std::span<LayerRay> rays) {
     source(static_cast<int>(channel), raster, points_of_area, rays);
   };
   // For the width of a blur, three nodes along a side suffice.
   const int step = std::max(2 * table.step, (std::max(area.columns, area.rows) + 1) / 2);
-  return ray_table(area, many, 1, of_channel, step, 1);
+  return ray_table(area, pupil_points, 1, of_channel, step, 1);
 }
 
 void LensRays::at(int channel, int column, int row, std::span<LayerRay> rays) const {
   const RayTable& t = data_->table;
   std::vector<float> found(t.node_size());
-  const Vec2<double> place{column + 0.5, row + 0.5};
-  t.at(static_cast<std::size_t>(channel), place.x, place.y, found.data());
+  const Vec2<double> raster{column + 0.5, row + 0.5};
+  t.at(static_cast<std::size_t>(channel), raster.x, raster.y, found.data());
   const std::size_t first = set_of(column, row, data_->side()) * count();
   for (std::size_t i = 0; i < rays.size(); ++i) {
     const auto number = [&](Row r) { return static_cast<double>(found[r * t.rays + first + i]); };
-    rays[i] = {place + Vec2<double>{number(at_x), number(at_y)}, {number(slope_x), number(slope_y)}, number(weight)};
+    rays[i] = {raster + Vec2<double>{number(at_x), number(at_y)}, {number(slope_x), number(slope_y)}, number(weight)};
   }
 }
 
-void LensRays::exact_at(int channel, int column, int row, std::span<LayerRay> rays) const {
+void LensRays::exact_rays_at(int channel, int column, int row, std::span<LayerRay> rays) const {
   const std::size_t first = set_of(column, row, data_->side()) * count();
   data_->source(channel, {column + 0.5, row + 0.5}, std::span(data_->points).subspan(first, rays.size()), rays);
 }

@@ -15,7 +15,7 @@ namespace {
 /// The cell that contains a position along one side, and the position within the cell as a fraction.
 struct Cell {
   std::size_t first = 0;
-  float part = 0;
+  float fraction = 0;
 };
 
 Cell cell_at(double position, int step, std::size_t nodes, int end) {
@@ -45,7 +45,7 @@ bool lead_on(RayTable& table, std::size_t channel, const std::vector<char>& lit,
   const auto node = [&](int x, int y) {
     return table.node(channel, static_cast<std::size_t>(y), static_cast<std::size_t>(x));
   };
-  const auto way = [&](int x, int y, int right, int down) {
+  const auto distance_to = [&](int x, int y, int right, int down) {
     const auto at = [](int n) { return static_cast<std::size_t>(n); };
     return std::hypot(table.column_of(at(x + right)) - table.column_of(at(x)),
                       table.row_of(at(y + down)) - table.row_of(at(y)));
@@ -57,8 +57,9 @@ bool lead_on(RayTable& table, std::size_t channel, const std::vector<char>& lit,
     if (!is_lit(x, y) || (two && !is_lit(x + right, y + down))) continue;
     ++found;
     const float *const near = node(x, y), *const far = two ? node(x + right, y + down) : near;
-    const double part = two ? way(column, row, right, down) / way(x, y, right, down) : 0;
-    for (std::size_t i = 0; i < sums.size(); ++i) sums[i] += near[i] + part * (static_cast<double>(near[i]) - far[i]);
+    const double fraction = two ? distance_to(column, row, right, down) / distance_to(x, y, right, down) : 0;
+    for (std::size_t i = 0; i < sums.size(); ++i)
+      sums[i] += near[i] + fraction * (static_cast<double>(near[i]) - far[i]);
   }
   if (found == 0) return false;
   float* const own = table.nodes.data() + (node(column, row) - table.nodes.data());
@@ -96,8 +97,8 @@ void RayTable::at(std::size_t channel, double column, double row, float* found) 
   const float *const a = node(channel, y.first, x.first), *const b = node(channel, y.first, x.first + 1),
                      *const c = node(channel, y.first + 1, x.first), *const d = node(channel, y.first + 1, x.first + 1);
   for (std::size_t i = 0; i < node_size(); ++i) {
-    const float upper = a[i] + x.part * (b[i] - a[i]), lower = c[i] + x.part * (d[i] - c[i]);
-    found[i] = upper + y.part * (lower - upper);
+    const float upper = a[i] + x.fraction * (b[i] - a[i]), lower = c[i] + x.fraction * (d[i] - c[i]);
+    found[i] = upper + y.fraction * (lower - upper);
   }
 }
 
@@ -109,14 +110,14 @@ void RayTable::ray_at(std::size_t channel, std::size_t ray, double column, doubl
                      *const d = node(channel, y.first + 1, x.first + 1) + ray;
   for (std::size_t r = 0; r < row_count; ++r) {
     const std::size_t i = r * rays;
-    const float upper = a[i] + x.part * (b[i] - a[i]), lower = c[i] + x.part * (d[i] - c[i]);
-    found[r] = upper + y.part * (lower - upper);
+    const float upper = a[i] + x.fraction * (b[i] - a[i]), lower = c[i] + x.fraction * (d[i] - c[i]);
+    found[r] = upper + y.fraction * (lower - upper);
   }
 }
 
 RayTable ray_table(const RasterArea& area, std::span<const PupilPoint> points, std::size_t channels,
                    const LensRays::Source& source, int step, int threads) {
-  constexpr double most = 1e15;  // interpolation in float must not overflow
+  constexpr double max_coordinate = 1e15;  // interpolation in float must not overflow
   RayTable table{.area = area,
                  .step = step,
                  .channels = channels,
@@ -130,18 +131,19 @@ RayTable ray_table(const RasterArea& area, std::span<const PupilPoint> points, s
     std::vector<LayerRay> rays(points.size());
     for (std::size_t n = begin; n < end; ++n) {
       const std::size_t channel = n / nodes, row = n % nodes / table.node_columns, column = n % table.node_columns;
-      const Vec2<double> place{table.column_of(column), table.row_of(row)};
-      source(static_cast<int>(channel), place, points, rays);
+      const Vec2<double> raster{table.column_of(column), table.row_of(row)};
+      source(static_cast<int>(channel), raster, points, rays);
       float* const out = table.nodes.data() + n * table.node_size();
       for (std::size_t i = 0; i < rays.size(); ++i) {
         const LayerRay& ray = rays[i];
-        const double values[] = {ray.at.x - place.x, ray.at.y - place.y, ray.slope.x, ray.slope.y, ray.weight};
+        const double values[] = {ray.position.x - raster.x, ray.position.y - raster.y, ray.slope.x, ray.slope.y,
+                                 ray.weight};
         for (std::size_t r = 0; r < row_count; ++r) {
           out[r * rays.size() + i] = static_cast<float>(values[r]);
-          if (std::abs(values[r]) <= most && (r != weight || values[r] >= 0)) continue;
-          throw Error("lens rays: ray " + std::to_string(i) + " of column " + to_text(place.x) + ", row " +
-                      to_text(place.y) + (r == weight ? ": weight = " : ": number = ") + to_text(values[r]) +
-                      "; must be finite, at most " + to_text(most) +
+          if (std::abs(values[r]) <= max_coordinate && (r != weight || values[r] >= 0)) continue;
+          throw Error("lens rays: ray " + std::to_string(i) + " of column " + to_text(raster.x) + ", row " +
+                      to_text(raster.y) + (r == weight ? ": weight = " : ": number = ") + to_text(values[r]) +
+                      "; must be finite, at most " + to_text(max_coordinate) +
                       " in absolute value, and not negative if a weight");
         }
       }

@@ -53,17 +53,17 @@ struct LensRays::Data {
   Source source;
   LensRaysOptions options;
   blur_detail::RayTable table;
-  double error_px = 0, largest_slope = 0;
+  double interpolation_error_px = 0, largest_slope = 0;
   bool shift_invariant = false;
 
   /// Rays of a channel over an area of the picture, for lights that would appear as dots with few rays. The pupil
   /// points are the first points of a sequence in which every run of points covers the pupil uniformly.
   blur_detail::RayTable dense(const blur_detail::RasterArea& area, std::size_t channel, std::size_t count) const;
 
-  std::size_t sets() const noexcept { return static_cast<std::size_t>(options.sets); }
+  std::size_t set_count() const noexcept { return static_cast<std::size_t>(options.set_count); }
   /// Side of the square blocks in which the sets alternate, px.
-  int side() const noexcept { return options.sets == 16 ? 4 : options.sets == 4 ? 2 : 1; }
-  std::size_t rays_of_set() const noexcept { return points.size() / sets(); }
+  int side() const noexcept { return options.set_count == 16 ? 4 : options.set_count == 4 ? 2 : 1; }
+  std::size_t rays_of_set() const noexcept { return points.size() / set_count(); }
   /// Largest difference of inverse depths between adjacent pixels for which surfaces between them may be missing in the
   /// layers: the bias of peeling.
   float gap() const noexcept { return largest_slope > 0 ? static_cast<float>(std::min(1 / largest_slope, 1e20)) : 0; }

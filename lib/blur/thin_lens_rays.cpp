@@ -41,19 +41,19 @@ LensRays LensRays::thin(const LayerCamera& camera, const ThinLens& lens, std::sp
 
   const auto source = [=, radius = lens.radius_mm, inverse_focus = lens.inverse_focus, focus = lens.focus,
                        shift = lens.colour_shift, focal = camera.focal_px](int channel, const Vec2<double>& raster,
-                                                                           std::span<const PupilPoint> places,
+                                                                           std::span<const PupilPoint> pupil_points,
                                                                            std::span<LayerRay> found) {
     const FocusAt at = focus ? focus(raster) : FocusAt{inverse_focus, 1};
     const double in_focus = at.inverse_depth + (coloured ? shift[channel] : 0.0),
                  scale = focal * radius * at.pupil_scale;
-    for (std::size_t i = 0; i < places.size(); ++i) {
-      double u = places[i].u, v = places[i].v, weight = 1;
+    for (std::size_t i = 0; i < pupil_points.size(); ++i) {
+      double u = pupil_points[i].u, v = pupil_points[i].v, weight = 1;
       if (!even) {
-        const auto drawn = weighted->weights.draw(u, v);
-        u = drawn.u, v = drawn.v;
-        weight = weighted->weights.of_sample(u, v) / (drawn.density * weighted->weights.mean());
+        const auto sample = weighted->weights.draw(u, v);
+        u = sample.u, v = sample.v;
+        weight = weighted->weights.of_sample(u, v) / (sample.density * weighted->weights.mean());
       }
-      const Vec2<double> place = weighted->shape.sample(u, v), slope{scale * place.x, -scale * place.y};
+      const Vec2<double> stop_point = weighted->shape.sample(u, v), slope{scale * stop_point.x, -scale * stop_point.y};
       found[i] = {raster - slope * in_focus, slope, weight};
     }
   };

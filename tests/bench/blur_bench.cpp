@@ -20,7 +20,7 @@
 #include <vector>
 
 #include "../blur/reference_gather.hpp"
-#include "blur/gather_way.hpp"
+#include "blur/gather_method.hpp"
 #include "layers/blur_scenes.hpp"
 #include "layers/lens_setup.hpp"
 #include "layers/lit_scene.hpp"
@@ -53,13 +53,13 @@ double time_of(const Work& work) {
 }
 void keep_least(double& least, double ms) { least = least == 0 ? ms : std::min(least, ms); }
 
-RgbImage colours_of(const petzval::Blurred& picture) {
+RgbImage colours_of(const petzval::BlurredImage& picture) {
   RgbImage image(picture.columns, picture.rows);
   for (std::size_t i = 0; i < picture.missed.size(); ++i) std::copy_n(&picture.rgba[4 * i], 3, &image.pixels[3 * i]);
   return image;
 }
 
-double miss_rate(const petzval::Blurred& picture) {
+double miss_rate(const petzval::BlurredImage& picture) {
   return static_cast<double>(picture.statistics.missed) / static_cast<double>(picture.statistics.rays);
 }
 
@@ -84,7 +84,7 @@ class View {
   void peel(int count, petzval::LayerSet& layers) const {
     layers.peel(plan, count, scene_.peel(plan.camera, settings_.threads));
   }
-  void gather(const petzval::LayerSet& layers, petzval::Blurred& picture, GatherPath path = GatherPath::automatic,
+  void gather(const petzval::LayerSet& layers, petzval::BlurredImage& picture, GatherPath path = GatherPath::automatic,
               bool bounded = true) const {
     petzval::blur_detail::gather(layers, rays, {.threads = settings_.threads}, {path, bounded}, picture);
   }
@@ -122,7 +122,7 @@ void write(const Settings& settings, const RgbImage& image, const std::string& n
 void report_thin(const Settings& settings, const LoadedScene& scene, double diameter_mm) {
   const View view = scene.through(settings, thin_lens(diameter_mm));
   petzval::LayerSet layers;
-  petzval::Blurred picture, other;
+  petzval::BlurredImage picture, other;
   const CircleOfConfusion circle{view.plan.camera.focal_px * diameter_mm / 2, 1 / focus_mm};
 
   double peel = 0, n_buffer = 0, gather = 0, general = 0, coherent = 0, unbounded = 0, general_unbounded = 0,
@@ -167,7 +167,7 @@ void report_layers(const Settings& settings, const LoadedScene& scene) {
   std::printf("| %s |", scene.name.c_str());
   for (const int count : {1, 2, 4, 8}) {
     petzval::LayerSet layers;
-    petzval::Blurred picture;
+    petzval::BlurredImage picture;
     view.peel(count, layers);
     view.gather(layers, picture);
     std::printf(" %.1f, %.4f |", lens_blur::likeness(colours_of(picture), reference).psnr_db, 100 * miss_rate(picture));
@@ -187,7 +187,7 @@ void report_rays(Settings settings, const LoadedScene& scene) {
     flags.rays = rays;
     const View view = scene.through(settings, flags);
     petzval::LayerSet layers;
-    petzval::Blurred picture;
+    petzval::BlurredImage picture;
     view.peel(4, layers);
     double ms = 0;
     for (int round = 0; round < settings.rounds; ++round)
@@ -214,7 +214,7 @@ void report_lenses(const Settings& settings, const LoadedScene& scene) {
                          Row{"singlet f/2", singlet}, Row{"singlet f/2, three colours", chroma}}) {
     const View view = scene.through(settings, row.lens);
     petzval::LayerSet layers;
-    petzval::Blurred picture, other;
+    petzval::BlurredImage picture, other;
     double peel = 0, gather = 0, general = 0;
     for (int round = 0; round < settings.rounds; ++round) {
       keep_least(peel, time_of([&] { view.peel(4, layers); }));
@@ -237,7 +237,7 @@ void report_scalar(const Settings& settings, const LoadedScene& scene) {
   small.columns = 200, small.rows = 150, small.threads = 1;
   const View view = scene.through(small, thin_lens(100));
   petzval::LayerSet layers;
-  petzval::Blurred picture;
+  petzval::BlurredImage picture;
   view.peel(4, layers);
   double gather = 0;
   for (int round = 0; round < settings.rounds; ++round) {

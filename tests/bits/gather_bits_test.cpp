@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-#include "blur/gather_way.hpp"
+#include "blur/gather_method.hpp"
 #include "core/instruction_set.hpp"
 #include "hash.hpp"
 #include "petzval/blur/layers.hpp"
@@ -46,7 +46,7 @@ LayerSet boards(const LensRays& rays) {
   return layers;
 }
 
-std::uint64_t hash(const Blurred& picture) {
+std::uint64_t hash(const BlurredImage& picture) {
   testing_bits::Hash h;
   for (const float value : picture.rgba) h.take(value);
   for (const float value : picture.missed) h.take(value);

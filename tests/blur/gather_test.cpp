@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "../expect_error.hpp"
-#include "blur/gather_way.hpp"
+#include "blur/gather_method.hpp"
 #include "petzval/blur/layers.hpp"
 #include "petzval/blur/lens_rays.hpp"
 #include "petzval/core/error.hpp"
@@ -93,7 +93,7 @@ LayerSet layers_of(Scene scene, const LensRays& rays, int count = 6) {
 
 LensRays thin_rays(double radius, int points = 61, const LensRaysOptions& options = {.nearest_mm = 1000}) {
   return LensRays::thin(small_camera(), {.radius_mm = radius, .inverse_focus = 1 / 2000.0},
-                        vogel_points(points * options.sets), options);
+                        vogel_points(points * options.set_count), options);
 }
 /// Rays that differ between pixels.
 LensRays tilted_rays(double radius, int points = 61, const LensRaysOptions& options = {.nearest_mm = 1000}) {
@@ -103,13 +103,13 @@ LensRays tilted_rays(double radius, int points = 61, const LensRaysOptions& opti
                              [](const Vec2<double>& raster) {
                                return FocusAt{(1 + 0.4 * raster.y / 100) / 2000.0, 1};
                              }},
-                        vogel_points(points * options.sets), options);
+                        vogel_points(points * options.set_count), options);
 }
 
 struct Difference {
   double mean = 0, most = 0;
 };
-Difference difference(const Blurred& a, const Blurred& b) {
+Difference difference(const BlurredImage& a, const BlurredImage& b) {
   Difference d;
   EXPECT_EQ(a.rgba.size(), b.rgba.size());
   for (std::size_t i = 0; i < a.rgba.size(); ++i) {
@@ -120,7 +120,7 @@ Difference difference(const Blurred& a, const Blurred& b) {
 }
 
 /// The largest difference between a picture and the first layer.
-double from_first_layer(const Blurred& picture, const LayerSet& layers) {
+double from_first_layer(const BlurredImage& picture, const LayerSet& layers) {
   const int overscan = (layers.columns() - 150) / 2;
   double worst = 0;
   for (int row = 0; row < 100; ++row) {
@@ -161,7 +161,7 @@ TEST(Gather, KeepsAUniformColour) {
     return seen;
   };
   for (const LensRays& rays : {thin_rays(20), tilted_rays(20)}) {
-    const Blurred picture = gather(layers_of(even, rays), rays, {.highlights_above = 0});
+    const BlurredImage picture = gather(layers_of(even, rays), rays, {.highlights_above = 0});
     for (std::size_t i = 0; i < picture.rgba.size(); i += 4) {
       ASSERT_NEAR(picture.rgba[i], 3, 1e-5);
       ASSERT_NEAR(picture.rgba[i + 1], 0.25, 1e-6);
@@ -173,11 +173,11 @@ TEST(Gather, KeepsAUniformColour) {
 TEST(Gather, EqualsTheReference) {
   for (const Scene scene : {Scene(boards), Scene(panes)}) {
     for (const LensRays& rays :
-         {thin_rays(25), tilted_rays(25), tilted_rays(25, 20, {.nearest_mm = 1000, .sets = 4})}) {
+         {thin_rays(25), tilted_rays(25), tilted_rays(25, 20, {.nearest_mm = 1000, .set_count = 4})}) {
       const LayerSet layers = layers_of(scene, rays);
-      const Blurred reference = petzval::testing::reference_gather(layers, rays);
+      const BlurredImage reference = petzval::testing::reference_gather(layers, rays);
       for (const GatherPath path : {GatherPath::coherent, GatherPath::general}) {
-        if (path == GatherPath::coherent && rays.sets() > 1) continue;
+        if (path == GatherPath::coherent && rays.set_count() > 1) continue;
         const Difference d = difference(blur_detail::gather(layers, rays, {}, {path}), reference);
         // Rounding in float takes a few rays to an adjacent pixel.
         EXPECT_LT(d.mean, 2e-4) << name(path) << (scene == Scene(panes) ? ", panes" : "");
@@ -200,9 +200,9 @@ TEST(Gather, DarkensColoursAndKeepsAlpha) {
                       {.nearest_mm = 1000});
   for (const Scene scene : {Scene(boards), Scene(panes)}) {
     const LayerSet layers = layers_of(scene, rays, 1);  // rays miss many of its surfaces
-    const Blurred reference = petzval::testing::reference_gather(layers, rays);
+    const BlurredImage reference = petzval::testing::reference_gather(layers, rays);
     for (const GatherPath path : {GatherPath::coherent, GatherPath::general}) {
-      const Blurred picture = blur_detail::gather(layers, rays, {.highlights_above = 0}, {path});
+      const BlurredImage picture = blur_detail::gather(layers, rays, {.highlights_above = 0}, {path});
       EXPECT_LT(difference(picture, reference).mean, 2e-4) << name(path);
       double most = 0;
       for (std::size_t i = 0; i < picture.missed.size(); ++i) {
@@ -230,7 +230,7 @@ TEST(Gather, KeepsAUniformColourWithMissingSurfaces) {
   for (const LensRays& rays : {thin_rays(40), tilted_rays(40)}) {
     const LayerSet layers = layers_of(grey_boards, rays, 1);
     for (const GatherPath path : {GatherPath::coherent, GatherPath::general}) {
-      const Blurred picture = blur_detail::gather(layers, rays, {.highlights_above = 0}, {path});
+      const BlurredImage picture = blur_detail::gather(layers, rays, {.highlights_above = 0}, {path});
       EXPECT_GT(picture.statistics.missed, 0u) << name(path);
       for (std::size_t i = 0; i < picture.missed.size(); ++i) {
         ASSERT_NEAR(picture.rgba[4 * i], 0.5, 1e-4) << name(path) << ' ' << i << ' ' << picture.missed[i];
@@ -242,13 +242,13 @@ TEST(Gather, KeepsAUniformColourWithMissingSurfaces) {
 TEST(Gather, PathsAgreeTo55Decibels) {
   for (const auto& [scene, sets] : {std::pair(Scene(boards), 1), std::pair(Scene(panes), 1),
                                     std::pair(Scene(boards), 4), std::pair(Scene(panes), 16)}) {
-    const LensRays rays = thin_rays(25, 200 / sets, {.nearest_mm = 1000, .sets = sets});
+    const LensRays rays = thin_rays(25, 200 / sets, {.nearest_mm = 1000, .set_count = sets});
     EXPECT_TRUE(rays.shift_invariant());
     const LayerSet layers = layers_of(scene, rays);
-    const Blurred same = blur_detail::gather(layers, rays, {}, {GatherPath::shift_invariant});
+    const BlurredImage same = blur_detail::gather(layers, rays, {}, {GatherPath::shift_invariant});
     for (const GatherPath path : {GatherPath::coherent, GatherPath::general}) {
       if (path == GatherPath::coherent && sets > 1) continue;
-      const Blurred other = blur_detail::gather(layers, rays, {}, {path});
+      const BlurredImage other = blur_detail::gather(layers, rays, {}, {path});
       double squares = 0;
       for (std::size_t i = 0; i < same.rgba.size(); ++i) {
         squares += std::pow(static_cast<double>(same.rgba[i] - other.rgba[i]), 2);
@@ -264,7 +264,7 @@ TEST(Gather, ReadsNoPixelOutsideItsWindow) {
   const LensRays rays(camera, vogel_points(6), 1,
                       [](int, const Vec2<double>& raster, std::span<const PupilPoint> at, std::span<LayerRay> found) {
                         for (std::size_t i = 0; i < at.size(); ++i) {
-                          found[i] = {.at = raster + Vec2<double>{0.0137, 0.0291},
+                          found[i] = {.position = raster + Vec2<double>{0.0137, 0.0291},
                                       .slope = {-400 + 100 * at[i].u + 3 * raster.y, -400 - 100 * at[i].v},
                                       .weight = 1};
                         }
@@ -279,9 +279,9 @@ TEST(Gather, ReadsNoPixelOutsideItsWindow) {
     lists.offsets.push_back(lists.fragments.size());
   }
   LayerSet layers;
-  layers.thin(lists, 0, 1);
+  layers.peel_fragments(lists, 0, 1);
   for (const GatherPath path : {GatherPath::coherent, GatherPath::general}) {
-    const Blurred picture = blur_detail::gather(layers, rays, {}, {path});
+    const BlurredImage picture = blur_detail::gather(layers, rays, {}, {path});
     for (const float value : picture.rgba) EXPECT_EQ(value, 0) << static_cast<int>(path);
     for (const float share : picture.missed) EXPECT_EQ(share, 0);
   }
@@ -292,8 +292,8 @@ TEST(Gather, IndependentOfBounds) {
     const LayerSet layers = layers_of(boards, rays);
     for (const GatherPath path : {GatherPath::shift_invariant, GatherPath::coherent, GatherPath::general}) {
       if (path == GatherPath::shift_invariant && !rays.shift_invariant()) continue;
-      const Blurred bounded = blur_detail::gather(layers, rays, {}, {path}),
-                    free = blur_detail::gather(layers, rays, {}, {path, false});
+      const BlurredImage bounded = blur_detail::gather(layers, rays, {}, {path}),
+                         free = blur_detail::gather(layers, rays, {}, {path, false});
       EXPECT_EQ(bounded.rgba, free.rgba) << name(path);
       EXPECT_LT(bounded.statistics.steps, free.statistics.steps) << name(path);
     }
@@ -301,9 +301,10 @@ TEST(Gather, IndependentOfBounds) {
 }
 
 TEST(Gather, IndependentOfThreads) {
-  for (const LensRays& rays : {thin_rays(25), tilted_rays(25), tilted_rays(9, 20, {.nearest_mm = 1000, .sets = 4})}) {
+  for (const LensRays& rays :
+       {thin_rays(25), tilted_rays(25), tilted_rays(9, 20, {.nearest_mm = 1000, .set_count = 4})}) {
     const LayerSet layers = layers_of(boards, rays);
-    const Blurred one = gather(layers, rays), three = gather(layers, rays, {.threads = 3});
+    const BlurredImage one = gather(layers, rays), three = gather(layers, rays, {.threads = 3});
     EXPECT_EQ(one.rgba, three.rgba);
     EXPECT_EQ(one.missed, three.missed);
   }
@@ -316,7 +317,7 @@ TEST(Gather, EmptyPixelsAreTransparent) {
     return seen;
   };
   const LensRays rays = thin_rays(60, 400);
-  const Blurred picture = gather(layers_of(alone, rays), rays);
+  const BlurredImage picture = gather(layers_of(alone, rays), rays);
   const double blur = 60 * (1 / 1500.0 - 1 / 2000.0) * rays.camera().focal_px;
   ASSERT_GT(blur, 2);
   for (int column = 0; column < 150; ++column) {
@@ -332,7 +333,7 @@ TEST(Gather, EmptyPixelsAreTransparent) {
 TEST(Gather, ReportsMissingSurfaces) {
   const LensRays rays = thin_rays(25);
   const LayerSet one = layers_of(boards, rays, 1), all = layers_of(boards, rays, 8);
-  const Blurred of_one = gather(one, rays), of_all = gather(all, rays);
+  const BlurredImage of_one = gather(one, rays), of_all = gather(all, rays);
   EXPECT_GT(of_one.statistics.missed, 50 * (of_all.statistics.missed + 1));
   EXPECT_GT(*std::max_element(of_one.missed.begin(), of_one.missed.end()), 0.2f);
   EXPECT_LT(difference(of_one, of_all).mean, 0.01);
@@ -341,7 +342,7 @@ TEST(Gather, ReportsMissingSurfaces) {
 TEST(Gather, ReusesMemory) {
   const LensRays rays = thin_rays(25);
   const LayerSet layers = layers_of(boards, rays);
-  Blurred picture;
+  BlurredImage picture;
   gather(layers, rays, {}, picture);
   const float* const before = picture.rgba.data();
   gather(layers, rays, {}, picture);
@@ -360,7 +361,7 @@ TEST(Gather, RefusesInconsistentInput) {
     EXPECT_THROW(blur_detail::gather(l, r, {}, {path}), Error) << name(path);
   };
   refuses(layers, tilted, GatherPath::shift_invariant);
-  refuses(layers, tilted_rays(9, 4, {.nearest_mm = 1000, .sets = 4}), GatherPath::coherent);
+  refuses(layers, tilted_rays(9, 4, {.nearest_mm = 1000, .set_count = 4}), GatherPath::coherent);
   says(layers, rays, {.highlights_above = -1}, {"highlights_above", -1});
   says(layers, rays, {.threads = 0}, {"threads", 0});
   // A surface 0.01 mm in front of a lens of 18 mm.
@@ -368,10 +369,10 @@ TEST(Gather, RefusesInconsistentInput) {
       .columns = 150, .rows = 100, .offsets = std::vector<std::size_t>(15001, 1), .fragments = {{0.01f, 1, 1, 1, 1}}};
   near.offsets[0] = 0;
   LayerSet too_near;
-  too_near.thin(near, 0, 1);
+  too_near.peel_fragments(near, 0, 1);
   says(too_near, rays, {}, {16384, 0.01});
   near.fragments[0].depth_mm = 0.3f;
-  too_near.thin(near, 0, 1);
+  too_near.peel_fragments(near, 0, 1);
   says(too_near, rays, {}, {"layers"});
   EXPECT_EQ(gather(layers, rays).columns, 150);
 }
@@ -392,7 +393,7 @@ TEST(Highlights, AreUniformDiscs) {
                                                                       }},
                                                                  vogel_points(32), {.nearest_mm = 1000})}) {
     const LayerSet layers = layers_of(lamp, rays);
-    const Blurred picture = gather(layers, rays);
+    const BlurredImage picture = gather(layers, rays);
     EXPECT_GT(picture.statistics.highlights, 0u);
     const double radius = 30 * (1 / 1000.0 - 1 / 2000.0) * rays.camera().focal_px;
     const double area = std::numbers::pi * radius * radius, level = picture.statistics.highlights * 1000 / area;
@@ -439,7 +440,7 @@ TEST(Highlights, AreHiddenByNearerSurfaces) {
     return seen;
   };
   const LensRays rays = thin_rays(30, 32);
-  const Blurred picture = gather(layers_of(lamp, rays), rays);
+  const BlurredImage picture = gather(layers_of(lamp, rays), rays);
   double left = 0, right = 0;
   for (int row = 0; row < 100; ++row) {
     for (int column = 0; column < 150; ++column) {

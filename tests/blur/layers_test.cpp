@@ -100,7 +100,7 @@ TEST(Peeling, EqualsThinningOfFullLists) {
     const FragmentLists lists = random_lists(37, 23, 40, seed);
     LayerSet peeled, thinned;
     peeled.peel(plan, 16, renderer_of(lists));
-    thinned.thin(lists, plan.bias, 16);
+    thinned.peel_fragments(lists, plan.bias, 16);
     ASSERT_EQ(peeled.count(), thinned.count());
     EXPECT_LE(peeled.count(), plan.most_layers);
     EXPECT_GT(peeled.count(), 6);
@@ -131,7 +131,7 @@ TEST(Lists, ComposeByAlpha) {
                             .offsets = {0, 3},
                             .fragments = {{5000, 0, 0, 1, 1}, {1001, 0, 1, 0, 1}, {1000, 0.5f, 0, 0, 0.5f}}};
   LayerSet layers;
-  layers.thin(lists, 1e-5, 4);
+  layers.peel_fragments(lists, 1e-5, 4);
   ASSERT_EQ(layers.count(), 2);
   EXPECT_FLOAT_EQ(layers.channel(0, 0)[0], 0.5f);
   EXPECT_FLOAT_EQ(layers.channel(0, 1)[0], 0.5f);
@@ -147,7 +147,7 @@ TEST(Lists, IgnoreInvalidSurfacesAndKeepTheSky) {
       .offsets = {0, 4, 4},
       .fragments = {{none, 9, 9, 9, 1}, {-1, 9, 9, 9, 1}, {0, 9, 9, 9, 1}, {infinity, 1, 2, 3, 1}}};
   LayerSet layers;
-  layers.thin(lists, 1e-5, 4);
+  layers.peel_fragments(lists, 1e-5, 4);
   ASSERT_EQ(layers.count(), 1);
   EXPECT_EQ(layers.inverse_depth(0)[0], 0);
   EXPECT_EQ(layers.channel(0, 2)[0], 3);
@@ -157,8 +157,8 @@ TEST(Lists, IgnoreInvalidSurfacesAndKeepTheSky) {
 TEST(Lists, RoundTripThroughLayers) {
   const FragmentLists lists = random_lists(19, 11, 5, 4);
   LayerSet layers, again;
-  layers.thin(lists, 1e-6, 8);
-  again.thin(layers.fragments(), 1e-6, 8);
+  layers.peel_fragments(lists, 1e-6, 8);
+  again.peel_fragments(layers.fragments(), 1e-6, 8);
   ASSERT_EQ(layers.count(), again.count());
   for (int layer = 0; layer < layers.count(); ++layer) {
     for (int c = 0; c < 4; ++c) EXPECT_TRUE(std::ranges::equal(layers.channel(layer, c), again.channel(layer, c)));
@@ -171,13 +171,13 @@ TEST(Lists, RoundTripThroughLayers) {
 TEST(Lists, RefuseInvalidNumbers) {
   LayerSet layers;
   FragmentLists lists{.columns = 1, .rows = 1, .offsets = {0, 1}, .fragments = {{100, 1, 1, 1, 1.5f}}};
-  expect_error([&] { layers.thin(lists, 0, 4); }, {"alpha", 1.5});
+  expect_error([&] { layers.peel_fragments(lists, 0, 4); }, {"alpha", 1.5});
   lists.offsets = {0, 2};
-  expect_error([&] { layers.thin(lists, 0, 4); }, {"offsets"});
+  expect_error([&] { layers.peel_fragments(lists, 0, 4); }, {"offsets"});
   lists.offsets = {0};
-  expect_error([&] { layers.thin(lists, 0, 4); }, {"offsets"});
+  expect_error([&] { layers.peel_fragments(lists, 0, 4); }, {"offsets"});
   lists.columns = 0;
-  expect_error([&] { layers.thin(lists, 0, 4); }, {0, 1});
+  expect_error([&] { layers.peel_fragments(lists, 0, 4); }, {0, 1});
 }
 
 TEST(Images, BecomeLayers) {

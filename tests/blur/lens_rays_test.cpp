@@ -52,12 +52,12 @@ TEST(VogelPoints, AreUniform) {
 TEST(ThinLensRays, MeetInThePlaneOfFocus) {
   const LensRays rays = LensRays::thin(small_camera(), {.radius_mm = 20, .inverse_focus = in_focus}, vogel_points(64));
   EXPECT_TRUE(rays.shift_invariant());
-  EXPECT_LT(rays.error_px(), 1e-3);
+  EXPECT_LT(rays.interpolation_error_px(), 1e-3);
   EXPECT_NEAR(rays.largest_slope(), 20 * rays.camera().focal_px, 0.07 * 20 * rays.camera().focal_px);
   std::vector<LayerRay> found(rays.count());
   rays.at(0, 17, 201, found);
   for (const LayerRay& ray : found) {
-    const Vec2<double> place = ray.at + ray.slope * in_focus;
+    const Vec2<double> place = ray.position + ray.slope * in_focus;
     EXPECT_NEAR(place.x, 17.5, 1e-3);
     EXPECT_NEAR(place.y, 201.5, 1e-3);
   }
@@ -71,7 +71,7 @@ TEST(ThinLensRays, BlurEqualsTheFormula) {
   rays.at(0, 100, 100, found);
   for (const double w : {0.0, 1 / 1000.0, 1 / 9000.0}) {
     for (const LayerRay& ray : found) {
-      const Vec2<double> off = ray.at + ray.slope * w - Vec2<double>{100.5, 100.5};
+      const Vec2<double> off = ray.position + ray.slope * w - Vec2<double>{100.5, 100.5};
       EXPECT_NEAR(std::hypot(off.x, off.y), std::abs(w - in_focus) * 20 * 120 / std::tan(radians(15)), 1e-3);
     }
   }
@@ -86,7 +86,7 @@ TEST(ThinLensRays, FollowAFocusPerPixel) {
                         }};
   const LensRays rays = LensRays::thin(small_camera(), tilted, vogel_points(32));
   EXPECT_FALSE(rays.shift_invariant());
-  EXPECT_LT(rays.error_px(), 1e-2);  // linear in the raster, so that interpolation is exact
+  EXPECT_LT(rays.interpolation_error_px(), 1e-2);  // linear in the raster, so that interpolation is exact
   EXPECT_NEAR(rays.largest_slope(), 0.5 * 20 * rays.camera().focal_px, 0.04 * 20 * rays.camera().focal_px);
 }
 
@@ -155,8 +155,8 @@ TEST(Rays, RefuseInconsistentOptions) {
     expect_error([&] { LensRays::thin(small_camera(), {}, points, options); }, tokens);
   };
   says({}, {}, {"points", 0});
-  says(vogel_points(6), {.sets = 4}, {"points", 6});
-  says(vogel_points(6), {.sets = 2}, {"sets", 2});
+  says(vogel_points(6), {.set_count = 4}, {"points", 6});
+  says(vogel_points(6), {.set_count = 2}, {"sets", 2});
   says(vogel_points(6), {.nearest_mm = -1}, {"nearest", -1});
   says({{-5, 1e9}}, {}, {"point", -5, "1e+09"});
   expect_error([] { vogel_points(4, std::nan("")); }, {"vogel_points", "turn", "nan"});
@@ -178,7 +178,7 @@ TEST(Rays, ErrorIsMeasuredAtTheDepthInFocus) {
     }
   };
   const LensRays rays(small_camera(), vogel_points(16), 1, source, {.nearest_mm = 1000});
-  EXPECT_LT(rays.error_px(), 1e-3);
+  EXPECT_LT(rays.interpolation_error_px(), 1e-3);
 }
 
 struct Model {
@@ -193,7 +193,7 @@ TEST_P(CameraRays, EqualTheCamera) {
   const LayerCamera layers = layer_camera(camera);
   const std::vector<PupilPoint> points = vogel_points(64);
   const LensRays rays = LensRays::of(camera, layers, points, {}, {.nearest_mm = 1000});
-  EXPECT_LE(rays.error_px(), 0.1);
+  EXPECT_LE(rays.interpolation_error_px(), 0.1);
   const double origin = layer_origin_z(camera);
   std::vector<LayerRay> found(points.size());
   double worst = 0;
@@ -207,7 +207,8 @@ TEST_P(CameraRays, EqualTheCamera) {
       for (const double depth : {1000.0, 5e4}) {
         const double way = (origin - depth - ray.ray.origin.z) / ray.ray.direction.z;
         const Vec3<double> point = ray.ray.origin + way * ray.ray.direction;
-        const Vec2<double> seen = layers.raster({point.x, point.y, depth}), line = found[i].at + found[i].slope / depth;
+        const Vec2<double> seen = layers.raster({point.x, point.y, depth}),
+                           line = found[i].position + found[i].slope / depth;
         worst = std::max({worst, std::abs(seen.x - line.x), std::abs(seen.y - line.y)});
       }
     }
@@ -224,7 +225,7 @@ TEST_P(CameraRays, ShowSharpObjectsAtTheirRasterPositions) {
   for (const auto& [column, row] : {std::pair{240, 160}, {300, 200}, {100, 100}}) {
     rays.at(0, column, row, found);
     Vec2<double> mean{0, 0};
-    for (const LayerRay& ray : found) mean += (ray.at + ray.slope / depth) / 256.0;
+    for (const LayerRay& ray : found) mean += (ray.position + ray.slope / depth) / 256.0;
     EXPECT_NEAR(mean.x, column + 0.5, 1.5);
     EXPECT_NEAR(mean.y, row + 0.5, 1.5);
   }
@@ -256,12 +257,12 @@ TEST(CameraRays, HaveTheIrradianceOfTheCameraInSmallImages) {
     const Camera camera(double_gauss(), small);
     const LensRays rays = LensRays::of(camera, layer_camera(camera), vogel_points(256));
     std::vector<LayerRay> found(256), exact(256);
-    rays.exact_at(0, columns / 2, rows / 2, exact);
+    rays.exact_rays_at(0, columns / 2, rows / 2, exact);
     const double middle = light_of(exact);
     double worst = 0;
     for (int row = 0; row < rows; row += 3) {
       for (int column = 0; column < columns; column += 5) {
-        rays.at(0, column, row, found), rays.exact_at(0, column, row, exact);
+        rays.at(0, column, row, found), rays.exact_rays_at(0, column, row, exact);
         worst = std::max(worst, std::abs(light_of(found) - light_of(exact)) / middle);
       }
     }
@@ -290,7 +291,7 @@ TEST(LensRays, SampleFewPositionsIfRaysAreLinear) {
   };
   const LensRays rays(layer_camera(512, 512, radians(30)), vogel_points(16), 1, source, {.threads = 1});
   EXPECT_EQ(places, 3 * 3 + 5 * 5);  // nodes in steps of 256 px, and midpoints between nodes
-  EXPECT_LT(rays.error_px(), 1e-3);
+  EXPECT_LT(rays.interpolation_error_px(), 1e-3);
 }
 
 TEST(LensRays, RefuseAnEmptySource) {
@@ -310,12 +311,12 @@ TEST(LensRays, AreNotMovedByDarkAreas) {
     }
   };
   const LensRays rays(camera, vogel_points(8), 1, source);
-  EXPECT_LT(rays.error_px(), 0.1);
+  EXPECT_LT(rays.interpolation_error_px(), 0.1);
   std::vector<LayerRay> found(rays.count()), exact(rays.count());
   for (int column = 100; column < 320; ++column) {
-    rays.at(0, column, 120, found), rays.exact_at(0, column, 120, exact);
+    rays.at(0, column, 120, found), rays.exact_rays_at(0, column, 120, exact);
     for (std::size_t i = 0; i < found.size(); ++i) {
-      ASSERT_NEAR(found[i].at.x, exact[i].at.x, 1e-3) << column;
+      ASSERT_NEAR(found[i].position.x, exact[i].position.x, 1e-3) << column;
       ASSERT_NEAR(found[i].slope.x, exact[i].slope.x, 1e-2) << column;
     }
   }
@@ -324,7 +325,7 @@ TEST(LensRays, AreNotMovedByDarkAreas) {
 TEST(LensRays, RefuseNumbersBeyondFloat) {
   for (const double weight : {1e16, 1e300}) {
     const auto source = [&](int, const Vec2<double>& raster, std::span<const PupilPoint>, std::span<LayerRay> found) {
-      for (LayerRay& ray : found) ray = {.at = raster, .weight = weight};
+      for (LayerRay& ray : found) ray = {.position = raster, .weight = weight};
     };
     expect_error([&] { LensRays(small_camera(), vogel_points(4), 1, source); }, {weight});
   }

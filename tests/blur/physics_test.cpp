@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "../data_lenses.hpp"
-#include "blur/gather_way.hpp"
+#include "blur/gather_method.hpp"
 #include "petzval/analysis/psf.hpp"
 #include "petzval/blur/layers.hpp"
 #include "petzval/blur/lens_rays.hpp"
@@ -52,7 +52,7 @@ TEST_P(Planes, EqualConvolutionsWithThePointImage) {
     return static_cast<float>(0.5 + 0.25 * std::sin(0.9 * column) + 0.25 * std::cos(0.6 * row + 0.3 * column));
   };
   const LayerSet layers = plane(plan_peel(rays, 0.9 * depth, 1e6), static_cast<float>(depth), light);
-  const Blurred picture = gather(layers, rays);
+  const BlurredImage picture = gather(layers, rays);
 
   constexpr int size = 41;
   const Psf psf = point_image(lens, {.z = -from_vertex},
@@ -99,7 +99,7 @@ TEST(HalfPlanes, OcclusionEqualsTheAnalyticEdge) {
     }
     return out.red.size();
   });
-  const Blurred picture = gather(layers, rays);
+  const BlurredImage picture = gather(layers, rays);
   const double radius = 30 * (1 / 1000.0 - 1 / 2000.0) * camera.focal_px;
   ASSERT_GT(radius, 7);
   for (int column = 30; column < 90; ++column) {
@@ -115,7 +115,7 @@ TEST(Points, FarBehindFocusCoverTheirCircleOfConfusion) {
     const LensRays rays = LensRays::thin(camera, {.radius_mm = radius_mm, .inverse_focus = 1 / 2000.0},
                                          vogel_points(64), {.nearest_mm = 900});
     const auto point = [](int column, int row) { return column == 80 && row == 60 ? 1e4f : 0.0f; };
-    const Blurred picture = gather(plane(plan_peel(rays, 1900, 1e7), 1e6f, point), rays);
+    const BlurredImage picture = gather(plane(plan_peel(rays, 1900, 1e7), 1e6f, point), rays);
     const double radius = radius_mm * (1 / 2000.0 - 1e-6) * camera.focal_px, area = std::numbers::pi * radius * radius;
     int covered = 0;
     for (std::size_t i = 0; i < picture.rgba.size(); i += 4)
@@ -140,7 +140,7 @@ LayerSet grey_pixel(const PeelPlan& plan, double inverse_depth, double wall) {
     }
   }
   LayerSet layers;
-  layers.thin(lists, plan.bias, 4);
+  layers.peel_fragments(lists, plan.bias, 4);
   return layers;
 }
 
@@ -148,7 +148,7 @@ LayerSet grey_pixel(const PeelPlan& plan, double inverse_depth, double wall) {
 struct Disc {
   double radius = 0, light = 0;
 };
-Disc disc_of(const Blurred& picture) {
+Disc disc_of(const BlurredImage& picture) {
   double light = 0, x = 0, y = 0, squares = 0;
   const auto sum = [&](auto&& visit) {
     for (int row = 0; row < picture.rows; ++row) {

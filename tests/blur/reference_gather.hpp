@@ -12,10 +12,10 @@ namespace petzval::testing {
 
 /// The image by the simplest correct code, in double: each ray of a pixel steps through all pixels on its path and all
 /// layers. Without highlights.
-inline Blurred reference_gather(const LayerSet& layers, const LensRays& rays) {
+inline BlurredImage reference_gather(const LayerSet& layers, const LensRays& rays) {
   const LayerCamera& camera = rays.camera();
   const int overscan = (layers.columns() - camera.columns) / 2;
-  Blurred picture;
+  BlurredImage picture;
   picture.columns = camera.columns, picture.rows = camera.rows;
   float most = 0;
   float least = std::numeric_limits<float>::max();
@@ -44,11 +44,11 @@ inline Blurred reference_gather(const LayerSet& layers, const LensRays& rays) {
                          inside_y = std::clamp(y + overscan, 0.0, layers.rows() - 1.0);
             return static_cast<std::size_t>(inside_y * layers.columns() + inside_x);
           };
-          const Vec2<double> end = ray.at + ray.slope * static_cast<double>(least);
+          const Vec2<double> end = ray.position + ray.slope * static_cast<double>(least);
           const bool empty = layers.inverse_depth(0)[index_of(floor_of(end.x), floor_of(end.y))] < 0;
           // Steps along the main direction: m and s are position and slope of the ray along it, o and t across.
           const bool along_x = std::abs(ray.slope.x) >= std::abs(ray.slope.y);
-          const double m = along_x ? ray.at.x : ray.at.y, o = along_x ? ray.at.y : ray.at.x,
+          const double m = along_x ? ray.position.x : ray.position.y, o = along_x ? ray.position.y : ray.position.x,
                        t = along_x ? ray.slope.y : ray.slope.x, hardly = 1e-6 / std::max(most, 1e-30f);
           double s = along_x ? ray.slope.x : ray.slope.y;
           if (std::abs(s) < hardly) s = hardly;

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "allocations.hpp"
-#include "blur/gather_way.hpp"
+#include "blur/gather_method.hpp"
 #include "petzval/blur/layers.hpp"
 #include "petzval/blur/lens_rays.hpp"
 #include "petzval/core/geometry.hpp"
@@ -56,7 +56,7 @@ std::string shown(const LayerSet& layers) {
   for (int layer = 0; layer < layers.count(); ++layer) text += bits(layers.inverse_depth(layer));
   return text;
 }
-std::string shown(const Blurred& picture) { return bits(std::span<const float>(picture.rgba)); }
+std::string shown(const BlurredImage& picture) { return bits(std::span<const float>(picture.rgba)); }
 
 TEST(MemoryEnds, WhileLayersAreFilled) {
   const PeelPlan plan = plan_peel(rays_of(true), 1000, infinity);
@@ -64,11 +64,11 @@ TEST(MemoryEnds, WhileLayersAreFilled) {
   const FragmentLists lists = whole.fragments();
   const std::vector<float> rgba(4 * 64), depths(64, 2000.0f);
   const LayerImage image{8, 8, rgba, depths};
-  const std::vector<std::function<void(LayerSet&)>> fillings{[&](LayerSet& layers) { fill(layers, plan); },
-                                                             [&](LayerSet& layers) { layers.thin(lists, 0, 4); },
-                                                             [&](LayerSet& layers) {
-                                                               layers.set({&image, 1});
-                                                             }};
+  const std::vector<std::function<void(LayerSet&)>> fillings{
+      [&](LayerSet& layers) { fill(layers, plan); }, [&](LayerSet& layers) { layers.peel_fragments(lists, 0, 4); },
+      [&](LayerSet& layers) {
+        layers.set({&image, 1});
+      }};
   for (const auto& filling : fillings) {
     // Reuses the layers of another image.
     const LayerImage small{4, 4, std::span(rgba).first(64), std::span(depths).first(16)};
@@ -93,7 +93,7 @@ TEST(MemoryEnds, WhileRaysOfALensAreTabulated) {
       std::vector<LayerRay> found(rays.count());
       rays.at(0, 5, 7, found);
       std::string text;
-      for (const LayerRay& ray : found) text += bits(std::span<const double>(&ray.at.x, 1));
+      for (const LayerRay& ray : found) text += bits(std::span<const double>(&ray.position.x, 1));
       return text;
     });
   }
@@ -105,7 +105,7 @@ TEST(MemoryEnds, InAnyThreadOfABlur) {
     const LensRays rays = rays_of(path == GatherPath::shift_invariant);
     const LayerSet layers = layers_for(rays);
     expect_all_or_nothing([&] {
-      Blurred picture;
+      BlurredImage picture;
       try {
         blur_detail::gather(layers, rays, {.threads = 4}, {path}, picture);
       } catch (...) {

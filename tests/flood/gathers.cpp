@@ -4,7 +4,7 @@
 #include <limits>
 #include <vector>
 
-#include "blur/gather_way.hpp"
+#include "blur/gather_method.hpp"
 #include "flood.hpp"
 #include "petzval/blur/layers.hpp"
 #include "petzval/blur/lens_rays.hpp"
@@ -55,8 +55,9 @@ Counts gathers(Case& at) {
     const PeelPlan plan = plan_peel(rays, 500, infinity);
     if (plan.camera.overscan > 200) return counts;
     LayerSet layers;
-    layers.thin(random_lists(plan.camera, even, opaque, at), plan.bias, bytes.count(1, 6));
-    const Blurred picture = blur_detail::gather(layers, rays, {.highlights_above = 0}, {.bounded = (kind & 2) == 0});
+    layers.peel_fragments(random_lists(plan.camera, even, opaque, at), plan.bias, bytes.count(1, 6));
+    const BlurredImage picture =
+        blur_detail::gather(layers, rays, {.highlights_above = 0}, {.limit_steps = (kind & 2) == 0});
     float least = infinity, most = 0;
     for (std::size_t i = 0; i < picture.rgba.size(); ++i) {
       const float value = picture.rgba[i];

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Small images of any layers through any rays: finite, and close to the reference.
-#include "blur/gather_way.hpp"
+#include "blur/gather_method.hpp"
 
 #include <algorithm>
 #include <vector>
@@ -38,7 +38,7 @@ LensRays wild_rays(fuzz::Bytes& bytes, const LayerCamera& camera, bool tame) {
   const int sets = bytes.one_in(8) ? 4 : 1, kind = bytes.count(0, 3);
   const int count = sets * bytes.count(1, 6);
   const auto points = vogel_points(count, bytes.between(0, 1));
-  const LensRaysOptions options{.nearest_mm = 400, .sets = sets};
+  const LensRaysOptions options{.nearest_mm = 400, .set_count = sets};
   const auto number = [&](double least, double most) {
     return tame ? bytes.between(least, most) : bytes.number(least, most);
   };
@@ -53,7 +53,7 @@ LensRays wild_rays(fuzz::Bytes& bytes, const LayerCamera& camera, bool tame) {
       camera, points, 1,
       [=](int, const Vec2<double>& raster, std::span<const PupilPoint> at, std::span<LayerRay> found) {
         for (std::size_t i = 0; i < at.size(); ++i) {
-          found[i].at = raster + Vec2<double>{0.0137, 0.0291};  // off the borders of pixels
+          found[i].position = raster + Vec2<double>{0.0137, 0.0291};  // off the borders of pixels
           found[i].slope = {slope * at[i].u + turn * raster.y, slope * at[i].v - turn * raster.x};
           found[i].weight = least + weight * at[i].v;
         }
@@ -63,7 +63,7 @@ LensRays wild_rays(fuzz::Bytes& bytes, const LayerCamera& camera, bool tame) {
 
 /// Mean difference of two images. Bounded images are compared without the pixels whose rays met no surface, because the
 /// guessed colours of these pixels depend on the bounds.
-double mean_difference(const Blurred& a, const Blurred& b, bool bounded) {
+double mean_difference(const BlurredImage& a, const BlurredImage& b, bool bounded) {
   double sum = 0;
   for (std::size_t i = 0; i < a.rgba.size(); ++i) {
     if (bounded && b.missed[i / 4] > 0) continue;
@@ -72,7 +72,7 @@ double mean_difference(const Blurred& a, const Blurred& b, bool bounded) {
   return sum / static_cast<double>(a.rgba.size());
 }
 
-void check(const Blurred& picture, bool tame) {
+void check(const BlurredImage& picture, bool tame) {
   for (const float share : picture.missed)
     fuzz::require(share >= 0 && share <= 1.001f, "the fraction of missed rays is from 0 to 1");
   if (!tame) return;
@@ -96,15 +96,15 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     LayerSet layers;
     const FragmentLists lists = wild_lists(bytes, plan.camera.layer_columns(), plan.camera.layer_rows(), tame);
     const double bias = bytes.one_in(2) ? plan.bias : 0;
-    layers.thin(lists, bias, bytes.count(1, 4));
+    layers.peel_fragments(lists, bias, bytes.count(1, 4));
     const auto path = static_cast<GatherPath>(bytes.count(0, 3));
-    const blur_detail::GatherWay way{path, !bytes.one_in(4)};
+    const blur_detail::GatherMethod way{path, !bytes.one_in(4)};
     const GatherOptions options{.highlights_above = bytes.one_in(4) ? 1.0 : 0.0};
-    const Blurred picture = blur_detail::gather(layers, rays, options, way);
+    const BlurredImage picture = blur_detail::gather(layers, rays, options, way);
     check(picture, tame);
     if (!tame || options.highlights_above > 0 || path == GatherPath::shift_invariant || layers.count() == 0) return;
     if (path == GatherPath::automatic && rays.shift_invariant()) return;
-    fuzz::require(mean_difference(picture, testing::reference_gather(layers, rays), way.bounded) < 0.1,
+    fuzz::require(mean_difference(picture, testing::reference_gather(layers, rays), way.limit_steps) < 0.1,
                   "a picture equals the reference");
   });
   return 0;

@@ -44,7 +44,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
       fuzz::require(lists.offsets.back() == lists.fragments.size(),
                     "a deep picture has as many samples as its offsets state");
       LayerSet layers;
-      layers.thin(lists, 1e-6, 4);
+      layers.peel_fragments(lists, 1e-6, 4);
     });
   }
   return 0;

@@ -32,7 +32,7 @@ BlurLens lens_of(const LensFlags& flags, int columns = 80, int rows = 60) {
 
 std::vector<LayerRay> rays_at(const LensRays& rays, int channel, int column, int row) {
   std::vector<LayerRay> found(rays.count());
-  rays.exact_at(channel, column, row, found);
+  rays.exact_rays_at(channel, column, row, found);
   return found;
 }
 
@@ -40,10 +40,10 @@ std::vector<LayerRay> rays_at(const LensRays& rays, int channel, int column, int
 double spread(const std::vector<LayerRay>& rays, double inverse_depth) {
   petzval::Vec2<double> mean{0, 0};
   for (const LayerRay& ray : rays)
-    mean = mean + (ray.at + ray.slope * inverse_depth) / static_cast<double>(rays.size());
+    mean = mean + (ray.position + ray.slope * inverse_depth) / static_cast<double>(rays.size());
   double most = 0;
   for (const LayerRay& ray : rays) {
-    const petzval::Vec2<double> off = ray.at + ray.slope * inverse_depth - mean;
+    const petzval::Vec2<double> off = ray.position + ray.slope * inverse_depth - mean;
     most = std::max(most, std::hypot(off.x, off.y));
   }
   return most;
@@ -54,7 +54,7 @@ double focus_of(const LensRays& rays, int channel, int column, int row) {
   const std::vector<LayerRay> found = rays_at(rays, channel, column, row);
   double up = 0, down = 0;
   for (const LayerRay& ray : found) {
-    const petzval::Vec2<double> off = petzval::Vec2<double>{column + 0.5, row + 0.5} - ray.at;
+    const petzval::Vec2<double> off = petzval::Vec2<double>{column + 0.5, row + 0.5} - ray.position;
     up += off.x * ray.slope.x + off.y * ray.slope.y, down += ray.slope.x * ray.slope.x + ray.slope.y * ray.slope.y;
   }
   return up / down;

@@ -193,7 +193,7 @@ TEST(LitScene, LayersEqualThinnedSurfaces) {
         all.offsets.push_back(all.fragments.size());
       }
     }
-    thinned.thin(all, plan.bias, 16);
+    thinned.peel_fragments(all, plan.bias, 16);
     ASSERT_EQ(peeled.count(), thinned.count());
     EXPECT_GE(peeled.count(), 6);
 
@@ -231,7 +231,7 @@ TEST(LitScene, NeverNeedsMoreThanTenLayersThroughTheLensOfThePaper) {
     EXPECT_LE(layers.count(), 10) << "seed " << seed;
     most = std::max(most, layers.count());
     // The layers are sufficient: no ray finds a hole.
-    const petzval::Blurred blurred = petzval::gather(layers, rays, {.threads = 2, .highlights_above = 0});
+    const petzval::BlurredImage blurred = petzval::gather(layers, rays, {.threads = 2, .highlights_above = 0});
     EXPECT_LE(static_cast<double>(blurred.statistics.missed), 1e-4 * static_cast<double>(blurred.statistics.rays));
   }
   EXPECT_GE(most, 8);
@@ -273,10 +273,10 @@ RgbImage plain_reference(const Soup& soup, const LensRays& rays) {
   for (int y = 0; y < camera.rows; ++y) {
     for (int x = 0; x < camera.columns; ++x) {
       for (int c = 0; c < 3; ++c) {
-        rays.exact_at(rays.channels() == 3 ? c : 0, x, y, found);
+        rays.exact_rays_at(rays.channels() == 3 ? c : 0, x, y, found);
         double sum = 0;
         for (const LayerRay& ray : found) {
-          const petzval::Vec2<double> run = (ray.at - camera.axis) / camera.focal_px,
+          const petzval::Vec2<double> run = (ray.position - camera.axis) / camera.focal_px,
                                       from = ray.slope / camera.focal_px;
           const std::vector<Soup::Hit> hits = soup.hits({from.x, -from.y, 0}, {run.x, -run.y, 1});
           sum += ray.weight * static_cast<double>((hits.empty() ? sky : hits[0].colour)[c]);

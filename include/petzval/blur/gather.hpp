@@ -31,7 +31,7 @@ struct GatherStatistics {
 ///
 /// Colours include the vignetting of the lens. `missed` and alpha are relative to the light that the lens passes at the
 /// pixel: a surface that fills a dark corner has alpha 1.
-struct Blurred {
+struct BlurredImage {
   int columns = 0, rows = 0;
   std::vector<float> rgba;    ///< columns x rows x 4, linear, premultiplied by alpha
   std::vector<float> missed;  ///< columns x rows: fraction of rays, by weight, that met regions unknown to the layers
@@ -59,7 +59,8 @@ struct Blurred {
 ///                 beyond the image, or the rays of a tile need more than 256 MiB of layers beyond their edges
 ///
 /// Source: Lee, Eisemann, Seidel 2010, "Real-time lens blur effects and focus control", section 3.1.
-PETZVAL_API void gather(const LayerSet& layers, const LensRays& rays, const GatherOptions& options, Blurred& picture);
-PETZVAL_API Blurred gather(const LayerSet& layers, const LensRays& rays, const GatherOptions& options = {});
+PETZVAL_API void gather(const LayerSet& layers, const LensRays& rays, const GatherOptions& options,
+                        BlurredImage& picture);
+PETZVAL_API BlurredImage gather(const LayerSet& layers, const LensRays& rays, const GatherOptions& options = {});
 
 }  // namespace petzval

@@ -143,7 +143,7 @@ class PETZVAL_API LayerSet {
   /// @param layers  largest number of layers, 1 to 64; fragments behind are dropped
   /// @throws Error  if `layers` is out of range, the lists are inconsistent, the bias is negative, or an alpha is
   ///                outside 0 to 1
-  void thin(const FragmentLists& lists, double bias, int layers);
+  void peel_fragments(const FragmentLists& lists, double bias, int layers);
 
   /// Fills the set with images from near to far, 1 to 64.
   ///

@@ -29,7 +29,7 @@ struct PupilPoint {
 /// @throws Error if `count` is out of range or `turn` is not finite
 PETZVAL_API std::vector<PupilPoint> vogel_points(int count, double turn = 0);
 
-/// Points of several spirals, one after the other, for LensRaysOptions::sets.
+/// Points of several spirals, one after the other, for LensRaysOptions::set_count.
 ///
 /// Each spiral covers a pupil uniformly. All spirals together are nearly as uniform as a single spiral with the same
 /// total number of points.
@@ -43,13 +43,13 @@ PETZVAL_API std::vector<PupilPoint> vogel_points(int count, double turn = 0);
 /// (tests/blur/lens_rays_test.cpp).
 PETZVAL_API std::vector<PupilPoint> vogel_sets(int count, int sets);
 
-/// A ray of a lens in the scene, as a line over inverse depth w: the raster position at w is at + slope w.
+/// A ray of a lens in the scene, as a line over inverse depth w: the raster position at w is position + slope w.
 ///
 /// Source: (x / z, y / z, 1 / z) is a collineation.
 struct LayerRay {
-  Vec2<double> at{0, 0};     ///< raster position at infinity, px
-  Vec2<double> slope{0, 0};  ///< px mm: focal_px times the position in the plane of the pinhole (rows run down)
-  double weight = 1;         ///< relative to the rays of all pixels
+  Vec2<double> position{0, 0};  ///< raster position at infinity, px
+  Vec2<double> slope{0, 0};     ///< px mm: focal_px times the position in the plane of the pinhole (rows run down)
+  double weight = 1;            ///< relative to the rays of all pixels
 };
 
 /// Local focus of a thin lens at a raster position.
@@ -75,7 +75,7 @@ struct LensRaysOptions {
   double nearest_mm = 0;
   /// Number of ray sets in the points (vogel_sets): 1, 4 or 16. Each pixel of a square of 1 x 1, 2 x 2 or 4 x 4 takes a
   /// different set; the mean over the square has the rays of all sets. More sets replace repeated patterns by grain.
-  int sets = 1;
+  int set_count = 1;
   int threads = 1;
 };
 
@@ -87,9 +87,9 @@ struct LensRaysOptions {
 ///
 ///     const LensRays rays = LensRays::of(camera, layer_camera(camera), vogel_points(100));
 ///
-/// Accuracy: halfway between nodes 0.1 px RMS at the depth of sharpest focus, and 0.6 % of the light. error_px()
-/// returns the error that remains at the smallest node distance. At other depths larger errors may occur within the
-/// blur.
+/// Accuracy: halfway between nodes 0.1 px RMS at the depth of sharpest focus, and 0.6 % of the light.
+/// interpolation_error_px() returns the error that remains at the smallest node distance. At other depths larger errors
+/// may occur within the blur.
 ///
 /// Limitations: images of a few pixels are too dark.
 ///
@@ -107,7 +107,7 @@ class PETZVAL_API LensRays {
   /// Tabulates the rays of a custom lens.
   ///
   /// @param camera    the layer camera
-  /// @param points    pupil points, `options.sets` sets of equal size
+  /// @param points    pupil points, `options.set_count` sets of equal size
   /// @param channels  1, or 3 if red, green and blue have different rays
   /// @param source    computes the rays
   /// @param options   nearest depth, sets and threads
@@ -130,7 +130,7 @@ class PETZVAL_API LensRays {
   ///
   /// @param camera       the lens camera; its film must not travel
   /// @param layers       the layer camera, with as many pixels as the film
-  /// @param points       pupil points, `options.sets` sets of equal size
+  /// @param points       pupil points, `options.set_count` sets of equal size
   /// @param wavelengths  one wavelength, or the wavelengths of red, green and blue; empty: the primary wavelength
   /// @param options      nearest depth, sets and threads
   /// @throws Error       as the constructor; also if the film travels or its pixels differ from the layer camera
@@ -139,13 +139,13 @@ class PETZVAL_API LensRays {
 
   const LayerCamera& camera() const noexcept;
   int channels() const noexcept;
-  int sets() const noexcept;
+  int set_count() const noexcept;
   /// Number of rays per pixel and channel.
   std::size_t count() const noexcept;
   /// True if all pixels of a set have the same rays, shifted with the pixel: the fastest case for gather().
   bool shift_invariant() const noexcept;
   /// RMS interpolation error at the worst position, px, at the depth of sharpest focus.
-  double error_px() const noexcept;
+  double interpolation_error_px() const noexcept;
   double nearest_mm() const noexcept;
   /// The largest |slope| along columns or rows, px mm.
   double largest_slope() const noexcept;
@@ -154,7 +154,7 @@ class PETZVAL_API LensRays {
   /// The interpolated rays at the centre of a pixel. Fills count() rays.
   void at(int channel, int column, int row, std::span<LayerRay> rays) const;
   /// The rays at the centre of a pixel, computed by the source.
-  void exact_at(int channel, int column, int row, std::span<LayerRay> rays) const;
+  void exact_rays_at(int channel, int column, int row, std::span<LayerRay> rays) const;
 
  private:
   friend class RayAccess;

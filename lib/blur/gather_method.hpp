@@ -19,17 +19,17 @@ enum class GatherPath : std::uint8_t {
 /// "automatic", ...
 PETZVAL_API std::string_view name(GatherPath path) noexcept;
 
-struct GatherWay {
+struct GatherMethod {
   GatherPath path = GatherPath::automatic;
   /// Limits the steps of a tile's rays to the depths that occur below the rays. The limit does not change the surface
   /// that a ray meets, but it may change the guess for a ray that meets no surface.
-  bool bounded = true;
+  bool limit_steps = true;
 };
 
 /// petzval::gather() by a given path, for tests and benchmarks. Throws Error if the rays do not allow the path.
 PETZVAL_API void gather(const LayerSet& layers, const LensRays& rays, const GatherOptions& options,
-                        const GatherWay& way, Blurred& picture);
-PETZVAL_API Blurred gather(const LayerSet& layers, const LensRays& rays, const GatherOptions& options,
-                           const GatherWay& way);
+                        const GatherMethod& method, BlurredImage& picture);
+PETZVAL_API BlurredImage gather(const LayerSet& layers, const LensRays& rays, const GatherOptions& options,
+                                const GatherMethod& method);
 
 }  // namespace petzval::blur_detail
