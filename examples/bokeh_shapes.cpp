@@ -152,7 +152,7 @@ examples::Sheet weights() {
     auto& tiles = sheet.rows.emplace_back(row(title, "", scene.half_width_mm)).tiles;
     for (const auto& [d, p] : edges) {
       const auto image = scene.image(petzval::ModelKind::exact_float,
-                                     {.lens_elements = blades, .weight_distribution = d, .weight_strength = p});
+                                     {.blades = blades, .weight_distribution = d, .weight_strength = p});
       tiles.push_back(tile(image, {"d = " + number(d), "p = " + number(p)}));
     }
   };

@@ -74,7 +74,7 @@ class Pull {
   }
 
   Frame at(double time) {
-    petzval::FocusMoment moment;
+    petzval::FocusTime moment;
     moment.time = time;
     if (options_.film_given) moment.film = film_;
     const auto targets = petzval::focus_targets(lens_.ideal, points_, moment);

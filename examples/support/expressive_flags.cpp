@@ -46,7 +46,7 @@ petzval::ExpressiveLens expressive_of(const ExpressiveFlags& flags, const petzva
                                       const petzval::Film& film) {
   petzval::ExpressiveLens result;
   if (flags.from_lens != 0) {
-    result = petzval::expressive_from(lens, film);
+    result = petzval::fit_expressive_lens(lens, film);
     for (petzval::PowerKnot& knot : result.power) knot.power = 1 + flags.from_lens * (knot.power - 1);
     for (petzval::FilmOffset& offset : result.film_offsets) offset.offset_mm *= flags.from_lens;
   }

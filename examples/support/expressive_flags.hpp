@@ -21,7 +21,7 @@ struct ExpressiveFlags {
 /// Adds --power-spline, --curvature-points, --dispersion and --from-lens.
 void add_expressive(App& app, ExpressiveFlags& flags);
 
-/// The lens by the flags. @throws petzval::Error that names the option; also if expressive_from() throws
+/// The lens by the flags. @throws petzval::Error that names the option; also if fit_expressive_lens() throws
 petzval::ExpressiveLens expressive_of(const ExpressiveFlags& flags, const petzval::Lens& lens,
                                       const petzval::Film& film);
 

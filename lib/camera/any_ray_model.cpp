@@ -19,8 +19,8 @@ RayFate AnyRayModel::Interface::batch_of_one(const TwoPlaneRay& film_ray, Wavele
 RayDerivatives AnyRayModel::Interface::differences(const TwoPlaneRayDerivatives& film_ray,
                                                    Wavelength wavelength) const noexcept {
   // Relative to the distance between the planes: the truncation error is the square of this step, rounding eps / step.
-  constexpr double part = 1e-5;
-  const double h = part * std::abs(pupils->space().depth());
+  constexpr double relative_step = 1e-5;
+  const double h = relative_step * std::abs(pupils->space().depth());
   const auto moved = [&](const TwoPlaneRay& by, double step) -> TwoPlaneRay {
     const TwoPlaneRay& l = film_ray.line;
     return {l.film_x + step * by.film_x, l.film_y + step * by.film_y, l.pupil_x + step * by.pupil_x,

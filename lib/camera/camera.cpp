@@ -22,7 +22,7 @@ using camera_detail::FilmView;
 using camera_detail::LensFacts;
 using camera_detail::TiltedFilm;
 
-constexpr double same_place_mm = 1e-6;
+constexpr double plane_tolerance_mm = 1e-6;
 constexpr double rounding = 1e-9;  // relative tolerance of radii
 
 /// @throws Error  if the pupils of the model belong to other wavelengths, to another film or to a smaller film
@@ -32,7 +32,7 @@ void check_model(const Lens& lens, const FilmPupilTable& pupils, double radius) 
     throw Error(lens.name() + ": camera: the model has " + std::to_string(pupils.wavelengths()) +
                 " wavelengths; must equal the number of the lens, " + std::to_string(wavelengths));
   }
-  if (!(std::abs(pupils.space().film_z - lens.film_z()) <= same_place_mm)) {
+  if (!(std::abs(pupils.space().film_z - lens.film_z()) <= plane_tolerance_mm)) {
     throw Error(lens.name() + ": camera: film_z of the model = " + to_text(pupils.space().film_z) +
                 " mm; must equal film_z of the lens, " + to_text(lens.film_z()) + " mm");
   }
@@ -59,8 +59,8 @@ void check_polynomials(const Lens& lens, const AnyRayModel& model, double radius
   }
   const RayPolynomial::Domain& domain = polynomials->polynomial().domain();
   const TwoPlanes& planes = model.pupils().space();
-  if (!(std::abs(domain.space.film_z - planes.film_z) <= same_place_mm &&
-        std::abs(domain.space.pupil_z - planes.pupil_z) <= same_place_mm)) {
+  if (!(std::abs(domain.space.film_z - planes.film_z) <= plane_tolerance_mm &&
+        std::abs(domain.space.pupil_z - planes.pupil_z) <= plane_tolerance_mm)) {
     throw Error(where + "have film_z = " + to_text(domain.space.film_z) +
                 " and pupil_z = " + to_text(domain.space.pupil_z) + " mm; must equal the planes of the lens, " +
                 to_text(planes.film_z) + " and " + to_text(planes.pupil_z) + " mm");
@@ -102,9 +102,9 @@ std::vector<double> scales(const Lens& lens, const Film& film, const AnyRayModel
   if (normalisation == Normalisation::irradiance) return result;
 
   // The film is small and centred on the axis, because a shifted film may not contain the axis.
-  constexpr double part = 1. / 1024;
+  constexpr double film_scale = 1. / 1024;
   Film about = film;
-  about.width_mm *= part, about.height_mm *= part;
+  about.width_mm *= film_scale, about.height_mm *= film_scale;
   about.shift_x_mm = about.shift_y_mm = about.margin_mm = about.travel_mm = 0;
   std::optional<TiltedFilm> tilted;
   if (film.tilted()) tilted.emplace(about, model.pupils());  // at the time when the shutter opens
@@ -161,7 +161,7 @@ Camera::Data::Data(const LensFacts& facts, const Film& placed, const AnyRayModel
 }
 
 Camera::Camera(const Lens& lens, const Film& film, const CameraOptions& options) {
-  const int blades = options.bokeh.lens_elements;
+  const int blades = options.bokeh.blades;
   const auto [placed_lens, placed_film] =
       camera_detail::placed(blades == 0 ? lens : with_iris(lens, {.blades = blades}), film);
   camera_detail::check_film(placed_lens, placed_film);
@@ -179,9 +179,9 @@ Camera::Camera(std::shared_ptr<const Data> data) noexcept : data_(std::move(data
 
 Camera camera_with(const Lens& lens, const Film& film, const AnyRayModel& model, Normalisation normalisation,
                    const BokehControls& bokeh) {
-  if (bokeh.lens_elements != 0 || bokeh.vignettes()) {
+  if (bokeh.blades != 0 || bokeh.vignettes()) {
     throw Error(lens.name() +
-                ": camera: lens_elements, lens_ratio or rate_of_change are set for a given model; must be "
+                ": camera: blades, lens_ratio or rate_of_change are set for a given model; must be "
                 "0, 1 and 0, and set for the model");
   }
   const auto [placed_lens, placed_film] = camera_detail::placed(lens, film);
@@ -215,9 +215,9 @@ CameraRay Camera::sample(const CameraSample& s) const noexcept {
 template <class T>
 void Camera::sample(std::size_t count, const CameraSamples<T>& samples, const CameraRays<T>& rays) const noexcept {
   data_->in_range(count, samples.wavelengths, [&](std::size_t begin, std::size_t n, const RayWavelengths& own) {
-    CameraSamples<T> part = samples.from(begin);
-    part.wavelengths = own;
-    camera_detail::sample_rays(data_->view(), n, part, rays.from(begin));
+    CameraSamples<T> block_samples = samples.from(begin);
+    block_samples.wavelengths = own;
+    camera_detail::sample_rays(data_->view(), n, block_samples, rays.from(begin));
   });
 }
 

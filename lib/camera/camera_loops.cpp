@@ -5,8 +5,8 @@
 
 #include "camera_steps.hpp"
 #include "core/loop_math.hpp"
+#include "distance_to_front.hpp"
 #include "lens/look_up.hpp"
-#include "way_to_front.hpp"
 
 namespace petzval::camera_detail {
 namespace {
@@ -48,10 +48,10 @@ inline void move_to_front(T vertex_z, T curvature, std::size_t count, const RayA
   const auto [ox, oy, oz, dx, dy, dz] = rays;
   PETZVAL_INDEPENDENT
   for (std::size_t i = 0; i < count; ++i) {
-    const T way = way_to_front(curvature, ox[i], oy[i], oz[i] - vertex_z, dx[i], dy[i], dz[i]);
-    ox[i] += way * dx[i];
-    oy[i] += way * dy[i];
-    oz[i] += way * dz[i];
+    const T distance = distance_to_front(curvature, ox[i], oy[i], oz[i] - vertex_z, dx[i], dy[i], dz[i]);
+    ox[i] += distance * dx[i];
+    oy[i] += distance * dy[i];
+    oz[i] += distance * dz[i];
   }
 }
 
@@ -177,7 +177,7 @@ void weigh_tilted(const TiltedBounds<T>& tilted, std::size_t count, const T* vir
     if (T* const pdf = rays.pdf_direction) {
       PETZVAL_INDEPENDENT
       for (std::size_t i = 0; i < count; ++i) {
-        const T near = T(1) + nearer_by(plane_of(i), virtual_x[i], virtual_y[i]);
+        const T near = T(1) + distance_excess(plane_of(i), virtual_x[i], virtual_y[i]);
         pdf[i] /= near * near;
       }
     }

@@ -35,8 +35,8 @@ struct PupilWeight {
   static T pdf_pupil(T area) noexcept { return limited(T(1) / area); }
   /// The weight cos / pdf_direction, with pdf_direction = pdf_pupil length^3 / depth.
   T weight(T length2, T area) const noexcept {
-    const T part = depth2 / length2 * per_depth;
-    return area * part * part;
+    const T factor = depth2 / length2 * per_depth;
+    return area * factor * factor;
   }
   T pdf_direction(T length2, T pdf_pupil) const noexcept {
     return limited(length2 * core_detail::square_root(length2) * per_depth * pdf_pupil);
@@ -48,9 +48,9 @@ struct PupilWeight {
 };
 
 /// Fate of a sample: the fate of its ray if the sample has a ray.
-inline RayFate fate_of(RayFate fate, bool kept, bool wanted, bool seen) noexcept {
+inline RayFate fate_of(RayFate fate, bool kept, bool covered, bool seen) noexcept {
   fate = seen ? fate : RayFate::vignetted;
-  fate = wanted ? fate : RayFate::outside_spectrum;
+  fate = covered ? fate : RayFate::outside_spectrum;
   return kept ? fate : RayFate::outside_film;
 }
 
@@ -69,22 +69,22 @@ inline PlanePoint<T> virtual_of(const Plane& plane, T x, T y) noexcept {
 
 /// Distance of the upright film from the pupil plane divided by the distance of the film point, minus 1.
 template <class T, class Plane>
-inline T nearer_by(const Plane& plane, T virtual_x, T virtual_y) noexcept {
+inline T distance_excess(const Plane& plane, T virtual_x, T virtual_y) noexcept {
   return ((plane.slope_x * virtual_x + plane.slope_y * virtual_y) - plane.travel) / (T(1) + plane.travel);
 }
 
 /// Intersection with the upright film of the ray of a virtual point through a position in the pupil.
 template <class T, class Plane>
 inline PlanePoint<T> upright_of(const Plane& plane, T virtual_x, T virtual_y, T pupil_x, T pupil_y) noexcept {
-  const T nearer = nearer_by(plane, virtual_x, virtual_y);
-  return {virtual_x - nearer * pupil_x, virtual_y - nearer * pupil_y};
+  const T excess = distance_excess(plane, virtual_x, virtual_y);
+  return {virtual_x - excess * pupil_x, virtual_y - excess * pupil_y};
 }
 
 /// Weight of a film sample divided by the weight of the sample of an upright film with the same ray; zero or negative
 /// if the ray meets the back of the film.
 template <class T, class Plane>
 inline T facing_of(const Plane& plane, T virtual_x, T virtual_y, T pupil_x, T pupil_y) noexcept {
-  const T near = T(1) + nearer_by(plane, virtual_x, virtual_y);
+  const T near = T(1) + distance_excess(plane, virtual_x, virtual_y);
   const T front = (T(1) + plane.travel) - (plane.slope_x * pupil_x + plane.slope_y * pupil_y);
   return plane.cosine * front * near * near * near;
 }

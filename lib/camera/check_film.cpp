@@ -24,12 +24,12 @@ void check_outside_surface(const Lens& lens, const Film& film) {
   const std::size_t last = lens.surface_count() - 1;
   const double side = film.z() > face.vertex_z ? 1 : -1;
   const auto check = [&](const FilmPoint& point) {
-    const Vec3<double> place = film.position(point);
-    if (!(std::hypot(place.x, place.y) <= face.half)) return;
-    const double surface_z = face.vertex_z + sag(lens, last, place.x, place.y);
-    if (!((place.z - surface_z) * side <= 0)) return;
+    const Vec3<double> position = film.position(point);
+    if (!(std::hypot(position.x, position.y) <= face.half)) return;
+    const double surface_z = face.vertex_z + sag(lens, last, position.x, position.y);
+    if (!((position.z - surface_z) * side <= 0)) return;
     throw Error(lens.name() + ": film: point (" + to_text(point.x) + ", " + to_text(point.y) +
-                ") mm is at z = " + to_text(place.z) + " mm; must be " + (side > 0 ? "beyond " : "before ") +
+                ") mm is at z = " + to_text(position.z) + " mm; must be " + (side > 0 ? "beyond " : "before ") +
                 to_text(surface_z) + " mm, z of the last surface");
   };
   constexpr int steps = 32;
@@ -38,12 +38,12 @@ void check_outside_surface(const Lens& lens, const Film& film) {
   for (std::size_t k = 0; k < around.size(); ++k) {
     const FilmPoint &from = around[k], &to = around[(k + 1) % around.size()];
     for (int i = 0; i < steps; ++i) {
-      const double part = static_cast<double>(i) / steps;
-      const FilmPoint edge{from.x + part * (to.x - from.x), from.y + part * (to.y - from.y)};
+      const double fraction = static_cast<double>(i) / steps;
+      const FilmPoint edge{from.x + fraction * (to.x - from.x), from.y + fraction * (to.y - from.y)};
       check(edge);
-      const double beyond = std::hypot(edge.x, edge.y) / (face.half * (1 - 1e-9));
-      const FilmPoint under_rim{edge.x / beyond, edge.y / beyond};
-      if (beyond > 1 && film.contains(under_rim)) check(under_rim);
+      const double rim_ratio = std::hypot(edge.x, edge.y) / (face.half * (1 - 1e-9));
+      const FilmPoint under_rim{edge.x / rim_ratio, edge.y / rim_ratio};
+      if (rim_ratio > 1 && film.contains(under_rim)) check(under_rim);
     }
   }
 }

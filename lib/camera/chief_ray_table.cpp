@@ -15,7 +15,7 @@ namespace {
 
 /// Radius of the table, in film radii. It exceeds 1 to distinguish points imaged outside the film from points without
 /// an image.
-constexpr double beyond_film = 1.5;
+constexpr double table_radius_ratio = 1.5;
 constexpr int steps = 24;  // over the radius of the table
 
 struct Heights {
@@ -114,7 +114,7 @@ ChiefRayTable::ChiefRayTable(const LensFacts& facts, const AnyRayModel& model, d
   if (!traced) {
     const auto fill = [&](Meridian& nodes, Section section) {
       for (int i = 0; i <= steps; ++i) {
-        const double film = film_radius * beyond_film * i / steps,
+        const double film = film_radius * table_radius_ratio * i / steps,
                      near = std::clamp(film, 1e-3 * film_radius, film_radius);
         const auto [x, y] = section.pair(near);
         const auto of_pupil = model.pupils().middle({x, y}, wavelength);
@@ -129,22 +129,22 @@ ChiefRayTable::ChiefRayTable(const LensFacts& facts, const AnyRayModel& model, d
 
   const auto fill = [&](Meridian& nodes, Section section) {
     const FromStop from_stop(facts, space, wavelength, section);
-    constexpr double small = 1e-5;
-    const auto first = from_stop(small);
+    constexpr double first_stop_radius = 1e-5;
+    const auto first = from_stop(first_stop_radius);
     if (!first || !(first->film > 0)) return;
     add(nodes, section, {}, first->pupil / first->film);
     // Equal steps of slope; to first order these are equal steps on the film.
-    const double step = std::min(film_radius * beyond_film / (first->film / small), 1.0) / steps;
+    const double step = std::min(film_radius * table_radius_ratio / (first->film / first_stop_radius), 1.0) / steps;
     const auto next = [&](double slope) {
       const auto h = from_stop(slope);
       return h && !nodes.empty() && h->film > nodes.back().film && add(nodes, section, *h, h->pupil / h->film);
     };
-    for (int i = 1; i <= 4 * steps && !nodes.empty() && nodes.back().film < beyond_film * film_radius; ++i) {
+    for (int i = 1; i <= 4 * steps && !nodes.empty() && nodes.back().film < table_radius_ratio * film_radius; ++i) {
       if (next(step * i)) continue;
       // Bisect to the last ray that passes, at the edge of the image of a fisheye.
-      double good = step * (i - 1);
+      double reached = step * (i - 1);
       for (double by = step / 2; by > 1e-4 * step; by /= 2) {
-        if (next(good + by)) good += by;
+        if (next(reached + by)) reached += by;
       }
       break;
     }
@@ -163,12 +163,12 @@ double ChiefRayTable::ratio(const Meridian& nodes, double film) noexcept {
   const double t = std::min(film, nodes.back().film) * std::min(film, nodes.back().film);
   double sum = 0;
   for (std::size_t i = first; i < first + 4; ++i) {
-    double part = nodes[i].ratio;
+    double term = nodes[i].ratio;
     for (std::size_t j = first; j < first + 4; ++j) {
       const double ti = nodes[i].film * nodes[i].film, tj = nodes[j].film * nodes[j].film;
-      if (j != i) part *= (t - tj) / (ti - tj);
+      if (j != i) term *= (t - tj) / (ti - tj);
     }
-    sum += part;
+    sum += term;
   }
   return sum;
 }
@@ -203,11 +203,11 @@ std::optional<double> ChiefRayTable::find(const Meridian& nodes, double height, 
       if (monotonic) {
         double sum = 0;
         for (std::size_t i = 0; i < 4; ++i) {
-          double part = nodes[first + i].film;
+          double term = nodes[first + i].film;
           for (std::size_t j = 0; j < 4; ++j) {
-            if (j != i) part *= p[j] / (p[j] - p[i]);
+            if (j != i) term *= p[j] / (p[j] - p[i]);
           }
-          sum += part;
+          sum += term;
         }
         return sum;
       }

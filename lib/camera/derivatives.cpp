@@ -20,22 +20,22 @@ struct Line {
 };
 
 Line line_of(const TwoPlaneRayDerivatives& d) noexcept {
-  const auto jet = [&](double TwoPlaneRay::*part) {
-    Dual x(d.line.*part);
-    x.v[0] = d.by_u.*part;
-    x.v[1] = d.by_v.*part;
+  const auto jet = [&](double TwoPlaneRay::*component) {
+    Dual x(d.line.*component);
+    x.v[0] = d.by_u.*component;
+    x.v[1] = d.by_v.*component;
     return x;
   };
   return {jet(&TwoPlaneRay::film_x), jet(&TwoPlaneRay::film_y), jet(&TwoPlaneRay::pupil_x), jet(&TwoPlaneRay::pupil_y)};
 }
 
 RayDerivatives derivatives_of(const Vec& origin, const Vec& direction) noexcept {
-  const auto part = [](const Vec& v, int k) { return Vec3<double>(v.x.v[k], v.y.v[k], v.z.v[k]); };
+  const auto component = [](const Vec& v, int k) { return Vec3<double>(v.x.v[k], v.y.v[k], v.z.v[k]); };
   const auto value = [](const Vec& v) { return Vec3<double>(v.x.a, v.y.a, v.z.a); };
   return {RayFate::transmitted,
           {value(origin), value(direction)},
-          {part(origin, 0), part(direction, 0)},
-          {part(origin, 1), part(direction, 1)}};
+          {component(origin, 0), component(direction, 0)},
+          {component(origin, 1), component(direction, 1)}};
 }
 
 }  // namespace

@@ -29,8 +29,8 @@ struct Block {
 template <class R>
 void trace_in_place(const Lens& lens, Travel travel, std::size_t count, const RayArrays<R>& rays,
                     const RayWavelengths& wavelengths, RayFate* fates) noexcept {
-  constexpr std::size_t few = 8;
-  if (count >= few) {
+  constexpr std::size_t min_batch_size = 8;
+  if (count >= min_batch_size) {
     trace<R>(lens, count, {rays.x, rays.y, rays.z, rays.dx, rays.dy, rays.dz}, rays, fates, nullptr,
              {.travel = travel, .wavelengths = wavelengths});
     return;

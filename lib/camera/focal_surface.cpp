@@ -92,8 +92,8 @@ struct FocalSurface::Fields {
 
 FocalSurface::FocalSurface(const IdealLens& lens, const Film& film, std::span<const FocalPoint> points,
                            const FocalSurfaceOptions& options) {
-  const double place = film.z() + film.tilt_rad + film.swing_rad;
-  if (!(film.width_mm > 0 && film.height_mm > 0 && std::isfinite(film.area_mm2()) && std::isfinite(place))) {
+  const double position = film.z() + film.tilt_rad + film.swing_rad;
+  if (!(film.width_mm > 0 && film.height_mm > 0 && std::isfinite(film.area_mm2()) && std::isfinite(position))) {
     throw Error("focal surface: film = " + to_text(film.width_mm) + " x " + to_text(film.height_mm) +
                 " mm at z = " + to_text(film.z()) + " mm; must be finite, with a size above 0");
   }
@@ -129,12 +129,12 @@ FocalSurface::FocalSurface(const IdealLens& lens, const Film& film, std::span<co
   }
   const bool fixes_distance = !objects.empty();
   if (!fixes_distance) {
-    const double otherwise = options.otherwise.value_or(inverse_in_focus(lens, film));
-    if (!(otherwise >= farthest && otherwise <= nearest)) {
-      throw Error("focal surface: default 1 / distance = " + to_text(otherwise) + " / mm; must be " +
+    const double default_inverse_distance = options.default_inverse_distance.value_or(inverse_in_focus(lens, film));
+    if (!(default_inverse_distance >= farthest && default_inverse_distance <= nearest)) {
+      throw Error("focal surface: default 1 / distance = " + to_text(default_inverse_distance) + " / mm; must be " +
                   to_text(farthest) + " to " + to_text(nearest) + " / mm");
     }
-    objects.push_back({{0, 0}, otherwise});
+    objects.push_back({{0, 0}, default_inverse_distance});
   }
   if (extents.empty()) extents.push_back({{0, 0}, 0});
   const MovingLeastSquares extent("focal surface: ", extents, side, options.kind, options.beta, 0);
@@ -168,17 +168,17 @@ FocalSurface::FocalSurface(const IdealLens& lens, const Film& film, std::span<co
 bool FocalSurface::fixes_distance() const noexcept { return fields_->fixes_distance; }
 double FocalSurface::origin_z() const noexcept { return fields_->origin_z; }
 
-FocalSurface::Values FocalSurface::at(const FilmPoint& place) const noexcept {
-  Values values{fields_->distance.at(place), fields_->extent.at(place), 0};
+FocalSurface::Values FocalSurface::at(const FilmPoint& position) const noexcept {
+  Values values{fields_->distance.at(position), fields_->extent.at(position), 0};
   if (fields_->objects) {
     const double stopped = focus_detail::pupil_scale(values.extent_stops);
-    values.blur_mm = fields_->blur_per_inverse * stopped * (values.inverse_distance - fields_->objects->at(place));
+    values.blur_mm = fields_->blur_per_inverse * stopped * (values.inverse_distance - fields_->objects->at(position));
   }
   return values;
 }
 
-FocalSurface::Slopes FocalSurface::slopes(const FilmPoint& place) const noexcept {
-  return {at(place), fields_->distance.slopes(place), fields_->extent.slopes(place)};
+FocalSurface::Slopes FocalSurface::slopes(const FilmPoint& position) const noexcept {
+  return {at(position), fields_->distance.slopes(position), fields_->extent.slopes(position)};
 }
 
 template <class T>
@@ -214,14 +214,14 @@ double FocalSurface::least_extent() const noexcept { return fields_->extent.leas
 double FocalSurface::most_extent() const noexcept { return fields_->extent.most(); }
 
 std::vector<FocalPoint> focal_points(const IdealLens& lens, const Film& film, std::span<const FocusPoint> points,
-                                     const FocusMoment& moment, std::span<const double> fades) {
+                                     const FocusTime& moment, std::span<const double> fades) {
   focus_detail::check_points(points, moment);
   if (!fades.empty() && fades.size() != points.size()) {
     throw Error("focal_points: " + std::to_string(fades.size()) + " fades for " + std::to_string(points.size()) +
                 " points; must be as many or 0");
   }
   const double nearest = nearest_inverse(lens),
-               farthest_place = camera_detail::reach_in_sides * std::sqrt(film.area_mm2());
+               max_distance = camera_detail::reach_in_sides * std::sqrt(film.area_mm2());
   std::vector<FocusTarget> targets;
   std::vector<FocalPoint> result;
   for (std::size_t i = 0; i < points.size(); ++i) {
@@ -233,10 +233,10 @@ std::vector<FocalPoint> focal_points(const IdealLens& lens, const Film& film, st
     }
     const auto target = focus_detail::target_at(lens, points[i], moment);
     const auto image = target ? lens.image(target->point) : std::nullopt;
-    const auto place = image ? chief_point(*image, film) : std::nullopt;
-    if (!place || !(std::abs(place->x) <= farthest_place && std::abs(place->y) <= farthest_place)) continue;
+    const auto position = image ? chief_point(*image, film) : std::nullopt;
+    if (!position || !(std::abs(position->x) <= max_distance && std::abs(position->y) <= max_distance)) continue;
     FocalPoint point{
-        .film_point = *place, .blur_mm = target->blur_mm, .extent_stops = target->extent_stops, .fade = fade};
+        .film_point = *position, .blur_mm = target->blur_mm, .extent_stops = target->extent_stops, .fade = fade};
     if (target->fixes_distance) {
       const bool at_infinity = target->point.at_infinity;
       point.inverse_distance = at_infinity ? 0 : 1 / (lens.pupils.entrance.z - target->point.position.z);
@@ -251,8 +251,8 @@ std::vector<FocalPoint> focal_points(const IdealLens& lens, const Film& film, st
 }
 
 std::vector<bool> points_in_view(const IdealLens& lens, const Film& film, std::span<const FocusPoint> points,
-                                 const FocusMoment& moment) {
-  FocusMoment when = moment;
+                                 const FocusTime& moment) {
+  FocusTime when = moment;
   when.film = film;
   focus_detail::check_points(points, when);
   std::vector<bool> result;
@@ -263,13 +263,13 @@ std::vector<bool> points_in_view(const IdealLens& lens, const Film& film, std::s
   return result;
 }
 
-FocusFades::FocusFades(double time_constant_s) : time_constant_(time_constant_s) {
+FadeFilter::FadeFilter(double time_constant_s) : time_constant_(time_constant_s) {
   if (time_constant_s >= 0 && std::isfinite(time_constant_s)) return;
-  throw Error("FocusFades: time constant = " + to_text(time_constant_s) + " s; must be finite and at least 0");
+  throw Error("FadeFilter: time constant = " + to_text(time_constant_s) + " s; must be finite and at least 0");
 }
 
-void FocusFades::advance(double seconds, const std::vector<bool>& in_view) {
-  if (!(seconds >= 0)) throw Error("FocusFades: step = " + to_text(seconds) + " s; must be at least 0");
+void FadeFilter::advance(double seconds, const std::vector<bool>& in_view) {
+  if (!(seconds >= 0)) throw Error("FadeFilter: step = " + to_text(seconds) + " s; must be at least 0");
   const double left = time_constant_ > 0 ? std::exp(-seconds / time_constant_) : 0;
   const std::size_t known = std::min(fades_.size(), in_view.size());
   fades_.resize(in_view.size());

@@ -8,10 +8,10 @@
 
 #include "core/dual.hpp"
 #include "core/text.hpp"
+#include "distance_to_front.hpp"
 #include "petzval/core/error.hpp"
 #include "petzval/paraxial/first_order.hpp"
 #include "pupil/face.hpp"
-#include "way_to_front.hpp"
 
 namespace petzval::camera_detail {
 
@@ -36,9 +36,9 @@ Front front_of(const Lens& lens) {
   return {first.vertex_z, spherical ? first.curvature : 2 * depth / (half * half + depth * depth), spherical};
 }
 
-double way_to_front(const Front& front, const Ray<double>& ray) noexcept {
+double distance_to_front(const Front& front, const Ray<double>& ray) noexcept {
   const auto& [o, d] = ray;
-  return way_to_front(front.curvature, o.x, o.y, o.z - front.vertex_z, d.x, d.y, d.z);
+  return distance_to_front(front.curvature, o.x, o.y, o.z - front.vertex_z, d.x, d.y, d.z);
 }
 
 RayDerivatives at_front(const Front& front, const RayDerivatives& ray) noexcept {
@@ -51,10 +51,10 @@ RayDerivatives at_front(const Front& front, const RayDerivatives& ray) noexcept 
   };
   const std::array o{jet(&Ray<double>::origin, 0), jet(&Ray<double>::origin, 1), jet(&Ray<double>::origin, 2)};
   const std::array d{jet(&Ray<double>::direction, 0), jet(&Ray<double>::direction, 1), jet(&Ray<double>::direction, 2)};
-  const Dual way = way_to_front(Dual(front.curvature), o[0], o[1], o[2] - front.vertex_z, d[0], d[1], d[2]);
+  const Dual distance = distance_to_front(Dual(front.curvature), o[0], o[1], o[2] - front.vertex_z, d[0], d[1], d[2]);
   RayDerivatives result = ray;
   for (int axis = 0; axis < 3; ++axis) {
-    const Dual moved = o[axis] + way * d[axis];
+    const Dual moved = o[axis] + distance * d[axis];
     result.ray.origin[axis] = moved.a;
     result.by_u.origin[axis] = moved.v[0];
     result.by_v.origin[axis] = moved.v[1];

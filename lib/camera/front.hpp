@@ -17,7 +17,7 @@ struct Front {
 Front front_of(const Lens& lens);
 
 /// Distance from the origin of a ray to the front, along the ray. The ray must travel towards the scene.
-double way_to_front(const Front& front, const Ray<double>& ray) noexcept;
+double distance_to_front(const Front& front, const Ray<double>& ray) noexcept;
 /// The ray with its origin moved to the front, with derivatives.
 RayDerivatives at_front(const Front& front, const RayDerivatives& ray) noexcept;
 

@@ -31,12 +31,12 @@
 #include "camera_data.hpp"
 #include "camera_steps.hpp"
 #include "core/meet_plane.hpp"
+#include "distance_to_front.hpp"
 #include "make_model.hpp"
 #include "petzval/core/parallel.hpp"
 #include "pupil_table/scene_grid.hpp"
 #include "scene_side.hpp"
 #include "tilted_pinhole.hpp"
-#include "way_to_front.hpp"
 
 namespace petzval {
 namespace camera_detail {
@@ -66,11 +66,11 @@ void in_blocks(std::size_t count, const Body& body) noexcept {
   if (begin < count) body(std::integral_constant<std::size_t, 1>(), begin, 1);
 }
 
-/// A connection to a position in the lens. `way` is the distance from the front of the lens to the position; the
-/// distance and the end of the shadow ray are reduced by it.
-ImportanceSample connected(const Vec3<double>& place, const Vec3<double>& direction, double distance, double way,
-                           double pdf) noexcept {
-  return {direction, distance - way, place - direction * way, pdf, {}};
+/// A connection to a position in the lens. `front_distance` is the distance from the front of the lens to the position;
+/// the distance and the end of the shadow ray are reduced by it.
+ImportanceSample connected(const Vec3<double>& position, const Vec3<double>& direction, double distance,
+                           double front_distance, double pdf) noexcept {
+  return {direction, distance - front_distance, position - direction * front_distance, pdf, {}};
 }
 
 /// Rays of a model in the scene, for each wavelength.
@@ -127,7 +127,7 @@ EntrancePupilTable entrance_of(const Lens& lens, const AnyRayModel& model, int t
 }
 
 /// Distance from which the pupil equals the pupil at infinity up to rounding, mm.
-constexpr double far = 1e12;
+constexpr double infinite_distance_mm = 1e12;
 
 /// The point of a ray's line nearest to the vertex; it keeps the precision of rays from distant origins.
 Vec3<double> nearest_to_lens(const Ray<double>& ray) noexcept {
@@ -174,7 +174,7 @@ SceneSide::SceneSide(const LensFacts& facts, const Film& film, std::optional<Til
   const Lens& lens = facts.lens();
   if (model.kind() == ModelKind::exact_float || model.kind() == ModelKind::exact_double) traced_ = lens;
   if (model.pinhole() && pupils_.cut()) {
-    whole_ = tilted_ ? TiltedFilm(film, pupils_.whole()).pupils() : pupils_.whole();
+    unclipped_ = tilted_ ? TiltedFilm(film, pupils_.whole()).pupils() : pupils_.whole();
   }
   std::vector<std::optional<ChiefRayTable>> chiefs(wavelengths.count());
   parallel_for(wavelengths.count(), 1, threads, [&](std::size_t w, std::size_t) {
@@ -205,16 +205,16 @@ const SceneSide::Compiled& SceneSide::nearest(Wavelength wavelength) const noexc
 }
 
 SceneSide::Facts SceneSide::facts_at(Wavelength wavelength) const noexcept {
-  const Compiled& beside = nearest(wavelength);
+  const Compiled& neighbour = nearest(wavelength);
   const auto nm = wavelength.in_nm();
-  if (!nm) return beside;
+  if (!nm) return neighbour;
   const auto [etendue, entrance_z, area] = between_(*nm);
   // Positions cannot be interpolated if a pupil lies at infinity.
-  const bool placed = std::isfinite(entrance_z) && std::isfinite(area) && beside.entrance_area > 0;
+  const bool placed = std::isfinite(entrance_z) && std::isfinite(area) && neighbour.entrance_area > 0;
   return {.we = etendue * wavelengths_.scale(wavelength) / film_.area_mm2(),
           .density = etendue / film_.area_mm2() / squared(space_.depth()),
-          .entrance_z = placed ? entrance_z : beside.entrance_z,
-          .entrance_area = placed ? area : beside.entrance_area};
+          .entrance_z = placed ? entrance_z : neighbour.entrance_z,
+          .entrance_area = placed ? area : neighbour.entrance_area};
 }
 
 bool SceneSide::valid(const Ray<double>& ray, Wavelength wavelength) const noexcept {
@@ -390,7 +390,7 @@ template <std::size_t block>
 void SceneSide::connect(const AnyRayModel& model, std::size_t count, const Vec3<double>* points, const double* u,
                         const double* v, const RayWavelengths& wavelengths, const double* times,
                         ImportanceSample* found) const noexcept {
-  std::array<double, block> x, y, z, dx, dy, dz, distance, pdf, way;
+  std::array<double, block> x, y, z, dx, dy, dz, distance, pdf, front_distance;
   std::array<Importance, block> importances;
   // Points without a connection also get valid rays, with pdf = 0.
   entrance_.sample(count, points, u, v, wavelengths,
@@ -398,12 +398,13 @@ void SceneSide::connect(const AnyRayModel& model, std::size_t count, const Vec3<
   importance_block<block>(model, count, {x.data(), y.data(), z.data(), dx.data(), dy.data(), dz.data()}, wavelengths,
                           times, importances.data());
   for (std::size_t i = 0; i < count; ++i) {
-    const double to_front = way_to_front(front_.curvature, x[i], y[i], z[i] - front_.vertex_z, -dx[i], -dy[i], -dz[i]);
-    way[i] = to_front < distance[i] ? to_front : distance[i];
+    const double to_front =
+        distance_to_front(front_.curvature, x[i], y[i], z[i] - front_.vertex_z, -dx[i], -dy[i], -dz[i]);
+    front_distance[i] = to_front < distance[i] ? to_front : distance[i];
   }
   for (std::size_t i = 0; i < count; ++i) {
     if (pdf[i] > 0) {
-      found[i] = connected({x[i], y[i], z[i]}, {dx[i], dy[i], dz[i]}, distance[i], way[i], pdf[i]);
+      found[i] = connected({x[i], y[i], z[i]}, {dx[i], dy[i], dz[i]}, distance[i], front_distance[i], pdf[i]);
       found[i].importance = importances[i];
     } else {
       const bool known = wavelengths_.covers(wavelengths.at(i)) && finite(points[i]);
@@ -419,24 +420,26 @@ ImportanceSample SceneSide::sample_distant(const AnyRayModel& model, const Vec3<
     return {.importance = {.fate = refused(wavelength)}};
   }
   ImportanceSample result;
-  const Vec3<double> point = direction * -far;
+  const Vec3<double> point = direction * -infinite_distance_mm;
   if (model.pinhole()) {
     const ImportanceSample s = through_pinhole(model, point, u, v, wavelength, time);
-    result = connection({0, 0, facts_at(wavelength).entrance_z}, direction, infinity, s.pdf / squared(far));
+    result =
+        connection({0, 0, facts_at(wavelength).entrance_z}, direction, infinity, s.pdf / squared(infinite_distance_mm));
     result.importance = s.importance;
     return result;
   }
   const EntranceSample s = entrance_.sample(point, u, v, wavelength);
   if (!(s.pdf > 0)) return result;
-  result = connection(s.origin, direction, infinity, s.pdf / squared(far));
+  result = connection(s.origin, direction, infinity, s.pdf / squared(infinite_distance_mm));
   const auto& [o, d] = Ray<double>{s.origin, direction};
   importance(model, 1, {&o.x, &o.y, &o.z, &d.x, &d.y, &d.z}, {.all = wavelength}, &time, &result.importance);
   return result;
 }
 
-ImportanceSample SceneSide::connection(const Vec3<double>& place, const Vec3<double>& direction, double distance,
+ImportanceSample SceneSide::connection(const Vec3<double>& position, const Vec3<double>& direction, double distance,
                                        double pdf) const noexcept {
-  return connected(place, direction, distance, std::min(way_to_front(front_, {place, -direction}), distance), pdf);
+  return connected(position, direction, distance, std::min(distance_to_front(front_, {position, -direction}), distance),
+                   pdf);
 }
 
 ImportanceSample SceneSide::through_pinhole(const AnyRayModel& model, const Vec3<double>& point, double u, double v,
@@ -459,34 +462,34 @@ ImportanceSample SceneSide::through_pinhole(const AnyRayModel& model, const Vec3
   const FilmPupilTable& pupils = tilted_ ? tilted_->pupils() : pupils_;
   const FilmPoint met{arrival.virtual_x[0], arrival.virtual_y[0]};
   const PupilSample s = pupils.sample(met, drawn.u, drawn.v, wavelength);
-  const FilmPoint place{s.x, s.y};
+  const FilmPoint position{s.x, s.y};
   double spread = 1, area = s.area;
   if (const auto placed = plane(time); placed && arrival.lit(0)) {
     // Film points of rays through this pupil position are spaced differently on the tilted film than film points of
     // rays through the pinhole.
-    spread = part_by_place(*placed, place) / part_by_place(*placed, {arrival.pupil_x[0], arrival.pupil_y[0]});
-    arrival.facing[0] = placed->weight(met, place);
-    const TwoPlaneRay line = placed->upright(met, place);
+    spread = depth_ratio_at(*placed, position) / depth_ratio_at(*placed, {arrival.pupil_x[0], arrival.pupil_y[0]});
+    arrival.facing[0] = placed->weight(met, position);
+    const TwoPlaneRay line = placed->upright(met, position);
     arrival.upright_x[0] = line.film_x, arrival.upright_y[0] = line.film_y;
-    const bool clipped =
-        !model.clips_at_apertures() && !pupils_.contains({line.film_x, line.film_y}, place.x, place.y, wavelength);
+    const bool clipped = !model.clips_at_apertures() &&
+                         !pupils_.contains({line.film_x, line.film_y}, position.x, position.y, wavelength);
     if (clipped || !(spread > 0)) area = 0;
   }
-  arrival.pupil_x[0] = place.x, arrival.pupil_y[0] = place.y;
+  arrival.pupil_x[0] = position.x, arrival.pupil_y[0] = position.y;
   Importance& seen = result.importance;
   weigh(model, 1, {.all = wavelength}, arrival, &area, &seen);
   if (seen.fate != RayFate::transmitted) return result;
   // A rim clips the entrance pupil by the same fraction as the exit pupil.
-  if (whole_) {
+  if (unclipped_) {
     // Tilted films sample the round stop, and the iris clips some of these rays.
     const double sampled = tilted_ ? s.area : pupils.polygon_area(met, wavelength);
-    const double all = tilted_ ? whole_->area(met, wavelength) : whole_->polygon_area(met, wavelength);
+    const double all = tilted_ ? unclipped_->area(met, wavelength) : unclipped_->polygon_area(met, wavelength);
     const double part = sampled / all;
     result.pdf /= part, seen.pdf_position /= part, seen.pdf_direction *= part;
   }
   seen.we *= spread, seen.pdf_direction *= spread;
   if (weights_) {
-    const TwoPlaneRay line{arrival.upright_x[0], arrival.upright_y[0], place.x, place.y};
+    const TwoPlaneRay line{arrival.upright_x[0], arrival.upright_y[0], position.x, position.y};
     seen.we *= weights_.of_sample(drawn.u, drawn.v, line, wavelength) / drawn.density;
     seen.pdf_pupil *= drawn.density, seen.pdf_direction *= drawn.density;
   }
@@ -501,7 +504,7 @@ double SceneSide::pdf(const AnyRayModel& model, const Vec3<double>& point, const
 
 double SceneSide::pdf_distant(const AnyRayModel& model, const Ray<double>& ray, Wavelength wavelength) const noexcept {
   if (model.pinhole() || !valid(ray, wavelength)) return 0;
-  return entrance_.pdf(ray.direction * -far, ray, wavelength) / squared(far);
+  return entrance_.pdf(ray.direction * -infinite_distance_mm, ray, wavelength) / squared(infinite_distance_mm);
 }
 
 }  // namespace camera_detail

@@ -47,7 +47,8 @@ constexpr double nearest_offset = -0.9, farthest_offset = 9;
 camera_detail::MovingLeastSquares offsets_of(const std::string& where, const std::vector<FilmOffset>& offsets,
                                              const Film& film, double film_from_pupil) {
   std::vector<camera_detail::WeighedValue> points;
-  for (const auto& [place, offset, weight] : offsets) points.push_back({place, offset / film_from_pupil, weight});
+  for (const auto& [film_point, offset, weight] : offsets)
+    points.push_back({film_point, offset / film_from_pupil, weight});
   constexpr double beta = 3;
   camera_detail::MovingLeastSquares surface(where + "film offsets: ", points, std::sqrt(film.area_mm2()),
                                             SurfaceKind::affine, beta);
@@ -148,11 +149,11 @@ struct LocalFocus::Data {
     if (surface) found.from_surface = found.z - surface->origin_z();
     return {found, dispersion, middle};
   }
-  /// The film point whose chief ray has a given slope, and its TiltedPlane::nearer_by(); nullopt if the chief ray does
-  /// not meet the front of the film.
+  /// The film point whose chief ray has a given slope, and its TiltedPlane::distance_excess(); nullopt if the chief ray
+  /// does not meet the front of the film.
   struct Seen {
     FilmPoint film_point;
-    double nearer = 0;
+    double excess = 0;
   };
   std::optional<Seen> seen(const At& at, const Vec2<double>& slope,
                            const std::optional<TiltedPlane>& plane) const noexcept {
@@ -160,7 +161,7 @@ struct LocalFocus::Data {
     if (!plane) return Seen{upright};
     const auto point = plane->virtual_point_of({upright.x, upright.y, at.middle * upright.x, at.middle * upright.y});
     if (!point) return {};
-    return Seen{plane->point(*point), plane->nearer_by(*point)};
+    return Seen{plane->point(*point), plane->distance_excess(*point)};
   }
   /// Change of the film point for a step of its chief ray's slope.
   Vec2<double> moved(const At& at, const Vec2<double>& slope, const Vec2<double>& step,
@@ -184,25 +185,26 @@ struct LocalFocus::Data {
     return position < compiled.size() ? std::optional(compiled[position]) : std::nullopt;
   }
 
-  FilmPointFocus<double> point(const FilmPoint& place, double nearer) const noexcept {
-    FilmPointFocus<double> result{nearer, 0, 0, 1};
+  FilmPointFocus<double> point(const FilmPoint& film_point, double excess) const noexcept {
+    FilmPointFocus<double> result{excess, 0, 0, 1};
     if (surface) {
-      const auto values = surface->at(place);
+      const auto values = surface->at(film_point);
       result.surface = values.inverse_distance, result.scale = pupil_scale(values.extent_stops);
     }
-    if (offsets) result.offset = offsets->at(place);
+    if (offsets) result.offset = offsets->at(film_point);
     return result;
   }
-  FilmPointFocus<Dual> point(const FilmPoint& place, double nearer, const Vec2<double>& nearer_by) const noexcept {
-    FilmPointFocus<Dual> result{jet(nearer, nearer_by), Dual(0.0), Dual(0.0), Dual(1.0)};
+  FilmPointFocus<Dual> point(const FilmPoint& film_point, double excess,
+                             const Vec2<double>& excess_by_film) const noexcept {
+    FilmPointFocus<Dual> result{jet(excess, excess_by_film), Dual(0.0), Dual(0.0), Dual(1.0)};
     if (surface) {
-      const auto at_place = surface->slopes(place);
-      result.surface = jet(at_place.values.inverse_distance, at_place.inverse_distance);
-      const double scale = pupil_scale(at_place.values.extent_stops);
-      result.scale = jet(scale, at_place.extent_stops * (-std::log(2.0) / 2 * scale));
+      const auto at_point = surface->slopes(film_point);
+      result.surface = jet(at_point.values.inverse_distance, at_point.inverse_distance);
+      const double scale = pupil_scale(at_point.values.extent_stops);
+      result.scale = jet(scale, at_point.extent_stops * (-std::log(2.0) / 2 * scale));
     }
     if (offsets) {
-      result.offset = jet(offsets->at(place), offsets->slopes(place));
+      result.offset = jet(offsets->at(film_point), offsets->slopes(film_point));
     }
     return result;
   }
@@ -250,8 +252,8 @@ LocalFocus::LocalFocus(const LensFacts& facts, const Film& film, const AnyRayMod
                   "the entrance pupil is at infinity; must be at a finite distance for a focal surface or an "
                   "expressive lens");
     }
-    constexpr double nearest = 0.05;
-    const auto reaches = [&](double inverse) { return 1 + inverse * maps.from_surface >= nearest; };
+    constexpr double min_distance_ratio = 0.05;
+    const auto reaches = [&](double inverse) { return 1 + inverse * maps.from_surface >= min_distance_ratio; };
     if (surface && !(reaches(surface->nearest()) && reaches(surface->farthest()))) {
       throw Error(where + "the focal surface has 1 / distance from " + to_text(surface->farthest()) + " to " +
                   to_text(surface->nearest()) + " / mm; must be in front of the pupil of " +
@@ -267,7 +269,7 @@ LocalFocus::LocalFocus(const LensFacts& facts, const Film& film, const AnyRayMod
 }
 
 template <class T>
-void LocalFocus::bend(std::size_t count, const T* film_x, const T* film_y, const T* nearer,
+void LocalFocus::bend(std::size_t count, const T* film_x, const T* film_y, const T* excess,
                       const RayWavelengths& wavelengths, const RayArrays<T>& rays) const noexcept {
   const Data& data = *data_;
   const auto& loop = local_focus_loops().of<T>();
@@ -291,7 +293,7 @@ void LocalFocus::bend(std::size_t count, const T* film_x, const T* film_y, const
     if (data.offsets) data.offsets->at(n, x, y, offset.data());
     const auto run = [&](std::size_t from, std::size_t to, const Data::At& at) {
       loop(*rules, in_type<T>(at.maps), static_cast<T>(at.dispersion), z, to - from,
-           {(nearer ? nearer + begin : none.data()) + from, (data.surface ? surface : none).data() + from,
+           {(excess ? excess + begin : none.data()) + from, (data.surface ? surface : none).data() + from,
             (data.offsets ? offset : none).data() + from, scale.data() + from},
            {rays.x + begin + from, rays.y + begin + from, rays.z + begin + from, rays.dx + begin + from,
             rays.dy + begin + from, rays.dz + begin + from});
@@ -310,18 +312,18 @@ template void LocalFocus::bend(std::size_t, const float*, const float*, const fl
 template void LocalFocus::bend(std::size_t, const double*, const double*, const double*, const RayWavelengths&,
                                const RayArrays<double>&) const noexcept;
 
-void LocalFocus::bend(const FilmPoint& film, double nearer, Wavelength wavelength, Ray<double>& ray) const noexcept {
+void LocalFocus::bend(const FilmPoint& film, double excess, Wavelength wavelength, Ray<double>& ray) const noexcept {
   const Data& data = *data_;
   const auto at = data.at(wavelength);
   if (!at) return;
-  const auto point = data.point(film, nearer);
+  const auto point = data.point(film, excess);
   auto& [o, d] = ray;
   local_focus_loops().of<double>()(data.rules, at->maps, at->dispersion, data.first_order().z(), 1,
-                                   {&point.nearer, &point.surface, &point.offset, &point.scale},
+                                   {&point.excess, &point.surface, &point.offset, &point.scale},
                                    {&o.x, &o.y, &o.z, &d.x, &d.y, &d.z});
 }
 
-void LocalFocus::bend(const FilmPoint& film, double nearer, const Vec2<double>& nearer_by, Wavelength wavelength,
+void LocalFocus::bend(const FilmPoint& film, double excess, const Vec2<double>& excess_by_film, Wavelength wavelength,
                       RayDerivatives& ray) const noexcept {
   const Data& data = *data_;
   const auto at = data.at(wavelength);
@@ -337,7 +339,7 @@ void LocalFocus::bend(const FilmPoint& film, double nearer, const Vec2<double>& 
                      part([](const Ray<double>& r) { return r.direction.y; }),
                      part([](const Ray<double>& r) { return r.direction.z; })};
   const double z = data.first_order().z();
-  const auto point = data.point(film, nearer, nearer_by);
+  const auto point = data.point(film, excess, excess_by_film);
   const Dual radius = radius_of(at->maps, point, at_entrance(at->maps, z, bent));
   const Dual by_radius = beyond_one(data.rules.spline, radius) * data.rules.power;
   bent = bent_ray(data.rules, at->maps, at->dispersion, z, point, by_radius, bent);
@@ -360,7 +362,7 @@ LocalFocus::Straight LocalFocus::straighten(const Ray<double>& ray, Wavelength w
   const auto asked = [&](double t) -> std::optional<double> {
     const auto from = data.seen(*at, slope - height * t, plane);
     if (!from) return {};
-    const auto point = data.point(from->film_point, from->nearer);
+    const auto point = data.point(from->film_point, from->excess);
     return focus_of(data.rules, at->maps, at->dispersion, point).asked + by_radius;
   };
   const double start = data.rules.primary.d / data.rules.primary.b;
@@ -370,8 +372,8 @@ LocalFocus::Straight LocalFocus::straighten(const Ray<double>& ray, Wavelength w
   const Vec2<double> chief = slope - height * t;
   const auto from = data.seen(*at, chief, plane);
   if (!from) return {};
-  const Vec2<double> nearer_by = plane ? plane->nearer_at(from->film_point).by : Vec2<double>{0, 0};
-  const FilmPointFocus<Dual> point = data.point(from->film_point, from->nearer, nearer_by);
+  const Vec2<double> excess_by_film = plane ? plane->distance_excess_at(from->film_point).by : Vec2<double>{0, 0};
+  const FilmPointFocus<Dual> point = data.point(from->film_point, from->excess, excess_by_film);
   const auto focus = focus_of(data.rules, at->maps, at->dispersion, point);
   const double scale = point.scale.a;
   const Vec2<double> straight = height / scale;
@@ -394,18 +396,18 @@ FocalSteepness LocalFocus::steepness(const std::optional<TiltedPlane>& plane) co
   for (int row = 0; row <= rows; ++row) {
     for (int column = 0; column <= columns; ++column) {
       const double right = double(column) / columns - 0.5, up = double(row) / rows - 0.5;
-      const FilmPoint place{data.film.shift_x_mm + right * data.film.width_mm,
-                            data.film.shift_y_mm + up * data.film.height_mm};
+      const FilmPoint film_point{data.film.shift_x_mm + right * data.film.width_mm,
+                                 data.film.shift_y_mm + up * data.film.height_mm};
       const TiltedPlane upright, &lies = plane ? *plane : upright;
-      const FilmPoint from_pupil = lies.virtual_point(place);
-      const double nearer = lies.nearer_by(from_pupil), part = part_of_virtual(lies, from_pupil, at.middle);
-      const Vec2<double> chief = Vec2<double>{from_pupil.x, from_pupil.y} * (part * at.maps.chief_slope);
-      const FilmPointFocus<Dual> point = data.point(place, nearer, lies.nearer_at(place).by);
+      const FilmPoint from_pupil = lies.virtual_point(film_point);
+      const double excess = lies.distance_excess(from_pupil), scale = virtual_scale(lies, from_pupil, at.middle);
+      const Vec2<double> chief = Vec2<double>{from_pupil.x, from_pupil.y} * (scale * at.maps.chief_slope);
+      const FilmPointFocus<Dual> point = data.point(film_point, excess, lies.distance_excess_at(film_point).by);
       const auto [own, asked] = focus_of(data.rules, at.maps, at.dispersion, point);
       const double rim = at.maps.radius * point.scale.a;
       const Vec2<double> x = data.moved(at, chief, {rim, 0}, plane), y = data.moved(at, chief, {0, rim}, plane);
       const Vec2<double> steep{asked.v[0] * x.x + asked.v[1] * x.y, asked.v[0] * y.x + asked.v[1] * y.y};
-      if (glm::length(steep) > result.steepness) result = {glm::length(steep), place};
+      if (glm::length(steep) > result.steepness) result = {glm::length(steep), film_point};
     }
   }
   return result;

@@ -41,14 +41,14 @@ class LocalFocus {
 
   /// Bends N rays of the model to the scene, in place.
   /// @param film_x, film_y positions on the (tilted) film, mm
-  /// @param nearer TiltedPlane::nearer_by(); null for an upright film
+  /// @param excess TiltedPlane::distance_excess(); null for an upright film
   template <class T>
-  void bend(std::size_t count, const T* film_x, const T* film_y, const T* nearer, const RayWavelengths& wavelengths,
+  void bend(std::size_t count, const T* film_x, const T* film_y, const T* excess, const RayWavelengths& wavelengths,
             const RayArrays<T>& rays) const noexcept;
-  void bend(const FilmPoint& film, double nearer, Wavelength wavelength, Ray<double>& ray) const noexcept;
+  void bend(const FilmPoint& film, double excess, Wavelength wavelength, Ray<double>& ray) const noexcept;
   /// Bends a ray with its derivatives with respect to film x and y.
-  /// @param nearer_by derivatives of `nearer`
-  void bend(const FilmPoint& film, double nearer, const Vec2<double>& nearer_by, Wavelength wavelength,
+  /// @param excess_by_film derivatives of `excess`
+  void bend(const FilmPoint& film, double excess, const Vec2<double>& excess_by_film, Wavelength wavelength,
             RayDerivatives& ray) const noexcept;
 
   /// The ray of the model that is bent to a given ray of the scene. The ray travels towards the lens.

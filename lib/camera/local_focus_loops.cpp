@@ -10,13 +10,13 @@ void bend(const FocusRules<T>& given, const EntranceMaps<T>& given_maps, T dispe
           const FilmPointFocuses<T>& points, const RayArrays<T>& rays) noexcept {
   const FocusRules<T> rules = given;
   const EntranceMaps<T> maps = given_maps;
-  const auto [nearer, surface, offset, scale] = points;
+  const auto [excess, surface, offset, scale] = points;
   const auto [ox, oy, oz, dx, dy, dz] = rays;
   T radius[bend_block], by_radius[bend_block];
   if (rules.spline.knots > 0) {
     PETZVAL_INDEPENDENT
     for (std::size_t i = 0; i < count; ++i) {
-      const FilmPointFocus<T> point{nearer[i], surface[i], offset[i], scale[i]};
+      const FilmPointFocus<T> point{excess[i], surface[i], offset[i], scale[i]};
       const auto ray = at_entrance(maps, z, BentRay<T>{ox[i], oy[i], dx[i], dy[i], dz[i]});
       radius[i] = within_knots(rules.spline, radius_of(maps, point, ray));
       by_radius[i] = beyond_one_at_first(rules.spline, radius[i]);
@@ -30,7 +30,7 @@ void bend(const FocusRules<T>& given, const EntranceMaps<T>& given_maps, T dispe
   }
   PETZVAL_INDEPENDENT
   for (std::size_t i = 0; i < count; ++i) {
-    const FilmPointFocus<T> point{nearer[i], surface[i], offset[i], scale[i]};
+    const FilmPointFocus<T> point{excess[i], surface[i], offset[i], scale[i]};
     const auto bent =
         bent_ray(rules, maps, dispersion, z, point, by_radius[i], BentRay<T>{ox[i], oy[i], dx[i], dy[i], dz[i]});
     ox[i] = bent.x, oy[i] = bent.y, oz[i] = z;

@@ -12,7 +12,7 @@ namespace petzval::camera_detail {
 /// FilmPointFocus of N film points.
 template <class T>
 struct FilmPointFocuses {
-  const T* nearer;
+  const T* excess;
   const T* surface;
   const T* offset;
   const T* scale;

@@ -26,7 +26,7 @@ struct EntranceMaps {
 /// Requested focus of a film point.
 template <class N>
 struct FilmPointFocus {
-  N nearer;   ///< TiltedPlane::nearer_by(): 0 on an upright film
+  N excess;   ///< TiltedPlane::distance_excess(): 0 on an upright film
   N surface;  ///< 1 / distance on the focal surface, from its origin
   N offset;   ///< offset of the film divided by its distance from the pupil plane
   N scale;    ///< scale of the pupil
@@ -56,21 +56,21 @@ struct InFocus {
 // Local names: compiled for several instruction sets, which the linker must not mix.
 namespace {
 
-/// 1 / distance in focus of a film point with the given TiltedPlane::nearer_by().
+/// 1 / distance in focus of a film point with the given TiltedPlane::distance_excess().
 template <class T, class N>
-inline N in_focus(const EntranceMaps<T>& maps, N nearer) noexcept {
-  return (maps.d - maps.c * nearer) / (maps.b - maps.a * nearer);
+inline N in_focus(const EntranceMaps<T>& maps, N excess) noexcept {
+  return (maps.d - maps.c * excess) / (maps.b - maps.a * excess);
 }
 
 template <class T, class N>
 inline InFocus<N> focus_of(const FocusRules<T>& rules, const EntranceMaps<T>& maps, T dispersion,
                            const FilmPointFocus<N>& point) noexcept {
-  const N own = in_focus(maps, point.nearer), primary = in_focus(rules.primary, point.nearer);
+  const N own = in_focus(maps, point.excess), primary = in_focus(rules.primary, point.excess);
   N asked = primary;
   if (rules.by_surface) asked = point.surface / (T(1) + point.surface * maps.from_surface);
   if (rules.by_offset) {
-    // The distance of the film point from the pupil plane is the upright film's distance divided by 1 + nearer.
-    const N moved = T(1) / (T(1) / (T(1) + point.nearer) + point.offset) - T(1);
+    // The distance of the film point from the pupil plane is the upright film's distance divided by 1 + excess.
+    const N moved = T(1) / (T(1) / (T(1) + point.excess) + point.offset) - T(1);
     asked += in_focus(rules.primary, moved) - primary;
   }
   asked += (own - primary) * dispersion;

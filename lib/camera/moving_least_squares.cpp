@@ -26,9 +26,9 @@ double scale_of(double x) { return std::ldexp(1, -std::clamp(std::ilogb(x), -100
 }  // namespace
 
 void check(const WeighedValue& point, double side, const std::string& where) {
-  const auto& [place, value, weight, fade] = point;
-  if (!(std::abs(place.x) <= reach_in_sides * side && std::abs(place.y) <= reach_in_sides * side)) {
-    throw Error(where + "place = (" + to_text(place.x) + ", " + to_text(place.y) + ") mm; must be within " +
+  const auto& [film_point, value, weight, fade] = point;
+  if (!(std::abs(film_point.x) <= reach_in_sides * side && std::abs(film_point.y) <= reach_in_sides * side)) {
+    throw Error(where + "place = (" + to_text(film_point.x) + ", " + to_text(film_point.y) + ") mm; must be within " +
                 to_text(reach_in_sides * side) + " mm");
   }
   if (!std::isfinite(value)) throw Error(where + "value = " + to_text(value) + "; must be finite");
@@ -39,7 +39,7 @@ void check(const WeighedValue& point, double side, const std::string& where) {
 }
 
 MovingLeastSquares::MovingLeastSquares(const std::string& where, std::span<const WeighedValue> points, double side,
-                                       SurfaceKind kind, double beta, double beyond)
+                                       SurfaceKind kind, double beta, double extrapolation)
     : affine_(kind == SurfaceKind::affine) {
   if (!(beta >= 1 && beta <= 8)) throw Error(where + "beta = " + to_text(beta) + "; must be 1 to 8");
   if (!(side > 0 && std::isfinite(side))) {
@@ -73,31 +73,31 @@ MovingLeastSquares::MovingLeastSquares(const std::string& where, std::span<const
   }
   to_scaled_value_ = largest > 0 ? scale_of(largest) : 1;
   Columns& to = points_;
-  std::vector<double> shares;
+  std::vector<double> presences;
   for (const auto& point : points) {
     const double alpha = raw_alpha(point) / most_alpha;
     if (!(alpha >= negligible)) continue;
-    shares.push_back(presence(point) / most_present);
-    const double soft = (1 - shares.back()) * longest_soft * side * to_scaled_;
+    presences.push_back(presence(point) / most_present);
+    const double soft = (1 - presences.back()) * longest_soft * side * to_scaled_;
     to.x.push_back(point.film_point.x * to_scaled_);
     to.y.push_back(point.film_point.y * to_scaled_);
     to.value.push_back(point.value * to_scaled_value_);
     to.alpha.push_back(alpha);
     to.soft2.push_back(soft * soft);
   }
-  find_line(shares);
+  find_line(presences);
   // A point that vanishes has less and less influence on the limits.
   double mean = 0, alphas = 0;
   for (std::size_t i = 0; i < to.alpha.size(); ++i) mean += to.alpha[i] * to.value[i], alphas += to.alpha[i];
   mean /= alphas;
   double least = std::numeric_limits<double>::infinity(), most = -least;
-  for (std::size_t i = 0; i < shares.size(); ++i) {
-    const double value = shares[i] == 1 ? to.value[i] : mean + shares[i] * (to.value[i] - mean);
+  for (std::size_t i = 0; i < presences.size(); ++i) {
+    const double value = presences[i] == 1 ? to.value[i] : mean + presences[i] * (to.value[i] - mean);
     least = std::min(least, value);
     most = std::max(most, value);
   }
-  low_ = least - beyond * (most - least);
-  high_ = most + beyond * (most - least);
+  low_ = least - extrapolation * (most - least);
+  high_ = most + extrapolation * (most - least);
   least_value_ = least;
 }
 
@@ -105,17 +105,17 @@ MovingLeastSquares::MovingLeastSquares(const std::string& where, std::span<const
 // points nearly on a line determine only the slope along the line, and fading points are counted here by their squared
 // share. Points count as on a line if their RMS spread across the line is below 0.02 of the spread along the line, and
 // as in a plane from 0.08 on; between these values the results are blended.
-void MovingLeastSquares::find_line(std::span<const double> shares) {
+void MovingLeastSquares::find_line(std::span<const double> presences) {
   constexpr double line_aspect = 0.02, plane_aspect = 0.08;
   double sum = 0, mean_x = 0, mean_y = 0, xx = 0, xy = 0, yy = 0;
-  for (std::size_t i = 0; i < shares.size(); ++i) {
-    const double share = shares[i] * shares[i];
-    sum += share, mean_x += share * points_.x[i], mean_y += share * points_.y[i];
+  for (std::size_t i = 0; i < presences.size(); ++i) {
+    const double weight2 = presences[i] * presences[i];
+    sum += weight2, mean_x += weight2 * points_.x[i], mean_y += weight2 * points_.y[i];
   }
   mean_x /= sum, mean_y /= sum;
-  for (std::size_t i = 0; i < shares.size(); ++i) {
-    const double share = shares[i] * shares[i], x = points_.x[i] - mean_x, y = points_.y[i] - mean_y;
-    xx += share * x * x, xy += share * x * y, yy += share * y * y;
+  for (std::size_t i = 0; i < presences.size(); ++i) {
+    const double weight2 = presences[i] * presences[i], x = points_.x[i] - mean_x, y = points_.y[i] - mean_y;
+    xx += weight2 * x * x, xy += weight2 * x * y, yy += weight2 * y * y;
   }
   const double angle = std::atan2(2 * xy, xx - yy) / 2, half = std::hypot((xx - yy) / 2, xy);
   along_ = {std::cos(angle), std::sin(angle)};
@@ -163,17 +163,17 @@ void MovingLeastSquares::at(std::size_t count, const float* x, const float* y, f
   constexpr std::size_t block = 256;
   std::array<double, block> xs, ys, values;
   for (std::size_t i = 0; i < count; i += block) {
-    const std::size_t some = std::min(block, count - i);
-    std::copy_n(x + i, some, xs.begin());
-    std::copy_n(y + i, some, ys.begin());
-    at(some, xs.data(), ys.data(), values.data());
-    std::transform(values.begin(), values.begin() + some, out + i, [](double v) { return static_cast<float>(v); });
+    const std::size_t size = std::min(block, count - i);
+    std::copy_n(x + i, size, xs.begin());
+    std::copy_n(y + i, size, ys.begin());
+    at(size, xs.data(), ys.data(), values.data());
+    std::transform(values.begin(), values.begin() + size, out + i, [](double v) { return static_cast<float>(v); });
   }
 }
 
-double MovingLeastSquares::at(const FilmPoint& place) const noexcept {
+double MovingLeastSquares::at(const FilmPoint& film_point) const noexcept {
   double value = 0;
-  at(1, &place.x, &place.y, &value);
+  at(1, &film_point.x, &film_point.y, &value);
   return value;
 }
 
@@ -183,34 +183,35 @@ double MovingLeastSquares::at(const FilmPoint& place) const noexcept {
 //     da/dp = g + sum_i dw_i/dp L_i (f_i - h(x_i)),   dw_i/dp = -beta w_i (p - x_i) / r2_i,
 //
 // with the common factor m of the weights as a constant.
-Vec2<double> MovingLeastSquares::slopes(const FilmPoint& place) const noexcept {
+Vec2<double> MovingLeastSquares::slopes(const FilmPoint& film_point) const noexcept {
   using V = Vec2<double>;
   const Columns& points = points_;
   const std::size_t count = points.x.size();
   // Clamped as in at(); a clamped coordinate has derivative 0.
   const auto in_reach = [](double x) { return x < scaled_reach ? std::max(x, -scaled_reach) : scaled_reach; };
-  const V wanted{place.x * to_scaled_, place.y * to_scaled_}, p{in_reach(wanted.x), in_reach(wanted.y)};
-  const double value = at(place) * to_scaled_value_;
+  const V scaled_point{film_point.x * to_scaled_, film_point.y * to_scaled_},
+      p{in_reach(scaled_point.x), in_reach(scaled_point.y)};
+  const double value = at(film_point) * to_scaled_value_;
   if (!(value > low_ && value < high_)) return {0, 0};
   const auto away = [&](std::size_t i) { return p - V{points.x[i], points.y[i]}; };
   const auto dot = [](const V& a, const V& b) { return a.x * b.x + a.y * b.y; };
   const auto r2_of = [&](std::size_t i) { return dot(away(i), away(i)) + points.soft2[i]; };
 
   // Squared distance below which a position coincides with a point; keeps the weights of other points normal numbers.
-  constexpr double touching = 1e-60;
+  constexpr double coincidence_distance2 = 1e-60;
   std::size_t nearest = 0;
   double least = std::numeric_limits<double>::infinity(), next = least;
   for (std::size_t i = 0; i < count; ++i) {
     const double r2 = r2_of(i);
     if (r2 < least) least = r2, nearest = i;
-    if (r2 > touching) next = std::min(next, r2);
+    if (r2 > coincidence_distance2) next = std::min(next, r2);
   }
   // At a point, the other points determine the slopes, with weights relative to the nearest of them.
-  const bool on_point = least <= touching;
+  const bool on_point = least <= coincidence_distance2;
   if (on_point && !(affine_ && std::isfinite(next))) return {0, 0};
   const auto weight = [&](std::size_t i) {
     const double r2 = r2_of(i);
-    if (r2 <= touching) return 0.0;
+    if (r2 <= coincidence_distance2) return 0.0;
     return points.alpha[i] * falling(power_, (on_point ? next : least) / r2);
   };
   const V centre{points.x[nearest], points.y[nearest]};
@@ -233,10 +234,11 @@ Vec2<double> MovingLeastSquares::slopes(const FilmPoint& place) const noexcept {
   const double a = xx - w_sum * mean.x * mean.x, b = xy - w_sum * mean.x * mean.y, c = yy - w_sum * mean.y * mean.y;
   // Solved as in the loops: for planes, and for planes that rise along a line only.
   const auto in_planes = [&](const V& right) {
-    constexpr double thin2 = 1e-20;
+    constexpr double regularisation2 = 1e-20;
     const double xx1 = a / trace, xy1 = b / trace, yy1 = c / trace, det = xx1 * yy1 - xy1 * xy1, tr = xx1 + yy1;
     const V by = right / trace, along{xx1 * by.x + xy1 * by.y, xy1 * by.x + yy1 * by.y};
-    return (thin2 * along + det * (tr * by - along)) / (det * det + thin2 * (tr * tr - 2 * det + thin2));
+    return (regularisation2 * along + det * (tr * by - along)) /
+           (det * det + regularisation2 * (tr * tr - 2 * det + regularisation2));
   };
   const auto along_line = [&](const V& right) {
     const double moment = along_.x * (along_.x * a + along_.y * b) + along_.y * (along_.x * b + along_.y * c);
@@ -255,7 +257,7 @@ Vec2<double> MovingLeastSquares::slopes(const FilmPoint& place) const noexcept {
     }
     return result;
   };
-  const V unit = V{p.x == wanted.x ? 1 : 0, p.y == wanted.y ? 1 : 0} * (to_scaled_ / to_scaled_value_);
+  const V unit = V{p.x == scaled_point.x ? 1 : 0, p.y == scaled_point.y ? 1 : 0} * (to_scaled_ / to_scaled_value_);
   if (!affine_ || !(trace > 1e-290)) return with([](const V&) { return V{0, 0}; }) * unit;
   if (plane_ == 1) return with(in_planes) * unit;
   return (plane_ * with(in_planes) + (1 - plane_) * with(along_line)) * unit;

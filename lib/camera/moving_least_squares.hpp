@@ -36,8 +36,9 @@ void check(const WeighedValue& point, double side, const std::string& where);
 /// point that fades, or whose alpha = weight * fade falls below 1e-3 of the largest alpha, becomes soft, up to a tenth
 /// of the side, and vanishes without a jump. Only ratios of alphas matter; points below 1e-9 of the largest alpha are
 /// left out. Points on a line determine only the slope along the line, coincident points no slope. Results stay within
-/// [least - m, most + m] of the values, with m = `beyond` * (most - least); fading points widen these limits slightly.
-/// Results are equal for all instruction sets and batch sizes, finite for any position, and constant beyond 1e6 sides.
+/// [least - m, most + m] of the values, with m = `extrapolation` * (most - least); fading points widen these limits
+/// slightly. Results are equal for all instruction sets and batch sizes, finite for any position, and constant beyond
+/// 1e6 sides.
 ///
 /// Accuracy: planes are reproduced within 1e-13 of the range of values for beta up to 4, within 1e-11 for 8. Floats are
 /// computed in double. Sources: Lancaster and Salkauskas 1981; weights of Lee et al. 2010, section 5.2.
@@ -48,15 +49,15 @@ class PETZVAL_API MovingLeastSquares {
   /// @throws Error if numbers are not finite, coordinates exceed 1e6 sides, weights are negative, fades are outside
   ///               [0, 1], all weights are 0, beta is outside [1, 8], or side is not above 0
   MovingLeastSquares(const std::string& where, std::span<const WeighedValue> points, double side, SurfaceKind kind,
-                     double beta, double beyond = 1);
+                     double beta, double extrapolation = 1);
 
-  double at(const FilmPoint& place) const noexcept;
+  double at(const FilmPoint& film_point) const noexcept;
   /// Values at N positions.
   void at(std::size_t count, const double* x, const double* y, double* out) const noexcept;
   void at(std::size_t count, const float* x, const float* y, float* out) const noexcept;
   /// Derivatives of at() with respect to x and y. At a point they are the derivatives of the plane at this point (for
   /// beta = 1 the function has a cusp).
-  Vec2<double> slopes(const FilmPoint& place) const noexcept;
+  Vec2<double> slopes(const FilmPoint& film_point) const noexcept;
 
   /// Limits of the results.
   double least() const noexcept { return low_ / to_scaled_value_; }
@@ -67,7 +68,7 @@ class PETZVAL_API MovingLeastSquares {
   void keep_within(double low, double high) noexcept;
 
  private:
-  void find_line(std::span<const double> shares);
+  void find_line(std::span<const double> presences);
   LeastSquaresJob job() const noexcept;
 
   /// The points with enough weight: coordinates and values scaled by powers of two, alphas relative to the largest,

@@ -24,7 +24,7 @@ struct Moments {
 ///     (thin^2 C + det C (tr C - C)) / (det^2 C + thin^2 tr C^2 + thin^4).
 /// For points on a line the result has the slope along the line and no slope across, for any direction of the line.
 double rise_of(const LeastSquaresJob& job, const Moments& m, double x, double y) noexcept {
-  constexpr double thin = 1e-10, thin2 = thin * thin;
+  constexpr double regularisation = 1e-10, regularisation2 = regularisation * regularisation;
   const double trace = m.wxx + m.wyy;
   if (!(trace > 1e-290)) return 0;
   const double mean_x = m.wx / m.w, mean_y = m.wy / m.w;
@@ -33,15 +33,16 @@ double rise_of(const LeastSquaresJob& job, const Moments& m, double x, double y)
   const double bx = (m.wxf - m.wf * mean_x) / trace, by = (m.wyf - m.wf * mean_y) / trace;
   const double det = xx * yy - xy * xy, tr = xx + yy;
   const double along_x = xx * bx + xy * by, along_y = xy * bx + yy * by;
-  const double slope_x = thin2 * along_x + det * (tr * bx - along_x);
-  const double slope_y = thin2 * along_y + det * (tr * by - along_y);
+  const double slope_x = regularisation2 * along_x + det * (tr * bx - along_x);
+  const double slope_y = regularisation2 * along_y + det * (tr * by - along_y);
   const double from_x = x - mean_x, from_y = y - mean_y;
-  const double rise = (slope_x * from_x + slope_y * from_y) / (det * det + thin2 * (tr * tr - (det + det) + thin2));
+  const double rise =
+      (slope_x * from_x + slope_y * from_y) / (det * det + regularisation2 * (tr * tr - (det + det) + regularisation2));
   if (job.plane == 1) return rise;
   // The same for planes that rise only along the line.
   const double ex = job.along_x, ey = job.along_y;
   const double moment = ex * (ex * xx + ey * xy) + ey * (ex * xy + ey * yy);
-  const double along = moment > thin ? (ex * bx + ey * by) / moment * (ex * from_x + ey * from_y) : 0;
+  const double along = moment > regularisation ? (ex * bx + ey * by) / moment * (ex * from_x + ey * from_y) : 0;
   return job.plane * rise + (1 - job.plane) * along;
 }
 
@@ -94,8 +95,8 @@ double value_at(const LeastSquaresJob& job, double x, double y) noexcept {
 }
 
 /// A coordinate, scaled and clamped to reach. The comparisons replace NaN by a limit.
-double scaled(const LeastSquaresJob& job, double place) noexcept {
-  const double x = place * job.to_scaled, below = x < job.reach ? x : job.reach;
+double scaled(const LeastSquaresJob& job, double coordinate) noexcept {
+  const double x = coordinate * job.to_scaled, below = x < job.reach ? x : job.reach;
   return below > -job.reach ? below : -job.reach;
 }
 

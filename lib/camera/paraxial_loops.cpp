@@ -85,7 +85,7 @@ void to_scene(std::size_t count, const ParaxialJob<T>& job, const TwoPlaneRays<c
   for (std::size_t begin = 0; begin < count; begin += block) {
     const std::size_t n = count - begin < block ? count - begin : block;
     T m[8][block];
-    if (job.sections_alike) {
+    if (job.equal_sections) {
       lens_detail::look_up(job.maps, job.wavelengths, begin, n, m, 4);
       run(begin, n, [&m](std::size_t i) -> Maps<T> {
         return {m[0][i], m[1][i], m[2][i], m[3][i], m[0][i], m[1][i], m[2][i], m[3][i]};

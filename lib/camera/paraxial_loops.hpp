@@ -11,7 +11,7 @@ namespace petzval::camera_detail {
 template <class T>
 struct ParaxialJob {
   lens_detail::WavelengthRows<T> maps;  ///< the numbers of two SectionMaps
-  bool sections_alike = false;          ///< true if both sections are equal
+  bool equal_sections = false;          ///< true if both sections are equal
   const SectionMaps* shared = nullptr;  ///< at the common wavelength; null if it is not covered
   T z = 0;
   T reach = 0;  ///< largest sum of absolute coordinates of a line

@@ -101,13 +101,13 @@ StopImage stop_image(ModelKind model, const LensFacts& facts, std::size_t wavele
 /// Largest sum of absolute coordinates of a line for which all maps give finite rays.
 /// @throws Error  if no line gives finite rays
 double reach_of(const Lens& lens, const std::vector<SectionMaps>& maps) {
-  constexpr double wanted = farthest * largest;
+  constexpr double max_value = farthest * largest;
   double most = 0;
   for (const SectionMaps& map : maps) {
     for (const double number : map.numbers()) {
-      if (!(std::abs(number) <= wanted)) {
+      if (!(std::abs(number) <= max_value)) {
         throw Error(lens.name() + ": first-order map: value = " + to_text(number) + "; must be at most " +
-                    to_text(wanted) + " in absolute value");
+                    to_text(max_value) + " in absolute value");
       }
       most = std::max(most, std::abs(number));
     }
@@ -140,8 +140,8 @@ FilmPupilTable two_disc_pupils(const Lens& lens, double film_radius) {
     const auto fitted = fit_two_discs(real_edges(round, w));
     discs.emplace_back(fitted.begin(), fitted.end());
   }
-  const FilmPupilTable reshaped = round.reshaped(discs);
-  return lens.iris().round() ? reshaped : reshaped.with_stop(lens);
+  const FilmPupilTable matched = round.reshaped(discs);
+  return lens.iris().round() ? matched : matched.with_stop(lens);
 }
 
 /// Semi-axis along y (mm) of the image of the iris for which the film centre has the irradiance of the exact lens.
@@ -149,12 +149,12 @@ FilmPupilTable two_disc_pupils(const Lens& lens, double film_radius) {
 double axial_radius(const Lens& lens, std::size_t wavelength, const TwoPlanes& space, const Iris& iris,
                     double along_x) {
   const double n = lens.index(lens.surface_count(), wavelength);
-  const double wanted = film_irradiance(lens, {}, wavelength) / (n * n);
+  const double irradiance = film_irradiance(lens, {}, wavelength) / (n * n);
   // Start with a disc of projected solid angle pi sin^2; the solid angle is nearly proportional to the squared radius.
-  double radius = std::abs(space.depth()) * std::sqrt(wanted / (std::numbers::pi - wanted) / along_x);
+  double radius = std::abs(space.depth()) * std::sqrt(irradiance / (std::numbers::pi - irradiance) / along_x);
   for (int round = 0; round < 6 && radius > 0; ++round) {
     const PupilImage image{{0, 0}, {along_x * radius, radius}};
-    radius *= std::sqrt(wanted / FilmPupilTable::of_iris(space, iris, {&image, 1}, 0).projected_solid_angle({}));
+    radius *= std::sqrt(irradiance / FilmPupilTable::of_iris(space, iris, {&image, 1}, 0).projected_solid_angle({}));
   }
   return radius;
 }
@@ -204,7 +204,7 @@ ParaxialModel::ParaxialModel(ModelKind model, const LensFacts& facts, double fil
                   : pupils_of(model, facts, film_radius)),
       primary_(pupils_.primary_wavelength()),
       z_(facts.lens().surfaces().front().vertex_z),
-      sections_alike_(!has_cylinders(facts.lens())) {
+      equal_sections_(!has_cylinders(facts.lens())) {
   const Lens& lens = facts.lens();
   const TwoPlanes& space = pupils_.space();
   if (!two_discs()) {
@@ -255,7 +255,7 @@ template <class T>
 void ParaxialModel::to_scene(std::size_t count, const TwoPlaneRays<const T>& lines, const RayWavelengths& wavelengths,
                              const RayArrays<T>& rays, RayFate* fates) const noexcept {
   SectionMaps own;
-  const ParaxialJob<T> job{between_.rows<T>(), sections_alike_,        map_at(wavelengths.all, own),
+  const ParaxialJob<T> job{between_.rows<T>(), equal_sections_,        map_at(wavelengths.all, own),
                            static_cast<T>(z_), static_cast<T>(reach_), wavelengths};
   if constexpr (std::is_same_v<T, float>) {
     paraxial_loops().of_float(count, job, lines, rays, fates);

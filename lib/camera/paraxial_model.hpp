@@ -98,7 +98,7 @@ class ParaxialModel {
   std::size_t primary_;
   double z_ = 0;      // plane of the first vertex, in which rays are given
   double reach_ = 0;  // largest sum of absolute coordinates of a line
-  bool sections_alike_;
+  bool equal_sections_;
   std::array<bool, 2> stop_upside_down_{};
   std::vector<SectionMaps> to_scene_, to_film_;                 // by wavelength
   lens_detail::BetweenWavelengths<8> between_, of_thick_lens_;  // maps to the scene of this model; of the thick lens

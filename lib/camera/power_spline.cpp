@@ -20,9 +20,9 @@ PowerSpline<double> power_spline(const std::string& where, const std::vector<Pow
   for (std::size_t i = 0; i < n; ++i) {
     const auto [radius, power] = knots[i];
     const std::string knot = where + "power: knot " + std::to_string(i + 1) + ": ";
-    constexpr double apart = 1e-3;
-    if (!(radius >= 0 && radius <= 1) || (i > 0 && !(radius - knots[i - 1].radius >= (1 - 1e-9) * apart))) {
-      throw Error(knot + "radius = " + to_text(radius) + "; must be 0 to 1, and at least " + to_text(apart) +
+    constexpr double min_knot_spacing = 1e-3;
+    if (!(radius >= 0 && radius <= 1) || (i > 0 && !(radius - knots[i - 1].radius >= (1 - 1e-9) * min_knot_spacing))) {
+      throw Error(knot + "radius = " + to_text(radius) + "; must be 0 to 1, and at least " + to_text(min_knot_spacing) +
                   " above the previous radius");
     }
     if (!(std::abs(power) <= 1000)) {

@@ -53,7 +53,7 @@ Projection SceneSide::project(const AnyRayModel& model, const Vec3<double>& poin
   if (!start) return result;
 
   // Iterate over points of the upright film, and intersect the final ray with the real film.
-  const double beside = 1e-3 * upright_radius_;
+  const double film_step = 1e-3 * upright_radius_;
   const auto misses = [&](const FilmPoint& film, double hx, double hy) noexcept {
     std::array<std::array<double, 3>, 4> line;
     std::array<std::array<double, 3>, 6> ray;
@@ -71,13 +71,13 @@ Projection SceneSide::project(const AnyRayModel& model, const Vec3<double>& poin
     for (int i : {0, 1, 2}) {
       found.lost |= fates[i] != RayFate::transmitted;
       const Vec3<double> direction{ray[3][i], ray[4][i], ray[5][i]};
-      const Vec3<double> wanted = glm::normalize(point - Vec3<double>{ray[0][i], ray[1][i], ray[2][i]});
+      const Vec3<double> target_direction = glm::normalize(point - Vec3<double>{ray[0][i], ray[1][i], ray[2][i]});
       if (i == 0) {
-        across = glm::normalize(
-            glm::cross(wanted, std::abs(wanted.x) < 0.5 ? Vec3<double>{1, 0, 0} : Vec3<double>{0, 1, 0}));
-        up = glm::cross(wanted, across);
+        across = glm::normalize(glm::cross(
+            target_direction, std::abs(target_direction.x) < 0.5 ? Vec3<double>{1, 0, 0} : Vec3<double>{0, 1, 0}));
+        up = glm::cross(target_direction, across);
       }
-      const Vec3<double> turn = glm::cross(direction, wanted);
+      const Vec3<double> turn = glm::cross(direction, target_direction);
       found.by[i] = {glm::dot(turn, across), glm::dot(turn, up)};
     }
     return found;
@@ -97,7 +97,7 @@ Projection SceneSide::project(const AnyRayModel& model, const Vec3<double>& poin
   const double settled = 1e-12 * last, good = 1e-5 * last;
   for (;;) {
     // Neighbours towards the axis, where rays are less likely to be lost.
-    const double hx = std::copysign(beside, -film.x), hy = std::copysign(beside, -film.y);
+    const double hx = std::copysign(film_step, -film.x), hy = std::copysign(film_step, -film.y);
     const auto [by, lost] = misses(film, hx, hy);
     if (lost) return done(ProjectionStatus::vignetted);
     const double xx = (by[1][0] - by[0][0]) / hx, xy = (by[2][0] - by[0][0]) / hy;

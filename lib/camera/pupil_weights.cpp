@@ -17,8 +17,8 @@ constexpr std::size_t block = 256;
 }  // namespace
 
 struct PupilWeights::Data {
-  FilmPupilTable pupils, whole;  // with the stop if weights act on the stop
-  bool on_stop;                  // else weights act on the pupil of each film point
+  FilmPupilTable pupils, unclipped;  // with the stop if weights act on the stop
+  bool on_stop;                      // else weights act on the pupil of each film point
   std::optional<iris_detail::IrisWeights> weights;
   bool keep_light;  // compensate for the light that the rim takes
 
@@ -50,7 +50,7 @@ struct PupilWeights::Data {
     for (std::size_t i = 0; i < count; ++i) {
       const FilmPoint film{lines.film_x[i], lines.film_y[i]};
       const double left = pupils.polygon_area(film, wavelengths.at(i));
-      if (left > 0) values[i] *= static_cast<T>(whole.polygon_area(film, wavelengths.at(i)) / left);
+      if (left > 0) values[i] *= static_cast<T>(unclipped.polygon_area(film, wavelengths.at(i)) / left);
     }
   }
 };
@@ -61,7 +61,7 @@ PupilWeights::PupilWeights(const Lens& lens, const AnyRayModel& model, const Bok
   FilmPupilTable pupils = model.pupils();
   const bool keep_light = controls.keep_light && pupils.cut();
   if (controls.edge().even() && controls.weight_map.empty()) {
-    if (keep_light) data_ = std::make_shared<const Data>(Data{pupils, pupils.whole(), false, {}, keep_light});
+    if (keep_light) data_ = std::make_shared<const Data>(Data{pupils, pupils.unclipped(), false, {}, keep_light});
     return;
   }
   const bool traced = model.kind() != ModelKind::custom && !model.kind().is_first_order();
@@ -72,12 +72,12 @@ PupilWeights::PupilWeights(const Lens& lens, const AnyRayModel& model, const Bok
   const bool image = first_order && !first_order->two_discs();
   const auto [along_x, along_y] = image ? first_order->stop_upside_down() : std::array{false, false};
   // Positions in the stop and in its image are nearly equal, unless the pupil is vignetted.
-  const double uniform_part = pupils.knows_stop() ? 0.25 : 0;
+  const double uniform_fraction = pupils.knows_stop() ? 0.25 : 0;
   iris_detail::IrisWeights weights(iris_detail::upside_down(lens.iris(), along_x, along_y), controls.edge(),
-                                   iris_detail::upside_down(controls.weight_map, along_x, along_y), uniform_part,
+                                   iris_detail::upside_down(controls.weight_map, along_x, along_y), uniform_fraction,
                                    where);
-  data_ =
-      std::make_shared<const Data>(Data{pupils, pupils.whole(), pupils.knows_stop(), std::move(weights), keep_light});
+  data_ = std::make_shared<const Data>(
+      Data{pupils, pupils.unclipped(), pupils.knows_stop(), std::move(weights), keep_light});
 }
 
 std::optional<FilmPupilTable> PupilWeights::pupils() const {
@@ -118,11 +118,11 @@ void PupilWeights::of_samples(std::size_t count, const T* u, const T* v, const T
     if (polygons) data.weigh(n, lines_here, wavelengths_here, weights + begin);
     for (std::size_t i = 0; i < n; ++i) {
       // For samples of the iris, u and v determine the stop point; v is the fraction of the area nearer to the centre.
-      const double share = std::min(v[begin + i] * scales[i] * scales[i], 1.0);
+      const double area_fraction = std::min(v[begin + i] * scales[i] * scales[i], 1.0);
       if (!data.weights) {
         weights[begin + i] = T(1);
       } else if (scales[i] > 0) {
-        weights[begin + i] = static_cast<T>(data.weights->of_sample(u[begin + i], share));
+        weights[begin + i] = static_cast<T>(data.weights->of_sample(u[begin + i], area_fraction));
       }
     }
   }

@@ -54,8 +54,8 @@ void find_chiefs(std::size_t count, const FilmView& view, const RayWavelengths& 
   for (std::size_t i = 0; i < count; ++i) {
     const double shift = view.wavelengths.pinhole_shift(wavelengths.at(i));
     const TiltedPlane plane = view.tilted->plane(times ? times[i] : 0);
-    const double part = part_of_virtual(plane, {virtual_x[i], virtual_y[i]}, shift);
-    film_x[i] = static_cast<T>(virtual_x[i] * part), film_y[i] = static_cast<T>(virtual_y[i] * part);
+    const double virtual_ratio = virtual_scale(plane, {virtual_x[i], virtual_y[i]}, shift);
+    film_x[i] = static_cast<T>(virtual_x[i] * virtual_ratio), film_y[i] = static_cast<T>(virtual_y[i] * virtual_ratio);
   }
 }
 
@@ -68,10 +68,10 @@ void keep_within(std::size_t count, const FilmPupilTable& pupils, const TwoPlane
   for (std::size_t i = 0; i < count; ++i) fates[i] = within[i] ? fates[i] : RayFate::vignetted;
 }
 
-/// Multiplies the weights of the first `wanted` rays by the weights of the stop positions, and their densities by the
-/// densities of the drawn positions.
+/// Multiplies the weights of the first `valid_count` rays by the weights of the stop positions, and their densities by
+/// the densities of the drawn positions.
 template <class T>
-void weigh_pupil(const FilmView& view, std::size_t count, std::size_t wanted, const T* u, const T* v,
+void weigh_pupil(const FilmView& view, std::size_t count, std::size_t valid_count, const T* u, const T* v,
                  const TwoPlaneRays<const T>& lines, const RayWavelengths& wavelengths, const T* densities,
                  RayFate* fates, const CameraRays<T>& rays) noexcept {
   Values<T> weights;
@@ -80,7 +80,7 @@ void weigh_pupil(const FilmView& view, std::size_t count, std::size_t wanted, co
   } else {
     view.weights.of_samples(count, u, v, lines, wavelengths, weights.data());
   }
-  for (std::size_t i = 0; i < wanted; ++i) {
+  for (std::size_t i = 0; i < valid_count; ++i) {
     const bool lit = weights[i] > T(0);
     rays.weights[i] = lit ? rays.weights[i] * weights[i] / densities[i] : T(0);
     fates[i] = lit || fates[i] != RayFate::transmitted ? fates[i] : RayFate::vignetted;
@@ -92,21 +92,21 @@ void weigh_pupil(const FilmView& view, std::size_t count, std::size_t wanted, co
 /// Bends rays to the focus of their film points.
 template <class T>
 void bend(const FilmView& view, std::size_t count, const CameraSamples<T>& samples, const RayArrays<T>& rays) noexcept {
-  alignas(64) Values<T> film_x, film_y, nearer;
+  alignas(64) Values<T> film_x, film_y, excess;
   camera_loops().of<T>().keep_on_film(core_detail::bounds_of<T>(view.film), count, samples.film_x, samples.film_y,
                                       film_x.data(), film_y.data());
   for (std::size_t i = 0; i < count && view.tilted; ++i) {
     const TiltedPlane plane = view.tilted->plane(samples.times ? samples.times[i] : 0);
-    nearer[i] = static_cast<T>(plane.nearer_by(plane.virtual_point({film_x[i], film_y[i]})));
+    excess[i] = static_cast<T>(plane.distance_excess(plane.virtual_point({film_x[i], film_y[i]})));
   }
-  view.focus.bend(count, film_x.data(), film_y.data(), view.tilted ? nearer.data() : nullptr, samples.wavelengths,
+  view.focus.bend(count, film_x.data(), film_y.data(), view.tilted ? excess.data() : nullptr, samples.wavelengths,
                   rays);
 }
 
-/// Samples one block. Only the first `wanted` rays get weights.
+/// Samples one block. Only the first `valid_count` rays get weights.
 /// @param n a multiple of the number of lanes, so that a ray has the same bits at every position
 template <class T>
-void sample_block(const FilmView& view, std::size_t n, std::size_t wanted, const CameraSamples<T>& samples,
+void sample_block(const FilmView& view, std::size_t n, std::size_t valid_count, const CameraSamples<T>& samples,
                   const CameraRays<T>& rays) noexcept {
   const auto& loops = camera_loops().of<T>();
   const FilmPupilTable& pupils = view.pupils;
@@ -134,9 +134,10 @@ void sample_block(const FilmView& view, std::size_t n, std::size_t wanted, const
     }
   };
   const auto weigh = [&] {
-    loops.weigh(bounds, static_cast<T>(view.depth), wanted, samples.film_x, samples.film_y, lines, areas.data(),
+    loops.weigh(bounds, static_cast<T>(view.depth), valid_count, samples.film_x, samples.film_y, lines, areas.data(),
                 scales.data(), fates, rays);
-    if (view.weights) weigh_pupil(view, n, wanted, pupil_u, pupil_v, lines, wavelengths, densities.data(), fates, rays);
+    if (view.weights)
+      weigh_pupil(view, n, valid_count, pupil_u, pupil_v, lines, wavelengths, densities.data(), fates, rays);
   };
   if (!tilted) {
     pupils.sample(n, film_x.data(), film_y.data(), pupil_u, pupil_v, wavelengths, x.data(), y.data(), areas.data());
@@ -157,7 +158,7 @@ void sample_block(const FilmView& view, std::size_t n, std::size_t wanted, const
   if (!view.model.pinhole()) trace();
   if (decide(pupils, view.model)) keep_within(n, pupils, lines, wavelengths, fates);
   weigh();
-  loops.weigh_tilted(plane, wanted, virtual_x.data(), virtual_y.data(), x.data(), y.data(), fates, rays);
+  loops.weigh_tilted(plane, valid_count, virtual_x.data(), virtual_y.data(), x.data(), y.data(), fates, rays);
 }
 
 /// Samples fewer rays than lanes: pads them with copies of the last sample.
@@ -304,8 +305,9 @@ Start start(const FilmView& view, const FilmPoint& film, double u, double v, Wav
   if (with_derivatives) {
     s.leaving = pinhole_line(s.plane, {x, y}, shift);
   } else {
-    const double part = part_of_virtual(s.plane, s.virtual_point, shift);
-    s.leaving.line.film_x = s.virtual_point.x * part, s.leaving.line.film_y = s.virtual_point.y * part;
+    const double virtual_ratio = virtual_scale(s.plane, s.virtual_point, shift);
+    s.leaving.line.film_x = s.virtual_point.x * virtual_ratio,
+    s.leaving.line.film_y = s.virtual_point.y * virtual_ratio;
   }
   return s;
 }
@@ -332,7 +334,7 @@ void weigh(const FilmView& view, const Start& s, Wavelength wavelength, const Fr
   }
   if (out.fate != RayFate::transmitted) out.weight = 0;
   if (!view.tilted) return;
-  const double near = 1 + s.plane.nearer_by(s.virtual_point);
+  const double near = 1 + s.plane.distance_excess(s.virtual_point);
   const double facing = s.plane.weight(s.virtual_point, {s.line.pupil_x, s.line.pupil_y});
   out.weight *= facing;
   out.pdf_direction /= near * near;
@@ -347,7 +349,7 @@ CameraRay sample_ray(const FilmView& view, const FilmPoint& film, double u, doub
   CameraRay out;
   out.fate = view.model.to_scene(s.leaving.line, wavelength, out.ray);
   if (view.focus) {
-    view.focus.bend(s.film, view.tilted ? s.plane.nearer_by(s.virtual_point) : 0, wavelength, out.ray);
+    view.focus.bend(s.film, view.tilted ? s.plane.distance_excess(s.virtual_point) : 0, wavelength, out.ray);
   }
   weigh(view, s, wavelength, view.moves_rays() ? &view.front : nullptr, out);
   return out;
@@ -358,8 +360,8 @@ CameraRayDifferential sample_differential(const FilmView& view, const FilmPoint&
   const Start s = start(view, film, u, v, wavelength, time, true);
   RayDerivatives ray = view.model.to_scene(s.leaving, wavelength);
   if (view.focus) {
-    const auto nearer = view.tilted ? s.plane.nearer_at(s.film) : TiltedPlane::Nearer{};
-    view.focus.bend(s.film, nearer.value, nearer.by, wavelength, ray);
+    const auto excess = view.tilted ? s.plane.distance_excess_at(s.film) : TiltedPlane::DistanceExcess{};
+    view.focus.bend(s.film, excess.value, excess.by, wavelength, ray);
   }
   if (view.moves_rays()) ray = at_front(view.front, ray);
   CameraRayDifferential result;

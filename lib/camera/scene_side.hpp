@@ -110,9 +110,9 @@ class SceneSide {
   void connect(const AnyRayModel& model, std::size_t count, const Vec3<double>* points, const double* u,
                const double* v, const RayWavelengths& wavelengths, const double* times,
                ImportanceSample* found) const noexcept;
-  /// Connection from a scene point to the position `place` in the lens, at a distance. The shadow ray ends at the
+  /// Connection from a scene point to the position `position` in the lens, at a distance. The shadow ray ends at the
   /// front.
-  ImportanceSample connection(const Vec3<double>& place, const Vec3<double>& direction, double distance,
+  ImportanceSample connection(const Vec3<double>& position, const Vec3<double>& direction, double distance,
                               double pdf) const noexcept;
   ImportanceSample through_pinhole(const AnyRayModel& model, const Vec3<double>& point, double u, double v,
                                    Wavelength wavelength, double time) const noexcept;
@@ -132,8 +132,8 @@ class SceneSide {
   std::size_t primary_ = 0;
   std::vector<Compiled> compiled_;
   EntrancePupilTable entrance_;
-  std::optional<Lens> traced_;           // for exact models
-  std::optional<FilmPupilTable> whole_;  // unclipped pupils of a pinhole with rims, same film
+  std::optional<Lens> traced_;               // for exact models
+  std::optional<FilmPupilTable> unclipped_;  // unclipped pupils of a pinhole with rims, same film
 };
 
 }  // namespace petzval::camera_detail

@@ -47,20 +47,20 @@ using kernel::Dual;
 
 /// A virtual point with derivatives with respect to its film point.
 struct VirtualPoint {
-  Dual x, y, nearer;
+  Dual x, y, excess;
 
   FilmPoint point() const noexcept { return {x.a, y.a}; }
 };
 
 VirtualPoint differentiated(const TiltedPlane& plane, const FilmPoint& film) noexcept {
   const auto [x, y] = virtual_of(plane, Dual(film.x, 0), Dual(film.y, 1));
-  return {x, y, nearer_by(plane, x, y)};
+  return {x, y, distance_excess(plane, x, y)};
 }
 
 TwoPlaneRayDerivatives derivatives_of(const Dual& film_x, const Dual& film_y, const Dual& pupil_x,
                                       const Dual& pupil_y) noexcept {
-  const auto part = [&](int k) { return TwoPlaneRay{film_x.v[k], film_y.v[k], pupil_x.v[k], pupil_y.v[k]}; };
-  return {{film_x.a, film_y.a, pupil_x.a, pupil_y.a}, part(0), part(1)};
+  const auto component = [&](int k) { return TwoPlaneRay{film_x.v[k], film_y.v[k], pupil_x.v[k], pupil_y.v[k]}; };
+  return {{film_x.a, film_y.a, pupil_x.a, pupil_y.a}, component(0), component(1)};
 }
 
 /// @throws Error  if a corner of the film is close to the pupil plane
@@ -101,15 +101,15 @@ FilmTilt tilt_of(const TiltedFilm& tilted) {
   const TiltedPlane first = tilted.plane(0), last = tilted.plane(1);
   FilmTilt tilt{.slope_x = first.slope_x,
                 .slope_y = first.slope_y,
-                .low = std::numeric_limits<double>::infinity(),
-                .high = -std::numeric_limits<double>::infinity(),
+                .min_excess = std::numeric_limits<double>::infinity(),
+                .max_excess = -std::numeric_limits<double>::infinity(),
                 .travel = last.travel};
   for (const TiltedPlane& plane : {first, last}) {
     for (const FilmPoint& corner : tilted.film().corners()) {
       const FilmPoint point = plane.virtual_point(corner);
-      const double nearer = plane.nearer_by(point);
-      tilt.low = std::min(tilt.low, nearer);
-      tilt.high = std::max(tilt.high, nearer);
+      const double excess = plane.distance_excess(point);
+      tilt.min_excess = std::min(tilt.min_excess, excess);
+      tilt.max_excess = std::max(tilt.max_excess, excess);
       tilt.radius = std::max(tilt.radius, std::hypot(point.x, point.y));
     }
   }
@@ -131,16 +131,16 @@ double upright_radius(const LensFacts& facts, const Film& film, ModelKind model)
     return (rim.z - film_z) * (face.vertex_z - film_z) > 0;
   });
   double radius = 0;
-  const auto reach = [&](const FilmPoint& corner, const Vec3<double>& place) {
-    const double height = std::hypot(place.x, place.y);
+  const auto reach = [&](const FilmPoint& corner, const Vec3<double>& position) {
+    const double height = std::hypot(position.x, position.y);
     const auto farthest = [&](const Rim& rim) {
-      return height + (height + rim.half) * std::abs((film_z - place.z) / (rim.z - place.z));
+      return height + (height + rim.half) * std::abs((film_z - position.z) / (rim.z - position.z));
     };
-    check_distance(lens.name(), corner, place.z, film_z, pupil_z);
+    check_distance(lens.name(), corner, position.z, film_z, pupil_z);
     radius = std::max(radius, farthest({0, pupil_z}));  // for virtual points
     double through_pupil = 0;
     for (const Rim& rim : pupils) {
-      if (discs) check_distance(lens.name(), corner, place.z, film_z, rim.z);
+      if (discs) check_distance(lens.name(), corner, position.z, film_z, rim.z);
       through_pupil = std::max(through_pupil, farthest(rim));
     }
     // Rays also pass the last surface, whose position does not depend on aberrations.
@@ -184,33 +184,33 @@ FilmPoint TiltedPlane::virtual_point(const FilmPoint& film) const noexcept {
 }
 
 FilmPoint TiltedPlane::point(const FilmPoint& point) const noexcept {
-  const double distance = 1 / (1 + nearer_by(point)), y = point.y * distance / y_by_y;
+  const double distance = 1 / (1 + distance_excess(point)), y = point.y * distance / y_by_y;
   return {(point.x * distance - x_by_y * y) / x_by_x, y};
 }
 
-double TiltedPlane::nearer_by(const FilmPoint& point) const noexcept {
-  return camera_detail::nearer_by(*this, point.x, point.y);
+double TiltedPlane::distance_excess(const FilmPoint& point) const noexcept {
+  return camera_detail::distance_excess(*this, point.x, point.y);
 }
 
-TiltedPlane::Nearer TiltedPlane::nearer_at(const FilmPoint& film) const noexcept {
-  const Dual nearer = differentiated(*this, film).nearer;
-  return {nearer.a, {nearer.v[0], nearer.v[1]}};
+TiltedPlane::DistanceExcess TiltedPlane::distance_excess_at(const FilmPoint& film) const noexcept {
+  const Dual excess = differentiated(*this, film).excess;
+  return {excess.a, {excess.v[0], excess.v[1]}};
 }
 
-TwoPlaneRay TiltedPlane::upright(const FilmPoint& point, const FilmPoint& place) const noexcept {
-  const auto [x, y] = upright_of(*this, point.x, point.y, place.x, place.y);
-  return {x, y, place.x, place.y};
+TwoPlaneRay TiltedPlane::upright(const FilmPoint& point, const FilmPoint& position) const noexcept {
+  const auto [x, y] = upright_of(*this, point.x, point.y, position.x, position.y);
+  return {x, y, position.x, position.y};
 }
 
 std::optional<FilmPoint> TiltedPlane::virtual_point_of(const TwoPlaneRay& ray) const noexcept {
   const double front = 1 + travel - (slope_x * ray.pupil_x + slope_y * ray.pupil_y);
-  const double nearer = (slope_x * ray.film_x + slope_y * ray.film_y - travel) / front;
-  if (!(front > 0 && 1 + nearer > 0)) return {};
-  return FilmPoint{ray.film_x + nearer * ray.pupil_x, ray.film_y + nearer * ray.pupil_y};
+  const double excess = (slope_x * ray.film_x + slope_y * ray.film_y - travel) / front;
+  if (!(front > 0 && 1 + excess > 0)) return {};
+  return FilmPoint{ray.film_x + excess * ray.pupil_x, ray.film_y + excess * ray.pupil_y};
 }
 
-double TiltedPlane::weight(const FilmPoint& point, const FilmPoint& place) const noexcept {
-  return std::max(facing_of(*this, point.x, point.y, place.x, place.y), 0.0);
+double TiltedPlane::weight(const FilmPoint& point, const FilmPoint& position) const noexcept {
+  return std::max(facing_of(*this, point.x, point.y, position.x, position.y), 0.0);
 }
 
 TiltedPlane TiltedFilm::plane(double time) const noexcept {
@@ -229,12 +229,12 @@ TwoPlaneRayDerivatives TiltedFilm::line(const FilmPoint& film, double u, double 
   Dual pupil_x(at.x), pupil_y(at.y);
   pupil_x.v = by_x[0] * from.x.v + by_y[0] * from.y.v;
   pupil_y.v = by_x[1] * from.x.v + by_y[1] * from.y.v;
-  return derivatives_of(from.x - from.nearer * pupil_x, from.y - from.nearer * pupil_y, pupil_x, pupil_y);
+  return derivatives_of(from.x - from.excess * pupil_x, from.y - from.excess * pupil_y, pupil_x, pupil_y);
 }
 
 TwoPlaneRayDerivatives pinhole_line(const TiltedPlane& plane, const FilmPoint& film, double shift) noexcept {
   const VirtualPoint from = differentiated(plane, film);
-  const Dual x = from.x / (1.0 + from.nearer * shift), y = from.y / (1.0 + from.nearer * shift);
+  const Dual x = from.x / (1.0 + from.excess * shift), y = from.y / (1.0 + from.excess * shift);
   return derivatives_of(x, y, shift * x, shift * y);
 }
 

@@ -23,21 +23,21 @@ struct PETZVAL_API TiltedPlane {
   FilmPoint virtual_point(const FilmPoint& film) const noexcept;
   FilmPoint point(const FilmPoint& virtual_point) const noexcept;
   /// Distance of the upright film from the pupil plane divided by the distance of the film point, minus 1.
-  double nearer_by(const FilmPoint& virtual_point) const noexcept;
-  /// nearer_by() of a film point, with its derivatives with respect to film x and y.
-  struct Nearer {
+  double distance_excess(const FilmPoint& virtual_point) const noexcept;
+  /// distance_excess() of a film point, with its derivatives with respect to film x and y.
+  struct DistanceExcess {
     double value = 0;
     Vec2<double> by{0, 0};
   };
-  Nearer nearer_at(const FilmPoint& film) const noexcept;
+  DistanceExcess distance_excess_at(const FilmPoint& film) const noexcept;
   /// Image-space ray from the film point of a virtual point through a position in the pupil plane.
-  TwoPlaneRay upright(const FilmPoint& virtual_point, const FilmPoint& place) const noexcept;
+  TwoPlaneRay upright(const FilmPoint& virtual_point, const FilmPoint& position) const noexcept;
   /// Virtual point of the film point that a ray meets; nullopt if the ray meets the back of the film or is parallel to
   /// the film.
   std::optional<FilmPoint> virtual_point_of(const TwoPlaneRay& ray) const noexcept;
   /// Weight of a film sample divided by the weight of the sample of an upright film with the same ray; 0 if the ray
   /// meets the back of the film.
-  double weight(const FilmPoint& virtual_point, const FilmPoint& place) const noexcept;
+  double weight(const FilmPoint& virtual_point, const FilmPoint& position) const noexcept;
 };
 
 /// petzval::upright_radius() for a film at the position of the lens's film.

@@ -118,7 +118,7 @@ std::vector<EdgePoint> real_edges(const FilmPupilTable& real, std::size_t wavele
 
 double two_disc_error(std::span<const EdgePoint> edges, const Discs& discs) noexcept {
   double sum = 0;
-  for (const EdgePoint& e : edges) sum += std::abs(outside(e, discs)) * e.share;
+  for (const EdgePoint& e : edges) sum += std::abs(outside(e, discs)) * e.edge_weight;
   return sum;
 }
 
@@ -150,13 +150,13 @@ std::array<PupilDisc, 2> fit_two_discs(std::span<const EdgePoint> edges) {
     if (error < least) least = error, best = discs;
   };
   std::transform(edges.begin(), edges.end(), weights.begin(),
-                 [&](const EdgePoint& e) { return std::sqrt(e.share * radius); });
+                 [&](const EdgePoint& e) { return std::sqrt(e.edge_weight * radius); });
   for (const Discs& start : starts) improve(start);
   // Minimise squares once more, with weights: their sum then approaches the sum of distances, which is the area between
   // the edges.
   for (int round = 0; round < 4; ++round) {
     std::transform(edges.begin(), edges.end(), weights.begin(), [&](const EdgePoint& e) {
-      return std::sqrt(e.share * radius / (0.01 + std::abs(outside(e, best)) / radius));
+      return std::sqrt(e.edge_weight * radius / (0.01 + std::abs(outside(e, best)) / radius));
     });
     improve(best);
   }

@@ -13,7 +13,7 @@ namespace petzval::camera_detail {
 /// A point on the edge of a pupil, in the pupil plane, for the film point (0, field) (mm).
 struct EdgePoint {
   double field = 0, x = 0, y = 0;
-  double share = 0;  ///< length of the edge that it represents, divided by the pupil's area, 1/mm
+  double edge_weight = 0;  ///< length of the edge that it represents, divided by the pupil's area, 1/mm
 };
 
 /// Edge points of the pupils of some film points, which are equally spaced in film area; film points without light are

@@ -37,18 +37,18 @@ bool RayBlur::operator()(const FilmSlopes& film, double* errors, double* derivat
   parts.col(0) = slope_x_ / facing, parts.col(1) = slope_y_ / facing, parts.col(2) = 1 / facing;
 
   // Defocus changes the diameter at a rate that depends only on the slopes of the film.
-  double nearer = 0, nearer_by_p = 0, nearer_by_q = 0;
+  double offset = 0, offset_by_p = 0, offset_by_q = 0;
   if (defocus_ != 0) {
     const Eigen::Array<double, Eigen::Dynamic, 3> by_z = parts.leftCols<3>();
     const Eigen::Array<double, Eigen::Dynamic, 3> spread = by_z.rowwise() - by_z.colwise().mean();
     const double square = scale * spread.square().sum();
     const Eigen::ArrayXd growth = (spread * by_z).rowwise().sum();
-    nearer = defocus_ / std::sqrt(square);
-    nearer_by_p = -nearer * scale * (growth * by_z.col(0)).sum() / square;
-    nearer_by_q = -nearer * scale * (growth * by_z.col(1)).sum() / square;
+    offset = defocus_ / std::sqrt(square);
+    offset_by_p = -offset * scale * (growth * by_z.col(0)).sum() / square;
+    offset_by_q = -offset * scale * (growth * by_z.col(1)).sum() / square;
   }
 
-  const Eigen::ArrayXd z = (film.z - nearer + film.p * x_ + film.q * y_) / facing;
+  const Eigen::ArrayXd z = (film.z - offset + film.p * x_ + film.q * y_) / facing;
   const Eigen::ArrayXd x = x_ + slope_x_ * z, y = y_ + slope_y_ * z;
   parts.col(9) = x, parts.col(10) = y, parts.col(11) = z;
   if (!derivatives) {
@@ -57,8 +57,8 @@ bool RayBlur::operator()(const FilmSlopes& film, double* errors, double* derivat
     errors[0] = root_ * std::sqrt(scale) * hits.col(3).norm();
     return true;
   }
-  parts.middleCols<3>(3) = parts.leftCols<3>().array().colwise() * (x - nearer_by_p);
-  parts.middleCols<3>(6) = parts.leftCols<3>().array().colwise() * (y - nearer_by_q);
+  parts.middleCols<3>(3) = parts.leftCols<3>().array().colwise() * (x - offset_by_p);
+  parts.middleCols<3>(6) = parts.leftCols<3>().array().colwise() * (y - offset_by_q);
   parts.rowwise() -= parts.colwise().mean().eval();
   // Reduces all hits to four errors with the same sum of squares, gradient and Gauss-Newton matrix: a square root of
   // their product matrix.

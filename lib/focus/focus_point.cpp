@@ -71,7 +71,7 @@ void check(const FocusPoint& point, std::size_t vertices, const std::string& whe
   }
 }
 
-void check(const FocusMoment& moment) {
+void check(const FocusTime& moment) {
   if (std::isnan(moment.time)) throw Error("focus_targets: time = nan; must be a number");
   if (!moment.film) return;
   const Film& film = *moment.film;
@@ -95,7 +95,7 @@ double at_time(const FocusPoint& point, double time, const auto& of) {
   return focus_detail::Keyframes(std::move(times), std::move(values)).at(time);
 }
 
-Vec3<double> place_of(const TrianglePoint& on, const std::array<double, 3>& parts, const FocusMoment& moment) {
+Vec3<double> place_of(const TrianglePoint& on, const std::array<double, 3>& parts, const FocusTime& moment) {
   Vec3<double> sum{0, 0, 0};
   for (std::size_t i = 0; i < 3; ++i) sum += moment.vertices[on.vertices[i]] * parts[i];
   return sum;
@@ -119,7 +119,7 @@ Vec3<double> seen(const ScenePoint& place, double principal_z) {
 
 /// The position of a point at a moment; nullopt if a vertex is not finite, or if the path runs from behind the lens to
 /// infinity.
-std::optional<ScenePoint> place_at(const IdealLens& lens, const FocusPoint& point, const FocusMoment& moment) {
+std::optional<ScenePoint> place_at(const IdealLens& lens, const FocusPoint& point, const FocusTime& moment) {
   if (const TrianglePoint* triangle = only_triangle(point)) {
     std::array<double, 3> parts{};
     double sum = 0;
@@ -170,7 +170,7 @@ bool within(Film film, const IdealLens& lens, const ImagePoint& image) {
 }  // namespace
 
 std::optional<FocusTarget> focus_detail::target_at(const IdealLens& lens, const FocusPoint& point,
-                                                   const FocusMoment& moment) {
+                                                   const FocusTime& moment) {
   const auto place = place_at(lens, point, moment);
   const auto image = place ? lens.image(*place) : std::nullopt;
   if (!image || (moment.film && !within(*moment.film, lens, *image))) return {};
@@ -186,7 +186,7 @@ std::optional<FocusTarget> focus_detail::target_at(const IdealLens& lens, const 
   return target;
 }
 
-void focus_detail::check_points(std::span<const FocusPoint> points, const FocusMoment& moment) {
+void focus_detail::check_points(std::span<const FocusPoint> points, const FocusTime& moment) {
   check(moment);
   for (std::size_t i = 0; i < points.size(); ++i) {
     check(points[i], moment.vertices.size(), "focus point " + std::to_string(i) + ": ");
@@ -204,7 +204,7 @@ void focus_detail::weigh_nearer_more(const IdealLens& lens, std::span<FocusTarge
 }
 
 std::vector<FocusTarget> focus_targets(const IdealLens& lens, std::span<const FocusPoint> points,
-                                       const FocusMoment& moment) {
+                                       const FocusTime& moment) {
   focus_detail::check_points(points, moment);
   std::vector<FocusTarget> targets;
   for (const FocusPoint& point : points) {

@@ -21,11 +21,11 @@ inline constexpr double largest_extent = 20;
 void check_extent(double stops, const std::string& where);
 
 /// Throws the errors of focus_targets().
-void check_points(std::span<const FocusPoint> points, const FocusMoment& moment);
+void check_points(std::span<const FocusPoint> points, const FocusTime& moment);
 /// The target of a checked point at a moment, even if the point is not valid at this moment. nullopt if it has no image
 /// on the film of the moment.
-std::optional<FocusTarget> target_at(const IdealLens& lens, const FocusPoint& point, const FocusMoment& moment);
-/// Applies FocusMoment::nearer_weighs_more.
+std::optional<FocusTarget> target_at(const IdealLens& lens, const FocusPoint& point, const FocusTime& moment);
+/// Applies FocusTime::nearer_weighs_more.
 void weigh_nearer_more(const IdealLens& lens, std::span<FocusTarget> targets);
 
 /// Largest distance of a film from the rear focal point, in focal lengths. The image of a point in the front focal

@@ -207,15 +207,15 @@ void expand_to_traced_probes(std::span<PupilPolygon> polygons, const Lens& lens,
   expand_to_probes(polygons, probes, weights, at_probes);
 }
 
-/// Range of `nearer` (FilmTilt) over the film points that belong to a virtual film point or its mirror images.
+/// Range of `excess` (FilmTilt) over the film points that belong to a virtual film point or its mirror images.
 struct Nearer {
   double low, high;
 
   Nearer(const FilmTilt& tilt, const FilmPoint& film) noexcept {
     const double along = std::abs(tilt.slope_x) * film.x + std::abs(tilt.slope_y) * film.y;
     const auto at_end = [&](double value) { return (value - tilt.travel) / (1 + tilt.travel); };
-    low = std::clamp(std::min(-along, at_end(-along)), tilt.low, tilt.high);
-    high = std::clamp(std::max(along, at_end(along)), tilt.low, tilt.high);
+    low = std::clamp(std::min(-along, at_end(-along)), tilt.min_excess, tilt.max_excess);
+    high = std::clamp(std::max(along, at_end(along)), tilt.min_excess, tilt.max_excess);
   }
   double at(double part) const noexcept { return low + part * (high - low); }
 };
@@ -249,7 +249,7 @@ std::vector<PupilPolygon> grid_polygons(const Lens& lens, const TwoPlanes& space
 
 std::vector<PupilPolygon> tilted_grid_polygons(const FilmPupilTable& upright, const FilmTilt& tilt,
                                                const FilmGrid& grid, std::size_t wavelength) {
-  // Pupils for several values of `nearer` at each point. The middle value is the first, because its pupil is the least
+  // Pupils for several values of `excess` at each point. The middle value is the first, because its pupil is the least
   // likely to be empty.
   const std::size_t columns = 2 * grid.columns + 1;
   const std::vector<FilmPoint> points = points_of(grid);

@@ -40,15 +40,15 @@ struct PupilImage {
 /// A tilted film in pupil coordinates.
 ///
 /// A film point is identified by its virtual film point v: its projection onto the upright film, through the centre of
-/// the pupil plane. The number 1 + nearer is the distance of the upright film from the pupil plane divided by the
+/// the pupil plane. The number 1 + excess is the distance of the upright film from the pupil plane divided by the
 /// distance of the film point. The ray from the film point through q in the pupil plane meets the upright film at v -
-/// nearer q. nearer is slope . v without travel, and (slope . v - t) / (1 + t) after travel by the fraction t of the
+/// excess q. excess is slope . v without travel, and (slope . v - t) / (1 + t) after travel by the fraction t of the
 /// upright film's distance.
 struct FilmTilt {
-  double slope_x = 0, slope_y = 0;  ///< 1/mm
-  double low = 0, high = 0;         ///< range of nearer on the film, at all times
-  double radius = 0;                ///< distance of the farthest virtual film point from the axis, mm
-  double travel = 0;                ///< t at the end of the travel, which covers all values from 0
+  double slope_x = 0, slope_y = 0;        ///< 1/mm
+  double min_excess = 0, max_excess = 0;  ///< range of excess on the film, at all times
+  double radius = 0;                      ///< distance of the farthest virtual film point from the axis, mm
+  double travel = 0;                      ///< t at the end of the travel, which covers all values from 0
 };
 
 /// A sample of a pupil: position in the pupil plane (mm) and area (mm^2), the inverse of the density. Uniform samples

@@ -23,10 +23,10 @@ struct ImageSections {
 namespace {
 
 /// The image for a virtual point of a tilted film.
-/// @param nearer slope . virtual point
+/// @param excess slope . virtual point
 template <class R>
-inline ImageSections<R> on_tilted(const ImageSections<R>& image, R nearer) noexcept {
-  const R x = R(1) / (R(1) + image.shift_x * nearer), y = R(1) / (R(1) + image.shift_y * nearer);
+inline ImageSections<R> on_tilted(const ImageSections<R>& image, R excess) noexcept {
+  const R x = R(1) / (R(1) + image.shift_x * excess), y = R(1) / (R(1) + image.shift_y * excess);
   return {x * image.shift_x, y * image.shift_y, x * image.radius_x, y * image.radius_y, x * y * image.area};
 }
 

@@ -9,13 +9,13 @@
 
 namespace petzval::pupil_table_detail {
 
-/// A virtual film point of a tilted film, with the value of `nearer` for one of its film points (see FilmTilt).
+/// A virtual film point of a tilted film, with the value of `excess` for one of its film points (see FilmTilt).
 struct VirtualFilmPoint {
   FilmPoint at;
-  double nearer = 0;
+  double excess = 0;
 
   /// Intersection of the upright film with the ray from that film point through (x, y) in the pupil plane.
-  FilmPoint on_upright(double x, double y) const noexcept { return {at.x - nearer * x, at.y - nearer * y}; }
+  FilmPoint on_upright(double x, double y) const noexcept { return {at.x - excess * x, at.y - excess * y}; }
 };
 
 /// Clearances, in the pupils of the upright film, of N rays through positions in the pupil plane.

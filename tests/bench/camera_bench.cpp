@@ -317,7 +317,7 @@ int run(std::vector<char*> arguments) {
     for (const ModelKind model :
          {ModelKind::thin, ModelKind::thin_two_disc, ModelKind::polynomial(7), ModelKind::exact_float}) {
       for (const auto& [call, controls] :
-           {Shape{"hexagon", {.lens_elements = 6}}, Shape{"cat's eye", {.rate_of_change = 1}},
+           {Shape{"hexagon", {.blades = 6}}, Shape{"cat's eye", {.rate_of_change = 1}},
             Shape{"rim", {.weight_distribution = 12.7, .weight_strength = 0.6}}, Shape{"rings", rings}}) {
         rows.push_back({bench.lens.id, call, model, false,
                         Camera(bench.lens.lens, bench.film, {.model = model, .bokeh = controls})});
@@ -334,8 +334,8 @@ int run(std::vector<char*> arguments) {
     add("surface, single", {.model = ModelKind::thick, .focal_surface = surface}, true);
     add("extents", {.model = ModelKind::thick, .focal_surface = extents}, false);
     add("power", {.model = ModelKind::thick, .expressive = {.power = {{0, 1}, {0.6, 1.01}, {1, 0.99}}}}, false);
-    add("from lens", {.model = ModelKind::thick, .expressive = petzval::expressive_from(bench.lens.lens, bench.film)},
-        false);
+    add("from lens",
+        {.model = ModelKind::thick, .expressive = petzval::fit_expressive_lens(bench.lens.lens, bench.film)}, false);
   }
   Rounds rounds;
   benchmark::RunSpecifiedBenchmarks(&rounds);

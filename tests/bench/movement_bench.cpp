@@ -72,7 +72,7 @@ void loop(benchmark::State& state, const Lens& lens, const IdealLens& ideal) {
   for (auto _ : state) {
     time = std::fmod(time + 0.0137, 1.0);
     for (std::size_t i = 0; i < point_count; ++i) vertices[i] = first[i] + time * (last[i] - first[i]);
-    const FocusMoment moment{.time = time, .vertices = vertices, .film = options.film};
+    const FocusTime moment{.time = time, .vertices = vertices, .film = options.film};
     const std::vector<FocusTarget> targets = focus_targets(ideal, points, moment);
     benchmark::DoNotOptimize(fit_tilt(lens, targets, options).film.z());
   }

@@ -63,7 +63,7 @@ TEST(BokehControls, DefaultsChangeNoBit) {
 TEST(BokehControls, LensElementsAreBladesOfTheIris) {
   const Lens lens = data_lens("double_gauss_100mm_f2.0");
   auto samples = some_samples<double>(film, 300), same = samples;
-  samples.run(Camera(lens, film, {.model = ModelKind::thick, .bokeh = {.lens_elements = 6}}));
+  samples.run(Camera(lens, film, {.model = ModelKind::thick, .bokeh = {.blades = 6}}));
   same.run(Camera(with_iris(lens, {.blades = 6}), film, {.model = ModelKind::thick}));
   EXPECT_EQ(samples.weights, same.weights);
   EXPECT_EQ(samples.dx, same.dx);
@@ -302,8 +302,8 @@ TEST(BokehControls, RefuseBadInput) {
   const auto with = [&](const BokehControls& controls) {
     return [&lens, controls] { Camera(lens, film, {.model = ModelKind::thin, .bokeh = controls}); };
   };
-  expect_error(with({.lens_elements = 2}), {lens.name(), 2});
-  expect_error(with({.lens_elements = 21}), {lens.name(), 21});
+  expect_error(with({.blades = 2}), {lens.name(), 2});
+  expect_error(with({.blades = 21}), {lens.name(), 21});
   expect_error(with({.weight_distribution = std::nan("")}), {lens.name(), "nan"});
   expect_error(with({.weight_distribution = 1e4}), {lens.name(), 1e4});
   expect_error(with({.weight_distribution = 2, .weight_strength = 1e300}), {lens.name(), 1e300});

@@ -153,7 +153,7 @@ class ExpressiveFromLens : public ::testing::TestWithParam<RealLens> {};
 TEST_P(ExpressiveFromLens, BlurEqualsBlurOfExactRays) {
   const auto& [id, on_axis, over_field, better] = GetParam();
   const Lens lens = testing::data_lens(id);
-  const ExpressiveLens found = expressive_from(lens, wide);
+  const ExpressiveLens found = fit_expressive_lens(lens, wide);
   const Camera exact(lens, wide, {.model = ModelKind::exact_double}),
       plain(lens, wide, {.model = ModelKind::thin_two_disc}),
       bent(lens, wide, {.model = ModelKind::thin_two_disc, .expressive = found});
@@ -186,7 +186,7 @@ INSTANTIATE_TEST_SUITE_P(Lenses, ExpressiveFromLens,
                          });
 
 TEST(ExpressiveLens, LensWithoutAberrationsGivesAnEmptyExpressiveLens) {
-  const ExpressiveLens found = expressive_from(thin_50mm(), {.width_mm = 1, .height_mm = 1});
+  const ExpressiveLens found = fit_expressive_lens(thin_50mm(), {.width_mm = 1, .height_mm = 1});
   for (const PowerKnot& knot : found.power) EXPECT_NEAR(knot.power, 1, 1e-6);
   for (const FilmOffset& offset : found.film_offsets) EXPECT_NEAR(offset.offset_mm, 0, 0.02);
 }
@@ -196,14 +196,14 @@ TEST(ExpressiveLens, CameraAcceptsTheExpressiveLensOfEveryLens) {
                          "catadioptric_mangin_1000mm_f7.5", "landscape_meniscus_10mm", "modern_58mm_f0.95"}) {
     const Lens lens = testing::data_lens(id);
     for (const Film& film : {wide, Film{.width_mm = 4, .height_mm = 3}}) {
-      const ExpressiveLens found = expressive_from(lens, film);
+      const ExpressiveLens found = fit_expressive_lens(lens, film);
       EXPECT_FALSE(found.power.empty()) << id;
       EXPECT_NO_THROW(Camera(lens, film, {.model = ModelKind::thick, .expressive = found})) << id;
     }
   }
-  EXPECT_GT(expressive_from(testing::data_lens("phone_5.6mm_f3.5")).film_offsets.size(), 30u);
+  EXPECT_GT(fit_expressive_lens(testing::data_lens("phone_5.6mm_f3.5")).film_offsets.size(), 30u);
   const Lens anamorphic = testing::data_lens("anamorphic_60mm_2x");
-  expect_error([&] { expressive_from(anamorphic); }, {anamorphic.name(), "expressive_from"});
+  expect_error([&] { fit_expressive_lens(anamorphic); }, {anamorphic.name(), "fit_expressive_lens"});
 }
 
 TEST(ExpressiveLens, RefusesInvalidParameters) {

@@ -441,8 +441,8 @@ TEST(FocalPoints, CountByTheirFades) {
   EXPECT_EQ(weighed[1].weight, 1);
 }
 
-TEST(FocusFades, IndependentOfTheFrameRate) {
-  FocusFades coarse(0.2), fine(0.2);
+TEST(FadeFilter, IndependentOfTheFrameRate) {
+  FadeFilter coarse(0.2), fine(0.2);
   coarse.advance(0, {true, true, false});
   fine.advance(0, {true, true, false});
   EXPECT_EQ(coarse.fades(), (std::vector{1.0, 1.0, 0.0}));
@@ -456,12 +456,12 @@ TEST(FocusFades, IndependentOfTheFrameRate) {
   EXPECT_NEAR(coarse.fades()[2], (1 - std::exp(-2.5)) * std::exp(-2.5), 1e-15);
   coarse.advance(0, {true, true, true, true});
   EXPECT_EQ(coarse.fades()[3], 1);
-  FocusFades at_once(0);
+  FadeFilter at_once(0);
   at_once.advance(0, {true});
   at_once.advance(0, {false});
   EXPECT_EQ(at_once.fades()[0], 0);
-  expect_error([] { FocusFades(-1); }, {"FocusFades", "time constant", -1});
-  expect_error([&] { at_once.advance(nan, {}); }, {"FocusFades", "step", "nan"});
+  expect_error([] { FadeFilter(-1); }, {"FadeFilter", "time constant", -1});
+  expect_error([&] { at_once.advance(nan, {}); }, {"FadeFilter", "step", "nan"});
 }
 
 }  // namespace focal_surface_test

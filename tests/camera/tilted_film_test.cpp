@@ -96,7 +96,7 @@ TEST(TiltedFilm, LinesEqualPositionsInSpace) {
     const double weight = along.z * glm::dot(along, normal) / (length2 * length2);
     const double wanted = straight.z * straight.z / (straight2 * straight2);
     EXPECT_NEAR(plane.weight(key, {q.x, q.y}) * wanted / weight, 1, 1e-12);
-    EXPECT_NEAR((1 + plane.nearer_by(key)) * (q.z - place.z) / (q.z - upright.z), 1, 1e-12);
+    EXPECT_NEAR((1 + plane.distance_excess(key)) * (q.z - place.z) / (q.z - upright.z), 1, 1e-12);
     const auto met = plane.virtual_point_of(line);
     ASSERT_TRUE(met);
     EXPECT_NEAR(std::hypot(met->x - key.x, met->y - key.y), 0, 1e-12);

@@ -78,7 +78,7 @@ TEST_F(FocusPull, NumbersEqualTheLibrary) {
     ASSERT_EQ(all.size(), 9u);
     for (const json& frame : all) {
       SCOPED_TRACE(frame.dump());
-      petzval::FocusMoment moment;
+      petzval::FocusTime moment;
       moment.time = frame["time_s"];
       const auto targets = petzval::focus_targets(petzval::thick_lens(lens), {&point, 1}, moment);
       const auto measure = criterion == "min_rms" ? petzval::FocusCriterion::min_rms : petzval::FocusCriterion::min_max;

@@ -34,16 +34,16 @@ FocusKey on_triangle(double time, const std::array<std::size_t, 3>& vertices, co
   return {time, TrianglePoint{vertices, parts}, 0, 1};
 }
 FocusPoint point(std::vector<FocusKey> keys) { return {.keys = std::move(keys)}; }
-FocusMoment moment(double time) {
-  FocusMoment result;
+FocusTime moment(double time) {
+  FocusTime result;
   result.time = time;
   return result;
 }
-std::vector<FocusTarget> targets(const std::vector<FocusPoint>& points, const FocusMoment& when,
+std::vector<FocusTarget> targets(const std::vector<FocusPoint>& points, const FocusTime& when,
                                  const IdealLens& lens = thin) {
   return focus_targets(lens, points, when);
 }
-FocusTarget only(const FocusPoint& p, const FocusMoment& when, const IdealLens& lens = thin) {
+FocusTarget only(const FocusPoint& p, const FocusTime& when, const IdealLens& lens = thin) {
   const auto result = targets({p}, when, lens);
   EXPECT_EQ(result.size(), 1u);
   return result.empty() ? FocusTarget{} : result[0];
@@ -172,7 +172,7 @@ TEST(FocusPoints, FollowTheirTrianglesUnderRigidMotion) {
   for (const Vec& v : mesh) moved_mesh.push_back(moved(v));
   const Vec normal = glm::normalize(glm::cross(mesh[1] - mesh[0], mesh[2] - mesh[0]));
   for (double time = -0.5; time < 3.5; time += 0.0625) {
-    FocusMoment before = moment(time), after = before;
+    FocusTime before = moment(time), after = before;
     before.vertices = mesh, after.vertices = moved_mesh;
     const Vec at = only(p, before).point.position;
     expect_near(only(p, after).point.position, moved(at), 1e-10);
@@ -181,7 +181,7 @@ TEST(FocusPoints, FollowTheirTrianglesUnderRigidMotion) {
     EXPECT_GE(at.y, -1e-10);
     EXPECT_LE(at.x / 100 + at.y / 100, 1 + 1e-12);
   }
-  FocusMoment at_key = moment(1);
+  FocusTime at_key = moment(1);
   at_key.vertices = mesh;
   expect_near(only(p, at_key).point.position, {50, 30, -980}, 1e-9);
 }
@@ -191,7 +191,7 @@ TEST(FocusPoints, MoveBetweenTrianglesAndPositions) {
   const double third = 1.0 / 3;
   const FocusPoint p = point({on_triangle(0, {0, 1, 2}, {third, third, third}),
                               on_triangle(1, {3, 4, 5}, {third, third, third}), key(2, {7, 8, -600})});
-  FocusMoment when = moment(0.5);
+  FocusTime when = moment(0.5);
   when.vertices = mesh;
   const double depth = only(p, when).point.position.z;
   EXPECT_LT(depth, -900);
@@ -226,7 +226,7 @@ TEST(FocusPoints, WithoutAnImageAreSkipped) {
 }
 
 TEST(FocusPoints, OutsideTheImageAreSkipped) {
-  FocusMoment when = moment(0);
+  FocusTime when = moment(0);
   // Chief rays pass straight through a thin lens: from x at depth 1000 to -0.052 x.
   const auto seen = [&](double x, double y) { return targets({point({key(0, {x, y, -1000})})}, when).size() == 1; };
   EXPECT_TRUE(seen(1e6, 0));
@@ -246,7 +246,7 @@ TEST(FocusPoints, OutsideTheImageAreSkipped) {
 }
 
 TEST(FocusPoints, MayWeighMoreWhenNearer) {
-  FocusMoment when = moment(0);
+  FocusTime when = moment(0);
   const std::vector<FocusPoint> points{point({key(0, {0, 0, -1000}, 0, 2)}), point({key(0, {0, 0, -4000}, 0, 4)}),
                                        point({far_key(0, {0, 0, -1})})};
   const auto plain = targets(points, when);
@@ -270,7 +270,7 @@ TEST(FocusPoints, WeightsAreNotNegative) {
 TEST(FocusPoints, RefuseInvalidPoints) {
   const FocusPoint good = point({key(0, {0, 0, -1000})});
   const std::vector<Vec> mesh{{0, 0, -900}, {100, 0, -900}, {0, 100, -900}};
-  FocusMoment when = moment(0);
+  FocusTime when = moment(0);
   when.vertices = mesh;
   const auto says = [&](const FocusPoint& bad) { return message([&] { targets({good, bad}, when); }); };
   expect_tokens(says(point({})), {"focus point 1", "keys"});

@@ -43,7 +43,7 @@ CameraOptions wild_options(fuzz::Bytes& bytes) {
   const int kind = bytes.byte();
   if (kind < 32)
     options.bokeh.weight_distribution = bytes.number(-20, 20), options.bokeh.weight_strength = bytes.number(0, 1);
-  if (kind % 16 == 1) options.bokeh.lens_elements = bytes.count(0, 21);
+  if (kind % 16 == 1) options.bokeh.blades = bytes.count(0, 21);
   if (kind % 16 == 2)
     options.bokeh.lens_ratio = bytes.number(0.5, 3), options.bokeh.rate_of_change = bytes.number(0, 2);
   if (kind % 64 == 3) {  // rare, because maps take most of the time

@@ -60,7 +60,7 @@ const Camera& some_camera(fuzz::Bytes& bytes) {
       [=] { return focused(usual, {.normalisation = Normalisation::unity_on_axis}, tilted); },
       [=] { return focused(usual, {.model = ModelKind::exact_double}, moving, {.blades = 5, .rotation_rad = 0.2}); },
       [=] {
-        const BokehControls bokeh{.lens_elements = 7, .weight_distribution = 3, .weight_strength = 0.5};
+        const BokehControls bokeh{.blades = 7, .weight_distribution = 3, .weight_strength = 0.5};
         return focused(usual, {.bokeh = bokeh}, film);
       },
       [=] { return focused(usual, {.bokeh = {.lens_ratio = 1.2, .rate_of_change = 0.5}}, film); },

@@ -41,7 +41,7 @@ std::vector<FilmPupilTable> pupil_tables() {
   const double steep = 0.1 / std::abs(strips.space().depth());
   constexpr double half = 10;
   const double most = steep * half * std::numbers::sqrt2;
-  const FilmTilt tilt{.slope_x = steep, .slope_y = -steep, .low = -most, .high = most, .radius = half};
+  const FilmTilt tilt{.slope_x = steep, .slope_y = -steep, .min_excess = -most, .max_excess = most, .radius = half};
   const std::vector<PupilImage> images(3, {.shift = {0.1, 0.2}, .radius = {10, 12}});
   const std::vector<std::vector<PupilDisc>> discs(3, {{0, 10}, {0.4, 11}});
   return {strips,

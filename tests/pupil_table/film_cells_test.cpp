@@ -154,7 +154,8 @@ TEST(FilmCells, CoverTheLinesOfATiltedFilm) {
   const FilmPupilTable upright = FilmPupilTable::enclosing(anamorphic(8), 1.4 * format);
   const double steep = 0.1 / -upright.space().depth();
   const double most = steep * format;
-  const FilmTilt tilt{.slope_x = 0.8 * steep, .slope_y = -0.6 * steep, .low = -most, .high = most, .radius = format};
+  const FilmTilt tilt{
+      .slope_x = 0.8 * steep, .slope_y = -0.6 * steep, .min_excess = -most, .max_excess = most, .radius = format};
   const FilmPupilTable table = upright.for_tilted_film(tilt);
   std::mt19937_64 random(2);
   std::uniform_real_distribution<double> unit(0, 1);

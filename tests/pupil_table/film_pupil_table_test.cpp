@@ -140,8 +140,8 @@ TEST(FilmPupilTable, TiltedFilmPupilsAreCovered) {
     const double steep = std::tan(radians(10)) / -two_planes(lens).depth();
     const FilmTilt tilt{.slope_x = 0.8 * steep,
                         .slope_y = -0.6 * steep,
-                        .low = -0.7 * radius * std::abs(steep),
-                        .high = 0.7 * radius * std::abs(steep),
+                        .min_excess = -0.7 * radius * std::abs(steep),
+                        .max_excess = 0.7 * radius * std::abs(steep),
                         .radius = radius};
     for (const FilmPupilTable& upright :
          {FilmPupilTable::enclosing(lens, 1.5 * radius), FilmPupilTable::equal_area(lens, 1.5 * radius)}) {
@@ -154,7 +154,7 @@ TEST(FilmPupilTable, TiltedFilmPupilsAreCovered) {
         const double r = radius * std::sqrt(unit(random)), azimuth = 2 * std::numbers::pi * unit(random);
         const FilmPoint virtual_point{r * std::sin(azimuth), r * std::cos(azimuth)};
         const double nearer = tilt.slope_x * virtual_point.x + tilt.slope_y * virtual_point.y;
-        if (nearer < tilt.low || nearer > tilt.high || table.area(virtual_point) == 0) continue;
+        if (nearer < tilt.min_excess || nearer > tilt.max_excess || table.area(virtual_point) == 0) continue;
         const auto passes = [&](double x, double y) {
           return upright.contains({virtual_point.x - nearer * x, virtual_point.y - nearer * y}, x, y);
         };

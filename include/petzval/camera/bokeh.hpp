@@ -23,7 +23,7 @@ namespace petzval {
 /// weights to the clipped pupil of each film point, so that a cat's eye gets a bright rim of its own. The other
 /// first-order models apply them to the paraxial image of the stop.
 struct BokehControls {
-  int lens_elements = 0;  ///< number of straight blades, 3 to 20; 0: the iris of the lens
+  int blades = 0;  ///< number of straight blades, 3 to 20; 0: the iris of the lens
   /// Radius of a second rim that clips the pupils to cat's eyes, divided by the radius of the pupil on the axis. (The
   /// program in the source uses 1 / sqrt of this number.) A Camera throws Error for such a rim if the lens has
   /// cylinders, and in exact models and polynomials if it has a central obscuration.

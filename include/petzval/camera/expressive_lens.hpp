@@ -22,9 +22,9 @@ struct FilmOffset {
   double weight = 1;     ///< relative to the other offsets; at least 0
 };
 
-/// Aberrations of any sign and amount for first-order models; expressive_from() starts from a real lens.
+/// Aberrations of any sign and amount for first-order models; fit_expressive_lens() starts from a real lens.
 ///
-///     ExpressiveLens bent = expressive_from(lens);
+///     ExpressiveLens bent = fit_expressive_lens(lens);
 ///     for (PowerKnot& knot : bent.power) knot.power = 1 + 3 * (knot.power - 1);
 ///     const Camera camera(lens, film, {.model = ModelKind::thick, .expressive = bent});
 ///
@@ -62,7 +62,7 @@ struct ExpressiveLens {
 ///
 /// Limitations: offsets are the mean of the tangential and the sagittal section; astigmatism and coma are left out.
 /// Lenses far from first order, such as fisheyes, gain nothing.
-PETZVAL_API ExpressiveLens expressive_from(const Lens& lens, const Film& film = {});
+PETZVAL_API ExpressiveLens fit_expressive_lens(const Lens& lens, const Film& film = {});
 
 /// Largest steepness of a camera's focus over the film.
 ///

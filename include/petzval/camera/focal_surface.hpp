@@ -46,7 +46,7 @@ struct FocalSurfaceOptions {
   double beta = 3;  ///< 1 to 8: weights are distance^-beta, with the distance in the picture
   /// 1 / distance in focus if no point fixes a distance (1/mm, from the entrance pupil); unset: the plane that the
   /// ideal lens images to the film.
-  std::optional<double> otherwise = {};
+  std::optional<double> default_inverse_distance = {};
 };
 
 /// Distance in focus and extent of the depth of field at every film point, interpolated through focal points.
@@ -95,14 +95,14 @@ class PETZVAL_API FocalSurface {
     double extent_stops = 0;
     double blur_mm = 0;  ///< signed blur diameter here of an object at the points' own distances
   };
-  Values at(const FilmPoint& place) const noexcept;
+  Values at(const FilmPoint& film_point) const noexcept;
 
   /// Values and their derivatives by film x and y (1/mm^2 and stops/mm); 0 at a limit.
   struct Slopes {
     Values values;
     Vec2<double> inverse_distance, extent_stops;
   };
-  Slopes slopes(const FilmPoint& place) const noexcept;
+  Slopes slopes(const FilmPoint& film_point) const noexcept;
 
   /// Values at N film points, float or double; extents may be null. Floats are within 2e-4 * (nearest() - farthest()).
   template <class T>
@@ -138,36 +138,36 @@ class PETZVAL_API FocalSurface {
 /// @param film    the film of the surface
 /// @param points  focus points over time
 /// @param moment  time and options, as in focus_targets()
-/// @param fades   one fade per point, from FocusFades; empty: 1 for points valid at the moment, 0 for others
+/// @param fades   one fade per point, from FadeFilter; empty: 1 for points valid at the moment, 0 for others
 /// @throws Error  if focus_targets() does, if the number of fades differs from the number of points, or if a fade is
 ///                outside [0, 1]
 PETZVAL_API std::vector<FocalPoint> focal_points(const IdealLens& lens, const Film& film,
-                                                 std::span<const FocusPoint> points, const FocusMoment& moment,
+                                                 std::span<const FocusPoint> points, const FocusTime& moment,
                                                  std::span<const double> fades = {});
 
 /// For each point: true if it is valid at the moment, has an image and lies on the film.
 ///
-/// The input of FocusFades::advance(), in which the renderer may clear hidden points.
+/// The input of FadeFilter::advance(), in which the renderer may clear hidden points.
 ///
 /// @throws Error  if focus_targets() does
 PETZVAL_API std::vector<bool> points_in_view(const IdealLens& lens, const Film& film,
-                                             std::span<const FocusPoint> points, const FocusMoment& moment);
+                                             std::span<const FocusPoint> points, const FocusTime& moment);
 
 /// Fades of points that leave the picture or are hidden, and come back; exponential in time, for any frame rate.
 ///
-///     FocusFades fades(0.2);
+///     FadeFilter fades(0.2);
 ///     for (...) {
 ///       moment.time += 1 / 24.0;
 ///       fades.advance(1 / 24.0, points_in_view(lens, film, points, moment));
 ///       const auto seen = focal_points(lens, film, points, moment, fades.fades());
 ///       if (!seen.empty()) surface.emplace(lens, film, seen);  // else the last one stays
 ///     }
-class PETZVAL_API FocusFades {
+class PETZVAL_API FadeFilter {
  public:
   /// Sets the time constant of the fades (s), after which 1 / e of a change remains; 0: no fading.
   ///
   /// @throws Error  if the time constant is negative or not finite
-  explicit FocusFades(double time_constant_s);
+  explicit FadeFilter(double time_constant_s);
 
   /// Advances the fades by a time in which every point stays in view or out of view.
   ///

@@ -91,7 +91,7 @@ struct FocusPoint {
 };
 
 /// The scene at one time, for the evaluation of focus points.
-struct FocusMoment {
+struct FocusTime {
   double time = 0;                              ///< s
   std::span<const Vec3<double>> vertices = {};  ///< vertices of the mesh at this time, lens frame, mm
   /// Points are left out if their chief rays miss this film. If z_mm is not set, the film is at the rear focal point.
@@ -109,6 +109,6 @@ struct FocusMoment {
 ///                is not finite, or a weight is negative; if an extent is beyond 20 stops or only some keys have an
 ///                extent; if barycentric coordinates are invalid or a vertex does not exist
 PETZVAL_API std::vector<FocusTarget> focus_targets(const IdealLens& lens, std::span<const FocusPoint> points,
-                                                   const FocusMoment& moment);
+                                                   const FocusTime& moment);
 
 }  // namespace petzval

@@ -17,8 +17,8 @@ namespace {
 /// The second form also holds for planes. A ray that misses the sphere starts on the tangent plane at the vertex; a ray
 /// that leaves neither starts at its point nearest to the vertex.
 template <class T>
-inline T way_to_front(const T& curvature, const T& x, const T& y, const T& z, const T& dx, const T& dy,
-                      const T& dz) noexcept {
+inline T distance_to_front(const T& curvature, const T& x, const T& y, const T& z, const T& dx, const T& dy,
+                           const T& dz) noexcept {
   using std::sqrt;
   const T along = x * dx + y * dy + z * dz;
   const T e = curvature * (x * x + y * y + z * z) - T(2) * z;

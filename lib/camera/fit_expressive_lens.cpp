@@ -29,11 +29,12 @@ std::optional<double> in_focus(const Lens& lens, const FilmPoint& film, double z
     const auto end = trace(lens, start, {.travel = Travel::to_scene});
     if (!end.transmitted()) return;
     const auto line = core_detail::slope_ray(end.ray, z);
-    const double part = area * weight * std::pow(start.direction.z, 4);
-    light += part;
-    height += Vec2<double>{line.x, line.y} * part, slope += Vec2<double>{line.slope_x, line.slope_y} * part;
-    across += part * (line.x * line.x + line.y * line.y);
-    along += part * (line.x * line.slope_x + line.y * line.slope_y);
+    const double contribution = area * weight * std::pow(start.direction.z, 4);
+    light += contribution;
+    height += Vec2<double>{line.x, line.y} * contribution,
+        slope += Vec2<double>{line.slope_x, line.slope_y} * contribution;
+    across += contribution * (line.x * line.x + line.y * line.y);
+    along += contribution * (line.x * line.slope_x + line.y * line.slope_y);
   });
   if (!(light > 0)) return {};
   height /= light, slope /= light;
@@ -55,12 +56,12 @@ double lit_radius(const Lens& lens, double radius, double z) {
 
 }  // namespace
 
-ExpressiveLens expressive_from(const Lens& given, const Film& given_film) {
+ExpressiveLens fit_expressive_lens(const Lens& given, const Film& given_film) {
   using camera_detail::EntranceMaps;
   const auto [lens, film] = camera_detail::placed(given, given_film);
   camera_detail::check_film(lens, film);
   if (camera_detail::has_cylinders(lens)) {
-    throw Error(lens.name() + ": expressive_from: the lens has cylinders; must be a lens of revolution");
+    throw Error(lens.name() + ": fit_expressive_lens: the lens has cylinders; must be a lens of revolution");
   }
   const camera_detail::LensFacts facts(lens);
   const camera_detail::ParaxialModel model(ModelKind::thick, facts, film.radius_mm());
@@ -74,16 +75,17 @@ ExpressiveLens expressive_from(const Lens& given, const Film& given_film) {
   ExpressiveLens found;
   constexpr int knots = 12;
   for (int i = 0; i <= knots; ++i) {
-    const double part = i == 0 ? 1e-3 : static_cast<double>(i) / knots, place = part * radius.y;
-    const Vec3<double> along{0, place, space.depth()};
-    const Ray<double> start{{0, place, space.pupil_z}, along * (towards_scene(lens, space) / glm::length(along))};
+    const double fraction = i == 0 ? 1e-3 : static_cast<double>(i) / knots, height_on_film = fraction * radius.y;
+    const Vec3<double> along{0, height_on_film, space.depth()};
+    const Ray<double> start{{0, height_on_film, space.pupil_z},
+                            along * (towards_scene(lens, space) / glm::length(along))};
     const auto end = trace(lens, start, {.travel = Travel::to_scene, .apertures = false});
     if (!end.transmitted()) break;
     // The exact ray defines the power: in the plane of focus, the model's ray must have the same distance from the
     // axis.
     const auto line = core_detail::slope_ray(end.ray, maps.z);
-    const double beyond = (line.slope_y - own * line.y) / (maps.b * place);
-    found.power.push_back({i == 0 ? 0 : part, 1 + beyond * focal_length});
+    const double added_power = (line.slope_y - own * line.y) / (maps.b * height_on_film);
+    found.power.push_back({i == 0 ? 0 : fraction, 1 + added_power * focal_length});
   }
 
   // Film points on rings about the axis, out to the farthest corner, with more points in outer rings.
@@ -95,13 +97,13 @@ ExpressiveLens expressive_from(const Lens& given, const Film& given_film) {
     const auto focus = in_focus(lens, {0, height}, maps.z);
     if (!focus) break;
     // Inverse of in_focus(maps, nearer).
-    const double asked = own + *focus - *centre, nearer = (maps.b * asked - maps.d) / (maps.a * asked - maps.c);
-    const double part = 1 / (1 + nearer) - 1, offset = part * -space.depth();
-    constexpr double largest = 0.2;
-    if (!(std::abs(part) <= largest)) break;
-    const int places = ring == 0 ? 1 : first_ring * ring;
-    for (int k = 0; k < places; ++k) {
-      const double azimuth = 2 * std::numbers::pi * k / places;
+    const double asked = own + *focus - *centre, excess = (maps.b * asked - maps.d) / (maps.a * asked - maps.c);
+    const double relative_offset = 1 / (1 + excess) - 1, offset = relative_offset * -space.depth();
+    constexpr double max_relative_offset = 0.2;
+    if (!(std::abs(relative_offset) <= max_relative_offset)) break;
+    const int azimuths = ring == 0 ? 1 : first_ring * ring;
+    for (int k = 0; k < azimuths; ++k) {
+      const double azimuth = 2 * std::numbers::pi * k / azimuths;
       found.film_offsets.push_back({{height * std::sin(azimuth), height * std::cos(azimuth)}, offset});
     }
   }
