@@ -10,7 +10,7 @@
 namespace petzval::core_detail {
 
 void check_rectangle(const std::string& where, const Film& film) {
-  const auto refuse = [&](const std::string& found_and_wanted) { throw Error(where + ": " + found_and_wanted); };
+  const auto refuse = [&](const std::string& value_and_rule) { throw Error(where + ": " + value_and_rule); };
   constexpr double longest = 1e9;  // mm; densities of rays on larger films overflow
   if (!(film.width_mm > 0 && film.height_mm > 0 && std::isnormal(film.area_mm2()) && film.width_mm <= longest &&
         film.height_mm <= longest)) {

@@ -7,12 +7,12 @@
 namespace petzval {
 namespace {
 
-constexpr std::size_t longest = 1000;
+constexpr std::size_t max_message_size = 1000;
 
 std::string one_line(std::string message) {
-  if (message.size() > longest) {
+  if (message.size() > max_message_size) {
     const std::string cut = " ... ";
-    const std::size_t half = (longest - cut.size()) / 2;
+    const std::size_t half = (max_message_size - cut.size()) / 2;
     message = message.substr(0, half) + cut + message.substr(message.size() - half);
   }
   const auto is_control = [](char c) { return static_cast<unsigned char>(c) < 0x20 || c == 0x7f; };

@@ -28,12 +28,12 @@ inline constexpr std::size_t permuted = 0;
 /// Looks up a table that fills `registers` registers (1 or 2); all of it is loaded. Requires permuted<R> > 0.
 template <int registers, class R>
 PETZVAL_INLINE typename Native<R>::Values permute(const R* table,
-                                                  [[maybe_unused]] const typename Native<R>::Bits& places) noexcept {
+                                                  [[maybe_unused]] const typename Native<R>::Bits& indices) noexcept {
   typename Native<R>::Values low, high{};
   __builtin_memcpy(&low, table, sizeof low);
   if constexpr (registers == 2) __builtin_memcpy(&high, table + lane_count<R>, sizeof high);
 #if defined(__AVX512F__)
-  const auto at = reinterpret_cast<__m512i>(places);
+  const auto at = reinterpret_cast<__m512i>(indices);
   if constexpr (sizeof(R) == 4) {
     if constexpr (registers == 1) return _mm512_maskz_permutexvar_ps(0xffff, at, low);
     return _mm512_permutex2var_ps(low, at, high);
@@ -43,7 +43,7 @@ PETZVAL_INLINE typename Native<R>::Values permute(const R* table,
   }
 #elif defined(__AVX2__)
   if constexpr (sizeof(R) == 4) {
-    const auto at = reinterpret_cast<__m256i>(places);
+    const auto at = reinterpret_cast<__m256i>(indices);
     const __m256 from_low = _mm256_permutevar8x32_ps(low, at);
     if constexpr (registers == 1) return from_low;
     const __m256 from_high = _mm256_permutevar8x32_ps(high, at);
@@ -57,12 +57,12 @@ PETZVAL_INLINE typename Native<R>::Values permute(const R* table,
 /// permutation one or two full registers are read, beyond `count`.
 template <class R>
 PETZVAL_INLINE typename Native<R>::Values look_up(const R* table, std::size_t count,
-                                                  const typename Native<R>::Bits& places) noexcept {
+                                                  const typename Native<R>::Bits& indices) noexcept {
   constexpr int width = lane_count<R>;
-  if (permuted < R >> 0 && count <= width) return permute<1>(table, places);
-  if (count <= permuted<R>) return permute<2>(table, places);
+  if (permuted < R >> 0 && count <= width) return permute<1>(table, indices);
+  if (count <= permuted<R>) return permute<2>(table, indices);
   R values[width];
-  for (int l = 0; l < width; ++l) values[l] = table[places[l]];
+  for (int l = 0; l < width; ++l) values[l] = table[indices[l]];
   typename Native<R>::Values result;
   __builtin_memcpy(&result, values, sizeof result);
   return result;

@@ -21,8 +21,8 @@ namespace {
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
 void check(const Lens& lens, const FieldPoint& point, const Pupil& entrance) {
-  const auto refuse = [&](const std::string& found_and_wanted) {
-    throw Error(lens.name() + ": scene point: " + found_and_wanted);
+  const auto refuse = [&](const std::string& value_and_rule) {
+    throw Error(lens.name() + ": scene point: " + value_and_rule);
   };
   if (!(std::abs(point.field_rad) <= std::numbers::pi)) {
     refuse("field = " + to_text(degrees(point.field_rad), 6) + " degrees; must be -180 to 180");
