@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "core/text.hpp"
-#include "sheet.hpp"
+#include "figure_elements.hpp"
 
 namespace petzval::figure_detail {
 namespace {
@@ -59,29 +59,29 @@ Axes::Axes(Svg& svg, double x, double y, double width, double height, Axis horiz
 }
 
 /// Clips by the algorithm of Liang and Barsky: each border of the frame shortens the range 0 to 1.
-Axes::Part Axes::within(const Point& a, const Point& b) const {
-  Part part;
-  const auto keep = [&part](double start, double change, const Axis& axis) {
+Axes::Visible Axes::within(const Point& a, const Point& b) const {
+  Visible visible;
+  const auto keep = [&visible](double start, double change, const Axis& axis) {
     if (change == 0) {
-      if (!(start >= axis.from && start <= axis.to)) part.to = -1;
+      if (!(start >= axis.from && start <= axis.to)) visible.to = -1;
       return;
     }
     const double t1 = (axis.from - start) / change, t2 = (axis.to - start) / change;
-    part.from = std::max(part.from, std::min(t1, t2));
-    part.to = std::min(part.to, std::max(t1, t2));
+    visible.from = std::max(visible.from, std::min(t1, t2));
+    visible.to = std::min(visible.to, std::max(t1, t2));
   };
   if (!std::isfinite(a.first + a.second + b.first + b.second)) return {0, -1};
   keep(a.first, b.first - a.first, across_);
   keep(a.second, b.second - a.second, up_);
-  return part;
+  return visible;
 }
 
 void Axes::curve(std::span<const Point> points, std::string_view attributes) {
   std::string d;
   bool drawing = false;
   for (std::size_t i = 0; i + 1 < points.size(); ++i) {
-    const Part part = within(points[i], points[i + 1]);
-    if (!(part.from <= part.to)) {
+    const Visible visible = within(points[i], points[i + 1]);
+    if (!(visible.from <= visible.to)) {
       drawing = false;
       continue;
     }
@@ -90,9 +90,9 @@ void Axes::curve(std::span<const Point> points, std::string_view attributes) {
       const auto& [bx, by] = points[i + 1];
       return svg_number(x(ax + t * (bx - ax))) + " " + svg_number(y(ay + t * (by - ay)));
     };
-    if (!drawing || part.from > 0) d += "M" + at(part.from);
-    d += "L" + at(part.to);
-    drawing = part.to == 1;
+    if (!drawing || visible.from > 0) d += "M" + at(visible.from);
+    d += "L" + at(visible.to);
+    drawing = visible.to == 1;
   }
   if (!d.empty()) svg_.path(d, attributes);
 }

@@ -43,10 +43,10 @@ class Axes {
 
  private:
   /// The part of a segment that lies inside the frame, as fractions of its length; empty if from > to.
-  struct Part {
+  struct Visible {
     double from = 0, to = 1;
   };
-  Part within(const Point& a, const Point& b) const;
+  Visible within(const Point& a, const Point& b) const;
 
   Svg& svg_;
   double x_, y_, width_, height_;

@@ -7,10 +7,10 @@
 #include <vector>
 
 #include "core/text.hpp"
+#include "figure_elements.hpp"
 #include "petzval/core/error.hpp"
 #include "petzval/figure/focus_figures.hpp"
 #include "scene_panel.hpp"
-#include "sheet.hpp"
 
 namespace petzval {
 namespace {
@@ -24,7 +24,7 @@ using figure_detail::SectionBox;
 using figure_detail::SectionPoint;
 using figure_detail::Svg;
 
-constexpr std::string_view beside_style = "fill=\"none\" stroke=\"#9bd3ab\" stroke-width=\"1\"";
+constexpr std::string_view side_style = "fill=\"none\" stroke=\"#9bd3ab\" stroke-width=\"1\"";
 constexpr std::string_view lens_style = "fill=\"none\" stroke=\"#1f5fc4\" stroke-width=\"2\"";
 constexpr std::string_view cone_style = "fill=\"none\" stroke=\"#888\" stroke-width=\"0.8\"";
 
@@ -36,8 +36,8 @@ class FocalSurfaceFigure {
       const bool sharp = point.inverse_distance.value_or(0) > 0 && point.blur_mm == 0;
       if (sharp) farthest = std::max(farthest, 1 / *point.inverse_distance);
     }
-    constexpr double beyond = 1.25, focal_lengths = 40;
-    reach_ = farthest > 0 ? beyond * farthest : focal_lengths * std::abs(view.lens.front_focal_length);
+    constexpr double reach_factor = 1.25, focal_lengths = 40;
+    reach_ = farthest > 0 ? reach_factor * farthest : focal_lengths * std::abs(view.lens.front_focal_length);
   }
 
   std::string draw() const {
@@ -68,26 +68,26 @@ class FocalSurfaceFigure {
   double middle(bool across_x) const { return across_x ? view_.film.shift_x_mm : view_.film.shift_y_mm; }
 
   /// Slope of the chief ray of a film point in the scene, away from the lens.
-  double chief_slope(const FilmPoint& place, bool across_x) const {
-    const ScenePoint seen = view_.lens.scene_of(view_.film.position(place));
+  double chief_slope(const FilmPoint& film_point, bool across_x) const {
+    const ScenePoint seen = view_.lens.scene_of(view_.film.position(film_point));
     const double z = seen.at_infinity ? seen.position.z : seen.position.z - entrance_z();
     return -(across_x ? seen.position.x : seen.position.y) / z;
   }
-  SectionPoint at(const FilmPoint& place, double distance, bool across_x) const {
-    return {entrance_z() - distance, chief_slope(place, across_x) * distance};
+  SectionPoint at(const FilmPoint& film_point, double distance, bool across_x) const {
+    return {entrance_z() - distance, chief_slope(film_point, across_x) * distance};
   }
   /// A film point in a section, by its position along the section and the offset of the section from the film centre,
   /// both -1 to 1.
-  FilmPoint place(double t, bool across_x, double beside = 0) const {
-    const double along = middle(across_x) + t * half(across_x), other = middle(!across_x) + beside * half(!across_x);
+  FilmPoint film_point(double t, bool across_x, double lateral = 0) const {
+    const double along = middle(across_x) + t * half(across_x), other = middle(!across_x) + lateral * half(!across_x);
     return across_x ? FilmPoint{along, other} : FilmPoint{other, along};
   }
 
-  void draw_surface(ScenePanel& panel, bool across_x, double beside, std::string_view style) const {
+  void draw_surface(ScenePanel& panel, bool across_x, double lateral, std::string_view style) const {
     std::optional<SectionPoint> before;
     constexpr int steps = 400;
     for (int i = 0; i <= steps; ++i) {
-      const FilmPoint film = place(2.0 * i / steps - 1, across_x, beside);
+      const FilmPoint film = film_point(2.0 * i / steps - 1, across_x, lateral);
       const double inverse = view_.surface.at(film).inverse_distance;
       const bool shown = inverse * 4 * reach_ > 1;  // the panel ends at reach_
       const auto now = shown ? std::optional(at(film, 1 / inverse, across_x)) : std::nullopt;
@@ -98,7 +98,7 @@ class FocalSurfaceFigure {
 
   SectionBox box(bool across_x) const {
     SectionBox result({view_.film.z(), 0});
-    for (const double t : {-1.0, 1.0}) result.take(at(place(t, across_x), reach_, across_x));
+    for (const double t : {-1.0, 1.0}) result.take(at(film_point(t, across_x), reach_, across_x));
     return result;
   }
 
@@ -106,9 +106,9 @@ class FocalSurfaceFigure {
     ScenePanel panel(svg, y, frame, across_x ? "x" : "y");
     panel.stroke({frame.box.z_min, 0}, {frame.box.z_max, 0}, axis_style);
     for (const double t : {-1.0, 1.0}) {
-      panel.stroke({entrance_z(), 0}, at(place(t, across_x), reach_, across_x), cone_style);
+      panel.stroke({entrance_z(), 0}, at(film_point(t, across_x), reach_, across_x), cone_style);
     }
-    for (const double beside : {-0.8, -0.4, 0.4, 0.8}) draw_surface(panel, across_x, beside, beside_style);
+    for (const double lateral : {-0.8, -0.4, 0.4, 0.8}) draw_surface(panel, across_x, lateral, side_style);
     draw_surface(panel, across_x, 0, focus_style);
     // At least 10 px: lens and film could be too small to see at the true scale.
     const double least = 10 / frame.px_per_mm;

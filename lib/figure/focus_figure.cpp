@@ -11,9 +11,9 @@
 #include "analysis/points.hpp"
 #include "axes.hpp"
 #include "core/text.hpp"
+#include "figure_elements.hpp"
 #include "petzval/core/error.hpp"
 #include "petzval/paraxial/first_order.hpp"
-#include "sheet.hpp"
 
 namespace petzval {
 namespace {

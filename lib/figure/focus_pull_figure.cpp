@@ -10,9 +10,9 @@
 
 #include "axes.hpp"
 #include "core/text.hpp"
+#include "figure_elements.hpp"
 #include "petzval/core/error.hpp"
 #include "petzval/core/geometry.hpp"
-#include "sheet.hpp"
 
 namespace petzval {
 namespace {
@@ -60,9 +60,9 @@ figure_detail::Axis spanning(Frames frames, const Diagram& diagram) {
   }
   if (low > high) low = 0, high = 1;
   if (diagram.from_zero) low = std::min(low, 0.0);
-  double room = 0.06 * (high - low);
-  if (!(room > 1e-9 * std::max(std::abs(low), std::abs(high)))) room = std::max(0.5, 1e-3 * std::abs(high));
-  return {diagram.from_zero && low == 0 ? 0 : low - room, high + room, diagram.title};
+  double margin = 0.06 * (high - low);
+  if (!(margin > 1e-9 * std::max(std::abs(low), std::abs(high)))) margin = std::max(0.5, 1e-3 * std::abs(high));
+  return {diagram.from_zero && low == 0 ? 0 : low - margin, high + margin, diagram.title};
 }
 
 }  // namespace

@@ -10,11 +10,11 @@
 #include <vector>
 
 #include "core/text.hpp"
+#include "figure_elements.hpp"
 #include "petzval/core/error.hpp"
 #include "petzval/paraxial/first_order.hpp"
 #include "petzval/pupil/illumination.hpp"
 #include "pupil/pupil_boundary.hpp"
-#include "sheet.hpp"
 
 namespace petzval {
 namespace {
@@ -22,7 +22,7 @@ namespace {
 using figure_detail::Svg;
 using figure_detail::svg_number;
 
-constexpr double cell = 220, gap = 14, top = 70, under = 68;
+constexpr double cell = 220, gap = 14, top = 70, caption_height = 68;
 constexpr std::size_t most_columns = 4;
 
 /// The surface and fate of rays just outside the boundary.
@@ -89,14 +89,14 @@ class FootprintFigure {
     const std::size_t columns = std::min(most_columns, cells_.size());
     const std::size_t rows = (cells_.size() + columns - 1) / columns;
     const double width = std::max(960.0, gap + static_cast<double>(columns) * (cell + gap));
-    const double keys = top + static_cast<double>(rows) * (cell + under + gap) + 8;
+    const double keys = top + static_cast<double>(rows) * (cell + caption_height + gap) + 8;
     const std::vector<std::string> names = limit_names();
     const std::size_t key_rows = (names.size() + 3) / 4;
     Svg svg(width, keys + 20 * static_cast<double>(key_rows + 1) + 40);
     figure_detail::draw_head(svg, lens_, "Pupil footprints", subject_z_, wavelength_);
     for (std::size_t i = 0; i < cells_.size(); ++i) {
       draw_cell(svg, cells_[i], fields_[i], gap + static_cast<double>(i % columns) * (cell + gap),
-                top + static_cast<double>(i / columns) * (cell + under + gap));
+                top + static_cast<double>(i / columns) * (cell + caption_height + gap));
     }
     for (std::size_t i = 0; i < names.size(); ++i) {
       figure_detail::draw_key(svg, gap + 235 * static_cast<double>(i % 4), keys + 20 * static_cast<double>(i / 4),

@@ -9,10 +9,10 @@
 
 #include "axes.hpp"
 #include "core/text.hpp"
+#include "figure_elements.hpp"
 #include "petzval/core/error.hpp"
 #include "petzval/core/geometry.hpp"
 #include "petzval/pupil/illumination.hpp"
-#include "sheet.hpp"
 
 namespace petzval {
 

@@ -8,11 +8,11 @@
 #include <utility>
 #include <vector>
 
+#include "figure_elements.hpp"
+#include "lens_section.hpp"
 #include "petzval/core/error.hpp"
 #include "petzval/paraxial/first_order.hpp"
 #include "ray_paths.hpp"
-#include "section.hpp"
-#include "sheet.hpp"
 
 namespace petzval {
 namespace {
@@ -92,8 +92,8 @@ class LayoutFigure {
   }
 
   bool arrives(const RayPath& ray) const {
-    const double way = lens_.film_z() - ray.hits.back().z;
-    return ray.fate == RayFate::transmitted && way * ray.behind.z > 0;
+    const double film_distance = lens_.film_z() - ray.hits.back().z;
+    return ray.fate == RayFate::transmitted && film_distance * ray.behind.z > 0;
   }
 
   SectionPoint on_film(const RayPath& ray) const {

@@ -9,8 +9,8 @@
 
 #include "axes.hpp"
 #include "core/text.hpp"
+#include "figure_elements.hpp"
 #include "petzval/core/error.hpp"
-#include "sheet.hpp"
 
 namespace petzval {
 namespace {

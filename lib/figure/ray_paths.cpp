@@ -84,8 +84,8 @@ std::vector<RayPath> ray_paths(const Lens& lens, double subject_z, std::span<con
                                      [&](int, const kernel::Vec<double>& hit) { path.hits.push_back(seen(hit)); });
       path.behind = seen(end.direction);
       path.fate = end.fate;
-      const bool beside = end.fate != RayFate::transmitted && path.hits.size() < 2;
-      if (!beside) result.push_back(std::move(path));
+      const bool misses_lens = end.fate != RayFate::transmitted && path.hits.size() < 2;
+      if (!misses_lens) result.push_back(std::move(path));
     }
   }
   return result;

@@ -5,10 +5,10 @@
 #include <span>
 #include <vector>
 
+#include "lens_section.hpp"
 #include "petzval/core/ray.hpp"
 #include "petzval/lens/lens.hpp"
 #include "petzval/paraxial/first_order.hpp"
-#include "section.hpp"
 
 namespace petzval::figure_detail {
 

@@ -7,7 +7,7 @@
 #include <string_view>
 
 #include "axes.hpp"
-#include "section.hpp"
+#include "lens_section.hpp"
 #include "svg.hpp"
 
 namespace petzval::figure_detail {

@@ -11,10 +11,10 @@
 
 #include "analysis/points.hpp"
 #include "core/text.hpp"
+#include "figure_elements.hpp"
 #include "petzval/core/error.hpp"
 #include "petzval/core/geometry.hpp"
 #include "petzval/paraxial/first_order.hpp"
-#include "sheet.hpp"
 
 namespace petzval {
 namespace {
@@ -24,7 +24,8 @@ using figure_detail::small_text;
 using figure_detail::Svg;
 using figure_detail::svg_number;
 
-constexpr double cell = 190, gap = 14, under = 22;  // side of a cell, space between cells, height of the line below
+constexpr double cell = 190, gap = 14,
+                 caption_height = 22;  // side of a cell, space between cells, height of the line below
 constexpr double left = 118, top = 112, bottom = 76;
 constexpr std::size_t drawn_rays = 600;
 
@@ -74,7 +75,7 @@ class SpotFigure {
         looks_(looks(lens.wavelengths_nm())),
         f_number_(film_side_f_number(lens)),
         svg_(std::max(960.0, left + static_cast<double>(columns_) * (cell + gap) + gap),
-             top + static_cast<double>(rows_) * (cell + under + gap) + bottom) {
+             top + static_cast<double>(rows_) * (cell + caption_height + gap) + bottom) {
     std::vector<std::size_t> order(wavelengths_);
     std::iota(order.begin(), order.end(), std::size_t(0));
     const auto nm = lens.wavelengths_nm();
@@ -105,7 +106,7 @@ class SpotFigure {
   std::span<const Spot> of(std::size_t row) const { return spots_.subspan(row * wavelengths_, wavelengths_); }
   double airy(std::size_t w) const { return airy_radius(lens_, w); }
   double cell_x(std::size_t column) const { return left + static_cast<double>(column) * (cell + gap); }
-  double cell_y(std::size_t row) const { return top + static_cast<double>(row) * (cell + under + gap); }
+  double cell_y(std::size_t row) const { return top + static_cast<double>(row) * (cell + caption_height + gap); }
 
   /// Largest distance of a hit from the origin of its row, along x or y.
   double extent() const {

@@ -8,10 +8,10 @@
 #include <vector>
 
 #include "core/text.hpp"
+#include "figure_elements.hpp"
 #include "petzval/core/error.hpp"
 #include "petzval/core/geometry.hpp"
 #include "scene_panel.hpp"
-#include "sheet.hpp"
 
 namespace petzval {
 namespace {
@@ -104,9 +104,9 @@ class TiltFigure {
   /// Name of the vertical axis: "y", "x" or, for example, "y turned by 30 degrees towards +x".
   std::string across_name() const {
     const double turn = std::atan2(up_.x, up_.y);
-    constexpr double hardly = 0.01;
-    if (std::abs(turn) < hardly) return "y";
-    if (std::abs(turn - radians(90)) < hardly) return "x";
+    constexpr double angle_tolerance = 0.01;
+    if (std::abs(turn) < angle_tolerance) return "y";
+    if (std::abs(turn - radians(90)) < angle_tolerance) return "x";
     return "y turned by " + to_text(degrees(turn), 3) + "\u00b0 towards +x";
   }
 
@@ -210,8 +210,8 @@ class TiltFigure {
     const Pupil& exit = view_.lens.pupils.exit;
     Film film = ideal_;
     if (std::isfinite(exit.z)) {
-      const double way = film.z() - exit.z;
-      film.z_mm = exit.z + way / (1 + std::copysign(1.0, way) * blur / exit.diameter);
+      const double film_distance = film.z() - exit.z;
+      film.z_mm = exit.z + film_distance / (1 + std::copysign(1.0, film_distance) * blur / exit.diameter);
     } else {
       const auto axial = view_.lens.image({{0, 0, -1}, true});
       if (axial) film.z_mm = film.z() - blur / axial->cone;
@@ -305,8 +305,8 @@ class TiltFigure {
   void draw_direction(ScenePanel& panel, const SectionBox& box, std::size_t i) const {
     const SectionPoint d = section(view_.points[i].point.position);
     if (!(d.z < 0)) return;
-    const double way = box.z_min - view_.lens.front_principal_z();
-    const SectionPoint end{box.z_min, way * d.height / d.z}, start{0.94 * end.z, 0.94 * end.height};
+    const double film_distance = box.z_min - view_.lens.front_principal_z();
+    const SectionPoint end{box.z_min, film_distance * d.height / d.z}, start{0.94 * end.z, 0.94 * end.height};
     panel.stroke(start, end, chief_style);
     panel.mark(start, i + 1, view_.points[i].used, 4);
   }

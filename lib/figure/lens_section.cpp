@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "section.hpp"
+#include "lens_section.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -29,8 +29,8 @@ LensSection::LensSection(const Lens& lens, Meridian meridian, std::span<const do
   const auto surfaces = lens.surfaces();
   std::vector<std::size_t> bending;
   for (std::size_t i = 0; i < surfaces.size(); ++i) {
-    const double wanted = std::isfinite(surfaces[i].semi_diameter) ? surfaces[i].semi_diameter : 1.05 * needed[i];
-    rims_.push_back(farthest_defined(i, wanted));
+    const double required = std::isfinite(surfaces[i].semi_diameter) ? surfaces[i].semi_diameter : 1.05 * needed[i];
+    rims_.push_back(farthest_defined(i, required));
     if (bends(i)) bending.push_back(i);
   }
   drawn_ = rims_;
@@ -91,14 +91,14 @@ void LensSection::extend_cemented(const std::vector<std::size_t>& bending) {
     const LensSurface& s = lens_.surfaces()[i];
     if (!glass_behind(before) || !glass_behind(i) || s.mirror || !s.aspheric.empty()) continue;
     if (lens_.surfaces()[before].mirror || lens_.surfaces()[after].mirror) continue;
-    const double wanted = std::max(rims_[before], rims_[after]);
+    const double required = std::max(rims_[before], rims_[after]);
     const double sense = lens_.surfaces()[after].vertex_z > s.vertex_z ? 1 : -1;
-    const double reach = last_where(rims_[i], std::max(rims_[i], wanted), [&](double h) {
+    const double reach = last_where(rims_[i], std::max(rims_[i], required), [&](double h) {
       return !std::isnan(sag_at(lens_, i, meridian_, h)) && (h > rims_[before] || sense * gap(before, i, h) > 0) &&
              (h > rims_[after] || sense * gap(i, after, h) > 0);
     });
     // A partial extension would match neither the table nor the real glass.
-    if (reach == wanted) drawn_[i] = reach;
+    if (reach == required) drawn_[i] = reach;
   }
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "sheet.hpp"
+#include "figure_elements.hpp"
 
 #include <algorithm>
 #include <array>
