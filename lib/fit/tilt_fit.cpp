@@ -61,7 +61,7 @@ bool clear_of_lens(const IdealLens& lens, const Film& film) {
 /// The result for a solution; the given film if there is no solution.
 /// @param blur_of the blur of a target on a film
 TiltFit described(const IdealLens& lens, std::span<const FocusTarget> targets, const TiltOptions& options,
-                  std::span<const fit_detail::SeenTarget> seen, const fit_detail::TiltProblem& problem,
+                  std::span<const fit_detail::ImagedTarget> seen, const fit_detail::TiltProblem& problem,
                   const fit_detail::TiltSolution& solution, const auto& blur_of) {
   TiltFit fit;
   fit.rank = problem.rank;
@@ -92,14 +92,14 @@ TiltFit described(const IdealLens& lens, std::span<const FocusTarget> targets, c
 }
 
 /// The problem with reduced weights for outliers, or without outliers.
-fit_detail::TiltProblem problem_without_outliers(const IdealLens& lens, std::span<fit_detail::SeenTarget> seen,
+fit_detail::TiltProblem problem_without_outliers(const IdealLens& lens, std::span<fit_detail::ImagedTarget> seen,
                                                  const TiltOptions& options) {
-  constexpr std::size_t fewest = 5;  // targets needed to identify an outlier
+  constexpr std::size_t min_targets = 5;  // targets needed to identify an outlier
   const fit_detail::TiltProblem problem = tilt_problem(lens, seen, options.max_tilt_rad);
-  if (!options.robust || problem.used.size() < fewest) return problem;
+  if (!options.robust || problem.used.size() < min_targets) return problem;
   const std::vector<double> kept = robust_weights(problem, seen);
   for (std::size_t i = 0; i < kept.size(); ++i) {
-    fit_detail::SeenTarget& target = seen[problem.used[i]];
+    fit_detail::ImagedTarget& target = seen[problem.used[i]];
     target.weight *= kept[i];
     if (!(target.weight > 0)) target.status = TargetStatus::outlier;
   }
@@ -129,7 +129,7 @@ std::string_view name(TiltFitStatus status) noexcept {
 
 TiltFit fit_tilt(const IdealLens& lens, std::span<const FocusTarget> targets, const TiltOptions& given) {
   const TiltOptions options = checked(given, lens.rear_focal_z);
-  std::vector<fit_detail::SeenTarget> seen = fit_detail::seen_targets(lens, targets);
+  std::vector<fit_detail::ImagedTarget> seen = fit_detail::imaged_targets(lens, targets);
   const fit_detail::TiltProblem problem = problem_without_outliers(lens, seen, options);
   return described(lens, targets, options, seen, problem, solved(problem), [&](std::size_t i, const Film& film) {
     return seen[i].image ? signed_blur(*seen[i].image, film) : std::numeric_limits<double>::quiet_NaN();
@@ -143,7 +143,7 @@ TiltFit fit_tilt(const Lens& lens, std::span<const FocusTarget> targets, const T
 TiltFit fit_tilt(const ImageRays& lens, std::span<const FocusTarget> targets, const TiltOptions& given) {
   const TiltOptions options = checked(given, lens.lens().film_z());
   const IdealLens& ideal = lens.ideal();
-  std::vector<fit_detail::SeenTarget> seen = fit_detail::seen_targets(ideal, targets);
+  std::vector<fit_detail::ImagedTarget> seen = fit_detail::imaged_targets(ideal, targets);
   std::vector<RayBundle> bundles(targets.size());
   for (std::size_t i = 0; i < targets.size(); ++i) {
     if (!seen[i].image) continue;

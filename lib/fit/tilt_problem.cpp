@@ -65,15 +65,15 @@ bool IdealBlur::operator()(const FilmSlopes& film, double* errors, double* deriv
   return true;
 }
 
-std::vector<SeenTarget> seen_targets(const IdealLens& lens, std::span<const FocusTarget> targets) {
+std::vector<ImagedTarget> imaged_targets(const IdealLens& lens, std::span<const FocusTarget> targets) {
   const double farthest = focus_detail::farthest_film * std::abs(lens.rear_focal_length), z = lens.front_principal_z();
-  std::vector<SeenTarget> result;
+  std::vector<ImagedTarget> result;
   result.reserve(targets.size());
   for (const FocusTarget& target : targets) {
-    const ScenePoint& place = target.point;
+    const ScenePoint& scene_point = target.point;
     const double blur = target.blur_mm, weight = target.fixes_distance ? target.weight : 0;
-    SeenTarget& seen = result.emplace_back();
-    seen.image = lens.image(place);
+    ImagedTarget& seen = result.emplace_back();
+    seen.image = lens.image(scene_point);
     if (!focus_detail::well_formed(target)) {
       seen.status = TargetStatus::not_finite;
       continue;
@@ -82,9 +82,9 @@ std::vector<SeenTarget> seen_targets(const IdealLens& lens, std::span<const Focu
     if (!seen.image) continue;
     const ImagePoint& image = *seen.image;
     const double move = blur == 0 ? 0 : blur / image.cone;
-    seen.wanted = image.position + move * Vec3<double>(image.slope_x, image.slope_y, 1);
-    seen.picture = focus_detail::picture_point(blur == 0 ? place : lens.scene_of(seen.wanted), z);
-    const Vec3<double> from_lens = seen.wanted - Vec3<double>(0, 0, lens.rear_focal_z);
+    seen.target_point = image.position + move * Vec3<double>(image.slope_x, image.slope_y, 1);
+    seen.picture = focus_detail::picture_point(blur == 0 ? scene_point : lens.scene_of(seen.target_point), z);
+    const Vec3<double> from_lens = seen.target_point - Vec3<double>(0, 0, lens.rear_focal_z);
     const double away = std::max({std::abs(from_lens.x), std::abs(from_lens.y), std::abs(from_lens.z)});
     const PicturePoint& d = seen.picture;
     const bool near = away < farthest && std::isfinite(d.x) && std::isfinite(d.y) && std::isfinite(d.inverse_distance);
@@ -98,11 +98,11 @@ std::vector<SeenTarget> seen_targets(const IdealLens& lens, std::span<const Focu
   return result;
 }
 
-TiltProblem tilt_problem(const IdealLens& lens, std::span<const SeenTarget> targets, double max_tilt) {
+TiltProblem tilt_problem(const IdealLens& lens, std::span<const ImagedTarget> targets, double max_tilt) {
   TiltProblem problem;
   // Cones and weights are divided by their largest values so that their squares do not overflow.
   double largest = 0, largest_cone = 0, weights = 0;
-  for (const SeenTarget& target : targets) {
+  for (const ImagedTarget& target : targets) {
     if (!(target.weight > 0)) continue;
     largest = std::max(largest, target.weight);
     largest_cone = std::max(largest_cone, target.image->cone);
@@ -116,14 +116,14 @@ TiltProblem tilt_problem(const IdealLens& lens, std::span<const SeenTarget> targ
     points.back().weight = targets[i].weight;
     const double cone = targets[i].image->cone / largest_cone, weight = targets[i].weight / largest * cone * cone;
     weights += weight;
-    mean += weight * targets[i].wanted;
+    mean += weight * targets[i].target_point;
   }
   const focus_detail::PlaneFit fit = focus_detail::fit_plane(points);
   problem.rank = fit.rank;
   if (problem.used.empty()) return problem;
   problem.frame = {mean / weights, std::abs(lens.rear_focal_length)};
   for (const std::size_t i : problem.used) {
-    const Vec3<double> at = (targets[i].wanted - problem.frame.origin) / problem.frame.unit;
+    const Vec3<double> at = (targets[i].target_point - problem.frame.origin) / problem.frame.unit;
     IdealBlur& blur = problem.blurs.emplace_back();
     blur.x = at.x, blur.y = at.y, blur.z = at.z;
     blur.slope_x = targets[i].image->slope_x, blur.slope_y = targets[i].image->slope_y;

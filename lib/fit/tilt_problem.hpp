@@ -70,14 +70,14 @@ class IdealBlur final : public BlurErrors {
 };
 
 /// A focus target with its image and its use.
-struct SeenTarget {
+struct ImagedTarget {
   TargetStatus status = TargetStatus::used;
   double weight = 0;  ///< 0 unless `status` is TargetStatus::used
   std::optional<ImagePoint> image;
-  Vec3<double> wanted{0, 0, 0};  ///< point at which the chief ray should meet the film
-  PicturePoint picture;          ///< the scene point whose image is that point
+  Vec3<double> target_point{0, 0, 0};  ///< point at which the chief ray should meet the film
+  PicturePoint picture;                ///< the scene point whose image is that point
 };
-std::vector<SeenTarget> seen_targets(const IdealLens& lens, std::span<const FocusTarget> targets);
+std::vector<ImagedTarget> imaged_targets(const IdealLens& lens, std::span<const FocusTarget> targets);
 
 /// The input of a fit, made from the targets with a weight.
 struct TiltProblem {
@@ -88,7 +88,7 @@ struct TiltProblem {
   std::vector<std::size_t> used;  ///< indices of the targets
   std::vector<IdealBlur> blurs;   ///< one per index in `used`
 };
-TiltProblem tilt_problem(const IdealLens& lens, std::span<const SeenTarget> targets, double max_tilt);
+TiltProblem tilt_problem(const IdealLens& lens, std::span<const ImagedTarget> targets, double max_tilt);
 
 struct TiltSolution {
   bool converged = false, limited = false;
@@ -104,6 +104,6 @@ std::optional<FilmSlopes> least_tukey_loss(std::span<const BlurErrors* const> er
                                            const TiltSpace& space, const FilmSlopes& start, double reach);
 
 /// The fraction of its weight, 0 to 1, that each target of problem.used keeps.
-std::vector<double> robust_weights(const TiltProblem& problem, std::span<const SeenTarget> targets);
+std::vector<double> robust_weights(const TiltProblem& problem, std::span<const ImagedTarget> targets);
 
 }  // namespace petzval::fit_detail

@@ -8,7 +8,7 @@
 
 namespace petzval::fit_detail {
 
-RayBlur::RayBlur(const RayBundle& bundle, const TiltFrame& frame, double root, double wanted) : root_(root) {
+RayBlur::RayBlur(const RayBundle& bundle, const TiltFrame& frame, double root, double target_blur) : root_(root) {
   const auto array = [](const std::vector<double>& values) {
     return Eigen::Map<const Eigen::ArrayXd>(values.data(), static_cast<Eigen::Index>(values.size()));
   };
@@ -16,13 +16,13 @@ RayBlur::RayBlur(const RayBundle& bundle, const TiltFrame& frame, double root, d
   slope_x_ = array(bundle.slope_x), slope_y_ = array(bundle.slope_y);
   x_ = (array(bundle.x) + to_frame * slope_x_ - frame.origin.x) / frame.unit;
   y_ = (array(bundle.y) + to_frame * slope_y_ - frame.origin.y) / frame.unit;
-  if (wanted == 0) return;
+  if (target_blur == 0) return;
   // The blur on the sharpest upright film approximates the blur without defocus on any film.
   const Eigen::ArrayXd u = slope_x_ - slope_x_.mean(), v = slope_y_ - slope_y_.mean();
   const double sharpest = -(x_ * u + y_ * v).sum() / (u.square() + v.square()).sum();
   const Eigen::ArrayXd x = x_ + sharpest * slope_x_, y = y_ + sharpest * slope_y_;
   const double least = 8 * ((x - x.mean()).square() + (y - y.mean()).square()).mean();
-  defocus_ = std::copysign(std::sqrt(std::max(wanted * wanted - least, 0.0)), wanted);
+  defocus_ = std::copysign(std::sqrt(std::max(target_blur * target_blur - least, 0.0)), target_blur);
 }
 
 bool RayBlur::operator()(const FilmSlopes& film, double* errors, double* derivatives) const {
@@ -33,13 +33,13 @@ bool RayBlur::operator()(const FilmSlopes& film, double* errors, double* derivat
   const Eigen::ArrayXd facing = 1 - film.p * slope_x_ - film.q * slope_y_;
   if (!(facing > 0).all()) return false;
   Eigen::Matrix<double, Eigen::Dynamic, 4> hits(3 * count, 4);  // derivatives by z0, p and q; then the hits
-  auto parts = hits.reshaped(count, 12);                        // interleaved x, y and z
-  parts.col(0) = slope_x_ / facing, parts.col(1) = slope_y_ / facing, parts.col(2) = 1 / facing;
+  auto columns = hits.reshaped(count, 12);                      // interleaved x, y and z
+  columns.col(0) = slope_x_ / facing, columns.col(1) = slope_y_ / facing, columns.col(2) = 1 / facing;
 
   // Defocus changes the diameter at a rate that depends only on the slopes of the film.
   double offset = 0, offset_by_p = 0, offset_by_q = 0;
   if (defocus_ != 0) {
-    const Eigen::Array<double, Eigen::Dynamic, 3> by_z = parts.leftCols<3>();
+    const Eigen::Array<double, Eigen::Dynamic, 3> by_z = columns.leftCols<3>();
     const Eigen::Array<double, Eigen::Dynamic, 3> spread = by_z.rowwise() - by_z.colwise().mean();
     const double square = scale * spread.square().sum();
     const Eigen::ArrayXd growth = (spread * by_z).rowwise().sum();
@@ -50,16 +50,16 @@ bool RayBlur::operator()(const FilmSlopes& film, double* errors, double* derivat
 
   const Eigen::ArrayXd z = (film.z - offset + film.p * x_ + film.q * y_) / facing;
   const Eigen::ArrayXd x = x_ + slope_x_ * z, y = y_ + slope_y_ * z;
-  parts.col(9) = x, parts.col(10) = y, parts.col(11) = z;
+  columns.col(9) = x, columns.col(10) = y, columns.col(11) = z;
   if (!derivatives) {
-    parts.rightCols<3>().rowwise() -= parts.rightCols<3>().colwise().mean().eval();
+    columns.rightCols<3>().rowwise() -= columns.rightCols<3>().colwise().mean().eval();
     std::fill_n(errors, 4, 0.0);
     errors[0] = root_ * std::sqrt(scale) * hits.col(3).norm();
     return true;
   }
-  parts.middleCols<3>(3) = parts.leftCols<3>().array().colwise() * (x - offset_by_p);
-  parts.middleCols<3>(6) = parts.leftCols<3>().array().colwise() * (y - offset_by_q);
-  parts.rowwise() -= parts.colwise().mean().eval();
+  columns.middleCols<3>(3) = columns.leftCols<3>().array().colwise() * (x - offset_by_p);
+  columns.middleCols<3>(6) = columns.leftCols<3>().array().colwise() * (y - offset_by_q);
+  columns.rowwise() -= columns.colwise().mean().eval();
   // Reduces all hits to four errors with the same sum of squares, gradient and Gauss-Newton matrix: a square root of
   // their product matrix.
   const Eigen::Matrix4d products = scale * hits.transpose() * hits;

@@ -14,8 +14,8 @@ namespace petzval::fit_detail {
 /// diameter is the square of the defocus plus the square of the least diameter.)
 class RayBlur final : public BlurErrors {
  public:
-  /// @param wanted signed diameter in units of the frame
-  RayBlur(const RayBundle& bundle, const TiltFrame& frame, double root, double wanted);
+  /// @param target_blur signed diameter in units of the frame
+  RayBlur(const RayBundle& bundle, const TiltFrame& frame, double root, double target_blur);
   int rows() const noexcept override { return 4; }
   bool operator()(const FilmSlopes& film, double* errors, double* derivatives) const override;
 

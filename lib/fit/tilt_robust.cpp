@@ -48,16 +48,16 @@ std::vector<std::array<std::size_t, 3>> groups(std::size_t count, int size, std:
 FilmSlopes film_through(std::span<const IdealBlur> blurs, const std::array<std::size_t, 3>& group,
                         const TiltSpace& space) {
   Eigen::Matrix3d rows = Eigen::Matrix3d::Identity();
-  Eigen::Vector3d places = Eigen::Vector3d::Zero();
+  Eigen::Vector3d offsets = Eigen::Vector3d::Zero();
   for (int i = 0; i < space.parameters; ++i) {
     const IdealBlur& blur = blurs[group[static_cast<std::size_t>(i)]];
     const double along = blur.x * space.along_x + blur.y * space.along_y;
     const double across = blur.y * space.along_x - blur.x * space.along_y;
     const Eigen::RowVector3d row(1, along / space.spread_along, across / space.spread_across);
     rows.row(i).head(space.parameters) = row.head(space.parameters);
-    places[i] = blur.z;
+    offsets[i] = blur.z;
   }
-  const Eigen::Vector3d t = rows.inverse() * places;
+  const Eigen::Vector3d t = rows.inverse() * offsets;
   return space.film(t[0], t[1] / space.spread_along, t[2] / space.spread_across);
 }
 
@@ -76,13 +76,13 @@ LeastMedian least_median(std::span<const IdealBlur> blurs, const TiltSpace& spac
   std::vector<double> squares(blurs.size());
   for (const auto& group : groups(blurs.size(), space.parameters, most_groups)) {
     const FilmSlopes film = film_through(blurs, group, space);
-    std::ptrdiff_t beyond = 0;
-    for (std::size_t i = 0; i < blurs.size() && beyond <= count - half; ++i) {
+    std::ptrdiff_t larger_count = 0;
+    for (std::size_t i = 0; i < blurs.size() && larger_count <= count - half; ++i) {
       double blur = 0;
       squares[i] = blurs[i](film, &blur, nullptr) ? blur * blur : std::numeric_limits<double>::infinity();
-      if (!(squares[i] < best.square)) ++beyond;
+      if (!(squares[i] < best.square)) ++larger_count;
     }
-    if (beyond > count - half) continue;
+    if (larger_count > count - half) continue;
     std::nth_element(squares.begin(), squares.begin() + (half - 1), squares.end());
     best = {film, squares[static_cast<std::size_t>(half - 1)]};
   }
@@ -91,14 +91,14 @@ LeastMedian least_median(std::span<const IdealBlur> blurs, const TiltSpace& spac
 
 }  // namespace
 
-std::vector<double> robust_weights(const TiltProblem& problem, std::span<const SeenTarget> targets) {
+std::vector<double> robust_weights(const TiltProblem& problem, std::span<const ImagedTarget> targets) {
   // In units of the mean cone, to which the constant `rounding` below is relative.
   std::vector<IdealBlur> blurs = problem.blurs;
   std::vector<double> weights;
   double cones = 0;
   for (const std::size_t i : problem.used) cones += targets[i].image->cone / static_cast<double>(blurs.size());
   for (std::size_t i = 0; i < blurs.size(); ++i) {
-    const SeenTarget& target = targets[problem.used[i]];
+    const ImagedTarget& target = targets[problem.used[i]];
     blurs[i].root = target.image->cone / cones;
     weights.push_back(target.weight);
   }
@@ -117,8 +117,8 @@ std::vector<double> robust_weights(const TiltProblem& problem, std::span<const S
 
   for (std::size_t i = 0; i < blurs.size(); ++i) {
     double blur = 0;
-    const double part = blurs[i](film, &blur, nullptr) ? std::min(std::abs(blur) / reach, 1.0) : 1;
-    weights[i] = (1 - part * part) * (1 - part * part);
+    const double relative_blur = blurs[i](film, &blur, nullptr) ? std::min(std::abs(blur) / reach, 1.0) : 1;
+    weights[i] = (1 - relative_blur * relative_blur) * (1 - relative_blur * relative_blur);
   }
   return weights;
 }

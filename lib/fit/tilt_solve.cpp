@@ -66,7 +66,7 @@ class Restraint final : public BlurErrors {
 };
 
 /// Error of a film whose front the rays do not reach: so large that the solver rejects the step.
-constexpr double hopeless = 1e100;
+constexpr double unreachable_cost = 1e100;
 
 class ChartedErrors final : public ceres::CostFunction {
  public:
@@ -78,16 +78,16 @@ class ChartedErrors final : public ceres::CostFunction {
     const FilmSlopes film = chart_(parameters[0]);
     const int rows = errors_.rows(), columns = chart_.parameters();
     Eigen::Matrix<double, Eigen::Dynamic, 3, Eigen::RowMajor, most_rows, 3> by_film(rows, 3);
-    const bool wanted = jacobians && jacobians[0];
+    const bool with_derivatives = jacobians && jacobians[0];
     // Ceres prints a message if an evaluation fails or a number is not finite.
     const auto finite = [](double x) { return std::isfinite(x); };
-    if (!errors_(film, residuals, wanted ? by_film.data() : nullptr) ||
+    if (!errors_(film, residuals, with_derivatives ? by_film.data() : nullptr) ||
         !std::all_of(residuals, residuals + rows, finite)) {
-      std::fill_n(residuals, rows, hopeless);
+      std::fill_n(residuals, rows, unreachable_cost);
       by_film.setZero();
     }
     using Rows = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
-    if (wanted) Eigen::Map<Rows>(jacobians[0], rows, columns) = by_film * chart_.by_parameters();
+    if (with_derivatives) Eigen::Map<Rows>(jacobians[0], rows, columns) = by_film * chart_.by_parameters();
     return true;
   }
 
@@ -121,18 +121,18 @@ std::optional<NormalEquations> normal_equations(std::span<const BlurErrors* cons
 /// Gauss-Newton steps without a test of descent: differences between films below half of the digits do not change the
 /// sum of squares, but they change the gradient.
 FilmSlopes polished(std::span<const BlurErrors* const> errors, const FilmChart& chart) {
-  Eigen::Vector3d place = Eigen::Vector3d::Zero();
+  Eigen::Vector3d solution = Eigen::Vector3d::Zero();
   for (int i = 0; i < 8; ++i) {
-    const FilmSlopes film = chart(place.data());
+    const FilmSlopes film = chart(solution.data());
     const auto equations = normal_equations(errors, chart, film);
     if (!equations) return film;
     const Eigen::Vector3d step = equations->products.ldlt().solve(equations->gradient);
-    constexpr double half_the_digits = 1e-6, rounding = 1e-13;
-    if (!(step.norm() < half_the_digits)) break;
-    place -= step;
+    constexpr double coarse_step = 1e-6, rounding = 1e-13;
+    if (!(step.norm() < coarse_step)) break;
+    solution -= step;
     if (step.norm() < rounding) break;
   }
-  return chart(place.data());
+  return chart(solution.data());
 }
 
 /// Moves `film` to the least sum of losses over the first parameters. Returns false, and leaves `film` unchanged, if
@@ -162,7 +162,7 @@ bool minimise(std::span<const BlurErrors* const> errors, std::span<ceres::LossFu
   options.max_num_consecutive_invalid_steps = options.max_num_iterations;  // Ceres prints if it gives up
   ceres::Solver::Summary summary;
   ceres::Solve(options, &problem, &summary);
-  if (summary.termination_type != ceres::CONVERGENCE || !(summary.final_cost < hopeless)) return false;
+  if (summary.termination_type != ceres::CONVERGENCE || !(summary.final_cost < unreachable_cost)) return false;
   film = chart(parameters);
   if (losses.empty()) film = polished(errors, FilmChart(space, film, parameter_count));
   return true;
@@ -174,7 +174,7 @@ bool faces_light(std::span<const BlurErrors* const> errors, const FilmSlopes& fi
 }
 
 /// Slopes divided by the limit.
-double part_of_limit(const TiltSpace& space, const FilmSlopes& film) {
+double fraction_of_limit(const TiltSpace& space, const FilmSlopes& film) {
   const double along = space.along(film) / space.largest_slope;
   return space.parameters < 3 ? std::abs(along) : std::hypot(along, space.across(film) / space.largest_slope_across);
 }
@@ -201,22 +201,22 @@ std::optional<TiltSolution> least_nearby(std::span<const BlurErrors* const> erro
       const Eigen::Matrix3d products = equations->products + Eigen::Matrix3d(prices.asDiagonal());
       return products.ldlt().solve(-equations->gradient - prices.cwiseProduct(here));
     };
-    const auto beyond = [&](double price) {
+    const auto exceeds_limit = [&](double price) {
       const Eigen::Vector3d there = here + step_at(price);
       return there.dot(cost.cwiseProduct(there)) > 1;
     };
-    result.limited = beyond(0);
+    result.limited = exceeds_limit(0);
     result.restraint = 0;
     if (result.limited) {
       double high = along * along;
-      while (beyond(high)) high *= 4;
-      result.restraint = core_detail::last_with(0.0, high, beyond);
+      while (exceeds_limit(high)) high *= 4;
+      result.restraint = core_detail::last_with(0.0, high, exceeds_limit);
     }
     const Eigen::Vector3d step = step_at(result.restraint);
     film = chart(step.data());
-    constexpr double rounding = 1e-13, near_rounding = 1e-10;
+    constexpr double rounding = 1e-13, stalled_step = 1e-10;
     const double length = step.norm();
-    if (length < rounding || (length < near_rounding && length > last / 2)) break;
+    if (length < rounding || (length < stalled_step && length > last / 2)) break;
     if (!(length < last / 2)) return {};
     last = length;
   }
@@ -242,11 +242,11 @@ TiltSolution least_blur(std::span<const BlurErrors* const> errors, const TiltSpa
   }
 
   const auto bring_to_limit = [&] {
-    const double part = part_of_limit(space, result.film);
-    const double along = space.along(result.film) / part, across = space.across(result.film) / part;
+    const double fraction = fraction_of_limit(space, result.film);
+    const double along = space.along(result.film) / fraction, across = space.across(result.film) / fraction;
     result.film = space.film(result.film.z, along, space.parameters > 2 ? across : 0);
   };
-  if (part_of_limit(space, result.film) > 1) bring_to_limit();
+  if (fraction_of_limit(space, result.film) > 1) bring_to_limit();
 
   // The best film within the limit is either the unrestricted minimum or lies on the limit. A film on the limit is also
   // the unrestricted minimum with a penalty on squared slopes, whose factor (the price) is the Lagrange multiplier.
@@ -264,7 +264,7 @@ TiltSolution least_blur(std::span<const BlurErrors* const> errors, const TiltSpa
     if (price > 0) all.push_back(&restraint);
     result.converged = minimise(all, {}, space, space.parameters, result.film);
     // If the search diverged, the slopes exceeded the limit.
-    const double excess = result.converged ? 1 - std::min(1 / part_of_limit(space, result.film), 1e100) : 1;
+    const double excess = result.converged ? 1 - std::min(1 / fraction_of_limit(space, result.film), 1e100) : 1;
     if (price == 0 && excess <= 1e-14) {
       result.limited = false;
       return result;
