@@ -39,7 +39,7 @@ TiltSpace tilt_space(const focus_detail::PlaneFit& fit, std::span<const IdealBlu
     space.spread_across = std::max(across, 1e-9 * along);
   }
   const auto faded = [](double spread, double least) { return std::clamp(spread / least - 1, 1e-6, 1.0); };
-  space.largest_slope = std::tan(max_tilt) * faded(fit.spread, focus_detail::one_place);
+  space.largest_slope = std::tan(max_tilt) * faded(fit.spread, focus_detail::coincidence_spread);
   space.largest_slope_across = space.largest_slope * faded(fit.aspect, focus_detail::line_aspect);
   return space;
 }

@@ -104,8 +104,8 @@ Autofocus described(const IdealLens& lens, std::span<const FocusTarget> targets,
 
 /// The bundle of a scene point relative to its centroid, with weights of the sum 1; empty if no ray of the point passes
 /// the lens.
-RayBundle centred_bundle(const ImageRays& lens, const ScenePoint& place) {
-  RayBundle bundle = lens.bundle(place);
+RayBundle centred_bundle(const ImageRays& lens, const ScenePoint& scene_point) {
+  RayBundle bundle = lens.bundle(scene_point);
   focus_detail::centre(bundle);
   return bundle;
 }
@@ -118,14 +118,15 @@ double signed_diameter(const focus_detail::Image& image, double film_z) noexcept
 }
 
 /// The film position with the given signed blur diameter, or the sharpest film position if every diameter is larger.
-double film_of(const focus_detail::Image& image, double wanted) noexcept {
-  if (wanted == 0) return image.film_z;
+double film_of(const focus_detail::Image& image, double target_blur) noexcept {
+  if (target_blur == 0) return image.film_z;
   if (image.rays.empty()) {
-    if (!(std::abs(wanted) > image.least)) return image.film_z;
-    return image.film_z + std::copysign(std::sqrt(square(wanted) - square(image.least)) / image.slope, wanted);
+    if (!(std::abs(target_blur) > image.least)) return image.film_z;
+    return image.film_z +
+           std::copysign(std::sqrt(square(target_blur) - square(image.least)) / image.slope, target_blur);
   }
-  const auto within = [&](double film_z) { return image.diameter(film_z) <= std::abs(wanted); };
-  double away = wanted;
+  const auto within = [&](double film_z) { return image.diameter(film_z) <= std::abs(target_blur); };
+  double away = target_blur;
   while (within(image.film_z + away)) away *= 2;
   return core_detail::last_with(image.film_z, image.film_z + away, within);
 }
@@ -220,10 +221,10 @@ Autofocus autofocus(const ImageRays& lens, std::span<const FocusTarget> targets,
 
 std::vector<FocusTarget> region_targets(const Vec3<double>& centre, const Vec3<double>& half_width,
                                         const Vec3<double>& half_height, int columns, int rows) {
-  constexpr std::int64_t most = std::int64_t{1} << 20;
-  if (columns < 1 || rows < 1 || std::int64_t{columns} * rows > most) {
+  constexpr std::int64_t max_targets = std::int64_t{1} << 20;
+  if (columns < 1 || rows < 1 || std::int64_t{columns} * rows > max_targets) {
     throw Error("region_targets: columns x rows = " + std::to_string(columns) + " x " + std::to_string(rows) +
-                "; must be at least 1 x 1 and have " + std::to_string(most) + " targets at most");
+                "; must be at least 1 x 1 and have " + std::to_string(max_targets) + " targets at most");
   }
   std::vector<FocusTarget> targets;
   for (int row = 0; row < rows; ++row) {

@@ -80,7 +80,7 @@ Lens with_focus(const Lens& lens, double distance, const FocusOptions& options) 
   const FocusSolution solution = solve_focus(lens, distance, options);
   if (solution) return with_film(lens, solution.film_z);
 
-  const auto place = [&] {
+  const auto origin_text = [&] {
     switch (options.origin) {
       case DistanceOrigin::film: return "film";
       case DistanceOrigin::entrance_pupil: return "entrance pupil";
@@ -88,7 +88,7 @@ Lens with_focus(const Lens& lens, double distance, const FocusOptions& options) 
       default: return "front vertex";
     }
   };
-  const std::string subject = lens.name() + ": a subject " + to_text(distance) + " mm from the " + place() +
+  const std::string subject = lens.name() + ": a subject " + to_text(distance) + " mm from the " + origin_text() +
                               " cannot be focused (" + std::string(name(options.criterion)) + ")";
   switch (solution.status) {
     case FocusStatus::no_rays: throw Error(subject + ": no ray gets through the lens");

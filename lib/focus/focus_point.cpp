@@ -18,23 +18,23 @@ namespace {
 
 bool finite(const Vec3<double>& v) noexcept { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); }
 
-void check(const ScenePoint& place, const std::string& where) {
-  const auto& [p, at_infinity] = place;
+void check(const ScenePoint& scene_point, const std::string& where) {
+  const auto& [p, at_infinity] = scene_point;
   const bool nowhere = at_infinity && p.x == 0 && p.y == 0 && p.z == 0;
   if (finite(p) && !nowhere) return;
   throw Error(where + "place = (" + to_text(p.x) + ", " + to_text(p.y) + ", " + to_text(p.z) + "); must be " +
               (at_infinity ? "a direction, finite and not 0" : "finite"));
 }
 
-void check(const TrianglePoint& place, std::size_t vertices, const std::string& where) {
-  const auto& [a, b, c] = place.barycentric;
+void check(const TrianglePoint& scene_point, std::size_t vertices, const std::string& where) {
+  const auto& [a, b, c] = scene_point.barycentric;
   constexpr double tolerance = 1e-9;
   // NaN fails both comparisons.
   if (!(std::min({a, b, c}) >= -tolerance) || !(std::abs(a + b + c - 1) <= tolerance)) {
     throw Error(where + "barycentric coordinates = (" + to_text(a) + ", " + to_text(b) + ", " + to_text(c) +
                 "); must be at least 0, with the sum 1");
   }
-  for (const std::size_t vertex : place.vertices) {
+  for (const std::size_t vertex : scene_point.vertices) {
     if (vertex < vertices) continue;
     throw Error(where + "vertex = " + std::to_string(vertex) + "; must be one of the " + std::to_string(vertices) +
                 " vertices");
@@ -63,8 +63,8 @@ void check(const FocusPoint& point, std::size_t vertices, const std::string& whe
                   "; must be in every key of the point or in no key");
     }
     if (key.extent_stops) focus_detail::check_extent(*key.extent_stops, at);
-    if (const auto* place = std::get_if<ScenePoint>(&key.anchor)) {
-      check(*place, at);
+    if (const auto* scene_point = std::get_if<ScenePoint>(&key.anchor)) {
+      check(*scene_point, at);
     } else {
       check(std::get<TrianglePoint>(key.anchor), vertices, at);
     }
@@ -95,9 +95,9 @@ double at_time(const FocusPoint& point, double time, const auto& of) {
   return focus_detail::Keyframes(std::move(times), std::move(values)).at(time);
 }
 
-Vec3<double> place_of(const TrianglePoint& on, const std::array<double, 3>& parts, const FocusTime& moment) {
+Vec3<double> position_of(const TrianglePoint& on, const std::array<double, 3>& weights, const FocusTime& moment) {
   Vec3<double> sum{0, 0, 0};
-  for (std::size_t i = 0; i < 3; ++i) sum += moment.vertices[on.vertices[i]] * parts[i];
+  for (std::size_t i = 0; i < 3; ++i) sum += moment.vertices[on.vertices[i]] * weights[i];
   return sum;
 }
 
@@ -112,51 +112,52 @@ const TrianglePoint* only_triangle(const FocusPoint& point) {
 }
 
 /// The scene point as seen from the front principal point; z is the inverse distance.
-Vec3<double> seen(const ScenePoint& place, double principal_z) {
-  const focus_detail::PicturePoint point = focus_detail::picture_point(place, principal_z);
+Vec3<double> seen(const ScenePoint& scene_point, double principal_z) {
+  const focus_detail::PicturePoint point = focus_detail::picture_point(scene_point, principal_z);
   return {point.x, point.y, point.inverse_distance};
 }
 
 /// The position of a point at a moment; nullopt if a vertex is not finite, or if the path runs from behind the lens to
 /// infinity.
-std::optional<ScenePoint> place_at(const IdealLens& lens, const FocusPoint& point, const FocusTime& moment) {
+std::optional<ScenePoint> scene_point_at(const IdealLens& lens, const FocusPoint& point, const FocusTime& moment) {
   if (const TrianglePoint* triangle = only_triangle(point)) {
-    std::array<double, 3> parts{};
+    std::array<double, 3> weights{};
     double sum = 0;
     for (std::size_t i = 0; i < 3; ++i) {
-      parts[i] = at_time(point, moment.time,
-                         [&](std::size_t k) { return std::get<TrianglePoint>(point.keys[k].anchor).barycentric[i]; });
-      sum += parts[i];
+      weights[i] = at_time(point, moment.time,
+                           [&](std::size_t k) { return std::get<TrianglePoint>(point.keys[k].anchor).barycentric[i]; });
+      sum += weights[i];
     }
     // Each coordinate stays within the range of its keys, but the sum of the coordinates may differ from 1.
-    for (double& part : parts) part /= sum;
-    return ScenePoint{place_of(*triangle, parts, moment), false};
+    for (double& weight : weights) weight /= sum;
+    return ScenePoint{position_of(*triangle, weights, moment), false};
   }
-  std::vector<ScenePoint> places;
+  std::vector<ScenePoint> scene_points;
   for (const FocusKey& key : point.keys) {
     const auto* on = std::get_if<TrianglePoint>(&key.anchor);
-    places.push_back(on ? ScenePoint{place_of(*on, on->barycentric, moment), false} : std::get<ScenePoint>(key.anchor));
-    if (!finite(places.back().position)) return {};
+    scene_points.push_back(on ? ScenePoint{position_of(*on, on->barycentric, moment), false}
+                              : std::get<ScenePoint>(key.anchor));
+    if (!finite(scene_points.back().position)) return {};
   }
-  if (places.size() == 1) return places[0];
+  if (scene_points.size() == 1) return scene_points[0];
 
   const double z = lens.front_principal_z();
-  const auto in_front = [&](const ScenePoint& place) {
-    return place.position.z < (place.at_infinity ? 0 : z) && finite(seen(place, z));
+  const auto in_front = [&](const ScenePoint& scene_point) {
+    return scene_point.position.z < (scene_point.at_infinity ? 0 : z) && finite(seen(scene_point, z));
   };
-  const auto at_infinity = [](const ScenePoint& place) { return place.at_infinity; };
+  const auto at_infinity = [](const ScenePoint& scene_point) { return scene_point.at_infinity; };
   Vec3<double> at{0, 0, 0};
-  if (std::all_of(places.begin(), places.end(), in_front)) {
+  if (std::all_of(scene_points.begin(), scene_points.end(), in_front)) {
     for (int i = 0; i < 3; ++i) {
-      at[i] = at_time(point, moment.time, [&](std::size_t k) { return seen(places[k], z)[i]; });
+      at[i] = at_time(point, moment.time, [&](std::size_t k) { return seen(scene_points[k], z)[i]; });
     }
     const double depth = 1 / at.z;
     if (!std::isfinite(depth)) return ScenePoint{{at.x, at.y, -1}, true};
     return ScenePoint{{at.x * depth, at.y * depth, z - depth}, false};
   }
-  if (std::any_of(places.begin(), places.end(), at_infinity)) return {};
+  if (std::any_of(scene_points.begin(), scene_points.end(), at_infinity)) return {};
   for (int i = 0; i < 3; ++i) {
-    at[i] = at_time(point, moment.time, [&](std::size_t k) { return places[k].position[i]; });
+    at[i] = at_time(point, moment.time, [&](std::size_t k) { return scene_points[k].position[i]; });
   }
   return ScenePoint{at, false};
 }
@@ -171,13 +172,13 @@ bool within(Film film, const IdealLens& lens, const ImagePoint& image) {
 
 std::optional<FocusTarget> focus_detail::target_at(const IdealLens& lens, const FocusPoint& point,
                                                    const FocusTime& moment) {
-  const auto place = place_at(lens, point, moment);
-  const auto image = place ? lens.image(*place) : std::nullopt;
+  const auto scene_point = scene_point_at(lens, point, moment);
+  const auto image = scene_point ? lens.image(*scene_point) : std::nullopt;
   if (!image || (moment.film && !within(*moment.film, lens, *image))) return {};
   const auto now = [&](const auto& of) {
     return at_time(point, moment.time, [&](std::size_t k) { return of(point.keys[k]); });
   };
-  FocusTarget target{*place, now([](const FocusKey& key) { return key.blur_mm; }),
+  FocusTarget target{*scene_point, now([](const FocusKey& key) { return key.blur_mm; }),
                      now([](const FocusKey& key) { return key.weight; })};
   if (point.keys.front().extent_stops) {
     target.extent_stops = now([](const FocusKey& key) { return *key.extent_stops; });

@@ -40,8 +40,8 @@ void focus_detail::check_extent(double stops, const std::string& where) {
 
 bool focus_detail::well_formed(const FocusTarget& target) noexcept {
   const Vec3<double>& p = target.point.position;
-  const bool place = std::isfinite(p.x) && std::isfinite(p.y) && p.z < std::numeric_limits<double>::infinity();
-  return place && std::isfinite(target.blur_mm) && std::isfinite(target.weight) && target.weight >= 0;
+  const bool valid_position = std::isfinite(p.x) && std::isfinite(p.y) && p.z < std::numeric_limits<double>::infinity();
+  return valid_position && std::isfinite(target.blur_mm) && std::isfinite(target.weight) && target.weight >= 0;
 }
 
 }  // namespace petzval

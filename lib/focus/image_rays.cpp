@@ -22,8 +22,8 @@ namespace petzval {
 namespace {
 
 /// The point from which rays are sent for a scene point; nullopt if its coordinates are invalid.
-std::optional<Vec3<double>> seen_at(const ScenePoint& place) noexcept {
-  const auto& [p, at_infinity] = place;
+std::optional<Vec3<double>> seen_at(const ScenePoint& scene_point) noexcept {
+  const auto& [p, at_infinity] = scene_point;
   constexpr double infinity = std::numeric_limits<double>::infinity();
   constexpr double farthest = 1e50;  // mm; rays from this distance are parallel to the last bit
   if (p.z == -infinity && !at_infinity && std::isfinite(p.x) && std::isfinite(p.y)) {
@@ -93,7 +93,7 @@ struct ImageRays::Data {
   Lens lens;
   IdealLens ideal;
   EntrancePupilTable entrances;
-  std::size_t wanted;  // rays per point
+  std::size_t ray_count;  // rays per point
 
   RayBundle send(const Vec3<double>& point, std::size_t count) const;
 };
@@ -128,21 +128,21 @@ ImageRays::ImageRays(const Lens& lens, double film_radius, std::size_t rays) {
       .lens = lens,
       .ideal = thick_lens(lens, lens.primary_wavelength()),
       .entrances = traced_entrances(lens, FilmPupilTable::enclosing(lens, film_radius)),
-      .wanted = rays,
+      .ray_count = rays,
   });
 }
 
 const Lens& ImageRays::lens() const noexcept { return data_->lens; }
 const IdealLens& ImageRays::ideal() const noexcept { return data_->ideal; }
 
-RayBundle ImageRays::bundle(const ScenePoint& place) const {
-  const std::optional<Vec3<double>> point = seen_at(place);
+RayBundle ImageRays::bundle(const ScenePoint& scene_point) const {
+  const std::optional<Vec3<double>> point = seen_at(scene_point);
   if (!point) {
     RayBundle none;
     none.plane_z = data_->lens.surfaces().back().vertex_z;
     return none;
   }
-  const std::size_t rays = data_->wanted;
+  const std::size_t rays = data_->ray_count;
   RayBundle bundle = data_->send(*point, rays);
   // Send more rays if the lens blocks most of them, as can happen without rotational symmetry.
   const std::size_t kept = bundle.x.size();

@@ -45,7 +45,7 @@ class PETZVAL_API ImageRays {
   /// The cardinal points and pupils at the same wavelength.
   const IdealLens& ideal() const noexcept;
   /// The bundle of a scene point behind the lens; empty if the lens does not see the point.
-  RayBundle bundle(const ScenePoint& place) const;
+  RayBundle bundle(const ScenePoint& scene_point) const;
 
  private:
   struct Data;

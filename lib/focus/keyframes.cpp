@@ -39,8 +39,8 @@ Keyframes::Keyframes(std::vector<double> times, std::vector<double> values)
     const double before = times_[k] - times_[k - 1], after = times_[k + 1] - times_[k];
     const double s = between[k - 1], t = between[k];
     if (!(s > 0 && t > 0) && !(s < 0 && t < 0)) continue;
-    const double part = (before + 2 * after) / (3 * (before + after));
-    slopes_[k] = 1 / (part / s + (1 - part) / t);
+    const double fraction = (before + 2 * after) / (3 * (before + after));
+    slopes_[k] = 1 / (fraction / s + (1 - fraction) / t);
   }
 }
 

@@ -6,8 +6,8 @@
 
 namespace petzval::focus_detail {
 
-PicturePoint picture_point(const ScenePoint& place, double z) noexcept {
-  const auto& [p, at_infinity] = place;
+PicturePoint picture_point(const ScenePoint& scene_point, double z) noexcept {
+  const auto& [p, at_infinity] = scene_point;
   if (std::isinf(p.z)) return {};
   const double depth = (at_infinity ? 0 : z) - p.z;
   return {p.x / depth, p.y / depth, at_infinity ? 0 : 1 / depth};
@@ -40,7 +40,7 @@ PlaneFit fit_plane(std::span<const PicturePoint> points) {
   const double along = ax * ax * xx + 2 * ax * ay * xy + ay * ay * yy;
   const double across = ay * ay * xx - 2 * ax * ay * xy + ax * ax * yy;
   fit.spread = std::sqrt(std::max(along, 0.0) / total);
-  if (!(fit.spread > one_place)) {
+  if (!(fit.spread > coincidence_spread)) {
     fit.rank = PlaneRank::point;
     return fit;
   }

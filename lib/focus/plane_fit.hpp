@@ -23,7 +23,7 @@ inline constexpr double line_aspect = 0.02;
 
 /// Points of the picture coincide up to this RMS spread: half a micrometre on the film of a 50 mm lens, below the
 /// resolution of films and eyes.
-inline constexpr double one_place = 1e-5;
+inline constexpr double coincidence_spread = 1e-5;
 
 /// A scene point in front of a pinhole at (0, 0, z), as seen by the pinhole.
 PETZVAL_API PicturePoint picture_point(const ScenePoint& point, double z) noexcept;

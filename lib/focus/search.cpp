@@ -15,7 +15,7 @@ using enum FocusStatus;
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
 /// Accuracy of a position at a flat extremum: half of the digits.
-constexpr double flat = 1e-9;
+constexpr double flat_tolerance = 1e-9;
 
 }  // namespace
 
@@ -50,19 +50,19 @@ double Search::separation(double vergence) const {
 }
 
 /// The subject of a film that is farther from the lens than the film for infinity; nullopt beyond the limit.
-std::optional<double> Search::vergence_for(double wanted) const {
+std::optional<double> Search::vergence_for(double target) const {
   const auto excess = [&](double vergence) {
     const auto film_z = film(vergence);
-    return (film_z ? film_vergence(*film_z) : cap_) - wanted;
+    return (film_z ? film_vergence(*film_z) : cap_) - target;
   };
   const auto root_between = [&](double low, double high) {
     const double vergence = root(excess, low, high);
-    const bool found = std::abs(excess(vergence)) < flat * cap_;  // excludes jumps at which images end
+    const bool found = std::abs(excess(vergence)) < flat_tolerance * cap_;  // excludes jumps at which images end
     return found ? std::optional(vergence) : std::nullopt;
   };
   // The paraxial subject is close to the exact subject, and the films of both move by nearly equal amounts.
   const double vertex = c_.vergence_of_vertex();
-  double low = 0, high = std::clamp(wanted, 0.0, vertex / 2);
+  double low = 0, high = std::clamp(target, 0.0, vertex / 2);
   for (int i = 0; i < 20; ++i) {
     const double missing = -excess(high);
     if (missing <= 0) {
@@ -90,14 +90,14 @@ double Search::limit() const {
     return film_z && c_.real(*film_z) ? c_.vergence_of_film(*film_z) : -infinity;
   };
   const double vertex = c_.vergence_of_vertex();
-  return highest(film_out, 0, std::min(cap_, vertex), flat * vertex);
+  return highest(film_out, 0, std::min(cap_, vertex), flat_tolerance * vertex);
 }
 
 /// The vergence at which the distance between subject and film is least, close to the paraxial turning point.
 double Search::turning_point() const {
   const double start = c_.vergence(c_.subject_z(nearest_p(c_)));
   return highest([&](double vergence) { return -separation(vergence); }, start / 4,
-                 std::min(4 * start, c_.vergence_of_vertex()), flat * start);
+                 std::min(4 * start, c_.vergence_of_vertex()), flat_tolerance * start);
 }
 
 FocusSolution Search::nearest() const {

@@ -8,8 +8,8 @@ namespace petzval::focus_detail {
 /// on single rays.
 /// @param defocus the signed diameter due to defocus
 inline double signed_diameter(double diameter, double defocus) noexcept {
-  constexpr double least = 0.1;
-  return defocus < -least * diameter ? -diameter : diameter;
+  constexpr double min_relative_defocus = 0.1;
+  return defocus < -min_relative_defocus * diameter ? -diameter : diameter;
 }
 
 }  // namespace petzval::focus_detail

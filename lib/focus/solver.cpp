@@ -55,13 +55,13 @@ std::vector<FocusField> weighted_fields(const Lens& lens, const FocusOptions& op
 std::vector<WavelengthWeight> weighted_wavelengths(const Lens& lens, const FocusOptions& options) {
   const std::vector<double>& weights = options.wavelength_weights;
   if (weights.empty()) return {{lens.primary_wavelength(), 1.0}};
-  const std::size_t wanted = lens.wavelengths_nm().size();
-  if (weights.size() != wanted) {
+  const std::size_t wavelength_count = lens.wavelengths_nm().size();
+  if (weights.size() != wavelength_count) {
     throw Error(lens.name() + ": focus: number of wavelength weights = " + std::to_string(weights.size()) +
-                "; must be " + std::to_string(wanted) + ", one per compiled wavelength");
+                "; must be " + std::to_string(wavelength_count) + ", one per compiled wavelength");
   }
   std::vector<WavelengthWeight> result;
-  for (std::size_t i = 0; i < wanted; ++i) {
+  for (std::size_t i = 0; i < wavelength_count; ++i) {
     check_weight(lens, "wavelength", weights[i]);
     if (weights[i] > 0) result.push_back({i, weights[i]});
   }

@@ -41,7 +41,7 @@ T pupil_scale(T extent_stops) noexcept {
 /// Weighted RMS of the blur errors of the used targets, computed without overflow; 0 if no target is used.
 inline double rms_error(std::span<const FocusTarget> targets, std::span<const TargetBlur> blurs) noexcept {
   const auto error = [&](std::size_t i) {
-    return blurs[i].status == TargetStatus::used ? blurs[i].blur_mm - blurs[i].wanted_mm : 0;
+    return blurs[i].status == TargetStatus::used ? blurs[i].blur_mm - blurs[i].target_mm : 0;
   };
   const auto weight = [&](std::size_t i) { return blurs[i].status == TargetStatus::used ? targets[i].weight : 0; };
   double largest = 0, most = 0;
@@ -53,9 +53,9 @@ inline double rms_error(std::span<const FocusTarget> targets, std::span<const Ta
   if (std::isinf(largest)) return largest;
   double squares = 0, total = 0;
   for (std::size_t i = 0; i < blurs.size(); ++i) {
-    const double part = error(i) / largest, share = weight(i) / most;
-    squares += share * part * part;
-    total += share;
+    const double relative_error = error(i) / largest, relative_weight = weight(i) / most;
+    squares += relative_weight * relative_error * relative_error;
+    total += relative_weight;
   }
   return largest * std::sqrt(squares / total);
 }

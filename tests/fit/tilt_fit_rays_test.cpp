@@ -207,7 +207,7 @@ TEST(RayTiltFit, ThreeTargetsGetTheirBlurs) {
   const TiltFit fit = fit_tilt(bundles(), targets, behind(bundles().ideal()));
   ASSERT_EQ(fit.status, Status::solved);
   // The tolerance covers aberrations, which differ between a tilted and an upright film.
-  for (const TargetBlur& blur : fit.blurs) EXPECT_NEAR(blur.blur_mm, blur.wanted_mm, 2e-5);
+  for (const TargetBlur& blur : fit.blurs) EXPECT_NEAR(blur.blur_mm, blur.target_mm, 2e-5);
 }
 
 TEST(RayTiltFit, TendsToTheThickLensAsApertureAndFieldShrink) {

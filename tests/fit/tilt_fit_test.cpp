@@ -141,7 +141,7 @@ TEST(TiltFit, MeetsTheBlursOfThreeTargets) {
   options.film.z_mm = lens.rear_focal_z;
   const TiltFit fit = fit_tilt(lens, targets, options);
   ASSERT_EQ(fit.status, Status::solved);
-  for (const TargetBlur& blur : fit.blurs) EXPECT_NEAR(blur.blur_mm, blur.wanted_mm, 1e-12);
+  for (const TargetBlur& blur : fit.blurs) EXPECT_NEAR(blur.blur_mm, blur.target_mm, 1e-12);
   EXPECT_GT(fit.film.angle(), radians(1));
 }
 

@@ -44,7 +44,7 @@ PETZVAL_API std::string_view name(TargetStatus status) noexcept;
 /// The blur of a target on a film.
 struct TargetBlur {
   TargetStatus status = TargetStatus::used;
-  double wanted_mm = 0;  ///< requested diameter
+  double target_mm = 0;  ///< requested diameter
   double blur_mm = 0;    ///< signed diameter; NaN if the target has no image
 };
 
