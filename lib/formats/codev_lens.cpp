@@ -58,12 +58,12 @@ void CodevBuilder::evaluate_pickups() {
       continue;
     }
     const double scale = value == &to.shape && !*lens_.curvatures && p.scale != 0 ? 1 / p.scale : p.scale;
-    const double wanted = *source * scale;
-    if (std::abs(*value - wanted) > 1e-9 * std::abs(wanted)) {
-      in_.warn(
-          p.line, "PIK",
-          "the file states " + to_text(*value, 12) + ", the pickup gives " + to_text(wanted, 12) + ", which is taken");
-      *value = wanted;
+    const double expected = *source * scale;
+    if (std::abs(*value - expected) > 1e-9 * std::abs(expected)) {
+      in_.warn(p.line, "PIK",
+               "the file states " + to_text(*value, 12) + ", the pickup gives " + to_text(expected, 12) +
+                   ", which is taken");
+      *value = expected;
     }
   }
 }

@@ -21,7 +21,7 @@ namespace {
 
 using namespace formats_detail;
 
-constexpr double far_away = 1e13;
+constexpr double infinite_distance_mm = 1e13;
 constexpr double f_nm = 486.1327, c_nm = 656.2725;
 
 std::string quoted(std::string text) {
@@ -52,7 +52,7 @@ class CodevWriter {
   }
 
  private:
-  static std::string distance(double mm) { return to_text(std::isfinite(mm) ? mm : far_away); }
+  static std::string distance(double mm) { return to_text(std::isfinite(mm) ? mm : infinite_distance_mm); }
   void name_media();
   void header();
   void private_glasses();

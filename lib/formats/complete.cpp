@@ -30,8 +30,8 @@ struct StopSize {
   /// The smaller of rim and height; nullopt if both are unknown. If both are equal within the digits of files, it is
   /// the rim.
   std::optional<double> semi_diameter() const {
-    constexpr double digits = 1e-6;
-    if (!height || (rim && *rim <= *height * (1 + digits))) return rim;
+    constexpr double relative_rounding = 1e-6;
+    if (!height || (rim && *rim <= *height * (1 + relative_rounding))) return rim;
     return height;
   }
 };
@@ -188,9 +188,11 @@ void Completion::drop_film_row() {
   const auto planes = planes_in_one_medium(lens_);
   if (planes.empty() || planes.back() + 1 != lens_.surfaces.size()) return;
   const FirstOrder first = first_order_of(lens_);
-  constexpr double near =
+  constexpr double max_relative_defocus =
       0.05;  // fraction of the focal length: tables state the sharpest film, or the film for a near subject
-  if (first.afocal || std::abs(first.back_focal_distance) > near * std::abs(first.effective_focal_length)) return;
+  if (first.afocal ||
+      std::abs(first.back_focal_distance) > max_relative_defocus * std::abs(first.effective_focal_length))
+    return;
   in_.warn(line_of(planes.back()), "row", "is a plane in the paraxial focus; it is taken as the film");
   lens_.surfaces.pop_back();
 }

@@ -50,8 +50,8 @@ void GlassReader::warn(int line, std::string_view command, const std::string& me
   }
 }
 
-void GlassReader::refuse(int line, const std::string& found, const std::string& wanted) const {
-  throw Error(where_ + ": line " + std::to_string(line) + ": " + found + "; must be " + wanted);
+void GlassReader::refuse(int line, const std::string& found, const std::string& rule) const {
+  throw Error(where_ + ": line " + std::to_string(line) + ": " + found + "; must be " + rule);
 }
 
 double GlassReader::number(int line, std::string_view what, std::string_view word) const {
@@ -117,9 +117,8 @@ GlassFile GlassReader::finish() {
 
 GlassFile read_glasses(const std::filesystem::path& file) {
   using namespace formats_detail;
-  const std::string wanted =
-      "glasses: a Zemax catalogue (.agf), a page of refractiveindex.info (.yml) or a glass table";
-  std::string text = read_as_utf8(file, wanted);
+  const std::string rule = "glasses: a Zemax catalogue (.agf), a page of refractiveindex.info (.yml) or a glass table";
+  std::string text = read_as_utf8(file, rule);
   GlassReader reader(file.string());
   if (text.starts_with(glass_detail::glass_table_header)) {
     std::vector<Glass> glasses;
@@ -131,7 +130,7 @@ GlassFile read_glasses(const std::filesystem::path& file) {
   } else if (looks_like_rii(text)) {
     read_rii(std::move(text), file.stem().string(), reader);
   } else {
-    throw Error(file.string() + ": its first lines match no glass format; must be " + wanted);
+    throw Error(file.string() + ": its first lines match no glass format; must be " + rule);
   }
   return reader.finish();
 }

@@ -37,7 +37,7 @@ int age(const Glass& glass) { return glass_detail::age(glass.catalogue); }
 int maker(const Glass& glass) { return same_maker(glass.catalogue, "schott") ? 0 : glass.catalogue == "cdgm" ? 2 : 1; }
 
 /// Index of a glass's catalogue in a list; the size of the list if it is not listed.
-std::ptrdiff_t place_in(std::span<const std::string> catalogues, const Glass& glass) {
+std::ptrdiff_t catalogue_rank(std::span<const std::string> catalogues, const Glass& glass) {
   const auto listed = std::ranges::find_if(
       catalogues, [&](const std::string& c) { return same(c, glass.catalogue) || same_maker(c, glass.catalogue); });
   return listed - catalogues.begin();
@@ -50,7 +50,7 @@ std::string describe(const Glass& glass) {
 }
 
 bool is_listed(std::span<const std::string> catalogues, const Glass& glass) {
-  return place_in(catalogues, glass) < std::ssize(catalogues);
+  return catalogue_rank(catalogues, glass) < std::ssize(catalogues);
 }
 
 GlassNames::GlassNames(const GlassCatalogue& glasses) {
@@ -61,12 +61,12 @@ const Glass* GlassNames::find(std::string_view name, std::span<const std::string
                               Numbers numbers) const {
   const auto rank = [&](const Glass& glass) {
     double off = nd ? std::round(std::abs(glass.nd - *nd) / 1e-6) : 0;  // rounded to the digits of the file
-    constexpr double another_glass = 2e-3 / 1e-6;
-    if (numbers == Numbers::leftovers) off = std::min(off, another_glass);
-    const std::ptrdiff_t place = place_in(catalogues, glass);
+    constexpr double other_glass_rank = 2e-3 / 1e-6;
+    if (numbers == Numbers::leftovers) off = std::min(off, other_glass_rank);
+    const std::ptrdiff_t listed_rank = catalogue_rank(catalogues, glass);
     return numbers == Numbers::stated
-               ? std::tuple(off, place, age(glass), 0.0, maker(glass))
-               : std::tuple(0.0, place, age(glass), is_listed(catalogues, glass) ? 0.0 : off, maker(glass));
+               ? std::tuple(off, listed_rank, age(glass), 0.0, maker(glass))
+               : std::tuple(0.0, listed_rank, age(glass), is_listed(catalogues, glass) ? 0.0 : off, maker(glass));
   };
   const auto [first, last] = by_name_.equal_range(bare(name));
   const Glass* best = nullptr;
@@ -78,13 +78,13 @@ const Glass* GlassNames::find(std::string_view name, std::span<const std::string
 
 std::string GlassNames::others(const Glass& found, std::span<const std::string> catalogues,
                                std::optional<double> nd) const {
-  constexpr double another_catalogue = 1e-4;
-  if (is_listed(catalogues, found) || (nd && std::abs(found.nd - *nd) <= another_catalogue)) return "";
+  constexpr double min_index_difference = 1e-4;
+  if (is_listed(catalogues, found) || (nd && std::abs(found.nd - *nd) <= min_index_difference)) return "";
   std::string list;
   const auto [first, last] = by_name_.equal_range(bare(found.name));
   for (auto it = first; it != last; ++it) {
     const Glass& other = *it->second;
-    if (age(other) != age(found) || std::abs(other.nd - found.nd) <= another_catalogue) continue;
+    if (age(other) != age(found) || std::abs(other.nd - found.nd) <= min_index_difference) continue;
     append(list, ", ", describe(other));
   }
   return list;

@@ -19,7 +19,7 @@ class GlassReader {
   /// Adds a warning. After a thousand warnings, further warnings are only counted.
   void warn(int line, std::string_view command, const std::string& message);
   /// Throws Error: "file: line 7: CD = "1,5"; must be a finite number".
-  [[noreturn]] void refuse(int line, const std::string& found, const std::string& wanted) const;
+  [[noreturn]] void refuse(int line, const std::string& found, const std::string& rule) const;
   /// Converts a word to a number.
   /// @param what name of the number, for the message
   /// @throws Error if the word is not a finite number

@@ -55,11 +55,11 @@ void Import::warn(int line, std::string_view command, const std::string& message
   }
 }
 
-void Import::refuse(int line, std::string_view command, const std::string& found, const std::string& wanted) const {
+void Import::refuse(int line, std::string_view command, const std::string& found, const std::string& rule) const {
   std::string text = where_;
   if (line > 0) text += ": line " + std::to_string(line);
   if (!command.empty()) text += ": " + std::string(beginning(command, 60));
-  throw Error(text + " = " + found + "; must be " + wanted);
+  throw Error(text + " = " + found + "; must be " + rule);
 }
 
 void Import::must_be(int line, std::string_view parameter, const std::string& value, const std::string& rule) const {
@@ -68,9 +68,9 @@ void Import::must_be(int line, std::string_view parameter, const std::string& va
 }
 
 void Import::limit(std::size_t count, std::string_view what, std::size_t ends) const {
-  constexpr std::size_t most = 10'000;
-  if (count <= most + ends) return;
-  throw Error(where_ + ": more than " + std::to_string(most) + ' ' + std::string(what) + "; must be fewer");
+  constexpr std::size_t max_entries = 10'000;
+  if (count <= max_entries + ends) return;
+  throw Error(where_ + ": more than " + std::to_string(max_entries) + ' ' + std::string(what) + "; must be fewer");
 }
 
 void Import::note(std::string_view text) {
@@ -112,7 +112,7 @@ Medium medium_of(const Glass& glass) {
 }
 
 // Difference of n_d between two glasses of one name, and half a unit of the fourth decimal.
-constexpr double another_glass = 0.01, rounded_index = 5e-5;
+constexpr double min_index_difference = 0.01, rounded_index = 5e-5;
 
 }  // namespace
 
@@ -138,7 +138,7 @@ Medium Import::glass(int line, std::string_view name, std::span<const std::strin
     names_its_maker = found && is_listed(std::array{maker_name}, *found);
     if (names_its_maker) asked = name.substr(0, tail);
   }
-  if (found && numbers == Numbers::stated && nd && std::abs(found->nd - *nd) > another_glass) {
+  if (found && numbers == Numbers::stated && nd && std::abs(found->nd - *nd) > min_index_difference) {
     warn(line, name,
          "has n_d " + to_text(*nd, 6) + " in the file; " + describe(*found) +
              " differs, so the file's n_d and V_d are taken");
@@ -170,10 +170,10 @@ Medium Import::glass(int line, std::string_view name, std::span<const std::strin
     return {.glass = std::string(name), .nd = *nd, .vd = vd};
   }
 
-  const std::string alike = glass_detail::similar_names(glasses(), name);
+  const std::string similar = glass_detail::similar_names(glasses(), name);
   refuse(line, name, "a name in no glass table, without an index in the file",
          "a glass of ReadOptions::glasses (programs: --glasses FILE, an .agf or .yml)" +
-             (alike.empty() ? std::string() : "; similar names: " + alike));
+             (similar.empty() ? std::string() : "; similar names: " + similar));
 }
 
 SurfaceChange& change_of(Configuration& configuration, int surface) {

@@ -29,8 +29,7 @@ class Import {
   /// Adds a warning about an assumption or omitted data. After a thousand warnings, further warnings are only counted.
   void warn(int line, std::string_view command, const std::string& message);
   /// Throws Error: "file: line 7: CURV = found; must be wanted".
-  [[noreturn]] void refuse(int line, std::string_view command, const std::string& found,
-                           const std::string& wanted) const;
+  [[noreturn]] void refuse(int line, std::string_view command, const std::string& found, const std::string& rule) const;
   /// Throws Error: "file:7: parameter = value; must be rule".
   [[noreturn]] void must_be(int line, std::string_view parameter, const std::string& value,
                             const std::string& rule) const;

@@ -81,7 +81,7 @@ class Builder {
   [[noreturn]] void fail(const std::string& message) const {
     throw Error(where_ + ':' + tokens_.line_and_column(tokens_.byte()) + ": " + message);
   }
-  nlohmann::json& place() {
+  nlohmann::json& slot() {
     if (open_.empty() || open_.back()->is_object()) return *next_;
     open_.back()->push_back(nullptr);
     return open_.back()->back();
@@ -89,13 +89,13 @@ class Builder {
   template <class Value>
   bool add(Value&& value) {
     tokens_.next();
-    place() = std::forward<Value>(value);
+    slot() = std::forward<Value>(value);
     return true;
   }
   bool open(nlohmann::json::value_t type) {
     tokens_.next();
     if (open_.size() >= deepest) fail("more than " + std::to_string(deepest) + " levels of brackets; must be fewer");
-    nlohmann::json& here = place();
+    nlohmann::json& here = slot();
     here = type;
     open_.push_back(&here);
     return true;
@@ -148,8 +148,8 @@ std::string shown(const nlohmann::json& value) {
   const auto* word = value.get_ptr<const std::string*>();
   if (word) return io_detail::in_quotes(*word);
   const std::string text = value.dump();
-  constexpr std::size_t longest = 60;
-  return text.size() <= longest ? text : std::string(beginning(text, longest)) + "...";
+  constexpr std::size_t max_quoted_size = 60;
+  return text.size() <= max_quoted_size ? text : std::string(beginning(text, max_quoted_size)) + "...";
 }
 
 const nlohmann::json* JsonObject::find(const char* key) const {

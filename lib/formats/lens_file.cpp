@@ -18,7 +18,7 @@ namespace {
 
 using namespace formats_detail;
 
-constexpr const char* wanted =
+constexpr const char* rule =
     "a lens: petzval JSON, Zemax .zmx, CODE V .seq, OSLO .len, FlareSim .lens, an OpticalBench table, a table of "
     "surfaces, lentil or optiland JSON";
 
@@ -74,7 +74,7 @@ Prescription parse_lens(std::string bytes, const std::string& where, const ReadO
   }();
   if (own_json) return io_detail::with_missing_apertures(parse_prescription(bytes, where), options.glasses);
 
-  const std::string text = as_utf8(std::move(bytes), where, wanted);
+  const std::string text = as_utf8(std::move(bytes), where, rule);
   refuse_other_programs(text, where);
   for (const Format& format : formats) {
     if (!format.is(text)) continue;
@@ -84,13 +84,13 @@ Prescription parse_lens(std::string bytes, const std::string& where, const ReadO
     if (options.strict) refuse_warnings(lens, where);
     return lens;
   }
-  if (trimmed(text).empty()) throw Error(where + ": is empty; must be " + wanted);
+  if (trimmed(text).empty()) throw Error(where + ": is empty; must be " + rule);
   // Probably a damaged file of this library: the messages of its parser name line and column.
   if (const std::string_view start = trimmed(text); start.starts_with('{')) {
     return parse_prescription(text, where);
   }
   std::string first_line(trimmed(text.substr(0, text.find_first_of("\r\n"))));
-  throw Error(where + ": begins with " + io_detail::in_quotes(first_line) + "; must be " + wanted);
+  throw Error(where + ": begins with " + io_detail::in_quotes(first_line) + "; must be " + rule);
 }
 
 Prescription read_lens(const std::filesystem::path& file, const ReadOptions& options) {

@@ -48,10 +48,10 @@ std::vector<Entry> entries_of(const nlohmann::json& database, const std::string&
 
 /// "1 (angenieux double-gauss 1953), 2 (...)", limited to the length of messages.
 std::string listed(const nlohmann::json& database) {
-  constexpr std::size_t longest = 4000;
+  constexpr std::size_t max_list_size = 4000;
   std::string list;
   for (const auto& [key, lens] : database.items()) {
-    if (list.size() > longest) return list + ", ...";
+    if (list.size() > max_list_size) return list + ", ...";
     append(list, ", ", beginning(key, 60));
     if (const std::string title = title_of(lens); !title.empty())
       list += " (" + std::string(beginning(title, 80)) + ')';
@@ -169,13 +169,13 @@ void LentilReader::lens(const JsonObject& o) {
 
 /// The lens of a database named by the options; the only lens if the database has a single lens.
 Entry LentilReader::choose(const nlohmann::json& database) const {
-  const std::string& wanted = in_.entry();
-  const auto found = wanted.empty() ? std::vector<Entry>() : entries_of(database, wanted);
+  const std::string& entry_name = in_.entry();
+  const auto found = entry_name.empty() ? std::vector<Entry>() : entries_of(database, entry_name);
   if (found.size() == 1) return found.front();
   if (database.size() == 1) return {database.begin().key(), &*database.begin()};
   const std::string rule = "; must be the key of one of " + std::to_string(database.size()) + ": " + listed(database);
-  if (wanted.empty()) throw Error(in_.where() + ": no lens is chosen (--configuration, ReadOptions::entry)" + rule);
-  throw Error(in_.where() + ": --configuration (ReadOptions::entry) = " + io_detail::in_quotes(wanted) +
+  if (entry_name.empty()) throw Error(in_.where() + ": no lens is chosen (--configuration, ReadOptions::entry)" + rule);
+  throw Error(in_.where() + ": --configuration (ReadOptions::entry) = " + io_detail::in_quotes(entry_name) +
               (found.empty() ? "" : ", the name of " + std::to_string(found.size()) + " lenses") + rule);
 }
 

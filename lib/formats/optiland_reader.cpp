@@ -52,7 +52,7 @@ class OptilandReader {
   void fields(const JsonObject& o);
   void wavelengths(const JsonObject& o);
   void surfaces(const JsonObject& group);
-  double place(const JsonObject& surface) const;
+  double z_of(const JsonObject& surface) const;
   void shape(const JsonObject& geometry, SurfaceRow& row);
   void terms(const JsonObject& geometry, int first, int step, SurfaceRow& row);
   Medium medium(const JsonObject& material);
@@ -127,7 +127,7 @@ void OptilandReader::wavelengths(const JsonObject& o) {
   }
 }
 
-double OptilandReader::place(const JsonObject& surface) const {
+double OptilandReader::z_of(const JsonObject& surface) const {
   const JsonObject cs = surface.object("geometry").object("cs");
   for (const char* key : {"x", "y", "rx", "ry", "rz"}) {
     if (cs.number(key).value_or(0) != 0) cs.refuse(key, to_text(*cs.number(key)), "0 (a centred lens)");
@@ -226,9 +226,9 @@ void OptilandReader::surfaces(const JsonObject& group) {
   if (all.size() < 3)
     group.refuse("surfaces", std::to_string(all.size()) + " surfaces", "an object, a lens and an image");
   const JsonObject object = entry(group, "surfaces", 0);
-  double z = place(object);
+  double z = z_of(object);
   in_.lens.object_space = medium(object.object("material_post"));
-  const double first_z = place(entry(group, "surfaces", 1));
+  const double first_z = z_of(entry(group, "surfaces", 1));
   in_.lens.design.object_distance_mm = std::isinf(z) ? std::numeric_limits<double>::infinity() : first_z - z;
   Medium before = in_.lens.object_space;
   z = first_z;
@@ -236,7 +236,7 @@ void OptilandReader::surfaces(const JsonObject& group) {
     const JsonObject s = entry(group, "surfaces", i);
     SurfaceRow row;
     shape(s.object("geometry"), row);
-    const double next = place(entry(group, "surfaces", i + 1));
+    const double next = z_of(entry(group, "surfaces", i + 1));
     row.thickness = next - z;
     z = next;
     row.stop = s.flag("is_stop");

@@ -23,7 +23,7 @@ namespace petzval {
 namespace {
 
 constexpr std::size_t focus_nodes = 33, stop_nodes = 9, rings = 12, light_nodes = 5;
-constexpr double spare = 1.02;  ///< enlarges boxes around pupils, because they are computed from samples
+constexpr double box_scale = 1.02;  ///< enlarges boxes around pupils, because they are computed from samples
 
 /// A number that reads back as the same float, with a point so that it is not an integer.
 std::string number(double value) {
@@ -248,9 +248,9 @@ void OslCamera::boxes(std::string& text) const {
     for (std::size_t k = 0; k < at.size(); k += 2) {
       const bool empty = at[k].empty();
       const double middle = empty ? 0 : (at[k].from + at[k].to) / 2, half = empty ? 0 : (at[k].to - at[k].from) / 2;
-      from.push_back(middle - spare * half);
-      to.push_back(middle + spare * half);
-      across.push_back(empty ? 0 : spare * at[k].across);
+      from.push_back(middle - box_scale * half);
+      to.push_back(middle + box_scale * half);
+      across.push_back(empty ? 0 : box_scale * at[k].across);
     }
   }
   text +=

@@ -119,7 +119,7 @@ void OsloReader::take(int line, std::string_view text) {
 }
 
 bool OsloReader::take_general(int line, std::string_view command, const Words& w) {
-  const auto length = [&](std::optional<double>& place) { return place = value(line, w), true; };
+  const auto length = [&](std::optional<double>& entry_index) { return entry_index = value(line, w), true; };
   if (command == "LEN") {
     if (w.size() < 3 || !same(w[1], "NEW")) in_.refuse(line, "LEN", "incomplete", "LEN NEW \"name\"");
     lens_.line = line;
@@ -147,10 +147,10 @@ bool OsloReader::take_general(int line, std::string_view command, const Words& w
     return true;
   }
   if (command.starts_with("WV") && number(command.substr(2)).value_or(0) >= 1) {
-    const double place = *number(command.substr(2));
-    if (!(place <= 100 && place == std::floor(place)))
+    const double entry_index = *number(command.substr(2));
+    if (!(entry_index <= 100 && entry_index == std::floor(entry_index)))
       in_.refuse(line, command, "an index outside the list", "WV1 to WV100");
-    const auto i = static_cast<std::size_t>(place);
+    const auto i = static_cast<std::size_t>(entry_index);
     if (lens_.wavelengths.size() < i) lens_.wavelengths.resize(i);
     lens_.wavelengths[i - 1] = value(line, w);
     return true;
@@ -260,10 +260,10 @@ bool OsloReader::take_asphere(int line, std::string_view command, const Words& w
     return true;
   }
   if (!command.starts_with("AS") || !number(command.substr(2))) return false;
-  const double place = *number(command.substr(2)), coefficient = value(line, w);
+  const double entry_index = *number(command.substr(2)), coefficient = value(line, w);
   if (coefficient == 0) return true;
   if (s.asphere.empty()) in_.refuse(line, command, "a term before ASP", "after ASP, the kind of asphere");
-  const double order = s.asphere == "asr" ? 2 * place : place;
+  const double order = s.asphere == "asr" ? 2 * entry_index : entry_index;
   if (!(order >= 2 && order <= 40 && order == std::floor(order))) {
     in_.refuse(line, command, "order " + to_text(order), "2 to 40");
   }

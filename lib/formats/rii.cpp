@@ -96,12 +96,12 @@ class PageReader : public YAML::EventHandler {
       level.at_key = false;
       return;
     }
-    if (Value* value = place(level.key)) *value = {text, mark.line + 1};
+    if (Value* value = slot(level.key)) *value = {text, mark.line + 1};
     value_ends();
   }
 
   /// The member that stores a value, by the keys that lead to it; null if the value is not used.
-  Value* place(const std::string& key) {
+  Value* slot(const std::string& key) {
     const std::string& section = inside_[0].key;
     if (inside_.size() == 3 && section == "DATA" && !page_.data.empty()) {
       Entry& entry = page_.data.back();
@@ -278,10 +278,10 @@ class RiiReader {
     }
 
     // If k exceeds 0.01, a millimetre is opaque; the longest range of clear wavelengths is used.
-    constexpr double clear = 0.01;
+    constexpr double max_extinction = 0.01;
     std::size_t first = 0, count = 0;
     for (std::size_t i = 0, start = 0; i < rows.size(); ++i) {
-      if (rows[i].k > clear) start = i + 1;
+      if (rows[i].k > max_extinction) start = i + 1;
       if (i + 1 > start && i + 1 - start > count) first = start, count = i + 1 - start;
     }
     if (count < 2) {

@@ -94,12 +94,12 @@ Medium TableBuilder::medium(const TableRow& row, const Medium& before) {
 
 /// Warns if a name stands for several glasses: F2 has n_d 1.62004 at Schott and 1.61293 at CDGM.
 void TableBuilder::name_other_makers(const TableRow& row, const Medium& taken) {
-  constexpr double another_glass = 1e-3;
+  constexpr double min_index_difference = 1e-3;
   if (!taken.glass || !taken.catalogue || !named_.insert(*taken.glass).second) return;
   const Glass* glass = in_.glasses().find(*taken.glass, *taken.catalogue);
   std::string others;
   for (const Glass& other : in_.glasses().glasses()) {
-    if (!glass || !same(other.name, glass->name) || std::abs(other.nd - glass->nd) <= another_glass) continue;
+    if (!glass || !same(other.name, glass->name) || std::abs(other.nd - glass->nd) <= min_index_difference) continue;
     others += ", " + other.catalogue + " (n_d " + to_text(other.nd, 6) + ')';
   }
   if (others.empty()) return;

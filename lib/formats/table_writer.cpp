@@ -14,10 +14,10 @@ using namespace formats_detail;
 
 /// Readers interpret a thickness of 0 in a special way: at the first glass as gaps in front of surfaces, and at the
 /// last surface as a film without a position.
-constexpr double nearly_zero = 1e-9;
+constexpr double zero_thickness_mm = 1e-9;
 
 /// Renderers interpret radius 0 as the stop. A sphere this flat departs from a plane by 5e-5 mm at 10 mm from the axis.
-constexpr double nearly_plane = 1e6;
+constexpr double plane_radius_mm = 1e6;
 
 std::string cells(double radius, double thickness, double index, double diameter) {
   return to_text(radius) + '\t' + to_text(thickness) + '\t' + to_text(index) + '\t' + to_text(diameter);
@@ -65,7 +65,7 @@ ExportedLens format_table(const Prescription& prescription, const GlassCatalogue
     if (is_stop) first_stop = &row;
     double thickness = row.thickness;
     if (thickness == 0 && ((i == 0 && index != 1) || i + 1 == p.surfaces.size())) {
-      thickness = nearly_zero;
+      thickness = zero_thickness_mm;
       out.lose("thickness", "of 0 behind surface " + std::to_string(i) +
                                 " is written as 1e-9 mm: readers interpret 0 as " +
                                 (i == 0 ? "gaps in front of surfaces" : "a film without a position"));
@@ -73,7 +73,7 @@ ExportedLens format_table(const Prescription& prescription, const GlassCatalogue
     if (is_stop && row.radius == 0 && index == 1 && before == 1) {
       out.line(cells(0, thickness, 0, diameter));
     } else {
-      const double radius = row.radius == 0 ? nearly_plane : row.radius;
+      const double radius = row.radius == 0 ? plane_radius_mm : row.radius;
       planes = planes || row.radius == 0;
       // If a lens surface is the stop, the stop is written as a separate row, on the side of the surface with air.
       if (is_stop && before == 1) {

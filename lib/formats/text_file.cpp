@@ -87,9 +87,9 @@ std::string_view kind_of(std::string_view bytes) {
 
 }  // namespace
 
-std::string as_utf8(std::string bytes, const std::string& where, const std::string& wanted) {
+std::string as_utf8(std::string bytes, const std::string& where, const std::string& rule) {
   if (const auto kind = kind_of(bytes); !kind.empty()) {
-    throw Error(where + ": is " + std::string(kind) + "; must be " + wanted);
+    throw Error(where + ": is " + std::string(kind) + "; must be " + rule);
   }
   if (bytes.starts_with("\xFF\xFE")) return from_utf16(std::string_view(bytes).substr(2), false);
   if (bytes.starts_with("\xFE\xFF")) return from_utf16(std::string_view(bytes).substr(2), true);
@@ -105,13 +105,13 @@ std::string as_utf8(std::string bytes, const std::string& where, const std::stri
   }
   if (bytes.find('\0') != std::string::npos) {
     throw Error(where + ": byte " + std::to_string(bytes.find('\0')) + " = 0, so the file is not text; must be " +
-                wanted);
+                rule);
   }
   return is_utf8(bytes) ? std::move(bytes) : from_latin1(bytes);
 }
 
-std::string read_as_utf8(const std::filesystem::path& file, const std::string& wanted) {
-  return as_utf8(read_file(file, wanted), file.string(), wanted);
+std::string read_as_utf8(const std::filesystem::path& file, const std::string& rule) {
+  return as_utf8(read_file(file, rule), file.string(), rule);
 }
 
 bool Lines::next() {

@@ -12,12 +12,12 @@ namespace petzval::formats_detail {
 
 /// The text of a file, converted to UTF-8. The file may be UTF-16, with a byte order mark or with many zero bytes, or
 /// UTF-8 with or without a mark; all other files are read as Latin-1.
-/// @param wanted the required kind of file, for messages
+/// @param rule the required kind of file, for messages
 /// @throws Error if the file cannot be read or is not text; names the kind of a known binary file (zip, PNG, EXR, ...)
-std::string read_as_utf8(const std::filesystem::path& file, const std::string& wanted);
+std::string read_as_utf8(const std::filesystem::path& file, const std::string& rule);
 
 /// The text of bytes in memory, converted like a file.
-std::string as_utf8(std::string bytes, const std::string& where, const std::string& wanted);
+std::string as_utf8(std::string bytes, const std::string& where, const std::string& rule);
 
 /// The lines of a text, one after the other. Lines end with LF, CR LF or CR.
 class Lines {

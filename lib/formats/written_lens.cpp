@@ -129,8 +129,8 @@ void Writer::state_indices_at_d() {
   lens_.reference_wavelength_nm = d_line_nm;
 }
 
-void Writer::refuse(std::size_t surface, const std::string& found, const std::string& wanted) const {
-  throw Error(where_ + ": surface " + std::to_string(surface) + ": " + found + "; must be " + wanted);
+void Writer::refuse(std::size_t surface, const std::string& found, const std::string& rule) const {
+  throw Error(where_ + ": surface " + std::to_string(surface) + ": " + found + "; must be " + rule);
 }
 
 void Writer::lose_nominal_data(bool design_data, std::initializer_list<std::string_view> kept) {

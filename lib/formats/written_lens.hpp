@@ -24,7 +24,7 @@ class Writer {
   /// Name of the prescription, for messages.
   const std::string& where() const noexcept { return where_; }
   /// Throws Error: "lens: surface 3: found; must be wanted".
-  [[noreturn]] void refuse(std::size_t surface, const std::string& found, const std::string& wanted) const;
+  [[noreturn]] void refuse(std::size_t surface, const std::string& found, const std::string& rule) const;
   void line(const std::string& text) { text_ += text + '\n'; }
   void lose(std::string_view what, const std::string& message) { losses_.push_back({0, std::string(what), message}); }
   /// Records the loss of nominal data and sources, except the `kept` data and, in a format with design data, the data

@@ -51,12 +51,12 @@ class Pickups {
   }
 
   /// Sets the value of a pickup or solve. If both agree, the digits of the file are kept.
-  void set(int line, const char* command, double& value, double wanted) const {
-    if (agree(value, wanted)) return;
+  void set(int line, const char* command, double& value, double expected) const {
+    if (agree(value, expected)) return;
     in_.warn(line, command,
-             "the file states " + to_text(value, 12) + ", its pickup or solve gives " + to_text(wanted, 12) +
+             "the file states " + to_text(value, 12) + ", its pickup or solve gives " + to_text(expected, 12) +
                  ", which is taken");
-    value = wanted;
+    value = expected;
   }
 
   void take(std::size_t i, const ZemaxPickup& pickup, const char* command, double ZemaxSurface::*member) {
@@ -251,8 +251,8 @@ constexpr std::string_view silent_operands = "MOFF FLWT WLWT COTN CWGT GCRS NCOM
 
 class Configurations {
  public:
-  Configurations(const ZemaxLens& zemax, const std::vector<int>& place, double unit, Rows& rows, Import& in)
-      : zemax_(zemax), place_(place), unit_(unit), rows_(rows), in_(in) {}
+  Configurations(const ZemaxLens& zemax, const std::vector<int>& file_surfaces, double unit, Rows& rows, Import& in)
+      : zemax_(zemax), file_surfaces_(file_surfaces), unit_(unit), rows_(rows), in_(in) {}
 
   void build();
 
@@ -262,7 +262,7 @@ class Configurations {
   SurfaceChange& change(Configuration& c, const ZemaxOperand& operand);
 
   const ZemaxLens& zemax_;
-  const std::vector<int>& place_;  ///< [row] number of the surface in the file
+  const std::vector<int>& file_surfaces_;  ///< [row] number of the surface in the file
   double unit_;
   Rows& rows_;
   Import& in_;
@@ -282,11 +282,11 @@ void Configurations::aperture(const ZemaxOperand& operand, double value) {
 /// The change of the operand's surface.
 /// @throws Error if the surface is not a row of the lens
 SurfaceChange& Configurations::change(Configuration& c, const ZemaxOperand& operand) {
-  const auto found = std::ranges::find(place_, operand.surface);
-  if (found == place_.end()) {
+  const auto found = std::ranges::find(file_surfaces_, operand.surface);
+  if (found == file_surfaces_.end()) {
     in_.refuse(operand.line, operand.name, "surface " + std::to_string(operand.surface), "a surface of the lens");
   }
-  return change_of(c, static_cast<int>(found - place_.begin()));
+  return change_of(c, static_cast<int>(found - file_surfaces_.begin()));
 }
 
 void Configurations::take(const ZemaxOperand& operand) {
@@ -370,17 +370,17 @@ void solve_the_film(const ZemaxSurface& last, Import& in) {
 /// Checks that object and film are planes perpendicular to the axis.
 void check_ends(const ZemaxSurface& object, const ZemaxSurface& image, Import& in) {
   const bool near = std::isfinite(in.lens.design.object_distance_mm);
-  const auto refuse_tilt = [&](const ZemaxSurface& s, const std::string& place, const std::string& instead) {
+  const auto refuse_tilt = [&](const ZemaxSurface& s, const std::string& location, const std::string& instead) {
     if (s.type != "TILTSURF") return;
     // PARM 1 and 2: tangents of the tilts in x and y.
     for (const int axis : {1, 2}) {
       const auto tangent = s.parameters.find(axis);
       if (tangent == s.parameters.end() || tangent->second == 0) continue;
       in.refuse(s.line, "TYPE",
-                "a TILTSURF at the " + place + ", tilted by " +
+                "a TILTSURF at the " + location + ", tilted by " +
                     to_text(std::atan(tangent->second) * 180 / std::acos(-1.0), 4) + " degrees in " +
                     (axis == 1 ? "x" : "y"),
-                "an upright " + place + ": set PARM 1 and 2 to 0" + instead);
+                "an upright " + location + ": set PARM 1 and 2 to 0" + instead);
     }
   };
   if (near) refuse_tilt(object, "object", " and focus on the tilted plane with a tilted film");
@@ -398,9 +398,9 @@ void check_ends(const ZemaxSurface& object, const ZemaxSurface& image, Import& i
 
 void build_lens(ZemaxLens zemax, double unit, Import& in) {
   Pickups(zemax.surfaces, in).evaluate();
-  std::vector<int> place(zemax.surfaces.size());
-  std::iota(place.begin(), place.end(), 0);
-  fold_breaks(zemax.surfaces, place, in);
+  std::vector<int> file_surfaces(zemax.surfaces.size());
+  std::iota(file_surfaces.begin(), file_surfaces.end(), 0);
+  fold_breaks(zemax.surfaces, file_surfaces, in);
   if (zemax.surfaces.size() < 3) throw Error(in.where() + ": no surface of a lens; must be at least one");
 
   const ZemaxSurface &object = zemax.surfaces.front(), &image = zemax.surfaces.back();
@@ -436,9 +436,9 @@ void build_lens(ZemaxLens zemax, double unit, Import& in) {
   in.requests.telecentric_line = zemax.telecentric;
   in.requests.telecentric_command = "FTYP";
   in.lens.semi_diameters = "of the file: clear apertures, else the widths of the design's beams";
-  place.erase(place.begin());
-  place.pop_back();
-  Configurations(zemax, place, unit, rows, in).build();
+  file_surfaces.erase(file_surfaces.begin());
+  file_surfaces.pop_back();
+  Configurations(zemax, file_surfaces, unit, rows, in).build();
   if (last.marginal_height && !image_at_infinity) solve_the_film(last, in);
 }
 

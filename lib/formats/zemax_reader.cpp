@@ -305,11 +305,11 @@ void ZemaxReader::mode(Words words) {
 
 void ZemaxReader::note(Words) {
   // "NOTE 0 text" continues the previous line, "NOTE 4" ends a paragraph.
-  constexpr std::size_t longest = 65'536;
+  constexpr std::size_t max_note_size = 65'536;
   const std::string text = rest();
   if (text.starts_with("0")) {
     const bool blank = text.size() > 1 && (text[1] == ' ' || text[1] == '\t');
-    if (note_.size() < longest) note_ += text.substr(blank ? 2 : 1);
+    if (note_.size() < max_note_size) note_ += text.substr(blank ? 2 : 1);
   } else {
     end_note();
   }

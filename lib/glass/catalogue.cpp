@@ -134,12 +134,12 @@ const Glass* GlassCatalogue::find(std::string_view name) const {
   if (const auto own = named(added(), name); !own.empty()) return own.data();
   const auto candidates = named(tables(), name);
   if (candidates.empty()) return nullptr;
-  constexpr double another_glass = 1e-4;
+  constexpr double min_index_difference = 1e-4;
   const auto age = [](const Glass& glass) { return glass_detail::age(glass.catalogue); };
   const Glass& first = *std::ranges::min_element(candidates, {}, age);
   const auto equal_rank = [&](const Glass& glass) { return age(glass) == age(first); };
   const bool ambiguous = std::ranges::any_of(candidates, [&](const Glass& glass) {
-    return equal_rank(glass) && std::abs(glass.nd - first.nd) > another_glass;
+    return equal_rank(glass) && std::abs(glass.nd - first.nd) > min_index_difference;
   });
   if (!ambiguous) return &first;
   std::string list;
