@@ -61,8 +61,8 @@ double secant(const TablePoint& a, const TablePoint& b) { return (b.n - a.n) / (
 double slope_between(const TablePoint& before, const TablePoint& at, const TablePoint& after) {
   const double left = secant(before, at), right = secant(at, after);
   if (!(left * right > 0)) return 0;
-  const double part = (1 + (after.x - at.x) / (after.x - before.x)) / 3;
-  return left * right / (part * right + (1 - part) * left);
+  const double fraction = (1 + (after.x - at.x) / (after.x - before.x)) / 3;
+  return left * right / (fraction * right + (1 - fraction) * left);
 }
 
 /// The index at wavelength l (micrometres) from a table l0, n0, l1, n1, ...
@@ -91,7 +91,7 @@ double refractive_index(const Glass& glass, double wavelength_nm) {
   const auto& form = glass_detail::form_of(glass.formula);
   if (!form.takes(c.size())) {
     throw Error(where + ": formula has " + std::to_string(c.size()) + " coefficients; must be " +
-                std::string(form.wanted));
+                std::string(form.rule));
   }
 
   const double l = wavelength_nm * 1e-3, l2 = l * l;

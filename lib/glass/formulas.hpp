@@ -15,7 +15,7 @@ struct FormulaForm {
   DispersionFormula formula;
   std::string_view name;
   std::size_t first, each;  ///< each: 0 if the formula has no terms
-  std::string_view wanted;  ///< the coefficients, for messages
+  std::string_view rule;    ///< the coefficients, for messages
 
   constexpr bool takes(std::size_t count) const noexcept {
     return each == 0 ? count == first : count >= first && (count - first) % each == 0;

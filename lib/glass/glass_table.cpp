@@ -69,7 +69,7 @@ Glass parse_glass(std::string_view line, const std::string& where) {
 
   const auto count = glass.coefficients.size();
   if (!form->takes(count)) {
-    throw Error(where + ": " + std::to_string(count) + " coefficients; must be " + std::string(form->wanted));
+    throw Error(where + ": " + std::to_string(count) + " coefficients; must be " + std::string(form->rule));
   }
   if (glass.formula == DispersionFormula::tabulated && !covers(glass)) {
     throw Error(where + ": wavelengths of the table must increase and cover wl_min_um to wl_max_um");

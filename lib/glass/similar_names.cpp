@@ -52,22 +52,22 @@ bool same_bare(std::string_view a, std::string_view b) noexcept {
 }
 
 std::string similar_names(const GlassCatalogue& glasses, std::string_view name) {
-  constexpr std::size_t longest = 60, names = 5;
-  const std::string wanted = bare(name.substr(0, longest));
-  const std::size_t most = std::max<std::size_t>(1, wanted.size() / 3);
+  constexpr std::size_t max_name_size = 60, names = 5;
+  const std::string bare_name = bare(name.substr(0, max_name_size));
+  const std::size_t most = std::max<std::size_t>(1, bare_name.size() / 3);
   std::vector<std::tuple<std::size_t, int, const Glass*>> found;
   for (const Glass& glass : glasses.glasses()) {
-    const std::size_t distance = changes(bare(glass.name), wanted, most);
+    const std::size_t distance = changes(bare(glass.name), bare_name, most);
     if (distance <= most) found.emplace_back(distance, age(glass.catalogue), &glass);
   }
   std::ranges::stable_sort(found, {}, [](const auto& f) { return std::pair(std::get<0>(f), std::get<1>(f)); });
   std::vector<std::string_view> listed;
   std::string list;
   for (const auto& entry : found) {
-    const std::string& found_name = std::get<2>(entry)->name;
-    if (listed.size() == names || std::ranges::find(listed, found_name) != listed.end()) continue;
-    listed.push_back(found_name);
-    list += (list.empty() ? "" : ", ") + found_name;
+    const std::string& listed_name = std::get<2>(entry)->name;
+    if (listed.size() == names || std::ranges::find(listed, listed_name) != listed.end()) continue;
+    listed.push_back(listed_name);
+    list += (list.empty() ? "" : ", ") + listed_name;
   }
   return list;
 }
