@@ -21,14 +21,14 @@
 #include <vector>
 
 #include "image/exr_head.hpp"
-#include "image/file_room.hpp"
+#include "image/file_capacity.hpp"
 #include "petzval/core/error.hpp"
 #include "petzval/core/files.hpp"
 
 namespace petzval {
 namespace {
 
-constexpr std::uint64_t most = std::uint64_t(1) << 27;  // limit of pixels and of samples: 3 GiB of values
+constexpr std::uint64_t max_values = std::uint64_t(1) << 27;  // limit of pixels and of samples: 3 GiB of values
 
 /// One channel of all samples of some rows, with the pointers per pixel that OpenEXR requires.
 struct DeepPlane {
@@ -78,14 +78,14 @@ DeepPicture read(const std::filesystem::path& file, double unit_mm) {
   const Imath::Box2i window = header.dataWindow();
   const auto width = std::uint64_t(std::int64_t(window.max.x) - window.min.x + 1),
              height = std::uint64_t(std::int64_t(window.max.y) - window.min.y + 1);
-  if (width > most || height > most || width * height > most) {
+  if (width > max_values || height > max_values || width * height > max_values) {
     throw Error("size = " + std::to_string(width) + " x " + std::to_string(height) + "; must be at most " +
-                std::to_string(most) + " pixels");
+                std::to_string(max_values) + " pixels");
   }
   // Deflate expands a byte to at most 1032 bytes. Counts take 4 bytes, samples 2 or more.
-  const std::string no_room = "; must not exceed the size of the file";
-  if (!image_detail::has_room_for(width * height, 1 << 9, file)) {
-    throw Error("size = " + std::to_string(width) + " x " + std::to_string(height) + " pixels" + no_room);
+  const std::string size_rule = "; must not exceed the size of the file";
+  if (!image_detail::fits_in_file(width * height, 1 << 9, file)) {
+    throw Error("size = " + std::to_string(width) + " x " + std::to_string(height) + " pixels" + size_rule);
   }
   DeepPicture picture;
   FragmentLists& lists = picture.lists;
@@ -116,9 +116,9 @@ DeepPicture read(const std::filesystem::path& file, double unit_mm) {
     deep.setFrameBuffer(buffer);
     deep.readPixelSampleCounts(row, row);
     samples += std::accumulate(counts.begin(), counts.end(), std::uint64_t{0});
-    if (samples > most || !image_detail::has_room_for(samples, 1 << 10, file)) {
+    if (samples > max_values || !image_detail::fits_in_file(samples, 1 << 10, file)) {
       throw Error("samples = " + std::to_string(samples) + " up to row " + std::to_string(row - window.min.y) +
-                  no_room + " or " + std::to_string(most));
+                  size_rule + " or " + std::to_string(max_values));
     }
     for (DeepPlane& plane : planes) plane.point(counts);
     deep.readPixels(row, row);

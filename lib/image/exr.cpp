@@ -26,7 +26,7 @@
 #include <string>
 
 #include "image/exr_head.hpp"
-#include "image/file_room.hpp"
+#include "image/file_capacity.hpp"
 #include "petzval/core/error.hpp"
 #include "petzval/core/files.hpp"
 
@@ -37,7 +37,7 @@ namespace {
 constexpr std::uint64_t most_values = std::uint64_t(3) << 28;
 
 /// Attributes that OpenEXR writes to every file.
-constexpr std::array<std::string_view, 7> of_every_file{
+constexpr std::array<std::string_view, 7> common_attributes{
     "chunkCount", "name", "pixelAspectRatio", "screenWindowCenter", "screenWindowWidth", "type", "version"};
 /// Standard attributes of lenses with type float.
 constexpr std::array<std::string_view, 7> standard_floats{"aperture", "effectiveFocalLength", "entrancePupilOffset",
@@ -47,7 +47,7 @@ constexpr std::array<std::string_view, 7> standard_floats{"aperture", "effective
 bool is_among(std::span<const std::string_view> names, std::string_view name) noexcept {
   return std::find(names.begin(), names.end(), name) != names.end();
 }
-bool in_every_file(std::string_view name) noexcept { return is_among(of_every_file, name); }
+bool in_every_file(std::string_view name) noexcept { return is_among(common_attributes, name); }
 
 std::string size_of(const ExrPart& part) { return std::to_string(part.width) + " x " + std::to_string(part.height); }
 
@@ -162,19 +162,19 @@ class Reader {
   int parts() const { return file_.parts(); }
 
   /// Reads a part with the given channels in their order; all channels if none are given.
-  ExrPart part(int index, std::span<const std::string_view> wanted = {}) {
+  ExrPart part(int index, std::span<const std::string_view> channel_names = {}) {
     const Imf::Header& header = file_.header(index);
     ExrPart part;
     read_attributes(header, part);
-    for (const std::string_view name : wanted) part.channels.push_back({std::string(name), {}});
-    if (wanted.empty()) {
+    for (const std::string_view name : channel_names) part.channels.push_back({std::string(name), {}});
+    if (channel_names.empty()) {
       for (auto i = header.channels().begin(); i != header.channels().end(); ++i)
         part.channels.push_back({i.name(), {}});
     }
     for (const ExrChannel& channel : part.channels) {
       if (header.channels().findChannel(channel.name)) continue;
       std::string all;
-      for (const std::string_view name : wanted) all += (all.empty() ? "" : ", ") + std::string(name);
+      for (const std::string_view name : channel_names) all += (all.empty() ? "" : ", ") + std::string(name);
       throw Error("no channel " + channel.name + "; must have " + all);
     }
 
@@ -188,7 +188,7 @@ class Reader {
                   std::to_string(most_values) + " values in all parts");
     }
     const std::uint64_t values = width * height * part.channels.size();
-    if (!image_detail::has_room_for(values, most_in_a_byte(header.compression()), path_)) {
+    if (!image_detail::fits_in_file(values, most_in_a_byte(header.compression()), path_)) {
       throw Error("part \"" + part.name + "\": values = " + std::to_string(values) +
                   "; must not exceed the size of the file");
     }

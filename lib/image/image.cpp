@@ -18,7 +18,7 @@
 #include "core/open_file.hpp"
 #include "core/text.hpp"
 #include "image/exr.hpp"
-#include "image/file_room.hpp"
+#include "image/file_capacity.hpp"
 #include "image/png.hpp"
 #include "petzval/core/error.hpp"
 #include "petzval/core/files.hpp"
@@ -85,12 +85,12 @@ void write_pfm(const char* kind, int width, int height, std::size_t row, std::sp
 /// Reads the next word of the header of a PFM file and one white space after it. A word, or the white space before it,
 /// has at most 64 characters, so that reading the header of an endless file terminates.
 std::string next_word(std::istream& in) {
-  constexpr std::size_t longest = 64;
+  constexpr std::size_t max_word_size = 64;
   const auto blank = [](int c) { return c == ' ' || (c >= '\t' && c <= '\r'); };
   int c = in.get();
-  for (std::size_t i = 0; i < longest && blank(c); ++i) c = in.get();
+  for (std::size_t i = 0; i < max_word_size && blank(c); ++i) c = in.get();
   std::string word;
-  for (; in && !blank(c) && word.size() < longest; c = in.get()) word += static_cast<char>(c);
+  for (; in && !blank(c) && word.size() < max_word_size; c = in.get()) word += static_cast<char>(c);
   return word;
 }
 
@@ -129,7 +129,7 @@ RgbImage read_pfm(const std::filesystem::path& file) {
   image_detail::check_size(static_cast<std::size_t>(width), static_cast<std::size_t>(height), file);
   const std::size_t channels = kind == "PF" ? 3 : 1, row = channels * static_cast<std::size_t>(width);
   const std::string too_short = file.string() + ": ends before its last value; must be a complete PFM file";
-  if (!image_detail::has_room_for(row * static_cast<std::size_t>(height), 1, file)) throw Error(too_short);
+  if (!image_detail::fits_in_file(row * static_cast<std::size_t>(height), 1, file)) throw Error(too_short);
   RgbImage image(static_cast<int>(width), static_cast<int>(height));
   std::vector<unsigned char> bytes(4 * row);
   for (auto y = static_cast<int>(height); y-- > 0;) {

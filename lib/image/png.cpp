@@ -9,7 +9,7 @@
 #include <string>
 
 #include "core/open_file.hpp"
-#include "image/file_room.hpp"
+#include "image/file_capacity.hpp"
 #include "petzval/core/error.hpp"
 
 namespace petzval::image_detail {
@@ -49,10 +49,10 @@ bool read_rows(PngRows& rows, png_bytepp to) noexcept {
 }  // namespace
 
 void check_size(std::size_t width, std::size_t height, const std::filesystem::path& file) {
-  constexpr std::size_t most = std::size_t(1) << 26;
-  if (width <= most / height) return;
+  constexpr std::size_t max_pixels = std::size_t(1) << 26;
+  if (width <= max_pixels / height) return;
   throw Error(file.string() + ": size = " + std::to_string(width) + " x " + std::to_string(height) +
-              " pixels; must be at most " + std::to_string(most) + " pixels");
+              " pixels; must be at most " + std::to_string(max_pixels) + " pixels");
 }
 
 PngPicture read_png_picture(const std::filesystem::path& file) {
@@ -66,7 +66,7 @@ PngPicture read_png_picture(const std::filesystem::path& file) {
   if (!read_head(open.get(), rows)) refuse();
   check_size(rows.width, rows.height, file);
   // Deflate expands a byte to at most 1032 bytes.
-  if (!has_room_for(rows.stored_row * rows.height, 1 << 11, file)) refuse();
+  if (!fits_in_file(rows.stored_row * rows.height, 1 << 11, file)) refuse();
   const std::size_t row_bytes = std::size_t{2} * rows.channels * rows.width;
   std::vector<std::uint8_t> bytes(row_bytes * rows.height);
   std::vector<png_bytep> row_begins;

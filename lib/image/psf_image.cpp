@@ -30,8 +30,8 @@ RgbImage render(const Psf& psf, std::span<const std::array<double, 3>> weights) 
                 std::to_string(psf.wavelengths_nm.size()) + " wavelengths");
   }
   RgbImage image(psf.pixels, psf.pixels);
-  if (const std::size_t wanted = weights.size() * image.pixels.size() / 3; psf.counts.size() != wanted) {
-    throw Error("render: counts = " + std::to_string(psf.counts.size()) + "; must be " + std::to_string(wanted) +
+  if (const std::size_t expected_size = weights.size() * image.pixels.size() / 3; psf.counts.size() != expected_size) {
+    throw Error("render: counts = " + std::to_string(psf.counts.size()) + "; must be " + std::to_string(expected_size) +
                 ", one for each pixel and wavelength");
   }
   std::vector<double> sums(image.pixels.size(), 0.0);

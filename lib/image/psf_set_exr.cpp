@@ -125,14 +125,15 @@ PsfSet psf_set_of(std::vector<ExrPart> parts, const std::filesystem::path& file)
     }
     const auto axis = [&](std::size_t i) { return std::vector<double>(seen[i].begin(), seen[i].end()); };
     PsfSet::Axes axes{axis(0), axis(1), axis(2), axis(3)};
-    std::map<std::string, std::size_t> places;
-    for (std::size_t i = 0; i < found.size(); ++i) places[psf_part_name(found[i].point)] = i;
+    std::map<std::string, std::size_t> indices;
+    for (std::size_t i = 0; i < found.size(); ++i) indices[psf_part_name(found[i].point)] = i;
     std::vector<PsfKernel> kernels;
     for (std::size_t node = 0; node < axes.size(); ++node) {
-      const std::string wanted = psf_part_name(axes.point(node));
-      const auto place = places.find(wanted);
-      if (place == places.end()) throw Error("no part \"" + wanted + "\"; must have one for every node of the grid");
-      kernels.push_back(std::move(found[place->second].kernel));
+      const std::string part_name = psf_part_name(axes.point(node));
+      const auto entry = indices.find(part_name);
+      if (entry == indices.end())
+        throw Error("no part \"" + part_name + "\"; must have one for every node of the grid");
+      kernels.push_back(std::move(found[entry->second].kernel));
     }
     return {std::move(axes), std::move(kernels)};
   } catch (const Error& error) {

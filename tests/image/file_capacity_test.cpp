@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Image headers that claim more data than the file holds are refused before memory is allocated.
-#include "image/file_room.hpp"
+#include "image/file_capacity.hpp"
 
 #include <gtest/gtest.h>
 
@@ -16,7 +16,7 @@
 #include "petzval/image/image.hpp"
 
 namespace petzval {
-namespace file_room_test {
+namespace file_capacity_test {
 
 using testing::expect_error;
 
@@ -43,11 +43,11 @@ std::string with_width(std::string exr, std::uint32_t width) {
 TEST(FileRoom, IsTheSizeOfTheFileOrAMillionNumbers) {
   const auto file = file_named("thousand");
   write_bytes(file, std::string(1000, 'x'));
-  EXPECT_TRUE(image_detail::has_room_for(1 << 20, 1, file));
-  EXPECT_FALSE(image_detail::has_room_for((1 << 20) + 1, 1, file));
-  EXPECT_TRUE(image_detail::has_room_for(2'000'000, 2000, file));
-  EXPECT_FALSE(image_detail::has_room_for(2'000'001, 2000, file));
-  EXPECT_TRUE(image_detail::has_room_for(2'000'001, 1, "/nowhere/at/all"));
+  EXPECT_TRUE(image_detail::fits_in_file(1 << 20, 1, file));
+  EXPECT_FALSE(image_detail::fits_in_file((1 << 20) + 1, 1, file));
+  EXPECT_TRUE(image_detail::fits_in_file(2'000'000, 2000, file));
+  EXPECT_FALSE(image_detail::fits_in_file(2'000'001, 2000, file));
+  EXPECT_TRUE(image_detail::fits_in_file(2'000'001, 1, "/nowhere/at/all"));
   std::filesystem::remove(file);
 }
 
@@ -100,5 +100,5 @@ TEST(FileRoom, IsCheckedByEveryImageReader) {
   for (const auto& written : {file, deep, png, pfm}) std::filesystem::remove(written);
 }
 
-}  // namespace file_room_test
+}  // namespace file_capacity_test
 }  // namespace petzval
