@@ -71,9 +71,10 @@ class OpenFile {
   int descriptor() const noexcept { return descriptor_; }
 
   void write(std::string_view bytes) const {
-    constexpr std::size_t most = std::size_t{1} << 30;  // some systems refuse more in one call
+    constexpr std::size_t max_write_size = std::size_t{1} << 30;  // some systems refuse more in one call
     while (!bytes.empty()) {
-      const auto count = ::write(descriptor_, bytes.data(), static_cast<unsigned>(std::min(bytes.size(), most)));
+      const auto count =
+          ::write(descriptor_, bytes.data(), static_cast<unsigned>(std::min(bytes.size(), max_write_size)));
       check(count >= 0 || errno == EINTR);
       if (count > 0) bytes.remove_prefix(static_cast<std::size_t>(count));
     }
@@ -127,7 +128,7 @@ class NewFile {
 };
 
 /// The path that a new file may replace, after following links; nullopt for a pipe or a device.
-std::optional<fs::path> place(fs::path file) {
+std::optional<fs::path> link_target(fs::path file) {
   const auto type = fs::status(file).type();
   if (type != fs::file_type::regular && type != fs::file_type::not_found) return {};
   while (fs::is_symlink(fs::symlink_status(file))) file = file.parent_path() / fs::read_symlink(file);
@@ -143,7 +144,7 @@ void write_file(std::string_view bytes, const fs::path& file) {
   }
   core_detail::refuse_folder(file, "the name of a file");
   try {
-    if (const auto target = place(file)) {
+    if (const auto target = link_target(file)) {
       NewFile replacement(*target);
       replacement.write(bytes);
       replacement.replace(*target);

@@ -18,7 +18,7 @@ namespace petzval::io_detail {
 namespace {
 
 constexpr std::int64_t largest_integer = std::int64_t{1} << 53;  // not every larger integer is a double
-constexpr const char* wanted_integer = "an integer up to 2^53";
+constexpr const char* integer_rule = "an integer up to 2^53";
 
 /// Shortens text for messages: strings of a document may be long.
 std::string shortened(std::string_view text, std::size_t longest = 60) {
@@ -67,7 +67,7 @@ class JsonEvents {
   bool integer(Integer n, bool is_double) {
     if (is_double) return assign(static_cast<double>(n));
     next();
-    reader_.refuse(std::to_string(n), wanted_integer);
+    reader_.refuse(std::to_string(n), integer_rule);
   }
 
   JsonReader& reader_;
@@ -84,7 +84,7 @@ bool JsonEvents::number_float(double, const std::string& token) {
   const auto status = std::from_chars(digits.data(), digits.data() + digits.size(), value).ec;
   if (digits.find_first_of(".eE") != std::string::npos && status == std::errc()) return assign(value);
   next();
-  reader_.refuse(shortened(digits), status == std::errc() ? wanted_integer : "a number within the range of double");
+  reader_.refuse(shortened(digits), status == std::errc() ? integer_rule : "a number within the range of double");
 }
 
 bool JsonEvents::parse_error(std::size_t, const std::string&, const nlohmann::json::exception& error) {
@@ -217,20 +217,21 @@ void JsonReader::parse(std::string_view json) {
 }
 
 void JsonReader::fail(std::size_t byte, const std::string& message) const {
-  const std::string place = here();
-  throw Error(where_ + ':' + tokens_.line_and_column(byte) + ": " + place + (place.empty() ? "" : ": ") + message);
+  const std::string location = here();
+  throw Error(where_ + ':' + tokens_.line_and_column(byte) + ": " + location + (location.empty() ? "" : ": ") +
+              message);
 }
 
 void JsonReader::refuse(const std::string& value, const std::string& rule) const {
-  const std::string place = here();
-  throw Error(where_ + ':' + tokens_.line_and_column(byte()) + ": " + (place.empty() ? "document" : place) + " = " +
-              value + "; must be " + rule);
+  const std::string location = here();
+  throw Error(where_ + ':' + tokens_.line_and_column(byte()) + ": " + (location.empty() ? "document" : location) +
+              " = " + value + "; must be " + rule);
 }
 
 void JsonReader::refuse_kind(const std::string& kind, const std::string& rule) const {
-  const std::string place = here();
-  throw Error(where_ + ':' + tokens_.line_and_column(byte()) + ": " + (place.empty() ? "document" : place) + " is " +
-              kind + "; must be " + rule);
+  const std::string location = here();
+  throw Error(where_ + ':' + tokens_.line_and_column(byte()) + ": " + (location.empty() ? "document" : location) +
+              " is " + kind + "; must be " + rule);
 }
 
 double JsonReader::number_of(const JsonValue& value) const {

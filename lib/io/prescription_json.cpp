@@ -25,7 +25,7 @@ constexpr std::string_view format_name = "petzval-lens 1";
 constexpr std::size_t longest_list = 10'000;
 
 /// The lists and objects of the format.
-enum class Place {
+enum class Scope {
   file,
   source,
   zoom,
@@ -55,26 +55,26 @@ enum class Place {
 
 /// Kind of the entries of a list; nullopt for strings.
 struct ListOf {
-  std::optional<Place> entry;
+  std::optional<Scope> entry;
   const char* word;  ///< name of an entry in messages
 };
 
-constexpr std::optional<ListOf> list_of(Place place) {
-  switch (place) {
-    case Place::aliases: return ListOf{{}, "aliases"};
-    case Place::notes: return ListOf{{}, "notes"};
-    case Place::warnings: return ListOf{Place::warning, "warning"};
-    case Place::fields: return ListOf{Place::field, "field"};
-    case Place::wavelengths: return ListOf{Place::wavelength, "wavelength"};
-    case Place::surfaces: return ListOf{Place::surface, "surface"};
-    case Place::aspheric: return ListOf{Place::term, "aspheric"};
-    case Place::configurations: return ListOf{Place::configuration, "configuration"};
-    case Place::changes: return ListOf{Place::change, "change"};
+constexpr std::optional<ListOf> list_of(Scope scope) {
+  switch (scope) {
+    case Scope::aliases: return ListOf{{}, "aliases"};
+    case Scope::notes: return ListOf{{}, "notes"};
+    case Scope::warnings: return ListOf{Scope::warning, "warning"};
+    case Scope::fields: return ListOf{Scope::field, "field"};
+    case Scope::wavelengths: return ListOf{Scope::wavelength, "wavelength"};
+    case Scope::surfaces: return ListOf{Scope::surface, "surface"};
+    case Scope::aspheric: return ListOf{Scope::term, "aspheric"};
+    case Scope::configurations: return ListOf{Scope::configuration, "configuration"};
+    case Scope::changes: return ListOf{Scope::change, "change"};
     default: return {};
   }
 }
 
-constexpr bool is_list(Place place) { return list_of(place).has_value(); }
+constexpr bool is_list(Scope scope) { return list_of(scope).has_value(); }
 
 constexpr std::array aperture_settings{ApertureSetting::entrance_pupil_diameter,
                                        ApertureSetting::f_number,
@@ -95,26 +95,26 @@ class Reader : public io_detail::JsonReader {
   struct Key {
     std::string_view name;
     void (*set)(Reader&, const JsonValue&);  ///< for a plain value
-    std::optional<Place> opens = {};         ///< for a list or an object
+    std::optional<Scope> opens = {};         ///< for a list or an object
     bool required = false;
   };
   struct Open {
-    Place place;
+    Scope scope;
     std::size_t byte = 0;     ///< of the opening bracket
     std::uint32_t seen = 0;   ///< bits of the keys so far, by index in the table of the place
     std::size_t entries = 0;  ///< number of entries of a list
   };
 
-  static std::span<const Key> keys(Place place);
-  const Key* current() const { return key_ < 0 ? nullptr : &keys(open_.back().place)[static_cast<std::size_t>(key_)]; }
+  static std::span<const Key> keys(Scope scope);
+  const Key* current() const { return key_ < 0 ? nullptr : &keys(open_.back().scope)[static_cast<std::size_t>(key_)]; }
   SurfaceRow& row() { return lens_.surfaces.back(); }
   Configuration& configuration() { return lens_.configurations.back(); }
   SurfaceChange& change() { return configuration().changes.back(); }
   DesignField& field() { return lens_.design.fields.back(); }
   Medium& medium() {
-    switch (open_.back().place) {
-      case Place::surface: return row().medium;
-      case Place::new_medium: return *change().medium;
+    switch (open_.back().scope) {
+      case Scope::surface: return row().medium;
+      case Scope::new_medium: return *change().medium;
       default: return lens_.object_space;
     }
   }
@@ -136,7 +136,7 @@ class Reader : public io_detail::JsonReader {
   int gap_ = 0;   ///< the last key among the variable gaps
 };
 
-std::span<const Reader::Key> Reader::keys(Place place) {
+std::span<const Reader::Key> Reader::keys(Scope scope) {
   using R = Reader;
   using V = const JsonValue;
   static constexpr std::array<Key, 21> file = {{
@@ -148,7 +148,7 @@ std::span<const Reader::Key> Reader::keys(Place place) {
        true},
       {"id", [](R& r, V& v) { r.lens_.id = r.text_of(v); }},
       {"name", [](R& r, V& v) { r.lens_.name = r.text_of(v); }},
-      {"source", nullptr, Place::source},
+      {"source", nullptr, Scope::source},
       {"focal_length_mm", [](R& r, V& v) { r.lens_.focal_length_mm = r.maybe_number(v); }},
       {"f_number", [](R& r, V& v) { r.lens_.f_number = r.maybe_number(v); }},
       {"half_field_deg", [](R& r, V& v) { r.lens_.half_field_deg = r.maybe_number(v); }},
@@ -158,14 +158,14 @@ std::span<const Reader::Key> Reader::keys(Place place) {
       {"stop_size", [](R& r, V& v) { r.lens_.stop_size = r.maybe_text(v); }},
       {"image_distance", [](R& r, V& v) { r.lens_.image_distance = r.maybe_text(v); }},
       {"glass_names", [](R& r, V& v) { r.lens_.glass_names = r.maybe_text(v); }},
-      {"zoom", nullptr, Place::zoom},
+      {"zoom", nullptr, Scope::zoom},
       {"notes", [](R& r, V& v) { r.lens_.notes = r.maybe_text(v); }},
-      {"aliases", nullptr, Place::aliases},
-      {"imported", nullptr, Place::imported},
-      {"design", nullptr, Place::design},
-      {"object_space", nullptr, Place::object_space},
-      {"surfaces", nullptr, Place::surfaces, true},
-      {"configurations", nullptr, Place::configurations},
+      {"aliases", nullptr, Scope::aliases},
+      {"imported", nullptr, Scope::imported},
+      {"design", nullptr, Scope::design},
+      {"object_space", nullptr, Scope::object_space},
+      {"surfaces", nullptr, Scope::surfaces, true},
+      {"configurations", nullptr, Scope::configurations},
   }};
   static constexpr std::array<Key, 2> source = {{
       {"design", [](R& r, V& v) { r.lens_.source_design = r.text_of(v); }},
@@ -173,7 +173,7 @@ std::span<const Reader::Key> Reader::keys(Place place) {
   }};
   static constexpr std::array<Key, 2> zoom = {{
       {"position", [](R& r, V& v) { r.configuration().name = r.text_of(v); }},
-      {"variable_gaps", nullptr, Place::variable_gaps},
+      {"variable_gaps", nullptr, Scope::variable_gaps},
   }};
   static constexpr std::array<Key, 7> imported = {{
       {"format", [](R& r, V& v) { r.lens_.imported->format = r.text_of(v); }, {}, true},
@@ -181,8 +181,8 @@ std::span<const Reader::Key> Reader::keys(Place place) {
       {"entry", [](R& r, V& v) { r.lens_.imported->entry = r.text_of(v); }},
       {"units", [](R& r, V& v) { r.lens_.imported->units = r.text_of(v); }},
       {"title", [](R& r, V& v) { r.lens_.imported->title = r.text_of(v); }},
-      {"notes", nullptr, Place::notes},
-      {"warnings", nullptr, Place::warnings},
+      {"notes", nullptr, Scope::notes},
+      {"warnings", nullptr, Scope::warnings},
   }};
   static constexpr std::array<Key, 3> warning = {{
       {"line", [](R& r, V& v) { r.lens_.imported->warnings.back().line = r.whole_number(v, 0, 2'000'000'000); }},
@@ -190,14 +190,14 @@ std::span<const Reader::Key> Reader::keys(Place place) {
       {"message", [](R& r, V& v) { r.lens_.imported->warnings.back().message = r.text_of(v); }, {}, true},
   }};
   static constexpr std::array<Key, 6> design = {{
-      {"aperture", nullptr, Place::aperture},
+      {"aperture", nullptr, Scope::aperture},
       {"object_distance_mm",
        [](R& r, V& v) {
          r.lens_.design.object_distance_mm = r.maybe_number(v).value_or(std::numeric_limits<double>::infinity());
        }},
       {"field_kind", [](R& r, V& v) { r.lens_.design.field_kind = r.one_of(v, field_kinds); }},
-      {"fields", nullptr, Place::fields},
-      {"wavelengths", nullptr, Place::wavelengths},
+      {"fields", nullptr, Scope::fields},
+      {"wavelengths", nullptr, Scope::wavelengths},
       {"primary_wavelength",
        [](R& r, V& v) {
          r.lens_.design.primary_wavelength = static_cast<std::size_t>(r.whole_number(v, 0, longest_list));
@@ -230,7 +230,7 @@ std::span<const Reader::Key> Reader::keys(Place place) {
       {"f_number", [](R& r, V& v) { r.configuration().f_number = r.maybe_number(v); }},
       {"half_field_deg", [](R& r, V& v) { r.configuration().half_field_deg = r.maybe_number(v); }},
       {"image_diagonal_mm", [](R& r, V& v) { r.configuration().image_diagonal_mm = r.maybe_number(v); }},
-      {"changes", nullptr, Place::changes},
+      {"changes", nullptr, Scope::changes},
   }};
   static constexpr std::array<Key, 6> change = {{
       {"surface", [](R& r, V& v) { r.change().surface = r.whole_number(v, 0, longest_list); }, {}, true},
@@ -238,7 +238,7 @@ std::span<const Reader::Key> Reader::keys(Place place) {
       {"radius", [](R& r, V& v) { r.change().radius = r.radius_of(v); }},
       {"conic", [](R& r, V& v) { r.change().conic = r.number_of(v); }},
       {"semi_diameter", [](R& r, V& v) { r.change().semi_diameter = r.number_of(v); }},
-      {"medium", nullptr, Place::new_medium},
+      {"medium", nullptr, Scope::new_medium},
   }};
   // The keys of the medium come first: they are the only keys of object_space.
   static constexpr std::array<Key, 16> surface = {{
@@ -253,7 +253,7 @@ std::span<const Reader::Key> Reader::keys(Place place) {
       {"semi_diameter_computed", [](R& r, V& v) { r.row().semi_diameter_computed = r.flag_of(v); }},
       {"inner_semi_diameter", [](R& r, V& v) { r.row().obscuration_semi_diameter = r.maybe_number(v); }},
       {"conic", [](R& r, V& v) { r.row().conic = r.number_of(v); }},
-      {"aspheric", nullptr, Place::aspheric},
+      {"aspheric", nullptr, Scope::aspheric},
       {"stop", [](R& r, V& v) { r.row().stop = r.flag_of(v); }},
       {"mirror", [](R& r, V& v) { r.row().mirror = r.flag_of(v); }},
       {"curved_in",
@@ -268,22 +268,22 @@ std::span<const Reader::Key> Reader::keys(Place place) {
       {"order", [](R& r, V& v) { r.row().aspheric.back().order = r.whole_number(v, 2, 40); }, {}, true},
       {"coefficient", [](R& r, V& v) { r.row().aspheric.back().coefficient = r.number_of(v); }, {}, true},
   }};
-  switch (place) {
-    case Place::file: return file;
-    case Place::source: return source;
-    case Place::zoom: return zoom;
-    case Place::imported: return imported;
-    case Place::warning: return warning;
-    case Place::design: return design;
-    case Place::aperture: return aperture;
-    case Place::field: return field;
-    case Place::wavelength: return wavelength;
-    case Place::object_space:
-    case Place::new_medium: return std::span(surface).first(5);
-    case Place::surface: return surface;
-    case Place::term: return term;
-    case Place::configuration: return configuration;
-    case Place::change: return change;
+  switch (scope) {
+    case Scope::file: return file;
+    case Scope::source: return source;
+    case Scope::zoom: return zoom;
+    case Scope::imported: return imported;
+    case Scope::warning: return warning;
+    case Scope::design: return design;
+    case Scope::aperture: return aperture;
+    case Scope::field: return field;
+    case Scope::wavelength: return wavelength;
+    case Scope::object_space:
+    case Scope::new_medium: return std::span(surface).first(5);
+    case Scope::surface: return surface;
+    case Scope::term: return term;
+    case Scope::configuration: return configuration;
+    case Scope::change: return change;
     default: return {};
   }
 }
@@ -293,17 +293,17 @@ std::string Reader::here() const {
   std::string text;
   const auto add = [&text](std::string_view word) { text += (text.empty() ? "" : ": ") + std::string(word); };
   for (const Open& open : open_) {
-    switch (open.place) {
-      case Place::source: add("source"); break;
-      case Place::zoom: add("zoom"); break;
-      case Place::variable_gaps: add("variable_gaps"); break;
-      case Place::imported: add("imported"); break;
-      case Place::design: add("design"); break;
-      case Place::aperture: add("aperture"); break;
-      case Place::object_space: add("object_space"); break;
-      case Place::new_medium: add("medium"); break;
+    switch (open.scope) {
+      case Scope::source: add("source"); break;
+      case Scope::zoom: add("zoom"); break;
+      case Scope::variable_gaps: add("variable_gaps"); break;
+      case Scope::imported: add("imported"); break;
+      case Scope::design: add("design"); break;
+      case Scope::aperture: add("aperture"); break;
+      case Scope::object_space: add("object_space"); break;
+      case Scope::new_medium: add("medium"); break;
       default:
-        if (const auto list = list_of(open.place)) {
+        if (const auto list = list_of(open.scope)) {
           add(list->word + (list->entry ? ' ' + std::to_string(open.entries - 1) : std::string()));
         }
     }
@@ -314,7 +314,7 @@ std::string Reader::here() const {
 
 void Reader::key(const std::string& name) {
   Open& object = open_.back();
-  if (object.place == Place::variable_gaps) {
+  if (object.scope == Scope::variable_gaps) {
     const auto [end, status] = std::from_chars(name.data(), name.data() + name.size(), gap_);
     const bool whole = status == std::errc() && end == name.data() + name.size() && name == std::to_string(gap_);
     if (!whole || gap_ < 0 || static_cast<std::size_t>(gap_) >= longest_list) {
@@ -324,7 +324,7 @@ void Reader::key(const std::string& name) {
       fail("key " + in_quotes(name) + " is given twice; must be given once");
     return;
   }
-  const auto table = keys(object.place);
+  const auto table = keys(object.scope);
   key_ = -1;
   const auto found = std::find_if(table.begin(), table.end(), [&](const Key& k) { return k.name == name; });
   if (found == table.end()) {
@@ -341,24 +341,24 @@ void Reader::key(const std::string& name) {
 
 void Reader::assign(JsonValue value) {
   if (open_.empty()) refuse_kind(describe(value), "an object");
-  switch (open_.back().place) {
-    case Place::variable_gaps: {
+  switch (open_.back().scope) {
+    case Scope::variable_gaps: {
       const double thickness = number_of(value);
       SurfaceChange& change = configuration().changes.emplace_back();
       change.surface = gap_, change.thickness = thickness;
       return;
     }
-    case Place::aliases:
+    case Scope::aliases:
       count_entry();
       lens_.aliases.push_back(text_of(value));
       return;
-    case Place::notes:
+    case Scope::notes:
       count_entry();
       lens_.imported->notes.push_back(text_of(value));
       return;
     default: break;
   }
-  if (is_list(open_.back().place)) {
+  if (is_list(open_.back().scope)) {
     count_entry();
     refuse_kind(describe(value), "an object");
   }
@@ -369,7 +369,7 @@ void Reader::assign(JsonValue value) {
 
 void Reader::count_entry() {
   if (open_.back().entries++ < longest_list) return;
-  const bool surfaces = open_.back().place == Place::surfaces;
+  const bool surfaces = open_.back().scope == Scope::surfaces;
   throw Error(where_ + ": more than " + std::to_string(longest_list) + (surfaces ? " surfaces" : " entries in a list") +
               "; must be fewer");
 }
@@ -378,39 +378,39 @@ void Reader::open(bool list) {
   const std::string found = list ? "a list" : "an object";
   if (open_.empty()) {
     if (list) refuse_kind(found, "an object");
-    open_.push_back({Place::file, byte()});
+    open_.push_back({Scope::file, byte()});
     return;
   }
-  const Place outer = open_.back().place;
-  std::optional<Place> inner;
+  const Scope outer = open_.back().scope;
+  std::optional<Scope> inner;
   if (is_list(outer)) {
     count_entry();
     inner = list_of(outer)->entry;
     if (list || !inner) refuse_kind(found, inner ? "an object" : "a string");
-  } else if (outer == Place::variable_gaps) {
+  } else if (outer == Scope::variable_gaps) {
     refuse_kind(found, "a number");
   } else {
     inner = current()->opens;
     if (!inner) refuse_kind(found, "a plain value");
     if (is_list(*inner) != list) refuse_kind(found, is_list(*inner) ? "a list" : "an object");
   }
-  if ((*inner == Place::zoom || *inner == Place::configurations) && !lens_.configurations.empty()) {
+  if ((*inner == Scope::zoom || *inner == Scope::configurations) && !lens_.configurations.empty()) {
     fail(R"("zoom" and "configurations" are given; must be one of the two)");
   }
   open_.push_back({*inner, byte()});
   key_ = -1;
   switch (*inner) {
-    case Place::surface: lens_.surfaces.emplace_back(); break;
-    case Place::term: row().aspheric.emplace_back(); break;
-    case Place::zoom: lens_.configurations.push_back({.name = "zoom"}); break;
-    case Place::imported: lens_.imported.emplace(); break;
-    case Place::warning: lens_.imported->warnings.emplace_back(); break;
-    case Place::aperture: lens_.design.aperture.emplace(); break;
-    case Place::field: lens_.design.fields.emplace_back(); break;
-    case Place::wavelength: lens_.design.wavelengths.emplace_back(); break;
-    case Place::configuration: lens_.configurations.emplace_back(); break;
-    case Place::change: configuration().changes.emplace_back(); break;
-    case Place::new_medium: change().medium.emplace(); break;
+    case Scope::surface: lens_.surfaces.emplace_back(); break;
+    case Scope::term: row().aspheric.emplace_back(); break;
+    case Scope::zoom: lens_.configurations.push_back({.name = "zoom"}); break;
+    case Scope::imported: lens_.imported.emplace(); break;
+    case Scope::warning: lens_.imported->warnings.emplace_back(); break;
+    case Scope::aperture: lens_.design.aperture.emplace(); break;
+    case Scope::field: lens_.design.fields.emplace_back(); break;
+    case Scope::wavelength: lens_.design.wavelengths.emplace_back(); break;
+    case Scope::configuration: lens_.configurations.emplace_back(); break;
+    case Scope::change: configuration().changes.emplace_back(); break;
+    case Scope::new_medium: change().medium.emplace(); break;
     default: break;
   }
 }
@@ -440,11 +440,11 @@ Enum Reader::one_of(const JsonValue& value, const std::array<Enum, count>& all) 
 void Reader::close() {
   const Open closed = open_.back();
   key_ = -1;
-  const auto table = keys(closed.place);
+  const auto table = keys(closed.scope);
   for (std::size_t i = 0; i < table.size(); ++i) {
     if (table[i].required && !(closed.seen & (std::uint32_t{1} << i))) {
       std::string message = "key " + in_quotes(table[i].name) + " is missing";
-      if (table[i].name == "format" && closed.place == Place::file) message += "; must be " + in_quotes(format_name);
+      if (table[i].name == "format" && closed.scope == Scope::file) message += "; must be " + in_quotes(format_name);
       fail(closed.byte, message);
     }
   }

@@ -32,10 +32,10 @@ Domain::Section& along_x(Domain& domain) {
 }
 
 /// A key and the member for its number.
-template <class Part>
+template <class Record>
 struct Number {
   std::string_view name;
-  double& (*of)(Part&);
+  double& (*of)(Record&);
 };
 constexpr std::array<Number<Domain>, 8> domain_numbers{{
     {"film_z_mm", [](Domain& d) -> double& { return d.space.film_z; }},
@@ -85,7 +85,7 @@ constexpr std::array<std::string_view, 9> fit_keys{fit_numbers[0].name, fit_numb
                                                    fit_numbers[3].name, fit_numbers[4].name, fit_lists[0].name,
                                                    fit_lists[1].name,   fit_lists[2].name,   fit_lists[3].name};
 
-enum class Place { file, fits, fit, list };
+enum class Scope { file, fits, fit, list };
 
 /// Builds a polynomial while nlohmann's parser walks the text.
 class Reader : public io_detail::JsonReader {
@@ -95,18 +95,18 @@ class Reader : public io_detail::JsonReader {
 
  private:
   struct Open {
-    Place place;
+    Scope scope;
     std::size_t byte = 0;    ///< of the opening bracket
     std::uint32_t seen = 0;  ///< bits of the keys so far, by index
     std::size_t key = 0;     ///< the last key
   };
 
-  static std::span<const std::string_view> keys(Place place) {
-    if (place == Place::file) return file_keys;
+  static std::span<const std::string_view> keys(Scope scope) {
+    if (scope == Scope::file) return file_keys;
     return fit_keys;
   }
   /// The list or object that must come next; nullopt if a plain value must come.
-  std::optional<Place> wanted() const;
+  std::optional<Scope> next_scope() const;
 
   void key(const std::string& name) override;
   void assign(JsonValue value) override;
@@ -126,13 +126,13 @@ std::string Reader::here() const {
   const bool in_fit = open_.size() > 2;
   const Open& object = open_[in_fit ? 2 : 0];
   if (in_fit) text += "fit " + std::to_string(fits_.size() - 1);
-  if (object.seen != 0) text += (text.empty() ? "" : ": ") + std::string(keys(object.place)[object.key]);
+  if (object.seen != 0) text += (text.empty() ? "" : ": ") + std::string(keys(object.scope)[object.key]);
   return text;
 }
 
 void Reader::key(const std::string& name) {
   Open& object = open_.back();
-  const auto known = keys(object.place);
+  const auto known = keys(object.scope);
   const auto found = std::find(known.begin(), known.end(), name);
   const std::uint32_t seen = std::exchange(object.seen, 0);  // messages name this key, not the previous key
   if (found == known.end()) {
@@ -146,24 +146,24 @@ void Reader::key(const std::string& name) {
   object.seen = seen | bit;
 }
 
-std::optional<Place> Reader::wanted() const {
-  if (open_.empty()) return Place::file;
+std::optional<Scope> Reader::next_scope() const {
+  if (open_.empty()) return Scope::file;
   const Open& in = open_.back();
-  switch (in.place) {
-    case Place::file: return file_keys[in.key] == "fits" ? std::optional(Place::fits) : std::nullopt;
-    case Place::fits: return Place::fit;
-    case Place::fit: return in.key >= fit_numbers.size() ? std::optional(Place::list) : std::nullopt;
-    case Place::list: break;
+  switch (in.scope) {
+    case Scope::file: return file_keys[in.key] == "fits" ? std::optional(Scope::fits) : std::nullopt;
+    case Scope::fits: return Scope::fit;
+    case Scope::fit: return in.key >= fit_numbers.size() ? std::optional(Scope::list) : std::nullopt;
+    case Scope::list: break;
   }
   return {};
 }
 
 void Reader::assign(JsonValue value) {
-  if (const auto inner = wanted()) {
-    refuse_kind(describe(value), *inner == Place::file || *inner == Place::fit ? "an object" : "a list");
+  if (const auto inner = next_scope()) {
+    refuse_kind(describe(value), *inner == Scope::file || *inner == Scope::fit ? "an object" : "a list");
   }
   const Open& in = open_.back();
-  if (in.place == Place::list) {
+  if (in.scope == Scope::list) {
     const std::size_t key = open_[open_.size() - 2].key - fit_numbers.size();
     std::vector<double>& list = fits_.back().*fit_lists[key].of;
     static const std::size_t longest = 2 * RayPolynomial::mirror_terms(highest_degree).size();
@@ -172,7 +172,7 @@ void Reader::assign(JsonValue value) {
            std::to_string(highest_degree) + " or less");
     }
     list.push_back(number_of(value));
-  } else if (in.place == Place::fit) {
+  } else if (in.scope == Scope::fit) {
     fit_numbers[in.key].of(fits_.back()) = number_of(value);
   } else if (file_keys[in.key] == "format") {
     if (text_of(value) != format_name) refuse(describe(value), in_quotes(format_name));
@@ -188,12 +188,12 @@ void Reader::assign(JsonValue value) {
 }
 
 void Reader::open(bool list) {
-  const auto inner = wanted();
+  const auto inner = next_scope();
   const std::string found = list ? "a list" : "an object";
-  if (!inner) refuse_kind(found, open_.back().place == Place::list ? "a number" : "a plain value");
-  const bool wants_list = *inner == Place::fits || *inner == Place::list;
+  if (!inner) refuse_kind(found, open_.back().scope == Scope::list ? "a number" : "a plain value");
+  const bool wants_list = *inner == Scope::fits || *inner == Scope::list;
   if (wants_list != list) refuse_kind(found, wants_list ? "a list" : "an object");
-  if (*inner == Place::fit) {
+  if (*inner == Scope::fit) {
     if (fits_.size() == most_fits) {
       throw Error(where_ + ": more than " + std::to_string(most_fits) + " fits; must be one for each wavelength");
     }
@@ -204,10 +204,10 @@ void Reader::open(bool list) {
 
 void Reader::close() {
   Open& closed = open_.back();
-  if (closed.place == Place::file || closed.place == Place::fit) {
-    const auto known = keys(closed.place);
+  if (closed.scope == Scope::file || closed.scope == Scope::fit) {
+    const auto known = keys(closed.scope);
     const std::uint32_t seen = std::exchange(closed.seen, 0);
-    const std::uint32_t optional = closed.place == Place::file && !(seen & mirror_keys) ? mirror_keys : 0;
+    const std::uint32_t optional = closed.scope == Scope::file && !(seen & mirror_keys) ? mirror_keys : 0;
     for (std::size_t i = 0; i < known.size(); ++i) {
       if (!((seen | optional) & (std::uint32_t{1} << i)))
         fail(closed.byte, "key " + in_quotes(known[i]) + " is missing");
