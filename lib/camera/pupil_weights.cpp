@@ -93,8 +93,8 @@ void PupilWeights::draw(std::size_t count, const T* u, const T* v, T* to_u, T* t
   }
 }
 
-PupilWeights::Drawn PupilWeights::drawn(double u, double v) const noexcept {
-  return data_->weights ? data_->weights->draw(u, v) : Drawn{u, v, 1};
+PupilWeights::IrisSample PupilWeights::drawn(double u, double v) const noexcept {
+  return data_->weights ? data_->weights->draw(u, v) : IrisSample{u, v, 1};
 }
 
 double PupilWeights::density(const Vec2<double>& sample) const noexcept {

@@ -31,9 +31,9 @@ class PupilWeights {
   /// Samples of the pupil for uniform numbers, N each.
   template <class T>
   void draw(std::size_t count, const T* u, const T* v, T* to_u, T* to_v, T* densities) const noexcept;
-  using Drawn = iris_detail::IrisWeights::Drawn;
+  using IrisSample = iris_detail::IrisWeights::IrisSample;
   /// Returns u and v unchanged if there are no weights.
-  Drawn draw(double u, double v) const noexcept { return data_ ? drawn(u, v) : Drawn{u, v, 1}; }
+  IrisSample draw(double u, double v) const noexcept { return data_ ? drawn(u, v) : IrisSample{u, v, 1}; }
   /// Density of the drawn samples relative to uniform samples.
   double density(const Vec2<double>& sample) const noexcept;
 
@@ -50,7 +50,7 @@ class PupilWeights {
   double of_line(const TwoPlaneRay& line, Wavelength wavelength) const noexcept;
 
  private:
-  Drawn drawn(double u, double v) const noexcept;
+  IrisSample drawn(double u, double v) const noexcept;
 
   struct Data;
   std::shared_ptr<const Data> data_;

@@ -260,7 +260,7 @@ struct Start {
   bool kept = false;  ///< true if the point is on the film; otherwise `film` is its centre
   FilmPoint film, virtual_point;
   TiltedPlane plane;  ///< of a tilted film
-  PupilWeights::Drawn drawn{};
+  PupilWeights::IrisSample drawn{};
   TwoPlaneRay line;                ///< for the weight
   TwoPlaneRayDerivatives leaving;  ///< for the ray, with derivatives by film x and y; differs from `line` for a pinhole
   double area = 0;

@@ -57,13 +57,13 @@ double Blade::twice_area(double across) const noexcept {
 
 // Newton's method from the side on which it does not overshoot: if the edge is bent outwards, the area grows faster and
 // faster.
-double Blade::across_at(double part) const noexcept {
-  const double wanted = part * twice_area(half_chord);
+double Blade::across_at(double edge_fraction) const noexcept {
+  const double target_area = edge_fraction * twice_area(half_chord);
   double across = curvature > 0 ? half_chord : 0;
   for (int i = 0; i < 50; ++i) {
     const double cosine = std::sqrt(1 - curvature * across * curvature * across);
     const double rate = middle + curvature * across * across / ((1 + cosine) * cosine);
-    const double step = (wanted - twice_area(across)) / rate;
+    const double step = (target_area - twice_area(across)) / rate;
     across = std::clamp(across + step, 0.0, half_chord);
     if (std::abs(step) <= 1e-16) break;
   }

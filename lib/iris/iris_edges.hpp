@@ -36,8 +36,8 @@ struct Blade {
 
   /// Twice the area bounded by the centre, the middle of the edge and the edge point at `across`.
   double twice_area(double across) const noexcept;
-  /// The inverse: the coordinate at which twice_area() is the fraction `part` of its largest value, 0 to 1.
-  double across_at(double part) const noexcept;
+  /// The inverse: the coordinate at which twice_area() is the fraction `edge_fraction` of its largest value, 0 to 1.
+  double across_at(double edge_fraction) const noexcept;
   /// Second coordinate of the edge point at `across`.
   double along_at(double across) const noexcept;
 };

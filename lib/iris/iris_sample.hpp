@@ -83,8 +83,8 @@ inline IrisPoint<R> circle_point(R u) noexcept {
 template <class R>
 inline IrisPoint<R> disc_point(R u, R v) noexcept {
   const auto [x, y] = circle_point(u);
-  const R way = core_detail::square_root(v);
-  return {way * x, way * y};
+  const R radius = core_detail::square_root(v);
+  return {radius * x, radius * y};
 }
 
 template <class R>
@@ -98,9 +98,9 @@ inline IrisPoint<R> sector_point(const IrisSectors<R>& s, R u, R v) noexcept {
     across = s.across[i] + t * across;
     along = s.along[i] + t * along;
   }
-  const R way = core_detail::square_root(v), sine = s.turns[2 * k], cosine = s.turns[2 * k + 1];
+  const R radius = core_detail::square_root(v), sine = s.turns[2 * k], cosine = s.turns[2 * k + 1];
   across *= q;
-  return {way * (along * sine + across * cosine), way * (along * cosine - across * sine)};
+  return {radius * (along * sine + across * cosine), radius * (along * cosine - across * sine)};
 }
 
 /// True if the point lies on the open side of the edge of blade k.

@@ -43,9 +43,11 @@ double fraction(double x) noexcept { return x - std::floor(x); }
 template <class R>
 void IrisShape::fill(Columns<R>& columns) const {
   const Blade blade(iris_);
-  const auto part = [](double t) { return std::sqrt((1 + t) / 2); };
-  const auto across = interpolate<edge_terms<R>>([&](double t) { return blade.across_at(part(t)) / part(t); });
-  const auto along = interpolate<edge_terms<R>>([&](double t) { return blade.along_at(blade.across_at(part(t))); });
+  const auto edge_fraction = [](double t) { return std::sqrt((1 + t) / 2); };
+  const auto across =
+      interpolate<edge_terms<R>>([&](double t) { return blade.across_at(edge_fraction(t)) / edge_fraction(t); });
+  const auto along =
+      interpolate<edge_terms<R>>([&](double t) { return blade.along_at(blade.across_at(edge_fraction(t))); });
   columns.across.assign(across.begin(), across.end());
   columns.along.assign(along.begin(), along.end());
   for (int k = 0; k < iris_.blades; ++k) {
@@ -79,17 +81,17 @@ Vec2<double> IrisShape::position(double x, double y) const noexcept {
   const double sector = std::min(std::floor(sectors), iris_.blades - 1.0);
   const double angle = (2 * (sectors - sector) - 1) * blade.half_angle;
   // The point at which the line from the centre through the given point meets the edge.
-  const double way = share(x, y), to_edge = std::sqrt(square / way);
+  const double inner_fraction = area_fraction(x, y), to_edge = std::sqrt(square / inner_fraction);
   const double across = std::clamp(to_edge * std::sin(angle), -blade.half_chord, blade.half_chord);
-  const double part = blade.twice_area(across) / blade.twice_area(blade.half_chord);
-  return {(sector + (1 + part) / 2) / iris_.blades, way};
+  const double edge_fraction = blade.twice_area(across) / blade.twice_area(blade.half_chord);
+  return {(sector + (1 + edge_fraction) / 2) / iris_.blades, inner_fraction};
 }
 
-double IrisShape::share(double x, double y) const noexcept {
+double IrisShape::area_fraction(double x, double y) const noexcept {
   const double square = x * x + y * y;
   const IrisSectors<double> s = sectors<double>();
   if (s.count == 0) return square;
-  // The point divided by `part` lies on the edge if distance * part^2 - across * part - bend * square = 0.
+  // The point divided by `edge_fraction` lies on the edge if distance * part^2 - across * part - bend * square = 0.
   double largest = 0;
   for (std::size_t k = 0; k < s.count; ++k) {
     const double* edge = s.edges + 4 * k;

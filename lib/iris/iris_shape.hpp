@@ -29,7 +29,7 @@ class PETZVAL_API IrisShape {
   /// The inverse of sample(): u and v of a point. v is above 1 outside the iris; u is 0 at the centre.
   Vec2<double> position(double x, double y) const noexcept;
   /// v of position(): the fraction of the area nearer to the centre.
-  double share(double x, double y) const noexcept;
+  double area_fraction(double x, double y) const noexcept;
   bool contains(double x, double y) const noexcept;
 
   /// The arrays for loops over samples, in float or double.

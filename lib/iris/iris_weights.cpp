@@ -61,9 +61,9 @@ class EdgeLight {
 
 }  // namespace
 
-double EdgeWeight::at(double share) const noexcept {
+double EdgeWeight::at(double area_fraction) const noexcept {
   if (even()) return 1;
-  const double x = std::clamp(share, 0.0, 1.0);
+  const double x = std::clamp(area_fraction, 0.0, 1.0);
   return std::max(uncut(*this, distribution < 0 ? 1 - x : x), 0.0);
 }
 
@@ -124,10 +124,10 @@ bool finite(double a, double b) noexcept { return (a + b) * 0 == 0; }
 
 /// Index of the last part that begins at or below `value`, by bisection of cumulative sums that start at 0.
 /// Branch-free, because the processor would mispredict branches on random numbers.
-std::size_t part_at(const double* begins, double value) noexcept {
-  std::size_t part = 0;
-  for (std::size_t step = map_cells / 2; step > 0; step /= 2) part += begins[part + step] <= value ? step : 0;
-  return part;
+std::size_t cell_at(const double* begins, double value) noexcept {
+  std::size_t cell = 0;
+  for (std::size_t step = map_cells / 2; step > 0; step /= 2) cell += begins[cell + step] <= value ? step : 0;
+  return cell;
 }
 
 }  // namespace
@@ -135,10 +135,10 @@ std::size_t part_at(const double* begins, double value) noexcept {
 void check(const IrisMap& map, const std::string& where) {
   if (map.empty() && map.width == 0 && map.height == 0) return;
   const auto size = std::to_string(map.width) + " x " + std::to_string(map.height);
-  constexpr std::int64_t most = std::int64_t{1} << 26;
+  constexpr std::int64_t max_pixels = std::int64_t{1} << 26;
   const std::int64_t pixels = std::int64_t{map.width} * map.height;
-  if (map.width < 1 || map.height < 1 || pixels > most) {
-    throw Error(where + "map: width x height = " + size + "; must be 1 x 1 to " + std::to_string(most) +
+  if (map.width < 1 || map.height < 1 || pixels > max_pixels) {
+    throw Error(where + "map: width x height = " + size + "; must be 1 x 1 to " + std::to_string(max_pixels) +
                 " pixels in all");
   }
   if (static_cast<std::int64_t>(map.values.size()) != pixels) {
@@ -163,7 +163,7 @@ IrisMap upside_down(IrisMap map, bool along_x, bool along_y) {
   return map;
 }
 
-IrisWeights::IrisWeights(const Iris& iris, const EdgeWeight& edge, const IrisMap& map, double uniform_part,
+IrisWeights::IrisWeights(const Iris& iris, const EdgeWeight& edge, const IrisMap& map, double uniform_fraction,
                          const std::string& where)
     : shape_(iris), edge_(edge), map_(map) {
   if (!(std::abs(edge.distribution) <= 1000) || !(std::abs(edge.strength) <= 1e6)) {
@@ -171,39 +171,42 @@ IrisWeights::IrisWeights(const Iris& iris, const EdgeWeight& edge, const IrisMap
                 to_text(edge.strength) + "; must be at most 1000 and 1e6 in absolute value");
   }
   tabulate_edge();
-  divide_rows(map.empty() ? 2048 : map_cells, uniform_part);
+  divide_rows(map.empty() ? 2048 : map_cells, uniform_fraction);
   if (map.empty()) return;
   std::vector<double> light = light_of_cells();
   mean_ = std::accumulate(light.begin(), light.end(), 0.0);
   if (!(mean_ > 0)) throw Error(where + "the map is black on the iris; must be above 0 somewhere");
   for (double& value : light) value /= mean_;
-  divide_columns(light, uniform_part);
+  divide_columns(light, uniform_fraction);
 }
 
 void IrisWeights::tabulate_edge() {
   // The error is at most 4e-6 of the largest weight: (d / steps)^4 / 384.
-  constexpr double least = 4, most = 200;
+  constexpr double min_exponent = 4, max_exponent = 200;
   constexpr int steps = 1024;
   const double d = std::abs(edge_.distribution);
-  if (!(d >= least && d <= most)) return;
+  if (!(d >= min_exponent && d <= max_exponent)) return;
   for (int i = 0; i <= steps; ++i) {
-    const double share = static_cast<double>(i) / steps, x = edge_.distribution < 0 ? 1 - share : share;
+    const double area_fraction = static_cast<double>(i) / steps,
+                 x = edge_.distribution < 0 ? 1 - area_fraction : area_fraction;
     const double rate = edge_.strength * (d + 1) * d * std::pow(x, d - 1) / steps;
     edge_steps_.push_back({uncut(edge_, x), edge_.distribution < 0 ? -rate : rate});
   }
 }
 
-void IrisWeights::divide_rows(std::size_t count, double uniform_part) {
+void IrisWeights::divide_rows(std::size_t count, double uniform_fraction) {
   const EdgeLight light(edge_);
   mean_ = light.below(1);
-  const auto samples_below = [&](double v) { return uniform_part * v + (1 - uniform_part) * (light.below(v) / mean_); };
+  const auto samples_below = [&](double v) {
+    return uniform_fraction * v + (1 - uniform_fraction) * (light.below(v) / mean_);
+  };
   rows_.push_back(0);
   for (std::size_t k = 1; k < count; ++k) {
     double low = rows_.back(), high = 1;
-    const double wanted = static_cast<double>(k) / static_cast<double>(count);
+    const double target = static_cast<double>(k) / static_cast<double>(count);
     for (int i = 0; i < 60; ++i) {
       const double middle = (low + high) / 2;
-      (samples_below(middle) < wanted ? low : high) = middle;
+      (samples_below(middle) < target ? low : high) = middle;
     }
     rows_.push_back(high);
   }
@@ -215,17 +218,17 @@ void IrisWeights::divide_rows(std::size_t count, double uniform_part) {
 
 std::vector<double> IrisWeights::light_of_cells() {
   // A uniform grid over the square with at least one point per pixel.
-  constexpr int across_at_least = 1024;
-  const auto places = [](int pixels) { return pixels * ((across_at_least + pixels - 1) / pixels); };
-  const int across = places(map_.width), down = places(map_.height);
+  constexpr int min_samples_across = 1024;
+  const auto samples_across = [](int pixels) { return pixels * ((min_samples_across + pixels - 1) / pixels); };
+  const int across = samples_across(map_.width), down = samples_across(map_.height);
   std::vector<double> light(map_cells * map_cells);
   double of_map = 0, within = 0;
   for (int i = 0; i < down; ++i) {
     for (int j = 0; j < across; ++j) {
-      const Vec2<double> place{(2 * j + 1.0) / across - 1, 1 - (2 * i + 1.0) / down};
-      const Vec2<double> at = shape_.position(place.x, place.y);
+      const Vec2<double> stop_point{(2 * j + 1.0) / across - 1, 1 - (2 * i + 1.0) / down};
+      const Vec2<double> at = shape_.position(stop_point.x, stop_point.y);
       if (!(at.y <= 1)) continue;
-      const double own = map_at(place);
+      const double own = map_at(stop_point);
       light[row_of(at.y) * map_cells + column_of(at.x)] += edge_at(at.y) * own;
       of_map += own, ++within;
     }
@@ -239,9 +242,9 @@ std::vector<double> IrisWeights::light_of_cells() {
   return light;
 }
 
-void IrisWeights::divide_columns(const std::vector<double>& parts, double uniform_part) {
+void IrisWeights::divide_columns(const std::vector<double>& parts, double uniform_fraction) {
   // Between the grid points weights may be larger, and a small cell may contain no grid point.
-  const double floor = std::max(uniform_part, 0.02);
+  const double floor = std::max(uniform_fraction, 0.02);
   before_rows_.push_back(0);
   for (std::size_t i = 0; i < map_cells; ++i) {
     const double* const of_row = &parts[i * map_cells];
@@ -258,15 +261,15 @@ void IrisWeights::divide_columns(const std::vector<double>& parts, double unifor
   before_rows_.back() = 1;
 }
 
-double IrisWeights::map_at(const Vec2<double>& place) const noexcept {
+double IrisWeights::map_at(const Vec2<double>& stop_point) const noexcept {
   if (map_.empty()) return 1;
   const auto along = [](double at, int pixels) {
     const double x = std::clamp((at + 1) / 2 * pixels - 0.5, 0.0, pixels - 1.0);
     const int below = std::min(static_cast<int>(x), std::max(pixels - 2, 0));
     return std::pair{below, x - below};
   };
-  const auto [column, s] = along(place.x, map_.width);
-  const auto [row, t] = along(-place.y, map_.height);
+  const auto [column, s] = along(stop_point.x, map_.width);
+  const auto [row, t] = along(-stop_point.y, map_.height);
   const auto value = [&, column = column, row = row](int right, int down) -> double {
     const int c = std::min(column + right, map_.width - 1), r = std::min(row + down, map_.height - 1);
     return map_
@@ -276,9 +279,9 @@ double IrisWeights::map_at(const Vec2<double>& place) const noexcept {
   return above + t * (value(0, 1) + s * (value(1, 1) - value(0, 1)) - above);
 }
 
-double IrisWeights::edge_at(double share) const noexcept {
-  if (edge_steps_.empty()) return edge_.at(share);
-  const double last = static_cast<double>(edge_steps_.size() - 1), at = std::clamp(share, 0.0, 1.0) * last;
+double IrisWeights::edge_at(double area_fraction) const noexcept {
+  if (edge_steps_.empty()) return edge_.at(area_fraction);
+  const double last = static_cast<double>(edge_steps_.size() - 1), at = std::clamp(area_fraction, 0.0, 1.0) * last;
   const auto k = static_cast<std::size_t>(std::min(at, last - 1));
   const auto [from, from_rate] = edge_steps_[k];
   const auto [to, to_rate] = edge_steps_[k + 1];
@@ -288,9 +291,9 @@ double IrisWeights::edge_at(double share) const noexcept {
   return std::max(weight, 0.0);
 }
 
-double IrisWeights::at(const Vec2<double>& place) const noexcept {
-  if (!finite(place.x, place.y)) return 0;
-  return (edge_.even() ? 1 : edge_at(shape_.share(place.x, place.y))) * map_at(place);
+double IrisWeights::at(const Vec2<double>& stop_point) const noexcept {
+  if (!finite(stop_point.x, stop_point.y)) return 0;
+  return (edge_.even() ? 1 : edge_at(shape_.area_fraction(stop_point.x, stop_point.y))) * map_at(stop_point);
 }
 
 double IrisWeights::of_sample(double u, double v) const noexcept {
@@ -307,7 +310,7 @@ std::size_t IrisWeights::column_of(double u) const noexcept {
   return std::min(static_cast<std::size_t>(u * map_cells), map_cells - 1);
 }
 
-IrisWeights::Drawn IrisWeights::draw(double u, double v) const noexcept {
+IrisWeights::IrisSample IrisWeights::draw(double u, double v) const noexcept {
   if (!finite(u, v)) return {u, v, 1};  // the pupil rejects such numbers
   u = std::clamp(u, 0.0, 1.0), v = std::clamp(v, 0.0, 1.0);
   if (map_.empty()) {
@@ -316,15 +319,15 @@ IrisWeights::Drawn IrisWeights::draw(double u, double v) const noexcept {
     const double height = rows_[row + 1] - rows_[row];
     return {u, std::min(rows_[row] + height * (at - static_cast<double>(row)), 1.0), row_densities_[row]};
   }
-  const std::size_t row = part_at(before_rows_.data(), v);
+  const std::size_t row = cell_at(before_rows_.data(), v);
   const double own = before_rows_[row + 1] - before_rows_[row], height = rows_[row + 1] - rows_[row];
   const double to_v = rows_[row] + height * std::min((v - before_rows_[row]) / own, 1.0);
   const double* const columns = before_in_row_.data() + row * (map_cells + 1);
-  const std::size_t column = part_at(columns, u);
+  const std::size_t column = cell_at(columns, u);
   const double* const at_column = columns + column;
-  const double part = at_column[1] - at_column[0];
-  const double to_u = (static_cast<double>(column) + std::min((u - at_column[0]) / part, 1.0)) / map_cells;
-  return {to_u, to_v, row_densities_[row] * part * map_cells};
+  const double fraction = at_column[1] - at_column[0];
+  const double to_u = (static_cast<double>(column) + std::min((u - at_column[0]) / fraction, 1.0)) / map_cells;
+  return {to_u, to_v, row_densities_[row] * fraction * map_cells};
 }
 
 double IrisWeights::density(double u, double v) const noexcept {

@@ -24,39 +24,39 @@ PETZVAL_API IrisMap upside_down(IrisMap map, bool along_x, bool along_y);
 class PETZVAL_API IrisWeights {
  public:
   /// @param map a map that passes check()
-  /// @param uniform_part fraction of the samples that is spread uniformly, independent of the weights
+  /// @param uniform_fraction fraction of the samples that is spread uniformly, independent of the weights
   /// @throws Error, prefixed with `where`, if the edge is out of range or the map is black on the iris
-  IrisWeights(const Iris& iris, const EdgeWeight& edge, const IrisMap& map, double uniform_part,
+  IrisWeights(const Iris& iris, const EdgeWeight& edge, const IrisMap& map, double uniform_fraction,
               const std::string& where);
 
   /// The weight at a point of the stop, in semi-diameters. Outside the iris the edge weight keeps its value at the rim.
-  double at(const Vec2<double>& place) const noexcept;
+  double at(const Vec2<double>& stop_point) const noexcept;
   /// The weight at IrisShape::sample(u, v).
   double of_sample(double u, double v) const noexcept;
   /// The mean weight over the iris.
   double mean() const noexcept { return mean_; }
 
   /// Arguments of IrisShape::sample() with their probability density on the unit square.
-  struct Drawn {
+  struct IrisSample {
     double u, v, density;
   };
   /// Maps uniform random numbers to (u, v) whose density is nearly proportional to the weights.
-  Drawn draw(double u, double v) const noexcept;
+  IrisSample draw(double u, double v) const noexcept;
   /// The density of draw() at (u, v).
   double density(double u, double v) const noexcept;
 
  private:
   void tabulate_edge();
   /// Divides v into rows that receive equal fractions of the samples. Edge weights are nearly constant within a row.
-  void divide_rows(std::size_t count, double uniform_part);
+  void divide_rows(std::size_t count, double uniform_fraction);
   /// The contribution of each cell to the mean weight, [row][column]. Scales the map to mean 1 if it keeps its mean.
   std::vector<double> light_of_cells();
   /// Distributes samples over the cells.
   /// @param parts contributions to the mean weight, scaled to the sum 1
-  void divide_columns(const std::vector<double>& parts, double uniform_part);
+  void divide_columns(const std::vector<double>& parts, double uniform_fraction);
 
-  double edge_at(double share) const noexcept;
-  double map_at(const Vec2<double>& place) const noexcept;
+  double edge_at(double area_fraction) const noexcept;
+  double map_at(const Vec2<double>& stop_point) const noexcept;
   std::size_t row_of(double v) const noexcept;
   std::size_t column_of(double u) const noexcept;
 

@@ -58,7 +58,7 @@ struct EdgeWeight {
   /// All weights are 1.
   bool even() const noexcept { return distribution == 0 || strength == 0; }
   /// Weight at a fraction of the area nearer to the centre, 0 to 1.
-  PETZVAL_API double at(double share) const noexcept;
+  PETZVAL_API double at(double area_fraction) const noexcept;
   /// Mean weight minus 1, caused by weights clamped at 0; 0 for strengths from 0 to 1.
   PETZVAL_API double light_added() const noexcept;
 };
