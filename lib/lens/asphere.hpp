@@ -57,9 +57,9 @@ template <class T>
   const T root = safe_sqrt(inside);
   // z = c r2 / (1 + root) and slope = c / root with one division.
   const T sum = R(1) + root;
-  const T share = quotient(T(c), select(defined, T(root * sum), sum));
-  const T conic_sag = share * (r2 * root);
-  const T conic_slope = share * sum;
+  const T conic_factor = quotient(T(c), select(defined, T(root * sum), sum));
+  const T conic_sag = conic_factor * (r2 * root);
+  const T conic_slope = conic_factor * sum;
 
   const R per_height_squared = R(1) / (s.height * s.height);
   const T u = r2 * per_height_squared;  // rho^2

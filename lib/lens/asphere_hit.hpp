@@ -13,7 +13,7 @@ struct AsphereHit {
   Vec<T> point;
   bool hit;
   bool converged;
-  bool beside = false;  ///< no hit, because the ray passes outside the described height of the surface
+  bool past_rim = false;  ///< no hit, because the ray passes outside the described height of the surface
 };
 
 namespace trace_detail {
@@ -58,9 +58,9 @@ Passage<T> passage(const Asphere<Storage<T>>& s, const Vec<T>& p, const Vec<T>& 
 
 /// Bounds of the squared radius over a part of the ray.
 template <class T>
-Span<T> radii2(const Passage<T>& ray, const Span<T>& part) noexcept {
+Span<T> radii2(const Passage<T>& ray, const Span<T>& range) noexcept {
   using R = Storage<T>;
-  const T a = part.from - ray.middle, b = part.to - ray.middle, a2 = a * a, b2 = b * b;
+  const T a = range.from - ray.middle, b = range.to - ray.middle, a2 = a * a, b2 = b * b;
   const T near2 = select(all_of(a<R(0), b> R(0)), T(R(0)), select(a2 < b2, a2, b2));
   return {ray.nearest2 + ray.across2 * near2, ray.nearest2 + ray.across2 * select(a2 < b2, b2, a2)};
 }
@@ -84,10 +84,10 @@ Span<T> sags(const Asphere<Storage<T>>& s, const Span<T>& radii2) noexcept {
 /// The rate is d.z - (slope / r) (r r'), and r r' = across2 (t - middle) increases along the ray; within a ring its
 /// magnitude is at most the outer radius times the speed across the axis.
 template <class T>
-Span<T> rates(const Asphere<Storage<T>>& s, const Passage<T>& ray, const T& dz, const Span<T>& part) noexcept {
+Span<T> rates(const Asphere<Storage<T>>& s, const Passage<T>& ray, const T& dz, const Span<T>& range) noexcept {
   using R = Storage<T>;
-  const auto [inner2, outer2] = radii2(ray, part);
-  const T from = ray.across2 * (part.from - ray.middle), to = ray.across2 * (part.to - ray.middle);
+  const auto [inner2, outer2] = radii2(ray, range);
+  const T from = ray.across2 * (range.from - ray.middle), to = ray.across2 * (range.to - ray.middle);
   const T speed = safe_sqrt(ray.across2);
   constexpr R huge = std::numeric_limits<R>::max();
   T least(huge), most(-huge);
@@ -108,10 +108,10 @@ Span<T> rates(const Asphere<Storage<T>>& s, const Passage<T>& ray, const T& dz, 
 
 /// The part of the ray that lies between two heights.
 template <class T>
-Span<T> between(const T& z, const T& dz, const Span<T>& heights, const Span<T>& part) noexcept {
+Span<T> between(const T& z, const T& dz, const Span<T>& heights, const Span<T>& range) noexcept {
   const T a = quotient(T(heights.from - z), dz), b = quotient(T(heights.to - z), dz);
   const T enter = select(a < b, a, b), leave = select(a < b, b, a);
-  return {select(enter > part.from, enter, part.from), select(leave < part.to, leave, part.to)};
+  return {select(enter > range.from, enter, range.from), select(leave < range.to, leave, range.to)};
 }
 
 /// The part of a ray that may meet the surface within its height: inside the cylinder and between the bounds of the
@@ -119,23 +119,23 @@ Span<T> between(const T& z, const T& dz, const Span<T>& heights, const Span<T>& 
 template <class T>
 Span<T> reachable(const Asphere<Storage<T>>& s, const Passage<T>& ray, const Vec<T>& p, const Vec<T>& d) noexcept {
   using R = Storage<T>;
-  constexpr R wider = R(1) + R(64) * std::numeric_limits<R>::epsilon();
+  constexpr R rounding_margin = R(1) + R(64) * std::numeric_limits<R>::epsilon();
   const R far = R(1e18);  // its square is finite in float
-  const T within2 = wider * s.height * s.height - ray.nearest2;
+  const T within2 = rounding_margin * s.height * s.height - ray.nearest2;
   const auto slanting = ray.across2 > R(0);
   T half = safe_sqrt(quotient(within2, select(slanting, ray.across2, T(R(1)))));
   half = select(all_of(slanting, half < far), half, T(far));
-  Span<T> part{ray.middle - half, ray.middle + half};
+  Span<T> range{ray.middle - half, ray.middle + half};
   const auto outside = within2 < R(0);
-  part = {select(outside, T(far), part.from), select(outside, T(-far), part.to)};
-  part = between(p.z, d.z, {T(s.lowest), T(s.highest)}, part);
-  return between(p.z, d.z, sags(s, radii2(ray, part)), part);
+  range = {select(outside, T(far), range.from), select(outside, T(-far), range.to)};
+  range = between(p.z, d.z, {T(s.lowest), T(s.highest)}, range);
+  return between(p.z, d.z, sags(s, radii2(ray, range)), range);
 }
 
 /// Properties of a ray that follow from the bounds of the surface.
 template <class T>
 struct Prospect {
-  Span<T> part;           ///< may meet the surface within its height
+  Span<T> range;          ///< may meet the surface within its height
   Mask<T> empty, rising;  ///< no such part; rising along the complete part: at most one crossing
 };
 
@@ -144,10 +144,10 @@ template <class T>
 Prospect<T> prospect(const Asphere<Storage<T>>& s, const Passage<T>& ray, const Vec<T>& p, const Vec<T>& d,
                      Storage<T> sense) noexcept {
   using R = Storage<T>;
-  const auto part = reachable(s, ray, p, d);
-  const auto [slowest, fastest] = rates(s, ray, d.z, part);
+  const auto range = reachable(s, ray, p, d);
+  const auto [slowest, fastest] = rates(s, ray, d.z, range);
   const Mask<T> rising = sense > 0 ? slowest > R(0) : fastest < R(0);
-  return {part, part.from > part.to, all_of(rising, slowest <= fastest)};
+  return {range, range.from > range.to, all_of(rising, slowest <= fastest)};
 }
 
 /// First crossing of a ray with the surface. If `found` and not `converged`, the ray is lost.
@@ -199,12 +199,12 @@ void close_in(const Asphere<Storage<T>>& s, const Vec<T>& p, const Vec<T>& d, St
 /// @param guess result of Newton's iteration
 template <class T>
 Crossing<T> first_crossing(const Asphere<Storage<T>>& s, const Passage<T>& ray, const Vec<T>& p, const Vec<T>& d,
-                           Storage<T> sense, const Span<T>& part, const T& guess) noexcept {
+                           Storage<T> sense, const Span<T>& range, const T& guess) noexcept {
   using R = Storage<T>;
-  const T fraction = (part.to - part.from) * R(1.0 / search_intervals);
-  const T rounding = R(4) * std::numeric_limits<R>::epsilon() * (absolute(part.from) + absolute(part.to));
+  const T fraction = (range.to - range.from) * R(1.0 / search_intervals);
+  const T rounding = R(4) * std::numeric_limits<R>::epsilon() * (absolute(range.from) + absolute(range.to));
   const T shortest = select(fraction > rounding, fraction, rounding);
-  T low = part.from, high = part.to, width = high - low, bracket_low = low, bracket_high = low;
+  T low = range.from, high = range.to, width = high - low, bracket_low = low, bracket_high = low;
   T below = sense * clearance(s, p, d, low).value;
   Mask<T> active = low <= high;
   Crossing<T> crossing{guess, without(active, active), without(active, active)};
@@ -229,8 +229,8 @@ Crossing<T> first_crossing(const Asphere<Storage<T>>& s, const Passage<T>& ray, 
     low = select(settled, high, low);
     below = select(settled, above, below);
     width = select(settled, T(width + width), T(R(0.5) * width));
-    high = select(low + width < part.to, T(low + width), part.to);
-    active = all_of(without(active, crossed), low < part.to);
+    high = select(low + width < range.to, T(low + width), range.to);
+    active = all_of(without(active, crossed), low < range.to);
   }
   if (any(crossing.found)) close_in(s, p, d, sense, bracket_low, bracket_high, crossing);
   return crossing;
@@ -301,10 +301,10 @@ AsphereHit<T> intersect(const Asphere<Storage<T>>& s, const Vec<T>& start, const
   const bool inside = candidate.usable && x * x + y * y <= s.height * s.height;
   const auto ray = trace_detail::passage(s, p, d);
   if (inside && d.z * d.z > s.steepest * s.steepest * ray.across2) return {candidate.point, true, true};
-  const auto [part, empty, rising] = trace_detail::prospect(s, ray, p, d, sense);
+  const auto [range, empty, rising] = trace_detail::prospect(s, ray, p, d, sense);
   if (inside && rising) return {candidate.point, true, true};
   if (!empty) {
-    const auto [t, found, converged] = trace_detail::first_crossing(s, ray, p, d, sense, part, candidate.t);
+    const auto [t, found, converged] = trace_detail::first_crossing(s, ray, p, d, sense, range, candidate.t);
     if (found) return {converged ? p + d * t : start, converged, converged};
   }
   // No crossing inside the aperture: the ray is vignetted at the crossing outside, if the iteration finds one.

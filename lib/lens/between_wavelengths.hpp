@@ -29,18 +29,19 @@ class PETZVAL_API CompiledWavelengths {
   bool even() const noexcept;
 
   /// The range of covered wavelengths (nm).
-  double shortest() const noexcept { return place_.shortest; }
-  double longest() const noexcept { return place_.longest; }
+  double shortest() const noexcept { return coordinate_.shortest; }
+  double longest() const noexcept { return coordinate_.longest; }
   /// True if a wavelength lies in the range, extended by the rounding of a float.
-  bool covers(double nm) const noexcept { return place_.covers(nm); }
+  bool covers(double nm) const noexcept { return coordinate_.covers(nm); }
   /// Maps a wavelength of the range linearly to -1 to 1.
-  double place(double nm) const noexcept { return place_.at(nm); }
+  double coordinate(double nm) const noexcept { return coordinate_.at(nm); }
 
   /// Position of the nearest compiled wavelength; count() if the wavelength is not covered.
   std::size_t nearest(double nm) const noexcept;
   /// For loops over rays.
   NearestPosition nearest_position() const noexcept {
-    return {steps_.data(), steps_.size(), static_cast<float>(place_.shortest), static_cast<float>(place_.longest),
+    return {steps_.data(), steps_.size(), static_cast<float>(coordinate_.shortest),
+            static_cast<float>(coordinate_.longest),
             ranked_.empty() ? 0 : static_cast<std::int32_t>(ranked_.front().position)};
   }
 
@@ -54,12 +55,12 @@ class PETZVAL_API CompiledWavelengths {
   Neighbours about(double nm) const noexcept {
     std::size_t rank = 0;
     for (std::size_t r = 1; r < intervals_.size(); ++r) rank += nm >= ranked_[r].nm;
-    return about(intervals_[rank], place(nm));
+    return about(intervals_[rank], coordinate(nm));
   }
 
  private:
   struct Ranked {
-    double nm, place;
+    double nm, coordinate;
     std::size_t position;
   };
   /// The interval between two ranks: weights of its nodes as cubics of the position in the interval.
@@ -69,15 +70,15 @@ class PETZVAL_API CompiledWavelengths {
     std::array<std::array<double, 4>, 4> by_power{};  // [power][node]
   };
   Interval interval(std::size_t rank, std::size_t first, std::size_t nodes) const noexcept;
-  Neighbours about(const Interval& interval, double place) const noexcept {
-    const double t = place - interval.from;
+  Neighbours about(const Interval& interval, double coordinate) const noexcept {
+    const double t = coordinate - interval.from;
     Neighbours result{.first = interval.first};
     const auto& c = interval.by_power;
     for (std::size_t k = 0; k < 4; ++k) result.weights[k] = ((c[3][k] * t + c[2][k]) * t + c[1][k]) * t + c[0][k];
     return result;
   }
 
-  kernel::SpectralPlace<double> place_;
+  kernel::SpectralCoordinate<double> coordinate_;
   std::vector<Ranked> ranked_;
   std::vector<Interval> intervals_;           // from each rank to the next
   std::vector<NearestPosition::Step> steps_;  // at the middles between neighbours
@@ -108,7 +109,7 @@ class BetweenWavelengths {
       }
       return sum;
     };
-    if (wavelengths.count() > 0) cut(wavelengths.even() ? few_cells : 2047, range, at);
+    if (wavelengths.count() > 0) cut(wavelengths.even() ? permuted_cells : 2047, range, at);
     single_ = In<float>(compiled_, powers_.size());
     twice_ = In<double>(compiled_, powers_.size());
     const auto fill = [&](auto& in) {
@@ -128,11 +129,11 @@ class BetweenWavelengths {
   Values operator()(double nm) const noexcept {
     const double at = std::max((nm - wavelengths_.shortest()) * cells_per_nm_, 0.0);
     const auto cell = std::min(static_cast<std::size_t>(at), powers_.size() - 1);
-    const double part = at - static_cast<double>(cell);
+    const double fraction = at - static_cast<double>(cell);
     Values result;
     for (std::size_t j = 0; j < numbers; ++j) {
-      const auto& [begin, by_part, by_square] = powers_[cell][j];
-      result[j] = begin + part * (by_part + part * by_square);
+      const auto& [begin, by_fraction, by_square] = powers_[cell][j];
+      result[j] = begin + fraction * (by_fraction + fraction * by_square);
     }
     return result;
   }

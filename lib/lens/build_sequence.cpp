@@ -10,7 +10,7 @@ namespace {
 
 /// Distance between vertices, in radii of curvature, beyond which a ray is moved near the vertex before it is
 /// intersected: the direct form loses digits with the square of the distance.
-constexpr double far_gap = 1;
+constexpr double max_gap_ratio = 1;
 
 /// Squared height of a hit, in radii of curvature of the next sphere, above which the direct form would lose half of
 /// the digits: its quadratic subtracts squares of the height. Only rays nearly perpendicular to the axis reach such
@@ -55,7 +55,7 @@ SurfaceSequenceTables<R> build_sequence(std::span<const LensSurface> surfaces, s
                 : !quadric.sphere || s.mirror ? StepKind::quadric
                 : s.curvature == 0            ? StepKind::plane
                                               : StepKind::sphere;
-    step.far = j == 0 || !(std::abs(s.curvature * gap) <= far_gap);
+    step.far = j == 0 || !(std::abs(s.curvature * gap) <= max_gap_ratio);
     step.mirror = s.mirror;
     step.stop = stop && *stop == i;
     step.refresh = j > 0 && (j % surfaces_per_refresh == 0 || std::abs(s.curvature) * s.semi_diameter > steep_rim);
@@ -108,9 +108,9 @@ SurfaceSequenceTables<R> build_sequence(std::span<const LensSurface> surfaces, s
     tables.n_first[w] = static_cast<R>(n[to_film ? 0 : count]);
     tables.per_n_last[w] = static_cast<R>(1 / n[to_film ? count : 0]);
   }
-  const auto& place = spectrum.place();
-  tables.sequence.place = {static_cast<R>(place.shortest), static_cast<R>(place.longest), static_cast<R>(place.scale),
-                           static_cast<R>(place.offset)};
+  const auto& coordinate = spectrum.coordinate();
+  tables.sequence.coordinate = {static_cast<R>(coordinate.shortest), static_cast<R>(coordinate.longest),
+                                static_cast<R>(coordinate.scale), static_cast<R>(coordinate.offset)};
   for (std::size_t j = 0; j <= count; ++j) {
     const kernel::SquaredIndex<double>& medium = spectrum.medium(to_film ? j : count - j);
     kernel::SquaredIndex<R>& rounded = tables.media.emplace_back();

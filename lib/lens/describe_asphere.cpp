@@ -38,13 +38,13 @@ double term_height(const LensSurface& s, double slope) {
 /// base reaches the steepest slope. Farther out a hyperboloid is nearly straight, and even a weak term would cause
 /// additional crossings.
 double height(const LensSurface& s) {
-  constexpr double runs_away = 1e6;  // slope that the other terms cannot compensate
+  constexpr double max_term_slope = 1e6;  // slope that the other terms cannot compensate
   const double curvature = std::abs(s.curvature) * std::sqrt(std::max(0.0, 1 + s.conic));
   double limit = curvature > 0 ? 1 / curvature : std::numeric_limits<double>::infinity();
   if (s.semi_diameter > 0) limit = std::min(limit, s.semi_diameter);
   const bool limited = std::isfinite(s.semi_diameter);
   if (!limited && s.curvature != 0) limit = std::min(limit, steepest / std::abs(s.curvature));
-  limit = std::min(limit, term_height(s, limited ? runs_away : 1));
+  limit = std::min(limit, term_height(s, limited ? max_term_slope : 1));
   return std::isfinite(limit) && limit > 0 ? limit : 1.0;
 }
 
@@ -119,7 +119,7 @@ class Polynomial {
 /// the sag and the slope / r of the base are monotonic, and therefore bounded by their values at the ends.
 void bound(const LensSurface& s, kernel::Asphere<double>& a) {
   constexpr int intervals = 8;
-  constexpr double wider = 1e-5;  // allows for rounding of radii in float
+  constexpr double radius_margin_mm = 1e-5;  // allows for rounding of radii in float
   constexpr double huge = std::numeric_limits<double>::max();
   kernel::Asphere<double> base;
   base.base = a.base;
@@ -128,7 +128,7 @@ void bound(const LensSurface& s, kernel::Asphere<double>& a) {
   const double per_height2 = 1 / (a.height * a.height);
   const auto radius = [&](int ring) { return std::sqrt(ring / double{kernel::asphere_rings}); };
   for (int k = 0; k < kernel::asphere_rings; ++k) {
-    const double inner = std::max(0., radius(k) - wider), outer = radius(k + 1) + wider;
+    const double inner = std::max(0., radius(k) - radius_margin_mm), outer = radius(k + 1) + radius_margin_mm;
     kernel::AsphereRing<double> ring{
         k == 0 ? -huge : a.height * a.height * k / kernel::asphere_rings,
         k + 1 == kernel::asphere_rings ? huge : a.height * a.height * (k + 1) / kernel::asphere_rings,

@@ -79,8 +79,8 @@ struct Range {
 
   bool has(double nm) const { return nm >= shortest - 1e-6 && nm <= longest + 1e-6; }
 };
-constexpr Range everywhere{0, 1e6};
-constexpr Range of_abbe_model{365, 1014};
+constexpr Range constant_range_nm{0, 1e6};
+constexpr Range abbe_model_range_nm{365, 1014};
 
 }  // namespace
 
@@ -118,7 +118,9 @@ Indices indices(const Prescription& prescription, std::span<const double> wavele
       if (!m.nd) throw Error(missing + names_like(m, tables) + "; must have n_d, or be a glass of the tables");
     }
 
-    const Range range = constant ? everywhere : glass ? Range{glass->shortest_nm, glass->longest_nm} : of_abbe_model;
+    const Range range = constant ? constant_range_nm
+                        : glass  ? Range{glass->shortest_nm, glass->longest_nm}
+                                 : abbe_model_range_nm;
     const auto usable = [&](double nm) {
       return options.clamp_wavelengths ? std::clamp(nm, range.shortest, range.longest) : nm;
     };

@@ -254,8 +254,8 @@ Lens with_film(const Lens& lens, double film_z) {
 
 Lens with_groups_at(const Lens& lens, double inverse_distance) {
   const std::span<const FocusPosition> positions = lens.focus_positions();
-  const auto refuse = [&](const std::string& found, const std::string& wanted) {
-    throw Error(lens.name() + ": " + found + "; must be " + wanted);
+  const auto refuse = [&](const std::string& found, const std::string& rule) {
+    throw Error(lens.name() + ": " + found + "; must be " + rule);
   };
   if (positions.empty()) refuse("no group moves", "a lens with focus positions");
   if (!std::isfinite(inverse_distance)) refuse("inverse_distance = " + to_text(inverse_distance), "finite");

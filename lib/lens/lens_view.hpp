@@ -68,7 +68,7 @@ struct RefractionConstants {
 /// Maps any wavelength in the range of the compiled wavelengths to t from -1 to 1, linear in 1 / nm. In 1 / nm, the
 /// ultraviolet and the infrared poles of dispersion formulas are about equally far from the range.
 template <class R>
-struct SpectralPlace {
+struct SpectralCoordinate {
   R shortest = 1, longest = 0;  ///< the range, nm; empty if indices between compiled wavelengths are unknown
   R scale = 0, offset = 0;      ///< t = scale / nm - offset, clamped; both 0 for one wavelength
 
@@ -112,7 +112,7 @@ struct SurfaceSequence {
   const R* bend_rows = nullptr;                   ///< the same in rows [3 * step + 0 for cn2, 1 for k, 2 for per_n2]
   const R* n_first = nullptr;                     ///< row of indices in front of the lens
   const R* per_n_last = nullptr;                  ///< row of 1 / index behind the lens
-  SpectralPlace<R> place{};                       ///< maps any wavelength to t
+  SpectralCoordinate<R> coordinate{};             ///< maps any wavelength to t
   const SquaredIndex<R>* media = nullptr;         ///< [step] in front of the surface; the last is behind the lens
   R first_z = 0, last_z = 0;                      ///< vertices of the first and the last step, lens frame
   R first_sense = 1, last_sense = 1;              ///< -1 if the frame in front or behind is inverted

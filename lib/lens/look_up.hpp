@@ -33,43 +33,43 @@ inline void look_up(const WavelengthRows<R>& given, const RayWavelengths& wavele
     __builtin_memcpy(&to[k][o], &values, sizeof values);
   };
   // Compute the table positions of all rays first, in loops that vectorise best if the number of rays is a constant.
-  typename Native::Bit places[look_up_block];
+  typename Native::Bit indices[look_up_block];
   const auto for_each = [&](const auto& body) {
     if (count == look_up_block) {
       for (std::size_t i = 0; i < look_up_block; ++i) body(i);
     } else {
       for (std::size_t i = 0; i < count; ++i) body(i);
-      for (std::size_t i = count; i < (count + lanes - 1) / lanes * lanes; ++i) places[i] = 0;
+      for (std::size_t i = count; i < (count + lanes - 1) / lanes * lanes; ++i) indices[i] = 0;
     }
   };
   if (const float* const nm = wavelengths.each_nm) {
-    R parts[look_up_block] = {};
+    R fractions[look_up_block] = {};
     const std::int32_t last = table.cells - 1;
     for_each([&](std::size_t i) {
       const R own = static_cast<R>(nm[begin + i]);
       const bool covered = (own >= table.shortest) & (own <= table.longest);
       const R at = covered ? (own - table.shortest) * table.cells_per_nm : R(0);
       const auto cell = static_cast<std::int32_t>(at < static_cast<R>(last) ? at : static_cast<R>(last));
-      places[i] = covered ? cell : last + 1;
-      parts[i] = at - static_cast<R>(cell);
+      indices[i] = covered ? cell : last + 1;
+      fractions[i] = at - static_cast<R>(cell);
     });
     const auto sum = [&](auto in_cells) {
       for (std::size_t o = 0; o < count; o += lanes) {
         Bits at;
-        Values part;
-        __builtin_memcpy(&at, places + o, sizeof at);
-        __builtin_memcpy(&part, parts + o, sizeof part);
+        Values fraction;
+        __builtin_memcpy(&at, indices + o, sizeof at);
+        __builtin_memcpy(&fraction, fractions + o, sizeof fraction);
         const R* row = table.by_nm;
         for (std::size_t k = 0; k < used; ++k, row += 3 * table.cell_length) {
           const auto power = [&](std::size_t p) {
             return core_detail::look_up(row + p * table.cell_length, in_cells, at);
           };
-          store(k, o, power(0) + part * (power(1) + part * power(2)));
+          store(k, o, power(0) + fraction * (power(1) + fraction * power(2)));
         }
       }
     };
-    if (table.cells == few_cells) {
-      sum(std::integral_constant<std::size_t, few_cells + 1>());
+    if (table.cells == permuted_cells) {
+      sum(std::integral_constant<std::size_t, permuted_cells + 1>());
     } else {
       sum(static_cast<std::size_t>(table.cells) + 1);
     }
@@ -77,12 +77,12 @@ inline void look_up(const WavelengthRows<R>& given, const RayWavelengths& wavele
   }
   for_each([&](std::size_t i) {
     const std::int32_t position = wavelengths.each[begin + i];
-    places[i] = position < table.compiled ? position : table.compiled;
+    indices[i] = position < table.compiled ? position : table.compiled;
   });
   const auto known = static_cast<std::size_t>(table.compiled) + 1;
   for (std::size_t o = 0; o < count; o += lanes) {
     Bits at;
-    __builtin_memcpy(&at, places + o, sizeof at);
+    __builtin_memcpy(&at, indices + o, sizeof at);
     for (std::size_t k = 0; k < used; ++k) {
       store(k, o, core_detail::look_up(table.by_position + k * table.length, known, at));
     }

@@ -11,7 +11,7 @@
 namespace petzval::lens_detail {
 
 /// The range of wavelengths, extended by the rounding of a float.
-kernel::SpectralPlace<double> spectral_place(std::span<const double> wavelengths_nm);
+kernel::SpectralCoordinate<double> spectral_coordinate(std::span<const double> wavelengths_nm);
 
 /// The indices of the media of a lens at every wavelength from the shortest to the longest compiled wavelength.
 /// Polynomials are fitted to the dispersion formulas themselves, at Chebyshev nodes of the range; the number and
@@ -27,17 +27,17 @@ class Spectrum {
   void add(const std::function<double(double)>& index_at, std::span<const double> kinks = {});
 
   /// True if a wavelength lies in the range, extended by the rounding of a float.
-  bool covers(double nm) const noexcept { return place_.covers(nm); }
+  bool covers(double nm) const noexcept { return coordinate_.covers(nm); }
   double index(std::size_t space, double nm) const noexcept;
   /// Largest error of an index; infinite if there are no polynomials.
   double error() const noexcept { return error_; }
 
-  const kernel::SpectralPlace<double>& place() const noexcept { return place_; }
+  const kernel::SpectralCoordinate<double>& coordinate() const noexcept { return coordinate_; }
   const kernel::SquaredIndex<double>& medium(std::size_t space) const noexcept { return media_[space]; }
 
  private:
   std::vector<double> compiled_nm_;
-  kernel::SpectralPlace<double> place_;
+  kernel::SpectralCoordinate<double> coordinate_;
   std::vector<kernel::SquaredIndex<double>> media_;  // [space]
   double error_ = 0;
 };

@@ -37,7 +37,7 @@ class AlignedRows {
 };
 
 /// Number of cells between uniform wavelengths: with the entry of zeros, register permutations can read all cells.
-inline constexpr std::int32_t few_cells = 15;
+inline constexpr std::int32_t permuted_cells = 15;
 
 /// Numbers per wavelength, borrowed, for loops over rays of mixed wavelengths (lens/look_up.hpp). Each number has a row
 /// over the compiled wavelengths, and parabolas over equal cells of the range in nm.

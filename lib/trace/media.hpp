@@ -49,9 +49,9 @@ class MediaByRay {
     const auto compiled = static_cast<std::int32_t>(count <= 0xffff ? count : 0x10000);
     typename Native<R>::Bit places[Bundle<R>::rays];
     for (int l = 0; l < Bundle<R>::rays; ++l) {
-      const std::int32_t place = wavelengths[l];
-      places[l] = place < compiled ? place : 0;
-      unless_known_[l] = place < compiled ? R(0) : std::numeric_limits<R>::quiet_NaN();
+      const std::int32_t coordinate = wavelengths[l];
+      places[l] = coordinate < compiled ? coordinate : 0;
+      unless_known_[l] = coordinate < compiled ? R(0) : std::numeric_limits<R>::quiet_NaN();
     }
     __builtin_memcpy(places_, places, sizeof places);
   }
@@ -95,14 +95,14 @@ class SpectralMedia {
 
   /// @param nm wavelengths, one for each ray
   PETZVAL_INLINE SpectralMedia(const kernel::SurfaceSequence<R>& sequence, const R* nm) noexcept : sequence_(sequence) {
-    const auto& place = sequence.place;
+    const auto& coordinate = sequence.coordinate;
     for (int i = 0; i < vectors; ++i) {
       const V own = load(nm + i * V::width);
-      const V t = V(place.scale) / own - V(place.offset);
+      const V t = V(coordinate.scale) / own - V(coordinate.offset);
       at_[i] = select(t < V(R(1)), select(t > V(R(-1)), t, V(R(-1))), V(R(1)));
       at2_[i] = at_[i] * at_[i];
       at4_[i] = at2_[i] * at2_[i];
-      covered_[i] = (own >= V(place.shortest)) & (own <= V(place.longest));
+      covered_[i] = (own >= V(coordinate.shortest)) & (own <= V(coordinate.longest));
     }
     fill(0);
   }
