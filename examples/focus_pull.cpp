@@ -133,7 +133,7 @@ class Pull {
     if (lens_.exact) {
       return petzval::breathing(*lens_.lens, film_.z(), {.criterion = criterion()}).value_or(none);
     }
-    return lens_.ideal.growth(film_.z(), lens_.ideal.rear_focal_z);
+    return lens_.ideal.magnification_change(film_.z(), lens_.ideal.rear_focal_z);
   }
 
   const Options& options_;

@@ -214,7 +214,7 @@ class TiltFigure {
       film.z_mm = exit.z + film_distance / (1 + std::copysign(1.0, film_distance) * blur / exit.diameter);
     } else {
       const auto axial = view_.lens.image({{0, 0, -1}, true});
-      if (axial) film.z_mm = film.z() - blur / axial->cone;
+      if (axial) film.z_mm = film.z() - blur / axial->diameter_per_mm;
     }
     return focus_plane(view_.lens, film);
   }

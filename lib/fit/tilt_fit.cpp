@@ -162,7 +162,7 @@ TiltFit fit_tilt(const ImageRays& lens, std::span<const FocusTarget> targets, co
     blurs.reserve(problem.used.size());
     for (std::size_t k = 0; k < problem.used.size(); ++k) {
       const std::size_t i = problem.used[k];
-      const double root = problem.blurs[k].root / seen[i].image->cone;
+      const double root = problem.blurs[k].root / seen[i].image->diameter_per_mm;
       blurs.emplace_back(bundles[i], problem.frame, root, targets[i].blur_mm / problem.frame.unit);
       errors.push_back(&blurs.back());
     }

@@ -81,14 +81,14 @@ std::vector<ImagedTarget> imaged_targets(const IdealLens& lens, std::span<const 
     seen.status = TargetStatus::no_image;
     if (!seen.image) continue;
     const ImagePoint& image = *seen.image;
-    const double move = blur == 0 ? 0 : blur / image.cone;
+    const double move = blur == 0 ? 0 : blur / image.diameter_per_mm;
     seen.target_point = image.position + move * Vec3<double>(image.slope_x, image.slope_y, 1);
     seen.picture = focus_detail::picture_point(blur == 0 ? scene_point : lens.scene_of(seen.target_point), z);
     const Vec3<double> from_lens = seen.target_point - Vec3<double>(0, 0, lens.rear_focal_z);
     const double away = std::max({std::abs(from_lens.x), std::abs(from_lens.y), std::abs(from_lens.z)});
     const PicturePoint& d = seen.picture;
     const bool near = away < farthest && std::isfinite(d.x) && std::isfinite(d.y) && std::isfinite(d.inverse_distance);
-    if (weight == 0 || image.cone == 0) {  // a pinhole images all distances sharply
+    if (weight == 0 || image.diameter_per_mm == 0) {  // a pinhole images all distances sharply
       seen.status = TargetStatus::no_weight;
     } else if (near) {
       seen.status = TargetStatus::used;
@@ -105,7 +105,7 @@ TiltProblem tilt_problem(const IdealLens& lens, std::span<const ImagedTarget> ta
   for (const ImagedTarget& target : targets) {
     if (!(target.weight > 0)) continue;
     largest = std::max(largest, target.weight);
-    largest_cone = std::max(largest_cone, target.image->cone);
+    largest_cone = std::max(largest_cone, target.image->diameter_per_mm);
   }
   std::vector<PicturePoint> points;
   Vec3<double> mean{0, 0, 0};
@@ -114,7 +114,8 @@ TiltProblem tilt_problem(const IdealLens& lens, std::span<const ImagedTarget> ta
     problem.used.push_back(i);
     points.push_back(targets[i].picture);
     points.back().weight = targets[i].weight;
-    const double cone = targets[i].image->cone / largest_cone, weight = targets[i].weight / largest * cone * cone;
+    const double cone = targets[i].image->diameter_per_mm / largest_cone,
+                 weight = targets[i].weight / largest * cone * cone;
     weights += weight;
     mean += weight * targets[i].target_point;
   }
@@ -127,7 +128,7 @@ TiltProblem tilt_problem(const IdealLens& lens, std::span<const ImagedTarget> ta
     IdealBlur& blur = problem.blurs.emplace_back();
     blur.x = at.x, blur.y = at.y, blur.z = at.z;
     blur.slope_x = targets[i].image->slope_x, blur.slope_y = targets[i].image->slope_y;
-    blur.root = targets[i].image->cone / largest_cone * std::sqrt(targets[i].weight / largest / weights);
+    blur.root = targets[i].image->diameter_per_mm / largest_cone * std::sqrt(targets[i].weight / largest / weights);
   }
   problem.space = tilt_space(fit, problem.blurs, max_tilt);
 

@@ -42,10 +42,10 @@ bool RayBlur::operator()(const FilmSlopes& film, double* errors, double* derivat
     const Eigen::Array<double, Eigen::Dynamic, 3> by_z = columns.leftCols<3>();
     const Eigen::Array<double, Eigen::Dynamic, 3> spread = by_z.rowwise() - by_z.colwise().mean();
     const double square = scale * spread.square().sum();
-    const Eigen::ArrayXd growth = (spread * by_z).rowwise().sum();
+    const Eigen::ArrayXd magnification_change = (spread * by_z).rowwise().sum();
     offset = defocus_ / std::sqrt(square);
-    offset_by_p = -offset * scale * (growth * by_z.col(0)).sum() / square;
-    offset_by_q = -offset * scale * (growth * by_z.col(1)).sum() / square;
+    offset_by_p = -offset * scale * (magnification_change * by_z.col(0)).sum() / square;
+    offset_by_q = -offset * scale * (magnification_change * by_z.col(1)).sum() / square;
   }
 
   const Eigen::ArrayXd z = (film.z - offset + film.p * x_ + film.q * y_) / facing;

@@ -96,10 +96,11 @@ std::vector<double> robust_weights(const TiltProblem& problem, std::span<const I
   std::vector<IdealBlur> blurs = problem.blurs;
   std::vector<double> weights;
   double cones = 0;
-  for (const std::size_t i : problem.used) cones += targets[i].image->cone / static_cast<double>(blurs.size());
+  for (const std::size_t i : problem.used)
+    cones += targets[i].image->diameter_per_mm / static_cast<double>(blurs.size());
   for (std::size_t i = 0; i < blurs.size(); ++i) {
     const ImagedTarget& target = targets[problem.used[i]];
-    blurs[i].root = target.image->cone / cones;
+    blurs[i].root = target.image->diameter_per_mm / cones;
     weights.push_back(target.weight);
   }
   const double largest = *std::max_element(weights.begin(), weights.end());

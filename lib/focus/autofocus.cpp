@@ -97,8 +97,8 @@ Autofocus described(const IdealLens& lens, std::span<const FocusTarget> targets,
   }
   result.rms_mm = focus_detail::rms_error(targets, result.blurs);
 
-  result.breathing = lens.growth(z, infinity_z);
-  result.magnification_change = lens.growth(z, z_before);
+  result.breathing = lens.magnification_change(z, infinity_z);
+  result.magnification_change = lens.magnification_change(z, z_before);
   return result;
 }
 
@@ -150,8 +150,8 @@ Autofocus autofocus(const IdealLens& lens, std::span<const FocusTarget> targets,
     const auto image = images.emplace_back(lens.image(target.point));
     Request request{.status = image ? TargetStatus::used : TargetStatus::no_image};
     if (image) {
-      request.film_z = image->position.z + (image->cone > 0 ? target.blur_mm / image->cone : 0);
-      request.steepness = image->cone;
+      request.film_z = image->position.z + (image->diameter_per_mm > 0 ? target.blur_mm / image->diameter_per_mm : 0);
+      request.steepness = image->diameter_per_mm;
     }
     requests.push_back(checked(lens, target, request));
   }

@@ -71,9 +71,10 @@ std::optional<ImagePoint> IdealLens::image(const ScenePoint& point) const noexce
     result.slope_x = result.position.x / from_pupil;
     result.slope_y = result.position.y / from_pupil;
   }
-  result.cone = 2 * std::abs(marginal_ray(w == 0 ? infinity : -from_focus).slope);
+  result.diameter_per_mm = 2 * std::abs(marginal_ray(w == 0 ? infinity : -from_focus).slope);
   const Vec3<double>& i = result.position;
-  const bool finite = std::isfinite(i.x + i.y + i.z) && std::isfinite(result.slope_x + result.slope_y + result.cone);
+  const bool finite =
+      std::isfinite(i.x + i.y + i.z) && std::isfinite(result.slope_x + result.slope_y + result.diameter_per_mm);
   if (!finite) return {};
   return result;
 }
@@ -86,7 +87,7 @@ ScenePoint IdealLens::scene_of(const Vec3<double>& image) const noexcept {
   return {{by * image.x, by * image.y, front_focal_z + by * front_focal_length}, false};
 }
 
-double IdealLens::growth(double film_z, double before) const noexcept {
+double IdealLens::magnification_change(double film_z, double before) const noexcept {
   if (std::isinf(pupils.exit.z)) return 0;
   return before == pupils.exit.z ? std::nan("") : (film_z - before) / (before - pupils.exit.z);
 }
@@ -152,7 +153,7 @@ IdealLens thick_lens(const Lens& lens, Wavelength wavelength) {
 
 double signed_blur(const ImagePoint& image, const Film& film) {
   const Vec3<double> n = film.normal(), to_film = Vec3<double>(0, 0, film.z()) - image.position;
-  return image.cone * glm::dot(n, to_film) / (n.z + n.x * image.slope_x + n.y * image.slope_y);
+  return image.diameter_per_mm * glm::dot(n, to_film) / (n.z + n.x * image.slope_x + n.y * image.slope_y);
 }
 
 std::optional<FilmPoint> chief_point(const ImagePoint& image, const Film& film) {

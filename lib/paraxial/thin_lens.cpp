@@ -10,8 +10,8 @@
 namespace petzval {
 namespace {
 
-void require(bool holds, const char* where, const char* what, double found, const char* wanted) {
-  if (!holds) throw Error(std::string(where) + ": " + what + " = " + to_text(found) + " mm; must be " + wanted);
+void require(bool holds, const char* where, const char* what, double found, const char* rule) {
+  if (!holds) throw Error(std::string(where) + ": " + what + " = " + to_text(found) + " mm; must be " + rule);
 }
 
 }  // namespace

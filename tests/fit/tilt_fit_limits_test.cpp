@@ -86,8 +86,8 @@ TEST(TiltFitLimit, ZeroGivesAnUprightFilm) {
   double weights = 0, sum = 0;  // its z is a weighted mean
   for (const FocusTarget& t : targets) {
     const ImagePoint image = *normal_lens().image(t.point);
-    const double weight = t.weight * image.cone * image.cone;
-    weights += weight, sum += weight * (image.position.z + t.blur_mm / image.cone);
+    const double weight = t.weight * image.diameter_per_mm * image.diameter_per_mm;
+    weights += weight, sum += weight * (image.position.z + t.blur_mm / image.diameter_per_mm);
   }
   EXPECT_NEAR(fit.film.z(), sum / weights, 1e-12);
 }

@@ -30,8 +30,9 @@ void ideal(const Lens& lens, fuzz::Bytes& bytes) {
   const Vec3<double> place{bytes.number(-500, 500), bytes.number(-500, 500), bytes.number(-1e4, 0)};
   const auto image = thick.image({place});
   if (!image) return;
-  numbers({image->position.x, image->position.y, image->position.z, image->slope_x, image->slope_y, image->cone},
-          "an image contains no NaN");
+  numbers(
+      {image->position.x, image->position.y, image->position.z, image->slope_x, image->slope_y, image->diameter_per_mm},
+      "an image contains no NaN");
 }
 
 }  // namespace

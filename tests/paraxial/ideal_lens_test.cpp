@@ -151,7 +151,7 @@ TEST(IdealLens, ThickLensEqualsParaxialImagesOfEveryLens) {
     EXPECT_NEAR(image->position.y, chief.y + chief.slope * to_image, 1e-10 * f);
     EXPECT_NEAR(image->slope_y, chief.slope, 1e-11);
     EXPECT_EQ(image->slope_x, 0);
-    EXPECT_NEAR(image->cone, 2 * std::abs(edge.slope - chief.slope), 1e-11);
+    EXPECT_NEAR(image->diameter_per_mm, 2 * std::abs(edge.slope - chief.slope), 1e-11);
   }
   EXPECT_GT(tried, 60);
 }
@@ -210,7 +210,7 @@ TEST(IdealLens, FarPointsTendToInfinity) {
       expect_near(image.position, ideal.position, 1e-9);
       EXPECT_NEAR(image.slope_x, ideal.slope_x, 1e-9);
       EXPECT_NEAR(image.slope_y, ideal.slope_y, 1e-9);
-      EXPECT_NEAR(image.cone, ideal.cone, 1e-9);
+      EXPECT_NEAR(image.diameter_per_mm, ideal.diameter_per_mm, 1e-9);
     }
     const ScenePoint back = lens.scene_of(ideal.position);
     EXPECT_TRUE(back.at_infinity);
@@ -230,14 +230,14 @@ TEST(IdealLens, TelecentricLensesHaveConesAndChiefRays) {
   const ImagePoint image = lens.image({{30, -40, -500}}).value();
   EXPECT_NEAR(image.slope_x, 0, 1e-12);
   EXPECT_NEAR(image.slope_y, 0, 1e-12);
-  EXPECT_NEAR(image.cone, 4 / lens.rear_focal_length, 1e-12);
+  EXPECT_NEAR(image.diameter_per_mm, 4 / lens.rear_focal_length, 1e-12);
 
   IdealLens object_side = thin_lens(50, 5);  // the pupil in the rear focal plane
   object_side.pupils = {{infinity, infinity}, {50, 10}};
   const ImagePoint other = object_side.image({{10, 0, -100}}).value();
   EXPECT_NEAR(other.position.z, 100, 1e-12);
   EXPECT_NEAR(other.slope_x, other.position.x / 50, 1e-14);
-  EXPECT_NEAR(other.cone, 10.0 / 50, 1e-14);
+  EXPECT_NEAR(other.diameter_per_mm, 10.0 / 50, 1e-14);
 }
 
 TEST(IdealLens, BlurIsSignedAndTheChiefRayCarriesItToATiltedFilm) {
@@ -258,8 +258,8 @@ TEST(IdealLens, MagnificationEqualsChiefRays) {
   const IdealLens lens = thick_lens(data_lens("double_gauss_100mm_f2_28deg"));
   const ImagePoint image = lens.image({{200, -100, -1500}}).value();
   const auto height = [&](double film_z) { return image.position.x + image.slope_x * (film_z - image.position.z); };
-  EXPECT_NEAR(1 + lens.growth(150, 140), height(150) / height(140), 1e-13);
-  EXPECT_TRUE(std::isnan(lens.growth(150, lens.pupils.exit.z)));
+  EXPECT_NEAR(1 + lens.magnification_change(150, 140), height(150) / height(140), 1e-13);
+  EXPECT_TRUE(std::isnan(lens.magnification_change(150, lens.pupils.exit.z)));
 }
 
 TEST(IdealLens, HingeAndScheimpflugLinesAreFixed) {

@@ -22,7 +22,8 @@ struct ScenePoint {
 struct ImagePoint {
   Vec3<double> position{0, 0, 0};
   double slope_x = 0, slope_y = 0;  ///< slope of the chief ray, per mm of z
-  double cone = 0;  ///< growth of the beam diameter perpendicular to the axis, per mm of z from the image; >= 0
+  double diameter_per_mm =
+      0;  ///< growth of the beam diameter perpendicular to the axis, per mm of z from the image; >= 0
 };
 
 /// The marginal ray of an axial point, behind the lens.
@@ -75,7 +76,7 @@ struct PETZVAL_API IdealLens {
   ///
   /// The image grows along the chief ray through the exit pupil: 0 for a lens telecentric in image space; NaN if
   /// `before` lies in the exit pupil.
-  double growth(double film_z, double before) const noexcept;
+  double magnification_change(double film_z, double before) const noexcept;
 
   /// The image of a scene plane, and the scene plane that is imaged to a film plane (Scheimpflug).
   ///
