@@ -37,11 +37,11 @@ struct RayPolynomial::Data {
   /// Coefficients at a wavelength; null if there is no fit.
   /// @param nm buffer for interpolated coefficients
   template <class R>
-  struct Room {
+  struct CoefficientBuffer {
     std::array<R, polynomial_detail::most_coefficients> coefficients;
   };
   template <class R>
-  const R* coefficients(Wavelength wavelength, Room<R>& nm) const noexcept;
+  const R* coefficients(Wavelength wavelength, CoefficientBuffer<R>& nm) const noexcept;
 
   /// Index of symmetry and degree in the tables of loops.
   std::size_t loop() const noexcept {
@@ -81,7 +81,7 @@ const ToSceneLoops<R>& to_scene_loops() noexcept {
 }  // namespace polynomial_detail
 
 template <class R>
-const R* RayPolynomial::Data::coefficients(Wavelength wavelength, Room<R>& room) const noexcept {
+const R* RayPolynomial::Data::coefficients(Wavelength wavelength, CoefficientBuffer<R>& buffer) const noexcept {
   const std::vector<R>& all = polynomial_detail::in<R>(*this).coefficients;
   const std::size_t each = all.size() / fits.size();
   const auto nm = wavelength.in_nm();
@@ -92,12 +92,12 @@ const R* RayPolynomial::Data::coefficients(Wavelength wavelength, Room<R>& room)
   if (!wavelengths.covers(*nm)) return nullptr;
   const auto weights = mode_weights(*nm);
   const R* mode = polynomial_detail::in<R>(*this).modes.data();
-  std::fill_n(room.coefficients.begin(), each, R(0));
+  std::fill_n(buffer.coefficients.begin(), each, R(0));
   for (std::size_t k = 0; k < modes; ++k, mode += each) {
     const R weight = static_cast<R>(weights[k]);
-    for (std::size_t i = 0; i < each; ++i) room.coefficients[i] += weight * mode[i];
+    for (std::size_t i = 0; i < each; ++i) buffer.coefficients[i] += weight * mode[i];
   }
-  return room.coefficients.data();
+  return buffer.coefficients.data();
 }
 
 }  // namespace petzval

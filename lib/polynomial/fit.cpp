@@ -98,17 +98,17 @@ Samples axial(Samples samples) {
 }
 
 /// Equal steps from 0 to 1; 0 if count is 1.
-double part(int k, int count) noexcept { return count > 1 ? static_cast<double>(k) / (count - 1) : 0; }
+double fraction_at(int k, int count) noexcept { return count > 1 ? static_cast<double>(k) / (count - 1) : 0; }
 
 /// The rims of the pupils.
 /// @param turns number of film points of equal height
 Samples rims(Samples samples, int steps, int turns) {
-  constexpr int around = 128;
-  samples.reserve(static_cast<std::size_t>((steps + 1) * turns * around));
+  constexpr int azimuths = 128;
+  samples.reserve(static_cast<std::size_t>((steps + 1) * turns * azimuths));
   for (int i = 0; i <= steps; ++i) {
     for (int turn = 0; turn < turns; ++turn) {
-      for (int k = 0; k < around; ++k) {
-        samples.add(static_cast<double>(i) / steps, part(turn, turns), static_cast<double>(k) / around, 1);
+      for (int k = 0; k < azimuths; ++k) {
+        samples.add(static_cast<double>(i) / steps, fraction_at(turn, turns), static_cast<double>(k) / azimuths, 1);
       }
     }
   }
@@ -119,19 +119,19 @@ Samples rims(Samples samples, int steps, int turns) {
 /// across the pupils.
 /// @param turns number of film points at the edge
 Samples edges(Samples samples, int turns) {
-  constexpr std::size_t near_rims = 8192, on_rim = 1024, within = 3072;
+  constexpr std::size_t near_rim_samples = 8192, rim_samples = 1024, interior_samples = 3072;
   constexpr double margin = 0.02;  // fraction of the area of the pupil
   const auto all = static_cast<std::size_t>(turns);
-  samples.reserve((near_rims + on_rim + within) * all);
-  for (std::size_t i = 0; i < near_rims * all; ++i) {
+  samples.reserve((near_rim_samples + rim_samples + interior_samples) * all);
+  for (std::size_t i = 0; i < near_rim_samples * all; ++i) {
     const auto [height, around, inwards, turn] = samples.uniform(i);
     samples.add(height, turn, around, 1 - margin * inwards * inwards);
   }
   for (int k = 0; k < turns; ++k) {
-    const double turn = part(k, turns);
-    for (std::size_t i = 0; i < on_rim; ++i) samples.add(1, turn, static_cast<double>(i) / on_rim, 1);
-    for (std::size_t i = 0; i < within; ++i) {
-      const auto [around, outwards] = core_detail::fibonacci_point(i, within);
+    const double turn = fraction_at(k, turns);
+    for (std::size_t i = 0; i < rim_samples; ++i) samples.add(1, turn, static_cast<double>(i) / rim_samples, 1);
+    for (std::size_t i = 0; i < interior_samples; ++i) {
+      const auto [around, outwards] = core_detail::fibonacci_point(i, interior_samples);
       samples.add(1, turn, around, outwards);
     }
   }
@@ -169,7 +169,7 @@ RayPolynomial::Domain::Section smallest(const std::vector<Lines>& rims, double f
 
 /// Sets the smallest disc that contains the rims or, with mirror symmetry, an ellipse around the smallest rectangle.
 void enclose(const std::vector<Lines>& rims, bool mirrors, RayPolynomial::Domain& domain) {
-  constexpr double between = 1.01;  // corners lie between the directions searched
+  constexpr double rim_margin = 1.01;  // corners lie between the directions searched
   auto along_y = smallest(rims, domain.film_radius, !mirrors, true);
   if (mirrors) {
     auto along_x = smallest(rims, domain.film_radius, true, false);
@@ -181,11 +181,11 @@ void enclose(const std::vector<Lines>& rims, bool mirrors, RayPolynomial::Domain
         farthest = std::max(farthest, std::hypot(x, y));
       }
     }
-    along_x.pupil_radius *= between * farthest, along_y.pupil_radius *= farthest;
+    along_x.pupil_radius *= rim_margin * farthest, along_y.pupil_radius *= farthest;
     domain.along_x = along_x;
   }
   domain.pupil_shift = along_y.pupil_shift;
-  domain.pupil_radius = between * along_y.pupil_radius;
+  domain.pupil_radius = rim_margin * along_y.pupil_radius;
 }
 
 /// z of the entrance pupil, near which rays are given; 0 if the pupil is far from the lens.
@@ -223,9 +223,9 @@ RayPolynomial RayPolynomial::fit(const Lens& lens, const FilmPupilTable& pupils,
   enclose(all_rims, mirrors, domain);
   // Lenses with two sections need more lines: 12 equations per coefficient.
   const std::size_t fitted = mirrors ? std::max<std::size_t>(3072, 24 * mirror_terms(degree).size()) : 1536;
-  constexpr std::size_t judged = 4096;
+  constexpr std::size_t test_samples = 4096;
   const Samples to_fit = spread(none, 0, fitted, true), on_axis = axial(none),
-                fresh = spread(none, fitted, judged, false), at_edges = edges(none, mirrors ? 9 : 1);
+                fresh = spread(none, fitted, test_samples, false), at_edges = edges(none, mirrors ? 9 : 1);
   std::vector<Fit> fits;
   for (std::size_t wavelength = 0; wavelength < pupils.wavelengths(); ++wavelength) {
     fits.push_back(polynomial_detail::fit(lens, domain, degree, wavelength,

@@ -205,12 +205,12 @@ template <int n, class V>
 PETZVAL_INLINE Four<V> chief(OfRevolution<n>, const double* c, const Four<V>& line) noexcept {
   const V length = sqrt(line[0] * line[0] + line[1] * line[1]), sign(c[0] < 0 ? -1.0 : 1.0), none(0.0);
   const V height = chief_height(length, [&](const V& h) { return sign * horner<n>(c, h * h); });
-  const V part = select(length > none, sign * height / length, none);
-  return {part * line[0], part * line[1], none, none};
+  const V scale = select(length > none, sign * height / length, none);
+  return {scale * line[0], scale * line[1], none, none};
 }
 
 /// Bounds of Newton's iteration. The square of a settled step is its error.
-inline constexpr double far_square = 2, settled = 1e-7, rounding = 1e-9;
+inline constexpr double divergence_square = 2, converged_step = 1e-7, rounding = 1e-9;
 
 }  // namespace
 }  // namespace petzval::polynomial_detail

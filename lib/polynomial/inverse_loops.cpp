@@ -17,16 +17,16 @@ auto converge(const double* coefficients, const Four<V>& line, Four<V>& x) noexc
   Slopes<V> slope;
   auto active = none < one, done = one < none;
   V last(1e300);
-  constexpr int most = 12;  // iterations that converge take three or four steps
-  for (int i = 0; i < most && any(active); ++i) {
+  constexpr int max_iterations = 12;  // iterations that converge take three or four steps
+  for (int i = 0; i < max_iterations && any(active); ++i) {
     evaluate(OfRevolution<n>{}, coefficients, x, value, slope);
     const Four<V> move =
         solution(slope, Four<V>{line[0] - value[0], line[1] - value[1], line[2] - value[2], line[3] - value[3]});
     for (std::size_t k = 0; k < 4; ++k) x[k] = select(active, x[k] + move[k], x[k]);
     const V length = sqrt((move[0] * move[0] + move[1] * move[1]) + (move[2] * move[2] + move[3] * move[3]));
-    active = active & within(x, far_square);
+    active = active & within(x, divergence_square);
     const auto halved = length < last * V(0.5), stands = length < V(rounding);
-    done = done | (active & (length < V(settled))) | without(active & stands, halved);
+    done = done | (active & (length < V(converged_step))) | without(active & stands, halved);
     active = without(active & halved, done);
     last = length;
   }
@@ -34,7 +34,7 @@ auto converge(const double* coefficients, const Four<V>& line, Four<V>& x) noexc
 }
 
 template <int n>
-void invert(const double* coefficients, const InverseColumns& wanted, InverseColumns& at,
+void invert(const double* coefficients, const InverseColumns& target, InverseColumns& at,
             std::array<double, inverse_block>& found) noexcept {
   const V none(0.0), one(1.0);
   for (std::size_t o = 0; o < inverse_block; o += V::width) {
@@ -46,7 +46,7 @@ void invert(const double* coefficients, const InverseColumns& wanted, InverseCol
     const auto store = [o](const V& v, std::array<double, inverse_block>& to) {
       __builtin_memcpy(to.data() + o, &v.v, sizeof v.v);
     };
-    const Four<V> line{load(wanted[0]), load(wanted[1]), load(wanted[2]), load(wanted[3])};
+    const Four<V> line{load(target[0]), load(target[1]), load(target[2]), load(target[3])};
     Four<V> x = chief(OfRevolution<n>{}, coefficients, line);
     const auto done = converge<n>(coefficients, line, x);
     auto lit = done & within(x, within_domain), lost = one < none;

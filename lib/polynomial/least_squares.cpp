@@ -37,14 +37,14 @@ struct Rays {
 /// Traces lines through the lens. Rays start at the last vertex, so that a distant film or pupil does not lose digits.
 Rays trace(const Lens& lens, const TwoPlanes& space, const Lines& lines, std::size_t wavelength) {
   const double last_z = lens.surfaces().back().vertex_z;
-  const double part = (last_z - space.film_z) / space.depth();  // fraction of the distance from film to pupil
+  const double fraction = (last_z - space.film_z) / space.depth();  // fraction of the distance from film to pupil
   const double towards = towards_scene(lens, space);
   Rays rays(lines.size());
   for (std::size_t i = 0; i < lines.size(); ++i) {
     const double dx = lines.pupil_x[i] - lines.film_x[i], dy = lines.pupil_y[i] - lines.film_y[i], dz = space.depth();
     const double per_length = towards / std::sqrt(dx * dx + dy * dy + dz * dz);
-    const std::array<double, 6> ray{lines.film_x[i] + part * dx,
-                                    lines.film_y[i] + part * dy,
+    const std::array<double, 6> ray{lines.film_x[i] + fraction * dx,
+                                    lines.film_y[i] + fraction * dy,
                                     last_z,
                                     dx * per_length,
                                     dy * per_length,
@@ -253,9 +253,9 @@ RayPolynomial::Fit fit(const Lens& lens, const RayPolynomial::Domain& domain, in
     fit.max_mm = std::max(fit.max_mm, offset_there.max());
   }
   // Margin for rays between the tested rays.
-  constexpr double to_spare = 1.1;
-  fit.max_rad *= to_spare;
-  fit.max_mm *= to_spare;
+  constexpr double error_margin = 1.1;
+  fit.max_rad *= error_margin;
+  fit.max_mm *= error_margin;
   return fit;
 }
 

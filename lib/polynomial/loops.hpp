@@ -82,7 +82,7 @@ using InverseColumns = std::array<std::array<double, inverse_block>, 4>;
 /// Finds (f, p) of lines (s, o), for lenses of revolution; one loop for each degree.
 /// @param found 1 if there is a solution; -1 if there is no solution in the domain; 0 if the iteration does not
 ///   converge with full steps
-using InverseLoops = std::array<void (*)(const double* coefficients, const InverseColumns& wanted, InverseColumns& at,
+using InverseLoops = std::array<void (*)(const double* coefficients, const InverseColumns& target, InverseColumns& at,
                                          std::array<double, inverse_block>& found) noexcept,
                                 degree_count>;
 PETZVAL_WIDEST(InverseLoops, inverse_loops)

@@ -18,15 +18,15 @@ FitModes find_modes(const std::vector<RayPolynomial::Fit>& fits, const std::vect
   const Eigen::VectorXd mean = all.rowwise().mean();
 
   // Scales the residual of each fit by its tolerance.
-  constexpr double part = 0.05, least_rad = 5e-8;
+  constexpr double relative_tolerance = 0.05, least_rad = 5e-8;
   double most_rad = 0, most_mm = 0;
   for (const RayPolynomial::Fit& fit : fits) {
     most_rad = std::max(most_rad, fit.rms_rad), most_mm = std::max(most_mm, fit.rms_mm);
   }
   const double least_mm = least_rad * all.bottomRows(each / 2).cwiseAbs().maxCoeff();
   Eigen::MatrixXd left = all.colwise() - mean;
-  left.topRows(each / 2) /= part * most_rad + least_rad;
-  left.bottomRows(each / 2) /= part * most_mm + least_mm + 1e-300;
+  left.topRows(each / 2) /= relative_tolerance * most_rad + least_rad;
+  left.bottomRows(each / 2) /= relative_tolerance * most_mm + least_mm + 1e-300;
   // The lazy product has the same bits on every processor; a blocked product sums in an order that depends on the cache
   // sizes.
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(left.transpose().lazyProduct(left));

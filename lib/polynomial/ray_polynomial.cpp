@@ -20,7 +20,7 @@ namespace petzval {
 namespace {
 
 /// Products of larger values overflow in float; no lens comes near this limit.
-constexpr double largest = 1e12;
+constexpr double max_value = 1e12;
 
 void check(const std::string& what, double value, double from, double to) {
   if (value >= from && value <= to) return;
@@ -36,19 +36,19 @@ std::vector<double> wavelengths_of(const std::vector<RayPolynomial::Fit>& fits) 
 void check(int degree, const RayPolynomial::Domain& domain, const std::vector<RayPolynomial::Fit>& fits) {
   const std::string where = "polynomial: ";
   polynomial_detail::check_degree(where, degree);
-  check(where + "film_z", domain.space.film_z, -largest, largest);
-  check(where + "pupil_z", domain.space.pupil_z, -largest, largest);
+  check(where + "film_z", domain.space.film_z, -max_value, max_value);
+  check(where + "pupil_z", domain.space.pupil_z, -max_value, max_value);
   if (domain.space.depth() == 0) {
     throw Error(where + "pupil_z = " + to_text(domain.space.film_z) + " mm; must differ from film_z");
   }
-  check(where + "film_radius", domain.film_radius, 1 / largest, largest);
-  check(where + "pupil_shift", domain.pupil_shift, -largest, largest);
-  check(where + "pupil_radius", domain.pupil_radius, 1 / largest, largest);
+  check(where + "film_radius", domain.film_radius, 1 / max_value, max_value);
+  check(where + "pupil_shift", domain.pupil_shift, -max_value, max_value);
+  check(where + "pupil_radius", domain.pupil_radius, 1 / max_value, max_value);
   if (domain.along_x) {
-    check(where + "pupil_shift along x", domain.along_x->pupil_shift, -largest, largest);
-    check(where + "pupil_radius along x", domain.along_x->pupil_radius, 1 / largest, largest);
+    check(where + "pupil_shift along x", domain.along_x->pupil_shift, -max_value, max_value);
+    check(where + "pupil_radius along x", domain.along_x->pupil_radius, 1 / max_value, max_value);
   }
-  check(where + "reference_z", domain.reference_z, -largest, largest);
+  check(where + "reference_z", domain.reference_z, -max_value, max_value);
   if (fits.empty()) throw Error(where + "there are no fits; must have a fit for each wavelength");
   const std::size_t terms = domain.along_x ? 2 * RayPolynomial::mirror_terms(degree).size()  // along x and y
                                            : RayPolynomial::terms(degree).size();
@@ -62,18 +62,18 @@ void check(int degree, const RayPolynomial::Domain& domain, const std::vector<Ra
                     (domain.along_x ? " and mirror symmetry" : ""));
       }
       for (std::size_t k = 0; k < terms; ++k) {
-        check(here + name + ": number " + std::to_string(k), coefficients[k], -largest, largest);
+        check(here + name + ": number " + std::to_string(k), coefficients[k], -max_value, max_value);
       }
     };
-    check(here + "wavelength_nm", fit.wavelength_nm, 1 / largest, largest);
+    check(here + "wavelength_nm", fit.wavelength_nm, 1 / max_value, max_value);
     check_all("direction_by_film", fit.direction_by_film);
     check_all("direction_by_pupil", fit.direction_by_pupil);
     check_all("offset_by_film", fit.offset_by_film);
     check_all("offset_by_pupil", fit.offset_by_pupil);
-    check(here + "rms_rad", fit.rms_rad, 0, largest);
-    check(here + "max_rad", fit.max_rad, 0, largest);
-    check(here + "rms_mm", fit.rms_mm, 0, largest);
-    check(here + "max_mm", fit.max_mm, 0, largest);
+    check(here + "rms_rad", fit.rms_rad, 0, max_value);
+    check(here + "max_rad", fit.max_rad, 0, max_value);
+    check(here + "rms_mm", fit.rms_mm, 0, max_value);
+    check(here + "max_mm", fit.max_mm, 0, max_value);
   }
   const std::vector<double> nm = wavelengths_of(fits);
   if (const auto repeated = pupil_table_detail::repeated_wavelength(nm)) {
@@ -189,9 +189,9 @@ void RayPolynomial::to_scene(std::size_t count, const TwoPlaneRays<const T>& lin
   const Data& data = *data_;
   const auto& in = polynomial_detail::in<T>(data);
   const auto to_scene = polynomial_detail::to_scene_loops<T>()[data.loop()];
-  Data::Room<T> room;
+  Data::CoefficientBuffer<T> buffer;
   const bool blended = !wavelengths.each_nm && wavelengths.in_nm();
-  const T* own = blended ? data.coefficients(wavelengths.all, room) : nullptr;
+  const T* own = blended ? data.coefficients(wavelengths.all, buffer) : nullptr;
   to_scene({own ? own : in.coefficients.data(),
             in.rows.data(),
             in.rows.length(),
@@ -208,8 +208,8 @@ void RayPolynomial::to_scene(std::size_t count, const TwoPlaneRays<const T>& lin
 
 RayFate RayPolynomial::to_scene(const TwoPlaneRay& line, Wavelength wavelength, Ray<double>& ray) const noexcept {
   const Data& data = *data_;
-  Data::Room<double> room;
-  const double* const coefficients = data.coefficients(wavelength, room);
+  Data::CoefficientBuffer<double> buffer;
+  const double* const coefficients = data.coefficients(wavelength, buffer);
   return polynomial_detail::polynomial_loops().one[data.loop()](coefficients, data.in_double.scales, line, ray);
 }
 

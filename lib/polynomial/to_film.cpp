@@ -14,15 +14,15 @@ namespace {
 using polynomial_detail::horner;
 using polynomial_detail::OfMirrors;
 using polynomial_detail::OfRevolution;
-using Place = polynomial_detail::Four<double>;
+using FilmAndPupilPoint = polynomial_detail::Four<double>;
 
-Place sum(const Place& a, double factor, const Place& b) noexcept {
+FilmAndPupilPoint sum(const FilmAndPupilPoint& a, double factor, const FilmAndPupilPoint& b) noexcept {
   return {a[0] + factor * b[0], a[1] + factor * b[1], a[2] + factor * b[2], a[3] + factor * b[3]};
 }
 
 /// Value and derivatives of a polynomial at one point.
 struct At {
-  Place value;
+  FilmAndPupilPoint value;
   polynomial_detail::Slopes<double> slope;
 };
 
@@ -30,14 +30,14 @@ struct At {
 /// previous step, because the iteration may then reach another branch of the polynomial, or if the iteration moves far
 /// from the domain.
 template <class Symmetry>
-bool correct(const double* c, const Place& wanted, const At& begin, Place& x) noexcept {
+bool correct(const double* c, const FilmAndPupilPoint& target, const At& begin, FilmAndPupilPoint& x) noexcept {
   At at = begin;
   for (double last = std::numeric_limits<double>::infinity();;) {
-    const Place move = polynomial_detail::solution(at.slope, sum(wanted, -1, at.value));
+    const FilmAndPupilPoint move = polynomial_detail::solution(at.slope, sum(target, -1, at.value));
     const double length = std::sqrt((move[0] * move[0] + move[1] * move[1]) + (move[2] * move[2] + move[3] * move[3]));
     x = sum(x, 1, move);
-    if (!polynomial_detail::within(x, polynomial_detail::far_square)) return false;
-    if (length < polynomial_detail::settled) return true;
+    if (!polynomial_detail::within(x, polynomial_detail::divergence_square)) return false;
+    if (length < polynomial_detail::converged_step) return true;
     if (!(length < last / 2)) return length < polynomial_detail::rounding;
     last = length;
     evaluate(Symmetry{}, c, x, at.value, at.slope);
@@ -45,11 +45,11 @@ bool correct(const double* c, const Place& wanted, const At& begin, Place& x) no
 }
 
 template <int n>
-Place start(OfRevolution<n> symmetry, const double* c, const Place& line) noexcept {
+FilmAndPupilPoint start(OfRevolution<n> symmetry, const double* c, const FilmAndPupilPoint& line) noexcept {
   return chief(symmetry, c, line);
 }
 template <int n>
-Place start(OfMirrors<n>, const double* c, const Place& line) noexcept {
+FilmAndPupilPoint start(OfMirrors<n>, const double* c, const FilmAndPupilPoint& line) noexcept {
   // Solves both sections independently; the combined point may lie outside the film.
   const auto along = [](double s, const double* of) {
     const double sign = of[0] < 0 ? -1 : 1;
@@ -62,19 +62,19 @@ Place start(OfMirrors<n>, const double* c, const Place& line) noexcept {
   return {x / within, y / within, 0, 0};
 }
 
-/// Moves from the line of x to the line `wanted` over intermediate lines, in steps for which the iteration converges:
+/// Moves from the line of x to the line `target` over intermediate lines, in steps for which the iteration converges:
 /// one step in most cases, several for a fisheye. Returns false if an iteration fails or the result is outside the
 /// domain.
 template <class Symmetry>
-bool follow(const double* c, const Place& wanted, Place& x) noexcept {
+bool follow(const double* c, const FilmAndPupilPoint& target, FilmAndPupilPoint& x) noexcept {
   At at;
   evaluate(Symmetry{}, c, x, at.value, at.slope);
-  const Place first = at.value;
+  const FilmAndPupilPoint first = at.value;
   double left = 1, step = 1;
   while (left > 0) {
     const double next = std::max(left - step, 0.0);
-    Place there = x;
-    if (correct<Symmetry>(c, sum(wanted, next, sum(first, -1, wanted)), at, there)) {
+    FilmAndPupilPoint there = x;
+    if (correct<Symmetry>(c, sum(target, next, sum(first, -1, target)), at, there)) {
       x = there;
       left = next;
       step *= 2;
@@ -89,14 +89,14 @@ bool follow(const double* c, const Place& wanted, Place& x) noexcept {
 /// Finds (f, p) of a line; returns false if no solution in the domain is found. Starts at a line of similar direction
 /// and, if this fails, at the axis, because the first start may lie outside the fitted region.
 template <class Symmetry>
-bool solve(const double* c, const Place& wanted, Place& x) noexcept {
-  x = start(Symmetry{}, c, wanted);
-  if (follow<Symmetry>(c, wanted, x)) return true;
+bool solve(const double* c, const FilmAndPupilPoint& target, FilmAndPupilPoint& x) noexcept {
+  x = start(Symmetry{}, c, target);
+  if (follow<Symmetry>(c, target, x)) return true;
   x = {};
-  return follow<Symmetry>(c, wanted, x);
+  return follow<Symmetry>(c, target, x);
 }
 
-using Solve = bool (*)(const double*, const Place& wanted, Place&) noexcept;
+using Solve = bool (*)(const double*, const FilmAndPupilPoint& target, FilmAndPupilPoint&) noexcept;
 constexpr auto solvers =
     polynomial_detail::by_symmetry_and_degree([]<class Symmetry>(Symmetry) -> Solve { return solve<Symmetry>; });
 
@@ -110,9 +110,9 @@ void RayPolynomial::to_film(std::size_t count, const RayArrays<const double>& ra
   const Domain& domain = data_->domain;
   const auto [along_x, along_y] = polynomial_detail::sections(domain);
   const bool shared = wavelengths.shared();
-  Data::Room<double> room;
-  const double* coefficients = shared ? data_->coefficients(wavelengths.all, room) : nullptr;
-  std::array<std::array<double, inverse_block>, 4> wanted, at;
+  Data::CoefficientBuffer<double> buffer;
+  const double* coefficients = shared ? data_->coefficients(wavelengths.all, buffer) : nullptr;
+  std::array<std::array<double, inverse_block>, 4> target, at;
   std::array<double, inverse_block> found;
   for (std::size_t begin = 0; begin < count; begin += inverse_block) {
     const std::size_t n = std::min(inverse_block, count - begin);
@@ -123,23 +123,23 @@ void RayPolynomial::to_film(std::size_t count, const RayArrays<const double>& ra
       const double length = direction.x * direction.x + direction.y * direction.y + direction.z * direction.z;
       const auto line = polynomial_detail::scene_line(direction, point);
       sound[i] = std::abs(length - 1) < 1e-3;
-      wanted[0][i] = line.sx, wanted[1][i] = line.sy, wanted[2][i] = line.ox, wanted[3][i] = line.oy;
+      target[0][i] = line.sx, target[1][i] = line.sy, target[2][i] = line.ox, target[3][i] = line.oy;
       found[i] = 0;
     }
-    constexpr std::size_t few = 2;  // cheaper one by one than as a block
-    if (coefficients && n > few && loop < polynomial_detail::degree_count) {
-      for (auto& column : wanted) std::fill(column.begin() + n, column.end(), column[0]);
-      polynomial_detail::inverse_loops()[loop](coefficients, wanted, at, found);
+    constexpr std::size_t max_single_rays = 2;  // cheaper one by one than as a block
+    if (coefficients && n > max_single_rays && loop < polynomial_detail::degree_count) {
+      for (auto& column : target) std::fill(column.begin() + n, column.end(), column[0]);
+      polynomial_detail::inverse_loops()[loop](coefficients, target, at, found);
     }
     for (std::size_t i = 0; i < n; ++i) {
       const std::size_t o = begin + i;
-      Place x{};
+      FilmAndPupilPoint x{};
       bool lit = sound[i] && found[i] > 0;
       if (lit) {
         x = {at[0][i], at[1][i], at[2][i], at[3][i]};
       } else if (sound[i] && found[i] == 0) {
-        const double* const c = shared ? coefficients : data_->coefficients(wavelengths.at(o), room);
-        lit = c && solve(c, {wanted[0][i], wanted[1][i], wanted[2][i], wanted[3][i]}, x);
+        const double* const c = shared ? coefficients : data_->coefficients(wavelengths.at(o), buffer);
+        lit = c && solve(c, {target[0][i], target[1][i], target[2][i], target[3][i]}, x);
       }
       if (!lit) x = {};
       lines.film_x[o] = x[0] * domain.film_radius;

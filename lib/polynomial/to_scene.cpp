@@ -28,15 +28,16 @@ static_assert(OfMirrors<degree_count>::coefficients == most_coefficients);
 /// @param known lanes whose wavelength has a fit
 template <class Symmetry, class R>
 PETZVAL_INLINE Sums<R> mixed_sums(const ToSceneJob<R>& job, const std::uint16_t* each,
-                                  const Variables<Symmetry, R>& at_place, typename Native<R>::Bits& known) noexcept {
+                                  const Variables<Symmetry, R>& variables_of_ray,
+                                  typename Native<R>::Bits& known) noexcept {
   using Bit = typename Native<R>::Bit;
   constexpr std::size_t lanes = lane_count<R>;
-  constexpr Bit none = 1 << 16;
-  const Bit fits = job.fits < none ? static_cast<Bit>(job.fits) : none;
+  constexpr Bit max_fits = 1 << 16;
+  const Bit fits = job.fits < max_fits ? static_cast<Bit>(job.fits) : max_fits;
   Bit own[lanes];
   for (std::size_t l = 0; l < lanes; ++l) own[l] = each[l];
   const auto next = [&](Bit last) {
-    Bit smallest = none;
+    Bit smallest = max_fits;
     for (std::size_t l = 0; l < lanes; ++l) smallest = own[l] > last && own[l] < smallest ? own[l] : smallest;
     return smallest;
   };
@@ -46,7 +47,7 @@ PETZVAL_INLINE Sums<R> mixed_sums(const ToSceneJob<R>& job, const std::uint16_t*
   Sums<R> result{};
   for (Bit at = next(-1); at < fits; at = next(at)) {
     const auto theirs = owns == at;
-    const Sums<R> found = Symmetry::sums(job.coefficients + Symmetry::coefficients * at, at_place);
+    const Sums<R> found = Symmetry::sums(job.coefficients + Symmetry::coefficients * at, variables_of_ray);
     result.first = theirs ? found.first : result.first;
     result.second = theirs ? found.second : result.second;
     result.third = theirs ? found.third : result.third;
@@ -61,13 +62,13 @@ template <class R>
 struct CoefficientsByLane {
   const R* rows;
   std::size_t length;
-  typename Native<R>::Bits places;
+  typename Native<R>::Bits indices;
 
   PETZVAL_INLINE CoefficientsByLane operator+(int coefficients) const noexcept {
-    return {rows + static_cast<std::ptrdiff_t>(length) * coefficients, length, places};
+    return {rows + static_cast<std::ptrdiff_t>(length) * coefficients, length, indices};
   }
   PETZVAL_INLINE typename Native<R>::Values operator[](int) const noexcept {
-    return core_detail::permute<2>(rows, places);
+    return core_detail::permute<2>(rows, indices);
   }
 };
 
@@ -77,16 +78,17 @@ using HalfPositions = std::uint16_t __attribute__((vector_size(core_detail::lane
 /// mixed_sums() for registers that hold a coefficient of all fits.
 template <class Symmetry, class R>
 PETZVAL_INLINE Sums<R> permuted_sums(const ToSceneJob<R>& job, const std::uint16_t* each,
-                                     const Variables<Symmetry, R>& at_place, typename Native<R>::Bits& known) noexcept {
+                                     const Variables<Symmetry, R>& variables_of_ray,
+                                     typename Native<R>::Bits& known) noexcept {
   using Bit = typename Native<R>::Bit;
   // Converted in one operation: stores of single elements would stall the load that follows.
   using Positions = std::conditional_t<sizeof(R) == 4, lens_detail::Positions, HalfPositions>;
   Positions positions;
   __builtin_memcpy(&positions, each, sizeof positions);
-  typename Native<R>::Bits places = __builtin_convertvector(positions, typename Native<R>::Bits);
-  known = places < static_cast<Bit>(job.fits);
-  places &= known;
-  return Symmetry::sums(CoefficientsByLane<R>{job.rows, job.row_length, places}, at_place);
+  typename Native<R>::Bits indices = __builtin_convertvector(positions, typename Native<R>::Bits);
+  known = indices < static_cast<Bit>(job.fits);
+  indices &= known;
+  return Symmetry::sums(CoefficientsByLane<R>{job.rows, job.row_length, indices}, variables_of_ray);
 }
 
 /// Weights of modes for a block of rays.
@@ -97,17 +99,18 @@ using ModeWeights = R[most_modes][lens_detail::look_up_block];
 /// @param weights mode weights; the lanes start at the index `at`
 template <class Symmetry, class R>
 PETZVAL_INLINE Sums<R> mode_sums(const ToSceneJob<R>& job, const ModeWeights<R>& weights, std::size_t at,
-                                 const Variables<Symmetry, R>& at_place, typename Native<R>::Bits& known) noexcept {
+                                 const Variables<Symmetry, R>& variables_of_ray,
+                                 typename Native<R>::Bits& known) noexcept {
   const auto weight_of = [&](std::size_t mode) {
     typename Native<R>::Values weight;
     __builtin_memcpy(&weight, weights[mode] + at, sizeof weight);
     return weight;
   };
   known = weight_of(0) > R(0);
-  Sums<R> result = Symmetry::sums(job.modes.coefficients, at_place);
+  Sums<R> result = Symmetry::sums(job.modes.coefficients, variables_of_ray);
   for (std::size_t k = 1; k < job.modes.count; ++k) {
     const auto weight = weight_of(k);
-    const Sums<R> found = Symmetry::sums(job.modes.coefficients + Symmetry::coefficients * k, at_place);
+    const Sums<R> found = Symmetry::sums(job.modes.coefficients + Symmetry::coefficients * k, variables_of_ray);
     result.first += weight * found.first;
     result.second += weight * found.second;
     result.third += weight * found.third;
@@ -127,11 +130,11 @@ PETZVAL_INLINE void map_lanes(const ToSceneJob<R>& job, std::size_t o, const Mod
   };
   const Scales<R>& scales = job.scales;
   const Values film_x = load(job.lines.film_x), film_y = load(job.lines.film_y);
-  const FilmAndPupil<Values> place =
+  const FilmAndPupil<Values> film_and_pupil =
       in_domain<R, Values>(scales, {film_x, film_y, load(job.lines.pupil_x), load(job.lines.pupil_y)});
-  const Variables<Symmetry, R> variables = Symmetry::variables(place);
-  typename Native<R>::Bits inside =
-      (place.film_square() <= static_cast<R>(within_domain)) & (place.pupil_square() <= static_cast<R>(within_domain));
+  const Variables<Symmetry, R> variables = Symmetry::variables(film_and_pupil);
+  typename Native<R>::Bits inside = (film_and_pupil.film_square() <= static_cast<R>(within_domain)) &
+                                    (film_and_pupil.pupil_square() <= static_cast<R>(within_domain));
 
   Sums<R> sums{};
   if (job.wavelengths.each_nm) {
@@ -152,7 +155,7 @@ PETZVAL_INLINE void map_lanes(const ToSceneJob<R>& job, std::size_t o, const Mod
   } else {
     inside = inside != inside;
   }
-  const LocalRay<Values> found = out_of_chart<R>(Symmetry::line(sums, place));
+  const LocalRay<Values> found = out_of_chart<R>(Symmetry::line(sums, film_and_pupil));
   const auto store = [&](R* to, const Values& ray, R otherwise) {
     const Values result = inside ? ray : Values{} + otherwise;
     __builtin_memcpy(to + o, &result, sizeof result);
@@ -189,10 +192,10 @@ __attribute__((noinline)) void map_whole(const ToSceneJob<R>& job) noexcept {
 template <class Symmetry, class R>
 void to_scene(const ToSceneJob<R>& job) noexcept {
   constexpr std::size_t lanes = lane_count<R>;
-  ToSceneJob<R> part = job;
-  part.count = job.count - job.count % lanes;
-  map_whole<Symmetry>(part);
-  const std::size_t o = part.count, rest = job.count - o;
+  ToSceneJob<R> job_part = job;
+  job_part.count = job.count - job.count % lanes;
+  map_whole<Symmetry>(job_part);
+  const std::size_t o = job_part.count, rest = job.count - o;
   if (rest == 0) return;
   R in[4][lanes], out[6][lanes];
   std::uint16_t each[lanes];
@@ -205,17 +208,17 @@ void to_scene(const ToSceneJob<R>& job) noexcept {
   fill(job.lines.pupil_x, in[2]), fill(job.lines.pupil_y, in[3]);
   if (job.wavelengths.each) {
     fill(job.wavelengths.each, each);
-    part.wavelengths.each = each;
+    job_part.wavelengths.each = each;
   }
   if (job.wavelengths.each_nm) {
     fill(job.wavelengths.each_nm, each_nm);
-    part.wavelengths.each_nm = each_nm;
+    job_part.wavelengths.each_nm = each_nm;
   }
-  part.count = lanes;
-  part.lines = {in[0], in[1], in[2], in[3]};
-  part.rays = {out[0], out[1], out[2], out[3], out[4], out[5]};
-  part.fates = fates;
-  map_whole<Symmetry>(part);
+  job_part.count = lanes;
+  job_part.lines = {in[0], in[1], in[2], in[3]};
+  job_part.rays = {out[0], out[1], out[2], out[3], out[4], out[5]};
+  job_part.fates = fates;
+  map_whole<Symmetry>(job_part);
   R* const to[] = {job.rays.x, job.rays.y, job.rays.z, job.rays.dx, job.rays.dy, job.rays.dz};
   for (std::size_t k = 0; k < 6; ++k) {
     for (std::size_t l = 0; l < rest; ++l) to[k][o + l] = out[k][l];
@@ -226,12 +229,13 @@ void to_scene(const ToSceneJob<R>& job) noexcept {
 template <class Symmetry>
 RayFate one_to_scene(const double* coefficients, const Scales<double>& scales, const TwoPlaneRay& line,
                      Ray<double>& ray) noexcept {
-  const auto place = in_domain<double, double>(scales, {line.film_x, line.film_y, line.pupil_x, line.pupil_y});
-  const bool inside = place.film_square() <= within_domain && place.pupil_square() <= within_domain;
+  const auto film_and_pupil = in_domain<double, double>(scales, {line.film_x, line.film_y, line.pupil_x, line.pupil_y});
+  const bool inside = film_and_pupil.film_square() <= within_domain && film_and_pupil.pupil_square() <= within_domain;
   LocalRay<double> found{0, 0, 0, 0, 0, -1};
   const bool fitted = inside && coefficients;
   if (fitted)
-    found = out_of_chart<double>(Symmetry::line(Symmetry::sums(coefficients, Symmetry::variables(place)), place));
+    found = out_of_chart<double>(
+        Symmetry::line(Symmetry::sums(coefficients, Symmetry::variables(film_and_pupil)), film_and_pupil));
   auto& [o, d] = ray;
   o.x = found.x, o.y = found.y, o.z = found.z + scales.reference_z;
   d.x = found.dx, d.y = found.dy, d.z = found.dz;
