@@ -15,7 +15,7 @@ using Configurations = std::vector<Configuration>;
 std::string name_of(const Prescription& p) { return p.name.empty() ? std::string("lens") : p.name; }
 
 /// The number of a configuration choice (1, 2.5), or the index of its name.
-double place_of(const Prescription& p, const ConfigurationChoice& choice) {
+double position_of(const Prescription& p, const ConfigurationChoice& choice) {
   const std::size_t count = std::max<std::size_t>(p.configurations.size(), 1);
   const auto refuse = [&](const std::string& found) -> Error {
     std::string names;
@@ -153,10 +153,10 @@ std::vector<std::size_t> focusing(const Prescription& p, std::size_t number) {
 }  // namespace
 
 Prescription configured(const Prescription& p, const ConfigurationChoice& choice) {
-  const double place = place_of(p, choice);
+  const double position = position_of(p, choice);
   if (p.configurations.empty()) return p;
-  const auto number = static_cast<std::size_t>(place);
-  const double t = place - static_cast<double>(number);
+  const auto number = static_cast<std::size_t>(position);
+  const double t = position - static_cast<double>(number);
   const Configuration& first = p.configurations[number];
 
   Prescription result = rows_at(p, number);
@@ -177,7 +177,7 @@ Prescription configured(const Prescription& p, const ConfigurationChoice& choice
   }
 
   const Configuration& second = p.configurations[number + 1];
-  const std::string where = name_of(p) + ": configuration " + to_text(place);
+  const std::string where = name_of(p) + ": configuration " + to_text(position);
   if (first.focus_of || second.focus_of) {
     throw Error(where + " lies between \"" + first.name + "\" and \"" + second.name +
                 "\"; must lie between two zoom positions");

@@ -20,12 +20,12 @@ constexpr double longest_thickness = 1e10;
 constexpr std::size_t most_surfaces = 10'000;
 constexpr std::size_t most_configurations = 1'000;
 
-[[noreturn]] void refuse(const std::string& where, const std::string& what, double found, const std::string& wanted) {
-  throw Error(where + ": " + what + " = " + to_text(found) + "; must be " + wanted);
+[[noreturn]] void refuse(const std::string& where, const std::string& what, double found, const std::string& rule) {
+  throw Error(where + ": " + what + " = " + to_text(found) + "; must be " + rule);
 }
 
-void check_finite(const std::string& where, const char* what, double value, const std::string& wanted) {
-  if (!std::isfinite(value)) refuse(where, what, value, wanted);
+void check_finite(const std::string& where, const char* what, double value, const std::string& rule) {
+  if (!std::isfinite(value)) refuse(where, what, value, rule);
 }
 
 void check_nominal(const std::string& where, const char* what, const std::optional<double>& value) {
@@ -168,16 +168,16 @@ void ConfigurationCheck::run() {
 }
 
 void ConfigurationCheck::check(const std::string& here, const Configuration& c) {
-  const auto check_place = [&](const char* what, int surface) {
+  const auto check_index = [&](const char* what, int surface) {
     if (surface < 0 || static_cast<std::size_t>(surface) >= p_.surfaces.size()) {
       refuse(here, what, surface, "0 or more and below " + std::to_string(p_.surfaces.size()));
     }
   };
-  if (c.stop) check_place("stop", *c.stop);
+  if (c.stop) check_index("stop", *c.stop);
   if (c.subject_distance_mm && !(*c.subject_distance_mm > 0)) {
     refuse(here, "subject_distance_mm", *c.subject_distance_mm, "positive or inf");
   }
-  for (const SurfaceChange& change : c.changes) check_place("changed surface", change.surface);
+  for (const SurfaceChange& change : c.changes) check_index("changed surface", change.surface);
   if (c.focus_of && !zoom_positions_.contains(*c.focus_of)) {
     throw Error(here + " focuses \"" + *c.focus_of + "\"; must be the name of a zoom position");
   }
