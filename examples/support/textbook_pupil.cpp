@@ -121,7 +121,7 @@ TextbookPupil textbook_pupil(const Lens& lens, Travel travel, double point_z, Wa
           .diameter = 2 * std::abs(fan.height_at(outermost, image.z)),
           .limiting =
               next.transmitted() ? (entrance ? 0 : lens.surface_count() - 1) : static_cast<std::size_t>(next.surface),
-          .beyond = next.transmitted() ? RayFate::vignetted : next.fate,
+          .next_fate = next.transmitted() ? RayFate::vignetted : next.fate,
           .marginal = fan.ray(outermost)};
 }
 

@@ -14,7 +14,7 @@ struct TextbookPupil {
   double z = 0;              ///< paraxial image of the stop (lens frame, mm); infinite if telecentric
   double diameter = 0;       ///< twice the height of the marginal ray in that plane, mm
   std::size_t limiting = 0;  ///< surface that ends the next ray outwards; not always the stop
-  petzval::RayFate beyond = petzval::RayFate::vignetted;  ///< the fate of that next ray
+  petzval::RayFate next_fate = petzval::RayFate::vignetted;  ///< the fate of that next ray
   /// The outermost transmitted ray before it meets the lens: in object space (entrance) or image space (exit).
   petzval::Ray<double> marginal{};
 };

@@ -10,7 +10,7 @@
 #include "core/text.hpp"
 #include "petzval/core/error.hpp"
 #include "petzval/core/film.hpp"
-#include "pupil/face.hpp"
+#include "pupil/surface_box.hpp"
 #include "pupil_table/two_plane_rays.hpp"
 
 namespace petzval::camera_detail {
@@ -20,13 +20,13 @@ namespace {
 /// Checks points on the edge of the film and points next to the rim of the last surface.
 /// @throws Error  if the film reaches into the last surface
 void check_outside_surface(const Lens& lens, const Film& film) {
-  const pupil_detail::Face face = pupil_detail::last_face(lens);
+  const pupil_detail::SurfaceBox box = pupil_detail::last_surface_box(lens);
   const std::size_t last = lens.surface_count() - 1;
-  const double side = film.z() > face.vertex_z ? 1 : -1;
+  const double side = film.z() > box.vertex_z ? 1 : -1;
   const auto check = [&](const FilmPoint& point) {
     const Vec3<double> position = film.position(point);
-    if (!(std::hypot(position.x, position.y) <= face.half)) return;
-    const double surface_z = face.vertex_z + sag(lens, last, position.x, position.y);
+    if (!(std::hypot(position.x, position.y) <= box.half)) return;
+    const double surface_z = box.vertex_z + sag(lens, last, position.x, position.y);
     if (!((position.z - surface_z) * side <= 0)) return;
     throw Error(lens.name() + ": film: point (" + to_text(point.x) + ", " + to_text(point.y) +
                 ") mm is at z = " + to_text(position.z) + " mm; must be " + (side > 0 ? "beyond " : "before ") +
@@ -41,7 +41,7 @@ void check_outside_surface(const Lens& lens, const Film& film) {
       const double fraction = static_cast<double>(i) / steps;
       const FilmPoint edge{from.x + fraction * (to.x - from.x), from.y + fraction * (to.y - from.y)};
       check(edge);
-      const double rim_ratio = std::hypot(edge.x, edge.y) / (face.half * (1 - 1e-9));
+      const double rim_ratio = std::hypot(edge.x, edge.y) / (box.half * (1 - 1e-9));
       const FilmPoint under_rim{edge.x / rim_ratio, edge.y / rim_ratio};
       if (rim_ratio > 1 && film.contains(under_rim)) check(under_rim);
     }
@@ -50,11 +50,11 @@ void check_outside_surface(const Lens& lens, const Film& film) {
 
 /// @throws Error  if a corner of a tilted film is not behind the end of the last surface
 void check_tilted(const Lens& lens, const Film& film) {
-  const pupil_detail::Face face = pupil_detail::last_face(lens);
+  const pupil_detail::SurfaceBox box = pupil_detail::last_surface_box(lens);
   const double film_z = film.z();
   // End of the last surface on the side of the film; its vertex if the surface extends past the upright film.
-  const double side = film_z > face.vertex_z ? 1 : -1, edge = side > 0 ? face.z_max : face.z_min;
-  const double end = (film_z - edge) * side > 0 ? edge : face.vertex_z;
+  const double side = film_z > box.vertex_z ? 1 : -1, edge = side > 0 ? box.z_max : box.z_min;
+  const double end = (film_z - edge) * side > 0 ? edge : box.vertex_z;
   for (const FilmPoint& corner : film.corners()) {
     const double z = film.position(corner).z;
     if ((z - end) * side > 0) continue;

@@ -11,7 +11,7 @@
 #include "distance_to_front.hpp"
 #include "petzval/core/error.hpp"
 #include "petzval/paraxial/first_order.hpp"
-#include "pupil/face.hpp"
+#include "pupil/surface_box.hpp"
 
 namespace petzval::camera_detail {
 
@@ -19,7 +19,7 @@ Front front_of(const Lens& lens) {
   const Pupil entrance = has_pupils(lens) ? pupils(lens).entrance : Pupil{};
   double frontmost = std::numeric_limits<double>::infinity(), behind_first = frontmost;
   for (std::size_t i = 0; i < lens.surface_count(); ++i) {
-    const double z = pupil_detail::face_of(lens, i, entrance).z_min;
+    const double z = pupil_detail::surface_box(lens, i, entrance).z_min;
     frontmost = std::min(frontmost, z);
     if (i > 0) behind_first = std::min(behind_first, z);
   }

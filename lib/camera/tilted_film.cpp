@@ -23,7 +23,7 @@
 #include "core/text.hpp"
 #include "make_model.hpp"
 #include "petzval/core/error.hpp"
-#include "pupil/face.hpp"
+#include "pupil/surface_box.hpp"
 #include "tilted_pinhole.hpp"
 
 namespace petzval {
@@ -124,11 +124,11 @@ double upright_radius(const LensFacts& facts, const Film& film, ModelKind model)
   const double film_z = film.z();
   const double pupil_z = two_planes(lens).pupil_z;
   const std::vector<Rim> pupils = pupils_of(facts, model);
-  const pupil_detail::Face face = pupil_detail::last_face(lens);
+  const pupil_detail::SurfaceBox box = pupil_detail::last_surface_box(lens);
   const bool discs = model.is_first_order() && model != ModelKind::thin_two_disc;
   // Behind the film, aberrations move a pupil by more than its size.
   const bool in_lens = !pupils.empty() && std::all_of(pupils.begin(), pupils.end(), [&](const Rim& rim) {
-    return (rim.z - film_z) * (face.vertex_z - film_z) > 0;
+    return (rim.z - film_z) * (box.vertex_z - film_z) > 0;
   });
   double radius = 0;
   const auto reach = [&](const FilmPoint& corner, const Vec3<double>& position) {
@@ -144,7 +144,7 @@ double upright_radius(const LensFacts& facts, const Film& film, ModelKind model)
       through_pupil = std::max(through_pupil, farthest(rim));
     }
     // Rays also pass the last surface, whose position does not depend on aberrations.
-    const double through_last = std::max(farthest({face.half, face.z_min}), farthest({face.half, face.z_max}));
+    const double through_last = std::max(farthest({box.half, box.z_min}), farthest({box.half, box.z_max}));
     const double reached = discs ? through_pupil : in_lens ? std::min(through_last, through_pupil) : through_last;
     radius = std::max(radius, reached);
   };

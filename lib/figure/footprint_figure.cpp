@@ -32,7 +32,7 @@ struct Limit {
   bool operator==(const Limit&) const = default;
 };
 
-Limit limit_of(const RimPoint& edge) { return {edge.surface, edge.beyond}; }
+Limit limit_of(const RimPoint& edge) { return {edge.surface, edge.next_fate}; }
 
 std::string_view colour_of(std::size_t limit) {
   constexpr std::array<std::string_view, 8> palette{"#111111", "#d0331f", "#1f5fc4", "#1a8f3c",

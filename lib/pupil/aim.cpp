@@ -11,11 +11,11 @@
 
 #include "core/bisect.hpp"
 #include "core/dual.hpp"
-#include "face.hpp"
 #include "petzval/core/error.hpp"
 #include "petzval/lens/lens.hpp"
 #include "petzval/paraxial/first_order.hpp"
 #include "petzval/trace/trace.hpp"
+#include "surface_box.hpp"
 #include "trace/sequential.hpp"
 
 namespace petzval {
@@ -37,7 +37,7 @@ struct Slope {
 /// point: its components in the meridian of the point (along) and perpendicular to the meridian (across).
 template <class T>
 struct Departure {
-  Vec<T> origin, direction, wanted;
+  Vec<T> origin, direction, target_direction;
   T along, across;
 };
 
@@ -82,9 +82,9 @@ class Aimer {
   }
 
   AimedRay operator()(const Vec2<double>& target) const noexcept {
-    const Vec2<double> place{target.x * unit(), target.y * unit()};
-    const auto slope = solve(place);
-    return slope ? tested(place, *slope) : AimedRay{};
+    const Vec2<double> stop_point{target.x * unit(), target.y * unit()};
+    const auto slope = solve(stop_point);
+    return slope ? tested(stop_point, *slope) : AimedRay{};
   }
 
  private:
@@ -99,13 +99,15 @@ class Aimer {
     if (end.fate != RayFate::transmitted) return {};
 
     const auto vector = [](const Vec3<double>& v) { return Vec<T>{T(v.x), T(v.y), T(v.z)}; };
-    Vec<T> wanted = vector(plane_.towards()) - (end.origin - vector(plane_.centre())) * T(plane_.reciprocal_distance());
-    const T length = sqrt(dot(wanted, wanted));
-    wanted = wanted * T((plane_.reciprocal_distance() < 0 ? -1.0 : 1.0) / length);
+    Vec<T> target_direction =
+        vector(plane_.towards()) - (end.origin - vector(plane_.centre())) * T(plane_.reciprocal_distance());
+    const T length = sqrt(dot(target_direction, target_direction));
+    target_direction = target_direction * T((plane_.reciprocal_distance() < 0 ? -1.0 : 1.0) / length);
     const Vec<T>& d = end.direction;
-    const Vec<T> turn{d.y * wanted.z - d.z * wanted.y, d.z * wanted.x - d.x * wanted.z,
-                      d.x * wanted.y - d.y * wanted.x};
-    return Departure<T>{end.origin, d, wanted, dot(turn, vector(lateral_)), dot(turn, vector(meridian_))};
+    const Vec<T> turn{d.y * target_direction.z - d.z * target_direction.y,
+                      d.z * target_direction.x - d.x * target_direction.z,
+                      d.x * target_direction.y - d.y * target_direction.x};
+    return Departure<T>{end.origin, d, target_direction, dot(turn, vector(lateral_)), dot(turn, vector(meridian_))};
   }
 
   std::optional<Slope> solve(const Vec2<double>& target) const noexcept {
@@ -136,9 +138,9 @@ class Aimer {
 
   /// True if directions at the stop and directions in object space rotate in opposite senses.
   static bool mirrored(const Departure<Dual>& ray) noexcept {
-    const Vec<Dual> e = ray.direction - ray.wanted;
-    const auto part = [&](int i) { return Vec<double>{e.x.v[i], e.y.v[i], e.z.v[i]}; };
-    const Vec<double> a = part(0), b = part(1);
+    const Vec<Dual> e = ray.direction - ray.target_direction;
+    const auto component = [&](int i) { return Vec<double>{e.x.v[i], e.y.v[i], e.z.v[i]}; };
+    const Vec<double> a = component(0), b = component(1);
     const Vec<double> d{ray.direction.x.a, ray.direction.y.a, ray.direction.z.a};
     return dot(Vec<double>{a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x}, d) < 0;
   }
@@ -146,10 +148,10 @@ class Aimer {
   /// Damped Newton iteration: every step reduces the error and keeps the ray inside the lens. Surfaces far outside
   /// their rims can bend a ray back to the same angle; such a ray is mirrored (see mirrored()) and rejected.
   std::optional<Slope> newton(const Vec2<double>& from, Slope slope) const noexcept {
-    constexpr double rounding = 1e-15, good = 1e-9;
+    constexpr double rounding = 1e-15, max_miss = 1e-9;
     const auto at = [&](const Slope& s) { return differentiated(from, s); };
     const auto miss = [](const Departure<Dual>& d) {
-      const bool away = !(dot(d.direction, d.wanted) > 0.0);
+      const bool away = !(dot(d.direction, d.target_direction) > 0.0);
       return away ? 2.0 : std::hypot(d.along.a, d.across.a);
     };
     auto now = at(slope);
@@ -159,15 +161,15 @@ class Aimer {
       const double d = f.v[0] * g.v[1] - f.v[1] * g.v[0];
       Slope step{(f.v[1] * g.a - f.a * g.v[1]) / d, (f.a * g.v[0] - f.v[0] * g.a) / d};
       if (!std::isfinite(step.x) || !std::isfinite(step.y)) return {};
-      bool nearer = false;
-      for (int halving = 0; halving < 12 && !nearer; ++halving, step = step * 0.5) {
+      bool improved = false;
+      for (int halving = 0; halving < 12 && !improved; ++halving, step = step * 0.5) {
         const auto next = at(slope + step);
-        nearer = next && miss(*next) < miss(*now);
-        if (nearer) slope = slope + step, now = next;
+        improved = next && miss(*next) < miss(*now);
+        if (improved) slope = slope + step, now = next;
       }
-      if (!nearer) break;
+      if (!improved) break;
     }
-    return miss(*now) < good && mirrored(*now) == mirrored_ ? std::optional(slope) : std::nullopt;
+    return miss(*now) < max_miss && mirrored(*now) == mirrored_ ? std::optional(slope) : std::nullopt;
   }
 
   /// The largest slope in the meridian of the field for which the ray from a point on the stop leaves the lens at a
@@ -180,11 +182,11 @@ class Aimer {
       const auto angle = [&](const Vec<double>& v) {
         return std::atan2(v.x * outwards_.x + v.y * outwards_.y, v.z * at_point_);
       };
-      return d ? angle(d->wanted) - angle(d->direction) : -1;
+      return d ? angle(d->target_direction) - angle(d->direction) : -1;
     };
-    const double middle = missing_angle(0), beside = missing_angle(1e-4);
+    const double middle = missing_angle(0), off_axis = missing_angle(1e-4);
     if (!(middle > 0)) return {};
-    const double sign = beside < middle ? 1 : -1;
+    const double sign = off_axis < middle ? 1 : -1;
     constexpr int steps = 32;
     constexpr double tolerance = 1e-9;  // Newton's iteration takes over
     double low = 0, at_low = middle;

@@ -46,8 +46,8 @@ void for_heights(const Lens& lens, const Ray<double>& ray, const auto& take) {
 Lens with_widest_stop(const Lens& lens, const Prescription& rows) {
   if (!lacks_aperture(rows.surfaces[*lens.stop()]) || !has_pupils(lens)) return lens;
   const PupilPlane axis(lens, {.z = object_z(rows)});
-  const auto ray_at = [&](double part) { return pupil_detail::aim(lens, axis, {0, part}, {}); };
-  const auto passes = [&](double part) { return ray_at(part).status == AimStatus::converged; };
+  const auto ray_at = [&](double relative_field) { return pupil_detail::aim(lens, axis, {0, relative_field}, {}); };
+  const auto passes = [&](double relative_field) { return ray_at(relative_field).status == AimStatus::converged; };
   double low = 0, high = 1;
   while (high < 1e6 && passes(high)) low = high, high *= 2;
   for (int i = 0; i < 50; ++i) {
@@ -140,13 +140,13 @@ std::vector<double> rims_of(const Lens& given, const Prescription& rows) {
   BeamHeights beam(lens);
   try {
     const double z = object_z(rows), half = declared_half_field(rows, lens).value_or(default_half_field_rad);
-    constexpr std::array parts{0.0, 0.5, 0.7, 0.85, 1.0};
+    constexpr std::array field_fractions{0.0, 0.5, 0.7, 0.85, 1.0};
     const bool round = with_iris(lens, {}).rotationally_symmetric();
-    for (const double part : parts) {
-      beam.add({.field_rad = part * half, .z = z}, round);
-      if (round || part == 0) continue;
-      beam.add({.field_rad = part * half, .z = z, .azimuth_rad = std::numbers::pi / 2}, false);
-      beam.add({.field_rad = part * half, .z = z, .azimuth_rad = std::numbers::pi / 4}, false);
+    for (const double relative_field : field_fractions) {
+      beam.add({.field_rad = relative_field * half, .z = z}, round);
+      if (round || relative_field == 0) continue;
+      beam.add({.field_rad = relative_field * half, .z = z, .azimuth_rad = std::numbers::pi / 2}, false);
+      beam.add({.field_rad = relative_field * half, .z = z, .azimuth_rad = std::numbers::pi / 4}, false);
     }
   } catch (const Error&) {
     // Field angles are undefined, or no stop limits the beam: semi-diameters stay missing.
@@ -210,8 +210,9 @@ Prescription with_apertures(const Prescription& prescription, const CompileOptio
       design.wavelengths.empty() ? given.reference_wavelength_nm : design.wavelengths[design.primary_wavelength].nm;
 
   // Beams change slowly from one zoom position to the next, so that 9 positions suffice.
-  constexpr std::size_t most = 9;
-  const std::size_t count = std::max<std::size_t>(given.configurations.size(), 1), tried = std::min(count, most);
+  constexpr std::size_t max_positions = 9;
+  const std::size_t count = std::max<std::size_t>(given.configurations.size(), 1),
+                    tried = std::min(count, max_positions);
   for (std::size_t k = 0; k < tried; ++k) {
     CompileOptions own = options;
     own.primary_nm.reset();

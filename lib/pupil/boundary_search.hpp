@@ -29,7 +29,7 @@ struct ConnectedPupils {
   std::function<std::optional<Vec2<double>>(std::uint32_t point)> chief;
   /// Clearances of a lens with its central obscurations, which may divide its pupils; empty if the lens has no
   /// obscurations. If set, the clearances passed to find_regions() must ignore the obscurations.
-  PlaceClearances obscured{};
+  PositionClearances obscured{};
 };
 
 /// Finds the pupils of many points together, in batches. pupil_boundary() is exact to 2e-13 and knows the rims. This
@@ -41,10 +41,10 @@ struct ConnectedPupils {
 /// @param mirrored true if the pupils are symmetric about x = 0; only half of the directions are traced then
 /// @param connected selects one component; null keeps all components that the search lines meet
 std::vector<PupilRegion> find_regions(std::span<const PupilGuess> points, const SearchOrder& order,
-                                      std::size_t directions, bool mirrored, const PlaceClearances& clearances,
+                                      std::size_t directions, bool mirrored, const PositionClearances& clearances,
                                       const ConnectedPupils* connected = nullptr);
 
 /// True for each point with at least one ray that passes, at the resolution of find_regions().
-std::vector<bool> lit_points(std::span<const PupilGuess> points, const PlaceClearances& clearances);
+std::vector<bool> lit_points(std::span<const PupilGuess> points, const PositionClearances& clearances);
 
 }  // namespace petzval::pupil_detail

@@ -10,24 +10,24 @@
 #include "boundary_nodes.hpp"
 #include "core/meet_plane.hpp"
 #include "core/text.hpp"
-#include "directions_seen.hpp"
 #include "petzval/core/error.hpp"
 #include "petzval/paraxial/first_order.hpp"
 #include "petzval/pupil/aim.hpp"
 #include "pupil/pupil_boundary.hpp"
+#include "pupil_in_angles.hpp"
 #include "pupil_region.hpp"
 
 namespace petzval {
 
 double film_irradiance(const Lens& lens, const FilmPoint& point, Wavelength wavelength) {
-  const bool alike_all_round = point.x == 0 && point.y == 0 && lens.rotationally_symmetric();
+  const bool axially_symmetric = point.x == 0 && point.y == 0 && lens.rotationally_symmetric();
   const auto seen = [&](std::size_t directions) {
-    return pupil_detail::directions_seen(lens, point, wavelength, directions);
+    return pupil_detail::pupil_in_angles(lens, point, wavelength, directions);
   };
-  PupilRegion region = seen(alike_all_round ? 1 : 256);
+  PupilRegion region = seen(axially_symmetric ? 1 : 256);
   // A pupil with several spans in one direction is rare; it needs more directions.
-  const bool parts = !region.empty() && region.spans.size() != region.directions;
-  if (parts && !alike_all_round) region = seen(1024);
+  const bool disconnected = !region.empty() && region.spans.size() != region.directions;
+  if (disconnected && !axially_symmetric) region = seen(1024);
   if (region.empty()) return 0;
   // A small area at the angle t from the normal has a projected solid angle of sin t cos t / t times the area.
   double sum = 0;
@@ -39,11 +39,11 @@ double film_irradiance(const Lens& lens, const FilmPoint& point, Wavelength wave
   return pupil_detail::area_of(region, n * n * sum);
 }
 
-double image_circle_mm(const Lens& lens, double least_part, Wavelength wavelength) {
-  if (!(least_part >= 0 && least_part <= 1)) {
-    throw Error(lens.name() + ": image circle: least_part = " + to_text(least_part) + "; must be 0 to 1");
+double image_circle_mm(const Lens& lens, double least_fraction, Wavelength wavelength) {
+  if (!(least_fraction >= 0 && least_fraction <= 1)) {
+    throw Error(lens.name() + ": image circle: least_fraction = " + to_text(least_fraction) + "; must be 0 to 1");
   }
-  const double axis = film_irradiance(lens, {}, wavelength), wanted = least_part * axis;
+  const double axis = film_irradiance(lens, {}, wavelength), min_irradiance = least_fraction * axis;
   if (axis == 0) return 0;
   const std::size_t directions = lens.rotationally_symmetric() ? 1 : 8;
   const auto lit = [&](double radius) {
@@ -51,9 +51,9 @@ double image_circle_mm(const Lens& lens, double least_part, Wavelength wavelengt
       const double angle = 2 * std::numbers::pi * static_cast<double>(k) / static_cast<double>(directions);
       const FilmPoint point{radius * std::sin(angle), radius * std::cos(angle)};
       // 16 directions suffice to detect a pupil.
-      const bool enough = least_part > 0 ? film_irradiance(lens, point, wavelength) >= wanted
-                                         : !pupil_detail::directions_seen(lens, point, wavelength, 16).empty();
-      if (!enough) return false;
+      const bool bright = least_fraction > 0 ? film_irradiance(lens, point, wavelength) >= min_irradiance
+                                             : !pupil_detail::pupil_in_angles(lens, point, wavelength, 16).empty();
+      if (!bright) return false;
     }
     return true;
   };

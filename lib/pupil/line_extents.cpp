@@ -8,7 +8,7 @@
 namespace petzval::pupil_detail {
 
 void close_in(std::vector<Bracket>& brackets, const std::vector<Line>& lines, double tolerance,
-              const PlaceClearances& clearances) {
+              const PositionClearances& clearances) {
   constexpr int secants = 6, rounds = 40;
   std::vector<std::uint32_t> open(brackets.size());
   for (std::uint32_t i = 0; i < open.size(); ++i) open[i] = i;
@@ -45,23 +45,23 @@ namespace {
 /// @param near called if there are several components
 template <class Passes, class Near>
 void narrow(int& first, int& last, const Passes& passes, const Near& near, double low, double step) {
-  std::vector<std::array<int, 2>> parts;
+  std::vector<std::array<int, 2>> runs;
   for (int i = first; i <= last; ++i) {
     if (!passes(i)) continue;
     if (i > first && passes(i - 1)) {
-      parts.back()[1] = i;
+      runs.back()[1] = i;
     } else {
-      parts.push_back({i, i});
+      runs.push_back({i, i});
     }
   }
-  if (parts.size() == 1) return;
+  if (runs.size() == 1) return;
   const std::optional<double> parameter = near();
   const auto badness = [&](const std::array<int, 2>& p) -> double {
     if (!parameter) return p[0] - p[1];
     const double sample = (*parameter - low) / step;
     return std::max({p[0] - sample, sample - p[1], 0.0});
   };
-  const auto best = *std::min_element(parts.begin(), parts.end(),
+  const auto best = *std::min_element(runs.begin(), runs.end(),
                                       [&](const auto& a, const auto& b) { return badness(a) < badness(b); });
   first = best[0], last = best[1];
 }
@@ -69,30 +69,31 @@ void narrow(int& first, int& last, const Passes& passes, const Near& near, doubl
 }  // namespace
 
 std::vector<LineExtent> extents_along(const std::vector<Line>& lines, double low, double high, int samples,
-                                      double tolerance, const PlaceClearances& clearances, const PartOfLine& part) {
+                                      double tolerance, const PositionClearances& clearances,
+                                      const ComponentOfLine& component) {
   const double step = (high - low) / samples;
   Batch batch;
   std::vector<LineExtent> result(lines.size());
   std::vector<Bracket> brackets;
   // In batches of about 2048 samples, to reuse buffers.
-  const std::size_t a_line = static_cast<std::size_t>(samples) + 1, some = 1 + 2048 / a_line;
+  const std::size_t a_line = static_cast<std::size_t>(samples) + 1, batch_lines = 1 + 2048 / a_line;
   for (std::size_t l = 0; l < lines.size(); ++l) {
-    if (l % some == 0) {
+    if (l % batch_lines == 0) {
       batch.clear();
-      for (std::size_t j = l; j < std::min(l + some, lines.size()); ++j) {
+      for (std::size_t j = l; j < std::min(l + batch_lines, lines.size()); ++j) {
         for (int i = 0; i <= samples; ++i) batch.add(lines[j], low + step * i);
       }
       batch.test(clearances);
     }
-    const double* values = batch.clearances.data() + l % some * a_line;
+    const double* values = batch.clearances.data() + l % batch_lines * a_line;
     const auto passes = [&](int i) { return values[i] >= 0; };
     int first = 0, last = samples, dark = 0, light = 0;  // dark, light: samples around the widest obscuration
     while (first <= samples && !passes(first)) ++first;
     if (first > samples) continue;
     while (!passes(last)) --last;
-    if (part)
+    if (component)
       narrow(
-          first, last, passes, [&] { return part(l); }, low, step);
+          first, last, passes, [&] { return component(l); }, low, step);
     const auto parameter = [&](int i) { return low + step * i; };
     for (int i = first, before = first; i <= last; ++i) {
       if (!passes(i)) continue;

@@ -14,8 +14,8 @@ namespace petzval::pupil_detail {
 
 /// Computes the clearances of N rays, each through (x[i], y[i]) in the plane of points[i], as in trace/clearances.hpp:
 /// not negative if the ray passes. A source that knows only the sign gives 1 and -1.
-using PlaceClearances = std::function<void(std::size_t count, const std::uint32_t* points, const double* x,
-                                           const double* y, double* clearances)>;
+using PositionClearances = std::function<void(std::size_t count, const std::uint32_t* points, const double* x,
+                                              const double* y, double* clearances)>;
 
 /// The clearance of a ray if only its sign is known.
 inline double clearance_of(bool passes) noexcept { return passes ? 1 : -1; }
@@ -42,9 +42,9 @@ struct Batch {
     x.push_back(line.x + s * line.dx);
     y.push_back(line.y + s * line.dy);
   }
-  void test(const PlaceClearances& at_places) {
+  void test(const PositionClearances& clearances_at) {
     clearances.resize(x.size());
-    if (!x.empty()) at_places(x.size(), points.data(), x.data(), y.data(), clearances.data());
+    if (!x.empty()) clearances_at(x.size(), points.data(), x.data(), y.data(), clearances.data());
   }
   bool passes(std::size_t i) const noexcept { return clearances[i] >= 0; }
 };
@@ -80,17 +80,17 @@ struct Bracket {
 
 /// Finds the ends within a tolerance: by secants if the clearance is smooth, by bisection if only its sign is known.
 void close_in(std::vector<Bracket>& brackets, const std::vector<Line>& lines, double tolerance,
-              const PlaceClearances& clearances);
+              const PositionClearances& clearances);
 
 /// Parameter close to the component of a line that is to be kept; nullopt keeps the widest component.
-using PartOfLine = std::function<std::optional<double>(std::size_t line)>;
+using ComponentOfLine = std::function<std::optional<double>(std::size_t line)>;
 
 /// Finds the extents along lines from `samples` + 1 parameters between `low` and `high`; an extent starts at `low` if
 /// the first sample passes.
 /// @param tolerance tolerance of the ends, in units of the parameter
-/// @param part selects one component of lines with several components; if empty, the extent covers all components
+/// @param component selects one component of lines with several components; if empty, the extent covers all components
 PETZVAL_API std::vector<LineExtent> extents_along(const std::vector<Line>& lines, double low, double high, int samples,
-                                                  double tolerance, const PlaceClearances& clearances,
-                                                  const PartOfLine& part = {});
+                                                  double tolerance, const PositionClearances& clearances,
+                                                  const ComponentOfLine& component = {});
 
 }  // namespace petzval::pupil_detail

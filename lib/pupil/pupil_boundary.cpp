@@ -10,19 +10,19 @@
 #include <utility>
 
 #include "core/bisect.hpp"
-#include "directions_seen.hpp"
 #include "lens/without_obscurations.hpp"
 #include "petzval/core/error.hpp"
+#include "pupil_in_angles.hpp"
+#include "pupil_ray_tracer.hpp"
 #include "pupil_region.hpp"
-#include "sight.hpp"
 
 namespace petzval {
 namespace {
 
 using Point = Vec2<double>;
 using pupil_detail::Coordinates;
-using pupil_detail::SeenPlace;
-using pupil_detail::Sight;
+using pupil_detail::PassingPoint;
+using pupil_detail::PupilRayTracer;
 
 struct Box {
   Point low{std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity()};
@@ -43,11 +43,11 @@ Box box_of(const PupilRegion& region) noexcept {
 }
 
 /// A box inside the pupil and a box around it, computed from some passing rays on finer and finer grids.
-std::pair<Box, Box> boxes_about(Sight& sight, const std::vector<SeenPlace>& passing) {
+std::pair<Box, Box> boxes_around(PupilRayTracer& ray_tracer, const std::vector<PassingPoint>& passing) {
   Box seen, box;
-  for (const auto& [at, beside] : passing) {
+  for (const auto& [at, spacing] : passing) {
     seen.take(at);
-    box.take(at - beside), box.take(at + beside);
+    box.take(at - spacing), box.take(at + spacing);
   }
   std::vector<double> x, y;
   for (int pass = 0; pass < 32; ++pass) {
@@ -57,7 +57,7 @@ std::pair<Box, Box> boxes_about(Sight& sight, const std::vector<SeenPlace>& pass
     for (int j = 0; j <= steps; ++j) {
       for (int i = 0; i <= steps; ++i) x.push_back(low.x + i * step.x), y.push_back(low.y + j * step.y);
     }
-    const auto clearance = sight.clearances(x, y);
+    const auto clearance = ray_tracer.clearances(x, y);
     for (std::size_t i = 0; i < x.size(); ++i) {
       if (clearance[i] >= 0) seen.take({x[i], y[i]});
     }
@@ -75,8 +75,8 @@ std::pair<Box, Box> boxes_about(Sight& sight, const std::vector<SeenPlace>& pass
 class Tracer {
  public:
   /// @param near a point of the component to keep; nullopt keeps all components
-  Tracer(Sight& sight, PupilBoundary& boundary, const std::optional<Point>& near)
-      : sight_(sight), boundary_(boundary), near_(near) {}
+  Tracer(PupilRayTracer& ray_tracer, PupilBoundary& boundary, const std::optional<Point>& near)
+      : ray_tracer_(ray_tracer), boundary_(boundary), near_(near) {}
 
   struct Seen {
     bool disc = true;   ///< one span in each direction, beginning at the middle
@@ -125,34 +125,36 @@ class Tracer {
     return seen;
   }
 
-  /// Finds one span in each direction, beginning at the middle. The ends are predicted from `few`, which has fewer
+  /// Finds one span in each direction, beginning at the middle. The ends are predicted from `coarse`, which has fewer
   /// directions. Returns false if an end is not close to its prediction.
-  bool disc(std::size_t directions, const PupilBoundary& few) {
+  bool disc(std::size_t directions, const PupilBoundary& coarse) {
     begin(directions);
     const auto near = [&](std::size_t k) {
-      const auto n = static_cast<double>(few.directions);
+      const auto n = static_cast<double>(coarse.directions);
       const double at = (static_cast<double>(k) + 0.5) / static_cast<double>(directions) * n - 0.5 + n;
       const auto i = static_cast<std::size_t>(at);
       const double t = at - static_cast<double>(i);
-      const auto radius = [&](std::size_t j) { return few.spans[j % few.directions].to_radius; };
+      const auto radius = [&](std::size_t j) { return coarse.spans[j % coarse.directions].to_radius; };
       return (1 - t) * radius(i) + t * radius(i + 1);
     };
-    constexpr std::array<double, 4> beside{0, 0.98, 1.02, 1.3};
-    constexpr int count = beside.size();
-    sample(count, [&](std::size_t k, int i) { return beside[i] * near(k); });
+    constexpr std::array<double, 4> trial_radii{0, 0.98, 1.02, 1.3};
+    constexpr int count = trial_radii.size();
+    sample(count, [&](std::size_t k, int i) { return trial_radii[i] * near(k); });
     for (std::size_t k = 0; k < directions; ++k) {
       const double* value = values_.data() + k * count;
       int last = 0;
       while (last < count && value[last] >= 0) ++last;
       if (last == 0 || last == count) return false;
       ends_.push_back({k, {0, 0, 0, 0, 1}});
-      ends_.push_back({k, {beside[last - 1] * near(k), value[last - 1], beside[last] * near(k), value[last], finest}});
+      ends_.push_back({k,
+                       {trial_radii[last - 1] * near(k), value[last - 1], trial_radii[last] * near(k), value[last],
+                        radius_tolerance}});
     }
     finish();
     return true;
   }
 
-  static constexpr double finest = 4e-14;
+  static constexpr double radius_tolerance = 4e-14;
 
  private:
   /// An end of a span during the search. Ends come in pairs: the inner end, then the outer end.
@@ -188,7 +190,7 @@ class Tracer {
         const Point unit = boundary_.unit(s.direction);
         add(unit, (s.radii[0] + s.radii[1]) / 2), add(unit, (s.radii[1] + s.radii[2]) / 2);
       }
-      const auto values = sight_.clearances(x_, y_);
+      const auto values = ray_tracer_.clearances(x_, y_);
       std::size_t left = 0;
       for (std::size_t j = 0; j < open.size(); ++j) {
         const auto& [direction, sample, r, v] = open[j];
@@ -226,7 +228,7 @@ class Tracer {
       const Point unit = boundary_.unit(k);
       for (int i = 0; i < count; ++i) add(unit, radius(k, i));
     }
-    const auto values = sight_.clearances(x_, y_);
+    const auto values = ray_tracer_.clearances(x_, y_);
     values_.assign(values.begin(), values.end());
   }
   /// Uses the same arithmetic as PupilRegion::at(), so that results are equal to the bit.
@@ -246,7 +248,7 @@ class Tracer {
     while (!open.empty()) {
       x_.clear(), y_.clear();
       for (const std::size_t i : open) add(units[ends_[i].direction], ends_[i].radius.next());
-      const auto values = sight_.clearances(x_, y_);
+      const auto values = ray_tracer_.clearances(x_, y_);
       std::size_t left = 0;
       for (std::size_t j = 0; j < open.size(); ++j) {
         core_detail::LastAbove& radius = ends_[open[j]].radius;
@@ -258,7 +260,7 @@ class Tracer {
     // Rays just outside the pupil show which surface limits each end.
     x_.clear(), y_.clear();
     for (const End& end : ends_) add(units[end.direction], end.radius.below());
-    const auto [fates, surfaces] = sight_.ends(x_, y_);
+    const auto [fates, surfaces] = ray_tracer_.ends(x_, y_);
     const auto rim = [&, &lost_by = fates, &lost_at = surfaces](std::size_t i) -> RimPoint {
       const double radius = ends_[i].radius.above();
       const Point p = boundary_.at(ends_[i].direction, radius);
@@ -272,7 +274,7 @@ class Tracer {
     if (near_) pupil_detail::keep_connected(boundary_, *near_);
   }
 
-  Sight& sight_;
+  PupilRayTracer& ray_tracer_;
   PupilBoundary& boundary_;
   std::optional<Point> near_;
   std::vector<double> x_, y_, values_;
@@ -286,17 +288,17 @@ constexpr double farthest = 1.6;
 ///
 /// The pupil is connected: the component nearest to the chief ray is kept, or nearest to the mean of the given rays if
 /// there is no chief ray.
-void trace_boundary(Sight& sight, PupilBoundary& boundary, const std::vector<SeenPlace>& passing,
+void trace_boundary(PupilRayTracer& ray_tracer, PupilBoundary& boundary, const std::vector<PassingPoint>& passing,
                     std::size_t directions) {
-  const auto [inner, box] = boxes_about(sight, passing);
-  const Point near = sight.chief().value_or(inner.middle());
+  const auto [inner, box] = boxes_around(ray_tracer, passing);
+  const Point near = ray_tracer.chief().value_or(inner.middle());
   boundary.middle = box.middle(), boundary.half_axes = box.half();
-  Tracer tracer(sight, boundary, near);
+  Tracer tracer(ray_tracer, boundary, near);
   if (directions == 1) {  // rotationally symmetric
     const double reach =
         std::max({std::abs(box.low.x), std::abs(box.high.x), std::abs(box.low.y), std::abs(box.high.y)});
     boundary.middle = {0, 0}, boundary.half_axes = {reach, reach};
-    tracer.scan(1, farthest, 512, Tracer::finest);
+    tracer.scan(1, farthest, 512, Tracer::radius_tolerance);
     return;
   }
   // Compute the middle and the half axes from the ends along a few directions, repeatedly until they settle.
@@ -324,10 +326,10 @@ void trace_boundary(Sight& sight, PupilBoundary& boundary, const std::vector<See
   for (int pass = 0; pass < 4; ++pass) {
     bool found = false;
     if (shape.disc && directions > 32 && tracer.scan(32, farthest, 32, 1e-6).disc) {
-      const PupilBoundary few = boundary;
-      found = tracer.disc(directions, few);
+      const PupilBoundary coarse = boundary;
+      found = tracer.disc(directions, coarse);
     }
-    shape.whole = found || tracer.scan(directions, farthest, 96, Tracer::finest).whole;
+    shape.whole = found || tracer.scan(directions, farthest, 96, Tracer::radius_tolerance).whole;
     const Box seen = box_of(boundary);
     const Point now = seen.half(), before = boundary.half_axes;
     if (shape.whole && now.x < 1.1 * before.x && now.y < 1.1 * before.y) break;
@@ -341,11 +343,11 @@ PupilBoundary open_boundary(const Lens& lens, const PupilPlane& plane, std::size
   PupilBoundary boundary(plane, wavelength);
   const auto closed = [](const LensSurface& s) { return s.semi_diameter == 0; };
   if (std::any_of(lens.surfaces().begin(), lens.surfaces().end(), closed)) return boundary;
-  Sight sight(lens, plane, wavelength, coordinates);
+  PupilRayTracer ray_tracer(lens, plane, wavelength, coordinates);
   if (directions == 1) {  // one line suffices, unless the pupil is narrower than a step
-    const double reach = sight.reach();
+    const double reach = ray_tracer.reach();
     boundary.half_axes = {reach, reach};
-    if (reach > 0) Tracer(sight, boundary, Point{0, 0}).scan(1, 1, 512, Tracer::finest);
+    if (reach > 0) Tracer(ray_tracer, boundary, Point{0, 0}).scan(1, 1, 512, Tracer::radius_tolerance);
     if (!boundary.empty()) {
       const double radius = boundary.spans.back().to_radius;
       if (!(radius > 0)) return boundary;
@@ -355,8 +357,8 @@ PupilBoundary open_boundary(const Lens& lens, const PupilPlane& plane, std::size
     }
     boundary = PupilBoundary(plane, wavelength);
   }
-  const std::vector<SeenPlace> passing = sight.passing_places();
-  if (!passing.empty()) trace_boundary(sight, boundary, passing, directions);
+  const std::vector<PassingPoint> passing = ray_tracer.passing_points();
+  if (!passing.empty()) trace_boundary(ray_tracer, boundary, passing, directions);
   return boundary;
 }
 
@@ -364,9 +366,9 @@ PupilBoundary open_boundary(const Lens& lens, const PupilPlane& plane, std::size
 PupilBoundary obscured_boundary(const Lens& lens, const PupilBoundary& open, Coordinates coordinates) {
   PupilBoundary result = open;
   if (open.empty()) return result;
-  Sight sight(lens, open.plane, open.wavelength, coordinates);
+  PupilRayTracer ray_tracer(lens, open.plane, open.wavelength, coordinates);
   const bool one = open.directions == 1;
-  Tracer(sight, result, {}).scan(open.directions, farthest, one ? 512 : 192, Tracer::finest);
+  Tracer(ray_tracer, result, {}).scan(open.directions, farthest, one ? 512 : 192, Tracer::radius_tolerance);
   pupil_detail::keep_within(result, open);
   return result;
 }
@@ -374,11 +376,11 @@ PupilBoundary obscured_boundary(const Lens& lens, const PupilBoundary& open, Coo
 PupilBoundary boundary_of(const Lens& lens, const PupilPlane& plane, Wavelength at, std::size_t directions,
                           Coordinates coordinates = Coordinates::plane) {
   const std::size_t wavelength = lens.compiled_position(at);
-  constexpr std::size_t most = 1 << 20;
+  constexpr std::size_t max_directions = 1 << 20;
   const bool one_is_enough = plane.on_axis() && lens.rotationally_symmetric();
-  if ((directions < 3 || directions > most) && !(directions == 1 && one_is_enough)) {
+  if ((directions < 3 || directions > max_directions) && !(directions == 1 && one_is_enough)) {
     throw Error(lens.name() + ": pupil boundary: directions = " + std::to_string(directions) + "; must be 3 to " +
-                std::to_string(most) + ", or 1 on the axis of a lens of revolution");
+                std::to_string(max_directions) + ", or 1 on the axis of a lens of revolution");
   }
   const auto obscures = [](const LensSurface& s) { return s.obscuration_semi_diameter > 0; };
   if (std::none_of(lens.surfaces().begin(), lens.surfaces().end(), obscures)) {
@@ -401,7 +403,7 @@ PupilBoundary exit_pupil_boundary(const Lens& lens, const FilmPoint& point, Wave
 
 namespace pupil_detail {
 
-PupilRegion directions_seen(const Lens& lens, const FilmPoint& point, Wavelength wavelength, std::size_t directions) {
+PupilRegion pupil_in_angles(const Lens& lens, const FilmPoint& point, Wavelength wavelength, std::size_t directions) {
   return boundary_of(lens, PupilPlane::of_film(lens, point), wavelength, directions, Coordinates::angles);
 }
 

@@ -17,9 +17,9 @@ namespace petzval {
 
 /// A point of a pupil's boundary: the last ray that passes, and the fate of the next ray.
 struct RimPoint {
-  double x = 0, y = 0;                  ///< in the pupil plane, mm
-  int surface = -1;                     ///< surface whose rim limits the pupil; -1: unknown, or `middle`
-  RayFate beyond = RayFate::vignetted;  ///< fate of a ray just outside
+  double x = 0, y = 0;                     ///< in the pupil plane, mm
+  int surface = -1;                        ///< surface whose rim limits the pupil; -1: unknown, or `middle`
+  RayFate next_fate = RayFate::vignetted;  ///< fate of a ray just outside
 };
 
 /// An interval of passing rays along one direction from the middle of a region. With central obscurations or folded
@@ -114,8 +114,8 @@ class PETZVAL_API PupilSampler {
  private:
   /// A slim ring sector about the unit vector (sine, cosine).
   struct Piece {
-    double before;           ///< fraction of the area in the previous pieces
-    double angle_per_share;  ///< angle of the piece divided by its fraction of the area
+    double before;              ///< fraction of the area in the previous pieces
+    double angle_per_fraction;  ///< angle of the piece divided by its fraction of the area
     double sine, cosine;
     double inner_squared, outer_less_inner;  ///< squared radii
   };

@@ -38,21 +38,22 @@ RayBundle trace_points(const Lens& lens, const PupilBoundary& boundary, double p
 /// Adds the corners of a pupil, where the limiting rim changes. Each corner lies between the last direction limited by
 /// one rim and the first direction limited by the next rim.
 void add_corners(const Lens& lens, const PupilBoundary& boundary, PupilPoints& points) {
-  using Place = Vec2<double>;
+  using Position = Vec2<double>;
   const std::size_t count = boundary.spans.size();
   if (count != boundary.directions || count < 3) return;
-  const auto traced = [&](const Place& place) {
-    return trace(lens, boundary.plane.ray(place[0], place[1]), {.wavelength = boundary.wavelength});
+  const auto traced = [&](const Position& position) {
+    return trace(lens, boundary.plane.ray(position[0], position[1]), {.wavelength = boundary.wavelength});
   };
   for (std::size_t k = 0; k < count; ++k) {
     const PupilSpan &one = boundary.spans[k], &other = boundary.spans[(k + 1) % count];
     if (one.to.surface == other.to.surface || one.from_radius > 0 || other.from_radius > 0) continue;
     // Search along the chord, which every line outwards from the middle crosses once.
-    const auto edge = [&](double part) {
-      const Place chord{one.to.x + part * (other.to.x - one.to.x), one.to.y + part * (other.to.y - one.to.y)};
+    const auto edge = [&](double fraction) {
+      const Position chord{one.to.x + fraction * (other.to.x - one.to.x),
+                           one.to.y + fraction * (other.to.y - one.to.y)};
       const auto at = [&](double reach) {
-        return Place{boundary.middle[0] + reach * (chord[0] - boundary.middle[0]),
-                     boundary.middle[1] + reach * (chord[1] - boundary.middle[1])};
+        return Position{boundary.middle[0] + reach * (chord[0] - boundary.middle[0]),
+                        boundary.middle[1] + reach * (chord[1] - boundary.middle[1])};
       };
       int surface = one.to.surface;
       const double last = core_detail::last_with(0.5, 2.0, [&](double reach) {
@@ -62,8 +63,9 @@ void add_corners(const Lens& lens, const PupilBoundary& boundary, PupilPoints& p
       });
       return std::pair(at(last), surface);
     };
-    const double part = core_detail::last_with(0.0, 1.0, [&](double p) { return edge(p).second == one.to.surface; });
-    points.add(edge(part).first, 0);
+    const double fraction =
+        core_detail::last_with(0.0, 1.0, [&](double p) { return edge(p).second == one.to.surface; });
+    points.add(edge(fraction).first, 0);
   }
 }
 
@@ -72,8 +74,8 @@ void add_corners(const Lens& lens, const PupilBoundary& boundary, PupilPoints& p
 RayBundle trace_nodes(const Lens& lens, const PupilBoundary& boundary, double plane_z) {
   const double cell = boundary.half_axes[0] * boundary.half_axes[1];
   PupilPoints points;
-  pupil_detail::for_each_node<32>(boundary, [&](const Vec2<double>& place, double area, double weight) {
-    points.add(place, cell * area * weight);
+  pupil_detail::for_each_node<32>(boundary, [&](const Vec2<double>& position, double area, double weight) {
+    points.add(position, cell * area * weight);
   });
   return trace_points(lens, boundary, plane_z, points);
 }

@@ -10,10 +10,10 @@
 
 #include "core/meet_plane.hpp"
 #include "core/text.hpp"
-#include "face.hpp"
 #include "petzval/core/error.hpp"
 #include "petzval/core/geometry.hpp"
 #include "petzval/paraxial/first_order.hpp"
+#include "surface_box.hpp"
 
 namespace petzval {
 namespace {
@@ -41,7 +41,7 @@ void check(const Lens& lens, const FieldPoint& point, const Pupil& entrance) {
 
   // Fields below 90 degrees meet planes in front of the lens; larger fields meet planes next to or behind the lens.
   if (std::abs(point.field_rad) < std::numbers::pi / 2) {
-    const double front = pupil_detail::face_of(lens, 0, entrance).z_min;
+    const double front = pupil_detail::surface_box(lens, 0, entrance).z_min;
     if (!(point.z < front)) {
       refuse("z = " + to_text(point.z) +
              " mm; must be in front of the first surface, which begins at z = " + to_text(front) + " mm");
@@ -56,12 +56,12 @@ void check(const Lens& lens, const FieldPoint& point, const Pupil& entrance) {
   }
 }
 
-/// Direction of the ray between the point and a position in the plane; `place` is relative to the centre. The form
+/// Direction of the ray between the point and a position in the plane; `position` is relative to the centre. The form
 /// (place - point) / distance contains no large numbers, and at infinity its first term is 0. A negative distance means
 /// that the rays reach the point after the plane; it reverses place - point.
-Vec3<double> direction_from(const Vec3<double>& place, const Vec3<double>& towards,
+Vec3<double> direction_from(const Vec3<double>& position, const Vec3<double>& towards,
                             double reciprocal_distance) noexcept {
-  const Vec3<double> d = place * reciprocal_distance - towards;
+  const Vec3<double> d = position * reciprocal_distance - towards;
   return d * (1 / glm::length(d));
 }
 
@@ -119,14 +119,14 @@ PupilPlane PupilPlane::of_film(const Lens& lens, const FilmPoint& point) {
   return plane;
 }
 
-Vec3<double> PupilPlane::direction_at(const Vec3<double>& place) const noexcept {
-  const Vec3<double> d = direction_from(place - centre_, towards_, reciprocal_distance_);
-  return glm::dot(d, towards_) > 0 ? -d : d;  // the scene or film point may lie between plane and `place`
+Vec3<double> PupilPlane::direction_at(const Vec3<double>& position) const noexcept {
+  const Vec3<double> d = direction_from(position - centre_, towards_, reciprocal_distance_);
+  return glm::dot(d, towards_) > 0 ? -d : d;  // the scene or film point may lie between plane and `position`
 }
 
 Ray<double> PupilPlane::ray(double x, double y) const noexcept {
-  const Vec3<double> place = x_axis_ * x + y_axis_ * y;
-  return {centre_ + place, direction_from(place, towards_, reciprocal_distance_)};
+  const Vec3<double> position = x_axis_ * x + y_axis_ * y;
+  return {centre_ + position, direction_from(position, towards_, reciprocal_distance_)};
 }
 
 void PupilPlane::rays(std::span<const double> x, std::span<const double> y,
@@ -137,8 +137,9 @@ void PupilPlane::rays(std::span<const double> x, std::span<const double> y,
                                            double* __restrict ox, double* __restrict oy, double* __restrict oz,
                                            double* __restrict dx, double* __restrict dy, double* __restrict dz) {
     for (std::size_t i = 0; i < count; ++i) {
-      const Vec3<double> place = plane.x_axis_ * in_x[i] + plane.y_axis_ * in_y[i], origin = plane.centre_ + place;
-      const Vec3<double> direction = direction_from(place, plane.towards_, plane.reciprocal_distance_);
+      const Vec3<double> position = plane.x_axis_ * in_x[i] + plane.y_axis_ * in_y[i],
+                         origin = plane.centre_ + position;
+      const Vec3<double> direction = direction_from(position, plane.towards_, plane.reciprocal_distance_);
       ox[i] = origin.x, oy[i] = origin.y, oz[i] = origin.z;
       dx[i] = direction.x, dy[i] = direction.y, dz[i] = direction.z;
     }
@@ -147,8 +148,8 @@ void PupilPlane::rays(std::span<const double> x, std::span<const double> y,
 }
 
 Vec2<double> PupilPlane::meet(const Ray<double>& ray) const noexcept {
-  const Vec3<double> place = core_detail::meet_plane(ray, centre_, normal_) - centre_;
-  return {glm::dot(place, x_axis_), glm::dot(place, y_axis_)};
+  const Vec3<double> position = core_detail::meet_plane(ray, centre_, normal_) - centre_;
+  return {glm::dot(position, x_axis_), glm::dot(position, y_axis_)};
 }
 
 }  // namespace petzval

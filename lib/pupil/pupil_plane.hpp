@@ -67,7 +67,7 @@ class PETZVAL_API PupilPlane {
   Vec2<double> meet(const Ray<double>& ray) const noexcept;
 
   /// Unit direction of the point's ray through a position (lens frame, mm).
-  Vec3<double> direction_at(const Vec3<double>& place) const noexcept;
+  Vec3<double> direction_at(const Vec3<double>& position) const noexcept;
 
  private:
   PupilPlane() = default;

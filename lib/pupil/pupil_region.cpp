@@ -49,11 +49,11 @@ std::vector<Extent> extents(const PupilRegion& region) {
   return result;
 }
 
-void keep_connected(PupilRegion& region, const Vec2<double>& place) {
+void keep_connected(PupilRegion& region, const Vec2<double>& position) {
   const std::vector<PupilSpan>& spans = region.spans;
   if (spans.empty()) return;
   const Vec2<double> half{std::max(region.half_axes.x, 1e-300), std::max(region.half_axes.y, 1e-300)};
-  const Vec2<double> at = (place - region.middle) / half;
+  const Vec2<double> at = (position - region.middle) / half;
   std::size_t nearest = 0;
   double least = std::numeric_limits<double>::infinity();
   for (std::size_t i = 0; i < spans.size(); ++i) {
@@ -78,9 +78,9 @@ void keep_connected(PupilRegion& region, const Vec2<double>& place) {
   while (!open.empty()) {
     const PupilSpan span = spans[open.back()];
     open.pop_back();
-    for (const std::size_t beside :
+    for (const std::size_t adjacent :
          {(span.direction + 1) % region.directions, (span.direction + region.directions - 1) % region.directions}) {
-      for (std::size_t i = first[beside]; i < first[beside + 1]; ++i) {
+      for (std::size_t i = first[adjacent]; i < first[adjacent + 1]; ++i) {
         const double gap = std::max(spans[i].from_radius - span.to_radius, span.from_radius - spans[i].to_radius);
         if (gap <= steep * span.to_radius) take(i);
       }

@@ -25,9 +25,9 @@ struct Extent {
 /// The extents of all directions of a region.
 std::vector<Extent> extents(const PupilRegion& region);
 
-/// Keeps the spans that are connected with the span nearest to `place`. Spans of adjacent directions with overlapping
-/// radii are connected, and so are all spans that begin at the middle.
-void keep_connected(PupilRegion& region, const Vec2<double>& place);
+/// Keeps the spans that are connected with the span nearest to `position`. Spans of adjacent directions with
+/// overlapping radii are connected, and so are all spans that begin at the middle.
+void keep_connected(PupilRegion& region, const Vec2<double>& position);
 
 /// Keeps the spans that overlap a span of another region with the same middle, half axes and directions.
 void keep_within(PupilRegion& region, const PupilRegion& other);

@@ -22,8 +22,8 @@ PupilSampler::PupilSampler(const PupilBoundary& boundary)
   const std::size_t n = boundary.directions;
   // Pieces are so slim that a few terms of the series of sine and cosine suffice.
   constexpr std::size_t least_pieces = 64;
-  const std::size_t parts = (least_pieces + n - 1) / n;
-  const double turn = 2 * std::numbers::pi / static_cast<double>(n * parts);
+  const std::size_t subdivisions = (least_pieces + n - 1) / n;
+  const double turn = 2 * std::numbers::pi / static_cast<double>(n * subdivisions);
   half_turn_ = turn / 2;
 
   // Between two directions an edge may lie outside both: at a corner where two rims meet, by half of the change per
@@ -44,15 +44,15 @@ PupilSampler::PupilSampler(const PupilBoundary& boundary)
     const double inner = std::max(0.0, least - inner_step / 2 - margin);
     const double outer = std::max(a.to, b.to) + outer_step / 2 + margin;
     const double squares = (outer - inner) * (outer + inner);
-    for (std::size_t part = 0; part < parts; ++part) {
-      const double angle = half_turn_ * static_cast<double>((2 * k + 1) * parts + 2 * part + 1);
+    for (std::size_t subdivision = 0; subdivision < subdivisions; ++subdivision) {
+      const double angle = half_turn_ * static_cast<double>((2 * k + 1) * subdivisions + 2 * subdivision + 1);
       pieces_.push_back({sum, squares, std::sin(angle), std::cos(angle), inner * inner, squares});
       until_.push_back(sum += squares);
     }
   }
   area_ = sum * half_turn_ * half_axes_[0] * half_axes_[1];
-  for (Piece& p : pieces_) p.before /= sum, p.angle_per_share = turn / (p.angle_per_share / sum);
-  for (double& share : until_) share /= sum;
+  for (Piece& p : pieces_) p.before /= sum, p.angle_per_fraction = turn / (p.angle_per_fraction / sum);
+  for (double& area_fraction : until_) area_fraction /= sum;
   until_.back() = std::numeric_limits<double>::infinity();  // guards against rounding
 
   // With four steps per piece, few steps contain the ends of several pieces.
@@ -83,15 +83,15 @@ void PupilSampler::operator()(std::span<const double> u, std::span<const double>
     std::array<std::uint32_t, block> at;
     std::array<double, block> across, up;
     for (std::size_t i = 0; i < count; ++i) {
-      const double share = u[begin + i];
-      std::uint32_t piece = first_[std::min(static_cast<std::size_t>(share * steps), last)];
-      piece += until_[piece] <= share;
-      while (until_[piece] <= share) ++piece;
+      const double area_fraction = u[begin + i];
+      std::uint32_t piece = first_[std::min(static_cast<std::size_t>(area_fraction * steps), last)];
+      piece += until_[piece] <= area_fraction;
+      while (until_[piece] <= area_fraction) ++piece;
       at[i] = piece;
     }
     for (std::size_t i = 0; i < count; ++i) {
       const Piece& p = pieces_[at[i]];
-      const double a = (u[begin + i] - p.before) * p.angle_per_share - half_turn_, aa = a * a;
+      const double a = (u[begin + i] - p.before) * p.angle_per_fraction - half_turn_, aa = a * a;
       const double sine = a * (1 + aa * (-1.0 / 6 + aa * (1.0 / 120 + aa * (-1.0 / 5040))));
       const double cosine = 1 + aa * (-0.5 + aa * (1.0 / 24 + aa * (-1.0 / 720 + aa * (1.0 / 40320))));
       const double radius = std::sqrt(p.inner_squared + v[begin + i] * p.outer_less_inner);

@@ -16,8 +16,8 @@ RayBundle trace_bundle(const Lens& lens, const PupilSampler& pupil, std::uint32_
   if (threads < 1) throw Error("trace_bundle: threads = " + std::to_string(threads) + "; must be at least 1");
   (void)lens.compiled_position(pupil.wavelength());
   const auto start = [&](std::size_t begin, std::size_t end, const RayArrays<double>& rays) {
-    std::array<double, pupil_detail::block_rays> room_u, room_v;
-    const std::span u(room_u.data(), end - begin), v(room_v.data(), end - begin);
+    std::array<double, pupil_detail::block_rays> buffer_u, buffer_v;
+    const std::span u(buffer_u.data(), end - begin), v(buffer_v.data(), end - begin);
     owen_sobol(first + static_cast<std::uint32_t>(begin), seed, u, v);
     pupil(u, v, u, v);
     pupil.plane().rays(u, v, rays);

@@ -27,7 +27,7 @@ struct SearchOrder {
   struct Line {
     std::size_t begin, stride, count;
 
-    std::uint32_t at(std::size_t place) const noexcept { return static_cast<std::uint32_t>(begin + stride * place); }
+    std::uint32_t at(std::size_t index) const noexcept { return static_cast<std::uint32_t>(begin + stride * index); }
   };
   void halve(const Line& line, std::size_t first_step, std::size_t first_round);
 };

@@ -14,7 +14,7 @@
 #include "petzval/lens/lens.hpp"
 #include "petzval/paraxial/first_order.hpp"
 #include "polygon_place.hpp"
-#include "pupil/face.hpp"
+#include "pupil/surface_box.hpp"
 #include "scene_loops.hpp"
 #include "scene_nodes.hpp"
 
@@ -205,16 +205,16 @@ EntrancePupilTable::EntrancePupilTable(const Lens& lens, std::span<const std::ve
   data->primary = lens.primary_wavelength();
   data->compiled = lens_detail::CompiledWavelengths(lens.wavelengths_nm());
   const Pupil entrance = pupils(lens, lens.primary_wavelength()).entrance;
-  const pupil_detail::Face face = pupil_detail::face_of(lens, 0, entrance);
-  data->front_half = face.half;
+  const pupil_detail::SurfaceBox box = pupil_detail::surface_box(lens, 0, entrance);
+  data->front_half = box.half;
   // Tables are correct for every centre; the centre of the pupil separates fields best. The centre must not lie in
   // front of the lens, among scene points, nor so far behind the lens that all points have nearly the same field.
-  const double length = std::abs(lens.surfaces().back().vertex_z) + face.half;
-  const double first = face.z_min, last = face.z_max + 4 * length;
+  const double length = std::abs(lens.surfaces().back().vertex_z) + box.half;
+  const double first = box.z_min, last = box.z_max + 4 * length;
   data->centre.z = std::clamp(entrance.z, first, last);
   if (!lens.rotationally_symmetric()) data->centre.z = data->least_ball(rays, first, last);
-  const double along = std::max(data->centre.z - face.z_min, face.z_max - data->centre.z);
-  double reach = std::hypot(face.half, along);  // contains the front surface; grid points lie farther out
+  const double along = std::max(data->centre.z - box.z_min, box.z_max - data->centre.z);
+  double reach = std::hypot(box.half, along);  // contains the front surface; grid points lie farther out
   for (const auto& own : rays) {
     const double between_rays = lens.rotationally_symmetric() ? 1.15 : 1.2;
     data->balls.push_back(between_rays * data->farthest(own, data->centre.z));

@@ -37,8 +37,8 @@ using TwoPlaneRaysToScene = std::function<void(std::size_t count, const TwoPlane
 /// Rays that leave the lens towards the scene, for each wavelength: samples of the pupils of a film, including points
 /// on their boundaries. An EntrancePupilTable is made from these rays.
 ///
-/// @param azimuths_alike  true if film points on +y are representative of all azimuths
-PETZVAL_API std::vector<std::vector<Ray<double>>> leaving_rays(const FilmPupilTable& pupils, bool azimuths_alike,
+/// @param equal_azimuths  true if film points on +y are representative of all azimuths
+PETZVAL_API std::vector<std::vector<Ray<double>>> leaving_rays(const FilmPupilTable& pupils, bool equal_azimuths,
                                                                const TwoPlaneRaysToScene& to_scene, int threads = 1);
 
 /// The part of a lens that clips a pupil.

@@ -9,14 +9,14 @@
 #include <utility>
 
 #include "petzval/paraxial/first_order.hpp"
-#include "pupil/face.hpp"
 #include "pupil/pupil_plane.hpp"
+#include "pupil/surface_box.hpp"
 #include "trace/clearances.hpp"
 
 namespace petzval::pupil_table_detail {
 
-pupil_detail::PlaceClearances traced_lines(const Lens& lens, const TwoPlanes& space, std::vector<FilmPoint> points,
-                                           std::size_t wavelength) {
+pupil_detail::PositionClearances traced_lines(const Lens& lens, const TwoPlanes& space, std::vector<FilmPoint> points,
+                                              std::size_t wavelength) {
   const double towards = towards_scene(lens, space);
   return
       [&lens, space, towards, wavelength, points = std::move(points), memory = std::array<std::vector<double>, 6>{}](
@@ -46,7 +46,7 @@ std::vector<pupil_detail::PupilGuess> first_order_guesses(const Lens& lens, cons
   const Pupils paraxial = petzval::pupils(lens, wavelength);
   const std::size_t last = lens.surface_count() - 1;
   const double last_z = lens.surfaces()[last].vertex_z;
-  const pupil_detail::Face face = pupil_detail::face_of(lens, last, paraxial.entrance);
+  const pupil_detail::SurfaceBox box = pupil_detail::surface_box(lens, last, paraxial.entrance);
   const auto seen = [&](double film, double at, double z) {  // projects to the pupil plane
     return film + (at - film) * space.depth() / (z - space.film_z);
   };
@@ -54,19 +54,19 @@ std::vector<pupil_detail::PupilGuess> first_order_guesses(const Lens& lens, cons
                       ? std::abs(seen(0, paraxial.exit.diameter / 2, paraxial.exit.z))
                       : 0;
   const bool somewhere = radius > 0;
-  if (!somewhere) radius = std::abs(seen(0, face.half, last_z)) / 8;
+  if (!somewhere) radius = std::abs(seen(0, box.half, last_z)) / 8;
   const auto surfaces = lens.surfaces();
   const bool ring = std::any_of(surfaces.begin(), surfaces.end(),
                                 [](const LensSurface& s) { return s.obscuration_semi_diameter > 0; });
   std::vector<pupil_detail::PupilGuess> result;
   for (const FilmPoint& p : points) {
     double low = std::numeric_limits<double>::infinity(), high = -low;
-    for (const double z : {face.z_min, face.z_max, last_z}) {
+    for (const double z : {box.z_min, box.z_max, last_z}) {
       // A face at the film would be seen at any angle; a face beyond the film counts as close to the film.
       const double least = 0.02 * std::abs(space.film_z - last_z);
       const double from_film = z - space.film_z;
       const double at = space.film_z + std::copysign(std::max(std::abs(from_film), least), last_z - space.film_z);
-      for (const double edge : {-face.half, face.half}) {
+      for (const double edge : {-box.half, box.half}) {
         low = std::min(low, seen(p.y, edge, at));
         high = std::max(high, seen(p.y, edge, at));
       }

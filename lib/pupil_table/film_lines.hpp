@@ -13,8 +13,8 @@
 namespace petzval::pupil_table_detail {
 
 /// Clearances of rays from film points through positions in the pupil plane. The lens must outlive the result.
-pupil_detail::PlaceClearances traced_lines(const Lens& lens, const TwoPlanes& space, std::vector<FilmPoint> points,
-                                           std::size_t wavelength);
+pupil_detail::PositionClearances traced_lines(const Lens& lens, const TwoPlanes& space, std::vector<FilmPoint> points,
+                                              std::size_t wavelength);
 
 /// First-order predictions of the pupils of film points. The last surface, which all rays pass, limits the size of a
 /// pupil.

@@ -53,7 +53,7 @@ FilmPupils traced_pupils(const Lens& lens, const TwoPlanes& space, std::size_t w
                                                                   const std::vector<FilmPoint>& points) {
     const pupil_detail::ConnectedPupils connected{
         [&](std::uint32_t i) { return chief_place(open, space, points[i], wavelength); },
-        obscured ? traced_lines(lens, space, points, wavelength) : pupil_detail::PlaceClearances{}};
+        obscured ? traced_lines(lens, space, points, wavelength) : pupil_detail::PositionClearances{}};
     const auto order = pupil_detail::SearchOrder::rows(guesses.size(), guesses.size());
     return pupil_detail::find_regions(guesses, order, region_directions, true, clearances, &connected);
   };

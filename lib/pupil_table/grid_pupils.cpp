@@ -17,7 +17,7 @@ using pupil_detail::SearchOrder;
 /// Finds the pupils of points in rows.
 class PupilFinder {
  public:
-  PupilFinder(const GridOfPoints& grid, std::size_t directions, const pupil_detail::PlaceClearances& clearances)
+  PupilFinder(const GridOfPoints& grid, std::size_t directions, const pupil_detail::PositionClearances& clearances)
       : guesses_(grid.guesses), row_(grid.row), directions_(directions), clearances_(clearances) {}
 
   std::vector<PupilRegion> operator()() {
@@ -119,8 +119,8 @@ class PupilFinder {
       guesses.push_back(guess);
     }
     if (lit.empty()) return false;
-    const pupil_detail::PlaceClearances of_lit = [&](std::size_t count, const std::uint32_t* index, const double* px,
-                                                     const double* py, double* at_places) {
+    const pupil_detail::PositionClearances of_lit = [&](std::size_t count, const std::uint32_t* index, const double* px,
+                                                        const double* py, double* at_places) {
       points.resize(count);
       for (std::size_t i = 0; i < count; ++i) points[i] = lit[index[i]];
       clearances_(count, points.data(), px, py, at_places);
@@ -133,7 +133,7 @@ class PupilFinder {
 
   std::span<const PupilGuess> guesses_;
   std::size_t row_, directions_;
-  const pupil_detail::PlaceClearances& clearances_;
+  const pupil_detail::PositionClearances& clearances_;
 };
 
 /// Mirror image of corner k at x = 0.
@@ -144,7 +144,7 @@ std::size_t across_y(std::size_t k) noexcept { return (polygon_corners / 2 + pol
 }  // namespace
 
 std::vector<PupilRegion> grid_pupils(const GridOfPoints& grid, std::size_t directions,
-                                     const pupil_detail::PlaceClearances& clearances) {
+                                     const pupil_detail::PositionClearances& clearances) {
   return PupilFinder(grid, directions, clearances)();
 }
 

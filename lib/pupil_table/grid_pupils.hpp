@@ -25,7 +25,7 @@ struct GridOfPoints {
 /// whole plane if no pupil has been found.
 /// @param directions number of directions of the regions; even
 std::vector<PupilRegion> grid_pupils(const GridOfPoints& grid, std::size_t directions,
-                                     const pupil_detail::PlaceClearances& clearances);
+                                     const pupil_detail::PositionClearances& clearances);
 
 /// The polygon at every second point of a grid in both directions, without obscurations. A node without a pupil takes
 /// the pupil of the next point that has one; with PolygonFit::equal_area this polygon has no area.

@@ -16,7 +16,7 @@ struct FilmSamples {
   std::vector<double> film_x, film_y, pupil_x, pupil_y;
 };
 
-FilmSamples film_samples(const FilmPupilTable& pupils, bool azimuths_alike, std::size_t wavelength) {
+FilmSamples film_samples(const FilmPupilTable& pupils, bool equal_azimuths, std::size_t wavelength) {
   constexpr int radii = 32, around = 16, azimuths = 64;
   // Radius of the lit film for each azimuth.
   const auto lit_at = [&](double turn) {
@@ -30,7 +30,7 @@ FilmSamples film_samples(const FilmPupilTable& pupils, bool azimuths_alike, std:
     return core_detail::last_with(last, std::min(last + dark / radii, dark), seen);
   };
   std::vector<double> lit{lit_at(0)};
-  for (int k = 1; k <= azimuths && !azimuths_alike; ++k) lit.push_back(lit_at(2 * std::numbers::pi * k / azimuths));
+  for (int k = 1; k <= azimuths && !equal_azimuths; ++k) lit.push_back(lit_at(2 * std::numbers::pi * k / azimuths));
   FilmSamples samples;
   const auto add = [&](double radius, double turn, double u, double v) {
     const FilmPoint film{radius * std::sin(turn), radius * std::cos(turn)};
@@ -44,7 +44,7 @@ FilmSamples film_samples(const FilmPupilTable& pupils, bool azimuths_alike, std:
   for (int i = 0; i <= radii; ++i) {
     // Denser near the largest lit radius.
     const double part = 1 - std::pow(1 - static_cast<double>(i) / radii, 1.5);
-    if (azimuths_alike) {
+    if (equal_azimuths) {
       for (int k = 0; k <= around / 2; ++k) {  // pupils are symmetric
         for (const double v : {0.0, 0.85, 0.95, 1.0}) add(part * lit[0], 0, static_cast<double>(k) / around, v);
       }
@@ -65,11 +65,11 @@ FilmSamples film_samples(const FilmPupilTable& pupils, bool azimuths_alike, std:
 
 }  // namespace
 
-std::vector<std::vector<Ray<double>>> leaving_rays(const FilmPupilTable& pupils, bool azimuths_alike,
+std::vector<std::vector<Ray<double>>> leaving_rays(const FilmPupilTable& pupils, bool equal_azimuths,
                                                    const TwoPlaneRaysToScene& to_scene, int threads) {
   std::vector<std::vector<Ray<double>>> result(pupils.wavelengths());
   parallel_for(result.size(), 1, threads, [&](std::size_t w, std::size_t) {
-    const auto [film_x, film_y, pupil_x, pupil_y] = film_samples(pupils, azimuths_alike, w);
+    const auto [film_x, film_y, pupil_x, pupil_y] = film_samples(pupils, equal_azimuths, w);
     const std::size_t count = film_x.size();
     std::array<std::vector<double>, 6> ray;
     for (auto& values : ray) values.resize(count);

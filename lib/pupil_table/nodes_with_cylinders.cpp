@@ -131,8 +131,8 @@ SceneNodes<3> nodes_with_cylinders(const Vec3<double>& centre, double steepest, 
       places.push_back(place_at(part(i, rows), part(p / columns, columns), part(p % columns, columns)));
     }
     const auto guesses = guesses_from(rays, centre, steepest * part(i, rows), result.last(part(i, rows)), columns);
-    const pupil_detail::PlaceClearances clearances = [&](std::size_t count, const std::uint32_t* which, const double* x,
-                                                         const double* y, double* values) {
+    const pupil_detail::PositionClearances clearances = [&](std::size_t count, const std::uint32_t* which,
+                                                            const double* x, const double* y, double* values) {
       test(
           count, [&](std::size_t r) -> const Place& { return places[which[r]]; }, x, y, values);
     };

@@ -22,7 +22,7 @@
 #include "petzval/pupil/f_number.hpp"
 #include "petzval/pupil/illumination.hpp"
 #include "petzval/trace/trace.hpp"
-#include "pupil/face.hpp"
+#include "pupil/surface_box.hpp"
 #include "tilted_films.hpp"
 
 namespace petzval {
@@ -140,7 +140,7 @@ TEST_P(TiltedFilms, SamplesPassAndCoverThePupil) {
 
 /// Irradiance of a film point in a scene of radiance 1, by a grid of rays through the plane of the last vertex.
 double irradiance(const Lens& lens, const Film& pose, const FilmPoint& point) {
-  const pupil_detail::Face face = pupil_detail::last_face(lens);
+  const pupil_detail::SurfaceBox face = pupil_detail::last_surface_box(lens);
   // A coarse grid over the last surface finds the pupil, a fine grid over the pupil integrates.
   std::array<double, 2> low{-1.6 * face.half, -1.6 * face.half}, high{1.6 * face.half, 1.6 * face.half};
   double sum = 0;

@@ -79,7 +79,7 @@ TEST(TextbookPupil, ReturnsTheLastRayThatPasses) {
       const auto next = trace(lens, outwards(entrance.marginal, object_z, 1e-12 * f));
       EXPECT_FALSE(next.transmitted());
       EXPECT_EQ(next.surface, static_cast<int>(entrance.limiting));
-      EXPECT_EQ(next.fate, entrance.beyond);
+      EXPECT_EQ(next.fate, entrance.next_fate);
     }
     for (const double film_z : {lens.film_z(), infinity}) {
       SCOPED_TRACE(p.id + " film " + std::to_string(film_z));

@@ -51,7 +51,7 @@ TEST(Extremes, EdgeRaysPassAndTheNextAreLost) {
           const auto next = trace(lens, boundary.plane.ray(beyond.x, beyond.y));
           ASSERT_FALSE(next.transmitted());
           EXPECT_EQ(next.surface, span.to.surface);
-          EXPECT_EQ(next.fate, span.to.beyond);
+          EXPECT_EQ(next.fate, span.to.next_fate);
           ++edges;
         }
       }

@@ -24,8 +24,8 @@
 #include "petzval/pupil/f_number.hpp"
 #include "petzval/trace/trace.hpp"
 #include "pupil/aim.hpp"
-#include "pupil/face.hpp"
 #include "pupil/pupil_boundary.hpp"
+#include "pupil/surface_box.hpp"
 
 namespace petzval {
 namespace illumination_test {
@@ -112,7 +112,7 @@ std::vector<bool> connected(const std::vector<bool>& passes, int side, const std
 double seen_in_all_directions(const Lens& lens, const FilmPoint& film, int side) {
   const PupilPlane plane = PupilPlane::of_film(lens, film);
   const std::size_t last = lens.surface_count() - 1;
-  const double back = lens.surfaces()[last].vertex_z, half = pupil_detail::last_face(lens).half;
+  const double back = lens.surfaces()[last].vertex_z, half = pupil_detail::last_surface_box(lens).half;
   const auto cosines = [&](double x, double y, double z) {
     const double dz = back + z - lens.film_z(), length = std::hypot(x - film.x, y - film.y, dz);
     return dz * (back - lens.film_z()) > 0 ? Vec2<double>{(x - film.x) / length, (y - film.y) / length}

@@ -52,7 +52,7 @@ TEST_P(PupilBoundaryTest, LiesBetweenPassingAndLostRays) {
     const auto outside = fate(span.direction, span.to_radius + 2e-13);
     ASSERT_FALSE(outside.transmitted());
     EXPECT_EQ(span.to.surface, outside.surface);
-    EXPECT_EQ(span.to.beyond, outside.fate);
+    EXPECT_EQ(span.to.next_fate, outside.fate);
     if (span.from_radius > 0) {
       ASSERT_FALSE(fate(span.direction, span.from_radius - 2e-13).transmitted());
     }
@@ -102,7 +102,7 @@ TEST(PupilBoundary, FrontStopIsThePupil) {
       for (const PupilSpan& span : boundary.spans) {
         EXPECT_NEAR(std::hypot(span.to.x, span.to.y), 2, 1e-12);
         EXPECT_EQ(span.to.surface, 0);
-        EXPECT_EQ(span.to.beyond, RayFate::vignetted);
+        EXPECT_EQ(span.to.next_fate, RayFate::vignetted);
       }
     }
   }

@@ -35,13 +35,13 @@ PETZVAL_API std::optional<double> relative_illumination(const Lens& lens, const 
 /// circle is wider than 1000 focal lengths.
 ///
 /// @param lens        the lens
-/// @param least_part  smallest fraction of the irradiance on the axis, 0 to 1; 0: any light
+/// @param least_fraction  smallest fraction of the irradiance on the axis, 0 to 1; 0: any light
 /// @param wavelength  a compiled wavelength
-/// @throws Error      if film_irradiance() does, or least_part is outside [0, 1]
+/// @throws Error      if film_irradiance() does, or least_fraction is outside [0, 1]
 ///
 /// Accuracy: 1e-4 focal lengths.
 ///
 /// Limitations: heights are tested in steps of a tenth of the focal length; a dark ring between two steps is missed.
-PETZVAL_API double image_circle_mm(const Lens& lens, double least_part = 0, Wavelength wavelength = {});
+PETZVAL_API double image_circle_mm(const Lens& lens, double least_fraction = 0, Wavelength wavelength = {});
 
 }  // namespace petzval

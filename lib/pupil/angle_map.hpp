@@ -12,19 +12,19 @@ namespace petzval::pupil_detail {
 
 /// Maps positions in a plane to the sines of their angles, seen from the point, times the distance of the point. The
 /// image of a surface close to the point stays bounded. For a point at infinity the map is the identity.
-class Sines {
+class AngleMap {
  public:
-  explicit Sines(const PupilPlane& plane) noexcept {
+  explicit AngleMap(const PupilPlane& plane) noexcept {
     const double cosine = glm::dot(plane.towards(), plane.normal());
     per_distance_ = std::abs(plane.reciprocal_distance() / cosine);
     if (per_distance_ == 0) return;
-    const Vec3<double> place = plane.towards() / plane.reciprocal_distance();
-    foot_ = plane.meet({plane.centre() + place, plane.normal()});
+    const Vec3<double> position = plane.towards() / plane.reciprocal_distance();
+    foot_ = plane.meet({plane.centre() + position, plane.normal()});
   }
 
   Vec2<double> of(const Vec2<double>& p) const noexcept { return (p - foot_) / std::sqrt(secant2(p)); }
   /// Not finite if the direction is parallel to the plane or points away from it.
-  Vec2<double> place(const Vec2<double>& sines) const noexcept {
+  Vec2<double> position(const Vec2<double>& sines) const noexcept {
     const Vec2<double> s = sines * per_distance_;
     return foot_ + sines / std::sqrt(1 - s.x * s.x - s.y * s.y);
   }
@@ -41,7 +41,7 @@ class Sines {
     return tangent == 0 ? t : t * (std::atan(tangent) / tangent);
   }
   /// Not finite if the direction is parallel to the plane or points away from it.
-  Vec2<double> place_at_angles(const Vec2<double>& angles) const noexcept {
+  Vec2<double> position_at_angles(const Vec2<double>& angles) const noexcept {
     const double angle = glm::length(angles);
     if (angle == 0) return foot_;
     const double tangent = angle < std::numbers::pi / 2 ? std::tan(angle) : std::numeric_limits<double>::infinity();

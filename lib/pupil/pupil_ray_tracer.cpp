@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "sight.hpp"
+#include "pupil_ray_tracer.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -8,75 +8,76 @@
 #include <numbers>
 
 #include "aim.hpp"
-#include "face.hpp"
+#include "angle_map.hpp"
 #include "petzval/paraxial/first_order.hpp"
 #include "petzval/trace/trace.hpp"
-#include "sines.hpp"
+#include "surface_box.hpp"
 #include "trace/clearances.hpp"
 
 namespace petzval::pupil_detail {
 namespace {
 
-using Place = Vec2<double>;
+using Position = Vec2<double>;
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
 struct Box {
-  Place low{infinity, infinity}, high{-infinity, -infinity};
+  Position low{infinity, infinity}, high{-infinity, -infinity};
 
-  void take(const Place& p) noexcept {
+  void take(const Position& p) noexcept {
     for (int i : {0, 1}) low[i] = std::min(low[i], p[i]), high[i] = std::max(high[i], p[i]);
   }
 };
 
 /// The box of all directions.
-Box hemisphere(const Sines& sines) noexcept {
-  const double all = 1 / sines.per_distance();
+Box hemisphere(const AngleMap& angle_map) noexcept {
+  const double all = 1 / angle_map.per_distance();
   return {{-all, -all}, {all, all}};
 }
 
 /// The box, in sines, of the surface through which rays enter, seen from the point of a plane.
-Box seen_face(const Lens& lens, const PupilPlane& plane, const Sines& sines) {
+Box visible_surface(const Lens& lens, const PupilPlane& plane, const AngleMap& angle_map) {
   const std::size_t entered = plane.travel() == Travel::to_film ? 0 : lens.surface_count() - 1;
   const double vertex_z = lens.surfaces()[entered].vertex_z;
   const double half = half_height(lens, entered, pupils(lens, lens.primary_wavelength()).entrance);
-  constexpr int radii = 10, around = 16;
+  constexpr int radii = 10, azimuths = 16;
   Box box;
   double facing = 0;
   const bool revolved = lens.surfaces()[entered].curved_in == Section::both;
   for (int i = 0; i <= radii; ++i) {
     const double r = half * i / radii, revolved_z = sag(lens, entered, 0, r);
-    for (int k = 0; k < (i == 0 ? 1 : around); ++k) {
-      const double angle = 2 * std::numbers::pi * k / around;
+    for (int k = 0; k < (i == 0 ? 1 : azimuths); ++k) {
+      const double angle = 2 * std::numbers::pi * k / azimuths;
       const double x = r * std::sin(angle), y = r * std::cos(angle);
       const double z = revolved ? revolved_z : sag(lens, entered, x, y);
       if (std::isnan(z)) continue;
-      const Vec3<double> place{x, y, vertex_z + z};
+      const Vec3<double> position{x, y, vertex_z + z};
       // Such a surface surrounds the point and may be seen at any angle.
       const double before =
-          glm::dot(plane.towards() - (place - plane.centre()) * plane.reciprocal_distance(), plane.normal());
+          glm::dot(plane.towards() - (position - plane.centre()) * plane.reciprocal_distance(), plane.normal());
       if (facing == 0) facing = before;
-      if (!(before / facing > 0.01)) return hemisphere(sines);
-      box.take(sines.of(plane.meet({place, plane.direction_at(place)})));
+      if (!(before / facing > 0.01)) return hemisphere(angle_map);
+      box.take(angle_map.of(plane.meet({position, plane.direction_at(position)})));
     }
   }
-  const Place margin = (box.high - box.low) * 0.05;
+  const Position margin = (box.high - box.low) * 0.05;
   return {box.low - margin, box.high + margin};
 }
 
 /// Points at equal steps in a box of sines, row by row.
 struct Grid {
   int side;
-  Place low, cell;  // in sines
-  std::vector<SeenPlace> places;
+  Position low, cell;  // in sines
+  std::vector<PassingPoint> positions;
   std::vector<double> x, y;
 
-  Grid(const Sines& sines, const Box& box, int steps)
+  Grid(const AngleMap& angle_map, const Box& box, int steps)
       : side(steps + 1), low(box.low), cell((box.high - box.low) / static_cast<double>(steps)) {
     for (int j = 0; j < side; ++j) {
       for (int i = 0; i < side; ++i) {
-        const Place p = sines.place(box.low + Place{static_cast<double>(i), static_cast<double>(j)} * cell);
-        places.push_back({p, cell * sines.stretch(p)});
+        const Position p =
+            angle_map.position(box.low + Position{static_cast<double>(i), static_cast<double>(j)} * cell);
+        positions.push_back({p, cell * angle_map.stretch(p)});
         x.push_back(p.x), y.push_back(p.y);
       }
     }
@@ -84,36 +85,36 @@ struct Grid {
 
   /// The connected component of the points with values >= 0 nearest to `near`, or the largest component if near is
   /// empty.
-  std::vector<SeenPlace> connected(std::span<const double> values, const std::optional<Place>& near) const {
-    std::vector<int> part(places.size(), -1);
+  std::vector<PassingPoint> connected(std::span<const double> values, const std::optional<Position>& near) const {
+    std::vector<int> component(positions.size(), -1);
     std::vector<std::size_t> best, own;
     double least = infinity;
-    for (std::size_t start = 0; start < places.size(); ++start) {
-      if (!(values[start] >= 0) || part[start] >= 0) continue;
+    for (std::size_t start = 0; start < positions.size(); ++start) {
+      if (!(values[start] >= 0) || component[start] >= 0) continue;
       own.assign(1, start);
-      part[start] = static_cast<int>(start);
+      component[start] = static_cast<int>(start);
       double distance = infinity;
       for (std::size_t next = 0; next < own.size(); ++next) {
         const int column = static_cast<int>(own[next]) % side, row = static_cast<int>(own[next]) / side;
-        if (near) distance = std::min(distance, glm::length((*near - low) / cell - Place(column, row)));
+        if (near) distance = std::min(distance, glm::length((*near - low) / cell - Position(column, row)));
         for (int j = std::max(row - 1, 0); j <= std::min(row + 1, side - 1); ++j) {
           for (int i = std::max(column - 1, 0); i <= std::min(column + 1, side - 1); ++i) {
             const auto at = static_cast<std::size_t>(j * side + i);
-            if (values[at] >= 0 && part[at] < 0) part[at] = static_cast<int>(start), own.push_back(at);
+            if (values[at] >= 0 && component[at] < 0) component[at] = static_cast<int>(start), own.push_back(at);
           }
         }
       }
       if (near ? distance < least : own.size() > best.size()) least = distance, best = own;
     }
-    std::vector<SeenPlace> result;
-    for (const std::size_t at : best) result.push_back(places[at]);
+    std::vector<PassingPoint> result;
+    for (const std::size_t at : best) result.push_back(positions[at]);
     return result;
   }
 };
 
 }  // namespace
 
-std::vector<std::size_t> summits(std::span<const double> values, std::size_t row) {
+std::vector<std::size_t> local_maxima(std::span<const double> values, std::size_t row) {
   std::vector<std::size_t> result;
   for (std::size_t i = row; i + row < values.size(); ++i) {
     const std::size_t column = i % row;
@@ -127,10 +128,11 @@ std::vector<std::size_t> summits(std::span<const double> values, std::size_t row
   return result;
 }
 
-Sight::Sight(const Lens& lens, const PupilPlane& plane, std::size_t wavelength, Coordinates coordinates)
-    : lens_(lens), plane_(plane), sines_(plane), coordinates_(coordinates), wavelength_(wavelength) {}
+PupilRayTracer::PupilRayTracer(const Lens& lens, const PupilPlane& plane, std::size_t wavelength,
+                               Coordinates coordinates)
+    : lens_(lens), plane_(plane), angle_map_(plane), coordinates_(coordinates), wavelength_(wavelength) {}
 
-RayArrays<double> Sight::rays(std::span<const double> x, std::span<const double> y) {
+RayArrays<double> PupilRayTracer::rays(std::span<const double> x, std::span<const double> y) {
   for (auto& values : rays_) values.resize(x.size());
   const RayArrays<double> rays{rays_[0].data(), rays_[1].data(), rays_[2].data(),
                                rays_[3].data(), rays_[4].data(), rays_[5].data()};
@@ -138,16 +140,17 @@ RayArrays<double> Sight::rays(std::span<const double> x, std::span<const double>
     plane_.rays(x, y, rays);
     return rays;
   }
-  for (auto& values : places_) values.resize(x.size());
+  for (auto& values : positions_) values.resize(x.size());
   for (std::size_t i = 0; i < x.size(); ++i) {
-    const Place p = sines_.place_at_angles({x[i], y[i]});
-    places_[0][i] = p.x, places_[1][i] = p.y;
+    const Position p = angle_map_.position_at_angles({x[i], y[i]});
+    positions_[0][i] = p.x, positions_[1][i] = p.y;
   }
-  plane_.rays(places_[0], places_[1], rays);
+  plane_.rays(positions_[0], positions_[1], rays);
   return rays;
 }
 
-std::span<const double> Sight::clearances(std::span<const double> x, std::span<const double> y, bool apertures) {
+std::span<const double> PupilRayTracer::clearances(std::span<const double> x, std::span<const double> y,
+                                                   bool apertures) {
   values_.resize(x.size());
   // A block fits into the cache.
   constexpr std::size_t block = 1024;
@@ -163,7 +166,7 @@ std::span<const double> Sight::clearances(std::span<const double> x, std::span<c
   return values_;
 }
 
-Sight::Ends Sight::ends(std::span<const double> x, std::span<const double> y) {
+PupilRayTracer::Ends PupilRayTracer::ends(std::span<const double> x, std::span<const double> y) {
   const std::size_t count = x.size();
   fates_.resize(count);
   surfaces_.resize(count);
@@ -173,14 +176,14 @@ Sight::Ends Sight::ends(std::span<const double> x, std::span<const double> y) {
   return {fates_, surfaces_};
 }
 
-double Sight::reach() const {
-  const Box box = seen_face(lens_, plane_, sines_);
+double PupilRayTracer::reach() const {
+  const Box box = visible_surface(lens_, plane_, angle_map_);
   double farthest = 0;
   for (const double x : {box.low.x, box.high.x, 0.0}) {
     for (const double y : {box.low.y, box.high.y, 0.0}) {
-      const Place p = sines_.place({x, y});
+      const Position p = angle_map_.position({x, y});
       if (coordinates_ == Coordinates::angles) {
-        const Place a = sines_.angles(p);
+        const Position a = angle_map_.angles(p);
         farthest = std::max(farthest, std::isfinite(a.x) && std::isfinite(a.y) ? glm::length(a) : std::numbers::pi / 2);
         continue;
       }
@@ -190,28 +193,28 @@ double Sight::reach() const {
   return farthest;
 }
 
-std::optional<Vec2<double>> Sight::chief() const {
+std::optional<Vec2<double>> PupilRayTracer::chief() const {
   const AimedRay ray = aim(lens_, plane_, {}, wavelength_);
   if (!ray || !ray.end.transmitted()) return {};
-  const Place p = plane_.meet(ray.ray);
-  return coordinates_ == Coordinates::angles ? sines_.angles(p) : p;
+  const Position p = plane_.meet(ray.ray);
+  return coordinates_ == Coordinates::angles ? angle_map_.angles(p) : p;
 }
 
-std::vector<SeenPlace> Sight::passing_places() {
-  std::vector<SeenPlace> result;
+std::vector<PassingPoint> PupilRayTracer::passing_points() {
+  std::vector<PassingPoint> result;
   if (coordinates_ == Coordinates::angles) {
-    result = Sight(lens_, plane_, wavelength_, Coordinates::plane).passing_places();
-    for (auto& [at, beside] : result) beside *= sines_.angle_per_step(at), at = sines_.angles(at);
+    result = PupilRayTracer(lens_, plane_, wavelength_, Coordinates::plane).passing_points();
+    for (auto& [at, spacing] : result) spacing *= angle_map_.angle_per_step(at), at = angle_map_.angles(at);
     return result;
   }
-  const std::optional<Place> centre = chief();
-  const std::optional<Place> near = centre ? std::optional(sines_.of(*centre)) : std::nullopt;
-  const Box box = seen_face(lens_, plane_, sines_);
-  const Grid grid(sines_, box, 48);
+  const std::optional<Position> centre = chief();
+  const std::optional<Position> near = centre ? std::optional(angle_map_.of(*centre)) : std::nullopt;
+  const Box box = visible_surface(lens_, plane_, angle_map_);
+  const Grid grid(angle_map_, box, 48);
   const auto values = clearances(grid.x, grid.y);
   result = grid.connected(values, near);
-  constexpr std::size_t enough = 32;
-  if (result.size() >= enough) return result;
+  constexpr std::size_t sufficient_points = 32;
+  if (result.size() >= sufficient_points) return result;
 
   // A component may lie between grid points: search near the rays with the largest clearance. If apertures are ignored,
   // the clearance is continuous and has a maximum in each component. Aspheres are an exception: beyond their apertures
@@ -219,24 +222,25 @@ std::vector<SeenPlace> Sight::passing_places() {
   const auto surfaces = lens_.surfaces();
   const bool aspheric =
       std::any_of(surfaces.begin(), surfaces.end(), [](const LensSurface& s) { return !s.aspheric.empty(); });
-  std::vector<std::pair<double, SeenPlace>> highest;
+  std::vector<std::pair<double, PassingPoint>> highest;
   const auto take_summits = [&](const Grid& on, std::span<const double> heights) {
     const double lost = result.empty() ? -infinity : -1;  // not at a rim
-    for (const std::size_t at : summits(heights, static_cast<std::size_t>(on.side))) {
-      if (heights[at] > lost) highest.push_back({heights[at], on.places[at]});
+    for (const std::size_t at : local_maxima(heights, static_cast<std::size_t>(on.side))) {
+      if (heights[at] > lost) highest.push_back({heights[at], on.positions[at]});
     }
   };
   if (aspheric) {
     take_summits(grid, values);
   } else {
-    const Grid finer(sines_, box, 96);
+    const Grid finer(angle_map_, box, 96);
     const auto heights = clearances(finer.x, finer.y, false);
-    if (auto places = finer.connected(heights, near); places.size() > result.size()) result = std::move(places);
+    if (auto positions = finer.connected(heights, near); positions.size() > result.size())
+      result = std::move(positions);
     take_summits(finer, heights);
   }
   if (centre) {
     const double at[] = {centre->x, centre->y};
-    const Place half = result.empty() ? (box.high - box.low) / 4.0 : result.front().beside;
+    const Position half = result.empty() ? (box.high - box.low) / 4.0 : result.front().spacing;
     if (clearances({at, 1}, {at + 1, 1})[0] >= 0) {
       result.push_back({*centre, half});
       return result;

@@ -12,6 +12,6 @@ namespace petzval::pupil_detail {
 
 /// The region of exit_pupil_boundary() in angles at the film point: a direction at the angle t from the film normal has
 /// the distance t from (0, 0). Unlike a plane, these coordinates include directions parallel to the film.
-PupilRegion directions_seen(const Lens& lens, const FilmPoint& point, Wavelength wavelength, std::size_t directions);
+PupilRegion pupil_in_angles(const Lens& lens, const FilmPoint& point, Wavelength wavelength, std::size_t directions);
 
 }  // namespace petzval::pupil_detail

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "face.hpp"
+#include "surface_box.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -18,28 +18,28 @@ double half_height(const Lens& lens, std::size_t surface, const Pupil& entrance)
   return 4 * widest;
 }
 
-Face face_of(const Lens& lens, std::size_t surface, const Pupil& entrance) noexcept {
-  Face face{.half = half_height(lens, surface, entrance), .vertex_z = lens.surfaces()[surface].vertex_z};
+SurfaceBox surface_box(const Lens& lens, std::size_t surface, const Pupil& entrance) noexcept {
+  SurfaceBox box{.half = half_height(lens, surface, entrance), .vertex_z = lens.surfaces()[surface].vertex_z};
   // A cylinder is curved in one of the two sections only.
   constexpr int samples = 64;
   for (const bool along_x : {false, true}) {
     for (int i = 0; i <= samples; ++i) {
-      const double r = face.half * i / samples;
+      const double r = box.half * i / samples;
       const double z = sag(lens, surface, along_x ? r : 0, along_x ? 0 : r);
       if (std::isnan(z)) break;
-      face.z_min = std::min(face.z_min, z);
-      face.z_max = std::max(face.z_max, z);
+      box.z_min = std::min(box.z_min, z);
+      box.z_max = std::max(box.z_max, z);
     }
   }
-  const double between_samples = 0.02 * (face.z_max - face.z_min);
-  face.z_min += face.vertex_z - between_samples;
-  face.z_max += face.vertex_z + between_samples;
-  return face;
+  const double between_samples = 0.02 * (box.z_max - box.z_min);
+  box.z_min += box.vertex_z - between_samples;
+  box.z_max += box.vertex_z + between_samples;
+  return box;
 }
 
-Face last_face(const Lens& lens) {
+SurfaceBox last_surface_box(const Lens& lens) {
   const Pupil entrance = has_pupils(lens) ? pupils(lens, lens.primary_wavelength()).entrance : Pupil{};
-  return face_of(lens, lens.surface_count() - 1, entrance);
+  return surface_box(lens, lens.surface_count() - 1, entrance);
 }
 
 }  // namespace petzval::pupil_detail

@@ -14,15 +14,15 @@ namespace petzval::pupil_detail {
 double half_height(const Lens& lens, std::size_t surface, const Pupil& entrance) noexcept;
 
 /// An outer surface of the lens as a bounding box of its clear part, lens frame, mm.
-struct Face {
+struct SurfaceBox {
   double half = 0;  ///< half height
   double vertex_z = 0, z_min = 0, z_max = 0;
 };
 
 /// @param entrance sets the size of a surface without a rim, see half_height()
-Face face_of(const Lens& lens, std::size_t surface, const Pupil& entrance) noexcept;
+SurfaceBox surface_box(const Lens& lens, std::size_t surface, const Pupil& entrance) noexcept;
 
 /// Face of the last surface.
-PETZVAL_API Face last_face(const Lens& lens);
+PETZVAL_API SurfaceBox last_surface_box(const Lens& lens);
 
 }  // namespace petzval::pupil_detail

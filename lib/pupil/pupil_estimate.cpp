@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "found_pupil.hpp"
+#include "pupil_estimate.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -7,7 +7,7 @@
 
 namespace petzval::pupil_detail {
 
-bool recentre(Found& found, std::span<const Vec2<double>> units) {
+bool recentre(PupilEstimate& found, std::span<const Vec2<double>> units) {
   if (found.empty()) return false;
   std::vector<Vec2<double>> rim;  // in units of the half axes
   Vec2<double> low{0, 0}, high{0, 0};
@@ -18,10 +18,10 @@ bool recentre(Found& found, std::span<const Vec2<double>> units) {
     rim.push_back(to * units[k]);
     for (int i : {0, 1}) low[i] = std::min(low[i], rim[k][i]), high[i] = std::max(high[i], rim[k][i]);
   }
-  constexpr double far = 0.05;
+  constexpr double max_middle_offset = 0.05;
   const Vec2<double> middle = (low + high) / 2.0, half = (high - low) / 2.0;
-  if (std::abs(middle.x) < far * half.x && std::abs(middle.y) < far * half.y) return false;
-  Found result{found.middle + found.half_axes * middle, found.half_axes * half, {}, {}};
+  if (std::abs(middle.x) < max_middle_offset * half.x && std::abs(middle.y) < max_middle_offset * half.y) return false;
+  PupilEstimate result{found.middle + found.half_axes * middle, found.half_axes * half, {}, {}};
   for (auto& p : rim) p = (p - middle) / half;
   const auto turn = [](const Vec2<double>& a, const Vec2<double>& b) { return a.y * b.x - a.x * b.y; };
   for (const Vec2<double>& unit : units) {
@@ -37,7 +37,7 @@ bool recentre(Found& found, std::span<const Vec2<double>> units) {
   return true;
 }
 
-PupilRegion region_of(const Found& found, std::span<const Vec2<double>> units) {
+PupilRegion region_of(const PupilEstimate& found, std::span<const Vec2<double>> units) {
   const std::size_t directions = units.size();
   PupilRegion region{.middle = found.middle, .half_axes = found.half_axes, .directions = directions};
   if (found.empty()) return region;
