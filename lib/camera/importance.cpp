@@ -114,7 +114,7 @@ EntrancePupilTable entrance_of(const Lens& lens, const AnyRayModel& model, int t
     return entrance_of(round, make_model(model.kind(), round, model.pupils().film_radius()), threads);
   }
   if (const auto* polynomial = model.as<PolynomialModel>(); polynomial && !lens.iris().round()) {
-    return entrance_of(with_iris(lens, {}), PolynomialModel(polynomial->polynomial(), model.pupils().of_round_stop()),
+    return entrance_of(with_iris(lens, {}), PolynomialModel(polynomial->polynomial(), model.pupils().with_round_stop()),
                        threads);
   }
   // A pinhole needs no rays, only the front of the lens.
@@ -149,7 +149,7 @@ double pinhole_entrance_area(const AnyRayModel& model, double entrance_z, std::s
   const auto [film_by_height, pupil_by_height] = image(1, 0);
   const auto [film_by_slope, pupil_by_slope] = image(0, 1);
   const double height_by_pupil = film_by_slope / (pupil_by_height * film_by_slope - pupil_by_slope * film_by_height);
-  return model.pupils().whole().area({}, wavelength) * squared(height_by_pupil);
+  return model.pupils().unclipped().area({}, wavelength) * squared(height_by_pupil);
 }
 
 }  // namespace
@@ -173,8 +173,8 @@ SceneSide::SceneSide(const LensFacts& facts, const Film& film, std::optional<Til
       entrance_(focus ? focus.entrances(facts.lens(), model, threads) : entrance_of(facts.lens(), model, threads)) {
   const Lens& lens = facts.lens();
   if (model.kind() == ModelKind::exact_float || model.kind() == ModelKind::exact_double) traced_ = lens;
-  if (model.pinhole() && pupils_.cut()) {
-    unclipped_ = tilted_ ? TiltedFilm(film, pupils_.whole()).pupils() : pupils_.whole();
+  if (model.pinhole() && pupils_.is_clipped()) {
+    unclipped_ = tilted_ ? TiltedFilm(film, pupils_.unclipped()).pupils() : pupils_.unclipped();
   }
   std::vector<std::optional<ChiefRayTable>> chiefs(wavelengths.count());
   parallel_for(wavelengths.count(), 1, threads, [&](std::size_t w, std::size_t) {

@@ -13,7 +13,7 @@ namespace camera_detail {
 
 FilmPupilTable behind(const PupilRim& rim, const FilmPupilTable& pupils, const Lens& lens) {
   try {
-    return pupils.cut_by_rim(rim);
+    return pupils.clipped_by_rim(rim);
   } catch (const Error& error) {
     throw Error(lens.name() + ": " + error.what());
   }

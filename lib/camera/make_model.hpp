@@ -12,12 +12,12 @@ namespace petzval::camera_detail {
 
 /// Builds a model for film points up to film_radius (mm) from the axis.
 /// @param rim clips its pupils
-/// @throws Error  as the constructor of the model and FilmPupilTable::cut_by_rim(), and for ModelKind::custom
+/// @throws Error  as the constructor of the model and FilmPupilTable::clipped_by_rim(), and for ModelKind::custom
 PETZVAL_API AnyRayModel make_model(ModelKind model, const LensFacts& facts, double film_radius, int threads = 1,
                                    const std::optional<PupilRim>& rim = {});
 
 /// Clips the pupils of a lens by a rim.
-/// @throws Error  as FilmPupilTable::cut_by_rim()
+/// @throws Error  as FilmPupilTable::clipped_by_rim()
 FilmPupilTable behind(const PupilRim& rim, const FilmPupilTable& pupils, const Lens& lens);
 
 }  // namespace petzval::camera_detail

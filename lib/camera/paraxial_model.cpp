@@ -140,7 +140,7 @@ FilmPupilTable two_disc_pupils(const Lens& lens, double film_radius) {
     const auto fitted = fit_two_discs(real_edges(round, w));
     discs.emplace_back(fitted.begin(), fitted.end());
   }
-  const FilmPupilTable matched = round.reshaped(discs);
+  const FilmPupilTable matched = round.with_discs(discs);
   return lens.iris().round() ? matched : matched.with_stop(lens);
 }
 

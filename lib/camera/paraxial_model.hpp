@@ -57,7 +57,7 @@ class ParaxialModel {
   /// @param rim clips the pupils
   /// @throws Error  if the model is not of first order; if the lens is afocal, has no pupils or no finite pupil that
   ///                the model needs; for a pinhole or two discs if it has cylinders; if the film lies in the image of
-  ///                the stop or, for thin lenses, in the rear principal plane; and as FilmPupilTable::cut_by_rim()
+  ///                the stop or, for thin lenses, in the rear principal plane; and as FilmPupilTable::clipped_by_rim()
   PETZVAL_API ParaxialModel(ModelKind model, const LensFacts& facts, double film_radius,
                             const std::optional<PupilRim>& rim = {});
 

@@ -59,7 +59,7 @@ PupilWeights::PupilWeights(const Lens& lens, const AnyRayModel& model, const Bok
   const std::string where = lens.name() + ": camera: ";
   iris_detail::check(controls.weight_map, where);
   FilmPupilTable pupils = model.pupils();
-  const bool keep_light = controls.keep_light && pupils.cut();
+  const bool keep_light = controls.keep_light && pupils.is_clipped();
   if (controls.edge().even() && controls.weight_map.empty()) {
     if (keep_light) data_ = std::make_shared<const Data>(Data{pupils, pupils.unclipped(), false, {}, keep_light});
     return;
@@ -112,7 +112,7 @@ void PupilWeights::of_samples(std::size_t count, const T* u, const T* v, const T
     const auto wavelengths_here = wavelengths.from(begin);
     for (std::size_t i = 0; i < n; ++i) {
       const FilmPoint film{lines_here.film_x[i], lines_here.film_y[i]};
-      scales[i] = data.on_stop ? data.pupils.drawn_iris_scale(film, wavelengths_here.at(i)) : 1;
+      scales[i] = data.on_stop ? data.pupils.sampled_iris_scale(film, wavelengths_here.at(i)) : 1;
     }
     const bool polygons = std::any_of(scales.begin(), scales.begin() + n, [](double scale) { return scale == 0; });
     if (polygons) data.weigh(n, lines_here, wavelengths_here, weights + begin);

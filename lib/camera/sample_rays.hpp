@@ -53,7 +53,7 @@ class PETZVAL_API WavelengthFacts {
 
 /// True if the pupils of a model decide which rays pass, and not only its apertures.
 inline bool decide(const FilmPupilTable& pupils, const AnyRayModel& model) noexcept {
-  return !model.clips_at_apertures() || pupils.cut();
+  return !model.clips_at_apertures() || pupils.is_clipped();
 }
 
 /// Inputs of film sampling.

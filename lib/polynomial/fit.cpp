@@ -200,7 +200,7 @@ double reference_of(const Lens& lens) {
 RayPolynomial RayPolynomial::fit(const Lens& lens, const FilmPupilTable& pupils, int degree) {
   const std::string where = lens.name() + ": polynomial: ";
   // Rays do not depend on the shape of the iris.
-  if (!lens.iris().round()) return fit(with_iris(lens, {}), pupils.of_round_stop(), degree);
+  if (!lens.iris().round()) return fit(with_iris(lens, {}), pupils.with_round_stop(), degree);
   polynomial_detail::check_degree(where, degree);
   if (pupils.wavelengths() != lens.wavelengths_nm().size()) {
     throw Error(where + "the pupil table has " + std::to_string(pupils.wavelengths()) +

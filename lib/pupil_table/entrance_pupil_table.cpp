@@ -13,7 +13,7 @@
 #include "petzval/core/parallel.hpp"
 #include "petzval/lens/lens.hpp"
 #include "petzval/paraxial/first_order.hpp"
-#include "polygon_place.hpp"
+#include "polygon_clearance.hpp"
 #include "pupil/surface_box.hpp"
 #include "scene_loops.hpp"
 #include "scene_nodes.hpp"
@@ -128,11 +128,11 @@ struct EntrancePupilTable::Data {
   bool with_polygon(const Vec3<double>& point, std::size_t wavelength, const Body& body) const noexcept {
     return with_grid([&](const auto& grid) {
       constexpr int dimensions = std::decay_t<decltype(grid)>::dimensions;
-      ScenePlaces<1, dimensions> places;
+      SceneCellPositions<1, dimensions> cell_positions;
       const auto w = static_cast<std::int32_t>(wavelength);
-      find_scene_places(grid, &point.x, &point.y, &point.z, &w, places);
-      if (places.known[0] == 0) return false;
-      body(ScenePolygon<true, 1, dimensions>{grid.nodes, places, 0});
+      find_scene_cell_positions(grid, &point.x, &point.y, &point.z, &w, cell_positions);
+      if (cell_positions.known[0] == 0) return false;
+      body(ScenePolygon<true, 1, dimensions>{grid.nodes, cell_positions, 0});
       return true;
     });
   }
@@ -225,8 +225,8 @@ EntrancePupilTable::EntrancePupilTable(const Lens& lens, std::span<const std::ve
   // Exclude near points whose rays reach the film only through a small part of the pupil: their fields are far larger
   // than the fields of other points.
   for (const auto& own : rays) {
-    constexpr double no_field = 1e-6;
-    const double farthest = widest_field(data->centre, own, 0) + no_field;
+    constexpr double field_margin_rad = 1e-6;
+    const double farthest = widest_field(data->centre, own, 0) + field_margin_rad;
     while (widest_field(data->centre, own, data->steepest) > 1.5 * farthest) data->steepest *= 0.7;
   }
   data->cylinders = !lens.rotationally_symmetric();
@@ -299,12 +299,12 @@ void EntrancePupilTable::spread(const Vec3<double>& point, std::size_t count, co
     const double whole = before[polygon_corners];
     for (std::size_t i = 0; i < count && whole > 0; ++i) {
       if (!std::isfinite(u[i]) || !std::isfinite(v[i])) continue;
-      const double area = std::clamp(u[i], 0.0, 1.0) * whole, squared_way = std::clamp(v[i], 0.0, 1.0);
+      const double area = std::clamp(u[i], 0.0, 1.0) * whole, squared_radius = std::clamp(v[i], 0.0, 1.0);
       const std::size_t k = sector_of_area(area, [&before](std::size_t j) { return before[j]; });
       const double own = before[k + 1] - before[k];
       const double along = own > 0 ? std::clamp((area - before[k]) / own, 0.0, 1.0) : 0;
       const Point<double> in_grid =
-          polygon.middle() + sectors[k].at(std::sqrt(sectors[k].squared_way(squared_way)), along);
+          polygon.middle() + sectors[k].at(std::sqrt(sectors[k].squared_radius(squared_radius)), along);
       const RayToLens ray = polygon.ray(in_grid);
       samples[i] = {data.centre + Vec3<double>{ray.x, ray.y, ray.z},
                     {ray.dx, ray.dy, ray.dz},
@@ -338,8 +338,8 @@ double EntrancePupilTable::pdf(const Vec3<double>& point, const Ray<double>& ray
     const std::size_t k = sector_towards(polygon, q);
     if (k == polygon_corners) return;
     const Sector<double> sector = polygon.sector(static_cast<std::int32_t>(k));
-    const double way = squared(sector.way_to(q));
-    if (!(way > 1 || sector.obscures(way))) density = density_in(sector);
+    const double relative = squared(sector.relative_radius(q));
+    if (!(relative > 1 || sector.obscures(relative))) density = density_in(sector);
   });
   return squared(distance) * density / (cosine * squared(cosine));
 }

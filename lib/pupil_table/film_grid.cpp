@@ -36,26 +36,26 @@ std::vector<PupilGuess> aimed_guesses(const Lens& lens, const TwoPlanes& space, 
   };
   const auto aimed_at = [&](const FilmPoint& film) -> std::optional<Aimed> {
     const PupilPlane plane = PupilPlane::of_film(lens, film);
-    const auto place = [&](const Vec2<double>& target) -> std::optional<Vec2<double>> {
+    const auto position = [&](const Vec2<double>& target) -> std::optional<Vec2<double>> {
       const AimedRay aimed = pupil_detail::aim(lens, plane, target, wavelength);
       if (!aimed) return {};
       const Vec3<double> p = core_detail::meet_plane(aimed.ray, space.pupil_z);
       return std::isfinite(p.x + p.y) ? std::optional(Vec2<double>{p.x, p.y}) : std::nullopt;
     };
-    const auto centre = place({});
+    const auto centre = position({});
     if (!centre) return {};
     double radius = 0;
     for (const Vec2<double> rim : {Vec2<double>{1, 0}, Vec2<double>{0, 1}}) {
-      if (const auto p = place(rim)) radius = std::max(radius, std::hypot(p->x - centre->x, p->y - centre->y));
+      if (const auto p = position(rim)) radius = std::max(radius, std::hypot(p->x - centre->x, p->y - centre->y));
     }
     return Aimed{centre->x, centre->y, radius};
   };
-  constexpr std::size_t apart = 16;
+  constexpr std::size_t row_step = 16;
   for (std::size_t begin = 0; begin < points.size(); begin += row) {
     std::optional<Aimed> before;
     std::size_t at_before = 0;
     for (std::size_t i = 0; i < row; ++i) {
-      if (i % apart != 0 && i + 1 != row) continue;
+      if (i % row_step != 0 && i + 1 != row) continue;
       const auto now = aimed_at(points[begin + i]);
       const std::size_t steps = std::max<std::size_t>(i - at_before, 1);
       for (std::size_t j = i == 0 ? 0 : at_before + 1; now && j <= i; ++j) {
@@ -85,9 +85,9 @@ std::vector<PupilRegion> film_pupils(const Lens& lens, const TwoPlanes& space, c
 /// True for each film point that rays reach at any wavelength.
 std::vector<bool> lit_points(const Lens& lens, const TwoPlanes& space, const std::vector<FilmPoint>& points) {
   std::vector<bool> lit(points.size(), false);
-  constexpr std::size_t few_directions = 4;
+  constexpr std::size_t coarse_directions = 4;
   for (std::size_t w = 0; w < lens.wavelengths_nm().size(); ++w) {
-    const auto pupils = film_pupils(lens, space, points, 1, few_directions, w);
+    const auto pupils = film_pupils(lens, space, points, 1, coarse_directions, w);
     for (std::size_t i = 0; i < points.size(); ++i) lit[i] = lit[i] || !pupils[i].empty();
   }
   return lit;
@@ -143,8 +143,8 @@ FilmGrid grid_within(double height, const std::vector<double>& widths) {
     for (std::size_t i = 0; i < grid.rows(); ++i) {
       double &before = grid.half_widths[i], &after = grid.half_widths[i + 1];
       // A chord over half of an arc has a quarter of the sagitta of the whole arc.
-      const double chord = (before + after) / 2, beyond = 1.35 * std::max(widths[2 * i + 1] - chord, 0.0);
-      before += beyond, after += beyond;
+      const double chord = (before + after) / 2, overshoot = 1.35 * std::max(widths[2 * i + 1] - chord, 0.0);
+      before += overshoot, after += overshoot;
     }
   }
   return grid;
@@ -196,28 +196,28 @@ void mirror_at_axes(std::span<PupilPolygon> polygons, const FilmGrid& grid) noex
 void expand_to_traced_probes(std::span<PupilPolygon> polygons, const Lens& lens, const TwoPlanes& space,
                              const FilmGrid& grid, std::size_t wavelength) {
   const auto weights = [&](const std::array<double, 4>& at) { return ProbedPoint(grid, at[0], at[1]).weights; };
-  const auto at_probes = [&](std::span<const std::array<double, 4>> places, std::span<const std::uint32_t> which,
+  const auto at_probes = [&](std::span<const std::array<double, 4>> positions, std::span<const std::uint32_t> which,
                              const double* x, const double* y, double* clearances) {
     std::vector<FilmPoint> points;
     std::vector<std::uint32_t> index(which.size());
     std::iota(index.begin(), index.end(), 0u);
-    for (const std::uint32_t p : which) points.push_back(ProbedPoint(grid, places[p][0], places[p][1]).film);
+    for (const std::uint32_t p : which) points.push_back(ProbedPoint(grid, positions[p][0], positions[p][1]).film);
     traced_lines(lens, space, std::move(points), wavelength)(which.size(), index.data(), x, y, clearances);
   };
   expand_to_probes(polygons, probes, weights, at_probes);
 }
 
 /// Range of `excess` (FilmTilt) over the film points that belong to a virtual film point or its mirror images.
-struct Nearer {
+struct ExcessRange {
   double low, high;
 
-  Nearer(const FilmTilt& tilt, const FilmPoint& film) noexcept {
+  ExcessRange(const FilmTilt& tilt, const FilmPoint& film) noexcept {
     const double along = std::abs(tilt.slope_x) * film.x + std::abs(tilt.slope_y) * film.y;
     const auto at_end = [&](double value) { return (value - tilt.travel) / (1 + tilt.travel); };
     low = std::clamp(std::min(-along, at_end(-along)), tilt.min_excess, tilt.max_excess);
     high = std::clamp(std::max(along, at_end(along)), tilt.min_excess, tilt.max_excess);
   }
-  double at(double part) const noexcept { return low + part * (high - low); }
+  double at(double fraction) const noexcept { return low + fraction * (high - low); }
 };
 
 }  // namespace
@@ -253,23 +253,23 @@ std::vector<PupilPolygon> tilted_grid_polygons(const FilmPupilTable& upright, co
   // likely to be empty.
   const std::size_t columns = 2 * grid.columns + 1;
   const std::vector<FilmPoint> points = points_of(grid);
-  constexpr std::array parts{0.5, 0.0, 0.25, 0.75, 1.0};
+  constexpr std::array fractions{0.5, 0.0, 0.25, 0.75, 1.0};
   std::vector<std::vector<PupilRegion>> pupils;
-  for (const double part : parts) {
+  for (const double fraction : fractions) {
     std::vector<VirtualFilmPoint> seen;
     std::vector<PupilGuess> guesses;
     for (const FilmPoint& point : points) {
-      seen.push_back({point, Nearer(tilt, point).at(part)});
+      seen.push_back({point, ExcessRange(tilt, point).at(fraction)});
       // Start from the pupil of the upright film; if it is empty, move the film point towards the axis.
-      Vec2<double> place{0, 0};
+      Vec2<double> position{0, 0};
       double area = 0;
       for (int round = 0; round < 4; ++round) {
-        FilmPoint at = seen.back().on_upright(place.x, place.y);
+        FilmPoint at = seen.back().on_upright(position.x, position.y);
         for (int step = 0; step < 32 && !(area = upright.area(at, wavelength)); ++step) at = {0.95 * at.x, 0.95 * at.y};
-        place = upright.middle(at, wavelength);
+        position = upright.middle(at, wavelength);
       }
       const double radius = std::sqrt(area / std::numbers::pi), near = 3 * radius, far = 12 * radius;
-      guesses.push_back({place.x, place.y - far, place.y + far, radius, place.y, near});
+      guesses.push_back({position.x, position.y - far, position.y + far, radius, position.y, near});
     }
     pupils.push_back(grid_pupils(
         {guesses, columns}, grid_directions,
@@ -290,9 +290,9 @@ std::vector<PupilPolygon> tilted_grid_polygons(const FilmPupilTable& upright, co
       [&](std::span<const std::array<double, 4>> at, std::span<const std::uint32_t> which, const double* x,
           const double* y, double* clearances) {
         const auto from = [&](std::size_t i) {
-          const std::array<double, 4>& place = at[which[i]];
-          const FilmPoint point = ProbedPoint(grid, place[0], place[1]).film;
-          return VirtualFilmPoint{point, Nearer(tilt, point).at(place[2])};
+          const std::array<double, 4>& position = at[which[i]];
+          const FilmPoint point = ProbedPoint(grid, position[0], position[1]).film;
+          return VirtualFilmPoint{point, ExcessRange(tilt, point).at(position[2])};
         };
         upright_clearances(upright, wavelength, which.size(), from, x, y, clearances);
       });

@@ -19,13 +19,13 @@ namespace petzval::pupil_table_detail {
 namespace {
 
 /// Intersection of the chief ray of a film point with the pupil plane.
-std::optional<Vec2<double>> chief_place(const Lens& lens, const TwoPlanes& space, const FilmPoint& film,
-                                        std::size_t wavelength) {
+std::optional<Vec2<double>> chief_position(const Lens& lens, const TwoPlanes& space, const FilmPoint& film,
+                                           std::size_t wavelength) {
   const AimedRay chief = pupil_detail::aim(lens, PupilPlane::of_film(lens, film), {}, wavelength);
   if (!chief || !chief.end.transmitted()) return {};
-  const auto place = core_detail::meet_plane(chief.ray, space.pupil_z);
-  if (!std::isfinite(place.x) || !std::isfinite(place.y)) return {};
-  return Vec2<double>{place.x, place.y};
+  const auto position = core_detail::meet_plane(chief.ray, space.pupil_z);
+  if (!std::isfinite(position.x) || !std::isfinite(position.y)) return {};
+  return Vec2<double>{position.x, position.y};
 }
 
 }  // namespace
@@ -42,17 +42,17 @@ FilmPupils traced_pupils(const Lens& lens, const TwoPlanes& space, std::size_t w
     std::vector<pupil_detail::PupilGuess> guesses = first_order_guesses(open, space, points, wavelength);
     for (std::size_t i = 0; i < points.size(); ++i) {
       // Aberrations move the image of a tiny stop by more than the size of the image.
-      constexpr double tiny = 1e-3;
+      constexpr double tiny_stop_ratio = 1e-3;
       pupil_detail::PupilGuess& guess = guesses[i];
-      if (guess.radius > tiny * (guess.high - guess.low)) continue;
-      if (const auto chief = chief_place(open, space, points[i], wavelength)) guess.y = chief->y;
+      if (guess.radius > tiny_stop_ratio * (guess.high - guess.low)) continue;
+      if (const auto chief = chief_position(open, space, points[i], wavelength)) guess.y = chief->y;
     }
     return find(guesses, traced_lines(open, space, points, wavelength), points);
   };
   const auto regions = [&lens, open, obscured, space, wavelength](const auto& guesses, const auto& clearances,
                                                                   const std::vector<FilmPoint>& points) {
     const pupil_detail::ConnectedPupils connected{
-        [&](std::uint32_t i) { return chief_place(open, space, points[i], wavelength); },
+        [&](std::uint32_t i) { return chief_position(open, space, points[i], wavelength); },
         obscured ? traced_lines(lens, space, points, wavelength) : pupil_detail::PositionClearances{}};
     const auto order = pupil_detail::SearchOrder::rows(guesses.size(), guesses.size());
     return pupil_detail::find_regions(guesses, order, region_directions, true, clearances, &connected);
@@ -72,11 +72,11 @@ double lit_radius(double film_radius, const FilmPupils& pupils) {
   const auto lit_at = [&](double height) { return bool{pupils.lit(std::array{height})[0]}; };
   if (lit_at(film_radius)) return film_radius;
   // Search from the edge inwards: for a lit ring, the outer edge counts.
-  constexpr int parts = 16;
-  for (int i = parts; --i >= 0;) {
-    double low = film_radius * i / parts, high = film_radius * (i + 1) / parts;
+  constexpr int intervals = 16;
+  for (int i = intervals; --i >= 0;) {
+    double low = film_radius * i / intervals, high = film_radius * (i + 1) / intervals;
     if (!lit_at(low)) continue;
-    for (constexpr double close = 1e-4; high - low > close * high;) {
+    for (constexpr double relative_tolerance = 1e-4; high - low > relative_tolerance * high;) {
       const double middle = (low + high) / 2;
       (lit_at(middle) ? low : high) = middle;
     }
@@ -88,10 +88,10 @@ double lit_radius(double film_radius, const FilmPupils& pupils) {
 /// The polygons of one wavelength.
 std::vector<PupilPolygon> polygons_of(double lit_radius, PolygonFit fit, const FilmPupils& film) {
   // Heights at the nodes and, if interpolated polygons must enclose pupils, halfway between.
-  const std::size_t strips = film_strips(fit), parts = fit == PolygonFit::enclosing ? 2 : 1;
+  const std::size_t strips = film_strips(fit), steps_per_strip = fit == PolygonFit::enclosing ? 2 : 1;
   std::vector<double> heights;
-  for (std::size_t i = 0; i <= parts * strips; ++i) {
-    heights.push_back(lit_radius * static_cast<double>(i) / static_cast<double>(parts * strips));
+  for (std::size_t i = 0; i <= steps_per_strip * strips; ++i) {
+    heights.push_back(lit_radius * static_cast<double>(i) / static_cast<double>(steps_per_strip * strips));
   }
   const std::vector<PupilRegion> pupils = film.at(heights);
   const auto first_lit = [&](std::size_t height) -> const PupilRegion* {
@@ -103,7 +103,7 @@ std::vector<PupilPolygon> polygons_of(double lit_radius, PolygonFit fit, const F
   std::vector<PupilPolygon> polygons(strips + 1);
   std::vector<const PupilRegion*> shown(strips + 1);  // the pupils from which the polygons were made
   for (std::size_t i = 0; i <= strips; ++i) {
-    const std::size_t at = parts * i;
+    const std::size_t at = steps_per_strip * i;
     shown[i] = first_lit(at);
     if (shown[i]) {
       polygons[i] = polygon_of(*shown[i], fit);
@@ -111,8 +111,8 @@ std::vector<PupilPolygon> polygons_of(double lit_radius, PolygonFit fit, const F
     }
     // The pupil becomes empty between this node and a neighbour: an enclosing polygon continues to this node, a polygon
     // of equal area shrinks to a point.
-    for (const std::size_t beside : {at - 1, at + 1, at - 2, at + 2}) {
-      const PupilRegion* lit = beside < heights.size() ? first_lit(beside) : nullptr;
+    for (const std::size_t neighbour : {at - 1, at + 1, at - 2, at + 2}) {
+      const PupilRegion* lit = neighbour < heights.size() ? first_lit(neighbour) : nullptr;
       if (!lit) continue;
       polygons[i] = polygon_of(*lit, fit);
       if (fit == PolygonFit::equal_area) polygons[i].corners = {};

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "film_pupil_data.hpp"
 
-#include "polygon_place.hpp"
+#include "polygon_clearance.hpp"
 
 namespace petzval {
 namespace {
@@ -42,8 +42,8 @@ template <int dimensions>
 std::vector<double> cell_between(const AtCorners<dimensions>& at) {
   using L = CellLayout<dimensions>;
   std::vector<double> cell(L::size);
-  const auto put = [&](std::int32_t place, const auto& numbers) {
-    std::copy(numbers.begin(), numbers.end(), cell.begin() + place);
+  const auto put = [&](std::int32_t sample, const auto& numbers) {
+    std::copy(numbers.begin(), numbers.end(), cell.begin() + sample);
   };
   const auto of = [&](const auto& number) { return linear<dimensions>(at, number); };
   put(L::middle, of([](const PupilPolygon& p) { return p.middle.x; }));
@@ -61,13 +61,13 @@ std::vector<double> cell_between(const AtCorners<dimensions>& at) {
     if (k == polygon_corners) break;
     const auto obscured = of([k](const PupilPolygon& p) { return p.obscured[k]; });
     if constexpr (dimensions == 1) {
-      const std::int32_t part = L::obscured + 2 * L::linear * static_cast<std::int32_t>(k);
-      put(part, of([k](const PupilPolygon& p) { return p.obscured_from[k]; }));
-      put(part + L::linear, obscured);
+      const std::int32_t offset = L::obscured + 2 * L::linear * static_cast<std::int32_t>(k);
+      put(offset, of([k](const PupilPolygon& p) { return p.obscured_from[k]; }));
+      put(offset + L::linear, obscured);
     }
     add_sector(before, ax, ay, corner(k + 1, 0), corner(k + 1, 1), obscured);
   }
-  put(L::whole, before);
+  put(L::total_area, before);
   return cell;
 }
 
@@ -76,8 +76,8 @@ template <int dimensions>
 int corrections_in(const std::vector<double>& cell) {
   constexpr int steps = dimensions == 1 ? 8 : 4;
   int most = 0;
-  for (int place = 0; place < (dimensions == 1 ? steps + 1 : (steps + 1) * (steps + 1)); ++place) {
-    const double t = place % (steps + 1) / double{steps}, s = place / (steps + 1) / double{steps};
+  for (int sample = 0; sample < (dimensions == 1 ? steps + 1 : (steps + 1) * (steps + 1)); ++sample) {
+    const double t = sample % (steps + 1) / double{steps}, s = sample / (steps + 1) / double{steps};
     most = std::max(most, corrections_of(CellPolygon<dimensions, true, double, double>{cell.data(), 0, t, s}));
   }
   return most;
@@ -140,17 +140,17 @@ PupilPolygon FilmPupilTable::Data::node(std::size_t wavelength, std::size_t node
   };
   const std::size_t across = dimensions == 1 ? 1 : columns + 1, row = node / across, column = node % across;
   const std::size_t i = std::min(row, rows - 1), j = std::min(column, columns - 1);
-  const double along = static_cast<double>(row - i), beside = static_cast<double>(column - j);
+  const double along = static_cast<double>(row - i), column_fraction = static_cast<double>(column - j);
   const auto begin = [&](std::int32_t size) {
     return static_cast<std::int32_t>((wavelength * rows + i) * columns + j) * size;
   };
   if (dimensions == 1) {
     return at(CellPolygon<1, false, double, double>{cells.data(), begin(CellLayout<1>::size), along, 0});
   }
-  return at(CellPolygon<2, false, double, double>{cells.data(), begin(CellLayout<2>::size), beside, along});
+  return at(CellPolygon<2, false, double, double>{cells.data(), begin(CellLayout<2>::size), column_fraction, along});
 }
 
-std::shared_ptr<FilmPupilTable::Data> FilmPupilTable::Data::alike() const {
+std::shared_ptr<FilmPupilTable::Data> FilmPupilTable::Data::without_pupils() const {
   auto data = std::make_shared<Data>();
   data->space = space;
   data->film_radius = film_radius;

@@ -70,10 +70,10 @@ struct FilmPupilTable::Data {
   std::vector<double> cells;  // CellLayout
   std::vector<float> cells_single, half_widths_single;
   std::shared_ptr<const pupil_table_detail::StopCells> stop;  // null for a round or unknown stop
-  std::shared_ptr<const Data> whole;                          // the unclipped pupils; null if there is no rim
+  std::shared_ptr<const Data> unclipped;                      // the unclipped pupils; null if there is no rim
 
   /// A table with the same film, planes and wavelengths, but without pupils.
-  std::shared_ptr<Data> alike() const;
+  std::shared_ptr<Data> without_pupils() const;
   /// Sets the grid of a lens with two sections.
   void set(const pupil_table_detail::FilmGrid& grid);
   /// Adds a wavelength with its polygons at the nodes.

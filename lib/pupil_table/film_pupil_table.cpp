@@ -7,7 +7,7 @@
 #include "core/dual.hpp"
 #include "film_pupil_data.hpp"
 #include "polygon_blocks.hpp"
-#include "polygon_place.hpp"
+#include "polygon_clearance.hpp"
 #include "pupil/line_extents.hpp"
 
 namespace petzval {
@@ -16,9 +16,9 @@ namespace {
 using namespace pupil_table_detail;
 
 template <int dimensions>
-std::pair<FilmPlace<double>, CellPolygon<dimensions, true, double, double>> find(
+std::pair<CellPosition<double>, CellPolygon<dimensions, true, double, double>> find(
     const PolygonGrid<dimensions, double>& grid, const FilmPoint& film, std::int32_t wavelength) noexcept {
-  const FilmPlace<double> at = place_of(grid, film.x, film.y, 1, wavelength);
+  const CellPosition<double> at = cell_position(grid, film.x, film.y, 1, wavelength);
   return {at, {grid.cells, at.cell * CellLayout<dimensions>::size, at.t, at.s}};
 }
 
@@ -82,7 +82,7 @@ double FilmPupilTable::polygon_area(const FilmPoint& film, Wavelength wavelength
   if (const auto& images = data_->images) return images->area_of_stop(film, wavelength);
   return data_->with_grid<double>([&](const auto& grid, const auto&) {
     const auto [at, polygon] = find(grid, film, data_->known(wavelength));
-    return at.known ? std::max(polygon.whole(), 0.0) : 0.0;
+    return at.known ? std::max(polygon.total_area(), 0.0) : 0.0;
   });
 }
 
@@ -174,13 +174,13 @@ void FilmPupilTable::stop_points(std::size_t count, const TwoPlaneRays<const T>&
   });
 }
 
-double FilmPupilTable::drawn_iris_scale(const FilmPoint& film, Wavelength wavelength) const noexcept {
+double FilmPupilTable::sampled_iris_scale(const FilmPoint& film, Wavelength wavelength) const noexcept {
   if (!data_->stop) return 0;
   return data_->with_grid<double>([&](const auto& grid, const auto&) {
     using S = StopLayout<std::decay_t<decltype(grid)>::dimensions>;
     const auto [at, polygon] = find(grid, film, data_->known(wavelength));
     const double* stop = grid.stop.cells + at.cell * S::size;
-    return at.known && stop[S::drawn] > 0 ? stop[S::scale] : 0.0;
+    return at.known && stop[S::samples_iris] > 0 ? stop[S::scale] : 0.0;
   });
 }
 
@@ -199,9 +199,9 @@ void FilmPupilTable::clearances(std::size_t count, const TwoPlaneRays<const doub
     std::size_t sector = 0;
     for (std::size_t i = 0; i < count; ++i) {
       const auto [at, polygon] = find(grid, {lines.film_x[i], lines.film_y[i]}, position);
-      const Point<double> place =
+      const Point<double> in_grid =
           to_grid<dimensions>(at.cosine, at.sine, Point<double>{lines.pupil_x[i], lines.pupil_y[i]});
-      clearances[i] = at.known ? clearance_of_place(polygon, place - polygon.middle(), sector) : -1;
+      clearances[i] = at.known ? clearance_at(polygon, in_grid - polygon.middle(), sector) : -1;
     }
   });
 }
@@ -213,10 +213,10 @@ Vec2<double> FilmPupilTable::position(const FilmPoint& film, double x, double y,
     using S = StopLayout<dimensions>;
     const std::int32_t known = data_->known(wavelength);
     const auto [at, polygon] = find(grid, film, known);
-    const double whole = polygon.whole();
-    if (!at.known || !(whole > 0)) return {0, 2};
+    const double total_area = polygon.total_area();
+    if (!at.known || !(total_area > 0)) return {0, 2};
     const double* stop = grid.stop.cells ? grid.stop.cells + at.cell * S::size : nullptr;
-    if (stop && stop[S::drawn] > 0) {
+    if (stop && stop[S::samples_iris] > 0) {
       double stop_x = 0, stop_y = 0;
       loops.template of<double>().stop_points(grid, 1, &film.x, &film.y, &x, &y, {static_cast<std::size_t>(known)},
                                               &stop_x, &stop_y);
@@ -226,19 +226,19 @@ Vec2<double> FilmPupilTable::position(const FilmPoint& film, double x, double y,
     const std::size_t k = sector_towards(polygon, q);
     if (k == polygon_corners) return {0, 2};
     const Sector<double> sector = polygon.sector(static_cast<std::int32_t>(k));
-    const double along = sector.along_to(q), way = sector.way_to(q);
-    const double share = (polygon.area_before(static_cast<std::int32_t>(k)) + along * sector.area()) / whole;
-    double v = sector.share_within(way * way);
+    const double along = sector.along_to(q), radius = sector.relative_radius(q);
+    const double fraction = (polygon.area_before(static_cast<std::int32_t>(k)) + along * sector.area()) / total_area;
+    double v = sector.fraction_within(radius * radius);
     if (stop) {
       const Point<double> edge = sector.at(1, along);
-      const Places<1, double> places{{at.t}, {at.s}, {at.cosine}, {at.sine}, {1}, {at.cell}};
+      const CellPositions<1, double> positions{{at.t}, {at.s}, {at.cosine}, {at.sine}, {1}, {at.cell}};
       Lines<1, double> line{{static_cast<std::int32_t>(k)}, {along}, {edge.x}, {edge.y}, {0}, {1}};
-      cut_by_iris<1>(grid, places, line);
-      const double first = sector.share_within(line.from[0] * line.from[0]);
-      const double last = sector.share_within(line.to[0] * line.to[0]);
+      clip_by_iris<1>(grid, positions, line);
+      const double first = sector.fraction_within(line.from[0] * line.from[0]);
+      const double last = sector.fraction_within(line.to[0] * line.to[0]);
       v = last > first && v >= first ? (v - first) / (last - first) : 2;
     }
-    return {polygon.u_of(share, whole, at.cosine, at.sine), v};
+    return {polygon.u_of(fraction, total_area, at.cosine, at.sine), v};
   });
 }
 
@@ -251,9 +251,9 @@ PupilSample FilmPupilTable::sample(const FilmPoint& film, double u, double v, Wa
     return result;
   }
   // The direction of the film point is undefined on the axis: use a point close to the axis.
-  const double beside = 1e-4 * data_->film_radius;
-  if (data_->dimensions == 1 && std::hypot(film.x, film.y) < beside) {
-    sample({0, beside}, u, v, wavelength, by);
+  const double axis_step = 1e-4 * data_->film_radius;
+  if (data_->dimensions == 1 && std::hypot(film.x, film.y) < axis_step) {
+    sample({0, axis_step}, u, v, wavelength, by);
     return sample(film, u, v, wavelength);
   }
   using kernel::Dual;

@@ -28,7 +28,7 @@ struct PupilDisc {
 /// A round rim that clips pupils and moves opposite to the film point, in units of the pupil radius on the axis.
 struct PupilRim {
   double ratio = 1;         ///< radius of the rim
-  double radii_per_mm = 0;  ///< displacement per mm on the film
+  double shift_per_mm = 0;  ///< displacement per mm on the film
 };
 
 /// The image of an iris in the pupil plane, in the sections along x and y; equal sections for a lens of revolution.
@@ -161,7 +161,7 @@ class PETZVAL_API FilmPupilTable {
   /// table. The result has no stop (with_stop()).
   ///
   /// @throws Error if of_discs() rejects the discs, or the number of lists differs from the number of wavelengths
-  FilmPupilTable reshaped(std::span<const std::vector<PupilDisc>> discs) const;
+  FilmPupilTable with_discs(std::span<const std::vector<PupilDisc>> discs) const;
 
   /// The pupils clipped by a rim (cat's eyes); the irradiance falls with the area.
   ///
@@ -170,11 +170,11 @@ class PETZVAL_API FilmPupilTable {
   ///
   /// Accuracy: if the rim moves by at most 5 radii over the film, areas are within 2 % of the unclipped pupil's area
   /// (tests/pupil_table/rim_test.cpp); nearly closed pupils may have area 0.
-  FilmPupilTable cut_by_rim(const PupilRim& rim) const;
+  FilmPupilTable clipped_by_rim(const PupilRim& rim) const;
   /// True if a rim has clipped the pupils.
-  bool cut() const noexcept;
+  bool is_clipped() const noexcept;
   /// The unclipped pupils.
-  FilmPupilTable whole() const;
+  FilmPupilTable unclipped() const;
 
   /// The pupils with the stop of the lens: the iris clips them, and stop_points() is available. Pupils in closed form
   /// stay unchanged. enclosing() and equal_area() call with_stop() for an iris with blades.
@@ -183,7 +183,7 @@ class PETZVAL_API FilmPupilTable {
   FilmPupilTable with_stop(const Lens& lens, int threads = 1) const;
   bool knows_stop() const noexcept;
   /// The pupils of the round stop, clipped by neither rim nor blades; the result does not know the stop.
-  FilmPupilTable of_round_stop() const;
+  FilmPupilTable with_round_stop() const;
 
   /// Pupils in closed form: images of an iris, one per wavelength. iris: as it appears in the pupil plane.
   ///
@@ -245,7 +245,7 @@ class PETZVAL_API FilmPupilTable {
                     T* areas) const noexcept;
   /// Scale of the iris (1 or slightly more) if the samples of a film point are uniform on the iris; otherwise 0. Then u
   /// and v determine the stop point.
-  double drawn_iris_scale(const FilmPoint& film, Wavelength wavelength = {}) const noexcept;
+  double sampled_iris_scale(const FilmPoint& film, Wavelength wavelength = {}) const noexcept;
   /// Intersections of N rays with the stop, in semi-diameters, float or double; for pupils made by with_stop().
   ///
   /// Accuracy: 0.1 to 2 %.

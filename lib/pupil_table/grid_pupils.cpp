@@ -45,11 +45,11 @@ class PupilFinder {
       std::vector<Box> boxes;
       for (std::size_t i = 0; i < guesses_.size(); ++i) {
         if (looked[i] || !pupils[i].empty()) continue;
-        const auto beside = lit_neighbour(pupils, i);
-        if (!beside) continue;
+        const auto neighbour_box = lit_neighbour(pupils, i);
+        if (!neighbour_box) continue;
         looked[i] = true;
         dark.push_back(static_cast<std::uint32_t>(i));
-        boxes.push_back(*beside);
+        boxes.push_back(*neighbour_box);
       }
       found = look_again(pupils, dark, boxes, 24);
     }
@@ -65,17 +65,17 @@ class PupilFinder {
   std::optional<Box> lit_neighbour(const std::vector<PupilRegion>& pupils, std::size_t i) const {
     const std::size_t column = i % row_;
     const auto lit = [&](std::size_t at) { return at < pupils.size() && !pupils[at].empty(); };
-    const auto beside = [&](std::size_t near, std::size_t far, bool has_far) {
+    const auto neighbour_box = [&](std::size_t near, std::size_t far, bool has_far) {
       const PupilRegion& p = pupils[near];
       Vec2<double> middle = p.middle;
       if (has_far && lit(far)) middle = middle + (p.middle - pupils[far].middle);
-      constexpr double room = 1.6;
-      return Box{middle.x, middle.y, room * p.half_axes.x, room * p.half_axes.y};
+      constexpr double box_scale = 1.6;
+      return Box{middle.x, middle.y, box_scale * p.half_axes.x, box_scale * p.half_axes.y};
     };
-    if (column > 0 && lit(i - 1)) return beside(i - 1, i - 2, column > 1);
-    if (i >= row_ && lit(i - row_)) return beside(i - row_, i - 2 * row_, i >= 2 * row_);
-    if (column + 1 < row_ && lit(i + 1)) return beside(i + 1, i + 2, column + 2 < row_);
-    if (lit(i + row_)) return beside(i + row_, i + 2 * row_, true);
+    if (column > 0 && lit(i - 1)) return neighbour_box(i - 1, i - 2, column > 1);
+    if (i >= row_ && lit(i - row_)) return neighbour_box(i - row_, i - 2 * row_, i >= 2 * row_);
+    if (column + 1 < row_ && lit(i + 1)) return neighbour_box(i + 1, i + 2, column + 2 < row_);
+    if (lit(i + row_)) return neighbour_box(i + row_, i + 2 * row_, true);
     return {};
   }
 
@@ -120,10 +120,10 @@ class PupilFinder {
     }
     if (lit.empty()) return false;
     const pupil_detail::PositionClearances of_lit = [&](std::size_t count, const std::uint32_t* index, const double* px,
-                                                        const double* py, double* at_places) {
+                                                        const double* py, double* found_clearances) {
       points.resize(count);
       for (std::size_t i = 0; i < count; ++i) points[i] = lit[index[i]];
-      clearances_(count, points.data(), px, py, at_places);
+      clearances_(count, points.data(), px, py, found_clearances);
     };
     const auto found =
         pupil_detail::find_regions(guesses, SearchOrder::rows(guesses.size(), 1), directions_, false, of_lit);
@@ -203,16 +203,16 @@ void mirror(PupilPolygon& polygon, bool x) noexcept {
 }
 
 PupilPolygon hull(const std::vector<PupilPolygon>& polygons) {
-  std::vector<Point<double>> places;
+  std::vector<Point<double>> positions;
   for (const PupilPolygon& polygon : polygons) {
     if (!(polygon.area() > 0)) continue;
     for (const auto& corner : polygon.corners) {
-      places.push_back({polygon.middle.x + corner.x, polygon.middle.y + corner.y});
+      positions.push_back({polygon.middle.x + corner.x, polygon.middle.y + corner.y});
     }
   }
-  if (places.empty()) return {};
+  if (positions.empty()) return {};
   // Convex hull, starting at the lowest x: upper side, then lower side.
-  std::sort(places.begin(), places.end(), [](const auto& a, const auto& b) { return a.x < b.x; });
+  std::sort(positions.begin(), positions.end(), [](const auto& a, const auto& b) { return a.x < b.x; });
   std::vector<Point<double>> edge;
   const auto go = [&](auto begin, auto end) {
     const std::size_t first = edge.size();
@@ -223,8 +223,8 @@ PupilPolygon hull(const std::vector<PupilPolygon>& polygons) {
     }
     edge.pop_back();
   };
-  go(places.begin(), places.end());
-  go(places.rbegin(), places.rend());
+  go(positions.begin(), positions.end());
+  go(positions.rbegin(), positions.rend());
   PupilRegion region{.directions = 128};
   const auto [left, right] = std::minmax_element(edge.begin(), edge.end(), [](auto& a, auto& b) { return a.x < b.x; });
   const auto [low, high] = std::minmax_element(edge.begin(), edge.end(), [](auto& a, auto& b) { return a.y < b.y; });
@@ -245,9 +245,9 @@ PupilPolygon hull(const std::vector<PupilPolygon>& polygons) {
   }
   PupilPolygon polygon = polygon_of(region, PolygonFit::enclosing, CornerSteps::even_in_halves);
   // Include the corners of the hull that lie between two directions.
-  double way = 1;
-  for (const auto& p : edge) way = std::max(way, polygon.way_to(p.x, p.y));
-  polygon.widen(way);
+  double relative = 1;
+  for (const auto& p : edge) relative = std::max(relative, polygon.relative_radius(p.x, p.y));
+  polygon.widen(relative);
   return polygon;
 }
 
@@ -256,24 +256,24 @@ void expand_to_probes(std::span<PupilPolygon> polygons, std::size_t probes, cons
   constexpr int rounds = 4;
   const core_detail::Kronecker<4> uniform;
   // In batches of 1024, to reuse buffers.
-  constexpr std::size_t some = 1024;
+  constexpr std::size_t batch_size = 1024;
   std::vector<double> x, y, values;
   std::vector<std::uint32_t> open;
-  std::vector<std::uint32_t> sectors(some);
-  std::vector<PolygonWeights> at(some);
-  std::vector<std::array<double, 4>> places(some);
-  std::vector<Point<double>> middles(some), edges(some);  // edges: relative to the middle
-  std::vector<double> scales(some);
+  std::vector<std::uint32_t> sectors(batch_size);
+  std::vector<PolygonWeights> at(batch_size);
+  std::vector<std::array<double, 4>> positions(batch_size);
+  std::vector<Point<double>> middles(batch_size), edges(batch_size);  // edges: relative to the middle
+  std::vector<double> scales(batch_size);
   for (int round = 0; round < rounds; ++round) {
     std::vector<std::array<double, polygon_corners>> larger(polygons.size());
     for (auto& scale : larger) scale.fill(1);
     bool any = false;
-    for (std::size_t begin = 0; begin < probes; begin += some) {
-      const std::size_t count = std::min(some, probes - begin);
+    for (std::size_t begin = 0; begin < probes; begin += batch_size) {
+      const std::size_t count = std::min(batch_size, probes - begin);
       for (std::size_t p = 0; p < count; ++p) {
-        places[p] = uniform(static_cast<std::size_t>(round) * probes + begin + p);
-        at[p] = weights(places[p]);
-        const double along = places[p][3] * polygon_corners;
+        positions[p] = uniform(static_cast<std::size_t>(round) * probes + begin + p);
+        at[p] = weights(positions[p]);
+        const double along = positions[p][3] * polygon_corners;
         const std::size_t k = std::min(static_cast<std::size_t>(along), polygon_corners - 1);
         sectors[p] = static_cast<std::uint32_t>(k);
         middles[p] = edges[p] = {};
@@ -288,20 +288,20 @@ void expand_to_probes(std::span<PupilPolygon> polygons, std::size_t probes, cons
       std::fill(scales.begin(), scales.end(), 1);
       open.resize(count);
       std::iota(open.begin(), open.end(), 0u);
-      for (const double way : {1.00001, 1.002, 1.006, 1.015, 1.04, 1.1, 1.25, 1.6}) {
+      for (const double relative : {1.00001, 1.002, 1.006, 1.015, 1.04, 1.1, 1.25, 1.6}) {
         if (open.empty()) break;
         x.clear(), y.clear();
         for (const std::uint32_t p : open) {
-          x.push_back(middles[p].x + way * edges[p].x);
-          y.push_back(middles[p].y + way * edges[p].y);
+          x.push_back(middles[p].x + relative * edges[p].x);
+          y.push_back(middles[p].y + relative * edges[p].y);
         }
         values.resize(open.size());
-        clearances(places, open, x.data(), y.data(), values.data());
+        clearances(positions, open, x.data(), y.data(), values.data());
         std::size_t left = 0;
         for (std::size_t i = 0; i < open.size(); ++i) {
           if (!(values[i] >= 0)) continue;
-          constexpr double beyond = 1.5, always = 0.002;
-          scales[open[i]] = 1 + beyond * (way - 1) + always;
+          constexpr double overshoot_factor = 1.5, min_expansion = 0.002;
+          scales[open[i]] = 1 + overshoot_factor * (relative - 1) + min_expansion;
           open[left++] = open[i];
         }
         open.resize(left);

@@ -39,11 +39,11 @@ void mirror(PupilPolygon& polygon, bool x) noexcept;
 PupilPolygon hull(const std::vector<PupilPolygon>& polygons);
 
 /// Interpolation weights of the nodes at a probe, which is given by three or four numbers in [0, 1].
-using ProbeWeights = std::function<PolygonWeights(const std::array<double, 4>& place)>;
+using ProbeWeights = std::function<PolygonWeights(const std::array<double, 4>& position)>;
 /// Computes clearances like PlaceClearances, for positions in the planes of probes; places[which[i]] are the numbers of
 /// the probe of position i.
 using ProbeClearances =
-    std::function<void(std::span<const std::array<double, 4>> places, std::span<const std::uint32_t> which,
+    std::function<void(std::span<const std::array<double, 4>> positions, std::span<const std::uint32_t> which,
                        const double* x, const double* y, double* clearances)>;
 
 /// Tests positions just outside the interpolated polygons of probes in all parts of a table, and expands the polygons

@@ -30,7 +30,7 @@ IrisImages::IrisImages(const Iris& iris, std::span<const PupilImage> images, dou
     : shape_(iris), film_radius_(film_radius), primary_(primary) {
   std::vector<std::array<double, 4>> values;
   for (const auto& [shift, radius] : images) {
-    sections_alike_ &= shift.x == shift.y && radius.x == radius.y;
+    equal_sections_ &= shift.x == shift.y && radius.x == radius.y;
     values.push_back({shift.x, radius.x, shift.y, radius.y});
     images_.push_back({shift.x, shift.y, radius.x, radius.y, shape_.area() * radius.x * radius.y});
   }
@@ -46,7 +46,7 @@ IrisImages IrisImages::tilted(const FilmTilt& tilt) const {
   return result;
 }
 
-IrisImages IrisImages::of_round_stop() const {
+IrisImages IrisImages::with_round_stop() const {
   IrisImages result = *this;
   result.shape_ = {};
   for (Image& image : result.images_) image.area = result.shape_.area() * image.radius_x * image.radius_y;
@@ -75,7 +75,7 @@ IrisImageTable<R> IrisImages::table(Wavelength all) const noexcept {
   const Image shared = image(all);
   return {seen<R>(),
           between_.rows<R>(),
-          sections_alike_,
+          equal_sections_,
           {number(shared.shift_x), number(shared.shift_y), number(shared.radius_x), number(shared.radius_y),
            number(shared.area)},
           number(shape_.area())};

@@ -36,9 +36,9 @@ class IrisImages {
     return {images_[wavelength].shift_y, images_[wavelength].radius_y};
   }
   /// Images of the unclipped stop, which contain these images.
-  IrisImages of_round_stop() const;
+  IrisImages with_round_stop() const;
   /// True if discs stay discs, so that rotations about the axis change nothing. For round irises.
-  bool of_revolution() const noexcept { return sections_alike_; }
+  bool of_revolution() const noexcept { return equal_sections_; }
 
   /// Writes the images to the arrays. Call it for images of an upright film.
   void put(FilmPupilArrays& arrays) const;
@@ -76,7 +76,7 @@ class IrisImages {
   iris_detail::IrisShape shape_;
   double film_radius_ = 0, slope_x_ = 0, slope_y_ = 0;
   std::size_t primary_ = 0;
-  bool sections_alike_ = true;
+  bool equal_sections_ = true;
   std::vector<Image> images_;                   // by wavelength
   lens_detail::BetweenWavelengths<4> between_;  // shift and radius along x, along y
 };

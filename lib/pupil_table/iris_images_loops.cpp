@@ -21,7 +21,7 @@ inline void with_images(const IrisImageTable<R>& table, std::size_t count, const
   for (std::size_t begin = 0; begin < count; begin += block) {
     const std::size_t n = count - begin < block ? count - begin : block;
     R seen[4][block];
-    const std::size_t y = table.sections_alike ? 0 : 2;
+    const std::size_t y = table.equal_sections ? 0 : 2;
     lens_detail::look_up(table.images, wavelengths, begin, n, seen, y + 2);
     const R *const shift_x = seen[0], *const radius_x = seen[1], *const shift_y = seen[y],
                    *const radius_y = seen[y + 1];
@@ -69,7 +69,7 @@ inline void fill(const SeenIris<R>& given, const ImageOf& image_of, const Sample
 
 /// Calls body(sample_at) with the sample function for fill().
 template <class R, class Body>
-inline void with_places(const iris_detail::IrisSectors<R>& iris, const Body& body) noexcept {
+inline void with_sampler(const iris_detail::IrisSectors<R>& iris, const Body& body) noexcept {
   if (iris.count == 0) {
     body([](std::size_t, R u, R v) { return iris_detail::disc_point(u, v); });
   } else {
@@ -81,7 +81,7 @@ template <class R>
 void sample(const IrisImageTable<R>& table, std::size_t count, const R* film_x, const R* film_y, const R* u, const R* v,
             const RayWavelengths& wavelengths, R* x, R* y, R* areas) noexcept {
   with_images(table, count, wavelengths, [&](std::size_t first, std::size_t last, const auto& image_of) {
-    with_places(table.iris, [&](const auto& sample_at) {
+    with_sampler(table.iris, [&](const auto& sample_at) {
       fill(table, image_of, sample_at, first, last, film_x, film_y, u, v, x, y, areas);
     });
   });
@@ -90,7 +90,7 @@ void sample(const IrisImageTable<R>& table, std::size_t count, const R* film_x, 
 PupilSample sample_one(const SeenIris<double>& given, const ImageSections<double>& image, double film_x, double film_y,
                        double u, double v) noexcept {
   PupilSample result{};
-  with_places(given.iris, [&](const auto& sample_at) {
+  with_sampler(given.iris, [&](const auto& sample_at) {
     const auto image_of = [&image](std::size_t) { return image; };
     fill(given, image_of, sample_at, 0, 1, &film_x, &film_y, &u, &v, &result.x, &result.y, &result.area);
   });

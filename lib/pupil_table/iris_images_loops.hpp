@@ -43,7 +43,7 @@ struct SeenIris {
 template <class R>
 struct IrisImageTable : SeenIris<R> {
   lens_detail::WavelengthRows<R> images{};  ///< shift and radius along x, then along y
-  bool sections_alike = false;              ///< true if both sections are equal
+  bool equal_sections = false;              ///< true if both sections are equal
   ImageSections<R> image{};                 ///< at the common wavelength of all rays
   R area = 0;                               ///< area of the iris
 };

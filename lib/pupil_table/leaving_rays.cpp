@@ -17,7 +17,7 @@ struct FilmSamples {
 };
 
 FilmSamples film_samples(const FilmPupilTable& pupils, bool equal_azimuths, std::size_t wavelength) {
-  constexpr int radii = 32, around = 16, azimuths = 64;
+  constexpr int radii = 32, samples_around = 16, azimuths = 64;
   // Radius of the lit film for each azimuth.
   const auto lit_at = [&](double turn) {
     const auto seen = [&](double radius) {
@@ -43,21 +43,22 @@ FilmSamples film_samples(const FilmPupilTable& pupils, bool equal_azimuths, std:
   std::size_t index = 0;
   for (int i = 0; i <= radii; ++i) {
     // Denser near the largest lit radius.
-    const double part = 1 - std::pow(1 - static_cast<double>(i) / radii, 1.5);
+    const double fraction = 1 - std::pow(1 - static_cast<double>(i) / radii, 1.5);
     if (equal_azimuths) {
-      for (int k = 0; k <= around / 2; ++k) {  // pupils are symmetric
-        for (const double v : {0.0, 0.85, 0.95, 1.0}) add(part * lit[0], 0, static_cast<double>(k) / around, v);
+      for (int k = 0; k <= samples_around / 2; ++k) {  // pupils are symmetric
+        for (const double v : {0.0, 0.85, 0.95, 1.0})
+          add(fraction * lit[0], 0, static_cast<double>(k) / samples_around, v);
       }
       continue;
     }
     // The pupil may be the union over many film points, of which a single point uses a small part: sample all of it,
     // and its edge more densely.
-    for (int k = 0; k < 16 * around; ++k, ++index) {
+    for (int k = 0; k < 16 * samples_around; ++k, ++index) {
       const auto [turn, u, v] = points(index);
       const double azimuth = turn * azimuths;
       const auto before = static_cast<std::size_t>(azimuth);
       const double radius = lit[before] + (azimuth - static_cast<double>(before)) * (lit[before + 1] - lit[before]);
-      add(part * radius, 2 * std::numbers::pi * turn, u, k % 2 ? v : 1 - 0.1 * v);
+      add(fraction * radius, 2 * std::numbers::pi * turn, u, k % 2 ? v : 1 - 0.1 * v);
     }
   }
   return samples;

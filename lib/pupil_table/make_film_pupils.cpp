@@ -11,41 +11,41 @@
 #include <vector>
 
 #include "core/text.hpp"
+#include "disc_clip.hpp"
 #include "film_grid.hpp"
 #include "film_polygons.hpp"
 #include "film_pupil_data.hpp"
 #include "petzval/core/error.hpp"
 #include "petzval/core/parallel.hpp"
 #include "repeated_wavelength.hpp"
-#include "rim_cut.hpp"
 
 namespace petzval {
 namespace {
 
 using namespace pupil_table_detail;
 
-/// Scales a polygon until its projected solid angle at its film point equals `wanted`.
-void scale_to_light(PupilPolygon& polygon, const TwoPlanes& space, const FilmPoint& film, double wanted) {
+/// Scales a polygon until its projected solid angle at its film point equals `target_solid_angle`.
+void scale_to_light(PupilPolygon& polygon, const TwoPlanes& space, const FilmPoint& film, double target_solid_angle) {
   // The solid angle is nearly proportional to the squared scale.
   for (int round = 0; round < 3; ++round) {
     const PolygonSampler sampler(polygon);
     const auto solid_angle = [&](double u, double v) {
-      const Vec2<double> place = sampler(u, v);
-      return solid_angle_at(space, film, place.x, place.y);
+      const Vec2<double> position = sampler(u, v);
+      return solid_angle_at(space, film, position.x, position.y);
     };
     const double own =
         sampler.area() * (space.depth() * space.depth()) * pupil_table_detail::mean_over_samples(16, solid_angle);
-    const double scale = own > 0 ? std::sqrt(wanted / own) : 0;
+    const double scale = own > 0 ? std::sqrt(target_solid_angle / own) : 0;
     for (auto& corner : polygon.corners) corner = {scale * corner[0], scale * corner[1]};
   }
 }
 
 /// The disc that contains the axial pupil and moves with the film point as pupils near the axis do.
-/// @param beside pupil of the film point at `height`
-PupilDisc disc_about(const PupilPolygon& on_axis, const PupilPolygon& beside, double height) noexcept {
+/// @param off_axis pupil of the film point at `height`
+PupilDisc disc_around(const PupilPolygon& on_axis, const PupilPolygon& off_axis, double height) noexcept {
   double radius = 0;
   for (const auto& corner : on_axis.corners) radius = std::max(radius, std::hypot(corner.x, corner.y));
-  return {height > 0 ? (beside.middle.y - on_axis.middle.y) / height : 0, radius};
+  return {height > 0 ? (off_axis.middle.y - on_axis.middle.y) / height : 0, radius};
 }
 
 /// Expands the pupils of each wavelength to contain the pupils up to halfway to the adjacent wavelengths.
@@ -75,9 +75,10 @@ void check_table(const TwoPlanes& space, double film_radius, std::size_t count, 
                 " mm; must differ");
   }
   check_film_radius("pupil table", film_radius);
-  constexpr std::size_t most = std::numeric_limits<std::uint16_t>::max();  // RayWavelengths::each
-  if (count < 1 || count > most) {
-    throw Error(where + "it has " + std::to_string(count) + " wavelengths; must have 1 to " + std::to_string(most));
+  constexpr std::size_t max_wavelengths = std::numeric_limits<std::uint16_t>::max();  // RayWavelengths::each
+  if (count < 1 || count > max_wavelengths) {
+    throw Error(where + "it has " + std::to_string(count) + " wavelengths; must have 1 to " +
+                std::to_string(max_wavelengths));
   }
   if (primary >= count) {
     throw Error(where + "primary_wavelength = " + std::to_string(primary) + "; must be below " + std::to_string(count));
@@ -177,21 +178,21 @@ FilmPupilTable FilmPupilTable::of_discs(const TwoPlanes& space, std::span<const 
   return FilmPupilTable(std::move(data));
 }
 
-FilmPupilTable FilmPupilTable::of_round_stop() const {
-  if (data_->whole) return whole().of_round_stop();
+FilmPupilTable FilmPupilTable::with_round_stop() const {
+  if (data_->unclipped) return unclipped().with_round_stop();
   auto data = std::make_shared<Data>(*data_);
   data->stop = nullptr;
-  if (data->images) data->images = data->images->of_round_stop();
+  if (data->images) data->images = data->images->with_round_stop();
   return FilmPupilTable(std::move(data));
 }
 
-FilmPupilTable FilmPupilTable::reshaped(std::span<const std::vector<PupilDisc>> discs) const {
+FilmPupilTable FilmPupilTable::with_discs(std::span<const std::vector<PupilDisc>> discs) const {
   if (discs.size() != wavelengths()) {
     throw Error("pupil table: discs has " + std::to_string(discs.size()) + " wavelengths; must have " +
                 std::to_string(wavelengths()));
   }
   check_discs(discs);
-  auto data = data_->alike();
+  auto data = data_->without_pupils();
   constexpr std::size_t strips = film_strips(PolygonFit::equal_area);
   for (std::size_t w = 0; w < discs.size(); ++w) {
     std::vector<PupilPolygon> polygons = disc_polygons(discs[w], lit_radius());
@@ -204,51 +205,51 @@ FilmPupilTable FilmPupilTable::reshaped(std::span<const std::vector<PupilDisc>> 
   return FilmPupilTable(std::move(data));
 }
 
-FilmPupilTable FilmPupilTable::cut_by_rim(const PupilRim& rim) const {
+FilmPupilTable FilmPupilTable::clipped_by_rim(const PupilRim& rim) const {
   const auto& images = data_->images;
   if (data_->dimensions == 2 || (images && !images->of_revolution()) || data_->obscured) {
     throw Error(
         "pupils: the lens has cylinders or a central obscuration; must be a lens of revolution without "
         "obscurations if a rim clips its pupils");
   }
-  if (!(rim.ratio > 0 && std::isfinite(rim.ratio)) || !std::isfinite(rim.radii_per_mm)) {
-    throw Error("pupils: rim: ratio = " + to_text(rim.ratio) + ", radii_per_mm = " + to_text(rim.radii_per_mm) +
+  if (!(rim.ratio > 0 && std::isfinite(rim.ratio)) || !std::isfinite(rim.shift_per_mm)) {
+    throw Error("pupils: rim: ratio = " + to_text(rim.ratio) + ", shift_per_mm = " + to_text(rim.shift_per_mm) +
                 "; both must be finite, and the ratio above 0");
   }
   constexpr double farthest = 1e6;  // float cannot resolve a pupil beyond this distance
-  if (!(std::abs(rim.radii_per_mm) * lit_radius() <= farthest)) {
-    throw Error("pupils: the rim moves by " + to_text(std::abs(rim.radii_per_mm) * lit_radius()) +
+  if (!(std::abs(rim.shift_per_mm) * lit_radius() <= farthest)) {
+    throw Error("pupils: the rim moves by " + to_text(std::abs(rim.shift_per_mm) * lit_radius()) +
                 " radii over the film; must be at most " + to_text(farthest));
   }
-  auto data = data_->alike();
-  data->whole = data_;
+  auto data = data_->without_pupils();
+  data->unclipped = data_;
   for (std::size_t w = 0; w < wavelengths(); ++w) {
     const PupilDisc pupil =
         images ? images->disc(w)
-               : disc_about(data_->node(w, 0), data_->node(w, 1), lit_radius() / static_cast<double>(data_->rows));
-    const PupilDisc disc{pupil.shift - rim.radii_per_mm * pupil.radius, rim.ratio * pupil.radius};
+               : disc_around(data_->node(w, 0), data_->node(w, 1), lit_radius() / static_cast<double>(data_->rows));
+    const PupilDisc disc{pupil.shift - rim.shift_per_mm * pupil.radius, rim.ratio * pupil.radius};
     std::vector<PupilPolygon> polygons;
     if (images) {
       polygons = disc_polygons(std::array{pupil, disc}, lit_radius());
     } else {
       for (std::size_t i = 0; i < data_->nodes(); ++i) {
-        polygons.push_back(cut_by_disc(data_->node(w, i), disc.shift * data_->node_point(i).y, disc.radius));
+        polygons.push_back(clipped_by_disc(data_->node(w, i), disc.shift * data_->node_point(i).y, disc.radius));
       }
     }
     data->add(polygons);
   }
   if (const auto& stop = data_->stop) return data->with_stop(stop->shape.iris(), stop->stop_of);
   if (!images || images->round()) return FilmPupilTable(std::move(data));
-  const StopOf stop_of = [own = *images](const FilmPoint& film, const Vec2<double>& place,
+  const StopOf stop_of = [own = *images](const FilmPoint& film, const Vec2<double>& position,
                                          std::size_t w) -> std::optional<Vec2<double>> {
     const auto [shift, radius] = own.disc(w);
-    return Vec2<double>{(place.x - shift * film.x) / radius, (place.y - shift * film.y) / radius};
+    return Vec2<double>{(position.x - shift * film.x) / radius, (position.y - shift * film.y) / radius};
   };
   return data->with_stop(images->iris(), stop_of);
 }
 
-FilmPupilTable FilmPupilTable::whole() const { return FilmPupilTable(data_->whole ? data_->whole : data_); }
-bool FilmPupilTable::cut() const noexcept { return data_->whole != nullptr; }
+FilmPupilTable FilmPupilTable::unclipped() const { return FilmPupilTable(data_->unclipped ? data_->unclipped : data_); }
+bool FilmPupilTable::is_clipped() const noexcept { return data_->unclipped != nullptr; }
 
 FilmPupilTable FilmPupilTable::of_iris(const TwoPlanes& space, const Iris& iris, std::span<const PupilImage> images,
                                        double film_radius, std::size_t primary_wavelength,
@@ -281,7 +282,8 @@ FilmPupilTable FilmPupilTable::for_tilted_film(const FilmTilt& tilt, int threads
   }
   // Blades break the rotational and mirror symmetry: samples are taken from the round stop, and the iris clips the
   // rays.
-  if (data_->stop || (data_->images && !data_->images->round())) return of_round_stop().for_tilted_film(tilt, threads);
+  if (data_->stop || (data_->images && !data_->images->round()))
+    return with_round_stop().for_tilted_film(tilt, threads);
   data->space = data_->space;
   data->primary = data_->primary;
   data->compiled = data_->compiled;

@@ -28,12 +28,12 @@ struct Bounds {
 /// node in the row. The pupil becomes empty between both nodes: the polygon moves on by the last step, and is widened
 /// because the motion accelerates.
 PupilPolygon beyond(const PupilPolygon* polygon, std::size_t before) noexcept {
-  constexpr double room = 1.2;
+  constexpr double widening = 1.2;
   PupilPolygon result = polygon[-1];
   if (before > 1) {
     for (int i : {0, 1}) result.middle[i] += polygon[-1].middle[i] - polygon[-2].middle[i];
   }
-  result.widen(room);
+  result.widen(widening);
   return result;
 }
 
@@ -56,11 +56,11 @@ SceneNodes<2> nodes_of_revolution(const Vec3<double>& centre, double steepest, c
   const auto reciprocal_of = [&](std::size_t row) { return steepest * static_cast<double>(row) / (rows - 1); };
 
   // Largest field at each distance, with a margin because the rays are samples.
-  constexpr double between_rays = 1.05, on_axis = 1e-6;
+  constexpr double field_margin = 1.05, axis_field_rad = 1e-6;
   std::array<double, rows> widest{};
   for (std::size_t row = 0; row < rows; ++row) {
     const double field = widest_field(centre, rays, reciprocal_of(row));
-    widest[row] = std::min(between_rays * field + on_axis, std::numbers::pi);
+    widest[row] = std::min(field_margin * field + axis_field_rad, std::numbers::pi);
   }
   for (std::size_t row = 1; row < rows; row += 2) {
     const double lacking = widest[row] - (widest[row - 1] + widest[row + 1]) / 2;
@@ -84,10 +84,10 @@ SceneNodes<2> nodes_of_revolution(const Vec3<double>& centre, double steepest, c
   // The pupil on the axis may be empty.
   const auto lit = std::find_if(bounds.begin(), bounds.end(), [](const Bounds& b) { return b.any; });
   std::fill(bounds.begin(), lit, *lit);
-  double room = 0, across = 0;
+  double half_extent = 0, across = 0;
   for (std::size_t j = 0; j < columns; ++j) {
     if (!bounds[j].any) bounds[j] = bounds[j - 1];
-    room = std::max(room, (bounds[j].high - bounds[j].low) / 2);
+    half_extent = std::max(half_extent, (bounds[j].high - bounds[j].low) / 2);
     across = std::max(across, bounds[j].across);
   }
   std::vector<pupil_detail::PupilGuess> guesses;  // rows x columns
@@ -97,7 +97,7 @@ SceneNodes<2> nodes_of_revolution(const Vec3<double>& centre, double steepest, c
       const double field = widest[row] * static_cast<double>(j) / (columns - 1);
       const double known = std::min(field / widest[sharpest], 1.0) * (columns - 1);
       const Bounds& b = bounds[static_cast<std::size_t>(std::lround(known))];
-      guesses.push_back({0, b.low - room, b.high + room, std::max(across, room)});
+      guesses.push_back({0, b.low - half_extent, b.high + half_extent, std::max(across, half_extent)});
       planes.push_back(PupilPlane::facing(centre, field, {0, 1}, reciprocal_of(row)));
     }
   }
@@ -127,8 +127,8 @@ SceneNodes<2> nodes_of_revolution(const Vec3<double>& centre, double steepest, c
     }
   }
   expand_to_cover(polygons, checks);
-  constexpr double elsewhere = 1.008;  // scale of polygons, for points that are not checked
-  for (PupilPolygon& polygon : polygons) polygon.widen(elsewhere);
+  constexpr double unchecked_margin = 1.008;  // scale of polygons, for points that are not checked
+  for (PupilPolygon& polygon : polygons) polygon.widen(unchecked_margin);
   // Exclude obscurations only if all pupils are rings. Other obscurations move, and polygons without them are correct
   // only at the points that are checked.
   const bool rings = std::all_of(polygons.begin(), polygons.end(), is_ring);
@@ -139,26 +139,26 @@ SceneNodes<2> nodes_of_revolution(const Vec3<double>& centre, double steepest, c
   // In the outermost fields pupils shrink, and their boundaries are more curved between the points that are checked:
   // expand polygons to the sampled rays. Do so in all fields if the sampled rays bound the pupils.
   const bool all = rings || clipped_by == ClippedBy::samples;
-  constexpr double about_rays = 1.08, last_fields = 0.75, in_obscurations = 0.8;
+  constexpr double ray_margin = 1.08, outer_field_fraction = 0.75, obscuration_scale = 0.8;
   for (std::size_t row = 0; row < rows; ++row) {
     const double reciprocal = reciprocal_of(row);
     for (const Ray<double>& ray : rays) {
       const Bearing bearing = bearing_on_sphere(centre, ray, reciprocal);
-      if (!all && bearing.field < last_fields * widest[row]) continue;
+      if (!all && bearing.field < outer_field_fraction * widest[row]) continue;
       const Vec2<double> place = plane_facing(centre, bearing, reciprocal).meet(ray);
       const PolygonWeights at = result.weights(angles<2>(bearing), reciprocal / steepest).value_or(PolygonWeights{});
-      const double way = interpolated(polygons, at).way_to(place.x, place.y);
-      if (std::isinf(way)) {  // a line outwards meets the edge of the pupil more than once
+      const double relative = interpolated(polygons, at).relative_radius(place.x, place.y);
+      if (std::isinf(relative)) {  // a line outwards meets the edge of the pupil more than once
         polygons.clear();
         return result;
       }
       for (std::size_t j = 0; j < at.polygons.size(); ++j) {
         if (at.weights[j] == 0) continue;
         PupilPolygon& polygon = polygons[at.polygons[j]];
-        if (way < 0) {
-          for (double& width : polygon.obscured) width *= in_obscurations;
-        } else if (about_rays * way > 1) {
-          polygon.widen(about_rays * way);
+        if (relative < 0) {
+          for (double& width : polygon.obscured) width *= obscuration_scale;
+        } else if (ray_margin * relative > 1) {
+          polygon.widen(ray_margin * relative);
         }
       }
     }

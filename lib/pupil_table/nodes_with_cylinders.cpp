@@ -34,8 +34,8 @@ Bearing towards(const Vec2<double>& angles) noexcept {
 }
 
 /// Intersection of a ray with the plane that faces a point, in the frame of the polygons.
-Vec2<double> place_in_grid(const Vec3<double>& centre, const Bearing& bearing, double reciprocal,
-                           const Ray<double>& ray) noexcept {
+Vec2<double> position_in_grid(const Vec3<double>& centre, const Bearing& bearing, double reciprocal,
+                              const Ray<double>& ray) noexcept {
   const Vec2<double> met = plane_facing(centre, bearing, reciprocal).meet(ray);
   const Point<double> place = to_grid<3>(bearing, {met.x, met.y});
   return {place.x, place.y};
@@ -49,7 +49,7 @@ std::vector<pupil_detail::PupilGuess> guesses_from(const std::vector<Ray<double>
   const double last = static_cast<double>(columns - 1);
   for (const Ray<double>& ray : rays) {
     const Bearing bearing = bearing_on_sphere(centre, ray, reciprocal);
-    const Vec2<double> place = place_in_grid(centre, bearing, reciprocal, ray);
+    const Vec2<double> place = position_in_grid(centre, bearing, reciprocal, ray);
     // A ray is used for the nodes of its cell and of the adjacent cells.
     const Vec2<double> at = angles<3>(bearing) / widest * last;
     const auto first = [](double x) { return static_cast<std::size_t>(std::max(x - 1, 0.0)); };
@@ -59,9 +59,9 @@ std::vector<pupil_detail::PupilGuess> guesses_from(const std::vector<Ray<double>
       }
     }
   }
-  Vec2<double> room{0, 0};
+  Vec2<double> half_extent{0, 0};
   for (const Bounds& b : bounds) {
-    for (int i : {0, 1}) room[i] = std::max(room[i], (b.high[i] - b.low[i]) / 2);
+    for (int i : {0, 1}) half_extent[i] = std::max(half_extent[i], (b.high[i] - b.low[i]) / 2);
   }
   std::vector<pupil_detail::PupilGuess> guesses;
   std::size_t known = 0;
@@ -69,8 +69,9 @@ std::vector<pupil_detail::PupilGuess> guesses_from(const std::vector<Ray<double>
     if (bounds[p].any) known = p;
     const Bounds& b = bounds[p].any ? bounds[p] : bounds[known];
     const Vec2<double> middle = (b.low + b.high) / 2.0;
-    const double half = std::max((b.high.y - b.low.y) / 2, 0.05 * room.y);
-    guesses.push_back({middle.x, middle.y - 4 * room.y, middle.y + 4 * room.y, room.x, middle.y, 3 * half});
+    const double half = std::max((b.high.y - b.low.y) / 2, 0.05 * half_extent.y);
+    guesses.push_back(
+        {middle.x, middle.y - 4 * half_extent.y, middle.y + 4 * half_extent.y, half_extent.x, middle.y, 3 * half});
   }
   return guesses;
 }
@@ -85,17 +86,17 @@ SceneNodes<3> nodes_with_cylinders(const Vec3<double>& centre, double steepest, 
   std::vector<PupilPolygon>& polygons = result.polygons;
   // The nodes, and points halfway between adjacent nodes.
   constexpr std::size_t rows = 2 * L::distances + 1, columns = 2 * steps + 1;
-  const auto part = [](std::size_t i, std::size_t count) {
+  const auto fraction = [](std::size_t i, std::size_t count) {
     return static_cast<double>(i) / static_cast<double>(count - 1);
   };
 
   // Largest field at each distance, with a margin because the rays are samples.
-  constexpr double between_rays = 1.05, on_axis = 1e-6;
+  constexpr double field_margin = 1.05, axis_field_rad = 1e-6;
   for (std::size_t i = 0; i < rows; ++i) {
     Vec2<double> reach{0, 0};
     for (const Ray<double>& ray : rays) {
-      const Vec2<double> own = angles<3>(bearing_on_sphere(centre, ray, steepest * part(i, rows)));
-      for (int k : {0, 1}) reach[k] = std::max(reach[k], between_rays * own[k] + on_axis);
+      const Vec2<double> own = angles<3>(bearing_on_sphere(centre, ray, steepest * fraction(i, rows)));
+      for (int k : {0, 1}) reach[k] = std::max(reach[k], field_margin * own[k] + axis_field_rad);
     }
     for (const std::size_t node : {i / 2, (i + 1) / 2}) {
       for (std::size_t k : {0, 1}) {
@@ -105,13 +106,13 @@ SceneNodes<3> nodes_with_cylinders(const Vec3<double>& centre, double steepest, 
     }
   }
 
-  struct Place {
+  struct NodePlane {
     Bearing bearing;
     PupilPlane plane;
   };
-  const auto place_at = [&](double distance, double down, double across) {
+  const auto node_plane_at = [&](double distance, double down, double across) {
     const Bearing bearing = towards(result.last(distance) * Vec2<double>{across, down});
-    return Place{bearing, plane_facing(centre, bearing, steepest * distance)};
+    return NodePlane{bearing, plane_facing(centre, bearing, steepest * distance)};
   };
   RayClearances clearances_of(passing, wavelength);
   const auto test = [&](std::size_t count, const auto& place, const double* x, const double* y, double* clearances) {
@@ -126,15 +127,17 @@ SceneNodes<3> nodes_with_cylinders(const Vec3<double>& centre, double steepest, 
   constexpr std::size_t directions = 32;
   std::vector<PupilRegion> pupils;
   for (std::size_t i = 0; i < rows; i += 2) {
-    std::vector<Place> places;
+    std::vector<NodePlane> node_planes;
     for (std::size_t p = 0; p < columns * columns; ++p) {
-      places.push_back(place_at(part(i, rows), part(p / columns, columns), part(p % columns, columns)));
+      node_planes.push_back(
+          node_plane_at(fraction(i, rows), fraction(p / columns, columns), fraction(p % columns, columns)));
     }
-    const auto guesses = guesses_from(rays, centre, steepest * part(i, rows), result.last(part(i, rows)), columns);
+    const auto guesses =
+        guesses_from(rays, centre, steepest * fraction(i, rows), result.last(fraction(i, rows)), columns);
     const pupil_detail::PositionClearances clearances = [&](std::size_t count, const std::uint32_t* which,
                                                             const double* x, const double* y, double* values) {
       test(
-          count, [&](std::size_t r) -> const Place& { return places[which[r]]; }, x, y, values);
+          count, [&](std::size_t r) -> const NodePlane& { return node_planes[which[r]]; }, x, y, values);
     };
     auto found = grid_pupils({guesses, columns}, directions, clearances);
     std::move(found.begin(), found.end(), std::back_inserter(pupils));
@@ -148,8 +151,8 @@ SceneNodes<3> nodes_with_cylinders(const Vec3<double>& centre, double steepest, 
   std::vector<InterpolationCheck> checks;
   for (std::size_t p = 0; p < pupils.size(); ++p) {
     checks.push_back(
-        {&pupils[p], SceneNodes<3>::weights_at(part(p / plane, distances), part(p % plane / columns, columns),
-                                               part(p % columns, columns))});
+        {&pupils[p], SceneNodes<3>::weights_at(fraction(p / plane, distances), fraction(p % plane / columns, columns),
+                                               fraction(p % columns, columns))});
   }
   expand_to_cover(polygons, checks);
   // In cells with some empty pupils, the other pupils are narrow and move fast: use the hull of the surrounding nodes.
@@ -176,30 +179,33 @@ SceneNodes<3> nodes_with_cylinders(const Vec3<double>& centre, double steepest, 
       polygons, probes, [](const std::array<double, 4>& at) { return SceneNodes<3>::weights_at(at[0], at[1], at[2]); },
       [&](std::span<const std::array<double, 4>> at, std::span<const std::uint32_t> which, const double* x,
           const double* y, double* clearances) {
-        const auto place = [&](std::size_t r) { return place_at(at[which[r]][0], at[which[r]][1], at[which[r]][2]); };
+        const auto place = [&](std::size_t r) {
+          return node_plane_at(at[which[r]][0], at[which[r]][1], at[which[r]][2]);
+        };
         test(which.size(), place, x, y, clearances);
       });
 
   // In the outermost fields pupils shrink, and their boundaries are more curved between the points that are checked:
   // expand polygons to the sampled rays. Outer rays are used at every distance, each inner ray at one distance.
-  constexpr double about_rays = 1.01, about_last_rays = 1.08, outer_fields = 0.6, last_fields = 0.85;
+  constexpr double ray_margin = 1.01, outer_ray_margin = 1.08, tested_field_fraction = 0.6, outer_field_fraction = 0.85;
   for (std::size_t r = 0; r < rays.size(); ++r) {
     for (std::size_t i = 0; i < rows; ++i) {
-      const double distance = part(i, rows), reciprocal = steepest * distance;
+      const double distance = fraction(i, rows), reciprocal = steepest * distance;
       const Bearing bearing = bearing_on_sphere(centre, rays[r], reciprocal);
       const Vec2<double> at = angles<3>(bearing) / result.last(distance);
-      const double out = std::hypot(at.x, at.y), room = out < last_fields ? about_rays : about_last_rays;
-      if (i != r % rows && out < outer_fields) continue;
-      const Vec2<double> place = place_in_grid(centre, bearing, reciprocal, rays[r]);
+      const double out = std::hypot(at.x, at.y),
+                   scale_margin = out < outer_field_fraction ? ray_margin : outer_ray_margin;
+      if (i != r % rows && out < tested_field_fraction) continue;
+      const Vec2<double> place = position_in_grid(centre, bearing, reciprocal, rays[r]);
       const PolygonWeights nodes_about = SceneNodes<3>::weights_at(distance, std::min(at.y, 1.0), std::min(at.x, 1.0));
-      const double way = interpolated(polygons, nodes_about).way_to(place.x, place.y);
-      if (std::isinf(way)) {  // a line outwards meets the edge of the pupil more than once
+      const double relative = interpolated(polygons, nodes_about).relative_radius(place.x, place.y);
+      if (std::isinf(relative)) {  // a line outwards meets the edge of the pupil more than once
         polygons.clear();
         return result;
       }
-      if (room * way <= 1) continue;
+      if (scale_margin * relative <= 1) continue;
       for (std::size_t j = 0; j < nodes_about.polygons.size(); ++j) {
-        if (nodes_about.weights[j] != 0) polygons[nodes_about.polygons[j]].widen(room * way);
+        if (nodes_about.weights[j] != 0) polygons[nodes_about.polygons[j]].widen(scale_margin * relative);
       }
     }
   }

@@ -13,23 +13,24 @@ namespace petzval::pupil_table_detail {
 namespace {
 
 template <std::size_t block, class T>
-struct Places {
+struct CellPositions {
   T t[block], s[block], cosine[block], sine[block], lit[block];  // lit: 1 or 0
   std::int32_t cell[block];
 };
 
 template <std::size_t block, int dimensions, class R, class T>
-PETZVAL_INLINE void find_places(const PolygonGrid<dimensions, R>& grid, const T* film_x, const T* film_y, const T* u,
-                                const T* v, const std::int32_t* wavelength, Places<block, T>& places) noexcept {
+PETZVAL_INLINE void find_cell_positions(const PolygonGrid<dimensions, R>& grid, const T* film_x, const T* film_y,
+                                        const T* u, const T* v, const std::int32_t* wavelength,
+                                        CellPositions<block, T>& positions) noexcept {
   PETZVAL_INDEPENDENT
   for (std::size_t i = 0; i < block; ++i) {
     // Comparisons with NaN are false.
     const T sound = (film_x[i] + film_y[i] + u[i] + v[i]) * R(0);
-    const FilmPlace<T> at = place_of(grid, film_x[i], film_y[i], sound >= R(0), wavelength[i]);
-    places.t[i] = at.t, places.s[i] = at.s;
-    places.cosine[i] = at.cosine, places.sine[i] = at.sine;
-    places.lit[i] = at.known ? T(1) : T(0);
-    places.cell[i] = at.cell;
+    const CellPosition<T> at = cell_position(grid, film_x[i], film_y[i], sound >= R(0), wavelength[i]);
+    positions.t[i] = at.t, positions.s[i] = at.s;
+    positions.cosine[i] = at.cosine, positions.sine[i] = at.sine;
+    positions.lit[i] = at.known ? T(1) : T(0);
+    positions.cell[i] = at.cell;
   }
 }
 
@@ -53,13 +54,14 @@ PETZVAL_INLINE void cut_by_edges(const iris_detail::IrisSectors<R>& iris, const 
     if (bend == R(0)) {
       PETZVAL_INDEPENDENT
       for (std::size_t i = 0; i < block; ++i) {
-        cut_by_edge(nx, ny, distance, Point<T>{begin_x[i], begin_y[i]}, Point<T>{line_x[i], line_y[i]}, from[i], to[i]);
+        clip_by_edge(nx, ny, distance, Point<T>{begin_x[i], begin_y[i]}, Point<T>{line_x[i], line_y[i]}, from[i],
+                     to[i]);
       }
     } else {
       PETZVAL_INDEPENDENT
       for (std::size_t i = 0; i < block; ++i) {
-        cut_by_edge(nx, ny, bend, distance, Point<T>{begin_x[i], begin_y[i]}, Point<T>{line_x[i], line_y[i]}, from[i],
-                    to[i]);
+        clip_by_edge(nx, ny, bend, distance, Point<T>{begin_x[i], begin_y[i]}, Point<T>{line_x[i], line_y[i]}, from[i],
+                     to[i]);
       }
     }
   }
@@ -68,22 +70,22 @@ PETZVAL_INLINE void cut_by_edges(const iris_detail::IrisSectors<R>& iris, const 
 /// Clips lines at the iris. Lines are straight in the pupil plane and nearly straight at the stop. The first pass clips
 /// the straight line between the stop points of both ends; the second pass corrects the line at the clipped end.
 template <std::size_t block, int dimensions, class R, class T>
-PETZVAL_INLINE void cut_by_iris(const PolygonGrid<dimensions, R>& grid, const Places<block, T>& places,
-                                Lines<block, T>& lines) noexcept {
+PETZVAL_INLINE void clip_by_iris(const PolygonGrid<dimensions, R>& grid, const CellPositions<block, T>& positions,
+                                 Lines<block, T>& lines) noexcept {
   using S = StopLayout<dimensions>;
   const R* const stop = grid.stop.cells;
   const iris_detail::IrisSectors<R> iris = grid.stop.iris;
   T begin_x[block], begin_y[block], line_x[block], line_y[block], look[block], from[block], to[block];
   PETZVAL_INDEPENDENT
   for (std::size_t i = 0; i < block; ++i) {
-    const std::int32_t cell = places.cell[i] * S::size, at = cell + S::corners + 2 * S::linear * lines.sector[i];
-    const T t = places.t[i], s = places.s[i], along = lines.along[i];
+    const std::int32_t cell = positions.cell[i] * S::size, at = cell + S::corners + 2 * S::linear * lines.sector[i];
+    const T t = positions.t[i], s = positions.s[i], along = lines.along[i];
     const Point<T> a = point_in_cell<dimensions>(stop, at, t, s);
     const Point<T> b = point_in_cell<dimensions>(stop, at + 2 * S::linear, t, s);
     const Point<T> middle = point_in_cell<dimensions>(stop, cell + S::middle, t, s);
     const R per_scale = R(1) / stop[cell + S::scale];
-    const Point<T> begin = to_film<dimensions>(places.cosine[i], places.sine[i], middle);
-    const Point<T> line = to_film<dimensions>(places.cosine[i], places.sine[i], a + along * (b - a) - middle);
+    const Point<T> begin = to_film<dimensions>(positions.cosine[i], positions.sine[i], middle);
+    const Point<T> line = to_film<dimensions>(positions.cosine[i], positions.sine[i], a + along * (b - a) - middle);
     begin_x[i] = per_scale * begin.x, begin_y[i] = per_scale * begin.y;
     line_x[i] = per_scale * line.x, line_y[i] = per_scale * line.y;
   }
@@ -94,18 +96,19 @@ PETZVAL_INLINE void cut_by_iris(const PolygonGrid<dimensions, R>& grid, const Pl
   }
   PETZVAL_INDEPENDENT
   for (std::size_t i = 0; i < block; ++i) {
-    const std::int32_t cell = places.cell[i] * S::size;
-    const T t = places.t[i], s = places.s[i], at = look[i];
+    const std::int32_t cell = positions.cell[i] * S::size;
+    const T t = positions.t[i], s = positions.s[i], at = look[i];
     const R scale = stop[cell + S::scale], per_scale = R(1) / scale;
     const Point<T> middle =
-        CellPolygon<dimensions, false, R, T>{grid.cells, places.cell[i] * CellLayout<dimensions>::size, t, s}.middle();
+        CellPolygon<dimensions, false, R, T>{grid.cells, positions.cell[i] * CellLayout<dimensions>::size, t, s}
+            .middle();
     const auto number = [&](int k) { return linear_in_cell<dimensions>(stop, cell + S::map + S::linear * k, t, s); };
     const Point<T> straight =
-        to_grid<dimensions>(places.cosine[i], places.sine[i],
+        to_grid<dimensions>(positions.cosine[i], positions.sine[i],
                             Point<T>{scale * (begin_x[i] + at * line_x[i]), scale * (begin_y[i] + at * line_y[i])});
-    const Point<T> place{middle.x + at * lines.edge_x[i], middle.y + at * lines.edge_y[i]};
-    const Point<T> off = step_to_place(seen_point<dimensions>(number, straight), place);
-    const Point<T> bent = to_film<dimensions>(places.cosine[i], places.sine[i], off);
+    const Point<T> position{middle.x + at * lines.edge_x[i], middle.y + at * lines.edge_y[i]};
+    const Point<T> off = newton_step(seen_point<dimensions>(number, straight), position);
+    const Point<T> bent = to_film<dimensions>(positions.cosine[i], positions.sine[i], off);
     line_x[i] += per_scale * bent.x / at, line_y[i] += per_scale * bent.y / at;
   }
   cut_by_edges<block>(iris, begin_x, begin_y, line_x, line_y, from, to);
@@ -119,27 +122,28 @@ PETZVAL_INLINE void cut_by_iris(const PolygonGrid<dimensions, R>& grid, const Pl
 
 /// Samples the polygons, or the part of each polygon inside the iris.
 template <std::size_t block, bool obscured, bool stopped, int dimensions, class R, class T>
-PETZVAL_INLINE void sample_polygons(const PolygonGrid<dimensions, R>& grid, const Places<block, T>& places, const T* u,
-                                    const T* v, T* x, T* y, T* area) noexcept {
+PETZVAL_INLINE void sample_polygons(const PolygonGrid<dimensions, R>& grid, const CellPositions<block, T>& positions,
+                                    const T* u, const T* v, T* x, T* y, T* area) noexcept {
   using L = CellLayout<dimensions>;
   constexpr auto corners = static_cast<std::int32_t>(polygon_corners);
-  T target[block], whole[block], behind[block], beyond[block];
+  T target[block], total_area[block], behind[block], beyond[block];
   std::int32_t sector[block];
-  const auto polygon = [&grid, &places](std::size_t i) {
-    return CellPolygon<dimensions, obscured, R, T>{grid.cells, places.cell[i] * L::size, places.t[i], places.s[i]};
+  const auto polygon = [&grid, &positions](std::size_t i) {
+    return CellPolygon<dimensions, obscured, R, T>{grid.cells, positions.cell[i] * L::size, positions.t[i],
+                                                   positions.s[i]};
   };
   const R early = grid.corrections > 0 ? R(0) : R(0.5), last = static_cast<R>(corners - 1);
   PETZVAL_INDEPENDENT
   for (std::size_t i = 0; i < block; ++i) {
     const auto own = polygon(i);
-    whole[i] = places.lit[i] * own.whole();
+    total_area[i] = positions.lit[i] * own.total_area();
     // Interpolated areas may be negative and give meaningless fractions; the clamp keeps the sector number valid.
-    target[i] =
-        core_detail::clamped(own.share_of(core_detail::clamped(u[i]), whole[i], places.cosine[i], places.sine[i]));
-    const T expected = own.expected(target[i], whole[i]) - early;
+    target[i] = core_detail::clamped(
+        own.fraction_of_sample(core_detail::clamped(u[i]), total_area[i], positions.cosine[i], positions.sine[i]));
+    const T expected = own.expected(target[i], total_area[i]) - early;
     const T above = expected > R(0) ? expected : T(0);
     sector[i] = static_cast<std::int32_t>(value_of(above < last ? above : T(last)));
-    target[i] = target[i] * whole[i];
+    target[i] = target[i] * total_area[i];
   }
   // Sectors have nearly equal areas: the target lies in this sector, in the next, or close to these.
   for (int step = 0; step < grid.corrections; ++step) {
@@ -169,10 +173,10 @@ PETZVAL_INLINE void sample_polygons(const PolygonGrid<dimensions, R>& grid, cons
   const auto put = [&](std::size_t i, const Point<T>& p, const T& lit) {
     const Point<T> middle = polygon(i).middle();
     const Point<T> from_axis = dimensions == 1 ? Point<T>{p.x, middle.y + p.y} : middle + p;
-    const Point<T> place = to_film<dimensions>(places.cosine[i], places.sine[i], from_axis);
+    const Point<T> position = to_film<dimensions>(positions.cosine[i], positions.sine[i], from_axis);
     const T some = lit > R(0) ? T(1) : T(0);
-    x[i] = some * place.x;
-    y[i] = some * place.y;
+    x[i] = some * position.x;
+    y[i] = some * position.y;
     area[i] = some * lit;
   };
   if constexpr (!stopped) {
@@ -181,7 +185,7 @@ PETZVAL_INLINE void sample_polygons(const PolygonGrid<dimensions, R>& grid, cons
     for (std::size_t i = 0; i < block; ++i) {
       const Sector<T> own = polygon(i).sector(sector[i]);
       const T along = along_edge(i, own);
-      put(i, own.at(root_of(own.squared_way(core_detail::clamped(v[i]))), along), whole[i]);
+      put(i, own.at(root_of(own.squared_radius(core_detail::clamped(v[i]))), along), total_area[i]);
     }
   } else {
     Lines<block, T> lines;
@@ -193,41 +197,41 @@ PETZVAL_INLINE void sample_polygons(const PolygonGrid<dimensions, R>& grid, cons
       const Point<T> edge = own.at(T(1), lines.along[i]);
       lines.edge_x[i] = edge.x, lines.edge_y[i] = edge.y;
     }
-    cut_by_iris<block>(grid, places, lines);
+    clip_by_iris<block>(grid, positions, lines);
     PETZVAL_INDEPENDENT
     for (std::size_t i = 0; i < block; ++i) {
       Sector<T> own{};  // for the obscured interval only
       if constexpr (obscured) own = polygon(i).sector(sector[i]);
-      const T first = own.share_within(lines.from[i] * lines.from[i]);
-      const T share = own.share_within(lines.to[i] * lines.to[i]) - first;
-      const T way = root_of(own.squared_way(first + core_detail::clamped(v[i]) * share));
-      put(i, {way * lines.edge_x[i], way * lines.edge_y[i]}, whole[i] * share);
+      const T first = own.fraction_within(lines.from[i] * lines.from[i]);
+      const T fraction = own.fraction_within(lines.to[i] * lines.to[i]) - first;
+      const T radius = root_of(own.squared_radius(first + core_detail::clamped(v[i]) * fraction));
+      put(i, {radius * lines.edge_x[i], radius * lines.edge_y[i]}, total_area[i] * fraction);
     }
   }
 }
 
 /// Samples the iris and maps the samples to the pupil plane.
 template <std::size_t block, int dimensions, class R, class T>
-PETZVAL_INLINE void sample_iris(const PolygonGrid<dimensions, R>& grid, const Places<block, T>& places, const T* u,
-                                const T* v, T* x, T* y, T* area) noexcept {
+PETZVAL_INLINE void sample_iris(const PolygonGrid<dimensions, R>& grid, const CellPositions<block, T>& positions,
+                                const T* u, const T* v, T* x, T* y, T* area) noexcept {
   using S = StopLayout<dimensions>;
   const GridStop<R> stop = grid.stop;
   const auto fill = [&](const auto& point_at) {
     PETZVAL_INDEPENDENT
     for (std::size_t i = 0; i < block; ++i) {
-      const std::int32_t begin = places.cell[i] * S::size;
+      const std::int32_t begin = positions.cell[i] * S::size;
       const R scale = stop.cells[begin + S::scale];
       const auto [sx, sy] = point_at(core_detail::clamped(R(value_of(u[i]))), core_detail::clamped(R(value_of(v[i]))));
       const Point<T> own =
-          to_grid<dimensions>(places.cosine[i], places.sine[i], Point<T>{T(scale * sx), T(scale * sy)});
+          to_grid<dimensions>(positions.cosine[i], positions.sine[i], Point<T>{T(scale * sx), T(scale * sy)});
       const auto number = [&](int k) {
-        return linear_in_cell<dimensions>(stop.cells, begin + S::map + S::linear * k, places.t[i], places.s[i]);
+        return linear_in_cell<dimensions>(stop.cells, begin + S::map + S::linear * k, positions.t[i], positions.s[i]);
       };
       const SeenPoint<T> seen = seen_point<dimensions>(number, own);
-      const Point<T> place = to_film<dimensions>(places.cosine[i], places.sine[i], seen.place);
-      x[i] = places.lit[i] * place.x;
-      y[i] = places.lit[i] * place.y;
-      area[i] = places.lit[i] * (stop.area * scale * scale) * seen.area();
+      const Point<T> position = to_film<dimensions>(positions.cosine[i], positions.sine[i], seen.position);
+      x[i] = positions.lit[i] * position.x;
+      y[i] = positions.lit[i] * position.y;
+      area[i] = positions.lit[i] * (stop.area * scale * scale) * seen.area();
     }
   };
   if (stop.iris.count == 0) {
@@ -242,44 +246,45 @@ template <std::size_t block, bool obscured, bool stopped, int dimensions, class 
 PETZVAL_INLINE void sample_block(const PolygonGrid<dimensions, R>& given, const T* film_x, const T* film_y, const T* u,
                                  const T* v, const std::int32_t* wavelength, T* x, T* y, T* area) noexcept {
   const PolygonGrid<dimensions, R> grid = given;  // a copy that no output can alias
-  Places<block, T> places;
-  find_places(grid, film_x, film_y, u, v, wavelength, places);
+  CellPositions<block, T> positions;
+  find_cell_positions(grid, film_x, film_y, u, v, wavelength, positions);
   if constexpr (!stopped) {
-    sample_polygons<block, obscured, false>(grid, places, u, v, x, y, area);
+    sample_polygons<block, obscured, false>(grid, positions, u, v, x, y, area);
   } else {
     using S = StopLayout<dimensions>;
-    R drawn[block], count = 0;
+    R samples_iris[block], count = 0;
     PETZVAL_INDEPENDENT
-    for (std::size_t i = 0; i < block; ++i) drawn[i] = grid.stop.cells[places.cell[i] * S::size + S::drawn];
-    for (std::size_t i = 0; i < block; ++i) count += drawn[i];
+    for (std::size_t i = 0; i < block; ++i)
+      samples_iris[i] = grid.stop.cells[positions.cell[i] * S::size + S::samples_iris];
+    for (std::size_t i = 0; i < block; ++i) count += samples_iris[i];
     if (count == static_cast<R>(block)) {
-      sample_iris<block>(grid, places, u, v, x, y, area);
+      sample_iris<block>(grid, positions, u, v, x, y, area);
       return;
     }
     if (count == R(0)) {
-      sample_polygons<block, obscured, true>(grid, places, u, v, x, y, area);
+      sample_polygons<block, obscured, true>(grid, positions, u, v, x, y, area);
       return;
     }
     T iris_x[block], iris_y[block], iris_area[block], polygon_x[block], polygon_y[block], polygon_area[block];
-    sample_iris<block>(grid, places, u, v, iris_x, iris_y, iris_area);
-    sample_polygons<block, obscured, true>(grid, places, u, v, polygon_x, polygon_y, polygon_area);
+    sample_iris<block>(grid, positions, u, v, iris_x, iris_y, iris_area);
+    sample_polygons<block, obscured, true>(grid, positions, u, v, polygon_x, polygon_y, polygon_area);
     PETZVAL_INDEPENDENT
     for (std::size_t i = 0; i < block; ++i) {
-      x[i] = drawn[i] > R(0) ? iris_x[i] : polygon_x[i];
-      y[i] = drawn[i] > R(0) ? iris_y[i] : polygon_y[i];
-      area[i] = drawn[i] > R(0) ? iris_area[i] : polygon_area[i];
+      x[i] = samples_iris[i] > R(0) ? iris_x[i] : polygon_x[i];
+      y[i] = samples_iris[i] > R(0) ? iris_y[i] : polygon_y[i];
+      area[i] = samples_iris[i] > R(0) ? iris_area[i] : polygon_area[i];
     }
   }
 }
 
 /// Finds the sectors that contain the directions of positions relative to the middle, by bisection.
 template <std::size_t block, int dimensions, class R>
-PETZVAL_INLINE void find_sectors(const PolygonGrid<dimensions, R>& grid, const Places<block, R>& places,
+PETZVAL_INLINE void find_sectors(const PolygonGrid<dimensions, R>& grid, const CellPositions<block, R>& positions,
                                  const Point<R>* q, std::int32_t* sector) noexcept {
   constexpr auto corners = static_cast<std::int32_t>(polygon_corners);
   const auto corner = [&](std::size_t i, std::int32_t k) {
-    return CellPolygon<dimensions, false, R, R>{grid.cells, places.cell[i] * CellLayout<dimensions>::size, places.t[i],
-                                                places.s[i]}
+    return CellPolygon<dimensions, false, R, R>{grid.cells, positions.cell[i] * CellLayout<dimensions>::size,
+                                                positions.t[i], positions.s[i]}
         .corner(k);
   };
   std::int32_t half[block];
@@ -305,19 +310,20 @@ PETZVAL_INLINE void find_sectors(const PolygonGrid<dimensions, R>& grid, const P
 /// Stop points of positions in the pupil plane, in the frame of the film and divided by the scale of the iris, and the
 /// pupil areas that samples at these positions represent.
 template <std::size_t block, int dimensions, class R>
-PETZVAL_INLINE void find_stop_points(const PolygonGrid<dimensions, R>& grid, const Places<block, R>& places, const R* x,
-                                     const R* y, Point<R>* points, R* area) noexcept {
+PETZVAL_INLINE void find_stop_points(const PolygonGrid<dimensions, R>& grid, const CellPositions<block, R>& positions,
+                                     const R* x, const R* y, Point<R>* points, R* area) noexcept {
   using S = StopLayout<dimensions>;
   PETZVAL_INDEPENDENT
   for (std::size_t i = 0; i < block; ++i) {
-    const std::int32_t begin = places.cell[i] * S::size;
+    const std::int32_t begin = positions.cell[i] * S::size;
     const auto number = [&](int k) {
-      return linear_in_cell<dimensions>(grid.stop.cells, begin + S::map + S::linear * k, places.t[i], places.s[i]);
+      return linear_in_cell<dimensions>(grid.stop.cells, begin + S::map + S::linear * k, positions.t[i],
+                                        positions.s[i]);
     };
-    const Point<R> place = to_grid<dimensions>(places.cosine[i], places.sine[i], Point<R>{x[i], y[i]});
-    const StopPlace<R> found = stop_place<dimensions>(number, place);
+    const Point<R> position = to_grid<dimensions>(positions.cosine[i], positions.sine[i], Point<R>{x[i], y[i]});
+    const StopSolution<R> found = solve_stop_point<dimensions>(number, position);
     const R scale = grid.stop.cells[begin + S::scale];
-    points[i] = R(1) / scale * to_film<dimensions>(places.cosine[i], places.sine[i], found.point);
+    points[i] = R(1) / scale * to_film<dimensions>(positions.cosine[i], positions.sine[i], found.point);
     const R near = found.step2 < R(1e-6) ? R(1) : R(0);
     area[i] = near * grid.stop.area * scale * scale * seen_point<dimensions>(number, found.point).area();
   }
@@ -328,19 +334,19 @@ template <std::size_t block, bool obscured, bool stopped, int dimensions, class 
 void areas_block(const PolygonGrid<dimensions, R>& given, const R* film_x, const R* film_y, const R* x, const R* y,
                  const std::int32_t* wavelength, R* area) noexcept {
   const PolygonGrid<dimensions, R> grid = given;
-  Places<block, R> places;
-  find_places(grid, film_x, film_y, x, y, wavelength, places);
+  CellPositions<block, R> positions;
+  find_cell_positions(grid, film_x, film_y, x, y, wavelength, positions);
   const auto polygon = [&](std::size_t i) {
-    return CellPolygon<dimensions, obscured, R, R>{grid.cells, places.cell[i] * CellLayout<dimensions>::size,
-                                                   places.t[i], places.s[i]};
+    return CellPolygon<dimensions, obscured, R, R>{grid.cells, positions.cell[i] * CellLayout<dimensions>::size,
+                                                   positions.t[i], positions.s[i]};
   };
   Point<R> q[block];
   PETZVAL_INDEPENDENT
   for (std::size_t i = 0; i < block; ++i) {
-    q[i] = to_grid<dimensions>(places.cosine[i], places.sine[i], Point<R>{x[i], y[i]}) - polygon(i).middle();
+    q[i] = to_grid<dimensions>(positions.cosine[i], positions.sine[i], Point<R>{x[i], y[i]}) - polygon(i).middle();
   }
   std::int32_t sector[block];
-  find_sectors<block>(grid, places, q, sector);
+  find_sectors<block>(grid, positions, q, sector);
   Lines<block, R> lines;
   PETZVAL_INDEPENDENT
   for (std::size_t i = 0; i < block; ++i) lines.from[i] = R(0), lines.to[i] = R(1);
@@ -353,34 +359,35 @@ void areas_block(const PolygonGrid<dimensions, R>& given, const R* film_x, const
       const Point<R> edge = own.at(R(1), lines.along[i]);
       lines.edge_x[i] = edge.x, lines.edge_y[i] = edge.y;
     }
-    cut_by_iris<block>(grid, places, lines);
+    clip_by_iris<block>(grid, positions, lines);
   }
   PETZVAL_INDEPENDENT
   for (std::size_t i = 0; i < block; ++i) {
     const Sector<R> own = polygon(i).sector(sector[i]);
-    const R behind = turn(own.a, q[i]), before = turn(q[i], own.b), whole = turn(own.a, own.b);
-    const R way = (behind + before) / (whole > R(0) ? whole : R(1)), squared = way * way;
+    const R behind = turn(own.a, q[i]), before = turn(q[i], own.b), total_area = turn(own.a, own.b);
+    const R radius = (behind + before) / (total_area > R(0) ? total_area : R(1)), squared = radius * radius;
     const R from = lines.from[i] * lines.from[i], to = lines.to[i] * lines.to[i];
-    const bool inside = (behind >= R(0)) & (before >= R(0)) & (whole > R(0)) & (squared <= to) & (squared >= from);
+    const bool inside = (behind >= R(0)) & (before >= R(0)) & (total_area > R(0)) & (squared <= to) & (squared >= from);
     const bool dark = (squared >= own.obscured_from) & (squared < own.obscured_from + own.obscured);
-    const R share = stopped ? own.share_within(to) - own.share_within(from) : R(1);
-    area[i] = (inside & !dark) ? places.lit[i] * polygon(i).whole() * share : R(0);
+    const R fraction = stopped ? own.fraction_within(to) - own.fraction_within(from) : R(1);
+    area[i] = (inside & !dark) ? positions.lit[i] * polygon(i).total_area() * fraction : R(0);
   }
   if constexpr (stopped) {
     using S = StopLayout<dimensions>;
-    R drawn[block], count = 0;
+    R samples_iris[block], count = 0;
     PETZVAL_INDEPENDENT
-    for (std::size_t i = 0; i < block; ++i) drawn[i] = grid.stop.cells[places.cell[i] * S::size + S::drawn];
-    for (std::size_t i = 0; i < block; ++i) count += drawn[i];
+    for (std::size_t i = 0; i < block; ++i)
+      samples_iris[i] = grid.stop.cells[positions.cell[i] * S::size + S::samples_iris];
+    for (std::size_t i = 0; i < block; ++i) count += samples_iris[i];
     if (count == R(0)) return;
     Point<R> points[block];
     R iris_area[block];
-    find_stop_points<block>(grid, places, x, y, points, iris_area);
+    find_stop_points<block>(grid, positions, x, y, points, iris_area);
     PETZVAL_INDEPENDENT
     for (std::size_t i = 0; i < block; ++i) {
       const Point<R>& p = points[i];
       const bool in_rim = p.x * p.x + p.y * p.y <= iris_detail::rim_squared<R>;
-      iris_area[i] = in_rim ? places.lit[i] * iris_area[i] : R(0);
+      iris_area[i] = in_rim ? positions.lit[i] * iris_area[i] : R(0);
     }
     for (std::size_t k = 0; k < grid.stop.iris.count; ++k) {
       PETZVAL_INDEPENDENT
@@ -389,7 +396,7 @@ void areas_block(const PolygonGrid<dimensions, R>& given, const R* film_x, const
       }
     }
     PETZVAL_INDEPENDENT
-    for (std::size_t i = 0; i < block; ++i) area[i] = drawn[i] > R(0) ? iris_area[i] : area[i];
+    for (std::size_t i = 0; i < block; ++i) area[i] = samples_iris[i] > R(0) ? iris_area[i] : area[i];
   }
 }
 
@@ -398,14 +405,14 @@ template <std::size_t block, int dimensions, class R>
 void stop_points_block(const PolygonGrid<dimensions, R>& given, const R* film_x, const R* film_y, const R* x,
                        const R* y, const std::int32_t* wavelength, R* stop_x, R* stop_y) noexcept {
   const PolygonGrid<dimensions, R> grid = given;
-  Places<block, R> places;
-  find_places(grid, film_x, film_y, x, y, wavelength, places);
+  CellPositions<block, R> positions;
+  find_cell_positions(grid, film_x, film_y, x, y, wavelength, positions);
   Point<R> points[block];
   R area[block];
-  find_stop_points<block>(grid, places, x, y, points, area);
+  find_stop_points<block>(grid, positions, x, y, points, area);
   PETZVAL_INDEPENDENT
   for (std::size_t i = 0; i < block; ++i) {
-    const R scale = grid.stop.cells[places.cell[i] * StopLayout<dimensions>::size + StopLayout<dimensions>::scale];
+    const R scale = grid.stop.cells[positions.cell[i] * StopLayout<dimensions>::size + StopLayout<dimensions>::scale];
     stop_x[i] = scale * points[i].x, stop_y[i] = scale * points[i].y;
   }
 }
@@ -432,7 +439,7 @@ inline void by_blocks(const Grid& grid, std::size_t count, const R* const (&in)[
     for (std::size_t i = 0; i < n; ++i) w[i] = each[i] < grid.wavelengths ? each[i] : -1;
   };
   std::size_t begin = 0;
-  const auto whole = [&](auto block) {
+  const auto total_area = [&](auto block) {
     for (; begin + block <= count; begin += block) {
       find_wavelengths(begin, block);
       const R* const here[4] = {in[0] + begin, in[1] + begin, in[2] + begin, in[3] + begin};
@@ -441,9 +448,9 @@ inline void by_blocks(const Grid& grid, std::size_t count, const R* const (&in)[
       body(block, here, w, to);
     }
   };
-  whole(Block<whole_block>());
-  whole(Block<half_block>());
-  if constexpr (small_block < half_block) whole(Block<small_block>());
+  total_area(Block<whole_block>());
+  total_area(Block<half_block>());
+  if constexpr (small_block < half_block) total_area(Block<small_block>());
   const std::size_t n = count - begin;
   if (n == 0) return;
   find_wavelengths(begin, n);

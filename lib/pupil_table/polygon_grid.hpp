@@ -22,9 +22,9 @@ namespace petzval::pupil_table_detail {
 template <int dimensions>
 struct CellLayout {
   static constexpr std::int32_t linear = 1 << dimensions, area_terms = dimensions == 1 ? 4 : 9;
-  static constexpr std::int32_t middle = 0;          ///< x and y
-  static constexpr std::int32_t whole = 2 * linear;  ///< area
-  static constexpr std::int32_t sectors = whole + area_terms, sector = 2 * linear + area_terms;
+  static constexpr std::int32_t middle = 0;               ///< x and y
+  static constexpr std::int32_t total_area = 2 * linear;  ///< area
+  static constexpr std::int32_t sectors = total_area + area_terms, sector = 2 * linear + area_terms;
   static constexpr std::int32_t area = 2 * linear;  ///< in a sector, after x and y of its first corner
   /// [64] begin and width of the obscured interval of each sector; only with one dimension.
   static constexpr std::int32_t obscured = sectors + sector * (static_cast<std::int32_t>(polygon_corners) + 1);
@@ -40,9 +40,9 @@ struct StopLayout {
   /// x) 1, y, x^2, y^2, x^2 y, y^3, r^2, r y^2, r^2 y; for pupil x divided by x: 1, y, x^2, y^2, r y, r^2. Two
   /// dimensions: for pupil x, then for pupil y: 1, x, y, x^2, xy, y^2, x^3, x^2 y, x y^2, y^3.
   static constexpr std::int32_t terms = dimensions == 1 ? 15 : 20;
-  static constexpr std::int32_t drawn = 0;  ///< 1 to sample the iris; 0 to sample the polygon inside the iris
-  static constexpr std::int32_t scale = 1;  ///< enlarges the iris, so that no ray is missed
-  static constexpr std::int32_t map = 2;    ///< the terms, each linear in t and s
+  static constexpr std::int32_t samples_iris = 0;  ///< 1 to sample the iris; 0 to sample the polygon inside the iris
+  static constexpr std::int32_t scale = 1;         ///< enlarges the iris, so that no ray is missed
+  static constexpr std::int32_t map = 2;           ///< the terms, each linear in t and s
   static constexpr std::int32_t middle = map + linear * terms, corners = middle + 2 * linear;
   static constexpr std::int32_t size = corners + 2 * linear * (static_cast<std::int32_t>(polygon_corners) + 1);
 };
@@ -122,7 +122,7 @@ PETZVAL_INLINE T fraction_of(const T& x) noexcept {
 
 /// The cell that contains a film point; cell 0 if there is no such cell.
 template <class T>
-struct FilmPlace {
+struct CellPosition {
   T t, s;                    ///< fractions in the cell
   T cosine, sine;            ///< direction of the film point; with two dimensions, signs of its y and x
   std::int32_t known, cell;  ///< known: 1 if the film point has a cell; cell: index
@@ -131,28 +131,24 @@ struct FilmPlace {
 // Inlined: a call would copy the grid with wide registers. Compilers do not clear these registers (vzeroupper), and
 // later code for narrow registers would stall.
 template <class R, class T>
-PETZVAL_INLINE FilmPlace<T> place_of(const PolygonGrid<1, R>& grid, const T& film_x, const T& film_y,
-                                     std::int32_t sound, std::int32_t wavelength) noexcept {
+PETZVAL_INLINE CellPosition<T> cell_position(const PolygonGrid<1, R>& grid, const T& film_x, const T& film_y,
+                                             std::int32_t sound, std::int32_t wavelength) noexcept {
   const std::int32_t last = grid.rows - 1;
   const T r2 = film_x * film_x + film_y * film_y;
   const T r = root_of(r2);
   const std::int32_t known = (r <= grid.reach) & (wavelength >= 0) & sound;
   const std::int32_t off_axis = known & (r2 > axis_r2<R>);
   const T per_length = T(1) / (off_axis ? r : T(1));
-  const T place = known ? T(r * grid.rows_per_mm) : T(0);
-  const auto at = static_cast<std::int32_t>(value_of(place));
+  const T position = known ? T(r * grid.rows_per_mm) : T(0);
+  const auto at = static_cast<std::int32_t>(value_of(position));
   const std::int32_t inner = at < last ? at : last;
-  return {place - static_cast<R>(inner),
-          T(0),
-          off_axis ? T(film_y * per_length) : T(1),
-          off_axis ? T(film_x * per_length) : T(0),
-          known,
-          known ? inner + wavelength * grid.rows : 0};
+  return {position - static_cast<R>(inner),         T(0),  off_axis ? T(film_y * per_length) : T(1),
+          off_axis ? T(film_x * per_length) : T(0), known, known ? inner + wavelength * grid.rows : 0};
 }
 
 template <class R, class T>
-PETZVAL_INLINE FilmPlace<T> place_of(const PolygonGrid<2, R>& grid, const T& film_x, const T& film_y,
-                                     std::int32_t sound, std::int32_t wavelength) noexcept {
+PETZVAL_INLINE CellPosition<T> cell_position(const PolygonGrid<2, R>& grid, const T& film_x, const T& film_y,
+                                             std::int32_t sound, std::int32_t wavelength) noexcept {
   const T sign_x = film_x < R(0) ? T(-1) : T(1), sign_y = film_y < R(0) ? T(-1) : T(1);
   const T x = film_x < R(0) ? T(-film_x) : film_x, y = film_y < R(0) ? T(-film_y) : film_y;
   constexpr R end = R(1) + R(1e-6);  // the rounded edge still belongs to the film
@@ -226,7 +222,7 @@ struct CellPolygon {
   }
   /// Area of the sectors before sector k.
   T area_before(std::int32_t k) const noexcept { return area_at(begin + L::sectors + L::sector * k + L::area); }
-  T whole() const noexcept { return area_at(begin + L::whole); }
+  T total_area() const noexcept { return area_at(begin + L::total_area); }
   Sector<T> sector(std::int32_t k) const noexcept {
     Sector<T> result{corner(k), corner(k + 1), T(0), T(0)};
     if constexpr (obscured && dimensions == 1) {
@@ -236,38 +232,38 @@ struct CellPolygon {
     return result;
   }
   /// Fraction of the polygon's area in the half towards +x.
-  /// @param whole area of the polygon
-  T right_share(const T& whole) const noexcept {
-    return area_before(static_cast<std::int32_t>(polygon_corners / 2)) / (whole > R(0) ? whole : T(1));
+  /// @param total_area area of the polygon
+  T right_fraction(const T& total_area) const noexcept {
+    return area_before(static_cast<std::int32_t>(polygon_corners / 2)) / (total_area > R(0) ? total_area : T(1));
   }
-  /// Expected sector number at which a fraction `share` of the area ends, if all sectors (or the sectors of each half)
-  /// have equal areas.
-  T expected(const T& share, const T& whole) const noexcept {
+  /// Expected sector number at which a fraction `fraction` of the area ends, if all sectors (or the sectors of each
+  /// half) have equal areas.
+  T expected(const T& fraction, const T& total_area) const noexcept {
     if constexpr (dimensions == 1) {
-      return share * R(polygon_corners);
+      return fraction * R(polygon_corners);
     } else {
       // Branch-free: select the half that contains the share, then scale within the half.
-      const T right = right_share(whole);
-      const T in_left = share < right ? T(0) : T(1);
+      const T right = right_fraction(total_area);
+      const T in_left = fraction < right ? T(0) : T(1);
       const T first = in_left * right, own = right + in_left * (T(1) - T(2) * right);
-      return T(polygon_corners) / T(2) * (in_left + (share - first) / (own > R(0) ? own : T(1)));
+      return T(polygon_corners) / T(2) * (in_left + (fraction - first) / (own > R(0) ? own : T(1)));
     }
   }
   /// Converts u, which starts at +y of the film, to the fraction of the area from corner 0 in the order of corners, and
   /// back. With two dimensions, the order is reversed in every second quadrant.
-  T share_of(const T& u, const T& whole, const T& cosine, const T& sine) const noexcept {
+  T fraction_of_sample(const T& u, const T& total_area, const T& cosine, const T& sine) const noexcept {
     if constexpr (dimensions == 1) {
       return fraction_of(T(u - turn_of(sine, cosine)));
     } else {
       const T across = (T(1) - sine) / T(2) + sine * u;
-      return fraction_of(T((T(1) - cosine) / T(2) * right_share(whole) + cosine * across));
+      return fraction_of(T((T(1) - cosine) / T(2) * right_fraction(total_area) + cosine * across));
     }
   }
-  T u_of(const T& share, const T& whole, const T& cosine, const T& sine) const noexcept {
+  T u_of(const T& fraction, const T& total_area, const T& cosine, const T& sine) const noexcept {
     if constexpr (dimensions == 1) {
-      return fraction_of(T(share + turn_of(sine, cosine)));
+      return fraction_of(T(fraction + turn_of(sine, cosine)));
     } else {
-      const T across = cosine * (share - (T(1) - cosine) / T(2) * right_share(whole));
+      const T across = cosine * (fraction - (T(1) - cosine) / T(2) * right_fraction(total_area));
       return fraction_of(T(sine * (across - (T(1) - sine) / T(2))));
     }
   }
@@ -289,7 +285,7 @@ struct CellPolygon {
 /// Image of a stop point in the pupil plane, in the frame of the grid, with derivatives by the stop point.
 template <class T>
 struct SeenPoint {
-  Point<T> place, by_x, by_y;
+  Point<T> position, by_x, by_y;
   PETZVAL_INLINE T area() const noexcept {  ///< area of the image of a unit area of the stop
     const T determinant = by_x.x * by_y.y - by_y.x * by_x.y;
     return determinant < T(0) ? T(-determinant) : determinant;
@@ -323,33 +319,33 @@ PETZVAL_INLINE SeenPoint<T> seen_point(const Number& number, const Point<T>& sto
       return number(o) + x * (c1 + c3 * x + c4 * y + c6 * xx + c8 * yy) + y * (c2 + c5 * y + c7 * xx + c9 * yy);
     };
     SeenPoint<T> result;
-    result.place.x = along(0, result.by_x.x, result.by_y.x);
-    result.place.y = along(10, result.by_x.y, result.by_y.y);
+    result.position.x = along(0, result.by_x.x, result.by_y.x);
+    result.position.y = along(10, result.by_x.y, result.by_y.y);
     return result;
   }
 }
 
-/// A step of Newton's method towards the stop point whose image is `place`.
+/// A step of Newton's method towards the stop point whose image is `position`.
 template <class T>
-PETZVAL_INLINE Point<T> step_to_place(const SeenPoint<T>& seen, const Point<T>& place) noexcept {
+PETZVAL_INLINE Point<T> newton_step(const SeenPoint<T>& seen, const Point<T>& position) noexcept {
   const auto& [at, by_x, by_y] = seen;
   const T determinant = by_x.x * by_y.y - by_y.x * by_x.y;
   const T per = T(1) / determinant;
-  const Point<T> miss = place - at;
+  const Point<T> miss = position - at;
   return {(by_y.y * miss.x - by_y.x * miss.y) * per, (by_x.x * miss.y - by_x.y * miss.x) * per};
 }
 
 /// A stop point found by Newton's method, and the square of the last step.
 template <class T>
-struct StopPlace {
+struct StopSolution {
   Point<T> point;
   T step2;
 };
 template <int dimensions, class T, class Number>
-PETZVAL_INLINE StopPlace<T> stop_place(const Number& number, const Point<T>& place) noexcept {
-  StopPlace<T> result{{T(0), T(0)}, T(0)};
+PETZVAL_INLINE StopSolution<T> solve_stop_point(const Number& number, const Point<T>& position) noexcept {
+  StopSolution<T> result{{T(0), T(0)}, T(0)};
   for (int i = 0; i < 4; ++i) {
-    const Point<T> step = step_to_place(seen_point<dimensions>(number, result.point), place);
+    const Point<T> step = newton_step(seen_point<dimensions>(number, result.point), position);
     result.step2 = step.x * step.x + step.y * step.y;
     // Stay near the rim: outside, the polynomials are not fitted.
     const T x = result.point.x + step.x, y = result.point.y + step.y, r2 = x * x + y * y;
@@ -362,7 +358,8 @@ PETZVAL_INLINE StopPlace<T> stop_place(const Number& number, const Point<T>& pla
 
 /// Clips the interval [from, to] of a line from a to a + d to the inside of a straight edge of the iris.
 template <class R, class T>
-PETZVAL_INLINE void cut_by_edge(R nx, R ny, R distance, const Point<T>& a, const Point<T>& d, T& from, T& to) noexcept {
+PETZVAL_INLINE void clip_by_edge(R nx, R ny, R distance, const Point<T>& a, const Point<T>& d, T& from,
+                                 T& to) noexcept {
   const T outside = nx * a.x + ny * a.y - distance, linear = nx * d.x + ny * d.y;
   // The quotient is not used if the line is parallel to the edge.
   const T crosses = -outside / linear;
@@ -374,8 +371,8 @@ PETZVAL_INLINE void cut_by_edge(R nx, R ny, R distance, const Point<T>& a, const
 }
 /// Clips the interval [from, to] of a line from a to a + d to the inside of an edge of the iris (IrisEdge).
 template <class R, class T>
-PETZVAL_INLINE void cut_by_edge(R nx, R ny, R bend, R distance, const Point<T>& a, const Point<T>& d, T& from,
-                                T& to) noexcept {
+PETZVAL_INLINE void clip_by_edge(R nx, R ny, R bend, R distance, const Point<T>& a, const Point<T>& d, T& from,
+                                 T& to) noexcept {
   const T square = bend * (d.x * d.x + d.y * d.y);
   const T linear = (nx * d.x + ny * d.y) + T(2) * bend * (a.x * d.x + a.y * d.y);
   const T outside = (nx * a.x + ny * a.y) + bend * (a.x * a.x + a.y * a.y) - distance;

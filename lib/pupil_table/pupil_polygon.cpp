@@ -12,22 +12,22 @@ namespace petzval::pupil_table_detail {
 namespace {
 
 using pupil_detail::Extent;
-using Place = Point<double>;  // in the plane, relative to a middle
+using Position = Point<double>;  // in the plane, relative to a middle
 
-Place place_of(const Vec2<double>& p) noexcept { return {p[0], p[1]}; }
+Position position_of(const Vec2<double>& p) noexcept { return {p[0], p[1]}; }
 
 /// The outer edge of a region: a closed line around its middle, starting at +y. For each of its points, the ends of the
 /// obscuration are given as fractions of the distance from the middle.
 struct Edge {
-  std::vector<Place> points;
+  std::vector<Position> points;
   std::vector<double> obscured_from, obscured_to;
   double area = 0;  // inside the outer edge
 };
 
 /// Intersection of the extended chords before and after the chord from b to c: between b and c the boundary of a convex
 /// region stays inside. Returns b if there is no such intersection.
-Place apex(const Place& a, const Place& b, const Place& c, const Place& d) noexcept {
-  const Place u = b - a, v = c - d, w = c - b;
+Position apex(const Position& a, const Position& b, const Position& c, const Position& d) noexcept {
+  const Position u = b - a, v = c - d, w = c - b;
   const double determinant = turn(u, v);
   const double size = std::sqrt((u.x * u.x + u.y * u.y) * (v.x * v.x + v.y * v.y));
   if (!(std::abs(determinant) > 1e-9 * size)) return b;
@@ -38,7 +38,7 @@ Place apex(const Place& a, const Place& b, const Place& c, const Place& d) noexc
 }
 
 /// Intersection of the chord from a to b with the line from the middle towards +y.
-Place crossing(const Place& a, const Place& b) noexcept {
+Position crossing(const Position& a, const Position& b) noexcept {
   const double across = b.x - a.x, t = across > 0 ? std::clamp(-a.x / across, 0.0, 1.0) : 0;
   return a + t * (b - a);
 }
@@ -48,7 +48,7 @@ Edge edge_of(const PupilRegion& region, PolygonFit fit) {
   const std::size_t n = region.directions;
   const std::vector<Extent> found = pupil_detail::extents(region);
   std::vector<Extent> extents = found;
-  std::vector<Place> p(n);
+  std::vector<Position> p(n);
   for (std::size_t k = 0; k < n; ++k) {
     if (found[k].lit) p[k] = {found[k].rim.x - region.middle[0], found[k].rim.y - region.middle[1]};
   }
@@ -58,25 +58,25 @@ Edge edge_of(const PupilRegion& region, PolygonFit fit) {
     for (const std::size_t beside : {(k + 1) % n, (k + n - 1) % n}) {
       if (found[beside].to > extents[k].to) extents[k] = found[beside];
     }
-    p[k] = place_of(region.at(k, extents[k].to)) - place_of(region.middle);
+    p[k] = position_of(region.at(k, extents[k].to)) - position_of(region.middle);
   }
   Edge edge;
   for (auto* values : {&edge.obscured_from, &edge.obscured_to}) values->reserve(2 * n + 1);
   edge.points.reserve(2 * n + 1);
-  const auto add = [&](const Place& point, std::size_t k) {
+  const auto add = [&](const Position& point, std::size_t k) {
     const auto& [from, to, outer, rim, lit] = extents[k];
     edge.points.push_back(point);
     edge.obscured_from.push_back(outer > 0 ? from / outer : 0);
     edge.obscured_to.push_back(outer > 0 ? to / outer : 1);
   };
   // The first direction is half a step after +y.
-  const Place &last = p[n - 1], &first = p[0];
+  const Position &last = p[n - 1], &first = p[0];
   add(crossing(last, first), n - 1);
   for (std::size_t k = 0; k < n; ++k) {
     const std::size_t next = (k + 1) % n;
     add(p[k], k);
     edge.area += turn(p[k], p[next]) / 2;
-    const Place tip = apex(p[(k + n - 1) % n], p[k], p[next], p[(k + 2) % n]);
+    const Position tip = apex(p[(k + n - 1) % n], p[k], p[next], p[(k + 2) % n]);
     if (tip.x == p[k].x && tip.y == p[k].y) continue;
     // A smooth arc exceeds the chord by a third of the area of the triangle with the tip: tangents would meet at half
     // its height, and the arc fills two thirds of that triangle.
@@ -92,8 +92,8 @@ Edge edge_of(const PupilRegion& region, PolygonFit fit) {
 }
 
 /// Scale of the corners at which a sector just contains a position that it faces.
-double scale_for(const Sector<double>& sector, const Place& q) noexcept {
-  return turn(sector.a, sector.b) > 0 ? sector.way_to(q) : 1;
+double scale_for(const Sector<double>& sector, const Position& q) noexcept {
+  return turn(sector.a, sector.b) > 0 ? sector.relative_radius(q) : 1;
 }
 
 /// The obscuration common to all directions of a sector, as an interval of squared radial fractions.
@@ -104,13 +104,13 @@ struct Obscured {
   /// obscuration is smaller than `expected`, the obscuration of the neighbours, it is narrowed by the difference once
   /// more.
   /// @param dark true if the obscuration starts at the middle
-  void keep(const Sector<double>& sector, bool dark, const Place& begin, const Place& end,
+  void keep(const Sector<double>& sector, bool dark, const Position& begin, const Position& end,
             const Obscured& expected) noexcept {
     if (!(from < to)) return;  // already empty
     constexpr double margin = 0.002;
-    const auto squared = [&](const Place& p, double room) {
-      const double way = std::max(scale_for(sector, p), 0.0) * room;
-      return way * way;
+    const auto squared = [&](const Position& p, double factor) {
+      const double relative = std::max(scale_for(sector, p), 0.0) * factor;
+      return relative * relative;
     };
     const double first = dark ? 0 : squared(begin, 1 + margin), last = squared(end, 1 - margin);
     from = std::max(from, first + std::max(first - expected.from, 0.0));
@@ -151,12 +151,14 @@ void match_area(PupilPolygon& polygon, const PupilRegion& region, double outer_a
   const std::vector<Extent> extents = pupil_detail::extents(region);
   const auto inside = [&](double Extent::*radius) {
     double sum = 0;
-    const auto at = [&](std::size_t k) { return place_of(region.at(k, extents[k].*radius)) - place_of(region.middle); };
+    const auto at = [&](std::size_t k) {
+      return position_of(region.at(k, extents[k].*radius)) - position_of(region.middle);
+    };
     for (std::size_t k = 0; k < extents.size(); ++k) sum += turn(at(k), at((k + 1) % extents.size()));
     return sum;
   };
-  const double wanted = inside(&Extent::obscured_to) - inside(&Extent::obscured_from);
-  for (double& width : polygon.obscured) width = std::min(width * wanted / obscured, 1.0);
+  const double target = inside(&Extent::obscured_to) - inside(&Extent::obscured_from);
+  for (double& width : polygon.obscured) width = std::min(width * target / obscured, 1.0);
 }
 
 }  // namespace
@@ -171,13 +173,13 @@ void PupilPolygon::widen(double by) noexcept {
   }
 }
 
-double PupilPolygon::way_to(double x, double y) const noexcept {
-  const Place q{x - middle[0], y - middle[1]};
+double PupilPolygon::relative_radius(double x, double y) const noexcept {
+  const Position q{x - middle[0], y - middle[1]};
   const auto at = [this](std::size_t k) { return sector(k); };
   const std::size_t k = sector_facing(q, at);
   if (k == polygon_corners) return std::numeric_limits<double>::infinity();
-  const double way = sector(k).way_to(q);
-  return sector(k).obscures(way * way) ? -1 : way;
+  const double relative = sector(k).relative_radius(q);
+  return sector(k).obscures(relative * relative) ? -1 : relative;
 }
 
 PolygonSampler::PolygonSampler(const PupilPolygon& polygon) noexcept : polygon_(polygon) {
@@ -188,12 +190,12 @@ PolygonSampler::PolygonSampler(const PupilPolygon& polygon) noexcept : polygon_(
 }
 
 Vec2<double> PolygonSampler::operator()(double u, double v) const noexcept {
-  const double share = std::clamp(u, 0.0, 1.0) * area();
-  const std::size_t k = sector_of_area(share, [this](std::size_t i) { return before_[i]; });
+  const double area_before_sample = std::clamp(u, 0.0, 1.0) * area();
+  const std::size_t k = sector_of_area(area_before_sample, [this](std::size_t i) { return before_[i]; });
   const double own = before_[k + 1] - before_[k];
-  const double along = own > 0 ? std::clamp((share - before_[k]) / own, 0.0, 1.0) : 0;
+  const double along = own > 0 ? std::clamp((area_before_sample - before_[k]) / own, 0.0, 1.0) : 0;
   const Sector<double> sector = polygon_.sector(k);
-  const Place p = sector.at(std::sqrt(sector.squared_way(std::clamp(v, 0.0, 1.0))), along);
+  const Position p = sector.at(std::sqrt(sector.squared_radius(std::clamp(v, 0.0, 1.0))), along);
   return {polygon_.middle[0] + p.x, polygon_.middle[1] + p.y};
 }
 
@@ -203,14 +205,14 @@ PupilPolygon polygon_of(const PupilRegion& region, PolygonFit fit, CornerSteps s
   if (region.empty()) return polygon;
   const Edge edge = edge_of(region, fit);
   const std::size_t n = edge.points.size();
-  const auto point = [&](std::size_t i) -> const Place& { return edge.points[i % n]; };
+  const auto point = [&](std::size_t i) -> const Position& { return edge.points[i % n]; };
 
   // Corners at equal steps of area.
   std::vector<double> until{0};
   for (std::size_t i = 0; i < n; ++i) until.push_back(until.back() + std::max(turn(point(i), point(i + 1)), 0.0));
   double right = until.back() / 2;  // area of the half at +x
   for (std::size_t i = 0; i < n; ++i) {
-    const Place &a = point(i), &b = point(i + 1);
+    const Position &a = point(i), &b = point(i + 1);
     if (steps == CornerSteps::even || !(a.x >= 0 && b.x < 0)) continue;
     right = until[i] + turn(a, a + a.x / (a.x - b.x) * (b - a));
     break;
@@ -218,16 +220,16 @@ PupilPolygon polygon_of(const PupilRegion& region, PolygonFit fit, CornerSteps s
   const auto area_before = [&](std::size_t k) {
     if (steps == CornerSteps::even) return until.back() * static_cast<double>(k) / polygon_corners;
     constexpr std::size_t half = polygon_corners / 2;
-    const double part = static_cast<double>(k % half) / half;
-    return k < half ? part * right : right + part * (until.back() - right);
+    const double fraction = static_cast<double>(k % half) / half;
+    return k < half ? fraction * right : right + fraction * (until.back() - right);
   };
   std::array<std::size_t, polygon_corners + 1> segment{};
   for (std::size_t k = 0, i = 0; k < polygon_corners; ++k) {
-    const double wanted = area_before(k);
-    while (i + 1 < n && until[i + 1] <= wanted) ++i;
+    const double target = area_before(k);
+    while (i + 1 < n && until[i + 1] <= target) ++i;
     segment[k] = i;
-    const double step = until[i + 1] - until[i], t = step > 0 ? (wanted - until[i]) / step : 0;
-    const Place corner = point(i) + t * (point(i + 1) - point(i));
+    const double step = until[i + 1] - until[i], t = step > 0 ? (target - until[i]) / step : 0;
+    const Position corner = point(i) + t * (point(i + 1) - point(i));
     polygon.corners[k] = {corner.x, corner.y};
   }
   segment[polygon_corners] = n - 1;
@@ -240,9 +242,9 @@ PupilPolygon polygon_of(const PupilRegion& region, PolygonFit fit, CornerSteps s
     Obscured obscured;
     for (std::size_t i = segment[k]; i <= segment[k + 1] + 1; ++i) {
       if (i > segment[k] && i <= segment[k + 1]) {
-        const double wanted = scale_for(sector, point(i));
-        scale[k] = std::max(scale[k], wanted);
-        scale[next] = std::max(scale[next], wanted);
+        const double target = scale_for(sector, point(i));
+        scale[k] = std::max(scale[k], target);
+        scale[next] = std::max(scale[next], target);
       }
       const double begin = edge.obscured_from[i % n], end = edge.obscured_to[i % n];
       obscured.keep(sector, begin == 0, begin * point(i), end * point(i), {1, 0});
@@ -280,10 +282,10 @@ PupilPolygon interpolated(std::span<const PupilPolygon> polygons, const PolygonW
 
 void expand_to_cover(std::span<PupilPolygon> polygons, std::span<const InterpolationCheck> checks) {
   // Margin for boundaries between the tested points, and a constant margin.
-  constexpr double beyond = 1.4, always = 2e-4;
+  constexpr double overshoot_factor = 1.4, min_expansion = 2e-4;
   std::vector<std::array<double, polygon_corners>> scales(polygons.size());
   std::vector<std::array<Obscured, polygon_corners>> obscured(polygons.size());
-  for (auto& scale : scales) scale.fill(1 + always);
+  for (auto& scale : scales) scale.fill(1 + min_expansion);
   for (std::size_t p = 0; p < polygons.size(); ++p) {
     for (std::size_t k = 0; k < polygon_corners; ++k) {
       const double from = polygons[p].obscured_from[k];
@@ -295,21 +297,22 @@ void expand_to_cover(std::span<PupilPolygon> polygons, std::span<const Interpola
     const PupilPolygon polygon = interpolated(polygons, at);
     const auto sectors = [&](std::size_t k) { return polygon.sector(k); };
     const Edge edge = edge_of(*region, PolygonFit::enclosing);
-    const Place offset = place_of(region->middle) - place_of(polygon.middle);
+    const Position offset = position_of(region->middle) - position_of(polygon.middle);
     std::size_t k = 0;
     for (std::size_t i = 0; i < edge.points.size(); ++i) {
-      const auto along = [&](double part) { return part * edge.points[i] + offset; };
-      const Place q = along(1);
+      const auto along = [&](double fraction) { return fraction * edge.points[i] + offset; };
+      const Position q = along(1);
       const std::size_t facing = sector_facing(q, sectors, k);
       if (facing == polygon_corners) continue;
       k = facing;
       const Sector<double> sector = polygon.sector(k);
       const Obscured expected{sector.obscured_from, sector.obscured_from + sector.obscured};
-      const double way = sector.way_to(q), wanted = way > 1 ? 1 + beyond * (way - 1) + always : 1;
+      const double relative = sector.relative_radius(q),
+                   target = relative > 1 ? 1 + overshoot_factor * (relative - 1) + min_expansion : 1;
       for (std::size_t j = 0; j < at.polygons.size(); ++j) {
         if (at.weights[j] == 0) continue;
         auto& scale = scales[at.polygons[j]];
-        for (const std::size_t corner : {k, (k + 1) % polygon_corners}) scale[corner] = std::max(scale[corner], wanted);
+        for (const std::size_t corner : {k, (k + 1) % polygon_corners}) scale[corner] = std::max(scale[corner], target);
         obscured[at.polygons[j]][k].keep(sector, edge.obscured_from[i] == 0, along(edge.obscured_from[i]),
                                          along(edge.obscured_to[i]), expected);
       }
@@ -329,7 +332,7 @@ void expand_towards(PupilPolygon& polygon, const PupilPolygon& other) noexcept {
   constexpr double middle = 0.6;  // fraction of the distance, with a margin for nonlinear motion
   const PupilPolygon both[2] = {polygon, other};
   const PupilPolygon between = interpolated(both, {{0, 1, 0, 0}, {1 - middle, middle, 0, 0}});
-  const Place offset = place_of(between.middle) - place_of(polygon.middle);
+  const Position offset = position_of(between.middle) - position_of(polygon.middle);
   const auto sectors = [&](std::size_t k) { return polygon.sector(k); };
   std::array<double, polygon_corners> scale;
   scale.fill(1);
@@ -342,7 +345,7 @@ void expand_towards(PupilPolygon& polygon, const PupilPolygon& other) noexcept {
   for (std::size_t k = 0; k < polygon_corners; ++k) {
     const Sector<double> edge = between.sector(k);
     for (const double along : {0.0, 0.5}) {
-      const Place corner = edge.at(1, along), q = corner + offset;
+      const Position corner = edge.at(1, along), q = corner + offset;
       const std::size_t found = sector_facing(q, sectors, facing);
       if (found == polygon_corners) continue;
       facing = found;

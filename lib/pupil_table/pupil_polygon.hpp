@@ -29,7 +29,7 @@ struct PupilPolygon {
 
   /// Radial fraction of a position: 0 at the middle, 1 at the outer edge; -1 if the position is obscured, infinite if
   /// no sector faces it.
-  double way_to(double x, double y) const noexcept;
+  double relative_radius(double x, double y) const noexcept;
 };
 
 /// Maps uniform numbers to uniform points of a polygon, as PupilSampler does for a PupilBoundary, but with triangles

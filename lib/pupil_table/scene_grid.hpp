@@ -25,7 +25,7 @@ struct SceneLayout {
   static constexpr std::int32_t distances = 2, fields = dimensions == 2 ? 12 : 6;  ///< cells along each axis
   static constexpr std::int32_t row = fields + 1, layer = dimensions == 2 ? row : row * row;
   static constexpr std::int32_t nodes = (distances + 1) * layer, limits = (distances + 1) * angles;
-  static constexpr std::size_t about = std::size_t{1} << dimensions;  ///< nodes of a cell
+  static constexpr std::size_t cell_nodes = std::size_t{1} << dimensions;  ///< nodes of a cell
   /// Offset of node j of a cell from the first node of the cell.
   static constexpr std::int32_t offset(std::size_t j) noexcept {
     const auto bit = [j](std::size_t k) { return static_cast<std::int32_t>(j >> k & 1); };
@@ -79,11 +79,11 @@ struct SceneCell {
   double distance, down, across;
 
   PETZVAL_INLINE double weight(std::size_t j) const noexcept {
-    const auto part = [j](std::size_t k, double t) { return (j >> k & 1) != 0 ? t : 1 - t; };
+    const auto fraction = [j](std::size_t k, double t) { return (j >> k & 1) != 0 ? t : 1 - t; };
     if constexpr (dimensions == 2) {
-      return part(1, distance) * part(0, across);
+      return fraction(1, distance) * fraction(0, across);
     } else {
-      return part(2, distance) * (part(1, down) * part(0, across));
+      return fraction(2, distance) * (fraction(1, down) * fraction(0, across));
     }
   }
 };
@@ -92,11 +92,11 @@ struct SceneCell {
 template <int dimensions>
 PETZVAL_INLINE SceneCell<dimensions> cell_of(double distance, double down, double across) noexcept {
   using L = SceneLayout<dimensions>;
-  const auto split = [](double part, std::int32_t cells, double& rest) {
-    const double place = part * static_cast<double>(cells);
-    const auto above = static_cast<std::int32_t>(place);
+  const auto split = [](double fraction, std::int32_t cells, double& rest) {
+    const double position = fraction * static_cast<double>(cells);
+    const auto above = static_cast<std::int32_t>(position);
     const std::int32_t i = above < cells - 1 ? above : cells - 1;
-    rest = place - static_cast<double>(i);
+    rest = position - static_cast<double>(i);
     return i;
   };
   SceneCell<dimensions> cell{0, 0, 0, 0};
@@ -111,11 +111,11 @@ PETZVAL_INLINE SceneCell<dimensions> cell_of(double distance, double down, doubl
 template <int dimensions>
 PETZVAL_INLINE double last_field(const double* widest, double distance, std::int32_t angle) noexcept {
   using L = SceneLayout<dimensions>;
-  const double place = distance * static_cast<double>(L::distances);
-  const auto above = static_cast<std::int32_t>(place);
+  const double position = distance * static_cast<double>(L::distances);
+  const auto above = static_cast<std::int32_t>(position);
   const std::int32_t i = above < L::distances - 1 ? above : L::distances - 1;
   const double near = widest[i * L::angles + angle], far = widest[(i + 1) * L::angles + angle];
-  return near + (place - static_cast<double>(i)) * (far - near);
+  return near + (position - static_cast<double>(i)) * (far - near);
 }
 
 PETZVAL_INLINE Bearing bearing_of(double unit_x, double unit_y, double unit_z) noexcept {
@@ -132,8 +132,8 @@ PETZVAL_INLINE double angle_of(const Bearing& b, std::int32_t k) noexcept {
   if constexpr (dimensions == 2) {
     return b.field;
   } else {
-    const double part = k == 0 ? b.azimuth_x : b.azimuth_y;
-    return b.field * (part < 0 ? -part : part);
+    const double fraction = k == 0 ? b.azimuth_x : b.azimuth_y;
+    return b.field * (fraction < 0 ? -fraction : fraction);
   }
 }
 /// Rotates a point of the facing plane from the frame of the polygons to the frame of the scene point, and back.
@@ -158,9 +158,9 @@ PETZVAL_INLINE Point<double> to_grid(const Bearing& b, const Point<double>& p) n
 
 /// Scene points in grid coordinates.
 template <std::size_t block, int dimensions>
-struct ScenePlaces {
+struct SceneCellPositions {
   std::int32_t numbers[block];  ///< index of the numbers of the cell's first node
-  double weights[SceneLayout<dimensions>::about][block], known[block];  ///< known: 1 or 0
+  double weights[SceneLayout<dimensions>::cell_nodes][block], known[block];  ///< known: 1 or 0
   double distance[block], field[block], sine[block], cosine[block], azimuth_x[block], azimuth_y[block];
 
   PETZVAL_INLINE Bearing bearing(std::size_t i) const noexcept {
@@ -170,9 +170,9 @@ struct ScenePlaces {
 
 /// @param wavelength index of the wavelength, or -1 if the table does not cover it
 template <std::size_t block, int dimensions>
-PETZVAL_INLINE void find_scene_places(const SceneGrid<dimensions>& grid, const double* x, const double* y,
-                                      const double* z, const std::int32_t* wavelength,
-                                      ScenePlaces<block, dimensions>& places) noexcept {
+PETZVAL_INLINE void find_scene_cell_positions(const SceneGrid<dimensions>& grid, const double* x, const double* y,
+                                              const double* z, const std::int32_t* wavelength,
+                                              SceneCellPositions<block, dimensions>& positions) noexcept {
   using L = SceneLayout<dimensions>;
   PETZVAL_INDEPENDENT
   for (std::size_t i = 0; i < block; ++i) {
@@ -181,14 +181,14 @@ PETZVAL_INLINE void find_scene_places(const SceneGrid<dimensions>& grid, const d
     const std::int32_t sound = bounded(x[i]) & bounded(y[i]) & bounded(z[i]);
     const double px = sound ? x[i] : 0.0, py = sound ? y[i] : 0.0, pz = sound ? z[i] - grid.centre_z : 0.0;
     const double r2 = px * px + py * py, distance = core_detail::square_root(r2 + pz * pz);
-    const double per_distance = 1 / (distance > 0 ? distance : 1.0), part = per_distance / grid.steepest;
+    const double per_distance = 1 / (distance > 0 ? distance : 1.0), fraction = per_distance / grid.steepest;
     const Bearing bearing = bearing_of(px * per_distance, py * per_distance, pz * per_distance);
     // Points outside the front surface's rim may have fields of more than 90 degrees.
-    const std::int32_t beside = r2 > grid.front_half * grid.front_half, before = pz < 0;
+    const std::int32_t outside_front = r2 > grid.front_half * grid.front_half, before = pz < 0;
     const std::int32_t far_enough = grid.steepest * distance >= 1, compiled = wavelength[i] >= 0;
-    const std::int32_t possible = sound & (beside | before) & far_enough & compiled;
+    const std::int32_t possible = sound & (outside_front | before) & far_enough & compiled;
     const double* const widest = grid.widest + (possible ? wavelength[i] : 0) * L::limits;
-    const double at = possible ? (part < 1 ? part : 1.0) : 0.0;
+    const double at = possible ? (fraction < 1 ? fraction : 1.0) : 0.0;
     const double last_x = last_field<dimensions>(widest, at, 0),
                  last_y = last_field<dimensions>(widest, at, L::angles - 1);
     const double across = angle_of<dimensions>(bearing, 0) / last_x;
@@ -196,13 +196,13 @@ PETZVAL_INLINE void find_scene_places(const SceneGrid<dimensions>& grid, const d
     const std::int32_t in_columns = across <= 1, in_rows = down <= 1;
     const std::int32_t known = possible & in_columns & in_rows;
     const SceneCell<dimensions> cell = cell_of<dimensions>(at, known ? down : 0.0, known ? across : 0.0);
-    places.numbers[i] = ((known ? wavelength[i] : 0) * L::nodes + cell.first) * NodeLayout::size;
-    for (std::size_t j = 0; j < L::about; ++j) places.weights[j][i] = cell.weight(j);
-    places.known[i] = known ? 1.0 : 0.0;
-    places.distance[i] = distance;
-    places.field[i] = bearing.field;
-    places.sine[i] = bearing.sine, places.cosine[i] = bearing.cosine;
-    places.azimuth_x[i] = bearing.azimuth_x, places.azimuth_y[i] = bearing.azimuth_y;
+    positions.numbers[i] = ((known ? wavelength[i] : 0) * L::nodes + cell.first) * NodeLayout::size;
+    for (std::size_t j = 0; j < L::cell_nodes; ++j) positions.weights[j][i] = cell.weight(j);
+    positions.known[i] = known ? 1.0 : 0.0;
+    positions.distance[i] = distance;
+    positions.field[i] = bearing.field;
+    positions.sine[i] = bearing.sine, positions.cosine[i] = bearing.cosine;
+    positions.azimuth_x[i] = bearing.azimuth_x, positions.azimuth_y[i] = bearing.azimuth_y;
   }
 }
 
@@ -226,14 +226,14 @@ PETZVAL_INLINE RayToLens ray_to_lens(const Bearing& b, double distance, const Po
 template <bool obscured, std::size_t block, int dimensions>
 struct ScenePolygon {
   const double* nodes;
-  const ScenePlaces<block, dimensions>& places;
+  const SceneCellPositions<block, dimensions>& positions;
   std::size_t i;
 
   PETZVAL_INLINE double number(std::int32_t k) const noexcept {
     using L = SceneLayout<dimensions>;
     double sum = 0;
-    for (std::size_t j = 0; j < L::about; ++j) {
-      sum += places.weights[j][i] * nodes[places.numbers[i] + (L::offset(j) * NodeLayout::size + k)];
+    for (std::size_t j = 0; j < L::cell_nodes; ++j) {
+      sum += positions.weights[j][i] * nodes[positions.numbers[i] + (L::offset(j) * NodeLayout::size + k)];
     }
     return sum;
   }
@@ -252,13 +252,13 @@ struct ScenePolygon {
     return result;
   }
   /// The ray through a position, given in the frame of the polygons.
-  PETZVAL_INLINE RayToLens ray(const Point<double>& place) const noexcept {
-    const Bearing bearing = places.bearing(i);
-    return ray_to_lens(bearing, places.distance[i], from_grid<dimensions>(bearing, place));
+  PETZVAL_INLINE RayToLens ray(const Point<double>& position) const noexcept {
+    const Bearing bearing = positions.bearing(i);
+    return ray_to_lens(bearing, positions.distance[i], from_grid<dimensions>(bearing, position));
   }
   /// Position, in the frame of the polygons, of a point in the plane relative to the centre.
   PETZVAL_INLINE Point<double> position(const std::array<double, 3>& p) const noexcept {
-    const Bearing b = places.bearing(i);
+    const Bearing b = positions.bearing(i);
     return to_grid<dimensions>(b, {b.azimuth_y * p[0] - b.azimuth_x * p[1],
                                    b.cosine * (b.azimuth_x * p[0] + b.azimuth_y * p[1]) + b.sine * p[2]});
   }
@@ -278,22 +278,22 @@ PETZVAL_INLINE void sample_scene_block(const SceneGrid<dimensions>& given, const
                                        const std::int32_t* wavelength, const EntranceRays& rays) noexcept {
   const SceneGrid<dimensions> grid = given;  // a copy that no output can alias
   const auto [ox, oy, oz, dx, dy, dz, distances, pdfs] = rays;
-  ScenePlaces<block, dimensions> places;
-  find_scene_places(grid, x, y, z, wavelength, places);
+  SceneCellPositions<block, dimensions> positions;
+  find_scene_cell_positions(grid, x, y, z, wavelength, positions);
   PETZVAL_INDEPENDENT
   for (std::size_t i = 0; i < block; ++i) {
-    const ScenePolygon<obscured, block, dimensions> polygon{grid.nodes, places, i};
+    const ScenePolygon<obscured, block, dimensions> polygon{grid.nodes, positions, i};
     const double turn = core_detail::clamped(u[i]) * static_cast<double>(polygon_corners);
     constexpr auto last = static_cast<std::int32_t>(polygon_corners - 1);
     const auto above = static_cast<std::int32_t>(turn);
     const std::int32_t k = above < last ? above : last;
     const Sector<double> sector = polygon.sector(k);
-    const double way = core_detail::square_root(sector.squared_way(core_detail::clamped(v[i])));
-    const Point<double> in_grid = polygon.middle() + sector.at(way, turn - static_cast<double>(k));
+    const double radius = core_detail::square_root(sector.squared_radius(core_detail::clamped(v[i])));
+    const Point<double> in_grid = polygon.middle() + sector.at(radius, turn - static_cast<double>(k));
     const RayToLens ray = polygon.ray(in_grid);
     // NaN unless u and v are finite: comparisons are then false, and there is no sample.
     const double sound = (u[i] + v[i]) * 0;
-    const double density = places.known[i] * density_in(sector);
+    const double density = positions.known[i] * density_in(sector);
     const std::int32_t some = density > 0, finite = sound >= 0, drawn = some & finite;
     ox[i] = drawn ? ray.x : 0.0, oy[i] = drawn ? ray.y : 0.0, oz[i] = (drawn ? ray.z : 0.0) + grid.centre_z;
     dx[i] = drawn ? ray.dx : 0.0, dy[i] = drawn ? ray.dy : 0.0, dz[i] = drawn ? ray.dz : 1.0;

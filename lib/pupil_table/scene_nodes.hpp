@@ -62,7 +62,7 @@ struct SceneNodes {
   static PolygonWeights weights_at(double distance, double down, double across) noexcept {
     const SceneCell<dimensions> cell = cell_of<dimensions>(distance, down, across);
     PolygonWeights result;
-    for (std::size_t j = 0; j < L::about; ++j) {
+    for (std::size_t j = 0; j < L::cell_nodes; ++j) {
       result.polygons[j] = static_cast<std::size_t>(cell.first + L::offset(j));
       result.weights[j] = cell.weight(j);
     }

@@ -9,7 +9,7 @@
 /// A polygon has a middle point and corners around it, in order from +y towards +x; sector k is the triangle between
 /// the middle and the corners k and k + 1. An interval of a sector may be obscured, between two lines parallel to its
 /// outer edge. The "way" of a point is its radial fraction: 0 at the middle and 1 at the outer edge. Samples (u, v) are
-/// uniform by area: u selects the sector and the position along its edge, v the squared way.
+/// uniform by area: u selects the sector and the position along its edge, v the squared relative radius.
 namespace petzval::pupil_table_detail {
 
 inline constexpr std::size_t polygon_corners = 64;
@@ -35,37 +35,37 @@ inline T turn(const Point<T>& a, const Point<T>& b) noexcept {
 template <class T>
 struct Sector {
   Point<T> a, b;              ///< the corners, relative to the middle
-  T obscured_from, obscured;  ///< begin and width of the obscured interval of squared ways
+  T obscured_from, obscured;  ///< begin and width of the obscured interval of squared relative radii
 
   T area() const noexcept { return T(0.5) * turn(a, b) * (T(1) - obscured); }
 
-  /// Squared way of a sample.
-  T squared_way(const T& v) const noexcept {
+  /// Squared relative radius of a sample.
+  T squared_radius(const T& v) const noexcept {
     const T within = (T(1) - obscured) * v;
     return within < obscured_from ? within : T(within + obscured);
   }
-  /// Inverse of squared_way(): v of a squared way; inside the obscured interval, v at its begin.
-  T share_within(const T& squared_way) const noexcept {
-    const T past = squared_way - obscured > obscured_from ? squared_way - obscured : obscured_from;
+  /// Inverse of squared_radius(): v of a squared relative radius; inside the obscured interval, v at its begin.
+  T fraction_within(const T& squared_radius) const noexcept {
+    const T past = squared_radius - obscured > obscured_from ? squared_radius - obscured : obscured_from;
     const T left = T(1) - obscured;
-    return (squared_way < obscured_from ? squared_way : past) / (left > T(0) ? left : T(1));
+    return (squared_radius < obscured_from ? squared_radius : past) / (left > T(0) ? left : T(1));
   }
-  /// Position at a way and at a fraction of the outer edge, from a (0) to b (1).
-  Point<T> at(const T& way, const T& along) const noexcept {
-    return {way * (a.x + along * (b.x - a.x)), way * (a.y + along * (b.y - a.y))};
+  /// Position at a relative radius and at a fraction of the outer edge, from a (0) to b (1).
+  Point<T> at(const T& radius, const T& along) const noexcept {
+    return {radius * (a.x + along * (b.x - a.x)), radius * (a.y + along * (b.y - a.y))};
   }
 
   /// True if the position lies between the lines from the middle through the corners.
   bool faces(const Point<T>& q) const noexcept { return turn(a, q) >= T(0) && turn(q, b) >= T(0) && turn(a, b) > T(0); }
-  /// Way of a position that the sector faces.
-  T way_to(const Point<T>& q) const noexcept { return (turn(a, q) + turn(q, b)) / turn(a, b); }
+  /// Relative radius of a position that the sector faces.
+  T relative_radius(const Point<T>& q) const noexcept { return (turn(a, q) + turn(q, b)) / turn(a, b); }
   /// Fraction along the outer edge, from a (0) to b (1), where the line from the middle through q crosses it.
   T along_to(const Point<T>& q) const noexcept {
     const T before = turn(a, q), after = turn(q, b);
     return before + after > T(0) ? before / (before + after) : T(0);
   }
-  bool obscures(const T& squared_way) const noexcept {
-    return squared_way >= obscured_from && squared_way < obscured_from + obscured;
+  bool obscures(const T& squared_radius) const noexcept {
+    return squared_radius >= obscured_from && squared_radius < obscured_from + obscured;
   }
 };
 

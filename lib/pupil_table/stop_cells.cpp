@@ -22,7 +22,7 @@ namespace petzval {
 namespace pupil_table_detail {
 namespace {
 
-using Place = Point<double>;
+using Position = Point<double>;
 
 constexpr double unlimited = 1e6;  // scale of an iris that clips no rays
 
@@ -30,27 +30,27 @@ constexpr double unlimited = 1e6;  // scale of an iris that clips no rays
 template <int dimensions>
 struct NodeMap {
   std::array<double, StopLayout<dimensions>::terms> terms{};
-  bool known = false, drawn = false;
+  bool known = false, samples_iris = false;
   double error = 0;       // largest error of stop(), in semi-diameters
   double line_error = 0;  // largest error of stop points on straight lines outwards
-  Place middle;           // stop points of the middle and of the corners
-  std::array<Place, polygon_corners> corners{};
+  Position middle;        // stop points of the middle and of the corners
+  std::array<Position, polygon_corners> corners{};
 
   auto number() const noexcept {
     return [this](int k) { return terms[static_cast<std::size_t>(k)]; };
   }
-  SeenPoint<double> seen(const Place& stop) const noexcept { return seen_point<dimensions>(number(), stop); }
-  /// The stop point whose image is `place`; nullopt if it is far from the iris.
-  std::optional<Place> stop(const Place& place) const noexcept {
-    const StopPlace<double> found = stop_place<dimensions>(number(), place);
-    constexpr double close = 1e-6;
-    return found.step2 < close ? std::optional(found.point) : std::nullopt;
+  SeenPoint<double> seen(const Position& stop) const noexcept { return seen_point<dimensions>(number(), stop); }
+  /// The stop point whose image is `position`; nullopt if it is far from the iris.
+  std::optional<Position> stop(const Position& position) const noexcept {
+    const StopSolution<double> found = solve_stop_point<dimensions>(number(), position);
+    constexpr double max_step2 = 1e-6;
+    return found.step2 < max_step2 ? std::optional(found.point) : std::nullopt;
   }
 };
 
 /// Terms for the coordinate `axis` of a position (StopLayout), at a stop point.
 template <int dimensions>
-std::vector<double> products(int axis, const Place& stop) {
+std::vector<double> products(int axis, const Position& stop) {
   const auto& [x, y] = stop;
   if (dimensions == 2) return {1, x, y, x * x, x * y, y * y, x * x * x, x * x * y, x * y * y, y * y * y};
   const double r = x * x + y * y;
@@ -60,9 +60,9 @@ std::vector<double> products(int axis, const Place& stop) {
 
 /// A ray through the line from the middle of a polygon to a corner.
 struct StopSample {
-  Place place, stop;
+  Position position, stop;
   std::size_t corner = 0;
-  double part = 0;  ///< fraction of the line
+  double radius = 0;  ///< fraction of the line
 };
 
 template <int dimensions>
@@ -76,7 +76,7 @@ void fit(NodeMap<dimensions>& map, std::span<const StopSample> samples) {
       const StopSample& sample = samples[static_cast<std::size_t>(i)];
       const std::vector<double> of = products<dimensions>(axis, sample.stop);
       for (std::size_t k = 0; k < terms; ++k) rows(i, static_cast<Eigen::Index>(k)) = of[k];
-      values(i) = axis == 0 ? sample.place.x : sample.place.y;
+      values(i) = axis == 0 ? sample.position.x : sample.position.y;
     }
     const Eigen::VectorXd solution = core_detail::least_squares(rows, values);
     const std::size_t first = dimensions == 2 ? (axis == 0 ? 0 : 10) : (axis == 0 ? 9 : 0);
@@ -84,54 +84,54 @@ void fit(NodeMap<dimensions>& map, std::span<const StopSample> samples) {
   }
 }
 
-Place corner(const PupilPolygon& polygon, std::size_t k) {
+Position corner(const PupilPolygon& polygon, std::size_t k) {
   return {polygon.corners[k % polygon_corners].x, polygon.corners[k % polygon_corners].y};
 }
 
 /// Calls take() for rays through points between the middle of a polygon and its corners, at the given fractions of the
 /// distance.
 template <class Take>
-void for_rays(const PupilPolygon& polygon, std::size_t step, std::span<const double> parts, const Take& take) {
+void for_rays(const PupilPolygon& polygon, std::size_t step, std::span<const double> radii, const Take& take) {
   for (std::size_t k = 0, i = 0; k < polygon_corners; k += step, ++i) {
-    const double part = parts[i % parts.size()];
-    take(k, part, Place{polygon.middle.x, polygon.middle.y} + part * corner(polygon, k));
+    const double radius = radii[i % radii.size()];
+    take(k, radius, Position{polygon.middle.x, polygon.middle.y} + radius * corner(polygon, k));
   }
 }
 
-double distance(const Place& a, const Place& b) { return std::hypot(a.x - b.x, a.y - b.y); }
+double distance(const Position& a, const Position& b) { return std::hypot(a.x - b.x, a.y - b.y); }
 
 template <int dimensions>
 NodeMap<dimensions> map_at(const StopOf& stop_of, const FilmPoint& film, const PupilPolygon& polygon,
                            std::size_t wavelength) {
   NodeMap<dimensions> map;
   std::vector<StopSample> samples;
-  const auto take = [&](std::size_t k, double part, const Place& place) {
-    const auto stop = stop_of(film, {place.x, place.y}, wavelength);
-    if (stop) samples.push_back({place, {stop->x, stop->y}, k, part});
+  const auto take = [&](std::size_t k, double radius, const Position& position) {
+    const auto stop = stop_of(film, {position.x, position.y}, wavelength);
+    if (stop) samples.push_back({position, {stop->x, stop->y}, k, radius});
   };
   take(0, 0, {polygon.middle.x, polygon.middle.y});
   // Enough distances from the middle to determine all terms, even for a circular pupil.
-  constexpr std::array parts{0.99, 0.85, 0.65, 0.4};
-  for_rays(polygon, 2, parts, take);
-  constexpr std::size_t least = 24;
-  if (samples.size() < least) return map;
+  constexpr std::array radii{0.99, 0.85, 0.65, 0.4};
+  for_rays(polygon, 2, radii, take);
+  constexpr std::size_t min_samples = 24;
+  if (samples.size() < min_samples) return map;
   fit<dimensions>(map, samples);
   const auto middle = map.stop({polygon.middle.x, polygon.middle.y});
   if (!middle) return map;
   map.middle = *middle;
   for (std::size_t k = 0; k < polygon_corners; ++k) {
-    const auto stop = map.stop(Place{polygon.middle.x, polygon.middle.y} + corner(polygon, k));
+    const auto stop = map.stop(Position{polygon.middle.x, polygon.middle.y} + corner(polygon, k));
     if (!stop) return map;
     map.corners[k] = *stop;
   }
-  for (const auto& [place, met, k, part] : samples) {
-    const auto stop = map.stop(place);
+  for (const auto& [position, met, k, radius] : samples) {
+    const auto stop = map.stop(position);
     if (!stop) return map;
     map.error = std::max(map.error, distance(*stop, met));
-    map.line_error = std::max(map.line_error, distance(map.middle + part * (map.corners[k] - map.middle), met));
+    map.line_error = std::max(map.line_error, distance(map.middle + radius * (map.corners[k] - map.middle), met));
   }
-  constexpr double most = 0.03;
-  map.known = map.error <= most;
+  constexpr double max_error = 0.03;
+  map.known = map.error <= max_error;
   return map;
 }
 
@@ -139,8 +139,8 @@ NodeMap<dimensions> map_at(const StopOf& stop_of, const FilmPoint& film, const P
 template <int dimensions>
 bool whole_iris_within(const NodeMap<dimensions>& map, const PupilPolygon& polygon, const iris_detail::IrisShape& shape,
                        bool enclosing) {
-  constexpr int around = 48;
-  constexpr double near_rim = 0.97;  // fraction of the area
+  constexpr int azimuths = 48;
+  constexpr double rim_fraction = 0.97;  // fraction of the area
   const auto sectors = [&](std::size_t k) { return polygon.sector(k); };
   std::size_t facing = 0;
   int within = 0, all = 0;
@@ -148,18 +148,18 @@ bool whole_iris_within(const NodeMap<dimensions>& map, const PupilPolygon& polyg
   const int turns = dimensions == 1 && !shape.round() ? 2 : 1;
   for (int turned = 0; turned < turns; ++turned) {
     const double angle = turned * std::numbers::pi / std::max(shape.iris().blades, 1);
-    for (int i = 0; i < around; ++i, ++all) {
-      const Vec2<double> p = shape.sample((i + 0.5) / around, near_rim);
-      const Place stop = to_grid<1>(std::cos(angle), std::sin(angle), Place{p.x, p.y});
-      const Place q = map.seen(stop).place - Place{polygon.middle.x, polygon.middle.y};
+    for (int i = 0; i < azimuths; ++i, ++all) {
+      const Vec2<double> p = shape.sample((i + 0.5) / azimuths, rim_fraction);
+      const Position stop = to_grid<1>(std::cos(angle), std::sin(angle), Position{p.x, p.y});
+      const Position q = map.seen(stop).position - Position{polygon.middle.x, polygon.middle.y};
       const std::size_t found = sector_facing(q, sectors, facing);
       if (found == polygon_corners) continue;
       facing = found;
-      within += polygon.sector(found).way_to(q) <= 1;
+      within += polygon.sector(found).relative_radius(q) <= 1;
     }
   }
-  constexpr double most = 0.95;
-  return enclosing ? within >= most * all : within == all;
+  constexpr double min_inside_fraction = 0.95;
+  return enclosing ? within >= min_inside_fraction * all : within == all;
 }
 
 /// Error of the stop points at the centre of a cell.
@@ -167,11 +167,11 @@ template <int dimensions>
 double error_in_middle(const StopOf& stop_of, const FilmPoint& film, const PupilPolygon& polygon,
                        const NodeMap<dimensions>& map, std::size_t wavelength) {
   double error = 0;
-  constexpr std::array parts{0.97, 0.8};
-  for_rays(polygon, 4, parts, [&](std::size_t, double, const Place& place) {
-    const auto stop = stop_of(film, {place.x, place.y}, wavelength);
+  constexpr std::array radii{0.97, 0.8};
+  for_rays(polygon, 4, radii, [&](std::size_t, double, const Position& position) {
+    const auto stop = stop_of(film, {position.x, position.y}, wavelength);
     if (!stop) return;
-    if (const auto found = map.stop(place)) error = std::max(error, distance(*found, {stop->x, stop->y}));
+    if (const auto found = map.stop(position)) error = std::max(error, distance(*found, {stop->x, stop->y}));
   });
   return error;
 }
@@ -180,9 +180,9 @@ double error_in_middle(const StopOf& stop_of, const FilmPoint& film, const Pupil
 template <int dimensions>
 NodeMap<dimensions> mean_of(std::span<const NodeMap<dimensions>* const> maps) {
   NodeMap<dimensions> mean;
-  const double part = 1 / static_cast<double>(maps.size());
+  const double radius = 1 / static_cast<double>(maps.size());
   for (const auto* map : maps) {
-    for (std::size_t k = 0; k < mean.terms.size(); ++k) mean.terms[k] += part * map->terms[k];
+    for (std::size_t k = 0; k < mean.terms.size(); ++k) mean.terms[k] += radius * map->terms[k];
   }
   return mean;
 }
@@ -190,20 +190,20 @@ NodeMap<dimensions> mean_of(std::span<const NodeMap<dimensions>* const> maps) {
 /// Largest change of stop points up to halfway to the next wavelength.
 template <int dimensions>
 double change_of(const NodeMap<dimensions>& map, const NodeMap<dimensions>& next, const PupilPolygon& polygon) {
-  constexpr double middle = 0.6;  // fraction of the step, with a margin for nonlinear changes
-  constexpr std::array parts{0.95};
+  constexpr double step_fraction = 0.6;  // fraction of the step, with a margin for nonlinear changes
+  constexpr std::array radii{0.95};
   double change = 0;
-  for_rays(polygon, 8, parts, [&](std::size_t, double, const Place& place) {
-    const auto a = map.stop(place), b = next.stop(place);
-    if (a && b) change = std::max(change, middle * distance(*a, *b));
+  for_rays(polygon, 8, radii, [&](std::size_t, double, const Position& position) {
+    const auto a = map.stop(position), b = next.stop(position);
+    if (a && b) change = std::max(change, step_fraction * distance(*a, *b));
   });
   return change;
 }
 
 /// Makes a cell.
-/// @param drawn StopLayout::drawn
+/// @param samples_iris StopLayout::samples_iris
 template <int dimensions>
-std::vector<double> cell_of(std::span<const NodeMap<dimensions>* const> at, bool drawn, double scale) {
+std::vector<double> cell_of(std::span<const NodeMap<dimensions>* const> at, bool samples_iris, double scale) {
   using S = StopLayout<dimensions>;
   std::vector<double> cell(S::size);
   cell[S::scale] = scale;
@@ -212,10 +212,10 @@ std::vector<double> cell_of(std::span<const NodeMap<dimensions>* const> at, bool
       cell[S::map + S::linear * k] = 1;
     return cell;
   }
-  cell[S::drawn] = drawn ? 1 : 0;
-  const auto put = [&](std::int32_t place, const auto& number) {
+  cell[S::samples_iris] = samples_iris ? 1 : 0;
+  const auto put = [&](std::int32_t position, const auto& number) {
     const auto numbers = linear<dimensions>(at, number);
-    std::copy(numbers.begin(), numbers.end(), cell.begin() + place);
+    std::copy(numbers.begin(), numbers.end(), cell.begin() + position);
   };
   for (std::int32_t k = 0; k < S::terms; ++k) {
     put(S::map + S::linear * k, [k](const auto& map) { return map.terms[static_cast<std::size_t>(k)]; });
@@ -223,9 +223,9 @@ std::vector<double> cell_of(std::span<const NodeMap<dimensions>* const> at, bool
   put(S::middle, [](const auto& map) { return map.middle.x; });
   put(S::middle + S::linear, [](const auto& map) { return map.middle.y; });
   for (std::size_t k = 0; k <= polygon_corners; ++k) {
-    const std::int32_t place = S::corners + 2 * S::linear * static_cast<std::int32_t>(k);
-    put(place, [k](const auto& map) { return map.corners[k % polygon_corners].x; });
-    put(place + S::linear, [k](const auto& map) { return map.corners[k % polygon_corners].y; });
+    const std::int32_t position = S::corners + 2 * S::linear * static_cast<std::int32_t>(k);
+    put(position, [k](const auto& map) { return map.corners[k % polygon_corners].x; });
+    put(position + S::linear, [k](const auto& map) { return map.corners[k % polygon_corners].y; });
   }
   return cell;
 }
@@ -243,7 +243,7 @@ std::vector<double> stop_cells(const Data& data, const iris_detail::IrisShape& s
       Map& map = maps[w].emplace_back(map_at<dimensions>(stop_of, data.node_point(i), polygon, w));
       // A node without a pupil uses the map of the previous node.
       if (!map.known && i > 0 && dimensions == 1 && !(polygon.area() > 0)) map = maps[w][i - 1];
-      map.drawn = map.known && !data.obscured && whole_iris_within(map, polygon, shape, data.enclosing);
+      map.samples_iris = map.known && !data.obscured && whole_iris_within(map, polygon, shape, data.enclosing);
     }
   });
   if (data.enclosing) {
@@ -273,7 +273,7 @@ std::vector<double> stop_cells(const Data& data, const iris_detail::IrisShape& s
           middle.x += film.x / static_cast<double>(nodes.size());
           middle.y += film.y / static_cast<double>(nodes.size());
         }
-        const bool drawn = std::all_of(at.begin(), at.end(), [](const Map* map) { return map->drawn; });
+        const bool samples_iris = std::all_of(at.begin(), at.end(), [](const Map* map) { return map->samples_iris; });
         double scale = 1;
         if (!std::all_of(at.begin(), at.end(), [](const Map* map) { return map->known; })) {
           scale = unlimited;
@@ -285,14 +285,15 @@ std::vector<double> stop_cells(const Data& data, const iris_detail::IrisShape& s
           double error = error_in_middle(stop_of, middle, interpolated(own, weights), mean_of<dimensions>(at), w);
           for (const Map* map : at) error = std::max(error, map->error);
           // Fraction of the line error that remains after the second pass of clipping.
-          constexpr double left = 0.1;
+          constexpr double remaining_fraction = 0.1;
           double of_lines = 0;
-          for (const Map* map : at) of_lines = std::max(of_lines, drawn ? 0 : left * map->line_error);
+          for (const Map* map : at)
+            of_lines = std::max(of_lines, samples_iris ? 0 : remaining_fraction * map->line_error);
           // Margin for rays between the tested rays; it grows with the error of the map.
-          constexpr double room = 1.25, more = 100, always = 2e-4;
-          scale += (room + more * error) * error + of_lines + always;
+          constexpr double linear_margin = 1.25, quadratic_margin = 100, min_margin = 2e-4;
+          scale += (linear_margin + quadratic_margin * error) * error + of_lines + min_margin;
         }
-        const std::vector<double> cell = cell_of<dimensions>(at, drawn, scale);
+        const std::vector<double> cell = cell_of<dimensions>(at, samples_iris, scale);
         by_wavelength[w].insert(by_wavelength[w].end(), cell.begin(), cell.end());
       }
     }
@@ -307,16 +308,17 @@ std::vector<double> stop_cells(const Data& data, const iris_detail::IrisShape& s
 StopOf traced_stop(const Lens& lens, const TwoPlanes& space) {
   const std::size_t stop = *lens.stop();
   const double semi_diameter = lens.surfaces()[stop].semi_diameter, towards = towards_scene(lens, space);
-  return [=](const FilmPoint& film, const Vec2<double>& place, std::size_t wavelength) -> std::optional<Vec2<double>> {
-    const double dx = place.x - film.x, dy = place.y - film.y, dz = space.depth();
-    const double per_length = towards / std::sqrt(dx * dx + dy * dy + dz * dz);
-    const auto ray = kernel::trace<double>(
-        kernel::view<double>(lens), {place.x, place.y, space.pupil_z},
-        {per_length * dx, per_length * dy, per_length * dz},
-        {.travel = Travel::to_scene, .wavelength = wavelength, .apertures = false, .first = stop});
-    if (ray.fate != RayFate::transmitted) return {};
-    return Vec2<double>{ray.origin.x / semi_diameter, ray.origin.y / semi_diameter};
-  };
+  return
+      [=](const FilmPoint& film, const Vec2<double>& position, std::size_t wavelength) -> std::optional<Vec2<double>> {
+        const double dx = position.x - film.x, dy = position.y - film.y, dz = space.depth();
+        const double per_length = towards / std::sqrt(dx * dx + dy * dy + dz * dz);
+        const auto ray = kernel::trace<double>(
+            kernel::view<double>(lens), {position.x, position.y, space.pupil_z},
+            {per_length * dx, per_length * dy, per_length * dz},
+            {.travel = Travel::to_scene, .wavelength = wavelength, .apertures = false, .first = stop});
+        if (ray.fate != RayFate::transmitted) return {};
+        return Vec2<double>{ray.origin.x / semi_diameter, ray.origin.y / semi_diameter};
+      };
 }
 
 }  // namespace pupil_table_detail

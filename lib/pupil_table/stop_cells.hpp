@@ -17,7 +17,7 @@ namespace petzval::pupil_table_detail {
 /// Intersection of a ray with the stop, in semi-diameters. The ray runs from a film point through a position in the
 /// pupil plane. nullopt if the ray does not reach the stop.
 using StopOf =
-    std::function<std::optional<Vec2<double>>(const FilmPoint&, const Vec2<double>& place, std::size_t wavelength)>;
+    std::function<std::optional<Vec2<double>>(const FilmPoint&, const Vec2<double>& position, std::size_t wavelength)>;
 
 /// Traces rays, without clipping by apertures. The stop of the lens must have a semi-diameter.
 StopOf traced_stop(const Lens& lens, const TwoPlanes& space);

@@ -45,14 +45,14 @@ FilmPupils tilted_film_pupils(const FilmPupilTable& upright, const FilmTilt& til
     std::vector<VirtualFilmPoint> fields;
     // The middle position is the first, because its pupil is the least likely to be empty. Five positions are needed,
     // because pupils in a plane far from the limiting aperture, as for a thin lens, move by more than their size.
-    for (const double part : {0.5, 0.0, 0.25, 0.75, 1.0}) {
+    for (const double fraction : {0.5, 0.0, 0.25, 0.75, 1.0}) {
       for (const double height : heights) {
         const auto within = [&](double value) { return std::clamp(value, tilt.min_excess, tilt.max_excess); };
         const auto excess = [&](double along) { return std::array{along, (along - tilt.travel) / (1 + tilt.travel)}; };
         const auto [first_low, last_low] = excess(-steepest * height);
         const auto [first_high, last_high] = excess(steepest * height);
         const double low = within(std::min(first_low, last_low)), high = within(std::max(first_high, last_high));
-        fields.push_back({{0, height}, low + part * (high - low)});
+        fields.push_back({{0, height}, low + fraction * (high - low)});
       }
     }
     std::vector<pupil_detail::PupilGuess> guesses;

@@ -21,7 +21,7 @@ ScenePassing traced_passing(const Lens& lens) {
 
 EntrancePupilTable traced_entrances(const Lens& bladed, const FilmPupilTable& of_iris, int threads) {
   const Lens lens = with_iris(bladed, {});  // the pupils of a round iris enclose the pupils of any iris
-  const FilmPupilTable pupils = of_iris.of_round_stop();
+  const FilmPupilTable pupils = of_iris.with_round_stop();
   const TwoPlanes& space = pupils.space();
   const double towards = towards_scene(lens, space);
   const auto to_scene = [&](std::size_t count, const TwoPlaneRays<const double>& lines, std::size_t wavelength,

@@ -50,7 +50,7 @@ std::vector<FilmPupilTable> pupil_tables() {
           FilmPupilTable::enclosing(with_iris(usual, {.blades = 5, .roundness = 0.2, .rotation_rad = 0.3}), radius),
           FilmPupilTable::of_iris({50, 0}, {.blades = 7}, images, radius, 1),
           FilmPupilTable::of_discs({50, 0}, discs, radius, 1),
-          strips.cut_by_rim({.ratio = 1.1, .radii_per_mm = 0.05}),
+          strips.clipped_by_rim({.ratio = 1.1, .shift_per_mm = 0.05}),
           strips.for_tilted_film(tilt),
           cells.for_tilted_film(tilt)};
 }

@@ -154,7 +154,7 @@ TEST(BladedPupils, DerivativesEqualFiniteDifferences) {
 TEST(BladedPupils, RoundStopIsUsedForTiltedFilmsAndOnRequest) {
   const Lens lens = vignetting();
   const FilmPupilTable table = FilmPupilTable::enclosing(lens, corner);
-  const FilmPupilTable round = FilmPupilTable::enclosing(with_iris(lens, {}), corner), same = table.of_round_stop();
+  const FilmPupilTable round = FilmPupilTable::enclosing(with_iris(lens, {}), corner), same = table.with_round_stop();
   const PupilSample wanted = round.sample({20, -7}, 0.3, 0.8), found = same.sample({20, -7}, 0.3, 0.8);
   EXPECT_EQ(found.x, wanted.x);
   EXPECT_EQ(found.y, wanted.y);
@@ -176,7 +176,7 @@ TEST(BladedPupils, EqualAreaGivesTheIrradianceWithCylindersAndObscurations) {
 
 TEST(BladedPupils, StopPointsEqualTracedRays) {
   const Lens lens = vignetting();
-  const FilmPupilTable table = FilmPupilTable::enclosing(lens, corner), round = table.of_round_stop();
+  const FilmPupilTable table = FilmPupilTable::enclosing(lens, corner), round = table.with_round_stop();
   const double semi_diameter = lens.surfaces()[*lens.stop()].semi_diameter;
   std::mt19937 random(7);
   std::uniform_real_distribution<double> unit(0, 1);

@@ -240,7 +240,7 @@ TEST(FilmPupilTable, SolidAngleEqualsIntegral) {
   const FilmPupilTable table = FilmPupilTable::equal_area(lens, 20);
   // Pupils with other shapes and positions keep the irradiance.
   const std::vector<std::vector<PupilDisc>> discs{{{0.3, 30}, {-0.2, 20}}};
-  const FilmPupilTable other = table.reshaped(discs);
+  const FilmPupilTable other = table.with_discs(discs);
   for (const FilmPoint& film : {FilmPoint{0, 0}, FilmPoint{3, -9}, FilmPoint{14, 14}}) {
     EXPECT_NEAR(table.projected_solid_angle(film) / film_irradiance(lens, film), 1, 2e-3);
     EXPECT_NEAR(other.projected_solid_angle(film) / table.projected_solid_angle(film), 1, 1e-3);
@@ -349,9 +349,9 @@ TEST(FilmPupilTable, RefusesInvalidInput) {
   std::vector<std::vector<PupilDisc>> lists{{}};
   expect_error([&] { (void)FilmPupilTable::of_discs(space, lists, 10); }, {"pupil table", "wavelength 0", "disc"});
   const FilmPupilTable table = FilmPupilTable::of_discs(space, std::array{std::vector<PupilDisc>{{0, 5}}}, 10);
-  expect_error([&] { (void)table.reshaped(lists); }, {"pupil table", "wavelength 0", "disc"});
+  expect_error([&] { (void)table.with_discs(lists); }, {"pupil table", "wavelength 0", "disc"});
   lists.assign(3, {{0, 5}});
-  expect_error([&] { (void)table.reshaped(lists); }, {"pupil table", "discs", "wavelengths", 3, 1});
+  expect_error([&] { (void)table.with_discs(lists); }, {"pupil table", "discs", "wavelengths", 3, 1});
 }
 
 TEST(FilmPupilTable, ObscurationsAreExcluded) {

@@ -37,15 +37,15 @@ FilmPupilTable image(const Lens& lens, const Iris& iris) {
 TEST(PupilRim, AreaEqualsTheIntersectionOfDiscs) {
   const FilmPupilTable pupils = image(data_lens("double_gauss_100mm_f2.0"), {});
   for (const PupilRim& rim : {PupilRim{1, 0.05}, PupilRim{1.5, 0.08}, PupilRim{0.7, 0.06}, PupilRim{2, -0.1}}) {
-    const FilmPupilTable cut = pupils.cut_by_rim(rim);
-    EXPECT_TRUE(cut.cut());
-    EXPECT_FALSE(pupils.cut());
+    const FilmPupilTable cut = pupils.clipped_by_rim(rim);
+    EXPECT_TRUE(cut.is_clipped());
+    EXPECT_FALSE(pupils.is_clipped());
     for (const double r : {0.0, 3.0, 9.0, 13.0, 19.0}) {
       for (const double azimuth : {0.0, 0.8, 2.0}) {
         const FilmPoint film{r * std::sin(azimuth), r * std::cos(azimuth)};
-        const double wanted = 100 * lens_area(rim.ratio, std::abs(rim.radii_per_mm) * r);
+        const double wanted = 100 * lens_area(rim.ratio, std::abs(rim.shift_per_mm) * r);
         EXPECT_NEAR(cut.area(film), wanted, 0.01 * wanted + 0.1) << rim.ratio << ' ' << r;
-        EXPECT_EQ(cut.whole().area(film), pupils.area(film));
+        EXPECT_EQ(cut.unclipped().area(film), pupils.area(film));
       }
     }
   }
@@ -59,13 +59,13 @@ TEST(PupilRim, ClippedPupilIsThePartWithinTheDisc) {
   for (const FilmPupilTable& pupils :
        {image(lens, {}), image(lens, blades), FilmPupilTable::equal_area(lens, film_radius),
         FilmPupilTable::enclosing(with_iris(lens, blades), film_radius)}) {
-    const FilmPupilTable cut = pupils.cut_by_rim(rim);
+    const FilmPupilTable cut = pupils.clipped_by_rim(rim);
     double radius = 0;
     for (int k = 0; k < 64; ++k) {
-      const PupilSample edge = pupils.of_round_stop().sample({}, k / 64., 1);
+      const PupilSample edge = pupils.with_round_stop().sample({}, k / 64., 1);
       radius = std::max(radius, std::hypot(edge.x, edge.y));
     }
-    const double shift = pupils.of_round_stop().middle({0, 0.5}).y / 0.5 - rim.radii_per_mm * radius;
+    const double shift = pupils.with_round_stop().middle({0, 0.5}).y / 0.5 - rim.shift_per_mm * radius;
     const core_detail::Kronecker<4> random(3);
     double outside = 0, missed = 0, both = 0, area = 0;
     for (std::uint32_t i = 0; i < 20000; ++i) {
@@ -94,18 +94,18 @@ TEST(PupilRim, RefusesInvalidRimsAndPupils) {
   const FilmPupilTable pupils = image(lens, {});
   for (const PupilRim& rim : {PupilRim{0, 0}, PupilRim{-1, 0}, PupilRim{std::nan(""), 0}, PupilRim{1, std::nan("")},
                               PupilRim{std::numeric_limits<double>::infinity(), 0}}) {
-    expect_error([&] { pupils.cut_by_rim(rim); }, {"pupils", "rim", rim.ratio, rim.radii_per_mm});
+    expect_error([&] { pupils.clipped_by_rim(rim); }, {"pupils", "rim", rim.ratio, rim.shift_per_mm});
   }
   // At the limit the film is dark except on the axis, and samples stay finite.
   const double most = 1e6 / pupils.film_radius();
-  const FilmPupilTable narrow = pupils.cut_by_rim({1, most * (1 - 1e-12)});
+  const FilmPupilTable narrow = pupils.clipped_by_rim({1, most * (1 - 1e-12)});
   EXPECT_EQ(narrow.area({0, pupils.film_radius()}), 0);
   EXPECT_TRUE(std::isfinite(narrow.sample({0, pupils.film_radius()}, 0.3, 0.7).y));
   for (const double rate : {1.001 * most, -1e40, 1e200}) {
-    expect_error([&] { pupils.cut_by_rim({1, rate}); }, {"pupils", "rim", "film", 1e6});
+    expect_error([&] { pupils.clipped_by_rim({1, rate}); }, {"pupils", "rim", "film", 1e6});
   }
   for (const char* id : {"anamorphic_60mm_2x", "catadioptric_mangin_1000mm_f7.5"}) {
-    expect_error([&] { FilmPupilTable::enclosing(data_lens(id), 10).cut_by_rim({1, 0.1}); }, {"pupils", "rim"});
+    expect_error([&] { FilmPupilTable::enclosing(data_lens(id), 10).clipped_by_rim({1, 0.1}); }, {"pupils", "rim"});
   }
 }
 

@@ -35,7 +35,7 @@ std::size_t sector_towards(const Polygon& polygon, const Point<double>& q) {
 /// Clearance as in FilmPupilTable::clearances().
 /// @param facing on input, the first sector to try; on output, the sector that faces the position
 template <class Polygon>
-double clearance_of_place(const Polygon& polygon, const Point<double>& q, std::size_t& facing) {
+double clearance_at(const Polygon& polygon, const Point<double>& q, std::size_t& facing) {
   Sector<double> sector = polygon.sector(static_cast<std::int32_t>(facing));
   if (!sector.faces(q)) {
     const std::size_t k = sector_towards(polygon, q);
@@ -44,7 +44,7 @@ double clearance_of_place(const Polygon& polygon, const Point<double>& q, std::s
     sector = polygon.sector(static_cast<std::int32_t>(k));
   }
   constexpr double farthest = 1e150;  // its square is finite
-  const double way = std::min(sector.way_to(q), farthest), squared = way * way;
+  const double radius = std::min(sector.relative_radius(q), farthest), squared = radius * radius;
   double least = 1 - squared;
   if (sector.obscured > 0) {
     const double inner = sector.obscured_from - squared, outer = squared - sector.obscured_from - sector.obscured;
@@ -58,12 +58,12 @@ double clearance_of_place(const Polygon& polygon, const Point<double>& q, std::s
 template <class Polygon>
 int corrections_of(const Polygon& polygon) {
   int corrections = 0;
-  const double whole = polygon.whole();
-  for (std::size_t k = 0; whole > 0 && k < polygon_corners; ++k) {
-    const double share = polygon.area_before(static_cast<std::int32_t>(k)) / whole;
-    const double off = std::abs(polygon.expected(share, whole) - static_cast<double>(k));
-    constexpr double most = 64;
-    if (off > 0.49) corrections = std::max(corrections, static_cast<int>(std::min(std::ceil(off), most)));
+  const double total_area = polygon.total_area();
+  for (std::size_t k = 0; total_area > 0 && k < polygon_corners; ++k) {
+    const double fraction = polygon.area_before(static_cast<std::int32_t>(k)) / total_area;
+    const double off = std::abs(polygon.expected(fraction, total_area) - static_cast<double>(k));
+    constexpr double max_corrections = 64;
+    if (off > 0.49) corrections = std::max(corrections, static_cast<int>(std::min(std::ceil(off), max_corrections)));
   }
   return corrections;
 }

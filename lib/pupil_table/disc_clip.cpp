@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "rim_cut.hpp"
+#include "disc_clip.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -14,14 +14,14 @@ double reach(const PupilPolygon& polygon, const Vec2<double>& d) {
   for (const double aside : {0.0, 1e-9}) {
     const Point<double> q{d.x + aside * d.y, d.y - aside * d.x};
     const std::size_t found = sector_facing(q, sectors);
-    if (found != polygon_corners) return 1 / polygon.sector(found).way_to(q);
+    if (found != polygon_corners) return 1 / polygon.sector(found).relative_radius(q);
   }
   return 0;
 }
 
 }  // namespace
 
-PupilPolygon cut_by_disc(const PupilPolygon& polygon, double centre, double radius) {
+PupilPolygon clipped_by_disc(const PupilPolygon& polygon, double centre, double radius) {
   constexpr Vec2<double> towards{0, 1};
   // Common interval of polygon and disc along y through the middle.
   const double from_middle = centre - polygon.middle.y;
@@ -31,14 +31,14 @@ PupilPolygon cut_by_disc(const PupilPolygon& polygon, double centre, double radi
   PupilPolygon result;
   result.middle = {0, polygon.middle.y + step};
   if (!(low < high)) return result;
-  const double to_centre = from_middle - step, room = radius * radius - to_centre * to_centre;
+  const double to_centre = from_middle - step, square_margin = radius * radius - to_centre * to_centre;
   for (std::size_t k = 0; k < polygon_corners; ++k) {
-    const Vec2<double> way = polygon.corners[k] - step * towards;
+    const Vec2<double> offset = polygon.corners[k] - step * towards;
     // Fraction at which the line to the corner leaves the disc: square t^2 - 2 t along - room = 0.
-    const double square = way.x * way.x + way.y * way.y;
-    const double along = (way.x * towards.x + way.y * towards.y) * to_centre;
-    const double leaves = square > 0 ? (along + std::sqrt(along * along + square * room)) / square : 1;
-    result.corners[k] = std::min(leaves, 1.0) * way;
+    const double square = offset.x * offset.x + offset.y * offset.y;
+    const double along = (offset.x * towards.x + offset.y * towards.y) * to_centre;
+    const double leaves = square > 0 ? (along + std::sqrt(along * along + square * square_margin)) / square : 1;
+    result.corners[k] = std::min(leaves, 1.0) * offset;
   }
   return result;
 }

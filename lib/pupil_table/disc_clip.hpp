@@ -7,6 +7,6 @@ namespace petzval::pupil_table_detail {
 
 /// The intersection of a polygon and a disc, both centred on the y axis, with a new middle point. Each corner moves
 /// along the line from the new middle to the old corner. Obscurations are ignored.
-PupilPolygon cut_by_disc(const PupilPolygon& polygon, double centre, double radius);
+PupilPolygon clipped_by_disc(const PupilPolygon& polygon, double centre, double radius);
 
 }  // namespace petzval::pupil_table_detail
