@@ -56,9 +56,9 @@ PETZVAL_INLINE Height<R> height(const kernel::Step<R>& s, const kernel::Asphere<
   return {z - V(s.sense) * sag.z, pz - slope * (ux * px + uy * py), slope, sag.defined};
 }
 
-/// Result of a search. `stands`: the result of Newton's iteration is the first crossing. `beside`: the ray passes
+/// Result of a search. `stands`: the result of Newton's iteration is the first crossing. `past_rim`: the ray passes
 /// outside the aperture.
-enum class Outcome : std::uint8_t { open, stands, crosses, beside, lost };
+enum class Outcome : std::uint8_t { open, stands, crosses, past_rim, lost };
 
 template <class R>
 PETZVAL_INLINE Lanes<R> code(Outcome what) noexcept {
@@ -74,12 +74,12 @@ template <class R>
 struct Search {
   using V = Lanes<R>;
   using Vector = kernel::Vec<V>;
-  static constexpr int width = V::width, room = Bundle<R>::rays + width;
+  static constexpr int width = V::width, capacity = Bundle<R>::rays + width;
   /// Values per ray: point, direction, Newton's result, and 1 if this result lies inside the aperture.
   enum Value { x, y, z, dx, dy, dz, answer, inside, values };
-  R v[values][room];
+  R v[values][capacity];
   int count = 0;
-  R t[room], outcome[room];
+  R t[capacity], outcome[capacity];
 
   void take(Mask<R> lanes, const Vector& p, const Vector& d, V newton, Mask<R> newton_inside) noexcept {
     const V flag = select(newton_inside, V(R(1)), V(R(0)));
@@ -90,7 +90,7 @@ struct Search {
 
   /// Decides rays by bounds if possible, then packs and searches the other rays.
   void run(const kernel::Asphere<R>& surface, R sense) noexcept {
-    R from[room], to[room];
+    R from[capacity], to[capacity];
     Mask<R> left[Bundle<R>::vectors];
     int kept = 0;
     fill(v, count);
@@ -98,22 +98,22 @@ struct Search {
       const Vector p{at(x, o), at(y, o), at(z, o)}, d{at(dx, o), at(dy, o), at(dz, o)};
       const V newton = at(answer, o);
       const auto ray = kernel::trace_detail::passage(surface, p, d);
-      const auto [part, empty, rising] = kernel::trace_detail::prospect(surface, ray, p, d, sense);
+      const auto [range, empty, rising] = kernel::trace_detail::prospect(surface, ray, p, d, sense);
       const Mask<R> stands = rising & (at(inside, o) > V(R(0)));
       // Without a crossing inside the aperture, a ray that can have at most one crossing passes outside.
-      const V nothing = select(empty | rising, code<R>(Outcome::beside), code<R>(Outcome::open));
+      const V nothing = select(empty | rising, code<R>(Outcome::past_rim), code<R>(Outcome::open));
       store(outcome + o, select(stands, code<R>(Outcome::stands), nothing));
-      left[o / width] = without(part.from <= part.to, stands);
+      left[o / width] = without(range.from <= range.to, stands);
       int k = 0;
       for (const V& numbers : {p.x, p.y, p.z, d.x, d.y, d.z, newton}) pack(v[k++] + kept, left[o / width], numbers);
-      pack(from + kept, left[o / width], part.from);
-      pack(to + kept, left[o / width], part.to);
+      pack(from + kept, left[o / width], range.from);
+      pack(to + kept, left[o / width], range.to);
       kept += lanes_in(left[o / width]);
     }
     if (kept == 0) return;
     fill(v, kept);
     for (R* numbers : {from, to}) fill(numbers, kept);
-    R found_t[room], found[room];
+    R found_t[capacity], found[capacity];
     for (int o = 0; o < kept; o += width) {
       const Vector p{at(x, o), at(y, o), at(z, o)}, d{at(dx, o), at(dy, o), at(dz, o)};
       const auto ray = kernel::trace_detail::passage(surface, p, d);
@@ -139,7 +139,7 @@ struct Search {
   static void fill(R* numbers, int count) noexcept {
     for (int l = count; l % width != 0; ++l) numbers[l] = numbers[count - 1];
   }
-  static void fill(R (&numbers)[values][room], int count) noexcept {
+  static void fill(R (&numbers)[values][capacity], int count) noexcept {
     for (auto& row : numbers) fill(row, count);
   }
 };
@@ -147,9 +147,8 @@ struct Search {
 /// True if both ends of the part of the ray inside the cylinder of the aperture lie on the same side of the rim. Only
 /// for rays so close to the axial direction that they cross the surface at most once.
 template <class R>
-PETZVAL_INLINE Mask<R> beside_edge(const kernel::Asphere<R>& surface,
-                                   const kernel::trace_detail::Passage<Lanes<R>>& ray, Lanes<R> z,
-                                   Lanes<R> dz) noexcept {
+PETZVAL_INLINE Mask<R> past_edge(const kernel::Asphere<R>& surface, const kernel::trace_detail::Passage<Lanes<R>>& ray,
+                                 Lanes<R> z, Lanes<R> dz) noexcept {
   using V = Lanes<R>;
   const R unsure = R(64) * std::numeric_limits<R>::epsilon() * surface.height;
   const V within2 = V(surface.height * surface.height) - ray.nearest2, half = sqrt(quotient(within2, ray.across2));
@@ -171,7 +170,7 @@ struct Meeting {
   static constexpr int vectors = Bundle<R>::vectors;
   V q[vectors], rate[vectors], slope[vectors];
   Mask<R> found[vectors];
-  Mask<R> beside[vectors];  ///< no crossing inside the aperture: vignetted, even if the ray hits farther out
+  Mask<R> past_rim[vectors];  ///< no crossing inside the aperture: vignetted, even if the ray hits farther out
 };
 
 /// Newton's iteration in each lane; a converged lane keeps its value, so that results do not depend on other lanes. A
@@ -193,7 +192,7 @@ template <class R>
     offset[i] = ax * kernel::absolute(b.x[i]) + ay * kernel::absolute(b.y[i]) + kernel::absolute(b.z[i]);
     at.rate[i] = at.slope[i] = none;
     moving[i] = b.alive[i];
-    waiting[i] = at.found[i] = at.beside[i] = without(moving[i], moving[i]);
+    waiting[i] = at.found[i] = at.past_rim[i] = without(moving[i], moving[i]);
   }
   const auto height_at = [&](int i, V q) {
     return height(s, surface, V(b.x[i] + q * b.px[i]), V(b.y[i] + q * b.py[i]), V(b.z[i] + q * b.pz[i]), b.px[i],
@@ -247,18 +246,18 @@ template <class R>
     const kernel::Vec<V> p{b.x[i], b.y[i], sense * b.z[i]}, d{b.px[i], b.py[i], sense * b.pz[i]};
     const auto ray = kernel::trace_detail::passage(surface, p, d);
     const Mask<R> upright = d.z * d.z > steepest2 * ray.across2;
-    at.beside[i] = doubtful[i] & upright & beside_edge(surface, ray, p.z, d.z);
-    taken[i] = without(doubtful[i], at.beside[i]);
+    at.past_rim[i] = doubtful[i] & upright & past_edge(surface, ray, p.z, d.z);
+    taken[i] = without(doubtful[i], at.past_rim[i]);
     if (any(taken[i])) search.take(taken[i], p, d, at.q[i], inside[i]);
   }
   if (search.count > 0) search.run(surface, s.sense);
   for (int i = 0, o = 0; i < vectors; o += lanes_in(taken[i++])) {
     const V outcome = any(taken[i]) ? unpack(search.outcome + o, taken[i], code<R>(Outcome::open)) : none;
     const Mask<R> crosses = taken[i] & are(outcome, Outcome::crosses), lost = taken[i] & are(outcome, Outcome::lost);
-    at.beside[i] = at.beside[i] | (taken[i] & are(outcome, Outcome::beside));
+    at.past_rim[i] = at.past_rim[i] | (taken[i] & are(outcome, Outcome::past_rim));
     at.found[i] = without(at.found[i] | crosses, lost);
     // A hit outside the aperture does not matter if the aperture clips the ray.
-    const Mask<R> settled = crosses | lost | (route.apertures ? at.beside[i] : lost);
+    const Mask<R> settled = crosses | lost | (route.apertures ? at.past_rim[i] : lost);
     moving[i] = without(moving[i] | waiting[i], settled);
     if (any(lost)) {
       R said[width];
@@ -296,19 +295,19 @@ void asphere(const kernel::Step<R>& s, const Lanes<R>& rim2, const Route<R>& rou
   const V described2(route.apertures ? surface.rim2 : std::numeric_limits<R>::infinity());
   for (int i = 0; i < vectors; ++i) {
     const V x = b.x[i], y = b.y[i], z = b.z[i], px = b.px[i], py = b.py[i], pz = b.pz[i], q = at.q[i];
-    const Mask<R> found = at.found[i] | at.beside[i];
-    b.x[i] = select(without(at.beside[i], at.found[i]), V(std::numeric_limits<R>::quiet_NaN()), x + q * px);
+    const Mask<R> found = at.found[i] | at.past_rim[i];
+    b.x[i] = select(without(at.past_rim[i], at.found[i]), V(std::numeric_limits<R>::quiet_NaN()), x + q * px);
     b.y[i] = y + q * py;
     b.z[i] = z + q * pz;
     const V u = ax * b.x[i] * b.x[i] + ay * b.y[i] * b.y[i];
     const V gx = at.slope[i] * ax * b.x[i], gy = at.slope[i] * ay * b.y[i];
-    V way = q, twist = none;
-    if constexpr (Follow::wanted) {
-      way = ((b.x[i] - x) * px + (b.y[i] - y) * py + (b.z[i] - z) * pz) * per_n2[i];
+    V path = q, twist = none;
+    if constexpr (Follow::enabled) {
+      path = ((b.x[i] - x) * px + (b.y[i] - y) * py + (b.z[i] - z) * pz) * per_n2[i];
       twist = V(s.sense + s.sense) * kernel::sag(surface, Rate<R>(u, V(R(1)))).slope.d;
     }
     bend(s, V(select(u <= described2, rim2, V(R(-1)))), media, b, i, found,
-         {way, px, py, pz, gx, gy, V(R(1)), none, at.rate[i], none, none, none, at.slope[i] * ax, at.slope[i] * ay,
+         {path, px, py, pz, gx, gy, V(R(1)), none, at.rate[i], none, none, none, at.slope[i] * ax, at.slope[i] * ay,
           none, twist * ax, twist * ay},
          follow);
   }

@@ -183,9 +183,9 @@ template <class T>
 void trace(const Lens& lens, std::span<const Ray<T>> rays, TracedRay<T>* traced, const BatchOptions& options) noexcept {
   const auto trace_blocks = loops<T>(tracer(options.arithmetic));
   auto job = job_for<T>(lens, options);
-  Block<T> some;
-  use(some, block, job);
-  const auto& [x, y, z, dx, dy, dz] = some.arrays();
+  Block<T> buffers;
+  use(buffers, block, job);
+  const auto& [x, y, z, dx, dy, dz] = buffers.arrays();
   for (std::size_t begin = 0; begin < rays.size(); begin += block) {
     const std::size_t count = std::min(block, rays.size() - begin);
     for (std::size_t i = 0; i < count; ++i) {
@@ -193,11 +193,11 @@ void trace(const Lens& lens, std::span<const Ray<T>> rays, TracedRay<T>* traced,
       x[i] = origin.x, y[i] = origin.y, z[i] = origin.z;
       dx[i] = direction.x, dy[i] = direction.y, dz[i] = direction.z;
     }
-    copy_wavelengths(count, options.wavelengths, begin, some);
+    copy_wavelengths(count, options.wavelengths, begin, buffers);
     job.rays = count;
     trace_blocks(job);
     for (std::size_t i = 0; i < count; ++i) {
-      traced[begin + i] = {{{x[i], y[i], z[i]}, {dx[i], dy[i], dz[i]}}, some.fates[i], some.surfaces[i]};
+      traced[begin + i] = {{{x[i], y[i], z[i]}, {dx[i], dy[i], dz[i]}}, buffers.fates[i], buffers.surfaces[i]};
     }
   }
 }

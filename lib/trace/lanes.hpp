@@ -295,8 +295,8 @@ PETZVAL_INLINE void store(R* to, Lanes<R> x) noexcept {
 }
 
 template <class R>
-PETZVAL_INLINE Lanes<R> look_up(const R* table, std::size_t count, const typename Native<R>::Bits& places) noexcept {
-  return Lanes<R>(core_detail::look_up(table, count, places));
+PETZVAL_INLINE Lanes<R> look_up(const R* table, std::size_t count, const typename Native<R>::Bits& indices) noexcept {
+  return Lanes<R>(core_detail::look_up(table, count, indices));
 }
 
 /// Number of lanes of a mask.

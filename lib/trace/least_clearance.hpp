@@ -34,7 +34,7 @@ class LeastClearance : public NoTangents {
     for (int i = 0; i < Bundle<R>::vectors; ++i) {
       V own = (V(s.rim2) - b.r2[i]) * V(scale);
       if (s.obscuration2 > 0) own = smaller((b.r2[i] - V(s.obscuration2)) * V(scale), own);
-      for (const auto& edge : iris) own = smaller(kernel::room_at(edge, b.x[i], b.y[i]) * sqrt(V(scale)), own);
+      for (const auto& edge : iris) own = smaller(kernel::edge_clearance(edge, b.x[i], b.y[i]) * sqrt(V(scale)), own);
       // Without apertures, rims do not block rays.
       const Mask<R> lost = without(alive_[i], b.alive[i]);
       const Mask<R> otherwise = route.apertures ? without(lost, own < none) : lost;

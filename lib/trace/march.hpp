@@ -81,8 +81,8 @@ PETZVAL_ONE_LANE_INLINE void leave(const Route<R>& route, const RayArrays<const 
   using V = Lanes<R>;
   // A direction with |d|^2 = 1 + t, t = unit_direction_tolerance, has an error of 3/4 t^2 after the step in enter().
   constexpr R entered(unit_direction_tolerance * unit_direction_tolerance);
-  constexpr R rounding = 100 * std::numeric_limits<R>::epsilon(), of_entry = entered * entered;
-  constexpr R most = rounding > of_entry ? rounding : of_entry;
+  constexpr R rounding = 100 * std::numeric_limits<R>::epsilon(), entry_bound = entered * entered;
+  constexpr R max_excess2 = rounding > entry_bound ? rounding : entry_bound;
   const V sense(route.sequence.last_sense);
   for (int i = 0; i < b.used; ++i) {
     const int o = i * V::width;
@@ -92,7 +92,7 @@ PETZVAL_ONE_LANE_INLINE void leave(const Route<R>& route, const RayArrays<const 
     const V scale = V(R(1.5)) - V(R(0.5)) * length;
     // Rays whose values overflowed or lost their digits count as lost at the last surface.
     const V excess = length - V(R(1)) + b.z[i] * V(R(0));
-    const Mask<R> sound = b.alive[i] & (excess * excess < V(most));
+    const Mask<R> sound = b.alive[i] & (excess * excess < V(max_excess2));
     count<1>(b.tally[i], sound);
     const auto put = [&](R* to, V value, const R* before) { store(to + o, select(sound, value, load(before + o))); };
     put(out.x, b.x[i], in.x);

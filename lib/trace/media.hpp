@@ -26,18 +26,18 @@ struct SharedMedia {
 template <class R>
 class MediaByRay {
   using V = Lanes<R>;
-  using Places = typename Native<R>::Bits;
+  using Indices = typename Native<R>::Bits;
 
  public:
   /// Media at a step.
   struct Step {
     const R* rows;
     std::size_t count, length;
-    const Places* places;
+    const Indices* indices;
 
-    PETZVAL_INLINE V cn2(int i) const noexcept { return look_up(rows, count, places[i]); }
-    PETZVAL_INLINE V k(int i) const noexcept { return look_up(rows + length, count, places[i]); }
-    PETZVAL_INLINE V per_n2(int i) const noexcept { return look_up(rows + 2 * length, count, places[i]); }
+    PETZVAL_INLINE V cn2(int i) const noexcept { return look_up(rows, count, indices[i]); }
+    PETZVAL_INLINE V k(int i) const noexcept { return look_up(rows + length, count, indices[i]); }
+    PETZVAL_INLINE V per_n2(int i) const noexcept { return look_up(rows + 2 * length, count, indices[i]); }
   };
 
   /// @param wavelengths indices of wavelengths, one for each ray
@@ -47,13 +47,13 @@ class MediaByRay {
       : sequence_(sequence), count_(count), length_(kernel::row_length<R>(count)) {
     // Numbers of 32 bits, as wide as float, vectorise best.
     const auto compiled = static_cast<std::int32_t>(count <= 0xffff ? count : 0x10000);
-    typename Native<R>::Bit places[Bundle<R>::rays];
+    typename Native<R>::Bit indices[Bundle<R>::rays];
     for (int l = 0; l < Bundle<R>::rays; ++l) {
-      const std::int32_t coordinate = wavelengths[l];
-      places[l] = coordinate < compiled ? coordinate : 0;
-      unless_known_[l] = coordinate < compiled ? R(0) : std::numeric_limits<R>::quiet_NaN();
+      const std::int32_t index = wavelengths[l];
+      indices[l] = index < compiled ? index : 0;
+      unless_known_[l] = index < compiled ? R(0) : std::numeric_limits<R>::quiet_NaN();
     }
-    __builtin_memcpy(places_, places, sizeof places);
+    __builtin_memcpy(indices_, indices, sizeof indices);
   }
 
   /// Indices in front of the first step and one over the indices behind the last step. They are NaN, and the ray is
@@ -61,19 +61,19 @@ class MediaByRay {
   PETZVAL_INLINE void indices(R* first, R* per_last) const noexcept {
     for (int i = 0; i < Bundle<R>::vectors; ++i) {
       const int o = i * V::width;
-      store(first + o, look_up(sequence_.n_first, count_, places_[i]) + load(unless_known_ + o));
-      store(per_last + o, look_up(sequence_.per_n_last, count_, places_[i]));
+      store(first + o, look_up(sequence_.n_first, count_, indices_[i]) + load(unless_known_ + o));
+      store(per_last + o, look_up(sequence_.per_n_last, count_, indices_[i]));
     }
   }
 
   PETZVAL_INLINE Step at(std::size_t j) const noexcept {
-    return {sequence_.bend_rows + 3 * j * length_, count_, length_, places_};
+    return {sequence_.bend_rows + 3 * j * length_, count_, length_, indices_};
   }
 
  private:
   const kernel::SurfaceSequence<R>& sequence_;
   std::size_t count_, length_;
-  Places places_[Bundle<R>::vectors];
+  Indices indices_[Bundle<R>::vectors];
   R unless_known_[Bundle<R>::rays];
 };
 

@@ -31,7 +31,7 @@ struct TraceState {
 
 /// Distance of a point in the stop plane from an edge of the iris, positive inside, to first order.
 template <class T>
-T room_at(const StopEdge<Storage<T>>& edge, const T& x, const T& y) noexcept {
+T edge_clearance(const StopEdge<Storage<T>>& edge, const T& x, const T& y) noexcept {
   return T(edge.distance) - (x * T(edge.nx) + y * T(edge.ny) + T(edge.bend) * (x * x + y * y));
 }
 
@@ -39,7 +39,7 @@ T room_at(const StopEdge<Storage<T>>& edge, const T& x, const T& y) noexcept {
 template <class T>
 Mask<T> within(std::span<const StopEdge<Storage<T>>> iris, const T& x, const T& y) noexcept {
   Mask<T> inside = x <= std::numeric_limits<Storage<T>>::max();
-  for (const auto& edge : iris) inside = all_of(inside, room_at(edge, x, y) >= Storage<T>(0));
+  for (const auto& edge : iris) inside = all_of(inside, edge_clearance(edge, x, y) >= Storage<T>(0));
   return inside;
 }
 
@@ -94,9 +94,9 @@ TraceState<T> trace(const LensView<Storage<T>>& lens, const Vec<T>& origin, cons
       }
     } else {
       const Asphere<R>& asphere = lens.aspheres[surface.asphere];
-      const auto [point, hit, converged, beside] = intersect(asphere, p, ray.direction, sense);
+      const auto [point, hit, converged, past_rim] = intersect(asphere, p, ray.direction, sense);
       if (!hit) {
-        return end(beside ? RayFate::vignetted : converged ? RayFate::missed_surface : RayFate::no_convergence);
+        return end(past_rim ? RayFate::vignetted : converged ? RayFate::missed_surface : RayFate::no_convergence);
       }
       p = point;
       n = normal(asphere, p);

@@ -37,7 +37,7 @@ struct NoTangents {
   PETZVAL_INLINE void pass(const kernel::Step<R>&, const Bundle<R>&, int, const Contact<R>&) noexcept {}
   template <class R>
   PETZVAL_INLINE void watch(const Route<R>&, std::size_t, const Bundle<R>&) noexcept {}
-  static constexpr bool wanted = false;
+  static constexpr bool enabled = false;
 };
 
 /// Updates the tally of vector i of a bundle.
@@ -160,7 +160,7 @@ PETZVAL_INLINE void sphere(const kernel::Step<R>& s, const Lanes<R>& rim2, const
     b.py[i] = py - bend * b.y[i];
     b.pz[i] = pz + gamma * w;
     book(b, i, w > none, b.r2[i] <= rim2, has_root(d_out[m]));
-    if constexpr (Follow::wanted) {
+    if constexpr (Follow::enabled) {
       follow.pass(s, b, i,
                   {q[m], px, py, pz, c * b.x[i], c * b.y[i], w, one, xi[m], xo[m], gamma, k[m], c, c, c, none, none});
     }

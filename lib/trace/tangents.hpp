@@ -11,7 +11,7 @@ namespace {
 template <class R>
 struct TwoTangents {
   using V = Lanes<R>;
-  static constexpr bool wanted = true;
+  static constexpr bool enabled = true;
   Tangent<R> u, v;
 
   /// Moves the start of a ray along the ray: x + t p. The derivative of t has no effect before the next surface.

@@ -44,8 +44,8 @@ void keep_finite(const Ray<R>& found, Ray<R>& ray) noexcept {
 /// @param per_n2 one over the squared index in front of the step
 /// @param before, after the states in front of the step and behind it, copied so that the values stay in registers
 template <class R>
-void put_at_end(const Route<R>& route, const R* vertex_z, std::size_t j, R per_n2, bool unsettled, Bundle<R> before,
-                Bundle<R> after, TracedRay<R>& end) noexcept {
+void set_lost_end(const Route<R>& route, const R* vertex_z, std::size_t j, R per_n2, bool unsettled, Bundle<R> before,
+                  Bundle<R> after, TracedRay<R>& end) noexcept {
   const kernel::Step<R>& s = route.sequence.steps[j];
   const auto tally = after.tally[0] - static_cast<std::int32_t>(4 * j);
   end.fate = static_cast<RayFate>(lost_by(tally, unsettled));
@@ -66,11 +66,11 @@ void put_at_end(const Route<R>& route, const R* vertex_z, std::size_t j, R per_n
 /// Derivatives of a ray; the trace replaces them by the derivatives behind the lens.
 template <class R>
 struct RayBy {
-  static constexpr bool wanted = true;
+  static constexpr bool enabled = true;
   Ray<R>&u, &v;
 };
 struct NoDerivatives {
-  static constexpr bool wanted = false;
+  static constexpr bool enabled = false;
 };
 
 template <class T, class R>
@@ -96,8 +96,8 @@ TracedRay<R> trace_one(const Route<R>& route, const R* vertex_z, const Ray<R>& r
     return end;
   }
   std::uint8_t unsettled = 0;
-  std::conditional_t<By::wanted, TwoTangents<R>, NoTangents> follow;
-  if constexpr (By::wanted) {
+  std::conditional_t<By::enabled, TwoTangents<R>, NoTangents> follow;
+  if constexpr (By::enabled) {
     enter(route, arrays_of<const R>(by.u), &index, follow.u);
     enter(route, arrays_of<const R>(by.v), &index, follow.v);
   }
@@ -112,12 +112,12 @@ TracedRay<R> trace_one(const Route<R>& route, const R* vertex_z, const Ray<R>& r
       if (hit && kernel::finite(point.x) && kernel::finite(point.y) && kernel::finite(point.z)) seen(s.surface, point);
     }
     if (!any(b.alive[0])) {
-      put_at_end(route, vertex_z, j, media.per_n2(0).v, unsettled != 0, before, b, end);
+      set_lost_end(route, vertex_z, j, media.per_n2(0).v, unsettled != 0, before, b, end);
       return end;
     }
   }
   leave(route, in, &per_index, b, own);
-  if constexpr (By::wanted) {
+  if constexpr (By::enabled) {
     leave(route, &per_index, b, follow.u, arrays_of<R>(by.u));
     leave(route, &per_index, b, follow.v, arrays_of<R>(by.v));
   }
