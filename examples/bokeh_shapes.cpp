@@ -89,8 +89,8 @@ examples::Sheet blades() {
       const petzval::Iris iris{.blades = count, .roundness = roundness};
       const auto image =
           petzval::point_image(petzval::with_iris(scene.lens, iris), scene.light, tile_options(scene.half_width_mm));
-      const double share = petzval::iris_area(iris) / petzval::iris_area(petzval::Iris{});
-      tiles.push_back(tile(image, {std::to_string(count) + " blades", "light: " + number(100 * share, 3) + " %"}));
+      const double area_ratio = petzval::iris_area(iris) / petzval::iris_area(petzval::Iris{});
+      tiles.push_back(tile(image, {std::to_string(count) + " blades", "light: " + number(100 * area_ratio, 3) + " %"}));
     }
   }
   return sheet;
@@ -215,16 +215,16 @@ int main(int argc, char** argv) {
   examples::add_out_folder(app, out_folder, "folder for the sheets")->required();
   examples::add_samples(app, samples);
   return examples::run(app, argc, argv, [&] {
-    struct Drawn {
+    struct Picture {
       const char *file, *caption;
       std::function<examples::Sheet()> sheet;
     };
     const std::filesystem::path folder = out_folder;
     examples::make_folder(folder);  // fail before the drawing, which takes seconds
-    const std::array<Drawn, 4> all{{{"bokeh_blades.png", "blades", blades},
-                                    {"bokeh_cats_eyes.png", "cat's eyes", cats_eyes},
-                                    {"bokeh_weights.png", "weights", weights},
-                                    {"bokeh_maps.png", "maps", maps}}};
+    const std::array<Picture, 4> all{{{"bokeh_blades.png", "blades", blades},
+                                      {"bokeh_cats_eyes.png", "cat's eyes", cats_eyes},
+                                      {"bokeh_weights.png", "weights", weights},
+                                      {"bokeh_maps.png", "maps", maps}}};
     examples::Progress progress("bokeh shapes", all.size());
     std::vector<petzval::Rgb8Image> pictures;
     for (const auto& [file, caption, sheet] : all) {

@@ -85,8 +85,8 @@ void complete(Options& options, const examples::LoadedLens& loaded) {
     for (const double lengths : {25, 50, 100}) options.focus_mm.push_back(rounded(lengths * focal_length, 3));
     options.focus_mm.push_back(options.subject_mm);
   } else if (options.focus_mm.empty()) {
-    for (const double share : {0.8, 0.9, 1.0, 1.1, 1.2})
-      options.focus_mm.push_back(rounded(share * options.subject_mm, 3));
+    for (const double ratio : {0.8, 0.9, 1.0, 1.1, 1.2})
+      options.focus_mm.push_back(rounded(ratio * options.subject_mm, 3));
   }
   if (options.field_deg.empty())
     options.field_deg = {0, rounded(0.7 * examples::half_field_deg(loaded, loaded.lens), 2)};

@@ -33,7 +33,7 @@ using examples::Json;
 using examples::number;
 
 constexpr int tile_pixels = 200;
-constexpr std::array film_parts{0.0, 0.3, 0.55, 0.75, 0.9};  // fractions of the distance to the film's corner
+constexpr std::array film_fractions{0.0, 0.3, 0.55, 0.75, 0.9};  // fractions of the distance to the film's corner
 
 struct Options {
   examples::LensInput lens_file;
@@ -59,21 +59,23 @@ std::vector<double> wavelengths_nm(const Options& options) {
 std::vector<double> fields_rad(const petzval::Lens& lens, const petzval::Film& film) {
   const petzval::Camera exact(lens, film, {.model = petzval::ModelKind::exact_double});
   std::vector<double> fields;
-  for (const double part : film_parts) {
-    const petzval::FilmPoint place{part * film.width_mm / 2, part * film.height_mm / 2};
+  for (const double fraction : film_fractions) {
+    const petzval::FilmPoint film_point{fraction * film.width_mm / 2, fraction * film.height_mm / 2};
     double weight = 0, x = 0, y = 0, z = 0;
     constexpr std::uint32_t count = 256;
     for (std::uint32_t i = 0; i < count; ++i) {
       const auto pupil = petzval::owen_sobol(i, 0);
-      const petzval::CameraRay ray = exact.sample({.film = place, .pupil_u = pupil.x, .pupil_v = pupil.y});
-      const petzval::Vec3<double>& way = ray.ray.direction;
-      if (ray) weight += ray.weight, x += ray.weight * way.x, y += ray.weight * way.y, z -= ray.weight * way.z;
+      const petzval::CameraRay ray = exact.sample({.film = film_point, .pupil_u = pupil.x, .pupil_v = pupil.y});
+      const petzval::Vec3<double>& direction = ray.ray.direction;
+      if (ray)
+        weight += ray.weight, x += ray.weight * direction.x, y += ray.weight * direction.y,
+            z -= ray.weight * direction.z;
     }
-    if (weight > 0) fields.push_back(part == 0 ? 0 : std::atan2(std::hypot(x, y), z));
+    if (weight > 0) fields.push_back(fraction == 0 ? 0 : std::atan2(std::hypot(x, y), z));
   }
   if (fields.empty()) throw petzval::Error(lens.name() + ": no light reaches the film");
-  if (fields.size() < film_parts.size()) {
-    std::cerr << "note: " << film_parts.size() - fields.size() << " of " << film_parts.size()
+  if (fields.size() < film_fractions.size()) {
+    std::cerr << "note: " << film_fractions.size() - fields.size() << " of " << film_fractions.size()
               << " film points have no light; --film-mm sets a smaller film\n";
   }
   return fields;
@@ -116,7 +118,8 @@ class Highlights {
 Json description(const petzval::ExpressiveLens& expressive) {
   Json power = Json::array(), offsets = Json::array();
   for (const auto& [radius, value] : expressive.power) power.push_back({radius, value});
-  for (const auto& [place, offset, weight] : expressive.film_offsets) offsets.push_back({place.x, place.y, offset});
+  for (const auto& [film_point, offset, weight] : expressive.film_offsets)
+    offsets.push_back({film_point.x, film_point.y, offset});
   return {{"power", power},
           {"film_offsets_mm", offsets},
           {"dispersion", expressive.dispersion.empty() ? 1 : expressive.dispersion.front()}};

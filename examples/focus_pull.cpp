@@ -33,7 +33,7 @@ using examples::number;
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr double none = std::numeric_limits<double>::quiet_NaN();
-constexpr std::size_t most_frames = 100000;
+constexpr std::size_t max_frames = 100000;
 
 struct Options : examples::MovementOptions {
   std::string keys_file, out_folder;
@@ -113,9 +113,9 @@ class Pull {
   /// Distance in focus on the axis, by rays for the real model; infinite if no finite distance is in focus.
   double distance() const {
     if (lens_.exact) return petzval::solve_subject(*lens_.lens, film_.z(), options_.focus.options()).distance;
-    const petzval::ScenePoint place = lens_.ideal.scene_of({0, 0, film_.z()});
-    const bool real = !place.at_infinity && place.position.z < lens_.ideal.front_focal_z;
-    return real ? origin_z() - place.position.z : infinity;
+    const petzval::ScenePoint conjugate = lens_.ideal.scene_of({0, 0, film_.z()});
+    const bool real = !conjugate.at_infinity && conjugate.position.z < lens_.ideal.front_focal_z;
+    return real ? origin_z() - conjugate.position.z : infinity;
   }
   /// z of the origin of distances for an ideal lens, whose front vertex is at z = 0.
   double origin_z() const {
@@ -146,9 +146,9 @@ std::vector<Frame> frames(const Options& options, const examples::MovingLens& le
                           const std::vector<petzval::FocusPoint>& points) {
   const Times times = span_of(points);
   const double count = std::floor((times.to - times.from) * options.frames_per_s + 1e-6) + 1;
-  if (!(count <= most_frames)) {
+  if (!(count <= max_frames)) {
     throw petzval::Error(options.keys_file + ": frames = " + number(count) + " from " + number(times.from) + " s to " +
-                         number(times.to) + " s; must be at most " + std::to_string(most_frames));
+                         number(times.to) + " s; must be at most " + std::to_string(max_frames));
   }
   Pull pull(options, lens, points);
   std::vector<Frame> result;

@@ -72,7 +72,8 @@ struct Result {
   TiltFit after = {};
 };
 
-std::vector<petzval::ScenePoint> places(const std::vector<Point>& points, bool (Point::*which)() const = nullptr) {
+std::vector<petzval::ScenePoint> scene_points(const std::vector<Point>& points,
+                                              bool (Point::*which)() const = nullptr) {
   std::vector<petzval::ScenePoint> result;
   for (const Point& p : points) {
     if (!which || (p.*which)()) result.push_back(p.target.point);
@@ -119,7 +120,7 @@ petzval::Autofocus focused(const Options& options, Result& result) {
 }
 
 /// Excludes points outside the picture, if the size of the film is given.
-void leave_out_what_is_beside(const petzval::Film& film, Result& result) {
+void leave_out_targets_off_film(const petzval::Film& film, Result& result) {
   for (Point& p : result.points) {
     if (p.status != TargetStatus::used && p.status != TargetStatus::no_weight) continue;
     petzval::FocusPoint point;
@@ -134,7 +135,7 @@ Result solve(const Options& options) {
 
   result.before = focused(options, result);
   if (options.film_given) {
-    leave_out_what_is_beside(petzval::Film(result.before.film), result);
+    leave_out_targets_off_film(petzval::Film(result.before.film), result);
     result.before = focused(options, result);
   }
   petzval::TiltOptions tilt{.max_tilt_rad = petzval::radians(options.max_tilt_deg),
@@ -167,7 +168,7 @@ Result solve(const Options& options) {
   }
   if (result.lens.lens) {
     const auto traced =
-        petzval::exact_blurs(*result.lens.lens, result.after.film, places(result.points), rays_to_check);
+        petzval::exact_blurs(*result.lens.lens, result.after.film, scene_points(result.points), rays_to_check);
     for (std::size_t i = 0; i < result.points.size(); ++i) {
       Point& p = result.points[i];
       if (!std::isnan(p.predicted_mm) && traced[i]) p.traced_mm = traced[i]->signed_diameter;
@@ -303,7 +304,7 @@ std::string side_view(const Result& result) {
 std::vector<petzval::Rgb8Image> blur_pictures(const Result& result) {
   if (std::ranges::none_of(result.points, &Point::shows)) return {};
   const petzval::IdealLens& ideal = result.lens.ideal;
-  const examples::PointScene scene(ideal, places(result.points, &Point::shows));
+  const examples::PointScene scene(ideal, scene_points(result.points, &Point::shows));
   const petzval::Film films[]{examples::with_pixels(result.before.film), examples::with_pixels(result.after.film)};
   const petzval::Lens* const exact = result.lens.exact ? &*result.lens.lens : nullptr;
   std::vector<examples::BlurMap> maps;

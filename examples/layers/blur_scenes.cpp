@@ -176,10 +176,10 @@ SceneDescription town_scene() {
 SceneDescription knot_scene() {
   SceneDescription scene{.name = "knot", .sky = daylight, .pose = {}};
   const glm::vec3 centre{0, 60, -3600};
-  constexpr int along = 2400, around = 180;
+  constexpr int rings = 2400, around = 180;
   Mesh tube;
-  for (int i = 0; i < along; ++i) {
-    const float part = static_cast<float>(i) / along;
+  for (int i = 0; i < rings; ++i) {
+    const float part = static_cast<float>(i) / rings;
     const glm::vec3 p = knot_line(part), ahead = glm::normalize(knot_line(part + 1e-3f) - knot_line(part - 1e-3f));
     const glm::vec3 across = glm::normalize(glm::cross(ahead, p + glm::vec3{1, 2, 3})),
                     other = glm::cross(ahead, across);
@@ -191,9 +191,9 @@ SceneDescription knot_scene() {
       tube.positions.push_back(centre + p + (150 + bump) * (std::cos(turn) * across + std::sin(turn) * other));
     }
   }
-  for (std::uint32_t i = 0; i < along; ++i) {
+  for (std::uint32_t i = 0; i < rings; ++i) {
     for (std::uint32_t k = 0; k < around; ++k) {
-      const std::uint32_t next = (i + 1) % along, side = (k + 1) % around;
+      const std::uint32_t next = (i + 1) % rings, side = (k + 1) % around;
       const std::uint32_t a = i * around + k, b = i * around + side, c = next * around + side, d = next * around + k;
       tube.triangles.push_back({a, b, c}), tube.triangles.push_back({a, c, d});
     }

@@ -26,7 +26,8 @@ const std::vector<float>* channel(const petzval::ExrPart& part, const std::strin
   return found == part.channels.end() ? nullptr : &found->values;
 }
 
-const std::vector<float>& wanted(const petzval::ExrPart& part, const std::string& name, const std::string& file) {
+const std::vector<float>& required_channel(const petzval::ExrPart& part, const std::string& name,
+                                           const std::string& file) {
   if (const auto* const values = channel(part, name)) return *values;
   throw Error(file + ": has no channel " + name + "; must have R, G, B, Z and optionally A");
 }
@@ -46,7 +47,7 @@ std::vector<float> read_depths(const std::string& file, int& columns, int& rows)
   }
   const petzval::ExrPart part = petzval::read_exr_parts(file).front();
   columns = part.width, rows = part.height;
-  return part.channels.size() == 1 ? part.channels[0].values : wanted(part, "Z", file);
+  return part.channels.size() == 1 ? part.channels[0].values : required_channel(part, "Z", file);
 }
 
 }  // namespace
@@ -118,8 +119,8 @@ void LayerInput::read_layers(const std::string& file) {
                   std::to_string(part.height) + "; must be the size of the first part, " +
                   std::to_string(lists_.columns) + " x " + std::to_string(lists_.rows));
     }
-    planes.push_back({&wanted(part, "R", file), &wanted(part, "G", file), &wanted(part, "B", file),
-                      &wanted(part, "Z", file), channel(part, "A")});
+    planes.push_back({&required_channel(part, "R", file), &required_channel(part, "G", file),
+                      &required_channel(part, "B", file), &required_channel(part, "Z", file), channel(part, "A")});
   }
   for (std::size_t i = 0; i < planes[0].r->size(); ++i) {
     for (const auto& [r, g, b, z, a] : planes) {

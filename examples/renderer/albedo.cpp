@@ -20,14 +20,14 @@ Rgb interpolated(const petzval::RgbImage& image, const glm::vec2& uv) {
   const float x = (uv.x - std::floor(uv.x)) * static_cast<float>(image.width) - 0.5f;
   const float y = (1 - (uv.y - std::floor(uv.y))) * static_cast<float>(image.height) - 0.5f;
   const int left = static_cast<int>(std::floor(x)), upper = static_cast<int>(std::floor(y));
-  const float right_share = x - static_cast<float>(left), lower_share = y - static_cast<float>(upper);
+  const float right_weight = x - static_cast<float>(left), lower_weight = y - static_cast<float>(upper);
   const auto pixel = [&](int column, int row) {
     const float* const p = image.pixel(wrapped(column, image.width), wrapped(row, image.height));
     return Rgb{p[0], p[1], p[2]};
   };
-  const Rgb above = glm::mix(pixel(left, upper), pixel(left + 1, upper), right_share);
-  const Rgb below = glm::mix(pixel(left, upper + 1), pixel(left + 1, upper + 1), right_share);
-  return glm::clamp(glm::mix(above, below, lower_share), 0.0f, 1.0f);
+  const Rgb above = glm::mix(pixel(left, upper), pixel(left + 1, upper), right_weight);
+  const Rgb below = glm::mix(pixel(left, upper + 1), pixel(left + 1, upper + 1), right_weight);
+  return glm::clamp(glm::mix(above, below, lower_weight), 0.0f, 1.0f);
 }
 
 }  // namespace

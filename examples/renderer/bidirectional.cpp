@@ -24,7 +24,7 @@ class Path {
         random_(random),
         connections_(connections),
         splats_(splats) {
-    vertices_.reserve(most_scatterings);
+    vertices_.reserve(max_scatterings);
   }
 
   void from_light() {
@@ -36,7 +36,7 @@ class Path {
     Lanes power = colours_.from_rgb * start->from.radiance * static_cast<float>(start->cosine / start->pdf_emission);
     WorldRay ray{start->origin, start->direction};
     const bool near = start->from.surface.has_value();
-    for (int k = 1; k <= most_scatterings; ++k) {
+    for (int k = 1; k <= max_scatterings; ++k) {
       const auto met = scene_.meet(ray.origin, ray.direction);
       if (!met) return;
       // Light from the sky starts on an area with one direction, so distance does not matter.
@@ -76,10 +76,10 @@ class Path {
         radiance += throughput * (colours_.from_rgb * emitted) *
                     weight(scene_.pdf_light(*met) * others.connected + emission * others.through);
       }
-      if (k == most_scatterings) break;
+      if (k == max_scatterings) break;
       const Bsdf bsdf(*met, -ray.direction, colours_);
       if (!bsdf.specular()) {
-        radiance += throughput * (lit(*met, bsdf, others) + connected(*met, bsdf, others, most_scatterings - k - 1));
+        radiance += throughput * (lit(*met, bsdf, others) + connected(*met, bsdf, others, max_scatterings - k - 1));
       }
       if (!scatter(*met, bsdf, Carries::radiance, throughput, others, ray)) break;
     }

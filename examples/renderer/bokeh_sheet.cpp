@@ -71,9 +71,9 @@ examples::Sheet sheet_of(const std::vector<Picture>& pictures, const std::string
       const std::string film = p.job.at("film_mm");
       const double width_mm = examples::parse_number("film", film.substr(0, film.find('x')), examples::positive_number);
       const auto end = pictures.begin() + static_cast<std::ptrdiff_t>(std::min(i + columns, pictures.size()));
-      const bool alike = std::all_of(pictures.begin() + static_cast<std::ptrdiff_t>(i), end,
-                                     [&](const Picture& other) { return other.lens() == p.lens(); });
-      sheet.rows.push_back({alike ? p.lens() : "", "", width_mm / p.image.width, {}});
+      const bool same_lens = std::all_of(pictures.begin() + static_cast<std::ptrdiff_t>(i), end,
+                                         [&](const Picture& other) { return other.lens() == p.lens(); });
+      sheet.rows.push_back({same_lens ? p.lens() : "", "", width_mm / p.image.width, {}});
     }
     examples::SheetRow& row = sheet.rows.back();
     row.tiles.push_back({petzval::to_srgb8(p.image), p.captions()});

@@ -112,7 +112,7 @@ bool Bsdf::same_side(const glm::vec3& wi) const noexcept {
   return (glm::dot(normal_, wo_) > 0) == (glm::dot(normal_, wi) > 0);
 }
 
-double Bsdf::coat_share(const glm::vec3& o) const noexcept {
+double Bsdf::coat_fraction(const glm::vec3& o) const noexcept {
   const float f = fresnel(o.z, coat_ior);
   return std::clamp(f / (f + (1 - f) * static_cast<float>(goes_on_)), 0.1f, 0.9f);
 }
@@ -181,7 +181,7 @@ double Bsdf::density(const glm::vec3& o, const glm::vec3& i) const noexcept {
   const glm::vec3 m = glm::normalize(o + i);
   const double surface = visible(o, m, alpha_) / (4 * std::abs(glm::dot(o, m)));
   if (std::holds_alternative<Rough>(material_)) return surface;
-  const double coat = coat_share(o);
+  const double coat = coat_fraction(o);
   return coat * surface + (1 - coat) * diffuse;
 }
 
@@ -224,7 +224,7 @@ std::optional<Bsdf::Sample> Bsdf::sample(float choice, float u, float v, Carries
   if (specular_) return sample_specular(choice, carries);
   glm::vec3 i;
   const bool diffuse = std::holds_alternative<Diffuse>(material_);
-  if (diffuse || (std::holds_alternative<Varnish>(material_) && choice >= static_cast<float>(coat_share(o_)))) {
+  if (diffuse || (std::holds_alternative<Varnish>(material_) && choice >= static_cast<float>(coat_fraction(o_)))) {
     i = by_cosine(u, v);
   } else {
     const glm::vec3 m = sample_facet(o_, alpha_, u, v);

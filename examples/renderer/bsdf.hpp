@@ -51,7 +51,7 @@ class Bsdf {
   /// Correction of power for interpolated normals.
   float correction(const glm::vec3& wi, Carries carries) const noexcept;
   bool same_side(const glm::vec3& wi) const noexcept;
-  double coat_share(const glm::vec3& o) const noexcept;
+  double coat_fraction(const glm::vec3& o) const noexcept;
 
   const Material& material_;
   glm::vec3 normal_;  ///< normal of the surface

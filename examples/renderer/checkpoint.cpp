@@ -164,8 +164,8 @@ PictureSums Checkpoint::read_any(const fs::path& file, Json& job) {
   }
 }
 
-void refuse_other_job(const fs::path& file, const Json& found, const Json& wanted) {
-  const Json own = found.flatten(), other = wanted.flatten();
+void refuse_other_job(const fs::path& file, const Json& found, const Json& expected) {
+  const Json own = found.flatten(), other = expected.flatten();
   const auto at = [](const Json& values, const std::string& key) {
     return values.contains(key) ? values.at(key).dump() : "nothing";
   };

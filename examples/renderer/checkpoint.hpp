@@ -33,6 +33,6 @@ class Checkpoint {
 };
 
 /// @throws petzval::Error that names the file and the keys with different values, if there are differences
-void refuse_other_job(const std::filesystem::path& file, const examples::Json& found, const examples::Json& wanted);
+void refuse_other_job(const std::filesystem::path& file, const examples::Json& found, const examples::Json& expected);
 
 }  // namespace renderer

@@ -68,9 +68,10 @@ SceneDescription chess_scene() {
   SceneDescription scene{.name = "chess", .sky = {.colour = {0.055f, 0.065f, 0.085f}}};
 
   // Seen across a corner of the board, 950 mm from its centre.
-  constexpr double aside = 28 * std::numbers::pi / 180, above = 12 * std::numbers::pi / 180;
+  constexpr double azimuth = 28 * std::numbers::pi / 180, elevation = 12 * std::numbers::pi / 180;
   const glm::dvec3 target = glm::dvec3(middle) + glm::dvec3{10, 26, 0};
-  const glm::dvec3 back{std::sin(aside) * std::cos(above), std::sin(above), std::cos(aside) * std::cos(above)};
+  const glm::dvec3 back{std::sin(azimuth) * std::cos(elevation), std::sin(elevation),
+                        std::cos(azimuth) * std::cos(elevation)};
   scene.pose = {.position = target + 950.0 * back, .look_at = target};
 
   const Varnish squares{{.colour = {0.66f, 0.52f, 0.34f}, .checker = Albedo::Checker{{0.15f, 0.07f, 0.035f}, square}},

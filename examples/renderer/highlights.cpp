@@ -12,7 +12,7 @@
 namespace renderer {
 namespace {
 
-constexpr int balls_beside = 6;  // on each side of the centre ball
+constexpr int balls_per_side = 6;  // on each side of the centre ball
 
 double luminance_at(const petzval::RgbImage& picture, int x, int y) {
   const float* const p = picture.pixel(x, y);
@@ -42,11 +42,11 @@ double spacing_of(const petzval::RgbImage& picture) {
   }
   double best = 0, found = 0;
   // From half of the largest spacing that fits into the picture.
-  const double most = picture.width / (2.0 * balls_beside + 1);
+  const double most = picture.width / (2.0 * balls_per_side + 1);
   for (double spacing = most / 2; spacing <= most; spacing += 0.1) {
     double sum = 0;
     int count = 0;
-    for (int ball = -balls_beside; ball <= balls_beside; ++ball) {
+    for (int ball = -balls_per_side; ball <= balls_per_side; ++ball) {
       const double middle = picture.width / 2.0 + ball * spacing;
       for (int x = static_cast<int>(middle - 0.18 * spacing); x <= static_cast<int>(middle + 0.18 * spacing); ++x) {
         sum += columns[static_cast<std::size_t>(std::clamp(x, 0, picture.width - 1))];
@@ -151,7 +151,7 @@ std::vector<std::optional<Highlight>> ball_highlights(const petzval::RgbImage& p
   const double spacing = spacing_of(picture);
   std::vector<std::optional<Highlight>> result;
   if (!(spacing > 2)) return result;
-  for (int ball = -balls_beside; ball <= balls_beside; ++ball) {
+  for (int ball = -balls_per_side; ball <= balls_per_side; ++ball) {
     const auto [first, last] = columns_of(picture, ball, spacing);
     result.push_back(highlight_in(picture, first, last));
   }

@@ -12,7 +12,7 @@
 namespace renderer {
 
 /// Largest number of scatterings between lamp and lens, for all integrators.
-inline constexpr int most_scatterings = 10;
+inline constexpr int max_scatterings = 10;
 
 /// Integrators. All converge to the same picture, except that `light` misses some paths.
 enum class Integrator : std::uint8_t {

@@ -27,7 +27,7 @@ class LensConnections {
   void finish(Splats& splats, double& lens_seconds);
 
  private:
-  struct Place {
+  struct Vertex {
     const PathColours* colours;
     std::optional<SurfacePoint> surface;  ///< nullopt: the sky
     glm::vec3 travel;                     ///< direction of the light
@@ -37,12 +37,12 @@ class LensConnections {
     float u, v;
   };
   std::vector<SeenRay> connect(double& lens_seconds) const;
-  void splat(const Place& place, const SeenRay& seen, Splats& splats) const;
+  void splat(const Vertex& vertex, const SeenRay& seen, Splats& splats) const;
 
   const Scene& scene_;
   const LensCamera& lens_;
   bool weigh_;
-  std::vector<Place> places_;
+  std::vector<Vertex> vertices_;
 };
 
 }  // namespace renderer

@@ -12,11 +12,11 @@ petzval::Wavelength LensView::wavelength(int lane) const noexcept {
 
 std::uint32_t LensView::pixel_of(const petzval::Importance& seen) const noexcept {
   const petzval::Film& film = lens_.film();
-  const auto place = [](double raster, int count) {
+  const auto clamped_index = [](double raster, int count) {
     return static_cast<std::uint32_t>(std::clamp(static_cast<int>(raster), 0, count - 1));
   };
-  return place(seen.raster.y, film.rows) * static_cast<std::uint32_t>(film.columns) +
-         place(seen.raster.x, film.columns);
+  return clamped_index(seen.raster.y, film.rows) * static_cast<std::uint32_t>(film.columns) +
+         clamped_index(seen.raster.x, film.columns);
 }
 
 void LensView::add(SeenRay& ray, int lane, const petzval::Importance& seen, double by_connection) const noexcept {
@@ -26,9 +26,9 @@ void LensView::add(SeenRay& ray, int lane, const petzval::Importance& seen, doub
     ray.we[i] = static_cast<float>(seen.we);
     ray.pixels[static_cast<std::size_t>(i)] = pixel_of(seen);
   }
-  const double share = static_cast<double>(all) / colours_.lanes;
-  ray.by_film += share * (seen ? seen.pdf_position * seen.pdf_direction : 0);
-  ray.by_connection += share * by_connection;
+  const double lane_fraction = static_cast<double>(all) / colours_.lanes;
+  ray.by_film += lane_fraction * (seen ? seen.pdf_position * seen.pdf_direction : 0);
+  ray.by_connection += lane_fraction * by_connection;
 }
 
 SeenRay LensView::at_all_lanes(const LensCamera::Connection& hero, const glm::vec3* point) const noexcept {

@@ -13,7 +13,7 @@ void trace_light(const Scene& scene, const PathColours& colours, Random& random,
   connections.add(colours, *start, lamp_u, lamp_v);
   Lanes power = colours.from_rgb * start->from.radiance * static_cast<float>(start->cosine / start->pdf_emission);
   WorldRay ray{start->origin, start->direction};
-  for (int scatterings = 1; scatterings <= most_scatterings; ++scatterings) {
+  for (int scatterings = 1; scatterings <= max_scatterings; ++scatterings) {
     const auto met = scene.meet(ray.origin, ray.direction);
     if (!met) return;
     const Bsdf bsdf(*met, -ray.direction, colours);

@@ -51,8 +51,8 @@ class Lines {
  private:
   static constexpr std::array<const char*, 3> kinds{"vertex", "texture coordinate", "normal"};
 
-  [[noreturn]] void refuse(const std::string& found, const std::string& wanted) const {
-    throw Error(where_ + ": line " + std::to_string(line_) + ": " + found + "; must be " + wanted);
+  [[noreturn]] void refuse(const std::string& found, const std::string& rule) const {
+    throw Error(where_ + ": line " + std::to_string(line_) + ": " + found + "; must be " + rule);
   }
   [[noreturn]] void refuse_index(std::size_t kind, long index) const {
     refuse(std::string(kinds[kind]) + " " + std::to_string(index),
@@ -68,7 +68,7 @@ class Lines {
     if (keyword == "f") face(line), ++faces_;
   }
 
-  void numbers(std::string_view line, int wanted) const {
+  void numbers(std::string_view line, int rule) const {
     int count = 0;
     for (std::string_view word; !(word = next_word(line)).empty() && word.front() != '#'; ++count) {
       const std::string_view digits = word.substr(word.front() == '+' ? 1 : 0);
@@ -81,7 +81,7 @@ class Lines {
         refuse('"' + std::string(word) + '"', "a finite number up to 1e9");
       }
     }
-    if (count < wanted) refuse(std::to_string(count) + " numbers", std::to_string(wanted));
+    if (count < rule) refuse(std::to_string(count) + " numbers", std::to_string(rule));
   }
 
   void face(std::string_view line) {

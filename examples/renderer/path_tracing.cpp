@@ -26,7 +26,7 @@ void trace_path(const Scene& scene, const LensView& lens, const FilmSample& samp
           scene.pdf_light(*met) * distance2(ray.origin, met->position) / cosine(met->normal, ray.direction);
       radiance += throughput * (colours.from_rgb * emitted) * by_chance(p);
     }
-    if (scatterings == most_scatterings) break;
+    if (scatterings == max_scatterings) break;
     const Bsdf bsdf(*met, -ray.direction, colours);
     if (!bsdf.specular()) {
       if (const auto light = illumination(scene, *met, random)) {

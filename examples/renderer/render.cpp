@@ -17,14 +17,14 @@ using Clock = std::chrono::steady_clock;
 double seconds_since(Clock::time_point begin) { return std::chrono::duration<double>(Clock::now() - begin).count(); }
 
 /// Least time between checkpoints: in seconds, and in multiples of the time for saving.
-constexpr double save_every = 20, save_share = 20;
+constexpr double min_save_interval_s = 20, save_time_ratio = 20;
 
 }  // namespace
 
 namespace {
 
 /// Samples of a round in a picture with a given number of samples.
-std::uint32_t share(std::uint32_t samples, std::size_t round) noexcept {
+std::uint32_t samples_of_round(std::uint32_t samples, std::size_t round) noexcept {
   constexpr auto rounds = static_cast<std::uint32_t>(PictureSums::rounds);
   return samples / rounds + (round < samples % rounds ? 1 : 0);
 }
@@ -37,9 +37,10 @@ SampleRange Effort::next(const PictureSums& sums, std::size_t tile) const noexce
   SampleRange range;
   for (std::uint32_t round = 0; round < PictureSums::rounds; ++round) {
     const std::uint32_t has = sums.samples(tile, round);
-    const std::uint32_t wanted = samples ? share(*samples, round) : std::numeric_limits<std::uint32_t>::max();
-    if (has >= wanted || (range.count > 0 && has >= range.first)) continue;
-    range = {round, has, samples ? std::min(wanted - has, most_of_unit) : 1};
+    const std::uint32_t target =
+        samples ? samples_of_round(*samples, round) : std::numeric_limits<std::uint32_t>::max();
+    if (has >= target || (range.count > 0 && has >= range.first)) continue;
+    range = {round, has, samples ? std::min(target - has, most_of_unit) : 1};
   }
   return range;
 }
@@ -47,8 +48,8 @@ SampleRange Effort::next(const PictureSums& sums, std::size_t tile) const noexce
 std::size_t Effort::units_left(const PictureSums& sums, std::size_t tile) const noexcept {
   std::size_t units = 0;
   for (std::size_t round = 0; samples && round < PictureSums::rounds; ++round) {
-    const std::uint32_t has = sums.samples(tile, round), wanted = share(*samples, round);
-    if (has < wanted) units += (wanted - has + most_of_unit - 1) / most_of_unit;
+    const std::uint32_t has = sums.samples(tile, round), target = samples_of_round(*samples, round);
+    if (has < target) units += (target - has + most_of_unit - 1) / most_of_unit;
   }
   return units;
 }
@@ -99,7 +100,7 @@ RenderReport render(const UnitTracer& tracer, PictureSums& sums, const std::vect
       if (progress) {
         progress->step(std::to_string(least + range.count) + " of " + std::to_string(*effort.samples) + " samples");
       }
-      if (seconds_since(saved) < std::max(save_every, save_share * save_takes)) return;
+      if (seconds_since(saved) < std::max(min_save_interval_s, save_time_ratio * save_takes)) return;
       const auto save_begin = Clock::now();
       save();
       saved = Clock::now();

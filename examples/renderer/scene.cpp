@@ -41,7 +41,7 @@ struct Body {
   float reach = 0;           ///< SurfacePoint::reach of its points
   std::vector<double> ends;  ///< cumulative areas of the triangles
   double area = 0;           ///< area of the whole sphere or of all triangles, mm^2
-  double lamp_share = 0;     ///< probability to be sampled as a lamp
+  double lamp_fraction = 0;  ///< probability to be sampled as a lamp
 
   std::array<glm::vec3, 3> corners(std::size_t triangle) const {
     const auto& t = mesh.triangles[triangle];
@@ -82,7 +82,7 @@ struct Scene::Data {
   EmbreeScene scene;
   std::vector<Body> bodies;
   std::vector<double> lamp_ends;  ///< cumulative lamp_share of the objects; the rest belongs to the sky
-  double sky_share = 0;
+  double sky_fraction = 0;
   glm::vec3 centre{0, 0, 0};  ///< centre of the bounding sphere of all objects
   float radius = 1;
 
@@ -172,14 +172,14 @@ void Scene::Data::find_light() {
   // the samples, because most of its light falls outside the view of the lens.
   const double sky_power = sky.total() * pi * double{radius} * double{radius};
   if (!(total + sky_power > 0)) return;
-  constexpr double most = 0.5;
-  sky_share = total > 0 ? std::min(sky_power / (total + sky_power), most) : 1;
+  constexpr double max_sky_fraction = 0.5;
+  sky_fraction = total > 0 ? std::min(sky_power / (total + sky_power), max_sky_fraction) : 1;
   // Half by power, half equally: small lamps are bright where the lens sees them.
   const auto lamps = static_cast<double>(std::count_if(powers.begin(), powers.end(), [](double p) { return p > 0; }));
   double end = 0;
   for (std::size_t i = 0; i < bodies.size(); ++i) {
-    bodies[i].lamp_share = powers[i] > 0 ? (powers[i] / total + 1 / lamps) / 2 * (1 - sky_share) : 0;
-    lamp_ends.push_back(end += bodies[i].lamp_share);
+    bodies[i].lamp_fraction = powers[i] > 0 ? (powers[i] / total + 1 / lamps) / 2 * (1 - sky_fraction) : 0;
+    lamp_ends.push_back(end += bodies[i].lamp_fraction);
   }
 }
 
@@ -218,9 +218,9 @@ glm::vec3 Scene::leave(const SurfacePoint& from, const glm::vec3& direction) noe
 }
 
 bool Scene::sees(const SurfacePoint& from, const glm::vec3& to) const noexcept {
-  const glm::vec3 origin = leave(from, to - from.position), way = to - origin;
-  const float distance = glm::length(way);
-  return distance > 0 && data_->free(origin, way / distance, distance);
+  const glm::vec3 origin = leave(from, to - from.position), to_target = to - origin;
+  const float distance = glm::length(to_target);
+  return distance > 0 && data_->free(origin, to_target / distance, distance);
 }
 
 bool Scene::sees(const SurfacePoint& from, const SurfacePoint& to) const noexcept {
@@ -231,7 +231,7 @@ bool Scene::sees_sky(const glm::vec3& from, const glm::vec3& direction) const no
   return data_->free(from, direction, infinity);
 }
 
-bool Scene::has_light() const noexcept { return data_->sky_share > 0 || !data_->lamp_ends.empty(); }
+bool Scene::has_light() const noexcept { return data_->sky_fraction > 0 || !data_->lamp_ends.empty(); }
 
 LightPoint Scene::sample_light(float pick, float u, float v) const noexcept {
   LightPoint result;
@@ -239,7 +239,7 @@ LightPoint Scene::sample_light(float pick, float u, float v) const noexcept {
   const auto& ends = data_->lamp_ends;
   const auto lamp = std::upper_bound(ends.begin(), ends.end(), double{pick});
   if (lamp == ends.end()) {
-    if (!(data_->sky_share > 0)) return result;
+    if (!(data_->sky_fraction > 0)) return result;
     result.travel = data_->sky.sample(u, v);
     result.radiance = sky(result.travel);
     result.pdf = pdf_sky(result.travel);
@@ -266,10 +266,10 @@ LightPoint Scene::sample_light(float pick, float u, float v) const noexcept {
 
 double Scene::pdf_light(const SurfacePoint& lamp) const noexcept {
   const Body& body = data_->body(*lamp.object);
-  return body.lamp_share / body.area;
+  return body.lamp_fraction / body.area;
 }
 
-double Scene::pdf_sky(const glm::vec3& travel) const noexcept { return data_->sky_share * data_->sky.pdf(travel); }
+double Scene::pdf_sky(const glm::vec3& travel) const noexcept { return data_->sky_fraction * data_->sky.pdf(travel); }
 
 Rgb Scene::sky(const glm::vec3& travel) const noexcept { return data_->sky.radiance(travel); }
 

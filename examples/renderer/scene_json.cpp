@@ -28,7 +28,7 @@ constexpr Range finite{-1e9, 1e9, "number from -1e9 to 1e9"}, positive{1e-9, 1e9
     rough{0.01, 1, "number from 0.01 to 1"}, index_of_glass{1.001, 4, "number from 1.001 to 4"};
 
 std::shared_ptr<const petzval::RgbImage> read_image(const std::string& where, const std::filesystem::path& file,
-                                                    float most, const char* wanted) {
+                                                    float most, const char* rule) {
   const std::string ending = file.extension().string();
   if (ending != ".exr" && ending != ".EXR") refuse(where, file.string(), "an EXR file (.exr)");
   auto image = std::make_shared<petzval::RgbImage>();
@@ -42,8 +42,7 @@ std::shared_ptr<const petzval::RgbImage> read_image(const std::string& where, co
   if (wrong != image->pixels.end()) {
     const auto pixel = (wrong - image->pixels.begin()) / 3;
     throw petzval::Error(where + ": " + file.string() + ": pixel (" + std::to_string(pixel % image->width) + ", " +
-                         std::to_string(pixel / image->width) + ") = " + std::to_string(*wrong) + "; must be " +
-                         wanted);
+                         std::to_string(pixel / image->width) + ") = " + std::to_string(*wrong) + "; must be " + rule);
   }
   return image;
 }

@@ -12,7 +12,7 @@
 namespace renderer {
 namespace {
 
-constexpr float eye_height = 1400, kerb = 3500, walls = 4600, sign_away = 3000;
+constexpr float eye_height = 1400, kerb = 3500, walls = 4600, sign_distance = 3000;
 constexpr Rgb sodium{1, 0.55f, 0.16f}, white{1, 0.95f, 0.85f}, red{1, 0.07f, 0.04f}, green{0.1f, 1, 0.45f},
     warm{1, 0.72f, 0.40f};
 const Diffuse black{{.colour = {0, 0, 0}}};
@@ -29,9 +29,9 @@ class Chance {
 /// The radiance of a small light whose blur disc has the radiance `disc` in a picture by a lens of 100 mm, f/2, focused
 /// at the sign: `disc` times the ratio of the areas of blur disc and sharp image.
 float radiance(float disc, float radius, float away) {
-  constexpr float pupil = 50, focal_length = 100, image_away = 1 / (1 / focal_length - 1 / sign_away);
-  const float blur = pupil * std::abs(away - sign_away) / away * focal_length / (sign_away - focal_length);
-  const float sharp = 2 * radius * image_away / away;
+  constexpr float pupil = 50, focal_length = 100, image_distance = 1 / (1 / focal_length - 1 / sign_distance);
+  const float blur = pupil * std::abs(away - sign_distance) / away * focal_length / (sign_distance - focal_length);
+  const float sharp = 2 * radius * image_distance / away;
   return disc * std::max(1.0f, blur * blur / (sharp * sharp));
 }
 
@@ -69,7 +69,7 @@ void houses(SceneDescription& scene, float side, Chance& chance) {
 
 /// Adds the object in focus: a checkered plate on a post at the left.
 void sign(SceneDescription& scene) {
-  const glm::vec3 foot{-275, 0, -sign_away};
+  const glm::vec3 foot{-275, 0, -sign_distance};
   constexpr ProfilePoint post[] = {{0, 0}, {30, 0}, {30, 1640}, {38, 1645, 1}, {0, 1690}};
   scene.objects.push_back({"post", placed(lathe(post), foot - glm::vec3{0, 0, 45}), Rough{{0.5f, 0.5f, 0.5f}, 0.25f}});
   const Varnish paint{{.colour = {0.8f, 0.78f, 0.72f}, .checker = Albedo::Checker{{0.5f, 0.03f, 0.03f}, 50}}, 0.1f};

@@ -7,10 +7,10 @@ namespace renderer {
 namespace {
 
 /// Seeds of numbers drawn before a path begins. The path itself uses the unmodified seed.
-enum class Drawn : std::uint64_t { film = 1, pupil = 2 };
+enum class Dimension : std::uint64_t { film = 1, pupil = 2 };
 
 /// Point of the unit square for a sample of a pixel: the Owen-Sobol sequence of its round.
-petzval::Vec2<double> drawn(std::uint64_t seed, Drawn what, std::uint32_t pixel, std::uint32_t round,
+petzval::Vec2<double> drawn(std::uint64_t seed, Dimension what, std::uint32_t pixel, std::uint32_t round,
                             std::uint32_t sample) {
   const auto key = mixed(mixed(mixed(seed + static_cast<std::uint64_t>(what)) + pixel) + round);
   return petzval::owen_sobol(sample, static_cast<std::uint32_t>(key));
@@ -58,10 +58,10 @@ void UnitTracer::trace_once(const PixelBlock& block, std::uint32_t round, std::u
     batch.resize(pixels, !colours.front().one_wavelength);
     for (std::size_t i = 0; i < pixels; ++i) {
       const std::uint32_t pixel = pixel_at(i);
-      const auto place = drawn(seed_, Drawn::film, pixel, round, sample);
-      const auto pupil = drawn(seed_, Drawn::pupil, pixel, round, sample);
-      batch.raster_x[i] = static_cast<float>(pixel % columns + place.x);
-      batch.raster_y[i] = static_cast<float>(pixel / columns + place.y);
+      const auto film_uv = drawn(seed_, Dimension::film, pixel, round, sample);
+      const auto pupil = drawn(seed_, Dimension::pupil, pixel, round, sample);
+      batch.raster_x[i] = static_cast<float>(pixel % columns + film_uv.x);
+      batch.raster_y[i] = static_cast<float>(pixel / columns + film_uv.y);
       batch.u[i] = static_cast<float>(pupil.x), batch.v[i] = static_cast<float>(pupil.y);
     }
     for (std::size_t i = 0; i < batch.nm.size(); ++i) {

@@ -25,15 +25,15 @@ double ideal_blur(const petzval::Film& film, const PointScene& scene, const petz
 /// The signed blur diameters of the scene points whose rays have their centroids at film points; NaN if no light
 /// arrives. The chief ray of the ideal lens gives a first scene point; the offset of its centroid gives the next.
 std::vector<double> exact_blurs(const petzval::Film& film, const PointScene& scene, const petzval::Lens& lens,
-                                const std::vector<petzval::FilmPoint>& wanted, int threads) {
+                                const std::vector<petzval::FilmPoint>& target, int threads) {
   constexpr int steps = 3;
   constexpr std::size_t rays = 96;
-  std::vector<double> result(wanted.size(), none);
-  std::vector<petzval::FilmPoint> sought = wanted;
+  std::vector<double> result(target.size(), none);
+  std::vector<petzval::FilmPoint> sought = target;
   for (int step = 0; step < steps; ++step) {
     std::vector<std::size_t> nodes;
     std::vector<petzval::ScenePoint> points;
-    for (std::size_t i = 0; i < wanted.size(); ++i) {
+    for (std::size_t i = 0; i < target.size(); ++i) {
       if (step > 0 && std::isnan(result[i])) continue;
       const auto point = scene.at(film, sought[i]);
       if (!point) continue;
@@ -45,8 +45,8 @@ std::vector<double> exact_blurs(const petzval::Film& film, const PointScene& sce
       if (!blurs[k]) continue;
       const std::size_t i = nodes[k];
       result[i] = blurs[k]->signed_diameter;
-      sought[i].x += wanted[i].x - blurs[k]->centroid.x;
-      sought[i].y += wanted[i].y - blurs[k]->centroid.y;
+      sought[i].x += target[i].x - blurs[k]->centroid.x;
+      sought[i].y += target[i].y - blurs[k]->centroid.y;
     }
   }
   return result;
@@ -111,9 +111,9 @@ double scale_of(std::span<const BlurMap> maps) {
   if (sizes.empty()) return 1e-3;
   const auto place = sizes.begin() + static_cast<std::ptrdiff_t>(0.99 * static_cast<double>(sizes.size() - 1));
   std::nth_element(sizes.begin(), place, sizes.end());
-  const double wanted = std::max(*place, 1e-3), decade = std::pow(10, std::floor(std::log10(wanted)));
+  const double target = std::max(*place, 1e-3), decade = std::pow(10, std::floor(std::log10(target)));
   for (const double digit : {1.0, 2.0, 5.0}) {
-    if (digit * decade >= wanted) return digit * decade;
+    if (digit * decade >= target) return digit * decade;
   }
   return 10 * decade;
 }

@@ -41,14 +41,14 @@ void check_light(const petzval::Lens& lens, const BokehSetup& setup, double orig
     return;
   }
   petzval::scene_point(lens, {.z = -std::numeric_limits<double>::infinity()});  // throws if the lens has no pupil
-  double refused = setup.light_mm, enough = std::max(1.0, refused);
-  while (!in_front(lens, origin_z - enough)) enough *= 2;
-  while (enough - refused > 1e-7 * enough) {
-    const double middle = (enough + refused) / 2;
-    (in_front(lens, origin_z - middle) ? enough : refused) = middle;
+  double behind_mm = setup.light_mm, in_front_mm = std::max(1.0, behind_mm);
+  while (!in_front(lens, origin_z - in_front_mm)) in_front_mm *= 2;
+  while (in_front_mm - behind_mm > 1e-7 * in_front_mm) {
+    const double middle = (in_front_mm + behind_mm) / 2;
+    (in_front(lens, origin_z - middle) ? in_front_mm : behind_mm) = middle;
   }
   throw petzval::Error(lens.name() + ": light " + number(setup.light_mm) + " mm from the " + in_words(setup.origin) +
-                       "; must be in front of the lens, more than " + number(enough, 6) + " mm away");
+                       "; must be in front of the lens, more than " + number(in_front_mm, 6) + " mm away");
 }
 
 }  // namespace
@@ -63,17 +63,17 @@ BokehScene focused_scene(const petzval::Lens& lens, double focus_mm, const Bokeh
 }
 
 petzval::Camera camera_of(const BokehScene& scene, petzval::CameraOptions options) {
-  constexpr double half_of_36 = 18, longest = 1e4;  // mm
-  constexpr std::uint32_t few = 1 << 10;
+  constexpr double half_of_36 = 18, max_side_mm = 1e4;  // mm
+  constexpr std::uint32_t trial_samples = 1 << 10;
   const double rate_per_mm = options.bokeh.rate_of_change / half_of_36;
   const petzval::ScenePoint light = petzval::scene_point(scene.lens, scene.light);
-  const auto exact = petzval::point_image(scene.lens, scene.light, {.samples = few}).size;
+  const auto exact = petzval::point_image(scene.lens, scene.light, {.samples = trial_samples}).size;
   double side = 1 + 2.2 * (std::hypot(exact.centroid.x, exact.centroid.y) + exact.max_radius);
-  for (; side <= longest; side *= 2) {
+  for (; side <= max_side_mm; side *= 2) {
     options.bokeh.rate_of_change = rate_per_mm * side / 2;
     const petzval::Camera camera(scene.lens, {.width_mm = side, .height_mm = side}, options);
     bool holds = true;
-    for (std::uint32_t i = 0; i < few && holds; ++i) {
+    for (std::uint32_t i = 0; i < trial_samples && holds; ++i) {
       const petzval::Vec2<double> at = petzval::owen_sobol(i, 0);
       const auto s = light.at_infinity ? camera.sample_distant_importance(-light.position, at.x, at.y)
                                        : camera.sample_importance(light.position, at.x, at.y);
@@ -82,7 +82,7 @@ petzval::Camera camera_of(const BokehScene& scene, petzval::CameraOptions option
     if (holds) return camera;
   }
   throw petzval::Error(scene.lens.name() + ": the image by model " + std::string(petzval::name(options.model)) +
-                       " does not fit on a film of " + number(longest / 1000) + " m");
+                       " does not fit on a film of " + number(max_side_mm / 1000) + " m");
 }
 
 petzval::Spectrum white_light(const std::string& white_point) {

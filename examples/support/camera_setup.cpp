@@ -17,7 +17,7 @@ namespace examples {
 std::array<double, 2> CameraSetup::film_size() const { return parse_size("--film-mm", film_mm, film_side); }
 
 petzval::Film CameraSetup::film(std::uint32_t columns, std::uint32_t rows, std::uint32_t usual_columns) const {
-  constexpr double most = 16384;
+  constexpr double max_side_px = 16384;
   auto [width, height] = film_size();
   double across = columns, down = rows;
   if (!film_given && across > 0 && down > 0) {
@@ -27,9 +27,9 @@ petzval::Film CameraSetup::film(std::uint32_t columns, std::uint32_t rows, std::
   if (across == 0 && down == 0) across = usual_columns;
   if (across == 0) across = std::max(1.0, std::round(down * width / height));
   if (down == 0) down = std::max(1.0, std::round(across * height / width));
-  if ((columns == 0 || rows == 0) && std::max(across, down) > most) {
+  if ((columns == 0 || rows == 0) && std::max(across, down) > max_side_px) {
     throw petzval::Error("--film-mm = " + film_mm + ": a picture of " + number(across) + " x " + number(down) +
-                         " pixels; must have at most " + number(most) + " along each side");
+                         " pixels; must have at most " + number(max_side_px) + " along each side");
   }
   return {.width_mm = width, .height_mm = height, .columns = static_cast<int>(across), .rows = static_cast<int>(down)};
 }

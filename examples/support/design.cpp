@@ -31,8 +31,9 @@ double chief_height(const petzval::Lens& lens, double field_rad, double object_z
 /// The field whose chief ray meets the film at a height; nullopt if no field does.
 std::optional<double> field_of_height(const petzval::Lens& lens, double height, double object_z) {
   double low = 0, high = petzval::radians(1);
-  constexpr double most = petzval::radians(89);
-  while (high < most && chief_height(lens, high, object_z) < height) low = high, high = std::min(1.5 * high, most);
+  constexpr double max_angle_rad = petzval::radians(89);
+  while (high < max_angle_rad && chief_height(lens, high, object_z) < height)
+    low = high, high = std::min(1.5 * high, max_angle_rad);
   if (chief_height(lens, high, object_z) < height) return {};
   for (int step = 0; step < 60; ++step) {
     const double middle = (low + high) / 2;
@@ -65,10 +66,10 @@ std::vector<double> declared_fields(const LensFile& file, const petzval::Lens& l
   const petzval::DesignData& design = file.prescription.design;
   std::vector<double> result;
   if (!petzval::has_pupils(lens) || std::isinf(petzval::pupils(lens).entrance.z)) return result;
-  std::size_t beside = 0;
+  std::size_t off_image = 0;
   for (const petzval::DesignField& field : design.fields) {
     if (!lens.rotationally_symmetric() && field.x != 0) {
-      ++beside;
+      ++off_image;
       continue;
     }
     const double sign = field.x == 0 && !lens.rotationally_symmetric() && field.y < 0 ? -1 : 1;
@@ -86,7 +87,7 @@ std::vector<double> declared_fields(const LensFile& file, const petzval::Lens& l
     }
     if (found && std::isfinite(*found)) result.push_back(sign * rounded(petzval::degrees(*found)));
   }
-  if (beside > 0) note(file.id + ": fields left out, outside the section y-z: " + std::to_string(beside));
+  if (off_image > 0) note(file.id + ": fields left out, outside the section y-z: " + std::to_string(off_image));
   std::vector<double> once;
   for (const double field : result) {
     if (std::ranges::find(once, field) == once.end()) once.push_back(field);

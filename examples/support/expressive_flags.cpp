@@ -11,10 +11,10 @@ namespace {
 
 /// Splits "radius:power" or "x,y:offset" at a character.
 std::pair<std::string_view, std::string_view> parts(const std::string& where, std::string_view text, char between,
-                                                    const char* wanted) {
+                                                    const char* rule) {
   const std::size_t at = text.find(between);
   if (at == std::string_view::npos) {
-    throw petzval::Error(where + " = \"" + std::string(text.substr(0, 60)) + "\"; must be " + wanted);
+    throw petzval::Error(where + " = \"" + std::string(text.substr(0, 60)) + "\"; must be " + rule);
   }
   return {text.substr(0, at), text.substr(at + 1)};
 }

@@ -21,7 +21,7 @@ using petzval::Vec3;
 
 constexpr std::array kinds{petzval::SurfaceKind::affine, petzval::SurfaceKind::shepard};
 constexpr Range weight_range{0, std::numeric_limits<double>::max(), "a finite number, 0 or more"};
-constexpr Range part_range{0, 1, "a number from 0 to 1"};
+constexpr Range fraction_range{0, 1, "a number from 0 to 1"};
 
 std::vector<petzval::FocalPoint> points_of(const std::filesystem::path& file, const petzval::Camera& camera,
                                            petzval::DistanceOrigin origin, const WorldToLens& to_lens) {
@@ -77,7 +77,7 @@ std::vector<petzval::FocalPoint> points_of(const std::filesystem::path& file, co
       point.blur_mm = *blur * camera.film().pixel_mm();
     }
     point.weight = entry.number("weight", weight_range).value_or(1);
-    point.fade = entry.number("fade", part_range).value_or(1);
+    point.fade = entry.number("fade", fraction_range).value_or(1);
     result.push_back(point);
   }
   return result;

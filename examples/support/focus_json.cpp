@@ -20,8 +20,8 @@ constexpr Range weight_range{0, std::numeric_limits<double>::max(), "a finite nu
 
 /// The JSON of a target, a point or a key.
 struct Entry : JsonEntry {
-  const Json& at(const char* key, const std::string& wanted) const {
-    if (!json.contains(key)) throw petzval::Error(where + ": " + key + " is missing; must be " + wanted);
+  const Json& at(const char* key, const std::string& rule) const {
+    if (!json.contains(key)) throw petzval::Error(where + ": " + key + " is missing; must be " + rule);
     return json.at(key);
   }
   double number(const char* key, double unless, const Range& range) const {
@@ -33,10 +33,10 @@ struct Entry : JsonEntry {
     return json.at(key);
   }
   std::optional<double> extent() const { return JsonEntry::number("extent_stops", extent_range); }
-  petzval::ScenePoint place() const {
-    constexpr const char* wanted = "three finite numbers, [x, y, z]";
-    at("position_mm", wanted);
-    const auto [x, y, z] = *numbers<3>("position_mm", wanted);
+  petzval::ScenePoint scene_point() const {
+    constexpr const char* rule = "three finite numbers, [x, y, z]";
+    at("position_mm", rule);
+    const auto [x, y, z] = *numbers<3>("position_mm", rule);
     return {{x, y, z}, flag("at_infinity", false)};
   }
 };
@@ -58,8 +58,8 @@ std::vector<petzval::FocusTarget> read_targets(const std::filesystem::path& file
   for_entries(file.string(), document, "point", [&](const Entry& entry) {
     entry.keys({"position_mm", "weight", "blur_mm", "at_infinity", "extent_stops", "fixes_distance"},
                "position_mm, weight, blur_mm, at_infinity, extent_stops and fixes_distance");
-    result.push_back({entry.place(), entry.number("blur_mm", 0, finite_number), entry.number("weight", 1, weight_range),
-                      entry.extent(), entry.flag("fixes_distance", true)});
+    result.push_back({entry.scene_point(), entry.number("blur_mm", 0, finite_number),
+                      entry.number("weight", 1, weight_range), entry.extent(), entry.flag("fixes_distance", true)});
   });
   return result;
 }
@@ -80,7 +80,7 @@ std::vector<petzval::FocusPoint> read_focus_points(const std::filesystem::path& 
       key.keys({"time_s", "position_mm", "weight", "blur_mm", "at_infinity", "extent_stops"},
                "time_s, position_mm, weight, blur_mm, at_infinity and extent_stops");
       key.at("time_s", finite_number.words);
-      point.keys.push_back({key.number("time_s", 0, finite_number), key.place(),
+      point.keys.push_back({key.number("time_s", 0, finite_number), key.scene_point(),
                             key.number("blur_mm", 0, finite_number), key.number("weight", 1, weight_range),
                             key.extent()});
       if (point.keys.back().extent_stops.has_value() != point.keys.front().extent_stops.has_value()) {

@@ -38,12 +38,12 @@ void add_iris_shape(App& app, IrisSetup& setup) {
 
 petzval::Lens stopped_to(const petzval::Lens& lens, double f_number, const std::string& flag) {
   // Lens names are rounded: an "f/1.8" lens may open only to f/1.85.
-  constexpr double by_name = 1.04, rounded = 1.005;
+  constexpr double name_tolerance = 1.04, rounding_tolerance = 1.005;
   const double fastest = f_number > 0 ? petzval::fastest_f_number(lens) : 0;
-  if (!(f_number < fastest && fastest <= by_name * f_number)) {
+  if (!(f_number < fastest && fastest <= name_tolerance * f_number)) {
     return for_flag(flag, [&] { return petzval::with_f_number(lens, f_number); });
   }
-  if (fastest > rounded * f_number) {
+  if (fastest > rounding_tolerance * f_number) {
     note(lens.name() + ": " + flag + " = " + number(f_number) + ": the lens opens to f/" + number(fastest, 4) +
          ", which is used");
   }

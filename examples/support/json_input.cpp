@@ -11,20 +11,20 @@
 
 namespace examples {
 
-void refuse(const std::string& where, const Json& found, const std::string& wanted) {
+void refuse(const std::string& where, const Json& found, const std::string& rule) {
   std::string text = found.dump(-1, ' ', false, Json::error_handler_t::replace);
   if (text.size() > 60) text = text.substr(0, 57) + "...";
-  throw petzval::Error(where + " = " + text + "; must be " + wanted);
+  throw petzval::Error(where + " = " + text + "; must be " + rule);
 }
 
 Json read_json(const std::filesystem::path& file) {
-  constexpr int deepest = 8;
+  constexpr int max_depth = 8;
   const std::string text = read_text(file, largest_json);
   std::vector<std::set<std::string>> open;
   const auto look = [&](int depth, Json::parse_event_t event, Json& value) {
-    if (depth > deepest) {
+    if (depth > max_depth) {
       throw petzval::Error(file.string() + ": lists and objects must not be nested more than " +
-                           std::to_string(deepest) + " levels deep");
+                           std::to_string(max_depth) + " levels deep");
     }
     if (event == Json::parse_event_t::object_start) open.emplace_back();
     if (event == Json::parse_event_t::object_end) open.pop_back();
@@ -59,12 +59,12 @@ std::optional<double> JsonEntry::number(const char* key, const Range& range) con
   return value.get<double>();
 }
 
-std::vector<double> JsonEntry::list(const char* key, std::size_t count, const char* wanted) const {
+std::vector<double> JsonEntry::list(const char* key, std::size_t count, const char* rule) const {
   if (!json.contains(key)) return {};
   const Json& value = json.at(key);
   const auto finite = [](const Json& c) { return c.is_number() && std::isfinite(c.get<double>()); };
   if (!value.is_array() || value.size() != count || !std::all_of(value.begin(), value.end(), finite)) {
-    refuse(where + ": " + key, value, wanted);
+    refuse(where + ": " + key, value, rule);
   }
   return value.get<std::vector<double>>();
 }

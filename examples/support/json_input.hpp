@@ -15,8 +15,8 @@
 
 namespace examples {
 
-/// @throws petzval::Error  "`where` = `found`; must be `wanted`"; a long value is cut
-[[noreturn]] void refuse(const std::string& where, const Json& found, const std::string& wanted);
+/// @throws petzval::Error  "`where` = `found`; must be `rule`"; a long value is cut
+[[noreturn]] void refuse(const std::string& where, const Json& found, const std::string& rule);
 
 /// Reads a document.
 /// @throws petzval::Error  that names the file, if it is not JSON, repeats a key (which would hide a value) or has more
@@ -37,10 +37,10 @@ struct JsonEntry {
     check_keys(where, json, known, words);
   }
   std::optional<double> number(const char* key, const Range& range) const;
-  /// A list of `count` finite numbers. wanted: the same in words, for messages.
+  /// A list of `count` finite numbers. rule: the same in words, for messages.
   template <std::size_t count>
-  std::optional<std::array<double, count>> numbers(const char* key, const char* wanted) const {
-    const std::vector<double> found = list(key, count, wanted);
+  std::optional<std::array<double, count>> numbers(const char* key, const char* rule) const {
+    const std::vector<double> found = list(key, count, rule);
     if (found.empty()) return {};
     std::array<double, count> result;
     for (std::size_t i = 0; i < count; ++i) result[i] = found[i];
@@ -48,7 +48,7 @@ struct JsonEntry {
   }
 
  private:
-  std::vector<double> list(const char* key, std::size_t count, const char* wanted) const;
+  std::vector<double> list(const char* key, std::size_t count, const char* rule) const;
 };
 
 }  // namespace examples

@@ -73,8 +73,8 @@ std::optional<petzval::ScenePoint> PointScene::at(const petzval::Film& film, con
 }
 
 std::optional<petzval::FilmPoint> on_film(const petzval::IdealLens& lens, const petzval::Film& film,
-                                          const petzval::ScenePoint& place) {
-  const auto image = lens.image(place);
+                                          const petzval::ScenePoint& scene_point) {
+  const auto image = lens.image(scene_point);
   return image ? petzval::chief_point(*image, film) : std::nullopt;
 }
 

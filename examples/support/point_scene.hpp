@@ -36,6 +36,6 @@ class PointScene {
 
 /// The film point of a scene point's chief ray; nullopt if the point has no real image or the ray misses the film.
 std::optional<petzval::FilmPoint> on_film(const petzval::IdealLens& lens, const petzval::Film& film,
-                                          const petzval::ScenePoint& place);
+                                          const petzval::ScenePoint& scene_point);
 
 }  // namespace examples

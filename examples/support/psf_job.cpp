@@ -81,8 +81,9 @@ petzval::RgbImage picture(const petzval::PsfKernel& kernel, int side, double pix
   petzval::RgbImage image(side, side);
   constexpr int samples = 4;  // along each side of a pixel
   const auto source = [&](int i, int k) {
-    const double place = (i + (k + 0.5) / samples - side / 2.0) * pixel_mm / kernel.pixel_mm + kernel.pixels / 2.0;
-    return static_cast<int>(std::floor(place));
+    const double pixel_position =
+        (i + (k + 0.5) / samples - side / 2.0) * pixel_mm / kernel.pixel_mm + kernel.pixels / 2.0;
+    return static_cast<int>(std::floor(pixel_position));
   };
   const auto inside = [&](int i) { return i >= 0 && i < kernel.pixels; };
   for (int y = 0; y < side; ++y) {
@@ -221,15 +222,15 @@ std::vector<petzval::ExrPart> PsfJob::gather(const std::vector<fs::path>& folder
   for (std::size_t node = 0; node < axes_.size(); ++node) {
     std::vector<std::string> corrupt;
     std::optional<petzval::ExrPart> found;
-    fs::path found_in;
+    fs::path found_folder;
     for (const fs::path& folder : folders) {
       if (!examples::exists(file(folder, node))) continue;
       try {
         petzval::ExrPart own = part(folder, node);
         if (!found) {
-          found = std::move(own), found_in = folder;
+          found = std::move(own), found_folder = folder;
         } else if (found->texts != own.texts) {  // checksums
-          faults.push_back(of_shard(node) + file(folder, node).string() + " and " + file(found_in, node).string() +
+          faults.push_back(of_shard(node) + file(folder, node).string() + " and " + file(found_folder, node).string() +
                            " differ");
         }
       } catch (const petzval::Error& error) {
@@ -244,11 +245,11 @@ std::vector<petzval::ExrPart> PsfJob::gather(const std::vector<fs::path>& folder
       faults.insert(faults.end(), corrupt.begin(), corrupt.end());
     }
   }
-  constexpr std::size_t named = 4;
+  constexpr std::size_t max_listed = 4;
   for (const auto& [shard, names] : missing) {
     std::string fault = shard + std::to_string(names.size()) + " missing: ";
-    for (std::size_t i = 0; i < std::min(named, names.size()); ++i) fault += (i > 0 ? ", " : "") + names[i];
-    faults.push_back(fault + (names.size() > named ? " and others" : ""));
+    for (std::size_t i = 0; i < std::min(max_listed, names.size()); ++i) fault += (i > 0 ? ", " : "") + names[i];
+    faults.push_back(fault + (names.size() > max_listed ? " and others" : ""));
   }
   if (faults.empty()) return parts;
   std::string all = "set of " + std::to_string(axes_.size()) + " PSFs";
@@ -258,14 +259,14 @@ std::vector<petzval::ExrPart> PsfJob::gather(const std::vector<fs::path>& folder
 
 std::vector<fs::path> write_psf_set(const PsfJob& job, const std::vector<petzval::ExrPart>& parts, const fs::path& file,
                                     const std::optional<Json>& interpolation_error) {
-  const auto beside = [&](const char* extension) { return fs::path(file).replace_extension(extension); };
+  const auto sibling = [&](const char* extension) { return fs::path(file).replace_extension(extension); };
   Json json = index(job, parts, file);
   if (interpolation_error) json["interpolation_error"] = *interpolation_error;
   const petzval::Rgb8Image sheet = draw_sheet(contact_sheet(job, parts));
   petzval::write_exr(parts, file);
-  write_text(beside(".json"), json.dump(1) + '\n');
-  petzval::write_png(sheet, beside(".png"));
-  return {file, beside(".json"), beside(".png")};
+  write_text(sibling(".json"), json.dump(1) + '\n');
+  petzval::write_png(sheet, sibling(".png"));
+  return {file, sibling(".json"), sibling(".png")};
 }
 
 }  // namespace examples

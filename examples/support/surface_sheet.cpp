@@ -97,17 +97,18 @@ class Drawing {
     // Place the label where the line is farthest from the points and the frame.
     const int width = font_.width(level.words, small);
     double best = 0;
-    std::array<int, 2> place{};
+    std::array<int, 2> label_position{};
     for (const auto& [x, y] : pixels) {
-      double room = std::min({x - width / 2, sheet_.width - x - width / 2, y - 8, sheet_.height - y - 8}) - 2.0;
-      for (const SurfacePoint& point : map.points) room = std::min(room, std::hypot(x - point.x, y - point.y) - 24);
-      for (const auto& other : names_) room = std::min(room, std::hypot(x - other[0], y - other[1]) - 30);
-      if (room > best) best = room, place = {x, y};
+      double clearance = std::min({x - width / 2, sheet_.width - x - width / 2, y - 8, sheet_.height - y - 8}) - 2.0;
+      for (const SurfacePoint& point : map.points)
+        clearance = std::min(clearance, std::hypot(x - point.x, y - point.y) - 24);
+      for (const auto& other : names_) clearance = std::min(clearance, std::hypot(x - other[0], y - other[1]) - 30);
+      if (clearance > best) best = clearance, label_position = {x, y};
     }
     if (best <= 0) return;
-    names_.push_back(place);
-    fill(page_, margin + place[0] - width / 2 - 3, map_top + place[1] - 9, width + 6, 18, paper);
-    font_.draw(page_, margin + place[0] - width / 2, map_top + place[1] + 5, small, level.words, ink);
+    names_.push_back(label_position);
+    fill(page_, margin + label_position[0] - width / 2 - 3, map_top + label_position[1] - 9, width + 6, 18, paper);
+    font_.draw(page_, margin + label_position[0] - width / 2, map_top + label_position[1] + 5, small, level.words, ink);
   }
 
   void draw_points(const SurfaceMap& map, int map_top) {

@@ -56,8 +56,8 @@ class AxialFan {
   double height_at(double p, double z) const noexcept {
     if (std::isinf(z)) return infinity;
     const auto [origin, direction] = ray(p);
-    const double way = (z - origin.z) / direction.z;
-    return along_y_ ? origin.y + way * direction.y : origin.x + way * direction.x;
+    const double distance = (z - origin.z) / direction.z;
+    return along_y_ ? origin.y + distance * direction.y : origin.x + distance * direction.x;
   }
 
   bool at_vertex() const noexcept { return distance_ == 0; }
