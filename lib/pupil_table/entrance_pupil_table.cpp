@@ -46,8 +46,8 @@ void expand_to_neighbours(std::vector<SceneNodes<dimensions>>& tables,
       const double distance = static_cast<double>(node / L::layer) / L::distances;
       const double down = static_cast<double>(node % L::layer / L::row), across = node % L::row;
       // The same field, limited to the last field of the other wavelength.
-      const Vec2<double> part{across / L::fields, dimensions == 2 ? across / L::fields : down / L::fields};
-      const Vec2<double> field = glm::min(table.last(distance) * part, other.last(distance));
+      const Vec2<double> fraction{across / L::fields, dimensions == 2 ? across / L::fields : down / L::fields};
+      const Vec2<double> field = glm::min(table.last(distance) * fraction, other.last(distance));
       const auto at = other.weights(field, distance);
       if (at) expand_towards(table.polygons[static_cast<std::size_t>(node)], interpolated(other.polygons, *at));
     }

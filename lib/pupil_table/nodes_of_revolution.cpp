@@ -75,10 +75,10 @@ SceneNodes<2> nodes_of_revolution(const Vec3<double>& centre, double steepest, c
   std::vector<Bounds> bounds(columns);
   for (const Ray<double>& ray : rays) {
     const Bearing bearing = bearing_on_sphere(centre, ray, reciprocal_of(sharpest));
-    const Vec2<double> place = plane_facing(centre, bearing, 0).meet(ray);
+    const Vec2<double> position = plane_facing(centre, bearing, 0).meet(ray);
     const auto nearest = static_cast<std::size_t>(std::lround(bearing.field / widest[sharpest] * (columns - 1)));
     for (std::size_t j = nearest - std::min<std::size_t>(nearest, 2); j <= std::min(nearest + 2, columns - 1); ++j) {
-      bounds[j].take(place.x, place.y);
+      bounds[j].take(position.x, position.y);
     }
   }
   // The pupil on the axis may be empty.
@@ -112,7 +112,7 @@ SceneNodes<2> nodes_of_revolution(const Vec3<double>& centre, double steepest, c
   const auto pupils = pupil_detail::find_regions(guesses, pupil_detail::SearchOrder::rows(guesses.size(), columns),
                                                  directions, true, passes);
 
-  const auto node = [](std::size_t place) { return place / columns / 2 * fields + place % columns / 2; };
+  const auto node = [](std::size_t position) { return position / columns / 2 * fields + position % columns / 2; };
   polygons.resize(distances * fields);
   std::vector<InterpolationCheck> checks;
   for (std::size_t p = 0; p < pupils.size(); ++p) {
@@ -145,9 +145,9 @@ SceneNodes<2> nodes_of_revolution(const Vec3<double>& centre, double steepest, c
     for (const Ray<double>& ray : rays) {
       const Bearing bearing = bearing_on_sphere(centre, ray, reciprocal);
       if (!all && bearing.field < outer_field_fraction * widest[row]) continue;
-      const Vec2<double> place = plane_facing(centre, bearing, reciprocal).meet(ray);
+      const Vec2<double> position = plane_facing(centre, bearing, reciprocal).meet(ray);
       const PolygonWeights at = result.weights(angles<2>(bearing), reciprocal / steepest).value_or(PolygonWeights{});
-      const double relative = interpolated(polygons, at).relative_radius(place.x, place.y);
+      const double relative = interpolated(polygons, at).relative_radius(position.x, position.y);
       if (std::isinf(relative)) {  // a line outwards meets the edge of the pupil more than once
         polygons.clear();
         return result;

@@ -37,8 +37,8 @@ Bearing towards(const Vec2<double>& angles) noexcept {
 Vec2<double> position_in_grid(const Vec3<double>& centre, const Bearing& bearing, double reciprocal,
                               const Ray<double>& ray) noexcept {
   const Vec2<double> met = plane_facing(centre, bearing, reciprocal).meet(ray);
-  const Point<double> place = to_grid<3>(bearing, {met.x, met.y});
-  return {place.x, place.y};
+  const Point<double> position = to_grid<3>(bearing, {met.x, met.y});
+  return {position.x, position.y};
 }
 
 /// Search areas for the pupils of a grid over angles at one distance: bounds of the rays of these fields in the facing
@@ -49,13 +49,13 @@ std::vector<pupil_detail::PupilGuess> guesses_from(const std::vector<Ray<double>
   const double last = static_cast<double>(columns - 1);
   for (const Ray<double>& ray : rays) {
     const Bearing bearing = bearing_on_sphere(centre, ray, reciprocal);
-    const Vec2<double> place = position_in_grid(centre, bearing, reciprocal, ray);
+    const Vec2<double> position = position_in_grid(centre, bearing, reciprocal, ray);
     // A ray is used for the nodes of its cell and of the adjacent cells.
     const Vec2<double> at = angles<3>(bearing) / widest * last;
     const auto first = [](double x) { return static_cast<std::size_t>(std::max(x - 1, 0.0)); };
     for (std::size_t i = first(at.y); i < std::min(first(at.y) + 4, columns); ++i) {
       for (std::size_t j = first(at.x); j < std::min(first(at.x) + 4, columns); ++j) {
-        bounds[i * columns + j].take(place);
+        bounds[i * columns + j].take(position);
       }
     }
   }
@@ -115,9 +115,10 @@ SceneNodes<3> nodes_with_cylinders(const Vec3<double>& centre, double steepest, 
     return NodePlane{bearing, plane_facing(centre, bearing, steepest * distance)};
   };
   RayClearances clearances_of(passing, wavelength);
-  const auto test = [&](std::size_t count, const auto& place, const double* x, const double* y, double* clearances) {
+  const auto test = [&](std::size_t count, const auto& node_plane, const double* x, const double* y,
+                        double* clearances) {
     const auto ray_at = [&](std::size_t r) {
-      const auto& [bearing, plane] = place(r);
+      const auto& [bearing, plane] = node_plane(r);
       const Point<double> p = from_grid<3>(bearing, {x[r], y[r]});
       return plane.ray(p.x, p.y);
     };
@@ -179,10 +180,10 @@ SceneNodes<3> nodes_with_cylinders(const Vec3<double>& centre, double steepest, 
       polygons, probes, [](const std::array<double, 4>& at) { return SceneNodes<3>::weights_at(at[0], at[1], at[2]); },
       [&](std::span<const std::array<double, 4>> at, std::span<const std::uint32_t> which, const double* x,
           const double* y, double* clearances) {
-        const auto place = [&](std::size_t r) {
+        const auto node_plane = [&](std::size_t r) {
           return node_plane_at(at[which[r]][0], at[which[r]][1], at[which[r]][2]);
         };
-        test(which.size(), place, x, y, clearances);
+        test(which.size(), node_plane, x, y, clearances);
       });
 
   // In the outermost fields pupils shrink, and their boundaries are more curved between the points that are checked:
@@ -196,9 +197,9 @@ SceneNodes<3> nodes_with_cylinders(const Vec3<double>& centre, double steepest, 
       const double out = std::hypot(at.x, at.y),
                    scale_margin = out < outer_field_fraction ? ray_margin : outer_ray_margin;
       if (i != r % rows && out < tested_field_fraction) continue;
-      const Vec2<double> place = position_in_grid(centre, bearing, reciprocal, rays[r]);
+      const Vec2<double> position = position_in_grid(centre, bearing, reciprocal, rays[r]);
       const PolygonWeights nodes_about = SceneNodes<3>::weights_at(distance, std::min(at.y, 1.0), std::min(at.x, 1.0));
-      const double relative = interpolated(polygons, nodes_about).relative_radius(place.x, place.y);
+      const double relative = interpolated(polygons, nodes_about).relative_radius(position.x, position.y);
       if (std::isinf(relative)) {  // a line outwards meets the edge of the pupil more than once
         polygons.clear();
         return result;

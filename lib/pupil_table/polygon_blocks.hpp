@@ -174,10 +174,10 @@ PETZVAL_INLINE void sample_polygons(const PolygonGrid<dimensions, R>& grid, cons
     const Point<T> middle = polygon(i).middle();
     const Point<T> from_axis = dimensions == 1 ? Point<T>{p.x, middle.y + p.y} : middle + p;
     const Point<T> position = to_film<dimensions>(positions.cosine[i], positions.sine[i], from_axis);
-    const T some = lit > R(0) ? T(1) : T(0);
-    x[i] = some * position.x;
-    y[i] = some * position.y;
-    area[i] = some * lit;
+    const T lit_factor = lit > R(0) ? T(1) : T(0);
+    x[i] = lit_factor * position.x;
+    y[i] = lit_factor * position.y;
+    area[i] = lit_factor * lit;
   };
   if constexpr (!stopped) {
     // The output arrays do not overlap the input.
@@ -458,10 +458,10 @@ inline void by_blocks(const Grid& grid, std::size_t count, const R* const (&in)[
   for (std::size_t k = 0; k < 4; ++k) {
     for (std::size_t i = 0; i < n; ++i) filled[k][i] = in[k][begin + i];
   }
-  const R* const part[4] = {filled[0], filled[1], filled[2], filled[3]};
+  const R* const padded[4] = {filled[0], filled[1], filled[2], filled[3]};
   R* to[outputs];
   for (std::size_t k = 0; k < outputs; ++k) to[k] = found[k];
-  body(Block<small_block>(), part, w, to);
+  body(Block<small_block>(), padded, w, to);
   for (std::size_t k = 0; k < outputs; ++k) {
     for (std::size_t i = 0; i < n; ++i) out[k][begin + i] = found[k][i];
   }

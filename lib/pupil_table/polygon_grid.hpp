@@ -226,8 +226,8 @@ struct CellPolygon {
   Sector<T> sector(std::int32_t k) const noexcept {
     Sector<T> result{corner(k), corner(k + 1), T(0), T(0)};
     if constexpr (obscured && dimensions == 1) {
-      const Point<T> part = point_in_cell<dimensions>(all, begin + L::obscured + 2 * L::linear * k, t, s);
-      result.obscured_from = part.x, result.obscured = part.y;
+      const Point<T> interval = point_in_cell<dimensions>(all, begin + L::obscured + 2 * L::linear * k, t, s);
+      result.obscured_from = interval.x, result.obscured = interval.y;
     }
     return result;
   }

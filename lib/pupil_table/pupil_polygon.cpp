@@ -55,8 +55,8 @@ Edge edge_of(const PupilRegion& region, PolygonFit fit) {
   // Between a direction with passing rays and an empty direction, the region may have a tip.
   for (std::size_t k = 0; enclosing && k < n; ++k) {
     if (found[k].lit) continue;
-    for (const std::size_t beside : {(k + 1) % n, (k + n - 1) % n}) {
-      if (found[beside].to > extents[k].to) extents[k] = found[beside];
+    for (const std::size_t adjacent : {(k + 1) % n, (k + n - 1) % n}) {
+      if (found[adjacent].to > extents[k].to) extents[k] = found[adjacent];
     }
     p[k] = position_of(region.at(k, extents[k].to)) - position_of(region.middle);
   }

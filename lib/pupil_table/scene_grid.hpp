@@ -294,7 +294,7 @@ PETZVAL_INLINE void sample_scene_block(const SceneGrid<dimensions>& given, const
     // NaN unless u and v are finite: comparisons are then false, and there is no sample.
     const double sound = (u[i] + v[i]) * 0;
     const double density = positions.known[i] * density_in(sector);
-    const std::int32_t some = density > 0, finite = sound >= 0, drawn = some & finite;
+    const std::int32_t positive = density > 0, finite = sound >= 0, drawn = positive & finite;
     ox[i] = drawn ? ray.x : 0.0, oy[i] = drawn ? ray.y : 0.0, oz[i] = (drawn ? ray.z : 0.0) + grid.centre_z;
     dx[i] = drawn ? ray.dx : 0.0, dy[i] = drawn ? ray.dy : 0.0, dz[i] = drawn ? ray.dz : 1.0;
     distances[i] = drawn ? ray.distance : 0.0;

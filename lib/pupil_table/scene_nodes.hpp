@@ -76,9 +76,9 @@ struct SceneNodes {
   /// nullopt if the field lies outside the grid.
   /// @param distance fraction of the largest reciprocal distance
   std::optional<PolygonWeights> weights(const Vec2<double>& field, double distance) const noexcept {
-    const Vec2<double> part = field / last(distance);
-    if (!(part.x <= 1 && part.y <= 1)) return {};
-    return weights_at(distance, part.y, part.x);
+    const Vec2<double> fraction = field / last(distance);
+    if (!(fraction.x <= 1 && fraction.y <= 1)) return {};
+    return weights_at(distance, fraction.y, fraction.x);
   }
 };
 

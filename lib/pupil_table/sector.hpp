@@ -75,8 +75,8 @@ struct Sector {
 template <class AreaBefore>
 inline std::size_t sector_of_area(double area, const AreaBefore& before) noexcept {
   constexpr double last = polygon_corners - 1;
-  const double place = area / before(polygon_corners) * static_cast<double>(polygon_corners);
-  auto k = place > 0 ? static_cast<std::size_t>(place < last ? place : last) : 0;
+  const double expected = area / before(polygon_corners) * static_cast<double>(polygon_corners);
+  auto k = expected > 0 ? static_cast<std::size_t>(expected < last ? expected : last) : 0;
   while (k > 0 && area < before(k)) --k;
   while (k + 1 < polygon_corners && area >= before(k + 1)) ++k;
   return k;
