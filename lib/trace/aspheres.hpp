@@ -119,9 +119,9 @@ struct Search {
       const auto ray = kernel::trace_detail::passage(surface, p, d);
       const auto crossing = kernel::trace_detail::first_crossing(surface, ray, p, d, sense,
                                                                  {load(from + o), load(to + o)}, at(answer, o));
-      const V some = select(crossing.converged, code<R>(Outcome::crosses), code<R>(Outcome::lost));
+      const V outcome_if_found = select(crossing.converged, code<R>(Outcome::crosses), code<R>(Outcome::lost));
       store(found_t + o, crossing.t);
-      store(found + o, select(crossing.found, some, code<R>(Outcome::open)));
+      store(found + o, select(crossing.found, outcome_if_found, code<R>(Outcome::open)));
     }
     for (int o = 0, taken = 0; o < count; o += width) {
       const V said = load(outcome + o);
