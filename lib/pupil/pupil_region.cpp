@@ -100,12 +100,14 @@ void keep_connected(PupilRegion& region, const Vec2<double>& position) {
 
 void keep_within(PupilRegion& region, const PupilRegion& other) {
   auto span = other.spans.begin();
-  std::erase_if(region.spans, [&](const PupilSpan& part) {
-    while (span != other.spans.end() && (span->direction < part.direction ||
-                                         (span->direction == part.direction && span->to_radius < part.from_radius))) {
+  std::erase_if(region.spans, [&](const PupilSpan& candidate) {
+    while (span != other.spans.end() &&
+           (span->direction < candidate.direction ||
+            (span->direction == candidate.direction && span->to_radius < candidate.from_radius))) {
       ++span;
     }
-    return span == other.spans.end() || span->direction != part.direction || span->from_radius > part.to_radius;
+    return span == other.spans.end() || span->direction != candidate.direction ||
+           span->from_radius > candidate.to_radius;
   });
 }
 
