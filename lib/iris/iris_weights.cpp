@@ -242,12 +242,12 @@ std::vector<double> IrisWeights::light_of_cells() {
   return light;
 }
 
-void IrisWeights::divide_columns(const std::vector<double>& parts, double uniform_fraction) {
+void IrisWeights::divide_columns(const std::vector<double>& contributions, double uniform_fraction) {
   // Between the grid points weights may be larger, and a small cell may contain no grid point.
   const double floor = std::max(uniform_fraction, 0.02);
   before_rows_.push_back(0);
   for (std::size_t i = 0; i < map_cells; ++i) {
-    const double* const of_row = &parts[i * map_cells];
+    const double* const of_row = &contributions[i * map_cells];
     const double height = rows_[i + 1] - rows_[i];
     const double own = (1 - floor) * std::accumulate(of_row, of_row + map_cells, 0.0) + floor * height;
     before_rows_.push_back(before_rows_.back() + own);

@@ -52,8 +52,8 @@ class PETZVAL_API IrisWeights {
   /// The contribution of each cell to the mean weight, [row][column]. Scales the map to mean 1 if it keeps its mean.
   std::vector<double> light_of_cells();
   /// Distributes samples over the cells.
-  /// @param parts contributions to the mean weight, scaled to the sum 1
-  void divide_columns(const std::vector<double>& parts, double uniform_fraction);
+  /// @param contributions contributions to the mean weight, scaled to the sum 1
+  void divide_columns(const std::vector<double>& contributions, double uniform_fraction);
 
   double edge_at(double area_fraction) const noexcept;
   double map_at(const Vec2<double>& stop_point) const noexcept;
