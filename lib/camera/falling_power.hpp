@@ -21,10 +21,10 @@ inline double power(double base, double exponent) noexcept {
   const double s = (fraction - 1) / (fraction + 1), s2 = s * s;
   double series = 1.0 / 19;
   for (int k = 8; k >= 0; --k) series = series * s2 + 1.0 / (2 * k + 1);
-  const double wanted = (static_cast<double>(whole) + s * series * (2 / ln2)) * exponent;
-  if (!(wanted >= -1021 && base >= 2.3e-308)) return 0;
+  const double log2_result = (static_cast<double>(whole) + s * series * (2 / ln2)) * exponent;
+  if (!(log2_result >= -1021 && base >= 2.3e-308)) return 0;
   constexpr double rounding = 1.5 * 4503599627370496.0;  // adding 1.5 * 2^52 rounds to the nearest whole number
-  const double shifted = wanted + rounding, rest = (wanted - (shifted - rounding)) * ln2;
+  const double shifted = log2_result + rounding, rest = (log2_result - (shifted - rounding)) * ln2;
   double result = 1;
   for (int k = 13; k >= 1; --k) result = result * rest * (1.0 / k) + 1;
   const std::int64_t steps = (__builtin_bit_cast(std::int64_t, shifted) - __builtin_bit_cast(std::int64_t, rounding))

@@ -43,10 +43,10 @@ double distance_to_front(const Front& front, const Ray<double>& ray) noexcept {
 
 RayDerivatives at_front(const Front& front, const RayDerivatives& ray) noexcept {
   using kernel::Dual;
-  const auto jet = [&](Vec3<double> Ray<double>::*part, int axis) {
-    Dual x((ray.ray.*part)[axis]);
-    x.v[0] = (ray.by_u.*part)[axis];
-    x.v[1] = (ray.by_v.*part)[axis];
+  const auto jet = [&](Vec3<double> Ray<double>::*component, int axis) {
+    Dual x((ray.ray.*component)[axis]);
+    x.v[0] = (ray.by_u.*component)[axis];
+    x.v[1] = (ray.by_v.*component)[axis];
     return x;
   };
   const std::array o{jet(&Ray<double>::origin, 0), jet(&Ray<double>::origin, 1), jet(&Ray<double>::origin, 2)};

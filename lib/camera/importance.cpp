@@ -96,10 +96,10 @@ ScenePassing passing(const AnyRayModel& model) {
         for (std::size_t i = 0; i < count; ++i) {
           // Points outside the film are assigned the pupil of the edge of the film.
           const double radius = std::hypot(line[0][i], line[1][i]);
-          const double part = radius > pupils.film_radius() ? pupils.film_radius() / radius : 1;
+          const double fraction = radius > pupils.film_radius() ? pupils.film_radius() / radius : 1;
           passes[i] = fates[i] == RayFate::transmitted &&
-                      (model.clips_at_apertures() ||
-                       pupils.contains({part * line[0][i], part * line[1][i]}, line[2][i], line[3][i], wavelength));
+                      (model.clips_at_apertures() || pupils.contains({fraction * line[0][i], fraction * line[1][i]},
+                                                                     line[2][i], line[3][i], wavelength));
         }
       };
 }
@@ -484,8 +484,8 @@ ImportanceSample SceneSide::through_pinhole(const AnyRayModel& model, const Vec3
     // Tilted films sample the round stop, and the iris clips some of these rays.
     const double sampled = tilted_ ? s.area : pupils.polygon_area(met, wavelength);
     const double all = tilted_ ? unclipped_->area(met, wavelength) : unclipped_->polygon_area(met, wavelength);
-    const double part = sampled / all;
-    result.pdf /= part, seen.pdf_position /= part, seen.pdf_direction *= part;
+    const double fraction = sampled / all;
+    result.pdf /= fraction, seen.pdf_position /= fraction, seen.pdf_direction *= fraction;
   }
   seen.we *= spread, seen.pdf_direction *= spread;
   if (weights_) {

@@ -328,16 +328,16 @@ void LocalFocus::bend(const FilmPoint& film, double excess, const Vec2<double>& 
   const Data& data = *data_;
   const auto at = data.at(wavelength);
   if (!at) return;
-  const auto part = [&](auto of) {
+  const auto component = [&](auto of) {
     Dual result(of(ray.ray));
     result.v[0] = of(ray.by_u), result.v[1] = of(ray.by_v);
     return result;
   };
-  BentRay<Dual> bent{part([](const Ray<double>& r) { return r.origin.x; }),
-                     part([](const Ray<double>& r) { return r.origin.y; }),
-                     part([](const Ray<double>& r) { return r.direction.x; }),
-                     part([](const Ray<double>& r) { return r.direction.y; }),
-                     part([](const Ray<double>& r) { return r.direction.z; })};
+  BentRay<Dual> bent{component([](const Ray<double>& r) { return r.origin.x; }),
+                     component([](const Ray<double>& r) { return r.origin.y; }),
+                     component([](const Ray<double>& r) { return r.direction.x; }),
+                     component([](const Ray<double>& r) { return r.direction.y; }),
+                     component([](const Ray<double>& r) { return r.direction.z; })};
   const double z = data.first_order().z();
   const auto point = data.point(film, excess, excess_by_film);
   const Dual radius = radius_of(at->maps, point, at_entrance(at->maps, z, bent));

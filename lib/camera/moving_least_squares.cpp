@@ -121,8 +121,8 @@ void MovingLeastSquares::find_line(std::span<const double> presences) {
   along_ = {std::cos(angle), std::sin(angle)};
   const double along = (xx + yy) / 2 + half, across = std::max((xx + yy) / 2 - half, 0.0);
   const double aspect = along > 0 ? std::sqrt(across / along) : 0;
-  const double part = std::clamp((aspect - line_aspect) / (plane_aspect - line_aspect), 0.0, 1.0);
-  plane_ = part * part * (3 - 2 * part);
+  const double fraction = std::clamp((aspect - line_aspect) / (plane_aspect - line_aspect), 0.0, 1.0);
+  plane_ = fraction * fraction * (3 - 2 * fraction);
 }
 
 void MovingLeastSquares::keep_within(double low, double high) noexcept {
@@ -252,8 +252,8 @@ Vec2<double> MovingLeastSquares::slopes(const FilmPoint& film_point) const noexc
     for (std::size_t i = 0; i < count; ++i) {
       const V q = V{points.x[i], points.y[i]} - centre - mean;
       const double residual = points.value[i] - centre_value - mean_value - dot(slope, q);
-      const double part = 1 / w_sum + dot(towards, q);
-      result -= 2 * power_.exponent * weight(i) / r2_of(i) * part * residual * away(i);
+      const double factor = 1 / w_sum + dot(towards, q);
+      result -= 2 * power_.exponent * weight(i) / r2_of(i) * factor * residual * away(i);
     }
     return result;
   };
