@@ -95,10 +95,10 @@ Triple integral(const Spectrum& light, const ColourMatching& table, double from,
   Triple sum{};
   for (std::size_t i = 1; from < to && i < nodes.size(); ++i) {
     const double a = nodes[i - 1], b = nodes[i], third = (b - a) / 6;
-    for (const auto& [nm, share] : {std::pair{a, third}, {(a + b) / 2, 4 * third}, {b, third}}) {
+    for (const auto& [nm, simpson_weight] : {std::pair{a, third}, {(a + b) / 2, 4 * third}, {b, third}}) {
       const double power = at(light, nm);
       const Triple xyz = at(table, nm);
-      for (std::size_t k = 0; k < 3; ++k) sum[k] += share * power * xyz[k];
+      for (std::size_t k = 0; k < 3; ++k) sum[k] += simpson_weight * power * xyz[k];
     }
   }
   return sum;

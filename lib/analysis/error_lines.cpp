@@ -60,8 +60,8 @@ FilmPoint error_film_point(const Film& film, std::size_t index, std::uint32_t se
     x = to_the_ends(x), y = to_the_ends(y);
   }
   const double film_x = film.shift_x_mm + x * film.width_mm / 2, film_y = film.shift_y_mm + y * film.height_mm / 2;
-  const double r = std::hypot(film_x, film_y), room = film.radius_mm() - lit_radius;
-  const double fraction = r > lit_radius ? lit_radius / r * std::sqrt((r - lit_radius) / room) : 1;
+  const double r = std::hypot(film_x, film_y), dark_width = film.radius_mm() - lit_radius;
+  const double fraction = r > lit_radius ? lit_radius / r * std::sqrt((r - lit_radius) / dark_width) : 1;
   return {towards_zero(fraction * film_x), towards_zero(fraction * film_y)};
 }
 
@@ -132,9 +132,9 @@ PointLines error_lines(const FilmPoint& film, const camera_detail::ExactModel<do
     u[i] = point[0], chance[i] = point[1];
     v[i] = beyond[i] = i % 4 == 3 ? 0 : 1;
   }
-  std::array<double, 6 * count> room;
-  const RayArrays<double> rays{&room[0],         &room[count],     &room[2 * count],
-                               &room[3 * count], &room[4 * count], &room[5 * count]};
+  std::array<double, 6 * count> storage;
+  const RayArrays<double> rays{&storage[0],         &storage[count],     &storage[2 * count],
+                               &storage[3 * count], &storage[4 * count], &storage[5 * count]};
   std::array<RayFate, count> fates;
   for (int step = 0; step < 10; ++step) {
     put(uniform_lines);
@@ -158,9 +158,9 @@ template <class T>
 void trace_lines(const AnyRayModel& model, bool own_pupil, const TwoPlaneRays<const T>& lines, const FilmPoint& film,
                  std::size_t wavelength, PointRays& out) {
   constexpr std::size_t count = lines_per_point;
-  alignas(64) std::array<T, 6 * count> room;
-  const RayArrays<T> rays{&room[0],         &room[count],     &room[2 * count],
-                          &room[3 * count], &room[4 * count], &room[5 * count]};
+  alignas(64) std::array<T, 6 * count> storage;
+  const RayArrays<T> rays{&storage[0],         &storage[count],     &storage[2 * count],
+                          &storage[3 * count], &storage[4 * count], &storage[5 * count]};
   std::array<RayFate, count> fates;
   model.to_scene(count, lines, {.all = wavelength}, rays, fates.data());
   for (std::size_t i = 0; i < count; ++i) {
