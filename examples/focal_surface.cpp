@@ -57,7 +57,7 @@ class Surface {
     film_ = camera.film();
     ideal_ = petzval::thick_lens(camera.lens());
     auto [points, surface] = examples::read_focal_surface(options.surface, camera, origin, options.setup.focus_mm,
-                                                          [](const petzval::Vec3<double>& place) { return place; });
+                                                          [](const petzval::Vec3<double>& point) { return point; });
     points_ = std::move(points);
     surface_.emplace(std::move(surface));
     beyond_pupil_ = petzval::origin_z(camera.lens(), origin) - surface_->origin_z();

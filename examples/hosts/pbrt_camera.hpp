@@ -32,10 +32,10 @@ class PbrtCamera {
     const petzval::CameraRayDifferential d = camera_.sample_differential(of(sample));
     if (!d.sample) return {};
     const auto [by_x, by_y] = petzval::by_raster(d, camera_.film());
-    const auto beside = [&](const petzval::Ray<double>& by) {
+    const auto adjacent_ray = [&](const petzval::Ray<double>& by) {
       return to_pbrt({d.sample.ray.origin + by.origin, d.sample.ray.direction + by.direction}, sample);
     };
-    const pbrt::Ray right = beside(by_x), below = beside(by_y);
+    const pbrt::Ray right = adjacent_ray(by_x), below = adjacent_ray(by_y);
     pbrt::RayDifferential ray(to_pbrt(d.sample.ray, sample));
     ray.hasDifferentials = true;
     ray.rxOrigin = right.o, ray.rxDirection = right.d;

@@ -204,12 +204,13 @@ struct LitScene::Data {
     const Body& body = bodies[p.rays.hit.geomID[lane]];
     const auto& t = body.mesh.triangles[p.rays.hit.primID[lane]];
     const float u = p.rays.hit.u[lane], v = p.rays.hit.v[lane], w = 1 - u - v;
-    const glm::vec3 place =
+    const glm::vec3 surface_point =
         turn * (glm::vec3{ray.org_x[lane], ray.org_y[lane], ray.org_z[lane]} + ray.tfar[lane] * run) + origin;
     glm::vec2 uv{u, v};
     if (!body.mesh.uvs.empty()) uv = w * body.mesh.uvs[t[0]] + u * body.mesh.uvs[t[1]] + v * body.mesh.uvs[t[2]];
     const Rgb light = w * body.light[t[0]] + u * body.light[t[1]] + v * body.light[t[2]];
-    return body.emission + light * at(body.albedo, place, uv) * (0.7f + 0.6f * noise.at(place * (1 / 35.0f)));
+    return body.emission +
+           light * at(body.albedo, surface_point, uv) * (0.7f + 0.6f * noise.at(surface_point * (1 / 35.0f)));
   }
 };
 

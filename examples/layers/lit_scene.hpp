@@ -27,7 +27,7 @@ class LitScene {
   LitScene& operator=(const LitScene&) = delete;
 
   /// Moves the camera from its pose by x to the right, y up and z ahead, mm.
-  void move_to(const glm::vec3& place) noexcept { eye_ = place; }
+  void move_to(const glm::vec3& eye) noexcept { eye_ = eye; }
 
   /// Depth of the nearest surface seen through the pixel centres of a camera, mm; infinite if only sky is seen.
   double nearest_mm(const petzval::LayerCamera& camera, int threads) const;

@@ -43,10 +43,10 @@ Mesh upright(const std::array<Section, n>& sections, const glm::vec3& by = {0, 0
 
 /// A rounded limb between two points, with a radius at each end.
 Mesh limb(const glm::vec3& from, const glm::vec3& to, float first, float last) {
-  const glm::vec3 way = to - from;
-  const float across = std::hypot(way.x, way.z);
-  const glm::vec2 along = glm::normalize(glm::vec2{across, way.y}), left{-along.y, along.x};
-  const float length = glm::length(way);
+  const glm::vec3 axis = to - from;
+  const float across = std::hypot(axis.x, axis.z);
+  const glm::vec2 along = glm::normalize(glm::vec2{across, axis.y}), left{-along.y, along.x};
+  const float length = glm::length(axis);
   const auto station = [&](float s, float radius) {
     return TubeStation{s * along + radius * left, s * along - radius * left, radius};
   };
@@ -60,7 +60,7 @@ Mesh limb(const glm::vec3& from, const glm::vec3& to, float first, float last) {
   }
   stations.push_back(station(length + 0.3f * last, 0.9f * last));
   stations.push_back(station(length + 0.75f * last, 0.55f * last));
-  return placed(tube(stations, 20), from, std::atan2(-way.z, way.x) * 180 / pi);
+  return placed(tube(stations, 20), from, std::atan2(-axis.z, axis.x) * 180 / pi);
 }
 
 constexpr std::array robe{Section{0, 152, 132}, Section{30, 150, 130}, Section{200, 126, 108}, Section{400, 102, 86},
@@ -123,10 +123,11 @@ void add_head(Mesh& body) {
 
 /// A feather in the plane of a wing.
 Mesh feather(const glm::vec2& root, const glm::vec2& tip, float half_width, float z) {
-  const glm::vec2 way = tip - root, along = glm::normalize(way), left{-along.y, along.x};
-  const auto station = [&](float s, float share, float thickness) {
-    const glm::vec2 middle = root + s * way;
-    return TubeStation{middle + share * half_width * left, middle - share * half_width * left, thickness};
+  const glm::vec2 axis = tip - root, along = glm::normalize(axis), left{-along.y, along.x};
+  const auto station = [&](float s, float across_fraction, float thickness) {
+    const glm::vec2 middle = root + s * axis;
+    return TubeStation{middle + across_fraction * half_width * left, middle - across_fraction * half_width * left,
+                       thickness};
   };
   const std::array stations{station(0, 0.4f, 4),     station(0.12f, 0.8f, 6), station(0.5f, 1, 6),
                             station(0.85f, 0.9f, 4), station(0.96f, 0.6f, 3), station(1, 0.2f, 2)};

@@ -121,17 +121,17 @@ class Path {
       if (vertex.scatterings > most) break;
       const double d2 = distance2(at.position, vertex.point.position);
       if (!(d2 > 0)) continue;
-      const glm::vec3 way = (vertex.point.position - at.position) / static_cast<float>(std::sqrt(d2));
-      const Lanes here = bsdf.times_cosine(way, Carries::radiance);
+      const glm::vec3 connection = (vertex.point.position - at.position) / static_cast<float>(std::sqrt(d2));
+      const Lanes here = bsdf.times_cosine(connection, Carries::radiance);
       if (here == Lanes(0)) continue;
       // times_cosine() includes the cosine of its argument wi, which for power is the direction -way.
-      const Lanes there = vertex.bsdf.times_cosine(-way, Carries::power);
+      const Lanes there = vertex.bsdf.times_cosine(-connection, Carries::power);
       if (there == Lanes(0) || !scene_.sees(at, vertex.point)) continue;
-      const double here_cosine = cosine(at.normal, way), there_cosine = cosine(vertex.point.normal, way);
-      const double to_there = bsdf.pdf(way) * bsdf.goes_on() * there_cosine / d2;
-      const double to_here = vertex.bsdf.pdf(-way) * vertex.bsdf.goes_on() * here_cosine / d2;
-      const double back = bsdf.pdf_reverse(way) * bsdf.goes_on();
-      const double back_there = vertex.bsdf.pdf_reverse(-way) * vertex.bsdf.goes_on();
+      const double here_cosine = cosine(at.normal, connection), there_cosine = cosine(vertex.point.normal, connection);
+      const double to_there = bsdf.pdf(connection) * bsdf.goes_on() * there_cosine / d2;
+      const double to_here = vertex.bsdf.pdf(-connection) * vertex.bsdf.goes_on() * here_cosine / d2;
+      const double back = bsdf.pdf_reverse(connection) * bsdf.goes_on();
+      const double back_there = vertex.bsdf.pdf_reverse(-connection) * vertex.bsdf.goes_on();
       sum += here * there * vertex.power / static_cast<float>(d2) *
              weight(to_there * vertex.others.with(back_there) + to_here * others.with(back));
     }

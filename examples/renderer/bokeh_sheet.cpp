@@ -94,7 +94,7 @@ std::string ball_table(const std::vector<Picture>& pictures) {
       const renderer::Highlight& h = *highlights[i];
       csv +=
           '"' + p.lens() + "\"," + p.job.at("focus_mm").dump() + ',' + std::to_string(25 * (static_cast<int>(i) - 6));
-      for (const double x : {h.x, h.y, h.axis_ratio, h.to_radius_deg, h.outward_skewness, h.light, h.beside})
+      for (const double x : {h.x, h.y, h.axis_ratio, h.to_radius_deg, h.outward_skewness, h.light, h.neighbour_light})
         csv += ',' + number(x, 4);
       csv += h.trusted() ? ",yes\n" : ",no\n";
     }

@@ -78,9 +78,9 @@ std::optional<glm::vec3> refracted(const glm::vec3& w, const glm::vec3& m, float
 
 Bsdf::Bsdf(const SurfacePoint& point, const glm::vec3& wo, const PathColours& colours) noexcept
     : material_(point.object->material), normal_(point.normal), wo_(wo), frame_(point.shading) {
-  const auto set = [&](const Rgb& rgb, float share) {
+  const auto set = [&](const Rgb& rgb, float probability) {
     colour_ = colours.from_rgb * rgb;
-    goes_on_ = std::clamp(double{share}, 0.05, 1.0);
+    goes_on_ = std::clamp(double{probability}, 0.05, 1.0);
   };
   if (const auto* diffuse = std::get_if<Diffuse>(&material_)) {
     const Rgb albedo = at(diffuse->albedo, point.position, point.uv);

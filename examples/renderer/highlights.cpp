@@ -20,8 +20,8 @@ double luminance_at(const petzval::RgbImage& picture, int x, int y) {
 }
 
 /// The value below which a given fraction of the values lies.
-double quantile(std::vector<double> values, double share) {
-  const auto at = values.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));
+double quantile(std::vector<double> values, double fraction) {
+  const auto at = values.begin() + static_cast<std::ptrdiff_t>(fraction * static_cast<double>(values.size() - 1));
   std::nth_element(values.begin(), at, values.end());
   return *at;
 }
@@ -88,13 +88,13 @@ std::vector<Point>::iterator brightest_spot_first(std::vector<Point>& points) {
 
 std::optional<Highlight> highlight_in(const petzval::RgbImage& picture, int first_column, int last_column) {
   const int border = std::max(1, picture.height / 8);
-  std::vector<double> beside;
+  std::vector<double> luminances;
   for (int y = 0; y < picture.height; ++y) {
     if (y >= border && y < picture.height - border) continue;
-    for (int x = first_column; x <= last_column; ++x) beside.push_back(luminance_at(picture, x, y));
+    for (int x = first_column; x <= last_column; ++x) luminances.push_back(luminance_at(picture, x, y));
   }
-  if (beside.empty()) return {};
-  const double background = quantile(beside, 0.5);
+  if (luminances.empty()) return {};
+  const double background = quantile(luminances, 0.5);
   std::vector<Point> points;
   std::vector<double> means;
   for (int y = 1; y + 1 < picture.height; ++y) {
@@ -116,7 +116,7 @@ std::optional<Highlight> highlight_in(const petzval::RgbImage& picture, int firs
   // Mutual reflections of balls are separate spots.
   Highlight result;
   const auto rest = brightest_spot_first(points);
-  for (auto p = rest; p != points.end(); ++p) result.beside += p->value;
+  for (auto p = rest; p != points.end(); ++p) result.neighbour_light += p->value;
   points.erase(rest, points.end());
   const auto [left, right] = std::minmax_element(points.begin(), points.end(),
                                                  [](const Point& a, const Point& b) { return a.column < b.column; });
@@ -127,7 +127,7 @@ std::optional<Highlight> highlight_in(const petzval::RgbImage& picture, int firs
                  top->row > 1 && bottom->row < picture.height - 2;
   for (const Point& p : points) result.light += p.value, result.x += p.value * p.x, result.y += p.value * p.y;
   if (!(result.light > 0)) return {};
-  result.beside /= result.light;
+  result.neighbour_light /= result.light;
   result.x /= result.light, result.y /= result.light;
   const double from_x = result.x - picture.width / 2.0, from_y = result.y - picture.height / 2.0;
   const double radius = std::hypot(from_x, from_y);

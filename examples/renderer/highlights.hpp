@@ -16,13 +16,13 @@ struct Highlight {
   double to_radius_deg = 0;     ///< angle of the long axis to the line to the picture's centre, 0 to 90
   double outward_skewness = 0;  ///< along that line; > 0: the tail points away from the centre, as in a comet
   double light = 0;             ///< light of the highlight, above the background
-  double beside = 0;            ///< light of other spots in the same part of the picture, divided by `light`
+  double neighbour_light = 0;   ///< light of other spots in the same part of the picture, divided by `light`
   int width = 0, height = 0;    ///< pixels
   bool whole = false;           ///< false if the highlight reaches the border of its part of the picture
 
   /// True if the moments describe the blurred light: the highlight is complete, at least 6 pixels wide and high, and
   /// other spots have less than 5 % of its light.
-  bool trusted() const noexcept { return whole && std::min(width, height) >= 6 && beside < 0.05; }
+  bool trusted() const noexcept { return whole && std::min(width, height) >= 6 && neighbour_light < 0.05; }
 };
 
 /// The highlight in a part of a picture, by moments of the luminance above the background; nullopt if the part is dark.

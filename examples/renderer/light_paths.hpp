@@ -37,8 +37,8 @@ double pdf_sky_emission(const Scene& scene, const glm::vec3& travel);
 
 /// The squared distance of two points, and the absolute cosine between a normal and a direction.
 inline double distance2(const glm::vec3& a, const glm::vec3& b) {
-  const glm::vec3 way = b - a;
-  return glm::dot(way, way);
+  const glm::vec3 offset = b - a;
+  return glm::dot(offset, offset);
 }
 inline double cosine(const glm::vec3& normal, const glm::vec3& direction) {
   return std::abs(glm::dot(normal, direction));

@@ -152,14 +152,15 @@ Mesh read_obj(const std::filesystem::path& file) {
         }
         return &values[first];
       };
-      std::array<glm::vec3, 3> places;
+      std::array<glm::vec3, 3> triangle_corners;
       for (std::size_t k = 0; k < 3; ++k) {
         const float* const p = at(attributes.vertices, shape.mesh.indices[i + k].vertex_index, 3);
-        places[k] = {p[0], p[1], p[2]};
+        triangle_corners[k] = {p[0], p[1], p[2]};
       }
       const std::size_t number = mesh.triangles.size() + 1;
-      if (is_a_line(places[0], places[1], places[2]) && lines++ == 0) first_line = number;
-      const glm::vec3 flat = glm::normalize(glm::cross(places[1] - places[0], places[2] - places[0]));
+      if (is_a_line(triangle_corners[0], triangle_corners[1], triangle_corners[2]) && lines++ == 0) first_line = number;
+      const glm::vec3 flat = glm::normalize(
+          glm::cross(triangle_corners[1] - triangle_corners[0], triangle_corners[2] - triangle_corners[0]));
 
       std::array<std::uint32_t, 3> triangle{};
       for (std::size_t k = 0; k < 3; ++k) {
@@ -170,7 +171,7 @@ Mesh read_obj(const std::filesystem::path& file) {
             static_cast<std::uint32_t>(mesh.positions.size()));
         triangle[k] = entry->second;
         if (!is_new) continue;
-        mesh.positions.push_back(places[k]);
+        mesh.positions.push_back(triangle_corners[k]);
         if (any_normal) {
           const float* const n = has_normal ? at(attributes.normals, corner.normal_index, 3) : &flat.x;
           mesh.normals.emplace_back(n[0], n[1], n[2]);

@@ -103,17 +103,17 @@ PathColours PathColourSource::draw(float u) const noexcept {
   // Stratified: four positions a quarter apart. Each has the density of a single draw, and any lane could be the hero.
   result.lanes = 4;
   for (int lane = 0; lane < 4; ++lane) {
-    double place = double{u} + lane / 4.0;
-    place -= std::floor(place);
+    double stratified = double{u} + lane / 4.0;
+    stratified -= std::floor(stratified);
     const auto band = std::min(
-        std::upper_bound(bands_.begin(), bands_.end(), place, [](double x, const Band& b) { return x < b.end; }),
+        std::upper_bound(bands_.begin(), bands_.end(), stratified, [](double x, const Band& b) { return x < b.end; }),
         bands_.end() - 1);
-    const double begin = band == bands_.begin() ? 0 : (band - 1)->end, share = band->end - begin;
+    const double begin = band == bands_.begin() ? 0 : (band - 1)->end, band_width = band->end - begin;
     const double middle = first_nm + band_nm * static_cast<double>(band - bands_.begin());
     result.nm[static_cast<std::size_t>(lane)] =
-        static_cast<float>(middle + band_nm * (std::clamp((place - begin) / share, 0.0, 1.0) - 0.5));
+        static_cast<float>(middle + band_nm * (std::clamp((stratified - begin) / band_width, 0.0, 1.0) - 0.5));
     for (int c = 0; c < 3; ++c) result.from_rgb[c][lane] = band->primaries[c];
-    result.to_rgb[lane] = band->weight / static_cast<float>(4 * share);
+    result.to_rgb[lane] = band->weight / static_cast<float>(4 * band_width);
   }
   return result;
 }

@@ -287,9 +287,9 @@ double Scene::sky_entry_area() const noexcept { return pi * double{data_->radius
 const Object* Scene::around(const glm::vec3& point) const noexcept {
   const Object* solid = nullptr;
   for (int i = 0; i < 64; ++i) {
-    const auto share = (static_cast<float>(i) + 0.5f) / 64;
+    const auto sphere_fraction = (static_cast<float>(i) + 0.5f) / 64;
     const float turn = static_cast<float>(i) * 0.618034f;
-    const glm::vec3 direction = on_sphere(share, turn - std::floor(turn));
+    const glm::vec3 direction = on_sphere(sphere_fraction, turn - std::floor(turn));
     const auto met = meet(point, direction);
     if (!met || glm::dot(met->normal, direction) < 0 || std::holds_alternative<Glass>(met->object->material)) return {};
     if (solid && solid != met->object) return {};

@@ -24,7 +24,7 @@ using examples::refuse;
 
 // Embree misses larger objects, and float overflows at larger radiances.
 constexpr Range finite{-1e9, 1e9, "number from -1e9 to 1e9"}, positive{1e-9, 1e9, "number from 1e-9 to 1e9"},
-    not_negative{0, 1e12, "number from 0 to 1e12"}, share{0, 1, "number from 0 to 1"},
+    not_negative{0, 1e12, "number from 0 to 1e12"}, unit_range{0, 1, "number from 0 to 1"},
     rough{0.01, 1, "number from 0.01 to 1"}, index_of_glass{1.001, 4, "number from 1.001 to 4"};
 
 std::shared_ptr<const petzval::RgbImage> read_image(const std::string& where, const std::filesystem::path& file,
@@ -109,7 +109,7 @@ std::string_view one_of(const Entry& entry, std::initializer_list<const char*> k
 Albedo albedo(const Entry& entry) {
   Albedo result;
   if (!entry.json.is_object()) {
-    result.colour = entry.three<Rgb>(share);
+    result.colour = entry.three<Rgb>(unit_range);
     return result;
   }
   entry.keys({"checker", "size_mm", "image"}, "checker and size_mm, or image");
@@ -124,8 +124,8 @@ Albedo albedo(const Entry& entry) {
   const Entry checker = entry.at("checker");
   if (!checker.json.is_array() || checker.json.size() != 2)
     refuse(checker.where, checker.json, "a list of two colours");
-  result.colour = checker.at(std::size_t{0}).three<Rgb>(share);
-  result.checker = Albedo::Checker{.other = checker.at(std::size_t{1}).three<Rgb>(share)};
+  result.colour = checker.at(std::size_t{0}).three<Rgb>(unit_range);
+  result.checker = Albedo::Checker{.other = checker.at(std::size_t{1}).three<Rgb>(unit_range)};
   entry.read("size_mm", result.checker->size_mm, positive);
   return result;
 }
@@ -137,11 +137,11 @@ Material material(const Entry& entry) {
   if (kind.empty()) refuse(entry.where, entry.json, words);
   const Entry of = entry.at(std::string(kind));
   if (kind == "diffuse") return Diffuse{albedo(of)};
-  if (kind == "mirror") return Mirror{of.three<Rgb>(share)};
+  if (kind == "mirror") return Mirror{of.three<Rgb>(unit_range)};
   if (kind == "rough") {
     Rough result;
     of.keys({"reflectance", "roughness"}, "reflectance and roughness");
-    of.read("reflectance", result.reflectance, share);
+    of.read("reflectance", result.reflectance, unit_range);
     of.read("roughness", result.roughness, rough);
     return result;
   }
@@ -149,7 +149,7 @@ Material material(const Entry& entry) {
     Glass result;
     of.keys({"ior", "roughness"}, "ior and roughness");
     of.read("ior", result.ior, index_of_glass);
-    of.read("roughness", result.roughness, share);
+    of.read("roughness", result.roughness, unit_range);
     if (result.roughness > 0)
       of.read("roughness", result.roughness, {rough.least, rough.most, "number from 0.01 to 1, or 0"});
     return result;
@@ -221,12 +221,12 @@ Pose pose(const Entry& entry) {
   result.look_at = result.position + glm::dvec3{0, 0, -1};
   entry.read("look_at_mm", result.look_at, finite);
   entry.read("up", result.up, finite);
-  const glm::dvec3 way = result.look_at - result.position;
-  const double apart = glm::length(way), up = glm::length(result.up);
+  const glm::dvec3 view_direction = result.look_at - result.position;
+  const double apart = glm::length(view_direction), up = glm::length(result.up);
   if (!(apart > 1e-9 * glm::length(result.position))) {
     refuse(entry.where, entry.json, "a pose whose look_at_mm differs from position_mm");
   }
-  if (!(glm::length(glm::cross(way / apart, result.up)) > 1e-6 * up)) {
+  if (!(glm::length(glm::cross(view_direction / apart, result.up)) > 1e-6 * up)) {
     refuse(entry.where, entry.json, "a pose whose up is not parallel to look_at_mm - position_mm");
   }
   return result;

@@ -26,10 +26,10 @@ std::array<double, 2> depths(const Scene& scene, const LensCamera& exact) {
   LensCamera::Batch batch;
   batch.resize(count, false);
   for (std::size_t i = 0; i < count; ++i) {
-    const auto place = petzval::owen_sobol(static_cast<std::uint32_t>(i), 1);
+    const auto film_uv = petzval::owen_sobol(static_cast<std::uint32_t>(i), 1);
     const auto pupil = petzval::owen_sobol(static_cast<std::uint32_t>(i), 2);
-    batch.raster_x[i] = static_cast<float>(place.x * exact.film().columns);
-    batch.raster_y[i] = static_cast<float>(place.y * exact.film().rows);
+    batch.raster_x[i] = static_cast<float>(film_uv.x * exact.film().columns);
+    batch.raster_y[i] = static_cast<float>(film_uv.y * exact.film().rows);
     batch.u[i] = static_cast<float>(pupil.x), batch.v[i] = static_cast<float>(pupil.y);
   }
   exact.sample(batch);

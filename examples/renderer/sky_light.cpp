@@ -46,10 +46,10 @@ std::size_t SkyLight::pixel_of(const glm::vec3& travel) const noexcept {
   const glm::dvec3 to = -glm::dvec3(travel);
   const double across = 0.5 + std::atan2(to.x, -to.z) / (2 * pi);
   const double down = std::acos(std::clamp(to.y, -1.0, 1.0)) / pi;
-  const auto place = [](double share, std::size_t count) {
-    return std::min(static_cast<std::size_t>(std::max(share, 0.0) * static_cast<double>(count)), count - 1);
+  const auto cell_index = [](double fraction, std::size_t count) {
+    return std::min(static_cast<std::size_t>(std::max(fraction, 0.0) * static_cast<double>(count)), count - 1);
   };
-  return place(down, rows_) * columns_ + place(across, columns_);
+  return cell_index(down, rows_) * columns_ + cell_index(across, columns_);
 }
 
 Rgb SkyLight::radiance(const glm::vec3& travel) const noexcept {
@@ -61,8 +61,8 @@ Rgb SkyLight::radiance(const glm::vec3& travel) const noexcept {
 glm::vec3 SkyLight::sample(float u, float v) const noexcept {
   const double drawn = std::min(static_cast<double>(u), 1 - 1e-9) * total_;
   const auto pixel = static_cast<std::size_t>(std::upper_bound(ends_.begin(), ends_.end() - 1, drawn) - ends_.begin());
-  const double begin = pixel > 0 ? ends_[pixel - 1] : 0, share = ends_[pixel] - begin;
-  const double across = (static_cast<double>(pixel % columns_) + (share > 0 ? (drawn - begin) / share : 0.5)) /
+  const double begin = pixel > 0 ? ends_[pixel - 1] : 0, fraction = ends_[pixel] - begin;
+  const double across = (static_cast<double>(pixel % columns_) + (fraction > 0 ? (drawn - begin) / fraction : 0.5)) /
                         static_cast<double>(columns_);
   const std::size_t row = pixel / columns_;
   const double sine = sine_above(row) + double{v} * (sine_above(row + 1) - sine_above(row));

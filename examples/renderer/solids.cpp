@@ -66,14 +66,14 @@ Mesh lathe(std::span<const ProfilePoint> profile, int sides) {
     const int chords = std::max(1, static_cast<int>(std::ceil(std::abs(end) * 36 / pi)));
     for (int chord = 0; chord <= chords; ++chord) {
       const float angle = end * (2 * static_cast<float>(chord) / static_cast<float>(chords) - 1);
-      glm::vec2 place = chord == 0 ? from : to;
+      glm::vec2 profile_point = chord == 0 ? from : to;
       if (chord > 0 && chord < chords) {
-        place = middle + (half * std::sin(angle) + out * (std::cos(angle) - std::cos(end))) / std::sin(end);
+        profile_point = middle + (half * std::sin(angle) + out * (std::cos(angle) - std::cos(end))) / std::sin(end);
       }
       const glm::vec2 normal = glm::normalize(out * std::cos(angle) + half * std::sin(angle));
       for (int k = 0; k < sides; ++k) {
         const auto [c, s] = turn(k, sides);
-        mesh.positions.emplace_back(place.x * c, place.y, -place.x * s);
+        mesh.positions.emplace_back(profile_point.x * c, profile_point.y, -profile_point.x * s);
         mesh.normals.emplace_back(normal.x * c, normal.y, -normal.x * s);
       }
       if (chord == 0) continue;
@@ -104,9 +104,9 @@ Mesh tube(std::span<const TubeStation> stations, int sides) {
       const float t = static_cast<float>(step) / steps;
       const auto curve = [&](auto member) {  // Catmull-Rom spline
         const auto slope = (c.*member - a.*member) * 0.5f, next_slope = (d.*member - b.*member) * 0.5f;
-        const auto way = c.*member - b.*member;
+        const auto rise = c.*member - b.*member;
         return b.*member +
-               t * (slope + t * ((3.0f * way - 2.0f * slope - next_slope) + t * (slope + next_slope - 2.0f * way)));
+               t * (slope + t * ((3.0f * rise - 2.0f * slope - next_slope) + t * (slope + next_slope - 2.0f * rise)));
       };
       ring(curve(&TubeStation::left), curve(&TubeStation::right), curve(&TubeStation::half_z));
       join_rings(mesh, sides, i == 0 && step == 0, false);

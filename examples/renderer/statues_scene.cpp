@@ -33,9 +33,9 @@ Sky evening() {
     const float up = pi * (0.5f - (static_cast<float>(row) + 0.5f) / rows);
     for (int column = 0; column < columns; ++column) {
       const float turn = 2 * pi * ((static_cast<float>(column) + 0.5f) / columns - 0.5f);
-      const glm::vec3 way{std::cos(up) * std::sin(turn), std::sin(up), -std::cos(up) * std::cos(turn)};
+      const glm::vec3 direction{std::cos(up) * std::sin(turn), std::sin(up), -std::cos(up) * std::cos(turn)};
       const auto lobe = [&](const glm::vec3& towards, float width) {
-        return std::exp((glm::dot(way, towards) - 1) / (width * width));
+        return std::exp((glm::dot(direction, towards) - 1) / (width * width));
       };
       const float haze = std::exp(-std::abs(up) / 0.16f);
       Rgb radiance = Rgb{0.16f, 0.22f, 0.38f} + haze * Rgb{0.30f, 0.22f, 0.16f};

@@ -17,8 +17,8 @@ std::size_t at(int x, int y, int width) {
 
 double ideal_blur(const petzval::Film& film, const PointScene& scene, const petzval::IdealLens& lens,
                   const petzval::FilmPoint& point) {
-  const auto place = scene.at(film, point);
-  const auto image = place ? lens.image(*place) : std::nullopt;
+  const auto scene_point = scene.at(film, point);
+  const auto image = scene_point ? lens.image(*scene_point) : std::nullopt;
   return image ? petzval::signed_blur(*image, film) : none;
 }
 
@@ -109,9 +109,9 @@ double scale_of(std::span<const BlurMap> maps) {
     }
   }
   if (sizes.empty()) return 1e-3;
-  const auto place = sizes.begin() + static_cast<std::ptrdiff_t>(0.99 * static_cast<double>(sizes.size() - 1));
-  std::nth_element(sizes.begin(), place, sizes.end());
-  const double target = std::max(*place, 1e-3), decade = std::pow(10, std::floor(std::log10(target)));
+  const auto p99 = sizes.begin() + static_cast<std::ptrdiff_t>(0.99 * static_cast<double>(sizes.size() - 1));
+  std::nth_element(sizes.begin(), p99, sizes.end());
+  const double target = std::max(*p99, 1e-3), decade = std::pow(10, std::floor(std::log10(target)));
   for (const double digit : {1.0, 2.0, 5.0}) {
     if (digit * decade >= target) return digit * decade;
   }

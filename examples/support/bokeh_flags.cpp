@@ -49,9 +49,9 @@ petzval::BokehControls controls_of(const BokehFlags& flags) {
   }
   if (!flags.iris_image.empty()) {
     result.weight_map = petzval::read_iris_map(flags.iris_image);
-    for (const float share : result.weight_map.values) {
-      if (share > 1) {
-        throw petzval::Error(flags.iris_image + ": value = " + number(share) +
+    for (const float transmittance : result.weight_map.values) {
+      if (transmittance > 1) {
+        throw petzval::Error(flags.iris_image + ": value = " + number(transmittance) +
                              "; must be a fraction of the light from 0 to 1");
       }
     }

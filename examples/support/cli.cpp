@@ -103,14 +103,14 @@ void want_folder(const std::string& flag, const std::filesystem::path& folder) {
   };
   if (folder.empty()) refuse("it has no name");
   std::error_code error;
-  std::filesystem::path place = folder;
-  while (!std::filesystem::exists(place, error)) {
+  std::filesystem::path existing_folder = folder;
+  while (!std::filesystem::exists(existing_folder, error)) {
     if (error) refuse(error.message());
-    const std::filesystem::path above = place.parent_path();
-    place = above.empty() || above == place ? std::filesystem::path(".") : above;
+    const std::filesystem::path above = existing_folder.parent_path();
+    existing_folder = above.empty() || above == existing_folder ? std::filesystem::path(".") : above;
   }
-  if (!std::filesystem::is_directory(place, error)) refuse(place.string() + " is a file");
-  if (access(place.c_str(), W_OK | X_OK) != 0) refuse(place.string() + ": " + std::strerror(errno));
+  if (!std::filesystem::is_directory(existing_folder, error)) refuse(existing_folder.string() + " is a file");
+  if (access(existing_folder.c_str(), W_OK | X_OK) != 0) refuse(existing_folder.string() + ": " + std::strerror(errno));
 }
 
 /// @throws petzval::Error  if the file cannot be created

@@ -59,8 +59,8 @@ petzval::ExpressiveLens expressive_of(const ExpressiveFlags& flags, const petzva
   if (!flags.curvature_points.empty()) result.film_offsets.clear();
   for (const std::string& text : flags.curvature_points) {
     const std::string where = "--curvature-points";
-    const auto [place, offset] = parts(where, text, ':', "x,y:offset");
-    const auto [x, y] = parts(where, place, ',', "x,y:offset");
+    const auto [position_text, offset] = parts(where, text, ':', "x,y:offset");
+    const auto [x, y] = parts(where, position_text, ',', "x,y:offset");
     result.film_offsets.push_back({{parse_number(where, x, finite_number), parse_number(where, y, finite_number)},
                                    parse_number(where, offset, finite_number)});
   }

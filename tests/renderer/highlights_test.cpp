@@ -63,9 +63,9 @@ TEST(Highlights, IgnoreReflectionsOfOtherBalls) {
   ASSERT_TRUE(found[6] && found[7]);
   EXPECT_NEAR(found[6]->axis_ratio, 1, 0.03);
   EXPECT_NEAR(found[6]->x, 325, 0.3);
-  EXPECT_GT(found[6]->beside, 0.05);
+  EXPECT_GT(found[6]->neighbour_light, 0.05);
   EXPECT_FALSE(found[6]->trusted());
-  EXPECT_LT(found[7]->beside, 0.001);
+  EXPECT_LT(found[7]->neighbour_light, 0.001);
   EXPECT_TRUE(found[7]->trusted());
 }
 
