@@ -158,7 +158,8 @@ Coefficients refined(const std::vector<Pair>& pairs, const Terms& terms, Coeffic
 
 /// Least-squares coefficients without a pole up to the radius `reach`.
 /// @param fewer coefficients with a shorter denominator, a second starting point of the search
-Coefficients fitted(const std::vector<Pair>& pairs, const Terms& terms, const Coefficients& fewer, double reach) {
+Coefficients fit_coefficients(const std::vector<Pair>& pairs, const Terms& terms, const Coefficients& fewer,
+                              double reach) {
   if (terms.in_denominator == 0) return linear_round(pairs, terms, {});
   Coefficients best = refined(pairs, terms, fewer, reach), round{};
   for (int i = 0; i < 8; ++i) {
@@ -234,7 +235,7 @@ BrownConrady fit_brown_conrady(const LensDistortion& distortion, const BrownConr
   BrownConrady rising = model_of({}), within = rising;
   Coefficients k{};
   for (const Terms& terms : forms) {
-    k = fitted(scaled, terms, k, 1.1);
+    k = fit_coefficients(scaled, terms, k, 1.1);
     const BrownConrady next = model_of(k);
     if (!bounded(k)) continue;
     if (next.rms_px < within.rms_px) within = next;
