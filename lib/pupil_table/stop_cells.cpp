@@ -101,8 +101,8 @@ void for_rays(const PupilPolygon& polygon, std::size_t step, std::span<const dou
 double distance(const Position& a, const Position& b) { return std::hypot(a.x - b.x, a.y - b.y); }
 
 template <int dimensions>
-NodeMap<dimensions> map_at(const StopOf& stop_of, const FilmPoint& film, const PupilPolygon& polygon,
-                           std::size_t wavelength) {
+NodeMap<dimensions> fit_node_map(const StopOf& stop_of, const FilmPoint& film, const PupilPolygon& polygon,
+                                 std::size_t wavelength) {
   NodeMap<dimensions> map;
   std::vector<StopSample> samples;
   const auto take = [&](std::size_t k, double radius, const Position& position) {
@@ -240,7 +240,7 @@ std::vector<double> stop_cells(const Data& data, const iris_detail::IrisShape& s
   parallel_for(data.wavelengths, 1, threads, [&](std::size_t w, std::size_t) {
     for (std::size_t i = 0; i < data.nodes(); ++i) {
       const PupilPolygon& polygon = polygons[w].emplace_back(data.node(w, i));
-      Map& map = maps[w].emplace_back(map_at<dimensions>(stop_of, data.node_point(i), polygon, w));
+      Map& map = maps[w].emplace_back(fit_node_map<dimensions>(stop_of, data.node_point(i), polygon, w));
       // A node without a pupil uses the map of the previous node.
       if (!map.known && i > 0 && dimensions == 1 && !(polygon.area() > 0)) map = maps[w][i - 1];
       map.samples_iris = map.known && !data.obscured && whole_iris_within(map, polygon, shape, data.enclosing);
