@@ -40,7 +40,7 @@ std::vector<Prescription> small_lenses() {
   return result;
 }
 
-Texts written(const std::function<WrittenLens(const Prescription&)>& write) {
+Texts written(const std::function<ExportedLens(const Prescription&)>& write) {
   Texts result;
   for (const Prescription& lens : small_lenses()) {
     done([&] { result.push_back(write(lens).text); });
