@@ -136,7 +136,7 @@ std::vector<LensFigure> lens_figures(const Report& r, const petzval::Lens& colou
   if (!lens.rotationally_symmetric()) {
     add("layout_x", "The lens in the other section",
         "The section x-z of the lens. Cylinders are curved in one section only, so the focal length differs.",
-        petzval::layout_figure(lens, subject_z, fields, {.section = petzval::Meridian::x}));
+        petzval::layout_figure(lens, subject_z, fields, petzval::Meridian::x));
   }
   if (!limited) return result;
 

@@ -190,7 +190,7 @@ std::string_view name(BrownConradyDirection direction) noexcept {
 
 double BrownConrady::radius(double r) const noexcept { return r * polynomial(r * r, &k[0]) / polynomial(r * r, &k[3]); }
 
-BrownConrady fit_brown_conrady(const LensDistortion& distortion, const BrownConradyOptions& options) {
+BrownConrady fit_brown_conrady(const LensDistortion& distortion, BrownConradyDirection direction, RadialForm form) {
   const Camera& camera = distortion.camera();
   const std::string where = camera.lens().name() + ": Brown-Conrady: ";
   if (!with_iris(camera.lens(), {}).rotationally_symmetric()) {  // blades do not bend rays
@@ -204,8 +204,8 @@ BrownConrady fit_brown_conrady(const LensDistortion& distortion, const BrownConr
   const std::vector<Radii> radii = radii_of(distortion);
   if (radii.empty()) throw Error(where + "no light reaches the film");
 
-  BrownConrady result{.direction = options.direction, .pinhole = distortion.pinhole()};
-  const bool to_undistorted = options.direction == BrownConradyDirection::to_undistorted;
+  BrownConrady result{.direction = direction, .pinhole = distortion.pinhole()};
+  const bool to_undistorted = direction == BrownConradyDirection::to_undistorted;
   std::vector<Pair> pairs;
   double farthest = 0;
   for (const Radii& r : radii) {
@@ -231,7 +231,7 @@ BrownConrady fit_brown_conrady(const LensDistortion& distortion, const BrownConr
   // Unnecessary terms would follow rounding errors and diverge beyond the film.
   constexpr double exact_px = 2e-5;
   std::vector<Terms> forms{{1, 0}, {2, 0}, {3, 0}};
-  if (options.form == RadialForm::rational) forms.insert(forms.end(), {{3, 1}, {3, 2}, {3, 3}});
+  if (form == RadialForm::rational) forms.insert(forms.end(), {{3, 1}, {3, 2}, {3, 3}});
   BrownConrady rising = model_of({}), within = rising;
   Coefficients k{};
   for (const Terms& terms : forms) {

@@ -7,6 +7,7 @@
 #include <glm/geometric.hpp>
 #include <limits>
 
+#include "analysis/undistorted_box.hpp"
 #include "core/low_discrepancy.hpp"
 #include "core/meet_plane.hpp"
 #include "core/text.hpp"
@@ -22,8 +23,8 @@ constexpr double far_mm = 1e9;
 /// Cosine of the widest field that a pinhole image includes, 89 degrees.
 constexpr double least_cosine = 0.0175;
 
-double subject_of(const Lens& lens, const Film& film, const DistortionOptions& options) {
-  if (options.subject_z_mm) return *options.subject_z_mm;
+double subject_of(const Lens& lens, const Film& film, std::optional<double> subject_z_mm) {
+  if (subject_z_mm) return *subject_z_mm;
   const FocusSolution found = solve_subject(lens, film.z());
   if (found.status == FocusStatus::afocal || found.status == FocusStatus::no_rays) {
     throw Error(lens.name() + ": distortion: no subject is in focus (" + std::string(name(found.status)) +
@@ -34,7 +35,7 @@ double subject_of(const Lens& lens, const Film& film, const DistortionOptions& o
 
 }  // namespace
 
-LensDistortion::LensDistortion(const Camera& camera, const DistortionOptions& options) : camera_(camera) {
+LensDistortion::LensDistortion(const Camera& camera, std::optional<double> subject_z_mm) : camera_(camera) {
   const Lens& lens = camera.lens();
   const Film& film = camera.film();
   const std::string where = lens.name() + ": distortion: ";
@@ -42,7 +43,7 @@ LensDistortion::LensDistortion(const Camera& camera, const DistortionOptions& op
   if (!std::isfinite(pinhole_.z_mm)) {
     throw Error(where + "the entrance pupil is at infinity; must be at a finite distance for a pinhole");
   }
-  pinhole_.subject_z_mm = subject_of(lens, film, options);
+  pinhole_.subject_z_mm = subject_of(lens, film, subject_z_mm);
   distance_ = std::min(pinhole_.z_mm - pinhole_.subject_z_mm, far_mm);
   if (!(distance_ > 0) || !(pinhole_.subject_z_mm < 0)) {
     throw Error(where + "the subject is at z = " + to_text(pinhole_.subject_z_mm) +

@@ -8,6 +8,7 @@
 #include "core/check_rectangle.hpp"
 #include "core/text.hpp"
 #include "lens/equator.hpp"
+#include "paraxial/ray_matrix.hpp"
 #include "petzval/core/error.hpp"
 #include "petzval/glass/glass.hpp"
 #include "petzval/paraxial/first_order.hpp"

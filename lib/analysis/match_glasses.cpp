@@ -44,11 +44,11 @@ std::string described(const Glass& glass) {
 
 }  // namespace
 
-MatchedGlasses match_glasses(const Prescription& prescription, const GlassCatalogue& glasses,
-                             const GlassTolerance& tolerance) {
-  for (const auto& [name, value] : {std::pair("nd", tolerance.nd), std::pair("vd", tolerance.vd)}) {
+MatchedGlasses match_glasses(const Prescription& prescription, const GlassCatalogue& glasses, double max_nd_difference,
+                             double max_vd_difference) {
+  for (const auto& [name, value] : {std::pair("nd", max_nd_difference), std::pair("vd", max_vd_difference)}) {
     if (value >= 0 && std::isfinite(value)) continue;
-    throw Error(std::string("GlassTolerance::") + name + " = " + to_text(value) +
+    throw Error(std::string("match_glasses: ") + name + " = " + to_text(value) +
                 "; must be a finite number of 0 or more");
   }
   MatchedGlasses result{.prescription = prescription, .matched = {}, .unmatched = {}};
@@ -79,7 +79,7 @@ MatchedGlasses match_glasses(const Prescription& prescription, const GlassCatalo
     }
     const Glass& glass = *nearest.front();
     const std::string found = numbers(nd, *entry.medium.vd) + ": ";
-    if (std::abs(glass.nd - nd) > tolerance.nd || std::abs(glass.vd - *entry.medium.vd) > tolerance.vd) {
+    if (std::abs(glass.nd - nd) > max_nd_difference || std::abs(glass.vd - *entry.medium.vd) > max_vd_difference) {
       keep(found + "the nearest glass is " + described(glass));
       continue;
     }

@@ -8,6 +8,7 @@
 #include <functional>
 #include <glm/geometric.hpp>
 
+#include "analysis/undistorted_box.hpp"
 #include "core/text.hpp"
 #include "petzval/core/error.hpp"
 #include "petzval/core/parallel.hpp"
@@ -185,14 +186,14 @@ struct Margin {
   int x = 0, y = 0;
 };
 
-Margin margin_of(const LensDistortion& distortion, const StMapOptions& options) {
+Margin margin_of(const LensDistortion& distortion, std::optional<double> overscan) {
   const Film& film = distortion.camera().film();
   const std::string where = distortion.camera().lens().name() + ": ST maps: ";
   const auto either_side = [](double excess) { return static_cast<int>(std::ceil(excess - 1e-6)); };
-  if (options.overscan) {
-    const double margin = (*options.overscan - 1) / 2;
-    if (!(margin >= 0 && *options.overscan <= 10)) {
-      throw Error(where + "overscan = " + to_text(*options.overscan) + "; must be 1 to 10");
+  if (overscan) {
+    const double margin = (*overscan - 1) / 2;
+    if (!(margin >= 0 && *overscan <= 10)) {
+      throw Error(where + "overscan = " + to_text(*overscan) + "; must be 1 to 10");
     }
     return {either_side(margin * film.columns), either_side(margin * film.rows)};
   }
@@ -214,9 +215,9 @@ bool StMap::has_source(int column, int row) const noexcept {
   return s[i] != no_source || t[i] != no_source;
 }
 
-StMaps st_maps(const LensDistortion& distortion, const StMapOptions& options) {
+StMaps st_maps(const LensDistortion& distortion, std::optional<double> overscan, int threads) {
   const Film& film = distortion.camera().film();
-  const auto [margin_x, margin_y] = margin_of(distortion, options);
+  const auto [margin_x, margin_y] = margin_of(distortion, overscan);
   const Vec2<double> centre = distortion.centre(), focal_length = distortion.focal_length_px();
   // For a wide field, the pinhole image is not a polynomial of the lens image; the sines of its directions are bounded.
   const auto sines = [&](const Vec2<double>& at) -> OptionalPosition {
@@ -230,10 +231,9 @@ StMaps st_maps(const LensDistortion& distortion, const StMapOptions& options) {
     if (!(cosine2 > 0)) return {};
     return centre + focal_length * sine / std::sqrt(cosine2);
   };
-  return {
-      map_of([&](const Vec2<double>& at) { return distortion.distorted(at); },
-             [](const Vec2<double>& at) { return OptionalPosition(at); }, film, margin_x, margin_y, options.threads),
-      map_of(sines, from_sines, film, 0, 0, options.threads)};
+  return {map_of([&](const Vec2<double>& at) { return distortion.distorted(at); },
+                 [](const Vec2<double>& at) { return OptionalPosition(at); }, film, margin_x, margin_y, threads),
+          map_of(sines, from_sines, film, 0, 0, threads)};
 }
 
 }  // namespace petzval

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "core/meet_plane.hpp"
+#include "paraxial/ray_matrix.hpp"
 #include "petzval/trace/trace.hpp"
 #include "pupil/boundary_nodes.hpp"
 #include "pupil/pupil_boundary.hpp"

@@ -4,6 +4,7 @@
 #include <cstddef>
 
 #include "lens_facts.hpp"
+#include "paraxial/ray_matrix.hpp"
 #include "pupil_table/two_plane_rays.hpp"
 
 namespace petzval::camera_detail {

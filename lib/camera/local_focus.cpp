@@ -29,6 +29,7 @@
 #include "lens/between_wavelengths.hpp"
 #include "local_focus_loops.hpp"
 #include "make_model.hpp"
+#include "paraxial/ray_matrix.hpp"
 #include "paraxial_model.hpp"
 #include "petzval/core/error.hpp"
 #include "tilted_pinhole.hpp"

@@ -8,6 +8,7 @@
 #include "camera/ray_model.hpp"
 #include "lens_facts.hpp"
 #include "local_focus_steps.hpp"
+#include "paraxial/ray_matrix.hpp"
 #include "petzval/camera/camera_ray.hpp"
 #include "petzval/camera/expressive_lens.hpp"
 #include "petzval/camera/focal_surface.hpp"

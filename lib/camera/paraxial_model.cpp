@@ -16,6 +16,7 @@
 #include "core/widest.hpp"
 #include "iris/iris_edges.hpp"
 #include "make_model.hpp"
+#include "paraxial/ray_matrix.hpp"
 #include "paraxial_loops.hpp"
 #include "petzval/core/error.hpp"
 #include "petzval/pupil/illumination.hpp"

@@ -10,6 +10,7 @@
 #include "camera/ray_model.hpp"
 #include "lens/between_wavelengths.hpp"
 #include "lens_facts.hpp"
+#include "paraxial/ray_matrix.hpp"
 #include "petzval/core/config.hpp"
 #include "petzval/paraxial/first_order.hpp"
 #include "petzval/trace/trace.hpp"

@@ -40,22 +40,23 @@ struct Box {
 
 class LayoutFigure {
  public:
-  LayoutFigure(const Lens& lens, double subject_z, std::span<const double> fields_rad, const LayoutOptions& options)
+  LayoutFigure(const Lens& lens, double subject_z, std::span<const double> fields_rad, Meridian section,
+               std::size_t rays)
       : lens_(lens),
         subject_z_(subject_z),
         fields_(fields_rad),
-        options_(options),
+        meridian_(section),
         wavelength_(lens.primary_wavelength()),
-        rays_(figure_detail::ray_paths(lens, subject_z, fields_rad, options.section, options.rays, wavelength_)),
-        section_(lens, options.section, heights_needed(), wavelength_) {
-    if (has_pupils(lens)) stop_ = pupils(lens, wavelength_, options.section);
+        rays_(figure_detail::ray_paths(lens, subject_z, fields_rad, section, rays, wavelength_)),
+        section_(lens, section, heights_needed(), wavelength_) {
+    if (has_pupils(lens)) stop_ = pupils(lens, wavelength_, section);
     measure();
   }
 
   std::string draw() {
     const double height = (box_.high - box_.low) * scale_;
     Svg svg(width, top + height + bottom);
-    figure_detail::draw_head(svg, lens_, options_.section == Meridian::y ? "Section y-z" : "Section x-z", subject_z_,
+    figure_detail::draw_head(svg, lens_, meridian_ == Meridian::y ? "Section y-z" : "Section x-z", subject_z_,
                              wavelength_);
     svg.path("M" + svg_number(side / 2) + " " + svg_number(y(0)) + "H" + svg_number(width - side / 2),
              "fill=\"none\" stroke=\"#888\" stroke-width=\"0.8\" stroke-dasharray=\"14 3 2 3\"");
@@ -259,7 +260,7 @@ class LayoutFigure {
   const Lens& lens_;
   double subject_z_;
   std::span<const double> fields_;
-  LayoutOptions options_;
+  Meridian meridian_;
   std::size_t wavelength_;
   std::vector<RayPath> rays_;
   LensSection section_;
@@ -276,12 +277,12 @@ class LayoutFigure {
 
 }  // namespace
 
-std::string layout_figure(const Lens& lens, double subject_z, std::span<const double> fields_rad,
-                          const LayoutOptions& options) {
-  if (options.rays < 3 || options.rays > 7) {
-    throw Error("layout_figure: rays = " + std::to_string(options.rays) + "; must be 3 to 7");
+std::string layout_figure(const Lens& lens, double subject_z, std::span<const double> fields_rad, Meridian section,
+                          std::size_t rays) {
+  if (rays < 3 || rays > 7) {
+    throw Error("layout_figure: rays = " + std::to_string(rays) + "; must be 3 to 7");
   }
-  return LayoutFigure(lens, subject_z, fields_rad, options).draw();
+  return LayoutFigure(lens, subject_z, fields_rad, section, rays).draw();
 }
 
 }  // namespace petzval

@@ -9,6 +9,7 @@
 
 #include "core/text.hpp"
 #include "paraxial/focal_points.hpp"
+#include "paraxial/marginal_ray.hpp"
 #include "petzval/core/error.hpp"
 #include "petzval/paraxial/first_order.hpp"
 #include "search.hpp"
@@ -178,7 +179,7 @@ Image FocusSolver::cone(double subject_z) const {
         "beam from infinity");
   }
   const double p = ideal.front_focal_z - subject_z;
-  const MarginalRay marginal = ideal.marginal_ray(p);
+  const MarginalRay marginal = marginal_ray(ideal, p);
   RayBundle ray{
       .plane_z = ideal.rear_focal_z, .x = {0}, .y = {marginal.height}, .slope_x = {0}, .slope_y = {marginal.slope}};
   return {.film_z = conjugates_.film_z(p), .rays = std::move(ray)};

@@ -11,6 +11,7 @@
 #include "core/text.hpp"
 #include "declared_beam.hpp"
 #include "io/missing_apertures.hpp"
+#include "paraxial/ray_matrix.hpp"
 #include "petzval/analysis/lint.hpp"
 #include "petzval/core/error.hpp"
 #include "petzval/lens/lens.hpp"

@@ -7,6 +7,7 @@
 #include <limits>
 #include <utility>
 
+#include "paraxial/ray_matrix.hpp"
 #include "petzval/core/error.hpp"
 #include "petzval/paraxial/first_order.hpp"
 #include "petzval/pupil/f_number.hpp"

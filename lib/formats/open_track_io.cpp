@@ -92,8 +92,8 @@ std::string how_well(const BrownConrady& in, const BrownConrady& out, const Expo
 
 std::string format_open_track_io(const Lens& lens, const Film& film, const LensIdentity& identity) {
   const LensDistortion picture(Camera(lens, film, {.model = ModelKind::exact_double}));
-  const BrownConrady in = fit_brown_conrady(picture, {.direction = BrownConradyDirection::to_undistorted});
-  const BrownConrady out = fit_brown_conrady(picture, {.direction = BrownConradyDirection::to_distorted});
+  const BrownConrady in = fit_brown_conrady(picture, BrownConradyDirection::to_undistorted);
+  const BrownConrady out = fit_brown_conrady(picture, BrownConradyDirection::to_distorted);
   const double size = overscan(picture);
   const ExposureFalloff falloff = fit_exposure_falloff(picture.camera().lens(), film);
   const LensState state = lens_state(picture);

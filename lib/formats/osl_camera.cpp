@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "core/text.hpp"
+#include "lens/any_semi_diameter.hpp"
 #include "petzval/core/error.hpp"
 #include "petzval/core/geometry.hpp"
 #include "petzval/focus/focus.hpp"
@@ -74,7 +75,7 @@ Film usual_film(const Lens& lens) {
 
 class OslCamera {
  public:
-  OslCamera(const Lens& lens, const OslCameraOptions& options);
+  OslCamera(const Lens& lens, const std::optional<Film>& film);
   std::string text() const;
 
  private:
@@ -96,9 +97,9 @@ class OslCamera {
   std::vector<Lens> stopped_;
 };
 
-OslCamera::OslCamera(const Lens& lens, const OslCameraOptions& options) : lens_(with_iris(lens, Iris{})) {
+OslCamera::OslCamera(const Lens& lens, const std::optional<Film>& film) : lens_(with_iris(lens, Iris{})) {
   check();
-  film_ = options.film.value_or(usual_film(lens_));
+  film_ = film.value_or(usual_film(lens_));
   if (!(film_.width_mm > 0 && film_.height_mm > 0))
     throw Error(lens.name() + ": film without area; area must be positive");
   const FirstOrder first = first_order(lens_);
@@ -222,8 +223,8 @@ void OslCamera::boxes(std::string& text) const {
     // Boxes at the rings and halfway between the rings.
     std::vector<Box> at(2 * rings + 1);
     for (const double inverse : {0.0, 1 / nearest_}) {
-      const Lens set = with_semi_diameter(focused(inverse), *lens_.stop(),
-                                          stopped.surfaces()[*lens_.stop()].semi_diameter, RimLimit::none);
+      const Lens set =
+          with_any_semi_diameter(focused(inverse), *lens_.stop(), stopped.surfaces()[*lens_.stop()].semi_diameter);
       for (std::size_t k = 0; k < at.size(); ++k) {
         at[k].take(box_at(set, film_radius_ * static_cast<double>(k) / static_cast<double>(at.size() - 1)));
       }
@@ -274,8 +275,7 @@ std::string OslCamera::tables() const {
     const double inverse = static_cast<double>(k) / static_cast<double>(light_nodes - 1) / nearest_;
     const Lens set = focused(inverse);
     for (const Lens& stopped : stopped_) {
-      const Lens both =
-          with_semi_diameter(set, *lens_.stop(), stopped.surfaces()[*lens_.stop()].semi_diameter, RimLimit::none);
+      const Lens both = with_any_semi_diameter(set, *lens_.stop(), stopped.surfaces()[*lens_.stop()].semi_diameter);
       const double f_number = std::exp2(static_cast<double>(light.size() % stop_nodes));
       light.push_back(film_irradiance(both, {}) * f_number);
       shift.push_back(solve_focus(both, distance_from_vertex(inverse)).film_z - set.film_z());
@@ -525,8 +525,8 @@ std::string OslCamera::text() const {
 
 }  // namespace
 
-std::string format_osl_camera(const Lens& lens, const OslCameraOptions& options) {
-  return OslCamera(lens, options).text();
+std::string format_osl_camera(const Lens& lens, const std::optional<Film>& film) {
+  return OslCamera(lens, film).text();
 }
 
 }  // namespace petzval

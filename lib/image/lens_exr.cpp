@@ -50,9 +50,9 @@ std::array<ExrPart, 2> to_exr_parts(const StMaps& maps, const LensDistortion& di
 }
 
 void write_st_map(const Lens& lens, const Film& film, const LensIdentity& identity, const std::filesystem::path& file,
-                  const StMapOptions& options) {
+                  std::optional<double> overscan, int threads) {
   const LensDistortion distortion(Camera(lens, film, {.model = ModelKind::exact_double}));
-  write_exr(to_exr_parts(st_maps(distortion, options), distortion, identity), file);
+  write_exr(to_exr_parts(st_maps(distortion, overscan, threads), distortion, identity), file);
 }
 
 }  // namespace petzval

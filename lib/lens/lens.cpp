@@ -13,6 +13,7 @@
 #include "data.hpp"
 #include "describe_asphere.hpp"
 #include "iris/iris_edges.hpp"
+#include "lens/any_semi_diameter.hpp"
 #include "petzval/core/error.hpp"
 #include "without_obscurations.hpp"
 
@@ -218,7 +219,7 @@ Lens lens_detail::with_rims(const Lens& lens, std::vector<double> rims) {
   return Lens::Data::lens(std::move(data));
 }
 
-Lens with_semi_diameter(const Lens& lens, std::size_t surface, double semi_diameter, RimLimit limit) {
+Lens with_any_semi_diameter(const Lens& lens, std::size_t surface, double semi_diameter) {
   demand(lens, "surface", surface, lens.surface_count());
   if (!(semi_diameter >= 0)) {
     throw Error(lens.name() + ": surface " + std::to_string(surface) + ": semi_diameter = " + to_text(semi_diameter) +
@@ -228,16 +229,20 @@ Lens with_semi_diameter(const Lens& lens, std::size_t surface, double semi_diame
     throw Error(lens.name() + ": surface " + std::to_string(surface) + ": semi_diameter = " + to_text(semi_diameter) +
                 " mm; must be at most 1e15 mm at the stop of a lens with an iris");
   }
-  const double widest = lens.surfaces()[surface].widest_semi_diameter;
-  if (limit == RimLimit::prescription && usable_rim(semi_diameter) > widest) {
-    throw Error(lens.name() + ": surface " + std::to_string(surface) + ": semi_diameter = " + to_text(semi_diameter) +
-                " mm; must be at most " + to_text(widest) +
-                " mm, the clear aperture of the prescription (RimLimit::none allows more)");
-  }
   auto data = std::make_shared<Lens::Data>(lens.data());
   data->rims[surface] = usable_rim(semi_diameter);
   data->build();
   return Lens::Data::lens(std::move(data));
+}
+
+Lens with_semi_diameter(const Lens& lens, std::size_t surface, double semi_diameter) {
+  Lens result = with_any_semi_diameter(lens, surface, semi_diameter);
+  const double widest = lens.surfaces()[surface].widest_semi_diameter;
+  if (usable_rim(semi_diameter) > widest) {
+    throw Error(lens.name() + ": surface " + std::to_string(surface) + ": semi_diameter = " + to_text(semi_diameter) +
+                " mm; must be at most " + to_text(widest) + " mm, the clear aperture of the prescription");
+  }
+  return result;
 }
 
 Lens with_film(const Lens& lens, double film_z) {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "petzval/paraxial/first_order.hpp"
+#include "paraxial/ray_matrix.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -15,6 +15,7 @@
 #include "core/meet_plane.hpp"
 #include "core/text.hpp"
 #include "focal_points.hpp"
+#include "paraxial/marginal_ray.hpp"
 #include "petzval/core/error.hpp"
 #include "petzval/paraxial/first_order.hpp"
 
@@ -42,18 +43,6 @@ double IdealLens::object_at_separation(double separation) const noexcept {
   return (reached + std::sqrt(reached - turning) * std::sqrt(reached + turning)) / 2;
 }
 
-MarginalRay IdealLens::marginal_ray(double p) const noexcept {
-  // The height of a ray in the rear focal plane depends only on its slope in front of the lens, and its slope behind
-  // the lens only on its height in the front focal plane.
-  if (const Pupil& in = pupils.entrance; std::isfinite(in.z)) {
-    const double slope = in.diameter / 2 / (p + (in.z - front_focal_z));
-    const double height = std::isinf(p) ? in.diameter / 2 : slope * p;
-    return {slope * front_focal_length, -height / rear_focal_length};
-  }
-  const double height = pupils.exit.diameter / 2;
-  return {height, -height * (p / product())};
-}
-
 std::optional<ImagePoint> IdealLens::image(const ScenePoint& point) const noexcept {
   Vec3<double> at = point.position;
   double w = point.at_infinity ? 0 : 1;
@@ -71,7 +60,7 @@ std::optional<ImagePoint> IdealLens::image(const ScenePoint& point) const noexce
     result.slope_x = result.position.x / from_pupil;
     result.slope_y = result.position.y / from_pupil;
   }
-  result.diameter_per_mm = 2 * std::abs(marginal_ray(w == 0 ? infinity : -from_focus).slope);
+  result.diameter_per_mm = 2 * std::abs(marginal_ray(*this, w == 0 ? infinity : -from_focus).slope);
   const Vec3<double>& i = result.position;
   const bool finite =
       std::isfinite(i.x + i.y + i.z) && std::isfinite(result.slope_x + result.slope_y + result.diameter_per_mm);
@@ -161,6 +150,18 @@ std::optional<FilmPoint> chief_point(const ImagePoint& image, const Film& film) 
   const Vec3<double> hit = core_detail::meet_plane(chief, {0, 0, film.z()}, film.normal());
   if (!std::isfinite(hit.x + hit.y + hit.z)) return {};
   return film.point(hit);
+}
+
+MarginalRay marginal_ray(const IdealLens& lens, double p) noexcept {
+  // The height of a ray in the rear focal plane depends only on its slope in front of the lens, and its slope behind
+  // the lens only on its height in the front focal plane.
+  if (const Pupil& in = lens.pupils.entrance; std::isfinite(in.z)) {
+    const double slope = in.diameter / 2 / (p + (in.z - lens.front_focal_z));
+    const double height = std::isinf(p) ? in.diameter / 2 : slope * p;
+    return {slope * lens.front_focal_length, -height / lens.rear_focal_length};
+  }
+  const double height = lens.pupils.exit.diameter / 2;
+  return {height, -height * (p / lens.product())};
 }
 
 }  // namespace petzval

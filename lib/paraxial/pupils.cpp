@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "paraxial/ray_matrix.hpp"
 #include "petzval/core/error.hpp"
 
 namespace petzval {

@@ -8,6 +8,7 @@
 
 #include "core/bisect.hpp"
 #include "core/text.hpp"
+#include "lens/any_semi_diameter.hpp"
 #include "petzval/core/error.hpp"
 #include "petzval/paraxial/first_order.hpp"
 #include "trace/sequential.hpp"
@@ -168,7 +169,7 @@ Lens with_f_number(const Lens& lens, double f_number, Wavelength wavelength) {
                 to_text(length / (2 * obscuration.height), 10) + ": the central obscuration of surface " +
                 std::to_string(obscuration.surface) + " is that large");
   }
-  Lens stopped = with_semi_diameter(lens, beam.stop, std::min(*height, stop.semi_diameter), RimLimit::none);
+  Lens stopped = with_any_semi_diameter(lens, beam.stop, std::min(*height, stop.semi_diameter));
   // With strong spherical aberration, rays at other heights may meet the stop as far out as the ray of height y.
   const double found = real_f_number(stopped, wavelength);
   if (std::isinf(found)) {

@@ -36,7 +36,7 @@ TEST(BrownConrady, PinholeHasNoDistortion) {
   const LensDistortion none(Camera(data_lens("biogon_35mm_f2.8"), small_film(36), {.model = ModelKind::pinhole}));
   for (const auto direction : directions) {
     for (const auto form : forms) {
-      const BrownConrady fit = fit_brown_conrady(none, {direction, form});
+      const BrownConrady fit = fit_brown_conrady(none, direction, form);
       for (const double k : fit.k) EXPECT_NEAR(k, 0, 1e-6);
       EXPECT_LT(fit.largest_px, 1e-5);
     }
@@ -50,9 +50,8 @@ TEST(BrownConrady, FindsTheCoefficientOfAPlate) {
   const double n = BallAndPlate::plate_index;
   const double k1 = -plate.plate_mm / (2 * n * plate.focal_length_mm()) * (1 - 1 / (n * n));
   const LensDistortion distortion = distortion_of(plate.lens(), small_film(12));
-  const BrownConrady out = fit_brown_conrady(distortion, {BrownConradyDirection::to_distorted, RadialForm::polynomial});
-  const BrownConrady in =
-      fit_brown_conrady(distortion, {BrownConradyDirection::to_undistorted, RadialForm::polynomial});
+  const BrownConrady out = fit_brown_conrady(distortion, BrownConradyDirection::to_distorted, RadialForm::polynomial);
+  const BrownConrady in = fit_brown_conrady(distortion, BrownConradyDirection::to_undistorted, RadialForm::polynomial);
   EXPECT_NEAR(out.k[0], k1, 1e-3 * std::abs(k1));
   EXPECT_NEAR(in.k[0], -k1, 1e-3 * std::abs(k1));
   EXPECT_NEAR(out.field_rad, std::atan(std::hypot(6, 4) / plate.focal_length_mm()), 0.01);
@@ -78,7 +77,7 @@ TEST_P(BrownConradyFits, PredictChiefRaysWithinTheirError) {
   for (const auto direction : directions) {
     for (const auto form : forms) {
       SCOPED_TRACE(std::string(name(direction)) + (form == RadialForm::rational ? " rational" : " polynomial"));
-      const BrownConrady fit = fit_brown_conrady(distortion, {direction, form});
+      const BrownConrady fit = fit_brown_conrady(distortion, direction, form);
       EXPECT_LT(fit.largest_px, form == RadialForm::rational ? rational_px : polynomial_px);
       EXPECT_LE(fit.rms_px, fit.largest_px);
       const core_detail::Kronecker<2> random(5);
@@ -116,7 +115,7 @@ TEST(BrownConrady, HasNoPoleWithinTheFilm) {
     const LensDistortion distortion =
         distortion_of(lens, small_film(0.83 * std::min(p.image_diagonal_mm.value_or(400), image_circle_mm(lens, 0.1))));
     for (const auto direction : directions) {
-      const BrownConrady fit = fit_brown_conrady(distortion, {.direction = direction});
+      const BrownConrady fit = fit_brown_conrady(distortion, direction);
       // The range ends at the edge of the field, whose radius differs between both images.
       const double tangent = std::tan(fit.field_rad), step = tangent / 200;
       const bool in = direction == BrownConradyDirection::to_undistorted;
@@ -142,7 +141,7 @@ TEST(BrownConrady, TermsAreBoundedAndRadiiAreMonotonic) {
     const LensDistortion distortion =
         distortion_of(lens, small_film(0.83 * std::min(p.image_diagonal_mm.value_or(400), image_circle_mm(lens, 0.1))));
     for (const auto direction : directions) {
-      const BrownConrady fit = fit_brown_conrady(distortion, {.direction = direction});
+      const BrownConrady fit = fit_brown_conrady(distortion, direction);
       const bool in = direction == BrownConradyDirection::to_undistorted;
       // The largest radius of the fit, in the image from which the fit maps.
       double largest = 0;
@@ -174,7 +173,7 @@ TEST(BrownConrady, FindsTheRationalLeastSquaresFit) {
         std::tuple("biotar_100mm_f1.4", to_undistorted, 0.05)}) {
     const Lens lens = data_lens(id);
     const LensDistortion distortion = distortion_of(lens, film_of(testing::data_prescription(id), lens));
-    EXPECT_LT(fit_brown_conrady(distortion, {direction}).rms_px, rms_px) << id;
+    EXPECT_LT(fit_brown_conrady(distortion, direction).rms_px, rms_px) << id;
   }
 }
 

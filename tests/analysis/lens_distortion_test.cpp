@@ -133,8 +133,7 @@ TEST(LensDistortion, NeedsNoFocalLength) {
                 {.thickness = 14, .semi_diameter = 30}};
   const Lens lens = compile(p);
   EXPECT_TRUE(first_order(lens).afocal);
-  const LensDistortion distortion(Camera(lens, small_film(12), {.model = ModelKind::exact_double}),
-                                  {.subject_z_mm = -1000.0});
+  const LensDistortion distortion(Camera(lens, small_film(12), {.model = ModelKind::exact_double}), -1000.0);
   EXPECT_NEAR(distortion.pinhole().focal_length_mm.x, 24 + 6 / 1.5, 1e-4);
 }
 
@@ -270,7 +269,7 @@ TEST(LensDistortion, OverscanContainsTheFieldOfTheFilm) {
 
 TEST(LensDistortion, RefusesLensesWithoutAPinhole) {
   const Lens lens = data_lens("biogon_35mm_f2.8");
-  const auto behind = [&] { LensDistortion(Camera(lens, small_film(36)), {.subject_z_mm = 5.0}); };
+  const auto behind = [&] { LensDistortion(Camera(lens, small_film(36)), 5.0); };
   expect_error(behind, {lens.name(), "distortion", "subject", 5});
   Film beside = small_film(4);
   beside.shift_x_mm = 5;

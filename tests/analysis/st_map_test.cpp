@@ -200,9 +200,9 @@ TEST(StMap, IsEmptyOutsideTheMap) {
 TEST(StMap, MarginsContainTheOverscan) {
   const Film film = small_film(36);
   const LensDistortion distortion = distortion_of("zoom_14-30mm_f4:wide", film);
-  const StMaps tight = st_maps(distortion, {.overscan = 1});
+  const StMaps tight = st_maps(distortion, 1);
   EXPECT_EQ(tight.undistort.width, film.columns);
-  const StMaps wide = st_maps(distortion, {.overscan = 1.5});
+  const StMaps wide = st_maps(distortion, 1.5);
   EXPECT_EQ(wide.undistort.width, film.columns * 3 / 2);
   EXPECT_EQ(wide.undistort.margin_y, film.rows / 4);
   const StMaps fitting = st_maps(distortion);
@@ -231,7 +231,7 @@ TEST(StMap, MarginsContainTheOverscan) {
 TEST(StMap, RefusesOverscansOutOfRange) {
   const LensDistortion distortion = distortion_of("double_gauss_100mm_f2_28deg", small_film(36));
   for (const double overscan : {0.9, 11.0, std::nan("")}) {
-    expect_error([&] { st_maps(distortion, {.overscan = overscan}); }, {"overscan", overscan});
+    expect_error([&] { st_maps(distortion, overscan); }, {"overscan", overscan});
   }
 }
 

@@ -126,7 +126,7 @@ INSTANTIATE_TEST_SUITE_P(
         Threaded{"st_maps",
                  [](int threads) {
                    const Camera camera(testing::data_lens("double_gauss_100mm_f2_28deg"), testing::small_film(36));
-                   const StMaps maps = st_maps(LensDistortion(camera), {.threads = threads});
+                   const StMaps maps = st_maps(LensDistortion(camera), {}, threads);
                    std::vector<double> all(maps.undistort.s.begin(), maps.undistort.s.end());
                    all.insert(all.end(), maps.redistort.t.begin(), maps.redistort.t.end());
                    return all;

@@ -8,6 +8,7 @@
 #include <limits>
 
 #include "../data_lenses.hpp"
+#include "lens/any_semi_diameter.hpp"
 #include "petzval/paraxial/first_order.hpp"
 #include "petzval/pupil/f_number.hpp"
 #include "petzval/trace/trace.hpp"
@@ -127,7 +128,7 @@ TEST(TextbookPupil, BelongsToTheFirstRimNotToTheStop) {
   const TextbookPupil near = textbook_entrance_pupil(lens, -1000);
   EXPECT_EQ(near.limiting, 8u);
   EXPECT_NEAR(near.diameter / 2, 25.132, 1e-3);
-  EXPECT_EQ(textbook_entrance_pupil(with_semi_diameter(lens, 5, 17.5, RimLimit::none), -1000).diameter, near.diameter);
+  EXPECT_EQ(textbook_entrance_pupil(with_any_semi_diameter(lens, 5, 17.5), -1000).diameter, near.diameter);
 }
 
 // Error two: the pupil is found on the axis, but off the axis rims clip and shift the pupil.

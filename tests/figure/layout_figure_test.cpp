@@ -36,8 +36,8 @@ TEST(LayoutFigure, DrawsEveryLensWithinItsPaper) {
     const double half = radians(p.half_field_deg.value_or(10));
     const std::array fields{0.0, 0.7 * half, half};
     for (const Meridian section : {Meridian::y, Meridian::x}) {
-      const std::string svg = layout_figure(lens, -infinity, fields, {.section = section});
-      EXPECT_EQ(svg, layout_figure(lens, -infinity, fields, {.section = section})) << p.id;
+      const std::string svg = layout_figure(lens, -infinity, fields, section);
+      EXPECT_EQ(svg, layout_figure(lens, -infinity, fields, section)) << p.id;
       EXPECT_EQ(svg.find("nan"), std::string::npos) << p.id;
       EXPECT_EQ(svg.find("inf\""), std::string::npos) << p.id;
       EXPECT_GE(paths(svg, first_field).size(), 3u) << p.id;
@@ -165,7 +165,7 @@ TEST(LayoutFigure, DrawsUnlimitedSurfacesAsFarAsRaysNeedThem) {
 TEST(LayoutFigure, CutsACylinderInBothSections) {
   const Lens lens = data_lens("anamorphic_60mm_2x");
   const auto front = [&](Meridian section) {
-    const Points body = paths(layout_figure(lens, -infinity, {}, {.section = section}), "fill=\"rgb(").at(0);
+    const Points body = paths(layout_figure(lens, -infinity, {}, section), "fill=\"rgb(").at(0);
     return body[24].first - body[0].first;
   };
   EXPECT_EQ(front(Meridian::y), 0);  // straight
@@ -185,9 +185,9 @@ TEST(LayoutFigure, ContinuesRaysBehindALensWithAVirtualImage) {
 
 TEST(LayoutFigure, RefusesAnotherNumberOfRays) {
   const Lens lens = data_lens("cooke_triplet_50mm_f5");
-  EXPECT_THROW(layout_figure(lens, -infinity, {}, {.rays = 2}), Error);
-  EXPECT_THROW(layout_figure(lens, -infinity, {}, {.rays = 8}), Error);
-  EXPECT_EQ(paths(layout_figure(lens, -infinity, std::array{0.0}, {.rays = 3}), first_field).size(), 3u);
+  EXPECT_THROW(layout_figure(lens, -infinity, {}, Meridian::y, 2), Error);
+  EXPECT_THROW(layout_figure(lens, -infinity, {}, Meridian::y, 8), Error);
+  EXPECT_EQ(paths(layout_figure(lens, -infinity, std::array{0.0}, Meridian::y, 3), first_field).size(), 3u);
 }
 
 }  // namespace layout_figure_test

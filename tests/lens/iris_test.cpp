@@ -11,6 +11,7 @@
 #include "../data_lenses.hpp"
 #include "../expect_error.hpp"
 #include "../message.hpp"
+#include "lens/any_semi_diameter.hpp"
 #include "petzval/lens/lens.hpp"
 #include "petzval/pupil/f_number.hpp"
 #include "petzval/trace/trace.hpp"
@@ -27,7 +28,7 @@ TEST(Iris, RefusesStopsThatCannotHaveAnIris) {
   Prescription p = testing::data_prescription("double_gauss_100mm_f2.0");
   for (auto& surface : p.surfaces) surface.stop = false;
   expect_error([&] { with_iris(compile(p), {.blades = 6}); }, {p.name, "iris", "surface"});
-  const Lens open = with_semi_diameter(lens, 0, std::numeric_limits<double>::infinity(), RimLimit::none);
+  const Lens open = with_any_semi_diameter(lens, 0, std::numeric_limits<double>::infinity());
   expect_error([&] { with_iris(open, {.blades = 6}); }, {"front stop", "iris", "surface 0", "stop", "is unlimited"});
   const auto refusal = [&](const Iris& iris) { return message([&] { with_iris(lens, iris); }); };
   expect_tokens(refusal({.blades = 2}), {"front stop", "iris", "blades", 2});

@@ -11,6 +11,7 @@
 #include "../data_lenses.hpp"
 #include "../expect_error.hpp"
 #include "core/text.hpp"
+#include "lens/any_semi_diameter.hpp"
 #include "petzval/core/error.hpp"
 #include "petzval/trace/trace.hpp"
 
@@ -58,7 +59,7 @@ TEST(Lens, AsphericRimsEndAtASlopeOf4) {
   EXPECT_EQ(petzval::with_semi_diameter(lens, 1, 12).surfaces()[1].semi_diameter, rim);
   EXPECT_EQ(petzval::with_semi_diameter(lens, 1, 3).surfaces()[1].semi_diameter, 3);
   p.surfaces[0].thickness = 0;  // no edge
-  const petzval::Lens endless = petzval::with_semi_diameter(petzval::compile(p), 1, HUGE_VAL, petzval::RimLimit::none);
+  const petzval::Lens endless = petzval::with_any_semi_diameter(petzval::compile(p), 1, HUGE_VAL);
   EXPECT_TRUE(std::isinf(endless.surfaces()[1].semi_diameter));
   p.surfaces[1].curved_in = petzval::Section::y;
   EXPECT_EQ(petzval::compile(p).surfaces()[1].semi_diameter, 12);
@@ -139,9 +140,7 @@ TEST(Lens, TinyRimsAreClosedAndHugeRimsAreIgnored) {
   for (const auto& [wanted, found] : {std::pair{1e-160, 0.0}, {1e-12, 1e-12}, {1e15, 1e15}, {1e160, HUGE_VAL}}) {
     p.surfaces[0].semi_diameter = wanted;
     EXPECT_EQ(petzval::compile(p).surfaces()[0].semi_diameter, found);
-    EXPECT_EQ(petzval::with_semi_diameter(petzval::compile(singlet()), 0, wanted, petzval::RimLimit::none)
-                  .surfaces()[0]
-                  .semi_diameter,
+    EXPECT_EQ(petzval::with_any_semi_diameter(petzval::compile(singlet()), 0, wanted).surfaces()[0].semi_diameter,
               found);
   }
 }
@@ -154,8 +153,7 @@ TEST(Lens, RimsOpenUpToThePrescription) {
   EXPECT_EQ(petzval::with_semi_diameter(stopped, 0, 12).surfaces()[0].semi_diameter, 12);
   for (const double beyond : {12.001, 1e3, HUGE_VAL}) {
     expect_error([&] { petzval::with_semi_diameter(lens, 0, beyond); }, {"singlet", "surface 0", beyond, 12});
-    EXPECT_EQ(petzval::with_semi_diameter(lens, 0, beyond, petzval::RimLimit::none).surfaces()[0].semi_diameter,
-              beyond);
+    EXPECT_EQ(petzval::with_any_semi_diameter(lens, 0, beyond).surfaces()[0].semi_diameter, beyond);
   }
   petzval::Prescription p = singlet();
   p.surfaces[0].semi_diameter.reset();

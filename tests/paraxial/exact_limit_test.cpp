@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "../data_lenses.hpp"
+#include "paraxial/ray_matrix.hpp"
 #include "petzval/paraxial/first_order.hpp"
 #include "trace/sequential.hpp"
 

@@ -8,6 +8,7 @@
 #include <limits>
 
 #include "../data_lenses.hpp"
+#include "paraxial/ray_matrix.hpp"
 
 namespace petzval {
 namespace first_order_test {

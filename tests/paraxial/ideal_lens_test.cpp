@@ -13,6 +13,8 @@
 #include "../expect_error.hpp"
 #include "../film_at.hpp"
 #include "lens/lens_view.hpp"
+#include "paraxial/marginal_ray.hpp"
+#include "paraxial/ray_matrix.hpp"
 #include "petzval/core/geometry.hpp"
 #include "petzval/focus/focus.hpp"
 
@@ -304,7 +306,7 @@ TEST(IdealLens, FindsTheFartherOfTwoObjectsAtASeparation) {
 TEST(IdealLens, MarginalRaysPassPupilAndImage) {
   const IdealLens lens = thick_lens(data_lens("double_gauss_100mm_f2_28deg"));
   for (const double p : {1.0, 50.0, 1e3, 1e9, infinity}) {
-    const MarginalRay ray = lens.marginal_ray(p);
+    const MarginalRay ray = marginal_ray(lens, p);
     const auto height = [&](double z) { return ray.height + ray.slope * (z - lens.rear_focal_z); };
     EXPECT_NEAR(std::abs(height(lens.pupils.exit.z)), lens.pupils.exit.diameter / 2, 1e-11) << p;
     EXPECT_NEAR(height(lens.rear_focal_z + lens.product() / p), 0, 1e-11) << p;

@@ -9,6 +9,7 @@
 #include "../data_lenses.hpp"
 #include "../expect_error.hpp"
 #include "../message.hpp"
+#include "paraxial/ray_matrix.hpp"
 #include "petzval/core/error.hpp"
 #include "petzval/pupil/f_number.hpp"
 

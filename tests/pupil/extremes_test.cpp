@@ -12,6 +12,7 @@
 
 #include "../data_lenses.hpp"
 #include "../expect_error.hpp"
+#include "lens/any_semi_diameter.hpp"
 #include "petzval/core/geometry.hpp"
 #include "petzval/paraxial/first_order.hpp"
 #include "petzval/pupil/aim.hpp"
@@ -205,7 +206,7 @@ TEST(Extremes, StopsOfAnySizeHavePupils) {
   const Lens open = data_lens("double_gauss_100mm_f2.0");
   for (const double semi_diameter : {1e6, infinity, 1.0, 1e-3, 1e-6}) {
     SCOPED_TRACE(semi_diameter);
-    const Lens lens = with_semi_diameter(open, 5, semi_diameter, RimLimit::none);
+    const Lens lens = with_any_semi_diameter(open, 5, semi_diameter);
     const FieldPoint point{radians(15), -infinity};
     EXPECT_TRUE(chief_ray(lens, point));
     const PupilBoundary boundary = pupil_boundary(lens, point, 0, 32);

@@ -10,6 +10,7 @@
 #include "../data_lenses.hpp"
 #include "../expect_error.hpp"
 #include "../message.hpp"
+#include "lens/any_semi_diameter.hpp"
 #include "petzval/paraxial/first_order.hpp"
 #include "petzval/pupil/f_number.hpp"
 #include "petzval/trace/trace.hpp"
@@ -176,7 +177,7 @@ TEST(WithFNumber, RefusesBeamsFoldedBySphericalAberration) {
 }
 
 TEST(WithFNumber, RunsFromTheFastestLensesToPinholes) {
-  const Lens lens = with_semi_diameter(data_lens("modern_58mm_f0.95"), 13, infinity, RimLimit::none);
+  const Lens lens = with_any_semi_diameter(data_lens("modern_58mm_f0.95"), 13, infinity);
   for (const double n : {0.95, 1.0, 1.4, 8.0, 64.0}) EXPECT_NEAR(real_f_number(with_f_number(lens, n)), n, 1e-12 * n);
 }
 
@@ -278,7 +279,7 @@ TEST(WithFNumber, NamesTheFastestFNumber) {
   testing::expect_tokens(said, {lens.name(), 1.2, "fastest"});
   EXPECT_NEAR(stated_in(said, lens, 1.2), 1.3535, 5e-4);
   // A larger stop does not help, because faster rays miss the glass.
-  const Lens open = with_semi_diameter(lens, 5, infinity, RimLimit::none);
+  const Lens open = with_any_semi_diameter(lens, 5, infinity);
   expect_error([&] { with_f_number(open, 0.1); }, {lens.name(), 0.1, 1.013132236});
 }
 

@@ -28,12 +28,6 @@ struct Pinhole {
   double subject_z_mm = 0;  ///< scene plane in which both images are compared, lens frame; -inf at infinity
 };
 
-struct DistortionOptions {
-  /// Pinhole::subject_z_mm; unset: the plane in focus. Distortion depends on the subject distance, because the pupil
-  /// moves with the field.
-  std::optional<double> subject_z_mm = {};
-};
-
 /// Maps image points of a pinhole camera to image points of a lens camera, and back.
 ///
 /// Positions in both images are raster positions on the film of the camera (Film::raster): (0, 0) is the upper left
@@ -48,9 +42,14 @@ struct DistortionOptions {
 /// position at shutter opening is used. Cheap to copy; thread-safe.
 class PETZVAL_API LensDistortion {
  public:
+  /// Sets up the pinhole that stands for a camera.
+  ///
+  /// @param camera        the lens camera
+  /// @param subject_z_mm  Pinhole::subject_z_mm; unset: the plane in focus. Distortion depends on the subject distance,
+  ///                      because the pupil moves with the field.
   /// @throws Error if the lens has no entrance pupil or a pupil at infinity, the subject is not in front of the pupil
   ///               and the lens, no subject is in focus, or the image is upside down or not visible on the axis
-  explicit LensDistortion(const Camera& camera, const DistortionOptions& options = {});
+  explicit LensDistortion(const Camera& camera, std::optional<double> subject_z_mm = {});
 
   const Camera& camera() const noexcept { return camera_; }
   const Pinhole& pinhole() const noexcept { return pinhole_; }
@@ -86,15 +85,6 @@ class PETZVAL_API LensDistortion {
   double distance_ = 0;  ///< from the pinhole to the subject
   Vec2<double> centre_{0, 0}, focal_length_px_{1, 1};
 };
-
-/// A rectangle of raster positions.
-struct RasterBox {
-  Vec2<double> least{0, 0}, largest{0, 0};
-};
-/// Bounding box, in the pinhole image, of the scene region that the film sees; nullopt if the film is dark.
-///
-/// Sampled at 65 x 65 film points.
-PETZVAL_API std::optional<RasterBox> undistorted_box(const LensDistortion& distortion);
 
 /// Size of the pinhole film relative to the lens film, at which the pinhole shows everything that the lens film sees.
 ///
@@ -138,11 +128,6 @@ struct PETZVAL_API BrownConrady {
   double radius(double r) const noexcept;
 };
 
-struct BrownConradyOptions {
-  BrownConradyDirection direction = BrownConradyDirection::to_undistorted;
-  RadialForm form = RadialForm::rational;
-};
-
 /// Fits Brown-Conrady coefficients to a lens by least squares over the film.
 ///
 /// The errors are measured in pixels of the target image; the scale on the axis is kept. Forms with 1 to 3 terms in the
@@ -152,13 +137,16 @@ struct BrownConradyOptions {
 /// No term exceeds 100 at the largest radius.
 ///
 /// @param distortion  the lens, camera and pinhole
-/// @param options     direction and form
+/// @param direction   direction of the map
+/// @param form        polynomial or rational
 /// @return            the coefficients and their errors
 /// @throws Error      if the lens has cylindrical surfaces or the film is tilted (distortion is not radial), if the
 ///                    film sees fields above 88 degrees (fisheyes exceed a pinhole image), or if the film is dark
 ///
 /// st_maps() supports cylindrical surfaces, tilted films and fisheyes.
-PETZVAL_API BrownConrady fit_brown_conrady(const LensDistortion& distortion, const BrownConradyOptions& options = {});
+PETZVAL_API BrownConrady fit_brown_conrady(const LensDistortion& distortion,
+                                           BrownConradyDirection direction = BrownConradyDirection::to_undistorted,
+                                           RadialForm form = RadialForm::rational);
 
 /// An ST map: for each pixel of an image, the position in another image from which it takes its value.
 ///
@@ -180,23 +168,21 @@ struct StMaps {
   StMap redistort;  ///< for pixels of the lens image: positions in the pinhole image
 };
 
-struct StMapOptions {
-  /// Size of the pinhole image relative to the film image, 1 to 10. Unset: the smallest size that contains everything
-  /// the film sees, at most 2. The outer part of a fisheye image is cut off by this limit.
-  std::optional<double> overscan = {};
-  int threads = 1;  ///< does not change the maps
-};
-
 /// Computes ST maps for the pixels of a film: `undistort` warps a lens image to the pinhole image, `redistort` back.
 ///
 /// The maps are computed at nodes at most 16 pixels apart and interpolated. Cells in which interpolation is not
 /// accurate enough, mostly at the edge of the lit region, are computed pixel by pixel.
 ///
+/// @param distortion  the lens, camera and pinhole
+/// @param overscan    size of the pinhole image relative to the film image, 1 to 10; unset: the smallest size that
+///                    contains everything the film sees, at most 2. The outer part of a fisheye image is cut off by
+///                    this limit.
+/// @param threads     at least 1; does not change the maps
 /// @throws Error if the overscan is not 1 to 10, there is less than 1 thread, or the film is dark
 ///
 /// Accuracy: within 0.001 pixels of LensDistortion, 0.02 near the edge of the lit region and 0.1 at fields beyond 70
 /// degrees. With linear interpolation of the maps and exact or first-order models, one map after the other returns to
 /// the start within 0.005 pixels (tests/analysis/st_map_test.cpp).
-PETZVAL_API StMaps st_maps(const LensDistortion& distortion, const StMapOptions& options = {});
+PETZVAL_API StMaps st_maps(const LensDistortion& distortion, std::optional<double> overscan = {}, int threads = 1);
 
 }  // namespace petzval

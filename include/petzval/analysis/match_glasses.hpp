@@ -10,13 +10,6 @@ namespace petzval {
 
 class GlassCatalogue;
 
-/// The largest differences of n_d and V_d between a medium and its glass. Tables print n_d to five digits or to three,
-/// and V_d to one; two glasses of a catalogue differ by more.
-struct GlassTolerance {
-  double nd = 0.001;
-  double vd = 0.5;
-};
-
 /// A prescription with glass names, and the lists of matched and unmatched media.
 struct MatchedGlasses {
   Prescription prescription;
@@ -30,11 +23,14 @@ struct MatchedGlasses {
 ///
 /// @param prescription  the lens; named media, air and mirrors are kept
 /// @param glasses       the catalogue, searched with nearest_glasses()
-/// @param tolerance     media beyond the tolerance or without V_d keep their numbers and are listed in `unmatched`
+/// @param nd            largest difference of n_d. Tables print n_d to five digits or to three, and V_d to one; two
+///                      glasses of a catalogue differ by more.
+/// @param vd            largest difference of V_d. Media beyond a limit or without V_d keep their numbers and are
+///                      listed in `unmatched`.
 /// @return              the lens; a matched medium has glass, catalogue and glass_origin "matched", and keeps its n_d
 ///                      and V_d
-/// @throws Error        if a tolerance is negative or not finite
+/// @throws Error        if a limit is negative or not finite
 PETZVAL_API MatchedGlasses match_glasses(const Prescription& prescription, const GlassCatalogue& glasses,
-                                         const GlassTolerance& tolerance = {});
+                                         double nd = 0.001, double vd = 0.5);
 
 }  // namespace petzval

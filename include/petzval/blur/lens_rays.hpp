@@ -137,6 +137,9 @@ class PETZVAL_API LensRays {
   static LensRays of(const Camera& camera, const LayerCamera& layers, std::span<const PupilPoint> points,
                      std::span<const Wavelength> wavelengths = {}, const LensRaysOptions& options = {});
 
+  /// @name Queries
+  /// @{
+
   const LayerCamera& camera() const noexcept;
   int channels() const noexcept;
   int set_count() const noexcept;
@@ -151,10 +154,17 @@ class PETZVAL_API LensRays {
   double largest_slope() const noexcept;
   /// Largest distance of rays beyond the image between these inverse depths (1/mm), px.
   double reach_px(double least_inverse_depth, double most_inverse_depth) const noexcept;
+
+  /// @}
+  /// @name Rays of a pixel
+  /// @{
+
   /// The interpolated rays at the centre of a pixel. Fills count() rays.
   void at(int channel, int column, int row, std::span<LayerRay> rays) const;
   /// The rays at the centre of a pixel, computed by the source.
   void exact_rays_at(int channel, int column, int row, std::span<LayerRay> rays) const;
+
+  /// @}
 
  private:
   friend class RayAccess;

@@ -87,11 +87,18 @@ class PETZVAL_API Camera {
   /// the shutter opens. After a pull from 3 m to infinity with a 100 mm lens the exposure is off by 1 to 4 %.
   Camera(const Lens& lens, const Film& film, const CameraOptions& options = {});
 
+  /// @name Settings
+  /// @{
+
   /// The lens with its film at the position of the camera's film.
   const Lens& lens() const noexcept;
   const Film& film() const noexcept;
   ModelKind model() const noexcept;
   Normalisation normalisation() const noexcept;
+
+  /// @}
+  /// @name Sampling from the film
+  /// @{
 
   /// Samples one ray from the film to the scene; equal to the batch result up to rounding.
   ///
@@ -109,12 +116,20 @@ class PETZVAL_API Camera {
   template <class T>
   void sample(std::size_t count, const CameraSamples<T>& samples, const CameraRays<T>& rays) const noexcept;
 
+  /// @}
+  /// @name Differentials
+  /// @{
+
   /// Samples one ray with its exact derivatives.
   CameraRayDifferential sample_differential(const CameraSample& sample) const noexcept;
   /// Samples N rays with their derivatives by raster position; 0 for a lost ray. Calls sample_differential() N times.
   template <class T>
   void sample_differentials(std::size_t count, const CameraSamples<T>& samples, const CameraRays<T>& rays,
                             const RayArrays<T>& by_raster_x, const RayArrays<T>& by_raster_y) const noexcept;
+
+  /// @}
+  /// @name Importance and connections from the scene
+  /// @{
 
   /// Importance of a ray from the scene.
   ///
@@ -149,6 +164,10 @@ class PETZVAL_API Camera {
   /// perpendicular to it (1/mm^2). ray: any point of the line, and the direction of travel.
   double pdf_distant_importance(const Ray<double>& ray, Wavelength wavelength = {}) const;
 
+  /// @}
+  /// @name Queries
+  /// @{
+
   /// Projects a scene point: film point and raster position of its chief ray. not_visible if the wavelength is outside
   /// the compiled range.
   Projection project(const Vec3<double>& point, Wavelength wavelength = {}, double time = 0) const;
@@ -161,6 +180,8 @@ class PETZVAL_API Camera {
   /// Importance, connections and projections find only one of these film points, or no film point if the surface
   /// inverts the order of the rays, so that light tracing is too dark: trace paths from the film.
   FocalSteepness focal_steepness() const noexcept;
+
+  /// @}
 
  private:
   friend struct CameraAccess;

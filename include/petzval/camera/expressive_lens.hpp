@@ -33,6 +33,8 @@ struct FilmOffset {
 /// the axis from the entrance pupil), with the focal length F, the spline k of power, and w, the inverse distance in
 /// focus, at the primary wavelength and at l. Chief rays stay: distortion and lateral colour do not change.
 ///
+/// Experimental: the interface may change in any version.
+///
 /// Source: Lee, Eisemann, Seidel 2010, "Real-time lens blur effects and focus control", section 5.3.
 struct ExpressiveLens {
   /// Knots of a cubic spline: up to 32, sorted by radius, at least 0.001 apart; empty: uniform power. The spline has a

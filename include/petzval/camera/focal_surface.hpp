@@ -155,6 +155,8 @@ PETZVAL_API std::vector<bool> points_in_view(const IdealLens& lens, const Film& 
 
 /// Fades of points that leave the picture or are hidden, and come back; exponential in time, for any frame rate.
 ///
+/// Experimental: the interface may change in any version.
+///
 ///     FadeFilter fades(0.2);
 ///     for (...) {
 ///       moment.time += 1 / 24.0;

@@ -13,11 +13,6 @@
 
 namespace petzval {
 
-struct LayoutOptions {
-  std::size_t rays = 5;            ///< transmitted rays per field, 3 to 7
-  Meridian section = Meridian::y;  ///< the plane of the drawing and of the fields
-};
-
 /// Draws a scaled section of a lens through the axis as SVG text: light from left to right, +y up.
 ///
 /// Glass is filled, darker for a higher index; mirrors are thick lines; central holes stay open. Two ticks mark the rim
@@ -29,10 +24,11 @@ struct LayoutOptions {
 /// @param lens        the lens
 /// @param subject_z   subject plane (lens frame, mm); -inf at infinity
 /// @param fields_rad  field angles (rad), also 90 degrees or more; empty: no rays are drawn
-/// @param options     number of rays and section
+/// @param section     the plane of the drawing and of the fields
+/// @param rays        transmitted rays per field, 3 to 7
 /// @throws Error      if the number of rays is not 3 to 7; also under the conditions of aim()
 PETZVAL_API std::string layout_figure(const Lens& lens, double subject_z, std::span<const double> fields_rad,
-                                      const LayoutOptions& options = {});
+                                      Meridian section = Meridian::y, std::size_t rays = 5);
 
 /// Draws the vignetted pupil of each field at the primary wavelength as SVG text.
 ///

@@ -67,10 +67,11 @@ PETZVAL_API std::array<ExrPart, 2> to_exr_parts(const StMaps& maps, const LensDi
 /// @param film      the film, at the focus of the lens
 /// @param identity  names for the metadata
 /// @param file      the EXR file, written with write_file()
-/// @param options   overscan and threads
+/// @param overscan  as in st_maps()
+/// @param threads   as in st_maps()
 /// @throws Error    if the file cannot be written; also under the conditions of LensDistortion and st_maps()
 PETZVAL_API void write_st_map(const Lens& lens, const Film& film, const LensIdentity& identity,
-                              const std::filesystem::path& file, const StMapOptions& options = {});
+                              const std::filesystem::path& file, std::optional<double> overscan = {}, int threads = 1);
 
 /// The name of the EXR part of a kernel, for example "10deg_1000mm_587.5618nm_f2.8".
 PETZVAL_API std::string psf_part_name(const PsfSetPoint& point);

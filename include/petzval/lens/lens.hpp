@@ -101,6 +101,9 @@ class PETZVAL_API Lens {
 
   const std::string& name() const noexcept;
 
+  /// @name Surfaces, stop and film
+  /// @{
+
   std::span<const LensSurface> surfaces() const noexcept;
   std::size_t surface_count() const noexcept { return surfaces().size(); }
 
@@ -117,6 +120,10 @@ class PETZVAL_API Lens {
 
   /// Positions of the moving groups, sorted by inverse distance from infinity on; empty if the film moves to focus.
   std::span<const FocusPosition> focus_positions() const noexcept;
+
+  /// @}
+  /// @name Wavelengths
+  /// @{
 
   /// The compiled wavelengths, in the order given to compile().
   std::span<const double> wavelengths_nm() const noexcept;
@@ -146,6 +153,10 @@ class PETZVAL_API Lens {
   ///
   /// The range is extended by the rounding of a float. It is empty if index_error() is infinite.
   bool covers(Wavelength wavelength) const noexcept;
+
+  /// @}
+  /// @name Media
+  /// @{
 
   /// Refractive index of the medium before surface `space`.
   ///
@@ -177,6 +188,8 @@ class PETZVAL_API Lens {
   /// (CompileOptions::clamp_wavelengths).
   std::span<const std::string> clamped_glasses() const noexcept;
 
+  /// @}
+
   /// True if every surface is the same in both sections and the stop is round.
   bool rotationally_symmetric() const noexcept;
 
@@ -206,22 +219,15 @@ PETZVAL_API Lens compile(const Prescription& prescription, std::span<const doubl
 /// Compiles a prescription for its reference wavelength only.
 PETZVAL_API Lens compile(const Prescription& prescription, const CompileOptions& options = {});
 
-/// The largest clear aperture that with_semi_diameter() accepts.
-enum class RimLimit : std::uint8_t {
-  prescription,  ///< LensSurface::widest_semi_diameter: a diaphragm cannot open beyond its mount
-  none,          ///< no limit, for programs that design a lens
-};
-
 /// The lens with another clear aperture of one surface.
 ///
 /// @param lens           the lens
 /// @param surface        the surface, from 0
 /// @param semi_diameter  0 or more (mm); the surface passes no ray unless it exceeds the central obscuration
-/// @param limit          upper limit of `semi_diameter`
-/// @throws Error if the surface does not exist; if `semi_diameter` is negative, NaN or above `limit`; if it is above
-///               1e15 mm for a stop that is not round
-PETZVAL_API Lens with_semi_diameter(const Lens& lens, std::size_t surface, double semi_diameter,
-                                    RimLimit limit = RimLimit::prescription);
+/// @throws Error if the surface does not exist; if `semi_diameter` is negative, NaN or above
+///               LensSurface::widest_semi_diameter (a diaphragm cannot open beyond its mount); if it is above 1e15 mm
+///               for a stop that is not round
+PETZVAL_API Lens with_semi_diameter(const Lens& lens, std::size_t surface, double semi_diameter);
 
 /// The lens with its film at another position.
 ///

@@ -26,12 +26,6 @@ struct ImagePoint {
       0;  ///< growth of the beam diameter perpendicular to the axis, per mm of z from the image; >= 0
 };
 
-/// The marginal ray of an axial point, behind the lens.
-struct MarginalRay {
-  double height = 0;  ///< height in the rear focal plane, mm
-  double slope = 0;   ///< slope per mm of z
-};
-
 /// A lens that images points to points and planes to planes. Lens frame, mm.
 ///
 /// It is a thin lens, or a lens reduced to its cardinal points and pupils. Light enters along +z. If the focal lengths
@@ -55,11 +49,6 @@ struct PETZVAL_API IdealLens {
   /// If there are two such objects, the result is for the farther one. A separation below the smallest possible
   /// distance of object and image counts as the smallest distance. No digits are lost near the smallest distance.
   double object_at_separation(double separation) const noexcept;
-
-  /// The marginal ray of an axial object at distance p in front of the front focal point.
-  ///
-  /// p may be infinite if the entrance pupil is at a finite position.
-  MarginalRay marginal_ray(double p) const noexcept;
 
   /// The image of a scene point; nullopt if the point has no real image.
   ///
