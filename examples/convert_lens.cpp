@@ -84,7 +84,7 @@ constexpr std::array outputs{
            [](const Prescription& lens, const petzval::GlassCatalogue& glasses, const std::filesystem::path& file) {
              const petzval::Lens compiled = petzval::compile(lens, {.glasses = &glasses});
              petzval::write_st_map(compiled, petzval::film_of(lens, compiled), petzval::identity_of(lens), file,
-                                   {.threads = petzval::processor_threads()});
+                                   {}, petzval::processor_threads());
              return only_metadata(lens, compiled);
            }},
     Output{".json",

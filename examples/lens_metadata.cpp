@@ -60,7 +60,7 @@ void write(const Options& options) {
             << number(petzval::degrees(fit.rises_to_rad), 3) << " degrees\n";
   written(".opentrackio.json", [&](const auto& file) { petzval::write_open_track_io(lens, film, identity, file); });
   written(".stmap.exr", [&](const auto& file) {
-    petzval::write_st_map(lens, film, identity, file, {.threads = petzval::processor_threads()});
+    petzval::write_st_map(lens, film, identity, file, {}, petzval::processor_threads());
   });
 }
 

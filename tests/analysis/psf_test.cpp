@@ -22,6 +22,8 @@
 #include "petzval/paraxial/first_order.hpp"
 #include "petzval/pupil/f_number.hpp"
 #include "petzval/trace/trace.hpp"
+#include "pupil/pupil_boundary.hpp"
+#include "pupil/ray_bundle.hpp"
 
 namespace petzval {
 namespace psf_test {

@@ -9,11 +9,13 @@
 #include <vector>
 
 #include "../data_lenses.hpp"
+#include "analysis/points.hpp"
 #include "petzval/core/error.hpp"
 #include "petzval/core/geometry.hpp"
 #include "petzval/paraxial/first_order.hpp"
 #include "petzval/pupil/aim.hpp"
 #include "petzval/pupil/f_number.hpp"
+#include "pupil/ray_bundle.hpp"
 
 namespace petzval {
 namespace spot_test {

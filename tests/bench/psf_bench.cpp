@@ -16,6 +16,8 @@
 #include "petzval/core/sobol.hpp"
 #include "petzval/io/lens_json.hpp"
 #include "petzval/trace/trace.hpp"
+#include "pupil/pupil_boundary.hpp"
+#include "pupil/ray_bundle.hpp"
 #include "table.hpp"
 
 namespace {

@@ -13,6 +13,7 @@
 #include "../data_lenses.hpp"
 #include "../expect_error.hpp"
 #include "../film_at.hpp"
+#include "focus/image_rays.hpp"
 #include "petzval/core/error.hpp"
 #include "petzval/focus/focus.hpp"
 #include "petzval/paraxial/first_order.hpp"
