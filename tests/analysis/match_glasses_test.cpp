@@ -29,10 +29,10 @@ const GlassCatalogue& glasses() {
 Prescription doublet() {
   Prescription p;
   p.name = "doublet";
-  p.surfaces = {{.radius = 60, .thickness = 6, .medium = 1.5168, 64.2, .stop = true},
-                {.radius = -50, .thickness = 3, .medium = 1.62004, 36.4},
+  p.surfaces = {{.radius = 60, .thickness = 6, .medium = {.nd = 1.5168, .vd = 64.2}, .stop = true},
+                {.radius = -50, .thickness = 3, .medium = {.nd = 1.62004, .vd = 36.4}},
                 {.radius = -200, .thickness = 2},
-                {.radius = 100, .thickness = 3, .medium = 1.5168, 64.2},
+                {.radius = 100, .thickness = 3, .medium = {.nd = 1.5168, .vd = 64.2}},
                 {.radius = -300, .thickness = 90}};
   return p;
 }
@@ -67,7 +67,7 @@ TEST(MatchGlasses, MediaGetTheNearestGlassAndKeepTheirNumbers) {
 
 TEST(MatchGlasses, MediaFarFromEveryGlassAreKept) {
   Prescription p = doublet();
-  p.surfaces[0].medium = 1.5168, 30;
+  p.surfaces[0].medium = {.nd = 1.5168, .vd = 30};
   p.surfaces[1].medium = {.nd = 1.62004};
   p.surfaces[3].medium = {.glass = "mine", .nd = 1.5168, .vd = 64.2};
   const auto matched = match_glasses(p, glasses());
@@ -89,9 +89,10 @@ TEST(MatchGlasses, MediaFarFromEveryGlassAreKept) {
 TEST(MatchGlasses, ConfigurationsAndMirrorsKeepTheirMedia) {
   Prescription p = doublet();
   p.surfaces.push_back({.radius = 0, .thickness = -1, .mirror = true});
-  p.surfaces.insert(p.surfaces.begin() + 4, {.radius = 0, .thickness = 1, .medium = 1.5168, 64.2, .mirror = true});
+  p.surfaces.insert(p.surfaces.begin() + 4,
+                    {.radius = 0, .thickness = 1, .medium = {.nd = 1.5168, .vd = 64.2}, .mirror = true});
   p.configurations = {{.name = "a"},
-                      {.name = "b", .changes = {{.surface = 1, .medium = petzval::Medium1 .5168, 64.2}}}};
+                      {.name = "b", .changes = {{.surface = 1, .medium = petzval::Medium{.nd = 1.5168, .vd = 64.2}}}}};
   const auto matched = match_glasses(p, glasses()).prescription;
   petzval::validate(matched, "lens");
   EXPECT_EQ(matched.configurations[1].changes[0].medium, matched.surfaces[0].medium);

@@ -220,7 +220,7 @@ TEST(Camera, ConservesEtendue) {
 TEST(Camera, DifferentialsAreSymplectic) {
   const Lens lens = focused("double_gauss_100mm_f2.0");
   const testing::CameraParts parts(lens, {}, ModelKind::exact_double);
-  const Camera camera(lens, {}, parts.model);
+  const Camera camera = camera_with(lens, {}, parts.model);
   const FilmPupilTable& pupils = parts.pupils();
   const double depth = pupils.space().depth();
   const auto samples = random_samples(camera.film(), 50);

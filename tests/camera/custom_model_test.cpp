@@ -142,7 +142,7 @@ class CustomModel : public ::testing::TestWithParam<Film> {
   const double radius_ =
       std::max(upright_radius(lens_, GetParam()), upright_radius(lens_, GetParam(), ModelKind::thin));
   const AnyRayModel thin_ = camera_detail::make_model(ModelKind::thin, lens_, radius_);
-  const Camera built_in_{lens_, GetParam(), thin_};
+  const Camera built_in_ = camera_with(lens_, GetParam(), thin_);
   const Camera own_ =
       camera_with(lens_, GetParam(), AnyRayModel(OwnThinLens(lens_, testing::cardinal_points(thin_), radius_)));
 };

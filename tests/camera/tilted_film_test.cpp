@@ -128,7 +128,7 @@ TEST(TiltedFilm, DensitiesEqualPositionsInSpace) {
   const Lens lens = testing::data_lens("double_gauss_100mm_f2.0");
   for (const ModelKind model : models()) {
     const CameraParts parts(lens, tilted_by(shifted, 14, -9), model);
-    const Camera camera(lens, tilted_by(shifted, 14, -9), parts.model);
+    const Camera camera = camera_with(lens, tilted_by(shifted, 14, -9), parts.model);
     const TiltedFilm& tilted = *parts.tilted;
     const Film pose = pose_of(lens, camera.film());
     auto samples = random_samples(camera.film(), 60);

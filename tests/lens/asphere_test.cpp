@@ -260,9 +260,9 @@ TEST(Asphere, ClearRaysCrossNothing) {
       const Vec<double> p{reach * std::cos(turn), reach * std::sin(turn), rim * (uniform(random) - 0.5)};
       const auto found = intersect(asphere, p, d, static_cast<double>(sense));
       if (found.hit) continue;
-      beside += found.beside;
-      misses += !found.beside;
-      if (found.beside) {
+      beside += found.past_rim;
+      misses += !found.past_rim;
+      if (found.past_rim) {
         const auto crossings = scan(r, rim, p, d, sense);
         EXPECT_TRUE(!crossings || crossings->empty()) << name << " ray " << i;
       } else {

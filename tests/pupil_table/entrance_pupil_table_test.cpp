@@ -113,7 +113,7 @@ TEST(EntrancePupilTable, MostSamplesPassCylinders) {
       const EntranceSample sample = s.table.sample(point, v, u);
       EXPECT_NEAR(s.table.pdf(point, {point, sample.direction}) / sample.pdf, 1, 1e-6);
       ++all;
-      passed += trace(s.lens, Ray<double>{sample.place, sample.direction}).transmitted();
+      passed += trace(s.lens, Ray<double>{sample.origin, sample.direction}).transmitted();
     }
     EXPECT_GT(all, 3800);
     EXPECT_GT(passed, 0.8 * all) << f_number;
@@ -149,7 +149,7 @@ TEST(EntrancePupilTable, DensityIntegratesToOne) {
         ASSERT_GT(sample.pdf, 0);
         EXPECT_NEAR(glm::length(sample.direction), 1, 1e-12);
         EXPECT_NEAR(s.table.pdf(point, {point, sample.direction}) / sample.pdf, 1, 1e-7);
-        EXPECT_NEAR(glm::distance(point + sample.direction * sample.distance, sample.place), 0, 1e-9);
+        EXPECT_NEAR(glm::distance(point + sample.direction * sample.distance, sample.origin), 0, 1e-9);
         solid += 1 / sample.pdf / draws;
         widest = std::max(widest, 1 - glm::dot(axis, sample.direction));
       }
@@ -199,7 +199,7 @@ TEST(EntrancePupilTable, EstimatesTheSolidAngleOfThePupil) {
           const double u = uv.x, v = uv.y;
           const EntranceSample sample = s.table.sample(point, u, v);
           ASSERT_GT(sample.pdf, 0);
-          if (trace(s.lens, Ray<double>{sample.place, sample.direction}).transmitted()) found += 1 / sample.pdf / draws;
+          if (trace(s.lens, Ray<double>{sample.origin, sample.direction}).transmitted()) found += 1 / sample.pdf / draws;
         }
         EXPECT_NEAR(found / wanted, 1, 2e-3);
       }
@@ -218,7 +218,7 @@ TEST(EntrancePupilTable, SpreadSamplesAreUniform) {
     u.push_back((i % side + 0.5) / side), v.push_back((i / side + 0.5) / side);
     // For a small pupil 1 / pdf is nearly proportional to the area of a sample.
     const EntranceSample one = s.table.sample(point, u.back(), v.back());
-    mean += one.place / one.pdf, all += 1 / one.pdf;
+    mean += one.origin / one.pdf, all += 1 / one.pdf;
   }
   mean /= all;
   std::vector<EntranceSample> samples(u.size());
@@ -226,7 +226,7 @@ TEST(EntrancePupilTable, SpreadSamplesAreUniform) {
   Vec3<double> even{0, 0, 0};
   for (const EntranceSample& sample : samples) {
     EXPECT_NEAR(sample.pdf * all / side / side, 1, 0.05);
-    even += sample.place / static_cast<double>(u.size());
+    even += sample.origin / static_cast<double>(u.size());
   }
   EXPECT_NEAR(glm::length(even - mean), 0, 0.02);
 }
@@ -251,7 +251,7 @@ TEST(EntrancePupilTable, PointsBehindTheFrontHaveNoSamples) {
                                    Vec3<double>{0, 0, -inf}, Vec3<double>{0, 9000, -1000}}) {
     const EntranceSample sample = s.table.sample(point, 0.4, 0.6);
     EXPECT_EQ(sample.pdf, 0) << point.x << ' ' << point.y << ' ' << point.z;
-    EXPECT_TRUE(std::isfinite(sample.place.x + sample.direction.x + sample.distance));
+    EXPECT_TRUE(std::isfinite(sample.origin.x + sample.direction.x + sample.distance));
     EXPECT_EQ(s.table.pdf(point, {point, {0, 0, 1}}), 0);
   }
   EXPECT_EQ(s.table.sample({0, 0, -1000}, 0.4, 0.6, 1).pdf, 0);
