@@ -10,12 +10,14 @@ if(NOT DOXYGEN_FOUND)
   return()
 endif()
 
-# Each source file of the examples becomes a page, linked from the classes that it uses.
-file(GLOB_RECURSE programs RELATIVE ${PROJECT_SOURCE_DIR}/examples CONFIGURE_DEPENDS
-  ${PROJECT_SOURCE_DIR}/examples/*.cpp ${PROJECT_SOURCE_DIR}/examples/*.hpp)
+# Each source file of the examples and guides becomes a page, linked from the classes that it uses.
 set(example_pages "")
-foreach(program IN LISTS programs)
-  string(APPEND example_pages "/** @example ${program} */\n")
+foreach(folder examples lib/docs)
+  file(GLOB_RECURSE programs RELATIVE ${PROJECT_SOURCE_DIR}/${folder} CONFIGURE_DEPENDS
+    ${PROJECT_SOURCE_DIR}/${folder}/*.cpp ${PROJECT_SOURCE_DIR}/${folder}/*.hpp)
+  foreach(program IN LISTS programs)
+    string(APPEND example_pages "/** @example ${program} */\n")
+  endforeach()
 endforeach()
 file(CONFIGURE OUTPUT ${PROJECT_BINARY_DIR}/docs/examples.dox CONTENT "${example_pages}" @ONLY)
 
@@ -31,7 +33,7 @@ set(DOXYGEN_PROJECT_BRIEF "${PROJECT_DESCRIPTION}")
 set(DOXYGEN_USE_MDFILE_AS_MAINPAGE ${PROJECT_SOURCE_DIR}/README.md)
 set(DOXYGEN_IMAGE_PATH ${PROJECT_SOURCE_DIR}/examples/pictures)
 set(DOXYGEN_HTML_EXTRA_FILES ${pictures})
-set(DOXYGEN_EXAMPLE_PATH ${PROJECT_SOURCE_DIR}/examples)
+set(DOXYGEN_EXAMPLE_PATH ${PROJECT_SOURCE_DIR}/examples ${PROJECT_SOURCE_DIR}/lib/docs)
 set(DOXYGEN_EXAMPLE_RECURSIVE YES)
 set(DOXYGEN_STRIP_FROM_PATH ${PROJECT_SOURCE_DIR}/include ${PROJECT_SOURCE_DIR})
 set(DOXYGEN_STRIP_FROM_INC_PATH ${PROJECT_SOURCE_DIR}/include)
