@@ -83,8 +83,8 @@ constexpr std::array outputs{
     Output{".stmap.exr",
            [](const Prescription& lens, const petzval::GlassCatalogue& glasses, const std::filesystem::path& file) {
              const petzval::Lens compiled = petzval::compile(lens, {.glasses = &glasses});
-             petzval::write_st_map(compiled, petzval::film_of(lens, compiled), petzval::identity_of(lens), file,
-                                   {}, petzval::processor_threads());
+             petzval::write_st_map(compiled, petzval::film_of(lens, compiled), petzval::identity_of(lens), file, {},
+                                   petzval::processor_threads());
              return only_metadata(lens, compiled);
            }},
     Output{".json",

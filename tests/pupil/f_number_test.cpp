@@ -36,7 +36,7 @@ Prescription telescope() {
 
 TEST(WithFNumber, RefusesClosedLenses) {
   const Lens lens = data_lens("double_gauss_100mm_f2.0");
-  expect_error([&] { with_f_number(lens, 1e300); }, {lens.name(), "number", 1e300, "closed"});
+  expect_error([&] { with_f_number(lens, 1e300); }, {lens.name(), "number", 1e300, "stop"});
   const Lens closed = with_semi_diameter(lens, *lens.stop(), 0);
   expect_error([&] { with_f_number(closed, 8); }, {lens.name(), "number", "axis"});
 }

@@ -199,7 +199,8 @@ TEST(EntrancePupilTable, EstimatesTheSolidAngleOfThePupil) {
           const double u = uv.x, v = uv.y;
           const EntranceSample sample = s.table.sample(point, u, v);
           ASSERT_GT(sample.pdf, 0);
-          if (trace(s.lens, Ray<double>{sample.origin, sample.direction}).transmitted()) found += 1 / sample.pdf / draws;
+          if (trace(s.lens, Ray<double>{sample.origin, sample.direction}).transmitted())
+            found += 1 / sample.pdf / draws;
         }
         EXPECT_NEAR(found / wanted, 1, 2e-3);
       }

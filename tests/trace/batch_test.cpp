@@ -266,10 +266,12 @@ TYPED_TEST(BatchOf, ThreadsDoNotChangeABit) {
     const auto rays = rays_for<T>(sample, Travel::to_film, 1000);
     const Arrays<T> in(rays);
     for (const BatchOptions& options : every_batch()) {
+      const petzval::InstructionSet set = petzval::batch_instruction_set();
       const Answer<T> wanted = traced(sample.lens, rays, options);
       for (const int threads : {1, 3}) {
         Answer<T> found{Arrays<T>(rays.size()), std::vector<RayFate>(rays.size()), std::vector<int>(rays.size())};
         petzval::parallel_for(rays.size(), 192, threads, [&](std::size_t begin, std::size_t end) {
+          petzval::limit_batches(set);
           const auto from = [&](auto a) {
             return decltype(a){a.x + begin, a.y + begin, a.z + begin, a.dx + begin, a.dy + begin, a.dz + begin};
           };

@@ -116,6 +116,7 @@ struct ModelCandidate {
   bool inside = false;    ///< true if all bounds are within the budget
 };
 
+/// The result of choose_model().
 struct ModelChoice {
   ModelKind model = ModelKind::exact_double;  ///< exact_double always fits: its errors are 0 by definition
   std::vector<std::string> reasons = {};      ///< reasons for this model and against faster ones, with numbers

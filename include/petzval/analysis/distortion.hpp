@@ -101,6 +101,7 @@ enum class BrownConradyDirection : std::uint8_t {
 /// "Brown-Conrady D-U" or "Brown-Conrady U-D", the names in OpenTrackIO and Unreal.
 PETZVAL_API std::string_view name(BrownConradyDirection direction) noexcept;
 
+/// Form of the radial distortion of BrownConrady.
 enum class RadialForm : std::uint8_t {
   polynomial,  ///< k1 to k3; the others are 0
   rational,    ///< k1 to k6; unused denominator terms are 0

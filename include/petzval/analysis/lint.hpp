@@ -16,6 +16,7 @@ namespace petzval {
 
 class GlassCatalogue;
 
+/// Subject of a Finding.
 enum class FindingKind : std::uint8_t {
   focal_length,   ///< the computed focal length differs from the declared value by more than 2 %
   f_number,       ///< the f-number of an exact ray differs from the declared value by more than 2 %

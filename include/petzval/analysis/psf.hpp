@@ -46,6 +46,7 @@ struct Psf {
   PETZVAL_API double throughput(std::size_t wavelength) const noexcept;
 };
 
+/// Options of point_image().
 struct PsfOptions {
   std::uint32_t samples = 1u << 20;  ///< rays per wavelength; an upper limit if `tolerance` is set
   /// If positive, rays are sent until PointImage::error is within the tolerance or all samples are used. Starts with

@@ -42,6 +42,7 @@ struct PsfKernel {
   Diffraction diffraction = Diffraction::negligible;
 };
 
+/// Options of psf_kernel().
 struct PsfKernelOptions {
   std::uint32_t samples = 1u << 20;
   int pixels = 129;  ///< pixels per side, odd

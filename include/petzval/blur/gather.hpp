@@ -12,6 +12,7 @@
 
 namespace petzval {
 
+/// Options of gather().
 struct GatherOptions {
   int threads = 1;
   /// Surfaces brighter than this in any channel are spread over the image as discs of the lens's own shape, if the rays
@@ -19,6 +20,7 @@ struct GatherOptions {
   double highlights_above = 1;
 };
 
+/// Counts and times of a gather().
 struct GatherStatistics {
   std::uint64_t rays = 0;
   std::uint64_t missed = 0;  ///< rays that met a region unknown to the layers

@@ -58,6 +58,7 @@ struct FocusAt {
   double pupil_scale = 1;    ///< local pupil radius divided by the radius of the lens
 };
 
+/// A thin lens for LensRays::thin().
 struct ThinLens {
   double radius_mm = 9;      ///< radius of the pupil, to the corners of the iris
   double inverse_focus = 0;  ///< 1 / depth in focus, 1/mm
@@ -70,6 +71,7 @@ struct ThinLens {
   Vec3<double> colour_shift{0, 0, 0};
 };
 
+/// Options of LensRays.
 struct LensRaysOptions {
   /// Depth of the nearest surface, mm; 0: the focal length of the layer camera for an image 24 mm high.
   double nearest_mm = 0;

@@ -30,6 +30,7 @@ enum class Normalisation : std::uint8_t {
   unity_at_each_wavelength,
 };
 
+/// Options of a Camera.
 struct CameraOptions {
   ModelKind model = ModelKind::exact_float;
   Normalisation normalisation = Normalisation::irradiance;

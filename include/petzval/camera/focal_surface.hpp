@@ -41,6 +41,7 @@ struct FocalPoint {
   double fade = 1;    ///< 0 (no influence) to 1
 };
 
+/// Options of FocalSurface.
 struct FocalSurfaceOptions {
   SurfaceKind kind = SurfaceKind::affine;
   double beta = 3;  ///< 1 to 8: weights are distance^-beta, with the distance in the picture

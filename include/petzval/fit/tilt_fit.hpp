@@ -16,6 +16,7 @@
 
 namespace petzval {
 
+/// Options of fit_tilt().
 struct TiltOptions {
   double max_tilt_rad = 0.3490658503988659;  ///< angle between the film and an upright film; 20 degrees
   bool robust = false;                       ///< true: ignore outliers, by least median of squares and Tukey's loss
@@ -26,6 +27,7 @@ struct TiltOptions {
   std::size_t rays = 256;  ///< exact rays: as in autofocus()
 };
 
+/// The result of fit_tilt().
 enum class TiltFitStatus : std::uint8_t {
   solved,        ///< the targets determine a plane
   least_tilt,    ///< the targets do not determine a plane (see `rank`): the best plane with the least tilt

@@ -82,6 +82,7 @@ PETZVAL_API std::string psf_part_name(const PsfSetPoint& point);
 /// (chief_ray or centroid), `diffraction`, and `checksum` over all channels and the other attributes.
 PETZVAL_API ExrPart to_exr_part(const PsfKernel& kernel, const PsfSetPoint& point);
 
+/// A kernel of a PSF set with its point, as read from an EXR file.
 struct PsfPart {
   PsfSetPoint point;
   PsfKernel kernel;

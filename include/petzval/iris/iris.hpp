@@ -37,7 +37,6 @@ PETZVAL_API double iris_area(const Iris& iris);
 ///
 /// @throws Error if iris_area() does, or f_number is not positive and finite
 ///
-///
 ///     petzval::Lens lens = with_f_number(with_iris(wide_open, hexagon), petzval::equal_area_f_number(hexagon, 4));
 PETZVAL_API double equal_area_f_number(const Iris& iris, double f_number);
 

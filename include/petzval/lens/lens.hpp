@@ -204,7 +204,7 @@ class PETZVAL_API Lens {
 
 /// Compiles a prescription for a list of wavelengths.
 ///
-/// Surfaces without a clear aperture get a computed aperture, as by with_apertures() (pupil/apertures.hpp).
+/// Surfaces without a clear aperture get a computed aperture, as by with_apertures() (pupil/f_number.hpp).
 ///
 /// @param prescription    the lens; options.configuration selects one of its configurations
 /// @param wavelengths_nm  at least one wavelength (nm)

@@ -47,8 +47,8 @@ PETZVAL_API Meridian main_meridian(const Lens& lens, Wavelength wavelength = {})
 
 /// Anamorphic squeeze: the focal length in y divided by the focal length in x.
 ///
-/// The picture is narrower along x by this factor; desqueezed() in io/image.hpp restores the proportions. 1 for a lens
-/// of revolution; infinite, 0 or NaN if a section has no power.
+/// The picture is narrower along x by this factor; desqueezed() in image/image.hpp restores the proportions. 1 for a
+/// lens of revolution; infinite, 0 or NaN if a section has no power.
 PETZVAL_API double squeeze(const Lens& lens, Wavelength wavelength = {});
 
 /// The paraxial image of a point on the axis (z in the lens frame, mm).

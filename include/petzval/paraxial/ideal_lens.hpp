@@ -22,8 +22,8 @@ struct ScenePoint {
 struct ImagePoint {
   Vec3<double> position{0, 0, 0};
   double slope_x = 0, slope_y = 0;  ///< slope of the chief ray, per mm of z
-  double diameter_per_mm =
-      0;  ///< growth of the beam diameter perpendicular to the axis, per mm of z from the image; >= 0
+  /// Growth of the beam diameter perpendicular to the axis, per mm of z from the image; >= 0
+  double diameter_per_mm = 0;
 };
 
 /// A lens that images points to points and planes to planes. Lens frame, mm.
