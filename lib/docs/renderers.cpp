@@ -76,7 +76,7 @@ double film_weight(const Camera& camera, const CameraRay& r, const Vec3<double>&
   const Importance i = camera.importance({hit, to_lens});
   const double by_film = i.pdf_position * i.pdf_direction * cosine;  // both in 1/(mm^2 sr)
   const double by_light = pdf_area * camera.pdf_importance(hit, to_lens);
-  return by_film / (by_film + by_light);
+  return by_light > 0 ? by_film / (by_film + by_light) : 1;  // 1 for a pinhole
 }
 
 void choice(const Lens& lens) {
@@ -88,7 +88,7 @@ void choice(const Lens& lens) {
 }
 
 void spectrum(const Prescription& prescription) {
-  const std::vector<double> nm{360, 420, 480, 540, 600, 660, 720, 830};
+  const std::vector<double> nm{400, 440, 480, 520, 560, 600, 650, 700};
   Lens lens = compile(prescription, nm, {.clamp_wavelengths = true});
   lens = with_focus(lens, 3000, {.origin = DistanceOrigin::film});
   for (const std::string& glass : lens.clamped_glasses()) std::cerr << glass << '\n';
