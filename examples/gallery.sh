@@ -28,26 +28,26 @@ echo "== The statements of the paper, by number (2/12)"
 echo "$out/wu_statements.txt"
 
 echo "== Bokeh off axis, in colour (3/12)"
-"$programs/bokeh_psf" "$lenses/double_gauss_100mm_f1.35.json" --subject-distance-mm 1000 \
-  --focus-mm 800,900,1000,1100,1200 --criterion paraxial --field-deg 8 --wavelengths-nm "$(seq -s , 430 10 670)" --samples 262144 \
+"$programs/petzval" psf "$lenses/double_gauss_100mm_f1.35.json" --at 1000 \
+  --focus 800,900,1000,1100,1200 --criterion paraxial --fields 8 --wavelengths "$(seq -s , 430 10 670)" --rays 262144 \
   --out "$out/bokeh"
 
 echo "== The colours of bokeh (4/12)"
 mkdir -p "$out/chromatic"
-"$programs/chromatic_bokeh" "$lenses/double_gauss_100mm_f1.35.json" --samples 131072 --out "$out/chromatic" \
+"$programs/petzval" colour "$lenses/double_gauss_100mm_f1.35.json" --rays 131072 --out "$out/chromatic" \
   > "$out/chromatic/chromatic_bokeh.txt"
 echo "$out/chromatic"
 
 echo "== Irises, cat's eyes, weights, an expressive lens, and a set of PSFs (5/12)"
-"$programs/bokeh_shapes" --out "$out/bokeh"
-"$programs/expressive_lens" "$lenses/double_gauss_100mm_f1.35.json" --focus-mm 1000 --samples 65536 --out "$out/expressive"
-"$programs/psf_set" "$lenses/double_gauss_100mm_f2_28deg.json" --fields 0,5,10,14 --distances-mm 1000,1400,2000,4000,inf \
-  --focus-mm 2000 --out "$out/psf_set"
+"$programs/petzval" shapes --out "$out/bokeh"
+"$programs/petzval" expressive "$lenses/double_gauss_100mm_f1.35.json" --focus 1000 --rays 65536 --out "$out/expressive"
+"$programs/petzval" psf-set "$lenses/double_gauss_100mm_f2_28deg.json" --fields 0,5,10,14 --at 1000,1400,2000,4000,inf \
+  --focus 2000 --out "$out/psf_set"
 
 echo "== Spot diagrams of five lenses (6/12)"
 # spots LENS FIELDS WAVELENGTHS
 spots() {
-  "$programs/spot_diagram" "$lenses/$1.json" --field-deg "$2" --wavelengths-nm "$3" --out "$out/spots"
+  "$programs/petzval" spots "$lenses/$1.json" --fields "$2" --wavelengths "$3" --out "$out/spots"
 }
 f_d_c=486.1327,587.5618,656.2725  # the spectral lines F, d and C (nm)
 spots double_gauss_100mm_f1.35 0,7,12 $f_d_c
@@ -60,7 +60,7 @@ echo "== Reports of twelve lenses (7/12)"
 for lens in petzval_portrait_100mm_f3.4 cooke_triplet_50mm_f5 planar_1896_f4.5 tessar_100mm_f5.5_1902 \
   sonnar_180mm_f2.8 biogon_35mm_f2.8 telephoto_250mm_f5.6 retrofocus_100mm_f2 \
   catadioptric_mangin_1000mm_f7.5 anamorphic_60mm_2x modern_58mm_f0.95 fisheye_6.3mm_f2.8; do
-  "$programs/lens_report" "$lenses/$lens.json" --out "$out/lenses"
+  "$programs/petzval" report "$lenses/$lens.json" --out "$out/lenses"
 done
 
 echo "== Rays of a camera, by every model of its lens (8/12)"
@@ -71,15 +71,15 @@ awk 'BEGIN {
 }' > "$out/camera_rays/samples.csv"
 for model in pinhole thin thin_two_disc thick polynomial_3 polynomial_5 polynomial_7 polynomial_9 polynomial_11 \
   exact_float exact_double; do
-  "$programs/camera_rays" "$lenses/double_gauss_100mm_f2.0.json" --samples "$out/camera_rays/samples.csv" \
-    --out "$out/camera_rays/$model.csv" --model $model --focus-mm 3000 --f-number 2.8
+  "$programs/petzval" camera-rays "$lenses/double_gauss_100mm_f2.0.json" --rays "$out/camera_rays/samples.csv" \
+    --out "$out/camera_rays/$model.csv" --model $model --focus 3000 --f-number 2.8
 done
 echo "$out/camera_rays"
 
 echo "== Accuracy and speed of the models, and the model for a scene (9/12)"
-"$programs/accuracy_speed" "$lenses/double_gauss_100mm_f2_28deg.json" --f-number 2 --out "$out/models" \
+"$programs/petzval" models "$lenses/double_gauss_100mm_f2_28deg.json" --f-number 2 --out "$out/models" \
   > "$out/accuracy_speed.txt"
-"$programs/choose_camera" "$lenses/double_gauss_100mm_f2_28deg.json" --f-number 2 --near-mm 2000 --far-mm inf \
+"$programs/petzval" choose "$lenses/double_gauss_100mm_f2_28deg.json" --f-number 2 --near 2000 --far inf \
   --budget-px 0.5 > "$out/choose_camera.txt"
 echo "$out/accuracy_speed.txt"
 echo "$out/choose_camera.txt"
@@ -91,7 +91,7 @@ tilted() {
   scene=$here/scenes/$2.json
   shift 2
   mkdir -p "$folder"
-  "$programs/tilt_shift" "$lenses/double_gauss_100mm_f2_28deg.json" --f-number 4 --points "$scene" "$@" --out "$folder" \
+  "$programs/petzval" tilt "$lenses/double_gauss_100mm_f2_28deg.json" --f-number 4 --points "$scene" "$@" --out "$folder" \
     > "$folder/tilt_shift.txt"
   echo "$folder"
 }
@@ -100,16 +100,16 @@ tilted facade facade
 tilted outlier facade_outlier
 tilted robust facade_outlier --robust
 mkdir -p "$out/focus_pull"
-"$programs/focus_pull" "$lenses/double_gauss_100mm_f2_28deg.json" --f-number 2 --keys "$here/scenes/rack.json" \
+"$programs/petzval" pull "$lenses/double_gauss_100mm_f2_28deg.json" --f-number 2 --keys "$here/scenes/rack.json" \
   --out "$out/focus_pull" > "$out/focus_pull/focus_pull.txt"
 echo "$out/focus_pull"
-"$programs/focal_surface" "$lenses/double_gauss_52mm_f1.8.json" --points "$here/scenes/statues_focus.json" --width 600 --height 400 \
-  --focus-mm 1500 --out "$out/focal_surface"
+"$programs/petzval" surface "$lenses/double_gauss_52mm_f1.8.json" --points "$here/scenes/statues_focus.json" --size 600x400 \
+  --focus 1500 --out "$out/focal_surface"
 
 echo "== Scenes through lenses (11/12)"
 mkdir -p "$out/scenes"
 scenes_file=$out/scenes/scenes.html
-if [ -x "$programs/bokeh_scene" ]; then
+if [ -x "$programs/petzval" render ]; then
   # scene FOLDER SCENE LENS SPP WIDTH HEIGHT OPTION...; --full: twice the size, sixteen times the samples
   scene() {
     folder=$out/scenes/$1 name=$2 lens=$3 spp=$4 width=$5 height=$6
@@ -120,7 +120,7 @@ if [ -x "$programs/bokeh_scene" ]; then
       folder=${folder}_large resume=--resume
       spp=$((16 * spp)) width=$((2 * width)) height=$((2 * height))
     fi
-    "$programs/bokeh_scene" --scene "$name" --lens "$lenses/$lens.json" --spp "$spp" --width "$width" --height "$height" \
+    "$programs/petzval" render --scene "$name" --lens "$lenses/$lens.json" --spp "$spp" --size "${width}x${height}" \
       $resume --out "$folder" "$@" > "$out/scenes/log.txt"
     scenes="$scenes $folder"
   }
@@ -128,37 +128,37 @@ if [ -x "$programs/bokeh_scene" ]; then
   scenes=
   for lens in $wu; do
     for focus in 800 900 1000 1100 1200; do
-      scene "balls_${lens}_$focus" balls "$lens" 128 600 80 --focus-mm $focus --integrator path --film-mm 36x4.8
+      scene "balls_${lens}_$focus" balls "$lens" 128 600 80 --focus $focus --integrator path --film 36x4.8
     done
   done
-  "$programs/bokeh_sheet" --columns 5 --title "A row of balls, after figure 8 of Wu et al. 2010" --out "$out/scenes/balls.png" \
+  "$programs/petzval" sheet --columns 5 --title "A row of balls, after figure 8 of Wu et al. 2010" --out "$out/scenes/balls.png" \
     --balls "$out/scenes/balls.csv" $scenes
   scenes=
-  scene chess_pinhole chess double_gauss_100mm_f2_28deg 32 480 320 --focus-mm 880 --model pinhole
-  for lens in $wu; do scene "chess_$lens" chess "$lens" 32 480 320 --focus-mm 880; done
-  "$programs/bokeh_sheet" --columns 2 --title "Chess, after figure 9 of Wu et al. 2010" --out "$out/scenes/chess.png" $scenes
+  scene chess_pinhole chess double_gauss_100mm_f2_28deg 32 480 320 --focus 880 --model pinhole
+  for lens in $wu; do scene "chess_$lens" chess "$lens" 32 480 320 --focus 880; done
+  "$programs/petzval" sheet --columns 2 --title "Chess, after figure 9 of Wu et al. 2010" --out "$out/scenes/chess.png" $scenes
   scenes=
   # Distances in scenes count from the entrance pupil.
-  scene street street double_gauss_100mm_f2_28deg 48 480 320 --focus-mm 3000 --distance-from entrance_pupil
-  "$programs/bokeh_sheet" --title "A street at night" --out "$out/scenes/street.png" $scenes
+  scene street street double_gauss_100mm_f2_28deg 48 480 320 --focus 3000 --from entrance_pupil
+  "$programs/petzval" sheet --title "A street at night" --out "$out/scenes/street.png" $scenes
   scenes=
-  statues="--distance-from entrance_pupil --integrator path"
+  statues="--from entrance_pupil --integrator path"
   # shellcheck disable=SC2086
-  scene statues_near statues double_gauss_52mm_f1.8 32 450 300 --focus-mm 1500 $statues
+  scene statues_near statues double_gauss_52mm_f1.8 32 450 300 --focus 1500 $statues
   # shellcheck disable=SC2086
-  scene statues_far statues double_gauss_52mm_f1.8 32 450 300 --focus-mm 6000 $statues
+  scene statues_far statues double_gauss_52mm_f1.8 32 450 300 --focus 6000 $statues
   # shellcheck disable=SC2086
-  scene statues_both statues double_gauss_52mm_f1.8 32 450 300 --focus-mm 1500 $statues --model thin_two_disc \
+  scene statues_both statues double_gauss_52mm_f1.8 32 450 300 --focus 1500 $statues --model thin_two_disc \
     --focal-surface "$here/scenes/statues_focus.json"
-  "$programs/bokeh_sheet" --columns 3 --title "Two statues, after figure 1 (d) of Lee et al. 2010" \
+  "$programs/petzval" sheet --columns 3 --title "Two statues, after figure 1 (d) of Lee et al. 2010" \
     --out "$out/scenes/statues.png" $scenes
   scenes=
   for lens in "" "--curvature-points 0,0:0 18,0:3 -18,0:3 0,12:1.5 0,-12:1.5"; do
     # shellcheck disable=SC2086
-    scene "table_$(echo "$lens" | wc -w)" chess double_gauss_100mm_f2_28deg 32 450 300 --focus-mm 920 --tilt-deg 12 \
+    scene "table_$(echo "$lens" | wc -w)" chess double_gauss_100mm_f2_28deg 32 450 300 --focus 920 --tilt-deg 12 \
       --model thick --integrator path $lens
   done
-  "$programs/bokeh_sheet" --columns 2 --title "Curvature of field on a tilted film, after figure 6 of Lee et al. 2010" \
+  "$programs/petzval" sheet --columns 2 --title "Curvature of field on a tilted film, after figure 6 of Lee et al. 2010" \
     --out "$out/scenes/table.png" $scenes
 
   echo "== Lens blur from layers (12/12)"
@@ -166,18 +166,18 @@ if [ -x "$programs/bokeh_scene" ]; then
   blur() {
     folder=$out/layers/$1 name=$2
     shift 2
-    "$programs/lens_blur" --scene "$name" --format png "$@" --out "$folder" > "$out/scenes/log.txt"
+    "$programs/petzval" blur --scene "$name" --format png "$@" --out "$folder" > "$out/scenes/log.txt"
     echo "$folder"
   }
-  blur thin town --thin-lens-mm 50 --lens-diameter-mm 100 --focus-mm 5000
-  blur singlet town --singlet 51.68,-51.68,8,N-BK7 --f-number 2 --focus-mm 5000 --fov-deg 30
-  blur chroma town --singlet 51.68,-51.68,8,N-BK7 --f-number 2 --focus-mm 5000 --fov-deg 30 --chroma
-  blur tilt town --thin-lens-mm 50 --lens-diameter-mm 40 --focus-mm 5000 --tilt-deg 6
-  blur knot knot --thin-lens-mm 50 --lens-diameter-mm 100 --focus-mm 3600
-  blur leaves leaves --thin-lens-mm 50 --lens-diameter-mm 100 --focus-mm 5000 --layers 8
-  blur cats_eyes statues --lens "$lenses/double_gauss_100mm_f1.35.json" --focus-mm 3000 --distance-from entrance_pupil --fov-deg 22
-  blur surface statues --thin-lens-mm 50 --lens-diameter-mm 28 --focus-mm 5000 --points "$here/scenes/statues_focus.json"
-  blur night street --thin-lens-mm 100 --lens-diameter-mm 50 --focus-mm 3000 --fov-deg 14 --blades 6
+  blur thin town --thin-lens-mm 50 --lens-diameter-mm 100 --focus 5000
+  blur singlet town --singlet 51.68,-51.68,8,N-BK7 --f-number 2 --focus 5000 --fov-deg 30
+  blur chroma town --singlet 51.68,-51.68,8,N-BK7 --f-number 2 --focus 5000 --fov-deg 30 --chroma
+  blur tilt town --thin-lens-mm 50 --lens-diameter-mm 40 --focus 5000 --tilt-deg 6
+  blur knot knot --thin-lens-mm 50 --lens-diameter-mm 100 --focus 3600
+  blur leaves leaves --thin-lens-mm 50 --lens-diameter-mm 100 --focus 5000 --layers 8
+  blur cats_eyes statues --lens "$lenses/double_gauss_100mm_f1.35.json" --focus 3000 --from entrance_pupil --fov-deg 22
+  blur surface statues --thin-lens-mm 50 --lens-diameter-mm 28 --focus 5000 --points "$here/scenes/statues_focus.json"
+  blur night street --thin-lens-mm 100 --lens-diameter-mm 50 --focus 3000 --fov-deg 14 --blades 6
   cp "$here/scenes.html" "$scenes_file"
 else
   echo "bokeh_scene was not built: no Embree (libembree-dev, libtinyobjloader-dev)"

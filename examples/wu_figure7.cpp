@@ -36,11 +36,9 @@ examples::SheetRow sheet_row(const examples::WuRow& wu, const examples::BokehSet
   examples::SheetRow row{wu.title, wu.subtitle, 2 * half_width / tile_pixels, {}};
   for (std::size_t i = 0; i < scenes.size(); ++i) {
     progress.step(std::string(wu.lens) + ", " + examples::focus_caption(examples::wu_focus_mm[i]));
-    const auto image = petzval::point_image(scenes[i].lens, scenes[i].light,
-                                            {.samples = samples,
-                                             .pixels = tile_pixels,
-                                             .half_width_mm = half_width,
-                                             .threads = petzval::processor_threads()});
+    const auto image = petzval::point_image(
+        scenes[i].lens, scenes[i].light,
+        {.samples = samples, .pixels = tile_pixels, .half_width_mm = half_width, .threads = examples::threads()});
     row.tiles.push_back(examples::bokeh_tile(examples::wu_focus_mm[i], image));
   }
   return row;

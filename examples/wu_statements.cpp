@@ -46,7 +46,7 @@ std::vector<Verdict> verdicts(const examples::WuRow& wu, const petzval::Lens& le
     const double focus = examples::wu_focus_mm[i];
     const auto scene = examples::focused_scene(lens, focus, setup);
     const auto image =
-        petzval::point_image(scene.lens, scene.light, {.samples = samples, .threads = petzval::processor_threads()});
+        petzval::point_image(scene.lens, scene.light, {.samples = samples, .threads = examples::threads()});
     const auto shape = examples::profile_shape(image.radial_profile);
     row.push_back({.lens = wu.lens,
                    .focus_mm = focus,

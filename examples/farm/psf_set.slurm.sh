@@ -3,10 +3,10 @@
 # Computes a set of PSFs as a Slurm array, one task for each shard; OUT must be a shared folder. PROGRAM=bokeh_scene
 # renders a picture instead.
 #
-#   job=$(sbatch --parsable --array=1-8 examples/farm/psf_set.slurm.sh OUT LENS --fields 0,10 --distances-mm 1000,inf)
+#   job=$(sbatch --parsable --array=1-8 examples/farm/psf_set.slurm.sh OUT LENS --fields 0,10 --at 1000,inf)
 #   sbatch --dependency=afterok:$job --wrap 'psf_set merge OUT --out OUT/psf_set.exr'
 #
-#   job=$(PROGRAM=bokeh_scene sbatch --parsable --array=1-8 examples/farm/psf_set.slurm.sh OUT --scene chess --lens LENS --focus-mm 950 --spp 256)
+#   job=$(PROGRAM=bokeh_scene sbatch --parsable --array=1-8 examples/farm/psf_set.slurm.sh OUT --scene chess --lens LENS --focus 950 --spp 256)
 #   sbatch --dependency=afterok:$job --wrap 'bokeh_scene merge OUT --out OUT'
 #
 # An interrupted task continues from its files when it is queued again: scontrol requeue $job
@@ -21,7 +21,7 @@ out=$1
 shift
 program=${PROGRAM:-psf_set}
 case $program in
-  bokeh_scene) shard=--tile ;;
+  bokeh_scene) shard=--shard ;;
   *) shard=--shard ;;
 esac
 exec "$program" "$@" $shard "$SLURM_ARRAY_TASK_ID/$SLURM_ARRAY_TASK_COUNT" --resume --out "$out"

@@ -13,6 +13,7 @@
 #include "petzval/core/error.hpp"
 #include "petzval/image/exr.hpp"
 #include "petzval/image/image.hpp"
+#include "support/camera_setup.hpp"
 
 namespace lens_blur {
 namespace {
@@ -67,9 +68,7 @@ void add_input(examples::App& app, InputFlags& flags) {
                  "meaning of depths in files: along the axis (axial) or along rays (distance)")
       ->one_of({"axial", "distance"})
       ->capture_default_str();
-  constexpr examples::Range side{1, 16384, "a whole number from 1 to 16384"};
-  examples::add_count(app, "--width", flags.width, side, "pixels across (scenes only)")->default_str("800");
-  examples::add_count(app, "--height", flags.height, side, "pixels down (scenes only)")->default_str("600");
+  examples::add_picture_size(app, flags.width, flags.height, 800);
 }
 
 LayerInput::LayerInput(const InputFlags& flags) : flags_(flags), depths_are_axial_(flags.depth_kind == "axial") {
@@ -87,11 +86,10 @@ LayerInput::LayerInput(const InputFlags& flags) : flags_(flags), depths_are_axia
     pose_ = description->pose;
     scene_ = std::make_unique<LitScene>(*description);
     columns_ = flags.width > 0 ? static_cast<int>(flags.width) : 800;
-    rows_ = flags.height > 0 ? static_cast<int>(flags.height) : 600;
+    rows_ = flags.height > 0 ? static_cast<int>(flags.height) : columns_ * 3 / 4;
     return;
   }
-  if (flags.width > 0 || flags.height > 0)
-    throw Error("--width and --height must not be used with files, which have their own size");
+  if (flags.width > 0 || flags.height > 0) throw Error("--size must not be used with files, which have their own size");
   if (!flags.deep.empty()) {
     petzval::DeepPicture deep = petzval::read_deep_exr(flags.deep);
     if (deep.without_depth > 0) std::cerr << "note: " << deep.without_depth << " samples without a depth are ignored\n";

@@ -90,7 +90,7 @@ void add_lens(examples::App& app, LensFlags& flags) {
   app.add_option("--singlet", flags.singlet,
                  "two spherical surfaces, traced by exact rays; f/2 unless --f-number is given")
       ->type_name("R1,R2,THICKNESS,GLASS");
-  add_number(app, "--focus-mm", flags.focus_mm, examples::positive_length,
+  add_length(app, "--focus", flags.focus_mm, examples::positive_length,
              "distance of the subject in focus (mm), or inf; depths of layers count from the entrance pupil")
       ->required();
   examples::add_focus(app, flags.focus);
@@ -165,12 +165,12 @@ void BlurLens::load() {
   }();
   lens = examples::stopped_down(lens, iris);
   if (thin_ && !(flags_.focus_mm > flags_.thin_lens_mm)) {
-    throw Error("--focus-mm = " + number(flags_.focus_mm) + "; must be more than the focal length, " +
+    throw Error("--focus = " + number(flags_.focus_mm) + "; must be more than the focal length, " +
                 number(flags_.thin_lens_mm) + ": nearer subjects have no real image");
   }
   petzval::FocusOptions focus = flags_.focus.options();
   if (thin_) focus.criterion = petzval::FocusCriterion::paraxial;  // a thin lens has no other focus
-  lens_ = examples::for_flag("--focus-mm", [&] { return petzval::with_focus(lens, flags_.focus_mm, focus); });
+  lens_ = examples::for_flag("--focus", [&] { return petzval::with_focus(lens, flags_.focus_mm, focus); });
   // Depths of layers count from the entrance pupil.
   focus_depth_mm_ = flags_.focus_mm + petzval::pupils(*lens_).entrance.z - petzval::origin_z(*lens_, focus.origin);
   name_ = lens_->name();

@@ -54,7 +54,7 @@ void check_light(const petzval::Lens& lens, const BokehSetup& setup, double orig
 }  // namespace
 
 BokehScene focused_scene(const petzval::Lens& lens, double focus_mm, const BokehSetup& setup) {
-  const petzval::Lens focused = for_flag("--focus-mm", [&] {
+  const petzval::Lens focused = for_flag("--focus", [&] {
     return petzval::with_focus(lens, focus_mm, {setup.criterion, setup.origin});
   });
   const double from_z = origin_z(focused, setup.origin);

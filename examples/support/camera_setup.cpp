@@ -14,7 +14,7 @@
 
 namespace examples {
 
-std::array<double, 2> CameraSetup::film_size() const { return parse_size("--film-mm", film_mm, film_side); }
+std::array<double, 2> CameraSetup::film_size() const { return parse_size("--film", film_mm, film_side); }
 
 petzval::Film CameraSetup::film(std::uint32_t columns, std::uint32_t rows, std::uint32_t usual_columns) const {
   constexpr double max_side_px = 16384;
@@ -28,7 +28,7 @@ petzval::Film CameraSetup::film(std::uint32_t columns, std::uint32_t rows, std::
   if (across == 0) across = std::max(1.0, std::round(down * width / height));
   if (down == 0) down = std::max(1.0, std::round(across * height / width));
   if ((columns == 0 || rows == 0) && std::max(across, down) > max_side_px) {
-    throw petzval::Error("--film-mm = " + film_mm + ": a picture of " + number(across) + " x " + number(down) +
+    throw petzval::Error("--film = " + film_mm + ": a picture of " + number(across) + " x " + number(down) +
                          " pixels; must have at most " + number(max_side_px) + " along each side");
   }
   return {.width_mm = width, .height_mm = height, .columns = static_cast<int>(across), .rows = static_cast<int>(down)};
@@ -36,12 +36,12 @@ petzval::Film CameraSetup::film(std::uint32_t columns, std::uint32_t rows, std::
 
 void add_camera(App& app, CameraSetup& setup) {
   add_iris(app, setup.iris);
-  add_number(app, "--focus-mm", setup.focus_mm, positive_length,
+  add_length(app, "--focus", setup.focus_mm, positive_length,
              "distance of the subject in focus (mm), or inf; at the primary wavelength: the one nearest to the d line, "
              "unless the lens states a reference");
   add_focus(app, setup.focus);
   app.add_option(
-         "--film-mm",
+         "--film",
          [&setup](const std::string& text) {
            setup.film_mm = text;
            setup.film_given = true;
@@ -54,11 +54,21 @@ void add_camera(App& app, CameraSetup& setup) {
 void add_picture_size(App& app, std::uint32_t& width, std::uint32_t& height, std::uint32_t usual_width) {
   constexpr Range side{1, 16384, "a whole number from 1 to 16384"};
   width = height = 0;
-  add_count(app, "--width", width, side,
-            "pixels across; if --height is given and --film-mm is not, the film takes the picture's shape within 36 x "
-            "24 mm")
-      ->default_str(std::to_string(usual_width) + ", or by --height");
-  add_count(app, "--height", height, side, "pixels down")->default_str("by --width: square pixels");
+  app.add_option(
+         "--size",
+         [&width, &height, side](const std::string& text) {
+           const auto count = [&](std::string_view part) {
+             const double value = parse_number("--size", part, side);
+             if (value != std::floor(value)) throw petzval::Error("--size = \"" + text + "\"; must be whole numbers");
+             return static_cast<std::uint32_t>(value);
+           };
+           const std::size_t x = text.find('x');
+           width = count(std::string_view(text).substr(0, x));
+           height = x == std::string::npos ? 0 : count(std::string_view(text).substr(x + 1));
+         },
+         "pixels across and down, or across only; without --film the film takes the picture's shape within 36 x 24 mm")
+      ->type_name("WxH")
+      ->default_str(std::to_string(usual_width) + " across, square pixels");
 }
 
 Option* add_model(App& app, std::string& model) {
@@ -77,14 +87,14 @@ std::array<double, 2> parse_size(const std::string& where, std::string_view text
 
 petzval::Lens focused(const LoadedLens& loaded, const CameraSetup& setup) {
   const petzval::Lens lens = stopped_down(loaded.lens, setup.iris);
-  return for_flag("--focus-mm", [&] { return petzval::with_focus(lens, setup.focus_mm, setup.focus.options()); });
+  return for_flag("--focus", [&] { return petzval::with_focus(lens, setup.focus_mm, setup.focus.options()); });
 }
 
 void say_what_does_not_fit(const petzval::Lens& lens, const petzval::Film& film, const std::string& pixel_flags) {
   for (const petzval::Finding& finding : petzval::lint(lens, film)) {
     if (finding.kind == petzval::FindingKind::film_size) note(finding.message);
     if (finding.kind == petzval::FindingKind::pixel_shape && !pixel_flags.empty()) {
-      note("--film-mm and " + pixel_flags + " have different shapes: " + finding.message);
+      note("--film and " + pixel_flags + " have different shapes: " + finding.message);
     }
   }
 }

@@ -30,18 +30,18 @@ struct CameraSetup {
 
   /// A film with the given numbers of pixels; 0: not given.
   ///
-  /// Without --film-mm the film is the largest with the shape of the picture within 36 x 24 mm, or within 24 x 36 mm
+  /// Without --film the film is the largest with the shape of the picture within 36 x 24 mm, or within 24 x 36 mm
   /// for a picture in portrait format. A missing number of pixels follows from the film and square pixels.
   ///
   /// @param usual_columns  columns if neither number is given
-  /// @throws petzval::Error if --film-mm is invalid, or so narrow that the picture would need more than 16384 pixels
+  /// @throws petzval::Error if --film is invalid, or so narrow that the picture would need more than 16384 pixels
   petzval::Film film(std::uint32_t columns, std::uint32_t rows, std::uint32_t usual_columns) const;
 };
 
-/// Adds the options of add_iris, --focus-mm, --distance-from, --criterion and --film-mm.
+/// Adds the options of add_iris, --focus, --from, --criterion and --film.
 void add_camera(App& app, CameraSetup& setup);
 
-/// Adds --width and --height, 0 if not given, for CameraSetup::film.
+/// Adds --size, 0 if not given, for CameraSetup::film.
 void add_picture_size(App& app, std::uint32_t& width, std::uint32_t& height, std::uint32_t usual_width);
 
 /// Adds --model.
@@ -57,6 +57,6 @@ petzval::Lens focused(const LoadedLens& loaded, const CameraSetup& setup);
 ///
 /// @param pixel_flags  the options that set the numbers of pixels; if empty, only the size of the film is checked
 void say_what_does_not_fit(const petzval::Lens& lens, const petzval::Film& film,
-                           const std::string& pixel_flags = "--width and --height");
+                           const std::string& pixel_flags = "--size");
 
 }  // namespace examples

@@ -14,10 +14,14 @@
 #include <iostream>
 #include <memory>
 #include <set>
+#include <span>
 #include <system_error>
+#include <utility>
 
 #include "petzval/core/error.hpp"
+#include "petzval/core/parallel.hpp"
 #include "petzval/glass/glass.hpp"
+#include "suggest.hpp"
 #include "text.hpp"
 
 namespace examples {
@@ -28,6 +32,11 @@ std::string joined(const std::vector<double>& values) {
   for (const double value : values) text += (text.empty() ? "" : ",") + number(value);
   return text;
 }
+
+bool quiet = false;
+std::uint32_t thread_count = 0;  // 0: one per processor
+std::string example;
+CommandText* description_wanted = nullptr;
 
 std::string one_line(std::string text) {
   std::replace(text.begin(), text.end(), '\n', ' ');
@@ -47,7 +56,10 @@ Option* Option::excludes(const std::string& other) { return option_->excludes(ot
 bool Option::given() const { return option_->count() > 0; }
 
 App::App(const std::string& description, const std::string& name)
-    : app_(std::make_unique<CLI::App>(description, name)) {}
+    : app_(std::make_unique<CLI::App>(description, name)) {
+  app_->add_flag("--quiet", quiet, "no notes and no progress on standard error");
+  if (!example.empty()) app_->footer("Example: " + example);
+}
 App::~App() = default;
 
 Option* App::add_option(const std::string& name, std::string& value, const std::string& help) {
@@ -145,14 +157,35 @@ double parse_wavelength(const std::string& where, std::string_view text) {
 
 }  // namespace
 
-double parse_number(const std::string& where, std::string_view text, const Range& range) {
+namespace {
+
+/// A number followed by one of the units, each with its factor.
+double parse_quantity(const std::string& where, std::string_view text, const Range& range,
+                      std::span<const std::pair<std::string_view, double>> units) {
   double value = 0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  const bool read = error == std::errc() && end == text.data() + text.size();
+  const std::string_view unit = text.substr(static_cast<std::size_t>(end - text.data()));
+  bool read = error == std::errc() && unit.empty();
+  for (const auto& [name, factor] : units) {
+    if (error == std::errc() && unit == name) read = true, value *= factor;
+  }
   if (!read || !(value >= range.least && value <= range.most)) {
-    throw petzval::Error(where + " = \"" + std::string(text) + "\"; must be " + range.words);
+    throw petzval::Error(where + " = \"" + std::string(text) + "\"; must be " + range.words +
+                         (units.empty() ? "" : " (mm, or with a unit: um, mm, cm, m, km, in, ft)"));
   }
   return value;
+}
+
+}  // namespace
+
+double parse_number(const std::string& where, std::string_view text, const Range& range) {
+  return parse_quantity(where, text, range, {});
+}
+
+double parse_length(const std::string& where, std::string_view text, const Range& range) {
+  static constexpr std::pair<std::string_view, double> units[]{{"um", 1e-3}, {"mm", 1},    {"cm", 10},   {"m", 1e3},
+                                                               {"km", 1e6},  {"in", 25.4}, {"ft", 304.8}};
+  return parse_quantity(where, text, range, units);
 }
 
 std::vector<double> parse_numbers(const std::string& where, std::string_view text, const Range& range) {
@@ -178,6 +211,45 @@ Option* add_numbers(App& app, const std::string& flag, std::vector<double>& valu
           flag, [&values, flag, range](const std::string& text) { values = parse_numbers(flag, text, range); }, help)
       ->type_name("NUMBER,...")
       ->default_str(joined(values));
+}
+
+Option* add_length(App& app, const std::string& flag, double& value, const Range& range, const std::string& help) {
+  return app
+      .add_option(
+          flag, [&value, flag, range](const std::string& text) { value = parse_length(flag, text, range); }, help)
+      ->type_name("LENGTH")
+      ->default_str(number(value));
+}
+
+Option* add_lengths(App& app, const std::string& flag, std::vector<double>& values, const Range& range,
+                    const std::string& help) {
+  return app
+      .add_option(
+          flag,
+          [&values, flag, range](const std::string& text) {
+            values = parse_list(flag, text, [&](std::string_view item) { return parse_length(flag, item, range); });
+          },
+          help)
+      ->type_name("LENGTH,...")
+      ->default_str(joined(values));
+}
+
+Option* add_threads(App& app) {
+  return add_count(app, "--threads", thread_count, {1, 1024, "a whole number from 1 to 1024"}, "number of threads")
+      ->default_str("one per processor");
+}
+
+int threads() { return thread_count > 0 ? static_cast<int>(thread_count) : petzval::processor_threads(); }
+
+void set_example(std::string text) { example = std::move(text); }
+
+CommandText described(int (*command)(int, char**), std::string name) {
+  CommandText result;
+  description_wanted = &result;
+  char* arguments[]{name.data(), nullptr};
+  command(1, arguments);
+  description_wanted = nullptr;
+  return result;
 }
 
 Option* add_wavelengths(App& app, const std::string& flag, std::vector<double>& values, const std::string& help) {
@@ -224,7 +296,7 @@ std::string in_words(petzval::DistanceOrigin origin) {
 std::string FocusFlags::from() const { return in_words(distance_origin()); }
 
 Option* add_distance_origin(App& app, std::string& origin) {
-  return app.add_option("--distance-from", origin, "origin of all distances; they are positive towards the scene")
+  return app.add_option("--from", origin, "origin of all distances; they are positive towards the scene")
       ->one_of(names(distance_origins))
       ->capture_default_str();
 }
@@ -236,7 +308,7 @@ void add_focus(App& app, FocusFlags& flags) {
 
 Option* add_film_choice(App& app, std::string& film, const std::string& default_words) {
   return app
-      .add_option("--film", film,
+      .add_option("--film-position", film,
                   "position of the film: file (as in the lens file) or focus (the subject is in focus by --criterion)")
       ->one_of({"file", "focus"})
       ->default_str(default_words);
@@ -244,7 +316,7 @@ Option* add_film_choice(App& app, std::string& film, const std::string& default_
 
 void note(const std::string& text) {
   static std::set<std::string> said;
-  if (said.insert(text).second) std::cerr << "note: " << text << '\n';
+  if (!quiet && said.insert(text).second) std::cerr << "note: " << text << '\n';
 }
 
 namespace {
@@ -282,7 +354,7 @@ Option* add_count(App& app, const std::string& flag, std::uint32_t& value, const
 }
 
 Option* add_samples(App& app, std::uint32_t& samples) {
-  return add_count(app, "--samples", samples, {1, 1u << 26, "a whole number from 1 to 67108864"},
+  return add_count(app, "--rays", samples, {1, 1u << 26, "a whole number from 1 to 67108864"},
                    "rays per wavelength, 1 to 67108864");
 }
 
@@ -291,6 +363,14 @@ int run(App& app, int argc, char** argv, const std::function<void()>& body) {
     std::cerr << app.app_->get_name() << ": " << one_line(what) << '\n';
     return 1;
   };
+  if (description_wanted) {
+    description_wanted->description = app.app_->get_description();
+    for (const CLI::Option* option : app.app_->get_options()) {
+      description_wanted->options.push_back(
+          {option->get_name(false, true), option->get_type_name(), option->get_description()});
+    }
+    return 0;
+  }
   try {
     app.app_->parse(argc, argv);
     for (const auto& check : app.checks_) check();
@@ -299,13 +379,23 @@ int run(App& app, int argc, char** argv, const std::function<void()>& body) {
     return std::cout ? 0 : fail("cannot write to standard output");
   } catch (const CLI::Success& help) {
     return app.app_->exit(help);
+  } catch (const CLI::ExtrasError&) {
+    const std::vector<std::string> extras = app.app_->remaining();
+    std::vector<std::string> flags;
+    for (const CLI::Option* option : app.app_->get_options()) {
+      if (!option->get_positional()) flags.push_back(option->get_name());
+    }
+    const std::string near = extras.empty() ? "" : nearest(extras.front(), flags);
+    return fail(((extras.empty() ? "an argument" : extras.front()) + ": must be an option of this command" +
+                 (near.empty() ? " (see --help)" : "; did you mean " + near + "?"))
+                    .c_str());
   } catch (const std::exception& error) {
     return fail(error.what());
   }
 }
 
 Progress::Progress(std::string title, std::size_t steps)
-    : title_(std::move(title)), steps_(steps), shown_(isatty(STDERR_FILENO) == 1) {}
+    : title_(std::move(title)), steps_(steps), shown_(!quiet && isatty(STDERR_FILENO) == 1) {}
 
 Progress::~Progress() {
   if (shown_) std::cerr << "\r\033[K";

@@ -40,6 +40,9 @@ inline constexpr Range positive_number{std::numeric_limits<double>::min(), std::
 /// @throws petzval::Error that begins with `where`, if the text is not a number in the range
 double parse_number(const std::string& where, std::string_view text, const Range& range);
 
+/// Like parse_number() for a length in mm, or with a unit: um, mm, cm, m, km, in or ft ("3m").
+double parse_length(const std::string& where, std::string_view text, const Range& range);
+
 /// Parses "10", "0,10,20" or "0, 10, 20".
 /// @throws petzval::Error that begins with `where`, if a number is invalid or repeated
 std::vector<double> parse_numbers(const std::string& where, std::string_view text, const Range& range);
@@ -110,6 +113,11 @@ Option* add_number(App& app, const std::string& flag, double& value, const Range
 Option* add_numbers(App& app, const std::string& flag, std::vector<double>& values, const Range& range,
                     const std::string& help);
 
+/// Add lengths in mm, with or without a unit.
+Option* add_length(App& app, const std::string& flag, double& value, const Range& range, const std::string& help);
+Option* add_lengths(App& app, const std::string& flag, std::vector<double>& values, const Range& range,
+                    const std::string& help);
+
 /// Add wavelengths in nm, as numbers or spectral lines.
 Option* add_wavelength(App& app, const std::string& flag, double& value, const std::string& help);
 Option* add_wavelengths(App& app, const std::string& flag, std::vector<double>& values, const std::string& help);
@@ -118,6 +126,26 @@ Option* add_wavelengths(App& app, const std::string& flag, std::vector<double>& 
 Option* add_out_folder(App& app, std::string& folder, const std::string& help = "folder for the results");
 Option* add_out_file(App& app, std::string& file, const std::string& help, const std::string& type_name,
                      const std::string& flag = "--out");
+
+/// Adds --threads: the number of threads that threads() returns.
+Option* add_threads(App& app);
+/// The number of --threads, else one thread per processor.
+int threads();
+
+/// Sets the example shown by --help of the command that runs next.
+void set_example(std::string example);
+
+/// An option of a command, as its help shows it.
+struct OptionText {
+  std::string flag, type, help;
+};
+/// The description and the options of a command.
+struct CommandText {
+  std::string description;
+  std::vector<OptionText> options;
+};
+/// Runs a command that calls run(), and returns its texts instead of the work.
+CommandText described(int (*command)(int, char**), std::string name);
 
 /// Adds a whole number. The ends of the range are whole numbers of at least 0.
 Option* add_count(App& app, const std::string& flag, std::uint32_t& value, const Range& range, const std::string& help);
@@ -142,7 +170,7 @@ Enum named(const std::string& text, const std::array<Enum, count>& all) {
   return *std::find_if(all.begin(), all.end(), [&](Enum e) { return name(e) == text; });
 }
 
-/// --distance-from and --criterion, with the same meaning and the same defaults in every program.
+/// --from and --criterion, with the same meaning and the same defaults in every program.
 struct FocusFlags {
   std::string origin = "front_vertex";
   std::string criterion = "min_rms";
@@ -155,7 +183,7 @@ struct FocusFlags {
   std::string from() const;
 };
 
-/// Adds --distance-from, for all distances of a program.
+/// Adds --from, for all distances of a program.
 Option* add_distance_origin(App& app, std::string& origin);
 
 /// Adds --criterion: the meaning of "in focus", by one name or by several names separated by commas. --help shows the
@@ -164,7 +192,7 @@ Option* add_criterion(App& app, std::string& criterion,
                       const std::vector<std::string>& allowed = names(focus_criteria));
 Option* add_criteria(App& app, std::vector<std::string>& criteria);
 
-/// Adds --distance-from and --criterion.
+/// Adds --from and --criterion.
 void add_focus(App& app, FocusFlags& flags);
 
 /// Adds --film: "file" for the film position of the lens file, "focus" for the position that focuses the subject.
@@ -177,7 +205,7 @@ std::string in_words(petzval::DistanceOrigin origin);
 /// Prints "note: TEXT" on standard error, each text once.
 void note(const std::string& text);
 
-/// Adds --samples: rays per wavelength, 1 to 2^26.
+/// Adds --rays: rays per wavelength, 1 to 2^26.
 Option* add_samples(App& app, std::uint32_t& samples);
 
 /// Reads the command line and runs the body. Returns the exit status: 0, or 1 after one line with the reason on

@@ -27,7 +27,7 @@ void add_iris_shape(App& app, IrisSetup& setup) {
   add_count(app, "--blades", setup.blades, blades, "blades of the iris, 3 to 20; 0: round");
   add_number(app, "--roundness", setup.roundness, {-1, 1, "a number from -1 to 1"},
              "0: the edges of the blades are straight; 1: round; below 0: hollow");
-  add_number(app, "--iris-rotation-deg", setup.rotation_deg, finite_number,
+  add_number(app, "--iris-rotation", setup.rotation_deg, finite_number,
              "rotation of the first corner from straight up, anticlockwise seen from behind the camera (degrees)");
   app.add_option("--iris-area", setup.area,
                  "meaning of the f-number with blades. circumscribed: their corners lie on the round iris; equal: they "
@@ -56,7 +56,7 @@ petzval::Lens stopped_down(const petzval::Lens& lens, const IrisSetup& setup) {
       throw petzval::Error(found + " needs --blades: a round iris has " + why);
     };
     if (setup.roundness != 0) refuse("--roundness", "no edges");
-    if (setup.rotation_deg != 0) refuse("--iris-rotation-deg", "no corners");
+    if (setup.rotation_deg != 0) refuse("--iris-rotation", "no corners");
     if (setup.area == "equal") refuse("--iris-area = equal", "only one area");
   }
   const petzval::Lens shaped = for_flag("--blades", [&] { return petzval::with_iris(lens, setup.iris()); });

@@ -23,7 +23,7 @@ struct IrisSetup {
   double f_number_by_corners() const;
 };
 
-/// Adds --blades, --roundness, --iris-rotation-deg and --iris-area.
+/// Adds --blades, --roundness, --iris-rotation and --iris-area.
 void add_iris_shape(App& app, IrisSetup& setup);
 
 /// Adds the options of add_iris_shape() and --f-number.

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <filesystem>
 #include <iostream>
+#include <system_error>
 #include <utility>
 
 #include "petzval/analysis/match_glasses.hpp"
@@ -13,6 +14,7 @@
 #include "petzval/formats/lens_file.hpp"
 #include "petzval/paraxial/first_order.hpp"
 #include "petzval/pupil/f_number.hpp"
+#include "suggest.hpp"
 #include "text.hpp"
 
 namespace examples {
@@ -60,13 +62,28 @@ petzval::ConfigurationChoice choice_of(const std::string& text) {
   return text;
 }
 
+/// The file of a lens: the path itself, or the file of a shipped lens with this name.
+std::filesystem::path lens_path(const std::string& text) {
+  std::error_code error;
+  if (text.empty() || std::filesystem::exists(text, error) || text.find('/') != std::string::npos) return text;
+  const std::filesystem::path folder = petzval::data_directory() / "lenses";
+  if (const auto file = folder / (text + ".json"); std::filesystem::exists(file, error)) return file;
+  if (std::filesystem::path(text).extension() == ".json") return text;
+  std::vector<std::string> names;
+  for (const auto& file : std::filesystem::directory_iterator(folder, error))
+    names.push_back(file.path().stem().string());
+  const std::string near = nearest(text, names);
+  throw petzval::Error("LENS = " + text + ": no file and no shipped lens has this name" +
+                       (near.empty() ? "; petzval lenses lists them" : "; did you mean " + near + "?"));
+}
+
 }  // namespace
 
 Option* add_lens(App& app, LensInput& input, const std::string& name, const std::string& remark) {
-  Option* lens =
-      app.add_option(name, input.file,
-                     "a lens: JSON as in data/lenses, .zmx, .seq, .len, .lens, OpticalBench or other tables" +
-                         (remark.empty() ? "" : "; " + remark));
+  Option* lens = app.add_option(name, input.file,
+                                "a shipped lens (petzval lenses) or a file: JSON as in data/lenses, .zmx, .seq, .len, "
+                                ".lens, OpticalBench or other tables" +
+                                    (remark.empty() ? "" : "; " + remark));
   if (name == "LENS" && remark.empty()) lens->required();
   lens->type_name("FILE");
   app.add_option("--glasses", input.glass_files, "glass catalogues to search first (.agf, refractiveindex.info .yml)")
@@ -99,7 +116,7 @@ petzval::GlassCatalogue glasses_of(const LensInput& input) {
 ReadLens read_configurations(const LensInput& input, const petzval::GlassCatalogue& glasses) {
   const std::size_t slash = input.configuration.find('/');
   const std::string first = input.configuration.substr(0, slash);
-  petzval::Prescription whole = petzval::read_lens(input.file, {.glasses = &glasses, .entry = first});
+  petzval::Prescription whole = petzval::read_lens(lens_path(input.file), {.glasses = &glasses, .entry = first});
   std::string position = input.configuration;
   if (whole.imported && !whole.imported->entry.empty()) {
     position = slash == std::string::npos ? "" : position.substr(slash + 1);

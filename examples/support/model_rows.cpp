@@ -39,9 +39,9 @@ void for_numbers(const ModelRow& row, Use use) {
 
 petzval::Film ModelOptions::film() const {
   if (resolution.empty()) return setup.film(0, 0, usual_columns);
-  const auto [columns, rows] = parse_size("--resolution", resolution, pixel_count);
+  const auto [columns, rows] = parse_size("--size", resolution, pixel_count);
   if (columns != std::floor(columns) || rows != std::floor(rows)) {
-    throw petzval::Error("--resolution = \"" + resolution + "\"; must be two whole numbers");
+    throw petzval::Error("--size = \"" + resolution + "\"; must be two whole numbers");
   }
   return setup.film(static_cast<std::uint32_t>(columns), static_cast<std::uint32_t>(rows), usual_columns);
 }
@@ -49,8 +49,8 @@ petzval::Film ModelOptions::film() const {
 void add_model_options(App& app, ModelOptions& options) {
   add_lens(app, options.lens_file);
   add_camera(app, options.setup);
-  app.add_option("--resolution", options.resolution,
-                 "pixels across and up; without --film-mm the film takes their shape within 36 x 24 mm")
+  app.add_option("--size", options.resolution,
+                 "pixels across and up; without --film the film takes their shape within 36 x 24 mm")
       ->type_name("WxH")
       ->default_str("3840 across, square");
   app.add_flag("--json", options.json, "print JSON");

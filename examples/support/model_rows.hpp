@@ -21,7 +21,7 @@ struct ModelOptions {
   std::string resolution{};  ///< empty: not given
   bool json = false;
 
-  /// @throws petzval::Error if --film-mm or --resolution is invalid
+  /// @throws petzval::Error if --film or --size is invalid
   petzval::Film film() const;
 };
 void add_model_options(App& app, ModelOptions& options);

@@ -27,7 +27,7 @@ void add_movement_options(App& app, MovementOptions& options) {
   add_number(app, "--f-number", options.f_number, positive_number, "f-number to stop the lens down to (by exact rays)")
       ->default_str("wide open");
   app.add_option(
-         "--film-mm",
+         "--film",
          [&options](const std::string& text) {
            options.film_mm = text;
            options.film_given = true;
@@ -39,7 +39,7 @@ void add_movement_options(App& app, MovementOptions& options) {
 
 MovingLens moving_lens(const MovementOptions& options) {
   MovingLens result;
-  const auto [width, height] = parse_size("--film-mm", options.film_mm, film_side);
+  const auto [width, height] = parse_size("--film", options.film_mm, film_side);
   result.film = {.width_mm = width, .height_mm = height};
   if (options.focal_length_mm > 0) {
     if (!options.lens_file.file.empty()) {

@@ -23,7 +23,7 @@ const std::set<std::string> row_keys{
     "exposure_error", "ns_per_ray", "setup_ms", "on_front"};
 
 TEST_F(AccuracySpeed, PrintsARowForEveryModel) {
-  const auto outcome = run("accuracy_speed", {lens("double_gauss_52mm_f1.8"), "--json", "--out", path("out")});
+  const auto outcome = run("models", {lens("double_gauss_52mm_f1.8"), "--json", "--out", path("out")});
   ASSERT_EQ(outcome.status, 0) << outcome.err;
   const auto rows = nlohmann::json::parse(outcome.out);
   ASSERT_EQ(rows.size(), petzval::models().size());
@@ -64,7 +64,7 @@ TEST_F(AccuracySpeed, PrintsARowForEveryModel) {
 
 TEST_F(AccuracySpeed, WritesAFileForEachPositionOfAZoom) {
   const auto outcome =
-      run("accuracy_speed", {lens("zoom_70-210mm_f4"), "--configuration", "tele", "--json", "--out", path("out")});
+      run("models", {lens("zoom_70-210mm_f4"), "--configuration", "tele", "--json", "--out", path("out")});
   ASSERT_EQ(outcome.status, 0) << outcome.err;
   for (const char* ending : {".csv", ".svg"}) {
     EXPECT_TRUE(std::filesystem::exists(path(std::string("out/zoom_70-210mm_f4_tele_accuracy_speed") + ending)));

@@ -20,9 +20,9 @@ class BokehPsf : public Programs {
   static constexpr const char* id = "double_gauss_100mm_f1.35";
 
   nlohmann::json bokeh(std::vector<std::string> more, const std::string& out = "bokeh") const {
-    std::vector<std::string> arguments{lens(id), "--out", path(out), "--samples", "32768"};
+    std::vector<std::string> arguments{lens(id), "--out", path(out), "--rays", "32768"};
     arguments.insert(arguments.end(), more.begin(), more.end());
-    const auto outcome = run("bokeh_psf", arguments);
+    const auto outcome = run("psf", arguments);
     EXPECT_EQ(outcome.status, 0) << outcome.err;
     EXPECT_EQ(outcome.err, "");
     for (const auto& file : lines(outcome.out)) EXPECT_TRUE(std::filesystem::exists(file)) << file;
@@ -41,7 +41,7 @@ class BokehPsf : public Programs {
 };
 
 TEST_F(BokehPsf, KeepsAllTheLight) {
-  const auto json = bokeh({"--subject-distance-mm", "1000", "--focus-mm", "800,1200"});
+  const auto json = bokeh({"--at", "1000", "--focus", "800,1200"});
   EXPECT_EQ(json["dispersion"], "catalogue");
   ASSERT_EQ(json["results"].size(), 2u);
   const std::array<const char*, 2> names{"800", "1200"};
@@ -65,7 +65,7 @@ TEST_F(BokehPsf, KeepsAllTheLight) {
 }
 
 TEST_F(BokehPsf, StoppedDownBlurEqualsTheThinLens) {
-  const auto json = bokeh({"--subject-distance-mm", "3000", "--focus-mm", "1500", "--f-number", "16"});
+  const auto json = bokeh({"--at", "3000", "--focus", "1500", "--f-number", "16"});
   const double expected = petzval::thin_lens_blur_diameter(100.437, 100.437 / 16, 3081.11, 1581.11) / 2;
   EXPECT_NEAR(json["results"][0]["radius_mm"].get<double>(), expected, 0.01 * expected);
   EXPECT_NEAR(json["f_number_real"].get<double>(), 16, 1e-10);
@@ -75,7 +75,7 @@ TEST_F(BokehPsf, StoppedDownBlurEqualsTheThinLens) {
 TEST_F(BokehPsf, KilledRunKeepsCompletePictures) {
   const std::string first = path("cut/") + id + "_focus_900mm.exr", numbers = path("cut/") + id + "_bokeh.json";
   write("kill.sh", "'" + std::string(PETZVAL_TEST_PROGRAMS) + "/bokeh_psf' '" + lens(id) +
-                       "' --subject-distance-mm 1000 --focus-mm 900,1000,1100 --samples 4194304 --out '" + path("cut") +
+                       "' --at 1000 --focus 900,1000,1100 --rays 4194304 --out '" + path("cut") +
                        "' > /dev/null 2>&1 & pid=$!\nwhile [ ! -e '" + numbers +
                        "' ] && kill -0 $pid; do :; done 2> /dev/null\nkill -INT $pid 2> /dev/null\n"
                        "kill -9 $pid 2> /dev/null\nwait $pid\nexit 0\n");
@@ -89,7 +89,7 @@ TEST_F(BokehPsf, KilledRunKeepsCompletePictures) {
 // Far out of focus at f/16 the blur has the shape of the iris: area and moments agree.
 TEST_F(BokehPsf, HasTheShapeOfTheIris) {
   const auto all = [&](std::vector<std::string> iris) {
-    iris.insert(iris.end(), {"--subject-distance-mm", "3000", "--focus-mm", "1500", "--f-number", "16"});
+    iris.insert(iris.end(), {"--at", "3000", "--focus", "1500", "--f-number", "16"});
     return bokeh(iris);
   };
   const auto result = [&](const std::vector<std::string>& iris) { return all(iris)["results"][0]; };
@@ -98,7 +98,7 @@ TEST_F(BokehPsf, HasTheShapeOfTheIris) {
   EXPECT_EQ(number(round, "iris_area_share"), 1);
   constexpr double pi = std::numbers::pi;
   for (const int n : {3, 6, 9}) {
-    const auto bladed = result({"--blades", std::to_string(n), "--iris-rotation-deg", "10"});
+    const auto bladed = result({"--blades", std::to_string(n), "--iris-rotation", "10"});
     const double share = n / (2 * pi) * std::sin(2 * pi / n), square = (2 + std::cos(2 * pi / n)) / 12;
     EXPECT_NEAR(number(bladed, "iris_area_share"), share, 1e-14);
     EXPECT_NEAR(number(bladed, "throughput") / number(round, "throughput") / share, 1, 5e-3);
@@ -124,10 +124,10 @@ TEST_F(BokehPsf, HasTheShapeOfTheIris) {
 }
 
 TEST_F(BokehPsf, WritesTheRequestedFormats) {
-  bokeh({"--subject-distance-mm", "1000", "--focus-mm", "900", "--format", "exr,pfm"});
+  bokeh({"--at", "1000", "--focus", "900", "--format", "exr,pfm"});
   const std::string stem = path(std::string("bokeh/") + id + "_focus_900mm");
   EXPECT_FALSE(std::filesystem::exists(stem + ".png"));
-  const auto twice = run("bokeh_psf", {lens(id), "--subject-distance-mm", "1000", "--focus-mm", "900", "--samples",
+  const auto twice = run("psf", {lens(id), "--at", "1000", "--focus", "900", "--rays",
                                        "64", "--format", "pfm,pfm", "--out", path("twice")});
   EXPECT_EQ(lines(twice.out).size(), 3u) << twice.out;  // the file, the contact sheet, the numbers
   const std::string pfm = read(stem + ".pfm"), head = "PF\n512 512\n-1.0\n";
@@ -152,7 +152,7 @@ TEST_F(BokehPsf, WritesTheRequestedFormats) {
 TEST_F(BokehPsf, LightOfTheWhitePointIsWhite) {
   std::ofstream(path("led.csv")) << "wavelength_nm,power\n440,0\n455,10\n470,2\n560,6\n700,0\n";
   const auto reddest = [&](const std::string& white) {
-    const auto json = bokeh({"--subject-distance-mm", "1000", "--focus-mm", "900", "--wavelengths-nm",
+    const auto json = bokeh({"--at", "1000", "--focus", "900", "--wavelengths",
                              "450,520,590,650", "--white-point", white});
     EXPECT_EQ(json["white_point"], white);
     const auto image = petzval::read_exr(path(std::string("bokeh/") + id + "_focus_900mm.exr"));
@@ -171,7 +171,7 @@ TEST_F(BokehPsf, LightOfTheWhitePointIsWhite) {
 }
 
 TEST_F(BokehPsf, AcceptsEveryModelWithWeights) {
-  const std::vector<std::string> plain{"--subject-distance-mm", "2000", "--focus-mm", "1000", "--f-number", "4"};
+  const std::vector<std::string> plain{"--at", "2000", "--focus", "1000", "--f-number", "4"};
   const auto with = [&](std::vector<std::string> more) {
     more.insert(more.begin(), plain.begin(), plain.end());
     return bokeh(more)["results"][0];
@@ -186,12 +186,12 @@ TEST_F(BokehPsf, AcceptsEveryModelWithWeights) {
   const auto ring = with({"--weight-distribution", "20", "--weight-strength", "0.6"});
   EXPECT_NEAR(ring["throughput"].get<double>() / exact["throughput"].get<double>(), 1, 0.03);
   EXPECT_GT(ring["rms_radius_mm"].get<double>(), 1.15 * exact["rms_radius_mm"].get<double>());
-  const auto eye = with({"--model", "thin", "--field-deg", "8", "--rate-of-change", "1"});
+  const auto eye = with({"--model", "thin", "--fields", "8", "--rate-of-change", "1"});
   EXPECT_LT(eye["throughput"].get<double>(), 0.75 * exact["throughput"].get<double>());
   EXPECT_LT(eye["second_moments_mm2"][1].get<double>(), 0.5 * eye["second_moments_mm2"][0].get<double>());
-  EXPECT_NEAR(with({"--model", "thin", "--field-deg", "8", "--rate-of-change", "1", "--keep-light"})["throughput"]
+  EXPECT_NEAR(with({"--model", "thin", "--fields", "8", "--rate-of-change", "1", "--keep-light"})["throughput"]
                   .get<double>(),
-              with({"--model", "thin", "--field-deg", "8"})["throughput"].get<double>(), 0.01);
+              with({"--model", "thin", "--fields", "8"})["throughput"].get<double>(), 0.01);
 }
 
 TEST_F(BokehPsf, AcceptsAnImageAsIris) {
@@ -201,7 +201,7 @@ TEST_F(BokehPsf, AcceptsAnImageAsIris) {
   petzval::write_png(petzval::to_srgb8(half), path("half.png"));
   for (const char* file : {"half.exr", "half.png"}) {
     const auto json =
-        bokeh({"--subject-distance-mm", "2000", "--focus-mm", "1000", "--f-number", "4", "--iris-image", path(file)});
+        bokeh({"--at", "2000", "--focus", "1000", "--f-number", "4", "--iris-image", path(file)});
     const auto& result = json["results"][0];
     EXPECT_NEAR(result["iris_area_share"].get<double>(), 0.5, 0.01);
     EXPECT_NEAR(result["throughput"].get<double>(), 0.5, 0.02);

@@ -33,8 +33,8 @@ class BokehScene : public Programs {
   Arguments arguments(const std::string& out, const Arguments& more = {}) const {
     Arguments all{"--scene",    path("scene.json"),
                   "--lens",     lens("double_gauss_100mm_f2_28deg"),
-                  "--focus-mm", "1000",
-                  "--width",    "72",
+                  "--focus", "1000",
+                  "--size",    "72",
                   "--height",   "48",
                   "--spp",      "20",
                   "--out",      path(out)};
@@ -52,7 +52,7 @@ class BokehScene : public Programs {
     return all;
   }
   json render(const std::string& out, const Arguments& more = {}) const {
-    const Outcome done = run("bokeh_scene", arguments(out, more));
+    const Outcome done = run("render", arguments(out, more));
     EXPECT_EQ(done.status, 0) << done.err;
     return read_json(path(out) + "/render.json");
   }
@@ -86,7 +86,7 @@ TEST_F(BokehScene, ShardsAndResumedRunsEqualOneRunToTheBit) {
   render("threads", {"--threads", "3"});
   EXPECT_EQ(read(path("threads/picture.exr")), whole);
 
-  const Outcome stopped = run("bokeh_scene", arguments("resumed", {"--time-s", "0.02"}));
+  const Outcome stopped = run("render", arguments("resumed", {"--time-s", "0.02"}));
   EXPECT_EQ(stopped.status, 0);
   EXPECT_NE(stopped.err.find("--resume"), std::string::npos) << stopped.err;
   EXPECT_FALSE(read_json(path("resumed/render.json"))["finished"]);
@@ -96,14 +96,14 @@ TEST_F(BokehScene, ShardsAndResumedRunsEqualOneRunToTheBit) {
   // All tiles receive light, in an unfinished image as well.
   const petzval::RgbImage image = petzval::read_exr(path("resumed/picture.exr"));
   EXPECT_GT(image.pixel(36, 45)[1], 0);
-  const Outcome anew = run("bokeh_scene", arguments("resumed"));
+  const Outcome anew = run("render", arguments("resumed"));
   EXPECT_NE(anew.err.find("sums.before.exr"), std::string::npos) << anew.err;
   EXPECT_TRUE(std::filesystem::exists(path("resumed/sums.before.exr")));
 
   for (const char* tile : {"1/2", "2/2"}) {
-    EXPECT_EQ(run("bokeh_scene", arguments("tiles", {"--tile", tile})).status, 0);
+    EXPECT_EQ(run("render", arguments("tiles", {"--shard", tile})).status, 0);
   }
-  EXPECT_EQ(run("bokeh_scene", {"merge", path("tiles"), "--out", path("merged")}).status, 0);
+  EXPECT_EQ(run("render", {"merge", path("tiles"), "--out", path("merged")}).status, 0);
   EXPECT_EQ(read(path("merged/picture.exr")), whole);
   EXPECT_NE(read(path("whole/picture.exr")), [&] {
     render("seed", {"--seed", "1"});
@@ -126,7 +126,7 @@ TEST_F(BokehScene, AddsSamplesToAFinishedPicture) {
               read_json(path(at_once + "/render.json"))["mean_radiance"]);
   }
   // A smaller --spp keeps the existing samples.
-  const Outcome fewer = run("bokeh_scene", arguments("grown_path", {"--integrator", "path", "--spp", "4", "--resume"}));
+  const Outcome fewer = run("render", arguments("grown_path", {"--integrator", "path", "--spp", "4", "--resume"}));
   EXPECT_EQ(fewer.status, 0);
   EXPECT_NE(fewer.err.find("--spp = 4"), std::string::npos) << fewer.err;
   EXPECT_EQ(read(path("grown_path/picture.exr")), read(path("once_path/picture.exr")));
@@ -153,29 +153,29 @@ TEST_F(BokehScene, InterruptedRunKeepsItsSamples) {
   EXPECT_EQ(read(path("cut/picture.exr")), read(path("whole/picture.exr")));
 }
 
-// Without --film-mm the film has the shape of the picture; without --height the picture has the shape of the film.
+// Without --film the film has the shape of the picture; without --height the picture has the shape of the film.
 TEST_F(BokehScene, PixelsAreSquareByDefault) {
   const auto shape = [&](const std::string& out, const Arguments& more) {
     Arguments all{"--scene",    path("scene.json"),
                   "--lens",     lens("double_gauss_100mm_f2_28deg"),
-                  "--focus-mm", "1000",
+                  "--focus", "1000",
                   "--spp",      "1",
                   "--out",      path(out)};
     all.insert(all.end(), more.begin(), more.end());
-    const Outcome outcome = run("bokeh_scene", all);
+    const Outcome outcome = run("render", all);
     EXPECT_EQ(outcome.status, 0) << outcome.err;
     const json job = read_json(path(out) + "/render.json")["job"];
     return std::tuple(job["film_mm"].get<std::string>(), job["width"].get<int>(), job["height"].get<int>(),
                       outcome.err);
   };
-  EXPECT_EQ(shape("wide", {"--width", "96", "--height", "54"}), std::tuple("36x20.25", 96, 54, ""));
-  EXPECT_EQ(shape("tall", {"--width", "48", "--height", "96"}), std::tuple("18x36", 48, 96, ""));
-  EXPECT_EQ(shape("square", {"--width", "48", "--height", "48"}), std::tuple("24x24", 48, 48, ""));
-  EXPECT_EQ(shape("usual", {"--width", "90"}), std::tuple("36x24", 90, 60, ""));
-  EXPECT_EQ(shape("film", {"--width", "96", "--film-mm", "24x9"}), std::tuple("24x9", 96, 36, ""));
-  const auto [film, width, height, note] = shape("egg", {"--width", "96", "--height", "54", "--film-mm", "36x24"});
+  EXPECT_EQ(shape("wide", {"--size", "96x54"}), std::tuple("36x20.25", 96, 54, ""));
+  EXPECT_EQ(shape("tall", {"--size", "48x96"}), std::tuple("18x36", 48, 96, ""));
+  EXPECT_EQ(shape("square", {"--size", "48x48"}), std::tuple("24x24", 48, 48, ""));
+  EXPECT_EQ(shape("usual", {"--size", "90"}), std::tuple("36x24", 90, 60, ""));
+  EXPECT_EQ(shape("film", {"--size", "96", "--film", "24x9"}), std::tuple("24x9", 96, 36, ""));
+  const auto [film, width, height, note] = shape("egg", {"--size", "96x54", "--film", "36x24"});
   EXPECT_EQ(film, "36x24");
-  for (const char* flag : {"--film-mm", "--width", "--height"}) EXPECT_NE(note.find(flag), std::string::npos) << note;
+  for (const char* flag : {"--film", "--size", "--height"}) EXPECT_NE(note.find(flag), std::string::npos) << note;
 }
 
 TEST_F(BokehScene, IntegratorsAndModelsAgree) {
@@ -193,8 +193,8 @@ TEST_F(BokehScene, IntegratorsAndModelsAgree) {
   // All models have the same exposure at the centre; corners of first-order models are brighter. The pinhole is not
   // tested: without blur the light of the nearby lamp does not reach the film.
   for (const char* model : {"thin", "thin_two_disc", "polynomial_5", "exact_double"}) {
-    const json report = render("model", {"--model", model, "--film-mm", "6x4", "--spp", "64"});
-    const json exact = render("exact", {"--film-mm", "6x4", "--spp", "64"});
+    const json report = render("model", {"--model", model, "--film", "6x4", "--spp", "64"});
+    const json exact = render("exact", {"--film", "6x4", "--spp", "64"});
     EXPECT_NEAR(mean(report, 1) / mean(exact, 1), 1, 0.03) << model;
   }
 }
@@ -203,7 +203,7 @@ TEST_F(BokehScene, ChoosesAModelWithReasons) {
   const json rough = render("rough", {"--model", "auto", "--spp", "1"});
   const json fine = render("fine", {"--model", "auto", "--budget-px", "0.01", "--spp", "1"});
   EXPECT_GE(rough["why"].size(), 2);
-  const Outcome again = run("bokeh_scene", arguments("rough", {"--model", "auto", "--spp", "1", "--resume"}));
+  const Outcome again = run("render", arguments("rough", {"--model", "auto", "--spp", "1", "--resume"}));
   EXPECT_EQ(again.status, 0) << again.err;
   EXPECT_EQ(read_json(path("rough/render.json"))["model"], rough["model"]);
   EXPECT_NE(rough["model"], fine["model"]);
@@ -223,13 +223,13 @@ TEST_F(BokehScene, NormalisationScalesTheImageAndKeepsThePng) {
 
 TEST_F(BokehScene, RefusesOtherAndDamagedCheckpoints) {
   render("a");
-  expect_failure("bokeh_scene", arguments("a", {"--resume", "--seed", "4"}), {"seed", 0, 4});
+  expect_failure("render", arguments("a", {"--resume", "--seed", "4"}), {"seed", 0, 4});
   const std::string whole = read(path("a/sums.exr"));
   write("a/sums.exr", whole.substr(0, whole.size() / 2));
-  expect_failure("bokeh_scene", arguments("a", {"--resume"}), {"sums.exr"});
+  expect_failure("render", arguments("a", {"--resume"}), {"sums.exr"});
   EXPECT_EQ(read(path("a/sums.exr")).size(), whole.size() / 2);  // nothing is lost
-  EXPECT_EQ(run("bokeh_scene", arguments("b", {"--tile", "1/2"})).status, 0);
-  expect_failure("bokeh_scene", {"merge", path("b"), "--out", path("c")}, {"2/2"});
+  EXPECT_EQ(run("render", arguments("b", {"--shard", "1/2"})).status, 0);
+  expect_failure("render", {"merge", path("b"), "--out", path("c")}, {"2/2"});
 }
 
 // A focal surface and aberrations change the image but not the exposure; a sphere that contains a key point is sharper
@@ -237,7 +237,7 @@ TEST_F(BokehScene, RefusesOtherAndDamagedCheckpoints) {
 TEST_F(BokehScene, AcceptsFocalSurfacesAndAberrations) {
   write("points.json", R"({"points": [{"world_mm": [40, 60, -1200]}, {"world_mm": [-60, 40, -900], "extent_stops": 1},
     {"pixel": [36, 2], "distance_mm": null}, {"pixel": [36, 46], "distance_mm": 700, "blur_px": 2, "weight": 0.5}]})");
-  const Arguments thick{"--model", "thick", "--integrator", "path", "--focus-mm", "3000"};
+  const Arguments thick{"--model", "thick", "--integrator", "path", "--focus", "3000"};
   const auto with = [&](Arguments more) {
     more.insert(more.begin(), thick.begin(), thick.end());
     return more;
@@ -266,18 +266,18 @@ TEST_F(BokehScene, AcceptsFocalSurfacesAndAberrations) {
 }
 
 TEST_F(BokehScene, PicturesAreLaidOutOnSheets) {
-  render("a"), render("b", {"--focus-mm", "1500"});
-  const Outcome done = run("bokeh_sheet", {path("a"), path("b"), "--columns", "2", "--out", path("sheet.png"),
+  render("a"), render("b", {"--focus", "1500"});
+  const Outcome done = run("sheet", {path("a"), path("b"), "--columns", "2", "--out", path("sheet.png"),
                                            "--balls", path("balls.csv")});
   EXPECT_EQ(done.status, 0) << done.err;
   EXPECT_TRUE(read(path("sheet.png")).starts_with("\x89PNG"));
   EXPECT_TRUE(read(path("balls.csv")).starts_with("lens,focus_mm,x_mm,"));
-  render("small", {"--width", "36", "--height", "24"});
-  expect_failure("bokeh_sheet", {path("a"), path("small"), "--out", path("c.png")}, {"small", 36, 24});
-  expect_failure("bokeh_sheet", {path("a"), "--out", path("c.jpg")}, {"c.jpg", ".png"});
-  expect_failure("bokeh_sheet", {path("nothing"), "--out", path("c.png")}, {"nothing"});
+  render("small", {"--size", "36x24"});
+  expect_failure("sheet", {path("a"), path("small"), "--out", path("c.png")}, {"small", 36, 24});
+  expect_failure("sheet", {path("a"), "--out", path("c.jpg")}, {"c.jpg", ".png"});
+  expect_failure("sheet", {path("nothing"), "--out", path("c.png")}, {"nothing"});
   write("a/render.json", "{}");
-  expect_failure("bokeh_sheet", {path("a"), "--out", path("c.png")}, {"render.json"});
+  expect_failure("sheet", {path("a"), "--out", path("c.png")}, {"render.json"});
 }
 
 }  // namespace

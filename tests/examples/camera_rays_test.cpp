@@ -17,7 +17,7 @@ class CameraRays : public Programs {
   std::vector<std::string> arguments(const std::string& lens_id, const std::string& model,
                                      const std::vector<std::string>& more) const {
     std::vector<std::string> result{lens(lens_id), "--samples", path("samples.csv"), "--out", path("rays.csv"),
-                                    "--focus-mm",  "3000",      "--model",           model};
+                                    "--focus",  "3000",      "--model",           model};
     result.insert(result.end(), more.begin(), more.end());
     return result;
   }
@@ -27,7 +27,7 @@ class CameraRays : public Programs {
                                              const std::string& model = "exact_double",
                                              const std::vector<std::string>& more = {}) const {
     write("samples.csv", csv);
-    const auto outcome = run("camera_rays", arguments(lens_id, model, more));
+    const auto outcome = run("camera-rays", arguments(lens_id, model, more));
     EXPECT_EQ(outcome.status, 0) << outcome.err;
     EXPECT_EQ(outcome.out, "");
     auto rows = lines(read(path("rays.csv")));
@@ -46,7 +46,7 @@ class CameraRays : public Programs {
                       const std::string& lens_id = "double_gauss_100mm_f2.0") const {
     SCOPED_TRACE(csv);
     write("samples.csv", csv);
-    expect_failure("camera_rays", arguments(lens_id, "exact_double", {}), tokens);
+    expect_failure("camera-rays", arguments(lens_id, "exact_double", {}), tokens);
     EXPECT_FALSE(std::filesystem::exists(path("rays.csv")));
   }
 };
@@ -125,7 +125,7 @@ TEST_F(CameraRays, PointsOutsideTheFilmHaveAFate) {
   EXPECT_EQ(rows[0][9], "transmitted");
   EXPECT_EQ(rows[1][9], "outside_film");
   EXPECT_EQ(std::stod(rows[1][6]), 0);
-  rows = rays("double_gauss_100mm_f2.0", csv, "exact_double", {"--film-mm", "24x36"});
+  rows = rays("double_gauss_100mm_f2.0", csv, "exact_double", {"--film", "24x36"});
   EXPECT_EQ(rows[1][9], "transmitted");
 }
 

@@ -13,7 +13,7 @@ class ChooseCamera : public Programs {
   nlohmann::json choice(const Arguments& more) const {
     Arguments arguments{lens("double_gauss_52mm_f1.8"), "--json"};
     arguments.insert(arguments.end(), more.begin(), more.end());
-    const auto outcome = run("choose_camera", arguments);
+    const auto outcome = run("choose", arguments);
     EXPECT_EQ(outcome.status, 0) << outcome.err;
     return nlohmann::json::parse(outcome.out);
   }
@@ -25,7 +25,7 @@ nlohmann::json row_of(const nlohmann::json& choice, const std::string& model) {
 
 TEST_F(ChooseCamera, ChosenModelKeepsTheBudgetForFreshSamples) {
   for (const char* budget : {"2", "0.2", "0.01"}) {
-    const auto json = choice({"--near-mm", "1000", "--far-mm", "inf", "--budget-px", budget});
+    const auto json = choice({"--near", "1000", "--far", "inf", "--budget-px", budget});
     SCOPED_TRACE(json.dump());
     const std::string model = json["model"];
     const auto row = row_of(json, model);
@@ -47,10 +47,10 @@ TEST_F(ChooseCamera, ChosenModelKeepsTheBudgetForFreshSamples) {
 
 TEST_F(ChooseCamera, ErrorsDependOnDepthsAndStop) {
   // The error of a pinhole grows far behind the plane of focus.
-  const auto all = choice({"--near-mm", "1000", "--far-mm", "inf", "--budget-px", "1"});
-  const auto focus = choice({"--near-mm", "2900", "--far-mm", "3100", "--budget-px", "1"});
+  const auto all = choice({"--near", "1000", "--far", "inf", "--budget-px", "1"});
+  const auto focus = choice({"--near", "2900", "--far", "3100", "--budget-px", "1"});
   EXPECT_LT(row_of(focus, "pinhole")["max_px"], row_of(all, "pinhole")["max_px"]);
-  const auto stopped = choice({"--near-mm", "1000", "--far-mm", "inf", "--budget-px", "1", "--f-number", "8"});
+  const auto stopped = choice({"--near", "1000", "--far", "inf", "--budget-px", "1", "--f-number", "8"});
   EXPECT_LT(row_of(stopped, "polynomial_5")["max_px"], 0.5 * row_of(all, "polynomial_5")["max_px"].get<double>());
 }
 

@@ -13,9 +13,9 @@ class ChromaticBokeh : public Programs {
   static constexpr const char* id = "double_gauss_100mm_f1.35";
 
   nlohmann::json colours(std::vector<std::string> more = {}, const std::string& out = "out") const {
-    std::vector<std::string> arguments{lens(id), "--out", path(out), "--samples", "8192"};
+    std::vector<std::string> arguments{lens(id), "--out", path(out), "--rays", "8192"};
     arguments.insert(arguments.end(), more.begin(), more.end());
-    const auto outcome = run("chromatic_bokeh", arguments);
+    const auto outcome = run("colour", arguments);
     EXPECT_EQ(outcome.status, 0) << outcome.err;
     for (const auto& line : lines(outcome.out)) {
       EXPECT_TRUE(!line.starts_with("/") || std::filesystem::exists(line)) << line;
@@ -36,7 +36,7 @@ class ChromaticBokeh : public Programs {
 };
 
 TEST_F(ChromaticBokeh, WritesAChannelForEachWavelength) {
-  const auto json = colours({"--focus-mm", "1800,2200", "--f-number", "1.35"});
+  const auto json = colours({"--focus", "1800,2200", "--f-number", "1.35"});
   EXPECT_NEAR(json["f_number_real"].get<double>(), 1.35352, 1e-5);  // at 590 nm; the declared f-number is rounded
   EXPECT_EQ(json["subject_distance_mm"], 2000);
   EXPECT_EQ(json["white_point"], "D65");
@@ -70,7 +70,7 @@ TEST_F(ChromaticBokeh, WritesAChannelForEachWavelength) {
 // Blue light focuses nearer to this lens: the blue image is larger if the film is too far from the lens, and smaller if
 // the film is too near.
 TEST_F(ChromaticBokeh, OutlineIsBlueIfFocusedNearerAndRedIfFarther) {
-  const auto json = colours({"--focus-mm", "1600,2400", "--field-deg", "0"});
+  const auto json = colours({"--focus", "1600,2400", "--fields", "0"});
   EXPECT_LT(json["longitudinal"][0]["paraxial_focus_shift_mm"], -0.2);
   EXPECT_GT(json["longitudinal"][25]["paraxial_focus_shift_mm"], 0.1);
   const auto rms_radius = [&](const nlohmann::json& picture, const std::string& name) {
@@ -88,7 +88,7 @@ TEST_F(ChromaticBokeh, OutlineIsBlueIfFocusedNearerAndRedIfFarther) {
 }
 
 TEST_F(ChromaticBokeh, LateralColourIsZeroOnTheAxis) {
-  const auto json = colours({"--focus-mm", "2000", "--field-deg", "0,9", "--f-number", "4"});
+  const auto json = colours({"--focus", "2000", "--fields", "0,9", "--f-number", "4"});
   EXPECT_EQ(json["primary_nm"], 590);
   EXPECT_NEAR(json["f_number_real"].get<double>(), 4, 1e-10);
   for (const auto& row : json["lateral"][0]["wavelengths"]) {
@@ -99,11 +99,11 @@ TEST_F(ChromaticBokeh, LateralColourIsZeroOnTheAxis) {
 
 TEST_F(ChromaticBokeh, OriginAndCriterionMoveTheFilm) {
   const auto film = [&](const std::vector<std::string>& more) {
-    std::vector<std::string> all{"--focus-mm", "2000", "--field-deg", "0"};
+    std::vector<std::string> all{"--focus", "2000", "--fields", "0"};
     all.insert(all.end(), more.begin(), more.end());
     return colours(all)["pictures"][0]["film_z_mm"].get<double>();
   };
-  EXPECT_GT(film({"--distance-from", "film"}), film({}) + 0.1);  // nearer to the lens
+  EXPECT_GT(film({"--from", "film"}), film({}) + 0.1);  // nearer to the lens
   EXPECT_NE(film({"--criterion", "paraxial"}), film({}));
 }
 

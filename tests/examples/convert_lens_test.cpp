@@ -45,7 +45,7 @@ LD 0.3 2.5
 
 TEST_F(ConvertLens, ExtensionChoosesTheFormat) {
   for (const char* ending : {".json", ".dat", ".zmx", ".seq"}) {
-    const auto outcome = run("convert_lens", {lens("double_gauss_100mm_f2.0"), path(std::string("lens") + ending)});
+    const auto outcome = run("convert", {lens("double_gauss_100mm_f2.0"), path(std::string("lens") + ending)});
     EXPECT_EQ(outcome.status, 0) << outcome.err;
     const auto back = petzval::read_lens(path(std::string("lens") + ending));
     // Other programs' files name glasses, whose formulas differ from printed indices by a few 1e-6.
@@ -55,18 +55,18 @@ TEST_F(ConvertLens, ExtensionChoosesTheFormat) {
         << ending;
   }
   EXPECT_EQ(read(path("lens.json")), read(lens("double_gauss_100mm_f2.0")));  // byte for byte
-  EXPECT_EQ(run("convert_lens", {lens("double_gauss_100mm_f2.0"), path("lens.osl")}).status, 0);
+  EXPECT_EQ(run("convert", {lens("double_gauss_100mm_f2.0"), path("lens.osl")}).status, 0);
   EXPECT_EQ(read(path("lens.osl")).find("// Double Gauss 100 mm f/2"), 0u);
-  EXPECT_EQ(run("convert_lens", {lens("double_gauss_100mm_f2.0"), path("lens.opentrackio.json")}).status, 0);
+  EXPECT_EQ(run("convert", {lens("double_gauss_100mm_f2.0"), path("lens.opentrackio.json")}).status, 0);
   EXPECT_TRUE(read_json(path("lens.opentrackio.json")).contains("lens"));
-  EXPECT_EQ(run("convert_lens", {lens("double_gauss_100mm_f2.0"), path("lens.stmap.exr")}).status, 0);
+  EXPECT_EQ(run("convert", {lens("double_gauss_100mm_f2.0"), path("lens.stmap.exr")}).status, 0);
   EXPECT_EQ(petzval::read_exr_parts(path("lens.stmap.exr")).size(), 2u);
-  expect_failure("convert_lens", {lens("double_gauss_100mm_f2.0"), path("lens.doc")}, {"lens.doc"});
+  expect_failure("convert", {lens("double_gauss_100mm_f2.0"), path("lens.doc")}, {"lens.doc"});
 }
 
 TEST_F(ConvertLens, JsonReportDescribesTheInput) {
   write("lens.dat", table);
-  const auto outcome = run("convert_lens", {path("lens.dat"), path("lens.json"), "--json"});
+  const auto outcome = run("convert", {path("lens.dat"), path("lens.json"), "--json"});
   ASSERT_EQ(outcome.status, 0) << outcome.err;
   const auto json = nlohmann::json::parse(outcome.out);
   EXPECT_EQ(json["format"], "table");
@@ -84,10 +84,10 @@ TEST_F(ConvertLens, JsonReportDescribesTheInput) {
 TEST_F(ConvertLens, ReportsLostZoomPositions) {
   for (const char* name : {"zoom.dat", "zoom.osl", "zoom.opentrackio.json", "zoom.stmap.exr"}) {
     const std::string lost = path(name) + ": configurations";
-    const auto whole = run("convert_lens", {lens("zoom_70-210mm_f4"), path(name)});
+    const auto whole = run("convert", {lens("zoom_70-210mm_f4"), path(name)});
     EXPECT_EQ(whole.status, 0) << whole.err;
     EXPECT_NE(whole.err.find(lost), std::string::npos) << whole.err;
-    const auto one = run("convert_lens", {lens("zoom_70-210mm_f4"), path(name), "--configuration", "tele"});
+    const auto one = run("convert", {lens("zoom_70-210mm_f4"), path(name), "--configuration", "tele"});
     EXPECT_EQ(one.status, 0) << one.err;
     EXPECT_EQ(one.err.find(lost), std::string::npos) << one.err;
   }
@@ -95,20 +95,20 @@ TEST_F(ConvertLens, ReportsLostZoomPositions) {
 
 TEST_F(ConvertLens, StrictRefusesWithStatus3AndWritesNothing) {
   write("lens.dat", "50.6 5.2 1.5168 25.4\n-50.6 0 1 25.4\n");
-  const auto outcome = run("convert_lens", {path("lens.dat"), path("lens.json"), "--strict"});
+  const auto outcome = run("convert", {path("lens.dat"), path("lens.json"), "--strict"});
   EXPECT_EQ(outcome.status, 3);
   EXPECT_FALSE(std::filesystem::exists(path("lens.json")));
   EXPECT_NE(outcome.err.find("line 2: thickness"), std::string::npos);
   write("lens.dat", table);
-  EXPECT_EQ(run("convert_lens", {path("lens.dat"), path("lens.json"), "--strict"}).status, 0);
+  EXPECT_EQ(run("convert", {path("lens.dat"), path("lens.json"), "--strict"}).status, 0);
 }
 
 TEST_F(ConvertLens, MissingGlassesAreReadFromFilesOfTheUser) {
   write("lens.zmx", zemax);
   write("my.agf", glasses);
-  expect_failure("convert_lens", {path("lens.zmx"), path("lens.json")}, {"MYGLASS"});
+  expect_failure("convert", {path("lens.zmx"), path("lens.json")}, {"MYGLASS"});
   const auto outcome =
-      run("convert_lens", {path("lens.zmx"), path("lens.json"), "--glasses", path("my.agf"), "--json"});
+      run("convert", {path("lens.zmx"), path("lens.json"), "--glasses", path("my.agf"), "--json"});
   ASSERT_EQ(outcome.status, 0) << outcome.err;
   const auto json = nlohmann::json::parse(outcome.out);
   EXPECT_EQ(json["units"], "in");
@@ -120,7 +120,7 @@ TEST_F(ConvertLens, MissingGlassesAreReadFromFilesOfTheUser) {
   EXPECT_NEAR(back.surfaces[0].medium.nd.value(), 1.5168, 1e-7);  // by the formula
   // A single position.
   EXPECT_EQ(
-      run("convert_lens", {path("lens.zmx"), path("far.json"), "--glasses", path("my.agf"), "--configuration", "far"})
+      run("convert", {path("lens.zmx"), path("far.json"), "--glasses", path("my.agf"), "--configuration", "far"})
           .status,
       0);
   EXPECT_NEAR(petzval::read_lens(path("far.json")).surfaces[1].thickness, 2.1 * 25.4, 1e-9);
@@ -155,15 +155,15 @@ SURF 3
     const auto with = run(program, arguments);
     EXPECT_EQ(with.status, 0) << program << ' ' << with.err;
   };
-  expect_both("convert_lens", {path("ge.json")});
-  expect_both("lens_report", {"--wavelength-nm", "10600"});
-  expect_both("spot_diagram", {"--wavelengths-nm", "10600", "--field-deg", "0", "--out", path("spots")});
+  expect_both("convert", {path("ge.json")});
+  expect_both("report", {"--wavelengths", "10600"});
+  expect_both("spots", {"--wavelengths", "10600", "--fields", "0", "--out", path("spots")});
   const auto back = petzval::read_lens(path("ge.json"));
   EXPECT_EQ(back.reference_wavelength_nm, 10600);
   EXPECT_NEAR(petzval::first_order(petzval::compile(back)).effective_focal_length, 106.5453, 1e-4);
   for (const char* ending : {".zmx", ".seq", ".dat", ".osl"}) {
     EXPECT_EQ(
-        run("convert_lens", {path("ge.json"), path(std::string("out") + ending), "--glasses", path("infrared.agf")})
+        run("convert", {path("ge.json"), path(std::string("out") + ending), "--glasses", path("infrared.agf")})
             .status,
         0)
         << ending;
@@ -175,7 +175,7 @@ TEST_F(ConvertLens, RepairsUnambiguousFaults) {
   write("lens.json", R"({"format": "petzval-lens 1", "name": "bad", "focal_length_mm": 50, "f_number": 5, "surfaces": [
     {"radius": 506, "thickness": 52, "nd": 1.5168, "semi_diameter": 100, "stop": true},
     {"radius": -506, "thickness": 600, "nd": 1, "semi_diameter": 120, "stop": true}]})");
-  const auto outcome = run("convert_lens", {path("lens.json"), path("good.json"), "--repair", "--json"});
+  const auto outcome = run("convert", {path("lens.json"), path("good.json"), "--repair", "--json"});
   ASSERT_EQ(outcome.status, 0) << outcome.err;
   const auto json = nlohmann::json::parse(outcome.out);
   EXPECT_EQ(json["repairs"].size(), 4u) << outcome.err;
@@ -186,10 +186,10 @@ TEST_F(ConvertLens, RepairsUnambiguousFaults) {
 
 TEST_F(ConvertLens, EveryProgramReadsEveryFormat) {
   write("lens.dat", table);
-  const auto outcome = run("lens_report", {path("lens.dat"), "--json"});
+  const auto outcome = run("report", {path("lens.dat"), "--json"});
   ASSERT_EQ(outcome.status, 0) << outcome.err;
   EXPECT_EQ(nlohmann::json::parse(outcome.out)["format"], "table");
-  const auto zoom = run("lens_report", {lens("zoom_70-210mm_f4"), "--json", "--configuration", "tele"});
+  const auto zoom = run("report", {lens("zoom_70-210mm_f4"), "--json", "--configuration", "tele"});
   EXPECT_NEAR(nlohmann::json::parse(zoom.out)["effective_focal_length_mm"].get<double>(), 205.265, 1e-3);
 }
 
@@ -199,12 +199,12 @@ TEST_F(ConvertLens, TypedTablesGetTheirGlasses) {
         "# Cooke triplet 50 mm f/5\nR d nd vd semi\n22.01359 3.25896 1.62041 60.3 9.5\n-435.76044 6.00755\n"
         "-22.21328 0.99997 1.62004 36.4 5\n20.29192 4.75041 1 - 4.8 stop\n79.6836 2.95208 1.62041 60.3 8\n"
         "-18.39533 42.20778\n");
-  const auto plain = run("lens_report", {path("cooke.txt"), "--json"});
+  const auto plain = run("report", {path("cooke.txt"), "--json"});
   ASSERT_EQ(plain.status, 0) << plain.err;
   EXPECT_NEAR(nlohmann::json::parse(plain.out)["effective_focal_length_mm"].get<double>(), 50.0213, 1e-3);
   EXPECT_EQ(plain.err.find("matched"), std::string::npos);
 
-  const auto matched = run("convert_lens", {path("cooke.txt"), path("cooke.json"), "--match-glasses"});
+  const auto matched = run("convert", {path("cooke.txt"), path("cooke.json"), "--match-glasses"});
   ASSERT_EQ(matched.status, 0) << matched.err;
   const auto lens = petzval::read_lens(path("cooke.json"));
   for (const std::size_t i : {0u, 2u, 4u}) {
@@ -213,7 +213,7 @@ TEST_F(ConvertLens, TypedTablesGetTheirGlasses) {
   }
   EXPECT_EQ(lens.surfaces[0].medium.nd, 1.62041);
   EXPECT_NEAR(petzval::first_order(petzval::compile(lens)).effective_focal_length, 50.0213, 1e-3);
-  EXPECT_NE(run("lens_report", {path("cooke.txt"), "--match-glasses"}).err.find("matched"), std::string::npos);
+  EXPECT_NE(run("report", {path("cooke.txt"), "--match-glasses"}).err.find("matched"), std::string::npos);
 }
 
 TEST_F(ConvertLens, OneLensOfADatabaseIsAConfiguration) {
@@ -221,22 +221,22 @@ TEST_F(ConvertLens, OneLensOfADatabaseIsAConfiguration) {
     {"radius": -50, "thickness": 47, "material": "air"})";
   write("lenses.json", R"({"2003": {"product-name": "a", "optical-elements-patent": [)" + element +
                            R"(]}, "2004": {"product-name": "b", "optical-elements-patent": [)" + element + "]}}");
-  expect_failure("convert_lens", {path("lenses.json"), path("lens.json")}, {"--configuration", 2003, "a", 2004, "b"});
+  expect_failure("convert", {path("lenses.json"), path("lens.json")}, {"--configuration", 2003, "a", 2004, "b"});
   for (const char* chosen : {"2004", "b"}) {
-    ASSERT_EQ(run("convert_lens", {path("lenses.json"), path("lens.json"), "--configuration", chosen}).status, 0);
+    ASSERT_EQ(run("convert", {path("lenses.json"), path("lens.json"), "--configuration", chosen}).status, 0);
     const auto lens = petzval::read_lens(path("lens.json"));
     EXPECT_EQ(lens.imported->entry, "2004");
     EXPECT_EQ(lens.configurations.size(), 3u);
   }
-  ASSERT_EQ(run("convert_lens", {path("lenses.json"), path("lens.json"), "--configuration", "2004/long"}).status, 0);
+  ASSERT_EQ(run("convert", {path("lenses.json"), path("lens.json"), "--configuration", "2004/long"}).status, 0);
   EXPECT_EQ(petzval::read_lens(path("lens.json")).surfaces[0].thickness, 7);
-  EXPECT_EQ(run("lens_report", {path("lenses.json"), "--configuration", "2004/long"}).status, 0);
+  EXPECT_EQ(run("report", {path("lenses.json"), "--configuration", "2004/long"}).status, 0);
 }
 
 TEST_F(ConvertLens, BadFilesFailInOneLine) {
   write("lens.zar", "PK\x03\x04");
-  expect_failure("convert_lens", {path("lens.zar"), path("lens.json")}, {"lens.zar", "zip"});
-  expect_failure("convert_lens", {path("none.zmx"), path("lens.json")}, {"none.zmx"});
+  expect_failure("convert", {path("lens.zar"), path("lens.json")}, {"lens.zar", "zip"});
+  expect_failure("convert", {path("none.zmx"), path("lens.json")}, {"none.zmx"});
   EXPECT_FALSE(std::filesystem::exists(path("lens.json")));
 }
 

@@ -27,25 +27,25 @@ class Distances : public Programs {
     const std::string file = lens(id);
     std::vector<std::pair<std::string, double>> result;
     const auto add = [&](const char* program, const nlohmann::json& film) { result.emplace_back(program, film); };
-    add("lens_report",
-        printed("lens_report", joined({file, "--json", "--subject-distance-mm", "1000"}, more))["film_z_mm"]);
-    EXPECT_EQ(run("spot_diagram", joined({file, "--subject-distance-mm", "1000", "--field-deg", "0", "--wavelengths-nm",
-                                          "d", "--samples", "64", "--out", path("spots")},
+    add("report",
+        printed("report", joined({file, "--json", "--at", "1000"}, more))["film_z_mm"]);
+    EXPECT_EQ(run("spots", joined({file, "--at", "1000", "--fields", "0", "--wavelengths",
+                                          "d", "--rays", "64", "--out", path("spots")},
                                          more))
                   .status,
               0);
-    add("spot_diagram", read_json(path("spots/" + id + "_spots.json"))[0]["film_z_mm"]);
-    EXPECT_EQ(run("bokeh_psf", joined({file, "--subject-distance-mm", "1000", "--focus-mm", "1000", "--samples", "1024",
+    add("spots", read_json(path("spots/" + id + "_spots.json"))[0]["film_z_mm"]);
+    EXPECT_EQ(run("psf", joined({file, "--at", "1000", "--focus", "1000", "--rays", "1024",
                                        "--out", path("bokeh")},
                                       more))
                   .status,
               0);
-    add("bokeh_psf", read_json(path("bokeh/" + id + "_bokeh.json"))["results"][0]["film_z_mm"]);
-    add("focus_report",
-        printed("focus_report", joined({file, "--json", "--distance-mm", "1000"}, more))[0]["film_z_mm"]);
+    add("psf", read_json(path("bokeh/" + id + "_bokeh.json"))["results"][0]["film_z_mm"]);
+    add("focus",
+        printed("focus", joined({file, "--json", "--at", "1000"}, more))[0]["film_z_mm"]);
     // Distance of the film from a subject at 1 m, minus the origin of distances.
-    EXPECT_EQ(run("lens_metadata", joined({file, "--focus-mm", "1000", "--out", path("data")}, more)).status, 0);
-    add("lens_metadata",
+    EXPECT_EQ(run("metadata", joined({file, "--focus", "1000", "--out", path("data")}, more)).status, 0);
+    add("metadata",
         1000 * read_json(path("data/" + id + ".opentrackio.json"))["lens"]["focusDistance"].get<double>());
     return result;
   }
@@ -57,11 +57,11 @@ TEST_F(Distances, EveryProgramHasTheSameFilmForADistance) {
   using enum petzval::DistanceOrigin;
   for (const auto origin : {front_vertex, film, entrance_pupil}) {
     const Arguments flags =
-        origin == front_vertex ? Arguments{} : Arguments{"--distance-from", std::string(petzval::name(origin))};
+        origin == front_vertex ? Arguments{} : Arguments{"--from", std::string(petzval::name(origin))};
     const petzval::Lens focused = petzval::with_focus(whole, 1000, {.origin = origin});
     for (const auto& [program, found] : films(id, flags)) {
       SCOPED_TRACE(program + " from " + std::string(petzval::name(origin)));
-      if (program == "lens_metadata") {
+      if (program == "metadata") {
         // The file has metres, rounded to a micrometre.
         EXPECT_NEAR(found, focused.film_z() + 1000 - petzval::origin_z(focused, origin), 2e-3);
       } else {
@@ -73,29 +73,29 @@ TEST_F(Distances, EveryProgramHasTheSameFilmForADistance) {
   const petzval::Lens paraxial = petzval::with_focus(whole, 1000, {petzval::FocusCriterion::paraxial});
   for (const auto& [program, found] : films(id, {"--criterion", "paraxial"})) {
     // In the file format, the distance is the distance of the sharpest subject.
-    if (program == "lens_metadata") continue;
+    if (program == "metadata") continue;
     EXPECT_NEAR(found, paraxial.film_z(), 1e-9) << program;
   }
 }
 
 TEST_F(Distances, EveryProgramNamesTheOriginOfDistances) {
   const std::vector<Arguments> programs{
-      {"lens_report"},      {"spot_diagram"},    {"focus_report"},  {"bokeh_psf"},       {"psf_set"},
-      {"psf_set", "query"}, {"chromatic_bokeh"}, {"focal_surface"}, {"expressive_lens"}, {"lens_metadata"},
-      {"accuracy_speed"},   {"choose_camera"},   {"camera_rays"},
-#ifdef PETZVAL_TEST_HAS_focus_pull
-      {"focus_pull"},
+      {"report"},      {"spots"},    {"focus"},  {"psf"},       {"psf-set"},
+      {"psf-set", "query"}, {"colour"}, {"surface"}, {"expressive"}, {"metadata"},
+      {"models"},   {"choose"},   {"camera-rays"},
+#ifdef PETZVAL_TEST_HAS_pull
+      {"pull"},
 #endif
-#ifdef PETZVAL_TEST_HAS_bokeh_scene
-      {"bokeh_scene"},
+#ifdef PETZVAL_TEST_HAS_render
+      {"render"},
 #endif
-#ifdef PETZVAL_TEST_HAS_lens_blur
-      {"lens_blur"},
+#ifdef PETZVAL_TEST_HAS_blur
+      {"blur"},
 #endif
   };
   for (const Arguments& program : programs) {
     const std::string help = run(program[0], joined({program.begin() + 1, program.end()}, {"--help"})).out;
-    const std::size_t at = help.find("--distance-from TEXT");
+    const std::size_t at = help.find("--from TEXT");
     ASSERT_NE(at, std::string::npos) << program[0];
     const std::string line = help.substr(at, 200);
     EXPECT_NE(line.find("=front_vertex"), std::string::npos) << program[0] << ": " << line;
@@ -115,21 +115,21 @@ TEST_F(Distances, LensOpensToTheFNumberOfItsName) {
                                                                 {"apodized_135mm_f2.8", "2.8"},
                                                                 {"triplet_98mm_f4.4", "4.4"}};
   for (const auto& [id, name] : lenses) {
-    const auto outcome = run("lens_report", {lens(id), "--json", "--f-number", name});
+    const auto outcome = run("report", {lens(id), "--json", "--f-number", name});
     ASSERT_EQ(outcome.status, 0) << outcome.err;
     const double fastest = petzval::fastest_f_number(petzval::compile(petzval::read_prescription(lens(id))));
     EXPECT_NEAR(nlohmann::json::parse(outcome.out)["f_number_real"].get<double>(), fastest, 1e-9) << id;
     EXPECT_NE(outcome.err.find("--f-number = " + name), std::string::npos) << outcome.err;
   }
   const std::string file = lens("double_gauss_52mm_f1.8");
-  expect_failure("lens_report", {file, "--f-number", "1.77"}, {"--f-number", 1.77});
+  expect_failure("report", {file, "--f-number", "1.77"}, {"--f-number", 1.77});
   // The other programs accept the rounded f-number too.
   for (const auto& [program, more] : std::vector<std::pair<std::string, Arguments>>{
-           {"focus_report", {"--json"}},
-           {"bokeh_psf",
-            {"--subject-distance-mm", "2000", "--focus-mm", "1000", "--samples", "64", "--out", path("o")}},
-           {"psf_set", {"--fields", "0", "--distances-mm", "2000", "--samples", "64", "--out", path("p")}}}) {
-    const auto outcome = run(program, joined({file, program == "psf_set" ? "--f-numbers" : "--f-number", "1.8"}, more));
+           {"focus", {"--json"}},
+           {"psf",
+            {"--at", "2000", "--focus", "1000", "--rays", "64", "--out", path("o")}},
+           {"psf-set", {"--fields", "0", "--at", "2000", "--rays", "64", "--out", path("p")}}}) {
+    const auto outcome = run(program, joined({file, program == "psf-set" ? "--f-number" : "--f-number", "1.8"}, more));
     EXPECT_EQ(outcome.status, 0) << outcome.err;
     EXPECT_EQ(lines(outcome.err).size(), 1u) << outcome.err;
   }
@@ -137,13 +137,13 @@ TEST_F(Distances, LensOpensToTheFNumberOfItsName) {
 
 TEST_F(Distances, ListsAcceptBlanksAndSpectralLines) {
   const auto of = [&](const std::string& distances, const std::string& wavelengths) {
-    return printed("focus_report", {lens("cooke_triplet_50mm_f5"), "--json", "--criterion", "min_rms", "--distance-mm",
-                                    distances, "--wavelengths-nm", wavelengths});
+    return printed("focus", {lens("cooke_triplet_50mm_f5"), "--json", "--criterion", "min_rms", "--at",
+                                    distances, "--wavelengths", wavelengths});
   };
   EXPECT_EQ(of("1000, 2000", "F,d, C"), of("1000,2000", "486.1327,587.5618,656.2725"));
-  expect_failure("focus_report", {lens("cooke_triplet_50mm_f5"), "--wavelengths-nm", "F,q"}, {"--wavelengths-nm", "q"});
-  expect_failure("focus_report", {lens("cooke_triplet_50mm_f5"), "--wavelengths-nm", "d,587.5618"},
-                 {"--wavelengths-nm", 587.5618});
+  expect_failure("focus", {lens("cooke_triplet_50mm_f5"), "--wavelengths", "F,q"}, {"--wavelengths", "q"});
+  expect_failure("focus", {lens("cooke_triplet_50mm_f5"), "--wavelengths", "d,587.5618"},
+                 {"--wavelengths", 587.5618});
 }
 
 // Programs refuse an output that cannot be written before they compute anything.
@@ -153,24 +153,24 @@ TEST_F(Distances, EveryProgramRefusesUnwritableOutputs) {
   write("points.json", R"({"points": [{"pixel": [10, 10], "distance_mm": 2000}]})");
   write("rays.csv", "x_mm,y_mm,z_mm,dx,dy,dz\n0,0,-10,0,0,1\n");
   const std::vector<Arguments> all{
-      {"lens_report", file},
-      {"spot_diagram", file},
-      {"bokeh_psf", file, "--subject-distance-mm", "1000", "--focus-mm", "900"},
-      {"psf_set", file, "--fields", "0", "--distances-mm", "1000"},
-      {"chromatic_bokeh", file},
-      {"focal_surface", file, "--points", path("points.json")},
-      {"expressive_lens", file},
-      {"lens_metadata", file},
-      {"accuracy_speed", file},
-      {"bokeh_shapes"},
+      {"report", file},
+      {"spots", file},
+      {"psf", file, "--at", "1000", "--focus", "900"},
+      {"psf-set", file, "--fields", "0", "--at", "1000"},
+      {"colour", file},
+      {"surface", file, "--points", path("points.json")},
+      {"expressive", file},
+      {"metadata", file},
+      {"models", file},
+      {"shapes"},
   };
   for (const Arguments& arguments : all) {
     const Arguments out = joined({arguments.begin() + 1, arguments.end()}, {"--out", taken});
     expect_failure(arguments[0], out, {"--out", taken});
   }
-  expect_failure("trace_rays", {file, "--rays", path("rays.csv"), "--out", path("none/traced.csv")}, {"--out"});
+  expect_failure("trace", {file, "--rays", path("rays.csv"), "--out", path("none/traced.csv")}, {"--out"});
   expect_failure("wu_figure7", {"--out", path("none/figure.png")}, {"--out"});
-  expect_failure("convert_lens", {file, path("none/lens.zmx")}, {"OUT"});
+  expect_failure("convert", {file, path("none/lens.zmx")}, {"OUT"});
   EXPECT_FALSE(std::filesystem::exists(path("none")));
 }
 

@@ -25,7 +25,7 @@ class FocalSurfaceProgram : public Programs {
                                  std::to_string(width),
                                  "--height",
                                  std::to_string(width * 2 / 3),
-                                 "--film-mm",
+                                 "--film",
                                  "36x24",
                                  "--out",
                                  path("out")};
@@ -67,7 +67,7 @@ class FocalSurfaceProgram : public Programs {
 TEST_F(FocalSurfaceProgram, QueriesEqualTheValuesOfThePoints) {
   write("points.json", points);
   write("q.csv", "x_px,y_px\n60.5,100.5\n220.5,75.5\n150.5,50.5\n150.5,175.5\n10,190\n");
-  const auto outcome = run("focal_surface", arguments({"--queries", path("q.csv")}));
+  const auto outcome = run("surface", arguments({"--queries", path("q.csv")}));
   ASSERT_EQ(outcome.status, 0) << outcome.err;
   EXPECT_EQ(lines(outcome.out), (std::vector{path("out/surface.png"), path("out/side.svg"), path("out/surface.pfm"),
                                              path("out/answers.csv")}));
@@ -100,13 +100,13 @@ TEST_F(FocalSurfaceProgram, AcceptsWorldPointsAndKinds) {
   write("q.csv", "x_px,y_px\n150,100\n");
   for (const char* kind : {"affine", "shepard"}) {
     const auto outcome =
-        run("focal_surface", arguments({"--queries", path("q.csv"), "--kind", kind, "--beta", "2", "--f-number", "4"}));
+        run("surface", arguments({"--queries", path("q.csv"), "--kind", kind, "--beta", "2", "--f-number", "4"}));
     ASSERT_EQ(outcome.status, 0) << outcome.err;
     EXPECT_NEAR(rows(read(path("out/answers.csv")))[0][2], 2000, 1e-6);
   }
   // The picture does not depend on its resolution.
   const auto small = pfm("out/surface.pfm", 300, 200);
-  ASSERT_EQ(run("focal_surface", arguments({"--kind", "shepard", "--beta", "2", "--f-number", "4"}, 900)).status, 0);
+  ASSERT_EQ(run("surface", arguments({"--kind", "shepard", "--beta", "2", "--f-number", "4"}, 900)).status, 0);
   const auto large = pfm("out/surface.pfm", 900, 600);
   for (const std::size_t x : {10u, 100u, 290u}) {
     EXPECT_NEAR(large[(3 * 50 + 1) * 900 + 3 * x + 1], small[50 * 300 + x], 1e-9) << x;

@@ -29,7 +29,7 @@ class FocusPull : public Programs {
   }
   json frames(const Arguments& lens, const std::string& keys, Arguments more = {}) const {
     more.push_back("--json");
-    const auto outcome = run("focus_pull", command(lens, keys, more));
+    const auto outcome = run("pull", command(lens, keys, more));
     EXPECT_EQ(outcome.status, 0) << outcome.err;
     return json::parse(outcome.out)["frames"];
   }
@@ -60,7 +60,7 @@ TEST_F(FocusPull, PassesItsKeysAndStaysBetweenThem) {
 TEST_F(FocusPull, CountsDistancesFromTheirOrigin) {
   for (const auto& [origin, z] :
        {std::pair{"film", film_of(1000)}, {"entrance_pupil", 0.0}, {"front_principal", 0.0}}) {
-    const json all = frames(thin_50, rack, {"--distance-from", origin});
+    const json all = frames(thin_50, rack, {"--from", origin});
     EXPECT_NEAR(all[0]["subject_distance_mm"], 1000 + z, 1e-6) << origin;
   }
 }
@@ -74,7 +74,7 @@ TEST_F(FocusPull, NumbersEqualTheLibrary) {
   point.keys.push_back({3, petzval::ScenePoint{{100, 0, -4000}, false}});
   for (const std::string criterion : {"min_rms", "min_max"}) {
     const json all =
-        frames({Programs::lens(id)}, rack, {"--f-number", "4", "--criterion", criterion, "--frames-per-s", "2"});
+        frames({Programs::lens(id)}, rack, {"--f-number", "4", "--criterion", criterion, "--fps", "2"});
     ASSERT_EQ(all.size(), 9u);
     for (const json& frame : all) {
       SCOPED_TRACE(frame.dump());
@@ -95,7 +95,7 @@ TEST_F(FocusPull, FilmStaysBetweenThePointsInTime) {
   const json all =
       frames(thin_50, R"([{"from_s": 1, "until_s": 2, "keys": [{"time_s": 1, "position_mm": [0, 0, -800]}]},
     {"from_s": 3, "until_s": 4, "keys": [{"time_s": 0, "position_mm": [0, 0, -1600]}]}])",
-             {"--frames-per-s", "4"});
+             {"--fps", "4"});
   ASSERT_EQ(all.size(), 13u);
   for (const json& frame : all) {
     const double time = frame["time_s"];
@@ -123,7 +123,7 @@ TEST_F(FocusPull, TiltOptionTiltsTheFilm) {
 }
 
 TEST_F(FocusPull, WritesATableAndAPlot) {
-  const auto outcome = run("focus_pull", command(thin_50, rack, {}));
+  const auto outcome = run("pull", command(thin_50, rack, {}));
   ASSERT_EQ(outcome.status, 0) << outcome.err;
   std::set<std::string> names;
   for (const auto& file : std::filesystem::directory_iterator(path("out"))) names.insert(file.path().filename());

@@ -17,7 +17,7 @@ class FocusReport : public Programs {
   nlohmann::json rows(const std::string& id, const Arguments& more = {}) const {
     Arguments arguments{lens(id), "--json"};
     arguments.insert(arguments.end(), more.begin(), more.end());
-    const auto outcome = run("focus_report", arguments);
+    const auto outcome = run("focus", arguments);
     EXPECT_EQ(outcome.status, 0) << outcome.err;
     return nlohmann::json::parse(outcome.out);
   }
@@ -28,8 +28,8 @@ double or_infinity(const nlohmann::json& value) { return value.is_null() ? infin
 TEST_F(FocusReport, NumbersEqualTheLibrary) {
   const std::string id = "double_gauss_100mm_f2.0";
   const petzval::Lens lens = petzval::compile(petzval::read_prescription(Programs::lens(id)));
-  const auto json = rows(id, {"--distance-mm", "700,3000,inf", "--criterion", "thin,paraxial,min_rms,min_max",
-                              "--blur-mm", "0.2", "--distance-from", "film"});
+  const auto json = rows(id, {"--at", "700,3000,inf", "--criterion", "thin,paraxial,min_rms,min_max",
+                              "--blur-mm", "0.2", "--from", "film"});
   ASSERT_EQ(json.size(), 12u);
   std::size_t i = 0;
   for (const auto criterion : {petzval::FocusCriterion::thin, petzval::FocusCriterion::paraxial,
@@ -79,16 +79,16 @@ TEST_F(FocusReport, HasRowsForUsualDistancesByDefault) {
 
 TEST_F(FocusReport, FieldsAndWavelengthsChangeTheFocus) {
   const auto film = [&](const Arguments& more) {
-    Arguments arguments{"--distance-mm", "2000", "--criterion", "min_rms"};
+    Arguments arguments{"--at", "2000", "--criterion", "min_rms"};
     arguments.insert(arguments.end(), more.begin(), more.end());
     return rows("cooke_triplet_50mm_f5", arguments)[0]["film_z_mm"].get<double>();
   };
-  EXPECT_NE(film({}), film({"--field-deg", "0,14"}));
-  EXPECT_NE(film({}), film({"--wavelengths-nm", "486.1327,587.5618,656.2725"}));
+  EXPECT_NE(film({}), film({"--fields", "0,14"}));
+  EXPECT_NE(film({}), film({"--wavelengths", "486.1327,587.5618,656.2725"}));
 }
 
 TEST_F(FocusReport, ReportsSubjectsOutOfReach) {
-  const auto json = rows("double_gauss_100mm_f2.0", {"--distance-mm", "40,1000", "--criterion", "paraxial"});
+  const auto json = rows("double_gauss_100mm_f2.0", {"--at", "40,1000", "--criterion", "paraxial"});
   EXPECT_EQ(json[0]["status"], "unreachable");
   for (const char* key : {"film_z_mm", "focus_blur_mm", "near_limit_mm", "far_limit_mm", "breathing"}) {
     EXPECT_TRUE(json[0][key].is_null()) << key;
@@ -98,7 +98,7 @@ TEST_F(FocusReport, ReportsSubjectsOutOfReach) {
 }
 
 TEST_F(FocusReport, RefusedSubjectCostsOneRow) {
-  const auto json = rows("zoom_14-30mm_f4", {"--criterion", "paraxial,min_rms", "--distance-mm", "0.001,1000"});
+  const auto json = rows("zoom_14-30mm_f4", {"--criterion", "paraxial,min_rms", "--at", "0.001,1000"});
   ASSERT_EQ(json.size(), 4u);
   EXPECT_EQ(json[0]["status"], "solved");
   EXPECT_TRUE(json[0]["message"].is_null());

@@ -8,14 +8,14 @@ namespace {
 class Gallery : public Programs {};
 
 TEST_F(Gallery, DrawsFigure7) {
-  const auto outcome = run("wu_figure7", {"--samples", "1024", "--out", path("figure.png")});
+  const auto outcome = run("wu_figure7", {"--rays", "1024", "--out", path("figure.png")});
   EXPECT_EQ(outcome.status, 0) << outcome.err;
   EXPECT_TRUE(read(path("figure.png")).starts_with("\x89PNG"));
   expect_failure("wu_figure7", {"--out", path("figure.jpg")}, {"figure.jpg", ".png"});
 }
 
 TEST_F(Gallery, DrawsTheShapesOfBokeh) {
-  const auto outcome = run("bokeh_shapes", {"--out", path("shapes"), "--samples", "4096"});
+  const auto outcome = run("shapes", {"--out", path("shapes"), "--rays", "4096"});
   EXPECT_EQ(outcome.status, 0) << outcome.err;
   std::vector<std::string> files;
   for (const char* name : {"blades", "cats_eyes", "weights", "maps"}) {
@@ -28,7 +28,7 @@ TEST_F(Gallery, DrawsTheShapesOfBokeh) {
 /// Wu et al. 2010 describe their figure 7 in words, tested here for four readings of "in focus" and "distance from the
 /// lens".
 TEST_F(Gallery, ProfilesAgreeWithThePaperExceptKnownCases) {
-  const auto outcome = run("wu_statements", {"--samples", "16384", "--html", path("table.html")});
+  const auto outcome = run("wu_statements", {"--rays", "16384", "--html", path("table.html")});
   ASSERT_EQ(outcome.status, 0) << outcome.err;
   const auto rows = lines(outcome.out);
   ASSERT_EQ(rows.size(), 87u);  // a second table has the pupils of the four lenses

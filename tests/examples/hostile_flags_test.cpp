@@ -22,39 +22,39 @@ struct Command {
 std::ostream& operator<<(std::ostream& out, const Command& command) { return out << command.program; }
 
 const std::vector<Command> commands = {
-    {"accuracy_speed", {"LENS"}},
-    {"bokeh_psf", {"LENS", "--subject-distance-mm", "1500", "--focus-mm", "1000", "--samples", "1", "--out", "@out"}},
-    {"bokeh_shapes", {"--samples", "1", "--out", "@out"}},
-    {"camera_rays",
-     {"LENS", "--samples", "@samples.csv", "--model", "thin", "--focus-mm", "1000", "--out", "@rays.csv"}},
-    {"choose_camera", {"LENS", "--near-mm", "1000", "--far-mm", "2000", "--budget-px", "1"}},
-    {"chromatic_bokeh", {"LENS", "--samples", "1", "--out", "@out"}},
-    {"convert_lens", {"LENS", "@out.json"}},
-    {"expressive_lens", {"LENS", "--samples", "1", "--out", "@out"}},
-    {"focal_surface", {"LENS", "--points", "@surface.json", "--out", "@out"}},
-    {"focus_report", {"LENS"}},
-    {"lens_metadata", {"LENS", "--out", "@out"}},
-    {"lens_report", {"LENS"}},
-    {"psf_set",
-     {"LENS", "--fields", "0", "--distances-mm", "1500", "--focus-mm", "1000", "--samples", "1", "--pixels", "3",
+    {"models", {"LENS"}},
+    {"psf", {"LENS", "--at", "1500", "--focus", "1000", "--rays", "1", "--out", "@out"}},
+    {"shapes", {"--rays", "1", "--out", "@out"}},
+    {"camera-rays",
+     {"LENS", "--samples", "@samples.csv", "--model", "thin", "--focus", "1000", "--out", "@rays.csv"}},
+    {"choose", {"LENS", "--near", "1000", "--far", "2000", "--budget-px", "1"}},
+    {"colour", {"LENS", "--rays", "1", "--out", "@out"}},
+    {"convert", {"LENS", "@out.json"}},
+    {"expressive", {"LENS", "--rays", "1", "--out", "@out"}},
+    {"surface", {"LENS", "--points", "@surface.json", "--out", "@out"}},
+    {"focus", {"LENS"}},
+    {"metadata", {"LENS", "--out", "@out"}},
+    {"report", {"LENS"}},
+    {"psf-set",
+     {"LENS", "--fields", "0", "--at", "1500", "--focus", "1000", "--rays", "1", "--pixels", "3",
       "--out", "@out"}},
-    {"spot_diagram", {"LENS", "--field-deg", "0", "--wavelengths-nm", "587.56", "--samples", "1", "--out", "@out"}},
-    {"trace_rays", {"LENS", "--rays", "@rays_in.csv", "--out", "@rays.csv"}},
-    {"wu_figure7", {"--samples", "1", "--out", "@out.png"}},
-    {"wu_statements", {"--samples", "1"}},
-#ifdef PETZVAL_TEST_HAS_tilt_shift
-    {"focus_pull", {"LENS", "--keys", "@keys.json", "--out", "@out"}},
-    {"tilt_shift", {"LENS", "--points", "@points.json", "--out", "@out"}},
+    {"spots", {"LENS", "--fields", "0", "--wavelengths", "587.56", "--rays", "1", "--out", "@out"}},
+    {"trace", {"LENS", "--rays", "@rays_in.csv", "--out", "@rays.csv"}},
+    {"wu_figure7", {"--rays", "1", "--out", "@out.png"}},
+    {"wu_statements", {"--rays", "1"}},
+#ifdef PETZVAL_TEST_HAS_tilt
+    {"pull", {"LENS", "--keys", "@keys.json", "--out", "@out"}},
+    {"tilt", {"LENS", "--points", "@points.json", "--out", "@out"}},
 #endif
-#ifdef PETZVAL_TEST_HAS_bokeh_scene
-    {"bokeh_scene",
-     {"--scene", "balls", "--lens", "LENS", "--focus-mm", "1000", "--width", "8", "--height", "8", "--spp", "1",
+#ifdef PETZVAL_TEST_HAS_render
+    {"render",
+     {"--scene", "balls", "--lens", "LENS", "--focus", "1000", "--size", "8x8", "--spp", "1",
       "--out", "@out"}},
-    {"bokeh_sheet", {"@out", "--out", "@out.png"}},
+    {"sheet", {"@out", "--out", "@out.png"}},
 #endif
-#ifdef PETZVAL_TEST_HAS_lens_blur
-    {"lens_blur",
-     {"--scene", "town", "--width", "8", "--height", "8", "--lens", "LENS", "--focus-mm", "3000", "--out", "@out"}},
+#ifdef PETZVAL_TEST_HAS_blur
+    {"blur",
+     {"--scene", "town", "--size", "8x8", "--lens", "LENS", "--focus", "3000", "--out", "@out"}},
 #endif
 };
 
@@ -64,13 +64,13 @@ const std::map<std::string, Arguments> bad_values = {
     {"--blades", {"1", "2", "21"}},
     {"--configuration", {"nowhere", "1e308"}},
     {"--f-number", {"1e-300", "0.1", "0"}},
-    {"--f-numbers", {"1e-300", "0.1"}},
-    {"--field-deg", {"1e308", "nan"}},
+    {"--f-number", {"1e-300", "0.1"}},
+    {"--fields", {"1e308", "nan"}},
     {"--fields", {"170", "nan"}},
-    {"--film-mm", {"1e308x1e308", "36", "0x24"}},
-    {"--focus-mm", {"1e-300", "1", "nan"}},
-    {"--wavelength-nm", {"1e-300", "1e6", "nan"}},
-    {"--wavelengths-nm", {"1e-300", "1e6", "550,550"}},
+    {"--film", {"1e308x1e308", "36", "0x24"}},
+    {"--focus", {"1e-300", "1", "nan"}},
+    {"--wavelengths", {"1e-300", "1e6", "nan"}},
+    {"--wavelengths", {"1e-300", "1e6", "550,550"}},
 };
 
 /// Flags of --help that take a value, with the placeholder of the value.

@@ -16,7 +16,7 @@ using nlohmann::json;
 using petzval::RgbImage;
 
 const Arguments thin{"--thin-lens-mm", "50", "--lens-diameter-mm", "100"};
-const Arguments small{"--width", "80", "--height", "60", "--rays", "16", "--threads", "1"};
+const Arguments small{"--size", "80x60", "--rays", "16", "--threads", "1"};
 
 Arguments joined(std::initializer_list<Arguments> lists) {
   Arguments all;
@@ -27,7 +27,7 @@ Arguments joined(std::initializer_list<Arguments> lists) {
 class LensBlurProgram : public Programs {
  protected:
   json blur(const Arguments& arguments, const std::string& out = "out") const {
-    const auto outcome = run("lens_blur", joined({arguments, {"--format", "pfm", "--out", path(out)}}));
+    const auto outcome = run("blur", joined({arguments, {"--format", "pfm", "--out", path(out)}}));
     EXPECT_EQ(outcome.status, 0) << outcome.err;
     return outcome.status == 0 ? read_json(path(out + "/blur.json")) : json();
   }
@@ -46,9 +46,9 @@ class LensBlurProgram : public Programs {
 };
 
 TEST_F(LensBlurProgram, WritesPicturesAndTheirMeasures) {
-  const auto outcome = run("lens_blur", joined({thin,
+  const auto outcome = run("blur", joined({thin,
                                                 small,
-                                                {"--scene", "town", "--focus-mm", "5000", "--compare", "--supersample",
+                                                {"--scene", "town", "--focus", "5000", "--compare", "--supersample",
                                                  "1", "--format", "exr,png,pfm", "--out", path("out")}}));
   ASSERT_EQ(outcome.status, 0) << outcome.err;
   for (const char* name : {"blur", "sharp", "missed", "reference"}) {
@@ -75,7 +75,7 @@ TEST_F(LensBlurProgram, WritesPicturesAndTheirMeasures) {
 
 TEST_F(LensBlurProgram, PlaneInFocusIsUnchanged) {
   write_files(2000, 2000);
-  const json result = blur(joined({files(), thin, {"--focus-mm", "2000", "--highlights-above", "0"}}));
+  const json result = blur(joined({files(), thin, {"--focus", "2000", "--highlights-above", "0"}}));
   const RgbImage given = picture("rgb.pfm"), blurred = picture("out/blur.pfm");
   ASSERT_EQ(given.pixels.size(), blurred.pixels.size());
   for (std::size_t i = 0; i < given.pixels.size(); ++i) EXPECT_NEAR(given.pixels[i], blurred.pixels[i], 1e-5);
@@ -107,7 +107,7 @@ TEST_F(LensBlurProgram, LayersAndDeepImagesGiveEqualPictures) {
   }
   petzval::write_exr(parts, path("layers.exr"));
   petzval::write_deep_exr(lists, path("deep.exr"));
-  const Arguments lens = joined({thin, {"--focus-mm", "2000", "--rays", "32"}});
+  const Arguments lens = joined({thin, {"--focus", "2000", "--rays", "32"}});
   const json from_layers = blur(joined({lens, {"--image", path("layers.exr")}}), "layers");
   const json from_deep = blur(joined({lens, {"--deep", path("deep.exr")}}), "deep");
   EXPECT_EQ(from_layers["layers"], 2);
@@ -120,7 +120,7 @@ TEST_F(LensBlurProgram, FollowsKeysOverFrames) {
   // The focus goes from the stall, 5 m away, to 2 m.
   write("keys.json", R"([{"keys": [{"time_s": 0, "position_mm": [0, 0, -5000]},
     {"time_s": 1, "position_mm": [0, 0, -2000]}]}])");
-  const Arguments town = joined({thin, small, {"--scene", "town", "--focus-mm", "5000"}});
+  const Arguments town = joined({thin, small, {"--scene", "town", "--focus", "5000"}});
   const json result = blur(joined({town, {"--frames", "3", "--fps", "2", "--points", path("keys.json")}}), "frames");
   ASSERT_EQ(result["frames"].size(), 3u);
   const RgbImage first = picture("frames/blur_0001.pfm"), last = picture("frames/blur_0003.pfm");
@@ -133,7 +133,7 @@ TEST_F(LensBlurProgram, FollowsKeysOverFrames) {
   };
   blur(town, "still");
   EXPECT_LT(difference(first, picture("still/blur.pfm")), 1e-3);
-  blur(joined({thin, small, {"--scene", "town", "--focus-mm", "2000"}}), "near");
+  blur(joined({thin, small, {"--scene", "town", "--focus", "2000"}}), "near");
   EXPECT_LT(difference(last, picture("near/blur.pfm")), 1e-3);
   EXPECT_GT(difference(first, last), 1e-2);
 }
@@ -141,14 +141,14 @@ TEST_F(LensBlurProgram, FollowsKeysOverFrames) {
 TEST_F(LensBlurProgram, RefusesInvalidInput) {
   write_files(1000, 2000);
   const auto refused = [&](const Arguments& arguments, const std::vector<petzval::testing::Token>& tokens) {
-    expect_failure("lens_blur", joined({thin, arguments, {"--out", path("out")}}), tokens);
+    expect_failure("blur", joined({thin, arguments, {"--out", path("out")}}), tokens);
   };
-  const Arguments focus{"--focus-mm", "3000"};
+  const Arguments focus{"--focus", "3000"};
   refused(joined({focus, files(), {"--scene", "town"}}), {2, "--scene", "--rgb"});
   refused(joined({focus, files(), {"--compare"}}), {"--compare"});
   refused(joined({focus, files(), {"--supersample", "2"}}), {"--supersample"});
-  refused(joined({focus, files(), {"--width", "80"}}), {"--width", "--height"});
-  refused(joined({files(), {"--focus-mm", "40"}}), {"--focus-mm", 40});
+  refused(joined({focus, files(), {"--size", "80"}}), {"--size", "--height"});
+  refused(joined({files(), {"--focus", "40"}}), {"--focus", 40});
   petzval::write_exr(picture("rgb.pfm"), path("flat.exr"));
   refused(joined({focus, {"--image", path("flat.exr")}}), {"flat.exr", "Z"});
   petzval::write_pfm(16, 24, std::vector<float>(384, 1000), path("turned.pfm"));
@@ -158,9 +158,9 @@ TEST_F(LensBlurProgram, RefusesInvalidInput) {
 // The default film of 24 mm height suits lenses with this image size; --fov-deg makes it smaller.
 TEST_F(LensBlurProgram, ReportsFilmsLargerThanTheImageCircle) {
   const Arguments phone =
-      joined({small, {"--scene", "town", "--focus-mm", "1000", "--lens", lens("phone_5.6mm_f3.5")}});
+      joined({small, {"--scene", "town", "--focus", "1000", "--lens", lens("phone_5.6mm_f3.5")}});
   const auto notes = [&](const Arguments& more) {
-    const auto outcome = run("lens_blur", joined({phone, more, {"--format", "png", "--out", path("out")}}));
+    const auto outcome = run("blur", joined({phone, more, {"--format", "png", "--out", path("out")}}));
     EXPECT_EQ(outcome.status, 0) << outcome.err;
     int count = 0;
     for (const std::string& line : lines(outcome.err)) {
@@ -174,9 +174,9 @@ TEST_F(LensBlurProgram, ReportsFilmsLargerThanTheImageCircle) {
 
 // The pupil of a fisheye moves with the field: rays between the nodes of a table have errors.
 TEST_F(LensBlurProgram, ReportsTheErrorOfInterpolatedRays) {
-  const auto outcome = run("lens_blur", {"--scene",       "town", "--lens",     lens("fisheye_10mm_f4"),
-                                         "--fov-deg",     "60",   "--focus-mm", "3000",
-                                         "--width",       "320",  "--height",   "240",
+  const auto outcome = run("blur", {"--scene",       "town", "--lens",     lens("fisheye_10mm_f4"),
+                                         "--fov-deg",     "60",   "--focus", "3000",
+                                         "--size",       "320",  "--height",   "240",
                                          "--supersample", "1",    "--rays",     "16",
                                          "--format",      "png",  "--out",      path("out")});
   ASSERT_EQ(outcome.status, 0) << outcome.err;

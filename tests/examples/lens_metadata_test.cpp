@@ -11,8 +11,8 @@ namespace {
 class LensMetadata : public Programs {};
 
 TEST_F(LensMetadata, WritesBothFilesOfTheFocusedLens) {
-  const auto outcome = run("lens_metadata", {lens("biogon_35mm_f2.8"), "--f-number", "4", "--focus-mm", "2000",
-                                             "--distance-from", "film", "--out", path("out")});
+  const auto outcome = run("metadata", {lens("biogon_35mm_f2.8"), "--f-number", "4", "--focus", "2000",
+                                             "--from", "film", "--out", path("out")});
   ASSERT_EQ(outcome.status, 0) << outcome.err;
   const auto sample = read_json(path("out/biogon_35mm_f2.8.opentrackio.json")).at("lens");
   EXPECT_NEAR(sample.at("focusDistance").get<double>(), 2, 1e-6);
@@ -28,13 +28,13 @@ TEST_F(LensMetadata, WritesBothFilesOfTheFocusedLens) {
 TEST_F(LensMetadata, ConvertsDistancesToTheFormat) {
   const petzval::Lens whole = petzval::compile(petzval::read_prescription(lens("biogon_35mm_f2.8")));
   const double film_z = petzval::with_focus(whole, 2000).film_z();
-  ASSERT_EQ(run("lens_metadata", {lens("biogon_35mm_f2.8"), "--focus-mm", "2000", "--out", path("out")}).status, 0);
+  ASSERT_EQ(run("metadata", {lens("biogon_35mm_f2.8"), "--focus", "2000", "--out", path("out")}).status, 0);
   const auto sample = read_json(path("out/biogon_35mm_f2.8.opentrackio.json")).at("lens");
   EXPECT_NEAR(sample.at("focusDistance").get<double>(), 2 + film_z / 1000, 1e-6);
 }
 
 TEST_F(LensMetadata, HasSquarePixelsOnAnyFilm) {
-  const auto outcome = run("lens_metadata", {lens("biogon_35mm_f2.8"), "--film-mm", "32x8", "--out", path("out")});
+  const auto outcome = run("metadata", {lens("biogon_35mm_f2.8"), "--film", "32x8", "--out", path("out")});
   ASSERT_EQ(outcome.status, 0) << outcome.err;
   const auto camera = read_json(path("out/biogon_35mm_f2.8.opentrackio.json")).at("static").at("camera");
   EXPECT_EQ(camera.at("activeSensorResolution").at("width"), 1920);

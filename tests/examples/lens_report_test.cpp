@@ -14,7 +14,7 @@ class LensReport : public Programs {};
 
 TEST_F(LensReport, NumbersEqualTheLibrary) {
   const std::string file = lens("double_gauss_100mm_f1.35");
-  const auto outcome = run("lens_report", {file, "--json"});
+  const auto outcome = run("report", {file, "--json"});
   ASSERT_EQ(outcome.status, 0) << outcome.err;
   EXPECT_EQ(outcome.err, "");
   const auto json = nlohmann::json::parse(outcome.out);
@@ -54,7 +54,7 @@ constexpr const char* two_planes = R"({"format": "petzval-lens 1", "id": "window
 
 TEST_F(LensReport, WindowHasNoFocalLengthAndFindingsAreNoFailure) {
   write("window.json", two_planes);
-  const auto outcome = run("lens_report", {path("window.json"), "--json"});
+  const auto outcome = run("report", {path("window.json"), "--json"});
   ASSERT_EQ(outcome.status, 0) << outcome.err;
   const auto json = nlohmann::json::parse(outcome.out);
   EXPECT_EQ(json["afocal"], true);
@@ -67,7 +67,7 @@ TEST_F(LensReport, WindowHasNoFocalLengthAndFindingsAreNoFailure) {
 }
 
 TEST_F(LensReport, ReportsTheAbbeModelOnce) {
-  const auto outcome = run("lens_report", {lens("petzval_portrait_100mm_f3.4"), "--json", "--wavelength-nm", "500"});
+  const auto outcome = run("report", {lens("petzval_portrait_100mm_f3.4"), "--json", "--wavelengths", "500"});
   EXPECT_EQ(outcome.status, 0);
   EXPECT_EQ(nlohmann::json::parse(outcome.out)["dispersion"], "abbe");
   petzval::testing::expect_tokens(outcome.err, {"petzval_portrait_100mm_f3.4", 4, "n_d/V_d", 587.5618});
@@ -76,13 +76,13 @@ TEST_F(LensReport, ReportsTheAbbeModelOnce) {
 
 // Indices at the reference wavelength equal the printed indices of the file, not the glass tables.
 TEST_F(LensReport, HasNoNoteAboutGlassesAtTheReferenceWavelength) {
-  for (const char* program : {"lens_report", "focus_report"}) {
+  for (const char* program : {"report", "focus"}) {
     const auto outcome = run(program, {lens("petzval_portrait_100mm_f3.4"), "--json"});
     EXPECT_EQ(outcome.status, 0);
     EXPECT_EQ(outcome.err, "") << program;
   }
   // Figures in F, d and C use the model.
-  const auto page = run("lens_report", {lens("petzval_portrait_100mm_f3.4"), "--out", path("page")});
+  const auto page = run("report", {lens("petzval_portrait_100mm_f3.4"), "--out", path("page")});
   petzval::testing::expect_tokens(page.err, {4, "media"});
 }
 
@@ -98,7 +98,7 @@ YFLN 0.0 6.0
 // The file gives the object distance, the wavelengths with weights, the primary wavelength and the fields.
 TEST_F(LensReport, UsesTheConditionsOfTheFile) {
   write("relay.zmx", litho);
-  const auto outcome = run("lens_report", {path("relay.zmx"), "--json"});
+  const auto outcome = run("report", {path("relay.zmx"), "--json"});
   ASSERT_EQ(outcome.status, 0) << outcome.err;
   const auto json = nlohmann::json::parse(outcome.out);
   EXPECT_EQ(json["wavelength_nm"], 450);
@@ -111,7 +111,7 @@ TEST_F(LensReport, UsesTheConditionsOfTheFile) {
   // OpticStudio prints the declared entrance pupil, and the focal length over its diameter as the f-number.
   EXPECT_EQ(json["declared_entrance_pupil_diameter_mm"], 12.5);
   EXPECT_NEAR(json["declared_f_number"].get<double>(), json["effective_focal_length_mm"].get<double>() / 12.5, 1e-12);
-  ASSERT_EQ(run("lens_report", {path("relay.zmx"), "--out", path("page")}).status, 0);
+  ASSERT_EQ(run("report", {path("relay.zmx"), "--out", path("page")}).status, 0);
   const std::string page = read(path("page/relay.html"));
   EXPECT_EQ(page.find("subject at infinity"), std::string::npos);
   EXPECT_NE(page.find("subject at z = -200 mm"), std::string::npos);
@@ -123,7 +123,7 @@ TEST_F(LensReport, FindsTheDeclaredPupilOfEverySetting) {
     std::string file = litho;
     file.replace(file.find("ENPD 12.5"), 9, aperture);
     write("relay.zmx", file);
-    return nlohmann::json::parse(run("lens_report", {path("relay.zmx"), "--json"}).out);
+    return nlohmann::json::parse(run("report", {path("relay.zmx"), "--json"}).out);
   };
   // The cone of the object fills the entrance pupil, which is the front of this lens.
   EXPECT_NEAR(declared("OBNA 0.05 0")["declared_entrance_pupil_diameter_mm"].get<double>(),
@@ -133,12 +133,12 @@ TEST_F(LensReport, FindsTheDeclaredPupilOfEverySetting) {
   EXPECT_EQ(floating["declared_entrance_pupil_diameter_mm"], floating["entrance_pupil_diameter_mm"]);
   EXPECT_TRUE(
       nlohmann::json::parse(
-          run("lens_report", {lens("double_gauss_100mm_f2.0"), "--json"}).out)["declared_entrance_pupil_diameter_mm"]
+          run("report", {lens("double_gauss_100mm_f2.0"), "--json"}).out)["declared_entrance_pupil_diameter_mm"]
           .is_null());
 }
 
 TEST_F(LensReport, AllowsTheDLineAloneWithoutVd) {
-  const auto outcome = run("lens_report", {lens("fisheye_10mm_f4"), "--json"});
+  const auto outcome = run("report", {lens("fisheye_10mm_f4"), "--json"});
   EXPECT_EQ(outcome.status, 0);
   EXPECT_EQ(nlohmann::json::parse(outcome.out)["dispersion"], "none");
   EXPECT_EQ(outcome.err, "");
@@ -146,7 +146,7 @@ TEST_F(LensReport, AllowsTheDLineAloneWithoutVd) {
 
 TEST_F(LensReport, ReportsBothSectionsOfALensWithCylinders) {
   const std::string file = lens("anamorphic_60mm_2x");
-  const auto json = nlohmann::json::parse(run("lens_report", {file, "--json"}).out);
+  const auto json = nlohmann::json::parse(run("report", {file, "--json"}).out);
   EXPECT_EQ(json["meridian"], "y");
   const auto &x = json["meridians"]["x"], &y = json["meridians"]["y"];
   // Values printed by the patent.
@@ -158,14 +158,14 @@ TEST_F(LensReport, ReportsBothSectionsOfALensWithCylinders) {
   EXPECT_EQ(x["entrance_pupil_diameter_mm"], pupils.entrance.diameter);
   EXPECT_EQ(x["f_number"], x["effective_focal_length_mm"].get<double>() / pupils.entrance.diameter);
 
-  const auto round = nlohmann::json::parse(run("lens_report", {lens("cooke_triplet_50mm_f5"), "--json"}).out);
+  const auto round = nlohmann::json::parse(run("report", {lens("cooke_triplet_50mm_f5"), "--json"}).out);
   EXPECT_TRUE(round["meridians"].is_null());
   EXPECT_EQ(round["meridian"], "y");
 }
 
 TEST_F(LensReport, DrawsFiguresAndAPage) {
   const std::string file = lens("cooke_triplet_50mm_f5");
-  const auto outcome = run("lens_report", {file, "--out", path("out")});
+  const auto outcome = run("report", {file, "--out", path("out")});
   ASSERT_EQ(outcome.status, 0) << outcome.err;
   const auto written = lines(outcome.out);
   const std::vector<std::string> names{"layout.svg", "spots.svg", "footprints.svg", "focus.svg", "illumination.svg"};
@@ -185,13 +185,13 @@ TEST_F(LensReport, DrawsFiguresAndAPage) {
   EXPECT_NE(page.find("<h2>Lint</h2>"), std::string::npos);
   EXPECT_EQ(page.find("href"), std::string::npos) << "it needs no other file";
 
-  run("lens_report", {file, "--out", path("again")});
+  run("report", {file, "--out", path("again")});
   EXPECT_EQ(read(path("again/cooke_triplet_50mm_f5.html")), page);
 }
 
 TEST_F(LensReport, DrawsRequestedFieldsAndBothSections) {
-  const auto outcome = run("lens_report", {lens("anamorphic_60mm_2x"), "--out", path("out"), "--field-deg", "3,6",
-                                           "--wavelength-nm", "550", "--f-number", "8"});
+  const auto outcome = run("report", {lens("anamorphic_60mm_2x"), "--out", path("out"), "--fields", "3,6",
+                                           "--wavelengths", "550", "--f-number", "8"});
   ASSERT_EQ(outcome.status, 0) << outcome.err;
   EXPECT_NE(read(path("out/anamorphic_60mm_2x_layout.svg")).find("Section y-z"), std::string::npos);
   EXPECT_NE(read(path("out/anamorphic_60mm_2x_layout_x.svg")).find("Section x-z"), std::string::npos);
@@ -207,11 +207,11 @@ TEST_F(LensReport, DrawsRequestedFieldsAndBothSections) {
   const auto of_triplet = [&](const std::vector<std::string>& more) {
     std::vector<std::string> arguments{triplet, "--out", path("d")};
     arguments.insert(arguments.end(), more.begin(), more.end());
-    run("lens_report", arguments);
+    run("report", arguments);
     return read(path("d/cooke_triplet_50mm_f5_spots.svg"));
   };
   EXPECT_NE(of_triplet({}).find("656.273 nm"), std::string::npos);
-  EXPECT_EQ(of_triplet({"--wavelength-nm", "587.5618"}).find("656.273 nm"), std::string::npos);
+  EXPECT_EQ(of_triplet({"--wavelengths", "587.5618"}).find("656.273 nm"), std::string::npos);
 }
 
 TEST_F(LensReport, PrintsDeclaredAndComputedApertures) {
@@ -231,13 +231,13 @@ TEST_F(LensReport, PrintsDeclaredAndComputedApertures) {
         Case{"OBNA 0.03 0", "100", "object_na", 0.03, 0.03}, Case{"FNUM 16 1", "100", "working_f_number", 16, 16}}) {
     write("declared.zmx", zmx(c.aperture, c.object));
     const auto json =
-        nlohmann::json::parse(run("lens_report", {path("declared.zmx"), "--json"}).out)["design_aperture"];
+        nlohmann::json::parse(run("report", {path("declared.zmx"), "--json"}).out)["design_aperture"];
     EXPECT_EQ(json["setting"], c.setting);
     EXPECT_EQ(json["value"], c.declared);
     EXPECT_NEAR(json["computed"].get<double>(), c.computed, 1e-6 * c.computed) << c.aperture;
   }
   write("declared.zmx", zmx("FLOA 0", "INFINITY"));
-  const auto json = nlohmann::json::parse(run("lens_report", {path("declared.zmx"), "--json"}).out)["design_aperture"];
+  const auto json = nlohmann::json::parse(run("report", {path("declared.zmx"), "--json"}).out)["design_aperture"];
   EXPECT_EQ(json["setting"], "stop_size");
   EXPECT_TRUE(json["value"].is_null());
   EXPECT_EQ(json["computed"], 6);

@@ -20,9 +20,9 @@ class PsfFarm : public Programs {
     return {lens("double_gauss_100mm_f2_28deg"),
             "--fields",
             "0,7",
-            "--distances-mm",
+            "--at",
             "1000,inf",
-            "--samples",
+            "--rays",
             "4096",
             "--pixels",
             "33"};
@@ -41,7 +41,7 @@ class PsfFarm : public Programs {
   std::string whole() const {
     auto arguments = grid();
     arguments.insert(arguments.end(), {"--out", path("whole")});
-    EXPECT_EQ(run("psf_set", arguments).status, 0);
+    EXPECT_EQ(run("psf-set", arguments).status, 0);
     return read(path("whole/psf_set.exr"));
   }
 };
@@ -90,21 +90,21 @@ TEST_F(PsfFarm, SlurmRunsTheArray) {
 
 /// Replaces the renderer, which is not built everywhere, by a program that records its arguments.
 TEST_F(PsfFarm, ScriptsRunBokehSceneWithItsFlags) {
-  write("bokeh_scene", "#!/bin/sh\necho \"$@\" >> '" + path("calls") + "'\n");
-  std::filesystem::permissions(path("bokeh_scene"), std::filesystem::perms::owner_all);
+  write("render", "#!/bin/sh\necho \"$@\" >> '" + path("calls") + "'\n");
+  std::filesystem::permissions(path("render"), std::filesystem::perms::owner_all);
   const std::string renderer = "PROGRAM=bokeh_scene PATH='" + folder.string() + "':\"$PATH\" ", out = path("an out"),
                     resumed = " --resume --out " + out;
   ASSERT_EQ(shell(renderer + "SLURM_ARRAY_TASK_MIN=1 SLURM_ARRAY_TASK_MAX=3 SLURM_ARRAY_TASK_COUNT=3 " +
                   "SLURM_ARRAY_TASK_ID=2 sh '" + farm("psf_set.slurm.sh") + "' '" + out + "' --scene chess"),
             0)
       << read(path("stderr"));
-  EXPECT_EQ(lines(read(path("calls"))), std::vector<std::string>{"--scene chess --tile 2/3" + resumed});
+  EXPECT_EQ(lines(read(path("calls"))), std::vector<std::string>{"--scene chess --shard 2/3" + resumed});
   std::filesystem::remove(path("calls"));
   if (std::system("parallel --version 2> /dev/null | grep -q 'GNU parallel'") != 0) GTEST_SKIP() << "no GNU parallel";
   ASSERT_EQ(shell(renderer + "sh '" + farm("psf_set.parallel.sh") + "' 2 '" + out + "' --scene chess"), 0)
       << read(path("stderr"));
   EXPECT_EQ(lines(read(path("calls"))),
-            (std::vector<std::string>{"--scene chess --tile 1/2" + resumed, "--scene chess --tile 2/2" + resumed,
+            (std::vector<std::string>{"--scene chess --shard 1/2" + resumed, "--scene chess --shard 2/2" + resumed,
                                       "merge " + out + " --out " + out}));
 }
 
@@ -174,7 +174,7 @@ class OpenJobDescription : public PsfFarm {
 
 class OpenJobTemplate : public OpenJobDescription, public testing::WithParamInterface<const char*> {};
 
-INSTANTIATE_TEST_SUITE_P(Farm, OpenJobTemplate, testing::Values("psf_set", "bokeh_scene"),
+INSTANTIATE_TEST_SUITE_P(Farm, OpenJobTemplate, testing::Values("psf-set", "render"),
                          [](const auto& program) { return std::string(program.param); });
 
 TEST_P(OpenJobTemplate, FollowsTheSchema) {
@@ -250,8 +250,8 @@ TEST_F(OpenJobDescription, TasksOfTheTemplateGiveTheSetOfOneRun) {
                                                      {"Param.FNumbers", "2.8"},
                                                      {"Param.Samples", "4096"},
                                                      {"Param.Shards", "3"}});
-  ASSERT_EQ(run("psf_set", {lens("double_gauss_100mm_f2_28deg"), "--fields", "0,7", "--distances-mm", "1000,inf",
-                            "--f-numbers", "2.8", "--samples", "4096", "--out", path("whole")})
+  ASSERT_EQ(run("psf-set", {lens("double_gauss_100mm_f2_28deg"), "--fields", "0,7", "--at", "1000,inf",
+                            "--f-number", "2.8", "--rays", "4096", "--out", path("whole")})
                 .status,
             0);
   EXPECT_EQ(read(path("out/psf_set.exr")), read(path("whole/psf_set.exr")));

@@ -16,13 +16,13 @@ class PsfSets : public Programs {
     std::vector<std::string> arguments{lens("double_gauss_100mm_f2_28deg"),
                                        "--fields",
                                        "0,7,14",
-                                       "--distances-mm",
+                                       "--at",
                                        "1000,inf",
-                                       "--f-numbers",
+                                       "--f-number",
                                        "2.8,4",
-                                       "--focus-mm",
+                                       "--focus",
                                        "2000",
-                                       "--samples",
+                                       "--rays",
                                        "4096",
                                        "--pixels",
                                        "33",
@@ -32,7 +32,7 @@ class PsfSets : public Programs {
     return arguments;
   }
   void succeed(const std::vector<std::string>& arguments) const {
-    const auto outcome = run("psf_set", arguments);
+    const auto outcome = run("psf-set", arguments);
     EXPECT_EQ(outcome.status, 0) << outcome.err;
   }
   std::string whole() const {
@@ -43,7 +43,7 @@ class PsfSets : public Programs {
 };
 
 TEST_F(PsfSets, IndexDescribesTheSet) {
-  const auto outcome = run("psf_set", set("whole", {"--check"}));
+  const auto outcome = run("psf-set", set("whole", {"--check"}));
   ASSERT_EQ(outcome.status, 0) << outcome.err;
   EXPECT_EQ(lines(outcome.out),
             (std::vector{path("whole/psf_set.exr"), path("whole/psf_set.json"), path("whole/psf_set.png")}));
@@ -95,14 +95,14 @@ TEST_F(PsfSets, ShardsEqualOneRunToTheBit) {
 TEST_F(PsfSets, FaultyShardIsNamedAndRepaired) {
   const std::string exr = whole();
   for (const char* shard : {"1/4", "2/4", "4/4"}) succeed(set("s", {"--shard", shard}));
-  expect_failure("psf_set", {"merge", path("s"), "--out", path("s.exr")},
+  expect_failure("psf-set", {"merge", path("s"), "--out", path("s.exr")},
                  {"shard 3/4", 3, "14deg_1000mm_587.5618nm_f2.8"});
   succeed(set("s", {"--shard", "3/4"}));
   const std::string corrupt = path("s/" + psf("7deg_inf"));  // the fifth PSF, which belongs to the first shard
   const std::string bytes = read(corrupt);
   const auto refused = [&](const std::string& content) {
     write("s/" + psf("7deg_inf"), content);
-    expect_failure("psf_set", {"merge", path("s"), "--out", path("s.exr")}, {"shard 1/4", corrupt});
+    expect_failure("psf-set", {"merge", path("s"), "--out", path("s.exr")}, {"shard 1/4", corrupt});
     EXPECT_FALSE(fs::exists(path("s.exr")));
     EXPECT_FALSE(fs::exists(path("s.json")));
   };
@@ -117,7 +117,7 @@ TEST_F(PsfSets, FaultyShardIsNamedAndRepaired) {
   succeed({"merge", path("s"), path("whole"), "--out", path("s.exr")});
   EXPECT_EQ(read(path("s.exr")), exr);
   const auto before = fs::last_write_time(path("s/" + psf("0deg_1000mm")));
-  const auto outcome = run("psf_set", set("s", {"--shard", "1/4", "--resume"}));
+  const auto outcome = run("psf-set", set("s", {"--shard", "1/4", "--resume"}));
   EXPECT_EQ(lines(outcome.out), std::vector{corrupt});
   EXPECT_NE(outcome.err.find("note: " + corrupt), std::string::npos) << outcome.err;
   EXPECT_EQ(fs::last_write_time(path("s/" + psf("0deg_1000mm"))), before);
@@ -147,41 +147,41 @@ TEST_F(PsfSets, KilledRunContinuesAfterItsLastCompletePsf) {
 TEST_F(PsfSets, QueriesGiveNodesBitForBitAndPointsBetween) {
   whole();
   const std::string file = path("whole/psf_set.exr");
-  succeed({"query", file, "--field-deg", "7", "--distance-mm", "inf", "--f-number", "4", "--out", path("node.exr")});
+  succeed({"query", file, "--fields", "7", "--at", "inf", "--f-number", "4", "--out", path("node.exr")});
   const auto query = petzval::read_exr_parts(path("node.exr")),
              node = petzval::read_exr_parts(path("whole/psfs/7deg_inf_587.5618nm_f4.exr"));
   ASSERT_EQ(query.size(), 1u);
   EXPECT_EQ(query[0].numbers, node[0].numbers);
   EXPECT_EQ(query[0].texts.at("checksum"), node[0].texts.at("checksum"));
-  succeed({"query", file, "--field-deg", "3", "--distance-mm", "1500", "--out", path("between.exr")});
+  succeed({"query", file, "--fields", "3", "--at", "1500", "--out", path("between.exr")});
   const auto between = petzval::from_exr_part(petzval::read_exr_parts(path("between.exr")).front());
   EXPECT_EQ(between.point.f_number, 2.8);
   EXPECT_EQ(between.point.wavelength_nm, 587.5618);
   EXPECT_GT(between.kernel.total, 0.4);
   const auto refused = [&](std::vector<std::string> more, const std::vector<petzval::testing::Token>& tokens) {
     more.insert(more.begin(), {"query", file});
-    expect_failure("psf_set", more, tokens);
+    expect_failure("psf-set", more, tokens);
     EXPECT_FALSE(fs::exists(path("no.exr")) || fs::exists(path("no.png")));
   };
-  refused({"--field-deg", "15", "--distance-mm", "1500", "--out", path("no.exr")}, {"field_deg", 15});
-  refused({"--field-deg", "3", "--distance-mm", "900", "--out", path("no.exr")}, {"distance_mm", 900});
-  refused({"--field-deg", "3", "--distance-mm", "1500", "--wavelength-nm", "500", "--out", path("no.exr")},
+  refused({"--fields", "15", "--at", "1500", "--out", path("no.exr")}, {"field_deg", 15});
+  refused({"--fields", "3", "--at", "900", "--out", path("no.exr")}, {"distance_mm", 900});
+  refused({"--fields", "3", "--at", "1500", "--wavelengths", "500", "--out", path("no.exr")},
           {"wavelength_nm", 500, 587.5618});
-  refused({"--field-deg", "3", "--out", path("no.exr")}, {"--distance-mm"});
-  refused({"--field-deg", "3", "--distance-mm", "1500", "--out", path("no.png")}, {"no.png", ".exr"});
+  refused({"--fields", "3", "--out", path("no.exr")}, {"--at"});
+  refused({"--fields", "3", "--at", "1500", "--out", path("no.png")}, {"no.png", ".exr"});
   write("text.exr", "no picture");
-  expect_failure("psf_set",
-                 {"query", path("text.exr"), "--field-deg", "3", "--distance-mm", "1500", "--out", path("no.exr")},
+  expect_failure("psf-set",
+                 {"query", path("text.exr"), "--fields", "3", "--at", "1500", "--out", path("no.exr")},
                  {path("text.exr")});
 }
 
 TEST_F(PsfSets, QueriesUseTheOriginOfTheSet) {
-  succeed(set("film", {"--distance-from", "film"}));
-  const std::vector<std::string> query{"query", path("film/psf_set.exr"), "--field-deg", "7", "--distance-mm", "1000",
+  succeed(set("film", {"--from", "film"}));
+  const std::vector<std::string> query{"query", path("film/psf_set.exr"), "--fields", "7", "--at", "1000",
                                        "--out", path("psf.exr")};
-  expect_failure("psf_set", query, {"--distance-from", "front_vertex"});
+  expect_failure("psf-set", query, {"--from", "front_vertex"});
   auto from_film = query;
-  from_film.insert(from_film.end(), {"--distance-from", "film"});
+  from_film.insert(from_film.end(), {"--from", "film"});
   succeed(from_film);
   EXPECT_EQ(petzval::read_exr_parts(path("psf.exr")).front().texts.at("distance_from"), "film");
 }
@@ -189,12 +189,12 @@ TEST_F(PsfSets, QueriesUseTheOriginOfTheSet) {
 TEST_F(PsfSets, RefusesTheFolderOfAnotherSet) {
   const std::string file = lens("double_gauss_100mm_f2_28deg"), job = path("set/job.json");
   succeed(set("set"));
-  expect_failure("psf_set", {file, "--fields", "0", "--distances-mm", "1000", "--out", path("set")}, {job});
-  expect_failure("psf_set", {file, "--fields", "0", "--distances-mm", "1000", "--resume", "--out", path("set")}, {job});
+  expect_failure("psf-set", {file, "--fields", "0", "--at", "1000", "--out", path("set")}, {job});
+  expect_failure("psf-set", {file, "--fields", "0", "--at", "1000", "--resume", "--out", path("set")}, {job});
   write("set/job.json", "{");
-  expect_failure("psf_set", {"merge", path("set"), "--out", path("no.exr")}, {job});
-  expect_failure("psf_set", {"merge", path("nowhere"), "--out", path("no.exr")}, {"nowhere", "job.json"});
-  expect_failure("psf_set", {"merge", "--out", path("no.exr")}, {"DIR"});
+  expect_failure("psf-set", {"merge", path("set"), "--out", path("no.exr")}, {job});
+  expect_failure("psf-set", {"merge", path("nowhere"), "--out", path("no.exr")}, {"nowhere", "job.json"});
+  expect_failure("psf-set", {"merge", "--out", path("no.exr")}, {"DIR"});
 }
 
 }  // namespace

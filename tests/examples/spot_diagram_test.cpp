@@ -19,7 +19,7 @@ class SpotDiagram : public Programs {
   nlohmann::json rows(const std::string& id, std::vector<std::string> more) const {
     std::vector<std::string> arguments{lens(id), "--out", path("spots")};
     arguments.insert(arguments.end(), more.begin(), more.end());
-    const auto outcome = run("spot_diagram", arguments);
+    const auto outcome = run("spots", arguments);
     EXPECT_EQ(outcome.status, 0) << outcome.err;
     EXPECT_EQ(lines(outcome.out),
               (std::vector<std::string>{path("spots/" + id + "_spots.svg"), path("spots/" + id + "_spots.csv"),
@@ -29,7 +29,7 @@ class SpotDiagram : public Programs {
 };
 
 TEST_F(SpotDiagram, NumbersEqualTheHits) {
-  const auto json = rows("cooke_triplet_50mm_f5", {"--field-deg", "0,14", "--wavelengths-nm", "486.1,587.6,656.3"});
+  const auto json = rows("cooke_triplet_50mm_f5", {"--fields", "0,14", "--wavelengths", "486.1,587.6,656.3"});
   ASSERT_EQ(json.size(), 6u);
   std::map<std::string, std::vector<std::array<double, 2>>> spots;
   const auto csv = lines(read(path("spots/cooke_triplet_50mm_f5_spots.csv")));
@@ -65,20 +65,20 @@ TEST_F(SpotDiagram, NumbersEqualTheHits) {
 TEST_F(SpotDiagram, FocusesTheFilmAtTheDLine) {
   const petzval::Lens triplet = petzval::compile(petzval::read_prescription(lens("cooke_triplet_50mm_f5")));
   const auto film_z = [&](std::vector<std::string> more) {
-    more.insert(more.end(), {"--field-deg", "0", "--wavelengths-nm", "500, d", "--samples", "64"});
+    more.insert(more.end(), {"--fields", "0", "--wavelengths", "500, d", "--rays", "64"});
     return rows("cooke_triplet_50mm_f5", more)[0]["film_z_mm"].get<double>();
   };
   const double sharpest = petzval::solve_focus(triplet, HUGE_VAL).film_z;
   EXPECT_NEAR(film_z({}), sharpest, 1e-9);
   EXPECT_NEAR(film_z({"--defocus-mm", "-0.25"}), sharpest - 0.25, 1e-9);
   EXPECT_NEAR(film_z({"--criterion", "paraxial"}), petzval::first_order(triplet).rear_focal_z, 1e-12);
-  EXPECT_NEAR(film_z({"--subject-distance-mm", "1000", "--criterion", "paraxial"}),
+  EXPECT_NEAR(film_z({"--at", "1000", "--criterion", "paraxial"}),
               petzval::paraxial_image_z(triplet, -1000), 1e-12);
   const petzval::FocusOptions from_film{.origin = petzval::DistanceOrigin::film};
-  EXPECT_NEAR(film_z({"--subject-distance-mm", "1000", "--distance-from", "film"}),
+  EXPECT_NEAR(film_z({"--at", "1000", "--from", "film"}),
               petzval::solve_focus(triplet, 1000, from_film).film_z, 1e-9);
-  EXPECT_EQ(film_z({"--film", "file"}), triplet.film_z());
-  EXPECT_EQ(film_z({"--film", "file", "--subject-distance-mm", "1000"}), triplet.film_z());
+  EXPECT_EQ(film_z({"--film-position", "file"}), triplet.film_z());
+  EXPECT_EQ(film_z({"--film-position", "file", "--at", "1000"}), triplet.film_z());
   const petzval::Lens stopped = petzval::with_f_number(triplet, 11);
   EXPECT_NEAR(film_z({"--f-number", "11"}), petzval::solve_focus(stopped, HUGE_VAL).film_z, 1e-9);
 }
@@ -93,7 +93,7 @@ ENPD 10.0
 FTYP 1 0 3 2 0 0 0
 YFLN 0.0 6.0 -10.0
 )"));
-  const auto outcome = run("spot_diagram", {path("relay.zmx"), "--out", path("spots"), "--film", "file"});
+  const auto outcome = run("spots", {path("relay.zmx"), "--out", path("spots"), "--film-position", "file"});
   ASSERT_EQ(outcome.status, 0) << outcome.err;
   const auto json = read_json(path("spots/relay_spots.json"));
   ASSERT_EQ(json.size(), 6u);

@@ -32,7 +32,7 @@ class TiltShift : public Programs {
   }
   json result(const Arguments& lens, const std::string& points, Arguments more = {}) const {
     more.push_back("--json");
-    const auto outcome = run("tilt_shift", command(lens, points, more));
+    const auto outcome = run("tilt", command(lens, points, more));
     EXPECT_EQ(outcome.status, 0) << outcome.err;
     return json::parse(outcome.out);
   }
@@ -145,7 +145,7 @@ TEST_F(TiltShift, ReportsTheUseOfEveryPoint) {
     {"position_mm": [10, 20, -1300], "weight": 0}, {"position_mm": [0, 3000, -1000]}])";
   const json all = result(thin_50, points);
   EXPECT_EQ(all["use"], json::array({"used", "used", "used", "no_image", "no_image", "no_weight", "used"}));
-  const json framed = result(thin_50, points, {"--film-mm", "36x24"});
+  const json framed = result(thin_50, points, {"--film", "36x24"});
   EXPECT_EQ(framed["use"],
             json::array({"used", "used", "used", "no_image", "no_image", "no_weight", "outside_picture"}));
   for (const std::size_t i : {3u, 4u, 6u}) {
@@ -171,7 +171,7 @@ TEST_F(TiltShift, AcceptsPointsAtInfinityAndBlurs) {
 }
 
 TEST_F(TiltShift, WritesOnlyThreePictures) {
-  const auto outcome = run("tilt_shift", command(thin_50, table, {}));
+  const auto outcome = run("tilt", command(thin_50, table, {}));
   ASSERT_EQ(outcome.status, 0) << outcome.err;
   std::set<std::string> names;
   for (const auto& file : std::filesystem::directory_iterator(path("out"))) names.insert(file.path().filename());

@@ -18,7 +18,7 @@ class TraceRays : public Programs {
     write("rays.csv", csv);
     std::vector<std::string> arguments{lens(lens_id), "--rays", path("rays.csv"), "--out", path("traced.csv")};
     arguments.insert(arguments.end(), more.begin(), more.end());
-    const auto outcome = run("trace_rays", arguments);
+    const auto outcome = run("trace", arguments);
     EXPECT_EQ(outcome.status, 0) << outcome.err;
     auto rows = lines(read(path("traced.csv")));
     EXPECT_EQ(rows.at(0), "x_mm,y_mm,z_mm,dx,dy,dz,fate,surface");
@@ -35,7 +35,7 @@ class TraceRays : public Programs {
   void expect_refusal(const std::string& csv, const std::vector<petzval::testing::Token>& tokens) const {
     SCOPED_TRACE(csv);
     write("rays.csv", csv);
-    expect_failure("trace_rays",
+    expect_failure("trace",
                    {lens("double_gauss_100mm_f1.35"), "--rays", path("rays.csv"), "--out", path("traced.csv")}, tokens);
     EXPECT_FALSE(std::filesystem::exists(path("traced.csv")));
   }

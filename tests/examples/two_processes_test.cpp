@@ -36,9 +36,9 @@ class TwoProcesses : public Programs {
     std::vector<std::string> arguments{lens("double_gauss_100mm_f2_28deg"),
                                        "--fields",
                                        "0,7,14",
-                                       "--distances-mm",
+                                       "--at",
                                        "1000,2000,inf",
-                                       "--samples",
+                                       "--rays",
                                        "4096",
                                        "--pixels",
                                        "33",
@@ -50,21 +50,21 @@ class TwoProcesses : public Programs {
 };
 
 TEST_F(TwoProcesses, WithOnePsfSetBothSucceed) {
-  ASSERT_EQ(run("psf_set", set("whole")).status, 0);
+  ASSERT_EQ(run("psf-set", set("whole")).status, 0);
   for (int round = 0; round < 3; ++round) {
     const std::string out = "both" + std::to_string(round);
-    run_both("psf_set", set(out), set(out));
+    run_both("psf-set", set(out), set(out));
     EXPECT_EQ(files_in(out), files_in("whole"));
-    run_both("psf_set", set(out, {"--resume"}), set(out, {"--resume"}));
+    run_both("psf-set", set(out, {"--resume"}), set(out, {"--resume"}));
     EXPECT_EQ(files_in(out), files_in("whole"));
   }
 }
 
 TEST_F(TwoProcesses, WithTwoShardsCompleteTheSet) {
-  ASSERT_EQ(run("psf_set", set("whole")).status, 0);
-  run_both("psf_set", set("shards", {"--shard", "1/2"}), set("shards", {"--shard", "2/2"}));
+  ASSERT_EQ(run("psf-set", set("whole")).status, 0);
+  run_both("psf-set", set("shards", {"--shard", "1/2"}), set("shards", {"--shard", "2/2"}));
   const std::vector<std::string> merge{"merge", path("shards"), "--out", path("shards/psf_set.exr")};
-  run_both("psf_set", merge, merge);
+  run_both("psf-set", merge, merge);
   EXPECT_EQ(read(path("shards/psf_set.exr")), read(path("whole/psf_set.exr")));
   EXPECT_EQ(read(path("shards/psf_set.png")), read(path("whole/psf_set.png")));
 }
@@ -72,17 +72,17 @@ TEST_F(TwoProcesses, WithTwoShardsCompleteTheSet) {
 TEST_F(TwoProcesses, WithEqualPicturesBothSucceed) {
   const auto bokeh = [&](const std::string& out) {
     return std::vector<std::string>{lens("double_gauss_100mm_f1.35"),
-                                    "--subject-distance-mm",
+                                    "--at",
                                     "1000",
-                                    "--focus-mm",
+                                    "--focus",
                                     "800,1200",
-                                    "--samples",
+                                    "--rays",
                                     "32768",
                                     "--out",
                                     path(out)};
   };
-  ASSERT_EQ(run("bokeh_psf", bokeh("whole")).status, 0);
-  run_both("bokeh_psf", bokeh("both"), bokeh("both"));
+  ASSERT_EQ(run("psf", bokeh("whole")).status, 0);
+  run_both("psf", bokeh("both"), bokeh("both"));
   EXPECT_EQ(files_in("both"), files_in("whole"));
 }
 

@@ -2,9 +2,11 @@
 // Prints the first-order data of a lens, its pupils and f-numbers, and doubtful entries of its prescription. With --out
 // it draws the lens, its spots, pupils, focus and brightness, and combines them in a page.
 //
-//   lens_report data/lenses/double_gauss_100mm_f1.35.json
-//   lens_report data/lenses/double_gauss_100mm_f1.35.json --json --wavelength-nm 486.1327
-//   lens_report data/lenses/double_gauss_100mm_f1.35.json --out out --field-deg 0,6,12 --f-number 2
+//   petzval report data/lenses/double_gauss_100mm_f1.35.json
+//   petzval report data/lenses/double_gauss_100mm_f1.35.json --json --wavelengths 486.1327
+//   petzval report data/lenses/double_gauss_100mm_f1.35.json --out out --fields 0,6,12 --f-number 2
+#include "commands.hpp"
+
 #include <array>
 #include <cmath>
 #include <filesystem>
@@ -61,7 +63,7 @@ examples::ReportSubject subject_of(const examples::LensFile& file, const Options
 /// The lens, stopped down and focused.
 petzval::Lens set(petzval::Lens lens, const Options& options, const examples::ReportSubject& subject) {
   if (options.f_number > 0) lens = examples::stopped_to(lens, options.f_number);
-  return subject.film_of_file ? lens : examples::for_flag("--subject-distance-mm", [&] {
+  return subject.film_of_file ? lens : examples::for_flag("--at", [&] {
     return petzval::with_focus(lens, subject.distance_mm, subject.focus.options());
   });
 }
@@ -79,7 +81,7 @@ examples::Report report_of(const Options& options) {
   if (!options.field_deg.empty() && petzval::has_pupils(loaded.lens)) {
     for (const double field : options.field_deg) {
       examples::want_light(loaded.lens, {petzval::radians(field), examples::subject_z(subject, loaded.lens)},
-                           "--field-deg");
+                           "--fields");
     }
   }
   return examples::report(std::move(loaded), std::move(subject), declared);
@@ -103,7 +105,7 @@ void write_page(const examples::Report& report, const Options& options) {
 
 }  // namespace
 
-int main(int argc, char** argv) {
+int commands::report(int argc, char** argv) {
   Options options;
   examples::App app(
       "Reports the first-order data, pupils, f-numbers and lint findings of a lens, in both sections if it has "
@@ -112,22 +114,22 @@ int main(int argc, char** argv) {
       "With --out: writes LENS_layout.svg (and LENS_layout_x.svg for a lens with cylinders), LENS_spots.svg, "
       "LENS_footprints.svg, LENS_focus.svg, LENS_illumination.svg and LENS.html, a page with all of them, to DIR, and "
       "prints their paths instead.",
-      "lens_report");
+      "petzval report");
   examples::add_lens(app, options.lens_file);
   app.add_flag("--json", options.json, "print one JSON object; null is an infinite or absent value");
   const auto* wavelength =
-      examples::add_wavelength(app, "--wavelength-nm", options.wavelength_nm, "wavelength")
+      examples::add_wavelength(app, "--wavelengths", options.wavelength_nm, "wavelength")
           ->default_str("wavelengths of the file, else F, d and C; numbers at the primary wavelength");
   examples::add_number(app, "--f-number", options.f_number, examples::positive_number,
                        "f-number to stop the lens down to")
       ->default_str("wide open");
-  const auto* subject = examples::add_number(app, "--subject-distance-mm", options.subject_mm,
-                                             examples::positive_length, "distance of the subject (mm), or inf")
+  const auto* subject = examples::add_length(app, "--at", options.subject_mm, examples::positive_length,
+                                             "distance of the subject (mm), or inf")
                             ->default_str("distance and film of the file");
   examples::add_focus(app, options.focus);
-  examples::add_film_choice(app, options.film, "file; with --subject-distance-mm focus");
+  examples::add_film_choice(app, options.film, "file; with --at focus");
   auto* out = examples::add_out_folder(app, options.out_folder, "folder for figures and a page");
-  examples::add_numbers(app, "--field-deg", options.field_deg, examples::field_angle, "fields of the figures (degrees)")
+  examples::add_numbers(app, "--fields", options.field_deg, examples::field_angle, "fields of the figures (degrees)")
       ->default_str("fields of the file, else the axis, 0.7 and 1 of the declared half field")
       ->needs(out);
   out->excludes("--json");

@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // Reports film position, depth of field and breathing for several subject distances and focus criteria.
 //
-//   focus_report data/lenses/double_gauss_100mm_f2.0.json
-//   focus_report data/lenses/double_gauss_100mm_f2.0.json --json --distance-mm 700,2000,inf --criterion min_rms
-//                --blur-mm 0.05 --f-number 4 --field-deg 0,10
+//   petzval focus data/lenses/double_gauss_100mm_f2.0.json
+//   petzval focus data/lenses/double_gauss_100mm_f2.0.json --json --at 700,2000,inf --criterion min_rms
+//                --blur-mm 0.05 --f-number 4 --fields 0,10
+#include "commands.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <iomanip>
@@ -133,10 +135,10 @@ void want_answers(const Report& report, const std::vector<double>& distances, co
   const bool no_rays =
       std::ranges::any_of(report.rows, [](const Row& r) { return r.focus.status == FocusStatus::no_rays; });
   for (const double field : options.field_deg) {
-    if (no_rays && field != 0) examples::want_light(report.lens, {petzval::radians(field), z}, "--field-deg");
+    if (no_rays && field != 0) examples::want_light(report.lens, {petzval::radians(field), z}, "--fields");
   }
   if (std::ranges::none_of(report.rows, [](const Row& r) { return r.refusal.empty(); })) {
-    throw petzval::Error("--distance-mm: " + report.rows.front().refusal);
+    throw petzval::Error("--at: " + report.rows.front().refusal);
   }
   const auto unreached = [&](const Row& r) { return r.refusal.empty() && r.focus.status == FocusStatus::unreachable; };
   const bool none_solved = std::ranges::none_of(report.rows, [](const Row& r) { return r.refusal.empty() && r.focus; });
@@ -252,7 +254,7 @@ std::string to_text(const Report& report, const Options& options) {
 
 }  // namespace
 
-int main(int argc, char** argv) {
+int commands::focus(int argc, char** argv) {
   Options options;
   examples::App app(
       "Reports, for subject distances and focus criteria: the film position, the blur of the subject, the depth of "
@@ -262,15 +264,14 @@ int main(int argc, char** argv) {
       "(exact rays through the whole aperture: smallest RMS and smallest maximum radius of the blur). Blurs are "
       "diameters: the paraxial cone, the uniform disc with the RMS radius, or twice the maximum radius.\n"
       "thin and paraxial use only the axis and the wavelength nearest to the d line (587.5618 nm).",
-      "focus_report");
+      "petzval focus");
   examples::add_lens(app, options.lens_file);
   app.add_flag(
       "--json", options.json,
       "print an array of rows, one per criterion and distance; null is an infinite or absent value, explained by "
       "status and depth_status (refused: see message; too_blurred: even the sharpest image has a larger blur than "
       "--blur-mm); blur_mm is the value of --blur-mm; breathing is a fraction");
-  examples::add_numbers(app, "--distance-mm", options.distance_mm, examples::positive_length,
-                        "subject distances (mm), or inf")
+  examples::add_lengths(app, "--at", options.distance_mm, examples::positive_length, "subject distances (mm), or inf")
       ->default_str("the object of the file if finite, else 10, 20, 50, 100 focal lengths, rounded, and inf");
   examples::add_criteria(app, options.criteria);
   examples::add_distance_origin(app, options.origin);
@@ -279,9 +280,9 @@ int main(int argc, char** argv) {
   examples::add_number(app, "--f-number", options.f_number, examples::positive_number,
                        "f-number to stop the lens down to (by exact rays)")
       ->default_str("wide open");
-  examples::add_numbers(app, "--field-deg", options.field_deg, examples::field_angle,
+  examples::add_numbers(app, "--fields", options.field_deg, examples::field_angle,
                         "fields of min_rms and min_max, of equal weight (degrees)");
-  examples::add_wavelengths(app, "--wavelengths-nm", options.wavelengths_nm,
+  examples::add_wavelengths(app, "--wavelengths", options.wavelengths_nm,
                             "wavelengths of min_rms and min_max, of equal weight")
       ->default_str("the primary wavelength of the file, else the d line");
 

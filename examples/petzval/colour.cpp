@@ -2,7 +2,9 @@
 // Shows the colours of an out-of-focus point light: contact sheets over a spectral set of wavelengths and over one
 // wavelength per channel, a spectral EXR for each picture, and longitudinal and lateral colour as numbers.
 //
-//   chromatic_bokeh data/lenses/double_gauss_100mm_f1.35.json --out out
+//   petzval colour data/lenses/double_gauss_100mm_f1.35.json --out out
+#include "commands.hpp"
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -106,7 +108,7 @@ std::vector<Picture> prepared(const petzval::Lens& lens, const Options& options)
     const std::size_t first = pictures.size();
     for (const double focus : options.focus_mm) {
       const auto scene = examples::focused_scene(lens, focus, options.scene(field));
-      examples::want_light(scene.lens, scene.light, "--field-deg");
+      examples::want_light(scene.lens, scene.light, "--fields");
       const auto sketch = petzval::point_image(scene.lens, scene.light, {.samples = 1u << 10, .pixels = 1});
       half_width_mm = std::max(half_width_mm, 1.08 * sketch.size.max_radius);
       pictures.push_back({field, focus, 0, scene, {}});
@@ -202,7 +204,7 @@ std::string table(const petzval::ChromaticAberration& colour, const Options& opt
 
 }  // namespace
 
-int main(int argc, char** argv) {
+int commands::colour(int argc, char** argv) {
   Options options;
   examples::App app(
       "Shows the colours of an out-of-focus point light, on and off the axis, over 26 wavelengths and over one "
@@ -213,15 +215,14 @@ int main(int argc, char** argv) {
       "wavelength: fraction of its light in the paraxial entrance pupil, per mm^2 of film; R, G, B: sum of all "
       "wavelengths for the light of the white point) and LENS_chromatic.json. Images show the film as a photograph "
       "does.",
-      "chromatic_bokeh");
+      "petzval colour");
   examples::add_lens(app, options.lens_file);
-  examples::add_number(app, "--subject-distance-mm", options.subject_mm, examples::positive_length,
-                       "distance of the light (mm), or inf")
+  examples::add_length(app, "--at", options.subject_mm, examples::positive_length, "distance of the light (mm), or inf")
       ->default_str("20 focal lengths");
-  examples::add_numbers(app, "--focus-mm", options.focus_mm, examples::positive_length, "focus distances (mm), or inf")
+  examples::add_lengths(app, "--focus", options.focus_mm, examples::positive_length, "focus distances (mm), or inf")
       ->default_str("0.8, 0.9, 1, 1.1, 1.2 of the light's distance; for inf 25, 50, 100 focal lengths, and inf");
   examples::add_focus(app, options.focus);
-  examples::add_numbers(app, "--field-deg", options.field_deg, examples::field_angle,
+  examples::add_numbers(app, "--fields", options.field_deg, examples::field_angle,
                         "angles of the light towards +y, seen from the paraxial entrance pupil (degrees)")
       ->default_str("0 and 0.7 of the lens's half field");
   examples::add_iris(app, options.iris);
@@ -229,6 +230,7 @@ int main(int argc, char** argv) {
   examples::add_samples(app, options.samples);
   examples::add_out_folder(app, options.out_folder)->required();
 
+  examples::add_threads(app);
   return examples::run(app, argc, argv, [&] {
     const auto set = wavelengths_nm();
     const Weights weights = examples::rgb_weights(set, examples::white_light(options.white_point));
@@ -265,7 +267,7 @@ int main(int argc, char** argv) {
                                        {.samples = options.samples,
                                         .pixels = tile_pixels,
                                         .half_width_mm = p.half_width_mm,
-                                        .threads = petzval::processor_threads()});
+                                        .threads = examples::threads()});
         const auto name =
             loaded.id + "_" + examples::number(p.field_deg) + "deg_focus_" + examples::number(p.focus_mm) + "mm.exr";
         petzval::write_exr(std::array{petzval::spectral_image(p.image.psf, weights)}, folder / name);

@@ -2,9 +2,11 @@
 // Compares highlights over the field of the real lens with highlights of an artist's power spline, curvature of field
 // and dispersion.
 //
-//   expressive_lens data/lenses/double_gauss_100mm_f1.35.json --focus-mm 1000 --from-lens 2 --out out
-//   expressive_lens data/lenses/double_gauss_100mm_f2_28deg.json --power-spline 0:1 0.7:1.02 1:0.97
+//   petzval expressive data/lenses/double_gauss_100mm_f1.35.json --focus 1000 --from-lens 2 --out out
+//   petzval expressive data/lenses/double_gauss_100mm_f2_28deg.json --power-spline 0:1 0.7:1.02 1:0.97
 //                   --dispersion 4 --out out
+#include "commands.hpp"
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -76,7 +78,7 @@ std::vector<double> fields_rad(const petzval::Lens& lens, const petzval::Film& f
   if (fields.empty()) throw petzval::Error(lens.name() + ": no light reaches the film");
   if (fields.size() < film_fractions.size()) {
     std::cerr << "note: " << film_fractions.size() - fields.size() << " of " << film_fractions.size()
-              << " film points have no light; --film-mm sets a smaller film\n";
+              << " film points have no light; --film sets a smaller film\n";
   }
   return fields;
 }
@@ -90,11 +92,9 @@ class Highlights {
   petzval::PointImage image(double field_rad, const petzval::CameraOptions& camera, double half_width_mm,
                             std::uint32_t samples) const {
     const examples::BokehScene scene{lens_, {field_rad, z_}};
-    return petzval::point_image(examples::camera_of(scene, camera), scene.light,
-                                {.samples = samples,
-                                 .pixels = tile_pixels,
-                                 .half_width_mm = half_width_mm,
-                                 .threads = petzval::processor_threads()});
+    return petzval::point_image(
+        examples::camera_of(scene, camera), scene.light,
+        {.samples = samples, .pixels = tile_pixels, .half_width_mm = half_width_mm, .threads = examples::threads()});
   }
   double radius_mm(double field_rad, const petzval::CameraOptions& camera) const {
     return image(field_rad, camera, 0, 1 << 12).size.max_radius;
@@ -194,23 +194,24 @@ void draw(Options options) {
 
 }  // namespace
 
-int main(int argc, char** argv) {
+int commands::expressive(int argc, char** argv) {
   Options options;
   examples::App app(
       "Draws highlights over the field of a lens, of its first-order model with expressive aberrations, and of the "
       "model without aberrations: DIR/highlights.png, with the numbers of aberrations and highlights in "
       "DIR/expressive.json. The default aberrations are the real lens's.",
-      "expressive_lens");
+      "petzval expressive");
   examples::add_lens(app, options.lens_file);
   examples::add_camera(app, options.setup);
   examples::add_expressive(app, options.expressive);
   app.add_option("--model", options.model, "first-order model that gets the aberrations")
       ->one_of({"thin", "thick", "thin_two_disc"})
       ->capture_default_str();
-  examples::add_numbers(app, "--light-mm", options.light_mm, examples::positive_length, "distances of the lights (mm)")
+  examples::add_lengths(app, "--at", options.light_mm, examples::positive_length, "distances of the lights (mm)")
       ->default_str("0.85 and 1.2 of the focus");
   examples::add_samples(app, options.samples);
   examples::add_out_folder(app, options.out_folder)->required();
+  examples::add_threads(app);
   return examples::run(app, argc, argv, [&] {
     options.from_lens_given = app.get_option("--from-lens")->given();
     draw(options);

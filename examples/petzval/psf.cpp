@@ -2,8 +2,10 @@
 // Renders the image of a point light for several focus distances: an EXR and a PNG for each, a contact sheet, and a
 // JSON file of measurements.
 //
-//   bokeh_psf data/lenses/double_gauss_100mm_f1.35.json --subject-distance-mm 1000
-//             --focus-mm 800,900,1000,1100,1200 --out out
+//   petzval psf data/lenses/double_gauss_100mm_f1.35.json --at 1000
+//             --focus 800,900,1000,1100,1200 --out out
+#include "commands.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <iostream>
@@ -76,7 +78,7 @@ std::vector<Picture> focused(const examples::LoadedLens& loaded, const Options& 
   std::vector<Picture> pictures;
   for (const double focus : options.focus_mm) {
     Picture picture{focus, examples::focused_scene(lens, focus, setup), {}, {}};
-    examples::want_light(picture.scene.lens, picture.scene.light, "--field-deg");
+    examples::want_light(picture.scene.lens, picture.scene.light, "--fields");
     if (!options.plain()) {
       picture.camera =
           examples::camera_of(picture.scene, {.model = *petzval::model_named(options.model), .bokeh = controls});
@@ -107,7 +109,7 @@ examples::Sheet contact_sheet(const std::vector<Picture>& pictures, const exampl
     const auto image = image_of(p, {.samples = options.samples,
                                     .pixels = tile_pixels,
                                     .half_width_mm = half_width,
-                                    .threads = petzval::processor_threads()});
+                                    .threads = examples::threads()});
     row.tiles.push_back(examples::bokeh_tile(p.focus_mm, image, options.light));
   }
   return {"Bokeh of a point light", {std::move(row)}, examples::bokeh_notes()};
@@ -184,7 +186,7 @@ void render(std::vector<Picture> pictures, const examples::LoadedLens& loaded, c
       p.image = image_of(p, {.samples = options.samples,
                              .tolerance = options.tolerance,
                              .pixels = picture_pixels,
-                             .threads = petzval::processor_threads()});
+                             .threads = examples::threads()});
       const std::string stem = loaded.id + "_focus_" + examples::number(p.focus_mm) + "mm";
       const petzval::RgbImage image = examples::irradiance(p.image.psf, options.light);
       for (const auto& file :
@@ -203,7 +205,7 @@ void render(std::vector<Picture> pictures, const examples::LoadedLens& loaded, c
 
 }  // namespace
 
-int main(int argc, char** argv) {
+int commands::psf(int argc, char** argv) {
   Options options;
   examples::App app(
       "Renders the geometric point spread function of a lens for a point light, focused at several distances.\n"
@@ -215,33 +217,33 @@ int main(int argc, char** argv) {
       "throughput_of_round_iris is divided by the light on the pupil of a round iris with the same f-number, which is "
       "smaller with --iris-area equal. The lens is focused at the primary wavelength, which is nearest to the d line "
       "(587.5618 nm).",
-      "bokeh_psf");
+      "petzval psf");
   examples::add_lens(app, options.lens_file);
-  examples::add_number(app, "--subject-distance-mm", options.subject_mm, examples::positive_length,
-                       "distance of the light (mm), or inf")
+  examples::add_length(app, "--at", options.subject_mm, examples::positive_length, "distance of the light (mm), or inf")
       ->required()
       ->default_str("");
-  examples::add_numbers(app, "--focus-mm", options.focus_mm, examples::positive_length, "focus distances (mm), or inf")
+  examples::add_lengths(app, "--focus", options.focus_mm, examples::positive_length, "focus distances (mm), or inf")
       ->required();
   examples::add_focus(app, options.focus);
   examples::add_wavelengths(
-      app, "--wavelengths-nm", options.wavelengths_nm,
+      app, "--wavelengths", options.wavelengths_nm,
       "wavelengths of the light; several, from 420 to 680 nm, are weighted to RGB by the CIE 1931 functions");
   examples::add_white_point(app, options.white_point);
   examples::add_model(app, options.model)->capture_default_str();
   examples::add_iris(app, options.iris);
   examples::add_bokeh(app, options.bokeh);
-  examples::add_number(app, "--field-deg", options.field_deg, examples::field_angle,
+  examples::add_number(app, "--fields", options.field_deg, examples::field_angle,
                        "angle of the light towards +y, seen from the paraxial entrance pupil (degrees)");
   examples::add_samples(app, options.samples);
   examples::add_number(
       app, "--tolerance", options.tolerance, {std::numeric_limits<double>::min(), 1, "a number above 0, at most 1"},
       "largest relative error of the radial profile: rays are added, from 2^14 by doubling, until it is reached, or "
-      "--samples")
+      "--rays")
       ->default_str("all samples");
   examples::add_formats(app, options.formats, "each with its own exposure");
   examples::add_out_folder(app, options.out_folder)->required();
 
+  examples::add_threads(app);
   return examples::run(app, argc, argv, [&] {
     options.light = examples::white_light(options.white_point);
     examples::rgb_weights(options.wavelengths_nm, options.light);  // throws for invalid wavelengths before the work

@@ -2,8 +2,11 @@
 // Converts film samples of a CSV file to camera rays, by any model of the lens.
 //
 //   printf 'film_x_mm,film_y_mm,pupil_u,pupil_v,wavelength_nm\n0,-10,0.25,0.5,587.5618\n' > samples.csv
-//   camera_rays data/lenses/double_gauss_100mm_f2.0.json --samples samples.csv --out rays.csv --model exact_double
-//               --focus-mm 3000 --f-number 4
+//   petzval camera-rays data/lenses/double_gauss_100mm_f2.0.json --samples samples.csv --out rays.csv --model
+//   exact_double
+//               --focus 3000 --f-number 4
+#include "commands.hpp"
+
 #include <algorithm>
 #include <array>
 #include <cstddef>
@@ -105,7 +108,7 @@ std::string rays_csv(const petzval::Camera& camera, const Samples& samples) {
 
 }  // namespace
 
-int main(int argc, char** argv) {
+int commands::camera_rays(int argc, char** argv) {
   examples::LensInput lens_file;
   std::string samples_file, out_file, model;
   examples::CameraSetup setup;
@@ -113,7 +116,7 @@ int main(int argc, char** argv) {
   examples::App app(
       "Samples camera rays from film points through the lens into the scene. Lengths in mm, in the lens frame: origin "
       "at the first vertex, light travels towards +z, camera rays towards -z. The image on the film is upside down.",
-      "camera_rays");
+      "petzval camera-rays");
   examples::add_lens(app, lens_file);
   app.add_option("--samples", samples_file,
                  "CSV with the columns film_x_mm,film_y_mm,pupil_u,pupil_v,wavelength_nm; pupil_u and pupil_v from 0 "
@@ -134,7 +137,7 @@ int main(int argc, char** argv) {
                        "tilt of the film about +x (degrees); its normal is Ry(swing) Rx(tilt) e_z, and film points "
                        "are in the axes of the film");
   examples::add_number(app, "--swing-deg", swing_deg, below_quarter_turn, "swing of the film about +y (degrees)");
-  app.get_option("--focus-mm")->required()->default_str("");
+  app.get_option("--focus")->required()->default_str("");
 
   return examples::run(app, argc, argv, [&] {
     const auto [width, height] = setup.film_size();

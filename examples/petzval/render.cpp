@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // Renders a scene through a lens by path, light or bidirectional path tracing.
 //
-//   bokeh_scene --scene chess --lens data/lenses/double_gauss_100mm_f2_28deg.json --model exact_float --focus-mm 950
+//   petzval render --scene chess --lens data/lenses/double_gauss_100mm_f2_28deg.json --model exact_float --focus 950
 //               --integrator bidirectional --spp 256 --out chess
-//   bokeh_scene --scene room.json --lens data/lenses/double_gauss_52mm_f1.8.json --model auto --spp 64 --focus-mm 2000
+//   petzval render --scene room.json --lens data/lenses/double_gauss_52mm_f1.8.json --model auto --spp 64 --focus 2000
 //               --wavelengths hero --out room
+#include "commands.hpp"
+
 #include <algorithm>
 #include <filesystem>
 #include <iostream>
@@ -62,7 +64,7 @@ struct Options {
   examples::Shard shard;
   std::vector<std::string> formats{"exr", "png"};
   std::uint32_t samples = 0, width = 0, height = 0, seed = 0;  // width, height 0: not given
-  std::uint32_t threads = static_cast<std::uint32_t>(petzval::processor_threads());
+  std::uint32_t threads = static_cast<std::uint32_t>(examples::threads());
   double budget_px = 0, seconds = 0, tilt_deg = 0, swing_deg = 0;
   bool resume = false;
 };
@@ -266,7 +268,7 @@ class Job {
     }
     // The choice depends on measured times, which vary between machines and runs.
     if (options_.shard.count > 1) {
-      throw petzval::Error("--model auto with --tile " + options_.shard.text() +
+      throw petzval::Error("--model auto with --shard " + options_.shard.text() +
                            "; must be a model by name, the same for all shards");
     }
     const fs::path file = renderer::checkpoint_file(options_.out_folder, options_.shard);
@@ -365,9 +367,9 @@ int merge(int argc, char** argv) {
   std::vector<std::string> folders, formats{"exr", "png"};
   std::string out_folder;
   examples::App app(
-      "Merges the shards of a picture, each rendered with --tile I/N, bit for bit as one run. Writes picture.* and "
+      "Merges the shards of a picture, each rendered with --shard I/N, bit for bit as one run. Writes picture.* and "
       "render.json to DIR.",
-      "bokeh_scene merge");
+      "petzval render merge");
   app.add_option("FOLDER", folders, "folders with tile_I_of_N.exr")->required();
   examples::add_formats(app, formats, "png (sRGB)");
   examples::add_out_folder(app, out_folder)->required();
@@ -382,7 +384,7 @@ int merge(int argc, char** argv) {
 
 }  // namespace
 
-int main(int argc, char** argv) {
+int commands::render(int argc, char** argv) {
   if (argc > 1 && std::string_view(argv[1]) == "merge") return merge(argc - 1, argv + 1);
   Options options;
   examples::App app(
@@ -393,13 +395,13 @@ int main(int argc, char** argv) {
       "Default: 64 samples per pixel. --time-s without --spp takes as many samples as the time allows; --time-s with "
       "--spp leaves missing samples to --resume. Ctrl-C writes sums and picture. --resume continues; a larger --spp "
       "adds samples to a finished picture, bit for bit as one run.",
-      "bokeh_scene");
+      "petzval render");
   app.add_option("--scene", options.scene,
                  "balls, chess, statues or street, for a film of 36x24 mm and lenses of 100 mm (statues: 50 mm); or a "
                  "scene as JSON")
       ->required()
       ->type_name("NAME|FILE.json");
-  examples::add_lens(app, options.lens_file, "--lens")->required();
+  examples::add_lens(app, options.lens_file);
   std::vector<std::string> models{"auto"};
   for (const petzval::ModelKind m : petzval::models()) models.emplace_back(petzval::name(m));
   app.add_option(
@@ -430,7 +432,7 @@ int main(int argc, char** argv) {
                       "number of threads; the picture does not depend on it");
   examples::add_picture_size(app, options.width, options.height, usual_width);
   examples::add_camera(app, options.setup);
-  app.get_option("--focus-mm")->required()->default_str("");
+  app.get_option("--focus")->required()->default_str("");
   examples::add_bokeh(app, options.bokeh);
   auto* points = app.add_option("--focal-surface", options.surface.points_file,
                                 "distances in focus, depth-of-field extents and blurs at points of the picture, for a "
@@ -453,7 +455,7 @@ int main(int argc, char** argv) {
       ->one_of({"unity_on_axis", "irradiance"})
       ->capture_default_str();
   std::string tile;
-  app.add_option("--tile", tile,
+  app.add_option("--shard", tile,
                  "render every Nth tile of 16 x 16 pixels, starting with the Ith; 'bokeh_scene merge DIR --out DIR' "
                  "adds the shards")
       ->type_name("I/N");
@@ -465,9 +467,9 @@ int main(int argc, char** argv) {
   bool whole = true;
   const int status = examples::run(app, argc, argv, [&] {
     if (options.samples == 0 && options.seconds == 0) options.samples = 64;
-    if (!tile.empty()) options.shard = examples::parse_shard("--tile", tile);
+    if (!tile.empty()) options.shard = examples::parse_shard("--shard", tile);
     if (options.shard.count > 1 && formats->given()) {
-      throw petzval::Error("--format must not be used with --tile " + tile +
+      throw petzval::Error("--format must not be used with --shard " + tile +
                            "; 'bokeh_scene merge' writes the picture");
     }
     whole = Job(options).run();

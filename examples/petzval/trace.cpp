@@ -2,7 +2,9 @@
 // Traces rays of a CSV file through a lens and writes the end point and the fate of each ray.
 //
 //   printf 'x_mm,y_mm,z_mm,dx,dy,dz\n0,10,-50,0,0,1\n' > rays.csv
-//   trace_rays data/lenses/double_gauss_100mm_f1.35.json --rays rays.csv --out traced.csv
+//   petzval trace data/lenses/double_gauss_100mm_f1.35.json --rays rays.csv --out traced.csv
+#include "commands.hpp"
+
 #include "petzval/trace/trace.hpp"
 
 #include <algorithm>
@@ -77,7 +79,7 @@ std::string traced_csv(const petzval::Lens& lens, const RayTable& rays, const pe
 
 }  // namespace
 
-int main(int argc, char** argv) {
+int commands::trace(int argc, char** argv) {
   examples::LensInput lens_file;
   std::string rays_file, out_file, precision = "double", travel = "to_film";
   double wavelength_nm = petzval::d_line_nm;
@@ -86,7 +88,7 @@ int main(int argc, char** argv) {
   examples::App app(
       "Traces rays through a lens, surface by surface. Lengths in mm, in the lens frame: origin at the first vertex, "
       "light travels towards +z.",
-      "trace_rays");
+      "petzval trace");
   examples::add_lens(app, lens_file);
   app.add_option("--rays", rays_file, "CSV with the columns x_mm,y_mm,z_mm,dx,dy,dz; directions of any length")
       ->required()
@@ -104,7 +106,7 @@ int main(int argc, char** argv) {
   app.add_option("--travel", travel, "direction of travel through the lens")
       ->one_of({"to_film", "to_scene"})
       ->capture_default_str();
-  examples::add_wavelength(app, "--wavelength-nm", wavelength_nm, "wavelength");
+  examples::add_wavelength(app, "--wavelengths", wavelength_nm, "wavelength");
   app.add_flag("--ignore-apertures", ignore_apertures, "let rays pass outside the clear diameters");
 
   return examples::run(app, argc, argv, [&] {

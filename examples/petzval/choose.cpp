@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // Chooses the fastest model of a lens for a scene and an error budget, and verifies it on fresh samples.
 //
-//   choose_camera data/lenses/double_gauss_52mm_f1.8.json --near-mm 1000 --far-mm inf --budget-px 0.25
-//   choose_camera data/lenses/double_gauss_52mm_f1.8.json --near-mm 1000 --far-mm 5000 --f-number 4 --focus-mm 2000
+//   petzval choose data/lenses/double_gauss_52mm_f1.8.json --near 1000 --far inf --budget-px 0.25
+//   petzval choose data/lenses/double_gauss_52mm_f1.8.json --near 1000 --far 5000 --f-number 4 --focus 2000
 //                 --budget-px 1 --json
+#include "commands.hpp"
+
 #include <algorithm>
 #include <iostream>
 #include <limits>
@@ -38,13 +40,13 @@ double verified_max_px(const petzval::Lens& lens, const Options& options, petzva
   const petzval::ErrorSamples samples{.depths_z = depths,
                                       .film_points = 512,
                                       .seed = static_cast<std::uint32_t>(random()),
-                                      .threads = petzval::processor_threads()};
+                                      .threads = examples::threads()};
   return petzval::model_error(lens, options.film(), model, samples).all.max_px;
 }
 
 }  // namespace
 
-int main(int argc, char** argv) {
+int commands::choose(int argc, char** argv) {
   Options options;
   examples::App app(
       "Chooses the fastest model of a lens for a scene. The error of its rays must be within a budget for all film "
@@ -52,13 +54,12 @@ int main(int argc, char** argv) {
       "the area. At the d line (587.5618 nm).\n"
       "predicted_max_px is the bound used for the choice; max_px in the table is the bound of each model; "
       "verified_max_px is the largest error of fresh samples.",
-      "choose_camera");
+      "petzval choose");
   examples::add_model_options(app, options);
-  examples::add_number(app, "--near-mm", options.near_mm, examples::positive_number,
-                       "distance of the nearest object (mm)")
+  examples::add_length(app, "--near", options.near_mm, examples::positive_number, "distance of the nearest object (mm)")
       ->required()
       ->default_str("");
-  examples::add_number(app, "--far-mm", options.far_mm, examples::positive_length,
+  examples::add_length(app, "--far", options.far_mm, examples::positive_length,
                        "distance of the farthest object (mm), or inf")
       ->required()
       ->default_str("");
@@ -66,17 +67,18 @@ int main(int argc, char** argv) {
       ->required()
       ->default_str("");
 
+  examples::add_threads(app);
   return examples::run(app, argc, argv, [&] {
     const petzval::Film film = options.film();
     const petzval::Lens lens = examples::focused_lens(options).lens;
-    examples::say_what_does_not_fit(lens, film, "--resolution");
+    examples::say_what_does_not_fit(lens, film, "--size");
     const petzval::ModelChoice choice = petzval::choose_model(
         lens,
         {.near_mm = options.near_mm,
          .far_mm = options.far_mm,
          .film = film,
          .origin = options.setup.focus.distance_origin()},
-        {.max_px = options.budget_px, .exposure = 0.01, .pupil_shape = 0.02}, petzval::processor_threads());
+        {.max_px = options.budget_px, .exposure = 0.01, .pupil_shape = 0.02}, examples::threads());
     examples::say_what_is_missing(choice.table);
     const auto rows = examples::model_rows(choice.table, film, true);
     const double predicted = std::ranges::find(choice.table, choice.model, &petzval::ModelCandidate::model)->bound_px;

@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // Blurs layers of a scene, or a picture with depths, by a thin lens, a singlet or any prescription.
 //
-//   lens_blur --scene town --thin-lens-mm 50 --lens-diameter-mm 100 --focus-mm 5000 --compare --out out
-//   lens_blur --scene street --lens data/lenses/double_gauss_52mm_f1.8.json --focus-mm 3000 --rays 32 --out out
-//   lens_blur --rgb photo.png --depth photo.pfm --thin-lens-mm 85 --lens-diameter-mm 60 --focus-mm 2000 --out out
+//   petzval blur --scene town --thin-lens-mm 50 --lens-diameter-mm 100 --focus 5000 --compare --out out
+//   petzval blur --scene street --lens data/lenses/double_gauss_52mm_f1.8.json --focus 3000 --rays 32 --out out
+//   petzval blur --rgb photo.png --depth photo.pfm --thin-lens-mm 85 --lens-diameter-mm 60 --focus 2000 --out out
+#include "commands.hpp"
+
 #include <algorithm>
 #include <chrono>
 #include <cmath>
@@ -35,7 +37,7 @@ using petzval::RgbImage;
 struct Options {
   lens_blur::InputFlags input;
   lens_blur::LensFlags lens;
-  std::uint32_t layers = 4, supersample = 0, threads = static_cast<std::uint32_t>(petzval::processor_threads());
+  std::uint32_t layers = 4, supersample = 0, threads = static_cast<std::uint32_t>(examples::threads());
   std::uint32_t frames = 1;
   double frames_per_second = 24, travel_mm = 0, highlights_above = -1;  ///< highlights_above < 0: threshold_of()
   bool compare = false;
@@ -275,13 +277,13 @@ class Job {
 
 }  // namespace
 
-int main(int argc, char** argv) {
+int commands::blur(int argc, char** argv) {
   Options options;
   examples::App app(
-      "Blurs layers of a scene, or a picture with depths, by a lens that is focused at --focus-mm. Writes DIR/blur.*, "
+      "Blurs layers of a scene, or a picture with depths, by a lens that is focused at --focus. Writes DIR/blur.*, "
       "sharp.* (the picture of a pinhole), missed.* (the fraction of rays that hit surfaces outside the layers) and "
       "blur.json; with --compare also reference.*, the same rays traced through the scene.",
-      "lens_blur");
+      "petzval blur");
   lens_blur::add_input(app, options.input);
   lens_blur::add_lens(app, options.lens);
   constexpr examples::Range layers{1, 64, "a whole number from 1 to 64"};

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // Lays out pictures of bokeh_scene on a sheet and measures the highlights of the balls scene.
 //
-//   bokeh_sheet --columns 5 --title "Balls" --out balls.png --balls balls.csv FOLDER...
+//   petzval sheet --columns 5 --title "Balls" --out balls.png --balls balls.csv FOLDER...
+#include "commands.hpp"
+
 #include <algorithm>
 #include <cstddef>
 #include <filesystem>
@@ -104,13 +106,13 @@ std::string ball_table(const std::vector<Picture>& pictures) {
 
 }  // namespace
 
-int main(int argc, char** argv) {
+int commands::sheet(int argc, char** argv) {
   std::vector<std::string> folders;
   std::string title = "Scenes through lenses", out, balls;
   std::uint32_t columns = 1;
   examples::App app(
       "Lays out pictures of bokeh_scene on a sheet, in rows from the left. All pictures must have the same size.",
-      "bokeh_sheet");
+      "petzval sheet");
   app.add_option("FOLDER", folders, "folders with picture.exr and render.json")->required();
   examples::add_count(app, "--columns", columns, {1, 100, "a whole number from 1 to 100"}, "pictures per row");
   app.add_option("--title", title, "title of the sheet")->capture_default_str();

@@ -2,8 +2,10 @@
 // Tilts the film so that the plane of focus passes through points of the scene, and shows the effect: film, planes and
 // lines from the side, and the blur over the picture before and after.
 //
-//   tilt_shift data/lenses/double_gauss_100mm_f2_28deg.json --f-number 4 --points examples/scenes/table.json --out out
-//   tilt_shift --model thin --thin-focal-length-mm 50 --f-number 2 --points points.json --json --out out
+//   petzval tilt data/lenses/double_gauss_100mm_f2_28deg.json --f-number 4 --points examples/scenes/table.json --out
+//   out petzval tilt --model thin --thin-focal-length-mm 50 --f-number 2 --points points.json --json --out out
+#include "commands.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <iostream>
@@ -309,7 +311,7 @@ std::vector<petzval::Rgb8Image> blur_pictures(const Result& result) {
   const petzval::Lens* const exact = result.lens.exact ? &*result.lens.lens : nullptr;
   std::vector<examples::BlurMap> maps;
   for (const petzval::Film& film : films) {
-    maps.push_back(examples::blur_map(film, scene, ideal, exact, petzval::processor_threads()));
+    maps.push_back(examples::blur_map(film, scene, ideal, exact, examples::threads()));
   }
 
   examples::BlurSheet sheet{.scale_mm = examples::scale_of(maps), .sharp_mm = sharp_mm(result.lens.film)};
@@ -338,7 +340,7 @@ std::vector<petzval::Rgb8Image> blur_pictures(const Result& result) {
 
 }  // namespace
 
-int main(int argc, char** argv) {
+int commands::tilt(int argc, char** argv) {
   Options options;
   examples::App app(
       "Tilts and swings the film so that scene points are sharp or have a given blur, by least squares of their "
@@ -350,7 +352,7 @@ int main(int argc, char** argv) {
       "every model if LENS is given. Plane and lines of the real model follow from its cardinal points. If the points "
       "do not determine a plane, the result has the smallest tilt, and status is least_tilt.\n"
       "Writes NAME_side.svg, NAME_before.png and NAME_after.png into DIR.",
-      "tilt_shift");
+      "petzval tilt");
   examples::add_movement_options(app, options);
   app.add_option("--points", options.points_file, "JSON file of points to focus on")->type_name("FILE")->required();
   examples::add_out_folder(app, options.out_folder, "folder for the pictures")->required();
@@ -359,6 +361,7 @@ int main(int argc, char** argv) {
   app.add_flag("--robust", options.robust, "ignore outliers: points far from the plane of most points get no weight");
   app.add_flag("--json", options.json, "print one JSON object instead of text");
 
+  examples::add_threads(app);
   return examples::run(app, argc, argv, [&] {
     const Result result = solve(options);
     const std::filesystem::path folder = options.out_folder;

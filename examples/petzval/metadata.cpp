@@ -2,7 +2,9 @@
 // Writes the data of a lens at its stop and focus for compositing and virtual production: a lens sample of OpenTrackIO,
 // and ST maps that remove and restore its distortion.
 //
-//   lens_metadata data/lenses/biogon_35mm_f2.8.json --f-number 4 --focus-mm 2000 --out out
+//   petzval metadata data/lenses/biogon_35mm_f2.8.json --f-number 4 --focus 2000 --out out
+#include "commands.hpp"
+
 #include <array>
 #include <cmath>
 #include <filesystem>
@@ -38,7 +40,7 @@ void write(const Options& options) {
   constexpr int columns = 1920, most_rows = 8 * columns;
   const double rows = std::round(columns * height / width);  // pixels are square
   if (!(rows >= 1 && rows <= most_rows)) {
-    throw petzval::Error("--film-mm = \"" + options.setup.film_mm + "\"; the height must be 1/" + number(columns) +
+    throw petzval::Error("--film = \"" + options.setup.film_mm + "\"; the height must be 1/" + number(columns) +
                          " to " + number(most_rows / columns) + " times the width");
   }
   const petzval::Film film{.width_mm = width, .height_mm = height, .columns = columns, .rows = static_cast<int>(rows)};
@@ -59,21 +61,21 @@ void write(const Options& options) {
             << "; beyond this field the coefficients extrapolate, up to "
             << number(petzval::degrees(fit.rises_to_rad), 3) << " degrees\n";
   written(".opentrackio.json", [&](const auto& file) { petzval::write_open_track_io(lens, film, identity, file); });
-  written(".stmap.exr", [&](const auto& file) {
-    petzval::write_st_map(lens, film, identity, file, {}, petzval::processor_threads());
-  });
+  written(".stmap.exr",
+          [&](const auto& file) { petzval::write_st_map(lens, film, identity, file, {}, examples::threads()); });
 }
 
 }  // namespace
 
-int main(int argc, char** argv) {
+int commands::metadata(int argc, char** argv) {
   Options options;
   examples::App app(
       "Writes the lens sample at its stop and focus as DIR/LENS.opentrackio.json, and the ST maps of its distortion as "
       "DIR/LENS.stmap.exr.",
-      "lens_metadata");
+      "petzval metadata");
   examples::add_lens(app, options.lens_file);
   examples::add_camera(app, options.setup);
   examples::add_out_folder(app, options.out_folder, "folder for the files")->required();
+  examples::add_threads(app);
   return examples::run(app, argc, argv, [&] { write(options); });
 }

@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // Converts a lens between file formats; OUT's extension chooses the format. Reports assumptions and losses.
 //
-//   convert_lens lens.zmx lens.json
-//   convert_lens zoom.txt tele.zmx --configuration tele --glasses hoya.agf --json
-//   convert_lens table.dat lens.json --repair --match-glasses
-//   convert_lens lenses.json lens.json --configuration 2004
+//   petzval convert lens.zmx lens.json
+//   petzval convert zoom.txt tele.zmx --configuration tele --glasses hoya.agf --json
+//   petzval convert table.dat lens.json --repair --match-glasses
+//   petzval convert lenses.json lens.json --configuration 2004
+#include "commands.hpp"
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -84,7 +86,7 @@ constexpr std::array outputs{
            [](const Prescription& lens, const petzval::GlassCatalogue& glasses, const std::filesystem::path& file) {
              const petzval::Lens compiled = petzval::compile(lens, {.glasses = &glasses});
              petzval::write_st_map(compiled, petzval::film_of(lens, compiled), petzval::identity_of(lens), file, {},
-                                   petzval::processor_threads());
+                                   examples::threads());
              return only_metadata(lens, compiled);
            }},
     Output{".json",
@@ -229,7 +231,7 @@ bool convert(const Options& options) {
 
 }  // namespace
 
-int main(int argc, char** argv) {
+int commands::convert(int argc, char** argv) {
   Options options;
   bool refused = false;
   examples::App app(
@@ -237,7 +239,7 @@ int main(int argc, char** argv) {
       "and other tables, lentil and optiland JSON; detected by content) to the format of OUT's extension. Warnings "
       "name the lines of IN that were not taken literally. The exit status is 0 if OUT was written, 3 if --strict "
       "prevented the conversion.",
-      "convert_lens");
+      "petzval convert");
   examples::add_lens(app, options.in, "IN", "lens to convert")->required();
   examples::add_out_file(app, options.out, "file to write: .json .dat .zmx .seq .osl .opentrackio.json .stmap.exr",
                          "FILE", "OUT")
@@ -245,6 +247,7 @@ int main(int argc, char** argv) {
   app.add_flag("--strict", options.strict, "write nothing if an entry of IN had to be assumed or left out");
   app.add_flag("--repair", options.repair, "repair faults with an unambiguous correction, and list the changes");
   app.add_flag("--json", options.json, "print a report of IN as one JSON object");
+  examples::add_threads(app);
   const int status = examples::run(app, argc, argv, [&] { refused = !convert(options); });
   return status == 0 && refused ? refused_by_strict : status;
 }

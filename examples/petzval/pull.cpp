@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // Pulls focus over time: points with keyframes give a film position for every frame, as a table and a plot.
 //
-//   focus_pull data/lenses/double_gauss_100mm_f2_28deg.json --keys examples/scenes/rack.json --out out
-//   focus_pull --model thin --thin-focal-length-mm 50 --f-number 2 --keys keys.json --json --out out
+//   petzval pull data/lenses/double_gauss_100mm_f2_28deg.json --keys examples/scenes/rack.json --out out
+//   petzval pull --model thin --thin-focal-length-mm 50 --f-number 2 --keys keys.json --json --out out
+#include "commands.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <iostream>
@@ -224,7 +226,7 @@ std::string to_text(const std::vector<Frame>& all, double frames_per_s) {
 
 }  // namespace
 
-int main(int argc, char** argv) {
+int commands::pull(int argc, char** argv) {
   Options options;
   examples::App app(
       "Moves the film to focus on scene points with keyframes, frame by frame.\n"
@@ -235,13 +237,13 @@ int main(int argc, char** argv) {
       "out of reach (unreachable) or without a solution (not_converged). subject_distance_mm: distance in focus on the "
       "axis.\n"
       "Writes NAME_focus_pull.csv and NAME_focus_pull.svg into DIR.",
-      "focus_pull");
+      "petzval pull");
   examples::add_movement_options(app, options);
   app.add_option("--keys", options.keys_file, "JSON file of points and keys")->type_name("FILE")->required();
   examples::add_out_folder(app, options.out_folder, "folder for the table and the plot")->required();
   examples::add_distance_origin(app, options.focus.origin);
   const auto* criterion = examples::add_criterion(app, options.focus.criterion, {"min_rms", "min_max"});
-  examples::add_number(app, "--frames-per-s", options.frames_per_s, examples::positive_number, "frames per second");
+  examples::add_number(app, "--fps", options.frames_per_s, examples::positive_number, "frames per second");
   app.add_flag("--tilt", options.tilt, "also tilt and swing the film");
   app.add_flag("--json", options.json, "print one JSON object instead of text");
 

@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // Draws spot diagrams: film points of the rays of a field point, for several field angles and wavelengths.
 //
-//   spot_diagram data/lenses/cooke_triplet_50mm_f5.json --field-deg 0,14,20 --wavelengths-nm 486.1,587.6,656.3 --out
+//   petzval spots data/lenses/cooke_triplet_50mm_f5.json --fields 0,14,20 --wavelengths 486.1,587.6,656.3 --out
 //   out
+#include "commands.hpp"
+
 #include <iostream>
 #include <optional>
 #include <string>
@@ -66,8 +68,7 @@ Setting setting_of(const Options& options) {
   }
   petzval::Lens lens = options.f_number > 0 ? examples::stopped_to(loaded.lens, options.f_number) : loaded.lens;
   if (options.film == "focus")
-    lens = examples::for_flag("--subject-distance-mm",
-                              [&] { return petzval::with_focus(lens, subject_mm, focus.options()); });
+    lens = examples::for_flag("--at", [&] { return petzval::with_focus(lens, subject_mm, focus.options()); });
   lens = petzval::with_film(lens, lens.film_z() + options.defocus_mm);
   examples::ReportFields fields{options.field_deg, false};
   if (fields.degrees.empty()) fields = examples::fields_of(loaded, loaded.lens);
@@ -82,7 +83,7 @@ std::vector<petzval::Spot> spots(const Setting& setting, bool fields_given, std:
     fields.push_back(petzval::radians(degrees));
     const petzval::FieldPoint point{fields.back(), subject_z};
     if (fields_given) {
-      examples::want_light(setting.lens, point, "--field-deg");
+      examples::want_light(setting.lens, point, "--fields");
     } else if (!examples::reached_by_light(setting.lens, point)) {
       examples::note("the file has a field of " + examples::number(degrees) + " degrees, from which no light passes");
     }
@@ -135,27 +136,28 @@ Json to_json(const std::vector<petzval::Spot>& all, const Setting& setting, cons
 
 }  // namespace
 
-int main(int argc, char** argv) {
+int commands::spots(int argc, char** argv) {
   Options options;
   examples::App app(
-      "Draws spot diagrams. The film is at the focus of the subject, or with --film file at the position in the file; "
+      "Draws spot diagrams. The film is at the focus of the subject, or with --film-position file at the position in "
+      "the file; "
       "--defocus-mm shifts it. The focus is computed at the primary wavelength of the file, or at the wavelength "
       "nearest to the d line (587.5618 nm).\n"
       "Writes to DIR and prints the paths: LENS_spots.svg, LENS_spots.csv (film points of rays: "
       "field_deg,wavelength_nm,x_mm,y_mm) and LENS_spots.json. Its rows have for each field and wavelength the height "
       "of the chief ray, the illumination of the film relative to the axis, and the RMS and maximum radius about the "
       "centroid; values are null if no ray passes.",
-      "spot_diagram");
+      "petzval spots");
   examples::add_lens(app, options.lens_file);
-  examples::add_numbers(app, "--field-deg", options.field_deg, examples::field_angle,
+  examples::add_numbers(app, "--fields", options.field_deg, examples::field_angle,
                         "field angles towards +y, in object space at the paraxial entrance pupil (degrees)")
       ->default_str("fields of the file, else the axis, 0.7 and 1 of the declared half field");
-  examples::add_wavelengths(app, "--wavelengths-nm", options.wavelengths_nm, "wavelengths")
+  examples::add_wavelengths(app, "--wavelengths", options.wavelengths_nm, "wavelengths")
       ->default_str("wavelengths of the file, with their weights, else F, d and C");
   examples::add_number(app, "--f-number", options.f_number, examples::positive_number,
                        "f-number to stop the lens down to (by exact rays)")
       ->default_str("wide open");
-  auto* subject = examples::add_number(app, "--subject-distance-mm", options.subject_mm, examples::positive_length,
+  auto* subject = examples::add_length(app, "--at", options.subject_mm, examples::positive_length,
                                        "distance of the subject (mm), or inf")
                       ->default_str("subject of the file");
   examples::add_focus(app, options.focus);

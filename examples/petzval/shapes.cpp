@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // Draws contact sheets of out-of-focus point lights, shaped by irises, cat's eyes and weights.
 //
-//   bokeh_shapes --out out
+//   petzval shapes --out out
+#include "commands.hpp"
+
 #include <array>
 #include <cmath>
 #include <functional>
@@ -36,10 +38,7 @@ petzval::Lens focused(const petzval::Lens& lens) { return petzval::with_focus(le
 std::uint32_t samples = 1 << 19;  // per tile
 
 petzval::PsfOptions tile_options(double half_width_mm) {
-  return {.samples = samples,
-          .pixels = tile_pixels,
-          .half_width_mm = half_width_mm,
-          .threads = petzval::processor_threads()};
+  return {.samples = samples, .pixels = tile_pixels, .half_width_mm = half_width_mm, .threads = examples::threads()};
 }
 
 /// A row without tiles; all tiles of a row have one scale.
@@ -205,15 +204,16 @@ examples::Sheet maps() {
 
 }  // namespace
 
-int main(int argc, char** argv) {
+int commands::shapes(int argc, char** argv) {
   std::string out_folder;
   examples::App app(
       "Draws contact sheets of an out-of-focus point light into DIR and prints their paths: bokeh_blades.png (3 to 9 "
       "blades, straight, rounded and hollow), bokeh_cats_eyes.png (a lens over its field compared with two fitted "
       "discs), bokeh_weights.png (weights of the rim) and bokeh_maps.png (onion rings, an image as iris).",
-      "bokeh_shapes");
+      "petzval shapes");
   examples::add_out_folder(app, out_folder, "folder for the sheets")->required();
   examples::add_samples(app, samples);
+  examples::add_threads(app);
   return examples::run(app, argc, argv, [&] {
     struct Picture {
       const char *file, *caption;

@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // Prints errors and times of every model of a lens, and the fastest model within each of four error budgets.
 //
-//   accuracy_speed data/lenses/double_gauss_52mm_f1.8.json
-//   accuracy_speed data/lenses/double_gauss_52mm_f1.8.json --f-number 4 --json --out out
+//   petzval models data/lenses/double_gauss_52mm_f1.8.json
+//   petzval models data/lenses/double_gauss_52mm_f1.8.json --f-number 4 --json --out out
+#include "commands.hpp"
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -46,7 +48,7 @@ std::string figure(const std::vector<examples::ModelRow>& rows, const petzval::L
 
 }  // namespace
 
-int main(int argc, char** argv) {
+int commands::models(int argc, char** argv) {
   Options options;
   examples::App app(
       "Compares every model of a lens with exact rays in double. Prints a row for each model: errors of rays on the "
@@ -57,23 +59,24 @@ int main(int argc, char** argv) {
       "of at most 10 %. --json prints only the rows.\n"
       "front: no other model is both faster and more accurate (max_um). At the d line (587.5618 nm).\n"
       "--out writes DIR/LENS_accuracy_speed.csv and .svg and prints their paths (with --json on standard error).",
-      "accuracy_speed");
+      "petzval models");
   examples::add_model_options(app, options);
   const auto* out = examples::add_out_folder(app, options.out_folder, "folder for the table and the figure");
 
+  examples::add_threads(app);
   return examples::run(app, argc, argv, [&] {
     const petzval::Film film = options.film();
     const examples::LoadedLens loaded = examples::focused_lens(options);
     const petzval::Lens& lens = loaded.lens;
     const std::filesystem::path folder = options.out_folder;
     if (out->given()) examples::make_folder(folder);  // fail before the measurement, which takes seconds
-    examples::say_what_does_not_fit(lens, film, "--resolution");
+    examples::say_what_does_not_fit(lens, film, "--size");
     std::vector<petzval::ErrorBudget> budgets;
     for (const double px : budgets_px) budgets.push_back({.max_px = px});
     const double nearest = nearest_mm(lens, options);
     const auto choices = petzval::choose_models(
         lens, {.near_mm = nearest, .film = film, .origin = options.setup.focus.distance_origin()}, budgets,
-        petzval::processor_threads());
+        examples::threads());
     const auto& table = choices.front().table;
     examples::say_what_is_missing(table);
     const auto rows = examples::model_rows(table, film, false);

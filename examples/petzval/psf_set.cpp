@@ -2,9 +2,11 @@
 // Computes the images of point lights over fields, distances, wavelengths and f-numbers as one EXR, optionally in
 // shards on several machines, and interpolates the image of any point between them.
 //
-//   psf_set data/lenses/double_gauss_100mm_f2_28deg.json --fields 0,5,10,14 --distances-mm 1000,2000,4000,inf
-//           --f-numbers 2,2.8 --focus-mm 2000 --out set
-//   psf_set query set/psf_set.exr --field-deg 7 --distance-mm 1500 --out psf.exr
+//   petzval psf-set data/lenses/double_gauss_100mm_f2_28deg.json --fields 0,5,10,14 --at 1000,2000,4000,inf
+//           --f-number 2,2.8 --focus 2000 --out set
+//   petzval psf-set query set/psf_set.exr --fields 7 --at 1500 --out psf.exr
+#include "commands.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
@@ -65,7 +67,7 @@ class Scenes {
   examples::BokehScene at(const PsfSetPoint& point) {
     if (!stopped_ || f_number_ != point.f_number) {
       examples::IrisSetup iris = options_.iris;
-      iris.f_number_flag = "--f-numbers";
+      iris.f_number_flag = "--f-number";
       if (!wide_open_) iris.f_number = point.f_number;
       stopped_ = examples::stopped_down(lens_, iris);
       f_number_ = point.f_number;
@@ -85,7 +87,7 @@ class Scenes {
                                {.samples = options_.samples,
                                 .pixels = static_cast<int>(options_.pixels),
                                 .seed = seed,
-                                .threads = petzval::processor_threads(),
+                                .threads = examples::threads(),
                                 .half_width_mm = half_width_mm});
   }
 
@@ -270,7 +272,7 @@ void query(const std::string& file, PsfSetPoint point, const std::string& origin
   std::vector<petzval::ExrPart> parts = petzval::read_exr_parts(file);
   const std::string of_set = examples::distance_from(parts.front());
   if (origin != of_set) {
-    throw petzval::Error("--distance-from = " + origin + ": the distances of " + file + " count from " + of_set +
+    throw petzval::Error("--from = " + origin + ": the distances of " + file + " count from " + of_set +
                          "; must be the same");
   }
   const petzval::PsfSet set = petzval::psf_set_of(std::move(parts), file);
@@ -294,20 +296,20 @@ int main_compute(int argc, char** argv) {
       "psf_set.json (index with units) and psf_set.png (contact sheet). Each complete PSF is a file in DIR/psfs. With "
       "--shard only these files are written; psf_set merge combines them, bit for bit as one run.\n"
       "psf_set merge DIR... --out FILE.exr   merges the shards of one or several folders\n"
-      "psf_set query FILE.exr --field-deg F --distance-mm D --out PSF.exr   interpolates a PSF at any point",
-      "psf_set");
+      "psf_set query FILE.exr --fields F --at D --out PSF.exr   interpolates a PSF at any point",
+      "petzval psf-set");
   examples::add_lens(app, options.lens_file);
   examples::add_numbers(app, "--fields", options.axes.fields_deg, {0, 180, "an angle from 0 to 180 degrees"},
                         "angles of the light seen from the paraxial entrance pupil (degrees, ascending)")
       ->required();
-  examples::add_numbers(app, "--distances-mm", options.axes.distances_mm, examples::positive_length,
+  examples::add_lengths(app, "--at", options.axes.distances_mm, examples::positive_length,
                         "distances of the light (mm, ascending); the last may be inf")
       ->required();
-  examples::add_wavelengths(app, "--wavelengths-nm", options.axes.wavelengths_nm, "wavelengths, ascending");
-  examples::add_numbers(app, "--f-numbers", options.axes.f_numbers, examples::positive_number,
+  examples::add_wavelengths(app, "--wavelengths", options.axes.wavelengths_nm, "wavelengths, ascending");
+  examples::add_numbers(app, "--f-number", options.axes.f_numbers, examples::positive_number,
                         "f-numbers, by exact rays (ascending)")
       ->default_str("wide open");
-  examples::add_number(app, "--focus-mm", options.focus_mm, examples::positive_length,
+  examples::add_length(app, "--focus", options.focus_mm, examples::positive_length,
                        "focus distance (mm), or inf; the film is focused for each f-number");
   examples::add_focus(app, options.focus);
   examples::add_iris_shape(app, options.iris);
@@ -333,7 +335,7 @@ int main_merge(int argc, char** argv) {
   examples::App app(
       "Merges the PSFs of shards. Writes FILE.exr with index and contact sheet next to it, like one run without "
       "shards. Names every missing or corrupt PSF and its shard; to repair it, run that shard with --resume.",
-      "psf_set merge");
+      "petzval psf-set merge");
   app.add_option("DIR", folders, "folders that psf_set --shard wrote to")->required();
   examples::add_out_file(app, out, "set of PSFs to write", "FILE.exr")->required();
   return examples::run(app, argc, argv, [&] { merge(folders, out); });
@@ -343,27 +345,28 @@ int main_query(int argc, char** argv) {
   std::string file, out, origin = "front_vertex";
   PsfSetPoint point;
   Maybe wavelength, f_number;
-  examples::App app("Looks up a PSF of a set: nodes are copied, other points are interpolated.", "psf_set query");
+  examples::App app("Looks up a PSF of a set: nodes are copied, other points are interpolated.",
+                    "petzval psf-set query");
   app.add_option("FILE.exr", file, "set of PSFs written by psf_set")->required();
-  examples::add_number(app, "--field-deg", point.field_deg, examples::field_angle, "angle of the light (degrees)")
+  examples::add_number(app, "--fields", point.field_deg, examples::field_angle, "angle of the light (degrees)")
       ->required()
       ->default_str("");
-  examples::add_number(app, "--distance-mm", point.distance_mm, examples::positive_length,
-                       "distance of the light (mm), or inf")
+  examples::add_length(app, "--at", point.distance_mm, examples::positive_length, "distance of the light (mm), or inf")
       ->required()
       ->default_str("");
   examples::add_distance_origin(app, origin);
-  wavelength.option = examples::add_wavelength(app, "--wavelength-nm", wavelength.value, "wavelength")
+  wavelength.option = examples::add_wavelength(app, "--wavelengths", wavelength.value, "wavelength")
                           ->default_str("wavelength of the set nearest to the d line");
   f_number.option = examples::add_number(app, "--f-number", f_number.value, examples::positive_number, "f-number")
                         ->default_str("smallest f-number of the set");
   examples::add_out_file(app, out, "PSF to write: a set of one part", "PSF.exr")->required();
+  examples::add_threads(app);
   return examples::run(app, argc, argv, [&] { query(file, point, origin, wavelength, f_number, out); });
 }
 
 }  // namespace
 
-int main(int argc, char** argv) {
+int commands::psf_set(int argc, char** argv) {
   const std::string_view first = argc > 1 ? argv[1] : "";
   if (first == "merge") return main_merge(argc - 1, argv + 1);
   if (first == "query") return main_query(argc - 1, argv + 1);

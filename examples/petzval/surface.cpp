@@ -2,8 +2,10 @@
 // Computes a focal surface: the distance in focus at each point of a picture, given by an artist's focus points. Writes
 // it as a map, in section and as numbers.
 //
-//   focal_surface data/lenses/double_gauss_52mm_f1.8.json --points examples/scenes/statues_focus.json --width 600
-//                 --height 400 --film-mm 36x24 --out out
+//   petzval surface data/lenses/double_gauss_52mm_f1.8.json --points examples/scenes/statues_focus.json --size 600
+//                 --film 36x24 --out out
+#include "commands.hpp"
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -79,7 +81,7 @@ class Surface {
   Frame frame(const petzval::Film& film) const {
     const std::size_t pixels = static_cast<std::size_t>(film.columns) * static_cast<std::size_t>(film.rows);
     Frame result{std::vector<double>(pixels), std::vector<double>(pixels)};
-    surface_->frame<double>(film, petzval::processor_threads(), result.inverses.data(), result.extents.data());
+    surface_->frame<double>(film, examples::threads(), result.inverses.data(), result.extents.data());
     for (double& value : result.inverses) value = inverse(value);
     return result;
   }
@@ -208,17 +210,17 @@ void write(const Options& options) {
 
 }  // namespace
 
-int main(int argc, char** argv) {
+int commands::surface(int argc, char** argv) {
   Options options;
   examples::App app(
       "Sets the distance in focus at each point of a picture from focus points. Writes to DIR: surface.png (distance "
       "over the picture, and extent of the depth of field if points give one), side.svg (section of lens, film and "
       "surface), surface.pfm (1/distance of each pixel in 1/mm, rows from the bottom as in all PFM files) and with "
       "--queries answers.csv (x_px,y_px,distance_mm,extent_stops,blur_px). Distances count from "
-      "--distance-from; infinity is inf, and distances beyond infinity, which a blur can cause, are negative. blur_px "
+      "--from; infinity is inf, and distances beyond infinity, which a blur can cause, are negative. blur_px "
       "is the signed diameter of the requested blur for an object at the distance of the points, negative in front of "
-      "the focus. Points that fix a distance override --focus-mm.",
-      "focal_surface");
+      "the focus. Points that fix a distance override --focus.",
+      "petzval surface");
   examples::add_lens(app, options.lens_file);
   auto* points =
       app.add_option(
@@ -233,5 +235,6 @@ int main(int argc, char** argv) {
   examples::add_surface_kind(app, options.surface, points);
   app.add_option("--queries", options.queries_file, "CSV file of picture points: x_px,y_px")->type_name("Q.csv");
   examples::add_out_folder(app, options.out_folder)->required();
+  examples::add_threads(app);
   return examples::run(app, argc, argv, [&] { write(options); });
 }

@@ -1,0 +1,103 @@
+// SPDX-License-Identifier: Apache-2.0
+// The program petzval: one command for each task.
+//
+//   petzval report double_gauss_52mm_f1.8
+#include <iostream>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "commands.hpp"
+#include "describe.hpp"
+#include "petzval/core/config.hpp"
+#include "support/cli.hpp"
+#include "support/suggest.hpp"
+
+namespace {
+
+using commands::Command;
+using commands::Group;
+
+const Command* find(std::string_view name) {
+  for (const Group& group : commands::groups()) {
+    for (const Command& command : group.commands) {
+      if (command.name == name) return &command;
+    }
+  }
+  return nullptr;
+}
+
+void print_overview(std::ostream& out) {
+  out << "petzval " PETZVAL_VERSION
+         ": real lenses, from the table of a patent to rays, pictures and numbers\n\n"
+         "Usage: petzval COMMAND [LENS] [options]\n"
+         "LENS is a file or the name of a shipped lens (petzval lenses). Lengths are millimetres or have a unit: 3m, "
+         "50cm, 2in.\n";
+  for (const Group& group : commands::groups()) {
+    out << '\n' << group.title << '\n';
+    for (const Command& command : group.commands) {
+      out << "  " << command.name << std::string(13 - command.name.size(), ' ') << command.summary;
+      if (!command.run) out << " (not built: needs " << command.needs << ')';
+      out << '\n';
+    }
+  }
+  out << "\npetzval help COMMAND   options of a command, with an example\n"
+         "petzval help files     formats of points, keys and tables\n"
+         "petzval --version\n";
+}
+
+void print_files() {
+  std::cout << "Points (--points FILE): a JSON list of objects, or an object with the list \"points\".\n"
+               "  world_mm [x, y, z]   position in the scene (lens frame, mm), or position_mm\n"
+               "  film_mm [x, y]       position on the film, with distance_mm\n"
+               "  weight, blur_mm, extent_stops   optional numbers\n\n"
+               "Keys (--keys FILE): a JSON list of points, each with \"keys\": a list with time_s and the fields of a "
+               "point.\n\n"
+               "Rays (trace --rays FILE): CSV x_mm,y_mm,z_mm,dx,dy,dz. Samples (camera-rays --rays FILE): CSV\n"
+               "  film_x_mm,film_y_mm,pupil_u,pupil_v,wavelength_nm.\n\n"
+               "Lenses: data/README.md describes the JSON format; petzval convert reads and writes other formats.\n\n"
+               "Exit status: 0 success; 1 error, with one line on standard error; 2 unknown command.\n";
+}
+
+int unknown(std::string_view name) {
+  std::vector<std::string> names;
+  for (const Group& group : commands::groups()) {
+    for (const Command& command : group.commands) names.emplace_back(command.name);
+  }
+  const std::string near = examples::nearest(name, names);
+  std::cerr << "petzval: command = \"" << name << "\"; must be a command"
+            << (near.empty() ? " (petzval help)" : "; did you mean " + near + "?") << '\n';
+  return 2;
+}
+
+int run(std::string_view name, int argc, char** argv) {
+  const Command* const command = find(name);
+  if (!command) return unknown(name);
+  if (!command->run) {
+    std::cerr << "petzval: " << name << " is not built: needs " << command->needs << '\n';
+    return 1;
+  }
+  examples::set_example("petzval " + std::string(name) + ' ' + std::string(command->example));
+  return command->run(argc, argv);
+}
+
+int help(int argc, char** argv) {
+  if (argc < 3) return print_overview(std::cout), 0;
+  const std::string_view topic = argv[2];
+  if (topic == "files") return print_files(), 0;
+  std::string flag = "--help";
+  char* arguments[]{argv[2], flag.data(), nullptr};
+  return run(topic, 2, arguments);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  const std::string_view first = argc > 1 ? argv[1] : "help";
+  if (first == "help" || first == "--help" || first == "-h") return help(argc, argv);
+  if (first == "--version") return std::cout << "petzval " PETZVAL_VERSION "\n", 0;
+  if (first == "--man-page") return commands::print_man_page(), 0;
+  if (first == "--bash-completion") return commands::print_bash_completion(), 0;
+  if (first == "--zsh-completion") return commands::print_zsh_completion(), 0;
+  return run(first, argc - 1, argv + 1);
+}
