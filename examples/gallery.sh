@@ -109,7 +109,7 @@ echo "$out/focus_pull"
 echo "== Scenes through lenses (11/12)"
 mkdir -p "$out/scenes"
 scenes_file=$out/scenes/scenes.html
-if [ -x "$programs/petzval" render ]; then
+if "$programs/petzval" help render > "$out/scenes/log.txt" 2>&1; then
   # scene FOLDER SCENE LENS SPP WIDTH HEIGHT OPTION...; --full: twice the size, sixteen times the samples
   scene() {
     folder=$out/scenes/$1 name=$2 lens=$3 spp=$4 width=$5 height=$6
@@ -120,7 +120,7 @@ if [ -x "$programs/petzval" render ]; then
       folder=${folder}_large resume=--resume
       spp=$((16 * spp)) width=$((2 * width)) height=$((2 * height))
     fi
-    "$programs/petzval" render --scene "$name" --lens "$lenses/$lens.json" --spp "$spp" --size "${width}x${height}" \
+    "$programs/petzval" render "$lenses/$lens.json" --scene "$name" --spp "$spp" --size "${width}x${height}" \
       $resume --out "$folder" "$@" > "$out/scenes/log.txt"
     scenes="$scenes $folder"
   }
@@ -175,13 +175,13 @@ if [ -x "$programs/petzval" render ]; then
   blur tilt town --thin-lens-mm 50 --lens-diameter-mm 40 --focus 5000 --tilt-deg 6
   blur knot knot --thin-lens-mm 50 --lens-diameter-mm 100 --focus 3600
   blur leaves leaves --thin-lens-mm 50 --lens-diameter-mm 100 --focus 5000 --layers 8
-  blur cats_eyes statues --lens "$lenses/double_gauss_100mm_f1.35.json" --focus 3000 --from entrance_pupil --fov-deg 22
+  blur cats_eyes statues "$lenses/double_gauss_100mm_f1.35.json" --focus 3000 --from entrance_pupil --fov-deg 22
   blur surface statues --thin-lens-mm 50 --lens-diameter-mm 28 --focus 5000 --points "$here/scenes/statues_focus.json"
   blur night street --thin-lens-mm 100 --lens-diameter-mm 50 --focus 3000 --fov-deg 14 --blades 6
   cp "$here/scenes.html" "$scenes_file"
 else
-  echo "bokeh_scene was not built: no Embree (libembree-dev, libtinyobjloader-dev)"
-  echo "<p>bokeh_scene was not built: it needs Embree and tinyobjloader.</p>" > "$scenes_file"
+  echo "petzval render was not built: no Embree (libembree-dev, libtinyobjloader-dev)"
+  echo "<p>petzval render was not built: it needs Embree and tinyobjloader.</p>" > "$scenes_file"
 fi
 
 sed -e "/@statements@/r $out/wu_statements.html" -e "/@statements@/d" -e "/@scenes@/r $scenes_file" -e "/@scenes@/d" \

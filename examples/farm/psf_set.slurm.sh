@@ -1,13 +1,13 @@
 #!/bin/sh
 # SPDX-License-Identifier: Apache-2.0
-# Computes a set of PSFs as a Slurm array, one task for each shard; OUT must be a shared folder. PROGRAM=bokeh_scene
-# renders a picture instead.
+# Computes a set of PSFs as a Slurm array, one task for each shard; OUT must be a shared folder. COMMAND=render
+# renders a picture instead. PETZVAL=... is the path of the program.
 #
 #   job=$(sbatch --parsable --array=1-8 examples/farm/psf_set.slurm.sh OUT LENS --fields 0,10 --at 1000,inf)
-#   sbatch --dependency=afterok:$job --wrap 'psf_set merge OUT --out OUT/psf_set.exr'
+#   sbatch --dependency=afterok:$job --wrap 'petzval psf-set merge OUT --out OUT/psf_set.exr'
 #
-#   job=$(PROGRAM=bokeh_scene sbatch --parsable --array=1-8 examples/farm/psf_set.slurm.sh OUT --scene chess --lens LENS --focus 950 --spp 256)
-#   sbatch --dependency=afterok:$job --wrap 'bokeh_scene merge OUT --out OUT'
+#   job=$(COMMAND=render sbatch --parsable --array=1-8 examples/farm/psf_set.slurm.sh OUT LENS --scene chess --focus 950 --spp 256)
+#   sbatch --dependency=afterok:$job --wrap 'petzval render merge OUT --out OUT'
 #
 # An interrupted task continues from its files when it is queued again: scontrol requeue $job
 #SBATCH --job-name=psf_set
@@ -19,9 +19,4 @@ if [ "${SLURM_ARRAY_TASK_MIN:-}" != 1 ] || [ "${SLURM_ARRAY_TASK_MAX:-}" != "${S
 fi
 out=$1
 shift
-program=${PROGRAM:-psf_set}
-case $program in
-  bokeh_scene) shard=--shard ;;
-  *) shard=--shard ;;
-esac
-exec "$program" "$@" $shard "$SLURM_ARRAY_TASK_ID/$SLURM_ARRAY_TASK_COUNT" --resume --out "$out"
+exec "${PETZVAL:-petzval}" "${COMMAND:-psf-set}" "$@" --shard "$SLURM_ARRAY_TASK_ID/$SLURM_ARRAY_TASK_COUNT" --resume --out "$out"

@@ -86,7 +86,7 @@ void add_lens(examples::App& app, LensFlags& flags) {
   add_number(app, "--lens-diameter-mm", flags.lens_diameter_mm, examples::positive_number,
              "diameter of a thin lens (mm), instead of --f-number: focal length divided by f-number")
       ->default_str("");
-  examples::add_lens(app, flags.lens_file, "--lens", "traced by exact rays");
+  examples::add_lens(app, flags.lens_file, "LENS", "traced by exact rays");
   app.add_option("--singlet", flags.singlet,
                  "two spherical surfaces, traced by exact rays; f/2 unless --f-number is given")
       ->type_name("R1,R2,THICKNESS,GLASS");
@@ -104,7 +104,7 @@ void add_lens(examples::App& app, LensFlags& flags) {
   add_number(app, "--swing-deg", flags.swing_deg, tilt, "swing of the film about the vertical axis (degrees)");
   constexpr examples::Range rays{1, 16384, "a whole number from 1 to 16384"};
   add_count(app, "--rays", flags.rays, rays, "rays through the lens per pixel of the picture")
-      ->default_str("256; 512 for --lens and --singlet with --jitter");
+      ->default_str("256; 512 for LENS and --singlet with --jitter");
   app.add_flag("--jitter", flags.jitter, "16 sets of rays, alternating over the pixels: grain instead of patterns");
   app.add_flag("--chroma", flags.chroma, "separate rays for red, green and blue, at 650, 510 and 475 nm");
   add_iris(app, flags.iris);
@@ -122,7 +122,7 @@ BlurLens::BlurLens(const LensFlags& flags, int columns, int rows, const renderer
     : flags_(flags), columns_(columns), rows_(rows), pose_(pose), keyed_(keyed), controls_(controls_of(flags.bokeh)) {
   const int kinds = (flags.thin_lens_mm > 0) + !flags.lens_file.file.empty() + !flags.singlet.empty();
   if (kinds != 1) {
-    throw Error("lens: " + std::to_string(kinds) + " of --thin-lens-mm, --lens and --singlet are given; must be 1");
+    throw Error("lens: " + std::to_string(kinds) + " of --thin-lens-mm, LENS and --singlet are given; must be 1");
   }
   if ((flags.thin_lens_mm > 0) != (flags.lens_diameter_mm > 0)) {
     throw Error(

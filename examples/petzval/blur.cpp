@@ -2,7 +2,7 @@
 // Blurs layers of a scene, or a picture with depths, by a thin lens, a singlet or any prescription.
 //
 //   petzval blur --scene town --thin-lens-mm 50 --lens-diameter-mm 100 --focus 5000 --compare --out out
-//   petzval blur --scene street --lens data/lenses/double_gauss_52mm_f1.8.json --focus 3000 --rays 32 --out out
+//   petzval blur --scene street data/lenses/double_gauss_52mm_f1.8.json --focus 3000 --rays 32 --out out
 //   petzval blur --rgb photo.png --depth photo.pfm --thin-lens-mm 85 --lens-diameter-mm 60 --focus 2000 --out out
 #include "commands.hpp"
 

@@ -53,10 +53,10 @@ constexpr std::array renderer_commands{
     Command{"camera-rays", "rays of a camera for samples of a table",
             "double_gauss_100mm_f2.0 --rays samples.csv --out rays.csv", &camera_rays},
     Command{"render", "path, light or bidirectional tracing through a lens; merge",
-            "--scene balls --lens double_gauss_52mm_f1.8 --out out", render_command, embree},
+            "--scene balls double_gauss_52mm_f1.8 --out out", render_command, embree},
     Command{"sheet", "contact sheets of renderings", "out/a out/b --out sheet.png", sheet_command, embree},
     Command{"blur", "lens blur of layers or of a picture with depth",
-            "--scene town --lens double_gauss_52mm_f1.8 --focus 3m --out out", blur_command, embree},
+            "--scene town double_gauss_52mm_f1.8 --focus 3m --out out", blur_command, embree},
 };
 constexpr std::array all_groups{
     Group{"Lenses", lens_commands},

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // Renders a scene through a lens by path, light or bidirectional path tracing.
 //
-//   petzval render --scene chess --lens data/lenses/double_gauss_100mm_f2_28deg.json --model exact_float --focus 950
+//   petzval render --scene chess data/lenses/double_gauss_100mm_f2_28deg.json --model exact_float --focus 950
 //               --integrator bidirectional --spp 256 --out chess
-//   petzval render --scene room.json --lens data/lenses/double_gauss_52mm_f1.8.json --model auto --spp 64 --focus 2000
+//   petzval render --scene room.json data/lenses/double_gauss_52mm_f1.8.json --model auto --spp 64 --focus 2000
 //               --wavelengths hero --out room
 #include "commands.hpp"
 

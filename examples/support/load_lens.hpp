@@ -21,7 +21,7 @@ struct LensInput {
   bool match_glasses = false;              ///< media without a name get the nearest glass
 };
 
-/// Adds LENS (or --lens) with --glasses and --configuration. LENS is required if `remark` is empty.
+/// Adds LENS with --glasses and --configuration. LENS is required if `remark` is empty.
 Option* add_lens(App& app, LensInput& input, const std::string& name = "LENS", const std::string& remark = "");
 
 /// The glass tables of petzval and the catalogues of --glasses.

@@ -74,9 +74,8 @@ TEST_F(BokehPsf, StoppedDownBlurEqualsTheThinLens) {
 // An aborted run keeps the complete images and their data.
 TEST_F(BokehPsf, KilledRunKeepsCompletePictures) {
   const std::string first = path("cut/") + id + "_focus_900mm.exr", numbers = path("cut/") + id + "_bokeh.json";
-  write("kill.sh", "'" + std::string(PETZVAL_TEST_PROGRAMS) + "/bokeh_psf' '" + lens(id) +
-                       "' --at 1000 --focus 900,1000,1100 --rays 4194304 --out '" + path("cut") +
-                       "' > /dev/null 2>&1 & pid=$!\nwhile [ ! -e '" + numbers +
+  write("kill.sh", invocation("psf") + " '" + lens(id) + "' --at 1000 --focus 900,1000,1100 --rays 4194304 --out '" +
+                       path("cut") + "' > /dev/null 2>&1 & pid=$!\nwhile [ ! -e '" + numbers +
                        "' ] && kill -0 $pid; do :; done 2> /dev/null\nkill -INT $pid 2> /dev/null\n"
                        "kill -9 $pid 2> /dev/null\nwait $pid\nexit 0\n");
   ASSERT_EQ(std::system(("sh '" + path("kill.sh") + "' 2> /dev/null").c_str()), 0);
@@ -127,8 +126,8 @@ TEST_F(BokehPsf, WritesTheRequestedFormats) {
   bokeh({"--at", "1000", "--focus", "900", "--format", "exr,pfm"});
   const std::string stem = path(std::string("bokeh/") + id + "_focus_900mm");
   EXPECT_FALSE(std::filesystem::exists(stem + ".png"));
-  const auto twice = run("psf", {lens(id), "--at", "1000", "--focus", "900", "--rays",
-                                       "64", "--format", "pfm,pfm", "--out", path("twice")});
+  const auto twice = run("psf", {lens(id), "--at", "1000", "--focus", "900", "--rays", "64", "--format", "pfm,pfm",
+                                 "--out", path("twice")});
   EXPECT_EQ(lines(twice.out).size(), 3u) << twice.out;  // the file, the contact sheet, the numbers
   const std::string pfm = read(stem + ".pfm"), head = "PF\n512 512\n-1.0\n";
   ASSERT_TRUE(pfm.starts_with(head));
@@ -152,8 +151,8 @@ TEST_F(BokehPsf, WritesTheRequestedFormats) {
 TEST_F(BokehPsf, LightOfTheWhitePointIsWhite) {
   std::ofstream(path("led.csv")) << "wavelength_nm,power\n440,0\n455,10\n470,2\n560,6\n700,0\n";
   const auto reddest = [&](const std::string& white) {
-    const auto json = bokeh({"--at", "1000", "--focus", "900", "--wavelengths",
-                             "450,520,590,650", "--white-point", white});
+    const auto json =
+        bokeh({"--at", "1000", "--focus", "900", "--wavelengths", "450,520,590,650", "--white-point", white});
     EXPECT_EQ(json["white_point"], white);
     const auto image = petzval::read_exr(path(std::string("bokeh/") + id + "_focus_900mm.exr"));
     const double area = std::pow(json["results"][0]["picture_pixel_mm"].get<double>(), 2);
@@ -189,9 +188,9 @@ TEST_F(BokehPsf, AcceptsEveryModelWithWeights) {
   const auto eye = with({"--model", "thin", "--fields", "8", "--rate-of-change", "1"});
   EXPECT_LT(eye["throughput"].get<double>(), 0.75 * exact["throughput"].get<double>());
   EXPECT_LT(eye["second_moments_mm2"][1].get<double>(), 0.5 * eye["second_moments_mm2"][0].get<double>());
-  EXPECT_NEAR(with({"--model", "thin", "--fields", "8", "--rate-of-change", "1", "--keep-light"})["throughput"]
-                  .get<double>(),
-              with({"--model", "thin", "--fields", "8"})["throughput"].get<double>(), 0.01);
+  EXPECT_NEAR(
+      with({"--model", "thin", "--fields", "8", "--rate-of-change", "1", "--keep-light"})["throughput"].get<double>(),
+      with({"--model", "thin", "--fields", "8"})["throughput"].get<double>(), 0.01);
 }
 
 TEST_F(BokehPsf, AcceptsAnImageAsIris) {
@@ -200,8 +199,7 @@ TEST_F(BokehPsf, AcceptsAnImageAsIris) {
   petzval::write_exr(half, path("half.exr"));
   petzval::write_png(petzval::to_srgb8(half), path("half.png"));
   for (const char* file : {"half.exr", "half.png"}) {
-    const auto json =
-        bokeh({"--at", "2000", "--focus", "1000", "--f-number", "4", "--iris-image", path(file)});
+    const auto json = bokeh({"--at", "2000", "--focus", "1000", "--f-number", "4", "--iris-image", path(file)});
     const auto& result = json["results"][0];
     EXPECT_NEAR(result["iris_area_share"].get<double>(), 0.5, 0.01);
     EXPECT_NEAR(result["throughput"].get<double>(), 0.5, 0.02);

@@ -31,13 +31,19 @@ class BokehScene : public Programs {
   }
   /// Later values replace earlier values.
   Arguments arguments(const std::string& out, const Arguments& more = {}) const {
-    Arguments all{"--scene",    path("scene.json"),
-                  "--lens",     lens("double_gauss_100mm_f2_28deg"),
-                  "--focus", "1000",
-                  "--size",    "72",
-                  "--height",   "48",
-                  "--spp",      "20",
-                  "--out",      path(out)};
+    Arguments all{"--scene",
+                  path("scene.json"),
+                  lens("double_gauss_100mm_f2_28deg"),
+                  "--focus",
+                  "1000",
+                  "--size",
+                  "72",
+                  "--height",
+                  "48",
+                  "--spp",
+                  "20",
+                  "--out",
+                  path(out)};
     for (std::size_t i = 0; i < more.size(); ++i) {
       const auto at = std::find(all.begin(), all.end(), more[i]);
       const bool has_value = i + 1 < more.size() && more[i + 1].rfind("--", 0) != 0;
@@ -135,7 +141,7 @@ TEST_F(BokehScene, AddsSamplesToAFinishedPicture) {
 // An interrupt writes the sums and the unfinished image; --resume gives the bits of an uninterrupted run.
 TEST_F(BokehScene, InterruptedRunKeepsItsSamples) {
   const Arguments many{"--spp", "400", "--threads", "1"};
-  std::string command = "'" + std::string(PETZVAL_TEST_PROGRAMS) + "/bokeh_scene'";
+  std::string command = invocation("render");
   for (const std::string& argument : arguments("cut", many)) command += " '" + argument + "'";
   write("interrupt.sh", command + " > '" + path("said") + "' 2> '" + path("err") + "' & pid=$!\nwhile [ ! -d '" +
                             path("cut") +
@@ -156,11 +162,8 @@ TEST_F(BokehScene, InterruptedRunKeepsItsSamples) {
 // Without --film the film has the shape of the picture; without --height the picture has the shape of the film.
 TEST_F(BokehScene, PixelsAreSquareByDefault) {
   const auto shape = [&](const std::string& out, const Arguments& more) {
-    Arguments all{"--scene",    path("scene.json"),
-                  "--lens",     lens("double_gauss_100mm_f2_28deg"),
-                  "--focus", "1000",
-                  "--spp",      "1",
-                  "--out",      path(out)};
+    Arguments all{"--scene", path("scene.json"), lens("double_gauss_100mm_f2_28deg"), "--focus", "1000", "--spp", "1",
+                  "--out",   path(out)};
     all.insert(all.end(), more.begin(), more.end());
     const Outcome outcome = run("render", all);
     EXPECT_EQ(outcome.status, 0) << outcome.err;
@@ -267,8 +270,8 @@ TEST_F(BokehScene, AcceptsFocalSurfacesAndAberrations) {
 
 TEST_F(BokehScene, PicturesAreLaidOutOnSheets) {
   render("a"), render("b", {"--focus", "1500"});
-  const Outcome done = run("sheet", {path("a"), path("b"), "--columns", "2", "--out", path("sheet.png"),
-                                           "--balls", path("balls.csv")});
+  const Outcome done =
+      run("sheet", {path("a"), path("b"), "--columns", "2", "--out", path("sheet.png"), "--balls", path("balls.csv")});
   EXPECT_EQ(done.status, 0) << done.err;
   EXPECT_TRUE(read(path("sheet.png")).starts_with("\x89PNG"));
   EXPECT_TRUE(read(path("balls.csv")).starts_with("lens,focus_mm,x_mm,"));

@@ -17,7 +17,7 @@ class CameraRays : public Programs {
   std::vector<std::string> arguments(const std::string& lens_id, const std::string& model,
                                      const std::vector<std::string>& more) const {
     std::vector<std::string> result{lens(lens_id), "--samples", path("samples.csv"), "--out", path("rays.csv"),
-                                    "--focus",  "3000",      "--model",           model};
+                                    "--focus",     "3000",      "--model",           model};
     result.insert(result.end(), more.begin(), more.end());
     return result;
   }

@@ -107,8 +107,7 @@ TEST_F(ConvertLens, MissingGlassesAreReadFromFilesOfTheUser) {
   write("lens.zmx", zemax);
   write("my.agf", glasses);
   expect_failure("convert", {path("lens.zmx"), path("lens.json")}, {"MYGLASS"});
-  const auto outcome =
-      run("convert", {path("lens.zmx"), path("lens.json"), "--glasses", path("my.agf"), "--json"});
+  const auto outcome = run("convert", {path("lens.zmx"), path("lens.json"), "--glasses", path("my.agf"), "--json"});
   ASSERT_EQ(outcome.status, 0) << outcome.err;
   const auto json = nlohmann::json::parse(outcome.out);
   EXPECT_EQ(json["units"], "in");
@@ -119,10 +118,9 @@ TEST_F(ConvertLens, MissingGlassesAreReadFromFilesOfTheUser) {
   EXPECT_EQ(back.configurations.size(), 2u);
   EXPECT_NEAR(back.surfaces[0].medium.nd.value(), 1.5168, 1e-7);  // by the formula
   // A single position.
-  EXPECT_EQ(
-      run("convert", {path("lens.zmx"), path("far.json"), "--glasses", path("my.agf"), "--configuration", "far"})
-          .status,
-      0);
+  EXPECT_EQ(run("convert", {path("lens.zmx"), path("far.json"), "--glasses", path("my.agf"), "--configuration", "far"})
+                .status,
+            0);
   EXPECT_NEAR(petzval::read_lens(path("far.json")).surfaces[1].thickness, 2.1 * 25.4, 1e-9);
 }
 
@@ -163,8 +161,7 @@ SURF 3
   EXPECT_NEAR(petzval::first_order(petzval::compile(back)).effective_focal_length, 106.5453, 1e-4);
   for (const char* ending : {".zmx", ".seq", ".dat", ".osl"}) {
     EXPECT_EQ(
-        run("convert", {path("ge.json"), path(std::string("out") + ending), "--glasses", path("infrared.agf")})
-            .status,
+        run("convert", {path("ge.json"), path(std::string("out") + ending), "--glasses", path("infrared.agf")}).status,
         0)
         << ending;
   }

@@ -27,26 +27,22 @@ class Distances : public Programs {
     const std::string file = lens(id);
     std::vector<std::pair<std::string, double>> result;
     const auto add = [&](const char* program, const nlohmann::json& film) { result.emplace_back(program, film); };
-    add("report",
-        printed("report", joined({file, "--json", "--at", "1000"}, more))["film_z_mm"]);
-    EXPECT_EQ(run("spots", joined({file, "--at", "1000", "--fields", "0", "--wavelengths",
-                                          "d", "--rays", "64", "--out", path("spots")},
-                                         more))
+    add("report", printed("report", joined({file, "--json", "--at", "1000"}, more))["film_z_mm"]);
+    EXPECT_EQ(run("spots", joined({file, "--at", "1000", "--fields", "0", "--wavelengths", "d", "--rays", "64", "--out",
+                                   path("spots")},
+                                  more))
                   .status,
               0);
     add("spots", read_json(path("spots/" + id + "_spots.json"))[0]["film_z_mm"]);
-    EXPECT_EQ(run("psf", joined({file, "--at", "1000", "--focus", "1000", "--rays", "1024",
-                                       "--out", path("bokeh")},
-                                      more))
-                  .status,
-              0);
+    EXPECT_EQ(
+        run("psf", joined({file, "--at", "1000", "--focus", "1000", "--rays", "1024", "--out", path("bokeh")}, more))
+            .status,
+        0);
     add("psf", read_json(path("bokeh/" + id + "_bokeh.json"))["results"][0]["film_z_mm"]);
-    add("focus",
-        printed("focus", joined({file, "--json", "--at", "1000"}, more))[0]["film_z_mm"]);
+    add("focus", printed("focus", joined({file, "--json", "--at", "1000"}, more))[0]["film_z_mm"]);
     // Distance of the film from a subject at 1 m, minus the origin of distances.
     EXPECT_EQ(run("metadata", joined({file, "--focus", "1000", "--out", path("data")}, more)).status, 0);
-    add("metadata",
-        1000 * read_json(path("data/" + id + ".opentrackio.json"))["lens"]["focusDistance"].get<double>());
+    add("metadata", 1000 * read_json(path("data/" + id + ".opentrackio.json"))["lens"]["focusDistance"].get<double>());
     return result;
   }
 };
@@ -80,9 +76,8 @@ TEST_F(Distances, EveryProgramHasTheSameFilmForADistance) {
 
 TEST_F(Distances, EveryProgramNamesTheOriginOfDistances) {
   const std::vector<Arguments> programs{
-      {"report"},      {"spots"},    {"focus"},  {"psf"},       {"psf-set"},
-      {"psf-set", "query"}, {"colour"}, {"surface"}, {"expressive"}, {"metadata"},
-      {"models"},   {"choose"},   {"camera-rays"},
+      {"report"},  {"spots"},      {"focus"},    {"psf"},    {"psf-set"}, {"psf-set", "query"}, {"colour"},
+      {"surface"}, {"expressive"}, {"metadata"}, {"models"}, {"choose"},  {"camera-rays"},
 #ifdef PETZVAL_TEST_HAS_pull
       {"pull"},
 #endif
@@ -126,8 +121,7 @@ TEST_F(Distances, LensOpensToTheFNumberOfItsName) {
   // The other programs accept the rounded f-number too.
   for (const auto& [program, more] : std::vector<std::pair<std::string, Arguments>>{
            {"focus", {"--json"}},
-           {"psf",
-            {"--at", "2000", "--focus", "1000", "--rays", "64", "--out", path("o")}},
+           {"psf", {"--at", "2000", "--focus", "1000", "--rays", "64", "--out", path("o")}},
            {"psf-set", {"--fields", "0", "--at", "2000", "--rays", "64", "--out", path("p")}}}) {
     const auto outcome = run(program, joined({file, program == "psf-set" ? "--f-number" : "--f-number", "1.8"}, more));
     EXPECT_EQ(outcome.status, 0) << outcome.err;
@@ -137,13 +131,12 @@ TEST_F(Distances, LensOpensToTheFNumberOfItsName) {
 
 TEST_F(Distances, ListsAcceptBlanksAndSpectralLines) {
   const auto of = [&](const std::string& distances, const std::string& wavelengths) {
-    return printed("focus", {lens("cooke_triplet_50mm_f5"), "--json", "--criterion", "min_rms", "--at",
-                                    distances, "--wavelengths", wavelengths});
+    return printed("focus", {lens("cooke_triplet_50mm_f5"), "--json", "--criterion", "min_rms", "--at", distances,
+                             "--wavelengths", wavelengths});
   };
   EXPECT_EQ(of("1000, 2000", "F,d, C"), of("1000,2000", "486.1327,587.5618,656.2725"));
   expect_failure("focus", {lens("cooke_triplet_50mm_f5"), "--wavelengths", "F,q"}, {"--wavelengths", "q"});
-  expect_failure("focus", {lens("cooke_triplet_50mm_f5"), "--wavelengths", "d,587.5618"},
-                 {"--wavelengths", 587.5618});
+  expect_failure("focus", {lens("cooke_triplet_50mm_f5"), "--wavelengths", "d,587.5618"}, {"--wavelengths", 587.5618});
 }
 
 // Programs refuse an output that cannot be written before they compute anything.

@@ -42,9 +42,9 @@ TEST_F(ExpressiveLensProgram, DefaultsEqualTheRealLens) {
 }
 
 TEST_F(ExpressiveLensProgram, AcceptsSplinePointsAndDispersion) {
-  const auto json = draw("double_gauss_100mm_f2_28deg",
-                         {"--power-spline", "0:1", "0.7:1.02", "1:0.97", "--curvature-points", "0,0:0", "-18,12:1.5",
-                          "--dispersion", "3", "--at", "1200", "--model", "thick"});
+  const auto json =
+      draw("double_gauss_100mm_f2_28deg", {"--power-spline", "0:1", "0.7:1.02", "1:0.97", "--curvature-points", "0,0:0",
+                                           "-18,12:1.5", "--dispersion", "3", "--at", "1200", "--model", "thick"});
   EXPECT_EQ(json["power"], (nlohmann::json{{0, 1}, {0.7, 1.02}, {1, 0.97}}));
   EXPECT_EQ(json["film_offsets_mm"], (nlohmann::json{{0, 0, 0}, {-18, 12, 1.5}}));
   EXPECT_EQ(json["dispersion"], 3);

@@ -73,8 +73,7 @@ TEST_F(FocusPull, NumbersEqualTheLibrary) {
   point.keys.push_back({1, petzval::ScenePoint{{0, 0, -1000}, false}});
   point.keys.push_back({3, petzval::ScenePoint{{100, 0, -4000}, false}});
   for (const std::string criterion : {"min_rms", "min_max"}) {
-    const json all =
-        frames({Programs::lens(id)}, rack, {"--f-number", "4", "--criterion", criterion, "--fps", "2"});
+    const json all = frames({Programs::lens(id)}, rack, {"--f-number", "4", "--criterion", criterion, "--fps", "2"});
     ASSERT_EQ(all.size(), 9u);
     for (const json& frame : all) {
       SCOPED_TRACE(frame.dump());

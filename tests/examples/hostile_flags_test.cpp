@@ -25,8 +25,7 @@ const std::vector<Command> commands = {
     {"models", {"LENS"}},
     {"psf", {"LENS", "--at", "1500", "--focus", "1000", "--rays", "1", "--out", "@out"}},
     {"shapes", {"--rays", "1", "--out", "@out"}},
-    {"camera-rays",
-     {"LENS", "--samples", "@samples.csv", "--model", "thin", "--focus", "1000", "--out", "@rays.csv"}},
+    {"camera-rays", {"LENS", "--samples", "@samples.csv", "--model", "thin", "--focus", "1000", "--out", "@rays.csv"}},
     {"choose", {"LENS", "--near", "1000", "--far", "2000", "--budget-px", "1"}},
     {"colour", {"LENS", "--rays", "1", "--out", "@out"}},
     {"convert", {"LENS", "@out.json"}},
@@ -36,25 +35,19 @@ const std::vector<Command> commands = {
     {"metadata", {"LENS", "--out", "@out"}},
     {"report", {"LENS"}},
     {"psf-set",
-     {"LENS", "--fields", "0", "--at", "1500", "--focus", "1000", "--rays", "1", "--pixels", "3",
-      "--out", "@out"}},
+     {"LENS", "--fields", "0", "--at", "1500", "--focus", "1000", "--rays", "1", "--pixels", "3", "--out", "@out"}},
     {"spots", {"LENS", "--fields", "0", "--wavelengths", "587.56", "--rays", "1", "--out", "@out"}},
     {"trace", {"LENS", "--rays", "@rays_in.csv", "--out", "@rays.csv"}},
-    {"wu_figure7", {"--rays", "1", "--out", "@out.png"}},
-    {"wu_statements", {"--rays", "1"}},
 #ifdef PETZVAL_TEST_HAS_tilt
     {"pull", {"LENS", "--keys", "@keys.json", "--out", "@out"}},
     {"tilt", {"LENS", "--points", "@points.json", "--out", "@out"}},
 #endif
 #ifdef PETZVAL_TEST_HAS_render
-    {"render",
-     {"--scene", "balls", "--lens", "LENS", "--focus", "1000", "--size", "8x8", "--spp", "1",
-      "--out", "@out"}},
+    {"render", {"--scene", "balls", "LENS", "--focus", "1000", "--size", "8x8", "--spp", "1", "--out", "@out"}},
     {"sheet", {"@out", "--out", "@out.png"}},
 #endif
 #ifdef PETZVAL_TEST_HAS_blur
-    {"blur",
-     {"--scene", "town", "--size", "8x8", "--lens", "LENS", "--focus", "3000", "--out", "@out"}},
+    {"blur", {"--scene", "town", "--size", "8x8", "LENS", "--focus", "3000", "--out", "@out"}},
 #endif
 };
 
@@ -63,13 +56,10 @@ const std::vector<Command> commands = {
 const std::map<std::string, Arguments> bad_values = {
     {"--blades", {"1", "2", "21"}},
     {"--configuration", {"nowhere", "1e308"}},
-    {"--f-number", {"1e-300", "0.1", "0"}},
     {"--f-number", {"1e-300", "0.1"}},
     {"--fields", {"1e308", "nan"}},
-    {"--fields", {"170", "nan"}},
     {"--film", {"1e308x1e308", "36", "0x24"}},
     {"--focus", {"1e-300", "1", "nan"}},
-    {"--wavelengths", {"1e-300", "1e6", "nan"}},
     {"--wavelengths", {"1e-300", "1e6", "550,550"}},
 };
 
@@ -119,7 +109,8 @@ class HostileFlags : public Programs, public testing::WithParamInterface<Command
 TEST_P(HostileFlags, AreNamed) {
   const Outcome help = run(GetParam().program, {"--help"});
   ASSERT_EQ(help.status, 0);
-  EXPECT_TRUE(help.err.empty() && help.out.find("Usage: " + GetParam().program) != std::string::npos) << help.out;
+  EXPECT_TRUE(help.err.empty() && help.out.find("Usage: petzval " + GetParam().program) != std::string::npos)
+      << help.out;
   for (const auto& [flag, type] : flags_of(help.out)) {
     Arguments values;
     if (const auto known = bad_values.find(flag); known != bad_values.end()) {
@@ -135,7 +126,10 @@ TEST_P(HostileFlags, AreNamed) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(All, HostileFlags, testing::ValuesIn(commands),
-                         [](const auto& command) { return command.param.program; });
+INSTANTIATE_TEST_SUITE_P(All, HostileFlags, testing::ValuesIn(commands), [](const auto& command) {
+  std::string name = command.param.program;
+  std::ranges::replace(name, '-', '_');
+  return name;
+});
 
 }  // namespace

@@ -47,9 +47,9 @@ class LensBlurProgram : public Programs {
 
 TEST_F(LensBlurProgram, WritesPicturesAndTheirMeasures) {
   const auto outcome = run("blur", joined({thin,
-                                                small,
-                                                {"--scene", "town", "--focus", "5000", "--compare", "--supersample",
-                                                 "1", "--format", "exr,png,pfm", "--out", path("out")}}));
+                                           small,
+                                           {"--scene", "town", "--focus", "5000", "--compare", "--supersample", "1",
+                                            "--format", "exr,png,pfm", "--out", path("out")}}));
   ASSERT_EQ(outcome.status, 0) << outcome.err;
   for (const char* name : {"blur", "sharp", "missed", "reference"}) {
     const RgbImage exr = petzval::read_exr(path(std::string("out/") + name + ".exr"));
@@ -157,8 +157,7 @@ TEST_F(LensBlurProgram, RefusesInvalidInput) {
 
 // The default film of 24 mm height suits lenses with this image size; --fov-deg makes it smaller.
 TEST_F(LensBlurProgram, ReportsFilmsLargerThanTheImageCircle) {
-  const Arguments phone =
-      joined({small, {"--scene", "town", "--focus", "1000", "--lens", lens("phone_5.6mm_f3.5")}});
+  const Arguments phone = joined({small, {"--scene", "town", "--focus", "1000", lens("phone_5.6mm_f3.5")}});
   const auto notes = [&](const Arguments& more) {
     const auto outcome = run("blur", joined({phone, more, {"--format", "png", "--out", path("out")}}));
     EXPECT_EQ(outcome.status, 0) << outcome.err;
@@ -174,11 +173,9 @@ TEST_F(LensBlurProgram, ReportsFilmsLargerThanTheImageCircle) {
 
 // The pupil of a fisheye moves with the field: rays between the nodes of a table have errors.
 TEST_F(LensBlurProgram, ReportsTheErrorOfInterpolatedRays) {
-  const auto outcome = run("blur", {"--scene",       "town", "--lens",     lens("fisheye_10mm_f4"),
-                                         "--fov-deg",     "60",   "--focus", "3000",
-                                         "--size",       "320",  "--height",   "240",
-                                         "--supersample", "1",    "--rays",     "16",
-                                         "--format",      "png",  "--out",      path("out")});
+  const auto outcome =
+      run("blur", {"--scene", "town", lens("fisheye_10mm_f4"), "--fov-deg", "60", "--focus", "3000", "--size", "320",
+                   "--height", "240", "--supersample", "1", "--rays", "16", "--format", "png", "--out", path("out")});
   ASSERT_EQ(outcome.status, 0) << outcome.err;
   EXPECT_GT(read_json(path("out/blur.json"))["rays_error_px"], 1);
   petzval::testing::expect_tokens(outcome.err, {"note", "rays"});

@@ -11,8 +11,8 @@ namespace {
 class LensMetadata : public Programs {};
 
 TEST_F(LensMetadata, WritesBothFilesOfTheFocusedLens) {
-  const auto outcome = run("metadata", {lens("biogon_35mm_f2.8"), "--f-number", "4", "--focus", "2000",
-                                             "--from", "film", "--out", path("out")});
+  const auto outcome = run("metadata", {lens("biogon_35mm_f2.8"), "--f-number", "4", "--focus", "2000", "--from",
+                                        "film", "--out", path("out")});
   ASSERT_EQ(outcome.status, 0) << outcome.err;
   const auto sample = read_json(path("out/biogon_35mm_f2.8.opentrackio.json")).at("lens");
   EXPECT_NEAR(sample.at("focusDistance").get<double>(), 2, 1e-6);

@@ -131,10 +131,9 @@ TEST_F(LensReport, FindsTheDeclaredPupilOfEverySetting) {
   EXPECT_NEAR(declared("FNUM 4 0")["declared_f_number"].get<double>(), 4, 1e-9);
   const auto floating = declared("FLOA");
   EXPECT_EQ(floating["declared_entrance_pupil_diameter_mm"], floating["entrance_pupil_diameter_mm"]);
-  EXPECT_TRUE(
-      nlohmann::json::parse(
-          run("report", {lens("double_gauss_100mm_f2.0"), "--json"}).out)["declared_entrance_pupil_diameter_mm"]
-          .is_null());
+  EXPECT_TRUE(nlohmann::json::parse(
+                  run("report", {lens("double_gauss_100mm_f2.0"), "--json"}).out)["declared_entrance_pupil_diameter_mm"]
+                  .is_null());
 }
 
 TEST_F(LensReport, AllowsTheDLineAloneWithoutVd) {
@@ -191,7 +190,7 @@ TEST_F(LensReport, DrawsFiguresAndAPage) {
 
 TEST_F(LensReport, DrawsRequestedFieldsAndBothSections) {
   const auto outcome = run("report", {lens("anamorphic_60mm_2x"), "--out", path("out"), "--fields", "3,6",
-                                           "--wavelengths", "550", "--f-number", "8"});
+                                      "--wavelengths", "550", "--f-number", "8"});
   ASSERT_EQ(outcome.status, 0) << outcome.err;
   EXPECT_NE(read(path("out/anamorphic_60mm_2x_layout.svg")).find("Section y-z"), std::string::npos);
   EXPECT_NE(read(path("out/anamorphic_60mm_2x_layout_x.svg")).find("Section x-z"), std::string::npos);
@@ -230,8 +229,7 @@ TEST_F(LensReport, PrintsDeclaredAndComputedApertures) {
         Case{"ENPD 14", "INFINITY", "entrance_pupil_diameter", 14, 12}, Case{"FNUM 8 0", "INFINITY", "f_number", 8, 8},
         Case{"OBNA 0.03 0", "100", "object_na", 0.03, 0.03}, Case{"FNUM 16 1", "100", "working_f_number", 16, 16}}) {
     write("declared.zmx", zmx(c.aperture, c.object));
-    const auto json =
-        nlohmann::json::parse(run("report", {path("declared.zmx"), "--json"}).out)["design_aperture"];
+    const auto json = nlohmann::json::parse(run("report", {path("declared.zmx"), "--json"}).out)["design_aperture"];
     EXPECT_EQ(json["setting"], c.setting);
     EXPECT_EQ(json["value"], c.declared);
     EXPECT_NEAR(json["computed"].get<double>(), c.computed, 1e-6 * c.computed) << c.aperture;

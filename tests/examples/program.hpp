@@ -23,6 +23,9 @@ class Programs : public testing::Test {
   void SetUp() override;
   void TearDown() override;
 
+  /// The start of a line of the shell that runs a program: a command of petzval, or hello_..., wu_... and petzval
+  /// itself.
+  static std::string invocation(const std::string& program);
   Outcome run(const std::string& program, const Arguments& arguments) const;
 
   /// The program must fail with status 1, nothing on standard output, and one line on standard error that contains

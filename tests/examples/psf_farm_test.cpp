@@ -17,17 +17,10 @@ class PsfFarm : public Programs {
     return (std::filesystem::path(PETZVAL_TEST_DATA).parent_path() / "examples/farm" / file).string();
   }
   std::vector<std::string> grid() const {
-    return {lens("double_gauss_100mm_f2_28deg"),
-            "--fields",
-            "0,7",
-            "--at",
-            "1000,inf",
-            "--rays",
-            "4096",
-            "--pixels",
-            "33"};
+    return {
+        lens("double_gauss_100mm_f2_28deg"), "--fields", "0,7", "--at", "1000,inf", "--rays", "4096", "--pixels", "33"};
   }
-  /// Runs a line of the shell with psf_set on the path.
+  /// Runs a line of the shell with petzval on the path.
   int shell(const std::string& line) const {
     return std::system(("PATH='" + std::string(PETZVAL_TEST_PROGRAMS) + "':\"$PATH\"; " + line + " > '" +
                         path("stdout") + "' 2> '" + path("stderr") + "'")
@@ -67,7 +60,7 @@ TEST_F(PsfFarm, SlurmArrayGivesTheSetOfOneRun) {
   EXPECT_NE(read(path("stderr")).find("--array"), std::string::npos);
   EXPECT_FALSE(std::filesystem::exists(path("out")));
   for (const int id : {2, 1, 2}) EXPECT_EQ(task(1, 2, 2, id), 0) << read(path("stderr"));
-  ASSERT_EQ(shell("psf_set merge '" + path("out") + "' --out '" + path("out/psf_set.exr") + "'"), 0);
+  ASSERT_EQ(shell("petzval psf-set merge '" + path("out") + "' --out '" + path("out/psf_set.exr") + "'"), 0);
   EXPECT_EQ(read(path("out/psf_set.exr")), whole());
 }
 
@@ -83,29 +76,29 @@ TEST_F(PsfFarm, SlurmRunsTheArray) {
   if (WIFEXITED(status) && WEXITSTATUS(status) == 77) GTEST_SKIP() << "Slurm does not start: " << read(path("stderr"));
   ASSERT_EQ(status, 0) << read(path("stderr"));
   EXPECT_EQ(lines(read(path("task_1.txt"))).size(), 2u);
-  ASSERT_EQ(shell("psf_set merge '" + path("out") + "' --out '" + path("out/psf_set.exr") + "'"), 0)
+  ASSERT_EQ(shell("petzval psf-set merge '" + path("out") + "' --out '" + path("out/psf_set.exr") + "'"), 0)
       << read(path("stderr"));
   EXPECT_EQ(read(path("out/psf_set.exr")), whole());
 }
 
 /// Replaces the renderer, which is not built everywhere, by a program that records its arguments.
-TEST_F(PsfFarm, ScriptsRunBokehSceneWithItsFlags) {
-  write("render", "#!/bin/sh\necho \"$@\" >> '" + path("calls") + "'\n");
-  std::filesystem::permissions(path("render"), std::filesystem::perms::owner_all);
-  const std::string renderer = "PROGRAM=bokeh_scene PATH='" + folder.string() + "':\"$PATH\" ", out = path("an out"),
+TEST_F(PsfFarm, ScriptsRunRenderWithItsFlags) {
+  write("petzval", "#!/bin/sh\necho \"$@\" >> '" + path("calls") + "'\n");
+  std::filesystem::permissions(path("petzval"), std::filesystem::perms::owner_all);
+  const std::string renderer = "COMMAND=render PATH='" + folder.string() + "':\"$PATH\" ", out = path("an out"),
                     resumed = " --resume --out " + out;
   ASSERT_EQ(shell(renderer + "SLURM_ARRAY_TASK_MIN=1 SLURM_ARRAY_TASK_MAX=3 SLURM_ARRAY_TASK_COUNT=3 " +
                   "SLURM_ARRAY_TASK_ID=2 sh '" + farm("psf_set.slurm.sh") + "' '" + out + "' --scene chess"),
             0)
       << read(path("stderr"));
-  EXPECT_EQ(lines(read(path("calls"))), std::vector<std::string>{"--scene chess --shard 2/3" + resumed});
+  EXPECT_EQ(lines(read(path("calls"))), std::vector<std::string>{"render --scene chess --shard 2/3" + resumed});
   std::filesystem::remove(path("calls"));
   if (std::system("parallel --version 2> /dev/null | grep -q 'GNU parallel'") != 0) GTEST_SKIP() << "no GNU parallel";
   ASSERT_EQ(shell(renderer + "sh '" + farm("psf_set.parallel.sh") + "' 2 '" + out + "' --scene chess"), 0)
       << read(path("stderr"));
-  EXPECT_EQ(lines(read(path("calls"))),
-            (std::vector<std::string>{"--scene chess --shard 1/2" + resumed, "--scene chess --shard 2/2" + resumed,
-                                      "merge " + out + " --out " + out}));
+  EXPECT_EQ(lines(read(path("calls"))), (std::vector<std::string>{"render --scene chess --shard 1/2" + resumed,
+                                                                  "render --scene chess --shard 2/2" + resumed,
+                                                                  "render merge " + out + " --out " + out}));
 }
 
 /// The rules of the specification "jobtemplate-2023-09" that the template uses: keys, names, references.
@@ -250,8 +243,8 @@ TEST_F(OpenJobDescription, TasksOfTheTemplateGiveTheSetOfOneRun) {
                                                      {"Param.FNumbers", "2.8"},
                                                      {"Param.Samples", "4096"},
                                                      {"Param.Shards", "3"}});
-  ASSERT_EQ(run("psf-set", {lens("double_gauss_100mm_f2_28deg"), "--fields", "0,7", "--at", "1000,inf",
-                            "--f-number", "2.8", "--rays", "4096", "--out", path("whole")})
+  ASSERT_EQ(run("psf-set", {lens("double_gauss_100mm_f2_28deg"), "--fields", "0,7", "--at", "1000,inf", "--f-number",
+                            "2.8", "--rays", "4096", "--out", path("whole")})
                 .status,
             0);
   EXPECT_EQ(read(path("out/psf_set.exr")), read(path("whole/psf_set.exr")));

@@ -127,7 +127,7 @@ TEST_F(PsfSets, FaultyShardIsNamedAndRepaired) {
 
 TEST_F(PsfSets, KilledRunContinuesAfterItsLastCompletePsf) {
   const std::string exr = whole();
-  std::string command = "'" + std::string(PETZVAL_TEST_PROGRAMS) + "/psf_set'";
+  std::string command = invocation("psf-set");
   for (const std::string& argument : set("killed")) command += " '" + argument + "'";
   const std::string psfs = path("killed/psfs");
   write("kill.sh", command + " > /dev/null & pid=$!\nwhile [ -z \"$(ls '" + psfs +
@@ -170,8 +170,7 @@ TEST_F(PsfSets, QueriesGiveNodesBitForBitAndPointsBetween) {
   refused({"--fields", "3", "--out", path("no.exr")}, {"--at"});
   refused({"--fields", "3", "--at", "1500", "--out", path("no.png")}, {"no.png", ".exr"});
   write("text.exr", "no picture");
-  expect_failure("psf-set",
-                 {"query", path("text.exr"), "--fields", "3", "--at", "1500", "--out", path("no.exr")},
+  expect_failure("psf-set", {"query", path("text.exr"), "--fields", "3", "--at", "1500", "--out", path("no.exr")},
                  {path("text.exr")});
 }
 

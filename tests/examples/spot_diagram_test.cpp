@@ -72,11 +72,9 @@ TEST_F(SpotDiagram, FocusesTheFilmAtTheDLine) {
   EXPECT_NEAR(film_z({}), sharpest, 1e-9);
   EXPECT_NEAR(film_z({"--defocus-mm", "-0.25"}), sharpest - 0.25, 1e-9);
   EXPECT_NEAR(film_z({"--criterion", "paraxial"}), petzval::first_order(triplet).rear_focal_z, 1e-12);
-  EXPECT_NEAR(film_z({"--at", "1000", "--criterion", "paraxial"}),
-              petzval::paraxial_image_z(triplet, -1000), 1e-12);
+  EXPECT_NEAR(film_z({"--at", "1000", "--criterion", "paraxial"}), petzval::paraxial_image_z(triplet, -1000), 1e-12);
   const petzval::FocusOptions from_film{.origin = petzval::DistanceOrigin::film};
-  EXPECT_NEAR(film_z({"--at", "1000", "--from", "film"}),
-              petzval::solve_focus(triplet, 1000, from_film).film_z, 1e-9);
+  EXPECT_NEAR(film_z({"--at", "1000", "--from", "film"}), petzval::solve_focus(triplet, 1000, from_film).film_z, 1e-9);
   EXPECT_EQ(film_z({"--film-position", "file"}), triplet.film_z());
   EXPECT_EQ(film_z({"--film-position", "file", "--at", "1000"}), triplet.film_z());
   const petzval::Lens stopped = petzval::with_f_number(triplet, 11);

@@ -35,8 +35,8 @@ class TraceRays : public Programs {
   void expect_refusal(const std::string& csv, const std::vector<petzval::testing::Token>& tokens) const {
     SCOPED_TRACE(csv);
     write("rays.csv", csv);
-    expect_failure("trace",
-                   {lens("double_gauss_100mm_f1.35"), "--rays", path("rays.csv"), "--out", path("traced.csv")}, tokens);
+    expect_failure("trace", {lens("double_gauss_100mm_f1.35"), "--rays", path("rays.csv"), "--out", path("traced.csv")},
+                   tokens);
     EXPECT_FALSE(std::filesystem::exists(path("traced.csv")));
   }
 };

@@ -15,7 +15,7 @@ class TwoProcesses : public Programs {
   void run_both(const std::string& program, const std::vector<std::string>& one,
                 const std::vector<std::string>& other) const {
     const auto command = [&](const std::vector<std::string>& arguments, const std::string& name) {
-      std::string text = '\'' + std::string(PETZVAL_TEST_PROGRAMS) + '/' + program + '\'';
+      std::string text = invocation(program);
       for (const std::string& argument : arguments) text += " '" + argument + '\'';
       return text + " > /dev/null 2> '" + path(name) + '\'';
     };
@@ -71,15 +71,8 @@ TEST_F(TwoProcesses, WithTwoShardsCompleteTheSet) {
 
 TEST_F(TwoProcesses, WithEqualPicturesBothSucceed) {
   const auto bokeh = [&](const std::string& out) {
-    return std::vector<std::string>{lens("double_gauss_100mm_f1.35"),
-                                    "--at",
-                                    "1000",
-                                    "--focus",
-                                    "800,1200",
-                                    "--rays",
-                                    "32768",
-                                    "--out",
-                                    path(out)};
+    return std::vector<std::string>{
+        lens("double_gauss_100mm_f1.35"), "--at", "1000", "--focus", "800,1200", "--rays", "32768", "--out", path(out)};
   };
   ASSERT_EQ(run("psf", bokeh("whole")).status, 0);
   run_both("psf", bokeh("both"), bokeh("both"));

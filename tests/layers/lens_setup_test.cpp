@@ -127,7 +127,7 @@ TEST(BlurLens, RefusesInvalidOptions) {
     expect_tokens(said(change), tokens);
   };
   says([](LensFlags&) {}, {"no error"});
-  says([](LensFlags& f) { f.thin_lens_mm = 0; }, {"--thin-lens-mm", "--lens", "--singlet"});
+  says([](LensFlags& f) { f.thin_lens_mm = 0; }, {"--thin-lens-mm", "LENS", "--singlet"});
   says([](LensFlags& f) { f.singlet = "50,-50,5,N-BK7"; }, {2, "--thin-lens-mm", "--singlet"});
   says([](LensFlags& f) { f.lens_diameter_mm = 0; }, {"--lens-diameter-mm"});
   says([](LensFlags& f) { f.focus_mm = 50; }, {50});
