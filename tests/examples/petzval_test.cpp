@@ -1,0 +1,114 @@
+// SPDX-License-Identifier: Apache-2.0
+// The program petzval: overview, help, mistyped commands, flags and lenses, lengths with units, man page and
+// completions.
+#include <algorithm>
+#include <regex>
+#include <set>
+
+#include "petzval/core/config.hpp"
+#include "program.hpp"
+
+namespace {
+
+class Petzval : public Programs {
+ protected:
+  /// The commands that the overview lists.
+  std::vector<std::string> commands() const {
+    const std::string overview = run("petzval", {"help"}).out;
+    static const std::regex line("\n  ([a-z-]+) +[a-zA-Z]");
+    std::vector<std::string> result;
+    for (std::sregex_iterator found(overview.begin(), overview.end(), line), end; found != end; ++found) {
+      result.push_back((*found)[1]);
+    }
+    return result;
+  }
+};
+
+TEST_F(Petzval, OverviewListsTheCommands) {
+  const Outcome plain = run("petzval", {});
+  EXPECT_EQ(plain.status, 0);
+  EXPECT_EQ(plain.out, run("petzval", {"help"}).out);
+  EXPECT_LE(lines(plain.out).size(), 50u);
+  const auto all = commands();
+  for (const char* name : {"lenses",   "report", "convert", "focus",       "trace",  "spots",   "psf",
+                           "psf-set",  "colour", "shapes",  "tilt",        "pull",   "surface", "expressive",
+                           "metadata", "models", "choose",  "camera-rays", "render", "sheet",   "blur"}) {
+    EXPECT_NE(std::ranges::find(all, name), all.end()) << name;
+  }
+}
+
+TEST_F(Petzval, VersionIsTheVersionOfTheLibrary) {
+  EXPECT_EQ(run("petzval", {"--version"}).out, "petzval " PETZVAL_VERSION "\n");
+}
+
+TEST_F(Petzval, HelpOfEveryCommandHasAnExample) {
+  for (const std::string& name : commands()) {
+    const Outcome help = run("petzval", {"help", name});
+    if (help.status != 0) continue;  // not built
+    EXPECT_EQ(help.out, run(name, {"--help"}).out) << name;
+    EXPECT_NE(help.out.find("Example: petzval " + name), std::string::npos) << help.out;
+  }
+}
+
+TEST_F(Petzval, MistypedCommandGetsASuggestion) {
+  const Outcome outcome = run("petzval", {"reprot"});
+  EXPECT_EQ(outcome.status, 2);
+  EXPECT_EQ(outcome.out, "");
+  EXPECT_NE(outcome.err.find("reprot"), std::string::npos) << outcome.err;
+  EXPECT_NE(outcome.err.find("mean report?"), std::string::npos) << outcome.err;
+}
+
+TEST_F(Petzval, MistypedFlagGetsASuggestion) {
+  expect_failure("spots", expanded({"LENS", "--out", "@out", "--feilds", "0"}), {"--feilds", "--fields"});
+}
+
+TEST_F(Petzval, MistypedLensGetsASuggestion) {
+  expect_failure("report", {"double_gauss_52mm_f1.9"}, {"double_gauss_52mm_f1.9", "double_gauss_52mm_f1.8"});
+}
+
+TEST_F(Petzval, ShippedLensesHaveNames) {
+  const std::string id = "double_gauss_52mm_f1.8";
+  EXPECT_EQ(run("report", {id, "--json"}).out, run("report", {lens(id), "--json"}).out);
+  const auto found = nlohmann::json::parse(run("lenses", {"gauss", "52", "--json"}).out);
+  ASSERT_FALSE(found.empty());
+  EXPECT_TRUE(std::ranges::any_of(found, [&](const auto& row) { return row.at("id") == id; }));
+  for (const auto& row : found) EXPECT_NE(row.dump().find("52"), std::string::npos) << row;
+}
+
+TEST_F(Petzval, LengthsTakeUnits) {
+  const std::string id = "double_gauss_52mm_f1.8";
+  const auto by = [&](const char* distance) { return run("focus", {id, "--at", distance, "--json"}).out; };
+  const std::string expected = by("2540");
+  EXPECT_FALSE(expected.empty());
+  for (const char* distance : {"2.54m", "254cm", "2540mm", "100in"}) EXPECT_EQ(by(distance), expected) << distance;
+  expect_failure("focus", {id, "--at", "3yards"}, {"--at", "3yards"});
+}
+
+TEST_F(Petzval, QuietSaysNothing) {
+  const Outcome outcome = run("lenses", {"nothing_has_this_name", "--quiet"});
+  EXPECT_EQ(outcome.status, 0);
+  EXPECT_EQ(outcome.err, "");
+  EXPECT_NE(run("lenses", {"nothing_has_this_name"}).err, "");
+}
+
+/// The man page and the completions name every flag of the help of every command.
+TEST_F(Petzval, ManPageAndCompletionsHaveTheFlagsOfTheHelp) {
+  std::string man = run("petzval", {"--man-page"}).out;
+  man = std::regex_replace(man, std::regex("\\\\-"), "-");
+  const std::string bash = run("petzval", {"--bash-completion"}).out, zsh = run("petzval", {"--zsh-completion"}).out;
+  static const std::regex flag("(?:^|\\n) +(?:-[a-z],)?(--[a-z0-9-]+)");
+  std::size_t count = 0;
+  for (const std::string& name : commands()) {
+    const std::string help = run("petzval", {"help", name}).out;
+    for (std::sregex_iterator found(help.begin(), help.end(), flag), end; found != end; ++found, ++count) {
+      for (const std::string* text : {&man, &bash, &zsh}) {
+        EXPECT_NE(text->find((*found)[1].str()), std::string::npos) << name << ' ' << (*found)[1];
+      }
+    }
+  }
+  EXPECT_GT(count, 100u);
+  write("completion.bash", bash);
+  EXPECT_EQ(std::system(("bash -n '" + path("completion.bash") + "'").c_str()), 0);
+}
+
+}  // namespace
