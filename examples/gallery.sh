@@ -71,7 +71,7 @@ awk 'BEGIN {
 }' > "$out/camera_rays/samples.csv"
 for model in pinhole thin thin_two_disc thick polynomial_3 polynomial_5 polynomial_7 polynomial_9 polynomial_11 \
   exact_float exact_double; do
-  "$programs/petzval" camera-rays "$lenses/double_gauss_100mm_f2.0.json" --rays "$out/camera_rays/samples.csv" \
+  "$programs/petzval" camera-rays "$lenses/double_gauss_100mm_f2.0.json" --samples "$out/camera_rays/samples.csv" \
     --out "$out/camera_rays/$model.csv" --model $model --focus 3000 --f-number 2.8
 done
 echo "$out/camera_rays"

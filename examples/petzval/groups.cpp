@@ -51,7 +51,7 @@ constexpr std::array renderer_commands{
     Command{"choose", "the fastest ray model within a budget",
             "double_gauss_100mm_f2.0 --near 1.5m --far 10m --budget-px 0.5", &choose},
     Command{"camera-rays", "rays of a camera for samples of a table",
-            "double_gauss_100mm_f2.0 --rays samples.csv --out rays.csv", &camera_rays},
+            "double_gauss_100mm_f2.0 --samples samples.csv --out rays.csv", &camera_rays},
     Command{"render", "path, light or bidirectional tracing through a lens; merge",
             "--scene balls double_gauss_52mm_f1.8 --out out", render_command, embree},
     Command{"sheet", "contact sheets of renderings", "out/a out/b --out sheet.png", sheet_command, embree},

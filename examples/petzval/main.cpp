@@ -47,16 +47,23 @@ void print_overview(std::ostream& out) {
 }
 
 void print_files() {
-  std::cout << "Points (--points FILE): a JSON list of objects, or an object with the list \"points\".\n"
-               "  world_mm [x, y, z]   position in the scene (lens frame, mm), or position_mm\n"
-               "  film_mm [x, y]       position on the film, with distance_mm\n"
-               "  weight, blur_mm, extent_stops   optional numbers\n\n"
-               "Keys (--keys FILE): a JSON list of points, each with \"keys\": a list with time_s and the fields of a "
-               "point.\n\n"
-               "Rays (trace --rays FILE): CSV x_mm,y_mm,z_mm,dx,dy,dz. Samples (camera-rays --rays FILE): CSV\n"
-               "  film_x_mm,film_y_mm,pupil_u,pupil_v,wavelength_nm.\n\n"
-               "Lenses: data/README.md describes the JSON format; petzval convert reads and writes other formats.\n\n"
-               "Exit status: 0 success; 1 error, with one line on standard error; 2 unknown command.\n";
+  std::cout << R"(Points (--points FILE): a JSON list of objects, or an object with the list "points".
+  world_mm [x, y, z]   position in the scene (mm; also called position_mm); tilt: in the lens frame
+  pixel [x, y]         position in the picture, with distance_mm (surface, render, blur)
+  weight               0 or more; 1 if left out
+  blur_mm or blur_px   requested diameter of the blur; negative in front of the plane of focus
+  extent_stops         extent of the depth of field, in stops
+
+Keys (--keys FILE): a list of points with from_s, until_s and "keys", a list of objects with time_s and
+  the names above.
+
+Rays (trace --rays FILE): CSV with the columns x_mm,y_mm,z_mm,dx,dy,dz.
+Samples (camera-rays --samples FILE): CSV with film_x_mm,film_y_mm,pupil_u,pupil_v,wavelength_nm.
+
+Lenses: data/README.md describes the JSON format; petzval convert reads and writes other formats.
+
+Exit status: 0 success; 1 error, with one line on standard error; 2 unknown command.
+)";
 }
 
 int unknown(std::string_view name) {

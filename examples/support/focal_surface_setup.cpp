@@ -23,23 +23,20 @@ constexpr std::array kinds{petzval::SurfaceKind::affine, petzval::SurfaceKind::s
 constexpr Range weight_range{0, std::numeric_limits<double>::max(), "a finite number, 0 or more"};
 constexpr Range fraction_range{0, 1, "a number from 0 to 1"};
 
-std::vector<petzval::FocalPoint> points_of(const std::filesystem::path& file, const petzval::Camera& camera,
-                                           petzval::DistanceOrigin origin, const WorldToLens& to_lens) {
-  const Json document = read_json(file);
-  check_keys(file.string(), document, {"points"}, "points");
-  if (!document.contains("points") || !document["points"].is_array() || document["points"].empty()) {
-    refuse(file.string() + ": points", document.contains("points") ? document["points"] : Json(),
-           "a list of one point or more");
-  }
+std::vector<petzval::FocalPoint> read_points(const std::filesystem::path& file, const petzval::Camera& camera,
+                                             petzval::DistanceOrigin origin, const WorldToLens& to_lens) {
+  const Json list = examples::points_of(file.string(), read_json(file));
+  if (list.empty()) refuse(file.string() + ": points", list, "a list of one point or more");
   const double entrance_z = petzval::pupils(camera.lens()).entrance.z,
                counted_from = petzval::origin_z(camera.lens(), origin);
   std::vector<petzval::FocalPoint> result;
-  for (const Json& json : document["points"]) {
+  for (const Json& json : list) {
     const JsonEntry entry{file.string() + ": point " + std::to_string(result.size() + 1), json};
-    entry.keys({"pixel", "world_mm", "distance_mm", "extent_stops", "blur_px", "weight", "fade"},
-               "pixel or world_mm, distance_mm, extent_stops, blur_px, weight and fade");
+    entry.keys({"pixel", "world_mm", "position_mm", "distance_mm", "extent_stops", "blur_px", "weight", "fade"},
+               "pixel, world_mm or position_mm, distance_mm, extent_stops, blur_px, weight and fade");
     const auto pixel = entry.numbers<2>("pixel", "two finite numbers, [x, y]");
-    const auto world = entry.numbers<3>("world_mm", "three finite numbers, [x, y, z]");
+    const char* world_key = json.contains("position_mm") ? "position_mm" : "world_mm";
+    const auto world = entry.numbers<3>(world_key, "three finite numbers, [x, y, z]");
     if (pixel.has_value() == world.has_value()) {
       throw petzval::Error(entry.where + ": has " + (pixel ? "both of" : "neither of") +
                            " pixel and world_mm; must have one of them");
@@ -51,7 +48,8 @@ std::vector<petzval::FocalPoint> points_of(const std::filesystem::path& file, co
       const Vec3<double> position = to_lens({(*world)[0], (*world)[1], (*world)[2]});
       const petzval::Projection seen = camera.project(position);
       if (seen.status == petzval::ProjectionStatus::not_visible) {
-        refuse(entry.where + ": world_mm", json["world_mm"], "a point that the camera images on or outside its film");
+        refuse(entry.where + ": " + world_key, json[world_key],
+               "a point that the camera images on or outside its film");
       }
       point.film_point = seen.film;
       point.inverse_distance = 1 / (entrance_z - position.z);
@@ -99,7 +97,7 @@ void add_surface_kind(App& app, FocalSurfaceSetup& setup, Option* points) {
 
 ReadSurface read_focal_surface(const FocalSurfaceSetup& setup, const petzval::Camera& camera,
                                petzval::DistanceOrigin origin, double focus_mm, const WorldToLens& to_lens) {
-  std::vector<petzval::FocalPoint> points = points_of(setup.points_file, camera, origin, to_lens);
+  std::vector<petzval::FocalPoint> points = read_points(setup.points_file, camera, origin, to_lens);
   try {
     petzval::FocalSurface surface(
         petzval::thick_lens(camera.lens()), camera.film(), points,

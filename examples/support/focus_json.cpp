@@ -35,8 +35,12 @@ struct Entry : JsonEntry {
   std::optional<double> extent() const { return JsonEntry::number("extent_stops", extent_range); }
   petzval::ScenePoint scene_point() const {
     constexpr const char* rule = "three finite numbers, [x, y, z]";
-    at("position_mm", rule);
-    const auto [x, y, z] = *numbers<3>("position_mm", rule);
+    const char* key = json.contains("world_mm") ? "world_mm" : "position_mm";
+    if (json.contains("world_mm") && json.contains("position_mm")) {
+      throw petzval::Error(where + ": has both of world_mm and position_mm; must have one of them");
+    }
+    at(key, rule);
+    const auto [x, y, z] = *numbers<3>(key, rule);
     return {{x, y, z}, flag("at_infinity", false)};
   }
 };
@@ -53,11 +57,11 @@ void for_entries(const std::string& where, const Json& list, const std::string& 
 
 std::vector<petzval::FocusTarget> read_targets(const std::filesystem::path& file) {
   std::vector<petzval::FocusTarget> result;
-  const Json document = read_json(file);
+  const Json document = points_of(file.string(), read_json(file));
   if (document == Json::array()) return result;
   for_entries(file.string(), document, "point", [&](const Entry& entry) {
-    entry.keys({"position_mm", "weight", "blur_mm", "at_infinity", "extent_stops", "fixes_distance"},
-               "position_mm, weight, blur_mm, at_infinity, extent_stops and fixes_distance");
+    entry.keys({"position_mm", "world_mm", "weight", "blur_mm", "at_infinity", "extent_stops", "fixes_distance"},
+               "world_mm or position_mm, weight, blur_mm, at_infinity, extent_stops and fixes_distance");
     result.push_back({entry.scene_point(), entry.number("blur_mm", 0, finite_number),
                       entry.number("weight", 1, weight_range), entry.extent(), entry.flag("fixes_distance", true)});
   });
@@ -66,7 +70,7 @@ std::vector<petzval::FocusTarget> read_targets(const std::filesystem::path& file
 
 std::vector<petzval::FocusPoint> read_focus_points(const std::filesystem::path& file) {
   std::vector<petzval::FocusPoint> result;
-  const Json document = read_json(file);
+  const Json document = points_of(file.string(), read_json(file));
   for_entries(file.string(), document, "point", [&](const Entry& entry) {
     entry.keys({"from_s", "until_s", "keys", "fixes_distance"}, "from_s, until_s, keys and fixes_distance");
     petzval::FocusPoint point;
@@ -77,8 +81,8 @@ std::vector<petzval::FocusPoint> read_focus_points(const std::filesystem::path& 
       refuse(entry.where + ": until_s", entry.json["until_s"], "a time not before from_s");
     }
     for_entries(entry.where + ": keys", entry.at("keys", "a list of keys"), "key", [&](const Entry& key) {
-      key.keys({"time_s", "position_mm", "weight", "blur_mm", "at_infinity", "extent_stops"},
-               "time_s, position_mm, weight, blur_mm, at_infinity and extent_stops");
+      key.keys({"time_s", "position_mm", "world_mm", "weight", "blur_mm", "at_infinity", "extent_stops"},
+               "time_s, world_mm or position_mm, weight, blur_mm, at_infinity and extent_stops");
       key.at("time_s", finite_number.words);
       point.keys.push_back({key.number("time_s", 0, finite_number), key.scene_point(),
                             key.number("blur_mm", 0, finite_number), key.number("weight", 1, weight_range),

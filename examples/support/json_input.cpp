@@ -69,4 +69,13 @@ std::vector<double> JsonEntry::list(const char* key, std::size_t count, const ch
   return value.get<std::vector<double>>();
 }
 
+Json points_of(const std::string& where, const Json& document) {
+  if (document.is_array()) return document;
+  check_keys(where, document, {"points"}, "points, or a list");
+  if (!document.contains("points") || !document["points"].is_array()) {
+    refuse(where + ": points", document.contains("points") ? document["points"] : Json(), "a list of points");
+  }
+  return document["points"];
+}
+
 }  // namespace examples

@@ -27,6 +27,10 @@ Json read_json(const std::filesystem::path& file);
 void check_keys(const std::string& where, const Json& json, std::initializer_list<std::string_view> known,
                 const std::string& words);
 
+/// The points of a file: a list, or an object with the list "points".
+/// @throws petzval::Error  if the document is neither
+Json points_of(const std::string& where, const Json& document);
+
 /// An object of a file and its name in messages. Values are nullopt if the key is missing.
 /// @throws petzval::Error if a value is of the wrong kind
 struct JsonEntry {

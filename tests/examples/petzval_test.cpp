@@ -93,8 +93,7 @@ TEST_F(Petzval, QuietSaysNothing) {
 
 /// The man page and the completions name every flag of the help of every command.
 TEST_F(Petzval, ManPageAndCompletionsHaveTheFlagsOfTheHelp) {
-  std::string man = run("petzval", {"--man-page"}).out;
-  man = std::regex_replace(man, std::regex("\\\\-"), "-");
+  const std::string man = std::regex_replace(run("petzval", {"--man-page"}).out, std::regex("\\\\-"), "-");
   const std::string bash = run("petzval", {"--bash-completion"}).out, zsh = run("petzval", {"--zsh-completion"}).out;
   static const std::regex flag("(?:^|\\n) +(?:-[a-z],)?(--[a-z0-9-]+)");
   std::size_t count = 0;
