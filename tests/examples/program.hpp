@@ -23,8 +23,8 @@ class Programs : public testing::Test {
   void SetUp() override;
   void TearDown() override;
 
-  /// The start of a line of the shell that runs a program: a command of petzval, or hello_..., wu_... and petzval
-  /// itself.
+  /// The start of a line of the shell that runs a program: a command of petzval, petzval itself, a program that teaches
+  /// the library (teaching_test.cpp), or wu_...
   static std::string invocation(const std::string& program);
   Outcome run(const std::string& program, const Arguments& arguments) const;
 
