@@ -167,7 +167,7 @@ class OpenJobDescription : public PsfFarm {
 
 class OpenJobTemplate : public OpenJobDescription, public testing::WithParamInterface<const char*> {};
 
-INSTANTIATE_TEST_SUITE_P(Farm, OpenJobTemplate, testing::Values("psf-set", "render"),
+INSTANTIATE_TEST_SUITE_P(Farm, OpenJobTemplate, testing::Values("psf_set", "bokeh_scene"),
                          [](const auto& program) { return std::string(program.param); });
 
 TEST_P(OpenJobTemplate, FollowsTheSchema) {
