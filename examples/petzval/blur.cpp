@@ -140,7 +140,7 @@ class Job {
     const std::filesystem::path folder = options_.out_folder;
     examples::make_folder(folder);
     std::optional<examples::Progress> progress;
-    if (options_.frames > 1) progress.emplace("lens_blur", options_.frames);
+    if (options_.frames > 1) progress.emplace("petzval blur", options_.frames);
     for (std::uint32_t frame = 0; frame < options_.frames; ++frame) {
       if (progress) progress->step("frame " + std::to_string(frame + 1));
       std::string number = std::to_string(frame + 1);

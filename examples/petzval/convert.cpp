@@ -207,7 +207,7 @@ bool convert(const Options& options) {
   const bool of_another = whole.imported && whole.imported->file != std::filesystem::path(options.in.file).filename();
   say("warning", of_another ? options.in.file + ", converted from " + whole.imported->file : options.in.file, warnings);
   if (options.strict && !warnings.empty()) {
-    std::cerr << "convert_lens: " << options.in.file << ": " << warnings.size()
+    std::cerr << "petzval convert: " << options.in.file << ": " << warnings.size()
               << (warnings.size() == 1 ? " assumption" : " assumptions") << "; must be 0 with --strict\n";
     if (options.json) std::cout << Json{{"refused_by_strict", true}, {"warnings", to_json(warnings)}}.dump(2) << '\n';
     return false;

@@ -294,9 +294,9 @@ int main_compute(int argc, char** argv) {
       "Computes the images of point lights over a grid of fields, distances, wavelengths and f-numbers. Writes to DIR "
       "and prints the paths: psf_set.exr (one part for each PSF: channel Y is its light, hits.x and hits.y its rays), "
       "psf_set.json (index with units) and psf_set.png (contact sheet). Each complete PSF is a file in DIR/psfs. With "
-      "--shard only these files are written; psf_set merge combines them, bit for bit as one run.\n"
-      "psf_set merge DIR... --out FILE.exr   merges the shards of one or several folders\n"
-      "psf_set query FILE.exr --fields F --at D --out PSF.exr   interpolates a PSF at any point",
+      "--shard only these files are written; petzval psf-set merge combines them, bit for bit as one run.\n"
+      "petzval psf-set merge DIR... --out FILE.exr   merges the shards of one or several folders\n"
+      "petzval psf-set query FILE.exr --fields F --at D --out PSF.exr   interpolates a PSF at any point",
       "petzval psf-set");
   examples::add_lens(app, options.lens_file);
   examples::add_numbers(app, "--fields", options.axes.fields_deg, {0, 180, "an angle from 0 to 180 degrees"},
@@ -336,7 +336,7 @@ int main_merge(int argc, char** argv) {
       "Merges the PSFs of shards. Writes FILE.exr with index and contact sheet next to it, like one run without "
       "shards. Names every missing or corrupt PSF and its shard; to repair it, run that shard with --resume.",
       "petzval psf-set merge");
-  app.add_option("DIR", folders, "folders that psf_set --shard wrote to")->required();
+  app.add_option("DIR", folders, "folders that petzval psf-set --shard wrote to")->required();
   examples::add_out_file(app, out, "set of PSFs to write", "FILE.exr")->required();
   return examples::run(app, argc, argv, [&] { merge(folders, out); });
 }

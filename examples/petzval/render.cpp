@@ -362,7 +362,7 @@ class Job {
   petzval::ExpressiveLens expressive_;
 };
 
-/// Runs: bokeh_scene merge FOLDER... --out DIR
+/// Runs: petzval render merge FOLDER... --out DIR
 int merge(int argc, char** argv) {
   std::vector<std::string> folders, formats{"exr", "png"};
   std::string out_folder;
@@ -456,7 +456,7 @@ int commands::render(int argc, char** argv) {
       ->capture_default_str();
   std::string tile;
   app.add_option("--shard", tile,
-                 "render every Nth tile of 16 x 16 pixels, starting with the Ith; 'bokeh_scene merge DIR --out DIR' "
+                 "render every Nth tile of 16 x 16 pixels, starting with the Ith; 'petzval render merge DIR --out DIR' "
                  "adds the shards")
       ->type_name("I/N");
   app.add_flag("--resume", options.resume,
@@ -470,7 +470,7 @@ int commands::render(int argc, char** argv) {
     if (!tile.empty()) options.shard = examples::parse_shard("--shard", tile);
     if (options.shard.count > 1 && formats->given()) {
       throw petzval::Error("--format must not be used with --shard " + tile +
-                           "; 'bokeh_scene merge' writes the picture");
+                           "; 'petzval render merge' writes the picture");
     }
     whole = Job(options).run();
   });

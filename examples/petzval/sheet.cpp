@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Lays out pictures of bokeh_scene on a sheet and measures the highlights of the balls scene.
+// Lays out pictures of petzval render on a sheet and measures the highlights of the balls scene.
 //
 //   petzval sheet --columns 5 --title "Balls" --out balls.png --balls balls.csv FOLDER...
 #include "commands.hpp"
@@ -81,7 +81,7 @@ examples::Sheet sheet_of(const std::vector<Picture>& pictures, const std::string
     row.tiles.push_back({petzval::to_srgb8(p.image), p.captions()});
     if (row.title.empty()) row.tiles.back().captions.insert(row.tiles.back().captions.begin(), p.lens());
   }
-  sheet.notes = {"bokeh_scene: white is radiance 1 in the centre; scale bars on the film."};
+  sheet.notes = {"petzval render: white is radiance 1 in the centre; scale bars on the film."};
   return sheet;
 }
 
@@ -111,7 +111,7 @@ int commands::sheet(int argc, char** argv) {
   std::string title = "Scenes through lenses", out, balls;
   std::uint32_t columns = 1;
   examples::App app(
-      "Lays out pictures of bokeh_scene on a sheet, in rows from the left. All pictures must have the same size.",
+      "Lays out pictures of petzval render on a sheet, in rows from the left. All pictures must have the same size.",
       "petzval sheet");
   app.add_option("FOLDER", folders, "folders with picture.exr and render.json")->required();
   examples::add_count(app, "--columns", columns, {1, 100, "a whole number from 1 to 100"}, "pictures per row");

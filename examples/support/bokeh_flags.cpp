@@ -23,7 +23,7 @@ void add_bokeh(App& app, BokehFlags& flags) {
              "radius of the second rim that clips cat's eyes, divided by the radius of the pupil on the axis");
   add_number(app, "--rate-of-change", c.rate_of_change, finite_number,
              "pupil radii by which that rim moves, opposite to the film point, from the axis to half of the film's "
-             "longer side (bokeh_psf: 18 mm)");
+             "longer side (psf: 18 mm)");
   app.add_flag("--keep-light", c.keep_light, "clipped pupils keep the light of the unclipped pupil");
   add_number(app, "--weight-distribution", c.weight_distribution, finite_number,
              "d of the weight 1 + p (|d| + 1) x^|d| - p, x: fraction of the iris area nearer to the centre, or farther "

@@ -366,8 +366,9 @@ int run(App& app, int argc, char** argv, const std::function<void()>& body) {
   if (description_wanted) {
     description_wanted->description = app.app_->get_description();
     for (const CLI::Option* option : app.app_->get_options()) {
-      description_wanted->options.push_back(
-          {option->get_name(false, true), option->get_type_name(), option->get_description()});
+      std::string name = option->get_name(false, true);  // "-h,--help"
+      name.erase(0, name.find(',') + 1);
+      description_wanted->options.push_back({name, option->get_type_name(), option->get_description()});
     }
     return 0;
   }

@@ -147,7 +147,7 @@ TEST_F(LensBlurProgram, RefusesInvalidInput) {
   refused(joined({focus, files(), {"--scene", "town"}}), {2, "--scene", "--rgb"});
   refused(joined({focus, files(), {"--compare"}}), {"--compare"});
   refused(joined({focus, files(), {"--supersample", "2"}}), {"--supersample"});
-  refused(joined({focus, files(), {"--size", "80"}}), {"--size", "--height"});
+  refused(joined({focus, files(), {"--size", "80"}}), {"--size"});
   refused(joined({files(), {"--focus", "40"}}), {"--focus", 40});
   petzval::write_exr(picture("rgb.pfm"), path("flat.exr"));
   refused(joined({focus, {"--image", path("flat.exr")}}), {"flat.exr", "Z"});
@@ -174,8 +174,8 @@ TEST_F(LensBlurProgram, ReportsFilmsLargerThanTheImageCircle) {
 // The pupil of a fisheye moves with the field: rays between the nodes of a table have errors.
 TEST_F(LensBlurProgram, ReportsTheErrorOfInterpolatedRays) {
   const auto outcome =
-      run("blur", {"--scene", "town", lens("fisheye_10mm_f4"), "--fov-deg", "60", "--focus", "3000", "--size", "320",
-                   "--height", "240", "--supersample", "1", "--rays", "16", "--format", "png", "--out", path("out")});
+      run("blur", {"--scene", "town", lens("fisheye_10mm_f4"), "--fov-deg", "60", "--focus", "3000", "--size",
+                   "320x240", "--supersample", "1", "--rays", "16", "--format", "png", "--out", path("out")});
   ASSERT_EQ(outcome.status, 0) << outcome.err;
   EXPECT_GT(read_json(path("out/blur.json"))["rays_error_px"], 1);
   petzval::testing::expect_tokens(outcome.err, {"note", "rays"});
