@@ -110,8 +110,8 @@ class PETZVAL_API Camera {
   /// Accuracy: film positions at a wavelength between compiled ones are compared with a camera compiled for it, in
   /// pixels of 36 mm / 1920 (tests/camera/any_wavelength_test.cpp). Exact models are within 1e-4 if
   /// Lens::index_error() is below 1e-6. First-order models and polynomials of degree 7 are within 0.03 (lenses faster
-  /// than f/1.4: 0.08) with eight equally spaced wavelengths over 400 to 700 nm, and within a few pixels with three. The
-  /// weights of polynomials and thin_two_disc have steps of up to 1 % midway between compiled wavelengths.
+  /// than f/1.4: 0.08) with eight equally spaced wavelengths over 400 to 700 nm, and within a few pixels with three.
+  /// The weights of polynomials and thin_two_disc have steps of up to 1 % midway between compiled wavelengths.
   CameraRay sample(const CameraSample& sample) const noexcept;
   /// Samples N rays, float or double, in the precision of the model.
   template <class T>
