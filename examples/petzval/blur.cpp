@@ -37,7 +37,7 @@ using petzval::RgbImage;
 struct Options {
   lens_blur::InputFlags input;
   lens_blur::LensFlags lens;
-  std::uint32_t layers = 4, supersample = 0, threads = static_cast<std::uint32_t>(examples::threads());
+  std::uint32_t layers = 4, supersample = 0;
   std::uint32_t frames = 1;
   double frames_per_second = 24, travel_mm = 0, highlights_above = -1;  ///< highlights_above < 0: threshold_of()
   bool compare = false;
@@ -118,7 +118,7 @@ class Job {
  public:
   explicit Job(const Options& options)
       : options_(options),
-        threads_(static_cast<int>(options.threads)),
+        threads_(examples::threads()),
         input_(options.input),
         side_(options.supersample > 0 ? static_cast<int>(options.supersample)
               : input_.scene()        ? 2
@@ -307,8 +307,7 @@ int commands::blur(int argc, char** argv) {
   examples::add_number(app, "--travel-mm", options.travel_mm, examples::finite_number,
                        "distance that the camera moves to the right over all frames (mm)")
       ->needs(frames);
-  examples::add_count(app, "--threads", options.threads, {1, 1024, "a whole number from 1 to 1024"},
-                      "number of threads; the picture does not depend on it");
+  examples::add_threads(app);
   examples::add_formats(app, options.formats, "png (sRGB)");
   examples::add_out_folder(app, options.out_folder)->required();
   return examples::run(app, argc, argv, [&] { Job(options).run(); });

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The commands in groups, as the overview shows them.
+// The groups of commands in the overview.
 #include <array>
 
 #include "commands.hpp"

@@ -64,7 +64,6 @@ struct Options {
   examples::Shard shard;
   std::vector<std::string> formats{"exr", "png"};
   std::uint32_t samples = 0, width = 0, height = 0, seed = 0;  // width, height 0: not given
-  std::uint32_t threads = static_cast<std::uint32_t>(examples::threads());
   double budget_px = 0, seconds = 0, tilt_deg = 0, swing_deg = 0;
   bool resume = false;
 };
@@ -172,8 +171,8 @@ class Job {
     const renderer::RenderReport report = [&] {
       const examples::Interrupt interrupt;
       return renderer::render(
-          tracer, sums, tiles, effort(), static_cast<int>(options_.threads),
-          [&] { renderer::Checkpoint::write(sums, job, file); }, [] { return examples::Interrupt::asked(); });
+          tracer, sums, tiles, effort(), examples::threads(), [&] { renderer::Checkpoint::write(sums, job, file); },
+          [] { return examples::Interrupt::asked(); });
     }();
     say(file);
     if (report.interrupted) {
@@ -207,7 +206,7 @@ class Job {
                 {.model = model,
                  .normalisation = options_.normalisation == "irradiance" ? petzval::Normalisation::irradiance
                                                                          : petzval::Normalisation::unity_on_axis,
-                 .threads = static_cast<int>(options_.threads),
+                 .threads = examples::threads(),
                  .bokeh = controls_,
                  .focal_surface = surface_,
                  .expressive = expressive_}),
@@ -286,10 +285,9 @@ class Job {
     }
     const renderer::LensCamera exact = camera(petzval::ModelKind::exact_float);
     refuse_walls(exact);
-    chosen_ = options_.budget_px > 0
-                  ? renderer::model_within(scene_, exact, options_.budget_px, static_cast<int>(options_.threads))
-                  : renderer::model_below_noise(scene_, exact, colours_, integrator_, options_.samples,
-                                                static_cast<int>(options_.threads));
+    chosen_ = options_.budget_px > 0 ? renderer::model_within(scene_, exact, options_.budget_px, examples::threads())
+                                     : renderer::model_below_noise(scene_, exact, colours_, integrator_,
+                                                                   options_.samples, examples::threads());
     std::cerr << "note: model " << petzval::name(chosen_.model) << '\n' << examples::bullets(chosen_.why);
   }
   void refuse_walls(const renderer::LensCamera& lens) const {
@@ -428,8 +426,7 @@ int commands::render(int argc, char** argv) {
       ->default_str("none");
   examples::add_count(app, "--seed", options.seed, {0, 4294967295.0, "a whole number from 0 to 4294967295"},
                       "seed of the random numbers");
-  examples::add_count(app, "--threads", options.threads, {1, 1024, "a whole number from 1 to 1024"},
-                      "number of threads; the picture does not depend on it");
+  examples::add_threads(app);
   examples::add_picture_size(app, options.width, options.height, usual_width);
   examples::add_camera(app, options.setup);
   app.get_option("--focus")->required()->default_str("");

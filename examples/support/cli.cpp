@@ -196,46 +196,47 @@ std::vector<double> parse_wavelengths(const std::string& where, std::string_view
   return parse_list(where, text, [&](std::string_view item) { return parse_wavelength(where, item); });
 }
 
-Option* add_number(App& app, const std::string& flag, double& value, const Range& range, const std::string& help) {
+namespace {
+
+/// Adds an option whose text `parse` turns into the value.
+template <class Value, class Parse>
+Option* add_parsed(App& app, const std::string& flag, Value& value, const std::string& type_name,
+                   const std::string& default_text, const std::string& help, Parse parse) {
   return app
       .add_option(
-          flag, [&value, flag, range](const std::string& text) { value = parse_number(flag, text, range); }, help)
-      ->type_name("NUMBER")
-      ->default_str(number(value));
+          flag, [&value, parse](const std::string& text) { value = parse(text); }, help)
+      ->type_name(type_name)
+      ->default_str(default_text);
+}
+
+}  // namespace
+
+Option* add_number(App& app, const std::string& flag, double& value, const Range& range, const std::string& help) {
+  return add_parsed(app, flag, value, "NUMBER", number(value), help,
+                    [=](const std::string& text) { return parse_number(flag, text, range); });
 }
 
 Option* add_numbers(App& app, const std::string& flag, std::vector<double>& values, const Range& range,
                     const std::string& help) {
-  return app
-      .add_option(
-          flag, [&values, flag, range](const std::string& text) { values = parse_numbers(flag, text, range); }, help)
-      ->type_name("NUMBER,...")
-      ->default_str(joined(values));
+  return add_parsed(app, flag, values, "NUMBER,...", joined(values), help,
+                    [=](const std::string& text) { return parse_numbers(flag, text, range); });
 }
 
 Option* add_length(App& app, const std::string& flag, double& value, const Range& range, const std::string& help) {
-  return app
-      .add_option(
-          flag, [&value, flag, range](const std::string& text) { value = parse_length(flag, text, range); }, help)
-      ->type_name("LENGTH")
-      ->default_str(number(value));
+  return add_parsed(app, flag, value, "LENGTH", number(value), help,
+                    [=](const std::string& text) { return parse_length(flag, text, range); });
 }
 
 Option* add_lengths(App& app, const std::string& flag, std::vector<double>& values, const Range& range,
                     const std::string& help) {
-  return app
-      .add_option(
-          flag,
-          [&values, flag, range](const std::string& text) {
-            values = parse_list(flag, text, [&](std::string_view item) { return parse_length(flag, item, range); });
-          },
-          help)
-      ->type_name("LENGTH,...")
-      ->default_str(joined(values));
+  return add_parsed(app, flag, values, "LENGTH,...", joined(values), help, [=](const std::string& text) {
+    return parse_list(flag, text, [&](std::string_view item) { return parse_length(flag, item, range); });
+  });
 }
 
 Option* add_threads(App& app) {
-  return add_count(app, "--threads", thread_count, {1, 1024, "a whole number from 1 to 1024"}, "number of threads")
+  return add_count(app, "--threads", thread_count, {1, 1024, "a whole number from 1 to 1024"},
+                   "number of threads; results do not depend on it")
       ->default_str("one per processor");
 }
 
@@ -253,21 +254,13 @@ CommandText described(int (*command)(int, char**), std::string name) {
 }
 
 Option* add_wavelengths(App& app, const std::string& flag, std::vector<double>& values, const std::string& help) {
-  return app
-      .add_option(
-          flag, [&values, flag](const std::string& text) { values = parse_wavelengths(flag, text); },
-          help + " (nm, or spectral lines like F,d,C)")
-      ->type_name("NM,...")
-      ->default_str(joined(values));
+  return add_parsed(app, flag, values, "NM,...", joined(values), help + " (nm, or spectral lines like F,d,C)",
+                    [=](const std::string& text) { return parse_wavelengths(flag, text); });
 }
 
 Option* add_wavelength(App& app, const std::string& flag, double& value, const std::string& help) {
-  return app
-      .add_option(
-          flag, [&value, flag](const std::string& text) { value = parse_wavelength(flag, text); },
-          help + " (nm, or a spectral line like F)")
-      ->type_name("NM")
-      ->default_str(number(value));
+  return add_parsed(app, flag, value, "NM", number(value), help + " (nm, or a spectral line like F)",
+                    [=](const std::string& text) { return parse_wavelength(flag, text); });
 }
 
 Option* add_out_folder(App& app, std::string& folder, const std::string& help) {

@@ -135,7 +135,7 @@ int threads();
 /// Sets the example shown by --help of the command that runs next.
 void set_example(std::string example);
 
-/// An option of a command, as its help shows it.
+/// The line of an option in the help of a command.
 struct OptionText {
   std::string flag, type, help;
 };

@@ -5,10 +5,10 @@
 #include <charconv>
 #include <cmath>
 #include <filesystem>
-#include <iostream>
 #include <system_error>
 #include <utility>
 
+#include "files.hpp"
 #include "petzval/analysis/match_glasses.hpp"
 #include "petzval/core/geometry.hpp"
 #include "petzval/formats/lens_file.hpp"
@@ -40,9 +40,8 @@ void say_what_was_assumed(const LensFile& file) {
   const auto& imported = file.prescription.imported;
   if (!imported) return;
   for (const petzval::ImportWarning& warning : imported->warnings) {
-    std::cerr << "note: " << imported->file << ": ";
-    if (warning.line > 0) std::cerr << "line " << warning.line << ": ";
-    std::cerr << warning.command << ' ' << warning.message << '\n';
+    note(imported->file + ": " + (warning.line > 0 ? "line " + std::to_string(warning.line) + ": " : "") +
+         warning.command + ' ' + warning.message);
   }
 }
 
@@ -70,8 +69,7 @@ std::filesystem::path lens_path(const std::string& text) {
   if (const auto file = folder / (text + ".json"); std::filesystem::exists(file, error)) return file;
   if (std::filesystem::path(text).extension() == ".json") return text;
   std::vector<std::string> names;
-  for (const auto& file : std::filesystem::directory_iterator(folder, error))
-    names.push_back(file.path().stem().string());
+  for (const auto& file : entries(folder)) names.push_back(file.stem().string());
   const std::string near = nearest(text, names);
   throw petzval::Error("LENS = " + text + ": no file and no shipped lens has this name" +
                        (near.empty() ? "; petzval lenses lists them" : "; did you mean " + near + "?"));
@@ -105,8 +103,7 @@ petzval::GlassCatalogue glasses_of(const LensInput& input) {
   for (const std::string& file : input.glass_files) {
     petzval::GlassFile more = petzval::read_glasses(file);
     for (const petzval::ImportWarning& warning : more.warnings) {
-      std::cerr << "note: " << file << ": line " << warning.line << ": " << warning.command << ' ' << warning.message
-                << '\n';
+      note(file + ": line " + std::to_string(warning.line) + ": " + warning.command + ' ' + warning.message);
     }
     glasses = petzval::with_glasses(glasses, std::move(more.glasses));
   }
