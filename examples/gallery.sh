@@ -71,7 +71,7 @@ awk 'BEGIN {
 }' > "$out/camera_rays/samples.csv"
 for model in pinhole thin thin_two_disc thick polynomial_3 polynomial_5 polynomial_7 polynomial_9 polynomial_11 \
   exact_float exact_double; do
-  "$programs/petzval" camera-rays "$lenses/double_gauss_100mm_f2.0.json" --samples "$out/camera_rays/samples.csv" \
+  "$programs/petzval" camera-rays "$lenses/double_gauss_100mm_f2.0.json" --table "$out/camera_rays/samples.csv" \
     --out "$out/camera_rays/$model.csv" --model $model --focus 3000 --f-number 2.8
 done
 echo "$out/camera_rays"
@@ -80,7 +80,7 @@ echo "== Accuracy and speed of the models, and the model for a scene (9/12)"
 "$programs/petzval" models "$lenses/double_gauss_100mm_f2_28deg.json" --f-number 2 --out "$out/models" \
   > "$out/accuracy_speed.txt"
 "$programs/petzval" choose "$lenses/double_gauss_100mm_f2_28deg.json" --f-number 2 --near 2000 --far inf \
-  --budget-px 0.5 > "$out/choose_camera.txt"
+  --budget 0.5 > "$out/choose_camera.txt"
 echo "$out/accuracy_speed.txt"
 echo "$out/choose_camera.txt"
 
@@ -155,7 +155,7 @@ if "$programs/petzval" help render > "$out/scenes/log.txt" 2>&1; then
   scenes=
   for lens in "" "--curvature-points 0,0:0 18,0:3 -18,0:3 0,12:1.5 0,-12:1.5"; do
     # shellcheck disable=SC2086
-    scene "table_$(echo "$lens" | wc -w)" chess double_gauss_100mm_f2_28deg 32 450 300 --focus 920 --tilt-deg 12 \
+    scene "table_$(echo "$lens" | wc -w)" chess double_gauss_100mm_f2_28deg 32 450 300 --focus 920 --tilt 12 \
       --model thick --integrator path $lens
   done
   "$programs/petzval" sheet --columns 2 --title "Curvature of field on a tilted film, after figure 6 of Lee et al. 2010" \
@@ -169,15 +169,15 @@ if "$programs/petzval" help render > "$out/scenes/log.txt" 2>&1; then
     "$programs/petzval" blur --scene "$name" --format png "$@" --out "$folder" > "$out/scenes/log.txt"
     echo "$folder"
   }
-  blur thin town --thin-lens-mm 50 --lens-diameter-mm 100 --focus 5000
-  blur singlet town --singlet 51.68,-51.68,8,N-BK7 --f-number 2 --focus 5000 --fov-deg 30
-  blur chroma town --singlet 51.68,-51.68,8,N-BK7 --f-number 2 --focus 5000 --fov-deg 30 --chroma
-  blur tilt town --thin-lens-mm 50 --lens-diameter-mm 40 --focus 5000 --tilt-deg 6
-  blur knot knot --thin-lens-mm 50 --lens-diameter-mm 100 --focus 3600
-  blur leaves leaves --thin-lens-mm 50 --lens-diameter-mm 100 --focus 5000 --layers 8
-  blur cats_eyes statues "$lenses/double_gauss_100mm_f1.35.json" --focus 3000 --from entrance_pupil --fov-deg 22
-  blur surface statues --thin-lens-mm 50 --lens-diameter-mm 28 --focus 5000 --points "$here/scenes/statues_focus.json"
-  blur night street --thin-lens-mm 100 --lens-diameter-mm 50 --focus 3000 --fov-deg 14 --blades 6
+  blur thin town --thin-lens 50 --f-number 0.5 --focus 5000
+  blur singlet town --singlet 51.68,-51.68,8,N-BK7 --f-number 2 --focus 5000 --fov 30
+  blur chroma town --singlet 51.68,-51.68,8,N-BK7 --f-number 2 --focus 5000 --fov 30 --wavelengths rgb
+  blur tilt town --thin-lens 50 --f-number 1.25 --focus 5000 --tilt 6
+  blur knot knot --thin-lens 50 --f-number 0.5 --focus 3600
+  blur leaves leaves --thin-lens 50 --f-number 0.5 --focus 5000 --layers 8
+  blur cats_eyes statues "$lenses/double_gauss_100mm_f1.35.json" --focus 3000 --from entrance_pupil --fov 22
+  blur surface statues --thin-lens 50 --f-number 1.79 --focus 5000 --points "$here/scenes/statues_focus.json"
+  blur night street --thin-lens 100 --f-number 2 --focus 3000 --fov 14 --blades 6
   cp "$here/scenes.html" "$scenes_file"
 else
   echo "petzval render was not built: no Embree (libembree-dev, libtinyobjloader-dev)"

@@ -80,12 +80,7 @@ petzval::Prescription thin_singlet(double focal_length, double diameter) {
 }  // namespace
 
 void add_lens(examples::App& app, LensFlags& flags) {
-  add_number(app, "--thin-lens-mm", flags.thin_lens_mm, examples::positive_number,
-             "focal length of a thin lens (mm); needs --lens-diameter-mm")
-      ->default_str("");
-  add_number(app, "--lens-diameter-mm", flags.lens_diameter_mm, examples::positive_number,
-             "diameter of a thin lens (mm), instead of --f-number: focal length divided by f-number")
-      ->default_str("");
+  examples::add_thin_lens(app, flags.thin_lens_mm);
   examples::add_lens(app, flags.lens_file, "LENS", "traced by exact rays");
   app.add_option("--singlet", flags.singlet,
                  "two spherical surfaces, traced by exact rays; f/2 unless --f-number is given")
@@ -96,17 +91,20 @@ void add_lens(examples::App& app, LensFlags& flags) {
   examples::add_focus(app, flags.focus);
   constexpr examples::Range angle{1e-3, 120, "more than 0 and at most 120"};
   add_number(
-      app, "--fov-deg", flags.fov_deg, angle,
+      app, "--fov", flags.fov_deg, angle,
       "vertical angle of the picture (degrees); default: 30 for a thin lens, else the angle of a film 24 mm high")
       ->default_str("");
   constexpr examples::Range tilt{-60, 60, "a number from -60 to 60"};
-  add_number(app, "--tilt-deg", flags.tilt_deg, tilt, "tilt of the film about the horizontal axis (degrees)");
-  add_number(app, "--swing-deg", flags.swing_deg, tilt, "swing of the film about the vertical axis (degrees)");
+  add_number(app, "--tilt", flags.tilt_deg, tilt, "tilt of the film about the horizontal axis (degrees)");
+  add_number(app, "--swing", flags.swing_deg, tilt, "swing of the film about the vertical axis (degrees)");
   constexpr examples::Range rays{1, 16384, "a whole number from 1 to 16384"};
   add_count(app, "--rays", flags.rays, rays, "rays through the lens per pixel of the picture")
       ->default_str("256; 512 for LENS and --singlet with --jitter");
   app.add_flag("--jitter", flags.jitter, "16 sets of rays, alternating over the pixels: grain instead of patterns");
-  app.add_flag("--chroma", flags.chroma, "separate rays for red, green and blue, at 650, 510 and 475 nm");
+  app.add_option("--wavelengths", flags.wavelengths,
+                 "d: rays at the d line; rgb: separate rays for red, green and blue, at 650, 510 and 475 nm")
+      ->one_of({"d", "rgb"})
+      ->capture_default_str();
   add_iris(app, flags.iris);
   add_bokeh(app, flags.bokeh);
   auto* points =
@@ -122,22 +120,14 @@ BlurLens::BlurLens(const LensFlags& flags, int columns, int rows, const renderer
     : flags_(flags), columns_(columns), rows_(rows), pose_(pose), keyed_(keyed), controls_(controls_of(flags.bokeh)) {
   const int kinds = (flags.thin_lens_mm > 0) + !flags.lens_file.file.empty() + !flags.singlet.empty();
   if (kinds != 1) {
-    throw Error("lens: " + std::to_string(kinds) + " of --thin-lens-mm, LENS and --singlet are given; must be 1");
-  }
-  if ((flags.thin_lens_mm > 0) != (flags.lens_diameter_mm > 0)) {
-    throw Error(
-        "--thin-lens-mm and --lens-diameter-mm must be given together; the diameter is the focal length divided by the "
-        "f-number");
+    throw Error("lens: " + std::to_string(kinds) + " of --thin-lens, LENS and --singlet are given; must be 1");
   }
   thin_ = flags.thin_lens_mm > 0;
+  if (thin_ && !(flags.iris.f_number > 0)) throw Error("--thin-lens needs --f-number");
   if (flags.rays == 0) {
     flags_.rays = thin_ ? 256 : 512;
     flags_.jitter = flags_.jitter || !thin_;
   }
-  if (thin_ && flags.iris.f_number > 0)
-    throw Error(
-        "--f-number must not be used with --thin-lens-mm; use --lens-diameter-mm, the focal length divided by the "
-        "f-number");
   load();
   const petzval::Camera plain = camera({}, flags.supersample);
   film_ = plain.film();
@@ -153,16 +143,17 @@ double BlurLens::fov_deg() const { return flags_.fov_deg > 0 ? flags_.fov_deg : 
 void BlurLens::load() {
   // The focus is set at the d line, even if the colours have their own wavelengths.
   std::vector<double> wavelengths{petzval::d_line_nm};
-  if (flags_.chroma) wavelengths.insert(wavelengths.end(), colours_nm.begin(), colours_nm.end());
+  if (flags_.coloured()) wavelengths.insert(wavelengths.end(), colours_nm.begin(), colours_nm.end());
   examples::IrisSetup iris = flags_.iris;
   petzval::Lens lens = [&] {
     if (!flags_.lens_file.file.empty()) return examples::load_lens(flags_.lens_file, wavelengths).lens;
     const petzval::GlassCatalogue& glasses = petzval::glass_tables();
     if (!thin_ && iris.f_number == 0) iris.f_number = 2;
     return petzval::compile(
-        thin_ ? thin_singlet(flags_.thin_lens_mm, flags_.lens_diameter_mm) : singlet_of(flags_.singlet, glasses),
+        thin_ ? thin_singlet(flags_.thin_lens_mm, flags_.diameter_mm()) : singlet_of(flags_.singlet, glasses),
         wavelengths, {.glasses = &glasses});
   }();
+  if (thin_) iris.f_number = 0;  // the lens has this f-number
   lens = examples::stopped_down(lens, iris);
   if (thin_ && !(flags_.focus_mm > flags_.thin_lens_mm)) {
     throw Error("--focus = " + number(flags_.focus_mm) + "; must be more than the focal length, " +
@@ -236,16 +227,16 @@ petzval::LensRays BlurLens::rays(double nearest_mm, int threads, double time) {
   const petzval::LensRaysOptions options{.nearest_mm = nearest_mm, .set_count = sets, .threads = threads};
   if (!thin_ || controls_.vignettes() || !flags_.expressive.change_nothing()) {
     std::vector<petzval::Wavelength> wavelengths;
-    for (std::size_t i = 1; flags_.chroma && i <= colours_nm.size(); ++i) wavelengths.emplace_back(i);
+    for (std::size_t i = 1; flags_.coloured() && i <= colours_nm.size(); ++i) wavelengths.emplace_back(i);
     return petzval::LensRays::of(camera(surface_, flags_.supersample), layers_, points, wavelengths, options);
   }
 
-  petzval::ThinLens thin{.radius_mm = flags_.lens_diameter_mm / 2,
+  petzval::ThinLens thin{.radius_mm = flags_.diameter_mm() / 2,
                          .inverse_focus = 1 / focus_depth_mm_,
                          .iris = flags_.iris.iris(),
                          .edge = controls_.edge(),
                          .map = controls_.weight_map};
-  if (flags_.chroma) {
+  if (flags_.coloured()) {
     const double power = 1 / petzval::first_order(*lens_).effective_focal_length;
     for (int c = 0; c < 3; ++c) {
       thin.colour_shift[c] =

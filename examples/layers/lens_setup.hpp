@@ -21,7 +21,7 @@ namespace lens_blur {
 
 /// Command line of a lens that blurs layers.
 struct LensFlags {
-  double thin_lens_mm = 0, lens_diameter_mm = 0;
+  double thin_lens_mm = 0;  ///< focal length; 0: no thin lens
   examples::LensInput lens_file;
   std::string singlet;
   double focus_mm = 0, fov_deg = 0;
@@ -29,11 +29,17 @@ struct LensFlags {
   double tilt_deg = 0, swing_deg = 0;
   std::uint32_t rays = 0;         ///< 0: 256, or 512 for traced surfaces with jitter
   std::uint32_t supersample = 1;  ///< 1, 2 or 4 subpixels per pixel in each direction
-  bool chroma = false, jitter = false;
+  std::string wavelengths = "d";
+  bool jitter = false;
   examples::IrisSetup iris;
   examples::BokehFlags bokeh;
   examples::FocalSurfaceSetup surface;
   examples::ExpressiveFlags expressive;
+
+  /// Diameter of the thin lens.
+  double diameter_mm() const noexcept { return thin_lens_mm / iris.f_number; }
+  /// True if the colours have rays of their own.
+  bool coloured() const noexcept { return wavelengths == "rgb"; }
 };
 
 void add_lens(examples::App& app, LensFlags& flags);

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // Blurs layers of a scene, or a picture with depths, by a thin lens, a singlet or any prescription.
 //
-//   petzval blur --scene town --thin-lens-mm 50 --lens-diameter-mm 100 --focus 5000 --compare --out out
+//   petzval blur --scene town --thin-lens 50 --f-number 0.5 --focus 5000 --compare --out out
 //   petzval blur --scene street data/lenses/double_gauss_52mm_f1.8.json --focus 3000 --rays 32 --out out
-//   petzval blur --rgb photo.png --depth photo.pfm --thin-lens-mm 85 --lens-diameter-mm 60 --focus 2000 --out out
+//   petzval blur --rgb photo.png --depth photo.pfm --thin-lens 85 --f-number 1.42 --focus 2000 --out out
 #include "commands.hpp"
 
 #include <algorithm>
@@ -126,13 +126,13 @@ class Job {
         lens_(with_supersample(options.lens, side_), input_.columns() * side_, input_.rows() * side_, input_.pose(),
               options.frames > 1) {
     if (options.frames == 1 && options.travel_mm != 0) {
-      throw petzval::Error("--travel-mm: --frames = 1; must be 2 or more");
+      throw petzval::Error("--travel: --frames = 1; must be 2 or more");
     }
     if (side_ == 3) throw petzval::Error(std::string("--supersample = 3; must be ") + supersamples.words);
     if (!input_.scene()) {
       if (options.compare) throw petzval::Error("--compare needs --scene");
       if (side_ > 1) throw petzval::Error("--supersample needs --scene: files have a fixed number of pixels");
-      if (options.travel_mm != 0) throw petzval::Error("--travel-mm needs --scene: files have a fixed camera");
+      if (options.travel_mm != 0) throw petzval::Error("--travel needs --scene: files have a fixed camera");
     }
   }
 
@@ -304,7 +304,7 @@ int commands::blur(int argc, char** argv) {
                        "frames per second, for the keys of --points")
       ->needs(frames)
       ->needs(app.get_option("--points"));
-  examples::add_number(app, "--travel-mm", options.travel_mm, examples::finite_number,
+  examples::add_length(app, "--travel", options.travel_mm, examples::finite_number,
                        "distance that the camera moves to the right over all frames (mm)")
       ->needs(frames);
   examples::add_threads(app);

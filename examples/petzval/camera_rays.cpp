@@ -2,7 +2,7 @@
 // Converts film samples of a CSV file to camera rays, by any model of the lens.
 //
 //   printf 'film_x_mm,film_y_mm,pupil_u,pupil_v,wavelength_nm\n0,-10,0.25,0.5,587.5618\n' > samples.csv
-//   petzval camera-rays data/lenses/double_gauss_100mm_f2.0.json --samples samples.csv --out rays.csv --model
+//   petzval camera-rays data/lenses/double_gauss_100mm_f2.0.json --table samples.csv --out rays.csv --model
 //   exact_double
 //               --focus 3000 --f-number 4
 #include "commands.hpp"
@@ -118,7 +118,7 @@ int commands::camera_rays(int argc, char** argv) {
       "at the first vertex, light travels towards +z, camera rays towards -z. The image on the film is upside down.",
       "petzval camera-rays");
   examples::add_lens(app, lens_file);
-  app.add_option("--samples", samples_file,
+  app.add_option("--table", samples_file,
                  "CSV with the columns film_x_mm,film_y_mm,pupil_u,pupil_v,wavelength_nm; pupil_u and pupil_v from 0 "
                  "to 1, uniform by area over the model's pupil for the film point")
       ->required()
@@ -133,10 +133,10 @@ int commands::camera_rays(int argc, char** argv) {
   examples::add_camera(app, setup);
   examples::BokehFlags bokeh;
   examples::add_bokeh(app, bokeh);
-  examples::add_number(app, "--tilt-deg", tilt_deg, below_quarter_turn,
+  examples::add_number(app, "--tilt", tilt_deg, below_quarter_turn,
                        "tilt of the film about +x (degrees); its normal is Ry(swing) Rx(tilt) e_z, and film points "
                        "are in the axes of the film");
-  examples::add_number(app, "--swing-deg", swing_deg, below_quarter_turn, "swing of the film about +y (degrees)");
+  examples::add_number(app, "--swing", swing_deg, below_quarter_turn, "swing of the film about +y (degrees)");
   app.get_option("--focus")->required()->default_str("");
 
   return examples::run(app, argc, argv, [&] {

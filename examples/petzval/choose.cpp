@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // Chooses the fastest model of a lens for a scene and an error budget, and verifies it on fresh samples.
 //
-//   petzval choose data/lenses/double_gauss_52mm_f1.8.json --near 1000 --far inf --budget-px 0.25
+//   petzval choose data/lenses/double_gauss_52mm_f1.8.json --near 1000 --far inf --budget 0.25
 //   petzval choose data/lenses/double_gauss_52mm_f1.8.json --near 1000 --far 5000 --f-number 4 --focus 2000
-//                 --budget-px 1 --json
+//                 --budget 1 --json
 #include "commands.hpp"
 
 #include <algorithm>
@@ -63,7 +63,7 @@ int commands::choose(int argc, char** argv) {
                        "distance of the farthest object (mm), or inf")
       ->required()
       ->default_str("");
-  examples::add_number(app, "--budget-px", options.budget_px, budget, "largest error of a ray (pixels)")
+  examples::add_number(app, "--budget", options.budget_px, budget, "largest error of a ray (pixels)")
       ->required()
       ->default_str("");
 

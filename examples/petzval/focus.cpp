@@ -3,7 +3,7 @@
 //
 //   petzval focus data/lenses/double_gauss_100mm_f2.0.json
 //   petzval focus data/lenses/double_gauss_100mm_f2.0.json --json --at 700,2000,inf --criterion min_rms
-//                --blur-mm 0.05 --f-number 4 --fields 0,10
+//                --blur 0.05 --f-number 4 --fields 0,10
 #include "commands.hpp"
 
 #include <algorithm>
@@ -217,11 +217,10 @@ std::string in_words(double value, int decimals) {
 
 std::string to_text(const Report& report, const Options& options) {
   std::ostringstream text;
-  text
-      << report.lens.name() << "\ndistances in mm from the "
-      << examples::in_words(examples::named(options.origin, examples::distance_origins))
-      << "; film_z from the front vertex; depth of field for a blur of " << examples::number(options.blur_mm)
-      << " mm in diameter (too_blurred: even the sharpest image has a larger blur; increase --f-number or --blur-mm)\n";
+  text << report.lens.name() << "\ndistances in mm from the "
+       << examples::in_words(examples::named(options.origin, examples::distance_origins))
+       << "; film_z from the front vertex; depth of field for a blur of " << examples::number(options.blur_mm)
+       << " mm in diameter (too_blurred: even the sharpest image has a larger blur; increase --f-number or --blur)\n";
   std::string before;
   for (const Row& r : report.rows) {
     if (r.criterion != before) {
@@ -270,12 +269,12 @@ int commands::focus(int argc, char** argv) {
       "--json", options.json,
       "print an array of rows, one per criterion and distance; null is an infinite or absent value, explained by "
       "status and depth_status (refused: see message; too_blurred: even the sharpest image has a larger blur than "
-      "--blur-mm); blur_mm is the value of --blur-mm; breathing is a fraction");
+      "--blur); blur_mm is the value of --blur; breathing is a fraction");
   examples::add_lengths(app, "--at", options.distance_mm, examples::positive_length, "subject distances (mm), or inf")
       ->default_str("the object of the file if finite, else 10, 20, 50, 100 focal lengths, rounded, and inf");
   examples::add_criteria(app, options.criteria);
   examples::add_distance_origin(app, options.origin);
-  examples::add_number(app, "--blur-mm", options.blur_mm, examples::positive_number,
+  examples::add_length(app, "--blur", options.blur_mm, examples::positive_number,
                        "largest blur in the depth of field, a diameter on the film (mm); 0.03 is usual for 24 x 36 mm");
   examples::add_number(app, "--f-number", options.f_number, examples::positive_number,
                        "f-number to stop the lens down to (by exact rays)")

@@ -36,7 +36,7 @@ constexpr std::array focus_commands{
             &surface},
 };
 constexpr std::array figure_commands{
-    Command{"trace", "trace rays of a table", "double_gauss_52mm_f1.8 --rays rays.csv --out traced.csv", &trace},
+    Command{"trace", "trace rays of a table", "double_gauss_52mm_f1.8 --table rays.csv --out traced.csv", &trace},
     Command{"spots", "spot diagrams over field and wavelength", "cooke_triplet_50mm_f5 --out out", &spots},
     Command{"psf", "images of a point light", "double_gauss_100mm_f1.35 --at 1.5m --focus 1m --out out", &psf},
     Command{"psf-set", "PSFs over field, distance, wavelength and f-number; merge, query",
@@ -49,9 +49,9 @@ constexpr std::array figure_commands{
 constexpr std::array renderer_commands{
     Command{"models", "errors and times of the ray models of a camera", "double_gauss_100mm_f2.0", &models},
     Command{"choose", "the fastest ray model within a budget",
-            "double_gauss_100mm_f2.0 --near 1.5m --far 10m --budget-px 0.5", &choose},
+            "double_gauss_100mm_f2.0 --near 1.5m --far 10m --budget 0.5", &choose},
     Command{"camera-rays", "rays of a camera for samples of a table",
-            "double_gauss_100mm_f2.0 --samples samples.csv --out rays.csv", &camera_rays},
+            "double_gauss_100mm_f2.0 --table samples.csv --out rays.csv", &camera_rays},
     Command{"render", "path, light or bidirectional tracing through a lens; merge",
             "--scene balls double_gauss_52mm_f1.8 --out out", render_command, embree},
     Command{"sheet", "contact sheets of renderings", "out/a out/b --out sheet.png", sheet_command, embree},

@@ -57,8 +57,8 @@ void print_files() {
 Keys (--keys FILE): a list of points with from_s, until_s and "keys", a list of objects with time_s and
   the names above.
 
-Rays (trace --rays FILE): CSV with the columns x_mm,y_mm,z_mm,dx,dy,dz.
-Samples (camera-rays --samples FILE): CSV with film_x_mm,film_y_mm,pupil_u,pupil_v,wavelength_nm.
+Rays (trace --table FILE): CSV with the columns x_mm,y_mm,z_mm,dx,dy,dz.
+Samples (camera-rays --table FILE): CSV with film_x_mm,film_y_mm,pupil_u,pupil_v,wavelength_nm.
 
 Lenses: data/README.md describes the JSON format; petzval convert reads and writes other formats.
 

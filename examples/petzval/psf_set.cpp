@@ -219,7 +219,7 @@ void compute(const Options& options) {
   if (axes.f_numbers.empty()) axes.f_numbers = {1};  // replaced below
   petzval::PsfSet::validate(axes);
   if (options.pixels % 2 == 0) {
-    throw petzval::Error("--pixels = \"" + std::to_string(options.pixels) +
+    throw petzval::Error("--size = \"" + std::to_string(options.pixels) +
                          "\"; must be odd, because the chief ray is at the centre of a pixel");
   }
   if (options.check && options.shard.count > 1) {
@@ -314,7 +314,7 @@ int main_compute(int argc, char** argv) {
   examples::add_focus(app, options.focus);
   examples::add_iris_shape(app, options.iris);
   examples::add_samples(app, options.samples);
-  examples::add_count(app, "--pixels", options.pixels, {3, 1025, "an odd number from 3 to 1025"},
+  examples::add_count(app, "--size", options.pixels, {3, 1025, "an odd number from 3 to 1025"},
                       "pixels along each side of an image, odd");
   app.add_option(
          "--shard", [&](const std::string& text) { options.shard = examples::parse_shard("--shard", text); },

@@ -2,7 +2,7 @@
 // Pulls focus over time: points with keyframes give a film position for every frame, as a table and a plot.
 //
 //   petzval pull data/lenses/double_gauss_100mm_f2_28deg.json --keys examples/scenes/rack.json --out out
-//   petzval pull --model thin --thin-focal-length-mm 50 --f-number 2 --keys keys.json --json --out out
+//   petzval pull --thin-lens 50 --f-number 2 --keys keys.json --json --out out
 #include "commands.hpp"
 
 #include <algorithm>
@@ -244,12 +244,12 @@ int commands::pull(int argc, char** argv) {
   examples::add_distance_origin(app, options.focus.origin);
   const auto* criterion = examples::add_criterion(app, options.focus.criterion, {"min_rms", "min_max"});
   examples::add_number(app, "--fps", options.frames_per_s, examples::positive_number, "frames per second");
-  app.add_flag("--tilt", options.tilt, "also tilt and swing the film");
+  app.add_flag("--fit-tilt", options.tilt, "also tilt and swing the film");
   app.add_flag("--json", options.json, "print one JSON object instead of text");
 
   return examples::run(app, argc, argv, [&] {
-    if (criterion->given() && options.model != "real") {
-      throw petzval::Error("--criterion with --model " + options.model +
+    if (criterion->given() && options.model_name() != "real") {
+      throw petzval::Error("--criterion with --model " + options.model_name() +
                            "; must be --model real, because other models have only one focus");
     }
     if (criterion->given() && options.tilt) {
@@ -267,7 +267,7 @@ int commands::pull(int argc, char** argv) {
     examples::write_text(svg_file, svg);
     if (options.json) {
       const Json json{{"lens", lens.title},
-                      {"model", options.model},
+                      {"model", options.model_name()},
                       {"distance_from", options.focus.origin},
                       {"frames", to_json(all)},
                       {"files", {csv_file, svg_file}}};

@@ -261,7 +261,7 @@ class Job {
     }
     if (const auto named = petzval::model_named(options_.model)) {
       if (options_.budget_px > 0)
-        throw petzval::Error("--budget-px with --model " + options_.model + "; must be --model auto");
+        throw petzval::Error("--budget with --model " + options_.model + "; must be --model auto");
       chosen_ = {*named, {"--model " + options_.model}};
       return;
     }
@@ -281,7 +281,7 @@ class Job {
       }
     }
     if (options_.budget_px == 0 && options_.samples == 0) {
-      throw petzval::Error("--model auto with --time-s needs --budget-px or --spp for the choice");
+      throw petzval::Error("--model auto with --time needs --budget or --spp for the choice");
     }
     const renderer::LensCamera exact = camera(petzval::ModelKind::exact_float);
     refuse_walls(exact);
@@ -390,7 +390,7 @@ int commands::render(int argc, char** argv) {
       "scene's camera. Writes picture.* to DIR (linear Rec. 709; a sky of radiance 1 gives 1 in the centre, or "
       "irradiance with --normalisation irradiance) and render.json: model and reasons, samples, seconds, fraction of "
       "the time spent in the lens, mean radiance and luminance of tiles with standard errors.\n"
-      "Default: 64 samples per pixel. --time-s without --spp takes as many samples as the time allows; --time-s with "
+      "Default: 64 samples per pixel. --time without --spp takes as many samples as the time allows; --time with "
       "--spp leaves missing samples to --resume. Ctrl-C writes sums and picture. --resume continues; a larger --spp "
       "adds samples to a finished picture, bit for bit as one run.",
       "petzval render");
@@ -404,11 +404,11 @@ int commands::render(int argc, char** argv) {
   for (const petzval::ModelKind m : petzval::models()) models.emplace_back(petzval::name(m));
   app.add_option(
          "--model", options.model,
-         "model of the lens; auto: the fastest model within --budget-px, or by default the fastest model whose bias is "
+         "model of the lens; auto: the fastest model within --budget, or by default the fastest model whose bias is "
          "below a tenth of the noise")
       ->one_of(models)
       ->capture_default_str();
-  examples::add_number(app, "--budget-px", options.budget_px, examples::positive_number,
+  examples::add_number(app, "--budget", options.budget_px, examples::positive_number,
                        "largest error of a ray for --model auto (pixels)")
       ->default_str("a tenth of the noise");
   app.add_option("--integrator", options.integrator,
@@ -420,7 +420,7 @@ int commands::render(int argc, char** argv) {
                       "samples per pixel")
       ->default_str("64");
   examples::add_number(
-      app, "--time-s", options.seconds, examples::positive_number,
+      app, "--time", options.seconds, examples::positive_number,
       "time limit (s); no pass over the picture starts after it. A pass is always finished and takes 1 sample per "
       "pixel, or up to 16 with --spp")
       ->default_str("none");
@@ -439,9 +439,8 @@ int commands::render(int argc, char** argv) {
   examples::add_surface_kind(app, options.surface, points);
   examples::add_expressive(app, options.expressive);
   constexpr examples::Range below_quarter_turn{-89.9, 89.9, "an angle from -89.9 to 89.9"};
-  examples::add_number(app, "--tilt-deg", options.tilt_deg, below_quarter_turn, "tilt of the film about +x (degrees)");
-  examples::add_number(app, "--swing-deg", options.swing_deg, below_quarter_turn,
-                       "swing of the film about +y (degrees)");
+  examples::add_number(app, "--tilt", options.tilt_deg, below_quarter_turn, "tilt of the film about +x (degrees)");
+  examples::add_number(app, "--swing", options.swing_deg, below_quarter_turn, "swing of the film about +y (degrees)");
   app.add_option(
          "--wavelengths", options.wavelengths,
          "d: the lens at the d line; rgb: one wavelength per channel; hero: four wavelengths per path over the visible "

@@ -141,7 +141,7 @@ int commands::spots(int argc, char** argv) {
   examples::App app(
       "Draws spot diagrams. The film is at the focus of the subject, or with --film-position file at the position in "
       "the file; "
-      "--defocus-mm shifts it. The focus is computed at the primary wavelength of the file, or at the wavelength "
+      "--defocus shifts it. The focus is computed at the primary wavelength of the file, or at the wavelength "
       "nearest to the d line (587.5618 nm).\n"
       "Writes to DIR and prints the paths: LENS_spots.svg, LENS_spots.csv (film points of rays: "
       "field_deg,wavelength_nm,x_mm,y_mm) and LENS_spots.json. Its rows have for each field and wavelength the height "
@@ -162,7 +162,7 @@ int commands::spots(int argc, char** argv) {
                       ->default_str("subject of the file");
   examples::add_focus(app, options.focus);
   examples::add_film_choice(app, options.film, options.film);
-  examples::add_number(app, "--defocus-mm", options.defocus_mm, film_shift,
+  examples::add_length(app, "--defocus", options.defocus_mm, film_shift,
                        "shift of the film away from the lens (mm), -1000000 to 1000000");
   examples::add_samples(app, options.samples);
   examples::add_out_folder(app, options.out_folder)->required();

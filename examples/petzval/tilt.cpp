@@ -3,7 +3,7 @@
 // lines from the side, and the blur over the picture before and after.
 //
 //   petzval tilt data/lenses/double_gauss_100mm_f2_28deg.json --f-number 4 --points examples/scenes/table.json --out
-//   out petzval tilt --model thin --thin-focal-length-mm 50 --f-number 2 --points points.json --json --out out
+//   out petzval tilt --thin-lens 50 --f-number 2 --points points.json --json --out out
 #include "commands.hpp"
 
 #include <algorithm>
@@ -226,7 +226,7 @@ Json to_json(const Result& result, const Options& options, const std::vector<std
   }
   return {
       {"lens", result.lens.title},
-      {"model", options.model},
+      {"model", options.model_name()},
       {"status", petzval::name(fit.status)},
       {"rank", petzval::name(fit.rank)},
       {"message", status_in_words(result, options)},
@@ -357,7 +357,7 @@ int commands::tilt(int argc, char** argv) {
   app.add_option("--points", options.points_file, "JSON file of points to focus on")->type_name("FILE")->required();
   examples::add_out_folder(app, options.out_folder, "folder for the pictures")->required();
   constexpr examples::Range angle{0, 89, "a number of degrees from 0 to 89"};
-  examples::add_number(app, "--max-tilt-deg", options.max_tilt_deg, angle, "largest tilt of the film (degrees)");
+  examples::add_number(app, "--max-tilt", options.max_tilt_deg, angle, "largest tilt of the film (degrees)");
   app.add_flag("--robust", options.robust, "ignore outliers: points far from the plane of most points get no weight");
   app.add_flag("--json", options.json, "print one JSON object instead of text");
 

@@ -2,7 +2,7 @@
 // Traces rays of a CSV file through a lens and writes the end point and the fate of each ray.
 //
 //   printf 'x_mm,y_mm,z_mm,dx,dy,dz\n0,10,-50,0,0,1\n' > rays.csv
-//   petzval trace data/lenses/double_gauss_100mm_f1.35.json --rays rays.csv --out traced.csv
+//   petzval trace data/lenses/double_gauss_100mm_f1.35.json --table rays.csv --out traced.csv
 #include "commands.hpp"
 
 #include "petzval/trace/trace.hpp"
@@ -90,7 +90,7 @@ int commands::trace(int argc, char** argv) {
       "light travels towards +z.",
       "petzval trace");
   examples::add_lens(app, lens_file);
-  app.add_option("--rays", rays_file, "CSV with the columns x_mm,y_mm,z_mm,dx,dy,dz; directions of any length")
+  app.add_option("--table", rays_file, "CSV with the columns x_mm,y_mm,z_mm,dx,dy,dz; directions of any length")
       ->required()
       ->type_name("CSV");
   examples::add_out_file(

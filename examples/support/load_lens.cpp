@@ -98,6 +98,12 @@ Option* add_lens(App& app, LensInput& input, const std::string& name, const std:
   return lens;
 }
 
+Option* add_thin_lens(App& app, double& focal_length_mm) {
+  return add_length(app, "--thin-lens", focal_length_mm, positive_number,
+                    "focal length of a thin lens (mm) instead of LENS; needs --f-number")
+      ->default_str("");
+}
+
 petzval::GlassCatalogue glasses_of(const LensInput& input) {
   petzval::GlassCatalogue glasses = petzval::glass_tables();
   for (const std::string& file : input.glass_files) {

@@ -24,6 +24,9 @@ struct LensInput {
 /// Adds LENS with --glasses and --configuration. LENS is required if `remark` is empty.
 Option* add_lens(App& app, LensInput& input, const std::string& name = "LENS", const std::string& remark = "");
 
+/// Adds --thin-lens: the focal length of a thin lens (mm) instead of LENS; 0 if the option is not given.
+Option* add_thin_lens(App& app, double& focal_length_mm);
+
 /// The glass tables of petzval and the catalogues of --glasses.
 petzval::GlassCatalogue glasses_of(const LensInput& input);
 

@@ -20,10 +20,8 @@ void add_movement_options(App& app, MovementOptions& options) {
   app.add_option("--model", options.model,
                  "model of the lens: thin (one plane), thick (cardinal points and pupils), real (exact rays)")
       ->one_of({"thin", "thick", "real"})
-      ->capture_default_str();
-  add_number(app, "--thin-focal-length-mm", options.focal_length_mm, positive_number,
-             "focal length of a thin lens at the origin that replaces LENS; needs --model thin and --f-number")
-      ->default_str("none");
+      ->default_str("real");
+  add_thin_lens(app, options.focal_length_mm);
   add_number(app, "--f-number", options.f_number, positive_number, "f-number to stop the lens down to (by exact rays)")
       ->default_str("wide open");
   app.add_option(
@@ -43,13 +41,12 @@ MovingLens moving_lens(const MovementOptions& options) {
   result.film = {.width_mm = width, .height_mm = height};
   if (options.focal_length_mm > 0) {
     if (!options.lens_file.file.empty()) {
-      throw petzval::Error("--thin-focal-length-mm cannot be combined with the lens file " + options.lens_file.file +
-                           " (LENS)");
+      throw petzval::Error("--thin-lens cannot be combined with the lens file " + options.lens_file.file + " (LENS)");
     }
-    if (options.model != "thin") {
-      throw petzval::Error("--thin-focal-length-mm with --model " + options.model + "; must be --model thin");
+    if (options.model_name() != "thin") {
+      throw petzval::Error("--thin-lens with --model " + options.model + "; must be --model thin");
     }
-    if (!(options.f_number > 0)) throw petzval::Error("--thin-focal-length-mm needs --f-number");
+    if (!(options.f_number > 0)) throw petzval::Error("--thin-lens needs --f-number");
     result.id = "thin_lens";
     result.title = "Thin lens, " + number(options.focal_length_mm) + " mm";
     result.conditions = "f/" + number(options.f_number, 3);
@@ -57,16 +54,16 @@ MovingLens moving_lens(const MovementOptions& options) {
     return result;
   }
   if (options.lens_file.file.empty()) {
-    throw petzval::Error("LENS is required, or --model thin --thin-focal-length-mm F --f-number N");
+    throw petzval::Error("LENS is required, or --thin-lens F --f-number N");
   }
   const LoadedLens loaded = load_lens(options.lens_file, std::array{petzval::d_line_nm});
   petzval::Lens lens = loaded.lens;
   if (options.f_number > 0) lens = stopped_to(lens, options.f_number);
   result.id = loaded.id;
   result.title = lens.name();
-  result.conditions = "f/" + number(petzval::real_f_number(lens), 3) + ", " + options.model + " model";
-  result.ideal = options.model == "thin" ? petzval::thin_lens(lens) : petzval::thick_lens(lens);
-  result.exact = options.model == "real";
+  result.conditions = "f/" + number(petzval::real_f_number(lens), 3) + ", " + options.model_name() + " model";
+  result.ideal = options.model_name() == "thin" ? petzval::thin_lens(lens) : petzval::thick_lens(lens);
+  result.exact = options.model_name() == "real";
   result.lens = std::move(lens);
   return result;
 }

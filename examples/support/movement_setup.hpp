@@ -18,9 +18,11 @@ namespace examples {
 /// Command line of the programs that move the film.
 struct MovementOptions {
   LensInput lens_file;
-  std::string model = "real", film_mm = "36x24";
+  std::string model, film_mm = "36x24";
   double f_number = 0, focal_length_mm = 0;  // 0: not given
   bool film_given = false;
+
+  std::string model_name() const { return !model.empty() ? model : focal_length_mm > 0 ? "thin" : "real"; }
 };
 void add_movement_options(App& app, MovementOptions& options);
 

@@ -90,7 +90,7 @@ TEST_F(BokehScene, ShardsAndResumedRunsEqualOneRunToTheBit) {
   render("threads", {"--threads", "3"});
   EXPECT_EQ(read(path("threads/picture.exr")), whole);
 
-  const Outcome stopped = run("render", arguments("resumed", {"--time-s", "0.02"}));
+  const Outcome stopped = run("render", arguments("resumed", {"--time", "0.02"}));
   EXPECT_EQ(stopped.status, 0);
   EXPECT_NE(stopped.err.find("--resume"), std::string::npos) << stopped.err;
   EXPECT_FALSE(read_json(path("resumed/render.json"))["finished"]);
@@ -202,7 +202,7 @@ TEST_F(BokehScene, IntegratorsAndModelsAgree) {
 
 TEST_F(BokehScene, ChoosesAModelWithReasons) {
   const json rough = render("rough", {"--model", "auto", "--spp", "1"});
-  const json fine = render("fine", {"--model", "auto", "--budget-px", "0.01", "--spp", "1"});
+  const json fine = render("fine", {"--model", "auto", "--budget", "0.01", "--spp", "1"});
   EXPECT_GE(rough["why"].size(), 2);
   const Outcome again = run("render", arguments("rough", {"--model", "auto", "--spp", "1", "--resume"}));
   EXPECT_EQ(again.status, 0) << again.err;
@@ -210,7 +210,7 @@ TEST_F(BokehScene, ChoosesAModelWithReasons) {
   EXPECT_NE(rough["model"], fine["model"]);
   EXPECT_NE(fine["why"].dump().find("0.01"), std::string::npos);
   // With more samples there is less noise, so that less bias is allowed.
-  const json clean = render("clean", {"--model", "auto", "--spp", "16000000", "--time-s", "0.01"});
+  const json clean = render("clean", {"--model", "auto", "--spp", "16000000", "--time", "0.01"});
   EXPECT_NE(clean["model"], "pinhole");
   EXPECT_NE(clean["model"], "thin");
 }

@@ -16,8 +16,8 @@ class CameraRays : public Programs {
 
   std::vector<std::string> arguments(const std::string& lens_id, const std::string& model,
                                      const std::vector<std::string>& more) const {
-    std::vector<std::string> result{lens(lens_id), "--samples", path("samples.csv"), "--out", path("rays.csv"),
-                                    "--focus",     "3000",      "--model",           model};
+    std::vector<std::string> result{lens(lens_id), "--table", path("samples.csv"), "--out", path("rays.csv"),
+                                    "--focus",     "3000",    "--model",           model};
     result.insert(result.end(), more.begin(), more.end());
     return result;
   }
@@ -87,8 +87,8 @@ TEST_F(CameraRays, TiltsItsFilm) {
   const petzval::Film film{.tilt_rad = petzval::radians(8.0), .swing_rad = petzval::radians(-3.0)};
   const std::string csv = std::string(header) + "7.5,-10.25,0.125,0.75,587.5618\n";
   for (const petzval::ModelKind model : {petzval::ModelKind::thick, petzval::ModelKind::exact_double}) {
-    const auto rows = rays("double_gauss_100mm_f2.0", csv, std::string(petzval::name(model)),
-                           {"--tilt-deg", "8", "--swing-deg", "-3"});
+    const auto rows =
+        rays("double_gauss_100mm_f2.0", csv, std::string(petzval::name(model)), {"--tilt", "8", "--swing", "-3"});
     const auto r = petzval::Camera(lens_3m, film, {.model = model}).sample({{7.5, -10.25}, 0.125, 0.75});
     ASSERT_TRUE(r);
     EXPECT_EQ(rows.at(0)[9], "transmitted");

@@ -25,7 +25,7 @@ nlohmann::json row_of(const nlohmann::json& choice, const std::string& model) {
 
 TEST_F(ChooseCamera, ChosenModelKeepsTheBudgetForFreshSamples) {
   for (const char* budget : {"2", "0.2", "0.01"}) {
-    const auto json = choice({"--near", "1000", "--far", "inf", "--budget-px", budget});
+    const auto json = choice({"--near", "1000", "--far", "inf", "--budget", budget});
     SCOPED_TRACE(json.dump());
     const std::string model = json["model"];
     const auto row = row_of(json, model);
@@ -47,10 +47,10 @@ TEST_F(ChooseCamera, ChosenModelKeepsTheBudgetForFreshSamples) {
 
 TEST_F(ChooseCamera, ErrorsDependOnDepthsAndStop) {
   // The error of a pinhole grows far behind the plane of focus.
-  const auto all = choice({"--near", "1000", "--far", "inf", "--budget-px", "1"});
-  const auto focus = choice({"--near", "2900", "--far", "3100", "--budget-px", "1"});
+  const auto all = choice({"--near", "1000", "--far", "inf", "--budget", "1"});
+  const auto focus = choice({"--near", "2900", "--far", "3100", "--budget", "1"});
   EXPECT_LT(row_of(focus, "pinhole")["max_px"], row_of(all, "pinhole")["max_px"]);
-  const auto stopped = choice({"--near", "1000", "--far", "inf", "--budget-px", "1", "--f-number", "8"});
+  const auto stopped = choice({"--near", "1000", "--far", "inf", "--budget", "1", "--f-number", "8"});
   EXPECT_LT(row_of(stopped, "polynomial_5")["max_px"], 0.5 * row_of(all, "polynomial_5")["max_px"].get<double>());
 }
 

@@ -161,7 +161,7 @@ TEST_F(Distances, EveryProgramRefusesUnwritableOutputs) {
     const Arguments out = joined({arguments.begin() + 1, arguments.end()}, {"--out", taken});
     expect_failure(arguments[0], out, {"--out", taken});
   }
-  expect_failure("trace", {file, "--rays", path("rays.csv"), "--out", path("none/traced.csv")}, {"--out"});
+  expect_failure("trace", {file, "--table", path("rays.csv"), "--out", path("none/traced.csv")}, {"--out"});
   expect_failure("wu_figure7", {"--out", path("none/figure.png")}, {"--out"});
   expect_failure("convert", {file, path("none/lens.zmx")}, {"OUT"});
   EXPECT_FALSE(std::filesystem::exists(path("none")));

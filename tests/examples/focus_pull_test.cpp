@@ -15,7 +15,7 @@ using nlohmann::json;
 
 constexpr const char* rack = R"([{"from_s": 0, "until_s": 4, "keys": [
   {"time_s": 1, "position_mm": [0, 0, -1000]}, {"time_s": 3, "position_mm": [100, 0, -4000]}]}])";
-const Arguments thin_50{"--model", "thin", "--thin-focal-length-mm", "50", "--f-number", "2"};
+const Arguments thin_50{"--thin-lens", "50", "--f-number", "2"};
 
 class FocusPull : public Programs {
  protected:
@@ -109,7 +109,7 @@ TEST_F(FocusPull, TiltOptionTiltsTheFilm) {
   const std::string moving =
       R"([{"keys": [{"time_s": 0, "position_mm": [0, -100, -800]}, {"time_s": 1, "position_mm": [0, -50, -800]}]},
     {"keys": [{"time_s": 0, "position_mm": [0, 100, -1500]}]}, {"keys": [{"time_s": 0, "position_mm": [200, 100, -1500]}]}])";
-  const json tilted = frames(thin_50, moving, {"--tilt"}), upright = frames(thin_50, moving);
+  const json tilted = frames(thin_50, moving, {"--fit-tilt"}), upright = frames(thin_50, moving);
   ASSERT_EQ(tilted.size(), upright.size());
   for (std::size_t i = 0; i < tilted.size(); ++i) {
     EXPECT_EQ(tilted[i]["status"], "solved");

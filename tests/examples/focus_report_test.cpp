@@ -28,8 +28,8 @@ double or_infinity(const nlohmann::json& value) { return value.is_null() ? infin
 TEST_F(FocusReport, NumbersEqualTheLibrary) {
   const std::string id = "double_gauss_100mm_f2.0";
   const petzval::Lens lens = petzval::compile(petzval::read_prescription(Programs::lens(id)));
-  const auto json = rows(id, {"--at", "700,3000,inf", "--criterion", "thin,paraxial,min_rms,min_max", "--blur-mm",
-                              "0.2", "--from", "film"});
+  const auto json = rows(
+      id, {"--at", "700,3000,inf", "--criterion", "thin,paraxial,min_rms,min_max", "--blur", "0.2", "--from", "film"});
   ASSERT_EQ(json.size(), 12u);
   std::size_t i = 0;
   for (const auto criterion : {petzval::FocusCriterion::thin, petzval::FocusCriterion::paraxial,

@@ -15,7 +15,7 @@ namespace {
 using nlohmann::json;
 using petzval::RgbImage;
 
-const Arguments thin{"--thin-lens-mm", "50", "--lens-diameter-mm", "100"};
+const Arguments thin{"--thin-lens", "50", "--f-number", "0.5"};
 const Arguments small{"--size", "80x60", "--rays", "16", "--threads", "1"};
 
 Arguments joined(std::initializer_list<Arguments> lists) {
@@ -155,7 +155,7 @@ TEST_F(LensBlurProgram, RefusesInvalidInput) {
   refused(joined({focus, {"--rgb", path("rgb.pfm"), "--depth", path("turned.pfm")}}), {"turned.pfm", 16, 24});
 }
 
-// The default film of 24 mm height suits lenses with this image size; --fov-deg makes it smaller.
+// The default film of 24 mm height suits lenses with this image size; --fov makes it smaller.
 TEST_F(LensBlurProgram, ReportsFilmsLargerThanTheImageCircle) {
   const Arguments phone = joined({small, {"--scene", "town", "--focus", "1000", lens("phone_5.6mm_f3.5")}});
   const auto notes = [&](const Arguments& more) {
@@ -168,14 +168,14 @@ TEST_F(LensBlurProgram, ReportsFilmsLargerThanTheImageCircle) {
     return count;
   };
   EXPECT_EQ(notes({"--frames", "2"}), 1);
-  EXPECT_EQ(notes({"--fov-deg", "20"}), 0);
+  EXPECT_EQ(notes({"--fov", "20"}), 0);
 }
 
 // The pupil of a fisheye moves with the field: rays between the nodes of a table have errors.
 TEST_F(LensBlurProgram, ReportsTheErrorOfInterpolatedRays) {
   const auto outcome =
-      run("blur", {"--scene", "town", lens("fisheye_10mm_f4"), "--fov-deg", "60", "--focus", "3000", "--size",
-                   "320x240", "--supersample", "1", "--rays", "16", "--format", "png", "--out", path("out")});
+      run("blur", {"--scene", "town", lens("fisheye_10mm_f4"), "--fov", "60", "--focus", "3000", "--size", "320x240",
+                   "--supersample", "1", "--rays", "16", "--format", "png", "--out", path("out")});
   ASSERT_EQ(outcome.status, 0) << outcome.err;
   EXPECT_GT(read_json(path("out/blur.json"))["rays_error_px"], 1);
   petzval::testing::expect_tokens(outcome.err, {"note", "rays"});

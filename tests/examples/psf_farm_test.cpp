@@ -18,7 +18,7 @@ class PsfFarm : public Programs {
   }
   std::vector<std::string> grid() const {
     return {
-        lens("double_gauss_100mm_f2_28deg"), "--fields", "0,7", "--at", "1000,inf", "--rays", "4096", "--pixels", "33"};
+        lens("double_gauss_100mm_f2_28deg"), "--fields", "0,7", "--at", "1000,inf", "--rays", "4096", "--size", "33"};
   }
   /// Runs a line of the shell with petzval on the path.
   int shell(const std::string& line) const {

@@ -24,7 +24,7 @@ class PsfSets : public Programs {
                                        "2000",
                                        "--rays",
                                        "4096",
-                                       "--pixels",
+                                       "--size",
                                        "33",
                                        "--out",
                                        path(out)};

@@ -70,7 +70,7 @@ TEST_F(SpotDiagram, FocusesTheFilmAtTheDLine) {
   };
   const double sharpest = petzval::solve_focus(triplet, HUGE_VAL).film_z;
   EXPECT_NEAR(film_z({}), sharpest, 1e-9);
-  EXPECT_NEAR(film_z({"--defocus-mm", "-0.25"}), sharpest - 0.25, 1e-9);
+  EXPECT_NEAR(film_z({"--defocus", "-0.25"}), sharpest - 0.25, 1e-9);
   EXPECT_NEAR(film_z({"--criterion", "paraxial"}), petzval::first_order(triplet).rear_focal_z, 1e-12);
   EXPECT_NEAR(film_z({"--at", "1000", "--criterion", "paraxial"}), petzval::paraxial_image_z(triplet, -1000), 1e-12);
   const petzval::FocusOptions from_film{.origin = petzval::DistanceOrigin::film};

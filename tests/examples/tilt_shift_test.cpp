@@ -18,7 +18,7 @@ using petzval::radians;
 /// Points of a table top, seen from above by a 100 mm lens.
 constexpr const char* table = R"([{"position_mm": [-75, -73, -720]}, {"position_mm": [95, -54, -766]},
   {"position_mm": [0, 2, -900]}, {"position_mm": [-150, 86, -1100]}, {"position_mm": [160, 107, -1150]}])";
-const Arguments thin_50{"--model", "thin", "--thin-focal-length-mm", "50", "--f-number", "2"};
+const Arguments thin_50{"--thin-lens", "50", "--f-number", "2"};
 
 class TiltShift : public Programs {
  protected:

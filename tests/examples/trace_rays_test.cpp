@@ -16,7 +16,7 @@ class TraceRays : public Programs {
   std::vector<std::vector<std::string>> traced(const std::string& lens_id, const std::string& csv,
                                                std::vector<std::string> more = {}) const {
     write("rays.csv", csv);
-    std::vector<std::string> arguments{lens(lens_id), "--rays", path("rays.csv"), "--out", path("traced.csv")};
+    std::vector<std::string> arguments{lens(lens_id), "--table", path("rays.csv"), "--out", path("traced.csv")};
     arguments.insert(arguments.end(), more.begin(), more.end());
     const auto outcome = run("trace", arguments);
     EXPECT_EQ(outcome.status, 0) << outcome.err;
@@ -35,8 +35,8 @@ class TraceRays : public Programs {
   void expect_refusal(const std::string& csv, const std::vector<petzval::testing::Token>& tokens) const {
     SCOPED_TRACE(csv);
     write("rays.csv", csv);
-    expect_failure("trace", {lens("double_gauss_100mm_f1.35"), "--rays", path("rays.csv"), "--out", path("traced.csv")},
-                   tokens);
+    expect_failure(
+        "trace", {lens("double_gauss_100mm_f1.35"), "--table", path("rays.csv"), "--out", path("traced.csv")}, tokens);
     EXPECT_FALSE(std::filesystem::exists(path("traced.csv")));
   }
 };

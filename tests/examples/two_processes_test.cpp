@@ -40,7 +40,7 @@ class TwoProcesses : public Programs {
                                        "1000,2000,inf",
                                        "--rays",
                                        "4096",
-                                       "--pixels",
+                                       "--size",
                                        "33",
                                        "--out",
                                        path(out)};

@@ -22,7 +22,7 @@ using petzval::LensRays;
 
 LensFlags thin_lens() {
   LensFlags flags;
-  flags.thin_lens_mm = 50, flags.lens_diameter_mm = 100, flags.focus_mm = 5000;
+  flags.thin_lens_mm = 50, flags.iris.f_number = 0.5, flags.focus_mm = 5000;
   return flags;
 }
 
@@ -73,7 +73,7 @@ TEST(BlurLens, BlursAPointIntoADiscOfTheFormula) {
 TEST(BlurLens, FocusesATiltedFilmOnThePlaneOfItsHinge) {
   // The image of the plane (0, sin 30, cos 30) . x = 2 cos 30 m is tilted by 0.848 degrees.
   LensFlags flags = thin_lens();
-  flags.lens_diameter_mm = 20, flags.focus_mm = 2000, flags.tilt_deg = -0.848136346759917;
+  flags.iris.f_number = 2.5, flags.focus_mm = 2000, flags.tilt_deg = -0.848136346759917;
   BlurLens lens = lens_of(flags);
   const LensRays rays = lens.rays(500, 1);
   const double d = 2000 * std::cos(petzval::radians(30.0));
@@ -91,7 +91,7 @@ TEST(BlurLens, FocusesATiltedFilmOnThePlaneOfItsHinge) {
 
 TEST(BlurLens, HasAFocusForEachColour) {
   LensFlags flags = thin_lens();
-  flags.chroma = true;
+  flags.wavelengths = "rgb";
   const LensRays rays = lens_of(flags).rays(1000, 1);
   ASSERT_EQ(rays.channels(), 3);
   const double red = focus_of(rays, 0, 40, 30), green = focus_of(rays, 1, 40, 30), blue = focus_of(rays, 2, 40, 30);
@@ -127,14 +127,13 @@ TEST(BlurLens, RefusesInvalidOptions) {
     expect_tokens(said(change), tokens);
   };
   says([](LensFlags&) {}, {"no error"});
-  says([](LensFlags& f) { f.thin_lens_mm = 0; }, {"--thin-lens-mm", "LENS", "--singlet"});
-  says([](LensFlags& f) { f.singlet = "50,-50,5,N-BK7"; }, {2, "--thin-lens-mm", "--singlet"});
-  says([](LensFlags& f) { f.lens_diameter_mm = 0; }, {"--lens-diameter-mm"});
+  says([](LensFlags& f) { f.thin_lens_mm = 0; }, {"--thin-lens", "LENS", "--singlet"});
+  says([](LensFlags& f) { f.singlet = "50,-50,5,N-BK7"; }, {2, "--thin-lens", "--singlet"});
+  says([](LensFlags& f) { f.iris.f_number = 0; }, {"--thin-lens", "--f-number"});
   says([](LensFlags& f) { f.focus_mm = 50; }, {50});
-  says([](LensFlags& f) { f.iris.f_number = 2; }, {"--lens-diameter-mm"});
-  says([](LensFlags& f) { f.lens_diameter_mm = 5000; }, {"lens"});
+  says([](LensFlags& f) { f.iris.f_number = 0.01; }, {"lens"});
   for (const char* flawed : {"50,-50,5", "50,x,5,N-BK7", "50,-50,5,MOON", "50,-50,5,N-BK7,1"}) {
-    says([&](LensFlags& f) { f.thin_lens_mm = f.lens_diameter_mm = 0, f.singlet = flawed; }, {"--singlet"});
+    says([&](LensFlags& f) { f.thin_lens_mm = f.iris.f_number = 0, f.singlet = flawed; }, {"--singlet"});
   }
 }
 
