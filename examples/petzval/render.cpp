@@ -28,6 +28,7 @@
 #include "petzval/pupil/f_number.hpp"
 #include "renderer/built_in_scenes.hpp"
 #include "renderer/checkpoint.hpp"
+#include "renderer/first_hits.hpp"
 #include "renderer/outputs.hpp"
 #include "renderer/render.hpp"
 #include "renderer/scene_checksum.hpp"
@@ -91,7 +92,7 @@ void write_results(const renderer::PictureSums& sums, const Json& job, Json abou
                                               {"white", number("white")},
                                               {"seed", number("seed")}};
   const auto white = static_cast<float>(1 / number("white"));
-  for (const fs::path& file : renderer::write_pictures(sums.picture(), texts, numbers, formats, folder, white)) {
+  for (const fs::path& file : renderer::write_pictures(sums, texts, numbers, formats, folder, white)) {
     say(file);
   }
   if (sums.rejected() > 0) {
@@ -168,6 +169,9 @@ class Job {
       if (options_.shard.has(t)) tiles.push_back(t);
     }
     const renderer::UnitTracer tracer(scene_, lens, colours_, integrator_, options_.seed);
+    if (sums.guides().empty()) {
+      sums.set_guides(renderer::first_hits(tracer, sums, tiles, examples::threads()));
+    }
     const renderer::RenderReport report = [&] {
       const examples::Interrupt interrupt;
       return renderer::render(
@@ -389,7 +393,11 @@ int commands::render(int argc, char** argv) {
       "Renders a scene through a lens. World: right-handed, y up, mm; the entrance pupil is at the position of the "
       "scene's camera. Writes picture.* to DIR (linear Rec. 709; a sky of radiance 1 gives 1 in the centre, or "
       "irradiance with --normalisation irradiance) and render.json: model and reasons, samples, seconds, fraction of "
-      "the time spent in the lens, mean radiance and luminance of tiles with standard errors.\n"
+      "the time spent in the lens, mean radiance and luminance of tiles with standard errors. For denoisers "
+      "picture.exr also has albedo.R/G/B, "
+      "normal.X/Y/Z (world) and depth.Z (mm along the axis from the front vertex) of the surfaces seen through the "
+      "lens; "
+      "sky: 0, 0, infinity.\n"
       "Default: 64 samples per pixel. --time without --spp takes as many samples as the time allows; --time with "
       "--spp leaves missing samples to --resume. Ctrl-C writes sums and picture. --resume continues; a larger --spp "
       "adds samples to a finished picture, bit for bit as one run.",

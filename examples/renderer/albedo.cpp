@@ -40,4 +40,18 @@ Rgb at(const Albedo& albedo, const glm::vec3& point_world, const glm::vec2& uv) 
   return other != odd(point_world.z, size) ? albedo.checker->other : albedo.colour;
 }
 
+Rgb reflectance(const Material& material, const glm::vec3& point_world, const glm::vec2& uv) {
+  return std::visit(
+      [&](const auto& own) {
+        if constexpr (requires { own.albedo; }) {
+          return at(own.albedo, point_world, uv);
+        } else if constexpr (requires { own.reflectance; }) {
+          return own.reflectance;
+        } else {
+          return Rgb(1);
+        }
+      },
+      material);
+}
+
 }  // namespace renderer

@@ -10,4 +10,7 @@ namespace renderer {
 /// scatters more light than it receives.
 Rgb at(const Albedo& albedo, const glm::vec3& point_world, const glm::vec2& uv);
 
+/// The albedo or reflectance of a material at a point of a surface; 1 for glass.
+Rgb reflectance(const Material& material, const glm::vec3& point_world, const glm::vec2& uv);
+
 }  // namespace renderer

@@ -78,28 +78,23 @@ std::optional<glm::vec3> refracted(const glm::vec3& w, const glm::vec3& m, float
 
 Bsdf::Bsdf(const SurfacePoint& point, const glm::vec3& wo, const PathColours& colours) noexcept
     : material_(point.object->material), normal_(point.normal), wo_(wo), frame_(point.shading) {
-  const auto set = [&](const Rgb& rgb, float probability) {
-    colour_ = colours.from_rgb * rgb;
-    goes_on_ = std::clamp(double{probability}, 0.05, 1.0);
-  };
-  if (const auto* diffuse = std::get_if<Diffuse>(&material_)) {
-    const Rgb albedo = at(diffuse->albedo, point.position, point.uv);
-    set(albedo, largest(albedo));
-  } else if (const auto* mirror = std::get_if<Mirror>(&material_)) {
-    set(mirror->reflectance, largest(mirror->reflectance));
+  const Rgb colour = reflectance(material_, point.position, point.uv);
+  float probability = largest(colour);
+  if (std::holds_alternative<Mirror>(material_)) {
     specular_ = true;
   } else if (const auto* rough = std::get_if<Rough>(&material_)) {
-    set(rough->reflectance, largest(rough->reflectance));
     alpha_ = rough->roughness;
   } else if (const auto* glass = std::get_if<Glass>(&material_)) {
     alpha_ = glass->roughness;
     specular_ = alpha_ == 0;
     through_ = true;
-  } else {
-    const auto& varnish = std::get<Varnish>(material_);
-    const Rgb albedo = at(varnish.albedo, point.position, point.uv);
-    set(albedo, std::max(largest(albedo), 0.2f));
-    alpha_ = varnish.roughness;
+  } else if (const auto* varnish = std::get_if<Varnish>(&material_)) {
+    probability = std::max(probability, 0.2f);
+    alpha_ = varnish->roughness;
+  }
+  if (!through_) {
+    colour_ = colours.from_rgb * colour;
+    goes_on_ = std::clamp(double{probability}, 0.05, 1.0);
   }
   if (!through_ && glm::dot(normal_, wo) < 0) {
     normal_ = -normal_;

@@ -105,7 +105,12 @@ std::vector<petzval::ExrPart> Checkpoint::parts(const PictureSums& sums) {
     add_channels(tiles, of_round("luminance_", r), [&](std::size_t t) { return sums.tiles_[t].luminance[r]; });
   }
   pixels.numbers["rejected"] = static_cast<double>(sums.rejected_);
-  return {std::move(pixels), std::move(tiles), std::move(totals)};
+  std::vector<petzval::ExrPart> all{std::move(pixels), std::move(tiles), std::move(totals)};
+  if (!sums.guides_.empty()) {
+    all.push_back({.name = "guides", .width = sums.width_, .height = sums.height_});
+    for (const auto& [name, values] : sums.guides_) all.back().channels.push_back({name, values});
+  }
+  return all;
 }
 
 void Checkpoint::write(const PictureSums& sums, const Json& job, const fs::path& file) {
@@ -155,12 +160,16 @@ PictureSums Checkpoint::read_any(const fs::path& file, Json& job) {
       read_channels(tiles, of_round("luminance_", r),
                     [&](std::size_t t, const FixedSum& own) { sums.tiles_[t].luminance[r] = own; });
     }
+    if (all.size() > 3) {
+      const auto width = static_cast<std::size_t>(sums.width_), height = static_cast<std::size_t>(sums.height_);
+      for (const auto& [name, values] : part(3, "guides", width, height).channels) sums.guides_[name] = values;
+    }
     const auto rejected = all.front().numbers.find("rejected");
     if (rejected == all.front().numbers.end()) throw petzval::Error("has no number rejected");
     sums.rejected_ = static_cast<std::uint64_t>(rejected->second);
     return sums;
   } catch (const petzval::Error& error) {
-    throw petzval::Error(file.string() + ": " + error.what() + "; must be a checkpoint of bokeh_scene");
+    throw petzval::Error(file.string() + ": " + error.what() + "; must be a checkpoint of petzval render");
   }
 }
 

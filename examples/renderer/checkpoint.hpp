@@ -13,7 +13,8 @@ namespace renderer {
 ///
 /// A sum is an exact series of floats: channel R is the rounded sum, R.1 the remainder, R.2 the next remainder, as many
 /// as needed. Part "sums" has the pixels, "tiles" samples and luminance by tile and round, "totals" a pixel
-/// for each round. The first part has two texts: the job (JSON of all inputs) and a checksum of the job and all values.
+/// for each round, "guides" the channels for denoisers if they are set. The first part has two texts: the job (JSON of
+/// all inputs) and a checksum of the job and all values.
 class Checkpoint {
  public:
   /// Writes the file atomically. @throws petzval::Error that names the file

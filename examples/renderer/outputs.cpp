@@ -8,13 +8,14 @@ namespace renderer {
 using examples::finite_or_null;
 using examples::Json;
 
-std::vector<std::filesystem::path> write_pictures(const petzval::RgbImage& picture,
+std::vector<std::filesystem::path> write_pictures(const PictureSums& sums,
                                                   const std::map<std::string, std::string>& texts,
                                                   const std::map<std::string, double>& numbers,
                                                   const std::vector<std::string>& formats,
                                                   const std::filesystem::path& folder, float exposure) {
+  const petzval::RgbImage picture = sums.picture();
   return examples::write_picture(picture, petzval::to_srgb8(picture, exposure), formats, folder / "picture", texts,
-                                 numbers);
+                                 numbers, sums.guides());
 }
 
 Json statistics(const PictureSums& sums) {

@@ -12,10 +12,11 @@
 
 namespace renderer {
 
-/// Writes picture.exr (linear Rec. 709, with `texts` and `numbers` in its header), picture.pfm (linear Rec. 709) and
-/// picture.png (sRGB of the values times `exposure`) to a folder, as listed in `formats`. Returns the paths.
+/// Writes picture.exr (linear Rec. 709 and the guides, with `texts` and `numbers` in its header), picture.pfm (linear
+/// Rec. 709) and picture.png (sRGB of the values times `exposure`) to a folder, as listed in `formats`. Returns the
+/// paths.
 /// @throws petzval::Error that names the file
-std::vector<std::filesystem::path> write_pictures(const petzval::RgbImage& picture,
+std::vector<std::filesystem::path> write_pictures(const PictureSums& sums,
                                                   const std::map<std::string, std::string>& texts,
                                                   const std::map<std::string, double>& numbers,
                                                   const std::vector<std::string>& formats,

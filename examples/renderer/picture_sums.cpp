@@ -90,6 +90,12 @@ void PictureSums::add(const PictureSums& part) {
   for (std::size_t p = 0; p < pixels_.size(); ++p) {
     for (std::size_t c = 0; c < 3; ++c) pixels_[p][c] += part.pixels_[p][c];
   }
+  for (const auto& [name, values] : part.guides_) {
+    std::vector<float>& own = guides_.try_emplace(name, values.size()).first->second;
+    for (std::size_t t = 0; t < tiles_.size(); ++t) {
+      if (part.samples(t) > 0) copy(part.block(t), values, own);
+    }
+  }
   for (std::size_t t = 0; t < tiles_.size(); ++t) {
     for (std::size_t r = 0; r < rounds; ++r) {
       tiles_[t].samples[r] += part.tiles_[t].samples[r];
@@ -100,6 +106,13 @@ void PictureSums::add(const PictureSums& part) {
     for (std::size_t c = 0; c < 3; ++c) totals_[r][c] += part.totals_[r][c];
   }
   rejected_ += part.rejected_;
+}
+
+void PictureSums::copy(const PixelBlock& block, const std::vector<float>& from, std::vector<float>& to) const {
+  for (int y = block.y; y < block.y + block.height; ++y) {
+    const auto first = static_cast<std::ptrdiff_t>(y) * width_ + block.x;
+    std::copy_n(from.begin() + first, block.width, to.begin() + first);
+  }
 }
 
 petzval::RgbImage PictureSums::picture() const {

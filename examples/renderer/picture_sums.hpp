@@ -4,7 +4,10 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <map>
 #include <span>
+#include <string>
+#include <utility>
 #include <vector>
 
 #include "petzval/image/image.hpp"
@@ -64,6 +67,11 @@ class PictureSums {
   std::array<Estimate, 3> mean() const;
   Estimate luminance(std::size_t tile) const;
 
+  /// Channels beside the colours by name, of the size of the picture: first_hits(). Empty until set.
+  using Channels = std::map<std::string, std::vector<float>>;
+  const Channels& guides() const noexcept { return guides_; }
+  void set_guides(Channels guides) { guides_ = std::move(guides); }
+
   /// True if all bits are equal.
   friend bool operator==(const PictureSums&, const PictureSums&) = default;
 
@@ -77,12 +85,15 @@ class PictureSums {
   };
   using Rgb3 = std::array<FixedSum, 3>;
 
+  void copy(const PixelBlock& block, const std::vector<float>& from, std::vector<float>& to) const;
+
   int width_, height_;
   std::size_t tile_columns_, tile_rows_;
   std::vector<Rgb3> pixels_;
   std::vector<Tile> tiles_;
   std::array<Rgb3, rounds> totals_{};
   std::uint64_t rejected_ = 0;
+  Channels guides_;
 };
 
 }  // namespace renderer

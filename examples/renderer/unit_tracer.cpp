@@ -10,8 +10,8 @@ namespace {
 enum class Dimension : std::uint64_t { film = 1, pupil = 2 };
 
 /// Point of the unit square for a sample of a pixel: the Owen-Sobol sequence of its round.
-petzval::Vec2<double> drawn(std::uint64_t seed, Dimension what, std::uint32_t pixel, std::uint32_t round,
-                            std::uint32_t sample) {
+petzval::Vec2<double> drawn_point(std::uint64_t seed, Dimension what, std::uint32_t pixel, std::uint32_t round,
+                                  std::uint32_t sample) {
   const auto key = mixed(mixed(mixed(seed + static_cast<std::uint64_t>(what)) + pixel) + round);
   return petzval::owen_sobol(sample, static_cast<std::uint32_t>(key));
 }
@@ -34,39 +34,57 @@ void UnitTracer::trace(const PixelBlock& block, const SampleRange& samples, Spla
   }
 }
 
+UnitTracer::Drawn UnitTracer::draw(const PixelBlock& block, std::uint32_t round, std::uint32_t sample) const {
+  const auto columns = static_cast<std::uint32_t>(lens_.film().columns);
+  Drawn drawn;
+  for (int y = block.y; y < block.y + block.height; ++y) {
+    for (int x = block.x; x < block.x + block.width; ++x) {
+      drawn.pixels.push_back(static_cast<std::uint32_t>(y) * columns + static_cast<std::uint32_t>(x));
+      drawn.random.emplace_back(seed_, drawn.pixels.back(), std::uint64_t{sample} * PictureSums::rounds + round);
+      drawn.colours.push_back(colours_.draw(drawn.random.back()()));
+    }
+  }
+  return drawn;
+}
+
+LensCamera::Batch UnitTracer::batch_of(const Drawn& drawn, std::uint32_t round, std::uint32_t sample) const {
+  const auto columns = static_cast<std::uint32_t>(lens_.film().columns);
+  LensCamera::Batch batch;
+  batch.resize(drawn.pixels.size(), !drawn.colours.front().one_wavelength);
+  for (std::size_t i = 0; i < batch.size(); ++i) {
+    const std::uint32_t pixel = drawn.pixels[i];
+    const auto film_uv = drawn_point(seed_, Dimension::film, pixel, round, sample);
+    const auto pupil = drawn_point(seed_, Dimension::pupil, pixel, round, sample);
+    batch.raster_x[i] = static_cast<float>(pixel % columns + film_uv.x);
+    batch.raster_y[i] = static_cast<float>(pixel / columns + film_uv.y);
+    batch.u[i] = static_cast<float>(pupil.x), batch.v[i] = static_cast<float>(pupil.y);
+  }
+  for (std::size_t i = 0; i < batch.nm.size(); ++i) {
+    batch.nm[i] = drawn.colours[i].nm[static_cast<std::size_t>(drawn.colours[i].hero)];
+  }
+  return batch;
+}
+
+void UnitTracer::add_first_hits(const PixelBlock& block, std::uint32_t round, std::uint32_t sample,
+                                std::span<FirstHit> sums) const {
+  LensCamera::Batch batch = batch_of(draw(block, round, sample), round, sample);
+  lens_.sample(batch);
+  for (std::size_t i = 0; i < batch.size(); ++i) {
+    if (!(batch.weights[i] > 0)) continue;
+    const auto& [origin, direction] = batch.rays[i];
+    sums[i].add(scene_.meet(origin, direction), direction, batch.weights[i], lens_);
+  }
+}
+
 void UnitTracer::trace_once(const PixelBlock& block, std::uint32_t round, std::uint32_t sample, Splats& splats,
                             double& lens_seconds) const {
-  const auto columns = static_cast<std::uint32_t>(lens_.film().columns);
-  const auto pixels = static_cast<std::size_t>(block.width) * static_cast<std::size_t>(block.height);
-  const auto pixel_at = [&](std::size_t i) {
-    const auto x =
-        static_cast<std::uint32_t>(block.x) + static_cast<std::uint32_t>(i % static_cast<std::size_t>(block.width));
-    const auto y =
-        static_cast<std::uint32_t>(block.y) + static_cast<std::uint32_t>(i / static_cast<std::size_t>(block.width));
-    return y * columns + x;
-  };
-  std::vector<Random> random;
-  std::vector<PathColours> colours;
-  random.reserve(pixels), colours.reserve(pixels);
-  for (std::size_t i = 0; i < pixels; ++i) {
-    random.emplace_back(seed_, pixel_at(i), std::uint64_t{sample} * PictureSums::rounds + round);
-    colours.push_back(colours_.draw(random.back()()));
-  }
+  Drawn drawn = draw(block, round, sample);
+  auto& [pixel_at, random, colours] = drawn;
+  const std::size_t pixels = pixel_at.size();
   LensCamera::Batch batch;
   std::vector<std::vector<petzval::Importance>> seen;  // importances of the batch's rays, by lane
   if (integrator_ != Integrator::light) {
-    batch.resize(pixels, !colours.front().one_wavelength);
-    for (std::size_t i = 0; i < pixels; ++i) {
-      const std::uint32_t pixel = pixel_at(i);
-      const auto film_uv = drawn(seed_, Dimension::film, pixel, round, sample);
-      const auto pupil = drawn(seed_, Dimension::pupil, pixel, round, sample);
-      batch.raster_x[i] = static_cast<float>(pixel % columns + film_uv.x);
-      batch.raster_y[i] = static_cast<float>(pixel / columns + film_uv.y);
-      batch.u[i] = static_cast<float>(pupil.x), batch.v[i] = static_cast<float>(pupil.y);
-    }
-    for (std::size_t i = 0; i < batch.nm.size(); ++i) {
-      batch.nm[i] = colours[i].nm[static_cast<std::size_t>(colours[i].hero)];
-    }
+    batch = batch_of(drawn, round, sample);
     const Stopwatch watch(lens_seconds);
     lens_.sample(batch);
     const bool one = colours.front().one_wavelength;
@@ -87,7 +105,7 @@ void UnitTracer::trace_once(const PixelBlock& block, std::uint32_t round, std::u
       continue;
     }
     const LensView view(lens_, colours[i], lens_seconds);
-    const FilmSample film = view.film_sample(batch, i, pixel_at(i), seen);
+    const FilmSample film = view.film_sample(batch, i, pixel_at[i], seen);
     if (integrator_ == Integrator::path) trace_path(scene_, view, film, random[i], splats);
     if (integrator_ == Integrator::bidirectional) {
       trace_both(scene_, view, film, random[i], connections, splats);

@@ -2,8 +2,10 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
+#include "renderer/first_hits.hpp"
 #include "renderer/integrators.hpp"
 
 namespace renderer {
@@ -30,7 +32,18 @@ class UnitTracer {
   /// @param lens_seconds  sum to which the time spent in the lens is added (s)
   void trace(const PixelBlock& block, const SampleRange& samples, Splats& splats, double& lens_seconds) const;
 
+  /// Adds the weighted sums of the first hits of one sample of each pixel of a block, row by row.
+  void add_first_hits(const PixelBlock& block, std::uint32_t round, std::uint32_t sample,
+                      std::span<FirstHit> sums) const;
+
  private:
+  struct Drawn {
+    std::vector<std::uint32_t> pixels;
+    std::vector<Random> random;
+    std::vector<PathColours> colours;
+  };
+  Drawn draw(const PixelBlock& block, std::uint32_t round, std::uint32_t sample) const;
+  LensCamera::Batch batch_of(const Drawn& drawn, std::uint32_t round, std::uint32_t sample) const;
   void trace_once(const PixelBlock& block, std::uint32_t round, std::uint32_t sample, Splats& splats,
                   double& lens_seconds) const;
 

@@ -27,7 +27,8 @@ std::vector<std::filesystem::path> write_picture(const petzval::RgbImage& image,
                                                  const std::vector<std::string>& formats,
                                                  const std::filesystem::path& stem,
                                                  const std::map<std::string, std::string>& texts,
-                                                 const std::map<std::string, double>& numbers) {
+                                                 const std::map<std::string, double>& numbers,
+                                                 const std::map<std::string, std::vector<float>>& channels) {
   std::vector<std::filesystem::path> files;
   for (const std::string& format : formats) {
     std::filesystem::path file = stem;
@@ -37,6 +38,7 @@ std::vector<std::filesystem::path> write_picture(const petzval::RgbImage& image,
       petzval::ExrPart part = exr_part(image);
       part.texts = texts;
       part.numbers = numbers;
+      for (const auto& [name, values] : channels) part.channels.push_back({name, values});
       petzval::write_exr({&part, 1}, file);
     }
     if (format == "pfm") petzval::write_pfm(image, file);

@@ -14,13 +14,15 @@ namespace examples {
 /// Adds --format: exr, png and pfm; exr and png by default. png: the exposure of the PNG, for the help text.
 Option* add_formats(App& app, std::vector<std::string>& formats, const std::string& png);
 
-/// Writes STEM.exr (linear float, with `texts` and `numbers` in its header), STEM.pfm (linear float) and STEM.png
+/// Writes STEM.exr (linear float, with `texts` and `numbers` in its header and with more `channels` by name), STEM.pfm
+/// (linear float) and STEM.png
 /// (`shown`) as far as `formats` names them, each once. Returns the paths.
 /// @throws petzval::Error that names the file
 std::vector<std::filesystem::path> write_picture(const petzval::RgbImage& image, const petzval::Rgb8Image& shown,
                                                  const std::vector<std::string>& formats,
                                                  const std::filesystem::path& stem,
                                                  const std::map<std::string, std::string>& texts = {},
-                                                 const std::map<std::string, double>& numbers = {});
+                                                 const std::map<std::string, double>& numbers = {},
+                                                 const std::map<std::string, std::vector<float>>& channels = {});
 
 }  // namespace examples

@@ -266,6 +266,37 @@ TEST_F(BokehScene, AcceptsFocalSurfacesAndAberrations) {
   EXPECT_NEAR(mean(light, 0), mean(surface, 0), 5 * std::hypot(error(light, 0), error(surface, 0)));
 }
 
+// An oblique plane covers the left half of the picture and crosses the axis 1000 mm in front of the entrance pupil.
+TEST_F(BokehScene, GuidesOfAPlaneAreItsAlbedoNormalAndDepth) {
+  write("plane.json", R"({"sky": [0.5, 0.5, 0.5], "objects": [{"quad": {"corner_mm": [-400, -240, -1320],
+    "edge_u_mm": [400, 0, 0], "edge_v_mm": [0, 480, 640]}, "material": {"varnish": {"diffuse": [0.1, 0.3, 0.6]}}}]})");
+  render("plane", {"--scene", path("plane.json"), "--model", "thin", "--f-number", "8", "--spp", "1"});
+  const petzval::ExrPart part = petzval::read_exr_parts(path("plane/picture.exr")).front();
+  const auto value = [&](const std::string& name, std::size_t x, std::size_t y) {
+    for (const auto& [channel, values] : part.channels) {
+      if (channel == name) return static_cast<double>(values[y * 72 + x]);
+    }
+    return std::nan("");
+  };
+  const double pupil = 1000 - (value("depth.Z", 20, 23) + value("depth.Z", 20, 24)) / 2;  // behind the front vertex
+  EXPECT_GT(pupil, 20);
+  EXPECT_LT(pupil, 80);
+  for (std::size_t y = 2; y < 46; ++y) {
+    for (const std::size_t x : {3u, 20u, 30u}) {
+      EXPECT_NEAR(value("albedo.R", x, y), 0.1, 1e-6);
+      EXPECT_NEAR(value("albedo.B", x, y), 0.6, 1e-6);
+      EXPECT_NEAR(value("normal.X", x, y), 0, 1e-6);
+      EXPECT_NEAR(std::abs(value("normal.Y", x, y)), 0.8, 1e-5);
+      EXPECT_NEAR(value("normal.Z", x, y), 0.6, 1e-5);
+      // A ray through the pupil with a tangent meets the plane, whose slope is 4 / 3.
+      const double tangent = (23.5 - static_cast<double>(y)) * 0.5 / 111;
+      EXPECT_NEAR(value("depth.Z", x, y) + pupil, 1000 / (1 + tangent * 4 / 3), 6) << y;
+    }
+    for (const char* channel : {"albedo.R", "albedo.G", "normal.Y", "normal.Z"}) EXPECT_EQ(value(channel, 60, y), 0);
+    EXPECT_TRUE(std::isinf(value("depth.Z", 60, y)));
+  }
+}
+
 TEST_F(BokehScene, PicturesAreLaidOutOnSheets) {
   render("a"), render("b", {"--focus", "1500"});
   const Outcome done =

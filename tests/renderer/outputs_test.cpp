@@ -16,9 +16,10 @@ TEST(Outputs, ImagesOfAllFormatsAreEqual) {
   const std::filesystem::path folder = std::filesystem::path(testing::TempDir()) / "petzval_outputs";
   std::filesystem::remove_all(folder);
   std::filesystem::create_directories(folder);
-  petzval::RgbImage picture(3, 2);
-  for (std::size_t i = 0; i < picture.pixels.size(); ++i) picture.pixels[i] = 0.1f * static_cast<float>(i);
-  const auto files = write_pictures(picture, {{"lens", "a lens"}}, {{"f_number", 2.8}}, {"pfm", "exr"}, folder);
+  PictureSums sums = made_up_part(3, 2, 1, 1, 5);
+  sums.set_guides({{"depth.Z", {1, 2, 3, 4, 5, 6}}});
+  const petzval::RgbImage picture = sums.picture();
+  const auto files = write_pictures(sums, {{"lens", "a lens"}}, {{"f_number", 2.8}}, {"pfm", "exr"}, folder);
   EXPECT_EQ(files, (std::vector{folder / "picture.pfm", folder / "picture.exr"}));
   EXPECT_FALSE(std::filesystem::exists(folder / "picture.png"));
   EXPECT_EQ(petzval::read_exr(folder / "picture.exr").pixels, picture.pixels);
@@ -26,8 +27,10 @@ TEST(Outputs, ImagesOfAllFormatsAreEqual) {
   ASSERT_EQ(parts.size(), 1u);
   EXPECT_EQ(parts[0].texts.at("lens"), "a lens");
   EXPECT_EQ(parts[0].numbers.at("f_number"), 2.8);
+  ASSERT_EQ(parts[0].channels.back().name, "depth.Z");
+  EXPECT_EQ(parts[0].channels.back().values, sums.guides().at("depth.Z"));
   EXPECT_EQ(examples::read_text(folder / "picture.pfm").substr(0, 12), "PF\n3 2\n-1.0\n");
-  write_pictures(picture, {}, {}, {"png"}, folder);
+  write_pictures(sums, {}, {}, {"png"}, folder);
   petzval::write_png(petzval::to_srgb8(picture), folder / "wanted.png");
   EXPECT_EQ(examples::read_text(folder / "picture.png"), examples::read_text(folder / "wanted.png"));
 }
