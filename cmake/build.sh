@@ -3,7 +3,7 @@
 # needs to build petzval, and the build. POSIX sh.
 
 library_packages="g++ cmake ninja-build pkg-config libglm-dev nlohmann-json3-dev libeigen3-dev libyaml-cpp-dev libceres-dev libopenexr-dev libpng-dev"
-example_packages="libcli11-dev libfreetype-dev libfontconfig-dev fonts-dejavu-core libembree-dev libtinyobjloader-dev"
+example_packages="libcli11-dev libfreetype-dev libfontconfig-dev fonts-dejavu-core libembree-dev libtinyobjloader-dev libjpeg-dev"
 test_packages="libgtest-dev"
 docs_packages="doxygen"  # of the target docs; install them yourself
 

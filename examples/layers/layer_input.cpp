@@ -2,7 +2,8 @@
 #include "layers/layer_input.hpp"
 
 #include <algorithm>
-#include <array>
+#include <cmath>
+#include <cstring>
 #include <filesystem>
 #include <iostream>
 #include <limits>
@@ -10,10 +11,12 @@
 #include <vector>
 
 #include "layers/blur_scenes.hpp"
+#include "layers/jpeg.hpp"
 #include "petzval/core/error.hpp"
 #include "petzval/image/exr.hpp"
 #include "petzval/image/image.hpp"
 #include "support/camera_setup.hpp"
+#include "support/text.hpp"
 
 namespace lens_blur {
 namespace {
@@ -30,25 +33,87 @@ const std::vector<float>* channel(const petzval::ExrPart& part, const std::strin
 const std::vector<float>& required_channel(const petzval::ExrPart& part, const std::string& name,
                                            const std::string& file) {
   if (const auto* const values = channel(part, name)) return *values;
-  throw Error(file + ": has no channel " + name + "; must have R, G, B, Z and optionally A");
+  if (name == "Z") throw Error(file + ": has no channel Z; must have depths, unless --depth gives them");
+  throw Error(file + ": has no channel " + name + "; must have R, G, B and optionally A and Z");
 }
 
-bool ends_with(const std::string& name, const std::string& ending) {
-  return std::filesystem::path(name).extension() == ending;
+/// The ending of a file name in small letters, with its dot.
+std::string ending(const std::string& file) {
+  std::string text = std::filesystem::path(file).extension().string();
+  for (char& c : text) c = c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
+  return text;
 }
 
-/// Reads a file with one depth for each pixel: channel Z or the only channel of an EXR, or a PFM.
-std::vector<float> read_depths(const std::string& file, int& columns, int& rows) {
-  if (ends_with(file, ".pfm")) {
-    const petzval::RgbImage image = petzval::read_pfm(file);
-    columns = image.width, rows = image.height;
-    std::vector<float> depths;
-    for (std::size_t i = 0; i < image.pixels.size(); i += 3) depths.push_back(image.pixels[i]);
-    return depths;
+/// Reads the parts of an EXR file, or a picture of another format as one part with channels R, G and B.
+std::vector<petzval::ExrPart> read_parts(const std::string& file) {
+  const std::string kind = ending(file);
+  if (kind == ".exr") return petzval::read_exr_parts(file);
+  const petzval::RgbImage image = [&] {
+    if (kind == ".png") return petzval::read_png(file);
+    if (kind == ".pfm") return petzval::read_pfm(file);
+    if (kind == ".jpg" || kind == ".jpeg") return read_jpeg(file);
+    throw Error("--image = " + file + "; must end in .exr, .jpg, .jpeg, .pfm or .png");
+  }();
+  petzval::ExrPart part{.width = image.width, .height = image.height, .channels = {{"R", {}}, {"G", {}}, {"B", {}}}};
+  for (std::size_t i = 0; i < image.pixels.size(); ++i) part.channels[i % 3].values.push_back(image.pixels[i]);
+  return {part};
+}
+
+/// Reads a file with one value for each pixel into a channel Z: channel Z or the only channel of an EXR, a PFM, or a
+/// grey PNG with values from 0 to 1.
+petzval::ExrPart read_values(const std::string& file) {
+  const std::string kind = ending(file);
+  if (kind == ".exr") {
+    petzval::ExrPart part = petzval::read_exr_parts(file).front();
+    if (part.channels.size() > 1) part.channels = {{"Z", required_channel(part, "Z", file)}};
+    part.channels[0].name = "Z";
+    return part;
   }
-  const petzval::ExrPart part = petzval::read_exr_parts(file).front();
-  columns = part.width, rows = part.height;
-  return part.channels.size() == 1 ? part.channels[0].values : required_channel(part, "Z", file);
+  if (kind != ".pfm" && kind != ".png") throw Error("--depth = " + file + "; must end in .exr, .pfm or .png");
+  const petzval::RgbImage image = kind == ".pfm" ? petzval::read_pfm(file) : petzval::read_png(file);
+  petzval::ExrPart part{.width = image.width, .height = image.height, .channels = {{"Z", {}}}};
+  for (std::size_t i = 0; i < image.pixels.size(); i += 3) {
+    const float* const p = &image.pixels[i];
+    if (std::memcmp(p, p + 1, 2 * sizeof(float)) != 0) throw Error(file + ": has colours; must be grey");
+    part.channels[0].values.push_back(*p);
+  }
+  // Depths are not colours: without sRGB.
+  if (kind == ".png") part.channels[0].values = petzval::read_iris_map(file).values;
+  return part;
+}
+
+/// Reads --depth: mm, along the axis or along rays.
+petzval::ExrPart read_depths(const InputFlags& flags) {
+  const bool inverse = flags.depth_kind == "inverse", scaled = flags.near_mm > 0;
+  if (!scaled && ending(flags.depth) == ".png") {
+    throw Error("--depth = " + flags.depth + ": a PNG has no lengths; must be given with --near and --far");
+  }
+  if (scaled && !(flags.near_mm < flags.far_mm)) {
+    throw Error("--near = " + examples::number(flags.near_mm) + "; must be less than --far, " +
+                examples::number(flags.far_mm));
+  }
+  if (scaled && !inverse && std::isinf(flags.far_mm)) {
+    throw Error("--far = inf; must be finite unless --depth-kind is inverse");
+  }
+  petzval::ExrPart part = read_values(flags.depth);
+  const bool white_is_near = flags.white.empty() ? inverse : flags.white == "near";
+  const auto end = [&](bool near) {
+    const double mm = near ? flags.near_mm : flags.far_mm;
+    return inverse ? 1 / mm : mm;
+  };
+  const double black = end(!white_is_near), white = end(white_is_near);
+  for (float& value : part.channels[0].values) {
+    double result = static_cast<double>(value);
+    if (scaled) {
+      if (!(result >= 0 && result <= 1)) {
+        throw Error(flags.depth + ": value = " + examples::number(result) + "; must be 0 to 1 with --near and --far");
+      }
+      result = (1 - result) * black + result * white;
+    }
+    // An inverse depth of 0 is infinity.
+    value = static_cast<float>(inverse && result >= 0 ? 1 / result : result);
+  }
+  return part;
 }
 
 }  // namespace
@@ -56,27 +121,44 @@ std::vector<float> read_depths(const std::string& file, int& columns, int& rows)
 void add_input(examples::App& app, InputFlags& flags) {
   app.add_option("--scene", flags.scene, "built-in scene to blur")
       ->one_of({"town", "statues", "knot", "leaves", "street"});
-  app.add_option("--image", flags.image,
-                 "picture with channels R, G, B, Z and optionally A; several parts are layers from near to far")
-      ->type_name("RGBAZ.exr");
+  auto* image =
+      app.add_option("--image", flags.image,
+                     "picture: PNG or JPEG (sRGB), PFM or EXR (linear). An EXR may have depths (Z, mm) and alpha (A); "
+                     "several parts are layers from near to far")
+          ->type_name("PICTURE");
   app.add_option("--deep", flags.deep, "deep picture")->type_name("DEEP.exr");
-  app.add_option("--rgb", flags.rgb, "picture: PNG (sRGB) or PFM (linear); needs --depth")->type_name("A.png");
-  app.add_option("--depth", flags.depth,
-                 "depths of --rgb (mm): EXR, or PFM with one channel (Pf) and rows from the bottom")
-      ->type_name("D.exr");
+  auto* depth = app.add_option("--depth", flags.depth,
+                               "depths of --image: EXR, PFM with one channel (Pf) and rows from the bottom, or grey "
+                               "PNG with 8 or 16 bits, which needs --near and --far")
+                    ->type_name("DEPTHS")
+                    ->needs(image);
   app.add_option("--depth-kind", flags.depth_kind,
-                 "meaning of depths in files: along the axis (axial) or along rays (distance)")
-      ->one_of({"axial", "distance"})
+                 "values of files: depths along the axis (axial, mm), distances along rays (distance, mm), or 1/depth "
+                 "along the axis (inverse, 1/mm), as in disparity maps of phones and neural networks")
+      ->one_of({"axial", "distance", "inverse"})
       ->capture_default_str();
+  auto* near = add_length(app, "--near", flags.near_mm, examples::positive_number,
+                          "depth at the near end of the values of --depth, which go from 0 (black) to 1 (white)")
+                   ->default_str("values are not scaled")
+                   ->needs(depth);
+  auto* far = add_length(app, "--far", flags.far_mm, examples::positive_length, "depth at the far end of the values")
+                  ->default_str("")
+                  ->needs(near);
+  near->needs(far);
+  app.add_option("--white", flags.white, "end of the depths that is white")
+      ->one_of({"near", "far"})
+      ->default_str("far; near for --depth-kind inverse")
+      ->needs(near);
   examples::add_picture_size(app, flags.width, flags.height, 800);
 }
 
-LayerInput::LayerInput(const InputFlags& flags) : flags_(flags), depths_are_axial_(flags.depth_kind == "axial") {
-  const int given = !flags.scene.empty() + !flags.image.empty() + !flags.deep.empty() + !flags.rgb.empty();
+LayerInput::LayerInput(const InputFlags& flags) : flags_(flags), depths_are_axial_(flags.depth_kind != "distance") {
+  const int given = !flags.scene.empty() + !flags.image.empty() + !flags.deep.empty();
   if (given != 1) {
-    throw Error("layers: " + std::to_string(given) + " of --scene, --image, --deep and --rgb are given; must be 1");
+    throw Error("layers: " + std::to_string(given) + " of --scene, --image and --deep are given; must be 1");
   }
-  if (flags.rgb.empty() != flags.depth.empty()) throw Error("--rgb and --depth must be given together");
+  if (flags.depth_kind == "inverse" && flags.depth.empty())
+    throw Error("--depth-kind = inverse: must be used with --depth");
   if (!flags.scene.empty()) {
     if (!depths_are_axial_) {
       throw Error("--depth-kind = " + flags.depth_kind + ": must not be used with --scene, whose depths are axial");
@@ -96,16 +178,28 @@ LayerInput::LayerInput(const InputFlags& flags) : flags_(flags), depths_are_axia
     if (deep.volumes > 0)
       std::cerr << "note: " << deep.volumes << " volume samples are treated as surfaces at their front\n";
     lists_ = std::move(deep.lists);
-  } else if (!flags.image.empty()) {
-    read_layers(flags.image);
   } else {
-    read_picture(flags.rgb, flags.depth);
+    read_picture();
   }
   columns_ = lists_.columns, rows_ = lists_.rows;
 }
 
-void LayerInput::read_layers(const std::string& file) {
-  const std::vector<petzval::ExrPart> parts = petzval::read_exr_parts(file);
+void LayerInput::read_picture() {
+  const std::string& file = flags_.image;
+  std::vector<petzval::ExrPart> parts = read_parts(file);
+  if (!flags_.depth.empty()) {
+    if (parts.size() > 1) {
+      throw Error(file + ": parts = " + std::to_string(parts.size()) + "; must be 1 with --depth");
+    }
+    petzval::ExrPart depths = read_depths(flags_);
+    if (depths.width != parts[0].width || depths.height != parts[0].height) {
+      throw Error(flags_.depth + ": size = " + std::to_string(depths.width) + " x " + std::to_string(depths.height) +
+                  "; must be the size of " + file + ", " + std::to_string(parts[0].width) + " x " +
+                  std::to_string(parts[0].height));
+    }
+    std::erase_if(parts[0].channels, [](const auto& c) { return c.name == "Z"; });
+    parts[0].channels.push_back(std::move(depths.channels[0]));
+  }
   lists_ = {.columns = parts[0].width, .rows = parts[0].height, .offsets = {0}, .fragments = {}};
   struct Planes {
     const std::vector<float>*r, *g, *b, *z, *a;
@@ -124,23 +218,6 @@ void LayerInput::read_layers(const std::string& file) {
     for (const auto& [r, g, b, z, a] : planes) {
       if ((*z)[i] > 0) lists_.fragments.push_back({(*z)[i], (*r)[i], (*g)[i], (*b)[i], a ? (*a)[i] : 1.0f});
     }
-    lists_.offsets.push_back(lists_.fragments.size());
-  }
-}
-
-void LayerInput::read_picture(const std::string& rgb, const std::string& depth) {
-  const petzval::RgbImage picture = ends_with(rgb, ".pfm") ? petzval::read_pfm(rgb) : petzval::read_png(rgb);
-  int columns = 0, rows = 0;
-  const std::vector<float> depths = read_depths(depth, columns, rows);
-  if (columns != picture.width || rows != picture.height) {
-    throw Error(depth + ": size = " + std::to_string(columns) + " x " + std::to_string(rows) +
-                "; must be the size of " + rgb + ", " + std::to_string(picture.width) + " x " +
-                std::to_string(picture.height));
-  }
-  lists_ = {.columns = columns, .rows = rows, .offsets = {0}, .fragments = {}};
-  for (std::size_t i = 0; i < depths.size(); ++i) {
-    const float* const p = &picture.pixels[3 * i];
-    if (depths[i] > 0) lists_.fragments.push_back({depths[i], p[0], p[1], p[2], 1});
     lists_.offsets.push_back(lists_.fragments.size());
   }
 }

@@ -13,7 +13,9 @@ namespace lens_blur {
 
 /// Command line of the source of layers.
 struct InputFlags {
-  std::string scene, image, deep, rgb, depth, depth_kind = "axial";
+  std::string scene, image, deep, depth, depth_kind = "axial";
+  double near_mm = 0, far_mm = 0;       ///< depths of the ends of the values of --depth; 0: values are lengths
+  std::string white;                    ///< "near" or "far"; empty: far, or near for inverse depths
   std::uint32_t width = 0, height = 0;  ///< 0: 800 x 600, or the size of the file
 };
 
@@ -38,8 +40,7 @@ class LayerInput {
   void fill(const petzval::PeelPlan& plan, int layers, int threads, petzval::LayerSet& set);
 
  private:
-  void read_picture(const std::string& rgb, const std::string& depth);
-  void read_layers(const std::string& file);
+  void read_picture();
 
   InputFlags flags_;
   int columns_ = 800, rows_ = 600;

@@ -3,7 +3,7 @@
 //
 //   petzval blur --scene town --thin-lens 50 --f-number 0.5 --focus 5000 --compare --out out
 //   petzval blur --scene street data/lenses/double_gauss_52mm_f1.8.json --focus 3000 --rays 32 --out out
-//   petzval blur --rgb photo.png --depth photo.pfm --thin-lens 85 --f-number 1.42 --focus 2000 --out out
+//   petzval blur --image photo.jpg --depth photo.pfm --thin-lens 85 --f-number 1.42 --focus 2000 --out out
 #include "commands.hpp"
 
 #include <algorithm>

@@ -42,7 +42,7 @@ class LensBlurProgram : public Programs {
     for (std::size_t i = 0; i < depths.size(); ++i) depths[i] = static_cast<float>(i % 24 < 12 ? left_mm : right_mm);
     petzval::write_pfm(24, 16, depths, path("depth.pfm"));
   }
-  Arguments files() const { return {"--rgb", path("rgb.pfm"), "--depth", path("depth.pfm")}; }
+  Arguments files() const { return {"--image", path("rgb.pfm"), "--depth", path("depth.pfm")}; }
 };
 
 TEST_F(LensBlurProgram, WritesPicturesAndTheirMeasures) {
@@ -144,7 +144,7 @@ TEST_F(LensBlurProgram, RefusesInvalidInput) {
     expect_failure("blur", joined({thin, arguments, {"--out", path("out")}}), tokens);
   };
   const Arguments focus{"--focus", "3000"};
-  refused(joined({focus, files(), {"--scene", "town"}}), {2, "--scene", "--rgb"});
+  refused(joined({focus, files(), {"--scene", "town"}}), {2, "--scene", "--image"});
   refused(joined({focus, files(), {"--compare"}}), {"--compare"});
   refused(joined({focus, files(), {"--supersample", "2"}}), {"--supersample"});
   refused(joined({focus, files(), {"--size", "80"}}), {"--size"});
@@ -152,7 +152,7 @@ TEST_F(LensBlurProgram, RefusesInvalidInput) {
   petzval::write_exr(picture("rgb.pfm"), path("flat.exr"));
   refused(joined({focus, {"--image", path("flat.exr")}}), {"flat.exr", "Z"});
   petzval::write_pfm(16, 24, std::vector<float>(384, 1000), path("turned.pfm"));
-  refused(joined({focus, {"--rgb", path("rgb.pfm"), "--depth", path("turned.pfm")}}), {"turned.pfm", 16, 24});
+  refused(joined({focus, {"--image", path("rgb.pfm"), "--depth", path("turned.pfm")}}), {"turned.pfm", 16, 24});
 }
 
 // The default film of 24 mm height suits lenses with this image size; --fov makes it smaller.

@@ -186,7 +186,9 @@ const std::vector<Refused> all = {
       {{"LENS:fisheye_10mm_f4", "--wavelengths", "500"}, {"V_d", 587.5618, 500}}}},
     {"trace",
      {f135, "--out", "@out"},
-     {{{}, {"--table"}}, {{"--table", "@none.csv"}, {"none.csv"}}, {{"--table", "@samples.csv", "--fast"}, {"--fast"}}}},
+     {{{}, {"--table"}},
+      {{"--table", "@none.csv"}, {"none.csv"}},
+      {{"--table", "@samples.csv", "--fast"}, {"--fast"}}}},
 #ifdef PETZVAL_TEST_HAS_tilt
     {"pull",
      {"--out", "@out"},
@@ -270,9 +272,11 @@ const std::vector<Refused> all = {
 #ifdef PETZVAL_TEST_HAS_blur
     {"blur",
      {"--out", "@out", "--focus", "3000"},
-     {{{"--thin-lens", "50", "--f-number", "5.56"}, {"--scene", "--image", "--deep", "--rgb"}},
+     {{{"--thin-lens", "50", "--f-number", "5.56"}, {"--scene", "--image", "--deep"}},
       {{"--scene", "town"}, {"--thin-lens", "LENS", "--singlet"}},
-      {{"--thin-lens", "50", "--f-number", "5.56", "--rgb", "@black.png"}, {"--rgb", "--depth"}},
+      {{"--thin-lens", "50", "--f-number", "5.56", "--image", "@black.png"}, {"black.png", "--depth"}},
+      {{"--thin-lens", "50", "--f-number", "5.56", "--image", "@black.png", "--depth", "@black.png"},
+       {"black.png", "--near", "--far"}},
       {{"--thin-lens", "50", "--f-number", "5.56", "--image", "@none.exr"}, {"none.exr"}},
       {{"--thin-lens", "50", "--f-number", "5.56", "--deep", "@black.png"}, {"black.png"}},
       {{"--scene", "town", f135, "--focus", "1"}, {"--focus", 1, 1000}},  // metres?
