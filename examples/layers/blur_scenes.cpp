@@ -4,11 +4,13 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <glm/common.hpp>
 #include <glm/geometric.hpp>
 #include <numbers>
 #include <random>
 #include <utility>
 
+#include "renderer/angel.hpp"
 #include "renderer/built_in_scenes.hpp"
 #include "renderer/solids.hpp"
 
@@ -173,6 +175,43 @@ SceneDescription town_scene() {
   return scene;
 }
 
+SceneDescription miniature_scene() {
+  SceneDescription scene = town_scene();
+  scene.name = "miniature";
+  scene.pose = {.position = {-2600, 5600, 1500}, .look_at = {100, -500, -11000}};
+  // Strong colours, like paint.
+  for (renderer::Object& object : scene.objects) {
+    Albedo& albedo = std::get<Diffuse>(object.material).albedo;
+    const auto paint = [](Rgb& colour) {
+      const float grey = (colour.x + colour.y + colour.z) / 3;
+      colour = glm::clamp(grey + 1.6f * (colour - grey), Rgb(0.02f), Rgb(0.95f));
+    };
+    paint(albedo.colour);
+    if (albedo.checker) paint(albedo.checker->other);
+  }
+  return scene;
+}
+
+SceneDescription lights_scene() {
+  SceneDescription scene{.name = "lights", .sky = {.colour = {0.012f, 0.018f, 0.040f}}, .pose = {}};
+  Chance chance(3);
+  // Small lights at directions on a grid over the picture, corners included.
+  constexpr int columns = 11, rows = 8;
+  const std::array<Rgb, 5> colours{
+      {{1, 0.95f, 0.85f}, {1, 0.62f, 0.25f}, {1, 0.95f, 0.85f}, {0.35f, 1, 0.55f}, {1, 0.16f, 0.10f}}};
+  for (int i = 0; i < columns * rows; ++i) {
+    const float away = chance.next(14000, 40000), x = static_cast<float>(i % columns) + chance.next(0.2f, 0.8f),
+                y = static_cast<float>(i / columns) + chance.next(0.2f, 0.8f);
+    const glm::vec3 centre = away * glm::vec3{0.62f * (x / columns - 0.5f), 0.48f * (y / rows - 0.5f), -1};
+    scene.objects.push_back({"light", renderer::Sphere{centre, 0.0008f * away}, matt({0, 0, 0}),
+                             90.0f * colours[static_cast<std::size_t>(5 * chance.next())]});
+  }
+  // The subject in focus.
+  scene.objects.push_back({"angel", placed(renderer::angel(renderer::AngelPose::praying, 900), {-60, -520, -3000}, 12),
+                           matt({6.0f, 5.6f, 5.0f})});
+  return scene;
+}
+
 SceneDescription knot_scene() {
   SceneDescription scene{.name = "knot", .sky = daylight, .pose = {}};
   const glm::vec3 centre{0, 60, -3600};
@@ -252,10 +291,22 @@ SceneDescription leaves_scene() {
 
 std::optional<SceneDescription> blur_scene(std::string_view name) {
   if (name == "town") return town_scene();
+  if (name == "miniature") return miniature_scene();
+  if (name == "lights") return lights_scene();
   if (name == "knot") return knot_scene();
   if (name == "leaves") return leaves_scene();
   if (name == "statues") return renderer::statues_scene();
-  if (name == "street") return renderer::street_scene();
+  if (name == "street") {
+    SceneDescription scene = renderer::street_scene();
+    // LitScene has no light from the shop window.
+    for (renderer::Object& object : scene.objects) {
+      if (object.name == "post") object.material = matt({2, 2, 2});
+      if (object.name != "sign") continue;
+      Albedo& albedo = std::get<renderer::Varnish>(object.material).albedo;
+      albedo.colour *= 12.0f, albedo.checker->other *= 12.0f;
+    }
+    return scene;
+  }
   return {};
 }
 

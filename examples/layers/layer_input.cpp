@@ -120,7 +120,7 @@ petzval::ExrPart read_depths(const InputFlags& flags) {
 
 void add_input(examples::App& app, InputFlags& flags) {
   app.add_option("--scene", flags.scene, "built-in scene to blur")
-      ->one_of({"town", "statues", "knot", "leaves", "street"});
+      ->one_of({"town", "miniature", "lights", "statues", "knot", "leaves", "street"});
   auto* image =
       app.add_option("--image", flags.image,
                      "picture: PNG or JPEG (sRGB), PFM or EXR (linear). An EXR may have depths (Z, mm) and alpha (A); "

@@ -26,7 +26,7 @@ std::size_t triangles(const renderer::SceneDescription& scene) {
 
 TEST(BlurScenes, HaveTheNamesInTheHelp) {
   std::string names;
-  for (const char* name : {"town", "statues", "knot", "leaves", "street"}) {
+  for (const char* name : {"town", "miniature", "lights", "statues", "knot", "leaves", "street"}) {
     const auto scene = blur_scene(name);
     ASSERT_TRUE(scene);
     EXPECT_EQ(scene->name, name);
