@@ -4,6 +4,7 @@
 #include "petzval/core/error.hpp"
 
 #ifdef PETZVAL_HAS_JPEG
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <csetjmp>
@@ -12,6 +13,7 @@
 #include <memory>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include <jpeglib.h>  // after <cstdio>
 
