@@ -97,8 +97,19 @@ void add_lens(examples::App& app, LensFlags& flags) {
   constexpr examples::Range tilt{-60, 60, "a number from -60 to 60"};
   add_number(app, "--tilt", flags.tilt_deg, tilt, "tilt of the film about the horizontal axis (degrees)");
   add_number(app, "--swing", flags.swing_deg, tilt, "swing of the film about the vertical axis (degrees)");
-  constexpr examples::Range rays{1, 16384, "a whole number from 1 to 16384"};
-  add_count(app, "--rays", flags.rays, rays, "rays through the lens per pixel of the picture")
+  app.add_option(
+         "--rays",
+         [&flags](const std::string& text) {
+           constexpr examples::Range rays{1, 16384, "whole numbers from 1 to 16384"};
+           flags.ray_counts.clear();
+           for (const double count : examples::parse_numbers("--rays", text, rays)) {
+             if (count != std::floor(count)) throw Error("--rays = " + number(count) + "; must be " + rays.words);
+             flags.ray_counts.push_back(static_cast<std::uint32_t>(count));
+           }
+           flags.rays = flags.ray_counts.back();
+         },
+         "rays through the lens per pixel of the picture; several numbers with --compare-rays")
+      ->type_name("N,...")
       ->default_str("256; 512 for LENS and --singlet with --jitter");
   app.add_flag("--jitter", flags.jitter, "16 sets of rays, alternating over the pixels: grain instead of patterns");
   app.add_option("--wavelengths", flags.wavelengths,

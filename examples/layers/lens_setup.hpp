@@ -27,7 +27,9 @@ struct LensFlags {
   double focus_mm = 0, fov_deg = 0;
   examples::FocusFlags focus;
   double tilt_deg = 0, swing_deg = 0;
-  std::uint32_t rays = 0;         ///< 0: 256, or 512 for traced surfaces with jitter
+  std::uint32_t rays = 0;  ///< 0: 256, or 512 for traced surfaces with jitter
+  /// Numbers of rays that are compared with each other; `rays` is the last. Empty if --rays is not given.
+  std::vector<std::uint32_t> ray_counts;
   std::uint32_t supersample = 1;  ///< 1, 2 or 4 subpixels per pixel in each direction
   std::string wavelengths = "d";
   bool jitter = false;
@@ -52,6 +54,9 @@ class BlurLens {
 
   const petzval::LayerCamera& layers() const noexcept { return layers_; }
   const std::string& name() const noexcept { return name_; }
+  /// Changes the number of rays per pixel.
+  void set_rays(std::uint32_t rays) noexcept { flags_.rays = rays; }
+  std::uint32_t ray_count() const noexcept { return flags_.rays; }
   /// The rays of the lens at a time (s). nearest_mm: depth of the nearest surface.
   petzval::LensRays rays(double nearest_mm, int threads, double time = 0);
 

@@ -11,6 +11,7 @@
 #include <glm/glm.hpp>
 
 #include "petzval/core/error.hpp"
+#include "support/text.hpp"
 
 namespace lens_blur {
 namespace {
@@ -277,6 +278,43 @@ std::vector<unsigned char> near_depth_edges(const petzval::LayerSet& layers, con
     }
   }
   return mask;
+}
+
+std::string quality_plot(std::vector<RayQuality> qualities, const std::string& remark) {
+  std::erase_if(qualities, [](const RayQuality& q) { return !std::isfinite(q.psnr_db); });
+  std::ranges::sort(qualities, {}, &RayQuality::rays);
+  constexpr double left = 70, right = 610, top = 70, foot = 350;
+  double least = 0, most = 0, low = 0, high = 10;
+  if (!qualities.empty()) {
+    least = std::log10(qualities.front().rays) - 0.2, most = std::log10(qualities.back().rays) + 0.4;
+    const auto [worst, best] = std::ranges::minmax(qualities, {}, &RayQuality::psnr_db);
+    low = 10 * std::floor(worst.psnr_db / 10), high = 10 * std::floor(best.psnr_db / 10) + 10;
+  }
+  const auto text = [](double x, double y, const std::string& words, const std::string& more = "") {
+    return "<text x=\"" + examples::number(x, 4) + "\" y=\"" + examples::number(y, 4) + "\"" + more + ">" + words +
+           "</text>\n";
+  };
+  const auto y_of = [&](double psnr) { return foot - (psnr - low) / (high - low) * (foot - top); };
+  std::string svg =
+      "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 640 400\" font-family=\"sans-serif\" "
+      "font-size=\"13\">\n<rect width=\"640\" height=\"400\" fill=\"#fff\"/>\n" +
+      text(16, 26, "Quality and number of rays", " font-size=\"17\" font-weight=\"bold\"") +
+      text(16, 46, "PSNR (dB) over rays per pixel, " + remark);
+  for (double psnr = low; psnr <= high; psnr += 10) {
+    const std::string y = examples::number(y_of(psnr), 4);
+    svg += "<path d=\"M70 " + y + "H610\" stroke=\"#ccc\"/>\n" +
+           text(left - 8, y_of(psnr) + 4, examples::number(psnr), " text-anchor=\"end\"");
+  }
+  std::string line;
+  for (const RayQuality& q : qualities) {
+    const double x = left + (std::log10(q.rays) - least) / (most - least) * (right - left), y = y_of(q.psnr_db);
+    const std::string at = examples::number(x, 4), down = examples::number(y, 4);
+    line += (line.empty() ? "M" : "L") + at + " " + down;
+    svg += "<circle cx=\"" + at + "\" cy=\"" + down + "\" r=\"4\" fill=\"#1f5fc4\"/>\n" +
+           text(x + 8, y + 14, examples::number(q.psnr_db, 3) + " dB") +
+           text(x, foot + 20, examples::number(q.rays), " text-anchor=\"middle\"");
+  }
+  return svg + "<path d=\"" + line + "\" fill=\"none\" stroke=\"#1f5fc4\" stroke-width=\"1.5\"/>\n</svg>\n";
 }
 
 }  // namespace lens_blur

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <string>
 #include <vector>
 
 #include "petzval/blur/layers.hpp"
@@ -30,5 +31,13 @@ double energy_drift(const petzval::RgbImage& picture, const petzval::RgbImage& r
 /// Mask (0 or 1, row by row) of the pixels within one circle of confusion of a depth edge in the first layer. A depth
 /// edge is a step of inverse depth between neighbours that is larger than rays can follow.
 std::vector<unsigned char> near_depth_edges(const petzval::LayerSet& layers, const petzval::LensRays& rays);
+
+/// Likeness of a picture with some rays per pixel and a picture with many.
+struct RayQuality {
+  double rays = 0, psnr_db = 0;
+};
+
+/// A plot of PSNR over the number of rays, on a logarithmic axis, as SVG. Equal pictures are left out.
+std::string quality_plot(std::vector<RayQuality> qualities, const std::string& remark);
 
 }  // namespace lens_blur

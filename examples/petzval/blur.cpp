@@ -14,6 +14,7 @@
 #include <limits>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "layers/layer_input.hpp"
@@ -25,6 +26,7 @@
 #include "petzval/core/parallel.hpp"
 #include "petzval/image/image.hpp"
 #include "support/cli.hpp"
+#include "support/contact_sheet.hpp"
 #include "support/files.hpp"
 #include "support/picture_files.hpp"
 #include "support/text.hpp"
@@ -41,9 +43,13 @@ struct Options {
   std::uint32_t frames = 1;
   double frames_per_second = 24, travel_mm = 0, highlights_above = -1;  ///< highlights_above < 0: threshold_of()
   bool compare = false;
+  std::uint32_t compare_rays = 0;  ///< 0: no comparison with more rays
   std::vector<std::string> formats;
   std::string out_folder;
 };
+
+/// Largest number of frames in frames.png.
+constexpr std::size_t most_shown = 8;
 
 constexpr examples::Range supersamples{1, 4, "1, 2 or 4"};
 
@@ -68,6 +74,17 @@ RgbImage colours_of(const petzval::BlurredImage& picture) {
   RgbImage image(picture.columns, picture.rows);
   for (std::size_t i = 0; i < picture.missed.size(); ++i) std::copy_n(&picture.rgba[4 * i], 3, &image.pixels[3 * i]);
   return image;
+}
+
+/// The middle of a picture, at most 320 x 240 pixels.
+RgbImage middle_of(const RgbImage& picture) {
+  RgbImage middle(std::min(picture.width, 320), std::min(picture.height, 240));
+  for (int y = 0; y < middle.height; ++y) {
+    const float* const row =
+        picture.pixel((picture.width - middle.width) / 2, y + (picture.height - middle.height) / 2);
+    std::copy_n(row, 3 * middle.width, middle.pixel(0, y));
+  }
+  return middle;
 }
 
 RgbImage missed_of(const petzval::BlurredImage& picture) {
@@ -128,6 +145,13 @@ class Job {
     if (options.frames == 1 && options.travel_mm != 0) {
       throw petzval::Error("--travel: --frames = 1; must be 2 or more");
     }
+    if (options.compare_rays == 0 && options.lens.ray_counts.size() > 1) {
+      throw petzval::Error("--rays: " + std::to_string(options.lens.ray_counts.size()) +
+                           " numbers; must be 1 without --compare-rays");
+    }
+    if (options.compare_rays > 0 && options.frames > 1) {
+      throw petzval::Error("--compare-rays: --frames = " + std::to_string(options.frames) + "; must be 1");
+    }
     if (side_ == 3) throw petzval::Error(std::string("--supersample = 3; must be ") + supersamples.words);
     if (!input_.scene()) {
       if (options.compare) throw petzval::Error("--compare needs --scene");
@@ -148,6 +172,8 @@ class Job {
       do_frame(frame, folder, options_.frames > 1 ? "_" + number : "");
     }
     if (options_.compare && options_.frames > 1) result_["flicker"] = flicker_ / (options_.frames - 1);
+    if (options_.frames > 1) write_frames(folder);
+    if (options_.compare_rays > 0) compare_rays(folder);
     examples::write_text(folder / "blur.json", result_.dump(1) + '\n');
     progress.reset();
     if (rays_error_px_ > 1) {
@@ -172,8 +198,7 @@ class Job {
     const petzval::LensRays rays = lens_.rays(0.8 * nearest, threads_, time);
     const double rays_ms = ms_since(start);
     rays_error_px_ = std::max(rays_error_px_, rays.interpolation_error_px());
-    petzval::PeelPlan plan = petzval::plan_peel(rays, 0.8 * nearest, std::numeric_limits<double>::infinity());
-    if (!input_.scene()) plan.camera.overscan = 0;
+    const petzval::PeelPlan plan = plan_of(rays, nearest);
 
     // A single picture is computed twice and the second run is timed, because the first run also allocates memory.
     double peel_ms = 0, n_buffer_ms = 0, gather_ms = 0, threshold = 0;
@@ -208,16 +233,97 @@ class Job {
               {"nbuffer_ms", n_buffer_ms},
               {"gather_ms", gather_ms},
               {"total_ms", peel_ms + n_buffer_ms + gather_ms},
+              {"memory_mb", layers_mb()},
               {"miss_rate", static_cast<double>(statistics.missed) / static_cast<double>(statistics.rays)},
               {"highlights_above", threshold},
               {"highlights", statistics.highlights},
               {"supersample", side_}};
     if (options_.compare) compare(rays, picture, json);
+    if (options_.frames > 1 && frame * most_shown / options_.frames >= shown_.size()) {
+      shown_.push_back({petzval::to_srgb8(picture), {examples::number(time, 3) + " s"}});
+    }
     if (options_.frames == 1) {
       result_ = json;
     } else {
       result_["frames"].push_back(json);
     }
+  }
+
+  /// Size of the layers: five numbers per pixel and layer.
+  double layers_mb() const { return 5e-6 * sizeof(float) * layers_.count() * layers_.columns() * layers_.rows(); }
+
+  petzval::PeelPlan plan_of(const petzval::LensRays& rays, double nearest) const {
+    petzval::PeelPlan plan = petzval::plan_peel(rays, 0.8 * nearest, std::numeric_limits<double>::infinity());
+    if (!input_.scene()) plan.camera.overscan = 0;
+    return plan;
+  }
+
+  /// Writes frames.png: up to 8 frames at equal steps of time.
+  void write_frames(const std::filesystem::path& folder) {
+    examples::Sheet sheet{.title = lens_.name(), .rows = {}, .notes = {}};
+    for (examples::Tile& tile : shown_) {
+      if (sheet.rows.empty() || sheet.rows.back().tiles.size() == most_shown / 2) sheet.rows.emplace_back();
+      sheet.rows.back().tiles.push_back(std::move(tile));
+    }
+    sheet.notes.push_back(std::to_string(options_.frames) + " frames");
+    if (options_.compare) {
+      sheet.notes.back() +=
+          "; flicker " + examples::number(result_["flicker"].get<double>(), 3) +
+          ": RMS change of the error from frame to frame, against rays traced through the scene (white is 1)";
+    }
+    write_sheet(sheet, folder / "frames.png");
+  }
+
+  /// Blurs the same layers with each number of rays of --rays and compares the pictures with --compare-rays rays.
+  void compare_rays(const std::filesystem::path& folder) {
+    const double nearest = input_.nearest_mm(lens_.layers(), threads_);
+    const std::vector<std::uint32_t> counts =
+        options_.lens.ray_counts.empty() ? std::vector{lens_.ray_count()} : options_.lens.ray_counts;
+    bool filled = false;
+    double ms = 0;
+    const auto picture = [&](std::uint32_t count) {
+      lens_.set_rays(count);
+      const petzval::LensRays rays = lens_.rays(0.8 * nearest, threads_);
+      if (!std::exchange(filled, true)) {
+        input_.fill(plan_of(rays, nearest), static_cast<int>(options_.layers), threads_, layers_);
+      }
+      const auto start = std::chrono::steady_clock::now();
+      petzval::gather(layers_, rays,
+                      {.threads = threads_, .highlights_above = result_["highlights_above"].get<double>()}, blurred_);
+      ms = ms_since(start);
+      return averaged(colours_of(blurred_), side_);
+    };
+    const RgbImage most = picture(options_.compare_rays);
+    result_["compare_rays"] = options_.compare_rays, result_["compare_rays_ms"] = ms;
+    write(most, folder / "many_rays");
+    examples::Sheet sheet{.title = "Quality and number of rays", .rows = {{}}, .notes = {}};
+    const auto add = [&](const RgbImage& image, std::uint32_t count, double time_ms, const std::string& quality) {
+      sheet.rows[0].tiles.push_back(
+          {petzval::to_srgb8(middle_of(image)),
+           {std::to_string(count) + " rays", std::to_string(std::lround(time_ms)) + " ms", quality}});
+    };
+    std::vector<lens_blur::RayQuality> qualities;
+    for (const std::uint32_t count : counts) {
+      const RgbImage image = picture(count);
+      const lens_blur::Likeness like = lens_blur::likeness(image, most);
+      result_["quality"].push_back({{"rays", count},
+                                    {"gather_ms", ms},
+                                    {"psnr_db", examples::finite_or_null(like.psnr_db)},
+                                    {"ssim", like.ssim}});
+      qualities.push_back({static_cast<double>(count), like.psnr_db});
+      add(image, count, ms, examples::number(like.psnr_db, 3) + " dB, SSIM " + examples::number(like.ssim, 4));
+    }
+    add(most, options_.compare_rays, result_["compare_rays_ms"].get<double>(), "");
+    write_sheet(sheet, folder / "rays.png");
+    examples::write_text(folder / "rays.svg",
+                         lens_blur::quality_plot(qualities, "against " + std::to_string(options_.compare_rays) +
+                                                                " rays of the same layers, " + lens_.name()));
+    std::cout << (folder / "rays.svg").string() << '\n';
+  }
+
+  void write_sheet(const examples::Sheet& sheet, const std::filesystem::path& file) const {
+    petzval::write_png(examples::draw_sheet(sheet), file);
+    std::cout << file.string() << '\n';
   }
 
   void compare(const petzval::LensRays& rays, const RgbImage& picture, Json& json) {
@@ -271,6 +377,7 @@ class Job {
   petzval::LayerSet layers_;
   petzval::BlurredImage blurred_;
   Json result_;
+  std::vector<examples::Tile> shown_;  ///< tiles of frames.png
   std::vector<float> last_error_;
   double flicker_ = 0, rays_error_px_ = 0;  ///< rays_error_px_: maximum over all frames
 };
@@ -290,6 +397,10 @@ int commands::blur(int argc, char** argv) {
   examples::add_count(app, "--layers", options.layers, layers, "largest number of surfaces behind each other");
   app.add_flag("--compare", options.compare,
                "compare the picture of a scene with the same rays traced through the scene");
+  examples::add_count(app, "--compare-rays", options.compare_rays, {1, 1 << 20, "a whole number from 1 to 1048576"},
+                      "compare the pictures of all numbers of --rays with a picture of this many rays of the same "
+                      "layers: rays.png, rays.svg, many_rays.* and `quality` in blur.json")
+      ->default_str("");
   examples::add_count(app, "--supersample", options.supersample, supersamples,
                       "subpixels of a scene per pixel in each direction, averaged; the rays of a pixel are divided "
                       "between its subpixels")
@@ -299,7 +410,8 @@ int commands::blur(int argc, char** argv) {
       ->default_str("6 times the mean; at most 1, or 0.75 in files without values above 1");
   auto* frames = examples::add_count(
       app, "--frames", options.frames, {1, 100000, "a whole number from 1 to 100000"},
-      "number of frames, written as blur_0001.* and so on; --points then gives focus points with keys");
+      "number of frames, written as blur_0001.* and so on, and up to 8 of them side by side in frames.png; --points "
+      "then gives focus points with keys");
   examples::add_number(app, "--fps", options.frames_per_second, examples::positive_number,
                        "frames per second, for the keys of --points")
       ->needs(frames)

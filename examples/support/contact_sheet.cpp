@@ -74,7 +74,7 @@ petzval::Rgb8Image draw_sheet(const Sheet& sheet) {
       }
       x += tile_width + gap;
     }
-    draw_scale_bar(picture, font, margin, y + tile_height, tile_width, row.pixel_mm);
+    if (row.pixel_mm > 0) draw_scale_bar(picture, font, margin, y + tile_height, tile_width, row.pixel_mm);
     y += tile_height + caption_lines(row) * line + 2 * gap;
   }
   y += line;

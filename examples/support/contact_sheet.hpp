@@ -15,7 +15,7 @@ struct Tile {
   std::vector<std::string> captions;
 };
 
-/// Tiles side by side at one scale: a pixel is `pixel_mm` of film.
+/// Tiles side by side at one scale: a pixel is `pixel_mm` of film. 0: no scale bar.
 struct SheetRow {
   std::string title;
   std::string subtitle;

@@ -64,6 +64,8 @@ TEST_F(LensBlurProgram, WritesPicturesAndTheirMeasures) {
     EXPECT_TRUE(result[key].is_number()) << key;
   }
   EXPECT_EQ(result["rays"], 16);
+  const double pixels = (80 + 2 * result["overscan_px"].get<double>()) * (60 + 2 * result["overscan_px"].get<double>());
+  EXPECT_NEAR(result["memory_mb"].get<double>(), 20e-6 * pixels * result["layers"].get<double>(), 1e-9);
   EXPECT_LE(result["layers"], 4);
   EXPECT_GT(result["psnr_db"], 22);                       // a coarse image is not smooth
   EXPECT_LT(result["psnr_edges_db"], result["psnr_db"]);  // depth edges are the difficult part
@@ -123,6 +125,7 @@ TEST_F(LensBlurProgram, FollowsKeysOverFrames) {
   const Arguments town = joined({thin, small, {"--scene", "town", "--focus", "5000"}});
   const json result = blur(joined({town, {"--frames", "3", "--fps", "2", "--points", path("keys.json")}}), "frames");
   ASSERT_EQ(result["frames"].size(), 3u);
+  EXPECT_GT(petzval::read_png(path("frames/frames.png")).width, 3 * 80);
   const RgbImage first = picture("frames/blur_0001.pfm"), last = picture("frames/blur_0003.pfm");
   EXPECT_NE(first.pixels, last.pixels);
   // The frames equal frames of fixed lenses.
@@ -138,6 +141,24 @@ TEST_F(LensBlurProgram, FollowsKeysOverFrames) {
   EXPECT_GT(difference(first, last), 1e-2);
 }
 
+TEST_F(LensBlurProgram, ComparesNumbersOfRays) {
+  const json result = blur(joined({thin,
+                                   {"--scene", "town", "--focus", "5000", "--size", "80x60", "--supersample", "1",
+                                    "--threads", "1", "--rays", "4,64", "--compare-rays", "512"}}));
+  ASSERT_EQ(result["quality"].size(), 2u);
+  EXPECT_EQ(result["rays"], 64);
+  EXPECT_EQ(result["compare_rays"], 512);
+  EXPECT_EQ(result["quality"][0]["rays"], 4);
+  EXPECT_GT(result["quality"][0]["psnr_db"], 20);
+  // Errors of regular points fall faster than those of random points: 16 times the rays give more than 12 dB.
+  EXPECT_GT(result["quality"][1]["psnr_db"].get<double>(), result["quality"][0]["psnr_db"].get<double>() + 12);
+  EXPECT_GT(result["quality"][1]["ssim"], result["quality"][0]["ssim"]);
+  EXPECT_GT(petzval::read_png(path("out/rays.png")).width, 3 * 80);
+  const std::string plot = read(path("out/rays.svg"));
+  EXPECT_TRUE(petzval::testing::has_token(plot, "512"));
+  EXPECT_EQ(picture("out/many_rays.pfm").width, 80);
+}
+
 TEST_F(LensBlurProgram, RefusesInvalidInput) {
   write_files(1000, 2000);
   const auto refused = [&](const Arguments& arguments, const std::vector<petzval::testing::Token>& tokens) {
@@ -146,6 +167,9 @@ TEST_F(LensBlurProgram, RefusesInvalidInput) {
   const Arguments focus{"--focus", "3000"};
   refused(joined({focus, files(), {"--scene", "town"}}), {2, "--scene", "--image"});
   refused(joined({focus, files(), {"--compare"}}), {"--compare"});
+  refused(joined({focus, files(), {"--rays", "16,32"}}), {"--rays", 2, "--compare-rays"});
+  refused(joined({focus, files(), {"--rays", "16,2.5", "--compare-rays", "64"}}), {"--rays", 2.5});
+  refused(joined({focus, files(), {"--frames", "2", "--compare-rays", "64"}}), {"--compare-rays", "--frames", 2});
   refused(joined({focus, files(), {"--supersample", "2"}}), {"--supersample"});
   refused(joined({focus, files(), {"--size", "80"}}), {"--size"});
   refused(joined({files(), {"--focus", "40"}}), {"--focus", 40});

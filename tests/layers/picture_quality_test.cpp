@@ -9,6 +9,7 @@
 #include <cstddef>
 #include <limits>
 #include <numeric>
+#include <string>
 #include <vector>
 
 #include "../expect_error.hpp"
@@ -159,6 +160,16 @@ TEST(DepthEdges, ReachOneCircleOfConfusion) {
   for (const unsigned char m : near_depth_edges(layers_of(static_cast<float>(1 / (1 / near - follows))), rays)) {
     EXPECT_EQ(m, 0);
   }
+}
+
+TEST(PictureQuality, PlotNamesRaysAndPsnr) {
+  const std::string svg =
+      quality_plot({{750, 59.7}, {32, 39.3}, {64, std::numeric_limits<double>::infinity()}}, "town");
+  for (const char* token : {"32", "750", "39.3", "59.7", "town"}) {
+    EXPECT_TRUE(petzval::testing::has_token(svg, token)) << token;
+  }
+  EXPECT_EQ(svg.find("inf"), std::string::npos);
+  EXPECT_TRUE(quality_plot({}, "").starts_with("<svg"));
 }
 
 }  // namespace
