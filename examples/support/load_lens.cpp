@@ -146,7 +146,7 @@ LensFile read_lens(const LensInput& input) {
   const ReadLens read = read_configurations(input, glasses);
   petzval::Prescription prescription = with_matched_glasses(
       input, for_flag("--configuration", [&] { return petzval::configured(read.whole, read.configuration); }), glasses);
-  std::string id = std::filesystem::path(input.file).stem().string();
+  std::string id = lens_path(input.file).stem().string();
   if (!input.configuration.empty()) id += '_' + input.configuration;
   std::ranges::replace(id, '/', '_');
   return {std::move(id), std::move(prescription), std::move(glasses)};

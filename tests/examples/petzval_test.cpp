@@ -75,6 +75,14 @@ TEST_F(Petzval, ShippedLensesHaveNames) {
   for (const auto& row : found) EXPECT_NE(row.dump().find("52"), std::string::npos) << row;
 }
 
+TEST_F(Petzval, FilesHaveTheWholeNameOfAShippedLens) {
+  for (const char* id : {"double_gauss_100mm_f1.35", "double_gauss_100mm_f2.0"}) {
+    const auto outcome = run("spots", {id, "--fields", "0", "--out", path("spots")});
+    EXPECT_EQ(outcome.status, 0) << outcome.err;
+    EXPECT_TRUE(std::filesystem::exists(path("spots/" + std::string(id) + "_spots.svg"))) << outcome.out;
+  }
+}
+
 TEST_F(Petzval, LengthsTakeUnits) {
   const std::string id = "double_gauss_52mm_f1.8";
   const auto by = [&](const char* distance) { return run("focus", {id, "--at", distance, "--json"}).out; };
