@@ -1,189 +1,285 @@
 #!/bin/sh
 # SPDX-License-Identifier: Apache-2.0
-# Renders the gallery with the example programs: bokeh after figure 7 of Wu et al. 2010, its colours, irises with blades,
-# an expressive lens, PSFs, spot diagrams, reports of twelve lenses, camera rays, tilted films, a focus pull, a focal surface,
-# scenes through lenses, lens blur from layers, and index.html.
+# Makes the gallery: pictures of all commands of petzval, with their commands and times, in one page.
 #
 #   sh examples/gallery.sh PROGRAMS OUT [--full]    (examples/run.sh calls it with build/examples and out)
 #
-# --full: large pictures of the scenes with little noise (an hour on two cores).
+# Keeps pictures of an earlier run whose commands are the same. --full: scenes twice as large with sixteen times the samples, in
+# OUT/full (hours on two cores); a stopped rendering is resumed.
 set -eu
 if [ $# -lt 2 ] || [ $# -gt 3 ] || { [ $# -eq 3 ] && [ "$3" != --full ]; }; then
   echo "usage: sh examples/gallery.sh PROGRAMS OUT [--full]" >&2
   exit 2
 fi
-programs=$1
-out=$2
-full=${3-}
-here=$(CDPATH= cd -- "$(dirname -- "$0")" && pwd)
-lenses=$here/../data/lenses
-mkdir -p "$out"
+here=$(CDPATH='' cd -- "$(dirname -- "$0")" && pwd)
+programs=$(CDPATH='' cd -- "$1" && pwd)
+out=$2 scale=1 more_samples=1 resume=
+if [ $# -eq 3 ]; then out=$2/full scale=2 more_samples=16 resume=' --resume'; fi
+mkdir -p "$out/points"
+cp "$here"/scenes/*.json "$out/points"
+# shellcheck source=SCRIPTDIR/gallery_page.sh
+. "$here/gallery_page.sh"
 
-echo "== Figure 7 of Wu et al. 2010 (1/12)"
-"$programs/wu_figure7" --criterion min_rms --out "$out/wu_figure7.png"
-"$programs/wu_figure7" --criterion paraxial --out "$out/wu_figure7_paraxial.png"
+# size WIDTH HEIGHT and spp N: options of a rendering, larger with --full.
+size() { echo "--size $(($1 * scale))x$(($2 * scale))"; }
+spp() { echo "--spp $(($1 * more_samples))$resume"; }
 
-echo "== The statements of the paper, by number (2/12)"
-"$programs/wu_statements" --html "$out/wu_statements.html" > "$out/wu_statements.txt"
-echo "$out/wu_statements.txt"
+wu_lenses="double_gauss_100mm_f1.35 double_gauss_100mm_f1.7_substitute double_gauss_100mm_f2_28deg"
+statues="petzval render double_gauss_52mm_f1.8 --scene statues --from entrance_pupil --integrator path $(size 660 440) $(spp 64)"
 
-echo "== Bokeh off axis, in colour (3/12)"
-"$programs/petzval" psf "$lenses/double_gauss_100mm_f1.35.json" --at 1000 \
-  --focus 800,900,1000,1100,1200 --criterion paraxial --fields 8 --wavelengths "$(seq -s , 430 10 670)" --rays 262144 \
-  --out "$out/bokeh"
-
-echo "== The colours of bokeh (4/12)"
-mkdir -p "$out/chromatic"
-"$programs/petzval" colour "$lenses/double_gauss_100mm_f1.35.json" --rays 131072 --out "$out/chromatic" \
-  > "$out/chromatic/chromatic_bokeh.txt"
-echo "$out/chromatic"
-
-echo "== Irises, cat's eyes, weights, an expressive lens, and a set of PSFs (5/12)"
-"$programs/petzval" shapes --out "$out/bokeh"
-"$programs/petzval" expressive "$lenses/double_gauss_100mm_f1.35.json" --focus 1000 --rays 65536 --out "$out/expressive"
-"$programs/petzval" psf-set "$lenses/double_gauss_100mm_f2_28deg.json" --fields 0,5,10,14 --at 1000,1400,2000,4000,inf \
-  --focus 2000 --out "$out/psf_set"
-
-echo "== Spot diagrams of five lenses (6/12)"
-# spots LENS FIELDS WAVELENGTHS
-spots() {
-  "$programs/petzval" spots "$lenses/$1.json" --fields "$2" --wavelengths "$3" --out "$out/spots"
+scenes() {
+  section scenes "Scenes through lenses" "Path tracing and bidirectional path tracing through every surface of a lens." halves
+  picture statues/near/picture.png "Two angels at dusk" "A Canon 51.6 mm f/1.8, focused on the angel at 1.5 m. The lamps in the
+background are discs, and cat's eyes towards the corners." <<END
+$statues --focus 1500 --out statues/near
+END
+  picture statues/both/picture.png "Both angels in focus" "Impossible for a real lens, in the manner of figure 1 (d) of Lee et al. 2010: a
+focal surface through both angels, 1.5 m and 6 m away, and blur at all other distances. The points are in
+<a href=\"points/statues_focus.json\">statues_focus.json</a>." <<END
+$statues --focus 1500 --model thin_two_disc --focal-surface points/statues_focus.json --out statues/both
+END
+  picture street/picture.png "A street at night" "Focused on the sign at 3 m, at f/2. Bidirectional path tracing connects small lamps with the
+lens, so that their discs are smooth. The dots on the road are reflections in wet stones." <<END
+petzval render double_gauss_100mm_f2_28deg --scene street --focus 3000 --from entrance_pupil $(size 600 400) $(spp 48) --out street
+END
+  for lens in $wu_lenses; do
+    case $lens in
+      *1.35) words="Chess, f/1.35" more="After figure 9 of Wu et al. 2010: focused behind the centre of the board. The lamps in the background are
+discs in the centre and cat's eyes in the corners." ;;
+      *1.7*) words="Chess, f/1.7" more="The same through a slower lens: smaller discs with a brighter rim." ;;
+      *) words="Chess, f/2" more="The discs of the f/2 lens are nearly uniform." ;;
+    esac
+    picture "chess/$lens/picture.png" "$words" "$more" <<END
+petzval render $lens --scene chess --focus 880 $(size 600 400) $(spp 48) --out chess/$lens
+END
+  done
+  picture chess/pinhole/picture.png "Chess through a pinhole" "The same scene: everything is sharp." <<END
+petzval render double_gauss_100mm_f2_28deg --scene chess --focus 880 --model pinhole $(size 600 400) $(spp 16) --out chess/pinhole
+END
+  picture table/tilted/picture.png "A board in focus on a tilted film" "The film is tilted by 12 degrees, so that the plane of focus lies on the
+board." <<END
+petzval render double_gauss_100mm_f2_28deg --scene chess --focus 920 --tilt 12 --model thick $(size 600 400) $(spp 32) \\
+  --out table/tilted
+END
+  picture table/curved/picture.png "Curvature of field" "The film is also curved, in the manner of figure 6 of Lee et al. 2010: the board is sharp only in
+the centre." <<END
+petzval render double_gauss_100mm_f2_28deg --scene chess --focus 920 --tilt 12 --model thick $(size 600 400) $(spp 32) \\
+  --curvature-points 0,0:0 18,0:3 -18,0:3 0,12:1.5 0,-12:1.5 --out table/curved
+END
 }
-f_d_c=486.1327,587.5618,656.2725  # the spectral lines F, d and C (nm)
-spots double_gauss_100mm_f1.35 0,7,12 $f_d_c
-spots double_gauss_100mm_f2_28deg 0,10,14 $f_d_c
-spots cooke_triplet_50mm_f5 0,14,20 $f_d_c
-spots petzval_portrait_100mm_f3.4 0,7,12 $f_d_c
-spots fisheye_10mm_f4 0,40,70 587.5618
 
-echo "== Reports of twelve lenses (7/12)"
-for lens in petzval_portrait_100mm_f3.4 cooke_triplet_50mm_f5 planar_1896_f4.5 tessar_100mm_f5.5_1902 \
-  sonnar_180mm_f2.8 biogon_35mm_f2.8 telephoto_250mm_f5.6 retrofocus_100mm_f2 \
-  catadioptric_mangin_1000mm_f7.5 anamorphic_60mm_2x modern_58mm_f0.95 fisheye_6.3mm_f2.8; do
-  "$programs/petzval" report "$lenses/$lens.json" --out "$out/lenses"
-done
+blurred() {
+  section blur "Lens blur from layers" "A renderer's picture from the centre of the lens, with up to four surfaces behind each other in a
+pixel, is blurred by 256 rays per pixel: after Lee, Eisemann, Seidel 2010, for any lens. Most of the time goes into the layers." halves
+  picture layers/town/blur.png "A market town" "A thin lens of 50 mm, 100 mm wide, focused on the stall at 5 m. The lamp post and the railing at
+2.3 m are so blurred that the houses are visible through them." <<END
+petzval blur --scene town --thin-lens 50 --f-number 0.5 --focus 5000 --out layers/town
+END
+  also layers/town/sharp.png "The town through a pinhole" "The contents of the first layer."
+  picture layers/singlet/blur.png "A single element" "A biconvex lens of N-BK7, f/2: spherical aberration veils the centre, curvature of field
+blurs the edge." <<END
+petzval blur --scene town --singlet 51.68,-51.68,8,N-BK7 --f-number 2 --focus 5000 --fov 30 --out layers/singlet
+END
+  picture layers/colour/blur.png "A single element, with dispersion" "Separate rays for red, green and blue, at 650, 510 and 475 nm, which
+give coloured edges." <<END
+petzval blur --scene town --singlet 51.68,-51.68,8,N-BK7 --f-number 2 --focus 5000 --fov 30 --wavelengths rgb --out layers/colour
+END
+  picture layers/tilt/blur.png "A tilted film" "The film is tilted by 6 degrees: the plane of focus runs obliquely through the scene." <<END
+petzval blur --scene town --thin-lens 50 --f-number 1.25 --focus 5000 --tilt 6 --out layers/tilt
+END
+  picture layers/knot/blur.png "A knot" "864,000 triangles, focused at the centre of the knot." <<END
+petzval blur --scene knot --thin-lens 50 --f-number 0.5 --focus 3600 --out layers/knot
+END
+  picture layers/leaves/blur.png "Leaves" "240,000 triangles of leaves on boughs, on average twelve behind each other in a pixel; eight layers." <<END
+petzval blur --scene leaves --thin-lens 50 --f-number 0.5 --focus 5000 --layers 8 --out layers/leaves
+END
+  picture layers/cats_eyes/blur.png "Cat's eyes" "A double Gauss 100 mm f/1.35 by exact rays, focused at 3 m: its rims clip the lamps to cat's eyes
+towards the corners." <<END
+petzval blur double_gauss_100mm_f1.35 --scene statues --focus 3000 --from entrance_pupil --fov 22 --out layers/cats_eyes
+END
+  picture layers/surface/blur.png "A focal surface" "Through both angels, 1.5 m and 6 m away, with blur between them." <<END
+petzval blur --scene statues --thin-lens 50 --f-number 1.79 --focus 5000 --points points/statues_focus.json --out layers/surface
+END
+  picture layers/night/blur.png "Six blades" "A street at night: small bright lights become uniform images of the iris." <<END
+petzval blur --scene street --thin-lens 100 --f-number 2 --focus 3000 --fov 14 --blades 6 --out layers/night
+END
+}
 
-echo "== Rays of a camera, by every model of its lens (8/12)"
-mkdir -p "$out/camera_rays"
-awk 'BEGIN {
-  print "film_x_mm,film_y_mm,pupil_u,pupil_v,wavelength_nm"
-  for (y = -12; y <= 12; y += 4) for (u = 0; u < 8; ++u) printf "%g,%g,%g,0.9,587.5618\n", 1.5 * y, y, (u + 0.5) / 8
-}' > "$out/camera_rays/samples.csv"
-for model in pinhole thin thin_two_disc thick polynomial_3 polynomial_5 polynomial_7 polynomial_9 polynomial_11 \
-  exact_float exact_double; do
-  "$programs/petzval" camera-rays "$lenses/double_gauss_100mm_f2.0.json" --table "$out/camera_rays/samples.csv" \
-    --out "$out/camera_rays/$model.csv" --model $model --focus 3000 --f-number 2.8
-done
-echo "$out/camera_rays"
-
-echo "== Accuracy and speed of the models, and the model for a scene (9/12)"
-"$programs/petzval" models "$lenses/double_gauss_100mm_f2_28deg.json" --f-number 2 --out "$out/models" \
-  > "$out/accuracy_speed.txt"
-"$programs/petzval" choose "$lenses/double_gauss_100mm_f2_28deg.json" --f-number 2 --near 2000 --far inf \
-  --budget 0.5 > "$out/choose_camera.txt"
-echo "$out/accuracy_speed.txt"
-echo "$out/choose_camera.txt"
-
-echo "== Films tilted to points, a focus pull, and a focal surface (10/12)"
-# tilted FOLDER SCENE OPTION...
+# tilted FOLDER POINTS OPTION...: a fit of the film to points.
 tilted() {
-  folder=$out/tilt/$1
-  scene=$here/scenes/$2.json
+  folder=tilt/$1 points=points/$2.json
   shift 2
-  mkdir -p "$folder"
-  "$programs/petzval" tilt "$lenses/double_gauss_100mm_f2_28deg.json" --f-number 4 --points "$scene" "$@" --out "$folder" \
-    > "$folder/tilt_shift.txt"
-  echo "$folder"
+  echo "petzval tilt double_gauss_100mm_f2_28deg --f-number 4 --points $points${*:+ $*} --out $folder > $folder.txt"
 }
-tilted table table
-tilted facade facade
-tilted outlier facade_outlier
-tilted robust facade_outlier --robust
-mkdir -p "$out/focus_pull"
-"$programs/petzval" pull "$lenses/double_gauss_100mm_f2_28deg.json" --f-number 2 --keys "$here/scenes/rack.json" \
-  --out "$out/focus_pull" > "$out/focus_pull/focus_pull.txt"
-echo "$out/focus_pull"
-"$programs/petzval" surface "$lenses/double_gauss_52mm_f1.8.json" --points "$here/scenes/statues_focus.json" --size 600x400 \
-  --focus 1500 --out "$out/focal_surface"
 
-echo "== Scenes through lenses (11/12)"
-mkdir -p "$out/scenes"
-scenes_file=$out/scenes/scenes.html
-if "$programs/petzval" help render > "$out/scenes/log.txt" 2>&1; then
-  # scene FOLDER SCENE LENS SPP WIDTH HEIGHT OPTION...; --full: twice the size, sixteen times the samples
-  scene() {
-    folder=$out/scenes/$1 name=$2 lens=$3 spp=$4 width=$5 height=$6
-    shift 6
-    resume=
-    rm -f "$folder/sums.exr"
-    if [ -n "$full" ]; then
-      folder=${folder}_large resume=--resume
-      spp=$((16 * spp)) width=$((2 * width)) height=$((2 * height))
-    fi
-    "$programs/petzval" render "$lenses/$lens.json" --scene "$name" --spp "$spp" --size "${width}x${height}" \
-      $resume --out "$folder" "$@" > "$out/scenes/log.txt"
-    scenes="$scenes $folder"
-  }
-  wu="double_gauss_100mm_f1.35 double_gauss_100mm_f1.7_substitute double_gauss_100mm_f2_28deg"
-  scenes=
-  for lens in $wu; do
-    for focus in 800 900 1000 1100 1200; do
-      scene "balls_${lens}_$focus" balls "$lens" 128 600 80 --focus $focus --integrator path --film 36x4.8
-    done
+focus() {
+  section focus "Control of the focus" "Given points that should be sharp, <code>petzval tilt</code> finds the film with the smallest sum of
+squared blurs, by exact rays. The lens is the double Gauss 100 mm at f/4. Colour is the signed diameter of the blur: blue nearer than the plane of focus,
+red beyond it, at most 30 µm between the thin lines." halves
+  stem=double_gauss_100mm_f2_28deg
+  picture tilt/table/${stem}_before.png "A table top, film upright" "Only the narrow strip between the thin lines is sharp. Points 1 and 2 at the front
+edge and 4 and 5 at the back are blurred by about half a millimetre, with opposite signs: no upright film makes both edges sharp." <<END
+$(tilted table table)
+END
+  also tilt/table/${stem}_after.png "Film tilted by 15 degrees" "The same scale: the colour has nearly vanished. The remaining rings, with opposite signs
+inside and outside, are curvature of field, which no flat film can follow; the fit divides it between centre and edge.
+<a href=\"tilt/table.txt\">Numbers</a>."
+  also tilt/table/${stem}_side.svg "From the side" "Above: the plane of focus (green) meets the front principal plane, and the plane of the film (thin
+black) the rear one, at the same height, the Scheimpflug line (short violet stroke). The depth of field (pale green) begins at the hinge line, in the
+front focal plane. Below: the dots are the images of the five points; they lie on the tilted film, not on the upright film (dashed)."
+  picture tilt/facade/${stem}_side.svg "A receding facade, from above" "The film swings, so the section lies in x. The depth of field is a wedge that widens
+with distance, from the hinge line at one side of the camera." <<END
+$(tilted facade facade)
+END
+  picture tilt/outlier/${stem}_after.png "A wrong point among eight" "Point 6 lies far in front of the wall. Least squares tilt the film towards it and blur 2
+and 5. The map interpolates the scene between the points, so it bulges at 6." <<END
+$(tilted outlier facade_outlier)
+END
+  picture tilt/robust/${stem}_after.png "The wrong point ignored" "With <code>--robust</code> point 6 gets no weight; it is grey in the picture and an outlier
+in <a href=\"tilt/robust.txt\">the table</a>. All other points are within 35 µm. The scale is half of the scale before." <<END
+$(tilted robust facade_outlier --robust)
+END
+  picture pull/${stem}_focus_pull.svg "A focus pull" "From 0.8 m to 2.5 m, a rest, and on to infinity, at f/2. At the keys (dotted) the curves are level and
+never overshoot. The bottom diagram shows the blur that focusing cannot remove: the aberrations of the lens, which are largest at close distances.
+<a href=\"pull/${stem}_focus_pull.csv\">A row for every frame</a>." <<END
+petzval pull double_gauss_100mm_f2_28deg --f-number 2 --keys points/rack.json --out pull
+END
+  picture surface/surface.png "A focal surface" "The distances in focus for the angels above: points 1 to 5 at 1.5 m, 6 to 10 at 6 m, and the distances and
+blurs of points 11 to 16. (Here positions count from the first vertex, in the scene from the entrance pupil 25 mm behind it.) The same surface
+<a href=\"surface/side.svg\">in section</a> and as <a href=\"surface/surface.pfm\">1/distance</a>." <<END
+petzval surface double_gauss_52mm_f1.8 --points points/statues_focus.json --size 600x400 --focus 1500 --out surface
+END
+}
+
+wu() {
+  section wu "Wu et al. 2010" "The figures of the paper on bokeh, computed from the lenses themselves. A bright rim or a bright core of a disc is spherical
+aberration, in front of or behind the focus."
+  picture wu/figure7.png "Figure 7: bokeh of three lenses" "A point light is at 1000 mm; each column has a different focus distance. Focused nearer than the light
+(left), the first two lenses draw a thin bright rim; focused farther (right), a bright core with a slightly darker centre. The third lens does the
+opposite; at 800 mm its disc is nearly uniform with a bright core, while the paper calls it uniform. The Tronnier f/2 below it, an equally likely source
+of the paper's third row, behaves like the first two lenses. Film at the smallest RMS blur: 1000 mm is the sharpest column for every lens." <<END
+wu_figure7 --criterion min_rms --out wu/figure7.png
+END
+  picture wu/figure7_paraxial.png "Figure 7 with the film at the paraxial focus" "Marginal rays shift every profile, most in the third row, which is now
+sharpest when focused at 1100 mm." <<END
+wu_figure7 --criterion paraxial --out wu/figure7_paraxial.png
+END
+  picture wu/statements.html "The statements of the paper, measured" "The radial profile of each picture in the words of the paper. The text defines neither
+\"in focus\" nor the origin of \"from the lens\", so the table shows all four interpretations; the measurements are in
+<a href=\"wu/statements.txt\">statements.txt</a>. The Tronnier is compared with the statements about the third row." <<END
+wu_statements --html wu/statements.html > wu/statements.txt
+END
+  picture wu/balls.png "Figure 8: balls that reflect a lamp" "Balls 1 m in front of the lens. Highlights are round in the centre; towards the edge they are
+cat's eyes and comets, drawn towards the centre or away from it. Focused at 1000 mm they are in focus. The dots next to them are mutual reflections. Axis
+ratio, orientation and skewness of each highlight are in <a href=\"wu/balls.csv\">balls.csv</a>." <<END
+$(for lens in $wu_lenses; do
+  for focus in 800 900 1000 1100 1200; do
+    echo "petzval render $lens --scene balls --focus $focus --integrator path --film 36x4.8 $(size 600 80) $(spp 128) --out balls/${lens}_$focus"
   done
-  "$programs/petzval" sheet --columns 5 --title "A row of balls, after figure 8 of Wu et al. 2010" --out "$out/scenes/balls.png" \
-    --balls "$out/scenes/balls.csv" $scenes
-  scenes=
-  scene chess_pinhole chess double_gauss_100mm_f2_28deg 32 480 320 --focus 880 --model pinhole
-  for lens in $wu; do scene "chess_$lens" chess "$lens" 32 480 320 --focus 880; done
-  "$programs/petzval" sheet --columns 2 --title "Chess, after figure 9 of Wu et al. 2010" --out "$out/scenes/chess.png" $scenes
-  scenes=
-  # Distances in scenes count from the entrance pupil.
-  scene street street double_gauss_100mm_f2_28deg 48 480 320 --focus 3000 --from entrance_pupil
-  "$programs/petzval" sheet --title "A street at night" --out "$out/scenes/street.png" $scenes
-  scenes=
-  statues="--from entrance_pupil --integrator path"
-  # shellcheck disable=SC2086
-  scene statues_near statues double_gauss_52mm_f1.8 32 450 300 --focus 1500 $statues
-  # shellcheck disable=SC2086
-  scene statues_far statues double_gauss_52mm_f1.8 32 450 300 --focus 6000 $statues
-  # shellcheck disable=SC2086
-  scene statues_both statues double_gauss_52mm_f1.8 32 450 300 --focus 1500 $statues --model thin_two_disc \
-    --focal-surface "$here/scenes/statues_focus.json"
-  "$programs/petzval" sheet --columns 3 --title "Two statues, after figure 1 (d) of Lee et al. 2010" \
-    --out "$out/scenes/statues.png" $scenes
-  scenes=
-  for lens in "" "--curvature-points 0,0:0 18,0:3 -18,0:3 0,12:1.5 0,-12:1.5"; do
-    # shellcheck disable=SC2086
-    scene "table_$(echo "$lens" | wc -w)" chess double_gauss_100mm_f2_28deg 32 450 300 --focus 920 --tilt 12 \
-      --model thick --integrator path $lens
-  done
-  "$programs/petzval" sheet --columns 2 --title "Curvature of field on a tilted film, after figure 6 of Lee et al. 2010" \
-    --out "$out/scenes/table.png" $scenes
+done)
+petzval sheet --columns 5 --title "A row of balls" --out wu/balls.png --balls wu/balls.csv \\
+  $(for lens in $wu_lenses; do for focus in 800 900 1000 1100 1200; do printf ' balls/%s' "${lens}_$focus"; done; done)
+END
+}
 
-  echo "== Lens blur from layers (12/12)"
-  # blur FOLDER SCENE OPTION...
-  blur() {
-    folder=$out/layers/$1 name=$2
-    shift 2
-    "$programs/petzval" blur --scene "$name" --format png "$@" --out "$folder" > "$out/scenes/log.txt"
-    echo "$folder"
-  }
-  blur thin town --thin-lens 50 --f-number 0.5 --focus 5000
-  blur singlet town --singlet 51.68,-51.68,8,N-BK7 --f-number 2 --focus 5000 --fov 30
-  blur chroma town --singlet 51.68,-51.68,8,N-BK7 --f-number 2 --focus 5000 --fov 30 --wavelengths rgb
-  blur tilt town --thin-lens 50 --f-number 1.25 --focus 5000 --tilt 6
-  blur knot knot --thin-lens 50 --f-number 0.5 --focus 3600
-  blur leaves leaves --thin-lens 50 --f-number 0.5 --focus 5000 --layers 8
-  blur cats_eyes statues "$lenses/double_gauss_100mm_f1.35.json" --focus 3000 --from entrance_pupil --fov 22
-  blur surface statues --thin-lens 50 --f-number 1.79 --focus 5000 --points "$here/scenes/statues_focus.json"
-  blur night street --thin-lens 100 --f-number 2 --focus 3000 --fov 14 --blades 6
-  cp "$here/scenes.html" "$scenes_file"
-else
-  echo "petzval render was not built: no Embree (libembree-dev, libtinyobjloader-dev)"
-  echo "<p>petzval render was not built: it needs Embree and tinyobjloader.</p>" > "$scenes_file"
-fi
+bokeh() {
+  section bokeh "Bokeh" "Images of a point of light."
+  picture bokeh/double_gauss_100mm_f1.35_bokeh.png "Off axis, in colour" "The f/1.35 lens with the light 8 degrees off axis, in 25 wavelengths. The rims of the
+outer elements clip the disc, coma draws it to a point, and its edge is blue when focused nearer than the light, red when farther." <<END
+petzval psf double_gauss_100mm_f1.35 --at 1000 --focus 800,900,1000,1100,1200 --criterion paraxial --fields 8 \\
+  --wavelengths $(seq -s , 430 10 670) --rays 262144 --out bokeh
+END
+  picture colour/double_gauss_100mm_f1.35_chromatic.png "The colours of bokeh" "Blue light has the shorter focus in this lens of 1951. Each disc has a blue and
+green outline when focused nearer than the light, a red outline when farther, with the other colours in the centre. Three wavelengths give hard edges, 26
+wavelengths blend. The shifts of focus and of the chief ray are in <a href=\"colour/shifts.txt\">shifts.txt</a>." <<END
+petzval colour double_gauss_100mm_f1.35 --rays 131072 --out colour > colour/shifts.txt
+END
+  picture shapes/bokeh_blades.png "Irises with blades" "A far point light through 3 to 9 blades. As in a photograph, the first corner points straight up. The
+corners are on the edge of the disc of a round iris. Spherical aberration bends the edges slightly inwards although the blades are straight." <<END
+petzval shapes --out shapes
+END
+  also shapes/bokeh_cats_eyes.png "Cat's eyes" "The f/1.35 lens over its field, and two discs fitted to its pupils seen from the film: at 11.5 degrees they
+transmit 68 % of the light, the lens 66 %. A far point light shows the pupil seen from the scene, where the two discs are 14 % larger on the axis and 1.4
+times as large at 11.5 degrees. The bright rim and the bent lower edge are aberrations, which a thin lens does not have."
+  also shapes/bokeh_weights.png "Weights of the stop" "Rays weighted by their position on the stop, traced through every surface of the lens. The weights conserve
+the light on the iris; in the picture the tiles of a row differ by about 1 % at f/4. Lines of equal brightness follow the blades."
+  also shapes/bokeh_maps.png "Maps of the stop" "Images over the stop: the rings of a lathe-turned aspheric mould, and a cut-out iris. A far light shows the heart
+upright, as it was cut."
+  picture expressive/highlights.png "An expressive lens" "The f/1.35 lens, focused at 1 m; its first-order model with a power spline and a curved film, both
+fitted to the lens; and the model without them. On the axis the spline reproduces the bright core and the bright rim. It cannot have coma. The numbers,
+for editing: <a href=\"expressive/expressive.json\">expressive.json</a>." <<END
+petzval expressive double_gauss_100mm_f1.35 --focus 1000 --rays 65536 --out expressive
+END
+  picture psf_set/psf_set.png "A set of PSFs" "Double Gauss 100 mm f/2, focused at 2000 mm: the field grows to the right, the distance downwards, and up is away
+from the centre of the photograph. Cat's eyes narrow with the field, and their light decreases. Lights nearer than the focus have a ring inside the edge,
+lights beyond it a bright rim and core. The row in focus, which has a separate scale, shows coma and caustics. The data:
+<a href=\"psf_set/psf_set.exr\">psf_set.exr</a>, <a href=\"psf_set/psf_set.json\">psf_set.json</a>." <<END
+petzval psf-set double_gauss_100mm_f2_28deg --fields 0,5,10,14 --at 1000,1400,2000,4000,inf --focus 2000 --out psf_set
+END
+}
 
-sed -e "/@statements@/r $out/wu_statements.html" -e "/@statements@/d" -e "/@scenes@/r $scenes_file" -e "/@scenes@/d" \
-  "$here/gallery.html" > "$out/index.html"
-echo "== Done: open $out/index.html"
+# spots LENS TITLE FIELDS WAVELENGTHS CAPTION
+spots() {
+  picture "spots/$1_spots.svg" "$2" "$5 <a href=\"spots/$1_spots.json\">Numbers</a>, <a href=\"spots/$1_spots.csv\">hits</a>." <<END
+petzval spots $1 --fields $3 --wavelengths $4 --out spots
+END
+}
+
+# lens LENS TITLE CAPTION
+lens() {
+  picture "lenses/$1_layout.svg" "$2" "$3 <a href=\"lenses/$1.html\">Report</a>." <<END
+petzval report $1 --out lenses
+END
+}
+
+designs() {
+  section spots "Spot diagrams" "Film points of the rays from a distant point. The film is focused on the axis at the d line (smallest RMS radius)." halves
+  spots double_gauss_100mm_f1.35 "Double Gauss 100 mm f/1.35" 0,7,12 F,d,C "Small on axis; coma and a wide halo in the field are the price of speed."
+  spots double_gauss_100mm_f2_28deg "Double Gauss 100 mm f/2, 28 degree field" 0,10,14 F,d,C "Nearly the same size from the centre to the corner."
+  spots cooke_triplet_50mm_f5 "Cooke triplet 50 mm f/5" 0,14,20 F,d,C "Three elements cover 20 degrees. Astigmatism draws the spot at 14 degrees to a line;
+blue spreads most."
+  spots petzval_portrait_100mm_f3.4 "Petzval portrait lens 100 mm f/3.4 of 1840" 0,7,12 F,d,C "Sharp on axis; towards the edge the curvature of field draws
+each spot out along the radius."
+  spots fisheye_10mm_f4 "Fisheye 10 mm f/4" 0,40,70 587.5618 "A sharp image even 70 degrees off axis, where the pupil is far from its paraxial position. The
+source prints no Abbe numbers, so only the d line is shown."
+
+  section lenses "Twelve lenses" "Sections along the axis, to scale, with transmitted rays: one colour per field, at 0, 0.7 and 1 of the edge. The reports have
+spots, pupils, focus curve, brightness and the prescription." halves
+  lens petzval_portrait_100mm_f3.4 "Petzval portrait lens, 1840" "The first computed lens: two achromats far apart, fast for its time. Its field is curved: see
+the focus curve."
+  lens cooke_triplet_50mm_f5 "Cooke triplet" "Three elements are the minimum for the correction of all five Seidel aberrations; the negative element is at the stop."
+  lens planar_1896_f4.5 "Planar of 1896" "The symmetrical double Gauss: the halves cancel each other's coma and distortion."
+  lens tessar_100mm_f5.5_1902 "Tessar, 1902" "The triplet with a cemented rear doublet; small, slow, and sharp over 60 degrees."
+  lens sonnar_180mm_f2.8 "Sonnar 180 mm f/2.8" "The Olympia Sonnar: thick front elements have the power; a thin lens is far behind them."
+  lens biogon_35mm_f2.8 "Biogon 35 mm f/2.8" "Wide and close to the film: the rear element almost touches it."
+  lens telephoto_250mm_f5.6 "Telephoto 250 mm f/5.6" "Shorter than its focal length: the negative rear group moves the principal plane in front of the lens."
+  lens retrofocus_100mm_f2 "Retrofocus 100 mm f/2" "A reversed telephoto: the negative front makes space for a mirror and makes the field brighter than cos⁴, up
+to the edge, where rims vignette."
+  lens catadioptric_mangin_1000mm_f7.5 "Mirror lens 1000 mm f/7.5" "Two Mangin mirrors fold a metre into a quarter of the length. The annular pupil gives annular
+bokeh."
+  lens anamorphic_60mm_2x "Anamorphic 60 x 31 mm" "Cylinders in front nearly double the horizontal field. The report shows both sections."
+  lens modern_58mm_f0.95 "Fast normal lens, 2019" "Seventeen elements and three aspheres for f/0.98; at the edge of the field most of the pupil is vignetted."
+  lens fisheye_6.3mm_f2.8 "Fisheye 6.3 mm f/2.8, 220 degrees" "Rays of the red field come from behind the front element. Their entrance pupil is 41 mm from its
+paraxial position."
+
+  section models "Models of a lens" "A renderer can trace every surface or use a faster, less accurate model of the lens."
+  picture models/double_gauss_100mm_f2_28deg_accuracy_speed.svg "Accuracy and speed" "Double Gauss 100 mm f/2 on 24 x 36 mm: two more degrees of a polynomial
+cost little and reduce the error by a factor of seven. The table and the model for each of four budgets are in
+<a href=\"models/accuracy_speed.txt\">accuracy_speed.txt</a>, the choice for a scene with its reasons in <a href=\"models/choose.txt\">choose.txt</a>." <<END
+petzval models double_gauss_100mm_f2_28deg --f-number 2 --out models > models/accuracy_speed.txt
+petzval choose double_gauss_100mm_f2_28deg --f-number 2 --near 2000 --far inf --budget 0.5 > models/choose.txt
+END
+}
+
+pictures() {
+  scenes
+  blurred
+  focus
+  wu
+  bokeh
+  designs
+}
+
+gallery "$out" "$programs" pictures "petzval: gallery" "Made by the program <code>petzval</code>: exact rays through published lens
+prescriptions, without diffraction. Each picture has its command, for a shell in the folder of this page with <code>petzval</code> in
+<code>PATH</code>, and the time that it took."
