@@ -20,8 +20,6 @@
 
 namespace {
 
-constexpr int tile_pixels = 300;
-
 examples::SheetRow sheet_row(const examples::WuRow& wu, const examples::BokehSetup& setup, std::uint32_t samples,
                              examples::Progress& progress) {
   const auto file = petzval::data_directory() / "lenses" / (std::string(wu.lens) + ".json");
@@ -33,6 +31,7 @@ examples::SheetRow sheet_row(const examples::WuRow& wu, const examples::BokehSet
     const auto sketch = petzval::point_image(scenes.back().lens, scenes.back().light, {.samples = 1u << 14});
     half_width = std::max(half_width, 1.08 * sketch.size.max_radius);
   }
+  const int tile_pixels = examples::tile_pixels(examples::wu_focus_mm.size());
   examples::SheetRow row{wu.title, wu.subtitle, 2 * half_width / tile_pixels, {}};
   for (std::size_t i = 0; i < scenes.size(); ++i) {
     progress.step(std::string(wu.lens) + ", " + examples::focus_caption(examples::wu_focus_mm[i]));

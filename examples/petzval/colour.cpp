@@ -32,7 +32,7 @@ namespace {
 using examples::Json;
 using Weights = std::vector<std::array<double, 3>>;
 
-constexpr int tile_pixels = 320;
+constexpr int picture_pixels = 320;
 
 struct Options {
   examples::LensInput lens_file;
@@ -132,6 +132,7 @@ examples::Sheet sheet(const std::vector<Picture>& pictures, const petzval::Lens&
       {"The film is at the focus of the primary wavelength, " + examples::number(set[lens.primary_wavelength()]) +
            " nm (" + options.focus.criterion + "). Tiles of a row have the same film scale and their own exposure.",
        "With three wavelengths each channel has its own image, without intermediate colours."}};
+  const int tile_pixels = examples::tile_pixels(options.focus_mm.size());
   for (const double field : options.field_deg) {
     for (const bool triple : {false, true}) {
       const Weights weights = triple ? triple_weights(set) : spectral;
@@ -144,10 +145,12 @@ examples::Sheet sheet(const std::vector<Picture>& pictures, const petzval::Lens&
                              .tiles = {}};
       for (const Picture& p : pictures) {
         if (p.field_deg != field) continue;
-        row.pixel_mm = p.image.psf.pixel_mm;
+        row.pixel_mm = p.image.psf.pixel_mm * picture_pixels / tile_pixels;
         std::vector<std::string> captions{examples::focus_caption(p.focus_mm)};
         if (!triple) captions.push_back("RMS radius " + examples::number(p.image.size.rms_radius, 3) + " mm");
-        row.tiles.push_back({examples::expose(petzval::render(p.image.psf, weights)).picture, std::move(captions)});
+        row.tiles.push_back(
+            {examples::expose(examples::with_width(petzval::render(p.image.psf, weights), tile_pixels)).picture,
+             std::move(captions)});
       }
       result.rows.push_back(std::move(row));
     }
@@ -265,7 +268,7 @@ int commands::colour(int argc, char** argv) {
         progress.step(examples::number(p.field_deg) + "°, " + examples::focus_caption(p.focus_mm));
         p.image = petzval::point_image(p.scene.lens, p.scene.light,
                                        {.samples = options.samples,
-                                        .pixels = tile_pixels,
+                                        .pixels = picture_pixels,
                                         .half_width_mm = p.half_width_mm,
                                         .threads = examples::threads()});
         const auto name =

@@ -34,8 +34,8 @@ namespace {
 using examples::Json;
 using examples::number;
 
-constexpr int tile_pixels = 200;
 constexpr std::array film_fractions{0.0, 0.3, 0.55, 0.75, 0.9};  // fractions of the distance to the film's corner
+int tile_pixels() { return examples::tile_pixels(film_fractions.size()); }
 
 struct Options {
   examples::LensInput lens_file;
@@ -94,7 +94,7 @@ class Highlights {
     const examples::BokehScene scene{lens_, {field_rad, z_}};
     return petzval::point_image(
         examples::camera_of(scene, camera), scene.light,
-        {.samples = samples, .pixels = tile_pixels, .half_width_mm = half_width_mm, .threads = examples::threads()});
+        {.samples = samples, .pixels = tile_pixels(), .half_width_mm = half_width_mm, .threads = examples::threads()});
   }
   double radius_mm(double field_rad, const petzval::CameraOptions& camera) const {
     return image(field_rad, camera, 0, 1 << 12).size.max_radius;
@@ -173,7 +173,7 @@ void draw(Options options) {
       auto& row =
           sheet.rows.emplace_back(examples::SheetRow{.title = title,
                                                      .subtitle = "light at " + number(light_mm) + " mm, " + subtitle,
-                                                     .pixel_mm = 2 * half_width / tile_pixels,
+                                                     .pixel_mm = 2 * half_width / tile_pixels(),
                                                      .tiles = {}});
       for (const double field : fields) {
         Json& tile =

@@ -37,7 +37,7 @@ namespace {
 using examples::finite_or_null;
 using examples::Json;
 
-constexpr int picture_pixels = 512, tile_pixels = 320;
+constexpr int picture_pixels = 512;
 
 struct Options {
   std::vector<std::string> formats;
@@ -93,6 +93,7 @@ examples::Sheet contact_sheet(const std::vector<Picture>& pictures, const exampl
                               const Options& options) {
   double half_width = 1e-4;  // a perfect point has no size
   for (const Picture& p : pictures) half_width = std::max(half_width, 1.08 * p.image.size.max_radius);
+  const int tile_pixels = examples::tile_pixels(pictures.size());
   examples::SheetRow row{
       .title = loaded.lens.name(),
       .subtitle = "point light at " + examples::number(options.subject_mm) + " mm, " +

@@ -26,7 +26,6 @@ namespace {
 
 using examples::number;
 
-constexpr int tile_pixels = 200;
 constexpr double focus_mm = 2000, light_mm = 10000;  // from the front vertex
 
 petzval::Lens lens_of_data(const std::string& id) {
@@ -37,13 +36,20 @@ petzval::Lens focused(const petzval::Lens& lens) { return petzval::with_focus(le
 
 std::uint32_t samples = 1 << 19;  // per tile
 
-petzval::PsfOptions tile_options(double half_width_mm) {
-  return {.samples = samples, .pixels = tile_pixels, .half_width_mm = half_width_mm, .threads = examples::threads()};
+petzval::PsfOptions tile_options(double half_width_mm, std::size_t columns) {
+  return {.samples = samples,
+          .pixels = examples::tile_pixels(columns),
+          .half_width_mm = half_width_mm,
+          .threads = examples::threads()};
 }
 
 /// A row without tiles; all tiles of a row have one scale.
-examples::SheetRow row(const std::string& title, const std::string& subtitle, double half_width_mm) {
-  return {.title = title, .subtitle = subtitle, .pixel_mm = 2 * half_width_mm / tile_pixels, .tiles = {}};
+examples::SheetRow row(const std::string& title, const std::string& subtitle, double half_width_mm,
+                       std::size_t columns) {
+  return {.title = title,
+          .subtitle = subtitle,
+          .pixel_mm = 2 * half_width_mm / examples::tile_pixels(columns),
+          .tiles = {}};
 }
 
 examples::Tile tile(const petzval::PointImage& image, const std::vector<std::string>& captions) {
@@ -59,9 +65,10 @@ struct AxialScene {
                      " at f/4, focused at 2 m. A point light at 10 m on the axis, as in a photograph. Each tile has "
                      "its own exposure.";
 
-  petzval::PointImage image(petzval::ModelKind model, const petzval::BokehControls& controls) const {
+  petzval::PointImage image(petzval::ModelKind model, const petzval::BokehControls& controls,
+                            std::size_t columns) const {
     return petzval::point_image(examples::camera_of({lens, light}, {.model = model, .bokeh = controls}), light,
-                                tile_options(half_width_mm));
+                                tile_options(half_width_mm, columns));
   }
 };
 
@@ -80,14 +87,14 @@ examples::Sheet blades() {
        "Light: area of the iris relative to the round iris of the same f-number. The first corner points up, and all "
        "corners are on the edge of the round iris."}};
   for (const auto& [name, roundness] : all_edges) {
-    auto& tiles =
-        sheet.rows
-            .emplace_back(row(std::string(name) + " edges", "roundness " + number(roundness), scene.half_width_mm))
-            .tiles;
+    auto& tiles = sheet.rows
+                      .emplace_back(row(std::string(name) + " edges", "roundness " + number(roundness),
+                                        scene.half_width_mm, counts.size()))
+                      .tiles;
     for (const int count : counts) {
       const petzval::Iris iris{.blades = count, .roundness = roundness};
-      const auto image =
-          petzval::point_image(petzval::with_iris(scene.lens, iris), scene.light, tile_options(scene.half_width_mm));
+      const auto image = petzval::point_image(petzval::with_iris(scene.lens, iris), scene.light,
+                                              tile_options(scene.half_width_mm, counts.size()));
       const double area_ratio = petzval::iris_area(iris) / petzval::iris_area(petzval::Iris{});
       tiles.push_back(tile(image, {std::to_string(count) + " blades", "light: " + number(100 * area_ratio, 3) + " %"}));
     }
@@ -124,15 +131,49 @@ examples::Sheet cats_eyes() {
             petzval::ModelKind::thin_two_disc,
             {}},
         Row{"thin lens", "with the lens ratio and the rate of change of the fit", petzval::ModelKind::thin, eye}}) {
-    auto& tiles = sheet.rows.emplace_back(row(title, subtitle, half_width_mm)).tiles;
+    auto& tiles = sheet.rows.emplace_back(row(title, subtitle, half_width_mm, fields_deg.size())).tiles;
     double on_axis = 0;
     for (const double field : fields_deg) {
       const examples::BokehScene scene{lens, light(field)};
       const auto image = petzval::point_image(examples::camera_of(scene, {.model = model, .bokeh = controls}),
-                                              scene.light, tile_options(half_width_mm));
+                                              scene.light, tile_options(half_width_mm, fields_deg.size()));
       if (on_axis == 0) on_axis = image.throughput;
       tiles.push_back(
           tile(image, {number(field) + "°", "light: " + number(100 * image.throughput / on_axis, 3) + " %"}));
+    }
+  }
+  return sheet;
+}
+
+/// The second rim of a thin lens from smaller than the first rim to larger, on and off the axis.
+examples::Sheet lens_ratios() {
+  constexpr std::array ratios{0.2, 0.5, 0.7, 0.85, 1.0, 1.3, 2.0};
+  constexpr double field_deg = 10, rate_of_change = -0.5;
+  const petzval::Lens lens = focused(lens_of_data("double_gauss_100mm_f1.35"));
+  examples::Sheet sheet{"Lens ratio from 0.2 to 2",
+                        {},
+                        {"A thin lens with two rims. Lens ratio: radius of the second rim divided by the radius of the "
+                         "first. A far point light; each tile has its own exposure. Light: relative to a lens with one "
+                         "rim, at the same field."}};
+  for (const double field : {0.0, field_deg}) {
+    const examples::BokehScene scene{lens, {petzval::radians(field), -light_mm}};
+    const auto image = [&](const petzval::BokehControls& controls, const petzval::PsfOptions& options) {
+      return petzval::point_image(examples::camera_of(scene, {.model = petzval::ModelKind::thin, .bokeh = controls}),
+                                  scene.light, options);
+    };
+    const petzval::PointImage open = image({}, {.samples = samples});
+    const double half_width_mm = 1.08 * open.size.max_radius;
+    auto& tiles = sheet.rows
+                      .emplace_back(row(field == 0 ? "on the axis" : number(field) + "\u00b0 off the axis",
+                                        "rate of change " + number(rate_of_change) +
+                                            ": the second rim moves with the distance from the centre of the film",
+                                        half_width_mm, ratios.size()))
+                      .tiles;
+    for (const double ratio : ratios) {
+      const petzval::PointImage eye =
+          image({.lens_ratio = ratio, .rate_of_change = rate_of_change}, tile_options(half_width_mm, ratios.size()));
+      tiles.push_back(
+          tile(eye, {"ratio " + number(ratio), "light: " + number(100 * eye.throughput / open.throughput, 3) + " %"}));
     }
   }
   return sheet;
@@ -148,10 +189,10 @@ examples::Sheet weights() {
        "Weight 1 + p (d + 1) x^d - p; x: fraction of the iris area nearer to its centre, or for d below "
        "0 farther out."}};
   const auto add_row = [&](const std::string& title, const std::vector<petzval::EdgeWeight>& edges, int blades) {
-    auto& tiles = sheet.rows.emplace_back(row(title, "", scene.half_width_mm)).tiles;
+    auto& tiles = sheet.rows.emplace_back(row(title, "", scene.half_width_mm, edges.size())).tiles;
     for (const auto& [d, p] : edges) {
       const auto image = scene.image(petzval::ModelKind::exact_float,
-                                     {.blades = blades, .weight_distribution = d, .weight_strength = p});
+                                     {.blades = blades, .weight_distribution = d, .weight_strength = p}, edges.size());
       tiles.push_back(tile(image, {"d = " + number(d), "p = " + number(p)}));
     }
   };
@@ -190,11 +231,11 @@ examples::Sheet maps() {
       {petzval::onion_rings({.period = 0.1, .contrast = 0.5, .jitter = 0.3}), "onion rings", "period .1, contrast .5"},
       {heart(), "an image as iris", "a heart"}};
   const auto add_row = [&](petzval::ModelKind model, const std::string& title) {
-    auto& tiles = sheet.rows.emplace_back(row(title, "", scene.half_width_mm)).tiles;
+    auto& tiles = sheet.rows.emplace_back(row(title, "", scene.half_width_mm, shown.size())).tiles;
     for (const auto& [map, caption, below] : shown) {
       petzval::BokehControls controls;
       controls.weight_map = map;
-      tiles.push_back(tile(scene.image(model, controls), {caption, below}));
+      tiles.push_back(tile(scene.image(model, controls, shown.size()), {caption, below}));
     }
   };
   add_row(petzval::ModelKind::exact_float, "exact rays");
@@ -209,7 +250,8 @@ int commands::shapes(int argc, char** argv) {
   examples::App app(
       "Draws contact sheets of an out-of-focus point light into DIR and prints their paths: bokeh_blades.png (3 to 9 "
       "blades, straight, rounded and hollow), bokeh_cats_eyes.png (a lens over its field compared with two fitted "
-      "discs), bokeh_weights.png (weights of the rim) and bokeh_maps.png (onion rings, an image as iris).",
+      "discs), bokeh_lens_ratio.png (a second rim from 0.2 to 2 times as large), bokeh_weights.png (weights of the "
+      "rim) and bokeh_maps.png (onion rings, an image as iris).",
       "petzval shapes");
   examples::add_out_folder(app, out_folder, "folder for the sheets")->required();
   examples::add_samples(app, samples);
@@ -221,8 +263,9 @@ int commands::shapes(int argc, char** argv) {
     };
     const std::filesystem::path folder = out_folder;
     examples::make_folder(folder);  // fail before the drawing, which takes seconds
-    const std::array<Picture, 4> all{{{"bokeh_blades.png", "blades", blades},
+    const std::array<Picture, 5> all{{{"bokeh_blades.png", "blades", blades},
                                       {"bokeh_cats_eyes.png", "cat's eyes", cats_eyes},
+                                      {"bokeh_lens_ratio.png", "lens ratios", lens_ratios},
                                       {"bokeh_weights.png", "weights", weights},
                                       {"bokeh_maps.png", "maps", maps}}};
     examples::Progress progress("bokeh shapes", all.size());

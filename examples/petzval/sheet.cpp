@@ -1,19 +1,23 @@
 // SPDX-License-Identifier: Apache-2.0
 // Lays out pictures of petzval render on a sheet and measures the highlights of the balls scene.
 //
-//   petzval sheet --columns 5 --title "Balls" --out balls.png --balls balls.csv FOLDER...
+//   petzval sheet --title "Balls" --out balls.png --balls balls.csv FOLDER...
 #include "commands.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <filesystem>
+#include <functional>
 #include <iostream>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "petzval/core/error.hpp"
 #include "petzval/image/image.hpp"
 #include "renderer/highlights.hpp"
+#include "support/bokeh.hpp"
 #include "support/cli.hpp"
 #include "support/contact_sheet.hpp"
 #include "support/files.hpp"
@@ -61,8 +65,17 @@ Picture read(const fs::path& folder) {
   return picture;
 }
 
-examples::Sheet sheet_of(const std::vector<Picture>& pictures, const std::string& title, std::size_t columns) {
+/// The size of the film across.
+double film_width_mm(const Picture& picture) {
+  const std::string film = picture.job.at("film_mm");
+  return examples::parse_number("film", film.substr(0, film.find('x')), examples::positive_number);
+}
+
+examples::Sheet sheet_of(const std::vector<Picture>& pictures, const std::string& title, std::size_t columns,
+                         const std::function<float(const petzval::RgbImage&)>& exposure) {
   examples::Sheet sheet{title, {}, {}};
+  const int width = std::min(pictures[0].image.width, examples::column_pixels(columns));
+  std::string row_title;
   for (std::size_t i = 0; i < pictures.size(); ++i) {
     const Picture& p = pictures[i];
     if (p.image.width != pictures[0].image.width || p.image.height != pictures[0].image.height) {
@@ -70,19 +83,59 @@ examples::Sheet sheet_of(const std::vector<Picture>& pictures, const std::string
                            std::to_string(p.image.height) + " pixels; must be the same for all pictures");
     }
     if (i % columns == 0) {
-      const std::string film = p.job.at("film_mm");
-      const double width_mm = examples::parse_number("film", film.substr(0, film.find('x')), examples::positive_number);
       const auto end = pictures.begin() + static_cast<std::ptrdiff_t>(std::min(i + columns, pictures.size()));
       const bool same_lens = std::all_of(pictures.begin() + static_cast<std::ptrdiff_t>(i), end,
                                          [&](const Picture& other) { return other.lens() == p.lens(); });
-      sheet.rows.push_back({same_lens ? p.lens() : "", "", width_mm / p.image.width, {}});
+      const std::string lens = same_lens ? p.lens() : "";
+      const bool continued = i > 0 && same_lens && lens == row_title;
+      row_title = lens;
+      sheet.rows.push_back({continued ? "" : lens, "", film_width_mm(p) / width, {}});
+      if (!same_lens) sheet.rows.back().subtitle = "lenses below the pictures";
     }
     examples::SheetRow& row = sheet.rows.back();
-    row.tiles.push_back({petzval::to_srgb8(p.image), p.captions()});
-    if (row.title.empty()) row.tiles.back().captions.insert(row.tiles.back().captions.begin(), p.lens());
+    row.tiles.push_back({petzval::to_srgb8(examples::with_width(p.image, width), exposure(p.image)), p.captions()});
+    if (row_title.empty()) row.tiles.back().captions.insert(row.tiles.back().captions.begin(), p.lens());
   }
-  sheet.notes = {"petzval render: white is radiance 1 in the centre; scale bars on the film."};
   return sheet;
+}
+
+/// The exposure that clips one pixel of 5000.
+float exposure_below_white(const petzval::RgbImage& image) {
+  std::vector<float> values;
+  for (std::size_t i = 0; i < image.pixels.size(); i += 3) {
+    values.push_back(std::max({image.pixels[i], image.pixels[i + 1], image.pixels[i + 2]}));
+  }
+  const auto rank = values.begin() + static_cast<std::ptrdiff_t>((values.size() - 1) * 4999 / 5000);
+  std::nth_element(values.begin(), rank, values.end());
+  return *rank > 0 ? 1 / *rank : 1;
+}
+
+/// The square part of a picture, as high as the picture, around a column.
+petzval::RgbImage square_at(const petzval::RgbImage& image, double x) {
+  const int size = std::min(image.width, image.height);
+  const int left = std::clamp(static_cast<int>(std::lround(x - size / 2.0)), 0, image.width - size);
+  petzval::RgbImage result(size, size);
+  for (int y = 0; y < size; ++y) std::copy_n(image.pixel(left, y), 3 * size, result.pixel(0, y));
+  return result;
+}
+
+/// Rows with the highlights of three balls, enlarged: a tile for each picture.
+void add_highlights(examples::Sheet& sheet, const std::vector<Picture>& pictures) {
+  const int size = examples::tile_pixels(pictures.size());
+  for (const auto& [title, ball] :
+       {std::pair{"in the centre", 6u}, std::pair{"half way to the edge", 9u}, std::pair{"at the edge", 12u}}) {
+    examples::SheetRow row{title, "", 0, {}};
+    for (const Picture& p : pictures) {
+      const auto highlights = renderer::ball_highlights(p.image);
+      if (highlights.size() <= ball || !highlights[ball]) continue;
+      const Json& mm = p.job.at("focus_mm");
+      const petzval::RgbImage part = square_at(p.image, highlights[ball]->x);
+      row.pixel_mm = film_width_mm(p) / p.image.width * part.width / size;
+      row.tiles.push_back({petzval::to_srgb8(examples::with_width(part, size), exposure_below_white(p.image)),
+                           {examples::focus_caption(mm.is_null() ? INFINITY : mm.get<double>())}});
+    }
+    if (!row.tiles.empty()) sheet.rows.push_back(std::move(row));
+  }
 }
 
 std::string ball_table(const std::vector<Picture>& pictures) {
@@ -118,7 +171,8 @@ int commands::sheet(int argc, char** argv) {
   app.add_option("--title", title, "title of the sheet")->capture_default_str();
   examples::add_out_file(
       app, balls,
-      "CSV of the balls scene: for each highlight axis_ratio, the angle of its long axis to the radius, and its "
+      "adds enlarged highlights of three balls to the sheet, gives each picture its own exposure, and writes a CSV "
+      "of the balls scene: for each highlight axis_ratio, the angle of its long axis to the radius, and its "
       "outward skewness; x_mm: position of the ball; beside: light of other spots near the ball, relative to the "
       "highlight; trusted: yes for complete highlights of at least 6 pixels that are far brighter than other spots",
       "CSV", "--balls");
@@ -127,7 +181,14 @@ int commands::sheet(int argc, char** argv) {
     examples::want_ending("--out", out, ".png");
     std::vector<Picture> pictures;
     for (const std::string& folder : folders) pictures.push_back(read(folder));
-    petzval::write_png(examples::draw_sheet(sheet_of(pictures, title, columns)), out);
+    const auto exposure = [&balls](const petzval::RgbImage& image) {
+      return balls.empty() ? 1.0f : exposure_below_white(image);
+    };
+    examples::Sheet sheet = sheet_of(pictures, title, columns, exposure);
+    sheet.notes = {balls.empty() ? "petzval render: white is radiance 1 in the centre; scale bars on the film."
+                                 : "petzval render: each picture has its own exposure; scale bars on the film."};
+    if (!balls.empty()) add_highlights(sheet, pictures);
+    petzval::write_png(examples::draw_sheet(sheet), out);
     std::cout << out << '\n';
     if (balls.empty()) return;
     examples::write_text(balls, ball_table(pictures));

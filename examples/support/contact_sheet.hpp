@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
 #include <span>
 #include <string>
 #include <vector>
@@ -29,7 +30,16 @@ struct Sheet {
   std::vector<std::string> notes;  ///< lines at the foot
 };
 
-/// Lays out the tiles on a dark sheet with captions. The tiles of a row must have one size.
+/// Width of the tiles that fill a row of a sheet with this many columns, in pixels.
+int column_pixels(std::size_t columns);
+/// The same for square tiles: at most 400.
+inline int tile_pixels(std::size_t columns) { return std::min(400, column_pixels(columns)); }
+
+/// Enlarges or reduces a picture to a width, by linear interpolation or weighted means.
+petzval::RgbImage with_width(const petzval::RgbImage& picture, int width);
+
+/// Lays out the tiles on a dark sheet with captions and a scale bar. The tiles of a row must have one size. All sheets
+/// have the same width unless a row needs more. A row without title and subtitle continues the row above.
 petzval::Rgb8Image draw_sheet(const Sheet& sheet);
 
 }  // namespace examples

@@ -102,8 +102,8 @@ petzval::RgbImage picture(const petzval::PsfKernel& kernel, int side, double pix
 
 /// Fields by distances, at the wavelength nearest to the d line and the largest stop.
 Sheet contact_sheet(const PsfJob& job, const std::vector<petzval::ExrPart>& parts) {
-  constexpr int tile_pixels = 220;
   const auto& axes = job.axes();
+  const int size = tile_pixels(axes.fields_deg.size());
   const double nm = *std::min_element(axes.wavelengths_nm.begin(), axes.wavelengths_nm.end(), [](double a, double b) {
     return std::abs(a - petzval::d_line_nm) < std::abs(b - petzval::d_line_nm);
   });
@@ -126,10 +126,10 @@ Sheet contact_sheet(const PsfJob& job, const std::vector<petzval::ExrPart>& part
     for (const auto& [point, kernel] : row) width = std::max(width, kernel.pixels * kernel.pixel_mm);
     SheetRow shown{.title = std::isinf(distance) ? "a light at infinity" : "a light at " + number(distance) + " mm",
                    .subtitle = number(nm) + " nm, f/" + number(axes.f_numbers.front(), 3),
-                   .pixel_mm = 1.15 * width / tile_pixels,  // margin for the scale bar
+                   .pixel_mm = 1.15 * width / size,  // margin for the scale bar
                    .tiles = {}};
     for (const auto& [point, kernel] : row) {
-      shown.tiles.push_back({expose(picture(kernel, tile_pixels, shown.pixel_mm)).picture,
+      shown.tiles.push_back({expose(picture(kernel, size, shown.pixel_mm)).picture,
                              {number(point.field_deg) + "°", "light " + number(kernel.total, 3)}});
     }
     sheet.rows.push_back(std::move(shown));

@@ -127,7 +127,7 @@ TEST_F(Gallery, DrawsTheShapesOfBokeh) {
   const auto outcome = run("shapes", {"--out", path("shapes"), "--rays", "4096"});
   EXPECT_EQ(outcome.status, 0) << outcome.err;
   std::vector<std::string> files;
-  for (const char* name : {"blades", "cats_eyes", "weights", "maps"}) {
+  for (const char* name : {"blades", "cats_eyes", "lens_ratio", "weights", "maps"}) {
     files.push_back(path(std::string("shapes/bokeh_") + name + ".png"));
     EXPECT_TRUE(read(files.back()).starts_with("\x89PNG"));
   }
