@@ -1,11 +1,12 @@
 #!/bin/sh
 # SPDX-License-Identifier: Apache-2.0
-# Builds the example programs and renders the gallery. Installs missing packages of a bare Debian 12.
+# Installs missing packages of a bare Debian 12, builds a small path tracer and renders a first picture, out/path_tracer.png,
+# then builds petzval and makes the gallery, out/index.html.
 #
 #   sh examples/run.sh [--build-only | --full]
 #
-# --full renders large scenes with little noise (an hour on two cores). Existing samples are kept.
-# The programs are in build/examples/, the pictures in out/ (start with out/index.html).
+# --full makes the gallery with large scenes and little noise, in out/full (hours on two cores).
+# The programs are in build/examples/. A second run makes only what is missing.
 # BUILD_DIR=... builds elsewhere, OUT_DIR=... renders elsewhere. UNITY=OFF compiles the sources separately.
 set -eu
 root=$(CDPATH= cd -- "$(dirname -- "$0")/.." && pwd)
@@ -21,6 +22,15 @@ case ${1-} in
 esac
 
 need $library_packages $example_packages
+out=${OUT_DIR:-$root/out}
+if [ "$render" = yes ] && [ ! -f "$out/path_tracer.png" ]; then
+  target=path_tracer
+  build $unity -DPETZVAL_BUILD_TESTS=OFF -DPETZVAL_BUILD_EXAMPLES=ON
+  mkdir -p "$out"
+  "$BUILD_DIR/examples/path_tracer" "$out"
+  echo "== The first picture: $out/path_tracer.png. Building petzval for the gallery."
+fi
+target=all
 build $unity -DPETZVAL_BUILD_TESTS=OFF -DPETZVAL_BUILD_EXAMPLES=ON
 [ "$render" = yes ] || exit 0
-exec sh "$root/examples/gallery.sh" "$BUILD_DIR/examples" "${OUT_DIR:-$root/out}" $full
+exec sh "$root/examples/gallery.sh" "$BUILD_DIR/examples" "$out" $full
