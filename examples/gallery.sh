@@ -15,8 +15,8 @@ here=$(CDPATH='' cd -- "$(dirname -- "$0")" && pwd)
 programs=$(CDPATH='' cd -- "$1" && pwd)
 out=$2 scale=1 more_samples=1 resume=
 if [ $# -eq 3 ]; then out=$2/full scale=2 more_samples=16 resume=' --resume'; fi
-mkdir -p "$out/points"
-cp "$here"/scenes/*.json "$out/points"
+mkdir -p "$out/input"
+cp "$here"/scenes/*.json "$out/input"
 # shellcheck source=SCRIPTDIR/gallery_page.sh
 . "$here/gallery_page.sh"
 
@@ -35,8 +35,8 @@ $statues --focus 1500 --out statues/near
 END
   picture statues/both/picture.png "Both angels in focus" "Impossible for a real lens, in the manner of figure 1 (d) of Lee et al. 2010: a
 focal surface through both angels, 1.5 m and 6 m away, and blur at all other distances. The points are in
-<a href=\"points/statues_focus.json\">statues_focus.json</a>." <<END
-$statues --focus 1500 --model thin_two_disc --focal-surface points/statues_focus.json --out statues/both
+<a href=\"input/statues_focus.json\">statues_focus.json</a>." <<END
+$statues --focus 1500 --model thin_two_disc --focal-surface input/statues_focus.json --out statues/both
 END
   picture street/picture.png "A street at night" "Focused on the sign at 3 m, at f/2. Bidirectional path tracing connects small lamps with the
 lens, so that their discs are smooth. The dots on the road are reflections in wet stones." <<END
@@ -98,7 +98,7 @@ towards the corners." <<END
 petzval blur double_gauss_100mm_f1.35 --scene statues --focus 3000 --from entrance_pupil --fov 22 --out layers/cats_eyes
 END
   picture layers/surface/blur.png "A focal surface" "Through both angels, 1.5 m and 6 m away, with blur between them." <<END
-petzval blur --scene statues --thin-lens 50 --f-number 1.79 --focus 5000 --points points/statues_focus.json --out layers/surface
+petzval blur --scene statues --thin-lens 50 --f-number 1.79 --focus 5000 --points input/statues_focus.json --out layers/surface
 END
   picture layers/night/blur.png "Six blades" "A street at night: small bright lights become uniform images of the iris." <<END
 petzval blur --scene street --thin-lens 100 --f-number 2 --focus 3000 --fov 14 --blades 6 --out layers/night
@@ -107,7 +107,7 @@ END
 
 # tilted FOLDER POINTS OPTION...: a fit of the film to points.
 tilted() {
-  folder=tilt/$1 points=points/$2.json
+  folder=tilt/$1 points=input/$2.json
   shift 2
   echo "petzval tilt double_gauss_100mm_f2_28deg --f-number 4 --points $points${*:+ $*} --out $folder > $folder.txt"
 }
@@ -142,18 +142,29 @@ END
   picture pull/${stem}_focus_pull.svg "A focus pull" "From 0.8 m to 2.5 m, a rest, and on to infinity, at f/2. At the keys (dotted) the curves are level and
 never overshoot. The bottom diagram shows the blur that focusing cannot remove: the aberrations of the lens, which are largest at close distances.
 <a href=\"pull/${stem}_focus_pull.csv\">A row for every frame</a>." <<END
-petzval pull double_gauss_100mm_f2_28deg --f-number 2 --keys points/rack.json --out pull
+petzval pull double_gauss_100mm_f2_28deg --f-number 2 --keys input/rack.json --out pull
 END
   picture surface/surface.png "A focal surface" "The distances in focus for the angels above: points 1 to 5 at 1.5 m, 6 to 10 at 6 m, and the distances and
 blurs of points 11 to 16. (Here positions count from the first vertex, in the scene from the entrance pupil 25 mm behind it.) The same surface
 <a href=\"surface/side.svg\">in section</a> and as <a href=\"surface/surface.pfm\">1/distance</a>." <<END
-petzval surface double_gauss_52mm_f1.8 --points points/statues_focus.json --size 600x400 --focus 1500 --out surface
+petzval surface double_gauss_52mm_f1.8 --points input/statues_focus.json --size 600x400 --focus 1500 --out surface
 END
 }
 
 wu() {
   section wu "Wu et al. 2010" "The figures of the paper on bokeh, computed from the lenses themselves. A bright rim or a bright core of a disc is spherical
 aberration, in front of or behind the focus."
+  for lens in $wu_lenses; do
+    case $lens in
+      *1.35) words="Figure 6: the f/1.35 lens" more="Lowenthal's double Gauss, its profile and its pupils: the entrance pupil (left of the stop) and the exit
+pupil are the images of the stop by the front and the rear group." ;;
+      *1.7*) words="Figure 6: the f/1.7 lens" more="A substitute: the paper does not name its source." ;;
+      *) words="Figure 6: the f/2 lens" more="With a field of 28 degrees." ;;
+    esac
+    picture "lenses/${lens}_layout.svg" "$words" "$more <a href=\"lenses/$lens.html\">Table of surfaces, pupils and spots</a>." <<END
+petzval report $lens --out lenses
+END
+  done
   picture wu/figure7.png "Figure 7: bokeh of three lenses" "A point light is at 1000 mm; each column has a different focus distance. Focused nearer than the light
 (left), the first two lenses draw a thin bright rim; focused farther (right), a bright core with a slightly darker centre. The third lens does the
 opposite; at 800 mm its disc is nearly uniform with a bright core, while the paper calls it uniform. The Tronnier f/2 below it, an equally likely source
@@ -169,17 +180,23 @@ END
 <a href=\"wu/statements.txt\">statements.txt</a>. The Tronnier is compared with the statements about the third row." <<END
 wu_statements --html wu/statements.html > wu/statements.txt
 END
-  picture wu/balls.png "Figure 8: balls that reflect a lamp" "Balls 1 m in front of the lens. Highlights are round in the centre; towards the edge they are
-cat's eyes and comets, drawn towards the centre or away from it. Focused at 1000 mm they are in focus. The dots next to them are mutual reflections. Axis
-ratio, orientation and skewness of each highlight are in <a href=\"wu/balls.csv\">balls.csv</a>." <<END
-$(for lens in $wu_lenses; do
-  for focus in 800 900 1000 1100 1200; do
-    echo "petzval render $lens --scene balls --focus $focus --integrator path --film 36x4.8 $(size 600 80) $(spp 128) --out balls/${lens}_$focus"
-  done
+  for lens in $wu_lenses; do
+    case $lens in
+      *1.35) words="Figure 8: lights over the field, f/1.35" more="In the manner of figure 8: thirteen balls 1059 mm in front of the lens, each with a
+small light. The discs are circles in the centre and cat's eyes towards the edge, with a bright side: coma. Below, three of them enlarged, at the five
+focus distances: the rims and cores of figure 7, clipped by the rims of the lens. Each strip has its own exposure. Axis ratio, orientation and skewness of
+all highlights are in" ;;
+      *1.7*) words="Figure 8: f/1.7" more="The same. The numbers:" ;;
+      *) words="Figure 8: f/2" more="The same; this lens vignettes least. The numbers:" ;;
+    esac
+    picture "balls/$lens.png" "$words" "$more <a href=\"balls/$lens.csv\">$lens.csv</a>." <<END
+$(for focus in 800 900 1000 1100 1200; do
+  echo "petzval render $lens --scene input/row_of_lights.json --focus $focus --film 36x3 $(size 1208 100) $(spp 32) --out balls/${lens}_$focus"
 done)
-petzval sheet --columns 5 --title "A row of balls" --out wu/balls.png --balls wu/balls.csv \\
-  $(for lens in $wu_lenses; do for focus in 800 900 1000 1100 1200; do printf ' balls/%s' "${lens}_$focus"; done; done)
+petzval sheet --title "A row of lights" --out balls/$lens.png --balls balls/$lens.csv \\
+ $(for focus in 800 900 1000 1100 1200; do printf ' balls/%s' "${lens}_$focus"; done)
 END
+  done
 }
 
 bokeh() {
@@ -192,7 +209,7 @@ END
   picture colour/double_gauss_100mm_f1.35_chromatic.png "The colours of bokeh" "Blue light has the shorter focus in this lens of 1951. Each disc has a blue and
 green outline when focused nearer than the light, a red outline when farther, with the other colours in the centre. Three wavelengths give hard edges, 26
 wavelengths blend. The shifts of focus and of the chief ray are in <a href=\"colour/shifts.txt\">shifts.txt</a>." <<END
-petzval colour double_gauss_100mm_f1.35 --rays 131072 --out colour > colour/shifts.txt
+petzval colour double_gauss_100mm_f1.35 --rays 524288 --out colour > colour/shifts.txt
 END
   picture shapes/bokeh_blades.png "Irises with blades" "A far point light through 3 to 9 blades. As in a photograph, the first corner points straight up. The
 corners are on the edge of the disc of a round iris. Spherical aberration bends the edges slightly inwards although the blades are straight." <<END
@@ -201,6 +218,9 @@ END
   also shapes/bokeh_cats_eyes.png "Cat's eyes" "The f/1.35 lens over its field, and two discs fitted to its pupils seen from the film: at 11.5 degrees they
 transmit 68 % of the light, the lens 66 %. A far point light shows the pupil seen from the scene, where the two discs are 14 % larger on the axis and 1.4
 times as large at 11.5 degrees. The bright rim and the bent lower edge are aberrations, which a thin lens does not have."
+  also shapes/bokeh_lens_ratio.png "Lens ratio from 0.2 to 2" "A thin lens with a second rim. Below 1 the second rim makes the disc smaller; near 1 it clips
+the disc off the axis to a cat's eye; at 2 it clips nothing at 10 degrees. On the axis a far light sees the second rim slightly smaller than the film
+does."
   also shapes/bokeh_weights.png "Weights of the stop" "Rays weighted by their position on the stop, traced through every surface of the lens. The weights conserve
 the light on the iris; in the picture the tiles of a row differ by about 1 % at f/4. Lines of equal brightness follow the blades."
   also shapes/bokeh_maps.png "Maps of the stop" "Images over the stop: the rings of a lathe-turned aspheric mould, and a cut-out iris. A far light shows the heart
