@@ -112,8 +112,9 @@ void add_lens(examples::App& app, LensFlags& flags) {
       ->type_name("N,...")
       ->default_str("256; 512 for LENS and --singlet with --jitter");
   app.add_flag("--jitter", flags.jitter, "16 sets of rays, alternating over the pixels: grain instead of patterns");
-  app.add_option("--wavelengths", flags.wavelengths,
-                 "d: rays at the d line; rgb: separate rays for red, green and blue, at 650, 510 and 475 nm")
+  app.add_option(
+         "--wavelengths", flags.wavelengths,
+         "wavelengths of the rays; d: the d line; rgb: separate rays for red, green and blue, at 650, 510 and 475 nm")
       ->one_of({"d", "rgb"})
       ->capture_default_str();
   add_iris(app, flags.iris);

@@ -410,7 +410,7 @@ int commands::blur(int argc, char** argv) {
       ->default_str("6 times the mean; at most 1, or 0.75 in files without values above 1");
   auto* frames = examples::add_count(
       app, "--frames", options.frames, {1, 100000, "a whole number from 1 to 100000"},
-      "number of frames, written as blur_0001.* and so on, and up to 8 of them side by side in frames.png; --points "
+      "number of frames; written as blur_0001.* and so on, and up to 8 of them side by side in frames.png; --points "
       "then gives focus points with keys");
   examples::add_number(app, "--fps", options.frames_per_second, examples::positive_number,
                        "frames per second, for the keys of --points")

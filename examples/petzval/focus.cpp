@@ -256,7 +256,8 @@ std::string to_text(const Report& report, const Options& options) {
 int commands::focus(int argc, char** argv) {
   Options options;
   examples::App app(
-      "Reports, for subject distances and focus criteria: the film position, the blur of the subject, the depth of "
+      "Reports focus, depth of field and breathing for subject distances and focus criteria: the film position, the "
+      "blur of the subject, the depth of "
       "field, the hyperfocal distance, the nearest distance, and breathing (growth of the image compared with focus at "
       "infinity).\n"
       "Criteria: thin (a thin lens of the same focal length), paraxial (the cardinal points), min_rms and min_max "

@@ -41,7 +41,7 @@ void print_overview(std::ostream& out) {
       out << '\n';
     }
   }
-  out << "\npetzval help COMMAND   options of a command, with an example\n"
+  out << "\npetzval help COMMAND   options of a command, with an example; petzval help COMMAND all: every detail\n"
          "petzval help files     formats of points, keys and tables\n"
          "petzval --version\n";
 }
@@ -62,7 +62,10 @@ Samples (camera-rays --table FILE): CSV with film_x_mm,film_y_mm,pupil_u,pupil_v
 
 Lenses: data/README.md describes the JSON format; petzval convert reads and writes other formats.
 
-Exit status: 0 success; 1 error, with one line on standard error; 2 unknown command.
+Reports (--json, and JSON files in --out DIR): lib/docs/reports.md lists the keys of each command.
+
+Exit status: 0 success; 1 error, with one line on standard error; 2 unknown command; 3 not converted
+  because of --strict; 130 interrupted (Ctrl-C), with finished work kept if the command has --resume.
 )";
 }
 
@@ -77,14 +80,14 @@ int unknown(std::string_view name) {
   return 2;
 }
 
-int run(std::string_view name, int argc, char** argv) {
+int run(std::string_view name, int argc, char** argv, const std::string& topic = "") {
   const Command* const command = find(name);
   if (!command) return unknown(name);
   if (!command->run) {
     std::cerr << "petzval: " << name << " is not built: needs " << command->needs << '\n';
     return 1;
   }
-  examples::set_example("petzval " + std::string(name) + ' ' + std::string(command->example));
+  examples::set_help("petzval " + std::string(name) + ' ' + std::string(command->example), topic);
   return command->run(argc, argv);
 }
 
@@ -94,7 +97,7 @@ int help(int argc, char** argv) {
   if (topic == "files") return print_files(), 0;
   std::string flag = "--help";
   char* arguments[]{argv[2], flag.data(), nullptr};
-  return run(topic, 2, arguments);
+  return run(topic, 2, arguments, argc > 3 ? argv[3] : "");
 }
 
 }  // namespace

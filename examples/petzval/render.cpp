@@ -402,9 +402,10 @@ int commands::render(int argc, char** argv) {
       "--spp leaves missing samples to --resume. Ctrl-C writes sums and picture. --resume continues; a larger --spp "
       "adds samples to a finished picture, bit for bit as one run.",
       "petzval render");
-  app.add_option("--scene", options.scene,
-                 "balls, chess, statues or street, for a film of 36x24 mm and lenses of 100 mm (statues: 50 mm); or a "
-                 "scene as JSON")
+  app.add_option(
+         "--scene", options.scene,
+         "scene; balls, chess, statues or street, for a film of 36x24 mm and lenses of 100 mm (statues: 50 mm); or a "
+         "scene as JSON")
       ->required()
       ->type_name("NAME|FILE.json");
   examples::add_lens(app, options.lens_file);
@@ -420,7 +421,8 @@ int commands::render(int argc, char** argv) {
                        "largest error of a ray for --model auto (pixels)")
       ->default_str("a tenth of the noise");
   app.add_option("--integrator", options.integrator,
-                 "path: from the film; light: from the lamps, which misses views through mirrors and smooth glass; "
+                 "direction of tracing; path: from the film; light: from the lamps, which misses views through mirrors "
+                 "and smooth glass; "
                  "bidirectional: both, for small lamps")
       ->one_of({"path", "light", "bidirectional"})
       ->capture_default_str();
@@ -449,10 +451,10 @@ int commands::render(int argc, char** argv) {
   constexpr examples::Range below_quarter_turn{-89.9, 89.9, "an angle from -89.9 to 89.9"};
   examples::add_number(app, "--tilt", options.tilt_deg, below_quarter_turn, "tilt of the film about +x (degrees)");
   examples::add_number(app, "--swing", options.swing_deg, below_quarter_turn, "swing of the film about +y (degrees)");
-  app.add_option(
-         "--wavelengths", options.wavelengths,
-         "d: the lens at the d line; rgb: one wavelength per channel; hero: four wavelengths per path over the visible "
-         "spectrum")
+  app.add_option("--wavelengths", options.wavelengths,
+                 "wavelengths of the light; d: the lens at the d line; rgb: one wavelength per channel; hero: four "
+                 "wavelengths per path over the visible "
+                 "spectrum")
       ->one_of({"d", "rgb", "hero"})
       ->capture_default_str();
   app.add_option("--normalisation", options.normalisation, "unit of the picture")

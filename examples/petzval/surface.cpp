@@ -216,7 +216,7 @@ int commands::surface(int argc, char** argv) {
       "Sets the distance in focus at each point of a picture from focus points. Writes to DIR: surface.png (distance "
       "over the picture, and extent of the depth of field if points give one), side.svg (section of lens, film and "
       "surface), surface.pfm (1/distance of each pixel in 1/mm, rows from the bottom as in all PFM files) and with "
-      "--queries answers.csv (x_px,y_px,distance_mm,extent_stops,blur_px). Distances count from "
+      "--table answers.csv (x_px,y_px,distance_mm,extent_stops,blur_px). Distances count from "
       "--from; infinity is inf, and distances beyond infinity, which a blur can cause, are negative. blur_px "
       "is the signed diameter of the requested blur for an object at the distance of the points, negative in front of "
       "the focus. Points that fix a distance override --focus.",
@@ -233,7 +233,7 @@ int commands::surface(int argc, char** argv) {
   examples::add_picture_size(app, options.width, options.height, usual_width);
   examples::add_camera(app, options.setup);
   examples::add_surface_kind(app, options.surface, points);
-  app.add_option("--queries", options.queries_file, "CSV file of picture points: x_px,y_px")->type_name("Q.csv");
+  app.add_option("--table", options.queries_file, "CSV file of picture points: x_px,y_px")->type_name("Q.csv");
   examples::add_out_folder(app, options.out_folder)->required();
   examples::add_threads(app);
   return examples::run(app, argc, argv, [&] { write(options); });

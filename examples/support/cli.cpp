@@ -9,12 +9,14 @@
 #include <cerrno>
 #include <charconv>
 #include <cmath>
+#include <cstdlib>
 #include <cstring>
 #include <filesystem>
 #include <iostream>
 #include <memory>
 #include <set>
 #include <span>
+#include <sstream>
 #include <system_error>
 #include <utility>
 
@@ -35,8 +37,17 @@ std::string joined(const std::vector<double>& values) {
 
 bool quiet = false;
 std::uint32_t thread_count = 0;  // 0: one per processor
-std::string example;
+std::string example, help_topic;
 CommandText* description_wanted = nullptr;
+
+std::string list_of(const std::vector<std::string>& values) {
+  std::string text;
+  for (const std::string& value : values) text += (text.empty() ? "" : ",") + value;
+  return text;
+}
+
+/// True for a terminal, unless the environment variable NO_COLOR is set.
+bool coloured(int file) { return isatty(file) == 1 && !std::getenv("NO_COLOR"); }
 
 std::string one_line(std::string text) {
   std::replace(text.begin(), text.end(), '\n', ' ');
@@ -50,15 +61,23 @@ Option* Option::type_name(const std::string& name) { return option_->type_name(n
 Option* Option::default_str(const std::string& text) { return option_->default_str(text), this; }
 Option* Option::capture_default_str() { return option_->capture_default_str(), this; }
 Option* Option::delimiter(char between) { return option_->delimiter(between), this; }
-Option* Option::one_of(const std::vector<std::string>& values) { return option_->check(CLI::IsMember(values)), this; }
+Option* Option::one_of(const std::vector<std::string>& values) {
+  const auto check = [values](const std::string& value) -> std::string {
+    if (std::ranges::find(values, value) != values.end()) return "";
+    const std::string near = nearest(value, values);
+    return '"' + value + "\"; must be one of " + list_of(values) + (near.empty() ? "" : "; did you mean " + near + "?");
+  };
+  option_->check(CLI::Validator(check, "{" + list_of(values) + "}"));
+  return this;
+}
 Option* Option::needs(Option* other) { return option_->needs(other->option_), this; }
 Option* Option::excludes(const std::string& other) { return option_->excludes(other), this; }
 bool Option::given() const { return option_->count() > 0; }
 
 App::App(const std::string& description, const std::string& name)
     : app_(std::make_unique<CLI::App>(description, name)) {
+  app_->set_help_flag("-h,--help", "print this help");
   app_->add_flag("--quiet", quiet, "no notes and no progress on standard error");
-  if (!example.empty()) app_->footer("Example: " + example);
 }
 App::~App() = default;
 
@@ -242,7 +261,7 @@ Option* add_threads(App& app) {
 
 int threads() { return thread_count > 0 ? static_cast<int>(thread_count) : petzval::processor_threads(); }
 
-void set_example(std::string text) { example = std::move(text); }
+void set_help(std::string text, std::string topic) { example = std::move(text), help_topic = std::move(topic); }
 
 CommandText described(int (*command)(int, char**), std::string name) {
   CommandText result;
@@ -351,30 +370,66 @@ Option* add_samples(App& app, std::uint32_t& samples) {
                    "rays per wavelength, 1 to 67108864");
 }
 
+namespace {
+
+/// The texts of a command line.
+CommandText text_of(const CLI::App& app) {
+  CommandText text;
+  text.description = app.get_description(), text.usage = app.get_name(), text.example = example;
+  for (const CLI::Option* option : app.get_options()) {
+    OptionText line;
+    line.flag = option->get_name(false, true);  // "-h,--help"
+    line.flag.erase(0, line.flag.find(',') + 1);
+    line.positional = option->get_positional();
+    line.type = option->get_type_name();
+    if (const std::size_t values = line.type.find(":{"); values != std::string::npos) {
+      std::istringstream list(line.type.substr(values + 2, line.type.size() - values - 3));
+      for (std::string value; std::getline(list, value, ',');) line.values.push_back(value);
+    }
+    line.help = option->get_description();
+    line.default_text = option->get_default_str();
+    if (line.default_text.starts_with('['))
+      line.default_text = line.default_text.substr(1, line.default_text.size() - 2);
+    line.required = option->get_required();
+    line.several = option->get_expected_max() > 1;
+    if (line.positional) {
+      const std::string name = line.flag + (line.several ? "..." : "");
+      text.usage += line.required ? ' ' + name : " [" + name + ']';
+    }
+    text.options.push_back(line);
+  }
+  text.usage += " [options]";
+  return text;
+}
+
+}  // namespace
+
 int run(App& app, int argc, char** argv, const std::function<void()>& body) {
   const auto fail = [&app](const char* what) {
-    std::cerr << app.app_->get_name() << ": " << one_line(what) << '\n';
+    const bool red = coloured(STDERR_FILENO);
+    std::cerr << (red ? "\033[31m" : "") << app.app_->get_name() << ": " << one_line(what) << (red ? "\033[0m" : "")
+              << '\n';
     return 1;
   };
-  if (description_wanted) {
-    description_wanted->description = app.app_->get_description();
-    for (const CLI::Option* option : app.app_->get_options()) {
-      std::string name = option->get_name(false, true);  // "-h,--help"
-      name.erase(0, name.find(',') + 1);
-      description_wanted->options.push_back({name, option->get_type_name(), option->get_description()});
-    }
-    return 0;
-  }
+  if (description_wanted) return *description_wanted = text_of(*app.app_), 0;
   try {
     app.app_->parse(argc, argv);
     for (const auto& check : app.checks_) check();
     body();
     std::cout.flush();
     return std::cout ? 0 : fail("cannot write to standard output");
-  } catch (const CLI::Success& help) {
-    return app.app_->exit(help);
+  } catch (const CLI::Success&) {
+    try {
+      print_help(std::cout, text_of(*app.app_), help_topic, coloured(STDOUT_FILENO));
+    } catch (const petzval::Error& unknown) {
+      return fail(unknown.what());
+    }
+    return 0;
   } catch (const CLI::ExtrasError&) {
     const std::vector<std::string> extras = app.app_->remaining();
+    if (!extras.empty() && !extras.front().starts_with('-')) {
+      return fail(('"' + extras.front() + "\": the command has all its arguments (see --help)").c_str());
+    }
     std::vector<std::string> flags;
     for (const CLI::Option* option : app.app_->get_options()) {
       if (!option->get_positional()) flags.push_back(option->get_name());

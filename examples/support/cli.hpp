@@ -12,6 +12,7 @@
 #include <string_view>
 #include <vector>
 
+#include "help.hpp"
 #include "petzval/core/error.hpp"
 #include "petzval/focus/focus.hpp"
 
@@ -132,18 +133,9 @@ Option* add_threads(App& app);
 /// The number of --threads, else one thread per processor.
 int threads();
 
-/// Sets the example shown by --help of the command that runs next.
-void set_example(std::string example);
+/// Sets the example and the topic of the help of the command that runs next; see print_help().
+void set_help(std::string example, std::string topic = "");
 
-/// The line of an option in the help of a command.
-struct OptionText {
-  std::string flag, type, help;
-};
-/// The description and the options of a command.
-struct CommandText {
-  std::string description;
-  std::vector<OptionText> options;
-};
 /// Runs a command that calls run(), and returns its texts instead of the work.
 CommandText described(int (*command)(int, char**), std::string name);
 

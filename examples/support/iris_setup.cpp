@@ -26,9 +26,9 @@ void add_iris_shape(App& app, IrisSetup& setup) {
   constexpr Range blades{0, 20, "3 to 20, or 0 for a round iris"};
   add_count(app, "--blades", setup.blades, blades, "blades of the iris, 3 to 20; 0: round");
   add_number(app, "--roundness", setup.roundness, {-1, 1, "a number from -1 to 1"},
-             "0: the edges of the blades are straight; 1: round; below 0: hollow");
+             "edges of the blades; 0: straight; 1: round; below 0: hollow");
   add_number(app, "--iris-rotation", setup.rotation_deg, finite_number,
-             "rotation of the first corner from straight up, anticlockwise seen from behind the camera (degrees)");
+             "rotation of the first corner from straight up (degrees); anticlockwise seen from behind the camera");
   app.add_option("--iris-area", setup.area,
                  "meaning of the f-number with blades. circumscribed: their corners lie on the round iris; equal: they "
                  "pass as much light as the round iris")

@@ -93,7 +93,7 @@ Option* add_lens(App& app, LensInput& input, const std::string& name, const std:
       ->default_str("the first")
       ->needs(lens);
   app.add_flag("--match-glasses", input.match_glasses,
-               "replace media known only by n_d and V_d by the nearest glass (within 0.001 and 0.5), with a note")
+               "replace media known only by n_d and V_d by the nearest glass; within 0.001 and 0.5, with a note")
       ->needs(lens);
   return lens;
 }

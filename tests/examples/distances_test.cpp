@@ -89,16 +89,18 @@ TEST_F(Distances, EveryProgramNamesTheOriginOfDistances) {
 #endif
   };
   for (const Arguments& program : programs) {
-    const std::string help = run(program[0], joined({program.begin() + 1, program.end()}, {"--help"})).out;
-    const std::size_t at = help.find("--from TEXT");
+    const bool sub_command = program.size() > 1;  // its help is complete
+    const std::string help = sub_command ? run(program[0], joined({program[1]}, {"--help"})).out
+                                         : run("petzval", {"help", program[0], "all"}).out;
+    const std::size_t at = help.find("--from ");
     ASSERT_NE(at, std::string::npos) << program[0];
-    const std::string line = help.substr(at, 200);
-    EXPECT_NE(line.find("=front_vertex"), std::string::npos) << program[0] << ": " << line;
+    const std::string line = help.substr(at, 300);
+    EXPECT_NE(line.find("[front_vertex]"), std::string::npos) << program[0] << ": " << line;
     for (const char* origin : {"film", "entrance_pupil"}) EXPECT_NE(line.find(origin), std::string::npos) << line;
-    const std::size_t criterion = help.find("--criterion TEXT");
+    const std::size_t criterion = help.find("--criterion ");
     if (program.size() > 1) continue;  // a query does not focus
     ASSERT_NE(criterion, std::string::npos) << program[0];
-    EXPECT_NE(help.substr(criterion, 200).find("min_rms"), std::string::npos) << program[0];
+    EXPECT_NE(help.substr(criterion, 600).find("min_rms"), std::string::npos) << program[0];
   }
 }
 

@@ -65,7 +65,7 @@ class FocalSurfaceProgram : public Programs {
 TEST_F(FocalSurfaceProgram, QueriesEqualTheValuesOfThePoints) {
   write("points.json", points);
   write("q.csv", "x_px,y_px\n60.5,100.5\n220.5,75.5\n150.5,50.5\n150.5,175.5\n10,190\n");
-  const auto outcome = run("surface", arguments({"--queries", path("q.csv")}));
+  const auto outcome = run("surface", arguments({"--table", path("q.csv")}));
   ASSERT_EQ(outcome.status, 0) << outcome.err;
   EXPECT_EQ(lines(outcome.out), (std::vector{path("out/surface.png"), path("out/side.svg"), path("out/surface.pfm"),
                                              path("out/answers.csv")}));
@@ -98,7 +98,7 @@ TEST_F(FocalSurfaceProgram, AcceptsWorldPointsAndKinds) {
   write("q.csv", "x_px,y_px\n150,100\n");
   for (const char* kind : {"affine", "shepard"}) {
     const auto outcome =
-        run("surface", arguments({"--queries", path("q.csv"), "--kind", kind, "--beta", "2", "--f-number", "4"}));
+        run("surface", arguments({"--table", path("q.csv"), "--kind", kind, "--beta", "2", "--f-number", "4"}));
     ASSERT_EQ(outcome.status, 0) << outcome.err;
     EXPECT_NEAR(rows(read(path("out/answers.csv")))[0][2], 2000, 1e-6);
   }

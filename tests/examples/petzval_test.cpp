@@ -47,7 +47,26 @@ TEST_F(Petzval, HelpOfEveryCommandHasAnExample) {
     if (help.status != 0) continue;  // not built
     EXPECT_EQ(help.out, run(name, {"--help"}).out) << name;
     EXPECT_NE(help.out.find("Example: petzval " + name), std::string::npos) << help.out;
+    const auto shown = lines(help.out);
+    EXPECT_LE(shown.size(), 50u) << name;
+    for (const std::string& line : shown) EXPECT_LE(line.size(), 100u) << line;
+    const std::string all = run("petzval", {"help", name, "all"}).out;
+    EXPECT_EQ(all.find("\nOther\n"), std::string::npos) << all;  // every flag is in a group
+    EXPECT_GT(all.size(), help.out.size()) << name;
   }
+}
+
+TEST_F(Petzval, HelpShowsOneGroupOfOptions) {
+  const std::string iris = run("petzval", {"help", "psf", "iris"}).out;
+  EXPECT_NE(iris.find("--roundness"), std::string::npos) << iris;
+  EXPECT_EQ(iris.find("--focus"), std::string::npos) << iris;
+  const Outcome unknown = run("petzval", {"help", "psf", "wheels"});
+  EXPECT_EQ(unknown.status, 1);
+  EXPECT_NE(unknown.err.find("wheels"), std::string::npos) << unknown.err;
+}
+
+TEST_F(Petzval, MistypedValueGetsASuggestion) {
+  expect_failure("focus", expanded({"LENS", "--criterion", "min_rsm"}), {"--criterion", "min_rsm", "mean min_rms?"});
 }
 
 TEST_F(Petzval, MistypedCommandGetsASuggestion) {
@@ -106,7 +125,7 @@ TEST_F(Petzval, ManPageAndCompletionsHaveTheFlagsOfTheHelp) {
   static const std::regex flag("(?:^|\\n) +(?:-[a-z],)?(--[a-z0-9-]+)");
   std::size_t count = 0;
   for (const std::string& name : commands()) {
-    const std::string help = run("petzval", {"help", name}).out;
+    const std::string help = run("petzval", {"help", name, "all"}).out;
     for (std::sregex_iterator found(help.begin(), help.end(), flag), end; found != end; ++found, ++count) {
       for (const std::string* text : {&man, &bash, &zsh}) {
         EXPECT_NE(text->find((*found)[1].str()), std::string::npos) << name << ' ' << (*found)[1];
