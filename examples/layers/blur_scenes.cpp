@@ -50,7 +50,7 @@ Mesh gable(const glm::vec3& least, const glm::vec3& most, float height) {
   const glm::vec3 a{least.x - over, most.y, least.z}, b{most.x + over, most.y, least.z},
       c{most.x + over, most.y, most.z}, d{least.x - over, most.y, most.z}, e{middle, most.y + height, least.z},
       f{middle, most.y + height, most.z};
-  return {{a, b, c, d, e, f}, {{0, 4, 5}, {0, 5, 3}, {1, 2, 5}, {1, 5, 4}, {0, 1, 4}, {3, 5, 2}}};
+  return {{a, b, c, d, e, f}, {{0, 5, 4}, {0, 3, 5}, {1, 5, 2}, {1, 4, 5}, {0, 4, 1}, {3, 2, 5}}};
 }
 
 void house(SceneDescription& scene, Chance& chance, const glm::vec3& least, const glm::vec3& most) {

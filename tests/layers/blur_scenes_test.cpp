@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <glm/geometric.hpp>
 #include <string>
 #include <variant>
 #include <vector>
@@ -82,6 +83,17 @@ INSTANTIATE_TEST_SUITE_P(BlurScenes, BlurScene,
                                            Wanted{"knot", 850000, 950000, 1000, 2600, 2},
                                            Wanted{"leaves", 240000, 240000, 1000, 2600, 12}),
                          [](const auto& scene) { return std::string(scene.param.name); });
+
+TEST(BlurScenes, RoofsFaceUp) {
+  for (const renderer::Object& object : town_scene().objects) {
+    if (object.name != "roof") continue;
+    const auto& mesh = std::get<renderer::Mesh>(object.shape);
+    for (std::size_t i = 0; i < 4; ++i) {  // the slopes; then the gables
+      const auto& [a, b, c] = mesh.triangles[i];
+      EXPECT_GT(glm::cross(mesh.positions[b] - mesh.positions[a], mesh.positions[c] - mesh.positions[a]).y, 0);
+    }
+  }
+}
 
 TEST(BlurScenes, AreDeterministic) {
   const renderer::SceneDescription a = town_scene(), b = town_scene();
