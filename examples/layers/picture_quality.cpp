@@ -288,7 +288,7 @@ std::string quality_plot(std::vector<RayQuality> qualities, const std::string& r
   if (!qualities.empty()) {
     least = std::log10(qualities.front().rays) - 0.2, most = std::log10(qualities.back().rays) + 0.4;
     const auto [worst, best] = std::ranges::minmax(qualities, {}, &RayQuality::psnr_db);
-    low = 10 * std::floor(worst.psnr_db / 10), high = 10 * std::floor(best.psnr_db / 10) + 10;
+    low = 10 * std::floor(worst.psnr_db / 10 - 0.3), high = 10 * std::floor(best.psnr_db / 10) + 10;
   }
   const auto text = [](double x, double y, const std::string& words, const std::string& more = "") {
     return "<text x=\"" + examples::number(x, 4) + "\" y=\"" + examples::number(y, 4) + "\"" + more + ">" + words +

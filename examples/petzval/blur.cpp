@@ -297,10 +297,9 @@ class Job {
     result_["compare_rays"] = options_.compare_rays, result_["compare_rays_ms"] = ms;
     write(most, folder / "many_rays");
     examples::Sheet sheet{.title = "Quality and number of rays", .rows = {{}}, .notes = {}};
-    const auto add = [&](const RgbImage& image, std::uint32_t count, double time_ms, const std::string& quality) {
-      sheet.rows[0].tiles.push_back(
-          {petzval::to_srgb8(middle_of(image)),
-           {std::to_string(count) + " rays", std::to_string(std::lround(time_ms)) + " ms", quality}});
+    const auto add = [&](const RgbImage& image, std::uint32_t count, double time_ms) {
+      sheet.rows[0].tiles.push_back({petzval::to_srgb8(middle_of(image)),
+                                     {std::to_string(count) + " rays", std::to_string(std::lround(time_ms)) + " ms"}});
     };
     std::vector<lens_blur::RayQuality> qualities;
     for (const std::uint32_t count : counts) {
@@ -311,9 +310,12 @@ class Job {
                                     {"psnr_db", examples::finite_or_null(like.psnr_db)},
                                     {"ssim", like.ssim}});
       qualities.push_back({static_cast<double>(count), like.psnr_db});
-      add(image, count, ms, examples::number(like.psnr_db, 3) + " dB, SSIM " + examples::number(like.ssim, 4));
+      add(image, count, ms);
+      std::vector<std::string>& captions = sheet.rows[0].tiles.back().captions;
+      captions.push_back(examples::number(like.psnr_db, 3) + " dB");
+      captions.push_back("SSIM " + examples::number(like.ssim, 4));
     }
-    add(most, options_.compare_rays, result_["compare_rays_ms"].get<double>(), "");
+    add(most, options_.compare_rays, result_["compare_rays_ms"].get<double>());
     write_sheet(sheet, folder / "rays.png");
     examples::write_text(folder / "rays.svg",
                          lens_blur::quality_plot(qualities, "against " + std::to_string(options_.compare_rays) +
