@@ -8,6 +8,7 @@ std::optional<SceneDescription> built_in_scene(std::string_view name) {
   if (name == "chess") return chess_scene();
   if (name == "statues") return statues_scene();
   if (name == "street") return street_scene();
+  if (name == "table") return table_scene();
   return {};
 }
 

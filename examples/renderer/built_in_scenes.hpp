@@ -9,7 +9,7 @@
 namespace renderer {
 
 /// Names of the scenes, for messages.
-inline constexpr std::string_view built_in_scene_names = "balls, chess, statues, street";
+inline constexpr std::string_view built_in_scene_names = "balls, chess, statues, street, table";
 
 /// A built-in scene; nullopt for an unknown name. Scenes are made for lenses of 100 mm (statues: 50 mm), a film of
 /// 36 x 24 mm and exposures that map radiance 1 to 1.
@@ -32,5 +32,9 @@ SceneDescription statues_scene();
 
 /// A street at night: a sign 3 m from the entrance pupil to focus on, and small lights from there to 200 m.
 SceneDescription street_scene();
+
+/// A round table from above, 980 mm from the entrance pupil, with pawns and balls in rows, for tilted films; in the
+/// dark behind it small lamps near all corners of the picture.
+SceneDescription table_scene();
 
 }  // namespace renderer

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <string>
@@ -32,7 +33,7 @@ bool in_picture(const Seen& at) { return at.depth > 0 && std::abs(at.right) < 0.
 
 TEST(BuiltInScenes, HaveTheNamesInTheHelp) {
   std::string names;
-  for (const char* name : {"balls", "chess", "statues", "street"}) {
+  for (const char* name : {"balls", "chess", "statues", "street", "table"}) {
     const auto scene = built_in_scene(name);
     ASSERT_TRUE(scene);
     EXPECT_EQ(scene->name, name);
@@ -156,6 +157,21 @@ TEST(StreetScene, LightsAreInTheImageAndWindowsFaceTheStreet) {
   EXPECT_GT(windows, 20);
   EXPECT_LT(nearest, 6000);
   EXPECT_GT(farthest, 180000);
+}
+
+TEST(TableScene, LampsAreFarBehindTheTableNearAllCorners) {
+  const SceneDescription scene = table_scene();
+  std::array<int, 4> corners{};
+  for (const Object& object : scene.objects) {
+    if (!emits(object)) continue;
+    const Seen at = seen(scene, std::get<Sphere>(object.shape).centre);
+    if (!in_picture(at)) continue;
+    EXPECT_GT(at.depth, 2000);
+    if (std::abs(at.right) > 0.13 && std::abs(at.up) > 0.08) {
+      ++corners[static_cast<std::size_t>((at.right > 0 ? 1 : 0) + (at.up > 0 ? 2 : 0))];
+    }
+  }
+  for (const int lamps : corners) EXPECT_EQ(lamps, 1);
 }
 
 }  // namespace
