@@ -53,6 +53,8 @@ namespace fs = std::filesystem;
 using examples::Json;
 
 constexpr std::uint32_t usual_width = 600;
+/// Luminance below which noise is absolute, relative to white.
+constexpr double noise_floor = 0.05;
 
 struct Options {
   examples::LensInput lens_file;
@@ -65,7 +67,7 @@ struct Options {
   examples::Shard shard;
   std::vector<std::string> formats{"exr", "png"};
   std::uint32_t samples = 0, width = 0, height = 0, seed = 0;  // width, height 0: not given
-  double budget_px = 0, seconds = 0, tilt_deg = 0, swing_deg = 0;
+  double budget_px = 0, seconds = 0, noise = 0, exposure = 1, tilt_deg = 0, swing_deg = 0;
   bool resume = false;
 };
 
@@ -73,7 +75,7 @@ void say(const fs::path& file) { std::cout << file.string() << '\n'; }
 
 /// Writes picture.* and render.json. job: all inputs of the numbers; about: entries at the top of render.json.
 void write_results(const renderer::PictureSums& sums, const Json& job, Json about,
-                   const std::vector<std::string>& formats, const fs::path& folder) {
+                   const std::vector<std::string>& formats, const fs::path& folder, double exposure = 1) {
   const std::map<std::string, std::string> texts{{"lens", job.at("lens")},
                                                  {"lensModel", job.at("lens")},
                                                  {"model", job.at("model")},
@@ -91,14 +93,14 @@ void write_results(const renderer::PictureSums& sums, const Json& job, Json abou
                                               {"focusMm", number("focus_mm")},
                                               {"white", number("white")},
                                               {"seed", number("seed")}};
-  const auto white = static_cast<float>(1 / number("white"));
+  const auto white = static_cast<float>(exposure / number("white"));
   for (const fs::path& file : renderer::write_pictures(sums, texts, numbers, formats, folder, white)) {
     say(file);
   }
   if (sums.rejected() > 0) {
     std::cerr << "note: " << sums.rejected() << " contributions were rejected: not finite, or beyond 2^40\n";
   }
-  about.update(renderer::statistics(sums));
+  about.update(renderer::statistics(sums, noise_floor * number("white")));
   about["job"] = job;
   examples::write_text(folder / "render.json", about.dump(1) + '\n');
   say(folder / "render.json");
@@ -126,7 +128,7 @@ class Job {
   explicit Job(const Options& options)
       : options_(options),
         integrator_(*renderer::integrator_named(options.integrator)),
-        colours_(*renderer::colour_mode_named(options.wavelengths)),
+        colours_(colours_named(options.wavelengths)),
         controls_(examples::controls_of(options.bokeh)),
         scene_(description(options)),
         loaded_(examples::load_lens(options.lens_file, colours_.compiled_nm())),
@@ -175,10 +177,11 @@ class Job {
     const renderer::RenderReport report = [&] {
       const examples::Interrupt interrupt;
       return renderer::render(
-          tracer, sums, tiles, effort(), examples::threads(), [&] { renderer::Checkpoint::write(sums, job, file); },
-          [] { return examples::Interrupt::asked(); });
+          tracer, sums, tiles, effort(job.at("white")), examples::threads(),
+          [&] { renderer::Checkpoint::write(sums, job, file); }, [] { return examples::Interrupt::asked(); });
     }();
     say(file);
+    if (report.finished && options_.noise > 0) say_noise(sums, job.at("white"));
     if (report.interrupted) {
       std::cerr << "note: interrupted; the same command with --resume continues\n";
     } else if (!report.finished) {
@@ -193,11 +196,24 @@ class Job {
                    {"paths", report.paths},
                    {"paths_per_second", report.seconds > 0 ? static_cast<double>(report.paths) / report.seconds : 0},
                    {"finished", report.finished && !report.interrupted}},
-                  options_.formats, folder);
+                  options_.formats, folder, options_.exposure);
     return !report.interrupted;
   }
 
  private:
+  static renderer::PathColourSource colours_named(const std::string& text) {
+    if (const auto mode = renderer::colour_mode_named(text)) return renderer::PathColourSource(*mode);
+    const std::string rule =
+        "--wavelengths = \"" + text +
+        "\"; must be d, rgb, hero, visible (the same as hero), or one wavelength in nm or as a spectral line like F";
+    try {
+      const std::vector<double> nm = examples::parse_wavelengths("--wavelengths", text);
+      if (nm.size() == 1) return renderer::PathColourSource(nm.front());
+    } catch (const petzval::Error&) {
+      throw petzval::Error(rule);
+    }
+    throw petzval::Error(rule);
+  }
   static renderer::SceneDescription description(const Options& options) {
     if (options.scene.ends_with(".json")) return renderer::read_scene(options.scene);
     if (auto scene = renderer::built_in_scene(options.scene)) return std::move(*scene);
@@ -232,12 +248,28 @@ class Job {
               << ") the focal surface is so steep that rays of several film points coincide; light paths count only "
                  "one of them: --integrator path includes all their light\n";
   }
+  void say_noise(const renderer::PictureSums& sums, double white) const {
+    double largest = 0;
+    std::size_t above = 0;
+    for (const auto& tile : sums.noise()) {
+      const double own = tile.relative(noise_floor * white);
+      largest = std::max(largest, own), above += !(own <= options_.noise);
+    }
+    if (above == 0) return;
+    std::cerr << "note: --noise " << examples::number(options_.noise) << ": " << above << " of " << sums.tiles()
+              << " tiles are above it after --spp " << options_.samples << "; the largest noise is "
+              << examples::number(largest, 3) << '\n';
+  }
   /// Reads the sums of a picture to be continued, which may get more samples than before.
   static renderer::PictureSums resumed(const fs::path& file, Json& job) {
     Json found;
     renderer::PictureSums sums = renderer::Checkpoint::read_any(file, found);
-    const auto without_samples = [](Json of) {
+    // Uniform samples may continue with --noise. The reverse is refused: light paths of tiles exceed their film
+    // samples.
+    const bool with_noise = !job.at("noise").is_null();
+    const auto without_samples = [&](Json of) {
       of.erase("samples");
+      if (with_noise) of.erase("noise");
       return of;
     };
     renderer::refuse_other_job(file, without_samples(found), without_samples(job));
@@ -249,10 +281,12 @@ class Job {
     }
     return sums;
   }
-  renderer::Effort effort() const {
+  renderer::Effort effort(double white) const {
     renderer::Effort effort;
     if (options_.samples > 0) effort.samples = options_.samples;
     if (options_.seconds > 0) effort.seconds = options_.seconds;
+    if (options_.noise > 0) effort.noise = options_.noise;
+    effort.floor = noise_floor * white;
     return effort;
   }
 
@@ -310,7 +344,7 @@ class Job {
             {"prescription", petzval::checksum(petzval::format_prescription(loaded_.prescription))},
             {"model", petzval::name(chosen_.model)},
             {"integrator", options_.integrator},
-            {"wavelengths", options_.wavelengths},
+            {"wavelengths", options_.wavelengths == "visible" ? "hero" : options_.wavelengths},
             {"normalisation", options_.normalisation},
             {"white", white},
             {"width", film_.columns},
@@ -347,6 +381,7 @@ class Job {
               {"from_lens", options_.expressive.from_lens}}},
             {"seed", options_.seed},
             {"sequence", "16 rounds of Owen-Sobol points"},
+            {"noise", options_.noise > 0 ? Json(options_.noise) : Json()},
             {"samples", options_.samples > 0 ? Json(options_.samples) : Json()},
             {"petzval", PETZVAL_VERSION}};
   }
@@ -404,8 +439,8 @@ int commands::render(int argc, char** argv) {
       "petzval render");
   app.add_option(
          "--scene", options.scene,
-         "scene; balls, chess, statues or street, for a film of 36x24 mm and lenses of 100 mm (statues: 50 mm); or a "
-         "scene as JSON")
+         "scene; balls, chess, statues, street or table, for a film of 36x24 mm and lenses of 100 mm (statues: 50 mm); "
+         "or a scene as JSON")
       ->required()
       ->type_name("NAME|FILE.json");
   examples::add_lens(app, options.lens_file);
@@ -429,6 +464,12 @@ int commands::render(int argc, char** argv) {
   examples::add_count(app, "--spp", options.samples, {1, 1u << 24, "a whole number from 1 to 16777216"},
                       "samples per pixel")
       ->default_str("64");
+  examples::add_number(app, "--noise", options.noise, examples::positive_number,
+                       "largest noise of a tile; spend samples where the picture is noisy, until the noise of each "
+                       "tile of 16 x 16 pixels is "
+                       "below this: standard error of the luminance of a pixel (rms), divided by the mean luminance of "
+                       "the tile or, if larger, 0.05 of white. --spp is then the upper limit, by default 4096")
+      ->default_str("none");
   examples::add_number(
       app, "--time", options.seconds, examples::positive_number,
       "time limit (s); no pass over the picture starts after it. A pass is always finished and takes 1 sample per "
@@ -451,15 +492,18 @@ int commands::render(int argc, char** argv) {
   constexpr examples::Range below_quarter_turn{-89.9, 89.9, "an angle from -89.9 to 89.9"};
   examples::add_number(app, "--tilt", options.tilt_deg, below_quarter_turn, "tilt of the film about +x (degrees)");
   examples::add_number(app, "--swing", options.swing_deg, below_quarter_turn, "swing of the film about +y (degrees)");
-  app.add_option("--wavelengths", options.wavelengths,
-                 "wavelengths of the light; d: the lens at the d line; rgb: one wavelength per channel; hero: four "
-                 "wavelengths per path over the visible "
-                 "spectrum")
-      ->one_of({"d", "rgb", "hero"})
+  app.add_option(
+         "--wavelengths", options.wavelengths,
+         "wavelengths of the light; d: the lens at the d line; rgb: one wavelength per channel; hero or visible: "
+         "four wavelengths per path over the visible spectrum; NM: the lens at one wavelength (nm or a line like "
+         "F), focused at the d line")
+      ->type_name("d|rgb|hero|NM")
       ->capture_default_str();
   app.add_option("--normalisation", options.normalisation, "unit of the picture")
       ->one_of({"unity_on_axis", "irradiance"})
       ->capture_default_str();
+  examples::add_number(app, "--exposure", options.exposure, examples::positive_number,
+                       "brightness of picture.png: white is the radiance 1 / exposure in the centre");
   std::string tile;
   app.add_option("--shard", tile,
                  "render every Nth tile of 16 x 16 pixels, starting with the Ith; 'petzval render merge DIR --out DIR' "
@@ -472,8 +516,13 @@ int commands::render(int argc, char** argv) {
 
   bool whole = true;
   const int status = examples::run(app, argc, argv, [&] {
+    if (options.samples == 0 && options.noise > 0) options.samples = 4096;
     if (options.samples == 0 && options.seconds == 0) options.samples = 64;
     if (!tile.empty()) options.shard = examples::parse_shard("--shard", tile);
+    if (options.shard.count > 1 && options.noise > 0) {
+      throw petzval::Error("--noise with --shard " + tile +
+                           "; must be used for whole pictures: the number of light paths depends on all tiles");
+    }
     if (options.shard.count > 1 && formats->given()) {
       throw petzval::Error("--format must not be used with --shard " + tile +
                            "; 'petzval render merge' writes the picture");

@@ -17,7 +17,7 @@ struct LightVertex {
 /// One path from both ends. It reaches the lens by film samples and by connections from the light side.
 class Path {
  public:
-  Path(const Scene& scene, const LensView& lens, Random& random, LensConnections& connections, Splats& splats)
+  Path(const Scene& scene, const LensView& lens, Random& random, LensConnections* connections, Splats& splats)
       : scene_(scene),
         lens_(lens),
         colours_(lens.colours()),
@@ -31,7 +31,7 @@ class Path {
     const auto start = emit(scene_, random_);
     if (!start) return;
     const float lamp_u = random_(), lamp_v = random_();
-    connections_.add(colours_, *start, lamp_u, lamp_v);
+    if (connections_) connections_->add(colours_, *start, lamp_u, lamp_v);
     OtherWays others{start->from.pdf / start->pdf_emission, start->cosine / start->pdf_emission};
     Lanes power = colours_.from_rgb * start->from.radiance * static_cast<float>(start->cosine / start->pdf_emission);
     WorldRay ray{start->origin, start->direction};
@@ -45,7 +45,7 @@ class Path {
       if (!bsdf.specular()) {
         vertices_.push_back({*met, bsdf, power, others, k});
         const float u = random_(), v = random_();
-        connections_.add(colours_, *met, bsdf, power, others, u, v);
+        if (connections_) connections_->add(colours_, *met, bsdf, power, others, u, v);
       }
       if (!scatter(*met, bsdf, Carries::power, power, others, ray)) return;
     }
@@ -142,18 +142,18 @@ class Path {
   const LensView& lens_;
   const PathColours& colours_;
   Random& random_;
-  LensConnections& connections_;
+  LensConnections* connections_;
   Splats& splats_;
   std::vector<LightVertex> vertices_;
 };
 
 }  // namespace
 
-void trace_both(const Scene& scene, const LensView& lens, const FilmSample& sample, Random& random,
-                LensConnections& connections, Splats& splats) {
+void trace_both(const Scene& scene, const LensView& lens, const FilmSample* sample, Random& random,
+                LensConnections* connections, Splats& splats) {
   Path path(scene, lens, random, connections, splats);
   path.from_light();
-  path.from_film(sample);
+  if (sample) path.from_film(*sample);
 }
 
 }  // namespace renderer

@@ -22,7 +22,11 @@ using examples::Json;
 
 constexpr std::array<const char*, 3> rgb{"R", "G", "B"};
 
-std::string of_round(const char* name, std::size_t round) { return name + std::to_string(round + 1); }
+/// Prefixes of the channels of film samples and of light paths.
+const std::array<std::pair<PictureSums::Of, std::string>, 2> prefixes{
+    {{PictureSums::Of::film, ""}, {PictureSums::Of::light, "light."}}};
+
+std::string of_round(const std::string& name, std::size_t round) { return name + std::to_string(round + 1); }
 
 std::string term_name(const std::string& name, std::size_t term) {
   return term == 0 ? name : name + '.' + std::to_string(term);
@@ -95,17 +99,22 @@ std::vector<petzval::ExrPart> Checkpoint::parts(const PictureSums& sums) {
   petzval::ExrPart pixels{.name = "sums", .width = sums.width_, .height = sums.height_};
   petzval::ExrPart tiles{
       .name = "tiles", .width = static_cast<int>(sums.tile_columns_), .height = static_cast<int>(sums.tile_rows_)};
-  petzval::ExrPart totals{.name = "totals", .width = static_cast<int>(PictureSums::rounds), .height = 1};
-  for (std::size_t c = 0; c < rgb.size(); ++c) {
-    add_channels(pixels, rgb[c], [&](std::size_t i) { return sums.pixels_[i][c]; });
-    add_channels(totals, rgb[c], [&](std::size_t r) { return sums.totals_[r][c]; });
-  }
-  for (std::size_t r = 0; r < PictureSums::rounds; ++r) {
-    add_channels(tiles, of_round("samples_", r), [&](std::size_t t) { return whole(sums.tiles_[t].samples[r]); });
-    add_channels(tiles, of_round("luminance_", r), [&](std::size_t t) { return sums.tiles_[t].luminance[r]; });
+  for (const auto& [of, prefix] : prefixes) {
+    const auto& own = sums.pixels_[static_cast<std::size_t>(of)];
+    for (std::size_t c = 0; c < rgb.size(); ++c) {
+      add_channels(pixels, prefix + rgb[c], [&, c](std::size_t i) { return own[i][c]; });
+    }
+    const auto part = [&sums, which = of ](std::size_t t) -> const auto& { return sums.part(t, which); };
+    add_channels(tiles, prefix + std::string("target"), [&](std::size_t t) { return whole(part(t).target); });
+    for (std::size_t r = 0; r < PictureSums::rounds; ++r) {
+      add_channels(tiles, prefix + of_round("samples_", r), [&](std::size_t t) { return whole(part(t).samples[r]); });
+      for (std::size_t c = 0; c < rgb.size(); ++c) {
+        add_channels(tiles, prefix + of_round(rgb[c], r), [&](std::size_t t) { return part(t).sums[r][c]; });
+      }
+    }
   }
   pixels.numbers["rejected"] = static_cast<double>(sums.rejected_);
-  std::vector<petzval::ExrPart> all{std::move(pixels), std::move(tiles), std::move(totals)};
+  std::vector<petzval::ExrPart> all{std::move(pixels), std::move(tiles)};
   if (!sums.guides_.empty()) {
     all.push_back({.name = "guides", .width = sums.width_, .height = sums.height_});
     for (const auto& [name, values] : sums.guides_) all.back().channels.push_back({name, values});
@@ -149,20 +158,26 @@ PictureSums Checkpoint::read_any(const fs::path& file, Json& job) {
       return all[i];
     };
     const petzval::ExrPart& tiles = part(1, "tiles", sums.tile_columns_, sums.tile_rows_);
-    const petzval::ExrPart& totals = part(2, "totals", PictureSums::rounds, 1);
-    for (std::size_t c = 0; c < rgb.size(); ++c) {
-      read_channels(all.front(), rgb[c], [&](std::size_t i, const FixedSum& own) { sums.pixels_[i][c] = own; });
-      read_channels(totals, rgb[c], [&](std::size_t r, const FixedSum& own) { sums.totals_[r][c] = own; });
+    for (const auto& [of, prefix] : prefixes) {
+      auto& pixels = sums.pixels_[static_cast<std::size_t>(of)];
+      for (std::size_t c = 0; c < rgb.size(); ++c) {
+        read_channels(all.front(), prefix + rgb[c], [&, c](std::size_t i, const FixedSum& own) { pixels[i][c] = own; });
+      }
+      const auto to = [&sums, which = of ](std::size_t t) -> auto& { return sums.part(t, which); };
+      read_channels(tiles, prefix + std::string("target"),
+                    [&](std::size_t t, const FixedSum& own) { to(t).target = count(own); });
+      for (std::size_t r = 0; r < PictureSums::rounds; ++r) {
+        read_channels(tiles, prefix + of_round("samples_", r),
+                      [&](std::size_t t, const FixedSum& own) { to(t).samples[r] = count(own); });
+        for (std::size_t c = 0; c < rgb.size(); ++c) {
+          read_channels(tiles, prefix + of_round(rgb[c], r),
+                        [&](std::size_t t, const FixedSum& own) { to(t).sums[r][c] = own; });
+        }
+      }
     }
-    for (std::size_t r = 0; r < PictureSums::rounds; ++r) {
-      read_channels(tiles, of_round("samples_", r),
-                    [&](std::size_t t, const FixedSum& own) { sums.tiles_[t].samples[r] = count(own); });
-      read_channels(tiles, of_round("luminance_", r),
-                    [&](std::size_t t, const FixedSum& own) { sums.tiles_[t].luminance[r] = own; });
-    }
-    if (all.size() > 3) {
+    if (all.size() > 2) {
       const auto width = static_cast<std::size_t>(sums.width_), height = static_cast<std::size_t>(sums.height_);
-      for (const auto& [name, values] : part(3, "guides", width, height).channels) sums.guides_[name] = values;
+      for (const auto& [name, values] : part(2, "guides", width, height).channels) sums.guides_[name] = values;
     }
     const auto rejected = all.front().numbers.find("rejected");
     if (rejected == all.front().numbers.end()) throw petzval::Error("has no number rejected");

@@ -12,9 +12,9 @@ namespace renderer {
 /// File of the sums of a picture as an EXR of 32-bit floats, exact to the bit.
 ///
 /// A sum is an exact series of floats: channel R is the rounded sum, R.1 the remainder, R.2 the next remainder, as many
-/// as needed. Part "sums" has the pixels, "tiles" samples and luminance by tile and round, "totals" a pixel
-/// for each round, "guides" the channels for denoisers if they are set. The first part has two texts: the job (JSON of
-/// all inputs) and a checksum of the job and all values.
+/// as needed. Part "sums" has the pixels, "tiles" samples, sums and targets by tile and round, "guides" the channels
+/// for denoisers if they are set. Channels that begin with "light." belong to light paths, the others to film samples.
+/// The first part has two texts: the job (JSON of all inputs) and a checksum of the job and all values.
 class Checkpoint {
  public:
   /// Writes the file atomically. @throws petzval::Error that names the file

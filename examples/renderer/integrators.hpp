@@ -27,7 +27,8 @@ std::optional<Integrator> integrator_named(std::string_view name) noexcept;
 /// with the lens are added by LensConnections::finish(); colours must live until then.
 void trace_path(const Scene& scene, const LensView& lens, const FilmSample& sample, Random& random, Splats& splats);
 void trace_light(const Scene& scene, const PathColours& colours, Random& random, LensConnections& connections);
-void trace_both(const Scene& scene, const LensView& lens, const FilmSample& sample, Random& random,
-                LensConnections& connections, Splats& splats);
+/// Either end may be left out, by a null sample or null connections; the numbers of the path stay the same.
+void trace_both(const Scene& scene, const LensView& lens, const FilmSample* sample, Random& random,
+                LensConnections* connections, Splats& splats);
 
 }  // namespace renderer

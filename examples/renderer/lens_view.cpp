@@ -19,6 +19,12 @@ std::uint32_t LensView::pixel_of(const petzval::Importance& seen) const noexcept
          clamped_index(seen.raster.x, film.columns);
 }
 
+bool LensView::same_tile(std::uint32_t a, std::uint32_t b) const noexcept {
+  const auto columns = static_cast<std::uint32_t>(lens_.film().columns);
+  constexpr auto side = static_cast<std::uint32_t>(PictureSums::tile_pixels);
+  return a % columns / side == b % columns / side && a / columns / side == b / columns / side;
+}
+
 void LensView::add(SeenRay& ray, int lane, const petzval::Importance& seen, double by_connection) const noexcept {
   const auto all = colours_.one_wavelength ? colours_.lanes : 1;
   for (int i = lane; i < lane + all; ++i) {
@@ -90,8 +96,20 @@ FilmSample LensView::film_sample(const LensCamera::Batch& batch, std::size_t ind
       result.weight[lane] = colours_.one_wavelength ? weight : weight * static_cast<float>(colours_.lanes);
       result.pixels[static_cast<std::size_t>(lane)] = pixel;
     }
-  } else if (ray.by_film > 0) {
-    result.weight = ray.we / static_cast<float>(ray.by_film);
+  } else {
+    // Tiles have different numbers of samples: a lane counts only in the tile of the sample, and its density is that of
+    // the lanes in this tile, each of which could be the hero.
+    double density = 0;
+    for (int lane = 0; lane < colours_.lanes; ++lane) {
+      std::uint32_t& own = ray.pixels[static_cast<std::size_t>(lane)];
+      if (own != no_pixel && !same_tile(own, pixel)) own = no_pixel;
+      const petzval::Importance& importance = seen[static_cast<std::size_t>(lane)][index];
+      if (own != no_pixel) density += importance.pdf_position * importance.pdf_direction / colours_.lanes;
+    }
+    for (int lane = 0; density > 0 && lane < colours_.lanes; ++lane) {
+      if (ray.pixels[static_cast<std::size_t>(lane)] == no_pixel) continue;
+      result.weight[lane] = ray.we[lane] / static_cast<float>(density);
+    }
     result.pixels = ray.pixels;
   }
   return result;

@@ -65,6 +65,7 @@ class LensView {
  private:
   petzval::Wavelength wavelength(int lane) const noexcept;
   std::uint32_t pixel_of(const petzval::Importance& seen) const noexcept;
+  bool same_tile(std::uint32_t a, std::uint32_t b) const noexcept;
   void add(SeenRay& ray, int lane, const petzval::Importance& seen, double by_connection) const noexcept;
 
   const LensCamera& lens_;

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "renderer/outputs.hpp"
 
+#include <cmath>
+#include <utility>
+
 #include "support/picture_files.hpp"
 
 namespace renderer {
@@ -18,16 +21,21 @@ std::vector<std::filesystem::path> write_pictures(const PictureSums& sums,
                                  numbers, sums.guides());
 }
 
-Json statistics(const PictureSums& sums) {
-  double samples = 0;
-  Json means = Json::array(), errors = Json::array();
+Json statistics(const PictureSums& sums, double floor) {
+  double samples = 0, squares = 0, largest = 0;
+  Json means = Json::array(), errors = Json::array(), counts = Json::array(), noises = Json::array();
+  const std::vector<PictureSums::Noise> noise = sums.noise();
   for (std::size_t t = 0; t < sums.tiles(); ++t) {
     const PixelBlock b = sums.block(t);
     samples += static_cast<double>(sums.samples(t)) * b.width * b.height;
     if (t % sums.tile_columns() == 0) {
-      means.push_back(Json::array());
-      errors.push_back(Json::array());
+      for (Json* const rows : {&means, &errors, &counts, &noises}) rows->push_back(Json::array());
     }
+    counts.back().push_back(sums.samples(t));
+    const double relative = noise[t].relative(floor);
+    noises.back().push_back(finite_or_null(relative));
+    squares += relative * relative / static_cast<double>(sums.tiles());
+    if (!(relative <= largest)) largest = relative;
     const Estimate luminance = sums.luminance(t);
     means.back().push_back(luminance.mean);
     errors.back().push_back(finite_or_null(luminance.standard_error));
@@ -36,14 +44,19 @@ Json statistics(const PictureSums& sums) {
   for (const Estimate& channel : sums.mean()) {
     channels.push_back({{"mean", channel.mean}, {"standard_error", finite_or_null(channel.standard_error)}});
   }
-  return {{"samples", samples / (static_cast<double>(sums.width()) * sums.height())},
-          {"mean_radiance", std::move(channels)},
-          {"tiles",
-           {{"rows", sums.tile_rows()},
-            {"columns", sums.tile_columns()},
-            {"mean", std::move(means)},
-            {"standard_error", std::move(errors)}}},
-          {"rejected", sums.rejected()}};
+  return {
+      {"samples", samples / (static_cast<double>(sums.width()) * sums.height())},
+      {"light_paths", sums.light_paths()},
+      {"mean_radiance", std::move(channels)},
+      {"noise", {{"rms", finite_or_null(std::sqrt(squares))}, {"largest", finite_or_null(largest)}, {"floor", floor}}},
+      {"tiles",
+       {{"rows", sums.tile_rows()},
+        {"columns", sums.tile_columns()},
+        {"mean", std::move(means)},
+        {"standard_error", std::move(errors)},
+        {"samples", std::move(counts)},
+        {"noise", std::move(noises)}}},
+      {"rejected", sums.rejected()}};
 }
 
 }  // namespace renderer

@@ -8,6 +8,7 @@
 
 #include "petzval/image/image.hpp"
 #include "renderer/picture_sums.hpp"
+#include "renderer/render.hpp"
 #include "support/files.hpp"
 
 namespace renderer {
@@ -22,9 +23,10 @@ std::vector<std::filesystem::path> write_pictures(const PictureSums& sums,
                                                   const std::vector<std::string>& formats,
                                                   const std::filesystem::path& folder, float exposure = 1);
 
-/// "samples" (mean number per pixel), "mean_radiance" (R, G, B: mean and standard_error), "tiles" (rows by columns:
-/// mean and standard_error of the luminance, a list for each row) and "rejected". A standard error is null if fewer
-/// than two rounds have samples or the sum is 0.
-examples::Json statistics(const PictureSums& sums);
+/// "samples" (mean number per pixel), "light_paths" (per pixel), "mean_radiance" (R, G, B: mean and standard_error),
+/// "tiles" (rows by columns: mean and standard_error of the luminance, samples and noise, a list for each row), "noise"
+/// (rms and largest of the tiles, see PictureSums::Noise; floor) and "rejected". A standard error or noise is
+/// null if fewer than two rounds have samples or the sum is 0.
+examples::Json statistics(const PictureSums& sums, double floor = Effort{}.floor);
 
 }  // namespace renderer

@@ -64,14 +64,19 @@ std::vector<Row> primaries(const std::vector<Row>& weights) {
 std::optional<ColourMode> colour_mode_named(std::string_view name) noexcept {
   if (name == "d") return ColourMode::d;
   if (name == "rgb") return ColourMode::rgb;
-  if (name == "hero") return ColourMode::hero;
+  if (name == "hero" || name == "visible") return ColourMode::hero;
   return {};
 }
 
-PathColourSource::PathColourSource(ColourMode mode) : mode_(mode) {
+PathColourSource::PathColourSource(ColourMode mode) : mode_(mode), rgb_nm_(petzval::rgb_triple_nm) {
   if (mode == ColourMode::rgb) compiled_nm_.assign(petzval::rgb_triple_nm.begin(), petzval::rgb_triple_nm.end());
   if (mode == ColourMode::hero) make_bands();
   compiled_nm_.push_back(petzval::d_line_nm);
+}
+
+PathColourSource::PathColourSource(double nm)
+    : mode_(nm == petzval::d_line_nm ? ColourMode::d : ColourMode::rgb), rgb_nm_{nm, nm, nm}, compiled_nm_{nm} {
+  if (mode_ == ColourMode::rgb) compiled_nm_.push_back(petzval::d_line_nm);
 }
 
 void PathColourSource::make_bands() {
@@ -96,7 +101,7 @@ PathColours PathColourSource::draw(float u) const noexcept {
     for (int c = 0; c < 3; ++c) result.from_rgb[c][c] = result.to_rgb[c][c] = 1;
     result.one_wavelength = mode_ == ColourMode::d;
     for (std::size_t c = 0; c < 3; ++c)
-      result.nm[c] = static_cast<float>(result.one_wavelength ? petzval::d_line_nm : petzval::rgb_triple_nm[c]);
+      result.nm[c] = static_cast<float>(result.one_wavelength ? petzval::d_line_nm : rgb_nm_[c]);
     result.hero = result.one_wavelength ? 0 : std::min(static_cast<int>(3 * u), 2);
     return result;
   }

@@ -45,6 +45,8 @@ std::optional<ColourMode> colour_mode_named(std::string_view name) noexcept;
 class PathColourSource {
  public:
   explicit PathColourSource(ColourMode mode);
+  /// RGB, seen through the lens at one wavelength (nm).
+  explicit PathColourSource(double nm);
 
   /// Wavelengths for which the lens must be compiled, including the d line for focusing.
   std::span<const double> compiled_nm() const noexcept { return compiled_nm_; }
@@ -59,6 +61,7 @@ class PathColourSource {
   void make_bands();
 
   ColourMode mode_;
+  std::array<double, 3> rgb_nm_;  ///< wavelengths of the channels without hero wavelengths
   std::vector<double> compiled_nm_;
   std::vector<Band> bands_;
 };

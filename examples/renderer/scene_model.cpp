@@ -94,10 +94,11 @@ Pilot pilot_of(const Scene& scene, const LensCamera& exact, const PathColourSour
     for (std::size_t t = 0; t < tiles.size(); ++t) tiles[t] = t;
     const UnitTracer tracer(scene, lens, colours, integrator, 0x9e37 + half);
     for (const std::size_t tile : tiles) {
-      Splats splats;
+      Splats splats, light;
       double seconds = 0;
-      tracer.trace(sums.block(tile), {.count = samples}, splats, seconds);
+      tracer.trace(sums.block(tile), {.count = samples}, splats, light, seconds);
       sums.add(tile, 0, samples, splats.all());
+      sums.add(tile, 0, samples, light.all(), PictureSums::Of::light);
     }
     const petzval::RgbImage image = sums.picture();
     for (std::size_t p = 0; p < image.pixels.size(); p += 3) {

@@ -64,9 +64,8 @@ PictureSums shard_sums(const std::vector<fs::path>& files, const Shard& shard, J
     if (job.is_null()) job = own_job;
     refuse_other_job(file, own_job, job);
     if (!found) {
-      const auto samples = job.find("samples");
-      refuse_unfinished(file, sums, shard,
-                        samples != job.end() && samples->is_number() ? samples->get<std::uint64_t>() : 1);
+      const Json samples = job.value("samples", Json()), noise = job.value("noise", Json());
+      refuse_unfinished(file, sums, shard, samples.is_number() && noise.is_null() ? samples.get<std::uint64_t>() : 1);
       found = std::move(sums);
     } else if (*found != sums) {
       throw petzval::Error(file.string() + " and " + files.front().string() + " differ");

@@ -25,12 +25,12 @@ std::optional<Integrator> integrator_named(std::string_view name) noexcept {
   return {};
 }
 
-void UnitTracer::trace(const PixelBlock& block, const SampleRange& samples, Splats& splats,
+void UnitTracer::trace(const PixelBlock& block, const SampleRange& samples, Splats& film, Splats& light,
                        double& lens_seconds) const {
   // A ray is the same in two batches only up to rounding. Batches of one sample per pixel make the bits independent of
   // the division of samples among calls.
   for (std::uint32_t i = 0; i < samples.count; ++i) {
-    trace_once(block, samples.round, samples.first + i, splats, lens_seconds);
+    trace_once(block, samples, samples.first + i, film, light, lens_seconds);
   }
 }
 
@@ -76,15 +76,16 @@ void UnitTracer::add_first_hits(const PixelBlock& block, std::uint32_t round, st
   }
 }
 
-void UnitTracer::trace_once(const PixelBlock& block, std::uint32_t round, std::uint32_t sample, Splats& splats,
-                            double& lens_seconds) const {
-  Drawn drawn = draw(block, round, sample);
+void UnitTracer::trace_once(const PixelBlock& block, const SampleRange& samples, std::uint32_t sample,
+                            Splats& film_splats, Splats& light_splats, double& lens_seconds) const {
+  Drawn drawn = draw(block, samples.round, sample);
   auto& [pixel_at, random, colours] = drawn;
   const std::size_t pixels = pixel_at.size();
+  const bool from_film = this->from_film() && samples.film, from_light = this->from_light() && samples.light;
   LensCamera::Batch batch;
   std::vector<std::vector<petzval::Importance>> seen;  // importances of the batch's rays, by lane
-  if (integrator_ != Integrator::light) {
-    batch = batch_of(drawn, round, sample);
+  if (from_film) {
+    batch = batch_of(drawn, samples.round, sample);
     const Stopwatch watch(lens_seconds);
     lens_.sample(batch);
     const bool one = colours.front().one_wavelength;
@@ -101,17 +102,19 @@ void UnitTracer::trace_once(const PixelBlock& block, std::uint32_t round, std::u
   LensConnections connections(scene_, lens_, integrator_ == Integrator::bidirectional);
   for (std::size_t i = 0; i < pixels; ++i) {
     if (integrator_ == Integrator::light) {
-      trace_light(scene_, colours[i], random[i], connections);
+      if (from_light) trace_light(scene_, colours[i], random[i], connections);
       continue;
     }
     const LensView view(lens_, colours[i], lens_seconds);
-    const FilmSample film = view.film_sample(batch, i, pixel_at[i], seen);
-    if (integrator_ == Integrator::path) trace_path(scene_, view, film, random[i], splats);
+    FilmSample film;
+    if (from_film) film = view.film_sample(batch, i, pixel_at[i], seen);
+    if (integrator_ == Integrator::path && from_film) trace_path(scene_, view, film, random[i], film_splats);
     if (integrator_ == Integrator::bidirectional) {
-      trace_both(scene_, view, film, random[i], connections, splats);
+      trace_both(scene_, view, from_film ? &film : nullptr, random[i], from_light ? &connections : nullptr,
+                 film_splats);
     }
   }
-  connections.finish(splats, lens_seconds);
+  connections.finish(light_splats, lens_seconds);
 }
 
 }  // namespace renderer

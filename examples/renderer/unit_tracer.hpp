@@ -16,6 +16,9 @@ namespace renderer {
 /// are independent.
 struct SampleRange {
   std::uint32_t round = 0, first = 0, count = 0;
+  bool film = true, light = true;  ///< the ends of the paths that contribute
+
+  friend bool operator==(const SampleRange&, const SampleRange&) = default;
 };
 
 /// Traces a picture in units: some samples of each pixel of a block. The contributions of a unit depend only on the
@@ -29,8 +32,14 @@ class UnitTracer {
 
   /// Traces one path for each sample of each pixel of a block; the light tracer starts as many paths at the lamps.
   ///
+  /// @param film          contributions of film samples, all to pixels of the block's tile
+  /// @param light         contributions of light paths, to any pixel
   /// @param lens_seconds  sum to which the time spent in the lens is added (s)
-  void trace(const PixelBlock& block, const SampleRange& samples, Splats& splats, double& lens_seconds) const;
+  void trace(const PixelBlock& block, const SampleRange& samples, Splats& film, Splats& light,
+             double& lens_seconds) const;
+  /// The ends at which the paths of the integrator begin.
+  bool from_film() const noexcept { return integrator_ != Integrator::light; }
+  bool from_light() const noexcept { return integrator_ != Integrator::path; }
 
   /// Adds the weighted sums of the first hits of one sample of each pixel of a block, row by row.
   void add_first_hits(const PixelBlock& block, std::uint32_t round, std::uint32_t sample,
@@ -44,8 +53,8 @@ class UnitTracer {
   };
   Drawn draw(const PixelBlock& block, std::uint32_t round, std::uint32_t sample) const;
   LensCamera::Batch batch_of(const Drawn& drawn, std::uint32_t round, std::uint32_t sample) const;
-  void trace_once(const PixelBlock& block, std::uint32_t round, std::uint32_t sample, Splats& splats,
-                  double& lens_seconds) const;
+  void trace_once(const PixelBlock& block, const SampleRange& samples, std::uint32_t sample, Splats& film_splats,
+                  Splats& light_splats, double& lens_seconds) const;
 
   const Scene& scene_;
   const LensCamera& lens_;

@@ -55,10 +55,11 @@ Pass add_pass(const Scene& scene, const LensCamera& lens, const PathColourSource
   Pass pass;
   const auto begin = Clock::now();
   for (std::size_t tile = 0; tile < sums.tiles(); ++tile) {
-    Splats splats;
+    Splats film, light;
     const auto round = static_cast<std::uint32_t>(sums.samples(tile) / samples % PictureSums::rounds);
-    tracer.trace(sums.block(tile), {round, sums.samples(tile, round), samples}, splats, pass.lens_seconds);
-    sums.add(tile, round, samples, splats.all());
+    tracer.trace(sums.block(tile), {round, sums.samples(tile, round), samples}, film, light, pass.lens_seconds);
+    sums.add(tile, round, samples, film.all());
+    sums.add(tile, round, samples, light.all(), PictureSums::Of::light);
   }
   pass.seconds = std::chrono::duration<double>(Clock::now() - begin).count();
   return pass;

@@ -136,6 +136,48 @@ TEST_F(BokehScene, AddsSamplesToAFinishedPicture) {
   EXPECT_EQ(read(path("grown_path/picture.exr")), read(path("once_path/picture.exr")));
 }
 
+// Samples go to noisy tiles until the noise is reached; an interrupted picture continues to the same bits.
+TEST_F(BokehScene, NoiseIsReachedWithUnequalSamples) {
+  const Arguments noise{"--noise", "0.12", "--spp", "512"};
+  const json report = render("whole", noise);
+  EXPECT_TRUE(report["finished"]);
+  EXPECT_LE(report["noise"]["largest"], 0.12);
+  double least = 1e9, most = 0;
+  for (const json& row : report["tiles"]["samples"]) {
+    for (const json& samples : row) least = std::min<double>(least, samples), most = std::max<double>(most, samples);
+  }
+  EXPECT_GE(least, 32);
+  EXPECT_GT(most, least);
+  EXPECT_LT(most, 512);
+  Arguments timed = noise;
+  timed.insert(timed.end(), {"--time", "0.02"});
+  EXPECT_FALSE(render("parts", timed)["finished"]);
+  Arguments resumed = noise;
+  resumed.push_back("--resume");
+  EXPECT_TRUE(render("parts", resumed)["finished"]);
+  EXPECT_EQ(read(path("parts/picture.exr")), read(path("whole/picture.exr")));
+  // Hero wavelengths of a path reach tiles with other numbers of samples.
+  const json hero = render("hero", {"--wavelengths", "hero", "--noise", "0.3", "--spp", "256"}),
+             uniform = render("uniform", {"--wavelengths", "hero"});
+  EXPECT_NEAR(mean(hero, 1), mean(uniform, 1), 5 * std::hypot(error(hero, 1), error(uniform, 1)));
+  expect_failure("render", arguments("shard", {"--noise", "0.12", "--shard", "1/2"}), {"--noise", "1/2"});
+}
+
+TEST_F(BokehScene, WavelengthsAreAModeOrOneWavelength) {
+  const Arguments small{"--size", "36x24", "--spp", "16"};
+  const auto with = [&](const std::string& wavelengths) {
+    return Arguments{"--size", "36x24", "--spp", "16", "--wavelengths", wavelengths};
+  };
+  const json line = render("line", with("F")), number = render("number", with("486.1327"));
+  EXPECT_NEAR(mean(line, 1), mean(number, 1), 1e-3 * mean(line, 1));
+  EXPECT_NEAR(mean(line, 1), mean(render("d", small), 1), 0.1 * mean(line, 1));
+  render("hero", with("hero")), render("visible", with("visible"));
+  EXPECT_EQ(read(path("hero/picture.exr")), read(path("visible/picture.exr")));
+  for (const char* bad : {"F,d", "blue", "-3"}) {
+    expect_failure("render", arguments("bad", with(bad)), {"--wavelengths", bad, "rgb, hero, visible"});
+  }
+}
+
 // An interrupt writes the sums and the unfinished image; --resume gives the bits of an uninterrupted run.
 TEST_F(BokehScene, InterruptedRunKeepsItsSamples) {
   const Arguments many{"--spp", "400", "--threads", "1"};
@@ -220,6 +262,17 @@ TEST_F(BokehScene, NormalisationScalesTheImageAndKeepsThePng) {
   EXPECT_NEAR(mean(irradiance, 1) / mean(unity, 1), irradiance["job"]["white"].get<double>(), 1e-3);
   const std::string a = read(path("unity/picture.png")), b = read(path("irradiance/picture.png"));
   EXPECT_NEAR(static_cast<double>(a.size()), static_cast<double>(b.size()), 0.02 * static_cast<double>(a.size()));
+}
+
+TEST_F(BokehScene, ExposureScalesOnlyThePng) {
+  const Arguments small{"--size", "36x24", "--spp", "2"};
+  render("usual", small), render("bright", {"--size", "36x24", "--spp", "2", "--exposure", "2"});
+  EXPECT_EQ(read(path("usual/picture.exr")), read(path("bright/picture.exr")));
+  const petzval::RgbImage usual = petzval::read_png(path("usual/picture.png")),
+                          bright = petzval::read_png(path("bright/picture.png"));
+  for (std::size_t i = 0; i < usual.pixels.size(); ++i) {
+    EXPECT_NEAR(bright.pixels[i], std::min(2 * usual.pixels[i], 1.0f), 0.02f);
+  }
 }
 
 TEST_F(BokehScene, RefusesOtherAndDamagedCheckpoints) {

@@ -41,6 +41,15 @@ TEST_F(CheckpointFile, KeepsAllBits) {
   EXPECT_EQ(examples::read_text(file_), bytes);
 }
 
+TEST_F(CheckpointFile, KeepsLightPathsTargetsAndGuides) {
+  PictureSums sums = sums_;
+  sums.add(2, 3, 7, made_up_unit(sums, 2, 0), PictureSums::Of::light);
+  sums.set_target(1, PictureSums::Of::film, 48);
+  sums.set_guides({{"depth.Z", std::vector<float>(width * height, 3)}});
+  Checkpoint::write(sums, job_, file_);
+  EXPECT_EQ(Checkpoint::read(file_, job_), sums);
+}
+
 TEST_F(CheckpointFile, KeepsLargeCountsAndEmptySums) {
   Checkpoint::write(PictureSums(3, 1), job_, file_);
   EXPECT_EQ(Checkpoint::read(file_, job_), PictureSums(3, 1));

@@ -33,8 +33,9 @@ inline PictureSums made_up_sums(int width, int height, std::span<const std::size
                                 std::uint32_t samples = 3) {
   PictureSums sums(width, height);
   for (std::uint32_t pass = 0; pass < passes; ++pass) {
-    for (const std::size_t tile : tiles)
+    for (const std::size_t tile : tiles) {
       sums.add(tile, pass % PictureSums::rounds, samples, made_up_unit(sums, tile, pass));
+    }
   }
   return sums;
 }

@@ -95,6 +95,20 @@ TEST(PictureSums, PixelIsItsSumOverItsSamples) {
   EXPECT_EQ(sums.samples(2, 0), 0u);
 }
 
+/// Film samples are divided by the samples of their tile, light paths by their number per pixel of the picture.
+TEST(PictureSums, LightIsDividedByTheLightPathsOfThePicture) {
+  using Of = PictureSums::Of;
+  PictureSums sums(32, 16);
+  sums.add(0, 0, 4, std::vector<Contribution>{{0, {8, 0, 0}}});
+  sums.add(1, 0, 2, std::vector<Contribution>{{16, {8, 0, 0}}});
+  sums.add(0, 0, 6, std::vector<Contribution>{{0, {3, 0, 0}}, {16, {30, 0, 0}}}, Of::light);
+  EXPECT_EQ(sums.light_paths(), 3);
+  EXPECT_EQ(sums.picture().pixel(0, 0)[0], 2 + 1);
+  EXPECT_EQ(sums.picture().pixel(16, 0)[0], 4 + 10);
+  EXPECT_EQ(sums.samples(0, Of::light), 6u);
+  EXPECT_EQ(sums.mean()[0].mean, (3 + 14) / 512.0);
+}
+
 /// Means of pixels over the samples of the tile, and of luminance over the area of the tile, which is smaller at edges.
 TEST(PictureSums, MeansArePlainMeans) {
   constexpr std::uint32_t passes = 5;
