@@ -8,7 +8,8 @@
 #                               path). TITLE and TEXT (HTML) open the page. FUNCTION calls:
 #   section ID TITLE TEXT [halves]
 #                               starts a section; TEXT is HTML; halves: two figures side by side on a wide screen
-#   picture FILE TITLE CAPTION  runs the commands on standard input in FOLDER, which write FILE (.png, .svg, .html or .txt);
+#   picture FILE TITLE CAPTION  runs the commands on standard input in FOLDER, which write FILE (.png, .svg, .html, .txt
+#                               or a table in .md);
 #                               CAPTION is HTML. Keeps FILE if the commands are the ones that made it and no program is newer.
 #   also FILE TITLE CAPTION     shows another file of the commands before
 #
@@ -88,6 +89,8 @@ figure() {
     if [ "$failure" ]; then echo "<p class=\"failure\">$failure</p>"; else
       case $1 in
         *.html) printf '<div class="scroll">\n' && cat "$1" && printf '</div>\n' ;;
+        *.md) printf '<table class="scroll">\n' && sed -e '/^|-/d' -e 's,^| *,<tr><td>,' -e 's, *|$,</td></tr>,' -e 's, | ,</td><td>,g' "$1" &&
+          printf '</table>\n' ;;
         *.txt) printf '<pre class="scroll">' && escaped < "$1" && printf '</pre>\n' ;;
         *) printf '<a href="%s"><img src="%s" alt="%s" loading="lazy"></a>\n' "$1" "$1" "$2" ;;
       esac
