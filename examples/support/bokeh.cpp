@@ -136,12 +136,15 @@ std::string short_number(double value) { return value < 100 ? number(value, 3) :
 
 Tile bokeh_tile(double focus_mm, const petzval::PointImage& image, const petzval::Spectrum& light) {
   Exposed exposed = expose(irradiance(image.psf, light));
-  return {std::move(exposed.picture),
-          {focus_caption(focus_mm),
-           image.throughput > 0 ? "radius " + short_number(image.size.max_radius) + " mm, RMS " +
-                                      short_number(image.size.rms_radius) + " mm"
-                                : std::string("no light passes"),
-           "white " + short_number(exposed.white_per_mm2) + " / mm²"}};
+  std::vector<std::string> captions{focus_caption(focus_mm)};
+  if (image.throughput > 0) {
+    captions.push_back("radius " + short_number(image.size.max_radius) + " mm");
+    captions.push_back("RMS " + short_number(image.size.rms_radius) + " mm");
+  } else {
+    captions.emplace_back("no light passes");
+  }
+  captions.push_back("white " + short_number(exposed.white_per_mm2) + " / mm²");
+  return {std::move(exposed.picture), std::move(captions)};
 }
 
 std::vector<std::string> bokeh_notes() {
