@@ -182,6 +182,21 @@ petzval surface double_gauss_52mm_f1.8 --points input/statues_focus.json --size 
 END
 }
 
+wu_designs() {
+  section wu_lenses "Wu et al. 2010: the lenses" "After figure 6 of the paper: the profiles of its three lenses and their pupils." halves
+  for lens in $wu_lenses; do
+    case $lens in
+      *1.35) words="f/1.35" more="Lowenthal's double Gauss." ;;
+      *1.7*) words="f/1.7" more="A substitute: the lens of the paper was not found." ;;
+      *) words="f/2" more="Double Gauss with a field of 28 degrees." ;;
+    esac
+    picture "lenses/${lens}_layout.svg" "Profile, $words" "$more <a href=\"lenses/$lens.html\">Table of surfaces, with spots and focus</a>." <<END
+petzval report $lens --out lenses
+END
+    also "lenses/${lens}_footprints.svg" "Pupils, $words" "The entrance pupil of each field, clipped by the rims of the lens: the shape of a blurred light there."
+  done
+}
+
 wu() {
   section wu "Wu et al. 2010" "The figures of the paper on bokeh, computed from the lenses themselves. A bright rim or a bright core of a disc is spherical
 aberration, in front of or behind the focus."
@@ -190,17 +205,6 @@ astigmatism towards the corners. Open the picture to see the dots at full size."
 petzval render planar_50mm_f1.4 --scene input/dots.json --focus 1m --from entrance_pupil --integrator light $(size 1200 800) $(spp 8) \\
   --out wu/dots
 END
-  for lens in $wu_lenses; do
-    case $lens in
-      *1.35) words="Figure 6: the f/1.35 lens" more="Lowenthal's double Gauss, its profile and its pupils: the entrance pupil (left of the stop) and the exit
-pupil are the images of the stop by the front and the rear group." ;;
-      *1.7*) words="Figure 6: the f/1.7 lens" more="A substitute: the paper does not name its source." ;;
-      *) words="Figure 6: the f/2 lens" more="With a field of 28 degrees." ;;
-    esac
-    picture "lenses/${lens}_layout.svg" "$words" "$more <a href=\"lenses/$lens.html\">Table of surfaces, pupils and spots</a>." <<END
-petzval report $lens --out lenses
-END
-  done
   picture wu/figure7.png "Figure 7: bokeh of three lenses" "A point light is at 1000 mm; each column has a different focus distance. Focused nearer than the light
 (left), the first two lenses draw a thin bright rim; focused farther (right), a bright core with a slightly darker centre. The third lens does the
 opposite; at 800 mm its disc is nearly uniform with a bright core, while the paper calls it uniform. The Tronnier f/2 below it, an equally likely source
@@ -332,6 +336,7 @@ pictures() {
   blurred
   measured
   focus
+  wu_designs
   wu
   bokeh
   designs
