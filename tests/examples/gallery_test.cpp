@@ -46,6 +46,13 @@ class Gallery : public Programs {
         "}\n"
         "gallery \"$folder/out\" \"$folder/programs\" pictures Title Lead\n");
   }
+  /// Width in the header of a PNG file.
+  static int width(const std::string& png) {
+    int result = 0;
+    for (int i = 16; i < 20; ++i)
+      result = 256 * result + static_cast<unsigned char>(png.at(static_cast<std::size_t>(i)));
+    return result;
+  }
   std::string page() const { return read(path("out/index.html")); }
 };
 
@@ -120,6 +127,7 @@ TEST_F(Gallery, DrawsFigure7) {
   const auto outcome = run("wu_figure7", {"--rays", "1024", "--out", path("figure.png")});
   EXPECT_EQ(outcome.status, 0) << outcome.err;
   EXPECT_TRUE(read(path("figure.png")).starts_with("\x89PNG"));
+  EXPECT_EQ(width(read(path("figure.png"))), 1280);
   expect_failure("wu_figure7", {"--out", path("figure.jpg")}, {"figure.jpg", ".png"});
 }
 
@@ -130,6 +138,7 @@ TEST_F(Gallery, DrawsTheShapesOfBokeh) {
   for (const char* name : {"blades", "cats_eyes", "lens_ratio", "weights", "maps"}) {
     files.push_back(path(std::string("shapes/bokeh_") + name + ".png"));
     EXPECT_TRUE(read(files.back()).starts_with("\x89PNG"));
+    EXPECT_EQ(width(read(files.back())), 1280);  // all sheets
   }
   EXPECT_EQ(lines(outcome.out), files);
 }
