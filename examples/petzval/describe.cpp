@@ -74,8 +74,8 @@ void print_man_page() {
                 << roff(option.help) << '\n';
     }
   });
-  std::cout << ".SH EXIT STATUS\n0: success. 1: error, with one line on standard error. 2: unknown command. 3: not converted because of "
-               "\\-\\-strict. 130: interrupted.\n";
+  std::cout << ".SH EXIT STATUS\n0: success. 1: error, with one line on standard error. 2: unknown command. "
+               "3: not converted because of \\-\\-strict. 130: interrupted.\n";
 }
 
 void print_bash_completion() {

@@ -212,6 +212,12 @@ std::vector<double> parse_numbers(const std::string& where, std::string_view tex
 }
 
 std::vector<double> parse_wavelengths(const std::string& where, std::string_view text) {
+  if (text == "rgb") return {475, 510, 650};
+  if (text == "visible") {
+    std::vector<double> values;
+    for (int nm = 430; nm <= 670; nm += 10) values.push_back(nm);
+    return values;
+  }
   return parse_list(where, text, [&](std::string_view item) { return parse_wavelength(where, item); });
 }
 
@@ -273,7 +279,10 @@ CommandText described(int (*command)(int, char**), std::string name) {
 }
 
 Option* add_wavelengths(App& app, const std::string& flag, std::vector<double>& values, const std::string& help) {
-  return add_parsed(app, flag, values, "NM,...", joined(values), help + " (nm, or spectral lines like F,d,C)",
+  return add_parsed(app, flag, values, "NM,...", joined(values),
+                    help +
+                        " (nm, spectral lines like F,d,C, or visible or rgb); visible: 430 to 670 nm in steps of 10; "
+                        "rgb: 475, 510, 650",
                     [=](const std::string& text) { return parse_wavelengths(flag, text); });
 }
 

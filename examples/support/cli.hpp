@@ -49,6 +49,7 @@ double parse_length(const std::string& where, std::string_view text, const Range
 std::vector<double> parse_numbers(const std::string& where, std::string_view text, const Range& range);
 
 /// Like parse_numbers() for wavelengths in nm; letters are spectral lines: "F,d,C", "486.1, e".
+/// "visible": 430 to 670 nm in steps of 10 nm; "rgb": 475, 510 and 650 nm.
 std::vector<double> parse_wavelengths(const std::string& where, std::string_view text);
 
 /// An option of a command line. Functions return the option itself. CLI11 stays in cli.cpp: it takes seconds to

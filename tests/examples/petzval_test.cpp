@@ -111,6 +111,17 @@ TEST_F(Petzval, LengthsTakeUnits) {
   expect_failure("focus", {id, "--at", "3yards"}, {"--at", "3yards"});
 }
 
+TEST_F(Petzval, WavelengthsHaveNames) {
+  const auto at = [&](const std::string& wavelengths) {
+    return run("focus", {"double_gauss_52mm_f1.8", "--at", "3m", "--json", "--wavelengths", wavelengths}).out;
+  };
+  std::string visible = "430";
+  for (int nm = 440; nm <= 670; nm += 10) visible += ',' + std::to_string(nm);
+  EXPECT_EQ(at("visible"), at(visible));
+  EXPECT_EQ(at("rgb"), at("475,510,650"));
+  EXPECT_NE(at("rgb"), at("d"));
+}
+
 TEST_F(Petzval, QuietSaysNothing) {
   const Outcome outcome = run("lenses", {"nothing_has_this_name", "--quiet"});
   EXPECT_EQ(outcome.status, 0);
