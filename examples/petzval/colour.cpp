@@ -42,6 +42,7 @@ struct Options {
   examples::FocusFlags focus;
   examples::IrisSetup iris;
   std::uint32_t samples = 1u << 18;
+  examples::Output output;
 
   examples::BokehSetup scene(double field) const {
     return {.light_mm = subject_mm,
@@ -231,6 +232,7 @@ int commands::colour(int argc, char** argv) {
   examples::add_iris(app, options.iris);
   examples::add_white_point(app, options.white_point);
   examples::add_samples(app, options.samples);
+  options.output.add(app);
   examples::add_out_folder(app, options.out_folder)->required();
 
   examples::add_threads(app);
@@ -245,7 +247,7 @@ int commands::colour(int argc, char** argv) {
     std::vector<double> fields_rad;
     for (const double field : options.field_deg) fields_rad.push_back(petzval::radians(field));
     const auto colour = petzval::chromatic_aberration(in_focus.lens, in_focus.light.z, fields_rad);
-    std::cout << table(colour, options) << std::flush;
+    if (!options.output.json) std::cout << table(colour, options) << std::flush;
 
     Json json{{"lens", lens.name()},
               {"dispersion", petzval::name(lens.dispersion())},
@@ -259,7 +261,6 @@ int commands::colour(int argc, char** argv) {
     json.update(to_json(colour, options));
     const std::filesystem::path folder = options.out_folder;
     examples::make_folder(folder);
-    const auto written = [](const std::filesystem::path& file) { std::cout << file.string() << std::endl; };
     const std::filesystem::path numbers = folder / (loaded.id + "_chromatic.json");
     {
       // Each complete picture is written at once, so that an interrupted run loses only the current picture.
@@ -274,7 +275,7 @@ int commands::colour(int argc, char** argv) {
         const auto name =
             loaded.id + "_" + examples::number(p.field_deg) + "deg_focus_" + examples::number(p.focus_mm) + "mm.exr";
         petzval::write_exr(std::array{petzval::spectral_image(p.image.psf, weights)}, folder / name);
-        written(folder / name);
+        options.output.file(folder / name);
         json["pictures"].push_back({{"file", name},
                                     {"field_deg", p.field_deg},
                                     {"focus_mm", examples::finite_or_null(p.focus_mm)},
@@ -288,7 +289,8 @@ int commands::colour(int argc, char** argv) {
     }
     petzval::write_png(examples::draw_sheet(sheet(pictures, lens, options, weights)),
                        folder / (loaded.id + "_chromatic.png"));
-    written(folder / (loaded.id + "_chromatic.png"));
-    written(numbers);
+    options.output.file(folder / (loaded.id + "_chromatic.png"));
+    options.output.file(numbers);
+    options.output.report(json);
   });
 }

@@ -45,6 +45,7 @@ struct Options {
   examples::ExpressiveFlags expressive;
   bool from_lens_given = false;
   std::uint32_t samples = 1u << 17;
+  examples::Output output;
 };
 
 /// One wavelength, or a set over the visible range if the dispersion is changed.
@@ -126,11 +127,11 @@ Json description(const petzval::ExpressiveLens& expressive) {
 }
 
 void draw(Options options) {
+  const examples::LoadedLens loaded = examples::load_lens(options.lens_file, wavelengths_nm(options));
   if (options.expressive.change_nothing() && !options.from_lens_given) {
     options.expressive.from_lens = 1;
-    std::cerr << "note: no aberrations are given; the aberrations of the lens are used (--from-lens 1)\n";
+    examples::note("no aberrations are given; the aberrations of the lens are used (--from-lens 1)");
   }
-  const examples::LoadedLens loaded = examples::load_lens(options.lens_file, wavelengths_nm(options));
   const petzval::Lens lens = examples::focused(loaded, options.setup);
   const auto [width, height] = options.setup.film_size();
   const petzval::Film film{.width_mm = width, .height_mm = height};
@@ -189,7 +190,8 @@ void draw(Options options) {
   document["lens"] = lens.name();
   document["highlights"] = highlights_json;
   examples::write_text(folder / "expressive.json", document.dump(1) + '\n');
-  std::cout << (folder / "highlights.png").string() << '\n' << (folder / "expressive.json").string() << '\n';
+  for (const char* name : {"highlights.png", "expressive.json"}) options.output.file(folder / name);
+  options.output.report(document);
 }
 
 }  // namespace
@@ -210,6 +212,7 @@ int commands::expressive(int argc, char** argv) {
   examples::add_lengths(app, "--at", options.light_mm, examples::positive_length, "distances of the lights (mm)")
       ->default_str("0.85 and 1.2 of the focus");
   examples::add_samples(app, options.samples);
+  options.output.add(app);
   examples::add_out_folder(app, options.out_folder)->required();
   examples::add_threads(app);
   return examples::run(app, argc, argv, [&] {

@@ -31,6 +31,7 @@ struct Options {
   examples::LensInput lens_file;
   std::string out_folder;
   examples::CameraSetup setup;
+  examples::Output output;
 };
 
 void write(const Options& options) {
@@ -51,18 +52,28 @@ void write(const Options& options) {
   const auto written = [&](const std::string& ending, const auto& write_to) {
     const std::filesystem::path file = stem.string() + ending;
     write_to(file);
-    std::cout << file.string() << '\n';
+    options.output.file(file);
   };
 
   const petzval::BrownConrady fit = petzval::fit_brown_conrady(distortion);
-  std::cout << "pinhole " << number(fit.pinhole.focal_length_mm.y, 6) << " mm in front of its film, field "
-            << number(petzval::degrees(fit.field_rad), 3) << " degrees; Brown-Conrady within "
-            << number(fit.largest_px, 2) << " pixels of " << film.columns << " x " << film.rows
-            << "; beyond this field the coefficients extrapolate, up to "
-            << number(petzval::degrees(fit.rises_to_rad), 3) << " degrees\n";
+  if (!options.output.json) {
+    std::cout << "pinhole " << number(fit.pinhole.focal_length_mm.y, 6) << " mm in front of its film, field "
+              << number(petzval::degrees(fit.field_rad), 3) << " degrees; Brown-Conrady within "
+              << number(fit.largest_px, 2) << " pixels of " << film.columns << " x " << film.rows
+              << "; beyond this field the coefficients extrapolate, up to "
+              << number(petzval::degrees(fit.rises_to_rad), 3) << " degrees\n";
+  }
   written(".opentrackio.json", [&](const auto& file) { petzval::write_open_track_io(lens, film, identity, file); });
   written(".stmap.exr",
           [&](const auto& file) { petzval::write_st_map(lens, film, identity, file, {}, examples::threads()); });
+  options.output.report({{"lens", lens.name()},
+                         {"pinhole_focal_length_mm", fit.pinhole.focal_length_mm.y},
+                         {"columns", film.columns},
+                         {"rows", film.rows},
+                         {"field_deg", petzval::degrees(fit.field_rad)},
+                         {"rms_px", fit.rms_px},
+                         {"largest_px", fit.largest_px},
+                         {"rises_to_deg", petzval::degrees(fit.rises_to_rad)}});
 }
 
 }  // namespace
@@ -71,10 +82,11 @@ int commands::metadata(int argc, char** argv) {
   Options options;
   examples::App app(
       "Writes the lens sample at its stop and focus as DIR/LENS.opentrackio.json, and the ST maps of its distortion as "
-      "DIR/LENS.stmap.exr.",
+      "DIR/LENS.stmap.exr. Prints the fit of the Brown-Conrady coefficients.",
       "petzval metadata");
   examples::add_lens(app, options.lens_file);
   examples::add_camera(app, options.setup);
+  options.output.add(app);
   examples::add_out_folder(app, options.out_folder, "folder for the files")->required();
   examples::add_threads(app);
   return examples::run(app, argc, argv, [&] { write(options); });

@@ -69,6 +69,7 @@ int commands::models(int argc, char** argv) {
     const examples::LoadedLens loaded = examples::focused_lens(options);
     const petzval::Lens& lens = loaded.lens;
     const std::filesystem::path folder = options.out_folder;
+    const examples::Output output{options.json};
     if (out->given()) examples::make_folder(folder);  // fail before the measurement, which takes seconds
     examples::say_what_does_not_fit(lens, film, "--size");
     std::vector<petzval::ErrorBudget> budgets;
@@ -85,15 +86,12 @@ int commands::models(int argc, char** argv) {
       const auto write = [&](const char* kind, const std::string& text) {
         const auto file = folder / (loaded.id + "_accuracy_speed." + kind);
         examples::write_text(file, text);
-        (options.json ? std::cerr : std::cout) << file.string() << '\n';
+        output.file(file);
       };
       write("csv", examples::to_csv(rows));
       write("svg", figure(rows, lens, options));
     }
-    if (options.json) {
-      std::cout << examples::to_json(rows).dump(1) << '\n';
-      return;
-    }
+    if (options.json) return output.report(examples::to_json(rows));
     std::cout << lens.name() << "\n"
               << examples::conditions(lens, options) << "\nerrors from " << examples::number(nearest, 6)
               << " mm to infinity, and at the focus\n\n"

@@ -8,7 +8,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <iostream>
 #include <limits>
 #include <numbers>
 #include <numeric>
@@ -50,6 +49,7 @@ struct Options {
   examples::BokehFlags bokeh;
   std::uint32_t samples = 1u << 21;
   petzval::Spectrum light;  ///< spectrum of the white point
+  examples::Output output;
 
   /// True for rays of the unmodified lens, false for rays of a camera.
   bool plain() const noexcept { return model == "exact_double" && bokeh.change_nothing(); }
@@ -177,7 +177,6 @@ void render(std::vector<Picture> pictures, const examples::LoadedLens& loaded, c
             const petzval::BokehControls& controls) {
   const std::filesystem::path folder = options.out_folder;
   examples::make_folder(folder);
-  const auto written = [](const std::filesystem::path& file) { std::cout << file.string() << std::endl; };
   const std::filesystem::path numbers = folder / (loaded.id + "_bokeh.json");
   {
     examples::Progress progress("bokeh", pictures.size());
@@ -192,7 +191,7 @@ void render(std::vector<Picture> pictures, const examples::LoadedLens& loaded, c
       const petzval::RgbImage image = examples::irradiance(p.image.psf, options.light);
       for (const auto& file :
            examples::write_picture(image, examples::expose(image).picture, options.formats, folder / stem)) {
-        written(file);
+        options.output.file(file);
       }
       const std::span whole = std::span(pictures).first(i + 1);
       examples::write_text(numbers, to_json(whole, loaded, options, controls).dump(1) + '\n');
@@ -200,8 +199,9 @@ void render(std::vector<Picture> pictures, const examples::LoadedLens& loaded, c
   }
   petzval::write_png(examples::draw_sheet(contact_sheet(pictures, loaded, options)),
                      folder / (loaded.id + "_bokeh.png"));
-  written(folder / (loaded.id + "_bokeh.png"));
-  written(numbers);
+  options.output.file(folder / (loaded.id + "_bokeh.png"));
+  options.output.file(numbers);
+  options.output.report(to_json(pictures, loaded, options, controls));
 }
 
 }  // namespace
@@ -242,6 +242,7 @@ int commands::psf(int argc, char** argv) {
       "--rays")
       ->default_str("all samples");
   examples::add_formats(app, options.formats, "each with its own exposure");
+  options.output.add(app);
   examples::add_out_folder(app, options.out_folder)->required();
 
   examples::add_threads(app);

@@ -52,6 +52,7 @@ struct Options {
   std::uint32_t samples = 1u << 20, pixels = 129;
   examples::Shard shard;
   bool resume = false, check = false;
+  examples::Output output;
 };
 
 /// The lens at its f-numbers, focused, with lights in object space.
@@ -193,8 +194,10 @@ Json interpolation_error(const std::vector<petzval::ExrPart>& parts, const examp
           {"total_percent", summary(light)}};
 }
 
-void say(const std::vector<fs::path>& files) {
-  for (const fs::path& file : files) std::cout << file.string() << '\n';
+/// Prints the paths of a set: EXR, index and contact sheet; with --json the index.
+void say(const std::vector<fs::path>& files, const examples::Output& output) {
+  for (const fs::path& file : files) output.file(file);
+  if (output.json) output.report(Json::parse(examples::read_text(files[1])));
 }
 
 /// Throws before files are written, for points from which no ray can be sent and for fields without light at all
@@ -222,8 +225,9 @@ void compute(const Options& options) {
     throw petzval::Error("--size = \"" + std::to_string(options.pixels) +
                          "\"; must be odd, because the chief ray is at the centre of a pixel");
   }
-  if (options.check && options.shard.count > 1) {
-    throw petzval::Error("--check with --shard " + options.shard.text() + "; must be used without --shard");
+  if ((options.check || options.output.json) && options.shard.count > 1) {
+    throw petzval::Error(std::string(options.check ? "--check" : "--json") + " with --shard " + options.shard.text() +
+                         "; must be used without --shard");
   }
   const auto loaded = examples::load_lens(options.lens_file, options.axes.wavelengths_nm);
   const examples::PsfJob job = job_of(loaded, options);
@@ -238,17 +242,17 @@ void compute(const Options& options) {
     for (const std::size_t node : left) {
       progress.step(job.name(node));
       job.write(folder, node, scenes.kernel(job.axes().point(node)));
-      if (options.shard.count > 1) say({job.file(folder, node)});
+      if (options.shard.count > 1) options.output.file(job.file(folder, node));
     }
   }
   if (options.shard.count > 1) return;
   const std::vector<petzval::ExrPart> parts = job.gather({folder});
   std::optional<Json> error;
   if (options.check) error = interpolation_error(parts, job, scenes);
-  say(examples::write_psf_set(job, parts, folder / "psf_set.exr", error));
+  say(examples::write_psf_set(job, parts, folder / "psf_set.exr", error), options.output);
 }
 
-void merge(const std::vector<std::string>& names, const std::string& out) {
+void merge(const std::vector<std::string>& names, const std::string& out, const examples::Output& output) {
   examples::want_ending("--out", out, ".exr");
   const std::vector<fs::path> folders(names.begin(), names.end());
   const auto job = examples::PsfJob::read(folders.front());
@@ -257,7 +261,7 @@ void merge(const std::vector<std::string>& names, const std::string& out) {
     throw petzval::Error(folder.string() + ": the set differs from the set in " + folders.front().string() +
                          "; must be a shard of the same set");
   }
-  say(examples::write_psf_set(job, job.gather(folders), out));
+  say(examples::write_psf_set(job, job.gather(folders), out), output);
 }
 
 /// An optional number.
@@ -285,7 +289,7 @@ void query(const std::string& file, PsfSetPoint point, const std::string& origin
   petzval::ExrPart part = petzval::to_exr_part(set.at(point), point);
   part.texts[examples::distance_from_key] = of_set;
   petzval::write_exr({&part, 1}, out);
-  say({out});
+  std::cout << out << '\n';
 }
 
 int main_compute(int argc, char** argv) {
@@ -325,6 +329,7 @@ int main_compute(int argc, char** argv) {
   app.add_flag(
       "--check", options.check,
       "compare interpolated PSFs with traced PSFs at the centres of grid cells: interpolation_error in the index");
+  options.output.add(app);
   examples::add_out_folder(app, options.out_folder)->required();
   return examples::run(app, argc, argv, [&] { compute(options); });
 }
@@ -337,8 +342,10 @@ int main_merge(int argc, char** argv) {
       "shards. Names every missing or corrupt PSF and its shard; to repair it, run that shard with --resume.",
       "petzval psf-set merge");
   app.add_option("DIR", folders, "folders that petzval psf-set --shard wrote to")->required();
+  examples::Output output;
+  output.add(app);
   examples::add_out_file(app, out, "set of PSFs to write", "FILE.exr")->required();
-  return examples::run(app, argc, argv, [&] { merge(folders, out); });
+  return examples::run(app, argc, argv, [&] { merge(folders, out, output); });
 }
 
 int main_query(int argc, char** argv) {

@@ -5,7 +5,6 @@
 //   out
 #include "commands.hpp"
 
-#include <iostream>
 #include <optional>
 #include <string>
 #include <utility>
@@ -37,6 +36,7 @@ struct Options {
   bool subject_given = false;
   examples::FocusFlags focus;
   std::uint32_t samples = 4096;
+  examples::Output output;
 };
 
 /// The lens and all other inputs of its spots.
@@ -165,6 +165,7 @@ int commands::spots(int argc, char** argv) {
   examples::add_length(app, "--defocus", options.defocus_mm, film_shift,
                        "shift of the film away from the lens (mm), -1000000 to 1000000");
   examples::add_samples(app, options.samples);
+  options.output.add(app);
   examples::add_out_folder(app, options.out_folder)->required();
 
   return examples::run(app, argc, argv, [&] {
@@ -176,12 +177,14 @@ int commands::spots(int argc, char** argv) {
     const auto write = [&](const char* kind, const std::string& text) {
       const auto file = folder / (setting.loaded.id + "_spots." + kind);
       examples::write_text(file, text);
-      std::cout << file.string() << '\n';
+      options.output.file(file);
     };
     const std::string figure = petzval::spot_figure(setting.lens, all, setting.light.weights);
     examples::make_folder(folder);
     write("svg", figure);
     write("csv", hits_csv(all, setting));
-    write("json", to_json(all, setting, options).dump(1) + '\n');
+    const Json rows = to_json(all, setting, options);
+    write("json", rows.dump(1) + '\n');
+    options.output.report(rows);
   });
 }

@@ -2,8 +2,10 @@
 #include "files.hpp"
 
 #include <cmath>
+#include <iostream>
 #include <system_error>
 
+#include "cli.hpp"
 #include "petzval/core/error.hpp"
 #include "petzval/core/files.hpp"
 
@@ -18,6 +20,18 @@ namespace {
 }  // namespace
 
 Json finite_or_null(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
+
+void Output::add(App& app) {
+  app.add_flag("--json", json, "print the JSON report instead of the paths, which go to standard error");
+}
+
+void Output::file(const std::filesystem::path& path) const {
+  (json ? std::cerr : std::cout) << path.string() << std::endl;
+}
+
+void Output::report(const Json& json_report) const {
+  if (json) std::cout << json_report.dump(1) << '\n';
+}
 
 std::string read_text(const std::filesystem::path& file, std::size_t most) {
   return petzval::read_file(file, "a file", most);

@@ -15,6 +15,20 @@ using Json = nlohmann::ordered_json;
 /// The value, or null if it is not finite: JSON has no infinity.
 Json finite_or_null(double value);
 
+class App;
+
+/// Standard output of a command that writes files: their paths, or with --json one report.
+struct Output {
+  bool json = false;
+
+  /// Adds --json.
+  void add(App& app);
+  /// Prints the path of a complete file at once; with --json on standard error.
+  void file(const std::filesystem::path& path) const;
+  /// Prints the report with --json.
+  void report(const Json& json_report) const;
+};
+
 /// Size limits of files that are read whole, bytes: 16 MiB of JSON, whose values take 16 times the size of their text
 /// in memory, and 1 GiB of tables and meshes.
 inline constexpr std::size_t largest_json = std::size_t{16} << 20, largest_table = std::size_t{1} << 30;
