@@ -62,7 +62,7 @@ Samples (camera-rays --table FILE): CSV with film_x_mm,film_y_mm,pupil_u,pupil_v
 
 Lenses: data/README.md describes the JSON format; petzval convert reads and writes other formats.
 
-Reports (--json, and JSON files in --out DIR): lib/docs/reports.md lists the keys of each command.
+Reports (--json, and JSON files in --out DIR): lib/docs/reports.md and picture_reports.md list the keys.
 
 Exit status: 0 success; 1 error, with one line on standard error; 2 unknown command; 3 not converted
   because of --strict; 130 interrupted (Ctrl-C), with finished work kept if the command has --resume.
@@ -96,8 +96,13 @@ int help(int argc, char** argv) {
   const std::string_view topic = argv[2];
   if (topic == "files") return print_files(), 0;
   std::string flag = "--help";
+  const std::string_view next = argc > 3 ? argv[3] : "";
+  if (next == "merge" || next == "query") {  // commands of psf-set and render
+    char* arguments[]{argv[2], argv[3], flag.data(), nullptr};
+    return run(topic, 3, arguments, argc > 4 ? argv[4] : "");
+  }
   char* arguments[]{argv[2], flag.data(), nullptr};
-  return run(topic, 2, arguments, argc > 3 ? argv[3] : "");
+  return run(topic, 2, arguments, std::string(next));
 }
 
 }  // namespace

@@ -354,7 +354,7 @@ int main_query(int argc, char** argv) {
   Maybe wavelength, f_number;
   examples::App app("Looks up a PSF of a set: nodes are copied, other points are interpolated.",
                     "petzval psf-set query");
-  app.add_option("FILE.exr", file, "set of PSFs written by psf_set")->required();
+  app.add_option("FILE.exr", file, "set of PSFs written by petzval psf-set")->required();
   examples::add_number(app, "--fields", point.field_deg, examples::field_angle, "angle of the light (degrees)")
       ->required()
       ->default_str("");

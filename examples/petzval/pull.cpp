@@ -253,7 +253,7 @@ int commands::pull(int argc, char** argv) {
                            "; must be --model real, because other models have only one focus");
     }
     if (criterion->given() && options.tilt) {
-      throw petzval::Error("--criterion cannot be combined with --tilt: tilted films always minimize the RMS blur");
+      throw petzval::Error("--criterion cannot be combined with --fit-tilt: tilted films always minimize the RMS blur");
     }
     const examples::MovingLens lens = examples::moving_lens(options);
     const auto points = examples::read_focus_points(options.keys_file);

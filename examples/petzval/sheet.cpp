@@ -60,7 +60,7 @@ Picture read(const fs::path& folder) {
     picture.job = Json::parse(examples::read_text(folder / "render.json")).at("job");
     picture.captions(), picture.lens();
   } catch (const Json::exception&) {
-    throw petzval::Error((folder / "render.json").string() + ": not a file of bokeh_scene");
+    throw petzval::Error((folder / "render.json").string() + ": not a file of petzval render");
   }
   return picture;
 }

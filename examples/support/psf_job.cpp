@@ -155,11 +155,11 @@ PsfJob::PsfJob(Json description)
 PsfJob PsfJob::read(const fs::path& folder) {
   const fs::path file = folder / job_file;
   if (!examples::exists(file))
-    throw petzval::Error(folder.string() + ": has no " + job_file + "; must be a folder of psf_set");
+    throw petzval::Error(folder.string() + ": has no " + job_file + "; must be a folder of petzval psf-set");
   try {
     return PsfJob(Json::parse(read_text(file)));
   } catch (const nlohmann::json::exception&) {
-    throw petzval::Error(file.string() + ": not a valid job of psf_set: the file has changed");
+    throw petzval::Error(file.string() + ": not a valid job of petzval psf-set: the file has changed");
   }
 }
 

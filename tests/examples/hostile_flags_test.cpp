@@ -9,6 +9,7 @@
 #include <ostream>
 #include <regex>
 #include <set>
+#include <sstream>
 
 #include "program.hpp"
 
@@ -116,7 +117,11 @@ class HostileFlags : public Programs, public testing::WithParamInterface<Command
 };
 
 TEST_P(HostileFlags, AreNamed) {
-  const Outcome help = run("petzval", {"help", GetParam().program, "all"});
+  Arguments words{"help"};
+  std::istringstream program(GetParam().program);  // "psf-set merge": two words
+  for (std::string word; program >> word;) words.push_back(word);
+  words.push_back("all");
+  const Outcome help = run("petzval", words);
   ASSERT_EQ(help.status, 0);
   EXPECT_TRUE(help.err.empty() && help.out.find("Usage: petzval " + GetParam().program) != std::string::npos)
       << help.out;
