@@ -25,7 +25,7 @@ constexpr std::array all_groups{
           " --focus --at --fields --from --criterion --film-position --defocus --tilt --swing --max-tilt --fit-tilt "
           "--robust --blur --focal-surface "},
     Group{"Picture", false,
-          " --film --fov --size --columns --title --white-point --normalisation --frames --fps --travel "},
+          " --film --fov --size --columns --title --white-point --normalisation --exposure --frames --fps --travel "},
     Group{"Work", false, " --integrator --wavelengths --spp --rays --noise --time --compare --compare-rays "},
     Group{"Output", false, " --out --format --json --check --strict --repair --precision "},
     Group{"Quality", true, " --tolerance --layers --jitter --supersample --highlights-above "},
