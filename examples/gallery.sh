@@ -40,7 +40,7 @@ END
   picture statues/both/picture.png "Both angels in focus" "Impossible for a real lens, in the manner of figure 1 (d) of Lee et al. 2010: a
 focal surface through both angels, 1.5 m and 6 m away, and blur at all other distances. The points are in
 <a href=\"input/statues_focus.json\">statues_focus.json</a>." <<END
-$statues --focus 1.5m --model thin_two_disc --focal-surface input/statues_focus.json --out statues/both
+$statues --focus 1.5m --model thin_two_disc --points input/statues_focus.json --out statues/both
 END
   picture street/picture.png "A street at night" "Focused on the sign at 3 m, at f/2. Bidirectional path tracing connects small lamps with the
 lens, so that their discs are smooth. The dots on the road are reflections in wet stones." <<END

@@ -324,7 +324,7 @@ class Job {
   }
 
   void write_sheet(const examples::Sheet& sheet, const std::filesystem::path& file) const {
-    petzval::write_png(examples::draw_sheet(sheet), file);
+    examples::write_png(examples::draw_sheet(sheet), file);
     std::cout << file.string() << '\n';
   }
 

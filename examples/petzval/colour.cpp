@@ -25,6 +25,7 @@
 #include "support/files.hpp"
 #include "support/iris_setup.hpp"
 #include "support/load_lens.hpp"
+#include "support/picture_files.hpp"
 #include "support/text.hpp"
 
 namespace {
@@ -274,7 +275,9 @@ int commands::colour(int argc, char** argv) {
                                         .threads = examples::threads()});
         const auto name =
             loaded.id + "_" + examples::number(p.field_deg) + "deg_focus_" + examples::number(p.focus_mm) + "mm.exr";
-        petzval::write_exr(std::array{petzval::spectral_image(p.image.psf, weights)}, folder / name);
+        petzval::ExrPart part = petzval::spectral_image(p.image.psf, weights);
+        part.texts.merge(examples::parameters());
+        petzval::write_exr({&part, 1}, folder / name);
         options.output.file(folder / name);
         json["pictures"].push_back({{"file", name},
                                     {"field_deg", p.field_deg},
@@ -287,8 +290,8 @@ int commands::colour(int argc, char** argv) {
         examples::write_text(numbers, json.dump(1) + '\n');
       }
     }
-    petzval::write_png(examples::draw_sheet(sheet(pictures, lens, options, weights)),
-                       folder / (loaded.id + "_chromatic.png"));
+    examples::write_png(examples::draw_sheet(sheet(pictures, lens, options, weights)),
+                        folder / (loaded.id + "_chromatic.png"));
     options.output.file(folder / (loaded.id + "_chromatic.png"));
     options.output.file(numbers);
     options.output.report(json);

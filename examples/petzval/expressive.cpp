@@ -27,6 +27,7 @@
 #include "support/expressive_flags.hpp"
 #include "support/files.hpp"
 #include "support/load_lens.hpp"
+#include "support/picture_files.hpp"
 #include "support/text.hpp"
 
 namespace {
@@ -185,7 +186,7 @@ void draw(Options options) {
   }
   const std::filesystem::path folder = options.out_folder;
   examples::make_folder(folder);
-  petzval::write_png(examples::draw_sheet(sheet), folder / "highlights.png");
+  examples::write_png(examples::draw_sheet(sheet), folder / "highlights.png");
   Json document = description(expressive);
   document["lens"] = lens.name();
   document["highlights"] = highlights_json;

@@ -197,8 +197,8 @@ void render(std::vector<Picture> pictures, const examples::LoadedLens& loaded, c
       examples::write_text(numbers, to_json(whole, loaded, options, controls).dump(1) + '\n');
     }
   }
-  petzval::write_png(examples::draw_sheet(contact_sheet(pictures, loaded, options)),
-                     folder / (loaded.id + "_bokeh.png"));
+  examples::write_png(examples::draw_sheet(contact_sheet(pictures, loaded, options)),
+                      folder / (loaded.id + "_bokeh.png"));
   options.output.file(folder / (loaded.id + "_bokeh.png"));
   options.output.file(numbers);
   options.output.report(to_json(pictures, loaded, options, controls));

@@ -482,7 +482,7 @@ int commands::render(int argc, char** argv) {
   examples::add_camera(app, options.setup);
   app.get_option("--focus")->required()->default_str("");
   examples::add_bokeh(app, options.bokeh);
-  auto* points = app.add_option("--focal-surface", options.surface.points_file,
+  auto* points = app.add_option("--points", options.surface.points_file,
                                 "distances in focus, depth-of-field extents and blurs at points of the picture, for a "
                                 "first-order --model: {\"points\": [{\"pixel\": [x, y] or \"world_mm\": [x, y, z], "
                                 "\"distance_mm\", \"extent_stops\", \"blur_px\", \"weight\", \"fade\"}]}")

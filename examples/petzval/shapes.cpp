@@ -20,6 +20,7 @@
 #include "support/bokeh.hpp"
 #include "support/cli.hpp"
 #include "support/files.hpp"
+#include "support/picture_files.hpp"
 #include "support/text.hpp"
 
 namespace {
@@ -275,7 +276,7 @@ int commands::shapes(int argc, char** argv) {
       pictures.push_back(examples::draw_sheet(sheet()));
     }
     for (std::size_t i = 0; i < all.size(); ++i) {
-      petzval::write_png(pictures[i], folder / all[i].file);
+      examples::write_png(pictures[i], folder / all[i].file);
       std::cout << (folder / all[i].file).string() << '\n';
     }
   });

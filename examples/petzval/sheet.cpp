@@ -21,6 +21,7 @@
 #include "support/cli.hpp"
 #include "support/contact_sheet.hpp"
 #include "support/files.hpp"
+#include "support/picture_files.hpp"
 #include "support/text.hpp"
 
 namespace {
@@ -188,7 +189,7 @@ int commands::sheet(int argc, char** argv) {
     sheet.notes = {balls.empty() ? "petzval render: white is radiance 1 in the centre; scale bars on the film."
                                  : "petzval render: each picture has its own exposure; scale bars on the film."};
     if (!balls.empty()) add_highlights(sheet, pictures);
-    petzval::write_png(examples::draw_sheet(sheet), out);
+    examples::write_png(examples::draw_sheet(sheet), out);
     std::cout << out << '\n';
     if (balls.empty()) return;
     examples::write_text(balls, ball_table(pictures));

@@ -30,6 +30,7 @@
 #include "support/focal_surface_setup.hpp"
 #include "support/load_lens.hpp"
 #include "support/number_csv.hpp"
+#include "support/picture_files.hpp"
 #include "support/surface_sheet.hpp"
 #include "support/text.hpp"
 
@@ -196,7 +197,7 @@ void write(const Options& options) {
   const std::filesystem::path folder = options.out_folder;
   examples::make_folder(folder);
   const auto say = [&](const char* name) { std::cout << (folder / name).string() << '\n'; };
-  petzval::write_png(map, folder / "surface.png");
+  examples::write_png(map, folder / "surface.png");
   say("surface.png");
   examples::write_text(folder / "side.svg", side);
   say("side.svg");

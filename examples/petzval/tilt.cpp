@@ -28,6 +28,7 @@
 #include "support/files.hpp"
 #include "support/focus_json.hpp"
 #include "support/movement_setup.hpp"
+#include "support/picture_files.hpp"
 #include "support/text.hpp"
 
 namespace {
@@ -375,8 +376,8 @@ int commands::tilt(int argc, char** argv) {
     };
     examples::write_text(named("_side.svg"), svg);
     if (!pictures.empty()) {
-      petzval::write_png(pictures[0], named("_before.png"));
-      petzval::write_png(pictures[1], named("_after.png"));
+      examples::write_png(pictures[0], named("_before.png"));
+      examples::write_png(pictures[1], named("_after.png"));
     }
     if (options.json) {
       std::cout << to_json(result, options, files).dump(1) << '\n';

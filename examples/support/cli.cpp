@@ -20,6 +20,7 @@
 #include <system_error>
 #include <utility>
 
+#include "petzval/core/config.hpp"
 #include "petzval/core/error.hpp"
 #include "petzval/core/parallel.hpp"
 #include "petzval/glass/glass.hpp"
@@ -37,7 +38,7 @@ std::string joined(const std::vector<double>& values) {
 
 bool quiet = false;
 std::uint32_t thread_count = 0;  // 0: one per processor
-std::string example, help_topic;
+std::string example, help_topic, command_line;
 CommandText* description_wanted = nullptr;
 
 std::string list_of(const std::vector<std::string>& values) {
@@ -267,6 +268,10 @@ Option* add_threads(App& app) {
 
 int threads() { return thread_count > 0 ? static_cast<int>(thread_count) : petzval::processor_threads(); }
 
+std::map<std::string, std::string> parameters() {
+  return {{"Software", "petzval " PETZVAL_VERSION}, {"command", command_line}};
+}
+
 void set_help(std::string text, std::string topic) { example = std::move(text), help_topic = std::move(topic); }
 
 CommandText described(int (*command)(int, char**), std::string name) {
@@ -411,6 +416,21 @@ CommandText text_of(const CLI::App& app) {
   return text;
 }
 
+/// The words of a command line that determine the results: without --out and the options that change only the work.
+std::string words_of_results(int argc, char** argv) {
+  std::string words;
+  for (int i = 1; i < argc; ++i) {
+    const std::string word = argv[i];
+    if (word == "--quiet" || word == "--resume" || word.starts_with("--out=")) continue;
+    if (word == "--out" || word == "--threads") {
+      ++i;
+      continue;
+    }
+    words += word.find(' ') == std::string::npos ? ' ' + word : " '" + word + '\'';
+  }
+  return words;
+}
+
 }  // namespace
 
 int run(App& app, int argc, char** argv, const std::function<void()>& body) {
@@ -421,6 +441,7 @@ int run(App& app, int argc, char** argv, const std::function<void()>& body) {
     return 1;
   };
   if (description_wanted) return *description_wanted = text_of(*app.app_), 0;
+  command_line = app.app_->get_name() + words_of_results(argc, argv);
   try {
     app.app_->parse(argc, argv);
     for (const auto& check : app.checks_) check();

@@ -7,6 +7,7 @@
 #include <deque>
 #include <functional>
 #include <limits>
+#include <map>
 #include <memory>
 #include <string>
 #include <string_view>
@@ -133,6 +134,10 @@ Option* add_out_file(App& app, std::string& file, const std::string& help, const
 Option* add_threads(App& app);
 /// The number of --threads, else one thread per processor.
 int threads();
+
+/// The program with its version, and the command line of run() without --out and --threads, as attributes of
+/// pictures.
+std::map<std::string, std::string> parameters();
 
 /// Sets the example and the topic of the help of the command that runs next; see print_help().
 void set_help(std::string example, std::string topic = "");

@@ -23,7 +23,7 @@ constexpr std::array all_groups{
     Group{"Lens", false, " --thin-lens --singlet --model --budget --f-number --blades "},
     Group{"Focus", false,
           " --focus --at --fields --from --criterion --film-position --defocus --tilt --swing --max-tilt --fit-tilt "
-          "--robust --blur --focal-surface "},
+          "--robust --blur --points "},
     Group{"Picture", false,
           " --film --fov --size --columns --title --white-point --normalisation --exposure --frames --fps --travel "},
     Group{"Work", false, " --integrator --wavelengths --spp --rays --noise --time --compare --compare-rays "},

@@ -4,6 +4,9 @@
 #include <algorithm>
 #include <utility>
 
+#include "petzval/image/exr.hpp"
+#include "text.hpp"
+
 namespace examples {
 namespace {
 
@@ -23,12 +26,17 @@ Option* add_formats(App& app, std::vector<std::string>& formats, const std::stri
       ->default_str("exr,png");
 }
 
+void write_png(const petzval::Rgb8Image& image, const std::filesystem::path& file) {
+  petzval::write_png(image, file, parameters());
+}
+
 std::vector<std::filesystem::path> write_picture(const petzval::RgbImage& image, const petzval::Rgb8Image& shown,
                                                  const std::vector<std::string>& formats,
                                                  const std::filesystem::path& stem,
                                                  const std::map<std::string, std::string>& texts,
                                                  const std::map<std::string, double>& numbers,
                                                  const std::map<std::string, std::vector<float>>& channels) {
+  const std::map<std::string, std::string> attributes = texts.empty() ? parameters() : texts;
   std::vector<std::filesystem::path> files;
   for (const std::string& format : formats) {
     std::filesystem::path file = stem;
@@ -36,13 +44,17 @@ std::vector<std::filesystem::path> write_picture(const petzval::RgbImage& image,
     if (std::find(files.begin(), files.end(), file) != files.end()) continue;
     if (format == "exr") {
       petzval::ExrPart part = exr_part(image);
-      part.texts = texts;
+      part.texts = attributes;
       part.numbers = numbers;
       for (const auto& [name, values] : channels) part.channels.push_back({name, values});
       petzval::write_exr({&part, 1}, file);
     }
     if (format == "pfm") petzval::write_pfm(image, file);
-    if (format == "png") petzval::write_png(shown, file);
+    if (format == "png") {
+      auto all = attributes;
+      for (const auto& [name, value] : numbers) all.emplace(name, number(value));
+      petzval::write_png(shown, file, all);
+    }
     files.push_back(std::move(file));
   }
   return files;

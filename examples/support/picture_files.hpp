@@ -14,8 +14,11 @@ namespace examples {
 /// Adds --format: exr, png and pfm; exr and png by default. png: the exposure of the PNG, for the help text.
 Option* add_formats(App& app, std::vector<std::string>& formats, const std::string& png);
 
-/// Writes STEM.exr (linear float, with `texts` and `numbers` in its header and with more `channels` by name), STEM.pfm
-/// (linear float) and STEM.png
+/// Writes a PNG with parameters().
+void write_png(const petzval::Rgb8Image& image, const std::filesystem::path& file);
+
+/// Writes STEM.exr (linear float, with `texts` and `numbers` in its header, or parameters() without texts and with more
+/// `channels` by name), STEM.pfm (linear float) and STEM.png
 /// (`shown`) as far as `formats` names them, each once. Returns the paths.
 /// @throws petzval::Error that names the file
 std::vector<std::filesystem::path> write_picture(const petzval::RgbImage& image, const petzval::Rgb8Image& shown,

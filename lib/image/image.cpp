@@ -2,6 +2,7 @@
 #include "petzval/image/image.hpp"
 
 #include <png.h>
+#include <zlib.h>
 
 #include <algorithm>
 #include <array>
@@ -14,6 +15,7 @@
 #include <string_view>
 #include <system_error>
 #include <utility>
+#include <vector>
 
 #include "core/open_file.hpp"
 #include "core/text.hpp"
@@ -159,7 +161,25 @@ RgbImage read_png(const std::filesystem::path& file) {
   return image;
 }
 
-void write_png(const Rgb8Image& image, const std::filesystem::path& file) {
+namespace {
+
+/// A chunk of a PNG file.
+std::string png_chunk(const std::string& type, const std::string& data) {
+  const auto four_bytes = [](std::size_t value) {
+    std::string bytes;
+    for (int shift = 24; shift >= 0; shift -= 8) bytes += static_cast<char>(value >> shift & 0xff);
+    return bytes;
+  };
+  const std::string body = type + data;
+  std::vector<unsigned char> checked(body.begin(), body.end());
+  const uLong crc = crc32(0, checked.data(), static_cast<uInt>(checked.size()));
+  return four_bytes(data.size()) + body + four_bytes(crc);
+}
+
+}  // namespace
+
+void write_png(const Rgb8Image& image, const std::filesystem::path& file,
+               const std::map<std::string, std::string>& texts) {
   validate(image, file.string());
   png_image png{};
   png.version = PNG_IMAGE_VERSION;
@@ -172,7 +192,17 @@ void write_png(const Rgb8Image& image, const std::filesystem::path& file) {
   if (!png_image_write_to_memory(&png, bytes.data(), &size, 0, image.pixels.data(), 0, nullptr)) {
     throw Error(file.string() + ": " + png.message);
   }
-  write_file({bytes.data(), size}, file);
+  bytes.resize(size);
+  std::string chunks;
+  for (const auto& [keyword, text] : texts) {
+    if (keyword.empty() || keyword.size() > 79) {
+      throw Error(file.string() + ": keyword = \"" + keyword + "\"; must have 1 to 79 bytes");
+    }
+    chunks += png_chunk("tEXt", keyword + '\0' + text);
+  }
+  constexpr std::size_t after_head = 33;  // signature and IHDR
+  bytes.insert(after_head, chunks);
+  write_file(bytes, file);
 }
 
 RgbImage desqueezed(const RgbImage& image, double squeeze) {

@@ -297,7 +297,7 @@ TEST_F(BokehScene, AcceptsFocalSurfacesAndAberrations) {
     return more;
   };
   const json plain = render("plain", thick),
-             surface = render("surface", with({"--focal-surface", path("points.json")})),
+             surface = render("surface", with({"--points", path("points.json")})),
              lens = render("lens", with({"--power-spline", "0:1", "1:1.05", "--dispersion", "1"}));
   // Pixels that the small lamp lights.
   const auto lit = [&](const std::string& out) {
@@ -315,7 +315,7 @@ TEST_F(BokehScene, AcceptsFocalSurfacesAndAberrations) {
     EXPECT_NEAR(mean(report, 0), mean(plain, 0), 5 * std::hypot(error(report, 0), error(plain, 0)));
   }
   // Light tracing gives the same image.
-  const json light = render("light", with({"--focal-surface", path("points.json"), "--integrator", "bidirectional"}));
+  const json light = render("light", with({"--points", path("points.json"), "--integrator", "bidirectional"}));
   EXPECT_NEAR(mean(light, 0), mean(surface, 0), 5 * std::hypot(error(light, 0), error(surface, 0)));
 }
 

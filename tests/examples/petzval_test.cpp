@@ -122,6 +122,20 @@ TEST_F(Petzval, WavelengthsHaveNames) {
   EXPECT_NE(at("rgb"), at("d"));
 }
 
+TEST_F(Petzval, PicturesKeepTheCommand) {
+  const auto draw = [&](const char* name, const char* threads) {
+    EXPECT_EQ(run("psf", {"double_gauss_52mm_f1.8", "--at", "5m", "--focus", "1m", "--rays", "512", "--out", path(name),
+                          "--threads", threads})
+                  .status,
+              0);
+    return read(path(name) + "/double_gauss_52mm_f1.8_bokeh.png");
+  };
+  const std::string png = draw("a", "1");
+  EXPECT_NE(png.find("petzval psf double_gauss_52mm_f1.8 --at 5m --focus 1m --rays 512"), std::string::npos);
+  EXPECT_NE(png.find("petzval " PETZVAL_VERSION), std::string::npos);
+  EXPECT_EQ(png, draw("b", "2"));
+}
+
 TEST_F(Petzval, QuietSaysNothing) {
   const Outcome outcome = run("lenses", {"nothing_has_this_name", "--quiet"});
   EXPECT_EQ(outcome.status, 0);

@@ -262,12 +262,12 @@ const std::vector<Refused> all = {
       {{"--budget", "1"}, {"--budget", "--model auto"}},
       {{"--model", "auto", "--shard", "1/2"}, {"--model auto", "--shard 1/2"}},
       {{"--shard", "1/2", "--format", "pfm"}, {"--format", "--shard 1/2", "render merge"}},
-      {{"--kind", "affine"}, {"--kind", "--focal-surface"}},
-      {{"--beta", "2"}, {"--beta", "--focal-surface"}},
+      {{"--kind", "affine"}, {"--kind", "--points"}},
+      {{"--beta", "2"}, {"--beta", "--points"}},
       {{"--iris-area", "equal"}, {"--iris-area", "--blades"}},
       {{"--keep-light"}, {"--keep-light", "--lens-ratio"}},
-      {{"--focal-surface", "@surface.json"}, {"exact_float", "pinhole", "thick"}},
-      {{"--focal-surface", "@surface.json", "--model", "auto"}, {"--model auto", "pinhole", "thick"}}}},
+      {{"--points", "@surface.json"}, {"exact_float", "pinhole", "thick"}},
+      {{"--points", "@surface.json", "--model", "auto"}, {"--model auto", "pinhole", "thick"}}}},
 #endif
 #ifdef PETZVAL_TEST_HAS_blur
     {"blur",

@@ -201,6 +201,32 @@ TEST_F(ImageFiles, FailureNamesTheFileAndLeavesNothingBehind) {
   EXPECT_EQ(files(), 1u);
 }
 
+TEST_F(ImageFiles, PngKeepsTexts) {
+  const Rgb8Image image{2, 1, {1, 2, 3, 250, 128, 7}};
+  write_png(image, folder_ / "plain.png");
+  write_png(image, folder_ / "texts.png", {{"lens", "double Gauss"}, {"focus", "1500"}});
+  const auto bytes = [&](const char* name) {
+    std::ifstream file(folder_ / name, std::ios::binary);
+    return std::string(std::istreambuf_iterator<char>(file), {});
+  };
+  const std::string plain = bytes("plain.png"), texts = bytes("texts.png");
+  // Length, type, keyword, 0, text, CRC-32 of type to text.
+  const std::string chunk(
+      "\0\0\0\x0a"
+      "tEXtfocus\0"
+      "1500"
+      "\x57"
+      "\x5f"
+      "\xc9"
+      "\xbb",
+      22);
+  EXPECT_NE(texts.find(chunk), std::string::npos);
+  EXPECT_NE(texts.find(std::string("lens\0double Gauss", 17)), std::string::npos);
+  EXPECT_EQ(texts.substr(texts.find("IDAT")), plain.substr(plain.find("IDAT")));
+  EXPECT_EQ(read_png(folder_ / "texts.png").pixels, read_png(folder_ / "plain.png").pixels);
+  expect_error([&] { write_png(image, folder_ / "long.png", {{std::string(80, 'k'), "v"}}); }, {"long.png", "keyword"});
+}
+
 TEST_F(ImageFiles, RefusesImagesWithoutPixelsOrWithTooFew) {
   const auto file = folder_ / "a.exr";
   RgbImage torn(3, 2);

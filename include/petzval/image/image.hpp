@@ -120,8 +120,11 @@ PETZVAL_API RgbImage read_png(const std::filesystem::path& file);
 
 /// Writes an 8-bit sRGB PNG file with write_file().
 ///
-/// @throws Error if the image has no pixels or is inconsistent, or the file cannot be written
-PETZVAL_API void write_png(const Rgb8Image& image, const std::filesystem::path& file);
+/// @param texts   tEXt chunks by keyword, in Latin-1
+/// @throws Error if the image has no pixels or is inconsistent, a keyword is not 1 to 79 bytes long, or the file cannot
+///               be written
+PETZVAL_API void write_png(const Rgb8Image& image, const std::filesystem::path& file,
+                           const std::map<std::string, std::string>& texts = {});
 
 /// Reads weights over the stop from an image: grey values, or the mean of R, G and B. Alpha is ignored.
 ///
