@@ -296,8 +296,7 @@ TEST_F(BokehScene, AcceptsFocalSurfacesAndAberrations) {
     more.insert(more.begin(), thick.begin(), thick.end());
     return more;
   };
-  const json plain = render("plain", thick),
-             surface = render("surface", with({"--points", path("points.json")})),
+  const json plain = render("plain", thick), surface = render("surface", with({"--points", path("points.json")})),
              lens = render("lens", with({"--power-spline", "0:1", "1:1.05", "--dispersion", "1"}));
   // Pixels that the small lamp lights.
   const auto lit = [&](const std::string& out) {
