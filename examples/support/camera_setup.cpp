@@ -82,7 +82,8 @@ std::array<double, 2> parse_size(const std::string& where, std::string_view text
   if (x == std::string_view::npos) {
     throw petzval::Error(where + " = \"" + std::string(text.substr(0, 60)) + "\"; must be a size like 36x24");
   }
-  return {parse_number(where, text.substr(0, x), range), parse_number(where, text.substr(x + 1), range)};
+  const auto parse = where == "--film" ? parse_length : parse_number;
+  return {parse(where, text.substr(0, x), range), parse(where, text.substr(x + 1), range)};
 }
 
 petzval::Lens focused(const LoadedLens& loaded, const CameraSetup& setup) {

@@ -47,7 +47,8 @@ void add_picture_size(App& app, std::uint32_t& width, std::uint32_t& height, std
 /// Adds --model.
 Option* add_model(App& app, std::string& model);
 
-/// Parses a size like "36x24". @throws petzval::Error that begins with `where`, if the text is not a size
+/// Parses a size like "36x24"; parts of --film may have units. @throws petzval::Error that begins with `where`, if the
+/// text is not a size
 std::array<double, 2> parse_size(const std::string& where, std::string_view text, const Range& range);
 
 /// The loaded lens, stopped down and focused at its primary wavelength.

@@ -20,6 +20,7 @@
 #include <system_error>
 #include <utility>
 
+#include "interrupt.hpp"
 #include "petzval/core/config.hpp"
 #include "petzval/core/error.hpp"
 #include "petzval/core/parallel.hpp"
@@ -97,6 +98,19 @@ Option* App::add_flag(const std::string& name, bool& value, const std::string& h
 }
 Option* App::get_option(const std::string& name) { return kept(app_->get_option(name)); }
 
+void App::want_other_files(const std::string& flag, const std::string& file) const {
+  std::error_code error;
+  if (!std::filesystem::is_regular_file(file, error)) return;
+  for (const CLI::Option* option : app_->get_options()) {
+    if (option->get_name() == flag) continue;
+    for (const std::string& value : option->results()) {
+      if (!std::filesystem::equivalent(file, value, error)) continue;
+      throw petzval::Error(flag + " = " + file + ": is also the file of " + option->get_name() +
+                           "; must be another file, because the input would be lost");
+    }
+  }
+}
+
 Option* App::kept(CLI::Option* option) {
   options_.push_back(Option(option));
   return &options_.back();
@@ -166,7 +180,7 @@ double parse_wavelength(const std::string& where, std::string_view text) {
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
   const bool letter = !text.empty() && std::isalpha(static_cast<unsigned char>(text.front())) != 0;
   if (!letter || end == text.data() + text.size()) {
-    return parse_number(where, text, {10, 1e5, "from 10 to 100000 nm"});  // including "inf"
+    return parse_number(where, text, {10, 1e5, "a number of nm from 10 to 100000, without a unit"});  // including "inf"
   }
   try {
     return petzval::spectral_line_nm(text);
@@ -307,8 +321,10 @@ Option* add_out_folder(App& app, std::string& folder, const std::string& help) {
 Option* add_out_file(App& app, std::string& file, const std::string& help, const std::string& type_name,
                      const std::string& flag) {
   Option* out = app.add_option(flag, file, help)->type_name(type_name);
-  app.add_check([out, &file, flag] {
-    if (out->given()) want_file(flag, file);
+  app.add_check([&app, out, &file, flag] {
+    if (!out->given()) return;
+    want_file(flag, file);
+    app.want_other_files(flag, file);
   });
   return out;
 }
@@ -448,6 +464,10 @@ int run(App& app, int argc, char** argv, const std::function<void()>& body) {
     body();
     std::cout.flush();
     return std::cout ? 0 : fail("cannot write to standard output");
+  } catch (const Interrupted&) {
+    const bool resumes = app.app_->get_option_no_throw("--resume") != nullptr;
+    std::cerr << "note: interrupted" << (resumes ? "; the same command with --resume continues" : "") << '\n';
+    return interrupted_status;
   } catch (const CLI::Success&) {
     try {
       print_help(std::cout, text_of(*app.app_), help_topic, coloured(STDOUT_FILENO));

@@ -34,7 +34,7 @@ struct Range {
 inline constexpr Range finite_number{};
 inline constexpr Range positive_length{std::numeric_limits<double>::min(), std::numeric_limits<double>::infinity(),
                                        "a number above 0, or inf"};
-inline constexpr Range field_angle{-180, 180, "an angle from -180 to 180 degrees"};
+inline constexpr Range field_angle{-180, 180, "a number of degrees from -180 to 180, without a unit"};
 inline constexpr Range positive_number{std::numeric_limits<double>::min(), std::numeric_limits<double>::max(),
                                        "a finite number above 0"};
 
@@ -87,6 +87,8 @@ class App {
                      const std::string& help);
   Option* add_flag(const std::string& name, bool& value, const std::string& help);
   Option* get_option(const std::string& name);
+  /// @throws petzval::Error  if an existing file is the value of an option other than `flag`
+  void want_other_files(const std::string& flag, const std::string& file) const;
   /// Adds a check that run() makes before the body.
   void add_check(std::function<void()> check) { checks_.push_back(std::move(check)); }
 

@@ -26,4 +26,8 @@ Interrupt::~Interrupt() {
 
 bool Interrupt::asked() noexcept { return stop; }
 
+void stop_if_asked() {
+  if (stop) throw Interrupted();
+}
+
 }  // namespace examples

@@ -16,6 +16,12 @@ class Interrupt {
   static bool asked() noexcept;
 };
 
+/// Ends a program that was asked to stop: run() says so and returns interrupted_status.
+struct Interrupted {};
+
+/// Throws Interrupted after the first signal.
+void stop_if_asked();
+
 /// Exit status of an interrupted program, as in shells.
 inline constexpr int interrupted_status = 130;
 

@@ -50,7 +50,7 @@ void add_model_options(App& app, ModelOptions& options) {
   add_lens(app, options.lens_file);
   add_camera(app, options.setup);
   app.add_option("--size", options.resolution,
-                 "pixels across and up; without --film the film takes their shape within 36 x 24 mm")
+                 "pixels across and down; without --film the film takes their shape within 36 x 24 mm")
       ->type_name("WxH")
       ->default_str("3840 across, square");
   app.add_flag("--json", options.json, "print JSON");

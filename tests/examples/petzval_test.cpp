@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <regex>
 #include <set>
+#include <sstream>
 
 #include "petzval/core/config.hpp"
 #include "program.hpp"
@@ -54,6 +55,30 @@ TEST_F(Petzval, HelpOfEveryCommandHasAnExample) {
     EXPECT_EQ(all.find("\nOther\n"), std::string::npos) << all;  // every flag is in a group
     EXPECT_GT(all.size(), help.out.size()) << name;
   }
+}
+
+/// The example of a help is complete: with another folder or file for the result, and existing inputs, it is accepted.
+TEST_F(Petzval, ExamplesOfTheHelpHaveAllRequiredOptions) {
+  for (const std::string& name : commands()) {
+    const std::string help = run("petzval", {"help", name}).out;
+    std::istringstream words(help.substr(std::min(help.size(), help.find("Example: petzval ") + 17)));
+    Arguments arguments;
+    for (std::string word; words >> word;) arguments.push_back(word);
+    if (arguments.empty()) continue;  // not built
+    arguments.erase(arguments.begin());
+    arguments.push_back("--no-such-flag");
+    const Outcome outcome = run(name, arguments);
+    EXPECT_EQ(outcome.status, 1);
+    EXPECT_NE(outcome.err.find("--no-such-flag"), std::string::npos) << name << ": " << outcome.err;
+  }
+}
+
+TEST_F(Petzval, OutputNeverReplacesAnInput) {
+  write("rays.csv", "x_mm,y_mm,z_mm,dx,dy,dz\n0,1,-50,0,0,1\n");
+  const std::string before = read(path("rays.csv"));
+  expect_failure("trace", {"double_gauss_52mm_f1.8", "--table", path("rays.csv"), "--out", path("rays.csv")},
+                 {"--out", "--table", "rays.csv"});
+  EXPECT_EQ(read(path("rays.csv")), before);
 }
 
 TEST_F(Petzval, HelpShowsOneGroupOfOptions) {
