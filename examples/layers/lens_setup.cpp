@@ -2,12 +2,13 @@
 #include "layers/lens_setup.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <span>
 #include <utility>
 
+#include "petzval/analysis/colour.hpp"
 #include "petzval/core/error.hpp"
 #include "petzval/core/geometry.hpp"
 #include "petzval/focus/focus.hpp"
@@ -26,9 +27,6 @@ namespace {
 
 using examples::number;
 using petzval::Error;
-
-/// Wavelengths of red, green and blue in Lee, Eisemann, Seidel 2010.
-constexpr std::array colours_nm{650.0, 510.0, 475.0};
 
 /// A singlet from "R1,R2,thickness,glass" with the stop on its first surface.
 petzval::Prescription singlet_of(const std::string& text, const petzval::GlassCatalogue& glasses) {
@@ -155,7 +153,7 @@ double BlurLens::fov_deg() const { return flags_.fov_deg > 0 ? flags_.fov_deg : 
 void BlurLens::load() {
   // The focus is set at the d line, even if the colours have their own wavelengths.
   std::vector<double> wavelengths{petzval::d_line_nm};
-  if (flags_.coloured()) wavelengths.insert(wavelengths.end(), colours_nm.begin(), colours_nm.end());
+  if (flags_.coloured()) std::ranges::copy(petzval::rgb_triple_nm, std::back_inserter(wavelengths));
   examples::IrisSetup iris = flags_.iris;
   petzval::Lens lens = [&] {
     if (!flags_.lens_file.file.empty()) return examples::load_lens(flags_.lens_file, wavelengths).lens;
@@ -239,7 +237,7 @@ petzval::LensRays BlurLens::rays(double nearest_mm, int threads, double time) {
   const petzval::LensRaysOptions options{.nearest_mm = nearest_mm, .set_count = sets, .threads = threads};
   if (!thin_ || controls_.vignettes() || !flags_.expressive.change_nothing()) {
     std::vector<petzval::Wavelength> wavelengths;
-    for (std::size_t i = 1; flags_.coloured() && i <= colours_nm.size(); ++i) wavelengths.emplace_back(i);
+    for (std::size_t i = 1; flags_.coloured() && i <= petzval::rgb_triple_nm.size(); ++i) wavelengths.emplace_back(i);
     return petzval::LensRays::of(camera(surface_, flags_.supersample), layers_, points, wavelengths, options);
   }
 

@@ -21,6 +21,7 @@
 #include <utility>
 
 #include "interrupt.hpp"
+#include "petzval/analysis/colour.hpp"
 #include "petzval/core/config.hpp"
 #include "petzval/core/error.hpp"
 #include "petzval/core/parallel.hpp"
@@ -227,7 +228,7 @@ std::vector<double> parse_numbers(const std::string& where, std::string_view tex
 }
 
 std::vector<double> parse_wavelengths(const std::string& where, std::string_view text) {
-  if (text == "rgb") return {475, 510, 650};
+  if (text == "rgb") return {petzval::rgb_triple_nm.rbegin(), petzval::rgb_triple_nm.rend()};  // ascending
   if (text == "visible") {
     std::vector<double> values;
     for (int nm = 430; nm <= 670; nm += 10) values.push_back(nm);

@@ -128,7 +128,7 @@ petzval::Rgb8Image draw_sheet(const Sheet& sheet) {
     int right = margin + static_cast<int>(row.tiles.size()) * (tile_width + gap) - gap;
     constexpr int label_width = 80;
     const bool crowded = right < margin + font.width(row.subtitle, caption_size) + tile_width / 3 + label_width;
-    if (crowded) right = width - margin;  // at the edge of the sheet, beside the subtitle
+    if (crowded) right = width - margin;  // at the right edge of the sheet
     if (titles_height(row) > 0 && row.pixel_mm > 0) draw_scale_bar(picture, font, right, y, tile_width, row.pixel_mm);
     int x = margin;
     for (const Tile& tile : row.tiles) {
