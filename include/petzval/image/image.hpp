@@ -120,7 +120,9 @@ PETZVAL_API RgbImage read_png(const std::filesystem::path& file);
 
 /// Writes an 8-bit sRGB PNG file with write_file().
 ///
-/// @param texts   tEXt chunks by keyword, in Latin-1
+/// @param image  the picture
+/// @param file   the file to write
+/// @param texts  tEXt chunks by keyword, in Latin-1
 /// @throws Error if the image has no pixels or is inconsistent, a keyword is not 1 to 79 bytes long, or the file cannot
 ///               be written
 PETZVAL_API void write_png(const Rgb8Image& image, const std::filesystem::path& file,
