@@ -74,6 +74,7 @@ class Gathering {
                  [&](std::size_t begin, std::size_t end) {
                    const BlurredImage::Memory::Loan loan(*picture_.memory);
                    for (std::size_t t = begin; t < end; ++t) {
+                     keep_on(options_.stop, "gather");
                      const int left = static_cast<int>(t) % across * tile_columns_,
                                top = static_cast<int>(t) / across * tile_rows_;
                      follow({left, top, std::min(tile_columns_, picture_.columns - left),
@@ -365,7 +366,7 @@ void blur_detail::gather(const LayerSet& layers, const LensRays& rays, const Gat
     Gathering(layers, rays, options, {path, method.limit_steps}, beyond / 2, highlights, picture).run();
     picture.statistics.gather_seconds = seconds_since(start);
     start = std::chrono::steady_clock::now();
-    highlights.spread(options.threads, picture);
+    highlights.spread(options, picture);
     picture.statistics.highlights = highlights.count();
     picture.statistics.highlight_seconds = finding + seconds_since(start);
   } catch (...) {

@@ -93,17 +93,19 @@ Highlights::Highlights(const LayerData& layers, const LensRays& rays, const Gath
       farthest_(layers.depths().least),
       overscan_(overscan) {
   if (options.highlights_above == 0) return;
-  find(static_cast<float>(options.highlights_above));
+  find(options);
   make_groups();
   if (highlights_.empty() || !rays_.shift_invariant) return;
   for (std::size_t channel = 0; channel < rays_.table.channels; ++channel) {
-    shared_.push_back(rays_.dense({0, 0, 1, 1}, channel, most_rays));
+    shared_.push_back(rays_.dense({0, 0, 1, 1}, channel, most_rays, options.stop));
   }
 }
 
-void Highlights::find(float above) {
+void Highlights::find(const GatherOptions& options) {
+  const auto above = static_cast<float>(options.highlights_above);
   std::vector<Highlight> bright;
   for (int row = 0; row < layers_.rows; ++row) {
+    keep_on(options.stop, "gather");
     for (int layer = 0; layer < layers_.count; ++layer) {
       const std::ptrdiff_t from = static_cast<std::ptrdiff_t>(row) * layers_.columns;
       const float* planes[LayerData::planes];
@@ -335,7 +337,8 @@ RasterArea Highlights::area_of(const Group& group, std::size_t channel) const {
   return left < right && top < bottom ? RasterArea{left, top, right - left, bottom - top} : RasterArea{};
 }
 
-std::vector<Highlights::SharedStamp> Highlights::stamps_of(const Group& group, std::size_t channel) const {
+std::vector<Highlights::SharedStamp> Highlights::stamps_of(const Group& group, std::size_t channel,
+                                                           const std::stop_token& stop) const {
   constexpr double rays_of_pixel = 2.5;
   constexpr int cell = 4;
   // For each highlight, nearer surfaces hide different rays. The highlights of one cell are treated as if the same rays
@@ -351,7 +354,7 @@ std::vector<Highlights::SharedStamp> Highlights::stamps_of(const Group& group, s
     const RasterArea area = area_of(group, channel);
     if (area.columns == 0) return stamps;
     const double count = std::clamp<double>(rays_of_pixel * light.area, least_rays, most_rays);
-    own = rays_.dense(area, channel, static_cast<std::size_t>(count));
+    own = rays_.dense(area, channel, static_cast<std::size_t>(count), stop);
   }
   const RayTable& table = rays_.shift_invariant ? shared_[channel] : own;
   if (cells.size() == 1 || !stamp_of(light, 0.5, table).hidden) {
@@ -360,19 +363,23 @@ std::vector<Highlights::SharedStamp> Highlights::stamps_of(const Group& group, s
   }
   const double rays = std::max(1.0, rays_of_pixel / static_cast<double>(cells.size()));
   for (const auto& [landing, members] : cells) {
+    keep_on(stop, "gather");
     stamps.push_back({members, stamp_of(brightest(members), rays, table)});
   }
   return stamps;
 }
 
-void Highlights::spread(int threads, BlurredImage& picture) const {
+void Highlights::spread(const GatherOptions& options, BlurredImage& picture) const {
   const std::size_t channels = rays_.table.channels;
   constexpr std::size_t batch_size = 64;
   std::vector<std::vector<SharedStamp>> stamps(channels * std::min(batch_size, groups_.size()));
   for (std::size_t begin = 0; begin < groups_.size(); begin += batch_size) {
     const std::size_t count = channels * std::min(batch_size, groups_.size() - begin);
-    parallel_for(count, 1, threads, [&](std::size_t first, std::size_t end) {
-      for (std::size_t i = first; i < end; ++i) stamps[i] = stamps_of(groups_[begin + i / channels], i % channels);
+    parallel_for(count, 1, options.threads, [&](std::size_t first, std::size_t end) {
+      for (std::size_t i = first; i < end; ++i) {
+        keep_on(options.stop, "gather");
+        stamps[i] = stamps_of(groups_[begin + i / channels], i % channels, options.stop);
+      }
     });
     // In sequence, so that the sums do not depend on the number of threads.
     for (std::size_t i = 0; i < count; ++i) {

@@ -45,7 +45,7 @@ class Highlights {
   /// with rows of `columns` pixels.
   void cut(const PixelRect& rect, int columns, int layers, int planes, std::size_t plane_stride, float* copy) const;
   /// Adds the light of the highlights to the picture.
-  void spread(int threads, BlurredImage& picture) const;
+  void spread(const GatherOptions& options, BlurredImage& picture) const;
 
  private:
   /// Adjacent highlights of nearly equal depth, which the same rays meet: indices in found_.
@@ -53,14 +53,14 @@ class Highlights {
   struct Stamp;
   struct SharedStamp;
 
-  void find(float above);
+  void find(const GatherOptions& options);
   void make_groups();
   /// @param rays_of_pixel rays for each pixel covered by the blur
   Stamp stamp_of(const Highlight& highlight, double rays_of_pixel, const RayTable& rays) const;
   const Highlight& brightest(const Group& group) const;
   /// The part of the picture over which a group is distributed; it has no columns if it lies outside the picture.
   RasterArea area_of(const Group& group, std::size_t channel) const;
-  std::vector<SharedStamp> stamps_of(const Group& group, std::size_t channel) const;
+  std::vector<SharedStamp> stamps_of(const Group& group, std::size_t channel, const std::stop_token& stop) const;
   void add(const Stamp& stamp, const Highlight& highlight, std::size_t channel, BlurredImage& picture) const;
   float visible(const float* line, double x, double y, const Highlight& highlight) const;
 

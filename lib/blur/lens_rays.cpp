@@ -129,6 +129,8 @@ Spread spread_of(const RayTable& t, double nearest) {
 
 }  // namespace
 
+Cancelled::~Cancelled() = default;  // anchors the type information in this library
+
 LensRays::LensRays(const LayerCamera& camera, std::span<const PupilPoint> points, int channels, Source source,
                    const LensRaysOptions& options) {
   check(camera, points, channels, options);
@@ -136,13 +138,14 @@ LensRays::LensRays(const LayerCamera& camera, std::span<const PupilPoint> points
   auto d = std::make_shared<Data>();
   d->camera = camera, d->camera.overscan = 0;
   d->points.assign(points.begin(), points.end());
-  d->source = std::move(source), d->options = options;
+  d->source = std::move(source), d->options = options, d->options.stop = {};
   if (options.nearest_mm == 0) d->options.nearest_mm = 24 * camera.focal_px / camera.rows;
   const double nearest = 1 / d->options.nearest_mm;
 
   const auto count = static_cast<std::size_t>(channels);
   const auto table = [&](int step) {
-    return ray_table({0, 0, d->camera.columns, d->camera.rows}, points, count, d->source, step, options.threads);
+    return ray_table({0, 0, d->camera.columns, d->camera.rows}, points, count, d->source, step, options.threads,
+                     options.stop);
   };
   // With a step above the side of the picture, no node would lie inside the picture for an error estimate. Pixels of
   // small pictures are large on the film, so that their steps are small.
@@ -197,7 +200,8 @@ double LensRays::reach_px(double least_inverse_depth, double most_inverse_depth)
   return reach;
 }
 
-RayTable LensRays::Data::dense(const RasterArea& area, std::size_t channel, std::size_t count) const {
+RayTable LensRays::Data::dense(const RasterArea& area, std::size_t channel, std::size_t count,
+                               const std::stop_token& stop) const {
   const core_detail::Kronecker<2> points_of;
   std::vector<PupilPoint> pupil_points(count);
   for (std::size_t i = 0; i < count; ++i) pupil_points[i] = {points_of(i)[0], points_of(i)[1]};
@@ -207,7 +211,7 @@ RayTable LensRays::Data::dense(const RasterArea& area, std::size_t channel, std:
   };
   // For the width of a blur, three nodes along a side suffice.
   const int step = std::max(2 * table.step, (std::max(area.columns, area.rows) + 1) / 2);
-  return ray_table(area, pupil_points, 1, of_channel, step, 1);
+  return ray_table(area, pupil_points, 1, of_channel, step, 1, stop);
 }
 
 void LensRays::at(int channel, int column, int row, std::span<LayerRay> rays) const {

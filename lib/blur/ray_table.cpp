@@ -115,8 +115,12 @@ void RayTable::ray_at(std::size_t channel, std::size_t ray, double column, doubl
   }
 }
 
+void keep_on(const std::stop_token& stop, const char* where) {
+  if (stop.stop_requested()) throw Cancelled(where);
+}
+
 RayTable ray_table(const RasterArea& area, std::span<const PupilPoint> points, std::size_t channels,
-                   const LensRays::Source& source, int step, int threads) {
+                   const LensRays::Source& source, int step, int threads, const std::stop_token& stop) {
   constexpr double max_coordinate = 1e15;  // interpolation in float must not overflow
   RayTable table{.area = area,
                  .step = step,
@@ -130,6 +134,7 @@ RayTable ray_table(const RasterArea& area, std::span<const PupilPoint> points, s
   parallel_for(channels * nodes, 8, threads, [&](std::size_t begin, std::size_t end) {
     std::vector<LayerRay> rays(points.size());
     for (std::size_t n = begin; n < end; ++n) {
+      keep_on(stop, "lens rays");
       const std::size_t channel = n / nodes, row = n % nodes / table.node_columns, column = n % table.node_columns;
       const Vec2<double> raster{table.column_of(column), table.row_of(row)};
       source(static_cast<int>(channel), raster, points, rays);

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <span>
+#include <stop_token>
 #include <vector>
 
 #include "petzval/blur/lens_rays.hpp"
@@ -39,9 +40,12 @@ struct RayTable {
   void ray_at(std::size_t channel, std::size_t ray, double column, double row, float* found) const noexcept;
 };
 
+/// @throws Cancelled if a stop is requested
+void keep_on(const std::stop_token& stop, const char* where);
+
 /// The rays of a source at all nodes. Throws Error if a number is not finite or above 1e15, or a weight is negative.
 RayTable ray_table(const RasterArea& area, std::span<const PupilPoint> points, std::size_t channels,
-                   const LensRays::Source& source, int step, int threads);
+                   const LensRays::Source& source, int step, int threads, const std::stop_token& stop = {});
 
 }  // namespace petzval::blur_detail
 
@@ -58,7 +62,8 @@ struct LensRays::Data {
 
   /// Rays of a channel over an area of the picture, for lights that would appear as dots with few rays. The pupil
   /// points are the first points of a sequence in which every run of points covers the pupil uniformly.
-  blur_detail::RayTable dense(const blur_detail::RasterArea& area, std::size_t channel, std::size_t count) const;
+  blur_detail::RayTable dense(const blur_detail::RasterArea& area, std::size_t channel, std::size_t count,
+                              const std::stop_token& stop) const;
 
   std::size_t set_count() const noexcept { return static_cast<std::size_t>(options.set_count); }
   /// Side of the square blocks in which the sets alternate, px.

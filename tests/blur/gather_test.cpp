@@ -7,7 +7,9 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <stop_token>
 #include <string>
+#include <thread>
 #include <utility>
 #include <vector>
 
@@ -310,6 +312,28 @@ TEST(Gather, IndependentOfThreads) {
   }
 }
 
+TEST(Gather, LeavesAnEmptyPictureIfCancelled) {
+  for (const LensRays& rays :
+       {thin_rays(25), tilted_rays(25), tilted_rays(9, 20, {.nearest_mm = 1000, .set_count = 4})}) {
+    const LayerSet layers = layers_of(boards, rays);
+    const BlurredImage whole = gather(layers, rays);
+    BlurredImage picture = gather(layers, rays);
+    std::stop_source stop;
+    const GatherOptions options{.threads = 2, .stop = stop.get_token()};
+    gather(layers, rays, options, picture);
+    EXPECT_EQ(picture.rgba, whole.rgba);
+    const std::jthread other([&] { stop.request_stop(); });
+    const auto until_cancelled = [&] {
+      for (;;) gather(layers, rays, options, picture);
+    };
+    EXPECT_THROW(until_cancelled(), Cancelled);
+    EXPECT_EQ(picture.columns, 0);
+    EXPECT_TRUE(picture.rgba.empty() && picture.missed.empty());
+    gather(layers, rays, {}, picture);
+    EXPECT_EQ(picture.rgba, whole.rgba);
+  }
+}
+
 TEST(Gather, EmptyPixelsAreTransparent) {
   const Scene alone = [](double x, double y) {
     std::vector<Surface> seen;
@@ -428,6 +452,30 @@ TEST(Highlights, AreLightsWithMoreBlurPixelsThanRays) {
     const bool spread = std::numbers::pi * radius_px * radius_px > 32;
     EXPECT_EQ(gather(layers_of(lamp, rays), rays).statistics.highlights > 0, spread) << radius_px;
   }
+}
+
+TEST(Highlights, StopIfCancelled) {
+  const Scene lamps = [](double x, double y) {
+    const bool lamp = std::hypot(std::remainder(x, 0.1), std::remainder(y, 0.05)) < 0.002;
+    return std::vector<Surface>{{1 / 1000.0f, lamp ? 1000.0f : 0.1f, 0.1f, 0.1f}};
+  };
+  std::stop_source stop;
+  bool ready = false;
+  int calls = 0;
+  const LensRays rays(small_camera(), vogel_points(32), 1,
+                      [&](int, const Vec2<double>& raster, std::span<const PupilPoint> at, std::span<LayerRay> found) {
+                        for (std::size_t i = 0; i < at.size(); ++i) {
+                          const double turn = 2 * std::numbers::pi * at[i].u, radius = 9000 * std::sqrt(at[i].v);
+                          const Vec2<double> slope{radius * std::cos(turn), radius * std::sin(turn) + raster.x};
+                          found[i] = {raster - slope / 2000.0, slope, 1};
+                        }
+                        if (ready && ++calls == 3) stop.request_stop();
+                      },
+                      {.nearest_mm = 1000});
+  const LayerSet layers = layers_of(lamps, rays);
+  ready = true;
+  EXPECT_THROW(gather(layers, rays, {.stop = stop.get_token()}), Cancelled);
+  EXPECT_EQ(calls, 3);
 }
 
 TEST(Highlights, AreHiddenByNearerSurfaces) {

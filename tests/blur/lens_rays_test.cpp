@@ -9,6 +9,7 @@
 #include <limits>
 #include <numbers>
 #include <span>
+#include <stop_token>
 #include <tuple>
 #include <vector>
 
@@ -292,6 +293,20 @@ TEST(LensRays, SampleFewPositionsIfRaysAreLinear) {
   const LensRays rays(layer_camera(512, 512, radians(30)), vogel_points(16), 1, source, {.threads = 1});
   EXPECT_EQ(places, 3 * 3 + 5 * 5);  // nodes in steps of 256 px, and midpoints between nodes
   EXPECT_LT(rays.interpolation_error_px(), 1e-3);
+}
+
+TEST(LensRays, StopIfCancelled) {
+  std::stop_source stop;
+  int nodes = 0;
+  const LensRays::Source source = [&](int, const Vec2<double>& raster, std::span<const PupilPoint>,
+                                      std::span<LayerRay> found) {
+    if (++nodes == 5) stop.request_stop();
+    std::fill(found.begin(), found.end(), LayerRay{raster, {1000, 0}, 1});
+  };
+  EXPECT_THROW(LensRays(small_camera(), vogel_points(4), 1, source, {.stop = stop.get_token()}), Cancelled);
+  EXPECT_EQ(nodes, 5);
+  const Camera camera(double_gauss(), film);
+  EXPECT_THROW(LensRays::of(camera, layer_camera(camera), vogel_points(4), {}, {.stop = stop.get_token()}), Cancelled);
 }
 
 TEST(LensRays, RefuseAnEmptySource) {

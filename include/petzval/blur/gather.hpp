@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <stop_token>
 #include <vector>
 
 #include "petzval/blur/layers.hpp"
@@ -18,6 +19,9 @@ struct GatherOptions {
   /// Surfaces brighter than this in any channel are spread over the image as discs of the lens's own shape, if the rays
   /// of a pixel would meet too few of them for a smooth blur. 0: no surfaces are spread.
   double highlights_above = 1;
+  /// Cancels gather() from another thread, within the time of about two tiles of 64 x 16 pixels: gather() throws
+  /// Cancelled, and the picture is empty.
+  std::stop_token stop{};
 };
 
 /// Counts and times of a gather().
@@ -55,10 +59,11 @@ struct BlurredImage {
 /// @param layers   the scene; they extend beyond the image equally on all sides (PeelPlan::camera). Their border pixels
 ///                 are repeated outwards
 /// @param rays     the lens
-/// @param options  threads and highlights
+/// @param options  threads, highlights and cancelling
 /// @param picture  the result; left empty if an error occurs while it is filled
 /// @throws Error   if the layers do not fit the image, options are out of range, rays reach more than 16384 pixels
 ///                 beyond the image, or the rays of a tile need more than 256 MiB of layers beyond their edges
+/// @throws Cancelled  if `options.stop` requests a stop before the picture is complete
 ///
 /// Source: Lee, Eisemann, Seidel 2010, "Real-time lens blur effects and focus control", section 3.1.
 PETZVAL_API void gather(const LayerSet& layers, const LensRays& rays, const GatherOptions& options,

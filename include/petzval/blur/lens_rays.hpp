@@ -5,10 +5,12 @@
 #include <functional>
 #include <memory>
 #include <span>
+#include <stop_token>
 #include <vector>
 
 #include "petzval/blur/layers.hpp"
 #include "petzval/core/config.hpp"
+#include "petzval/core/error.hpp"
 #include "petzval/core/geometry.hpp"
 #include "petzval/iris/iris.hpp"
 #include "petzval/lens/wavelength.hpp"
@@ -71,6 +73,14 @@ struct ThinLens {
   Vec3<double> colour_shift{0, 0, 0};
 };
 
+/// Thrown by a calculation whose std::stop_token requests a stop.
+class PETZVAL_API Cancelled : public Error {
+ public:
+  /// @param where the calculation
+  explicit Cancelled(const std::string& where) : Error(where + ": cancelled") {}
+  ~Cancelled() override;
+};
+
 /// Options of LensRays.
 struct LensRaysOptions {
   /// Depth of the nearest surface, mm; 0: the focal length of the layer camera for an image 24 mm high.
@@ -79,6 +89,9 @@ struct LensRaysOptions {
   /// different set; the mean over the square has the rays of all sets. More sets replace repeated patterns by grain.
   int set_count = 1;
   int threads = 1;
+  /// Cancels the construction from another thread: the constructor throws Cancelled. It tests the token before each
+  /// call of the source.
+  std::stop_token stop{};
 };
 
 /// The rays of a lens through the layers: one line per pupil point, for all pixels of an image.
@@ -115,6 +128,7 @@ class PETZVAL_API LensRays {
   /// @param options   nearest depth, sets and threads
   /// @throws Error    if the source or the points are empty, points are not 0 to 1, the sets differ in size, a
   ///                  parameter is out of range, a ray coordinate exceeds 1e15, or a weight is negative
+  /// @throws Cancelled if `options.stop` requests a stop before the table is complete
   LensRays(const LayerCamera& camera, std::span<const PupilPoint> points, int channels, Source source,
            const LensRaysOptions& options = {});
 
