@@ -91,14 +91,8 @@ class Gathering {
 
   void follow(const Tile& tile, Memory& memory) {
     for (std::size_t channel = 0; channel < rays_.table.channels; ++channel) {
-      TileSums& sums = memory.sums[channel];
-      for (int row = 0; row < tile.rows; ++row) {
-        const int from = TileSums::index(row, 0, sums_side());
-        for (float* plane : {sums.colour[0], sums.colour[1], sums.colour[2], sums.alpha, sums.total, sums.open,
-                             sums.missed, sums.unknown}) {
-          std::fill_n(plane + from, TileSums::columns, 0.0f);
-        }
-      }
+      // The other paths overwrite the sums.
+      if (method_.path == GatherPath::general) memory.sums[channel] = {};
       follow(tile, channel, memory);
     }
     compose(tile, memory);
@@ -247,47 +241,80 @@ class Gathering {
   /// The `side` of TileSums::index().
   int sums_side() const noexcept { return method_.path == GatherPath::shift_invariant ? rays_.side() : 1; }
 
+  /// The sums of a channel of the picture.
+  const TileSums& sums_of(const Memory& memory, std::size_t channel) const noexcept {
+    return memory.sums[rays_.table.channels == 1 ? 0 : channel];
+  }
+  const float* colours_of(const Memory& memory, std::size_t channel) const noexcept {
+    return sums_of(memory, channel).colour[rays_.table.channels == 1 ? channel : 0];
+  }
+
   void compose(const Tile& tile, const Memory& memory) {
-    const std::size_t channels = rays_.table.channels;
+    const int side = sums_side();
     const float per_ray = 1 / static_cast<float>(rays_.rays_of_set());
     double missed = 0;
     for (int row = 0; row < tile.rows; ++row) {
-      for (int column = 0; column < tile.columns; ++column) {
-        const int at = TileSums::index(row, column, sums_side());
+      for (int first = 0; first < std::min(side, tile.columns); ++first) {
+        const int at = TileSums::index(row, first, side), count = (tile.columns - first + side - 1) / side;
         const std::size_t pixel =
             static_cast<std::size_t>(tile.top + row) * static_cast<std::size_t>(picture_.columns) +
-            static_cast<std::size_t>(tile.left + column);
-        float* const rgba = &picture_.rgba[4 * pixel];
-        float alpha = 0, unseen = 0;
-        for (std::size_t c = 0; c < 3; ++c) {
-          const TileSums& sums = memory.sums[channels == 1 ? 0 : c];
-          const float total = sums.total[at], colour = sums.colour[channels == 1 ? c : 0][at];
-          if (layers_.opaque && sums.open[at] == 0 && sums.missed[at] == 0 && total > 0) {
-            rgba[c] = colour * per_ray, alpha += 1;
-            continue;
-          }
-          const float known = total - sums.unknown[at];
-          if (total > 0) unseen += sums.missed[at] / total;  // total is 0 in corners that the lens does not illuminate
-          // If no ray is known, the first layer is the best guess.
-          if (known > 1e-6f * total) {
-            rgba[c] = colour / known * total * per_ray;
-            alpha += layers_.opaque ? std::max(1 - sums.open[at] / known, 0.0f) : sums.alpha[at] / known;
-          } else {
-            const std::ptrdiff_t below = static_cast<std::ptrdiff_t>(tile.top + row + overscan_) * layers_.columns +
-                                         tile.left + column + overscan_;
-            const bool any = layers_.count > 0 && layers_.plane(0, 0)[below] >= 0;
-            rgba[c] = any ? layers_.plane(0, static_cast<int>(1 + c))[below] * total * per_ray : 0.0f;
-            alpha += any ? layers_.plane(0, 4)[below] : 0.0f;
+            static_cast<std::size_t>(tile.left + first);
+        float *rgba = &picture_.rgba[4 * pixel], *unseen = &picture_.missed[pixel];
+        // In most rows all rays meet surfaces.
+        bool all_met = layers_.opaque;
+        for (std::size_t c = 0; c < rays_.table.channels && all_met; ++c) {
+          const TileSums& sums = memory.sums[c];
+          for (int i = at; i < at + count; ++i) {
+            all_met &= (sums.open[i] == 0) & (sums.missed[i] == 0) & (sums.total[i] > 0);
           }
         }
-        rgba[3] = alpha / 3;
-        picture_.missed[pixel] = unseen / 3;
-        missed += static_cast<double>(unseen);
+        if (all_met) {
+          const float *const red = colours_of(memory, 0) + at, *const green = colours_of(memory, 1) + at,
+                             *const blue = colours_of(memory, 2) + at;
+          for (int i = 0; i < count; ++i, rgba += 4 * side, unseen += side) {
+            rgba[0] = red[i] * per_ray, rgba[1] = green[i] * per_ray, rgba[2] = blue[i] * per_ray, rgba[3] = 1;
+            *unseen = 0;
+          }
+          continue;
+        }
+        std::ptrdiff_t below =
+            static_cast<std::ptrdiff_t>(tile.top + row + overscan_) * layers_.columns + tile.left + first + overscan_;
+        for (int i = at; i < at + count; ++i, rgba += 4 * side, unseen += side, below += side) {
+          const float sum = compose(memory, i, below, per_ray, rgba);
+          *unseen = sum / 3, missed += static_cast<double>(sum);
+        }
       }
     }
     // Counted for each channel.
-    missed_ +=
-        static_cast<std::uint64_t>(std::llround(missed / 3 * static_cast<double>(channels * rays_.rays_of_set())));
+    missed_ += static_cast<std::uint64_t>(
+        std::llround(missed / 3 * static_cast<double>(rays_.table.channels * rays_.rays_of_set())));
+  }
+
+  /// Composes a pixel and returns the sum of the missed fractions of its channels.
+  /// @param below index of the pixel in the layers
+  float compose(const Memory& memory, int at, std::ptrdiff_t below, float per_ray, float* rgba) const {
+    float alpha = 0, unseen = 0;
+    for (std::size_t c = 0; c < 3; ++c) {
+      const TileSums& sums = sums_of(memory, c);
+      const float total = sums.total[at], colour = colours_of(memory, c)[at];
+      if (layers_.opaque && sums.open[at] == 0 && sums.missed[at] == 0 && total > 0) {
+        rgba[c] = colour * per_ray, alpha += 1;
+        continue;
+      }
+      const float known = total - sums.unknown[at];
+      if (total > 0) unseen += sums.missed[at] / total;  // total is 0 in corners that the lens does not illuminate
+      // If no ray is known, the first layer is the best guess.
+      if (known > 1e-6f * total) {
+        rgba[c] = colour / known * total * per_ray;
+        alpha += layers_.opaque ? std::max(1 - sums.open[at] / known, 0.0f) : sums.alpha[at] / known;
+      } else {
+        const bool any = layers_.count > 0 && layers_.plane(0, 0)[below] >= 0;
+        rgba[c] = any ? layers_.plane(0, static_cast<int>(1 + c))[below] * total * per_ray : 0.0f;
+        alpha += any ? layers_.plane(0, 4)[below] : 0.0f;
+      }
+    }
+    rgba[3] = alpha / 3;
+    return unseen;
   }
 
   const LayerData& layers_;

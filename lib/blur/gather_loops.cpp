@@ -31,10 +31,7 @@ PETZVAL_INLINE Numbers load(const float* from) noexcept {
   __builtin_memcpy(&result.v, from, sizeof result.v);
   return result;
 }
-PETZVAL_INLINE void add(float* to, Numbers numbers) noexcept {
-  const Numbers sum = load(to) + numbers;
-  __builtin_memcpy(to, &sum.v, sizeof sum.v);
-}
+PETZVAL_INLINE void store(float* to, Numbers numbers) noexcept { __builtin_memcpy(to, &numbers.v, sizeof numbers.v); }
 PETZVAL_INLINE float sum_of(Numbers numbers) noexcept {
   float sum = 0;
   for (int i = 0; i < width; ++i) sum += numbers.v[i];
@@ -223,16 +220,16 @@ PETZVAL_INLINE void give_up(Numbers weight, GatherState<opaque, colours>& found)
   found.missed = found.missed + rest, found.unknown = found.unknown + rest;
 }
 
-/// Adds the results of adjacent pixels.
+/// Stores the results of adjacent pixels.
 template <bool opaque, int colours>
 PETZVAL_INLINE void keep(TileSums& sums, int pixel, const GatherState<opaque, colours>& found,
                          Numbers weight) noexcept {
-  for (int c = 0; c < colours; ++c) add(sums.colour[c] + pixel, found.colour[c]);
-  add(sums.total + pixel, weight);
-  if constexpr (!opaque) add(sums.alpha + pixel, found.alpha);
-  add(sums.open + pixel, found.open);
-  add(sums.missed + pixel, found.missed);
-  add(sums.unknown + pixel, found.unknown);
+  for (int c = 0; c < colours; ++c) store(sums.colour[c] + pixel, found.colour[c]);
+  store(sums.total + pixel, weight);
+  if constexpr (!opaque) store(sums.alpha + pixel, found.alpha);
+  store(sums.open + pixel, found.open);
+  store(sums.missed + pixel, found.missed);
+  store(sums.unknown + pixel, found.unknown);
 }
 
 /// Follows one ray of pixels `side` columns apart, starting at the step `from`.
@@ -519,6 +516,45 @@ std::uint64_t follow_general(const TileJob& job, const DifferentRays& rays) noex
   return made * static_cast<std::uint64_t>(width);
 }
 
+void transmit(const LayerWindow& window, const HighlightRays& rays, float* fractions) noexcept {
+  const Numbers none(no_surface), one(1.0f), to(rays.to), gap(rays.gap);
+  const auto within = [](Numbers x, float least, float most) {
+    const Numbers above = larger(x, Numbers(least));
+    return select(above > Numbers(most), Numbers(most), above);
+  };
+  for (std::size_t i = 0; i < rays.count; i += static_cast<std::size_t>(width)) {
+    const auto row = [&](Row r) { return load(rays.rows + r * rays.row_stride + i); };
+    const PixelSteps<Numbers> steps(row(at_x), row(at_y), row(slope_x), row(slope_y), Numbers(rays.from), to,
+                                    Numbers(rays.end), Numbers(rays.most));
+    Numbers through = one, front = none, front_alpha(0.0f), n(0.0f), high = steps.low(-one);
+    for (Mask here = first_lanes(rays.count - i); any(here);
+         here = all_of(here, n <= steps.last(), through > Numbers(1e-3f))) {
+      const auto pixel = steps.pixel(n);
+      const Anywhere at{offsets_of(within(pixel.column, rays.left, rays.right),
+                                   within(pixel.row, rays.top, rays.bottom), window.stride),
+                        here};
+      const Numbers low = steps.low(n), joined_alpha = front_alpha;
+      Numbers joined_to = front + gap;
+      front = none;
+      Mask behind = here;  // lanes whose rays are behind the layers so far
+      for (int l = 0; l < window.layers; ++l) {
+        const Numbers met = at(window.depth + l * window.layer_stride);
+        behind = all_of(behind, met > to);
+        if (!any(behind)) break;
+        const Numbers alpha = at(window.alpha + l * window.layer_stride);
+        const Mask in_front = all_of(behind, met < low);
+        front = select(in_front, met, front), front_alpha = select(in_front, alpha, front_alpha);
+        behind = without(behind, in_front);
+        const Mask hit = all_of(behind, met <= high), joined = all_of(behind, met > high, met <= joined_to);
+        through = through * (one - select(hit, alpha, select(joined, joined_alpha, Numbers(0.0f))));
+        joined_to = select(joined, none, joined_to);
+      }
+      n = n + one, high = low;
+    }
+    store(fractions + i, through);
+  }
+}
+
 #define PETZVAL_FOLLOW(name, Rays)                                                                     \
   std::uint64_t name(const TileJob& job, const Rays& rays) noexcept {                                  \
     if (job.opaque) {                                                                                  \
@@ -533,6 +569,6 @@ PETZVAL_FOLLOW(general, DifferentRays)
 }  // namespace
 
 extern const GatherLoops PETZVAL_LOOPS;
-const GatherLoops PETZVAL_LOOPS{same, coherent, general, limits};
+const GatherLoops PETZVAL_LOOPS{same, coherent, general, limits, transmit};
 
 }  // namespace petzval::blur_detail

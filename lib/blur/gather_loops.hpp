@@ -69,6 +69,17 @@ struct DifferentRays {
   int side = 1;              ///< ray sets alternate over blocks of side x side pixels
 };
 
+/// Lines that meet a highlight, relative to its pixel: [Row][ray], with rows `row_stride` apart. Loops read a register
+/// beyond the last ray.
+struct HighlightRays {
+  std::size_t count = 0, row_stride = 0;
+  const float* rows = nullptr;
+  float from = 0, to = 0;                          ///< inverse depths at which rays begin and end
+  float most = 0, end = 0;                         ///< inverse depths of the nearest (above 0) and the farthest surface
+  float gap = 0;                                   ///< as in TileJob
+  float left = 0, right = 0, top = 0, bottom = 0;  ///< the pixels of the layers
+};
+
 /// A tile or, for `same`, the pixels of a tile that share one set of rays: every side-th column and row.
 struct TileJob {
   LayerWindow window;
@@ -88,7 +99,8 @@ struct Limits {
 };
 
 struct GatherLoops {
-  /// Each adds to the sums and returns the number of steps of all lanes.
+  /// Each returns the number of steps of all lanes. `same` and `coherent` store sums, also for pixels in the same row
+  /// beyond the tile; `general` adds to sums.
   std::uint64_t (*same)(const TileJob&, const SameRays&) noexcept;
   std::uint64_t (*coherent)(const TileJob&, const DifferentRays&) noexcept;
   std::uint64_t (*general)(const TileJob&, const DifferentRays&) noexcept;
@@ -96,6 +108,9 @@ struct GatherLoops {
   /// apart; one more register is read. Lines are straight, so the extremes lie at the ends.
   Limits (*limits)(const float* const* corners, std::size_t corner_count, std::size_t stride, std::size_t count,
                    float w, float v) noexcept;
+  /// The fraction of each ray that surfaces in front of a highlight transmit; up to a register more is written.
+  /// @param window the layers at the pixel of the highlight
+  void (*transmit)(const LayerWindow& window, const HighlightRays& rays, float* fractions) noexcept;
 };
 
 PETZVAL_WIDEST(GatherLoops, gather_loops)

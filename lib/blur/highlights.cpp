@@ -6,9 +6,9 @@
 #include <map>
 #include <numbers>
 #include <tuple>
+#include <utility>
 
 #include "petzval/core/parallel.hpp"
-#include "pixel_steps.hpp"
 
 namespace petzval::blur_detail {
 namespace {
@@ -107,6 +107,7 @@ void Highlights::find(const GatherOptions& options) {
   for (int row = 0; row < layers_.rows; ++row) {
     keep_on(options.stop, "gather");
     for (int layer = 0; layer < layers_.count; ++layer) {
+      if (!(layers_.brightest(layer, row) > above)) continue;
       const std::ptrdiff_t from = static_cast<std::ptrdiff_t>(row) * layers_.columns;
       const float* planes[LayerData::planes];
       for (int p = 0; p < LayerData::planes; ++p) planes[p] = layers_.plane(layer, p) + from;
@@ -181,54 +182,30 @@ void Highlights::cut(const PixelRect& rect, int columns, int layers, int planes,
   }
 }
 
-float Highlights::visible(const float* line, double x, double y, const Highlight& h) const {
-  const auto position_at = [&](double w) {
-    return Vec2<double>{x + line[at_x] + w * line[slope_x] + overscan_, y + line[at_y] + w * line[slope_y] + overscan_};
-  };
-  const auto rect_to = [&](double w) {
-    const Vec2<double> a = position_at(w), b = position_at(h.inverse_depth);
-    return PixelRect{
-        static_cast<int>(std::floor(std::min(a.x, b.x))) - 1, static_cast<int>(std::floor(std::min(a.y, b.y))) - 1,
-        static_cast<int>(std::ceil(std::max(a.x, b.x))) + 1, static_cast<int>(std::ceil(std::max(a.y, b.y))) + 1};
-  };
-  // Start at the nearest of all surfaces, then at the nearest surface below the path that follows from it.
-  double from = nearest_;
+void Highlights::hide(const Highlight& h, HighlightRays rays, std::vector<float>& through) const {
   // A surface that is nearer by less than this margin, the offset of the umbra, hides the highlight from no ray.
   const double margin = 0.5 / std::max(rays_.largest_slope, 1e-30);
+  rays.from = nearest_, rays.to = static_cast<float>(h.inverse_depth + margin);
+  // Start at the nearest of all surfaces, then at the nearest surface below the paths that follow from it.
   for (int i = 0; i < 2; ++i) {
-    from = layers_.n_buffer.below(rect_to(from)).most;
-    if (from <= h.inverse_depth + margin) return 1;
+    const Limits reach = gather_loops().limits(&rays.rows, 1, rays.row_stride, rays.count, rays.from, h.inverse_depth);
+    const auto pixel = [](int at, float offset) { return at + static_cast<int>(std::floor(offset)); };
+    rays.from = layers_.n_buffer
+                    .below({pixel(h.column, reach.left) - 1, pixel(h.row, reach.top) - 1,
+                            pixel(h.column, reach.right) + 2, pixel(h.row, reach.bottom) + 2})
+                    .most;
+    if (rays.from <= rays.to) return;
   }
-  const Vec2<double> first_pixel = position_at(0) - 0.5;
-  const PixelSteps<double> steps(first_pixel.x, first_pixel.y, line[slope_x], line[slope_y], from,
-                                 h.inverse_depth + margin, farthest_, nearest_);
-  float through = 1, front = no_surface, front_alpha = 0;
-  double high = steps.low(-1);
-  for (double n = 0; n <= steps.last() && through > 1e-3f; ++n) {
-    const auto at = steps.pixel(n);
-    const int column = static_cast<int>(std::clamp(at.column, 0.0, layers_.columns - 1.0)),
-              row = static_cast<int>(std::clamp(at.row, 0.0, layers_.rows - 1.0));
-    const std::ptrdiff_t pixel = static_cast<std::ptrdiff_t>(row) * layers_.columns + column;
-    const double low = steps.low(n);
-    const float joined_to = front + gap_, joined_alpha = front_alpha;
-    bool joined = false;
-    front = no_surface;
-    for (int layer = 0; layer < layers_.count; ++layer) {
-      const float met = layers_.plane(layer, 0)[pixel];
-      if (met <= h.inverse_depth + margin) break;
-      if (met < low) {
-        front = met, front_alpha = layers_.plane(layer, 4)[pixel];
-        break;
-      }
-      if (met <= high) {
-        through *= 1 - layers_.plane(layer, 4)[pixel];
-      } else if (met <= joined_to && !joined) {
-        through *= 1 - joined_alpha, joined = true;
-      }
-    }
-    high = low;
-  }
-  return through;
+  rays.most = nearest_, rays.end = farthest_, rays.gap = gap_;
+  rays.left = static_cast<float>(-h.column), rays.right = static_cast<float>(layers_.columns - 1 - h.column);
+  rays.top = static_cast<float>(-h.row), rays.bottom = static_cast<float>(layers_.rows - 1 - h.row);
+  const std::ptrdiff_t at = static_cast<std::ptrdiff_t>(h.row) * layers_.columns + h.column;
+  gather_loops().transmit({.layers = layers_.count,
+                           .stride = layers_.columns,
+                           .layer_stride = static_cast<std::ptrdiff_t>(LayerData::planes * layers_.plane_stride()),
+                           .depth = layers_.plane(0, 0) + at,
+                           .alpha = layers_.plane(0, 4) + at},
+                          rays, through.data());
 }
 
 Highlights::Stamp Highlights::stamp_of(const Highlight& h, double rays_of_pixel, const RayTable& table) const {
@@ -241,8 +218,9 @@ Highlights::Stamp Highlights::stamp_of(const Highlight& h, double rays_of_pixel,
     double x, y, light;
   };
   std::vector<Splat> splats;
-  double left = 1e9, right = -1e9, top = 1e9, bottom = -1e9;
-  Stamp stamp;
+  splats.reserve(rays);
+  const std::size_t stride = rays + 64;
+  std::vector<float> lines(row_count * stride), through(stride, 1.0f);
   for (std::size_t ray = 0; ray < rays; ++ray) {
     float line[row_count];
     // The position of the ray at the depth of the highlight, for a ray of the picture position `from`.
@@ -268,15 +246,22 @@ Highlights::Stamp Highlights::stamp_of(const Highlight& h, double rays_of_pixel,
       if (!(stretch > 1e-3)) continue;
       lead(landing);
     }
-    const float through = visible(line, landing.x, landing.y, h);
-    stamp.hidden |= through < 1;
-    const double light = through * line[weight] / (static_cast<double>(rays) * stretch);
-    if (!(light > 0)) continue;
-    splats.push_back({landing.x, landing.y, light});
-    left = std::min(left, landing.x - half), right = std::max(right, landing.x + half);
-    top = std::min(top, landing.y - half), bottom = std::max(bottom, landing.y + half);
+    float* const own = lines.data() + splats.size();
+    own[at_x * stride] = static_cast<float>(landing.x + line[at_x] - x), own[slope_x * stride] = line[slope_x];
+    own[at_y * stride] = static_cast<float>(landing.y + line[at_y] - y), own[slope_y * stride] = line[slope_y];
+    splats.push_back({landing.x, landing.y, line[weight] / (static_cast<double>(rays) * stretch)});
   }
-  if (splats.empty()) return stamp;
+  if (!splats.empty()) hide(h, {.count = splats.size(), .row_stride = stride, .rows = lines.data()}, through);
+  double left = 1e9, right = -1e9, top = 1e9, bottom = -1e9;
+  Stamp stamp;
+  for (std::size_t i = 0; i < splats.size(); ++i) {
+    Splat& s = splats[i];
+    stamp.hidden |= through[i] < 1, s.light *= through[i];
+    if (!(s.light > 0)) continue;
+    left = std::min(left, s.x - half), right = std::max(right, s.x + half);
+    top = std::min(top, s.y - half), bottom = std::max(bottom, s.y + half);
+  }
+  if (left > right) return stamp;
 
   stamp.left = static_cast<int>(std::floor(left)) - h.column, stamp.top = static_cast<int>(std::floor(top)) - h.row;
   const int first_column = stamp.left + h.column, first_row = stamp.top + h.row;
@@ -287,21 +272,24 @@ Highlights::Stamp Highlights::stamp_of(const Highlight& h, double rays_of_pixel,
     const double t = std::clamp(distance / half, -1.0, 1.0);
     return t < 0 ? 0.5 * (1 + t) * (1 + t) : 1 - 0.5 * (1 - t) * (1 - t);
   };
-  std::vector<double> across, down;
-  const auto fractions = [&](double centre, int first, std::vector<double>& of_pixels) {
+  std::vector<float> across, down;
+  const auto fractions = [&](double centre, int first, std::vector<float>& of_pixels) {
     of_pixels.clear();
-    for (int pixel = first; pixel < centre + half; ++pixel) {
-      of_pixels.push_back(fraction_before(pixel + 1 - centre) - fraction_before(pixel - centre));
+    for (double pixel = first, before = 0; pixel < centre + half; ++pixel) {
+      const double after = fraction_before(pixel + 1 - centre);
+      of_pixels.push_back(static_cast<float>(after - std::exchange(before, after)));
     }
   };
   for (const Splat& s : splats) {
+    if (!(s.light > 0)) continue;
     const int column = static_cast<int>(std::floor(s.x - half)), row = static_cast<int>(std::floor(s.y - half));
     fractions(s.x, column, across), fractions(s.y, row, down);
     for (std::size_t j = 0; j < down.size(); ++j) {
       float* const light =
           &stamp.light[(static_cast<std::size_t>(row - first_row) + j) * static_cast<std::size_t>(stamp.columns) +
                        static_cast<std::size_t>(column - first_column)];
-      for (std::size_t i = 0; i < across.size(); ++i) light[i] += static_cast<float>(s.light * down[j] * across[i]);
+      const float of_row = static_cast<float>(s.light) * down[j];
+      for (std::size_t i = 0; i < across.size(); ++i) light[i] += of_row * across[i];
     }
   }
   return stamp;
@@ -381,26 +369,32 @@ void Highlights::spread(const GatherOptions& options, BlurredImage& picture) con
         stamps[i] = stamps_of(groups_[begin + i / channels], i % channels, options.stop);
       }
     });
-    // In sequence, so that the sums do not depend on the number of threads.
-    for (std::size_t i = 0; i < count; ++i) {
-      for (const auto& [members, stamp] : stamps[i]) {
-        for (const std::size_t member : members) add(stamp, highlights_[member], i % channels, picture);
+    // The stamps in sequence, so that the sums do not depend on the number of threads.
+    parallel_for(static_cast<std::size_t>(picture.rows), 16, options.threads, [&](std::size_t top, std::size_t bottom) {
+      keep_on(options.stop, "gather");
+      for (std::size_t i = 0; i < count; ++i) {
+        for (const auto& [members, stamp] : stamps[i]) {
+          for (const std::size_t member : members) {
+            add(stamp, highlights_[member], i % channels, static_cast<int>(top), static_cast<int>(bottom), picture);
+          }
+        }
       }
-    }
+    });
   }
 }
 
-void Highlights::add(const Stamp& stamp, const Highlight& h, std::size_t channel, BlurredImage& picture) const {
+void Highlights::add(const Stamp& stamp, const Highlight& h, std::size_t channel, int first_row, int end_row,
+                     BlurredImage& picture) const {
+  float light[4] = {};
+  for (std::size_t c = 0; c < 3; ++c) light[c] = rays_.table.channels == 1 || c == channel ? h.light[c] : 0;
   const int left = stamp.left + h.column, top = stamp.top + h.row;
   const int first = std::max(0, -left), last = std::min(stamp.columns, picture.columns - left);
-  for (int row = std::max(0, -top); row < std::min(stamp.rows, picture.rows - top); ++row) {
-    const float* const light = &stamp.light[static_cast<std::size_t>(row) * static_cast<std::size_t>(stamp.columns)];
-    float* const rgba = picture.rgba.data() + 4 * (static_cast<std::ptrdiff_t>(top + row) * picture.columns + left);
+  for (int row = std::max(first_row, top); row < std::min(end_row, top + stamp.rows); ++row) {
+    const float* const of_row =
+        &stamp.light[static_cast<std::size_t>(row - top) * static_cast<std::size_t>(stamp.columns)];
+    float* const rgba = picture.rgba.data() + 4 * (static_cast<std::ptrdiff_t>(row) * picture.columns + left);
     for (int column = first; column < last; ++column) {
-      for (std::size_t c = 0; c < 3; ++c) {
-        if (rays_.table.channels == 1 || c == channel)
-          rgba[4 * column + static_cast<int>(c)] += light[column] * h.light[c];
-      }
+      for (int c = 0; c < 4; ++c) rgba[4 * column + c] += of_row[column] * light[c];
     }
   }
 }

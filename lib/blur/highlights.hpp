@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "gather_loops.hpp"
 #include "layer_data.hpp"
 #include "petzval/blur/gather.hpp"
 #include "ray_table.hpp"
@@ -61,8 +62,12 @@ class Highlights {
   /// The part of the picture over which a group is distributed; it has no columns if it lies outside the picture.
   RasterArea area_of(const Group& group, std::size_t channel) const;
   std::vector<SharedStamp> stamps_of(const Group& group, std::size_t channel, const std::stop_token& stop) const;
-  void add(const Stamp& stamp, const Highlight& highlight, std::size_t channel, BlurredImage& picture) const;
-  float visible(const float* line, double x, double y, const Highlight& highlight) const;
+  /// Adds a stamp to some rows of the picture.
+  void add(const Stamp& stamp, const Highlight& highlight, std::size_t channel, int first_row, int end_row,
+           BlurredImage& picture) const;
+  /// Finds the fraction of each ray that surfaces in front of the highlight transmit.
+  /// @param through 1 for each ray, and a register more
+  void hide(const Highlight& highlight, HighlightRays rays, std::vector<float>& through) const;
 
   const LayerData& layers_;
   const RayData& rays_;

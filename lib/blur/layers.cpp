@@ -107,6 +107,17 @@ void LayerSet::Data::end_layer(const std::string& where) {
     throw Error(where + ": " + pixel_name(i, columns) + ": alpha = " + to_text(alpha[i]) + "; must be 0 to 1");
   }
   if (!any) return;
+  const auto brighter = [](float a, float b) { return a > b ? a : b; };  // b if a is NaN
+  brightest_of_rows.resize(static_cast<std::size_t>(count + 1) * static_cast<std::size_t>(rows));
+  for (int row = 0; row < rows; ++row) {
+    const std::ptrdiff_t from = static_cast<std::ptrdiff_t>(row) * columns;
+    const float *const r = plane(count, 1) + from, *const g = plane(count, 2) + from, *const b = plane(count, 3) + from;
+    float most = 0;
+    for (int i = 0; i < columns; ++i) {
+      most = brighter(w[from + i] >= 0 ? brighter(r[i], brighter(g[i], b[i])) : 0.0f, most);
+    }
+    brightest_of_rows[static_cast<std::size_t>(count * rows + row)] = most;
+  }
   ++count;
   opaque &= solid;
 }

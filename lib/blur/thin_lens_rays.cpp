@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <cmath>
 #include <memory>
+#include <optional>
 
 #include "core/text.hpp"
 #include "iris/iris_shape.hpp"
@@ -15,10 +16,12 @@ namespace {
 /// large.
 struct WeightedIris {
   iris_detail::IrisShape shape;
-  iris_detail::IrisWeights weights;
+  std::optional<iris_detail::IrisWeights> weights;  ///< empty if the lens has no weights
 
-  explicit WeightedIris(const ThinLens& lens)
-      : shape(lens.iris), weights(lens.iris, lens.edge, lens.map, 0.1, "thin lens: ") {}
+  explicit WeightedIris(const ThinLens& lens) : shape(lens.iris) {
+    if (lens.edge.distribution == 0 && lens.map.empty()) return;
+    weights.emplace(lens.iris, lens.edge, lens.map, 0.1, "thin lens: ");
+  }
 };
 
 }  // namespace
@@ -49,9 +52,9 @@ LensRays LensRays::thin(const LayerCamera& camera, const ThinLens& lens, std::sp
     for (std::size_t i = 0; i < pupil_points.size(); ++i) {
       double u = pupil_points[i].u, v = pupil_points[i].v, weight = 1;
       if (!even) {
-        const auto sample = weighted->weights.draw(u, v);
+        const auto sample = weighted->weights->draw(u, v);
         u = sample.u, v = sample.v;
-        weight = weighted->weights.of_sample(u, v) / (sample.density * weighted->weights.mean());
+        weight = weighted->weights->of_sample(u, v) / (sample.density * weighted->weights->mean());
       }
       const Vec2<double> stop_point = weighted->shape.sample(u, v), slope{scale * stop_point.x, -scale * stop_point.y};
       found[i] = {raster - slope * in_focus, slope, weight};
