@@ -9,9 +9,14 @@
 #include "petzval/blur/lens_rays.hpp"
 #include "petzval/camera/camera.hpp"
 #include "petzval/core/error.hpp"
+#include "ray_table.hpp"
 
 namespace petzval {
 namespace {
+
+using namespace blur_detail;
+
+constexpr int light_points = 128, light_cells = 48;  // of light_table()
 
 /// The rays of one film point.
 class Bundle {
@@ -33,6 +38,11 @@ class Bundle {
   double mean_weight() const noexcept {
     return std::accumulate(weights_.begin(), weights_.end(), 0.0) / static_cast<double>(weights_.size());
   }
+  /// The mean of the products of weights and factors.
+  double mean_weight(std::span<const double> factors) const noexcept {
+    return std::inner_product(weights_.begin(), weights_.end(), factors.begin(), 0.0) /
+           static_cast<double>(weights_.size());
+  }
 
  private:
   std::vector<double> film_x_, film_y_, u_, v_, rays_[6], weights_;
@@ -41,14 +51,16 @@ class Bundle {
 /// Converts the rays of a camera to lines through layers.
 class RaysOfCamera {
  public:
-  RaysOfCamera(const Camera& camera, const LayerCamera& layers, std::span<const Wavelength> wavelengths)
+  RaysOfCamera(const Camera& camera, const LayerCamera& layers, std::span<const Wavelength> wavelengths,
+               const LensRaysOptions& options)
       : camera_(camera),
         layers_(layers),
         origin_z_(layer_origin_z(camera)),
-        wavelengths_(wavelengths.begin(), wavelengths.end()),
-        clips_(camera.model() == ModelKind::exact_float || camera.model() == ModelKind::exact_double ||
-               camera.model() == ModelKind::custom),
-        light_points_(vogel_points(509)) {}
+        wavelengths_(wavelengths.begin(), wavelengths.end()) {
+    const bool clips = camera.model() == ModelKind::exact_float || camera.model() == ModelKind::exact_double ||
+                       camera.model() == ModelKind::custom;
+    if (clips) light_ = light_table(options);
+  }
 
   void operator()(int channel, const Vec2<double>& raster, std::span<const PupilPoint> points,
                   std::span<LayerRay> found) const {
@@ -71,9 +83,11 @@ class RaysOfCamera {
       std::fill(found.begin(), found.end(), LayerRay{raster, {0, 0}, 0});
       return;
     }
-    // The pupil of the samples is slightly larger than the part that transmits rays. The transmitted fraction is
-    // measured with more samples.
-    if (clips_) light = Bundle(camera_, film, light_points_, wavelength).mean_weight();
+    if (light_.rays > 0) {
+      float ray[row_count];
+      light_.ray_at(static_cast<std::size_t>(channel), 0, raster.x, raster.y, ray);
+      light = static_cast<double>(ray[weight]);
+    }
     const double scale = light * static_cast<double>(found.size()) / sum;
     for (LayerRay& ray : found) {
       if (ray.weight == 0) ray.position = mean.position / sum, ray.slope = mean.slope / sum;
@@ -82,6 +96,28 @@ class RaysOfCamera {
   }
 
  private:
+  /// A table of one ray per node whose weight is the light of the film point.
+  ///
+  /// The pupil of the samples is slightly larger than the part that transmits rays. The transmitted fraction needs more
+  /// samples than a blur, most of them near the edge of the pupil, and changes slowly over the film.
+  RayTable light_table(const LensRaysOptions& options) const {
+    std::vector<PupilPoint> points = vogel_points(light_points);
+    std::vector<double> factors;
+    for (PupilPoint& p : points) {
+      const double inwards = 1 - p.v;
+      factors.push_back(3 * inwards * inwards), p.v = 1 - inwards * inwards * inwards;
+    }
+    const auto source = [&](int channel, const Vec2<double>& raster, std::span<const PupilPoint>,
+                            std::span<LayerRay> found) {
+      const Bundle bundle(camera_, camera_.film().point(raster.x, raster.y), points,
+                          wavelengths_[static_cast<std::size_t>(channel)]);
+      found[0] = {raster, {0, 0}, bundle.mean_weight(factors)};
+    };
+    const int step = std::max(1, std::max(layers_.columns, layers_.rows) / light_cells);
+    return ray_table({0, 0, layers_.columns, layers_.rows}, std::span(points).first(1), wavelengths_.size(), source,
+                     step, options.threads, options.stop);
+  }
+
   LayerRay line(const Ray<double>& ray, double weight) const noexcept {
     const Vec3<double>&o = ray.origin, &d = ray.direction;
     const double run_x = d.x / -d.z, run_y = d.y / -d.z, dz = origin_z_ - o.z;  // the scene lies towards -z
@@ -121,8 +157,7 @@ class RaysOfCamera {
   LayerCamera layers_;
   double origin_z_;
   std::vector<Wavelength> wavelengths_;
-  bool clips_;  ///< the model clips rays at apertures
-  std::vector<PupilPoint> light_points_;
+  RayTable light_;  ///< empty unless the model clips rays at apertures
 };
 
 }  // namespace
@@ -139,8 +174,8 @@ LensRays LensRays::of(const Camera& camera, const LayerCamera& layers, std::span
   }
   const Wavelength primary{};
   if (wavelengths.empty()) wavelengths = {&primary, 1};
-  return LensRays(layers, points, static_cast<int>(wavelengths.size()), RaysOfCamera(camera, layers, wavelengths),
-                  options);
+  return LensRays(layers, points, static_cast<int>(wavelengths.size()),
+                  RaysOfCamera(camera, layers, wavelengths, options), options);
 }
 
 }  // namespace petzval

@@ -143,23 +143,27 @@ LensRays::LensRays(const LayerCamera& camera, std::span<const PupilPoint> points
   const double nearest = 1 / d->options.nearest_mm;
 
   const auto count = static_cast<std::size_t>(channels);
-  const auto table = [&](int step) {
-    return ray_table({0, 0, d->camera.columns, d->camera.rows}, points, count, d->source, step, options.threads,
+  const auto table = [&](int step, std::span<const PupilPoint> of) {
+    return ray_table({0, 0, d->camera.columns, d->camera.rows}, of, count, d->source, step, options.threads,
                      options.stop);
   };
+  // A few points suffice to find the step.
+  const std::vector<PupilPoint> few = vogel_points(16);
+  const std::span<const PupilPoint> tried = points.size() > few.size() ? few : points;
   // With a step above the side of the picture, no node would lie inside the picture for an error estimate. Pixels of
   // small pictures are large on the film, so that their steps are small.
   const auto power_of_two = [](int length) { return static_cast<int>(std::bit_floor(static_cast<unsigned>(length))); };
   const int last_step = std::clamp(power_of_two(std::max(camera.columns, camera.rows)) / 16, 2, narrowest_step);
   const int first_step = std::clamp(power_of_two(std::min(camera.columns, camera.rows)), last_step, widest_step);
-  d->table = table(first_step);
+  d->table = table(first_step, tried);
   for (int step = first_step / 2;; step /= 2) {
-    RayTable fine = table(step);
+    RayTable fine = table(step, tried);
     const TableError error = error_of(d->table, fine, nearest);
     d->interpolation_error_px = error.px;
     if (error.within_limits() || d->table.step == last_step) break;
     d->table = std::move(fine);
   }
+  if (tried.size() != points.size()) d->table = table(d->table.step, points);
 
   const Spread spread = spread_of(d->table, nearest);
   d->largest_slope = spread.steepest;

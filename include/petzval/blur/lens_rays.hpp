@@ -102,9 +102,9 @@ struct LensRaysOptions {
 ///
 ///     const LensRays rays = LensRays::of(camera, layer_camera(camera), vogel_points(100));
 ///
-/// Accuracy: halfway between nodes 0.1 px RMS at the depth of sharpest focus, and 0.6 % of the light.
-/// interpolation_error_px() returns the error that remains at the smallest node distance. At other depths larger errors
-/// may occur within the blur.
+/// Accuracy: halfway between nodes 0.1 px RMS at the depth of sharpest focus, estimated with up to 16 rays, and 0.6 %
+/// of the light. interpolation_error_px() returns the error that remains at the smallest node distance. At other depths
+/// larger errors may occur within the blur.
 ///
 /// Limitations: images of a few pixels are too dark.
 ///
@@ -150,6 +150,10 @@ class PETZVAL_API LensRays {
   /// @param wavelengths  one wavelength, or the wavelengths of red, green and blue; empty: the primary wavelength
   /// @param options      nearest depth, sets and threads
   /// @throws Error       as the constructor; also if the film travels or its pixels differ from the layer camera
+  ///
+  /// Accuracy: for exact models the light is measured at 49 positions along the longer side and interpolated. At 800 x
+  /// 600 it is within 0.5 % of the brightest pixel of 8192 samples per pixel for 55 lenses of data/, and 2 % for the
+  /// phone and anamorphic lenses, whose light ends steeply (ball lens: 20 %).
   static LensRays of(const Camera& camera, const LayerCamera& layers, std::span<const PupilPoint> points,
                      std::span<const Wavelength> wavelengths = {}, const LensRaysOptions& options = {});
 
