@@ -222,6 +222,17 @@ void LayerInput::read_picture() {
   }
 }
 
+float LayerInput::depth_mm(int column, int row) const {
+  const auto pixel =
+      static_cast<std::size_t>(row) * static_cast<std::size_t>(columns_) + static_cast<std::size_t>(column);
+  float nearest = 0;
+  for (std::size_t i = lists_.offsets[pixel]; i < lists_.offsets[pixel + 1]; ++i) {
+    const float depth = lists_.fragments[i].depth_mm;
+    if (depth > 0 && (nearest == 0 || depth < nearest)) nearest = depth;
+  }
+  return nearest;
+}
+
 double LayerInput::nearest_mm(const petzval::LayerCamera& camera, int threads) {
   if (scene_) return scene_->nearest_mm(camera, threads);
   if (!std::exchange(depths_are_axial_, true)) petzval::axial_depths(camera, lists_);

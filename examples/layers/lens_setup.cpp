@@ -62,19 +62,6 @@ petzval::Prescription singlet_of(const std::string& text, const petzval::GlassCa
   return p;
 }
 
-/// A singlet so thin that its first-order model is a thin lens of BK7.
-petzval::Prescription thin_singlet(double focal_length, double diameter) {
-  const double radius = 2 * 0.5168 * focal_length;
-  petzval::Prescription p;
-  p.id = "thin", p.name = "thin lens of " + number(focal_length) + " mm";
-  p.surfaces = {{.radius = radius,
-                 .medium = {.glass = "N-BK7", .nd = 1.5168},
-                 .semi_diameter = std::min(diameter / 2, 0.9 * radius),
-                 .stop = true},
-                {.radius = -radius, .thickness = focal_length}};
-  return p;
-}
-
 }  // namespace
 
 void add_lens(examples::App& app, LensFlags& flags) {
@@ -126,147 +113,96 @@ void add_lens(examples::App& app, LensFlags& flags) {
   add_expressive(app, flags.expressive);
 }
 
-BlurLens::BlurLens(const LensFlags& flags, int columns, int rows, const renderer::Pose& pose, bool keyed)
-    : flags_(flags), columns_(columns), rows_(rows), pose_(pose), keyed_(keyed), controls_(controls_of(flags.bokeh)) {
+namespace {
+
+/// The lens of the flags, focused, without a focal surface.
+LensView view_of(const LensFlags& flags, int columns, int rows) {
   const int kinds = (flags.thin_lens_mm > 0) + !flags.lens_file.file.empty() + !flags.singlet.empty();
   if (kinds != 1) {
     throw Error("lens: " + std::to_string(kinds) + " of --thin-lens, LENS and --singlet are given; must be 1");
   }
-  thin_ = flags.thin_lens_mm > 0;
-  if (thin_ && !(flags.iris.f_number > 0)) throw Error("--thin-lens needs --f-number");
-  if (flags.rays == 0) {
-    flags_.rays = thin_ ? 256 : 512;
-    flags_.jitter = flags_.jitter || !thin_;
-  }
-  load();
-  const petzval::Camera plain = camera({}, flags.supersample);
-  film_ = plain.film();
-  shown_ = camera({}, 1).film();
-  if (!thin_) examples::say_what_does_not_fit(*lens_, film_);
-  layers_ = thin_ ? petzval::layer_camera(columns, rows, petzval::radians(fov_deg())) : petzval::layer_camera(plain);
-  if (keyed_ && !flags.surface.points_file.empty()) points_ = examples::read_focus_points(flags.surface.points_file);
-  surface_ = surface_at(0);
-}
-
-double BlurLens::fov_deg() const { return flags_.fov_deg > 0 ? flags_.fov_deg : 30; }
-
-void BlurLens::load() {
+  const bool thin = flags.thin_lens_mm > 0;
+  if (thin && !(flags.iris.f_number > 0)) throw Error("--thin-lens needs --f-number");
   // The focus is set at the d line, even if the colours have their own wavelengths.
   std::vector<double> wavelengths{petzval::d_line_nm};
-  if (flags_.coloured()) std::ranges::copy(petzval::rgb_triple_nm, std::back_inserter(wavelengths));
-  examples::IrisSetup iris = flags_.iris;
+  if (flags.coloured()) std::ranges::copy(petzval::rgb_triple_nm, std::back_inserter(wavelengths));
+  examples::IrisSetup iris = flags.iris;
   petzval::Lens lens = [&] {
-    if (!flags_.lens_file.file.empty()) return examples::load_lens(flags_.lens_file, wavelengths).lens;
+    if (!flags.lens_file.file.empty()) return examples::load_lens(flags.lens_file, wavelengths).lens;
     const petzval::GlassCatalogue& glasses = petzval::glass_tables();
-    if (!thin_ && iris.f_number == 0) iris.f_number = 2;
+    if (!thin && iris.f_number == 0) iris.f_number = 2;
     return petzval::compile(
-        thin_ ? thin_singlet(flags_.thin_lens_mm, flags_.diameter_mm()) : singlet_of(flags_.singlet, glasses),
+        thin ? petzval::thin_elements(flags.thin_lens_mm, flags.iris.f_number) : singlet_of(flags.singlet, glasses),
         wavelengths, {.glasses = &glasses});
   }();
-  if (thin_) iris.f_number = 0;  // the lens has this f-number
+  if (thin) iris.f_number = 0;  // the lens has this f-number
   lens = examples::stopped_down(lens, iris);
-  if (thin_ && !(flags_.focus_mm > flags_.thin_lens_mm)) {
-    throw Error("--focus = " + number(flags_.focus_mm) + "; must be more than the focal length, " +
-                number(flags_.thin_lens_mm) + ": nearer subjects have no real image");
+  if (thin && !(flags.focus_mm > flags.thin_lens_mm)) {
+    throw Error("--focus = " + number(flags.focus_mm) + "; must be more than the focal length, " +
+                number(flags.thin_lens_mm) + ": nearer subjects have no real image");
   }
-  petzval::FocusOptions focus = flags_.focus.options();
-  if (thin_) focus.criterion = petzval::FocusCriterion::paraxial;  // a thin lens has no other focus
-  lens_ = examples::for_flag("--focus", [&] { return petzval::with_focus(lens, flags_.focus_mm, focus); });
+  petzval::FocusOptions focus = flags.focus.options();
+  if (thin) focus.criterion = petzval::FocusCriterion::paraxial;  // a thin lens has no other focus
+  lens = examples::for_flag("--focus", [&] { return petzval::with_focus(lens, flags.focus_mm, focus); });
+  LensView view{.lens = lens,
+                .thin_diameter_mm = thin ? flags.thin_lens_mm / flags.iris.f_number : 0,
+                .coloured = flags.coloured(),
+                .controls = controls_of(flags.bokeh)};
+  view.vertical_angle_rad = petzval::radians(flags.fov_deg > 0 ? flags.fov_deg : 30);
+  const double height = thin || flags.fov_deg > 0 ? petzval::film_height_for_angle(lens, view.vertical_angle_rad) : 24;
+  view.film = {.width_mm = height * columns / rows,
+               .height_mm = height,
+               .columns = columns,
+               .rows = rows,
+               .z_mm = lens.film_z(),
+               .tilt_rad = petzval::radians(flags.tilt_deg),
+               .swing_rad = petzval::radians(flags.swing_deg)};
   // Depths of layers count from the entrance pupil.
-  focus_depth_mm_ = flags_.focus_mm + petzval::pupils(*lens_).entrance.z - petzval::origin_z(*lens_, focus.origin);
-  name_ = lens_->name();
+  view.focus_depth_mm = flags.focus_mm + petzval::pupils(lens).entrance.z - petzval::origin_z(lens, focus.origin);
+  if (!flags.expressive.change_nothing()) view.expressive = expressive_of(flags.expressive, lens, view.film);
+  return view;
 }
 
-petzval::Camera BlurLens::camera(const std::optional<petzval::FocalSurface>& surface, std::uint32_t supersample) const {
-  const int columns = columns_ / static_cast<int>(flags_.supersample) * static_cast<int>(supersample),
-            rows = rows_ / static_cast<int>(flags_.supersample) * static_cast<int>(supersample);
-  // Film height for the angle of the picture, by the ideal lens.
-  double height = 24;
-  if (thin_ || flags_.fov_deg > 0) {
-    const petzval::ScenePoint seen = petzval::thick_lens(*lens_).scene_of({0, -1, lens_->film_z()});
-    const double origin = petzval::pupils(*lens_).entrance.z;
-    const double per_mm =
-        std::abs(seen.at_infinity ? seen.position.y / seen.position.z : seen.position.y / (origin - seen.position.z));
-    height = 2 * std::tan(petzval::radians(fov_deg()) / 2) / per_mm;
+}  // namespace
+
+BlurLens::BlurLens(const LensFlags& flags, int columns, int rows, const renderer::Pose& pose, bool keyed)
+    : flags_(flags),
+      pose_(pose),
+      keyed_(keyed),
+      view_(view_of(flags, columns, rows)),
+      pattern_{flags.rays, flags.supersample, flags.jitter},
+      layers_(view_.layers(flags.supersample)) {
+  if (flags.rays == 0) {
+    pattern_.rays = view_.thin() ? 256 : 512;
+    pattern_.jitter = flags.jitter || !view_.thin();
   }
-  const petzval::Film film{.width_mm = height * columns / rows,
-                           .height_mm = height,
-                           .columns = columns,
-                           .rows = rows,
-                           .tilt_rad = petzval::radians(flags_.tilt_deg),
-                           .swing_rad = petzval::radians(flags_.swing_deg)};
-  const bool first_order = surface || !flags_.expressive.change_nothing();
-  const petzval::ModelKind model = thin_         ? petzval::ModelKind::thin
-                                   : first_order ? petzval::ModelKind::thick
-                                                 : petzval::ModelKind::exact_float;
-  petzval::CameraOptions options{.model = model,
-                                 .normalisation = petzval::Normalisation::unity_on_axis,
-                                 .bokeh = controls_,
-                                 .focal_surface = surface};
-  if (!flags_.expressive.change_nothing()) options.expressive = expressive_of(flags_.expressive, *lens_, film);
-  return petzval::Camera(*lens_, film, options);
+  if (!view_.thin()) examples::say_what_does_not_fit(view_.lens, view_.film);
+  if (keyed_ && !flags.surface.points_file.empty()) points_ = examples::read_focus_points(flags.surface.points_file);
+  view_.surface = surface_at(0);
 }
 
-std::optional<petzval::FocalSurface> BlurLens::surface_at(double time) {
+std::optional<petzval::FocalSurface> BlurLens::surface_at(double time) const {
   if (flags_.surface.points_file.empty()) return {};
   if (!keyed_) {
-    if (surface_) return surface_;
-    const petzval::Camera plain = camera({}, 1);
+    const petzval::Camera plain = view_.camera(1);
     const renderer::LensCamera in_world(plain, pose_);
     return examples::read_focal_surface(flags_.surface, plain, flags_.focus.distance_origin(), flags_.focus_mm,
                                         [&](const petzval::Vec3<double>& p) { return in_world.to_lens(glm::vec3(p)); })
         .surface;
   }
-  const petzval::IdealLens ideal = petzval::thick_lens(*lens_);
+  const petzval::IdealLens ideal = petzval::thick_lens(view_.lens);
   const std::vector<petzval::FocalPoint> seen =
-      petzval::focal_points(ideal, film_, points_, {.time = time, .film = shown_});
-  if (seen.empty()) return surface_;  // keep the previous surface
+      petzval::focal_points(ideal, view_.film, points_, {.time = time, .film = view_.film});
+  if (seen.empty()) return view_.surface;  // keep the previous surface
   return petzval::FocalSurface(
-      ideal, shown_, seen,
+      ideal, view_.film, seen,
       {.kind = flags_.surface.kind == "shepard" ? petzval::SurfaceKind::shepard : petzval::SurfaceKind::affine,
        .beta = flags_.surface.beta});
 }
 
 petzval::LensRays BlurLens::rays(double nearest_mm, int threads, double time) {
-  if (keyed_) surface_ = surface_at(time);
-  // Each subpixel has its own rays; all subpixels together have the number of rays that --rays gives.
-  const auto parts = static_cast<int>(flags_.supersample * flags_.supersample);
-  const int sets = flags_.jitter ? 16 : parts;
-  const std::vector<petzval::PupilPoint> points =
-      petzval::vogel_sets((static_cast<int>(flags_.rays) + parts - 1) / parts, sets);
-  const petzval::LensRaysOptions options{.nearest_mm = nearest_mm, .set_count = sets, .threads = threads};
-  if (!thin_ || controls_.vignettes() || !flags_.expressive.change_nothing()) {
-    std::vector<petzval::Wavelength> wavelengths;
-    for (std::size_t i = 1; flags_.coloured() && i <= petzval::rgb_triple_nm.size(); ++i) wavelengths.emplace_back(i);
-    return petzval::LensRays::of(camera(surface_, flags_.supersample), layers_, points, wavelengths, options);
-  }
-
-  petzval::ThinLens thin{.radius_mm = flags_.diameter_mm() / 2,
-                         .inverse_focus = 1 / focus_depth_mm_,
-                         .iris = flags_.iris.iris(),
-                         .edge = controls_.edge(),
-                         .map = controls_.weight_map};
-  if (flags_.coloured()) {
-    const double power = 1 / petzval::first_order(*lens_).effective_focal_length;
-    for (int c = 0; c < 3; ++c) {
-      thin.colour_shift[c] =
-          1 / petzval::first_order(*lens_, static_cast<std::size_t>(c + 1)).effective_focal_length - power;
-    }
-  }
-  if (surface_) {
-    thin.focus = [surface = *surface_, film = film_](const petzval::Vec2<double>& raster) {
-      const petzval::FocalSurface::Values at = surface.at(film.point(raster.x, raster.y));
-      return petzval::FocusAt{at.inverse_distance, std::exp2(-at.extent_stops / 2)};
-    };
-  } else if (film_.tilted()) {
-    // The inverse distance in focus of a tilted film is linear over the picture; the picture keeps its frame.
-    const double power = 1 / flags_.thin_lens_mm, image = power - 1 / focus_depth_mm_;
-    thin.focus = [=, normal = film_.normal(), camera = layers_](const petzval::Vec2<double>& raster) {
-      const petzval::Vec2<double> run = (raster - camera.axis) / camera.focal_px;
-      return petzval::FocusAt{power - image * (1 - (normal.x * run.x - normal.y * run.y) / normal.z), 1};
-    };
-  }
-  return petzval::LensRays::thin(layers_, thin, points, options);
+  if (keyed_) view_.surface = surface_at(time);
+  return view_.rays(layers_, pattern_, nearest_mm, threads);
 }
 
 }  // namespace lens_blur

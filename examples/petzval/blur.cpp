@@ -18,6 +18,7 @@
 #include <vector>
 
 #include "layers/layer_input.hpp"
+#include "layers/layer_picture.hpp"
 #include "layers/lens_setup.hpp"
 #include "layers/lit_scene.hpp"
 #include "layers/picture_quality.hpp"
@@ -42,7 +43,8 @@ struct Options {
   lens_blur::LensFlags lens;
   std::uint32_t layers = 4, supersample = 0;
   std::uint32_t frames = 1;
-  double frames_per_second = 24, travel_mm = 0, highlights_above = -1;  ///< highlights_above < 0: threshold_of()
+  double frames_per_second = 24, travel_mm = 0,
+         highlights_above = -1;  ///< highlights_above < 0: lens_blur::threshold_of()
   bool compare = false;
   std::uint32_t compare_rays = 0;  ///< 0: no comparison with more rays
   std::vector<std::string> formats;
@@ -56,25 +58,6 @@ constexpr examples::Range supersamples{1, 4, "1, 2 or 4"};
 
 double ms_since(std::chrono::steady_clock::time_point start) {
   return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
-}
-
-/// The mean over squares of side x side pixels.
-RgbImage averaged(const RgbImage& image, int side) {
-  if (side == 1) return image;
-  RgbImage result(image.width / side, image.height / side);
-  for (int y = 0; y < image.height; ++y) {
-    for (int x = 0; x < image.width; ++x) {
-      for (int c = 0; c < 3; ++c)
-        result.pixel(x / side, y / side)[c] += image.pixel(x, y)[c] / static_cast<float>(side * side);
-    }
-  }
-  return result;
-}
-
-RgbImage colours_of(const petzval::BlurredImage& picture) {
-  RgbImage image(picture.columns, picture.rows);
-  for (std::size_t i = 0; i < picture.missed.size(); ++i) std::copy_n(&picture.rgba[4 * i], 3, &image.pixels[3 * i]);
-  return image;
 }
 
 /// The middle of a picture, at most 320 x 240 pixels.
@@ -94,42 +77,9 @@ RgbImage missed_of(const petzval::BlurredImage& picture) {
   return image;
 }
 
-/// The picture of a pinhole.
-RgbImage sharp_of(const petzval::LayerSet& layers, const petzval::LayerCamera& camera) {
-  RgbImage image(camera.columns, camera.rows);
-  const int overscan = (layers.columns() - camera.columns) / 2;
-  if (layers.count() == 0) return image;
-  for (int y = 0; y < camera.rows; ++y) {
-    for (int x = 0; x < camera.columns; ++x) {
-      const auto pixel = static_cast<std::size_t>((y + overscan) * layers.columns() + x + overscan);
-      for (int c = 0; c < 3; ++c) image.pixel(x, y)[c] = layers.channel(0, c)[pixel];
-    }
-  }
-  return image;
-}
-
 lens_blur::LensFlags with_supersample(lens_blur::LensFlags flags, int side) {
   flags.supersample = static_cast<std::uint32_t>(side);
   return flags;
-}
-
-/// Default of --highlights-above, the radiance above which small lights become uniform discs. A light much brighter
-/// than its surroundings would show the dots of single rays. The threshold is 6 times the mean of the first layer, and
-/// at most 1 (white). It is at most 0.75 for files without values above white, such as PNG, whose white pixels may be
-/// lights.
-double threshold_of(const petzval::LayerSet& layers, bool of_file) {
-  double sum = 0;
-  float brightest = 0;
-  std::size_t count = 0;
-  for (std::size_t i = 0; layers.count() > 0 && i < layers.inverse_depth(0).size(); ++i) {
-    if (layers.inverse_depth(0)[i] < 0) continue;
-    float most = 0;
-    for (int c = 0; c < 3; ++c) most = std::max(most, layers.channel(0, c)[i]);
-    brightest = std::max(brightest, most);
-    sum += static_cast<double>(std::min(most, 1.0f)), ++count;
-  }
-  const double white = of_file && brightest <= 1 ? 0.75 : 1;
-  return count > 0 ? std::max(1e-3, std::min(white, 6 * sum / static_cast<double>(count))) : white;
 }
 
 class Job {
@@ -141,7 +91,7 @@ class Job {
         side_(options.supersample > 0 ? static_cast<int>(options.supersample)
               : input_.scene()        ? 2
                                       : 1),
-        lens_(with_supersample(options.lens, side_), input_.columns() * side_, input_.rows() * side_, input_.pose(),
+        lens_(with_supersample(options.lens, side_), input_.columns(), input_.rows(), input_.pose(),
               options.frames > 1) {
     if (options.frames == 1 && options.travel_mm != 0) {
       throw petzval::Error("--travel: --frames = 1; must be 2 or more");
@@ -198,10 +148,10 @@ class Job {
       throw petzval::Error("layers: all depths are infinite; must have at least one finite depth");
     auto start = std::chrono::steady_clock::now();
     // A smaller depth than the nearest surface: layers extend beyond the picture, where objects may be nearer.
-    const petzval::LensRays rays = lens_.rays(0.8 * nearest, threads_, time);
+    const petzval::LensRays rays = lens_.rays(lens_blur::least_depth(nearest), threads_, time);
     const double rays_ms = ms_since(start);
     rays_error_px_ = std::max(rays_error_px_, rays.interpolation_error_px());
-    const petzval::PeelPlan plan = plan_of(rays, nearest);
+    const petzval::PeelPlan plan = lens_blur::plan_of(input_, rays, nearest);
 
     // A single picture is computed twice and the second run is timed, because the first run also allocates memory.
     double peel_ms = 0, n_buffer_ms = 0, gather_ms = 0, threshold = 0;
@@ -210,16 +160,17 @@ class Job {
       input_.fill(plan, static_cast<int>(options_.layers), threads_, layers_);
       n_buffer_ms = 1e3 * layers_.n_buffer_seconds();
       peel_ms = ms_since(start) - n_buffer_ms;
-      threshold = options_.highlights_above < 0 ? threshold_of(layers_, !input_.scene()) : options_.highlights_above;
+      threshold =
+          options_.highlights_above < 0 ? lens_blur::threshold_of(layers_, !input_.scene()) : options_.highlights_above;
       start = std::chrono::steady_clock::now();
       petzval::gather(layers_, rays, {.threads = threads_, .highlights_above = threshold}, blurred_);
       gather_ms = ms_since(start);
     }
-    const RgbImage picture = averaged(colours_of(blurred_), side_);
+    const RgbImage picture = lens_blur::averaged(lens_blur::colours_of(blurred_), side_);
     write(picture, folder / ("blur" + number));
     if (frame == 0) {
-      write(averaged(sharp_of(layers_, rays.camera()), side_), folder / "sharp");
-      write(averaged(missed_of(blurred_), side_), folder / "missed");
+      write(lens_blur::averaged(lens_blur::sharp_of(layers_, rays.camera()), side_), folder / "sharp");
+      write(lens_blur::averaged(missed_of(blurred_), side_), folder / "missed");
     }
 
     const petzval::GatherStatistics& statistics = blurred_.statistics;
@@ -255,12 +206,6 @@ class Job {
   /// Size of the layers: five numbers per pixel and layer.
   double layers_mb() const { return 5e-6 * sizeof(float) * layers_.count() * layers_.columns() * layers_.rows(); }
 
-  petzval::PeelPlan plan_of(const petzval::LensRays& rays, double nearest) const {
-    petzval::PeelPlan plan = petzval::plan_peel(rays, 0.8 * nearest, std::numeric_limits<double>::infinity());
-    if (!input_.scene()) plan.camera.overscan = 0;
-    return plan;
-  }
-
   /// Writes frames.png: up to 8 frames at equal steps of time.
   void write_frames(const std::filesystem::path& folder) {
     examples::Sheet sheet{.title = lens_.name(), .rows = {}, .notes = {}};
@@ -286,15 +231,15 @@ class Job {
     double ms = 0;
     const auto picture = [&](std::uint32_t count) {
       lens_.set_rays(count);
-      const petzval::LensRays rays = lens_.rays(0.8 * nearest, threads_);
+      const petzval::LensRays rays = lens_.rays(lens_blur::least_depth(nearest), threads_);
       if (!std::exchange(filled, true)) {
-        input_.fill(plan_of(rays, nearest), static_cast<int>(options_.layers), threads_, layers_);
+        input_.fill(lens_blur::plan_of(input_, rays, nearest), static_cast<int>(options_.layers), threads_, layers_);
       }
       const auto start = std::chrono::steady_clock::now();
       petzval::gather(layers_, rays,
                       {.threads = threads_, .highlights_above = result_["highlights_above"].get<double>()}, blurred_);
       ms = ms_since(start);
-      return averaged(colours_of(blurred_), side_);
+      return lens_blur::averaged(lens_blur::colours_of(blurred_), side_);
     };
     const RgbImage most = picture(options_.compare_rays);
     result_["compare_rays"] = options_.compare_rays, result_["compare_rays_ms"] = ms;
@@ -333,7 +278,7 @@ class Job {
 
   void compare(const petzval::LensRays& rays, const RgbImage& picture, Json& json) {
     const auto start = std::chrono::steady_clock::now();
-    const RgbImage reference = averaged(input_.scene()->reference(rays, threads_), side_);
+    const RgbImage reference = lens_blur::averaged(input_.scene()->reference(rays, threads_), side_);
     json["reference_ms"] = ms_since(start);
     // Both trace the same number of rays.
     const auto ns_per_ray = [&](double ms) { return 1e6 * ms / static_cast<double>(blurred_.statistics.rays); };

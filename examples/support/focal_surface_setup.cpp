@@ -23,15 +23,14 @@ constexpr std::array kinds{petzval::SurfaceKind::affine, petzval::SurfaceKind::s
 constexpr Range weight_range{0, std::numeric_limits<double>::max(), "a finite number, 0 or more"};
 constexpr Range fraction_range{0, 1, "a number from 0 to 1"};
 
-std::vector<petzval::FocalPoint> read_points(const std::filesystem::path& file, const petzval::Camera& camera,
-                                             petzval::DistanceOrigin origin, const WorldToLens& to_lens) {
-  const Json list = examples::points_of(file.string(), read_json(file));
-  if (list.empty()) refuse(file.string() + ": points", list, "a list of one point or more");
+std::vector<petzval::FocalPoint> points_of(const Json& list, const std::string& file, const petzval::Camera& camera,
+                                           petzval::DistanceOrigin origin, const WorldToLens& to_lens) {
+  if (list.empty()) refuse(file + ": points", list, "a list of one point or more");
   const double entrance_z = petzval::pupils(camera.lens()).entrance.z,
                counted_from = petzval::origin_z(camera.lens(), origin);
   std::vector<petzval::FocalPoint> result;
   for (const Json& json : list) {
-    const JsonEntry entry{file.string() + ": point " + std::to_string(result.size() + 1), json};
+    const JsonEntry entry{file + ": point " + std::to_string(result.size() + 1), json};
     entry.keys({"pixel", "world_mm", "position_mm", "distance_mm", "extent_stops", "blur_px", "weight", "fade"},
                "pixel, world_mm or position_mm, distance_mm, extent_stops, blur_px, weight and fade");
     const auto pixel = entry.numbers<2>("pixel", "two finite numbers, [x, y]");
@@ -97,7 +96,13 @@ void add_surface_kind(App& app, FocalSurfaceSetup& setup, Option* points) {
 
 ReadSurface read_focal_surface(const FocalSurfaceSetup& setup, const petzval::Camera& camera,
                                petzval::DistanceOrigin origin, double focus_mm, const WorldToLens& to_lens) {
-  std::vector<petzval::FocalPoint> points = read_points(setup.points_file, camera, origin, to_lens);
+  const Json list = examples::points_of(setup.points_file, read_json(setup.points_file));
+  return focal_surface_through(list, setup, camera, origin, focus_mm, to_lens);
+}
+
+ReadSurface focal_surface_through(const Json& list, const FocalSurfaceSetup& setup, const petzval::Camera& camera,
+                                  petzval::DistanceOrigin origin, double focus_mm, const WorldToLens& to_lens) {
+  std::vector<petzval::FocalPoint> points = points_of(list, setup.points_file, camera, origin, to_lens);
   try {
     petzval::FocalSurface surface(
         petzval::thick_lens(camera.lens()), camera.film(), points,

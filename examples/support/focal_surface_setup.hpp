@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "cli.hpp"
+#include "files.hpp"
 #include "petzval/camera/camera.hpp"
 #include "petzval/camera/focal_surface.hpp"
 #include "petzval/focus/focus.hpp"
@@ -41,5 +42,8 @@ struct ReadSurface {
 /// @throws petzval::Error that names the file, the point (from 1) and the key
 ReadSurface read_focal_surface(const FocalSurfaceSetup& setup, const petzval::Camera& camera,
                                petzval::DistanceOrigin origin, double focus_mm, const WorldToLens& to_lens);
+/// The same for the list of points of a file that is not read again; setup.points_file names it in messages.
+ReadSurface focal_surface_through(const Json& list, const FocalSurfaceSetup& setup, const petzval::Camera& camera,
+                                  petzval::DistanceOrigin origin, double focus_mm, const WorldToLens& to_lens);
 
 }  // namespace examples

@@ -11,6 +11,7 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <limits>
+#include <numbers>
 
 #include "core/meet_plane.hpp"
 #include "core/text.hpp"
@@ -126,6 +127,25 @@ IdealLens thin_lens(const IdealLens& lens) {
   return thin;
 }
 
+Prescription thin_elements(double focal_length, double f_number) {
+  if (!(focal_length > 0 && std::isfinite(focal_length) && f_number > 0 && std::isfinite(f_number))) {
+    throw Error("thin elements: focal_length, f_number = " + to_text(focal_length) + ", " + to_text(f_number) +
+                "; must be positive and finite");
+  }
+  constexpr double index = 1.5168;  // N-BK7 at the d line
+  const double radius = 4 * (index - 1) * focal_length;
+  Prescription p;
+  p.id = "thin", p.name = "thin lens of " + to_text(focal_length) + " mm";
+  const SurfaceRow front{.radius = radius,
+                         .medium = {.glass = "N-BK7", .nd = index},
+                         .semi_diameter = std::min(focal_length / f_number / 2, 0.9 * radius)};
+  const SurfaceRow rear{.radius = -radius};
+  p.surfaces = {front, rear, front, rear};
+  p.surfaces.front().stop = true;
+  p.surfaces.back().thickness = focal_length;
+  return p;
+}
+
 IdealLens thin_lens(const Lens& lens, Wavelength wavelength) { return thin_lens(thick_lens(lens, wavelength)); }
 
 IdealLens thick_lens(const Lens& lens, Wavelength wavelength) {
@@ -138,6 +158,16 @@ IdealLens thick_lens(const Lens& lens, Wavelength wavelength) {
   IdealLens result = paraxial_detail::focal_points(lens, data);
   result.pupils = pupils(lens, wavelength, meridian);
   return result;
+}
+
+double film_height_for_angle(const Lens& lens, double vertical_angle_rad) {
+  if (!(vertical_angle_rad > 0 && vertical_angle_rad < std::numbers::pi)) {
+    throw Error("vertical_angle_rad = " + to_text(vertical_angle_rad) + "; must be more than 0 and less than pi");
+  }
+  const IdealLens ideal = thick_lens(lens);
+  const ScenePoint seen = ideal.scene_of({0, -1, lens.film_z()});
+  const double depth = seen.at_infinity ? seen.position.z : ideal.pupils.entrance.z - seen.position.z;
+  return 2 * std::tan(vertical_angle_rad / 2) / std::abs(seen.position.y / depth);
 }
 
 double signed_blur(const ImagePoint& image, const Film& film) {

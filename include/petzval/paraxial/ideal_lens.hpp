@@ -81,6 +81,13 @@ struct PETZVAL_API IdealLens {
 /// @param z             position on the axis (lens frame, mm)
 /// @throws Error unless `focal_length` is finite and not 0, `f_number` is positive and `z` is finite
 PETZVAL_API IdealLens thin_lens(double focal_length, double f_number, double z = 0);
+/// Two elements of N-BK7 without thickness, whose first-order model is a thin lens in air, for functions that need a
+/// Lens: compiled, they have the focal length at the d line and the stop on the first surface.
+///
+/// The semi-diameter of the stop is limited to 1.86 focal lengths (f/0.27), where the surfaces end.
+///
+/// @throws Error unless `focal_length` and `f_number` are positive and finite
+PETZVAL_API Prescription thin_elements(double focal_length, double f_number);
 /// The thin equivalent of a lens, as used by FocusCriterion::thin.
 ///
 /// It has the focal lengths and the rear focal point of `lens`, and lies at its rear principal plane, with a pupil as
@@ -94,6 +101,13 @@ PETZVAL_API IdealLens thin_lens(const Lens& lens, Wavelength wavelength = {});
 ///
 /// @throws Error if the lens is afocal, if light leaves the lens along -z, or if pupils() throws
 PETZVAL_API IdealLens thick_lens(const Lens& lens, Wavelength wavelength = {});
+
+/// The height of an upright film, at the film position of a lens, that shows a vertical angle (mm).
+///
+/// @param lens                the lens, focused
+/// @param vertical_angle_rad  angle between the chief rays of the upper and the lower edge, at the entrance pupil
+/// @throws Error unless the angle is in (0, pi); if thick_lens() throws
+PETZVAL_API double film_height_for_angle(const Lens& lens, double vertical_angle_rad);
 
 /// Signed blur diameter of an image point on a film (mm).
 ///

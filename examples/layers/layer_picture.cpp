@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "layers/layer_picture.hpp"
+
+#include <algorithm>
+#include <cstddef>
+#include <limits>
+
+namespace lens_blur {
+
+using petzval::RgbImage;
+
+petzval::PeelPlan plan_of(const LayerInput& input, const petzval::LensRays& rays, double nearest_mm) {
+  petzval::PeelPlan plan = petzval::plan_peel(rays, least_depth(nearest_mm), std::numeric_limits<double>::infinity());
+  if (!input.scene()) plan.camera.overscan = 0;
+  return plan;
+}
+
+double threshold_of(const petzval::LayerSet& layers, bool of_file) {
+  double sum = 0;
+  float brightest = 0;
+  std::size_t count = 0;
+  for (std::size_t i = 0; layers.count() > 0 && i < layers.inverse_depth(0).size(); ++i) {
+    if (layers.inverse_depth(0)[i] < 0) continue;
+    float most = 0;
+    for (int c = 0; c < 3; ++c) most = std::max(most, layers.channel(0, c)[i]);
+    brightest = std::max(brightest, most);
+    sum += static_cast<double>(std::min(most, 1.0f)), ++count;
+  }
+  const double white = of_file && brightest <= 1 ? 0.75 : 1;
+  return count > 0 ? std::max(1e-3, std::min(white, 6 * sum / static_cast<double>(count))) : white;
+}
+
+RgbImage colours_of(const petzval::BlurredImage& picture) {
+  RgbImage image(picture.columns, picture.rows);
+  for (std::size_t i = 0; i < picture.missed.size(); ++i) std::copy_n(&picture.rgba[4 * i], 3, &image.pixels[3 * i]);
+  return image;
+}
+
+RgbImage averaged(const RgbImage& image, int side) {
+  if (side == 1) return image;
+  RgbImage result(image.width / side, image.height / side);
+  for (int y = 0; y < image.height; ++y) {
+    for (int x = 0; x < image.width; ++x) {
+      for (int c = 0; c < 3; ++c)
+        result.pixel(x / side, y / side)[c] += image.pixel(x, y)[c] / static_cast<float>(side * side);
+    }
+  }
+  return result;
+}
+
+RgbImage sharp_of(const petzval::LayerSet& layers, const petzval::LayerCamera& camera) {
+  RgbImage image(camera.columns, camera.rows);
+  const int overscan = (layers.columns() - camera.columns) / 2;
+  if (layers.count() == 0) return image;
+  for (int y = 0; y < camera.rows; ++y) {
+    for (int x = 0; x < camera.columns; ++x) {
+      const auto pixel = static_cast<std::size_t>((y + overscan) * layers.columns() + x + overscan);
+      for (int c = 0; c < 3; ++c) image.pixel(x, y)[c] = layers.channel(0, c)[pixel];
+    }
+  }
+  return image;
+}
+
+}  // namespace lens_blur

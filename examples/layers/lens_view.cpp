@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "layers/lens_view.hpp"
+
+#include <cmath>
+#include <vector>
+
+#include "petzval/analysis/colour.hpp"
+#include "petzval/paraxial/first_order.hpp"
+#include "petzval/paraxial/ideal_lens.hpp"
+
+namespace lens_blur {
+
+petzval::Camera LensView::camera(std::uint32_t supersample) const {
+  const bool first_order = surface || !expressive.empty() || first_order_only;
+  petzval::Film fine = film;
+  fine.columns *= static_cast<int>(supersample), fine.rows *= static_cast<int>(supersample);
+  return petzval::Camera(lens, fine,
+                         {.model = thin()        ? petzval::ModelKind::thin
+                                   : first_order ? petzval::ModelKind::thick
+                                                 : petzval::ModelKind::exact_float,
+                          .normalisation = petzval::Normalisation::unity_on_axis,
+                          .bokeh = controls,
+                          .focal_surface = surface,
+                          .expressive = expressive});
+}
+
+petzval::LayerCamera LensView::layers(std::uint32_t supersample) const {
+  if (!thin()) return petzval::layer_camera(camera(supersample));
+  return petzval::layer_camera(film.columns * static_cast<int>(supersample), film.rows * static_cast<int>(supersample),
+                               vertical_angle_rad);
+}
+
+petzval::LensRays LensView::rays(const petzval::LayerCamera& layers, const RayPattern& pattern, double nearest_mm,
+                                 int threads) const {
+  // Each subpixel has its own rays; all subpixels together have the number of rays of a pixel.
+  const auto parts = static_cast<int>(pattern.supersample * pattern.supersample);
+  const int sets = pattern.jitter ? 16 : parts;
+  const std::vector<petzval::PupilPoint> points =
+      petzval::vogel_sets((static_cast<int>(pattern.rays) + parts - 1) / parts, sets);
+  const petzval::LensRaysOptions options{.nearest_mm = nearest_mm, .set_count = sets, .threads = threads};
+  if (!thin() || controls.vignettes() || !expressive.empty()) {
+    std::vector<petzval::Wavelength> wavelengths;
+    for (std::size_t i = 1; coloured && i <= petzval::rgb_triple_nm.size(); ++i) wavelengths.emplace_back(i);
+    return petzval::LensRays::of(camera(pattern.supersample), layers, points, wavelengths, options);
+  }
+
+  petzval::ThinLens thin_lens{.radius_mm = thin_diameter_mm / 2,
+                              .inverse_focus = 1 / focus_depth_mm,
+                              .iris = lens.iris(),
+                              .edge = controls.edge(),
+                              .map = controls.weight_map};
+  const double power = 1 / petzval::first_order(lens).effective_focal_length;
+  for (int c = 0; coloured && c < 3; ++c) {
+    thin_lens.colour_shift[c] =
+        1 / petzval::first_order(lens, static_cast<std::size_t>(c + 1)).effective_focal_length - power;
+  }
+  if (surface) {
+    petzval::Film fine = film;
+    fine.columns = layers.columns, fine.rows = layers.rows;
+    thin_lens.focus = [surface = *surface, fine](const petzval::Vec2<double>& raster) {
+      const petzval::FocalSurface::Values at = surface.at(fine.point(raster.x, raster.y));
+      return petzval::FocusAt{at.inverse_distance, std::exp2(-at.extent_stops / 2)};
+    };
+  } else if (film.tilted()) {
+    // The inverse distance in focus of a tilted film is linear over the picture; the picture keeps its frame.
+    const double image = power - 1 / focus_depth_mm;
+    thin_lens.focus = [=, normal = film.normal()](const petzval::Vec2<double>& raster) {
+      const petzval::Vec2<double> run = (raster - layers.axis) / layers.focal_px;
+      return petzval::FocusAt{power - image * (1 - (normal.x * run.x - normal.y * run.y) / normal.z), 1};
+    };
+  }
+  return petzval::LensRays::thin(layers, thin_lens, points, options);
+}
+
+}  // namespace lens_blur

@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <optional>
+
+#include "petzval/blur/layers.hpp"
+#include "petzval/blur/lens_rays.hpp"
+#include "petzval/camera/camera.hpp"
+#include "petzval/camera/expressive_lens.hpp"
+#include "petzval/camera/focal_surface.hpp"
+#include "petzval/core/film.hpp"
+#include "petzval/lens/lens.hpp"
+
+namespace lens_blur {
+
+/// Number and arrangement of the rays of a pixel.
+struct RayPattern {
+  std::uint32_t rays = 256;       ///< per pixel of the picture
+  std::uint32_t supersample = 1;  ///< 1, 2 or 4 subpixels in each direction, which share the rays
+  bool jitter = false;            ///< 16 sets of rays, alternating over the pixels
+};
+
+/// A lens in front of layers: the rays of `petzval blur` and `petzval view`.
+struct LensView {
+  petzval::Lens lens;  ///< focused; for a thin lens thin_elements(). Colours: red, green, blue after the primary
+  double thin_diameter_mm = 0;    ///< of a thin lens; 0: a real lens
+  petzval::Film film = {};        ///< with its size and the pixels of the picture
+  double vertical_angle_rad = 0;  ///< of the picture, for a thin lens
+  double focus_depth_mm = 0;      ///< distance in focus on the axis from the entrance pupil
+  bool coloured = false;          ///< rays of their own for red, green and blue
+  petzval::BokehControls controls = {};
+  std::optional<petzval::FocalSurface> surface = {};
+  petzval::ExpressiveLens expressive = {};
+  bool first_order_only = false;  ///< a preview of a real lens
+
+  bool thin() const noexcept { return thin_diameter_mm > 0; }
+  /// The camera with film pixels of a part of the picture's pixels.
+  petzval::Camera camera(std::uint32_t supersample) const;
+  /// The camera of the layers, without overscan.
+  petzval::LayerCamera layers(std::uint32_t supersample) const;
+  /// The rays of the lens through the layers. nearest_mm: depth of the nearest surface.
+  petzval::LensRays rays(const petzval::LayerCamera& layers, const RayPattern& pattern, double nearest_mm,
+                         int threads) const;
+};
+
+}  // namespace lens_blur
