@@ -20,8 +20,9 @@ set(layer_6 focus polynomial)
 set(layer_7 camera)
 set(layer_8 io)
 set(layer_9 analysis blur fit)
-set(layer_10 figure formats image)   # the edge
-set(edge 10)
+set(layer_10 editor)
+set(layer_11 figure formats image)   # the edge
+set(edge 11)
 foreach(layer RANGE ${edge})
   foreach(module IN LISTS layer_${layer})
     set(layer_of_${module} ${layer})

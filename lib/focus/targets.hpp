@@ -26,7 +26,7 @@ void check_points(std::span<const FocusPoint> points, const FocusTime& moment);
 /// on the film of the moment.
 std::optional<FocusTarget> target_at(const IdealLens& lens, const FocusPoint& point, const FocusTime& moment);
 /// Applies FocusTime::nearer_weighs_more.
-void weigh_nearer_more(const IdealLens& lens, std::span<FocusTarget> targets);
+PETZVAL_API void weigh_nearer_more(const IdealLens& lens, std::span<FocusTarget> targets);
 
 /// Largest distance of a film from the rear focal point, in focal lengths. The image of a point in the front focal
 /// plane, or far off the axis, is farther away.

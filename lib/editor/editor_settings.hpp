@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <limits>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "petzval/camera/bokeh.hpp"
+#include "petzval/camera/expressive_lens.hpp"
+#include "petzval/camera/focal_surface.hpp"
+#include "petzval/core/geometry.hpp"
+#include "petzval/editor/focus_editor.hpp"
+#include "petzval/focus/focus.hpp"
+#include "petzval/focus/focus_point.hpp"
+#include "petzval/iris/iris.hpp"
+#include "petzval/lens/lens.hpp"
+
+namespace petzval::editor_detail {
+
+/// Values of a focus point at one time. Positions are in the scene frame.
+struct PointValues {
+  std::optional<FocusPlace> place;  ///< nullopt: the pixel had no depth
+  double blur_px = 0, weight = 1;
+  std::optional<double> extent_stops;
+};
+
+/// Keys of a value, sorted by time (s).
+template <class T>
+using Keys = std::vector<std::pair<double, T>>;
+
+struct EditorPoint {
+  std::string id;
+  bool id_is_number = false;
+  PointValues now;
+  Keys<PointValues> keys;
+  bool by_hand = false;  ///< `now` replaces the keys until the time changes
+  FadeFilter fade{0.2};
+};
+
+/// Everything that events change. It is a value: undo restores an older one.
+struct EditorSettings {
+  FocusLensChoice choice;
+  std::optional<Lens> wide_open;   ///< compiled from `choice`
+  std::optional<double> f_number;  ///< nullopt: wide open
+  Iris iris;
+  BokehControls bokeh;
+  ExpressiveLens expressive;
+  double from_lens = 0;  ///< part of the lens's own aberrations in the expressive lens
+  FocusServe serve = FocusServe::distance;
+  FocalSurfaceOptions surface;
+  double focus_mm = std::numeric_limits<double>::infinity();  ///< from the front vertex
+  Keys<double> focus_keys;
+  bool focus_by_hand = false;          ///< focus_mm replaces the keys until the time changes
+  std::string active;                  ///< id of the point that serve by distance follows; empty: none
+  double tilt_rad = 0, swing_rad = 0;  ///< by hand, for serve by distance
+  bool nearer_weighs_more = false, points_fade = true;
+  double fade_s = 0.2, time_s = 0;
+  double seconds_to_fade = 0;  ///< time that passed since the last state
+  std::vector<EditorPoint> points;
+  int points_added = 0;
+};
+
+/// Compiles the lens of the settings.
+void load_lens(const FocusScene& scene, EditorSettings& settings);
+
+/// Options of the focus at a distance: thin lenses have no exact rays.
+FocusOptions focus_options(const FocusLensChoice& choice);
+
+/// The lens with its iris and f-number.
+Lens shaped_lens(const EditorSettings& settings);
+
+/// Computes the state. Sets the distance, the fades and the values of keyed points in the settings.
+FocusEditorState state_of(const FocusScene& scene, EditorSettings& settings);
+
+/// Applies an event other than undo and redo.
+///
+/// @param scene     the scene
+/// @param state     the state of the settings, through whose lens pixels see the scene
+/// @param settings  changed by the event
+/// @param event     a JSON object
+/// @throws Error that names the type, the key, the value and the rule; the settings are then invalid
+void apply_event(const FocusScene& scene, const FocusEditorState& state, EditorSettings& settings,
+                 std::string_view event);
+
+/// Maps between the scene frame and the lens frame. entrance_z: z of the entrance pupil.
+Vec3<double> to_lens(const FocusScene& scene, double entrance_z, const Vec3<double>& point) noexcept;
+Vec3<double> to_scene(const FocusScene& scene, double entrance_z, const Vec3<double>& point) noexcept;
+
+}  // namespace petzval::editor_detail

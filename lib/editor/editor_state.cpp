@@ -1,0 +1,424 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <limits>
+#include <span>
+#include <utility>
+
+#include "editor_settings.hpp"
+#include "focus/targets.hpp"
+#include "petzval/core/error.hpp"
+#include "petzval/fit/tilt_fit.hpp"
+#include "petzval/focus/autofocus.hpp"
+#include "petzval/focus/focus.hpp"
+#include "petzval/paraxial/first_order.hpp"
+#include "petzval/paraxial/ideal_lens.hpp"
+#include "petzval/pupil/f_number.hpp"
+
+namespace petzval {
+namespace editor_detail {
+namespace {
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
+/// Points that have faded to less are hidden.
+constexpr double least_fade = 1e-3;
+/// Height of the film without an angle of view, mm.
+constexpr double usual_film_height = 24;
+
+/// A lens at a distance, with the upright film that shows the angle of the scene.
+struct Focused {
+  Lens lens;
+  IdealLens ideal;
+  Film film;
+  double focus_mm;
+  double entrance_z() const noexcept { return ideal.pupils.entrance.z; }
+};
+
+Focused with_scene_film(const FocusScene& scene, Lens lens, double focus_mm) {
+  const double height =
+      scene.vertical_angle_rad > 0 ? film_height_for_angle(lens, scene.vertical_angle_rad) : usual_film_height;
+  const Film film{.width_mm = height * scene.columns / scene.rows,
+                  .height_mm = height,
+                  .columns = scene.columns,
+                  .rows = scene.rows,
+                  .z_mm = lens.film_z()};
+  IdealLens ideal = thick_lens(lens);
+  return {std::move(lens), ideal, film, focus_mm};
+}
+
+/// The lens at a distance; nullopt if the lens cannot be focused there.
+std::optional<Focused> try_focus(const FocusScene& scene, const EditorSettings& settings, const Lens& lens,
+                                 double focus_mm) {
+  if (!(focus_mm > 0)) return {};
+  try {
+    return with_scene_film(scene, with_focus(lens, focus_mm, focus_options(settings.choice)), focus_mm);
+  } catch (const Error&) {
+    return {};  // with_focus() has no status: the lens may have groups that collide
+  }
+}
+
+/// The lens at the distance of the settings, else at infinity, else where its prescription has its film.
+Focused focused_nearby(const FocusScene& scene, const EditorSettings& settings, const Lens& lens) {
+  if (auto focused = try_focus(scene, settings, lens, settings.focus_mm)) return *focused;
+  if (auto focused = try_focus(scene, settings, lens, infinity)) return *focused;
+  const FocusSolution own = solve_subject(lens, lens.film_z(), focus_options(settings.choice));
+  return with_scene_film(scene, lens, own.distance);
+}
+
+/// A point in the scene at a time. A point of a triangle follows its vertices.
+ScenePoint scene_point(const FocusScene& scene, const FocusPlace& place, double time) {
+  if (!place.triangle || !scene.vertex) return place.point;
+  Vec3<double> sum{0, 0, 0};
+  for (std::size_t i = 0; i < 3; ++i) {
+    sum += scene.vertex(place.triangle->vertices[i], time) * place.triangle->barycentric[i];
+  }
+  return {sum};
+}
+
+ScenePoint in_lens(const FocusScene& scene, double entrance_z, const ScenePoint& point) {
+  if (!point.at_infinity) return {to_lens(scene, entrance_z, point.position)};
+  return {to_lens(scene, entrance_z, point.position + scene.position) - Vec3<double>(0, 0, entrance_z), true};
+}
+
+/// A point of the editor as a focus point of the lens frame.
+FocusPoint focus_point(const FocusScene& scene, double entrance_z, const EditorPoint& point, double pixel_mm,
+                       double time) {
+  FocusPoint result;
+  const auto add = [&](double at, const PointValues& values) {
+    if (!values.place) return;
+    result.keys.push_back({at, in_lens(scene, entrance_z, scene_point(scene, *values.place, time)),
+                           values.blur_px * pixel_mm, values.weight, values.extent_stops});
+  };
+  if (point.keys.empty() || point.by_hand) {
+    add(0, point.now);
+  } else {
+    for (const auto& [at, values] : point.keys) add(at, values);
+    // Either all keys have an extent or none: keys without one have no effect on the depth of field.
+    if (std::ranges::any_of(result.keys, [](const FocusKey& key) { return key.extent_stops.has_value(); })) {
+      for (FocusKey& key : result.keys) key.extent_stops = key.extent_stops.value_or(0);
+    }
+  }
+  return result;
+}
+
+/// Sets the values of keyed points to their values at the time.
+void follow_keys(const FocusScene& scene, EditorSettings& settings, const Focused& base) {
+  for (EditorPoint& point : settings.points) {
+    if (point.keys.empty() || point.by_hand) continue;
+    const FocusPoint track = focus_point(scene, base.entrance_z(), point, base.film.pixel_mm(), settings.time_s);
+    if (track.keys.empty()) continue;
+    const auto found = focus_targets(base.ideal, std::span(&track, 1), {.time = settings.time_s});
+    if (found.empty()) continue;  // without an image: the last values stay
+    const FocusTarget& target = found.front();
+    const double blur_px = target.blur_mm / base.film.pixel_mm();
+    // A single triangle stays, so that the point goes on following it.
+    const auto& first = point.keys.front().second;
+    const bool one_place = point.keys.size() == 1;
+    FocusPlace place;
+    if (one_place) {
+      place = *first.place;
+    } else if (target.point.at_infinity) {
+      place.point = {to_scene(scene, base.entrance_z(), target.point.position + Vec3<double>(0, 0, base.entrance_z())) -
+                         scene.position,
+                     true};
+    } else {
+      place.point = {to_scene(scene, base.entrance_z(), target.point.position)};
+    }
+    point.now = {place, blur_px, target.weight, target.extent_stops};
+  }
+  if (!settings.focus_keys.empty() && !settings.focus_by_hand) {
+    FocusPoint track;
+    for (const auto& [at, distance] : settings.focus_keys) {
+      track.keys.push_back({at, std::isinf(distance) ? ScenePoint{{0, 0, -1}, true} : ScenePoint{{0, 0, -distance}}});
+    }
+    const auto found = focus_targets(base.ideal, std::span(&track, 1), {.time = settings.time_s});
+    if (!found.empty()) {
+      settings.focus_mm = found.front().point.at_infinity ? infinity : -found.front().point.position.z;
+    }
+  }
+}
+
+/// The points of the settings in front of a focused lens.
+struct Scenery {
+  std::vector<FocusPoint> tracks;    ///< one key each; none for points without depth
+  std::vector<FocusTarget> targets;  ///< of all points; without depth: weight 0
+};
+
+Scenery scenery(const FocusScene& scene, const EditorSettings& settings, const Focused& base) {
+  Scenery result;
+  for (const EditorPoint& point : settings.points) {
+    EditorPoint still = point;
+    still.by_hand = true;
+    result.tracks.push_back(focus_point(scene, base.entrance_z(), still, base.film.pixel_mm(), settings.time_s));
+    FocusTarget target;
+    target.weight = 0;
+    if (!result.tracks.back().keys.empty()) {
+      const FocusKey& key = result.tracks.back().keys.front();
+      const double fade = point.fade.fades().empty() ? 1 : point.fade.fades().front();
+      target = {std::get<ScenePoint>(key.anchor), key.blur_mm, fade < least_fade ? 0 : key.weight * fade,
+                key.extent_stops};
+    }
+    result.targets.push_back(target);
+  }
+  if (settings.nearer_weighs_more) focus_detail::weigh_nearer_more(base.ideal, result.targets);
+  return result;
+}
+
+std::optional<FilmPoint> film_point(const Focused& base, const Film& film, const FocusTarget& target) {
+  const auto image = base.ideal.image(target.point);
+  return image ? chief_point(*image, film) : std::nullopt;
+}
+
+void advance_fades(EditorSettings& settings, const Focused& base, const Scenery& points) {
+  for (std::size_t i = 0; i < settings.points.size(); ++i) {
+    const auto at = points.tracks[i].keys.empty() ? std::nullopt : film_point(base, base.film, points.targets[i]);
+    const bool seen = at && base.film.contains(*at);
+    settings.points[i].fade.advance(settings.seconds_to_fade, {seen || !settings.points_fade});
+  }
+  settings.seconds_to_fade = 0;
+}
+
+/// What serves the points: a distance, or a tilt too.
+struct Solution {
+  std::string_view status = "solved";
+  double focus_mm = infinity, tilt_rad = 0, swing_rad = 0;
+};
+
+/// The distance in focus of a film position. Beyond infinity: infinity.
+double distance_of(const EditorSettings& settings, const Lens& lens, double film_z) {
+  return solve_subject(lens, film_z, focus_options(settings.choice)).distance;
+}
+
+/// True if the points are served by first-order optics.
+bool first_order(const EditorSettings& settings) {
+  return settings.choice.name.empty() || settings.serve == FocusServe::surface || !settings.expressive.empty() ||
+         settings.from_lens != 0;
+}
+
+Solution solve(const EditorSettings& settings, const Focused& base, const Scenery& points) {
+  const bool ideal = first_order(settings);
+  switch (settings.serve) {
+    case FocusServe::distance: {
+      Solution result{"solved", settings.focus_mm, settings.tilt_rad, settings.swing_rad};
+      for (std::size_t i = 0; i < settings.points.size(); ++i) {
+        if (settings.points[i].id != settings.active || points.tracks[i].keys.empty()) continue;
+        const ScenePoint& at = points.targets[i].point;
+        result.focus_mm = at.at_infinity ? infinity : -at.position.z;
+      }
+      return result;
+    }
+    case FocusServe::tilt: {
+      const TiltOptions options{.film = base.film};
+      const TiltFit fit =
+          ideal ? fit_tilt(base.ideal, points.targets, options) : fit_tilt(base.lens, points.targets, options);
+      if (!fit) return {name(fit.status), settings.focus_mm};
+      return {name(fit.status), distance_of(settings, base.lens, fit.film.z()), fit.film.tilt_rad, fit.film.swing_rad};
+    }
+    case FocusServe::film:
+    case FocusServe::surface: break;
+  }
+  const Autofocus focus =
+      ideal ? autofocus(base.ideal, points.targets, base.film) : autofocus(base.lens, points.targets, base.film);
+  if (!focus) return {name(focus.status), settings.focus_mm};
+  return {"solved", distance_of(settings, base.lens, focus.film.z())};
+}
+
+/// Signed diameter of a target on a focal surface, as first-order models blur it: the pupil has the size of the extent,
+/// and the beam meets the film that images the distance of the surface.
+double blur_on_surface(const Focused& base, const FocalSurface& surface, const FilmPoint& at, const ImagePoint& image) {
+  const FocalSurface::Values values = surface.at(at);
+  const ScenePoint in_focus = values.inverse_distance == 0
+                                  ? ScenePoint{{0, 0, -1}, true}
+                                  : ScenePoint{{0, 0, base.entrance_z() - 1 / values.inverse_distance}};
+  const auto sharp = base.ideal.image(in_focus);
+  if (!sharp) return std::numeric_limits<double>::quiet_NaN();
+  Film film = base.film;
+  film.z_mm = sharp->position.z;
+  const double exit_z = base.ideal.pupils.exit.z;
+  const double scale = std::isfinite(exit_z) ? (base.film.z() - exit_z) / (film.z() - exit_z) : 1;
+  return signed_blur(image, film) * scale * focus_detail::pupil_scale(values.extent_stops);
+}
+
+/// Fills in status, blur and raster position of the marks on the final film.
+void measure(const EditorSettings& settings, const Focused& base, const Scenery& points, FocusEditorState& state) {
+  std::vector<std::optional<ExactBlur>> exact(points.targets.size());
+  if (!first_order(settings) && !points.targets.empty()) {
+    std::vector<ScenePoint> all;
+    for (const FocusTarget& target : points.targets) all.push_back(target.point);
+    exact = exact_blurs(state.lens, state.film, all);
+  }
+  for (std::size_t i = 0; i < points.targets.size(); ++i) {
+    const EditorPoint& point = settings.points[i];
+    FocusMark& mark = state.targets[i];
+    const FocusTarget& target = points.targets[i];
+    const auto image = points.tracks[i].keys.empty() ? std::nullopt : base.ideal.image(target.point);
+    if (!point.now.place) {
+      mark.status = "no_depth";
+    } else if (!image) {
+      mark.status = name(TargetStatus::no_image);
+    } else if (mark.fade < least_fade) {
+      mark.status = "hidden";
+    } else if (!(target.weight > 0) || (settings.serve == FocusServe::distance && point.id != settings.active)) {
+      mark.status = name(TargetStatus::no_weight);
+    } else if (!first_order(settings) && !exact[i]) {
+      mark.status = name(TargetStatus::no_rays);
+    }
+    if (!image) continue;
+    const auto at = chief_point(*image, state.film);
+    if (at) mark.raster = state.film.raster(*at);
+    double blur = std::numeric_limits<double>::quiet_NaN();
+    if (exact[i]) {
+      blur = exact[i]->signed_diameter;
+    } else if (state.surface && at) {
+      blur = blur_on_surface(base, *state.surface, *at, *image);
+    } else if (first_order(settings)) {
+      blur = signed_blur(*image, state.film);
+    }
+    if (std::isfinite(blur)) mark.blur_px = blur / state.film.pixel_mm();
+  }
+}
+
+/// True if another pass would change the distance: the blur of a pixel or the place of the entrance pupil moved, or the
+/// lens focuses by moving groups, for which the film was solved with the groups of another distance.
+bool moved(const EditorSettings& settings, const Focused& before, const Focused& after) {
+  const auto differ = [](double a, double b) { return std::abs(a - b) > 1e-12 * std::abs(a); };
+  const bool blurred =
+      std::ranges::any_of(settings.points, [](const EditorPoint& point) { return point.now.blur_px != 0; });
+  return (blurred && differ(before.film.pixel_mm(), after.film.pixel_mm())) ||
+         std::abs(before.entrance_z() - after.entrance_z()) > 1e-9 ||
+         (!after.lens.focus_positions().empty() && differ(before.focus_mm, after.focus_mm));
+}
+
+}  // namespace
+
+Vec3<double> to_lens(const FocusScene& scene, double entrance_z, const Vec3<double>& point) noexcept {
+  const Vec3<double> from = point - scene.position;
+  const auto along = [&](const Vec3<double>& axis) { return from.x * axis.x + from.y * axis.y + from.z * axis.z; };
+  return {along(scene.right), along(scene.up), along(scene.back) + entrance_z};
+}
+
+Vec3<double> to_scene(const FocusScene& scene, double entrance_z, const Vec3<double>& point) noexcept {
+  return scene.position + scene.right * point.x + scene.up * point.y + scene.back * (point.z - entrance_z);
+}
+
+void load_lens(const FocusScene& scene, EditorSettings& settings) {
+  FocusLensChoice choice = settings.choice;
+  if (choice.name.empty() && settings.f_number) choice.f_number = *settings.f_number;
+  settings.wide_open = scene.lens(choice);
+}
+
+FocusOptions focus_options(const FocusLensChoice& choice) {
+  return {.criterion = choice.name.empty() ? FocusCriterion::paraxial : FocusCriterion::min_rms};
+}
+
+Lens shaped_lens(const EditorSettings& settings) {
+  Lens lens = with_iris(*settings.wide_open, settings.iris);
+  // The scene compiles a thin lens with its f-number.
+  if (settings.f_number && !settings.choice.name.empty()) lens = with_f_number(lens, *settings.f_number);
+  return lens;
+}
+
+FocusEditorState state_of(const FocusScene& scene, EditorSettings& settings) {
+  const Lens lens = shaped_lens(settings);
+  Focused base = focused_nearby(scene, settings, lens);
+  bool reached = base.focus_mm == settings.focus_mm;
+  follow_keys(scene, settings, base);
+  Scenery points = scenery(scene, settings, base);
+  advance_fades(settings, base, points);
+  Solution solution;
+  constexpr int most_passes = 8;
+  for (int pass = 0; pass < most_passes; ++pass) {
+    points = scenery(scene, settings, base);
+    solution = solve(settings, base, points);
+    std::optional<Focused> next = try_focus(scene, settings, lens, solution.focus_mm);
+    reached = next.has_value();
+    if (!next) break;
+    const bool again = moved(settings, base, *next);
+    base = *std::move(next);
+    if (!again) break;
+  }
+  settings.focus_mm = base.focus_mm;
+  points = scenery(scene, settings, base);
+
+  FocusEditorState state{.choice = settings.choice, .lens = base.lens, .film = base.film};
+  // Whole doubles in degrees, so that a command line can state them.
+  state.film.tilt_rad = radians(degrees(solution.tilt_rad));
+  state.film.swing_rad = radians(degrees(solution.swing_rad));
+  state.bokeh = settings.bokeh;
+  state.expressive = settings.expressive;
+  if (settings.from_lens != 0) {
+    const ExpressiveLens own = fit_expressive_lens(base.lens, base.film);
+    if (state.expressive.power.empty()) {
+      for (const PowerKnot& knot : own.power) {
+        state.expressive.power.push_back({knot.radius, 1 + settings.from_lens * (knot.power - 1)});
+      }
+    }
+    if (state.expressive.film_offsets.empty()) {
+      for (FilmOffset offset : own.film_offsets) {
+        offset.offset_mm *= settings.from_lens;
+        state.expressive.film_offsets.push_back(offset);
+      }
+    }
+  }
+  state.serve = settings.serve;
+  state.f_number = settings.f_number ? *settings.f_number
+                   : state.thin()    ? settings.choice.f_number
+                                     : real_f_number(*settings.wide_open);
+  state.f_number_set = settings.f_number.has_value();
+  if (state.thin()) state.choice.f_number = state.f_number;
+  state.focus_mm = base.focus_mm;
+  state.status = reached ? solution.status : name(FocusStatus::unreachable);
+  state.time_s = settings.time_s;
+  if (settings.serve == FocusServe::surface) {
+    std::vector<double> fades;
+    std::vector<FocusPoint> tracks;
+    for (std::size_t i = 0; i < points.tracks.size(); ++i) {
+      if (points.tracks[i].keys.empty()) continue;
+      tracks.push_back(points.tracks[i]);
+      fades.push_back(settings.points[i].fade.fades().front());
+    }
+    const std::vector<FocalPoint> seen =
+        focal_points(base.ideal, base.film, tracks,
+                     {.time = settings.time_s, .nearer_weighs_more = settings.nearer_weighs_more}, fades);
+    const bool weighs = std::ranges::any_of(seen, [](const FocalPoint& point) { return point.weight > 0; });
+    if (weighs) {
+      FocalSurfaceOptions options = settings.surface;
+      options.default_inverse_distance = 1 / (base.focus_mm + base.entrance_z());
+      state.surface.emplace(base.ideal, base.film, seen, options);
+      state.surface_points = std::move(seen);
+      state.surface_options = options;
+    } else {
+      state.status = name(AutofocusStatus::no_targets);
+    }
+  }
+  for (const EditorPoint& point : settings.points) {
+    FocusMark mark{.id = point.id, .id_is_number = point.id_is_number};
+    if (point.now.place) {
+      const ScenePoint at = scene_point(scene, *point.now.place, settings.time_s);
+      mark.place_mm = at.position, mark.at_infinity = at.at_infinity;
+    }
+    mark.requested_px = point.now.blur_px, mark.weight = point.now.weight;
+    mark.fade = point.fade.fades().front();
+    mark.extent_stops = point.now.extent_stops;
+    state.targets.push_back(std::move(mark));
+  }
+  measure(settings, base, points, state);
+  return state;
+}
+
+}  // namespace editor_detail
+
+CameraOptions FocusEditorState::camera_options() const {
+  const bool first_order = surface || !expressive.empty();
+  return {.model = thin()        ? ModelKind::thin
+                   : first_order ? ModelKind::thick
+                                 : ModelKind::exact_float,
+          .normalisation = Normalisation::unity_on_axis,
+          .bokeh = bokeh,
+          .focal_surface = surface,
+          .expressive = expressive};
+}
+
+}  // namespace petzval

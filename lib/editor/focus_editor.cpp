@@ -1,0 +1,158 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "petzval/editor/focus_editor.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <utility>
+
+#include <glm/geometric.hpp>
+#include <nlohmann/json.hpp>
+
+#include "core/text.hpp"
+#include "editor_settings.hpp"
+#include "petzval/core/error.hpp"
+#include "petzval/paraxial/first_order.hpp"
+
+namespace petzval {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+void check(const FocusScene& scene) {
+  if (scene.columns < 1 || scene.rows < 1) {
+    throw Error("scene: columns, rows = " + std::to_string(scene.columns) + ", " + std::to_string(scene.rows) +
+                "; must be positive");
+  }
+  if (!(scene.vertical_angle_rad >= 0 && scene.vertical_angle_rad < radians(180))) {
+    throw Error("scene: vertical_angle_rad = " + to_text(scene.vertical_angle_rad) + "; must be from 0 to below pi");
+  }
+  if (!scene.lens) throw Error("scene: the function `lens` is missing; must compile a lens");
+  const Vec3<double> axes[] = {scene.right, scene.up, scene.back};
+  for (int a = 0; a < 3; ++a) {
+    for (int b = 0; b <= a; ++b) {
+      if (!(std::abs(glm::dot(axes[a], axes[b]) - (a == b)) < 1e-6)) {
+        throw Error("scene: right, up and back must be unit vectors at right angles");
+      }
+    }
+  }
+}
+
+}  // namespace
+
+std::string_view name(FocusServe serve) noexcept {
+  switch (serve) {
+    case FocusServe::distance: return "distance";
+    case FocusServe::film: return "film";
+    case FocusServe::tilt: return "tilt";
+    case FocusServe::surface: return "surface";
+  }
+  return "unknown";
+}
+
+struct FocusEditor::Data {
+  struct Step {
+    editor_detail::EditorSettings settings;
+    FocusEditorState state;
+  };
+
+  FocusScene scene;
+  std::vector<Step> steps;  ///< what undo and redo restore
+  std::size_t current = 0;  ///< index into steps
+  std::vector<std::string> log;
+
+  const Step& now() const noexcept { return steps[current]; }
+};
+
+FocusEditor::FocusEditor(FocusScene scene, const FocusLensChoice& lens) : data_(std::make_unique<Data>()) {
+  check(scene);
+  data_->scene = std::move(scene);
+  editor_detail::EditorSettings settings;
+  settings.choice = lens;
+  load_lens(data_->scene, settings);
+  FocusEditorState state = state_of(data_->scene, settings);
+  data_->steps.push_back({std::move(settings), std::move(state)});
+}
+
+FocusEditor::~FocusEditor() = default;
+FocusEditor::FocusEditor(FocusEditor&&) noexcept = default;
+FocusEditor& FocusEditor::operator=(FocusEditor&&) noexcept = default;
+
+void FocusEditor::apply(std::string_view event) {
+  const Json json = Json::parse(event, nullptr, false);
+  const std::string type = json.is_object() ? json.value("type", Json()).dump() : "";
+  Data& data = *data_;
+  if (type == "\"undo\"" || type == "\"redo\"") {
+    const bool undo = type == "\"undo\"";
+    if (json.size() > 1) throw Error(type + ": must have no keys besides type");
+    if (!(undo ? can_undo() : can_redo())) {
+      throw Error(std::string(undo ? "undo" : "redo") + ": there is no event to " + (undo ? "undo" : "redo"));
+    }
+    data.log.push_back(json.dump());
+    data.current = undo ? data.current - 1 : data.current + 1;
+    return;
+  }
+  editor_detail::EditorSettings settings = data.now().settings;
+  apply_event(data.scene, data.now().state, settings, event);
+  std::string text = json.dump();
+  if (type == "\"still\"") {
+    data.log.push_back(std::move(text));
+    return;
+  }
+  const Json continues = json.value("continues", Json(false));
+  if (!continues.is_boolean()) throw Error("continues = " + continues.dump() + "; must be true or false");
+  FocusEditorState state = state_of(data.scene, settings);
+  data.log.push_back(std::move(text));
+  // The event before remains the step that undo leads back to.
+  if (!(continues.get<bool>() && data.current > 0)) ++data.current;
+  data.steps.resize(data.current, data.steps.front());
+  data.steps.push_back({std::move(settings), std::move(state)});
+}
+
+void FocusEditor::replay(std::string_view events) {
+  const Json list = Json::parse(events, nullptr, false);
+  if (!list.is_array()) throw Error("events = " + std::string(beginning(events, 80)) + "; must be a JSON list");
+  std::size_t count = 0;
+  for (const Json& event : list) {
+    ++count;
+    try {
+      apply(event.dump());
+    } catch (const Error& error) {
+      throw Error("event " + std::to_string(count) + ": " + error.what());
+    }
+  }
+}
+
+const FocusEditorState& FocusEditor::state() const noexcept { return data_->now().state; }
+
+std::string FocusEditor::log() const {
+  std::string result = "[";
+  for (const std::string& event : data_->log) result += (result.size() > 1 ? ",\n" : "\n") + event;
+  return result + "\n]";
+}
+
+bool FocusEditor::can_undo() const noexcept { return data_->current > 0; }
+bool FocusEditor::can_redo() const noexcept { return data_->current + 1 < data_->steps.size(); }
+
+std::vector<double> FocusEditor::key_times() const {
+  std::vector<double> result;
+  const auto add = [&](const auto& keys) {
+    for (const auto& key : keys) result.push_back(key.first);
+  };
+  add(data_->now().settings.focus_keys);
+  for (const editor_detail::EditorPoint& point : data_->now().settings.points) add(point.keys);
+  std::ranges::sort(result);
+  const auto repeated = std::ranges::unique(result);
+  result.erase(repeated.begin(), repeated.end());
+  return result;
+}
+
+Vec3<double> FocusEditor::to_lens(const Vec3<double>& scene) const noexcept {
+  return editor_detail::to_lens(data_->scene, pupils(state().lens).entrance.z, scene);
+}
+
+Vec3<double> FocusEditor::to_scene(const Vec3<double>& lens) const noexcept {
+  return editor_detail::to_scene(data_->scene, pupils(state().lens).entrance.z, lens);
+}
+
+}  // namespace petzval
