@@ -217,6 +217,38 @@ struct LitScene::Data {
 LitScene::LitScene(const renderer::SceneDescription& description) : data_(std::make_unique<Data>(description)) {}
 LitScene::~LitScene() = default;
 
+std::optional<LitScene::Hit> LitScene::first_hit(const petzval::Ray<double>& ray) const {
+  const glm::vec3 from = (glm::vec3(ray.origin) - data_->origin) * data_->turn,
+                  run = glm::vec3(ray.direction) * data_->turn;
+  RTCRayHit hit{};
+  hit.ray.org_x = from.x, hit.ray.org_y = from.y, hit.ray.org_z = from.z;
+  hit.ray.dir_x = run.x, hit.ray.dir_y = run.y, hit.ray.dir_z = run.z;
+  hit.ray.tfar = infinity, hit.ray.mask = ~0u;
+  hit.hit.geomID = RTC_INVALID_GEOMETRY_ID, hit.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
+  RTCIntersectContext context;
+  rtcInitIntersectContext(&context);
+  rtcIntersect1(data_->scene.get(), &context, &hit);
+  if (hit.hit.geomID == RTC_INVALID_GEOMETRY_ID) return {};
+  std::size_t first = 0;  // index of the first vertex of the body
+  for (unsigned body = 0; body < hit.hit.geomID; ++body) first += data_->bodies[body].mesh.positions.size();
+  const auto& corners = data_->bodies[hit.hit.geomID].mesh.triangles[hit.hit.primID];
+  const double u = static_cast<double>(hit.hit.u), v = static_cast<double>(hit.hit.v);
+  Hit result{.triangle = {{first + corners[0], first + corners[1], first + corners[2]}, {1 - u - v, u, v}}};
+  for (std::size_t k = 0; k < 3; ++k) {
+    result.position += vertex(result.triangle.vertices[k]) * result.triangle.barycentric[k];
+  }
+  return result;
+}
+
+petzval::Vec3<double> LitScene::vertex(std::size_t index) const {
+  for (const Body& body : data_->bodies) {
+    const auto& positions = body.mesh.positions;
+    if (index < positions.size()) return petzval::Vec3<double>(data_->turn * positions[index] + data_->origin);
+    index -= positions.size();
+  }
+  throw petzval::Error("scene: vertex " + std::to_string(index) + " does not exist");
+}
+
 namespace {
 
 /// The pixels of a packet: a square of 4 x 4 pixels, whose rays are coherent.

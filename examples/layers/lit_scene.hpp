@@ -3,10 +3,14 @@
 
 #include <cstddef>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "petzval/blur/layers.hpp"
 #include "petzval/blur/lens_rays.hpp"
+#include "petzval/core/geometry.hpp"
+#include "petzval/core/ray.hpp"
+#include "petzval/focus/focus_point.hpp"
 #include "petzval/image/image.hpp"
 #include "renderer/scene_description.hpp"
 
@@ -31,6 +35,16 @@ class LitScene {
 
   /// Depth of the nearest surface seen through the pixel centres of a camera, mm; infinite if only sky is seen.
   double nearest_mm(const petzval::LayerCamera& camera, int threads) const;
+
+  /// A point of a surface: its position in the scene (mm) and on its triangle.
+  struct Hit {
+    petzval::Vec3<double> position{0, 0, 0};
+    petzval::TrianglePoint triangle{};
+  };
+  /// The first surface on a ray of the scene; nullopt: the sky.
+  std::optional<Hit> first_hit(const petzval::Ray<double>& ray) const;
+  /// Position of a vertex of TrianglePoint::vertices (mm).
+  petzval::Vec3<double> vertex(std::size_t index) const;
 
   /// The layers of a camera, for LayerSet::peel: a ray through the centre of each pixel, starting at the last surface.
   petzval::LayerSet::Peel peel(const petzval::LayerCamera& camera, int threads) const;

@@ -29,6 +29,7 @@ int spots(int argc, char** argv);
 int surface(int argc, char** argv);
 int tilt(int argc, char** argv);
 int trace(int argc, char** argv);
+int view(int argc, char** argv);
 
 struct Command {
   std::string_view name;     ///< as typed

@@ -18,6 +18,11 @@ constexpr auto render_command = &render, sheet_command = &sheet, blur_command = 
 constexpr int (*render_command)(int, char**) = nullptr, (*sheet_command)(int, char**) = nullptr,
                                      (*blur_command)(int, char**) = nullptr;
 #endif
+#if defined(PETZVAL_HAS_FIT) && defined(PETZVAL_HAS_RENDERER)
+constexpr auto view_command = &view;
+#else
+constexpr int (*view_command)(int, char**) = nullptr;
+#endif
 constexpr std::string_view ceres = "Ceres", embree = "Embree 3 and tinyobjloader";
 
 constexpr std::array lens_commands{
@@ -57,6 +62,8 @@ constexpr std::array renderer_commands{
     Command{"sheet", "contact sheets of renderings", "out/a out/b --out sheet.png", sheet_command, embree},
     Command{"blur", "lens blur of layers or of a picture with depth",
             "--scene town double_gauss_52mm_f1.8 --focus 3m --out out", blur_command, embree},
+    Command{"view", "lens blur in a window: focus by clicking", "--scene town double_gauss_52mm_f1.8", view_command,
+            "Ceres, Embree 3 and tinyobjloader"},
 };
 constexpr std::array all_groups{
     Group{"Lenses", lens_commands},

@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: Apache-2.0
+// Focus by clicking: lens blur in a window, or the replay of a log of its events.
+//
+//   petzval view --scene town double_gauss_52mm_f1.8
+//   petzval view --replay log.json --json --out out
+#include <string>
+
+#include "commands.hpp"
+#include "layers/layer_input.hpp"
+#include "petzval/core/error.hpp"
+#include "support/camera_setup.hpp"
+#include "support/cli.hpp"
+#include "support/files.hpp"
+#include "support/load_lens.hpp"
+#include "viewer/replay.hpp"
+#include "viewer/window.hpp"
+
+int commands::view(int argc, char** argv) {
+  viewer::WindowOptions window;
+  viewer::ReplayOptions replay;
+  lens_blur::InputFlags& input = window.session.input;
+  examples::LensInput lens;
+  double thin_mm = 0, f_number = 0;
+  examples::App app(
+      "Lens blur in a window: click into the picture to focus. --replay computes the same without a window from a log "
+      "of events: a state for each event, and DIR/event_0001.png and so on.",
+      "petzval view");
+  lens_blur::add_input(app, input);
+  app.add_option("LENS", lens.file, "shipped lens (petzval lenses) or lens file")
+      ->default_str("double_gauss_52mm_f1.8");
+  auto* thin = examples::add_thin_lens(app, thin_mm);
+  examples::add_number(app, "--f-number", f_number, examples::positive_number, "f-number of the thin lens, or of LENS")
+      ->default_str("LENS: wide open");
+  examples::add_number(app, "--fov", window.session.fov_deg, {1e-3, 120, "more than 0 and at most 120"},
+                       "vertical angle of the picture (degrees); default: 30 for a thin lens, else the angle of a film "
+                       "24 mm high")
+      ->default_str("");
+  examples::add_count(app, "--layers", window.session.layers, {1, 64, "a whole number from 1 to 64"},
+                      "largest number of surfaces behind each other");
+  auto* log =
+      app.add_option("--replay", replay.log_file, "replay a log of events, without a window")->type_name("LOG.json");
+  app.add_flag("--json", replay.json, "print states as JSON, one in each line")->needs(log);
+  examples::add_count(app, "--rays", replay.rays, {1, 16384, "a whole number from 1 to 16384"},
+                      "rays per pixel of the picture after each event; `still` has those of petzval blur")
+      ->needs(log);
+  app.add_option("--log", window.log_file, "file for the log of events of the window")
+      ->type_name("LOG.json")
+      ->default_str("petzval-view.json");
+  examples::add_threads(app);
+  examples::add_out_folder(app, window.out_folder, "folder for pictures");
+  return examples::run(app, argc, argv, [&] {
+    window.session.threads = replay.threads = examples::threads();
+    if (!replay.log_file.empty()) {
+      const bool scene_given = !input.scene.empty() || !input.image.empty() || !input.deep.empty();
+      if (scene_given || !lens.file.empty() || thin->given()) {
+        throw petzval::Error("--replay: the log names the scene and the lens; must be used without them");
+      }
+      replay.out_folder = window.out_folder, replay.layers = window.session.layers;
+      replay.width = input.width, replay.height = input.height;
+      viewer::replay(replay);
+      return;
+    }
+    if (input.scene.empty() && input.image.empty() && input.deep.empty()) input.scene = "town";
+    if (thin->given()) {
+      if (!lens.file.empty()) throw petzval::Error("lens: LENS and --thin-lens are given; must be one of them");
+      if (!(f_number > 0)) throw petzval::Error("--thin-lens needs --f-number");
+      window.session.lens = {.thin_mm = thin_mm, .f_number = f_number};
+    } else {
+      window.session.lens.name = lens.file.empty() ? "double_gauss_52mm_f1.8" : lens.file;
+      if (f_number > 0) {
+        window.first_log = R"([{"type": "f_number", "f_number": )" + examples::Json(f_number).dump() + "}]";
+      }
+    }
+    if (window.log_file.empty()) window.log_file = "petzval-view.json";
+    viewer::show_window(window);
+  });
+}

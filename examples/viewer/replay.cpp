@@ -1,0 +1,108 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "viewer/replay.hpp"
+
+#include <chrono>
+#include <cstddef>
+#include <filesystem>
+#include <iostream>
+#include <string>
+
+#include "petzval/core/error.hpp"
+#include "petzval/image/image.hpp"
+#include "support/cli.hpp"
+#include "support/interrupt.hpp"
+#include "support/json_input.hpp"
+#include "support/picture_files.hpp"
+#include "support/text.hpp"
+#include "viewer/session.hpp"
+
+namespace viewer {
+namespace {
+
+using examples::Json;
+
+/// A line about the state for people.
+std::string in_words(const Json& state) {
+  const auto length = [](const Json& mm) {
+    return mm.is_null() ? std::string("infinity") : examples::number(mm.get<double>(), 5) + " mm";
+  };
+  std::string line = "serve " + state["serve"].get<std::string>() + " (" + state["status"].get<std::string>() +
+                     "), focus " + length(state["focus_mm"]) + ", f/" +
+                     examples::number(state["f_number"].get<double>(), 3);
+  const double tilt = state["film"]["tilt_deg"].get<double>(), swing = state["film"]["swing_deg"].get<double>();
+  if (tilt != 0 || swing != 0) {
+    line += ", tilt " + examples::number(tilt, 3) + ", swing " + examples::number(swing, 3) + " degrees";
+  }
+  for (const Json& target : state["targets"]) {
+    const Json& id = target["id"];
+    line += "; " + (id.is_string() ? id.get<std::string>() : id.dump()) + ": ";
+    line += target["blur_px"].is_null() ? target["status"].get<std::string>()
+                                        : examples::number(target["blur_px"].get<double>(), 3) + " px";
+  }
+  return line + "; " + state["rays"].dump() + " rays in " + examples::number(state["frame_ms"].get<double>(), 3) +
+         " ms";
+}
+
+}  // namespace
+
+void replay(const ReplayOptions& options) {
+  const Json log = examples::read_json(options.log_file);
+  SessionOptions setup = options_of(log, options.log_file);
+  setup.threads = options.threads, setup.layers = options.layers;
+  if (options.width > 0) setup.input.width = options.width, setup.input.height = options.height;
+  if (!log.contains("events") || !log["events"].is_array()) {
+    throw petzval::Error(options.log_file + ": events is missing; must be a list");
+  }
+  if (!options.out_folder.empty()) examples::make_folder(options.out_folder);
+  Session session(setup);
+  session.make_layers();
+  const examples::Interrupt interrupt;
+  std::size_t number = 0, refused = 0;
+  for (const Json& event : log["events"]) {
+    examples::stop_if_asked();
+    ++number;
+    const auto start = std::chrono::steady_clock::now();
+    std::string error;
+    try {
+      session.editor().apply(event.dump());
+    } catch (const petzval::Error& why) {
+      error = why.what();
+      ++refused;
+    }
+    const bool still = error.empty() && event["type"] == "still";
+    const double event_ms = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
+    double layers_ms = 0;
+    if (session.layers_are_too_small()) layers_ms = session.make_layers();
+    Frame frame = still ? session.still() : session.frame(options.rays);
+    frame.milliseconds += event_ms;
+    Json state = session.state_json(frame);
+    if (layers_ms > 0) state["layers_ms"] = layers_ms;
+    std::string name = std::to_string(number);
+    name.insert(0, 4 - std::min<std::size_t>(name.size(), 4), '0');
+    const std::filesystem::path stem = std::filesystem::path(options.out_folder) / ("event_" + name);
+    if (still) {
+      const std::string points_file = stem.string() + "_points.json";
+      const Json points = session.surface_points();
+      if (!points.is_null() && !options.out_folder.empty()) {
+        examples::write_text(points_file, points.dump(1) + '\n');
+      }
+      state["command"] = session.blur_command(points_file);
+    }
+    if (!error.empty()) state["error"] = error;
+    if (options.json) {
+      std::cout << state.dump() << '\n';
+    } else {
+      std::cout << number << ' ' << (error.empty() ? event["type"].get<std::string>() + ": " + in_words(state) : error)
+                << '\n';
+    }
+    if (!options.out_folder.empty()) {
+      examples::write_png(petzval::to_srgb8(frame.picture), stem.string() + ".png");
+    }
+  }
+  if (refused > 0) {
+    throw petzval::Error(options.log_file + ": " + std::to_string(refused) + " of " + std::to_string(number) +
+                         " events were refused");
+  }
+}
+
+}  // namespace viewer

@@ -1,0 +1,465 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "viewer/session.hpp"
+
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <cmath>
+#include <limits>
+#include <sstream>
+
+#include <glm/geometric.hpp>
+
+#include "layers/layer_picture.hpp"
+#include "layers/lit_scene.hpp"
+#include "petzval/analysis/colour.hpp"
+#include "petzval/core/error.hpp"
+#include "petzval/glass/glass.hpp"
+#include "petzval/paraxial/first_order.hpp"
+#include "petzval/paraxial/ideal_lens.hpp"
+#include "support/focal_surface_setup.hpp"
+#include "support/json_input.hpp"
+#include "support/load_lens.hpp"
+#include "support/text.hpp"
+
+namespace viewer {
+namespace {
+
+using examples::Json;
+using petzval::Error;
+using petzval::Vec3;
+
+/// Part of the radius by which a pupil may grow off the axis.
+constexpr double pupil_growth = 1.15;
+/// Part of the picture by which layers extend further for the breathing and the distortion of a real lens.
+constexpr double breathing = 0.05;
+
+double ms_since(std::chrono::steady_clock::time_point start) {
+  return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
+}
+
+/// The degrees of an angle that give the same double in radians.
+double exact_degrees(double angle) {
+  const double near = petzval::degrees(angle);
+  for (const double candidate : {near, std::nextafter(near, -1e9), std::nextafter(near, 1e9)}) {
+    if (petzval::radians(candidate) == angle) return candidate;
+  }
+  return near;
+}
+
+std::string exact(double value) { return std::isinf(value) ? "inf" : Json(value).dump(); }
+
+/// A word of a command line, in quotes if a shell would change it.
+std::string quoted(const std::string& word) {
+  if (word.find_first_of(" \t'\"\\$`&|;<>()*?[]#~!{}") == std::string::npos) return word;
+  std::string result = "'";
+  for (const char c : word) result += c == '\'' ? std::string("'\\''") : std::string(1, c);
+  return result + "'";
+}
+
+}  // namespace
+
+Session::Session(const SessionOptions& options) : options_(options), input_(options.input), first_lens_(options.lens) {
+  const renderer::Pose& pose = input_.pose();
+  const glm::dvec3 back = glm::normalize(pose.position - pose.look_at),
+                   right = glm::normalize(glm::cross(-back, pose.up));
+  const double angle = options.fov_deg > 0         ? petzval::radians(options.fov_deg)
+                       : options.lens.name.empty() ? petzval::radians(30)
+                                                   : 0;
+  petzval::FocusScene scene{.columns = input_.columns(),
+                            .rows = input_.rows(),
+                            .vertical_angle_rad = angle,
+                            .position = pose.position,
+                            .right = right,
+                            .up = glm::cross(back, right),
+                            .back = back};
+  scene.lens = [this](const petzval::FocusLensChoice& choice) { return load(choice); };
+  scene.place = [this](const petzval::Ray<double>& ray, double) { return place(ray); };
+  if (input_.scene()) {
+    scene.vertex = [this](std::size_t vertex, double) { return input_.scene()->vertex(vertex); };
+  }
+  editor_.emplace(scene, options.lens);
+  update_camera();
+}
+
+petzval::Lens Session::load(const petzval::FocusLensChoice& choice) {
+  std::vector<double> wavelengths{petzval::d_line_nm};
+  if (choice.rgb) wavelengths.insert(wavelengths.end(), petzval::rgb_triple_nm.begin(), petzval::rgb_triple_nm.end());
+  if (choice.name.empty()) {
+    return petzval::compile(petzval::thin_elements(choice.thin_mm, choice.f_number), wavelengths,
+                            {.glasses = &petzval::glass_tables()});
+  }
+  const auto known = lenses_.find({choice.name, choice.rgb});
+  if (known != lenses_.end()) return known->second;
+  const petzval::Lens lens = examples::load_lens({.file = choice.name}, wavelengths).lens;
+  lenses_.emplace(std::pair{choice.name, choice.rgb}, lens);
+  return lens;
+}
+
+std::optional<petzval::FocusPlace> Session::place(const petzval::Ray<double>& ray) const {
+  if (const lens_blur::LitScene* const scene = input_.scene()) {
+    const auto hit = scene->first_hit(ray);
+    if (!hit) return petzval::FocusPlace{.point = {ray.direction, true}};
+    return petzval::FocusPlace{.point = {hit->position}, .triangle = hit->triangle};
+  }
+  // Files are in the lens frame with the pinhole in the origin.
+  const petzval::Vec2<double> slope{ray.direction.x / -ray.direction.z, ray.direction.y / -ray.direction.z};
+  const petzval::Vec2<double> raster = camera_.axis + petzval::Vec2<double>{slope.x, -slope.y} * camera_.focal_px;
+  const float depth = depth_mm(static_cast<int>(std::floor(raster.x)), static_cast<int>(std::floor(raster.y)));
+  if (!(depth > 0)) return {};
+  if (std::isinf(depth)) return petzval::FocusPlace{.point = {ray.direction, true}};
+  return petzval::FocusPlace{.point = {Vec3<double>(slope.x, slope.y, -1) * static_cast<double>(depth)}};
+}
+
+float Session::depth_mm(int column, int row) const {
+  column = std::clamp(column, 0, camera_.columns - 1), row = std::clamp(row, 0, camera_.rows - 1);
+  if (!input_.scene()) return input_.depth_mm(column, row);
+  if (layers_.count() == 0) return 0;
+  const int overscan = (layers_.columns() - camera_.columns) / 2;
+  const float w =
+      layers_.inverse_depth(0)[static_cast<std::size_t>((row + overscan) * layers_.columns() + column + overscan)];
+  return w < 0 ? 0 : 1 / w;
+}
+
+lens_blur::LensView Session::view(bool from_points) const {
+  const petzval::FocusEditorState& state = editor_->state();
+  const petzval::FocusLensChoice& choice = state.choice;
+  lens_blur::LensView view{.lens = state.lens,
+                           .thin_diameter_mm = state.thin() ? choice.thin_mm / choice.f_number : 0,
+                           .film = state.film,
+                           .coloured = choice.rgb,
+                           .controls = state.bokeh,
+                           .surface = state.surface,
+                           .expressive = state.expressive};
+  view.vertical_angle_rad = petzval::radians(options_.fov_deg > 0 ? options_.fov_deg : 30);
+  view.focus_depth_mm = state.focus_mm + petzval::pupils(state.lens).entrance.z;
+  if (from_points && state.surface) {
+    view.surface.reset();
+    view.surface = examples::focal_surface_through(surface_points(),
+                                                   {.points_file = "points",
+                                                    .kind = std::string(name(state.surface_options.kind)),
+                                                    .beta = state.surface_options.beta},
+                                                   view.camera(1), petzval::DistanceOrigin::front_vertex,
+                                                   state.focus_mm, [](const Vec3<double>& p) { return p; })
+                       .surface;
+  }
+  return view;
+}
+
+/// Radius of the pupil of the state, with room for pupils off the axis and for negative extents.
+double Session::widest_slope(const lens_blur::LensView& view) const {
+  const double radius = view.thin() ? view.thin_diameter_mm / 2 : petzval::pupils(view.lens).entrance.diameter / 2;
+  const double extent = view.surface ? std::exp2(std::max(0.0, -view.surface->least_extent()) / 2) : 1;
+  return radius * extent * (view.thin() ? 1 : pupil_growth);
+}
+
+void Session::update_camera() {
+  const petzval::FocusLensChoice& choice = editor_->state().choice;
+  if (camera_.columns > 0 && camera_lens_ == choice.name) return;
+  camera_ = view(false).layers(1);
+  camera_lens_ = choice.name;
+  radius_mm_ = 0;
+  nearest_mm_ = input_.nearest_mm(camera_, options_.threads);
+  if (!std::isfinite(nearest_mm_)) throw Error("layers: all depths are infinite; must have at least one finite depth");
+}
+
+bool Session::layers_are_too_small() const {
+  return layers_.count() == 0 || camera_lens_ != editor_->state().choice.name ||
+         widest_slope(view(false)) > radius_mm_ * (1 + 1e-9);
+}
+
+double Session::make_layers() {
+  if (!layers_are_too_small()) return 0;
+  const auto start = std::chrono::steady_clock::now();
+  update_camera();
+  const lens_blur::LensView lens = view(false);
+  radius_mm_ = widest_slope(lens);
+  // With focus at infinity, the rays reach farthest: R f / depth for the nearest surface.
+  const petzval::ThinLens widest{.radius_mm = radius_mm_};
+  const std::vector<petzval::PupilPoint> points = petzval::vogel_points(64);
+  const petzval::LensRays rays = petzval::LensRays::thin(
+      camera_, widest, points, {.nearest_mm = lens_blur::least_depth(nearest_mm_), .threads = options_.threads});
+  petzval::PeelPlan plan = lens_blur::plan_of(input_, rays, nearest_mm_);
+  if (input_.scene() && !lens.thin()) {
+    plan.camera.overscan += static_cast<int>(breathing * std::max(camera_.columns, camera_.rows));
+  }
+  input_.fill(plan, static_cast<int>(options_.layers), options_.threads, layers_);
+  threshold_ = lens_blur::threshold_of(layers_, !input_.scene());
+  return ms_since(start);
+}
+
+Frame Session::frame(std::uint32_t rays, bool first_order) {
+  const auto start = std::chrono::steady_clock::now();
+  lens_blur::LensView lens = view(false);
+  lens.first_order_only = first_order && !lens.thin();
+  const petzval::LensRays table =
+      lens.rays(camera_, {.rays = rays}, lens_blur::least_depth(nearest_mm_), options_.threads);
+  petzval::gather(layers_, table, {.threads = options_.threads, .highlights_above = threshold_}, blurred_);
+  Frame result{.picture = lens_blur::colours_of(blurred_), .rays = rays, .first_order = lens.first_order_only};
+  result.milliseconds = ms_since(start);
+  return result;
+}
+
+Frame Session::still() {
+  const auto start = std::chrono::steady_clock::now();
+  const lens_blur::LensView lens = view(true);
+  const bool thin = lens.thin();
+  const std::uint32_t side = input_.scene() ? 2 : 1;
+  const lens_blur::RayPattern pattern{.rays = thin ? 256u : 512u, .supersample = side, .jitter = !thin};
+  const petzval::LayerCamera camera = lens.layers(side);
+  const double nearest = input_.nearest_mm(camera, options_.threads);
+  const petzval::LensRays rays = lens.rays(camera, pattern, lens_blur::least_depth(nearest), options_.threads);
+  const petzval::PeelPlan plan = lens_blur::plan_of(input_, rays, nearest);
+  petzval::LayerSet layers;
+  input_.fill(plan, static_cast<int>(options_.layers), options_.threads, layers);
+  const double threshold = lens_blur::threshold_of(layers, !input_.scene());
+  const petzval::BlurredImage blurred =
+      petzval::gather(layers, rays, {.threads = options_.threads, .highlights_above = threshold});
+  Frame result{.picture = lens_blur::averaged(lens_blur::colours_of(blurred), static_cast<int>(side)),
+               .rays = pattern.rays,
+               .still = true};
+  result.milliseconds = ms_since(start);
+  return result;
+}
+
+std::vector<float> Session::blur_map() const {
+  const petzval::FocusEditorState& state = editor_->state();
+  const petzval::IdealLens ideal = petzval::thick_lens(state.lens);
+  const double entrance_z = ideal.pupils.entrance.z, pixel = state.film.pixel_mm();
+  std::vector<float> result(static_cast<std::size_t>(camera_.columns) * static_cast<std::size_t>(camera_.rows));
+  petzval::Film sharp = state.film;
+  for (int row = 0; row < camera_.rows; ++row) {
+    for (int column = 0; column < camera_.columns; ++column) {
+      float& blur = result[static_cast<std::size_t>(row * camera_.columns + column)];
+      const double depth = static_cast<double>(depth_mm(column, row));
+      const petzval::Vec2<double> run =
+          (petzval::Vec2<double>{column + 0.5, row + 0.5} - camera_.axis) / camera_.focal_px;
+      const petzval::ScenePoint point = std::isfinite(depth)
+                                            ? petzval::ScenePoint{{run.x * depth, -run.y * depth, entrance_z - depth}}
+                                            : petzval::ScenePoint{{run.x, -run.y, -1}, true};
+      const auto image = depth > 0 ? ideal.image(point) : std::nullopt;
+      if (!image) {
+        blur = std::numeric_limits<float>::quiet_NaN();
+        continue;
+      }
+      double scale = 1;
+      const petzval::Film* film = &state.film;
+      if (state.surface) {
+        const petzval::FocalSurface::Values at = state.surface->at(state.film.point(column + 0.5, row + 0.5));
+        const auto in_focus = at.inverse_distance > 0 ? ideal.image({{0, 0, entrance_z - 1 / at.inverse_distance}})
+                                                      : ideal.image({{0, 0, -1}, true});
+        if (!in_focus) continue;
+        sharp.z_mm = in_focus->position.z;
+        film = &sharp;
+        scale = std::exp2(-at.extent_stops / 2);
+      }
+      blur = static_cast<float>(scale * petzval::signed_blur(*image, *film) / pixel);
+    }
+  }
+  return result;
+}
+
+std::vector<std::optional<petzval::Vec2<double>>> Session::handles() const {
+  const petzval::FocusEditorState& state = editor_->state();
+  std::vector<std::optional<petzval::Vec2<double>>> result;
+  const petzval::Camera camera(state.lens, state.film, state.camera_options());
+  for (const petzval::FocusMark& mark : state.targets) {
+    result.emplace_back();
+    if (!mark.place_mm) continue;
+    if (state.thin() || mark.at_infinity) {
+      result.back() = mark.raster;
+      continue;
+    }
+    const petzval::Projection seen = camera.project(editor_->to_lens(*mark.place_mm));
+    if (seen.status != petzval::ProjectionStatus::not_visible) result.back() = state.film.raster(seen.film);
+  }
+  return result;
+}
+
+petzval::RgbImage Session::sharp() const { return lens_blur::sharp_of(layers_, camera_); }
+
+Json Session::state_json(const Frame& frame) const {
+  const petzval::FocusEditorState& state = editor_->state();
+  Json json{{"film",
+             {{"z_mm", state.film.z()},
+              {"tilt_deg", exact_degrees(state.film.tilt_rad)},
+              {"swing_deg", exact_degrees(state.film.swing_rad)}}},
+            {"lens", state.thin() ? Json{{"thin_mm", state.choice.thin_mm}, {"f_number", state.choice.f_number}}
+                                  : Json(state.choice.name)},
+            {"f_number", state.f_number},
+            {"focus_mm", examples::finite_or_null(state.focus_mm)},
+            {"serve", name(state.serve)},
+            {"status", state.status},
+            {"time_s", state.time_s},
+            {"targets", Json::array()}};
+  for (const petzval::FocusMark& mark : state.targets) {
+    Json target;
+    target["id"] = mark.id_is_number ? Json::parse(mark.id) : Json(mark.id);
+    target["place_mm"] = mark.place_mm ? Json{mark.place_mm->x, mark.place_mm->y, mark.place_mm->z} : Json(nullptr);
+    if (mark.at_infinity) target["at_infinity"] = true;
+    target["status"] = mark.status;
+    target["blur_px"] = mark.blur_px ? Json(*mark.blur_px) : Json(nullptr);
+    target["weight"] = mark.weight;
+    target["fade"] = mark.fade;
+    json["targets"].push_back(std::move(target));
+  }
+  json["frame_ms"] = frame.milliseconds;
+  json["rays"] = frame.rays;
+  json["memory_mb"] = frame.memory_mb;
+  return json;
+}
+
+Json Session::log() const {
+  const lens_blur::InputFlags& input = options_.input;
+  Json json;
+  for (const auto& [key, value] :
+       {std::pair{"scene", input.scene}, {"image", input.image}, {"depth", input.depth}, {"deep", input.deep}}) {
+    if (!value.empty()) json[key] = value;
+  }
+  if (!input.depth.empty() && input.depth_kind != "axial") json["depth_kind"] = input.depth_kind;
+  if (input.near_mm > 0) {
+    json["near_mm"] = input.near_mm;
+    json["far_mm"] = examples::finite_or_null(input.far_mm);
+  }
+  if (!input.white.empty()) json["white"] = input.white;
+  json["lens"] = first_lens_.name.empty() ? Json{{"thin_mm", first_lens_.thin_mm}, {"f_number", first_lens_.f_number}}
+                                          : Json(first_lens_.name);
+  json["size"] = {input_.columns(), input_.rows()};
+  if (options_.fov_deg > 0) json["fov_deg"] = options_.fov_deg;
+  json["events"] = Json::parse(editor_->log());
+  return json;
+}
+
+Json Session::surface_points() const {
+  const petzval::FocusEditorState& state = editor_->state();
+  if (!state.surface) return nullptr;
+  const double entrance_z = petzval::pupils(state.lens).entrance.z;
+  Json points = Json::array();
+  for (const petzval::FocalPoint& point : state.surface_points) {
+    const petzval::Vec2<double> pixel = state.film.raster(point.film_point);
+    Json json{{"pixel", {pixel.x, pixel.y}}};
+    if (point.inverse_distance) {
+      json["distance_mm"] = examples::finite_or_null(1 / *point.inverse_distance - entrance_z);
+      json["blur_px"] = point.blur_mm / state.film.pixel_mm();
+    }
+    if (point.extent_stops) json["extent_stops"] = *point.extent_stops;
+    json["weight"] = point.weight, json["fade"] = point.fade;
+    points.push_back(std::move(json));
+  }
+  return points;
+}
+
+std::string Session::blur_command(const std::string& points_file) const {
+  const petzval::FocusEditorState& state = editor_->state();
+  const lens_blur::InputFlags& input = options_.input;
+  std::ostringstream out;
+  out.imbue(std::locale::classic());
+  out << "petzval blur";
+  const auto add = [&](const char* flag, const std::string& value) { out << ' ' << flag << ' ' << quoted(value); };
+  const auto add_if = [&](bool given, const char* flag, const std::string& value) {
+    if (given) add(flag, value);
+  };
+  add_if(!input.scene.empty(), "--scene", input.scene);
+  add_if(!input.image.empty(), "--image", input.image);
+  add_if(!input.deep.empty(), "--deep", input.deep);
+  add_if(!input.depth.empty(), "--depth", input.depth);
+  add_if(input.depth_kind != "axial", "--depth-kind", input.depth_kind);
+  add_if(input.near_mm > 0, "--near", exact(input.near_mm));
+  add_if(input.near_mm > 0, "--far", exact(input.far_mm));
+  add_if(!input.white.empty(), "--white", input.white);
+  add_if(input_.scene() != nullptr, "--size", std::to_string(input_.columns()) + 'x' + std::to_string(input_.rows()));
+  add_if(options_.layers != 4, "--layers", std::to_string(options_.layers));
+  if (state.thin()) {
+    add("--thin-lens", exact(state.choice.thin_mm));
+    add("--f-number", exact(state.choice.f_number));
+  } else {
+    out << ' ' << quoted(state.choice.name);
+    add_if(state.f_number_set, "--f-number", exact(state.f_number));
+  }
+  add_if(options_.fov_deg > 0, "--fov", exact(options_.fov_deg));
+  add("--focus", exact(state.focus_mm));
+  add_if(state.film.tilt_rad != 0, "--tilt", exact(exact_degrees(state.film.tilt_rad)));
+  add_if(state.film.swing_rad != 0, "--swing", exact(exact_degrees(state.film.swing_rad)));
+  add_if(state.choice.rgb, "--wavelengths", "rgb");
+  const petzval::Iris& iris = state.lens.iris();
+  if (iris.blades > 0) {
+    add("--blades", std::to_string(iris.blades));
+    add_if(iris.roundness != 0, "--roundness", exact(iris.roundness));
+    add_if(iris.rotation_rad != 0, "--iris-rotation", exact(exact_degrees(iris.rotation_rad)));
+  }
+  const petzval::BokehControls& bokeh = state.bokeh;
+  add_if(bokeh.lens_ratio != 1, "--lens-ratio", exact(bokeh.lens_ratio));
+  add_if(bokeh.rate_of_change != 0, "--rate-of-change", exact(bokeh.rate_of_change));
+  if (bokeh.keep_light) out << " --keep-light";
+  if (!bokeh.edge().even()) {
+    add("--weight-distribution", exact(bokeh.weight_distribution));
+    add("--weight-strength", exact(bokeh.weight_strength));
+  }
+  for (const petzval::PowerKnot& knot : state.expressive.power) {
+    add("--power-spline", exact(knot.radius) + ':' + exact(knot.power));
+  }
+  for (const petzval::FilmOffset& offset : state.expressive.film_offsets) {
+    add("--curvature-points",
+        exact(offset.film_point.x) + ',' + exact(offset.film_point.y) + ':' + exact(offset.offset_mm));
+  }
+  if (!state.expressive.dispersion.empty()) add("--dispersion", exact(state.expressive.dispersion.front()));
+  if (state.surface) {
+    add("--points", points_file);
+    add("--kind", std::string(name(state.surface_options.kind)));
+    add("--beta", exact(state.surface_options.beta));
+  }
+  out << " --out out";
+  return out.str();
+}
+
+SessionOptions options_of(const Json& log, const std::string& where) {
+  examples::check_keys(where, log,
+                       {"scene", "image", "depth", "deep", "depth_kind", "near_mm", "far_mm", "white", "lens", "size",
+                        "fov_deg", "events"},
+                       "scene, image, depth, deep, depth_kind, near_mm, far_mm, white, lens, size, fov_deg and events");
+  SessionOptions options;
+  const auto text = [&](const char* key, std::string& target) {
+    if (!log.contains(key)) return;
+    if (!log[key].is_string()) examples::refuse(where + ": " + key, log[key], "a text");
+    target = log[key].get<std::string>();
+  };
+  text("scene", options.input.scene), text("image", options.input.image), text("depth", options.input.depth);
+  text("deep", options.input.deep), text("depth_kind", options.input.depth_kind), text("white", options.input.white);
+  const examples::JsonEntry entry{where, log};
+  if (const auto near = entry.number("near_mm", examples::positive_number)) {
+    options.input.near_mm = *near;
+    options.input.far_mm = std::numeric_limits<double>::infinity();
+    if (log.contains("far_mm") && !log["far_mm"].is_null()) {
+      options.input.far_mm = *entry.number("far_mm", examples::positive_number);
+    }
+  }
+  constexpr const char* lens_rule = "a name, or an object with thin_mm and f_number";
+  if (!log.contains("lens")) throw Error(where + ": lens is missing; must be " + lens_rule);
+  const Json& lens = log["lens"];
+  if (lens.is_string() && !lens.get<std::string>().empty()) {
+    options.lens.name = lens.get<std::string>();
+  } else if (lens.is_object()) {
+    const examples::JsonEntry thin{where + ": lens", lens};
+    thin.keys({"thin_mm", "f_number"}, "thin_mm and f_number");
+    const auto focal = thin.number("thin_mm", examples::positive_number),
+               f_number = thin.number("f_number", examples::positive_number);
+    if (!focal || !f_number) examples::refuse(where + ": lens", lens, lens_rule);
+    options.lens.thin_mm = *focal, options.lens.f_number = *f_number;
+  } else {
+    examples::refuse(where + ": lens", lens, lens_rule);
+  }
+  const bool of_scene = !options.input.scene.empty();
+  if (const auto size = entry.numbers<2>("size", "two whole numbers, [width, height]"); size && of_scene) {
+    for (const double side : *size) {
+      if (!(side >= 1 && side <= 16384 && side == std::floor(side))) {
+        examples::refuse(where + ": size", log["size"], "two whole numbers from 1 to 16384");
+      }
+    }
+    options.input.width = static_cast<std::uint32_t>((*size)[0]);
+    options.input.height = static_cast<std::uint32_t>((*size)[1]);
+  }
+  options.fov_deg = entry.number("fov_deg", {1e-3, 120, "more than 0 and at most 120"}).value_or(0);
+  return options;
+}
+
+}  // namespace viewer

@@ -1,0 +1,116 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <map>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "layers/layer_input.hpp"
+#include "layers/lens_view.hpp"
+#include "petzval/blur/gather.hpp"
+#include "petzval/blur/layers.hpp"
+#include "petzval/editor/focus_editor.hpp"
+#include "petzval/image/image.hpp"
+#include "support/files.hpp"
+
+/// Interactive lens blur without its window.
+namespace viewer {
+
+/// What a session starts with.
+struct SessionOptions {
+  lens_blur::InputFlags input;
+  petzval::FocusLensChoice lens;
+  double fov_deg = 0;  ///< vertical; 0: 30 for a thin lens, else the angle of a film 24 mm high
+  std::uint32_t layers = 4;
+  int threads = 1;
+};
+
+/// A picture of the state of a session.
+struct Frame {
+  petzval::RgbImage picture;
+  std::uint32_t rays = 0;    ///< per pixel
+  double milliseconds = 0;   ///< for rays and gather; for a still picture also for its layers
+  double memory_mb = 0;      ///< of layers, tables of rays and buffers
+  bool first_order = false;  ///< a preview without aberrations
+  bool still = false;        ///< the picture of `petzval blur`
+};
+
+/// A scene in layers, a focus editor, and pictures of its state.
+///
+/// Layers are kept while the focus changes. They are made for the widest aperture so far.
+class Session {
+ public:
+  explicit Session(const SessionOptions& options);
+  Session(const Session&) = delete;  // the editor calls back
+  Session& operator=(const Session&) = delete;
+
+  petzval::FocusEditor& editor() noexcept { return *editor_; }
+  const petzval::FocusEditor& editor() const noexcept { return *editor_; }
+  const lens_blur::LayerInput& input() const noexcept { return input_; }
+
+  /// Makes the layers that the aperture of the state needs. Returns the time in ms; 0 if the layers are kept.
+  double make_layers();
+  /// True if make_layers() would make new layers.
+  bool layers_are_too_small() const;
+
+  /// A picture with few rays of the layers that are kept.
+  ///
+  /// @param rays         per pixel
+  /// @param first_order  true: without the aberrations of a real lens, whose rays take longer to set up
+  Frame frame(std::uint32_t rays, bool first_order = false);
+  /// The picture that the command of blur_command() computes.
+  Frame still();
+
+  /// For each pixel of the picture, the blur of the first surface in pixels: negative in front of the plane of focus.
+  std::vector<float> blur_map() const;
+  /// The depth of the first layer at each pixel (mm); 0: none.
+  float depth_mm(int column, int row) const;
+
+  /// The raster positions of the points of the state, through the camera of the state.
+  std::vector<std::optional<petzval::Vec2<double>>> handles() const;
+  /// The picture of a pinhole.
+  petzval::RgbImage sharp() const;
+  /// Pixels of the picture per unit of slope.
+  double focal_px() const noexcept { return camera_.focal_px; }
+
+  /// The keys of `petzval view --replay` for a state; times and memory are those of the frame.
+  examples::Json state_json(const Frame& frame) const;
+  /// The scene, the lens and all events: the file of --replay.
+  examples::Json log() const;
+  /// The command line that makes the still picture. points_file: where a focal surface has its points.
+  std::string blur_command(const std::string& points_file) const;
+  /// The points of the focal surface, for `petzval blur --points`; null without a surface.
+  examples::Json surface_points() const;
+
+ private:
+  petzval::Lens load(const petzval::FocusLensChoice& choice);
+  std::optional<petzval::FocusPlace> place(const petzval::Ray<double>& ray) const;
+  /// The lens of the state. from_points: the focal surface goes through the numbers of surface_points(), as in blur.
+  lens_blur::LensView view(bool from_points) const;
+  double widest_slope(const lens_blur::LensView& view) const;
+  void update_camera();
+
+  SessionOptions options_;
+  lens_blur::LayerInput input_;
+  std::map<std::pair<std::string, bool>, petzval::Lens> lenses_;  ///< by name and colours
+  std::optional<petzval::FocusEditor> editor_;
+  petzval::FocusLensChoice first_lens_;
+
+  petzval::LayerCamera camera_;  ///< of the layers, without overscan
+  std::string camera_lens_;      ///< the lens for which camera_ was made
+  double nearest_mm_ = 0;
+  petzval::LayerSet layers_;
+  double radius_mm_ = 0;  ///< of the pupil for which layers_ was made
+  double threshold_ = 0;  ///< of highlights
+  petzval::BlurredImage blurred_;
+};
+
+/// The session of a log, without its events. @throws petzval::Error that names the file and the key
+SessionOptions options_of(const examples::Json& log, const std::string& where);
+
+}  // namespace viewer

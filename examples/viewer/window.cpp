@@ -1,0 +1,674 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "viewer/window.hpp"
+
+#include <SDL.h>
+#include <SDL_opengl.h>
+#include <backends/imgui_impl_opengl3.h>
+#include <backends/imgui_impl_sdl.h>
+#include <imgui.h>
+
+#include <algorithm>
+#include <array>
+#include <cfloat>
+#include <chrono>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "petzval/core/error.hpp"
+#include "petzval/glass/glass.hpp"
+#include "petzval/io/lens_json.hpp"
+#include "support/files.hpp"
+#include "support/interrupt.hpp"
+#include "support/text.hpp"
+#include "viewer/section.hpp"
+#include "viewer/worker.hpp"
+
+namespace viewer {
+namespace {
+
+using examples::Json;
+
+/// Width of the panels beside the picture, and height of the drawings below it.
+constexpr float panel_width = 350, drawing_height = 190;
+/// End of the slider of distances: infinity.
+constexpr double farthest_m = 1000;
+/// Radius of the handle of a point, pixels of the screen.
+constexpr float handle_radius = 9;
+
+constexpr ImU32 white = IM_COL32(255, 255, 255, 255), black = IM_COL32(0, 0, 0, 255),
+                yellow = IM_COL32(255, 210, 60, 255), green = IM_COL32(80, 230, 120, 255),
+                grey = IM_COL32(150, 150, 150, 255), blue = IM_COL32(110, 170, 255, 255);
+
+/// SDL, its window and Dear ImGui.
+class Screen {
+ public:
+  Screen(const char* title, int width, int height) {
+    if (SDL_Init(SDL_INIT_VIDEO) != 0) fail();
+    SDL_GL_SetAttribute(SDL_GL_CONTEXT_PROFILE_MASK, SDL_GL_CONTEXT_PROFILE_CORE);
+    SDL_GL_SetAttribute(SDL_GL_CONTEXT_MAJOR_VERSION, 3);
+    SDL_GL_SetAttribute(SDL_GL_DOUBLEBUFFER, 1);
+    window_ = SDL_CreateWindow(title, SDL_WINDOWPOS_CENTERED, SDL_WINDOWPOS_CENTERED, width, height,
+                               SDL_WINDOW_OPENGL | SDL_WINDOW_RESIZABLE);
+    if (!window_) fail();
+    context_ = SDL_GL_CreateContext(window_);
+    if (!context_) fail();
+    SDL_GL_SetSwapInterval(1);
+    IMGUI_CHECKVERSION();
+    ImGui::CreateContext();
+    ImGui::GetIO().IniFilename = nullptr;  // leaves no file behind
+    ImGui::StyleColorsDark();
+    ImGui_ImplSDL2_InitForOpenGL(window_, context_);
+    ImGui_ImplOpenGL3_Init("#version 130");
+    drawn_ = true;
+  }
+  ~Screen() {
+    if (drawn_) {
+      ImGui_ImplOpenGL3_Shutdown();
+      ImGui_ImplSDL2_Shutdown();
+      ImGui::DestroyContext();
+    }
+    close();
+  }
+  Screen(const Screen&) = delete;
+  Screen& operator=(const Screen&) = delete;
+
+  void begin() {
+    ImGui_ImplOpenGL3_NewFrame();
+    ImGui_ImplSDL2_NewFrame();
+    ImGui::NewFrame();
+  }
+  void end() {
+    ImGui::Render();
+    const ImVec2 size = ImGui::GetIO().DisplaySize;
+    glViewport(0, 0, static_cast<int>(size.x), static_cast<int>(size.y));
+    glClearColor(0.1f, 0.1f, 0.1f, 1);
+    glClear(GL_COLOR_BUFFER_BIT);
+    ImGui_ImplOpenGL3_RenderDrawData(ImGui::GetDrawData());
+    SDL_GL_SwapWindow(window_);
+  }
+
+ private:
+  [[noreturn]] void fail() {
+    const std::string reason = SDL_GetError();
+    close();
+    throw petzval::Error("window: " + reason +
+                         "; must have a display (DISPLAY) with OpenGL 3. petzval view --replay "
+                         "needs none");
+  }
+  void close() {
+    if (context_) SDL_GL_DeleteContext(context_);
+    if (window_) SDL_DestroyWindow(window_);
+    SDL_Quit();
+  }
+
+  SDL_Window* window_ = nullptr;
+  SDL_GLContext context_ = nullptr;
+  bool drawn_ = false;
+};
+
+/// A picture on the graphics processor.
+class Texture {
+ public:
+  ~Texture() {
+    if (id_ != 0) glDeleteTextures(1, &id_);
+  }
+  Texture() = default;
+  Texture(const Texture&) = delete;
+  Texture& operator=(const Texture&) = delete;
+
+  void set(int width, int height, GLenum format, const void* pixels) {
+    if (id_ == 0) glGenTextures(1, &id_);
+    glBindTexture(GL_TEXTURE_2D, id_);
+    glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_LINEAR);
+    glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_LINEAR);
+    glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
+    glTexImage2D(GL_TEXTURE_2D, 0, GL_RGBA, width, height, 0, format, GL_UNSIGNED_BYTE, pixels);
+  }
+  explicit operator bool() const noexcept { return id_ != 0; }
+  ImTextureID id() const noexcept { return reinterpret_cast<ImTextureID>(static_cast<std::intptr_t>(id_)); }
+
+ private:
+  GLuint id_ = 0;
+};
+
+/// A shipped lens with its drawing.
+struct ShippedLens {
+  std::string id, name;
+  std::optional<Section> section = {};  ///< drawn when it is first seen
+};
+
+std::vector<ShippedLens> shipped_lenses() {
+  std::vector<ShippedLens> lenses;
+  for (const auto& file : examples::entries(petzval::data_directory() / "lenses")) {
+    if (file.extension() == ".json") lenses.push_back({file.stem().string(), file.stem().string()});
+  }
+  std::ranges::sort(lenses, {}, &ShippedLens::id);
+  return lenses;
+}
+
+/// The drawing of a shipped lens; empty if it cannot be compiled.
+Section drawing_of(const std::string& id) {
+  try {
+    const petzval::Lens lens =
+        petzval::compile(petzval::read_prescription(petzval::data_directory() / "lenses" / (id + ".json")));
+    return section_of(lens, {.z_mm = lens.film_z()});
+  } catch (const petzval::Error&) {
+    return {};  // a lens that needs a configuration
+  }
+}
+
+void draw_section(ImDrawList& draw, const Section& section, const ImVec2& corner, const ImVec2& size) {
+  const float width = section.most.x - section.least.x, height = section.most.y - section.least.y;
+  if (!(width > 0 && height > 0)) return;
+  const float scale = 0.92f * std::min(size.x / width, size.y / height);
+  const ImVec2 middle{corner.x + size.x / 2, corner.y + size.y / 2};
+  const petzval::Vec2<float> centre = (section.least + section.most) / 2.0f;
+  const auto lines = [&](const std::vector<Polyline>& all, ImU32 colour, float thickness) {
+    for (const Polyline& line : all) {
+      for (std::size_t i = 1; i < line.size(); ++i) {
+        const auto at = [&](const petzval::Vec2<float>& p) {
+          return ImVec2{middle.x + (p.x - centre.x) * scale, middle.y - (p.y - centre.y) * scale};
+        };
+        draw.AddLine(at(line[i - 1]), at(line[i]), colour, thickness);
+      }
+    }
+  };
+  draw.PushClipRect(corner, {corner.x + size.x, corner.y + size.y}, true);
+  lines(section.rays, yellow, 1);
+  lines(section.surfaces, white, 1);
+  lines(section.stop, blue, 2);
+  lines(section.film, green, 2);
+  draw.PopClipRect();
+}
+
+class Window {
+ public:
+  explicit Window(const WindowOptions& options)
+      : options_(options), worker_(options.session, options.first_log), lenses_(shipped_lenses()) {}
+
+  Worker& worker() noexcept { return worker_; }
+
+  /// Draws everything and sends the events of the user. Returns false when the window is closed.
+  bool draw() {
+    shown_ = worker_.snapshot();
+    update_textures();
+    const ImVec2 size = ImGui::GetIO().DisplaySize;
+    constexpr ImGuiWindowFlags fixed = ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_NoResize |
+                                       ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoBringToFrontOnFocus |
+                                       ImGuiWindowFlags_NoSavedSettings;
+    ImGui::SetNextWindowPos({0, 0});
+    ImGui::SetNextWindowSize({size.x - panel_width, size.y - drawing_height});
+    ImGui::Begin("Picture", nullptr, fixed | ImGuiWindowFlags_NoScrollbar);
+    picture();
+    ImGui::End();
+    ImGui::SetNextWindowPos({0, size.y - drawing_height});
+    ImGui::SetNextWindowSize({size.x - panel_width, drawing_height});
+    ImGui::Begin("Drawings", nullptr, fixed | ImGuiWindowFlags_NoScrollbar);
+    drawings();
+    ImGui::End();
+    ImGui::SetNextWindowPos({size.x - panel_width, 0});
+    ImGui::SetNextWindowSize({panel_width, size.y});
+    ImGui::Begin("Panels", nullptr, fixed);
+    panels();
+    ImGui::End();
+    keys_of_keyboard();
+    play();
+    return !closed_;
+  }
+
+  void dropped(const std::string& file) { send({{"type", "lens"}, {"lens", file}}); }
+  void close() { closed_ = true; }
+
+ private:
+  const petzval::FocusEditorState& state() const { return shown_->state; }
+  void send(const Json& event) { worker_.send(event); }
+
+  /// Sends the event of a widget that was just drawn. The events of one drag are one step of undo.
+  void send_from_widget(const std::string& widget, Json event) {
+    if (dragged_ == widget) event["continues"] = true;
+    dragged_ = widget;
+    send(event);
+  }
+  void end_of_widget() {
+    if (ImGui::IsItemDeactivated()) dragged_.clear();
+  }
+  /// A slider that sends event(value).
+  template <class Event>
+  void slider(const char* label, double value, double least, double most, const char* format, const Event& event,
+              ImGuiSliderFlags flags = 0) {
+    auto shown = static_cast<float>(value);
+    if (ImGui::SliderFloat(label, &shown, static_cast<float>(least), static_cast<float>(most), format,
+                           flags | ImGuiSliderFlags_AlwaysClamp)) {
+      // Four digits: what the slider shows.
+      send_from_widget(label, event(Json::parse(examples::number(static_cast<double>(shown), 4)).get<double>()));
+    }
+    end_of_widget();
+  }
+  void slider(const char* label, double value, double least, double most, const char* format, const char* type,
+              const char* key, ImGuiSliderFlags flags = 0) {
+    slider(
+        label, value, least, most, format,
+        [&](double set) {
+          return Json{{"type", type}, {key, set}};
+        },
+        flags);
+  }
+
+  void update_textures() {
+    if (shown_->picture && shown_->pictures != pictures_) {
+      pictures_ = shown_->pictures;
+      const petzval::Rgb8Image& image = *shown_->picture;
+      picture_.set(image.width, image.height, GL_RGB, image.pixels.data());
+    }
+    if (shown_->sharp && shown_->sharp != sharp_shown_) {
+      sharp_shown_ = shown_->sharp;
+      sharp_.set(sharp_shown_->width, sharp_shown_->height, GL_RGB, sharp_shown_->pixels.data());
+    }
+    if (shown_->blur && shown_->blur != blur_shown_) {
+      blur_shown_ = shown_->blur;
+      const std::vector<float>& blur = *blur_shown_;
+      std::vector<std::uint8_t> map(4 * blur.size());
+      for (std::size_t i = 0; i < blur.size(); ++i) {
+        const float b = blur[i], part = std::isnan(b) ? 0 : std::min(std::abs(b) / 10, 1.0f);
+        const bool sharp = std::abs(b) < 1;
+        map[4 * i] = sharp ? 60 : b < 0 ? 255 : 0;
+        map[4 * i + 1] = sharp ? 255 : 60;
+        map[4 * i + 2] = sharp ? 90 : b < 0 ? 0 : 255;
+        map[4 * i + 3] = std::isnan(b) ? 0 : sharp ? 140 : static_cast<std::uint8_t>(150 * part);
+      }
+      const int columns = shown_->state.film.columns;
+      map_.set(columns, static_cast<int>(blur.size()) / columns, GL_RGBA, map.data());
+    }
+    if (shown_->bokeh.pixels > 0) {
+      std::vector<std::uint8_t> grey_levels;
+      for (const float value : shown_->bokeh.values) {
+        grey_levels.insert(grey_levels.end(), 3, static_cast<std::uint8_t>(255 * std::sqrt(value)));
+      }
+      bokeh_.set(shown_->bokeh.pixels, shown_->bokeh.pixels, GL_RGB, grey_levels.data());
+    }
+  }
+
+  // The picture with its handles.
+  void picture() {
+    const petzval::Film& film = state().film;
+    const ImVec2 space = ImGui::GetContentRegionAvail();
+    const float line = ImGui::GetTextLineHeightWithSpacing();
+    const float scale =
+        std::min(space.x / static_cast<float>(film.columns), (space.y - 2 * line) / static_cast<float>(film.rows));
+    const ImVec2 size{scale * static_cast<float>(film.columns), scale * static_cast<float>(film.rows)};
+    const ImVec2 corner = ImGui::GetCursorScreenPos();
+    ImDrawList& draw = *ImGui::GetWindowDrawList();
+    const Texture& texture = before_ && sharp_ ? sharp_ : picture_;
+    ImGui::InvisibleButton("picture", size, ImGuiButtonFlags_MouseButtonLeft | ImGuiButtonFlags_MouseButtonRight);
+    const ImVec2 end{corner.x + size.x, corner.y + size.y};
+    if (texture) draw.AddImage(texture.id(), corner, end);
+    if (overlay_ && map_) draw.AddImage(map_.id(), corner, end);
+    const auto on_screen = [&](const petzval::Vec2<double>& raster) {
+      return ImVec2{corner.x + scale * static_cast<float>(raster.x), corner.y + scale * static_cast<float>(raster.y)};
+    };
+    const ImVec2 mouse = ImGui::GetIO().MousePos;
+    const petzval::Vec2<double> raster{static_cast<double>((mouse.x - corner.x) / scale),
+                                       static_cast<double>((mouse.y - corner.y) / scale)};
+    std::string under;  // id of the point under the mouse
+    for (std::size_t i = 0; i < state().targets.size() && i < shown_->handles.size(); ++i) {
+      const petzval::FocusMark& mark = state().targets[i];
+      if (!shown_->handles[i]) continue;
+      const ImVec2 at = on_screen(*shown_->handles[i]);
+      const bool near = std::hypot(at.x - mouse.x, at.y - mouse.y) < 1.5f * handle_radius;
+      if (near) under = mark.id;
+      const ImU32 colour = mark.status == "used" ? yellow : grey;
+      draw.AddCircle(at, handle_radius, black, 0, 4);
+      draw.AddCircle(at, handle_radius, colour, 0, mark.id == selected_ || near ? 3.0f : 2.0f);
+      std::string text = mark.id;
+      if (mark.blur_px) text += ": " + examples::number(*mark.blur_px, 2) + " px";
+      if (mark.status != "used") text += " (" + std::string(mark.status) + ')';
+      draw.AddText({at.x + handle_radius + 4, at.y - 6}, black, text.c_str());
+      draw.AddText({at.x + handle_radius + 3, at.y - 7}, colour, text.c_str());
+    }
+    mouse_on_picture(raster, under);
+    const Frame& frame = shown_->frame;
+    std::string caption = std::to_string(frame.rays) + " rays per pixel, " + examples::number(frame.milliseconds, 3) +
+                          " ms, " + examples::number(frame.memory_mb, 3) + " MB";
+    if (frame.first_order) caption += "; without aberrations: the rays of the lens are being traced";
+    if (frame.still) caption += "; still, as by petzval blur";
+    ImGui::TextUnformatted(caption.c_str());
+    if (!shown_->message.empty()) {
+      ImGui::TextColored({1, 0.7f, 0.4f, 1}, "%s", shown_->message.c_str());
+    } else {
+      ImGui::TextDisabled(
+          "click: focus   drag: move   shift + click: another point   right click: blur and weight   "
+          "ctrl + z: undo");
+    }
+  }
+
+  void mouse_on_picture(const petzval::Vec2<double>& raster, const std::string& under) {
+    if (!ImGui::IsItemHovered() && moved_.empty()) return;
+    const petzval::Film& film = state().film;
+    const auto pixel = [&] {
+      return Json{std::clamp(raster.x, 0.0, static_cast<double>(film.columns)),
+                  std::clamp(raster.y, 0.0, static_cast<double>(film.rows))};
+    };
+    const bool inside = raster.x >= 0 && raster.x < film.columns && raster.y >= 0 && raster.y < film.rows;
+    if (inside && (raster.x != looked_at_.x || raster.y != looked_at_.y)) {
+      looked_at_ = raster;
+      worker_.look_at(raster);
+    }
+    if (ImGui::IsItemClicked(ImGuiMouseButton_Right) && !under.empty()) {
+      selected_ = under;
+      ImGui::OpenPopup("point");
+    }
+    if (ImGui::IsItemClicked(ImGuiMouseButton_Left)) {
+      const bool by_distance = state().serve == petzval::FocusServe::distance;
+      if (!under.empty()) {
+        selected_ = moved_ = under;
+        move_has_begun_ = false;
+      } else if (by_distance && !state().targets.empty() && !ImGui::GetIO().KeyShift) {
+        // One point: it moves to where the user clicks.
+        const std::string id = selected_.empty() ? state().targets.back().id : selected_;
+        send({{"type", "move_point"}, {"id", id}, {"pixel", pixel()}});
+        selected_ = moved_ = id;
+        move_has_begun_ = true;
+      } else {
+        std::string id;
+        for (int k = 1; id.empty() || has_point(id); ++k) id = std::to_string(k);
+        send({{"type", "add_point"}, {"id", id}, {"pixel", pixel()}});
+        selected_ = moved_ = id;
+        move_has_begun_ = true;
+      }
+      pressed_at_ = raster;
+    }
+    if (!moved_.empty() && ImGui::IsMouseDown(ImGuiMouseButton_Left)) {
+      if (raster.x == pressed_at_.x && raster.y == pressed_at_.y) return;
+      pressed_at_ = raster;
+      Json event{{"type", "move_point"}, {"id", moved_}, {"pixel", pixel()}};
+      if (move_has_begun_) event["continues"] = true;
+      move_has_begun_ = true;
+      send(event);
+    } else {
+      moved_.clear();
+    }
+  }
+
+  bool has_point(const std::string& id) const {
+    return std::ranges::any_of(state().targets, [&](const petzval::FocusMark& mark) { return mark.id == id; });
+  }
+
+  void edit_point(const petzval::FocusMark& mark) {
+    ImGui::PushID(mark.id.c_str());
+    const auto edit = [&](const char* label, double value, double least, double most, const char* key) {
+      slider(label, value, least, most, "%.2f", [&](double set) {
+        return Json{{"type", "set_point"}, {"id", mark.id}, {key, set}};
+      });
+    };
+    edit("blur (px)", mark.requested_px, -30, 30, "blur_px");
+    edit("weight", mark.weight, 0, 4, "weight");
+    bool extent = mark.extent_stops.has_value();
+    if (ImGui::Checkbox("depth of field", &extent)) {
+      send({{"type", "set_point"}, {"id", mark.id}, {"extent_stops", extent ? Json(0) : Json(nullptr)}});
+    }
+    if (extent && mark.extent_stops) edit("stops", *mark.extent_stops, -4, 8, "extent_stops");
+    if (ImGui::Button("Remove")) {
+      send({{"type", "remove_point"}, {"id", mark.id}});
+      selected_.clear();
+    }
+    ImGui::PopID();
+  }
+
+  // The section of the lens and the bokeh.
+  void drawings() {
+    const ImVec2 space = ImGui::GetContentRegionAvail(), corner = ImGui::GetCursorScreenPos();
+    ImDrawList& draw = *ImGui::GetWindowDrawList();
+    const float line = ImGui::GetTextLineHeightWithSpacing();
+    draw_section(draw, shown_->section, {corner.x, corner.y + line}, {space.x - space.y - 8, space.y - line});
+    if (bokeh_ && shown_->bokeh.pixels > 0) {
+      const ImVec2 start{corner.x + space.x - space.y, corner.y}, end{corner.x + space.x, corner.y + space.y};
+      draw.AddImage(bokeh_.id(), start, end);
+      const std::string text = "bokeh, " + examples::number(shown_->bokeh.width_px, 3) + " px wide";
+      draw.AddText({start.x + 4, end.y - 16}, yellow, text.c_str());
+    }
+    ImGui::TextDisabled("%s, rays of the point under the mouse", state().lens.name().c_str());
+    if (!shown_->plane.empty()) ImGui::TextDisabled("%s", shown_->plane.c_str());
+  }
+
+  // All panels on the right.
+  void panels() {
+    if (ImGui::Button("Undo") && shown_->can_undo) send({{"type", "undo"}});
+    ImGui::SameLine();
+    if (ImGui::Button("Redo") && shown_->can_redo) send({{"type", "redo"}});
+    ImGui::SameLine();
+    if (ImGui::Button("Export")) {
+      worker_.write_to(options_.out_folder.empty() ? std::filesystem::path("out") / "view"
+                                                   : std::filesystem::path(options_.out_folder));
+    }
+    ImGui::SameLine();
+    ImGui::Checkbox("sharp", &before_);
+    ImGui::SameLine();
+    ImGui::Checkbox("map", &overlay_);
+    ImGui::PushItemWidth(0.55f * panel_width);
+    if (ImGui::CollapsingHeader("Focus", ImGuiTreeNodeFlags_DefaultOpen)) focus_panel();
+    if (ImGui::CollapsingHeader("Points", ImGuiTreeNodeFlags_DefaultOpen)) points_panel();
+    if (ImGui::CollapsingHeader("Lens", ImGuiTreeNodeFlags_DefaultOpen)) lens_panel();
+    if (ImGui::CollapsingHeader("Bokeh")) bokeh_panel();
+    if (ImGui::CollapsingHeader("Aberrations")) aberrations_panel();
+    if (ImGui::CollapsingHeader("Keys")) time_panel();
+    if (ImGui::CollapsingHeader("Blur of the picture (-20 to 20 px)")) {
+      ImGui::PlotHistogram("##blur", shown_->histogram.data(), static_cast<int>(shown_->histogram.size()), 0, nullptr,
+                           0, FLT_MAX, {panel_width - 30, 60});
+    }
+    ImGui::PopItemWidth();
+  }
+
+  void focus_panel() {
+    using petzval::FocusServe;
+    constexpr std::array serves{FocusServe::distance, FocusServe::film, FocusServe::tilt, FocusServe::surface};
+    constexpr std::array words{"one point", "upright film", "tilted film", "focal surface"};
+    for (std::size_t i = 0; i < serves.size(); ++i) {
+      if (ImGui::RadioButton(words[i], state().serve == serves[i])) {
+        send({{"type", "serve"}, {"by", name(serves[i])}});
+      }
+      if (i % 2 == 0) ImGui::SameLine(panel_width / 2);
+    }
+    if (state().status != "solved") ImGui::TextColored({1, 0.7f, 0.4f, 1}, "%s", std::string(state().status).c_str());
+    const double shown_mm = std::min(state().focus_mm, 1e6);
+    slider(
+        "distance (m)", shown_mm / 1000, 0.1, 1000, "%.3f",
+        [](double m) {
+          return Json{{"type", "focus"}, {"distance_mm", 1000 * m}};
+        },
+        ImGuiSliderFlags_Logarithmic);
+    if (state().serve == FocusServe::surface) {
+      slider("beta", state().surface_options.beta, 1, 8, "%.1f", [](double beta) {
+        return Json{{"type", "serve"}, {"by", "surface"}, {"beta", beta}};
+      });
+    } else {
+      slider("tilt (deg)", petzval::degrees(state().film.tilt_rad), -20, 20, "%.2f", "tilt", "tilt_deg");
+      slider("swing (deg)", petzval::degrees(state().film.swing_rad), -20, 20, "%.2f", "tilt", "swing_deg");
+    }
+    bool nearer = nearer_, fade = fade_;
+    if (ImGui::Checkbox("nearer points weigh more", &nearer)) {
+      send({{"type", "weighting"}, {"nearer", nearer_ = nearer}});
+    }
+    if (ImGui::Checkbox("points outside fade", &fade)) send({{"type", "weighting"}, {"fade", fade_ = fade}});
+  }
+
+  void points_panel() {
+    for (const petzval::FocusMark& mark : state().targets) {
+      const std::string label =
+          "point " + mark.id + (mark.status == "used" ? "" : " (" + std::string(mark.status) + ")");
+      ImGui::SetNextItemOpen(mark.id == selected_, ImGuiCond_Always);
+      const bool open = ImGui::TreeNode(mark.id.c_str(), "%s", label.c_str());
+      if (ImGui::IsItemClicked()) selected_ = mark.id == selected_ ? "" : mark.id;
+      if (!open) continue;
+      edit_point(mark);
+      ImGui::TreePop();
+    }
+    if (state().targets.empty()) ImGui::TextDisabled("click into the picture");
+  }
+
+  void lens_panel() {
+    const std::string shown = state().thin() ? state().lens.name() : state().choice.name;
+    if (ImGui::BeginCombo("lens", shown.c_str(), ImGuiComboFlags_HeightLargest)) {
+      for (ShippedLens& lens : lenses_) {
+        ImGui::PushID(lens.id.c_str());
+        const ImVec2 corner = ImGui::GetCursorScreenPos();
+        const ImVec2 thumbnail{110, 44};
+        if (ImGui::Selectable("##lens", lens.id == state().choice.name, 0, {0, thumbnail.y})) {
+          send({{"type", "lens"}, {"lens", lens.id}});
+        }
+        if (ImGui::IsItemVisible()) {
+          if (!lens.section) lens.section = drawing_of(lens.id);
+          ImDrawList& draw = *ImGui::GetWindowDrawList();
+          draw_section(draw, *lens.section, corner, thumbnail);
+          draw.AddText({corner.x + thumbnail.x + 8, corner.y + thumbnail.y / 2 - 7}, white, lens.id.c_str());
+        }
+        ImGui::PopID();
+      }
+      ImGui::EndCombo();
+    }
+    ImGui::TextDisabled("or drop a lens file into the window");
+    if (ImGui::Button("thin lens, 50 mm f/2")) {
+      send({{"type", "lens"}, {"lens", {{"thin_mm", 50}, {"f_number", 2}}}});
+    }
+    slider("f-number", state().f_number, 0.5, 32, "f/%.2f", "f_number", "f_number", ImGuiSliderFlags_Logarithmic);
+    const petzval::Iris& iris = state().lens.iris();
+    int blades = iris.blades;
+    if (ImGui::SliderInt("blades", &blades, 0, 12, blades < 3 ? "round" : "%d")) {
+      send_from_widget("blades", {{"type", "iris"}, {"blades", blades < 3 ? 0 : blades}});
+    }
+    end_of_widget();
+    if (iris.blades > 0) {
+      slider("roundness", iris.roundness, -1, 1, "%.2f", "iris", "roundness");
+      slider("rotation (deg)", petzval::degrees(iris.rotation_rad), -180, 180, "%.0f", "iris", "rotation_deg");
+    }
+    bool rgb = state().choice.rgb;
+    if (ImGui::Checkbox("colour of the lens", &rgb)) send({{"type", "colour"}, {"rgb", rgb}});
+  }
+
+  void bokeh_panel() {
+    const petzval::BokehControls& bokeh = state().bokeh;
+    slider("lens ratio", bokeh.lens_ratio, 0.2, 2, "%.2f", "bokeh", "lens_ratio");
+    slider("rate of change", bokeh.rate_of_change, 0, 2, "%.2f", "bokeh", "rate_of_change");
+    slider("rim weight", bokeh.weight_distribution, -10, 10, "%.2f", "bokeh", "weight_distribution");
+    slider("strength", bokeh.weight_strength, -1, 1, "%.2f", "bokeh", "weight_strength");
+    bool keep = bokeh.keep_light;
+    if (ImGui::Checkbox("keep light", &keep)) send({{"type", "bokeh"}, {"keep_light", keep}});
+  }
+
+  void aberrations_panel() {
+    const petzval::ExpressiveLens& lens = state().expressive;
+    const double rim = lens.power.empty() ? 0 : lens.power.back().power - 1;
+    slider("spherical (%)", 100 * rim, -5, 5, "%.2f", [](double percent) {
+      Json spline = Json::array();
+      if (percent != 0) spline = {{0, 1}, {0.7, 1 + percent / 200}, {1, 1 + percent / 100}};
+      return Json{{"type", "expressive"}, {"power_spline", spline}};
+    });
+    const double bend = lens.film_offsets.empty() ? 0 : lens.film_offsets.back().offset_mm;
+    slider("curvature (mm)", bend, -2, 2, "%.2f", [&](double mm) {
+      const double x = state().film.width_mm / 2, y = state().film.height_mm / 2;
+      Json points = Json::array();
+      if (mm != 0) points = {{0, 0, 0}, {x, y, mm}, {-x, y, mm}, {x, -y, mm}, {-x, -y, mm}};
+      return Json{{"type", "expressive"}, {"curvature_points", points}};
+    });
+    slider("axial colour", lens.dispersion.empty() ? 1 : lens.dispersion.front(), 0, 10, "%.1f", "expressive",
+           "dispersion");
+    slider("of the real lens", from_lens_, 0, 4, "%.2f", [this](double part) {
+      from_lens_ = part;
+      return Json{{"type", "expressive"}, {"from_lens", part}};
+    });
+  }
+
+  void time_panel() {
+    slider("time (s)", state().time_s, 0, 10, "%.2f", "time", "time_s");
+    // A mark for each key below the slider.
+    const ImVec2 least = ImGui::GetItemRectMin(), most = ImGui::GetItemRectMax();
+    const float width = 0.55f * panel_width;
+    for (const double key : shown_->key_times) {
+      const float x = least.x + width * static_cast<float>(std::clamp(key / 10, 0.0, 1.0));
+      ImGui::GetWindowDrawList()->AddTriangleFilled({x - 4, most.y + 5}, {x + 4, most.y + 5}, {x, most.y}, yellow);
+    }
+    if (ImGui::Button("Set key")) send({{"type", "key"}, {"time_s", state().time_s}});
+    ImGui::SameLine();
+    if (ImGui::Button(playing_ ? "Stop" : "Play")) playing_ = !playing_;
+  }
+
+  void play() {
+    if (!playing_) return;
+    const auto now = std::chrono::steady_clock::now();
+    if (now - last_step_ < std::chrono::milliseconds(42)) return;
+    last_step_ = now;
+    const double end = shown_->key_times.empty() ? 10 : std::max(0.1, shown_->key_times.back());
+    const double next = state().time_s + 1 / 24.0;
+    send({{"type", "time"}, {"time_s", next > end ? 0 : next}, {"continues", true}});
+  }
+
+  void keys_of_keyboard() {
+    const ImGuiIO& io = ImGui::GetIO();
+    if (io.WantTextInput) return;
+    if (io.KeyCtrl && ImGui::IsKeyPressed(SDL_SCANCODE_Z) && shown_->can_undo) send({{"type", "undo"}});
+    if (io.KeyCtrl && ImGui::IsKeyPressed(SDL_SCANCODE_Y) && shown_->can_redo) send({{"type", "redo"}});
+    if (ImGui::IsKeyPressed(SDL_SCANCODE_DELETE) && has_point(selected_)) {
+      send({{"type", "remove_point"}, {"id", selected_}});
+      selected_.clear();
+    }
+    if (ImGui::IsKeyPressed(SDL_SCANCODE_SPACE, false)) playing_ = !playing_;
+  }
+
+  WindowOptions options_;
+  Worker worker_;
+  std::shared_ptr<const Snapshot> shown_;
+  std::vector<ShippedLens> lenses_;
+  Texture picture_, sharp_, map_, bokeh_;
+  std::uint64_t pictures_ = 0;
+  std::shared_ptr<const petzval::Rgb8Image> sharp_shown_;
+  std::shared_ptr<const std::vector<float>> blur_shown_;
+
+  std::string dragged_;           ///< the widget whose events are one step of undo
+  std::string selected_, moved_;  ///< ids of points
+  bool move_has_begun_ = false;
+  petzval::Vec2<double> pressed_at_{-1, -1}, looked_at_{-1, -1};
+  bool before_ = false, overlay_ = false, nearer_ = false, fade_ = true, playing_ = false, closed_ = false;
+  double from_lens_ = 0;
+  std::chrono::steady_clock::time_point last_step_{};
+};
+
+}  // namespace
+
+void show_window(const WindowOptions& options) {
+  examples::Interrupt interrupt;
+  std::optional<Window> window;
+  const auto save = [&] {
+    if (window) examples::write_text(options.log_file, window->worker().log().dump(1) + '\n');
+  };
+  window.emplace(options);
+  try {
+    Screen screen("petzval view", options.width > 0 ? options.width : 1180, options.height > 0 ? options.height : 840);
+    bool open = true;
+    while (open && !examples::Interrupt::asked()) {
+      SDL_Event event;
+      while (SDL_PollEvent(&event) != 0) {
+        ImGui_ImplSDL2_ProcessEvent(&event);
+        if (event.type == SDL_QUIT) window->close();
+        if (event.type == SDL_DROPFILE) {
+          window->dropped(event.drop.file);
+          SDL_free(event.drop.file);
+        }
+      }
+      screen.begin();
+      open = window->draw();
+      screen.end();
+      SDL_Delay(8);
+    }
+    save();
+    window.reset();  // its textures, before the screen
+  } catch (const petzval::Error& error) {
+    save();
+    throw petzval::Error(std::string(error.what()) + ". The events are saved in " + options.log_file);
+  }
+}
+
+}  // namespace viewer

@@ -1,0 +1,265 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "viewer/worker.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <cstddef>
+#include <utility>
+
+#include "petzval/core/error.hpp"
+#include "petzval/focus/focus.hpp"
+#include "petzval/paraxial/ideal_lens.hpp"
+#include "support/files.hpp"
+#include "support/picture_files.hpp"
+#include "support/text.hpp"
+
+namespace viewer {
+namespace {
+
+using examples::Json;
+
+/// Rays per pixel of the pictures after a change.
+constexpr std::array<std::uint32_t, 3> ray_steps{16, 64, 256};
+/// Time without a change after which the still picture is computed.
+constexpr auto patience = std::chrono::milliseconds(500);
+
+/// The plane of focus of a tilted film in words.
+std::string plane_in_words(const petzval::FocusEditorState& state) {
+  if (!state.film.tilted()) return "";
+  const auto plane = petzval::focus_plane(petzval::thick_lens(state.lens), state.film);
+  if (!plane) return "plane of focus: at infinity";
+  std::string text = "plane of focus: turned by " +
+                     examples::number(petzval::degrees(std::acos(std::min(1.0, plane->plane.normal.z))), 3) +
+                     " degrees";
+  if (plane->hinge) {
+    const petzval::Vec3<double>& near = plane->hinge->point;
+    text += "; hinge line " + examples::number(std::hypot(near.x, near.y), 4) + " mm from the axis";
+  }
+  return text;
+}
+
+}  // namespace
+
+Worker::Worker(const SessionOptions& options, const std::string& first_events) : session_(options) {
+  session_.make_layers();
+  if (!first_events.empty()) session_.editor().replay(first_events);
+  // A first point in the middle, sharp.
+  const petzval::Film& film = session_.editor().state().film;
+  session_.editor().apply(
+      Json{{"type", "add_point"}, {"id", "1"}, {"pixel", {film.columns / 2, film.rows / 2}}}.dump());
+  look_at_ = petzval::Vec2<double>(film.columns / 2, film.rows / 2);
+  snapshot_ = std::make_shared<const Snapshot>(Snapshot{.state = session_.editor().state()});
+  thread_ = std::thread([this] { run(); });
+}
+
+Worker::~Worker() {
+  {
+    const std::lock_guard lock(mutex_);
+    ends_ = true;
+  }
+  changed_.notify_all();
+  thread_.join();
+}
+
+void Worker::send(const Json& event) {
+  {
+    const std::lock_guard lock(mutex_);
+    const bool continues = event.value("continues", false);
+    Json added = event;
+    if (continues && !events_.empty() && events_.back()["type"] == event["type"] &&
+        events_.back().value("id", "") == event.value("id", "")) {
+      if (!events_.back().value("continues", false)) added.erase("continues");
+      events_.back() = std::move(added);
+    } else {
+      events_.push_back(std::move(added));
+    }
+    idle_ = false;
+  }
+  changed_.notify_all();
+}
+
+void Worker::look_at(const petzval::Vec2<double>& raster) {
+  {
+    const std::lock_guard lock(mutex_);
+    look_at_ = raster;
+  }
+  changed_.notify_all();
+}
+
+void Worker::write_to(const std::filesystem::path& folder) {
+  {
+    const std::lock_guard lock(mutex_);
+    folder_ = folder;
+  }
+  changed_.notify_all();
+}
+
+std::shared_ptr<const Snapshot> Worker::snapshot() const {
+  const std::lock_guard lock(mutex_);
+  return snapshot_;
+}
+
+Json Worker::log() {
+  const std::lock_guard lock(session_mutex_);
+  return session_.log();
+}
+
+bool Worker::idle() const {
+  const std::lock_guard lock(mutex_);
+  return idle_;
+}
+
+void Worker::publish(Snapshot snapshot) {
+  const std::lock_guard lock(mutex_);
+  snapshot_ = std::make_shared<const Snapshot>(std::move(snapshot));
+}
+
+bool Worker::interrupted() const {
+  const std::lock_guard lock(mutex_);
+  return ends_ || !events_.empty();
+}
+
+/// Applies the queued events. Returns true if there were any.
+bool Worker::apply_events() {
+  std::vector<Json> events;
+  {
+    const std::lock_guard lock(mutex_);
+    events.swap(events_);
+  }
+  if (events.empty()) return false;
+  Snapshot next = *snapshot();
+  next.message.clear();
+  for (const Json& event : events) {
+    try {
+      session_.editor().apply(event.dump());
+    } catch (const petzval::Error& error) {
+      next.message = error.what();
+    }
+  }
+  next.state = session_.editor().state();
+  next.can_undo = session_.editor().can_undo(), next.can_redo = session_.editor().can_redo();
+  next.key_times = session_.editor().key_times();
+  next.plane = plane_in_words(next.state);
+  publish(std::move(next));
+  return true;
+}
+
+void Worker::show(Frame frame) {
+  Snapshot next = *snapshot();
+  next.picture = std::make_shared<const petzval::Rgb8Image>(petzval::to_srgb8(frame.picture));
+  frame.picture = {};
+  next.frame = std::move(frame);
+  ++next.pictures;
+  publish(std::move(next));
+}
+
+/// The section with the rays under the mouse, and the bokeh there.
+void Worker::look() {
+  petzval::Vec2<double> raster{0, 0};
+  {
+    const std::lock_guard lock(mutex_);
+    if (!look_at_) return;
+    raster = *look_at_;
+  }
+  const petzval::FocusEditorState& state = session_.editor().state();
+  Snapshot next = *snapshot();
+  next.section = section_of(state.lens, state.film);
+  const petzval::Camera camera(state.lens, state.film, state.camera_options());
+  next.section.rays = rays_through(camera, state.film.point(raster.x, raster.y));
+  const float depth = session_.depth_mm(static_cast<int>(raster.x), static_cast<int>(raster.y));
+  const double focal_px = session_.focal_px();
+  next.bokeh = depth > 0 ? bokeh_of(camera, raster, static_cast<double>(depth), focal_px) : Bokeh{};
+  publish(std::move(next));
+}
+
+void Worker::export_files(const std::filesystem::path& folder) {
+  Snapshot next = *snapshot();
+  try {
+    examples::make_folder(folder);
+    const Frame still = session_.still();
+    examples::write_picture(still.picture, petzval::to_srgb8(still.picture), {"exr", "png"}, folder / "view");
+    examples::write_text(folder / "view.json", session_.log().dump(1) + '\n');
+    const Json points = session_.surface_points();
+    const std::string points_file = (folder / "points.json").string();
+    if (!points.is_null()) examples::write_text(points_file, points.dump(1) + '\n');
+    examples::write_text(folder / "blur.sh", session_.blur_command(points_file) + '\n');
+    next.message = "written: view.png, view.exr, view.json (events) and blur.sh (command line) in " + folder.string();
+  } catch (const petzval::Error& error) {
+    next.message = error.what();
+  }
+  publish(std::move(next));
+}
+
+void Worker::run() {
+  bool stale = true;  // the picture does not show the state
+  std::size_t step = 0;
+  while (true) {
+    std::optional<std::filesystem::path> folder;
+    bool looks = false;
+    {
+      std::unique_lock lock(mutex_);
+      const auto woken = [&] { return ends_ || !events_.empty() || look_at_ || folder_; };
+      if (!stale && step >= ray_steps.size()) {
+        if (step == ray_steps.size()) {
+          changed_.wait_for(lock, patience, woken);
+        } else {
+          idle_ = true;
+          changed_.wait(lock, woken);
+        }
+      }
+      if (ends_) return;
+      folder = std::exchange(folder_, std::nullopt);
+      looks = look_at_.has_value() && events_.empty();
+    }
+    const std::lock_guard session_lock(session_mutex_);
+    if (apply_events()) stale = true;
+    try {
+      if (folder) export_files(*folder);
+      if (stale) {
+        stale = false, step = 0;
+        const std::string& lens = session_.editor().state().choice.name;
+        // The rays of a new real lens take longer to set up: meanwhile a picture without its aberrations.
+        if (lens != std::exchange(lens_shown_, lens)) show(session_.frame(ray_steps[0], true));
+        if (interrupted()) continue;
+      }
+      if (looks && step > 0) {
+        look();
+        const std::lock_guard lock(mutex_);
+        look_at_.reset();
+      }
+      if (step < ray_steps.size()) {
+        show(session_.frame(ray_steps[step]));
+        if (step == 0) {
+          Snapshot next = *snapshot();
+          next.handles = session_.handles();
+          publish(std::move(next));
+        }
+        ++step;
+        if (step == 1 && !interrupted() && session_.make_layers() > 0) step = 0;
+        if (step == 2 && !interrupted()) {
+          Snapshot next = *snapshot();
+          auto blur = session_.blur_map();
+          next.histogram = {};
+          for (const float value : blur) {
+            if (std::isnan(value)) continue;
+            next.histogram[static_cast<std::size_t>(std::clamp(value, -20.0f, 20.0f) + 20.5f)] += 1;
+          }
+          next.blur = std::make_shared<const std::vector<float>>(std::move(blur));
+          next.sharp = std::make_shared<const petzval::Rgb8Image>(petzval::to_srgb8(session_.sharp()));
+          publish(std::move(next));
+        }
+      } else if (step == ray_steps.size() && !interrupted() && !looks) {
+        show(session_.still());
+        ++step;
+      }
+    } catch (const petzval::Error& error) {
+      Snapshot next = *snapshot();
+      next.message = error.what();
+      publish(std::move(next));
+      step = ray_steps.size() + 1;
+    }
+  }
+}
+
+}  // namespace viewer
