@@ -12,6 +12,7 @@
 
 #include "layers/blur_scenes.hpp"
 #include "layers/jpeg.hpp"
+#include "petzval/blur/lens_rays.hpp"
 #include "petzval/core/error.hpp"
 #include "petzval/image/exr.hpp"
 #include "petzval/image/image.hpp"
@@ -241,9 +242,15 @@ double LayerInput::nearest_mm(const petzval::LayerCamera& camera, int threads) {
   return static_cast<double>(nearest);
 }
 
-void LayerInput::fill(const petzval::PeelPlan& plan, int layers, int threads, petzval::LayerSet& set) {
+void LayerInput::fill(const petzval::PeelPlan& plan, int layers, int threads, petzval::LayerSet& set,
+                      const std::stop_token& stop) {
   if (scene_) {
-    set.peel(plan, layers, scene_->peel(plan.camera, threads));
+    set.peel(plan, layers,
+             [&, peel = scene_->peel(plan.camera, threads)](int layer, std::span<const float> below,
+                                                            const petzval::LayerPlanes& out) {
+               if (stop.stop_requested()) throw petzval::Cancelled("layers");
+               return peel(layer, below, out);
+             });
   } else {
     set.peel_fragments(lists_, plan.bias, layers);
   }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <memory>
+#include <stop_token>
 #include <string>
 
 #include "layers/lit_scene.hpp"
@@ -40,7 +41,9 @@ class LayerInput {
   /// Depth of the nearest surface, mm. Converts distances to depths. camera: the camera of the layers.
   double nearest_mm(const petzval::LayerCamera& camera, int threads);
   /// Fills the layers of a plan. Files have a fixed set of layers, whatever the plan.
-  void fill(const petzval::PeelPlan& plan, int layers, int threads, petzval::LayerSet& set);
+  /// @throws petzval::Cancelled if `stop` requests a stop before the last layer
+  void fill(const petzval::PeelPlan& plan, int layers, int threads, petzval::LayerSet& set,
+            const std::stop_token& stop = {});
 
  private:
   void read_picture();

@@ -31,13 +31,13 @@ petzval::LayerCamera LensView::layers(std::uint32_t supersample) const {
 }
 
 petzval::LensRays LensView::rays(const petzval::LayerCamera& layers, const RayPattern& pattern, double nearest_mm,
-                                 int threads) const {
+                                 int threads, const std::stop_token& stop) const {
   // Each subpixel has its own rays; all subpixels together have the number of rays of a pixel.
   const auto parts = static_cast<int>(pattern.supersample * pattern.supersample);
   const int sets = pattern.jitter ? 16 : parts;
   const std::vector<petzval::PupilPoint> points =
       petzval::vogel_sets((static_cast<int>(pattern.rays) + parts - 1) / parts, sets);
-  const petzval::LensRaysOptions options{.nearest_mm = nearest_mm, .set_count = sets, .threads = threads};
+  const petzval::LensRaysOptions options{.nearest_mm = nearest_mm, .set_count = sets, .threads = threads, .stop = stop};
   if (!thin() || controls.vignettes() || !expressive.empty()) {
     std::vector<petzval::Wavelength> wavelengths;
     for (std::size_t i = 1; coloured && i <= petzval::rgb_triple_nm.size(); ++i) wavelengths.emplace_back(i);

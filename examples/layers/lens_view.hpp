@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <stop_token>
 
 #include "petzval/blur/layers.hpp"
 #include "petzval/blur/lens_rays.hpp"
@@ -40,8 +41,9 @@ struct LensView {
   /// The camera of the layers, without overscan.
   petzval::LayerCamera layers(std::uint32_t supersample) const;
   /// The rays of the lens through the layers. nearest_mm: depth of the nearest surface.
-  petzval::LensRays rays(const petzval::LayerCamera& layers, const RayPattern& pattern, double nearest_mm,
-                         int threads) const;
+  /// @throws petzval::Cancelled if `stop` requests a stop
+  petzval::LensRays rays(const petzval::LayerCamera& layers, const RayPattern& pattern, double nearest_mm, int threads,
+                         const std::stop_token& stop = {}) const;
 };
 
 }  // namespace lens_blur

@@ -11,8 +11,10 @@
 #include "support/camera_setup.hpp"
 #include "support/cli.hpp"
 #include "support/files.hpp"
+#include "support/json_input.hpp"
 #include "support/load_lens.hpp"
 #include "viewer/replay.hpp"
+#include "viewer/session.hpp"
 #include "viewer/window.hpp"
 
 int commands::view(int argc, char** argv) {
@@ -46,6 +48,17 @@ int commands::view(int argc, char** argv) {
   app.add_option("--log", window.log_file, "file for the log of events of the window")
       ->type_name("LOG.json")
       ->default_str("petzval-view.json");
+  app.add_option(
+         "--panels", window.panels,
+         "what the window shows at the start: focus, points, lens, bokeh, aberrations, keys, histogram; map (blur "
+         "over the picture), sharp (the picture of a pinhole)")
+      ->type_name("NAME,...")
+      ->delimiter(',');
+  examples::add_out_file(
+      app, window.screenshot,
+      "write a picture of the window when all rays are traced, and close it; with --replay after its "
+      "events",
+      "PICTURE.png", "--screenshot");
   examples::add_threads(app);
   examples::add_out_folder(app, window.out_folder, "folder for pictures");
   return examples::run(app, argc, argv, [&] {
@@ -55,9 +68,18 @@ int commands::view(int argc, char** argv) {
       if (scene_given || !lens.file.empty() || thin->given()) {
         throw petzval::Error("--replay: the log names the scene and the lens; must be used without them");
       }
-      replay.out_folder = window.out_folder, replay.layers = window.session.layers;
-      replay.width = input.width, replay.height = input.height;
-      viewer::replay(replay);
+      if (window.screenshot.empty()) {
+        replay.out_folder = window.out_folder, replay.layers = window.session.layers;
+        replay.width = input.width, replay.height = input.height;
+        viewer::replay(replay);
+        return;
+      }
+      const examples::Json events = examples::read_json(replay.log_file);
+      viewer::SessionOptions session = viewer::options_of(events, replay.log_file);
+      session.threads = window.session.threads, session.layers = window.session.layers;
+      window.session = session;
+      window.first_events = events["events"];
+      viewer::show_window(window);
       return;
     }
     if (input.scene.empty() && input.image.empty() && input.deep.empty()) input.scene = "town";
@@ -68,7 +90,7 @@ int commands::view(int argc, char** argv) {
     } else {
       window.session.lens.name = lens.file.empty() ? "double_gauss_52mm_f1.8" : lens.file;
       if (f_number > 0) {
-        window.first_log = R"([{"type": "f_number", "f_number": )" + examples::Json(f_number).dump() + "}]";
+        window.first_events = {{{"type", "f_number"}, {"f_number", f_number}}};
       }
     }
     if (window.log_file.empty()) window.log_file = "petzval-view.json";

@@ -147,7 +147,7 @@ lens_blur::LensView Session::view(bool from_points) const {
 }
 
 /// Radius of the pupil of the state, with room for pupils off the axis and for negative extents.
-double Session::widest_slope(const lens_blur::LensView& view) const {
+double Session::widest_radius(const lens_blur::LensView& view) const {
   const double radius = view.thin() ? view.thin_diameter_mm / 2 : petzval::pupils(view.lens).entrance.diameter / 2;
   const double extent = view.surface ? std::exp2(std::max(0.0, -view.surface->least_extent()) / 2) : 1;
   return radius * extent * (view.thin() ? 1 : pupil_growth);
@@ -165,7 +165,7 @@ void Session::update_camera() {
 
 bool Session::layers_are_too_small() const {
   return layers_.count() == 0 || camera_lens_ != editor_->state().choice.name ||
-         widest_slope(view(false)) > radius_mm_ * (1 + 1e-9);
+         widest_radius(view(false)) > radius_mm_ * (1 + 1e-9);
 }
 
 double Session::make_layers() {
@@ -173,7 +173,7 @@ double Session::make_layers() {
   const auto start = std::chrono::steady_clock::now();
   update_camera();
   const lens_blur::LensView lens = view(false);
-  radius_mm_ = widest_slope(lens);
+  radius_mm_ = widest_radius(lens);
   // With focus at infinity, the rays reach farthest: R f / depth for the nearest surface.
   const petzval::ThinLens widest{.radius_mm = radius_mm_};
   const std::vector<petzval::PupilPoint> points = petzval::vogel_points(64);
@@ -188,19 +188,21 @@ double Session::make_layers() {
   return ms_since(start);
 }
 
-Frame Session::frame(std::uint32_t rays, bool first_order) {
+Frame Session::frame(std::uint32_t rays, bool first_order, const std::stop_token& stop) {
   const auto start = std::chrono::steady_clock::now();
   lens_blur::LensView lens = view(false);
   lens.first_order_only = first_order && !lens.thin();
   const petzval::LensRays table =
-      lens.rays(camera_, {.rays = rays}, lens_blur::least_depth(nearest_mm_), options_.threads);
-  petzval::gather(layers_, table, {.threads = options_.threads, .highlights_above = threshold_}, blurred_);
+      lens.rays(camera_, {.rays = rays}, lens_blur::least_depth(nearest_mm_), options_.threads, stop);
+  petzval::gather(layers_, table, {.threads = options_.threads, .highlights_above = threshold_, .stop = stop},
+                  blurred_);
   Frame result{.picture = lens_blur::colours_of(blurred_), .rays = rays, .first_order = lens.first_order_only};
+  result.memory_mb = memory_mb();
   result.milliseconds = ms_since(start);
   return result;
 }
 
-Frame Session::still() {
+Frame Session::still(const std::stop_token& stop) {
   const auto start = std::chrono::steady_clock::now();
   const lens_blur::LensView lens = view(true);
   const bool thin = lens.thin();
@@ -208,18 +210,26 @@ Frame Session::still() {
   const lens_blur::RayPattern pattern{.rays = thin ? 256u : 512u, .supersample = side, .jitter = !thin};
   const petzval::LayerCamera camera = lens.layers(side);
   const double nearest = input_.nearest_mm(camera, options_.threads);
-  const petzval::LensRays rays = lens.rays(camera, pattern, lens_blur::least_depth(nearest), options_.threads);
+  const petzval::LensRays rays = lens.rays(camera, pattern, lens_blur::least_depth(nearest), options_.threads, stop);
   const petzval::PeelPlan plan = lens_blur::plan_of(input_, rays, nearest);
   petzval::LayerSet layers;
-  input_.fill(plan, static_cast<int>(options_.layers), options_.threads, layers);
+  input_.fill(plan, static_cast<int>(options_.layers), options_.threads, layers, stop);
   const double threshold = lens_blur::threshold_of(layers, !input_.scene());
   const petzval::BlurredImage blurred =
-      petzval::gather(layers, rays, {.threads = options_.threads, .highlights_above = threshold});
+      petzval::gather(layers, rays, {.threads = options_.threads, .highlights_above = threshold, .stop = stop});
   Frame result{.picture = lens_blur::averaged(lens_blur::colours_of(blurred), static_cast<int>(side)),
                .rays = pattern.rays,
                .still = true};
   result.milliseconds = ms_since(start);
   return result;
+}
+
+/// Layers, with the depths of the last one, and the blurred picture.
+double Session::memory_mb() const {
+  constexpr int planes = 5;
+  const double layer = 1e-6 * sizeof(float) * layers_.columns() * layers_.rows();
+  const double picture = 1e-6 * sizeof(float) * static_cast<double>(blurred_.rgba.size() + blurred_.missed.size());
+  return layer * (planes * layers_.count() + 1) + picture;
 }
 
 std::vector<float> Session::blur_map() const {

@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <map>
 #include <optional>
+#include <stop_token>
 #include <string>
 #include <utility>
 #include <vector>
@@ -62,9 +63,9 @@ class Session {
   ///
   /// @param rays         per pixel
   /// @param first_order  true: without the aberrations of a real lens, whose rays take longer to set up
-  Frame frame(std::uint32_t rays, bool first_order = false);
+  Frame frame(std::uint32_t rays, bool first_order = false, const std::stop_token& stop = {});
   /// The picture that the command of blur_command() computes.
-  Frame still();
+  Frame still(const std::stop_token& stop = {});
 
   /// For each pixel of the picture, the blur of the first surface in pixels: negative in front of the plane of focus.
   std::vector<float> blur_map() const;
@@ -92,7 +93,8 @@ class Session {
   std::optional<petzval::FocusPlace> place(const petzval::Ray<double>& ray) const;
   /// The lens of the state. from_points: the focal surface goes through the numbers of surface_points(), as in blur.
   lens_blur::LensView view(bool from_points) const;
-  double widest_slope(const lens_blur::LensView& view) const;
+  double memory_mb() const;
+  double widest_radius(const lens_blur::LensView& view) const;
   void update_camera();
 
   SessionOptions options_;

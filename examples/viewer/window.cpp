@@ -15,8 +15,10 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "petzval/core/error.hpp"
@@ -24,6 +26,7 @@
 #include "petzval/io/lens_json.hpp"
 #include "support/files.hpp"
 #include "support/interrupt.hpp"
+#include "support/picture_files.hpp"
 #include "support/text.hpp"
 #include "viewer/section.hpp"
 #include "viewer/worker.hpp"
@@ -37,6 +40,8 @@ using examples::Json;
 constexpr float panel_width = 350, drawing_height = 190;
 /// End of the slider of distances: infinity.
 constexpr double farthest_m = 1000;
+/// Times that the window is drawn after a change, for Dear ImGui to settle.
+constexpr int frames_after_change = 4;
 /// Radius of the handle of a point, pixels of the screen.
 constexpr float handle_radius = 9;
 
@@ -48,15 +53,19 @@ constexpr ImU32 white = IM_COL32(255, 255, 255, 255), black = IM_COL32(0, 0, 0, 
 class Screen {
  public:
   Screen(const char* title, int width, int height) {
-    if (SDL_Init(SDL_INIT_VIDEO) != 0) fail();
+    if (SDL_Init(SDL_INIT_VIDEO) != 0) fail(SDL_GetError());
+    // Without a display, SDL draws where nobody sees it.
+    for (const char* const unseen : {"offscreen", "dummy", "evdev"}) {
+      if (SDL_GetCurrentVideoDriver() == std::string(unseen)) fail("there is no display");
+    }
     SDL_GL_SetAttribute(SDL_GL_CONTEXT_PROFILE_MASK, SDL_GL_CONTEXT_PROFILE_CORE);
     SDL_GL_SetAttribute(SDL_GL_CONTEXT_MAJOR_VERSION, 3);
     SDL_GL_SetAttribute(SDL_GL_DOUBLEBUFFER, 1);
     window_ = SDL_CreateWindow(title, SDL_WINDOWPOS_CENTERED, SDL_WINDOWPOS_CENTERED, width, height,
                                SDL_WINDOW_OPENGL | SDL_WINDOW_RESIZABLE);
-    if (!window_) fail();
+    if (!window_) fail(SDL_GetError());
     context_ = SDL_GL_CreateContext(window_);
-    if (!context_) fail();
+    if (!context_) fail(SDL_GetError());
     SDL_GL_SetSwapInterval(1);
     IMGUI_CHECKVERSION();
     ImGui::CreateContext();
@@ -82,6 +91,22 @@ class Screen {
     ImGui_ImplSDL2_NewFrame();
     ImGui::NewFrame();
   }
+  /// The window as it is shown.
+  petzval::Rgb8Image picture() const {
+    int width = 0, height = 0;
+    SDL_GL_GetDrawableSize(window_, &width, &height);
+    petzval::Rgb8Image image{width, height, {}};
+    const auto row = static_cast<std::ptrdiff_t>(3 * width);
+    std::vector<unsigned char> below(static_cast<std::size_t>(row * height));  // rows from the bottom
+    glPixelStorei(GL_PACK_ALIGNMENT, 1);
+    glReadPixels(0, 0, width, height, GL_RGB, GL_UNSIGNED_BYTE, below.data());
+    for (int y = height - 1; y >= 0; --y) {
+      image.pixels.insert(image.pixels.end(), below.begin() + y * row, below.begin() + (y + 1) * row);
+    }
+    return image;
+  }
+  /// Shows what was drawn.
+  void swap() { SDL_GL_SwapWindow(window_); }
   void end() {
     ImGui::Render();
     const ImVec2 size = ImGui::GetIO().DisplaySize;
@@ -89,16 +114,13 @@ class Screen {
     glClearColor(0.1f, 0.1f, 0.1f, 1);
     glClear(GL_COLOR_BUFFER_BIT);
     ImGui_ImplOpenGL3_RenderDrawData(ImGui::GetDrawData());
-    SDL_GL_SwapWindow(window_);
   }
 
  private:
-  [[noreturn]] void fail() {
-    const std::string reason = SDL_GetError();
+  [[noreturn]] void fail(const std::string& reason) {
     close();
     throw petzval::Error("window: " + reason +
-                         "; must have a display (DISPLAY) with OpenGL 3. petzval view --replay "
-                         "needs none");
+                         "; must have a display (DISPLAY) with OpenGL 3. petzval view --replay needs none");
   }
   void close() {
     if (context_) SDL_GL_DeleteContext(context_);
@@ -189,9 +211,15 @@ void draw_section(ImDrawList& draw, const Section& section, const ImVec2& corner
 class Window {
  public:
   explicit Window(const WindowOptions& options)
-      : options_(options), worker_(options.session, options.first_log), lenses_(shipped_lenses()) {}
+      : options_(options), worker_(options.session, options.first_events), lenses_(shipped_lenses()) {
+    before_ = opens("sharp"), overlay_ = opens("map");
+  }
 
   Worker& worker() noexcept { return worker_; }
+
+  /// True if the window shows the last picture of all events.
+  bool complete() const { return shown_ && shown_->frame.still && worker_.idle(); }
+  const Snapshot* shown() const noexcept { return shown_.get(); }
 
   /// Draws everything and sends the events of the user. Returns false when the window is closed.
   bool draw() {
@@ -221,11 +249,23 @@ class Window {
     return !closed_;
   }
 
+  bool plays() const noexcept { return playing_; }
+  /// The size of a window in which the picture has its own pixels, if the screen has room.
+  std::pair<int, int> size() const {
+    const petzval::Film& film = worker_.snapshot()->state.film;
+    constexpr float padding = 16, lines = 50;
+    return {film.columns + static_cast<int>(panel_width + padding),
+            film.rows + static_cast<int>(drawing_height + lines)};
+  }
   void dropped(const std::string& file) { send({{"type", "lens"}, {"lens", file}}); }
   void close() { closed_ = true; }
 
  private:
   const petzval::FocusEditorState& state() const { return shown_->state; }
+  bool opens(const char* panel) const { return std::ranges::find(options_.panels, panel) != options_.panels.end(); }
+  bool header(const char* title, const char* panel, bool open = false) {
+    return ImGui::CollapsingHeader(title, open || opens(panel) ? ImGuiTreeNodeFlags_DefaultOpen : 0);
+  }
   void send(const Json& event) { worker_.send(event); }
 
   /// Sends the event of a widget that was just drawn. The events of one drag are one step of undo.
@@ -315,10 +355,13 @@ class Window {
     const petzval::Vec2<double> raster{static_cast<double>((mouse.x - corner.x) / scale),
                                        static_cast<double>((mouse.y - corner.y) / scale)};
     std::string under;  // id of the point under the mouse
-    for (std::size_t i = 0; i < state().targets.size() && i < shown_->handles.size(); ++i) {
+    for (std::size_t i = 0; i < state().targets.size(); ++i) {
       const petzval::FocusMark& mark = state().targets[i];
-      if (!shown_->handles[i]) continue;
-      const ImVec2 at = on_screen(*shown_->handles[i]);
+      // A point that has no handle yet is where the first-order lens images it.
+      const bool has_handle = i < shown_->handles.size() && shown_->handles[i];
+      const std::optional<petzval::Vec2<double>> place = has_handle ? shown_->handles[i] : mark.raster;
+      if (!place) continue;
+      const ImVec2 at = on_screen(*place);
       const bool near = std::hypot(at.x - mouse.x, at.y - mouse.y) < 1.5f * handle_radius;
       if (near) under = mark.id;
       const ImU32 colour = mark.status == "used" ? yellow : grey;
@@ -332,8 +375,9 @@ class Window {
     }
     mouse_on_picture(raster, under);
     const Frame& frame = shown_->frame;
-    std::string caption = std::to_string(frame.rays) + " rays per pixel, " + examples::number(frame.milliseconds, 3) +
-                          " ms, " + examples::number(frame.memory_mb, 3) + " MB";
+    std::string caption = std::to_string(frame.rays) + " rays per pixel, " +
+                          std::to_string(std::lround(frame.milliseconds)) + " ms, " +
+                          std::to_string(std::lround(frame.memory_mb)) + " MB";
     if (frame.first_order) caption += "; without aberrations: the rays of the lens are being traced";
     if (frame.still) caption += "; still, as by petzval blur";
     ImGui::TextUnformatted(caption.c_str());
@@ -450,13 +494,13 @@ class Window {
     ImGui::SameLine();
     ImGui::Checkbox("map", &overlay_);
     ImGui::PushItemWidth(0.55f * panel_width);
-    if (ImGui::CollapsingHeader("Focus", ImGuiTreeNodeFlags_DefaultOpen)) focus_panel();
-    if (ImGui::CollapsingHeader("Points", ImGuiTreeNodeFlags_DefaultOpen)) points_panel();
-    if (ImGui::CollapsingHeader("Lens", ImGuiTreeNodeFlags_DefaultOpen)) lens_panel();
-    if (ImGui::CollapsingHeader("Bokeh")) bokeh_panel();
-    if (ImGui::CollapsingHeader("Aberrations")) aberrations_panel();
-    if (ImGui::CollapsingHeader("Keys")) time_panel();
-    if (ImGui::CollapsingHeader("Blur of the picture (-20 to 20 px)")) {
+    if (header("Focus", "focus", true)) focus_panel();
+    if (header("Points", "points", true)) points_panel();
+    if (header("Lens", "lens", true)) lens_panel();
+    if (header("Bokeh", "bokeh")) bokeh_panel();
+    if (header("Aberrations", "aberrations")) aberrations_panel();
+    if (header("Keys", "keys")) time_panel();
+    if (header("Blur of the picture (-20 to 20 px)", "histogram")) {
       ImGui::PlotHistogram("##blur", shown_->histogram.data(), static_cast<int>(shown_->histogram.size()), 0, nullptr,
                            0, FLT_MAX, {panel_width - 30, 60});
     }
@@ -615,6 +659,7 @@ class Window {
       send({{"type", "remove_point"}, {"id", selected_}});
       selected_.clear();
     }
+    if (io.KeyCtrl && ImGui::IsKeyPressed(SDL_SCANCODE_Q)) close();
     if (ImGui::IsKeyPressed(SDL_SCANCODE_SPACE, false)) playing_ = !playing_;
   }
 
@@ -642,14 +687,19 @@ void show_window(const WindowOptions& options) {
   examples::Interrupt interrupt;
   std::optional<Window> window;
   const auto save = [&] {
-    if (window) examples::write_text(options.log_file, window->worker().log().dump(1) + '\n');
+    if (!options.log_file.empty()) examples::write_text(options.log_file, window->worker().log().dump(1) + '\n');
   };
   window.emplace(options);
   try {
-    Screen screen("petzval view", options.width > 0 ? options.width : 1180, options.height > 0 ? options.height : 840);
+    const auto [width, height] = window->size();
+    Screen screen("petzval view", width, height);
     bool open = true;
+    int frames_to_draw = frames_after_change;
+    std::shared_ptr<const Snapshot> drawn;
     while (open && !examples::Interrupt::asked()) {
       SDL_Event event;
+      // Nothing is drawn while nothing changes, so that the worker has the processor for itself.
+      bool changed = SDL_WaitEventTimeout(nullptr, 15) != 0;
       while (SDL_PollEvent(&event) != 0) {
         ImGui_ImplSDL2_ProcessEvent(&event);
         if (event.type == SDL_QUIT) window->close();
@@ -658,16 +708,29 @@ void show_window(const WindowOptions& options) {
           SDL_free(event.drop.file);
         }
       }
-      screen.begin();
-      open = window->draw();
-      screen.end();
-      SDL_Delay(8);
+      changed = changed || window->plays() || window->worker().snapshot() != drawn;
+      drawn = window->worker().snapshot();
+      if (changed) frames_to_draw = frames_after_change;
+      if (frames_to_draw > 0) {
+        --frames_to_draw;
+        screen.begin();
+        open = window->draw();
+        screen.end();
+        screen.swap();
+      } else if (!options.screenshot.empty() && window->complete()) {
+        screen.begin();
+        window->draw();
+        screen.end();
+        examples::write_png(screen.picture(), options.screenshot);
+        open = false;
+      }
     }
     save();
     window.reset();  // its textures, before the screen
   } catch (const petzval::Error& error) {
     save();
-    throw petzval::Error(std::string(error.what()) + ". The events are saved in " + options.log_file);
+    const std::string saved = options.log_file.empty() ? "" : ". The events are saved in " + options.log_file;
+    throw petzval::Error(error.what() + saved);
   }
 }
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "viewer/session.hpp"
 
@@ -10,10 +11,11 @@ namespace viewer {
 /// What the window starts with.
 struct WindowOptions {
   SessionOptions session;
-  std::string log_file;       ///< where the events are saved when the window closes
-  std::string out_folder;     ///< for exported pictures
-  std::string first_log;      ///< events to begin with, a JSON list; empty: none
-  int width = 0, height = 0;  ///< of the window; 0: fits the picture
+  std::string log_file;                   ///< where the events are saved when the window closes
+  std::string out_folder;                 ///< for exported pictures
+  examples::Json first_events = nullptr;  ///< a list; null: a point in the middle of the picture
+  std::vector<std::string> panels;        ///< that are open at the start; also "map" or "sharp"
+  std::string screenshot;                 ///< PNG of the window with the still picture; then the window closes
 };
 
 /// Shows the window until it is closed.

@@ -7,6 +7,7 @@
 #include <cstddef>
 #include <utility>
 
+#include "petzval/blur/lens_rays.hpp"
 #include "petzval/core/error.hpp"
 #include "petzval/focus/focus.hpp"
 #include "petzval/paraxial/ideal_lens.hpp"
@@ -41,15 +42,17 @@ std::string plane_in_words(const petzval::FocusEditorState& state) {
 
 }  // namespace
 
-Worker::Worker(const SessionOptions& options, const std::string& first_events) : session_(options) {
+Worker::Worker(const SessionOptions& options, const Json& first_events) : session_(options) {
   session_.make_layers();
-  if (!first_events.empty()) session_.editor().replay(first_events);
-  // A first point in the middle, sharp.
   const petzval::Film& film = session_.editor().state().film;
-  session_.editor().apply(
-      Json{{"type", "add_point"}, {"id", "1"}, {"pixel", {film.columns / 2, film.rows / 2}}}.dump());
-  look_at_ = petzval::Vec2<double>(film.columns / 2, film.rows / 2);
-  snapshot_ = std::make_shared<const Snapshot>(Snapshot{.state = session_.editor().state()});
+  const petzval::Vec2<double> middle(film.columns / 2, film.rows / 2);
+  if (first_events.is_null()) {
+    session_.editor().apply(Json{{"type", "add_point"}, {"id", "1"}, {"pixel", {middle.x, middle.y}}}.dump());
+  } else {
+    session_.editor().replay(first_events.dump());
+  }
+  look_at_ = middle;
+  show_state(Snapshot{.state = session_.editor().state()});
   thread_ = std::thread([this] { run(); });
 }
 
@@ -57,6 +60,7 @@ Worker::~Worker() {
   {
     const std::lock_guard lock(mutex_);
     ends_ = true;
+    stop_.request_stop();
   }
   changed_.notify_all();
   thread_.join();
@@ -75,6 +79,7 @@ void Worker::send(const Json& event) {
       events_.push_back(std::move(added));
     }
     idle_ = false;
+    stop_.request_stop();
   }
   changed_.notify_all();
 }
@@ -115,9 +120,12 @@ void Worker::publish(Snapshot snapshot) {
   snapshot_ = std::make_shared<const Snapshot>(std::move(snapshot));
 }
 
-bool Worker::interrupted() const {
+/// A token that the next event stops.
+std::stop_token Worker::start_work() {
   const std::lock_guard lock(mutex_);
-  return ends_ || !events_.empty();
+  stop_ = std::stop_source();
+  if (ends_ || !events_.empty()) stop_.request_stop();
+  return stop_.get_token();
 }
 
 /// Applies the queued events. Returns true if there were any.
@@ -137,12 +145,16 @@ bool Worker::apply_events() {
       next.message = error.what();
     }
   }
+  show_state(std::move(next));
+  return true;
+}
+
+void Worker::show_state(Snapshot next) {
   next.state = session_.editor().state();
   next.can_undo = session_.editor().can_undo(), next.can_redo = session_.editor().can_redo();
   next.key_times = session_.editor().key_times();
   next.plane = plane_in_words(next.state);
   publish(std::move(next));
-  return true;
 }
 
 void Worker::show(Frame frame) {
@@ -160,7 +172,7 @@ void Worker::look() {
   {
     const std::lock_guard lock(mutex_);
     if (!look_at_) return;
-    raster = *look_at_;
+    raster = *std::exchange(look_at_, std::nullopt);
   }
   const petzval::FocusEditorState& state = session_.editor().state();
   Snapshot next = *snapshot();
@@ -191,8 +203,23 @@ void Worker::export_files(const std::filesystem::path& folder) {
   publish(std::move(next));
 }
 
+/// The map of blur, its histogram and the picture of a pinhole.
+void Worker::map_blur() {
+  Snapshot next = *snapshot();
+  auto blur = session_.blur_map();
+  next.histogram = {};
+  for (const float value : blur) {
+    if (std::isnan(value)) continue;
+    next.histogram[static_cast<std::size_t>(std::clamp(value, -20.0f, 20.0f) + 20.5f)] += 1;
+  }
+  next.blur = std::make_shared<const std::vector<float>>(std::move(blur));
+  next.sharp = std::make_shared<const petzval::Rgb8Image>(petzval::to_srgb8(session_.sharp()));
+  publish(std::move(next));
+}
+
 void Worker::run() {
-  bool stale = true;  // the picture does not show the state
+  // Pictures that follow a change: one for each of ray_steps, then the still picture.
+  constexpr std::size_t still_step = ray_steps.size(), all_steps = still_step + 1;
   std::size_t step = 0;
   while (true) {
     std::optional<std::filesystem::path> folder;
@@ -200,64 +227,45 @@ void Worker::run() {
     {
       std::unique_lock lock(mutex_);
       const auto woken = [&] { return ends_ || !events_.empty() || look_at_ || folder_; };
-      if (!stale && step >= ray_steps.size()) {
-        if (step == ray_steps.size()) {
-          changed_.wait_for(lock, patience, woken);
-        } else {
-          idle_ = true;
-          changed_.wait(lock, woken);
-        }
-      }
+      idle_ = step == all_steps && !woken();
+      if (step == still_step) changed_.wait_for(lock, patience, woken);
+      if (step == all_steps) changed_.wait(lock, woken);
       if (ends_) return;
       folder = std::exchange(folder_, std::nullopt);
-      looks = look_at_.has_value() && events_.empty();
+      looks = look_at_.has_value();
     }
     const std::lock_guard session_lock(session_mutex_);
-    if (apply_events()) stale = true;
+    if (apply_events()) step = 0;
     try {
+      const std::stop_token stop = start_work();
       if (folder) export_files(*folder);
-      if (stale) {
-        stale = false, step = 0;
-        const std::string& lens = session_.editor().state().choice.name;
+      if (step == 0) {
         // The rays of a new real lens take longer to set up: meanwhile a picture without its aberrations.
-        if (lens != std::exchange(lens_shown_, lens)) show(session_.frame(ray_steps[0], true));
-        if (interrupted()) continue;
+        const std::string& lens = session_.editor().state().choice.name;
+        if (lens != std::exchange(lens_shown_, lens)) show(session_.frame(ray_steps[0], true, stop));
       }
-      if (looks && step > 0) {
-        look();
-        const std::lock_guard lock(mutex_);
-        look_at_.reset();
-      }
-      if (step < ray_steps.size()) {
-        show(session_.frame(ray_steps[step]));
-        if (step == 0) {
-          Snapshot next = *snapshot();
-          next.handles = session_.handles();
-          publish(std::move(next));
-        }
+      if (step < still_step) {
+        show(session_.frame(ray_steps[step], false, stop));
         ++step;
-        if (step == 1 && !interrupted() && session_.make_layers() > 0) step = 0;
-        if (step == 2 && !interrupted()) {
-          Snapshot next = *snapshot();
-          auto blur = session_.blur_map();
-          next.histogram = {};
-          for (const float value : blur) {
-            if (std::isnan(value)) continue;
-            next.histogram[static_cast<std::size_t>(std::clamp(value, -20.0f, 20.0f) + 20.5f)] += 1;
-          }
-          next.blur = std::make_shared<const std::vector<float>>(std::move(blur));
-          next.sharp = std::make_shared<const petzval::Rgb8Image>(petzval::to_srgb8(session_.sharp()));
-          publish(std::move(next));
-        }
-      } else if (step == ray_steps.size() && !interrupted() && !looks) {
-        show(session_.still());
+      } else if (step == still_step && !looks) {
+        show(session_.still(stop));
         ++step;
       }
+      if (step == 1) {
+        Snapshot next = *snapshot();
+        next.handles = session_.handles();
+        publish(std::move(next));
+        if (session_.make_layers() > 0) step = 0;
+      }
+      if (step == 2) map_blur();
+      if (looks && step > 0) look();
+    } catch (const petzval::Cancelled&) {
+      // The next event has come.
     } catch (const petzval::Error& error) {
       Snapshot next = *snapshot();
       next.message = error.what();
       publish(std::move(next));
-      step = ray_steps.size() + 1;
+      step = all_steps;
     }
   }
 }

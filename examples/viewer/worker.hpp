@@ -8,6 +8,7 @@
 #include <memory>
 #include <mutex>
 #include <optional>
+#include <stop_token>
 #include <string>
 #include <thread>
 #include <vector>
@@ -41,7 +42,8 @@ struct Snapshot {
 /// A change ends the work under way: first a picture with few rays, then more rays, and the still picture at last.
 class Worker {
  public:
-  explicit Worker(const SessionOptions& options, const std::string& first_events);
+  /// first_events: a list; null: a point in the middle of the picture.
+  Worker(const SessionOptions& options, const examples::Json& first_events);
   ~Worker();
   Worker(const Worker&) = delete;
   Worker& operator=(const Worker&) = delete;
@@ -60,8 +62,10 @@ class Worker {
 
  private:
   void run();
-  bool interrupted() const;
   bool apply_events();
+  std::stop_token start_work();
+  void map_blur();
+  void show_state(Snapshot next);
   void show(Frame frame);
   void look();
   void publish(Snapshot snapshot);
@@ -75,6 +79,7 @@ class Worker {
   std::optional<std::filesystem::path> folder_;
   std::shared_ptr<const Snapshot> snapshot_;
   bool ends_ = false, idle_ = false;
+  std::stop_source stop_;  ///< of the work under way
 
   std::mutex session_mutex_;  ///< of session_
   std::string lens_shown_;    ///< the lens of the last picture
