@@ -60,6 +60,11 @@ std::string quoted(const std::string& word) {
 }  // namespace
 
 Session::Session(const SessionOptions& options) : options_(options), input_(options.input), first_lens_(options.lens) {
+  if (options.file_columns > 0 && (input_.columns() != options.file_columns || input_.rows() != options.file_rows)) {
+    throw Error("size = " + std::to_string(options.file_columns) + " x " + std::to_string(options.file_rows) +
+                "; must be the size of the files, " + std::to_string(input_.columns()) + " x " +
+                std::to_string(input_.rows()));
+  }
   const renderer::Pose& pose = input_.pose();
   const glm::dvec3 back = glm::normalize(pose.position - pose.look_at),
                    right = glm::normalize(glm::cross(-back, pose.up));
@@ -458,15 +463,18 @@ SessionOptions options_of(const Json& log, const std::string& where) {
   } else {
     examples::refuse(where + ": lens", lens, lens_rule);
   }
-  const bool of_scene = !options.input.scene.empty();
-  if (const auto size = entry.numbers<2>("size", "two whole numbers, [width, height]"); size && of_scene) {
+  if (const auto size = entry.numbers<2>("size", "two whole numbers, [width, height]")) {
     for (const double side : *size) {
       if (!(side >= 1 && side <= 16384 && side == std::floor(side))) {
         examples::refuse(where + ": size", log["size"], "two whole numbers from 1 to 16384");
       }
     }
-    options.input.width = static_cast<std::uint32_t>((*size)[0]);
-    options.input.height = static_cast<std::uint32_t>((*size)[1]);
+    if (options.input.scene.empty()) {
+      options.file_columns = static_cast<int>((*size)[0]), options.file_rows = static_cast<int>((*size)[1]);
+    } else {
+      options.input.width = static_cast<std::uint32_t>((*size)[0]);
+      options.input.height = static_cast<std::uint32_t>((*size)[1]);
+    }
   }
   options.fov_deg = entry.number("fov_deg", {1e-3, 120, "more than 0 and at most 120"}).value_or(0);
   return options;

@@ -29,6 +29,7 @@ struct SessionOptions {
   double fov_deg = 0;  ///< vertical; 0: 30 for a thin lens, else the angle of a film 24 mm high
   std::uint32_t layers = 4;
   int threads = 1;
+  int file_columns = 0, file_rows = 0;  ///< size that files must have; 0: any
 };
 
 /// A picture of the state of a session.
