@@ -2,9 +2,6 @@
 #include "viewer/window.hpp"
 
 #include <SDL.h>
-#include <SDL_opengl.h>
-#include <backends/imgui_impl_opengl3.h>
-#include <backends/imgui_impl_sdl.h>
 #include <imgui.h>
 
 #include <algorithm>
@@ -28,6 +25,7 @@
 #include "support/interrupt.hpp"
 #include "support/picture_files.hpp"
 #include "support/text.hpp"
+#include "viewer/screen.hpp"
 #include "viewer/section.hpp"
 #include "viewer/worker.hpp"
 
@@ -48,115 +46,6 @@ constexpr float handle_radius = 9;
 constexpr ImU32 white = IM_COL32(255, 255, 255, 255), black = IM_COL32(0, 0, 0, 255),
                 yellow = IM_COL32(255, 210, 60, 255), green = IM_COL32(80, 230, 120, 255),
                 grey = IM_COL32(150, 150, 150, 255), blue = IM_COL32(110, 170, 255, 255);
-
-/// SDL, its window and Dear ImGui.
-class Screen {
- public:
-  Screen(const char* title, int width, int height) {
-    if (SDL_Init(SDL_INIT_VIDEO) != 0) fail(SDL_GetError());
-    // Without a display, SDL draws where nobody sees it.
-    for (const char* const unseen : {"offscreen", "dummy", "evdev"}) {
-      if (SDL_GetCurrentVideoDriver() == std::string(unseen)) fail("there is no display");
-    }
-    SDL_GL_SetAttribute(SDL_GL_CONTEXT_PROFILE_MASK, SDL_GL_CONTEXT_PROFILE_CORE);
-    SDL_GL_SetAttribute(SDL_GL_CONTEXT_MAJOR_VERSION, 3);
-    SDL_GL_SetAttribute(SDL_GL_DOUBLEBUFFER, 1);
-    window_ = SDL_CreateWindow(title, SDL_WINDOWPOS_CENTERED, SDL_WINDOWPOS_CENTERED, width, height,
-                               SDL_WINDOW_OPENGL | SDL_WINDOW_RESIZABLE);
-    if (!window_) fail(SDL_GetError());
-    context_ = SDL_GL_CreateContext(window_);
-    if (!context_) fail(SDL_GetError());
-    SDL_GL_SetSwapInterval(1);
-    IMGUI_CHECKVERSION();
-    ImGui::CreateContext();
-    ImGui::GetIO().IniFilename = nullptr;  // leaves no file behind
-    ImGui::StyleColorsDark();
-    ImGui_ImplSDL2_InitForOpenGL(window_, context_);
-    ImGui_ImplOpenGL3_Init("#version 130");
-    drawn_ = true;
-  }
-  ~Screen() {
-    if (drawn_) {
-      ImGui_ImplOpenGL3_Shutdown();
-      ImGui_ImplSDL2_Shutdown();
-      ImGui::DestroyContext();
-    }
-    close();
-  }
-  Screen(const Screen&) = delete;
-  Screen& operator=(const Screen&) = delete;
-
-  void begin() {
-    ImGui_ImplOpenGL3_NewFrame();
-    ImGui_ImplSDL2_NewFrame();
-    ImGui::NewFrame();
-  }
-  /// The window as it is shown.
-  petzval::Rgb8Image picture() const {
-    int width = 0, height = 0;
-    SDL_GL_GetDrawableSize(window_, &width, &height);
-    petzval::Rgb8Image image{width, height, {}};
-    const auto row = static_cast<std::ptrdiff_t>(3 * width);
-    std::vector<unsigned char> below(static_cast<std::size_t>(row * height));  // rows from the bottom
-    glPixelStorei(GL_PACK_ALIGNMENT, 1);
-    glReadPixels(0, 0, width, height, GL_RGB, GL_UNSIGNED_BYTE, below.data());
-    for (int y = height - 1; y >= 0; --y) {
-      image.pixels.insert(image.pixels.end(), below.begin() + y * row, below.begin() + (y + 1) * row);
-    }
-    return image;
-  }
-  /// Shows what was drawn.
-  void swap() { SDL_GL_SwapWindow(window_); }
-  void end() {
-    ImGui::Render();
-    const ImVec2 size = ImGui::GetIO().DisplaySize;
-    glViewport(0, 0, static_cast<int>(size.x), static_cast<int>(size.y));
-    glClearColor(0.1f, 0.1f, 0.1f, 1);
-    glClear(GL_COLOR_BUFFER_BIT);
-    ImGui_ImplOpenGL3_RenderDrawData(ImGui::GetDrawData());
-  }
-
- private:
-  [[noreturn]] void fail(const std::string& reason) {
-    close();
-    throw petzval::Error("window: " + reason +
-                         "; must have a display (DISPLAY) with OpenGL 3. petzval view --replay needs none");
-  }
-  void close() {
-    if (context_) SDL_GL_DeleteContext(context_);
-    if (window_) SDL_DestroyWindow(window_);
-    SDL_Quit();
-  }
-
-  SDL_Window* window_ = nullptr;
-  SDL_GLContext context_ = nullptr;
-  bool drawn_ = false;
-};
-
-/// A picture on the graphics processor.
-class Texture {
- public:
-  ~Texture() {
-    if (id_ != 0) glDeleteTextures(1, &id_);
-  }
-  Texture() = default;
-  Texture(const Texture&) = delete;
-  Texture& operator=(const Texture&) = delete;
-
-  void set(int width, int height, GLenum format, const void* pixels) {
-    if (id_ == 0) glGenTextures(1, &id_);
-    glBindTexture(GL_TEXTURE_2D, id_);
-    glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_LINEAR);
-    glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_LINEAR);
-    glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
-    glTexImage2D(GL_TEXTURE_2D, 0, GL_RGBA, width, height, 0, format, GL_UNSIGNED_BYTE, pixels);
-  }
-  explicit operator bool() const noexcept { return id_ != 0; }
-  ImTextureID id() const noexcept { return reinterpret_cast<ImTextureID>(static_cast<std::intptr_t>(id_)); }
-
- private:
-  GLuint id_ = 0;
-};
 
 /// A shipped lens with its drawing.
 struct ShippedLens {
@@ -303,11 +192,11 @@ class Window {
     if (shown_->picture && shown_->pictures != pictures_) {
       pictures_ = shown_->pictures;
       const petzval::Rgb8Image& image = *shown_->picture;
-      picture_.set(image.width, image.height, GL_RGB, image.pixels.data());
+      picture_.set(image);
     }
     if (shown_->sharp && shown_->sharp != sharp_shown_) {
       sharp_shown_ = shown_->sharp;
-      sharp_.set(sharp_shown_->width, sharp_shown_->height, GL_RGB, sharp_shown_->pixels.data());
+      sharp_.set(*sharp_shown_);
     }
     if (shown_->blur && shown_->blur != blur_shown_) {
       blur_shown_ = shown_->blur;
@@ -322,14 +211,15 @@ class Window {
         map[4 * i + 3] = std::isnan(b) ? 0 : sharp ? 140 : static_cast<std::uint8_t>(150 * part);
       }
       const int columns = shown_->state.film.columns;
-      map_.set(columns, static_cast<int>(blur.size()) / columns, GL_RGBA, map.data());
+      map_.set(columns, static_cast<int>(blur.size()) / columns, map);
     }
     if (shown_->bokeh.pixels > 0) {
       std::vector<std::uint8_t> grey_levels;
       for (const float value : shown_->bokeh.values) {
         grey_levels.insert(grey_levels.end(), 3, static_cast<std::uint8_t>(255 * std::sqrt(value)));
+        grey_levels.push_back(255);
       }
-      bokeh_.set(shown_->bokeh.pixels, shown_->bokeh.pixels, GL_RGB, grey_levels.data());
+      bokeh_.set(shown_->bokeh.pixels, shown_->bokeh.pixels, grey_levels);
     }
   }
 
@@ -468,7 +358,8 @@ class Window {
     const ImVec2 space = ImGui::GetContentRegionAvail(), corner = ImGui::GetCursorScreenPos();
     ImDrawList& draw = *ImGui::GetWindowDrawList();
     const float line = ImGui::GetTextLineHeightWithSpacing();
-    draw_section(draw, shown_->section, {corner.x, corner.y + line}, {space.x - space.y - 8, space.y - line});
+    const float lines = shown_->plane.empty() ? line : 2 * line;
+    draw_section(draw, shown_->section, {corner.x, corner.y + lines}, {space.x - space.y - 8, space.y - lines});
     if (bokeh_ && shown_->bokeh.pixels > 0) {
       const ImVec2 start{corner.x + space.x - space.y, corner.y}, end{corner.x + space.x, corner.y + space.y};
       draw.AddImage(bokeh_.id(), start, end);
@@ -518,11 +409,12 @@ class Window {
       if (i % 2 == 0) ImGui::SameLine(panel_width / 2);
     }
     if (state().status != "solved") ImGui::TextColored({1, 0.7f, 0.4f, 1}, "%s", std::string(state().status).c_str());
-    const double shown_mm = std::min(state().focus_mm, 1e6);
+    const bool infinite = std::isinf(state().focus_mm);
     slider(
-        "distance (m)", shown_mm / 1000, 0.1, 1000, "%.3f",
+        "distance (m)", infinite ? farthest_m : state().focus_mm / 1000, 0.1, farthest_m,
+        infinite ? "infinity" : "%.3f",
         [](double m) {
-          return Json{{"type", "focus"}, {"distance_mm", 1000 * m}};
+          return Json{{"type", "focus"}, {"distance_mm", m < farthest_m ? Json(1000 * m) : Json(nullptr)}};
         },
         ImGuiSliderFlags_Logarithmic);
     if (state().serve == FocusServe::surface) {
@@ -641,13 +533,18 @@ class Window {
   }
 
   void play() {
-    if (!playing_) return;
+    if (!playing_) {
+      play_has_begun_ = false;
+      return;
+    }
     const auto now = std::chrono::steady_clock::now();
     if (now - last_step_ < std::chrono::milliseconds(42)) return;
     last_step_ = now;
     const double end = shown_->key_times.empty() ? 10 : std::max(0.1, shown_->key_times.back());
     const double next = state().time_s + 1 / 24.0;
-    send({{"type", "time"}, {"time_s", next > end ? 0 : next}, {"continues", true}});
+    Json event{{"type", "time"}, {"time_s", next > end ? 0 : next}};
+    if (std::exchange(play_has_begun_, true)) event["continues"] = true;
+    send(event);
   }
 
   void keys_of_keyboard() {
@@ -676,7 +573,8 @@ class Window {
   std::string selected_, moved_;  ///< ids of points
   bool move_has_begun_ = false;
   petzval::Vec2<double> pressed_at_{-1, -1}, looked_at_{-1, -1};
-  bool before_ = false, overlay_ = false, nearer_ = false, fade_ = true, playing_ = false, closed_ = false;
+  bool before_ = false, overlay_ = false, nearer_ = false, fade_ = true, playing_ = false, play_has_begun_ = false,
+       closed_ = false;
   double from_lens_ = 0;
   std::chrono::steady_clock::time_point last_step_{};
 };
@@ -685,14 +583,14 @@ class Window {
 
 void show_window(const WindowOptions& options) {
   examples::Interrupt interrupt;
-  std::optional<Window> window;
+  std::optional<Screen> screen;
+  Window window(options);  // after the screen, which its textures must not outlive
   const auto save = [&] {
-    if (!options.log_file.empty()) examples::write_text(options.log_file, window->worker().log().dump(1) + '\n');
+    if (!options.log_file.empty()) examples::write_text(options.log_file, window.worker().log().dump(1) + '\n');
   };
-  window.emplace(options);
   try {
-    const auto [width, height] = window->size();
-    Screen screen("petzval view", width, height);
+    const auto [width, height] = window.size();
+    screen.emplace("petzval view", width, height);
     bool open = true;
     int frames_to_draw = frames_after_change;
     std::shared_ptr<const Snapshot> drawn;
@@ -701,32 +599,29 @@ void show_window(const WindowOptions& options) {
       // Nothing is drawn while nothing changes, so that the worker has the processor for itself.
       bool changed = SDL_WaitEventTimeout(nullptr, 15) != 0;
       while (SDL_PollEvent(&event) != 0) {
-        ImGui_ImplSDL2_ProcessEvent(&event);
-        if (event.type == SDL_QUIT) window->close();
+        Screen::process(event);
+        if (event.type == SDL_QUIT) window.close();
         if (event.type == SDL_DROPFILE) {
-          window->dropped(event.drop.file);
+          window.dropped(event.drop.file);
           SDL_free(event.drop.file);
         }
       }
-      changed = changed || window->plays() || window->worker().snapshot() != drawn;
-      drawn = window->worker().snapshot();
+      changed = changed || window.plays() || window.worker().snapshot() != drawn;
+      drawn = window.worker().snapshot();
       if (changed) frames_to_draw = frames_after_change;
-      if (frames_to_draw > 0) {
-        --frames_to_draw;
-        screen.begin();
-        open = window->draw();
-        screen.end();
-        screen.swap();
-      } else if (!options.screenshot.empty() && window->complete()) {
-        screen.begin();
-        window->draw();
-        screen.end();
-        examples::write_png(screen.picture(), options.screenshot);
+      const bool last = frames_to_draw == 0 && !options.screenshot.empty() && window.complete();
+      if (frames_to_draw == 0 && !last) continue;
+      frames_to_draw = std::max(0, frames_to_draw - 1);
+      screen->begin();
+      open = window.draw();
+      screen->end();
+      if (last) {
+        examples::write_png(screen->picture(), options.screenshot);
         open = false;
       }
+      screen->swap();
     }
     save();
-    window.reset();  // its textures, before the screen
   } catch (const petzval::Error& error) {
     save();
     const std::string saved = options.log_file.empty() ? "" : ". The events are saved in " + options.log_file;

@@ -142,8 +142,7 @@ std::vector<double> FocusEditor::key_times() const {
   add(data_->now().settings.focus_keys);
   for (const editor_detail::EditorPoint& point : data_->now().settings.points) add(point.keys);
   std::ranges::sort(result);
-  const auto repeated = std::ranges::unique(result);
-  result.erase(repeated.begin(), repeated.end());
+  result.erase(std::unique(result.begin(), result.end()), result.end());
   return result;
 }
 
