@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 #include <string>
 #include <utility>
 #include <vector>
@@ -35,14 +34,6 @@ class Bundle {
   Ray<double> ray(std::size_t i) const noexcept {
     return {{rays_[0][i], rays_[1][i], rays_[2][i]}, {rays_[3][i], rays_[4][i], rays_[5][i]}};
   }
-  double mean_weight() const noexcept {
-    return std::accumulate(weights_.begin(), weights_.end(), 0.0) / static_cast<double>(weights_.size());
-  }
-  /// The mean of the products of weights and factors.
-  double mean_weight(std::span<const double> factors) const noexcept {
-    return std::inner_product(weights_.begin(), weights_.end(), factors.begin(), 0.0) /
-           static_cast<double>(weights_.size());
-  }
 
  private:
   std::vector<double> film_x_, film_y_, u_, v_, rays_[6], weights_;
@@ -67,10 +58,10 @@ class RaysOfCamera {
     const FilmPoint film = camera_.film().point(raster.x, raster.y);
     const Wavelength wavelength = wavelengths_[static_cast<std::size_t>(channel)];
     const Bundle bundle(camera_, film, points, wavelength);
-    double light = bundle.mean_weight(), sum = 0;
+    double light = 0, sum = 0;
     LayerRay mean{{0, 0}, {0, 0}, 0};
     for (std::size_t i = 0; i < found.size(); ++i) {
-      found[i].weight = bundle.weight(i);
+      found[i].weight = bundle.weight(i), light += found[i].weight;
       if (found[i].weight > 0) {
         found[i] = line(bundle.ray(i), found[i].weight);
       } else {
@@ -86,9 +77,9 @@ class RaysOfCamera {
     if (light_.rays > 0) {
       float ray[row_count];
       light_.ray_at(static_cast<std::size_t>(channel), 0, raster.x, raster.y, ray);
-      light = static_cast<double>(ray[weight]);
+      light = static_cast<double>(ray[weight]) * static_cast<double>(found.size());
     }
-    const double scale = light * static_cast<double>(found.size()) / sum;
+    const double scale = light / sum;
     for (LayerRay& ray : found) {
       if (ray.weight == 0) ray.position = mean.position / sum, ray.slope = mean.slope / sum;
       ray.weight *= scale;
@@ -105,13 +96,14 @@ class RaysOfCamera {
     std::vector<double> factors;
     for (PupilPoint& p : points) {
       const double inwards = 1 - p.v;
-      factors.push_back(3 * inwards * inwards), p.v = 1 - inwards * inwards * inwards;
+      factors.push_back(3 * inwards * inwards / light_points), p.v = 1 - inwards * inwards * inwards;
     }
     const auto source = [&](int channel, const Vec2<double>& raster, std::span<const PupilPoint>,
                             std::span<LayerRay> found) {
       const Bundle bundle(camera_, camera_.film().point(raster.x, raster.y), points,
                           wavelengths_[static_cast<std::size_t>(channel)]);
-      found[0] = {raster, {0, 0}, bundle.mean_weight(factors)};
+      found[0] = {raster, {0, 0}, 0};
+      for (std::size_t i = 0; i < points.size(); ++i) found[0].weight += bundle.weight(i) * factors[i];
     };
     const int step = std::max(1, std::max(layers_.columns, layers_.rows) / light_cells);
     return ray_table({0, 0, layers_.columns, layers_.rows}, std::span(points).first(1), wavelengths_.size(), source,

@@ -241,80 +241,61 @@ class Gathering {
   /// The `side` of TileSums::index().
   int sums_side() const noexcept { return method_.path == GatherPath::shift_invariant ? rays_.side() : 1; }
 
-  /// The sums of a channel of the picture.
-  const TileSums& sums_of(const Memory& memory, std::size_t channel) const noexcept {
-    return memory.sums[rays_.table.channels == 1 ? 0 : channel];
-  }
-  const float* colours_of(const Memory& memory, std::size_t channel) const noexcept {
-    return sums_of(memory, channel).colour[rays_.table.channels == 1 ? channel : 0];
-  }
-
   void compose(const Tile& tile, const Memory& memory) {
     const int side = sums_side();
+    const std::size_t channels = rays_.table.channels;
     const float per_ray = 1 / static_cast<float>(rays_.rays_of_set());
     double missed = 0;
     for (int row = 0; row < tile.rows; ++row) {
       for (int first = 0; first < std::min(side, tile.columns); ++first) {
-        const int at = TileSums::index(row, first, side), count = (tile.columns - first + side - 1) / side;
-        const std::size_t pixel =
-            static_cast<std::size_t>(tile.top + row) * static_cast<std::size_t>(picture_.columns) +
-            static_cast<std::size_t>(tile.left + first);
-        float *rgba = &picture_.rgba[4 * pixel], *unseen = &picture_.missed[pixel];
+        int at = TileSums::index(row, first, side);
+        const int end = at + (tile.columns - first + side - 1) / side;
         // In most rows all rays meet surfaces.
         bool all_met = layers_.opaque;
-        for (std::size_t c = 0; c < rays_.table.channels && all_met; ++c) {
+        for (std::size_t c = 0; c < channels && all_met; ++c) {
           const TileSums& sums = memory.sums[c];
-          for (int i = at; i < at + count; ++i) {
-            all_met &= (sums.open[i] == 0) & (sums.missed[i] == 0) & (sums.total[i] > 0);
-          }
+          for (int i = at; i < end; ++i) all_met &= (sums.open[i] == 0) & (sums.missed[i] == 0) & (sums.total[i] > 0);
         }
-        if (all_met) {
-          const float *const red = colours_of(memory, 0) + at, *const green = colours_of(memory, 1) + at,
-                             *const blue = colours_of(memory, 2) + at;
-          for (int i = 0; i < count; ++i, rgba += 4 * side, unseen += side) {
-            rgba[0] = red[i] * per_ray, rgba[1] = green[i] * per_ray, rgba[2] = blue[i] * per_ray, rgba[3] = 1;
-            *unseen = 0;
-          }
-          continue;
-        }
-        std::ptrdiff_t below =
-            static_cast<std::ptrdiff_t>(tile.top + row + overscan_) * layers_.columns + tile.left + first + overscan_;
-        for (int i = at; i < at + count; ++i, rgba += 4 * side, unseen += side, below += side) {
-          const float sum = compose(memory, i, below, per_ray, rgba);
-          *unseen = sum / 3, missed += static_cast<double>(sum);
+        const auto colour = [&](std::size_t c) {
+          return channels == 1 ? memory.sums[0].colour[c] : memory.sums[c].colour[0];
+        };
+        const float *const red = colour(0), *const green = colour(1), *const blue = colour(2);
+        int column = tile.left + first;
+        const std::ptrdiff_t pixel = static_cast<std::ptrdiff_t>(tile.top + row) * picture_.columns + column;
+        float *rgba = picture_.rgba.data() + 4 * pixel, *unseen = picture_.missed.data() + pixel;
+        for (; at < end; ++at, column += side, rgba += 4 * side, unseen += side) {
+          rgba[0] = red[at] * per_ray, rgba[1] = green[at] * per_ray, rgba[2] = blue[at] * per_ray, rgba[3] = 1;
+          *unseen = all_met ? 0 : compose(memory, at, column, tile.top + row, rgba);
+          missed += static_cast<double>(*unseen);
         }
       }
     }
     // Counted for each channel.
-    missed_ += static_cast<std::uint64_t>(
-        std::llround(missed / 3 * static_cast<double>(rays_.table.channels * rays_.rays_of_set())));
+    missed_ += static_cast<std::uint64_t>(std::llround(missed * static_cast<double>(channels * rays_.rays_of_set())));
   }
 
-  /// Composes a pixel and returns the sum of the missed fractions of its channels.
-  /// @param below index of the pixel in the layers
-  float compose(const Memory& memory, int at, std::ptrdiff_t below, float per_ray, float* rgba) const {
+  /// Completes a pixel whose rays may have missed surfaces. Returns the fraction of missed rays.
+  float compose(const Memory& memory, int at, int column, int row, float* rgba) const {
     float alpha = 0, unseen = 0;
     for (std::size_t c = 0; c < 3; ++c) {
-      const TileSums& sums = sums_of(memory, c);
-      const float total = sums.total[at], colour = colours_of(memory, c)[at];
-      if (layers_.opaque && sums.open[at] == 0 && sums.missed[at] == 0 && total > 0) {
-        rgba[c] = colour * per_ray, alpha += 1;
-        continue;
-      }
-      const float known = total - sums.unknown[at];
+      const TileSums& sums = memory.sums[rays_.table.channels == 1 ? 0 : c];
+      const float total = sums.total[at], known = total - sums.unknown[at];
       if (total > 0) unseen += sums.missed[at] / total;  // total is 0 in corners that the lens does not illuminate
       // If no ray is known, the first layer is the best guess.
       if (known > 1e-6f * total) {
-        rgba[c] = colour / known * total * per_ray;
+        rgba[c] *= total / known;
         alpha += layers_.opaque ? std::max(1 - sums.open[at] / known, 0.0f) : sums.alpha[at] / known;
       } else {
+        const std::ptrdiff_t below =
+            static_cast<std::ptrdiff_t>(row + overscan_) * layers_.columns + column + overscan_;
         const bool any = layers_.count > 0 && layers_.plane(0, 0)[below] >= 0;
+        const float per_ray = 1 / static_cast<float>(rays_.rays_of_set());
         rgba[c] = any ? layers_.plane(0, static_cast<int>(1 + c))[below] * total * per_ray : 0.0f;
         alpha += any ? layers_.plane(0, 4)[below] : 0.0f;
       }
     }
     rgba[3] = alpha / 3;
-    return unseen;
+    return unseen / 3;
   }
 
   const LayerData& layers_;

@@ -516,25 +516,26 @@ std::uint64_t follow_general(const TileJob& job, const DifferentRays& rays) noex
   return made * static_cast<std::uint64_t>(width);
 }
 
-void transmit(const LayerWindow& window, const HighlightRays& rays, float* fractions) noexcept {
-  const Numbers none(no_surface), one(1.0f), to(rays.to), gap(rays.gap);
+void transmit(const LayerWindow& window, const DifferentRays& rays, float gap, const Limits& pixels,
+              float* fractions) noexcept {
+  const Numbers none(no_surface), one(1.0f), to(rays.to);
   const auto within = [](Numbers x, float least, float most) {
     const Numbers above = larger(x, Numbers(least));
     return select(above > Numbers(most), Numbers(most), above);
   };
   for (std::size_t i = 0; i < rays.count; i += static_cast<std::size_t>(width)) {
-    const auto row = [&](Row r) { return load(rays.rows + r * rays.row_stride + i); };
+    const auto row = [&](Row r) { return load(rays.corners[0] + r * rays.row_stride + i); };
     const PixelSteps<Numbers> steps(row(at_x), row(at_y), row(slope_x), row(slope_y), Numbers(rays.from), to,
                                     Numbers(rays.end), Numbers(rays.most));
     Numbers through = one, front = none, front_alpha(0.0f), n(0.0f), high = steps.low(-one);
     for (Mask here = first_lanes(rays.count - i); any(here);
          here = all_of(here, n <= steps.last(), through > Numbers(1e-3f))) {
       const auto pixel = steps.pixel(n);
-      const Anywhere at{offsets_of(within(pixel.column, rays.left, rays.right),
-                                   within(pixel.row, rays.top, rays.bottom), window.stride),
+      const Anywhere at{offsets_of(within(pixel.column, pixels.left, pixels.right),
+                                   within(pixel.row, pixels.top, pixels.bottom), window.stride),
                         here};
       const Numbers low = steps.low(n), joined_alpha = front_alpha;
-      Numbers joined_to = front + gap;
+      Numbers joined_to = front + Numbers(gap);
       front = none;
       Mask behind = here;  // lanes whose rays are behind the layers so far
       for (int l = 0; l < window.layers; ++l) {

@@ -69,17 +69,6 @@ struct DifferentRays {
   int side = 1;              ///< ray sets alternate over blocks of side x side pixels
 };
 
-/// Lines that meet a highlight, relative to its pixel: [Row][ray], with rows `row_stride` apart. Loops read a register
-/// beyond the last ray.
-struct HighlightRays {
-  std::size_t count = 0, row_stride = 0;
-  const float* rows = nullptr;
-  float from = 0, to = 0;                          ///< inverse depths at which rays begin and end
-  float most = 0, end = 0;                         ///< inverse depths of the nearest (above 0) and the farthest surface
-  float gap = 0;                                   ///< as in TileJob
-  float left = 0, right = 0, top = 0, bottom = 0;  ///< the pixels of the layers
-};
-
 /// A tile or, for `same`, the pixels of a tile that share one set of rays: every side-th column and row.
 struct TileJob {
   LayerWindow window;
@@ -110,7 +99,11 @@ struct GatherLoops {
                    float w, float v) noexcept;
   /// The fraction of each ray that surfaces in front of a highlight transmit; up to a register more is written.
   /// @param window the layers at the pixel of the highlight
-  void (*transmit)(const LayerWindow& window, const HighlightRays& rays, float* fractions) noexcept;
+  /// @param rays   lines at corners[0], relative to the pixel of the highlight; they end at the inverse depth `to`
+  /// @param gap    as in TileJob
+  /// @param pixels first and last pixels of the layers, relative to the pixel of the highlight
+  void (*transmit)(const LayerWindow& window, const DifferentRays& rays, float gap, const Limits& pixels,
+                   float* fractions) noexcept;
 };
 
 PETZVAL_WIDEST(GatherLoops, gather_loops)

@@ -14,7 +14,12 @@ namespace petzval::blur_detail {
 namespace {
 
 constexpr std::size_t least_rays = 64, most_rays = 16384;  // per stamp
-constexpr int group_cell = 16;                             // px
+constexpr double rays_of_pixel = 2.5;
+constexpr int group_cell = 16;  // px
+
+std::size_t dense_rays(double area) {
+  return static_cast<std::size_t>(std::clamp<double>(rays_of_pixel * area, least_rays, most_rays));
+}
 
 /// The area covered by the lines of a node at an inverse depth, from an ellipse with the same moments.
 class CoveredArea {
@@ -79,6 +84,19 @@ struct Highlights::Stamp {
   std::vector<float> light;
 };
 
+/// Rays that meet a highlight, relative to its pixel.
+struct Highlights::Splat {
+  double x, y, light;  ///< position in the picture, and the light of the ray
+};
+struct Highlights::Lines {
+  std::size_t channel = 0, most = 0;  ///< most: largest number of lines
+  RasterArea area{};                  ///< part of the picture
+  std::vector<float> rows{};          ///< [Row][ray], as in RayTable
+  std::vector<Splat> splats{};
+
+  std::size_t stride() const noexcept { return most + 64; }
+};
+
 /// Highlights that share a stamp.
 struct Highlights::SharedStamp {
   Group members;
@@ -96,8 +114,10 @@ Highlights::Highlights(const LayerData& layers, const LensRays& rays, const Gath
   find(options);
   make_groups();
   if (highlights_.empty() || !rays_.shift_invariant) return;
+  const auto narrower = [](const Highlight& a, const Highlight& b) { return a.area < b.area; };
+  const float widest = std::max_element(highlights_.begin(), highlights_.end(), narrower)->area;
   for (std::size_t channel = 0; channel < rays_.table.channels; ++channel) {
-    shared_.push_back(rays_.dense({0, 0, 1, 1}, channel, most_rays, options.stop));
+    shared_.push_back(rays_.dense({0, 0, 1, 1}, channel, 0, dense_rays(widest), options.stop));
   }
 }
 
@@ -107,7 +127,7 @@ void Highlights::find(const GatherOptions& options) {
   for (int row = 0; row < layers_.rows; ++row) {
     keep_on(options.stop, "gather");
     for (int layer = 0; layer < layers_.count; ++layer) {
-      if (!(layers_.brightest(layer, row) > above)) continue;
+      if (!(layers_.brightest[static_cast<std::size_t>(layer * layers_.rows + row)] > above)) continue;
       const std::ptrdiff_t from = static_cast<std::ptrdiff_t>(row) * layers_.columns;
       const float* planes[LayerData::planes];
       for (int p = 0; p < LayerData::planes; ++p) planes[p] = layers_.plane(layer, p) + from;
@@ -182,46 +202,47 @@ void Highlights::cut(const PixelRect& rect, int columns, int layers, int planes,
   }
 }
 
-void Highlights::hide(const Highlight& h, HighlightRays rays, std::vector<float>& through) const {
+void Highlights::hide(const Highlight& h, const Lines& lines, std::size_t count, std::vector<float>& through) const {
   // A surface that is nearer by less than this margin, the offset of the umbra, hides the highlight from no ray.
   const double margin = 0.5 / std::max(rays_.largest_slope, 1e-30);
-  rays.from = nearest_, rays.to = static_cast<float>(h.inverse_depth + margin);
+  DifferentRays rays{.count = count,
+                     .row_stride = lines.stride(),
+                     .corners = {lines.rows.data()},
+                     .from = nearest_,
+                     .to = static_cast<float>(h.inverse_depth + margin),
+                     .most = nearest_,
+                     .end = farthest_};
   // Start at the nearest of all surfaces, then at the nearest surface below the paths that follow from it.
   for (int i = 0; i < 2; ++i) {
-    const Limits reach = gather_loops().limits(&rays.rows, 1, rays.row_stride, rays.count, rays.from, h.inverse_depth);
+    const Limits reach = gather_loops().limits(rays.corners, 1, rays.row_stride, count, rays.from, h.inverse_depth);
     const auto pixel = [](int at, float offset) { return at + static_cast<int>(std::floor(offset)); };
-    rays.from = layers_.n_buffer
-                    .below({pixel(h.column, reach.left) - 1, pixel(h.row, reach.top) - 1,
-                            pixel(h.column, reach.right) + 2, pixel(h.row, reach.bottom) + 2})
-                    .most;
+    const PixelRect rect{pixel(h.column, reach.left) - 1, pixel(h.row, reach.top) - 1, pixel(h.column, reach.right) + 2,
+                         pixel(h.row, reach.bottom) + 2};
+    rays.from = layers_.n_buffer.below(rect).most;
     if (rays.from <= rays.to) return;
   }
-  rays.most = nearest_, rays.end = farthest_, rays.gap = gap_;
-  rays.left = static_cast<float>(-h.column), rays.right = static_cast<float>(layers_.columns - 1 - h.column);
-  rays.top = static_cast<float>(-h.row), rays.bottom = static_cast<float>(layers_.rows - 1 - h.row);
   const std::ptrdiff_t at = static_cast<std::ptrdiff_t>(h.row) * layers_.columns + h.column;
-  gather_loops().transmit({.layers = layers_.count,
-                           .stride = layers_.columns,
-                           .layer_stride = static_cast<std::ptrdiff_t>(LayerData::planes * layers_.plane_stride()),
-                           .depth = layers_.plane(0, 0) + at,
-                           .alpha = layers_.plane(0, 4) + at},
-                          rays, through.data());
+  const auto number = [](int n) { return static_cast<float>(n); };
+  gather_loops().transmit(
+      {.layers = layers_.count,
+       .stride = layers_.columns,
+       .layer_stride = static_cast<std::ptrdiff_t>(LayerData::planes * layers_.plane_stride()),
+       .depth = layers_.plane(0, 0) + at,
+       .alpha = layers_.plane(0, 4) + at},
+      rays, gap_,
+      {number(-h.column), number(layers_.columns - 1 - h.column), number(-h.row), number(layers_.rows - 1 - h.row)},
+      through.data());
 }
 
-Highlights::Stamp Highlights::stamp_of(const Highlight& h, double rays_of_pixel, const RayTable& table) const {
-  const auto rays = static_cast<std::size_t>(std::clamp<double>(rays_of_pixel * h.area, least_rays, table.rays));
-  // The light of a ray is spread over a tent. The tent overlaps the tents of adjacent rays, so that the sum is uniform.
-  const double half = std::max(0.75, 2.1 * std::sqrt(h.area / static_cast<double>(rays)));
+void Highlights::extend(Lines& lines, const Highlight& h, std::size_t count, const std::stop_token& stop) const {
+  const std::size_t first = lines.splats.size();
+  if (first >= count) return;
+  lines.rows.resize(weight * lines.stride());
+  RayTable own;
+  if (!rays_.shift_invariant) own = rays_.dense(lines.area, lines.channel, first, count, stop);
+  const RayTable& table = rays_.shift_invariant ? shared_[lines.channel] : own;
   const double x = h.column + 0.5 - overscan_, y = h.row + 0.5 - overscan_, w = h.inverse_depth;
-
-  struct Splat {
-    double x, y, light;
-  };
-  std::vector<Splat> splats;
-  splats.reserve(rays);
-  const std::size_t stride = rays + 64;
-  std::vector<float> lines(row_count * stride), through(stride, 1.0f);
-  for (std::size_t ray = 0; ray < rays; ++ray) {
+  for (std::size_t ray = 0; ray < count - first; ++ray) {
     float line[row_count];
     // The position of the ray at the depth of the highlight, for a ray of the picture position `from`.
     const auto lead = [&](const Vec2<double>& from) {
@@ -229,67 +250,88 @@ Highlights::Stamp Highlights::stamp_of(const Highlight& h, double rays_of_pixel,
       return Vec2<double>{from.x + line[at_x] + w * line[slope_x], from.y + line[at_y] + w * line[slope_y]};
     };
     Vec2<double> landing{x, y};
-    double stretch = 1, off = 1;
+    double stretch = 1, off = 0;
     if (rays_.shift_invariant) {
       for (std::size_t r = 0; r < row_count; ++r) line[r] = table.node(0, 0, 0)[r * table.rays + ray];
       landing -= Vec2<double>{line[at_x] + w * line[slope_x], line[at_y] + w * line[slope_y]};
     } else {
+      off = 1;
       for (int k = 0; k < 12 && off > 0.05; ++k) {
         const Vec2<double> miss = Vec2<double>{x, y} - lead(landing);
         off = std::max(std::abs(miss.x), std::abs(miss.y));
         landing += miss;
       }
-      if (off > 1) continue;
-      const Vec2<double> here = lead(landing), across = lead(landing + Vec2<double>{1, 0}) - here,
-                         down = lead(landing + Vec2<double>{0, 1}) - here;
+      const Vec2<double> right = lead(landing + Vec2<double>{1, 0}), below = lead(landing + Vec2<double>{0, 1}),
+                         here = lead(landing), across = right - here, down = below - here;
       stretch = std::abs(across.x * down.y - across.y * down.x);
-      if (!(stretch > 1e-3)) continue;
-      lead(landing);
     }
-    float* const own = lines.data() + splats.size();
-    own[at_x * stride] = static_cast<float>(landing.x + line[at_x] - x), own[slope_x * stride] = line[slope_x];
-    own[at_y * stride] = static_cast<float>(landing.y + line[at_y] - y), own[slope_y * stride] = line[slope_y];
-    splats.push_back({landing.x, landing.y, line[weight] / (static_cast<double>(rays) * stretch)});
+    if (!(off <= 1 && stretch > 1e-3)) {  // no light
+      landing = {x, y};
+      std::fill_n(line, row_count, 0.0f);
+    }
+    lines.splats.push_back({landing.x - h.column, landing.y - h.row, line[weight] > 0 ? line[weight] / stretch : 0});
+    float* const row = lines.rows.data() + first + ray;
+    row[at_x * lines.stride()] = static_cast<float>(landing.x + line[at_x] - x);
+    row[at_y * lines.stride()] = static_cast<float>(landing.y + line[at_y] - y);
+    row[slope_x * lines.stride()] = line[slope_x], row[slope_y * lines.stride()] = line[slope_y];
   }
-  if (!splats.empty()) hide(h, {.count = splats.size(), .row_stride = stride, .rows = lines.data()}, through);
+}
+
+Highlights::Stamp Highlights::stamp_of(const Highlight& h, double density, Lines& lines,
+                                       const std::stop_token& stop) const {
+  keep_on(stop, "gather");
+  const auto rays = static_cast<std::size_t>(std::clamp<double>(density * h.area, least_rays, lines.most));
+  // Highlights of a group share the lines, except where lines are cheap.
+  if (rays_.shift_invariant) lines.splats.clear();
+  extend(lines, h, rays, stop);
+  // The light of a ray is spread over a tent. The tent overlaps the tents of adjacent rays, so that the sum is uniform.
+  const double half = std::max(0.75, 2.1 * std::sqrt(h.area / static_cast<double>(rays)));
+  std::vector<float> through(rays + 64, 1.0f);
+  hide(h, lines, rays, through);
+
+  std::vector<Splat> splats;
   double left = 1e9, right = -1e9, top = 1e9, bottom = -1e9;
   Stamp stamp;
-  for (std::size_t i = 0; i < splats.size(); ++i) {
-    Splat& s = splats[i];
-    stamp.hidden |= through[i] < 1, s.light *= through[i];
+  for (std::size_t i = 0; i < rays; ++i) {
+    Splat s = lines.splats[i];
+    stamp.hidden |= s.light > 0 && through[i] < 1;
+    s.light *= through[i] / static_cast<double>(rays);
     if (!(s.light > 0)) continue;
+    splats.push_back(s);
     left = std::min(left, s.x - half), right = std::max(right, s.x + half);
     top = std::min(top, s.y - half), bottom = std::max(bottom, s.y + half);
   }
-  if (left > right) return stamp;
+  if (splats.empty()) return stamp;
 
-  stamp.left = static_cast<int>(std::floor(left)) - h.column, stamp.top = static_cast<int>(std::floor(top)) - h.row;
-  const int first_column = stamp.left + h.column, first_row = stamp.top + h.row;
-  stamp.columns = static_cast<int>(std::ceil(right)) - first_column;
-  stamp.rows = static_cast<int>(std::ceil(bottom)) - first_row;
-  stamp.light.resize(static_cast<std::size_t>(stamp.columns) * static_cast<std::size_t>(stamp.rows));
-  const auto fraction_before = [half](double distance) {  // fraction of a tent's light
-    const double t = std::clamp(distance / half, -1.0, 1.0);
-    return t < 0 ? 0.5 * (1 + t) * (1 + t) : 1 - 0.5 * (1 - t) * (1 - t);
-  };
-  std::vector<float> across, down;
-  const auto fractions = [&](double centre, int first, std::vector<float>& of_pixels) {
-    of_pixels.clear();
-    for (double pixel = first, before = 0; pixel < centre + half; ++pixel) {
-      const double after = fraction_before(pixel + 1 - centre);
-      of_pixels.push_back(static_cast<float>(after - std::exchange(before, after)));
+  stamp.left = static_cast<int>(std::floor(left)), stamp.top = static_cast<int>(std::floor(top));
+  stamp.columns = static_cast<int>(std::ceil(right)) - stamp.left;
+  stamp.rows = static_cast<int>(std::ceil(bottom)) - stamp.top;
+  // Fractions of a tent's light in rows of pixels; the rows have a fixed length, for SIMD instructions.
+  constexpr std::size_t lanes = 8;
+  std::vector<float> across((static_cast<std::size_t>(2 * half) + 1 + lanes) / lanes * lanes), down(across.size());
+  stamp.light.resize(static_cast<std::size_t>(stamp.columns) * static_cast<std::size_t>(stamp.rows) + across.size());
+  const auto fractions = [half](double centre, int first, std::vector<float>& of_pixels) {
+    const auto begin = static_cast<float>((first - centre) / half), step = static_cast<float>(1 / half);
+    const auto before = [](float t) {
+      t = t < -1 ? -1 : t > 1 ? 1 : t;
+      return t - 0.5f * t * std::abs(t);
+    };
+    for (std::size_t i = 0; i < of_pixels.size(); ++i) {
+      const auto n = static_cast<float>(static_cast<int>(i));
+      of_pixels[i] = before(begin + (n + 1) * step) - before(begin + n * step);
     }
   };
   for (const Splat& s : splats) {
-    if (!(s.light > 0)) continue;
-    const int column = static_cast<int>(std::floor(s.x - half)), row = static_cast<int>(std::floor(s.y - half));
+    const int column = static_cast<int>(std::floor(s.x - half)), row = static_cast<int>(std::floor(s.y - half)),
+              end = static_cast<int>(std::ceil(s.y + half));
     fractions(s.x, column, across), fractions(s.y, row, down);
-    for (std::size_t j = 0; j < down.size(); ++j) {
-      float* const light =
-          &stamp.light[(static_cast<std::size_t>(row - first_row) + j) * static_cast<std::size_t>(stamp.columns) +
-                       static_cast<std::size_t>(column - first_column)];
-      const float of_row = static_cast<float>(s.light) * down[j];
-      for (std::size_t i = 0; i < across.size(); ++i) light[i] += of_row * across[i];
+    float* light = &stamp.light[static_cast<std::size_t>(row - stamp.top) * static_cast<std::size_t>(stamp.columns) +
+                                static_cast<std::size_t>(column - stamp.left)];
+    for (int j = 0; j < end - row; ++j, light += stamp.columns) {
+      const float of_row = static_cast<float>(s.light) * down[static_cast<std::size_t>(j)];
+      for (std::size_t i = 0; i < across.size(); i += lanes) {
+        for (std::size_t k = 0; k < lanes; ++k) light[i + k] += of_row * across[i + k];
+      }
     }
   }
   return stamp;
@@ -327,7 +369,6 @@ RasterArea Highlights::area_of(const Group& group, std::size_t channel) const {
 
 std::vector<Highlights::SharedStamp> Highlights::stamps_of(const Group& group, std::size_t channel,
                                                            const std::stop_token& stop) const {
-  constexpr double rays_of_pixel = 2.5;
   constexpr int cell = 4;
   // For each highlight, nearer surfaces hide different rays. The highlights of one cell are treated as if the same rays
   // were hidden, which moves the edge of the shadow by less than a cell.
@@ -337,22 +378,15 @@ std::vector<Highlights::SharedStamp> Highlights::stamps_of(const Group& group, s
   }
   std::vector<SharedStamp> stamps;
   const Highlight& light = brightest(group);
-  RayTable own;
-  if (!rays_.shift_invariant) {
-    const RasterArea area = area_of(group, channel);
-    if (area.columns == 0) return stamps;
-    const double count = std::clamp<double>(rays_of_pixel * light.area, least_rays, most_rays);
-    own = rays_.dense(area, channel, static_cast<std::size_t>(count), stop);
-  }
-  const RayTable& table = rays_.shift_invariant ? shared_[channel] : own;
-  if (cells.size() == 1 || !stamp_of(light, 0.5, table).hidden) {
-    stamps.push_back({group, stamp_of(light, rays_of_pixel, table)});
+  Lines lines{.channel = channel, .most = dense_rays(light.area), .area = area_of(group, channel)};
+  if (!rays_.shift_invariant && lines.area.columns == 0) return stamps;
+  if (cells.size() == 1 || !stamp_of(light, 0.5, lines, stop).hidden) {
+    stamps.push_back({group, stamp_of(light, rays_of_pixel, lines, stop)});
     return stamps;
   }
   const double rays = std::max(1.0, rays_of_pixel / static_cast<double>(cells.size()));
   for (const auto& [landing, members] : cells) {
-    keep_on(stop, "gather");
-    stamps.push_back({members, stamp_of(brightest(members), rays, table)});
+    stamps.push_back({members, stamp_of(brightest(members), rays, lines, stop)});
   }
   return stamps;
 }
@@ -364,35 +398,27 @@ void Highlights::spread(const GatherOptions& options, BlurredImage& picture) con
   for (std::size_t begin = 0; begin < groups_.size(); begin += batch_size) {
     const std::size_t count = channels * std::min(batch_size, groups_.size() - begin);
     parallel_for(count, 1, options.threads, [&](std::size_t first, std::size_t end) {
-      for (std::size_t i = first; i < end; ++i) {
-        keep_on(options.stop, "gather");
+      for (std::size_t i = first; i < end; ++i)
         stamps[i] = stamps_of(groups_[begin + i / channels], i % channels, options.stop);
-      }
     });
-    // The stamps in sequence, so that the sums do not depend on the number of threads.
-    parallel_for(static_cast<std::size_t>(picture.rows), 16, options.threads, [&](std::size_t top, std::size_t bottom) {
-      keep_on(options.stop, "gather");
-      for (std::size_t i = 0; i < count; ++i) {
-        for (const auto& [members, stamp] : stamps[i]) {
-          for (const std::size_t member : members) {
-            add(stamp, highlights_[member], i % channels, static_cast<int>(top), static_cast<int>(bottom), picture);
-          }
-        }
+    // In sequence, so that the sums do not depend on the number of threads.
+    for (std::size_t i = 0; i < count; ++i) {
+      for (const auto& [members, stamp] : stamps[i]) {
+        keep_on(options.stop, "gather");
+        for (const std::size_t member : members) add(stamp, highlights_[member], i % channels, picture);
       }
-    });
+    }
   }
 }
 
-void Highlights::add(const Stamp& stamp, const Highlight& h, std::size_t channel, int first_row, int end_row,
-                     BlurredImage& picture) const {
+void Highlights::add(const Stamp& stamp, const Highlight& h, std::size_t channel, BlurredImage& picture) const {
   float light[4] = {};
   for (std::size_t c = 0; c < 3; ++c) light[c] = rays_.table.channels == 1 || c == channel ? h.light[c] : 0;
   const int left = stamp.left + h.column, top = stamp.top + h.row;
   const int first = std::max(0, -left), last = std::min(stamp.columns, picture.columns - left);
-  for (int row = std::max(first_row, top); row < std::min(end_row, top + stamp.rows); ++row) {
-    const float* const of_row =
-        &stamp.light[static_cast<std::size_t>(row - top) * static_cast<std::size_t>(stamp.columns)];
-    float* const rgba = picture.rgba.data() + 4 * (static_cast<std::ptrdiff_t>(row) * picture.columns + left);
+  for (int row = std::max(0, -top); row < std::min(stamp.rows, picture.rows - top); ++row) {
+    const float* const of_row = &stamp.light[static_cast<std::size_t>(row) * static_cast<std::size_t>(stamp.columns)];
+    float* const rgba = picture.rgba.data() + 4 * (static_cast<std::ptrdiff_t>(top + row) * picture.columns + left);
     for (int column = first; column < last; ++column) {
       for (int c = 0; c < 4; ++c) rgba[4 * column + c] += of_row[column] * light[c];
     }

@@ -53,21 +53,24 @@ class Highlights {
   using Group = std::vector<std::size_t>;
   struct Stamp;
   struct SharedStamp;
+  struct Splat;
+  struct Lines;
 
   void find(const GatherOptions& options);
   void make_groups();
-  /// @param rays_of_pixel rays for each pixel covered by the blur
-  Stamp stamp_of(const Highlight& highlight, double rays_of_pixel, const RayTable& rays) const;
+  /// Adds lines that meet a highlight, up to a number of lines.
+  void extend(Lines& lines, const Highlight& highlight, std::size_t count, const std::stop_token& stop) const;
+  /// @param density number of rays for each pixel covered by the blur
+  /// @param lines   the lines of the group so far
+  Stamp stamp_of(const Highlight& highlight, double density, Lines& lines, const std::stop_token& stop) const;
   const Highlight& brightest(const Group& group) const;
   /// The part of the picture over which a group is distributed; it has no columns if it lies outside the picture.
   RasterArea area_of(const Group& group, std::size_t channel) const;
   std::vector<SharedStamp> stamps_of(const Group& group, std::size_t channel, const std::stop_token& stop) const;
-  /// Adds a stamp to some rows of the picture.
-  void add(const Stamp& stamp, const Highlight& highlight, std::size_t channel, int first_row, int end_row,
-           BlurredImage& picture) const;
-  /// Finds the fraction of each ray that surfaces in front of the highlight transmit.
-  /// @param through 1 for each ray, and a register more
-  void hide(const Highlight& highlight, HighlightRays rays, std::vector<float>& through) const;
+  void add(const Stamp& stamp, const Highlight& highlight, std::size_t channel, BlurredImage& picture) const;
+  /// Finds the fraction of each line that surfaces in front of the highlight transmit.
+  /// @param through 1 for each line, and a register more
+  void hide(const Highlight& highlight, const Lines& lines, std::size_t count, std::vector<float>& through) const;
 
   const LayerData& layers_;
   const RayData& rays_;

@@ -19,7 +19,7 @@ struct LayerSet::Data {
   bool opaque = true;
   double n_buffer_seconds = 0;
   std::vector<float> memory, below;
-  std::vector<float> brightest_of_rows;  ///< [layer][row]
+  std::vector<float> brightest;  ///< [layer][row] largest colour of the surfaces, at least 0
   blur_detail::NBuffer n_buffer;
 
   std::size_t pixels() const noexcept { return static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows); }
@@ -29,11 +29,6 @@ struct LayerSet::Data {
   }
   const float* plane(int layer, int p) const noexcept { return const_cast<Data*>(this)->plane(layer, p); }
 
-  /// The largest colour of the surfaces in a row of a layer; at least 0.
-  float brightest(int layer, int row) const noexcept {
-    return brightest_of_rows[static_cast<std::size_t>(layer) * static_cast<std::size_t>(rows) +
-                             static_cast<std::size_t>(row)];
-  }
   /// The depths of all layers.
   blur_detail::DepthRange depths() const noexcept { return n_buffer.below({0, 0, columns - 1, rows - 1}); }
 

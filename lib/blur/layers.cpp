@@ -108,7 +108,7 @@ void LayerSet::Data::end_layer(const std::string& where) {
   }
   if (!any) return;
   const auto brighter = [](float a, float b) { return a > b ? a : b; };  // b if a is NaN
-  brightest_of_rows.resize(static_cast<std::size_t>(count + 1) * static_cast<std::size_t>(rows));
+  brightest.resize(static_cast<std::size_t>((count + 1) * rows));
   for (int row = 0; row < rows; ++row) {
     const std::ptrdiff_t from = static_cast<std::ptrdiff_t>(row) * columns;
     const float *const r = plane(count, 1) + from, *const g = plane(count, 2) + from, *const b = plane(count, 3) + from;
@@ -116,7 +116,7 @@ void LayerSet::Data::end_layer(const std::string& where) {
     for (int i = 0; i < columns; ++i) {
       most = brighter(w[from + i] >= 0 ? brighter(r[i], brighter(g[i], b[i])) : 0.0f, most);
     }
-    brightest_of_rows[static_cast<std::size_t>(count * rows + row)] = most;
+    brightest[static_cast<std::size_t>(count * rows + row)] = most;
   }
   ++count;
   opaque &= solid;

@@ -204,11 +204,11 @@ double LensRays::reach_px(double least_inverse_depth, double most_inverse_depth)
   return reach;
 }
 
-RayTable LensRays::Data::dense(const RasterArea& area, std::size_t channel, std::size_t count,
+RayTable LensRays::Data::dense(const RasterArea& area, std::size_t channel, std::size_t first, std::size_t end,
                                const std::stop_token& stop) const {
   const core_detail::Kronecker<2> points_of;
-  std::vector<PupilPoint> pupil_points(count);
-  for (std::size_t i = 0; i < count; ++i) pupil_points[i] = {points_of(i)[0], points_of(i)[1]};
+  std::vector<PupilPoint> pupil_points;
+  for (std::size_t i = first; i < end; ++i) pupil_points.push_back({points_of(i)[0], points_of(i)[1]});
   const auto of_channel = [&](int, const Vec2<double>& raster, std::span<const PupilPoint> points_of_area,
                               std::span<LayerRay> rays) {
     source(static_cast<int>(channel), raster, points_of_area, rays);

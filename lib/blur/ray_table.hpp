@@ -61,9 +61,9 @@ struct LensRays::Data {
   bool shift_invariant = false;
 
   /// Rays of a channel over an area of the picture, for lights that would appear as dots with few rays. The pupil
-  /// points are the first points of a sequence in which every run of points covers the pupil uniformly.
-  blur_detail::RayTable dense(const blur_detail::RasterArea& area, std::size_t channel, std::size_t count,
-                              const std::stop_token& stop) const;
+  /// points are the points `first` to `end` - 1 of a sequence in which every run of points covers the pupil uniformly.
+  blur_detail::RayTable dense(const blur_detail::RasterArea& area, std::size_t channel, std::size_t first,
+                              std::size_t end, const std::stop_token& stop) const;
 
   std::size_t set_count() const noexcept { return static_cast<std::size_t>(options.set_count); }
   /// Side of the square blocks in which the sets alternate, px.
