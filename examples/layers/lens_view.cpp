@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "layers/lens_view.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <vector>
 
@@ -24,6 +25,34 @@ petzval::Camera LensView::camera(std::uint32_t supersample) const {
                           .expressive = expressive});
 }
 
+std::function<double(const petzval::Vec2<double>&)> LensView::thin_focus(const petzval::LayerCamera& layers) const {
+  const double power = 1 / petzval::first_order(lens).effective_focal_length, image = power - 1 / focus_depth_mm;
+  return [=, normal = film.normal()](const petzval::Vec2<double>& raster) {
+    const petzval::Vec2<double> run = (raster - layers.axis) / layers.focal_px;
+    return power - image * (1 - (normal.x * run.x - normal.y * run.y) / normal.z);
+  };
+}
+
+/// A Camera is sharp where exact rays are sharpest. The elements of a thin lens have aberrations, so that this is not
+/// the focus of a thin lens: a focal surface states it.
+petzval::Camera LensView::sharp_at_focus(const petzval::LayerCamera& layers, std::uint32_t supersample) const {
+  if (!thin() || (surface && surface->fixes_distance())) return camera(supersample);
+  petzval::Film upright = film;
+  upright.tilt_rad = upright.swing_rad = 0, upright.columns = layers.columns, upright.rows = layers.rows;
+  const auto inverse_distance = thin_focus(layers);
+  std::vector<petzval::FocalPoint> points;
+  for (const petzval::Vec2<double>& part : {petzval::Vec2<double>{0, 0}, {1, 0}, {0.5, 1}}) {
+    const petzval::Vec2<double> raster{part.x * layers.columns, part.y * layers.rows};
+    points.push_back(
+        {.film_point = upright.point(raster.x, raster.y), .inverse_distance = std::max(0.0, inverse_distance(raster))});
+  }
+  LensView sharp = *this;
+  sharp.film = upright;
+  sharp.film.columns = film.columns, sharp.film.rows = film.rows;
+  sharp.surface.emplace(petzval::thick_lens(lens), upright, points);
+  return sharp.camera(supersample);
+}
+
 petzval::LayerCamera LensView::layers(std::uint32_t supersample) const {
   if (!thin()) return petzval::layer_camera(camera(supersample));
   return petzval::layer_camera(film.columns * static_cast<int>(supersample), film.rows * static_cast<int>(supersample),
@@ -41,7 +70,7 @@ petzval::LensRays LensView::rays(const petzval::LayerCamera& layers, const RayPa
   if (!thin() || controls.vignettes() || !expressive.empty()) {
     std::vector<petzval::Wavelength> wavelengths;
     for (std::size_t i = 1; coloured && i <= petzval::rgb_triple_nm.size(); ++i) wavelengths.emplace_back(i);
-    return petzval::LensRays::of(camera(pattern.supersample), layers, points, wavelengths, options);
+    return petzval::LensRays::of(sharp_at_focus(layers, pattern.supersample), layers, points, wavelengths, options);
   }
 
   petzval::ThinLens thin_lens{.radius_mm = thin_diameter_mm / 2,
@@ -62,11 +91,8 @@ petzval::LensRays LensView::rays(const petzval::LayerCamera& layers, const RayPa
       return petzval::FocusAt{at.inverse_distance, std::exp2(-at.extent_stops / 2)};
     };
   } else if (film.tilted()) {
-    // The inverse distance in focus of a tilted film is linear over the picture; the picture keeps its frame.
-    const double image = power - 1 / focus_depth_mm;
-    thin_lens.focus = [=, normal = film.normal()](const petzval::Vec2<double>& raster) {
-      const petzval::Vec2<double> run = (raster - layers.axis) / layers.focal_px;
-      return petzval::FocusAt{power - image * (1 - (normal.x * run.x - normal.y * run.y) / normal.z), 1};
+    thin_lens.focus = [inverse_distance = thin_focus(layers)](const petzval::Vec2<double>& raster) {
+      return petzval::FocusAt{inverse_distance(raster), 1};
     };
   }
   return petzval::LensRays::thin(layers, thin_lens, points, options);

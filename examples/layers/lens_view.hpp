@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <stop_token>
 
@@ -44,6 +45,12 @@ struct LensView {
   /// @throws petzval::Cancelled if `stop` requests a stop
   petzval::LensRays rays(const petzval::LayerCamera& layers, const RayPattern& pattern, double nearest_mm, int threads,
                          const std::stop_token& stop = {}) const;
+
+ private:
+  /// Inverse distance in focus of a thin lens without a focal surface at raster positions, 1/mm. It is linear over the
+  /// picture; the picture of a tilted film keeps its frame.
+  std::function<double(const petzval::Vec2<double>&)> thin_focus(const petzval::LayerCamera& layers) const;
+  petzval::Camera sharp_at_focus(const petzval::LayerCamera& layers, std::uint32_t supersample) const;
 };
 
 }  // namespace lens_blur

@@ -57,6 +57,10 @@ void print_files() {
 Keys (--keys FILE): a list of points with from_s, until_s and "keys", a list of objects with time_s and
   the names above.
 
+Events (view --replay FILE): an object with scene (or image, depth, deep), lens, size, fov_deg and events, a list
+  of objects with type: add_point, move_point, set_point, remove_point, serve, focus, f_number, iris, bokeh,
+  expressive, lens, colour, tilt, weighting, key, time, undo, redo, still. A window of view saves such a file.
+
 Rays (trace --table FILE): CSV with the columns x_mm,y_mm,z_mm,dx,dy,dz.
 Samples (camera-rays --table FILE): CSV with film_x_mm,film_y_mm,pupil_u,pupil_v,wavelength_nm.
 

@@ -27,6 +27,7 @@ constexpr std::array all_groups{
     Group{"Picture", false,
           " --film --fov --size --columns --title --white-point --normalisation --exposure --frames --fps --travel "},
     Group{"Work", false, " --integrator --wavelengths --spp --rays --noise --time --compare --compare-rays "},
+    Group{"Window", false, " --replay --log --panels --screenshot "},
     Group{"Output", false, " --out --format --json --check --strict --repair --precision "},
     Group{"Quality", true, " --tolerance --layers --jitter --supersample --highlights-above "},
     Group{"Depths", true, " --depth-kind --near --far --white "},

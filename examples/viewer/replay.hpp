@@ -6,12 +6,12 @@
 
 namespace viewer {
 
-/// What to do with a log of events.
+/// Options of replay().
 struct ReplayOptions {
   std::string log_file;
   std::string out_folder;               ///< for pictures; empty: none
   std::uint32_t width = 0, height = 0;  ///< 0: the size of the log
-  std::uint32_t rays = 16;              ///< of the frame after each event
+  std::uint32_t rays = 16;              ///< rays per pixel after each event
   std::uint32_t layers = 4;
   int threads = 1;
   bool json = false;

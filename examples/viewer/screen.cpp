@@ -14,7 +14,7 @@ namespace viewer {
 
 Screen::Screen(const char* title, int width, int height) {
   if (SDL_Init(SDL_INIT_VIDEO) != 0) fail(SDL_GetError());
-  // Without a display, SDL draws where nobody sees it.
+  // If no display exists, SDL chooses a driver that draws to memory.
   for (const char* const unseen : {"offscreen", "dummy", "evdev"}) {
     if (SDL_GetCurrentVideoDriver() == std::string(unseen)) fail("there is no display");
   }
@@ -48,7 +48,8 @@ Screen::~Screen() {
 void Screen::fail(const std::string& reason) {
   const std::string message = "window: " + reason;  // before close(), which changes the reason of SDL
   close();
-  throw petzval::Error(message + "; must have a display (DISPLAY) with OpenGL 3. petzval view --replay needs none");
+  throw petzval::Error(message +
+                       "; must have a display (DISPLAY) with OpenGL 3. petzval view --replay works without a display");
 }
 
 void Screen::close() {

@@ -26,7 +26,7 @@ Section section_of(const petzval::Lens& lens, const petzval::Film& film);
 /// The rays of a film point through the lens of a camera, seen from the side; empty for first-order models.
 std::vector<Polyline> rays_through(const petzval::Camera& camera, const petzval::FilmPoint& point);
 
-/// What a film point sees of the plane at a depth: the bokeh of the point.
+/// The area of a plane in the scene that a film point sees, as an image.
 struct Bokeh {
   int pixels = 0;
   std::vector<float> values;  ///< pixels x pixels, largest 1

@@ -49,12 +49,20 @@ double exact_degrees(double angle) {
 
 std::string exact(double value) { return std::isinf(value) ? "inf" : Json(value).dump(); }
 
-/// A word of a command line, in quotes if a shell would change it.
+/// Quotes a word of a command line if it has characters that are special in a shell.
 std::string quoted(const std::string& word) {
   if (word.find_first_of(" \t'\"\\$`&|;<>()*?[]#~!{}") == std::string::npos) return word;
   std::string result = "'";
   for (const char c : word) result += c == '\'' ? std::string("'\\''") : std::string(1, c);
   return result + "'";
+}
+
+/// Memory of layers, with the depths of the last layer, and of a blurred picture, MB.
+double memory_of(const petzval::LayerSet& layers, const petzval::BlurredImage& picture) {
+  constexpr int planes = 5;
+  const double layer = 1e-6 * sizeof(float) * layers.columns() * layers.rows();
+  return layer * (planes * layers.count() + 1) +
+         1e-6 * sizeof(float) * static_cast<double>(picture.rgba.size() + picture.missed.size());
 }
 
 }  // namespace
@@ -202,7 +210,7 @@ Frame Session::frame(std::uint32_t rays, bool first_order, const std::stop_token
   petzval::gather(layers_, table, {.threads = options_.threads, .highlights_above = threshold_, .stop = stop},
                   blurred_);
   Frame result{.picture = lens_blur::colours_of(blurred_), .rays = rays, .first_order = lens.first_order_only};
-  result.memory_mb = memory_mb();
+  result.memory_mb = memory_of(layers_, blurred_);
   result.milliseconds = ms_since(start);
   return result;
 }
@@ -224,17 +232,10 @@ Frame Session::still(const std::stop_token& stop) {
       petzval::gather(layers, rays, {.threads = options_.threads, .highlights_above = threshold, .stop = stop});
   Frame result{.picture = lens_blur::averaged(lens_blur::colours_of(blurred), static_cast<int>(side)),
                .rays = pattern.rays,
+               .memory_mb = memory_of(layers, blurred),
                .still = true};
   result.milliseconds = ms_since(start);
   return result;
-}
-
-/// Layers, with the depths of the last one, and the blurred picture.
-double Session::memory_mb() const {
-  constexpr int planes = 5;
-  const double layer = 1e-6 * sizeof(float) * layers_.columns() * layers_.rows();
-  const double picture = 1e-6 * sizeof(float) * static_cast<double>(blurred_.rgba.size() + blurred_.missed.size());
-  return layer * (planes * layers_.count() + 1) + picture;
 }
 
 std::vector<float> Session::blur_map() const {

@@ -22,14 +22,14 @@
 /// Interactive lens blur without its window.
 namespace viewer {
 
-/// What a session starts with.
+/// The scene, the lens and the resources of a session.
 struct SessionOptions {
   lens_blur::InputFlags input;
   petzval::FocusLensChoice lens;
   double fov_deg = 0;  ///< vertical; 0: 30 for a thin lens, else the angle of a film 24 mm high
   std::uint32_t layers = 4;
   int threads = 1;
-  int file_columns = 0, file_rows = 0;  ///< size that files must have; 0: any
+  int file_columns = 0, file_rows = 0;  ///< required size of files; 0: any size
 };
 
 /// A picture of the state of a session.
@@ -37,7 +37,7 @@ struct Frame {
   petzval::RgbImage picture;
   std::uint32_t rays = 0;    ///< per pixel
   double milliseconds = 0;   ///< for rays and gather; for a still picture also for its layers
-  double memory_mb = 0;      ///< of layers, tables of rays and buffers
+  double memory_mb = 0;      ///< memory of the layers and the blurred picture
   bool first_order = false;  ///< a preview without aberrations
   bool still = false;        ///< the picture of `petzval blur`
 };
@@ -80,7 +80,7 @@ class Session {
   /// Pixels of the picture per unit of slope.
   double focal_px() const noexcept { return camera_.focal_px; }
 
-  /// The keys of `petzval view --replay` for a state; times and memory are those of the frame.
+  /// The state as a JSON object of `petzval view --replay`, with times and memory of the frame.
   examples::Json state_json(const Frame& frame) const;
   /// The scene, the lens and all events: the file of --replay.
   examples::Json log() const;
@@ -94,7 +94,6 @@ class Session {
   std::optional<petzval::FocusPlace> place(const petzval::Ray<double>& ray) const;
   /// The lens of the state. from_points: the focal surface goes through the numbers of surface_points(), as in blur.
   lens_blur::LensView view(bool from_points) const;
-  double memory_mb() const;
   double widest_radius(const lens_blur::LensView& view) const;
   void update_camera();
 
@@ -104,11 +103,11 @@ class Session {
   std::optional<petzval::FocusEditor> editor_;
   petzval::FocusLensChoice first_lens_;
 
-  petzval::LayerCamera camera_;  ///< of the layers, without overscan
+  petzval::LayerCamera camera_;  ///< camera of the layers, without overscan
   std::string camera_lens_;      ///< the lens for which camera_ was made
   double nearest_mm_ = 0;
   petzval::LayerSet layers_;
-  double radius_mm_ = 0;  ///< of the pupil for which layers_ was made
+  double radius_mm_ = 0;  ///< radius of the pupil for which layers_ was made
   double threshold_ = 0;  ///< of highlights
   petzval::BlurredImage blurred_;
 };

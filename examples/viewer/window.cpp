@@ -34,7 +34,7 @@ namespace {
 
 using examples::Json;
 
-/// Width of the panels beside the picture, and height of the drawings below it.
+/// Width of the panels beside the picture and height of the drawings below the picture, pixels of the screen.
 constexpr float panel_width = 350, drawing_height = 190;
 /// End of the slider of distances: infinity.
 constexpr double farthest_m = 1000;
@@ -173,7 +173,7 @@ class Window {
     auto shown = static_cast<float>(value);
     if (ImGui::SliderFloat(label, &shown, static_cast<float>(least), static_cast<float>(most), format,
                            flags | ImGuiSliderFlags_AlwaysClamp)) {
-      // Four digits: what the slider shows.
+      // The slider shows four digits.
       send_from_widget(label, event(Json::parse(examples::number(static_cast<double>(shown), 4)).get<double>()));
     }
     end_of_widget();
@@ -247,7 +247,7 @@ class Window {
     std::string under;  // id of the point under the mouse
     for (std::size_t i = 0; i < state().targets.size(); ++i) {
       const petzval::FocusMark& mark = state().targets[i];
-      // A point that has no handle yet is where the first-order lens images it.
+      // A new point has no handle yet. Until then its first-order image is used.
       const bool has_handle = i < shown_->handles.size() && shown_->handles[i];
       const std::optional<petzval::Vec2<double>> place = has_handle ? shown_->handles[i] : mark.raster;
       if (!place) continue;
@@ -596,7 +596,7 @@ void show_window(const WindowOptions& options) {
     std::shared_ptr<const Snapshot> drawn;
     while (open && !examples::Interrupt::asked()) {
       SDL_Event event;
-      // Nothing is drawn while nothing changes, so that the worker has the processor for itself.
+      // The window is drawn only after changes, because drawing takes time from the worker.
       bool changed = SDL_WaitEventTimeout(nullptr, 15) != 0;
       while (SDL_PollEvent(&event) != 0) {
         Screen::process(event);

@@ -8,10 +8,10 @@
 
 namespace viewer {
 
-/// What the window starts with.
+/// Options of show_window().
 struct WindowOptions {
   SessionOptions session;
-  std::string log_file;                   ///< where the events are saved when the window closes
+  std::string log_file;                   ///< file for the events, written when the window closes
   std::string out_folder;                 ///< for exported pictures
   examples::Json first_events = nullptr;  ///< a list; null: a point in the middle of the picture
   std::vector<std::string> panels;        ///< that are open at the start; also "map" or "sharp"

@@ -166,7 +166,7 @@ void Worker::show(Frame frame) {
   publish(std::move(next));
 }
 
-/// The section with the rays under the mouse, and the bokeh there.
+/// Draws the section with the rays of the point under the mouse, and the bokeh of this point.
 void Worker::look() {
   petzval::Vec2<double> raster{0, 0};
   {

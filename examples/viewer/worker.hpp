@@ -26,13 +26,13 @@ struct Snapshot {
   bool can_undo = false, can_redo = false;
   std::vector<double> key_times = {};
   std::string plane = {};    ///< the plane of focus in words
-  std::string message = {};  ///< of the last event that was refused, or of an export
+  std::string message = {};  ///< message of the last refused event or export
   Section section = {};      ///< with the rays under the mouse
 
   Frame frame = {};  ///< without its picture
   std::shared_ptr<const petzval::Rgb8Image> picture = {}, sharp = {};
   std::shared_ptr<const std::vector<float>> blur = {};  ///< Session::blur_map()
-  std::array<float, 41> histogram{};                    ///< of blur_map() from -20 to 20 pixels
+  std::array<float, 41> histogram{};                    ///< pixels by blur, from -20 to 20 pixels
   Bokeh bokeh = {};                                     ///< under the mouse
   std::uint64_t pictures = 0;                           ///< number of pictures so far
 };
@@ -48,7 +48,7 @@ class Worker {
   Worker(const Worker&) = delete;
   Worker& operator=(const Worker&) = delete;
 
-  /// Queues an event. One that continues another in the queue replaces it.
+  /// Queues an event. An event that continues the last event of the queue replaces this event.
   void send(const examples::Json& event);
   /// Moves the point of the section and the bokeh.
   void look_at(const petzval::Vec2<double>& raster);
@@ -79,7 +79,7 @@ class Worker {
   std::optional<std::filesystem::path> folder_;
   std::shared_ptr<const Snapshot> snapshot_;
   bool ends_ = false, idle_ = false;
-  std::stop_source stop_;  ///< of the work under way
+  std::stop_source stop_;  ///< cancels the work under way
 
   std::mutex session_mutex_;  ///< of session_
   std::string lens_shown_;    ///< the lens of the last picture

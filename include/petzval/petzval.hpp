@@ -35,6 +35,7 @@
 ///     petzval::analysis   petzval/analysis/   spots, PSFs, colour, distortion, errors of ray models, lint
 ///     petzval::formats    petzval/formats/    lenses and glasses in files of other programs
 ///     petzval::fit        petzval/fit/        tilted films that focus several points
+///                         petzval/editor/     focus control by events, for interactive programs
 ///     petzval::blur       petzval/blur/       lens blur of images with depth
 ///     petzval::figure     petzval/figure/     SVG figures
 ///     petzval::image      petzval/image/      EXR and PNG files

@@ -107,7 +107,8 @@ class Event {
       if (std::ranges::find(read_, key) != read_.end()) continue;
       std::string known;
       for (const std::string& name : read_) known += (known.empty() ? "" : ", ") + name;
-      throw Error(type_ + ": key \"" + std::string(beginning(key, 60)) + "\" is unknown; must be one of " + known);
+      throw Error(type_ + ": key \"" + std::string(beginning(key, 60)) +
+                  "\" is unknown; must be a key of this event: " + known);
     }
   }
 
@@ -121,7 +122,7 @@ class Event {
   std::vector<std::string> read_;
 };
 
-/// What events read besides the settings.
+/// Scene and state for the events, besides the settings.
 struct Context {
   const FocusScene& scene;
   const FocusEditorState& state;
@@ -146,7 +147,7 @@ EditorPoint& point_of(Event& event, EditorSettings& settings) {
   if (found != settings.points.end()) return *found;
   std::string known;
   for (const EditorPoint& point : settings.points) known += (known.empty() ? "" : ", ") + point.id;
-  event.refuse("id", value, known.empty() ? "the id of a point; there is no point" : "one of " + known);
+  event.refuse("id", value, known.empty() ? "the id of a point, but no point exists" : "the id of a point: " + known);
 }
 
 /// Reads the place of a point: a pixel, or a position in the scene.
@@ -158,7 +159,7 @@ std::optional<FocusPlace> place_of(Event& event, const Context& context, double 
   event.set("at_infinity", at_infinity);
   if ((pixel != nullptr) == (position != nullptr)) {
     throw Error(event.type() + ": has " + (pixel ? "both of" : "neither of") +
-                " pixel and position_mm; must have one of them");
+                " pixel and position_mm; must have either pixel or position_mm");
   }
   if (pixel && at_infinity) event.refuse("at_infinity", true, "left out with pixel");
   if (position) {
@@ -208,7 +209,7 @@ void add_point(Event& event, const Context& context, EditorSettings& settings) {
     return std::ranges::any_of(settings.points, [&](const EditorPoint& other) { return other.id == id; });
   };
   if (!point.id.empty() && taken(point.id)) {
-    event.refuse("id", point.id, "an id that no other point has");
+    event.refuse("id", point.id, "an unused id");
   }
   while (point.id.empty() || taken(point.id)) point.id = std::to_string(++settings.points_added);
   point.now.place = place_of(event, context, settings.time_s);

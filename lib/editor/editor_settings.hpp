@@ -40,7 +40,7 @@ struct EditorPoint {
   FadeFilter fade{0.2};
 };
 
-/// Everything that events change. It is a value: undo restores an older one.
+/// All settings that events change. Undo restores earlier settings.
 struct EditorSettings {
   FocusLensChoice choice;
   std::optional<Lens> wide_open;   ///< compiled from `choice`
@@ -54,7 +54,7 @@ struct EditorSettings {
   double focus_mm = std::numeric_limits<double>::infinity();  ///< from the front vertex
   Keys<double> focus_keys;
   bool focus_by_hand = false;          ///< focus_mm replaces the keys until the time changes
-  std::string active;                  ///< id of the point that serve by distance follows; empty: none
+  std::string active;                  ///< id of the point in focus for serve by distance; empty: no point
   double tilt_rad = 0, swing_rad = 0;  ///< by hand, for serve by distance
   bool nearer_weighs_more = false, points_fade = true;
   double fade_s = 0.2, time_s = 0;

@@ -48,7 +48,7 @@ Focused with_scene_film(const FocusScene& scene, Lens lens, double focus_mm) {
   return {std::move(lens), ideal, film, focus_mm};
 }
 
-/// The lens at a distance; nullopt if the lens cannot be focused there.
+/// Focuses the lens at a distance. Returns nullopt if the lens cannot be focused at this distance.
 std::optional<Focused> try_focus(const FocusScene& scene, const EditorSettings& settings, const Lens& lens,
                                  double focus_mm) {
   if (!(focus_mm > 0)) return {};
@@ -95,7 +95,7 @@ FocusPoint focus_point(const FocusScene& scene, double entrance_z, const EditorP
     add(0, point.now);
   } else {
     for (const auto& [at, values] : point.keys) add(at, values);
-    // Either all keys have an extent or none: keys without one have no effect on the depth of field.
+    // A focus point requires that all keys have an extent if a key has an extent. An extent of 0 changes nothing.
     if (std::ranges::any_of(result.keys, [](const FocusKey& key) { return key.extent_stops.has_value(); })) {
       for (FocusKey& key : result.keys) key.extent_stops = key.extent_stops.value_or(0);
     }
@@ -113,7 +113,7 @@ void follow_keys(const FocusScene& scene, EditorSettings& settings, const Focuse
     if (found.empty()) continue;  // without an image: the last values stay
     const FocusTarget& target = found.front();
     const double blur_px = target.blur_mm / base.film.pixel_mm();
-    // A single triangle stays, so that the point goes on following it.
+    // A point with a single key keeps its triangle and follows the vertices.
     const auto& first = point.keys.front().second;
     const bool one_place = point.keys.size() == 1;
     FocusPlace place;
@@ -142,8 +142,8 @@ void follow_keys(const FocusScene& scene, EditorSettings& settings, const Focuse
 
 /// The points of the settings in front of a focused lens.
 struct Scenery {
-  std::vector<FocusPoint> tracks;    ///< one key each; none for points without depth
-  std::vector<FocusTarget> targets;  ///< of all points; without depth: weight 0
+  std::vector<FocusPoint> tracks;    ///< each with one key, or without keys if the depth is unknown
+  std::vector<FocusTarget> targets;  ///< one per point; points without depth have the weight 0
 };
 
 Scenery scenery(const FocusScene& scene, const EditorSettings& settings, const Focused& base) {
@@ -180,7 +180,7 @@ void advance_fades(EditorSettings& settings, const Focused& base, const Scenery&
   settings.seconds_to_fade = 0;
 }
 
-/// What serves the points: a distance, or a tilt too.
+/// The distance and the tilt that serve the points.
 struct Solution {
   std::string_view status = "solved";
   double focus_mm = infinity, tilt_rad = 0, swing_rad = 0;
@@ -203,8 +203,11 @@ Solution solve(const EditorSettings& settings, const Focused& base, const Scener
     case FocusServe::distance: {
       Solution result{"solved", settings.focus_mm, settings.tilt_rad, settings.swing_rad};
       for (std::size_t i = 0; i < settings.points.size(); ++i) {
-        if (settings.points[i].id != settings.active || points.tracks[i].keys.empty()) continue;
+        if (settings.points[i].id != settings.active) continue;
         const ScenePoint& at = points.targets[i].point;
+        const bool ahead = !points.tracks[i].keys.empty() && at.position.z < 0;
+        if (!ahead)
+          return {name(AutofocusStatus::no_targets), settings.focus_mm, settings.tilt_rad, settings.swing_rad};
         result.focus_mm = at.at_infinity ? infinity : -at.position.z;
       }
       return result;
@@ -343,7 +346,7 @@ FocusEditorState state_of(const FocusScene& scene, EditorSettings& settings) {
   points = scenery(scene, settings, base);
 
   FocusEditorState state{.choice = settings.choice, .lens = base.lens, .film = base.film};
-  // Whole doubles in degrees, so that a command line can state them.
+  // Rounded to an angle that is a double in degrees. A command line can state this angle.
   state.film.tilt_rad = radians(degrees(solution.tilt_rad));
   state.film.swing_rad = radians(degrees(solution.swing_rad));
   state.bokeh = settings.bokeh;
@@ -412,13 +415,27 @@ FocusEditorState state_of(const FocusScene& scene, EditorSettings& settings) {
 
 CameraOptions FocusEditorState::camera_options() const {
   const bool first_order = surface || !expressive.empty();
-  return {.model = thin()        ? ModelKind::thin
-                   : first_order ? ModelKind::thick
-                                 : ModelKind::exact_float,
-          .normalisation = Normalisation::unity_on_axis,
-          .bokeh = bokeh,
-          .focal_surface = surface,
-          .expressive = expressive};
+  CameraOptions options{.model = thin()        ? ModelKind::thin
+                                 : first_order ? ModelKind::thick
+                                               : ModelKind::exact_float,
+                        .normalisation = Normalisation::unity_on_axis,
+                        .bokeh = bokeh,
+                        .focal_surface = surface,
+                        .expressive = expressive};
+  if (thin() && !surface) {
+    // A camera is sharp where exact rays are sharpest. The elements of a thin lens have aberrations, so that this is
+    // not the focus of a thin lens: a focal surface states it.
+    const IdealLens ideal = thick_lens(lens);
+    std::vector<FocalPoint> points;
+    for (const FilmPoint& corner : film.corners()) {
+      const ScenePoint seen = ideal.scene_of(film.position(corner));
+      const double distance = ideal.pupils.entrance.z - seen.position.z;
+      const bool infinite = seen.at_infinity || !(distance > 0);
+      points.push_back({.film_point = corner, .inverse_distance = infinite ? 0 : 1 / distance});
+    }
+    options.focal_surface.emplace(ideal, film, points);
+  }
+  return options;
 }
 
 }  // namespace petzval

@@ -57,7 +57,7 @@ struct FocusEditor::Data {
   };
 
   FocusScene scene;
-  std::vector<Step> steps;  ///< what undo and redo restore
+  std::vector<Step> steps;  ///< settings and states for undo and redo
   std::size_t current = 0;  ///< index into steps
   std::vector<std::string> log;
 

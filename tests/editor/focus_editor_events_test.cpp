@@ -170,7 +170,7 @@ TEST(FocusEditorEvents, RefusedEventsNameTheKeyAndTheRule) {
       {R"({"type": "focus", "distance_mm": -3})", {"distance_mm", "-3", "positive"}},
       {R"({"type": "focus", "distance_mm": 20})", {"focus", "20"}},
       {R"({"type": "f_number", "f_number": "2.8"})", {"f_number", "2.8"}},
-      {R"({"type": "add_point", "id": "eye", "pixel": [1, 2]})", {"eye", "no other"}},
+      {R"({"type": "add_point", "id": "eye", "pixel": [1, 2]})", {"eye", "unused"}},
       {R"({"type": "add_point", "pixel": [900, 2]})", {"pixel", "900", "800"}},
       {R"({"type": "add_point"})", {"neither", "pixel", "position_mm"}},
       {R"({"type": "add_point", "pixel": [1, 2], "position_mm": [1, 2, 3]})", {"both"}},

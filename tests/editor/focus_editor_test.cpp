@@ -218,6 +218,9 @@ TEST(FocusEditor, StatusTellsWhyAPointIsNotServed) {
   EXPECT_EQ(mark(editor, "hole").status, "no_depth");
   EXPECT_FALSE(mark(editor, "hole").place_mm);
   EXPECT_EQ(editor.state().status, "no_targets");
+  editor.apply(R"({"type": "serve", "by": "distance"})");
+  EXPECT_EQ(editor.state().status, "no_targets");
+  editor.apply(R"({"type": "serve", "by": "film"})");
   editor.apply(R"({"type": "add_point", "id": "sky", "pixel": [400, 20]})");
   EXPECT_EQ(mark(editor, "sky").status, "used");
   EXPECT_NEAR(editor.state().film.z(), 50, 1e-9);
@@ -247,6 +250,30 @@ TEST(FocusEditor, ChangesTheLens) {
   EXPECT_EQ(editor.state().expressive.power.size(), 2u);
   editor.apply(R"({"type": "bokeh", "weight_distribution": 2})");
   EXPECT_EQ(editor.state().bokeh.weight_distribution, 2);
+}
+
+TEST(FocusEditor, CameraOfAThinLensIsSharpAtThePoints) {
+  for (const double f_number : {0.7, 1.4, 5.6}) {
+    FocusEditor editor(wall_scene(), {.thin_mm = 50, .f_number = f_number});
+    for (const char* const pixel : {"[400, 300]", "[100, 200]", "[500, 560]"}) {
+      editor.apply(std::string(R"({"type": "add_point", "pixel": )") + pixel + "}");
+    }
+    editor.apply(R"({"type": "serve", "by": "tilt"})");
+    const Film& film = editor.state().film;
+    const Camera camera(editor.state().lens, film, editor.state().camera_options());
+    for (const FocusMark& point : editor.state().targets) {
+      // All rays of the film point pass through the scene point.
+      const Vec3<double> there = editor.to_lens(*point.place_mm);
+      for (const double u : {0.1, 0.4, 0.7}) {
+        const CameraRay ray =
+            camera.sample({.film = film.point(point.raster->x, point.raster->y), .pupil_u = u, .pupil_v = 0.8});
+        ASSERT_TRUE(ray);
+        const double run = (there.z - ray.ray.origin.z) / ray.ray.direction.z;
+        const Vec3<double> at = ray.ray.origin + ray.ray.direction * run;
+        EXPECT_LT(std::hypot(at.x - there.x, at.y - there.y), 0.5) << f_number << ' ' << point.id;
+      }
+    }
+  }
 }
 
 TEST(FocusEditor, TiltByHandKeepsTheDistanceOnTheAxis) {

@@ -70,6 +70,20 @@ TEST(BlurLens, BlursAPointIntoADiscOfTheFormula) {
   }
 }
 
+TEST(BlurLens, IsSharpAtItsFocusWithASecondRimOrAberrations) {
+  for (const double f_number : {0.7, 1.4, 4.0}) {
+    LensFlags rim = thin_lens(), expressive = thin_lens();
+    rim.iris.f_number = expressive.iris.f_number = f_number;
+    rim.bokeh.controls.lens_ratio = 1.1;
+    expressive.expressive.curvature_points = {"0,0:0", "9,0:0.001", "0,9:0.001"};
+    for (const LensFlags& flags : {rim, expressive}) {
+      const LensRays rays = lens_of(flags).rays(1000, 1);
+      const std::vector<LayerRay> middle = rays_at(rays, 0, 40, 30);
+      EXPECT_LT(spread(middle, 1 / 5000.0), 0.02 * spread(middle, 1 / 1500.0)) << f_number;
+    }
+  }
+}
+
 TEST(BlurLens, FocusesATiltedFilmOnThePlaneOfItsHinge) {
   // The image of the plane (0, sin 30, cos 30) . x = 2 cos 30 m is tilted by 0.848 degrees.
   LensFlags flags = thin_lens();

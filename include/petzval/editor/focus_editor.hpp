@@ -22,7 +22,7 @@ namespace petzval {
 
 /// The part of a camera that a FocusEditor adjusts to its focus points.
 enum class FocusServe : std::uint8_t {
-  distance,  ///< the lens is focused at one point, the last one that was added or moved, or at a distance set by hand
+  distance,  ///< the lens is focused at the point that was added or moved last, or at a distance set by hand
   film,      ///< an upright film fits all points (autofocus())
   tilt,      ///< a tilted film fits all points (fit_tilt())
   surface,   ///< a focal surface passes through all points (FocalSurface)
@@ -43,7 +43,7 @@ struct FocusLensChoice {
 struct FocusPlace {
   /// Position in the scene frame, mm; at infinity, a direction.
   ScenePoint point{};
-  std::optional<TrianglePoint> triangle = {};  ///< of a mesh: the point follows its vertices
+  std::optional<TrianglePoint> triangle = {};  ///< triangle of a mesh; the point follows its vertices
 };
 
 /// The scene of a FocusEditor: the picture, and functions that the application provides.
@@ -91,7 +91,7 @@ struct PETZVAL_API FocusEditorState {
   std::vector<FocalPoint> surface_points = {};  ///< that the surface passes through
   FocalSurfaceOptions surface_options = {};
   FocusServe serve = FocusServe::distance;
-  double f_number = 0;        ///< of the lens, at infinity
+  double f_number = 0;        ///< f-number of the lens at infinity
   bool f_number_set = false;  ///< false: the lens is wide open
   double focus_mm = 0;        ///< distance in focus on the axis, from the front vertex; may be infinite
   /// "solved", or the reason why the points are not served: the name of a FocusStatus, AutofocusStatus or
@@ -104,6 +104,8 @@ struct PETZVAL_API FocusEditorState {
   bool thin() const noexcept { return choice.name.empty(); }
   /// Options of the camera: thin lenses are of ModelKind::thin, lenses with a focal surface or with aberrations of
   /// their own of ModelKind::thick, others of ModelKind::exact_float; unity_on_axis.
+  ///
+  /// @throws Error if the focal surface of a thin lens cannot be made
   CameraOptions camera_options() const;
 };
 
@@ -153,10 +155,10 @@ class PETZVAL_API FocusEditor {
   /// Applies an event.
   ///
   /// @param event  a JSON object
-  /// @throws Error that names the type, the key, the value and the rule. The state and the log stay as they were
+  /// @throws Error that names the type, the key, the value and the rule. The state and the log are then unchanged
   void apply(std::string_view event);
 
-  /// Applies a list of events: a JSON list, as log() returns it.
+  /// Applies all events of a JSON list, the format of log().
   ///
   /// @throws Error that also names the event, from 1. Earlier events stay applied
   void replay(std::string_view events);
