@@ -27,7 +27,8 @@ void Programs::TearDown() { std::filesystem::remove_all(folder); }
 
 std::string Programs::invocation(const std::string& program) {
   const std::filesystem::path folder = PETZVAL_TEST_PROGRAMS;
-  static const std::set<std::string> teaching{"autofocus", "bokeh_psf", "path_tracer", "spot_diagram", "tilt_fit"};
+  static const std::set<std::string> teaching{"autofocus",   "bokeh_psf",    "focus_editor",
+                                              "path_tracer", "spot_diagram", "tilt_fit"};
   const bool own =
       program == "petzval" || program.starts_with("hello_") || program.starts_with("wu_") || teaching.contains(program);
   return own ? quoted((folder / program).string()) : quoted((folder / "petzval").string()) + ' ' + program;

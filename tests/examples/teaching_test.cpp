@@ -55,8 +55,8 @@ class Teaching : public Programs {
 
 TEST_F(Teaching, ProgramsAreShortAndUsePublicHeadersOnly) {
   const auto sources = std::filesystem::path(PETZVAL_TEST_DATA).parent_path() / "examples";
-  for (const char* name : {"autofocus", "bokeh_psf", "hello_blur", "hello_camera", "hello_lens", "path_tracer",
-                           "spot_diagram", "tilt_fit"}) {
+  for (const char* name : {"autofocus", "bokeh_psf", "focus_editor", "hello_blur", "hello_camera", "hello_lens",
+                           "path_tracer", "spot_diagram", "tilt_fit"}) {
     SCOPED_TRACE(name);
     const auto source = lines(read(sources / (std::string(name) + ".cpp")));
     EXPECT_LE(source.size(), 100u);
@@ -136,6 +136,22 @@ TEST_F(Teaching, Autofocus_HeavyTarget_HasTheSmallestBlur) {
 }
 
 #ifdef PETZVAL_TEST_HAS_tilt
+TEST_F(Teaching, FocusEditor_TiltedFilmIsSharperThanTheUprightFilm) {
+  const std::string out = output("focus_editor", {});
+  const auto largest_blur = [&](const std::string& from, const std::string& to) {
+    std::string part = out.substr(out.find(from));
+    part.resize(part.find(to));
+    double largest = 0;
+    static const std::regex blur("blur (-?[0-9.e-]+) px");
+    for (std::sregex_iterator found(part.begin(), part.end(), blur), end; found != end; ++found) {
+      largest = std::max(largest, std::abs(std::stod((*found)[1])));
+    }
+    return largest;
+  };
+  EXPECT_LT(largest_blur("tilted film:", "undo:"), largest_blur("upright film:", "tilted film:"));
+  EXPECT_NE(out.find(R"({"type":"undo"})"), std::string::npos);
+}
+
 TEST_F(Teaching, TiltFit_TableSeenFromAbove_TiltsTheFilmTowardsTheTable) {
   const std::string out = output("tilt_fit", {path("")});
   const auto film = numbers(out, "film: ");  // tilt, swing, z
