@@ -119,20 +119,27 @@ struct PETZVAL_API FocusEditorState {
 ///     editor.apply(R"({"type": "serve", "by": "tilt"})");
 ///     const Camera camera(editor.state().lens, editor.state().film, editor.state().camera_options());
 ///
-/// | type | keys |
-/// |---|---|
-/// | add_point | id (default: "1", "2", ...); pixel [x, y] or position_mm [x, y, z] with at_infinity; weight, blur_px,
-/// extent_stops | | move_point | id; pixel, or position_mm with at_infinity | | set_point | id; weight, blur_px,
-/// extent_stops (null: none) | | remove_point | id | | serve | by: "distance", "film", "tilt" or "surface"; for
-/// surfaces kind ("affine", "shepard") and beta | | focus | distance_mm from the front vertex (null: infinity); changes
-/// to serve by distance | | f_number | f_number (null: wide open) | | iris | blades, roundness, rotation_deg | | bokeh
-/// | lens_ratio, rate_of_change, keep_light, weight_distribution, weight_strength | | expressive | power_spline
-/// [[radius, power], ...], curvature_points [[x, y, offset], ...] (mm), dispersion, from_lens | | lens | lens: a name,
-/// or {thin_mm, f_number} | | colour | rgb: true for separate rays of red, green and blue | | tilt | tilt_deg,
-/// swing_deg of the film, by hand; changes to serve by distance | | weighting | nearer: weights are divided by depth;
-/// fade: points outside the picture fade; fade_s: time constant | | key | time_s: keeps the places, weights, blurs and
-/// extents of all points, and the distance, as keys | | time | time_s: moves all points to their keys at this time | |
-/// undo, redo, still | none; `still` changes nothing |
+/// Types and keys:
+///
+/// - add_point: id (default: "1", "2", ...); pixel [x, y] or position_mm [x, y, z] with at_infinity; weight, blur_px,
+///   extent_stops
+/// - move_point: id; pixel, or position_mm with at_infinity
+/// - set_point: id; weight, blur_px, extent_stops (null: none)
+/// - remove_point: id
+/// - serve: by ("distance", "film", "tilt", "surface"); for surfaces kind ("affine", "shepard") and beta
+/// - focus: distance_mm from the front vertex (null: infinity); changes to serve by distance
+/// - f_number: f_number (null: wide open)
+/// - iris: blades, roundness, rotation_deg
+/// - bokeh: lens_ratio, rate_of_change, keep_light, weight_distribution, weight_strength
+/// - expressive: power_spline [[radius, power], ...], curvature_points [[x, y, offset], ...] (mm), dispersion,
+///   from_lens
+/// - lens: lens (a name, or an object with thin_mm and f_number)
+/// - colour: rgb (true: separate rays of red, green and blue)
+/// - tilt: tilt_deg, swing_deg of the film, by hand; changes to serve by distance
+/// - weighting: nearer (weights are divided by depth), fade (points outside the picture fade), fade_s (time constant)
+/// - key: time_s; keeps the places, weights, blurs and extents of all points, and the distance, as keys
+/// - time: time_s; moves all points to their keys at this time
+/// - undo, redo, still: no keys; `still` changes nothing
 ///
 /// Keys that an event leaves out keep their values. An event with "continues": true forms one step of undo together
 /// with the event before it, as for a point that is dragged. Positions are in the scene frame. The log can be replayed:
