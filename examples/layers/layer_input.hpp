@@ -35,8 +35,8 @@ class LayerInput {
   /// The scene; null if the layers come from files.
   LitScene* scene() const noexcept { return scene_.get(); }
 
-  /// Axial depth of the nearest surface in a pixel of a file (mm); infinity: the sky; 0: none. nearest_mm() must have
-  /// been called.
+  /// Axial depth of the nearest surface in a pixel of a file (mm); infinity: the sky; 0: no surface. nearest_mm() must
+  /// have been called.
   float depth_mm(int column, int row) const;
   /// Depth of the nearest surface, mm. Converts distances to depths. camera: the camera of the layers.
   double nearest_mm(const petzval::LayerCamera& camera, int threads);

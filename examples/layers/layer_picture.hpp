@@ -10,8 +10,8 @@
 /// Steps from layers to a picture that `petzval blur` and `petzval view` share.
 namespace lens_blur {
 
-/// Depth for which rays and layers are set up: less than that of the nearest surface, because layers extend beyond the
-/// picture, where objects may be nearer.
+/// Depth for which rays and layers are set up. It is less than the depth of the nearest surface in the picture, because
+/// objects in the overscan of the layers may be nearer.
 inline double least_depth(double nearest_mm) { return 0.8 * nearest_mm; }
 
 /// The layers for rays. Files have a fixed number of pixels.

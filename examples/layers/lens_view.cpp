@@ -33,8 +33,8 @@ std::function<double(const petzval::Vec2<double>&)> LensView::thin_focus(const p
   };
 }
 
-/// A Camera is sharp where exact rays are sharpest. The elements of a thin lens have aberrations, so that this is not
-/// the focus of a thin lens: a focal surface states it.
+/// A Camera is sharp where exact rays are sharpest. The elements of a thin lens have aberrations, so that exact rays
+/// are sharpest elsewhere than the thin lens. A focal surface states the focus of the thin lens.
 petzval::Camera LensView::sharp_at_focus(const petzval::LayerCamera& layers, std::uint32_t supersample) const {
   if (!thin() || (surface && surface->fixes_distance())) return camera(supersample);
   petzval::Film upright = film;

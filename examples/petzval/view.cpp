@@ -62,24 +62,24 @@ int commands::view(int argc, char** argv) {
   examples::add_threads(app);
   examples::add_out_folder(app, window.out_folder, "folder for pictures");
   return examples::run(app, argc, argv, [&] {
-    window.session.threads = replay.threads = examples::threads();
+    window.session.threads = examples::threads();
     if (!replay.log_file.empty()) {
       const bool scene_given = !input.scene.empty() || !input.image.empty() || !input.deep.empty();
       if (scene_given || !lens.file.empty() || thin->given()) {
         throw petzval::Error("--replay: the log names the scene and the lens; must be used without them");
       }
-      if (window.screenshot.empty()) {
-        replay.out_folder = window.out_folder, replay.layers = window.session.layers;
-        replay.width = input.width, replay.height = input.height;
-        viewer::replay(replay);
-        return;
-      }
       const examples::Json events = examples::read_json(replay.log_file);
       viewer::SessionOptions session = viewer::options_of(events, replay.log_file);
       session.threads = window.session.threads, session.layers = window.session.layers;
-      window.session = session;
-      window.first_events = events["events"];
-      viewer::show_window(window);
+      if (input.width > 0) session.input.width = input.width, session.input.height = input.height;
+      if (window.screenshot.empty()) {
+        replay.session = session, replay.events = viewer::events_of(events, replay.log_file);
+        replay.out_folder = window.out_folder;
+        viewer::replay(replay);
+      } else {
+        window.session = session, window.first_events = viewer::events_of(events, replay.log_file);
+        viewer::show_window(window);
+      }
       return;
     }
     if (input.scene.empty() && input.image.empty() && input.deep.empty()) input.scene = "town";

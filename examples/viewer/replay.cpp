@@ -12,10 +12,8 @@
 #include "petzval/image/image.hpp"
 #include "support/cli.hpp"
 #include "support/interrupt.hpp"
-#include "support/json_input.hpp"
 #include "support/picture_files.hpp"
 #include "support/text.hpp"
-#include "viewer/session.hpp"
 
 namespace viewer {
 namespace {
@@ -47,19 +45,12 @@ std::string in_words(const Json& state) {
 }  // namespace
 
 void replay(const ReplayOptions& options) {
-  const Json log = examples::read_json(options.log_file);
-  SessionOptions setup = options_of(log, options.log_file);
-  setup.threads = options.threads, setup.layers = options.layers;
-  if (options.width > 0) setup.input.width = options.width, setup.input.height = options.height;
-  if (!log.contains("events") || !log["events"].is_array()) {
-    throw petzval::Error(options.log_file + ": events is missing; must be a list");
-  }
   if (!options.out_folder.empty()) examples::make_folder(options.out_folder);
-  Session session(setup);
+  Session session(options.session);
   session.make_layers();
   const examples::Interrupt interrupt;
   std::size_t number = 0, refused = 0;
-  for (const Json& event : log["events"]) {
+  for (const Json& event : options.events) {
     examples::stop_if_asked();
     ++number;
     const auto start = std::chrono::steady_clock::now();

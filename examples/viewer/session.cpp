@@ -57,6 +57,12 @@ std::string quoted(const std::string& word) {
   return result + "'";
 }
 
+/// A lens as the value of the key "lens".
+Json json_of(const petzval::FocusLensChoice& lens) {
+  if (!lens.name.empty()) return lens.name;
+  return {{"thin_mm", lens.thin_mm}, {"f_number", lens.f_number}};
+}
+
 /// Memory of layers, with the depths of the last layer, and of a blurred picture, MB.
 double memory_of(const petzval::LayerSet& layers, const petzval::BlurredImage& picture) {
   constexpr int planes = 5;
@@ -67,7 +73,7 @@ double memory_of(const petzval::LayerSet& layers, const petzval::BlurredImage& p
 
 }  // namespace
 
-Session::Session(const SessionOptions& options) : options_(options), input_(options.input), first_lens_(options.lens) {
+Session::Session(const SessionOptions& options) : options_(options), input_(options.input) {
   if (options.file_columns > 0 && (input_.columns() != options.file_columns || input_.rows() != options.file_rows)) {
     throw Error("size = " + std::to_string(options.file_columns) + " x " + std::to_string(options.file_rows) +
                 "; must be the size of the files, " + std::to_string(input_.columns()) + " x " +
@@ -240,39 +246,23 @@ Frame Session::still(const std::stop_token& stop) {
 
 std::vector<float> Session::blur_map() const {
   const petzval::FocusEditorState& state = editor_->state();
-  const petzval::IdealLens ideal = petzval::thick_lens(state.lens);
-  const double entrance_z = ideal.pupils.entrance.z, pixel = state.film.pixel_mm();
-  std::vector<float> result(static_cast<std::size_t>(camera_.columns) * static_cast<std::size_t>(camera_.rows));
-  petzval::Film sharp = state.film;
+  const double entrance_z = petzval::pupils(state.lens).entrance.z;
+  std::vector<petzval::ScenePoint> points;
   for (int row = 0; row < camera_.rows; ++row) {
     for (int column = 0; column < camera_.columns; ++column) {
-      float& blur = result[static_cast<std::size_t>(row * camera_.columns + column)];
       const double depth = static_cast<double>(depth_mm(column, row));
       const petzval::Vec2<double> run =
           (petzval::Vec2<double>{column + 0.5, row + 0.5} - camera_.axis) / camera_.focal_px;
-      const petzval::ScenePoint point = std::isfinite(depth)
-                                            ? petzval::ScenePoint{{run.x * depth, -run.y * depth, entrance_z - depth}}
-                                            : petzval::ScenePoint{{run.x, -run.y, -1}, true};
-      const auto image = depth > 0 ? ideal.image(point) : std::nullopt;
-      if (!image) {
-        blur = std::numeric_limits<float>::quiet_NaN();
-        continue;
+      if (depth > 0) {
+        points.push_back(std::isfinite(depth) ? petzval::ScenePoint{{run.x * depth, -run.y * depth, entrance_z - depth}}
+                                              : petzval::ScenePoint{{run.x, -run.y, -1}, true});
+      } else {
+        points.push_back({{0, 0, std::numeric_limits<double>::quiet_NaN()}});  // no image
       }
-      double scale = 1;
-      const petzval::Film* film = &state.film;
-      if (state.surface) {
-        const petzval::FocalSurface::Values at = state.surface->at(state.film.point(column + 0.5, row + 0.5));
-        const auto in_focus = at.inverse_distance > 0 ? ideal.image({{0, 0, entrance_z - 1 / at.inverse_distance}})
-                                                      : ideal.image({{0, 0, -1}, true});
-        if (!in_focus) continue;
-        sharp.z_mm = in_focus->position.z;
-        film = &sharp;
-        scale = std::exp2(-at.extent_stops / 2);
-      }
-      blur = static_cast<float>(scale * petzval::signed_blur(*image, *film) / pixel);
     }
   }
-  return result;
+  const std::vector<double> blurs = state.first_order_blurs_px(points);
+  return {blurs.begin(), blurs.end()};
 }
 
 std::vector<std::optional<petzval::Vec2<double>>> Session::handles() const {
@@ -300,8 +290,7 @@ Json Session::state_json(const Frame& frame) const {
              {{"z_mm", state.film.z()},
               {"tilt_deg", exact_degrees(state.film.tilt_rad)},
               {"swing_deg", exact_degrees(state.film.swing_rad)}}},
-            {"lens", state.thin() ? Json{{"thin_mm", state.choice.thin_mm}, {"f_number", state.choice.f_number}}
-                                  : Json(state.choice.name)},
+            {"lens", json_of(state.choice)},
             {"f_number", state.f_number},
             {"focus_mm", examples::finite_or_null(state.focus_mm)},
             {"serve", name(state.serve)},
@@ -338,8 +327,7 @@ Json Session::log() const {
     json["far_mm"] = examples::finite_or_null(input.far_mm);
   }
   if (!input.white.empty()) json["white"] = input.white;
-  json["lens"] = first_lens_.name.empty() ? Json{{"thin_mm", first_lens_.thin_mm}, {"f_number", first_lens_.f_number}}
-                                          : Json(first_lens_.name);
+  json["lens"] = json_of(options_.lens);
   json["size"] = {input_.columns(), input_.rows()};
   if (options_.fov_deg > 0) json["fov_deg"] = options_.fov_deg;
   json["events"] = Json::parse(editor_->log());
@@ -426,6 +414,11 @@ std::string Session::blur_command(const std::string& points_file) const {
   }
   out << " --out out";
   return out.str();
+}
+
+examples::Json events_of(const Json& log, const std::string& where) {
+  if (log.contains("events") && log["events"].is_array()) return log["events"];
+  throw Error(where + ": events is missing; must be a list");
 }
 
 SessionOptions options_of(const Json& log, const std::string& where) {

@@ -53,7 +53,6 @@ class Session {
 
   petzval::FocusEditor& editor() noexcept { return *editor_; }
   const petzval::FocusEditor& editor() const noexcept { return *editor_; }
-  const lens_blur::LayerInput& input() const noexcept { return input_; }
 
   /// Makes the layers that the aperture of the state needs. Returns the time in ms; 0 if the layers are kept.
   double make_layers();
@@ -101,7 +100,6 @@ class Session {
   lens_blur::LayerInput input_;
   std::map<std::pair<std::string, bool>, petzval::Lens> lenses_;  ///< by name and colours
   std::optional<petzval::FocusEditor> editor_;
-  petzval::FocusLensChoice first_lens_;
 
   petzval::LayerCamera camera_;  ///< camera of the layers, without overscan
   std::string camera_lens_;      ///< the lens for which camera_ was made
@@ -111,6 +109,9 @@ class Session {
   double threshold_ = 0;  ///< of highlights
   petzval::BlurredImage blurred_;
 };
+
+/// The events of a log. @throws petzval::Error that names the file
+examples::Json events_of(const examples::Json& log, const std::string& where);
 
 /// The session of a log, without its events. @throws petzval::Error that names the file and the key
 SessionOptions options_of(const examples::Json& log, const std::string& where);

@@ -218,7 +218,7 @@ void Worker::map_blur() {
 }
 
 void Worker::run() {
-  // Pictures that follow a change: one for each of ray_steps, then the still picture.
+  // After a change, a picture is computed for each entry of ray_steps, then the still picture.
   constexpr std::size_t still_step = ray_steps.size(), all_steps = still_step + 1;
   std::size_t step = 0;
   while (true) {

@@ -21,7 +21,7 @@
 namespace petzval::editor_detail {
 namespace {
 
-using Json = nlohmann::json;
+using Json = nlohmann::ordered_json;
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr double largest_tilt_deg = 60;
@@ -35,18 +35,14 @@ constexpr Range any_number{};
 constexpr Range positive{std::numeric_limits<double>::min(), std::numeric_limits<double>::max(), "a positive number"};
 constexpr Range not_negative{0, std::numeric_limits<double>::max(), "a number of 0 or more"};
 
+std::string shown(const Json& value) {
+  return std::string(beginning(value.dump(-1, ' ', false, Json::error_handler_t::replace), 80));
+}
+
 /// An event, for reading its keys. Every key must have been read at the end.
 class Event {
  public:
-  explicit Event(const Json& json) : json_(json) {
-    if (!json.is_object()) throw Error("event = " + shown(json) + "; must be a JSON object");
-    if (!json.contains("type") || !json["type"].is_string()) {
-      throw Error("event " + shown(json) + ": type is missing; must be a text");
-    }
-    type_ = json["type"].get<std::string>();
-    read_.emplace_back("type");
-    read_.emplace_back("continues");
-  }
+  explicit Event(const Json& json) : json_(json), type_(type_of(json)), read_{"type"} {}
 
   const std::string& type() const noexcept { return type_; }
 
@@ -113,10 +109,6 @@ class Event {
   }
 
  private:
-  static std::string shown(const Json& value) {
-    return std::string(beginning(value.dump(-1, ' ', false, Json::error_handler_t::replace), 80));
-  }
-
   const Json& json_;
   std::string type_;
   std::vector<std::string> read_;
@@ -426,10 +418,16 @@ constexpr Kind kinds[] = {{"add_point", add_point},
 
 }  // namespace
 
-void apply_event(const FocusScene& scene, const FocusEditorState& state, EditorSettings& settings,
-                 std::string_view text) {
-  const Json json = Json::parse(text, nullptr, false);
-  if (json.is_discarded()) throw Error("event = " + std::string(beginning(text, 80)) + "; must be JSON");
+std::string type_of(const Json& event) {
+  if (!event.is_object()) throw Error("event = " + shown(event) + "; must be a JSON object");
+  const auto type = event.find("type");
+  if (type == event.end() || !type->is_string()) {
+    throw Error("event " + shown(event) + ": type is missing; must be a text");
+  }
+  return type->get<std::string>();
+}
+
+bool apply_event(const FocusScene& scene, const FocusEditorState& state, EditorSettings& settings, const Json& json) {
   Event event(json);
   const auto found = std::ranges::find_if(kinds, [&](const Kind& kind) { return event.type() == kind.type; });
   if (found == std::end(kinds)) {
@@ -437,8 +435,11 @@ void apply_event(const FocusScene& scene, const FocusEditorState& state, EditorS
     for (const Kind& kind : kinds) known += std::string(kind.type) + ", ";
     event.refuse("type", event.type(), known + "undo or redo");
   }
+  bool continues = false;
+  event.set("continues", continues);
   found->apply(event, {scene, state}, settings);
   event.finish();
+  return continues;
 }
 
 }  // namespace petzval::editor_detail

@@ -8,6 +8,8 @@
 #include <utility>
 #include <vector>
 
+#include <nlohmann/json_fwd.hpp>
+
 #include "petzval/camera/bokeh.hpp"
 #include "petzval/camera/expressive_lens.hpp"
 #include "petzval/camera/focal_surface.hpp"
@@ -75,15 +77,20 @@ Lens shaped_lens(const EditorSettings& settings);
 /// Computes the state. Sets the distance, the fades and the values of keyed points in the settings.
 FocusEditorState state_of(const FocusScene& scene, EditorSettings& settings);
 
-/// Applies an event other than undo and redo.
+/// The type of an event.
+///
+/// @throws Error unless the event is an object with a text `type`
+std::string type_of(const nlohmann::ordered_json& event);
+
+/// Applies an event other than undo and redo. Returns its key `continues`.
 ///
 /// @param scene     the scene
 /// @param state     the state of the settings, through whose lens pixels see the scene
 /// @param settings  changed by the event
 /// @param event     a JSON object
 /// @throws Error that names the type, the key, the value and the rule; the settings are then invalid
-void apply_event(const FocusScene& scene, const FocusEditorState& state, EditorSettings& settings,
-                 std::string_view event);
+bool apply_event(const FocusScene& scene, const FocusEditorState& state, EditorSettings& settings,
+                 const nlohmann::ordered_json& event);
 
 /// Maps between the scene frame and the lens frame. entrance_z: z of the entrance pupil.
 Vec3<double> to_lens(const FocusScene& scene, double entrance_z, const Vec3<double>& point) noexcept;

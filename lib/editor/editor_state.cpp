@@ -228,29 +228,20 @@ Solution solve(const EditorSettings& settings, const Focused& base, const Scener
   return {"solved", distance_of(settings, base.lens, focus.film.z())};
 }
 
-/// Signed diameter of a target on a focal surface, as first-order models blur it: the pupil has the size of the extent,
-/// and the beam meets the film that images the distance of the surface.
-double blur_on_surface(const Focused& base, const FocalSurface& surface, const FilmPoint& at, const ImagePoint& image) {
-  const FocalSurface::Values values = surface.at(at);
-  const ScenePoint in_focus = values.inverse_distance == 0
-                                  ? ScenePoint{{0, 0, -1}, true}
-                                  : ScenePoint{{0, 0, base.entrance_z() - 1 / values.inverse_distance}};
-  const auto sharp = base.ideal.image(in_focus);
-  if (!sharp) return std::numeric_limits<double>::quiet_NaN();
-  Film film = base.film;
-  film.z_mm = sharp->position.z;
-  const double exit_z = base.ideal.pupils.exit.z;
-  const double scale = std::isfinite(exit_z) ? (base.film.z() - exit_z) / (film.z() - exit_z) : 1;
-  return signed_blur(image, film) * scale * focus_detail::pupil_scale(values.extent_stops);
-}
-
 /// Fills in status, blur and raster position of the marks on the final film.
 void measure(const EditorSettings& settings, const Focused& base, const Scenery& points, FocusEditorState& state) {
-  std::vector<std::optional<ExactBlur>> exact(points.targets.size());
-  if (!first_order(settings) && !points.targets.empty()) {
-    std::vector<ScenePoint> all;
-    for (const FocusTarget& target : points.targets) all.push_back(target.point);
+  std::vector<ScenePoint> all;
+  for (const FocusTarget& target : points.targets) all.push_back(target.point);
+  const bool traced = !first_order(settings);
+  std::vector<std::optional<ExactBlur>> exact(all.size());
+  std::vector<double> blurs(all.size(), std::numeric_limits<double>::quiet_NaN());
+  if (traced && !all.empty()) {
     exact = exact_blurs(state.lens, state.film, all);
+    for (std::size_t i = 0; i < all.size(); ++i) {
+      if (exact[i]) blurs[i] = exact[i]->signed_diameter / state.film.pixel_mm();
+    }
+  } else if (!all.empty()) {
+    blurs = state.first_order_blurs_px(all);
   }
   for (std::size_t i = 0; i < points.targets.size(); ++i) {
     const EditorPoint& point = settings.points[i];
@@ -265,21 +256,13 @@ void measure(const EditorSettings& settings, const Focused& base, const Scenery&
       mark.status = "hidden";
     } else if (!(target.weight > 0) || (settings.serve == FocusServe::distance && point.id != settings.active)) {
       mark.status = name(TargetStatus::no_weight);
-    } else if (!first_order(settings) && !exact[i]) {
+    } else if (traced && !exact[i]) {
       mark.status = name(TargetStatus::no_rays);
     }
     if (!image) continue;
     const auto at = chief_point(*image, state.film);
     if (at) mark.raster = state.film.raster(*at);
-    double blur = std::numeric_limits<double>::quiet_NaN();
-    if (exact[i]) {
-      blur = exact[i]->signed_diameter;
-    } else if (state.surface && at) {
-      blur = blur_on_surface(base, *state.surface, *at, *image);
-    } else if (first_order(settings)) {
-      blur = signed_blur(*image, state.film);
-    }
-    if (std::isfinite(blur)) mark.blur_px = blur / state.film.pixel_mm();
+    if (std::isfinite(blurs[i])) mark.blur_px = blurs[i];
   }
 }
 
@@ -412,6 +395,33 @@ FocusEditorState state_of(const FocusScene& scene, EditorSettings& settings) {
 }
 
 }  // namespace editor_detail
+
+std::vector<double> FocusEditorState::first_order_blurs_px(std::span<const ScenePoint> points) const {
+  const IdealLens ideal = thick_lens(lens);
+  const double exit_z = ideal.pupils.exit.z;
+  Film sharp = film;
+  std::vector<double> result;
+  for (const ScenePoint& point : points) {
+    double& blur = result.emplace_back(std::numeric_limits<double>::quiet_NaN());
+    const auto image = ideal.image(point);
+    const auto at = image ? chief_point(*image, film) : std::nullopt;
+    if (!at) continue;
+    double scale = 1 / film.pixel_mm();
+    if (surface) {
+      // The pupil has the size of the extent, and the beam meets the film that images the distance of the surface.
+      const FocalSurface::Values values = surface->at(*at);
+      const auto in_focus = ideal.image(values.inverse_distance == 0
+                                            ? ScenePoint{{0, 0, -1}, true}
+                                            : ScenePoint{{0, 0, surface->origin_z() - 1 / values.inverse_distance}});
+      if (!in_focus) continue;
+      sharp.z_mm = in_focus->position.z;
+      scale *= focus_detail::pupil_scale(values.extent_stops);
+      if (std::isfinite(exit_z)) scale *= (film.z() - exit_z) / (sharp.z() - exit_z);
+    }
+    blur = signed_blur(*image, sharp) * scale;
+  }
+  return result;
+}
 
 CameraOptions FocusEditorState::camera_options() const {
   const bool first_order = surface || !expressive.empty();

@@ -80,31 +80,27 @@ FocusEditor& FocusEditor::operator=(FocusEditor&&) noexcept = default;
 
 void FocusEditor::apply(std::string_view event) {
   const Json json = Json::parse(event, nullptr, false);
-  const std::string type = json.is_object() ? json.value("type", Json()).dump() : "";
+  if (json.is_discarded()) throw Error("event = " + std::string(beginning(event, 80)) + "; must be JSON");
   Data& data = *data_;
-  if (type == "\"undo\"" || type == "\"redo\"") {
-    const bool undo = type == "\"undo\"";
+  const std::string type = editor_detail::type_of(json);
+  if (type == "undo" || type == "redo") {
     if (json.size() > 1) throw Error(type + ": must have no keys besides type");
-    if (!(undo ? can_undo() : can_redo())) {
-      throw Error(std::string(undo ? "undo" : "redo") + ": there is no event to " + (undo ? "undo" : "redo"));
-    }
+    if (!(type == "undo" ? can_undo() : can_redo())) throw Error(type + ": there is no event to " + type);
     data.log.push_back(json.dump());
-    data.current = undo ? data.current - 1 : data.current + 1;
+    data.current = type == "undo" ? data.current - 1 : data.current + 1;
     return;
   }
   editor_detail::EditorSettings settings = data.now().settings;
-  apply_event(data.scene, data.now().state, settings, event);
+  const bool continues = apply_event(data.scene, data.now().state, settings, json);
   std::string text = json.dump();
-  if (type == "\"still\"") {
+  if (type == "still") {
     data.log.push_back(std::move(text));
     return;
   }
-  const Json continues = json.value("continues", Json(false));
-  if (!continues.is_boolean()) throw Error("continues = " + continues.dump() + "; must be true or false");
   FocusEditorState state = state_of(data.scene, settings);
   data.log.push_back(std::move(text));
   // The event before remains the step that undo leads back to.
-  if (!(continues.get<bool>() && data.current > 0)) ++data.current;
+  if (!(continues && data.current > 0)) ++data.current;
   data.steps.resize(data.current, data.steps.front());
   data.steps.push_back({std::move(settings), std::move(state)});
 }

@@ -93,7 +93,7 @@ TEST(FocusEditorEvents, ReplayGivesTheSameStateToTheBit) {
   }
 }
 
-// Ten thousand events, and a state after each of them.
+// The states of two editors are compared after each event.
 TEST(FocusEditorEvents, TenThousandEventsAreReplayed) {
   FocusEditor one(wall_scene(), thin_50()), two(wall_scene(), thin_50());
   RandomEvents events(50);

@@ -6,6 +6,7 @@
 #include <functional>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -102,6 +103,9 @@ struct PETZVAL_API FocusEditorState {
 
   /// True if the lens is thin and has no thickness, colour or aberrations of its own.
   bool thin() const noexcept { return choice.name.empty(); }
+  /// First-order blur of scene points (lens frame) on the film or the focal surface: signed diameters in pixels, NaN
+  /// for points without an image.
+  std::vector<double> first_order_blurs_px(std::span<const ScenePoint> points) const;
   /// Options of the camera: thin lenses are of ModelKind::thin, lenses with a focal surface or with aberrations of
   /// their own of ModelKind::thick, others of ModelKind::exact_float; unity_on_axis.
   ///
