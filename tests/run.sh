@@ -68,4 +68,4 @@ if [ "${1-}" = --report ]; then
   exit
 fi
 echo "== Testing"
-exec ctest --test-dir "$BUILD_DIR" -j "$(nproc)" --output-on-failure --no-tests=error "$@"
+exec ctest --test-dir "$BUILD_DIR" -j "$(nproc)" --timeout 900 --output-on-failure --no-tests=error "$@"

@@ -133,7 +133,6 @@ class Window {
     ImGui::Begin("Panels", nullptr, fixed);
     panels();
     ImGui::End();
-    keys_of_keyboard();
     play();
     return !closed_;
   }
@@ -147,6 +146,20 @@ class Window {
             film.rows + static_cast<int>(drawing_height + lines)};
   }
   void dropped(const std::string& file) { send({{"type", "lens"}, {"lens", file}}); }
+  /// Taken from the events: Dear ImGui 1.86 misses a key that is pressed and released between two frames.
+  void pressed(const SDL_KeyboardEvent& key) {
+    if (ImGui::GetIO().WantTextInput || !shown_) return;
+    const SDL_Scancode code = key.keysym.scancode;
+    const bool control = (key.keysym.mod & KMOD_CTRL) != 0;
+    if (control && code == SDL_SCANCODE_Z && shown_->can_undo) send({{"type", "undo"}});
+    if (control && code == SDL_SCANCODE_Y && shown_->can_redo) send({{"type", "redo"}});
+    if (control && code == SDL_SCANCODE_Q) close();
+    if (code == SDL_SCANCODE_DELETE && has_point(selected_)) {
+      send({{"type", "remove_point"}, {"id", selected_}});
+      selected_.clear();
+    }
+    if (code == SDL_SCANCODE_SPACE && key.repeat == 0) playing_ = !playing_;
+  }
   void close() { closed_ = true; }
 
  private:
@@ -547,19 +560,6 @@ class Window {
     send(event);
   }
 
-  void keys_of_keyboard() {
-    const ImGuiIO& io = ImGui::GetIO();
-    if (io.WantTextInput) return;
-    if (io.KeyCtrl && ImGui::IsKeyPressed(SDL_SCANCODE_Z) && shown_->can_undo) send({{"type", "undo"}});
-    if (io.KeyCtrl && ImGui::IsKeyPressed(SDL_SCANCODE_Y) && shown_->can_redo) send({{"type", "redo"}});
-    if (ImGui::IsKeyPressed(SDL_SCANCODE_DELETE) && has_point(selected_)) {
-      send({{"type", "remove_point"}, {"id", selected_}});
-      selected_.clear();
-    }
-    if (io.KeyCtrl && ImGui::IsKeyPressed(SDL_SCANCODE_Q)) close();
-    if (ImGui::IsKeyPressed(SDL_SCANCODE_SPACE, false)) playing_ = !playing_;
-  }
-
   WindowOptions options_;
   Worker worker_;
   std::shared_ptr<const Snapshot> shown_;
@@ -601,6 +601,7 @@ void show_window(const WindowOptions& options) {
       while (SDL_PollEvent(&event) != 0) {
         Screen::process(event);
         if (event.type == SDL_QUIT) window.close();
+        if (event.type == SDL_KEYDOWN) window.pressed(event.key);
         if (event.type == SDL_DROPFILE) {
           window.dropped(event.drop.file);
           SDL_free(event.drop.file);
