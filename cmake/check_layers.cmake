@@ -3,7 +3,7 @@
 #
 # A module (a folder of include/petzval and of lib) may include its own headers and modules of lower layers, but no other module
 # of its layer. Modules of the edge may include everything; only examples, tests and the edge itself may include them.
-# include/petzval/petzval.hpp is above all modules. Headers in lib/<module> are internal: sources of the library include them as
+# include/petzval/petzval.hpp is above all modules; petzval.h and petzval17.hpp belong to module c. Headers in lib/<module> are internal: sources of the library include them as
 # "module/header.hpp", or as "header.hpp" in the same folder. Public headers include no internal header, and no third-party
 # library except GLM.
 #
@@ -21,7 +21,7 @@ set(layer_7 camera)
 set(layer_8 io)
 set(layer_9 analysis blur fit)
 set(layer_10 editor)
-set(layer_11 figure formats image)   # the edge
+set(layer_11 c figure formats image)   # the edge
 set(edge 11)
 foreach(layer RANGE ${edge})
   foreach(module IN LISTS layer_${layer})
@@ -32,7 +32,7 @@ endforeach()
 set(faults "")
 function(check file line)
   string(REGEX MATCH "^[ \t]*#[ \t]*include[ \t]*([<\"])([^>\"]+)[>\"]" include "${line}")
-  if(NOT include)
+  if(NOT include OR (module STREQUAL "c" AND include MATCHES "\"petzval/petzval\\.h\""))
     return()
   endif()
   set(quote "${CMAKE_MATCH_1}")
@@ -77,6 +77,8 @@ foreach(file IN LISTS files)
   string(REGEX REPLACE "^(include/petzval|lib)/([^/]+)/.*$" "\\2" module "${file}")
   if(file STREQUAL "include/petzval/petzval.hpp")
     set(module all)
+  elseif(file STREQUAL "include/petzval/petzval17.hpp")
+    set(module c)
   endif()
   if(NOT DEFINED layer_of_${module})
     string(APPEND faults "\n  ${file}: not in the folder of a module with a layer; must be")

@@ -13,9 +13,9 @@ file(RELATIVE_PATH pc_includedir ${CMAKE_INSTALL_FULL_LIBDIR}/pkgconfig ${CMAKE_
 # petzval_install(image DESCRIPTION "..." STATIC_REQUIRES OpenEXR): installs one component if it was built.
 # Each component has its own export set, so that a program that uses core does not need the libraries of other components.
 # REQUIRES, STATIC_REQUIRES, STATIC_LIBS: other libraries that users link, named as in pkg-config. In the .pc file and in
-# petzvalConfig.cmake, publicly linked components precede these.
+# petzvalConfig.cmake, publicly linked components precede these. NEEDS: components that are linked privately.
 function(petzval_install component)
-  cmake_parse_arguments(PARSE_ARGV 1 pc "" "DESCRIPTION;REQUIRES;STATIC_REQUIRES;STATIC_LIBS" "")
+  cmake_parse_arguments(PARSE_ARGV 1 pc "" "DESCRIPTION;REQUIRES;STATIC_REQUIRES;STATIC_LIBS" "NEEDS")
   set(name petzval-${component})
   if(NOT TARGET ${name})
     return()
@@ -27,6 +27,11 @@ function(petzval_install component)
   get_target_property(needs ${name} INTERFACE_LINK_LIBRARIES)
   list(FILTER needs INCLUDE REGEX "^petzval::")
   list(TRANSFORM needs REPLACE "^petzval::" "")
+  foreach(need IN LISTS pc_NEEDS)
+    if(TARGET petzval-${need})
+      list(APPEND needs ${need})
+    endif()
+  endforeach()
   string(APPEND component_needs "set(petzval_${component}_needs ${needs})\n")
   set(component_needs "${component_needs}" PARENT_SCOPE)
   list(TRANSFORM needs PREPEND petzval-)
@@ -59,6 +64,7 @@ if("yaml-cpp" IN_LIST formats_links)
 endif()
 petzval_install(formats DESCRIPTION "Lenses and glasses in files of other programs" STATIC_REQUIRES "${formats_yaml}")
 petzval_install(image DESCRIPTION "EXR and PNG images" STATIC_REQUIRES "OpenEXR libpng")
+petzval_install(c DESCRIPTION "Lenses and cameras for renderers, in C and any C++" NEEDS core analysis fit formats)
 
 get_target_property(core_type petzval-core TYPE)
 configure_package_config_file(cmake/petzvalConfig.cmake.in petzvalConfig.cmake INSTALL_DESTINATION ${package_dir}

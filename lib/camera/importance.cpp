@@ -509,6 +509,28 @@ double SceneSide::pdf_distant(const AnyRayModel& model, const Ray<double>& ray, 
 
 }  // namespace camera_detail
 
+CameraRay Camera::sample_path(const CameraSample& given, std::span<const double> nm, PathWavelength* found) const {
+  CameraSample hero = given;
+  hero.wavelength = nm.empty() ? Wavelength() : Wavelength::nm(nm.front());
+  const CameraRay ray = sample(hero);
+  double density = 0;
+  for (std::size_t i = 0; i < nm.size(); ++i) {
+    found[i] = {.raster = film().raster(given.film), .fate = ray.fate};
+    if (!ray) continue;
+    const Importance one = importance({ray.ray.origin, -ray.ray.direction}, Wavelength::nm(nm[i]), given.time);
+    found[i].fate = one.fate;
+    if (!one) continue;
+    found[i] = {one.raster, one.we, one.pdf_position * one.pdf_direction, one.fate};
+    density += found[i].density / static_cast<double>(nm.size());
+  }
+  const bool pinhole = data_->model.pinhole();
+  for (std::size_t i = 0; ray && i < nm.size(); ++i) {
+    if (pinhole) found[i].weight = ray.weight, found[i].fate = ray.fate;
+    if (!pinhole) found[i].weight = density > 0 ? found[i].weight / density : 0;
+  }
+  return ray;
+}
+
 Importance Camera::importance(const Ray<double>& ray, Wavelength wavelength, double time) const {
   const auto& [o, d] = ray;
   Importance found;

@@ -211,8 +211,8 @@ TEST_F(ViewProgram, SavesTheEventsWithoutADisplay) {
 TEST_F(ViewProgram, WindowFocusesWhereTheUserClicks) {
   if (std::system("command -v xvfb-run xdotool >/dev/null 2>&1") != 0) GTEST_SKIP() << "xvfb or xdotool is missing";
   const std::string program = std::string(PETZVAL_TEST_PROGRAMS) + "/petzval view";
-  const std::string screen =
-      "timeout -k 5 120 xvfb-run -a -s '-screen 0 1280x1024x24' sh '" + path("script.sh") + "' >'" + path("out.txt") + "' 2>&1";
+  const std::string screen = "timeout -k 5 120 xvfb-run -a -s '-screen 0 1280x1024x24' sh '" + path("script.sh") +
+                             "' >'" + path("out.txt") + "' 2>&1";
   // The picture begins 8 pixels from the corner of the window.
   write("script.sh", program + " --scene town --thin-lens 50 --f-number 1.4 --size 320x240 --log '" +
                          path("events.json") + R"(' & child=$!

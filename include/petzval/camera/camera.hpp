@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <span>
 
 #include "petzval/camera/bokeh.hpp"
 #include "petzval/camera/camera_ray.hpp"
@@ -127,6 +128,24 @@ class PETZVAL_API Camera {
   template <class T>
   void sample_differentials(std::size_t count, const CameraSamples<T>& samples, const CameraRays<T>& rays,
                             const RayArrays<T>& by_raster_x, const RayArrays<T>& by_raster_y) const noexcept;
+
+  /// @}
+  /// @name Several wavelengths of one path
+  /// @{
+
+  /// Samples a ray at the first wavelength, the hero, and evaluates this ray at all wavelengths.
+  ///
+  /// The weights combine the densities of all wavelengths by the balance heuristic. This requires that each wavelength
+  /// could have been the hero with the same set: for example equal steps through the spectrum, wrapped at its ends.
+  /// Film positions differ by the lateral colour, so each wavelength adds weight * radiance at its own raster position.
+  /// A pinhole has no densities: all wavelengths have the weight and the position of the hero. Takes one sample() and
+  /// one importance() for each wavelength.
+  ///
+  /// @param sample  film point, pupil sample and time; its wavelength is not used
+  /// @param nm      wavelengths, the hero first
+  /// @param found   one result for each wavelength
+  /// @return        the ray of the hero
+  CameraRay sample_path(const CameraSample& sample, std::span<const double> nm, PathWavelength* found) const;
 
   /// @}
   /// @name Importance and connections from the scene

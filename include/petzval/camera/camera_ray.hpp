@@ -129,6 +129,15 @@ struct ImportanceSample {
   explicit operator bool() const noexcept { return importance.we > 0; }
 };
 
+/// A camera ray at one of the wavelengths of a path (Camera::sample_path()).
+struct PathWavelength {
+  Vec2<double> raster{0, 0};  ///< where the ray meets the film at this wavelength
+  double weight = 0;  ///< for the mean of weight * radiance at this wavelength, in the unit of CameraRay::weight
+  /// Density of the ray among film samples of this wavelength, as Importance::pdf_position * pdf_direction.
+  double density = 0;
+  RayFate fate = RayFate::vignetted;
+};
+
 /// Result of the search for a film point.
 enum class ProjectionStatus : std::uint8_t {
   converged,     ///< the point's chief ray meets the film

@@ -1,0 +1,204 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
+#include <exception>
+#include <memory>
+#include <new>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "petzval/camera/camera.hpp"
+#include "petzval/camera/camera_ray.hpp"
+#include "petzval/core/error.hpp"
+#include "petzval/core/film.hpp"
+#include "petzval/focus/focus.hpp"
+#include "petzval/glass/glass.hpp"
+#include "petzval/lens/lens.hpp"
+#include "petzval/petzval.h"
+#include "petzval/prescription/prescription.hpp"
+
+namespace petzval::c_detail {
+
+/// Status and message of a failed call.
+struct Failure {
+  petzval_status status;
+  std::string message;
+};
+
+/// Stores a message for petzval_message() on this thread.
+void set_message(std::string_view message) noexcept;
+
+/// Runs the body of a function of the C interface: exceptions become a status and a message.
+template <class Body>
+petzval_status guarded(const Body& body) noexcept {
+  try {
+    body();
+    return PETZVAL_OK;
+  } catch (const Failure& failure) {
+    set_message(failure.message);
+    return failure.status;
+  } catch (const std::bad_alloc&) {
+    set_message("out of memory");
+    return PETZVAL_OUT_OF_MEMORY;
+  } catch (const std::exception& error) {
+    set_message(error.what());
+    return PETZVAL_REFUSED;
+  } catch (...) {
+    set_message("unknown failure");
+    return PETZVAL_REFUSED;
+  }
+}
+
+[[noreturn]] inline void bad_argument(std::string message) { throw Failure{PETZVAL_BAD_ARGUMENT, std::move(message)}; }
+template <class T>
+T& given(T* pointer, const char* name) {
+  if (!pointer) bad_argument(std::string(name) + " = NULL; must point to a value");
+  return *pointer;
+}
+inline bool flag(std::int32_t value, const char* name) {
+  if (value != 0 && value != 1) bad_argument(std::string(name) + " = " + std::to_string(value) + "; must be 0 or 1");
+  return value == 1;
+}
+
+/// Copies a struct of the caller whose version may be older or newer. NULL: all members 0.
+template <class T>
+T received(const T* from, const char* name) {
+  T copy{};
+  copy.size = sizeof(T);
+  if (!from) return copy;
+  constexpr std::size_t least = sizeof(std::size_t), most = 1 << 16;
+  if (from->size < least || from->size > most) {
+    bad_argument(std::string(name) + ": size = " + std::to_string(from->size) + "; must be sizeof(" + name +
+                 "), as set by " + name + "_init()");
+  }
+  const auto* const bytes = reinterpret_cast<const unsigned char*>(from);
+  for (std::size_t i = sizeof(T); i < from->size; ++i) {
+    if (bytes[i] != 0) {
+      bad_argument(std::string(name) + ": size = " + std::to_string(from->size) + " and a member beyond byte " +
+                   std::to_string(sizeof(T)) + " is set; must be 0 for this version of the library");
+    }
+  }
+  std::memcpy(&copy, from, std::min(from->size, sizeof(T)));
+  copy.size = sizeof(T);
+  return copy;
+}
+/// Writes a struct to the caller. The caller may have an older or newer version of the struct.
+template <class T>
+void send(const T& value, T* to, const char* name) {
+  const std::size_t size = given(to, name).size;
+  received(to, name);  // checks the size
+  auto* const bytes = reinterpret_cast<unsigned char*>(to);
+  std::memcpy(bytes + sizeof size, reinterpret_cast<const unsigned char*>(&value) + sizeof size,
+              std::min(size, sizeof(T)) - sizeof size);
+}
+template <std::size_t n>
+void copy_text(std::string_view text, char (&to)[n]) noexcept {
+  const std::size_t count = std::min(text.size(), n - 1);
+  std::memcpy(to, text.data(), count);
+  to[count] = 0;
+}
+/// Copies bytes to a buffer of the caller.
+void copy_bytes(std::string_view bytes, char* to, std::size_t capacity, std::size_t* length);
+
+/// The first member of a handle, which tells kinds of handles and freed handles apart.
+enum class Kind : std::uint32_t { glasses = 0x9e7a61a5, lens = 0x9e7a11e5, camera = 0x9e7aca3e, freed = 0xdead9e7a };
+
+template <class Handle>
+Handle& live(Handle* handle, const char* name) {
+  if (!handle) throw Failure{PETZVAL_BAD_HANDLE, std::string(name) + " = NULL; must be a handle"};
+  if (handle->kind != std::remove_const_t<Handle>::own_kind) {
+    throw Failure{PETZVAL_BAD_HANDLE, std::string(name) + " is no handle of this kind; has it been freed?"};
+  }
+  return *handle;
+}
+/// Frees the contents of a handle. With assertions, the handle itself stays in memory, so that later calls detect a
+/// freed handle.
+template <class Handle>
+void release(Handle* handle) noexcept {
+  if (!handle || handle->kind != Handle::own_kind) return;
+  handle->contents.reset();
+  handle->kind = Kind::freed;
+#ifdef NDEBUG
+  delete handle;
+#endif
+}
+
+/// All that defines a lens of the C interface, which can be written and read.
+struct LensSettings {
+  Prescription prescription;
+  std::vector<double> wavelengths_nm;
+  double primary_nm = 0;
+  bool clamp = false, abbe = false;
+  int configuration = 0;
+  std::shared_ptr<const GlassCatalogue> glasses;  ///< null: glass_tables()
+  std::optional<double> f_number;
+  Iris iris;
+  struct Focus {
+    double distance_mm = 0;
+    DistanceOrigin origin = DistanceOrigin::front_vertex;
+  };
+  std::optional<Focus> focus;
+
+  /// The lens as compiled, then with its iris, f-number and focus.
+  Lens compiled() const;
+  Lens applied(const Lens& compiled) const;
+};
+
+struct CameraSettings {
+  LensSettings lens;
+  petzval_film film;
+  petzval_camera_options options;
+  std::string model;
+  double opens_mm = 0, closes_mm = 0;  ///< last petzval_camera_set_focus(); 0: none
+};
+
+DistanceOrigin distance_origin(std::int32_t value, const char* name);
+Film film_of(const petzval_film* film);
+CameraSettings read_settings(std::string_view bytes);
+std::string write_settings(const CameraSettings& settings);
+
+struct LensContents {
+  LensSettings settings;
+  Lens base, lens;  ///< without and with the settings of iris, f-number and focus
+};
+
+struct CameraContents {
+  explicit CameraContents(CameraSettings given);
+  CameraContents(CameraSettings given, const Lens& lens);
+  void set_focus(double opens, double closes);
+  /// Fraction of the travel of the film at a time of the exposure.
+  double film_time(double time) const noexcept {
+    return opens + std::clamp(time > 0 ? time : 0.0, 0.0, 1.0) * (closes - opens);
+  }
+
+  CameraSettings settings;
+  Camera camera;
+  HostFrame frame;
+  double opens = 0, closes = 1;
+  double area = 1;  ///< 1/mm^2 in 1/unit^2
+};
+
+}  // namespace petzval::c_detail
+
+struct petzval_glasses {
+  static constexpr auto own_kind = petzval::c_detail::Kind::glasses;
+  petzval::c_detail::Kind kind = own_kind;
+  std::shared_ptr<const petzval::GlassCatalogue> contents;
+};
+struct petzval_lens {
+  static constexpr auto own_kind = petzval::c_detail::Kind::lens;
+  petzval::c_detail::Kind kind = own_kind;
+  std::unique_ptr<petzval::c_detail::LensContents> contents;
+};
+struct petzval_camera {
+  static constexpr auto own_kind = petzval::c_detail::Kind::camera;
+  petzval::c_detail::Kind kind = own_kind;
+  std::unique_ptr<petzval::c_detail::CameraContents> contents;
+};
