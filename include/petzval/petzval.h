@@ -94,7 +94,8 @@ typedef struct petzval_lens_options {
   double primary_nm; /**< a compiled wavelength; 0: the reference wavelength if compiled, else that near d */
   const petzval_glasses* glasses; /**< NULL: the installed tables */
   int32_t clamp_wavelengths;      /**< 1: outside the range of a glass, take the index at its end; 0: refuse */
-  int32_t allow_abbe;             /**< 1: a medium without a known glass follows its n_d and V_d; 0: refuse */
+  int32_t require_glasses;        /**< 1: refuse media without a known glass; 0: they follow n_d and V_d
+                                     (PETZVAL_TEXT_MISSING_GLASS) */
   int32_t configuration;          /**< of a zoom lens, from 1; 0: the first */
   int32_t strict;                 /**< 1: refuse files that need an assumption; 0: list it as PETZVAL_TEXT_WARNING */
   const char* entry;              /**< lens of a lentil database; NULL: the only one */

@@ -38,7 +38,7 @@ LensSettings settings_of(Prescription prescription, const petzval_lens_options& 
   }
   settings.primary_nm = options.primary_nm;
   settings.clamp = flag(options.clamp_wavelengths, "clamp_wavelengths");
-  settings.abbe = flag(options.allow_abbe, "allow_abbe");
+  settings.abbe = !flag(options.require_glasses, "require_glasses");
   if (options.configuration < 0) bad_argument("configuration is negative; must be 0, or a number from 1");
   settings.configuration = std::max(1, options.configuration) - 1;
   return settings;
