@@ -13,6 +13,7 @@
 #include "petzval/formats/lens_file.hpp"
 #include "petzval/glass/glass.hpp"
 #include "petzval/io/lens_json.hpp"
+#include "petzval/petzval.h"
 #include "polynomial/ray_polynomial.hpp"
 
 namespace petzval::fuzz {
@@ -58,6 +59,25 @@ const GlassCatalogue& glasses() {
 Texts own_json() {
   Texts result;
   for (const Prescription& lens : small_lenses()) result.push_back(format_prescription(lens));
+  return result;
+}
+Texts camera_setups() {
+  Texts result;
+  for (const char* id : {"singlet_50mm_biconvex", "achromat_100mm", "phone_5.6mm_f3.5"}) {
+    const std::string text = format_prescription(testing::data_prescription(id));
+    petzval_lens* lens = nullptr;
+    petzval_camera* camera = nullptr;
+    std::size_t length = 0;
+    if (petzval_lens_parse(text.data(), text.size(), id, nullptr, &lens) != PETZVAL_OK ||
+        petzval_camera_create(lens, nullptr, nullptr, &camera) != PETZVAL_OK ||
+        petzval_camera_write(camera, nullptr, 0, &length) != PETZVAL_OK) {
+      throw Error(petzval_message());
+    }
+    std::string setup(length, 0);
+    petzval_camera_write(camera, setup.data(), length, nullptr);
+    petzval_camera_free(camera), petzval_lens_free(lens);
+    result.push_back(std::move(setup));
+  }
   return result;
 }
 Texts zemax_texts() {

@@ -9,6 +9,7 @@
 namespace petzval::fuzz {
 
 std::vector<std::string> own_json();
+std::vector<std::string> camera_setups();
 std::vector<std::string> zemax_texts();
 std::vector<std::string> codev_texts();
 std::vector<std::string> typed_tables();
