@@ -513,15 +513,30 @@ CameraRay Camera::sample_path(const CameraSample& given, std::span<const double>
   CameraSample hero = given;
   hero.wavelength = nm.empty() ? Wavelength() : Wavelength::nm(nm.front());
   const CameraRay ray = sample(hero);
+  constexpr std::size_t block = 16;
+  std::array<std::array<double, block>, 7> rays;  // the same ray at each wavelength, as a batch
+  const Vec3<double> origin = ray.ray.origin, direction = -ray.ray.direction;
+  for (std::size_t k = 0; k < 3; ++k) {
+    rays[k].fill(origin[static_cast<int>(k)]), rays[k + 3].fill(direction[static_cast<int>(k)]);
+  }
+  rays[6].fill(given.time);
   double density = 0;
-  for (std::size_t i = 0; i < nm.size(); ++i) {
-    found[i] = {.raster = film().raster(given.film), .fate = ray.fate};
-    if (!ray) continue;
-    const Importance one = importance({ray.ray.origin, -ray.ray.direction}, Wavelength::nm(nm[i]), given.time);
-    found[i].fate = one.fate;
-    if (!one) continue;
-    found[i] = {one.raster, one.we, one.pdf_position * one.pdf_direction, one.fate};
-    density += found[i].density / static_cast<double>(nm.size());
+  for (std::size_t begin = 0; begin < nm.size(); begin += block) {
+    const std::size_t n = std::min(block, nm.size() - begin);
+    std::array<float, block> own;
+    std::array<Importance, block> results;
+    std::ranges::transform(nm.subspan(begin, n), own.begin(), [](double value) { return static_cast<float>(value); });
+    if (ray) {
+      importance(n, {rays[0].data(), rays[1].data(), rays[2].data(), rays[3].data(), rays[4].data(), rays[5].data()},
+                 {.each_nm = own.data()}, results.data(), rays[6].data());
+    }
+    for (std::size_t i = 0; i < n; ++i) {
+      PathWavelength& one = found[begin + i];
+      one = {.raster = film().raster(given.film), .fate = ray ? results[i].fate : ray.fate};
+      if (!ray || !results[i]) continue;
+      one = {results[i].raster, results[i].we, results[i].pdf_position * results[i].pdf_direction, results[i].fate};
+      density += one.density / static_cast<double>(nm.size());
+    }
   }
   const bool pinhole = data_->model.pinhole();
   for (std::size_t i = 0; ray && i < nm.size(); ++i) {

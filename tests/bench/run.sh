@@ -24,7 +24,7 @@ while [ "$left" -gt 0 ]; do
     *) set -- "$@" "$1"; shift; left=$((left - 1)) ;;
   esac
 done
-for bench in camera pupil psf surface movement; do
+for bench in camera host pupil psf surface movement; do
   [ -x "$BUILD_DIR/tests/bench/${bench}_bench" ] || continue  # movement_bench needs Ceres
   echo
   "$BUILD_DIR/tests/bench/${bench}_bench" "$@"
