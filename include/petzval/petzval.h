@@ -76,7 +76,8 @@ typedef struct petzval_glass {
  * Makes a set of glasses: those of `base`, or of the installed tables if `base` is NULL, and those of a file.
  *
  * Glasses of the file take precedence. Formats: .agf, a page of refractiveindex.info, the library's CSV.
- * @param file  path in UTF-8, or NULL for no file
+ *
+ * - file: path in UTF-8, or NULL for no file
  */
 PETZVAL_C_API petzval_status petzval_glasses_create(const char* file, const petzval_glasses* base,
                                                     petzval_glasses** glasses);
@@ -141,7 +142,7 @@ enum { PETZVAL_FROM_FRONT_VERTEX = 0, PETZVAL_FROM_FILM = 1, PETZVAL_FROM_ENTRAN
 /** Reads a lens from a file of any format that the library knows (petzval JSON, Zemax, CODE V, OSLO, ...). */
 PETZVAL_C_API petzval_status petzval_lens_read(const char* file, const petzval_lens_options* options,
                                                petzval_lens** lens);
-/** Reads a lens from memory. @param name  the source, for messages */
+/** Reads a lens from memory. `name` is the source in messages. */
 PETZVAL_C_API petzval_status petzval_lens_parse(const char* bytes, size_t count, const char* name,
                                                 const petzval_lens_options* options, petzval_lens** lens);
 PETZVAL_C_API petzval_status petzval_lens_copy(const petzval_lens* lens, petzval_lens** copy);
@@ -151,10 +152,10 @@ PETZVAL_C_API petzval_status petzval_lens_get_surface(const petzval_lens* lens, 
 /**
  * Copies a text, with its final 0, to a buffer.
  *
- * @param kind    PETZVAL_TEXT_...
- * @param index   of lists: from 0. At the end of a list, the length is 0.
- * @param text    may be NULL if capacity is 0
- * @param length  bytes that the text needs, with its final 0; may be NULL
+ * - kind: PETZVAL_TEXT_...
+ * - index: position in a list, from 0; at the end of the list the length is 0
+ * - text: may be NULL if capacity is 0
+ * - length: bytes that the text needs, with its final 0; may be NULL
  */
 PETZVAL_C_API petzval_status petzval_lens_get_text(const petzval_lens* lens, int32_t kind, size_t index, char* text,
                                                    size_t capacity, size_t* length);
@@ -163,13 +164,13 @@ PETZVAL_C_API petzval_status petzval_lens_set_f_number(petzval_lens* lens, doubl
 /**
  * Gives the stop blades.
  *
- * @param blades     3 to 20; 0: round
- * @param roundness  0: straight edges; 1: round
- * @param rotation   angle of the first corner from +y (rad)
+ * - blades: 3 to 20; 0: round
+ * - roundness: 0: straight edges; 1: round
+ * - rotation: angle of the first corner from +y (rad)
  */
 PETZVAL_C_API petzval_status petzval_lens_set_iris(petzval_lens* lens, int32_t blades, double roundness,
                                                    double rotation);
-/** Focuses by exact rays. @param distance_mm  may be infinite @param origin  PETZVAL_FROM_... */
+/** Focuses by exact rays. The distance may be infinite; `origin` is PETZVAL_FROM_... */
 PETZVAL_C_API petzval_status petzval_lens_set_focus(petzval_lens* lens, double distance_mm, int32_t origin);
 
 /* ---- films and focus points ------------------------------------------------------------------------------------ */
@@ -200,9 +201,9 @@ typedef struct petzval_film_fit {
 /**
  * Moves and tilts a film so that focus points are as sharp as wanted, by exact rays.
  *
- * @param max_tilt_rad  0: the film stays upright; else 0.35 is usual
- * @param film          on input the size and pixels, on output also position, tilt and shift
- * @param fit           may be NULL
+ * - max_tilt_rad: 0: the film stays upright; else 0.35 is usual
+ * - film: on input the size and pixels, on output also position, tilt and shift
+ * - fit: may be NULL
  */
 PETZVAL_C_API petzval_status petzval_lens_fit_film(const petzval_lens* lens, const petzval_focus_point* points,
                                                    size_t count, double max_tilt_rad, petzval_film* film,
@@ -355,7 +356,7 @@ typedef struct petzval_path_wavelength {
   int32_t fate, unused;
 } petzval_path_wavelength;
 
-/** @param film, options  may be NULL */
+/** Makes a camera. `film` and `options` may be NULL. */
 PETZVAL_C_API petzval_status petzval_camera_create(const petzval_lens* lens, const petzval_film* film,
                                                    const petzval_camera_options* options, petzval_camera** camera);
 PETZVAL_C_API void petzval_camera_free(petzval_camera* camera);
@@ -363,14 +364,15 @@ PETZVAL_C_API petzval_status petzval_camera_get_info(const petzval_camera* camer
 /**
  * Changes the focus of a camera made for a range of distances (near_mm, far_mm), without new tables.
  *
- * @param opens_mm, closes_mm  distances as the shutter opens and closes; equal for a fixed focus
+ * - opens_mm, closes_mm: distances as the shutter opens and closes; equal for a fixed focus
  */
 PETZVAL_C_API petzval_status petzval_camera_set_focus(petzval_camera* camera, double opens_mm, double closes_mm);
 /**
  * Writes the set-up of a camera: prescription, glasses, settings. Another process with the same version of the library
  * makes the same camera from it, whose rays are equal to the bit on a processor with the same instruction sets.
  *
- * @param bytes  may be NULL if capacity is 0 @param length  bytes that the set-up needs; may be NULL
+ * - bytes: may be NULL if capacity is 0
+ * - length: bytes that the set-up needs; may be NULL
  */
 PETZVAL_C_API petzval_status petzval_camera_write(const petzval_camera* camera, char* bytes, size_t capacity,
                                                   size_t* length);
@@ -390,42 +392,46 @@ PETZVAL_C_API petzval_status petzval_camera_sample_double(const petzval_camera* 
 /**
  * Samples the ray of one wavelength and evaluates it at all wavelengths of a path (hero wavelengths).
  *
- * The hero, nm[0], must be distributed so that each wavelength could have been the hero with the same set: for example
- * equal steps through the spectrum, wrapped at its ends.
- * @param nm     wavelengths; sample->wavelength_nm is not used
- * @param found  one result for each wavelength
+ * The hero is nm[0]. It must be distributed so that each wavelength could have been the hero with the same set: for
+ * example equal steps through the spectrum, wrapped at its ends.
+ *
+ * - nm: wavelengths; sample->wavelength_nm is not used
+ * - found: one result for each wavelength
  */
 PETZVAL_C_API petzval_status petzval_camera_sample_path(const petzval_camera* camera, const petzval_sample* sample,
                                                         size_t count, const double* nm, petzval_ray* ray,
                                                         petzval_path_wavelength* found);
 /**
  * Importance of N rays that travel towards the lens.
- * @param origins, directions  3 N numbers each; any points of the lines, and unit vectors
- * @param nm, times            N values, or NULL: the primary wavelength, 0
+ *
+ * - origins, directions: 3 N numbers each; any points of the lines, and unit vectors
+ * - nm, times: N values; NULL: the primary wavelength, and time 0
  */
 PETZVAL_C_API petzval_status petzval_camera_importance(const petzval_camera* camera, size_t count,
                                                        const double* origins, const double* directions, const float* nm,
                                                        const double* times, petzval_importance* found);
-/** Samples connections from N points to the lens. @param points  3 N numbers @param u, v  in the unit square */
+/** Samples connections from N points (3 N numbers) to the lens. `u` and `v` lie in the unit square. */
 PETZVAL_C_API petzval_status petzval_camera_connect(const petzval_camera* camera, size_t count, const double* points,
                                                     const double* u, const double* v, const float* nm,
                                                     const double* times, petzval_connection* found);
-/** Samples a connection with light from infinity. @param direction  of travel, towards the lens; 3 numbers */
+/** Samples a connection with light from infinity. `direction` (3 numbers) is the direction of travel. */
 PETZVAL_C_API petzval_status petzval_camera_connect_distant(const petzval_camera* camera, const double* direction,
                                                             double u, double v, double nm, double time,
                                                             petzval_connection* found);
 /**
  * Density with which the connect functions choose a ray.
- * @param distant  0: 1/sr at the point, as petzval_camera_connect(); 1: 1/area across the direction
+ *
+ * - distant: 0: 1/sr at the point, as petzval_camera_connect(); 1: 1/area across the direction
  */
 PETZVAL_C_API petzval_status petzval_camera_connection_pdf(const petzval_camera* camera, const double* point,
                                                            const double* direction, double nm, int32_t distant,
                                                            double* pdf);
 /**
  * Raster positions of the chief rays of N points.
- * @param points   3 N numbers
- * @param raster   2 N numbers; NaN where the film does not see the point
- * @param visible  N values, or NULL; 1 if the chief ray passes and meets the film
+ *
+ * - points: 3 N numbers
+ * - raster: 2 N numbers; NaN where the film does not see the point
+ * - visible: N values, or NULL; 1 if the chief ray passes and meets the film
  */
 PETZVAL_C_API petzval_status petzval_camera_project(const petzval_camera* camera, size_t count, const double* points,
                                                     double nm, double time, double* raster, uint8_t* visible);
@@ -453,10 +459,11 @@ typedef struct petzval_psf {
 
 /**
  * Image of a point light on the film.
- * @param point   3 numbers; petzval_psf refers to the film in mm
- * @param image   [wavelength][row][column], rows from +y of the film on, in fractions of the light on the entrance
- *                pupil; NULL: only `psf`
- * @param floats  floats in `image`
+ *
+ * - point: 3 numbers; petzval_psf refers to the film in mm
+ * - image: [wavelength][row][column], rows from +y of the film on, in fractions of the light on the entrance pupil;
+ * NULL: only `psf` is filled
+ * - floats: floats in `image`
  */
 PETZVAL_C_API petzval_status petzval_camera_point_image(const petzval_camera* camera, const double* point,
                                                         const petzval_psf_options* options, petzval_psf* psf,

@@ -70,7 +70,7 @@ class Owner {
 
 class Glasses : public Owner<petzval_glasses, petzval_glasses_free> {
  public:
-  /// The installed glasses, and those of a file.
+  /// Reads the installed glasses, and the glasses of a file unless it is null.
   explicit Glasses(const char* file = nullptr) { keep(petzval_glasses_create(file, nullptr, &handle_)); }
   std::size_t count() const noexcept { return petzval_glasses_count(handle_); }
   petzval_glass get_glass(std::size_t index) const {

@@ -3,7 +3,7 @@
 # installed below STAGE and compiles there as the first include of a file, included twice, with only the standard library and GLM.
 cmake_minimum_required(VERSION 3.25)
 
-file(GLOB_RECURSE headers RELATIVE "${SOURCE}" "${SOURCE}/*.hpp")
+file(GLOB_RECURSE headers RELATIVE "${SOURCE}" "${SOURCE}/*.hpp" "${SOURCE}/*.h")
 set(faults "")
 foreach(header IN LISTS headers)
   string(REPLACE "/" "_" source "${header}.cpp")
