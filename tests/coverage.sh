@@ -12,7 +12,7 @@ root=$(CDPATH= cd -- "$(dirname -- "$0")/.." && pwd)
 BUILD_DIR=${COVERAGE_DIR:-$root/build/coverage}
 . "$root/cmake/build.sh"
 
-need $library_packages $example_packages $test_packages $window_packages gcovr
+need $library_packages $example_packages $test_packages $full_packages gcovr
 # Inlined functions would be counted in their callers; non-atomic updates from threads would be lost.
 build -DPETZVAL_BUILD_TESTS=ON -DPETZVAL_BUILD_EXAMPLES=ON -DCMAKE_BUILD_TYPE=Debug \
   "-DCMAKE_CXX_FLAGS_DEBUG=-O1 -fno-inline-functions" "-DCMAKE_CXX_FLAGS=--coverage -fprofile-update=atomic"

@@ -49,9 +49,9 @@ table() {
 
 case " $* " in
   *" -L full "*) full=ON target=all ;;
-  *) full=OFF target=petzval-tests example_packages= window_packages= ;;
+  *) full=OFF target=petzval-tests example_packages= full_packages= ;;
 esac
-need $library_packages $example_packages $test_packages $window_packages
+need $library_packages $example_packages $test_packages $full_packages
 build $unity -DPETZVAL_BUILD_TESTS=ON -DPETZVAL_FULL_TESTS=$full -DPETZVAL_BUILD_EXAMPLES=$full -DCMAKE_COMPILE_WARNING_AS_ERROR=ON
 if [ "${1-}" = --report ]; then
   work=$(mktemp -d)

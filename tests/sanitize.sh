@@ -21,7 +21,7 @@ while [ $# -gt 0 ]; do
   shift
 done
 
-need $library_packages $example_packages $test_packages $window_packages
+need $library_packages $example_packages $test_packages $full_packages
 export ASAN_OPTIONS=detect_stack_use_after_return=1:check_initialization_order=1:strict_string_checks=1:allocator_may_return_null=1
 export "LSAN_OPTIONS=print_suppressions=0 suppressions=$root/tests/lsan.supp"
 export UBSAN_OPTIONS=print_stacktrace=1

@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// Converts film samples of a CSV file to camera rays, by any model of the lens.
+// Converts film samples of a CSV file to camera rays, by any model of the lens; or writes a camera for POV-Ray.
 //
 //   printf 'film_x_mm,film_y_mm,pupil_u,pupil_v,wavelength_nm\n0,-10,0.25,0.5,587.5618\n' > samples.csv
 //   petzval camera-rays data/lenses/double_gauss_100mm_f2.0.json --table samples.csv --out rays.csv --model
 //   exact_double
 //               --focus 3000 --f-number 4
+//   petzval camera-rays data/lenses/double_gauss_100mm_f2.0.json --povray --size 160 --spp 64 --model exact_double
+//               --focus 3000 --out lens.inc
 #include "commands.hpp"
 
 #include <algorithm>
@@ -17,12 +19,14 @@
 #include "petzval/camera/camera.hpp"
 #include "petzval/core/error.hpp"
 #include "petzval/core/geometry.hpp"
+#include "petzval/povray_camera.hpp"
 #include "support/bokeh_flags.hpp"
 #include "support/camera_setup.hpp"
 #include "support/cli.hpp"
 #include "support/files.hpp"
 #include "support/load_lens.hpp"
 #include "support/number_csv.hpp"
+#include "support/text.hpp"
 
 namespace {
 
@@ -106,6 +110,10 @@ std::string rays_csv(const petzval::Camera& camera, const Samples& samples) {
   return csv;
 }
 
+/// The largest number of rays for POV-Ray. A ray takes 100 bytes of text.
+constexpr double most_povray_rays = 1e7;
+constexpr std::uint32_t usual_columns = 160;
+
 }  // namespace
 
 int commands::camera_rays(int argc, char** argv) {
@@ -113,21 +121,39 @@ int commands::camera_rays(int argc, char** argv) {
   std::string samples_file, out_file, model;
   examples::CameraSetup setup;
   double tilt_deg = 0, swing_deg = 0;
+  bool povray = false;
+  std::uint32_t columns = 0, rows = 0, samples_per_pixel = 32;
   examples::App app(
       "Samples camera rays from film points through the lens into the scene. Lengths in mm, in the lens frame: origin "
-      "at the first vertex, light travels towards +z, camera rays towards -z. The image on the film is upside down.",
+      "at the first vertex, light travels towards +z, camera rays towards -z. The image on the film is upside down. "
+      "With --povray, writes a camera for POV-Ray 3.7 instead.",
       "petzval camera-rays");
   examples::add_lens(app, lens_file);
   app.add_option("--table", samples_file,
                  "CSV with the columns film_x_mm,film_y_mm,pupil_u,pupil_v,wavelength_nm; pupil_u and pupil_v from 0 "
                  "to 1, uniform by area over the model's pupil for the film point")
-      ->required()
       ->type_name("CSV");
+  auto* const povray_flag = app.add_flag(
+      "--povray", povray,
+      "write an include file of POV-Ray 3.7: a mesh_camera with one mesh per sample, one triangle per pixel. Frame of "
+      "POV-Ray: left-handed, mm, origin at the first vertex, +y up, view along +z; declare petzval_pose, a transform "
+      "without scale, to move the camera. Light at the d line. Rays are dropped in proportion to their weights, "
+      "because POV-Ray has none: the picture times the number in the file is the linear picture of petzval render. "
+      "Render in the same size without antialiasing: povray scene.pov +W160 +H107 -A. The first row of pixels repeats "
+      "the second one");
+  povray_flag->excludes("--table");
+  examples::add_picture_size(app, columns, rows, usual_columns);
+  app.get_option("--size")->needs(povray_flag);
+  examples::add_count(app, "--spp", samples_per_pixel, {1, most_povray_rays, "a whole number from 1 to 10000000"},
+                      "rays per pixel for --povray; the file has 100 bytes per ray: 54 MB for 160x107 pixels with 32 "
+                      "rays")
+      ->needs(povray_flag);
   examples::add_out_file(app, out_file,
-                         "CSV to write, one line per sample in the same order: x_mm,y_mm,z_mm,dx,dy,dz,weight,"
+                         "file to write; CSV, or the include file of --povray. CSV: one line per sample in the same "
+                         "order: x_mm,y_mm,z_mm,dx,dy,dz,weight,"
                          "pdf_pupil_per_mm2,pdf_direction_per_sr,fate, with 17 digits. The mean of weight x radiance "
                          "is the irradiance of the film point; the weight is 0 unless the fate is transmitted",
-                         "CSV")
+                         "FILE")
       ->required();
   examples::add_model(app, model)->required();
   examples::add_camera(app, setup);
@@ -140,17 +166,31 @@ int commands::camera_rays(int argc, char** argv) {
   app.get_option("--focus")->required()->default_str("");
 
   return examples::run(app, argc, argv, [&] {
+    if (!povray && samples_file.empty()) throw petzval::Error("--table or --povray is required");
+    const auto camera_of = [&](const LoadedLens& loaded, petzval::Film film, petzval::Normalisation normalisation) {
+      film.tilt_rad = petzval::radians(tilt_deg), film.swing_rad = petzval::radians(swing_deg);
+      const petzval::Lens lens = examples::focused(loaded, setup);
+      examples::say_what_does_not_fit(lens, film, povray ? "--size" : "");
+      return petzval::Camera(lens, film,
+                             {.model = *petzval::model_named(model),
+                              .normalisation = normalisation,
+                              .bokeh = examples::controls_of(bokeh)});
+    };
+    if (povray) {
+      const petzval::Film film = setup.film(columns, rows, usual_columns);
+      const double rays = 1.0 * film.columns * film.rows * samples_per_pixel;
+      if (rays > most_povray_rays) {
+        throw petzval::Error("--size and --spp: " + examples::number(rays) + " rays; must be at most 10000000");
+      }
+      const auto loaded = examples::load_lens(lens_file, std::array{petzval::d_line_nm});
+      const petzval::Camera camera = camera_of(loaded, film, petzval::Normalisation::unity_on_axis);
+      return examples::write_text(out_file, examples::povray_camera(camera, samples_per_pixel));
+    }
     const auto [width, height] = setup.film_size();
     const Samples samples = parse_samples(examples::read_text(samples_file), samples_file);
-    const LoadedLens loaded = load_for(samples, lens_file, samples_file);
-    const petzval::Film film{.width_mm = width,
-                             .height_mm = height,
-                             .tilt_rad = petzval::radians(tilt_deg),
-                             .swing_rad = petzval::radians(swing_deg)};
-    const petzval::Lens lens = examples::focused(loaded, setup);
-    examples::say_what_does_not_fit(lens, film, "");
-    const petzval::Camera camera(lens, film,
-                                 {.model = *petzval::model_named(model), .bokeh = examples::controls_of(bokeh)});
+    const petzval::Camera camera =
+        camera_of(load_for(samples, lens_file, samples_file), {.width_mm = width, .height_mm = height},
+                  petzval::Normalisation::irradiance);
     examples::write_text(out_file, rays_csv(camera, samples));
   });
 }

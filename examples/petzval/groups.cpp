@@ -55,7 +55,7 @@ constexpr std::array renderer_commands{
     Command{"models", "errors and times of the ray models of a camera", "double_gauss_100mm_f2.0", &models},
     Command{"choose", "the fastest ray model within a budget",
             "double_gauss_100mm_f2.0 --near 1.5m --far 10m --budget 0.5", &choose},
-    Command{"camera-rays", "rays of a camera for samples of a table",
+    Command{"camera-rays", "rays of a camera for samples of a table, or for POV-Ray",
             "biogon_35mm_f2.8 --table in.csv --model thick --focus 3m --out rays.csv", &camera_rays},
     Command{"render", "path, light or bidirectional tracing through a lens; merge",
             "double_gauss_100mm_f2.0 --scene street --focus 3m --out out", render_command, embree},

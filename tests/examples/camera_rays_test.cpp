@@ -140,4 +140,13 @@ TEST_F(CameraRays, InvalidValuesAreNamedWithLineAndColumn) {
   expect_refusal(good + "0,0,0.5,0.5,20\n", {"line 3", "wavelength_nm"}, "achromat_100mm");
 }
 
+TEST_F(CameraRays, TableOrPovrayIsRequired) {
+  const std::vector<std::string> base{
+      lens("double_gauss_100mm_f2.0"), "--focus", "3000", "--model", "thin", "--out", path("out")};
+  expect_failure("camera-rays", base, {"--table", "--povray"});
+  std::vector<std::string> large = base;
+  large.insert(large.end(), {"--povray", "--size", "4000x3000"});
+  expect_failure("camera-rays", large, {"--size", "--spp", 3.84e8, "10000000"});
+}
+
 }  // namespace
