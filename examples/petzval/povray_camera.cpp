@@ -37,7 +37,7 @@ Samples sampled(const petzval::Camera& camera, int first_row, std::uint32_t samp
   std::array<std::vector<double>, 11> columns;
   for (auto& column : columns) column.resize(count);
   auto& [film_x, film_y, u, v, x, y, z, dx, dy, dz, weights] = columns;
-  std::uint32_t power = 1;  // of two, not below `samples`
+  std::uint32_t power = 1;  // the power of two that is not below `samples`
   while (power < samples) power *= 2;
 
   Samples result;

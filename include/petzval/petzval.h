@@ -5,18 +5,17 @@
  * @file
  * Lenses and cameras for renderers, in C99 and C++98 and later. Link petzval::c (libpetzval-c).
  *
- * Status: most functions return a petzval_status. On failure, results are set to 0 or NULL and petzval_message() says
- * what is wrong. No exception leaves a function.
+ * Status: most functions return a petzval_status. On failure, results are set to 0 or NULL and petzval_message() gives
+ * the reason. No exception leaves a function.
  *
- * Structs: structs with a member `size` begin as petzval_film_init() and so on, which set `size` and clear the rest. A
- * member of 0 means the default that stands beside it. Later versions only add members at the end, so that programs
+ * Structs: structs with a member `size` begin as petzval_film_init() and so on, which set `size` and clear the rest. A member of 0 has the default in its comment. Later versions only add members at the end, so that programs
  * compiled with an older header keep working. Structs without `size` never change.
  *
  * Memory: handles are freed by their own free function, which accepts NULL. Texts and arrays belong to the caller.
  * Structs and handles keep no pointers to memory of the caller.
  *
- * Threads: all functions may be called from any thread. Different handles are independent. One handle may be used by
- * several threads as long as none of them calls a function with `_set_` or `_free` for it. A camera is independent of
+ * Threads: all functions may be called from any thread. Different handles are independent. Several threads
+ * may use one handle, except in functions with `_set_` or `_free` in their names. A camera is independent of
  * the lens from which it was made.
  *
  * Units: the lens frame is right-handed and in mm: origin at the first vertex, light from the scene travels towards
@@ -73,7 +72,7 @@ typedef struct petzval_glass {
 } petzval_glass;
 
 /**
- * Makes a set of glasses: those of `base`, or of the installed tables if `base` is NULL, and those of a file.
+ * Makes a set of glasses: the glasses of `base` (NULL: the installed tables) and the glasses of a file.
  *
  * Glasses of the file take precedence. Formats: .agf, a page of refractiveindex.info, the library's CSV.
  *
@@ -194,12 +193,12 @@ typedef struct petzval_focus_point {
 
 typedef struct petzval_film_fit {
   size_t size;
-  double rms_mm;            /**< weighted RMS of blur minus wanted blur */
+  double rms_mm;            /**< weighted RMS of blur minus requested blur */
   int32_t limited, upright; /**< the tilt reached its limit; the points do not determine a tilt */
 } petzval_film_fit;
 
 /**
- * Moves and tilts a film so that focus points are as sharp as wanted, by exact rays.
+ * Moves and tilts a film so that focus points get their blurs, by exact rays.
  *
  * - max_tilt_rad: 0: the film stays upright; else 0.35 is usual
  * - film: on input the size and pixels, on output also position, tilt and shift
@@ -211,7 +210,7 @@ PETZVAL_C_API petzval_status petzval_lens_fit_film(const petzval_lens* lens, con
 
 /* ---- models ---------------------------------------------------------------------------------------------------- */
 
-/** What a scene requires of a ray model. */
+/** Requirements of a scene for a ray model. */
 typedef struct petzval_requirements {
   size_t size;
   double near_mm, far_mm;  /**< depths from the film; 0: 1000 and infinity */
@@ -350,7 +349,7 @@ typedef struct petzval_connection {
 
 /** The part of a path at one of several wavelengths. */
 typedef struct petzval_path_wavelength {
-  double raster_x, raster_y; /**< where the ray meets the film at this wavelength */
+  double raster_x, raster_y; /**< intersection of the ray with the film at this wavelength */
   double weight;             /**< for the mean of weight * radiance; the densities of all wavelengths are combined */
   double density;            /**< of this ray among film samples of this wavelength */
   int32_t fate, unused;

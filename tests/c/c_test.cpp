@@ -395,7 +395,7 @@ TEST(CInterface, BadArgumentsGiveAStatusAndAMessage) {
   EXPECT_EQ(petzval_camera_sample(nullptr, &at, &ray), PETZVAL_BAD_HANDLE);
   EXPECT_EQ(petzval_camera_sample(camera.get(), nullptr, &ray), PETZVAL_BAD_ARGUMENT);
   EXPECT_EQ(petzval_camera_sample(camera.get(), &at, nullptr), PETZVAL_BAD_ARGUMENT);
-  // A handle of another kind, as a host without types would pass it.
+  // A handle of another kind: a language without types cannot detect it.
   EXPECT_EQ(petzval_camera_sample(reinterpret_cast<const petzval_camera*>(lens.get()), &at, &ray), PETZVAL_BAD_HANDLE);
   EXPECT_EQ(petzval_lens_read(nullptr, nullptr, &opened), PETZVAL_BAD_ARGUMENT);
   EXPECT_EQ(petzval_lens_read("missing.json", nullptr, &opened), PETZVAL_REFUSED);

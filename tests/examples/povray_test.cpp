@@ -23,7 +23,7 @@ using petzval::RgbImage;
 struct Ball {
   const char* name;
   double x, y, z, radius;
-  double half;  ///< of the square in the picture that holds its blurred image, pixels
+  double half;  ///< half the side of the square in the picture that holds the blurred image, pixels
 };
 constexpr int columns = 144, rows = 96;
 constexpr const char* lens_id = "double_gauss_100mm_f1.35";

@@ -32,7 +32,7 @@ struct Connection {
 struct HostCamera {
   std::function<HostRay(double x, double y, double u, double v)> ray;
   std::function<Connection(const Vec& point, double u, double v)> connect;
-  /// Importance of a ray that leaves the camera, and the product of its densities (0 if the host has none).
+  /// Importance of a ray that leaves the camera, and the product of its densities; 0 if the host has no densities.
   std::function<std::array<double, 2>(const Vec& origin, const Vec& direction)> importance;
   double right = 1;
 };

@@ -13,7 +13,7 @@ namespace pbrt {
 
 class PetzvalCamera : public CameraBase {
  public:
-  /// @param camera      a handle with the frame of pbrt; this object frees it
+  /// @param camera      a handle with the frame of pbrt, which this object frees
   /// @param dispersion  true: rays are traced at the first wavelength of a path, and the others end
   PetzvalCamera(CameraBaseParameters base, petzval_camera* camera, bool dispersion)
       : CameraBase(base), camera(camera, petzval_camera_free), dispersion(dispersion) {
@@ -52,7 +52,7 @@ class PetzvalCamera : public CameraBase {
     return SampledSpectrum(Float(found.we));
   }
 
-  /// Densities at the primary wavelength, because pbrt passes none.
+  /// Densities at the primary wavelength, because this function has no parameter for the wavelength.
   PBRT_CPU_GPU
   void PDF_We(const Ray& ray, Float* pdfPos, Float* pdfDir) const {
     petzval_importance found = Importance(ray, 0);
@@ -99,7 +99,7 @@ class PetzvalCamera : public CameraBase {
   double Fraction(Float time) const {
     return shutterClose > shutterOpen ? double(time - shutterOpen) / double(shutterClose - shutterOpen) : 0;
   }
-  /// Importance of a ray that leaves the camera, as pbrt states it.
+  /// Importance of a ray that leaves the camera.
   petzval_importance Importance(const Ray& ray, float nm) const {
     Point3f o = CameraFromRender(ray.o, ray.time);
     Vector3f d = CameraFromRender(ray.d, ray.time);

@@ -131,7 +131,7 @@ struct ImportanceSample {
 
 /// A camera ray at one of the wavelengths of a path (Camera::sample_path()).
 struct PathWavelength {
-  Vec2<double> raster{0, 0};  ///< where the ray meets the film at this wavelength
+  Vec2<double> raster{0, 0};  ///< intersection of the ray with the film at this wavelength
   double weight = 0;  ///< for the mean of weight * radiance at this wavelength, in the unit of CameraRay::weight
   /// Density of the ray among film samples of this wavelength, as Importance::pdf_position * pdf_direction.
   double density = 0;
