@@ -3,20 +3,21 @@
 #define PETZVAL_H
 /**
  * @file
- * Lenses and cameras for renderers, in C99 and C++98 and later. Link petzval::c (libpetzval-c).
+ * Lenses and cameras for renderers, in C99, C++11 and later. Link petzval::c (libpetzval-c).
  *
  * Status: most functions return a petzval_status. On failure, results are set to 0 or NULL and petzval_message() gives
  * the reason. No exception leaves a function.
  *
- * Structs: structs with a member `size` begin as petzval_film_init() and so on, which set `size` and clear the rest. A member of 0 has the default in its comment. Later versions only add members at the end, so that programs
- * compiled with an older header keep working. Structs without `size` never change.
+ * Structs: petzval_film_init() and similar functions return structs with their `size` set and all other members 0. A
+ * member of 0 has the default in its comment. Later versions only add members at the end, so that programs compiled
+ * with an older header keep working. Structs without `size` never change.
  *
  * Memory: handles are freed by their own free function, which accepts NULL. Texts and arrays belong to the caller.
  * Structs and handles keep no pointers to memory of the caller.
  *
- * Threads: all functions may be called from any thread. Different handles are independent. Several threads
- * may use one handle, except in functions with `_set_` or `_free` in their names. A camera is independent of
- * the lens from which it was made.
+ * Threads: all functions may be called from any thread. Different handles are independent. Several threads may use one
+ * handle, except in functions with `_set_` or `_free` in their names. A camera is independent of the lens from which it
+ * was made.
  *
  * Units: the lens frame is right-handed and in mm: origin at the first vertex, light from the scene travels towards
  * +z. Rays, points and densities of a camera are in the frame and unit of petzval_camera_options. Raster position
