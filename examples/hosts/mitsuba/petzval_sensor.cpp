@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A sensor of Mitsuba 3 with the lenses of petzval. README.md describes the build. Scalar variants; all wavelengths of a
-// path use the primary wavelength of the lens.
+// A sensor of Mitsuba 3 with the lenses of petzval. README.md describes the build. Scalar variants; all wavelengths of
+// a path use the primary wavelength of the lens.
 #include <mitsuba/core/fresolver.h>
 #include <mitsuba/core/properties.h>
 #include <mitsuba/core/transform.h>
