@@ -74,7 +74,8 @@ T received(const T* from, const char* name) {
   copy.size = sizeof(T);
   if (!from) return copy;
   constexpr std::size_t least = sizeof(std::size_t), most = 1 << 16;
-  if (from->size < least || from->size > most) {
+  // The size of a struct is a multiple of its alignment: other sizes would end within a member.
+  if (from->size < least || from->size > most || from->size % alignof(T) != 0) {
     bad_argument(std::string(name) + ": size = " + std::to_string(from->size) + "; must be sizeof(" + name +
                  "), as set by " + name + "_init()");
   }

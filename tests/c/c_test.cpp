@@ -370,7 +370,7 @@ TEST(CInterface, StructsOfOtherVersionsAreUnderstoodOrRefused) {
   older.size = offsetof(petzval_film, shift_x_mm), older.shift_x_mm = 1e6;  // not part of the older struct
   EXPECT_EQ(petzval_camera_create(lens.get(), &older, nullptr, &camera), PETZVAL_OK) << petzval_message();
   petzval_camera_free(camera);
-  for (const std::size_t wrong : {std::size_t{0}, std::size_t{3}, static_cast<std::size_t>(-1)}) {
+  for (const std::size_t wrong : {std::size_t{0}, std::size_t{3}, std::size_t{12}, static_cast<std::size_t>(-1)}) {
     petzval_film film = petzval_film_init();
     film.size = wrong;
     EXPECT_EQ(petzval_camera_create(lens.get(), &film, nullptr, &camera), PETZVAL_BAD_ARGUMENT) << wrong;
