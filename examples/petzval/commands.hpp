@@ -13,6 +13,7 @@ int camera_rays(int argc, char** argv);
 int choose(int argc, char** argv);
 int colour(int argc, char** argv);
 int convert(int argc, char** argv);
+int export_camera(int argc, char** argv);
 int expressive(int argc, char** argv);
 int focus(int argc, char** argv);
 int lenses(int argc, char** argv);

@@ -311,10 +311,10 @@ Option* add_wavelength(App& app, const std::string& flag, double& value, const s
                     [=](const std::string& text) { return parse_wavelength(flag, text); });
 }
 
-Option* add_out_folder(App& app, std::string& folder, const std::string& help) {
-  Option* out = app.add_option("--out", folder, help)->type_name("DIR");
-  app.add_check([out, &folder] {
-    if (out->given()) want_folder("--out", folder);
+Option* add_out_folder(App& app, std::string& folder, const std::string& help, const std::string& flag) {
+  Option* out = app.add_option(flag, folder, help)->type_name("DIR");
+  app.add_check([out, &folder, flag] {
+    if (out->given()) want_folder(flag, folder);
   });
   return out;
 }

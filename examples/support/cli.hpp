@@ -128,7 +128,8 @@ Option* add_wavelength(App& app, const std::string& flag, double& value, const s
 Option* add_wavelengths(App& app, const std::string& flag, std::vector<double>& values, const std::string& help);
 
 /// Add --out, the folder or file for results. run() checks that the path can be written before the body starts.
-Option* add_out_folder(App& app, std::string& folder, const std::string& help = "folder for the results");
+Option* add_out_folder(App& app, std::string& folder, const std::string& help = "folder for the results",
+                       const std::string& flag = "--out");
 Option* add_out_file(App& app, std::string& file, const std::string& help, const std::string& type_name,
                      const std::string& flag = "--out");
 

@@ -28,7 +28,7 @@ constexpr std::array all_groups{
           " --film --fov --size --columns --title --white-point --normalisation --exposure --frames --fps --travel "},
     Group{"Work", false, " --integrator --wavelengths --spp --rays --noise --time --compare --compare-rays "},
     Group{"Window", false, " --replay --log --panels --screenshot "},
-    Group{"Output", false, " --out --povray --format --json --check --strict --repair --precision "},
+    Group{"Output", false, " --out --calibration --povray --format --json --check --strict --repair --precision "},
     Group{"Quality", true, " --tolerance --layers --jitter --supersample --highlights-above "},
     Group{"Depths", true, " --depth-kind --near --far --white "},
     Group{"Files", true, " --glasses --configuration --match-glasses --ignore-apertures "},

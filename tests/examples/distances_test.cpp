@@ -76,8 +76,8 @@ TEST_F(Distances, EveryProgramHasTheSameFilmForADistance) {
 
 TEST_F(Distances, EveryProgramNamesTheOriginOfDistances) {
   const std::vector<Arguments> programs{
-      {"report"},  {"spots"},      {"focus"},    {"psf"},    {"psf-set"}, {"psf-set", "query"}, {"colour"},
-      {"surface"}, {"expressive"}, {"metadata"}, {"models"}, {"choose"},  {"camera-rays"},
+      {"report"},  {"spots"},      {"focus"},  {"psf"},      {"psf-set"}, {"psf-set", "query"}, {"colour"},
+      {"surface"}, {"expressive"}, {"export"}, {"metadata"}, {"models"},  {"choose"},           {"camera-rays"},
 #ifdef PETZVAL_TEST_HAS_pull
       {"pull"},
 #endif

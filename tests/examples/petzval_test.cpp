@@ -31,9 +31,9 @@ TEST_F(Petzval, OverviewListsTheCommands) {
   EXPECT_EQ(plain.out, run("petzval", {"help"}).out);
   EXPECT_LE(lines(plain.out).size(), 50u);
   const auto all = commands();
-  for (const char* name : {"lenses",   "report", "convert", "focus",       "trace",  "spots",   "psf",
-                           "psf-set",  "colour", "shapes",  "tilt",        "pull",   "surface", "expressive",
-                           "metadata", "models", "choose",  "camera-rays", "render", "sheet",   "blur"}) {
+  for (const char* name : {"lenses", "report", "convert",     "focus",  "trace",   "spots",      "psf",    "psf-set",
+                           "colour", "shapes", "tilt",        "pull",   "surface", "expressive", "export", "metadata",
+                           "models", "choose", "camera-rays", "render", "sheet",   "blur"}) {
     EXPECT_NE(std::ranges::find(all, name), all.end()) << name;
   }
 }

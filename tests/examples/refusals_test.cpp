@@ -140,6 +140,9 @@ const std::vector<Refused> all = {
       {{f135, "--at", "2"}, {2, 2000}},  // metres?
       {{f135, "--criterion", "thin,thin"}, {"--criterion", "thin"}},
       {{"LENS:zoom_14-30mm_f4", "--criterion", "min_rms", "--at", "0.001"}, {"--at", -0.001}}}},
+    {"export",
+     {f135, "--calibration", "@out"},
+     {{{"--film", "1x9"}, {"--film", "1x9"}}, {{"--size", "20000"}, {"--size", 20000}}}},
     {"metadata",
      {f135, "--out", "@out"},
      {{{"--film", "1x9"}, {"--film", "\"1x9\""}}, {{"--film", "4000x1"}, {"--film", "\"4000x1\""}}}},

@@ -135,6 +135,7 @@ const std::vector<Reporter> reporters = {
       {"@relay.zmx", "@relay.json", "--strict", "--json"},
       {"@bad.json", "@good.json", "--repair", "--json"}}},
     {"focus", "", {{"LENS", "--json"}, {"LENS", "--at", "1m,20mm", "--json"}}},
+    {"export", "", {{"LENS", "--focus", "inf", "--calibration", "@out", "--json"}}},
     {"metadata", "", {{"LENS", "--film", "36x1", "--out", "@out", "--json"}}},
     {"spots", "out/double_gauss_100mm_f2_28deg_spots.json", {{"LENS", "--rays", "1", "--out", "@out", "--json"}}},
     {"psf",

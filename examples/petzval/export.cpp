@@ -1,0 +1,129 @@
+// SPDX-License-Identifier: Apache-2.0
+// Writes a camera for programs that do not link petzval: calibrations in the models and formats of other programs.
+//
+//   petzval export double_gauss_52mm_f1.8 --focus inf --calibration out
+#include <array>
+#include <cmath>
+#include <filesystem>
+#include <iomanip>
+#include <iostream>
+#include <string>
+
+#include "commands.hpp"
+#include "petzval/analysis/calibration.hpp"
+#include "petzval/camera/camera.hpp"
+#include "petzval/core/error.hpp"
+#include "petzval/core/geometry.hpp"
+#include "support/camera_setup.hpp"
+#include "support/cli.hpp"
+#include "support/files.hpp"
+#include "support/load_lens.hpp"
+#include "support/text.hpp"
+
+namespace {
+
+using examples::number;
+using nlohmann::json;
+
+struct Options {
+  examples::LensInput lens_file;
+  std::string calibration;
+  std::string wavelengths = "F,d,C";
+  std::uint32_t columns = 0, rows = 0;
+  examples::CameraSetup setup;
+  examples::Output output;
+};
+
+struct Format {
+  petzval::CalibrationFormat format;
+  const char* ending;
+  const char* comment;  ///< begins a line of comment; null: one file for each calibration
+};
+constexpr std::array formats{Format{petzval::CalibrationFormat::opencv, "yml", nullptr},
+                             Format{petzval::CalibrationFormat::colmap, "colmap.txt", "# "},
+                             Format{petzval::CalibrationFormat::lensfun, "lensfun.xml", ""},
+                             Format{petzval::CalibrationFormat::usd, "usda.txt", "# "}};
+
+void print(const std::vector<petzval::Calibration>& all) {
+  std::cout << "calibration           RMS, px  largest, px  parameters\n";
+  for (const petzval::Calibration& one : all) {
+    const bool light = one.name == "lensfun_pa";  // a fraction of the irradiance
+    std::cout << std::left << std::setw(21) << one.name << std::right << std::setw(8) << number(one.rms, 2)
+              << (light ? '*' : ' ') << std::setw(12) << number(one.largest, 2) << (light ? '*' : ' ') << ' ';
+    for (const auto& [name, value] : one.values) {
+      if (value != 0) std::cout << ' ' << name << ' ' << number(value, 5);
+    }
+    std::cout << '\n';
+  }
+  std::cout << "* fraction of the irradiance on the axis\n";
+}
+
+void write(const Options& options) {
+  const examples::LoadedLens loaded =
+      examples::load_lens(options.lens_file, examples::parse_wavelengths("--wavelengths", options.wavelengths));
+  const petzval::Lens lens = examples::focused(loaded, options.setup);
+  const petzval::Film film = options.setup.film(options.columns, options.rows, 1920);
+  const petzval::Camera camera(lens, film, {.model = petzval::ModelKind::exact_double});
+  const std::vector<petzval::Calibration> all = petzval::calibrations(camera);
+  examples::make_folder(options.calibration);
+  const std::filesystem::path stem = std::filesystem::path(options.calibration) / loaded.id;
+  const auto written = [&](const std::string& ending, const std::string& text) {
+    const std::filesystem::path file = stem.string() + '.' + ending;
+    examples::write_text(file, text);
+    options.output.file(file);
+  };
+  json rows = json::array();
+  for (const petzval::Calibration& one : all) {
+    json values = json::array();
+    for (const auto& [name, value] : one.values) values.push_back({{"name", name}, {"value", value}});
+    const bool light = one.name == "lensfun_pa";
+    rows.push_back({{"name", one.name},
+                    {"values", values},
+                    {light ? "rms_irradiance" : "rms_px", one.rms},
+                    {light ? "largest_irradiance" : "largest_px", one.largest},
+                    {"field_deg", petzval::degrees(one.widest_field_rad)}});
+  }
+  if (!options.output.json) print(all);
+  for (const Format& format : formats) {
+    std::string joined;
+    for (const petzval::Calibration& one : all) {
+      const std::string text = format_calibration(one, camera, format.format);
+      if (text.empty()) continue;
+      if (!format.comment) {
+        written(one.name + '.' + format.ending, text);
+        continue;
+      }
+      const std::string errors = one.name + ": RMS " + number(one.rms, 2) + ", largest " + number(one.largest, 2);
+      const bool xml = *format.comment == 0;
+      joined += xml ? "<!-- " + errors + " -->\n" : format.comment + errors + '\n';
+      joined += text;
+    }
+    if (!joined.empty()) written(format.ending, joined);
+  }
+  options.output.report(
+      {{"lens", lens.name()}, {"columns", film.columns}, {"rows", film.rows}, {"calibrations", std::move(rows)}});
+}
+
+}  // namespace
+
+int commands::export_camera(int argc, char** argv) {
+  Options options;
+  examples::App app(
+      "Writes calibrations of a camera, computed from its lens: parameters of OpenCV, COLMAP, Lensfun, USD and others, "
+      "with the error of each model over the picture. DIR/LENS.*.",
+      "petzval export");
+  examples::add_lens(app, options.lens_file);
+  examples::add_out_folder(
+      app, options.calibration,
+      "folder for the calibrations: OpenCV (.yml), COLMAP (.colmap.txt), Lensfun (.lensfun.xml), USD (.usda.txt)",
+      "--calibration")
+      ->required();
+  examples::add_camera(app, options.setup);
+  examples::add_picture_size(app, options.columns, options.rows, 1920);
+  app.add_option("--wavelengths", options.wavelengths, "wavelengths of the lateral colour, in nm or as spectral lines")
+      ->type_name("NM,...")
+      ->capture_default_str();
+  options.output.add(app);
+  examples::add_threads(app);
+  return examples::run(app, argc, argv, [&] { write(options); });
+}
