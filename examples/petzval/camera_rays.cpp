@@ -118,7 +118,7 @@ constexpr std::uint32_t usual_columns = 160;
 
 int commands::camera_rays(int argc, char** argv) {
   examples::LensInput lens_file;
-  std::string samples_file, out_file, model;
+  std::string samples_file, out_file, model = "exact_double";
   examples::CameraSetup setup;
   double tilt_deg = 0, swing_deg = 0;
   bool povray = false;
@@ -155,7 +155,7 @@ int commands::camera_rays(int argc, char** argv) {
                          "is the irradiance of the film point; the weight is 0 unless the fate is transmitted",
                          "FILE")
       ->required();
-  examples::add_model(app, model)->required();
+  examples::add_model(app, model)->capture_default_str();
   examples::add_camera(app, setup);
   examples::BokehFlags bokeh;
   examples::add_bokeh(app, bokeh);
