@@ -5,6 +5,7 @@
 //   petzval convert zoom.txt tele.zmx --configuration tele --glasses hoya.agf --json
 //   petzval convert table.dat lens.json --repair --match-glasses
 //   petzval convert lenses.json lens.json --configuration 2004
+//   petzval convert double_gauss_100mm_f2.0 camera.osl --wavelengths visible
 #include "commands.hpp"
 
 #include <algorithm>
@@ -41,6 +42,7 @@ using petzval::Prescription;
 struct Options {
   examples::LensInput in;
   std::string out;
+  std::vector<double> wavelengths_nm;  ///< of an OSL camera; empty: the reference wavelength
   bool strict = false, repair = false, json = false;
 };
 
@@ -50,7 +52,7 @@ constexpr int refused_by_strict = 3;
 struct Output {
   std::string_view ending;
   std::vector<ImportWarning> (*write)(const Prescription& lens, const petzval::GlassCatalogue& glasses,
-                                      const std::filesystem::path& file);
+                                      const Options& options);
 };
 
 /// Reports the loss of zoom positions in a format without zoom lenses.
@@ -77,43 +79,47 @@ std::vector<ImportWarning> only_metadata(const Prescription& lens, const petzval
 // Longer extensions first: .opentrackio.json also ends in .json.
 constexpr std::array outputs{
     Output{".opentrackio.json",
-           [](const Prescription& lens, const petzval::GlassCatalogue& glasses, const std::filesystem::path& file) {
+           [](const Prescription& lens, const petzval::GlassCatalogue& glasses, const Options& options) {
              const petzval::Lens compiled = petzval::compile(lens, {.glasses = &glasses});
-             petzval::write_open_track_io(compiled, petzval::film_of(lens, compiled), petzval::identity_of(lens), file);
+             petzval::write_open_track_io(compiled, petzval::film_of(lens, compiled), petzval::identity_of(lens),
+                                          options.out);
              return only_metadata(lens, compiled);
            }},
     Output{".stmap.exr",
-           [](const Prescription& lens, const petzval::GlassCatalogue& glasses, const std::filesystem::path& file) {
+           [](const Prescription& lens, const petzval::GlassCatalogue& glasses, const Options& options) {
              const petzval::Lens compiled = petzval::compile(lens, {.glasses = &glasses});
-             petzval::write_st_map(compiled, petzval::film_of(lens, compiled), petzval::identity_of(lens), file, {},
-                                   examples::threads());
+             petzval::write_st_map(compiled, petzval::film_of(lens, compiled), petzval::identity_of(lens), options.out,
+                                   {}, examples::threads());
              return only_metadata(lens, compiled);
            }},
     Output{".json",
-           [](const Prescription& lens, const petzval::GlassCatalogue&, const std::filesystem::path& file) {
-             petzval::write_prescription(lens, file);
+           [](const Prescription& lens, const petzval::GlassCatalogue&, const Options& options) {
+             petzval::write_prescription(lens, options.out);
              return std::vector<ImportWarning>();
            }},
     Output{".dat",
-           [](const Prescription& lens, const petzval::GlassCatalogue& glasses, const std::filesystem::path& file) {
-             return write_text(petzval::format_table(lens, &glasses), file);
+           [](const Prescription& lens, const petzval::GlassCatalogue& glasses, const Options& options) {
+             return write_text(petzval::format_table(lens, &glasses), options.out);
            }},
     Output{".osl",
-           [](const Prescription& lens, const petzval::GlassCatalogue& glasses, const std::filesystem::path& file) {
-             examples::write_text(file, petzval::format_osl_camera(petzval::compile(lens, {.glasses = &glasses})));
-             std::vector<ImportWarning> losses{
-                 {0, "wavelengths",
-                  "the shader has only the indices at " + examples::number(lens.reference_wavelength_nm) + " nm"}};
+           [](const Prescription& lens, const petzval::GlassCatalogue& glasses, const Options& options) {
+             std::vector<double> nm = options.wavelengths_nm;
+             if (nm.empty()) nm.push_back(lens.reference_wavelength_nm);
+             examples::write_text(options.out,
+                                  petzval::format_osl_camera(petzval::compile(lens, nm, {.glasses = &glasses})));
+             std::vector<ImportWarning> losses;
+             if (nm.size() == 1)
+               losses = {{0, "wavelengths", "the shader has only the indices at " + examples::number(nm[0]) + " nm"}};
              lose_positions(lens, losses);
              return losses;
            }},
     Output{".zmx",
-           [](const Prescription& lens, const petzval::GlassCatalogue& glasses, const std::filesystem::path& file) {
-             return write_text(petzval::format_zemax(lens, &glasses), file);
+           [](const Prescription& lens, const petzval::GlassCatalogue& glasses, const Options& options) {
+             return write_text(petzval::format_zemax(lens, &glasses), options.out);
            }},
     Output{".seq",
-           [](const Prescription& lens, const petzval::GlassCatalogue& glasses, const std::filesystem::path& file) {
-             return write_text(petzval::format_codev(lens, &glasses), file);
+           [](const Prescription& lens, const petzval::GlassCatalogue& glasses, const Options& options) {
+             return write_text(petzval::format_codev(lens, &glasses), options.out);
            }},
 };
 
@@ -200,6 +206,8 @@ void say(const char* kind, const std::string& file, const std::vector<ImportWarn
 /// Converts the file. Returns false if --strict prevented the conversion.
 bool convert(const Options& options) {
   const Output& output = output_for(options.out);
+  if (!options.wavelengths_nm.empty() && output.ending != ".osl")
+    throw petzval::Error("--wavelengths: OUT = " + options.out + "; must end in .osl");
   const auto glasses = examples::glasses_of(options.in);
   auto [whole, configuration, one] = examples::read_configurations(options.in, glasses);
   const std::vector<ImportWarning> warnings = whole.imported ? whole.imported->warnings : std::vector<ImportWarning>();
@@ -223,7 +231,7 @@ bool convert(const Options& options) {
   Prescription lens = examples::for_flag(
       "--configuration", [&all = whole, &chosen = configuration] { return petzval::configured(all, chosen); });
   // With --configuration only the chosen position is written, otherwise all positions.
-  const auto losses = output.write(one ? lens : whole, glasses, options.out);
+  const auto losses = output.write(one ? lens : whole, glasses, options);
   say("lost", options.out, losses);
   if (options.json) std::cout << report(whole, lens, glasses, warnings, losses, repairs).dump(2) << '\n';
   return true;
@@ -246,6 +254,9 @@ int commands::convert(int argc, char** argv) {
       ->required();
   app.add_flag("--strict", options.strict, "write nothing if an entry of IN had to be assumed or left out");
   app.add_flag("--repair", options.repair, "repair faults with an unambiguous correction, and list the changes");
+  examples::add_wavelengths(app, "--wavelengths", options.wavelengths_nm,
+                            "wavelengths of an .osl camera, one for each sample")
+      ->default_str("the reference wavelength");
   app.add_flag("--json", options.json, "print a report of IN as one JSON object");
   examples::add_threads(app);
   const int status = examples::run(app, argc, argv, [&] { refused = !convert(options); });

@@ -2,17 +2,21 @@
 #include "petzval/formats/osl_camera.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <functional>
 #include <limits>
+#include <map>
+#include <numbers>
+#include <set>
 #include <vector>
 
 #include "core/text.hpp"
 #include "lens/any_semi_diameter.hpp"
+#include "petzval/analysis/colour.hpp"
 #include "petzval/core/error.hpp"
+#include "petzval/core/files.hpp"
 #include "petzval/core/geometry.hpp"
 #include "petzval/focus/focus.hpp"
+#include "petzval/glass/glass.hpp"
 #include "petzval/lens/lens.hpp"
 #include "petzval/paraxial/first_order.hpp"
 #include "petzval/pupil/f_number.hpp"
@@ -25,6 +29,7 @@ namespace {
 
 constexpr std::size_t focus_nodes = 33, stop_nodes = 9, rings = 12, light_nodes = 5;
 constexpr double box_scale = 1.02;  ///< enlarges boxes around pupils, because they are computed from samples
+constexpr int azimuths = 5;         ///< of the film points of a lens with cylinders, from +y to +x
 
 /// A number that reads back as the same float, with a point so that it is not an integer.
 std::string number(double value) {
@@ -32,17 +37,16 @@ std::string number(double value) {
   return text.find_first_of(".e") == std::string::npos ? text + ".0" : text;
 }
 
-/// `  float NAME[3] = { 1.0, 2.0, 3.0 };`, eight to a line.
-std::string array(const std::string& name, std::span<const double> values) {
-  std::string text = "  float " + name + "[" + std::to_string(values.size()) + "] = {";
-  for (std::size_t i = 0; i < values.size(); ++i) {
-    text += (i > 0 ? "," : "") + std::string(i % 8 == 0 ? "\n    " : " ") + number(values[i]);
-  }
-  return text + " };\n";
+/// f(0), f(1), ..., f(count - 1).
+template <class F>
+std::vector<double> table(std::size_t count, const F& f) {
+  std::vector<double> values(count);
+  for (std::size_t i = 0; i < count; ++i) values[i] = f(i);
+  return values;
 }
 
-/// Bounds of the exit pupil for a film point, in the plane of the last vertex. `from` and `to` are along the direction
-/// of the film point from the axis, `across` is perpendicular to this direction.
+/// Bounds of the slopes of rays from film points at one distance from the axis: x / z and y / z, which hardly change if
+/// the film moves. `from` and `to` are along the direction of the film point from the axis, `across` is perpendicular.
 struct Box {
   double from = std::numeric_limits<double>::infinity(), to = -std::numeric_limits<double>::infinity(), across = 0;
 
@@ -52,13 +56,22 @@ struct Box {
   }
 };
 
-Box box_at(const Lens& lens, double radius) {
+Box box_at(const Lens& lens, double radius, std::size_t wavelength) {
+  const bool revolution = lens.rotationally_symmetric();
+  const double depth = lens.film_z() - lens.surfaces().back().vertex_z;
+  const std::size_t directions = !revolution ? 24 : radius == 0 ? 1 : 48;
   Box box;
-  const PupilBoundary pupil = exit_pupil_boundary(lens, {0, radius}, {}, radius == 0 ? 1 : 48);
-  for (const PupilSpan& span : pupil.spans) {
-    const double x = std::abs(span.to.x), y = span.to.y;
-    box.take(radius == 0 ? Box{-std::hypot(x, y), std::hypot(x, y), std::hypot(x, y)} : Box{y, y, x});
-    if (radius != 0) box.take({span.from.y, span.from.y, std::abs(span.from.x)});
+  for (int k = 0; k < (revolution || radius == 0 ? 1 : azimuths); ++k) {
+    const double azimuth = k * std::numbers::pi / 2 / (azimuths - 1);
+    const double sine = std::sin(azimuth), cosine = std::cos(azimuth);
+    const PupilBoundary pupil = exit_pupil_boundary(lens, {radius * sine, radius * cosine}, wavelength, directions);
+    for (const PupilSpan& span : pupil.spans) {
+      for (const RimPoint& rim : {span.from, span.to}) {
+        const double along = (rim.x * sine + rim.y * cosine - radius) / depth;
+        const double across = std::abs((rim.x * cosine - rim.y * sine) / depth), r = std::hypot(along, across);
+        box.take(radius == 0 ? Box{-r, r, r} : Box{along, along, across});
+      }
+    }
   }
   return box;
 }
@@ -82,19 +95,24 @@ class OslCamera {
   void check() const;
   double distance_from_vertex(double inverse_distance) const;
   Lens focused(double inverse_distance) const;
-  std::string header() const;
-  std::string parameters() const;
-  std::string tables() const;
-  std::string surfaces() const;
-  void boxes(std::string& text) const;
+  void set(const std::string& name, const std::string& value) { values_[name] = value; }
+  void set(const std::string& name, double value) { set(name, number(value)); }
+  void set_count(const std::string& name, std::size_t value) { set(name, std::to_string(value)); }
+  void set_array(const std::string& name, std::span<const double> values);
+  void set_parameters();
+  void set_surfaces();
+  void set_wavelengths();
+  void set_focus_and_stop();
+  void set_boxes();
 
   Lens lens_;
   Film film_;
   double origin_z_ = 0;
-  double f_number_ = 0;     ///< wide open
-  double nearest_ = 0;      ///< distance from the origin of the last focus node, mm
-  double film_radius_ = 0;  ///< half diagonal of the largest film, mm
-  std::vector<Lens> stopped_;
+  double f_number_ = 0;                        ///< wide open
+  double nearest_ = 0;                         ///< distance from the origin of the last focus node, mm
+  double film_radius_ = 0;                     ///< half diagonal of the largest film, mm
+  std::vector<double> stop_radii_;             ///< by f-number, a stop apart, mm
+  std::map<std::string, std::string> values_;  ///< of the names in the template
 };
 
 OslCamera::OslCamera(const Lens& lens, const std::optional<Film>& film) : lens_(with_iris(lens, Iris{})) {
@@ -102,29 +120,34 @@ OslCamera::OslCamera(const Lens& lens, const std::optional<Film>& film) : lens_(
   film_ = film.value_or(usual_film(lens_));
   if (!(film_.width_mm > 0 && film_.height_mm > 0))
     throw Error(lens.name() + ": film without area; area must be positive");
-  const FirstOrder first = first_order(lens_);
-  const Pupils p = pupils(lens_);
+  const Meridian main = main_meridian(lens_);
+  const Pupils p = pupils(lens_, {}, main);
   origin_z_ = std::isfinite(p.entrance.z) ? p.entrance.z : 0;
   f_number_ = real_f_number(lens_);
   film_radius_ = std::hypot(film_.width_mm, film_.height_mm) / 2;
   focused(0);  // throws Error if the lens cannot be focused
   const auto& moves = lens_.focus_positions();
   const FocusSolution near = nearest_focus(lens_);
-  const double least = moves.empty() ? std::max(1.25 * near.distance, 6 * std::abs(first.effective_focal_length))
-                                     : 1 / moves.back().inverse_distance;
+  const double focal_length = std::abs(first_order(lens_, {}, main).effective_focal_length);
+  const double least =
+      moves.empty() ? std::max(1.25 * near.distance, 6 * focal_length) : 1 / moves.back().inverse_distance;
   nearest_ = least + origin_z_;
-  for (std::size_t k = 0; k < stop_nodes; ++k) {
-    stopped_.push_back(k == 0 ? lens_ : with_f_number(lens_, f_number_ * std::exp2(static_cast<double>(k) / 2)));
-  }
+  stop_radii_ = table(stop_nodes, [&](std::size_t k) {
+    const double f_number = f_number_ * std::exp2(static_cast<double>(k) / 2);
+    return (k == 0 ? lens_ : with_f_number(lens_, f_number)).surfaces()[*lens_.stop()].semi_diameter;
+  });
+  set_parameters();
+  set_surfaces();
+  set_wavelengths();
+  set_focus_and_stop();
+  set_boxes();
 }
 
 void OslCamera::check() const {
   const std::string& where = lens_.name();
   for (std::size_t i = 0; i < lens_.surface_count(); ++i) {
-    const LensSurface& s = lens_.surfaces()[i];
-    const std::string here = where + ": surface " + std::to_string(i);
-    if (s.mirror) throw Error(here + " is a mirror; must be refracting for an OSL camera");
-    if (s.curved_in != Section::both) throw Error(here + " is a cylinder; must be a surface of revolution");
+    if (!lens_.surfaces()[i].mirror) continue;
+    throw Error(where + ": surface " + std::to_string(i) + " is a mirror; must be refracting for an OSL camera");
   }
   if (!lens_.stop() || !std::isfinite(lens_.surfaces()[*lens_.stop()].semi_diameter)) {
     throw Error(where + ": no stop with a rim; must be given for an OSL camera");
@@ -141,92 +164,130 @@ Lens OslCamera::focused(double inverse_distance) const {
   return with_focus(lens_, distance_from_vertex(inverse_distance));
 }
 
-std::string OslCamera::header() const {
-  const FirstOrder first = first_order(lens_);
-  return "// " + formats_detail::one_line(lens_.name()) + "\n" + "// focal length " +
-         to_text(first.effective_focal_length, 5) + " mm, f/" + to_text(f_number_, 3) + ", " +
-         std::to_string(lens_.surface_count()) + " surfaces, at " +
-         to_text(lens_.wavelengths_nm()[lens_.primary_wavelength()], 7) +
-         " nm\n"
-         "//\n"
-         "// A camera for Blender's Cycles. For Octane, replace camera_shader_raster_position() and\n"
-         "// camera_shader_random_sample() in the first two statements of the shader by Octane's film position\n"
-         "// (0 to 1, upwards) and random numbers.\n"
-         "//\n"
-         "// Lengths inside are in mm. z runs from the scene to the film; the first surface is at 0.\n\n";
+/// `NAME[3] = { 1.0, 2.0, 3.0 }`, eight numbers in a line.
+void OslCamera::set_array(const std::string& name, std::span<const double> values) {
+  std::string text = name + "[" + std::to_string(values.size()) + "] = {";
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    text += (i > 0 ? "," : "") + std::string(i % 8 == 0 ? "\n    " : " ") + number(values[i]);
+  }
+  set(name, text + " }");
 }
 
-std::string OslCamera::parameters() const {
-  const double far = 1000 * std::max(nearest_ / 1000 * 4, 3.0);
-  return "shader petzval_camera(\n"
-         "  float sensor_width = " +
-         number(film_.width_mm) +
-         " [[ string label = \"Sensor width (mm)\" ]],\n"
-         "  float sensor_height = " +
-         number(film_.height_mm) +
-         " [[ string label = \"Sensor height (mm)\" ]],\n"
-         "  float focus_distance = " +
-         number(far / 1000) +
-         " [[ string label = \"Focus distance\" ]],\n"
-         "  float f_number = " +
-         number(f_number_) +
-         " [[ string label = \"f-number\" ]],\n"
-         "  int blades = 0 [[ string label = \"Blades (0: round)\" ]],\n"
-         "  float roundness = 0.0 [[ string label = \"Roundness of the blades\" ]],\n"
-         "  float rotation = 0.0 [[ string label = \"Rotation of the blades (degrees)\" ]],\n"
-         "  float units_per_mm = 0.001 [[ string label = \"Units per mm\" ]],\n"
-         "  output point position = 0.0,\n"
-         "  output vector direction = 0.0,\n"
-         "  output color throughput = 1.0)\n{\n";
+void OslCamera::set_parameters() {
+  const auto nm = lens_.wavelengths_nm();
+  const auto [first, last] = std::ranges::minmax(nm);
+  const double focal_length = first_order(lens_, {}, main_meridian(lens_)).effective_focal_length;
+  const std::string spectrum = nm.size() == 1 ? to_text(nm[0], 7) + " nm"
+                                              : std::to_string(nm.size()) + " wavelengths from " + to_text(first, 7) +
+                                                    " to " + to_text(last, 7) + " nm";
+  set("title", formats_detail::one_line(lens_.name()));
+  set("data", "focal length " + to_text(focal_length, 5) + " mm, f/" + to_text(f_number_, 3) + ", " +
+                  std::to_string(lens_.surface_count()) + " surfaces, at " + spectrum);
+  set("sensor_width", film_.width_mm);
+  set("sensor_height", film_.height_mm);
+  set("focus_distance", std::max(nearest_ / 1000 * 4, 3.0));
+  set("f_number", f_number_);
+  set("nearest", nearest_);
+  set("film_radius", film_radius_);
+  set("origin", origin_z_);
+  set_count("focus_nodes", focus_nodes);
+  set_count("stop_nodes", stop_nodes);
+  set_count("light_nodes", light_nodes);
+  set_count("rings", rings);
 }
 
 /// Arrays of the surfaces, without their positions, which may vary with focus.
-std::string OslCamera::surfaces() const {
-  const std::size_t count = lens_.surface_count();
-  std::vector<double> curvature, conic, radius, inner, ahead, behind;
-  int highest = 0;
-  for (std::size_t i = 0; i < count; ++i) {
-    const LensSurface& s = lens_.surfaces()[i];
-    curvature.push_back(s.curvature);
-    conic.push_back(s.conic);
-    radius.push_back(std::isfinite(s.semi_diameter) ? s.semi_diameter : 1e30);
-    inner.push_back(s.obscuration_semi_diameter);
-    ahead.push_back(lens_.index(i));
-    behind.push_back(lens_.index(i + 1));
+void OslCamera::set_surfaces() {
+  const auto surfaces = lens_.surfaces();
+  const std::size_t count = surfaces.size();
+  const auto each = [&](const std::string& name, double (*value)(const LensSurface& s)) {
+    set_array(name, table(count, [&](std::size_t i) { return value(surfaces[i]); }));
+  };
+  each("curvature", [](const LensSurface& s) { return s.curvature; });
+  each("conic", [](const LensSurface& s) { return s.conic; });
+  each("curved_x", [](const LensSurface& s) { return s.curved_in == Section::y ? 0.0 : 1.0; });
+  each("curved_y", [](const LensSurface& s) { return s.curved_in == Section::x ? 0.0 : 1.0; });
+  each("rim", [](const LensSurface& s) { return std::min(s.semi_diameter, 1e30); });
+  each("inner_rim", [](const LensSurface& s) { return s.obscuration_semi_diameter; });
+  each("aspheric", [](const LensSurface& s) { return s.aspheric.empty() ? 0.0 : 1.0; });
+  int highest = 2;
+  for (const LensSurface& s : surfaces)
     for (const AsphereTerm& term : s.aspheric) highest = std::max(highest, term.order);
+  const auto orders = static_cast<std::size_t>(highest - 1);  // 2, 3, ...
+  std::vector<double> terms(count * orders);
+  for (std::size_t i = 0; i < count; ++i) {
+    for (const auto& [order, coefficient] : surfaces[i].aspheric)
+      terms[i * orders + static_cast<std::size_t>(order - 2)] = coefficient;
   }
-  std::string text = "  // the surfaces, from the scene to the film\n";
-  text += array("curvature", curvature) + array("conic", conic) + array("rim", radius) + array("inner_rim", inner) +
-          array("index_in_front", ahead) + array("index_behind", behind);
-  if (highest > 0) {
-    // Terms of order 2, 3, ... of all surfaces.
-    std::vector<double> terms(count * static_cast<std::size_t>(highest - 1), 0.0);
-    std::vector<double> aspheric(count, 0.0);
-    for (std::size_t i = 0; i < count; ++i) {
-      for (const auto& [order, coefficient] : lens_.surfaces()[i].aspheric) {
-        terms[i * static_cast<std::size_t>(highest - 1) + static_cast<std::size_t>(order - 2)] = coefficient;
-        aspheric[i] = 1;
-      }
-    }
-    text += "  // sag added: sum of term[surface][order - 2] r^order\n" + array("aspheric", aspheric) +
-            array("term", terms);
-  }
-  text += "  int surfaces = " + std::to_string(count) +
-          ";\n  int orders = " + std::to_string(std::max(highest - 1, 0)) +
-          ";\n  int stop = " + std::to_string(*lens_.stop()) + ";\n";
-  return text;
+  set_array("term", terms);
+  set_count("orders", orders);
+  set_count("surfaces", count);
+  set_count("stop", *lens_.stop());
 }
 
-void OslCamera::boxes(std::string& text) const {
+/// Chances of the wavelengths in proportion to their colours, so that rays of all wavelengths have similar throughputs.
+void OslCamera::set_wavelengths() {
+  const auto nm = lens_.wavelengths_nm();
+  const std::filesystem::path tables = data_directory() / "glass";
+  const Spectrum daylight = illuminant("D65", tables / "cie_daylight_10nm.csv");
+  const auto rgb = rgb_weights(nm, ColourMatching::load(tables / "cie1931_2deg_5nm.csv"), daylight, daylight);
+  const auto size = [](const std::array<double, 3>& c) { return std::abs(c[0]) + std::abs(c[1]) + std::abs(c[2]); };
+  double whole = 0;
+  for (const auto& colour : rgb) whole += size(colour);
+  std::vector<double> end{0}, index, tint;
+  for (std::size_t w = 0; w < nm.size(); ++w) {
+    const double chance = size(rgb[w]) / whole;
+    end.push_back(w + 1 == nm.size() ? 1 : end.back() + chance);
+    for (std::size_t space = 0; space <= lens_.surface_count(); ++space) index.push_back(lens_.index(space, w));
+    for (const double component : rgb[w]) tint.push_back(component / chance);
+  }
+  set_count("wavelengths", nm.size());
+  set_array("chance_end", end);
+  set_array("index", index);
+  set_array("tint", tint);
+}
+
+void OslCamera::set_focus_and_stop() {
+  const bool moves = !lens_.focus_positions().empty();
+  std::vector<double> film, z, light, shift;
+  for (std::size_t k = 0; k < focus_nodes; ++k) {
+    const Lens set = focused(static_cast<double>(k) / static_cast<double>(focus_nodes - 1) / nearest_);
+    film.push_back(set.film_z());
+    if (!moves && k > 0) continue;
+    for (const LensSurface& s : set.surfaces()) z.push_back(s.vertex_z);
+  }
+  for (std::size_t i = 0; i < light_nodes; ++i) {
+    const double inverse = static_cast<double>(i) / static_cast<double>(light_nodes - 1) / nearest_;
+    const Lens set = focused(inverse);
+    for (std::size_t k = 0; k < stop_nodes; ++k) {
+      const Lens both = with_any_semi_diameter(set, *lens_.stop(), stop_radii_[k]);
+      light.push_back(film_irradiance(both, {}) * std::exp2(k));
+      shift.push_back(solve_focus(both, distance_from_vertex(inverse)).film_z - set.film_z());
+    }
+  }
+  set_count("groups_move", moves ? 1 : 0);
+  set_array("vertex", z);
+  set_array("film", film);
+  set_array("stop_size",
+            table(stop_nodes, [&](std::size_t k) { return stop_radii_[k] * std::exp2(static_cast<double>(k) / 2); }));
+  set_array("light", light);
+  set_array("focus_shift", shift);
+}
+
+void OslCamera::set_boxes() {
+  // Pupils change with wavelength monotonically, so that the first, the last and the primary wavelength bound them.
+  const auto nm = lens_.wavelengths_nm();
+  const auto [first, last] = std::ranges::minmax(nm);
+  const std::set<std::size_t> wavelengths{lens_.primary_wavelength(), lens_.wavelength(first), lens_.wavelength(last)};
   std::vector<double> from, to, across;
-  for (const Lens& stopped : stopped_) {
+  for (const double stop_radius : stop_radii_) {
     // Boxes at the rings and halfway between the rings.
     std::vector<Box> at(2 * rings + 1);
     for (const double inverse : {0.0, 1 / nearest_}) {
-      const Lens set =
-          with_any_semi_diameter(focused(inverse), *lens_.stop(), stopped.surfaces()[*lens_.stop()].semi_diameter);
+      const Lens set = with_any_semi_diameter(focused(inverse), *lens_.stop(), stop_radius);
       for (std::size_t k = 0; k < at.size(); ++k) {
-        at[k].take(box_at(set, film_radius_ * static_cast<double>(k) / static_cast<double>(at.size() - 1)));
+        const double radius = film_radius_ * static_cast<double>(k) / static_cast<double>(at.size() - 1);
+        for (const std::size_t w : wavelengths) at[k].take(box_at(set, radius, w));
       }
     }
     // Edges are interpolated linearly between rings, so they are moved outwards until the boxes halfway between rings
@@ -254,273 +315,26 @@ void OslCamera::boxes(std::string& text) const {
       across.push_back(empty ? 0 : box_scale * at[k].across);
     }
   }
-  text +=
-      "  // boxes about exit pupils, in the plane of the last vertex: by f-number, then by distance from the axis\n" +
-      array("box_from", from) + array("box_to", to) + array("box_across", across);
+  set_array("box_from", from);
+  set_array("box_to", to);
+  set_array("box_across", across);
 }
 
-std::string OslCamera::tables() const {
-  std::vector<double> film, stop_size, light, shift, z;
-  const bool moves = !lens_.focus_positions().empty();
-  for (std::size_t k = 0; k < focus_nodes; ++k) {
-    const Lens set = focused(static_cast<double>(k) / static_cast<double>(focus_nodes - 1) / nearest_);
-    film.push_back(set.film_z());
-    for (const LensSurface& s : set.surfaces()) z.push_back(s.vertex_z);
-  }
-  if (!moves) z.resize(lens_.surface_count());
-  for (std::size_t k = 0; k < stop_nodes; ++k) {
-    stop_size.push_back(stopped_[k].surfaces()[*lens_.stop()].semi_diameter * std::exp2(static_cast<double>(k) / 2));
-  }
-  for (std::size_t k = 0; k < light_nodes; ++k) {
-    const double inverse = static_cast<double>(k) / static_cast<double>(light_nodes - 1) / nearest_;
-    const Lens set = focused(inverse);
-    for (const Lens& stopped : stopped_) {
-      const Lens both = with_any_semi_diameter(set, *lens_.stop(), stopped.surfaces()[*lens_.stop()].semi_diameter);
-      const double f_number = std::exp2(static_cast<double>(light.size() % stop_nodes));
-      light.push_back(film_irradiance(both, {}) * f_number);
-      shift.push_back(solve_focus(both, distance_from_vertex(inverse)).film_z - set.film_z());
-    }
-  }
-  std::string text = array("vertex", z);
-  text +=
-      "  // by inverse focus distance, from infinity to " + to_text(nearest_ / 1000, 4) + " m\n" + array("film", film);
-  text += "  // by f-number, from f/" + to_text(f_number_, 3) +
-          " in stops: radius of the stop and irradiance of the film, divided by their nominal change\n" +
-          array("stop_size", stop_size) + array("light", light);
-  text += "  // focus shift from stopping down (spherical aberration): by focus, then by f-number\n" +
-          array("focus_shift", shift);
-  boxes(text);
-  return text;
-}
-
-/// The shader code common to all lenses. Its statements are also C++, except for `point`, `vector` and `color`.
-constexpr const char* body = R"OSL(
-  vector raster = camera_shader_raster_position();
-  vector places = camera_shader_random_sample();
-  throughput = 0.0;
-
-  // Focus: between two nodes of inverse distance.
-  float inverse = 0.0;
-  if (focus_distance > 0.0) inverse = units_per_mm / focus_distance;
-  float at_focus = min(inverse * nearest, 1.0) * (focus_nodes - 1);
-  int focus = int(min(at_focus, focus_nodes - 2.0));
-  float focus_part = at_focus - focus;
-  float film_z = film[focus] + focus_part * (film[focus + 1] - film[focus]);
-
-  // The stop: between two nodes a stop apart.
-  float stops = clamp(2.0 * log2(max(f_number, 0.0001) / widest), 0.0, stop_nodes - 1.0);
-  int wider = int(min(stops, stop_nodes - 2.0));
-  float wider_part = stops - wider;
-  float at_light = min(inverse * nearest, 1.0) * (light_nodes - 1);
-  int lit = int(min(at_light, light_nodes - 2.0));
-  float lit_part = at_light - lit;
-  int from = lit * stop_nodes + wider;
-  int to = from + stop_nodes;
-  float far_shift = focus_shift[from] + wider_part * (focus_shift[from + 1] - focus_shift[from]);
-  float near_shift = focus_shift[to] + wider_part * (focus_shift[to + 1] - focus_shift[to]);
-  film_z += far_shift + lit_part * (near_shift - far_shift);
-  float stop_radius = (stop_size[wider] + wider_part * (stop_size[wider + 1] - stop_size[wider])) / pow(2.0, 0.5 * stops);
-
-  // The film point. The image is inverted: the right of the scene is imaged on the left of the film.
-  float film_x = (0.5 - raster[0]) * sensor_width;
-  float film_y = (0.5 - raster[1]) * sensor_height;
-  float film_r = sqrt(film_x * film_x + film_y * film_y);
-  float along_x = 0.0;
-  float along_y = 1.0;
-  if (film_r > 0.0) {
-    along_x = film_x / film_r;
-    along_y = film_y / film_r;
-  }
-
-  // A point in the box about the exit pupil of this film point, in the plane of the last vertex.
-  float at_ring = min(film_r / film_radius, 1.0) * rings;
-  int ring = int(min(at_ring, rings - 1.0));
-  float ring_part = at_ring - ring;
-  int box = wider * (rings + 1) + ring;
-  float box_low = box_from[box] + ring_part * (box_from[box + 1] - box_from[box]);
-  float box_high = box_to[box] + ring_part * (box_to[box + 1] - box_to[box]);
-  float box_half = box_across[box] + ring_part * (box_across[box + 1] - box_across[box]);
-  int move = groups_move * surfaces;
-  int last = surfaces - 1;
-  float last_z = vertex[focus * move + last];
-  if (groups_move == 1) last_z += focus_part * (vertex[(focus + 1) * surfaces + last] - last_z);
-  float a = box_low + places[0] * (box_high - box_low);
-  float b = (2.0 * places[1] - 1.0) * box_half;
-  float rear_x = a * along_x + b * along_y;
-  float rear_y = a * along_y - b * along_x;
-  float depth = film_z - last_z;
-
-  // The ray from the film to the scene: a point p and its direction d.
-  float px = rear_x;
-  float py = rear_y;
-  float pz = last_z;
-  float dx = rear_x - film_x;
-  float dy = rear_y - film_y;
-  float dz = -depth;
-  float reach = sqrt(dx * dx + dy * dy + dz * dz);
-  dx /= reach;
-  dy /= reach;
-  dz /= reach;
-
-  int passes = 1;
-  if (film_r > film_radius * 1.0001 || box_high <= box_low) passes = 0;
-  for (int k = 0; k < surfaces; ++k) {
-    if (passes == 1) {
-      int i = last - k;
-      float z = vertex[focus * move + i];
-      if (groups_move == 1) z += focus_part * (vertex[(focus + 1) * surfaces + i] - z);
-
-      // To the plane of the vertex, then to the conic; z is now relative to the vertex.
-      float t = (z - pz) / dz;
-      float x = px + t * dx;
-      float y = py + t * dy;
-      float h = 0.0;
-      float c = curvature[i];
-      float q = 1.0 + conic[i];
-      float nx = 0.0;
-      float ny = 0.0;
-      float nz = 1.0;
-      if (c != 0.0) {
-        float quadratic = c * (1.0 + conic[i] * dz * dz);
-        float half_linear = dz - c * (x * dx + y * dy);
-        float constant = c * (x * x + y * y);
-        float root = half_linear * half_linear - quadratic * constant;
-        if (root < 0.0) {
-          passes = 0;
-        } else {
-          t = constant / (half_linear - sqrt(root));
-          x += t * dx;
-          y += t * dy;
-          h = t * dz;
-          nx = -c * x;
-          ny = -c * y;
-          nz = 1.0 - c * q * h;
-        }
-      }
-ASPHERE
-      float r2 = x * x + y * y;
-      float limit = rim[i];
-      if (i == stop) limit = min(limit, stop_radius);
-      // r2 is NaN if the ray misses an asphere.
-      if (!(r2 <= limit * limit && r2 >= inner_rim[i] * inner_rim[i])) passes = 0;
-      if (i == stop && blades > 2) {
-        // The middle of the nearest blade's edge lies on the first axis.
-        float sector = 6.28318531 / blades;
-        float angle = atan2(-x, y) - rotation * 0.0174532925;
-        float turned = angle - sector * (floor(angle / sector) + 0.5);
-        float s = sqrt(r2) / stop_radius;
-        float su = s * cos(turned);
-        float sv = s * sin(turned);
-        float most = 0.5 * sector;
-        if (roundness < 0.0) most = min(most, 0.5 * (1.57079633 - most));
-        float bend = clamp(roundness, -1.0, 1.0) * most;
-        float edge = cos(0.5 * sector);
-        if (fabs(bend) < 0.0001) {
-          if (su > edge) passes = 0;
-        } else {
-          float arc = sin(0.5 * sector) / sin(bend);
-          float centre = edge - arc * cos(bend);
-          float outside = (su - centre) * (su - centre) + sv * sv - arc * arc;
-          if (bend > 0.0 && su > centre && outside > 0.0) passes = 0;
-          if (bend < 0.0 && (su > centre || outside < 0.0)) passes = 0;
-        }
-      }
-
-      // Snell's law, backwards.
-      float length_n = sqrt(nx * nx + ny * ny + nz * nz);
-      nx /= length_n;
-      ny /= length_n;
-      nz /= length_n;
-      float ratio = index_behind[i] / index_in_front[i];
-      float cosine = nx * dx + ny * dy + nz * dz;
-      float below = 1.0 - ratio * ratio * (1.0 - cosine * cosine);
-      if (below < 0.0) {
-        passes = 0;
-      } else {
-        float bent = -sqrt(below) - ratio * cosine;
-        dx = ratio * dx + bent * nx;
-        dy = ratio * dy + bent * ny;
-        dz = ratio * dz + bent * nz;
-      }
-      px = x;
-      py = y;
-      pz = z + h;
-    }
-  }
-
-  if (passes == 1) {
-    // Irradiance from the area and the solid angle of the box, divided by the irradiance at the film centre.
-    float near_light = light[to] + wider_part * (light[to + 1] - light[to]);
-    float far_light = light[from] + wider_part * (light[from + 1] - light[from]);
-    float middle = (far_light + lit_part * (near_light - far_light)) / pow(2.0, stops);
-    float share = 1.0;
-    if (blades > 2) {
-      float half_sector = 3.14159265 / blades;
-      float most = half_sector;
-      if (roundness < 0.0) most = min(most, 0.5 * (1.57079633 - most));
-      float bend = clamp(roundness, -1.0, 1.0) * most;
-      float segment = 0.0;
-      if (fabs(bend) >= 0.0001) {
-        float arc = sin(half_sector) / sin(bend);
-        segment = arc * arc * (bend - sin(bend) * cos(bend));
-      }
-      share = blades * (sin(half_sector) * cos(half_sector) + segment) / 3.14159265;
-    }
-    float box_area = 2.0 * (box_high - box_low) * box_half;
-    float weight = box_area * depth * depth / (reach * reach * reach * reach);
-    throughput = color(weight / (middle * share));
-    position = point(px * units_per_mm, py * units_per_mm, (origin - pz) * units_per_mm);
-    direction = vector(dx, dy, -dz);
-  }
-}
-)OSL";
-
-constexpr const char* newton = R"OSL(
-      if (aspheric[i] > 0.5 && passes == 1) {
-        // Newton steps along the ray, from the conic to the asphere.
-        float miss = 1.0;
-        for (int n = 0; n < 12; ++n) {
-          float rr = x * x + y * y;
-          float r = sqrt(rr);
-          float inside = 1.0 - q * c * c * rr;
-          float bow = sqrt(max(inside, 0.000001));
-          float sag = c * rr / (1.0 + bow);
-          float slope = c / bow;
-          float power = 1.0;
-          for (int o = 0; o < orders; ++o) {
-            sag += term[i * orders + o] * power * rr;
-            slope += (o + 2) * term[i * orders + o] * power;
-            power *= r;
-          }
-          nx = -slope * x;
-          ny = -slope * y;
-          nz = 1.0;
-          miss = h - sag;
-          float advance = -miss / (nx * dx + ny * dy + nz * dz);
-          x += advance * dx;
-          y += advance * dy;
-          h += advance * dz;
-          if (inside <= 0.0) miss = 1.0;
-        }
-        if (fabs(miss) > 0.001) passes = 0;
-      }
-)OSL";
-
+/// The template below its first empty line, with values in place of the names between two @.
 std::string OslCamera::text() const {
-  std::string code = body;
-  const std::string mark = "ASPHERE\n";
-  const bool aspheric = std::ranges::any_of(lens_.surfaces(), [](const LensSurface& s) { return !s.aspheric.empty(); });
-  code.replace(code.find(mark), mark.size(), aspheric ? newton + 1 : "");
-  const auto constant = [](const char* type, const char* name, const std::string& value) {
-    return std::string("  ") + type + " " + name + " = " + value + ";\n";
-  };
-  return header() + parameters() + surfaces() + tables() +
-         constant("int", "groups_move", lens_.focus_positions().empty() ? "0" : "1") +
-         constant("int", "focus_nodes", std::to_string(focus_nodes)) +
-         constant("int", "stop_nodes", std::to_string(stop_nodes)) +
-         constant("int", "light_nodes", std::to_string(light_nodes)) + constant("int", "rings", std::to_string(rings)) +
-         constant("float", "nearest", number(nearest_)) + constant("float", "widest", number(f_number_)) +
-         constant("float", "film_radius", number(film_radius_)) + constant("float", "origin", number(origin_z_)) + code;
+  const std::filesystem::path file = data_directory() / "osl" / "camera.osl";
+  const std::string whole = read_file(file, "the template of the OSL camera");
+  std::string result;
+  std::size_t at = whole.find("\n\n");
+  for (at = at == std::string::npos ? 0 : at + 2;;) {
+    const std::size_t open = whole.find('@', at), close = whole.find('@', open + 1);
+    if (open == std::string::npos || close == std::string::npos) return result + whole.substr(at);
+    const std::string name = whole.substr(open + 1, close - open - 1);
+    const auto value = values_.find(name);
+    if (value == values_.end()) throw Error(file.string() + ": @" + name + "@; must be a name of the OSL camera");
+    result += whole.substr(at, open - at) + value->second;
+    at = close + 1;
+  }
 }
 
 }  // namespace

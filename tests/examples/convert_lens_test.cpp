@@ -57,6 +57,10 @@ TEST_F(ConvertLens, ExtensionChoosesTheFormat) {
   EXPECT_EQ(read(path("lens.json")), read(lens("double_gauss_100mm_f2.0")));  // byte for byte
   EXPECT_EQ(run("convert", {lens("double_gauss_100mm_f2.0"), path("lens.osl")}).status, 0);
   EXPECT_EQ(read(path("lens.osl")).find("// Double Gauss 100 mm f/2"), 0u);
+  EXPECT_EQ(run("convert", {lens("double_gauss_100mm_f2.0"), path("lens.osl"), "--wavelengths", "rgb"}).status, 0);
+  EXPECT_NE(read(path("lens.osl")).find("3 wavelengths from 475 to 650 nm"), std::string::npos);
+  expect_failure("convert", {lens("double_gauss_100mm_f2.0"), path("lens.zmx"), "--wavelengths", "rgb"},
+                 {"--wavelengths", "lens.zmx", ".osl"});
   EXPECT_EQ(run("convert", {lens("double_gauss_100mm_f2.0"), path("lens.opentrackio.json")}).status, 0);
   EXPECT_TRUE(read_json(path("lens.opentrackio.json")).contains("lens"));
   EXPECT_EQ(run("convert", {lens("double_gauss_100mm_f2.0"), path("lens.stmap.exr")}).status, 0);

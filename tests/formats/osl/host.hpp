@@ -13,12 +13,23 @@ struct Triple {
   Triple(float x, float y, float z) : value{x, y, z} {}
   float operator[](int i) const { return value[i]; }
 };
+inline Triple operator+(Triple a, Triple b) { return {a[0] + b[0], a[1] + b[1], a[2] + b[2]}; }
+inline Triple operator-(Triple a, Triple b) { return {a[0] - b[0], a[1] - b[1], a[2] - b[2]}; }
+inline Triple operator*(Triple a, Triple b) { return {a[0] * b[0], a[1] * b[1], a[2] * b[2]}; }
+inline Triple operator/(Triple a, Triple b) { return {a[0] / b[0], a[1] / b[1], a[2] / b[2]}; }
+inline Triple operator-(Triple a) { return Triple() - a; }
+inline Triple& operator+=(Triple& a, Triple b) { return a = a + b; }
+inline Triple& operator-=(Triple& a, Triple b) { return a = a - b; }
+inline Triple& operator/=(Triple& a, Triple b) { return a = a / b; }
+inline float dot(Triple a, Triple b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
 using point = Triple;
 using vector = Triple;
 using color = Triple;
 
-inline Triple raster_position, random_sample;
+inline Triple raster_position, random_sample, by_column, by_row;
 inline vector camera_shader_raster_position() { return raster_position; }
+inline vector Dx(vector) { return by_column; }  // of the raster position only
+inline vector Dy(vector) { return by_row; }
 inline vector camera_shader_random_sample() { return random_sample; }
 
 inline float sqrt(float x) { return std::sqrt(x); }
