@@ -63,9 +63,22 @@ class _Struct(ctypes.Structure):
     """A struct of petzval.h; members with `size` get their size. Keywords set members."""
 
     def __init__(self, **members):
+        names = [name for name, *_ in self._fields_]
+        for name in members:
+            if name not in names or name == "size":
+                raise Error(1, f"{name} is no member of {type(self).__name__}; must be one of {', '.join(names)}")
         super().__init__(**members)
-        if self._fields_[0][0] == "size":
+        for name, value in members.items():
+            if isinstance(value, int) and getattr(self, name) not in (value, None):
+                raise Error(1, f"{name} = {value} is out of range")
+        if names[0] == "size":
             self.size = ctypes.sizeof(self)
+        if "z_mm" in members and "has_z" in names and "has_z" not in members:
+            self.has_z = 1
+
+    def __getattribute__(self, name):
+        value = super().__getattribute__(name)
+        return value.decode() if isinstance(value, bytes) else value
 
     def __repr__(self):
         return f"{type(self).__name__}({', '.join(f'{n}={getattr(self, n)!r}' for n, *_ in self._fields_ if n not in ('size', 'unused'))})"
@@ -133,6 +146,18 @@ def _numbers(values, code="d"):
         return own.ctypes.data, own.size, own
     flat = values if isinstance(values, array.array) and values.typecode == code else array.array(code, _flat(values))
     return flat.buffer_info()[0], len(flat), flat
+
+
+def _points(values):
+    """(pointer, number of points, owner) of an array [N, 3], or of one point."""
+    if numpy is not None:
+        shape = numpy.shape(values)
+        if shape[-1:] != (3,) or len(shape) > 2:
+            raise Error(1, f"points have the shape {shape}; must be (N, 3)")
+    pointer, count, owner = _numbers(values)
+    if count % 3 != 0:
+        raise Error(1, f"points are {count} numbers; must be 3 for each point")
+    return pointer, count // 3, owner
 
 
 def _flat(values):
@@ -340,11 +365,10 @@ class Camera(_Handle):
 
     def connect(self, points, pupil_u, pupil_v, wavelengths_nm=None):
         """Connections from N points: a dictionary of direction, distance, on_front, pdf, we, raster_x, raster_y, fate."""
-        at, numbers, _keep = _numbers(points)
-        count = numbers // 3
+        at, count, _keep = _points(points)
         (u, _, _u), (v, _, _v) = _numbers(pupil_u), _numbers(pupil_v)
         nm, _, _nm = _numbers(wavelengths_nm, "f") if wavelengths_nm is not None else (None, 0, None)
-        if numbers != 3 * count or any(n != count for n in (len(_u), len(_v))) or (_nm is not None and len(_nm) != count):
+        if any(n != count for n in (len(_u), len(_v))) or (_nm is not None and len(_nm) != count):
             raise Error(1, "points, pupil_u, pupil_v and wavelengths_nm; must have the same number of points")
         found = (_Connection * count)()
         pointers = [ctypes.c_void_p(p) for p in (at, u, v, nm)]
@@ -358,8 +382,7 @@ class Camera(_Handle):
 
     def project(self, points, nm=0, time=0):
         """Raster positions of the chief rays of N points, [N, 2] (NaN: not seen), and N bytes: 1 if they pass."""
-        at, numbers, _keep = _numbers(points)
-        count = numbers // 3
+        at, count, _keep = _points(points)
         (raster, found), (visible, seen) = _empty((count, 2), "d"), _empty((count,), "B")
         _call("camera_project", self._handle, c_size(count), ctypes.c_void_p(at), c_double(nm), c_double(time),
               ctypes.c_void_p(raster), ctypes.c_void_p(visible))

@@ -90,7 +90,7 @@ PETZVAL_C_API petzval_status petzval_glasses_get(const petzval_glasses* glasses,
 
 typedef struct petzval_lens_options {
   size_t size;
-  const double* wavelengths_nm; /**< wavelengths to compile; NULL: the reference wavelength of the lens */
+  const double* wavelengths_nm; /**< wavelengths to compile; NULL: only the reference wavelength of the lens */
   size_t wavelength_count;
   double primary_nm; /**< a compiled wavelength; 0: the reference wavelength if compiled, else that near d */
   const petzval_glasses* glasses; /**< NULL: the installed tables */
@@ -285,7 +285,7 @@ enum {
   PETZVAL_FATE_OUTSIDE_SPECTRUM = 8
 };
 
-/** A sample of the film. Numbers that are not finite give a lost ray. */
+/** A sample of the film. Numbers that are not finite give a lost ray, except `time`: NaN counts as 0. */
 typedef struct petzval_sample {
   double raster_x, raster_y;
   double pupil_u, pupil_v; /**< in the unit square */
@@ -297,7 +297,7 @@ typedef struct petzval_sample {
 typedef struct petzval_ray {
   double origin[3], direction[3]; /**< on the front of the lens; unit vector */
   double weight;                  /**< sr for PETZVAL_IRRADIANCE */
-  double pdf_film, pdf_pupil;     /**< on the film and in the pupil plane, 1/mm^2 */
+  double pdf_film, pdf_pupil;     /**< on the film and in the pupil plane, in 1/mm^2 for every unit of the camera */
   double pdf_direction;           /**< at the film, 1/sr */
   int32_t fate, unused;           /**< PETZVAL_FATE_... */
 } petzval_ray;
@@ -402,7 +402,7 @@ PETZVAL_C_API petzval_status petzval_camera_sample_path(const petzval_camera* ca
                                                         size_t count, const double* nm, petzval_ray* ray,
                                                         petzval_path_wavelength* found);
 /**
- * Importance of N rays that travel towards the lens.
+ * Importance of N rays that travel towards the lens: reverse the direction of a camera ray.
  *
  * - origins, directions: 3 N numbers each; any points of the lines, and unit vectors
  * - nm, times: N values; NULL: the primary wavelength, and time 0
@@ -430,7 +430,7 @@ PETZVAL_C_API petzval_status petzval_camera_connection_pdf(const petzval_camera*
  * Raster positions of the chief rays of N points.
  *
  * - points: 3 N numbers
- * - raster: 2 N numbers; NaN where the film does not see the point
+ * - raster: 2 N numbers, also outside the picture; NaN if there is no chief ray near the film
  * - visible: N values, or NULL; 1 if the chief ray passes and meets the film
  */
 PETZVAL_C_API petzval_status petzval_camera_project(const petzval_camera* camera, size_t count, const double* points,

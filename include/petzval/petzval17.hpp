@@ -138,8 +138,8 @@ class Camera : public Owner<petzval_camera, petzval_camera_free> {
   Camera() = default;
   explicit Camera(const Lens& lens, const petzval_film& film = petzval_film_init(),
                   const petzval_camera_options& options = petzval_camera_options_init()) {
-    if (!lens.get()) status_ = lens.status(), message_ = lens.message();
-    if (lens.get()) keep(petzval_camera_create(lens.get(), &film, &options, &handle_));
+    status_ = lens.status(), message_ = lens.message();
+    if (good()) keep(petzval_camera_create(lens.get(), &film, &options, &handle_));
   }
   static Camera read(const std::string& setup) {
     Camera camera;
@@ -158,19 +158,21 @@ class Camera : public Owner<petzval_camera, petzval_camera_free> {
     keep(petzval_camera_get_info(handle_, &info));
     return info;
   }
-  bool set_focus(double opens_mm, double closes_mm) {
-    return keep(petzval_camera_set_focus(handle_, opens_mm, closes_mm));
+  /// False, with petzval_message(), if the distances are refused; the camera keeps its focus.
+  bool set_focus(double opens_mm, double closes_mm) noexcept {
+    return petzval_camera_set_focus(handle_, opens_mm, closes_mm) == PETZVAL_OK;
   }
 
-  // Calls of render threads: they neither allocate nor store a failure; the results of a failed call are 0.
+  // Calls of render threads: they neither allocate nor store a failure; the results of a failed call are 0 or a lost
+  // ray.
   petzval_ray sample(const petzval_sample& sample) const noexcept {
     petzval_ray ray;
-    if (petzval_camera_sample(handle_, &sample, &ray) != PETZVAL_OK) ray = petzval_ray();
+    petzval_camera_sample(handle_, &sample, &ray);  // a failed call sets a lost ray
     return ray;
   }
   petzval_ray_differential sample_differential(const petzval_sample& sample) const noexcept {
     petzval_ray_differential ray;
-    if (petzval_camera_sample_differential(handle_, &sample, &ray) != PETZVAL_OK) ray = petzval_ray_differential();
+    petzval_camera_sample_differential(handle_, &sample, &ray);
     return ray;
   }
   petzval_importance importance(const double* origin, const double* direction, float nm = 0,

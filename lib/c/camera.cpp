@@ -84,6 +84,12 @@ CameraSample sample_of(const CameraContents& own, const petzval_sample& sample) 
           .wavelength = wavelength_of(sample.wavelength_nm),
           .time = own.film_time(sample.time)};
 }
+/// The ray of a failed call.
+petzval_ray lost_ray() noexcept {
+  petzval_ray ray{};
+  ray.fate = PETZVAL_FATE_INVALID;
+  return ray;
+}
 void put(const CameraContents& own, const CameraRay& ray, petzval_ray& to) {
   put(own.frame.point_to_host(ray.ray.origin), to.origin);
   put(own.frame.direction_to_host(ray.ray.direction), to.direction);
@@ -289,7 +295,7 @@ petzval_status petzval_camera_read(const char* bytes, std::size_t count, petzval
 
 petzval_status petzval_camera_sample(const petzval_camera* camera, const petzval_sample* sample, petzval_ray* ray) {
   return guarded([&] {
-    given(ray, "ray") = {};
+    given(ray, "ray") = lost_ray();
     const CameraContents& own = *live(camera, "camera").contents;
     put(own, own.camera.sample(sample_of(own, given(sample, "sample"))), *ray);
   });
@@ -299,6 +305,7 @@ petzval_status petzval_camera_sample_differential(const petzval_camera* camera, 
                                                   petzval_ray_differential* ray) {
   return guarded([&] {
     given(ray, "ray") = {};
+    ray->ray = lost_ray();
     const CameraContents& own = *live(camera, "camera").contents;
     const CameraRayDifferential found = own.camera.sample_differential(sample_of(own, given(sample, "sample")));
     put(own, found.sample, ray->ray);
@@ -323,7 +330,7 @@ petzval_status petzval_camera_sample_double(const petzval_camera* camera, std::s
 petzval_status petzval_camera_sample_path(const petzval_camera* camera, const petzval_sample* sample, std::size_t count,
                                           const double* nm, petzval_ray* ray, petzval_path_wavelength* found) {
   return guarded([&] {
-    given(ray, "ray") = {};
+    given(ray, "ray") = lost_ray();
     const CameraContents& own = *live(camera, "camera").contents;
     if (count == 0) bad_argument("count = 0; must be at least 1");
     given(nm, "nm"), given(found, "found");

@@ -26,6 +26,12 @@ int main(int count, char** arguments) {
   if (missing || none || none.status() != PETZVAL_REFUSED || none.message().find("missing.json") == std::string::npos) {
     return 1;
   }
+  petzval17::Lens refused = lens.copy();
+  refused.focus(5);
+  const petzval17::Camera of_refused(refused), empty((petzval17::Lens()));
+  if (of_refused || of_refused.message().empty() || empty || empty.sample(sample).fate != PETZVAL_FATE_INVALID)
+    return 1;
+  if (camera.set_focus(1000, 1000) || !camera) return 1;
   petzval17::Camera moved = std::move(camera);
   return moved && moved.info().columns == 1920 ? 0 : 1;
 }

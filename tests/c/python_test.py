@@ -53,12 +53,16 @@ total = float(image.sum()) if petzval.numpy is not None else sum(image)
 expect(abs(total - psf.throughput) < 1e-4, "the PSF contains the throughput")
 for wrong in (lambda: petzval.Lens("missing.json"), lambda: lens.copy().f_number(0.5), lambda: lens.copy().f_number(math.nan),
               lambda: petzval.Camera(lens, model="best"), lambda: petzval.Camera.read(b"{}"),
-              lambda: petzval.Camera(lens, frame="cube"), lambda: camera.sample([1], [1, 2], [0], [0])):
+              lambda: petzval.Camera(lens, frame="cube"), lambda: camera.sample([1], [1, 2], [0], [0]),
+              lambda: petzval.Film(width=24), lambda: petzval.Film(columns=2 ** 33), lambda: camera.project([1, 2, 3, 4]),
+              lambda: petzval.Camera(lens, near=100), lambda: camera.point_image((0, 0, -2000), samples=-1)):
     try:
         wrong()
         expect(False, "a bad argument raises petzval.Error")
     except petzval.Error as error:
         expect(str(error) != "", "the error has a message")
+expect(petzval.Camera(lens, model=lens.choose_model(max_px=2).model).info.model != "", "a chosen model makes a camera")
+expect(petzval.Film(z_mm=70).has_z == 1, "a position of the film is used")
 if petzval.numpy is not None:
     own = petzval.numpy.array([0.5])
     expect(petzval._numbers(own)[2] is own, "float64 arrays are passed without copies")
