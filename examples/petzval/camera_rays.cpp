@@ -2,12 +2,10 @@
 // Converts film samples of a CSV file to camera rays, by any model of the lens; or writes a camera for POV-Ray.
 //
 //   printf 'film_x_mm,film_y_mm,pupil_u,pupil_v,wavelength_nm\n0,-10,0.25,0.5,587.5618\n' > samples.csv
-//   petzval camera-rays data/lenses/double_gauss_100mm_f2.0.json --table samples.csv --out rays.csv --model
-//   exact_double
-//               --focus 3000 --f-number 4
-//   petzval camera-rays data/lenses/double_gauss_100mm_f2.0.json --povray --size 160 --spp 64 --model exact_double
-//               --focus 3000 --out lens.inc
+//   petzval camera-rays double_gauss_100mm_f2.0 --table samples.csv --out rays.csv --focus 3000 --f-number 4
+//   petzval camera-rays double_gauss_100mm_f2.0 --povray --size 160 --spp 64 --focus 3000 --out lens.inc
 #include "commands.hpp"
+#include "povray_camera.hpp"
 
 #include <algorithm>
 #include <array>
@@ -19,7 +17,6 @@
 #include "petzval/camera/camera.hpp"
 #include "petzval/core/error.hpp"
 #include "petzval/core/geometry.hpp"
-#include "petzval/povray_camera.hpp"
 #include "support/bokeh_flags.hpp"
 #include "support/camera_setup.hpp"
 #include "support/cli.hpp"

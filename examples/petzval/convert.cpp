@@ -42,7 +42,7 @@ using petzval::Prescription;
 struct Options {
   examples::LensInput in;
   std::string out;
-  std::vector<double> wavelengths_nm;  ///< of an OSL camera; empty: the reference wavelength
+  std::vector<double> wavelengths_nm;  ///< for an OSL camera; empty: the reference wavelength
   bool strict = false, repair = false, json = false;
 };
 
@@ -108,8 +108,9 @@ constexpr std::array outputs{
              examples::write_text(options.out,
                                   petzval::format_osl_camera(petzval::compile(lens, nm, {.glasses = &glasses})));
              std::vector<ImportWarning> losses;
-             if (nm.size() == 1)
+             if (nm.size() == 1) {
                losses = {{0, "wavelengths", "the shader has only the indices at " + examples::number(nm[0]) + " nm"}};
+             }
              lose_positions(lens, losses);
              return losses;
            }},
@@ -206,8 +207,9 @@ void say(const char* kind, const std::string& file, const std::vector<ImportWarn
 /// Converts the file. Returns false if --strict prevented the conversion.
 bool convert(const Options& options) {
   const Output& output = output_for(options.out);
-  if (!options.wavelengths_nm.empty() && output.ending != ".osl")
+  if (!options.wavelengths_nm.empty() && output.ending != ".osl") {
     throw petzval::Error("--wavelengths: OUT = " + options.out + "; must end in .osl");
+  }
   const auto glasses = examples::glasses_of(options.in);
   auto [whole, configuration, one] = examples::read_configurations(options.in, glasses);
   const std::vector<ImportWarning> warnings = whole.imported ? whole.imported->warnings : std::vector<ImportWarning>();

@@ -47,9 +47,9 @@ constexpr std::array formats{Format{petzval::CalibrationFormat::opencv, "yml", n
 void print(const std::vector<petzval::Calibration>& all) {
   std::cout << "calibration           RMS, px  largest, px  parameters\n";
   for (const petzval::Calibration& one : all) {
-    const bool light = one.name == "lensfun_pa";  // a fraction of the irradiance
     std::cout << std::left << std::setw(21) << one.name << std::right << std::setw(8) << number(one.rms, 2)
-              << (light ? '*' : ' ') << std::setw(12) << number(one.largest, 2) << (light ? '*' : ' ') << ' ';
+              << (one.of_irradiance ? '*' : ' ') << std::setw(12) << number(one.largest, 2)
+              << (one.of_irradiance ? '*' : ' ') << ' ';
     for (const auto& [name, value] : one.values) {
       if (value != 0) std::cout << ' ' << name << ' ' << number(value, 5);
     }
@@ -76,11 +76,10 @@ void write(const Options& options) {
   for (const petzval::Calibration& one : all) {
     json values = json::array();
     for (const auto& [name, value] : one.values) values.push_back({{"name", name}, {"value", value}});
-    const bool light = one.name == "lensfun_pa";
     rows.push_back({{"name", one.name},
                     {"values", values},
-                    {light ? "rms_irradiance" : "rms_px", one.rms},
-                    {light ? "largest_irradiance" : "largest_px", one.largest},
+                    {one.of_irradiance ? "rms_irradiance" : "rms_px", one.rms},
+                    {one.of_irradiance ? "largest_irradiance" : "largest_px", one.largest},
                     {"field_deg", petzval::degrees(one.widest_field_rad)}});
   }
   if (!options.output.json) print(all);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "petzval/povray_camera.hpp"
+#include "povray_camera.hpp"
 
 #include <algorithm>
 #include <array>

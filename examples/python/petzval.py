@@ -110,7 +110,7 @@ Film = _struct("Film", "size size; double width_mm height_mm; int32 columns rows
 FilmFit = _struct("FilmFit", "size size; double rms_mm; int32 limited upright")
 Choice = _struct("Choice", "size size; char model[32]; double max_px exposure pupil_shape ns_per_ray; char reasons[1024]")
 CameraInfo = _struct("CameraInfo", "size size; char model[32]; double film_width_mm film_height_mm film_z_mm film_area_mm2;"
-                     "int32 columns rows; double units_per_mm shortest_nm longest_nm")
+                     "int32 columns rows; double units_per_mm shortest_nm longest_nm; int64 wavelength_count")
 Psf = _struct("Psf", "size size; double pixel_mm centre_mm[2] centroid_mm[2] rms_radius_mm max_radius_mm throughput error;"
               "int32 pixels wavelengths")
 _LensOptions = _struct("_LensOptions", "size size; pointer wavelengths_nm; size wavelength_count; double primary_nm; pointer glasses;"
@@ -394,20 +394,11 @@ class Camera(_Handle):
                               centre_mm=(c_double * 2)(*(centre_mm or (0, 0))), has_centre=centre_mm is not None)
         psf = Psf()
         at = (c_double * 3)(*point)
-        info = self.info
-        wavelengths = self._wavelengths(options, psf, at)
+        wavelengths = self.info.wavelength_count
         data, image = _empty((wavelengths, pixels, pixels), "f")
         _call("camera_point_image", self._handle, at, ctypes.byref(options), ctypes.byref(psf), ctypes.c_void_p(data),
               c_size(wavelengths * pixels * pixels))
         return psf, image
-
-    def _wavelengths(self, options, psf, at):
-        if not hasattr(self, "_wavelength_count"):
-            few = _PsfOptions.from_buffer_copy(options)
-            few.samples = 16
-            _call("camera_point_image", self._handle, at, ctypes.byref(few), ctypes.byref(psf), None, c_size(0))
-            self._wavelength_count = psf.wavelengths
-        return self._wavelength_count
 
     def spot(self, point, count=4096, nm=None):
         """Spot of a point: film positions x and y (mm) and weights of the rays that pass; the picture is upright."""

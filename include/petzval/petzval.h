@@ -271,6 +271,7 @@ typedef struct petzval_camera_info {
   int32_t columns, rows;
   double units_per_mm;
   double shortest_nm, longest_nm; /**< compiled range */
+  int64_t wavelength_count;
 } petzval_camera_info;
 
 enum {

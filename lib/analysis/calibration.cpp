@@ -125,10 +125,10 @@ class Fits {
     result.rms = std::sqrt(squares / weights);
     return result;
   }
-  const Camera& camera() const noexcept { return camera_; }
   double cx() const noexcept { return camera_.film().columns / 2.0; }
   double cy() const noexcept { return camera_.film().rows / 2.0; }
   double widest() const noexcept { return nodes_.back().field; }
+  const std::vector<Node>& nodes() const noexcept { return nodes_; }
 
  private:
   Index size() const noexcept { return static_cast<Index>(nodes_.size()); }
@@ -167,10 +167,11 @@ void add_opencv_polynomial(const Fits& fits, int terms, std::vector<Calibration>
 
 /// The rational model: linear least squares for numerator and denominator together, repeated with the denominator of
 /// the last step as weight (Sanathanan and Koerner, 1963).
-void add_opencv_rational(const Fits& fits, const std::vector<Node>& nodes, std::vector<Calibration>& to) {
+void add_opencv_rational(const Fits& fits, std::vector<Calibration>& to) {
+  const std::vector<Node>& nodes = fits.nodes();
   const Index count = static_cast<Index>(nodes.size());
   VectorXd denominators = VectorXd::Ones(count), c;
-  const double scale = std::pow(std::tan(fits.widest()), 2);  // powers of t^2 / scale keep the columns alike
+  const double scale = std::pow(std::tan(fits.widest()), 2);  // powers of t^2 / scale give columns of similar size
   for (int step = 0; step < 20; ++step) {
     Eigen::MatrixXd design(count, 7);
     VectorXd wanted(count), weights(count);
@@ -284,9 +285,8 @@ void add_lensfun(const Fits& fits, std::vector<Calibration>& to) {
     const double r2 = std::pow(node.radius / corner, 2);
     return 1 + r2 * (v(0) + r2 * (v(1) + r2 * v(2))) - node.illumination;
   }));
+  to.back().of_irradiance = true;
 }
-
-std::string number(double value) { return to_text(value); }
 
 /// Moves the optical centre of an OpenCV model. OpenCV counts positions from the centre of the first pixel; rasters and
 /// COLMAP count from its corner.
@@ -345,11 +345,11 @@ std::vector<Calibration> calibrations(const Camera& camera, std::optional<double
     nodes.push_back(node);
   }
   if (nodes.size() < 20) throw Error(where + "the picture is dark outside its centre; must be lit");
-  const Fits fits(camera, nodes);
+  const Fits fits(camera, std::move(nodes));
   std::vector<Calibration> result;
   if (fits.widest() < radians(85)) {
     add_opencv_polynomial(fits, 3, result);
-    add_opencv_rational(fits, nodes, result);
+    add_opencv_rational(fits, result);
     add_opencv_polynomial(fits, 2, result);
   }
   add_fisheye(fits, result);
@@ -362,7 +362,7 @@ std::vector<Calibration> calibrations(const Camera& camera, std::optional<double
     const auto ratio = [&](const Node& node) { return own.radius(node.field).value_or(node.radius); };
     const VectorXd c = fits.radial([=](const Node& node) { return node.radius / half; }, {1, 2, 3},
                                    [&](const Node& node) { return ratio(node) / half; });
-    result.push_back(fits.found("lensfun_tca_" + number(lens.wavelengths_nm()[w]),
+    result.push_back(fits.found("lensfun_tca_" + to_text(lens.wavelengths_nm()[w]),
                                 {{"v", c(0)}, {"c", c(1)}, {"b", c(2)}}, [&](const Node& node) {
                                   const double r = node.radius / half;
                                   return half * r * (c(0) + r * (c(1) + r * c(2))) - ratio(node);
@@ -378,7 +378,7 @@ std::string format_calibration(const Calibration& calibration, const Camera& cam
   const std::string size = std::to_string(film.columns) + ' ' + std::to_string(film.rows);
   const auto list = [&](std::initializer_list<const char*> names, const char* between) {
     std::string text;
-    for (const char* const one : names) text += (text.empty() ? "" : between) + number(own.value(one));
+    for (const char* const one : names) text += (text.empty() ? "" : between) + to_text(own.value(one));
     return text;
   };
   const bool opencv = own.name.starts_with("opencv_"), fisheye = own.name == "opencv_fisheye";
@@ -392,7 +392,7 @@ std::string format_calibration(const Calibration& calibration, const Camera& cam
                          list({"fx"}, "") + ", 0., " + list({"cx"}, "") + ", 0., " + list({"fy", "cy"}, ", ") +
                          ", 0., 0., 1. ]\ndistortion_coefficients: !!opencv-matrix\n   rows: 1\n   cols: " +
                          std::to_string(own.values.size() - 4) + "\n   dt: d\n   data: [ ";
-      for (std::size_t i = 4; i < own.values.size(); ++i) text += (i > 4 ? ", " : "") + number(own.values[i].second);
+      for (std::size_t i = 4; i < own.values.size(); ++i) text += (i > 4 ? ", " : "") + to_text(own.values[i].second);
       return text + " ]\n";
     }
     case CalibrationFormat::colmap: {
@@ -412,10 +412,10 @@ std::string format_calibration(const Calibration& calibration, const Camera& cam
     case CalibrationFormat::lensfun: {
       const auto attributes = [&](std::initializer_list<const char*> names) {
         std::string text;
-        for (const char* const one : names) text += std::string(" ") + one + "=\"" + number(own.value(one)) + '"';
+        for (const char* const one : names) text += std::string(" ") + one + "=\"" + to_text(own.value(one)) + '"';
         return text + "/>\n";
       };
-      const std::string focal = " focal=\"" + number(first) + '"';
+      const std::string focal = " focal=\"" + to_text(first) + '"';
       if (own.name == "lensfun_ptlens") {
         return "<distortion model=\"ptlens\"" + focal + attributes({"a", "b", "c"});
       }
@@ -435,12 +435,12 @@ std::string format_calibration(const Calibration& calibration, const Camera& cam
           lines += "float " + prefix + "nominalWidth = " + std::to_string(film.columns) + "\nfloat " + prefix +
                    "nominalHeight = " + std::to_string(film.rows) + "\nfloat2 " + prefix + "opticalCenter = (" +
                    list({"cx", "cy"}, ", ") + ")\nfloat " + prefix +
-                   "maxFov = " + number(2 * degrees(own.widest_field_rad)) + '\n';
+                   "maxFov = " + to_text(2 * degrees(own.widest_field_rad)) + '\n';
         } else {
           lines += "int2 " + prefix + "imageSize = (" + std::to_string(film.columns) + ", " +
                    std::to_string(film.rows) + ")\n";
         }
-        for (const auto& [name, value] : values) lines += "float " + prefix + name + " = " + number(value) + '\n';
+        for (const auto& [name, value] : values) lines += "float " + prefix + name + " = " + to_text(value) + '\n';
         return lines;
       };
       if (own.name == "opencv_12")

@@ -268,6 +268,7 @@ petzval_status petzval_camera_get_info(const petzval_camera* camera, petzval_cam
     found.units_per_mm = own.frame.units_per_mm();
     const auto [shortest, longest] = std::ranges::minmax(own.camera.lens().wavelengths_nm());
     found.shortest_nm = shortest, found.longest_nm = longest;
+    found.wavelength_count = static_cast<std::int64_t>(own.camera.lens().wavelengths_nm().size());
     send(found, info, "petzval_camera_info");
   });
 }

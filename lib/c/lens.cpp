@@ -3,6 +3,7 @@
 #include <limits>
 #include <span>
 
+#include "camera/lens_facts.hpp"
 #include "handles.hpp"
 #include "petzval/analysis/choose_model.hpp"
 #include "petzval/core/geometry.hpp"
@@ -248,7 +249,7 @@ petzval_status petzval_lens_get_info(const petzval_lens* handle, petzval_lens_in
     found.primary_wavelength = static_cast<std::int64_t>(lens.primary_wavelength());
     found.stop = lens.stop() ? static_cast<std::int64_t>(*lens.stop()) : -1;
     found.index_error = lens.index_error();
-    found.has_cylinders = std::ranges::any_of(lens.surfaces(), [](auto& s) { return s.curved_in != Section::both; });
+    found.has_cylinders = camera_detail::has_cylinders(lens);
     found.has_moving_groups = !lens.focus_positions().empty();
     send(found, info, "petzval_lens_info");
   });

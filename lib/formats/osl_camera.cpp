@@ -29,7 +29,7 @@ namespace {
 
 constexpr std::size_t focus_nodes = 33, stop_nodes = 9, rings = 12, light_nodes = 5;
 constexpr double box_scale = 1.02;  ///< enlarges boxes around pupils, because they are computed from samples
-constexpr int azimuths = 5;         ///< of the film points of a lens with cylinders, from +y to +x
+constexpr int azimuths = 5;         ///< film points of a lens with cylinders, from +y to +x
 
 /// A number that reads back as the same float, with a point so that it is not an integer.
 std::string number(double value) {
@@ -112,7 +112,7 @@ class OslCamera {
   double nearest_ = 0;                         ///< distance from the origin of the last focus node, mm
   double film_radius_ = 0;                     ///< half diagonal of the largest film, mm
   std::vector<double> stop_radii_;             ///< by f-number, a stop apart, mm
-  std::map<std::string, std::string> values_;  ///< of the names in the template
+  std::map<std::string, std::string> values_;  ///< values of the names in the template
 };
 
 OslCamera::OslCamera(const Lens& lens, const std::optional<Film>& film) : lens_(with_iris(lens, Iris{})) {
@@ -275,7 +275,8 @@ void OslCamera::set_focus_and_stop() {
 }
 
 void OslCamera::set_boxes() {
-  // Pupils change with wavelength monotonically, so that the first, the last and the primary wavelength bound them.
+  // Pupils change with wavelength monotonically, so that the first, the last and the primary wavelength give their
+  // bounds.
   const auto nm = lens_.wavelengths_nm();
   const auto [first, last] = std::ranges::minmax(nm);
   const std::set<std::size_t> wavelengths{lens_.primary_wavelength(), lens_.wavelength(first), lens_.wavelength(last)};

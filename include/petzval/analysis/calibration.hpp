@@ -17,8 +17,8 @@ class Camera;
 /// A camera in the model of another program: its parameters, with the error of the model over the picture.
 ///
 /// Let theta be the field angle and t its tangent, f the focal length in pixels, and r the distance from the optical
-/// centre in pixels. Tangential terms are 0. The optical centre (cx, cy) is a raster position; models of OpenCV count
-/// it from the centre of the first pixel, as OpenCV does.
+/// centre in pixels. Tangential terms are 0. The optical centre (cx, cy) is a raster position; for models of OpenCV it
+/// counts from the centre of the first pixel.
 ///
 /// | name | model |
 /// |---|---|
@@ -31,12 +31,12 @@ class Camera;
 /// | lensfun_pa | relative illumination 1 + k1 r^2 + k2 r^4 + k3 r^6, with r relative to half of the diagonal |
 /// | lensfun_tca_NM | r'(NM) = r' (b r'^2 + c r' + v): lateral colour of one wavelength relative to the primary one |
 ///
-/// For Lensfun, q is proportional to t (or to theta: `mapping` is "fisheye"). lensfun_pa has errors as fractions of the
-/// irradiance on the axis, instead of pixels.
+/// For Lensfun, q is proportional to t, or to theta if the picture reaches a field of 85 degrees.
 struct Calibration {
   std::string name;
   std::vector<std::pair<std::string, double>> values;  ///< parameters in the order and with the names of the program
   double rms = 0, largest = 0;                         ///< errors over the lit part of the picture, pixels
+  bool of_irradiance = false;                          ///< true: errors are fractions of the irradiance on the axis
   double widest_field_rad = 0;                         ///< field angle of the farthest lit point of the picture
 
   /// The value with a name. @throws Error if there is no such value
@@ -50,10 +50,10 @@ struct Calibration {
 ///
 /// @param camera        an upright film without shift; a lens of revolution; square pixels
 /// @param subject_z_mm  as in LensDistortion; unset: the plane in focus
-/// @throws Error        if LensDistortion does, or if the camera is none of the above
+/// @throws Error        if LensDistortion does, or if the camera does not meet these conditions
 PETZVAL_API std::vector<Calibration> calibrations(const Camera& camera, std::optional<double> subject_z_mm = {});
 
-/// A calibration in the format of its program, one or more lines; empty if there is none for its name.
+/// A calibration in the format of its program, one or more lines; empty if the format does not have this model.
 ///
 /// COLMAP: a line of cameras.txt with the number 1. Lensfun: an element of the database. OpenCV: YAML as written by
 /// cv::FileStorage. kannala_brandt, f_theta, opencv_fisheye and opencv_12 for `usd`: attributes of a camera prim with
