@@ -10,6 +10,7 @@
 #include <string>
 
 #include "commands.hpp"
+#include "export_maps.hpp"
 #include "petzval/analysis/calibration.hpp"
 #include "petzval/camera/camera.hpp"
 #include "petzval/core/error.hpp"
@@ -64,7 +65,9 @@ void write(const Options& options) {
   const petzval::Lens lens = examples::focused(loaded, options.setup);
   const petzval::Film film = options.setup.film(options.columns, options.rows, 1920);
   const petzval::Camera camera(lens, film, {.model = petzval::ModelKind::exact_double});
-  const std::vector<petzval::Calibration> all = petzval::calibrations(camera);
+  std::vector<petzval::Calibration> all = petzval::calibrations(camera);
+  const petzval::OmniverseTables tables = petzval::omniverse_tables(camera, {}, 2049, examples::threads());
+  all.push_back(tables.fit);
   examples::make_folder(options.calibration);
   const std::filesystem::path stem = std::filesystem::path(options.calibration) / loaded.id;
   const auto written = [&](const std::string& ending, const std::string& text) {
@@ -72,6 +75,8 @@ void write(const Options& options) {
     examples::write_text(file, text);
     options.output.file(file);
   };
+  const std::filesystem::path enter = stem.string() + ".omniverse.enter.exr",
+                              exit = stem.string() + ".omniverse.exit.exr";
   json rows = json::array();
   for (const petzval::Calibration& one : all) {
     json values = json::array();
@@ -86,7 +91,9 @@ void write(const Options& options) {
   for (const Format& format : formats) {
     std::string joined;
     for (const petzval::Calibration& one : all) {
-      const std::string text = format_calibration(one, camera, format.format);
+      const bool lut = one.name == tables.fit.name && format.format == petzval::CalibrationFormat::usd;
+      const std::string text = lut ? tables.usd(enter.filename().string(), exit.filename().string())
+                                   : format_calibration(one, camera, format.format);
       if (text.empty()) continue;
       if (!format.comment) {
         written(one.name + '.' + format.ending, text);
@@ -99,6 +106,8 @@ void write(const Options& options) {
     }
     if (!joined.empty()) written(format.ending, joined);
   }
+  commands::write_omniverse(tables, enter, exit);
+  options.output.file(enter), options.output.file(exit);
   options.output.report(
       {{"lens", lens.name()}, {"columns", film.columns}, {"rows", film.rows}, {"calibrations", std::move(rows)}});
 }
@@ -114,7 +123,8 @@ int commands::export_camera(int argc, char** argv) {
   examples::add_lens(app, options.lens_file);
   examples::add_out_folder(
       app, options.calibration,
-      "folder for the calibrations: OpenCV (.yml), COLMAP (.colmap.txt), Lensfun (.lensfun.xml), USD (.usda.txt)",
+      "folder for the calibrations: OpenCV (.yml), COLMAP (.colmap.txt), Lensfun (.lensfun.xml), USD (.usda.txt), "
+      "tables of Omniverse (.omniverse.enter.exr, .omniverse.exit.exr)",
       "--calibration")
       ->required();
   examples::add_camera(app, options.setup);

@@ -7,11 +7,8 @@
 #include <functional>
 #include <numbers>
 
-#include "camera/camera_data.hpp"
-#include "camera/lens_facts.hpp"
-#include "core/low_discrepancy.hpp"
+#include "analysis/radial_picture.hpp"
 #include "core/text.hpp"
-#include "petzval/analysis/distortion.hpp"
 #include "petzval/camera/camera.hpp"
 #include "petzval/core/error.hpp"
 #include "petzval/lens/lens.hpp"
@@ -34,59 +31,6 @@ struct Node {
 double fraction_inside(double radius, double half_width, double half_height) {
   const auto outside = [&](double half) { return radius > half ? std::acos(half / radius) : 0.0; };
   return std::max(0.0, 1 - 2 * (outside(half_width) + outside(half_height)) / std::numbers::pi);
-}
-
-/// Direction from the centre of the picture to its upper right corner: to the right and up.
-Vec2<double> unit_corner(const Film& film) {
-  const double length = std::hypot(film.columns, film.rows);
-  return {film.columns / length, film.rows / length};
-}
-
-/// Field angle of each distance in the picture, from chief rays towards the upper right corner of the picture.
-class Profile {
- public:
-  Profile(const Camera& camera, double subject_distance, double pupil_z, Wavelength wavelength)
-      : camera_(camera), distance_(subject_distance), pupil_z_(pupil_z), wavelength_(wavelength) {}
-
-  /// Distance from the centre of the picture, pixels; nullopt if no chief ray arrives.
-  std::optional<double> radius(double field) const {
-    const Vec2<double> corner = unit_corner(camera_.film());
-    const double across = distance_ * std::sin(field);
-    const Vec3<double> point{across * corner.x, across * corner.y, pupil_z_ - distance_ * std::cos(field)};
-    const Projection found = camera_.project(point, wavelength_);
-    if (found.status == ProjectionStatus::not_visible) return {};
-    const Film& film = camera_.film();
-    return corner.x * (found.raster.x - film.columns / 2.0) + corner.y * (film.rows / 2.0 - found.raster.y);
-  }
-  /// Field angle of a distance, by bisection below a field whose distance is larger.
-  std::optional<double> field(double radius_px, double widest) const {
-    double near = 0, far = widest;
-    for (int i = 0; i < 60; ++i) {
-      const double middle = (near + far) / 2;
-      const auto found = radius(middle);
-      (found && *found < radius_px ? near : far) = middle;
-    }
-    const auto found = radius(far);
-    if (!found || std::abs(*found - radius_px) > 1e-3) return {};
-    return far;
-  }
-
- private:
-  const Camera& camera_;
-  double distance_, pupil_z_;
-  Wavelength wavelength_;
-};
-
-/// Irradiance of a film point towards the corner, at the primary wavelength.
-double irradiance(const Camera& camera, double radius_mm) {
-  constexpr std::size_t count = 512;
-  const Vec2<double> corner = unit_corner(camera.film());
-  double sum = 0;
-  for (std::size_t i = 0; i < count; ++i) {
-    const auto [u, v] = core_detail::fibonacci_point(i, count);
-    sum += camera.sample({.film = {-radius_mm * corner.x, -radius_mm * corner.y}, .pupil_u = u, .pupil_v = v}).weight;
-  }
-  return sum / count;
 }
 
 /// Weighted linear least squares: row i of the design has weight weights[i].
@@ -308,43 +252,25 @@ double Calibration::value(std::string_view wanted) const {
 }
 
 std::vector<Calibration> calibrations(const Camera& camera, std::optional<double> subject_z_mm) {
+  const analysis_detail::RadialPicture picture(camera, subject_z_mm);
   const Film& film = camera.film();
   const Lens& lens = camera.lens();
-  const std::string where = lens.name() + ": calibration: ";
-  if (camera_detail::has_cylinders(lens)) throw Error(where + "the lens has cylinders; must be a lens of revolution");
-  if (film.tilted() || film.shift_x_mm != 0 || film.shift_y_mm != 0 || film.travel_mm != 0) {
-    throw Error(where + "the film is tilted, shifted or travels; must be upright and fixed");
-  }
-  const double pixel = film.height_mm / film.rows;
-  if (std::abs(film.width_mm / film.columns / pixel - 1) > 1e-6) throw Error(where + "pixels are not square; must be");
-  const LensDistortion distortion(camera, subject_z_mm);
-  const double pupil_z = distortion.pinhole().z_mm;
-  const double distance = std::min(pupil_z - distortion.pinhole().subject_z_mm, 1e9);
   const double half_width = film.columns / 2.0, half_height = film.rows / 2.0;
-  const double corner = std::hypot(half_width, half_height), on_axis = irradiance(camera, 0);
-  const Profile primary(camera, distance, pupil_z, {});
-
-  // The widest field whose chief ray still arrives within the picture.
-  double widest = 0;
-  for (double field = radians(0.5); field < radians(130); field += radians(0.5)) {
-    const auto found = primary.radius(field);
-    if (!found || !(*found > 0)) break;
-    widest = field;
-    if (*found > corner) break;
-  }
+  const double corner = picture.corner, on_axis = analysis_detail::irradiance(camera, 0);
   constexpr int count = 200;
   std::vector<Node> nodes;
   for (int i = 1; i <= count; ++i) {
     Node node{.radius = corner * (i - 0.5) / count};
-    const auto field = primary.field(node.radius, widest);
+    const auto field = picture.primary.field(node.radius, picture.widest);
     if (!field) break;
-    node.illumination = irradiance(camera, node.radius * pixel) / on_axis;
+    node.illumination = analysis_detail::irradiance(camera, node.radius * film.pixel_mm()) / on_axis;
     if (!(node.illumination > 0)) break;
     node.field = *field;
     node.weight = node.radius * fraction_inside(node.radius, half_width, half_height);
     nodes.push_back(node);
   }
-  if (nodes.size() < 20) throw Error(where + "the picture is dark outside its centre; must be lit");
+  if (nodes.size() < 20)
+    throw Error(lens.name() + ": calibration: the picture is dark outside its centre; must be lit");
   const Fits fits(camera, std::move(nodes));
   std::vector<Calibration> result;
   if (fits.widest() < radians(85)) {
@@ -358,7 +284,7 @@ std::vector<Calibration> calibrations(const Camera& camera, std::optional<double
   const double half = std::min(half_width, half_height);
   for (std::size_t w = 0; w < lens.wavelengths_nm().size(); ++w) {
     if (w == lens.primary_wavelength()) continue;
-    const Profile own(camera, distance, pupil_z, w);
+    const analysis_detail::ChiefProfile own = picture.at(w);
     const auto ratio = [&](const Node& node) { return own.radius(node.field).value_or(node.radius); };
     const VectorXd c = fits.radial([=](const Node& node) { return node.radius / half; }, {1, 2, 3},
                                    [&](const Node& node) { return ratio(node) / half; });

@@ -188,5 +188,77 @@ TEST(Calibration, CamerasWithoutARadialModelAreRefused) {
       Error);
 }
 
+/// Direction of a texel of the exit table, written from its description.
+Vec3<double> exit_direction(const OmniverseTables& tables, int column, int row) {
+  double x = (2.0 * column + 1) / tables.exit_size - 1, y = (2.0 * row + 1) / tables.exit_size - 1;
+  const double forward = 1 - std::abs(x) - std::abs(y);
+  if (forward < 0) {
+    const double outer = (1 - std::abs(y)) * (x < 0 ? -1 : 1);
+    y = (1 - std::abs(x)) * (y < 0 ? -1 : 1), x = outer;
+  }
+  const double length = std::sqrt(x * x + y * y + forward * forward);
+  return {x / length, y / length, -forward / length};
+}
+
+TEST(OmniverseTables, BothTablesFollowTheProjectionOfTheCamera) {
+  for (const char* const id : {"double_gauss_52mm_f1.8", "fisheye_6.3mm_f2.8"}) {
+    SCOPED_TRACE(id);
+    const Camera camera = camera_of(id);
+    const OmniverseTables tables = omniverse_tables(camera, {}, 513);
+    const double pupil_z = pupils(camera.lens()).entrance.z, subject = pupil_z + 1e6;
+    const auto seen = [&](const Vec3<double>& d) { return camera.project(Vec3<double>{0, 0, pupil_z} + subject * d); };
+    std::mt19937 random(5);
+    int lit = 0, found = 0, beyond_90 = 0;
+    for (int i = 0; i < 1000; ++i) {
+      const int column = static_cast<int>(random() % 1920), row = static_cast<int>(random() % 1280);
+      const float* const texel = &tables.directions[3 * (static_cast<std::size_t>(row) * 1920 + column)];
+      const Vec3<double> d{texel[0], texel[1], texel[2]};
+      EXPECT_NEAR(std::hypot(d.x, d.y, d.z), 1, 1e-6);
+      if (d.z == 1) continue;
+      const Projection at = seen(d);
+      if (at.status != ProjectionStatus::converged) continue;
+      EXPECT_NEAR(at.raster.x, column + 0.5, 2e-3);
+      EXPECT_NEAR(at.raster.y, row + 0.5, 2e-3);
+      ++lit, beyond_90 += d.z > 0;
+    }
+    for (int i = 0; i < 30000; ++i) {
+      const int column = static_cast<int>(random() % 513), row = static_cast<int>(random() % 513);
+      const float* const texel = &tables.positions[2 * (static_cast<std::size_t>(row) * 513 + column)];
+      const Projection at = seen(exit_direction(tables, column, row));
+      if (at.status != ProjectionStatus::converged) continue;
+      EXPECT_NEAR(texel[0] * 1920, at.raster.x, 2e-3);
+      EXPECT_NEAR(texel[1] * 1280, at.raster.y, 2e-3);
+      ++found;
+    }
+    const bool fisheye = std::string(id).starts_with("fisheye");
+    EXPECT_GT(lit, fisheye ? 300 : 990);
+    EXPECT_GT(found, 500);
+    EXPECT_EQ(beyond_90 > 10, fisheye);
+    EXPECT_EQ(tables.fit.widest_field_rad > radians(95), fisheye);
+    EXPECT_EQ(tables.directions[2] == 1, fisheye);  // the corner of the picture is dark
+  }
+}
+
+TEST(OmniverseTables, ErrorFallsWithTheSquareOfTheSize) {
+  const Camera camera = camera_of("double_gauss_52mm_f1.8");
+  const Calibration coarse = omniverse_tables(camera, {}, 257).fit, fine = omniverse_tables(camera, {}, 513).fit;
+  EXPECT_NEAR(coarse.rms / fine.rms, 4, 0.4);
+  EXPECT_GT(coarse.largest, coarse.rms);
+  EXPECT_LT(fine.largest, 0.1);
+  const Calibration fisheye = omniverse_tables(camera_of("fisheye_6.3mm_f2.8")).fit;
+  EXPECT_LT(fisheye.rms, 0.005);
+  EXPECT_LT(fisheye.largest, 0.2);
+  EXPECT_LT(fisheye.value("left_out"), 0.005);
+  EXPECT_THROW(omniverse_tables(camera, {}, 2), Error);
+}
+
+TEST(OmniverseTables, AttributesNameTheFiles) {
+  const OmniverseTables tables = omniverse_tables(camera_of("double_gauss_52mm_f1.8"), {}, 65);
+  const std::string text = tables.usd("a.exr", "b.exr");
+  EXPECT_NE(text.find("rayEnterDirectionTexture = @./a.exr@"), std::string::npos) << text;
+  EXPECT_NE(text.find("rayExitPositionTexture = @./b.exr@"), std::string::npos) << text;
+  EXPECT_NE(text.find("opticalCenter = (960, 640)"), std::string::npos) << text;
+}
+
 }  // namespace
 }  // namespace petzval

@@ -33,7 +33,7 @@ class Camera;
 ///
 /// For Lensfun, q is proportional to t, or to theta if the picture reaches a field of 85 degrees.
 struct Calibration {
-  std::string name;
+  std::string name{};
   std::vector<std::pair<std::string, double>> values;  ///< parameters in the order and with the names of the program
   double rms = 0, largest = 0;                         ///< errors over the lit part of the picture, pixels
   bool of_irradiance = false;                          ///< true: errors are fractions of the irradiance on the axis
@@ -61,5 +61,41 @@ PETZVAL_API std::vector<Calibration> calibrations(const Camera& camera, std::opt
 enum class CalibrationFormat { opencv, colmap, lensfun, usd };
 PETZVAL_API std::string format_calibration(const Calibration& calibration, const Camera& camera,
                                            CalibrationFormat format);
+
+/// The two tables of Omniverse's lens distortion by look-up tables (OmniLensDistortionLutAPI), for any lens of
+/// revolution up to fisheyes beyond 90 degrees.
+///
+/// Directions are unit vectors of the camera frame: +x to the right, +y up, -z forward. Positions are fractions of the
+/// picture from its upper left corner. Textures are read between the centres of texels, rows from the top.
+///
+/// The meaning of the tables follows docs.omniverse.nvidia.com (omni.usd.schema.omni_lens_distortion 1.0.0) and
+/// NVIDIA's answer at forums.developer.nvidia.com/t/365174: RGB is the direction into the scene for a position, RG is
+/// the position for the octahedral coordinates of a direction. Assumptions, because these pages do not state them, from
+/// the exporter of github.com/Munna-Manoj/DS-MSP, whose authors report tests in Isaac Sim 6.0: texel (column, row) of
+/// the exit table has the octahedral coordinates x = (2 column + 1) / size - 1 to the right and y = (2 row + 1) / size
+/// - 1 up, with -z in the centre; (0, 0, 1) marks a dark position and -1 a direction without a position; the optical
+/// centre is half of the nominal size. petzval's tests do not run Omniverse.
+struct OmniverseTables {
+  int columns = 0, rows = 0, exit_size = 0;
+  std::vector<float> directions{};  ///< rayEnterDirectionTexture: x, y, z of columns x rows texels
+  std::vector<float> positions{};   ///< rayExitPositionTexture: u, v of exit_size x exit_size texels
+  /// "omniverse_lut": errors of a picture position that goes through both tables and back to a position, pixels. The
+  /// value left_out is the fraction of lit positions next to a texel without a value.
+  Calibration fit{};
+
+  /// Attributes of a camera prim that name the two files.
+  PETZVAL_API std::string usd(std::string_view enter_file, std::string_view exit_file) const;
+};
+
+/// Computes the tables from chief rays.
+///
+/// @param camera        as in calibrations()
+/// @param subject_z_mm  as in LensDistortion; unset: the plane in focus
+/// @param exit_size     texels along each side of the exit table, at least 3; an odd number puts centres of texels on
+///                      the creases of the octahedron
+/// @param threads       at least 1
+/// @throws Error        if calibrations() does, or exit_size or threads is too small
+PETZVAL_API OmniverseTables omniverse_tables(const Camera& camera, std::optional<double> subject_z_mm = {},
+                                             int exit_size = 2049, int threads = 1);
 
 }  // namespace petzval
