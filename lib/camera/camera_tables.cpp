@@ -4,203 +4,204 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numbers>
+#include <span>
 #include <string>
 
 #include "camera/polynomial_model.hpp"
 #include "camera_data.hpp"
 #include "lens/lens_view.hpp"
 #include "make_model.hpp"
-#include "paraxial_model.hpp"
 #include "petzval/core/error.hpp"
+#include "petzval/petzval_camera.h"
+#include "scene_side.hpp"
 
 namespace petzval {
 namespace {
 
-using Table = CameraTables;
-constexpr float unlimited = 3e38f;
-
 /// The array under construction.
 class Numbers {
  public:
-  std::vector<float> list = std::vector<float>(Table::head_size, 0.0f);
+  std::vector<float> list = std::vector<float>(PZ_HEAD, 0.0f);
 
   template <class T>
-  void set(Table::Position at, T value) {
+  void set(std::size_t at, T value) {
     list[at] = static_cast<float>(value);
   }
-  /// Starts the list of `at`: stores the position of the next number.
-  void begin(Table::Position at) { set(at, list.size()); }
-  void add(double value) { list.push_back(static_cast<float>(value)); }
-  void add(std::span<const double> values) {
-    for (const double value : values) add(value);
+  /// Starts a list: stores the position of the next number at `at`.
+  void begin(std::size_t at) { set(at, list.size()); }
+  /// Numbers beyond the range of float become the largest numbers of a table.
+  void add(double value) {
+    constexpr double largest = 3.2e38;
+    list.push_back(static_cast<float>(std::clamp(value, -largest, largest)));
+  }
+  template <class Values>
+  void add_all(const Values& values) {
+    for (const auto value : values) add(double{value});
   }
 };
 
-void put_maps(Numbers& to, const camera_detail::ParaxialModel& model) {
-  to.set(Table::rays_kind, 0);
-  to.set(Table::reference_z, model.z());
-  for (const camera_detail::SectionMaps& maps : model.maps()) to.add(maps.numbers());
+/// Powers of the coordinate t for a function of t in [-1, 1]: interpolation at the Chebyshev nodes.
+template <class Function>
+std::array<double, 8> powers_of(const Function& function) {
+  constexpr std::size_t n = 8;
+  std::array<double, n> node, divided;
+  for (std::size_t i = 0; i < n; ++i) {
+    node[i] = std::cos(std::numbers::pi * (2 * static_cast<double>(i) + 1) / (2 * n));
+    divided[i] = function(node[i]);
+  }
+  for (std::size_t k = 1; k < n; ++k) {
+    for (std::size_t i = n - 1; i >= k; --i) divided[i] = (divided[i] - divided[i - 1]) / (node[i] - node[i - k]);
+  }
+  std::array<double, n> powers{};
+  for (std::size_t k = n; k-- > 0;) {  // p = p (t - node) + divided
+    for (std::size_t i = n - 1; i > 0; --i) powers[i] = powers[i - 1] - node[k] * powers[i];
+    powers[0] = divided[k] - node[k] * powers[0];
+  }
+  return powers;
 }
 
-void put_polynomial(Numbers& to, const RayPolynomial& polynomial) {
-  const RayPolynomial::Domain& domain = polynomial.domain();
-  to.set(Table::rays_kind, 1);
-  to.set(Table::reference_z, domain.reference_z);
-  to.set(Table::degree, polynomial.degree());
-  to.set(Table::domain_film_radius, domain.film_radius);
-  to.set(Table::domain_pupil_shift, domain.pupil_shift);
-  to.set(Table::domain_pupil_radius, domain.pupil_radius);
-  if (domain.along_x) {
-    to.set(Table::domain_pupil_shift_x, domain.along_x->pupil_shift);
-    to.set(Table::domain_pupil_radius_x, domain.along_x->pupil_radius);
+/// Numbers by wavelength (pz_number()): for compiled wavelengths, and as polynomials for the others.
+void put_wavelengths(Numbers& to, const CameraAccess::Data& data, bool scene) {
+  const Lens& lens = data.lens;
+  const std::size_t count = lens.surface_count(), wavelengths = lens.wavelengths_nm().size();
+  to.set(PZ_WAVELENGTH_COUNT, wavelengths);
+  to.set(PZ_PRIMARY, lens.primary_wavelength());
+  to.begin(PZ_WAVELENGTHS), to.add_all(lens.wavelengths_nm());
+  to.set(PZ_NUMBER_COUNT, 4 + 2 * count + 1);
+  const auto facts_at = [&](Wavelength wavelength) {
+    const auto facts = scene ? data.scene().facts_at(wavelength) : camera_detail::SceneSide::Facts{};
+    return std::array{data.wavelengths.scale(wavelength), facts.we, facts.density, facts.entrance_area};
+  };
+  to.begin(PZ_NUMBERS);
+  for (std::size_t w = 0; w < wavelengths; ++w) {
+    to.add_all(facts_at(w));
+    const auto square = [&](std::size_t space) { return lens.index(space, w) * lens.index(space, w); };
+    for (std::size_t space = 0; space <= count; ++space) to.add(square(space));
+    for (std::size_t i = 0; i < count; ++i) {
+      to.add((lens.index(i + 1, w) - lens.index(i, w)) * (lens.index(i + 1, w) + lens.index(i, w)));
+    }
   }
-  for (const RayPolynomial::Fit& fit : polynomial.fits()) {
-    to.add(fit.direction_by_film), to.add(fit.direction_by_pupil);
-    to.add(fit.offset_by_film), to.add(fit.offset_by_pupil);
+  to.begin(PZ_POWERS);
+  const auto& sequence = kernel::view<double>(lens).sequence_to_film;
+  const auto& coordinate = sequence.coordinate;
+  // Empty if indices between the compiled wavelengths are unknown.
+  to.set(PZ_SHORTEST, coordinate.shortest), to.set(PZ_LONGEST, coordinate.longest);
+  if (!(coordinate.shortest <= coordinate.longest) || wavelengths == 1) return;
+  to.set(PZ_T_SCALE, coordinate.scale), to.set(PZ_T_OFFSET, coordinate.offset);
+  for (std::size_t k = 0; k < 4; ++k) {
+    to.add_all(powers_of([&](double t) {
+      const double nm = coordinate.scale / (t + coordinate.offset);
+      return facts_at(Wavelength::nm(std::clamp(nm, coordinate.shortest, coordinate.longest)))[k];
+    }));
+  }
+  for (std::size_t space = 0; space <= count; ++space) to.add_all(sequence.media[space].by_power);
+  for (std::size_t i = 0; i < count; ++i) {
+    for (std::size_t p = 0; p < 8; ++p) to.add(sequence.media[i + 1].by_power[p] - sequence.media[i].by_power[p]);
   }
 }
 
 void put_surfaces(Numbers& to, const Lens& lens) {
-  to.set(Table::rays_kind, 2);
-  to.set(Table::surface_count, lens.surface_count());
-  for (std::size_t i = 0; i < lens.surface_count(); ++i) {
-    const LensSurface& s = lens.surfaces()[i];
-    const bool limited = std::isfinite(s.semi_diameter) && s.semi_diameter > 0;
-    const double height = limited ? s.semi_diameter : 1;
-    to.add(std::array{s.vertex_z, s.curvature, s.conic});
-    to.add(std::isfinite(s.semi_diameter) ? s.semi_diameter : double{unlimited});
-    to.add(std::array{s.obscuration_semi_diameter, s.mirror ? 1.0 : 0.0, lens.stop() == i ? 1.0 : 0.0});
-    to.add(std::array{s.curved_in == Section::x ? 1.0 : s.curved_in == Section::y ? 2.0 : 0.0, height});
-    std::array<double, Table::surface_size - 9> terms{};
-    for (const auto& [order, coefficient] : s.aspheric) {
-      terms[static_cast<std::size_t>(order) - 2] += coefficient * std::pow(height, order);
-    }
-    to.add(terms);
+  const auto& view = kernel::view<float>(lens);
+  const std::size_t count = lens.surface_count();
+  to.set(PZ_SURFACE_COUNT, count);
+  to.set(PZ_MIRRORS, std::ranges::count_if(lens.surfaces(), [](const LensSurface& s) { return s.mirror; }));
+  to.begin(PZ_SURFACES);
+  const std::size_t first = to.list.size();
+  for (std::size_t i = 0; i < count; ++i) {
+    const auto& [quadric, gap, rim2, dark2, asphere, mirror, sense] = view.surfaces[i];
+    to.add_all(std::array{view.vertex_z[i], gap, quadric.curvature, quadric.e, quadric.ax, quadric.ay, rim2, dark2});
+    to.add_all(std::array{mirror ? 1.0 : 0.0, lens.stop() == i ? 1.0 : 0.0, 0.0, 0.0});
   }
-  to.begin(Table::indices);
-  for (std::size_t w = 0; w < lens.wavelengths_nm().size(); ++w) {
-    for (std::size_t space = 0; space <= lens.surface_count(); ++space) to.add(lens.index(space, w));
+  for (std::size_t i = 0; i < count; ++i) {
+    if (view.surfaces[i].asphere < 0) continue;
+    const auto& asphere = view.aspheres[view.surfaces[i].asphere];
+    to.begin(first + PZ_SURFACE_SIZE * i + 10);
+    const auto even = static_cast<std::size_t>(asphere.even_count), odd = static_cast<std::size_t>(asphere.odd_count);
+    to.add_all(std::array{double{asphere.height}, double{asphere.rim2}, static_cast<double>(even)});
+    to.add(static_cast<double>(odd));
+    to.add_all(std::span(asphere.even).first(even)), to.add_all(std::span(asphere.odd).first(odd));
   }
-  to.begin(Table::edges);
+  to.begin(PZ_EDGES);
   const auto iris = kernel::view<double>(lens).iris;
-  to.set(Table::edge_count, iris.size());
-  for (const auto& [nx, ny, bend, distance] : iris) to.add(std::array{nx, ny, bend, distance});
+  to.set(PZ_BLADES, iris.size());
+  for (const auto& [nx, ny, bend, distance] : iris) to.add_all(std::array{nx, ny, bend, distance});
+}
+
+void put_polynomial(Numbers& to, const RayPolynomial& polynomial) {
+  const RayPolynomial::Domain& domain = polynomial.domain();
+  to.set(PZ_RAYS, 1);
+  to.set(PZ_REFERENCE_Z, domain.reference_z);
+  to.set(PZ_DEGREE, polynomial.degree());
+  to.set(PZ_DOMAIN_FILM, domain.film_radius);
+  const auto along_x = domain.along_x.value_or(RayPolynomial::Domain::Section{domain.pupil_shift, domain.pupil_radius});
+  to.set(PZ_DOMAIN_SHIFT_X, along_x.pupil_shift), to.set(PZ_DOMAIN_RADIUS_X, along_x.pupil_radius);
+  to.set(PZ_DOMAIN_SHIFT_Y, domain.pupil_shift), to.set(PZ_DOMAIN_RADIUS_Y, domain.pupil_radius);
+  to.begin(PZ_TERMS);
+  for (const RayPolynomial::Fit& fit : polynomial.fits()) {
+    to.add_all(fit.direction_by_film), to.add_all(fit.direction_by_pupil);
+    to.add_all(fit.offset_by_film), to.add_all(fit.offset_by_pupil);
+  }
+}
+
+void put_film(Numbers& to, const CameraAccess::Data& data) {
+  const TwoPlanes& space = data.model.pupils().space();
+  to.set(PZ_FILM_Z, space.film_z), to.set(PZ_PUPIL_Z, space.pupil_z);
+  to.set(PZ_FILM_X, data.film.shift_x_mm), to.set(PZ_FILM_Y, data.film.shift_y_mm);
+  to.set(PZ_FILM_WIDTH, data.film.width_mm), to.set(PZ_FILM_HEIGHT, data.film.height_mm);
+  to.set(PZ_MARGIN, data.film.margin_mm);
+  to.set(PZ_COLUMNS, data.film.columns), to.set(PZ_ROWS, data.film.rows);
+  to.set(PZ_FRONT_Z, data.front.vertex_z), to.set(PZ_FRONT_CURVATURE, data.front.curvature);
+  to.set(PZ_FRONT_FIRST, data.front.first_surface ? 1 : 0);
+}
+
+void put_pupils(Numbers& to, const FilmPupilArrays& pupils) {
+  to.set(PZ_PUPIL_DIMENSIONS, pupils.dimensions);
+  to.set(PZ_REACH, pupils.reach), to.set(PZ_ROWS_PER_MM, pupils.rows_per_mm);
+  to.set(PZ_PUPIL_ROWS, pupils.rows), to.set(PZ_PUPIL_COLUMNS, pupils.columns);
+  to.set(PZ_CELL_SIZE, pupils.cell_size), to.set(PZ_OBSCURED, pupils.obscured ? 1 : 0);
+  to.set(PZ_CORRECTIONS, pupils.corrections), to.set(PZ_STOP_SIZE, pupils.stop_size);
+  to.set(PZ_IRIS_AREA, pupils.iris_area);
+  to.begin(PZ_HALF_WIDTHS), to.add_all(pupils.half_widths);
+  to.begin(PZ_CELLS), to.add_all(pupils.cells);
+  to.begin(PZ_STOPS), to.add_all(pupils.stops);
+  to.begin(PZ_IRIS), to.add_all(pupils.iris);
+}
+
+void put_entrance(Numbers& to, const EntrancePupilArrays& entrance) {
+  to.set(PZ_SCENE_DIMENSIONS, entrance.dimensions);
+  to.set(PZ_CENTRE_Z, entrance.centre_z), to.set(PZ_STEEPEST, entrance.steepest);
+  to.set(PZ_FRONT_HALF, entrance.front_half), to.set(PZ_NODE_SIZE, entrance.node_size);
+  to.begin(PZ_BALLS), to.add_all(entrance.balls);
+  to.begin(PZ_WIDEST), to.add_all(entrance.widest);
+  to.begin(PZ_NODES), to.add_all(entrance.nodes);
 }
 
 }  // namespace
 
-void CameraTables::check(std::span<const float> tables, const std::string& where) {
-  const auto refuse = [&](const std::string& found) { throw Error(where + ": found " + found); };
-  if (tables.size() < head_size || tables[format] != 4) refuse("something else; must be camera tables of format 4");
-  const auto number = [&](Position at) {
-    const float value = tables[at];
-    if (!(value >= 0 && value <= 1 << 24 && value == std::floor(value))) {
-      refuse(std::to_string(value) + " at position " + std::to_string(at) + "; must be a whole number");
-    }
-    return static_cast<std::size_t>(value);
-  };
-  const auto check_list = [&](Position at, std::size_t size) {
-    const std::size_t begin = number(at);
-    if (begin >= head_size && begin + size <= tables.size()) return;
-    refuse("a list of " + std::to_string(size) + " numbers that begins at " + std::to_string(begin) + " (position " +
-           std::to_string(at) + "); must lie between " + std::to_string(std::size_t{head_size}) + " and " +
-           std::to_string(tables.size()));
-  };
-  const auto check_number = [&](Position at, std::size_t least, std::size_t most) {
-    if (const std::size_t value = number(at); value < least || value > most) {
-      refuse(std::to_string(value) + " at position " + std::to_string(at) + "; must be " + std::to_string(least) +
-             " to " + std::to_string(most));
-    }
-  };
-  check_number(model, 0, models().size());
-  check_number(wavelength_count, 1, 1 << 16);
-  check_number(primary_wavelength, 0, number(wavelength_count) - 1);
-  const std::size_t w = number(wavelength_count), spaces = number(surface_count) + 1;
-  check_list(wavelengths, w), check_list(scales, w);
-  switch (number(pupils_kind)) {
-    case 1: check_list(pupil_list, w * FilmPupilArrays::image_size); break;
-    case 0:
-    case 2: {
-      const bool polar = number(pupils_kind) == 0;
-      check_number(rows, 1, 1 << 16), check_number(columns, 1, 1 << 16);
-      const std::size_t cells = number(rows) * number(columns);
-      if (!polar) check_list(half_widths, number(rows) + 1);
-      check_list(pupil_list, cells);
-      check_list(pupil_list, w * cells * (polar ? FilmPupilArrays::polar_size : FilmPupilArrays::quadrant_size));
-      if (number(stop_size) == 0) break;
-      check_list(stop_list,
-                 w * cells * (polar ? FilmPupilArrays::polar_stop_size : FilmPupilArrays::quadrant_stop_size));
-      break;
-    }
-    default: refuse("pupils of kind " + std::to_string(number(pupils_kind)) + "; must be 0 to 2");
-  }
-  if (number(iris_blades) > 0) check_list(iris, 2 * (FilmPupilArrays::edge_terms + number(iris_blades)));
-  switch (number(rays_kind)) {
-    case 0: check_list(rays, 8 * w); break;
-    case 1: {
-      check_number(degree, 3, 11);
-      const int n = static_cast<int>(number(degree));
-      if (n % 2 == 0) refuse("polynomials of degree " + std::to_string(n) + "; must be odd");
-      const bool mirrors = tables[domain_pupil_radius_x] != 0;
-      const std::size_t each = mirrors ? 2 * RayPolynomial::mirror_terms(n).size() : RayPolynomial::terms(n).size();
-      check_list(rays, 4 * w * each);
-      break;
-    }
-    case 2:
-      check_list(rays, number(surface_count) * surface_size), check_list(indices, w * spaces);
-      check_list(edges, 4 * number(edge_count));
-      break;
-    default: refuse("rays of kind " + std::to_string(number(rays_kind)) + "; must be 0, 1 or 2");
-  }
-}
-
 std::vector<float> camera_tables(const Camera& camera) {
   const CameraAccess::Data& data = CameraAccess::data(camera);
-  const std::string where = data.lens.name() + ": tables: ";
+  const std::string where = data.lens.name() + ": table of the camera: ";
   if (data.tilted) throw Error(where + "the film is tilted or travels; must be upright and fixed");
   if (data.weights)
     throw Error(where + "the pupil has weights; must have no weights, as a host weights its own samples");
   if (data.focus) throw Error(where + "the camera has a focal surface or an expressive lens; must have neither");
-  Numbers to;
-  to.set(Table::format, 4);
-  to.set(Table::model, std::ranges::find(models(), data.model.kind()) - models().begin());
-  to.set(Table::wavelength_count, data.lens.wavelengths_nm().size());
-  to.set(Table::primary_wavelength, data.lens.primary_wavelength());
-  const TwoPlanes& space = data.model.pupils().space();
-  to.set(Table::film_z, space.film_z), to.set(Table::pupil_z, space.pupil_z);
-  to.set(Table::film_x, data.film.shift_x_mm), to.set(Table::film_y, data.film.shift_y_mm);
-  to.set(Table::half_width, data.film.width_mm / 2 + data.film.margin_mm);
-  to.set(Table::half_height, data.film.height_mm / 2 + data.film.margin_mm);
-  to.set(Table::front_z, data.front.vertex_z), to.set(Table::front_curvature, data.front.curvature);
-  to.begin(Table::wavelengths), to.add(data.lens.wavelengths_nm());
-  to.begin(Table::scales), to.add(data.wavelengths.scales());
-
-  const FilmPupilArrays pupils = data.model.pupils().arrays();
-  const auto put = [&to](Table::Position at, const std::vector<float>& list) {
-    to.begin(at);
-    to.list.insert(to.list.end(), list.begin(), list.end());
-  };
-  put(Table::pupil_list, pupils.pupils);
-  to.set(Table::pupils_kind, static_cast<int>(pupils.kind));
-  to.set(Table::pupil_radius, pupils.film_radius);
-  to.set(Table::rows, pupils.rows), to.set(Table::columns, pupils.columns);
-  to.set(Table::height, pupils.height);
-  put(Table::half_widths, pupils.half_widths);
-  put(Table::stop_list, pupils.stop);
-  to.set(Table::stop_size, pupils.stop.size());
-  put(Table::iris, pupils.iris);
-  to.set(Table::iris_blades, pupils.iris.empty() ? 0 : pupils.iris.size() / 2 - FilmPupilArrays::edge_terms);
-
-  to.begin(Table::rays);
-  if (const auto* paraxial = data.model.as<camera_detail::ParaxialModel>()) {
-    put_maps(to, *paraxial);
-  } else if (const auto* polynomial = data.model.as<PolynomialModel>()) {
-    put_polynomial(to, polynomial->polynomial());
-  } else if (data.model.kind() != ModelKind::custom) {
-    put_surfaces(to, data.lens);
-  } else {
-    throw Error(where + "the model is custom; must be one of models()");
+  const auto* polynomial = data.model.as<PolynomialModel>();
+  const ModelKind kind = data.model.kind();
+  const bool exact = kind == ModelKind::exact_float || kind == ModelKind::exact_double;
+  if (!exact && !polynomial) {
+    throw Error(where + "the model is " + std::string(name(kind)) +
+                "; must be exact_float, exact_double or a polynomial");
   }
+  Numbers to;
+  to.set(0, PZ_FORMAT);
+  put_wavelengths(to, data, exact);
+  put_surfaces(to, data.lens);
+  put_film(to, data);
+  put_pupils(to, data.model.pupils().arrays());
+  if (polynomial) put_polynomial(to, polynomial->polynomial());
+  if (exact) put_entrance(to, data.scene().entrance().arrays());
+  to.set(1, to.list.size());
   return std::move(to.list);
 }
 

@@ -41,23 +41,25 @@ class SceneSide {
   Projection project(const AnyRayModel& model, const Vec3<double>& point, Wavelength wavelength,
                      double time) const noexcept;
 
- private:
-  /// Chief rays. The exact models trace them through all apertures, without clipping.
-  void chief_rays(const AnyRayModel& model, std::size_t count, const TwoPlaneRays<const double>& lines,
-                  Wavelength wavelength, const RayArrays<double>& rays, RayFate* fates) const noexcept;
-
   /// Data that depend on the wavelength.
   struct Facts {
     double we = 0;       // 1/mm^2
     double density = 0;  // density of film samples in the scene, without the factors of the ray
     double entrance_z = 0, entrance_area = 0;
   };
+  /// @param wavelength must be covered
+  Facts facts_at(Wavelength wavelength) const noexcept;
+  const EntrancePupilTable& entrance() const noexcept { return entrance_; }
+
+ private:
+  /// Chief rays. The exact models trace them through all apertures, without clipping.
+  void chief_rays(const AnyRayModel& model, std::size_t count, const TwoPlaneRays<const double>& lines,
+                  Wavelength wavelength, const RayArrays<double>& rays, RayFate* fates) const noexcept;
+
   /// Data of a compiled wavelength.
   struct Compiled : Facts {
     ChiefRayTable chiefs;
   };
-  /// @param wavelength must be covered
-  Facts facts_at(Wavelength wavelength) const noexcept;
   const Compiled& nearest(Wavelength wavelength) const noexcept;
 
   /// Up to `block` scene rays at the film.

@@ -242,6 +242,24 @@ EntrancePupilTable::EntrancePupilTable(const Lens& lens, std::span<const std::ve
   data_ = std::move(data);
 }
 
+EntrancePupilArrays EntrancePupilTable::arrays() const {
+  const Data& data = *data_;
+  const auto number = [](double x) { return static_cast<float>(x); };
+  EntrancePupilArrays result{
+      .dimensions = data.cylinders ? 3 : 2,
+      .centre_z = number(data.centre.z),
+      .steepest = number(data.steepest),
+      .front_half = number(data.front_half),
+      .balls = {data.balls.begin(), data.balls.end()},
+      .widest = {data.widest.begin(), data.widest.end()},
+      .nodes = {},
+      .node_size = static_cast<std::size_t>(data.obscured ? NodeLayout::size : NodeLayout::obscured)};
+  for (std::size_t begin = 0; begin < data.nodes.size(); begin += NodeLayout::size) {
+    for (std::size_t k = 0; k < result.node_size; ++k) result.nodes.push_back(number(data.nodes[begin + k]));
+  }
+  return result;
+}
+
 bool EntrancePupilTable::in_front(const Vec3<double>& point) const noexcept { return data_->in_front(point); }
 
 void EntrancePupilTable::sample(std::size_t count, const Vec3<double>* points, const double* u, const double* v,

@@ -51,6 +51,15 @@ enum class ClippedBy : std::uint8_t {
 using ScenePassing = std::function<void(std::size_t count, const RayArrays<const double>& rays, std::size_t wavelength,
                                         std::uint8_t* passes)>;
 
+/// An EntrancePupilTable as plain numbers, for programs that do not link petzval. lib/docs/camera_table.md describes
+/// the lists.
+struct EntrancePupilArrays {
+  int dimensions = 2;  ///< 2: reciprocal distance and field; 3: with two angles
+  float centre_z = 0, steepest = 0, front_half = 0;
+  std::vector<float> balls, widest, nodes;  ///< by wavelength
+  std::size_t node_size = 0;
+};
+
 /// Entrance pupils of all scene points: a table over field and reciprocal distance for each wavelength.
 ///
 /// A point has a distance from the pupil centre and a field: the angle between the axis and the line to the centre. Its
@@ -84,6 +93,8 @@ class PETZVAL_API EntrancePupilTable {
   /// Density of sample() for the direction of a ray at a point, 1/sr. The origin of the ray is any position on its
   /// line. The line must pass through the point, unless the point is so far away that its rays are parallel.
   double pdf(const Vec3<double>& point, const Ray<double>& ray, Wavelength wavelength = {}) const noexcept;
+
+  EntrancePupilArrays arrays() const;
 
  private:
   struct Data;

@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/dual.hpp"
 #include "film_pupil_data.hpp"
+#include "petzval/core/error.hpp"
 #include "polygon_blocks.hpp"
 #include "polygon_clearance.hpp"
 #include "pupil/line_extents.hpp"
@@ -22,6 +22,36 @@ std::pair<CellPosition<double>, CellPolygon<dimensions, true, double, double>> f
   return {at, {grid.cells, at.cell * CellLayout<dimensions>::size, at.t, at.s}};
 }
 
+/// Derivatives of the middle of a polygon by its film point.
+FilmPupilTable::Derivatives motion_of_middle(const PolygonGrid<1, double>& grid, const FilmPoint& film,
+                                             std::int32_t wavelength) noexcept {
+  const auto [at, polygon] = find(grid, film, wavelength);
+  const double r = std::hypot(film.x, film.y);
+  const double along = grid.cells[polygon.begin + CellLayout<1>::middle + 3] * grid.rows_per_mm;
+  // In the first row the quotient would be inaccurate near the axis.
+  const double across = r * grid.rows_per_mm >= 1 ? polygon.middle().y / r : along;
+  const double mixed = (along - across) * at.sine * at.cosine;
+  return {{along * at.sine * at.sine + across * at.cosine * at.cosine, mixed},
+          {mixed, along * at.cosine * at.cosine + across * at.sine * at.sine}};
+}
+FilmPupilTable::Derivatives motion_of_middle(const PolygonGrid<2, double>& grid, const FilmPoint& film,
+                                             std::int32_t wavelength) noexcept {
+  const auto [at, polygon] = find(grid, film, wavelength);
+  const std::int32_t row = at.cell / grid.columns % grid.rows, column = at.cell % grid.columns;
+  const double* const half = grid.half_widths + row;
+  const double change = half[1] - half[0], width = half[0] + at.s * change, columns = grid.columns;
+  const double t_by_x = width > 0 ? columns / width : 0;
+  const double t_by_y = width > 0 ? -(column + at.t) * change * grid.rows_per_mm / width : 0;
+  const auto by = [&](std::int32_t axis) {
+    const double* const value = grid.cells + polygon.begin + CellLayout<2>::middle + 4 * axis;
+    const double by_t = value[1] + at.s * value[3], by_s = value[2] + at.t * value[3];
+    return Vec2<double>{by_t * t_by_x, by_s * grid.rows_per_mm + by_t * t_by_y};
+  };
+  const Vec2<double> x = by(0), y = by(1);
+  const double sign = at.sine * at.cosine;
+  return {{x.x, sign * y.x}, {sign * x.y, y.y}};
+}
+
 }  // namespace
 
 const TwoPlanes& FilmPupilTable::space() const noexcept { return data_->space; }
@@ -35,21 +65,33 @@ bool FilmPupilTable::covers(Wavelength wavelength) const noexcept {
 bool FilmPupilTable::knows_stop() const noexcept { return data_->stop != nullptr; }
 
 FilmPupilArrays FilmPupilTable::arrays() const {
+  if (data_->images) throw Error("pupils: arrays: the pupils have a closed form; must be polygons");
   FilmPupilArrays result;
-  result.film_radius = lit_radius();
-  if (const auto& images = data_->images) {
-    images->put(result);
-    return result;
-  }
-  result.kind = data_->dimensions == 1 ? FilmPupilArrays::Kind::polar : FilmPupilArrays::Kind::quadrant;
-  result.pupils = data_->cells_single;
+  const auto put = [&](const auto& grid) {
+    using Layout = CellLayout<std::decay_t<decltype(grid)>::dimensions>;
+    result.reach = grid.reach, result.rows_per_mm = grid.rows_per_mm;
+    result.obscured = grid.obscured, result.corrections = grid.corrections;
+    result.cell_size = grid.obscured ? Layout::size : Layout::obscured;
+    for (std::size_t begin = 0; begin < data_->cells_single.size(); begin += Layout::size) {
+      const auto cell = data_->cells_single.begin() + static_cast<std::ptrdiff_t>(begin);
+      result.cells.insert(result.cells.end(), cell, cell + static_cast<std::ptrdiff_t>(result.cell_size));
+    }
+    if (!data_->stop) return;
+    result.stops = data_->stop->cells_single;
+    result.stop_size = StopLayout<std::decay_t<decltype(grid)>::dimensions>::size;
+    const auto& iris = grid.stop.iris;
+    result.iris_area = grid.stop.area;
+    const auto add = [&](const float* from, std::size_t count) {
+      result.iris.insert(result.iris.end(), from, from + count);
+    };
+    constexpr std::size_t terms = iris_detail::edge_terms<float>;
+    if (iris.count > 0) add(iris.across, terms), add(iris.along, terms), add(iris.turns, 2 * iris.count);
+    if (iris.count > 0) add(iris.edges, 4 * iris.count);
+  };
+  data_->dimensions == 1 ? put(data_->grid<1, float>()) : put(data_->grid<2, float>());
+  result.dimensions = data_->dimensions;
   result.rows = data_->rows, result.columns = data_->columns;
-  result.height = data_->height;
   result.half_widths = data_->half_widths_single;
-  if (data_->stop) {
-    result.stop = data_->stop->cells_single;
-    put_iris(data_->stop->shape, result);
-  }
   return result;
 }
 
@@ -244,26 +286,15 @@ Vec2<double> FilmPupilTable::position(const FilmPoint& film, double x, double y,
 
 PupilSample FilmPupilTable::sample(const FilmPoint& film, double u, double v, Wavelength wavelength,
                                    Derivatives& by) const noexcept {
+  const PupilSample result = sample(film, u, v, wavelength);
   by = {};
   if (const auto& images = data_->images) {
-    const PupilSample result = images->sample(film, u, v, wavelength);
     by = images->derivatives(film, result, wavelength);
-    return result;
+  } else if (result.area > 0) {
+    data_->with_grid<double>(
+        [&](const auto& grid, const auto&) { by = motion_of_middle(grid, film, data_->known(wavelength)); });
   }
-  // The direction of the film point is undefined on the axis: use a point close to the axis.
-  const double axis_step = 1e-4 * data_->film_radius;
-  if (data_->dimensions == 1 && std::hypot(film.x, film.y) < axis_step) {
-    sample({0, axis_step}, u, v, wavelength, by);
-    return sample(film, u, v, wavelength);
-  }
-  using kernel::Dual;
-  Dual x, y, area;
-  data_->with_grid<double>([&](const auto& grid, const auto& loops) {
-    loops.one_with_derivatives(grid, Dual(film.x, 0), Dual(film.y, 1), Dual(u), Dual(v), data_->known(wavelength), x, y,
-                               area);
-  });
-  if (area.a > 0) by = {{x.v[0], y.v[0]}, {x.v[1], y.v[1]}};
-  return {x.a, y.a, area.a};
+  return result;
 }
 
 FilmPupilTable::Derivatives FilmPupilTable::derivatives(const FilmPoint& film, double u, double v,

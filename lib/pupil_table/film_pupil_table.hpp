@@ -57,48 +57,22 @@ struct PupilSample {
   double x = 0, y = 0, area = 0;
 };
 
-/// A FilmPupilTable as plain numbers, for a GPU.
+/// The polygons of a FilmPupilTable as plain numbers, for programs that do not link petzval. lib/docs/camera_table.md
+/// describes the lists.
 struct FilmPupilArrays {
-  /// Images of an iris, or polygons in the cells of a grid: over the distance from the axis (polar: lenses of
-  /// revolution) or over both film axes (quadrant: lenses with cylinders).
-  enum class Kind : std::uint8_t { polar, images, quadrant };
-  Kind kind = Kind::polar;
-  double film_radius = 0;  ///< mm; film points outside see no pupil
-  /// Images: [wavelength] shift x, shift y, radius x, radius y, area (PupilImage).
-  ///
-  /// Polygons: cells [wavelength][row][column], for film points between y = height * row / rows and the next row.
-  /// Polar: film points on +y; polygons rotate with the film point. A value is linear in the fraction t between rows
-  /// and has n = 2 coefficients (of 1, t); an area has m = 4 (of 1, t, t^2, t^3). Quadrant: film points x, y >= 0; the
-  /// other quadrants are mirror images. A value is bilinear, in t between the columns of a row of length half_widths
-  /// and in s between rows, and has n = 4 coefficients (of 1, t, s, st); an area has m = 9 (of 1, t, t^2, s, st, st^2,
-  /// s^2, s^2 t, s^2 t^2). In a cell:
-  ///
-  ///     0, n            x, y of the middle
-  ///     2n              area, mm^2
-  ///     2n + m + (2n + m) k  corner k = 0 ... 64: x, y from the middle; area before the corner
-  ///     528 + 4k        polar: begin and width of the obscured part of sector k, as squares of the fraction from the
-  ///                     middle (0) to the outer edge (1)
-  std::vector<float> pupils;
+  int dimensions = 1;  ///< 1: rows over the distance from the axis; 2: cells of the quadrant x, y >= 0
+  float reach = 0;     ///< mm; film points farther from the axis have no pupil
+  float rows_per_mm = 0;
   std::size_t rows = 0, columns = 1;
-  double height = 0;               ///< mm
   std::vector<float> half_widths;  ///< [row] mm; the last entry is the end of the last row
-  /// Edges of the blades in units of the iris radius; empty: a disc. Coefficients across[edge_terms] and
-  /// along[edge_terms] of polynomials in t = 2 q^2 - 1, then [blade] sine and cosine of the angle from +y towards +x to
-  /// the middle of the edge. The edge point with the fraction (1 + q) / 2 of its sector's area before it lies along(t)
-  /// along the direction to the middle, and q across(t) perpendicular to it, clockwise.
-  std::vector<float> iris;
-  /// Stop of each cell of `pupils`; empty: the iris clips no polygon.
-  ///
-  ///     0               1: samples are points of the iris; 0: samples are points of the polygon inside the iris
-  ///     1               scale of the iris
-  ///     2 + n k         term k of the pupil point as a polynomial of the stop point (x, y), with r = x^2 + y^2. Polar:
-  ///                     y by 1, y, x^2, y^2, x^2 y, y^3, r^2, r y^2, r^2 y; x divided by the stop's x, by 1, y, x^2,
-  ///                     y^2, r y, r^2. Quadrant: x, then y, by 1, x, y, x^2, xy, y^2, x^3, x^2 y, x y^2, y^3
-  ///     2 + 15 n (polar), 2 + 20 n (quadrant)  x, y of the stop points of the middle and of corners 0 ... 64
-  std::vector<float> stop;
-
-  static constexpr std::size_t image_size = 5, polar_size = 784, quadrant_size = 1122, corners = 64, edge_terms = 8;
-  static constexpr std::size_t polar_stop_size = 296, quadrant_stop_size = 610;
+  std::vector<float> cells;        ///< [wavelength][row][column] cell_size numbers
+  std::size_t cell_size = 0;
+  bool obscured = false;     ///< true if cells end with obscured intervals
+  int corrections = 0;       ///< largest distance between the expected sector of a sample and its sector
+  std::vector<float> stops;  ///< [wavelength][row][column] stop_size numbers; empty if the iris clips no polygon
+  std::size_t stop_size = 0;
+  float iris_area = 0;      ///< in squares of the semi-diameter
+  std::vector<float> iris;  ///< empty: a disc
 };
 
 /// The pupils of all points of a film, for sampling: a table per compiled wavelength, or a closed form.
@@ -269,9 +243,12 @@ class PETZVAL_API FilmPupilTable {
   void clearances(std::size_t count, const TwoPlaneRays<const double>& lines, Wavelength wavelength,
                   double* clearances) const noexcept;
 
+  /// @throws Error if the pupils have a closed form instead of polygons
   FilmPupilArrays arrays() const;
 
-  /// Derivatives of the x and y of a sample by film x and film y, at constant u and v.
+  /// Derivatives of the x and y of a sample by film x and film y, at a constant offset from the middle of the pupil.
+  /// (Constant u and v would be useless for filters: polygons rotate about the axis with the film point, and their
+  /// sides are not round.)
   struct Derivatives {
     Vec2<double> by_film_x{0, 0}, by_film_y{0, 0};
   };

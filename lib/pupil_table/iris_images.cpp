@@ -15,16 +15,6 @@ constexpr double rounded_up = 1 + 1e-6;  // includes corner points of the film a
 
 }  // namespace
 
-void put_iris(const iris_detail::IrisShape& shape, FilmPupilArrays& arrays) {
-  const auto iris = shape.sectors<float>();
-  if (iris.count == 0) return;
-  constexpr std::size_t terms = iris_detail::edge_terms<float>;
-  static_assert(FilmPupilArrays::edge_terms == terms);
-  arrays.iris.assign(iris.across, iris.across + terms);
-  arrays.iris.insert(arrays.iris.end(), iris.along, iris.along + terms);
-  arrays.iris.insert(arrays.iris.end(), iris.turns, iris.turns + 2 * iris.count);
-}
-
 IrisImages::IrisImages(const Iris& iris, std::span<const PupilImage> images, double film_radius, std::size_t primary,
                        const lens_detail::CompiledWavelengths& wavelengths)
     : shape_(iris), film_radius_(film_radius), primary_(primary) {
@@ -51,16 +41,6 @@ IrisImages IrisImages::with_round_stop() const {
   result.shape_ = {};
   for (Image& image : result.images_) image.area = result.shape_.area() * image.radius_x * image.radius_y;
   return result;
-}
-
-void IrisImages::put(FilmPupilArrays& arrays) const {
-  arrays.kind = FilmPupilArrays::Kind::images;
-  const auto number = [](double x) { return static_cast<float>(x); };
-  for (const Image& image : images_) {
-    arrays.pupils.insert(arrays.pupils.end(), {number(image.shift_x), number(image.shift_y), number(image.radius_x),
-                                               number(image.radius_y), number(image.area)});
-  }
-  put_iris(shape_, arrays);
 }
 
 template <class R>

@@ -13,9 +13,6 @@
 
 namespace petzval::pupil_table_detail {
 
-/// Writes FilmPupilArrays::iris.
-void put_iris(const iris_detail::IrisShape& shape, FilmPupilArrays& arrays);
-
 /// Pupils in closed form: images of an iris, by wavelength, that move with the film point.
 ///
 /// On a tilted film, the ray of a virtual film point V (FilmTilt) through q meets the upright film at V - (slope . V)
@@ -39,9 +36,6 @@ class IrisImages {
   IrisImages with_round_stop() const;
   /// True if discs stay discs, so that rotations about the axis change nothing. For round irises.
   bool of_revolution() const noexcept { return equal_sections_; }
-
-  /// Writes the images to the arrays. Call it for images of an upright film.
-  void put(FilmPupilArrays& arrays) const;
 
   PupilSample sample(const FilmPoint& film, double u, double v, Wavelength wavelength) const noexcept;
   double area(const FilmPoint& film, Wavelength wavelength) const noexcept;

@@ -29,10 +29,8 @@ double area_of_one(const PolygonGrid<dimensions, double>& grid, double film_x, d
 }
 
 template <int dimensions>
-constexpr PlainLoops<dimensions> loops{{stop_points<dimensions, float>},
-                                       {stop_points<dimensions, double>},
-                                       sample_one<dimensions, kernel::Dual>,
-                                       area_of_one<dimensions>};
+constexpr PlainLoops<dimensions> loops{
+    {stop_points<dimensions, float>}, {stop_points<dimensions, double>}, area_of_one<dimensions>};
 
 }  // namespace
 

@@ -142,7 +142,7 @@ PETZVAL_INLINE void sample_polygons(const PolygonGrid<dimensions, R>& grid, cons
         own.fraction_of_sample(core_detail::clamped(u[i]), total_area[i], positions.cosine[i], positions.sine[i]));
     const T expected = own.expected(target[i], total_area[i]) - early;
     const T above = expected > R(0) ? expected : T(0);
-    sector[i] = static_cast<std::int32_t>(value_of(above < last ? above : T(last)));
+    sector[i] = static_cast<std::int32_t>(above < last ? above : T(last));
     target[i] = target[i] * total_area[i];
   }
   // Sectors have nearly equal areas: the target lies in this sector, in the next, or close to these.
@@ -185,7 +185,7 @@ PETZVAL_INLINE void sample_polygons(const PolygonGrid<dimensions, R>& grid, cons
     for (std::size_t i = 0; i < block; ++i) {
       const Sector<T> own = polygon(i).sector(sector[i]);
       const T along = along_edge(i, own);
-      put(i, own.at(root_of(own.squared_radius(core_detail::clamped(v[i]))), along), total_area[i]);
+      put(i, own.at(core_detail::square_root(own.squared_radius(core_detail::clamped(v[i]))), along), total_area[i]);
     }
   } else {
     Lines<block, T> lines;
@@ -204,7 +204,7 @@ PETZVAL_INLINE void sample_polygons(const PolygonGrid<dimensions, R>& grid, cons
       if constexpr (obscured) own = polygon(i).sector(sector[i]);
       const T first = own.fraction_within(lines.from[i] * lines.from[i]);
       const T fraction = own.fraction_within(lines.to[i] * lines.to[i]) - first;
-      const T radius = root_of(own.squared_radius(first + core_detail::clamped(v[i]) * fraction));
+      const T radius = core_detail::square_root(own.squared_radius(first + core_detail::clamped(v[i]) * fraction));
       put(i, {radius * lines.edge_x[i], radius * lines.edge_y[i]}, total_area[i] * fraction);
     }
   }
@@ -221,7 +221,7 @@ PETZVAL_INLINE void sample_iris(const PolygonGrid<dimensions, R>& grid, const Ce
     for (std::size_t i = 0; i < block; ++i) {
       const std::int32_t begin = positions.cell[i] * S::size;
       const R scale = stop.cells[begin + S::scale];
-      const auto [sx, sy] = point_at(core_detail::clamped(R(value_of(u[i]))), core_detail::clamped(R(value_of(v[i]))));
+      const auto [sx, sy] = point_at(core_detail::clamped(R(u[i])), core_detail::clamped(R(v[i])));
       const Point<T> own =
           to_grid<dimensions>(positions.cosine[i], positions.sine[i], Point<T>{T(scale * sx), T(scale * sy)});
       const auto number = [&](int k) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Pupils of film points, interpolated between polygons at the nodes of a grid: for single samples and for loops, in
-// float, in double, or with derivatives (kernel::Dual). Names are local: compiled for several instruction sets, which
+// float or in double. Names are local: compiled for several instruction sets, which
 // the linker must not mix.
 #pragma once
 
@@ -78,21 +78,6 @@ inline constexpr R axis_r2 = std::numeric_limits<R>::min() / std::numeric_limits
 
 namespace {
 
-inline float value_of(float x) noexcept { return x; }
-inline double value_of(double x) noexcept { return x; }
-template <class T>
-inline double value_of(const T& x) noexcept {
-  return x.a;
-}
-
-/// Square root, with derivatives 0 at 0.
-inline float root_of(float x) noexcept { return core_detail::square_root(x); }
-inline double root_of(double x) noexcept { return core_detail::square_root(x); }
-template <class T>
-inline T root_of(const T& x) noexcept {
-  return x > 0.0 ? core_detail::square_root(x) : T(0.0);
-}
-
 /// Angle of a direction from +y towards +x, as a fraction of a full turn in [-1/2, 1/2], within 6e-8. u starts at +y of
 /// the film, not at the direction of the film point: near the axis, adjacent film points get adjacent samples.
 template <class T>
@@ -135,12 +120,12 @@ PETZVAL_INLINE CellPosition<T> cell_position(const PolygonGrid<1, R>& grid, cons
                                              std::int32_t sound, std::int32_t wavelength) noexcept {
   const std::int32_t last = grid.rows - 1;
   const T r2 = film_x * film_x + film_y * film_y;
-  const T r = root_of(r2);
+  const T r = core_detail::square_root(r2);
   const std::int32_t known = (r <= grid.reach) & (wavelength >= 0) & sound;
   const std::int32_t off_axis = known & (r2 > axis_r2<R>);
   const T per_length = T(1) / (off_axis ? r : T(1));
   const T position = known ? T(r * grid.rows_per_mm) : T(0);
-  const auto at = static_cast<std::int32_t>(value_of(position));
+  const auto at = static_cast<std::int32_t>(position);
   const std::int32_t inner = at < last ? at : last;
   return {position - static_cast<R>(inner),         T(0),  off_axis ? T(film_y * per_length) : T(1),
           off_axis ? T(film_x * per_length) : T(0), known, known ? inner + wavelength * grid.rows : 0};
@@ -156,13 +141,13 @@ PETZVAL_INLINE CellPosition<T> cell_position(const PolygonGrid<2, R>& grid, cons
   const std::int32_t on_film = x * x + y * y <= grid.reach * grid.reach;
   const std::int32_t below_last = row <= end * static_cast<R>(grid.rows);
   const std::int32_t in_rows = on_film & below_last & sound;
-  const auto above = static_cast<std::int32_t>(value_of(in_rows ? row : T(0)));
+  const auto above = static_cast<std::int32_t>(in_rows ? row : T(0));
   const std::int32_t i = above < grid.rows - 1 ? above : grid.rows - 1;
   const T s = (in_rows ? row : T(0)) - static_cast<R>(i);
   const T width = grid.half_widths[i] + s * (grid.half_widths[i + 1] - grid.half_widths[i]);
   const std::int32_t known = in_rows & (x <= end * width) & (wavelength >= 0);
   const T column = known ? T(x / (width > R(0) ? width : T(1)) * static_cast<R>(grid.columns)) : T(0);
-  const auto right = static_cast<std::int32_t>(value_of(column));
+  const auto right = static_cast<std::int32_t>(column);
   const std::int32_t j = right < grid.columns - 1 ? right : grid.columns - 1;
   const std::int32_t cell = known ? (wavelength * grid.rows + i) * grid.columns + j : 0;
   return {column - static_cast<R>(j), s, sign_y, sign_x, known, cell};
@@ -350,7 +335,7 @@ PETZVAL_INLINE StopSolution<T> solve_stop_point(const Number& number, const Poin
     // Stay near the rim: outside, the polynomials are not fitted.
     const T x = result.point.x + step.x, y = result.point.y + step.y, r2 = x * x + y * y;
     constexpr double farthest = 1.5;
-    const T shorter = r2 > T(farthest * farthest) ? T(T(farthest) / root_of(r2)) : T(1);
+    const T shorter = r2 > T(farthest * farthest) ? T(T(farthest) / core_detail::square_root(r2)) : T(1);
     result.point = {shorter * x, shorter * y};
   }
   return result;
@@ -379,7 +364,7 @@ PETZVAL_INLINE void clip_by_edge(R nx, R ny, R bend, R distance, const Point<T>&
   const T inner = linear * linear - T(4) * square * outside;
   const bool crosses = inner >= T(0), begins_outside = outside > T(0);
   // Root and quotients are not used if the line does not cross the edge.
-  const T root = root_of(inner), entering = root - linear;
+  const T root = core_detail::square_root(inner), entering = root - linear;
   const T leaves = T(-2) * outside / (linear + root), enters = T(2) * outside / entering;
   const bool leaves_ahead = crosses & (leaves > T(0)), enters_ahead = crosses & (entering > T(0));
   const T last = leaves_ahead ? leaves : T(2), beyond = enters_ahead ? enters : T(2);

@@ -4,7 +4,6 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "core/dual.hpp"
 #include "core/widest.hpp"
 #include "lens/wavelength_rows.hpp"
 #include "petzval/lens/wavelength.hpp"
@@ -67,9 +66,6 @@ template <int dimensions>
 struct PlainLoops {
   PlainLoopsOf<dimensions, float> single;
   PlainLoopsOf<dimensions, double> twice;
-  void (*one_with_derivatives)(const PolygonGrid<dimensions, double>&, kernel::Dual film_x, kernel::Dual film_y,
-                               kernel::Dual u, kernel::Dual v, std::int32_t wavelength, kernel::Dual& x,
-                               kernel::Dual& y, kernel::Dual& area) noexcept;
   /// areas() of one ray.
   double (*area_of_one)(const PolygonGrid<dimensions, double>&, double film_x, double film_y, double x, double y,
                         std::int32_t wavelength) noexcept;

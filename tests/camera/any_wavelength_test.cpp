@@ -14,6 +14,7 @@
 #include "../declared_radius.hpp"
 #include "camera/polynomial_model.hpp"
 #include "camera/ray_model.hpp"
+#include "camera_parts.hpp"
 #include "petzval/camera/camera.hpp"
 #include "petzval/focus/focus.hpp"
 #include "settings.hpp"
@@ -142,21 +143,21 @@ TEST_P(AnyWavelength, DifferentialsEqualFiniteDifferences) {
   for (const ModelKind model : {ModelKind::exact_double, ModelKind::polynomial(5), ModelKind::thin_two_disc,
                                 ModelKind::thick, ModelKind::pinhole}) {
     const Camera camera(lens_, film_, {.model = model});
+    const petzval::testing::CameraParts parts(camera);
     Samples samples(film_, 3);
+    int lit = 0;
     for (int i = 0; i < 300; ++i) {
       const CameraSample sample = samples(Wavelength::nm(samples.nm()));
       constexpr double step = 1e-4;
-      CameraSample next = sample, previous = sample;
-      next.film.x += step, previous.film.x -= step;
-      const CameraRay one = camera.sample(sample), after = camera.sample(next), before = camera.sample(previous);
-      if (!one || !after || !before) continue;
-      // Derivatives of samples jump between the cells of a pupil table, so that agreement on one side is enough.
-      const double slope = (after.ray.direction.x - one.ray.direction.x) / step;
-      const double other = (one.ray.direction.x - before.ray.direction.x) / step;
+      const CameraRay after = camera.sample(parts.moved(sample, step, 0));
+      const CameraRay before = camera.sample(parts.moved(sample, -step, 0));
+      if (!after || !before) continue;
+      ++lit;
+      const double slope = (after.ray.direction.x - before.ray.direction.x) / (2 * step);
       const double found = camera.sample_differential(sample).by_film_x.direction.x;
-      ASSERT_LT(std::min(std::abs(found - slope), std::abs(found - other)), 2e-3 * std::abs(slope) + 1e-6)
-          << name(model);
+      ASSERT_NEAR(found, slope, 2e-3 * std::abs(slope) + 1e-6) << name(model) << ' ' << i;
     }
+    EXPECT_GT(lit, 150) << name(model);
   }
 }
 

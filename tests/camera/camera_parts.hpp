@@ -7,6 +7,7 @@
 #include "camera/make_model.hpp"
 #include "camera/ray_model.hpp"
 #include "camera/tilted_film.hpp"
+#include "petzval/camera/camera.hpp"
 
 namespace petzval::testing {
 
@@ -18,9 +19,26 @@ struct CameraParts {
   CameraParts(const Lens& lens, const Film& film, ModelKind kind)
       : model(
             camera_detail::make_model(kind, camera_detail::placed(lens, film).lens, upright_radius(lens, film, kind))) {
-    if (film.tilted()) tilted.emplace(film, model.pupils());
+    if (camera_detail::tilted_or_moving(film)) tilted.emplace(film, model.pupils());
   }
+  explicit CameraParts(const Camera& camera) : CameraParts(camera.lens(), camera.film(), camera.model()) {}
   const FilmPupilTable& pupils() const { return model.pupils(); }
+  /// The sample of a film point nearby whose pupil point has moved as derivatives assume.
+  CameraSample moved(const CameraSample& sample, double by_x, double by_y) const {
+    const FilmPupilTable& table = tilted ? tilted->pupils() : pupils();
+    CameraSample result = sample;
+    result.film.x += by_x, result.film.y += by_y;
+    const auto place = [&](const FilmPoint& film) {
+      return tilted ? tilted->plane(sample.time).virtual_point(film) : film;
+    };
+    const FilmPoint from = place(sample.film), to = place(result.film);
+    const PupilSample p = table.sample(from, sample.pupil_u, sample.pupil_v, sample.wavelength);
+    const auto by = table.derivatives(from, sample.pupil_u, sample.pupil_v, sample.wavelength);
+    const Vec2<double> move = (to.x - from.x) * by.by_film_x + (to.y - from.y) * by.by_film_y;
+    const Vec2<double> at = table.position(to, p.x + move.x, p.y + move.y, sample.wavelength);
+    result.pupil_u = at.x, result.pupil_v = at.y;
+    return result;
+  }
 };
 
 /// Cardinal points of a first-order model in air. The model has the focus of exact rays, so that they differ slightly

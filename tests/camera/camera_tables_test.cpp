@@ -1,73 +1,298 @@
 // SPDX-License-Identifier: Apache-2.0
-// Camera tables for another processor.
+// Rays of petzval_camera.h from the table of a camera, and rays of the library.
 #include "camera/camera_tables.hpp"
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
-#include <filesystem>
+#include <glm/geometric.hpp>
+#include <limits>
+#include <random>
 #include <string>
 #include <vector>
 
 #include "../data_lenses.hpp"
 #include "../expect_error.hpp"
 #include "petzval/camera/camera.hpp"
-#include "petzval/core/files.hpp"
+#include "petzval/petzval_camera.h"
 
 namespace petzval {
 namespace {
 
 using testing::expect_error;
 
-constexpr Film film{.width_mm = 24, .height_mm = 16, .shift_x_mm = 2};
+constexpr double eps = std::numeric_limits<float>::epsilon();
 
-TEST(CameraTables, RoundTripKeepsEveryByte) {
-  const std::vector<float> tables =
-      camera_tables(Camera(testing::data_lens("tessar_100mm_f2.8"), film, {.model = ModelKind::polynomial(5)}));
-  const auto file = std::filesystem::path(::testing::TempDir()) / "petzval_camera_tables.bin";
-  write_floats(tables, file);
-  EXPECT_EQ(std::filesystem::file_size(file), 4 * tables.size());
-  EXPECT_EQ(read_floats(file), tables);
-  write_file("12345", file);
-  testing::expect_error([&] { read_floats(file); }, {file, 5, "bytes"});
-  std::filesystem::remove(file);
+/// A film that a lens covers, off its centre.
+Film film_of(const Lens& lens) {
+  const double back = std::abs(lens.film_z() - lens.surfaces().back().vertex_z), half = std::min(18.0, 0.6 * back);
+  return {.width_mm = 2 * half, .height_mm = 1.2 * half, .shift_x_mm = 0.05 * half, .margin_mm = 0.01 * half};
+}
+double size_of(const Lens& lens) {
+  double size = std::abs(lens.surfaces().back().vertex_z) + 1;
+  for (const LensSurface& s : lens.surfaces()) size = std::max(size, s.semi_diameter < 1e6 ? s.semi_diameter : 0);
+  return size;
+}
+double largest(const Vec3<double>& v) { return std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)}); }
+Vec3<double> vec(const pz_vector& v) { return {v.x, v.y, v.z}; }
+
+struct Samples {
+  explicit Samples(const Film& film, unsigned seed = 1) : random(seed), film_(film) {}
+  std::mt19937 random;
+
+  float number() { return std::uniform_real_distribution<float>()(random); }
+  CameraSample operator()(Wavelength wavelength = {}) {
+    const float x = static_cast<float>((number() - 0.5) * film_.width_mm + film_.shift_x_mm);
+    const float y = static_cast<float>((number() - 0.5) * film_.height_mm + film_.shift_y_mm);
+    const float u = number(), v = number();
+    return {{x, y}, u, v, wavelength};
+  }
+
+ private:
+  Film film_;
+};
+
+pz_ray ray_of(const std::vector<float>& table, const CameraSample& s, double nm) {
+  return pz_sample(table.data(), static_cast<float>(s.film.x), static_cast<float>(s.film.y),
+                   static_cast<float>(s.pupil_u), static_cast<float>(s.pupil_v), static_cast<float>(nm));
+}
+float primary_nm(const Lens& lens) { return static_cast<float>(lens.wavelengths_nm()[lens.primary_wavelength()]); }
+
+/// Errors of rays that pass, in units of eps: positions relative to the size of the lens, directions in radians.
+struct Errors {
+  double library = 0, header = 0, between = 0, weight = 0;
+  int lit = 0, other_fates = 0;
+};
+Errors errors_of(const Lens& lens, ModelKind model, int count) {
+  const Film film = film_of(lens);
+  const Camera camera(lens, film, {.model = model});
+  const Camera exact(lens, film, {.model = model == ModelKind::exact_float ? ModelKind::exact_double : model});
+  const std::vector<float> table = camera_tables(camera);
+  const double size = size_of(lens);
+  Samples samples(film);
+  std::vector<CameraSample> all;
+  std::array<std::vector<float>, 4> in;
+  for (int i = 0; i < count; ++i) {
+    const CameraSample s = all.emplace_back(samples());
+    const std::array values{s.film.x, s.film.y, s.pupil_u, s.pupil_v};
+    for (std::size_t k = 0; k < 4; ++k) in[k].push_back(static_cast<float>(values[k]));
+  }
+  std::array<std::vector<float>, 7> out;
+  for (auto& values : out) values.resize(all.size());
+  std::vector<RayFate> fates(all.size());
+  camera.sample<float>(all.size(), {in[0].data(), in[1].data(), in[2].data(), in[3].data()},
+                       {{out[0].data(), out[1].data(), out[2].data(), out[3].data(), out[4].data(), out[5].data()},
+                        out[6].data(),
+                        fates.data()});
+  Errors found;
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    const CameraRay twice = exact.sample(all[i]);
+    const pz_ray ray = ray_of(table, all[i], primary_nm(lens));
+    found.other_fates += (fates[i] == RayFate::transmitted) != (ray.fate == 0);
+    if (fates[i] != RayFate::transmitted || !twice || ray.fate != 0) continue;
+    ++found.lit;
+    const auto error = [&](const Ray<double>& a, const Ray<double>& b) {
+      return std::max(largest(a.origin - b.origin) / size, largest(a.direction - b.direction)) / eps;
+    };
+    const Ray<double> own{vec(ray.origin), vec(ray.direction)};
+    const Ray<double> single{{out[0][i], out[1][i], out[2][i]}, {out[3][i], out[4][i], out[5][i]}};
+    found.library = std::max(found.library, error(single, twice.ray));
+    found.header = std::max(found.header, error(own, twice.ray));
+    found.between = std::max(found.between, error(own, single));
+    found.weight = std::max(found.weight, std::abs(double{ray.weight} / double{out[6][i]} - 1) / eps);
+  }
+  return found;
 }
 
-TEST(CameraTables, InvalidTablesAreRefused) {
-  const Lens lens = testing::data_lens("tessar_100mm_f2.8");
-  const auto check = [](const std::vector<float>& tables) { CameraTables::check(tables, "file"); };
-  const Lens cylinders = testing::data_lens("anamorphic_60mm_2x");
-  for (const Camera& camera :
-       {Camera(lens, film, {.model = ModelKind::thick}), Camera(lens, film, {.model = ModelKind::polynomial(5)}),
-        Camera(lens, film, {.model = ModelKind::exact_float}),
-        Camera(cylinders, film, {.model = ModelKind::polynomial(5)}),
-        Camera(with_iris(lens, {.blades = 7, .rotation_rad = 1}), film, {.model = ModelKind::exact_float})}) {
-    const std::vector<float> good = camera_tables(camera);
-    EXPECT_NO_THROW(check(good));
-    expect_error([&] { check({good.begin(), good.end() - 1}); }, {"file"});
-    for (std::size_t at = 0; at < CameraTables::head_size; ++at) {
-      for (const float value : {std::nanf(""), 0.f, 1.f, 7.f, 31.f, 1000.f, 1e6f}) {
-        std::vector<float> bad = good;
-        bad[at] = value;
-        try {
-          check(bad);  // must not read beyond the list
-        } catch (const Error&) {
-        }
-      }
-    }
-    const auto changed = [&](CameraTables::Position at, float value) {
-      std::vector<float> bad = good;
-      bad[at] = value;
-      return [&check, bad] { check(bad); };
-    };
-    expect_error(changed(CameraTables::primary_wavelength, 7), {"file", 7, 3, 0});
-    expect_error(changed(CameraTables::wavelengths, 3), {"file", 3});
-    expect_error(changed(CameraTables::wavelength_count, 0), {"file"});
-    expect_error(changed(CameraTables::model, 77), {"file"});
+class CameraTablesOfData : public ::testing::TestWithParam<int> {};
+
+TEST_P(CameraTablesOfData, RaysEqualTheLibrary) {
+  for (const Prescription& prescription : testing::data_prescriptions()) {
+    SCOPED_TRACE(prescription.name);
+    const Lens round = compile(prescription);
+    const int blades = GetParam();
+    const Lens lens = blades ? with_iris(round, {.blades = blades, .roundness = 0.4, .rotation_rad = 0.3}) : round;
+    const Errors found = errors_of(lens, ModelKind::exact_float, 1500);
+    EXPECT_GT(found.lit, 600);
+    EXPECT_LE(found.other_fates, 1);
+    // As accurate as the library: 8 eps for most lenses, more where float loses digits in the library as well.
+    EXPECT_LE(found.between, std::max(8.0, 2.4 * found.library));
+    EXPECT_LE(found.header, std::max(10.0, 3 * found.library));
+    EXPECT_LT(found.weight, 500);
   }
-  expect_error([&] { check({}); }, {"file", "format", 4});
-  const Camera tilted(lens, {.tilt_rad = 0.1}, {.model = ModelKind::thick});
-  expect_error([&] { camera_tables(tilted); }, {lens.name(), "tilted"});
+}
+
+INSTANTIATE_TEST_SUITE_P(Camera, CameraTablesOfData, ::testing::Values(0, 7));
+
+TEST(CameraTables, PolynomialsEqualTheLibrary) {
+  for (const char* const id : {"double_gauss_100mm_f2.0", "fisheye_16mm_f2.8", "anamorphic_60mm_2x"}) {
+    SCOPED_TRACE(id);
+    const Errors found = errors_of(testing::data_lens(id), ModelKind::polynomial(7), 2000);
+    EXPECT_GT(found.lit, 1500);
+    EXPECT_LE(found.other_fates, 2);
+    EXPECT_LT(found.between, 40);
+  }
+}
+
+TEST(CameraTables, WavelengthsBetweenTheCompiledOnesEqualTheLibrary) {
+  const Lens lens = compile(testing::data_prescription("double_gauss_100mm_f2.0"), std::array{450.0, 550.0, 650.0});
+  const Film film = film_of(lens);
+  const Camera camera(lens, film, {.model = ModelKind::exact_float});
+  const std::vector<float> table = camera_tables(camera);
+  Samples samples(film);
+  int lit = 0;
+  for (int i = 0; i < 2000; ++i) {
+    const auto nm = static_cast<float>(440 + 220 * samples.number());
+    const CameraSample s = samples(Wavelength::nm(nm));
+    const CameraRay wanted = camera.sample(s);
+    const pz_ray ray = ray_of(table, s, nm);
+    const bool inside = nm >= 450 && nm <= 650;
+    EXPECT_EQ(ray.fate == 0, static_cast<bool>(wanted)) << nm;
+    EXPECT_EQ(ray.fate == 8, !inside) << nm;
+    if (ray.fate != 0 || !wanted) continue;
+    ++lit;
+    EXPECT_LT(largest(vec(ray.direction) - wanted.ray.direction), 8 * eps);
+    EXPECT_LT(largest(vec(ray.origin) - wanted.ray.origin), 8 * eps * size_of(lens));
+    EXPECT_NEAR(ray.weight / wanted.weight, 1, 2e-6);
+  }
+  EXPECT_GT(lit, 1500);
+}
+
+TEST(CameraTables, DifferentialsEqualTheLibrary) {
+  for (const char* const id : {"double_gauss_100mm_f2.0", "phone_5.6mm_f3.5", "fisheye_16mm_f2.8", "anamorphic_60mm_2x",
+                               "mirror_ritchey_chretien_57.6m_f24"}) {
+    for (const ModelKind model : {ModelKind::exact_double, ModelKind::polynomial(5)}) {
+      SCOPED_TRACE(id);
+      const Lens lens = testing::data_lens(id);
+      const Film film = film_of(lens);
+      const Camera camera(lens, film, {.model = model});
+      const std::vector<float> table = camera_tables(camera);
+      Samples samples(film, 3);
+      int lit = 0;
+      for (int i = 0; i < 300; ++i) {
+        const CameraSample s = samples();
+        const CameraRayDifferential wanted = camera.sample_differential(s);
+        const pz_ray_differential found =
+            pz_sample_differential(table.data(), static_cast<float>(s.film.x), static_cast<float>(s.film.y),
+                                   static_cast<float>(s.pupil_u), static_cast<float>(s.pupil_v), primary_nm(lens));
+        if (!wanted.sample || found.ray.fate != 0) continue;
+        ++lit;
+        const auto near = [&](const pz_vector& a, const Vec3<double>& b, double scale) {
+          const double bound = (model == ModelKind::exact_double ? 1e-4 : 4e-3) * scale;
+          EXPECT_LT(largest(vec(a) - b), bound) << i << ' ' << b.x << ' ' << b.y << ' ' << b.z;
+        };
+        const double turn = glm::length(wanted.by_film_x.direction) + glm::length(wanted.by_film_y.direction);
+        const double shift = glm::length(wanted.by_film_x.origin) + glm::length(wanted.by_film_y.origin) + 1;
+        near(found.direction_by_x, wanted.by_film_x.direction, turn);
+        near(found.direction_by_y, wanted.by_film_y.direction, turn);
+        near(found.origin_by_x, wanted.by_film_x.origin, shift);
+        near(found.origin_by_y, wanted.by_film_y.origin, shift);
+      }
+      EXPECT_GT(lit, 150);
+    }
+  }
+}
+
+TEST(CameraTables, ConnectionsEqualTheLibrary) {
+  int with_light = 0;
+  for (const Prescription& prescription : testing::data_prescriptions()) {
+    SCOPED_TRACE(prescription.name);
+    const Lens lens = compile(prescription);
+    const Film film = film_of(lens);
+    const Camera camera(lens, film, {.model = ModelKind::exact_float});
+    const std::vector<float> table = camera_tables(camera);
+    const double size = size_of(lens);
+    Samples samples(film, 5);
+    int lit = 0, other_fates = 0;
+    std::vector<double> errors;
+    for (int i = 0; i < 1000; ++i) {
+      const float field = 1.2f * samples.number(), turn = 6.28f * samples.number();
+      const auto distance = static_cast<float>(size * std::exp(8 * samples.number() - 0.5));
+      const pz_vector point{distance * std::sin(field) * std::sin(turn), distance * std::sin(field) * std::cos(turn),
+                            -distance * std::cos(field)};
+      const float u = samples.number(), v = samples.number();
+      const ImportanceSample wanted = camera.sample_importance(vec(point), u, v);
+      const pz_connection found = pz_connect(table.data(), point, u, v, primary_nm(lens));
+      ASSERT_EQ(found.pdf > 0, wanted.pdf > 0) << distance;
+      if (!(wanted.pdf > 0)) continue;
+      EXPECT_LT(largest(vec(found.direction) - wanted.direction), 16 * eps);
+      EXPECT_NEAR(found.pdf / wanted.pdf, 1, 2e-4);
+      EXPECT_NEAR(found.distance, wanted.distance, 1e-5 * (wanted.distance + size));
+      const bool passes = wanted.importance.fate == RayFate::transmitted;
+      other_fates += passes != (found.arrival.fate == 0);
+      if (!passes || found.arrival.fate != 0) continue;
+      ++lit, ++with_light;
+      EXPECT_NEAR(found.arrival.we / wanted.importance.we, 1, 1e-6);
+      EXPECT_NEAR(found.arrival.pdf_position / wanted.importance.pdf_position, 1, 1e-6);
+      EXPECT_NEAR(found.arrival.pdf_direction / wanted.importance.pdf_direction, 1, 3e-4);
+      errors.push_back(
+          std::hypot(found.arrival.film.x - wanted.importance.film.x, found.arrival.film.y - wanted.importance.film.y) /
+          std::hypot(film.width_mm, film.height_mm));
+    }
+    EXPECT_LE(other_fates, 1);
+    // A millionth of the film; rays from near the lens through long focal lengths lose more digits.
+    EXPECT_LT(lit > 0 ? *std::ranges::max_element(errors) : 0, 5e-5);
+  }
+  EXPECT_GT(with_light, 10000);
+}
+
+TEST(CameraTables, DensitiesOfDirectionsEqualThoseOfSamples) {
+  for (const char* const id :
+       {"double_gauss_100mm_f2.0", "fisheye_8mm_f2.8", "anamorphic_60mm_2x", "catadioptric_mangin_1000mm_f7.5"}) {
+    SCOPED_TRACE(id);
+    const Lens lens = testing::data_lens(id);
+    const std::vector<float> table = camera_tables(Camera(lens, film_of(lens), {.model = ModelKind::exact_float}));
+    Samples samples({}, 9);
+    int same = 0, count = 0;
+    for (int i = 0; i < 500; ++i) {
+      const pz_vector point{300 * samples.number(), 200 * samples.number(), -3000};
+      const pz_connection c = pz_connect(table.data(), point, samples.number(), samples.number(), primary_nm(lens));
+      if (!(c.pdf > 0)) continue;
+      ++count;
+      // Densities jump between sectors, so that a direction on a border may find the density of the neighbour.
+      same += std::abs(pz_pdf(table.data(), point, c.direction, primary_nm(lens)) / c.pdf - 1) < 1e-3;
+    }
+    EXPECT_GT(count, 400);
+    EXPECT_GT(same, 0.97 * count);
+  }
+}
+
+TEST(CameraTables, FilmPointsAndRasterEqualTheFilm) {
+  const Film film{.width_mm = 24, .height_mm = 16, .columns = 300, .rows = 200, .shift_x_mm = 2, .shift_y_mm = -1};
+  const std::vector<float> table =
+      camera_tables(Camera(testing::data_lens("tessar_100mm_f2.8"), film, {.model = ModelKind::exact_float}));
+  const pz_point found = pz_film_point(table.data(), 70, 150);
+  const FilmPoint wanted = film.point(70, 150);
+  EXPECT_NEAR(found.x, wanted.x, 1e-5);
+  EXPECT_NEAR(found.y, wanted.y, 1e-5);
+  const pz_point raster = pz_raster(table.data(), found);
+  EXPECT_NEAR(raster.x, 70, 1e-4);
+  EXPECT_NEAR(raster.y, 150, 1e-4);
+}
+
+TEST(CameraTables, InvalidSamplesHaveFates) {
+  const Lens lens = testing::data_lens("tessar_100mm_f2.8");
+  const std::vector<float> table = camera_tables(Camera(lens, {}, {.model = ModelKind::exact_float}));
+  const float nan = std::numeric_limits<float>::quiet_NaN(), nm = primary_nm(lens);
+  EXPECT_EQ(table[0], PZ_FORMAT);
+  EXPECT_EQ(table[1], static_cast<float>(table.size()));
+  EXPECT_EQ(pz_sample(table.data(), 18.1f, 0, 0.5f, 0.5f, nm).fate, static_cast<int>(RayFate::outside_film));
+  EXPECT_EQ(pz_sample(table.data(), nan, 0, 0.5f, 0.5f, nm).fate, static_cast<int>(RayFate::outside_film));
+  EXPECT_EQ(pz_sample(table.data(), 1, 2, nan, 0.5f, nm).fate, static_cast<int>(RayFate::outside_film));
+  EXPECT_EQ(pz_sample(table.data(), 1, 2, 0.5f, 0.5f, 300).fate, static_cast<int>(RayFate::outside_spectrum));
+  EXPECT_EQ(pz_sample(table.data(), 1, 2, 0.5f, 0.5f, nan).fate, static_cast<int>(RayFate::outside_spectrum));
+  EXPECT_EQ(pz_importance(table.data(), {0, 0, -9}, {0, 0, 2}, nm).fate, static_cast<int>(RayFate::invalid));
+  EXPECT_EQ(pz_connect(table.data(), {nan, 0, -900}, 0.5f, 0.5f, nm).pdf, 0);
+  EXPECT_EQ(pz_connect(table.data(), {0, 0, 900}, 0.5f, 0.5f, nm).pdf, 0);
+}
+
+TEST(CameraTables, OtherCamerasAreRefused) {
+  const Lens lens = testing::data_lens("tessar_100mm_f2.8");
+  expect_error([&] { camera_tables(Camera(lens, {.tilt_rad = 0.1}, {.model = ModelKind::exact_float})); },
+               {lens.name(), "tilted"});
+  expect_error([&] { camera_tables(Camera(lens, {}, {.model = ModelKind::thick})); }, {lens.name(), "thick"});
 }
 
 }  // namespace

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "../data_lenses.hpp"
+#include "camera_parts.hpp"
 #include "camera_samples.hpp"
 #include "core/low_discrepancy.hpp"
 #include "petzval/camera/camera.hpp"
@@ -210,6 +211,7 @@ TEST(LocalFocus, DifferentialsEqualFiniteDifferences) {
   const core_detail::Kronecker<5> random(9);
   for (const auto& [what, options, film] : settings(lens, {ModelKind::thick, ModelKind::thin_two_disc})) {
     const Camera camera(lens, film, options);
+    const testing::CameraParts parts(camera);
     for (std::uint32_t i = 0; i < 11; ++i) {
       const auto [x, y, u, v, time] = random(i);
       const CameraSample sample{film.point(x * film.columns, y * film.rows), u, v, {}, time};
@@ -217,9 +219,8 @@ TEST(LocalFocus, DifferentialsEqualFiniteDifferences) {
       if (!found.sample) continue;
       EXPECT_LT(glm::length(found.sample.ray.direction - camera.sample(sample).ray.direction), 1e-12);
       constexpr double step = 1e-4;
-      CameraSample before = sample, behind = sample;
-      before.film.x -= step, behind.film.x += step;
-      const CameraRay from = camera.sample(before), to = camera.sample(behind);
+      const CameraRay from = camera.sample(parts.moved(sample, -step, 0));
+      const CameraRay to = camera.sample(parts.moved(sample, step, 0));
       if (!from || !to) continue;
       const Vec3<double> by = (to.ray.direction - from.ray.direction) / (2 * step);
       EXPECT_LT(glm::length(found.by_film_x.direction - by), 1e-6 * glm::length(by)) << what;

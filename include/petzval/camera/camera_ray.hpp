@@ -74,8 +74,8 @@ struct CameraRays {
   }
 };
 
-/// A camera ray and the exact derivatives of its origin and direction by film x and film y (per mm), at a constant
-/// pupil sample.
+/// A camera ray and the exact derivatives of its origin and direction by film x and film y (per mm). The offset of the
+/// ray from the middle of the pupil stays constant.
 struct CameraRayDifferential {
   CameraRay sample{};
   Ray<double> by_film_x{{0, 0, 0}, {0, 0, 0}}, by_film_y{{0, 0, 0}, {0, 0, 0}};
