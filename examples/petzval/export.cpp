@@ -2,6 +2,7 @@
 // Writes a camera for programs that do not link petzval: calibrations in the models and formats of other programs.
 //
 //   petzval export double_gauss_52mm_f1.8 --focus inf --calibration out
+//   petzval export double_gauss_52mm_f1.8 --ray-map rays.exr --lens-samples 32
 #include <array>
 #include <cmath>
 #include <filesystem>
@@ -24,11 +25,13 @@
 namespace {
 
 using examples::number;
-using nlohmann::json;
+using json = examples::Json;
 
 struct Options {
   examples::LensInput lens_file;
-  std::string calibration;
+  std::string calibration, ray_map;
+  std::uint32_t lens_samples = 16;
+  bool half = false;
   std::string wavelengths = "F,d,C";
   std::uint32_t columns = 0, rows = 0;
   examples::CameraSetup setup;
@@ -59,10 +62,35 @@ void print(const std::vector<petzval::Calibration>& all) {
   std::cout << "* fraction of the irradiance on the axis\n";
 }
 
+/// Writes a ray map and returns its report.
+json write_map(const Options& options, const petzval::Lens& lens) {
+  const petzval::Film film = options.setup.film(options.columns, options.rows, 480);
+  const petzval::Camera camera(lens, film, {.model = petzval::ModelKind::exact_double});
+  const petzval::RayMap map = petzval::ray_map(
+      camera,
+      {.lens_samples = static_cast<int>(options.lens_samples), .half = options.half, .threads = examples::threads()});
+  commands::write_ray_map(map, camera, options.ray_map);
+  if (!options.output.json) {
+    std::cout << "ray map of " << film.columns << " x " << film.rows << " pixels, " << map.lens_samples.size()
+              << (map.chief_rays ? " lens sample (chief rays)" : " lens samples") << ": between pixels RMS "
+              << number(map.rms_px, 2) << ", largest " << number(map.largest_px, 2) << " pixels; "
+              << number(100 * map.left_out, 2) << " % of the places at dark pixels, without an error\n";
+  }
+  options.output.file(options.ray_map);
+  return commands::head_of(map, camera);
+}
+
 void write(const Options& options) {
+  if (options.calibration.empty() && options.ray_map.empty()) {
+    throw petzval::Error("--calibration or --ray-map is required");
+  }
+  if (!options.ray_map.empty()) examples::want_ending("--ray-map", options.ray_map, ".exr");
   const examples::LoadedLens loaded =
       examples::load_lens(options.lens_file, examples::parse_wavelengths("--wavelengths", options.wavelengths));
   const petzval::Lens lens = examples::focused(loaded, options.setup);
+  json map;
+  if (!options.ray_map.empty()) map = write_map(options, lens);
+  if (options.calibration.empty()) return options.output.report({{"lens", lens.name()}, {"ray_map", std::move(map)}});
   const petzval::Film film = options.setup.film(options.columns, options.rows, 1920);
   const petzval::Camera camera(lens, film, {.model = petzval::ModelKind::exact_double});
   std::vector<petzval::Calibration> all = petzval::calibrations(camera);
@@ -108,8 +136,10 @@ void write(const Options& options) {
   }
   commands::write_omniverse(tables, enter, exit);
   options.output.file(enter), options.output.file(exit);
-  options.output.report(
-      {{"lens", lens.name()}, {"columns", film.columns}, {"rows", film.rows}, {"calibrations", std::move(rows)}});
+  examples::Json report{
+      {"lens", lens.name()}, {"columns", film.columns}, {"rows", film.rows}, {"calibrations", std::move(rows)}};
+  if (!options.ray_map.empty()) report["ray_map"] = std::move(map);
+  options.output.report(report);
 }
 
 }  // namespace
@@ -118,15 +148,24 @@ int commands::export_camera(int argc, char** argv) {
   Options options;
   examples::App app(
       "Writes calibrations of a camera, computed from its lens: parameters of OpenCV, COLMAP, Lensfun, USD and others, "
-      "with the error of each model over the picture. DIR/LENS.*.",
+      "with the error of each model over the picture. DIR/LENS.*. Writes its rays as an image (--ray-map).",
       "petzval export");
   examples::add_lens(app, options.lens_file);
   examples::add_out_folder(
       app, options.calibration,
       "folder for the calibrations: OpenCV (.yml), COLMAP (.colmap.txt), Lensfun (.lensfun.xml), USD (.usda.txt), "
       "tables of Omniverse (.omniverse.enter.exr, .omniverse.exit.exr)",
-      "--calibration")
-      ->required();
+      "--calibration");
+  examples::Option* const map = examples::add_out_file(
+      app, options.ray_map,
+      "writes the origin, direction and weight of the ray of each pixel and lens sample, with the attribute ray_map "
+      "that describes them; 480 pixels across unless --size is given",
+      "FILE.exr", "--ray-map");
+  constexpr examples::Range lens_samples{1, 256, "a whole number from 1 to 256"};
+  examples::add_count(app, "--lens-samples", options.lens_samples, lens_samples,
+                      "lens samples of the ray map; 1: chief rays")
+      ->needs(map);
+  app.add_flag("--half", options.half, "values of the ray map are 16-bit floats")->needs(map);
   examples::add_camera(app, options.setup);
   examples::add_picture_size(app, options.columns, options.rows, 1920);
   app.add_option("--wavelengths", options.wavelengths, "wavelengths of the lateral colour, in nm or as spectral lines")

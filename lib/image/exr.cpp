@@ -105,7 +105,8 @@ Imf::Header header_of(const ExrPart& part, const Imath::Box2i& display) {
   const Imath::V2i first{-part.margin_x, -part.margin_y};
   Imf::Header header(display, {first, first + Imath::V2i(part.width - 1, part.height - 1)});
   header.setType(Imf::SCANLINEIMAGE);
-  for (const ExrChannel& channel : part.channels) header.channels().insert(channel.name, Imf::Channel(Imf::FLOAT));
+  const Imf::Channel type(part.half ? Imf::HALF : Imf::FLOAT);
+  for (const ExrChannel& channel : part.channels) header.channels().insert(channel.name, type);
   for (const auto& [name, text] : part.texts) insert<Imf::StringAttribute>(header, name, text);
   for (const auto& [name, number] : part.numbers) {
     if (is_among(standard_floats, name)) {
@@ -229,7 +230,17 @@ void write_exr(std::span<const ExrPart> parts, const std::filesystem::path& file
       // A frame buffer needs mutable pixels; writing does not change the pixels.
       const std::span channels(const_cast<ExrChannel*>(part.channels.data()), part.channels.size());
       Imf::OutputPart out_part(out, static_cast<int>(i));
-      out_part.setFrameBuffer(frame(channels, headers[i].dataWindow(), part.width, part.height));
+      Imf::FrameBuffer buffer = frame(channels, headers[i].dataWindow(), part.width, part.height);
+      std::vector<std::vector<half>> halves;
+      if (part.half) {
+        const auto width = static_cast<std::size_t>(part.width);
+        for (const ExrChannel& channel : part.channels) {
+          halves.emplace_back(channel.values.begin(), channel.values.end());
+          buffer.insert(channel.name, Imf::Slice::Make(Imf::HALF, halves.back().data(), headers[i].dataWindow().min,
+                                                       part.width, part.height, sizeof(half), sizeof(half) * width));
+        }
+      }
+      out_part.setFrameBuffer(buffer);
       out_part.writePixels(part.height);
     }
   } catch (const std::exception& e) {

@@ -35,7 +35,7 @@ const std::vector<Command> commands = {
     {"expressive", {"LENS", "--rays", "1", "--out", "@out"}},
     {"surface", {"LENS", "--points", "@surface.json", "--out", "@out"}},
     {"focus", {"LENS"}},
-    {"export", {"LENS", "--calibration", "@out"}},
+    {"export", {"LENS", "--calibration", "@out", "--ray-map", "@rays.exr", "--size", "24"}},
     {"metadata", {"LENS", "--out", "@out"}},
     {"report", {"LENS"}},
     {"psf-set",
@@ -79,7 +79,9 @@ std::map<std::string, std::string> flags_of(const std::string& help) {
   return flags;
 }
 
-bool is_output(const std::string& flag) { return flag == "--out" || flag == "--balls" || flag == "--calibration"; }
+bool is_output(const std::string& flag) {
+  return flag == "--out" || flag == "--balls" || flag == "--calibration" || flag == "--ray-map";
+}
 
 class HostileFlags : public Programs, public testing::WithParamInterface<Command> {
  protected:

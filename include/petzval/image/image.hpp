@@ -69,9 +69,10 @@ struct ExrPart {
   std::map<std::string, Vec2<float>> pairs{};  ///< attributes of type v2f
   /// Pixels on either side beyond the display window; 0 after reading if the windows have different centres.
   int margin_x = 0, margin_y = 0;
+  bool half = false;  ///< writing: channels of 16-bit floats, rounded to the nearest
 };
 
-/// Writes parts with 32-bit float channels to an EXR file with write_file(), lossless.
+/// Writes parts with float channels to an EXR file with write_file(), lossless.
 ///
 /// The display window starts at (0, 0) and is the smallest window around all parts without their margins.
 ///
