@@ -1,21 +1,27 @@
 // SPDX-License-Identifier: Apache-2.0
 // Writes a camera for programs that do not link petzval: calibrations in the models and formats of other programs.
 //
+//   petzval export double_gauss_52mm_f1.8 --camera camera.h
 //   petzval export double_gauss_52mm_f1.8 --focus inf --calibration out
 //   petzval export double_gauss_52mm_f1.8 --ray-map rays.exr --lens-samples 32
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <filesystem>
 #include <iomanip>
 #include <iostream>
+#include <limits>
 #include <string>
 
 #include "commands.hpp"
 #include "export_maps.hpp"
+#include "export_table.hpp"
 #include "petzval/analysis/calibration.hpp"
 #include "petzval/camera/camera.hpp"
 #include "petzval/core/error.hpp"
 #include "petzval/core/geometry.hpp"
+#include "petzval/glass/glass.hpp"
+#include "petzval/petzval_camera.h"
 #include "support/camera_setup.hpp"
 #include "support/cli.hpp"
 #include "support/files.hpp"
@@ -29,10 +35,11 @@ using json = examples::Json;
 
 struct Options {
   examples::LensInput lens_file;
-  std::string calibration, ray_map;
+  std::string calibration, ray_map, camera, model;
+  bool all = false;
   std::uint32_t lens_samples = 16;
   bool half = false;
-  std::string wavelengths = "F,d,C";
+  std::string wavelengths;
   std::uint32_t columns = 0, rows = 0;
   examples::CameraSetup setup;
   examples::Output output;
@@ -80,17 +87,96 @@ json write_map(const Options& options, const petzval::Lens& lens) {
   return commands::head_of(map, camera);
 }
 
-void write(const Options& options) {
-  if (options.calibration.empty() && options.ray_map.empty()) {
-    throw petzval::Error("--calibration or --ray-map is required");
-  }
-  if (!options.ray_map.empty()) examples::want_ending("--ray-map", options.ray_map, ".exr");
-  const examples::LoadedLens loaded =
-      examples::load_lens(options.lens_file, examples::parse_wavelengths("--wavelengths", options.wavelengths));
+std::vector<double> wavelengths_of(const Options& options, const std::string& usual) {
+  return examples::parse_wavelengths("--wavelengths", options.wavelengths.empty() ? usual : options.wavelengths);
+}
+
+std::string title_of(const examples::LoadedLens& loaded, const petzval::Film& film) {
+  std::string title =
+      loaded.lens.name() + ", film " + number(film.width_mm, 4) + " x " + number(film.height_mm, 4) + " mm";
+  for (const double nm : loaded.lens.wavelengths_nm()) title += ", " + number(nm, 7) + " nm";
+  return title;
+}
+
+petzval::Camera table_camera(const Options& options, const petzval::Lens& lens, const petzval::Film& film) {
+  return petzval::Camera(lens, film, {.model = *petzval::model_named(options.model), .threads = examples::threads()});
+}
+
+/// Writes the table of a camera and returns its report.
+json write_table(const Options& options) {
+  const examples::LoadedLens loaded = examples::load_lens(options.lens_file, wavelengths_of(options, "d"));
   const petzval::Lens lens = examples::focused(loaded, options.setup);
-  json map;
-  if (!options.ray_map.empty()) map = write_map(options, lens);
-  if (options.calibration.empty()) return options.output.report({{"lens", lens.name()}, {"ray_map", std::move(map)}});
+  const petzval::Film film = options.setup.film(options.columns, options.rows, 1920);
+  examples::say_what_does_not_fit(lens, film);
+  const std::vector<float> table = camera_table(table_camera(options, lens, film));
+  commands::write_camera_table(table, title_of(loaded, film), options.camera);
+  options.output.file(options.camera);
+  return {{"format", PZ_FORMAT}, {"numbers", table.size()}};
+}
+
+/// The lens in focus, at infinity if it cannot be focused at the distance.
+petzval::Lens focused_or_far(const examples::LoadedLens& loaded, examples::CameraSetup setup) {
+  try {
+    return examples::focused(loaded, setup);
+  } catch (const petzval::Error&) {
+    examples::note(loaded.id + " cannot be focused at " + number(setup.focus_mm, 4) +
+                   " mm; its table is focused at infinity");
+    setup.focus_mm = std::numeric_limits<double>::infinity();
+    return examples::focused(loaded, setup);
+  }
+}
+
+/// Writes the tables of all shipped lenses. Unless --film is given, the film shrinks to the image circle.
+void write_all(const Options& options) {
+  examples::make_folder(options.camera);
+  std::vector<std::filesystem::path> files = examples::entries(petzval::data_directory() / "lenses");
+  std::erase_if(files, [](const auto& file) { return file.extension() != ".json"; });
+  std::ranges::sort(files);
+  std::size_t bytes = 0;
+  json rows = json::array();
+  for (const std::filesystem::path& file : files) {
+    const examples::LoadedLens loaded = examples::load_lens({.file = file.string()}, wavelengths_of(options, "d"));
+    const petzval::Lens lens = focused_or_far(loaded, options.setup);
+    petzval::Film film = options.setup.film(options.columns, options.rows, 1920);
+    std::vector<float> table = camera_table(table_camera(options, lens, film));
+    if (const double lit = table[PZ_REACH] / film.radius_mm(); !options.setup.film_given && lit < 1) {
+      film.width_mm *= lit, film.height_mm *= lit;
+      table = camera_table(table_camera(options, lens, film));
+    }
+    const std::filesystem::path out = std::filesystem::path(options.camera) / (loaded.id + ".bin");
+    commands::write_camera_table(table, title_of(loaded, film), out);
+    options.output.file(out);
+    bytes += 4 * table.size();
+    rows.push_back({{"file", out.string()}, {"numbers", table.size()}, {"film_mm", {film.width_mm, film.height_mm}}});
+  }
+  if (!options.output.json) {
+    std::cout << files.size() << " tables, " << number(1e-6 * static_cast<double>(bytes), 3) << " MB\n";
+  }
+  options.output.report({{"tables", std::move(rows)}, {"bytes", bytes}});
+}
+
+void write(const Options& options) {
+  if (options.calibration.empty() && options.ray_map.empty() && options.camera.empty()) {
+    throw petzval::Error("--camera, --calibration or --ray-map is required");
+  }
+  const bool others = !options.calibration.empty() || !options.ray_map.empty();
+  if (options.all && (others || !options.lens_file.file.empty())) {
+    throw petzval::Error("--all: found LENS, --calibration or --ray-map as well; must be given with --camera DIR only");
+  }
+  if (options.all) return write_all(options);
+  if (options.lens_file.file.empty()) throw petzval::Error("LENS is required (or --all)");
+  if (!options.ray_map.empty()) examples::want_ending("--ray-map", options.ray_map, ".exr");
+  json report;
+  if (!options.camera.empty()) {
+    commands::check_table_name(options.camera);
+    report["table"] = write_table(options);
+  }
+  if (!others) return options.output.report(report);
+  const examples::LoadedLens loaded = examples::load_lens(options.lens_file, wavelengths_of(options, "F,d,C"));
+  const petzval::Lens lens = examples::focused(loaded, options.setup);
+  report["lens"] = lens.name();
+  if (!options.ray_map.empty()) report["ray_map"] = write_map(options, lens);
+  if (options.calibration.empty()) return options.output.report(report);
   const petzval::Film film = options.setup.film(options.columns, options.rows, 1920);
   const petzval::Camera camera(lens, film, {.model = petzval::ModelKind::exact_double});
   std::vector<petzval::Calibration> all = petzval::calibrations(camera);
@@ -136,9 +222,8 @@ void write(const Options& options) {
   }
   commands::write_omniverse(tables, enter, exit);
   options.output.file(enter), options.output.file(exit);
-  examples::Json report{
-      {"lens", lens.name()}, {"columns", film.columns}, {"rows", film.rows}, {"calibrations", std::move(rows)}};
-  if (!options.ray_map.empty()) report["ray_map"] = std::move(map);
+  report["columns"] = film.columns, report["rows"] = film.rows;
+  report["calibrations"] = std::move(rows);
   options.output.report(report);
 }
 
@@ -147,10 +232,18 @@ void write(const Options& options) {
 int commands::export_camera(int argc, char** argv) {
   Options options;
   examples::App app(
-      "Writes calibrations of a camera, computed from its lens: parameters of OpenCV, COLMAP, Lensfun, USD and others, "
-      "with the error of each model over the picture. DIR/LENS.*. Writes its rays as an image (--ray-map).",
+      "Writes a camera for programs that do not link petzval: a table for petzval_camera.h, in C, GLSL, HLSL or CUDA "
+      "(--camera), an image of its rays (--ray-map), or the parameters of OpenCV, COLMAP, Lensfun, USD and others, "
+      "with "
+      "the error of each model over the picture (--calibration).",
       "petzval export");
-  examples::add_lens(app, options.lens_file);
+  examples::add_lens(app, options.lens_file, "LENS", "or --all");
+  examples::Option* const camera =
+      app.add_option("--camera", options.camera,
+                     "writes the table of the camera: surfaces, pupils, iris and film as floats; .h: C source, .bin: "
+                     "little-endian floats, .json: with names. With --all a folder")
+          ->type_name("FILE");
+  app.add_flag("--all", options.all, "writes the tables of all shipped lenses, as .bin")->needs(camera);
   examples::add_out_folder(
       app, options.calibration,
       "folder for the calibrations: OpenCV (.yml), COLMAP (.colmap.txt), Lensfun (.lensfun.xml), USD (.usda.txt), "
@@ -168,9 +261,12 @@ int commands::export_camera(int argc, char** argv) {
   app.add_flag("--half", options.half, "values of the ray map are 16-bit floats")->needs(map);
   examples::add_camera(app, options.setup);
   examples::add_picture_size(app, options.columns, options.rows, 1920);
-  app.add_option("--wavelengths", options.wavelengths, "wavelengths of the lateral colour, in nm or as spectral lines")
-      ->type_name("NM,...")
-      ->capture_default_str();
+  options.model = "exact_float";
+  examples::add_model(app, options.model)->needs(camera);
+  app.add_option("--wavelengths", options.wavelengths,
+                 "wavelengths of the table (default d) and of the lateral colour (default F,d,C), in nm or as spectral "
+                 "lines")
+      ->type_name("NM,...");
   options.output.add(app);
   examples::add_threads(app);
   return examples::run(app, argc, argv, [&] { write(options); });

@@ -29,8 +29,8 @@ constexpr std::array lens_commands{
     Command{"lenses", "list and search the shipped lenses", "gauss", &lenses},
     Command{"report", "first order, pupils and figures of a lens", "double_gauss_52mm_f1.8 --out out", &report},
     Command{"convert", "write a lens in another format", "cooke_triplet_50mm_f5 triplet.zmx", &convert},
-    Command{"export", "calibrations for OpenCV, COLMAP, Lensfun and USD",
-            "double_gauss_52mm_f1.8 --focus inf --calibration out", &export_camera},
+    Command{"export", "a camera for shaders, ray maps, calibrations", "double_gauss_52mm_f1.8 --camera camera.h",
+            &export_camera},
     Command{"metadata", "OpenTrackIO and ST maps for compositing", "biogon_35mm_f2.8 --out out", &metadata},
 };
 constexpr std::array focus_commands{

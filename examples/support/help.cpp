@@ -29,7 +29,8 @@ constexpr std::array all_groups{
     Group{"Work", false, " --integrator --wavelengths --spp --rays --noise --time --compare --compare-rays "},
     Group{"Window", false, " --replay --log --panels --screenshot "},
     Group{"Output", false,
-          " --out --calibration --ray-map --povray --format --json --check --strict --repair --precision "},
+          " --out --camera --all --calibration --ray-map --povray --format --json --check --strict --repair "
+          "--precision "},
     Group{"Quality", true, " --lens-samples --half --tolerance --layers --jitter --supersample --highlights-above "},
     Group{"Depths", true, " --depth-kind --near --far --white "},
     Group{"Files", true, " --glasses --configuration --match-glasses --ignore-apertures "},

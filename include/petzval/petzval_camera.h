@@ -17,15 +17,15 @@
  *     #define PETZVAL_GLSL
  *     #define PETZVAL_TABLE(i) camera_table[i]
  *
- * Functions: pz_film_point, pz_raster, pz_sample, pz_sample_differential, pz_importance, pz_connect and pz_pdf; the
- * others serve them. Frame of the lens: z runs along the axis from the scene to the film; the vertex of the first
+ * Functions: pz_film_point, pz_raster, pz_sample, pz_sample_differential, pz_importance, pz_connect and pz_pdf. Other
+ * functions are internal. Frame of the lens: z runs along the axis from the scene to the film; the vertex of the first
  * surface is at 0. Lengths are in mm, wavelengths in nm. Fates of rays: 0 transmitted, 1 missed a surface, 2 total
  * reflection, 3 clipped by an aperture, 5 outside the fit of a polynomial, 6 outside the film, 7 invalid, 8 outside the
  * wavelengths of the table.
  *
  * Accuracy: as the float rays of the library; the distance to these rays is at most 8 float eps for most lenses of
  * data/ and up to 30 for fisheyes, whose float rays are up to 20 eps from exact rays
- * (tests/camera/camera_tables_test.cpp).
+ * (tests/camera/camera_table_test.cpp).
  */
 #ifndef PETZVAL_CAMERA_H
 #define PETZVAL_CAMERA_H
@@ -573,7 +573,7 @@ PZ_FN pz_pupil_sample pz_sample_pupil(PZ_T pz_cell c, float u, float v) {
     own_half = right + in_left * (1.0f - 2.0f * right);
     expected = 32.0f * (in_left + (target - first) / (own_half > 0.0f ? own_half : 1.0f));
   }
-  /* Sectors have nearly equal areas: the target lies in the expected sector or close to it. */
+  /* Sectors have nearly equal areas: the target lies in the expected sector or in a neighbour. */
   expected -= corrections > 0 ? 0.0f : 0.5f;
   expected = expected > 0.0f ? (expected < 63.0f ? expected : 63.0f) : 0.0f;
   k = PZ_INT(expected);
@@ -899,8 +899,8 @@ PZ_FN pz_chart pz_sums(PZ_T int w, float fx, float fy, float px, float py) {
   int terms = two ? of_four : of_three, stride = two ? 2 * terms : terms;
   pz_chart chart;
   float a[4];
-  /* Along x and y: f and p along this axis, g and q along the other. Of revolution: the same polynomials for both, of
-   * f f, f p and p p. */
+  /* Along x and y: f and p along this axis, g and q along the other. Lenses of revolution have the same polynomials
+   * of f f, f p and p p for both axes. */
   for (int axis = 0; axis < 2; ++axis) {
     float f = axis == 0 ? fx : fy, p = axis == 0 ? px : py, g = axis == 0 ? fy : fx, q = axis == 0 ? py : px;
     float u = two ? f * f : f * f + g * g, v = two ? p * p : f * p + g * q, r = two ? g * g : p * p + q * q;
@@ -1024,7 +1024,7 @@ PZ_FN pz_ray pz_lost(int fate) {
 PZ_FN pz_vector pz_difference(pz_vector a, pz_vector b, float per) {
   return pz_xyz((a.x - b.x) * per, (a.y - b.y) * per, (a.z - b.z) * per);
 }
-/* The ray of a start, in the plane where its model ends, with derivatives if they are wanted. */
+/* The ray of a start, in the plane where its model ends, with derivatives if follow is true. */
 PZ_FN pz_beam pz_leave(PZ_T pz_start s, PZ_BOOL follow) {
   pz_beam b;
   pz_point pupil = s.pupil.at;
@@ -1167,7 +1167,7 @@ PZ_FN pz_arrival pz_importance(PZ_T pz_vector origin, pz_vector direction, float
 }
 
 /* The pupil of a scene point: a polygon in the plane through the centre that faces the point, interpolated between
- * nodes over reciprocal distance and field (one angle for a lens of revolution, two for one with cylinders). */
+ * nodes over reciprocal distance and field (one angle for a lens of revolution, two angles with cylinders). */
 PZ_STRUCT(pz_scene) {
   PZ_BOOL known, two; /* two: two angles */
   int nodes;          /* position of the numbers of the first node in the table */

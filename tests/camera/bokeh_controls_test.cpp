@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "camera/camera_tables.hpp"
 #include "petzval/camera/bokeh.hpp"
 
 #include <gtest/gtest.h>
@@ -310,7 +309,7 @@ TEST(BokehControls, RefuseBadInput) {
   expect_error(with({.lens_ratio = -1}), {lens.name(), -1});
   expect_error(with({.weight_map = {1, 1, {0}}}), {lens.name(), "map", "iris"});
   const Camera weighted(lens, film, {.model = ModelKind::thin, .bokeh = ring});
-  expect_error([&] { camera_tables(weighted); }, {lens.name(), "weights"});
+  expect_error([&] { camera_table(weighted); }, {lens.name(), "weights"});
 }
 
 }  // namespace bokeh_controls_test

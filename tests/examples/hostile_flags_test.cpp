@@ -35,7 +35,7 @@ const std::vector<Command> commands = {
     {"expressive", {"LENS", "--rays", "1", "--out", "@out"}},
     {"surface", {"LENS", "--points", "@surface.json", "--out", "@out"}},
     {"focus", {"LENS"}},
-    {"export", {"LENS", "--calibration", "@out", "--ray-map", "@rays.exr", "--size", "24"}},
+    {"export", {"LENS", "--camera", "@t.bin", "--calibration", "@out", "--ray-map", "@rays.exr", "--size", "24"}},
     {"metadata", {"LENS", "--out", "@out"}},
     {"report", {"LENS"}},
     {"psf-set",

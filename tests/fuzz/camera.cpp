@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Cameras of any lens, by every ray model, with blades, weights and tilted films.
 #include "petzval/camera/camera.hpp"
-#include "camera/camera_tables.hpp"
 
 #include <array>
 #include <span>
@@ -98,7 +97,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     }
     if (tables) {
       fuzz::done([&] {
-        for (const float number : camera_tables(camera)) fuzz::require(!std::isnan(number), "tables contain no NaN");
+        for (const float number : camera_table(camera)) fuzz::require(!std::isnan(number), "tables contain no NaN");
       });
     }
     if (scene) from_the_scene(camera, bytes);

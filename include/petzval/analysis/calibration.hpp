@@ -70,7 +70,7 @@ PETZVAL_API std::string format_calibration(const Calibration& calibration, const
 ///
 /// The meaning of the tables follows docs.omniverse.nvidia.com (omni.usd.schema.omni_lens_distortion 1.0.0) and
 /// NVIDIA's answer at forums.developer.nvidia.com/t/365174: RGB is the direction into the scene for a position, RG is
-/// the position for the octahedral coordinates of a direction. Assumptions, because these pages do not state them, from
+/// the position for the octahedral coordinates of a direction. These pages leave some points open. Assumptions from
 /// the exporter of github.com/Munna-Manoj/DS-MSP, whose authors report tests in Isaac Sim 6.0: texel (column, row) of
 /// the exit table has the octahedral coordinates x = (2 column + 1) / size - 1 to the right and y = (2 row + 1) / size
 /// - 1 up, with -z in the centre; (0, 0, 1) marks a dark position and -1 a direction without a position; the optical

@@ -48,10 +48,12 @@ struct RayMap {
   RayMapLayout layout = RayMapLayout::planes;
   int columns = 0, rows = 0;
   bool half = false;
-  bool chief_rays = false;  ///< true: the only sample of each pixel is its chief ray; weights are those of all rays
-  double plane_z_mm = 0;    ///< the entrance pupil; the first vertex if the pupil is farther than 1 m from it
-  double front_z_mm = 0;    ///< smallest z at which a ray of the map leaves the lens
-  double pupil_z_mm = 0;    ///< plane of LensSample::pupil_mm, in image space
+  bool chief_rays =
+      false;  ///< true: the only sample of each pixel is its chief ray; its weight is the weight of the whole pupil
+  double plane_z_mm =
+      0;  ///< the entrance pupil; the first vertex if the distance of the pupil from the first vertex is more than 1 m
+  double front_z_mm = 0;  ///< smallest z at which a ray of the map leaves the lens
+  double pupil_z_mm = 0;  ///< plane of LensSample::pupil_mm, in image space
   /// `planes`: slope = value + slope_per_pixel * (raster - picture centre), in x and in y. 0 unless `half`.
   Vec2<double> slope_per_pixel{0, 0};
   std::vector<LensSample> lens_samples{};

@@ -6,6 +6,7 @@
 #include <memory>
 #include <optional>
 #include <span>
+#include <vector>
 
 #include "petzval/camera/bokeh.hpp"
 #include "petzval/camera/camera_ray.hpp"
@@ -209,5 +210,14 @@ class PETZVAL_API Camera {
   explicit Camera(std::shared_ptr<const Data> data) noexcept;
   std::shared_ptr<const Data> data_;
 };
+
+/// The table of a camera for petzval/petzval_camera.h: one array of floats, in the layout of lib/docs/camera_table.md.
+///
+/// @param camera  a camera with exact rays or polynomials, an upright film and a pupil without weights
+/// @throws Error  if the film is tilted or travels, if the camera has weights of the pupil, a focal surface or an
+///                expressive lens, or if the model is of first order or custom
+///
+/// Limitations: the table of a polynomial has no scene side and only the compiled wavelengths.
+PETZVAL_API std::vector<float> camera_table(const Camera& camera);
 
 }  // namespace petzval

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "camera/camera_tables.hpp"
+// The table that petzval/petzval_camera.h reads.
 
 #include <algorithm>
 #include <array>
@@ -7,11 +7,14 @@
 #include <numbers>
 #include <span>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "camera/polynomial_model.hpp"
 #include "camera_data.hpp"
 #include "lens/lens_view.hpp"
 #include "make_model.hpp"
+#include "petzval/camera/camera.hpp"
 #include "petzval/core/error.hpp"
 #include "petzval/petzval_camera.h"
 #include "scene_side.hpp"
@@ -179,7 +182,7 @@ void put_entrance(Numbers& to, const EntrancePupilArrays& entrance) {
 
 }  // namespace
 
-std::vector<float> camera_tables(const Camera& camera) {
+std::vector<float> camera_table(const Camera& camera) {
   const CameraAccess::Data& data = CameraAccess::data(camera);
   const std::string where = data.lens.name() + ": table of the camera: ";
   if (data.tilted) throw Error(where + "the film is tilted or travels; must be upright and fixed");

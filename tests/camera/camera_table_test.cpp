@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 // Rays of petzval_camera.h from the table of a camera, and rays of the library.
-#include "camera/camera_tables.hpp"
 
 #include <gtest/gtest.h>
 
@@ -69,7 +68,7 @@ Errors errors_of(const Lens& lens, ModelKind model, int count) {
   const Film film = film_of(lens);
   const Camera camera(lens, film, {.model = model});
   const Camera exact(lens, film, {.model = model == ModelKind::exact_float ? ModelKind::exact_double : model});
-  const std::vector<float> table = camera_tables(camera);
+  const std::vector<float> table = camera_table(camera);
   const double size = size_of(lens);
   Samples samples(film);
   std::vector<CameraSample> all;
@@ -106,9 +105,9 @@ Errors errors_of(const Lens& lens, ModelKind model, int count) {
   return found;
 }
 
-class CameraTablesOfData : public ::testing::TestWithParam<int> {};
+class CameraTableOfData : public ::testing::TestWithParam<int> {};
 
-TEST_P(CameraTablesOfData, RaysEqualTheLibrary) {
+TEST_P(CameraTableOfData, RaysEqualTheLibrary) {
   for (const Prescription& prescription : testing::data_prescriptions()) {
     SCOPED_TRACE(prescription.name);
     const Lens round = compile(prescription);
@@ -124,9 +123,9 @@ TEST_P(CameraTablesOfData, RaysEqualTheLibrary) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Camera, CameraTablesOfData, ::testing::Values(0, 7));
+INSTANTIATE_TEST_SUITE_P(Camera, CameraTableOfData, ::testing::Values(0, 7));
 
-TEST(CameraTables, PolynomialsEqualTheLibrary) {
+TEST(CameraTable, PolynomialsEqualTheLibrary) {
   for (const char* const id : {"double_gauss_100mm_f2.0", "fisheye_16mm_f2.8", "anamorphic_60mm_2x"}) {
     SCOPED_TRACE(id);
     const Errors found = errors_of(testing::data_lens(id), ModelKind::polynomial(7), 2000);
@@ -136,11 +135,11 @@ TEST(CameraTables, PolynomialsEqualTheLibrary) {
   }
 }
 
-TEST(CameraTables, WavelengthsBetweenTheCompiledOnesEqualTheLibrary) {
+TEST(CameraTable, WavelengthsBetweenTheCompiledOnesEqualTheLibrary) {
   const Lens lens = compile(testing::data_prescription("double_gauss_100mm_f2.0"), std::array{450.0, 550.0, 650.0});
   const Film film = film_of(lens);
   const Camera camera(lens, film, {.model = ModelKind::exact_float});
-  const std::vector<float> table = camera_tables(camera);
+  const std::vector<float> table = camera_table(camera);
   Samples samples(film);
   int lit = 0;
   for (int i = 0; i < 2000; ++i) {
@@ -160,7 +159,7 @@ TEST(CameraTables, WavelengthsBetweenTheCompiledOnesEqualTheLibrary) {
   EXPECT_GT(lit, 1500);
 }
 
-TEST(CameraTables, DifferentialsEqualTheLibrary) {
+TEST(CameraTable, DifferentialsEqualTheLibrary) {
   for (const char* const id : {"double_gauss_100mm_f2.0", "phone_5.6mm_f3.5", "fisheye_16mm_f2.8", "anamorphic_60mm_2x",
                                "mirror_ritchey_chretien_57.6m_f24"}) {
     for (const ModelKind model : {ModelKind::exact_double, ModelKind::polynomial(5)}) {
@@ -168,7 +167,7 @@ TEST(CameraTables, DifferentialsEqualTheLibrary) {
       const Lens lens = testing::data_lens(id);
       const Film film = film_of(lens);
       const Camera camera(lens, film, {.model = model});
-      const std::vector<float> table = camera_tables(camera);
+      const std::vector<float> table = camera_table(camera);
       Samples samples(film, 3);
       int lit = 0;
       for (int i = 0; i < 300; ++i) {
@@ -195,14 +194,14 @@ TEST(CameraTables, DifferentialsEqualTheLibrary) {
   }
 }
 
-TEST(CameraTables, ConnectionsEqualTheLibrary) {
+TEST(CameraTable, ConnectionsEqualTheLibrary) {
   int with_light = 0;
   for (const Prescription& prescription : testing::data_prescriptions()) {
     SCOPED_TRACE(prescription.name);
     const Lens lens = compile(prescription);
     const Film film = film_of(lens);
     const Camera camera(lens, film, {.model = ModelKind::exact_float});
-    const std::vector<float> table = camera_tables(camera);
+    const std::vector<float> table = camera_table(camera);
     const double size = size_of(lens);
     Samples samples(film, 5);
     int lit = 0, other_fates = 0;
@@ -238,12 +237,12 @@ TEST(CameraTables, ConnectionsEqualTheLibrary) {
   EXPECT_GT(with_light, 10000);
 }
 
-TEST(CameraTables, DensitiesOfDirectionsEqualThoseOfSamples) {
+TEST(CameraTable, DensitiesOfDirectionsEqualThoseOfSamples) {
   for (const char* const id :
        {"double_gauss_100mm_f2.0", "fisheye_8mm_f2.8", "anamorphic_60mm_2x", "catadioptric_mangin_1000mm_f7.5"}) {
     SCOPED_TRACE(id);
     const Lens lens = testing::data_lens(id);
-    const std::vector<float> table = camera_tables(Camera(lens, film_of(lens), {.model = ModelKind::exact_float}));
+    const std::vector<float> table = camera_table(Camera(lens, film_of(lens), {.model = ModelKind::exact_float}));
     Samples samples({}, 9);
     int same = 0, count = 0;
     for (int i = 0; i < 500; ++i) {
@@ -259,10 +258,10 @@ TEST(CameraTables, DensitiesOfDirectionsEqualThoseOfSamples) {
   }
 }
 
-TEST(CameraTables, FilmPointsAndRasterEqualTheFilm) {
+TEST(CameraTable, FilmPointsAndRasterEqualTheFilm) {
   const Film film{.width_mm = 24, .height_mm = 16, .columns = 300, .rows = 200, .shift_x_mm = 2, .shift_y_mm = -1};
   const std::vector<float> table =
-      camera_tables(Camera(testing::data_lens("tessar_100mm_f2.8"), film, {.model = ModelKind::exact_float}));
+      camera_table(Camera(testing::data_lens("tessar_100mm_f2.8"), film, {.model = ModelKind::exact_float}));
   const pz_point found = pz_film_point(table.data(), 70, 150);
   const FilmPoint wanted = film.point(70, 150);
   EXPECT_NEAR(found.x, wanted.x, 1e-5);
@@ -272,9 +271,9 @@ TEST(CameraTables, FilmPointsAndRasterEqualTheFilm) {
   EXPECT_NEAR(raster.y, 150, 1e-4);
 }
 
-TEST(CameraTables, InvalidSamplesHaveFates) {
+TEST(CameraTable, InvalidSamplesHaveFates) {
   const Lens lens = testing::data_lens("tessar_100mm_f2.8");
-  const std::vector<float> table = camera_tables(Camera(lens, {}, {.model = ModelKind::exact_float}));
+  const std::vector<float> table = camera_table(Camera(lens, {}, {.model = ModelKind::exact_float}));
   const float nan = std::numeric_limits<float>::quiet_NaN(), nm = primary_nm(lens);
   EXPECT_EQ(table[0], PZ_FORMAT);
   EXPECT_EQ(table[1], static_cast<float>(table.size()));
@@ -288,11 +287,11 @@ TEST(CameraTables, InvalidSamplesHaveFates) {
   EXPECT_EQ(pz_connect(table.data(), {0, 0, 900}, 0.5f, 0.5f, nm).pdf, 0);
 }
 
-TEST(CameraTables, OtherCamerasAreRefused) {
+TEST(CameraTable, OtherCamerasAreRefused) {
   const Lens lens = testing::data_lens("tessar_100mm_f2.8");
-  expect_error([&] { camera_tables(Camera(lens, {.tilt_rad = 0.1}, {.model = ModelKind::exact_float})); },
+  expect_error([&] { camera_table(Camera(lens, {.tilt_rad = 0.1}, {.model = ModelKind::exact_float})); },
                {lens.name(), "tilted"});
-  expect_error([&] { camera_tables(Camera(lens, {}, {.model = ModelKind::thick})); }, {lens.name(), "thick"});
+  expect_error([&] { camera_table(Camera(lens, {}, {.model = ModelKind::thick})); }, {lens.name(), "thick"});
 }
 
 }  // namespace

@@ -1,0 +1,134 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "export_table.hpp"
+
+#include <array>
+#include <bit>
+#include <cstdint>
+#include <cstdio>
+#include <string_view>
+
+#include "petzval/core/error.hpp"
+#include "petzval/petzval_camera.h"
+#include "support/files.hpp"
+
+namespace commands {
+namespace {
+
+/// The names of the positions at the head of a table, as in petzval_camera.h.
+constexpr std::array<std::string_view, PZ_HEAD> positions{"format",
+                                                          "size",
+                                                          "rays",
+                                                          "wavelength_count",
+                                                          "primary",
+                                                          "wavelengths",
+                                                          "shortest",
+                                                          "longest",
+                                                          "t_scale",
+                                                          "t_offset",
+                                                          "number_count",
+                                                          "numbers",
+                                                          "powers",
+                                                          "film_z",
+                                                          "pupil_z",
+                                                          "film_x",
+                                                          "film_y",
+                                                          "film_width",
+                                                          "film_height",
+                                                          "margin",
+                                                          "columns",
+                                                          "rows",
+                                                          "front_z",
+                                                          "front_curvature",
+                                                          "front_first",
+                                                          "surface_count",
+                                                          "surfaces",
+                                                          "mirrors",
+                                                          "edges",
+                                                          "blades",
+                                                          "iris_area",
+                                                          "iris",
+                                                          "pupil_dimensions",
+                                                          "reach",
+                                                          "pupil_rows",
+                                                          "pupil_columns",
+                                                          "rows_per_mm",
+                                                          "half_widths",
+                                                          "cells",
+                                                          "cell_size",
+                                                          "obscured",
+                                                          "corrections",
+                                                          "stops",
+                                                          "stop_size",
+                                                          "terms",
+                                                          "degree",
+                                                          "domain_film",
+                                                          "domain_shift_x",
+                                                          "domain_radius_x",
+                                                          "domain_shift_y",
+                                                          "domain_radius_y",
+                                                          "reference_z",
+                                                          "scene_dimensions",
+                                                          "centre_z",
+                                                          "steepest",
+                                                          "front_half",
+                                                          "nodes",
+                                                          "node_size",
+                                                          "widest",
+                                                          "balls"};
+
+/// A float with nine digits, which is read back as the same float.
+std::string text_of(float value) {
+  std::array<char, 32> buffer;
+  std::snprintf(buffer.data(), buffer.size(), "%.9g", static_cast<double>(value));
+  std::string text = buffer.data();
+  if (text.find_first_of(".en") == std::string::npos) text += ".0";
+  return text;
+}
+
+std::string as_c(const std::vector<float>& table, const std::string& title) {
+  std::string text = "/* " + title + ". For petzval_camera.h, format " + std::to_string(PZ_FORMAT) + ". */\n";
+  text += "static const float petzval_table[" + std::to_string(table.size()) + "] = {\n";
+  std::string row;
+  for (const float value : table) {
+    const std::string number = text_of(value) + "f,";
+    if (row.size() + number.size() > 118) text += row + '\n', row.clear();
+    row += (row.empty() ? "  " : " ") + number;
+  }
+  return text + row + "\n};\n";
+}
+
+std::string as_bytes(const std::vector<float>& table) {
+  std::string bytes;
+  for (const float value : table) {
+    const auto bits = std::bit_cast<std::uint32_t>(value);
+    for (int shift = 0; shift < 32; shift += 8) bytes += static_cast<char>(bits >> shift & 0xff);
+  }
+  return bytes;
+}
+
+std::string as_json(const std::vector<float>& table, const std::string& title) {
+  examples::Json names = examples::Json::object();
+  for (std::size_t i = 0; i < positions.size(); ++i) names[std::string(positions[i])] = i;
+  std::string text =
+      "{\"title\": " + examples::Json(title).dump() + ",\n\"positions\": " + names.dump() + ",\n\"table\": [";
+  for (std::size_t i = 0; i < table.size(); ++i) text += (i == 0 ? "" : i % 16 == 0 ? ",\n" : ", ") + text_of(table[i]);
+  return text + "]}\n";
+}
+
+}  // namespace
+
+void check_table_name(const std::filesystem::path& file) {
+  const std::string ending = file.extension().string();
+  if (ending == ".h" || ending == ".bin" || ending == ".json") return;
+  throw petzval::Error("--camera: " + file.string() + " ends in \"" + ending + "\"; must end in .h, .bin or .json");
+}
+
+void write_camera_table(const std::vector<float>& table, const std::string& title, const std::filesystem::path& file) {
+  check_table_name(file);
+  const std::string ending = file.extension().string();
+  examples::write_text(file, ending == ".h"     ? as_c(table, title)
+                             : ending == ".bin" ? as_bytes(table)
+                                                : as_json(table, title));
+}
+
+}  // namespace commands
