@@ -10,6 +10,8 @@
  *     pz_ray ray = pz_sample(petzval_table, film.x, film.y, u, v, 587.56f);
  *     if (ray.fate == 0) colour += ray.weight * radiance(ray);
  *
+ * gcc and clang need -fno-math-errno, which is also faster, or -lm.
+ *
  * In shaders the table is a buffer, not a parameter. Define PETZVAL_GLSL or PETZVAL_HLSL and PETZVAL_TABLE(i), element
  * i of the table, before this file, and leave out the first argument of all functions:
  *
@@ -743,8 +745,8 @@ PZ_FN pz_beam pz_stopped(pz_beam b, int fate) {
   b.fate = fate;
   return b;
 }
-/* One surface. n2: squared index in front of it; k: change of the squared index. */
-PZ_FN pz_beam pz_pass(PZ_T pz_beam b, int surface, float n2, float k, PZ_BOOL follow) {
+/* One surface. n2: squared index in front of it; k: change of the squared index; clips: apertures clip the ray. */
+PZ_FN pz_beam pz_pass(PZ_T pz_beam b, int surface, float n2, float k, PZ_BOOL clips, PZ_BOOL follow) {
   float c = b.sense * PZ_AT(surface + 2), e = PZ_AT(surface + 3);
   float ax = PZ_AT(surface + 4), ay = PZ_AT(surface + 5), rim2 = PZ_AT(surface + 6), r2, d;
   float quadratic, facing, free, root, shift;
@@ -801,14 +803,14 @@ PZ_FN pz_beam pz_pass(PZ_T pz_beam b, int surface, float n2, float k, PZ_BOOL fo
     s.g = pz_xyz(b.sense * sag.slope * ax * at.x, b.sense * sag.slope * ay * at.y, 1.0f);
     s.c = pz_xyz(b.sense * sag.slope * ax, b.sense * sag.slope * ay, 0.0f);
     s.twist = 2.0f * b.sense * sag.bend;
-    if (!(u <= PZ_AT(asphere + 1))) return pz_stopped(b, 3);
+    if (clips && !(u <= PZ_AT(asphere + 1))) return pz_stopped(b, 3);
     found = settled && s.xi > 0.0f;
   }
   b.at = at;
   r2 = at.x * at.x + at.y * at.y;
   if (!found) return pz_stopped(b, 1);
-  if (!(r2 <= rim2 && r2 >= PZ_AT(surface + 7))) return pz_stopped(b, 3);
-  if (PZ_AT(surface + 9) != 0.0f) {
+  if (clips && !(r2 <= rim2 && r2 >= PZ_AT(surface + 7))) return pz_stopped(b, 3);
+  if (clips && PZ_AT(surface + 9) != 0.0f) {
     int blades = pz_whole(PZ_P PZ_BLADES), edges = pz_whole(PZ_P PZ_EDGES);
     for (int i = 0; i < blades; ++i) {
       if (pz_inside(PZ_P edges, i, at.x, at.y) < 0.0f) return pz_stopped(b, 3);
@@ -842,7 +844,7 @@ PZ_FN pz_beam pz_pass(PZ_T pz_beam b, int surface, float n2, float k, PZ_BOOL fo
 }
 
 /* Traces a ray in the lens frame through all surfaces, to the film or to the scene. follow: with derivatives. */
-PZ_FN pz_beam pz_trace(PZ_T pz_beam b, pz_light light, PZ_BOOL to_film, PZ_BOOL follow) {
+PZ_FN pz_beam pz_trace(PZ_T pz_beam b, pz_light light, PZ_BOOL to_film, PZ_BOOL clips, PZ_BOOL follow) {
   int count = pz_whole(PZ_P PZ_SURFACE_COUNT), list = pz_whole(PZ_P PZ_SURFACES);
   int odd = pz_whole(PZ_P PZ_MIRRORS) % 2, surface = list + (to_film ? 0 : count - 1) * PZ_SURFACE_SIZE;
   float n = PZ_SQRT(pz_number(PZ_P light, to_film ? 4 : 4 + count)), length, scale;
@@ -868,7 +870,7 @@ PZ_FN pz_beam pz_trace(PZ_T pz_beam b, pz_light light, PZ_BOOL to_film, PZ_BOOL 
         b.p = pz_xyz(scale * b.p.x, scale * b.p.y, scale * b.p.z);
       }
     }
-    b = pz_pass(PZ_P b, surface, n2, to_film ? k : -k, follow);
+    b = pz_pass(PZ_P b, surface, n2, to_film ? k : -k, clips, follow);
     if (b.fate != 0) return b;
   }
   n = PZ_SQRT(pz_number(PZ_P light, to_film ? 4 + count : 4));
@@ -1069,7 +1071,7 @@ PZ_FN pz_beam pz_leave(PZ_T pz_start s, PZ_BOOL follow) {
     along = pz_dot(b.by_y.p, b.p);
     b.by_y.p = pz_along(b.by_y.p, -along, b.p);
   }
-  return pz_trace(PZ_P b, s.light, PZ_FALSE, follow);
+  return pz_trace(PZ_P b, s.light, PZ_FALSE, PZ_TRUE, follow);
 }
 PZ_FN pz_ray pz_weighed(PZ_T pz_start s, pz_beam b) {
   pz_ray ray = pz_lost(b.fate);
@@ -1122,38 +1124,114 @@ PZ_FN pz_ray_differential pz_sample_differential(PZ_T float film_x, float film_y
 
 /* ---- From the scene to the film ---- */
 
+/* A ray of the scene behind the lens: its film point and its pupil point. */
+PZ_STRUCT(pz_path) {
+  pz_point film, pupil;
+  int fate;
+};
+/* The film and pupil point whose ray by polynomials has the line of a ray, by Newton's method from a point nearby. */
+PZ_FN pz_path pz_corrected(PZ_T pz_path path, pz_vector origin, pz_vector direction, int w) {
+  float x[4], a[20], z = origin.z - PZ_AT(PZ_REFERENCE_Z), per = 1.0f / (1.0f + direction.z), off = 1.0f, shift, along;
+  float sx = -direction.x * per, sy = -direction.y * per, foot;
+  pz_chart line_chart, here;
+  along = origin.x * direction.x + origin.y * direction.y + z * direction.z;
+  foot = z - along * direction.z;
+  line_chart.sx = sx;
+  line_chart.sy = sy;
+  line_chart.ox = origin.x - along * direction.x + foot * sx;
+  line_chart.oy = origin.y - along * direction.y + foot * sy;
+  x[0] = path.film.x / PZ_AT(PZ_DOMAIN_FILM);
+  x[1] = path.film.y / PZ_AT(PZ_DOMAIN_FILM);
+  x[2] = (path.pupil.x - PZ_AT(PZ_DOMAIN_SHIFT_X) * path.film.x) / PZ_AT(PZ_DOMAIN_RADIUS_X);
+  x[3] = (path.pupil.y - PZ_AT(PZ_DOMAIN_SHIFT_Y) * path.film.y) / PZ_AT(PZ_DOMAIN_RADIUS_Y);
+  for (int i = 0; i < 5 && off > 1.0e-6f; ++i) {
+    here = pz_sums(PZ_P w, x[0], x[1], x[2], x[3]);
+    a[4] = line_chart.sx - here.sx;
+    a[9] = line_chart.sy - here.sy;
+    a[14] = line_chart.ox - here.ox;
+    a[19] = line_chart.oy - here.oy;
+    for (int k = 0; k < 4; ++k) { /* derivatives by differences */
+      float h = 0.015625f;
+      pz_chart next = pz_sums(PZ_P w, k == 0 ? x[0] + h : x[0], k == 1 ? x[1] + h : x[1], k == 2 ? x[2] + h : x[2],
+                              k == 3 ? x[3] + h : x[3]);
+      a[k] = (next.sx - here.sx) / h;
+      a[5 + k] = (next.sy - here.sy) / h;
+      a[10 + k] = (next.ox - here.ox) / h;
+      a[15 + k] = (next.oy - here.oy) / h;
+    }
+    for (int k = 0; k < 4; ++k) { /* elimination; the pivot is the largest element of the column */
+      int pivot = k;
+      for (int r = k + 1; r < 4; ++r) {
+        if (pz_abs(a[5 * r + k]) > pz_abs(a[5 * pivot + k])) pivot = r;
+      }
+      for (int j = 0; j < 5; ++j) {
+        float above = a[5 * k + j];
+        a[5 * k + j] = a[5 * pivot + j];
+        a[5 * pivot + j] = above;
+      }
+      for (int r = 0; r < 4; ++r) {
+        float factor = a[5 * r + k] / a[5 * k + k];
+        for (int j = k; j < 5 && r != k; ++j) a[5 * r + j] -= factor * a[5 * k + j];
+      }
+    }
+    off = 0.0f;
+    for (int k = 0; k < 4; ++k) {
+      shift = a[5 * k + 4] / a[5 * k + k];
+      x[k] += shift;
+      off += pz_abs(shift);
+    }
+  }
+  path.fate = off < 1.0e-3f && x[0] * x[0] + x[1] * x[1] <= 1.00001f && x[2] * x[2] + x[3] * x[3] <= 1.00001f ? 0 : 5;
+  path.film = pz_xy(x[0] * PZ_AT(PZ_DOMAIN_FILM), x[1] * PZ_AT(PZ_DOMAIN_FILM));
+  path.pupil = pz_xy(x[2] * PZ_AT(PZ_DOMAIN_RADIUS_X) + PZ_AT(PZ_DOMAIN_SHIFT_X) * path.film.x,
+                     x[3] * PZ_AT(PZ_DOMAIN_RADIUS_Y) + PZ_AT(PZ_DOMAIN_SHIFT_Y) * path.film.y);
+  return path;
+}
+/* origin: a point of the ray near the lens */
+PZ_FN pz_path pz_arrive(PZ_T pz_vector origin, pz_vector direction, pz_light light) {
+  pz_path path;
+  pz_beam b;
+  PZ_BOOL exact = PZ_AT(PZ_RAYS) == 0.0f;
+  float to;
+  path.film = path.pupil = pz_xy(0.0f, 0.0f);
+  b.at = origin;
+  b.p = direction;
+  b = pz_trace(PZ_P b, light, PZ_TRUE, exact, PZ_FALSE);
+  path.fate = b.fate;
+  if (b.fate != 0) return path;
+  to = (PZ_AT(PZ_FILM_Z) - b.at.z) / b.p.z;
+  path.film = pz_xy(b.at.x + to * b.p.x, b.at.y + to * b.p.y);
+  to = (PZ_AT(PZ_PUPIL_Z) - b.at.z) / b.p.z;
+  path.pupil = pz_xy(b.at.x + to * b.p.x, b.at.y + to * b.p.y);
+  if (!pz_finite(path.film.x + path.film.y + path.pupil.x + path.pupil.y)) path.fate = 1;
+  return exact || path.fate != 0 ? path : pz_corrected(PZ_P path, origin, direction, light.nearest);
+}
 PZ_FN pz_arrival pz_dark(pz_arrival found, int fate) {
   found.we = found.pdf_film = found.pdf_pupil = found.pdf_position = found.pdf_direction = 0.0f;
   found.fate = fate;
   return found;
 }
-/* The importance of a ray of the scene, with unit direction into the lens. Tables of polynomials: fate 5. */
+/* The importance of a ray of the scene, with unit direction into the lens. */
 PZ_FN pz_arrival pz_importance(PZ_T pz_vector origin, pz_vector direction, float nm) {
   pz_arrival found;
   pz_light light = pz_light_of(PZ_P nm);
-  pz_beam b;
-  pz_point pupil;
-  float depth = PZ_AT(PZ_PUPIL_Z) - PZ_AT(PZ_FILM_Z), x, y, length2, slope, area, density;
+  pz_path path;
+  float depth = PZ_AT(PZ_PUPIL_Z) - PZ_AT(PZ_FILM_Z), x, y, length2, area, density;
   float length = pz_dot(direction, direction), sound = pz_dot(origin, direction) * 0.0f;
   found.film = pz_xy(0.0f, 0.0f);
-  if (light.nearest < 0) return pz_dark(found, 8);
+  if (light.nearest < 0 || (PZ_AT(PZ_RAYS) == 1.0f && !light.compiled)) return pz_dark(found, 8);
   if (!(sound >= 0.0f && pz_abs(length - 1.0f) < 1.0e-3f)) return pz_dark(found, 7);
-  if (PZ_AT(PZ_RAYS) == 1.0f) return pz_dark(found, 5);
-  b.at = pz_along(origin, -pz_dot(origin, direction), direction); /* the point nearest to the first vertex */
+  origin = pz_along(origin, -pz_dot(origin, direction), direction); /* the point nearest to the first vertex */
   length = 1.5f - 0.5f * length;
-  b.p = pz_xyz(length * direction.x, length * direction.y, length * direction.z);
-  b = pz_trace(PZ_P b, light, PZ_TRUE, PZ_FALSE);
-  if (b.fate != 0) return pz_dark(found, b.fate);
-  slope = (PZ_AT(PZ_FILM_Z) - b.at.z) / b.p.z;
-  found.film = pz_xy(b.at.x + slope * b.p.x, b.at.y + slope * b.p.y);
-  slope = (PZ_AT(PZ_PUPIL_Z) - b.at.z) / b.p.z;
-  pupil = pz_xy(b.at.x + slope * b.p.x, b.at.y + slope * b.p.y);
-  if (!pz_finite(found.film.x + found.film.y + pupil.x + pupil.y)) return pz_dark(found, 1);
+  direction = pz_xyz(length * direction.x, length * direction.y, length * direction.z);
+  path = pz_arrive(PZ_P origin, direction, light);
+  if (path.fate != 0) return pz_dark(found, path.fate);
+  found.film = path.film;
   if (!pz_on_film(PZ_P found.film.x, found.film.y)) return pz_dark(found, 6);
-  area = pz_area_at(PZ_P pz_find_cell(PZ_P found.film.x, found.film.y, light.nearest), pupil.x, pupil.y);
+  area = pz_area_at(PZ_P pz_find_cell(PZ_P found.film.x, found.film.y, light.nearest), path.pupil.x, path.pupil.y);
   if (!(area > 0.0f)) return pz_dark(found, 3);
-  x = pupil.x - found.film.x;
-  y = pupil.y - found.film.y;
+  x = path.pupil.x - found.film.x;
+  y = path.pupil.y - found.film.y;
   length2 = x * x + y * y + depth * depth;
   density = pz_number(PZ_P light, 2);
   found.fate = 0;

@@ -65,7 +65,7 @@ std::array<double, 8> powers_of(const Function& function) {
 }
 
 /// Numbers by wavelength (pz_number()): for compiled wavelengths, and as polynomials for the others.
-void put_wavelengths(Numbers& to, const CameraAccess::Data& data, bool scene) {
+void put_wavelengths(Numbers& to, const CameraAccess::Data& data) {
   const Lens& lens = data.lens;
   const std::size_t count = lens.surface_count(), wavelengths = lens.wavelengths_nm().size();
   to.set(PZ_WAVELENGTH_COUNT, wavelengths);
@@ -73,7 +73,7 @@ void put_wavelengths(Numbers& to, const CameraAccess::Data& data, bool scene) {
   to.begin(PZ_WAVELENGTHS), to.add_all(lens.wavelengths_nm());
   to.set(PZ_NUMBER_COUNT, 4 + 2 * count + 1);
   const auto facts_at = [&](Wavelength wavelength) {
-    const auto facts = scene ? data.scene().facts_at(wavelength) : camera_detail::SceneSide::Facts{};
+    const auto facts = data.scene().facts_at(wavelength);
     return std::array{data.wavelengths.scale(wavelength), facts.we, facts.density, facts.entrance_area};
   };
   to.begin(PZ_NUMBERS);
@@ -198,12 +198,12 @@ std::vector<float> camera_table(const Camera& camera) {
   }
   Numbers to;
   to.set(0, PZ_FORMAT);
-  put_wavelengths(to, data, exact);
+  put_wavelengths(to, data);
   put_surfaces(to, data.lens);
   put_film(to, data);
   put_pupils(to, data.model.pupils().arrays());
   if (polynomial) put_polynomial(to, polynomial->polynomial());
-  if (exact) put_entrance(to, data.scene().entrance().arrays());
+  put_entrance(to, data.scene().entrance().arrays());
   to.set(1, to.list.size());
   return std::move(to.list);
 }

@@ -237,6 +237,39 @@ TEST(CameraTable, ConnectionsEqualTheLibrary) {
   EXPECT_GT(with_light, 10000);
 }
 
+TEST(CameraTable, ConnectionsOfPolynomialsEqualTheLibrary) {
+  for (const char* const id : {"double_gauss_100mm_f2.0", "fisheye_16mm_f2.8", "anamorphic_60mm_2x"}) {
+    SCOPED_TRACE(id);
+    const Lens lens = testing::data_lens(id);
+    const Film film = film_of(lens);
+    const Camera camera(lens, film, {.model = ModelKind::polynomial(5)});
+    const std::vector<float> table = camera_table(camera);
+    Samples samples(film, 8);
+    int lit = 0, other_fates = 0;
+    for (int i = 0; i < 600; ++i) {
+      const CameraSample s = samples();
+      const CameraRay ray = camera.sample(s);
+      if (!ray) continue;
+      const pz_vector point{static_cast<float>(ray.ray.origin.x + 900 * ray.ray.direction.x),
+                            static_cast<float>(ray.ray.origin.y + 900 * ray.ray.direction.y),
+                            static_cast<float>(ray.ray.origin.z + 900 * ray.ray.direction.z)};
+      const float u = samples.number(), v = samples.number();
+      const ImportanceSample wanted = camera.sample_importance(vec(point), u, v);
+      const pz_connection found = pz_connect(table.data(), point, u, v, primary_nm(lens));
+      EXPECT_EQ(found.pdf > 0, wanted.pdf > 0);
+      const bool passes = wanted.importance.fate == RayFate::transmitted;
+      other_fates += passes != (found.arrival.fate == 0);
+      if (!passes || found.arrival.fate != 0) continue;
+      ++lit;
+      EXPECT_NEAR(found.arrival.film.x, wanted.importance.film.x, 1e-5 * film.width_mm);
+      EXPECT_NEAR(found.arrival.film.y, wanted.importance.film.y, 1e-5 * film.width_mm);
+      EXPECT_NEAR(found.arrival.pdf_direction / wanted.importance.pdf_direction, 1, 1e-3);
+    }
+    EXPECT_GT(lit, 250);
+    EXPECT_LE(other_fates, 6);
+  }
+}
+
 TEST(CameraTable, DensitiesOfDirectionsEqualThoseOfSamples) {
   for (const char* const id :
        {"double_gauss_100mm_f2.0", "fisheye_8mm_f2.8", "anamorphic_60mm_2x", "catadioptric_mangin_1000mm_f7.5"}) {

@@ -217,7 +217,7 @@ class PETZVAL_API Camera {
 /// @throws Error  if the film is tilted or travels, if the camera has weights of the pupil, a focal surface or an
 ///                expressive lens, or if the model is of first order or custom
 ///
-/// Limitations: the table of a polynomial has no scene side and only the compiled wavelengths.
+/// Limitations: tables of polynomials have only the compiled wavelengths.
 PETZVAL_API std::vector<float> camera_table(const Camera& camera);
 
 }  // namespace petzval
