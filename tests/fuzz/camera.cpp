@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Cameras of any lens, by every ray model, with blades, weights and tilted films.
 #include "petzval/camera/camera.hpp"
+#include "petzval/petzval_camera.h"
 
 #include <array>
 #include <span>
@@ -97,7 +98,15 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     }
     if (tables) {
       fuzz::done([&] {
-        for (const float number : camera_table(camera)) fuzz::require(!std::isnan(number), "tables contain no NaN");
+        const std::vector<float> table = camera_table(camera);
+        for (const float number : table) fuzz::require(!std::isnan(number), "tables contain no NaN");
+        const float nm = table[static_cast<std::size_t>(table[PZ_WAVELENGTHS])];
+        const pz_point film = pz_film_point(table.data(), 0.3f * table[PZ_COLUMNS], 0.6f * table[PZ_ROWS]);
+        const pz_ray ray = pz_sample(table.data(), film.x, film.y, 0.2f, 0.7f, nm);
+        const float sum = ray.origin.x + ray.origin.y + ray.origin.z + ray.direction.x + ray.direction.z + ray.weight;
+        fuzz::require(ray.fate != 0 || std::isfinite(sum), "a ray of petzval_camera.h is finite");
+        const pz_connection c = pz_connect(table.data(), {100, 50, -2000}, 0.2f, 0.7f, nm);
+        fuzz::require(c.arrival.fate != 0 || std::isfinite(c.arrival.we + c.arrival.film.x), "a connection is finite");
       });
     }
     if (scene) from_the_scene(camera, bytes);
