@@ -87,14 +87,15 @@ std::string text_of(float value) {
 
 std::string as_c(const std::vector<float>& table, const std::string& title) {
   std::string text = "/* " + title + ". For petzval_camera.h, format " + std::to_string(PZ_FORMAT) + ". */\n";
-  text += "static const float petzval_table[" + std::to_string(table.size()) + "] = {\n";
+  text += "#ifndef PETZVAL_TABLE_NAME\n#define PETZVAL_TABLE_NAME petzval_table\n#endif\n";
+  text += "static const float PETZVAL_TABLE_NAME[" + std::to_string(table.size()) + "] = {\n";
   std::string row;
   for (const float value : table) {
     const std::string number = text_of(value) + "f,";
     if (row.size() + number.size() > 118) text += row + '\n', row.clear();
     row += (row.empty() ? "  " : " ") + number;
   }
-  return text + row + "\n};\n";
+  return text + row + "\n};\n#undef PETZVAL_TABLE_NAME\n";
 }
 
 std::string as_bytes(const std::vector<float>& table) {

@@ -258,7 +258,7 @@ PZ_FN PZ_BOOL pz_on_film(PZ_T float x, float y) {
 /* A wavelength in the table. */
 PZ_STRUCT(pz_light) {
   int nearest;      /* position of the nearest compiled wavelength; -1: outside the wavelengths of the table */
-  PZ_BOOL compiled; /* equal to the nearest one */
+  PZ_BOOL compiled; /* within 0.005 nm of the nearest one */
   float t;          /* coordinate from -1 to 1, linear in 1 / nm */
 };
 PZ_FN pz_light pz_light_of(PZ_T float nm) {
@@ -274,7 +274,7 @@ PZ_FN pz_light pz_light_of(PZ_T float nm) {
       found.nearest = w;
     }
   }
-  found.compiled = least <= 1.0e-4f;
+  found.compiled = least <= 0.005f;
   if (!found.compiled && !(nm >= PZ_AT(PZ_SHORTEST) && nm <= PZ_AT(PZ_LONGEST))) {
     found.nearest = -1;
   }
@@ -704,8 +704,8 @@ PZ_FN pz_sag pz_sag_of(PZ_T int surface, float u) {
       q = q * v + (i >= 0 ? PZ_AT(asphere + 4 + even + i) : 0.0f);
     }
     s.z += p + rho * q;
-    s.slope += 2.0f * (p1 + (rho > 0.0f ? rho * q1 + 0.5f * q / rho : 0.0f)) / height2;
-    if (rho > 0.0f) p2 += rho * q2 + q1 / rho - 0.25f * q / (rho * v);
+    s.slope += 2.0f * (p1 + (rho > 1.0e-9f ? rho * q1 + 0.5f * q / rho : 0.0f)) / height2;
+    if (rho > 1.0e-9f) p2 += rho * q2 + q1 / rho - 0.25f * q / (rho * v);
     s.bend += 2.0f * p2 / (height2 * height2);
   }
   return s;
@@ -975,12 +975,14 @@ PZ_STRUCT(pz_start) {
 };
 PZ_FN pz_start pz_start_of(PZ_T float x, float y, float u, float v, float nm) {
   pz_start s;
-  float sound = (x + y + u + v) * 0.0f;
+  float sound = (u + v) * 0.0f; /* NaN unless u and v are finite */
   s.light = pz_light_of(PZ_P nm);
   s.film = pz_xy(x, y);
   s.fate = 0;
-  if (!(sound >= 0.0f && pz_on_film(PZ_P x, y))) {
+  if (!pz_on_film(PZ_P x, y)) {
     s.fate = 6;
+  } else if (!(sound >= 0.0f)) {
+    s.fate = 3;
   } else if (s.light.nearest < 0 || (PZ_AT(PZ_RAYS) == 1.0f && !s.light.compiled)) {
     s.fate = 8;
   }
@@ -1107,6 +1109,8 @@ PZ_FN pz_ray_differential pz_sample_differential(PZ_T float film_x, float film_y
   result.origin_by_x = result.direction_by_x = result.origin_by_y = result.direction_by_y = pz_xyz(0.0f, 0.0f, 0.0f);
   if (result.ray.fate != 0) return result;
   b = pz_leave(PZ_P s, PZ_TRUE);
+  /* rays that graze a surface have no finite derivatives */
+  if (!pz_finite(pz_dot(b.by_x.p, b.by_x.p) + pz_dot(b.by_y.p, b.by_y.p))) return result;
   result.direction_by_x = b.by_x.p;
   result.direction_by_y = b.by_y.p;
   /* from b.at to the front, on which origins stay: N (by + t d_by + t_by d) = 0 */
@@ -1405,7 +1409,7 @@ PZ_FN pz_connection pz_connect(PZ_T pz_vector from, float u, float v, float nm) 
   c.end = pz_along(at, -to_front, c.direction);
   return c;
 }
-/* The density with which pz_connect() samples a direction at a point, 1/sr. */
+/* The density with which pz_connect() samples a direction at a point, 1/sr; a unit vector. */
 PZ_FN float pz_pdf(PZ_T pz_vector from, pz_vector direction, float nm) {
   pz_light light = pz_light_of(PZ_P nm);
   pz_vector centre = pz_xyz(0.0f, 0.0f, PZ_AT(PZ_CENTRE_Z)), away, met, unit;

@@ -312,7 +312,8 @@ TEST(CameraTable, InvalidSamplesHaveFates) {
   EXPECT_EQ(table[1], static_cast<float>(table.size()));
   EXPECT_EQ(pz_sample(table.data(), 18.1f, 0, 0.5f, 0.5f, nm).fate, static_cast<int>(RayFate::outside_film));
   EXPECT_EQ(pz_sample(table.data(), nan, 0, 0.5f, 0.5f, nm).fate, static_cast<int>(RayFate::outside_film));
-  EXPECT_EQ(pz_sample(table.data(), 1, 2, nan, 0.5f, nm).fate, static_cast<int>(RayFate::outside_film));
+  EXPECT_EQ(pz_sample(table.data(), 1, 2, nan, 0.5f, nm).fate, static_cast<int>(RayFate::vignetted));
+  EXPECT_EQ(pz_sample(table.data(), 1, 2, 0.5f, 0.5f, 587.56f).fate, 0);
   EXPECT_EQ(pz_sample(table.data(), 1, 2, 0.5f, 0.5f, 300).fate, static_cast<int>(RayFate::outside_spectrum));
   EXPECT_EQ(pz_sample(table.data(), 1, 2, 0.5f, 0.5f, nan).fate, static_cast<int>(RayFate::outside_spectrum));
   EXPECT_EQ(pz_importance(table.data(), {0, 0, -9}, {0, 0, 2}, nm).fate, static_cast<int>(RayFate::invalid));
