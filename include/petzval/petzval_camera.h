@@ -264,8 +264,7 @@ PZ_STRUCT(pz_light) {
 PZ_FN pz_light pz_light_of(PZ_T float nm) {
   pz_light found;
   float least = 3.0e38f, t = PZ_AT(PZ_T_SCALE) / nm - PZ_AT(PZ_T_OFFSET);
-  int count = pz_whole(PZ_P PZ_WAVELENGTH_COUNT);
-  int list = pz_whole(PZ_P PZ_WAVELENGTHS);
+  int count = pz_whole(PZ_P PZ_WAVELENGTH_COUNT), list = pz_whole(PZ_P PZ_WAVELENGTHS);
   found.nearest = -1;
   for (int w = 0; w < count; ++w) {
     float away = pz_abs(nm - PZ_AT(list + w));
@@ -360,11 +359,10 @@ PZ_FN pz_cell pz_find_cell(PZ_T float x, float y, int w) {
   found.s = 0.0f;
   if (!found.two) {
     float r = PZ_SQRT(r2), position;
-    int i;
     PZ_BOOL off_axis = r2 > 1.0e-31f;
     found.known = r <= reach;
     position = found.known ? r * rows_per_mm : 0.0f;
-    i = PZ_INT(position) < rows - 1 ? PZ_INT(position) : rows - 1;
+    int i = PZ_INT(position) < rows - 1 ? PZ_INT(position) : rows - 1;
     found.t = position - PZ_FLOAT(i);
     found.sine = off_axis ? x / r : 0.0f;
     found.cosine = off_axis ? y / r : 1.0f;
@@ -440,13 +438,11 @@ PZ_STRUCT(pz_seen) { pz_point at, by_x, by_y; };
 PZ_FN int pz_stop_at(PZ_T pz_cell c) { return pz_whole(PZ_P PZ_STOPS) + c.cell * pz_whole(PZ_P PZ_STOP_SIZE); }
 PZ_FN pz_seen pz_see(PZ_T pz_cell c, pz_point stop) {
   pz_seen seen;
-  float a[20];
-  float x = stop.x, y = stop.y, xx = x * x, yy = y * y;
+  float a[20], x = stop.x, y = stop.y, xx = x * x, yy = y * y;
   int begin = pz_stop_at(PZ_P c) + 2, step = c.two ? 4 : 2, count = c.two ? 20 : 15;
   for (int k = 0; k < count; ++k) a[k] = pz_value(PZ_P c, begin + step * k);
   if (!c.two) {
-    float r = xx + yy, r2 = r * r;
-    float across = a[9] + y * (a[10] + a[13] * r) + a[11] * xx + a[12] * yy + a[14] * r2;
+    float r = xx + yy, r2 = r * r, across = a[9] + y * (a[10] + a[13] * r) + a[11] * xx + a[12] * yy + a[14] * r2;
     float by_x = 2.0f * x * (a[11] + a[13] * y + 2.0f * a[14] * r);
     float by_y = a[10] + 2.0f * a[12] * y + a[13] * (r + 2.0f * yy) + 4.0f * a[14] * r * y;
     seen.at.x = x * across;
@@ -513,8 +509,7 @@ PZ_FN pz_point pz_cut(PZ_T pz_point a, pz_point d) {
 PZ_FN pz_point pz_clip(PZ_T pz_cell c, int k, float along, pz_point edge) {
   int stop = pz_stop_at(PZ_P c), corners = c.two ? 90 : 36, step = c.two ? 8 : 4;
   float scale = PZ_AT(stop + 1), look;
-  pz_point middle = pz_values(PZ_P c, stop + corners - step);
-  pz_point a = pz_values(PZ_P c, stop + corners + step * k);
+  pz_point middle = pz_values(PZ_P c, stop + corners - step), a = pz_values(PZ_P c, stop + corners + step * k);
   pz_point b = pz_values(PZ_P c, stop + corners + step * (k + 1));
   pz_point begin = pz_to_film(c, middle), path, interval, straight, in_pupil, off;
   path = pz_to_film(c, pz_xy(a.x + along * (b.x - a.x) - middle.x, a.y + along * (b.y - a.y) - middle.y));
@@ -542,8 +537,6 @@ PZ_FN pz_pupil_sample pz_sample_pupil(PZ_T pz_cell c, float u, float v) {
   PZ_BOOL bladed = PZ_AT(PZ_STOP_SIZE) != 0.0f;
   int corrections = pz_whole(PZ_P PZ_CORRECTIONS), k;
   float area, target, expected, behind, beyond, own_area, along, radius, fraction = 1.0f;
-  pz_sector own;
-  pz_point edge, middle;
   result.at = pz_xy(0.0f, 0.0f);
   result.area = 0.0f;
   if (!c.known) return result;
@@ -592,10 +585,10 @@ PZ_FN pz_pupil_sample pz_sample_pupil(PZ_T pz_cell c, float u, float v) {
     k += 1;
     beyond = 0.0f;
   }
-  own = pz_sector_of(PZ_P c, k);
+  pz_sector own = pz_sector_of(PZ_P c, k);
   own_area = 0.5f * pz_turn(own.a, own.b) * (1.0f - own.dark);
   along = pz_clamped(behind / (own_area > 0.0f ? own_area : 1.0f) + beyond);
-  edge = pz_on_edge(own, along);
+  pz_point edge = pz_on_edge(own, along);
   if (bladed) {
     pz_point interval = pz_clip(PZ_P c, k, along, edge);
     float first = pz_fraction_within(own, interval.x * interval.x);
@@ -604,7 +597,7 @@ PZ_FN pz_pupil_sample pz_sample_pupil(PZ_T pz_cell c, float u, float v) {
   } else {
     radius = PZ_SQRT(pz_squared_radius(own, v));
   }
-  middle = pz_middle(PZ_P c);
+  pz_point middle = pz_middle(PZ_P c);
   result.at = pz_to_film(c, pz_xy(middle.x + radius * edge.x, middle.y + radius * edge.y));
   result.area = area * fraction;
   return result;
@@ -613,8 +606,6 @@ PZ_FN pz_pupil_sample pz_sample_pupil(PZ_T pz_cell c, float u, float v) {
 PZ_FN float pz_area_at(PZ_T pz_cell c, float x, float y) {
   PZ_BOOL bladed = PZ_AT(PZ_STOP_SIZE) != 0.0f, half_q;
   pz_point q, first, middle = pz_middle(PZ_P c), interval = pz_xy(0.0f, 1.0f);
-  pz_sector own;
-  float behind, before, whole, squared, fraction;
   int k = 0;
   if (!c.known) return 0.0f;
   q = pz_to_grid(c, pz_xy(x, y));
@@ -624,10 +615,9 @@ PZ_FN float pz_area_at(PZ_T pz_cell c, float x, float y) {
     pz_point stop = pz_xy(0.0f, 0.0f);
     for (int i = 0; i < 4; ++i) {
       pz_point by = pz_newton_step(pz_see(PZ_P c, stop), q);
-      float r2;
       step2 = by.x * by.x + by.y * by.y;
       stop = pz_xy(stop.x + by.x, stop.y + by.y);
-      r2 = stop.x * stop.x + stop.y * stop.y; /* stays near the rim: outside, the polynomials are not fitted */
+      float r2 = stop.x * stop.x + stop.y * stop.y; /* stays near the rim: outside, the polynomials are not fitted */
       if (r2 > 2.25f) stop = pz_xy(stop.x * 1.5f / PZ_SQRT(r2), stop.y * 1.5f / PZ_SQRT(r2));
     }
     area = pz_abs(pz_determinant(pz_see(PZ_P c, stop)));
@@ -646,12 +636,10 @@ PZ_FN float pz_area_at(PZ_T pz_cell c, float x, float y) {
     PZ_BOOL half_corner = pz_turn(first, corner) < 0.0f;
     if (half_corner == half_q ? pz_turn(corner, q) >= 0.0f : !half_corner) k += step;
   }
-  own = pz_sector_of(PZ_P c, k);
-  behind = pz_turn(own.a, q);
-  before = pz_turn(q, own.b);
-  whole = pz_turn(own.a, own.b);
+  pz_sector own = pz_sector_of(PZ_P c, k);
+  float behind = pz_turn(own.a, q), before = pz_turn(q, own.b), whole = pz_turn(own.a, own.b);
   if (!(behind >= 0.0f && before >= 0.0f && whole > 0.0f)) return 0.0f;
-  squared = (behind + before) / whole;
+  float squared = (behind + before) / whole;
   squared *= squared;
   if (bladed) {
     float along = behind + before > 0.0f ? behind / (behind + before) : 0.0f;
@@ -660,7 +648,7 @@ PZ_FN float pz_area_at(PZ_T pz_cell c, float x, float y) {
   interval = pz_xy(interval.x * interval.x, interval.y * interval.y);
   if (!(squared <= interval.y && squared >= interval.x)) return 0.0f;
   if (squared >= own.dark_from && squared < own.dark_from + own.dark) return 0.0f;
-  fraction = bladed ? pz_fraction_within(own, interval.y) - pz_fraction_within(own, interval.x) : 1.0f;
+  float fraction = bladed ? pz_fraction_within(own, interval.y) - pz_fraction_within(own, interval.x) : 1.0f;
   return pz_whole_area(PZ_P c) * fraction;
 }
 
@@ -721,16 +709,16 @@ PZ_STRUCT(pz_contact) {
 };
 /* The derivative of a ray behind a surface by the chain rule. at: the point of the surface */
 PZ_FN pz_follower pz_follow(pz_follower d, pz_vector at, pz_contact s, PZ_BOOL mirror) {
-  float on, h, xi, gamma;
+  float on, gamma;
   pz_vector n;
   d.at = pz_along(d.at, s.q, d.p);
   on = (s.g.x * d.at.x + s.g.y * d.at.y - s.g.z * d.at.z) / s.xi; /* the point stays on the surface */
   d.at = pz_along(d.at, on, s.p);
-  h = s.ax * at.x * d.at.x + s.ay * at.y * d.at.y;
+  float h = s.ax * at.x * d.at.x + s.ay * at.y * d.at.y;
   n.x = s.c.x * d.at.x + s.twist * s.ax * at.x * h;
   n.y = s.c.y * d.at.y + s.twist * s.ay * at.y * h;
   n.z = s.c.z * d.at.z;
-  xi = s.g.z * d.p.z - s.g.x * d.p.x - s.g.y * d.p.y - pz_dot(n, s.p);
+  float xi = s.g.z * d.p.z - s.g.x * d.p.x - s.g.y * d.p.y - pz_dot(n, s.p);
   gamma =
       -s.gamma / s.xo * xi + 2.0f * (0.5f * s.k / s.xo - s.gamma) / s.nn * (s.g.x * n.x + s.g.y * n.y - s.g.z * n.z);
   d.p.x = d.p.x - gamma * s.g.x - s.gamma * n.x;
@@ -749,7 +737,7 @@ PZ_FN pz_beam pz_stopped(pz_beam b, int fate) {
 PZ_FN pz_beam pz_pass(PZ_T pz_beam b, int surface, float n2, float k, PZ_BOOL clips, PZ_BOOL follow) {
   float c = b.sense * PZ_AT(surface + 2), e = PZ_AT(surface + 3);
   float ax = PZ_AT(surface + 4), ay = PZ_AT(surface + 5), rim2 = PZ_AT(surface + 6), r2, d;
-  float quadratic, facing, free, root, shift;
+  float quadratic, facing, free, shift;
   int asphere = pz_whole(PZ_P surface + 10);
   PZ_BOOL mirror = PZ_AT(surface + 8) != 0.0f, sphere = asphere == 0 && e == 1.0f && ax * ay == 1.0f, found = PZ_TRUE;
   pz_vector at = b.at, p = b.p;
@@ -771,7 +759,7 @@ PZ_FN pz_beam pz_pass(PZ_T pz_beam b, int surface, float n2, float k, PZ_BOOL cl
   facing = p.z - c * (ax * at.x * p.x + ay * at.y * p.y + e * at.z * p.z);
   free = c * (ax * at.x * at.x + ay * at.y * at.y + e * at.z * at.z) - 2.0f * at.z;
   d = facing * facing - quadratic * free;
-  root = PZ_SQRT(d > 0.0f ? d : 0.0f);
+  float root = PZ_SQRT(d > 0.0f ? d : 0.0f);
   s.p = p;
   s.ax = ax;
   s.ay = ay;
@@ -791,9 +779,8 @@ PZ_FN pz_beam pz_pass(PZ_T pz_beam b, int surface, float n2, float k, PZ_BOOL cl
     s.q = d > 0.0f && facing > 0.0f ? free / (facing + root) : 0.0f;
     for (int i = 0; i < 12 && !settled; ++i) { /* Newton's method */
       pz_vector on = pz_along(at, s.q, p);
-      float above;
       sag = pz_sag_of(PZ_P surface, ax * on.x * on.x + ay * on.y * on.y);
-      above = on.z - b.sense * sag.z;
+      float above = on.z - b.sense * sag.z;
       s.xi = p.z - b.sense * sag.slope * (ax * on.x * p.x + ay * on.y * p.y);
       settled = sag.defined && pz_abs(above) <= 2.4e-7f * (size + pz_abs(s.q));
       s.q -= above / s.xi;
@@ -860,8 +847,7 @@ PZ_FN pz_beam pz_trace(PZ_T pz_beam b, pz_light light, PZ_BOOL to_film, PZ_BOOL 
   }
   for (int j = 0; j < count; ++j) {
     int i = to_film ? j : count - 1 - j;
-    float n2 = pz_number(PZ_P light, to_film ? 4 + i : 5 + i);
-    float k = pz_number(PZ_P light, 5 + count + i);
+    float n2 = pz_number(PZ_P light, to_film ? 4 + i : 5 + i), k = pz_number(PZ_P light, 5 + count + i);
     surface = list + i * PZ_SURFACE_SIZE;
     if (j > 0) {
       b.at.z -= b.sense * (to_film ? PZ_AT(surface - PZ_SURFACE_SIZE + 1) : -PZ_AT(surface + 1));
@@ -937,16 +923,13 @@ PZ_FN pz_chart pz_sums(PZ_T int w, float fx, float fy, float px, float py) {
 }
 PZ_FN pz_beam pz_by_polynomial(PZ_T int w, pz_point film, pz_point pupil) {
   pz_beam b;
-  pz_chart c;
   float fx = film.x / PZ_AT(PZ_DOMAIN_FILM), fy = film.y / PZ_AT(PZ_DOMAIN_FILM);
   float px = (pupil.x - PZ_AT(PZ_DOMAIN_SHIFT_X) * film.x) / PZ_AT(PZ_DOMAIN_RADIUS_X);
   float py = (pupil.y - PZ_AT(PZ_DOMAIN_SHIFT_Y) * film.y) / PZ_AT(PZ_DOMAIN_RADIUS_Y);
-  float square, twice, along;
   b.fate = fx * fx + fy * fy <= 1.00001f && px * px + py * py <= 1.00001f ? 0 : 5;
-  c = pz_sums(PZ_P w, fx, fy, px, py);
-  square = c.sx * c.sx + c.sy * c.sy;
-  twice = 2.0f / (square + 1.0f);
-  along = twice * (c.sx * c.ox + c.sy * c.oy);
+  pz_chart c = pz_sums(PZ_P w, fx, fy, px, py);
+  float square = c.sx * c.sx + c.sy * c.sy, twice = 2.0f / (square + 1.0f);
+  float along = twice * (c.sx * c.ox + c.sy * c.oy);
   b.at = pz_xyz(c.ox - c.sx * along, c.oy - c.sy * along, along + PZ_AT(PZ_REFERENCE_Z));
   b.p = pz_xyz(twice * c.sx, twice * c.sy, twice * (square - 1.0f) / 2.0f);
   return b;
@@ -1032,9 +1015,8 @@ PZ_FN pz_vector pz_difference(pz_vector a, pz_vector b, float per) {
 PZ_FN pz_beam pz_leave(PZ_T pz_start s, PZ_BOOL follow) {
   pz_beam b;
   pz_point pupil = s.pupil.at;
-  pz_seen motion;
   float depth = PZ_AT(PZ_PUPIL_Z) - PZ_AT(PZ_FILM_Z), sign, per, x, y;
-  motion = pz_motion(PZ_P s);
+  pz_seen motion = pz_motion(PZ_P s);
   if (PZ_AT(PZ_RAYS) == 1.0f) {
     b = pz_by_polynomial(PZ_P s.light.nearest, s.film, pupil);
     if (follow) { /* central differences */
@@ -1063,12 +1045,11 @@ PZ_FN pz_beam pz_leave(PZ_T pz_start s, PZ_BOOL follow) {
   b.at = pz_xyz(pupil.x, pupil.y, PZ_AT(PZ_PUPIL_Z));
   b.p = pz_xyz(x * per, y * per, depth * per);
   if (follow) { /* of pupil - film, less its part along the ray */
-    float along;
     b.by_x.at = pz_xyz(motion.by_x.x, motion.by_x.y, 0.0f);
     b.by_y.at = pz_xyz(motion.by_y.x, motion.by_y.y, 0.0f);
     b.by_x.p = pz_xyz((motion.by_x.x - 1.0f) * per, motion.by_x.y * per, 0.0f);
     b.by_y.p = pz_xyz(motion.by_y.x * per, (motion.by_y.y - 1.0f) * per, 0.0f);
-    along = pz_dot(b.by_x.p, b.p);
+    float along = pz_dot(b.by_x.p, b.p);
     b.by_x.p = pz_along(b.by_x.p, -along, b.p);
     along = pz_dot(b.by_y.p, b.p);
     b.by_y.p = pz_along(b.by_y.p, -along, b.p);
@@ -1091,9 +1072,8 @@ PZ_FN pz_ray pz_weighed(PZ_T pz_start s, pz_beam b) {
 /* A camera ray from a film point (mm), a pupil sample (u, v from 0 to 1) and a wavelength (nm). */
 PZ_FN pz_ray pz_sample(PZ_T float film_x, float film_y, float u, float v, float nm) {
   pz_start s = pz_start_of(PZ_P film_x, film_y, u, v, nm);
-  pz_ray ray;
   if (s.fate != 0) return pz_lost(s.fate);
-  ray = pz_weighed(PZ_P s, pz_leave(PZ_P s, PZ_FALSE));
+  pz_ray ray = pz_weighed(PZ_P s, pz_leave(PZ_P s, PZ_FALSE));
   if (ray.fate == 0 && (PZ_AT(PZ_RAYS) == 1.0f || PZ_AT(PZ_FRONT_FIRST) == 0.0f)) {
     ray.origin = pz_along(ray.origin, pz_to_front(PZ_P ray.origin, ray.direction), ray.direction);
   }
@@ -1104,11 +1084,10 @@ PZ_FN pz_ray pz_sample(PZ_T float film_x, float film_y, float u, float v, float 
 PZ_FN pz_ray_differential pz_sample_differential(PZ_T float film_x, float film_y, float u, float v, float nm) {
   pz_start s = pz_start_of(PZ_P film_x, film_y, u, v, nm);
   pz_ray_differential result;
-  pz_beam b;
   result.ray = pz_sample(PZ_P film_x, film_y, u, v, nm);
   result.origin_by_x = result.direction_by_x = result.origin_by_y = result.direction_by_y = pz_xyz(0.0f, 0.0f, 0.0f);
   if (result.ray.fate != 0) return result;
-  b = pz_leave(PZ_P s, PZ_TRUE);
+  pz_beam b = pz_leave(PZ_P s, PZ_TRUE);
   /* rays that graze a surface have no finite derivatives */
   if (!pz_finite(pz_dot(b.by_x.p, b.by_x.p) + pz_dot(b.by_y.p, b.by_y.p))) return result;
   result.direction_by_x = b.by_x.p;
@@ -1196,14 +1175,13 @@ PZ_FN pz_path pz_arrive(PZ_T pz_vector origin, pz_vector direction, pz_light lig
   pz_path path;
   pz_beam b;
   PZ_BOOL exact = PZ_AT(PZ_RAYS) == 0.0f;
-  float to;
   path.film = path.pupil = pz_xy(0.0f, 0.0f);
   b.at = origin;
   b.p = direction;
   b = pz_trace(PZ_P b, light, PZ_TRUE, exact, PZ_FALSE);
   path.fate = b.fate;
   if (b.fate != 0) return path;
-  to = (PZ_AT(PZ_FILM_Z) - b.at.z) / b.p.z;
+  float to = (PZ_AT(PZ_FILM_Z) - b.at.z) / b.p.z;
   path.film = pz_xy(b.at.x + to * b.p.x, b.at.y + to * b.p.y);
   to = (PZ_AT(PZ_PUPIL_Z) - b.at.z) / b.p.z;
   path.pupil = pz_xy(b.at.x + to * b.p.x, b.at.y + to * b.p.y);
@@ -1219,7 +1197,6 @@ PZ_FN pz_arrival pz_dark(pz_arrival found, int fate) {
 PZ_FN pz_arrival pz_importance(PZ_T pz_vector origin, pz_vector direction, float nm) {
   pz_arrival found;
   pz_light light = pz_light_of(PZ_P nm);
-  pz_path path;
   float depth = PZ_AT(PZ_PUPIL_Z) - PZ_AT(PZ_FILM_Z), x, y, length2, area, density;
   float length = pz_dot(direction, direction), sound = pz_dot(origin, direction) * 0.0f;
   found.film = pz_xy(0.0f, 0.0f);
@@ -1228,7 +1205,7 @@ PZ_FN pz_arrival pz_importance(PZ_T pz_vector origin, pz_vector direction, float
   origin = pz_along(origin, -pz_dot(origin, direction), direction); /* the point nearest to the first vertex */
   length = 1.5f - 0.5f * length;
   direction = pz_xyz(length * direction.x, length * direction.y, length * direction.z);
-  path = pz_arrive(PZ_P origin, direction, light);
+  pz_path path = pz_arrive(PZ_P origin, direction, light);
   if (path.fate != 0) return pz_dark(found, path.fate);
   found.film = path.film;
   if (!pz_on_film(PZ_P found.film.x, found.film.y)) return pz_dark(found, 6);
@@ -1257,8 +1234,7 @@ PZ_STRUCT(pz_scene) {
   float distance, sine, cosine, azimuth_x, azimuth_y; /* sine, cosine: of the field */
 };
 PZ_FN float pz_last_field(PZ_T pz_scene s, int w, float at, int angle) {
-  int angles = s.two ? 2 : 1, list = pz_whole(PZ_P PZ_WIDEST) + w * 3 * angles + angle;
-  int i = at < 0.5f ? 0 : 1;
+  int angles = s.two ? 2 : 1, list = pz_whole(PZ_P PZ_WIDEST) + w * 3 * angles + angle, i = at < 0.5f ? 0 : 1;
   float low = PZ_AT(list + i * angles), high = PZ_AT(list + (i + 1) * angles);
   return low + (2.0f * at - PZ_FLOAT(i)) * (high - low);
 }
@@ -1266,7 +1242,6 @@ PZ_FN pz_scene pz_find_scene(PZ_T pz_vector from, int w) {
   pz_scene s;
   float z = from.z - PZ_AT(PZ_CENTRE_Z), r2 = from.x * from.x + from.y * from.y, r, per, field, at;
   float steepest = PZ_AT(PZ_STEEPEST), rim = PZ_AT(PZ_FRONT_HALF), across, down, d, e, f;
-  int fields, row, layer, i, j, k;
   s.two = PZ_AT(PZ_SCENE_DIMENSIONS) == 3.0f;
   s.distance = PZ_SQRT(r2 + z * z);
   per = 1.0f / (s.distance > 0.0f ? s.distance : 1.0f);
@@ -1283,12 +1258,9 @@ PZ_FN pz_scene pz_find_scene(PZ_T pz_vector from, int w) {
   down = s.two ? field * pz_abs(s.azimuth_y) / pz_last_field(PZ_P s, w, at, 1) : 0.0f;
   s.known = s.known && across <= 1.0f && down <= 1.0f;
   if (!s.known) across = down = 0.0f;
-  fields = s.two ? 6 : 12;
-  row = fields + 1;
-  layer = s.two ? row * row : row;
-  i = at < 0.5f ? 0 : 1;
-  j = PZ_INT(down * PZ_FLOAT(fields)) < fields - 1 ? PZ_INT(down * PZ_FLOAT(fields)) : fields - 1;
-  k = PZ_INT(across * PZ_FLOAT(fields)) < fields - 1 ? PZ_INT(across * PZ_FLOAT(fields)) : fields - 1;
+  int fields = s.two ? 6 : 12, row = fields + 1, layer = s.two ? row * row : row, i = at < 0.5f ? 0 : 1;
+  int j = PZ_INT(down * PZ_FLOAT(fields)) < fields - 1 ? PZ_INT(down * PZ_FLOAT(fields)) : fields - 1;
+  int k = PZ_INT(across * PZ_FLOAT(fields)) < fields - 1 ? PZ_INT(across * PZ_FLOAT(fields)) : fields - 1;
   d = 2.0f * at - PZ_FLOAT(i);
   e = s.two ? down * PZ_FLOAT(fields) - PZ_FLOAT(j) : 0.0f;
   f = across * PZ_FLOAT(fields) - PZ_FLOAT(k);
@@ -1359,7 +1331,6 @@ PZ_FN pz_connection pz_connect(PZ_T pz_vector from, float u, float v, float nm) 
   pz_connection c;
   pz_light light = pz_light_of(PZ_P nm);
   pz_vector centre = pz_xyz(0.0f, 0.0f, PZ_AT(PZ_CENTRE_Z)), at;
-  pz_scene s;
   float to_front, sound = (u + v) * 0.0f;
   c.direction = pz_xyz(0.0f, 0.0f, 1.0f);
   c.end = pz_xyz(0.0f, 0.0f, 0.0f);
@@ -1367,7 +1338,7 @@ PZ_FN pz_connection pz_connect(PZ_T pz_vector from, float u, float v, float nm) 
   c.arrival.film = pz_xy(0.0f, 0.0f);
   c.arrival = pz_dark(c.arrival, light.nearest < 0 ? 8 : 3);
   if (light.nearest < 0 || !(sound >= 0.0f)) return c;
-  s = pz_find_scene(PZ_P from, light.nearest);
+  pz_scene s = pz_find_scene(PZ_P from, light.nearest);
   u = pz_clamped(u);
   v = pz_clamped(v);
   if (s.known) {
@@ -1387,16 +1358,13 @@ PZ_FN pz_connection pz_connect(PZ_T pz_vector from, float u, float v, float nm) 
     at = pz_along(centre, 1.0f, at);
   }
   if (!(c.pdf > 0.0f)) {
-    float solid, less, sine;
-    pz_point turned;
-    pz_vector across;
     if (!pz_sees(PZ_P from, light.nearest) || pz_has_nodes(PZ_P light.nearest, s.distance)) return c;
-    solid = pz_cone(PZ_P light.nearest, s.distance);
-    less = v * solid / 6.28318530718f; /* 1 - cosine of the angle to the centre */
-    sine = PZ_SQRT(less * (2.0f - less));
-    turned = pz_circle(u);
+    float solid = pz_cone(PZ_P light.nearest, s.distance);
+    float less = v * solid / 6.28318530718f; /* 1 - cosine of the angle to the centre */
+    float sine = PZ_SQRT(less * (2.0f - less));
+    pz_point turned = pz_circle(u);
     s.two = PZ_FALSE;
-    across = pz_in_plane(s, pz_xy(sine * turned.y, sine * turned.x));
+    pz_vector across = pz_in_plane(s, pz_xy(sine * turned.y, sine * turned.x));
     c.direction = pz_along(across, 1.0f - less, pz_xyz(-s.azimuth_x * s.sine, -s.azimuth_y * s.sine, s.cosine));
     c.distance = less < 1.0f ? s.distance * (1.0f - less) : 0.0f;
     at = pz_along(from, c.distance, c.direction);
@@ -1413,44 +1381,37 @@ PZ_FN pz_connection pz_connect(PZ_T pz_vector from, float u, float v, float nm) 
 PZ_FN float pz_pdf(PZ_T pz_vector from, pz_vector direction, float nm) {
   pz_light light = pz_light_of(PZ_P nm);
   pz_vector centre = pz_xyz(0.0f, 0.0f, PZ_AT(PZ_CENTRE_Z)), away, met, unit;
-  pz_scene s;
-  pz_point q, middle, first;
-  pz_sector own;
-  PZ_BOOL half_q;
-  float cosine, behind, before, whole, squared;
   int k = 0;
   if (light.nearest < 0 || !pz_sees(PZ_P from, light.nearest)) return 0.0f;
-  s = pz_find_scene(PZ_P from, light.nearest);
+  pz_scene s = pz_find_scene(PZ_P from, light.nearest);
   away = pz_difference(from, centre, 1.0f);
   unit = pz_xyz(away.x / s.distance, away.y / s.distance, away.z / s.distance);
-  cosine = -pz_dot(direction, unit);
+  float cosine = -pz_dot(direction, unit);
   if (!pz_has_nodes(PZ_P light.nearest, s.distance)) {
     float solid = pz_cone(PZ_P light.nearest, s.distance);
     return 1.0f - cosine <= solid / 6.28318530718f * 1.000001f ? 1.0f / solid : 0.0f;
   }
   if (!(s.known && cosine > 0.0f)) return 0.0f;
   met = pz_along(away, s.distance / cosine, direction);
-  q = pz_xy(s.azimuth_y * met.x - s.azimuth_x * met.y,
-            s.cosine * (s.azimuth_x * met.x + s.azimuth_y * met.y) + s.sine * met.z);
+  pz_point q = pz_xy(s.azimuth_y * met.x - s.azimuth_x * met.y,
+                     s.cosine * (s.azimuth_x * met.x + s.azimuth_y * met.y) + s.sine * met.z);
   if (s.two) {
     q = pz_xy(s.azimuth_y * q.x + s.azimuth_x * q.y, s.azimuth_y * q.y - s.azimuth_x * q.x);
     q = pz_xy(s.azimuth_x < 0.0f ? -q.x : q.x, s.azimuth_y < 0.0f ? -q.y : q.y);
   }
-  middle = pz_node_point(PZ_P s, 0);
+  pz_point middle = pz_node_point(PZ_P s, 0);
   q = pz_xy(q.x - middle.x, q.y - middle.y);
-  first = pz_node_point(PZ_P s, 2);
-  half_q = pz_turn(first, q) < 0.0f;
+  pz_point first = pz_node_point(PZ_P s, 2);
+  PZ_BOOL half_q = pz_turn(first, q) < 0.0f;
   for (int step = 32; step > 0; step /= 2) {
     pz_point corner = pz_node_point(PZ_P s, 2 + 2 * (k + step));
     PZ_BOOL half_corner = pz_turn(first, corner) < 0.0f;
     if (half_corner == half_q ? pz_turn(corner, q) >= 0.0f : !half_corner) k += step;
   }
-  own = pz_scene_sector(PZ_P s, k);
-  behind = pz_turn(own.a, q);
-  before = pz_turn(q, own.b);
-  whole = pz_turn(own.a, own.b);
+  pz_sector own = pz_scene_sector(PZ_P s, k);
+  float behind = pz_turn(own.a, q), before = pz_turn(q, own.b), whole = pz_turn(own.a, own.b);
   if (!(behind >= 0.0f && before >= 0.0f && whole > 0.0f)) return 0.0f;
-  squared = (behind + before) / whole;
+  float squared = (behind + before) / whole;
   squared *= squared;
   if (squared > 1.0f || (squared >= own.dark_from && squared < own.dark_from + own.dark)) return 0.0f;
   return s.distance / pz_sector_area(own) * s.distance / (cosine * cosine * cosine);
