@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "petzval/core/config.hpp"
+#include "petzval/lens/lens.hpp"
+
+namespace petzval {
+
+/// Transverse errors of the rays of one field and wavelength in two sections of the pupil (mm on the film), relative to
+/// the chief ray of the primary wavelength.
+struct RayFan {
+  double field_rad = 0;
+  std::size_t wavelength = 0;
+  /// A position on the stop from -1 to 1 in semi-diameters, along y for the tangential ray and along x for the sagittal
+  /// ray. nullopt: the lens clips the ray.
+  struct Point {
+    double pupil = 0;
+    std::optional<double> tangential_mm, sagittal_mm;
+  };
+  std::vector<Point> points;
+};
+
+/// Ray fans of several fields at every compiled wavelength, ordered by field, then by wavelength.
+///
+/// The tangential error is along y on the film, the sagittal error along x. Rays are aimed at the stop exactly (aim()).
+///
+/// @param lens        the focused lens
+/// @param subject_z   subject plane (lens frame, mm); -inf at infinity
+/// @param fields_rad  field angles towards +y (rad), as in FieldPoint
+/// @param count       positions on the stop, at least 2; evenly spaced from -1 to 1
+/// @throws Error      if count is below 2, or under the conditions of aim()
+PETZVAL_API std::vector<RayFan> ray_fans(const Lens& lens, double subject_z, std::span<const double> fields_rad,
+                                         std::size_t count = 33);
+
+/// Foci of narrow beams about the chief ray of one field, as distances from the film along the axis (mm), positive away
+/// from the lens. nullopt: no chief ray reaches the film, or the beam stays parallel.
+struct FieldFocus {
+  double field_rad = 0;
+  std::optional<double> tangential_mm, sagittal_mm;
+};
+
+/// Field curvature and astigmatism. Clear apertures do not matter.
+///
+/// @param lens, subject_z, fields_rad  as in ray_fans()
+/// @param wavelength  a compiled wavelength
+/// @throws Error      under the conditions of aim()
+///
+/// Accuracy: derivatives by central differences over 0.002 semi-diameters of the stop; 1e-6 of the foci.
+PETZVAL_API std::vector<FieldFocus> field_curvature(const Lens& lens, double subject_z,
+                                                    std::span<const double> fields_rad, Wavelength wavelength = {});
+
+/// The height of a chief ray on the film compared with two projections of the same scale on the axis.
+struct FieldDistortion {
+  double field_rad = 0;
+  std::optional<double> height_mm;  ///< y on the film; nullopt: no chief ray reaches the film
+  /// Per cent of f tan(theta), and of f theta; 0 on the axis; nullopt without a height, and for f tan(theta) at 90
+  /// degrees and more.
+  std::optional<double> f_tan_theta_percent, f_theta_percent;
+};
+
+/// Distortion in per cent. f is the ratio of height to field in the limit of small fields, on the film of the lens.
+///
+/// @param lens, subject_z, fields_rad, wavelength  as in field_curvature()
+/// @throws Error  under the conditions of aim()
+PETZVAL_API std::vector<FieldDistortion> distortion_percent(const Lens& lens, double subject_z,
+                                                            std::span<const double> fields_rad,
+                                                            Wavelength wavelength = {});
+
+}  // namespace petzval

@@ -1,0 +1,100 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "petzval/analysis/aberrations.hpp"
+
+#include <array>
+#include <cmath>
+#include <numbers>
+#include <string>
+
+#include "petzval/core/error.hpp"
+#include "petzval/pupil/aim.hpp"
+
+namespace petzval {
+namespace {
+
+/// A ray behind the lens at the film: position and slopes.
+struct FilmRay {
+  double x, y, slope_x, slope_y;
+};
+std::optional<FilmRay> at_film(const Lens& lens, const AimedRay& aimed) {
+  const auto& [o, d] = aimed.end.ray;
+  if (!aimed || !aimed.end.transmitted() || d.z == 0) return {};
+  const double slope_x = d.x / d.z, slope_y = d.y / d.z, distance = lens.film_z() - o.z;
+  const FilmRay ray{o.x + distance * slope_x, o.y + distance * slope_y, slope_x, slope_y};
+  if (!std::isfinite(ray.x + ray.y)) return {};
+  return ray;
+}
+
+/// Distance at which rays on both sides of a chief ray intersect.
+std::optional<double> crossing(double position_change, double slope_change) {
+  const double distance = -position_change / slope_change;
+  if (!std::isfinite(distance)) return {};
+  return distance;
+}
+
+}  // namespace
+
+std::vector<RayFan> ray_fans(const Lens& lens, double subject_z, std::span<const double> fields_rad,
+                             std::size_t count) {
+  if (count < 2) throw Error("ray_fans: count = " + std::to_string(count) + "; must be at least 2");
+  std::vector<RayFan> fans;
+  for (const double field : fields_rad) {
+    const FieldPoint point{.field_rad = field, .z = subject_z};
+    const auto chief = at_film(lens, chief_ray(lens, point));
+    for (std::size_t w = 0; w < lens.wavelengths_nm().size(); ++w) {
+      RayFan& fan = fans.emplace_back(RayFan{field, w, {}});
+      const auto ray = [&](const Vec2<double>& target) -> std::optional<FilmRay> {
+        const AimedRay aimed = aim(lens, point, target, w);
+        if (!chief || aimed.status != AimStatus::converged) return {};
+        return at_film(lens, aimed);
+      };
+      for (std::size_t i = 0; i < count; ++i) {
+        const double pupil = 2 * static_cast<double>(i) / static_cast<double>(count - 1) - 1;
+        RayFan::Point& at = fan.points.emplace_back(RayFan::Point{pupil, {}, {}});
+        constexpr double inside = 1 - 1e-9;  // rays on the rim of the stop may be clipped by rounding
+        if (const auto tangential = ray({0, inside * pupil})) at.tangential_mm = tangential->y - chief->y;
+        if (const auto sagittal = ray({inside * pupil, 0})) at.sagittal_mm = sagittal->x - chief->x;
+      }
+    }
+  }
+  return fans;
+}
+
+std::vector<FieldFocus> field_curvature(const Lens& lens, double subject_z, std::span<const double> fields_rad,
+                                        Wavelength wavelength) {
+  constexpr double step = 1e-3;  // semi-diameters of the stop
+  std::vector<FieldFocus> foci;
+  for (const double field : fields_rad) {
+    const FieldPoint point{.field_rad = field, .z = subject_z};
+    const auto ray = [&](const Vec2<double>& target) { return at_film(lens, aim(lens, point, target, wavelength)); };
+    const auto up = ray({0, step}), down = ray({0, -step}), right = ray({step, 0}), left = ray({-step, 0});
+    FieldFocus& focus = foci.emplace_back(FieldFocus{field, {}, {}});
+    if (up && down) focus.tangential_mm = crossing(up->y - down->y, up->slope_y - down->slope_y);
+    if (right && left) focus.sagittal_mm = crossing(right->x - left->x, right->slope_x - left->slope_x);
+  }
+  return foci;
+}
+
+std::vector<FieldDistortion> distortion_percent(const Lens& lens, double subject_z, std::span<const double> fields_rad,
+                                                Wavelength wavelength) {
+  const auto height = [&](double field) -> std::optional<double> {
+    const auto ray = at_film(lens, chief_ray(lens, {.field_rad = field, .z = subject_z}, wavelength));
+    if (!ray) return {};
+    return ray->y;
+  };
+  constexpr double small = 1e-4;  // rad; the ratio differs by 1e-8 from its limit
+  const auto near_axis = height(small);
+  std::vector<FieldDistortion> result;
+  for (const double field : fields_rad) {
+    FieldDistortion& own = result.emplace_back(FieldDistortion{field, height(field), {}, {}});
+    if (!own.height_mm || !near_axis) continue;
+    const auto percent = [&](double projected, double limit) {
+      return field == 0 ? 0 : 100 * (*own.height_mm / (*near_axis / limit * projected) - 1);
+    };
+    own.f_theta_percent = percent(field, small);
+    if (std::abs(field) < std::numbers::pi / 2) own.f_tan_theta_percent = percent(std::tan(field), std::tan(small));
+  }
+  return result;
+}
+
+}  // namespace petzval
