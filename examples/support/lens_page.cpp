@@ -144,6 +144,11 @@ std::vector<LensFigure> lens_figures(const Report& r, const petzval::Lens& colou
       "Film points of the rays from one field point. If the spot is within the dashed Airy circle, diffraction "
       "dominates. A comet is coma, a line or a cross astigmatism; separate colours are lateral colour.",
       petzval::spot_figure(colours, petzval::spot_diagram(colours, subject_z, fields), weights));
+  add("fans", "Ray fans",
+      "Errors of the rays through the two sections of the stop. A tilted line is defocus, an S is spherical "
+      "aberration, "
+      "a parabola is coma; distances between the curves are lateral colour.",
+      petzval::fan_figure(colours, subject_z, petzval::ray_fans(colours, subject_z, fields)));
   add("footprints", "Pupils",
       "The vignetted pupil of each field point. The more of the dashed circle is missing, the darker the corner. "
       "Bright points out of focus have blurs of this shape.",
@@ -154,6 +159,10 @@ std::vector<LensFigure> lens_figures(const Report& r, const petzval::Lens& colou
       petzval::focus_figure(colours, subject_z, fields, weights));
   const double farthest = *std::ranges::max_element(fields, {}, [](double f) { return std::abs(f); });
   if (farthest != 0) {
+    add("field", "Field curvature and distortion",
+        "Where narrow beams are sharp, in both sections, and how far the image is from the projection. Two separate "
+        "curves on the left are astigmatism.",
+        petzval::field_figure(lens, subject_z, std::abs(farthest)));
     add("illumination", "Brightness",
         "Irradiance on the film from the centre to the edge of the field. Below cos\u2074 rims vignette; above it the "
         "pupil grows with the field, as in fisheyes and retrofocus lenses.",

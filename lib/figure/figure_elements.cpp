@@ -49,6 +49,21 @@ std::string_view field_colour(std::size_t field) {
   return palette[field % palette.size()];
 }
 
+std::vector<Look> looks(std::span<const double> wavelengths_nm) {
+  constexpr std::array<std::string_view, 7> palette{"#7b3fb5", "#2459c9", "#00808a", "#1b8a3a",
+                                                    "#b06f00", "#d03020", "#7a1f1f"};
+  const std::size_t count = wavelengths_nm.size();
+  const std::size_t first = count <= 3 ? 1 : 0, last = count <= 3 ? 5 : 6;
+  std::vector<Look> result;
+  for (const double nm : wavelengths_nm) {
+    const auto rank = static_cast<std::size_t>(
+        std::count_if(wavelengths_nm.begin(), wavelengths_nm.end(), [nm](double other) { return other < nm; }));
+    const std::size_t step = count == 1 ? 0 : (2 * rank * (last - first) + count - 1) / (2 * (count - 1));
+    result.push_back({palette[first + step], rank});
+  }
+  return result;
+}
+
 std::string glass_colour(double index) {
   const double t = std::clamp((index - 1.4) / 0.55, 0.0, 1.0);
   const auto mixed = [t](double pale, double deep) { return std::to_string(std::lround(pale + t * (deep - pale))); };

@@ -30,6 +30,14 @@ std::string field_text(double field_rad);
 /// Colour of a field by its index; the same in every figure of a lens.
 std::string_view field_colour(std::size_t field);
 
+/// Colour and marker of a wavelength. Up to three wavelengths are blue, green and red, as is customary for F, d and C;
+/// more wavelengths have colours from violet to brown, in ascending order.
+struct Look {
+  std::string_view colour;
+  std::size_t marker;
+};
+std::vector<Look> looks(std::span<const double> wavelengths_nm);
+
 /// Colour of glass in a section: from pale to deep as the index goes from 1.4 to 1.95.
 std::string glass_colour(double index);
 

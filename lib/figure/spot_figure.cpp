@@ -29,28 +29,6 @@ constexpr double cell = 190, gap = 14,
 constexpr double left = 118, top = 112, bottom = 76;
 constexpr std::size_t drawn_rays = 600;
 
-/// Colour and marker of a wavelength. Up to three wavelengths are blue, green and red, as is customary for F, d and C;
-/// more wavelengths have colours from violet to brown, in ascending order.
-struct Look {
-  std::string_view colour;
-  std::size_t marker;
-};
-
-std::vector<Look> looks(std::span<const double> wavelengths_nm) {
-  constexpr std::array<std::string_view, 7> palette{"#7b3fb5", "#2459c9", "#00808a", "#1b8a3a",
-                                                    "#b06f00", "#d03020", "#7a1f1f"};
-  const std::size_t count = wavelengths_nm.size();
-  const std::size_t first = count <= 3 ? 1 : 0, last = count <= 3 ? 5 : 6;
-  std::vector<Look> result;
-  for (const double nm : wavelengths_nm) {
-    const auto rank = static_cast<std::size_t>(
-        std::count_if(wavelengths_nm.begin(), wavelengths_nm.end(), [nm](double other) { return other < nm; }));
-    const std::size_t step = count == 1 ? 0 : (2 * rank * (last - first) + count - 1) / (2 * (count - 1));
-    result.push_back({palette[first + step], rank});
-  }
-  return result;
-}
-
 /// Path commands of a marker: plus, cross, square, triangle or diamond.
 std::string marker(std::size_t kind, double x, double y) {
   const auto at = [](double px, double py) { return "M" + svg_number(px) + " " + svg_number(py); };
@@ -72,7 +50,7 @@ class SpotFigure {
         wavelengths_(lens.wavelengths_nm().size()),
         rows_(spots.size() / wavelengths_),
         columns_(wavelengths_ == 1 ? 1 : 1 + wavelengths_),
-        looks_(looks(lens.wavelengths_nm())),
+        looks_(figure_detail::looks(lens.wavelengths_nm())),
         f_number_(film_side_f_number(lens)),
         svg_(std::max(960.0, left + static_cast<double>(columns_) * (cell + gap) + gap),
              top + static_cast<double>(rows_) * (cell + caption_height + gap) + bottom) {
@@ -207,7 +185,7 @@ class SpotFigure {
   std::vector<double> weights_;
   std::size_t wavelengths_, rows_, columns_;
   std::size_t middle_ = 0;  // the median wavelength, for elements of a single wavelength
-  std::vector<Look> looks_;
+  std::vector<figure_detail::Look> looks_;
   double f_number_;
   Svg svg_;
   std::vector<SpotSize> sizes_;  // one per row

@@ -6,6 +6,7 @@
 #include <string>
 #include <string_view>
 
+#include "petzval/analysis/aberrations.hpp"
 #include "petzval/analysis/spot.hpp"
 #include "petzval/core/config.hpp"
 #include "petzval/lens/lens.hpp"
@@ -50,6 +51,24 @@ PETZVAL_API std::string footprint_figure(const Lens& lens, double subject_z, std
 /// @param field_rad  largest field angle (rad)
 /// @throws Error     if the field is not positive; also under the conditions of relative_illumination()
 PETZVAL_API std::string illumination_figure(const Lens& lens, double subject_z, double field_rad);
+
+/// Draws ray fans as SVG text: a row for each field, tangential on the left, sagittal on the right, a colour for each
+/// wavelength. All cells have the same scale.
+///
+/// @param lens       the lens
+/// @param subject_z  subject plane (lens frame, mm); -inf at infinity
+/// @param fans       ray_fans() of this lens
+/// @throws Error     if there are no fans, or not one for each field and wavelength
+PETZVAL_API std::string fan_figure(const Lens& lens, double subject_z, std::span<const RayFan> fans);
+
+/// Draws field_curvature() and distortion_percent() against field angle at the primary wavelength as SVG text.
+/// Distortion is relative to f tan(theta), or to f theta if the field exceeds 60 degrees.
+///
+/// @param lens       the lens
+/// @param subject_z  subject plane (lens frame, mm); -inf at infinity
+/// @param field_rad  largest field angle (rad)
+/// @throws Error     if the field is not positive; also under the conditions of aim()
+PETZVAL_API std::string field_figure(const Lens& lens, double subject_z, double field_rad);
 
 /// Draws a spot diagram as SVG text: one row per field, with a column for all wavelengths and one per wavelength.
 ///

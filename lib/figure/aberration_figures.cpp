@@ -1,0 +1,132 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "axes.hpp"
+#include "core/text.hpp"
+#include "figure_elements.hpp"
+#include "petzval/analysis/aberrations.hpp"
+#include "petzval/core/error.hpp"
+#include "petzval/core/geometry.hpp"
+#include "petzval/figure/lens_figures.hpp"
+
+namespace petzval {
+namespace {
+
+using figure_detail::Axes;
+
+constexpr double nothing = std::numeric_limits<double>::quiet_NaN();
+
+std::string stroke(std::string_view colour, std::string_view more = {}) {
+  return "fill=\"none\" stroke-width=\"1.6\" stroke-linejoin=\"round\" stroke=\"" + std::string(colour) + "\" " +
+         std::string(more);
+}
+/// Half of the range of an axis that contains the values: 1, 2 or 5 times a power of ten, not smaller than `least`.
+double round_range(double largest, double least) {
+  const double wanted = std::max(largest, least), ten = std::pow(10, std::floor(std::log10(wanted)));
+  for (const double step : {1.0, 2.0, 5.0}) {
+    if (step * ten >= wanted) return step * ten;
+  }
+  return 10 * ten;
+}
+
+}  // namespace
+
+std::string fan_figure(const Lens& lens, double subject_z, std::span<const RayFan> fans) {
+  const std::size_t wavelengths = lens.wavelengths_nm().size();
+  if (fans.empty() || fans.size() % wavelengths != 0) {
+    throw Error("fan_figure: " + std::to_string(fans.size()) + " fans; must be one or more for each of the " +
+                std::to_string(wavelengths) + " wavelengths");
+  }
+  constexpr double width = 960, left = 78, top = 84, height = 150, step = 214, cell = 380, second = left + cell + 92;
+  const std::size_t fields = fans.size() / wavelengths;
+  double largest = 0;
+  for (const RayFan& fan : fans) {
+    for (const auto& [pupil, tangential, sagittal] : fan.points) {
+      largest = std::max({largest, std::abs(tangential.value_or(0)), std::abs(sagittal.value_or(0))});
+    }
+  }
+  const std::vector<figure_detail::Look> looks = figure_detail::looks(lens.wavelengths_nm());
+  const double range = round_range(1000 * largest, 1e-3);  // um
+  figure_detail::Svg svg(width, top + step * static_cast<double>(fields) + 40);
+  figure_detail::draw_head(svg, lens, "Ray fans", subject_z, lens.primary_wavelength());
+  for (std::size_t f = 0; f < fields; ++f) {
+    const double y = top + step * static_cast<double>(f);
+    const std::string name = figure_detail::field_text(fans[f * wavelengths].field_rad) + ", ";
+    const std::array sections{std::pair{left, &RayFan::Point::tangential_mm},
+                              std::pair{second, &RayFan::Point::sagittal_mm}};
+    for (const auto& [x, error] : sections) {
+      const bool tangential = x == left;
+      Axes axes(svg, x, y, cell, height, {-1, 1, name + (tangential ? "y on the stop" : "x on the stop")},
+                {-range, range, tangential ? "error of y (\u00b5m)" : "error of x (\u00b5m)"});
+      for (std::size_t w = 0; w < wavelengths; ++w) {
+        std::vector<Axes::Point> curve;
+        for (const RayFan::Point& point : fans[f * wavelengths + w].points) {
+          curve.push_back({point.pupil, 1000 * (point.*error).value_or(nothing)});
+        }
+        axes.curve(curve, stroke(looks[w].colour));
+      }
+    }
+  }
+  double x = left;
+  for (std::size_t w = 0; w < wavelengths; ++w) {
+    x = 24 + figure_detail::draw_key(svg, x, top + step * static_cast<double>(fields) + 8, looks[w].colour,
+                                     to_text(lens.wavelengths_nm()[w], 6) + " nm");
+  }
+  svg.text(figure_detail::sheet_margin, top + step * static_cast<double>(fields) + 30,
+           "Positions on the film relative to the chief ray of " +
+               to_text(lens.wavelengths_nm()[lens.primary_wavelength()], 6) +
+               " nm. Curves end where the lens clips the rays.",
+           figure_detail::small_text);
+  return std::move(svg).finish();
+}
+
+std::string field_figure(const Lens& lens, double subject_z, double field_rad) {
+  if (!(field_rad > 0)) {
+    throw Error("field_figure: field = " + to_text(degrees(field_rad), 6) + " degrees; must be positive");
+  }
+  constexpr int steps = 40;
+  constexpr double width = 960, left = 78, top = 84, height = 330, cell = 380, second = left + cell + 92;
+  std::vector<double> fields;
+  for (int k = 0; k <= steps; ++k) fields.push_back(field_rad * k / steps);
+  const std::vector<FieldFocus> foci = field_curvature(lens, subject_z, fields);
+  const std::vector<FieldDistortion> distortion = distortion_percent(lens, subject_z, fields);
+  const bool wide = field_rad > radians(60.0);  // f tan(theta) means little for fisheyes
+  std::vector<Axes::Point> tangential, sagittal, projection;
+  double shift = 0, percent = 0;
+  for (std::size_t k = 0; k < fields.size(); ++k) {
+    const double field = degrees(fields[k]);
+    const auto value = wide ? distortion[k].f_theta_percent : distortion[k].f_tan_theta_percent;
+    tangential.push_back({foci[k].tangential_mm.value_or(nothing), field});
+    sagittal.push_back({foci[k].sagittal_mm.value_or(nothing), field});
+    projection.push_back({value.value_or(nothing), field});
+    shift = std::max({shift, std::abs(foci[k].tangential_mm.value_or(0)), std::abs(foci[k].sagittal_mm.value_or(0))});
+    percent = std::max(percent, std::abs(value.value_or(0)));
+  }
+  const double range = round_range(shift, 1e-3), percents = round_range(percent, 0.1), end = degrees(field_rad);
+  figure_detail::Svg svg(width, top + height + 96);
+  figure_detail::draw_head(svg, lens, "Field curvature and distortion", subject_z, lens.primary_wavelength());
+  Axes focus(svg, left, top, cell, height, {-range, range, "focus from the film (mm)"},
+             {0, end, "field angle (\u00b0)"});
+  focus.curve(tangential, stroke("#1f5fc4"));
+  focus.curve(sagittal, stroke("#c4451f", "stroke-dasharray=\"5 3\""));
+  Axes shown(svg, second, top, cell, height,
+             {-percents, percents, wide ? "distortion of f \u03b8 (%)" : "distortion of f tan \u03b8 (%)"},
+             {0, end, "field angle (\u00b0)"});
+  shown.curve(projection, stroke("#1f5fc4"));
+  const double y = top + height + 58;
+  const double x = figure_detail::draw_key(svg, left, y, "#1f5fc4", "tangential");
+  figure_detail::draw_key(svg, x + 30, y, "#c4451f", "sagittal (dashed)");
+  svg.text(figure_detail::sheet_margin, y + 24,
+           "Foci of narrow beams about the chief ray, positive away from the lens; height of the chief ray on the film "
+           "compared with the projection.",
+           figure_detail::small_text);
+  return std::move(svg).finish();
+}
+
+}  // namespace petzval
