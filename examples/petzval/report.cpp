@@ -87,6 +87,13 @@ examples::Report report_of(const Options& options) {
   return examples::report(std::move(loaded), std::move(subject), declared);
 }
 
+std::string to_json(const examples::Report& report, const Options& options) {
+  const examples::ReportLight& light = report.subject.light;
+  const auto colours = petzval::compile(report.loaded.prescription, light.wavelengths_nm,
+                                        examples::compile_options(report.loaded, light.primary_nm));
+  return examples::to_json(report, set(colours, options, report.subject)).dump(2) + '\n';
+}
+
 void write_page(const examples::Report& report, const Options& options) {
   const examples::ReportLight& light = report.subject.light;
   const auto colours = examples::compiled_for(report.loaded, light.wavelengths_nm, light.primary_nm);
@@ -140,6 +147,6 @@ int commands::report(int argc, char** argv) {
     options.subject_given = subject->given();
     const examples::Report report = report_of(options);
     if (out->given()) return write_page(report, options);
-    std::cout << (options.json ? examples::to_json(report).dump(2) + '\n' : examples::to_text(report));
+    std::cout << (options.json ? to_json(report, options) : examples::to_text(report));
   });
 }

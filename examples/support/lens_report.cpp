@@ -8,6 +8,9 @@
 #include <sstream>
 #include <utility>
 
+#include "petzval/analysis/seidel.hpp"
+#include "petzval/core/error.hpp"
+#include "petzval/core/geometry.hpp"
 #include "petzval/pupil/f_number.hpp"
 #include "text.hpp"
 
@@ -92,6 +95,47 @@ Json numbers(const MeridianReport& r) {
   return json;
 }
 
+/// Seidel sums and paraxial rays of the largest field; null if paraxial_rays() or seidel_sums() throws Error.
+Json third_order(const Report& r, const petzval::Lens& lens) {
+  Json json{
+      {"seidel", nullptr}, {"seidel_sums", nullptr}, {"paraxial_rays", nullptr}, {"optical_invariant_mm", nullptr}};
+  const ReportSubject& subject = r.subject;
+  petzval::ParaxialField field{.object_distance = lens.surfaces().front().vertex_z - subject_z(subject, lens)};
+  for (const double degrees : subject.fields.degrees) {
+    field.field_rad = std::max(field.field_rad, std::abs(petzval::radians(degrees)));
+  }
+  const auto [shortest, longest] =
+      std::minmax_element(subject.light.wavelengths_nm.begin(), subject.light.wavelengths_nm.end());
+  try {
+    const auto rays = petzval::paraxial_rays(lens, field);
+    json["paraxial_rays"] = Json::array();
+    for (std::size_t i = 0; i < rays.surfaces.size(); ++i) {
+      const petzval::ParaxialRayPair& pair = rays.surfaces[i];
+      json["paraxial_rays"].push_back({{"surface", i},
+                                       {"marginal_y", pair.marginal_y},
+                                       {"marginal_u", pair.marginal_u},
+                                       {"chief_y", pair.chief_y},
+                                       {"chief_u", pair.chief_u}});
+    }
+    json["optical_invariant_mm"] = rays.invariant;
+    const auto sums = petzval::seidel_sums(lens, field, {}, lens.wavelength(*shortest), lens.wavelength(*longest));
+    const auto terms = [&](Json row, const petzval::SeidelTerms& t) {
+      const auto colour = [&](double value) { return *shortest < *longest ? Json(value) : Json(nullptr); };
+      row.update({{"S1", t.s1}, {"S2", t.s2}, {"S3", t.s3}, {"S4", t.s4}, {"S5", t.s5}});
+      row.update({{"C1", colour(t.c1)}, {"C2", colour(t.c2)}});
+      return row;
+    };
+    json["seidel"] = Json::array();
+    for (std::size_t i = 0; i < sums.surfaces.size(); ++i) {
+      json["seidel"].push_back(terms({{"surface", i}}, sums.surfaces[i]));
+    }
+    json["seidel_sums"] = terms(Json::object(), sums.sums);
+  } catch (const petzval::Error&) {
+    // The remaining values stay null.
+  }
+  return json;
+}
+
 }  // namespace
 
 double subject_z(const ReportSubject& subject, const petzval::Lens& lens) {
@@ -151,7 +195,7 @@ std::vector<std::size_t> computed_apertures(const Report& r) {
   return result;
 }
 
-Json to_json(const Report& r) {
+Json to_json(const Report& r, const petzval::Lens& colours) {
   const petzval::Lens& lens = r.loaded.lens;
   const auto& pupils = r.main().pupils;
   Json json{{"name", lens.name()},
@@ -187,6 +231,7 @@ Json to_json(const Report& r) {
       json["meridians"][meridian.meridian == petzval::Meridian::y ? "y" : "x"] = numbers(meridian);
     }
   }
+  json.update(third_order(r, colours));
   const auto& imported = r.loaded.prescription.imported;
   json["computed_apertures"] = computed_apertures(r);
   json["format"] = imported ? imported->format : "petzval";

@@ -63,7 +63,8 @@ std::string in_words(const ReportSubject& subject);
 std::string in_words(const ReportLight& light);
 std::string in_words(const ReportFields& fields);
 
-Json to_json(const Report& report);
+/// colours: the lens of the report at all wavelengths of its light, for the chromatic sums.
+Json to_json(const Report& report, const petzval::Lens& colours);
 std::string to_text(const Report& report);
 
 /// "y-z" or "x-z".

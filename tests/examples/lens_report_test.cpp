@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <cmath>
+#include <string>
+#include <vector>
 
+#include "petzval/analysis/seidel.hpp"
+#include "petzval/core/geometry.hpp"
 #include "petzval/focus/focus.hpp"
 #include "petzval/io/lens_json.hpp"
 #include "petzval/paraxial/first_order.hpp"
@@ -41,6 +45,31 @@ TEST_F(LensReport, NumbersEqualTheLibrary) {
   // Values printed by the sources (data/README.md).
   EXPECT_NEAR(json["effective_focal_length_mm"].get<double>(), 100.437, 0.0005);
   EXPECT_NEAR(json["f_number_real"].get<double>(), 1.353, 0.0005);
+}
+
+TEST_F(LensReport, SeidelSumsEqualTheLibrary) {
+  const std::string file = lens("double_gauss_100mm_f1.35");
+  const auto json = nlohmann::json::parse(run("report", {file, "--json"}).out);
+  const std::vector<double> wavelengths = json["wavelengths_nm"];
+  const petzval::Lens lens = petzval::compile(petzval::read_prescription(file), wavelengths);
+  const petzval::ParaxialField field{.field_rad = petzval::radians(json["fields_deg"].back().get<double>())};
+  const petzval::SeidelSums sums = petzval::seidel_sums(lens, field, {}, 0, wavelengths.size() - 1);
+  ASSERT_EQ(json["seidel"].size(), lens.surface_count());
+  EXPECT_EQ(json["seidel"][2]["surface"], 2);
+  EXPECT_EQ(json["seidel"][2]["S5"], sums.surfaces[2].s5);
+  EXPECT_EQ(json["seidel_sums"]["S1"], sums.sums.s1);
+  EXPECT_EQ(json["seidel_sums"]["C1"], sums.sums.c1);
+  EXPECT_GT(sums.sums.s4, 0);
+  const petzval::ParaxialRays rays = petzval::paraxial_rays(lens, field);
+  EXPECT_EQ(json["paraxial_rays"].back()["marginal_u"], rays.surfaces.back().marginal_u);
+  EXPECT_EQ(json["paraxial_rays"].back()["chief_y"], rays.surfaces.back().chief_y);
+  EXPECT_EQ(json["optical_invariant_mm"], rays.invariant);
+
+  const auto one = nlohmann::json::parse(run("report", {file, "--json", "--wavelengths", "550"}).out);
+  EXPECT_TRUE(one["seidel_sums"]["C1"].is_null());
+  const auto squeezed = nlohmann::json::parse(run("report", {LensReport::lens("anamorphic_60mm_2x"), "--json"}).out);
+  EXPECT_TRUE(squeezed["seidel"].is_null());
+  EXPECT_TRUE(squeezed["paraxial_rays"].is_null());
 }
 
 constexpr const char* two_planes = R"({"format": "petzval-lens 1", "id": "window", "name": "Window",
