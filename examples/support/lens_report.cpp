@@ -8,6 +8,7 @@
 #include <sstream>
 #include <utility>
 
+#include "petzval/analysis/aberrations.hpp"
 #include "petzval/analysis/seidel.hpp"
 #include "petzval/core/error.hpp"
 #include "petzval/core/geometry.hpp"
@@ -136,6 +137,46 @@ Json third_order(const Report& r, const petzval::Lens& lens) {
   return json;
 }
 
+/// The value, or null.
+Json or_null(const std::optional<double>& value) { return value ? Json(*value) : Json(nullptr); }
+
+/// Fans, field curvature and distortion at the fields of the report; null if no ray can be aimed.
+Json exact_aberrations(const Report& r, const petzval::Lens& colours) {
+  Json json{{"ray_fans", nullptr}, {"field_curvature", nullptr}, {"distortion_percent", nullptr}};
+  const double z = subject_z(r.subject, colours);
+  std::vector<double> fields;
+  for (const double degrees : r.subject.fields.degrees) fields.push_back(petzval::radians(degrees));
+  try {
+    Json fans = Json::array(), foci = Json::array(), distortion = Json::array();
+    const std::vector<double>& degrees = r.subject.fields.degrees;
+    const auto all = petzval::ray_fans(colours, z, fields);
+    for (std::size_t k = 0; k < all.size(); ++k) {
+      const petzval::RayFan& fan = all[k];
+      for (const auto& [pupil, tangential, sagittal] : fan.points) {
+        fans.push_back({{"field_deg", degrees[k / colours.wavelengths_nm().size()]},
+                        {"wavelength_nm", colours.wavelengths_nm()[fan.wavelength]},
+                        {"pupil", pupil},
+                        {"tangential_mm", or_null(tangential)},
+                        {"sagittal_mm", or_null(sagittal)}});
+      }
+    }
+    for (const petzval::FieldFocus& focus : petzval::field_curvature(colours, z, fields)) {
+      foci.push_back({{"field_deg", degrees[foci.size()]},
+                      {"tangential_mm", or_null(focus.tangential_mm)},
+                      {"sagittal_mm", or_null(focus.sagittal_mm)}});
+    }
+    for (const petzval::FieldDistortion& one : petzval::distortion_percent(colours, z, fields)) {
+      distortion.push_back({{"field_deg", degrees[distortion.size()]},
+                            {"f_tan_theta", or_null(one.f_tan_theta_percent)},
+                            {"f_theta", or_null(one.f_theta_percent)}});
+    }
+    json = {{"ray_fans", fans}, {"field_curvature", foci}, {"distortion_percent", distortion}};
+  } catch (const petzval::Error&) {
+    // All values stay null.
+  }
+  return json;
+}
+
 }  // namespace
 
 double subject_z(const ReportSubject& subject, const petzval::Lens& lens) {
@@ -232,6 +273,7 @@ Json to_json(const Report& r, const petzval::Lens& colours) {
     }
   }
   json.update(third_order(r, colours));
+  json.update(exact_aberrations(r, colours));
   const auto& imported = r.loaded.prescription.imported;
   json["computed_apertures"] = computed_apertures(r);
   json["format"] = imported ? imported->format : "petzval";
