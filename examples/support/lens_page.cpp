@@ -157,6 +157,9 @@ std::vector<LensFigure> lens_figures(const Report& r, const petzval::Lens& colou
       "Spot size against film position. Separate minima mean curvature of field; a high, flat minimum is an "
       "aberration that focusing does not remove.",
       petzval::focus_figure(colours, subject_z, fields, weights));
+  add("mtf", "Contrast",
+      "Contrast of fine lines, by rays. Where the curves of a field separate there is astigmatism or coma.",
+      petzval::mtf_figure(colours, subject_z, report_mtf(r, colours)));
   const double farthest = *std::ranges::max_element(fields, {}, [](double f) { return std::abs(f); });
   if (farthest != 0) {
     add("field", "Field curvature and distortion",

@@ -142,7 +142,7 @@ Json or_null(const std::optional<double>& value) { return value ? Json(*value) :
 
 /// Fans, field curvature and distortion at the fields of the report; null if no ray can be aimed.
 Json exact_aberrations(const Report& r, const petzval::Lens& colours) {
-  Json json{{"ray_fans", nullptr}, {"field_curvature", nullptr}, {"distortion_percent", nullptr}};
+  Json json{{"ray_fans", nullptr}, {"field_curvature", nullptr}, {"distortion_percent", nullptr}, {"mtf", nullptr}};
   const double z = subject_z(r.subject, colours);
   std::vector<double> fields;
   for (const double degrees : r.subject.fields.degrees) fields.push_back(petzval::radians(degrees));
@@ -170,7 +170,20 @@ Json exact_aberrations(const Report& r, const petzval::Lens& colours) {
                             {"f_tan_theta", or_null(one.f_tan_theta_percent)},
                             {"f_theta", or_null(one.f_theta_percent)}});
     }
-    json = {{"ray_fans", fans}, {"field_curvature", foci}, {"distortion_percent", distortion}};
+    Json mtf = Json::array();
+    const auto points = report_mtf(r, colours);
+    const double f_number = petzval::film_side_f_number(colours);
+    for (std::size_t k = 0; k < points.size(); ++k) {
+      const petzval::MtfPoint& point = points[k];
+      const double limit =
+          petzval::diffraction_limited_mtf(point.frequency_per_mm, r.subject.light.primary_nm, f_number);
+      mtf.push_back({{"field_deg", degrees[k * degrees.size() / points.size()]},
+                     {"frequency_per_mm", point.frequency_per_mm},
+                     {"tangential", point.tangential},
+                     {"sagittal", point.sagittal},
+                     {"diffraction_limit", limit}});
+    }
+    json = {{"ray_fans", fans}, {"field_curvature", foci}, {"distortion_percent", distortion}, {"mtf", mtf}};
   } catch (const petzval::Error&) {
     // All values stay null.
   }
@@ -181,6 +194,16 @@ Json exact_aberrations(const Report& r, const petzval::Lens& colours) {
 
 double subject_z(const ReportSubject& subject, const petzval::Lens& lens) {
   return petzval::origin_z(lens, subject.focus.distance_origin()) - subject.distance_mm;
+}
+
+std::vector<petzval::MtfPoint> report_mtf(const Report& r, const petzval::Lens& colours) {
+  constexpr std::uint32_t rays = 32768;
+  std::vector<double> fields, frequencies;
+  for (const double degrees : r.subject.fields.degrees) fields.push_back(petzval::radians(degrees));
+  for (int k = 0; k <= 20; ++k) frequencies.push_back(5 * k);
+  const auto spots = petzval::spot_diagram(colours, subject_z(r.subject, colours), fields, rays);
+  return petzval::geometric_mtf(spots, colours.wavelengths_nm().size(), frequencies, r.subject.light.weights,
+                                examples::threads());
 }
 
 std::string in_words(const ReportSubject& subject) {

@@ -10,6 +10,7 @@
 #include "design.hpp"
 #include "files.hpp"
 #include "load_lens.hpp"
+#include "petzval/analysis/aberrations.hpp"
 #include "petzval/analysis/lint.hpp"
 #include "petzval/paraxial/first_order.hpp"
 
@@ -65,6 +66,8 @@ std::string in_words(const ReportFields& fields);
 
 /// colours: the lens of the report at all wavelengths of its light, for the chromatic sums.
 Json to_json(const Report& report, const petzval::Lens& colours);
+/// Geometric MTF at the fields of the report, 0 to 100 line pairs per mm. colours: as in to_json().
+std::vector<petzval::MtfPoint> report_mtf(const Report& report, const petzval::Lens& colours);
 std::string to_text(const Report& report);
 
 /// "y-z" or "x-z".

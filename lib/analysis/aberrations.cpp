@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "petzval/analysis/aberrations.hpp"
 
-#include <array>
+#include <algorithm>
 #include <cmath>
+#include <complex>
 #include <numbers>
 #include <string>
 
 #include "petzval/core/error.hpp"
+#include "petzval/core/parallel.hpp"
 #include "petzval/pupil/aim.hpp"
 
 namespace petzval {
@@ -95,6 +97,44 @@ std::vector<FieldDistortion> distortion_percent(const Lens& lens, double subject
     if (std::abs(field) < std::numbers::pi / 2) own.f_tan_theta_percent = percent(std::tan(field), std::tan(small));
   }
   return result;
+}
+
+std::vector<MtfPoint> geometric_mtf(std::span<const Spot> spots, std::size_t wavelengths,
+                                    std::span<const double> frequencies_per_mm,
+                                    std::span<const double> wavelength_weights, int threads) {
+  const bool weighted = !wavelength_weights.empty();
+  if (wavelengths == 0 || spots.size() % wavelengths != 0 || (weighted && wavelength_weights.size() != wavelengths)) {
+    throw Error("geometric_mtf: " + std::to_string(spots.size()) + " spots, " + std::to_string(wavelengths) +
+                " wavelengths and " + std::to_string(wavelength_weights.size()) +
+                " weights; must be spots of all wavelengths of each field, and a weight for each wavelength or none");
+  }
+  const std::size_t count = frequencies_per_mm.size();
+  std::vector<MtfPoint> result(spots.size() / wavelengths * count);
+  parallel_for(result.size(), 1, threads, [&](std::size_t at, std::size_t) {
+    const auto own = spots.subspan(at / count * wavelengths, wavelengths);
+    const double frequency = frequencies_per_mm[at % count];
+    std::complex<double> along_y = 0, along_x = 0;
+    double total = 0;
+    for (std::size_t w = 0; w < wavelengths; ++w) {
+      const Spot& spot = own[w];
+      // Rays sample the pupil evenly: a wavelength counts by its weight and by the rays that pass.
+      const double weight =
+          (weighted ? wavelength_weights[w] : 1) / static_cast<double>(std::max<std::size_t>(spot.sent, 1));
+      for (std::size_t i = 0; i < spot.x.size(); ++i) {
+        along_y += std::polar(weight, -2 * std::numbers::pi * frequency * spot.y[i]);
+        along_x += std::polar(weight, -2 * std::numbers::pi * frequency * spot.x[i]);
+      }
+      total += weight * static_cast<double>(spot.x.size());
+    }
+    const auto contrast = [total](const std::complex<double>& sum) { return total > 0 ? std::abs(sum) / total : 0; };
+    result[at] = {own.front().point.field_rad, frequency, contrast(along_y), contrast(along_x)};
+  });
+  return result;
+}
+
+double diffraction_limited_mtf(double frequency_per_mm, double wavelength_nm, double f_number) noexcept {
+  const double s = std::abs(frequency_per_mm) * wavelength_nm * 1e-6 * f_number;
+  return s < 1 ? 2 / std::numbers::pi * (std::acos(s) - s * std::sqrt(1 - s * s)) : 0;
 }
 
 }  // namespace petzval

@@ -14,6 +14,7 @@
 #include "petzval/core/error.hpp"
 #include "petzval/core/geometry.hpp"
 #include "petzval/figure/lens_figures.hpp"
+#include "petzval/paraxial/first_order.hpp"
 
 namespace petzval {
 namespace {
@@ -126,6 +127,47 @@ std::string field_figure(const Lens& lens, double subject_z, double field_rad) {
            "Foci of narrow beams about the chief ray, positive away from the lens; height of the chief ray on the film "
            "compared with the projection.",
            figure_detail::small_text);
+  return std::move(svg).finish();
+}
+
+std::string mtf_figure(const Lens& lens, double subject_z, std::span<const MtfPoint> points) {
+  if (points.empty()) throw Error("mtf_figure: there are no points; must be at least one");
+  constexpr double width = 960, left = 78, top = 84, height = 360;
+  double highest = 0;
+  for (const MtfPoint& point : points) highest = std::max(highest, point.frequency_per_mm);
+  figure_detail::Svg svg(width, top + height + 116);
+  figure_detail::draw_head(svg, lens, "Geometric MTF", subject_z, lens.primary_wavelength());
+  Axes axes(svg, left, top, width - left - 24, height, {0, highest > 0 ? highest : 1, "frequency (line pairs per mm)"},
+            {0, 1, "contrast"});
+  const double nm = lens.wavelengths_nm()[lens.primary_wavelength()], f_number = film_side_f_number(lens);
+  std::vector<Axes::Point> limit;
+  for (int k = 0; k <= 100; ++k) {
+    const double frequency = highest * k / 100;
+    limit.push_back({frequency, diffraction_limited_mtf(frequency, nm, f_number)});
+  }
+  axes.curve(limit, "fill=\"none\" stroke=\"#888\" stroke-width=\"1\"");
+  double x = left;
+  const double y = top + height + 58;
+  std::size_t field = 0;
+  for (std::size_t begin = 0; begin < points.size(); ++field) {
+    std::size_t end = begin;
+    std::vector<Axes::Point> tangential, sagittal;
+    for (; end < points.size() && points[end].field_rad == points[begin].field_rad; ++end) {
+      tangential.push_back({points[end].frequency_per_mm, points[end].tangential});
+      sagittal.push_back({points[end].frequency_per_mm, points[end].sagittal});
+    }
+    const std::string_view colour = figure_detail::field_colour(field);
+    axes.curve(tangential, stroke(colour));
+    axes.curve(sagittal, stroke(colour, "stroke-dasharray=\"5 3\""));
+    x = 24 + figure_detail::draw_key(svg, x, y, colour, figure_detail::field_text(points[begin].field_rad));
+    begin = end;
+  }
+  figure_detail::draw_key(svg, x, y, "#888", "diffraction limit on the axis");
+  svg.text(
+      figure_detail::sheet_margin, y + 24,
+      "Solid: tangential, dashed: sagittal. Rays only: where a curve is near or above the limit, diffraction decides. "
+      "Sampling error 0.001.",
+      figure_detail::small_text);
   return std::move(svg).finish();
 }
 

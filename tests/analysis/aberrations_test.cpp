@@ -7,6 +7,8 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <numbers>
+#include <span>
 #include <vector>
 
 #include "../data_lenses.hpp"
@@ -118,6 +120,52 @@ TEST(DistortionPercent, OfAFisheyeIsSmallForFTheta) {
   EXPECT_LT(*found[0].f_tan_theta_percent, -30);
   EXPECT_FALSE(found[1].f_tan_theta_percent);
   EXPECT_TRUE(found[1].f_theta_percent);
+}
+
+// A defocused parabolic mirror has a uniform disc of rays to first order: MTF = 2 J1(a) / a, a = 2 pi frequency radius.
+TEST(GeometricMtf, OfADiscIsABesselFunction) {
+  Prescription p;
+  p.name = "parabola";
+  p.surfaces = {{.thickness = 900, .semi_diameter = 5, .stop = true},
+                {.radius = -2000, .thickness = -1000, .semi_diameter = 8, .conic = -1, .mirror = true}};
+  const Lens sharp = compile(p), blurred = with_film(sharp, sharp.film_z() - 2);  // radius 5 / 1000 * 2 = 0.01 mm
+  const std::array fields{0.0};
+  const std::array frequencies{0.0, 10.0, 25.0, 40.0};
+  const auto found = geometric_mtf(spot_diagram(blurred, far, fields, 16384), 1, frequencies);
+  const auto ideal = geometric_mtf(spot_diagram(sharp, far, fields, 1024), 1, frequencies);
+  for (std::size_t i = 0; i < frequencies.size(); ++i) {
+    const double a = 2 * std::numbers::pi * frequencies[i] * 0.01;
+    const double wanted = a > 0 ? std::abs(2 * std::cyl_bessel_j(1, a) / a) : 1;
+    EXPECT_NEAR(found[i].tangential, wanted, 1e-3);
+    EXPECT_NEAR(found[i].sagittal, wanted, 1e-3);
+    EXPECT_NEAR(ideal[i].tangential, 1, 1e-9);
+  }
+}
+
+TEST(GeometricMtf, ConvergesAndFollowsWeights) {
+  const Lens lens = double_gauss();
+  const std::array fields{0.0, radians(12.0)};
+  const std::array frequencies{10.0, 30.0, 50.0};
+  const auto at = [&](std::uint32_t rays) {
+    return geometric_mtf(spot_diagram(lens, far, fields, rays), 3, frequencies);
+  };
+  const auto coarse = at(32768), fine = at(327680);
+  for (std::size_t i = 0; i < fine.size(); ++i) {
+    EXPECT_NEAR(coarse[i].tangential, fine[i].tangential, 1e-3) << i;
+    EXPECT_NEAR(coarse[i].sagittal, fine[i].sagittal, 1e-3) << i;
+  }
+  const auto spots = spot_diagram(lens, far, fields, 4096);
+  const std::array green{0.0, 1.0, 0.0};
+  const auto one = geometric_mtf(spots, 3, frequencies, green);
+  const auto same = geometric_mtf(std::span(spots).subspan(1, 1), 1, frequencies);
+  for (std::size_t i = 0; i < 3; ++i) EXPECT_NEAR(one[i].tangential, same[i].tangential, 1e-12);
+  testing::expect_error([&] { geometric_mtf(spots, 4, frequencies); }, {6, 4});
+}
+
+TEST(DiffractionLimitedMtf, HasTheClosedForm) {
+  EXPECT_NEAR(diffraction_limited_mtf(0, 550, 8), 1, 1e-15);
+  EXPECT_NEAR(diffraction_limited_mtf(0.5 / (550e-6 * 8), 550, 8), 0.391002218955771, 1e-12);
+  EXPECT_NEAR(diffraction_limited_mtf(1 / (550e-6 * 8), 550, 8), 0, 1e-9);
 }
 
 }  // namespace

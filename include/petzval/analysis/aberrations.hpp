@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "petzval/analysis/spot.hpp"
 #include "petzval/core/config.hpp"
 #include "petzval/lens/lens.hpp"
 
@@ -70,5 +71,34 @@ struct FieldDistortion {
 PETZVAL_API std::vector<FieldDistortion> distortion_percent(const Lens& lens, double subject_z,
                                                             std::span<const double> fields_rad,
                                                             Wavelength wavelength = {});
+
+/// The modulation transfer of one field at one frequency, without diffraction: the contrast of lines perpendicular to y
+/// (tangential) and to x (sagittal) on the film.
+struct MtfPoint {
+  double field_rad = 0, frequency_per_mm = 0;
+  double tangential = 0, sagittal = 0;  ///< 0 to 1; 0 if no ray passes
+};
+
+/// Geometric MTF from spots, ordered by field, then by frequency.
+///
+/// @param spots               result of spot_diagram(): all wavelengths of each field
+/// @param wavelengths         number of wavelengths of each field
+/// @param frequencies_per_mm  spatial frequencies (line pairs per mm)
+/// @param wavelength_weights  weights of the compiled wavelengths; empty: equal weights
+/// @param threads             at least 1; they share the points, and the result is the same for every number
+/// @throws Error  if the number of spots is not a multiple of `wavelengths`, or the number of weights differs
+///
+/// Accuracy: 1e-3 with 32768 rays per field and wavelength (tests/analysis/aberrations_test.cpp).
+PETZVAL_API std::vector<MtfPoint> geometric_mtf(std::span<const Spot> spots, std::size_t wavelengths,
+                                                std::span<const double> frequencies_per_mm,
+                                                std::span<const double> wavelength_weights = {}, int threads = 1);
+
+/// MTF of an ideal lens with a round pupil on the axis.
+///
+/// @param frequency_per_mm  spatial frequency (line pairs per mm)
+/// @param wavelength_nm     wavelength
+/// @param f_number          image-side f-number
+/// @return                  1 at 0, 0 from 1 / (wavelength f_number) on
+PETZVAL_API double diffraction_limited_mtf(double frequency_per_mm, double wavelength_nm, double f_number) noexcept;
 
 }  // namespace petzval

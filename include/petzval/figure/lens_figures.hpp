@@ -70,6 +70,15 @@ PETZVAL_API std::string fan_figure(const Lens& lens, double subject_z, std::span
 /// @throws Error     if the field is not positive; also under the conditions of aim()
 PETZVAL_API std::string field_figure(const Lens& lens, double subject_z, double field_rad);
 
+/// Draws geometric MTF over frequency as SVG text: a colour for each field, tangential solid, sagittal dashed, with the
+/// diffraction limit of the axis at the primary wavelength.
+///
+/// @param lens       the lens
+/// @param subject_z  subject plane (lens frame, mm); -inf at infinity
+/// @param points     geometric_mtf() of this lens
+/// @throws Error     if there are no points
+PETZVAL_API std::string mtf_figure(const Lens& lens, double subject_z, std::span<const MtfPoint> points);
+
 /// Draws a spot diagram as SVG text: one row per field, with a column for all wavelengths and one per wavelength.
 ///
 /// All cells have the same scale, shown by a bar; +y is up. The origin of a row is the centroid of all its rays, so
