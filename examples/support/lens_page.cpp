@@ -166,6 +166,12 @@ std::vector<LensFigure> lens_figures(const Report& r, const petzval::Lens& colou
         "Where narrow beams are sharp, in both sections, and how far the image is from the projection. Two separate "
         "curves on the left are astigmatism.",
         petzval::field_figure(lens, subject_z, std::abs(farthest)));
+    if (const auto sums = report_seidel(r, colours)) {
+      add("seidel", "Seidel sums",
+          "Third-order aberrations and colour that each surface contributes, for the largest field. Long bars of both "
+          "signs that cancel make a lens sensitive to errors.",
+          petzval::seidel_figure(colours, subject_z, *sums));
+    }
     add("illumination", "Brightness",
         "Irradiance on the film from the centre to the edge of the field. Below cos\u2074 rims vignette; above it the "
         "pupil grows with the field, as in fisheyes and retrofocus lenses.",

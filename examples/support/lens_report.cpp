@@ -96,17 +96,21 @@ Json numbers(const MeridianReport& r) {
   return json;
 }
 
+petzval::ParaxialField largest_field(const ReportSubject& subject, const petzval::Lens& lens) {
+  petzval::ParaxialField field{.object_distance = lens.surfaces().front().vertex_z - subject_z(subject, lens)};
+  for (const double degrees : subject.fields.degrees) {
+    field.field_rad = std::max(field.field_rad, std::abs(petzval::radians(degrees)));
+  }
+  return field;
+}
+
 /// Seidel sums and paraxial rays of the largest field; null if paraxial_rays() or seidel_sums() throws Error.
 Json third_order(const Report& r, const petzval::Lens& lens) {
   Json json{
       {"seidel", nullptr}, {"seidel_sums", nullptr}, {"paraxial_rays", nullptr}, {"optical_invariant_mm", nullptr}};
   const ReportSubject& subject = r.subject;
-  petzval::ParaxialField field{.object_distance = lens.surfaces().front().vertex_z - subject_z(subject, lens)};
-  for (const double degrees : subject.fields.degrees) {
-    field.field_rad = std::max(field.field_rad, std::abs(petzval::radians(degrees)));
-  }
-  const auto [shortest, longest] =
-      std::minmax_element(subject.light.wavelengths_nm.begin(), subject.light.wavelengths_nm.end());
+  const petzval::ParaxialField field = largest_field(subject, lens);
+  const bool coloured = subject.light.wavelengths_nm.size() > 1;
   try {
     const auto rays = petzval::paraxial_rays(lens, field);
     json["paraxial_rays"] = Json::array();
@@ -119,9 +123,11 @@ Json third_order(const Report& r, const petzval::Lens& lens) {
                                        {"chief_u", pair.chief_u}});
     }
     json["optical_invariant_mm"] = rays.invariant;
-    const auto sums = petzval::seidel_sums(lens, field, {}, lens.wavelength(*shortest), lens.wavelength(*longest));
+    const auto found = report_seidel(r, lens);
+    if (!found) return json;
+    const petzval::SeidelSums& sums = *found;
     const auto terms = [&](Json row, const petzval::SeidelTerms& t) {
-      const auto colour = [&](double value) { return *shortest < *longest ? Json(value) : Json(nullptr); };
+      const auto colour = [&](double value) { return coloured ? Json(value) : Json(nullptr); };
       row.update({{"S1", t.s1}, {"S2", t.s2}, {"S3", t.s3}, {"S4", t.s4}, {"S5", t.s5}});
       row.update({{"C1", colour(t.c1)}, {"C2", colour(t.c2)}});
       return row;
@@ -194,6 +200,17 @@ Json exact_aberrations(const Report& r, const petzval::Lens& colours) {
 
 double subject_z(const ReportSubject& subject, const petzval::Lens& lens) {
   return petzval::origin_z(lens, subject.focus.distance_origin()) - subject.distance_mm;
+}
+
+std::optional<petzval::SeidelSums> report_seidel(const Report& r, const petzval::Lens& colours) {
+  const auto& nm = r.subject.light.wavelengths_nm;
+  const auto [shortest, longest] = std::minmax_element(nm.begin(), nm.end());
+  try {
+    return petzval::seidel_sums(colours, largest_field(r.subject, colours), {}, colours.wavelength(*shortest),
+                                colours.wavelength(*longest));
+  } catch (const petzval::Error&) {
+    return {};
+  }
 }
 
 std::vector<petzval::MtfPoint> report_mtf(const Report& r, const petzval::Lens& colours) {

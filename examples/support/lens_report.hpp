@@ -12,6 +12,7 @@
 #include "load_lens.hpp"
 #include "petzval/analysis/aberrations.hpp"
 #include "petzval/analysis/lint.hpp"
+#include "petzval/analysis/seidel.hpp"
 #include "petzval/paraxial/first_order.hpp"
 
 namespace examples {
@@ -66,6 +67,9 @@ std::string in_words(const ReportFields& fields);
 
 /// colours: the lens of the report at all wavelengths of its light, for the chromatic sums.
 Json to_json(const Report& report, const petzval::Lens& colours);
+/// Seidel sums for the largest field of the report, with colour from the shortest to the longest wavelength; nullopt if
+/// the lens has none. colours: as in to_json().
+std::optional<petzval::SeidelSums> report_seidel(const Report& report, const petzval::Lens& colours);
 /// Geometric MTF at the fields of the report, 0 to 100 line pairs per mm. colours: as in to_json().
 std::vector<petzval::MtfPoint> report_mtf(const Report& report, const petzval::Lens& colours);
 std::string to_text(const Report& report);

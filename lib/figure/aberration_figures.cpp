@@ -171,4 +171,53 @@ std::string mtf_figure(const Lens& lens, double subject_z, std::span<const MtfPo
   return std::move(svg).finish();
 }
 
+std::string seidel_figure(const Lens& lens, double subject_z, const SeidelSums& sums) {
+  if (sums.surfaces.size() != lens.surface_count()) {
+    throw Error("seidel_figure: sums of " + std::to_string(sums.surfaces.size()) + " surfaces; must be " +
+                std::to_string(lens.surface_count()) + ", as the lens has");
+  }
+  constexpr double width = 960, left = 78, top = 84, height = 230, step = 330;
+  struct Term {
+    double SeidelTerms::*value;
+    std::string_view name, colour;
+  };
+  constexpr std::array aberrations{
+      Term{&SeidelTerms::s1, "S1 spherical", "#1f5fc4"}, Term{&SeidelTerms::s2, "S2 coma", "#1a8f3c"},
+      Term{&SeidelTerms::s3, "S3 astigmatism", "#d0331f"}, Term{&SeidelTerms::s4, "S4 Petzval", "#b97a00"},
+      Term{&SeidelTerms::s5, "S5 distortion", "#7b3fb5"}};
+  constexpr std::array colours{Term{&SeidelTerms::c1, "C1 axial colour", "#00858f"},
+                               Term{&SeidelTerms::c2, "C2 lateral colour", "#8a4b2a"}};
+  figure_detail::Svg svg(width, top + 2 * step);
+  figure_detail::draw_head(svg, lens, "Seidel and chromatic sums", subject_z, lens.primary_wavelength());
+  const double places = static_cast<double>(sums.surfaces.size() + 2);  // a gap, then the sums
+  const auto draw = [&](double y, std::span<const Term> terms) {
+    double largest = 0;
+    const auto each = [&](const auto& body) {
+      for (std::size_t i = 0; i < sums.surfaces.size(); ++i) body(static_cast<double>(i), sums.surfaces[i]);
+      body(places - 1, sums.sums);
+    };
+    each([&](double, const SeidelTerms& at) {
+      for (const Term& term : terms) largest = std::max(largest, std::abs(at.*term.value));
+    });
+    const double range = round_range(1000 * largest, 1e-6);
+    Axes axes(svg, left, y, width - left - 24, height,
+              {-0.5, places - 0.5, "surface, from 0; the last bars are the sums"}, {-range, range, "\u00b5m"});
+    each([&](double place, const SeidelTerms& at) {
+      const double bar = 0.8 / static_cast<double>(terms.size());
+      for (std::size_t k = 0; k < terms.size(); ++k) {
+        const double begin = place - 0.4 + bar * static_cast<double>(k), value = 1000 * (at.*terms[k].value);
+        const double low = axes.y(std::min(value, 0.0)), high = axes.y(std::max(value, 0.0));
+        svg.rect(axes.x(begin), high, axes.x(begin + bar) - axes.x(begin), low - high,
+                 "fill=\"" + std::string(terms[k].colour) + "\"");
+      }
+    });
+    axes.curve(std::array{Axes::Point{-0.5, 0}, Axes::Point{places - 0.5, 0}}, stroke("#444"));
+    double x = left;
+    for (const Term& term : terms) x = 24 + figure_detail::draw_key(svg, x, y + height + 58, term.colour, term.name);
+  };
+  draw(top, aberrations);
+  draw(top + step, colours);
+  return std::move(svg).finish();
+}
+
 }  // namespace petzval

@@ -36,14 +36,16 @@ FilmPupilTable::Derivatives motion_of_middle(const PolygonGrid<1, double>& grid,
 }
 FilmPupilTable::Derivatives motion_of_middle(const PolygonGrid<2, double>& grid, const FilmPoint& film,
                                              std::int32_t wavelength) noexcept {
-  const auto [at, polygon] = find(grid, film, wavelength);
+  const auto found = find(grid, film, wavelength);
+  const CellPosition<double>& at = found.first;
+  const std::int32_t begin = found.second.begin;
   const std::int32_t row = at.cell / grid.columns % grid.rows, column = at.cell % grid.columns;
   const double* const half = grid.half_widths + row;
   const double change = half[1] - half[0], width = half[0] + at.s * change, columns = grid.columns;
   const double t_by_x = width > 0 ? columns / width : 0;
   const double t_by_y = width > 0 ? -(column + at.t) * change * grid.rows_per_mm / width : 0;
   const auto by = [&](std::int32_t axis) {
-    const double* const value = grid.cells + polygon.begin + CellLayout<2>::middle + 4 * axis;
+    const double* const value = grid.cells + begin + CellLayout<2>::middle + 4 * axis;
     const double by_t = value[1] + at.s * value[3], by_s = value[2] + at.t * value[3];
     return Vec2<double>{by_t * t_by_x, by_s * grid.rows_per_mm + by_t * t_by_y};
   };

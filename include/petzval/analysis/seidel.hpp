@@ -81,7 +81,7 @@ struct SeidelSums {
 ///                    if the lens has no index at a wavelength
 ///
 /// Accuracy: sums equal limits of exact rays within 1e-4, and closed forms within 1e-9
-/// (tests/analysis/seidel_test.cpp). Limitations: aspheric terms of order 3 have no third-order sums and are ignored.
+/// (tests/analysis/seidel_test.cpp).
 PETZVAL_API SeidelSums seidel_sums(const Lens& lens, const ParaxialField& field = {}, Wavelength wavelength = {},
                                    Wavelength shorter = {}, Wavelength longer = {});
 

@@ -7,6 +7,7 @@
 #include <string_view>
 
 #include "petzval/analysis/aberrations.hpp"
+#include "petzval/analysis/seidel.hpp"
 #include "petzval/analysis/spot.hpp"
 #include "petzval/core/config.hpp"
 #include "petzval/lens/lens.hpp"
@@ -78,6 +79,14 @@ PETZVAL_API std::string field_figure(const Lens& lens, double subject_z, double 
 /// @param points     geometric_mtf() of this lens
 /// @throws Error     if there are no points
 PETZVAL_API std::string mtf_figure(const Lens& lens, double subject_z, std::span<const MtfPoint> points);
+
+/// Draws Seidel sums as SVG text: bars of S1 to S5 and of C1 and C2 for each surface, and their sums on the right.
+///
+/// @param lens       the lens
+/// @param subject_z  subject plane (lens frame, mm); -inf at infinity
+/// @param sums       seidel_sums() of this lens
+/// @throws Error     if the sums have another number of surfaces than the lens
+PETZVAL_API std::string seidel_figure(const Lens& lens, double subject_z, const SeidelSums& sums);
 
 /// Draws a spot diagram as SVG text: one row per field, with a column for all wavelengths and one per wavelength.
 ///
