@@ -101,8 +101,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
         const std::vector<float> table = camera_table(camera);
         for (const float number : table) fuzz::require(!std::isnan(number), "tables contain no NaN");
         const float nm = table[static_cast<std::size_t>(table[PZ_WAVELENGTHS])];
-        const pz_point film = pz_film_point(table.data(), 0.3f * table[PZ_COLUMNS], 0.6f * table[PZ_ROWS]);
-        const pz_ray ray = pz_sample(table.data(), film.x, film.y, 0.2f, 0.7f, nm);
+        const pz_point at = pz_film_point(table.data(), 0.3f * table[PZ_COLUMNS], 0.6f * table[PZ_ROWS]);
+        const pz_ray ray = pz_sample(table.data(), at.x, at.y, 0.2f, 0.7f, nm);
         const float sum = ray.origin.x + ray.origin.y + ray.origin.z + ray.direction.x + ray.direction.z + ray.weight;
         fuzz::require(ray.fate != 0 || std::isfinite(sum), "a ray of petzval_camera.h is finite");
         const pz_connection c = pz_connect(table.data(), {100, 50, -2000}, 0.2f, 0.7f, nm);
