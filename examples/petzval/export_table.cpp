@@ -5,6 +5,7 @@
 #include <bit>
 #include <cstdint>
 #include <cstdio>
+#include <sstream>
 #include <string_view>
 
 #include "petzval/core/error.hpp"
@@ -14,67 +15,16 @@
 namespace commands {
 namespace {
 
-/// The names of the positions at the head of a table, as in petzval_camera.h.
-constexpr std::array<std::string_view, PZ_HEAD> positions{"format",
-                                                          "size",
-                                                          "rays",
-                                                          "wavelength_count",
-                                                          "primary",
-                                                          "wavelengths",
-                                                          "shortest",
-                                                          "longest",
-                                                          "t_scale",
-                                                          "t_offset",
-                                                          "number_count",
-                                                          "numbers",
-                                                          "powers",
-                                                          "film_z",
-                                                          "pupil_z",
-                                                          "film_x",
-                                                          "film_y",
-                                                          "film_width",
-                                                          "film_height",
-                                                          "margin",
-                                                          "columns",
-                                                          "rows",
-                                                          "front_z",
-                                                          "front_curvature",
-                                                          "front_first",
-                                                          "surface_count",
-                                                          "surfaces",
-                                                          "mirrors",
-                                                          "edges",
-                                                          "blades",
-                                                          "iris_area",
-                                                          "iris",
-                                                          "pupil_dimensions",
-                                                          "reach",
-                                                          "pupil_rows",
-                                                          "pupil_columns",
-                                                          "rows_per_mm",
-                                                          "half_widths",
-                                                          "cells",
-                                                          "cell_size",
-                                                          "obscured",
-                                                          "corrections",
-                                                          "stops",
-                                                          "stop_size",
-                                                          "terms",
-                                                          "degree",
-                                                          "domain_film",
-                                                          "domain_shift_x",
-                                                          "domain_radius_x",
-                                                          "domain_shift_y",
-                                                          "domain_radius_y",
-                                                          "reference_z",
-                                                          "scene_dimensions",
-                                                          "centre_z",
-                                                          "steepest",
-                                                          "front_half",
-                                                          "nodes",
-                                                          "node_size",
-                                                          "widest",
-                                                          "balls"};
+/// The names of the positions 0 to PZ_HEAD - 1, as in petzval_camera.h (tests/hosts/camera_table_test.py compares
+/// them).
+constexpr std::string_view positions =
+    "format size rays wavelength_count primary wavelengths shortest longest t_scale t_offset "
+    "number_count numbers powers film_z pupil_z film_x film_y film_width film_height margin columns rows "
+    "front_z front_curvature front_first surface_count surfaces mirrors edges blades iris_area iris "
+    "pupil_dimensions reach pupil_rows pupil_columns rows_per_mm half_widths cells cell_size obscured "
+    "corrections stops stop_size terms degree domain_film domain_shift_x domain_radius_x domain_shift_y "
+    "domain_radius_y reference_z scene_dimensions centre_z steepest front_half nodes node_size widest "
+    "balls";
 
 /// A float with nine digits, which is read back as the same float.
 std::string text_of(float value) {
@@ -109,7 +59,9 @@ std::string as_bytes(const std::vector<float>& table) {
 
 std::string as_json(const std::vector<float>& table, const std::string& title) {
   examples::Json names = examples::Json::object();
-  for (std::size_t i = 0; i < positions.size(); ++i) names[std::string(positions[i])] = i;
+  std::istringstream words{std::string(positions)};
+  std::string name;
+  for (std::size_t i = 0; words >> name; ++i) names[name] = i;
   std::string text =
       "{\"title\": " + examples::Json(title).dump() + ",\n\"positions\": " + names.dump() + ",\n\"table\": [";
   for (std::size_t i = 0; i < table.size(); ++i) text += (i == 0 ? "" : i % 16 == 0 ? ",\n" : ", ") + text_of(table[i]);

@@ -22,6 +22,7 @@ namespace {
 
 using examples::Json;
 using examples::number;
+using examples::or_null;
 using petzval::Prescription;
 
 std::string lower(std::string text) {
@@ -66,7 +67,6 @@ int commands::lenses(int argc, char** argv) {
     for (const Prescription& lens : shipped_lenses()) {
       if (!contains_all(lens, words)) continue;
       ++found;
-      const auto or_null = [](const std::optional<double>& value) { return value ? Json(*value) : Json(); };
       if (json) {
         rows.push_back({{"id", lens.id},
                         {"name", lens.name},

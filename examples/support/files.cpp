@@ -20,6 +20,7 @@ namespace {
 }  // namespace
 
 Json finite_or_null(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
+Json or_null(const std::optional<double>& value) { return value ? Json(*value) : Json(nullptr); }
 
 void Output::add(App& app) {
   app.add_flag("--json", json, "print the JSON report instead of the paths, which go to standard error");

@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <filesystem>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -14,6 +15,8 @@ using Json = nlohmann::ordered_json;
 
 /// The value, or null if it is not finite: JSON has no infinity.
 Json finite_or_null(double value);
+/// The value, or null.
+Json or_null(const std::optional<double>& value);
 
 class App;
 

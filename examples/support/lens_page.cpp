@@ -146,8 +146,7 @@ std::vector<LensFigure> lens_figures(const Report& r, const petzval::Lens& colou
       petzval::spot_figure(colours, petzval::spot_diagram(colours, subject_z, fields), weights));
   add("fans", "Ray fans",
       "Errors of the rays through the two sections of the stop. A tilted line is defocus, an S is spherical "
-      "aberration, "
-      "a parabola is coma; distances between the curves are lateral colour.",
+      "aberration, a parabola is coma; distances between the curves are lateral colour.",
       petzval::fan_figure(colours, subject_z, petzval::ray_fans(colours, subject_z, fields)));
   add("footprints", "Pupils",
       "The vignetted pupil of each field point. The more of the dashed circle is missing, the darker the corner. "

@@ -143,9 +143,6 @@ Json third_order(const Report& r, const petzval::Lens& lens) {
   return json;
 }
 
-/// The value, or null.
-Json or_null(const std::optional<double>& value) { return value ? Json(*value) : Json(nullptr); }
-
 /// Fans, field curvature and distortion at the fields of the report; null if no ray can be aimed.
 Json exact_aberrations(const Report& r, const petzval::Lens& colours) {
   Json json{{"ray_fans", nullptr}, {"field_curvature", nullptr}, {"distortion_percent", nullptr}, {"mtf", nullptr}};

@@ -338,6 +338,21 @@ PZ_FN float pz_fraction_within(pz_sector s, float squared) {
   float past = squared - s.dark > s.dark_from ? squared - s.dark : s.dark_from, left = 1.0f - s.dark;
   return (squared < s.dark_from ? squared : past) / (left > 0.0f ? left : 1.0f);
 }
+/* The squared relative radius of a point in the direction of a sector: 0 in the middle, 1 at the edge; -1: the point
+ * lies in another direction. */
+PZ_FN float pz_squared_at(pz_sector s, pz_point q) {
+  float behind = pz_turn(s.a, q), before = pz_turn(q, s.b), whole = pz_turn(s.a, s.b);
+  float radius = (behind + before) / (whole > 0.0f ? whole : 1.0f);
+  return behind >= 0.0f && before >= 0.0f && whole > 0.0f ? radius * radius : -1.0f;
+}
+PZ_FN PZ_BOOL pz_is_dark(pz_sector s, float squared) {
+  return squared >= s.dark_from && squared < s.dark_from + s.dark;
+}
+/* True if a corner comes before the direction of q in the order of corners, which begins at the first corner. */
+PZ_FN PZ_BOOL pz_comes_before(pz_point first, pz_point corner, pz_point q) {
+  PZ_BOOL half_q = pz_turn(first, q) < 0.0f, half_corner = pz_turn(first, corner) < 0.0f;
+  return half_corner == half_q ? pz_turn(corner, q) >= 0.0f : !half_corner;
+}
 /* The point of the outer edge at a fraction from a to b. */
 PZ_FN pz_point pz_on_edge(pz_sector s, float along) {
   return pz_xy(s.a.x + along * (s.b.x - s.a.x), s.a.y + along * (s.b.y - s.a.y));
@@ -604,8 +619,8 @@ PZ_FN pz_pupil_sample pz_sample_pupil(PZ_T pz_cell c, float u, float v) {
 }
 /* The area that the sample at a point of the pupil plane represents; 0: no sample has this position. */
 PZ_FN float pz_area_at(PZ_T pz_cell c, float x, float y) {
-  PZ_BOOL bladed = PZ_AT(PZ_STOP_SIZE) != 0.0f, half_q;
-  pz_point q, first, middle = pz_middle(PZ_P c), interval = pz_xy(0.0f, 1.0f);
+  PZ_BOOL bladed = PZ_AT(PZ_STOP_SIZE) != 0.0f;
+  pz_point q, middle = pz_middle(PZ_P c), interval = pz_xy(0.0f, 1.0f);
   int k = 0;
   if (!c.known) return 0.0f;
   q = pz_to_grid(c, pz_xy(x, y));
@@ -629,25 +644,20 @@ PZ_FN float pz_area_at(PZ_T pz_cell c, float x, float y) {
     return PZ_AT(PZ_IRIS_AREA) * scale * scale * area;
   }
   q = pz_xy(q.x - middle.x, q.y - middle.y);
-  first = pz_corner(PZ_P c, 0);
-  half_q = pz_turn(first, q) < 0.0f;
+  pz_point first = pz_corner(PZ_P c, 0);
   for (int step = 32; step > 0; step /= 2) {
-    pz_point corner = pz_corner(PZ_P c, k + step);
-    PZ_BOOL half_corner = pz_turn(first, corner) < 0.0f;
-    if (half_corner == half_q ? pz_turn(corner, q) >= 0.0f : !half_corner) k += step;
+    if (pz_comes_before(first, pz_corner(PZ_P c, k + step), q)) k += step;
   }
   pz_sector own = pz_sector_of(PZ_P c, k);
-  float behind = pz_turn(own.a, q), before = pz_turn(q, own.b), whole = pz_turn(own.a, own.b);
-  if (!(behind >= 0.0f && before >= 0.0f && whole > 0.0f)) return 0.0f;
-  float squared = (behind + before) / whole;
-  squared *= squared;
+  float squared = pz_squared_at(own, q);
+  if (!(squared >= 0.0f)) return 0.0f;
   if (bladed) {
+    float behind = pz_turn(own.a, q), before = pz_turn(q, own.b);
     float along = behind + before > 0.0f ? behind / (behind + before) : 0.0f;
     interval = pz_clip(PZ_P c, k, along, pz_on_edge(own, along));
   }
   interval = pz_xy(interval.x * interval.x, interval.y * interval.y);
-  if (!(squared <= interval.y && squared >= interval.x)) return 0.0f;
-  if (squared >= own.dark_from && squared < own.dark_from + own.dark) return 0.0f;
+  if (!(squared <= interval.y && squared >= interval.x) || pz_is_dark(own, squared)) return 0.0f;
   float fraction = bladed ? pz_fraction_within(own, interval.y) - pz_fraction_within(own, interval.x) : 1.0f;
   return pz_whole_area(PZ_P c) * fraction;
 }
@@ -1016,10 +1026,10 @@ PZ_FN pz_beam pz_leave(PZ_T pz_start s, PZ_BOOL follow) {
   pz_beam b;
   pz_point pupil = s.pupil.at;
   float depth = PZ_AT(PZ_PUPIL_Z) - PZ_AT(PZ_FILM_Z), sign, per, x, y;
-  pz_seen motion = pz_motion(PZ_P s);
   if (PZ_AT(PZ_RAYS) == 1.0f) {
     b = pz_by_polynomial(PZ_P s.light.nearest, s.film, pupil);
     if (follow) { /* central differences */
+      pz_seen motion = pz_motion(PZ_P s);
       float h = 0.004f * PZ_AT(PZ_DOMAIN_FILM);
       for (int axis = 0; axis < 2; ++axis) {
         pz_point df = axis == 0 ? pz_xy(h, 0.0f) : pz_xy(0.0f, h), dp = axis == 0 ? motion.by_x : motion.by_y;
@@ -1045,6 +1055,7 @@ PZ_FN pz_beam pz_leave(PZ_T pz_start s, PZ_BOOL follow) {
   b.at = pz_xyz(pupil.x, pupil.y, PZ_AT(PZ_PUPIL_Z));
   b.p = pz_xyz(x * per, y * per, depth * per);
   if (follow) { /* of pupil - film, less its part along the ray */
+    pz_seen motion = pz_motion(PZ_P s);
     b.by_x.at = pz_xyz(motion.by_x.x, motion.by_x.y, 0.0f);
     b.by_y.at = pz_xyz(motion.by_y.x, motion.by_y.y, 0.0f);
     b.by_x.p = pz_xyz((motion.by_x.x - 1.0f) * per, motion.by_x.y * per, 0.0f);
@@ -1056,7 +1067,8 @@ PZ_FN pz_beam pz_leave(PZ_T pz_start s, PZ_BOOL follow) {
   }
   return pz_trace(PZ_P b, s.light, PZ_FALSE, PZ_TRUE, follow);
 }
-PZ_FN pz_ray pz_weighed(PZ_T pz_start s, pz_beam b) {
+/* The camera ray of a start and its beam: with weight, and from the front of the lens. */
+PZ_FN pz_ray pz_ray_of(PZ_T pz_start s, pz_beam b) {
   pz_ray ray = pz_lost(b.fate);
   float depth = PZ_AT(PZ_PUPIL_Z) - PZ_AT(PZ_FILM_Z), x, y, factor;
   ray.pdf_pupil = 1.0f / s.pupil.area;
@@ -1067,27 +1079,28 @@ PZ_FN pz_ray pz_weighed(PZ_T pz_start s, pz_beam b) {
   ray.origin = b.at;
   ray.direction = b.p;
   ray.weight = pz_number(PZ_P s.light, 0) * s.pupil.area * factor * factor;
+  if (PZ_AT(PZ_RAYS) == 1.0f || PZ_AT(PZ_FRONT_FIRST) == 0.0f) {
+    ray.origin = pz_along(ray.origin, pz_to_front(PZ_P ray.origin, ray.direction), ray.direction);
+  }
   return ray;
 }
 /* A camera ray from a film point (mm), a pupil sample (u, v from 0 to 1) and a wavelength (nm). */
 PZ_FN pz_ray pz_sample(PZ_T float film_x, float film_y, float u, float v, float nm) {
   pz_start s = pz_start_of(PZ_P film_x, film_y, u, v, nm);
   if (s.fate != 0) return pz_lost(s.fate);
-  pz_ray ray = pz_weighed(PZ_P s, pz_leave(PZ_P s, PZ_FALSE));
-  if (ray.fate == 0 && (PZ_AT(PZ_RAYS) == 1.0f || PZ_AT(PZ_FRONT_FIRST) == 0.0f)) {
-    ray.origin = pz_along(ray.origin, pz_to_front(PZ_P ray.origin, ray.direction), ray.direction);
-  }
-  return ray;
+  return pz_ray_of(PZ_P s, pz_leave(PZ_P s, PZ_FALSE));
 }
 /* The same ray with its derivatives by the film point, for texture filters. The offset of the pupil point from the
  * middle of the pupil is constant. */
 PZ_FN pz_ray_differential pz_sample_differential(PZ_T float film_x, float film_y, float u, float v, float nm) {
   pz_start s = pz_start_of(PZ_P film_x, film_y, u, v, nm);
   pz_ray_differential result;
-  result.ray = pz_sample(PZ_P film_x, film_y, u, v, nm);
+  result.ray = pz_lost(s.fate);
   result.origin_by_x = result.direction_by_x = result.origin_by_y = result.direction_by_y = pz_xyz(0.0f, 0.0f, 0.0f);
-  if (result.ray.fate != 0) return result;
+  if (s.fate != 0) return result;
   pz_beam b = pz_leave(PZ_P s, PZ_TRUE);
+  result.ray = pz_ray_of(PZ_P s, b);
+  if (b.fate != 0) return result;
   /* rays that graze a surface have no finite derivatives */
   if (!pz_finite(pz_dot(b.by_x.p, b.by_x.p) + pz_dot(b.by_y.p, b.by_y.p))) return result;
   result.direction_by_x = b.by_x.p;
@@ -1402,18 +1415,12 @@ PZ_FN float pz_pdf(PZ_T pz_vector from, pz_vector direction, float nm) {
   pz_point middle = pz_node_point(PZ_P s, 0);
   q = pz_xy(q.x - middle.x, q.y - middle.y);
   pz_point first = pz_node_point(PZ_P s, 2);
-  PZ_BOOL half_q = pz_turn(first, q) < 0.0f;
   for (int step = 32; step > 0; step /= 2) {
-    pz_point corner = pz_node_point(PZ_P s, 2 + 2 * (k + step));
-    PZ_BOOL half_corner = pz_turn(first, corner) < 0.0f;
-    if (half_corner == half_q ? pz_turn(corner, q) >= 0.0f : !half_corner) k += step;
+    if (pz_comes_before(first, pz_node_point(PZ_P s, 2 + 2 * (k + step)), q)) k += step;
   }
   pz_sector own = pz_scene_sector(PZ_P s, k);
-  float behind = pz_turn(own.a, q), before = pz_turn(q, own.b), whole = pz_turn(own.a, own.b);
-  if (!(behind >= 0.0f && before >= 0.0f && whole > 0.0f)) return 0.0f;
-  float squared = (behind + before) / whole;
-  squared *= squared;
-  if (squared > 1.0f || (squared >= own.dark_from && squared < own.dark_from + own.dark)) return 0.0f;
+  float squared = pz_squared_at(own, q);
+  if (!(squared >= 0.0f && squared <= 1.0f) || pz_is_dark(own, squared)) return 0.0f;
   return s.distance / pz_sector_area(own) * s.distance / (cosine * cosine * cosine);
 }
 

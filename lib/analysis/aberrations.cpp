@@ -7,22 +7,21 @@
 #include <numbers>
 #include <string>
 
+#include "core/meet_plane.hpp"
 #include "petzval/core/error.hpp"
 #include "petzval/core/parallel.hpp"
 #include "petzval/pupil/aim.hpp"
+#include "points.hpp"
 
 namespace petzval {
 namespace {
 
-/// A ray behind the lens at the film: position and slopes.
-struct FilmRay {
-  double x, y, slope_x, slope_y;
-};
+using FilmRay = core_detail::SlopeRay<double>;
+
+/// The ray behind the lens, at the film.
 std::optional<FilmRay> at_film(const Lens& lens, const AimedRay& aimed) {
-  const auto& [o, d] = aimed.end.ray;
-  if (!aimed || !aimed.end.transmitted() || d.z == 0) return {};
-  const double slope_x = d.x / d.z, slope_y = d.y / d.z, distance = lens.film_z() - o.z;
-  const FilmRay ray{o.x + distance * slope_x, o.y + distance * slope_y, slope_x, slope_y};
+  if (!aimed || !aimed.end.transmitted()) return {};
+  const FilmRay ray = core_detail::slope_ray(aimed.end.ray, lens.film_z());
   if (!std::isfinite(ray.x + ray.y)) return {};
   return ray;
 }
@@ -42,7 +41,7 @@ std::vector<RayFan> ray_fans(const Lens& lens, double subject_z, std::span<const
   std::vector<RayFan> fans;
   for (const double field : fields_rad) {
     const FieldPoint point{.field_rad = field, .z = subject_z};
-    const auto chief = at_film(lens, chief_ray(lens, point));
+    const auto chief = analysis_detail::chief_point(lens, point, lens.primary_wavelength());
     for (std::size_t w = 0; w < lens.wavelengths_nm().size(); ++w) {
       RayFan& fan = fans.emplace_back(RayFan{field, w, {}});
       const auto ray = [&](const Vec2<double>& target) -> std::optional<FilmRay> {
@@ -80,9 +79,10 @@ std::vector<FieldFocus> field_curvature(const Lens& lens, double subject_z, std:
 std::vector<FieldDistortion> distortion_percent(const Lens& lens, double subject_z, std::span<const double> fields_rad,
                                                 Wavelength wavelength) {
   const auto height = [&](double field) -> std::optional<double> {
-    const auto ray = at_film(lens, chief_ray(lens, {.field_rad = field, .z = subject_z}, wavelength));
-    if (!ray) return {};
-    return ray->y;
+    const FieldPoint point{.field_rad = field, .z = subject_z};
+    const auto hit = analysis_detail::chief_point(lens, point, wavelength.position(lens.primary_wavelength()));
+    if (!hit) return {};
+    return hit->y;
   };
   constexpr double small = 1e-4;  // rad; the ratio differs by 1e-8 from its limit
   const auto near_axis = height(small);

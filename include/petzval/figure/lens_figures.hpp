@@ -59,7 +59,7 @@ PETZVAL_API std::string illumination_figure(const Lens& lens, double subject_z, 
 /// @param lens       the lens
 /// @param subject_z  subject plane (lens frame, mm); -inf at infinity
 /// @param fans       ray_fans() of this lens
-/// @throws Error     if there are no fans, or not one for each field and wavelength
+/// @throws Error     if there are no fans, or their number is not a multiple of the number of wavelengths
 PETZVAL_API std::string fan_figure(const Lens& lens, double subject_z, std::span<const RayFan> fans);
 
 /// Draws field_curvature() and distortion_percent() against field angle at the primary wavelength as SVG text.
