@@ -12,6 +12,7 @@
 #include "petzval/analysis/seidel.hpp"
 #include "petzval/core/error.hpp"
 #include "petzval/core/geometry.hpp"
+#include "petzval/core/parallel.hpp"
 #include "petzval/pupil/f_number.hpp"
 #include "text.hpp"
 
@@ -143,9 +144,35 @@ Json third_order(const Report& r, const petzval::Lens& lens) {
   return json;
 }
 
-/// Fans, field curvature and distortion at the fields of the report; null if no ray can be aimed.
+/// Wavefront errors at the fields and wavelengths of the report.
+Json wavefronts(const Report& r, const petzval::Lens& colours) {
+  Json json = Json::array();
+  const std::size_t count = colours.wavelengths_nm().size();
+  const auto fronts = report_wavefronts(r, colours);
+  for (std::size_t k = 0; k < fronts.size(); ++k) {
+    Json one{{"field_deg", r.subject.fields.degrees[k / count]},
+             {"wavelength_nm", colours.wavelengths_nm()[k % count]}};
+    const auto& front = fronts[k];
+    const auto value = [&](double petzval::Wavefront::*member) { return front ? Json((*front).*member) : Json(); };
+    one["rms_waves"] = value(&petzval::Wavefront::rms_waves);
+    one["rms_without_tilt_waves"] = value(&petzval::Wavefront::rms_without_tilt);
+    one["peak_to_valley_waves"] = value(&petzval::Wavefront::peak_to_valley_waves);
+    one["strehl"] = value(&petzval::Wavefront::strehl);
+    one["zernike_fringe"] = front ? Json(front->zernike) : Json();
+    one["zernike_residual_waves"] = value(&petzval::Wavefront::zernike_residual_waves);
+    one["sampling_error_waves"] = value(&petzval::Wavefront::sampling_error_waves);
+    json.push_back(std::move(one));
+  }
+  return json;
+}
+
+/// Fans, field curvature, distortion and wavefronts at the fields of the report; null if no ray can be aimed.
 Json exact_aberrations(const Report& r, const petzval::Lens& colours) {
-  Json json{{"ray_fans", nullptr}, {"field_curvature", nullptr}, {"distortion_percent", nullptr}, {"mtf", nullptr}};
+  Json json{{"ray_fans", nullptr},
+            {"field_curvature", nullptr},
+            {"distortion_percent", nullptr},
+            {"mtf", nullptr},
+            {"wavefront", nullptr}};
   const double z = subject_z(r.subject, colours);
   std::vector<double> fields;
   for (const double degrees : r.subject.fields.degrees) fields.push_back(petzval::radians(degrees));
@@ -186,7 +213,11 @@ Json exact_aberrations(const Report& r, const petzval::Lens& colours) {
                      {"sagittal", point.sagittal},
                      {"diffraction_limit", limit}});
     }
-    json = {{"ray_fans", fans}, {"field_curvature", foci}, {"distortion_percent", distortion}, {"mtf", mtf}};
+    json = {{"ray_fans", fans},
+            {"field_curvature", foci},
+            {"distortion_percent", distortion},
+            {"mtf", mtf},
+            {"wavefront", wavefronts(r, colours)}};
   } catch (const petzval::Error&) {
     // All values stay null.
   }
@@ -208,6 +239,17 @@ std::optional<petzval::SeidelSums> report_seidel(const Report& r, const petzval:
   } catch (const petzval::Error&) {
     return {};
   }
+}
+
+std::vector<std::optional<petzval::Wavefront>> report_wavefronts(const Report& r, const petzval::Lens& colours) {
+  const std::size_t count = colours.wavelengths_nm().size();
+  std::vector<std::optional<petzval::Wavefront>> result(r.subject.fields.degrees.size() * count);
+  const double z = subject_z(r.subject, colours);
+  petzval::parallel_for(result.size(), 1, examples::threads(), [&](std::size_t k, std::size_t) {
+    const petzval::FieldPoint point{.field_rad = petzval::radians(r.subject.fields.degrees[k / count]), .z = z};
+    result[k] = petzval::wavefront(colours, point, {.wavelength = k % count});
+  });
+  return result;
 }
 
 std::vector<petzval::MtfPoint> report_mtf(const Report& r, const petzval::Lens& colours) {

@@ -13,6 +13,7 @@
 #include "petzval/analysis/aberrations.hpp"
 #include "petzval/analysis/lint.hpp"
 #include "petzval/analysis/seidel.hpp"
+#include "petzval/analysis/wavefront.hpp"
 #include "petzval/paraxial/first_order.hpp"
 
 namespace examples {
@@ -64,6 +65,11 @@ std::string in_words(const ReportSubject& subject);
 /// "486.133 nm (weight 1), ..." and "0, 14, 20 degrees".
 std::string in_words(const ReportLight& light);
 std::string in_words(const ReportFields& fields);
+
+/// Wavefront errors of each field and wavelength, ordered by field; nullopt if no ray passes. colours: as in to_json().
+///
+/// @throws petzval::Error under the conditions of petzval::wavefront()
+std::vector<std::optional<petzval::Wavefront>> report_wavefronts(const Report& r, const petzval::Lens& colours);
 
 /// colours: the lens of the report at all wavelengths of its light, for the chromatic sums.
 Json to_json(const Report& report, const petzval::Lens& colours);

@@ -24,6 +24,9 @@ SpotSize spot_size(std::span<const Points> sets) noexcept;
 /// Film position of the chief ray of a point, mm, not clipped by apertures. nullopt if no such ray reaches the film.
 std::optional<Vec2<double>> chief_point(const Lens& lens, const FieldPoint& point, std::size_t wavelength);
 
+/// Area of the paraxial entrance pupil at the primary wavelength, mm^2; an ellipse for cylindrical lenses.
+double entrance_pupil_area(const Lens& lens);
+
 }  // namespace petzval::analysis_detail
 
 namespace petzval {

@@ -238,13 +238,6 @@ double brightest(const SendRays& send, std::size_t wavelengths) {
   return result > 0 ? result : 1;
 }
 
-double entrance_pupil_area(const Lens& lens) {
-  const auto diameter = [&](Meridian section) {
-    return pupils(lens, lens.primary_wavelength(), section).entrance.diameter;
-  };
-  return std::numbers::pi / 4 * diameter(Meridian::x) * diameter(Meridian::y);
-}
-
 /// Indices of the wavelengths of an image.
 std::vector<std::size_t> wavelengths_of(const Lens& lens, const PsfOptions& options) {
   if (options.wavelength) return {lens.compiled_position(*options.wavelength)};
@@ -260,7 +253,7 @@ PointImage image_of(const Lens& lens, const std::vector<double>& sampled_area, c
   PointImage image;
   Psf& psf = image.psf;
   for (const std::size_t w : wavelengths_of(lens, options)) psf.wavelengths_nm.push_back(lens.wavelengths_nm()[w]);
-  psf.entrance_pupil_area = entrance_pupil_area(lens);
+  psf.entrance_pupil_area = analysis_detail::entrance_pupil_area(lens);
   psf.sampled_area = sampled_area;
   constexpr std::uint32_t first_samples = 1u << 14;
   Rays rays;
@@ -291,6 +284,13 @@ PointImage image_of(const Lens& lens, const std::vector<double>& sampled_area, c
 }
 
 }  // namespace
+
+double analysis_detail::entrance_pupil_area(const Lens& lens) {
+  const auto diameter = [&](Meridian section) {
+    return pupils(lens, lens.primary_wavelength(), section).entrance.diameter;
+  };
+  return std::numbers::pi / 4 * diameter(Meridian::x) * diameter(Meridian::y);
+}
 
 double Psf::ray_weight(std::size_t wavelength) const noexcept {
   if (wavelength >= std::min(sent.size(), sampled_area.size())) return 0;
@@ -324,7 +324,7 @@ PointImage point_image(const Camera& camera, const FieldPoint& point, const PsfO
   if (camera.normalisation() != Normalisation::irradiance) {
     throw Error(lens.name() + ": point_image: the camera's weights are relative; must be Normalisation::irradiance");
   }
-  double area = entrance_pupil_area(lens);
+  double area = analysis_detail::entrance_pupil_area(lens);
   if (!std::isfinite(area)) throw Error(lens.name() + ": point_image: the entrance pupil is infinite; must be finite");
   const std::vector<std::size_t> wavelengths = wavelengths_of(lens, options);
   const auto send = [&](std::size_t w, std::uint32_t first, std::uint32_t count) {

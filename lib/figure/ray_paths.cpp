@@ -79,9 +79,10 @@ std::vector<RayPath> ray_paths(const Lens& lens, double subject_z, std::span<con
       const AimedRay aimed = fan.at(height);
       if (!aimed) continue;
       RayPath path{field, height, {}, seen(aimed.ray.direction), {}, RayFate::transmitted};
-      const auto end = kernel::trace(kernel::view<double>(lens), kernel::to_kernel(aimed.ray.origin),
-                                     kernel::to_kernel(aimed.ray.direction), {.wavelength = wavelength},
-                                     [&](int, const kernel::Vec<double>& hit) { path.hits.push_back(seen(hit)); });
+      const auto end = kernel::trace(
+          kernel::view<double>(lens), kernel::to_kernel(aimed.ray.origin), kernel::to_kernel(aimed.ray.direction),
+          {.wavelength = wavelength},
+          [&](int, const kernel::Vec<double>& hit, const kernel::Vec<double>&) { path.hits.push_back(seen(hit)); });
       path.behind = seen(end.direction);
       path.fate = end.fate;
       const bool misses_lens = end.fate != RayFate::transmitted && path.hits.size() < 2;

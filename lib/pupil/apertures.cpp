@@ -36,7 +36,8 @@ double object_z(const Prescription& rows) {
 void for_heights(const Lens& lens, const Ray<double>& ray, const auto& take) {
   const auto vector = [](const Vec3<double>& v) { return kernel::Vec<double>{v.x, v.y, v.z}; };
   kernel::trace(kernel::view<double>(lens), vector(ray.origin), vector(ray.direction),
-                {.wavelength = lens.primary_wavelength()}, [&](int surface, const kernel::Vec<double>& hit) {
+                {.wavelength = lens.primary_wavelength()},
+                [&](int surface, const kernel::Vec<double>& hit, const kernel::Vec<double>&) {
                   take(static_cast<std::size_t>(surface), std::hypot(hit.x, hit.y));
                 });
 }

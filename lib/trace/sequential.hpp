@@ -45,7 +45,7 @@ Mask<T> within(std::span<const StopEdge<Storage<T>>> iris, const T& x, const T& 
 
 struct NoObserver {
   template <class T>
-  void operator()(int, const Vec<T>&) const noexcept {}
+  void operator()(int, const Vec<T>&, const Vec<T>&) const noexcept {}
 };
 
 /// Traces one ray through a part of the lens, surface by surface; returns as soon as the ray is lost.
@@ -53,7 +53,9 @@ struct NoObserver {
 /// One loop serves both directions of travel and every scalar type: derivatives, parts of a lens and drawings. The
 /// faster recurrence of trace() and of batches is tested against it.
 /// @param direction a unit vector within a few ulp; the same holds for the direction of a transmitted ray
-/// @param observer called as observer(surface, point) for each hit, lens frame
+/// @param observer called as observer(surface, point, direction) for each hit, with the direction of the ray that
+/// arrives;
+///                 lens frame
 template <class T, class Observer = NoObserver>
 TraceState<T> trace(const LensView<Storage<T>>& lens, const Vec<T>& origin, const Vec<T>& direction,
                     const SurfaceRange& path, Observer&& observer = {}) noexcept {
@@ -105,7 +107,7 @@ TraceState<T> trace(const LensView<Storage<T>>& lens, const Vec<T>& origin, cons
       described = x * x + y * y <= asphere.rim2;
     }
     ray.origin = {p.x, p.y, T(p.z + lens.vertex_z[i])};
-    observer(static_cast<int>(i), ray.origin);
+    observer(static_cast<int>(i), ray.origin, ray.direction);
 
     const T r2 = p.x * p.x + p.y * p.y;
     if (path.apertures && !(described && r2 <= surface.semi_diameter_squared && r2 >= surface.obscuration_squared)) {

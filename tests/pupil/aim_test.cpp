@@ -40,7 +40,7 @@ double miss(const Lens& lens, const Ray<double>& ray, const Vec2<double>& target
   const std::size_t stop = pupils(lens).stop;
   Vec3<double> hit{infinity, infinity, infinity};
   kernel::trace(petzval::kernel::view<double>(lens), kernel::to_kernel(ray.origin), kernel::to_kernel(ray.direction),
-                {.apertures = false}, [&](int surface, const kernel::Vec<double>& point) {
+                {.apertures = false}, [&](int surface, const kernel::Vec<double>& point, const kernel::Vec<double>&) {
                   if (surface == static_cast<int>(stop)) hit = kernel::to_public(point);
                 });
   const double radius = lens.surfaces()[stop].semi_diameter;

@@ -33,7 +33,7 @@ std::optional<double> room_at_the_stop(const Lens& lens, const Ray<T>& ray, Trav
   const Ray<double> exact{petzval::Vec3<double>(ray.origin), petzval::Vec3<double>(ray.direction)};
   petzval::kernel::trace(petzval::kernel::view<double>(lens), petzval::kernel::to_kernel(exact.origin),
                          petzval::kernel::to_kernel(exact.direction), {.travel = travel, .apertures = false},
-                         [&](int surface, const petzval::kernel::Vec<double>& p) {
+                         [&](int surface, const petzval::kernel::Vec<double>& p, const petzval::kernel::Vec<double>&) {
                            if (surface != stop) return;
                            const double x = p.x / radius, y = p.y / radius;
                            room = petzval::testing::room_between_blades(lens.iris(), x, y) * radius;

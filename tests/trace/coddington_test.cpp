@@ -51,7 +51,7 @@ Curvatures curvatures(const LensSurface& s, double r) {
 Vergences by_coddington(const Lens& lens, const Ray<double>& ray, double z) {
   std::vector<Vec<double>> hits;
   kernel::trace(petzval::kernel::view<double>(lens), kernel::to_kernel(ray.origin), kernel::to_kernel(ray.direction),
-                {.apertures = false}, [&](int, const Vec<double>& hit) { hits.push_back(hit); });
+                {.apertures = false}, [&](int, const Vec<double>& hit, const Vec<double>&) { hits.push_back(hit); });
   Vergences v;
   double dy = ray.direction.y, dz = ray.direction.z;
   const auto along = [&](const Vec<double>& from, const Vec<double>& to) {

@@ -40,7 +40,8 @@ Vec3<T> first_hit(const petzval::Lens& lens, const Ray<T>& ray) {
   Vec3<T> first{0, 0, 0};
   bool seen = false;
   petzval::kernel::trace(petzval::kernel::view<T>(lens), petzval::kernel::to_kernel(ray.origin),
-                         petzval::kernel::to_kernel(ray.direction), {}, [&](int, const petzval::kernel::Vec<T>& p) {
+                         petzval::kernel::to_kernel(ray.direction), {},
+                         [&](int, const petzval::kernel::Vec<T>& p, const petzval::kernel::Vec<T>&) {
                            if (!seen) first = petzval::kernel::to_public(p);
                            seen = true;
                          });

@@ -1,0 +1,145 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "petzval/analysis/aberrations.hpp"
+#include "petzval/core/config.hpp"
+#include "petzval/core/geometry.hpp"
+#include "petzval/lens/lens.hpp"
+#include "petzval/pupil/aim.hpp"
+
+namespace petzval {
+
+/// Number of Zernike polynomials in fringe order.
+inline constexpr std::size_t zernike_terms = 37;
+
+/// A Zernike polynomial in fringe order: 1, r cos a, r sin a, 2 r^2 - 1, r^2 cos 2a, ... with the angle a from +x to
+/// +y. Polynomials have the value 1 at r = 1, a = 0, or are 0 there.
+///
+/// @param term   0 to 36: one less than the number in other programs
+/// @param pupil  position in the unit circle
+/// @throws Error if `term` is above 36
+PETZVAL_API double zernike_fringe(std::size_t term, const Vec2<double>& pupil);
+
+/// Pupil coordinates of a wavefront.
+enum class PupilCoordinates : std::uint8_t {
+  stop,      ///< intersections with the stop, in its semi-diameters
+  entrance,  ///< intersections with the plane of the paraxial entrance pupil, in its semi-diameters
+};
+
+/// Options of wavefront().
+struct WavefrontOptions {
+  Wavelength wavelength{};  ///< a compiled wavelength
+  PupilCoordinates coordinates = PupilCoordinates::stop;
+  std::size_t directions = 48;  ///< directions about the middle of the pupil, a multiple of 3, at least 12
+};
+
+/// Wavefront error of one field and wavelength over the exit pupil, in waves.
+///
+/// The centre of the reference sphere is the chief ray on the film. Its radius is the length of the chief ray from the
+/// plane of the paraxial exit pupil.
+/// Errors are positive if the wavefront is ahead of the sphere, as with undercorrected spherical aberration; the error
+/// of the chief ray is 0.
+struct Wavefront {
+  struct Point {
+    Vec2<double> pupil{0, 0};
+    double waves = 0;
+    double weight = 0;  ///< share of the light; the weights sum to 1
+  };
+  std::vector<Point> points{};  ///< rays that pass the lens
+  Vec2<double> image{0, 0};     ///< chief ray on the film, mm
+  double reference_radius = 0;  ///< radius of the reference sphere, mm; infinite for a telecentric image space
+  double rms_waves = 0;         ///< standard deviation
+  double rms_without_tilt = 0;  ///< standard deviation about the image point that makes it smallest, waves
+  double peak_to_valley_waves = 0;
+  /// Strehl ratio at the image point with the smallest standard deviation, for equal amplitude over the pupil.
+  double strehl = 0;
+  std::array<double, zernike_terms> zernike{};  ///< coefficients in waves; zernike[k] belongs to zernike_fringe(k)
+  double zernike_residual_waves = 0;            ///< standard deviation of the wavefront about the polynomials
+  double sampling_error_waves = 0;              ///< change of rms_waves with a third of the directions
+};
+
+/// Wavefront error over the exit pupil, by optical paths of exact rays.
+///
+/// Rays lie on Gauss-Legendre nodes inside the vignetted pupil. Zernike coefficients are a least-squares fit to them in
+/// the unit circle of the coordinates; if the pupil is vignetted, the polynomials are not orthogonal in it.
+///
+/// @param lens   the focused lens
+/// @param point  the scene point
+/// @param options  wavelength, coordinates and number of rays
+/// @return       nullopt if the chief ray does not reach the film, or the pupil is empty
+/// @throws Error if the number of directions is not a multiple of 3 or below 12, or under the conditions of aim()
+///
+/// Accuracy: paths within 1e-8 waves of sums in long double; rms_waves and Zernike coefficients within
+/// sampling_error_waves of ten times the rays (tests/analysis/wavefront_test.cpp).
+PETZVAL_API std::optional<Wavefront> wavefront(const Lens& lens, const FieldPoint& point,
+                                               const WavefrontOptions& options = {});
+
+/// Arithmetic of diffraction_psf().
+enum class DiffractionSum : std::uint8_t {
+  fft,      ///< fast Fourier transform over an even grid of directions behind the lens
+  huygens,  ///< one plane wave for each ray: time grows with pixels times rays, any window
+};
+
+/// Options of diffraction_psf().
+struct DiffractionOptions {
+  int pixels = 512;                      ///< width of the image, 16 to 4096
+  double half_width_mm = 0;              ///< half of the image width; 0: 15 Airy radii, or the geometric blur and 5 %
+  std::optional<Vec2<double>> centre{};  ///< film position of the image centre, mm; unset: the chief ray
+  std::optional<std::size_t> wavelength{};  ///< wavelength index; unset: all compiled wavelengths
+  DiffractionSum sum = DiffractionSum::fft;
+  int threads = 1;  ///< does not change the results
+};
+
+/// Image of a point light with diffraction.
+///
+/// Each wavelength has one plane of `pixels` x `pixels` values, rows from the top (largest y first), as in Psf. Values
+/// are irradiance per mm^2 of the film as a fraction of the light on the paraxial entrance pupil.
+struct DiffractionPsf {
+  FieldPoint point;
+  int pixels = 0;
+  double pixel_mm = 0;
+  Vec2<double> centre{0, 0};  ///< film position of the image centre, mm
+  std::vector<double> wavelengths_nm{};
+  std::vector<double> irradiance{};  ///< [wavelength][row][column]
+  std::vector<double> throughput{};  ///< light that passes the lens, per wavelength, as in Psf::throughput()
+  /// Largest irradiance of a pixel relative to the same amplitudes without wavefront error, per wavelength.
+  std::vector<double> strehl{};
+  int samples_per_pixel = 1;  ///< a pixel is the mean of this number of samples squared
+};
+
+/// Image of a point light with diffraction: a sum of the plane waves behind the lens at the film (Debye's integral).
+///
+/// Amplitudes conserve the energy of uniform light in the plane of the entrance pupil. The edge of the pupil is sampled
+/// with 64 rays in each cell that it crosses. The FFT repeats itself outside its window: light that leaves the image on
+/// one side returns on the other, so that the image must be wide enough for the spikes of an iris.
+///
+/// @param lens   the focused lens
+/// @param point  the scene point
+/// @param options  image and arithmetic
+/// @throws Error if an option is invalid; if the geometric blur is larger than the image, or the image needs more than
+///               4096 samples across: the geometric point_image() serves defocused lenses; under the conditions of
+///               aim()
+///
+/// Accuracy: the FFT equals Huygens' sum within 1 % of the largest irradiance (tests/analysis/diffraction_test.cpp).
+PETZVAL_API DiffractionPsf diffraction_psf(const Lens& lens, const FieldPoint& point,
+                                           const DiffractionOptions& options = {});
+
+/// MTF with diffraction, from an image: the contrast of lines perpendicular to y (tangential) and to x (sagittal).
+///
+/// @param psf                 the image; light outside it is missing in the MTF
+/// @param frequencies_per_mm  spatial frequencies (line pairs per mm)
+/// @param wavelength_weights  weights of the wavelengths of the image; empty: equal weights
+/// @throws Error              if the number of weights differs from the number of wavelengths
+///
+/// Accuracy: 5e-3 for a perfect lens with the default width (tests/analysis/diffraction_test.cpp).
+PETZVAL_API std::vector<MtfPoint> diffraction_mtf(const DiffractionPsf& psf, std::span<const double> frequencies_per_mm,
+                                                  std::span<const double> wavelength_weights = {});
+
+}  // namespace petzval

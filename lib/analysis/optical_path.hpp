@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: Apache-2.0
+// Rays of one scene point with their optical paths.
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <vector>
+
+#include "petzval/core/geometry.hpp"
+#include "petzval/core/ray.hpp"
+#include "petzval/lens/lens.hpp"
+#include "pupil/pupil_plane.hpp"
+
+namespace petzval::analysis_detail {
+
+/// A ray behind the lens and its optical path to an image point: up to the plane through the image point that is
+/// perpendicular to the ray.
+struct PathRay {
+  Vec2<double> stop{0, 0};          ///< intersection with the stop, in semi-diameters of the stop
+  Vec3<double> direction{0, 0, 1};  ///< unit vector behind the lens
+  /// Optical path from the wavefront through the centre of the pupil plane to the plane at the image point, mm.
+  double path = 0;
+  double miss_squared = 0;  ///< squared distance of the ray from the image point, mm^2
+};
+
+/// Computes optical paths of the rays of one point at one wavelength. Clear apertures do not matter.
+///
+/// The path ends at the plane wavefront of the ray through the image point. Its length does not depend on a distant
+/// reference sphere, so that it keeps its digits for telecentric lenses.
+class OpticalPaths {
+ public:
+  /// @param image  image point, lens frame, mm
+  /// @throws Error under the conditions of pupils()
+  OpticalPaths(const Lens& lens, const PupilPlane& plane, std::size_t wavelength, const Vec3<double>& image);
+
+  /// nullopt if the ray does not pass the lens, or leaves the lens away from the film.
+  std::optional<PathRay> operator()(const Ray<double>& ray) const noexcept;
+  std::optional<PathRay> operator()(const Vec2<double>& pupil) const noexcept {
+    return (*this)(plane_.ray(pupil.x, pupil.y));
+  }
+
+  /// Refractive index behind the lens.
+  double film_index() const noexcept { return indices_.back(); }
+
+ private:
+  double to_pupil(const Vec3<double>& position) const noexcept;
+
+  Lens lens_;
+  PupilPlane plane_;
+  std::size_t wavelength_, stop_;
+  Vec3<double> image_;
+  double stop_unit_ = 1;         // mm
+  std::vector<double> indices_;  // by space
+};
+
+}  // namespace petzval::analysis_detail
