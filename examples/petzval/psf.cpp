@@ -16,6 +16,7 @@
 #include <string>
 #include <vector>
 
+#include "petzval/analysis/wavefront.hpp"
 #include "petzval/core/error.hpp"
 #include "petzval/core/geometry.hpp"
 #include "petzval/core/parallel.hpp"
@@ -44,7 +45,8 @@ struct Options {
   std::string model = "exact_double", out_folder, white_point = "D65";
   examples::FocusFlags focus;
   std::vector<double> focus_mm, wavelengths_nm{petzval::d_line_nm};
-  double subject_mm = 0, field_deg = 0, tolerance = 0;
+  double subject_mm = 0, field_deg = 0, tolerance = 0, width_mm = 0, exposure = 1;
+  bool diffraction = false;
   examples::IrisSetup iris;
   examples::BokehFlags bokeh;
   std::uint32_t samples = 1u << 21;
@@ -60,11 +62,34 @@ struct Picture {
   examples::BokehScene scene;
   std::optional<petzval::Camera> camera;
   petzval::PointImage image;
+  std::optional<petzval::DiffractionPsf> waves;  ///< with --diffraction
 };
+
+petzval::DiffractionPsf waves_of(const Picture& picture, double half_width_mm) {
+  return examples::for_flag("--diffraction", [&] {
+    return petzval::diffraction_psf(picture.scene.lens, picture.scene.light,
+                                    {.pixels = picture_pixels,
+                                     .half_width_mm = half_width_mm,
+                                     .centre = picture.image.size.centroid,
+                                     .threads = examples::threads()});
+  });
+}
 
 petzval::PointImage image_of(const Picture& picture, const petzval::PsfOptions& options) {
   if (picture.camera) return petzval::point_image(*picture.camera, picture.scene.light, options);
   return petzval::point_image(picture.scene.lens, picture.scene.light, options);
+}
+
+/// Half of the width of all pictures with diffraction: the given width, or 15 Airy radii and the blur of the rays.
+double half_width_of_waves(std::span<const Picture> pictures, const Options& options) {
+  double half_width = std::max(options.width_mm / 2, 1e-4);  // a perfect point has no size
+  for (const Picture& p : pictures) {
+    if (p.waves) half_width = p.waves->pixel_mm * p.waves->pixels / 2;
+    if (options.width_mm > 0) break;
+    const double blur = image_of(p, {.samples = 1u << 12, .pixels = 16}).size.max_radius;
+    half_width = std::max({half_width, 1.1 * blur, 15 * petzval::airy_radius(p.scene.lens)});
+  }
+  return half_width;
 }
 
 /// The focused lenses, before tracing. @throws petzval::Error if a focus is out of reach
@@ -77,7 +102,7 @@ std::vector<Picture> focused(const examples::LoadedLens& loaded, const Options& 
                                    .field_rad = petzval::radians(options.field_deg)};
   std::vector<Picture> pictures;
   for (const double focus : options.focus_mm) {
-    Picture picture{focus, examples::focused_scene(lens, focus, setup), {}, {}};
+    Picture picture{focus, examples::focused_scene(lens, focus, setup), {}, {}, {}};
     examples::want_light(picture.scene.lens, picture.scene.light, "--fields");
     if (!options.plain()) {
       picture.camera =
@@ -91,8 +116,11 @@ std::vector<Picture> focused(const examples::LoadedLens& loaded, const Options& 
 /// The contact sheet. All tiles have the scale of the largest blur.
 examples::Sheet contact_sheet(const std::vector<Picture>& pictures, const examples::LoadedLens& loaded,
                               const Options& options) {
-  double half_width = 1e-4;  // a perfect point has no size
-  for (const Picture& p : pictures) half_width = std::max(half_width, 1.08 * p.image.size.max_radius);
+  double half_width = std::max(options.width_mm / 2, 1e-4);  // a perfect point has no size
+  for (const Picture& p : pictures) {
+    if (p.waves) half_width = p.waves->pixel_mm * p.waves->pixels / 2;
+    if (!p.waves && options.width_mm == 0) half_width = std::max(half_width, 1.08 * p.image.size.max_radius);
+  }
   const int tile_pixels = examples::tile_pixels(pictures.size());
   examples::SheetRow row{
       .title = loaded.lens.name(),
@@ -101,7 +129,8 @@ examples::Sheet contact_sheet(const std::vector<Picture>& pictures, const exampl
                   options.focus.criterion +
                   (options.iris.f_number > 0 ? "; f/" + examples::number(options.iris.f_number) : "; wide open") +
                   (options.iris.blades > 0 ? "; " + std::to_string(options.iris.blades) + " blades" : "") +
-                  (options.model == "exact_double" ? "" : "; " + options.model),
+                  (options.model == "exact_double" ? "" : "; " + options.model) +
+                  (options.diffraction ? "; with diffraction" : ""),
       .pixel_mm = 2 * half_width / tile_pixels,
       .tiles = {}};
   examples::Progress progress("contact sheet", pictures.size());
@@ -111,7 +140,14 @@ examples::Sheet contact_sheet(const std::vector<Picture>& pictures, const exampl
                                     .pixels = tile_pixels,
                                     .half_width_mm = half_width,
                                     .threads = examples::threads()});
-    row.tiles.push_back(examples::bokeh_tile(p.focus_mm, image, options.light));
+    examples::Tile tile = examples::bokeh_tile(p.focus_mm, image, options.light);
+    if (p.waves) {
+      const petzval::RgbImage waves = examples::irradiance(*p.waves, options.light);
+      const auto shown = examples::expose(examples::with_width(waves, tile_pixels), options.exposure);
+      tile.picture = shown.picture;
+      tile.captions.back() = examples::white_caption(shown);
+    }
+    row.tiles.push_back(std::move(tile));
   }
   return {"Bokeh of a point light", {std::move(row)}, examples::bokeh_notes()};
 }
@@ -136,6 +172,7 @@ Json to_json(std::span<const Picture> pictures, const examples::LoadedLens& load
             {"f_number_real", petzval::real_f_number(examples::stopped_down(loaded.lens, options.iris))},
             {"field_deg", options.field_deg},
             {"samples", options.samples},
+            {"with_diffraction", options.diffraction},
             {"results", Json::array()}};
   const auto sum = [](const auto& rays) { return std::accumulate(rays.begin(), rays.end(), std::uint64_t(0)); };
   for (const Picture& p : pictures) {
@@ -165,8 +202,9 @@ Json to_json(std::span<const Picture> pictures, const examples::LoadedLens& load
          {"rays_transmitted", sum(p.image.psf.transmitted) / p.image.psf.units_per_ray},
          {"radial_profile", p.image.radial_profile},
          {"error", p.image.error},
-         {"picture_centre_mm", pair(p.image.psf.centre)},
-         {"picture_pixel_mm", p.image.psf.pixel_mm}});
+         {"strehl", p.waves ? Json(p.waves->strehl) : Json()},
+         {"picture_centre_mm", pair(p.waves ? p.waves->centre : p.image.psf.centre)},
+         {"picture_pixel_mm", p.waves ? p.waves->pixel_mm : p.image.psf.pixel_mm}});
   }
   return json;
 }
@@ -179,6 +217,7 @@ void render(std::vector<Picture> pictures, const examples::LoadedLens& loaded, c
   examples::make_folder(folder);
   const std::filesystem::path numbers = folder / (loaded.id + "_bokeh.json");
   {
+    const double half_width = options.diffraction ? half_width_of_waves(pictures, options) : 0;
     examples::Progress progress("bokeh", pictures.size());
     for (std::size_t i = 0; i < pictures.size(); ++i) {
       Picture& p = pictures[i];
@@ -186,11 +225,14 @@ void render(std::vector<Picture> pictures, const examples::LoadedLens& loaded, c
       p.image = image_of(p, {.samples = options.samples,
                              .tolerance = options.tolerance,
                              .pixels = picture_pixels,
+                             .half_width_mm = options.width_mm / 2,
                              .threads = examples::threads()});
+      if (options.diffraction) p.waves = waves_of(p, half_width);
       const std::string stem = loaded.id + "_focus_" + examples::number(p.focus_mm) + "mm";
-      const petzval::RgbImage image = examples::irradiance(p.image.psf, options.light);
-      for (const auto& file :
-           examples::write_picture(image, examples::expose(image).picture, options.formats, folder / stem)) {
+      const petzval::RgbImage image =
+          p.waves ? examples::irradiance(*p.waves, options.light) : examples::irradiance(p.image.psf, options.light);
+      for (const auto& file : examples::write_picture(image, examples::expose(image, options.exposure).picture,
+                                                      options.formats, folder / stem)) {
         options.output.file(file);
       }
       const std::span whole = std::span(pictures).first(i + 1);
@@ -209,7 +251,8 @@ void render(std::vector<Picture> pictures, const examples::LoadedLens& loaded, c
 int commands::psf(int argc, char** argv) {
   Options options;
   examples::App app(
-      "Renders the geometric point spread function of a lens for a point light, focused at several distances.\n"
+      "Renders the point spread function of a lens for a point light, focused at several distances: by rays, or with "
+      "--diffraction by waves.\n"
       "Writes to DIR and prints the paths, each picture as soon as it is complete: LENS_focus_<D>mm.exr (float, "
       "linear: fraction of the light in the paraxial entrance pupil, per mm^2 of film), LENS_focus_<D>mm.png (each "
       "with its own exposure), LENS_bokeh.png (all at one scale) and LENS_bokeh.json. Images show the film as a "
@@ -241,12 +284,27 @@ int commands::psf(int argc, char** argv) {
       "largest relative error of the radial profile: rays are added, from 2^14 by doubling, until it is reached, or "
       "--rays")
       ->default_str("all samples");
+  auto* const diffraction = app.add_flag(
+      "--diffraction", options.diffraction,
+      "pictures with diffraction, for stopped-down lenses and the spikes of an iris. Wide pictures in colour need "
+      "many wavelengths (--wavelengths visible:2). Numbers of the JSON other than strehl are of rays");
+  examples::add_number(app, "--width", options.width_mm, examples::positive_number,
+                       "width of each picture on the film (mm)")
+      ->default_str("fits the blur");
+  examples::add_number(app, "--exposure", options.exposure, examples::positive_number,
+                       "brightness of the PNG: 1 shows the 99th percentile of the lit pixels as white; spikes of an "
+                       "iris need 100 and more")
+      ->capture_default_str();
   examples::add_formats(app, options.formats, "each with its own exposure");
   options.output.add(app);
   examples::add_out_folder(app, options.out_folder)->required();
 
   examples::add_threads(app);
   return examples::run(app, argc, argv, [&] {
+    if (diffraction->given() && !options.plain()) {
+      throw petzval::Error(
+          "--diffraction needs exact rays of the lens as it is; must be without --model and bokeh controls");
+    }
     options.light = examples::white_light(options.white_point);
     examples::rgb_weights(options.wavelengths_nm, options.light);  // throws for invalid wavelengths before the work
     const auto loaded = examples::load_lens(options.lens_file, options.wavelengths_nm);

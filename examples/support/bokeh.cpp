@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <span>
 #include <string_view>
 
 #include "camera_setup.hpp"
@@ -111,7 +112,11 @@ petzval::RgbImage irradiance(const petzval::Psf& psf, const petzval::Spectrum& l
   return petzval::render(psf, rgb_weights(psf.wavelengths_nm, light));
 }
 
-Exposed expose(const petzval::RgbImage& image) {
+petzval::RgbImage irradiance(const petzval::DiffractionPsf& psf, const petzval::Spectrum& light) {
+  return petzval::render(psf, rgb_weights(psf.wavelengths_nm, light));
+}
+
+Exposed expose(const petzval::RgbImage& image, double exposure) {
   std::vector<float> lit;
   for (std::size_t i = 0; i < image.pixels.size(); i += 3) {
     const float brightest = std::max({image.pixels[i], image.pixels[i + 1], image.pixels[i + 2]});
@@ -120,7 +125,16 @@ Exposed expose(const petzval::RgbImage& image) {
   if (lit.empty()) return {petzval::to_srgb8(image), 0};
   const auto rank = lit.begin() + static_cast<std::ptrdiff_t>((lit.size() - 1) * 99 / 100);
   std::nth_element(lit.begin(), rank, lit.end());
-  return {petzval::to_srgb8(image, 1 / *rank), *rank};
+  const float white = static_cast<float>(*rank / exposure);
+  if (exposure <= 1) return {petzval::to_srgb8(image, 1 / white), white};
+  petzval::RgbImage faded = image;
+  for (std::size_t i = 0; i < faded.pixels.size(); i += 3) {
+    const std::span pixel(&faded.pixels[i], 3);
+    const float luminance = 0.2126f * pixel[0] + 0.7152f * pixel[1] + 0.0722f * pixel[2];
+    if (luminance <= white) continue;
+    for (float& value : pixel) value = luminance + (value - luminance) * white / luminance;
+  }
+  return {petzval::to_srgb8(faded, 1 / white), white};
 }
 
 std::string focus_caption(double focus_mm) {
@@ -134,6 +148,8 @@ std::string short_number(double value) { return value < 100 ? number(value, 3) :
 
 }  // namespace
 
+std::string white_caption(const Exposed& exposed) { return "white " + short_number(exposed.white_per_mm2) + " / mm²"; }
+
 Tile bokeh_tile(double focus_mm, const petzval::PointImage& image, const petzval::Spectrum& light) {
   Exposed exposed = expose(irradiance(image.psf, light));
   std::vector<std::string> captions{focus_caption(focus_mm)};
@@ -143,7 +159,7 @@ Tile bokeh_tile(double focus_mm, const petzval::PointImage& image, const petzval
   } else {
     captions.emplace_back("no light passes");
   }
-  captions.push_back("white " + short_number(exposed.white_per_mm2) + " / mm²");
+  captions.push_back(white_caption(exposed));
   return {std::move(exposed.picture), std::move(captions)};
 }
 

@@ -10,6 +10,7 @@
 #include "load_lens.hpp"
 #include "petzval/analysis/colour.hpp"
 #include "petzval/analysis/psf.hpp"
+#include "petzval/analysis/wavefront.hpp"
 #include "petzval/camera/camera.hpp"
 #include "petzval/focus/focus.hpp"
 #include "petzval/image/image.hpp"
@@ -52,17 +53,22 @@ void add_white_point(App& app, std::string& white_point);
 /// The linear image of a PSF under the light, in the units of petzval::render. The CIE 1931 functions weight
 /// wavelengths to RGB.
 petzval::RgbImage irradiance(const petzval::Psf& psf, const petzval::Spectrum& light = white_light("D65"));
+petzval::RgbImage irradiance(const petzval::DiffractionPsf& psf, const petzval::Spectrum& light = white_light("D65"));
 
 /// RGB weights of wavelengths under the light, by the colour matching functions of the data directory.
 /// @throws petzval::Error if the wavelengths are invalid
 std::vector<std::array<double, 3>> rgb_weights(std::span<const double> wavelengths_nm, const petzval::Spectrum& light);
 
-/// A displayable picture and its white level: the irradiance at the 99th percentile of the lit pixels.
+/// A displayable picture and its white level: the irradiance at the 99th percentile of the lit pixels, divided by
+/// `exposure`. With an exposure above 1, overexposed pixels fade to white.
 struct Exposed {
   petzval::Rgb8Image picture;
   double white_per_mm2 = 0;
 };
-Exposed expose(const petzval::RgbImage& image);
+Exposed expose(const petzval::RgbImage& image, double exposure = 1);
+
+/// "white 12 / mm²".
+std::string white_caption(const Exposed& exposed);
 
 /// "focus 800 mm" or "focus infinity".
 std::string focus_caption(double focus_mm);

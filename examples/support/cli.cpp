@@ -229,9 +229,12 @@ std::vector<double> parse_numbers(const std::string& where, std::string_view tex
 
 std::vector<double> parse_wavelengths(const std::string& where, std::string_view text) {
   if (text == "rgb") return {petzval::rgb_triple_nm.rbegin(), petzval::rgb_triple_nm.rend()};  // ascending
-  if (text == "visible") {
+  constexpr std::string_view visible = "visible", stepped = "visible:";
+  if (text == visible || text.starts_with(stepped)) {
+    const double step =
+        text == visible ? 10 : parse_number(where, text.substr(stepped.size()), {1, 60, "visible:STEP of 1 to 60 nm"});
     std::vector<double> values;
-    for (int nm = 430; nm <= 670; nm += 10) values.push_back(nm);
+    for (int k = 0; 430 + k * step <= 670; ++k) values.push_back(430 + k * step);
     return values;
   }
   return parse_list(where, text, [&](std::string_view item) { return parse_wavelength(where, item); });
@@ -301,7 +304,8 @@ CommandText described(int (*command)(int, char**), std::string name) {
 Option* add_wavelengths(App& app, const std::string& flag, std::vector<double>& values, const std::string& help) {
   return add_parsed(app, flag, values, "NM,...", joined(values),
                     help +
-                        " (nm, spectral lines like F,d,C, or visible or rgb); visible: 430 to 670 nm in steps of 10; "
+                        " (nm, spectral lines like F,d,C, or visible or rgb); visible: 430 to 670 nm in steps of 10, "
+                        "visible:2 in steps of 2; "
                         "rgb: 475, 510, 650",
                     [=](const std::string& text) { return parse_wavelengths(flag, text); });
 }

@@ -25,8 +25,10 @@ constexpr std::array all_groups{
           " --focus --at --fields --from --criterion --film-position --defocus --tilt --swing --max-tilt --fit-tilt "
           "--robust --blur --points "},
     Group{"Picture", false,
-          " --film --fov --size --columns --title --white-point --normalisation --exposure --frames --fps --travel "},
-    Group{"Work", false, " --integrator --wavelengths --spp --rays --noise --time --compare --compare-rays "},
+          " --film --fov --size --width --columns --title --white-point --normalisation --exposure --frames --fps "
+          "--travel "},
+    Group{"Work", false,
+          " --integrator --diffraction --wavelengths --spp --rays --noise --time --compare --compare-rays "},
     Group{"Window", false, " --replay --log --panels --screenshot "},
     Group{"Output", false,
           " --out --camera --all --calibration --ray-map --povray --format --json --check --strict --repair "

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <complex>
 #include <glm/common.hpp>
+#include <glm/geometric.hpp>
 #include <limits>
 #include <numbers>
 #include <numeric>
@@ -260,26 +261,28 @@ class DirectionGrid {
     const double wavelength_mm = lens_.wavelengths_nm()[wavelength_] * 1e-6;
     for (int column = 0; column < width(); ++column) {
       const double part = coverage(row, column);
-      const auto ray = part > 0 ? ray_in(direction(row, column)) : std::nullopt;
-      if (!ray) continue;
+      const auto path = part > 0 ? path_in(direction(row, column)) : std::nullopt;
+      if (!path) continue;
       // A partly lit cell has its mean amplitude. The light that the mean lacks falls outside the window.
       const double amplitude = part * std::sqrt(map_.stretch(direction(row, column))) * step_ * step_;
-      values_[index(row, column)] = amplitude * wave(ray->path, wavelength_mm);
+      values_[index(row, column)] = amplitude * wave(*path, wavelength_mm);
     }
   }
 
-  /// The ray that leaves the lens in a direction: the polynomials are corrected by the direction of their ray.
-  std::optional<PathRay> ray_in(const Vec2<double>& wanted) const {
+  /// Optical path of the ray that leaves the lens in a direction: of the ray at the position of the polynomials, with
+  /// a step to the direction.
+  std::optional<double> path_in(const Vec2<double>& wanted) const {
     Vec2<double> corrected = wanted;
-    std::optional<PathRay> ray;
-    for (int iteration = 0; iteration < 5; ++iteration) {
-      ray = map_.paths()(map_.position(corrected));
+    for (int iteration = 0; iteration < 8; ++iteration) {
+      const auto ray = map_.paths()(map_.position(corrected));
       if (!ray) break;
       const Vec2<double> miss = wanted - Vec2<double>(ray->direction);
-      if (std::hypot(miss.x, miss.y) < 1e-7 * map_.half()) break;
+      if (glm::dot(miss, miss) < 1e-6 * map_.half() * map_.half()) {
+        return ray->path - map_.paths().film_index() * glm::dot(miss, ray->film);
+      }
       corrected += miss;
     }
-    return ray;
+    return {};
   }
 
   const Lens& lens_;
@@ -423,7 +426,11 @@ DiffractionPsf diffraction_psf(const Lens& lens, const FieldPoint& point, const 
                 ". Choose a smaller image or more pixels, focus closer to the point, or "
                 "use the geometric PSF");
   }
-  const int size = static_cast<int>(std::bit_ceil(static_cast<unsigned>(std::ceil(needed))));
+  const auto samples = static_cast<std::size_t>(grid.samples());
+  psf.line_x.resize(samples * maps.size()), psf.line_y.resize(samples * maps.size());
+  // Twice the image, if possible: spikes that leave the window return on the other side, outside of the image.
+  const double wide = std::max(needed, std::min(2.0 * grid.samples(), 1.0 * most_samples));
+  const int size = static_cast<int>(std::bit_ceil(static_cast<unsigned>(std::ceil(wide))));
   const double entrance = analysis_detail::entrance_pupil_area(lens);
   for (std::size_t i = 0; i < maps.size(); ++i) {
     if (maps[i].empty()) continue;
@@ -432,6 +439,13 @@ DiffractionPsf diffraction_psf(const Lens& lens, const FieldPoint& point, const 
                                  : transformed(lens, maps[i], grid, wavelengths[i], size, options.threads);
     psf.strehl[i] = *std::ranges::max_element(image.values) / image.in_phase;
     psf.throughput[i] = maps[i].boundary().area() / entrance;
+    const double light = grid.step() * grid.step() / entrance;
+    for (std::size_t row = 0; row < samples; ++row) {
+      for (std::size_t column = 0; column < samples; ++column) {
+        const double value = light * image.values[row * samples + column];
+        psf.line_x[i * samples + column] += value, psf.line_y[(i + 1) * samples - 1 - row] += value;
+      }
+    }
     std::ranges::transform(pixels_of(image.values, grid),
                            psf.irradiance.begin() + static_cast<std::ptrdiff_t>(i * planes),
                            [entrance](double value) { return value / entrance; });
@@ -446,28 +460,23 @@ std::vector<MtfPoint> diffraction_mtf(const DiffractionPsf& psf, std::span<const
     throw Error("diffraction_mtf: " + std::to_string(wavelength_weights.size()) + " weights; must be " +
                 std::to_string(wavelengths) + ", one for each wavelength, or none");
   }
-  const auto pixels = static_cast<std::size_t>(psf.pixels);
-  std::vector<double> across(pixels), down(pixels);  // light of each column and row
+  const std::size_t samples = psf.line_x.size() / std::max<std::size_t>(wavelengths, 1);
+  std::vector<double> across(samples), down(samples);
+  double total = 0;
   for (std::size_t w = 0; w < wavelengths; ++w) {
     const double weight = wavelength_weights.empty() ? 1 : wavelength_weights[w];
-    for (std::size_t row = 0; row < pixels; ++row) {
-      for (std::size_t column = 0; column < pixels; ++column) {
-        const double light = weight * psf.irradiance[(w * pixels + row) * pixels + column];
-        across[column] += light, down[row] += light;
-      }
+    total += weight * psf.throughput[w];
+    for (std::size_t i = 0; i < samples; ++i) {
+      across[i] += weight * psf.line_x[w * samples + i], down[i] += weight * psf.line_y[w * samples + i];
     }
   }
-  const double total = std::accumulate(down.begin(), down.end(), 0.0);
   std::vector<MtfPoint> result;
   for (const double frequency : frequencies_per_mm) {
+    const double phase = 2 * std::numbers::pi * frequency * psf.pixel_mm / psf.samples_per_pixel;
     const auto contrast = [&](const std::vector<double>& light) {
-      const double phase = 2 * std::numbers::pi * frequency * psf.pixel_mm;
       Complex sum = 0;
-      for (std::size_t i = 0; i < pixels; ++i) sum += std::polar(light[i], phase * static_cast<double>(i));
-      // Pixels that are means of several samples lower the contrast themselves.
-      const double n = psf.samples_per_pixel,
-                   mean = phase == 0 ? 1 : std::sin(phase / 2) / (n * std::sin(phase / 2 / n));
-      return total > 0 ? std::abs(sum / mean) / total : 0;
+      for (std::size_t i = 0; i < samples; ++i) sum += std::polar(light[i], phase * static_cast<double>(i));
+      return total > 0 ? std::abs(sum) / total : 0;
     };
     result.push_back({psf.point.field_rad, frequency, contrast(down), contrast(across)});
   }

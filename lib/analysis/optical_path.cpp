@@ -49,6 +49,7 @@ std::optional<PathRay> OpticalPaths::operator()(const Ray<double>& ray) const no
   result.path = path - film_index() * along;
   const Vec3<double> miss = beyond - result.direction * along;
   result.miss_squared = glm::dot(miss, miss);
+  result.film = Vec2<double>(beyond) - Vec2<double>(result.direction) * (beyond.z / result.direction.z);
   return result;
 }
 

@@ -21,6 +21,9 @@ struct PathRay {
   /// Optical path from the wavefront through the centre of the pupil plane to the plane at the image point, mm.
   double path = 0;
   double miss_squared = 0;  ///< squared distance of the ray from the image point, mm^2
+  /// Intersection with the plane of the image point perpendicular to the axis, relative to the image point, mm. The
+  /// derivatives of `path` by direction.x and direction.y are -n times this vector.
+  Vec2<double> film{0, 0};
 };
 
 /// Computes optical paths of the rays of one point at one wavelength. Clear apertures do not matter.

@@ -22,16 +22,25 @@ std::vector<double> irradiance(const Psf& psf, std::size_t wavelength) {
   return values;
 }
 
-}  // namespace
+/// The same of an image with diffraction.
+std::vector<double> irradiance(const DiffractionPsf& psf, std::size_t wavelength) {
+  const auto plane = static_cast<std::ptrdiff_t>(psf.pixels) * psf.pixels;
+  const auto begin = psf.irradiance.begin() + static_cast<std::ptrdiff_t>(wavelength) * plane;
+  std::vector<double> values(begin, begin + plane);
+  std::ranges::reverse(values);
+  return values;
+}
 
-RgbImage render(const Psf& psf, std::span<const std::array<double, 3>> weights) {
+/// @param count  number of values of the image
+template <class Image>
+RgbImage weighted(const Image& psf, std::size_t count, std::span<const std::array<double, 3>> weights) {
   if (weights.size() != psf.wavelengths_nm.size()) {
     throw Error("render: " + std::to_string(weights.size()) + " weights; must be one for each of " +
                 std::to_string(psf.wavelengths_nm.size()) + " wavelengths");
   }
   RgbImage image(psf.pixels, psf.pixels);
-  if (const std::size_t expected_size = weights.size() * image.pixels.size() / 3; psf.counts.size() != expected_size) {
-    throw Error("render: counts = " + std::to_string(psf.counts.size()) + "; must be " + std::to_string(expected_size) +
+  if (const std::size_t expected_size = weights.size() * image.pixels.size() / 3; count != expected_size) {
+    throw Error("render: counts = " + std::to_string(count) + "; must be " + std::to_string(expected_size) +
                 ", one for each pixel and wavelength");
   }
   std::vector<double> sums(image.pixels.size(), 0.0);
@@ -43,6 +52,16 @@ RgbImage render(const Psf& psf, std::span<const std::array<double, 3>> weights) 
   }
   for (std::size_t i = 0; i < sums.size(); ++i) image.pixels[i] = static_cast<float>(sums[i]);
   return image;
+}
+
+}  // namespace
+
+RgbImage render(const Psf& psf, std::span<const std::array<double, 3>> weights) {
+  return weighted(psf, psf.counts.size(), weights);
+}
+
+RgbImage render(const DiffractionPsf& psf, std::span<const std::array<double, 3>> weights) {
+  return weighted(psf, psf.irradiance.size(), weights);
 }
 
 ExrPart spectral_image(const Psf& psf, std::span<const std::array<double, 3>> weights) {

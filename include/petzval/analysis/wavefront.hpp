@@ -112,6 +112,9 @@ struct DiffractionPsf {
   /// Largest irradiance of a pixel relative to the same amplitudes without wavefront error, per wavelength.
   std::vector<double> strehl{};
   int samples_per_pixel = 1;  ///< a pixel is the mean of this number of samples squared
+  /// Light of each column of samples from left to right and of each row from the bottom, [wavelength][sample], with
+  /// `pixels` times `samples_per_pixel` samples: the images of lines, for diffraction_mtf().
+  std::vector<double> line_x{}, line_y{};
 };
 
 /// Image of a point light with diffraction: a sum of the plane waves behind the lens at the film (Debye's integral).
@@ -127,18 +130,21 @@ struct DiffractionPsf {
 ///               4096 samples across: the geometric point_image() serves defocused lenses; under the conditions of
 ///               aim()
 ///
-/// Accuracy: the FFT equals Huygens' sum within 1 % of the largest irradiance (tests/analysis/diffraction_test.cpp).
+/// Accuracy: the FFT equals Huygens' sum within 1e-3 of the largest irradiance (tests/analysis/diffraction_test.cpp).
 PETZVAL_API DiffractionPsf diffraction_psf(const Lens& lens, const FieldPoint& point,
                                            const DiffractionOptions& options = {});
 
 /// MTF with diffraction, from an image: the contrast of lines perpendicular to y (tangential) and to x (sagittal).
 ///
-/// @param psf                 the image; light outside it is missing in the MTF
+/// Pixels do not matter: their samples are used. The light outside of the image counts as a background without
+/// contrast, so that the MTF begins at the fraction of the light that the image holds.
+///
+/// @param psf                 the image
 /// @param frequencies_per_mm  spatial frequencies (line pairs per mm)
 /// @param wavelength_weights  weights of the wavelengths of the image; empty: equal weights
 /// @throws Error              if the number of weights differs from the number of wavelengths
 ///
-/// Accuracy: 5e-3 for a perfect lens with the default width (tests/analysis/diffraction_test.cpp).
+/// Accuracy: 5e-3 for a perfect lens with the default width, above frequency 0 (tests/analysis/diffraction_test.cpp).
 PETZVAL_API std::vector<MtfPoint> diffraction_mtf(const DiffractionPsf& psf, std::span<const double> frequencies_per_mm,
                                                   std::span<const double> wavelength_weights = {});
 

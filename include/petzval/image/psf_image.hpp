@@ -5,6 +5,7 @@
 #include <span>
 
 #include "petzval/analysis/psf.hpp"
+#include "petzval/analysis/wavefront.hpp"
 #include "petzval/core/config.hpp"
 #include "petzval/image/image.hpp"
 
@@ -20,6 +21,13 @@ namespace petzval {
 /// @param weights  linear RGB weights, one triple per wavelength, from rgb_weights()
 /// @throws Error   if the number of weights is wrong, or the PSF lacks a count for a pixel and wavelength
 PETZVAL_API RgbImage render(const Psf& psf, std::span<const std::array<double, 3>> weights);
+
+/// Renders an image with diffraction, with the same units and orientation.
+///
+/// @param psf      the image
+/// @param weights  linear RGB weights, one triple per wavelength, from rgb_weights()
+/// @throws Error   if the number of weights is wrong, or the image lacks a value for a pixel and wavelength
+PETZVAL_API RgbImage render(const DiffractionPsf& psf, std::span<const std::array<double, 3>> weights);
 
 /// Converts a PSF to a spectral image for write_exr(): one channel per wavelength, and R, G, B of render() for viewers.
 ///
