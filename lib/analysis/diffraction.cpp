@@ -79,6 +79,10 @@ class DirectionMap {
     blur_ = std::sqrt(blur_squared);
     middle_ = (low + high) / 2.0;
     half_ = std::max((high.x - low.x) / 2, (high.y - low.y) / 2);
+    if (!(std::min(high.x - low.x, high.y - low.y) > 1e-6 * half_)) {
+      throw Error("diffraction_psf: the rays of " + lens.name() +
+                  " are parallel in one section; must converge in both");
+    }
     const auto count = static_cast<Eigen::Index>(rays.size());
     Eigen::MatrixXd rows(count, Surface::terms);
     Eigen::VectorXd x(count), y(count);

@@ -178,6 +178,8 @@ TEST(DiffractionPsf, RefusesInvalidOptionsAndLargeBlurs) {
   testing::expect_error([&] { diffraction_psf(lens, point, {.half_width_mm = -1}); }, {"half_width_mm", -1});
   testing::expect_error([&] { diffraction_psf(lens, point, {.threads = 0}); }, {"threads", 0});
   testing::expect_error([&] { diffraction_psf(with_film(lens, lens.film_z() + 60), point); }, {"samples", 4096});
+  // A cylinder has no focus in the other section.
+  testing::expect_error([] { diffraction_psf(testing::data_lens("cylinder_3.9mm"), {.z = far}); }, {"parallel"});
 }
 
 TEST(DiffractionMtf, OfAPerfectMirrorIsTheClosedForm) {

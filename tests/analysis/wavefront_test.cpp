@@ -119,7 +119,7 @@ TEST(Wavefront, HasTheSeidelTermsOfSmallAperturesAndFields) {
   const SeidelTerms sums = seidel_sums(lens, {.field_rad = radians(field_deg)}).sums;
   const Wavefront axis = at(lens, 0), front = at(lens, field_deg);
   EXPECT_NEAR(6 * axis.zernike[8] * wave_mm / (sums.s1 / 8), 1, 0.01);
-  // The field of the sums is that of a rising chief ray, whose point lies at -y.
+  // The chief ray of the sums rises: its point lies at -y.
   EXPECT_NEAR(-3 * front.zernike[7] * wave_mm / (sums.s2 / 2), 1, 0.02);
   // cos 2a is taken from +x, the field lies along y: y^2 = (r^2 - r^2 cos 2a) / 2.
   EXPECT_NEAR(-2 * front.zernike[4] * wave_mm / (sums.s3 / 2), 1, 0.02);

@@ -71,7 +71,7 @@ TEST_F(BokehPsf, StoppedDownBlurEqualsTheThinLens) {
   EXPECT_NEAR(json["f_number_real"].get<double>(), 16, 1e-10);
 }
 
-// The light within 15 Airy radii is 98 to 99 % of the light; the width is that of the flag.
+// The light within 15 Airy radii is 98 to 99 % of the light; --width sets the width.
 TEST_F(BokehPsf, DiffractionSpreadsTheLight) {
   const auto json = bokeh({"--at", "inf", "--focus", "inf", "--f-number", "22", "--diffraction", "--width", "0.4"});
   EXPECT_TRUE(json["with_diffraction"]);

@@ -20,7 +20,7 @@ namespace petzval {
 inline constexpr std::size_t zernike_terms = 37;
 
 /// A Zernike polynomial in fringe order: 1, r cos a, r sin a, 2 r^2 - 1, r^2 cos 2a, ... with the angle a from +x to
-/// +y. Polynomials have the value 1 at r = 1, a = 0, or are 0 there.
+/// +y. At r = 1, a = 0 the cosine terms are 1 and the sine terms 0.
 ///
 /// @param term   0 to 36: one less than the number in other programs
 /// @param pupil  position in the unit circle
@@ -119,16 +119,16 @@ struct DiffractionPsf {
 
 /// Image of a point light with diffraction: a sum of the plane waves behind the lens at the film (Debye's integral).
 ///
-/// Amplitudes conserve the energy of uniform light in the plane of the entrance pupil. The edge of the pupil is sampled
-/// with 64 rays in each cell that it crosses. The FFT repeats itself outside its window: light that leaves the image on
-/// one side returns on the other, so that the image must be wide enough for the spikes of an iris.
+/// Amplitudes conserve the energy of uniform light in the plane of the entrance pupil. A cell of the FFT that the edge
+/// of the pupil crosses is sampled with 64 rays. The FFT repeats itself outside of its window, which is twice as wide
+/// as the image if 4096 samples permit: spikes of an iris beyond the window return faintly.
 ///
-/// @param lens   the focused lens
-/// @param point  the scene point
+/// @param lens     the focused lens
+/// @param point    the scene point
 /// @param options  image and arithmetic
-/// @throws Error if an option is invalid; if the geometric blur is larger than the image, or the image needs more than
-///               4096 samples across: the geometric point_image() serves defocused lenses; under the conditions of
-///               aim()
+/// @throws Error   if an option is invalid; if the image or the geometric blur needs more than 4096 samples: the
+///                 geometric point_image() serves defocused lenses; if the rays behind the lens are parallel in a
+///                 section; under the conditions of aim()
 ///
 /// Accuracy: the FFT equals Huygens' sum within 1e-3 of the largest irradiance (tests/analysis/diffraction_test.cpp).
 PETZVAL_API DiffractionPsf diffraction_psf(const Lens& lens, const FieldPoint& point,
