@@ -123,6 +123,12 @@ int commands::report(int argc, char** argv) {
       "LENS_illumination.svg and LENS.html, a page with all of them, to DIR, and prints their paths instead.",
       "petzval report");
   examples::add_lens(app, options.lens_file);
+  app.add_option(
+         "--surfaces-from",
+         [&options](const std::string& text) { options.lens_file.first_surface_number = text == "1" ? 1 : 0; },
+         "number of the first surface in the report; patents count from 1")
+      ->one_of({"0", "1"})
+      ->default_str("0");
   app.add_flag("--json", options.json, "print one JSON object; null is an infinite or absent value");
   const auto* wavelength =
       examples::add_wavelength(app, "--wavelengths", options.wavelength_nm, "wavelength")

@@ -32,7 +32,7 @@ constexpr std::array all_groups{
     Group{"Window", false, " --replay --log --panels --screenshot "},
     Group{"Output", false,
           " --out --camera --all --calibration --ray-map --povray --format --json --check --strict --repair "
-          "--precision "},
+          "--precision --surfaces-from "},
     Group{"Quality", true, " --lens-samples --half --tolerance --layers --jitter --supersample --highlights-above "},
     Group{"Depths", true, " --depth-kind --near --far --white "},
     Group{"Files", true, " --glasses --configuration --match-glasses --ignore-apertures "},

@@ -80,9 +80,9 @@ void surface_table(std::ostream& html, const Report& r) {
     if (!row.aspheric.empty()) remark("asphere of order " + std::to_string(row.aspheric.back().order));
     if (row.obscuration_semi_diameter) remark("central obscuration " + number(*row.obscuration_semi_diameter, 5));
     if (row.semi_diameter_computed) remark("semi-diameter computed");
-    html << "<tr>" << cell(std::to_string(i)) << cell(row.radius == 0 ? "plane" : number(row.radius, 8))
-         << cell(number(row.thickness, 7)) << cell(nd) << cell(vd) << "<td>"
-         << escaped_html(row.medium.glass.value_or("")) << "</td>"
+    html << "<tr>" << cell(std::to_string(r.surface_number(i)))
+         << cell(row.radius == 0 ? "plane" : number(row.radius, 8)) << cell(number(row.thickness, 7)) << cell(nd)
+         << cell(vd) << "<td>" << escaped_html(row.medium.glass.value_or("")) << "</td>"
          << cell(std::isfinite(compiled.semi_diameter) ? number(compiled.semi_diameter, 5) : "unlimited") << "<td>"
          << remarks << "</td></tr>\n";
   }
@@ -117,6 +117,8 @@ std::string conditions(const ReportSubject& subject) {
 
 std::vector<LensFigure> lens_figures(const Report& r, const petzval::Lens& colours) {
   const petzval::Lens& lens = r.loaded.lens;
+  constexpr std::size_t rays = 5;
+  const int first = r.loaded.first_surface_number;
   const double subject_z = examples::subject_z(r.subject, lens);
   const std::vector<double>& weights = r.subject.light.weights;
   std::vector<LensFigure> result;
@@ -132,11 +134,11 @@ std::vector<LensFigure> lens_figures(const Report& r, const petzval::Lens& colou
   add("layout", "The lens",
       "Each colour is one field: its rays come from one far point and should meet in one point of the film. If the "
       "rays of a field do not fill the stop from tick to tick, rims clip the pupil and the corner darkens.",
-      petzval::layout_figure(lens, subject_z, fields));
+      petzval::layout_figure(lens, subject_z, fields, petzval::Meridian::y, rays, first));
   if (!lens.rotationally_symmetric()) {
     add("layout_x", "The lens in the other section",
         "The section x-z of the lens. Cylinders are curved in one section only, so the focal length differs.",
-        petzval::layout_figure(lens, subject_z, fields, petzval::Meridian::x));
+        petzval::layout_figure(lens, subject_z, fields, petzval::Meridian::x, rays, first));
   }
   if (!limited) return result;
 
@@ -151,7 +153,7 @@ std::vector<LensFigure> lens_figures(const Report& r, const petzval::Lens& colou
   add("footprints", "Pupils",
       "The vignetted pupil of each field point. The more of the dashed circle is missing, the darker the corner. "
       "Bright points out of focus have blurs of this shape.",
-      petzval::footprint_figure(lens, subject_z, fields));
+      petzval::footprint_figure(lens, subject_z, fields, first));
   add("focus", "Focus",
       "Spot size against film position. Separate minima mean curvature of field; a high, flat minimum is an "
       "aberration that focusing does not remove.",
@@ -169,7 +171,7 @@ std::vector<LensFigure> lens_figures(const Report& r, const petzval::Lens& colou
       add("seidel", "Seidel sums",
           "Third-order aberrations and colour that each surface contributes, for the largest field. Long bars of both "
           "signs that cancel make a lens sensitive to errors.",
-          petzval::seidel_figure(colours, subject_z, *sums));
+          petzval::seidel_figure(colours, subject_z, *sums, first));
     }
     add("illumination", "Brightness",
         "Irradiance on the film from the centre to the edge of the field. Below cos\u2074 rims vignette; above it the "
@@ -195,7 +197,8 @@ std::string lens_page(const Report& r, const std::vector<LensFigure>& figures) {
          << figure.svg << "<figcaption>" << figure.caption << "</figcaption>\n</figure>\n";
   }
   html << "<h2>First order</h2>\n<p class=\"lead\">At " << number(lens.wavelengths_nm()[0])
-       << " nm. Stop: " << stop_in_words(r.main().pupils) << ". z counts from the first vertex towards the film.</p>\n";
+       << " nm. Stop: " << stop_in_words(r) << "; " << numbering_in_words(r)
+       << ". z counts from the first vertex towards the film.</p>\n";
   first_order_table(html, r);
   html << "<h2>Lint</h2>\n";
   if (r.findings.empty()) html << "<p class=\"lead\">No findings: declared and computed values agree.</p>\n";
@@ -204,7 +207,7 @@ std::string lens_page(const Report& r, const std::vector<LensFigure>& figures) {
     for (const petzval::Finding& finding : r.findings) html << "<li>" << escaped_html(finding.message) << "</li>\n";
     html << "</ul>\n";
   }
-  html << "<h2>Table</h2>\n<p class=\"lead\">Millimetres.</p>\n";
+  html << "<h2>Table</h2>\n<p class=\"lead\">Millimetres; " << numbering_in_words(r) << ".</p>\n";
   surface_table(html, r);
   html << "<h2>Sources</h2>\n";
   sources(html, r.loaded.prescription);

@@ -117,7 +117,7 @@ Json third_order(const Report& r, const petzval::Lens& lens) {
     json["paraxial_rays"] = Json::array();
     for (std::size_t i = 0; i < rays.surfaces.size(); ++i) {
       const petzval::ParaxialRayPair& pair = rays.surfaces[i];
-      json["paraxial_rays"].push_back({{"surface", i},
+      json["paraxial_rays"].push_back({{"surface", r.surface_number(i)},
                                        {"marginal_y", pair.marginal_y},
                                        {"marginal_u", pair.marginal_u},
                                        {"chief_y", pair.chief_y},
@@ -135,7 +135,7 @@ Json third_order(const Report& r, const petzval::Lens& lens) {
     };
     json["seidel"] = Json::array();
     for (std::size_t i = 0; i < sums.surfaces.size(); ++i) {
-      json["seidel"].push_back(terms({{"surface", i}}, sums.surfaces[i]));
+      json["seidel"].push_back(terms({{"surface", r.surface_number(i)}}, sums.surfaces[i]));
     }
     json["seidel_sums"] = terms(Json::object(), sums.sums);
   } catch (const petzval::Error&) {
@@ -301,16 +301,16 @@ Report report(LoadedLens loaded, ReportSubject subject, const std::optional<Decl
           declared_pupil->diameter},
          {"declared_f_number", "EFL / declared pupil (image space F/# of OpticStudio)", "", declared_pupil->f_number}});
   }
-  auto findings = petzval::lint(loaded.prescription, loaded.glasses);
+  auto findings = petzval::lint(loaded.prescription, loaded.glasses, loaded.first_surface_number);
   return {std::move(loaded), std::move(subject), declared_pupil, std::move(meridians), std::move(findings)};
 }
 
-/// Surface indices (from 0) whose aperture the source does not state.
-std::vector<std::size_t> computed_apertures(const Report& r) {
-  std::vector<std::size_t> result;
+/// Numbers of the surfaces whose aperture the source does not state.
+std::vector<int> computed_apertures(const Report& r) {
+  std::vector<int> result;
   const auto& surfaces = r.loaded.prescription.surfaces;
   for (std::size_t i = 0; i < surfaces.size(); ++i) {
-    if (surfaces[i].semi_diameter_computed) result.push_back(i);
+    if (surfaces[i].semi_diameter_computed) result.push_back(r.surface_number(i));
   }
   return result;
 }
@@ -321,7 +321,8 @@ Json to_json(const Report& r, const petzval::Lens& colours) {
   Json json{{"name", lens.name()},
             {"dispersion", petzval::name(lens.dispersion())},
             {"wavelength_nm", lens.wavelengths_nm()[0]},
-            {"stop_surface", pupils ? Json(pupils->stop) : Json(nullptr)},
+            {"surfaces_from", r.loaded.first_surface_number},
+            {"stop_surface", pupils ? Json(r.surface_number(pupils->stop)) : Json(nullptr)},
             {"stop_inferred", pupils && pupils->stop_inferred}};
   json.update(numbers(r.main()));
   json["film_z_mm"] = finite_or_null(lens.film_z());
@@ -365,21 +366,27 @@ Json to_json(const Report& r, const petzval::Lens& colours) {
   json["missing_glasses"] = lens.missing_glasses();
   json["lint"] = Json::array();
   for (const petzval::Finding& finding : r.findings) {
-    json["lint"].push_back({{"kind", petzval::name(finding.kind)},
-                            {"surface", finding.surface ? Json(*finding.surface) : Json(nullptr)},
-                            {"found", finite_or_null(finding.found)},
-                            {"wanted", finite_or_null(finding.expected)},
-                            {"message", finding.message}});
+    json["lint"].push_back(
+        {{"kind", petzval::name(finding.kind)},
+         {"surface", finding.surface ? Json(*finding.surface + r.loaded.first_surface_number) : Json(nullptr)},
+         {"found", finite_or_null(finding.found)},
+         {"wanted", finite_or_null(finding.expected)},
+         {"message", finding.message}});
   }
   return json;
 }
 
 const char* section_name(petzval::Meridian meridian) { return meridian == petzval::Meridian::y ? "y-z" : "x-z"; }
 
-std::string stop_in_words(const std::optional<petzval::Pupils>& pupils) {
+std::string stop_in_words(const Report& r) {
+  const std::optional<petzval::Pupils>& pupils = r.main().pupils;
   if (!pupils) return "none: no rim limits the beam";
-  return "surface " + std::to_string(pupils->stop) +
+  return "surface " + std::to_string(r.surface_number(pupils->stop)) +
          (pupils->stop_inferred ? " (inferred: no surface with a rim is marked)" : "");
+}
+
+std::string numbering_in_words(const Report& r) {
+  return "surfaces are numbered from " + std::to_string(r.loaded.first_surface_number);
 }
 
 std::string in_words(double value) {
@@ -396,8 +403,8 @@ std::string to_text(const Report& r) {
   std::ostringstream text;
   text << lens.name() << '\n'
        << lens.surface_count() << (lens.surface_count() == 1 ? " surface" : " surfaces")
-       << ", stop: " << stop_in_words(r.main().pupils) << "\nat " << number(lens.wavelengths_nm()[0])
-       << " nm, dispersion: " << petzval::name(lens.dispersion())
+       << ", stop: " << stop_in_words(r) << "\nat " << number(lens.wavelengths_nm()[0])
+       << " nm, dispersion: " << petzval::name(lens.dispersion()) << "; " << numbering_in_words(r)
        << "; z counts from the first vertex towards the film\n"
        << in_words(r.subject) << '\n';
   const auto line = [&](const char* label, double value, const char* unit) {
@@ -426,7 +433,7 @@ std::string to_text(const Report& r) {
   if (const auto computed = computed_apertures(r); !computed.empty()) {
     text << "\nclear apertures computed from the beam because the source states no value: surface"
          << (computed.size() == 1 ? " " : "s ");
-    for (const std::size_t i : computed) text << (i == computed.front() ? "" : ", ") << i;
+    for (const int i : computed) text << (i == computed.front() ? "" : ", ") << i;
     text << '\n';
   }
   if (const auto& imported = r.loaded.prescription.imported) {
@@ -442,8 +449,8 @@ std::string to_text(const Report& r) {
     const petzval::Medium& medium = r.loaded.prescription.surfaces[space - 1].medium;
     if (medium == petzval::Medium{} || r.loaded.prescription.surfaces[space - 1].mirror) continue;
     if (petzval::glass_of(medium, r.loaded.glasses) || !medium.nd) continue;
-    text << "  surface " << space - 1 << ": " << medium.glass.value_or("a glass without a name") << ", n_d "
-         << number(*medium.nd, 7);
+    text << "  surface " << r.surface_number(space - 1) << ": " << medium.glass.value_or("a glass without a name")
+         << ", n_d " << number(*medium.nd, 7);
     if (medium.vd) text << ", V_d " << number(*medium.vd, 4);
     for (const petzval::Glass* nearest : petzval::nearest_glasses(r.loaded.glasses, *medium.nd, medium.vd, 1)) {
       text << "; the nearest is " << nearest->name << " (" << nearest->catalogue << ", " << number(nearest->nd, 7)

@@ -48,10 +48,12 @@ struct Report {
   LoadedLens loaded;  ///< at the primary wavelength of the light, with its stop and film
   ReportSubject subject;
   std::optional<DeclaredPupil> declared_pupil;
-  std::vector<MeridianReport> meridians;  ///< main meridian first; only one for a lens of revolution
-  std::vector<petzval::Finding> findings;
+  std::vector<MeridianReport> meridians;   ///< main meridian first; only one for a lens of revolution
+  std::vector<petzval::Finding> findings;  ///< messages with surface_number()
 
   const MeridianReport& main() const { return meridians.front(); }
+  /// The number of a surface in texts and JSON.
+  int surface_number(std::size_t index) const { return static_cast<int>(index) + loaded.first_surface_number; }
 };
 
 /// Builds the report. declared_pupil: the pupil of the unmodified lens by the aperture that the file declares.
@@ -82,8 +84,10 @@ std::string to_text(const Report& report);
 
 /// "y-z" or "x-z".
 const char* section_name(petzval::Meridian meridian);
-/// "surface 5", with a remark if the stop is inferred.
-std::string stop_in_words(const std::optional<petzval::Pupils>& pupils);
+/// The stop: "surface 5", with a remark if it is inferred.
+std::string stop_in_words(const Report& report);
+/// "surfaces are numbered from 0".
+std::string numbering_in_words(const Report& report);
 /// Four decimals; scientific notation for very small and large numbers.
 std::string in_words(double value);
 

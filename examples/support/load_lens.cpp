@@ -50,7 +50,8 @@ void say_what_limits(const LensFile& file, const petzval::Lens& lens) {
   const petzval::Pupils pupils = petzval::pupils(lens);
   if (!pupils.stop_inferred) return;
   note(file.id + (lens.stop() ? ": the stop has no rim" : ": no stop is marked") + "; surface " +
-       std::to_string(pupils.stop) + ", which limits the axial beam, serves as the stop");
+       std::to_string(static_cast<int>(pupils.stop) + file.first_surface_number) +
+       ", which limits the axial beam, serves as the stop");
 }
 
 petzval::ConfigurationChoice choice_of(const std::string& text) {
@@ -149,7 +150,7 @@ LensFile read_lens(const LensInput& input) {
   std::string id = lens_path(input.file).stem().string();
   if (!input.configuration.empty()) id += '_' + input.configuration;
   std::ranges::replace(id, '/', '_');
-  return {std::move(id), std::move(prescription), std::move(glasses)};
+  return {std::move(id), std::move(prescription), std::move(glasses), input.first_surface_number};
 }
 
 LoadedLens compiled(LensFile file, std::span<const double> wavelengths_nm, std::optional<double> primary_nm) {

@@ -19,6 +19,7 @@ struct LensInput {
   std::vector<std::string> glass_files{};  ///< searched before the tables of petzval
   std::string configuration{};             ///< a name or a number from 0; empty: the first
   bool match_glasses = false;              ///< media without a name get the nearest glass
+  int first_surface_number = 0;            ///< number of the first surface in texts; patents count from 1
 };
 
 /// Adds LENS with --glasses and --configuration. LENS is required if `remark` is empty.
@@ -49,6 +50,7 @@ struct LensFile {
   std::string id;  ///< file name without extension, and configuration; prefix of output files
   petzval::Prescription prescription;
   petzval::GlassCatalogue glasses;
+  int first_surface_number = 0;  ///< as in LensInput
 };
 
 /// A lens file and its compiled lens.

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <utility>
 
 #include "core/check_rectangle.hpp"
 #include "core/text.hpp"
@@ -24,11 +25,17 @@ constexpr double tolerance = 0.02;
 
 std::string mm(double value) { return to_text(value, 6) + " mm"; }
 
-std::string at(int surface) { return "surface " + std::to_string(surface) + ": "; }
-
 bool differs(double found, double expected) { return !(std::abs(found - expected) <= tolerance * std::abs(expected)); }
 
-using Findings = std::vector<Finding>;
+/// The findings so far, with the number of the first surface in their messages.
+struct Findings {
+  int first_surface_number = 0;
+  std::vector<Finding> list{};
+
+  std::string surface(int index) const { return "surface " + std::to_string(index + first_surface_number); }
+  std::string at(int index) const { return surface(index) + ": "; }
+  void add(Finding finding) { list.push_back(std::move(finding)); }
+};
 
 void check_stops(const Prescription& prescription, Findings& findings) {
   int stops = 0, last = 0;
@@ -36,11 +43,11 @@ void check_stops(const Prescription& prescription, Findings& findings) {
     if (row.stop) ++stops, last = static_cast<int>(&row - prescription.surfaces.data());
   }
   if (stops == 0) {
-    findings.push_back(
+    findings.add(
         {Kind::no_stop, {}, 0, 1, "no surface is marked as stop; the surface that clips the axial beam first is used"});
   } else if (stops > 1) {
-    findings.push_back({Kind::several_stops, last, static_cast<double>(stops), 1,
-                        at(last) + "is the last of " + std::to_string(stops) + " stops; the first is used"});
+    findings.add({Kind::several_stops, last, static_cast<double>(stops), 1,
+                  findings.at(last) + "is the last of " + std::to_string(stops) + " stops; the first is used"});
   }
 }
 
@@ -54,21 +61,21 @@ void check_surfaces(const Prescription& rows, const Lens& lens, Findings& findin
     // If an aperture ends because two surfaces meet, an overlap is reported instead.
     const bool meets_another = surface.semi_diameter == surface.edge;
     if (declared && std::isfinite(*declared) && surface.semi_diameter > 0 && *declared > end && !meets_another) {
-      findings.push_back(
-          {Kind::semi_diameter, i, *declared, end,
-           at(i) + "semi_diameter = " + mm(*declared) + "; must be at most " + mm(end) + ", where the surface ends"});
+      findings.add({Kind::semi_diameter, i, *declared, end,
+                    findings.at(i) + "semi_diameter = " + mm(*declared) + "; must be at most " + mm(end) +
+                        ", where the surface ends"});
     }
     // A stop of 0 is a closed iris. Any other rim of 0 is probably a mistake.
     if (surface.semi_diameter == 0 && lens.stop() != position) {
-      findings.push_back({Kind::semi_diameter, i, 0, lens_detail::equator(surface),
-                          at(i) + "semi_diameter = 0 mm; only the axial ray passes"});
+      findings.add({Kind::semi_diameter, i, 0, lens_detail::equator(surface),
+                    findings.at(i) + "semi_diameter = 0 mm; only the axial ray passes"});
     }
     if (i + 1 == count) break;
     const auto spacing = analysis_detail::least_spacing(lens, position);
     if (spacing && spacing->width < -1e-9 * std::max(spacing->height, std::abs(surface.thickness))) {
-      findings.push_back(
-          {Kind::overlap, i, spacing->width, 0,
-           at(i) + "overlaps the next surface by " + mm(-spacing->width) + " at a height of " + mm(spacing->height)});
+      findings.add({Kind::overlap, i, spacing->width, 0,
+                    findings.at(i) + "overlaps the next surface by " + mm(-spacing->width) + " at a height of " +
+                        mm(spacing->height)});
     }
   }
 }
@@ -126,9 +133,9 @@ void check_stop(const Lens& lens, Findings& findings) {
     if (lens.surfaces()[i].semi_diameter > 0 && margin(i) < margin(first)) first = i;
   }
   if (!(margin(first) < clipping_ratio * of_stop) || !std::isfinite(of_stop)) return;
-  findings.push_back({Kind::idle_stop, static_cast<int>(*lens.stop()), of_stop, margin(first),
-                      at(static_cast<int>(*lens.stop())) + "the stop passes an axial beam of " + mm(of_stop) +
-                          " radius, but surface " + std::to_string(first) + " clips it at " + mm(margin(first))});
+  findings.add({Kind::idle_stop, static_cast<int>(*lens.stop()), of_stop, margin(first),
+                findings.at(static_cast<int>(*lens.stop())) + "the stop passes an axial beam of " + mm(of_stop) +
+                    " radius, but " + findings.surface(static_cast<int>(first)) + " clips it at " + mm(margin(first))});
 }
 
 /// Distance from the last vertex to the paraxial image of the design object; infinite for an afocal lens.
@@ -144,34 +151,34 @@ void check_first_order(const Prescription& prescription, const Lens& lens, const
   const auto unit =
       prescription.focal_length_mm ? unit_between(focal_length, *prescription.focal_length_mm) : std::nullopt;
   if (unit) {
-    findings.push_back({Kind::units,
-                        {},
-                        focal_length,
-                        *prescription.focal_length_mm,
-                        "focal length = " + mm(focal_length) + ", declared " + mm(*prescription.focal_length_mm) +
-                            ": lengths are " + to_text(*unit, 4) + " times the declared scale"});
+    findings.add({Kind::units,
+                  {},
+                  focal_length,
+                  *prescription.focal_length_mm,
+                  "focal length = " + mm(focal_length) + ", declared " + mm(*prescription.focal_length_mm) +
+                      ": lengths are " + to_text(*unit, 4) + " times the declared scale"});
   } else if (prescription.focal_length_mm && differs(focal_length, *prescription.focal_length_mm)) {
-    findings.push_back({Kind::focal_length,
-                        {},
-                        focal_length,
-                        *prescription.focal_length_mm,
-                        "focal length = " + mm(focal_length) + ", declared " + mm(*prescription.focal_length_mm)});
+    findings.add({Kind::focal_length,
+                  {},
+                  focal_length,
+                  *prescription.focal_length_mm,
+                  "focal length = " + mm(focal_length) + ", declared " + mm(*prescription.focal_length_mm)});
   }
   if (prescription.f_number && limits_the_beam(lens)) {
     const double f_number = real_f_number(lens);
     if (const auto factor = aperture_factor(prescription, f_number, glasses)) {
-      findings.push_back({Kind::apertures,
-                          {},
-                          f_number,
-                          *prescription.f_number,
-                          "f-number = " + to_text(f_number, 4) + ", declared " + to_text(*prescription.f_number, 4) +
-                              ": semi-diameters are " + (*factor > 1 ? "diameters" : "half semi-diameters")});
+      findings.add({Kind::apertures,
+                    {},
+                    f_number,
+                    *prescription.f_number,
+                    "f-number = " + to_text(f_number, 4) + ", declared " + to_text(*prescription.f_number, 4) +
+                        ": semi-diameters are " + (*factor > 1 ? "diameters" : "half semi-diameters")});
     } else if (differs(f_number, *prescription.f_number)) {
-      findings.push_back({Kind::f_number,
-                          {},
-                          f_number,
-                          *prescription.f_number,
-                          "f-number = " + to_text(f_number, 6) + ", declared " + to_text(*prescription.f_number, 6)});
+      findings.add({Kind::f_number,
+                    {},
+                    f_number,
+                    *prescription.f_number,
+                    "f-number = " + to_text(f_number, 6) + ", declared " + to_text(*prescription.f_number, 6)});
     }
   }
   const int last = static_cast<int>(lens.surface_count()) - 1;
@@ -179,9 +186,9 @@ void check_first_order(const Prescription& prescription, const Lens& lens, const
   const double image = image_distance(prescription, lens);
   if (std::isfinite(image) && std::abs(distance - image) > tolerance * std::abs(focal_length)) {
     const bool far = std::isinf(prescription.design.object_distance_mm);
-    findings.push_back({Kind::image_distance, last, distance, image,
-                        at(last) + "the film is " + mm(distance) + " behind the surface, the paraxial " +
-                            (far ? "focus " : "image of the object ") + mm(image)});
+    findings.add({Kind::image_distance, last, distance, image,
+                  findings.at(last) + "the film is " + mm(distance) + " behind the surface, the paraxial " +
+                      (far ? "focus " : "image of the object ") + mm(image)});
   }
 }
 
@@ -193,9 +200,9 @@ void check_glasses(const Prescription& prescription, const GlassCatalogue& glass
     const Glass* glass = glasses.find(*medium.glass, *medium.catalogue);
     if (!glass || std::abs(glass->nd - *medium.nd) <= min_index_difference) continue;
     const int surface = static_cast<int>(i);
-    findings.push_back(
-        {Kind::glass_index, surface, *medium.nd, glass->nd,
-         at(surface) + "n_d = " + to_text(*medium.nd, 6) + ", n_d of " + glass->name + " = " + to_text(glass->nd, 6)});
+    findings.add({Kind::glass_index, surface, *medium.nd, glass->nd,
+                  findings.at(surface) + "n_d = " + to_text(*medium.nd, 6) + ", n_d of " + glass->name + " = " +
+                      to_text(glass->nd, 6)});
   }
 }
 
@@ -205,13 +212,13 @@ void check_size(const Lens& lens, const Film& film, Findings& findings) {
   const double diameter = 2 * film.radius_mm();
   const bool larger = diameter > max_size_ratio * circle;
   if (!larger && !(diameter < min_size_ratio * circle && std::isfinite(circle))) return;
-  findings.push_back({Kind::film_size,
-                      {},
-                      diameter,
-                      circle,
-                      "the film is " + to_text(film.width_mm, 6) + " by " + mm(film.height_mm) +
-                          " and needs an image circle of " + mm(diameter) + "; the image circle of the lens is " +
-                          to_text(circle, 4) + " mm, which requires a " + (larger ? "smaller" : "larger") + " film"});
+  findings.add({Kind::film_size,
+                {},
+                diameter,
+                circle,
+                "the film is " + to_text(film.width_mm, 6) + " by " + mm(film.height_mm) +
+                    " and needs an image circle of " + mm(diameter) + "; the image circle of the lens is " +
+                    to_text(circle, 4) + " mm, which requires a " + (larger ? "smaller" : "larger") + " film"});
 }
 
 void check_pixels(const Lens& lens, const Film& film, Findings& findings) {
@@ -221,13 +228,13 @@ void check_pixels(const Lens& lens, const Film& film, Findings& findings) {
   const double expected_height = width * film.rows;
   // With few pixels, rounding to whole pixels changes the height of the film slightly.
   if (std::abs(width / height - 1) <= 0.005 || std::abs(film.height_mm - expected_height) < width) return;
-  findings.push_back({Kind::pixel_shape,
-                      {},
-                      width / height,
-                      1,
-                      "pixels are " + to_text(width, 4) + " by " + to_text(height, 4) +
-                          " mm; must be square: " + to_text(film.width_mm, 6) + " by " + mm(expected_height) + " fit " +
-                          std::to_string(film.columns) + " by " + std::to_string(film.rows)});
+  findings.add({Kind::pixel_shape,
+                {},
+                width / height,
+                1,
+                "pixels are " + to_text(width, 4) + " by " + to_text(height, 4) +
+                    " mm; must be square: " + to_text(film.width_mm, 6) + " by " + mm(expected_height) + " fit " +
+                    std::to_string(film.columns) + " by " + std::to_string(film.rows)});
 }
 
 }  // namespace
@@ -253,10 +260,10 @@ std::string_view name(FindingKind kind) noexcept {
 
 namespace {
 
-Findings lint_rows(const Prescription& prescription, const GlassCatalogue* glasses) {
+Findings lint_rows(const Prescription& prescription, const GlassCatalogue* glasses, int first_surface_number = 0) {
   const Prescription rows = configured(prescription, 0);
   const Lens lens = compile(rows, {.glasses = glasses});
-  Findings findings;
+  Findings findings{first_surface_number};
   check_stops(rows, findings);
   check_stop(lens, findings);
   check_surfaces(rows, lens, findings);
@@ -266,19 +273,19 @@ Findings lint_rows(const Prescription& prescription, const GlassCatalogue* glass
 
 }  // namespace
 
-std::vector<Finding> lint(const Prescription& prescription) { return lint_rows(prescription, nullptr); }
+std::vector<Finding> lint(const Prescription& prescription) { return lint_rows(prescription, nullptr).list; }
 
-std::vector<Finding> lint(const Prescription& prescription, const GlassCatalogue& glasses) {
-  Findings findings = lint_rows(prescription, &glasses);
+std::vector<Finding> lint(const Prescription& prescription, const GlassCatalogue& glasses, int first_surface_number) {
+  Findings findings = lint_rows(prescription, &glasses, first_surface_number);
   check_glasses(configured(prescription, 0), glasses, findings);
-  return findings;
+  return std::move(findings.list);
 }
 
 RepairedPrescription repair(const Prescription& prescription, const GlassCatalogue* glasses) {
   RepairedPrescription result{prescription, {}};
   Prescription& p = result.prescription;
   const auto find = [&](Kind kind) -> std::optional<Finding> {
-    const Findings findings = lint_rows(p, glasses);
+    const std::vector<Finding> findings = lint_rows(p, glasses).list;
     const auto found = std::ranges::find(findings, kind, &Finding::kind);
     return found == findings.end() ? std::nullopt : std::optional(*found);
   };
@@ -335,7 +342,7 @@ std::vector<Finding> lint(const Lens& lens, const Film& film) {
   Findings findings;
   check_size(lens, film, findings);
   check_pixels(lens, film, findings);
-  return findings;
+  return std::move(findings.list);
 }
 
 }  // namespace petzval

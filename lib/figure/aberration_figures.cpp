@@ -171,7 +171,7 @@ std::string mtf_figure(const Lens& lens, double subject_z, std::span<const MtfPo
   return std::move(svg).finish();
 }
 
-std::string seidel_figure(const Lens& lens, double subject_z, const SeidelSums& sums) {
+std::string seidel_figure(const Lens& lens, double subject_z, const SeidelSums& sums, int first_surface_number) {
   if (sums.surfaces.size() != lens.surface_count()) {
     throw Error("seidel_figure: sums of " + std::to_string(sums.surfaces.size()) + " surfaces; must be " +
                 std::to_string(lens.surface_count()) + ", as the lens has");
@@ -189,19 +189,22 @@ std::string seidel_figure(const Lens& lens, double subject_z, const SeidelSums& 
                                Term{&SeidelTerms::c2, "C2 lateral colour", "#8a4b2a"}};
   figure_detail::Svg svg(width, top + 2 * step);
   figure_detail::draw_head(svg, lens, "Seidel and chromatic sums", subject_z, lens.primary_wavelength());
-  const double places = static_cast<double>(sums.surfaces.size() + 2);  // a gap, then the sums
+  const double first = first_surface_number;
+  const double end = first + static_cast<double>(sums.surfaces.size() + 2);  // a gap, then the sums
   const auto draw = [&](double y, std::span<const Term> terms) {
     double largest = 0;
     const auto each = [&](const auto& body) {
-      for (std::size_t i = 0; i < sums.surfaces.size(); ++i) body(static_cast<double>(i), sums.surfaces[i]);
-      body(places - 1, sums.sums);
+      for (std::size_t i = 0; i < sums.surfaces.size(); ++i) body(first + static_cast<double>(i), sums.surfaces[i]);
+      body(end - 1, sums.sums);
     };
     each([&](double, const SeidelTerms& at) {
       for (const Term& term : terms) largest = std::max(largest, std::abs(at.*term.value));
     });
     const double range = round_range(1000 * largest, 1e-6);
     Axes axes(svg, left, y, width - left - 24, height,
-              {-0.5, places - 0.5, "surface, from 0; the last bars are the sums"}, {-range, range, "\u00b5m"});
+              {first - 0.5, end - 0.5,
+               "surface, from " + std::to_string(first_surface_number) + "; the last bars are the sums"},
+              {-range, range, "\u00b5m"});
     each([&](double place, const SeidelTerms& at) {
       const double bar = 0.8 / static_cast<double>(terms.size());
       for (std::size_t k = 0; k < terms.size(); ++k) {
@@ -211,7 +214,7 @@ std::string seidel_figure(const Lens& lens, double subject_z, const SeidelSums& 
                  "fill=\"" + std::string(terms[k].colour) + "\"");
       }
     });
-    axes.curve(std::array{Axes::Point{-0.5, 0}, Axes::Point{places - 0.5, 0}}, stroke("#444"));
+    axes.curve(std::array{Axes::Point{first - 0.5, 0}, Axes::Point{end - 0.5, 0}}, stroke("#444"));
     double x = left;
     for (const Term& term : terms) x = 24 + figure_detail::draw_key(svg, x, y + height + 58, term.colour, term.name);
   };

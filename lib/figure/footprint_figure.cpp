@@ -62,8 +62,12 @@ struct Cell {
 
 class FootprintFigure {
  public:
-  FootprintFigure(const Lens& lens, double subject_z, std::span<const double> fields_rad)
-      : lens_(lens), subject_z_(subject_z), fields_(fields_rad), wavelength_(lens.primary_wavelength()) {
+  FootprintFigure(const Lens& lens, double subject_z, std::span<const double> fields_rad, int first_surface_number)
+      : lens_(lens),
+        subject_z_(subject_z),
+        fields_(fields_rad),
+        first_surface_number_(first_surface_number),
+        wavelength_(lens.primary_wavelength()) {
     half_x_ = pupils(lens, wavelength_, Meridian::x).entrance.diameter / 2;
     half_y_ = pupils(lens, wavelength_, Meridian::y).entrance.diameter / 2;
     axial_area_ = pupil_boundary(lens, {0, subject_z}, wavelength_).area();
@@ -137,7 +141,7 @@ class FootprintFigure {
   std::vector<std::string> limit_names() const {
     std::vector<std::string> result;
     for (const Limit& limit : limits_) {
-      std::string words = "surface " + std::to_string(limit.surface);
+      std::string words = "surface " + std::to_string(limit.surface + first_surface_number_);
       if (lens_.stop() && static_cast<int>(*lens_.stop()) == limit.surface) words += ", the stop";
       if (limit.fate == RayFate::totally_reflected) words += ", total reflection";
       if (limit.fate == RayFate::missed_surface || limit.fate == RayFate::no_convergence) words += ", missed";
@@ -210,6 +214,7 @@ class FootprintFigure {
   const Lens& lens_;
   double subject_z_;
   std::span<const double> fields_;
+  int first_surface_number_;
   std::size_t wavelength_;
   double half_x_ = 0, half_y_ = 0;  // semi-axes of the paraxial entrance pupil
   double axial_area_ = 0;
@@ -220,9 +225,10 @@ class FootprintFigure {
 
 }  // namespace
 
-std::string footprint_figure(const Lens& lens, double subject_z, std::span<const double> fields_rad) {
+std::string footprint_figure(const Lens& lens, double subject_z, std::span<const double> fields_rad,
+                             int first_surface_number) {
   if (fields_rad.empty()) throw Error("footprint_figure: fields = 0; must be at least 1");
-  return FootprintFigure(lens, subject_z, fields_rad).draw();
+  return FootprintFigure(lens, subject_z, fields_rad, first_surface_number).draw();
 }
 
 }  // namespace petzval

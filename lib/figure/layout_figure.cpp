@@ -41,10 +41,11 @@ struct Box {
 class LayoutFigure {
  public:
   LayoutFigure(const Lens& lens, double subject_z, std::span<const double> fields_rad, Meridian section,
-               std::size_t rays)
+               std::size_t rays, int first_surface_number)
       : lens_(lens),
         subject_z_(subject_z),
         fields_(fields_rad),
+        first_surface_number_(first_surface_number),
         meridian_(section),
         wavelength_(lens.primary_wavelength()),
         rays_(figure_detail::ray_paths(lens, subject_z, fields_rad, section, rays, wavelength_)),
@@ -251,7 +252,8 @@ class LayoutFigure {
 
   std::string stop_in_words() const {
     if (!stop_) return "No stop: the beam is unlimited.";
-    const std::string surface = "surface " + std::to_string(stop_->stop) + ".";
+    const std::string surface =
+        "surface " + std::to_string(static_cast<int>(stop_->stop) + first_surface_number_) + ".";
     if (!stop_->stop_inferred) return "Ticks: stop, " + surface;
     const std::string why = lens_.stop() ? "the stop has no rim" : "no surface is marked as stop";
     return "Dashed ticks: " + why + ", the beam is limited by " + surface;
@@ -260,6 +262,7 @@ class LayoutFigure {
   const Lens& lens_;
   double subject_z_;
   std::span<const double> fields_;
+  int first_surface_number_;
   Meridian meridian_;
   std::size_t wavelength_;
   std::vector<RayPath> rays_;
@@ -278,11 +281,11 @@ class LayoutFigure {
 }  // namespace
 
 std::string layout_figure(const Lens& lens, double subject_z, std::span<const double> fields_rad, Meridian section,
-                          std::size_t rays) {
+                          std::size_t rays, int first_surface_number) {
   if (rays < 3 || rays > 7) {
     throw Error("layout_figure: rays = " + std::to_string(rays) + "; must be 3 to 7");
   }
-  return LayoutFigure(lens, subject_z, fields_rad, section, rays).draw();
+  return LayoutFigure(lens, subject_z, fields_rad, section, rays, first_surface_number).draw();
 }
 
 }  // namespace petzval

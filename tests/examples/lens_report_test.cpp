@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <cmath>
+#include <regex>
 #include <string>
 #include <vector>
 
@@ -216,6 +217,103 @@ TEST_F(LensReport, DrawsFiguresAndAPage) {
 
   run("report", {file, "--out", path("again")});
   EXPECT_EQ(read(path("again/cooke_triplet_50mm_f5.html")), page);
+}
+
+/// The groups of a pattern in a text, as numbers; a group may be a list like "2, 3".
+std::vector<int> numbers_in(const std::string& text, const std::string& pattern) {
+  std::vector<int> result;
+  const std::regex whole(pattern), digits("[0-9]+");
+  for (std::sregex_iterator match(text.begin(), text.end(), whole), end; match != end; ++match) {
+    const std::string group = (*match)[1];
+    for (std::sregex_iterator each(group.begin(), group.end(), digits); each != end; ++each) {
+      result.push_back(std::stoi(each->str()));
+    }
+  }
+  return result;
+}
+
+/// Surface 2 clips the beam of the stop, surface 1; the rims of surfaces 0 and 3 are computed; no glass has a name.
+constexpr const char* small_rim = R"({"format": "petzval-lens 1", "id": "rims", "name": "Rims",
+  "source": {"design": "test", "numbers": "test"}, "focal_length_mm": null, "f_number": null, "half_field_deg": 2,
+  "image_diagonal_mm": null, "reference_wavelength_nm": 587.5618,
+  "surfaces": [
+    {"radius": 60.0, "thickness": 4.0, "glass": null, "nd": 1.5678, "vd": 61.0, "semi_diameter": null, "conic": 0.0, "aspheric": [], "stop": false},
+    {"radius": -60.0, "thickness": 2.0, "glass": null, "nd": null, "vd": null, "semi_diameter": 10.0, "conic": 0.0, "aspheric": [], "stop": true},
+    {"radius": 60.0, "thickness": 4.0, "glass": null, "nd": 1.5678, "vd": 61.0, "semi_diameter": 5.0, "conic": 0.0, "aspheric": [], "stop": false},
+    {"radius": 0.0, "thickness": 20.0, "glass": null, "nd": null, "vd": null, "semi_diameter": null, "conic": 0.0, "aspheric": [], "stop": false}
+  ]
+})";
+
+TEST_F(LensReport, CountsSurfacesFromOneIfAsked) {
+  write("rims.json", small_rim);
+  const std::string file = path("rims.json");
+  const auto report = [&](const std::string& base, const std::vector<std::string>& more) {
+    std::vector<std::string> arguments{file, "--surfaces-from", base};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return run("report", arguments);
+  };
+  const auto expect_shifted = [](std::string zero, std::string one, const std::string& pattern, std::size_t least) {
+    std::vector<int> from_zero = numbers_in(zero, pattern);
+    EXPECT_GE(from_zero.size(), least) << pattern << '\n' << zero;
+    for (int& number : from_zero) ++number;
+    EXPECT_EQ(numbers_in(one, pattern), from_zero) << pattern;
+  };
+  const std::string named = "surfaces? ([0-9]+(?:, [0-9]+)*)";
+
+  // Text: the stop, two computed rims, two missing glasses, and four surfaces in two or more findings.
+  const auto text = report("0", {}), text_from_one = report("1", {});
+  ASSERT_EQ(text_from_one.status, 0) << text_from_one.err;
+  EXPECT_EQ(run("report", {file}).out, text.out);
+  EXPECT_NE(text.out.find("surfaces are numbered from 0"), std::string::npos);
+  EXPECT_NE(text_from_one.out.find("surfaces are numbered from 1"), std::string::npos);
+  EXPECT_NE(text.out.find("surface 1: the stop passes"), std::string::npos) << text.out;
+  EXPECT_NE(text_from_one.out.find("but surface 3 clips it"), std::string::npos) << text_from_one.out;
+  expect_shifted(text.out, text_from_one.out, named, 8);
+
+  // JSON: only surface numbers change.
+  const auto json = nlohmann::json::parse(report("0", {"--json"}).out);
+  const auto from_one = nlohmann::json::parse(report("1", {"--json"}).out);
+  EXPECT_EQ(json["surfaces_from"], 0);
+  EXPECT_EQ(json["stop_surface"], 1);
+  EXPECT_EQ(json["computed_apertures"], (nlohmann::json{0, 3}));
+  std::size_t shifted = 0;
+  const auto difference = nlohmann::json::diff(json, from_one);
+  for (const auto& change : difference) {
+    const std::string key = change["path"];
+    ASSERT_EQ(change["op"], "replace") << key;
+    if (key.ends_with("/message")) continue;
+    EXPECT_TRUE(key.ends_with("/surface") || key.starts_with("/computed_apertures/") || key == "/surfaces_from" ||
+                key == "/stop_surface")
+        << key;
+    EXPECT_EQ(change["value"], json[nlohmann::json::json_pointer(key)].get<int>() + 1) << key;
+    ++shifted;
+  }
+  EXPECT_EQ(shifted, 1 + 1 + 2 + 4 + 4 + json["lint"].size());  // base, stop, apertures, Seidel sums, rays, findings
+  expect_shifted(json["lint"].dump(), from_one["lint"].dump(), named, 3);
+
+  // Page and figures.
+  ASSERT_EQ(report("0", {"--out", path("zero")}).status, 0);
+  ASSERT_EQ(report("1", {"--out", path("one")}).status, 0);
+  const std::string page = read(path("zero/rims.html")), page_from_one = read(path("one/rims.html"));
+  expect_shifted(page, page_from_one, named, 6);
+  expect_shifted(page, page_from_one, "<tr><td class=\"number\">([0-9]+)</td>", 4);
+  expect_shifted(page, page_from_one, "surfaces are numbered from ([0-9]+)", 2);
+  for (const char* figure : {"layout", "footprints"}) {
+    const std::string name = std::string("/rims_") + figure + ".svg";
+    expect_shifted(read(path("zero" + name)), read(path("one" + name)), named, 1);
+  }
+  expect_shifted(read(path("zero/rims_seidel.svg")), read(path("one/rims_seidel.svg")), "surface, from ([0-9])", 2);
+}
+
+TEST_F(LensReport, CountsSurfacesFromOneInTheNoteAboutTheStop) {
+  write("window.json", two_planes);
+  const std::string zero = run("report", {path("window.json")}).err;
+  const std::string one = run("report", {path("window.json"), "--surfaces-from", "1"}).err;
+  EXPECT_NE(zero.find("surface 0, which limits"), std::string::npos) << zero;
+  EXPECT_NE(one.find("surface 1, which limits"), std::string::npos) << one;
+  const auto refused = run("report", {path("window.json"), "--surfaces-from", "2"});
+  EXPECT_NE(refused.status, 0);
+  petzval::testing::expect_tokens(refused.err, {"--surfaces-from", "2"});
 }
 
 TEST_F(LensReport, DrawsRequestedFieldsAndBothSections) {

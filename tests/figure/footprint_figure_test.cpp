@@ -50,6 +50,11 @@ TEST(FootprintFigure, NamesEachSurfaceThatLimits) {
   for (const int surface : limiting) {
     EXPECT_NE(svg.find(">surface " + std::to_string(surface)), std::string::npos) << surface;
   }
+  const std::string from_one = footprint_figure(lens, -infinity, std::array{field}, 1);
+  EXPECT_EQ(count(from_one, ">surface "), count(svg, ">surface "));
+  for (const int surface : limiting) {
+    EXPECT_NE(from_one.find(">surface " + std::to_string(surface + 1)), std::string::npos) << surface;
+  }
 }
 
 TEST(FootprintFigure, DrawsTheEdgeToScale) {

@@ -42,7 +42,7 @@ struct Finding {
   std::optional<int> surface;  ///< index of the surface, from 0
   double found = 0;            ///< the value of the prescription, film or lens
   double expected = 0;         ///< the value or limit that it should meet
-  std::string message;         ///< one line, with units
+  std::string message;         ///< one line, with units; surfaces count from 0 unless lint() is told otherwise
 };
 
 /// Checks the declared data of a prescription against computed values.
@@ -54,7 +54,12 @@ struct Finding {
 PETZVAL_API std::vector<Finding> lint(const Prescription& prescription);
 
 /// Checks a prescription with the glasses of a catalogue: n_d of a medium must be within 0.005 of n_d of its glass.
-PETZVAL_API std::vector<Finding> lint(const Prescription& prescription, const GlassCatalogue& glasses);
+///
+/// @param first_surface_number  number of the first surface in messages; patents count from 1. Finding::surface stays
+/// an
+///                              index from 0.
+PETZVAL_API std::vector<Finding> lint(const Prescription& prescription, const GlassCatalogue& glasses,
+                                      int first_surface_number = 0);
 
 /// A repaired prescription and the list of changes.
 struct RepairedPrescription {

@@ -28,9 +28,11 @@ namespace petzval {
 /// @param fields_rad  field angles (rad), also 90 degrees or more; empty: no rays are drawn
 /// @param section     the plane of the drawing and of the fields
 /// @param rays        transmitted rays per field, 3 to 7
+/// @param first_surface_number  number of the first surface in the legend; patents count from 1
 /// @throws Error      if the number of rays is not 3 to 7; also under the conditions of aim()
 PETZVAL_API std::string layout_figure(const Lens& lens, double subject_z, std::span<const double> fields_rad,
-                                      Meridian section = Meridian::y, std::size_t rays = 5);
+                                      Meridian section = Meridian::y, std::size_t rays = 5,
+                                      int first_surface_number = 0);
 
 /// Draws the vignetted pupil of each field at the primary wavelength as SVG text.
 ///
@@ -42,8 +44,10 @@ PETZVAL_API std::string layout_figure(const Lens& lens, double subject_z, std::s
 /// @param lens        the lens
 /// @param subject_z   subject plane (lens frame, mm); -inf at infinity
 /// @param fields_rad  field angles (rad)
+/// @param first_surface_number  number of the first surface in the legend, as in layout_figure()
 /// @throws Error      if there are no fields; also under the conditions of scene_point()
-PETZVAL_API std::string footprint_figure(const Lens& lens, double subject_z, std::span<const double> fields_rad);
+PETZVAL_API std::string footprint_figure(const Lens& lens, double subject_z, std::span<const double> fields_rad,
+                                         int first_surface_number = 0);
 
 /// Draws relative illumination against field angle at the primary wavelength, with cos^4 for comparison, as SVG text.
 ///
@@ -85,8 +89,10 @@ PETZVAL_API std::string mtf_figure(const Lens& lens, double subject_z, std::span
 /// @param lens       the lens
 /// @param subject_z  subject plane (lens frame, mm); -inf at infinity
 /// @param sums       seidel_sums() of this lens
+/// @param first_surface_number  number of the first surface on the axis, as in layout_figure()
 /// @throws Error     if the sums have another number of surfaces than the lens
-PETZVAL_API std::string seidel_figure(const Lens& lens, double subject_z, const SeidelSums& sums);
+PETZVAL_API std::string seidel_figure(const Lens& lens, double subject_z, const SeidelSums& sums,
+                                      int first_surface_number = 0);
 
 /// Draws a spot diagram as SVG text: one row per field, with a column for all wavelengths and one per wavelength.
 ///
