@@ -356,6 +356,10 @@ Json to_json(const Report& r, const petzval::Lens& colours) {
   json.update(exact_aberrations(r, colours));
   const auto& imported = r.loaded.prescription.imported;
   json["computed_apertures"] = computed_apertures(r);
+  json["edge_thicknesses_mm"] = Json::array();
+  for (const std::optional<double>& edge : petzval::edge_thicknesses(lens)) {
+    json["edge_thicknesses_mm"].push_back(edge ? Json(*edge) : Json(nullptr));
+  }
   json["format"] = imported ? imported->format : "petzval";
   json["warnings"] = Json::array();
   if (imported) {

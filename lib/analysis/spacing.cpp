@@ -9,6 +9,7 @@
 #include "lens/data.hpp"
 #include "lens/edges.hpp"
 #include "lens/equator.hpp"
+#include "petzval/analysis/lint.hpp"
 
 namespace petzval::analysis_detail {
 
@@ -69,3 +70,24 @@ std::optional<Spacing> least_spacing(const Lens& lens, std::size_t surface) {
 }
 
 }  // namespace petzval::analysis_detail
+
+namespace petzval {
+
+std::vector<std::optional<double>> edge_thicknesses(const Lens& lens) {
+  const auto surfaces = lens.surfaces();
+  std::vector<std::optional<double>> result(surfaces.size());
+  for (std::size_t i = 0; i + 1 < surfaces.size(); ++i) {
+    const LensSurface &front = surfaces[i], &rear = surfaces[i + 1];
+    if (front.curved_in != Section::both || rear.curved_in != Section::both) continue;
+    // Compiled apertures end where surfaces meet, and would hide a negative edge.
+    const double height = std::max(lens.data().rims[i], lens.data().rims[i + 1]);
+    if (!std::isfinite(height)) continue;
+    const double thickness =
+        rear.vertex_z - front.vertex_z + lens_detail::sag_of(rear, 0, height) - lens_detail::sag_of(front, 0, height);
+    // Not finite beyond the end of a surface.
+    if (std::isfinite(thickness)) result[i] = lens.light_direction(i + 1) * thickness;
+  }
+  return result;
+}
+
+}  // namespace petzval

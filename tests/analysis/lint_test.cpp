@@ -5,10 +5,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <map>
 #include <optional>
 #include <set>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "../data_lenses.hpp"
@@ -312,6 +314,115 @@ TEST(Lint, ChecksCylindersInBothSections) {
     for (const Finding& finding : lint(p)) crosses = crosses || finding.kind == Kind::overlap;
     EXPECT_TRUE(crosses);
   }
+}
+
+constexpr double infinite = std::numeric_limits<double>::infinity();
+
+/// Radius 50 and -40 mm, 6 mm thick, then a plane 3 mm behind.
+Prescription spheres(double front_rim, double rear_rim) {
+  Prescription p;
+  p.name = "spheres";
+  p.surfaces = {{.radius = 50, .thickness = 6, .medium = {.nd = 1.5}, .semi_diameter = front_rim, .stop = true},
+                {.radius = -40, .thickness = 3, .semi_diameter = rear_rim},
+                {.radius = 0, .thickness = 90, .semi_diameter = 2}};
+  return p;
+}
+
+TEST(EdgeThicknesses, OfSpheresHaveAClosedForm) {
+  const auto sag = [](double radius, double h) {
+    return radius - std::copysign(std::sqrt(radius * radius - h * h), radius);
+  };
+  for (const auto& [front_rim, rear_rim] : {std::pair(8.0, 10.0), std::pair(10.0, 8.0), std::pair(15.0, 15.0)}) {
+    const double height = std::max(front_rim, rear_rim);
+    const auto edges = edge_thicknesses(compile(spheres(front_rim, rear_rim)));
+    ASSERT_EQ(edges.size(), 3u);
+    ASSERT_TRUE(edges[0] && edges[1]);
+    EXPECT_NEAR(*edges[0], 6 + sag(-40, height) - sag(50, height), 1e-14);
+    EXPECT_NEAR(*edges[1], 3 - sag(-40, rear_rim), 1e-14);
+    EXPECT_FALSE(edges[2]);
+  }
+  // The surfaces meet at 16.0 mm. Rims beyond give a negative edge, although the compiled apertures end there.
+  EXPECT_LT(*edge_thicknesses(compile(spheres(18, 18)))[0], -1.5);
+}
+
+TEST(EdgeThicknesses, AreAbsentBeyondASurfaceAndForUnlimitedRims) {
+  EXPECT_FALSE(edge_thicknesses(compile(spheres(45, 10)))[0]);
+  EXPECT_TRUE(edge_thicknesses(compile(spheres(45, 10)))[1]);
+  EXPECT_FALSE(edge_thicknesses(compile(spheres(infinite, 10)))[0]);
+  EXPECT_FALSE(edge_thicknesses(compile(spheres(10, infinite)))[1]);
+  Prescription cylinder = spheres(10, 10);
+  cylinder.surfaces[1].curved_in = Section::x;
+  EXPECT_FALSE(edge_thicknesses(compile(cylinder))[0]);
+  EXPECT_FALSE(edge_thicknesses(compile(cylinder))[1]);
+}
+
+TEST(EdgeThicknesses, OfAnAsphereIncludeItsTerms) {
+  Prescription p = spheres(10, 10);
+  const double sphere = *edge_thicknesses(compile(p))[0];
+  p.surfaces[1].aspheric = {{4, 2e-5}};
+  EXPECT_NEAR(*edge_thicknesses(compile(p))[0] - sphere, 0.2, 1e-13);
+}
+
+TEST(EdgeThicknesses, ScaleWithTheLens) {
+  for (const char* id : {"double_gauss_100mm_f1.35", "cine_100mm_t1.3", "mirror_ritchey_chretien_57.6m_f24"}) {
+    const Prescription p = data_prescription(id);
+    const auto edges = edge_thicknesses(compile(p)), scaled = edge_thicknesses(compile(scale(p, 4)));
+    ASSERT_EQ(edges.size(), scaled.size());
+    for (std::size_t i = 0; i < edges.size(); ++i) {
+      ASSERT_EQ(edges[i].has_value(), scaled[i].has_value()) << id << ' ' << i;
+      if (!edges[i]) continue;
+      EXPECT_NEAR(*scaled[i], 4 * *edges[i], 1e-12 * std::abs(*scaled[i])) << id << ' ' << i;
+    }
+  }
+}
+
+// A reversed lens has the same spaces in reverse order, with equal edges.
+TEST(EdgeThicknesses, OfAReversedLensAreReversed) {
+  const Prescription p = data_prescription("double_gauss_100mm_f1.35");
+  Prescription reversed = p;
+  const std::size_t count = p.surfaces.size();
+  for (std::size_t i = 0; i < count; ++i) {
+    SurfaceRow& row = reversed.surfaces[i];
+    row = p.surfaces[count - 1 - i];
+    row.radius = -row.radius;
+    if (i + 1 < count) row.thickness = p.surfaces[count - 2 - i].thickness;
+    if (i + 1 < count) row.medium = p.surfaces[count - 2 - i].medium;
+    if (i + 1 == count) row.medium = {};
+  }
+  const auto edges = edge_thicknesses(compile(p)), back = edge_thicknesses(compile(reversed));
+  std::size_t compared = 0;
+  for (std::size_t i = 0; i + 1 < count; ++i) {
+    ASSERT_EQ(edges[i].has_value(), back[count - 2 - i].has_value()) << i;
+    if (!edges[i]) continue;
+    EXPECT_NEAR(*edges[i], *back[count - 2 - i], 1e-12) << i;
+    ++compared;
+  }
+  EXPECT_EQ(compared, count - 2);  // the fifth surface ends at its equator, before the rim of the fourth
+}
+
+// A mirrored path: light that runs towards -z passes the same gap.
+TEST(EdgeThicknesses, BehindAMirrorAreMeasuredAlongTheLight) {
+  Prescription p;
+  p.name = "mirrors";
+  p.surfaces = {{.radius = -200, .thickness = -50, .semi_diameter = 20, .stop = true, .mirror = true},
+                {.radius = 0, .thickness = 40, .semi_diameter = 5, .mirror = true},
+                {.radius = 0, .thickness = 10, .semi_diameter = 5}};
+  const auto edges = edge_thicknesses(compile(p));
+  EXPECT_NEAR(*edges[0], 50 - (200 - std::sqrt(200 * 200 - 20 * 20)), 1e-12);
+  EXPECT_NEAR(*edges[1], 40, 1e-12);
+}
+
+TEST(Lint, CountsSurfacesOfMessagesFromTheGivenNumber) {
+  Prescription p = singlet();
+  p.surfaces[0].semi_diameter = 50;  // the stop passes more than surface 1
+  const auto from_zero = lint(p, glass_tables()), from_one = lint(p, glass_tables(), 1);
+  ASSERT_EQ(from_zero.size(), from_one.size());
+  const auto idle = std::ranges::find(from_one, Kind::idle_stop, &Finding::kind);
+  ASSERT_NE(idle, from_one.end());
+  EXPECT_EQ(idle->surface, 0);
+  expect_tokens(idle->message, {"surface 1: ", "surface 2 clips"});
+  expect_tokens(from_zero[static_cast<std::size_t>(idle - from_one.begin())].message,
+                {"surface 0: ", "surface 1 clips"});
 }
 
 TEST(Lint, FindsARimBeyondTheEndOfAnAsphere) {

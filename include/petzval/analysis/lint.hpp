@@ -61,6 +61,18 @@ PETZVAL_API std::vector<Finding> lint(const Prescription& prescription);
 PETZVAL_API std::vector<Finding> lint(const Prescription& prescription, const GlassCatalogue& glasses,
                                       int first_surface_number = 0);
 
+/// Edge thickness of each surface in mm: the distance along the axis to the next surface, at one height.
+///
+/// The height is the larger of the two clear semi-diameters that the prescription states, so that an element holds its
+/// rims. Behind a mirror, where light travels backwards, the distance is measured along the light. A negative value
+/// means that the surfaces intersect below this height.
+///
+/// @param lens  the lens
+/// @return      a value for each surface; nullopt for the last surface, and if a semi-diameter of the two surfaces is
+///              unlimited, one surface does not reach the height, or one is a cylinder, whose sag depends on the
+///              section
+PETZVAL_API std::vector<std::optional<double>> edge_thicknesses(const Lens& lens);
+
 /// A repaired prescription and the list of changes.
 struct RepairedPrescription {
   Prescription prescription;
