@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 #include <sstream>
 #include <string_view>
 #include <utility>
@@ -53,11 +54,18 @@ void first_order_table(std::ostream& html, const Report& r) {
        << (r.meridians.size() > 1 ? "<td></td>" : "") << "<td>mm</td></tr>\n</table>\n";
 }
 
+/// Digits of numbers that are compared with the source: more than sources print, less than rounding changes.
+constexpr int source_digits = 12;
+
+bool is_aspheric(const petzval::SurfaceRow& row) { return row.conic != 0 || !row.aspheric.empty(); }
+
 void surface_table(std::ostream& html, const Report& r) {
   const petzval::Prescription& p = r.loaded.prescription;
   html << "<div class=\"scroll\"><table>\n<tr><th class=\"number\">surface</th><th class=\"number\">radius</th>"
           "<th class=\"number\">thickness</th><th class=\"number\">n<sub>d</sub></th><th class=\"number\">V<sub>d</sub>"
-          "</th><th>glass</th><th class=\"number\">semi-diameter</th><th></th></tr>\n";
+          "</th><th>glass</th><th class=\"number\">semi-diameter</th><th class=\"number\">edge "
+          "thickness</th><th></th></tr>\n";
+  const auto edges = petzval::edge_thicknesses(r.loaded.lens);
   const auto cell = [](const std::string& words) { return "<td class=\"number\">" + words + "</td>"; };
   for (std::size_t i = 0; i < p.surfaces.size(); ++i) {
     const petzval::SurfaceRow& row = p.surfaces[i];
@@ -67,8 +75,8 @@ void surface_table(std::ostream& html, const Report& r) {
     const auto either = [&](std::optional<double> own, double petzval::Glass::*of_glass, int digits) {
       return own ? number(*own, digits) : glass ? number(glass->*of_glass, digits) : std::string();
     };
-    const std::string nd = row.medium.is_air() ? "" : either(row.medium.nd, &petzval::Glass::nd, 7),
-                      vd = either(row.medium.vd, &petzval::Glass::vd, 5);
+    const std::string nd = row.medium.is_air() ? "" : either(row.medium.nd, &petzval::Glass::nd, 8),
+                      vd = either(row.medium.vd, &petzval::Glass::vd, 8);
     std::string remarks;
     const auto remark = [&](const std::string& words) { remarks += (remarks.empty() ? "" : ", ") + words; };
     if (row.stop) remark("stop");
@@ -76,15 +84,86 @@ void surface_table(std::ostream& html, const Report& r) {
     if (row.curved_in != petzval::Section::both) {
       remark(std::string("cylinder, curved in ") + (row.curved_in == petzval::Section::x ? "x" : "y"));
     }
-    if (row.conic != 0) remark("conic " + number(row.conic, 6));
-    if (!row.aspheric.empty()) remark("asphere of order " + std::to_string(row.aspheric.back().order));
+    if (is_aspheric(row)) remark("asphere");
     if (row.obscuration_semi_diameter) remark("central obscuration " + number(*row.obscuration_semi_diameter, 5));
-    if (row.semi_diameter_computed) remark("semi-diameter computed");
+    const bool stated = !row.semi_diameter_computed && row.semi_diameter == compiled.semi_diameter;
+    if (row.semi_diameter_computed) {
+      remark("semi-diameter computed");
+    } else if (row.semi_diameter && !stated && std::isfinite(*row.semi_diameter)) {
+      remark("semi-diameter in the file " + number(*row.semi_diameter, source_digits));
+    }
     html << "<tr>" << cell(std::to_string(r.surface_number(i)))
-         << cell(row.radius == 0 ? "plane" : number(row.radius, 8)) << cell(number(row.thickness, 7)) << cell(nd)
-         << cell(vd) << "<td>" << escaped_html(row.medium.glass.value_or("")) << "</td>"
-         << cell(std::isfinite(compiled.semi_diameter) ? number(compiled.semi_diameter, 5) : "unlimited") << "<td>"
-         << remarks << "</td></tr>\n";
+         << cell(row.radius == 0 ? "plane" : number(row.radius, source_digits))
+         << cell(number(compiled.thickness, source_digits)) << cell(nd) << cell(vd) << "<td>"
+         << escaped_html(row.medium.glass.value_or("")) << "</td>"
+         << cell(stated                                  ? number(compiled.semi_diameter, source_digits)
+                 : std::isfinite(compiled.semi_diameter) ? number(compiled.semi_diameter, 5)
+                                                         : "unlimited")
+         << cell(edges[i] ? number(*edges[i], 5) : "") << "<td>" << remarks << "</td></tr>\n";
+  }
+  html << "</table></div>\n";
+}
+
+/// Conic constants and coefficients of the aspheres, one row per surface and one column per order.
+void asphere_table(std::ostream& html, const Report& r) {
+  const auto& surfaces = r.loaded.prescription.surfaces;
+  if (std::ranges::none_of(surfaces, is_aspheric)) return;
+  std::set<int> orders;
+  for (const petzval::SurfaceRow& row : surfaces) {
+    for (const petzval::AsphereTerm& term : row.aspheric) orders.insert(term.order);
+  }
+  html << "<h2>Aspheres</h2>\n<p class=\"lead\">sag = c r<sup>2</sup> / (1 + sqrt(1 - (1 + K) c<sup>2</sup> "
+          "r<sup>2</sup>))"
+       << (orders.empty() ? "" : " + A4 r<sup>4</sup> + A6 r<sup>6</sup> + ...")
+       << ", with c = 1 / radius and lengths in mm.</p>\n<div class=\"scroll\"><table>\n"
+          "<tr><th class=\"number\">surface</th><th class=\"number\">K</th>";
+  for (const int order : orders) html << "<th class=\"number\">A" << order << "</th>";
+  html << "</tr>\n";
+  for (std::size_t i = 0; i < surfaces.size(); ++i) {
+    if (!is_aspheric(surfaces[i])) continue;
+    html << "<tr><td class=\"number\">" << r.surface_number(i) << "</td><td class=\"number\">"
+         << number(surfaces[i].conic, source_digits) << "</td>";
+    for (const int order : orders) {
+      const auto term = std::ranges::find(surfaces[i].aspheric, order, &petzval::AsphereTerm::order);
+      html << "<td class=\"number\">"
+           << (term == surfaces[i].aspheric.end() ? "" : number(term->coefficient, source_digits)) << "</td>";
+    }
+    html << "</tr>\n";
+  }
+  html << "</table></div>\n";
+}
+
+/// Distances that differ between the zoom positions and focus positions of the file, one column per position.
+void position_table(std::ostream& html, const Report& r) {
+  const petzval::Prescription& whole = r.loaded.whole;
+  if (whole.configurations.size() < 2) return;
+  html << "<h2>Positions</h2>\n<p class=\"lead\">Thicknesses that change, in millimetres.</p>\n"
+          "<div class=\"scroll\"><table>\n<tr><th>after surface</th>";
+  for (const petzval::Configuration& c : whole.configurations) {
+    html << "<th class=\"number\">" << escaped_html(c.name) << "</th>";
+  }
+  html << "</tr>\n";
+  const auto line = [&](const std::string& label, const auto& value_of) {
+    std::string cells;
+    bool any = false;
+    for (std::size_t k = 0; k < whole.configurations.size(); ++k) {
+      const std::optional<double> value = value_of(k);
+      any = any || value;
+      cells += "<td class=\"number\">" + (value ? number(*value, source_digits) : "") + "</td>";
+    }
+    if (any) html << "<tr><td>" << label << "</td>" << cells << "</tr>\n";
+  };
+  std::vector<petzval::Prescription> positions;
+  for (std::size_t k = 0; k < whole.configurations.size(); ++k) positions.push_back(petzval::configured(whole, k));
+  line("focal length", [&](std::size_t k) { return whole.configurations[k].focal_length_mm; });
+  line("f-number", [&](std::size_t k) { return whole.configurations[k].f_number; });
+  line("subject distance", [&](std::size_t k) { return whole.configurations[k].subject_distance_mm; });
+  for (std::size_t i = 0; i < whole.surfaces.size(); ++i) {
+    const auto thickness = [&](std::size_t k) { return std::optional(positions[k].surfaces[i].thickness); };
+    const bool changes = std::ranges::any_of(positions, [&](const petzval::Prescription& p) {
+      return p.surfaces[i].thickness != positions.front().surfaces[i].thickness;
+    });
+    if (changes) line(std::to_string(r.surface_number(i)), thickness);
   }
   html << "</table></div>\n";
 }
@@ -207,8 +286,12 @@ std::string lens_page(const Report& r, const std::vector<LensFigure>& figures) {
     for (const petzval::Finding& finding : r.findings) html << "<li>" << escaped_html(finding.message) << "</li>\n";
     html << "</ul>\n";
   }
-  html << "<h2>Table</h2>\n<p class=\"lead\">Millimetres; " << numbering_in_words(r) << ".</p>\n";
+  html << "<h2>Table</h2>\n<p class=\"lead\">Millimetres; " << numbering_in_words(r)
+       << ". Edge thickness: distance to the next surface along the axis, at the larger of the two semi-diameters; "
+          "negative if the surfaces intersect below.</p>\n";
   surface_table(html, r);
+  asphere_table(html, r);
+  position_table(html, r);
   html << "<h2>Sources</h2>\n";
   sources(html, r.loaded.prescription);
   html << "</body>\n</html>\n";

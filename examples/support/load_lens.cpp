@@ -144,13 +144,14 @@ petzval::Prescription with_matched_glasses(const LensInput& input, petzval::Pres
 
 LensFile read_lens(const LensInput& input) {
   auto glasses = glasses_of(input);
-  const ReadLens read = read_configurations(input, glasses);
+  ReadLens read = read_configurations(input, glasses);
   petzval::Prescription prescription = with_matched_glasses(
       input, for_flag("--configuration", [&] { return petzval::configured(read.whole, read.configuration); }), glasses);
   std::string id = lens_path(input.file).stem().string();
   if (!input.configuration.empty()) id += '_' + input.configuration;
   std::ranges::replace(id, '/', '_');
-  return {std::move(id), std::move(prescription), std::move(glasses), input.first_surface_number};
+  return {std::move(id), std::move(prescription), std::move(glasses), input.first_surface_number,
+          std::move(read.whole)};
 }
 
 LoadedLens compiled(LensFile file, std::span<const double> wavelengths_nm, std::optional<double> primary_nm) {

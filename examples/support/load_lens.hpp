@@ -50,7 +50,8 @@ struct LensFile {
   std::string id;  ///< file name without extension, and configuration; prefix of output files
   petzval::Prescription prescription;
   petzval::GlassCatalogue glasses;
-  int first_surface_number = 0;  ///< as in LensInput
+  int first_surface_number = 0;   ///< as in LensInput
+  petzval::Prescription whole{};  ///< with all configurations
 };
 
 /// A lens file and its compiled lens.

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "petzval/analysis/lint.hpp"
 #include "petzval/analysis/seidel.hpp"
 #include "petzval/core/geometry.hpp"
 #include "petzval/focus/focus.hpp"
@@ -314,6 +315,66 @@ TEST_F(LensReport, CountsSurfacesFromOneInTheNoteAboutTheStop) {
   const auto refused = run("report", {path("window.json"), "--surfaces-from", "2"});
   EXPECT_NE(refused.status, 0);
   petzval::testing::expect_tokens(refused.err, {"--surfaces-from", "2"});
+}
+
+/// The cells of the row of a surface in one of the tables of a page.
+std::vector<std::string> row_of(const std::string& page, const std::string& heading, const std::string& first) {
+  std::vector<std::string> cells;
+  std::size_t at = page.find("<tr><td class=\"number\">" + first + "</td>", page.find("<h2>" + heading + "</h2>"));
+  if (at == std::string::npos) at = page.find("<tr><td>" + first + "</td>", page.find("<h2>" + heading + "</h2>"));
+  if (at == std::string::npos) return cells;
+  const std::string row = page.substr(at, page.find("</tr>", at) - at);
+  const std::regex cell("<td[^>]*>([^<]*)</td>");
+  for (std::sregex_iterator each(row.begin(), row.end(), cell), end; each != end; ++each) cells.push_back((*each)[1]);
+  return cells;
+}
+
+// Every number of the table can be compared with the source.
+TEST_F(LensReport, TableOfThePageHasTheNumbersOfTheSource) {
+  const auto page = [&](const std::string& id) {
+    EXPECT_EQ(run("report", {lens(id), "--out", path("out"), "--surfaces-from", "1"}).status, 0) << id;
+    return read(path("out/" + id + ".html"));
+  };
+  using Cells = std::vector<std::string>;
+  const std::string cine = page("cine_100mm_t1.3");
+  const Cells row = row_of(cine, "Table", "11");
+  EXPECT_EQ(Cells(row.begin(), row.begin() + 7), (Cells{"11", "-230.02127", "2.8", "1.61344", "44.29", "", "26.78"}));
+  EXPECT_EQ(row.back(), "asphere");
+  EXPECT_EQ(row_of(cine, "Aspheres", "11"),
+            (Cells{"11", "0", "8.669e-07", "9.23e-11", "2.783e-14", "-9.209e-16", "1.576e-18", "-8.587e-22"}));
+  const petzval::Lens compiled = petzval::compile(petzval::read_prescription(lens("cine_100mm_t1.3")));
+  const auto edges = petzval::edge_thicknesses(compiled);
+  ASSERT_TRUE(edges[0]);
+  EXPECT_NEAR(std::stod(row_of(cine, "Table", "1").at(7)), *edges[0], 1e-4 * *edges[0]);
+  EXPECT_EQ(row_of(cine, "Table", "23").at(7), "");
+
+  // Values with more digits than the source has, from a conversion of units or a solve.
+  const std::string mirrors = page("catadioptric_corrector_25mm_f1.25");
+  EXPECT_EQ(row_of(mirrors, "Table", "4").at(1), "-55.9");
+  EXPECT_EQ(row_of(mirrors, "Aspheres", "4"), (Cells{"4", "1.077", "", ""}));
+  EXPECT_EQ(row_of(mirrors, "Aspheres", "5"), Cells{});
+
+  const std::string zoom = page("zoom_70-210mm_f4");
+  EXPECT_EQ(row_of(zoom, "Positions", "focal length"), (Cells{"focal length", "70.55", "137.04", "205.31"}));
+  EXPECT_EQ(row_of(zoom, "Positions", "13"), (Cells{"13", "18.42", "2.87", "8.5"}));
+  EXPECT_EQ(zoom.find("<h2>Aspheres</h2>"), std::string::npos);
+
+  const std::string anamorphic = page("anamorphic_60mm_2x");
+  EXPECT_EQ(row_of(anamorphic, "Table", "1").back(), "cylinder, curved in x");
+  EXPECT_EQ(row_of(anamorphic, "Table", "1").at(7), "");
+  EXPECT_NE(row_of(anamorphic, "Table", "7").at(7), "");
+  EXPECT_EQ(anamorphic.find("<h2>Positions</h2>"), std::string::npos);
+}
+
+TEST_F(LensReport, EdgeThicknessesEqualTheLibrary) {
+  const std::string file = lens("double_gauss_100mm_f1.35");
+  const auto json = nlohmann::json::parse(run("report", {file, "--json"}).out);
+  const auto edges = petzval::edge_thicknesses(petzval::compile(petzval::read_prescription(file)));
+  ASSERT_EQ(json["edge_thicknesses_mm"].size(), edges.size());
+  EXPECT_TRUE(edges.front());
+  for (std::size_t i = 0; i < edges.size(); ++i) {
+    EXPECT_EQ(json["edge_thicknesses_mm"][i], edges[i] ? nlohmann::json(*edges[i]) : nlohmann::json()) << i;
+  }
 }
 
 TEST_F(LensReport, DrawsRequestedFieldsAndBothSections) {
