@@ -2,16 +2,22 @@
 #include "petzval/analysis/aberrations.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <complex>
+#include <cstdint>
 #include <numbers>
+#include <numeric>
 #include <string>
 
 #include "core/meet_plane.hpp"
+#include "core/text.hpp"
+#include "partial_sums.hpp"
 #include "petzval/core/error.hpp"
 #include "petzval/core/parallel.hpp"
 #include "petzval/pupil/aim.hpp"
 #include "points.hpp"
+#include "spot_moments.hpp"
 
 namespace petzval {
 namespace {
@@ -31,6 +37,66 @@ std::optional<double> crossing(double position_change, double slope_change) {
   const double distance = -position_change / slope_change;
   if (!std::isfinite(distance)) return {};
   return distance;
+}
+
+/// Frequencies that are whole multiples of a base: their sums over rays follow from powers of one phase for each ray,
+/// which saves most sines and cosines.
+struct Harmonics {
+  struct Member {
+    std::size_t at, multiple;  ///< index in the list of frequencies; frequency divided by the base
+  };
+  double base = 0;
+  std::vector<Member> members;
+
+  /// Sums of exp(-2 pi i m base (value - origin)) over values, for multiples m from 0 to the largest.
+  std::vector<std::complex<double>> sums(std::span<const double> values, double origin) const {
+    constexpr std::size_t lanes = 8, block = 32 * lanes;
+    std::size_t largest = 0;
+    for (const Member& member : members) largest = std::max(largest, member.multiple);
+    std::vector<std::complex<double>> result(largest + 1);
+    for (std::size_t begin = 0; begin < values.size(); begin += block) {
+      const auto own = values.subspan(begin, std::min(block, values.size() - begin));
+      // Lanes beyond the values stay 0.
+      std::array<double, block> step_re{}, step_im{}, re{}, im{};
+      for (std::size_t i = 0; i < own.size(); ++i) {
+        const double phase = -2 * std::numbers::pi * base * (own[i] - origin);
+        step_re[i] = std::cos(phase), step_im[i] = std::sin(phase);
+        re[i] = 1;
+      }
+      for (std::size_t m = 0;; ++m) {
+        analysis_detail::PartialSums sum_re{}, sum_im{};
+        for (std::size_t i = 0; i < block; i += lanes) {
+          for (std::size_t lane = 0; lane < lanes; ++lane) sum_re[lane] += re[i + lane], sum_im[lane] += im[i + lane];
+        }
+        result[m] += std::complex(analysis_detail::sum(sum_re), analysis_detail::sum(sum_im));
+        if (m == largest) break;
+        for (std::size_t i = 0; i < block; ++i) {
+          const double x = re[i], y = im[i];
+          re[i] = x * step_re[i] - y * step_im[i], im[i] = x * step_im[i] + y * step_re[i];
+        }
+      }
+    }
+    return result;
+  }
+};
+
+/// One group if all frequencies are small multiples of the smallest one above 0, else a group for each frequency.
+std::vector<Harmonics> harmonics(std::span<const double> frequencies) {
+  Harmonics all;
+  for (const double f : frequencies) {
+    if (std::abs(f) > 0 && (all.base == 0 || std::abs(f) < all.base)) all.base = std::abs(f);
+  }
+  std::vector<Harmonics> single;
+  bool together = true;
+  for (std::size_t at = 0; at < frequencies.size(); ++at) {
+    const double f = std::abs(frequencies[at]), multiple = all.base > 0 ? std::round(f / all.base) : 0;
+    single.push_back({f, {{at, 1}}});
+    together = together && std::abs(multiple * all.base - f) <= 1e-14 * f &&
+               multiple <= 8 * static_cast<double>(frequencies.size());
+    if (together) all.members.push_back({at, static_cast<std::size_t>(multiple)});
+  }
+  if (together) return {all};
+  return single;
 }
 
 }  // namespace
@@ -102,34 +168,155 @@ std::vector<FieldDistortion> distortion_percent(const Lens& lens, double subject
 std::vector<MtfPoint> geometric_mtf(std::span<const Spot> spots, std::size_t wavelengths,
                                     std::span<const double> frequencies_per_mm,
                                     std::span<const double> wavelength_weights, int threads) {
-  const bool weighted = !wavelength_weights.empty();
-  if (wavelengths == 0 || spots.size() % wavelengths != 0 || (weighted && wavelength_weights.size() != wavelengths)) {
-    throw Error("geometric_mtf: " + std::to_string(spots.size()) + " spots, " + std::to_string(wavelengths) +
-                " wavelengths and " + std::to_string(wavelength_weights.size()) +
-                " weights; must be spots of all wavelengths of each field, and a weight for each wavelength or none");
+  constexpr std::size_t parts = analysis_detail::error_parts;
+  const auto weights = analysis_detail::ray_weights("geometric_mtf", spots, wavelengths, wavelength_weights);
+  const std::vector<Harmonics> groups = harmonics(frequencies_per_mm);
+  const std::size_t count = frequencies_per_mm.size(), tasks = 2 * spots.size();
+  // Sums over the rays of a spot: [2 spot + direction][frequency][part of the rays].
+  std::vector<std::vector<std::array<std::complex<double>, parts>>> sums(tasks);
+  parallel_for(tasks, 1, threads, [&](std::size_t task, std::size_t) {
+    const Spot& spot = spots[task / 2];
+    const Vec2<double> origin = spots[task / 2 / wavelengths * wavelengths].size.centroid;
+    const bool along_y = task % 2 == 0;
+    sums[task].resize(count);
+    for (const Harmonics& group : groups) {
+      for (std::size_t part = 0; part < parts; ++part) {
+        const auto values = analysis_detail::part_of(along_y ? spot.y : spot.x, part);
+        const auto of_part = group.sums(values, along_y ? origin.y : origin.x);
+        for (const auto& [at, multiple] : group.members) sums[task][at][part] = of_part[multiple];
+      }
+    }
+  });
+  std::vector<MtfPoint> result;
+  for (std::size_t first = 0; first < spots.size(); first += wavelengths) {
+    for (std::size_t at = 0; at < count; ++at) {
+      MtfPoint& point = result.emplace_back(MtfPoint{spots[first].point.field_rad, frequencies_per_mm[at]});
+      for (std::size_t direction = 0; direction < 2; ++direction) {
+        std::array<std::complex<double>, parts + 1> sum{};  // the last one: all rays
+        std::array<double, parts + 1> total{};
+        for (std::size_t part = 0; part < parts; ++part) {
+          for (std::size_t i = first; i < first + wavelengths; ++i) {
+            sum[part] += weights[i] * sums[2 * i + direction][at][part];
+            total[part] += weights[i] * static_cast<double>(analysis_detail::part_of(spots[i].x, part).size());
+          }
+          sum[parts] += sum[part];
+          total[parts] += total[part];
+        }
+        const auto contrast = [&](std::size_t part) { return total[part] > 0 ? std::abs(sum[part]) / total[part] : 0; };
+        (direction == 0 ? point.tangential : point.sagittal) = contrast(parts);
+        for (std::size_t part = 0; part < parts; ++part) {
+          point.sampling_error =
+              std::max(point.sampling_error, analysis_detail::error_of_all(contrast(part) - contrast(parts)));
+        }
+      }
+    }
   }
-  const std::size_t count = frequencies_per_mm.size();
-  std::vector<MtfPoint> result(spots.size() / wavelengths * count);
-  parallel_for(result.size(), 1, threads, [&](std::size_t at, std::size_t) {
-    const auto own = spots.subspan(at / count * wavelengths, wavelengths);
-    const double frequency = frequencies_per_mm[at % count];
-    std::complex<double> along_y = 0, along_x = 0;
-    double total = 0;
+  return result;
+}
+
+std::vector<MtfPoint> mtf_over_field(const Lens& lens, double subject_z, std::span<const double> fields_rad,
+                                     std::span<const double> frequencies_per_mm,
+                                     std::span<const double> wavelength_weights, std::uint32_t samples, int threads) {
+  const std::size_t wavelengths = lens.wavelengths_nm().size();
+  std::vector<Spot> spots(fields_rad.size() * wavelengths);
+  parallel_for(spots.size(), 1, threads, [&](std::size_t at, std::size_t) {
+    const FieldPoint point{fields_rad[at / wavelengths], subject_z};
+    spots[at] = analysis_detail::trace_spot(lens, point, at % wavelengths, samples);
+  });
+  return geometric_mtf(spots, wavelengths, frequencies_per_mm, wavelength_weights, threads);
+}
+
+std::vector<EncircledEnergy> encircled_energy(std::span<const Spot> spots, std::size_t wavelengths,
+                                              std::span<const double> fractions,
+                                              std::span<const double> wavelength_weights, int threads) {
+  const auto weights = analysis_detail::ray_weights("encircled_energy", spots, wavelengths, wavelength_weights);
+  for (const double fraction : fractions) {
+    if (!(fraction >= 0 && fraction <= 1)) {
+      throw Error("encircled_energy: fraction = " + to_text(fraction) + "; must be 0 to 1");
+    }
+  }
+  std::vector<std::size_t> order(fractions.size());
+  std::iota(order.begin(), order.end(), std::size_t(0));
+  std::ranges::sort(order, {}, [&](std::size_t k) { return fractions[k]; });
+  const std::size_t fields = spots.size() / wavelengths;
+  std::vector<EncircledEnergy> result(fields * fractions.size());
+  parallel_for(fields, 1, threads, [&](std::size_t field, std::size_t) {
+    const auto own = spots.subspan(field * wavelengths, wavelengths);
+    const auto own_weights = std::span(weights).subspan(field * wavelengths, wavelengths);
+    const Vec2<double> centre = analysis_detail::SpotMoments(own, own_weights).centroid(0);
+    struct Ray {
+      double squared_radius;
+      std::uint32_t wavelength, part;
+    };
+    constexpr std::uint32_t parts = analysis_detail::error_parts;
+    std::vector<Ray> rays;
+    std::array<double, parts> total{};
     for (std::size_t w = 0; w < wavelengths; ++w) {
       const Spot& spot = own[w];
-      // Rays sample the pupil evenly: a wavelength counts by its weight and by the rays that pass.
-      const double weight =
-          (weighted ? wavelength_weights[w] : 1) / static_cast<double>(std::max<std::size_t>(spot.sent, 1));
+      if (own_weights[w] == 0) continue;
       for (std::size_t i = 0; i < spot.x.size(); ++i) {
-        along_y += std::polar(weight, -2 * std::numbers::pi * frequency * spot.y[i]);
-        along_x += std::polar(weight, -2 * std::numbers::pi * frequency * spot.x[i]);
+        const double dx = spot.x[i] - centre.x, dy = spot.y[i] - centre.y;
+        // As part_of().
+        const auto part = static_cast<std::uint32_t>(((i + 1) * parts - 1) / spot.x.size());
+        rays.push_back({dx * dx + dy * dy, static_cast<std::uint32_t>(w), part});
+        total[part] += own_weights[w];
       }
-      total += weight * static_cast<double>(spot.x.size());
     }
-    const auto contrast = [total](const std::complex<double>& sum) { return total > 0 ? std::abs(sum) / total : 0; };
-    result[at] = {own.front().point.field_rad, frequency, contrast(along_y), contrast(along_x)};
+    std::ranges::sort(rays, {}, &Ray::squared_radius);
+    // Radii of the fractions, by the rays of some parts: the first ray with which the sum reaches the fraction.
+    const auto radii = [&](std::uint32_t from, std::uint32_t to) {
+      std::vector<std::optional<double>> found(fractions.size());
+      const double all = std::accumulate(total.begin() + from, total.begin() + to, 0.0);
+      double sum = 0, largest = 0;
+      auto next = order.begin();
+      for (const Ray& ray : rays) {
+        if (ray.part < from || ray.part >= to) continue;
+        sum += own_weights[ray.wavelength];
+        largest = std::sqrt(ray.squared_radius);
+        constexpr double rounding = 1e-9;
+        for (; next != order.end() && fractions[*next] < 1 && sum >= (fractions[*next] - rounding) * all; ++next) {
+          found[*next] = fractions[*next] > 0 ? largest : 0;
+        }
+      }
+      for (; next != order.end() && all > 0; ++next) found[*next] = largest;
+      return found;
+    };
+    EncircledEnergy* const own_result = result.data() + field * fractions.size();
+    const auto of_all = radii(0, parts);
+    for (std::size_t k = 0; k < fractions.size(); ++k) {
+      own_result[k] = {own.front().point.field_rad, fractions[k], of_all[k], 0};
+    }
+    for (std::uint32_t part = 0; part < parts; ++part) {
+      const auto of_part = radii(part, part + 1);
+      for (std::size_t k = 0; k < fractions.size(); ++k) {
+        if (!of_all[k] || !of_part[k]) continue;
+        double& error = own_result[k].sampling_error_mm;
+        error = std::max(error, analysis_detail::error_of_all(*of_part[k] - *of_all[k]));
+      }
+    }
   });
   return result;
+}
+
+std::vector<AxialRayFocus> longitudinal_aberration(const Lens& lens, double subject_z, std::size_t count) {
+  if (count < 2) throw Error("longitudinal_aberration: count = " + std::to_string(count) + "; must be at least 2");
+  constexpr double near_axis = 1e-3, inside = 1 - 1e-9;  // as in field_curvature() and ray_fans()
+  std::vector<AxialRayFocus> foci;
+  for (std::size_t w = 0; w < lens.wavelengths_nm().size(); ++w) {
+    const auto ray = [&](const Vec2<double>& target) -> std::optional<FilmRay> {
+      const AimedRay aimed = aim(lens, {0, subject_z}, target, w);
+      if (aimed.status != AimStatus::converged) return {};
+      return at_film(lens, aimed);
+    };
+    for (std::size_t i = 0; i < count; ++i) {
+      const double pupil = static_cast<double>(i) / static_cast<double>(count - 1);
+      AxialRayFocus& focus = foci.emplace_back(AxialRayFocus{w, pupil, {}, {}});
+      const double height = inside * std::max(pupil, near_axis);
+      if (const auto up = ray({0, height})) focus.tangential_mm = crossing(up->y, up->slope_y);
+      if (const auto right = ray({height, 0})) focus.sagittal_mm = crossing(right->x, right->slope_x);
+    }
+  }
+  return foci;
 }
 
 double diffraction_limited_mtf(double frequency_per_mm, double wavelength_nm, double f_number) noexcept {

@@ -6,12 +6,14 @@
 #include <cmath>
 
 #include "partial_sums.hpp"
+#include "petzval/core/parallel.hpp"
 #include "petzval/focus/focus.hpp"
 #include "petzval/paraxial/first_order.hpp"
 #include "petzval/pupil/aim.hpp"
 #include "petzval/pupil/illumination.hpp"
 #include "points.hpp"
 #include "pupil/trace_rays.hpp"
+#include "spot_moments.hpp"
 
 namespace petzval {
 namespace {
@@ -117,24 +119,30 @@ Diffraction diffraction(double airy_radius_mm, const SpotSize& size) noexcept {
   return airy_radius_mm < blur ? Diffraction::visible : Diffraction::dominant;
 }
 
+Spot analysis_detail::trace_spot(const Lens& lens, const FieldPoint& point, std::size_t wavelength,
+                                 std::uint32_t samples) {
+  RayBundle rays = trace_bundle(lens, PupilSampler(pupil_boundary(lens, point, wavelength)), samples, 0, 1, 0, true);
+  Spot spot;
+  spot.point = point;
+  spot.wavelength = wavelength;
+  spot.x = std::move(rays.x), spot.y = std::move(rays.y);
+  spot.slope_x = std::move(rays.slope_x), spot.slope_y = std::move(rays.slope_y);
+  spot.sent = rays.sent;
+  spot.size = petzval::spot_size(spot.x, spot.y);
+  return spot;
+}
+
 std::vector<Spot> spot_diagram(const Lens& lens, double subject_z, std::span<const double> fields_rad,
-                               std::uint32_t samples) {
-  std::vector<Spot> spots;
-  for (const double field : fields_rad) {
-    const FieldPoint point{field, subject_z};
-    for (std::size_t w = 0; w < lens.wavelengths_nm().size(); ++w) {
-      Spot spot;
-      spot.point = point;
-      spot.wavelength = w;
-      RayBundle rays = trace_bundle(lens, PupilSampler(pupil_boundary(lens, point, w)), samples);
-      spot.x = std::move(rays.x), spot.y = std::move(rays.y);
-      spot.sent = rays.sent;
-      spot.size = spot_size(spot.x, spot.y);
-      spot.relative_illumination = relative_illumination(lens, point, w);
-      spot.chief_ray_height = chief_ray_height(lens, point, w);
-      spots.push_back(std::move(spot));
-    }
-  }
+                               std::uint32_t samples, int threads) {
+  const std::size_t wavelengths = lens.wavelengths_nm().size();
+  std::vector<Spot> spots(fields_rad.size() * wavelengths);
+  parallel_for(spots.size(), 1, threads, [&](std::size_t at, std::size_t) {
+    const std::size_t w = at % wavelengths;
+    const FieldPoint point{fields_rad[at / wavelengths], subject_z};
+    spots[at] = analysis_detail::trace_spot(lens, point, w, samples);
+    spots[at].relative_illumination = relative_illumination(lens, point, w);
+    spots[at].chief_ray_height = chief_ray_height(lens, point, w);
+  });
   return spots;
 }
 

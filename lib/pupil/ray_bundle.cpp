@@ -12,7 +12,7 @@
 namespace petzval {
 
 RayBundle trace_bundle(const Lens& lens, const PupilSampler& pupil, std::uint32_t samples, std::uint32_t seed,
-                       int threads, std::uint32_t first) {
+                       int threads, std::uint32_t first, bool slopes) {
   if (threads < 1) throw Error("trace_bundle: threads = " + std::to_string(threads) + "; must be at least 1");
   (void)lens.compiled_position(pupil.wavelength());
   const auto start = [&](std::size_t begin, std::size_t end, const RayArrays<double>& rays) {
@@ -26,7 +26,7 @@ RayBundle trace_bundle(const Lens& lens, const PupilSampler& pupil, std::uint32_
   // Reproducible arithmetic: images must be equal to the bit on every processor.
   RayBundle bundle = pupil_detail::trace_rays(
       lens, lens.film_z(), pupil.empty() ? 0 : samples,
-      {.wavelength = pupil.wavelength(), .slopes = false, .arithmetic = Arithmetic::reproducible, .threads = threads},
+      {.wavelength = pupil.wavelength(), .slopes = slopes, .arithmetic = Arithmetic::reproducible, .threads = threads},
       start);
   bundle.sent = samples;
   bundle.sampled_area = pupil.area();

@@ -29,7 +29,7 @@ struct RayBundle {
   }
 };
 
-/// Traces rays through a pupil to the film of the lens; without slopes.
+/// Traces rays through a pupil to the film of the lens.
 ///
 /// Rays that leave the lens away from the film are lost.
 ///
@@ -39,8 +39,10 @@ struct RayBundle {
 /// @param seed     seed of the scrambling
 /// @param threads  at least 1; the bundle is the same for every number
 /// @param first    first point of the sequence
+/// @param slopes   true: with slopes
 /// @throws Error   if threads is less than 1, or the lens does not have the wavelength of the pupil
 PETZVAL_API RayBundle trace_bundle(const Lens& lens, const PupilSampler& pupil, std::uint32_t samples,
-                                   std::uint32_t seed = 0, int threads = 1, std::uint32_t first = 0);
+                                   std::uint32_t seed = 0, int threads = 1, std::uint32_t first = 0,
+                                   bool slopes = false);
 
 }  // namespace petzval

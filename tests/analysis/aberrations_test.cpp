@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-// Ray fans, field curvature and distortion.
+// Ray fans, field curvature, distortion, MTF, encircled energy and longitudinal aberration.
 #include "petzval/analysis/aberrations.hpp"
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
+#include <complex>
 #include <limits>
 #include <numbers>
 #include <span>
@@ -15,6 +17,7 @@
 #include "../expect_error.hpp"
 #include "petzval/core/geometry.hpp"
 #include "petzval/focus/focus.hpp"
+#include "petzval/paraxial/first_order.hpp"
 
 namespace petzval {
 namespace {
@@ -160,6 +163,169 @@ TEST(GeometricMtf, ConvergesAndFollowsWeights) {
   const auto same = geometric_mtf(std::span(spots).subspan(1, 1), 1, frequencies);
   for (std::size_t i = 0; i < 3; ++i) EXPECT_NEAR(one[i].tangential, same[i].tangential, 1e-12);
   testing::expect_error([&] { geometric_mtf(spots, 4, frequencies); }, {6, 4});
+}
+
+// Frequencies in an even ladder share their phases; a single frequency has its own.
+TEST(GeometricMtf, OfALadderEqualsSingleFrequencies) {
+  const Lens lens = double_gauss();
+  const auto spots = spot_diagram(lens, far, std::array{0.0, radians(10.0)}, 1024);
+  const std::array ladder{0.0, 5.0, 10.0, 15.0, 40.0, 100.0};
+  const std::array mixed{10.0, 33.3, 0.0, 71.7};
+  for (const std::span<const double> frequencies : {std::span<const double>(ladder), std::span<const double>(mixed)}) {
+    const auto all = geometric_mtf(spots, 3, frequencies);
+    ASSERT_EQ(all.size(), 2 * frequencies.size());
+    for (std::size_t i = 0; i < all.size(); ++i) {
+      const auto own = std::span(spots).subspan(3 * (i / frequencies.size()), 3);
+      std::complex<double> sum = 0;
+      double rays = 0;
+      for (const Spot& spot : own) {
+        for (const double y : spot.y)
+          sum += std::polar(1.0, 2 * std::numbers::pi * all[i].frequency_per_mm * y), ++rays;
+      }
+      EXPECT_EQ(all[i].frequency_per_mm, frequencies[i % frequencies.size()]);
+      EXPECT_NEAR(all[i].tangential, std::abs(sum) / rays, 1e-11) << i;
+    }
+  }
+  EXPECT_TRUE(geometric_mtf(spots, 3, {}).empty());
+}
+
+TEST(GeometricMtf, DoesNotDependOnThreads) {
+  const Lens lens = double_gauss();
+  const std::array fields{0.0, radians(10.0)};
+  const std::array frequencies{10.0, 20.0};
+  const auto one = mtf_over_field(lens, far, fields, frequencies, {}, 512, 1);
+  const auto many = mtf_over_field(lens, far, fields, frequencies, {}, 512, 5);
+  for (std::size_t i = 0; i < one.size(); ++i) {
+    EXPECT_EQ(one[i].tangential, many[i].tangential);
+    EXPECT_EQ(one[i].sampling_error, many[i].sampling_error);
+  }
+}
+
+// The figures print the largest sampling error. It must be at least the difference from 16 times as many rays.
+TEST(MtfOverField, EqualsTheMtfOfEachFieldAndBoundsItsError) {
+  const std::array frequencies{10.0, 20.0, 40.0}, weights{1.0, 2.0, 1.0};
+  for (const char* id : {"double_gauss_100mm_f1.35", "double_gauss_100mm_f2.0", "cooke_triplet_50mm_f5",
+                         "retrofocus_100mm_f2.8", "telephoto_100mm_f5.6"}) {
+    const Lens lens = compile(testing::data_prescription(id), std::array{486.1327, 587.5618, 656.2725},
+                              {.missing_glass = MissingGlass::abbe});
+    std::vector<double> fields;
+    for (int k = 0; k <= 6; ++k) fields.push_back(radians(2.0 * k));
+    const auto found = mtf_over_field(lens, far, fields, frequencies, weights);
+    const auto fine = mtf_over_field(lens, far, fields, frequencies, weights, 65536);
+    ASSERT_EQ(found.size(), fields.size() * frequencies.size());
+    double stated = 0, error = 0;
+    for (std::size_t i = 0; i < found.size(); ++i) {
+      EXPECT_EQ(found[i].field_rad, fields[i / 3]);
+      EXPECT_EQ(found[i].frequency_per_mm, frequencies[i % 3]);
+      stated = std::max(stated, found[i].sampling_error);
+      error = std::max(
+          {error, std::abs(found[i].tangential - fine[i].tangential), std::abs(found[i].sagittal - fine[i].sagittal)});
+    }
+    EXPECT_LT(error, stated) << id;
+    EXPECT_LT(error, 0.01) << id;
+    const auto single = geometric_mtf(spot_diagram(lens, far, std::array{fields[3]}, 4096), 3, frequencies, weights);
+    for (std::size_t k = 0; k < 3; ++k) {
+      EXPECT_EQ(found[9 + k].tangential, single[k].tangential);
+      EXPECT_EQ(found[9 + k].sagittal, single[k].sagittal);
+    }
+  }
+}
+
+// A defocused parabolic mirror has a uniform disc of rays: a radius r holds the fraction (r / R)^2.
+TEST(EncircledEnergy, OfADiscIsTheSquareOfTheRadius) {
+  Prescription p;
+  p.name = "parabola";
+  p.surfaces = {{.thickness = 900, .semi_diameter = 5, .stop = true},
+                {.radius = -2000, .thickness = -1000, .semi_diameter = 8, .conic = -1, .mirror = true}};
+  const Lens sharp = compile(p), blurred = with_film(sharp, sharp.film_z() - 2);
+  const std::array fractions{0.0, 0.1, 0.25, 0.5, 0.81, 1.0};
+  const auto found = encircled_energy(spot_diagram(blurred, far, std::array{0.0}, 16384), 1, fractions);
+  for (std::size_t i = 0; i < fractions.size(); ++i) {
+    EXPECT_EQ(found[i].fraction, fractions[i]);
+    EXPECT_NEAR(*found[i].radius_mm, 0.01 * std::sqrt(fractions[i]), 1e-5) << fractions[i];
+    EXPECT_LT(found[i].sampling_error_mm, 5e-5);
+  }
+  testing::expect_error([&] { encircled_energy({}, 1, std::array{1.5}); }, {"fraction", 1.5});
+}
+
+TEST(EncircledEnergy, ScalesWithTheLensAndFollowsWeights) {
+  const Prescription prescription = testing::data_prescription("double_gauss_100mm_f2.0");
+  const std::array wavelengths{486.1327, 587.5618, 656.2725};
+  const std::array fractions{0.5, 0.9}, fields{0.0, radians(12.0)};
+  const auto at = [&](double factor, std::span<const double> weights) {
+    const Lens lens = compile(scale(prescription, factor), wavelengths);
+    return encircled_energy(spot_diagram(lens, far, fields, 2048), 3, fractions, weights, 2);
+  };
+  const auto one = at(1, {}), two = at(2, {});
+  for (std::size_t i = 0; i < 4; ++i) EXPECT_NEAR(*two[i].radius_mm, 2 * *one[i].radius_mm, 1e-9);
+  EXPECT_LT(*one[2].radius_mm, *one[3].radius_mm);
+  // With one wavelength of weight 1, half of its rays are within the radius of 0.5.
+  const auto green = at(1, std::array{0.0, 1.0, 0.0});
+  const Spot spot = spot_diagram(compile(prescription, wavelengths), far, fields, 2048)[4];
+  double inside = 0;
+  for (std::size_t i = 0; i < spot.x.size(); ++i) {
+    inside +=
+        std::hypot(spot.x[i] - spot.size.centroid.x, spot.y[i] - spot.size.centroid.y) <= *green[2].radius_mm + 1e-12;
+  }
+  EXPECT_NEAR(inside / static_cast<double>(spot.x.size()), 0.5, 1e-3);
+}
+
+TEST(EncircledEnergy, BoundsItsErrorAndHasNoRadiusWithoutRays) {
+  const Lens lens = double_gauss();
+  const std::array fractions{0.5, 0.8, 0.9, 0.95};
+  const std::array fields{0.0, radians(8.0), radians(12.0)};
+  const auto found = encircled_energy(spot_diagram(lens, far, fields, 4096), 3, fractions);
+  const auto fine = encircled_energy(spot_diagram(lens, far, fields, 65536), 3, fractions);
+  double stated = 0, error = 0;
+  for (std::size_t i = 0; i < found.size(); ++i) {
+    stated = std::max(stated, found[i].sampling_error_mm);
+    error = std::max(error, std::abs(*found[i].radius_mm - *fine[i].radius_mm));
+  }
+  EXPECT_LT(error, stated);
+  const Lens closed = with_semi_diameter(lens, *lens.stop(), 0);
+  EXPECT_FALSE(encircled_energy(spot_diagram(closed, far, fields, 64), 3, fractions)[0].radius_mm);
+}
+
+// The fan of the axial point is 0 on the film in which its ray crosses the axis.
+TEST(LongitudinalAberration, IsWhereTheAxialFanVanishes) {
+  const Lens lens = double_gauss();
+  const auto foci = longitudinal_aberration(lens, far, 5);
+  ASSERT_EQ(foci.size(), 15u);
+  for (const AxialRayFocus& focus : foci) {
+    ASSERT_TRUE(focus.tangential_mm || focus.pupil == 1);
+    if (!focus.tangential_mm || focus.pupil == 0) continue;
+    EXPECT_NEAR(*focus.tangential_mm, *focus.sagittal_mm, 1e-10);
+    const Lens moved = with_film(lens, lens.film_z() + *focus.tangential_mm);
+    const auto fan = ray_fans(moved, far, std::array{0.0}, 9)[focus.wavelength];
+    const auto at = static_cast<std::size_t>(4 + std::lround(4 * focus.pupil));
+    EXPECT_NEAR(*fan.points[at].tangential_mm, 0, 1e-10);
+  }
+  // Near the axis the focus is paraxial.
+  const double paraxial = paraxial_image_z(lens, far, 0, Meridian::y) - lens.film_z();
+  EXPECT_NEAR(*foci[0].tangential_mm, paraxial, 1e-4);
+  testing::expect_error([&] { longitudinal_aberration(lens, far, 1); }, {"count", 1, 2});
+}
+
+TEST(LongitudinalAberration, ScalesWithTheLensAndIsZeroForAPerfectMirror) {
+  const Prescription prescription = testing::data_prescription("cooke_triplet_50mm_f5");
+  const auto one = longitudinal_aberration(compile(prescription), far, 4);
+  const auto two = longitudinal_aberration(compile(scale(prescription, 2)), far, 4);
+  for (std::size_t i = 0; i < 3; ++i) EXPECT_NEAR(*two[i].tangential_mm, 2 * *one[i].tangential_mm, 1e-8);
+  for (const AxialRayFocus& focus : longitudinal_aberration(testing::data_lens("mirror_newton_200mm_f8"), far, 5)) {
+    EXPECT_NEAR(focus.tangential_mm.value_or(1), 0, 1e-6);
+  }
+}
+
+TEST(LongitudinalAberration, LeavesOutClippedRays) {
+  Prescription p;
+  p.name = "parabola with a hole";
+  p.surfaces = {{.thickness = 900, .semi_diameter = 5, .stop = true},
+                {.radius = -2000, .thickness = -1000, .semi_diameter = 4, .conic = -1, .mirror = true}};
+  p.surfaces[1].obscuration_semi_diameter = 2;
+  const auto found = longitudinal_aberration(compile(p), far, 11);
+  for (const AxialRayFocus& focus : found) {
+    EXPECT_EQ(focus.tangential_mm.has_value(), 5 * focus.pupil > 2.1 && 5 * focus.pupil < 4.1) << focus.pupil;
+  }
 }
 
 TEST(DiffractionLimitedMtf, HasTheClosedForm) {

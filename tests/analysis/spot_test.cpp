@@ -12,6 +12,7 @@
 #include "analysis/points.hpp"
 #include "petzval/core/error.hpp"
 #include "petzval/core/geometry.hpp"
+#include "petzval/focus/focus.hpp"
 #include "petzval/paraxial/first_order.hpp"
 #include "petzval/pupil/aim.hpp"
 #include "petzval/pupil/f_number.hpp"
@@ -136,6 +137,105 @@ TEST(SpotDiagram, IsOrderedByFieldThenWavelength) {
   // One scene point for all wavelengths, so that differences on the film are chromatic aberration.
   EXPECT_NE(spots[3].chief_ray_height.value(), spots[5].chief_ray_height.value());
   EXPECT_NEAR(spots[3].chief_ray_height.value(), spots[5].chief_ray_height.value(), 0.1);
+}
+
+TEST(SpotDiagram, DoesNotDependOnThreads) {
+  const Lens lens = data_lens("double_gauss_100mm_f2.0");
+  const std::array fields{0.0, radians(7.0), radians(10.0)};
+  const auto one = spot_diagram(lens, -infinity, fields, 256), many = spot_diagram(lens, -infinity, fields, 256, 4);
+  for (std::size_t i = 0; i < 3; ++i) {
+    EXPECT_EQ(one[i].x, many[i].x);
+    EXPECT_EQ(one[i].slope_y, many[i].slope_y);
+    EXPECT_EQ(one[i].chief_ray_height, many[i].chief_ray_height);
+  }
+}
+
+// Rays of a moved film are traced for comparison.
+TEST(ThroughFocus, EqualsSpotsOnMovedFilms) {
+  const std::array wavelengths{486.1327, 656.2725}, weights{1.0, 3.0};
+  const Lens lens = compile(testing::data_prescription("double_gauss_100mm_f2.0"), wavelengths);
+  const std::array fields{0.0, radians(9.0)};
+  const std::array shifts{-0.2, 0.0, 0.35};
+  const auto found = through_focus(spot_diagram(lens, -infinity, fields, 1024), 2, shifts, weights);
+  ASSERT_EQ(found.size(), 6u);
+  for (std::size_t i = 0; i < 6; ++i) {
+    EXPECT_EQ(found[i].field_rad, fields[i / 3]);
+    EXPECT_EQ(found[i].film_shift_mm, shifts[i % 3]);
+    const Lens moved = with_film(lens, lens.film_z() + shifts[i % 3]);
+    std::vector<RayBundle> hits;
+    for (const Spot& spot : spot_diagram(moved, -infinity, std::array{fields[i / 3]}, 1024)) {
+      hits.push_back({.x = spot.x, .y = spot.y, .weights = std::vector(spot.x.size(), weights[spot.wavelength])});
+    }
+    const SpotSize size = spot_size(hits);
+    EXPECT_NEAR(*found[i].rms_radius_mm, size.rms_radius, 1e-12);
+    EXPECT_NEAR(found[i].centroid.y, size.centroid.y, 1e-11);
+    EXPECT_NEAR(found[i].centroid.x, size.centroid.x, 1e-12);
+  }
+}
+
+TEST(ThroughFocus, StatesItsError) {
+  const Lens lens = data_lens("double_gauss_100mm_f2.0");
+  const std::array fields{0.0, radians(6.0), radians(12.0)};
+  const std::array shifts{-0.5, 0.0, 0.5};
+  const auto found = through_focus(spot_diagram(lens, -infinity, fields, 4096), 1, shifts);
+  const auto fine = through_focus(spot_diagram(lens, -infinity, fields, 65536), 1, shifts);
+  double stated = 0, error = 0;
+  for (std::size_t i = 0; i < found.size(); ++i) {
+    stated = std::max(stated, found[i].sampling_error_mm);
+    error = std::max(error, std::abs(*found[i].rms_radius_mm - *fine[i].rms_radius_mm));
+  }
+  EXPECT_LT(error, stated);
+  EXPECT_LT(stated, 0.01 * *found[0].rms_radius_mm);
+}
+
+// A perfect mirror: the RMS radius grows as the shift on both sides.
+TEST(ThroughFocus, OfAPerfectMirrorIsACone) {
+  const Lens lens = data_lens("mirror_newton_200mm_f8");
+  const std::array shifts{-0.5, 0.0, 0.5};
+  const auto found = through_focus(spot_diagram(lens, -infinity, std::array{0.0}, 4096), 1, shifts);
+  EXPECT_NEAR(*found[0].rms_radius_mm, *found[2].rms_radius_mm, 1e-5);
+  EXPECT_LT(*found[1].rms_radius_mm, 1e-2 * *found[2].rms_radius_mm);
+  const Lens closed = with_semi_diameter(lens, *lens.stop(), 0);
+  EXPECT_FALSE(through_focus(spot_diagram(closed, -infinity, std::array{0.0}, 64), 1, shifts)[0].rms_radius_mm);
+  auto without = spot_diagram(lens, -infinity, std::array{0.0}, 64);
+  without[0].slope_y.clear();
+  EXPECT_THROW(through_focus(without, 1, shifts), Error);
+  EXPECT_THROW(through_focus(without, 2, shifts), Error);
+}
+
+// Two steps from the best film the blur is 2 to 4 times its least value, or the step reaches the depth of focus.
+TEST(ThroughFocusStep, ShowsTheFocus) {
+  for (const char* id :
+       {"double_gauss_100mm_f1.35", "cooke_triplet_50mm_f5", "fisheye_8mm_f2.8", "singlet_50mm_biconvex"}) {
+    const Lens sharp = data_lens(id);
+    const std::array fields{0.0, radians(8.0)};
+    const Lens lens = with_focus(sharp, infinity, {.fields = {{fields[0]}, {fields[1]}}});
+    const auto spots = spot_diagram(lens, -infinity, fields, 1024);
+    const double step = through_focus_step(lens, spots).value();
+    const auto rms = [&](double shift) {
+      double squares = 0;
+      for (const auto& spot : through_focus(spots, 1, std::array{shift})) {
+        squares += *spot.rms_radius_mm * *spot.rms_radius_mm;
+      }
+      return std::sqrt(squares);
+    };
+    EXPECT_GT(rms(2 * step), 2 * rms(0)) << id;
+    EXPECT_GT(rms(-2 * step), 2 * rms(0)) << id;
+    EXPECT_LT(rms(2 * step), 5 * rms(0)) << id;
+  }
+  // Scale invariance, up to the rounding of steps.
+  const Prescription p = testing::data_prescription("cooke_triplet_50mm_f5");
+  const auto step = [&](double factor) {
+    const Lens lens = compile(scale(p, factor));
+    return through_focus_step(lens, spot_diagram(lens, -infinity, std::array{0.0}, 512)).value();
+  };
+  EXPECT_NEAR(step(10) / step(1), 10, 1e-9);
+  const Lens perfect = data_lens("analytic_plano_hyperbolic_100mm");
+  const double n = paraxial_f_number(perfect), depth = 4 * perfect.wavelengths_nm()[0] * 1e-6 * n * n;
+  EXPECT_NEAR(2 * through_focus_step(perfect, spot_diagram(perfect, -infinity, std::array{0.0}, 512)).value() / depth,
+              1, 0.3);
+  const Lens closed = with_semi_diameter(perfect, *perfect.stop(), 0);
+  EXPECT_FALSE(through_focus_step(closed, spot_diagram(closed, -infinity, std::array{0.0}, 64)));
 }
 
 TEST(SpotDiagram, PerfectLensGivesAPoint) {

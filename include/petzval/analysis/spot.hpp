@@ -52,8 +52,9 @@ struct Spot {
   std::optional<double> chief_ray_height;
   /// relative_illumination() of the field; nullopt if the axis is dark or no chief ray reaches the film.
   std::optional<double> relative_illumination;
-  std::vector<double> x{}, y{};  ///< film positions of the rays that pass the lens, mm
-  std::size_t sent = 0;          ///< rays started
+  std::vector<double> x{}, y{};              ///< film positions of the rays that pass the lens, mm
+  std::vector<double> slope_x{}, slope_y{};  ///< dx/dz and dy/dz of these rays behind the lens
+  std::size_t sent = 0;                      ///< rays started
   SpotSize size;
 };
 
@@ -63,9 +64,43 @@ struct Spot {
 /// @param subject_z   subject plane (lens frame, mm); -inf at infinity
 /// @param fields_rad  field angles (rad)
 /// @param samples     rays per field and wavelength
-/// @throws Error      under the conditions of scene_point()
+/// @param threads     at least 1; the spots are the same for every number
+/// @throws Error      under the conditions of scene_point(), or if threads is less than 1
 PETZVAL_API std::vector<Spot> spot_diagram(const Lens& lens, double subject_z, std::span<const double> fields_rad,
-                                           std::uint32_t samples = 4096);
+                                           std::uint32_t samples = 4096, int threads = 1);
+
+/// The rays of one field, at all wavelengths, on a film that is moved along z.
+struct ThroughFocusSpot {
+  double field_rad = 0, film_shift_mm = 0;  ///< shift towards +z
+  Vec2<double> centroid{0, 0};              ///< mm
+  std::optional<double> rms_radius_mm{};    ///< about the centroid; nullopt if no ray passes
+  double sampling_error_mm = 0;             ///< estimate, as MtfPoint::sampling_error
+};
+
+/// RMS radii on moved films, ordered by field, then by film. Follows from positions and slopes; no ray is traced.
+///
+/// @param spots               result of spot_diagram(): all wavelengths of each field
+/// @param wavelengths         number of wavelengths of each field
+/// @param film_shifts_mm      shifts of the film towards +z (mm)
+/// @param wavelength_weights  weights of the compiled wavelengths; empty: equal weights
+/// @throws Error  if the number of spots is not a multiple of `wavelengths`, the number of weights differs, or spots
+///                have no slopes
+PETZVAL_API std::vector<ThroughFocusSpot> through_focus(std::span<const Spot> spots, std::size_t wavelengths,
+                                                        std::span<const double> film_shifts_mm,
+                                                        std::span<const double> wavelength_weights = {});
+
+/// A film step for through_focus(): two steps from the best film the RMS radius over all fields is about three times
+/// its least value.
+///
+/// Two steps are at least the depth of focus 4 lambda N^2, and reach the best film. The step is rounded to 1, 1.5, 2,
+/// 3, 4, 5, 6 or 8 times a power of ten.
+///
+/// @param lens   the lens of the spots
+/// @param spots, wavelength_weights  as in through_focus()
+/// @return       mm; nullopt if no ray passes or the rays of a field are parallel
+/// @throws Error as through_focus()
+PETZVAL_API std::optional<double> through_focus_step(const Lens& lens, std::span<const Spot> spots,
+                                                     std::span<const double> wavelength_weights = {});
 
 /// Longitudinal and lateral colour: differences of each compiled wavelength from the primary wavelength (mm).
 struct ChromaticAberration {
