@@ -20,21 +20,10 @@ namespace petzval {
 namespace {
 
 using figure_detail::Axes;
+using figure_detail::curve_style;
+using figure_detail::round_range;
 
 constexpr double nothing = std::numeric_limits<double>::quiet_NaN();
-
-std::string stroke(std::string_view colour, std::string_view more = {}) {
-  return "fill=\"none\" stroke-width=\"1.6\" stroke-linejoin=\"round\" stroke=\"" + std::string(colour) + "\" " +
-         std::string(more);
-}
-/// Half of the range of an axis that contains the values: 1, 2 or 5 times a power of ten, not smaller than `least`.
-double round_range(double largest, double least) {
-  const double wanted = std::max(largest, least), ten = std::pow(10, std::floor(std::log10(wanted)));
-  for (const double step : {1.0, 2.0, 5.0}) {
-    if (step * ten >= wanted) return step * ten;
-  }
-  return 10 * ten;
-}
 
 }  // namespace
 
@@ -70,7 +59,7 @@ std::string fan_figure(const Lens& lens, double subject_z, std::span<const RayFa
         for (const RayFan::Point& point : fans[f * wavelengths + w].points) {
           curve.push_back({point.pupil, 1000 * (point.*error).value_or(nothing)});
         }
-        axes.curve(curve, stroke(looks[w].colour));
+        axes.curve(curve, curve_style(looks[w].colour));
       }
     }
   }
@@ -114,12 +103,12 @@ std::string field_figure(const Lens& lens, double subject_z, double field_rad) {
   figure_detail::draw_head(svg, lens, "Field curvature and distortion", subject_z, lens.primary_wavelength());
   Axes focus(svg, left, top, cell, height, {-range, range, "focus from the film (mm)"},
              {0, end, "field angle (\u00b0)"});
-  focus.curve(tangential, stroke("#1f5fc4"));
-  focus.curve(sagittal, stroke("#c4451f", "stroke-dasharray=\"5 3\""));
+  focus.curve(tangential, curve_style("#1f5fc4"));
+  focus.curve(sagittal, curve_style("#c4451f", "stroke-dasharray=\"5 3\""));
   Axes shown(svg, second, top, cell, height,
              {-percents, percents, wide ? "distortion of f \u03b8 (%)" : "distortion of f tan \u03b8 (%)"},
              {0, end, "field angle (\u00b0)"});
-  shown.curve(projection, stroke("#1f5fc4"));
+  shown.curve(projection, curve_style("#1f5fc4"));
   const double y = top + height + 58;
   const double x = figure_detail::draw_key(svg, left, y, "#1f5fc4", "tangential");
   figure_detail::draw_key(svg, x + 30, y, "#c4451f", "sagittal (dashed)");
@@ -135,7 +124,14 @@ std::string mtf_figure(const Lens& lens, double subject_z, std::span<const MtfPo
   constexpr double width = 960, left = 78, top = 84, height = 360;
   double highest = 0;
   for (const MtfPoint& point : points) highest = std::max(highest, point.frequency_per_mm);
-  figure_detail::Svg svg(width, top + height + 116);
+  std::vector<figure_detail::Key> keys;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    if (i > 0 && points[i].field_rad == points[i - 1].field_rad) continue;
+    keys.push_back({figure_detail::field_colour(keys.size()), figure_detail::field_text(points[i].field_rad)});
+  }
+  keys.push_back({"#888", "diffraction limit on the axis"});
+  const double y = top + height + 58, last_y = y + figure_detail::key_rows(left, width, keys);
+  figure_detail::Svg svg(width, last_y + 58);
   figure_detail::draw_head(svg, lens, "Geometric MTF", subject_z, lens.primary_wavelength());
   Axes axes(svg, left, top, width - left - 24, height, {0, highest > 0 ? highest : 1, "frequency (line pairs per mm)"},
             {0, 1, "contrast"});
@@ -146,8 +142,7 @@ std::string mtf_figure(const Lens& lens, double subject_z, std::span<const MtfPo
     limit.push_back({frequency, diffraction_limited_mtf(frequency, nm, f_number)});
   }
   axes.curve(limit, "fill=\"none\" stroke=\"#888\" stroke-width=\"1\"");
-  double x = left;
-  const double y = top + height + 58;
+  figure_detail::draw_keys(svg, left, y, width, keys);
   std::size_t field = 0;
   for (std::size_t begin = 0; begin < points.size(); ++field) {
     std::size_t end = begin;
@@ -157,17 +152,15 @@ std::string mtf_figure(const Lens& lens, double subject_z, std::span<const MtfPo
       sagittal.push_back({points[end].frequency_per_mm, points[end].sagittal});
     }
     const std::string_view colour = figure_detail::field_colour(field);
-    axes.curve(tangential, stroke(colour));
-    axes.curve(sagittal, stroke(colour, "stroke-dasharray=\"5 3\""));
-    x = 24 + figure_detail::draw_key(svg, x, y, colour, figure_detail::field_text(points[begin].field_rad));
+    axes.curve(tangential, curve_style(colour));
+    axes.curve(sagittal, curve_style(colour, "stroke-dasharray=\"5 3\""));
     begin = end;
   }
-  figure_detail::draw_key(svg, x, y, "#888", "diffraction limit on the axis");
-  svg.text(
-      figure_detail::sheet_margin, y + 24,
-      "Solid: tangential, dashed: sagittal. Rays only: where a curve is near or above the limit, diffraction decides. "
-      "Sampling error 0.001.",
-      figure_detail::small_text);
+  svg.text(figure_detail::sheet_margin, last_y + 24,
+           "Solid: tangential, dashed: sagittal. Rays only: where a curve is near or above the limit, diffraction "
+           "decides. " +
+               figure_detail::sampling_error_text(points) + ".",
+           figure_detail::small_text);
   return std::move(svg).finish();
 }
 
@@ -214,7 +207,7 @@ std::string seidel_figure(const Lens& lens, double subject_z, const SeidelSums& 
                  "fill=\"" + std::string(terms[k].colour) + "\"");
       }
     });
-    axes.curve(std::array{Axes::Point{first - 0.5, 0}, Axes::Point{end - 0.5, 0}}, stroke("#444"));
+    axes.curve(std::array{Axes::Point{first - 0.5, 0}, Axes::Point{end - 0.5, 0}}, curve_style("#444"));
     double x = left;
     for (const Term& term : terms) x = 24 + figure_detail::draw_key(svg, x, y + height + 58, term.colour, term.name);
   };

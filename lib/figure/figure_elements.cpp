@@ -17,6 +17,20 @@ namespace {
 /// Approximate width of text, px, to place the next text.
 double width_of(std::string_view text) { return 6.4 * static_cast<double>(text.size()); }
 
+/// Approximate x of the end of a key from x.
+double key_end(double x, std::string_view words) { return x + 23 + width_of(words); }
+
+/// Calls place(x, distance below the first row, key) for each key.
+template <class Place>
+void for_keys(double x, double right, std::span<const Key> keys, Place place) {
+  double at = x, below = 0;
+  for (const Key& key : keys) {
+    if (at > x && key_end(at, key.words) > right) at = x, below += key_row;
+    place(at, below, key);
+    at = 24 + key_end(at, key.words);
+  }
+}
+
 std::string focal_length_text(const Lens& lens, std::size_t wavelength) {
   const auto in = [&](Meridian meridian) {
     const FirstOrder data = first_order(lens, wavelength, meridian);
@@ -32,6 +46,25 @@ std::string focal_length_text(const Lens& lens, std::size_t wavelength) {
 double round_length(double x) {
   const double power = std::pow(10, std::floor(std::log10(x)));
   return power * (x >= 5 * power ? 5 : x >= 2 * power ? 2 : 1);
+}
+
+double round_range(double largest, double least) {
+  const double wanted = std::max(largest, least), ten = std::pow(10, std::floor(std::log10(wanted)));
+  for (const double step : {1.0, 2.0, 5.0}) {
+    if (step * ten >= wanted) return step * ten;
+  }
+  return 10 * ten;
+}
+
+std::string curve_style(std::string_view colour, std::string_view more) {
+  return "fill=\"none\" stroke-width=\"1.6\" stroke-linejoin=\"round\" stroke=\"" + std::string(colour) + "\" " +
+         std::string(more);
+}
+
+std::string sampling_error_text(std::span<const MtfPoint> points) {
+  double error = 0;
+  for (const MtfPoint& point : points) error = std::max(error, point.sampling_error);
+  return "Sampling error " + to_text(std::ceil(error * 1e4) * 1e-4, 2) + " (from quarters of the rays)";
 }
 
 std::string length_text(double mm) {
@@ -119,11 +152,34 @@ double draw_scale_bar(Svg& svg, double x, double y, double px_per_mm, double lon
   return right + 8 + width_of(words);
 }
 
+std::string ray_marker(std::size_t kind, double x, double y) {
+  const auto at = [](double px, double py) { return "M" + svg_number(px) + " " + svg_number(py); };
+  switch (kind % 5) {
+    case 0: return at(x - 2, y) + "h4" + at(x, y - 2) + "v4";
+    case 1: return at(x - 1.5, y - 1.5) + "l3 3" + at(x - 1.5, y + 1.5) + "l3-3";
+    case 2: return at(x - 1.5, y - 1.5) + "h3v3h-3z";
+    case 3: return at(x, y - 2) + "l1.8 3.2h-3.6z";
+    default: return at(x, y - 2) + "l2 2-2 2-2-2z";
+  }
+}
+
 double draw_key(Svg& svg, double x, double y, std::string_view colour, std::string_view words) {
   svg.path("M" + svg_number(x) + " " + svg_number(y) + "h18",
            "stroke=\"" + std::string(colour) + "\" stroke-width=\"2\"");
   svg.text(x + 23, y + 4, words);
-  return x + 23 + width_of(words);
+  return key_end(x, words);
+}
+
+double draw_keys(Svg& svg, double x, double y, double right, std::span<const Key> keys) {
+  for_keys(x, right, keys,
+           [&](double at, double below, const Key& key) { draw_key(svg, at, y + below, key.colour, key.words); });
+  return y + key_rows(x, right, keys);
+}
+
+double key_rows(double x, double right, std::span<const Key> keys) {
+  double height = 0;
+  for_keys(x, right, keys, [&](double, double below, const Key&) { height = below; });
+  return height;
 }
 
 }  // namespace petzval::figure_detail

@@ -7,6 +7,7 @@
 #include <string_view>
 #include <vector>
 
+#include "petzval/analysis/aberrations.hpp"
 #include "petzval/lens/lens.hpp"
 #include "pupil/ray_bundle.hpp"
 #include "svg.hpp"
@@ -20,6 +21,15 @@ inline constexpr std::string_view small_centred = "font-size=\"11\" fill=\"#555\
 
 /// Rounds down to 1, 2 or 5 times a power of ten.
 double round_length(double x);
+
+/// Half of the range of an axis that contains the values: 1, 2 or 5 times a power of ten, not smaller than `least`.
+double round_range(double largest, double least);
+
+/// Attributes of a curve in a diagram. `more` is appended.
+std::string curve_style(std::string_view colour, std::string_view more = {});
+
+/// "Sampling error 0.002 (from quarters of the rays)", for the largest error of the points.
+std::string sampling_error_text(std::span<const MtfPoint> points);
 
 /// A length with a suitable unit, for example "20 um" (with the Greek letter), "5 mm" or "2 m".
 std::string length_text(double mm);
@@ -62,9 +72,26 @@ RayBundle weighted(RayBundle bundle, double weight);
 /// @return approximate x of the end of the text
 double draw_scale_bar(Svg& svg, double x, double y, double px_per_mm, double longest, std::string_view remark = {});
 
+/// Path commands of the marker of a ray: plus, cross, square, triangle or diamond.
+std::string ray_marker(std::size_t kind, double x, double y);
+
 /// Draws a coloured stroke and its meaning from (x, y).
 ///
 /// @return approximate x of the end of the text
 double draw_key(Svg& svg, double x, double y, std::string_view colour, std::string_view words);
+
+/// The colour of a curve and its meaning.
+struct Key {
+  std::string_view colour;
+  std::string words;
+};
+inline constexpr double key_row = 18;  ///< px
+
+/// Draws keys from (x, y) in rows that end before `right`.
+///
+/// @return y of the last row
+double draw_keys(Svg& svg, double x, double y, double right, std::span<const Key> keys);
+/// Height of the rows of draw_keys() below the first row, px.
+double key_rows(double x, double right, std::span<const Key> keys);
 
 }  // namespace petzval::figure_detail

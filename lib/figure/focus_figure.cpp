@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "analysis/points.hpp"
+#include "analysis/spot_moments.hpp"
 #include "axes.hpp"
 #include "core/text.hpp"
 #include "figure_elements.hpp"
@@ -23,73 +23,31 @@ using figure_detail::Svg;
 constexpr double width = 960, left = 78, right = 24, top = 140, plot_height = 340, row = 18;
 constexpr std::uint32_t rays = 4096;
 
-/// Mean square radius of a spot over film positions: least + steepness (z - best)^2.
-struct Parabola {
-  double best = 0, least = 0, steepness = 0;
-
-  double rms(double z) const { return std::sqrt(std::max(0.0, least + steepness * (z - best) * (z - best))); }
-  double least_rms() const { return std::sqrt(std::max(0.0, least)); }
-};
-
-/// The parabola through the values at z - step, z and z + step. nullopt if it has no minimum, because there are no rays
-/// or the rays are parallel.
-std::optional<Parabola> parabola(const std::array<double, 3>& values, double z, double step) {
-  const double bend = (values[0] - 2 * values[1] + values[2]) / 2, slope = (values[2] - values[0]) / 2;
-  if (!(bend > 0)) return std::nullopt;
-  const double shift = -slope / (2 * bend);
-  return Parabola{z + shift * step, values[1] - bend * shift * shift, bend / (step * step)};
-}
-
-std::vector<std::optional<Parabola>> parabolas(const Lens& lens, double subject_z, std::span<const double> fields_rad,
-                                               std::span<const double> weights) {
-  const double step = 0.01 * std::max(std::abs(lens.film_z() - lens.surfaces().back().vertex_z), 1e-3);
-  const std::array shifted{with_film(lens, lens.film_z() - step), lens, with_film(lens, lens.film_z() + step)};
-  std::vector<std::optional<Parabola>> result;
-  for (const double field : fields_rad) {
-    std::vector<PupilSampler> samplers;
-    for (std::size_t w = 0; w < lens.wavelengths_nm().size(); ++w) {
-      samplers.emplace_back(pupil_boundary(lens, {field, subject_z}, w));
-    }
-    std::array<double, 3> squares{};
-    for (std::size_t k = 0; k < 3; ++k) {
-      std::vector<RayBundle> hits;
-      for (std::size_t w = 0; w < samplers.size(); ++w) {
-        hits.push_back(figure_detail::weighted(trace_bundle(shifted[k], samplers[w], rays), weights[w]));
-      }
-      const double rms = spot_size(hits).rms_radius;
-      squares[k] = rms * rms;
-    }
-    result.push_back(parabola(squares, lens.film_z(), step));
+/// The rays of a field at all wavelengths.
+std::vector<Spot> spots_of(const Lens& lens, const FieldPoint& point) {
+  std::vector<Spot> spots;
+  for (std::size_t w = 0; w < lens.wavelengths_nm().size(); ++w) {
+    spots.push_back(analysis_detail::trace_spot(lens, point, w, rays));
   }
-  return result;
-}
-
-/// The unweighted mean of the parabolas of several fields.
-std::optional<Parabola> mean(const std::vector<std::optional<Parabola>>& fields) {
-  double count = 0, steepness = 0, moment = 0;
-  for (const auto& f : fields) {
-    if (f) ++count, steepness += f->steepness, moment += f->steepness * f->best;
-  }
-  if (count == 0) return std::nullopt;
-  const double best = moment / steepness;
-  double least = 0;
-  for (const auto& f : fields) {
-    if (f) least += f->rms(best) * f->rms(best);
-  }
-  return Parabola{best, least / count, steepness / count};
+  return spots;
 }
 
 class FocusFigure {
  public:
-  FocusFigure(const Lens& lens, double subject_z, std::span<const double> fields_rad, std::vector<double> weights)
-      : lens_(lens), subject_z_(subject_z), fields_(fields_rad), weights_(std::move(weights)) {
-    std::vector<double> with_axis(fields_rad.begin(), fields_rad.end());
-    with_axis.push_back(0);
-    curves_ = parabolas(lens, subject_z, with_axis, weights_);
-    axis_ = curves_.back();
-    curves_.pop_back();
-    mean_ = mean(curves_);
-    const double paraxial = paraxial_image_z(lens, subject_z, lens.primary_wavelength(), main_meridian(lens));
+  FocusFigure(const Lens& lens, std::span<const Spot> spots, std::vector<double> weights)
+      : lens_(lens), subject_z_(spots.front().point.z), weights_(std::move(weights)) {
+    const std::size_t wavelengths = weights_.size();
+    bool has_axis = false;
+    for (std::size_t first = 0; first < spots.size(); first += wavelengths) {
+      fields_.push_back(spots[first].point.field_rad);
+      curves_.push_back(parabola(spots.subspan(first, wavelengths)));
+      if (fields_.back() != 0) continue;
+      has_axis = true;
+      axis_ = curves_.back();
+    }
+    if (!has_axis) axis_ = parabola(spots_of(lens, {0, subject_z_}));
+    mean_ = analysis_detail::mean(curves_);
+    const double paraxial = paraxial_image_z(lens, subject_z_, lens.primary_wavelength(), main_meridian(lens));
     paraxial_ = std::isfinite(paraxial);
     zero_ = paraxial_ ? paraxial : lens.film_z();
     measure();
@@ -150,6 +108,17 @@ class FocusFigure {
   }
 
  private:
+  using Parabola = analysis_detail::BlurParabola;
+
+  /// RMS radius over z of the film, lens frame.
+  std::optional<Parabola> parabola(std::span<const Spot> spots) const {
+    auto found = analysis_detail::SpotMoments(
+                     spots, analysis_detail::ray_weights("focus_figure", spots, weights_.size(), weights_))
+                     .parabola();
+    if (found) found->best += lens_.film_z();
+    return found;
+  }
+
   bool several() const { return fields_.size() > 1; }
 
   std::string wavelengths_in_words() const {
@@ -173,14 +142,9 @@ class FocusFigure {
     for (const auto& p : curves_) {
       if (p) take(p->best);
     }
-    // The range includes, on both sides, the interval in which the axial curve rises to three times its minimum, and a
-    // depth of focus of 4 lambda N^2. The RMS radius of a uniform cone grows by 1 / sqrt(8) / N.
+    // The range includes, on both sides, the interval in which the axial curve rises to three times its minimum.
     double pad = 0.25 * (to_ - from_);
-    if (axis_) {
-      const double lambda = lens_.wavelengths_nm()[lens_.primary_wavelength()] * 1e-6;
-      pad = std::max(
-          {pad, std::sqrt(8 * std::max(axis_->least, 0.0) / axis_->steepness), lambda / (2 * axis_->steepness)});
-    }
+    if (axis_) pad = std::max(pad, analysis_detail::focus_range(lens_, *axis_));
     if (!(pad > 0)) pad = 1;
     from_ -= pad;
     to_ += pad;
@@ -193,7 +157,7 @@ class FocusFigure {
 
   const Lens& lens_;
   double subject_z_;
-  std::span<const double> fields_;
+  std::vector<double> fields_;
   std::vector<double> weights_;                  // one per wavelength
   std::vector<std::optional<Parabola>> curves_;  // one per field
   std::optional<Parabola> axis_, mean_;
@@ -206,10 +170,16 @@ class FocusFigure {
 
 std::string focus_figure(const Lens& lens, double subject_z, std::span<const double> fields_rad,
                          std::span<const double> wavelength_weights) {
-  if (fields_rad.empty()) throw Error("focus_figure: fields = 0; must be at least 1");
-  return FocusFigure(lens, subject_z, fields_rad,
-                     figure_detail::checked_weights("focus_figure", lens, wavelength_weights))
-      .draw();
+  std::vector<Spot> spots;
+  for (const double field : fields_rad) {
+    for (Spot& spot : spots_of(lens, {field, subject_z})) spots.push_back(std::move(spot));
+  }
+  return focus_figure(lens, spots, wavelength_weights);
+}
+
+std::string focus_figure(const Lens& lens, std::span<const Spot> spots, std::span<const double> wavelength_weights) {
+  if (spots.empty()) throw Error("focus_figure: fields = 0; must be at least 1");
+  return FocusFigure(lens, spots, figure_detail::checked_weights("focus_figure", lens, wavelength_weights)).draw();
 }
 
 }  // namespace petzval

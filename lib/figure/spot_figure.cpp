@@ -19,6 +19,7 @@
 namespace petzval {
 namespace {
 
+using figure_detail::ray_marker;
 using figure_detail::small_centred;
 using figure_detail::small_text;
 using figure_detail::Svg;
@@ -28,18 +29,6 @@ constexpr double cell = 190, gap = 14,
                  caption_height = 22;  // side of a cell, space between cells, height of the line below
 constexpr double left = 118, top = 112, bottom = 76;
 constexpr std::size_t drawn_rays = 600;
-
-/// Path commands of a marker: plus, cross, square, triangle or diamond.
-std::string marker(std::size_t kind, double x, double y) {
-  const auto at = [](double px, double py) { return "M" + svg_number(px) + " " + svg_number(py); };
-  switch (kind % 5) {
-    case 0: return at(x - 2, y) + "h4" + at(x, y - 2) + "v4";
-    case 1: return at(x - 1.5, y - 1.5) + "l3 3" + at(x - 1.5, y + 1.5) + "l3-3";
-    case 2: return at(x - 1.5, y - 1.5) + "h3v3h-3z";
-    case 3: return at(x, y - 2) + "l1.8 3.2h-3.6z";
-    default: return at(x, y - 2) + "l2 2-2 2-2-2z";
-  }
-}
 
 class SpotFigure {
  public:
@@ -102,7 +91,7 @@ class SpotFigure {
     figure_detail::draw_head(svg_, lens_, "Spot diagram", spots_.front().point.z, middle_);
     double x = gap;
     for (std::size_t w = 0; w < wavelengths_; ++w) {
-      svg_.path(marker(looks_[w].marker, x + 4, 65), stroke(w));
+      svg_.path(ray_marker(looks_[w].marker, x + 4, 65), stroke(w));
       const std::string name = to_text(lens_.wavelengths_nm()[w], 6) + " nm";
       svg_.text(x + 12, 69, name);
       x += 90;
@@ -140,7 +129,7 @@ class SpotFigure {
       const Spot& hits = of(row)[w];
       std::string d;
       for (std::size_t i = 0; i < std::min(drawn_rays, hits.x.size()); ++i) {
-        d += marker(looks_[w].marker, cx + (hits.x[i] - origin_x) * scale, cy - (hits.y[i] - origin_y) * scale);
+        d += ray_marker(looks_[w].marker, cx + (hits.x[i] - origin_x) * scale, cy - (hits.y[i] - origin_y) * scale);
       }
       if (!d.empty()) svg_.path(d, stroke(w));
     }

@@ -6,6 +6,7 @@
 #include <string>
 #include <string_view>
 
+#include "petzval/analysis/spot.hpp"
 #include "petzval/camera/focal_surface.hpp"
 #include "petzval/core/config.hpp"
 #include "petzval/core/film.hpp"
@@ -20,7 +21,7 @@ namespace petzval {
 /// Plots the RMS spot radius of each field and of all fields together over the distance of the film from the paraxial
 /// focus. Lines mark the paraxial focus, the film, and the minima of the axial spot and of all fields; the numbers are
 /// printed below. RMS radii are about the centroid, over all compiled wavelengths and the area of the vignetted pupil.
-/// Their square is a parabola in the film position, determined from three positions. The output is deterministic.
+/// Their square is a parabola in the film position, by the slopes of the rays. The output is deterministic.
 ///
 /// @param lens                the lens
 /// @param subject_z           subject plane (lens frame, mm); -inf at infinity
@@ -29,6 +30,9 @@ namespace petzval {
 /// @throws Error              if there are no fields, or the weights are negative, all 0 or of the wrong number; also
 ///                            under the conditions of scene_point()
 PETZVAL_API std::string focus_figure(const Lens& lens, double subject_z, std::span<const double> fields_rad,
+                                     std::span<const double> wavelength_weights = {});
+/// The same for the rays of spot_diagram(); the axis is traced if it is not among the fields.
+PETZVAL_API std::string focus_figure(const Lens& lens, std::span<const Spot> spots,
                                      std::span<const double> wavelength_weights = {});
 
 /// A film and the subject in focus at one time.

@@ -84,6 +84,33 @@ PETZVAL_API std::string field_figure(const Lens& lens, double subject_z, double 
 /// @throws Error     if there are no points
 PETZVAL_API std::string mtf_figure(const Lens& lens, double subject_z, std::span<const MtfPoint> points);
 
+/// Draws geometric MTF over the field as SVG text: a colour for each frequency, tangential solid, sagittal dashed.
+/// Fields from which no ray passes interrupt the curves.
+///
+/// @param lens       the lens
+/// @param subject_z  subject plane (lens frame, mm); -inf at infinity
+/// @param points     mtf_over_field() of this lens
+/// @throws Error     if there are less than two fields
+PETZVAL_API std::string mtf_field_figure(const Lens& lens, double subject_z, std::span<const MtfPoint> points);
+
+/// Draws geometric encircled energy as SVG text: the fraction of the rays over the radius, a colour for each field. A
+/// line marks the Airy radius at the primary wavelength.
+///
+/// @param lens       the lens
+/// @param subject_z  subject plane (lens frame, mm); -inf at infinity
+/// @param points     encircled_energy() of this lens, with ascending fractions
+/// @throws Error     if there are no points
+PETZVAL_API std::string energy_figure(const Lens& lens, double subject_z, std::span<const EncircledEnergy> points);
+
+/// Draws colour as SVG text: longitudinal_aberration() of every wavelength over the height on the stop, and lateral
+/// colour of chromatic_aberration() over the field, unless there is one wavelength or the field is 0.
+///
+/// @param lens       the lens
+/// @param subject_z  subject plane (lens frame, mm); -inf at infinity
+/// @param field_rad  largest field angle (rad)
+/// @throws Error     if the field is negative; also under the conditions of aim() and chromatic_aberration()
+PETZVAL_API std::string colour_figure(const Lens& lens, double subject_z, double field_rad);
+
 /// Draws Seidel sums as SVG text: bars of S1 to S5 and of C1 and C2 for each surface, and their sums on the right.
 ///
 /// @param lens       the lens
@@ -109,6 +136,20 @@ PETZVAL_API std::string seidel_figure(const Lens& lens, double subject_z, const 
 ///                            or of the wrong number
 PETZVAL_API std::string spot_figure(const Lens& lens, std::span<const Spot> spots,
                                     std::span<const double> wavelength_weights = {});
+
+/// Draws spots on moved films as SVG text: one row per field, one column per film.
+///
+/// All cells have the same scale, shown by a bar; +y is up. The origin of a cell is the centroid of its rays; their RMS
+/// radius about it is printed below. The first 200 rays of a spot are drawn. The output is deterministic.
+///
+/// @param lens                the lens
+/// @param spots               result of spot_diagram() for this lens
+/// @param film_shifts_mm      shifts of the film towards +z (mm), for example multiples of through_focus_step()
+/// @param wavelength_weights  weights of the compiled wavelengths; empty: equal weights
+/// @throws Error              if there are no spots or no films; also under the conditions of through_focus()
+PETZVAL_API std::string through_focus_figure(const Lens& lens, std::span<const Spot> spots,
+                                             std::span<const double> film_shifts_mm,
+                                             std::span<const double> wavelength_weights = {});
 
 /// A model in the figure.
 struct ParetoPoint {

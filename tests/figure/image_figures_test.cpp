@@ -1,0 +1,154 @@
+// SPDX-License-Identifier: Apache-2.0
+// Spots through focus, encircled energy, MTF, MTF over the field and colour.
+#include <gtest/gtest.h>
+
+#include <array>
+#include <limits>
+#include <string>
+#include <vector>
+
+#include "../data_lenses.hpp"
+#include "../expect_error.hpp"
+#include "core/text.hpp"
+#include "petzval/analysis/aberrations.hpp"
+#include "petzval/analysis/spot.hpp"
+#include "petzval/core/geometry.hpp"
+#include "petzval/figure/lens_figures.hpp"
+#include "svg_parts.hpp"
+
+namespace petzval {
+namespace image_figures_test {
+
+using testing::count;
+constexpr double far = -std::numeric_limits<double>::infinity();
+constexpr std::array f_d_c{486.1327, 587.5618, 656.2725};
+
+Lens double_gauss() { return compile(testing::data_prescription("double_gauss_100mm_f2.0"), f_d_c); }
+
+/// Checks that the sheet is wide enough for its text, with 5.3 px for each character of the small text.
+void expect_text_within_sheet(const std::string& svg) {
+  const double width = testing::matches(svg, "<svg [^>]*width=\"([0-9.]+)\"").at(0).number(1);
+  for (const testing::Match& text :
+       testing::matches(svg, "<text x=\"([0-9.]+)\" y=\"[0-9.]+\" font-size=\"11\" fill=\"#555\">([^<]*)<")) {
+    EXPECT_LT(text.number(1) + 5.3 * static_cast<double>(text[2].size()), width) << text[2];
+  }
+}
+
+TEST(ThroughFocusFigure, PrintsTheRadiusOfEachFieldAndFilm) {
+  const Lens lens = double_gauss();
+  const std::array fields{0.0, radians(9.0)};
+  const std::array shifts{-0.3, -0.15, 0.0, 0.15, 0.3};
+  const std::array weights{1.0, 2.0, 1.0};
+  const auto spots = spot_diagram(lens, far, fields, 512);
+  const std::string svg = through_focus_figure(lens, spots, shifts, weights);
+  EXPECT_EQ(count(svg, "stroke=\"#999\""), 10u);
+  double error = 0;
+  for (const ThroughFocusSpot& spot : through_focus(spots, 3, shifts, weights)) {
+    EXPECT_NE(svg.find(">RMS " + to_text(1e3 * *spot.rms_radius_mm, 3) + " \u00b5m<"), std::string::npos);
+    error = std::max(error, spot.sampling_error_mm);
+  }
+  EXPECT_NE(svg.find("(from quarters of the rays): " + to_text(1e3 * error, 3) + " \u00b5m"), std::string::npos);
+  for (const char* film : {">film<", ">film +150 \u00b5m<", ">film \u2212300 \u00b5m<", ">field 9\u00b0<"}) {
+    EXPECT_NE(svg.find(film), std::string::npos) << film;
+  }
+  EXPECT_EQ(svg, through_focus_figure(lens, spots, shifts, weights));
+  expect_text_within_sheet(svg);
+  testing::expect_error([&] { through_focus_figure(lens, {}, shifts); }, {0, "spots"});
+  testing::expect_error([&] { through_focus_figure(lens, spots, {}); }, {0, "films"});
+  const Lens closed = with_semi_diameter(lens, *lens.stop(), 0);
+  EXPECT_EQ(count(through_focus_figure(closed, spot_diagram(closed, far, fields, 64), shifts), ">no rays<"), 10u);
+}
+
+// The markers stay within their cells.
+TEST(ThroughFocusFigure, DrawsWithinItsCells) {
+  const Lens lens = testing::data_lens("mirror_newton_200mm_f8");
+  const auto spots = spot_diagram(lens, far, std::array{0.0, radians(1.0)}, 256);
+  const std::string svg = through_focus_figure(lens, spots, std::array{-0.2, 0.0, 0.4});
+  std::size_t marks = 0;
+  for (const testing::Match& cell : testing::matches(
+           svg, "<rect x=\"([0-9.]+)\" y=\"([0-9.]+)\" width=\"([0-9.]+)\" height=\"[0-9.]+\" fill=\"none\"")) {
+    const std::string content = svg.substr(cell.position, svg.find("<text", cell.position) - cell.position);
+    for (const testing::Match& mark : testing::matches(content, "M([-0-9.]+) ([-0-9.]+)h4")) {
+      ++marks;
+      EXPECT_GE(mark.number(1) + 2, cell.number(1));
+      EXPECT_LE(mark.number(1) + 2, cell.number(1) + cell.number(3));
+      EXPECT_GE(mark.number(2), cell.number(2));
+      EXPECT_LE(mark.number(2), cell.number(2) + cell.number(3));
+    }
+  }
+  EXPECT_GT(marks, 1000u);
+}
+
+TEST(EnergyFigure, HasACurveForEachFieldAndStatesItsError) {
+  const Lens lens = double_gauss();
+  const std::array fields{0.0, radians(5.0), radians(9.0)};
+  const std::array fractions{0.2, 0.5, 0.8, 0.95, 1.0};
+  const auto points = encircled_energy(spot_diagram(lens, far, fields, 512), 3, fractions);
+  const std::string svg = energy_figure(lens, far, points);
+  EXPECT_EQ(testing::paths(svg, "stroke-width=\"1.6\"").size(), 3u);
+  double error = 0;
+  for (const EncircledEnergy& point : points) {
+    if (point.fraction < 1) error = std::max(error, point.sampling_error_mm);
+  }
+  EXPECT_NE(svg.find("(from quarters of the rays): " + to_text(1e3 * error, 3) + " \u00b5m"), std::string::npos);
+  EXPECT_EQ(count(svg, "Airy radius<"), 1u);
+  expect_text_within_sheet(svg);
+  testing::expect_error([&] { energy_figure(lens, far, {}); }, {"points"});
+}
+
+TEST(MtfFigures, StateTheirErrorAndLeaveOutDarkFields) {
+  const Lens lens = double_gauss();
+  const std::array fields{0.0, radians(5.0), radians(9.0)};
+  const std::array frequencies{10.0, 20.0, 40.0};
+  const auto points = mtf_over_field(lens, far, fields, frequencies, {}, 512);
+  const std::string svg = mtf_field_figure(lens, far, points);
+  EXPECT_EQ(testing::paths(svg, "stroke-width=\"1.6\"").size(), 6u);
+  EXPECT_NE(svg.find(">40 line pairs per mm<"), std::string::npos);
+  double error = 0;
+  for (const MtfPoint& point : points) error = std::max(error, point.sampling_error);
+  const auto stated = testing::matches(svg, "Sampling error ([0-9.]+) ");
+  ASSERT_EQ(stated.size(), 1u);
+  EXPECT_GE(stated[0].number(1), 0.95 * error);
+  EXPECT_LE(stated[0].number(1), 1.05 * error + 1e-4);
+  expect_text_within_sheet(svg);
+  expect_text_within_sheet(mtf_figure(lens, far, points));
+  testing::expect_error([&] { mtf_field_figure(lens, far, std::span(points).first(3)); }, {1, "fields"});
+
+  const std::array dark{0.0, radians(5.0), radians(80.0)};
+  const auto last = testing::paths(mtf_field_figure(lens, far, mtf_over_field(lens, far, dark, frequencies, {}, 64)),
+                                   "stroke-width=\"1.6\"");
+  for (const testing::Points& curve : last) EXPECT_EQ(curve.size(), 2u);
+}
+
+// Many keys continue in a second row.
+TEST(MtfFigures, KeysOfManyFieldsStayOnTheSheet) {
+  const Lens lens = double_gauss();
+  std::vector<double> fields;
+  for (int k = 0; k < 20; ++k) fields.push_back(radians(0.413 * k));
+  const auto spots = spot_diagram(lens, far, fields, 16);
+  const std::string svg = mtf_figure(lens, far, geometric_mtf(spots, 3, std::array{0.0, 10.0}));
+  std::size_t keys = 0;
+  for (const testing::Match& key : testing::matches(svg, "<path d=\"M([0-9.]+) [0-9.]+h18\"")) {
+    ++keys;
+    EXPECT_LT(key.number(1), 920);
+  }
+  EXPECT_EQ(keys, 21u);
+}
+
+TEST(ColourFigure, HasOnePanelForOneWavelengthOrTheAxis) {
+  const std::string both = colour_figure(double_gauss(), far, radians(10.0));
+  EXPECT_EQ(testing::paths(both, "stroke-width=\"1.6\"").size(), 6u);
+  EXPECT_NE(both.find("lateral colour (\u00b5m)"), std::string::npos);
+  const std::string one = colour_figure(testing::data_lens("double_gauss_100mm_f2.0"), far, radians(10.0));
+  EXPECT_EQ(testing::paths(one, "stroke-width=\"1.6\"").size(), 1u);
+  const std::string axis = colour_figure(double_gauss(), far, 0);
+  for (const std::string& svg : {one, axis}) EXPECT_EQ(svg.find("lateral colour ("), std::string::npos);
+  const std::string squeezed = colour_figure(testing::data_lens("anamorphic_60mm_2x"), far, 0);
+  EXPECT_EQ(testing::paths(squeezed, "stroke-width=\"1.6\"").size(), 2u);
+  EXPECT_NE(squeezed.find("dashed in x-z"), std::string::npos);
+  for (const std::string& svg : {both, one, axis, squeezed}) expect_text_within_sheet(svg);
+  testing::expect_error([] { colour_figure(double_gauss(), far, -0.1); }, {"field"});
+}
+
+}  // namespace image_figures_test
+}  // namespace petzval
