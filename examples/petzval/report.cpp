@@ -119,8 +119,9 @@ int commands::report(int argc, char** argv) {
       "cylinders. Lengths in mm; z from the first vertex, towards the film. Findings are not failures. Subject, "
       "wavelengths with their weights, and fields are taken from the file if it has them.\n"
       "With --out: writes LENS_layout.svg (and LENS_layout_x.svg for a lens with cylinders), LENS_spots.svg, "
-      "LENS_fans.svg, LENS_footprints.svg, LENS_focus.svg, LENS_mtf.svg, LENS_field.svg, LENS_seidel.svg, "
-      "LENS_illumination.svg and LENS.html, a page with all of them, to DIR, and prints their paths instead.",
+      "LENS_through_focus.svg, LENS_energy.svg, LENS_fans.svg, LENS_footprints.svg, LENS_focus.svg, LENS_mtf.svg, "
+      "LENS_mtf_field.svg, LENS_colour.svg, LENS_field.svg, LENS_seidel.svg, LENS_illumination.svg and LENS.html, a "
+      "page with all of them, to DIR, and prints their paths instead.",
       "petzval report");
   examples::add_lens(app, options.lens_file);
   app.add_option(

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <set>
 #include <sstream>
 #include <string_view>
@@ -10,6 +11,7 @@
 
 #include "petzval/analysis/spot.hpp"
 #include "petzval/core/geometry.hpp"
+#include "petzval/core/parallel.hpp"
 #include "petzval/figure/focus_figures.hpp"
 #include "petzval/figure/lens_figures.hpp"
 #include "petzval/focus/focus.hpp"
@@ -201,8 +203,15 @@ std::vector<LensFigure> lens_figures(const Report& r, const petzval::Lens& colou
   const double subject_z = examples::subject_z(r.subject, lens);
   const std::vector<double>& weights = r.subject.light.weights;
   std::vector<LensFigure> result;
-  const auto add = [&](const char* name, const char* title, const char* caption, std::string svg) {
-    result.push_back({name, title, caption, std::move(svg)});
+  std::vector<std::function<std::string()>> drawings;
+  const auto add = [&](const char* name, const char* title, const char* caption, std::function<std::string()> draw) {
+    result.push_back({name, title, caption, {}});
+    drawings.push_back(std::move(draw));
+  };
+  // The figures share the processors; each draws on one thread.
+  const auto draw_all = [&] {
+    petzval::parallel_for(drawings.size(), 1, threads(),
+                          [&](std::size_t k, std::size_t) { result[k].svg = drawings[k](); });
   };
   const bool limited = r.main().pupils.has_value();
   std::vector<double> fields;
@@ -213,50 +222,83 @@ std::vector<LensFigure> lens_figures(const Report& r, const petzval::Lens& colou
   add("layout", "The lens",
       "Each colour is one field: its rays come from one far point and should meet in one point of the film. If the "
       "rays of a field do not fill the stop from tick to tick, rims clip the pupil and the corner darkens.",
-      petzval::layout_figure(lens, subject_z, fields, petzval::Meridian::y, rays, first));
+      [&] { return petzval::layout_figure(lens, subject_z, fields, petzval::Meridian::y, rays, first); });
   if (!lens.rotationally_symmetric()) {
     add("layout_x", "The lens in the other section",
         "The section x-z of the lens. Cylinders are curved in one section only, so the focal length differs.",
-        petzval::layout_figure(lens, subject_z, fields, petzval::Meridian::x, rays, first));
+        [&] { return petzval::layout_figure(lens, subject_z, fields, petzval::Meridian::x, rays, first); });
   }
-  if (!limited) return result;
+  if (!limited) {
+    draw_all();
+    return result;
+  }
+
+  const std::vector<petzval::Spot> spots = report_spots(r, colours);
+  const std::vector<petzval::MtfPoint> mtf = report_mtf(r, spots), mtf_field = report_mtf_over_field(r, colours);
+  const std::vector<double> shifts = report_film_shifts(r, colours, spots);
+  const double farthest = std::abs(*std::ranges::max_element(fields, {}, [](double f) { return std::abs(f); }));
 
   add("spots", "Spots",
       "Film points of the rays from one field point. If the spot is within the dashed Airy circle, diffraction "
       "dominates. A comet is coma, a line or a cross astigmatism; separate colours are lateral colour.",
-      petzval::spot_figure(colours, petzval::spot_diagram(colours, subject_z, fields), weights));
+      [&] { return petzval::spot_figure(colours, spots, weights); });
+  if (!shifts.empty()) {
+    add("through_focus", "Spots through focus",
+        "The same rays on films in front of and behind the film. If the smallest spot of a field is not in the middle, "
+        "the field is curved or the film out of focus; a line that turns by 90 degrees is astigmatism.",
+        [&] { return petzval::through_focus_figure(colours, spots, shifts, weights); });
+  }
+  add("energy", "Encircled energy",
+      "The fraction of the rays within a radius. A curve that rises steeply and then slowly is a sharp core in a halo.",
+      [&] {
+        std::vector<double> fractions;
+        for (int k = 1; k <= 100; ++k) fractions.push_back(k / 100.0);
+        const auto points = petzval::encircled_energy(spots, weights.size(), fractions, weights);
+        return petzval::energy_figure(colours, subject_z, points);
+      });
   add("fans", "Ray fans",
       "Errors of the rays through the two sections of the stop. A tilted line is defocus, an S is spherical "
       "aberration, a parabola is coma; distances between the curves are lateral colour.",
-      petzval::fan_figure(colours, subject_z, petzval::ray_fans(colours, subject_z, fields)));
+      [&] { return petzval::fan_figure(colours, subject_z, petzval::ray_fans(colours, subject_z, fields)); });
   add("footprints", "Pupils",
       "The vignetted pupil of each field point. The more of the dashed circle is missing, the darker the corner. "
       "Bright points out of focus have blurs of this shape.",
-      petzval::footprint_figure(lens, subject_z, fields, first));
+      [&] { return petzval::footprint_figure(lens, subject_z, fields, first); });
   add("focus", "Focus",
       "Spot size against film position. Separate minima mean curvature of field; a high, flat minimum is an "
       "aberration that focusing does not remove.",
-      petzval::focus_figure(colours, subject_z, fields, weights));
+      [&] { return petzval::focus_figure(colours, spots, weights); });
   add("mtf", "Contrast",
       "Contrast of fine lines, by rays. Where the curves of a field separate there is astigmatism or coma.",
-      petzval::mtf_figure(colours, subject_z, report_mtf(r, colours)));
-  const double farthest = *std::ranges::max_element(fields, {}, [](double f) { return std::abs(f); });
+      [&] { return petzval::mtf_figure(colours, subject_z, mtf); });
+  if (!mtf_field.empty()) {
+    add("mtf_field", "Contrast over the field",
+        "Contrast of lines of three widths from the centre to the edge. A drop towards the edge is curvature of field, "
+        "astigmatism or lateral colour.",
+        [&] { return petzval::mtf_field_figure(colours, subject_z, mtf_field); });
+  }
+  add("colour", "Spherical aberration and colour",
+      "Where rays of the axial point cross the axis, over their height on the stop. A bent curve is spherical "
+      "aberration; distances between the colours at the bottom are axial colour. On the right, if there are several "
+      "wavelengths and fields: lateral colour.",
+      [&] { return petzval::colour_figure(colours, subject_z, farthest); });
   if (farthest != 0) {
     add("field", "Field curvature and distortion",
         "Where narrow beams are sharp, in both sections, and how far the image is from the projection. Two separate "
         "curves on the left are astigmatism.",
-        petzval::field_figure(lens, subject_z, std::abs(farthest)));
+        [&] { return petzval::field_figure(lens, subject_z, farthest); });
     if (const auto sums = report_seidel(r, colours)) {
       add("seidel", "Seidel sums",
           "Third-order aberrations and colour that each surface contributes, for the largest field. Long bars of both "
           "signs that cancel make a lens sensitive to errors.",
-          petzval::seidel_figure(colours, subject_z, *sums, first));
+          [&, sums = *sums] { return petzval::seidel_figure(colours, subject_z, sums, first); });
     }
     add("illumination", "Brightness",
         "Irradiance on the film from the centre to the edge of the field. Below cos\u2074 rims vignette; above it the "
         "pupil grows with the field, as in fisheyes and retrofocus lenses.",
-        petzval::illumination_figure(lens, subject_z, std::abs(farthest)));
+        [&] { return petzval::illumination_figure(lens, subject_z, farthest); });
   }
+  draw_all();
   return result;
 }
 

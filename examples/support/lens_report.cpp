@@ -2,6 +2,7 @@
 #include "lens_report.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <iomanip>
 #include <locale>
@@ -168,11 +169,11 @@ Json wavefronts(const Report& r, const petzval::Lens& colours) {
 
 /// Fans, field curvature, distortion and wavefronts at the fields of the report; null if no ray can be aimed.
 Json exact_aberrations(const Report& r, const petzval::Lens& colours) {
-  Json json{{"ray_fans", nullptr},
-            {"field_curvature", nullptr},
-            {"distortion_percent", nullptr},
-            {"mtf", nullptr},
-            {"wavefront", nullptr}};
+  Json json;
+  for (const char* key : {"ray_fans", "field_curvature", "distortion_percent", "mtf", "mtf_over_field", "through_focus",
+                          "encircled_energy", "longitudinal_aberration", "lateral_colour", "wavefront"}) {
+    json[key] = nullptr;
+  }
   const double z = subject_z(r.subject, colours);
   std::vector<double> fields;
   for (const double degrees : r.subject.fields.degrees) fields.push_back(petzval::radians(degrees));
@@ -200,8 +201,9 @@ Json exact_aberrations(const Report& r, const petzval::Lens& colours) {
                             {"f_tan_theta", or_null(one.f_tan_theta_percent)},
                             {"f_theta", or_null(one.f_theta_percent)}});
     }
-    Json mtf = Json::array();
-    const auto points = report_mtf(r, colours);
+    const auto spots = report_spots(r, colours);
+    Json mtf = Json::array(), over_field = Json::array(), films = Json::array(), energy = Json::array();
+    const auto points = report_mtf(r, spots);
     const double f_number = petzval::film_side_f_number(colours);
     for (std::size_t k = 0; k < points.size(); ++k) {
       const petzval::MtfPoint& point = points[k];
@@ -213,10 +215,54 @@ Json exact_aberrations(const Report& r, const petzval::Lens& colours) {
                      {"sagittal", point.sagittal},
                      {"diffraction_limit", limit}});
     }
+    for (const petzval::MtfPoint& point : report_mtf_over_field(r, colours)) {
+      over_field.push_back({{"field_deg", petzval::degrees(point.field_rad)},
+                            {"frequency_per_mm", point.frequency_per_mm},
+                            {"tangential", point.tangential},
+                            {"sagittal", point.sagittal},
+                            {"sampling_error", point.sampling_error}});
+    }
+    const auto& nm = r.subject.light.wavelengths_nm;
+    const auto um = [&](std::optional<double> mm) { return mm ? Json(1000 * *mm) : Json(nullptr); };
+    const auto shifts = report_film_shifts(r, colours, spots);
+    for (const auto& spot : petzval::through_focus(spots, nm.size(), shifts, r.subject.light.weights)) {
+      films.push_back({{"field_deg", degrees[films.size() / shifts.size()]},
+                       {"film_shift_mm", spot.film_shift_mm},
+                       {"rms_radius_mm", or_null(spot.rms_radius_mm)},
+                       {"sampling_error_mm", spot.sampling_error_mm}});
+    }
+    constexpr std::array fractions{0.5, 0.8, 0.9, 0.95};
+    for (const auto& point :
+         petzval::encircled_energy(spots, nm.size(), fractions, r.subject.light.weights, threads())) {
+      energy.push_back({{"field_deg", degrees[energy.size() / fractions.size()]},
+                        {"fraction", point.fraction},
+                        {"radius_um", um(point.radius_mm)},
+                        {"sampling_error_um", 1000 * point.sampling_error_mm}});
+    }
+    Json longitudinal = Json::array(), lateral = Json::array();
+    for (const petzval::AxialRayFocus& focus : petzval::longitudinal_aberration(colours, z)) {
+      longitudinal.push_back({{"wavelength_nm", colours.wavelengths_nm()[focus.wavelength]},
+                              {"pupil", focus.pupil},
+                              {"tangential_mm", or_null(focus.tangential_mm)},
+                              {"sagittal_mm", or_null(focus.sagittal_mm)}});
+    }
+    for (const auto& by_wavelength : petzval::chromatic_aberration(colours, z, fields).lateral) {
+      const double field = degrees[lateral.size() / by_wavelength.size()];
+      for (std::size_t w = 0; w < by_wavelength.size(); ++w) {
+        lateral.push_back({{"field_deg", field},
+                           {"wavelength_nm", colours.wavelengths_nm()[w]},
+                           {"chief_ray_shift_um", um(by_wavelength[w])}});
+      }
+    }
     json = {{"ray_fans", fans},
             {"field_curvature", foci},
             {"distortion_percent", distortion},
             {"mtf", mtf},
+            {"mtf_over_field", over_field},
+            {"through_focus", films},
+            {"encircled_energy", energy},
+            {"longitudinal_aberration", longitudinal},
+            {"lateral_colour", lateral},
             {"wavefront", wavefronts(r, colours)}};
   } catch (const petzval::Error&) {
     // All values stay null.
@@ -252,14 +298,37 @@ std::vector<std::optional<petzval::Wavefront>> report_wavefronts(const Report& r
   return result;
 }
 
-std::vector<petzval::MtfPoint> report_mtf(const Report& r, const petzval::Lens& colours) {
+std::vector<petzval::Spot> report_spots(const Report& r, const petzval::Lens& colours) {
   constexpr std::uint32_t rays = 32768;
-  std::vector<double> fields, frequencies;
+  std::vector<double> fields;
   for (const double degrees : r.subject.fields.degrees) fields.push_back(petzval::radians(degrees));
+  return petzval::spot_diagram(colours, subject_z(r.subject, colours), fields, rays, examples::threads());
+}
+
+std::vector<petzval::MtfPoint> report_mtf(const Report& r, std::span<const petzval::Spot> spots) {
+  std::vector<double> frequencies;
   for (int k = 0; k <= 20; ++k) frequencies.push_back(5 * k);
-  const auto spots = petzval::spot_diagram(colours, subject_z(r.subject, colours), fields, rays);
-  return petzval::geometric_mtf(spots, colours.wavelengths_nm().size(), frequencies, r.subject.light.weights,
+  return petzval::geometric_mtf(spots, r.subject.light.wavelengths_nm.size(), frequencies, r.subject.light.weights,
                                 examples::threads());
+}
+
+std::vector<petzval::MtfPoint> report_mtf_over_field(const Report& r, const petzval::Lens& colours) {
+  constexpr int steps = 10;
+  constexpr std::uint32_t rays = 4096;
+  constexpr std::array frequencies{10.0, 20.0, 40.0};
+  const double largest = largest_field(r.subject, colours).field_rad;
+  if (largest == 0) return {};
+  std::vector<double> fields;
+  for (int k = 0; k <= steps; ++k) fields.push_back(largest * k / steps);
+  return petzval::mtf_over_field(colours, subject_z(r.subject, colours), fields, frequencies, r.subject.light.weights,
+                                 rays, examples::threads());
+}
+
+std::vector<double> report_film_shifts(const Report& r, const petzval::Lens& colours,
+                                       std::span<const petzval::Spot> spots) {
+  const auto step = petzval::through_focus_step(colours, spots, r.subject.light.weights);
+  if (!step) return {};
+  return {-2 * *step, -*step, 0, *step, 2 * *step};
 }
 
 std::string in_words(const ReportSubject& subject) {

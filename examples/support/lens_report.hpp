@@ -3,6 +3,7 @@
 
 #include <limits>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -13,6 +14,7 @@
 #include "petzval/analysis/aberrations.hpp"
 #include "petzval/analysis/lint.hpp"
 #include "petzval/analysis/seidel.hpp"
+#include "petzval/analysis/spot.hpp"
 #include "petzval/analysis/wavefront.hpp"
 #include "petzval/paraxial/first_order.hpp"
 
@@ -78,8 +80,16 @@ Json to_json(const Report& report, const petzval::Lens& colours);
 /// Seidel sums for the largest field of the report, with colour from the shortest to the longest wavelength; nullopt if
 /// the lens has none. colours: as in to_json().
 std::optional<petzval::SeidelSums> report_seidel(const Report& report, const petzval::Lens& colours);
-/// Geometric MTF at the fields of the report, 0 to 100 line pairs per mm. colours: as in to_json().
-std::vector<petzval::MtfPoint> report_mtf(const Report& report, const petzval::Lens& colours);
+/// The rays from the fields of the report for its spots, MTF and encircled energy. colours: as in to_json().
+std::vector<petzval::Spot> report_spots(const Report& report, const petzval::Lens& colours);
+/// Geometric MTF of report_spots(), 0 to 100 line pairs per mm.
+std::vector<petzval::MtfPoint> report_mtf(const Report& report, std::span<const petzval::Spot> spots);
+/// Geometric MTF at 10, 20 and 40 line pairs per mm at eleven fields up to the largest field of the report; empty if
+/// all fields are 0. colours: as in to_json().
+std::vector<petzval::MtfPoint> report_mtf_over_field(const Report& report, const petzval::Lens& colours);
+/// Film shifts for spots through focus, mm: two steps to both sides; empty if the spots have no focus.
+std::vector<double> report_film_shifts(const Report& report, const petzval::Lens& colours,
+                                       std::span<const petzval::Spot> spots);
 std::string to_text(const Report& report);
 
 /// "y-z" or "x-z".

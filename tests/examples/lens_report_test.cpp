@@ -1,11 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <cmath>
+#include <limits>
 #include <regex>
 #include <string>
 #include <vector>
 
+#include "petzval/analysis/aberrations.hpp"
 #include "petzval/analysis/lint.hpp"
 #include "petzval/analysis/seidel.hpp"
+#include "petzval/analysis/spot.hpp"
 #include "petzval/core/geometry.hpp"
 #include "petzval/focus/focus.hpp"
 #include "petzval/io/lens_json.hpp"
@@ -72,6 +75,60 @@ TEST_F(LensReport, SeidelSumsEqualTheLibrary) {
   const auto squeezed = nlohmann::json::parse(run("report", {LensReport::lens("anamorphic_60mm_2x"), "--json"}).out);
   EXPECT_TRUE(squeezed["seidel"].is_null());
   EXPECT_TRUE(squeezed["paraxial_rays"].is_null());
+}
+
+// Rays of the report: 32768 for each field and wavelength, 4096 for MTF over the field.
+TEST_F(LensReport, SpotNumbersEqualTheLibrary) {
+  const std::string file = lens("double_gauss_100mm_f2.0");
+  const auto json = nlohmann::json::parse(run("report", {file, "--json"}).out);
+  const std::vector<double> wavelengths = json["wavelengths_nm"];
+  const petzval::Lens lens = petzval::compile(petzval::read_prescription(file), wavelengths);
+  const double far = -std::numeric_limits<double>::infinity();
+  std::vector<double> fields;
+  for (const double degrees : json["fields_deg"]) fields.push_back(petzval::radians(degrees));
+  const auto spots = petzval::spot_diagram(lens, far, fields, 32768);
+
+  const auto& energy = json["encircled_energy"];
+  const std::vector<double> fractions{0.5, 0.8, 0.9, 0.95};
+  const auto found = petzval::encircled_energy(spots, 3, fractions);
+  ASSERT_EQ(energy.size(), found.size());
+  for (std::size_t i = 0; i < found.size(); ++i) {
+    EXPECT_EQ(energy[i]["field_deg"], json["fields_deg"][i / 4]);
+    EXPECT_EQ(energy[i]["fraction"], fractions[i % 4]);
+    EXPECT_EQ(energy[i]["radius_um"], 1000 * *found[i].radius_mm);
+  }
+
+  const auto& films = json["through_focus"];
+  const double step = petzval::through_focus_step(lens, spots).value();
+  const std::vector<double> shifts{-2 * step, -step, 0, step, 2 * step};
+  const auto on_films = petzval::through_focus(spots, 3, shifts);
+  ASSERT_EQ(films.size(), 15u);
+  for (std::size_t i = 0; i < films.size(); ++i) {
+    EXPECT_EQ(films[i]["field_deg"], json["fields_deg"][i / 5]);
+    EXPECT_EQ(films[i]["film_shift_mm"], shifts[i % 5]);
+    EXPECT_EQ(films[i]["rms_radius_mm"], *on_films[i].rms_radius_mm);
+  }
+
+  const auto& over_field = json["mtf_over_field"];
+  ASSERT_EQ(over_field.size(), 33u);
+  const std::vector<double> ends{0, fields.back()}, frequencies{10, 20, 40};
+  const auto mtf = petzval::mtf_over_field(lens, far, ends, frequencies);
+  EXPECT_EQ(over_field[2]["frequency_per_mm"], 40);
+  EXPECT_EQ(over_field[2]["tangential"], mtf[2].tangential);
+  EXPECT_NEAR(over_field[30]["field_deg"].get<double>(), json["fields_deg"].back().get<double>(), 1e-12);
+  EXPECT_EQ(over_field[30]["sagittal"], mtf[3].sagittal);
+  EXPECT_EQ(over_field[32]["sampling_error"], mtf[5].sampling_error);
+
+  const auto foci = petzval::longitudinal_aberration(lens, far);
+  const auto& longitudinal = json["longitudinal_aberration"];
+  ASSERT_EQ(longitudinal.size(), foci.size());
+  EXPECT_EQ(longitudinal[40]["wavelength_nm"], wavelengths[1]);
+  EXPECT_EQ(longitudinal[40]["pupil"], foci[40].pupil);
+  EXPECT_EQ(longitudinal[40]["tangential_mm"], *foci[40].tangential_mm);
+  const auto lateral = petzval::chromatic_aberration(lens, far, fields).lateral;
+  ASSERT_EQ(json["lateral_colour"].size(), 9u);
+  EXPECT_EQ(json["lateral_colour"][8]["field_deg"], json["fields_deg"][2]);
+  EXPECT_EQ(json["lateral_colour"][8]["chief_ray_shift_um"], 1000 * *lateral[2][2]);
 }
 
 constexpr const char* two_planes = R"({"format": "petzval-lens 1", "id": "window", "name": "Window",
@@ -198,8 +255,9 @@ TEST_F(LensReport, DrawsFiguresAndAPage) {
   const auto outcome = run("report", {file, "--out", path("out")});
   ASSERT_EQ(outcome.status, 0) << outcome.err;
   const auto written = lines(outcome.out);
-  const std::vector<std::string> names{"layout.svg", "spots.svg", "fans.svg",   "footprints.svg",  "focus.svg",
-                                       "mtf.svg",    "field.svg", "seidel.svg", "illumination.svg"};
+  const std::vector<std::string> names{
+      "layout.svg", "spots.svg",     "through_focus.svg", "energy.svg", "fans.svg",   "footprints.svg",  "focus.svg",
+      "mtf.svg",    "mtf_field.svg", "colour.svg",        "field.svg",  "seidel.svg", "illumination.svg"};
   ASSERT_EQ(written.size(), names.size() + 1);
   const std::string page = read(path("out/cooke_triplet_50mm_f5.html"));
   for (std::size_t i = 0; i < names.size(); ++i) {
