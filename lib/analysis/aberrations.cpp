@@ -205,8 +205,7 @@ std::vector<MtfPoint> geometric_mtf(std::span<const Spot> spots, std::size_t wav
         const auto contrast = [&](std::size_t part) { return total[part] > 0 ? std::abs(sum[part]) / total[part] : 0; };
         (direction == 0 ? point.tangential : point.sagittal) = contrast(parts);
         for (std::size_t part = 0; part < parts; ++part) {
-          point.sampling_error =
-              std::max(point.sampling_error, analysis_detail::error_of_all(contrast(part) - contrast(parts)));
+          point.sampling_error = std::max(point.sampling_error, std::abs(contrast(part) - contrast(parts)));
         }
       }
     }
@@ -291,7 +290,7 @@ std::vector<EncircledEnergy> encircled_energy(std::span<const Spot> spots, std::
       for (std::size_t k = 0; k < fractions.size(); ++k) {
         if (!of_all[k] || !of_part[k]) continue;
         double& error = own_result[k].sampling_error_mm;
-        error = std::max(error, analysis_detail::error_of_all(*of_part[k] - *of_all[k]));
+        error = std::max(error, std::abs(*of_part[k] - *of_all[k]));
       }
     }
   });

@@ -25,11 +25,9 @@ PETZVAL_API Spot trace_spot(const Lens& lens, const FieldPoint& point, std::size
 PETZVAL_API std::vector<double> ray_weights(std::string_view where, std::span<const Spot> spots,
                                             std::size_t wavelengths, std::span<const double> wavelength_weights);
 
-/// Sampling errors are estimated from quarters of the rays: half the largest deviation from all rays, since errors fall
-/// at least as the square root of the number of rays.
+/// Sampling errors are stated as the largest deviation of a quarter of the rays from all rays. For 30 lenses of
+/// data/lenses the largest errors of a figure, against eight times as many rays, are at most 0.92 of it.
 inline constexpr std::size_t error_parts = 4;
-/// The sampling error of all rays from the deviation of a part.
-inline double error_of_all(double deviation_of_part) noexcept { return std::abs(deviation_of_part) / 2; }
 /// The values of a part, from 0 to error_parts - 1.
 inline std::span<const double> part_of(std::span<const double> values, std::size_t part) noexcept {
   const std::size_t begin = part * values.size() / error_parts, end = (part + 1) * values.size() / error_parts;

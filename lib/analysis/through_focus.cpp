@@ -131,8 +131,7 @@ std::vector<ThroughFocusSpot> through_focus(std::span<const Spot> spots, std::si
       spot.centroid = all.centroid(shift);
       spot.rms_radius_mm = all.rms(shift);
       for (const auto& part : parts) {
-        spot.sampling_error_mm =
-            std::max(spot.sampling_error_mm, analysis_detail::error_of_all(part.rms(shift) - all.rms(shift)));
+        spot.sampling_error_mm = std::max(spot.sampling_error_mm, std::abs(part.rms(shift) - all.rms(shift)));
       }
     }
   }

@@ -78,8 +78,7 @@ PETZVAL_API std::vector<FieldDistortion> distortion_percent(const Lens& lens, do
 struct MtfPoint {
   double field_rad = 0, frequency_per_mm = 0;
   double tangential = 0, sagittal = 0;  ///< 0 to 1; 0 if no ray passes
-  /// Estimate: half the largest deviation of a quarter of the rays from all rays, since errors fall at least as the
-  /// square root of the number of rays.
+  /// Largest deviation of a quarter of the rays from all rays, of both contrasts. All rays usually have a smaller error.
   double sampling_error = 0;
 };
 
@@ -114,7 +113,7 @@ PETZVAL_API std::vector<MtfPoint> mtf_over_field(const Lens& lens, double subjec
 struct EncircledEnergy {
   double field_rad = 0, fraction = 0;
   std::optional<double> radius_mm;  ///< nullopt if no ray passes
-  double sampling_error_mm = 0;     ///< estimate, as MtfPoint::sampling_error
+  double sampling_error_mm = 0;     ///< as MtfPoint::sampling_error
 };
 
 /// Geometric encircled energy, ordered by field, then by fraction. Centroid and fraction refer to all wavelengths.

@@ -74,7 +74,7 @@ struct ThroughFocusSpot {
   double field_rad = 0, film_shift_mm = 0;  ///< shift towards +z
   Vec2<double> centroid{0, 0};              ///< mm
   std::optional<double> rms_radius_mm{};    ///< about the centroid; nullopt if no ray passes
-  double sampling_error_mm = 0;             ///< estimate, as MtfPoint::sampling_error
+  double sampling_error_mm = 0;             ///< as MtfPoint::sampling_error
 };
 
 /// RMS radii on moved films, ordered by field, then by film. Follows from positions and slopes; no ray is traced.
