@@ -78,7 +78,7 @@ PETZVAL_API std::vector<FieldDistortion> distortion_percent(const Lens& lens, do
 struct MtfPoint {
   double field_rad = 0, frequency_per_mm = 0;
   double tangential = 0, sagittal = 0;  ///< 0 to 1; 0 if no ray passes
-  /// Largest deviation of a quarter of the rays from all rays, of both contrasts. All rays usually have a smaller error.
+  /// Largest deviation of a quarter of the rays from all rays, of both contrasts. Usually larger than the error.
   double sampling_error = 0;
 };
 
