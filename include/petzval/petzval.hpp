@@ -62,6 +62,7 @@
 #include "petzval/lens/lens.hpp"
 #include "petzval/paraxial/first_order.hpp"
 #include "petzval/paraxial/ideal_lens.hpp"
+#include "petzval/prescription/coating.hpp"
 #include "petzval/prescription/prescription.hpp"
 #include "petzval/pupil/aim.hpp"
 #include "petzval/pupil/f_number.hpp"
