@@ -97,7 +97,8 @@ std::string to_json(const examples::Report& report, const Options& options) {
 void write_page(const examples::Report& report, const Options& options) {
   const examples::ReportLight& light = report.subject.light;
   const auto colours = examples::compiled_for(report.loaded, light.wavelengths_nm, light.primary_nm);
-  const auto figures = examples::lens_figures(report, set(colours, options, report.subject));
+  const petzval::Lens lens = set(colours, options, report.subject);
+  const auto figures = examples::lens_figures(report, lens);
 
   const std::filesystem::path folder = options.out_folder;
   examples::make_folder(folder);
@@ -107,7 +108,7 @@ void write_page(const examples::Report& report, const Options& options) {
     std::cout << file.string() << '\n';
   };
   for (const examples::LensFigure& figure : figures) write('_' + figure.name + ".svg", figure.svg);
-  write(".html", examples::lens_page(report, figures));
+  write(".html", examples::lens_page(report, lens, figures));
 }
 
 }  // namespace
@@ -119,7 +120,8 @@ int commands::report(int argc, char** argv) {
       "cylinders. Lengths in mm; z from the first vertex, towards the film. Findings are not failures. Subject, "
       "wavelengths with their weights, and fields are taken from the file if it has them.\n"
       "With --out: writes LENS_layout.svg (and LENS_layout_x.svg for a lens with cylinders), LENS_spots.svg, "
-      "LENS_through_focus.svg, LENS_energy.svg, LENS_fans.svg, LENS_footprints.svg, LENS_focus.svg, LENS_mtf.svg, "
+      "LENS_through_focus.svg, LENS_energy.svg, LENS_fans.svg, LENS_wavefront.svg, LENS_footprints.svg, "
+      "LENS_focus.svg, LENS_mtf.svg, "
       "LENS_mtf_field.svg, LENS_colour.svg, LENS_field.svg, LENS_seidel.svg, LENS_illumination.svg and LENS.html, a "
       "page with all of them, to DIR, and prints their paths instead.",
       "petzval report");

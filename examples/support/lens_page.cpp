@@ -2,8 +2,10 @@
 #include "lens_page.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <functional>
+#include <initializer_list>
 #include <set>
 #include <sstream>
 #include <string_view>
@@ -103,6 +105,71 @@ void surface_table(std::ostream& html, const Report& r) {
                                                          : "unlimited")
          << cell(edges[i] ? number(*edges[i], 5) : "") << "<td>" << remarks << "</td></tr>\n";
   }
+  html << "</table></div>\n";
+}
+
+/// One row of a table, with numbers aligned to the right.
+void number_row(std::ostream& html, const std::string& first, std::span<const double> values, int digits) {
+  html << "<tr><td>" << first << "</td>";
+  for (const double value : values) html << "<td class=\"number\">" << number(value, digits) << "</td>";
+  html << "</tr>\n";
+}
+
+void head_row(std::ostream& html, std::initializer_list<const char*> names) {
+  html << "<div class=\"scroll\"><table>\n<tr>";
+  for (const char* name : names) html << "<th class=\"number\">" << name << "</th>";
+  html << "</tr>\n";
+}
+
+/// Wavefront errors of each field and wavelength.
+void wavefront_table(std::ostream& html, const Report& r, const petzval::Lens& colours) {
+  if (!r.main().pupils) return;
+  html
+      << "<h2>Wavefront</h2>\n<p class=\"lead\">In waves, over the vignetted exit pupil. The second RMS and the Strehl "
+         "ratio are about the image point with the smallest RMS. Zernike coefficients in fringe order, in the unit "
+         "circle of the stop: defocus Z4, astigmatism Z5, coma Z8, spherical aberration Z9. All 37 are in the output "
+         "of "
+         "--json. Error: of the first RMS, by the number of rays.</p>\n";
+  head_row(html, {"field", "wavelength", "RMS", "RMS without tilt", "Strehl", "Z4", "Z5", "Z8", "Z9", "error"});
+  const auto fronts = report_wavefronts(r, colours);
+  const auto& nm = colours.wavelengths_nm();
+  for (std::size_t k = 0; k < fronts.size(); ++k) {
+    const std::string field = number(r.subject.fields.degrees[k / nm.size()], 4) + "\u00b0";
+    if (!fronts[k]) {
+      html << "<tr><td>" << field << "</td><td class=\"number\">" << number(nm[k % nm.size()], 7)
+           << "</td><td>no light</td></tr>\n";
+      continue;
+    }
+    const petzval::Wavefront& front = *fronts[k];
+    number_row(html, field,
+               std::array{nm[k % nm.size()], front.rms_waves, front.rms_without_tilt, front.strehl, front.zernike[3],
+                          front.zernike[4], front.zernike[7], front.zernike[8], front.sampling_error_waves},
+               4);
+  }
+  html << "</table></div>\n";
+}
+
+/// Seidel sums with the paraxial rays of each surface.
+void third_order_table(std::ostream& html, const Report& r, const petzval::Lens& colours) {
+  const auto sums = report_seidel(r, colours);
+  if (!sums) return;
+  const petzval::ParaxialRays rays = petzval::paraxial_rays(colours, largest_field(r.subject, colours));
+  html << "<h2>Third order</h2>\n<p class=\"lead\">For the largest field, in micrometres: spherical aberration, coma, "
+          "astigmatism, Petzval curvature, distortion, axial and lateral colour. Then height (mm) and slope behind the "
+          "surface of the marginal and the chief ray. Optical invariant "
+       << number(rays.invariant, 7) << " mm; " << numbering_in_words(r) << ".</p>\n";
+  head_row(html,
+           {"surface", "S1", "S2", "S3", "S4", "S5", "C1", "C2", "marginal y", "marginal u", "chief y", "chief u"});
+  const auto terms = [](const petzval::SeidelTerms& t) {
+    return std::vector{1000 * t.s1, 1000 * t.s2, 1000 * t.s3, 1000 * t.s4, 1000 * t.s5, 1000 * t.c1, 1000 * t.c2};
+  };
+  for (std::size_t i = 0; i < rays.surfaces.size(); ++i) {
+    const auto& [marginal_y, marginal_u, chief_y, chief_u] = rays.surfaces[i];
+    std::vector<double> values = terms(sums->surfaces[i]);
+    values.insert(values.end(), {marginal_y, marginal_u, chief_y, chief_u});
+    number_row(html, std::to_string(r.surface_number(i)), values, 5);
+  }
+  number_row(html, "sum", terms(sums->sums), 5);
   html << "</table></div>\n";
 }
 
@@ -236,6 +303,7 @@ std::vector<LensFigure> lens_figures(const Report& r, const petzval::Lens& colou
   const std::vector<petzval::Spot> spots = report_spots(r, colours);
   const std::vector<petzval::MtfPoint> mtf = report_mtf(r, spots), mtf_field = report_mtf_over_field(r, colours);
   const std::vector<double> shifts = report_film_shifts(r, colours, spots);
+  const std::vector<petzval::RayFan> fans = petzval::ray_fans(colours, subject_z, fields);
   const double farthest = std::abs(*std::ranges::max_element(fields, {}, [](double f) { return std::abs(f); }));
 
   add("spots", "Spots",
@@ -259,7 +327,11 @@ std::vector<LensFigure> lens_figures(const Report& r, const petzval::Lens& colou
   add("fans", "Ray fans",
       "Errors of the rays through the two sections of the stop. A tilted line is defocus, an S is spherical "
       "aberration, a parabola is coma; distances between the curves are lateral colour.",
-      [&] { return petzval::fan_figure(colours, subject_z, petzval::ray_fans(colours, subject_z, fields)); });
+      [&] { return petzval::fan_figure(colours, subject_z, fans); });
+  add("wavefront", "Wavefront",
+      "The same rays by their optical paths. If all curves stay within a quarter of a wave, the lens is limited by "
+      "diffraction.",
+      [&] { return petzval::wavefront_figure(colours, subject_z, fans); });
   add("footprints", "Pupils",
       "The vignetted pupil of each field point. The more of the dashed circle is missing, the darker the corner. "
       "Bright points out of focus have blurs of this shape.",
@@ -302,7 +374,7 @@ std::vector<LensFigure> lens_figures(const Report& r, const petzval::Lens& colou
   return result;
 }
 
-std::string lens_page(const Report& r, const std::vector<LensFigure>& figures) {
+std::string lens_page(const Report& r, const petzval::Lens& colours, const std::vector<LensFigure>& figures) {
   const petzval::Lens& lens = r.loaded.lens;
   const std::string name = escaped_html(lens.name());
   std::ostringstream html;
@@ -321,6 +393,8 @@ std::string lens_page(const Report& r, const std::vector<LensFigure>& figures) {
        << " nm. Stop: " << stop_in_words(r) << "; " << numbering_in_words(r)
        << ". z counts from the first vertex towards the film.</p>\n";
   first_order_table(html, r);
+  wavefront_table(html, r, colours);
+  third_order_table(html, r, colours);
   html << "<h2>Lint</h2>\n";
   if (r.findings.empty()) html << "<p class=\"lead\">No findings: declared and computed values agree.</p>\n";
   if (!r.findings.empty()) {

@@ -21,6 +21,6 @@ struct LensFigure {
 std::vector<LensFigure> lens_figures(const Report& report, const petzval::Lens& colours);
 
 /// A self-contained HTML page with the figures, the numbers, the prescription and its sources.
-std::string lens_page(const Report& report, const std::vector<LensFigure>& figures);
+std::string lens_page(const Report& report, const petzval::Lens& colours, const std::vector<LensFigure>& figures);
 
 }  // namespace examples

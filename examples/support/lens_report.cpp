@@ -98,14 +98,6 @@ Json numbers(const MeridianReport& r) {
   return json;
 }
 
-petzval::ParaxialField largest_field(const ReportSubject& subject, const petzval::Lens& lens) {
-  petzval::ParaxialField field{.object_distance = lens.surfaces().front().vertex_z - subject_z(subject, lens)};
-  for (const double degrees : subject.fields.degrees) {
-    field.field_rad = std::max(field.field_rad, std::abs(petzval::radians(degrees)));
-  }
-  return field;
-}
-
 /// Seidel sums and paraxial rays of the largest field; null if paraxial_rays() or seidel_sums() throws Error.
 Json third_order(const Report& r, const petzval::Lens& lens) {
   Json json{
@@ -183,12 +175,14 @@ Json exact_aberrations(const Report& r, const petzval::Lens& colours) {
     const auto all = petzval::ray_fans(colours, z, fields);
     for (std::size_t k = 0; k < all.size(); ++k) {
       const petzval::RayFan& fan = all[k];
-      for (const auto& [pupil, tangential, sagittal] : fan.points) {
+      for (const petzval::RayFan::Point& at : fan.points) {
         fans.push_back({{"field_deg", degrees[k / colours.wavelengths_nm().size()]},
                         {"wavelength_nm", colours.wavelengths_nm()[fan.wavelength]},
-                        {"pupil", pupil},
-                        {"tangential_mm", or_null(tangential)},
-                        {"sagittal_mm", or_null(sagittal)}});
+                        {"pupil", at.pupil},
+                        {"tangential_mm", or_null(at.tangential_mm)},
+                        {"sagittal_mm", or_null(at.sagittal_mm)},
+                        {"tangential_waves", or_null(at.tangential_waves)},
+                        {"sagittal_waves", or_null(at.sagittal_waves)}});
       }
     }
     for (const petzval::FieldFocus& focus : petzval::field_curvature(colours, z, fields)) {
@@ -285,6 +279,14 @@ std::optional<petzval::SeidelSums> report_seidel(const Report& r, const petzval:
   } catch (const petzval::Error&) {
     return {};
   }
+}
+
+petzval::ParaxialField largest_field(const ReportSubject& subject, const petzval::Lens& lens) {
+  petzval::ParaxialField field{.object_distance = lens.surfaces().front().vertex_z - subject_z(subject, lens)};
+  for (const double degrees : subject.fields.degrees) {
+    field.field_rad = std::max(field.field_rad, std::abs(petzval::radians(degrees)));
+  }
+  return field;
 }
 
 std::vector<std::optional<petzval::Wavefront>> report_wavefronts(const Report& r, const petzval::Lens& colours) {

@@ -70,6 +70,9 @@ std::string in_words(const ReportSubject& subject);
 std::string in_words(const ReportLight& light);
 std::string in_words(const ReportFields& fields);
 
+/// The object of the report and its largest field, for paraxial rays and Seidel sums.
+petzval::ParaxialField largest_field(const ReportSubject& subject, const petzval::Lens& lens);
+
 /// Wavefront errors of each field and wavelength, ordered by field; nullopt if no ray passes. colours: as in to_json().
 ///
 /// @throws petzval::Error under the conditions of petzval::wavefront()

@@ -12,6 +12,7 @@
 
 #include "core/meet_plane.hpp"
 #include "core/text.hpp"
+#include "optical_path.hpp"
 #include "partial_sums.hpp"
 #include "petzval/core/error.hpp"
 #include "petzval/core/parallel.hpp"
@@ -110,17 +111,27 @@ std::vector<RayFan> ray_fans(const Lens& lens, double subject_z, std::span<const
     const auto chief = analysis_detail::chief_point(lens, point, lens.primary_wavelength());
     for (std::size_t w = 0; w < lens.wavelengths_nm().size(); ++w) {
       RayFan& fan = fans.emplace_back(RayFan{field, w, {}});
-      const auto ray = [&](const Vec2<double>& target) -> std::optional<FilmRay> {
-        const AimedRay aimed = aim(lens, point, target, w);
-        if (!chief || aimed.status != AimStatus::converged) return {};
-        return at_film(lens, aimed);
+      const auto errors = analysis_detail::SphereErrors::of(lens, point, w);
+      const auto ray = [&](const Vec2<double>& target) {
+        AimedRay aimed = aim(lens, point, target, w);
+        return chief && aimed.status == AimStatus::converged ? std::optional(aimed) : std::nullopt;
+      };
+      const auto waves = [&](const AimedRay& aimed) -> std::optional<double> {
+        const auto path = errors ? errors->paths()(aimed.ray) : std::nullopt;
+        return path ? std::optional((*errors)(*path)) : std::nullopt;
       };
       for (std::size_t i = 0; i < count; ++i) {
         const double pupil = 2 * static_cast<double>(i) / static_cast<double>(count - 1) - 1;
-        RayFan::Point& at = fan.points.emplace_back(RayFan::Point{pupil, {}, {}});
+        RayFan::Point& at = fan.points.emplace_back(RayFan::Point{.pupil = pupil});
         constexpr double inside = 1 - 1e-9;  // rays on the rim of the stop may be clipped by rounding
-        if (const auto tangential = ray({0, inside * pupil})) at.tangential_mm = tangential->y - chief->y;
-        if (const auto sagittal = ray({inside * pupil, 0})) at.sagittal_mm = sagittal->x - chief->x;
+        if (const auto aimed = ray({0, inside * pupil})) {
+          if (const auto hit = at_film(lens, *aimed)) at.tangential_mm = hit->y - chief->y;
+          at.tangential_waves = waves(*aimed);
+        }
+        if (const auto aimed = ray({inside * pupil, 0})) {
+          if (const auto hit = at_film(lens, *aimed)) at.sagittal_mm = hit->x - chief->x;
+          at.sagittal_waves = waves(*aimed);
+        }
       }
     }
   }

@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "optical_path.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <glm/geometric.hpp>
 
 #include "petzval/paraxial/first_order.hpp"
+#include "points.hpp"
+#include "pupil/aim.hpp"
 #include "trace/sequential.hpp"
 
 namespace petzval::analysis_detail {
@@ -51,6 +54,28 @@ std::optional<PathRay> OpticalPaths::operator()(const Ray<double>& ray) const no
   result.miss_squared = glm::dot(miss, miss);
   result.film = Vec2<double>(beyond) - Vec2<double>(result.direction) * (beyond.z / result.direction.z);
   return result;
+}
+
+std::optional<SphereErrors> SphereErrors::of(const Lens& lens, const FieldPoint& point, std::size_t wavelength) {
+  const PupilPlane plane(lens, point);
+  const AimedRay chief = pupil_detail::aim(lens, plane, {}, wavelength);
+  const auto image = chief_point(lens, point, wavelength);
+  if (!chief || !image) return {};
+  SphereErrors result(OpticalPaths(lens, plane, wavelength, {image->x, image->y, lens.film_z()}), *image,
+                      lens.wavelengths_nm()[wavelength] * 1e-6);
+  const auto centre = result.paths_(chief.ray);
+  if (!centre) return {};
+  // Along the chief ray from the plane of the exit pupil; positive if light passes the exit pupil before the film.
+  const double exit_z = pupils(lens, wavelength, main_meridian(lens)).exit.z;
+  result.radius_ = (lens.film_z() - exit_z) / centre->direction.z;
+  result.reference_ = result.to_sphere(*centre);
+  return result;
+}
+
+/// From the plane wavefront through the image point back to the sphere about it, less its radius.
+double SphereErrors::to_sphere(const PathRay& ray) const noexcept {
+  const double q2 = ray.miss_squared;
+  return ray.path + paths_.film_index() * q2 / (radius_ * (1 + std::sqrt(std::max(0.0, 1 - q2 / (radius_ * radius_)))));
 }
 
 }  // namespace petzval::analysis_detail

@@ -9,6 +9,7 @@
 #include "petzval/core/geometry.hpp"
 #include "petzval/core/ray.hpp"
 #include "petzval/lens/lens.hpp"
+#include "petzval/pupil/aim.hpp"
 #include "pupil/pupil_plane.hpp"
 
 namespace petzval::analysis_detail {
@@ -54,6 +55,28 @@ class OpticalPaths {
   Vec3<double> image_;
   double stop_unit_ = 1;         // mm
   std::vector<double> indices_;  // by space
+};
+
+/// Wavefront errors of the rays of one point and wavelength, relative to the sphere of wavefront().
+class SphereErrors {
+ public:
+  /// nullopt if the chief ray does not reach the film. @throws Error under the conditions of aim()
+  static std::optional<SphereErrors> of(const Lens& lens, const FieldPoint& point, std::size_t wavelength);
+
+  const OpticalPaths& paths() const noexcept { return paths_; }
+  const Vec2<double>& image() const noexcept { return image_; }
+  double radius() const noexcept { return radius_; }
+  /// Error in waves, positive if the wavefront is ahead of the sphere.
+  double operator()(const PathRay& ray) const noexcept { return (reference_ - to_sphere(ray)) / wave_mm_; }
+
+ private:
+  SphereErrors(const OpticalPaths& paths, const Vec2<double>& image, double wave_mm)
+      : paths_(paths), image_(image), wave_mm_(wave_mm) {}
+  double to_sphere(const PathRay& ray) const noexcept;
+
+  OpticalPaths paths_;
+  Vec2<double> image_;
+  double wave_mm_, radius_ = 0, reference_ = 0;
 };
 
 }  // namespace petzval::analysis_detail

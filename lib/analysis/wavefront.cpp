@@ -13,8 +13,6 @@
 #include "optical_path.hpp"
 #include "petzval/core/error.hpp"
 #include "petzval/paraxial/first_order.hpp"
-#include "points.hpp"
-#include "pupil/aim.hpp"
 #include "pupil/pupil_boundary.hpp"
 #include "pupil_nodes.hpp"
 
@@ -90,35 +88,19 @@ std::optional<Wavefront> wavefront(const Lens& lens, const FieldPoint& point, co
   }
   const std::size_t wavelength = lens.compiled_position(options.wavelength);
   const PupilBoundary boundary = pupil_boundary(lens, point, wavelength, options.directions);
-  const AimedRay chief = pupil_detail::aim(lens, boundary.plane, {}, wavelength);
-  const auto image = analysis_detail::chief_point(lens, point, wavelength);
-  if (!chief || !image || boundary.empty()) return {};
-  const analysis_detail::OpticalPaths paths(lens, boundary.plane, wavelength, {image->x, image->y, lens.film_z()});
-  const auto centre = paths(chief.ray);
-  if (!centre) return {};
-
-  const Pupils pupil = pupils(lens, wavelength, main_meridian(lens));
-  const double n = paths.film_index(), wave = lens.wavelengths_nm()[wavelength] * 1e-6;
-  Wavefront result{.points = {}, .image = *image};
-  // Along the chief ray from the plane of the exit pupil; positive if light passes the exit pupil before the film.
-  result.reference_radius = (lens.film_z() - pupil.exit.z) / centre->direction.z;
-  // From the plane wavefront through the image point back to the sphere about it, less its radius.
-  const auto to_sphere = [&](const analysis_detail::PathRay& ray) {
-    const double q2 = ray.miss_squared, radius = result.reference_radius;
-    return ray.path + n * q2 / (radius * (1 + std::sqrt(std::max(0.0, 1 - q2 / (radius * radius)))));
-  };
-
-  const double reference = to_sphere(*centre), entrance_unit = pupils(lens).entrance.diameter / 2;
+  const auto errors = analysis_detail::SphereErrors::of(lens, point, wavelength);
+  if (!errors || boundary.empty()) return {};
+  Wavefront result{.points = {}, .image = errors->image(), .reference_radius = errors->radius()};
+  const double entrance_unit = pupils(lens).entrance.diameter / 2;
   std::vector<Vec2<double>> slopes;
   std::vector<char> in_third;  // rays of every third direction, the middle one of three
   std::vector<analysis_detail::PupilNode> nodes = analysis_detail::pupil_nodes(boundary);
   for (const PupilSpan& span : boundary.spans) nodes.push_back({{span.to.x, span.to.y}, 0, span.direction});
   for (const analysis_detail::PupilNode& node : nodes) {
-    const auto ray = paths(node.position);
+    const auto ray = errors->paths()(node.position);
     if (!ray) continue;
     const bool at_stop = options.coordinates == PupilCoordinates::stop;
-    result.points.push_back(
-        {at_stop ? ray->stop : node.position / entrance_unit, (reference - to_sphere(*ray)) / wave, node.area});
+    result.points.push_back({at_stop ? ray->stop : node.position / entrance_unit, (*errors)(*ray), node.area});
     slopes.push_back({ray->direction.x, ray->direction.y});
     in_third.push_back(node.direction % 3 == 1);
   }

@@ -3,7 +3,9 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -25,39 +27,48 @@ using figure_detail::round_range;
 
 constexpr double nothing = std::numeric_limits<double>::quiet_NaN();
 
-}  // namespace
+/// The errors that a figure of fans draws.
+struct FanErrors {
+  std::string_view function, title;
+  std::optional<double> RayFan::Point::*tangential;
+  std::optional<double> RayFan::Point::*sagittal;
+  double scale;
+  std::string_view tangential_axis, sagittal_axis;
+  std::string note;
+};
 
-std::string fan_figure(const Lens& lens, double subject_z, std::span<const RayFan> fans) {
+std::string draw_fans(const Lens& lens, double subject_z, std::span<const RayFan> fans, const FanErrors& errors) {
   const std::size_t wavelengths = lens.wavelengths_nm().size();
   if (fans.empty() || fans.size() % wavelengths != 0) {
-    throw Error("fan_figure: " + std::to_string(fans.size()) + " fans; must be one or more for each of the " +
-                std::to_string(wavelengths) + " wavelengths");
+    throw Error(std::string(errors.function) + ": " + std::to_string(fans.size()) +
+                " fans; must be one or more for each of the " + std::to_string(wavelengths) + " wavelengths");
   }
   constexpr double width = 960, left = 78, top = 84, height = 150, step = 214, cell = 380, second = left + cell + 92;
   const std::size_t fields = fans.size() / wavelengths;
   double largest = 0;
   for (const RayFan& fan : fans) {
-    for (const auto& [pupil, tangential, sagittal] : fan.points) {
-      largest = std::max({largest, std::abs(tangential.value_or(0)), std::abs(sagittal.value_or(0))});
+    for (const RayFan::Point& point : fan.points) {
+      for (const auto& error : {point.*errors.tangential, point.*errors.sagittal}) {
+        largest = std::max(largest, std::abs(error.value_or(0)));
+      }
     }
   }
   const std::vector<figure_detail::Look> looks = figure_detail::looks(lens.wavelengths_nm());
-  const double range = round_range(1000 * largest, 1e-3);  // um
+  const double range = round_range(errors.scale * largest, 1e-3);
   figure_detail::Svg svg(width, top + step * static_cast<double>(fields) + 40);
-  figure_detail::draw_head(svg, lens, "Ray fans", subject_z, lens.primary_wavelength());
+  figure_detail::draw_head(svg, lens, errors.title, subject_z, lens.primary_wavelength());
   for (std::size_t f = 0; f < fields; ++f) {
     const double y = top + step * static_cast<double>(f);
     const std::string name = figure_detail::field_text(fans[f * wavelengths].field_rad) + ", ";
-    const std::array sections{std::pair{left, &RayFan::Point::tangential_mm},
-                              std::pair{second, &RayFan::Point::sagittal_mm}};
-    for (const auto& [x, error] : sections) {
-      const bool tangential = x == left;
-      Axes axes(svg, x, y, cell, height, {-1, 1, name + (tangential ? "y on the stop" : "x on the stop")},
-                {-range, range, tangential ? "error of y (\u00b5m)" : "error of x (\u00b5m)"});
+    for (const bool tangential : {true, false}) {
+      Axes axes(svg, tangential ? left : second, y, cell, height,
+                {-1, 1, name + (tangential ? "y on the stop" : "x on the stop")},
+                {-range, range, std::string(tangential ? errors.tangential_axis : errors.sagittal_axis)});
       for (std::size_t w = 0; w < wavelengths; ++w) {
         std::vector<Axes::Point> curve;
         for (const RayFan::Point& point : fans[f * wavelengths + w].points) {
-          curve.push_back({point.pupil, 1000 * (point.*error).value_or(nothing)});
+          const auto& error = point.*(tangential ? errors.tangential : errors.sagittal);
+          curve.push_back({point.pupil, errors.scale * error.value_or(nothing)});
         }
         axes.curve(curve, curve_style(looks[w].colour));
       }
@@ -68,12 +79,28 @@ std::string fan_figure(const Lens& lens, double subject_z, std::span<const RayFa
     x = 24 + figure_detail::draw_key(svg, x, top + step * static_cast<double>(fields) + 8, looks[w].colour,
                                      to_text(lens.wavelengths_nm()[w], 6) + " nm");
   }
-  svg.text(figure_detail::sheet_margin, top + step * static_cast<double>(fields) + 30,
-           "Positions on the film relative to the chief ray of " +
-               to_text(lens.wavelengths_nm()[lens.primary_wavelength()], 6) +
-               " nm. Curves end where the lens clips the rays.",
+  svg.text(figure_detail::sheet_margin, top + step * static_cast<double>(fields) + 30, errors.note,
            figure_detail::small_text);
   return std::move(svg).finish();
+}
+
+}  // namespace
+
+std::string fan_figure(const Lens& lens, double subject_z, std::span<const RayFan> fans) {
+  return draw_fans(lens, subject_z, fans,
+                   {"fan_figure", "Ray fans", &RayFan::Point::tangential_mm, &RayFan::Point::sagittal_mm, 1000,
+                    "error of y (\u00b5m)", "error of x (\u00b5m)",
+                    "Positions on the film relative to the chief ray of " +
+                        to_text(lens.wavelengths_nm()[lens.primary_wavelength()], 6) +
+                        " nm. Curves end where the lens clips the rays. Exact rays."});
+}
+
+std::string wavefront_figure(const Lens& lens, double subject_z, std::span<const RayFan> fans) {
+  return draw_fans(lens, subject_z, fans,
+                   {"wavefront_figure", "Wavefront", &RayFan::Point::tangential_waves, &RayFan::Point::sagittal_waves,
+                    1, "error (waves)", "error (waves)",
+                    "Relative to a sphere about the chief ray of the same wavelength; positive if the wavefront is "
+                    "ahead. Exact rays."});
 }
 
 std::string field_figure(const Lens& lens, double subject_z, double field_rad) {

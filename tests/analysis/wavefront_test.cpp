@@ -235,6 +235,25 @@ TEST(Wavefront, OfALargerLensIsLarger) {
   EXPECT_NEAR(large.reference_radius / small.reference_radius, 3, 1e-9);
 }
 
+TEST(RayFans, HaveTheWavefrontErrorsOfTheirRays) {
+  const Lens lens = with_f_number(testing::data_lens("cooke_triplet_50mm_f5"), 8);
+  constexpr double field_deg = 10;
+  const Wavefront front = at(lens, field_deg);
+  const std::array fields{radians(field_deg)};
+  int seen = 0;
+  double largest = 0;
+  const std::vector<RayFan> fans = ray_fans(lens, far, fields, 21);
+  for (const RayFan::Point& point : fans[0].points) {
+    if (!point.tangential_waves || !point.sagittal_waves) continue;
+    ++seen;
+    EXPECT_NEAR(*point.tangential_waves, polynomials(front, {0, point.pupil}), 0.01);
+    EXPECT_NEAR(*point.sagittal_waves, polynomials(front, {point.pupil, 0}), 0.01);
+    largest = std::max(largest, std::abs(*point.tangential_waves));
+  }
+  EXPECT_EQ(seen, 21);
+  EXPECT_GT(largest, 0.5);
+}
+
 TEST(Wavefront, NeedsAChiefRayAndAPupil) {
   const Lens lens = testing::data_lens("cooke_triplet_50mm_f5");
   EXPECT_FALSE(wavefront(lens, {.field_rad = radians(80.0), .z = far}));

@@ -9,6 +9,7 @@
 #include "petzval/analysis/lint.hpp"
 #include "petzval/analysis/seidel.hpp"
 #include "petzval/analysis/spot.hpp"
+#include "petzval/analysis/wavefront.hpp"
 #include "petzval/core/geometry.hpp"
 #include "petzval/focus/focus.hpp"
 #include "petzval/io/lens_json.hpp"
@@ -69,6 +70,18 @@ TEST_F(LensReport, SeidelSumsEqualTheLibrary) {
   EXPECT_EQ(json["paraxial_rays"].back()["marginal_u"], rays.surfaces.back().marginal_u);
   EXPECT_EQ(json["paraxial_rays"].back()["chief_y"], rays.surfaces.back().chief_y);
   EXPECT_EQ(json["optical_invariant_mm"], rays.invariant);
+  const double far = -std::numeric_limits<double>::infinity();
+  const auto front = petzval::wavefront(lens, {.field_rad = field.field_rad, .z = far}, {.wavelength = 0});
+  ASSERT_TRUE(front);
+  ASSERT_EQ(json["wavefront"].size(), json["fields_deg"].size() * wavelengths.size());
+  const auto& last = json["wavefront"][json["wavefront"].size() - wavelengths.size()];
+  EXPECT_EQ(last["field_deg"], json["fields_deg"].back());
+  EXPECT_EQ(last["wavelength_nm"], wavelengths[0]);
+  EXPECT_EQ(last["rms_waves"], front->rms_waves);
+  EXPECT_EQ(last["strehl"], front->strehl);
+  ASSERT_EQ(last["zernike_fringe"].size(), 37u);
+  EXPECT_EQ(last["zernike_fringe"][8], front->zernike[8]);
+  EXPECT_NEAR(json["ray_fans"][16]["tangential_waves"].get<double>(), 0, 1e-9);  // the chief ray
 
   const auto one = nlohmann::json::parse(run("report", {file, "--json", "--wavelengths", "550"}).out);
   EXPECT_TRUE(one["seidel_sums"]["C1"].is_null());
@@ -256,8 +269,8 @@ TEST_F(LensReport, DrawsFiguresAndAPage) {
   ASSERT_EQ(outcome.status, 0) << outcome.err;
   const auto written = lines(outcome.out);
   const std::vector<std::string> names{
-      "layout.svg", "spots.svg",     "through_focus.svg", "energy.svg", "fans.svg",   "footprints.svg",  "focus.svg",
-      "mtf.svg",    "mtf_field.svg", "colour.svg",        "field.svg",  "seidel.svg", "illumination.svg"};
+      "layout.svg", "spots.svg", "through_focus.svg", "energy.svg", "fans.svg",  "wavefront.svg", "footprints.svg",
+      "focus.svg",  "mtf.svg",   "mtf_field.svg",     "colour.svg", "field.svg", "seidel.svg",    "illumination.svg"};
   ASSERT_EQ(written.size(), names.size() + 1);
   const std::string page = read(path("out/cooke_triplet_50mm_f5.html"));
   for (std::size_t i = 0; i < names.size(); ++i) {
@@ -271,7 +284,9 @@ TEST_F(LensReport, DrawsFiguresAndAPage) {
     EXPECT_NE(page.find(field), std::string::npos) << field;
   }
   EXPECT_NE(page.find("textbook Cooke triplet"), std::string::npos);
-  EXPECT_NE(page.find("<h2>Lint</h2>"), std::string::npos);
+  for (const char* table : {"<h2>Wavefront</h2>", "<h2>Third order</h2>", "<h2>Lint</h2>"}) {
+    EXPECT_NE(page.find(table), std::string::npos) << table;
+  }
   EXPECT_EQ(page.find("href"), std::string::npos) << "it needs no other file";
 
   run("report", {file, "--out", path("again")});

@@ -13,8 +13,9 @@
 
 namespace petzval {
 
-/// Transverse errors of the rays of one field and wavelength in two sections of the pupil (mm on the film), relative to
-/// the chief ray of the primary wavelength.
+/// Errors of the rays of one field and wavelength in two sections of the pupil: transverse errors on the film (mm),
+/// relative to the chief ray of the primary wavelength, and wavefront errors (waves), relative to the sphere of
+/// wavefront().
 struct RayFan {
   double field_rad = 0;
   std::size_t wavelength = 0;
@@ -22,7 +23,8 @@ struct RayFan {
   /// ray. nullopt: the lens clips the ray.
   struct Point {
     double pupil = 0;
-    std::optional<double> tangential_mm, sagittal_mm;
+    std::optional<double> tangential_mm{}, sagittal_mm{};
+    std::optional<double> tangential_waves{}, sagittal_waves{};
   };
   std::vector<Point> points;
 };

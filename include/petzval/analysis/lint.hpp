@@ -55,9 +55,10 @@ PETZVAL_API std::vector<Finding> lint(const Prescription& prescription);
 
 /// Checks a prescription with the glasses of a catalogue: n_d of a medium must be within 0.005 of n_d of its glass.
 ///
-/// @param first_surface_number  number of the first surface in messages; patents count from 1. Finding::surface stays
-/// an
-///                              index from 0.
+/// @param prescription          the lens
+/// @param glasses               the catalogue
+/// @param first_surface_number  number of the first surface in messages; patents count from 1. Finding::surface counts
+///                              from 0.
 PETZVAL_API std::vector<Finding> lint(const Prescription& prescription, const GlassCatalogue& glasses,
                                       int first_surface_number = 0);
 

@@ -66,6 +66,12 @@ PETZVAL_API std::string illumination_figure(const Lens& lens, double subject_z, 
 /// @throws Error     if there are no fans, or their number is not a multiple of the number of wavelengths
 PETZVAL_API std::string fan_figure(const Lens& lens, double subject_z, std::span<const RayFan> fans);
 
+/// Draws the wavefront errors of the same fans in waves.
+///
+/// @param lens, subject_z, fans  as in fan_figure()
+/// @throws Error                 as fan_figure()
+PETZVAL_API std::string wavefront_figure(const Lens& lens, double subject_z, std::span<const RayFan> fans);
+
 /// Draws field_curvature() and distortion_percent() against field angle at the primary wavelength as SVG text.
 /// Distortion is relative to f tan(theta), or to f theta if the field exceeds 60 degrees.
 ///
