@@ -67,8 +67,8 @@ struct Wavefront {
 
 /// Wavefront error over the exit pupil, by optical paths of exact rays.
 ///
-/// Rays lie on Gauss-Legendre nodes inside the vignetted pupil. Zernike coefficients are a least-squares fit to them in
-/// the unit circle of the coordinates; if the pupil is vignetted, the polynomials are not orthogonal in it.
+/// Rays lie on Gauss-Legendre nodes inside the vignetted pupil. Zernike coefficients are a least-squares fit in the
+/// unit circle of the coordinates; if the pupil is vignetted, the polynomials are not orthogonal over the rays.
 ///
 /// @param lens   the focused lens
 /// @param point  the scene point
