@@ -22,6 +22,7 @@
 #include "support/design.hpp"
 #include "support/files.hpp"
 #include "support/iris_setup.hpp"
+#include "support/lens_light.hpp"
 #include "support/lens_page.hpp"
 #include "support/lens_report.hpp"
 #include "support/load_lens.hpp"
@@ -36,6 +37,7 @@ struct Options {
   examples::FocusFlags focus;
   std::string film, out_folder;
   std::vector<double> field_deg;
+  std::string coatings;  // empty: losses are not modelled
 };
 
 /// Subject, film and light from the command line; by default from the file.
@@ -87,11 +89,24 @@ examples::Report report_of(const Options& options) {
   return examples::report(std::move(loaded), std::move(subject), declared);
 }
 
+/// Light that passes the lens with --coatings; nullopt without the flag.
+std::optional<examples::LightReport> light_of(const examples::Report& report, const petzval::Lens& colours,
+                                              const Options& options) {
+  if (options.coatings.empty()) return {};
+  const auto visible = examples::parse_wavelengths("--coatings", "visible");
+  const petzval::Lens lens = examples::compiled_for(report.loaded, visible);
+  return examples::report_light(report, colours, set(lens, options, report.subject),
+                                examples::coating_named(options.coatings));
+}
+
 std::string to_json(const examples::Report& report, const Options& options) {
   const examples::ReportLight& light = report.subject.light;
   const auto colours = petzval::compile(report.loaded.prescription, light.wavelengths_nm,
                                         examples::compile_options(report.loaded, light.primary_nm));
-  return examples::to_json(report, set(colours, options, report.subject)).dump(2) + '\n';
+  const petzval::Lens lens = set(colours, options, report.subject);
+  examples::Json json = examples::to_json(report, lens);
+  json.update(examples::to_json(light_of(report, lens, options)));
+  return json.dump(2) + '\n';
 }
 
 void write_page(const examples::Report& report, const Options& options) {
@@ -108,7 +123,7 @@ void write_page(const examples::Report& report, const Options& options) {
     std::cout << file.string() << '\n';
   };
   for (const examples::LensFigure& figure : figures) write('_' + figure.name + ".svg", figure.svg);
-  write(".html", examples::lens_page(report, lens, figures));
+  write(".html", examples::lens_page(report, lens, figures, light_of(report, lens, options)));
 }
 
 }  // namespace
@@ -144,6 +159,12 @@ int commands::report(int argc, char** argv) {
                             ->default_str("distance and film of the file");
   examples::add_focus(app, options.focus);
   examples::add_film_choice(app, options.film, "file; with --at focus");
+  app.add_option("--coatings", options.coatings,
+                 "coating of all surfaces between air and glass, for the light that passes the lens: none (uncoated), "
+                 "mgf2 (a quarter wave of magnesium fluoride at 550 nm), or a CSV file of layers from the air "
+                 "(index,absorption,thickness_nm) or of reflectances (wavelength_nm,reflectance)")
+      ->type_name("none|mgf2|FILE.csv")
+      ->default_str("losses are not modelled");
   auto* out = examples::add_out_folder(app, options.out_folder, "folder for figures and a page");
   examples::add_numbers(app, "--fields", options.field_deg, examples::field_angle, "fields of the figures (degrees)")
       ->default_str("fields of the file, else the axis, 0.7 and 1 of the declared half field")
@@ -155,6 +176,14 @@ int commands::report(int argc, char** argv) {
     options.subject_given = subject->given();
     const examples::Report report = report_of(options);
     if (out->given()) return write_page(report, options);
-    std::cout << (options.json ? to_json(report, options) : examples::to_text(report));
+    if (options.json) {
+      std::cout << to_json(report, options);
+      return;
+    }
+    std::cout << examples::to_text(report);
+    if (options.coatings.empty()) return;
+    const auto& light = report.subject.light;
+    const auto colours = examples::compiled_for(report.loaded, light.wavelengths_nm, light.primary_nm);
+    std::cout << examples::to_text(*light_of(report, set(colours, options, report.subject), options));
   });
 }

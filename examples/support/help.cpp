@@ -35,7 +35,7 @@ constexpr std::array all_groups{
           "--precision --surfaces-from "},
     Group{"Quality", true, " --lens-samples --half --tolerance --layers --jitter --supersample --highlights-above "},
     Group{"Depths", true, " --depth-kind --near --far --white "},
-    Group{"Files", true, " --glasses --configuration --match-glasses --ignore-apertures "},
+    Group{"Files", true, " --glasses --configuration --coatings --match-glasses --ignore-apertures "},
     Group{"Iris", true,
           " --roundness --iris-rotation --iris-area --iris-image --lens-ratio --rate-of-change --keep-light "
           "--weight-distribution --weight-strength --weight-map "},

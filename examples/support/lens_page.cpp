@@ -173,6 +173,23 @@ void third_order_table(std::ostream& html, const Report& r, const petzval::Lens&
   html << "</table></div>\n";
 }
 
+void light_table(std::ostream& html, const LightReport& light) {
+  html << "<h2>Light</h2>\n<p class=\"lead\">The fraction of unpolarised light that the surfaces pass with the coating "
+          "of "
+          "--coatings, mean over the pupil.";
+  if (light.colour) {
+    html << " T-stop " << number(light.colour->t_stop, 4)
+         << "; white light (D65) becomes x = " << number(light.colour->xy[0], 4)
+         << ", y = " << number(light.colour->xy[1], 4) << " (CIE 1931).";
+  }
+  html << "</p>\n";
+  head_row(html, {"field", "wavelength", "transmittance"});
+  for (const auto& [nm, degrees, value] : light.values) {
+    number_row(html, number(degrees, 4) + "\u00b0", std::array{nm, value.value_or(0)}, 6);
+  }
+  html << "</table></div>\n";
+}
+
 /// Conic constants and coefficients of the aspheres, one row per surface and one column per order.
 void asphere_table(std::ostream& html, const Report& r) {
   const auto& surfaces = r.loaded.prescription.surfaces;
@@ -374,7 +391,8 @@ std::vector<LensFigure> lens_figures(const Report& r, const petzval::Lens& colou
   return result;
 }
 
-std::string lens_page(const Report& r, const petzval::Lens& colours, const std::vector<LensFigure>& figures) {
+std::string lens_page(const Report& r, const petzval::Lens& colours, const std::vector<LensFigure>& figures,
+                      const std::optional<LightReport>& light) {
   const petzval::Lens& lens = r.loaded.lens;
   const std::string name = escaped_html(lens.name());
   std::ostringstream html;
@@ -395,6 +413,7 @@ std::string lens_page(const Report& r, const petzval::Lens& colours, const std::
   first_order_table(html, r);
   wavefront_table(html, r, colours);
   third_order_table(html, r, colours);
+  if (light) light_table(html, *light);
   html << "<h2>Lint</h2>\n";
   if (r.findings.empty()) html << "<p class=\"lead\">No findings: declared and computed values agree.</p>\n";
   if (!r.findings.empty()) {

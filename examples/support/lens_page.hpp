@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "lens_light.hpp"
 #include "lens_report.hpp"
 
 namespace examples {
@@ -20,7 +21,8 @@ struct LensFigure {
 /// @throws petzval::Error if the lens cannot see a field or the subject
 std::vector<LensFigure> lens_figures(const Report& report, const petzval::Lens& colours);
 
-/// A self-contained HTML page with the figures, the numbers, the prescription and its sources.
-std::string lens_page(const Report& report, const petzval::Lens& colours, const std::vector<LensFigure>& figures);
+/// A self-contained HTML page with the figures, the numbers, the prescription and its sources. light: with --coatings.
+std::string lens_page(const Report& report, const petzval::Lens& colours, const std::vector<LensFigure>& figures,
+                      const std::optional<LightReport>& light);
 
 }  // namespace examples

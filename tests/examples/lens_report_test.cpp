@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <cmath>
+#include <fstream>
 #include <limits>
 #include <regex>
 #include <string>
@@ -448,6 +449,37 @@ TEST_F(LensReport, EdgeThicknessesEqualTheLibrary) {
   for (std::size_t i = 0; i < edges.size(); ++i) {
     EXPECT_EQ(json["edge_thicknesses_mm"][i], edges[i] ? nlohmann::json(*edges[i]) : nlohmann::json()) << i;
   }
+}
+
+TEST_F(LensReport, ReportsTheLightOfCoatings) {
+  const std::string file = lens("double_gauss_100mm_f1.35");
+  const auto report = [&](const std::vector<std::string>& more) {
+    std::vector<std::string> arguments{file, "--json"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    const auto outcome = run("report", arguments);
+    EXPECT_EQ(outcome.status, 0) << outcome.err;
+    return nlohmann::json::parse(outcome.out);
+  };
+  const auto plain = report({}), bare = report({"--coatings", "none"}), coated = report({"--coatings", "mgf2"});
+  EXPECT_TRUE(plain["transmittance"].is_null());
+  EXPECT_TRUE(plain["t_stop"].is_null());
+  ASSERT_EQ(bare["transmittance"].size(), 9u);
+  EXPECT_LT(bare["transmittance"][0]["value"].get<double>(), 0.65);
+  EXPECT_GT(coated["transmittance"][0]["value"].get<double>(), 0.85);
+  EXPECT_GT(bare["t_stop"].get<double>(), coated["t_stop"].get<double>());
+  EXPECT_GT(coated["t_stop"].get<double>(), plain["f_number_real"].get<double>());
+  EXPECT_NEAR(bare["colour"]["x"].get<double>(), 0.3127, 0.01);
+
+  // Reflectances of 1 % at each of the eight surfaces to air.
+  std::ofstream(path("coating.csv")) << "wavelength_nm,reflectance\n300,0.01\n900,0.01\n";
+  EXPECT_NEAR(report({"--coatings", path("coating.csv")})["transmittance"][0]["value"].get<double>(), std::pow(0.99, 8),
+              0.02);
+  std::ofstream(path("layers.csv")) << "index,absorption,thickness_nm\n1.38,0,99.6377\n";
+  EXPECT_NEAR(report({"--coatings", path("layers.csv")})["t_stop"].get<double>(), coated["t_stop"].get<double>(), 1e-5);
+  EXPECT_EQ(run("report", {file, "--coatings", "mgf2", "--out", path("light")}).status, 0);
+  EXPECT_NE(read(path("light/double_gauss_100mm_f1.35.html")).find("T-stop 1.38"), std::string::npos);
+  EXPECT_NE(run("report", {file, "--coatings", "gold"}).err.find("must be none, mgf2 or a file.csv"),
+            std::string::npos);
 }
 
 TEST_F(LensReport, DrawsRequestedFieldsAndBothSections) {
