@@ -166,9 +166,9 @@ int commands::report(int argc, char** argv) {
       ->type_name("none|mgf2|FILE.csv")
       ->default_str("losses are not modelled");
   auto* out = examples::add_out_folder(app, options.out_folder, "folder for figures and a page");
-  examples::add_numbers(app, "--fields", options.field_deg, examples::field_angle, "fields of the figures (degrees)")
-      ->default_str("fields of the file, else the axis, 0.7 and 1 of the declared half field")
-      ->needs(out);
+  examples::add_numbers(app, "--fields", options.field_deg, examples::field_angle,
+                        "fields of the figures and of --json (degrees)")
+      ->default_str("fields of the file, else the axis, 0.7 and 1 of the declared half field");
   out->excludes("--json");
 
   return examples::run(app, argc, argv, [&] {

@@ -111,7 +111,10 @@ void surface_table(std::ostream& html, const Report& r) {
 /// One row of a table, with numbers aligned to the right.
 void number_row(std::ostream& html, const std::string& first, std::span<const double> values, int digits) {
   html << "<tr><td>" << first << "</td>";
-  for (const double value : values) html << "<td class=\"number\">" << number(value, digits) << "</td>";
+  constexpr double rounding = 1e-9;  // shown as 0
+  for (const double value : values) {
+    html << "<td class=\"number\">" << number(std::abs(value) < rounding ? 0 : value, digits) << "</td>";
+  }
   html << "</tr>\n";
 }
 
@@ -126,7 +129,8 @@ void wavefront_table(std::ostream& html, const Report& r, const petzval::Lens& c
   if (!r.main().pupils) return;
   html
       << "<h2>Wavefront</h2>\n<p class=\"lead\">In waves, over the vignetted exit pupil. The second RMS and the Strehl "
-         "ratio are about the image point with the smallest RMS. Zernike coefficients in fringe order, in the unit "
+         "ratio (0 beyond half a wave) are about the image point with the smallest RMS. Zernike coefficients in fringe "
+         "order, in the unit "
          "circle of the stop: defocus Z4, astigmatism Z5, coma Z8, spherical aberration Z9. All 37 are in the output "
          "of "
          "--json. Error: of the first RMS, by the number of rays.</p>\n";
@@ -141,10 +145,11 @@ void wavefront_table(std::ostream& html, const Report& r, const petzval::Lens& c
       continue;
     }
     const petzval::Wavefront& front = *fronts[k];
-    number_row(html, field,
-               std::array{nm[k % nm.size()], front.rms_waves, front.rms_without_tilt, front.strehl, front.zernike[3],
-                          front.zernike[4], front.zernike[7], front.zernike[8], front.sampling_error_waves},
-               4);
+    number_row(
+        html, field,
+        std::array{nm[k % nm.size()], front.rms_waves, front.rms_without_tilt, front.strehl.value_or(0),
+                   front.zernike[3], front.zernike[4], front.zernike[7], front.zernike[8], front.sampling_error_waves},
+        4);
   }
   html << "</table></div>\n";
 }
@@ -154,7 +159,8 @@ void third_order_table(std::ostream& html, const Report& r, const petzval::Lens&
   const auto sums = report_seidel(r, colours);
   if (!sums) return;
   const petzval::ParaxialRays rays = petzval::paraxial_rays(colours, largest_field(r.subject, colours));
-  html << "<h2>Third order</h2>\n<p class=\"lead\">For the largest field, in micrometres: spherical aberration, coma, "
+  html << "<h2>Third order</h2>\n<p class=\"lead\">For the largest field, with a chief ray that rises, in micrometres: "
+          "spherical aberration, coma, "
           "astigmatism, Petzval curvature, distortion, axial and lateral colour. Then height (mm) and slope behind the "
           "surface of the marginal and the chief ray. Optical invariant "
        << number(rays.invariant, 7) << " mm; " << numbering_in_words(r) << ".</p>\n";

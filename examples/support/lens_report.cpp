@@ -150,7 +150,7 @@ Json wavefronts(const Report& r, const petzval::Lens& colours) {
     one["rms_waves"] = value(&petzval::Wavefront::rms_waves);
     one["rms_without_tilt_waves"] = value(&petzval::Wavefront::rms_without_tilt);
     one["peak_to_valley_waves"] = value(&petzval::Wavefront::peak_to_valley_waves);
-    one["strehl"] = value(&petzval::Wavefront::strehl);
+    one["strehl"] = front && front->strehl ? Json(*front->strehl) : Json();
     one["zernike_fringe"] = front ? Json(front->zernike) : Json();
     one["zernike_residual_waves"] = value(&petzval::Wavefront::zernike_residual_waves);
     one["sampling_error_waves"] = value(&petzval::Wavefront::sampling_error_waves);
@@ -199,14 +199,16 @@ Json exact_aberrations(const Report& r, const petzval::Lens& colours) {
     Json mtf = Json::array(), over_field = Json::array(), films = Json::array(), energy = Json::array();
     const auto points = report_mtf(r, spots);
     const double f_number = petzval::film_side_f_number(colours);
+    const double nm_in_film_space = r.subject.light.primary_nm / colours.index(colours.surface_count());
+    const std::size_t frequencies = degrees.empty() ? 1 : points.size() / degrees.size();
     for (std::size_t k = 0; k < points.size(); ++k) {
       const petzval::MtfPoint& point = points[k];
-      const double limit =
-          petzval::diffraction_limited_mtf(point.frequency_per_mm, r.subject.light.primary_nm, f_number);
+      const double limit = petzval::diffraction_limited_mtf(point.frequency_per_mm, nm_in_film_space, f_number);
+      const bool dark = points[k / frequencies * frequencies].tangential == 0;  // at frequency 0
       mtf.push_back({{"field_deg", degrees[k * degrees.size() / points.size()]},
                      {"frequency_per_mm", point.frequency_per_mm},
-                     {"tangential", point.tangential},
-                     {"sagittal", point.sagittal},
+                     {"tangential", dark ? Json() : Json(point.tangential)},
+                     {"sagittal", dark ? Json() : Json(point.sagittal)},
                      {"diffraction_limit", limit}});
     }
     for (const petzval::MtfPoint& point : report_mtf_over_field(r, colours)) {

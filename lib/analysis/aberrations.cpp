@@ -149,6 +149,11 @@ std::vector<FieldFocus> field_curvature(const Lens& lens, double subject_z, std:
     FieldFocus& focus = foci.emplace_back(FieldFocus{field, {}, {}});
     if (up && down) focus.tangential_mm = crossing(up->y - down->y, up->slope_y - down->slope_y);
     if (right && left) focus.sagittal_mm = crossing(right->x - left->x, right->slope_x - left->slope_x);
+    // Along the light, which may run towards -z behind mirrors.
+    const double forwards = lens.light_direction(lens.surface_count());
+    for (auto* distance : {&focus.tangential_mm, &focus.sagittal_mm}) {
+      if (*distance) **distance *= forwards;
+    }
   }
   return foci;
 }

@@ -142,12 +142,49 @@ struct Grid {
   double position(int sample) const noexcept { return (sample - 0.5 * (samples() - 1)) * step(); }
 };
 
-/// Irradiances of the samples of a grid, mm^2 of the pupil plane per mm^2 of the film, rows from the top, and the
-/// irradiance at the centre of the same amplitudes in phase.
+/// Irradiances of the samples of a grid, mm^2 of the pupil plane per mm^2 of the film, rows from the top; the largest
+/// irradiance of the film, and the irradiance at the centre of the same amplitudes in phase.
 struct Irradiance {
   std::vector<double> values;
-  double in_phase = 0;
+  double peak = 0, in_phase = 0;
 };
+
+/// A plane wave on the film: its phase per mm, and its amplitude at the centre of the image.
+struct PlaneWave {
+  Vec2<double> phase_per_mm;
+  Complex amplitude;
+};
+
+/// Largest squared sum of plane waves near a position, by Newton's steps of at most `step` mm.
+double peak_near(std::span<const PlaneWave> waves, Vec2<double> position, double step) noexcept {
+  double largest = 0;
+  for (int iteration = 0; iteration < 6; ++iteration) {
+    Complex sum = 0, x = 0, y = 0, xx = 0, xy = 0, yy = 0;
+    for (const auto& [k, amplitude] : waves) {
+      const Complex value = amplitude * std::polar(1.0, glm::dot(k, position));
+      sum += value, x += k.x * value, y += k.y * value;
+      xx += k.x * k.x * value, xy += k.x * k.y * value, yy += k.y * k.y * value;
+    }
+    const double before = largest;
+    largest = std::max(largest, std::norm(sum));
+    if (largest <= before * (1 + 1e-9)) break;
+    const auto real_part = [](const Complex& p, const Complex& q) { return (std::conj(p) * q).real(); };
+    const double gx = -(std::conj(sum) * x).imag(), gy = -(std::conj(sum) * y).imag();
+    const double hxx = std::norm(x) - real_part(sum, xx), hyy = std::norm(y) - real_part(sum, yy);
+    const double hxy = real_part(x, y) - real_part(sum, xy), determinant = hxx * hyy - hxy * hxy;
+    if (!(determinant > 0 && hxx < 0)) break;
+    Vec2<double> move{-(hyy * gx - hxy * gy) / determinant, -(hxx * gy - hxy * gx) / determinant};
+    move *= std::min(1.0, step / std::max(glm::length(move), 1e-300));
+    position += move;
+  }
+  return largest;
+}
+
+/// Position of the largest sample, mm from the centre of the image.
+Vec2<double> brightest(const std::vector<double>& values, const Grid& grid) {
+  const auto at = static_cast<int>(std::ranges::max_element(values) - values.begin());
+  return {grid.position(at % grid.samples()), -grid.position(at / grid.samples())};
+}
 
 Complex wave(double length, double wavelength) noexcept {
   // The whole waves are dropped first: the argument keeps its digits.
@@ -163,6 +200,7 @@ Irradiance huygens(const DirectionMap& map, const Grid& grid, double wavelength_
   const double n = map.paths().film_index(), scale = n * n / (wavelength_mm * wavelength_mm);
   const auto samples = static_cast<Eigen::Index>(grid.samples()), count = static_cast<Eigen::Index>(nodes.size());
   Eigen::MatrixXcd columns = Eigen::MatrixXcd::Zero(count, samples), rows = Eigen::MatrixXcd::Zero(samples, count);
+  std::vector<PlaneWave> waves;
   double sum = 0;
   for (Eigen::Index i = 0; i < count; ++i) {
     const PupilNode& node = nodes[static_cast<std::size_t>(i)];
@@ -172,6 +210,8 @@ Irradiance huygens(const DirectionMap& map, const Grid& grid, double wavelength_
     // The amplitude in a direction is the root of stretch; the ray stands for area / stretch of directions.
     const double amplitude = node.area / std::sqrt(map.stretch(direction));
     sum += amplitude;
+    waves.push_back(
+        {direction * (2 * std::numbers::pi * n / wavelength_mm), amplitude * wave(ray->path, wavelength_mm)});
     for (Eigen::Index k = 0; k < samples; ++k) {
       const double at = n * grid.position(static_cast<int>(k));
       columns(i, k) = wave(direction.x * at, wavelength_mm);
@@ -183,6 +223,7 @@ Irradiance huygens(const DirectionMap& map, const Grid& grid, double wavelength_
                     .in_phase = scale * sum * sum};
   std::transform(field.data(), field.data() + field.size(), result.values.begin(),
                  [scale](const Complex& value) { return scale * std::norm(value); });
+  result.peak = scale * peak_near(waves, brightest(result.values, grid), grid.step());
   return result;
 }
 
@@ -348,6 +389,15 @@ Irradiance transformed(const Lens& lens, const DirectionMap& map, const Grid& gr
   });
   const double sum = std::accumulate(sums.begin(), sums.end(), 0.0);
   result.in_phase = scale * sum * sum;
+  std::vector<PlaneWave> waves;
+  const double phase_per_mm = 2 * std::numbers::pi / (size * grid.step());
+  for (int row = 0; row < directions.width(); ++row) {
+    for (int column = 0; column < directions.width(); ++column) {
+      const Complex& value = directions.value(row, column);
+      if (value != 0.0) waves.push_back({Vec2<double>{column - half, row - half} * phase_per_mm, value});
+    }
+  }
+  result.peak = scale * peak_near(waves, brightest(result.values, grid), grid.step());
   return result;
 }
 
@@ -421,19 +471,24 @@ DiffractionPsf diffraction_psf(const Lens& lens, const FieldPoint& point, const 
   // Irradiance has details down to half of the unit of the field, and needs two samples for each.
   psf.samples_per_pixel = std::max(1, static_cast<int>(std::ceil(std::min(psf.pixel_mm / (narrowest / 4), 1e6))));
   const Grid grid{psf.pixels, psf.samples_per_pixel, psf.pixel_mm};
-  // The transform needs the blur in its window, and 128 cells across the pupil.
-  const double needed = std::max({1.0 * psf.pixels * grid.finer, 64 * widest / grid.step(), 2.1 * blur / grid.step()});
-  if (needed > most_samples) {
-    throw Error("diffraction_psf: samples = " + to_text(std::ceil(needed), 6) + " across the image of " +
-                to_text(2 * half_width, 4) + " mm (blur " + to_text(2 * blur, 4) + " mm); must be at most " +
-                std::to_string(most_samples) +
-                ". Choose a smaller image or more pixels, focus closer to the point, or "
-                "use the geometric PSF");
+  // The transform needs the blur in its window, and 128 cells across the pupil; 32 if samples are that fine.
+  const auto refuse = [&](const std::string& rule) {
+    throw Error("diffraction_psf: width of the image = " + to_text(2 * half_width, 4) + " mm (blur of the rays " +
+                to_text(2 * blur, 4) + " mm); must be " + rule);
+  };
+  if (const double narrowest_mm = 16 * widest / most_samples * psf.pixels; grid.step() * most_samples < 16 * widest) {
+    refuse("at least " + to_text(narrowest_mm, 3) + " mm");
   }
+  const double needed = std::max(1.0 * psf.pixels * grid.finer, 2.1 * blur / grid.step());
+  if (needed > most_samples) {
+    refuse("at most " + std::to_string(most_samples) +
+           " samples wide: choose a smaller width, focus closer to the point, or use rays (no --diffraction)");
+  }
+  // Twice the image, if possible: spikes that leave the window return on the other side, outside of the image.
+  const double wide =
+      std::max(needed, std::min(std::max(2.0 * grid.samples(), 64 * widest / grid.step()), 1.0 * most_samples));
   const auto samples = static_cast<std::size_t>(grid.samples());
   psf.line_x.resize(samples * maps.size()), psf.line_y.resize(samples * maps.size());
-  // Twice the image, if possible: spikes that leave the window return on the other side, outside of the image.
-  const double wide = std::max(needed, std::min(2.0 * grid.samples(), 1.0 * most_samples));
   const int size = static_cast<int>(std::bit_ceil(static_cast<unsigned>(std::ceil(wide))));
   const double entrance = analysis_detail::entrance_pupil_area(lens);
   for (std::size_t i = 0; i < maps.size(); ++i) {
@@ -441,7 +496,7 @@ DiffractionPsf diffraction_psf(const Lens& lens, const FieldPoint& point, const 
     const Irradiance image = options.sum == DiffractionSum::huygens
                                  ? huygens(maps[i], grid, psf.wavelengths_nm[i] * 1e-6)
                                  : transformed(lens, maps[i], grid, wavelengths[i], size, options.threads);
-    psf.strehl[i] = *std::ranges::max_element(image.values) / image.in_phase;
+    psf.strehl[i] = image.peak / image.in_phase;
     psf.throughput[i] = maps[i].boundary().area() / entrance;
     const double light = grid.step() * grid.step() / entrance;
     for (std::size_t row = 0; row < samples; ++row) {

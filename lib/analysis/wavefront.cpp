@@ -132,9 +132,11 @@ std::optional<Wavefront> wavefront(const Lens& lens, const FieldPoint& point, co
   result.rms_waves = deviation(waves, weights);
   result.rms_without_tilt = deviation(level, weights);
   result.peak_to_valley_waves = waves.maxCoeff() - waves.minCoeff();
-  std::complex<double> amplitude = 0;
-  for (Eigen::Index i = 0; i < count; ++i) amplitude += std::polar(weights[i], 2 * std::numbers::pi * level[i]);
-  result.strehl = std::norm(amplitude);
+  if (constexpr double largest_rms = 0.5; result.rms_without_tilt <= largest_rms) {
+    std::complex<double> amplitude = 0;
+    for (Eigen::Index i = 0; i < count; ++i) amplitude += std::polar(weights[i], 2 * std::numbers::pi * level[i]);
+    result.strehl = std::norm(amplitude);
+  }
   result.sampling_error_waves = third_weights.sum() > 0 ? std::abs(deviation(waves, third_weights) - result.rms_waves)
                                                         : std::numeric_limits<double>::infinity();
   return result;

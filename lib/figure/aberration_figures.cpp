@@ -162,7 +162,8 @@ std::string mtf_figure(const Lens& lens, double subject_z, std::span<const MtfPo
   figure_detail::draw_head(svg, lens, "Geometric MTF", subject_z, lens.primary_wavelength());
   Axes axes(svg, left, top, width - left - 24, height, {0, highest > 0 ? highest : 1, "frequency (line pairs per mm)"},
             {0, 1, "contrast"});
-  const double nm = lens.wavelengths_nm()[lens.primary_wavelength()], f_number = film_side_f_number(lens);
+  const double f_number = film_side_f_number(lens);
+  const double nm = lens.wavelengths_nm()[lens.primary_wavelength()] / lens.index(lens.surface_count());
   std::vector<Axes::Point> limit;
   for (int k = 0; k <= 100; ++k) {
     const double frequency = highest * k / 100;

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numeric>
 #include <string_view>
 #include <utility>
 #include <vector>
@@ -43,19 +42,13 @@ class SpotFigure {
         f_number_(film_side_f_number(lens)),
         svg_(std::max(960.0, left + static_cast<double>(columns_) * (cell + gap) + gap),
              top + static_cast<double>(rows_) * (cell + caption_height + gap) + bottom) {
-    std::vector<std::size_t> order(wavelengths_);
-    std::iota(order.begin(), order.end(), std::size_t(0));
-    const auto nm = lens.wavelengths_nm();
-    std::nth_element(order.begin(), order.begin() + static_cast<std::ptrdiff_t>(wavelengths_ / 2), order.end(),
-                     [&](auto a, auto b) { return nm[a] < nm[b]; });
-    middle_ = order[wavelengths_ / 2];
     for (std::size_t row = 0; row < rows_; ++row) {
       std::vector<RayBundle> hits;
       for (const Spot& spot : of(row))
         hits.push_back(figure_detail::weighted({.x = spot.x, .y = spot.y}, weights_[spot.wavelength]));
       sizes_.push_back(spot_size(hits));
     }
-    limit_ = 1.08 * std::max(extent(), airy(middle_));
+    limit_ = 1.08 * std::max(extent(), airy(lens_.primary_wavelength()));
     if (!(limit_ > 0 && std::isfinite(limit_))) limit_ = 1e-3;
   }
 
@@ -88,7 +81,7 @@ class SpotFigure {
   }
 
   void title() {
-    figure_detail::draw_head(svg_, lens_, "Spot diagram", spots_.front().point.z, middle_);
+    figure_detail::draw_head(svg_, lens_, "Spot diagram", spots_.front().point.z, lens_.primary_wavelength());
     double x = gap;
     for (std::size_t w = 0; w < wavelengths_; ++w) {
       svg_.path(ray_marker(looks_[w].marker, x + 4, 65), stroke(w));
@@ -111,7 +104,7 @@ class SpotFigure {
     const double y = cell_y(row) + cell / 2;
     svg_.text(gap, y - 6, "field " + to_text(degrees(of(row).front().point.field_rad), 4) + "\u00b0",
               "font-weight=\"bold\"");
-    const auto& chief = of(row)[middle_].chief_ray_height;
+    const auto& chief = of(row)[lens_.primary_wavelength()].chief_ray_height;
     svg_.text(gap, y + 12, "chief ray at", small_text);
     svg_.text(gap, y + 27, chief ? "y = " + to_text(*chief, 4) + " mm" : "none", small_text);
   }
@@ -133,7 +126,7 @@ class SpotFigure {
       }
       if (!d.empty()) svg_.path(d, stroke(w));
     }
-    const double circle = airy(column == 0 ? middle_ : first) * scale;
+    const double circle = airy(column == 0 ? lens_.primary_wavelength() : first) * scale;
     if (circle < cell / 2) {
       svg_.circle(cx, cy, circle, "fill=\"none\" stroke=\"#000\" stroke-width=\"1\" stroke-dasharray=\"3 2\"");
     }
@@ -155,14 +148,16 @@ class SpotFigure {
         gap, y + 24,
         "Origin: centroid of all rays of the field. RMS and max: radii about the centroid of the rays in the cell. "
         "Wavelengths have " +
-            figure_detail::weights_text(weights_) + ". Chief ray: through the centre of the stop.",
+            figure_detail::weights_text(weights_) + ".",
         small_text);
     // A closed stop has no Airy circle.
-    const std::string circle = !std::isfinite(f_number_)
-                                   ? std::string()
-                                   : "Dashed: Airy circle, 1.22 wavelength N, N = " + to_text(f_number_, 3) +
-                                         " on the film side; " + figure_detail::length_text(airy(middle_)) + " at " +
-                                         to_text(lens_.wavelengths_nm()[middle_], 6) + " nm. ";
+    const std::string circle =
+        !std::isfinite(f_number_)
+            ? std::string()
+            : "Chief ray: through the centre of the stop. Dashed: Airy circle, 1.22 wavelength N / n, N = " +
+                  to_text(f_number_, 3) + " on the film side; " +
+                  figure_detail::length_text(airy(lens_.primary_wavelength())) + " at " +
+                  to_text(lens_.wavelengths_nm()[lens_.primary_wavelength()], 6) + " nm. ";
     svg_.text(gap, y + 40,
               circle + std::to_string(spots_.front().sent) + " rays sent per spot, at most " +
                   std::to_string(drawn_rays) + " drawn.",
@@ -173,7 +168,6 @@ class SpotFigure {
   std::span<const Spot> spots_;
   std::vector<double> weights_;
   std::size_t wavelengths_, rows_, columns_;
-  std::size_t middle_ = 0;  // the median wavelength, for elements of a single wavelength
   std::vector<figure_detail::Look> looks_;
   double f_number_;
   Svg svg_;

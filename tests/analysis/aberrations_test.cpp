@@ -98,8 +98,8 @@ TEST(FieldCurvature, OfAConcentricMirrorIsASphere) {
   for (const FieldFocus& focus : field_curvature(lens, far, fields)) {
     const double film = lens.film_z(), z = 100 * std::cos(focus.field_rad);  // on the sphere about the stop
     ASSERT_TRUE(focus.tangential_mm && focus.sagittal_mm);
-    EXPECT_NEAR(film + *focus.tangential_mm, z, 2e-4);
-    EXPECT_NEAR(film + *focus.sagittal_mm, z, 2e-4);
+    EXPECT_NEAR(film - *focus.tangential_mm, z, 2e-4);
+    EXPECT_NEAR(film - *focus.sagittal_mm, z, 2e-4);
   }
 }
 

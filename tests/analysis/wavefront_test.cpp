@@ -78,7 +78,7 @@ TEST(Wavefront, OfAParabolicMirrorIsPerfectOnTheAxis) {
   const Lens lens = compiled({mirror});
   const Wavefront front = at(lens, 0);
   EXPECT_LT(front.peak_to_valley_waves, 1e-8);
-  EXPECT_NEAR(front.strehl, 1, 1e-12);
+  EXPECT_NEAR(front.strehl.value(), 1, 1e-12);
   EXPECT_NEAR(front.reference_radius, 100, 1e-9);
   EXPECT_EQ(front.points.size(), 48u * 9u);
 }
@@ -94,6 +94,10 @@ TEST(Wavefront, OfADefocusedFilmIsTheDifferenceOfTwoSpheres) {
     EXPECT_NEAR(waves * wave_mm, shift * (1 - std::cos(a)), shift * shift * 1e-3);
   }
   EXPECT_GT(front.zernike[3], 0);
+  // Strehl ratio of defocus: sinc^2 of half of the range of the phase.
+  const double half = std::numbers::pi * front.peak_to_valley_waves;
+  EXPECT_NEAR(front.strehl.value(), std::pow(std::sin(half) / half, 2), 0.01);
+  EXPECT_FALSE(at(with_film(sharp, sharp.film_z() - 1), 0).strehl);
 }
 
 // An infinite radius of the reference sphere: the stop lies in the front focal plane.

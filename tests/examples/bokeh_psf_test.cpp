@@ -100,7 +100,7 @@ TEST_F(BokehPsf, DiffractionNeedsExactRaysAndASmallBlur) {
   };
   refused({"--focus", "inf", "--model", "thin"}, "--model");
   refused({"--focus", "inf", "--lens-ratio", "1.2"}, "--diffraction");
-  refused({"--focus", "1000"}, "must be at most 4096");
+  refused({"--focus", "1000"}, "at most 4096");
   refused({"--focus", "inf", "--wavelengths", "visible:0"}, "visible:STEP");
 }
 

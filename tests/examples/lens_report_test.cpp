@@ -79,7 +79,7 @@ TEST_F(LensReport, SeidelSumsEqualTheLibrary) {
   EXPECT_EQ(last["field_deg"], json["fields_deg"].back());
   EXPECT_EQ(last["wavelength_nm"], wavelengths[0]);
   EXPECT_EQ(last["rms_waves"], front->rms_waves);
-  EXPECT_EQ(last["strehl"], front->strehl);
+  EXPECT_EQ(last["strehl"].is_null(), !front->strehl);
   ASSERT_EQ(last["zernike_fringe"].size(), 37u);
   EXPECT_EQ(last["zernike_fringe"][8], front->zernike[8]);
   EXPECT_NEAR(json["ray_fans"][16]["tangential_waves"].get<double>(), 0, 1e-9);  // the chief ray

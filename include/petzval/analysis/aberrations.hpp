@@ -150,7 +150,7 @@ PETZVAL_API std::vector<AxialRayFocus> longitudinal_aberration(const Lens& lens,
 /// MTF of an ideal lens with a round pupil on the axis.
 ///
 /// @param frequency_per_mm  spatial frequency (line pairs per mm)
-/// @param wavelength_nm     wavelength
+/// @param wavelength_nm     wavelength in the medium of the film: the wavelength in vacuum divided by the index
 /// @param f_number          image-side f-number
 /// @return                  1 at 0, 0 from 1 / (wavelength f_number) on
 PETZVAL_API double diffraction_limited_mtf(double frequency_per_mm, double wavelength_nm, double f_number) noexcept;

@@ -58,8 +58,9 @@ struct Wavefront {
   double rms_waves = 0;         ///< standard deviation
   double rms_without_tilt = 0;  ///< standard deviation about the image point that makes it smallest, waves
   double peak_to_valley_waves = 0;
-  /// Strehl ratio at the image point with the smallest standard deviation, for equal amplitude over the pupil.
-  double strehl = 0;
+  /// Strehl ratio at the image point with the smallest standard deviation, for equal amplitude over the pupil. nullopt
+  /// if rms_without_tilt exceeds half a wave: the image has no peak there.
+  std::optional<double> strehl{};
   std::array<double, zernike_terms> zernike{};  ///< coefficients in waves; zernike[k] belongs to zernike_fringe(k)
   double zernike_residual_waves = 0;            ///< standard deviation of the wavefront about the polynomials
   double sampling_error_waves = 0;              ///< change of rms_waves with a third of the directions
@@ -109,7 +110,8 @@ struct DiffractionPsf {
   std::vector<double> wavelengths_nm{};
   std::vector<double> irradiance{};  ///< [wavelength][row][column]
   std::vector<double> throughput{};  ///< light that passes the lens, per wavelength, as in Psf::throughput()
-  /// Largest irradiance of a pixel relative to the same amplitudes without wavefront error, per wavelength.
+  /// Largest irradiance of the image relative to the same amplitudes without wavefront error, per wavelength. The size
+  /// of pixels does not matter.
   std::vector<double> strehl{};
   int samples_per_pixel = 1;  ///< a pixel is the mean of this number of samples squared
   /// Light of each column of samples from left to right and of each row from the bottom, [wavelength][sample], with
