@@ -39,7 +39,7 @@ using Complex = std::complex<double>;
 constexpr int most_samples = 4096;
 
 /// Polynomial of two variables from -1 to 1, of total degree 8, by least squares.
-class Surface {
+class PowerSeries {
  public:
   static constexpr int degree = 8, terms = (degree + 1) * (degree + 2) / 2;
   using Row = Eigen::Matrix<double, 1, terms>;
@@ -84,12 +84,12 @@ class DirectionMap {
                   " are parallel in one section; must converge in both");
     }
     const auto count = static_cast<Eigen::Index>(rays.size());
-    Eigen::MatrixXd rows(count, Surface::terms);
+    Eigen::MatrixXd rows(count, PowerSeries::terms);
     Eigen::VectorXd x(count), y(count);
     for (Eigen::Index i = 0; i < count; ++i) {
       const auto at = static_cast<std::size_t>(i);
       const Vec2<double> scaled = scaled_direction(Vec2<double>(rays[at].direction));
-      rows.row(i) = Surface::row(scaled.x, scaled.y);
+      rows.row(i) = PowerSeries::row(scaled.x, scaled.y);
       x[i] = reached[at].x, y[i] = reached[at].y;
     }
     x_ = core_detail::least_squares(rows, x), y_ = core_detail::least_squares(rows, y);
@@ -107,7 +107,7 @@ class DirectionMap {
   /// Position in the pupil plane of the ray that leaves the lens in a direction, by the polynomials.
   Vec2<double> position(const Vec2<double>& direction) const noexcept {
     const Vec2<double> scaled = scaled_direction(direction);
-    const Surface::Row row = Surface::row(scaled.x, scaled.y);
+    const PowerSeries::Row row = PowerSeries::row(scaled.x, scaled.y);
     return {row.dot(x_), row.dot(y_)};
   }
 

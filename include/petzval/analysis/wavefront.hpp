@@ -59,7 +59,7 @@ struct Wavefront {
   double rms_without_tilt = 0;  ///< standard deviation about the image point that makes it smallest, waves
   double peak_to_valley_waves = 0;
   /// Strehl ratio at the image point with the smallest standard deviation, for equal amplitude over the pupil. nullopt
-  /// if rms_without_tilt exceeds half a wave: the image has no peak there.
+  /// if rms_without_tilt exceeds half a wave, because such an image has no single peak.
   std::optional<double> strehl{};
   std::array<double, zernike_terms> zernike{};  ///< coefficients in waves; zernike[k] belongs to zernike_fringe(k)
   double zernike_residual_waves = 0;            ///< standard deviation of the wavefront about the polynomials
