@@ -20,7 +20,7 @@
 #include "petzval/pupil/f_number.hpp"
 
 namespace petzval {
-namespace {
+namespace diffraction_test {
 
 constexpr double far = -std::numeric_limits<double>::infinity();
 
@@ -214,5 +214,5 @@ TEST(DiffractionMtf, DoesNotDependOnThePixels) {
   EXPECT_GT(diffraction_mtf(diffraction_psf(lens, point), none)[0].tangential, 0.97);
 }
 
-}  // namespace
+}  // namespace diffraction_test
 }  // namespace petzval

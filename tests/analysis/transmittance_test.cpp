@@ -18,7 +18,7 @@
 #include "petzval/trace/trace.hpp"
 
 namespace petzval {
-namespace {
+namespace transmittance_test {
 
 constexpr double far = -std::numeric_limits<double>::infinity();
 
@@ -123,5 +123,5 @@ TEST(Transmittance, NeedsACoatingForEachSurface) {
   EXPECT_FALSE(transmittance(lens, Ray<double>{{0, 0, 0}, {0, 1, 0}}, coat_air_surfaces(lens, {})));
 }
 
-}  // namespace
+}  // namespace transmittance_test
 }  // namespace petzval

@@ -22,7 +22,7 @@
 #include "petzval/pupil/f_number.hpp"
 
 namespace petzval {
-namespace {
+namespace wavefront_test {
 
 constexpr double far = -std::numeric_limits<double>::infinity();
 constexpr double wave_mm = d_line_nm * 1e-6;
@@ -265,5 +265,5 @@ TEST(Wavefront, NeedsAChiefRayAndAPupil) {
   testing::expect_error([&] { at(lens, 0, {.wavelength = 5}); }, {"wavelength"});
 }
 
-}  // namespace
+}  // namespace wavefront_test
 }  // namespace petzval

@@ -13,7 +13,7 @@
 #include "../expect_error.hpp"
 
 namespace petzval {
-namespace {
+namespace coating_test {
 
 double snell_cosine(double n, double m, double cosine) {
   return std::sqrt(1 - n * n / (m * m) * (1 - cosine * cosine));
@@ -164,5 +164,5 @@ TEST(Coating, MustBeValid) {
   testing::expect_error([] { surface_light({}, 1, 1.5, 1.1, 550); }, {"cosine", 1.1});
 }
 
-}  // namespace
+}  // namespace coating_test
 }  // namespace petzval
