@@ -82,10 +82,9 @@ petzval::PointImage image_of(const Picture& picture, const petzval::PsfOptions& 
 
 /// Half of the width of all pictures with diffraction: the given width, or 15 Airy radii and the blur of the rays.
 double half_width_of_waves(std::span<const Picture> pictures, const Options& options) {
-  double half_width = std::max(options.width_mm / 2, 1e-4);  // a perfect point has no size
+  if (options.width_mm > 0) return options.width_mm / 2;
+  double half_width = 0;
   for (const Picture& p : pictures) {
-    if (p.waves) half_width = p.waves->pixel_mm * p.waves->pixels / 2;
-    if (options.width_mm > 0) break;
     const double blur = image_of(p, {.samples = 1u << 12, .pixels = 16}).size.max_radius;
     half_width = std::max({half_width, 1.1 * blur, 15 * petzval::airy_radius(p.scene.lens)});
   }
@@ -136,10 +135,12 @@ examples::Sheet contact_sheet(const std::vector<Picture>& pictures, const exampl
   examples::Progress progress("contact sheet", pictures.size());
   for (const Picture& p : pictures) {
     progress.step(examples::focus_caption(p.focus_mm));
-    const auto image = image_of(p, {.samples = options.samples,
-                                    .pixels = tile_pixels,
-                                    .half_width_mm = half_width,
-                                    .threads = examples::threads()});
+    // Waves replace the picture below; only the numbers of the rays are needed.
+    const auto image = p.waves ? p.image
+                               : image_of(p, {.samples = options.samples,
+                                              .pixels = tile_pixels,
+                                              .half_width_mm = half_width,
+                                              .threads = examples::threads()});
     examples::Tile tile = examples::bokeh_tile(p.focus_mm, image, options.light);
     if (p.waves) {
       const petzval::RgbImage waves = examples::irradiance(*p.waves, options.light);

@@ -89,6 +89,12 @@ examples::Report report_of(const Options& options) {
   return examples::report(std::move(loaded), std::move(subject), declared);
 }
 
+/// The lens at all wavelengths of the report, stopped down and focused.
+petzval::Lens colours_of(const examples::Report& report, const Options& options) {
+  const examples::ReportLight& light = report.subject.light;
+  return set(examples::compiled_for(report.loaded, light.wavelengths_nm, light.primary_nm), options, report.subject);
+}
+
 /// Light that passes the lens with --coatings; nullopt without the flag.
 std::optional<examples::LightReport> light_of(const examples::Report& report, const petzval::Lens& colours,
                                               const Options& options) {
@@ -110,9 +116,7 @@ std::string to_json(const examples::Report& report, const Options& options) {
 }
 
 void write_page(const examples::Report& report, const Options& options) {
-  const examples::ReportLight& light = report.subject.light;
-  const auto colours = examples::compiled_for(report.loaded, light.wavelengths_nm, light.primary_nm);
-  const petzval::Lens lens = set(colours, options, report.subject);
+  const petzval::Lens lens = colours_of(report, options);
   const auto figures = examples::lens_figures(report, lens);
 
   const std::filesystem::path folder = options.out_folder;
@@ -182,8 +186,6 @@ int commands::report(int argc, char** argv) {
     }
     std::cout << examples::to_text(report);
     if (options.coatings.empty()) return;
-    const auto& light = report.subject.light;
-    const auto colours = examples::compiled_for(report.loaded, light.wavelengths_nm, light.primary_nm);
-    std::cout << examples::to_text(*light_of(report, set(colours, options, report.subject), options));
+    std::cout << examples::to_text(*light_of(report, colours_of(report, options), options));
   });
 }

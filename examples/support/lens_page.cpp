@@ -130,9 +130,8 @@ void wavefront_table(std::ostream& html, const Report& r, const petzval::Lens& c
   html
       << "<h2>Wavefront</h2>\n<p class=\"lead\">In waves, over the vignetted exit pupil. The second RMS and the Strehl "
          "ratio (0 beyond half a wave) are about the image point with the smallest RMS. Zernike coefficients in fringe "
-         "order, in the unit "
-         "circle of the stop: defocus Z4, astigmatism Z5, coma Z8, spherical aberration Z9. All 37 are in the output "
-         "of "
+         "order, in the unit circle of the stop: defocus Z4, astigmatism Z5, coma Z8, spherical aberration Z9. All 37 "
+         "are in the output of "
          "--json. Error: of the first RMS, by the number of rays.</p>\n";
   head_row(html, {"field", "wavelength", "RMS", "RMS without tilt", "Strehl", "Z4", "Z5", "Z8", "Z9", "error"});
   const auto fronts = report_wavefronts(r, colours);

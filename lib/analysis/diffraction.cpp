@@ -62,16 +62,14 @@ class DirectionMap {
  public:
   DirectionMap(const Lens& lens, const FieldPoint& point, std::size_t wavelength, const Vec3<double>& centre)
       : boundary_(pupil_boundary(lens, point, wavelength)), paths_(lens, boundary_.plane, wavelength, centre) {
-    std::vector<Vec2<double>> positions, reached;
+    std::vector<Vec2<double>> reached;
     std::vector<PathRay> rays;
-    for (const PupilNode& node : analysis_detail::pupil_nodes(boundary_)) positions.push_back(node.position);
-    for (const PupilSpan& span : boundary_.spans) positions.push_back({span.to.x, span.to.y});
     Vec2<double> low{2, 2}, high{-2, -2};
     double blur_squared = 0;
-    for (const Vec2<double>& position : positions) {
-      const auto ray = paths_(position);
+    for (const PupilNode& node : analysis_detail::pupil_nodes_and_rim(boundary_)) {
+      const auto ray = paths_(node.position);
       if (!ray) continue;
-      reached.push_back(position), rays.push_back(*ray);
+      reached.push_back(node.position), rays.push_back(*ray);
       low = glm::min(low, Vec2<double>(ray->direction)), high = glm::max(high, Vec2<double>(ray->direction));
       blur_squared = std::max(blur_squared, ray->miss_squared);
     }

@@ -36,4 +36,11 @@ std::vector<PupilNode> pupil_nodes(const PupilRegion& pupil) {
   return result;
 }
 
+/// The same nodes, then the ends of the spans, which have no area: the extremes of a pupil.
+inline std::vector<PupilNode> pupil_nodes_and_rim(const PupilRegion& pupil) {
+  std::vector<PupilNode> result = pupil_nodes(pupil);
+  for (const PupilSpan& span : pupil.spans) result.push_back({{span.to.x, span.to.y}, 0, span.direction});
+  return result;
+}
+
 }  // namespace petzval::analysis_detail

@@ -54,7 +54,7 @@ std::optional<double> transmittance(const Lens& lens, const Ray<double>& ray, st
                 std::to_string(lens.surface_count()) + ", one for each surface");
   }
   const std::size_t position = lens.compiled_position(wavelength);
-  std::vector<std::pair<std::size_t, Vec>> arrivals;  // surface, direction in front of it
+  std::vector<std::pair<std::size_t, Vec>> arrivals;  // surface, direction of the arriving ray
   const auto end =
       kernel::trace(kernel::view<double>(lens), kernel::to_kernel(ray.origin), kernel::to_kernel(ray.direction),
                     {.travel = travel, .wavelength = position, .apertures = false},

@@ -94,9 +94,7 @@ std::optional<Wavefront> wavefront(const Lens& lens, const FieldPoint& point, co
   const double entrance_unit = pupils(lens).entrance.diameter / 2;
   std::vector<Vec2<double>> slopes;
   std::vector<char> in_third;  // rays of every third direction, the middle one of three
-  std::vector<analysis_detail::PupilNode> nodes = analysis_detail::pupil_nodes(boundary);
-  for (const PupilSpan& span : boundary.spans) nodes.push_back({{span.to.x, span.to.y}, 0, span.direction});
-  for (const analysis_detail::PupilNode& node : nodes) {
+  for (const analysis_detail::PupilNode& node : analysis_detail::pupil_nodes_and_rim(boundary)) {
     const auto ray = errors->paths()(node.position);
     if (!ray) continue;
     const bool at_stop = options.coordinates == PupilCoordinates::stop;

@@ -26,7 +26,7 @@ struct ReflectanceEntry {
 
 /// The coating of a surface: layers, or a table of reflectances without absorption. Neither: an uncoated surface.
 struct Coating {
-  /// From the medium in front of the surface to the medium behind it.
+  /// In the order of the light: the first layer is next to the medium in front of the surface.
   std::vector<CoatingLayer> layers{};
   /// Reflectance over wavelength for every angle, used instead of `layers`; linear between entries with increasing
   /// wavelengths.
