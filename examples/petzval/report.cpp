@@ -170,14 +170,17 @@ int commands::report(int argc, char** argv) {
       ->type_name("none|mgf2|FILE.csv")
       ->default_str("losses are not modelled");
   auto* out = examples::add_out_folder(app, options.out_folder, "folder for figures and a page");
-  examples::add_numbers(app, "--fields", options.field_deg, examples::field_angle,
-                        "fields of the figures and of --json (degrees)")
-      ->default_str("fields of the file, else the axis, 0.7 and 1 of the declared half field");
+  const auto* fields = examples::add_numbers(app, "--fields", options.field_deg, examples::field_angle,
+                                             "fields of --out, --json and --coatings (degrees)")
+                           ->default_str("fields of the file, else the axis, 0.7 and 1 of the declared half field");
   out->excludes("--json");
 
   return examples::run(app, argc, argv, [&] {
     options.wavelength_given = wavelength->given();
     options.subject_given = subject->given();
+    if (fields->given() && !out->given() && !options.json && options.coatings.empty()) {
+      throw petzval::Error("--fields needs --out, --json or --coatings: the text alone has no fields");
+    }
     const examples::Report report = report_of(options);
     if (out->given()) return write_page(report, options);
     if (options.json) {
