@@ -101,8 +101,9 @@ std::optional<examples::LightReport> light_of(const examples::Report& report, co
   if (options.coatings.empty()) return {};
   const auto visible = examples::parse_wavelengths("--coatings", "visible");
   const petzval::Lens lens = examples::compiled_for(report.loaded, visible);
-  return examples::report_light(report, colours, set(lens, options, report.subject),
-                                examples::coating_named(options.coatings));
+  const petzval::Coating coating = examples::coating_named(options.coatings);
+  return examples::report_light(report, petzval::with_coating(colours, coating),
+                                petzval::with_coating(set(lens, options, report.subject), coating));
 }
 
 std::string to_json(const examples::Report& report, const Options& options) {

@@ -38,21 +38,17 @@ petzval::Coating coating_named(const std::string& name) {
   return coating;
 }
 
-LightReport report_light(const Report& report, const petzval::Lens& colours, const petzval::Lens& visible,
-                         const petzval::Coating& coating) {
+LightReport report_light(const Report& report, const petzval::Lens& colours, const petzval::Lens& visible) {
   LightReport result;
-  const std::vector<petzval::Coating> coatings = petzval::coat_air_surfaces(colours, coating);
   const double z = subject_z(report.subject, colours);
   for (const double degrees : report.subject.fields.degrees) {
     const petzval::FieldPoint point{.field_rad = petzval::radians(degrees), .z = z};
     for (std::size_t w = 0; w < colours.wavelengths_nm().size(); ++w) {
-      result.values.push_back(
-          {colours.wavelengths_nm()[w], degrees, petzval::transmittance(colours, point, coatings, w)});
+      result.values.push_back({colours.wavelengths_nm()[w], degrees, petzval::transmittance(colours, point, w)});
     }
   }
   const auto table = petzval::ColourMatching::load(petzval::data_directory() / "glass" / "cie1931_2deg_5nm.csv");
-  result.colour = petzval::lens_colour(visible, subject_z(report.subject, visible),
-                                       petzval::coat_air_surfaces(visible, coating), white_light("D65"), table);
+  result.colour = petzval::lens_colour(visible, subject_z(report.subject, visible), white_light("D65"), table);
   return result;
 }
 

@@ -15,7 +15,7 @@ namespace examples {
 /// @throws petzval::Error if the name is unknown or the file is invalid
 petzval::Coating coating_named(const std::string& name);
 
-/// Light that passes a lens whose surfaces to air have one coating.
+/// Light that passes a lens with coatings.
 struct LightReport {
   struct Value {
     double wavelength_nm = 0, field_deg = 0;
@@ -28,8 +28,7 @@ struct LightReport {
 /// @param colours  the lens at the wavelengths of the report
 /// @param visible  the lens at wavelengths of the visible spectrum
 /// @throws petzval::Error under the conditions of petzval::transmittance() and petzval::lens_colour()
-LightReport report_light(const Report& report, const petzval::Lens& colours, const petzval::Lens& visible,
-                         const petzval::Coating& coating);
+LightReport report_light(const Report& report, const petzval::Lens& colours, const petzval::Lens& visible);
 
 /// The keys transmittance, t_stop and colour; null without a report.
 Json to_json(const std::optional<LightReport>& light);

@@ -35,24 +35,7 @@ double passed(const Coating& coating, bool mirror, double before, double behind,
 
 }  // namespace
 
-std::vector<Coating> coat_air_surfaces(const Lens& lens, const Coating& coating) {
-  validate(coating, "coat_air_surfaces");
-  constexpr double largest_air_index = 1.01;
-  std::vector<Coating> result(lens.surface_count());
-  for (std::size_t i = 0; i < result.size(); ++i) {
-    if (lens.surfaces()[i].mirror) continue;
-    const bool air_before = lens.index(i) < largest_air_index, air_behind = lens.index(i + 1) < largest_air_index;
-    if (air_before != air_behind) result[i] = air_before ? coating : reversed(coating);
-  }
-  return result;
-}
-
-std::optional<double> transmittance(const Lens& lens, const Ray<double>& ray, std::span<const Coating> coatings,
-                                    Wavelength wavelength, Travel travel) {
-  if (coatings.size() != lens.surface_count()) {
-    throw Error("transmittance: " + std::to_string(coatings.size()) + " coatings; must be " +
-                std::to_string(lens.surface_count()) + ", one for each surface");
-  }
+std::optional<double> transmittance(const Lens& lens, const Ray<double>& ray, Wavelength wavelength, Travel travel) {
   const std::size_t position = lens.compiled_position(wavelength);
   std::vector<std::pair<std::size_t, Vec>> arrivals;  // surface, direction of the arriving ray
   const auto end =
@@ -69,34 +52,35 @@ std::optional<double> transmittance(const Lens& lens, const Ray<double>& ray, st
     const bool to_film = travel == Travel::to_film;
     const double before = lens.index(to_film ? surface : surface + 1, position);
     const double behind = lens.index(to_film ? surface + 1 : surface, position);
-    result *= passed(to_film ? coatings[surface] : reversed(coatings[surface]), lens.surfaces()[surface].mirror, before,
-                     behind, in, out, lens.wavelengths_nm()[position]);
+    const LensSurface& own = lens.surfaces()[surface];
+    const Coating coating = own.coating.value_or(Coating{});
+    result *= passed(to_film ? coating : reversed(coating), own.mirror, before, behind, in, out,
+                     lens.wavelengths_nm()[position]);
   }
   return result;
 }
 
-std::optional<double> transmittance(const Lens& lens, const FieldPoint& point, std::span<const Coating> coatings,
-                                    Wavelength wavelength) {
+std::optional<double> transmittance(const Lens& lens, const FieldPoint& point, Wavelength wavelength) {
   constexpr std::size_t directions = 32;
   const PupilBoundary pupil = pupil_boundary(lens, point, wavelength, directions);
   double light = 0, area = 0;
   for (const analysis_detail::PupilNode& node : analysis_detail::pupil_nodes(pupil)) {
-    const auto passes = transmittance(lens, pupil.plane.ray(node.position.x, node.position.y), coatings, wavelength);
+    const auto passes = transmittance(lens, pupil.plane.ray(node.position.x, node.position.y), wavelength);
     if (!passes) continue;
     light += node.area * *passes, area += node.area;
   }
   return area > 0 ? std::optional(light / area) : std::nullopt;
 }
 
-std::optional<LensColour> lens_colour(const Lens& lens, double subject_z, std::span<const Coating> coatings,
-                                      const Spectrum& light, const ColourMatching& table) {
+std::optional<LensColour> lens_colour(const Lens& lens, double subject_z, const Spectrum& light,
+                                      const ColourMatching& table) {
   const auto& nm = lens.wavelengths_nm();
   std::vector<std::size_t> order(nm.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
   std::ranges::sort(order, {}, [&](std::size_t w) { return nm[w]; });
   std::vector<double> values;
   for (const std::size_t w : order) {
-    const auto value = transmittance(lens, {.z = subject_z}, coatings, w);
+    const auto value = transmittance(lens, {.z = subject_z}, w);
     if (!value) return {};
     values.push_back(*value);
   }

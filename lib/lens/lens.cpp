@@ -197,6 +197,7 @@ Lens lens_detail::compile_as_given(const Prescription& source, std::span<const d
     s.curvature = row.radius == 0 ? 0 : 1 / row.radius;
     s.conic = row.conic;
     s.curved_in = row.curved_in;
+    s.coating = row.coating;
     s.aspheric = row.aspheric;
     data->rims.push_back(usable_rim(row.semi_diameter.value_or(std::numeric_limits<double>::infinity())));
     s.widest_semi_diameter = row.semi_diameter_computed ? std::numeric_limits<double>::infinity() : data->rims.back();
@@ -305,6 +306,20 @@ Lens with_iris(const Lens& lens, const Iris& iris) {
   auto data = std::make_shared<Lens::Data>(lens.data());
   data->iris = iris;
   data->build();
+  return Lens::Data::lens(std::move(data));
+}
+
+Lens with_coating(const Lens& lens, const Coating& coating) {
+  validate(coating, lens.name());
+  constexpr double largest_air_index = 1.01;
+  auto data = std::make_shared<Lens::Data>(lens.data());
+  for (std::size_t i = 0; i < data->surfaces.size(); ++i) {
+    LensSurface& surface = data->surfaces[i];
+    surface.coating.reset();
+    if (surface.mirror) continue;
+    const bool air_before = lens.index(i) < largest_air_index, air_behind = lens.index(i + 1) < largest_air_index;
+    if (air_before != air_behind) surface.coating = air_before ? coating : reversed(coating);
+  }
   return Lens::Data::lens(std::move(data));
 }
 

@@ -104,7 +104,6 @@ Coating reversed(Coating coating) {
 
 SurfaceLight surface_light(const Coating& coating, double index_before, double index_behind, double cosine,
                            double wavelength_nm) {
-  validate(coating, "surface_light");
   const auto check = [](const char* name, double value, bool valid, const char* rule) {
     if (!valid || !std::isfinite(value)) {
       throw Error("surface_light: " + std::string(name) + " = " + to_text(value, 6) + "; must be " + rule);

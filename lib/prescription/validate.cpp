@@ -72,6 +72,8 @@ void check_surface(const std::string& where, const SurfaceRow& row, const Medium
     }
   }
 
+  if (row.coating) validate(*row.coating, where);
+
   check_finite(where, "conic", row.conic, "a finite number");
   // Transverse semi-axis of the conic: the square of a smaller length underflows in float.
   if (row.radius != 0 && std::abs(row.radius) / std::sqrt(std::abs(1 + row.conic)) < smallest_bend)

@@ -31,17 +31,16 @@ Lens window(double index) {
 
 TEST(Transmittance, OfAWindowIsTheSquareOfItsSurface) {
   const Lens lens = window(1.5);
-  const auto bare = coat_air_surfaces(lens, {});
   for (const double degrees : {0.0, 30.0, 70.0}) {
     const Ray<double> ray{{0, -1, -2}, {0, std::sin(radians(degrees)), std::cos(radians(degrees))}};
     const double one = surface_light({}, 1, 1.5, std::cos(radians(degrees)), d_line_nm).transmittance();
-    EXPECT_NEAR(transmittance(lens, ray, bare).value(),
+    EXPECT_NEAR(transmittance(lens, ray).value(),
                 one * surface_light({}, 1.5, 1, std::sqrt(1 - std::pow(std::sin(radians(degrees)) / 1.5, 2)), d_line_nm)
                           .transmittance(),
                 1e-12)
         << degrees;
   }
-  EXPECT_NEAR(transmittance(lens, Ray<double>{{0, 0, -2}, {0, 0, 1}}, bare).value(), 0.96 * 0.96, 1e-12);
+  EXPECT_NEAR(transmittance(lens, Ray<double>{{0, 0, -2}, {0, 0, 1}}).value(), 0.96 * 0.96, 1e-12);
 }
 
 TEST(Transmittance, OfAReversedRayIsTheSame) {
@@ -49,14 +48,13 @@ TEST(Transmittance, OfAReversedRayIsTheSame) {
   const Coating stack{
       .layers = {{.index = 1.38, .thickness_nm = 90}, {.index = 2.1, .absorption = 0.01, .thickness_nm = 130}}};
   for (const Coating& coating : {Coating{}, Coating::quarter_wave(), stack}) {
-    const auto coatings = coat_air_surfaces(lens, coating);
+    const Lens coated = with_coating(lens, coating);
     for (const double y : {0.0, 5.0, 20.0}) {
       const Ray<double> ray{{1, y, -20}, {0, 0.05, std::sqrt(1 - 0.0025)}};
       const auto end = trace(lens, ray, {.apertures = false});
       ASSERT_TRUE(end.transmitted());
       const Ray<double> back{end.ray.origin, -end.ray.direction};
-      EXPECT_NEAR(transmittance(lens, ray, coatings).value(),
-                  transmittance(lens, back, coatings, {}, Travel::to_scene).value(), 1e-12);
+      EXPECT_NEAR(transmittance(coated, ray).value(), transmittance(coated, back, {}, Travel::to_scene).value(), 1e-12);
     }
   }
 }
@@ -64,63 +62,75 @@ TEST(Transmittance, OfAReversedRayIsTheSame) {
 // Eight surfaces between air and glass of about 1.6 reflect 5 to 7 % each.
 TEST(Transmittance, OfAnUncoatedLensIsThatOfItsAirSurfaces) {
   const Lens lens = testing::data_lens("double_gauss_100mm_f1.35");
-  const auto bare = coat_air_surfaces(lens, {});
   double product = 1;
   for (std::size_t i = 0; i < lens.surface_count(); ++i) {
     const double a = lens.index(i), b = lens.index(i + 1);
     product *= 1 - std::pow((a - b) / (a + b), 2);
   }
-  const double axis = transmittance(lens, Ray<double>{{0, 0, -20}, {0, 0, 1}}, bare).value();
+  const double axis = transmittance(lens, Ray<double>{{0, 0, -20}, {0, 0, 1}}).value();
   EXPECT_NEAR(axis, product, 1e-12);
   EXPECT_LT(axis, 0.65);
-  const double coated = transmittance(lens, {.z = far}, coat_air_surfaces(lens, Coating::quarter_wave())).value();
+  const double coated = transmittance(with_coating(lens, Coating::quarter_wave()), {.z = far}).value();
   EXPECT_GT(coated, 0.85);
   EXPECT_LT(coated, 1);
   // Angles of incidence up to 40 degrees change little.
   for (const double degrees : {0.0, 12.0}) {
-    EXPECT_NEAR(transmittance(lens, {.field_rad = radians(degrees), .z = far}, bare).value(), axis, 0.03) << degrees;
+    EXPECT_NEAR(transmittance(lens, {.field_rad = radians(degrees), .z = far}).value(), axis, 0.03) << degrees;
   }
 }
 
 TEST(Transmittance, OfMirrorsIsTheirReflectance) {
-  const Lens lens = testing::data_lens("mirror_ritchey_chretien_57.6m_f24");
-  std::vector<Coating> coatings = coat_air_surfaces(lens, {});
-  EXPECT_EQ(transmittance(lens, {.z = far}, coatings).value(), 1);
+  Prescription p = testing::data_prescription("mirror_ritchey_chretien_57.6m_f24");
+  EXPECT_EQ(transmittance(compile(p), {.z = far}).value(), 1);
   int mirrors = 0;
-  for (std::size_t i = 0; i < lens.surface_count(); ++i) {
-    if (!lens.surfaces()[i].mirror) continue;
+  for (SurfaceRow& row : p.surfaces) {
+    if (!row.mirror) continue;
     ++mirrors;
-    coatings[i] = {.table = {{400, 0.9}, {700, 0.9}}};
+    row.coating = Coating{.table = {{400, 0.9}, {700, 0.9}}};
   }
-  EXPECT_NEAR(transmittance(lens, {.z = far}, coatings).value(), std::pow(0.9, mirrors), 1e-12);
+  EXPECT_NEAR(transmittance(compile(p), {.z = far}).value(), std::pow(0.9, mirrors), 1e-12);
+}
+
+TEST(Transmittance, OfAReversedPrescriptionIsTheSame) {
+  Prescription p = testing::data_prescription("double_gauss_100mm_f1.35");
+  int layers = 0;
+  for (SurfaceRow& row : p.surfaces) {
+    row.coating = Coating{.layers = {{.index = 1.38, .thickness_nm = 90.0 + 5 * layers++},
+                                     {.index = 2.1, .absorption = 0.01, .thickness_nm = 130}}};
+  }
+  const Ray<double> axis{{0, 0, -20}, {0, 0, 1}};
+  EXPECT_NEAR(transmittance(compile(p), axis).value(), transmittance(compile(reverse(p)), axis).value(), 1e-12);
 }
 
 TEST(LensColour, OfAWholeTransmittanceIsTheLight) {
   std::vector<double> visible;
   for (int nm = 430; nm <= 670; nm += 20) visible.push_back(nm);
-  const Lens lens = compile(testing::data_prescription("double_gauss_100mm_f1.35"), visible);
+  Prescription p = testing::data_prescription("double_gauss_100mm_f1.35");
+  const Lens lens = compile(p, visible);
+  for (SurfaceRow& row : p.surfaces) row.coating = Coating{.table = {{300, 0}, {900, 0}}};
   const auto data = std::filesystem::path(PETZVAL_TEST_DATA) / "glass";
   const ColourMatching table = ColourMatching::load(data / "cie1931_2deg_5nm.csv");
   const Spectrum light = illuminant("D65", data / "cie_daylight_10nm.csv");
-  const std::vector<Coating> none(lens.surface_count(), Coating{.table = {{300, 0}, {900, 0}}});
-  const LensColour whole = lens_colour(lens, far, none, light, table).value();
+  const LensColour whole = lens_colour(compile(p, visible), far, light, table).value();
   EXPECT_NEAR(whole.luminous_transmittance, 1, 1e-6);
   EXPECT_NEAR(whole.t_stop, real_f_number(lens), 1e-5);
   EXPECT_NEAR(whole.xy[0], 0.3127, 1e-4);
   EXPECT_NEAR(whole.xy[1], 0.3290, 1e-4);
 
-  const LensColour bare = lens_colour(lens, far, coat_air_surfaces(lens, {}), light, table).value();
+  const LensColour bare = lens_colour(lens, far, light, table).value();
   EXPECT_LT(bare.luminous_transmittance, 0.7);
   EXPECT_NEAR(bare.t_stop * std::sqrt(bare.luminous_transmittance), real_f_number(lens), 1e-9);
   EXPECT_GT(bare.xy[0], whole.xy[0]);  // blue light meets higher indices
 }
 
-TEST(Transmittance, NeedsACoatingForEachSurface) {
+TEST(Transmittance, RefusesInvalidCoatings) {
   const Lens lens = window(1.5);
-  const std::vector<Coating> one(1);
-  testing::expect_error([&] { transmittance(lens, Ray<double>{}, one); }, {"coatings", 1, 2});
-  testing::expect_error([&] { coat_air_surfaces(lens, {.layers = {{.index = -1}}}); }, {"index", -1});
-  EXPECT_FALSE(transmittance(lens, Ray<double>{{0, 0, 0}, {0, 1, 0}}, coat_air_surfaces(lens, {})));
+  const Coating invalid{.layers = {{.index = -1}}};
+  testing::expect_error([&] { with_coating(lens, invalid); }, {"window", "index", -1});
+  Prescription p = testing::data_prescription("double_gauss_100mm_f1.35");
+  p.surfaces[3].coating = invalid;
+  testing::expect_error([&] { compile(p); }, {"surface 3", "index", -1});
+  EXPECT_FALSE(transmittance(lens, Ray<double>{{0, 0, 0}, {0, 1, 0}}));
 }
 
 }  // namespace transmittance_test

@@ -3,46 +3,31 @@
 
 #include <array>
 #include <optional>
-#include <span>
 #include <vector>
 
 #include "petzval/analysis/colour.hpp"
 #include "petzval/core/config.hpp"
 #include "petzval/core/ray.hpp"
 #include "petzval/lens/lens.hpp"
-#include "petzval/prescription/coating.hpp"
 #include "petzval/pupil/aim.hpp"
 
 namespace petzval {
 
-/// Coatings of all surfaces of a lens: one coating for every surface between air and another medium.
-///
-/// Surfaces between two media other than air are uncoated (cement), and mirrors lose no light. Air is a medium with an
-/// index below 1.01.
-///
-/// @param lens     the lens
-/// @param coating  layers from the air to the glass; no layers: uncoated
-/// @return         one coating per surface, for transmittance()
-/// @throws Error   if the coating is invalid
-PETZVAL_API std::vector<Coating> coat_air_surfaces(const Lens& lens, const Coating& coating);
-
 /// The fraction of unpolarised light that the surfaces of a lens pass along a ray. Clear apertures do not matter.
 ///
-/// The product of the fractions of the surfaces: surface_light() at refracting surfaces, its reflectance at mirrors. A
-/// mirror without layers and table loses nothing.
+/// The product of the fractions of the surfaces: surface_light() at refracting surfaces, its reflectance at mirrors.
+/// Surfaces whose coating is unknown (LensSurface::coating) are uncoated; such mirrors lose nothing. with_coating()
+/// sets a coating.
 ///
 /// @param lens        the lens
 /// @param ray         in object space if it travels to the film, else behind the lens
-/// @param coatings    one per surface
 /// @param wavelength  a compiled wavelength
 /// @param travel      direction of travel; the reversed ray has the same transmittance
 /// @return            nullopt if the ray does not pass the lens
-/// @throws Error      if the number of coatings is wrong, a coating is invalid, the wavelength is outside a table of
-///                    reflectances or is not compiled
+/// @throws Error      if the wavelength is outside a table of reflectances or is not compiled
 ///
 /// Limitations: light is unpolarised again in front of each surface; bulk absorption is not modelled.
-PETZVAL_API std::optional<double> transmittance(const Lens& lens, const Ray<double>& ray,
-                                                std::span<const Coating> coatings, Wavelength wavelength = {},
+PETZVAL_API std::optional<double> transmittance(const Lens& lens, const Ray<double>& ray, Wavelength wavelength = {},
                                                 Travel travel = Travel::to_film);
 
 /// The mean transmittance() over the vignetted pupil of a scene point; nullopt if no ray passes.
@@ -50,8 +35,7 @@ PETZVAL_API std::optional<double> transmittance(const Lens& lens, const Ray<doub
 /// @throws Error  under the conditions of transmittance() of a ray and of aim()
 ///
 /// Accuracy: 1e-5 (tests/analysis/transmittance_test.cpp).
-PETZVAL_API std::optional<double> transmittance(const Lens& lens, const FieldPoint& point,
-                                                std::span<const Coating> coatings, Wavelength wavelength = {});
+PETZVAL_API std::optional<double> transmittance(const Lens& lens, const FieldPoint& point, Wavelength wavelength = {});
 
 /// The effect of the transmittance of the axis on white light.
 struct LensColour {
@@ -66,12 +50,11 @@ struct LensColour {
 /// @param lens      the lens, compiled for several wavelengths of the visible spectrum; its transmittance is linear
 ///                  between them and constant outside
 /// @param subject_z subject plane (lens frame, mm); -inf at infinity
-/// @param coatings  one per surface
 /// @param light     the light
 /// @param table     the colour matching functions
 /// @return          nullopt if no ray passes
 /// @throws Error    under the conditions of transmittance(), real_f_number() and tristimulus()
-PETZVAL_API std::optional<LensColour> lens_colour(const Lens& lens, double subject_z, std::span<const Coating> coatings,
-                                                  const Spectrum& light, const ColourMatching& table);
+PETZVAL_API std::optional<LensColour> lens_colour(const Lens& lens, double subject_z, const Spectrum& light,
+                                                  const ColourMatching& table);
 
 }  // namespace petzval

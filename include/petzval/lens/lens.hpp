@@ -76,6 +76,9 @@ struct LensSurface {
   bool mirror = false;
   /// Semi-diameter that the prescription states, the upper limit of with_semi_diameter(); otherwise infinite.
   double widest_semi_diameter = 0;
+  /// Coating that the prescription states, or of with_coating(). Rays ignore it unless transmittance is asked for; then
+  /// surfaces without a stated coating are uncoated, and mirrors without one lose no light.
+  std::optional<Coating> coating{};
 };
 
 /// The thicknesses of a lens with moving groups, focused at one distance.
@@ -92,7 +95,7 @@ struct FocusPosition {
 ///     auto exit = petzval::trace(lens, petzval::Ray<double>{{0, 10, -50}, {0, 0, 1}});
 ///
 /// Functions that change a lens return a new lens: with_semi_diameter(), with_film(), with_groups_at(), with_iris(),
-/// with_f_number(), with_focus().
+/// with_coating(), with_f_number(), with_focus().
 class PETZVAL_API Lens {
  public:
   /// Copies. A move also copies, so that no Lens is ever empty.
@@ -255,6 +258,16 @@ PETZVAL_API Lens with_groups_at(const Lens& lens, double inverse_distance);
 /// @throws Error if blades, roundness or rotation is out of range; if the iris is not round and the lens has no marked
 ///               stop, or a stop without a finite semi-diameter
 PETZVAL_API Lens with_iris(const Lens& lens, const Iris& iris);
+
+/// The lens with one coating on every surface between air and another medium, instead of the coatings of its surfaces.
+///
+/// Surfaces between two media other than air are uncoated (cement), and mirrors lose no light. Air is a medium with an
+/// index below 1.01.
+///
+/// @param lens     the lens
+/// @param coating  layers from the air to the glass; no layers: uncoated
+/// @throws Error   if the coating is invalid
+PETZVAL_API Lens with_coating(const Lens& lens, const Coating& coating);
 
 /// Sag of a surface at (x, y): the height along z above the vertex plane (mm).
 ///

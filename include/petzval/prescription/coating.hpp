@@ -26,7 +26,7 @@ struct ReflectanceEntry {
 
 /// The coating of a surface: layers, or a table of reflectances without absorption. Neither: an uncoated surface.
 struct Coating {
-  /// In the order of the light: the first layer is next to the medium in front of the surface.
+  /// The first layer is next to the medium in front of the surface, on the object side.
   std::vector<CoatingLayer> layers{};
   /// Reflectance over wavelength for every angle, used instead of `layers`; linear between entries with increasing
   /// wavelengths.
@@ -60,7 +60,7 @@ struct SurfaceLight {
 ///
 /// Without layers the values are Fresnel's equations. Light that a table does not reflect is transmitted.
 ///
-/// @param coating        the coating
+/// @param coating        a valid coating, as validate() accepts
 /// @param index_before   refractive index of the medium from which light arrives, in front of the first layer
 /// @param index_behind   refractive index of the medium behind the last layer
 /// @param cosine         cosine of the angle of incidence, 0 to 1

@@ -15,6 +15,7 @@
 
 #include "petzval/core/config.hpp"
 #include "petzval/core/geometry.hpp"
+#include "petzval/prescription/coating.hpp"
 
 namespace petzval {
 
@@ -68,6 +69,7 @@ struct SurfaceRow {
   bool stop = false;
   bool mirror = false;
   Section curved_in = Section::both;
+  std::optional<Coating> coating{};      ///< layers from the object side; nullopt: not stated by the source
   std::optional<std::string> comment{};  ///< comment of the source on the surface
 
   bool operator==(const SurfaceRow&) const = default;
@@ -256,6 +258,7 @@ struct Prescription {
 ///   1e-15 mm; orders of aspheric terms are 2 to 40 and unique, and the slope of a term is below 1 up to 1e-12 mm;
 /// - medium: the index is 0.1 to 5; V_d is not negative and needs an index or a glass; a mirror has the same medium on
 ///   both sides;
+/// - coating: as validate() of a Coating;
 /// - configurations: at most 1,000, with unique names; the first is a zoom position, and focus positions belong to zoom
 ///   positions; a configuration changes a surface at most once, and its surfaces obey the rules.
 PETZVAL_API void validate(const Prescription& prescription, const std::string& where);
