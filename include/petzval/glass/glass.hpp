@@ -25,6 +25,14 @@ enum class DispersionFormula {
   tabulated,          ///< pairs l, n with l increasing; interpolated by monotone cubics in 1 / l^2
 };
 
+/// The absorption of a glass at one wavelength.
+struct AbsorptionEntry {
+  double wavelength_nm = 0;
+  double per_mm = 0;  ///< the internal transmittance of L mm is exp(-per_mm L)
+
+  bool operator==(const AbsorptionEntry&) const = default;
+};
+
 /// One glass of a catalogue: its dispersion formula and the wavelength range of the formula.
 struct Glass {
   std::string catalogue;  ///< "schott", "ohara", ...
@@ -35,12 +43,22 @@ struct Glass {
   double shortest_nm = 0;
   double longest_nm = 0;
   std::vector<double> coefficients;  ///< in the order of the formula, for l in micrometres
+  /// Wavelengths increase; empty if unknown. The tables of data/glass have no absorption, read_glasses() reads it.
+  std::vector<AbsorptionEntry> absorption{};
 };
 
 /// The refractive index of a glass relative to air.
 ///
 /// @throws Error if the wavelength is outside the range of the glass, or if its formula gives no real index
 PETZVAL_API double refractive_index(const Glass& glass, double wavelength_nm);
+
+/// The absorption coefficient of a glass (1/mm): the internal transmittance of L mm is exp(-absorption L).
+///
+/// The coefficient is linear between the entries of the table, and constant before the first and behind the last entry.
+///
+/// @return       nullopt if the glass has no table of absorption
+/// @throws Error unless the wavelength is finite and positive
+PETZVAL_API std::optional<double> absorption(const Glass& glass, double wavelength_nm);
 
 /// The index of an unknown glass from n_d and V_d: n = A + B / lambda^2 with the given n_d and n_F - n_C.
 ///
