@@ -94,6 +94,7 @@ Indices indices(const Prescription& prescription, std::span<const double> wavele
   Indices result;
   result.spectrum = Spectrum(wavelengths_nm);
   result.values.resize(spaces * wavelengths_nm.size());
+  result.absorption.reserve(spaces);
   const Tables tables = tables_for(prescription, options.glasses);
   bool dispersive = false, known_by_abbe = false, known_by_index = false;
 
@@ -109,6 +110,7 @@ Indices indices(const Prescription& prescription, std::span<const double> wavele
       }
     };
     const Glass* glass = tables.glasses ? ask([&] { return glass_of(m, *tables.glasses); }) : nullptr;
+    result.absorption.push_back(glass ? glass->absorption : std::vector<AbsorptionEntry>());
     const bool constant = !glass && (m.is_air() || m.vd == 0.0);
     if (!constant) (glass ? dispersive : m.vd ? known_by_abbe : known_by_index) = true;
     std::string missing;

@@ -14,6 +14,7 @@ namespace petzval::lens_detail {
 struct Indices {
   std::vector<double> values;  ///< [wavelength * (surfaces + 1) + space], space 0 before the first surface
   Spectrum spectrum;           ///< the same media at any wavelength in the range
+  std::vector<std::vector<AbsorptionEntry>> absorption;  ///< [space]; empty tables for air and unknown absorption
   Dispersion dispersion = Dispersion::none;
   std::vector<std::string> missing_glasses, clamped_glasses;
 };

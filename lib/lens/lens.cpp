@@ -5,13 +5,13 @@
 #include <array>
 #include <cmath>
 #include <limits>
-#include <tuple>
 #include <utility>
 
 #include "compile.hpp"
 #include "core/text.hpp"
 #include "data.hpp"
 #include "describe_asphere.hpp"
+#include "glass/absorption.hpp"
 #include "iris/iris_edges.hpp"
 #include "lens/any_semi_diameter.hpp"
 #include "petzval/core/error.hpp"
@@ -37,6 +37,21 @@ void demand(const Lens& lens, const char* what, std::size_t found, std::size_t c
   if (found < count) return;
   throw Error(lens.name() + ": " + what + " " + std::to_string(found) + " does not exist; must be below " +
               std::to_string(count));
+}
+
+/// @throws Error unless the lens has the space and covers the wavelength
+void demand_medium(const Lens& lens, std::size_t space, Wavelength at) {
+  const auto list = lens.wavelengths_nm();
+  const std::size_t w = lens.position(at);
+  if (const auto nm = at.in_nm(); !nm) {
+    demand(lens, "wavelength", w, list.size());
+  } else if (w >= list.size() && !lens.covers(at)) {
+    const auto [shortest, longest] = std::ranges::minmax_element(list);
+    throw Error(lens.name() + ": wavelength = " + to_text(*nm) + " nm; must be " +
+                (std::isfinite(lens.index_error()) ? to_text(*shortest) + " to " + to_text(*longest) + " nm"
+                                                   : "a compiled wavelength: a medium has no index between them"));
+  }
+  demand(lens, "space", space, lens.surface_count() + 1);
 }
 
 }  // namespace
@@ -80,19 +95,16 @@ bool Lens::covers(Wavelength at) const noexcept {
 }
 
 double Lens::index(std::size_t space, Wavelength at) const {
-  const auto& [list, spectrum] = std::tie(data_->wavelengths_nm, data_->indices.spectrum);
+  demand_medium(*this, space, at);
   const std::size_t w = position(at);
-  const auto nm = at.in_nm();
-  const bool between = nm && w >= list.size();
-  if (between && !covers(at)) {
-    const auto [shortest, longest] = std::minmax_element(list.begin(), list.end());
-    throw Error(name() + ": wavelength = " + to_text(*nm) + " nm; must be " +
-                (std::isfinite(index_error()) ? to_text(*shortest) + " to " + to_text(*longest) + " nm"
-                                              : "a compiled wavelength: a medium has no index between them"));
-  }
-  if (!between) demand(*this, "wavelength", w, list.size());
-  demand(*this, "space", space, surface_count() + 1);
-  return between ? spectrum.index(space, *nm) : data_->indices.values[w * (surface_count() + 1) + space];
+  return w < data_->wavelengths_nm.size() ? data_->indices.values[w * (surface_count() + 1) + space]
+                                          : data_->indices.spectrum.index(space, *at.in_nm());
+}
+
+double Lens::absorption(std::size_t space, Wavelength at) const {
+  demand_medium(*this, space, at);
+  const double nm = at.in_nm() ? *at.in_nm() : data_->wavelengths_nm[position(at)];
+  return glass_detail::absorption_at(data_->indices.absorption[space], nm);
 }
 
 double Lens::index_error() const noexcept { return data_->indices.spectrum.error(); }

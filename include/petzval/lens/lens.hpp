@@ -167,6 +167,14 @@ class PETZVAL_API Lens {
   /// @param wavelength  a wavelength index, or a value in nm within the compiled range
   /// @throws Error if the lens does not have the space or the wavelength
   double index(std::size_t space, Wavelength wavelength = {}) const;
+  /// Absorption coefficient (1/mm) of the medium before surface `space`: L mm transmit exp(-absorption L).
+  ///
+  /// 0 for air and for media without a table of absorption. Tables come from glass files (Glass::absorption).
+  ///
+  /// @param space       0 is object space, surface_count() is image space
+  /// @param wavelength  a wavelength index, or a value in nm within the compiled range
+  /// @throws Error if the lens does not have the space or the wavelength
+  double absorption(std::size_t space, Wavelength wavelength = {}) const;
   /// Bound on the error of index() at wavelengths in nm, relative to the dispersion formulas of all media.
   ///
   /// Between compiled wavelengths index() evaluates polynomials of degree 7 in 1 / nm. The bound is their largest error
