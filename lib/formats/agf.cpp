@@ -6,6 +6,7 @@
 #include <optional>
 #include <set>
 #include <span>
+#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -66,6 +67,30 @@ std::vector<Form> forms(int number, const Coefficients& a) {
   }
 }
 
+/// An IT: the internal transmittance at one wavelength and thickness.
+struct Transmittance {
+  double nm, value, thickness_mm;
+};
+
+/// Absorption coefficients of the measured transmittances, one per wavelength.
+///
+/// If a wavelength has several thicknesses, the largest product of transmittance and thickness is used: its coefficient
+/// has the smallest error from the rounding of the transmittance. A transmittance of 0 is read as 0.0005, half of the
+/// third decimal that catalogues print; the thinnest of these gives the largest lower bound.
+std::vector<AbsorptionEntry> absorption_of(std::vector<Transmittance> list) {
+  constexpr double smallest = 0.0005;
+  std::ranges::sort(list, [](const Transmittance& a, const Transmittance& b) {
+    const double from_a = a.value * a.thickness_mm, from_b = b.value * b.thickness_mm;
+    return std::tie(a.nm, from_b, a.thickness_mm) < std::tie(b.nm, from_a, b.thickness_mm);
+  });
+  std::vector<AbsorptionEntry> result;
+  for (const auto& [nm, value, thickness_mm] : list) {
+    if (!result.empty() && result.back().wavelength_nm == nm) continue;
+    result.push_back({nm, std::log(1 / std::clamp(value, smallest, 1.0)) / thickness_mm});
+  }
+  return result;
+}
+
 /// The record of one glass, from its NM to the next NM.
 struct Record {
   int line = 0;
@@ -73,6 +98,8 @@ struct Record {
   Glass glass{};
   std::optional<Coefficients> coefficients{};
   bool has_range = false;
+  std::vector<Transmittance> transmittances{};
+  bool warned_of_transmittance = false;
 };
 
 bool gives_printed_index(const Glass& glass) {
@@ -123,8 +150,31 @@ class AgfReader {
       record.glass.shortest_nm = reader_.number(line, "LD", w[1]) * 1000;
       record.glass.longest_nm = reader_.number(line, "LD", w[2]) * 1000;
       record.has_range = true;
+    } else if (command == "IT") {
+      read_transmittance(line, w);
     } else if (command != "CC" && command != "GC") {
       leave_out(line, command);
+    }
+  }
+
+  /// Reads wavelength, transmittance and thickness. Invalid entries are left out with one warning per glass: the glass
+  /// still has its index. Rounding may give a transmittance slightly above 1.
+  void read_transmittance(int line, const std::vector<std::string_view>& w) {
+    Record& record = record_of(line, "IT");
+    constexpr double longest_um = 1e3, thinnest_mm = 1e-3, thickest_mm = 1e6, largest = 1.01;
+    const auto within = [&](std::size_t i, double most) {
+      const auto value = i < w.size() ? number(w[i]) : std::nullopt;
+      return value && *value >= 0 && *value <= most ? value : std::nullopt;
+    };
+    const auto um = within(1, longest_um), value = within(2, largest), mm = within(3, thickest_mm);
+    if (um && value && mm && *um > 0 && *mm >= thinnest_mm) {
+      record.transmittances.push_back({*um * 1000, *value, *mm});
+    } else if (!std::exchange(record.warned_of_transmittance, true)) {
+      std::string text;
+      for (std::size_t i = 1; i < std::min<std::size_t>(w.size(), 4); ++i) append(text, " ", beginning(w[i], 32));
+      reader_.warn(line, record.glass.name,
+                   "IT = \"" + text + "\" is left out; must be a wavelength (um), a transmittance from 0 to 1 and a " +
+                       "thickness (mm)");
     }
   }
 
@@ -168,6 +218,7 @@ class AgfReader {
       glass.shortest_nm = 400;
       glass.longest_nm = 700;
     }
+    glass.absorption = absorption_of(std::move(record.transmittances));
     auto candidates = forms(record.formula, *record.coefficients);
     std::vector<Glass> glasses;
     for (Form& form : candidates) {
@@ -185,12 +236,11 @@ class AgfReader {
 
   /// Warns once per unused command.
   void leave_out(int line, std::string_view command) {
-    static constexpr std::array<std::pair<std::string_view, std::string_view>, 5> unused = {{
+    static constexpr std::array<std::pair<std::string_view, std::string_view>, 4> unused = {{
         {"ED", "thermal expansion and density are not used"},
         {"TD", "thermal dispersion is not used: indices are those at the temperature of the catalogue"},
         {"MD", "mechanical data are not used"},
         {"OD", "price and resistance to chemicals are not used"},
-        {"IT", "internal transmittance is not used: glasses are clear"},
     }};
     if (said_.size() >= 1000 || !said_.emplace(command.substr(0, 32)).second) return;
     const auto known = std::find_if(unused.begin(), unused.end(), [&](const auto& u) { return u.first == command; });

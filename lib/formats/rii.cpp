@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <sstream>
 #include <utility>
 #include <vector>
@@ -194,11 +195,12 @@ class RiiReader {
     const auto printed = [&](const Value& v) { return v.line > 0 ? reader_.number(v.line, "nd or Vd", v.text) : 0.0; };
     glass_.nd = printed(page.nd);
     glass_.vd = printed(page.vd);
-    const Entry* taken = nullptr;
+    const Entry *taken = nullptr, *with_k = nullptr;
     for (const Entry& entry : page.data) {
       const std::string_view type = entry.type.text;
       if (type == "tabulated k") {
-        reader_.warn(entry.type.line, type, "absorption is not used: glasses are clear");
+        if (with_k) reader_.warn(entry.type.line, type, "left out: an earlier entry has k");
+        if (!with_k) with_k = &entry;
       } else if (taken) {
         reader_.warn(entry.type.line, type, "left out: an earlier entry has the indices");
       } else {
@@ -208,10 +210,16 @@ class RiiReader {
     if (!taken) reader_.refuse(1, "no DATA with an index", "a formula or a table of n");
     line_ = taken->type.line;
     take(*taken);
+    if (with_k && glass_.absorption.empty()) take_absorption(rows_of(with_k->table, false, true));
     reader_.add(std::move(glass_), line_);
   }
 
  private:
+  /// A row of a table: wavelength (um), n and k. Missing columns are 1 and 0.
+  struct Row {
+    double l, n, k;
+  };
+
   void take(const Entry& entry) {
     const std::string& type = entry.type.text;
     if (type == "tabulated n" || type == "tabulated nk") return take_table(entry.table, type == "tabulated nk");
@@ -252,13 +260,10 @@ class RiiReader {
     glass_.longest_nm = range[1] * 1000;
   }
 
-  /// Reads rows of a table: wavelength, n and, with k, the absorption.
-  void take_table(const Value& table, bool with_k) {
-    struct Row {
-      double l, n, k;
-    };
+  /// Reads the rows of a table, sorted by wavelength.
+  std::vector<Row> rows_of(const Value& table, bool with_n, bool with_k) {
     std::vector<Row> rows;
-    const std::size_t columns = with_k ? 3 : 2;
+    const std::size_t columns = with_n && with_k ? 3 : 2;
     Lines lines(table.text);
     while (lines.next()) {
       const int line = table.line + lines.number();  // the rows begin on the line after the key
@@ -268,7 +273,7 @@ class RiiReader {
         reader_.refuse(line, "a row of " + std::to_string(w.size()) + " numbers", std::to_string(columns));
       }
       const auto at = [&](std::size_t i) { return reader_.number(line, "data", w[i]); };
-      rows.push_back({at(0), at(1), with_k ? at(2) : 0});
+      rows.push_back({at(0), with_n ? at(1) : 1, with_k ? at(columns - 1) : 0});
     }
     std::stable_sort(rows.begin(), rows.end(), [](const Row& a, const Row& b) { return a.l < b.l; });
     const auto same = std::unique(rows.begin(), rows.end(), [](const Row& a, const Row& b) { return a.l == b.l; });
@@ -276,7 +281,22 @@ class RiiReader {
       reader_.warn(line_, "data", std::to_string(rows.end() - same) + " rows with repeated wavelengths are left out");
       rows.erase(same, rows.end());
     }
+    return rows;
+  }
 
+  void take_absorption(const std::vector<Row>& rows) {
+    for (const auto& [l, n, k] : rows) {
+      const double per_mm = 4 * std::numbers::pi * k / (l / 1000);
+      if (l > 0 && k >= 0 && std::isfinite(per_mm)) glass_.absorption.push_back({l * 1000, per_mm});
+    }
+    if (const std::size_t invalid = rows.size() - glass_.absorption.size()) {
+      reader_.warn(line_, "data",
+                   std::to_string(invalid) + " rows of k without a positive wavelength or with k below 0 are left out");
+    }
+  }
+
+  void take_table(const Value& table, bool with_k) {
+    const std::vector<Row> rows = rows_of(table, true, with_k);
     // If k exceeds 0.01, a millimetre is opaque; the longest range of clear wavelengths is used.
     constexpr double max_extinction = 0.01;
     std::size_t first = 0, count = 0;
@@ -293,7 +313,7 @@ class RiiReader {
                    "absorbs outside " + to_text(rows[first].l * 1000, 7) + " to " +
                        to_text(rows[first + count - 1].l * 1000, 7) + " nm; these wavelengths are left out");
     }
-    if (with_k) reader_.warn(line_, "tabulated nk", "absorption is not used: glasses are clear");
+    if (with_k) take_absorption(rows);
     glass_.formula = DispersionFormula::tabulated;
     for (std::size_t i = first; i < first + count; ++i) {
       glass_.coefficients.insert(glass_.coefficients.end(), {rows[i].l, rows[i].n});

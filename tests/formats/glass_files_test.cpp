@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <filesystem>
 #include <fstream>
@@ -15,6 +16,7 @@
 #include "../expect_error.hpp"
 #include "../message.hpp"
 #include "petzval/core/geometry.hpp"
+#include "petzval/lens/lens.hpp"
 #include "said.hpp"
 
 namespace glass_files_test {
@@ -145,7 +147,6 @@ TEST_F(GlassFiles, CatalogueKeepsItsPrintedValues) {
                            {"9 TD", "thermal", "indices"},
                            {"10 MD", "mechanical"},
                            {"11 OD", "price"},
-                           {"13 IT", "internal", "glasses"},
                            {"145 INFRARED", "n_d", 2.605447, 1000}});
 }
 
@@ -214,6 +215,51 @@ TEST_F(GlassFiles, EntriesWithoutAnIndexAreSkippedByName) {
   expect_said(others("NM Y 1 0 1.5 60\nCD 2.25\n"), {{"4 Y", "LD", "range", 400, 700}});
   expect_said(others("NM k 1 0 1.5 60\nCD 2.25\nLD 0.4 0.7\n"), {{"4 k", "given"}});
   expect_said(others("XX 1\nXX 2\n"), {{"4 XX", "unknown"}});
+}
+
+// Internal transmittances of N-BK7 at 10 and 25 mm. Source: Schott, data sheet N-BK7 517642.251, February 2014.
+TEST_F(GlassFiles, InternalTransmittances_OfACatalogue_AreTheAbsorption) {
+  const auto file = read(crown +
+                         "IT 2.5 0.665 10\nIT 2.5 0.36 25\nIT 0.4 0.997 10\nIT 0.4 0.992 25\n"
+                         "IT 0.31 0.574 10\nIT 0.31 0.25 25\n");
+  EXPECT_TRUE(said(file).empty());
+  const Glass& glass = only(file);
+  ASSERT_EQ(glass.absorption.size(), 3u);
+  const auto transmittance = [&](double nm, double mm) { return std::exp(-absorption(glass, nm).value() * mm); };
+  EXPECT_NEAR(transmittance(310, 25), 0.25, 1e-15);
+  EXPECT_NEAR(transmittance(310, 10), 0.574, 1e-3);
+  EXPECT_NEAR(transmittance(400, 25), 0.992, 1e-15);
+  EXPECT_NEAR(transmittance(400, 10), 0.997, 1e-3);
+  EXPECT_NEAR(transmittance(2500, 25), 0.36, 1e-15);
+  EXPECT_NEAR(transmittance(2500, 10), 0.665, 1e-3);
+  EXPECT_NEAR(transmittance(400, 50), 0.992 * 0.992, 1e-15);
+  const auto glasses = with_glasses(petzval::GlassCatalogue(), file.glasses);
+  const auto lens = petzval::compile(
+      {.name = "window",
+       .surfaces = {{.radius = 0, .thickness = 25, .medium = {.glass = "K"}}, {.radius = 0, .thickness = 10}}},
+      std::array{400.0, 550.0}, {.glasses = &glasses});
+  EXPECT_NEAR(std::exp(-lens.absorption(1, 0) * 25), 0.992, 1e-15);
+}
+
+// A transmittance of 0.001 may be 0.0005 to 0.0015; that of 10 mm is better known.
+TEST_F(GlassFiles, DarkTransmittances_AreReadFromTheThicknessWithTheSmallestError) {
+  const auto at = [&](const std::string& lines) { return only(read(crown + lines)).absorption.at(0).per_mm; };
+  EXPECT_DOUBLE_EQ(at("IT 0.4 0.001 25\nIT 0.4 0.063 10\n"), -std::log(0.063) / 10);
+  EXPECT_DOUBLE_EQ(at("IT 0.4 0 25\nIT 0.4 0.001 10\n"), -std::log(0.001) / 10);
+  EXPECT_DOUBLE_EQ(at("IT 0.4 0 25\nIT 0.4 0 10\n"), -std::log(0.0005) / 10);
+  EXPECT_EQ(at("IT 0.4 1.0002 25\n"), 0);
+  EXPECT_FALSE(std::signbit(at("IT 0.4 1 25\n")));
+}
+
+TEST_F(GlassFiles, InvalidTransmittances_AreLeftOutWithOneWarning) {
+  for (const char* line : {"0.5 -0.1 10", "0.5 1.5 10", "0.5 0.9 0", "0.5 0.9 1e-308", "0.5 0.9 -10", "0 0.9 10",
+                           "-0.5 0.9 10", "0.5 nan 10", "0.5 0.9", "0.5 0.9 inf", "0.5 0,9 10"}) {
+    const std::string it = std::string("IT ") + line + '\n';
+    const auto file = read(crown + it + it + "IT 0.4 0.9 10\n");
+    EXPECT_EQ(only(file).absorption.size(), 1u) << line;
+    expect_said(said(file), {{"4 K", "IT", line, "left out", 0, 1}});
+  }
+  expect_tokens(refusal("CC a\nIT 0.5 0.9 10\n"), {"line 2", "IT", "NM"});
 }
 
 TEST_F(GlassFiles, BrokenCatalogueIsRefusedWithItsLine) {
@@ -302,9 +348,7 @@ TEST_F(GlassPages, PageKeepsItsPrintedValues) {
   const auto file = read(page(cauchy + "  - type: tabulated k\n    data: |\n        0.4 1e-6\n        0.7 1e-6\n",
                               "CONDITIONS:\n  n_is_absolute: true\n"),
                          "x.yml");
-  expect_said(
-      said(file),
-      {{"15 n_is_absolute", "index"}, {10, "tabulated", "absorption", "glasses"}, {"7 x", "n_d", 1.511587, 587.5618}});
+  expect_said(said(file), {{"15 n_is_absolute", "index"}, {"7 x", "n_d", 1.511587, 587.5618}});
 }
 
 TEST_F(GlassPages, FirstOfTwoEntriesIsUsed) {
@@ -337,6 +381,35 @@ TEST_F(GlassPages, TransparentRangeOfATableWithAbsorptionIsUsed) {
   expect_tokens(said(file).at(0), {7, "tabulated", "absorbs", 400, 700, "left"});
   expect_tokens(refusal(table("nk", "        0.4 0.2 3\n        0.5 0.2 3\n        0.7 0.1 4\n"), "silver.yml"),
                 {"line 7", "table", 0, "k", 0.01});
+}
+
+// k of N-BK7, computed from 0.25 and 0.36 at 25 mm. Source: refractiveindex.info, SCHOTT-optical N-BK7, CC0 1.0.
+TEST_F(GlassPages, TablesOfK_AreTheAbsorption) {
+  const std::string k = "        0.310 1.3679E-06\n        2.500 8.1300E-06\n";
+  const std::string sellmeier = "  - type: formula 2\n    wavelength_range: 0.3 2.5\n    coefficients: 0 1.27 0.01\n";
+  const auto file = read(page(sellmeier + "  - type: tabulated k\n    data: |\n" + k), "x.yml");
+  ASSERT_EQ(only(file).absorption.size(), 2u);
+  EXPECT_NEAR(std::exp(-absorption(only(file), 310).value() * 25), 0.25, 1e-4);
+  EXPECT_NEAR(std::exp(-absorption(only(file), 2500).value() * 25), 0.36, 1e-4);
+  const auto nk =
+      read(table("nk", "        0.310 1.55 1.3679E-06\n        2.500 1.48 8.1300E-06\n        3 1.4 0.02\n"), "x.yml");
+  EXPECT_EQ(absorption(only(nk), 310), absorption(only(file), 310));
+  EXPECT_EQ(absorption(only(nk), 2500), absorption(only(file), 2500));
+  EXPECT_GT(absorption(only(nk), 3000), 50);
+}
+
+TEST_F(GlassPages, InvalidOrRepeatedTablesOfK_AreLeftOut) {
+  const std::string cauchy = "  - type: formula 5\n    wavelength_range: 0.4 0.7\n    coefficients: 1.5 0.004 -2\n";
+  const auto k = [](const std::string& rows) { return "  - type: tabulated k\n    data: |\n" + rows; };
+  const auto negative =
+      read(page(cauchy + k("        0.4 -1e-6\n        0.7 1e-6\n"), "SPECS:\n    nd: 1.511587\n"), "x.yml");
+  EXPECT_EQ(only(negative).absorption.size(), 1u);
+  expect_said(said(negative), {{"7 data", 1, "rows", "k", 0, "left out"}});
+  const auto two =
+      read(page(cauchy + k("        0.4 1e-6\n") + k("        0.4 2e-6\n"), "SPECS:\n    nd: 1.511587\n"), "x.yml");
+  EXPECT_NEAR(absorption(only(two), 400).value(), 0.0314159, 1e-7);
+  expect_said(said(two), {{"13 tabulated k", "left out", "earlier", "k"}});
+  expect_tokens(refusal(page(cauchy + k("        0.4 1e-6 1\n")), "x.yml"), {"line 12", "row", 3, 2});
 }
 
 TEST_F(GlassPages, BrokenPageIsRefusedWithItsLine) {

@@ -99,10 +99,12 @@ struct GlassFile {
 ///
 /// - a Zemax catalogue (.agf), in UTF-16, UTF-8 or Latin-1, with or without text before the first glass. The name of
 ///   the catalogue is the file name in lower case, without its extension. All thirteen dispersion formulas are
-///   supported. Formula 4 exists in two forms; the form that gives the printed n_d is used. Data on temperature,
-///   transmittance and mechanics are skipped with a warning.
+///   supported. Formula 4 exists in two forms; the form that gives the printed n_d is used. Internal transmittances
+///   become Glass::absorption; 0 is read as 0.0005, so that the absorption is a lower bound. Data on temperature and
+///   mechanics are skipped with a warning.
 /// - a page of refractiveindex.info (YAML): formulas 1, 2, 3, 4, 5 and 7, tables of n, and tables of n and k at
-///   wavelengths with k up to 0.01. The name of the glass is the file name, its catalogue "rii".
+///   wavelengths with k up to 0.01. Tables of k become Glass::absorption. The name of the glass is the file name, its
+///   catalogue "rii".
 /// - a table of this library (CSV, data/README.md).
 ///
 /// Each glass keeps the printed n_d and V_d. A warning names each glass with a formula that differs from these by more
