@@ -73,6 +73,13 @@ std::string names_like(const Medium& m, const Tables& tables) {
   return names.empty() ? "" : " (similar names: " + names + ")";
 }
 
+/// The absorption of a glass. The tables of petzval have none; a glass that the user has added under the same name,
+/// with an n_d within 0.002, then states it.
+std::vector<AbsorptionEntry> absorption_of(const Glass* glass, const GlassCatalogue* glasses) {
+  if (glass && glass->absorption.empty()) glass = glasses->find(glass->name, glass->nd);
+  return glass ? glass->absorption : std::vector<AbsorptionEntry>();
+}
+
 /// Wavelengths (nm) at which a medium has an index.
 struct Range {
   double shortest, longest;
@@ -110,7 +117,7 @@ Indices indices(const Prescription& prescription, std::span<const double> wavele
       }
     };
     const Glass* glass = tables.glasses ? ask([&] { return glass_of(m, *tables.glasses); }) : nullptr;
-    result.absorption.push_back(glass ? glass->absorption : std::vector<AbsorptionEntry>());
+    result.absorption.push_back(absorption_of(glass, tables.glasses));
     const bool constant = !glass && (m.is_air() || m.vd == 0.0);
     if (!constant) (glass ? dispersive : m.vd ? known_by_abbe : known_by_index) = true;
     std::string missing;

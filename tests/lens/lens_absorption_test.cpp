@@ -70,6 +70,27 @@ TEST(LensAbsorption, ReversedAndChangedLens_KeepIt) {
   EXPECT_GT(reversed.absorption(4), 0);
 }
 
+// Shipped lenses name catalogues without absorption; a glass file of the user has another catalogue name.
+TEST(LensAbsorption, AddedGlassOfTheSameName_HasTheAbsorptionOfANamedCatalogue) {
+  const petzval::Glass grey = *glasses().find("GREY");
+  petzval::Glass table = grey, other = grey;
+  table.absorption.clear();
+  other.catalogue = "rii";
+  petzval::Prescription p = pair();
+  p.surfaces[0].medium.catalogue = "made-up";
+  p.surfaces[1].medium = {.nd = 1.5, .vd = 50};
+  const auto absorption_with = [&](const petzval::Glass& added) {
+    const auto catalogue = with_glasses(petzval::GlassCatalogue({table}), {added});
+    return petzval::compile(p, wavelengths_nm, {.glasses = &catalogue, .missing_glass = petzval::MissingGlass::abbe})
+        .absorption(1, 0);
+  };
+  EXPECT_EQ(absorption_with(other), 0.03);
+  other.nd = 1.5019;
+  EXPECT_EQ(absorption_with(other), 0.03);
+  other.nd = 1.5021;  // another glass of this name
+  EXPECT_EQ(absorption_with(other), 0);
+}
+
 TEST(LensAbsorption, Configurations_HaveTheAbsorptionOfTheirGlass) {
   petzval::Prescription p = pair();
   p.configurations = {{.name = "grey"}, {.name = "clear"}};

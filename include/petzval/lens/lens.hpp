@@ -169,7 +169,9 @@ class PETZVAL_API Lens {
   double index(std::size_t space, Wavelength wavelength = {}) const;
   /// Absorption coefficient (1/mm) of the medium before surface `space`: L mm transmit exp(-absorption L).
   ///
-  /// 0 for air and for media without a table of absorption. Tables come from glass files (Glass::absorption).
+  /// 0 for air and for media without a table of absorption. Tables come from glass files (Glass::absorption). If the
+  /// catalogue that a medium names has no table for the glass, an added glass of the same name is used whose n_d is
+  /// within 0.002.
   ///
   /// @param space       0 is object space, surface_count() is image space
   /// @param wavelength  a wavelength index, or a value in nm within the compiled range
