@@ -5,6 +5,7 @@
 #include <charconv>
 #include <cmath>
 #include <numeric>
+#include <optional>
 #include <sstream>
 #include <string>
 
@@ -238,6 +239,48 @@ Triple tristimulus(const Spectrum& light, const ColourMatching& table) {
   validate(light);
   validate(table);
   return integral(light, table, table.wavelengths_nm.front(), table.wavelengths_nm.back());
+}
+
+std::optional<double> correlated_colour_temperature(const std::array<double, 2>& xy, const ColourMatching& table) {
+  validate(table);
+  using Point = std::array<double, 2>;
+  const auto uv = [](double x, double y, double z) {
+    const double sum = x + 15 * y + 3 * z;
+    return Point{4 * x / sum, 6 * y / sum};
+  };
+  const double per_kelvin = 1e6;  // temperatures are searched in mired, 10^6 / K, along which the locus is smooth
+  const auto black_body = [&](double mired) {
+    constexpr double c2 = 1.438776877e7;  // nm K
+    Spectrum light{table.wavelengths_nm, {}};
+    for (const double nm : table.wavelengths_nm) {
+      light.power.push_back(std::pow(nm / 560, -5) * std::exp(-c2 * mired / per_kelvin / nm) /
+                            -std::expm1(-c2 * mired / per_kelvin / nm));
+    }
+    const Triple xyz = integral(light, table, table.wavelengths_nm.front(), table.wavelengths_nm.back());
+    return uv(xyz[0], xyz[1], xyz[2]);
+  };
+  const Point own = uv(xy[0], xy[1], 1 - xy[0] - xy[1]);
+  const auto distance = [&](double mired) {
+    const Point at = black_body(mired);
+    return std::hypot(at[0] - own[0], at[1] - own[1]);
+  };
+  constexpr double least = 10, most = 1000, step = 10, largest_distance = 0.05;
+  double best = least, nearest = distance(least);
+  for (double mired = least + step; mired <= most; mired += step) {
+    const double here = distance(mired);
+    if (here < nearest) best = mired, nearest = here;
+  }
+  if (!(nearest < 2 * largest_distance)) return {};
+  // Golden section: the distance has one minimum within a step.
+  double from = std::max(best - step, least), to = std::min(best + step, most);
+  constexpr double ratio = 0.6180339887498949;
+  while (to - from > 1e-5 * best) {
+    const double a = to - ratio * (to - from), b = from + ratio * (to - from);
+    distance(a) < distance(b) ? to = b : from = a;
+  }
+  const double mired = (from + to) / 2;
+  if (distance(mired) > largest_distance || mired < least + 1e-3 || mired > most - 1e-3) return {};
+  return per_kelvin / mired;
 }
 
 std::vector<Triple> rgb_weights(std::span<const double> wavelengths_nm, const ColourMatching& table,

@@ -113,6 +113,37 @@ TEST(Tristimulus, IsTheMatchingFunctionOfANarrowBand) {
   EXPECT_NEAR(xyz[2], 0.0087499, 1e-4);
 }
 
+std::array<double, 2> xy_of(const Spectrum& light) {
+  const auto xyz = tristimulus(light, table());
+  const double sum = xyz[0] + xyz[1] + xyz[2];
+  return {xyz[0] / sum, xyz[1] / sum};
+}
+
+TEST(CorrelatedColourTemperature, OfABlackBodyIsItsTemperature) {
+  for (const double kelvin : {2000.0, 2856.0, 4000.0, 6504.0, 10000.0, 15000.0}) {
+    Spectrum light;
+    for (int nm = 360; nm <= 830; ++nm) {
+      light.wavelengths_nm.push_back(nm);
+      light.power.push_back(std::pow(nm / 560.0, -5) / std::expm1(1.438776877e7 / (nm * kelvin)));
+    }
+    EXPECT_NEAR(correlated_colour_temperature(xy_of(light), table()).value(), kelvin, 2e-4 * kelvin);
+  }
+}
+
+// CIE 15: D65 has 6504 K, D50 has 5003 K, A has 2856 K. E: 5455 K.
+TEST(CorrelatedColourTemperature, OfIlluminantsIsThePublishedValue) {
+  constexpr std::array kelvin{6504.0, 5003.0, 2856.0, 5455.0};
+  for (std::size_t i = 0; i < kelvin.size(); ++i) {
+    EXPECT_NEAR(correlated_colour_temperature(xy_of(lights()[i]), table()).value(), kelvin[i], 5) << i;
+  }
+}
+
+TEST(CorrelatedColourTemperature, IsAbsentFarFromBlackBodies) {
+  EXPECT_FALSE(correlated_colour_temperature({0.3, 0.6}, table()));    // green
+  EXPECT_FALSE(correlated_colour_temperature({0.15, 0.06}, table()));  // blue
+  EXPECT_FALSE(correlated_colour_temperature({0.7, 0.3}, table()));    // red
+}
+
 TEST(RgbWeights, OneWavelengthIsWhite) {
   for (const double nm : {587.5618, 435.8, 1000.0}) EXPECT_EQ(weights_of({nm}), (Weights{{1, 1, 1}}));
 }

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <filesystem>
+#include <optional>
 #include <span>
 #include <string_view>
 #include <vector>
@@ -51,6 +52,19 @@ PETZVAL_API Spectrum illuminant(std::string_view name, const std::filesystem::pa
 /// @throws Error if load() would reject the spectrum, or unless the table has two finite wavelengths or more, positive
 ///               and increasing, each with a finite triple
 PETZVAL_API std::array<double, 3> tristimulus(const Spectrum& light, const ColourMatching& table);
+
+/// Correlated colour temperature of a light (K): the temperature of the black body with the nearest chromaticity in the
+/// CIE 1960 diagram.
+///
+/// @param xy     CIE 1931 chromaticity of the light
+/// @param table  the colour matching functions, for the chromaticities of black bodies
+/// @return       nullopt if the distance exceeds 0.05, or the temperature is outside 1000 to 100 000 K
+/// @throws Error under the conditions of tristimulus()
+///
+/// Source: CIE 15, Colorimetry, section 9.5; Planck's law with c2 = 1.4388 cm K.
+/// Accuracy: 0.02 % for black bodies from 2000 to 15 000 K (tests/analysis/colour_test.cpp).
+PETZVAL_API std::optional<double> correlated_colour_temperature(const std::array<double, 2>& xy,
+                                                                const ColourMatching& table);
 
 /// Linear RGB weights of a set of wavelengths. Their sum is the colour of the light at the luminance of white.
 ///
