@@ -4,12 +4,12 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
 #include <numeric>
-#include <string>
 #include <utility>
 
-#include "petzval/core/error.hpp"
-#include "petzval/pupil/f_number.hpp"
+#include "petzval/core/parallel.hpp"
+#include "petzval/paraxial/first_order.hpp"
 #include "pupil/pupil_boundary.hpp"
 #include "pupil_nodes.hpp"
 #include "trace/sequential.hpp"
@@ -19,57 +19,131 @@ namespace {
 
 using Vec = kernel::Vec<double>;
 
-/// Fraction of the light that a surface passes, from the directions on both sides; the normal is along the difference
-/// of the directions times the indices.
-double passed(const Coating& coating, bool mirror, double before, double behind, const Vec& in, const Vec& out,
-              double wavelength_nm) {
-  const bool bare = coating.layers.empty() && coating.table.empty();
-  if (bare && (mirror || before == behind)) return 1;
-  const Vec normal = out * behind - in * before;
-  const double length = std::sqrt(dot(normal, normal));
-  // Equal indices leave the direction as it is; their coating acts at normal incidence.
-  const double cosine = length > 1e-12 ? std::min(std::abs(dot(in, normal)) / length, 1.0) : 1;
-  const SurfaceLight light = surface_light(coating, before, behind, cosine, wavelength_nm);
-  return mirror ? light.reflectance() : light.transmittance();
-}
+/// The transmittance of rays at one wavelength.
+class Passage {
+ public:
+  Passage(const Lens& lens, std::size_t wavelength, Travel travel)
+      : view_(kernel::view<double>(lens)),
+        path_{.travel = travel, .wavelength = wavelength, .apertures = false},
+        nm_(lens.wavelengths_nm()[wavelength]) {
+    const bool to_film = travel == Travel::to_film;
+    for (std::size_t i = 0; i < lens.surface_count(); ++i) {
+      const LensSurface& own = lens.surfaces()[i];
+      const double front = lens.index(i, wavelength), back = lens.index(i + 1, wavelength);
+      Coating coating = own.coating.value_or(Coating{});
+      if (!to_film) coating = reversed(std::move(coating));
+      const bool bare = coating.layers.empty() && coating.table.empty();
+      const std::size_t space = to_film ? i + 1 : i;
+      surfaces_.push_back({std::move(coating), to_film ? front : back, to_film ? back : front,
+                           lens.absorption(space, wavelength), own.mirror, bare && (own.mirror || front == back)});
+    }
+    hits_.reserve(lens.surface_count());
+  }
+
+  /// nullopt if the ray does not pass. Not thread-safe.
+  std::optional<double> operator()(const Ray<double>& ray) {
+    hits_.clear();
+    const auto end = kernel::trace(view_, kernel::to_kernel(ray.origin), kernel::to_kernel(ray.direction), path_,
+                                   [&](int surface, const Vec& point, const Vec& direction) {
+                                     hits_.push_back({static_cast<std::size_t>(surface), point, direction});
+                                   });
+    if (end.fate != RayFate::transmitted) return {};
+    double result = 1, absorbance = 0;
+    for (std::size_t k = 0; k < hits_.size(); ++k) {
+      const Surface& surface = surfaces_[hits_[k].surface];
+      const bool last = k + 1 == hits_.size();
+      result *= passed(surface, hits_[k].direction, last ? end.direction : hits_[k + 1].direction);
+      if (last || surface.absorption == 0) continue;
+      const Vec path = hits_[k + 1].point - hits_[k].point;
+      absorbance += surface.absorption * std::sqrt(dot(path, path));
+    }
+    return result * std::exp(-absorbance);
+  }
+
+ private:
+  struct Surface {
+    Coating coating;  ///< seen from the arriving ray
+    double before, behind;
+    double absorption;  ///< of the medium behind, 1/mm
+    bool mirror, lossless;
+  };
+  struct Hit {
+    std::size_t surface;
+    Vec point, direction;  ///< of the arriving ray
+  };
+
+  /// Fraction of the light that a surface passes; the normal is along the difference of the directions times the
+  /// indices.
+  double passed(const Surface& surface, const Vec& in, const Vec& out) const {
+    if (surface.lossless) return 1;
+    const Vec normal = out * surface.behind - in * surface.before;
+    const double length = std::sqrt(dot(normal, normal));
+    // Equal indices leave the direction as it is; their coating acts at normal incidence.
+    const double cosine = length > 1e-12 ? std::min(std::abs(dot(in, normal)) / length, 1.0) : 1;
+    const SurfaceLight light = surface_light(surface.coating, surface.before, surface.behind, cosine, nm_);
+    return surface.mirror ? light.reflectance() : light.transmittance();
+  }
+
+  kernel::LensView<double> view_;
+  kernel::SurfaceRange path_;
+  double nm_;
+  std::vector<Surface> surfaces_;
+  std::vector<Hit> hits_;
+};
 
 }  // namespace
 
-std::optional<double> transmittance(const Lens& lens, const Ray<double>& ray, Wavelength wavelength, Travel travel) {
-  const std::size_t position = lens.compiled_position(wavelength);
-  std::vector<std::pair<std::size_t, Vec>> arrivals;  // surface, direction of the arriving ray
-  const auto end =
-      kernel::trace(kernel::view<double>(lens), kernel::to_kernel(ray.origin), kernel::to_kernel(ray.direction),
-                    {.travel = travel, .wavelength = position, .apertures = false},
-                    [&](int surface, const Vec&, const Vec& direction) {
-                      arrivals.emplace_back(static_cast<std::size_t>(surface), direction);
-                    });
-  if (end.fate != RayFate::transmitted) return {};
-  double result = 1;
-  for (std::size_t k = 0; k < arrivals.size(); ++k) {
-    const auto& [surface, in] = arrivals[k];
-    const Vec& out = k + 1 < arrivals.size() ? arrivals[k + 1].second : end.direction;
-    const bool to_film = travel == Travel::to_film;
-    const double before = lens.index(to_film ? surface : surface + 1, position);
-    const double behind = lens.index(to_film ? surface + 1 : surface, position);
-    const LensSurface& own = lens.surfaces()[surface];
-    const Coating coating = own.coating.value_or(Coating{});
-    result *= passed(to_film ? coating : reversed(coating), own.mirror, before, behind, in, out,
-                     lens.wavelengths_nm()[position]);
+bool states_coatings(const Lens& lens) {
+  return std::ranges::any_of(lens.surfaces(), [](const LensSurface& surface) { return surface.coating.has_value(); });
+}
+
+std::vector<std::size_t> uncoated_surfaces(const Lens& lens) {
+  constexpr double largest_air_index = 1.01;  // as with_coating()
+  std::vector<std::size_t> result;
+  for (std::size_t i = 0; i < lens.surface_count(); ++i) {
+    const LensSurface& surface = lens.surfaces()[i];
+    const bool to_air = (lens.index(i) < largest_air_index) != (lens.index(i + 1) < largest_air_index);
+    if (to_air && !surface.mirror && !surface.coating) result.push_back(i);
   }
   return result;
 }
 
+std::optional<double> transmittance(const Lens& lens, const Ray<double>& ray, Wavelength wavelength, Travel travel) {
+  return Passage(lens, lens.compiled_position(wavelength), travel)(ray);
+}
+
 std::optional<double> transmittance(const Lens& lens, const FieldPoint& point, Wavelength wavelength) {
-  constexpr std::size_t directions = 32;
+  const std::size_t directions = lens.rotationally_symmetric() && point.field_rad == 0 ? 1 : 32;
   const PupilBoundary pupil = pupil_boundary(lens, point, wavelength, directions);
+  Passage passage(lens, lens.compiled_position(wavelength), Travel::to_film);
   double light = 0, area = 0;
-  for (const analysis_detail::PupilNode& node : analysis_detail::pupil_nodes(pupil)) {
-    const auto passes = transmittance(lens, pupil.plane.ray(node.position.x, node.position.y), wavelength);
+  for (const analysis_detail::PupilNode& node : analysis_detail::pupil_nodes<6>(pupil)) {
+    const auto passes = passage(pupil.plane.ray(node.position.x, node.position.y));
     if (!passes) continue;
     light += node.area * *passes, area += node.area;
   }
   return area > 0 ? std::optional(light / area) : std::nullopt;
+}
+
+std::vector<FieldTransmittance> transmittance(const Lens& lens, double subject_z, std::span<const double> fields_rad,
+                                              int threads) {
+  const std::size_t wavelengths = lens.wavelengths_nm().size();
+  std::vector<FieldTransmittance> result(fields_rad.size() * wavelengths);
+  parallel_for(result.size(), 1, threads, [&](std::size_t k, std::size_t) {
+    const double field = fields_rad[k / wavelengths];
+    result[k] = {field, k % wavelengths, transmittance(lens, {.field_rad = field, .z = subject_z}, k % wavelengths)};
+  });
+  return result;
+}
+
+double area_f_number(const Lens& lens, Wavelength wavelength) {
+  const bool symmetric = lens.rotationally_symmetric();
+  const auto length = [&](Meridian meridian) {
+    return std::abs(first_order(lens, wavelength, meridian).effective_focal_length);
+  };
+  const double y = length(Meridian::y), mean = symmetric ? y : std::sqrt(y * length(Meridian::x));
+  const FieldPoint axis{.z = -std::numeric_limits<double>::infinity()};
+  return mean / (2 * std::sqrt(pupil_boundary(lens, axis, wavelength, symmetric ? 1 : 256).area() / std::numbers::pi));
 }
 
 std::optional<LensColour> lens_colour(const Lens& lens, double subject_z, const Spectrum& light,
@@ -111,7 +185,10 @@ std::optional<LensColour> lens_colour(const Lens& lens, double subject_z, const 
     return std::array{xyz[0] / sum, xyz[1] / sum};
   };
   const double luminous = behind[1] / white[1];
-  return LensColour{luminous, real_f_number(lens) / std::sqrt(luminous), xy(behind), xy(white)};
+  const auto own = xy(behind), of_light = xy(white);
+  return LensColour{
+      luminous, area_f_number(lens) / std::sqrt(luminous), own,
+      of_light, correlated_colour_temperature(own, table), correlated_colour_temperature(of_light, table)};
 }
 
 }  // namespace petzval

@@ -327,7 +327,7 @@ Lens with_coating(const Lens& lens, const Coating& coating) {
   auto data = std::make_shared<Lens::Data>(lens.data());
   for (std::size_t i = 0; i < data->surfaces.size(); ++i) {
     LensSurface& surface = data->surfaces[i];
-    surface.coating.reset();
+    surface.coating = Coating{};
     if (surface.mirror) continue;
     const bool air_before = lens.index(i) < largest_air_index, air_behind = lens.index(i + 1) < largest_air_index;
     if (air_before != air_behind) surface.coating = air_before ? coating : reversed(coating);

@@ -12,10 +12,12 @@
 
 #include "../data_lenses.hpp"
 #include "../expect_error.hpp"
+#include "analysis/pupil_nodes.hpp"
 #include "petzval/core/geometry.hpp"
 #include "petzval/focus/focus.hpp"
 #include "petzval/pupil/f_number.hpp"
 #include "petzval/trace/trace.hpp"
+#include "pupil/pupil_boundary.hpp"
 
 namespace petzval {
 namespace transmittance_test {
@@ -102,6 +104,81 @@ TEST(Transmittance, OfAReversedPrescriptionIsTheSame) {
   EXPECT_NEAR(transmittance(compile(p), axis).value(), transmittance(compile(reverse(p)), axis).value(), 1e-12);
 }
 
+/// A window of a glass that absorbs, without light lost at its surfaces.
+Lens grey_window(double thickness, Coating coating = {.table = {{300, 0}, {900, 0}}}) {
+  const GlassCatalogue glasses({Glass{.catalogue = "test",
+                                      .name = "GREY",
+                                      .nd = 1.5,
+                                      .shortest_nm = 300,
+                                      .longest_nm = 900,
+                                      .coefficients = {1.5},
+                                      .absorption = {{400, 0.04}, {700, 0.01}}}});
+  Prescription p;
+  p.name = "grey window";
+  p.surfaces = {{.thickness = thickness, .medium = {.glass = "GREY"}, .semi_diameter = 20, .coating = coating},
+                {.thickness = 50, .semi_diameter = 20, .coating = coating}};
+  constexpr std::array wavelengths{400.0, 550.0, 700.0};
+  return compile(p, wavelengths, {.glasses = &glasses});
+}
+
+TEST(Transmittance, OfAThickWindowIsAPowerOfAThinOne) {
+  for (const double degrees : {0.0, 40.0}) {
+    const Ray<double> ray{{0, -3, -2}, {0, std::sin(radians(degrees)), std::cos(radians(degrees))}};
+    for (const std::size_t w : {0, 1, 2}) {
+      const double one = transmittance(grey_window(4), ray, w).value(),
+                   two = transmittance(grey_window(8), ray, w).value();
+      EXPECT_NEAR(two, one * one, 1e-12);
+      EXPECT_LT(one, 0.97);
+      const Lens lens = grey_window(4, {});  // uncoated: the surfaces and the glass act independently
+      const double surfaces = transmittance(window(grey_window(4).index(1, w)), ray).value();
+      EXPECT_NEAR(transmittance(lens, ray, w).value(), one * surfaces, 1e-9);
+    }
+  }
+  EXPECT_NEAR(transmittance(grey_window(4), Ray<double>{{0, 0, -2}, {0, 0, 1}}, 0).value(), std::exp(-4 * 0.04), 1e-12);
+  const Ray<double> back{{0, 0, 60}, {0, 0, -1}};
+  EXPECT_NEAR(transmittance(grey_window(4), back, 2, Travel::to_scene).value(), std::exp(-4 * 0.01), 1e-12);
+}
+
+// Mean over 5120 rays of the pupil; at 14 degrees the pupil of the double Gauss is vignetted.
+TEST(Transmittance, OfAPupilIsTheMeanOverItsRays) {
+  for (const char* id : {"double_gauss_100mm_f1.35", "fisheye_8mm_f2.8", "anamorphic_60mm_2x"}) {
+    const Lens lens = with_coating(testing::data_lens(id), Coating::quarter_wave());
+    for (const double degrees : {0.0, 8.0, 14.0}) {
+      const FieldPoint point{.field_rad = radians(degrees), .z = far};
+      const PupilBoundary pupil = pupil_boundary(lens, point, {}, 512);
+      double light = 0, area = 0;
+      for (const analysis_detail::PupilNode& node : analysis_detail::pupil_nodes<10>(pupil)) {
+        light += node.area * transmittance(lens, pupil.plane.ray(node.position.x, node.position.y)).value();
+        area += node.area;
+      }
+      EXPECT_NEAR(transmittance(lens, point).value(), light / area, 1e-5) << id << ' ' << degrees;
+    }
+  }
+}
+
+TEST(Transmittance, OfFieldsIsThatOfEachPoint) {
+  const Lens lens = grey_window(4);
+  constexpr std::array fields{0.0, 0.2};
+  for (const int threads : {1, 2}) {
+    const auto points = transmittance(lens, far, fields, threads);
+    ASSERT_EQ(points.size(), 6u);
+    EXPECT_EQ(points[5].field_rad, 0.2);
+    EXPECT_EQ(points[5].wavelength, 2u);
+    EXPECT_EQ(points[5].value.value(), transmittance(lens, {.field_rad = 0.2, .z = far}, 2).value());
+  }
+}
+
+TEST(StatesCoatings, IsTrueForOneSurface) {
+  Prescription p = testing::data_prescription("double_gauss_100mm_f1.35");
+  EXPECT_FALSE(states_coatings(compile(p)));
+  EXPECT_EQ(uncoated_surfaces(compile(p)).size(), 8u);  // air on one side
+  p.surfaces[0].coating = Coating{};
+  EXPECT_TRUE(states_coatings(compile(p)));
+  EXPECT_EQ(uncoated_surfaces(compile(p)).size(), 7u);
+  EXPECT_TRUE(uncoated_surfaces(with_coating(compile(p), Coating::quarter_wave())).empty());
+  EXPECT_TRUE(states_coatings(with_coating(testing::data_lens("mirror_ritchey_chretien_57.6m_f24"), {})));
+}
+
 TEST(LensColour, OfAWholeTransmittanceIsTheLight) {
   std::vector<double> visible;
   for (int nm = 430; nm <= 670; nm += 20) visible.push_back(nm);
@@ -121,6 +198,9 @@ TEST(LensColour, OfAWholeTransmittanceIsTheLight) {
   EXPECT_LT(bare.luminous_transmittance, 0.7);
   EXPECT_NEAR(bare.t_stop * std::sqrt(bare.luminous_transmittance), real_f_number(lens), 1e-9);
   EXPECT_GT(bare.xy[0], whole.xy[0]);  // blue light meets higher indices
+  EXPECT_NEAR(whole.light_cct_k.value(), 6504, 5);
+  EXPECT_NEAR(whole.cct_k.value(), whole.light_cct_k.value(), 1);
+  EXPECT_LT(bare.cct_k.value(), whole.cct_k.value());
 }
 
 TEST(Transmittance, RefusesInvalidCoatings) {

@@ -2,7 +2,9 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "petzval/analysis/colour.hpp"
@@ -13,9 +15,10 @@
 
 namespace petzval {
 
-/// The fraction of unpolarised light that the surfaces of a lens pass along a ray. Clear apertures do not matter.
+/// The fraction of unpolarised light that a lens passes along a ray. Clear apertures do not matter.
 ///
-/// The product of the fractions of the surfaces: surface_light() at refracting surfaces, its reflectance at mirrors.
+/// The product of the fractions of the surfaces, surface_light() at refracting surfaces and its reflectance at mirrors,
+/// and of the internal transmittances of the media between the first and the last surface (Lens::absorption()).
 /// Surfaces whose coating is unknown (LensSurface::coating) are uncoated; such mirrors lose nothing. with_coating()
 /// sets a coating.
 ///
@@ -26,7 +29,8 @@ namespace petzval {
 /// @return            nullopt if the ray does not pass the lens
 /// @throws Error      if the wavelength is outside a table of reflectances or is not compiled
 ///
-/// Limitations: light is unpolarised again in front of each surface; bulk absorption is not modelled.
+/// Limitations: light is unpolarised again in front of each surface. Glasses without a table of absorption, all of
+/// data/glass, absorb nothing.
 PETZVAL_API std::optional<double> transmittance(const Lens& lens, const Ray<double>& ray, Wavelength wavelength = {},
                                                 Travel travel = Travel::to_film);
 
@@ -37,12 +41,45 @@ PETZVAL_API std::optional<double> transmittance(const Lens& lens, const Ray<doub
 /// Accuracy: 1e-5 (tests/analysis/transmittance_test.cpp).
 PETZVAL_API std::optional<double> transmittance(const Lens& lens, const FieldPoint& point, Wavelength wavelength = {});
 
+/// The transmittance() of a field and a wavelength.
+struct FieldTransmittance {
+  double field_rad = 0;
+  std::size_t wavelength = 0;   ///< a compiled wavelength
+  std::optional<double> value;  ///< nullopt if no ray passes
+};
+
+/// The transmittance() of fields at all compiled wavelengths, ordered by field.
+///
+/// @param lens        the lens
+/// @param subject_z   subject plane (lens frame, mm); -inf at infinity
+/// @param fields_rad  field angles (rad)
+/// @param threads     number of threads, at least 1
+/// @throws Error      under the conditions of transmittance() of a point
+PETZVAL_API std::vector<FieldTransmittance> transmittance(const Lens& lens, double subject_z,
+                                                          std::span<const double> fields_rad, int threads = 1);
+
+/// True if a coating is stated for at least one surface (LensSurface::coating), so that the transmittance of the lens
+/// is known. Programs state transmittances and T-stops only then.
+PETZVAL_API bool states_coatings(const Lens& lens);
+
+/// Refracting surfaces between air (index below 1.01) and another medium without a stated coating. transmittance()
+/// takes them as uncoated.
+PETZVAL_API std::vector<std::size_t> uncoated_surfaces(const Lens& lens);
+
+/// The f-number of a round pupil with the area of the pupil of the axis. It accounts for blades and central
+/// obscurations, but not for losses. The focal length is the geometric mean of both sections.
+///
+/// @throws Error under the conditions of first_order() and aim()
+PETZVAL_API double area_f_number(const Lens& lens, Wavelength wavelength = {});
+
 /// The effect of the transmittance of the axis on white light.
 struct LensColour {
   double luminous_transmittance = 0;  ///< of CIE Y
-  double t_stop = 0;                  ///< f-number by exact rays divided by the root of luminous_transmittance
+  double t_stop = 0;                  ///< area_f_number() divided by the root of luminous_transmittance
   std::array<double, 2> xy{};         ///< CIE 1931 chromaticity of the light behind the lens
   std::array<double, 2> light_xy{};   ///< chromaticity of the light
+  std::optional<double> cct_k{};      ///< correlated_colour_temperature() of the light behind the lens
+  std::optional<double> light_cct_k{};
 };
 
 /// T-stop and colour of a lens on the axis.
@@ -53,7 +90,7 @@ struct LensColour {
 /// @param light     the light
 /// @param table     the colour matching functions
 /// @return          nullopt if no ray passes
-/// @throws Error    under the conditions of transmittance(), real_f_number() and tristimulus()
+/// @throws Error    under the conditions of transmittance(), area_f_number() and tristimulus()
 PETZVAL_API std::optional<LensColour> lens_colour(const Lens& lens, double subject_z, const Spectrum& light,
                                                   const ColourMatching& table);
 
