@@ -120,6 +120,37 @@ TEST(MtfFigures, StateTheirErrorAndLeaveOutDarkFields) {
   for (const testing::Points& curve : last) EXPECT_EQ(curve.size(), 2u);
 }
 
+/// Transmittance of a point in a figure: its frame ends at 100 % on top.
+double percent(double y, double lowest) { return 100 - (y - 84) / 330 * (100 - lowest); }
+
+TEST(TransmittanceFigures, DrawTheNumbers) {
+  const Lens lens = with_coating(double_gauss(), Coating::quarter_wave());
+  const std::array fields{0.0, radians(5.0), radians(9.0), radians(80.0)};
+  const auto points = transmittance(lens, far, fields);
+  const std::size_t wavelengths = lens.wavelengths_nm().size();
+  ASSERT_EQ(points.size(), 4 * wavelengths);
+  EXPECT_FALSE(points.back().value);
+  const std::string over_field = transmittance_field_figure(lens, far, points);
+  const auto curves = testing::paths(over_field, "stroke-width=\"1.6\"");
+  ASSERT_EQ(curves.size(), wavelengths);
+  for (std::size_t w = 0; w < wavelengths; ++w) {
+    ASSERT_EQ(curves[w].size(), 3u);  // no light at 80 degrees
+    for (std::size_t f = 0; f < 3; ++f) {
+      EXPECT_NEAR(percent(curves[w][f].second, 90), 100 * *points[f * wavelengths + w].value, 0.02);
+    }
+  }
+  expect_text_within_sheet(over_field);
+  const std::string over_wavelength = transmittance_figure(lens, far, points);
+  const auto lines = testing::paths(over_wavelength, "stroke-width=\"1.6\"");
+  ASSERT_EQ(lines.size(), 3u);
+  EXPECT_LT(lines[0].front().first, lines[0].back().first);
+  EXPECT_NE(over_wavelength.find("(no light)"), std::string::npos);
+  expect_text_within_sheet(over_wavelength);
+  testing::expect_error([&] { transmittance_figure(lens, far, std::span(points).first(1)); }, {1, "points"});
+  testing::expect_error([&] { transmittance_field_figure(lens, far, std::span(points).first(wavelengths)); },
+                        {"one field"});
+}
+
 // Many keys continue in a second row.
 TEST(MtfFigures, KeysOfManyFieldsStayOnTheSheet) {
   const Lens lens = double_gauss();

@@ -9,6 +9,7 @@
 #include "petzval/analysis/aberrations.hpp"
 #include "petzval/analysis/seidel.hpp"
 #include "petzval/analysis/spot.hpp"
+#include "petzval/analysis/transmittance.hpp"
 #include "petzval/core/config.hpp"
 #include "petzval/lens/lens.hpp"
 #include "petzval/paraxial/first_order.hpp"
@@ -56,6 +57,26 @@ PETZVAL_API std::string footprint_figure(const Lens& lens, double subject_z, std
 /// @param field_rad  largest field angle (rad)
 /// @throws Error     if the field is not positive; also under the conditions of relative_illumination()
 PETZVAL_API std::string illumination_figure(const Lens& lens, double subject_z, double field_rad);
+
+/// Draws transmittance over wavelength as SVG text: a colour for each field. Fields from which no ray passes have no
+/// curve.
+///
+/// @param lens       the lens, compiled for two or more wavelengths
+/// @param subject_z  subject plane (lens frame, mm); -inf at infinity
+/// @param points     transmittance() of this lens
+/// @throws Error     if there are no points, less than two wavelengths, or not one point per wavelength and field
+PETZVAL_API std::string transmittance_figure(const Lens& lens, double subject_z,
+                                             std::span<const FieldTransmittance> points);
+
+/// Draws transmittance over the field as SVG text: a colour for each wavelength. Fields from which no ray passes
+/// interrupt the curves.
+///
+/// @param lens       the lens
+/// @param subject_z  subject plane (lens frame, mm); -inf at infinity
+/// @param points     transmittance() of this lens for ascending fields
+/// @throws Error     if there are less than two fields, or not one point per wavelength and field
+PETZVAL_API std::string transmittance_field_figure(const Lens& lens, double subject_z,
+                                                   std::span<const FieldTransmittance> points);
 
 /// Draws ray fans as SVG text: a row for each field, tangential on the left, sagittal on the right, a colour for each
 /// wavelength. All cells have the same scale.
