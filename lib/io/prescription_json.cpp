@@ -46,6 +46,11 @@ enum class Scope {
   surface,
   aspheric,
   term,
+  coating,
+  layers,
+  layer,
+  reflectances,
+  reflectance,
   configurations,
   configuration,
   changes,
@@ -68,6 +73,8 @@ constexpr std::optional<ListOf> list_of(Scope scope) {
     case Scope::wavelengths: return ListOf{Scope::wavelength, "wavelength"};
     case Scope::surfaces: return ListOf{Scope::surface, "surface"};
     case Scope::aspheric: return ListOf{Scope::term, "aspheric"};
+    case Scope::layers: return ListOf{Scope::layer, "layer"};
+    case Scope::reflectances: return ListOf{Scope::reflectance, "reflectance"};
     case Scope::configurations: return ListOf{Scope::configuration, "configuration"};
     case Scope::changes: return ListOf{Scope::change, "change"};
     default: return {};
@@ -95,7 +102,7 @@ class Reader : public io_detail::JsonReader {
   struct Key {
     std::string_view name;
     void (*set)(Reader&, const JsonValue&);  ///< for a plain value
-    std::optional<Scope> opens = {};         ///< for a list or an object
+    std::optional<Scope> opens = {};         ///< for a list or an object; a key with both functions takes either
     bool required = false;
   };
   struct Open {
@@ -110,6 +117,7 @@ class Reader : public io_detail::JsonReader {
   SurfaceRow& row() { return lens_.surfaces.back(); }
   Configuration& configuration() { return lens_.configurations.back(); }
   SurfaceChange& change() { return configuration().changes.back(); }
+  Coating& coating() { return *row().coating; }
   DesignField& field() { return lens_.design.fields.back(); }
   Medium& medium() {
     switch (open_.back().scope) {
@@ -241,7 +249,7 @@ std::span<const Reader::Key> Reader::keys(Scope scope) {
       {"medium", nullptr, Scope::new_medium},
   }};
   // The keys of the medium come first: they are the only keys of object_space.
-  static constexpr std::array<Key, 16> surface = {{
+  static constexpr std::array<Key, 17> surface = {{
       {"glass", [](R& r, V& v) { r.medium().glass = r.maybe_text(v); }},
       {"catalogue", [](R& r, V& v) { r.medium().catalogue = r.maybe_text(v); }},
       {"glass_origin", [](R& r, V& v) { r.medium().glass_origin = r.maybe_text(v); }},
@@ -263,10 +271,30 @@ std::span<const Reader::Key> Reader::keys(Scope scope) {
          r.row().curved_in = section == "x" ? Section::x : Section::y;
        }},
       {"comment", [](R& r, V& v) { r.row().comment = r.maybe_text(v); }},
+      {"coating",
+       [](R& r, V& v) {
+         const auto* word = std::get_if<std::string>(&v);
+         if (!word || (*word != "none" && *word != "mgf2")) r.refuse(describe(v), R"("none", "mgf2" or an object)");
+         r.row().coating = *word == "none" ? Coating{} : Coating::quarter_wave();
+       },
+       Scope::coating},
   }};
   static constexpr std::array<Key, 2> term = {{
       {"order", [](R& r, V& v) { r.row().aspheric.back().order = r.whole_number(v, 2, 40); }, {}, true},
       {"coefficient", [](R& r, V& v) { r.row().aspheric.back().coefficient = r.number_of(v); }, {}, true},
+  }};
+  static constexpr std::array<Key, 2> coating = {{
+      {"layers", nullptr, Scope::layers},
+      {"reflectance", nullptr, Scope::reflectances},
+  }};
+  static constexpr std::array<Key, 3> layer = {{
+      {"index", [](R& r, V& v) { r.coating().layers.back().index = r.number_of(v); }, {}, true},
+      {"absorption", [](R& r, V& v) { r.coating().layers.back().absorption = r.number_of(v); }},
+      {"thickness_nm", [](R& r, V& v) { r.coating().layers.back().thickness_nm = r.number_of(v); }, {}, true},
+  }};
+  static constexpr std::array<Key, 2> reflectance = {{
+      {"wavelength_nm", [](R& r, V& v) { r.coating().table.back().wavelength_nm = r.number_of(v); }, {}, true},
+      {"value", [](R& r, V& v) { r.coating().table.back().reflectance = r.number_of(v); }, {}, true},
   }};
   switch (scope) {
     case Scope::file: return file;
@@ -282,6 +310,9 @@ std::span<const Reader::Key> Reader::keys(Scope scope) {
     case Scope::new_medium: return std::span(surface).first(5);
     case Scope::surface: return surface;
     case Scope::term: return term;
+    case Scope::coating: return coating;
+    case Scope::layer: return layer;
+    case Scope::reflectance: return reflectance;
     case Scope::configuration: return configuration;
     case Scope::change: return change;
     default: return {};
@@ -302,6 +333,7 @@ std::string Reader::here() const {
       case Scope::aperture: add("aperture"); break;
       case Scope::object_space: add("object_space"); break;
       case Scope::new_medium: add("medium"); break;
+      case Scope::coating: add("coating"); break;
       default:
         if (const auto list = list_of(open.scope)) {
           add(list->word + (list->entry ? ' ' + std::to_string(open.entries - 1) : std::string()));
@@ -363,7 +395,7 @@ void Reader::assign(JsonValue value) {
     refuse_kind(describe(value), "an object");
   }
   const Key& key = *current();
-  if (key.opens) refuse_kind(describe(value), is_list(*key.opens) ? "a list" : "an object");
+  if (!key.set) refuse_kind(describe(value), is_list(*key.opens) ? "a list" : "an object");
   key.set(*this, value);
 }
 
@@ -402,6 +434,9 @@ void Reader::open(bool list) {
   switch (*inner) {
     case Scope::surface: lens_.surfaces.emplace_back(); break;
     case Scope::term: row().aspheric.emplace_back(); break;
+    case Scope::coating: row().coating.emplace(); break;
+    case Scope::layer: coating().layers.emplace_back(); break;
+    case Scope::reflectance: coating().table.emplace_back(); break;
     case Scope::zoom: lens_.configurations.push_back({.name = "zoom"}); break;
     case Scope::imported: lens_.imported.emplace(); break;
     case Scope::warning: lens_.imported->warnings.emplace_back(); break;
@@ -447,6 +482,9 @@ void Reader::close() {
       if (table[i].name == "format" && closed.scope == Scope::file) message += "; must be " + in_quotes(format_name);
       fail(closed.byte, message);
     }
+  }
+  if (closed.scope == Scope::coating && coating() == Coating{}) {
+    fail(closed.byte, R"(must have entries in "layers" or "reflectance"; an uncoated surface is "none")");
   }
   open_.pop_back();
 }

@@ -37,6 +37,21 @@ std::string medium(const Medium& m) {
   return text + ", " + member("vd", m.vd);
 }
 
+std::string json(const Coating& coating) {
+  if (coating == Coating{}) return json(std::string("none"));
+  std::string entries;
+  for (const CoatingLayer& layer : coating.layers) {
+    entries += (entries.empty() ? "{" : ", {") + member("index", layer.index) + ", " +
+               (layer.absorption != 0 ? member("absorption", layer.absorption) + ", " : std::string()) +
+               member("thickness_nm", layer.thickness_nm) + "}";
+  }
+  for (const ReflectanceEntry& entry : coating.table) {
+    entries += (entries.empty() ? "{" : ", {") + member("wavelength_nm", entry.wavelength_nm) + ", " +
+               member("value", entry.reflectance) + "}";
+  }
+  return std::string(coating.layers.empty() ? R"({"reflectance": [)" : R"({"layers": [)") + entries + "]}";
+}
+
 std::string surface(const SurfaceRow& row) {
   const bool limited = row.semi_diameter && std::isfinite(*row.semi_diameter);
   std::string text = "{" + member("radius", row.radius) + ", " + member("thickness", row.thickness) + ", " +
@@ -50,6 +65,7 @@ std::string surface(const SurfaceRow& row) {
   if (row.comment) text += ", " + member("comment", row.comment);
   if (row.curved_in != Section::both)
     text += ", " + member("curved_in", std::string(row.curved_in == Section::x ? "x" : "y"));
+  if (row.coating) text += ", \"coating\": " + json(*row.coating);
   return text + "}";
 }
 

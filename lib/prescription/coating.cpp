@@ -78,9 +78,11 @@ Coating Coating::quarter_wave(double index, double wavelength_nm) {
 void validate(const Coating& coating, const std::string& what) {
   const auto fail = [&](const std::string& message) { throw Error(what + ": coating: " + message); };
   if (!coating.layers.empty() && !coating.table.empty()) fail("has layers and a table; must have one of them");
-  for (const CoatingLayer& layer : coating.layers) {
+  for (std::size_t i = 0; i < coating.layers.size(); ++i) {
+    const CoatingLayer& layer = coating.layers[i];
     const auto check = [&](const char* name, double value, bool valid, const char* rule) {
-      if (!valid || !std::isfinite(value)) fail(std::string(name) + " = " + to_text(value, 6) + "; must be " + rule);
+      if (valid && std::isfinite(value)) return;
+      fail("layer " + std::to_string(i) + ": " + name + " = " + to_text(value, 6) + "; must be " + rule);
     };
     check("index", layer.index, layer.index > 0, "positive and finite");
     check("absorption", layer.absorption, layer.absorption >= 0, "0 or more, and finite");

@@ -31,13 +31,16 @@ std::string seed(const char* name) { return bytes_of(fs::path(PETZVAL_FUZZ_SEEDS
 std::string sample(const char* name) { return bytes_of(fs::path(PETZVAL_TEST_SAMPLES) / name); }
 
 /// Lenses that together cover spheres, cylinders, mirrors, obscurations, aspheres, configurations and media other than
-/// air.
+/// air, and coatings.
 std::vector<Prescription> small_lenses() {
   std::vector<Prescription> result;
   for (const char* id : {"singlet_50mm_biconvex", "achromat_100mm", "cylinder_3.9mm", "mirror_newton_200mm_f8",
                          "phone_5.6mm_f3.5", "eye_gullstrand_le_grand", "zoom_14-30mm_f4"}) {
     result.push_back(testing::data_prescription(id));
   }
+  result[0].surfaces[0].coating = Coating::quarter_wave();
+  result[0].surfaces[1].coating = Coating{};
+  result[1].surfaces[0].coating = Coating{.table = {{1, 0.01}, {1e6, 0.01}}};
   return result;
 }
 

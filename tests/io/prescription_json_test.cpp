@@ -153,6 +153,14 @@ Prescription random_prescription(std::mt19937_64& random) {
     }
     s.stop = often();
     s.curved_in = often() ? petzval::Section::both : often() ? petzval::Section::x : petzval::Section::y;
+    switch (random() % 4) {
+      case 0: s.coating.emplace(); break;
+      case 1:
+        s.coating = {.layers = {{.index = 1.38, .thickness_nm = std::abs(length())}, {2.1, std::abs(length()), 0}}};
+        break;
+      case 2: s.coating = {.table = {{380.5, 0.01}, {500, 0}, {780 + std::abs(length()), 1}}}; break;
+      default: break;
+    }
     p.surfaces.push_back(s);
   }
   if (often()) {
@@ -189,6 +197,53 @@ TEST(PrescriptionJson, AnyLensRoundTrips) {
     ASSERT_EQ(back, p) << text;
     ASSERT_EQ(format_prescription(back), text);
   }
+}
+
+TEST(PrescriptionJson, CoatingsAreAWordLayersOrReflectances) {
+  const auto read = [](const std::string& coating) {
+    return parse_prescription(with_member("\"coating\": " + coating), "x.json").surfaces[1].coating;
+  };
+  EXPECT_FALSE(parse_prescription(with_surface(row), "x.json").surfaces[1].coating);
+  EXPECT_EQ(read(R"("none")"), petzval::Coating{});
+  EXPECT_EQ(read(R"("mgf2")"), petzval::Coating::quarter_wave());
+  EXPECT_EQ(
+      read(
+          R"({"layers": [{"index": 1.38, "thickness_nm": 99.6}, {"index": 2, "absorption": 0.5, "thickness_nm": 7}]})"),
+      (petzval::Coating{.layers = {{1.38, 0, 99.6}, {2, 0.5, 7}}}));
+  EXPECT_EQ(read(R"({"reflectance": [{"wavelength_nm": 400, "value": 0.01}, {"wavelength_nm": 700, "value": 0.02}]})"),
+            (petzval::Coating{.table = {{400, 0.01}, {700, 0.02}}}));
+}
+
+TEST(PrescriptionJson, WrongCoatingsAreRefused) {
+  const auto refused = [](const std::string& coating, std::initializer_list<std::string_view> words,
+                          std::string_view position = {}, int line = __builtin_LINE()) {
+    expect_refused(with_member("\n\"coating\": " + coating), words, position, line);
+  };
+  for (const char* value : {"5", "null", "true", "\"AR\""}) {
+    refused(value, {"surface 1", "coating", value, "\"none\"", "\"mgf2\"", "object"}, "2:12");
+  }
+  refused("[]", {"surface 1", "coating", "a list", "an object"});
+  refused("{}", {"surface 1", "coating", "\"layers\"", "\"reflectance\""}, "2:12");
+  refused(R"({"layers": []})", {"surface 1", "coating", "\"layers\""}, "2:12");
+  refused(R"({"layers": 5})", {"coating", "layers", "5", "a list"});
+  refused(R"({"layers": [1.38]})", {"coating", "layer 0", "1.38", "an object"});
+  refused(R"({"stack": []})", {"surface 1", "coating", "\"stack\"", "layers, reflectance"});
+  refused(R"({"layers": [{"index": 1.4}]})", {"coating", "layer 0", "\"thickness_nm\"", "missing"});
+  refused(R"({"layers": [{"thickness_nm": 5}]})", {"coating", "layer 0", "\"index\"", "missing"});
+  refused(R"({"layers": [{"index": 1.4, "thickness": 5}]})", {"layer 0", "\"thickness\"", "thickness_nm"});
+  refused(R"({"layers": [{"index": "MgF2", "thickness_nm": 5}]})", {"layer 0", "index", "\"MgF2\"", "a number"});
+  refused(R"({"reflectance": [{"wavelength_nm": 500}]})", {"reflectance 0", "\"value\"", "missing"});
+  refused(R"({"reflectance": [{"value": 0.5}]})", {"reflectance 0", "\"wavelength_nm\"", "missing"});
+  const std::string layer = R"({"index": 1.4, "thickness_nm": 5})";
+  refused("{\"layers\": [" + layer + R"(, {"index": 0, "thickness_nm": 5}]})",
+          {"surface 1", "coating", "layer 1", "index", "0", "positive"}, "2:69");
+  refused(R"({"layers": [{"index": 1.4, "absorption": -1, "thickness_nm": 5}]})", {"layer 0", "absorption", "-1"});
+  refused(R"({"layers": [{"index": 1.4, "thickness_nm": -5}]})", {"layer 0", "thickness_nm", "-5"});
+  refused("{\"layers\": [" + layer + R"(], "reflectance": [{"wavelength_nm": 500, "value": 0}]})",
+          {"surface 1", "coating", "layers", "table"});
+  refused(R"({"reflectance": [{"wavelength_nm": 500, "value": 1.5}]})", {"surface 1", "coating", "reflectance", "1.5"});
+  refused(R"({"reflectance": [{"wavelength_nm": 500, "value": 0}, {"wavelength_nm": 400, "value": 0}]})",
+          {"coating", "wavelength_nm", "400", "increase"});
 }
 
 TEST(PrescriptionJson, NumbersAreTheShortestThatReadBack) {
