@@ -47,6 +47,7 @@ Writer::Writer(const Prescription& lens, const GlassCatalogue* glasses)
   validate(lens, where_);
   lens_ = first_rows(lens);
   mark_the_stop();
+  lose_the_coatings();
 }
 
 /// Marks the stop, because other programs use the first surface if no stop is marked.
@@ -64,6 +65,14 @@ void Writer::mark_the_stop() {
   const std::size_t stop = pupils(lens, {}, main_meridian(lens)).stop;
   lens_.surfaces[stop].stop = true;
   lose("stop", "is not marked; surface " + std::to_string(stop) + ", whose rim limits the beam, becomes the stop");
+}
+
+void Writer::lose_the_coatings() {
+  std::string surfaces;
+  for (std::size_t i = 0; i < lens_.surfaces.size(); ++i) {
+    if (lens_.surfaces[i].coating) append(surfaces, ", ", std::to_string(i));
+  }
+  if (!surfaces.empty()) lose("coating", "cannot be stored in this format; lost for surface " + surfaces);
 }
 
 void Writer::lose_the_wider_stop() {

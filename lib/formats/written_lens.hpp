@@ -53,6 +53,7 @@ class Writer {
 
  private:
   void mark_the_stop();
+  void lose_the_coatings();
 
   Prescription lens_;
   std::string where_;

@@ -99,16 +99,24 @@ class Rows {
 
   SurfaceRow row(const ZemaxSurface& s, const Medium& before);
   Medium medium(const ZemaxGlass& glass);
+  /// Warns once for each name of a coating that row() does not know.
+  void name_unknown_coatings() const;
 
  private:
   void asphere(const ZemaxSurface& s, SurfaceRow& row) const;
   void rims(const ZemaxSurface& s, const Medium& before, SurfaceRow& row) const;
   void clip_by_ring(const ZemaxSurface& s, SurfaceRow& row) const;
   void term(const ZemaxSurface& s, int order, double coefficient, SurfaceRow& row) const;
+  std::optional<Coating> coating(const std::string& name, bool mirror) const;
 
   const ZemaxLens& zemax_;
   double unit_;
   Import& in_;
+  struct UnknownCoating {
+    int line = 0;          ///< first line
+    std::string surfaces;  ///< numbers
+  };
+  std::map<std::string, UnknownCoating> unknown_coatings_;  ///< by name
 };
 
 Medium Rows::medium(const ZemaxGlass& glass) {
@@ -225,6 +233,35 @@ void Rows::clip_by_ring(const ZemaxSurface& s, SurfaceRow& row) const {
   row.semi_diameter = std::min(s.ring->inner, row.semi_diameter.value_or(s.ring->inner));
 }
 
+/// The coating of a name in the file COATING.DAT that OpticStudio supplies, if its definition is published: AR is a
+/// quarter wave of MgF2 at the primary wavelength, and I.99 transmits 0.99 of the light and reflects the rest
+/// (OpticStudio help, "Defining Coatings"). COATING.DAT tabulates indices of MgF2 from 1.384 at 400 nm to 1.376 at 700
+/// nm; 1.38 is taken for all. OpticStudio takes the last layer on a mirror as the substrate, so AR is no coating of a
+/// mirror.
+std::optional<Coating> Rows::coating(const std::string& name, bool mirror) const {
+  if (same(name, "AR") && !mirror) {
+    const DesignData& design = in_.lens.design;
+    const double nm = design.primary_wavelength < design.wavelengths.size()
+                          ? design.wavelengths[design.primary_wavelength].nm
+                          : in_.lens.reference_wavelength_nm;
+    return Coating::quarter_wave(1.38, nm);
+  }
+  if (name.size() < 3 || !same(name.substr(0, 2), "I.") ||
+      name.find_first_not_of("0123456789", 2) != std::string::npos) {
+    return {};
+  }
+  const double reflectance = std::round((1 - number(name.substr(1)).value_or(0)) * 1e12) / 1e12;
+  return Coating{.table = {{1, reflectance}, {1e6, reflectance}}};  // every wavelength
+}
+
+void Rows::name_unknown_coatings() const {
+  for (const auto& [name, unknown] : unknown_coatings_) {
+    in_.warn(unknown.line, "COAT",
+             name + " on surface " + unknown.surfaces +
+                 " has no known definition and is left out; known: AR (not on a mirror) and I.nn");
+  }
+}
+
 SurfaceRow Rows::row(const ZemaxSurface& s, const Medium& before) {
   SurfaceRow row{.radius = radius_of(s.curvature), .thickness = s.thickness};
   if (std::abs(row.thickness) >= endless) {
@@ -234,6 +271,14 @@ SurfaceRow Rows::row(const ZemaxSurface& s, const Medium& before) {
   row.stop = s.stop;
   if (!s.comment.empty()) row.comment = s.comment;
   row.mirror = s.glass && same(s.glass->name, "MIRROR");
+  if (!s.coating.empty()) {
+    row.coating = coating(s.coating, row.mirror);
+    if (!row.coating) {
+      UnknownCoating& unknown =
+          unknown_coatings_.try_emplace(s.coating, UnknownCoating{s.coating_line, {}}).first->second;
+      append(unknown.surfaces, ", ", std::to_string(in_.lens.surfaces.size()));
+    }
+  }
   if (row.mirror) {
     row.medium = before;
   } else if (s.glass) {
@@ -246,8 +291,8 @@ SurfaceRow Rows::row(const ZemaxSurface& s, const Medium& before) {
 
 // --- configurations ---------------------------------------------------------------------------------------------
 
-/// Operands that do not change the lens: weights, coatings, comments, drawing.
-constexpr std::string_view silent_operands = "MOFF FLWT WLWT COTN CWGT GCRS NCOM MCOM SDRW";
+/// Operands that do not change the lens: weights, comments, drawing.
+constexpr std::string_view silent_operands = "MOFF FLWT WLWT CWGT GCRS NCOM MCOM SDRW";
 
 class Configurations {
  public:
@@ -430,6 +475,7 @@ void build_lens(ZemaxLens zemax, double unit, Import& in) {
     in.lens.surfaces.push_back(rows.row(s, before));
     before = in.lens.surfaces.back().medium;
   }
+  rows.name_unknown_coatings();
   if (image_at_infinity)
     in.requests.film_at_focus = {.line = last.line, .command = "DISZ", .reason = "the image is at infinity"};
   if (image.stop) in.refuse(image.line, "STOP", "the image", "a surface of the lens");

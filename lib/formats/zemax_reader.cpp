@@ -30,7 +30,7 @@ constexpr std::string_view silent =
     // rays and the pupil; pupil data that follow from the lens
     "RAIM PUSH SDMA OMMA ROPD HYPR PICB GFAC GLRS GSTD NSCD PUPD ZVDX ZVDY ZVCX ZVCY ZVAN "
     // coatings, polarisation, scattering, physical optics
-    "POLS COFN COAT POPS FIMP MEMA "
+    "POLS COFN POPS FIMP MEMA "
     // drawing and rows of the editor
     "HIDE MIRR SLAB SSID SCOL UDAD UNCO "
     // variables, pickups and solves
@@ -112,6 +112,10 @@ class ZemaxReader {
   void other_aperture(Words);
   void stop(Words) { surface().stop = true; }
   void comment(Words) { surface().comment = rest(); }
+  void coating(Words w) {
+    surface().coating = w.size() > 1 ? std::string(beginning(w[1], 60)) : std::string();
+    surface().coating_line = line_;
+  }
   void thickness_pickup(Words);
   void marginal_height(Words);
   void thickness_sum(Words);
@@ -182,6 +186,7 @@ std::span<const ZemaxReader::Command> ZemaxReader::of_surfaces() {
       {"SQAP SQOB ELAP ELOB SPID UDAP UDOB", &Z::other_aperture},
       {"STOP", &Z::stop},
       {"COMM", &Z::comment},
+      {"COAT", &Z::coating},
       {"PZUP", &Z::thickness_pickup},
       {"MAZH", &Z::marginal_height},
       {"TCOM", &Z::thickness_sum},

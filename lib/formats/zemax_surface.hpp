@@ -46,6 +46,8 @@ struct ZemaxSurface {
   std::optional<ZemaxGlass> glass;
   bool stop = false;
   std::string comment;
+  std::string coating;  ///< name of COAT
+  int coating_line = 0;
   double semi_diameter = 0;
   bool fixed_semi_diameter = false;  ///< set by the user, not by the width of the design's beams
   std::optional<double> aperture, obscuration;

@@ -644,6 +644,19 @@ TEST(RoundTrip, ThicknessesOfZeroRoundTripThroughATable) {
   EXPECT_NEAR(read(table(p)).surfaces.back().thickness, 0, 2e-9);
 }
 
+TEST(RoundTrip, CoatingsThatAreLostAreNamed) {
+  Prescription p = singlet();
+  for (const Write write : {table, zemax, codev}) EXPECT_FALSE(lost(write(p), "coating"));
+  p.surfaces[1].coating = petzval::Coating::quarter_wave();
+  p.surfaces[2].coating = petzval::Coating{};
+  for (const Write write : {table, zemax, codev}) {
+    const ExportedLens written = write(p);
+    const auto loss = std::ranges::find(written.losses, "coating", &petzval::ImportWarning::command);
+    ASSERT_NE(loss, written.losses.end());
+    expect_tokens(loss->message, {"lost", "1, 2"});
+  }
+}
+
 TEST(RoundTrip, ClosedStopsRoundTripOrAreRefused) {
   Prescription p = singlet();
   p.surfaces[0].semi_diameter = 0;

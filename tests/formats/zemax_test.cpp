@@ -323,15 +323,71 @@ TEST(Zemax, CommandsThatChangeNoLensAreSilent) {
                               "ZVCX 0 0", "ZVCY 0 0.2", "ZVAN 0 0", "TCMM a tolerance"}) {
     header += std::string(command) + "\n";
   }
-  for (const char* command :
-       {"COAT AR", "SSID 1", "UDAD 0 1", "VPAR 2", "VCON", "VDSZ 0 0", "PPAR 2 1 1 0", "EDGE 2 5"}) {
+  for (const char* command : {"COAT", "SSID 1", "UDAD 0 1", "VPAR 2", "VCON", "VDSZ 0 0", "PPAR 2 1 1 0", "EDGE 2 5"}) {
     lines += std::string("  ") + command + "\n";
   }
   Prescription p = read(with(with(singlet, "  DISZ 4\n", "  DISZ 4\n" + lines), "MODE SEQ\n", "MODE SEQ\n" + header));
   EXPECT_TRUE(p.imported->warnings.empty()) << p.imported->warnings.front().command;
   EXPECT_EQ(p.surfaces, read(singlet).surfaces);
-  EXPECT_TRUE(read(singlet + "MNUM 2 1\nCOTN 2 1 AR\nCOTN 2 2 none\nFLWT 1 1 1\nFLWT 1 2 2\nCSUM 5\n")
+  EXPECT_TRUE(read(singlet + "MNUM 2 1\nCOTN 2 1 AR\nCOTN 2 2 AR\nFLWT 1 1 1\nFLWT 1 2 2\nCSUM 5\n")
                   .imported->warnings.empty());
+}
+
+/// The singlet with a coating on its front surface.
+Prescription coated(const std::string& name) {
+  return read(with(singlet, "  DISZ 4\n", "  DISZ 4\n  COAT " + name + "\n"));
+}
+
+TEST(Zemax, CoatingsOfKnownNamesAreTaken) {
+  const Prescription plain = read(singlet);
+  for (const auto& row : plain.surfaces) EXPECT_FALSE(row.coating);
+  for (const char* name : {"AR", "ar", "I.99", "I.5", "I.0", "i.999", "I.00"}) {
+    const Prescription p = coated(name);
+    EXPECT_TRUE(p.imported->warnings.empty()) << name;
+    ASSERT_TRUE(p.surfaces[1].coating) << name;
+    EXPECT_FALSE(p.surfaces[0].coating || p.surfaces[2].coating);
+    petzval::validate(*p.surfaces[1].coating, name);
+  }
+  // A quarter wave of the primary wavelength, here the second or the first.
+  EXPECT_EQ(coated("AR").surfaces[1].coating, petzval::Coating::quarter_wave(1.38, 587.5618));
+  const Prescription first = read(with(with(singlet, "PWAV 2", "PWAV 1"), "  DISZ 4\n", "  DISZ 4\n  COAT AR\n"));
+  EXPECT_DOUBLE_EQ(first.surfaces[1].coating->layers.at(0).thickness_nm, 486.1327 / (4 * 1.38));
+  const auto reflectance = [](const char* name, double nm) {
+    return surface_light(coated(name).surfaces[1].coating.value(), 1, 1.5, 1, nm).reflectance();
+  };
+  for (const double nm : {300.0, 587.5618, 12000.0}) {
+    EXPECT_EQ(reflectance("I.99", nm), 0.01);
+    EXPECT_EQ(reflectance("I.5", nm), 0.5);
+    EXPECT_EQ(reflectance("I.0", nm), 1);
+    EXPECT_EQ(reflectance("i.999", nm), 0.001);
+  }
+}
+
+TEST(Zemax, CoatingsOfOtherNamesAreNamed) {
+  for (const char* name : {"HEAR1", "METAL", "NULL", "I", "I.", "I.9x", "I1.5", "I.-5", "ARX", "A"}) {
+    const Prescription p = coated(name);
+    EXPECT_FALSE(p.surfaces[1].coating) << name;
+    ASSERT_EQ(p.imported->warnings.size(), 1u) << name;
+    expect_tokens(warning(p, "COAT"), {name, "surface 1", "left out", "AR", "I.nn"});
+    EXPECT_EQ(p.imported->warnings[0].line, 40) << name;
+  }
+  // Surfaces with the same coating share a warning.
+  const Prescription both =
+      read(with(with(singlet, "  DISZ 4\n", "  DISZ 4\n  COAT HEAR1\n"), "  DISZ 48\n", "  DISZ 48\n  COAT HEAR1\n"));
+  ASSERT_EQ(both.imported->warnings.size(), 1u);
+  expect_tokens(warning(both, "COAT"), {"HEAR1", "1, 2"});
+  // A quarter wave on a mirror would be the substrate of the mirror; an ideal coating applies.
+  const auto mirror = [](const std::string& name) {
+    return read(with(
+        with(with(singlet, "GLAS ___BLANK 1 0 1.5 60 0", "GLAS MIRROR\n  COAT " + name), "  DISZ 4\n", "  DISZ -4\n"),
+        "  DISZ 48\n", "  DISZ -48\n"));
+  };
+  EXPECT_FALSE(mirror("AR").surfaces[1].coating);
+  expect_tokens(warning(mirror("AR"), "COAT"), {"AR", "surface 1", "mirror"});
+  EXPECT_TRUE(mirror("I.05").surfaces[1].coating);
+  // Coatings that differ among configurations are named.
+  expect_tokens(warning(read(singlet + "MNUM 2 1\nCOTN 2 1 AR\nCOTN 2 2 I.99\n"), "COTN"),
+                {"configurations", "left out"});
 }
 
 TEST(Zemax, SolvesWhoseSolutionIsStatedAreSilent) {
