@@ -63,6 +63,12 @@ constexpr int source_digits = 12;
 
 bool is_aspheric(const petzval::SurfaceRow& row) { return row.conic != 0 || !row.aspheric.empty(); }
 
+std::string in_words(const petzval::Coating& coating) {
+  if (!coating.table.empty()) return "reflectances";
+  const std::size_t layers = coating.layers.size();
+  return layers == 0 ? "uncoated" : std::to_string(layers) + (layers == 1 ? " layer" : " layers");
+}
+
 void surface_table(std::ostream& html, const Report& r) {
   const petzval::Prescription& p = r.loaded.prescription;
   html << "<div class=\"scroll\"><table>\n<tr><th class=\"number\">surface</th><th class=\"number\">radius</th>"
@@ -90,6 +96,7 @@ void surface_table(std::ostream& html, const Report& r) {
     }
     if (is_aspheric(row)) remark("asphere");
     if (row.obscuration_semi_diameter) remark("central obscuration " + number(*row.obscuration_semi_diameter, 5));
+    if (row.coating) remark("coating: " + in_words(*row.coating));
     const bool stated = !row.semi_diameter_computed && row.semi_diameter == compiled.semi_diameter;
     if (row.semi_diameter_computed) {
       remark("semi-diameter computed");
