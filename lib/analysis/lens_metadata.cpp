@@ -9,10 +9,10 @@
 
 #include "core/least_squares.hpp"
 #include "core/text.hpp"
+#include "petzval/analysis/transmittance.hpp"
 #include "petzval/core/error.hpp"
 #include "petzval/paraxial/first_order.hpp"
 #include "petzval/pupil/illumination.hpp"
-#include "pupil/pupil_boundary.hpp"
 
 namespace petzval {
 
@@ -42,9 +42,11 @@ LensState lens_state(const LensDistortion& distortion) {
   state.effective_focal_length_mm = first_order(lens, {}, main_meridian(lens)).effective_focal_length;
   state.pinhole_focal_length_mm = pinhole.focal_length_mm.y;
   state.f_number = paraxial_f_number(lens);
-  const double area = pupil_boundary(lens, {.z = -std::numeric_limits<double>::infinity()}).area();
-  state.t_number =
-      std::max(state.f_number, std::abs(state.effective_focal_length_mm) / (2 * std::sqrt(area / std::numbers::pi)));
+  state.area_f_number = std::max(state.f_number, area_f_number(lens));
+  if (states_coatings(lens)) {
+    const auto light = transmittance(lens, FieldPoint{.z = -std::numeric_limits<double>::infinity()});
+    if (light) state.t_number = state.area_f_number / std::sqrt(*light);
+  }
   state.focus_distance_mm = film_z - pinhole.subject_z_mm;
   state.entrance_pupil_offset_mm = film_z - pinhole.z_mm;
   return state;

@@ -248,13 +248,13 @@ bool lens_distortion() {
 
 /// Collects the metadata of a shot: names, settings and falloff.
 bool metadata() {
-  const Lens lens = double_gauss();
+  const Lens lens = with_coating(double_gauss(), Coating::quarter_wave());
   const LensIdentity identity = identity_of(table("double_gauss_100mm_f2.0"));
   const LensState state = lens_state(LensDistortion(Camera(lens, film)));
   const ExposureFalloff falloff = fit_exposure_falloff(lens, film);
-  std::cout << identity.model << ": T" << state.t_number << ", " << state.focus_distance_mm << " mm, light at 18 mm "
-            << falloff.light(18) << '\n';
-  return state.t_number >= state.f_number && falloff.light(18) < 1;
+  std::cout << identity.model << ": T" << state.t_number.value() << ", " << state.focus_distance_mm
+            << " mm, light at 18 mm " << falloff.light(18) << '\n';
+  return state.t_number > state.f_number && falloff.light(18) < 1;
 }
 
 /// Compares the blur of a lens at f/16 with its Airy disc.

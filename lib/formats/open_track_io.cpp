@@ -122,7 +122,7 @@ std::string format_open_track_io(const Lens& lens, const Film& film, const LensI
   sample.add("entrancePupilOffset", state.entrance_pupil_offset_mm * metres);
   if (std::isfinite(state.focus_distance_mm)) sample.add("focusDistance", state.focus_distance_mm * metres);
   if (std::isfinite(state.f_number)) sample.add("fStop", state.f_number);
-  if (std::isfinite(state.t_number)) sample.add("tStop", state.t_number);
+  if (state.t_number && std::isfinite(*state.t_number)) sample.add("tStop", *state.t_number);
   sample.add("exposureFalloff", light.on_one_line());
 
   Object protocol, file;

@@ -32,7 +32,7 @@ void add_lens_attributes(ExrPart& part, const LensDistortion& distortion, const 
   part.numbers["pinholeFocalLength"] = state.pinhole_focal_length_mm;
   part.numbers["entrancePupilOffset"] = state.entrance_pupil_offset_mm;
   part.numbers["aperture"] = state.f_number;
-  part.numbers["tStop"] = state.t_number;
+  if (state.t_number) part.numbers["tStop"] = *state.t_number;
   part.numbers["focus"] = state.focus_distance_mm / 1000;  // in metres by the OpenEXR standard
   const Film& film = distortion.camera().film();
   part.pairs["sensorOverallDimensions"] = Vec2<float>(Vec2<double>(film.width_mm, film.height_mm));

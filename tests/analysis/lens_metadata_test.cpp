@@ -11,6 +11,7 @@
 #include "../analysis/distorting_lenses.hpp"
 #include "../data_lenses.hpp"
 #include "../expect_error.hpp"
+#include "petzval/analysis/transmittance.hpp"
 #include "petzval/focus/focus.hpp"
 #include "petzval/iris/iris.hpp"
 #include "petzval/paraxial/first_order.hpp"
@@ -66,14 +67,26 @@ TEST(LensMetadata, StateEqualsTheFocusedLens) {
   EXPECT_NEAR(state_of(far).pinhole_focal_length_mm, first_order(lens).effective_focal_length, 0.3);
 }
 
-TEST(LensMetadata, TNumberIncludesBladesAndObscurations) {
+TEST(LensMetadata, AreaFNumberIncludesBladesAndObscurations) {
   const Lens lens = with_f_number(data_lens("double_gauss_100mm_f2_28deg"), 4);
   const LensState round = state_of(lens), square = state_of(with_iris(lens, {.blades = 4}));
-  EXPECT_NEAR(round.t_number, round.f_number, 2e-3 * round.f_number);
+  EXPECT_NEAR(round.area_f_number, round.f_number, 2e-3 * round.f_number);
   // The square inscribed in a circle has 2 / pi of its area.
-  EXPECT_NEAR(square.t_number / square.f_number, std::sqrt(std::numbers::pi / 2), 3e-3);
+  EXPECT_NEAR(square.area_f_number / square.f_number, std::sqrt(std::numbers::pi / 2), 3e-3);
   const LensState mirrors = state_of(data_lens("catadioptric_mangin_1000mm_f7.5"));
-  EXPECT_GT(mirrors.t_number, 1.05 * mirrors.f_number);
+  EXPECT_GT(mirrors.area_f_number, 1.05 * mirrors.f_number);
+}
+
+TEST(LensMetadata, TNumberIsAbsentWithoutCoatings) {
+  const Lens lens = with_f_number(data_lens("double_gauss_100mm_f2_28deg"), 4);
+  EXPECT_FALSE(state_of(lens).t_number);
+  for (const Coating& coating : {Coating{}, Coating::quarter_wave()}) {
+    const Lens coated = with_coating(lens, coating);
+    const LensState state = state_of(coated);
+    const double light = transmittance(coated, FieldPoint{.z = -std::numeric_limits<double>::infinity()}).value();
+    EXPECT_LT(light, 0.97);
+    EXPECT_EQ(state.t_number.value(), state.area_f_number / std::sqrt(light));
+  }
 }
 
 // Irradiance through a small stop at the centre of a ball falls as cos^4: (1 + x^2)^-2 = 1 - 2 x^2 + 3 x^4 - ...

@@ -15,6 +15,7 @@
 #include "../data_lenses.hpp"
 #include "../expect_error.hpp"
 #include "../message.hpp"
+#include "petzval/analysis/transmittance.hpp"
 #include "petzval/focus/focus.hpp"
 #include "petzval/paraxial/first_order.hpp"
 #include "petzval/pupil/aim.hpp"
@@ -114,11 +115,14 @@ TEST(OpenTrackIo, HasTheKeysAndUnitsOfTheStandard) {
   expect_tokens(fixed.at("calibrationHistory").at(0).get<std::string>(), {480, 320, "D-U"});
   const json& sample = file.at("lens");
   EXPECT_EQ(keys(sample), (std::set<std::string>{"distortion", "entrancePupilOffset", "exposureFalloff", "fStop",
-                                                 "focusDistance", "pinholeFocalLength", "projectionOffset", "tStop"}));
+                                                 "focusDistance", "pinholeFocalLength", "projectionOffset"}));
   EXPECT_NEAR(sample.at("focusDistance").get<double>(), 2, 1e-8);
   EXPECT_NEAR(sample.at("entrancePupilOffset").get<double>(), (lens.film_z() - pupils(lens).entrance.z) / 1000, 1e-12);
   EXPECT_NEAR(sample.at("fStop").get<double>(), paraxial_f_number(lens), 1e-12);
-  EXPECT_GE(sample.at("tStop").get<double>(), sample.at("fStop").get<double>());
+  const Lens coated = with_coating(lens, Coating::quarter_wave());
+  const double passed = transmittance(coated, FieldPoint{.z = -std::numeric_limits<double>::infinity()}).value();
+  EXPECT_NEAR(written(coated, film, identity).at("lens").at("tStop").get<double>() * std::sqrt(passed),
+              area_f_number(lens), 1e-6);
   EXPECT_EQ(sample.at("projectionOffset"), json({{"x", 0.0}, {"y", 0.0}}));
   EXPECT_GE(sample.at("distortion").at(0).at("overscan").get<double>(), 1);
   const json& light = sample.at("exposureFalloff");

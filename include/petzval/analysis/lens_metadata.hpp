@@ -35,16 +35,17 @@ struct LensState {
   double effective_focal_length_mm = 0;  ///< in the main meridian
   double pinhole_focal_length_mm = 0;    ///< vertical focal length of Pinhole
   double f_number = 0;                   ///< effective focal length over the diameter of the paraxial entrance pupil
-  /// The f-number of a round pupil with the transmitting area of the actual pupil; at least f_number. Accounts for
-  /// blades and obscurations, but not for losses in glass and coatings.
-  double t_number = 0;
+  double area_f_number = 0;  ///< area_f_number(), at least f_number: with blades and obscurations, without losses
+  /// T-stop: area_f_number divided by the root of the transmittance() of the axis at infinity, at the primary
+  /// wavelength; nullopt unless a coating is stated (states_coatings()): the losses are unknown.
+  std::optional<double> t_number{};
   double focus_distance_mm = 0;         ///< from the film to the subject; infinite at infinity
   double entrance_pupil_offset_mm = 0;  ///< from the film to the entrance pupil, positive towards the scene
 };
 
 /// The lens settings of a camera, with the subject at Pinhole::subject_z_mm.
 ///
-/// @throws Error under the conditions of scene_point()
+/// @throws Error under the conditions of scene_point(), and of transmittance() if a coating is stated
 PETZVAL_API LensState lens_state(const LensDistortion& distortion);
 
 /// Polynomial falloff of the irradiance towards the edge of the film, relative to the axis.

@@ -21,8 +21,8 @@ namespace petzval {
 /// - lens.distortion: "Brown-Conrady D-U" and "Brown-Conrady U-D", with overscan and the radial coefficients of
 ///   OpenLensIO 1.0 for radii in mm on the film: k1, k3, k5 in the numerator and k2, k4, k6 in the denominator;
 /// - lens: pinholeFocalLength (mm), projectionOffset (mm, to the right and down), entrancePupilOffset and focusDistance
-///   from the film (m; focusDistance is omitted at infinity), fStop, tStop, and exposureFalloff (1/mm^2, 1/mm^4,
-///   1/mm^6).
+///   from the film (m; focusDistance is omitted at infinity), fStop, tStop (only if the lens states a coating,
+///   LensState::t_number), and exposureFalloff (1/mm^2, 1/mm^4, 1/mm^6).
 ///
 /// @param lens      the lens, with its film at the focus
 /// @param film      size, resolution and shift of the sensor

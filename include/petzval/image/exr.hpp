@@ -48,7 +48,8 @@ PETZVAL_API void write_deep_exr(const FragmentLists& lists, const std::filesyste
 ///
 /// Uses the standard names of OpenEXR 3.2, which all versions can read: lensMake, lensModel, lensSerialNumber;
 /// nominalFocalLength, pinholeFocalLength, effectiveFocalLength and entrancePupilOffset (mm); aperture (f-number);
-/// tStop; focus (m, from the film; infinite at infinity); sensorOverallDimensions (mm).
+/// tStop (only if the lens states a coating, LensState::t_number); focus (m, from the film; infinite at infinity);
+/// sensorOverallDimensions (mm).
 ///
 /// @throws Error under the conditions of lens_state()
 PETZVAL_API void add_lens_attributes(ExrPart& part, const LensDistortion& distortion,
