@@ -12,6 +12,7 @@
 #include <string>
 
 #include "petzval/analysis/distortion.hpp"
+#include "petzval/analysis/lens_metadata.hpp"
 #include "petzval/core/error.hpp"
 #include "petzval/core/geometry.hpp"
 #include "petzval/core/parallel.hpp"
@@ -20,6 +21,7 @@
 #include "support/camera_setup.hpp"
 #include "support/cli.hpp"
 #include "support/files.hpp"
+#include "support/lens_light.hpp"
 #include "support/load_lens.hpp"
 #include "support/text.hpp"
 
@@ -31,12 +33,14 @@ struct Options {
   examples::LensInput lens_file;
   std::string out_folder;
   examples::CameraSetup setup;
+  std::string coatings;  // empty: the coatings of the file
   examples::Output output;
 };
 
 void write(const Options& options) {
   const examples::LoadedLens loaded = examples::load_lens(options.lens_file, std::array{petzval::d_line_nm});
-  const petzval::Lens lens = examples::focused(loaded, options.setup);
+  petzval::Lens lens = examples::focused(loaded, options.setup);
+  if (const auto coated = examples::coated(lens, options.coatings)) lens = *coated;
   const auto [width, height] = options.setup.film_size();
   constexpr int columns = 1920, most_rows = 8 * columns;
   const double rows = std::round(columns * height / width);  // pixels are square
@@ -63,6 +67,12 @@ void write(const Options& options) {
               << "; beyond this field the coefficients extrapolate, up to "
               << number(petzval::degrees(fit.rises_to_rad), 3) << " degrees\n";
   }
+  const petzval::LensState state = petzval::lens_state(distortion);
+  if (!options.output.json) {
+    std::cout << "f/" << number(state.f_number, 4) << ", f/" << number(state.area_f_number, 4)
+              << " by the area of the pupil, "
+              << (state.t_number ? "T" + number(*state.t_number, 4) : "no T-stop: losses are not modelled") << '\n';
+  }
   written(".opentrackio.json", [&](const auto& file) { petzval::write_open_track_io(lens, film, identity, file); });
   written(".stmap.exr",
           [&](const auto& file) { petzval::write_st_map(lens, film, identity, file, {}, examples::threads()); });
@@ -73,7 +83,10 @@ void write(const Options& options) {
                          {"field_deg", petzval::degrees(fit.field_rad)},
                          {"rms_px", fit.rms_px},
                          {"largest_px", fit.largest_px},
-                         {"rises_to_deg", petzval::degrees(fit.rises_to_rad)}});
+                         {"rises_to_deg", petzval::degrees(fit.rises_to_rad)},
+                         {"f_number", examples::finite_or_null(state.f_number)},
+                         {"area_f_number", examples::finite_or_null(state.area_f_number)},
+                         {"t_stop", examples::or_null(state.t_number)}});
 }
 
 }  // namespace
@@ -86,6 +99,7 @@ int commands::metadata(int argc, char** argv) {
       "petzval metadata");
   examples::add_lens(app, options.lens_file);
   examples::add_camera(app, options.setup);
+  examples::add_coatings(app, options.coatings, "the files have no T-stop");
   options.output.add(app);
   examples::add_out_folder(app, options.out_folder, "folder for the files")->required();
   examples::add_threads(app);

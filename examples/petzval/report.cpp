@@ -37,7 +37,7 @@ struct Options {
   examples::FocusFlags focus;
   std::string film, out_folder;
   std::vector<double> field_deg;
-  std::string coatings;  // empty: losses are not modelled
+  std::string coatings;  // empty: the coatings of the file
 };
 
 /// Subject, film and light from the command line; by default from the file.
@@ -95,15 +95,29 @@ petzval::Lens colours_of(const examples::Report& report, const Options& options)
   return set(examples::compiled_for(report.loaded, light.wavelengths_nm, light.primary_nm), options, report.subject);
 }
 
-/// Light that passes the lens with --coatings; nullopt without the flag.
+/// Light that passes the lens with --coatings or with the coatings of its file; nullopt without coatings.
 std::optional<examples::LightReport> light_of(const examples::Report& report, const petzval::Lens& colours,
                                               const Options& options) {
-  if (options.coatings.empty()) return {};
-  const auto visible = examples::parse_wavelengths("--coatings", "visible");
-  const petzval::Lens lens = examples::compiled_for(report.loaded, visible);
-  const petzval::Coating coating = examples::coating_named(options.coatings);
-  return examples::report_light(report, petzval::with_coating(colours, coating),
-                                petzval::with_coating(set(lens, options, report.subject), coating));
+  const auto coated = examples::coated(colours, options.coatings);
+  if (!coated) return {};
+  std::optional<petzval::Lens> visible;
+  try {
+    // Glasses that end before 400 or 700 nm keep their last index, which changes transmittances little.
+    auto compile = examples::compile_options(report.loaded);
+    compile.clamp_wavelengths = true;
+    visible = set(petzval::compile(report.loaded.prescription, examples::visible_wavelengths(*coated), compile),
+                  options, report.subject);
+  } catch (const petzval::Error&) {
+    // Media without dispersion have indices at one wavelength only.
+  }
+  if (visible) visible = examples::coated(*visible, options.coatings);
+  try {
+    return examples::report_light(report, options.coatings, *coated, visible);
+  } catch (const petzval::Error& error) {
+    if (!options.coatings.empty()) throw;
+    examples::note(std::string("the light that passes the lens is unknown: ") + error.what());
+    return {};
+  }
 }
 
 std::string to_json(const examples::Report& report, const Options& options) {
@@ -118,7 +132,8 @@ std::string to_json(const examples::Report& report, const Options& options) {
 
 void write_page(const examples::Report& report, const Options& options) {
   const petzval::Lens lens = colours_of(report, options);
-  const auto figures = examples::lens_figures(report, lens);
+  const auto light = light_of(report, lens, options);
+  const auto figures = examples::lens_figures(report, lens, light);
 
   const std::filesystem::path folder = options.out_folder;
   examples::make_folder(folder);
@@ -128,7 +143,7 @@ void write_page(const examples::Report& report, const Options& options) {
     std::cout << file.string() << '\n';
   };
   for (const examples::LensFigure& figure : figures) write('_' + figure.name + ".svg", figure.svg);
-  write(".html", examples::lens_page(report, lens, figures, light_of(report, lens, options)));
+  write(".html", examples::lens_page(report, lens, figures, light));
 }
 
 }  // namespace
@@ -142,8 +157,9 @@ int commands::report(int argc, char** argv) {
       "With --out: writes LENS_layout.svg (and LENS_layout_x.svg for a lens with cylinders), LENS_spots.svg, "
       "LENS_through_focus.svg, LENS_energy.svg, LENS_fans.svg, LENS_wavefront.svg, LENS_footprints.svg, "
       "LENS_focus.svg, LENS_mtf.svg, "
-      "LENS_mtf_field.svg, LENS_colour.svg, LENS_field.svg, LENS_seidel.svg, LENS_illumination.svg and LENS.html, a "
-      "page with all of them, to DIR, and prints their paths instead.",
+      "LENS_mtf_field.svg, LENS_colour.svg, LENS_field.svg, LENS_seidel.svg, LENS_illumination.svg, with coatings "
+      "LENS_transmittance.svg and LENS_transmittance_field.svg, and LENS.html, a page with all of them, to DIR, and "
+      "prints their paths instead.",
       "petzval report");
   examples::add_lens(app, options.lens_file);
   app.add_option(
@@ -164,32 +180,27 @@ int commands::report(int argc, char** argv) {
                             ->default_str("distance and film of the file");
   examples::add_focus(app, options.focus);
   examples::add_film_choice(app, options.film, "file; with --at focus");
-  app.add_option("--coatings", options.coatings,
-                 "coating of all surfaces between air and glass, for the light that passes the lens: none (uncoated), "
-                 "mgf2 (a quarter wave of magnesium fluoride at 550 nm), or a CSV file of layers from the air "
-                 "(index,absorption,thickness_nm) or of reflectances (wavelength_nm,reflectance)")
-      ->type_name("none|mgf2|FILE.csv")
-      ->default_str("losses are not modelled");
+  examples::add_coatings(app, options.coatings, "losses are not modelled");
   auto* out = examples::add_out_folder(app, options.out_folder, "folder for figures and a page");
   const auto* fields = examples::add_numbers(app, "--fields", options.field_deg, examples::field_angle,
-                                             "fields of --out, --json and --coatings (degrees)")
+                                             "fields of --out, --json and transmittances (degrees)")
                            ->default_str("fields of the file, else the axis, 0.7 and 1 of the declared half field");
   out->excludes("--json");
 
   return examples::run(app, argc, argv, [&] {
     options.wavelength_given = wavelength->given();
     options.subject_given = subject->given();
-    if (fields->given() && !out->given() && !options.json && options.coatings.empty()) {
-      throw petzval::Error("--fields needs --out, --json or --coatings: the text alone has no fields");
-    }
     const examples::Report report = report_of(options);
     if (out->given()) return write_page(report, options);
     if (options.json) {
       std::cout << to_json(report, options);
       return;
     }
-    std::cout << examples::to_text(report);
-    if (options.coatings.empty()) return;
-    std::cout << examples::to_text(*light_of(report, colours_of(report, options), options));
+    const bool modelled = !options.coatings.empty() || petzval::states_coatings(report.loaded.lens);
+    const auto light = modelled ? light_of(report, colours_of(report, options), options) : std::nullopt;
+    if (fields->given() && !light) {
+      throw petzval::Error("--fields needs --out, --json or --coatings: the text alone has no fields");
+    }
+    std::cout << examples::to_text(report) << (light ? examples::to_text(*light) : std::string());
   });
 }

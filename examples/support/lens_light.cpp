@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "lens_light.hpp"
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <filesystem>
 #include <span>
 #include <sstream>
@@ -14,6 +16,8 @@
 #include "text.hpp"
 
 namespace examples {
+
+namespace {
 
 petzval::Coating coating_named(const std::string& name) {
   if (name == "none") return {};
@@ -38,48 +42,123 @@ petzval::Coating coating_named(const std::string& name) {
   return coating;
 }
 
-LightReport report_light(const Report& report, const petzval::Lens& colours, const petzval::Lens& visible) {
-  LightReport result;
-  const double z = subject_z(report.subject, colours);
-  for (const double degrees : report.subject.fields.degrees) {
-    const petzval::FieldPoint point{.field_rad = petzval::radians(degrees), .z = z};
-    for (std::size_t w = 0; w < colours.wavelengths_nm().size(); ++w) {
-      result.values.push_back({colours.wavelengths_nm()[w], degrees, petzval::transmittance(colours, point, w)});
-    }
+/// Change of the reciprocal colour temperature, 10^6 / K, as on the filters of photographers: positive is warmer.
+std::optional<double> shift_mired(const petzval::LensColour& colour) {
+  if (!colour.cct_k || !colour.light_cct_k) return {};
+  return 1e6 / *colour.cct_k - 1e6 / *colour.light_cct_k;
+}
+
+}  // namespace
+
+Option* add_coatings(App& app, std::string& coatings, const std::string& without) {
+  return app
+      .add_option("--coatings", coatings,
+                  "coating of all surfaces between air and glass, for the light that passes the lens: none (uncoated), "
+                  "mgf2 (a quarter wave of magnesium fluoride at 550 nm), or a CSV file of layers from the air "
+                  "(index,absorption,thickness_nm) or of reflectances (wavelength_nm,reflectance)")
+      ->type_name("none|mgf2|FILE.csv")
+      ->default_str("the coatings of the file; if it states none, " + without);
+}
+
+std::optional<petzval::Lens> coated(const petzval::Lens& lens, const std::string& coatings) {
+  if (!coatings.empty()) return petzval::with_coating(lens, coating_named(coatings));
+  return petzval::states_coatings(lens) ? std::optional(lens) : std::nullopt;
+}
+
+std::vector<double> visible_wavelengths(const petzval::Lens& lens) {
+  double shortest = 400, longest = 700;
+  for (const petzval::LensSurface& surface : lens.surfaces()) {
+    if (!surface.coating || surface.coating->table.empty()) continue;
+    shortest = std::max(shortest, 10 * std::ceil(surface.coating->table.front().wavelength_nm / 10));
+    longest = std::min(longest, surface.coating->table.back().wavelength_nm);
   }
+  std::vector<double> result;
+  for (double nm = shortest; nm <= longest; nm += 10) result.push_back(nm);
+  return result.size() < 2 ? std::vector<double>() : result;
+}
+
+LightReport report_light(const Report& report, const std::string& coatings, const petzval::Lens& colours,
+                         const std::optional<petzval::Lens>& visible) {
+  LightReport result{coatings, {}, colours, report.subject.fields.degrees, {}, visible, {}};
+  for (const std::size_t surface : petzval::uncoated_surfaces(colours)) {
+    result.uncoated.push_back(report.surface_number(surface));
+  }
+  std::vector<double> fields;
+  for (const double degrees : result.fields_deg) fields.push_back(petzval::radians(degrees));
+  result.values = petzval::transmittance(colours, subject_z(report.subject, colours), fields, threads());
+  if (!visible) return result;
   const auto table = petzval::ColourMatching::load(petzval::data_directory() / "glass" / "cie1931_2deg_5nm.csv");
-  result.colour = petzval::lens_colour(visible, subject_z(report.subject, visible), white_light("D65"), table);
+  result.colour = petzval::lens_colour(*visible, subject_z(report.subject, *visible), white_light("D65"), table);
   return result;
 }
 
 Json to_json(const std::optional<LightReport>& light) {
-  Json json{{"transmittance", nullptr}, {"t_stop", nullptr}, {"colour", nullptr}};
+  Json json{{"coatings", nullptr},
+            {"uncoated_surfaces", nullptr},
+            {"transmittance", nullptr},
+            {"t_stop", nullptr},
+            {"colour", nullptr}};
   if (!light) return json;
+  json["coatings"] = light->coatings.empty() ? "file" : light->coatings;
+  json["uncoated_surfaces"] = light->uncoated;
   json["transmittance"] = Json::array();
-  for (const auto& [nm, degrees, value] : light->values) {
-    json["transmittance"].push_back(
-        {{"wavelength_nm", nm}, {"field_deg", degrees}, {"value", value ? Json(*value) : Json()}});
+  const auto wavelengths = light->colours.wavelengths_nm();
+  for (std::size_t i = 0; i < light->values.size(); ++i) {
+    json["transmittance"].push_back({{"wavelength_nm", wavelengths[i % wavelengths.size()]},
+                                     {"field_deg", light->fields_deg[i / wavelengths.size()]},
+                                     {"value", or_null(light->values[i].value)}});
   }
   if (!light->colour) return json;
-  json["t_stop"] = light->colour->t_stop;
-  json["colour"] = {{"x", light->colour->xy[0]}, {"y", light->colour->xy[1]}};
+  const petzval::LensColour& colour = *light->colour;
+  json["t_stop"] = finite_or_null(colour.t_stop);
+  json["colour"] = {{"x", colour.xy[0]},
+                    {"y", colour.xy[1]},
+                    {"correlated_colour_temperature_k", or_null(colour.cct_k)},
+                    {"light_correlated_colour_temperature_k", or_null(colour.light_cct_k)},
+                    {"shift_mired", or_null(shift_mired(colour))}};
   return json;
+}
+
+std::string coatings_in_words(const LightReport& light) {
+  if (!light.coatings.empty()) return "coatings: " + light.coatings + " on all surfaces to air (--coatings)";
+  std::string text = "coatings: of the file";
+  if (light.uncoated.empty()) return text;
+  const bool one = light.uncoated.size() == 1;
+  text += one ? "; surface " : "; surfaces ";
+  for (std::size_t i = 0; i < light.uncoated.size(); ++i) {
+    text += (i == 0 ? "" : i + 1 < light.uncoated.size() ? ", " : " and ") + std::to_string(light.uncoated[i]);
+  }
+  return text + (one ? " to air has none and is uncoated" : " to air have none and are uncoated");
+}
+
+std::vector<std::string> colour_in_words(const LightReport& light) {
+  if (!light.colour) return {};
+  const petzval::LensColour& colour = *light.colour;
+  const auto kelvin = [](const std::optional<double>& value) {
+    return value ? ", " + number(std::round(*value), 6) + " K" : std::string();
+  };
+  std::string shift;
+  if (const auto mired = shift_mired(colour)) {
+    const double rounded = std::round(10 * *mired) / 10;
+    shift = "; " + number(std::abs(rounded), 4) + " mired" + (rounded == 0 ? "" : rounded < 0 ? " cooler" : " warmer");
+  }
+  const std::string passed = number(100 * colour.luminous_transmittance, 4) + " % of daylight D65";
+  return {std::isfinite(colour.t_stop) ? "T-stop " + number(colour.t_stop, 4) + " (" + passed + ")" : passed,
+          "White light becomes x = " + number(colour.xy[0], 4) + ", y = " + number(colour.xy[1], 4) +
+              kelvin(colour.cct_k) + " (CIE 1931; D65 is " + number(colour.light_xy[0], 4) + ", " +
+              number(colour.light_xy[1], 4) + kelvin(colour.light_cct_k) + ")" + shift};
 }
 
 std::string to_text(const LightReport& light) {
   std::ostringstream text;
-  text << "\nlight that the surfaces pass:\n";
-  for (const auto& [nm, degrees, value] : light.values) {
-    text << "  " << number(degrees, 4) << "\u00b0, " << number(nm, 6)
+  text << "\nlight that the lens passes, mean over the pupil:\n  " << coatings_in_words(light) << '\n';
+  for (const auto& [field, wavelength, value] : light.values) {
+    text << "  " << number(petzval::degrees(field), 4) << "\u00b0, "
+         << number(light.colours.wavelengths_nm()[wavelength], 6)
          << " nm: " << (value ? number(100 * *value, 4) + " %" : "no ray passes") << '\n';
   }
-  if (light.colour) {
-    const petzval::LensColour& colour = *light.colour;
-    text << "  T-stop " << number(colour.t_stop, 4) << " (" << number(100 * colour.luminous_transmittance, 4)
-         << " % of daylight D65)\n  white light becomes x = " << number(colour.xy[0], 4)
-         << ", y = " << number(colour.xy[1], 4) << " (CIE 1931; D65 is " << number(colour.light_xy[0], 4) << ", "
-         << number(colour.light_xy[1], 4) << ")\n";
-  }
+  if (!light.visible) text << "  no T-stop and colour: indices at visible wavelengths are unknown\n";
+  for (const std::string& line : colour_in_words(light)) text << "  " << line << '\n';
   return text.str();
 }
 

@@ -5,33 +5,49 @@
 #include <string>
 #include <vector>
 
+#include "cli.hpp"
 #include "files.hpp"
 #include "lens_report.hpp"
 #include "petzval/analysis/transmittance.hpp"
 
 namespace examples {
 
-/// The coating of the flag --coatings: none, mgf2 or a CSV file.
+/// Adds --coatings. without: the default in words.
+Option* add_coatings(App& app, std::string& coatings, const std::string& without);
+
+/// The lens with the coating of --coatings, or with the coatings of its file if `coatings` is empty; nullopt if the
+/// file states no coatings either: losses are not modelled.
 /// @throws petzval::Error if the name is unknown or the file is invalid
-petzval::Coating coating_named(const std::string& name);
+std::optional<petzval::Lens> coated(const petzval::Lens& lens, const std::string& coatings);
 
 /// Light that passes a lens with coatings.
 struct LightReport {
-  struct Value {
-    double wavelength_nm = 0, field_deg = 0;
-    std::optional<double> transmittance;  ///< nullopt: no ray passes
-  };
-  std::vector<Value> values;                  ///< ordered by field
-  std::optional<petzval::LensColour> colour;  ///< in daylight (D65); nullopt: no ray passes
+  std::string coatings;                             ///< as --coatings; empty: of the file
+  std::vector<int> uncoated;                        ///< surfaces to air for which the file states no coating
+  petzval::Lens colours;                            ///< the lens at the wavelengths of the report
+  std::vector<double> fields_deg;                   ///< fields of the report
+  std::vector<petzval::FieldTransmittance> values;  ///< of `colours` at these fields
+  /// The lens at 400 to 700 nm, less if a table of reflectances covers less; nullopt if its indices are unknown.
+  std::optional<petzval::Lens> visible;
+  std::optional<petzval::LensColour> colour;  ///< in daylight (D65); nullopt: no ray passes or no `visible`
 };
 
-/// @param colours  the lens at the wavelengths of the report
-/// @param visible  the lens at wavelengths of the visible spectrum
-/// @throws petzval::Error under the conditions of petzval::transmittance() and petzval::lens_colour()
-LightReport report_light(const Report& report, const petzval::Lens& colours, const petzval::Lens& visible);
+/// Wavelengths from 400 to 700 nm in steps of 10 that all tables of reflectances of the lens cover; empty if there are
+/// less than two.
+std::vector<double> visible_wavelengths(const petzval::Lens& lens);
 
-/// The keys transmittance, t_stop and colour; null without a report.
+/// @param colours  the coated lens at the wavelengths of the report
+/// @param visible  the coated lens at visible_wavelengths()
+/// @throws petzval::Error under the conditions of petzval::transmittance() and petzval::lens_colour()
+LightReport report_light(const Report& report, const std::string& coatings, const petzval::Lens& colours,
+                         const std::optional<petzval::Lens>& visible);
+
+/// The keys transmittance, t_stop, colour, coatings and uncoated_surfaces; null without a report.
 Json to_json(const std::optional<LightReport>& light);
 std::string to_text(const LightReport& light);
+/// "coatings: of the file; surfaces 3 and 5 to air have none and are uncoated".
+std::string coatings_in_words(const LightReport& light);
+/// "T-stop 1.4 (90 % of daylight D65)", then the colour; empty without LightReport::colour.
+std::vector<std::string> colour_in_words(const LightReport& light);
 
 }  // namespace examples

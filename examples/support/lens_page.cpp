@@ -186,19 +186,24 @@ void third_order_table(std::ostream& html, const Report& r, const petzval::Lens&
 }
 
 void light_table(std::ostream& html, const LightReport& light) {
-  html << "<h2>Light</h2>\n<p class=\"lead\">The fraction of unpolarised light that the surfaces pass with the coating "
-          "of "
-          "--coatings, mean over the pupil.";
-  if (light.colour) {
-    html << " T-stop " << number(light.colour->t_stop, 4)
-         << "; white light (D65) becomes x = " << number(light.colour->xy[0], 4)
-         << ", y = " << number(light.colour->xy[1], 4) << " (CIE 1931).";
-  }
+  html << "<h2>Light</h2>\n<p class=\"lead\">The fraction of unpolarised light that the lens passes, mean over the "
+          "pupil; "
+       << escaped_html(coatings_in_words(light)) << '.';
+  for (const std::string& words : colour_in_words(light)) html << ' ' << words << '.';
   html << "</p>\n";
-  head_row(html, {"field", "wavelength", "transmittance"});
-  for (const auto& [nm, degrees, value] : light.values) {
-    number_row(html, number(degrees, 4) + "\u00b0", std::array{nm, value.value_or(0)}, 6);
+  const auto wavelengths = light.colours.wavelengths_nm();
+  html << "<div class=\"scroll\"><table>\n<tr><th class=\"number\">field</th>";
+  for (const double nm : wavelengths) html << "<th class=\"number\">" << number(nm, 6) << " nm</th>";
+  html << "</tr>\n";
+  for (std::size_t k = 0; k < light.values.size(); ++k) {
+    if (k % wavelengths.size() == 0) {
+      html << (k == 0 ? "" : "</tr>\n") << "<tr><td class=\"number\">"
+           << number(light.fields_deg[k / wavelengths.size()], 4) << "\u00b0</td>";
+    }
+    const std::optional<double>& value = light.values[k].value;
+    html << "<td class=\"number\">" << (value ? number(100 * *value, 4) + " %" : "no light") << "</td>";
   }
+  html << "</tr>\n";
   html << "</table></div>\n";
 }
 
@@ -292,7 +297,8 @@ std::string conditions(const ReportSubject& subject) {
 
 }  // namespace
 
-std::vector<LensFigure> lens_figures(const Report& r, const petzval::Lens& colours) {
+std::vector<LensFigure> lens_figures(const Report& r, const petzval::Lens& colours,
+                                     const std::optional<LightReport>& light) {
   const petzval::Lens& lens = r.loaded.lens;
   constexpr std::size_t rays = 5;
   const int first = r.loaded.first_surface_number;
@@ -398,6 +404,24 @@ std::vector<LensFigure> lens_figures(const Report& r, const petzval::Lens& colou
         "Irradiance on the film from the centre to the edge of the field. Below cos\u2074 rims vignette; above it the "
         "pupil grows with the field, as in fisheyes and retrofocus lenses.",
         [&] { return petzval::illumination_figure(lens, subject_z, farthest); });
+  }
+  std::vector<petzval::FieldTransmittance> over_wavelength, over_field;
+  if (light && light->visible) {
+    over_wavelength = petzval::transmittance(*light->visible, examples::subject_z(r.subject, *light->visible), fields,
+                                             examples::threads());
+    add("transmittance", "Transmittance",
+        "The fraction of the light that the lens passes, mean over the pupil. A slope colours the picture: less blue "
+        "is warm.",
+        [&] { return petzval::transmittance_figure(*light->visible, subject_z, over_wavelength); });
+  }
+  if (light && farthest != 0) {
+    constexpr int steps = 20;
+    std::vector<double> grid;
+    for (int k = 0; k <= steps; ++k) grid.push_back(farthest * k / steps);
+    over_field = petzval::transmittance(light->colours, subject_z, grid, examples::threads());
+    add("transmittance_field", "Transmittance over the field",
+        "Steep rays at the edge lose more light. Vignetting is not included: the pupil counts as 1.",
+        [&] { return petzval::transmittance_field_figure(light->colours, subject_z, over_field); });
   }
   draw_all();
   return result;

@@ -16,11 +16,24 @@ TEST_F(LensMetadata, WritesBothFilesOfTheFocusedLens) {
   ASSERT_EQ(outcome.status, 0) << outcome.err;
   const auto sample = read_json(path("out/biogon_35mm_f2.8.opentrackio.json")).at("lens");
   EXPECT_NEAR(sample.at("focusDistance").get<double>(), 2, 1e-6);
-  EXPECT_NEAR(sample.at("tStop").get<double>(), 4, 0.05);
+  EXPECT_NEAR(sample.at("fStop").get<double>(), 4, 0.05);
+  EXPECT_FALSE(sample.contains("tStop"));  // losses are not modelled
   const auto parts = petzval::read_exr_parts(path("out/biogon_35mm_f2.8.stmap.exr"));
   ASSERT_EQ(parts.size(), 2u);
   EXPECT_EQ(parts[1].width, 1920);
   EXPECT_NEAR(parts[1].numbers.at("focus"), 2, 1e-6);
+}
+
+TEST_F(LensMetadata, StatesTStopsWithCoatings) {
+  const auto outcome = run(
+      "metadata", {lens("biogon_35mm_f2.8"), "--f-number", "4", "--coatings", "none", "--out", path("out"), "--json"});
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  const auto json = nlohmann::json::parse(outcome.out);
+  const auto sample = read_json(path("out/biogon_35mm_f2.8.opentrackio.json")).at("lens");
+  EXPECT_NEAR(sample.at("tStop").get<double>(), json.at("t_stop").get<double>(), 1e-9);
+  EXPECT_GT(json.at("t_stop").get<double>(), 1.05 * json.at("area_f_number").get<double>());
+  const auto parts = petzval::read_exr_parts(path("out/biogon_35mm_f2.8.stmap.exr"));
+  EXPECT_NEAR(parts[1].numbers.at("tStop"), json.at("t_stop").get<double>(), 1e-5);
 }
 
 // The files contain the distance from the film, as the formats require, for any origin of distances on the command

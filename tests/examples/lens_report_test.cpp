@@ -469,6 +469,11 @@ TEST_F(LensReport, ReportsTheLightOfCoatings) {
   EXPECT_GT(bare["t_stop"].get<double>(), coated["t_stop"].get<double>());
   EXPECT_GT(coated["t_stop"].get<double>(), plain["f_number_real"].get<double>());
   EXPECT_NEAR(bare["colour"]["x"].get<double>(), 0.3127, 0.01);
+  EXPECT_EQ(bare["coatings"], "none");
+  EXPECT_NEAR(bare["colour"]["light_correlated_colour_temperature_k"].get<double>(), 6504, 5);
+  EXPECT_NEAR(bare["colour"]["shift_mired"].get<double>(),
+              1e6 / bare["colour"]["correlated_colour_temperature_k"].get<double>() - 1e6 / 6504, 0.2);
+  EXPECT_GT(bare["colour"]["shift_mired"].get<double>(), 0);  // high indices of flint reflect more blue
 
   // Reflectances of 1 % at each of the eight surfaces to air.
   std::ofstream(path("coating.csv")) << "wavelength_nm,reflectance\n300,0.01\n900,0.01\n";
@@ -476,10 +481,56 @@ TEST_F(LensReport, ReportsTheLightOfCoatings) {
               0.02);
   std::ofstream(path("layers.csv")) << "index,absorption,thickness_nm\n1.38,0,99.6377\n";
   EXPECT_NEAR(report({"--coatings", path("layers.csv")})["t_stop"].get<double>(), coated["t_stop"].get<double>(), 1e-5);
-  EXPECT_EQ(run("report", {file, "--coatings", "mgf2", "--out", path("light")}).status, 0);
+  const auto page = run("report", {file, "--coatings", "mgf2", "--out", path("light")});
+  EXPECT_EQ(page.status, 0);
+  for (const char* figure : {"transmittance", "transmittance_field"}) {
+    const std::string name = path(std::string("light/double_gauss_100mm_f1.35_") + figure + ".svg");
+    EXPECT_NE(page.out.find(name), std::string::npos);
+    EXPECT_TRUE(read(name).starts_with("<svg"));
+  }
   EXPECT_NE(read(path("light/double_gauss_100mm_f1.35.html")).find("T-stop 1.38"), std::string::npos);
   EXPECT_NE(run("report", {file, "--coatings", "gold"}).err.find("must be none, mgf2 or a file.csv"),
             std::string::npos);
+}
+
+TEST_F(LensReport, UsesTheCoatingsOfTheFile) {
+  auto lens_file = read_json(lens("double_gauss_100mm_f1.35"));
+  for (const int surface : {0, 1}) lens_file["surfaces"][surface]["coating"] = "mgf2";
+  write("coated.json", lens_file.dump());
+  const auto report = [&](std::vector<std::string> more) {
+    more.insert(more.begin(), {path("coated.json"), "--json"});
+    return nlohmann::json::parse(run("report", more).out);
+  };
+  const auto own = report({}), bare = report({"--coatings", "none"}), coated = report({"--coatings", "mgf2"});
+  EXPECT_EQ(own["coatings"], "file");
+  EXPECT_EQ(own["uncoated_surfaces"].size(), 6u);
+  EXPECT_LT(own["t_stop"].get<double>(), bare["t_stop"].get<double>());
+  EXPECT_GT(own["t_stop"].get<double>(), coated["t_stop"].get<double>());
+  EXPECT_EQ(coated["coatings"], "mgf2");
+  EXPECT_TRUE(coated["uncoated_surfaces"].empty());
+  const std::string text = run("report", {path("coated.json"), "--fields", "0"}).out;
+  EXPECT_NE(text.find("coatings: of the file; surfaces 2, "), std::string::npos) << text;
+  EXPECT_NE(text.find("to air have none and are uncoated"), std::string::npos);
+  EXPECT_NE(run("report", {path("coated.json"), "--out", path("of_file")}).out.find("_transmittance.svg"),
+            std::string::npos);
+}
+
+// Without dispersion the transmittance is known at one wavelength only. Mirrors without a coating lose no light.
+TEST_F(LensReport, ReportsTheKnownLightOnly) {
+  const auto report = [&](const char* id) {
+    const auto outcome = run("report", {lens(id), "--json", "--coatings", "mgf2"});
+    EXPECT_EQ(outcome.status, 0) << outcome.err;
+    return nlohmann::json::parse(outcome.out);
+  };
+  const auto fisheye = report("fisheye_10mm_f4");
+  EXPECT_TRUE(fisheye["t_stop"].is_null());
+  EXPECT_TRUE(fisheye["colour"].is_null());
+  EXPECT_GT(fisheye["transmittance"][0]["value"].get<double>(), 0.8);
+  const auto mirrors = report("mirror_ritchey_chretien_57.6m_f24");
+  EXPECT_EQ(mirrors["transmittance"][0]["value"], 1);
+  EXPECT_GT(mirrors["t_stop"].get<double>(), 1.01 * mirrors["f_number_real"].get<double>());  // the obscuration
+  const auto text = run("report", {lens("fisheye_10mm_f4"), "--coatings", "mgf2"}).out;
+  EXPECT_NE(text.find("no T-stop and colour"), std::string::npos);
 }
 
 TEST_F(LensReport, DrawsRequestedFieldsAndBothSections) {

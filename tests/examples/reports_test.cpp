@@ -144,7 +144,7 @@ const std::vector<Reporter> reporters = {
       {"LENS", "--focus", "inf", "--size", "24", "--lens-samples", "2", "--ray-map", "@rays.exr", "--json"},
       {"LENS", "--camera", "@camera.bin", "--json"},
       {"--all", "--camera", "@tables", "--json"}}},
-    {"metadata", "", {{"LENS", "--film", "36x1", "--out", "@out", "--json"}}},
+    {"metadata", "", {{"LENS", "--film", "36x1", "--coatings", "mgf2", "--out", "@out", "--json"}}},
     {"spots", "out/double_gauss_100mm_f2_28deg_spots.json", {{"LENS", "--rays", "1", "--out", "@out", "--json"}}},
     {"psf",
      "out/double_gauss_100mm_f2_28deg_bokeh.json",
