@@ -31,7 +31,7 @@ class Passage {
       const LensSurface& own = lens.surfaces()[i];
       const double front = lens.index(i, wavelength), back = lens.index(i + 1, wavelength);
       Coating coating = own.coating.value_or(Coating{});
-      if (!to_film) coating = reversed(std::move(coating));
+      if (!to_film && !own.mirror) coating = reversed(std::move(coating));
       const bool bare = coating.layers.empty() && coating.table.empty();
       const std::size_t space = to_film ? i + 1 : i;
       surfaces_.push_back({std::move(coating), to_film ? front : back, to_film ? back : front,

@@ -97,7 +97,7 @@ Prescription reverse(const Prescription& prescription) {
     row.thickness = old > 0 ? opposite_if(!turned, prescription.surfaces[old - 1].thickness) : 0;
     row.radius = opposite_if(turned, row.radius);
     for (auto& [order, coefficient] : row.aspheric) coefficient = opposite_if(turned, coefficient);
-    if (row.coating) row.coating = reversed(*std::move(row.coating));
+    if (row.coating && !row.mirror) row.coating = reversed(*std::move(row.coating));
   }
 
   p.f_number.reset();

@@ -9,6 +9,7 @@
 #include "clearances.hpp"
 #include "core/instruction_set.hpp"
 #include "lens/lens_view.hpp"
+#include "lens_light.hpp"
 #include "route.hpp"
 
 namespace petzval {
@@ -48,6 +49,7 @@ BlockJob<R> job_for(const Lens& lens, const BatchOptions& options) noexcept {
   BlockJob<R> job;
   static_cast<trace_detail::Route<R>&>(job) =
       trace_detail::route_of<R>(view, options, each || each_nm ? Wavelength(0) : all);
+  job.travel = options.travel;
   job.compiled_wavelengths = view.wavelengths;
   job.wavelengths = each;
   job.each_nm = each_nm;
@@ -59,7 +61,7 @@ BlockJob<R> job_for(const Lens& lens, const BatchOptions& options) noexcept {
 template <class R>
 struct Block {
   alignas(64) std::array<std::array<R, block>, 18> v;
-  std::array<R, block> clearances;
+  std::array<R, block> clearances, transmittances;
   std::array<RayFate, block> fates;
   std::array<int, block> surfaces;
   std::array<std::uint16_t, block> wavelengths{};
@@ -114,7 +116,8 @@ void copy_wavelengths(std::size_t count, const RayWavelengths& from, std::size_t
 template <class R>
 void trace_all(const Lens& lens, std::size_t count, const RayArrays<const R>& in,
                const RayTangents<const R>* tangents_in, const RayArrays<R>& out, const RayTangents<R>& tangents_out,
-               RayFate* fates, int* surfaces, const BatchOptions& options, R* clearances = nullptr) noexcept {
+               RayFate* fates, int* surfaces, const BatchOptions& options, R* clearances = nullptr,
+               const trace_detail::LightView<R>* light = nullptr, R* transmittances = nullptr) noexcept {
   const auto trace_blocks = loops<R>(tracer(options.arithmetic));
   auto job = job_for<R>(lens, options);
   job.rays = count - count % block;
@@ -125,6 +128,8 @@ void trace_all(const Lens& lens, std::size_t count, const RayArrays<const R>& in
   job.tangents_in = tangents_in;
   job.tangents_out = tangents_out;
   job.clearances = clearances;
+  job.light = light;
+  job.transmittances = transmittances;
   trace_blocks(job);
 
   const std::size_t done = job.rays, rest = count - done;
@@ -141,6 +146,7 @@ void trace_all(const Lens& lens, std::size_t count, const RayArrays<const R>& in
     job.tangents_out = last.tangents();
   }
   if (clearances) job.clearances = last.clearances.data();
+  job.transmittances = last.transmittances.data();
   trace_blocks(job);
   copy(rest, last.arrays(), 0, out, done);
   if (tangents_in) {
@@ -148,6 +154,7 @@ void trace_all(const Lens& lens, std::size_t count, const RayArrays<const R>& in
     copy(rest, last.arrays(12), 0, tangents_out.v, done);
   }
   if (clearances) std::copy_n(last.clearances.begin(), rest, clearances + done);
+  if (light) std::copy_n(last.transmittances.begin(), rest, transmittances + done);
   if (fates) std::copy_n(last.fates.begin(), rest, fates + done);
   if (surfaces) std::copy_n(last.surfaces.begin(), rest, surfaces + done);
 }
@@ -159,6 +166,13 @@ void trace_detail::clearances(const Lens& lens, std::size_t count, const RayArra
                               const BatchOptions& options) noexcept {
   const RayArrays<const T> in{rays.x, rays.y, rays.z, rays.dx, rays.dy, rays.dz};
   trace_all<T>(lens, count, in, nullptr, rays, {}, nullptr, nullptr, options, clearances);
+}
+
+template <class T>
+void trace_detail::trace_light(const Lens& lens, const LensLight& light, std::size_t count,
+                               const RayArrays<const T>& in, const RayArrays<T>& out, RayFate* fates, T* transmittances,
+                               const BatchOptions& options) noexcept {
+  trace_all<T>(lens, count, in, nullptr, out, {}, fates, nullptr, options, nullptr, &light.view<T>(), transmittances);
 }
 
 std::string_view name(Arithmetic arithmetic) noexcept {
@@ -208,6 +222,12 @@ template PETZVAL_API void trace(const Lens&, std::size_t, const RayArrays<const 
                                 RayFate*, int*, const BatchOptions&) noexcept;
 template PETZVAL_API void trace_detail::clearances(const Lens&, std::size_t, const RayArrays<double>&, double*,
                                                    const BatchOptions&) noexcept;
+template PETZVAL_API void trace_detail::trace_light(const Lens&, const LensLight&, std::size_t,
+                                                    const RayArrays<const float>&, const RayArrays<float>&, RayFate*,
+                                                    float*, const BatchOptions&) noexcept;
+template PETZVAL_API void trace_detail::trace_light(const Lens&, const LensLight&, std::size_t,
+                                                    const RayArrays<const double>&, const RayArrays<double>&, RayFate*,
+                                                    double*, const BatchOptions&) noexcept;
 template PETZVAL_API void trace_differentials(const Lens&, std::size_t, const RayArrays<const float>&,
                                               const RayTangents<const float>&, const RayArrays<float>&,
                                               const RayTangents<float>&, RayFate*, int*, const BatchOptions&) noexcept;

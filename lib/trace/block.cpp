@@ -7,6 +7,7 @@
 #include <cstdint>
 
 #include "least_clearance.hpp"
+#include "light_left.hpp"
 #include "march.hpp"
 
 namespace petzval::trace_detail {
@@ -61,8 +62,10 @@ PETZVAL_INLINE void march(const BlockJob<R>& job, MediaAt&& media_at, std::uint8
 /// Traces one bundle of a job, from ray `o` on.
 /// @param index for each ray, the index in front of the lens
 /// @param per_index one over the index behind the lens
-template <class R, class MediaAt>
-void trace_bundle(const BlockJob<R>& job, std::size_t o, const R* index, const R* per_index, MediaAt&& media_at) {
+/// @param row_at as in LightLeft, for jobs with light
+template <class R, class MediaAt, class RowAt>
+void trace_bundle(const BlockJob<R>& job, std::size_t o, const R* index, const R* per_index, MediaAt&& media_at,
+                  const RowAt& row_at) {
   const auto in = from<R>(job.in, o);
   const auto out = from<R>(job.out, o);
   std::uint8_t unsettled[Bundle<R>::rays] = {};
@@ -85,6 +88,11 @@ void trace_bundle(const BlockJob<R>& job, std::size_t o, const R* index, const R
     march(job, media_at, unsettled, b, clearance);
     leave(job, in, per_index, b, out);
     clearance.leave(b, job.clearances + o);
+  } else if (job.light) {
+    LightLeft<R, RowAt> light(*job.light, job.travel, row_at);
+    march(job, media_at, unsettled, b, light);
+    leave(job, in, per_index, b, out);
+    light.leave(b, job.transmittances + o);
   } else {
     NoTangents none;
     march(job, media_at, unsettled, b, none);
@@ -93,6 +101,35 @@ void trace_bundle(const BlockJob<R>& job, std::size_t o, const R* index, const R
   if (!every(taken)) put_on_axis(job, b.used * Lanes<R>::width, out);
   report(job, b, unsettled, o);
 }
+
+/// Looks up numbers by wavelengths in nm: linear between nodes.
+template <class R>
+class RowsBetween {
+  using V = Lanes<R>;
+
+ public:
+  /// @param nm wavelengths, one for each ray
+  PETZVAL_INLINE RowsBetween(const LightRows<R>& rows, const kernel::SpectralCoordinate<R>& coordinate,
+                             const R* nm) noexcept
+      : rows_(rows) {
+    typename Native<R>::Bit nodes[Bundle<R>::rays];
+    for (int l = 0; l < Bundle<R>::rays; ++l) {
+      const auto at = light_node(rows, coordinate.scale / nm[l] - coordinate.offset);
+      nodes[l] = at.node, fractions_[l] = at.fraction;
+    }
+    __builtin_memcpy(nodes_, nodes, sizeof nodes);
+  }
+  PETZVAL_INLINE V operator()(std::uint32_t row, int i) const noexcept {
+    const std::size_t at = row * rows_.length;
+    return look_up(rows_.values + at, rows_.count, nodes_[i]) +
+           load(fractions_ + i * V::width) * look_up(rows_.differences + at, rows_.count, nodes_[i]);
+  }
+
+ private:
+  LightRows<R> rows_;
+  typename Native<R>::Bits nodes_[Bundle<R>::vectors];
+  R fractions_[Bundle<R>::rays];
+};
 
 template <class R>
 void trace_blocks(const BlockJob<R>& job) noexcept {
@@ -105,25 +142,37 @@ void trace_blocks(const BlockJob<R>& job) noexcept {
       for (std::size_t l = 0; l < rays; ++l) nm[l] = job.each_nm ? static_cast<R>(job.each_nm[o + l]) : job.nm;
       SpectralMedia<R> media(sequence, nm);
       media.indices(job.steps, index, per_index);
-      trace_bundle(job, o, index, per_index, [&](std::size_t j) { return media.at(j); });
+      const auto media_at = [&](std::size_t j) { return media.at(j); };
+      if (job.light) {
+        trace_bundle(job, o, index, per_index, media_at, RowsBetween<R>(job.light->between, sequence.coordinate, nm));
+      } else {
+        trace_bundle(job, o, index, per_index, media_at, [](std::uint32_t, int) { return Lanes<R>(R(0)); });
+      }
     }
     return;
   }
+  const LightRows<R> rows_of_light = job.light ? job.light->compiled : LightRows<R>{};
   if (!job.wavelengths) {
     const kernel::RefractionConstants<R>* bends = sequence.bends + job.wavelength * job.steps;
     for (std::size_t l = 0; l < rays; ++l) {
       index[l] = sequence.n_first[job.wavelength];
       per_index[l] = sequence.per_n_last[job.wavelength];
     }
+    const R* const light = rows_of_light.values + job.wavelength;
+    const std::size_t length = rows_of_light.length;
     for (std::size_t o = 0; o < job.rays; o += rays) {
-      trace_bundle(job, o, index, per_index, [&](std::size_t j) { return SharedMedia<R>{bends + j}; });
+      trace_bundle(
+          job, o, index, per_index, [&](std::size_t j) { return SharedMedia<R>{bends + j}; },
+          [=](std::uint32_t row, int) { return Lanes<R>(light[row * length]); });
     }
     return;
   }
   for (std::size_t o = 0; o < job.rays; o += rays) {
     const MediaByRay<R> media(sequence, job.wavelengths + o, job.compiled_wavelengths);
     media.indices(index, per_index);
-    trace_bundle(job, o, index, per_index, [&](std::size_t j) { return media.at(j); });
+    trace_bundle(
+        job, o, index, per_index, [&](std::size_t j) { return media.at(j); },
+        [&](std::uint32_t row, int i) { return media.in_row(rows_of_light.values + row * rows_of_light.length, i); });
   }
 }
 

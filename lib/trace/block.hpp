@@ -6,6 +6,7 @@
 #include <span>
 
 #include "lens/lens_view.hpp"
+#include "light_view.hpp"
 #include "petzval/trace/trace.hpp"
 
 namespace petzval::trace_detail {
@@ -29,6 +30,7 @@ struct Route {
 /// Input and output of the loops over blocks. Every array holds `rays` values, rounded up to whole blocks.
 template <class R>
 struct BlockJob : Route<R> {
+  Travel travel = Travel::to_film;
   std::size_t compiled_wavelengths = 1;
   const std::uint16_t* wavelengths = nullptr;  ///< by ray, or null
   const float* each_nm = nullptr;              ///< by ray, or null
@@ -39,7 +41,9 @@ struct BlockJob : Route<R> {
   int* surfaces = nullptr;                            ///< or null
   const RayTangents<const R>* tangents_in = nullptr;  ///< null: no derivatives
   RayTangents<R> tangents_out;
-  R* clearances = nullptr;  ///< or null; not with derivatives
+  R* clearances = nullptr;              ///< or null; not with derivatives
+  const LightView<R>* light = nullptr;  ///< or null; with `transmittances`, not with derivatives or clearances
+  R* transmittances = nullptr;
 };
 
 template <class R>

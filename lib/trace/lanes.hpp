@@ -220,6 +220,23 @@ PETZVAL_INLINE Lanes<R> quotient(Lanes<R> a, Lanes<R> b) noexcept {
 #endif
 }
 
+/// 1 / b within 1e-7, for approximations.
+template <class R>
+PETZVAL_INLINE Lanes<R> near_reciprocal(Lanes<R> b) noexcept {
+  const Lanes<R> one(R(1));
+#if PETZVAL_FAST && defined(__AVX512F__)
+  Lanes<R> y;
+  if constexpr (sizeof(R) == 4) {
+    y = Lanes<R>(_mm512_maskz_rcp14_ps(0xffff, b.v));
+  } else {
+    y = Lanes<R>(_mm512_maskz_rcp14_pd(0xff, b.v));
+  }
+  return y + y * (one - b * y);
+#else
+  return one / b;
+#endif
+}
+
 /// A second root to be computed together with root(). Under AVX2, double roots start from the float approximation, so
 /// that the two roots do not compete for the only divider. For values within the range of float.
 template <class R>

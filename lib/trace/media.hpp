@@ -69,6 +69,8 @@ class MediaByRay {
   PETZVAL_INLINE Step at(std::size_t j) const noexcept {
     return {sequence_.bend_rows + 3 * j * length_, count_, length_, indices_};
   }
+  /// Looks up a number of a row for the rays of vector i.
+  PETZVAL_INLINE V in_row(const R* row, int i) const noexcept { return look_up(row, count_, indices_[i]); }
 
  private:
   const kernel::SurfaceSequence<R>& sequence_;

@@ -92,6 +92,10 @@ Lanes<R> quotient(Lanes<R> a, Lanes<R> b) noexcept {
   return a / b;
 }
 template <class R>
+Lanes<R> near_reciprocal(Lanes<R> b) noexcept {
+  return Lanes<R>(R(1)) / b;
+}
+template <class R>
 Mask<R> has_root(Lanes<R> x) noexcept {
   return x >= Lanes<R>(R(0));
 }

@@ -10,6 +10,8 @@
 #include <type_traits>
 
 #include "lens/lens_view.hpp"
+#include "lens_light.hpp"
+#include "light_left.hpp"
 #include "march.hpp"
 #include "route.hpp"
 #include "trace_differential.hpp"
@@ -66,12 +68,15 @@ void set_lost_end(const Route<R>& route, const R* vertex_z, std::size_t j, R per
 /// Derivatives of a ray; the trace replaces them by the derivatives behind the lens.
 template <class R>
 struct RayBy {
-  static constexpr bool enabled = true;
   Ray<R>&u, &v;
 };
-struct NoDerivatives {
-  static constexpr bool enabled = false;
+/// The light that a ray keeps; the trace sets `left`.
+template <class R>
+struct LightOfRay {
+  const LightView<R>& view;
+  R& left;
 };
+struct NoDerivatives {};
 
 template <class T, class R>
 RayArrays<T> arrays_of(R& ray) noexcept {
@@ -81,9 +86,11 @@ RayArrays<T> arrays_of(R& ray) noexcept {
 
 /// @param index, per_index the index in front of the lens, and one over the index behind the lens
 /// @param media_at called once for each step, in order
-template <class R, class Seen, class By, class MediaAt>
+/// @param follow the follower for `by`
+template <class R, class Seen, class By, class MediaAt, class Follow>
 TracedRay<R> trace_one(const Route<R>& route, const R* vertex_z, const Ray<R>& ray, const Seen& seen, const By& by,
-                       R index, R per_index, MediaAt&& media_at) {
+                       R index, R per_index, MediaAt&& media_at, Follow follow) {
+  constexpr bool derivatives = std::is_same_v<By, RayBy<R>>, lit = std::is_same_v<By, LightOfRay<R>>;
   const auto& sequence = route.sequence;
   TracedRay<R> end{ray, RayFate::missed_surface, sequence.steps[0].surface};
   auto& [origin, direction] = end.ray;
@@ -96,8 +103,7 @@ TracedRay<R> trace_one(const Route<R>& route, const R* vertex_z, const Ray<R>& r
     return end;
   }
   std::uint8_t unsettled = 0;
-  std::conditional_t<By::enabled, TwoTangents<R>, NoTangents> follow;
-  if constexpr (By::enabled) {
+  if constexpr (derivatives) {
     enter(route, arrays_of<const R>(by.u), &index, follow.u);
     enter(route, arrays_of<const R>(by.v), &index, follow.v);
   }
@@ -117,7 +123,8 @@ TracedRay<R> trace_one(const Route<R>& route, const R* vertex_z, const Ray<R>& r
     }
   }
   leave(route, in, &per_index, b, own);
-  if constexpr (By::enabled) {
+  if constexpr (lit) follow.leave(b, &by.left);
+  if constexpr (derivatives) {
     leave(route, &per_index, b, follow.u, arrays_of<R>(by.u));
     leave(route, &per_index, b, follow.v, arrays_of<R>(by.v));
   }
@@ -132,15 +139,43 @@ TracedRay<R> trace_one(const Lens& lens, const Ray<R>& ray, const TraceOptions& 
   const auto& view = kernel::view<R>(lens);
   const auto route = route_of<R>(view, options, options.wavelength);
   const auto& sequence = route.sequence;
+  // Calls of_follower with a follower for `by`.
+  const auto follow = [&](const auto& row_at, const auto& of_follower) {
+    if constexpr (std::is_same_v<By, LightOfRay<R>>) {
+      return of_follower(LightLeft<R, std::remove_cvref_t<decltype(row_at)>>(by.view, options.travel, row_at));
+    } else {
+      return of_follower(std::conditional_t<std::is_same_v<By, RayBy<R>>, TwoTangents<R>, NoTangents>());
+    }
+  };
+  LightRows<R> rows;
   if (route.spectral) {
     SpectralMedia<R> media(sequence, &route.nm);
     R index, per_index;
     media.indices(route.steps, &index, &per_index);
-    return trace_one(route, view.vertex_z, ray, seen, by, index, per_index, [&](std::size_t j) { return media.at(j); });
+    LightNode<R> at;
+    if constexpr (std::is_same_v<By, LightOfRay<R>>) {
+      rows = by.view.between;
+      at = light_node(rows, sequence.coordinate.at(route.nm));
+    }
+    const auto row_at = [&](std::uint32_t row, int) {
+      const std::size_t node = row * rows.length + static_cast<std::size_t>(at.node);
+      return Lanes<R>(rows.values[node] + at.fraction * rows.differences[node]);
+    };
+    return follow(row_at, [&](auto follower) {
+      return trace_one(
+          route, view.vertex_z, ray, seen, by, index, per_index, [&](std::size_t j) { return media.at(j); }, follower);
+    });
   }
   const kernel::RefractionConstants<R>* bends = sequence.bends + route.wavelength * route.steps;
-  return trace_one(route, view.vertex_z, ray, seen, by, sequence.n_first[route.wavelength],
-                   sequence.per_n_last[route.wavelength], [&](std::size_t j) { return SharedMedia<R>{bends + j}; });
+  if constexpr (std::is_same_v<By, LightOfRay<R>>) rows = by.view.compiled;
+  const auto row_at = [&](std::uint32_t row, int) {
+    return Lanes<R>(rows.values[row * rows.length + route.wavelength]);
+  };
+  return follow(row_at, [&](auto follower) {
+    return trace_one(
+        route, view.vertex_z, ray, seen, by, sequence.n_first[route.wavelength], sequence.per_n_last[route.wavelength],
+        [&](std::size_t j) { return SharedMedia<R>{bends + j}; }, follower);
+  });
 }
 
 }  // namespace
@@ -154,6 +189,17 @@ template PETZVAL_API TracedRay<float> trace_differential(const Lens&, const Ray<
                                                          const TraceOptions&) noexcept;
 template PETZVAL_API TracedRay<double> trace_differential(const Lens&, const Ray<double>&, Ray<double>&, Ray<double>&,
                                                           const TraceOptions&) noexcept;
+
+template <class T>
+TracedRay<T> trace_light(const Lens& lens, const LensLight& light, const Ray<T>& ray, T& transmittance,
+                         const TraceOptions& options) noexcept {
+  transmittance = 0;
+  return trace_one(lens, ray, options, nullptr, LightOfRay<T>{light.view<T>(), transmittance});
+}
+template PETZVAL_API TracedRay<float> trace_light(const Lens&, const LensLight&, const Ray<float>&, float&,
+                                                  const TraceOptions&) noexcept;
+template PETZVAL_API TracedRay<double> trace_light(const Lens&, const LensLight&, const Ray<double>&, double&,
+                                                   const TraceOptions&) noexcept;
 
 }  // namespace trace_detail
 
