@@ -92,7 +92,8 @@ double on_axis(const FilmView& view, std::size_t wavelength) {
 }
 
 std::vector<double> scales(const Lens& lens, const Film& film, const AnyRayModel& model,
-                           const camera_detail::PupilWeights& weights, Normalisation normalisation) {
+                           const camera_detail::PupilWeights& weights, const camera_detail::Transmission& transmission,
+                           Normalisation normalisation) {
   const std::size_t wavelengths = lens.wavelengths_nm().size();
   std::vector<double> result;
   for (std::size_t w = 0; w < wavelengths; ++w) {
@@ -109,7 +110,7 @@ std::vector<double> scales(const Lens& lens, const Film& film, const AnyRayModel
   std::optional<TiltedFilm> tilted;
   if (film.tilted()) tilted.emplace(about, model.pupils());  // at the time when the shutter opens
   const camera_detail::WavelengthFacts own(model, result);
-  const FilmView view{model, about, tilted ? &*tilted : nullptr, own, weights};
+  const FilmView view{model, about, tilted ? &*tilted : nullptr, own, weights, {}, {}, transmission};
   const auto light = [&](std::size_t wavelength) {
     const double axis = on_axis(view, wavelength);
     if (axis > 0) return axis;
@@ -145,7 +146,9 @@ Camera::Data::Data(const LensFacts& facts, const Film& placed, const AnyRayModel
       tilted(camera_detail::tilted_or_moving(placed) ? std::optional(TiltedFilm(placed, any.pupils(), options.threads))
                                                      : std::nullopt),
       weights(lens, model, options.bokeh),
-      wavelengths(model, scales(lens, film, model, weights, options.normalisation), nm_of(lens, model)),
+      transmission(options.transmission ? camera_detail::Transmission(lens, model, radius)
+                                        : camera_detail::Transmission()),
+      wavelengths(model, scales(lens, film, model, weights, transmission, options.normalisation), nm_of(lens, model)),
       front(camera_detail::front_of(lens)),
       focus(facts, placed, any, options.focal_surface, options.expressive),
       normalisation(options.normalisation),
@@ -156,7 +159,7 @@ Camera::Data::Data(const LensFacts& facts, const Film& placed, const AnyRayModel
       clamp_(options.clamp_wavelengths),
       shortest_nm_(std::ranges::min(lens.wavelengths_nm())),
       longest_nm_(std::ranges::max(lens.wavelengths_nm())),
-      view_{model, film, tilted ? &*tilted : nullptr, wavelengths, weights, front, focus} {
+      view_{model, film, tilted ? &*tilted : nullptr, wavelengths, weights, front, focus, transmission} {
   if (options.importance_tables) scene(options.threads);
 }
 
@@ -198,6 +201,8 @@ const Lens& Camera::lens() const noexcept { return data_->lens; }
 const Film& Camera::film() const noexcept { return data_->film; }
 ModelKind Camera::model() const noexcept { return data_->model.kind(); }
 Normalisation Camera::normalisation() const noexcept { return data_->normalisation; }
+
+double Camera::transmission_error() const noexcept { return data_->transmission.error(); }
 
 FocalSteepness Camera::focal_steepness() const noexcept {
   if (!data_->focus) return {};

@@ -34,6 +34,7 @@ struct Camera::Data {
   AnyRayModel model;
   std::optional<camera_detail::TiltedFilm> tilted;
   camera_detail::PupilWeights weights;
+  camera_detail::Transmission transmission;
   camera_detail::WavelengthFacts wavelengths;  ///< scales of weights and importance
   camera_detail::Front front;
   camera_detail::LocalFocus focus;
@@ -68,7 +69,7 @@ struct Camera::Data {
   /// The scene side is built on first use, because many renderers only trace paths from the film.
   const camera_detail::SceneSide& scene(int threads = 1) const {
     std::call_once(scene_once_, [&] {
-      scene_.emplace(facts_, film, tilted, front, focus, model, radius_, wavelengths, weights, threads);
+      scene_.emplace(facts_, film, tilted, front, focus, model, radius_, wavelengths, weights, transmission, threads);
     });
     return *scene_;
   }

@@ -186,6 +186,8 @@ std::vector<float> camera_table(const Camera& camera) {
   const CameraAccess::Data& data = CameraAccess::data(camera);
   const std::string where = data.lens.name() + ": table of the camera: ";
   if (data.tilted) throw Error(where + "the film is tilted or travels; must be upright and fixed");
+  if (data.transmission)
+    throw Error(where + "the camera has transmission; must be without, as a table has no coatings");
   if (data.weights)
     throw Error(where + "the pupil has weights; must have no weights, as a host weights its own samples");
   if (data.focus) throw Error(where + "the camera has a focal surface or an expressive lens; must have neither");

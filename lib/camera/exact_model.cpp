@@ -9,6 +9,7 @@
 #include "camera_loops.hpp"
 #include "core/meet_plane.hpp"
 #include "petzval/trace/trace.hpp"
+#include "trace/lens_light.hpp"
 
 namespace petzval::camera_detail {
 namespace {
@@ -19,6 +20,7 @@ constexpr std::size_t block = 256;
 template <class R>
 struct Block {
   alignas(64) std::array<std::array<R, block>, 6> v;
+  std::array<R, block> transmittances;
 
   RayArrays<R> arrays() noexcept {
     return {v[0].data(), v[1].data(), v[2].data(), v[3].data(), v[4].data(), v[5].data()};
@@ -28,16 +30,20 @@ struct Block {
 /// Traces rays in place; fewer than 8 rays one by one, which is faster than filling a block.
 template <class R>
 void trace_in_place(const Lens& lens, Travel travel, std::size_t count, const RayArrays<R>& rays,
-                    const RayWavelengths& wavelengths, RayFate* fates) noexcept {
+                    const RayWavelengths& wavelengths, RayFate* fates, const trace_detail::LensLight* light,
+                    R* transmittances) noexcept {
   constexpr std::size_t min_batch_size = 8;
   if (count >= min_batch_size) {
-    trace<R>(lens, count, {rays.x, rays.y, rays.z, rays.dx, rays.dy, rays.dz}, rays, fates, nullptr,
-             {.travel = travel, .wavelengths = wavelengths});
-    return;
+    const RayArrays<const R> in{rays.x, rays.y, rays.z, rays.dx, rays.dy, rays.dz};
+    const BatchOptions options{.travel = travel, .wavelengths = wavelengths};
+    return light ? trace_detail::trace_light<R>(lens, *light, count, in, rays, fates, transmittances, options)
+                 : trace<R>(lens, count, in, rays, fates, nullptr, options);
   }
   for (std::size_t i = 0; i < count; ++i) {
     const Ray<R> ray{{rays.x[i], rays.y[i], rays.z[i]}, {rays.dx[i], rays.dy[i], rays.dz[i]}};
-    const auto end = trace<R>(lens, ray, {.travel = travel, .wavelength = wavelengths.at(i)});
+    const TraceOptions options{.travel = travel, .wavelength = wavelengths.at(i)};
+    const auto end = light ? trace_detail::trace_light<R>(lens, *light, ray, transmittances[i], options)
+                           : trace<R>(lens, ray, options);
     fates[i] = end.fate;
     if (!end.transmitted()) continue;
     const auto& [o, d] = end.ray;
@@ -51,12 +57,13 @@ void trace_in_place(const Lens& lens, Travel travel, std::size_t count, const Ra
 template <class R>
 template <class T>
 void ExactModel<R>::to_scene(std::size_t count, const TwoPlaneRays<const T>& lines, const RayWavelengths& wavelengths,
-                             const RayArrays<T>& rays, RayFate* fates) const noexcept {
+                             const RayArrays<T>& rays, RayFate* fates, const trace_detail::LensLight* light,
+                             T* transmittances) const noexcept {
   const R towards = static_cast<R>(towards_);
   const auto& loops = camera_loops().of<R>();
   if constexpr (std::is_same_v<R, T>) {
     loops.start(pupils_.space(), towards, count, lines, rays);
-    trace_in_place<R>(lens_, Travel::to_scene, count, rays, wavelengths, fates);
+    trace_in_place<R>(lens_, Travel::to_scene, count, rays, wavelengths, fates, light, transmittances);
   } else {
     Block<R> own;
     std::array<std::array<R, block>, 4> line;
@@ -68,7 +75,9 @@ void ExactModel<R>::to_scene(std::size_t count, const TwoPlaneRays<const T>& lin
       }
       loops.start(pupils_.space(), towards, n, {line[0].data(), line[1].data(), line[2].data(), line[3].data()},
                   own.arrays());
-      trace_in_place<R>(lens_, Travel::to_scene, n, own.arrays(), wavelengths.from(begin), fates + begin);
+      trace_in_place<R>(lens_, Travel::to_scene, n, own.arrays(), wavelengths.from(begin), fates + begin, light,
+                        own.transmittances.data());
+      if (light) std::copy_n(own.transmittances.begin(), n, transmittances + begin);
       T* const to[] = {rays.x, rays.y, rays.z, rays.dx, rays.dy, rays.dz};
       for (std::size_t k = 0; k < 6; ++k) {
         std::transform(own.v[k].begin(), own.v[k].begin() + n, to[k] + begin, [](R x) { return static_cast<T>(x); });
@@ -78,14 +87,19 @@ void ExactModel<R>::to_scene(std::size_t count, const TwoPlaneRays<const T>& lin
 }
 
 template <class R>
-RayFate ExactModel<R>::to_scene(const TwoPlaneRay& line, Wavelength wavelength, Ray<double>& ray) const noexcept {
+RayFate ExactModel<R>::to_scene(const TwoPlaneRay& line, Wavelength wavelength, Ray<double>& ray,
+                                const trace_detail::LensLight* light, double* transmittance) const noexcept {
   const R film_x = static_cast<R>(line.film_x), film_y = static_cast<R>(line.film_y);
   const R pupil_x = static_cast<R>(line.pupil_x), pupil_y = static_cast<R>(line.pupil_y);
   const R depth = static_cast<R>(pupils_.space().depth()), x = pupil_x - film_x, y = pupil_y - film_y;
   const R per_length = static_cast<R>(towards_) / std::sqrt(x * x + y * y + depth * depth);
   const Ray<R> start{{pupil_x, pupil_y, static_cast<R>(pupils_.space().pupil_z)},
                      {x * per_length, y * per_length, depth * per_length}};
-  const auto end = trace<R>(lens_, start, {.travel = Travel::to_scene, .wavelength = wavelength});
+  const TraceOptions options{.travel = Travel::to_scene, .wavelength = wavelength};
+  R left = 1;
+  const auto end =
+      light ? trace_detail::trace_light<R>(lens_, *light, start, left, options) : trace<R>(lens_, start, options);
+  if (light) *transmittance = left;
   const Ray<R>& last = end.transmitted() ? end.ray : start;
   ray = {Vec3<double>(last.origin), Vec3<double>(last.direction)};
   return end.fate;
@@ -93,7 +107,8 @@ RayFate ExactModel<R>::to_scene(const TwoPlaneRay& line, Wavelength wavelength, 
 
 template <class R>
 void ExactModel<R>::to_film(std::size_t count, const RayArrays<const double>& rays, const RayWavelengths& wavelengths,
-                            const TwoPlaneRays<double>& lines, RayFate* fates) const noexcept {
+                            const TwoPlaneRays<double>& lines, RayFate* fates, const trace_detail::LensLight* light,
+                            double* transmittances) const noexcept {
   const TwoPlanes& space = pupils_.space();
   Block<R> own;
   for (std::size_t begin = 0; begin < count; begin += block) {
@@ -108,7 +123,9 @@ void ExactModel<R>::to_film(std::size_t count, const RayArrays<const double>& ra
       own.v[2][i] = static_cast<R>(o.z + t * d.z);
       own.v[3][i] = static_cast<R>(d.x), own.v[4][i] = static_cast<R>(d.y), own.v[5][i] = static_cast<R>(d.z);
     }
-    trace_in_place<R>(lens_, Travel::to_film, n, own.arrays(), wavelengths.from(begin), fates + begin);
+    trace_in_place<R>(lens_, Travel::to_film, n, own.arrays(), wavelengths.from(begin), fates + begin, light,
+                      own.transmittances.data());
+    if (light) std::copy_n(own.transmittances.begin(), n, transmittances + begin);
     for (std::size_t i = 0; i < n; ++i) {
       const Ray<double> ray{{own.v[0][i], own.v[1][i], own.v[2][i]}, {own.v[3][i], own.v[4][i], own.v[5][i]}};
       const auto line = core_detail::slope_ray(ray);
@@ -127,9 +144,10 @@ void ExactModel<R>::to_film(std::size_t count, const RayArrays<const double>& ra
 
 template class PETZVAL_API ExactModel<float>;
 template class PETZVAL_API ExactModel<double>;
-#define PETZVAL_EXACT(R, T)                                                                                           \
-  template PETZVAL_API void ExactModel<R>::to_scene(std::size_t, const TwoPlaneRays<const T>&, const RayWavelengths&, \
-                                                    const RayArrays<T>&, RayFate*) const noexcept;
+#define PETZVAL_EXACT(R, T)                                                                                            \
+  template PETZVAL_API void ExactModel<R>::to_scene(std::size_t, const TwoPlaneRays<const T>&, const RayWavelengths&,  \
+                                                    const RayArrays<T>&, RayFate*, const trace_detail::LensLight*, T*) \
+      const noexcept;
 PETZVAL_EXACT(float, float)
 PETZVAL_EXACT(float, double)
 PETZVAL_EXACT(double, float)

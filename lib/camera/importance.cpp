@@ -156,7 +156,8 @@ double pinhole_entrance_area(const AnyRayModel& model, double entrance_z, std::s
 
 SceneSide::SceneSide(const LensFacts& facts, const Film& film, std::optional<TiltedFilm> tilted, const Front& front,
                      const LocalFocus& focus, const AnyRayModel& model, double radius,
-                     const WavelengthFacts& wavelengths, const PupilWeights& weights, int threads)
+                     const WavelengthFacts& wavelengths, const PupilWeights& weights, const Transmission& transmission,
+                     int threads)
     : film_(film),
       tilted_(std::move(tilted)),
       upright_radius_(radius),
@@ -167,6 +168,7 @@ SceneSide::SceneSide(const LensFacts& facts, const Film& film, std::optional<Til
       focus_(focus),
       wavelengths_(wavelengths),
       weights_(weights),
+      transmission_(transmission),
       pupils_(weights.pupils().value_or(model.pupils())),
       in_nm_(facts.lens().wavelengths_nm()),
       primary_(model.pupils().primary_wavelength()),
@@ -264,8 +266,13 @@ void SceneSide::arrive(const AnyRayModel& model, std::size_t count, const RayArr
       refusals[i] = RayFate::vignetted;
     }
   }
-  model.to_film(count, {x.data(), y.data(), z.data(), dx.data(), dy.data(), dz.data()}, wavelengths, found.lines(),
-                found.fates.data());
+  const RayArrays<const double> straight{x.data(), y.data(), z.data(), dx.data(), dy.data(), dz.data()};
+  if (transmission_) {
+    transmission_.to_film(model, count, straight, wavelengths, found.lines(), found.fates.data(),
+                          found.transmittance.data());
+  } else {
+    model.to_film(count, straight, wavelengths, found.lines(), found.fates.data());
+  }
   for (std::size_t i = 0; i < count; ++i) {
     if (refusals[i] != RayFate::transmitted) found.fates[i] = refusals[i];
     found.met_x[i] = found.virtual_x[i] = found.upright_x[i];
@@ -297,6 +304,11 @@ void SceneSide::weigh(const AnyRayModel& model, std::size_t count, const RayWave
     const Facts own = shared || !arrivals.lit(i) ? all : facts_at(wavelengths.at(i));
     we[i] = own.we, density[i] = own.density, entrance_area[i] = own.entrance_area;
   }
+  if (transmission_) {
+    std::array<double, block> transmittances = arrivals.transmittance;
+    transmission_.of_lines<double>(count, arrivals.upright_lines(), wavelengths, transmittances.data());
+    for (std::size_t i = 0; i < count; ++i) we[i] *= transmittances[i];
+  }
   const double depth2 = squared(space_.depth());
   const bool linear = model.linear_in_slopes();
   for (std::size_t i = 0; i < count; ++i) {
@@ -317,7 +329,7 @@ void SceneSide::weigh(const AnyRayModel& model, std::size_t count, const RayWave
     const bool meets = result.fate == RayFate::transmitted || result.fate == RayFate::outside_film;
     if (meets && film.x < infinity) result.film = film, result.raster = film_.raster(film);
     if (result.fate != RayFate::transmitted) continue;
-    if (entrance_area[i] == 0 || !(areas[i] > 0)) {
+    if (entrance_area[i] == 0 || !(areas[i] > 0) || (transmission_ && !(we[i] > 0))) {
       result.fate = RayFate::vignetted;
       continue;
     }

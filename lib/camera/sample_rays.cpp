@@ -126,8 +126,13 @@ void sample_block(const FilmView& view, std::size_t n, std::size_t valid_count, 
     pupil_u = drawn_u.data(), pupil_v = drawn_v.data();
   }
   loops.keep_on_film(bounds, n, samples.film_x, samples.film_y, film_x.data(), film_y.data());
+  alignas(64) Values<T> transmittances;
   const auto trace = [&] {
-    view.model.to_scene(n, lines, wavelengths, rays.rays, fates);
+    if (view.transmission) {
+      view.transmission.to_scene(view.model, n, lines, wavelengths, rays.rays, fates, transmittances.data());
+    } else {
+      view.model.to_scene(n, lines, wavelengths, rays.rays, fates);
+    }
     if (view.focus) bend(view, n, samples, rays.rays);
     if (view.moves_rays()) {
       loops.move_to_front(static_cast<T>(view.front.vertex_z), static_cast<T>(view.front.curvature), n, rays.rays);
@@ -138,6 +143,13 @@ void sample_block(const FilmView& view, std::size_t n, std::size_t valid_count, 
                 scales.data(), fates, rays);
     if (view.weights)
       weigh_pupil(view, n, valid_count, pupil_u, pupil_v, lines, wavelengths, densities.data(), fates, rays);
+    if (!view.transmission) return;
+    view.transmission.of_lines(n, lines, wavelengths, transmittances.data());
+    for (std::size_t i = 0; i < valid_count; ++i) {
+      rays.weights[i] *= transmittances[i];
+      const bool dark = fates[i] == RayFate::transmitted && !(rays.weights[i] > T(0));
+      fates[i] = dark ? RayFate::vignetted : fates[i];
+    }
   };
   if (!tilted) {
     pupils.sample(n, film_x.data(), film_y.data(), pupil_u, pupil_v, wavelengths, x.data(), y.data(), areas.data());
@@ -314,7 +326,9 @@ Start start(const FilmView& view, const FilmPoint& film, double u, double v, Wav
 
 /// Sets weight, densities and fate of a sample.
 /// @param front moves the ray to this front; null if the ray starts at the front
-void weigh(const FilmView& view, const Start& s, Wavelength wavelength, const Front* front, CameraRay& out) noexcept {
+/// @param transmittance of an exact ray, else 1
+void weigh(const FilmView& view, const Start& s, Wavelength wavelength, const Front* front, double transmittance,
+           CameraRay& out) noexcept {
   const bool decides = view.tilted && decide(view.pupils, view.model);
   if (decides && !view.pupils.contains({s.line.film_x, s.line.film_y}, s.line.pupil_x, s.line.pupil_y, wavelength)) {
     out.fate = RayFate::vignetted;
@@ -332,6 +346,12 @@ void weigh(const FilmView& view, const Start& s, Wavelength wavelength, const Fr
     out.pdf_pupil *= s.drawn.density, out.pdf_direction *= s.drawn.density;
     if (!(weight > 0) && out.fate == RayFate::transmitted) out.fate = RayFate::vignetted;
   }
+  if (view.transmission && out.fate == RayFate::transmitted) {
+    const auto& [x, y, u, v] = s.line;
+    view.transmission.of_lines<double>(1, {&x, &y, &u, &v}, {.all = wavelength}, &transmittance);
+    out.weight *= transmittance;
+    if (!(out.weight > 0)) out.fate = RayFate::vignetted;
+  }
   if (out.fate != RayFate::transmitted) out.weight = 0;
   if (!view.tilted) return;
   const double near = 1 + s.plane.distance_excess(s.virtual_point);
@@ -347,11 +367,14 @@ CameraRay sample_ray(const FilmView& view, const FilmPoint& film, double u, doub
                      double time) noexcept {
   const Start s = start(view, film, u, v, wavelength, time, false);
   CameraRay out;
-  out.fate = view.model.to_scene(s.leaving.line, wavelength, out.ray);
+  double transmittance = 1;
+  out.fate = view.transmission
+                 ? view.transmission.to_scene(view.model, s.leaving.line, wavelength, out.ray, transmittance)
+                 : view.model.to_scene(s.leaving.line, wavelength, out.ray);
   if (view.focus) {
     view.focus.bend(s.film, view.tilted ? s.plane.distance_excess(s.virtual_point) : 0, wavelength, out.ray);
   }
-  weigh(view, s, wavelength, view.moves_rays() ? &view.front : nullptr, out);
+  weigh(view, s, wavelength, view.moves_rays() ? &view.front : nullptr, transmittance, out);
   return out;
 }
 
@@ -366,7 +389,12 @@ CameraRayDifferential sample_differential(const FilmView& view, const FilmPoint&
   if (view.moves_rays()) ray = at_front(view.front, ray);
   CameraRayDifferential result;
   result.sample.ray = ray.ray, result.sample.fate = ray.fate;
-  weigh(view, s, wavelength, nullptr, result.sample);
+  double transmittance = 1;
+  if (view.transmission) {  // derivatives do not change the light
+    Ray<double> same;
+    view.transmission.to_scene(view.model, s.leaving.line, wavelength, same, transmittance);
+  }
+  weigh(view, s, wavelength, nullptr, transmittance, result.sample);
   if (!result.sample) return result;
   result.by_film_x = ray.by_u;
   result.by_film_y = ray.by_v;

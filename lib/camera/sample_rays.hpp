@@ -15,6 +15,7 @@
 #include "petzval/core/film.hpp"
 #include "pupil_weights.hpp"
 #include "tilted_film.hpp"
+#include "transmission.hpp"
 
 namespace petzval::camera_detail {
 
@@ -66,6 +67,7 @@ struct FilmView {
   PupilWeights weights = {};
   Front front = {};  ///< front of the lens
   LocalFocus focus = {};
+  Transmission transmission = {};
   FilmPupilTable pupils = weights.pupils().value_or(model.pupils());  ///< pupils of the upright film
   double depth = model.pupils().space().depth();
   core_detail::FilmBounds<double> bounds = core_detail::bounds_of<double>(film);

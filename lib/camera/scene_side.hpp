@@ -23,10 +23,10 @@ namespace petzval::camera_detail {
 class SceneSide {
  public:
   /// @param radius upright_radius() of the film
-  /// @param wavelengths, weights as in FilmView
+  /// @param wavelengths, weights, transmission as in FilmView
   SceneSide(const LensFacts& facts, const Film& film, std::optional<TiltedFilm> tilted, const Front& front,
             const LocalFocus& focus, const AnyRayModel& model, double radius, const WavelengthFacts& wavelengths,
-            const PupilWeights& weights, int threads);
+            const PupilWeights& weights, const Transmission& transmission, int threads);
 
   void importance(const AnyRayModel& model, std::size_t count, const RayArrays<const double>& rays,
                   const RayWavelengths& wavelengths, const double* times, Importance* found) const noexcept;
@@ -68,6 +68,7 @@ class SceneSide {
     using Column = std::array<double, block>;
     Column upright_x, upright_y, pupil_x, pupil_y;  // image-space rays
     Column met_x, met_y, virtual_x, virtual_y;      // film points, virtual points; equal for an upright film
+    Column transmittance;                           // of exact rays; 1 for other models and without transmission
     Column facing, spread, cosine;  // TiltedPlane::weight(), LocalFocus::Straight::spread, cos of the angle to the axis
     std::array<RayFate, block> fates;
 
@@ -128,6 +129,7 @@ class SceneSide {
   LocalFocus focus_;
   WavelengthFacts wavelengths_;
   PupilWeights weights_;
+  Transmission transmission_;
   FilmPupilTable pupils_;  // of the upright film
   lens_detail::CompiledWavelengths in_nm_;
   lens_detail::BetweenWavelengths<3> between_;  // etendue, entrance_z, entrance_area

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Time of a camera ray on one thread: pupil sample, ray and weight for every model of a lens. Measures batches of 4096
-// samples, single samples, tilted films, connections, bokeh controls and focal surfaces, and the set-up time of cameras
-// of all lenses.
+// samples, single samples, tilted films, connections, bokeh controls, transmission and focal surfaces, and the set-up
+// time of cameras of all lenses.
 //
 //   camera_bench [--json FILE] [options of Google Benchmark]
 //
@@ -229,7 +229,8 @@ void print_setup(const Bench& bench) {
   };
   print("FilmPupilTable::enclosing", [&] { petzval::FilmPupilTable::enclosing(lens, bench.half_diagonal); });
   print("Camera, exact_float", [&] { Camera(lens, bench.film); });
-  print("the same, tilted", [&] { Camera(lens, bench.tilted); });
+  print("with transmission", [&] { Camera(lens, bench.film, {.transmission = true}); });
+  print("exact_float, tilted", [&] { Camera(lens, bench.tilted); });
   for (const ModelKind model : petzval::models()) {
     print(std::string(petzval::name(model)),
           [&] { petzval::camera_detail::make_model(model, lens, bench.half_diagonal); });
@@ -321,6 +322,16 @@ int run(std::vector<char*> arguments) {
             Shape{"rim", {.weight_distribution = 12.7, .weight_strength = 0.6}}, Shape{"rings", rings}}) {
         rows.push_back({bench.lens.id, call, model, false,
                         Camera(bench.lens.lens, bench.film, {.model = model, .bokeh = controls})});
+        benchmark::RegisterBenchmark(rows.back().name().c_str(), time_batches<float>, rows.back());
+      }
+    }
+    // Light lost at uncoated surfaces and at single layers.
+    for (const ModelKind model : {ModelKind::thick, ModelKind::polynomial(7), ModelKind::exact_float}) {
+      for (const auto& [call, coating] :
+           {std::pair{"uncoated", petzval::Coating{}}, std::pair{"coated", petzval::Coating::quarter_wave()}}) {
+        rows.push_back({bench.lens.id, call, model, false,
+                        Camera(petzval::with_coating(bench.lens.lens, coating), bench.film,
+                               {.model = model, .transmission = true})});
         benchmark::RegisterBenchmark(rows.back().name().c_str(), time_batches<float>, rows.back());
       }
     }

@@ -45,6 +45,10 @@ struct CameraOptions {
   /// film point stopped down by s stops more, one connection in 2^s passes.
   std::optional<FocalSurface> focal_surface = {};
   ExpressiveLens expressive{};  ///< aberrations; first-order models only
+  /// true: weights and importance include the light that the surfaces reflect and the glasses absorb, as
+  /// transmittance() of a ray, with the coatings of the lens (LensSurface::coating). false: all light passes, at no
+  /// cost. model_error() and choose_model() state what is then left out. Camera::transmission_error() states the error.
+  bool transmission = false;
   /// true: wavelengths in nm outside the compiled range are clamped to the range, for samples, rays and connections.
   /// false: they are lost as RayFate::outside_spectrum.
   bool clamp_wavelengths = false;
@@ -193,6 +197,13 @@ class PETZVAL_API Camera {
   /// the compiled range.
   Projection project(const Vec3<double>& point, Wavelength wavelength = {}, double time = 0) const;
 
+  /// Largest error of the transmittances in the weights, relative to all light; 0 without CameraOptions::transmission.
+  ///
+  /// Exact models find the transmittance surface by surface: the error is that of polynomials in the angle of
+  /// incidence. Other models use a polynomial in film and pupil position, fitted to exact rays; the error is the
+  /// largest at rays that the fit does not use. Rays that the lens does not pass may differ more.
+  double transmission_error() const noexcept;
+
   /// Largest steepness of the focal surface and the film offsets over the film; 0 without them.
   ///
   /// Evaluated at 96 x 64 film points as the shutter opens; narrower folds may be missed.
@@ -215,7 +226,7 @@ class PETZVAL_API Camera {
 ///
 /// @param camera  a camera with exact rays or polynomials, an upright film and a pupil without weights
 /// @throws Error  if the film is tilted or travels, if the camera has weights of the pupil, a focal surface or an
-///                expressive lens, or if the model is of first order or custom
+///                expressive lens, if it has transmission, or if the model is of first order or custom
 ///
 /// Limitations: tables of polynomials have only the compiled wavelengths.
 PETZVAL_API std::vector<float> camera_table(const Camera& camera);
