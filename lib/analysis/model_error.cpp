@@ -18,11 +18,12 @@ std::vector<ModelError> measured(const Lens& lens, const Film& film, std::span<c
   const camera_detail::ExactModel<double> exact(lens, film.radius_mm());
   const analysis_detail::RayStudy rays(exact, film, samples);
   const analysis_detail::PupilStudy pupils(exact, film, std::max<std::size_t>(16, samples.film_points / 8), samples);
+  const TransmissionError transmission = transmission_error(lens, film);
   std::vector<ModelError> errors;
   for (const AnyRayModel& model : models) {
     const auto of_rays = rays.measure(analysis_detail::tracing(model));
     const auto of_pupils = pupils.measure(analysis_detail::pupils_of(model));
-    errors.push_back({of_rays.all, of_rays.wavelength, of_pupils.shape, of_pupils.exposure});
+    errors.push_back({of_rays.all, of_rays.wavelength, of_pupils.shape, of_pupils.exposure, transmission});
   }
   return errors;
 }

@@ -129,6 +129,7 @@ ModelTable model_table(const Lens& given, const SceneRequirements& scene, std::s
   const Film& film = setting.film;
   const double rounding = std::numeric_limits<float>::epsilon() * focal_length(setting.lens);
   ModelTable table;
+  table.without_transmission = transmission_error(setting.lens, film);
   std::vector<AnyRayModel> all;
   for (const ModelKind model : models()) {
     ModelCandidate& candidate = table.models.emplace_back();
@@ -150,7 +151,7 @@ ModelTable model_table(const Lens& given, const SceneRequirements& scene, std::s
     const auto rays = guarded(setting.rays->largest(found, traced), tolerances,
                               model == ModelKind::exact_float ? noise_guard : smooth_guard);
     const auto pupils = setting.pupils->measure(pupils_of(*built));
-    candidate.error = {found.all, found.wavelength, pupils.shape, pupils.exposure};
+    candidate.error = {found.all, found.wavelength, pupils.shape, pupils.exposure, table.without_transmission};
     // Rounding in float adds noise to the smooth errors.
     candidate.bound_px = (rays.mm + (model == ModelKind::exact_double ? 0 : rounding)) / film.pixel_mm();
     candidate.bound_of_blur = rays.of_blur;

@@ -24,6 +24,7 @@ struct ModelTable {
   std::size_t wavelengths = 1;
   double central_nm = 0;
   double constant_pupil_shape = 0;
+  TransmissionError without_transmission;
 };
 ModelTable model_table(const Lens& lens, const SceneRequirements& scene, std::span<const Tolerance> tolerances,
                        int threads);

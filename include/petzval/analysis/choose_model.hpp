@@ -43,6 +43,22 @@ struct RayErrors {
   std::size_t rays = 0;  ///< number of rays that pass both the model and the lens
 };
 
+/// The effect of leaving out the transmission of a lens (CameraOptions::transmission): the light that surfaces reflect
+/// and glasses absorb, the same for all models. As fractions; surfaces without a stated coating count as uncoated.
+struct TransmissionError {
+  double exposure = 0;  ///< the film is so much too bright on the axis at the primary wavelength: 1/transmittance - 1
+  double field = 0;   ///< largest change of the transmittance from the axis to other film points, relative to the axis
+  double colour = 0;  ///< largest change from the primary wavelength to the other compiled wavelengths, on the axis
+};
+
+/// Measures the effect of leaving out the transmission, along exact rays.
+///
+/// @param lens    the focused lens
+/// @param film    an upright film
+/// @throws Error  if the film is tilted or travels; if a compiled wavelength is outside a table of reflectances; as
+///                Camera with ModelKind::exact_double
+PETZVAL_API TransmissionError transmission_error(const Lens& lens, const Film& film);
+
 /// The deviation of a ray model from the exact lens over film, pupil and depth.
 ///
 /// The error of a ray at depth z is the distance between its hit on the plane z and the hit of the exact double ray
@@ -59,6 +75,7 @@ struct ModelError {
   /// film points and wavelengths. 1 for a pinhole.
   double pupil_shape = 0;
   double exposure = 0;  ///< largest |irradiance / exact irradiance - 1| over film points and wavelengths
+  TransmissionError without_transmission{};  ///< transmission_error(): not an error of the model
 };
 
 /// Measures the errors of a built-in model.
@@ -123,6 +140,8 @@ struct ModelChoice {
   /// Lens properties that the scene can ignore, with numbers. Each is within the budget by itself, not in combination.
   std::vector<std::string> not_needed = {};
   std::vector<ModelCandidate> table = {};  ///< every model, in the order of models()
+  /// Part of `not_needed` if field and colour are within ErrorBudget::exposure, else of `reasons`.
+  TransmissionError without_transmission{};
 };
 
 /// Chooses the fastest model whose errors stay within a budget over film, pupil and scene depths.
