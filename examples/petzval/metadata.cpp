@@ -99,7 +99,8 @@ int commands::metadata(int argc, char** argv) {
       "petzval metadata");
   examples::add_lens(app, options.lens_file);
   examples::add_camera(app, options.setup);
-  examples::add_coatings(app, options.coatings, "the files have no T-stop");
+  examples::add_coatings(app, options.coatings,
+                         "the coatings of the file; if it states none, the files have no T-stop");
   options.output.add(app);
   examples::add_out_folder(app, options.out_folder, "folder for the files")->required();
   examples::add_threads(app);

@@ -42,6 +42,7 @@
 #include "support/files.hpp"
 #include "support/focal_surface_setup.hpp"
 #include "support/interrupt.hpp"
+#include "support/lens_light.hpp"
 #include "support/load_lens.hpp"
 #include "support/model_rows.hpp"
 #include "support/picture_files.hpp"
@@ -59,7 +60,7 @@ constexpr double noise_floor = 0.05;
 struct Options {
   examples::LensInput lens_file;
   std::string scene, model = "exact_float", integrator = "bidirectional", wavelengths = "d",
-                     normalisation = "unity_on_axis", out_folder;
+                     normalisation = "unity_on_axis", coatings, out_folder;
   examples::CameraSetup setup;
   examples::BokehFlags bokeh;
   examples::ExpressiveFlags expressive;
@@ -133,6 +134,7 @@ class Job {
         scene_(description(options)),
         loaded_(examples::load_lens(options.lens_file, colours_.compiled_nm())),
         lens_(examples::focused(loaded_, options.setup)) {
+    if (!options.coatings.empty()) lens_ = *examples::coated(lens_, options.coatings);
     film_ = options.setup.film(options.width, options.height, usual_width);
     film_.tilt_rad = petzval::radians(options.tilt_deg);
     film_.swing_rad = petzval::radians(options.swing_deg);
@@ -229,7 +231,8 @@ class Job {
                  .threads = examples::threads(),
                  .bokeh = controls_,
                  .focal_surface = surface_,
-                 .expressive = expressive_}),
+                 .expressive = expressive_,
+                 .transmission = !options_.coatings.empty()}),
             scene_.description().pose};
   }
   /// The focal surface through the points of the file, projected by the model.
@@ -346,6 +349,8 @@ class Job {
             {"integrator", options_.integrator},
             {"wavelengths", options_.wavelengths == "visible" ? "hero" : options_.wavelengths},
             {"normalisation", options_.normalisation},
+            {"coatings", options_.coatings},
+            {"coating_file", options_.coatings.ends_with(".csv") ? file_checksum(options_.coatings) : ""},
             {"white", white},
             {"width", film_.columns},
             {"height", film_.rows},
@@ -502,6 +507,7 @@ int commands::render(int argc, char** argv) {
   app.add_option("--normalisation", options.normalisation, "unit of the picture")
       ->one_of({"unity_on_axis", "irradiance"})
       ->capture_default_str();
+  examples::add_coatings(app, options.coatings, "all light passes the lens");
   examples::add_number(app, "--exposure", options.exposure, examples::positive_number,
                        "brightness of picture.png: white is the radiance 1 / exposure in the centre");
   std::string tile;

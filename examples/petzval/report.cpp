@@ -112,7 +112,7 @@ std::optional<examples::LightReport> light_of(const examples::Report& report, co
   }
   if (visible) visible = examples::coated(*visible, options.coatings);
   try {
-    return examples::report_light(report, options.coatings, *coated, visible);
+    return examples::report_light(report, options.coatings == "file" ? "" : options.coatings, *coated, visible);
   } catch (const petzval::Error& error) {
     if (!options.coatings.empty()) throw;
     examples::note(std::string("the light that passes the lens is unknown: ") + error.what());
@@ -180,7 +180,7 @@ int commands::report(int argc, char** argv) {
                             ->default_str("distance and film of the file");
   examples::add_focus(app, options.focus);
   examples::add_film_choice(app, options.film, "file; with --at focus");
-  examples::add_coatings(app, options.coatings, "losses are not modelled");
+  examples::add_coatings(app, options.coatings, "the coatings of the file; if it states none, losses are not modelled");
   auto* out = examples::add_out_folder(app, options.out_folder, "folder for figures and a page");
   const auto* fields = examples::add_numbers(app, "--fields", options.field_deg, examples::field_angle,
                                              "fields of --out, --json and transmittances (degrees)")

@@ -23,7 +23,7 @@ petzval::Coating coating_named(const std::string& name) {
   if (name == "none") return {};
   if (name == "mgf2") return petzval::Coating::quarter_wave();
   if (!name.ends_with(".csv")) {
-    throw petzval::Error("--coatings = \"" + name + "\"; must be none, mgf2 or a file.csv");
+    throw petzval::Error("--coatings = \"" + name + "\"; must be none, mgf2, file or a file.csv");
   }
   constexpr std::array layers{CsvColumn{"index"}, CsvColumn{"absorption"}, CsvColumn{"thickness_nm"}};
   constexpr std::array table{CsvColumn{"wavelength_nm"}, CsvColumn{"reflectance"}};
@@ -50,18 +50,22 @@ std::optional<double> shift_mired(const petzval::LensColour& colour) {
 
 }  // namespace
 
-Option* add_coatings(App& app, std::string& coatings, const std::string& without) {
+Option* add_coatings(App& app, std::string& coatings, const std::string& by_default) {
   return app
       .add_option("--coatings", coatings,
                   "coating of all surfaces between air and glass, for the light that passes the lens: none (uncoated), "
                   "mgf2 (a quarter wave of magnesium fluoride at 550 nm), or a CSV file of layers from the air "
-                  "(index,absorption,thickness_nm) or of reflectances (wavelength_nm,reflectance)")
-      ->type_name("none|mgf2|FILE.csv")
-      ->default_str("the coatings of the file; if it states none, " + without);
+                  "(index,absorption,thickness_nm) or of reflectances (wavelength_nm,reflectance); file: the coatings "
+                  "that the lens file states")
+      ->type_name("none|mgf2|file|FILE.csv")
+      ->default_str(by_default);
 }
 
 std::optional<petzval::Lens> coated(const petzval::Lens& lens, const std::string& coatings) {
-  if (!coatings.empty()) return petzval::with_coating(lens, coating_named(coatings));
+  if (coatings == "file" && !petzval::states_coatings(lens)) {
+    throw petzval::Error("--coatings = \"file\"; must be none, mgf2 or a file.csv: the lens file states no coating");
+  }
+  if (!coatings.empty() && coatings != "file") return petzval::with_coating(lens, coating_named(coatings));
   return petzval::states_coatings(lens) ? std::optional(lens) : std::nullopt;
 }
 

@@ -12,11 +12,11 @@
 
 namespace examples {
 
-/// Adds --coatings. without: the default in words.
-Option* add_coatings(App& app, std::string& coatings, const std::string& without);
+/// Adds --coatings. by_default: the default in words.
+Option* add_coatings(App& app, std::string& coatings, const std::string& by_default);
 
-/// The lens with the coating of --coatings, or with the coatings of its file if `coatings` is empty; nullopt if the
-/// file states no coatings either: losses are not modelled.
+/// The lens with the coating of --coatings, or with the coatings of its file if `coatings` is "file" or empty; nullopt
+/// if it is empty and the file states no coatings: losses are not modelled.
 /// @throws petzval::Error if the name is unknown or the file is invalid
 std::optional<petzval::Lens> coated(const petzval::Lens& lens, const std::string& coatings);
 

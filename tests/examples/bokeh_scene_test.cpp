@@ -264,6 +264,24 @@ TEST_F(BokehScene, NormalisationScalesTheImageAndKeepsThePng) {
   EXPECT_NEAR(static_cast<double>(a.size()), static_cast<double>(b.size()), 0.02 * static_cast<double>(a.size()));
 }
 
+// An uncoated lens passes the same part of the light in the picture and on the axis, here within the changes over the
+// field, in all models.
+TEST_F(BokehScene, CoatingsScaleTheIrradiance) {
+  for (const char* model : {"exact_float", "thick"}) {
+    const auto with = [&](const char* name, const Arguments& more) {
+      Arguments all{"--model", model, "--normalisation", "irradiance"};
+      all.insert(all.end(), more.begin(), more.end());
+      return render(name, all);
+    };
+    const json whole = with("whole", {}), bare = with("bare", {"--coatings", "none"});
+    const double part = bare["job"]["white"].get<double>() / whole["job"]["white"].get<double>();
+    EXPECT_GT(part, 0.4) << model;
+    EXPECT_LT(part, 0.8) << model;
+    EXPECT_NEAR(mean(bare, 1) / mean(whole, 1), part, 0.02) << model;
+  }
+  expect_failure("render", arguments("file", {"--coatings", "file"}), {"--coatings", "file"});
+}
+
 TEST_F(BokehScene, ExposureScalesOnlyThePng) {
   const Arguments small{"--size", "36x24", "--spp", "2"};
   render("usual", small), render("bright", {"--size", "36x24", "--spp", "2", "--exposure", "2"});

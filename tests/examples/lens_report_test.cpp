@@ -489,7 +489,7 @@ TEST_F(LensReport, ReportsTheLightOfCoatings) {
     EXPECT_TRUE(read(name).starts_with("<svg"));
   }
   EXPECT_NE(read(path("light/double_gauss_100mm_f1.35.html")).find("T-stop 1.38"), std::string::npos);
-  EXPECT_NE(run("report", {file, "--coatings", "gold"}).err.find("must be none, mgf2 or a file.csv"),
+  EXPECT_NE(run("report", {file, "--coatings", "gold"}).err.find("must be none, mgf2, file or a file.csv"),
             std::string::npos);
 }
 
@@ -503,6 +503,7 @@ TEST_F(LensReport, UsesTheCoatingsOfTheFile) {
   };
   const auto own = report({}), bare = report({"--coatings", "none"}), coated = report({"--coatings", "mgf2"});
   EXPECT_EQ(own["coatings"], "file");
+  EXPECT_EQ(own, report({"--coatings", "file"}));
   EXPECT_EQ(own["uncoated_surfaces"].size(), 6u);
   EXPECT_LT(own["t_stop"].get<double>(), bare["t_stop"].get<double>());
   EXPECT_GT(own["t_stop"].get<double>(), coated["t_stop"].get<double>());
