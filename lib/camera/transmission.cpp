@@ -50,7 +50,7 @@ struct Basis {
   }
 };
 
-/// Image-space rays of a model and the exact transmittances along them.
+/// Image-space rays of a model, and their exact transmittances.
 struct Lines {
   std::vector<double> film_x, film_y, pupil_x, pupil_y, light;
 

@@ -26,7 +26,7 @@ void of_lines(const TransmissionJob<T>& job, std::size_t count, const TwoPlaneRa
     const T *const film_x = lines.film_x + begin, *const film_y = lines.film_y + begin;
     const T *const pupil_x = lines.pupil_x + begin, *const pupil_y = lines.pupil_y + begin;
     const T per_film = job.per_film, per_pupil = job.per_pupil;
-    // Rays beyond the fitted ones get the transmittance of the nearest fitted ones.
+    // A ray beyond the fitted rays gets the transmittance at the edge of the fit.
     const auto product = [](T* variable, const T* a, T scale_a, const T* b, T scale_b, std::size_t rays) {
       PETZVAL_INDEPENDENT
       for (std::size_t i = 0; i < rays; ++i) variable[i] = limited((scale_a * a[i]) * (scale_b * b[i]), T(-1), T(1));

@@ -73,8 +73,8 @@ std::string names_like(const Medium& m, const Tables& tables) {
   return names.empty() ? "" : " (similar names: " + names + ")";
 }
 
-/// The absorption of a glass. The tables of petzval have none; a glass that the user has added under the same name,
-/// with an n_d within 0.002, then states it.
+/// The absorption of a glass. If its table has no absorption, a glass that the user has added under the same name, with
+/// an n_d within 0.002, supplies the absorption.
 std::vector<AbsorptionEntry> absorption_of(const Glass* glass, const GlassCatalogue* glasses) {
   if (glass && glass->absorption.empty()) glass = glasses->find(glass->name, glass->nd);
   return glass ? glass->absorption : std::vector<AbsorptionEntry>();

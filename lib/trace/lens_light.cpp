@@ -116,7 +116,7 @@ std::vector<double> powers(const Series& series, std::size_t terms, double facto
   return sum;
 }
 
-/// One wavelength of the tables: a compiled one, or a node between them.
+/// A wavelength of the tables: a compiled wavelength, or a node between two.
 struct Node {
   double nm;
   std::vector<double> indices, absorptions;  // by space
@@ -207,7 +207,7 @@ struct LensLight::Data {
   double error = 0;
 
   explicit Data(const Lens& lens) {
-    std::vector<Node> nodes;  // compiled wavelengths, then nodes between them
+    std::vector<Node> nodes;  // compiled wavelengths, then nodes of the spectrum
     const auto add = [&](double nm, Wavelength wavelength) {
       Node node{nm, {}, {}};
       for (std::size_t space = 0; space <= lens.surface_count(); ++space) {

@@ -50,6 +50,7 @@ CameraOptions wild_options(fuzz::Bytes& bytes) {
     options.bokeh.weight_map = {.width = 2, .height = 3, .values = {}, .keep_mean = bytes.one_in(2)};
     for (int i = 0; i < 6; ++i) options.bokeh.weight_map.values.push_back(static_cast<float>(bytes.number(0, 1)));
   }
+  options.transmission = kind % 16 == 5;
   if (kind % 16 == 4) {
     for (int i = bytes.count(0, 4); i > 0; --i)
       options.expressive.power.push_back({bytes.number(0, 1), bytes.number(0, 2)});

@@ -58,6 +58,8 @@ const Camera& some_camera(fuzz::Bytes& bytes) {
       },
       [=] { return focused(usual, {}, film); },
       [=] { return focused(usual, {.normalisation = Normalisation::unity_on_axis}, tilted); },
+      [=] { return focused(usual, {.transmission = true}, tilted); },
+      [=] { return focused(flat, {.model = ModelKind::thick, .transmission = true}, small); },
       [=] { return focused(usual, {.model = ModelKind::exact_double}, moving, {.blades = 5, .rotation_rad = 0.2}); },
       [=] {
         const BokehControls bokeh{.blades = 7, .weight_distribution = 3, .weight_strength = 0.5};
