@@ -59,7 +59,9 @@ TEST(Transmission, OfExactRaysIsThatOfTheLens) {
         const Importance from = bare.importance(to_film, sample.wavelength),
                          to = lit.importance(to_film, sample.wavelength);
         ASSERT_EQ(from.fate, to.fate);
-        if (from) EXPECT_NEAR(to.we / from.we, b.weight / a.weight, 2e-4);
+        if (from) {
+          EXPECT_NEAR(to.we / from.we, b.weight / a.weight, 2e-4);
+        }
       }
       EXPECT_GT(rays, 100);
     }
