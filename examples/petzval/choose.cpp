@@ -17,6 +17,7 @@
 #include "petzval/core/parallel.hpp"
 #include "support/cli.hpp"
 #include "support/files.hpp"
+#include "support/lens_light.hpp"
 #include "support/model_rows.hpp"
 #include "support/text.hpp"
 
@@ -70,7 +71,8 @@ int commands::choose(int argc, char** argv) {
   examples::add_threads(app);
   return examples::run(app, argc, argv, [&] {
     const petzval::Film film = options.film();
-    const petzval::Lens lens = examples::focused_lens(options).lens;
+    const examples::LoadedLens loaded = examples::focused_lens(options);
+    const petzval::Lens& lens = loaded.lens;
     examples::say_what_does_not_fit(lens, film, "--size");
     const petzval::ModelChoice choice = petzval::choose_model(
         lens,
@@ -80,13 +82,23 @@ int commands::choose(int argc, char** argv) {
          .origin = options.setup.focus.distance_origin()},
         {.max_px = options.budget_px, .exposure = 0.01, .pupil_shape = 0.02}, examples::threads());
     examples::say_what_is_missing(choice.table);
+    const auto visible = examples::visible_lens(loaded, lens);
+    const double subject_z = petzval::origin_z(lens, options.setup.focus.distance_origin()) - options.setup.focus_mm;
+    const auto colour = visible ? examples::daylight_behind(*visible, subject_z) : std::nullopt;
     const auto rows = examples::model_rows(choice.table, film, true);
     const double predicted = std::ranges::find(choice.table, choice.model, &petzval::ModelCandidate::model)->bound_px;
     const double verified = verified_max_px(lens, options, choice.model);
     if (options.json) {
-      std::cout << examples::Json{{"model", petzval::name(choice.model)}, {"predicted_max_px", predicted},
-                                  {"verified_max_px", verified},          {"reasons", choice.reasons},
-                                  {"not_needed", choice.not_needed},      {"table", examples::to_json(rows)}}
+      std::cout << examples::Json{{"model", petzval::name(choice.model)},
+                                  {"predicted_max_px", predicted},
+                                  {"verified_max_px", verified},
+                                  {"reasons", choice.reasons},
+                                  {"not_needed", choice.not_needed},
+                                  {"without_transmission",
+                                   {{"exposure", choice.without_transmission.exposure},
+                                    {"field", choice.without_transmission.field},
+                                    {"colour", colour ? examples::to_json(*colour) : examples::Json()}}},
+                                  {"table", examples::to_json(rows)}}
                        .dump(1)
                 << '\n';
       return;
@@ -97,6 +109,7 @@ int commands::choose(int argc, char** argv) {
               << " px predicted, " << examples::number(verified, 3) << " px on fresh samples\n"
               << examples::bullets(choice.reasons);
     if (!choice.not_needed.empty()) std::cout << "not needed:\n" << examples::bullets(choice.not_needed);
+    if (colour) std::cout << "with transmission: " << examples::colour_in_words(*colour)[1] << '\n';
     std::cout << "\nmax, pupil and exposure are bounds\n" << examples::to_text(rows);
   });
 }

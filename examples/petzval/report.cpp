@@ -100,17 +100,8 @@ std::optional<examples::LightReport> light_of(const examples::Report& report, co
                                               const Options& options) {
   const auto coated = examples::coated(colours, options.coatings);
   if (!coated) return {};
-  std::optional<petzval::Lens> visible;
-  try {
-    // Glasses that end before 400 or 700 nm keep their last index, which changes transmittances little.
-    auto compile = examples::compile_options(report.loaded);
-    compile.clamp_wavelengths = true;
-    visible = set(petzval::compile(report.loaded.prescription, examples::visible_wavelengths(*coated), compile),
-                  options, report.subject);
-  } catch (const petzval::Error&) {
-    // Media without dispersion have indices at one wavelength only.
-  }
-  if (visible) visible = examples::coated(*visible, options.coatings);
+  std::optional<petzval::Lens> visible = examples::visible_lens(report.loaded, *coated);
+  if (visible) visible = examples::coated(set(*visible, options, report.subject), options.coatings);
   try {
     return examples::report_light(report, options.coatings == "file" ? "" : options.coatings, *coated, visible);
   } catch (const petzval::Error& error) {

@@ -90,10 +90,24 @@ LightReport report_light(const Report& report, const std::string& coatings, cons
   std::vector<double> fields;
   for (const double degrees : result.fields_deg) fields.push_back(petzval::radians(degrees));
   result.values = petzval::transmittance(colours, subject_z(report.subject, colours), fields, threads());
-  if (!visible) return result;
-  const auto table = petzval::ColourMatching::load(petzval::data_directory() / "glass" / "cie1931_2deg_5nm.csv");
-  result.colour = petzval::lens_colour(*visible, subject_z(report.subject, *visible), white_light("D65"), table);
+  if (visible) result.colour = daylight_behind(*visible, subject_z(report.subject, *visible));
   return result;
+}
+
+std::optional<petzval::LensColour> daylight_behind(const petzval::Lens& visible, double subject_z) {
+  const auto table = petzval::ColourMatching::load(petzval::data_directory() / "glass" / "cie1931_2deg_5nm.csv");
+  return petzval::lens_colour(visible, subject_z, white_light("D65"), table);
+}
+
+std::optional<petzval::Lens> visible_lens(const LoadedLens& loaded, const petzval::Lens& coated) {
+  try {
+    // Glasses that end before 400 or 700 nm keep their last index, which changes transmittances little.
+    auto options = compile_options(loaded);
+    options.clamp_wavelengths = true;
+    return petzval::compile(loaded.prescription, visible_wavelengths(coated), options);
+  } catch (const petzval::Error&) {
+    return {};  // media without dispersion have indices at one wavelength only
+  }
 }
 
 Json to_json(const std::optional<LightReport>& light) {
@@ -113,14 +127,17 @@ Json to_json(const std::optional<LightReport>& light) {
                                      {"value", or_null(light->values[i].value)}});
   }
   if (!light->colour) return json;
-  const petzval::LensColour& colour = *light->colour;
-  json["t_stop"] = finite_or_null(colour.t_stop);
-  json["colour"] = {{"x", colour.xy[0]},
-                    {"y", colour.xy[1]},
-                    {"correlated_colour_temperature_k", or_null(colour.cct_k)},
-                    {"light_correlated_colour_temperature_k", or_null(colour.light_cct_k)},
-                    {"shift_mired", or_null(shift_mired(colour))}};
+  json["t_stop"] = finite_or_null(light->colour->t_stop);
+  json["colour"] = to_json(*light->colour);
   return json;
+}
+
+Json to_json(const petzval::LensColour& colour) {
+  return {{"x", colour.xy[0]},
+          {"y", colour.xy[1]},
+          {"correlated_colour_temperature_k", or_null(colour.cct_k)},
+          {"light_correlated_colour_temperature_k", or_null(colour.light_cct_k)},
+          {"shift_mired", or_null(shift_mired(colour))}};
 }
 
 std::string coatings_in_words(const LightReport& light) {
@@ -135,9 +152,7 @@ std::string coatings_in_words(const LightReport& light) {
   return text + (one ? " to air has none and is uncoated" : " to air have none and are uncoated");
 }
 
-std::vector<std::string> colour_in_words(const LightReport& light) {
-  if (!light.colour) return {};
-  const petzval::LensColour& colour = *light.colour;
+std::vector<std::string> colour_in_words(const petzval::LensColour& colour) {
   const auto kelvin = [](const std::optional<double>& value) {
     return value ? ", " + number(std::round(*value), 6) + " K" : std::string();
   };
@@ -162,7 +177,8 @@ std::string to_text(const LightReport& light) {
          << " nm: " << (value ? number(100 * *value, 4) + " %" : "no ray passes") << '\n';
   }
   if (!light.visible) text << "  no T-stop and colour: indices at visible wavelengths are unknown\n";
-  for (const std::string& line : colour_in_words(light)) text << "  " << line << '\n';
+  if (!light.colour) return text.str();
+  for (const std::string& line : colour_in_words(*light.colour)) text << "  " << line << '\n';
   return text.str();
 }
 

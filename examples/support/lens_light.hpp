@@ -36,6 +36,13 @@ struct LightReport {
 /// less than two.
 std::vector<double> visible_wavelengths(const petzval::Lens& lens);
 
+/// The lens at visible_wavelengths() of a coated lens, as its file states it; nullopt if its media have indices at one
+/// wavelength only.
+std::optional<petzval::Lens> visible_lens(const LoadedLens& loaded, const petzval::Lens& coated);
+
+/// Daylight (D65) behind a lens at visible wavelengths; nullopt if no ray passes.
+std::optional<petzval::LensColour> daylight_behind(const petzval::Lens& visible, double subject_z);
+
 /// @param colours  the coated lens at the wavelengths of the report
 /// @param visible  the coated lens at visible_wavelengths()
 /// @throws petzval::Error under the conditions of petzval::transmittance() and petzval::lens_colour()
@@ -47,7 +54,8 @@ Json to_json(const std::optional<LightReport>& light);
 std::string to_text(const LightReport& light);
 /// "coatings: of the file; surfaces 3 and 5 to air have none and are uncoated".
 std::string coatings_in_words(const LightReport& light);
-/// "T-stop 1.4 (90 % of daylight D65)", then the colour; empty without LightReport::colour.
-std::vector<std::string> colour_in_words(const LightReport& light);
+/// "T-stop 1.4 (90 % of daylight D65)", then the colour.
+std::vector<std::string> colour_in_words(const petzval::LensColour& colour);
+Json to_json(const petzval::LensColour& colour);
 
 }  // namespace examples

@@ -189,7 +189,9 @@ void light_table(std::ostream& html, const LightReport& light) {
   html << "<h2>Light</h2>\n<p class=\"lead\">The fraction of unpolarised light that the lens passes, mean over the "
           "pupil; "
        << escaped_html(coatings_in_words(light)) << '.';
-  for (const std::string& words : colour_in_words(light)) html << ' ' << words << '.';
+  if (light.colour) {
+    for (const std::string& words : colour_in_words(*light.colour)) html << ' ' << words << '.';
+  }
   html << "</p>\n";
   const auto wavelengths = light.colours.wavelengths_nm();
   html << "<div class=\"scroll\"><table>\n<tr><th class=\"number\">field</th>";

@@ -120,8 +120,9 @@ ModelChoice choose(const ModelTable& table, std::size_t budget_number, const Err
   choice.not_needed = not_needed(table, budget_number, budget);
   choice.without_transmission = table.without_transmission;
   const auto& [exposure, field, colour] = table.without_transmission;
-  const std::string costs = "without it the film is " + percent(exposure) + " too bright, by up to " + percent(field) +
-                            " more or less away from the axis and " + percent(colour) + " at other wavelengths";
+  const std::string costs = "without it the film is " + percent(exposure) + " too bright, and light changes by up to " +
+                            percent(field) + " over the film" +
+                            (table.wavelengths > 1 ? " and " + percent(colour) + " over the wavelengths" : "");
   const auto item = fraction_item(std::max(field, colour), budget.exposure);
   if (item && item->inside) {
     choice.not_needed.push_back("transmission: " + costs + " (budget of these changes " + item->budget + ")");

@@ -61,9 +61,8 @@ struct Lines {
 };
 
 /// Lines from film points of several radii and directions, through points spread over their pupils, that pass the lens.
-/// @param apertures true: rays must also pass the rims
 Lines traced_lines(const Lens& lens, const AnyRayModel& model, const LensLight& light, double radius, bool revolution,
-                   std::size_t wavelength, std::size_t radii, std::size_t pupil_points, bool apertures) {
+                   std::size_t wavelength, std::size_t radii, std::size_t pupil_points) {
   const TwoPlanes& space = model.pupils().space();
   const double towards = towards_scene(lens, space), depth = space.depth();
   const std::size_t directions = revolution ? 1 : 5;
@@ -83,7 +82,7 @@ Lines traced_lines(const Lens& lens, const AnyRayModel& model, const LensLight& 
         double passes = 0;
         const auto end = trace_detail::trace_light<double>(
             lens, light, {{at.x, at.y, space.pupil_z}, {x * per_length, y * per_length, depth * per_length}}, passes,
-            {.travel = Travel::to_scene, .wavelength = wavelength, .apertures = apertures});
+            {.travel = Travel::to_scene, .wavelength = wavelength});
         if (!end.transmitted()) continue;
         found.film_x.push_back(film.x), found.film_y.push_back(film.y);
         found.pupil_x.push_back(at.x), found.pupil_y.push_back(at.y);
@@ -148,8 +147,8 @@ struct Transmission::Data {
   void fit(const Lens& lens, const AnyRayModel& model, double radius) {
     const bool revolution = !has_cylinders(lens);
     const auto lines_at = [&](std::size_t w, bool fresh) {
-      return fresh ? traced_lines(lens, model, light, radius, revolution, w, 7, 55, true)
-                   : traced_lines(lens, model, light, radius, revolution, w, 10, revolution ? 60 : 40, false);
+      return fresh ? traced_lines(lens, model, light, radius, revolution, w, 7, 55)
+                   : traced_lines(lens, model, light, radius, revolution, w, 10, revolution ? 60 : 40);
     };
     std::vector<Lines> fitted, fresh;
     double per_pupil = std::numeric_limits<double>::infinity(), least = 1, most = 0;
@@ -159,6 +158,7 @@ struct Transmission::Data {
       per_pupil = std::min(per_pupil, 1 / largest(own.pupil_x, own.pupil_y));
       for (const double value : own.light) least = std::min(least, value), most = std::max(most, value);
     }
+    // The limits also serve rays of the model that the lens does not pass.
     in_double.revolution = revolution;
     in_double.per_film = radius > 0 ? 1 / radius : 1, in_double.per_pupil = per_pupil;
     double fit_error = 0;
