@@ -38,6 +38,7 @@ petzval::Coating coating_named(const std::string& name) {
       coating.layers.push_back({columns[0][i], columns[1][i], columns[2][i]});
     }
   }
+  if (coating == petzval::Coating{}) throw petzval::Error(name + ": no rows; must have at least one");
   petzval::validate(coating, name);
   return coating;
 }
@@ -141,8 +142,14 @@ Json to_json(const petzval::LensColour& colour) {
 }
 
 std::string coatings_in_words(const LightReport& light) {
-  if (!light.coatings.empty()) return "coatings: " + light.coatings + " on all surfaces to air (--coatings)";
-  std::string text = "coatings: of the file";
+  const bool mirrors = std::ranges::any_of(light.colours.surfaces(), [](const petzval::LensSurface& surface) {
+    return surface.mirror && surface.coating.value_or(petzval::Coating{}) == petzval::Coating{};
+  });
+  const std::string lossless = mirrors ? "; mirrors lose no light" : "";
+  if (!light.coatings.empty()) {
+    return "coatings: " + light.coatings + " on all surfaces to air (--coatings)" + lossless;
+  }
+  std::string text = "coatings: of the file" + lossless;
   if (light.uncoated.empty()) return text;
   const bool one = light.uncoated.size() == 1;
   text += one ? "; surface " : "; surfaces ";
@@ -176,7 +183,8 @@ std::string to_text(const LightReport& light) {
          << number(light.colours.wavelengths_nm()[wavelength], 6)
          << " nm: " << (value ? number(100 * *value, 4) + " %" : "no ray passes") << '\n';
   }
-  if (!light.visible) text << "  no T-stop and colour: indices at visible wavelengths are unknown\n";
+  if (!light.visible) text << "  no T-stop and colour: indices or reflectances from 400 to 700 nm are unknown\n";
+  if (light.visible && !light.colour) text << "  no T-stop and colour: no light passes\n";
   if (!light.colour) return text.str();
   for (const std::string& line : colour_in_words(*light.colour)) text << "  " << line << '\n';
   return text.str();

@@ -120,7 +120,8 @@ ModelChoice choose(const ModelTable& table, std::size_t budget_number, const Err
   choice.not_needed = not_needed(table, budget_number, budget);
   choice.without_transmission = table.without_transmission;
   const auto& [exposure, field, colour] = table.without_transmission;
-  const std::string costs = "without it the film is " + percent(exposure) + " too bright, and light changes by up to " +
+  const std::string costs = "without it the film is " + percent(exposure) +
+                            " too bright (surfaces of unknown coating are uncoated), and light changes by up to " +
                             percent(field) + " over the film" +
                             (table.wavelengths > 1 ? " and " + percent(colour) + " over the wavelengths" : "");
   const auto item = fraction_item(std::max(field, colour), budget.exposure);

@@ -8,6 +8,8 @@
 #include <numeric>
 #include <utility>
 
+#include "core/text.hpp"
+#include "petzval/core/error.hpp"
 #include "petzval/core/parallel.hpp"
 #include "petzval/paraxial/first_order.hpp"
 #include "pupil/pupil_boundary.hpp"
@@ -52,7 +54,7 @@ class Passage {
     for (std::size_t k = 0; k < hits_.size(); ++k) {
       const Surface& surface = surfaces_[hits_[k].surface];
       const bool last = k + 1 == hits_.size();
-      result *= passed(surface, hits_[k].direction, last ? end.direction : hits_[k + 1].direction);
+      result *= passed(surface, hits_[k]);
       if (last || surface.absorption == 0) continue;
       const Vec path = hits_[k + 1].point - hits_[k].point;
       absorbance += surface.absorption * std::sqrt(dot(path, path));
@@ -72,14 +74,14 @@ class Passage {
     Vec point, direction;  ///< of the arriving ray
   };
 
-  /// Fraction of the light that a surface passes; the normal is along the difference of the directions times the
-  /// indices.
-  double passed(const Surface& surface, const Vec& in, const Vec& out) const {
+  /// Fraction of the light that a surface passes.
+  double passed(const Surface& surface, const Hit& hit) const {
     if (surface.lossless) return 1;
-    const Vec normal = out * surface.behind - in * surface.before;
-    const double length = std::sqrt(dot(normal, normal));
-    // Equal indices leave the direction as it is; their coating acts at normal incidence.
-    const double cosine = length > 1e-12 ? std::min(std::abs(dot(in, normal)) / length, 1.0) : 1;
+    const kernel::SurfaceTable<double>& table = view_.surfaces[hit.surface];
+    const Vec at{hit.point.x, hit.point.y, hit.point.z - view_.vertex_z[hit.surface]};
+    const Vec normal =
+        table.asphere < 0 ? kernel::gradient(table.quadric, at) : kernel::normal(view_.aspheres[table.asphere], at);
+    const double cosine = std::min(std::abs(dot(hit.direction, normal)) / std::sqrt(dot(normal, normal)), 1.0);
     const SurfaceLight light = surface_light(surface.coating, surface.before, surface.behind, cosine, nm_);
     return surface.mirror ? light.reflectance() : light.transmittance();
   }
@@ -148,6 +150,10 @@ double area_f_number(const Lens& lens, Wavelength wavelength) {
 
 std::optional<LensColour> lens_colour(const Lens& lens, double subject_z, const Spectrum& light,
                                       const ColourMatching& table) {
+  const auto white = tristimulus(light, table);
+  if (!(white[1] > 0)) {
+    throw Error("lens_colour: the light has a luminance of " + to_text(white[1]) + "; must be positive");
+  }
   const auto& nm = lens.wavelengths_nm();
   std::vector<std::size_t> order(nm.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
@@ -179,7 +185,8 @@ std::optional<LensColour> lens_colour(const Lens& lens, double subject_z, const 
     product.wavelengths_nm.push_back(wavelength);
     product.power.push_back(power * at(wavelength));
   }
-  const auto behind = tristimulus(product, table), white = tristimulus(light, table);
+  const auto behind = tristimulus(product, table);
+  if (!(behind[1] > 0)) return {};
   const auto xy = [](const std::array<double, 3>& xyz) {
     const double sum = xyz[0] + xyz[1] + xyz[2];
     return std::array{xyz[0] / sum, xyz[1] / sum};

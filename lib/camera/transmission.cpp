@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -60,11 +61,22 @@ struct Lines {
   }
 };
 
+/// The exact transmittance along an image-space ray; nullopt if it does not pass.
+std::optional<double> light_along(const Lens& lens, const TwoPlanes& space, const LensLight& light,
+                                  const TwoPlaneRay& line, Wavelength wavelength) {
+  const double x = line.pupil_x - line.film_x, y = line.pupil_y - line.film_y, depth = space.depth();
+  const double per_length = towards_scene(lens, space) / std::hypot(x, y, depth);
+  double passes = 0;
+  const auto end = trace_detail::trace_light<double>(
+      lens, light, {{line.pupil_x, line.pupil_y, space.pupil_z}, {x * per_length, y * per_length, depth * per_length}},
+      passes, {.travel = Travel::to_scene, .wavelength = wavelength});
+  return end.transmitted() ? std::optional(passes) : std::nullopt;
+}
+
 /// Lines from film points of several radii and directions, through points spread over their pupils, that pass the lens.
 Lines traced_lines(const Lens& lens, const AnyRayModel& model, const LensLight& light, double radius, bool revolution,
                    std::size_t wavelength, std::size_t radii, std::size_t pupil_points) {
   const TwoPlanes& space = model.pupils().space();
-  const double towards = towards_scene(lens, space), depth = space.depth();
   const std::size_t directions = revolution ? 1 : 5;
   Lines found;
   for (std::size_t r = 0; r < radii; ++r) {
@@ -78,15 +90,11 @@ Lines traced_lines(const Lens& lens, const AnyRayModel& model, const LensLight& 
         const auto [u, v] = core_detail::fibonacci_point(k, pupil_points);
         const PupilSample at = model.pupils().sample(film, u, v, wavelength);
         if (!(at.area > 0)) continue;
-        const double x = at.x - film.x, y = at.y - film.y, per_length = towards / std::hypot(x, y, depth);
-        double passes = 0;
-        const auto end = trace_detail::trace_light<double>(
-            lens, light, {{at.x, at.y, space.pupil_z}, {x * per_length, y * per_length, depth * per_length}}, passes,
-            {.travel = Travel::to_scene, .wavelength = wavelength});
-        if (!end.transmitted()) continue;
+        const auto passes = light_along(lens, space, light, {film.x, film.y, at.x, at.y}, wavelength);
+        if (!passes) continue;
         found.film_x.push_back(film.x), found.film_y.push_back(film.y);
         found.pupil_x.push_back(at.x), found.pupil_y.push_back(at.y);
-        found.light.push_back(passes);
+        found.light.push_back(*passes);
       }
     }
   }
@@ -179,7 +187,6 @@ struct Transmission::Data {
       }
       if (fit_error <= tolerance) break;
     }
-    error += fit_error;
     const bool any = model.any_wavelength() && std::isfinite(lens.index_error());
     coefficients = {any ? lens_detail::CompiledWavelengths(lens.wavelengths_nm()) : lens_detail::CompiledWavelengths(),
                     compiled};
@@ -192,6 +199,26 @@ struct Transmission::Data {
                 .per_pupil = static_cast<float>(in_double.per_pupil),
                 .least = static_cast<float>(in_double.least),
                 .most = static_cast<float>(in_double.most)};
+    if (any) fit_error = std::max(fit_error, error_between(lens, model.pupils().space(), fresh.front()));
+    error += fit_error;
+  }
+
+  /// Largest error of the lines midway between compiled wavelengths.
+  double error_between(const Lens& lens, const TwoPlanes& space, const Lines& lines) const {
+    std::vector<double> nm(lens.wavelengths_nm().begin(), lens.wavelengths_nm().end());
+    std::ranges::sort(nm);
+    double worst = 0;
+    std::vector<double> found(lines.size());
+    for (std::size_t k = 1; k < nm.size(); ++k) {
+      const Wavelength middle = Wavelength::nm((nm[k - 1] + nm[k]) / 2);
+      evaluate(in_double, lines.size(), lines.rays(), {.all = middle}, found.data());
+      for (std::size_t i = 0; i < lines.size(); ++i) {
+        const TwoPlaneRay line{lines.film_x[i], lines.film_y[i], lines.pupil_x[i], lines.pupil_y[i]};
+        const auto passes = light_along(lens, space, light, line, middle);
+        if (passes) worst = std::max(worst, std::abs(found[i] - *passes));
+      }
+    }
+    return worst;
   }
 
   /// Least squares with the monomials of in_double.
@@ -216,7 +243,7 @@ struct Transmission::Data {
 Transmission::Transmission(const Lens& lens, const AnyRayModel& model, double radius)
     : data_(std::make_shared<const Data>(lens, model, radius)) {}
 
-double Transmission::error() const noexcept { return data_ ? data_->error : 0; }
+double Transmission::error() const noexcept { return data_ ? std::min(data_->error, 1.0) : 0; }
 
 template <class T>
 void Transmission::to_scene(const AnyRayModel& model, std::size_t count, const TwoPlaneRays<const T>& lines,

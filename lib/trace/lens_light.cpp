@@ -240,6 +240,7 @@ struct LensLight::Data {
       }
       error += surfaces.back().error + error_between(lens, i, at, compiled);
     }
+    error = std::min(error, 1.0);
     build(surfaces, nodes, compiled, in_float);
     build(surfaces, nodes, compiled, in_double);
   }

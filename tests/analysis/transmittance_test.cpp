@@ -93,6 +93,31 @@ TEST(Transmittance, OfMirrorsIsTheirReflectance) {
   EXPECT_NEAR(transmittance(compile(p), {.z = far}).value(), std::pow(0.9, mirrors), 1e-12);
 }
 
+// A coating in air acts at the angle of the ray.
+TEST(Transmittance, OfAPellicleDependsOnTheAngle) {
+  Prescription p;
+  p.name = "pellicle";
+  const Coating film{.layers = {{.index = 2.2, .thickness_nm = 180}}};
+  p.surfaces = {{.thickness = 50, .semi_diameter = 10, .coating = film}};
+  const Lens lens = compile(p);
+  for (const double degrees : {0.0, 40.0}) {
+    const double sine = std::sin(radians(degrees)), cosine = std::cos(radians(degrees));
+    EXPECT_NEAR(transmittance(lens, Ray<double>{{0, 0, -2}, {0, sine, cosine}}).value(),
+                surface_light(film, 1, 1, cosine, d_line_nm).transmittance(), 1e-12);
+  }
+}
+
+TEST(LensColour, NeedsLight) {
+  const ColourMatching table =
+      ColourMatching::load(std::filesystem::path(PETZVAL_TEST_DATA) / "glass" / "cie1931_2deg_5nm.csv");
+  const Lens lens = window(1.5);
+  EXPECT_THROW(lens_colour(lens, far, Spectrum{}, table), Error);
+  EXPECT_THROW(lens_colour(lens, far, Spectrum{{400, 700}, {0, 0}}, table), Error);
+  Prescription p = testing::data_prescription("double_gauss_100mm_f1.35");
+  p.surfaces[0].coating = Coating{.table = {{100, 1}, {2000, 1}}};
+  EXPECT_FALSE(lens_colour(compile(p), far, Spectrum{{400, 700}, {1, 1}}, table));
+}
+
 TEST(Transmittance, OfAReversedPrescriptionIsTheSame) {
   Prescription p = testing::data_prescription("double_gauss_100mm_f1.35");
   int layers = 0;

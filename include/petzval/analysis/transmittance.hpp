@@ -89,7 +89,7 @@ struct LensColour {
 /// @param subject_z subject plane (lens frame, mm); -inf at infinity
 /// @param light     the light
 /// @param table     the colour matching functions
-/// @return          nullopt if no ray passes
+/// @return          nullopt if no ray or no light passes
 /// @throws Error    under the conditions of transmittance(), area_f_number() and tristimulus()
 PETZVAL_API std::optional<LensColour> lens_colour(const Lens& lens, double subject_z, const Spectrum& light,
                                                   const ColourMatching& table);
