@@ -130,6 +130,13 @@ struct Transmission::Data {
   }
 
   bool traced() const noexcept { return single || twice; }
+  /// Calls body with the exact model; false if the model is not exact.
+  template <class Body>
+  bool with_exact(const Body& body) const noexcept {
+    if (single) body(*single);
+    if (twice) body(*twice);
+    return traced();
+  }
 
   template <class T>
   void evaluate(TransmissionJob<T> job, std::size_t count, const TwoPlaneRays<const T>& lines,
@@ -249,20 +256,20 @@ template <class T>
 void Transmission::to_scene(const AnyRayModel& model, std::size_t count, const TwoPlaneRays<const T>& lines,
                             const RayWavelengths& wavelengths, const RayArrays<T>& rays, RayFate* fates,
                             T* transmittances) const noexcept {
-  if (data_->single) {
-    return data_->single->to_scene(count, lines, wavelengths, rays, fates, &data_->light, transmittances);
-  }
-  if (data_->twice) {
-    return data_->twice->to_scene(count, lines, wavelengths, rays, fates, &data_->light, transmittances);
-  }
+  const bool traced = data_->with_exact([&](const auto& exact) {
+    exact.to_scene(count, lines, wavelengths, rays, fates, &data_->light, transmittances);
+  });
+  if (traced) return;
   model.to_scene(count, lines, wavelengths, rays, fates);
   std::fill_n(transmittances, count, T(1));
 }
 
 RayFate Transmission::to_scene(const AnyRayModel& model, const TwoPlaneRay& line, Wavelength wavelength,
                                Ray<double>& ray, double& transmittance) const noexcept {
-  if (data_->single) return data_->single->to_scene(line, wavelength, ray, &data_->light, &transmittance);
-  if (data_->twice) return data_->twice->to_scene(line, wavelength, ray, &data_->light, &transmittance);
+  RayFate fate{};
+  const bool traced = data_->with_exact(
+      [&](const auto& exact) { fate = exact.to_scene(line, wavelength, ray, &data_->light, &transmittance); });
+  if (traced) return fate;
   transmittance = 1;
   return model.to_scene(line, wavelength, ray);
 }
@@ -270,12 +277,9 @@ RayFate Transmission::to_scene(const AnyRayModel& model, const TwoPlaneRay& line
 void Transmission::to_film(const AnyRayModel& model, std::size_t count, const RayArrays<const double>& rays,
                            const RayWavelengths& wavelengths, const TwoPlaneRays<double>& lines, RayFate* fates,
                            double* transmittances) const noexcept {
-  if (data_->single) {
-    return data_->single->to_film(count, rays, wavelengths, lines, fates, &data_->light, transmittances);
-  }
-  if (data_->twice) {
-    return data_->twice->to_film(count, rays, wavelengths, lines, fates, &data_->light, transmittances);
-  }
+  const bool traced = data_->with_exact(
+      [&](const auto& exact) { exact.to_film(count, rays, wavelengths, lines, fates, &data_->light, transmittances); });
+  if (traced) return;
   model.to_film(count, rays, wavelengths, lines, fates);
   std::fill_n(transmittances, count, 1.0);
 }
@@ -296,21 +300,6 @@ void Transmission::of_lines(std::size_t count, const TwoPlaneRays<const T>& line
     data_->evaluate(*job, n, lines.from(begin), wavelengths.from(begin), found.data());
     for (std::size_t i = 0; i < n; ++i) transmittances[begin + i] *= found[i];
   }
-}
-
-double Transmission::of_line(const TwoPlaneRay& line, Wavelength wavelength) const noexcept {
-  double result = 1;
-  if (!data_->traced()) {
-    of_lines<double>(1, {&line.film_x, &line.film_y, &line.pupil_x, &line.pupil_y}, {.all = wavelength}, &result);
-    return result;
-  }
-  Ray<double> ray;
-  if (data_->single) {
-    data_->single->to_scene(line, wavelength, ray, &data_->light, &result);
-  } else {
-    data_->twice->to_scene(line, wavelength, ray, &data_->light, &result);
-  }
-  return result;
 }
 
 #define PETZVAL_TRANSMISSION(T)                                                                                  \

@@ -42,7 +42,6 @@ class PETZVAL_API Transmission {
   template <class T>
   void of_lines(std::size_t count, const TwoPlaneRays<const T>& lines, const RayWavelengths& wavelengths,
                 T* transmittances) const noexcept;
-  double of_line(const TwoPlaneRay& line, Wavelength wavelength) const noexcept;
 
  private:
   struct Data;

@@ -7,7 +7,6 @@
 #include <limits>
 #include <numbers>
 #include <string>
-#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -28,18 +27,22 @@ using Series = std::array<double, samples>;
 
 /// A surface at one wavelength: its transmittance over the variable of its polynomial.
 struct SurfaceAt {
-  const LensSurface* surface;
+  bool mirror;
   double before, behind;  // indices
   double nm;
+  Coating coating;  // from the side of the lower index; on a mirror from the side of the light
+
+  SurfaceAt(const LensSurface& surface, double index_before, double index_behind, double wavelength_nm)
+      : mirror(surface.mirror), before(index_before), behind(index_behind), nm(wavelength_nm) {
+    if (surface.coating) coating = mirror || before <= behind ? *surface.coating : reversed(*surface.coating);
+  }
 
   double low() const noexcept { return std::min(before, behind); }
   double high() const noexcept { return std::max(before, behind); }
   /// @param cosine in the medium of the lower index
   double light(double cosine) const {
-    const Coating own = surface->coating.value_or(Coating{});
-    if (surface->mirror) return surface_light(own, before, behind, cosine, nm).reflectance();
-    const bool from_front = before <= behind;
-    return surface_light(from_front ? own : reversed(own), low(), high(), cosine, nm).transmittance();
+    const SurfaceLight found = surface_light(coating, low(), high(), cosine, nm);
+    return mirror ? found.reflectance() : found.transmittance();
   }
   /// @param value ratio of the components along the normal, low to high
   double light_at_ratio(double value) const {
@@ -51,7 +54,7 @@ struct SurfaceAt {
     const double slant = (high() * high() - low() * low()) * value * value / (1 - value * value);
     return light(std::min(std::sqrt(slant) / low(), 1.0));
   }
-  bool bare() const noexcept { return !surface->coating || *surface->coating == Coating{}; }
+  bool bare() const noexcept { return coating == Coating{}; }
 };
 
 /// The variable of a polynomial, and its pole.
@@ -131,14 +134,14 @@ struct Polynomial {
 
 /// True if a surface passes all light: a mirror of unknown coating, or an uncoated surface without refraction.
 bool plain(const std::vector<SurfaceAt>& at) {
-  const auto same = [](const SurfaceAt& own) { return own.surface->mirror || own.before == own.behind; };
+  const auto same = [](const SurfaceAt& own) { return own.mirror || own.before == own.behind; };
   return at.front().bare() && std::ranges::all_of(at, same);
 }
 
 /// The surface at each node.
 std::vector<SurfaceAt> at_nodes(const Lens& lens, std::size_t i, const std::vector<Node>& nodes) {
   std::vector<SurfaceAt> at;
-  for (const Node& node : nodes) at.push_back({&lens.surfaces()[i], node.indices[i], node.indices[i + 1], node.nm});
+  for (const Node& node : nodes) at.emplace_back(lens.surfaces()[i], node.indices[i], node.indices[i + 1], node.nm);
   return at;
 }
 
@@ -150,7 +153,7 @@ Polynomial fit(const std::vector<SurfaceAt>& at) {
   const Argument cosine{LightVariable::cosine}, ratio{LightVariable::ratio, at.front().low() / at.front().high()};
   // Without refraction the ratio does not determine the angle of incidence, which matters for layers.
   const bool bends = std::ranges::all_of(at, [](const SurfaceAt& own) { return own.high() > 1.001 * own.low(); });
-  const bool has_ratio = !at.front().surface->mirror && (bends || at.front().bare());
+  const bool has_ratio = !at.front().mirror && (bends || at.front().bare());
   for (const Argument& argument : {cosine, ratio}) {
     if (argument.variable == LightVariable::ratio && !has_ratio) continue;
     std::vector<Series> series;
@@ -176,7 +179,7 @@ Polynomial fit(const std::vector<SurfaceAt>& at) {
   } else if (std::ranges::all_of(at, [](const SurfaceAt& own) { return own.before >= own.behind; })) {
     result.lower = LowerIndex::behind;
   }
-  std::tie(result.from, result.to) = std::pair(std::numeric_limits<double>::infinity(), 0.0);
+  result.from = std::numeric_limits<double>::infinity(), result.to = 0;
   for (const SurfaceAt& own : at) {
     const auto [from, to] = result.argument.range(own);
     result.from = std::min(result.from, from), result.to = std::max(result.to, to);
@@ -252,7 +255,7 @@ struct LensLight::Data {
     for (std::size_t n = compiled; !plain(at) && n + 1 < at.size() && at[n].nm != at[n + 1].nm; ++n) {
       const double nm = 2 / (1 / at[n].nm + 1 / at[n + 1].nm);
       const Wavelength middle = Wavelength::nm(nm);
-      const SurfaceAt own{at[n].surface, lens.index(i, middle), lens.index(i + 1, middle), nm};
+      const SurfaceAt own(lens.surfaces()[i], lens.index(i, middle), lens.index(i + 1, middle), nm);
       for (const double cosine : {1.0, 0.7, 0.4}) {
         worst = std::max(worst, std::abs(own.light(cosine) - (at[n].light(cosine) + at[n + 1].light(cosine)) / 2));
       }
