@@ -5,8 +5,8 @@
  * @file
  * Lenses and cameras for renderers, in C99, C++11 and later. Link petzval::c (libpetzval-c).
  *
- * Status: most functions return a petzval_status. On failure, results are set to 0 or NULL and petzval_message() gives
- * the reason. No exception leaves a function.
+ * Status: most functions return a petzval_status. On failure, results are set to 0 or NULL, fates to
+ * PETZVAL_FATE_INVALID, and petzval_message() gives the reason. No exception leaves a function.
  *
  * Structs: petzval_film_init() and similar functions return structs with their `size` set and all other members 0. A
  * member of 0 has the default in its comment. Later versions only add members at the end, so that programs compiled
@@ -53,7 +53,7 @@ enum {
   PETZVAL_REFUSED = 3,      /**< a file, lens or value that cannot be used; petzval_message() gives the rule */
   PETZVAL_OUT_OF_MEMORY = 4,
   PETZVAL_NOT_BUILT = 5, /**< the library was built without this part */
-  PETZVAL_TOO_SMALL = 6  /**< the buffer is too small; the size that it needs was stored */
+  PETZVAL_TOO_SMALL = 6  /**< the buffer is too small; `length`, if given, is the size that it needs */
 };
 
 /** @return PETZVAL_OK if the library has the interface that this header declares. Pass PETZVAL_C_VERSION. */
@@ -202,7 +202,7 @@ typedef struct petzval_film_fit {
  * Moves and tilts a film so that focus points get their blurs, by exact rays.
  *
  * - max_tilt_rad: 0: the film stays upright; else 0.35 is usual
- * - film: on input the size and pixels, on output also position, tilt and shift
+ * - film: on input the size and pixels, on output also position, tilt and shift; unchanged on failure
  * - fit: may be NULL
  */
 PETZVAL_C_API petzval_status petzval_lens_fit_film(const petzval_lens* lens, const petzval_focus_point* points,
@@ -464,7 +464,7 @@ typedef struct petzval_psf {
  * - point: 3 numbers; petzval_psf refers to the film in mm
  * - image: [wavelength][row][column], rows from +y of the film on, in fractions of the light on the entrance pupil;
  * NULL: only `psf` is filled
- * - floats: floats in `image`
+ * - floats: floats in `image`: at least wavelengths * pixels * pixels
  */
 PETZVAL_C_API petzval_status petzval_camera_point_image(const petzval_camera* camera, const double* point,
                                                         const petzval_psf_options* options, petzval_psf* psf,

@@ -84,12 +84,6 @@ CameraSample sample_of(const CameraContents& own, const petzval_sample& sample) 
           .wavelength = wavelength_of(sample.wavelength_nm),
           .time = own.film_time(sample.time)};
 }
-/// The ray of a failed call.
-petzval_ray lost_ray() noexcept {
-  petzval_ray ray{};
-  ray.fate = PETZVAL_FATE_INVALID;
-  return ray;
-}
 void put(const CameraContents& own, const CameraRay& ray, petzval_ray& to) {
   put(own.frame.point_to_host(ray.ray.origin), to.origin);
   put(own.frame.direction_to_host(ray.ray.direction), to.direction);
@@ -128,7 +122,15 @@ T* from(T* array, std::size_t begin) {
 template <class T, class Samples, class Rays>
 petzval_status sample_arrays(const petzval_camera* camera, std::size_t count, const Samples* samples,
                              const Rays* rays) {
-  return guarded([&] {
+  const auto clear = [&] {
+    if (!rays) return;
+    for (T* const array : {rays->x, rays->y, rays->z, rays->dx, rays->dy, rays->dz, rays->weights, rays->pdf_pupil,
+                           rays->pdf_direction}) {
+      reset(array, count);
+    }
+    reset(rays->fates, count, std::uint8_t{PETZVAL_FATE_INVALID});
+  };
+  return guarded(clear, [&] {
     const CameraContents& own = *live(camera, "camera").contents;
     if (count == 0) return;
     const Samples& in = given(samples, "samples");
@@ -238,8 +240,8 @@ using namespace petzval::c_detail;
 
 petzval_status petzval_camera_create(const petzval_lens* lens, const petzval_film* film,
                                      const petzval_camera_options* options, petzval_camera** camera) {
-  return guarded([&] {
-    given(camera, "camera") = nullptr;
+  return guarded(results(camera), [&] {
+    given(camera, "camera");
     const LensContents& own = *live(lens, "lens").contents;
     CameraSettings settings{.lens = own.settings,
                             .film = received(film, "petzval_film"),
@@ -256,7 +258,7 @@ petzval_status petzval_camera_create(const petzval_lens* lens, const petzval_fil
 void petzval_camera_free(petzval_camera* camera) { release(camera); }
 
 petzval_status petzval_camera_get_info(const petzval_camera* camera, petzval_camera_info* info) {
-  return guarded([&] {
+  return guarded(results(info), [&] {
     const CameraContents& own = *live(camera, "camera").contents;
     const Film film = own.camera.film().at(own.opens);
     petzval_camera_info found{};
@@ -279,15 +281,15 @@ petzval_status petzval_camera_set_focus(petzval_camera* camera, double opens_mm,
 
 petzval_status petzval_camera_write(const petzval_camera* camera, char* bytes, std::size_t capacity,
                                     std::size_t* length) {
-  return guarded([&] {
+  return guarded(results(bytes, capacity), [&] {
     if (length) *length = 0;
     copy_bytes(write_settings(live(camera, "camera").contents->settings), bytes, capacity, length);
   });
 }
 
 petzval_status petzval_camera_read(const char* bytes, std::size_t count, petzval_camera** camera) {
-  return guarded([&] {
-    given(camera, "camera") = nullptr;
+  return guarded(results(camera), [&] {
+    given(camera, "camera");
     auto handle = std::make_unique<petzval_camera>();
     handle->contents = std::make_unique<CameraContents>(read_settings({&given(bytes, "bytes"), count}));
     *camera = handle.release();
@@ -295,8 +297,8 @@ petzval_status petzval_camera_read(const char* bytes, std::size_t count, petzval
 }
 
 petzval_status petzval_camera_sample(const petzval_camera* camera, const petzval_sample* sample, petzval_ray* ray) {
-  return guarded([&] {
-    given(ray, "ray") = lost_ray();
+  return guarded(results(ray), [&] {
+    given(ray, "ray");
     const CameraContents& own = *live(camera, "camera").contents;
     put(own, own.camera.sample(sample_of(own, given(sample, "sample"))), *ray);
   });
@@ -304,9 +306,8 @@ petzval_status petzval_camera_sample(const petzval_camera* camera, const petzval
 
 petzval_status petzval_camera_sample_differential(const petzval_camera* camera, const petzval_sample* sample,
                                                   petzval_ray_differential* ray) {
-  return guarded([&] {
-    given(ray, "ray") = {};
-    ray->ray = lost_ray();
+  return guarded(results(ray), [&] {
+    given(ray, "ray");
     const CameraContents& own = *live(camera, "camera").contents;
     const CameraRayDifferential found = own.camera.sample_differential(sample_of(own, given(sample, "sample")));
     put(own, found.sample, ray->ray);
@@ -330,8 +331,9 @@ petzval_status petzval_camera_sample_double(const petzval_camera* camera, std::s
 
 petzval_status petzval_camera_sample_path(const petzval_camera* camera, const petzval_sample* sample, std::size_t count,
                                           const double* nm, petzval_ray* ray, petzval_path_wavelength* found) {
-  return guarded([&] {
-    given(ray, "ray") = lost_ray();
+  const auto clear = [&] { reset(ray), reset(found, count); };
+  return guarded(clear, [&] {
+    given(ray, "ray");
     const CameraContents& own = *live(camera, "camera").contents;
     if (count == 0) bad_argument("count = 0; must be at least 1");
     given(nm, "nm"), given(found, "found");
@@ -350,7 +352,7 @@ petzval_status petzval_camera_sample_path(const petzval_camera* camera, const pe
 petzval_status petzval_camera_importance(const petzval_camera* camera, std::size_t count, const double* origins,
                                          const double* directions, const float* nm, const double* times,
                                          petzval_importance* found) {
-  return guarded([&] {
+  return guarded(results(found, count), [&] {
     const CameraContents& own = *live(camera, "camera").contents;
     if (count == 0) return;
     given(origins, "origins"), given(directions, "directions"), given(found, "found");
@@ -383,7 +385,7 @@ petzval_status petzval_camera_importance(const petzval_camera* camera, std::size
 petzval_status petzval_camera_connect(const petzval_camera* camera, std::size_t count, const double* points,
                                       const double* u, const double* v, const float* nm, const double* times,
                                       petzval_connection* found) {
-  return guarded([&] {
+  return guarded(results(found, count), [&] {
     const CameraContents& own = *live(camera, "camera").contents;
     if (count == 0) return;
     given(points, "points"), given(u, "u"), given(v, "v"), given(found, "found");
@@ -410,8 +412,8 @@ petzval_status petzval_camera_connect(const petzval_camera* camera, std::size_t 
 
 petzval_status petzval_camera_connect_distant(const petzval_camera* camera, const double* direction, double u, double v,
                                               double nm, double time, petzval_connection* found) {
-  return guarded([&] {
-    given(found, "found") = {};
+  return guarded(results(found), [&] {
+    given(found, "found");
     const CameraContents& own = *live(camera, "camera").contents;
     const auto lens_direction = own.frame.direction_to_lens(vector_of(&given(direction, "direction")));
     *found = connection_of(
@@ -422,8 +424,8 @@ petzval_status petzval_camera_connect_distant(const petzval_camera* camera, cons
 
 petzval_status petzval_camera_connection_pdf(const petzval_camera* camera, const double* point, const double* direction,
                                              double nm, std::int32_t distant, double* pdf) {
-  return guarded([&] {
-    given(pdf, "pdf") = 0;
+  return guarded(results(pdf), [&] {
+    given(pdf, "pdf");
     const CameraContents& own = *live(camera, "camera").contents;
     const auto at = own.frame.point_to_lens(vector_of(&given(point, "point")));
     const auto towards = own.frame.direction_to_lens(vector_of(&given(direction, "direction")));
@@ -434,7 +436,8 @@ petzval_status petzval_camera_connection_pdf(const petzval_camera* camera, const
 
 petzval_status petzval_camera_project(const petzval_camera* camera, std::size_t count, const double* points, double nm,
                                       double time, double* raster, std::uint8_t* visible) {
-  return guarded([&] {
+  const auto clear = [&] { reset(raster, 2 * count), reset(visible, count); };
+  return guarded(clear, [&] {
     const CameraContents& own = *live(camera, "camera").contents;
     if (count == 0) return;
     given(points, "points"), given(raster, "raster");
@@ -452,7 +455,8 @@ petzval_status petzval_camera_project(const petzval_camera* camera, std::size_t 
 petzval_status petzval_camera_point_image(const petzval_camera* camera, const double* point,
                                           const petzval_psf_options* options, petzval_psf* psf, float* image,
                                           std::size_t floats) {
-  return guarded([&] {
+  const auto clear = [&] { reset(psf), reset(image, floats); };
+  return guarded(clear, [&] {
     const CameraContents& own = *live(camera, "camera").contents;
     if (has_range(own.settings.options)) {
       bad_argument("a camera with near_mm and far_mm has no image of a point; make one for a fixed focus");

@@ -35,25 +35,57 @@ struct Failure {
 /// Stores a message for petzval_message() on this thread.
 void set_message(std::string_view message) noexcept;
 
-/// Runs the body of a function of the C interface: exceptions become a status and a message.
-template <class Body>
-petzval_status guarded(const Body& body) noexcept {
+/// True for sizes that a version of the struct T may have: multiples of its alignment, as other sizes would end within
+/// a member.
+template <class T>
+constexpr bool is_size_of(std::size_t size) noexcept {
+  return size >= sizeof(std::size_t) && size <= 1 << 16 && size % alignof(T) == 0;
+}
+/// Sets results to 0 or NULL, and their fates to PETZVAL_FATE_INVALID. A struct with `size` keeps it.
+template <class T>
+void reset(T* to, std::size_t count = 1, T value = {}) noexcept {
+  if (!to) return;
+  if constexpr (requires { to->size; }) {
+    if (!is_size_of<T>(to->size)) return;
+    std::memset(reinterpret_cast<char*>(to) + sizeof to->size, 0, std::min(to->size, sizeof(T)) - sizeof to->size);
+  } else {
+    if constexpr (requires { value.fate; }) value.fate = PETZVAL_FATE_INVALID;
+    if constexpr (requires { value.ray.fate; }) value.ray.fate = PETZVAL_FATE_INVALID;
+    if constexpr (requires { value.importance.fate; }) value.importance.fate = PETZVAL_FATE_INVALID;
+    std::fill_n(to, count, value);
+  }
+}
+/// The results of a call, for guarded().
+template <class T>
+auto results(T* to, std::size_t count = 1) noexcept {
+  return [=]() noexcept { reset(to, count); };
+}
+
+/// Runs the body of a function of the C interface: exceptions become a status and a message. `clear` resets the results
+/// of a failed call.
+template <class Clear, class Body>
+petzval_status guarded(const Clear& clear, const Body& body) noexcept {
+  petzval_status status = PETZVAL_REFUSED;
   try {
     body();
     return PETZVAL_OK;
   } catch (const Failure& failure) {
     set_message(failure.message);
-    return failure.status;
+    status = failure.status;
   } catch (const std::bad_alloc&) {
     set_message("out of memory");
-    return PETZVAL_OUT_OF_MEMORY;
+    status = PETZVAL_OUT_OF_MEMORY;
   } catch (const std::exception& error) {
     set_message(error.what());
-    return PETZVAL_REFUSED;
   } catch (...) {
     set_message("unknown failure");
-    return PETZVAL_REFUSED;
   }
+  clear();
+  return status;
+}
+template <class Body>
+petzval_status guarded(const Body& body) noexcept {
+  return guarded([] {}, body);
 }
 
 [[noreturn]] inline void bad_argument(std::string message) { throw Failure{PETZVAL_BAD_ARGUMENT, std::move(message)}; }
@@ -73,9 +105,7 @@ T received(const T* from, const char* name) {
   T copy{};
   copy.size = sizeof(T);
   if (!from) return copy;
-  constexpr std::size_t least = sizeof(std::size_t), most = 1 << 16;
-  // The size of a struct is a multiple of its alignment: other sizes would end within a member.
-  if (from->size < least || from->size > most || from->size % alignof(T) != 0) {
+  if (!is_size_of<T>(from->size)) {
     bad_argument(std::string(name) + ": size = " + std::to_string(from->size) + "; must be sizeof(" + name +
                  "), as set by " + name + "_init()");
   }

@@ -48,7 +48,7 @@ LensSettings settings_of(Prescription prescription, const petzval_lens_options& 
 /// @param read  reads the prescription with the ReadOptions given
 template <class Read>
 void open_lens(const petzval_lens_options* options, petzval_lens** lens, const Read& read) {
-  given(lens, "lens") = nullptr;
+  given(lens, "lens");
   const auto own = received(options, "petzval_lens_options");
   std::shared_ptr<const GlassCatalogue> glasses;
   if (own.glasses) glasses = live(own.glasses, "glasses").contents;
@@ -89,13 +89,14 @@ void set_message(std::string_view message) noexcept {
 }
 
 void copy_bytes(std::string_view bytes, char* to, std::size_t capacity, std::size_t* length) {
+  if (capacity > 0) given(to, "buffer");
   if (length) *length = bytes.size();
   if (capacity == 0) return;
   if (capacity < bytes.size()) {
     throw Failure{PETZVAL_TOO_SMALL, "capacity = " + std::to_string(capacity) + " bytes; must be at least " +
                                          std::to_string(bytes.size())};
   }
-  std::memcpy(&given(to, "buffer"), bytes.data(), bytes.size());
+  std::memcpy(to, bytes.data(), bytes.size());
 }
 
 Lens LensSettings::compiled() const {
@@ -160,8 +161,8 @@ const char* petzval_data_directory() {
 }
 
 petzval_status petzval_glasses_create(const char* file, const petzval_glasses* base, petzval_glasses** glasses) {
-  return guarded([&] {
-    given(glasses, "glasses") = nullptr;
+  return guarded(results(glasses), [&] {
+    given(glasses, "glasses");
     GlassCatalogue set = base ? *live(base, "base").contents : glass_tables();
     if (file) set = with_glasses(set, read_glasses(file).glasses);
     auto handle = std::make_unique<petzval_glasses>();
@@ -179,7 +180,7 @@ std::size_t petzval_glasses_count(const petzval_glasses* glasses) {
 }
 
 petzval_status petzval_glasses_get(const petzval_glasses* glasses, std::size_t index, petzval_glass* glass) {
-  return guarded([&] {
+  return guarded(results(glass), [&] {
     const auto& list = live(glasses, "glasses").contents->glasses();
     if (index >= list.size())
       bad_argument("index = " + std::to_string(index) + "; must be below petzval_glasses_count()");
@@ -194,13 +195,14 @@ petzval_status petzval_glasses_get(const petzval_glasses* glasses, std::size_t i
 }
 
 petzval_status petzval_lens_read(const char* file, const petzval_lens_options* options, petzval_lens** lens) {
-  return guarded(
-      [&] { open_lens(options, lens, [&](const ReadOptions& how) { return read_lens(&given(file, "file"), how); }); });
+  return guarded(results(lens), [&] {
+    open_lens(options, lens, [&](const ReadOptions& how) { return read_lens(&given(file, "file"), how); });
+  });
 }
 
 petzval_status petzval_lens_parse(const char* bytes, std::size_t count, const char* name,
                                   const petzval_lens_options* options, petzval_lens** lens) {
-  return guarded([&] {
+  return guarded(results(lens), [&] {
     open_lens(options, lens, [&](const ReadOptions& how) {
       return parse_lens(std::string(&given(bytes, "bytes"), count), name ? name : "lens", how);
     });
@@ -208,8 +210,8 @@ petzval_status petzval_lens_parse(const char* bytes, std::size_t count, const ch
 }
 
 petzval_status petzval_lens_copy(const petzval_lens* lens, petzval_lens** copy) {
-  return guarded([&] {
-    given(copy, "copy") = nullptr;
+  return guarded(results(copy), [&] {
+    given(copy, "copy");
     auto handle = std::make_unique<petzval_lens>();
     handle->contents = std::make_unique<LensContents>(*live(lens, "lens").contents);
     *copy = handle.release();
@@ -219,7 +221,7 @@ petzval_status petzval_lens_copy(const petzval_lens* lens, petzval_lens** copy) 
 void petzval_lens_free(petzval_lens* lens) { release(lens); }
 
 petzval_status petzval_lens_get_info(const petzval_lens* handle, petzval_lens_info* info) {
-  return guarded([&] {
+  return guarded(results(info), [&] {
     const LensContents& contents = *live(handle, "lens").contents;
     const Lens& lens = contents.lens;
     const FirstOrder first = first_order(lens, {}, main_meridian(lens));
@@ -256,7 +258,7 @@ petzval_status petzval_lens_get_info(const petzval_lens* handle, petzval_lens_in
 }
 
 petzval_status petzval_lens_get_surface(const petzval_lens* handle, std::size_t index, petzval_surface* surface) {
-  return guarded([&] {
+  return guarded(results(surface), [&] {
     const Lens& lens = live(handle, "lens").contents->lens;
     if (index >= lens.surface_count()) {
       bad_argument("index = " + std::to_string(index) + "; must be below " + std::to_string(lens.surface_count()));
@@ -278,7 +280,7 @@ petzval_status petzval_lens_get_surface(const petzval_lens* handle, std::size_t 
 
 petzval_status petzval_lens_get_text(const petzval_lens* handle, std::int32_t kind, std::size_t index, char* text,
                                      std::size_t capacity, std::size_t* length) {
-  return guarded([&] {
+  return guarded(results(text, capacity), [&] {
     if (length) *length = 0;
     const LensContents& contents = *live(handle, "lens").contents;
     const auto& imported = contents.settings.prescription.imported;
@@ -321,7 +323,7 @@ petzval_status petzval_lens_set_focus(petzval_lens* lens, double distance_mm, st
 
 petzval_status petzval_lens_fit_film(const petzval_lens* handle, const petzval_focus_point* points, std::size_t count,
                                      double max_tilt_rad, petzval_film* film, petzval_film_fit* fit) {
-  return guarded([&] {
+  return guarded(results(fit), [&] {
     const Lens& lens = live(handle, "lens").contents->lens;
     const Film start = film_of(&given(film, "film"));
     std::vector<FocusTarget> targets;
@@ -355,14 +357,14 @@ petzval_status petzval_lens_fit_film(const petzval_lens* handle, const petzval_f
     result.z_mm = fitted.z(), result.has_z = 1;
     result.tilt_rad = fitted.tilt_rad, result.swing_rad = fitted.swing_rad;
     result.shift_x_mm = fitted.shift_x_mm, result.shift_y_mm = fitted.shift_y_mm;
-    send(result, film, "petzval_film");
     if (fit) send(found, fit, "petzval_film_fit");
+    send(result, film, "petzval_film");
   });
 }
 
 petzval_status petzval_lens_choose_model(const petzval_lens* handle, const petzval_film* film,
                                          const petzval_requirements* requirements, petzval_choice* choice) {
-  return guarded([&] {
+  return guarded(results(choice), [&] {
     const Lens& lens = live(handle, "lens").contents->lens;
     const auto own = received(requirements, "petzval_requirements");
     const auto limit = [](double value) { return value == 0 ? std::nullopt : std::optional(value); };
