@@ -253,7 +253,7 @@ typedef struct petzval_camera_options {
   int32_t frame;             /**< PETZVAL_FRAME_... */
   int32_t origin;            /**< of the frames of hosts: PETZVAL_FROM_... */
   int32_t threads;           /**< of the set-up; 0: 1. The result is the same for every number. */
-  double units_per_mm;       /**< 0: 1 for the lens frame, 0.1 for Arnold, else 0.001 (metres) */
+  double units_per_mm;       /**< 1e-15 to 1e15; 0: 1 for the lens frame, 0.1 for Arnold, else 0.001 (metres) */
   int32_t clamp_wavelengths; /**< 1: samples outside the compiled range use its end; 0: they are lost */
   int32_t importance_tables; /**< 1: made now; 0: by the first call from the scene side, which then takes longer */
   double near_mm, far_mm;    /**< subject distances for petzval_camera_set_focus(); 0 and 0: the focus is fixed */

@@ -61,13 +61,13 @@ bool has_range(const petzval_camera_options& options) { return options.near_mm !
 Film moving_film(const CameraSettings& settings, const Lens& lens) {
   Film film = film_of(&settings.film);
   const petzval_camera_options& own = settings.options;
+  const FocusOptions from{.origin = distance_origin(own.near_far_origin, "near_far_origin")};
   if (!has_range(own)) return film;
   if (!lens.focus_positions().empty()) {
     throw Error(lens.name() + ": near_mm and far_mm; must be 0 for a lens that focuses by moving groups");
   }
   if (film.z_mm) throw Error(lens.name() + ": has_z = 1; must be 0 for a range of focus, which sets the film");
   if (!(own.near_mm > 0 && own.far_mm > own.near_mm)) bad_argument("far_mm must be above near_mm, and near_mm above 0");
-  const FocusOptions from{.origin = distance_origin(own.near_far_origin, "near_far_origin")};
   film.z_mm = with_focus(lens, own.far_mm, from).film_z();
   film.travel_mm = with_focus(lens, own.near_mm, from).film_z() - *film.z_mm;
   return film;
@@ -469,7 +469,9 @@ petzval_status petzval_camera_point_image(const petzval_camera* camera, const do
                    .threads = in.threads == 0 ? 1 : in.threads};
     if (flag(in.has_centre, "has_centre")) how.centre = {in.centre_mm[0], in.centre_mm[1]};
     const Vec3<double> at = vector_of(&given(point, "point"));
-    const PointImage found = point_image(own.camera, field_of(own, at, flag(in.distant, "distant")), how);
+    const bool distant = flag(in.distant, "distant");
+    if (distant && at == Vec3<double>{0, 0, 0}) bad_argument("point = (0, 0, 0); must be a direction if distant = 1");
+    const PointImage found = point_image(own.camera, field_of(own, at, distant), how);
     petzval_psf out{};
     out.size = sizeof out;
     out.pixel_mm = found.psf.pixel_mm;

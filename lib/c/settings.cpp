@@ -3,6 +3,7 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 
+#include "core/text.hpp"
 #include "handles.hpp"
 #include "petzval/io/lens_json.hpp"
 
@@ -12,11 +13,48 @@ namespace {
 using Json = nlohmann::json;
 constexpr const char* format = "petzval-camera 1";
 
-/// JSON has no infinity.
-Json number(double value) { return std::isinf(value) ? Json(value > 0 ? "inf" : "-inf") : Json(value); }
-double number(const Json& json) {
-  constexpr double infinity = std::numeric_limits<double>::infinity();
-  return !json.is_string() ? json.get<double>() : json.get<std::string>() == "inf" ? infinity : -infinity;
+/// JSON has no infinity and no NaN, which members that are not used may have.
+Json number(double value) {
+  if (std::isfinite(value)) return value;
+  return std::isnan(value) ? "nan" : to_text(value);
+}
+
+[[noreturn]] void refuse(const std::string& name, const Json& value, const std::string& rule) {
+  throw Error("camera set-up: " + name + " = " + (value.is_structured() ? value.type_name() : value.dump()) +
+              "; must be " + rule);
+}
+/// A member of a set-up. A missing member counts as null.
+template <class T = Json>
+T member(const Json& from, const char* name, const char* rule = "present") {
+  const Json value = from.is_object() ? from.value(name, Json()) : Json();
+  try {
+    if (!value.is_null()) return value.get<T>();
+  } catch (const Json::exception&) {
+  }
+  refuse(name, value, rule);
+}
+double number(const Json& json, const char* name) {
+  if (json.is_number()) return json.get<double>();
+  for (const double value : {std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity(),
+                             std::numeric_limits<double>::quiet_NaN()}) {
+    if (json == to_text(value)) return value;
+  }
+  refuse(name, json, "a number");
+}
+/// A number of the type T.
+template <class T>
+T number_of(const Json& from, const char* name) {
+  const auto value = member(from, name, "a number");
+  const double read = number(value, name);
+  if constexpr (std::is_floating_point_v<T>) {
+    return read;
+  } else {
+    constexpr double least = std::numeric_limits<T>::lowest(), most = std::numeric_limits<T>::max();
+    if (!(read >= least && read <= most && read == std::floor(read))) {
+      refuse(name, value, "a whole number from " + to_text(least) + " to " + to_text(most));
+    }
+    return static_cast<T>(read);
+  }
 }
 
 /// Calls of(name, member) for the members of a struct; one list for writing and reading.
@@ -57,13 +95,7 @@ struct Reader {
   const Json& from;
   template <class T>
   void operator()(const char* name, T& value) const {
-    const double read = number(from.at(name));
-    if constexpr (std::is_floating_point_v<T>) {
-      value = read;
-    } else {
-      if (!(std::abs(read) <= 1e9)) throw Error(std::string("camera set-up: ") + name + " is out of range");
-      value = static_cast<T>(read);
-    }
+    value = number_of<T>(from, name);
   }
 };
 
@@ -116,42 +148,42 @@ std::string write_settings(const CameraSettings& settings) {
 
 CameraSettings read_settings(std::string_view bytes) try {
   const Json json = Json::parse(bytes);
-  if (json.at("format") != format) {
-    throw Error("camera set-up: format = " + json.at("format").dump() + "; must be \"" + format + "\"");
-  }
+  if (const auto found = member(json, "format"); found != format) refuse("format", found, Json(format).dump());
+  constexpr const char *text = "text", *numbers = "a list of numbers";
   CameraSettings settings{};
-  const Json& lens = json.at("lens");
+  const auto lens = member(json, "lens");
   LensSettings& own = settings.lens;
-  own.prescription = parse_prescription(lens.at("prescription").get<std::string>(), "camera set-up");
-  own.wavelengths_nm = lens.at("wavelengths_nm").get<std::vector<double>>();
+  own.prescription = parse_prescription(member<std::string>(lens, "prescription", text), "camera set-up");
+  own.wavelengths_nm = member<std::vector<double>>(lens, "wavelengths_nm", numbers);
   lens_members(own, Reader{lens});
-  if (lens.contains("f_number")) own.f_number = lens["f_number"].get<double>();
+  if (lens.contains("f_number")) own.f_number = number_of<double>(lens, "f_number");
   if (lens.contains("focus")) {
-    const int origin = lens["focus"].at(1).get<int>();
-    if (origin < 0 || origin > static_cast<int>(DistanceOrigin::front_principal)) {
-      throw Error("camera set-up: the origin of the focus is out of range");
+    const auto focus = member<std::vector<Json>>(lens, "focus", "a distance and its origin");
+    constexpr auto last = static_cast<int>(DistanceOrigin::front_principal);
+    if (focus.size() != 2 || !focus[1].is_number_integer() || focus[1] < 0 || focus[1] > last) {
+      refuse("focus", lens["focus"], "a distance and its origin");
     }
-    own.focus = {.distance_mm = number(lens["focus"].at(0)), .origin = static_cast<DistanceOrigin>(origin)};
+    own.focus = {.distance_mm = number(focus[0], "focus"), .origin = static_cast<DistanceOrigin>(focus[1].get<int>())};
   }
   std::vector<Glass> glasses;
-  for (const Json& one : lens.at("glasses")) {
+  for (const Json& one : member<std::vector<Json>>(lens, "glasses", "a list")) {
     Glass glass;
-    glass.catalogue = one.at("catalogue").get<std::string>(), glass.name = one.at("name").get<std::string>();
+    glass.catalogue = member<std::string>(one, "catalogue", text), glass.name = member<std::string>(one, "name", text);
     glass_members(glass, Reader{one});
-    const int formula = one.at("formula").get<int>();
+    const int formula = number_of<int>(one, "formula");
     if (formula < 0 || formula > static_cast<int>(DispersionFormula::tabulated)) {
-      throw Error("camera set-up: the formula of a glass is out of range");
+      refuse("formula", formula, "the number of a dispersion formula");
     }
     glass.formula = static_cast<DispersionFormula>(formula);
-    glass.coefficients = one.at("coefficients").get<std::vector<double>>();
+    glass.coefficients = member<std::vector<double>>(one, "coefficients", numbers);
     glasses.push_back(std::move(glass));
   }
   if (!glasses.empty()) own.glasses = std::make_shared<const GlassCatalogue>(std::move(glasses));
-  film_members(settings.film, Reader{json.at("film")});
-  option_members(settings.options, Reader{json.at("options")});
+  film_members(settings.film, Reader{member(json, "film")});
+  option_members(settings.options, Reader{member(json, "options")});
   settings.film.size = sizeof settings.film, settings.options.size = sizeof settings.options;
-  settings.model = json.at("model").get<std::string>();
-  settings.opens_mm = number(json.at("opens_mm")), settings.closes_mm = number(json.at("closes_mm"));
+  settings.model = member<std::string>(json, "model", text);
+  settings.opens_mm = number_of<double>(json, "opens_mm"), settings.closes_mm = number_of<double>(json, "closes_mm");
   return settings;
 } catch (const Json::exception& error) {
   throw Error(std::string("camera set-up: ") + error.what());

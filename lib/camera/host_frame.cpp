@@ -41,9 +41,9 @@ HostFrame::HostFrame(Host host, const Lens& lens, FrameOrigin origin)
 
 HostFrame::HostFrame(Host host, const Lens& lens, FrameOrigin origin, double units_per_mm)
     : signs_(signs_of(host)), origin_z_(z_of(lens, origin)), units_per_mm_(units_per_mm) {
-  if (!(units_per_mm > 0) || !std::isfinite(units_per_mm)) {
-    throw Error(lens.name() + ": host frame: units per mm = " + to_text(units_per_mm) +
-                "; must be positive and finite");
+  // Areas and their reciprocals stay finite, also as floats.
+  if (!(units_per_mm >= 1e-15 && units_per_mm <= 1e15)) {
+    throw Error(lens.name() + ": host frame: units_per_mm = " + to_text(units_per_mm) + "; must be from 1e-15 to 1e15");
   }
 }
 

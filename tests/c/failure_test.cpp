@@ -181,4 +181,73 @@ TEST(CFailures, ArraysAreReset) {
   expect_reset_arrays<double, petzval_samples_double, petzval_rays_double>(petzval_camera_sample_double, camera.get());
 }
 
+std::string written(const petzval_camera* camera) {
+  std::size_t length = 0;
+  EXPECT_EQ(petzval_camera_write(camera, nullptr, 0, &length), PETZVAL_OK);
+  std::string bytes(length, 0);
+  EXPECT_EQ(petzval_camera_write(camera, bytes.data(), length, nullptr), PETZVAL_OK);
+  return bytes;
+}
+petzval_status read_back(const std::string& bytes) {
+  petzval_camera* camera = nullptr;
+  const petzval_status status = petzval_camera_read(bytes.data(), bytes.size(), &camera);
+  petzval_camera_free(camera);
+  return status;
+}
+
+TEST(CFailures, WrittenCamerasAreReadWithAnyUnusedMember) {
+  const LensHandle lens = read_lens();
+  petzval_film film = petzval_film_init();
+  film.columns = 2000000000, film.z_mm = std::numeric_limits<double>::quiet_NaN();  // without has_z
+  const CameraHandle camera = camera_of(lens, &film);
+  EXPECT_EQ(read_back(written(camera.get())), PETZVAL_OK) << petzval_message();
+  petzval_camera_options options = petzval_camera_options_init();
+  petzval_camera* made = nullptr;
+  options.near_far_origin = std::numeric_limits<std::int32_t>::max();
+  EXPECT_EQ(petzval_camera_create(lens.get(), nullptr, &options, &made), PETZVAL_BAD_ARGUMENT);
+}
+
+TEST(CFailures, SetupsWithWrongMembersAreRefusedByName) {
+  const CameraHandle camera = camera_of(read_lens());
+  const std::string bytes = written(camera.get());
+  for (const char* const name : {"z_mm", "columns", "units_per_mm", "primary_nm", "clamp", "opens_mm", "model"}) {
+    for (const char* const wrong : {"\"no\"", "null", "[]", "true"}) {
+      const std::string key = '"' + std::string(name) + "\":";
+      const std::size_t at = bytes.find(key) + key.size(), end = bytes.find_first_of(",}", at);
+      ASSERT_LT(end, bytes.size()) << name;
+      EXPECT_NE(read_back(bytes.substr(0, at) + wrong + bytes.substr(end)), PETZVAL_OK) << name << wrong;
+      const std::string message = petzval_message();
+      EXPECT_NE(message.find(std::string(name) + " = "), std::string::npos) << message;
+      EXPECT_EQ(message.find("exception"), std::string::npos) << message;
+    }
+  }
+  for (const char* const wrong : {"1.5", "4294967296"}) {
+    const std::size_t at = bytes.find("\"columns\":") + 10;
+    EXPECT_EQ(read_back(bytes.substr(0, at) + wrong + bytes.substr(bytes.find(',', at))), PETZVAL_REFUSED) << wrong;
+  }
+  for (const char* const object : {"film", "options", "lens"}) {
+    const std::size_t at = bytes.find('"' + std::string(object) + "\":");
+    EXPECT_EQ(read_back(bytes.substr(0, at) + "\"a\":0,\"b" + bytes.substr(at + 1)), PETZVAL_REFUSED) << object;
+    EXPECT_NE(std::string(petzval_message()).find(object), std::string::npos) << petzval_message();
+  }
+}
+
+TEST(CFailures, DirectionsOfZeroAndTinyUnitsAreRefused) {
+  const LensHandle lens = read_lens();
+  const std::array<double, 3> zero{0, 0, 0};
+  petzval_psf_options how = petzval_psf_options_init();
+  how.distant = 1, how.pixels = 8, how.samples = 256;
+  petzval_psf psf = petzval_psf_init();
+  EXPECT_EQ(petzval_camera_point_image(camera_of(lens).get(), zero.data(), &how, &psf, nullptr, 0),
+            PETZVAL_BAD_ARGUMENT);
+  EXPECT_NE(std::string(petzval_message()).find("point"), std::string::npos);
+  petzval_camera_options options = petzval_camera_options_init();
+  petzval_camera* made = nullptr;
+  for (const double units : {1e-300, 1e300, -1.0}) {
+    options.units_per_mm = units;
+    EXPECT_EQ(petzval_camera_create(lens.get(), nullptr, &options, &made), PETZVAL_REFUSED) << units;
+    EXPECT_NE(std::string(petzval_message()).find("units_per_mm"), std::string::npos) << petzval_message();
+  }
+}
+
 }  // namespace

@@ -176,7 +176,7 @@ enum class FrameOrigin : std::uint8_t { film, front_vertex, entrance_pupil };
 /// (Arnold).
 class PETZVAL_API HostFrame {
  public:
-  /// @throws Error  if the origin is an entrance pupil at infinity, or units_per_mm is not positive and finite
+  /// @throws Error  if the origin is an entrance pupil at infinity, or units_per_mm is not from 1e-15 to 1e15
   HostFrame(Host host, const Lens& lens, FrameOrigin origin);
   HostFrame(Host host, const Lens& lens, FrameOrigin origin, double units_per_mm);
 
