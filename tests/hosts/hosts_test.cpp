@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <mitsuba/render/sensor.h>
+#include <pbrt/cameras.h>
 #include <array>
 #include <cmath>
 #include <functional>
@@ -12,7 +13,6 @@
 #include <string>
 
 #include "hosts/mitsuba/petzval_sensor.cpp"
-#include "hosts/pbrt/petzval_camera.h"
 
 namespace {
 
@@ -181,6 +181,29 @@ TEST(Pbrt, DifferentialsAreTheRaysOfAdjacentPixels) {
   EXPECT_NEAR(found->ray.ryDirection.y, below->ray.d.y, 2e-4);
   EXPECT_GT(found->ray.rxDirection.x, found->ray.d.x);
   EXPECT_LT(found->ray.ryDirection.y, found->ray.d.y);
+}
+
+TEST(Pbrt, LostSamplesAreRaysOfWeightZero) {
+  pbrt::ParameterDictionary parameters;
+  parameters.strings["lensfile"] = lens_file;
+  const pbrt::FileLoc loc;
+  pbrt::Film film;
+  film.diagonal = 0.2f;  // beyond the image circle
+  const std::shared_ptr<pbrt::PetzvalCamera> camera(pbrt::PetzvalCamera::Create(parameters, {}, film, {}, &loc));
+  int lost = 0;
+  for (int i = 0; i < 36; ++i) {
+    pbrt::SampledWavelengths lambda;
+    const pbrt::CameraSample at{{number(i + 0.5), number(i * 2 / 3.)}, {0.7f, 0.3f}, 0.5f, 1};
+    const auto ray = pbrt::Camera(camera.get()).GenerateRay(at, lambda);
+    const auto differential = camera->GenerateRayDifferential(at, lambda);
+    ASSERT_TRUE(ray && differential);
+    EXPECT_EQ(ray->weight[0], differential->weight[0]);
+    EXPECT_NEAR(std::hypot(ray->ray.d.x, ray->ray.d.y, ray->ray.d.z), 1, 1e-4);
+    EXPECT_NEAR(std::hypot(differential->ray.d.x, differential->ray.d.y, differential->ray.d.z), 1, 1e-4);
+    lost += ray->weight[0] == 0;
+  }
+  EXPECT_GT(lost, 8);
+  EXPECT_LT(lost, 36);
 }
 
 TEST(Pbrt, MissingLensIsAnErrorOfTheScene) {

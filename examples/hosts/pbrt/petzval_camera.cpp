@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "petzval_camera.h"
-
+#include <pbrt/cameras.h>
 #include <pbrt/filters.h>
 #include <pbrt/paramdict.h>
 #include <pbrt/util/error.h>

@@ -27,7 +27,7 @@ class PetzvalCamera : public CameraBase {
   pstd::optional<CameraRay> GenerateRay(CameraSample sample, SampledWavelengths& lambda) const {
     petzval_sample at = SampleOf(sample, lambda);
     petzval_ray ray;
-    if (petzval_camera_sample(camera.get(), &at, &ray) != PETZVAL_OK || ray.weight == 0) return {};
+    if (petzval_camera_sample(camera.get(), &at, &ray) != PETZVAL_OK || ray.weight == 0) ray = LostRay().ray;
     return CameraRay{RenderFromCamera(RayOf(ray, sample)), SampledSpectrum(Float(ray.weight))};
   }
 
@@ -35,7 +35,8 @@ class PetzvalCamera : public CameraBase {
   pstd::optional<CameraRayDifferential> GenerateRayDifferential(CameraSample sample, SampledWavelengths& lambda) const {
     petzval_sample at = SampleOf(sample, lambda);
     petzval_ray_differential found;
-    if (petzval_camera_sample_differential(camera.get(), &at, &found) != PETZVAL_OK || found.ray.weight == 0) return {};
+    if (petzval_camera_sample_differential(camera.get(), &at, &found) != PETZVAL_OK || found.ray.weight == 0)
+      found = LostRay();
     RayDifferential ray(RayOf(found.ray, sample));
     ray.rxOrigin = ray.o + VectorOf(found.origin_by_x);
     ray.ryOrigin = ray.o + VectorOf(found.origin_by_y);
@@ -81,6 +82,14 @@ class PetzvalCamera : public CameraBase {
   std::string ToString() const { return "[ PetzvalCamera " + CameraBase::ToString() + " ]"; }
 
  private:
+  /// A lost sample is a ray of weight 0 along the axis: without a ray, pbrt would leave out the light subpath of the
+  /// sample, whose splats bidirectional methods need. FindMinimumDifferentials() ignores its large differentials.
+  static petzval_ray_differential LostRay() {
+    petzval_ray_differential lost = {};
+    lost.ray.direction[2] = 1;
+    lost.origin_by_x[0] = lost.origin_by_y[1] = lost.direction_by_x[0] = lost.direction_by_y[1] = 1;
+    return lost;
+  }
   static Vector3f VectorOf(const double* v) { return Vector3f(Float(v[0]), Float(v[1]), Float(v[2])); }
   Ray RayOf(const petzval_ray& ray, const CameraSample& sample) const {
     return Ray(Point3f(Float(ray.origin[0]), Float(ray.origin[1]), Float(ray.origin[2])), VectorOf(ray.direction),

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The part of pbrt-v4 (github.com/mmp/pbrt-v4, src/pbrt) that examples/hosts/pbrt uses: the same names and signatures,
-// bodies of our own. Camera space is render space.
+// bodies of our own, and the lines that examples/hosts/pbrt/README.md adds. Camera space is render space.
 #pragma once
 
 #include <cmath>
@@ -123,8 +123,9 @@ class Filter {
 class Film {
  public:
   Point2i FullResolution() const { return {{36, 24}}; }
-  Float Diagonal() const { return 0.0432666f; }
+  Float Diagonal() const { return diagonal; }
   Filter GetFilter() const { return {}; }
+  Float diagonal = 0.0432666f;
 };
 struct FileLoc {};
 class ParameterDictionary {
@@ -164,7 +165,11 @@ class Allocator {
 class PetzvalCamera;
 class Camera {
  public:
-  Camera(PetzvalCamera*) {}
+  Camera(PetzvalCamera* camera_) : camera(camera_) {}
+  std::optional<CameraRay> GenerateRay(CameraSample sample, SampledWavelengths& lambda) const;
+
+ private:
+  PetzvalCamera* camera;
 };
 class CameraBase {
  public:
@@ -193,6 +198,15 @@ class CameraBase {
   Film film;
   Medium medium;
 };
+
+}  // namespace pbrt
+#include <pbrt/petzval_camera.h>
+namespace pbrt {
+
+// The class must be complete here.
+inline std::optional<CameraRay> Camera::GenerateRay(CameraSample sample, SampledWavelengths& lambda) const {
+  return camera->GenerateRay(sample, lambda);
+}
 
 inline std::string ResolveFilename(const std::string& name) { return name; }
 template <typename... Args>
