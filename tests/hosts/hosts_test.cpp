@@ -213,6 +213,36 @@ TEST(Pbrt, MissingLensIsAnErrorOfTheScene) {
   EXPECT_THROW(pbrt::PetzvalCamera::Create(parameters, {}, {}, {}, &loc), std::runtime_error);
 }
 
+TEST(Mitsuba, CropWindowsArePartsOfThePicture) {
+  using Sensor = mitsuba::PetzvalSensor<float, mitsuba::Color>;
+  mitsuba::Properties properties;
+  properties.strings["lens"] = lens_file;
+  const Sensor whole(properties);
+  properties.film.offset = {{9, 4}}, properties.film.crop = {{18, 12}};
+  const Sensor crop(properties);
+  for (const float u : {0.1f, 0.5f, 0.9f}) {
+    // Positions of samples are from 0 to 1 over the window.
+    const mitsuba::Point2 pupil(0.3f, u);
+    const auto [one, weight] = whole.sample_ray(0, 0, {(9 + 18 * u) / columns, (4 + 12 * u * u) / rows}, pupil, true);
+    const auto [two, same] = crop.sample_ray(0, 0, {u, u * u}, pupil, true);
+    EXPECT_GT(weight.value, 0);
+    EXPECT_NEAR(same.value, weight.value, 1e-5 * weight.value);
+    EXPECT_NEAR(two.d.x(), one.d.x(), 1e-5);
+    EXPECT_NEAR(two.d.y(), one.d.y(), 1e-5);
+    // Splats count from the corner of the window, and importance is divided by its area.
+    mitsuba::Interaction at;
+    at.p = mitsuba::Point3(0.1f, 0.05f, 3);
+    const auto [all, we] = whole.sample_direction(at, pupil, true);
+    const auto [part, larger] = crop.sample_direction(at, pupil, true);
+    EXPECT_NEAR(part.uv.x(), all.uv.x() - 9, 1e-4);
+    EXPECT_NEAR(part.uv.y(), all.uv.y() - 4, 1e-4);
+    EXPECT_NEAR(larger.value / we.value, 4, 1e-5);
+    mitsuba::SurfaceInteraction arrival;
+    arrival.p = one.o, arrival.wi = one.d;
+    EXPECT_NEAR(crop.eval(arrival, true).value / whole.eval(arrival, true).value, 4, 1e-5);
+  }
+}
+
 TEST(Mitsuba, LightTracingHasTheLightOfPathTracing) { expect_lamps_in_place(mitsuba_sensor()); }
 TEST(Mitsuba, SampledRaysHaveImportance) { expect_importance_of_samples(mitsuba_sensor(), false); }
 

@@ -20,7 +20,7 @@ class PetzvalSensor final : public Sensor<Float, Spectrum> {
 
   PetzvalSensor(const Properties& props) : Base(props) {
     if constexpr (dr::is_array_v<Float>) Throw("The petzval sensor has scalar variants only.");
-    std::string file = Thread::thread()->file_resolver()->resolve(props.string("lens")).string();
+    std::string file = Thread::thread()->file_resolver()->resolve(props.template get<std::string>("lens")).string();
     petzval17::Lens lens = petzval17::Lens::read(file);
     if (props.has_property("f_number")) lens.f_number(double(props.template get<ScalarFloat>("f_number")));
     // From the film, in metres.
@@ -31,7 +31,7 @@ class PetzvalSensor final : public Sensor<Float, Spectrum> {
     film.width_mm = double(props.template get<ScalarFloat>("film_width_mm", ScalarFloat(36)));
     film.height_mm = film.width_mm * film.rows / film.columns;
     film.margin_mm = double(m_film->rfilter()->radius()) * film.width_mm / film.columns;
-    std::string model = props.string("model", "exact_float");
+    std::string model = props.template get<std::string>("model", "exact_float");
     petzval_camera_options options = petzval_camera_options_init();
     options.model = model.c_str();
     options.frame = PETZVAL_FRAME_MITSUBA;
@@ -57,8 +57,8 @@ class PetzvalSensor final : public Sensor<Float, Spectrum> {
     ray.wavelengths = wavelengths;
     Float weight = 0.f;
     if constexpr (!dr::is_array_v<Float>) {
-      petzval_sample at = {double(position_sample.x()) * m_film->size().x(),
-                           double(position_sample.y()) * m_film->size().y(),
+      petzval_sample at = {m_film->crop_offset().x() + double(position_sample.x()) * m_film->crop_size().x(),
+                           m_film->crop_offset().y() + double(position_sample.y()) * m_film->crop_size().y(),
                            double(aperture_sample.x()),
                            double(aperture_sample.y()),
                            0,
@@ -91,10 +91,11 @@ class PetzvalSensor final : public Sensor<Float, Spectrum> {
       ds.n = trafo * Vector3f(0.f, 0.f, 1.f);
       ds.d = trafo * vector(found.direction);
       ds.dist = Float(found.distance);
-      ds.uv = Point2f(Float(found.importance.raster_x), Float(found.importance.raster_y));
+      ds.uv = Point2f(Float(found.importance.raster_x - m_film->crop_offset().x()),
+                      Float(found.importance.raster_y - m_film->crop_offset().y()));
       ds.time = it.time;
       ds.pdf = Float(found.pdf);
-      weight = found.pdf > 0 ? Float(found.importance.we / found.pdf) : Float(0.f);
+      weight = found.pdf > 0 ? Float(found.importance.we * crop_scale() / found.pdf) : Float(0.f);
     }
     return {ds, Spectrum(weight)};
   }
@@ -108,7 +109,7 @@ class PetzvalSensor final : public Sensor<Float, Spectrum> {
       Vector3f d = inverse * si.wi;
       const double origin[3] = {double(o.x()), double(o.y()), double(o.z())},
                    direction[3] = {-double(d.x()), -double(d.y()), -double(d.z())};
-      weight = Float(m_camera.importance(origin, direction, 0, fraction(si.time)).we);
+      weight = Float(m_camera.importance(origin, direction, 0, fraction(si.time)).we * crop_scale());
     }
     return Spectrum(weight);
   }
@@ -118,11 +119,19 @@ class PetzvalSensor final : public Sensor<Float, Spectrum> {
     return ScalarBoundingBox3f(p, p);
   }
 
+#if MI_VERSION_MINOR < 7
   MI_DECLARE_CLASS()
+#else
+  MI_DECLARE_CLASS(PetzvalSensor)
+#endif
  private:
   template <typename Number>
   static Vector3f vector(const Number* v) {
     return Vector3f(Float(v[0]), Float(v[1]), Float(v[2]));
+  }
+  /// Importance in Mitsuba is relative to the area of the crop window, whose samples and positions Mitsuba counts.
+  double crop_scale() const {
+    return double(m_film->size().x()) * m_film->size().y() / m_film->crop_size().x() / m_film->crop_size().y();
   }
   double fraction(Float time) const {
     if constexpr (dr::is_array_v<Float>)
@@ -134,6 +143,10 @@ class PetzvalSensor final : public Sensor<Float, Spectrum> {
   petzval17::Camera m_camera;
 };
 
+#if MI_VERSION_MINOR < 7
 MI_IMPLEMENT_CLASS_VARIANT(PetzvalSensor, Sensor)
 MI_EXPORT_PLUGIN(PetzvalSensor, "Sensor with a lens of petzval")
+#else
+MI_EXPORT_PLUGIN(PetzvalSensor)
+#endif
 NAMESPACE_END(mitsuba)

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The part of Mitsuba 3 (github.com/mitsuba-renderer/mitsuba3, include/mitsuba) that examples/hosts/mitsuba uses, for
-// its scalar_rgb variant: the same names and signatures, bodies of our own.
+// its scalar_rgb variant: the same names and signatures as in version 3.9, bodies of our own.
 #pragma once
 
 #include <limits>
@@ -9,6 +9,7 @@
 #include <string>
 #include <utility>
 
+#define MI_VERSION_MINOR 9
 #define NAMESPACE_BEGIN(name) namespace name {
 #define NAMESPACE_END(name) }
 #define MI_IMPORT_BASE(Name, ...)     \
@@ -33,9 +34,8 @@
   using DirectionSample3f = mitsuba::DirectionSample;       \
   using Transform4f = mitsuba::Transform;                   \
   using ScalarBoundingBox3f = mitsuba::BoundingBox;
-#define MI_DECLARE_CLASS()
-#define MI_IMPLEMENT_CLASS_VARIANT(Name, Parent)
-#define MI_EXPORT_PLUGIN(Name, text) template class Name<float, mitsuba::Color>;
+#define MI_DECLARE_CLASS(Name)
+#define MI_EXPORT_PLUGIN(Name) template class Name<float, mitsuba::Color>;
 
 namespace drjit {
 template <class T>
@@ -117,39 +117,43 @@ struct Field {
   T value() const { return {}; }
   T scalar() const { return {}; }
 };
-class Properties {
- public:
-  std::string string(const std::string& name) const { return strings.at(name); }
-  std::string string(const std::string& name, const std::string& def) const {
-    return strings.count(name) ? strings.at(name) : def;
-  }
-  bool has_property(const std::string& name) const { return numbers.count(name) > 0; }
-  template <class T>
-  T get(const std::string& name) const {
-    return T(numbers.at(name));
-  }
-  template <class T>
-  T get(const std::string& name, T def) const {
-    return has_property(name) ? get<T>(name) : def;
-  }
-  std::map<std::string, std::string> strings;
-  std::map<std::string, float> numbers;
-};
 class ReconstructionFilter {
  public:
   float radius() const { return 1.5f; }
 };
+struct Pixels {
+  unsigned x() const { return at[0]; }
+  unsigned y() const { return at[1]; }
+  unsigned at[2];
+};
 class Film {
  public:
-  struct Size {
-    int x() const { return 36; }
-    int y() const { return 24; }
-  };
-  Size size() const { return {}; }
+  Pixels size() const { return {{36, 24}}; }
+  Pixels crop_offset() const { return offset; }
+  Pixels crop_size() const { return crop; }
   const ReconstructionFilter* rfilter() const { return &filter; }
+  Pixels offset{{0, 0}}, crop{{36, 24}};
 
  private:
   ReconstructionFilter filter;
+};
+class Properties {
+ public:
+  bool has_property(const std::string& name) const { return numbers.count(name) + strings.count(name) > 0; }
+  template <class T>
+  T get(const std::string& name) const {
+    if constexpr (std::is_same_v<T, std::string>)
+      return strings.at(name);
+    else
+      return T(numbers.at(name));
+  }
+  template <class T>
+  T get(const std::string& name, const T& def) const {
+    return has_property(name) ? get<T>(name) : def;
+  }
+  std::map<std::string, std::string> strings;
+  std::map<std::string, float> numbers;
+  Film film;
 };
 struct Path {
   std::string string() const { return name; }
@@ -174,7 +178,7 @@ template <class... Args>
 template <class Float, class Spectrum>
 class Sensor {
  public:
-  explicit Sensor(const Properties&) : m_film(&film) {}
+  explicit Sensor(const Properties& properties) : film(properties.film), m_film(&film) {}
   virtual ~Sensor() = default;
   virtual std::pair<Ray, Spectrum> sample_ray(Float time, Float sample1, const Point2& sample2, const Point2& sample3,
                                               bool active = true) const = 0;
