@@ -412,9 +412,19 @@ void Completion::size_the_stop() {
   const StopSize& first = sizes.front();
   if (!first.height) {
     if (first.rim) return;
+    if (lens_.f_number) {
+      const double f_number = paraxial_f_number(compiled(lens_));
+      const bool reached = std::abs(f_number / *lens_.f_number - 1) < 0.1;
+      return in_.warn(0, "stop",
+                      "its size is not given; the declared f/" + to_text(*lens_.f_number, 6) +
+                          (reached ? " sets it" : " does not set it: the beam has f/" + to_text(f_number, 3)));
+    }
+    const bool rims = std::ranges::any_of(
+        lens_.surfaces, [](const SurfaceRow& row) { return std::isfinite(row.semi_diameter.value_or(HUGE_VAL)); });
     return in_.warn(0, "stop",
-                    declared ? "the declared aperture does not determine its size; the rims limit the beam"
-                             : "neither the size of the stop nor an aperture is given; the rims limit the beam");
+                    std::string(declared ? "the declared aperture does not determine its size; "
+                                         : "neither its size nor an f-number is given; ") +
+                        (rims ? "the rims limit the beam" : "the edges of the surfaces limit the beam"));
   }
   const std::string beam =
       "the declared " + std::string(name(aperture->setting)) + " of " + to_text(aperture->value, 6);

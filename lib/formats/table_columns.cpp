@@ -63,7 +63,7 @@ constexpr std::array<std::pair<std::string_view, double>, 8> units = {{
 constexpr std::array<std::pair<std::string_view, std::string_view>, 8> greek = {{
     {"\u03bd", "v"},
     {"\u03c5", "v"},
-    {"\u03ba", "k"},
+    {"\u03ba", "kappa"},
     {"\u03c6", "dia"},
     {"\u03a6", "dia"},
     {"\u00f8", "dia"},
@@ -145,6 +145,7 @@ std::optional<TableColumn> column_of(std::string_view head) {
   if (!kind_of(name) && name.size() > 2 && name.ends_with("mm")) name.resize(name.size() - 2);
   if (const auto kind = kind_of(name)) {
     column.kind = *kind;
+    column.of_sphere = name == "kappa" ? 1 : 0;
     return column;
   }
   if (const auto order = order_of_term(name)) {

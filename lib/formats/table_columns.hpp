@@ -35,9 +35,10 @@ enum class Column {
 
 struct TableColumn {
   Column kind = Column::left_out;
-  std::string name;    ///< the head, for messages
-  int order = 0;       ///< order of an aspheric term
-  double unit_mm = 1;  ///< unit of lengths
+  std::string name;      ///< the head, for messages
+  int order = 0;         ///< order of an aspheric term
+  double unit_mm = 1;    ///< unit of lengths
+  double of_sphere = 0;  ///< number of a sphere in a column of conics: 1 for kappa, which is 1 + k
 };
 
 /// The column of a head, in any case, with a unit in brackets: "R", "Radius (mm)", "nd", "A4". nullopt if unknown.

@@ -113,12 +113,6 @@ void TableBuilder::choose_stop() {
   for (std::size_t i = 0; i < rows_.size(); ++i) {
     if (!rows_[i].stop.empty()) marked.push_back(i);
   }
-  const auto is_star = [&](std::size_t i) { return rows_[i].stop == "*"; };
-  if (marked.size() > 1 && std::ranges::all_of(marked, is_star)) {
-    in_.warn(rows_[marked.front()].line, "*",
-             "marks " + std::to_string(marked.size()) + " surfaces, so it does not mark the stop and is left out");
-    marked.clear();
-  }
   if (marked.empty()) {
     for (std::size_t i = 0; i < rows_.size(); ++i) {
       if (rows_[i].radius == 0 && rows_[i].index == 0.0) marked.push_back(i);

@@ -43,8 +43,8 @@ struct TableLens {
   TableGaps gaps = TableGaps::unknown;
 };
 
-/// The focal length (mm) and the f-number in a title, a comment or a file name: "100 mm", "100mm", ".100mm." and "f/2",
-/// "F1.35". nullopt if the text has no such number.
+/// The focal length (mm) and the f-number in a title or a comment: "100 mm", "100mm" and "f/2", "F1.35". nullopt if the
+/// text has no such number.
 std::optional<double> focal_length_in(std::string_view text);
 std::optional<double> f_number_in(std::string_view text);
 

@@ -22,19 +22,20 @@ namespace {
 
 using io_detail::in_quotes;
 
-/// The mark of the stop after the number of a row: "4(stop)", "4 STO", "4S"; empty if there is no mark.
-std::string_view stop_mark_of(std::string_view label) {
+/// The mark of the stop or of an asphere after the number of a row: "4(stop)", "4 STO", "4S", "4(ASP)"; empty if there
+/// is no mark.
+std::string_view mark_of(std::string_view label) {
   const std::size_t end = std::min(label.find_first_not_of("0123456789"), label.size());
   std::string_view mark = label.substr(end);
   while (mark.starts_with(' ')) mark.remove_prefix(1);
-  const bool marks = mark != "*" && (is_stop_word(mark) || same(mark, "s"));
+  const bool marks = is_stop_word(mark) || is_asphere_mark(mark) || same(mark, "s");
   return end > 0 && marks ? mark : std::string_view();
 }
 
-/// The number at the start of a row: "3", "S3", "3*", "3.", "3(stop)"; nullopt for other text.
+/// The number at the start of a row: "3", "S3", "3*", "*3)", "3.", "3(stop)"; nullopt for other text.
 std::optional<int> label_of(std::string_view cell) {
-  cell.remove_suffix(stop_mark_of(cell).size());
-  if (cell.starts_with('S') || cell.starts_with('s') || cell.starts_with('#')) cell.remove_prefix(1);
+  cell.remove_suffix(mark_of(cell).size());
+  if (!cell.empty() && std::string_view("Ss#*").find(cell[0]) != std::string_view::npos) cell.remove_prefix(1);
   while (!cell.empty() && std::string_view("*.):").find(cell.back()) != std::string_view::npos) cell.remove_suffix(1);
   if (cell.empty() || cell.size() > 5 || cell.find_first_not_of("0123456789") != std::string_view::npos) return {};
   return static_cast<int>(*number(cell));
@@ -45,7 +46,7 @@ bool is_image_word(std::string_view cell) { return is_one_of(cell, "ima img imag
 
 /// In a column of comments, "ASP" means an asphere, and "aperture" may mean any rim.
 bool marks_stop_in_comment(std::string_view cell) {
-  return is_stop_word(cell) && !is_one_of(cell, "asp as ast aperture");
+  return is_stop_word(cell) && (!is_asphere_mark(cell) || cell == "*") && !is_one_of(cell, "as ast aperture");
 }
 
 /// A row before its cells are interpreted.
@@ -71,11 +72,13 @@ class TableReader {
   bool take_units(const TableLine& line);
   void take_text(const TableLine& line);
   void use_comment_as_head();
+  void drop_asphere_marks();
   void drop_labels();
   void take_titles();
   void end_last_row();
   bool are_labels() const;
-  void name_star(int line, std::string_view label);
+  void take_label(int line, std::string_view label, std::string& stop);
+  void name_asphere(int line, std::string_view mark);
   void guess();
   void check_head() const;
   void take_marks(RawRow& row);
@@ -96,9 +99,9 @@ class TableReader {
   Columns columns_;
   int head_line_ = 0;  ///< 0 if the table has no head
   bool guessed_ = false;
-  bool star_named_ = false;
+  bool asphere_named_ = false;
   std::vector<RawRow> rows_;
-  std::string said_;  ///< comments, titles and the file name
+  std::string said_;  ///< comments and titles
 };
 
 void TableReader::take_comments() {
@@ -236,6 +239,18 @@ bool TableReader::are_labels() const {
   return labels >= 2;
 }
 
+/// Drops the marks of aspheres in a cell of their own behind the row number: "10 (ASP) -40 30".
+void TableReader::drop_asphere_marks() {
+  const bool own_column =
+      columns_.size() > 1 && (columns_[1].kind == Column::comment || columns_[1].kind == Column::stop);
+  if (own_column || (has(Column::number) ? find(Column::number) != 0 : !are_labels())) return;
+  for (RawRow& row : rows_) {
+    if (row.cells.size() < 3 || !label_of(row.cells[0]) || !is_asphere_mark(row.cells[1])) continue;
+    name_asphere(row.line, row.cells[1]);
+    row.cells.erase(row.cells.begin() + 1);
+  }
+}
+
 void TableReader::drop_labels() {
   if (has(Column::number)) return;
   if (head_line_ != 0) {
@@ -249,17 +264,25 @@ void TableReader::drop_labels() {
   for (RawRow& row : rows_) {
     if (is_stop_word(row.cells[0])) continue;
     row.object = is_object_word(row.cells[0]), row.image = is_image_word(row.cells[0]);
-    if (row.cells[0].ends_with('*')) name_star(row.line, row.cells[0]);
-    if (const auto mark = stop_mark_of(row.cells[0]); !mark.empty()) row.stop = std::string(mark);
+    take_label(row.line, row.cells[0], row.stop);
     row.cells.erase(row.cells.begin());
   }
 }
 
-/// Warns once of a star, which marks aspheric surfaces in patents.
-void TableReader::name_star(int line, std::string_view label) {
-  if (!std::exchange(star_named_, true)) {
-    in_.warn(line, label, "its mark * is left out: aspheric terms need columns with heads (k A4 A6)");
+/// Takes the mark of a row number, which patents use for the stop and for aspheres.
+void TableReader::take_label(int line, std::string_view label, std::string& stop) {
+  const std::string_view mark = mark_of(label);
+  if (is_asphere_mark(mark) || (label.size() > 1 && label.starts_with('*'))) {
+    name_asphere(line, label);
+  } else if (!mark.empty()) {
+    stop = std::string(mark);
   }
+}
+
+/// Warns once of a mark of an asphere, unless the table has columns for its terms.
+void TableReader::name_asphere(int line, std::string_view mark) {
+  if (has(Column::term) || has(Column::conic) || std::exchange(asphere_named_, true)) return;
+  in_.warn(line, mark, "marks an asphere and is left out: aspheric terms need columns with heads (k A4 A6)");
 }
 
 /// Heads must name radius, thickness and medium. Other known heads are read; unknown heads are listed in a warning.
@@ -269,6 +292,9 @@ void TableReader::check_head() const {
     if (column.kind == Column::left_out) {
       append(unknown, ", ", in_quotes(column.name));
       continue;
+    }
+    if (column.of_sphere != 0) {
+      in_.warn(head_line_, column.name, "is taken as 1 + k, so that a sphere has 1; a column of k has the head k");
     }
     const bool once = column.kind != Column::term && column.kind != Column::comment && column.kind != Column::number;
     const auto same_kind = [&](const TableColumn& other) {
@@ -391,8 +417,7 @@ void TableReader::put(TableRow& row, const TableColumn& column, std::string_view
     case Column::left_out: break;
     case Column::number:
       if (is_stop_word(cell)) row.stop = std::string(cell), row.in_medium = true;
-      if (const auto mark = stop_mark_of(cell); !mark.empty()) row.stop = std::string(mark);
-      if (cell.size() > 1 && cell.ends_with('*')) name_star(raw.line, cell);
+      take_label(raw.line, cell, row.stop);
       break;
     case Column::radius: row.radius = is_plane_word(cell) ? 0 : mm * value(raw, column, cell); break;
     case Column::curvature: {
@@ -417,7 +442,7 @@ void TableReader::put(TableRow& row, const TableColumn& column, std::string_view
     case Column::semi_diameter:
     case Column::diameter:
     case Column::aperture: row.aperture = mm * value(raw, column, cell); break;
-    case Column::conic: row.conic = value(raw, column, cell); break;
+    case Column::conic: row.conic = value(raw, column, cell) - column.of_sphere; break;
     case Column::term:
       if (const double coefficient = value(raw, column, cell); coefficient != 0) {
         row.terms.push_back({column.order, coefficient * std::pow(mm, 1 - column.order)});
@@ -460,6 +485,10 @@ TableRow TableReader::row_of(const RawRow& raw) {
       continue;  // the row is the object, or is refused below
     put(row, column, cells[i], raw);
   }
+  const std::size_t stop = find(Column::stop);
+  if (row.radius != 0 && is_asphere_mark(row.stop) && (stop >= cells.size() || is_none(cells[stop]))) {
+    name_asphere(raw.line, std::exchange(row.stop, {}));
+  }
   if (!radius && row.stop.empty()) {
     in_.must_be(raw.line, "radius", "missing", "a number, or \"inf\" for a plane");
   }
@@ -500,6 +529,7 @@ void TableReader::read() {
   take_lines();
   if (rows_.empty()) throw Error(in_.where() + ": no rows; must be radius, thickness and index of surfaces");
   use_comment_as_head();
+  drop_asphere_marks();
   drop_labels();
   guess();
   if (head_line_ != 0) check_head();
@@ -511,7 +541,6 @@ void TableReader::read() {
     in_.lens.imported->title = notes.front();
     notes.erase(notes.begin());
   }
-  said_ += ' ' + in_.lens.id + ' ';
   const std::string all = lower(said_);
   in_.lens.focal_length_mm = focal_length_in(all);
   in_.lens.f_number = f_number_in(all);

@@ -56,6 +56,12 @@ std::vector<std::string_view> split(std::string_view line, char separator) {
   return cells;
 }
 
+std::string_view without_brackets(std::string_view cell) {
+  const bool inside =
+      cell.size() > 2 && ((cell[0] == '(' && cell.back() == ')') || (cell[0] == '[' && cell.back() == ']'));
+  return inside ? cell.substr(1, cell.size() - 2) : cell;
+}
+
 /// True for two numbers in one cell, "50,6   5,2", which a comma would cut.
 bool has_two_numbers(std::string_view cell) {
   const auto parts = words(cell, 2);
@@ -204,9 +210,12 @@ bool is_plane_word(std::string_view cell) {
 }
 
 bool is_stop_word(std::string_view cell) {
-  if (cell.size() > 2 && ((cell[0] == '(' && cell.back() == ')') || (cell[0] == '[' && cell.back() == ']')))
-    cell = cell.substr(1, cell.size() - 2);
+  cell = without_brackets(cell);
   return same(cell, "aperture stop") || is_one_of(cell, "stop sto asp ast as aperture diaphragm iris *");
+}
+
+bool is_asphere_mark(std::string_view cell) {
+  return is_one_of(without_brackets(cell), "asp asph asph. asphere aspheric *");
 }
 
 bool is_none(std::string_view cell) { return cell.empty() || is_one_of(cell, "- -- --- none n/a ."); }

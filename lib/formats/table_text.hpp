@@ -62,6 +62,9 @@ bool looks_like_a_number(std::string_view cell);
 bool is_plane_word(std::string_view cell);
 /// True for the words that mark the aperture stop, and for "*".
 bool is_stop_word(std::string_view cell);
+/// True for the marks of aspheric surfaces: "(ASP)", "ASPH", "*". Without a row number, "ASP" and "*" of a plane mark
+/// the stop.
+bool is_asphere_mark(std::string_view cell);
 /// True for an empty cell and for "-", "--", "---", "none", "n/a" and ".".
 bool is_none(std::string_view cell);
 

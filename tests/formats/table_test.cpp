@@ -15,8 +15,10 @@
 #include "../expect_error.hpp"
 #include "core/text.hpp"
 #include "lens_text.hpp"
+#include "petzval/formats/lens_file.hpp"
 #include "petzval/lens/lens.hpp"
 #include "petzval/paraxial/first_order.hpp"
+#include "petzval/pupil/f_number.hpp"
 
 namespace table_test {
 
@@ -318,6 +320,57 @@ TEST(Table, FirstOfSeveralStopsIsUsed) {
   EXPECT_TRUE(read("50 5 1.5168 18\n-50 90 1 18 diaphragm\n").surfaces[1].stop);
   // A stop inside glass has glass on both sides.
   EXPECT_EQ(read("r d nd semi\n50 5 1.5 9\nstop 2 - 5\n-50 90 1 9\n").surfaces[1].medium.nd, 1.5);
+}
+
+// Patents mark aspheres after the row number; only a separate mark of a plane may be the stop.
+TEST(Table, AsphereMarks_BesideRowNumbers_AreNotTheStop) {
+  const std::string rows =
+      "no R d nd vd\n1 -46.6 3.78 1.5814 40.9\n2 40.4 7.54 1.7292 54.7\n3 -58.4 0.4 1 -\n4 32.4 1.6 1.8467 23.8\n"
+      "5 24 5.4 1.768 49.2\n6 127.5 2.8 1 -\n7 inf 11 1 -\n8 -25.6 1.5 1.7 30\n9 30.5 5 1.77 49\n10 -40 30 1 -\n";
+  const Prescription plain = read(rows);
+  ASSERT_TRUE(plain.surfaces.at(6).stop);
+  for (const char* mark : {"10(ASP)", "10 (ASP)", "10ASPH", "10 ASPHERE", "10*", "10 *", "*10", "10(ASPH)"}) {
+    for (const bool headless : {false, true}) {
+      const std::string text = with(rows, "10 -40", std::string(mark) + " -40");
+      const Prescription p = read(headless ? with(text, "no R d nd vd\n", "") : text);
+      EXPECT_EQ(p.surfaces, plain.surfaces) << mark;
+      EXPECT_TRUE(std::ranges::any_of(p.imported->warnings, [](const auto& w) {
+        return w.message.find("asphere") != std::string::npos;
+      })) << mark;
+    }
+  }
+  const Prescription both = read(with(with(rows, "3 -58.4", "3(ASP) -58.4"), "7 inf", "7(STO) inf"));
+  EXPECT_EQ(both.surfaces, plain.surfaces);
+  EXPECT_EQ(warning(both, "stop").find("second"), std::string::npos);
+  // A mark that ends a row with a radius, and a mark that has a column of its own.
+  EXPECT_TRUE(read("40 4 1.62041 60.3\n-300 5 - - ASP\n0 3\n-30 2 1.6727 32.2\n0 60\n").surfaces.at(2).stop);
+  EXPECT_TRUE(read("r d nd stop\n50 5 1.5 -\n-50 90 1 ASP\n").surfaces.at(1).stop);
+}
+
+TEST(Table, NumbersOfFileNamesAreNotDeclared) {
+  const std::string rows = "r d nd vd\n40 4 1.62041 60.3\n-300 5\nstop 3\n-30 2 1.6727 32.2\ninf 60\n";
+  for (const char* name : {"nikon-50mm-f14.txt", "lens-f1p4.txt", "50mm_F1-4.txt", "85mmf18.txt", "lens_f1.4.txt"}) {
+    const Prescription p = petzval::parse_lens(rows, name);
+    EXPECT_FALSE(p.f_number) << name;
+    EXPECT_FALSE(p.focal_length_mm) << name;
+    EXPECT_EQ(as_typed(p.surfaces), as_typed(read(rows).surfaces)) << name;
+  }
+  const Prescription titled = read("# 50 mm f/4\nr d nd vd\n50 5 1.5168 64\n-50 1\nstop 45\n");
+  expect_tokens(warning(titled, "stop"), {"f/4"});
+  EXPECT_NEAR(petzval::real_f_number(compile(titled)), 4, 1e-6);
+  // Rays of this beam miss a surface.
+  const Prescription fast = read("# 50 mm f/0.6\nr d nd vd\n50 5 1.5168 64\n-50 1\nstop 45\n");
+  expect_tokens(warning(fast, "stop"), {"does not set it"});
+}
+
+TEST(Table, KappaIsOneForASphere) {
+  for (const char* head : {"kappa", "\u03ba", "Kappa"}) {
+    const Prescription p = read(std::string("r d nd ") + head + " A4\n50 5 1.5 1 0\n-50 90 1 0.25 1e-6\n");
+    EXPECT_EQ(p.surfaces.at(0).conic, 0) << head;
+    EXPECT_EQ(p.surfaces.at(1).conic, -0.75) << head;
+    EXPECT_NE(warning(p, head), "no warning");
+  }
+  EXPECT_EQ(read("r d nd k\n50 5 1.5 1\n-50 90 1 0.25\n").surfaces.at(1).conic, 0.25);
 }
 
 TEST(Table, FilmMayBeARow) {
