@@ -4,6 +4,8 @@
 // many files.
 #include <algorithm>
 #include <array>
+#include <cmath>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -29,17 +31,21 @@ class FlaresimReader {
   void read(std::string_view text);
 
  private:
-  void comment(std::string_view text);
+  void comment(int line, std::string_view text);
   void key(int line, std::string_view name, std::string_view value);
   void row(int line, const std::vector<std::string_view>& cells, std::string_view remark);
 
   Import& in_;
   TableLens table_;
+  std::optional<double> of_rows_;  ///< f-number in the comment "52 surfaces, 31 glass elements, f/4.0"
+  int of_rows_line_ = 0;
 };
 
-void FlaresimReader::comment(std::string_view text) {
+void FlaresimReader::comment(int line, std::string_view text) {
   if (text.empty() || text.starts_with("radius")) return;
-  if (!in_.lens.f_number) in_.lens.f_number = f_number_in(text);
+  const auto stated = f_number_in(text);
+  if (!in_.lens.f_number) in_.lens.f_number = stated;
+  if (text.find(" surfaces, ") != std::string_view::npos) of_rows_ = stated, of_rows_line_ = line;
   in_.note(text);
 }
 
@@ -111,7 +117,7 @@ void FlaresimReader::read(std::string_view text) {
     std::string_view remark = whole.substr(mark);
     remark = trimmed(remark.substr(std::min(remark.find_first_not_of('#'), remark.size())));
     if (line.empty()) {
-      comment(remark);
+      comment(lines.number(), remark);
       continue;
     }
     if (rows) {
@@ -127,6 +133,12 @@ void FlaresimReader::read(std::string_view text) {
     if (!rows) key(lines.number(), name, trimmed(line.substr(colon + 1)));
   }
   if (table_.rows.empty()) throw Error(in_.where() + ": no rows after \"surfaces:\"; must be at least one");
+  // The name of a lens with a converter has the f-number of the bare lens. The comment is rounded to a tenth.
+  if (of_rows_ && in_.lens.f_number && std::abs(*of_rows_ - *in_.lens.f_number) > 0.051) {
+    in_.warn(of_rows_line_, "f-number",
+             "f/" + to_text(*of_rows_, 4) + " of this line is taken, not f/" + to_text(*in_.lens.f_number, 4));
+    in_.lens.f_number = of_rows_;
+  }
   table_.likely_apertures = TableApertures::semi_diameters;
   table_.gaps = TableGaps::behind;
   build_table(std::move(table_), in_);

@@ -57,6 +57,14 @@ TEST(FlareSim, HasTheValuesOfTheFile) {
             expected);
 }
 
+// The name of a lens with a converter has the f-number of the bare lens.
+TEST(FlareSim, FNumberOfTheRowsBeatsTheName) {
+  const Prescription p = read(with(with(lens, "name: Singlet 50mm f/4.98", "name: Singlet 35mm F3.5 with 1.4X TC"),
+                                   "# A singlet 50mm f/4.98", "# A singlet 35mm F3.5"));
+  EXPECT_EQ(p.f_number, 5);
+  expect_tokens(warning(p, "f-number"), {"f/5", "f/3.5"});
+}
+
 // Most files of the public collection have diameters in the column of semi-diameters.
 TEST(FlareSim, DiametersAreRecognisedByTheDeclaredFNumber) {
   std::string diameters = lens;
