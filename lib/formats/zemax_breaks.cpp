@@ -93,14 +93,12 @@ void turn(ZemaxSurface& s) {
 
 }  // namespace
 
-void fold_breaks(Surfaces& surfaces, std::vector<int>& file_surfaces, Import& in) {
+void fold_breaks(Surfaces& surfaces, Import& in) {
   Surfaces kept;
-  std::vector<int> kept_file_surfaces;
   bool turned = false;
   const auto keep = [&](std::size_t i) {
     if (turned) turn(surfaces[i]);
     kept.push_back(std::move(surfaces[i]));
-    kept_file_surfaces.push_back(file_surfaces[i]);
   };
   // Removes surfaces up to `end`. The surface in front of them gets the thickness of the last one.
   const auto take_out = [&](std::size_t end) {
@@ -123,7 +121,7 @@ void fold_breaks(Surfaces& surfaces, std::vector<int>& file_surfaces, Import& in
     }
     if (i + 3 < surfaces.size() && is_fold(std::span(surfaces).subspan(i, 3))) {
       in.warn(found.line, "COORDBRK",
-              "the light folded by the plane mirror of surface " + std::to_string(file_surfaces[i + 1]) +
+              "the light folded by the plane mirror of surface " + std::to_string(surfaces[i + 1].number) +
                   " is unfolded; the mirror is left out");
       turned = !turned;
       i = take_out(i + 3);
@@ -140,13 +138,12 @@ void fold_breaks(Surfaces& surfaces, std::vector<int>& file_surfaces, Import& in
       i = take_out(end + 1);
       continue;
     }
-    in.refuse(found.line, "COORDBRK",
-              "a tilt or decentre of surface " + std::to_string(file_surfaces[i]) +
-                  " that is not undone, or has glass within it",
-              "a centred lens, folded only by plane mirrors");
+    in.refuse(
+        found.line, "COORDBRK",
+        "a tilt or decentre of surface " + std::to_string(found.number) + " that is not undone, or has glass within it",
+        "a centred lens, folded only by plane mirrors");
   }
   surfaces = std::move(kept);
-  file_surfaces = std::move(kept_file_surfaces);
 }
 
 }  // namespace petzval::formats_detail

@@ -5,7 +5,6 @@
 #include <array>
 #include <cmath>
 #include <limits>
-#include <numeric>
 #include <utility>
 
 #include "core/text.hpp"
@@ -46,7 +45,8 @@ class Pickups {
 
  private:
   const ZemaxSurface& source(std::size_t i, int line, const char* command, int surface) const {
-    if (surface >= 0 && static_cast<std::size_t>(surface) < i) return surfaces_[static_cast<std::size_t>(surface)];
+    const auto found = std::ranges::find(surfaces_, surface, &ZemaxSurface::number);
+    if (found < surfaces_.begin() + static_cast<std::ptrdiff_t>(i)) return *found;
     in_.refuse(line, command, "a pickup from surface " + std::to_string(surface), "a pickup from an earlier surface");
   }
 
@@ -67,10 +67,9 @@ class Pickups {
   /// Sets a thickness so that its sum with one other thickness, or with all thicknesses from a surface on, equals the
   /// total.
   void complete(std::size_t i, const ZemaxPickup& sum, const char* command, bool all) {
-    source(i, sum.line, command, sum.surface);
     double rest = sum.offset;
-    for (auto k = static_cast<std::size_t>(sum.surface); k < i; ++k) {
-      if (all || k == static_cast<std::size_t>(sum.surface)) rest -= surfaces_[k].thickness;
+    for (const ZemaxSurface* k = &source(i, sum.line, command, sum.surface); k != &surfaces_[i]; ++k) {
+      if (all || k->number == sum.surface) rest -= k->thickness;
     }
     set(sum.line, command, surfaces_[i].thickness, rest);
   }
@@ -296,8 +295,8 @@ constexpr std::string_view silent_operands = "MOFF FLWT WLWT CWGT GCRS NCOM MCOM
 
 class Configurations {
  public:
-  Configurations(const ZemaxLens& zemax, const std::vector<int>& file_surfaces, double unit, Rows& rows, Import& in)
-      : zemax_(zemax), file_surfaces_(file_surfaces), unit_(unit), rows_(rows), in_(in) {}
+  Configurations(const ZemaxLens& zemax, double unit, Rows& rows, Import& in)
+      : zemax_(zemax), unit_(unit), rows_(rows), in_(in) {}
 
   void build();
 
@@ -307,7 +306,6 @@ class Configurations {
   SurfaceChange& change(Configuration& c, const ZemaxOperand& operand);
 
   const ZemaxLens& zemax_;
-  const std::vector<int>& file_surfaces_;  ///< [row] number of the surface in the file
   double unit_;
   Rows& rows_;
   Import& in_;
@@ -327,11 +325,12 @@ void Configurations::aperture(const ZemaxOperand& operand, double value) {
 /// The change of the operand's surface.
 /// @throws Error if the surface is not a row of the lens
 SurfaceChange& Configurations::change(Configuration& c, const ZemaxOperand& operand) {
-  const auto found = std::ranges::find(file_surfaces_, operand.surface);
-  if (found == file_surfaces_.end()) {
+  const auto rows = std::span(zemax_.surfaces).subspan(1, zemax_.surfaces.size() - 2);
+  const auto found = std::ranges::find(rows, operand.surface, &ZemaxSurface::number);
+  if (found == rows.end()) {
     in_.refuse(operand.line, operand.name, "surface " + std::to_string(operand.surface), "a surface of the lens");
   }
-  return change_of(c, static_cast<int>(found - file_surfaces_.begin()));
+  return change_of(c, static_cast<int>(found - rows.begin()));
 }
 
 void Configurations::take(const ZemaxOperand& operand) {
@@ -443,9 +442,7 @@ void check_ends(const ZemaxSurface& object, const ZemaxSurface& image, Import& i
 
 void build_lens(ZemaxLens zemax, double unit, Import& in) {
   Pickups(zemax.surfaces, in).evaluate();
-  std::vector<int> file_surfaces(zemax.surfaces.size());
-  std::iota(file_surfaces.begin(), file_surfaces.end(), 0);
-  fold_breaks(zemax.surfaces, file_surfaces, in);
+  fold_breaks(zemax.surfaces, in);
   if (zemax.surfaces.size() < 3) throw Error(in.where() + ": no surface of a lens; must be at least one");
 
   const ZemaxSurface &object = zemax.surfaces.front(), &image = zemax.surfaces.back();
@@ -482,9 +479,7 @@ void build_lens(ZemaxLens zemax, double unit, Import& in) {
   in.requests.telecentric_line = zemax.telecentric;
   in.requests.telecentric_command = "FTYP";
   in.lens.semi_diameters = "of the file: clear apertures, else the widths of the design's beams";
-  file_surfaces.erase(file_surfaces.begin());
-  file_surfaces.pop_back();
-  Configurations(zemax, file_surfaces, unit, rows, in).build();
+  Configurations(zemax, unit, rows, in).build();
   if (last.marginal_height && !image_at_infinity) solve_the_film(last, in);
 }
 

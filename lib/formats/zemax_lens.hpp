@@ -32,8 +32,7 @@ struct ZemaxLens {
 void build_lens(ZemaxLens zemax, double unit, Import& in);
 
 /// Removes breaks that change nothing and folds by plane mirrors.
-/// @param file_surfaces number of each surface in the file
 /// @throws Error if there is another tilt or decentre
-void fold_breaks(std::vector<ZemaxSurface>& surfaces, std::vector<int>& file_surfaces, Import& in);
+void fold_breaks(std::vector<ZemaxSurface>& surfaces, Import& in);
 
 }  // namespace petzval::formats_detail

@@ -413,11 +413,17 @@ void ZemaxReader::primary(Words words) {
 void ZemaxReader::new_surface(Words words) {
   const int number = whole(words, 1, 0, 1'000'000);
   in_.limit(lens_.surfaces.size() + 1, "surfaces", 2);
-  if (static_cast<std::size_t>(number) != lens_.surfaces.size()) {
-    in_.refuse(line_, "SURF", std::to_string(number), std::to_string(lens_.surfaces.size()) + ", the next number");
+  const int next = lens_.surfaces.empty() ? 0 : surface().number + 1;
+  if (number < next || (number > 0 && next == 0)) {
+    in_.refuse(line_, "SURF", std::to_string(number), std::to_string(next) + ", the next number");
+  }
+  if (number > next) {
+    in_.warn(line_, "SURF",
+             std::to_string(number) + " follows " + std::to_string(next - 1) + "; no surface is between");
   }
   lens_.surfaces.emplace_back();
   surface().line = line_;
+  surface().number = number;
 }
 
 void ZemaxReader::configurations(Words words) {

@@ -35,7 +35,7 @@ struct ZemaxRing {
 
 /// One SURF as stated in a .zmx, in millimetres.
 struct ZemaxSurface {
-  int line = 0;
+  int line = 0, number = 0;
   std::string type = "STANDARD";
   double curvature = 0;
   double thickness = 0;  ///< may be infinite

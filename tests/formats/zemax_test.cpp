@@ -448,6 +448,27 @@ TEST(Zemax, PickupsAndSumsAreEvaluated) {
   EXPECT_EQ(warning(with(singlet, "  DISZ 48\n", "  DISZ 49.324\n  MAZH 0 0\n"), "MAZH"), "no warning");
 }
 
+// A file without a number in its surfaces: pickups and operands keep the numbers of the file.
+TEST(Zemax, NumbersOfSurfacesMayHaveGaps) {
+  const std::string pickup = "  DISZ 48\n  PZUP 2 3 1\n", sum = "  DISZ 1\n  TCOM 2 20\n";
+  for (const std::string& solve : {std::string("  DISZ 48\n"), pickup, sum}) {
+    const std::string text = with(singlet, "  DISZ 48\n", solve) + "MNUM 2 1\nCRVT 3 1 -0.02\nCRVT 3 2 -0.025\n";
+    std::string gap = text;
+    for (const auto& [from, to] :
+         {std::pair("SURF 4", "SURF 7"), std::pair("SURF 3", "SURF 6"), std::pair("SURF 2", "SURF 5"),
+          std::pair("PZUP 2", "PZUP 5"), std::pair("TCOM 2", "TCOM 5"), std::pair("CRVT 3 1", "CRVT 6 1"),
+          std::pair("CRVT 3 2", "CRVT 6 2")}) {
+      if (gap.find(from) != std::string::npos) gap = with(gap, from, to);
+    }
+    const Prescription p = read(gap);
+    EXPECT_EQ(p.surfaces, read(text).surfaces) << solve;
+    EXPECT_EQ(p.configurations, read(text).configurations) << solve;
+    expect_tokens(warning(p, "SURF"), {5, 1});
+  }
+  expect_tokens(refusal(with(singlet, "SURF 4", "SURF 2")), {"SURF", 2});
+  expect_tokens(refusal(with(singlet, "SURF 0", "SURF 1")), {"SURF", 1});
+}
+
 TEST(Zemax, GlassesAreFoundOrReported) {
   const auto glass = [](const std::string& line) {
     return with(singlet, "GLAS ___BLANK 1 0 1.5 60 0 0 0 0 0 0", "GLAS " + line);
