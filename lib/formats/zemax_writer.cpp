@@ -8,6 +8,7 @@
 
 #include "core/text.hpp"
 #include "glass_names.hpp"
+#include "import.hpp"
 #include "petzval/core/error.hpp"
 #include "text_file.hpp"
 #include "written_lens.hpp"
@@ -39,6 +40,7 @@ class ZemaxWriter {
   void header();
   void choose_catalogues();
   const Glass* resolved(const Glass& glass);
+  const Glass* table_glass(const Medium& medium);
   void aperture();
   void fields();
   void wavelengths();
@@ -71,11 +73,25 @@ void ZemaxWriter::header() {
   if (!catalogues_.empty()) out_.line(catalogues);
 }
 
+/// The medium of a code of n_d and V_d; nullopt if the medium has another name or other numbers.
+std::optional<Medium> code_of(const Medium& medium) {
+  const auto code = medium_of_code(medium.glass.value_or(""));
+  return code && code->nd == medium.nd && code->vd == medium.vd ? code : std::nullopt;
+}
+
+/// The glass of a medium in the tables; null if absent. Names that are codes are no glasses in a .zmx, although tables
+/// of 1983 have such names.
+const Glass* ZemaxWriter::table_glass(const Medium& medium) {
+  return medium_of_code(medium.glass.value_or("")) ? nullptr : out_.glass(medium);
+}
+
 /// Orders the makers of all glasses so that readers find the right glass for each name, if possible.
 void ZemaxWriter::choose_catalogues() {
   std::vector<const Glass*> used;
+  std::set<std::string> unknown;
   const auto use = [&](const Medium& medium) {
-    const Glass* found = out_.glass(medium);
+    const Glass* found = table_glass(medium);
+    if (!found && medium.glass && !code_of(medium)) unknown.insert(*medium.glass);
     if (found && std::ranges::find(used, found) == used.end()) used.push_back(found);
   };
   use(p_.object_space);
@@ -95,6 +111,9 @@ void ZemaxWriter::choose_catalogues() {
     const auto other = std::ranges::find(catalogues_, maker_of(*resolved(**hidden)));
     if (other < own) std::rotate(other, own, own + 1);
   }
+  std::string names;
+  for (const std::string& name : unknown) append(names, ", ", name);
+  if (!names.empty()) out_.lose("glass", "names in no table become models of n_d and V_d: " + names);
   for (const Glass* glass : used) {
     if (const Glass* other = resolved(*glass); other != glass) {
       out_.lose("glass", describe(*glass) + " becomes " + describe(*other) + " with an offset of its index");
@@ -183,14 +202,17 @@ void ZemaxWriter::object() {
 /// Name of a medium's glass; empty if it has no name.
 std::string ZemaxWriter::glass_name(const Medium& medium) {
   if (medium == Medium{}) return "AIR";
-  const Glass* found = out_.glass(medium);
+  if (code_of(medium)) return *medium.glass;
+  const Glass* found = table_glass(medium);
   return found ? one_word(found->name) : std::string();
 }
 
 std::string ZemaxWriter::glass(const Medium& medium) {
-  const Glass* found = out_.glass(medium);
+  const Glass* found = table_glass(medium);
   if (!found) {
-    return "___BLANK 1 0 " + to_text(out_.index(medium)) + ' ' + to_text(medium.vd.value_or(0)) + " 0 0 0 0 0 0";
+    const Glass* named = out_.glass(medium);
+    return (code_of(medium) ? *medium.glass + " 0 0 " : "___BLANK 1 0 ") + to_text(out_.index(medium)) + ' ' +
+           to_text(medium.vd.value_or(named ? named->vd : 0)) + " 0 0 0 0 0 0";
   }
   const Glass* meant = resolved(*found);
   const std::string numbers = " 0 " + to_text(meant->nd) + ' ' + to_text(meant->vd) + " 0 0 0 0 ";

@@ -487,6 +487,29 @@ TEST(RoundTrip, PrintedIndexOfAGlass_BecomesTheFormulaAndIsReported) {
   EXPECT_EQ(read(zemax(p)).surfaces[1].medium, formula);
 }
 
+// Glass tables of 1983 have codes as names, whose indices differ from the code.
+TEST(RoundTrip, CodesOfIndexAndVNumberKeepTheirNumbers) {
+  Prescription p = singlet();
+  const petzval::Medium code{.glass = "517642", .nd = 1.517, .vd = 64.2};
+  p.surfaces[1].medium = code;
+  EXPECT_EQ(read(zemax(p)).surfaces[1].medium, code);
+  EXPECT_FALSE(lost(zemax(p), "glass"));
+  p.surfaces[1].medium = {.glass = "517642", .catalogue = "chance-1983"};
+  const Prescription back = read(zemax(p));
+  EXPECT_NEAR(petzval::first_order(compile(back, {.glasses = &glasses()})).effective_focal_length,
+              petzval::first_order(compile(p, {.glasses = &glasses()})).effective_focal_length, 1e-9);
+}
+
+TEST(RoundTrip, NamesOfUnknownGlassesAreReportedAsLost) {
+  Prescription p = singlet();
+  p.surfaces[1].medium = {.glass = "S-LAH999", .nd = 1.9, .vd = 30};
+  const ExportedLens written = zemax(p);
+  const auto loss = std::ranges::find(written.losses, "glass", &petzval::ImportWarning::command);
+  ASSERT_NE(loss, written.losses.end());
+  expect_tokens(loss->message, {"S-LAH999"});
+  EXPECT_EQ(read(written).surfaces[1].medium.nd, 1.9);
+}
+
 TEST(RoundTrip, LossesAreReported) {
   const auto glass = petzval::testing::data_prescription("double_gauss_100mm_f1.35");
   EXPECT_TRUE(lost(petzval::format_table(glass), "vd"));
