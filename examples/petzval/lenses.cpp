@@ -46,7 +46,7 @@ bool contains_all(const Prescription& lens, const std::vector<std::string>& word
 }
 
 std::string padded(std::string text, std::size_t width) {
-  if (text.size() < width) text.resize(width, ' ');
+  text.resize(std::max(text.size() + 1, width), ' ');
   return text;
 }
 
@@ -77,7 +77,9 @@ int commands::lenses(int argc, char** argv) {
                         {"surfaces", lens.surfaces.size()}});
         continue;
       }
-      const auto shown = [](const std::optional<double>& value) { return value ? number(*value) : std::string("-"); };
+      const auto shown = [](const std::optional<double>& value) {
+        return value ? number(*value, 6) : std::string("-");
+      };
       std::cout << padded(lens.id, 40) << padded(shown(lens.focal_length_mm), 9) << padded(shown(lens.f_number), 7)
                 << padded(shown(lens.half_field_deg), 7) << lens.name << '\n';
     }

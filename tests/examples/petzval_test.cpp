@@ -2,6 +2,7 @@
 // The program petzval: overview, help, mistyped commands, flags and lenses, lengths with units, man page and
 // completions.
 #include <algorithm>
+#include <charconv>
 #include <regex>
 #include <set>
 #include <sstream>
@@ -117,6 +118,20 @@ TEST_F(Petzval, ShippedLensesHaveNames) {
   ASSERT_FALSE(found.empty());
   EXPECT_TRUE(std::ranges::any_of(found, [&](const auto& row) { return row.at("id") == id; }));
   for (const auto& row : found) EXPECT_NE(row.dump().find("52"), std::string::npos) << row;
+}
+
+TEST_F(Petzval, ListOfLensesHasSeparateColumns) {
+  for (const std::string& line : lines(run("lenses", {}).out)) {
+    std::istringstream words(line);
+    std::string id, cell;
+    words >> id;
+    for (int i = 0; i < 3; ++i) {
+      words >> cell;
+      double value = 0;
+      const auto [end, status] = std::from_chars(cell.data(), cell.data() + cell.size(), value);
+      EXPECT_TRUE(cell == "-" || (status == std::errc() && end == cell.data() + cell.size())) << line;
+    }
+  }
 }
 
 TEST_F(Petzval, FilesHaveTheWholeNameOfAShippedLens) {
