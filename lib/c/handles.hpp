@@ -41,7 +41,7 @@ template <class T>
 constexpr bool is_size_of(std::size_t size) noexcept {
   return size >= sizeof(std::size_t) && size <= 1 << 16 && size % alignof(T) == 0;
 }
-/// Sets results to 0 or NULL, and their fates to PETZVAL_FATE_INVALID. A struct with `size` keeps it.
+/// Sets results to 0 or NULL, and their fates to PETZVAL_FATE_INVALID. The member `size` stays.
 template <class T>
 void reset(T* to, std::size_t count = 1, T value = {}) noexcept {
   if (!to) return;
