@@ -6,11 +6,13 @@
  *
  *     #include "petzval_camera.h"
  *     #include "camera.h"
+ *     if (!pz_valid(petzval_table, sizeof petzval_table / sizeof *petzval_table)) return;  // once for each table
  *     pz_point film = pz_film_point(petzval_table, column, row);
  *     pz_ray ray = pz_sample(petzval_table, film.x, film.y, u, v, 587.56f);
  *     if (ray.fate == 0) colour += ray.weight * radiance(ray);
  *
- * gcc and clang need -fno-math-errno, which is also faster, or -lm.
+ * gcc and clang need -fno-math-errno, which is also faster, or -lm. g++ with -march=native needs -mtune=generic: g++
+ * 12, tuned for AMD Zen 3, takes 911 ns instead of 514 for a connection if one source also calls the other functions.
  *
  * In shaders the table is a buffer, not a parameter. Define PETZVAL_GLSL or PETZVAL_HLSL and PETZVAL_TABLE(i), element
  * i of the table, before this file, and leave out the first argument of all functions:
@@ -19,11 +21,11 @@
  *     #define PETZVAL_GLSL
  *     #define PETZVAL_TABLE(i) camera_table[i]
  *
- * Functions: pz_film_point, pz_raster, pz_sample, pz_sample_differential, pz_importance, pz_connect and pz_pdf. Other
- * functions are internal. Frame of the lens: z runs along the axis from the scene to the film; the vertex of the first
- * surface is at 0. Lengths are in mm, wavelengths in nm. Fates of rays: 0 transmitted, 1 missed a surface, 2 total
- * reflection, 3 clipped by an aperture, 5 outside the fit of a polynomial, 6 outside the film, 7 invalid, 8 outside the
- * wavelengths of the table.
+ * Functions: pz_valid, pz_film_point, pz_raster, pz_sample, pz_sample_differential, pz_importance, pz_connect and
+ * pz_pdf. Other functions are internal. Frame of the lens: z runs along the axis from the scene to the film; the vertex
+ * of the first surface is at 0. Lengths are in mm, wavelengths in nm. Fates of rays: 0 transmitted, 1 missed a surface,
+ * 2 total reflection, 3 clipped by an aperture, 5 outside the fit of a polynomial, 6 outside the film, 7 invalid, 8
+ * outside the wavelengths of the table.
  *
  * Accuracy: as the float rays of the library; the distance to these rays is at most 8 float eps for most lenses of
  * data/ and up to 30 for fisheyes, whose float rays are up to 20 eps from exact rays
@@ -291,6 +293,95 @@ PZ_FN float pz_number(PZ_T pz_light light, int k) {
     for (int i = 7; i >= 0; --i) sum = sum * light.t + PZ_AT(at + i);
     return sum;
   }
+}
+
+/* ---- Check of a table ---- */
+
+/* The whole number from 0 to most at a position; -1: there is another number. */
+PZ_FN int pz_count(PZ_T int at, int most) {
+  float x = PZ_AT(at);
+  int n = x >= 0.0f && x <= PZ_FLOAT(most) ? PZ_INT(x) : -1;
+  return PZ_FLOAT(n) == x ? n : -1;
+}
+/* a b, or most + 1 if this is more; a and b are from 0 to most + 1. */
+PZ_FN int pz_product(int a, int b, int most) { return b == 0 || a <= most / b ? a * b : most + 1; }
+/* True if the table has n numbers from the position on that is stored at `at`. */
+PZ_FN PZ_BOOL pz_has(PZ_T int at, int n, int floats) {
+  int begin = pz_count(PZ_P at, floats);
+  return begin >= PZ_HEAD && n <= floats - begin;
+}
+/* True if `floats` numbers are a complete table of this format: no function reads outside of such a table. All other
+ * functions trust their table: call this one first, for each table from a file. */
+PZ_FN PZ_BOOL pz_valid(PZ_T int floats) {
+  if (floats < PZ_HEAD || floats > 16777216 || PZ_AT(0) != PZ_FLOAT(PZ_FORMAT) || PZ_AT(1) != PZ_FLOAT(floats)) {
+    return PZ_FALSE;
+  }
+  int w = pz_count(PZ_P PZ_WAVELENGTH_COUNT, floats), surfaces = pz_count(PZ_P PZ_SURFACE_COUNT, floats);
+  int blades = pz_count(PZ_P PZ_BLADES, floats), stop_size = pz_count(PZ_P PZ_STOP_SIZE, floats);
+  int rows = pz_count(PZ_P PZ_PUPIL_ROWS, floats), columns = pz_count(PZ_P PZ_PUPIL_COLUMNS, floats);
+  int numbers = pz_count(PZ_P PZ_NUMBER_COUNT, floats), node_size = pz_count(PZ_P PZ_NODE_SIZE, floats), cells;
+  int cell_size = pz_count(PZ_P PZ_CELL_SIZE, floats), list, count;
+  float pupils = PZ_AT(PZ_PUPIL_DIMENSIONS), scene = PZ_AT(PZ_SCENE_DIMENSIONS), rays = PZ_AT(PZ_RAYS), widest = 0.0f;
+  PZ_BOOL two = pupils == 2.0f;
+  if (w < 1 || surfaces < 1 || blades < 0 || stop_size < 0 || rows < 1 || columns < 1 || numbers != 5 + 2 * surfaces ||
+      pz_count(PZ_P PZ_PRIMARY, w - 1) < 0 || pz_count(PZ_P PZ_MIRRORS, surfaces) < 0 ||
+      pz_count(PZ_P PZ_CORRECTIONS, floats) < 0 || (pupils != 1.0f && !two) || (scene != 2.0f && scene != 3.0f) ||
+      (rays != 0.0f && rays != 1.0f)) {
+    return PZ_FALSE;
+  }
+  /* Wavelengths. Numbers between the compiled ones are needed if a sample can have such a wavelength. */
+  if (!pz_has(PZ_P PZ_WAVELENGTHS, w, floats) || !pz_has(PZ_P PZ_NUMBERS, pz_product(w, numbers, floats), floats)) {
+    return PZ_FALSE;
+  }
+  pz_light end = pz_light_of(PZ_P PZ_AT(PZ_SHORTEST));
+  if ((PZ_AT(PZ_SHORTEST) < PZ_AT(PZ_LONGEST) || (end.nearest >= 0 && !end.compiled)) &&
+      !pz_has(PZ_P PZ_POWERS, pz_product(numbers, 8, floats), floats)) {
+    return PZ_FALSE;
+  }
+  /* Surfaces and iris. */
+  if (!pz_has(PZ_P PZ_SURFACES, pz_product(surfaces, PZ_SURFACE_SIZE, floats), floats) ||
+      !pz_has(PZ_P PZ_EDGES, pz_product(blades, 4, floats), floats)) {
+    return PZ_FALSE;
+  }
+  for (int i = 0; i < surfaces; ++i) {
+    int at = pz_whole(PZ_P PZ_SURFACES) + i * PZ_SURFACE_SIZE + 10;
+    list = pz_count(PZ_P at, floats);
+    if (list == 0) continue;
+    if (!pz_has(PZ_P at, 4, floats)) return PZ_FALSE;
+    int even = pz_count(PZ_P list + 2, floats), odd = pz_count(PZ_P list + 3, floats);
+    if (even < 0 || odd < 0 || !pz_has(PZ_P at, 4 + even + odd, floats)) return PZ_FALSE;
+  }
+  /* Pupils of film points: the row of each film point within reach is a whole number. */
+  cells = pz_product(pz_product(w, rows, floats), two ? columns : 1, floats);
+  if (cell_size < (two                          ? 1122
+                   : PZ_AT(PZ_OBSCURED) != 0.0f ? 784
+                                                : 528) ||
+      !pz_has(PZ_P PZ_CELLS, pz_product(cells, cell_size, floats), floats) ||
+      (two && !pz_has(PZ_P PZ_HALF_WIDTHS, rows + 1, floats)) || !(PZ_AT(PZ_ROWS_PER_MM) >= 0.0f) ||
+      !(PZ_AT(PZ_REACH) >= 0.0f && PZ_AT(PZ_REACH) <= 1.0e15f && PZ_AT(PZ_REACH) * PZ_AT(PZ_ROWS_PER_MM) <= 1.0e9f)) {
+    return PZ_FALSE;
+  }
+  if (stop_size != 0 && (blades < 1 || stop_size < (two ? 610 : 296) ||
+                         !pz_has(PZ_P PZ_STOPS, pz_product(cells, stop_size, floats), floats) ||
+                         !pz_has(PZ_P PZ_IRIS, 16 + pz_product(blades, 6, floats), floats))) {
+    return PZ_FALSE;
+  }
+  if (rays == 1.0f) {
+    int degree = pz_count(PZ_P PZ_DEGREE, 99), n = (degree - 1) / 2, terms = (n + 1) * (n + 2) * (n + 3) / 6;
+    terms = two ? 4 * (n + 2) * terms : 4 * terms; /* two: 8 (n + 1) (n + 2)^2 (n + 3) / 12 */
+    if (degree < 1 || !pz_has(PZ_P PZ_TERMS, pz_product(w, terms, floats), floats)) return PZ_FALSE;
+  }
+  /* Pupils of scene points: without nodes, all last fields are 0. */
+  count = pz_product(w, scene == 3.0f ? 6 : 3, floats);
+  if (!pz_has(PZ_P PZ_WIDEST, count, floats) || !pz_has(PZ_P PZ_BALLS, w, floats)) return PZ_FALSE;
+  list = pz_whole(PZ_P PZ_WIDEST);
+  for (int i = 0; i < count; ++i) {
+    if (!(PZ_AT(list + i) >= 0.0f)) return PZ_FALSE;
+    widest += PZ_AT(list + i);
+  }
+  count = pz_product(w, scene == 3.0f ? 147 : 39, floats);
+  count = widest == 0.0f ? 0 : pz_product(count, node_size, floats);
+  return (node_size == 132 || node_size == 260) && pz_has(PZ_P PZ_NODES, count, floats);
 }
 
 /* ---- Iris ---- */

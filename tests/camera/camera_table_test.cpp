@@ -69,6 +69,7 @@ Errors errors_of(const Lens& lens, ModelKind model, int count) {
   const Camera camera(lens, film, {.model = model});
   const Camera exact(lens, film, {.model = model == ModelKind::exact_float ? ModelKind::exact_double : model});
   const std::vector<float> table = camera_table(camera);
+  EXPECT_TRUE(pz_valid(table.data(), static_cast<int>(table.size())));
   const double size = size_of(lens);
   Samples samples(film);
   std::vector<CameraSample> all;
@@ -319,6 +320,20 @@ TEST(CameraTable, InvalidSamplesHaveFates) {
   EXPECT_EQ(pz_importance(table.data(), {0, 0, -9}, {0, 0, 2}, nm).fate, static_cast<int>(RayFate::invalid));
   EXPECT_EQ(pz_connect(table.data(), {nan, 0, -900}, 0.5f, 0.5f, nm).pdf, 0);
   EXPECT_EQ(pz_connect(table.data(), {0, 0, 900}, 0.5f, 0.5f, nm).pdf, 0);
+}
+
+TEST(CameraTable, IncompleteAndOlderTablesAreNotValid) {
+  std::vector<float> table = camera_table(Camera(testing::data_lens("tessar_100mm_f2.8"), {}));
+  const auto valid = [&](std::size_t size) { return pz_valid(table.data(), static_cast<int>(size)); };
+  EXPECT_TRUE(valid(table.size()));
+  for (const std::size_t size : {std::size_t{0}, std::size_t{1}, table.size() / 2, table.size() - 1}) {
+    EXPECT_FALSE(valid(size)) << size;
+    if (size > 1) table[1] = static_cast<float>(size);
+    EXPECT_FALSE(valid(size)) << size;
+  }
+  table[1] = static_cast<float>(table.size());
+  table[0] -= 1;
+  EXPECT_FALSE(valid(table.size()));
 }
 
 TEST(CameraTable, OtherCamerasAreRefused) {

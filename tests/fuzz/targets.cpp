@@ -9,8 +9,8 @@
 extern "C" {
 using Fuzzed = int(const std::uint8_t*, std::size_t);
 Fuzzed fuzz_lens_file, fuzz_glass_file, fuzz_ray_polynomial, fuzz_first_order, fuzz_trace, fuzz_pupil, fuzz_focus,
-    fuzz_camera, fuzz_camera_calls, fuzz_c_calls, fuzz_camera_setup, fuzz_table_calls, fuzz_psf, fuzz_gather,
-    fuzz_written_lens;
+    fuzz_camera, fuzz_camera_calls, fuzz_c_calls, fuzz_camera_setup, fuzz_camera_table, fuzz_table_calls, fuzz_psf,
+    fuzz_gather, fuzz_written_lens;
 #ifdef PETZVAL_FUZZ_FITS
 Fuzzed fuzz_focus_points;
 #endif
@@ -61,6 +61,7 @@ std::span<const Target> targets() {
       Target{"camera_calls", "camera_calls", fuzz_camera_calls, random_bytes, 256, 2000},
       Target{"c_calls", "c_calls", fuzz_c_calls, random_bytes, 256, 300},
       Target{"camera_setup", "camera_setup", fuzz_camera_setup, camera_setups, 8192, 200},
+      Target{"camera_table", "camera_table", fuzz_camera_table, random_bytes, 256, 2000},
       Target{"table_calls", "table_calls", fuzz_table_calls, random_bytes, 256, 2000},
       Target{"psf", "psf", fuzz_psf, random_bytes, 512, 200},
       Target{"gather", "gather", fuzz_gather, random_bytes, 2048, 300},

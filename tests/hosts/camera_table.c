@@ -31,8 +31,8 @@ int main(int argc, char** argv) {
   }
   size = fread(table, sizeof table[0], sizeof table / sizeof table[0], file);
   fclose(file);
-  if (size < PZ_HEAD || table[0] != PZ_FORMAT || table[1] != (float)size) {
-    fprintf(stderr, "%s: must be a table of format %d\n", argv[1], PZ_FORMAT);
+  if (!pz_valid(table, (int)size)) {
+    fprintf(stderr, "%s: must be a complete table of format %d\n", argv[1], PZ_FORMAT);
     return 2;
   }
   begin = clock();
