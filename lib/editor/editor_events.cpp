@@ -135,10 +135,10 @@ EditorPoint& point_of(Event& event, EditorSettings& settings) {
   const Json& value = event.at("id", "the id of a point");
   const Id id = id_of(event, value);
   const auto found =
-      std::ranges::find_if(settings.points, [&](const EditorPoint& point) { return point.id == id.text; });
-  if (found != settings.points.end()) return *found;
+      std::ranges::find_if(settings.points, [&](const Shared<EditorPoint>& point) { return point->id == id.text; });
+  if (found != settings.points.end()) return found->edit();
   std::string known;
-  for (const EditorPoint& point : settings.points) known += (known.empty() ? "" : ", ") + point.id;
+  for (const auto& point : settings.points) known += (known.empty() ? "" : ", ") + point->id;
   event.refuse("id", value, known.empty() ? "the id of a point, but no point exists" : "the id of a point: " + known);
 }
 
@@ -198,7 +198,7 @@ void add_point(Event& event, const Context& context, EditorSettings& settings) {
     point.id = read.text, point.id_is_number = read.is_number;
   }
   const auto taken = [&](const std::string& id) {
-    return std::ranges::any_of(settings.points, [&](const EditorPoint& other) { return other.id == id; });
+    return std::ranges::any_of(settings.points, [&](const Shared<EditorPoint>& other) { return other->id == id; });
   };
   if (!point.id.empty() && taken(point.id)) {
     event.refuse("id", point.id, "an unused id");
@@ -208,7 +208,7 @@ void add_point(Event& event, const Context& context, EditorSettings& settings) {
   read_values(event, point.now);
   point.fade = FadeFilter(settings.fade_s);
   settings.active = point.id;
-  settings.points.push_back(std::move(point));
+  settings.points.emplace_back(std::move(point));
 }
 
 void move_point(Event& event, const Context& context, EditorSettings& settings) {
@@ -227,7 +227,7 @@ void set_point(Event& event, const Context&, EditorSettings& settings) {
 
 void remove_point(Event& event, const Context&, EditorSettings& settings) {
   const std::string id = point_of(event, settings).id;
-  std::erase_if(settings.points, [&](const EditorPoint& point) { return point.id == id; });
+  std::erase_if(settings.points, [&](const Shared<EditorPoint>& point) { return point->id == id; });
   if (settings.active == id) settings.active.clear();
 }
 
@@ -354,7 +354,7 @@ void weighting(Event& event, const Context&, EditorSettings& settings) {
   const double before = settings.fade_s;
   event.set("fade_s", settings.fade_s, not_negative);
   if (settings.fade_s == before) return;
-  for (EditorPoint& point : settings.points) point.fade = FadeFilter(settings.fade_s);
+  for (auto& point : settings.points) point.edit().fade = FadeFilter(settings.fade_s);
 }
 
 template <class T>
@@ -377,7 +377,8 @@ void set_time(EditorSettings& settings, double time) {
 void key(Event& event, const Context&, EditorSettings& settings) {
   double time = settings.time_s;
   event.set("time_s", time, times);
-  for (EditorPoint& point : settings.points) {
+  for (auto& shared : settings.points) {
+    EditorPoint& point = shared.edit();
     if (point.now.place) put_key(point.keys, time, point.now);
     point.by_hand = false;
   }
@@ -388,7 +389,9 @@ void key(Event& event, const Context&, EditorSettings& settings) {
 
 void time(Event& event, const Context&, EditorSettings& settings) {
   set_time(settings, event.number("time_s", event.at("time_s", times.words), times));
-  for (EditorPoint& point : settings.points) point.by_hand = false;
+  for (auto& point : settings.points) {
+    if (point->by_hand) point.edit().by_hand = false;
+  }
   settings.focus_by_hand = false;
 }
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <limits>
+#include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -33,6 +34,23 @@ struct PointValues {
 template <class T>
 using Keys = std::vector<std::pair<double, T>>;
 
+/// A value whose copies share its memory until they are edited: a step of undo costs only what its event changed.
+template <class T>
+class Shared {
+ public:
+  explicit Shared(T value) : value_(std::make_shared<T>(std::move(value))) {}
+  const T& operator*() const noexcept { return *value_; }
+  const T* operator->() const noexcept { return value_.get(); }
+  /// The value for changes, which the other copies do not see.
+  T& edit() {
+    if (value_.use_count() > 1) value_ = std::make_shared<T>(*value_);
+    return *value_;
+  }
+
+ private:
+  std::shared_ptr<T> value_;
+};
+
 struct EditorPoint {
   std::string id;
   bool id_is_number = false;
@@ -61,7 +79,7 @@ struct EditorSettings {
   bool nearer_weighs_more = false, points_fade = true;
   double fade_s = 0.2, time_s = 0;
   double seconds_to_fade = 0;  ///< time that passed since the last state
-  std::vector<EditorPoint> points;
+  std::vector<Shared<EditorPoint>> points;
   int points_added = 0;
 };
 
@@ -74,7 +92,8 @@ FocusOptions focus_options(const FocusLensChoice& choice);
 /// The lens with its iris and f-number.
 Lens shaped_lens(const EditorSettings& settings);
 
-/// Computes the state. Sets the distance, the fades and the values of keyed points in the settings.
+/// Computes the state. Sets the distance, the fades and the values of keyed points in the settings. Equal settings give
+/// equal states, to the bit.
 FocusEditorState state_of(const FocusScene& scene, EditorSettings& settings);
 
 /// The type of an event.

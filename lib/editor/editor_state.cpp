@@ -82,16 +82,16 @@ ScenePoint in_lens(const FocusScene& scene, double entrance_z, const ScenePoint&
   return {to_lens(scene, entrance_z, point.position + scene.position) - Vec3<double>(0, 0, entrance_z), true};
 }
 
-/// A point of the editor as a focus point of the lens frame.
-FocusPoint focus_point(const FocusScene& scene, double entrance_z, const EditorPoint& point, double pixel_mm,
-                       double time) {
+/// A point of the editor as a focus point of the lens frame. by_hand: its values of now replace its keys.
+FocusPoint focus_point(const FocusScene& scene, double entrance_z, const EditorPoint& point, bool by_hand,
+                       double pixel_mm, double time) {
   FocusPoint result;
   const auto add = [&](double at, const PointValues& values) {
     if (!values.place) return;
     result.keys.push_back({at, in_lens(scene, entrance_z, scene_point(scene, *values.place, time)),
                            values.blur_px * pixel_mm, values.weight, values.extent_stops});
   };
-  if (point.keys.empty() || point.by_hand) {
+  if (point.keys.empty() || by_hand) {
     add(0, point.now);
   } else {
     for (const auto& [at, values] : point.keys) add(at, values);
@@ -105,9 +105,10 @@ FocusPoint focus_point(const FocusScene& scene, double entrance_z, const EditorP
 
 /// Sets the values of keyed points to their values at the time.
 void follow_keys(const FocusScene& scene, EditorSettings& settings, const Focused& base) {
-  for (EditorPoint& point : settings.points) {
-    if (point.keys.empty() || point.by_hand) continue;
-    const FocusPoint track = focus_point(scene, base.entrance_z(), point, base.film.pixel_mm(), settings.time_s);
+  for (auto& shared : settings.points) {
+    if (shared->keys.empty() || shared->by_hand) continue;
+    EditorPoint& point = shared.edit();
+    const FocusPoint track = focus_point(scene, base.entrance_z(), point, false, base.film.pixel_mm(), settings.time_s);
     if (track.keys.empty()) continue;
     const auto found = focus_targets(base.ideal, std::span(&track, 1), {.time = settings.time_s});
     if (found.empty()) continue;  // without an image: the last values stay
@@ -148,10 +149,9 @@ struct Scenery {
 
 Scenery scenery(const FocusScene& scene, const EditorSettings& settings, const Focused& base) {
   Scenery result;
-  for (const EditorPoint& point : settings.points) {
-    EditorPoint still = point;
-    still.by_hand = true;
-    result.tracks.push_back(focus_point(scene, base.entrance_z(), still, base.film.pixel_mm(), settings.time_s));
+  for (const auto& shared : settings.points) {
+    const EditorPoint& point = *shared;
+    result.tracks.push_back(focus_point(scene, base.entrance_z(), point, true, base.film.pixel_mm(), settings.time_s));
     FocusTarget target;
     target.weight = 0;
     if (!result.tracks.back().keys.empty()) {
@@ -175,7 +175,10 @@ void advance_fades(EditorSettings& settings, const Focused& base, const Scenery&
   for (std::size_t i = 0; i < settings.points.size(); ++i) {
     const auto at = points.tracks[i].keys.empty() ? std::nullopt : film_point(base, base.film, points.targets[i]);
     const bool seen = at && base.film.contains(*at);
-    settings.points[i].fade.advance(settings.seconds_to_fade, {seen || !settings.points_fade});
+    const bool stays = seen || !settings.points_fade;
+    const std::vector<double>& fades = settings.points[i]->fade.fades();
+    if (!fades.empty() && fades.front() == (stays ? 1 : 0)) continue;  // would not change
+    settings.points[i].edit().fade.advance(settings.seconds_to_fade, {stays});
   }
   settings.seconds_to_fade = 0;
 }
@@ -203,7 +206,7 @@ Solution solve(const EditorSettings& settings, const Focused& base, const Scener
     case FocusServe::distance: {
       Solution result{"solved", settings.focus_mm, settings.tilt_rad, settings.swing_rad};
       for (std::size_t i = 0; i < settings.points.size(); ++i) {
-        if (settings.points[i].id != settings.active) continue;
+        if (settings.points[i]->id != settings.active) continue;
         const ScenePoint& at = points.targets[i].point;
         const bool ahead = !points.tracks[i].keys.empty() && at.position.z < 0;
         if (!ahead)
@@ -244,7 +247,7 @@ void measure(const EditorSettings& settings, const Focused& base, const Scenery&
     blurs = state.first_order_blurs_px(all);
   }
   for (std::size_t i = 0; i < points.targets.size(); ++i) {
-    const EditorPoint& point = settings.points[i];
+    const EditorPoint& point = *settings.points[i];
     FocusMark& mark = state.targets[i];
     const FocusTarget& target = points.targets[i];
     const auto image = points.tracks[i].keys.empty() ? std::nullopt : base.ideal.image(target.point);
@@ -271,7 +274,7 @@ void measure(const EditorSettings& settings, const Focused& base, const Scenery&
 bool moved(const EditorSettings& settings, const Focused& before, const Focused& after) {
   const auto differ = [](double a, double b) { return std::abs(a - b) > 1e-12 * std::abs(a); };
   const bool blurred =
-      std::ranges::any_of(settings.points, [](const EditorPoint& point) { return point.now.blur_px != 0; });
+      std::ranges::any_of(settings.points, [](const Shared<EditorPoint>& point) { return point->now.blur_px != 0; });
   return (blurred && differ(before.film.pixel_mm(), after.film.pixel_mm())) ||
          std::abs(before.entrance_z() - after.entrance_z()) > 1e-9 ||
          (!after.lens.focus_positions().empty() && differ(before.focus_mm, after.focus_mm));
@@ -363,7 +366,7 @@ FocusEditorState state_of(const FocusScene& scene, EditorSettings& settings) {
     for (std::size_t i = 0; i < points.tracks.size(); ++i) {
       if (points.tracks[i].keys.empty()) continue;
       tracks.push_back(points.tracks[i]);
-      fades.push_back(settings.points[i].fade.fades().front());
+      fades.push_back(settings.points[i]->fade.fades().front());
     }
     const std::vector<FocalPoint> seen =
         focal_points(base.ideal, base.film, tracks,
@@ -379,7 +382,8 @@ FocusEditorState state_of(const FocusScene& scene, EditorSettings& settings) {
       state.status = name(AutofocusStatus::no_targets);
     }
   }
-  for (const EditorPoint& point : settings.points) {
+  for (const auto& shared : settings.points) {
+    const EditorPoint& point = *shared;
     FocusMark mark{.id = point.id, .id_is_number = point.id_is_number};
     if (point.now.place) {
       const ScenePoint at = scene_point(scene, *point.now.place, settings.time_s);

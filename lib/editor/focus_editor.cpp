@@ -51,27 +51,25 @@ std::string_view name(FocusServe serve) noexcept {
 }
 
 struct FocusEditor::Data {
-  struct Step {
-    editor_detail::EditorSettings settings;
-    FocusEditorState state;
-  };
-
   FocusScene scene;
-  std::vector<Step> steps;  ///< settings and states for undo and redo
+  /// For undo and redo, the settings from which state_of() computes each state. States are not kept: each has a blur
+  /// for every point.
+  std::vector<editor_detail::EditorSettings> steps;
   std::size_t current = 0;  ///< index into steps
+  editor_detail::EditorSettings settings;
+  FocusEditorState state;
   std::vector<std::string> log;
-
-  const Step& now() const noexcept { return steps[current]; }
 };
 
-FocusEditor::FocusEditor(FocusScene scene, const FocusLensChoice& lens) : data_(std::make_unique<Data>()) {
+FocusEditor::FocusEditor(FocusScene scene, const FocusLensChoice& lens) {
   check(scene);
-  data_->scene = std::move(scene);
   editor_detail::EditorSettings settings;
   settings.choice = lens;
-  load_lens(data_->scene, settings);
-  FocusEditorState state = state_of(data_->scene, settings);
-  data_->steps.push_back({std::move(settings), std::move(state)});
+  load_lens(scene, settings);
+  std::vector<editor_detail::EditorSettings> steps{settings};
+  FocusEditorState state = state_of(scene, settings);
+  data_ =
+      std::make_unique<Data>(Data{std::move(scene), std::move(steps), 0, std::move(settings), std::move(state), {}});
 }
 
 FocusEditor::~FocusEditor() = default;
@@ -86,23 +84,28 @@ void FocusEditor::apply(std::string_view event) {
   if (type == "undo" || type == "redo") {
     if (json.size() > 1) throw Error(type + ": must have no keys besides type");
     if (!(type == "undo" ? can_undo() : can_redo())) throw Error(type + ": there is no event to " + type);
+    const std::size_t to = type == "undo" ? data.current - 1 : data.current + 1;
+    editor_detail::EditorSettings settings = data.steps[to];
+    FocusEditorState state = state_of(data.scene, settings);
     data.log.push_back(json.dump());
-    data.current = type == "undo" ? data.current - 1 : data.current + 1;
+    data.current = to, data.settings = std::move(settings), data.state = std::move(state);
     return;
   }
-  editor_detail::EditorSettings settings = data.now().settings;
-  const bool continues = apply_event(data.scene, data.now().state, settings, json);
+  editor_detail::EditorSettings settings = data.settings;
+  const bool continues = apply_event(data.scene, data.state, settings, json);
   std::string text = json.dump();
   if (type == "still") {
     data.log.push_back(std::move(text));
     return;
   }
+  editor_detail::EditorSettings step = settings;
   FocusEditorState state = state_of(data.scene, settings);
   data.log.push_back(std::move(text));
   // The event before remains the step that undo leads back to.
   if (!(continues && data.current > 0)) ++data.current;
-  data.steps.resize(data.current, data.steps.front());
-  data.steps.push_back({std::move(settings), std::move(state)});
+  data.steps.erase(data.steps.begin() + static_cast<std::ptrdiff_t>(data.current), data.steps.end());
+  data.steps.push_back(std::move(step));
+  data.settings = std::move(settings), data.state = std::move(state);
 }
 
 void FocusEditor::replay(std::string_view events) {
@@ -119,7 +122,7 @@ void FocusEditor::replay(std::string_view events) {
   }
 }
 
-const FocusEditorState& FocusEditor::state() const noexcept { return data_->now().state; }
+const FocusEditorState& FocusEditor::state() const noexcept { return data_->state; }
 
 std::string FocusEditor::log() const {
   std::string result = "[";
@@ -135,8 +138,8 @@ std::vector<double> FocusEditor::key_times() const {
   const auto add = [&](const auto& keys) {
     for (const auto& key : keys) result.push_back(key.first);
   };
-  add(data_->now().settings.focus_keys);
-  for (const editor_detail::EditorPoint& point : data_->now().settings.points) add(point.keys);
+  add(data_->settings.focus_keys);
+  for (const auto& point : data_->settings.points) add(point->keys);
   std::ranges::sort(result);
   result.erase(std::unique(result.begin(), result.end()), result.end());
   return result;

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gtest/gtest.h>
+#include <malloc.h>
 
+#include <cstddef>
 #include <random>
 #include <string>
 #include <thread>
@@ -139,6 +141,24 @@ TEST(FocusEditorEvents, UndoLeadsBackToTheStart) {
   for (; editor.can_redo(); --steps) editor.apply(R"({"type": "redo"})");
   EXPECT_GE(0, steps);  // events that were undone before count too
   EXPECT_THROW(editor.apply(R"({"type": "redo"})"), Error);
+}
+
+// An event that adds a point costs the point and a reference to each other point, not all points again (640 MB here).
+TEST(FocusEditorEvents, StepsOfUndoSharePoints) {
+  FocusEditor editor(wall_scene(), thin_50());
+  const auto bytes = [] {
+    const struct mallinfo2 info = mallinfo2();
+    return static_cast<double>(info.uordblks + info.hblkhd);
+  };
+  const double before = bytes();
+  constexpr int count = 1500;
+  for (int i = 0; i < count; ++i) {
+    editor.apply(R"({"type": "add_point", "position_mm": [0, 0, )" + std::to_string(-2000 - i) + "]}");
+  }
+  EXPECT_LT(bytes() - before, 40e6);
+  for (int i = 0; i < 3; ++i) editor.apply(R"({"type": "undo"})");
+  EXPECT_EQ(editor.state().targets.size(), std::size_t{count - 3});
+  EXPECT_NEAR(editor.state().focus_mm, 2000 + count - 4, 1e-6);
 }
 
 TEST(FocusEditorEvents, DraggingIsOneStepOfUndo) {
