@@ -25,7 +25,8 @@ int commands::view(int argc, char** argv) {
   double thin_mm = 0, f_number = 0;
   examples::App app(
       "Lens blur in a window: click into the picture to focus. --replay computes the same without a window from a log "
-      "of events: a state for each event, and DIR/event_0001.png and so on.",
+      "of events: a state for each event, and DIR/event_0001.png and so on. Events that are refused, or whose state "
+      "has no picture, are reported, the others go on, and the exit status is 1.",
       "petzval view");
   lens_blur::add_input(app, input);
   app.add_option("LENS", lens.file, "shipped lens (petzval lenses) or lens file")

@@ -21,22 +21,22 @@ namespace {
 using examples::Json;
 
 /// A line about the state for people.
-std::string in_words(const Json& state) {
+std::string in_words(const Session& session, const Json& state) {
   const auto length = [](const Json& mm) {
     return mm.is_null() ? std::string("infinity") : examples::number(mm.get<double>(), 5) + " mm";
   };
-  std::string line = "serve " + state["serve"].get<std::string>() + " (" + state["status"].get<std::string>() +
-                     "), focus " + length(state["focus_mm"]) + ", f/" +
+  const petzval::FocusEditorState& editor = session.editor().state();
+  const std::string unserved = viewer::in_words(editor);
+  std::string line = "serve " + state["serve"].get<std::string>() + (unserved.empty() ? "" : " (" + unserved + ')') +
+                     ", focus " + length(state["focus_mm"]) + ", f/" +
                      examples::number(state["f_number"].get<double>(), 3);
   const double tilt = state["film"]["tilt_deg"].get<double>(), swing = state["film"]["swing_deg"].get<double>();
   if (tilt != 0 || swing != 0) {
     line += ", tilt " + examples::number(tilt, 3) + ", swing " + examples::number(swing, 3) + " degrees";
   }
-  for (const Json& target : state["targets"]) {
-    const Json& id = target["id"];
-    line += "; " + (id.is_string() ? id.get<std::string>() : id.dump()) + ": ";
-    line += target["blur_px"].is_null() ? target["status"].get<std::string>()
-                                        : examples::number(target["blur_px"].get<double>(), 3) + " px";
+  for (const petzval::FocusMark& mark : editor.targets) {
+    line += "; " + mark.id + ": ";
+    line += mark.blur_px ? examples::number(*mark.blur_px, 3) + " px" : viewer::in_words(mark);
   }
   return line + "; " + state["rays"].dump() + " rays in " + examples::number(state["frame_ms"].get<double>(), 3) +
          " ms";
@@ -64,8 +64,13 @@ void replay(const ReplayOptions& options) {
     const bool still = error.empty() && event["type"] == "still";
     const double event_ms = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
     double layers_ms = 0;
-    if (session.layers_are_too_small()) layers_ms = session.make_layers();
-    Frame frame = still ? session.still() : session.frame(options.rays);
+    Frame frame;
+    try {
+      layers_ms = session.make_layers();
+      frame = still ? session.still() : session.frame(options.rays);
+    } catch (const petzval::Error& why) {
+      if (error.empty()) error = no_picture(session, why), ++refused;
+    }
     frame.milliseconds += event_ms;
     Json state = session.state_json(frame);
     if (layers_ms > 0) state["layers_ms"] = layers_ms;
@@ -84,16 +89,16 @@ void replay(const ReplayOptions& options) {
     if (options.json) {
       std::cout << state.dump() << '\n';
     } else {
-      std::cout << number << ' ' << (error.empty() ? event["type"].get<std::string>() + ": " + in_words(state) : error)
-                << '\n';
+      std::cout << number << ' '
+                << (error.empty() ? event["type"].get<std::string>() + ": " + in_words(session, state) : error) << '\n';
     }
-    if (!options.out_folder.empty()) {
+    if (!options.out_folder.empty() && frame.rays > 0) {
       examples::write_png(petzval::to_srgb8(frame.picture), stem.string() + ".png");
     }
   }
   if (refused > 0) {
     throw petzval::Error(options.log_file + ": " + std::to_string(refused) + " of " + std::to_string(number) +
-                         " events were refused");
+                         " events were refused or have no picture");
   }
 }
 

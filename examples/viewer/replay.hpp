@@ -22,8 +22,8 @@ struct ReplayOptions {
 /// Applies events without a window. Prints the state after each event, in words or as JSON, and writes event_0001.png
 /// and so on. `still` waits for the last ray.
 ///
-/// A refused event is reported, and the others go on.
-/// @throws petzval::Error if an event was refused
+/// An event that is refused, or whose state has no picture, is reported, and the others go on.
+/// @throws petzval::Error at the end if there was such an event
 void replay(const ReplayOptions& options);
 
 }  // namespace viewer

@@ -101,6 +101,11 @@ void Texture::set(int width, int height, const std::vector<std::uint8_t>& rgba) 
   set(width, height, GL_RGBA, rgba.data());
 }
 
+void Texture::show_pixels(bool squares) const {
+  glBindTexture(GL_TEXTURE_2D, id_);
+  glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, squares ? GL_NEAREST : GL_LINEAR);
+}
+
 void Texture::set(int width, int height, unsigned format, const void* pixels) {
   if (id_ == 0) glGenTextures(1, &id_);
   glBindTexture(GL_TEXTURE_2D, id_);

@@ -53,6 +53,8 @@ class Texture {
   void set(const petzval::Rgb8Image& image);
   /// rgba: width x height x 4 values.
   void set(int width, int height, const std::vector<std::uint8_t>& rgba);
+  /// Shows enlarged pixels as squares, or else smoothed.
+  void show_pixels(bool squares) const;
   explicit operator bool() const noexcept { return id_ != 0; }
   ImTextureID id() const noexcept { return reinterpret_cast<ImTextureID>(static_cast<std::intptr_t>(id_)); }
 

@@ -57,6 +57,9 @@ std::string quoted(const std::string& word) {
   return result + "'";
 }
 
+/// A file for a command line; "./" keeps a name from being read as a flag.
+std::string quoted_file(const std::string& file) { return quoted(file.starts_with('-') ? "./" + file : file); }
+
 /// A lens as the value of the key "lens".
 Json json_of(const petzval::FocusLensChoice& lens) {
   if (!lens.name.empty()) return lens.name;
@@ -71,7 +74,40 @@ double memory_of(const petzval::LayerSet& layers, const petzval::BlurredImage& p
          1e-6 * sizeof(float) * static_cast<double>(picture.rgba.size() + picture.missed.size());
 }
 
+/// The words of a status of the editor.
+constexpr std::pair<std::string_view, const char*> words[] = {
+    {"no_targets", "no point can be focused; the focus stays"},
+    {"unreachable", "the lens cannot focus there"},
+    {"afocal", "the lens has no focus"},
+    {"too_blurred", "the lens is never sharp there"},
+    {"least_tilt", "smallest tilt: the points allow others"},
+    {"limited", "the film cannot tilt further"},
+    {"not_converged", "no tilt was found for these points"},
+    {"no_depth", "no depth"},
+    {"hidden", "outside the picture"},
+    {"no_weight", "shown only"},
+    {"not_finite", "not a place"},
+    {"no_image", "the lens has no image of it"},
+    {"outlier", "left out"},
+    {"no_rays", "no ray passes the lens"}};
+
+std::string words_of(std::string_view status) {
+  const auto* const found = std::ranges::find(words, status, &std::pair<std::string_view, const char*>::first);
+  return found == std::end(words) ? "" : found->second;
+}
+
 }  // namespace
+
+std::string in_words(const petzval::FocusEditorState& state) { return words_of(state.status); }
+std::string in_words(const petzval::FocusMark& mark) { return words_of(mark.status); }
+
+std::string no_picture(const Session& session, const Error& why) {
+  const petzval::FocusEditorState& state = session.editor().state();
+  const std::string reason = why.what();
+  const bool too_wide = reason.find(" reach ") != std::string::npos;  // of layers or of their gathering
+  return "no picture through " + (state.thin() ? state.lens.name() : state.choice.name) + ": " +
+         (too_wide ? "its blur is too wide for this scene; stop down, focus elsewhere or choose another lens" : reason);
+}
 
 Session::Session(const SessionOptions& options) : options_(options), input_(options.input) {
   if (options.file_columns > 0 && (input_.columns() != options.file_columns || input_.rows() != options.file_rows)) {
@@ -175,9 +211,9 @@ double Session::widest_radius(const lens_blur::LensView& view) const {
 void Session::update_camera() {
   const petzval::FocusLensChoice& choice = editor_->state().choice;
   if (camera_.columns > 0 && camera_lens_ == choice.name) return;
+  radius_mm_ = 0;
   camera_ = view(false).layers(1);
   camera_lens_ = choice.name;
-  radius_mm_ = 0;
   nearest_mm_ = input_.nearest_mm(camera_, options_.threads);
   if (!std::isfinite(nearest_mm_)) throw Error("layers: all depths are infinite; must have at least one finite depth");
 }
@@ -192,9 +228,10 @@ double Session::make_layers() {
   const auto start = std::chrono::steady_clock::now();
   update_camera();
   const lens_blur::LensView lens = view(false);
-  radius_mm_ = widest_radius(lens);
+  const double radius = widest_radius(lens);
+  radius_mm_ = 0;  // without layers until they are filled
   // With focus at infinity, the rays reach farthest: R f / depth for the nearest surface.
-  const petzval::ThinLens widest{.radius_mm = radius_mm_};
+  const petzval::ThinLens widest{.radius_mm = radius};
   const std::vector<petzval::PupilPoint> points = petzval::vogel_points(64);
   const petzval::LensRays rays = petzval::LensRays::thin(
       camera_, widest, points, {.nearest_mm = lens_blur::least_depth(nearest_mm_), .threads = options_.threads});
@@ -204,6 +241,7 @@ double Session::make_layers() {
   }
   input_.fill(plan, static_cast<int>(options_.layers), options_.threads, layers_);
   threshold_ = lens_blur::threshold_of(layers_, !input_.scene());
+  radius_mm_ = radius;
   return ms_since(start);
 }
 
@@ -248,6 +286,7 @@ std::vector<float> Session::blur_map() const {
   const petzval::FocusEditorState& state = editor_->state();
   const double entrance_z = petzval::pupils(state.lens).entrance.z;
   std::vector<petzval::ScenePoint> points;
+  points.reserve(static_cast<std::size_t>(camera_.rows) * static_cast<std::size_t>(camera_.columns));
   for (int row = 0; row < camera_.rows; ++row) {
     for (int column = 0; column < camera_.columns; ++column) {
       const double depth = static_cast<double>(depth_mm(column, row));
@@ -364,9 +403,12 @@ std::string Session::blur_command(const std::string& points_file) const {
     if (given) add(flag, value);
   };
   add_if(!input.scene.empty(), "--scene", input.scene);
-  add_if(!input.image.empty(), "--image", input.image);
-  add_if(!input.deep.empty(), "--deep", input.deep);
-  add_if(!input.depth.empty(), "--depth", input.depth);
+  const auto add_file = [&](const char* flag, const std::string& file) {
+    if (!file.empty()) out << ' ' << flag << ' ' << quoted_file(file);
+  };
+  add_file("--image", input.image);
+  add_file("--deep", input.deep);
+  add_file("--depth", input.depth);
   add_if(input.depth_kind != "axial", "--depth-kind", input.depth_kind);
   add_if(input.near_mm > 0, "--near", exact(input.near_mm));
   add_if(input.near_mm > 0, "--far", exact(input.far_mm));
@@ -377,7 +419,7 @@ std::string Session::blur_command(const std::string& points_file) const {
     add("--thin-lens", exact(state.choice.thin_mm));
     add("--f-number", exact(state.choice.f_number));
   } else {
-    out << ' ' << quoted(state.choice.name);
+    out << ' ' << quoted_file(state.choice.name);
     add_if(state.f_number_set, "--f-number", exact(state.f_number));
   }
   add_if(options_.fov_deg > 0, "--fov", exact(options_.fov_deg));
@@ -408,7 +450,7 @@ std::string Session::blur_command(const std::string& points_file) const {
   }
   if (!state.expressive.dispersion.empty()) add("--dispersion", exact(state.expressive.dispersion.front()));
   if (state.surface) {
-    add("--points", points_file);
+    add_file("--points", points_file);
     add("--kind", std::string(name(state.surface_options.kind)));
     add("--beta", exact(state.surface_options.beta));
   }

@@ -42,6 +42,15 @@ struct Frame {
   bool still = false;        ///< the picture of `petzval blur`
 };
 
+/// The status of a state in words; empty if the points are served.
+std::string in_words(const petzval::FocusEditorState& state);
+/// The status of a point in words; empty if the point is used.
+std::string in_words(const petzval::FocusMark& mark);
+
+class Session;
+/// The sentence for a state of which no picture can be computed.
+std::string no_picture(const Session& session, const petzval::Error& why);
+
 /// A scene in layers, a focus editor, and pictures of its state.
 ///
 /// Layers are kept while the focus changes. They are made for the widest aperture so far.

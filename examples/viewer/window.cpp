@@ -49,14 +49,14 @@ constexpr ImU32 white = IM_COL32(255, 255, 255, 255), black = IM_COL32(0, 0, 0, 
 
 /// A shipped lens with its drawing.
 struct ShippedLens {
-  std::string id, name;
+  std::string id;
   std::optional<Section> section = {};  ///< drawn when it is first seen
 };
 
 std::vector<ShippedLens> shipped_lenses() {
   std::vector<ShippedLens> lenses;
   for (const auto& file : examples::entries(petzval::data_directory() / "lenses")) {
-    if (file.extension() == ".json") lenses.push_back({file.stem().string(), file.stem().string()});
+    if (file.extension() == ".json") lenses.push_back({file.stem().string()});
   }
   std::ranges::sort(lenses, {}, &ShippedLens::id);
   return lenses;
@@ -97,6 +97,17 @@ void draw_section(ImDrawList& draw, const Section& section, const ImVec2& corner
   draw.PopClipRect();
 }
 
+/// Draws a sentence on a dark ground, over the lower edge of a rectangle.
+void draw_notice(ImDrawList& draw, const std::string& text, const ImVec2& corner, const ImVec2& end) {
+  constexpr float margin = 8;
+  const float width = end.x - corner.x - 4 * margin;
+  const ImVec2 size = ImGui::CalcTextSize(text.c_str(), nullptr, false, width);
+  const ImVec2 at{corner.x + 2 * margin, end.y - size.y - 2 * margin};
+  draw.AddRectFilled({at.x - margin, at.y - margin}, {at.x + size.x + margin, end.y - margin},
+                     IM_COL32(20, 20, 20, 230));
+  draw.AddText(nullptr, 0, at, IM_COL32(255, 180, 100, 255), text.c_str(), nullptr, width);
+}
+
 class Window {
  public:
   explicit Window(const WindowOptions& options)
@@ -107,7 +118,7 @@ class Window {
   Worker& worker() noexcept { return worker_; }
 
   /// True if the window shows the last picture of all events.
-  bool complete() const { return shown_ && shown_->frame.still && worker_.idle(); }
+  bool complete() const { return shown_ && (shown_->frame.still || !shown_->problem.empty()) && worker_.idle(); }
   const Snapshot* shown() const noexcept { return shown_.get(); }
 
   /// Draws everything and sends the events of the user. Returns false when the window is closed.
@@ -158,6 +169,9 @@ class Window {
       send({{"type", "remove_point"}, {"id", selected_}});
       selected_.clear();
     }
+    if (code == SDL_SCANCODE_0) zoom_key_ = 0;
+    if (code == SDL_SCANCODE_1) zoom_key_ = 1;
+    if (code == SDL_SCANCODE_2) zoom_key_ = 2;
     if (code == SDL_SCANCODE_SPACE && key.repeat == 0) playing_ = !playing_;
   }
   void close() { closed_ = true; }
@@ -169,6 +183,8 @@ class Window {
     return ImGui::CollapsingHeader(title, open || opens(panel) ? ImGuiTreeNodeFlags_DefaultOpen : 0);
   }
   void send(const Json& event) { worker_.send(event); }
+  /// Shows a pixel of the picture as `zoom` pixels of the screen, with a raster position in the middle; 0: everything.
+  void zoom_to(int zoom, const petzval::Vec2<double>& middle) { zoom_ = zoom, middle_ = middle; }
 
   /// Sends the event of a widget that was just drawn. The events of one drag are one step of undo.
   void send_from_widget(const std::string& widget, Json event) {
@@ -241,16 +257,34 @@ class Window {
     const petzval::Film& film = state().film;
     const ImVec2 space = ImGui::GetContentRegionAvail();
     const float line = ImGui::GetTextLineHeightWithSpacing();
-    const float scale =
+    const float fit =
         std::min(space.x / static_cast<float>(film.columns), (space.y - 2 * line) / static_cast<float>(film.rows));
+    const float scale = zoom_ > 0 ? static_cast<float>(zoom_) : fit;
     const ImVec2 size{scale * static_cast<float>(film.columns), scale * static_cast<float>(film.rows)};
-    const ImVec2 corner = ImGui::GetCursorScreenPos();
+    // The visible part, which does not reach beyond the picture.
+    const ImVec2 start = ImGui::GetCursorScreenPos(),
+                 view{std::min(size.x, space.x), std::min(size.y, space.y - 2 * line)};
+    const auto before_view = [&](double middle, float visible, float all) {
+      return std::round(std::clamp(scale * static_cast<float>(middle) - visible / 2, 0.0f, all - visible));
+    };
+    const ImVec2 corner{start.x - before_view(middle_.x, view.x, size.x),
+                        start.y - before_view(middle_.y, view.y, size.y)};
     ImDrawList& draw = *ImGui::GetWindowDrawList();
-    const Texture& texture = before_ && sharp_ ? sharp_ : picture_;
-    ImGui::InvisibleButton("picture", size, ImGuiButtonFlags_MouseButtonLeft | ImGuiButtonFlags_MouseButtonRight);
-    const ImVec2 end{corner.x + size.x, corner.y + size.y};
-    if (texture) draw.AddImage(texture.id(), corner, end);
-    if (overlay_ && map_) draw.AddImage(map_.id(), corner, end);
+    const bool unserved = !shown_->problem.empty();
+    const Texture& texture = before_ && sharp_ && !unserved ? sharp_ : picture_;
+    ImGui::InvisibleButton("picture", view, ImGuiButtonFlags_MouseButtonLeft | ImGuiButtonFlags_MouseButtonRight);
+    if (ImGui::IsItemHovered() && ImGui::IsMouseDragging(ImGuiMouseButton_Middle, 0)) {
+      const ImVec2 run = ImGui::GetIO().MouseDelta;
+      middle_ = {static_cast<double>((start.x + view.x / 2 - corner.x - run.x) / scale),
+                 static_cast<double>((start.y + view.y / 2 - corner.y - run.y) / scale)};
+    }
+    const ImVec2 end{corner.x + size.x, corner.y + size.y}, view_end{start.x + view.x, start.y + view.y};
+    draw.PushClipRect(start, view_end, true);
+    if (texture) {
+      texture.show_pixels(zoom_ > 0);
+      draw.AddImage(texture.id(), corner, end, {0, 0}, {1, 1}, unserved ? IM_COL32(90, 90, 90, 120) : white);
+    }
+    if (overlay_ && map_ && shown_->blur) draw.AddImage(map_.id(), corner, end);
     const auto on_screen = [&](const petzval::Vec2<double>& raster) {
       return ImVec2{corner.x + scale * static_cast<float>(raster.x), corner.y + scale * static_cast<float>(raster.y)};
     };
@@ -272,10 +306,13 @@ class Window {
       draw.AddCircle(at, handle_radius, colour, 0, mark.id == selected_ || near ? 3.0f : 2.0f);
       std::string text = mark.id;
       if (mark.blur_px) text += ": " + examples::number(*mark.blur_px, 2) + " px";
-      if (mark.status != "used") text += " (" + std::string(mark.status) + ')';
+      if (mark.status != "used") text += " (" + in_words(mark) + ')';
       draw.AddText({at.x + handle_radius + 4, at.y - 6}, black, text.c_str());
       draw.AddText({at.x + handle_radius + 3, at.y - 7}, colour, text.c_str());
     }
+    const std::string notice = shown_->problem + (unserved && !shown_->message.empty() ? "\n" : "") + shown_->message;
+    if (!notice.empty()) draw_notice(draw, notice, start, view_end);
+    draw.PopClipRect();
     mouse_on_picture(raster, under);
     const Frame& frame = shown_->frame;
     std::string caption = std::to_string(frame.rays) + " rays per pixel, " +
@@ -283,24 +320,21 @@ class Window {
                           std::to_string(std::lround(frame.memory_mb)) + " MB";
     if (frame.first_order) caption += "; without aberrations: the rays of the lens are being traced";
     if (frame.still) caption += "; still, as by petzval blur";
-    ImGui::TextUnformatted(caption.c_str());
-    if (!shown_->message.empty()) {
-      ImGui::TextColored({1, 0.7f, 0.4f, 1}, "%s", shown_->message.c_str());
-    } else {
-      ImGui::TextDisabled(
-          "click: focus   drag: move   shift + click: another point   right click: blur and weight   "
-          "ctrl + z: undo");
-    }
+    ImGui::TextUnformatted(unserved ? "the picture of an earlier state" : caption.c_str());
+    ImGui::TextDisabled(
+        "click: focus  drag: move  shift + click: another point  right click: blur, weight  ctrl + z: undo  "
+        "1, 2, 0: zoom");
   }
 
   void mouse_on_picture(const petzval::Vec2<double>& raster, const std::string& under) {
-    if (!ImGui::IsItemHovered() && moved_.empty()) return;
     const petzval::Film& film = state().film;
+    const bool inside = raster.x >= 0 && raster.x < film.columns && raster.y >= 0 && raster.y < film.rows;
+    if (zoom_key_) zoom_to(*std::exchange(zoom_key_, std::nullopt), inside ? raster : looked_at_);
+    if (!ImGui::IsItemHovered() && moved_.empty()) return;
     const auto pixel = [&] {
       return Json{std::clamp(raster.x, 0.0, static_cast<double>(film.columns)),
                   std::clamp(raster.y, 0.0, static_cast<double>(film.rows))};
     };
-    const bool inside = raster.x >= 0 && raster.x < film.columns && raster.y >= 0 && raster.y < film.rows;
     if (inside && (raster.x != looked_at_.x || raster.y != looked_at_.y)) {
       looked_at_ = raster;
       worker_.look_at(raster);
@@ -341,6 +375,15 @@ class Window {
     }
   }
 
+  /// The raster position of the selected or the first point, or the middle of the picture.
+  petzval::Vec2<double> middle_of_attention() const {
+    std::optional<petzval::Vec2<double>> result;
+    for (const petzval::FocusMark& mark : state().targets) {
+      if (mark.raster && (!result || mark.id == selected_)) result = mark.raster;
+    }
+    return result.value_or(petzval::Vec2<double>(state().film.columns / 2, state().film.rows / 2));
+  }
+
   bool has_point(const std::string& id) const {
     return std::ranges::any_of(state().targets, [&](const petzval::FocusMark& mark) { return mark.id == id; });
   }
@@ -358,7 +401,9 @@ class Window {
     if (ImGui::Checkbox("depth of field", &extent)) {
       send({{"type", "set_point"}, {"id", mark.id}, {"extent_stops", extent ? Json(0) : Json(nullptr)}});
     }
-    if (extent && mark.extent_stops) edit("stops", *mark.extent_stops, -4, 8, "extent_stops");
+    ImGui::BeginDisabled(!extent);
+    edit("stops", mark.extent_stops.value_or(0), -4, 8, "extent_stops");
+    ImGui::EndDisabled();
     if (ImGui::Button("Remove")) {
       send({{"type", "remove_point"}, {"id", mark.id}});
       selected_.clear();
@@ -397,6 +442,11 @@ class Window {
     ImGui::Checkbox("sharp", &before_);
     ImGui::SameLine();
     ImGui::Checkbox("map", &overlay_);
+    for (const auto& [words, zoom] : {std::pair{"fit", 0}, {"1:1", 1}, {"2:1", 2}}) {
+      if (ImGui::RadioButton(words, zoom_ == zoom)) zoom_to(zoom, middle_of_attention());
+      ImGui::SameLine();
+    }
+    ImGui::TextDisabled("keys: 0, 1, 2");
     ImGui::PushItemWidth(0.55f * panel_width);
     if (header("Focus", "focus", true)) focus_panel();
     if (header("Points", "points", true)) points_panel();
@@ -404,7 +454,9 @@ class Window {
     if (header("Bokeh", "bokeh")) bokeh_panel();
     if (header("Aberrations", "aberrations")) aberrations_panel();
     if (header("Keys", "keys")) time_panel();
-    if (header("Blur of the picture (-20 to 20 px)", "histogram")) {
+    const bool histogram = header("Blur of the picture (-20 to 20 px)", "histogram");
+    worker_.show_map(overlay_ || histogram);
+    if (histogram) {
       ImGui::PlotHistogram("##blur", shown_->histogram.data(), static_cast<int>(shown_->histogram.size()), 0, nullptr,
                            0, FLT_MAX, {panel_width - 30, 60});
     }
@@ -421,7 +473,8 @@ class Window {
       }
       if (i % 2 == 0) ImGui::SameLine(panel_width / 2);
     }
-    if (state().status != "solved") ImGui::TextColored({1, 0.7f, 0.4f, 1}, "%s", std::string(state().status).c_str());
+    // One line in every state, so that nothing below moves under the mouse.
+    ImGui::TextColored({1, 0.7f, 0.4f, 1}, "%s", in_words(state()).c_str());
     const bool infinite = std::isinf(state().focus_mm);
     slider(
         "distance (m)", infinite ? farthest_m : state().focus_mm / 1000, 0.1, farthest_m,
@@ -434,6 +487,7 @@ class Window {
       slider("beta", state().surface_options.beta, 1, 8, "%.1f", [](double beta) {
         return Json{{"type", "serve"}, {"by", "surface"}, {"beta", beta}};
       });
+      ImGui::Dummy({1, ImGui::GetFrameHeight()});
     } else {
       slider("tilt (deg)", petzval::degrees(state().film.tilt_rad), -20, 20, "%.2f", "tilt", "tilt_deg");
       slider("swing (deg)", petzval::degrees(state().film.swing_rad), -20, 20, "%.2f", "tilt", "swing_deg");
@@ -447,8 +501,7 @@ class Window {
 
   void points_panel() {
     for (const petzval::FocusMark& mark : state().targets) {
-      const std::string label =
-          "point " + mark.id + (mark.status == "used" ? "" : " (" + std::string(mark.status) + ")");
+      const std::string label = "point " + mark.id + (mark.status == "used" ? "" : " (" + in_words(mark) + ")");
       ImGui::SetNextItemOpen(mark.id == selected_, ImGuiCond_Always);
       const bool open = ImGui::TreeNode(mark.id.c_str(), "%s", label.c_str());
       if (ImGui::IsItemClicked()) selected_ = mark.id == selected_ ? "" : mark.id;
@@ -461,11 +514,17 @@ class Window {
 
   void lens_panel() {
     const std::string shown = state().thin() ? state().lens.name() : state().choice.name;
-    if (ImGui::BeginCombo("lens", shown.c_str(), ImGuiComboFlags_HeightLargest)) {
+    const ImVec2 thumbnail{110, 44};
+    if (list_width_ == 0) {
+      for (const ShippedLens& lens : lenses_)
+        list_width_ = std::max(list_width_, ImGui::CalcTextSize(lens.id.c_str()).x);
+    }
+    ImGui::SetNextItemWidth(panel_width - 30);
+    ImGui::SetNextWindowSizeConstraints({thumbnail.x + list_width_ + 50, 0}, {FLT_MAX, FLT_MAX});
+    if (ImGui::BeginCombo("##lens", shown.c_str(), ImGuiComboFlags_HeightLargest)) {
       for (ShippedLens& lens : lenses_) {
         ImGui::PushID(lens.id.c_str());
         const ImVec2 corner = ImGui::GetCursorScreenPos();
-        const ImVec2 thumbnail{110, 44};
         if (ImGui::Selectable("##lens", lens.id == state().choice.name, 0, {0, thumbnail.y})) {
           send({{"type", "lens"}, {"lens", lens.id}});
         }
@@ -490,10 +549,10 @@ class Window {
       send_from_widget("blades", {{"type", "iris"}, {"blades", blades < 3 ? 0 : blades}});
     }
     end_of_widget();
-    if (iris.blades > 0) {
-      slider("roundness", iris.roundness, -1, 1, "%.2f", "iris", "roundness");
-      slider("rotation (deg)", petzval::degrees(iris.rotation_rad), -180, 180, "%.0f", "iris", "rotation_deg");
-    }
+    ImGui::BeginDisabled(iris.blades == 0);
+    slider("roundness", iris.roundness, -1, 1, "%.2f", "iris", "roundness");
+    slider("rotation (deg)", petzval::degrees(iris.rotation_rad), -180, 180, "%.0f", "iris", "rotation_deg");
+    ImGui::EndDisabled();
     bool rgb = state().choice.rgb;
     if (ImGui::Checkbox("colour of the lens", &rgb)) send({{"type", "colour"}, {"rgb", rgb}});
   }
@@ -572,6 +631,10 @@ class Window {
   std::string dragged_;           ///< the widget whose events are one step of undo
   std::string selected_, moved_;  ///< ids of points
   bool move_has_begun_ = false;
+  int zoom_ = 0;                        ///< screen pixels of a pixel; 0: the picture fills the window
+  std::optional<int> zoom_key_;         ///< the zoom of a key, for the point under the mouse
+  petzval::Vec2<double> middle_{0, 0};  ///< raster position in the middle of a zoomed picture
+  float list_width_ = 0;                ///< of the longest name in the list of lenses
   petzval::Vec2<double> pressed_at_{-1, -1}, looked_at_{-1, -1};
   bool before_ = false, overlay_ = false, nearer_ = false, fade_ = true, playing_ = false, play_has_begun_ = false,
        closed_ = false;

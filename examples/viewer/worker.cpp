@@ -87,7 +87,7 @@ void Worker::send(const Json& event) {
 void Worker::look_at(const petzval::Vec2<double>& raster) {
   {
     const std::lock_guard lock(mutex_);
-    look_at_ = raster;
+    look_at_ = raster, looks_ = true;
   }
   changed_.notify_all();
 }
@@ -154,6 +154,7 @@ void Worker::show_state(Snapshot next) {
   next.can_undo = session_.editor().can_undo(), next.can_redo = session_.editor().can_redo();
   next.key_times = session_.editor().key_times();
   next.plane = plane_in_words(next.state);
+  next.frame.still = false;
   publish(std::move(next));
 }
 
@@ -162,6 +163,7 @@ void Worker::show(Frame frame) {
   next.picture = std::make_shared<const petzval::Rgb8Image>(petzval::to_srgb8(frame.picture));
   frame.picture = {};
   next.frame = std::move(frame);
+  next.problem.clear();
   ++next.pictures;
   publish(std::move(next));
 }
@@ -171,22 +173,36 @@ void Worker::look() {
   petzval::Vec2<double> raster{0, 0};
   {
     const std::lock_guard lock(mutex_);
-    if (!look_at_) return;
-    raster = *std::exchange(look_at_, std::nullopt);
+    raster = look_at_, looks_ = false;
   }
   const petzval::FocusEditorState& state = session_.editor().state();
   Snapshot next = *snapshot();
   next.section = section_of(state.lens, state.film);
-  const petzval::Camera camera(state.lens, state.film, state.camera_options());
-  next.section.rays = rays_through(camera, state.film.point(raster.x, raster.y));
-  const float depth = session_.depth_mm(static_cast<int>(raster.x), static_cast<int>(raster.y));
-  const double focal_px = session_.focal_px();
-  next.bokeh = depth > 0 ? bokeh_of(camera, raster, static_cast<double>(depth), focal_px) : Bokeh{};
+  next.bokeh = {};
+  try {
+    const petzval::Camera camera(state.lens, state.film, state.camera_options());
+    next.section.rays = rays_through(camera, state.film.point(raster.x, raster.y));
+    const float depth = session_.depth_mm(static_cast<int>(raster.x), static_cast<int>(raster.y));
+    if (depth > 0) next.bokeh = bokeh_of(camera, raster, static_cast<double>(depth), session_.focal_px());
+  } catch (const petzval::Error&) {
+    // A lens without a camera has its section only.
+  }
   publish(std::move(next));
+}
+
+/// Shows why the state has no picture.
+void Worker::show_problem(const petzval::Error& why) {
+  Snapshot next = *snapshot();
+  next.problem = no_picture(session_, why);
+  next.handles.clear(), next.histogram = {}, next.blur.reset(), next.sharp.reset();
+  publish(std::move(next));
+  look();
 }
 
 void Worker::export_files(const std::filesystem::path& folder) {
   Snapshot next = *snapshot();
+  next.message = "computing the still picture ...";
+  publish(next);
   try {
     examples::make_folder(folder);
     const Frame still = session_.still();
@@ -196,14 +212,15 @@ void Worker::export_files(const std::filesystem::path& folder) {
     const std::string points_file = (folder / "points.json").string();
     if (!points.is_null()) examples::write_text(points_file, points.dump(1) + '\n');
     examples::write_text(folder / "blur.sh", session_.blur_command(points_file) + '\n');
-    next.message = "written: view.png, view.exr, view.json (events) and blur.sh (command line) in " + folder.string();
+    next.message = "written to " + std::filesystem::absolute(folder).lexically_normal().string() +
+                   ": view.png, view.exr, view.json (events), blur.sh (command line)";
   } catch (const petzval::Error& error) {
     next.message = error.what();
   }
   publish(std::move(next));
 }
 
-/// The map of blur, its histogram and the picture of a pinhole.
+/// The map of blur and its histogram.
 void Worker::map_blur() {
   Snapshot next = *snapshot();
   auto blur = session_.blur_map();
@@ -213,6 +230,12 @@ void Worker::map_blur() {
     next.histogram[static_cast<std::size_t>(std::clamp(value, -20.0f, 20.0f) + 20.5f)] += 1;
   }
   next.blur = std::make_shared<const std::vector<float>>(std::move(blur));
+  publish(std::move(next));
+}
+
+/// The picture of a pinhole.
+void Worker::show_sharp() {
+  Snapshot next = *snapshot();
   next.sharp = std::make_shared<const petzval::Rgb8Image>(petzval::to_srgb8(session_.sharp()));
   publish(std::move(next));
 }
@@ -221,24 +244,27 @@ void Worker::run() {
   // After a change, a picture is computed for each entry of ray_steps, then the still picture.
   constexpr std::size_t still_step = ray_steps.size(), all_steps = still_step + 1;
   std::size_t step = 0;
+  bool mapped = false;
+  bool layers_first = false;  // true: the layers at hand may be those of another lens
   while (true) {
     std::optional<std::filesystem::path> folder;
     bool looks = false;
     {
       std::unique_lock lock(mutex_);
-      const auto woken = [&] { return ends_ || !events_.empty() || look_at_ || folder_; };
+      const auto woken = [&] { return ends_ || !events_.empty() || looks_ || folder_; };
       idle_ = step == all_steps && !woken();
       if (step == still_step) changed_.wait_for(lock, patience, woken);
       if (step == all_steps) changed_.wait(lock, woken);
       if (ends_) return;
       folder = std::exchange(folder_, std::nullopt);
-      looks = look_at_.has_value();
+      looks = looks_;
     }
     const std::lock_guard session_lock(session_mutex_);
     if (apply_events()) step = 0;
     try {
       const std::stop_token stop = start_work();
       if (folder) export_files(*folder);
+      if (layers_first && step < all_steps) session_.make_layers();
       if (step == 0) {
         // The rays of a new real lens take longer to set up: meanwhile a picture without its aberrations.
         const std::string& lens = session_.editor().state().choice.name;
@@ -246,6 +272,7 @@ void Worker::run() {
       }
       if (step < still_step) {
         show(session_.frame(ray_steps[step], false, stop));
+        layers_first = false;
         ++step;
       } else if (step == still_step && !looks) {
         show(session_.still(stop));
@@ -255,17 +282,19 @@ void Worker::run() {
         Snapshot next = *snapshot();
         next.handles = session_.handles();
         publish(std::move(next));
+        looks = true;
         if (session_.make_layers() > 0) step = 0;
       }
-      if (step == 2) map_blur();
+      if (step == 1) mapped = false;
+      if (!mapped && (step == 2 || (step == 1 && map_shown_))) map_blur(), mapped = true;
+      if (step == 2) show_sharp();
       if (looks && step > 0) look();
     } catch (const petzval::Cancelled&) {
       // The next event has come.
     } catch (const petzval::Error& error) {
-      Snapshot next = *snapshot();
-      next.message = error.what();
-      publish(std::move(next));
-      step = all_steps;
+      const bool again = !std::exchange(layers_first, true) && session_.layers_are_too_small();
+      if (!again) show_problem(error);
+      step = again ? 0 : all_steps;
     }
   }
 }

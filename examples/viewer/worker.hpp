@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <atomic>
 #include <condition_variable>
 #include <cstdint>
 #include <filesystem>
@@ -27,6 +28,7 @@ struct Snapshot {
   std::vector<double> key_times = {};
   std::string plane = {};    ///< the plane of focus in words
   std::string message = {};  ///< message of the last refused event or export
+  std::string problem = {};  ///< the reason why the state has no picture; `picture` is then of an earlier state
   Section section = {};      ///< with the rays under the mouse
 
   Frame frame = {};  ///< without its picture
@@ -52,6 +54,8 @@ class Worker {
   void send(const examples::Json& event);
   /// Moves the point of the section and the bokeh.
   void look_at(const petzval::Vec2<double>& raster);
+  /// True: the map of blur follows the first picture after a change, which takes longer; false: the second.
+  void show_map(bool shown) noexcept { map_shown_ = shown; }
   /// Queues an export of the still picture, the events and the command line to a folder.
   void write_to(const std::filesystem::path& folder);
   std::shared_ptr<const Snapshot> snapshot() const;
@@ -65,9 +69,11 @@ class Worker {
   bool apply_events();
   std::stop_token start_work();
   void map_blur();
+  void show_sharp();
   void show_state(Snapshot next);
   void show(Frame frame);
   void look();
+  void show_problem(const petzval::Error& why);
   void publish(Snapshot snapshot);
   void export_files(const std::filesystem::path& folder);
 
@@ -75,7 +81,9 @@ class Worker {
   mutable std::mutex mutex_;  ///< of everything below
   std::condition_variable changed_;
   std::vector<examples::Json> events_;
-  std::optional<petzval::Vec2<double>> look_at_;
+  petzval::Vec2<double> look_at_{0, 0};
+  bool looks_ = false;  ///< look_at_ has changed
+  std::atomic<bool> map_shown_ = false;
   std::optional<std::filesystem::path> folder_;
   std::shared_ptr<const Snapshot> snapshot_;
   bool ends_ = false, idle_ = false;

@@ -167,6 +167,50 @@ TEST_F(ViewProgram, RefusedEventsChangeNothingAndAreReported) {
   EXPECT_EQ(states[2]["serve"], "film");
 }
 
+// No layers reach as far as the blur of a lens that is 10 m wide.
+TEST_F(ViewProgram, ReplayGoesOnAfterAStateWithoutAPicture) {
+  const json point{{"type", "add_point"}, {"id", "a"}, {"pixel", {48, 40}}},
+      huge{{"type", "lens"}, {"lens", {{"thin_mm", 5000}, {"f_number", 0.5}}}},
+      lens{{"type", "lens"}, {"lens", {{"thin_mm", 50}, {"f_number", 4}}}};
+  const json thin{{"thin_mm", 50}, {"f_number", 2}};
+  const std::vector<json> states = replay(town(thin), {point, huge, lens}, {"--out", path("out")}, 1);
+  ASSERT_EQ(states.size(), 3u);
+  EXPECT_TRUE(states[1].contains("error")) << states[1];
+  EXPECT_EQ(states[1]["rays"], 0);
+  EXPECT_FALSE(std::filesystem::exists(path("out/event_0002.png")));
+  EXPECT_FALSE(states[2].contains("error")) << states[2];
+  replay(town(thin), {point, lens}, {"--out", path("direct")});
+  EXPECT_EQ(petzval::read_png(path("out/event_0003.png")).pixels,
+            petzval::read_png(path("direct/event_0002.png")).pixels);
+}
+
+TEST_F(ViewProgram, TextHasNoIdentifiersOfStatuses) {
+  json log = files();
+  log["events"] = {{{"type", "add_point"}, {"id", "left"}, {"pixel", {20, 30}}},
+                   {{"type", "add_point"}, {"id", "hole"}, {"pixel", {2, 58}}},
+                   {{"type", "serve"}, {"by", "tilt"}},
+                   {{"type", "remove_point"}, {"id", "left"}}};
+  write("log.json", log.dump());
+  const auto outcome = run("view", {"--replay", path("log.json")});
+  EXPECT_EQ(outcome.status, 0) << outcome.err;
+  for (const char* word : {"no_depth", "no_targets", "no_weight", "least_tilt"}) {
+    EXPECT_EQ(outcome.out.find(word), std::string::npos) << outcome.out;
+  }
+}
+
+TEST_F(ViewProgram, CommandOfALensFileNamedLikeAFlagWorks) {
+  std::filesystem::copy_file(lens("double_gauss_52mm_f1.8"), path("--help.json"));
+  const std::filesystem::path before = std::filesystem::current_path();
+  std::filesystem::current_path(folder);
+  const json still = replay(town("--help.json"), {{{"type", "still"}}}).back();
+  const std::string command = still["command"].get<std::string>();
+  const std::string program = std::string(PETZVAL_TEST_PROGRAMS) + '/';
+  const int status = std::system((program + command + " --rays 4 > out.txt 2>&1").c_str());
+  std::filesystem::current_path(before);
+  EXPECT_EQ(status, 0) << command << '\n' << read(path("out.txt"));
+  EXPECT_TRUE(std::filesystem::exists(path("out/blur.png"))) << command;
+}
+
 TEST_F(ViewProgram, BadLogsAreRefused) {
   json no_lens = files(), wrong_key = files(), wrong_size = files(), two_scenes = files(), bad_lens = files();
   no_lens.erase("lens");
@@ -221,6 +265,9 @@ sleep 2
 click() { xdotool mousemove --window "$window" $(($1 + 8)) $(($2 + 8)); sleep 0.5; xdotool click 1; sleep 1; }
 click 100 150
 xdotool keydown shift; click 290 120; xdotool keyup shift
+xdotool mousemove_relative -- -190 30; sleep 1; xdotool key --window "$window" 2; sleep 1
+click 60 50
+xdotool key --window "$window" 0; sleep 0.5
 xdotool key --window "$window" ctrl+q
 wait $child
 )" + program + " --replay '" +
@@ -232,10 +279,12 @@ wait $child
   }
   const json log = read_json(path("events.json"));
   const json& events = log["events"];
-  ASSERT_EQ(events.size(), 3u) << events;
+  ASSERT_EQ(events.size(), 4u) << events;
   EXPECT_EQ(events[0]["type"], "add_point");  // in the middle, by the program
   EXPECT_EQ(events[1], (json{{"type", "move_point"}, {"id", "1"}, {"pixel", {100.0, 150.0}}}));
   EXPECT_EQ(events[2], (json{{"type", "add_point"}, {"id", "2"}, {"pixel", {290.0, 120.0}}}));
+  // At 2:1 around (100, 150), the picture of 320 x 240 begins at (20, 90).
+  EXPECT_EQ(events[3]["pixel"], (json{50.0, 115.0}));
 
   json again = log;
   again.erase("events");
@@ -243,7 +292,7 @@ wait $child
   more.push_back({{"type", "still"}});
   replay(again, more, {"--out", path("replayed")});
   const RgbImage window = petzval::read_png(path("window.png")),
-                 still = petzval::read_png(path("replayed/event_0004.png"));
+                 still = petzval::read_png(path("replayed/event_0005.png"));
   ASSERT_EQ(still.width, 320);
   int differ = 0;
   for (int y = 0; y < 240; ++y) {
