@@ -16,7 +16,7 @@ programs=$(CDPATH='' cd -- "$1" && pwd)
 out=$2 scale=1 more_samples=1 resume=
 if [ $# -eq 3 ]; then out=$2/full scale=2 more_samples=16 resume=' --resume'; fi
 mkdir -p "$out/input"
-cp "$here"/scenes/*.json "$here/layers/table.sh" "$out/input"
+cp "$here"/scenes/*.json "$here/layers/table.sh" "$here"/pictures/view_*.jpg "$here"/../lib/docs/view/*.json "$out/input"
 # shellcheck source=SCRIPTDIR/gallery_page.sh
 . "$here/gallery_page.sh"
 
@@ -112,6 +112,31 @@ petzval blur --scene knot --thin-lens 50 --f-number 0.5 --focus 3600mm --out lay
 END
   picture layers/leaves/blur.png "Leaves" "The hardest case for layers: on average twelve surfaces behind each other in a pixel; eight layers." <<END
 petzval blur --scene leaves --thin-lens 50 --f-number 0.5 --focus 5m --layers 8 --out layers/leaves
+END
+}
+
+window() {
+  section view "Focus by clicking" "<code>petzval view</code>: the blur from layers in a window. A click focuses the lens on the surface under the
+mouse."
+  picture view/click.jpg "One click" "The stall is sharp. On the right are all controls, below the section of the lens with the rays of the point under
+the mouse, and its bokeh. The picture of the window is shipped; the line with # makes it on a screen." <<END
+# petzval view --replay input/click.json --screenshot view/click.png
+cp input/view_click.jpg view/click.jpg
+END
+  picture view/tilt.jpg "Three clicks" "A tilted film meets three points: on the awning, at a window and on the street. The map shows sharp surfaces in
+green, nearer ones in red and farther ones in blue." <<END
+# petzval view --replay input/tilt.json --panels map --screenshot view/tilt.png
+cp input/view_tilt.jpg view/tilt.jpg
+END
+  picture view/pull.html "A focus pull by four clicks" "From the lamp post over the tree and the stall to the tower, without the window: <code>--replay</code> computes the
+picture after each click. The state after each click, in words: <a href=\"view/pull.txt\">pull.txt</a>." <<END
+echo '{"scene": "town", "lens": {"thin_mm": 50, "f_number": 0.5}, "size": [400, 300], "events": [
+  {"type": "add_point", "id": "lens", "pixel": [100, 200]}, {"type": "move_point", "id": "lens", "pixel": [130, 280]},
+  {"type": "move_point", "id": "lens", "pixel": [171, 131]}, {"type": "move_point", "id": "lens", "pixel": [200, 60]}]}' > view/pull.json
+petzval view --replay view/pull.json --rays 256 --out view/pull > view/pull.txt
+for n in 1 2 3 4; do
+  echo "<img src=view/pull/event_000\$n.png alt='click \$n' style='display:inline; width:24%'>"
+done > view/pull.html
 END
 }
 
@@ -334,6 +359,7 @@ END
 pictures() {
   scenes
   blurred
+  window
   measured
   focus
   wu_designs

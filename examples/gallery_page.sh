@@ -44,7 +44,7 @@ picture() {
     seconds=$(sed -n 1p "$stamp") failure=
     echo ': kept'
     figure "$1" "$2" "$3"
-  elif [ "$without_renderer" ] && printf '%s\n' "$commands" | grep -Eq '^petzval (render|blur) '; then
+  elif [ "$without_renderer" ] && printf '%s\n' "$commands" | grep -Eq '^petzval (render|blur|view) '; then
     echo ': left out, because petzval render and blur were not built (they need libembree-dev and libtinyobjloader-dev)'
     seconds='' failure='Left out: petzval render and blur were not built. They need Embree and tinyobjloader.'
     figure "$1" "$2" "$3"
