@@ -305,7 +305,7 @@ class Window {
       draw.AddCircle(at, handle_radius, black, 0, 4);
       draw.AddCircle(at, handle_radius, colour, 0, mark.id == selected_ || near ? 3.0f : 2.0f);
       std::string text = mark.id;
-      if (mark.blur_px) text += ": " + examples::number(*mark.blur_px, 2) + " px";
+      if (mark.blur_px) text += ": " + examples::number(std::abs(*mark.blur_px) < 0.005 ? 0 : *mark.blur_px, 2) + " px";
       if (mark.status != "used") text += " (" + in_words(mark) + ')';
       draw.AddText({at.x + handle_radius + 4, at.y - 6}, black, text.c_str());
       draw.AddText({at.x + handle_radius + 3, at.y - 7}, colour, text.c_str());
