@@ -34,8 +34,9 @@ struct Lens::Data {
 
   static Lens lens(std::shared_ptr<const Data> data) noexcept { return Lens(std::move(data)); }
 
-  void build() {
-    lens_detail::end_at_edges(surfaces, rims, indices.values);
+  /// @param meet as in end_at_edges()
+  void build(bool meet = true) {
+    lens_detail::end_at_edges(surfaces, rims, indices.values, meet);
     const auto aspheres = lens_detail::describe_aspheres(surfaces);
     build(aspheres, in_float);
     build(aspheres, in_double);

@@ -75,7 +75,8 @@ bool changes_rays(std::span<const LensSurface> surfaces, std::span<const double>
   return false;
 }
 
-void end_at_edges(std::span<LensSurface> surfaces, std::span<const double> rims, std::span<const double> indices) {
+void end_at_edges(std::span<LensSurface> surfaces, std::span<const double> rims, std::span<const double> indices,
+                  bool meet) {
   for (std::size_t i = 0; i < surfaces.size(); ++i) {
     LensSurface& s = surfaces[i];
     s.semi_diameter = rims[i];
@@ -86,7 +87,7 @@ void end_at_edges(std::span<LensSurface> surfaces, std::span<const double> rims,
   }
   double direction = 1;
   std::optional<std::size_t> before;
-  for (std::size_t i = 0; i < surfaces.size(); ++i) {
+  for (std::size_t i = 0; meet && i < surfaces.size(); ++i) {
     if (!changes_rays(surfaces, indices, i)) continue;
     if (before) {
       const double least = std::min(surfaces[*before].semi_diameter, surfaces[i].semi_diameter);

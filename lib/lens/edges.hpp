@@ -28,6 +28,11 @@ PETZVAL_API bool changes_rays(std::span<const LensSurface> surfaces, std::span<c
 /// @param surfaces vertices, shapes and thicknesses are set; `semi_diameter` and `edge` are written
 /// @param rims semi-diameter of each surface (mm); infinite if unlimited
 /// @param indices [wavelength * (surfaces + 1) + space]
-void end_at_edges(std::span<LensSurface> surfaces, std::span<const double> rims, std::span<const double> indices);
+/// @param meet false to ignore that surfaces meet, as other programs do
+void end_at_edges(std::span<LensSurface> surfaces, std::span<const double> rims, std::span<const double> indices,
+                  bool meet = true);
+
+/// The lens with surfaces that reach their rims, even behind a surface that they meet.
+PETZVAL_API Lens without_edges(const Lens& lens);
 
 }  // namespace petzval::lens_detail

@@ -232,6 +232,12 @@ Lens lens_detail::with_rims(const Lens& lens, std::vector<double> rims) {
   return Lens::Data::lens(std::move(data));
 }
 
+Lens lens_detail::without_edges(const Lens& lens) {
+  auto data = std::make_shared<Lens::Data>(lens.data());
+  data->build(false);
+  return Lens::Data::lens(std::move(data));
+}
+
 Lens with_any_semi_diameter(const Lens& lens, std::size_t surface, double semi_diameter) {
   demand(lens, "surface", surface, lens.surface_count());
   if (!(semi_diameter >= 0)) {

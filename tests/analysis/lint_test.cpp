@@ -264,6 +264,22 @@ TEST(Lint, FindsSurfacesThatCross) {
   expect_one(p, Kind::overlap, 0, {0.623795, 21});
 }
 
+// Rays from the field pass the front at its whole rim, but the rear only up to the height at which both meet.
+TEST(Lint, CrossingSurfaces_NameTheHeightAndTheLightLost) {
+  Prescription p = singlet();
+  p.f_number.reset();
+  p.surfaces[0].semi_diameter = 25;
+  p.surfaces[1].semi_diameter = 25;
+  // The height is sqrt(50^2 - 46^2); of light along the axis 1 - height^2 / 25^2 is lost.
+  for (const Finding& finding : lint(p)) {
+    if (finding.kind == Kind::overlap) expect_tokens(finding.message, {19.5959, 38.6, 0});
+  }
+  p.half_field_deg = 10;
+  p.surfaces[0].semi_diameter = p.surfaces[1].semi_diameter = 20;
+  ASSERT_EQ(lint(p).at(0).kind, Kind::overlap);
+  expect_tokens(lint(p).at(0).message, {19.5959, 10});
+}
+
 TEST(Lint, IgnoresOverlapsInsideObscurations) {
   Prescription p = singlet();
   p.f_number.reset();
