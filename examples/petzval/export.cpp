@@ -218,6 +218,10 @@ void write(const Options& options) {
       joined += xml ? "<!-- " + errors + " -->\n" : format.comment + errors + '\n';
       joined += text;
     }
+    if (format.format == petzval::CalibrationFormat::lensfun && !joined.empty()) {
+      joined = "<calibration> <!-- for a <lens> of a Lensfun database; keep one of the distortion models -->\n" +
+               joined + "</calibration>\n";
+    }
     if (!joined.empty()) written(format.ending, joined);
   }
   commands::write_omniverse(tables, enter, exit);

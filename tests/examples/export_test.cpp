@@ -60,6 +60,14 @@ petzval::Ray<double> described(const nlohmann::json& head, const petzval::ExrPar
                               slope("slope_y", 1, row + 0.5 - part.height / 2.0), -1})};
 }
 
+TEST_F(Export, LensfunFileHasOneRoot) {
+  ASSERT_EQ(run("export", {lens("double_gauss_52mm_f1.8"), "--size", "48", "--calibration", path("out")}).status, 0);
+  const std::string xml = read(path("out/double_gauss_52mm_f1.8.lensfun.xml"));
+  EXPECT_TRUE(xml.starts_with("<calibration>")) << xml;
+  EXPECT_TRUE(xml.ends_with("</calibration>\n")) << xml;
+  for (const char* element : {"<distortion ", "<vignetting "}) EXPECT_NE(xml.find(element), std::string::npos);
+}
+
 TEST_F(Export, RayMapsHoldTheRaysOfTheCamera) {
   for (const char* const id : {"double_gauss_100mm_f2.0", "fisheye_6.3mm_f2.8", "anamorphic_60mm_2x"}) {
     for (const bool half : {false, true}) {
