@@ -25,8 +25,13 @@ petzval::Coating coating_named(const std::string& name) {
   if (!name.ends_with(".csv")) {
     throw petzval::Error("--coatings = \"" + name + "\"; must be none, mgf2, file or a file.csv");
   }
-  constexpr std::array layers{CsvColumn{"index"}, CsvColumn{"absorption"}, CsvColumn{"thickness_nm"}};
-  constexpr std::array table{CsvColumn{"wavelength_nm"}, CsvColumn{"reflectance"}};
+  // The ranges of validate(), which does not know lines.
+  constexpr std::array layers{CsvColumn{"index", {1e-3, 1e3, "0.001 to 1000"}},
+                              CsvColumn{"absorption", {0, 1e3, "0 to 1000"}},
+                              CsvColumn{"thickness_nm", {0, 1e7, "0 to 1e7"}}};
+  constexpr std::array table{CsvColumn{"wavelength_nm", {10, 1e6, "10 to 1e6"}},
+                             CsvColumn{"reflectance", {0, 1, "0 to 1"}}};
+  constexpr std::size_t most_rows = 10'000;  // as in the JSON of lenses
   const std::string text = read_text(name);
   petzval::Coating coating;
   if (text.starts_with(table[0].name)) {
@@ -37,6 +42,10 @@ petzval::Coating coating_named(const std::string& name) {
     for (std::size_t i = 0; i < columns[0].size(); ++i) {
       coating.layers.push_back({columns[0][i], columns[1][i], columns[2][i]});
     }
+  }
+  if (std::max(coating.layers.size(), coating.table.size()) > most_rows) {
+    throw petzval::Error(name + ": rows = " + std::to_string(std::max(coating.layers.size(), coating.table.size())) +
+                         "; must be at most " + std::to_string(most_rows));
   }
   if (coating == petzval::Coating{}) throw petzval::Error(name + ": no rows; must have at least one");
   petzval::validate(coating, name);

@@ -118,8 +118,11 @@ std::optional<double> transmittance(const Lens& lens, const FieldPoint& point, W
   const std::size_t directions = lens.rotationally_symmetric() && point.field_rad == 0 ? 1 : 32;
   const PupilBoundary pupil = pupil_boundary(lens, point, wavelength, directions);
   Passage passage(lens, lens.compiled_position(wavelength), Travel::to_film);
+  // The nodes of a symmetric lens are mirrored at the meridian of the field: one half is enough.
+  const bool mirrored = lens.rotationally_symmetric() && point.azimuth_rad == 0;
   double light = 0, area = 0;
   for (const analysis_detail::PupilNode& node : analysis_detail::pupil_nodes<6>(pupil)) {
+    if (mirrored && 2 * node.direction >= directions) continue;
     const auto passes = passage(pupil.plane.ray(node.position.x, node.position.y));
     if (!passes) continue;
     light += node.area * *passes, area += node.area;

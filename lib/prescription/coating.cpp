@@ -2,6 +2,7 @@
 #include "petzval/prescription/coating.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <complex>
 #include <numbers>
@@ -19,43 +20,70 @@ struct Fractions {
   double reflectance, transmittance, absorptance;
 };
 
-/// A layer or the medium behind the layers: the component of its wave vector along the normal, in units of the wave
-/// number in vacuum, and its complex index squared.
-struct LayerMedium {
-  Complex normal, index_squared;
+/// Tangential fields of one polarisation in front of a layer, divided by a scale. The wave behind the last layer has an
+/// electric field of 1.
+struct Fields {
+  Complex electric, magnetic;
+  double substrate;  ///< real part of the admittance behind the layers
+  double log_scale = 0;
 
-  /// Ratio of tangential magnetic and electric fields, in units of the admittance of vacuum.
-  Complex admittance(bool p) const noexcept { return p ? index_squared / normal : normal; }
+  /// Adds a layer in front. T: double if the numbers are real.
+  template <class T>
+  void pass(const T& cosine, const T& sine_over_admittance, const T& sine_times_admittance) {
+    const auto times_i = [](const Complex& z) { return Complex(-z.imag(), z.real()); };
+    const Complex next = cosine * electric - sine_over_admittance * times_i(magnetic);
+    magnetic = cosine * magnetic - sine_times_admittance * times_i(electric);
+    electric = next;
+    const double size =
+        std::abs(electric.real()) + std::abs(electric.imag()) + std::abs(magnetic.real()) + std::abs(magnetic.imag());
+    if (size > 1e-50 && size < 1e50) return;
+    electric /= size, magnetic /= size;
+    log_scale += std::log(size);
+  }
+
+  Fractions fractions(double admittance_before) const {
+    const Complex sum = admittance_before * electric + magnetic, difference = admittance_before * electric - magnetic;
+    const double norm = std::norm(sum), transmitted = substrate * std::exp(-2 * log_scale);
+    const double absorbed = (electric * std::conj(magnetic)).real() - transmitted;
+    return {std::norm(difference) / norm, 4 * admittance_before * transmitted / norm,
+            4 * admittance_before * absorbed / norm};
+  }
 };
 
-Fractions of_stack(double admittance_before, const std::vector<CoatingLayer>& layers,
-                   const std::vector<LayerMedium>& media, const LayerMedium& behind, bool p, double wavelength_nm) {
-  const Complex substrate = behind.admittance(p);
-  // Tangential electric and magnetic field, from the last layer to the first; scaled, so that absorbing layers do not
-  // overflow.
-  Complex electric = 1, magnetic = substrate;
-  double log_scale = 0;
-  for (std::size_t i = layers.size(); i-- > 0;) {
-    const Complex eta = media[i].admittance(p);
-    const Complex phase = 2 * std::numbers::pi * layers[i].thickness_nm / wavelength_nm * media[i].normal;
-    // cos and sin of a phase with a large imaginary part, divided by the exponential.
-    const double decay = phase.imag();
+/// The wave in a layer or in the medium behind the layers.
+struct LayerWave {
+  CoatingLayer layer{};
+  std::array<Complex, 2> admittance;             ///< of s and p, in units of the admittance of vacuum
+  Complex cosine;                                ///< of the phase, times exp(-decay)
+  std::array<Complex, 2> sine_over, sine_times;  ///< sine over and times the admittances of s and p
+  double decay = 0;                              ///< imaginary part of the phase
+  bool real = false;                             ///< true if all numbers are real
+
+  /// @param tangential_squared square of the component of the wave vector along the surface
+  LayerWave(const CoatingLayer& own, double tangential_squared, double wavelength_nm) : layer(own) {
+    const double wave_number = 2 * std::numbers::pi * own.thickness_nm / wavelength_nm;
+    const double squared = own.index * own.index - tangential_squared;
+    real = own.absorption == 0 && squared >= 0;
+    if (real) {
+      // The limit of a layer with a grazing wave is the layer with a wave close to it.
+      const double s = squared == 0 ? 1e-8 : std::sqrt(squared), p = own.index * own.index / s;
+      const double sine = std::sin(wave_number * s);
+      cosine = std::cos(wave_number * s);
+      admittance = {s, p}, sine_over = {sine / s, sine / p}, sine_times = {sine * s, sine * p};
+      return;
+    }
+    const Complex index(own.index, own.absorption);
+    // Waves decay in the direction of the light.
+    const Complex s =
+        own.absorption == 0 ? Complex(0, std::sqrt(-squared)) : std::sqrt(index * index - tangential_squared);
+    const Complex p = index * index / s, phase = wave_number * s;
+    decay = phase.imag();
     const Complex forward = std::polar(1.0, phase.real()) * std::exp(-2 * decay),
-                  backward = std::polar(1.0, -phase.real());
-    const Complex cosine = (forward + backward) / 2.0, sine = (forward - backward) / Complex(0, 2);
-    const Complex next = cosine * electric - Complex(0, 1) * sine / eta * magnetic;
-    magnetic = cosine * magnetic - Complex(0, 1) * sine * eta * electric;
-    electric = next;
-    const double scale = std::abs(electric) + std::abs(magnetic);
-    electric /= scale, magnetic /= scale;
-    log_scale += decay + std::log(scale);
+                  backward = std::polar(1.0, -phase.real()), sine = (forward - backward) / Complex(0, 2);
+    cosine = (forward + backward) / 2.0;
+    admittance = {s, p}, sine_over = {sine / s, sine / p}, sine_times = {sine * s, sine * p};
   }
-  const Complex sum = admittance_before * electric + magnetic, difference = admittance_before * electric - magnetic;
-  const double norm = std::norm(sum), reflectance = std::norm(difference) / norm;
-  const double transmitted = substrate.real() * std::exp(-2 * log_scale);
-  const double absorbed = (electric * std::conj(magnetic)).real() - transmitted;
-  return {reflectance, 4 * admittance_before * transmitted / norm, 4 * admittance_before * absorbed / norm};
-}
+};
 
 double in_table(const std::vector<ReflectanceEntry>& table, double wavelength_nm) {
   const auto above = std::ranges::lower_bound(table, wavelength_nm, {}, &ReflectanceEntry::wavelength_nm);
@@ -84,9 +112,10 @@ void validate(const Coating& coating, const std::string& what) {
       if (valid && std::isfinite(value)) return;
       fail("layer " + std::to_string(i) + ": " + name + " = " + to_text(value, 6) + "; must be " + rule);
     };
-    check("index", layer.index, layer.index > 0, "positive and finite");
-    check("absorption", layer.absorption, layer.absorption >= 0, "0 or more, and finite");
-    check("thickness_nm", layer.thickness_nm, layer.thickness_nm >= 0, "0 or more, and finite");
+    // Metals reach n = 0.05 in visible and n, k = 200 in infrared light. Thicker layers are not coherent.
+    check("index", layer.index, layer.index >= 1e-3 && layer.index <= 1e3, "0.001 to 1000");
+    check("absorption", layer.absorption, layer.absorption >= 0 && layer.absorption <= 1e3, "0 to 1000");
+    check("thickness_nm", layer.thickness_nm, layer.thickness_nm >= 0 && layer.thickness_nm <= 1e7, "0 to 1e7");
   }
   for (std::size_t i = 0; i < coating.table.size(); ++i) {
     const auto& [nm, reflectance] = coating.table[i];
@@ -117,36 +146,40 @@ SurfaceLight surface_light(const Coating& coating, double index_before, double i
   check("wavelength_nm", wavelength_nm, wavelength_nm > 0, "positive and finite");
 
   const double tangential_squared = index_before * index_before * (1 - cosine * cosine);
-  const auto medium = [&](const Complex& index) {
-    const Complex squared = index * index;
-    Complex normal = std::sqrt(squared - tangential_squared);
-    if (normal.imag() < 0) normal = -normal;  // waves decay in the direction of the light
-    return LayerMedium{normal, squared};
-  };
-  const LayerMedium behind = medium(index_behind);
   // Grazing light is reflected, and so is light beyond the critical angle of surfaces without absorption.
-  if (cosine == 0 || behind.normal == 0.0) {
+  const double behind_squared = index_behind * index_behind - tangential_squared;
+  if (cosine == 0 || behind_squared == 0) {
     return {.reflectance_s = 1, .reflectance_p = 1, .transmittance_s = 0, .transmittance_p = 0};
   }
   if (!coating.table.empty()) {
-    const double reflectance = behind.normal.real() == 0 ? 1 : in_table(coating.table, wavelength_nm);
+    const double reflectance = behind_squared < 0 ? 1 : in_table(coating.table, wavelength_nm);
     return {.reflectance_s = reflectance,
             .reflectance_p = reflectance,
             .transmittance_s = 1 - reflectance,
             .transmittance_p = 1 - reflectance};
   }
-  std::vector<CoatingLayer> layers;
-  std::vector<LayerMedium> media;
-  for (const CoatingLayer& layer : coating.layers) {
+  const LayerWave behind({.index = index_behind}, tangential_squared, wavelength_nm);
+  const auto start = [](const Complex& admittance) { return Fields{1, admittance, admittance.real()}; };
+  Fields s = start(behind.admittance[0]), p = start(behind.admittance[1]);
+  // Stacks repeat their layers, mostly in pairs.
+  std::array waves{behind, behind};
+  for (std::size_t i = coating.layers.size(); i-- > 0;) {
+    const CoatingLayer& layer = coating.layers[i];
     if (layer.thickness_nm == 0) continue;
-    layers.push_back(layer);
-    media.push_back(medium({layer.index, layer.absorption}));
-    // The limit of a layer with a grazing wave is the layer with a wave close to it.
-    if (media.back().normal == 0.0) media.back().normal = 1e-8;
+    LayerWave& wave = waves[i % 2];
+    if (wave.layer != layer) wave = LayerWave(layer, tangential_squared, wavelength_nm);
+    if (wave.real) {
+      s.pass(wave.cosine.real(), wave.sine_over[0].real(), wave.sine_times[0].real());
+      p.pass(wave.cosine.real(), wave.sine_over[1].real(), wave.sine_times[1].real());
+    } else {
+      s.pass(wave.cosine, wave.sine_over[0], wave.sine_times[0]);
+      p.pass(wave.cosine, wave.sine_over[1], wave.sine_times[1]);
+      s.log_scale += wave.decay, p.log_scale += wave.decay;
+    }
   }
-  const Fractions s = of_stack(index_before * cosine, layers, media, behind, false, wavelength_nm);
-  const Fractions p = of_stack(index_before / cosine, layers, media, behind, true, wavelength_nm);
-  return {s.reflectance, p.reflectance, s.transmittance, p.transmittance, s.absorptance, p.absorptance};
+  const Fractions of_s = s.fractions(index_before * cosine), of_p = p.fractions(index_before / cosine);
+  return {of_s.reflectance,   of_p.reflectance, of_s.transmittance,
+          of_p.transmittance, of_s.absorptance, of_p.absorptance};
 }
 
 }  // namespace petzval

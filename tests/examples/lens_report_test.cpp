@@ -493,6 +493,20 @@ TEST_F(LensReport, ReportsTheLightOfCoatings) {
             std::string::npos);
 }
 
+TEST_F(LensReport, CoatingFiles_WithValuesOutOfRange_AreNamedWithLineAndValue) {
+  const std::string file = path("layers.csv"), head = "index,absorption,thickness_nm\n1.38,0,100\n";
+  const auto refused = [&](const std::string& rows, const std::vector<petzval::testing::Token>& tokens) {
+    write("layers.csv", head + rows);
+    expect_failure("report", {lens("double_gauss_100mm_f2.0"), "--coatings", file, "--quiet"}, tokens);
+  };
+  refused("1e-300,0,100\n", {"layers.csv", "line 3", "index", "1e-300"});
+  refused("1.38,2e3,100\n", {"layers.csv", "line 3", "absorption", "2e3"});
+  refused("1.38,0,1e300\n", {"layers.csv", "line 3", "thickness_nm", "1e300"});
+  std::string many;
+  for (int i = 0; i < 10'000; ++i) many += "1.38,0,1\n";
+  refused(many, {"layers.csv", 10001, 10000});
+}
+
 TEST_F(LensReport, UsesTheCoatingsOfTheFile) {
   auto lens_file = read_json(lens("double_gauss_100mm_f1.35"));
   for (const int surface : {0, 1}) lens_file["surfaces"][surface]["coating"] = "mgf2";

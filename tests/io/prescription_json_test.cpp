@@ -156,7 +156,8 @@ Prescription random_prescription(std::mt19937_64& random) {
     switch (random() % 4) {
       case 0: s.coating.emplace(); break;
       case 1:
-        s.coating = {.layers = {{.index = 1.38, .thickness_nm = std::abs(length())}, {2.1, std::abs(length()), 0}}};
+        s.coating = {.layers = {{.index = 1.38, .thickness_nm = std::fmod(std::abs(length()), 1e7)},
+                                {2.1, std::fmod(std::abs(length()), 1e3), 0}}};
         break;
       case 2: s.coating = {.table = {{380.5, 0.01}, {500, 0}, {780 + std::abs(length()), 1}}}; break;
       default: break;
@@ -236,7 +237,7 @@ TEST(PrescriptionJson, WrongCoatingsAreRefused) {
   refused(R"({"reflectance": [{"value": 0.5}]})", {"reflectance 0", "\"wavelength_nm\"", "missing"});
   const std::string layer = R"({"index": 1.4, "thickness_nm": 5})";
   refused("{\"layers\": [" + layer + R"(, {"index": 0, "thickness_nm": 5}]})",
-          {"surface 1", "coating", "layer 1", "index", "0", "positive"}, "2:69");
+          {"surface 1", "coating", "layer 1", "index", "0", "0.001"}, "2:69");
   refused(R"({"layers": [{"index": 1.4, "absorption": -1, "thickness_nm": 5}]})", {"layer 0", "absorption", "-1"});
   refused(R"({"layers": [{"index": 1.4, "thickness_nm": -5}]})", {"layer 0", "thickness_nm", "-5"});
   refused("{\"layers\": [" + layer + R"(], "reflectance": [{"wavelength_nm": 500, "value": 0}]})",

@@ -142,6 +142,30 @@ TEST(SurfaceLight, OfAThickMetalIsTheReflectanceOfTheMetal) {
   EXPECT_NEAR(expected, 0.92, 0.01);
 }
 
+// At the ends of the valid ranges, and for stacks whose fields exceed the range of doubles.
+TEST(SurfaceLight, OfExtremeLayersIsFinite) {
+  for (const double index : {1e-3, 1.0, 1e3}) {
+    for (const double absorption : {0.0, 1e-9, 1e3}) {
+      for (const double thickness : {1e-6, 100.0, 1e7}) {
+        const Coating coating{.layers = {500, {index, absorption, thickness}}};
+        for (const double cosine : {1.0, 0.3, 1e-6}) {
+          const SurfaceLight light = surface_light(coating, 1, 1.5, cosine, 550);
+          for (const double part : {light.reflectance(), light.transmittance()}) EXPECT_GE(part, 0) << index;
+          EXPECT_NEAR(light.reflectance() + light.transmittance() + light.absorptance(), 1, 1e-6)
+              << index << ' ' << absorption << ' ' << thickness << ' ' << cosine;
+        }
+      }
+    }
+  }
+  Coating mirror;
+  for (int i = 0; i < 5000; ++i) {
+    mirror.layers.push_back({.index = 2.35, .thickness_nm = 550 / (4 * 2.35)});
+    mirror.layers.push_back({.index = 1.45, .thickness_nm = 550 / (4 * 1.45)});
+  }
+  EXPECT_NEAR(surface_light(mirror, 1, 1.5, 1, 550).reflectance(), 1, 1e-12);
+  EXPECT_EQ(surface_light(mirror, 1, 1.5, 1, 550).transmittance(), 0);
+}
+
 TEST(SurfaceLight, OfATableIsLinearAndRefusesOtherWavelengths) {
   const Coating coating{.table = {{400, 0.02}, {500, 0.004}, {700, 0.01}}};
   EXPECT_NEAR(surface_light(coating, 1, 1.5, 0.7, 600).reflectance(), 0.007, 1e-15);
@@ -157,6 +181,10 @@ TEST(Coating, MustBeValid) {
   refused({.layers = {{.index = 0}}}, {"surface 3", "index", 0});
   refused({.layers = {{.index = 1.4, .absorption = -1}}}, {"absorption", -1});
   refused({.layers = {{.index = 1.4, .thickness_nm = -5}}}, {"thickness_nm", -5});
+  refused({.layers = {{.index = 1e-300}}}, {"index", 1e-300, 0.001});
+  refused({.layers = {{.index = 1e5}}}, {"index", 1000});
+  refused({.layers = {{.index = 1.4, .absorption = 1e5}}}, {"absorption", 1000});
+  refused({.layers = {{.index = 1.4, .thickness_nm = 1e300}}}, {"thickness_nm", 1e300});
   refused({.layers = {{}}, .table = {{500, 0.1}}}, {"layers", "table"});
   refused({.table = {{500, 0.1}, {500, 0.2}}}, {"wavelength_nm", 500});
   refused({.table = {{500, 1.1}}}, {"reflectance", 1.1});
