@@ -103,13 +103,17 @@ constexpr std::array outputs{
            }},
     Output{".osl",
            [](const Prescription& lens, const petzval::GlassCatalogue& glasses, const Options& options) {
+             const examples::LensFile file{.id = lens.id, .prescription = lens, .glasses = glasses};
+             const bool colours =
+                 petzval::compile(lens, examples::compile_options(file)).dispersion() != petzval::Dispersion::none;
              std::vector<double> nm = options.wavelengths_nm;
-             if (nm.empty()) nm.push_back(lens.reference_wavelength_nm);
-             examples::write_text(options.out,
-                                  petzval::format_osl_camera(petzval::compile(lens, nm, {.glasses = &glasses})));
+             if (nm.empty() || !colours) nm = {lens.reference_wavelength_nm};
+             examples::write_text(options.out, petzval::format_osl_camera(examples::compiled_for(file, nm)));
              std::vector<ImportWarning> losses;
              if (nm.size() == 1) {
-               losses = {{0, "wavelengths", "the shader has only the indices at " + examples::number(nm[0]) + " nm"}};
+               losses = {{0, "wavelengths",
+                          "the shader has only the indices at " + examples::number(nm[0]) + " nm" +
+                              (colours ? "" : ", because the dispersion of a medium is unknown")}};
              }
              lose_positions(lens, losses);
              return losses;

@@ -128,7 +128,7 @@ ModelChoice choose(const ModelTable& table, std::size_t budget_number, const Err
   if (item && item->inside) {
     choice.not_needed.push_back("transmission: " + costs + " (budget of these changes " + item->budget + ")");
   } else {
-    choice.reasons.push_back("transmission is a separate choice (CameraOptions::transmission): " + costs);
+    choice.reasons.push_back("transmission is a separate choice: " + costs);
   }
   return choice;
 }

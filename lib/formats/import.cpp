@@ -172,7 +172,7 @@ Medium Import::glass(int line, std::string_view name, std::span<const std::strin
 
   const std::string similar = glass_detail::similar_names(glasses(), name);
   refuse(line, name, "a name in no glass table, without an index in the file",
-         "a glass of ReadOptions::glasses (programs: --glasses FILE, an .agf or .yml)" +
+         "a glass of the tables or of a catalogue (--glasses FILE, an .agf or .yml)" +
              (similar.empty() ? std::string() : "; similar names: " + similar));
 }
 

@@ -174,8 +174,8 @@ Entry LentilReader::choose(const nlohmann::json& database) const {
   if (found.size() == 1) return found.front();
   if (database.size() == 1) return {database.begin().key(), &*database.begin()};
   const std::string rule = "; must be the key of one of " + std::to_string(database.size()) + ": " + listed(database);
-  if (entry_name.empty()) throw Error(in_.where() + ": no lens is chosen (--configuration, ReadOptions::entry)" + rule);
-  throw Error(in_.where() + ": --configuration (ReadOptions::entry) = " + io_detail::in_quotes(entry_name) +
+  if (entry_name.empty()) throw Error(in_.where() + ": no lens is chosen (--configuration)" + rule);
+  throw Error(in_.where() + ": --configuration = " + io_detail::in_quotes(entry_name) +
               (found.empty() ? "" : ", the name of " + std::to_string(found.size()) + " lenses") + rule);
 }
 

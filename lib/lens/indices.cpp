@@ -52,7 +52,7 @@ std::string describe(const Medium& m) {
 std::string why_missing(const Medium& m, const Tables& tables) {
   if (!m.glass) return "";
   if (!tables.glasses) {
-    return "; no glass tables were found (" + tables.error + "); CompileOptions::glasses must be set";
+    return "; no glass tables were found (" + tables.error + "); a catalogue must be given";
   }
   std::string others;
   int count = 0;
@@ -146,7 +146,7 @@ Indices indices(const Prescription& prescription, std::span<const double> wavele
       }
       if (options.missing_glass == MissingGlass::error) {
         throw Error(missing + names_like(m, tables) + "; the glass must be known at " + to_text(nm) +
-                    " nm, or CompileOptions::missing_glass must be MissingGlass::abbe, which uses n_d and V_d");
+                    " nm, or the index from n_d and V_d must be allowed for missing glasses");
       }
       if (at_reference) return *m.nd;
       if (!m.vd) {

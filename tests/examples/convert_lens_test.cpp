@@ -59,6 +59,13 @@ TEST_F(ConvertLens, ExtensionChoosesTheFormat) {
   EXPECT_EQ(read(path("lens.osl")).find("// Double Gauss 100 mm f/2"), 0u);
   EXPECT_EQ(run("convert", {lens("double_gauss_100mm_f2.0"), path("lens.osl"), "--wavelengths", "rgb"}).status, 0);
   EXPECT_NE(read(path("lens.osl")).find("3 wavelengths from 475 to 650 nm"), std::string::npos);
+  // Media with n_d and V_d only, and with n_d only.
+  EXPECT_NE(run("convert", {lens("planar_50mm_f1.4"), path("lens.osl"), "--wavelengths", "rgb"}).err.find("n_d/V_d"),
+            std::string::npos);
+  EXPECT_NE(read(path("lens.osl")).find("3 wavelengths from 475 to 650 nm"), std::string::npos);
+  const auto grey = run("convert", {lens("fisheye_10mm_f4"), path("lens.osl"), "--wavelengths", "rgb"});
+  EXPECT_EQ(grey.status, 0) << grey.err;
+  EXPECT_NE(grey.err.find("dispersion"), std::string::npos) << grey.err;
   expect_failure("convert", {lens("double_gauss_100mm_f2.0"), path("lens.zmx"), "--wavelengths", "rgb"},
                  {"--wavelengths", "lens.zmx", ".osl"});
   EXPECT_EQ(run("convert", {lens("double_gauss_100mm_f2.0"), path("lens.opentrackio.json")}).status, 0);

@@ -263,7 +263,7 @@ std::string infrared_lens(const std::string& glass) {
 
 TEST_F(InfraredGlass, WithoutIndexAtTheDLine_IsReadAtThePrimaryWavelength) {
   const std::string text = infrared_lens("GERMANIUM 0 0 1.5 40 0 0 0 0 0 0");
-  expect_tokens(refusal(text), {"ReadOptions::glasses"});
+  expect_tokens(refusal(text), {"--glasses"});
   const GlassCatalogue all = glasses(germanium_agf);
   const Prescription p = petzval::parse_lens(text, "x", {.glasses = &all});
   EXPECT_FALSE(speaks_of(p, "GERMANIUM"));
