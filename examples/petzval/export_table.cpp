@@ -11,6 +11,7 @@
 #include "petzval/core/error.hpp"
 #include "petzval/petzval_camera.h"
 #include "support/files.hpp"
+#include "support/text.hpp"
 
 namespace commands {
 namespace {
@@ -36,7 +37,8 @@ std::string text_of(float value) {
 }
 
 std::string as_c(const std::vector<float>& table, const std::string& title) {
-  std::string text = "/* " + title + ". For petzval_camera.h, format " + std::to_string(PZ_FORMAT) + ". */\n";
+  std::string text =
+      "/* " + examples::comment_text(title) + ". For petzval_camera.h, format " + std::to_string(PZ_FORMAT) + ". */\n";
   text += "#ifndef PETZVAL_TABLE_NAME\n#define PETZVAL_TABLE_NAME petzval_table\n#endif\n";
   text += "static const float PETZVAL_TABLE_NAME[" + std::to_string(table.size()) + "] = {\n";
   std::string row;

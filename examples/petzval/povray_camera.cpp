@@ -14,6 +14,7 @@
 #include "petzval/core/geometry.hpp"
 #include "petzval/core/sobol.hpp"
 #include "petzval/lens/lens.hpp"
+#include "support/text.hpp"
 
 namespace examples {
 namespace {
@@ -115,10 +116,8 @@ std::string povray_camera(const petzval::Camera& camera, std::uint32_t samples) 
   if (!(scale > 0)) throw petzval::Error(camera.lens().name() + ": no ray passes the lens");
   const std::string size = " +W" + std::to_string(film.columns) + " +H" + std::to_string(film.rows);
 
-  std::string name = camera.lens().name();
-  std::replace_if(
-      name.begin(), name.end(), [](unsigned char c) { return c < ' '; }, ' ');  // stays in the comment
-  std::string text = "// " + name + ", a camera for POV-Ray 3.7.\n//\n//   povray scene.pov" + size +
+  std::string text = "// " + comment_text(camera.lens().name()) +
+                     ", a camera for POV-Ray 3.7.\n//\n//   povray scene.pov" + size +
                      " -A +FE   (this size, without antialiasing)\n//\n";
   text +=
       "// Frame: left-handed, mm; origin at the first vertex of the lens, +x right, +y up, view along +z.\n"

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <charconv>
+#include <cstddef>
 
 namespace examples {
 namespace {
@@ -20,6 +21,14 @@ std::string number(double value) { return digits(value); }
 
 std::string number(double value, int significant_digits) {
   return digits(value, std::chars_format::general, significant_digits);
+}
+
+std::string comment_text(std::string text) {
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    if (static_cast<unsigned char>(text[i]) < ' ') text[i] = ' ';
+    if (text[i] == '*' && (text[i + 1] == '/' || (i > 0 && text[i - 1] == '/'))) text[i] = ' ';
+  }
+  return text;
 }
 
 std::string escaped_html(std::string_view text) {

@@ -13,6 +13,9 @@ std::string number(double value);
 /// The number rounded to a count of significant digits.
 std::string number(double value, int significant_digits);
 
+/// A text for a comment of a source file: on one line, without the marks of C comments.
+std::string comment_text(std::string text);
+
 /// Escapes & < > for the content of an HTML element.
 std::string escaped_html(std::string_view text);
 

@@ -135,4 +135,16 @@ TEST_F(Export, HalvesAreRoundedOnceAndChiefRaysAreOnePart) {
   expect_failure("export", {lens("double_gauss_100mm_f2.0")}, {"--calibration", "--ray-map"});
 }
 
+TEST_F(Export, NamesOfLensesStayInTheComment) {
+  nlohmann::json json = read_json(lens("double_gauss_100mm_f2.0"));
+  json["name"] = "x */ \n#error 1 /* \r\n#error 2 */";
+  write("lens.json", json.dump());
+  ASSERT_EQ(run("export", {path("lens.json"), "--camera", path("c.h")}).status, 0);
+  const std::string text = read(path("c.h"));
+  const std::size_t end = text.find("*/");
+  ASSERT_LT(end, text.find('\n'));
+  EXPECT_LT(text.rfind("#error"), end);
+  EXPECT_EQ(text.find("/*", 2), std::string::npos);
+}
+
 }  // namespace
