@@ -2,6 +2,9 @@
 // The program petzval: one command for each task.
 //
 //   petzval report double_gauss_52mm_f1.8
+#include <algorithm>
+#include <array>
+#include <cstdlib>
 #include <iostream>
 #include <string>
 #include <string_view>
@@ -89,6 +92,13 @@ int run(std::string_view name, int argc, char** argv, const std::string& topic =
   if (!command) return unknown(name);
   if (!command->run) {
     std::cerr << "petzval: " << name << " is not built: needs " << command->needs << '\n';
+    return 1;
+  }
+  // The library takes the baseline for an unknown name, because its rays are noexcept.
+  const char* const set = std::getenv("PETZVAL_INSTRUCTION_SET");
+  constexpr std::array<std::string_view, 4> sets{"", "baseline", "avx2", "avx512"};
+  if (set && std::find(sets.begin(), sets.end(), set) == sets.end()) {
+    std::cerr << "petzval: PETZVAL_INSTRUCTION_SET = \"" << set << "\"; must be baseline, avx2 or avx512\n";
     return 1;
   }
   examples::set_help("petzval " + std::string(name) + ' ' + std::string(command->example), topic);

@@ -3,6 +3,7 @@
 // completions.
 #include <algorithm>
 #include <charconv>
+#include <cstdlib>
 #include <regex>
 #include <set>
 #include <sstream>
@@ -181,6 +182,15 @@ TEST_F(Petzval, QuietSaysNothing) {
   EXPECT_EQ(outcome.status, 0);
   EXPECT_EQ(outcome.err, "");
   EXPECT_NE(run("lenses", {"nothing_has_this_name"}).err, "");
+}
+
+TEST_F(Petzval, UnknownInstructionSetsAreRefused) {
+  const char* const before = std::getenv("PETZVAL_INSTRUCTION_SET");
+  const std::string old = before ? before : "";
+  setenv("PETZVAL_INSTRUCTION_SET", "nonsense", 1);
+  expect_failure("lenses", {}, {"PETZVAL_INSTRUCTION_SET", "nonsense"});
+  setenv("PETZVAL_INSTRUCTION_SET", old.c_str(), 1);
+  EXPECT_EQ(run("lenses", {}).status, 0);
 }
 
 /// The man page and the completions name every flag of the help of every command.
