@@ -245,7 +245,7 @@ void Worker::run() {
   constexpr std::size_t still_step = ray_steps.size(), all_steps = still_step + 1;
   std::size_t step = 0;
   bool mapped = false;
-  bool layers_first = false;  // true: the layers at hand may be those of another lens
+  bool layers_first = false;  // true: a picture failed; the next one needs new layers
   while (true) {
     std::optional<std::filesystem::path> folder;
     bool looks = false;
