@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <cstring>
+#include <limits>
 #include <memory>
 #include <string>
 #include <vector>
@@ -36,7 +37,8 @@ T* spoilt(T& value, Bytes& bytes) {
   for (int i = bytes.count(0, 3); i > 0; --i) {
     const std::size_t at = static_cast<std::size_t>(bytes.byte()) * 8 % (sizeof value - 8) / 8 * 8 + 8;
     const double number = bytes.wild();
-    const std::int32_t pair[2] = {bytes.count(-3, 200), bytes.count(-3, 9)};
+    constexpr std::int32_t most = std::numeric_limits<std::int32_t>::max();
+    const std::int32_t pair[2] = {bytes.one_in(16) ? most : bytes.count(-3, 200), bytes.count(-3, 9)};
     std::memcpy(reinterpret_cast<char*>(&value) + at, bytes.one_in(2) ? static_cast<const void*>(&number) : pair, 8);
   }
   // At most the size of the struct, which the caller promises to be readable.
