@@ -21,8 +21,8 @@ double threshold_of(const petzval::LayerSet& layers, bool of_file) {
   std::size_t count = 0;
   for (std::size_t i = 0; layers.count() > 0 && i < layers.inverse_depth(0).size(); ++i) {
     if (layers.inverse_depth(0)[i] < 0) continue;
-    float most = 0;
-    for (int c = 0; c < 3; ++c) most = std::max(most, layers.channel(0, c)[i]);
+    const auto rgba = layers.rgba(0, i);
+    const float most = std::max({rgba[0], rgba[1], rgba[2], 0.0f});
     brightest = std::max(brightest, most);
     sum += static_cast<double>(std::min(most, 1.0f)), ++count;
   }
@@ -55,7 +55,7 @@ RgbImage sharp_of(const petzval::LayerSet& layers, const petzval::LayerCamera& c
   for (int y = 0; y < camera.rows; ++y) {
     for (int x = 0; x < camera.columns; ++x) {
       const auto pixel = static_cast<std::size_t>((y + overscan) * layers.columns() + x + overscan);
-      for (int c = 0; c < 3; ++c) image.pixel(x, y)[c] = layers.channel(0, c)[pixel];
+      std::copy_n(layers.rgba(0, pixel).data(), 3, image.pixel(x, y));
     }
   }
   return image;

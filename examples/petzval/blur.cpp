@@ -187,7 +187,7 @@ class Job {
               {"nbuffer_ms", n_buffer_ms},
               {"gather_ms", gather_ms},
               {"total_ms", peel_ms + n_buffer_ms + gather_ms},
-              {"memory_mb", layers_mb()},
+              {"memory_mb", 1e-6 * static_cast<double>(layers_.memory_bytes())},
               {"miss_rate", static_cast<double>(statistics.missed) / static_cast<double>(statistics.rays)},
               {"highlights_above", threshold},
               {"highlights", statistics.highlights},
@@ -202,9 +202,6 @@ class Job {
       result_["frames"].push_back(json);
     }
   }
-
-  /// Size of the layers: five numbers per pixel and layer.
-  double layers_mb() const { return 5e-6 * sizeof(float) * layers_.count() * layers_.columns() * layers_.rows(); }
 
   /// Writes frames.png: up to 8 frames at equal steps of time.
   void write_frames(const std::filesystem::path& folder) {

@@ -68,10 +68,8 @@ Json json_of(const petzval::FocusLensChoice& lens) {
 
 /// Memory of layers, with the depths of the last layer, and of a blurred picture, MB.
 double memory_of(const petzval::LayerSet& layers, const petzval::BlurredImage& picture) {
-  constexpr int planes = 5;
-  const double layer = 1e-6 * sizeof(float) * layers.columns() * layers.rows();
-  return layer * (planes * layers.count() + 1) +
-         1e-6 * sizeof(float) * static_cast<double>(picture.rgba.size() + picture.missed.size());
+  const std::size_t numbers = picture.rgba.size() + picture.missed.size();
+  return 1e-6 * static_cast<double>(layers.memory_bytes() + sizeof(float) * numbers);
 }
 
 /// The words of a status of the editor.

@@ -189,22 +189,22 @@ class Gathering {
   /// The layers at a tile whose rays stay within a rectangle.
   LayerWindow window(const Tile& tile, const PixelRect& rect, int count, std::size_t channel, Memory& memory) {
     const auto& d = layers_;
-    const bool one = rays_.table.channels == 3;
     LayerWindow w{.layers = count,
                   .stride = d.columns,
-                  .layer_stride = static_cast<std::ptrdiff_t>(LayerData::planes * d.plane_stride())};
+                  .layer_stride = static_cast<std::ptrdiff_t>(static_cast<std::size_t>(d.planes) * d.plane_stride()),
+                  .channel = static_cast<int>(channel)};
     const bool inside = rect.left >= 0 && rect.top >= 0 && rect.right < d.columns && rect.bottom < d.rows;
     if (inside && highlights_.count_in(rect) == 0) {
       const std::ptrdiff_t at = static_cast<std::ptrdiff_t>(tile.top + overscan_) * d.columns + tile.left + overscan_;
-      w.depth = d.plane(0, 0) + at, w.alpha = d.plane(0, 4) + at;
-      for (int c = 0; c < 3; ++c) w.colour[c] = d.plane(0, 1 + (one ? static_cast<int>(channel) : c)) + at;
+      w.depth = d.plane(0, 0) + at, w.alpha = d.planes > 3 ? d.plane(0, 3) + at : nullptr;
+      for (int p = 0; p < 2; ++p) w.colour[p] = d.plane(0, 1 + p) + at;
       return w;
     }
     // A copy with repeated edge pixels and without highlights.
     constexpr std::size_t slack = LayerData::slack;
     const std::size_t columns = static_cast<std::size_t>(rect.right - rect.left + 1),
                       rows = static_cast<std::size_t>(rect.bottom - rect.top + 1), plane = columns * rows + slack;
-    const std::size_t planes = static_cast<std::size_t>(LayerData::planes * count);
+    const std::size_t planes = static_cast<std::size_t>(d.planes * count);
     if (planes * plane > most_window) {
       throw Error("gather: the rays of a few pixels reach over " + std::to_string(columns) + " x " +
                   std::to_string(rows) + " px of " + std::to_string(count) +
@@ -213,8 +213,7 @@ class Gathering {
     }
     if (memory.window.size() < 2 * slack + planes * plane) memory.window.resize(2 * slack + planes * plane);
     for (std::size_t p = 0; p < planes; ++p) {
-      const float* const from =
-          d.plane(static_cast<int>(p) / LayerData::planes, static_cast<int>(p) % LayerData::planes);
+      const float* const from = d.plane(static_cast<int>(p) / d.planes, static_cast<int>(p) % d.planes);
       float* to = memory.window.data() + slack + p * plane;
       for (int row = rect.top; row <= rect.bottom; ++row) {
         const float* const line = from + static_cast<std::ptrdiff_t>(std::clamp(row, 0, d.rows - 1)) * d.columns;
@@ -226,15 +225,15 @@ class Gathering {
         to = std::fill_n(to, after, line[d.columns - 1]);
       }
     }
-    highlights_.cut(rect, static_cast<int>(columns), count, LayerData::planes, plane, memory.window.data() + slack);
+    highlights_.cut(rect, static_cast<int>(columns), count, d.planes, plane, memory.window.data() + slack);
     const std::ptrdiff_t at =
         static_cast<std::ptrdiff_t>(tile.top + overscan_ - rect.top) * static_cast<std::ptrdiff_t>(columns) +
         tile.left + overscan_ - rect.left;
     const auto first = [&](int p) { return memory.window.data() + slack + static_cast<std::size_t>(p) * plane + at; };
     w.stride = static_cast<std::ptrdiff_t>(columns),
-    w.layer_stride = static_cast<std::ptrdiff_t>(LayerData::planes * plane);
-    w.depth = first(0), w.alpha = first(4);
-    for (int c = 0; c < 3; ++c) w.colour[c] = first(1 + (one ? static_cast<int>(channel) : c));
+    w.layer_stride = static_cast<std::ptrdiff_t>(static_cast<std::size_t>(d.planes) * plane);
+    w.depth = first(0), w.alpha = d.planes > 3 ? first(3) : nullptr;
+    for (int p = 0; p < 2; ++p) w.colour[p] = first(1 + p);
     return w;
   }
 
@@ -286,12 +285,12 @@ class Gathering {
         rgba[c] *= total / known;
         alpha += layers_.opaque ? std::max(1 - sums.open[at] / known, 0.0f) : sums.alpha[at] / known;
       } else {
-        const std::ptrdiff_t below =
-            static_cast<std::ptrdiff_t>(row + overscan_) * layers_.columns + column + overscan_;
+        const auto below = static_cast<std::size_t>(static_cast<std::ptrdiff_t>(row + overscan_) * layers_.columns +
+                                                    column + overscan_);
         const bool any = layers_.count > 0 && layers_.plane(0, 0)[below] >= 0;
         const float per_ray = 1 / static_cast<float>(rays_.rays_of_set());
-        rgba[c] = any ? layers_.plane(0, static_cast<int>(1 + c))[below] * total * per_ray : 0.0f;
-        alpha += any ? layers_.plane(0, 4)[below] : 0.0f;
+        rgba[c] = any ? layers_.colour(0, below)[c] * total * per_ray : 0.0f;
+        alpha += any ? layers_.alpha(0, below) : 0.0f;
       }
     }
     rgba[3] = alpha / 3;

@@ -3,6 +3,7 @@
 
 #include <utility>
 
+#include "packed_colour.hpp"
 #include "pixel_steps.hpp"
 #include "ray_rows.hpp"
 #include "trace/lanes.hpp"
@@ -13,6 +14,7 @@ namespace {
 using Numbers = trace_detail::Lanes<float>;
 using Mask = trace_detail::Mask<float>;
 using PixelIndices = core_detail::Native<float>::Bits;  // 32-bit integers
+using Values = core_detail::Native<float>::Values;
 constexpr int width = Numbers::width;
 
 template <>
@@ -113,6 +115,29 @@ struct GatherState {
   }
 };
 
+/// The colours of the pixels that `at` loads from a layer.
+template <int colours>
+struct Colours {
+  Numbers of[colours];
+
+  template <class At>
+  PETZVAL_INLINE Colours(const LayerWindow& window, const At& at, std::ptrdiff_t layer) noexcept {
+    constexpr auto upper = static_cast<std::int32_t>(PackedColour::upper),
+                   lower = static_cast<std::int32_t>(PackedColour::lower);
+    const auto bits = [&](int p) { return reinterpret_cast<PixelIndices>(at(window.colour[p] + layer).v); };
+    const auto numbers = [](PixelIndices b) { return Numbers(reinterpret_cast<Values>(b)); };
+    const auto blue = [&](PixelIndices r, PixelIndices g) {
+      return numbers((r & lower) << PackedColour::first_half | (g & lower) << PackedColour::second_half);
+    };
+    if constexpr (colours == 3) {
+      const PixelIndices r = bits(0), g = bits(1);
+      of[0] = numbers(r & upper), of[1] = numbers(g & upper), of[2] = blue(r, g);
+    } else {
+      of[0] = window.channel < 2 ? numbers(bits(window.channel) & upper) : blue(bits(0), bits(1));
+    }
+  }
+};
+
 PETZVAL_INLINE Numbers larger(Numbers a, Numbers b) noexcept { return select(a > b, a, b); }
 
 /// The value of Found::front for a pixel that a ray passes in front of.
@@ -123,9 +148,8 @@ template <bool opaque, int colours, class At>
 PETZVAL_INLINE void take(const LayerWindow& window, const At& at, std::ptrdiff_t layer, Numbers low, Numbers weight,
                          Mask hit, Mask& here, GatherState<opaque, colours>& found) noexcept {
   const Numbers contribution = opaque ? weight : weight * found.through;
-  for (int c = 0; c < colours; ++c) {
-    found.colour[c] = found.colour[c] + only(hit, contribution * at(window.colour[c] + layer));
-  }
+  const Colours<colours> colour(window, at, layer);
+  for (int c = 0; c < colours; ++c) found.colour[c] = found.colour[c] + only(hit, contribution * colour.of[c]);
   Mask ended = hit;
   if constexpr (!opaque) {
     const Numbers alpha = at(window.alpha + layer);
@@ -197,9 +221,8 @@ PETZVAL_INLINE void guess(const LayerWindow& window, const At& at, Numbers low, 
     const Numbers w = at(depth);
     const Mask before = all_of(here, w < low, w >= none);
     if (any(before)) {
-      for (int c = 0; c < colours; ++c) {
-        found.colour[c] = found.colour[c] + only(before, weight * at(window.colour[c] + layer));
-      }
+      const Colours<colours> colour(window, at, layer);
+      for (int c = 0; c < colours; ++c) found.colour[c] = found.colour[c] + only(before, weight * colour.of[c]);
       if constexpr (!opaque) found.alpha = found.alpha + only(before, weight * at(window.alpha + layer));
       found.missed = found.missed + only(before, weight);
       found.seeking = without(found.seeking, before), here = without(here, before);
@@ -282,9 +305,8 @@ std::uint64_t follow_rows(const TileJob& job, const SameRays& rays, int row, int
       }
       if (every(all)) {
         for (int r = 0; r < at_once; ++r) {
-          for (int c = 0; c < colours; ++c) {
-            found[r].colour[c] = found[r].colour[c] + weight * Apart<side>{step->offset}(windows[r].colour[c]);
-          }
+          const Colours<colours> colour(windows[r], Apart<side>{step->offset}, 0);
+          for (int c = 0; c < colours; ++c) found[r].colour[c] = found[r].colour[c] + weight * colour.of[c];
         }
         met = true;
         break;
@@ -542,7 +564,7 @@ void transmit(const LayerWindow& window, const DifferentRays& rays, float gap, c
         const Numbers met = at(window.depth + l * window.layer_stride);
         behind = all_of(behind, met > to);
         if (!any(behind)) break;
-        const Numbers alpha = at(window.alpha + l * window.layer_stride);
+        const Numbers alpha = window.alpha ? at(window.alpha + l * window.layer_stride) : one;
         const Mask in_front = all_of(behind, met < low);
         front = select(in_front, met, front), front_alpha = select(in_front, alpha, front_alpha);
         behind = without(behind, in_front);

@@ -15,15 +15,21 @@ struct LayerWindow {
   int layers = 0;
   std::ptrdiff_t stride = 0;        ///< from row to row
   std::ptrdiff_t layer_stride = 0;  ///< from layer to layer
-  /// The first layer at the tile's first pixel: inverse depth (negative if empty), TileJob::colours colours, alpha.
-  const float *depth = nullptr, *colour[3] = {}, *alpha = nullptr;
+  /// The first layer at the tile's first pixel: inverse depth (negative if empty), the planes of PackedColour, and
+  /// alpha, unless all surfaces have alpha 1.
+  const float *depth = nullptr, *colour[2] = {}, *alpha = nullptr;
+  int channel = 0;  ///< colour of rays with one colour
 
   /// The window that begins at another pixel of the tile.
   LayerWindow from(int row, int column) const noexcept {
     const std::ptrdiff_t first = row * stride + column;
-    return {
-        layers,       stride, layer_stride, depth + first, {colour[0] + first, colour[1] + first, colour[2] + first},
-        alpha + first};
+    return {layers,
+            stride,
+            layer_stride,
+            depth + first,
+            {colour[0] + first, colour[1] + first},
+            alpha ? alpha + first : nullptr,
+            channel};
   }
 };
 

@@ -129,12 +129,11 @@ void Highlights::find(const GatherOptions& options) {
     for (int layer = 0; layer < layers_.count; ++layer) {
       if (!(layers_.brightest[static_cast<std::size_t>(layer * layers_.rows + row)] > above)) continue;
       const std::ptrdiff_t from = static_cast<std::ptrdiff_t>(row) * layers_.columns;
-      const float* planes[LayerData::planes];
-      for (int p = 0; p < LayerData::planes; ++p) planes[p] = layers_.plane(layer, p) + from;
+      const float* const depth = layers_.plane(layer, 0) + from;
       for (int column = 0; column < layers_.columns; ++column) {
-        const float r = planes[1][column], g = planes[2][column], b = planes[3][column];
-        if (!(std::max({r, g, b}) > above) || planes[0][column] < 0 || !std::isfinite(r + g + b)) continue;
-        bright.push_back({column, row, layer, planes[0][column], {r, g, b}});
+        const auto [r, g, b] = layers_.colour(layer, static_cast<std::size_t>(from + column));
+        if (!(std::max({r, g, b}) > above) || depth[column] < 0 || !std::isfinite(r + g + b)) continue;
+        bright.push_back({column, row, layer, depth[column], {r, g, b}});
       }
     }
   }
@@ -197,7 +196,7 @@ void Highlights::cut(const PixelRect& rect, int columns, int layers, int planes,
       if (h.column < rect.left || h.column > rect.right || h.layer >= layers) continue;
       float* const at = copy + static_cast<std::size_t>(h.layer * planes) * plane_stride +
                         static_cast<std::ptrdiff_t>(row - rect.top) * columns + (h.column - rect.left);
-      for (int c = 0; c < 3; ++c) at[static_cast<std::size_t>(1 + c) * plane_stride] -= h.light[c];
+      for (std::size_t p = 1; p < 3; ++p) at[p * plane_stride] = 0;
     }
   }
 }
@@ -226,9 +225,9 @@ void Highlights::hide(const Highlight& h, const Lines& lines, std::size_t count,
   gather_loops().transmit(
       {.layers = layers_.count,
        .stride = layers_.columns,
-       .layer_stride = static_cast<std::ptrdiff_t>(LayerData::planes * layers_.plane_stride()),
+       .layer_stride = static_cast<std::ptrdiff_t>(static_cast<std::size_t>(layers_.planes) * layers_.plane_stride()),
        .depth = layers_.plane(0, 0) + at,
-       .alpha = layers_.plane(0, 4) + at},
+       .alpha = layers_.planes > 3 ? layers_.plane(0, 3) + at : nullptr},
       rays, gap_,
       {number(-h.column), number(layers_.columns - 1 - h.column), number(-h.row), number(layers_.rows - 1 - h.row)},
       through.data());

@@ -42,7 +42,7 @@ class Highlights {
   std::size_t count() const noexcept { return highlights_.size(); }
   /// Number of highlights in a rectangle of the layers, widened to full blocks.
   std::uint32_t count_in(const PixelRect& rect) const noexcept { return counts_(rect); }
-  /// Subtracts the highlights from a copy of a rectangle: `layers` layers of `planes` planes, `plane_stride` apart,
+  /// Removes the light of the highlights from a copy of a rectangle: `layers` layers of `planes` planes, `plane_stride` apart,
   /// with rows of `columns` pixels.
   void cut(const PixelRect& rect, int columns, int layers, int planes, std::size_t plane_stride, float* copy) const;
   /// Adds the light of the highlights to the picture.

@@ -1,21 +1,25 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
+#include <array>
 #include <cstddef>
 #include <vector>
 
 #include "n_buffer.hpp"
+#include "packed_colour.hpp"
 #include "petzval/blur/layers.hpp"
 
 namespace petzval {
-
-/// Planes of columns x rows numbers: inverse depth, red, green, blue and alpha of each layer.
+/// Planes of columns x rows numbers: inverse depth and two planes of PackedColour of each layer, and alpha unless all
+/// surfaces have alpha 1.
 struct LayerSet::Data {
-  static constexpr int planes = 5;
   /// Numbers before, between and after planes: lanes may read this far beyond the ends of a row.
   static constexpr std::size_t slack = 128;
 
   int columns = 0, rows = 0, count = 0;
+  int planes = 3;    ///< 4: with alpha
+  int capacity = 0;  ///< number of layers that the memory has room for
   bool opaque = true;
   double n_buffer_seconds = 0;
   std::vector<float> memory, below;
@@ -28,15 +32,28 @@ struct LayerSet::Data {
     return memory.data() + slack + static_cast<std::size_t>(layer * planes + plane) * plane_stride();
   }
   const float* plane(int layer, int p) const noexcept { return const_cast<Data*>(this)->plane(layer, p); }
+  std::array<float, 3> colour(int layer, std::size_t pixel) const noexcept {
+    return blur_detail::PackedColour{plane(layer, 1)[pixel], plane(layer, 2)[pixel]}.unpacked();
+  }
+  float alpha(int layer, std::size_t pixel) const noexcept { return planes > 3 ? plane(layer, 3)[pixel] : 1.0f; }
 
+  /// Grows the memory. The last layer has a plane for each colour and alpha until it is packed.
+  void reserve() {
+    const std::size_t count_of_planes = static_cast<std::size_t>(planes * (capacity - 1) + 5);
+    memory.resize(std::max(memory.size(), 2 * slack + count_of_planes * plane_stride()));
+  }
   /// The depths of all layers.
   blur_detail::DepthRange depths() const noexcept { return n_buffer.below({0, 0, columns - 1, rows - 1}); }
 
-  /// Adds a layer that is empty and black with alpha 1. end_layer() counts it.
+  /// Adds a layer that is empty and black with alpha 1, with a plane for each colour. end_layer() packs and counts it.
   LayerPlanes begin_layer();
   /// Counts the layer of begin_layer() if it contains a surface.
   /// @param where prefix of messages
   void end_layer(const std::string& where);
+  /// Counts a packed layer.
+  void count_layer();
+  /// Adds planes of alpha 1 to the layers that are counted, and keeps the planes of the next layer.
+  void add_alpha();
 
   /// Guard of a filling: if its scope ends without finish(), the set has no layers.
   class Filling {

@@ -2,9 +2,11 @@
 #include "petzval/blur/layers.hpp"
 
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <cmath>
 #include <cstdint>
+#include <cstring>
 #include <limits>
 #include <string>
 
@@ -54,12 +56,11 @@ float inverse_of(float depth_mm) { return depth_mm > 0 ? 1 / depth_mm : -1.0f; }
 }  // namespace
 
 LayerSet::Data::Filling::Filling(Data& data, int columns, int rows, int layers) : data_(data) {
-  data.columns = data.rows = data.count = 0, data.opaque = true;  // also if memory runs out
+  data.columns = data.rows = data.count = 0, data.planes = 3, data.opaque = true;  // also if memory runs out
   const std::size_t pixels = static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows);
   data.below.assign(pixels, infinity);
-  const std::size_t expected = 2 * slack + static_cast<std::size_t>(layers * planes) * (pixels + slack);
-  if (data.memory.size() < expected) data.memory.resize(expected);
-  data.columns = columns, data.rows = rows;
+  data.columns = columns, data.rows = rows, data.capacity = layers;
+  data.reserve();
 }
 
 LayerSet::Data::Filling::~Filling() {
@@ -72,6 +73,7 @@ void LayerSet::Data::Filling::finish() {
   for (int layer = 0; layer < data_.count; ++layer) depths.emplace_back(data_.plane(layer, 0), data_.pixels());
   data_.n_buffer.fill(data_.columns, data_.rows, depths);
   data_.n_buffer_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  data_.below = {};
   finished_ = true;
 }
 
@@ -107,19 +109,56 @@ void LayerSet::Data::end_layer(const std::string& where) {
     throw Error(where + ": " + pixel_name(i, columns) + ": alpha = " + to_text(alpha[i]) + "; must be 0 to 1");
   }
   if (!any) return;
+  // In place, by blocks: the compiler vectorises the loop only if results cannot overlap colours.
+  constexpr std::size_t block = 256;
+  for (std::size_t from = 0; from < pixels(); from += block) {
+    float packed[2][block];
+    const float *const red = plane(count, 1) + from, *const green = plane(count, 2) + from,
+                       *const blue = plane(count, 3) + from;
+    const std::size_t size = std::min(block, pixels() - from);
+    for (std::size_t i = 0; i < size; ++i) {
+      const auto colour = blur_detail::PackedColour::of(red[i], green[i], blue[i]);
+      packed[0][i] = colour.red_blue, packed[1][i] = colour.green_blue;
+    }
+    for (int p = 0; p < 2; ++p) std::copy_n(packed[p], size, plane(count, 1 + p) + from);
+  }
+  if (!solid && planes == 3) add_alpha();
+  if (planes > 3) std::copy_n(plane(count, 4), pixels(), plane(count, 3));
+  count_layer();
+  opaque &= solid;
+}
+
+void LayerSet::Data::add_alpha() {
+  const auto move = [this](int from, int to, int number) {
+    float* const begin = memory.data() + slack;
+    std::memmove(begin + static_cast<std::size_t>(to) * plane_stride(),
+                 begin + static_cast<std::size_t>(from) * plane_stride(),
+                 static_cast<std::size_t>(number) * plane_stride() * sizeof(float));
+  };
+  planes = 4;
+  reserve();
+  move(3 * count, 4 * count, 5);
+  for (int layer = count; layer-- > 0;) {
+    move(3 * layer, 4 * layer, 3);
+    std::fill_n(plane(layer, 3), pixels(), 1.0f);
+  }
+}
+
+void LayerSet::Data::count_layer() {
   const auto brighter = [](float a, float b) { return a > b ? a : b; };  // b if a is NaN
   brightest.resize(static_cast<std::size_t>((count + 1) * rows));
   for (int row = 0; row < rows; ++row) {
     const std::ptrdiff_t from = static_cast<std::ptrdiff_t>(row) * columns;
-    const float *const r = plane(count, 1) + from, *const g = plane(count, 2) + from, *const b = plane(count, 3) + from;
+    const float *const w = plane(count, 0) + from, *const first = plane(count, 1) + from,
+                       *const second = plane(count, 2) + from;
     float most = 0;
     for (int i = 0; i < columns; ++i) {
-      most = brighter(w[from + i] >= 0 ? brighter(r[i], brighter(g[i], b[i])) : 0.0f, most);
+      const auto [r, g, b] = blur_detail::PackedColour{first[i], second[i]}.unpacked();
+      most = brighter(w[i] >= 0 ? brighter(r, brighter(g, b)) : 0.0f, most);
     }
     brightest[static_cast<std::size_t>(count * rows + row)] = most;
   }
   ++count;
-  opaque &= solid;
 }
 
 namespace {
@@ -196,19 +235,15 @@ void LayerSet::peel_fragments(const FragmentLists& lists, double bias, int layer
   // Filling layer by layer would sort each list again. One pass over the pixels writes to all layers.
   Data& d = *data_;
   Data::Filling filling(d, lists.columns, lists.rows, layers);
-  struct Planes {
-    float* p[Data::planes];
-  };
-  std::vector<Planes> out(static_cast<std::size_t>(layers));
+  if (std::ranges::any_of(lists.fragments, [](const auto& f) { return f.depth_mm > 0 && f.alpha != 1; })) d.add_alpha();
   for (int layer = 0; layer < layers; ++layer) {
-    d.count = layer;
-    const LayerPlanes planes = d.begin_layer();
-    out[static_cast<std::size_t>(layer)] = {
-        {planes.inverse_depth.data(), planes.red.data(), planes.green.data(), planes.blue.data(), planes.alpha.data()}};
+    for (int p = 0; p < d.planes; ++p) {
+      std::fill_n(d.plane(layer, p), pixels, p == 0 ? -1.0f : p == 3 ? 1.0f : 0.0f);
+    }
   }
-  d.count = 0;
   const auto step = static_cast<float>(bias);
   std::vector<FragmentLists::Fragment> list;
+  std::vector<std::array<float, 5>> surfaces;  // inverse depth, red, green, blue, alpha
   std::size_t deepest = 0;
   for (std::size_t pixel = 0; pixel < pixels; ++pixel) {
     list.clear();
@@ -221,26 +256,32 @@ void LayerSet::peel_fragments(const FragmentLists& lists, double bias, int layer
       list.push_back(f);
     }
     std::stable_sort(list.begin(), list.end(), [](const auto& a, const auto& b) { return a.depth_mm < b.depth_mm; });
-    std::size_t kept = 0;
-    float last = infinity;
+    surfaces.clear();
     for (const FragmentLists::Fragment& f : list) {
-      const float w = inverse_of(f.depth_mm), values[] = {w, f.red, f.green, f.blue, f.alpha};
-      if (kept == 0 || w < last - step) {
-        if (kept == out.size()) break;
-        for (int p = 0; p < Data::planes; ++p) out[kept].p[p][pixel] = values[p];
-        ++kept, last = w;
+      const float w = inverse_of(f.depth_mm);
+      if (surfaces.empty() || w < surfaces.back()[0] - step) {
+        if (surfaces.size() == static_cast<std::size_t>(layers)) break;
+        surfaces.push_back({w, f.red, f.green, f.blue, f.alpha});
       } else {
         // Behind a transparent surface: add the transmitted part.
-        float* const* const front = out[kept - 1].p;
-        const float through = 1 - front[4][pixel];
-        for (int p = 1; p < Data::planes; ++p) front[p][pixel] += through * values[p];
+        std::array<float, 5>& front = surfaces.back();
+        const float through = 1 - front[4];
+        const float values[] = {f.red, f.green, f.blue, f.alpha};
+        for (std::size_t p = 0; p < 4; ++p) front[p + 1] += through * values[p];
       }
     }
-    deepest = std::max(deepest, kept);
+    for (std::size_t i = 0; i < surfaces.size(); ++i) {
+      const auto& [w, red, green, blue, alpha] = surfaces[i];
+      const auto colour = blur_detail::PackedColour::of(red, green, blue);
+      const auto layer = static_cast<int>(i);
+      d.plane(layer, 0)[pixel] = w;
+      d.plane(layer, 1)[pixel] = colour.red_blue, d.plane(layer, 2)[pixel] = colour.green_blue;
+      if (d.planes > 3) d.plane(layer, 3)[pixel] = alpha;
+      d.opaque &= alpha == 1;
+    }
+    deepest = std::max(deepest, surfaces.size());
   }
-  for (std::size_t layer = 0; layer < deepest; ++layer) {
-    d.end_layer("layer " + std::to_string(layer));
-  }
+  while (static_cast<std::size_t>(d.count) < deepest) d.count_layer();
   filling.finish();
 }
 
@@ -290,8 +331,13 @@ bool LayerSet::opaque() const noexcept { return data_->opaque; }
 std::span<const float> LayerSet::inverse_depth(int layer) const noexcept {
   return {data_->plane(layer, 0), data_->pixels()};
 }
-std::span<const float> LayerSet::channel(int layer, int channel) const noexcept {
-  return {data_->plane(layer, 1 + channel), data_->pixels()};
+std::size_t LayerSet::memory_bytes() const noexcept {
+  const Data& d = *data_;
+  return sizeof(float) * (d.memory.size() + d.below.size() + d.brightest.size() + d.n_buffer.size());
+}
+std::array<float, 4> LayerSet::rgba(int layer, std::size_t pixel) const noexcept {
+  const auto [red, green, blue] = data_->colour(layer, pixel);
+  return {red, green, blue, data_->alpha(layer, pixel)};
 }
 
 FragmentLists LayerSet::fragments() const {
@@ -300,8 +346,8 @@ FragmentLists LayerSet::fragments() const {
   lists.offsets.reserve(d.pixels() + 1);
   for (std::size_t i = 0; i < d.pixels(); ++i) {
     for (int layer = 0; layer < d.count && d.plane(layer, 0)[i] >= 0; ++layer) {
-      lists.fragments.push_back({1 / d.plane(layer, 0)[i], d.plane(layer, 1)[i], d.plane(layer, 2)[i],
-                                 d.plane(layer, 3)[i], d.plane(layer, 4)[i]});
+      const auto [red, green, blue] = d.colour(layer, i);
+      lists.fragments.push_back({1 / d.plane(layer, 0)[i], red, green, blue, d.alpha(layer, i)});
     }
     lists.offsets.push_back(lists.fragments.size());
   }

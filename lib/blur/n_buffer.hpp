@@ -34,6 +34,12 @@ class NBuffer {
   /// The range below a rectangle, clipped to the picture and widened to full blocks. A rectangle outside the picture
   /// has the range at the nearest edge.
   DepthRange below(const PixelRect& rect) const noexcept;
+  /// Count of stored numbers.
+  std::size_t size() const noexcept {
+    std::size_t numbers = row_least_.size() + row_most_.size() + row_layers_.size();
+    for (const Level& l : levels_) numbers += l.least.size() + l.most.size() + l.layers.size();
+    return numbers;
+  }
 
  private:
   struct Level {

@@ -43,7 +43,7 @@ class SingleImage {
     for (std::size_t i = 0; i < w.size(); ++i) {
       off_focus_[i] =
           static_cast<float>(circle.px_mm * (std::max(static_cast<double>(w[i]), 0.0) - circle.inverse_focus));
-      for (int c = 0; c < 3; ++c) pixels_[3 * i + static_cast<std::size_t>(c)] = layers.channel(0, c)[i];
+      for (std::size_t c = 0; c < 3; ++c) pixels_[3 * i + c] = layers.rgba(0, i)[c];
     }
     for (const petzval::PupilPoint& p : petzval::vogel_points(taps)) {
       const double radius = std::sqrt(p.v), angle = 2 * pi * p.u;

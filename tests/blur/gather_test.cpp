@@ -129,8 +129,8 @@ double from_first_layer(const BlurredImage& picture, const LayerSet& layers) {
     for (int column = 0; column < 150; ++column) {
       for (int c = 0; c < 4; ++c) {
         const float seen = picture.rgba[static_cast<std::size_t>(4 * (row * 150 + column) + c)];
-        const float layer =
-            layers.channel(0, c)[static_cast<std::size_t>((row + overscan) * layers.columns() + column + overscan)];
+        const float layer = layers.rgba(0, static_cast<std::size_t>((row + overscan) * layers.columns() + column +
+                                                                    overscan))[static_cast<std::size_t>(c)];
         worst = std::max(worst, static_cast<double>(std::abs(seen - layer)));
       }
     }

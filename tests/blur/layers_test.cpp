@@ -106,7 +106,9 @@ TEST(Peeling, EqualsThinningOfFullLists) {
     EXPECT_GT(peeled.count(), 6);
     for (int layer = 0; layer < peeled.count(); ++layer) {
       EXPECT_TRUE(std::ranges::equal(peeled.inverse_depth(layer), thinned.inverse_depth(layer)));
-      for (int c = 0; c < 4; ++c) EXPECT_TRUE(std::ranges::equal(peeled.channel(layer, c), thinned.channel(layer, c)));
+      for (std::size_t i = 0; i < peeled.inverse_depth(layer).size(); ++i) {
+        EXPECT_EQ(peeled.rgba(layer, i), thinned.rgba(layer, i));
+      }
     }
   }
 }
@@ -133,9 +135,9 @@ TEST(Lists, ComposeByAlpha) {
   LayerSet layers;
   layers.peel_fragments(lists, 1e-5, 4);
   ASSERT_EQ(layers.count(), 2);
-  EXPECT_FLOAT_EQ(layers.channel(0, 0)[0], 0.5f);
-  EXPECT_FLOAT_EQ(layers.channel(0, 1)[0], 0.5f);
-  EXPECT_FLOAT_EQ(layers.channel(0, 3)[0], 1);
+  EXPECT_FLOAT_EQ(layers.rgba(0, 0)[0], 0.5f);
+  EXPECT_FLOAT_EQ(layers.rgba(0, 0)[1], 0.5f);
+  EXPECT_FLOAT_EQ(layers.rgba(0, 0)[3], 1);
   EXPECT_FLOAT_EQ(layers.inverse_depth(1)[0], 1 / 5000.0f);
   EXPECT_TRUE(layers.opaque());
 }
@@ -150,7 +152,7 @@ TEST(Lists, IgnoreInvalidSurfacesAndKeepTheSky) {
   layers.peel_fragments(lists, 1e-5, 4);
   ASSERT_EQ(layers.count(), 1);
   EXPECT_EQ(layers.inverse_depth(0)[0], 0);
-  EXPECT_EQ(layers.channel(0, 2)[0], 3);
+  EXPECT_EQ(layers.rgba(0, 0)[2], 3);
   EXPECT_LT(layers.inverse_depth(0)[1], 0);
 }
 
@@ -161,8 +163,8 @@ TEST(Lists, RoundTripThroughLayers) {
   again.peel_fragments(layers.fragments(), 1e-6, 8);
   ASSERT_EQ(layers.count(), again.count());
   for (int layer = 0; layer < layers.count(); ++layer) {
-    for (int c = 0; c < 4; ++c) EXPECT_TRUE(std::ranges::equal(layers.channel(layer, c), again.channel(layer, c)));
     for (std::size_t i = 0; i < layers.inverse_depth(layer).size(); ++i) {
+      EXPECT_EQ(layers.rgba(layer, i), again.rgba(layer, i));
       EXPECT_NEAR(layers.inverse_depth(layer)[i], again.inverse_depth(layer)[i], 2e-10f);
     }
   }
@@ -186,10 +188,46 @@ TEST(Images, BecomeLayers) {
   const std::vector<LayerImage> images{{2, 1, rgba, depth}, {2, 1, rgba, behind}};
   layers.set(images);
   ASSERT_EQ(layers.count(), 2);
-  EXPECT_EQ(layers.channel(0, 1)[1], 5);
+  EXPECT_EQ(layers.rgba(0, 1)[1], 5);
   EXPECT_EQ(layers.inverse_depth(0)[1], 0);
   EXPECT_FLOAT_EQ(layers.inverse_depth(1)[0], 0.005f);
   EXPECT_LT(layers.inverse_depth(1)[1], 0);
+}
+
+TEST(Images, KeepThirteenBitsOfColoursOfAnySizeAndSign) {
+  // The second layer is the first with an alpha below 1.
+  std::mt19937 engine(4);
+  std::uniform_real_distribution<float> number(-1, 1);
+  constexpr int columns = 211, rows = 3;
+  std::vector<float> first, second;
+  for (int i = 0; i < columns * rows; ++i) {
+    for (int c = 0; c < 3; ++c) {
+      first.push_back(std::exp2(60 * number(engine)) * number(engine));
+      second.push_back(i == 0 ? 0.0f : number(engine));
+    }
+    first.push_back(1), second.push_back(i % 2 == 0 ? 1 : 0.5f);
+  }
+  const std::vector<float> depth(columns * rows, 100.0f), behind(columns * rows, 200.0f), far(columns * rows, 300.0f);
+  LayerSet layers;
+  const std::vector<LayerImage> images{
+      {columns, rows, first, depth}, {columns, rows, second, behind}, {columns, rows, first, far}};
+  layers.set(images);
+  ASSERT_EQ(layers.count(), 3);
+  EXPECT_FALSE(layers.opaque());
+  for (int layer = 0; layer < 3; ++layer) {
+    const std::vector<float>& given = layer == 1 ? second : first;
+    for (std::size_t i = 0; i < given.size() / 4; ++i) {
+      const auto kept = layers.rgba(layer, i);
+      for (std::size_t c = 0; c < 3; ++c) {
+        ASSERT_LE(std::abs(kept[c] - given[4 * i + c]), std::abs(given[4 * i + c]) * 0x1p-13f) << layer << ' ' << i;
+      }
+      ASSERT_EQ(kept[3], given[4 * i + 3]) << layer << ' ' << i;
+      ASSERT_FLOAT_EQ(layers.inverse_depth(layer)[i], 0.01f / static_cast<float>(layer + 1));
+    }
+  }
+  const std::size_t bytes = layers.memory_bytes();
+  layers.set(images);
+  EXPECT_EQ(layers.memory_bytes(), bytes);
 }
 
 TEST(Images, RefuseInconsistentImages) {

@@ -73,8 +73,8 @@ inline BlurredImage reference_gather(const LayerSet& layers, const LensRays& ray
               met = met_here = true;
             };
             for (int layer = 0; layer < layers.count() && through > 1e-3; ++layer) {
-              const double w = layers.inverse_depth(layer)[pixel], a = layers.channel(layer, 3)[pixel];
-              const double c = layers.channel(layer, channel)[pixel];
+              const double w = layers.inverse_depth(layer)[pixel], a = layers.rgba(layer, pixel)[3];
+              const double c = layers.rgba(layer, pixel)[channel];
               if (w >= 0 && w < low && front_here < 0) {
                 guess = c, guess_alpha = a, front_here = w, colour_here = c, alpha_here = a;
               }
@@ -106,8 +106,8 @@ inline BlurredImage reference_gather(const LayerSet& layers, const LensRays& ray
         // Rays without a known surface take the first layer.
         const auto below = static_cast<std::size_t>((row + overscan) * layers.columns() + column + overscan);
         if (layers.inverse_depth(0)[below] < 0) continue;
-        colour[channel] = layers.channel(0, channel)[below] * total / static_cast<double>(found.size());
-        alpha += layers.channel(0, 3)[below] / 3;
+        colour[channel] = layers.rgba(0, below)[channel] * total / static_cast<double>(found.size());
+        alpha += layers.rgba(0, below)[3] / 3;
       }
       for (const double c : colour) picture.rgba.push_back(static_cast<float>(c));
       picture.rgba.push_back(static_cast<float>(alpha));

@@ -104,7 +104,7 @@ bool alike(const Rgb& a, const Rgb& b, float tolerance = 1e-5f) {
   return std::max({std::abs(a.x - b.x), std::abs(a.y - b.y), std::abs(a.z - b.z)}) <= tolerance;
 }
 Rgb colour_of(const LayerSet& layers, int layer, std::size_t pixel) {
-  return {layers.channel(layer, 0)[pixel], layers.channel(layer, 1)[pixel], layers.channel(layer, 2)[pixel]};
+  return {layers.rgba(layer, pixel)[0], layers.rgba(layer, pixel)[1], layers.rgba(layer, pixel)[2]};
 }
 Rgb colour_of(const RgbImage& image, int x, int y) {
   return {image.pixel(x, y)[0], image.pixel(x, y)[1], image.pixel(x, y)[2]};

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <functional>
 #include <memory>
@@ -164,10 +165,12 @@ class PETZVAL_API LayerSet {
   int count() const noexcept;
   /// Inverse depths of a layer, columns x rows values; negative if empty.
   std::span<const float> inverse_depth(int layer) const noexcept;
-  /// Values of a channel of a layer, columns x rows. Channels 0 to 3: red, green, blue, alpha.
-  std::span<const float> channel(int layer, int channel) const noexcept;
+  /// Red, green, blue and alpha of a pixel of a layer. Colours are stored with 13 significant bits.
+  std::array<float, 4> rgba(int layer, std::size_t pixel) const noexcept;
   /// True if all surfaces have alpha 1.
   bool opaque() const noexcept;
+  /// Memory of the layers and of the depth bounds of rays, bytes.
+  std::size_t memory_bytes() const noexcept;
   /// Time that the last fill took to build the depth bounds of rays.
   double n_buffer_seconds() const noexcept;
   /// The layers as fragment lists, for files.
