@@ -7,6 +7,7 @@
 #include <cmath>
 #include <cstdint>
 #include <limits>
+#include <map>
 #include <optional>
 #include <random>
 #include <string>
@@ -83,6 +84,57 @@ struct Body {
   std::vector<Rgb> light;  ///< incident light at the mesh vertices
   renderer::Albedo albedo;
   Rgb emission{0, 0, 0};
+  std::optional<renderer::Sphere> lamp;  ///< in camera space
+};
+
+/// Area that a disc around (0, 0) and a quadrant, the points with smaller x and y, have in common.
+float area_below(float x, float y, float radius) {
+  x = std::clamp(x, -radius, radius), y = std::clamp(y, -radius, radius);
+  // Area left of x, below the line through the centre; of the disc below y in full.
+  const auto segment = [&](float t) {
+    return 0.5f * (t * std::sqrt(std::max(0.0f, radius * radius - t * t)) + radius * radius * std::asin(t / radius));
+  };
+  // Columns from -radius to x have the height clamp(y, -h, h) + h, where h is half the height of the disc.
+  const float edge = std::sqrt(std::max(0.0f, radius * radius - y * y));  // beyond, columns are shorter than |y|
+  const auto integral = [&](float from, float to, bool outer) {
+    if (!(to > from)) return 0.0f;
+    const float half = segment(to) - segment(from);
+    return outer ? (y > 0 ? 2 * half : 0.0f) : half + y * (to - from);
+  };
+  return integral(-radius, std::min(x, -edge), true) + integral(-edge, std::clamp(x, -edge, edge), false) +
+         integral(edge, x, true);
+}
+
+/// A small light as a disc in the picture of a layer camera.
+struct Lamp {
+  glm::vec2 raster{0, 0};
+  float radius_px = 0, inverse_depth = 0;
+  Rgb radiance{0, 0, 0};
+
+  /// The fraction of a pixel, centred at a raster position, that the lamp covers.
+  float covers(const glm::vec2& centre) const {
+    const glm::vec2 to = centre - raster + 0.5f, from = to - 1.0f;
+    return std::max(0.0f, area_below(to.x, to.y, radius_px) - area_below(from.x, to.y, radius_px) -
+                              area_below(to.x, from.y, radius_px) + area_below(from.x, from.y, radius_px));
+  }
+};
+
+/// The light of lamps in pixels of the layers.
+class LampPixels {
+ public:
+  struct Light {
+    float area, inverse_depth;  ///< area: fraction of the pixel
+    Rgb radiance;
+  };
+  /// @param pixels number of pixels; 0: no lamps
+  explicit LampPixels(std::size_t pixels) : lit_(pixels) {}
+  void add(std::size_t pixel, const Light& light) { lit_[pixel] = true, lights_[pixel].push_back(light); }
+  bool any(std::size_t pixel) const { return !lit_.empty() && lit_[pixel]; }
+  const std::vector<Light>& at(std::size_t pixel) const { return lights_.at(pixel); }
+
+ private:
+  std::vector<bool> lit_;
+  std::map<std::size_t, std::vector<Light>> lights_;
 };
 
 /// Rays of a packet. Directions have z = 1 mm, so that ray distances are depths.
@@ -99,11 +151,11 @@ struct alignas(64) Packet {
     std::fill_n(r.dir_z, packet, 1.0f);
     std::fill_n(r.tnear, packet, infinity), std::fill_n(r.tfar, packet, -infinity);
   }
-  void set(int lane, const glm::vec3& from, const glm::vec2& run, float near) {
+  void set(int lane, const glm::vec3& from, const glm::vec2& run, float near, float far = infinity) {
     RTCRay16& r = rays.ray;
     r.org_x[lane] = from.x, r.org_y[lane] = from.y, r.org_z[lane] = from.z;
     r.dir_x[lane] = run.x, r.dir_y[lane] = run.y, r.dir_z[lane] = 1;
-    r.tnear[lane] = near, r.tfar[lane] = infinity, r.time[lane] = 0, r.mask[lane] = ~0u, r.flags[lane] = 0;
+    r.tnear[lane] = near, r.tfar[lane] = far, r.time[lane] = 0, r.mask[lane] = ~0u, r.flags[lane] = 0;
     rays.hit.geomID[lane] = RTC_INVALID_GEOMETRY_ID, rays.hit.instID[0][lane] = RTC_INVALID_GEOMETRY_ID;
     valid[lane] = -1;
   }
@@ -114,7 +166,7 @@ struct alignas(64) Packet {
 
 struct LitScene::Data {
   renderer::EmbreeDevice device;
-  renderer::EmbreeScene scene;
+  renderer::EmbreeScene scene, surfaces;  ///< surfaces: without lamps; null if there are no lamps
   std::vector<Body> bodies;
   glm::mat3 turn{1};  ///< camera to world
   glm::vec3 origin{0, 0, 0};
@@ -132,8 +184,6 @@ struct LitScene::Data {
     origin = pose.position;
 
     device.reset(rtcNewDevice(nullptr));
-    scene.reset(rtcNewScene(device.get()));
-    rtcSetSceneBuildQuality(scene.get(), RTC_BUILD_QUALITY_HIGH);
     for (const renderer::Object& object : description.objects) {
       Body& body = bodies.emplace_back();
       body.mesh = std::visit([](const auto& shape) { return mesh_of(shape); }, object.shape);
@@ -141,10 +191,17 @@ struct LitScene::Data {
       body.albedo = albedo_of(object.material), body.emission = object.emission;
       light(body);
       for (glm::vec3& p : body.mesh.positions) p = (p - origin) * turn;
+      const auto* const sphere = std::get_if<renderer::Sphere>(&object.shape);
+      if (sphere && object.emission != Rgb{0, 0, 0}) {
+        body.lamp = renderer::Sphere{(sphere->centre - origin) * turn, sphere->radius};
+      }
     }
-    for (const Body& body : bodies) attach(body.mesh);
-    rtcCommitScene(scene.get());
+    build(scene, [](const Body&) { return true; });
+    if (std::ranges::any_of(bodies, [](const Body& body) { return body.lamp.has_value(); })) {
+      build(surfaces, [](const Body& body) { return !body.lamp; });
+    }
   }
+  RTCScene without_lamps() const { return surfaces ? surfaces.get() : scene.get(); }
 
   /// Lights the vertices: from the sky by their inclination, and from the sun, low behind the camera on the left.
   void light(Body& body) const {
@@ -173,7 +230,17 @@ struct LitScene::Data {
     }
   }
 
-  void attach(const renderer::Mesh& mesh) {
+  template <class Has>
+  void build(renderer::EmbreeScene& of, const Has& has) {
+    of.reset(rtcNewScene(device.get()));
+    rtcSetSceneBuildQuality(of.get(), RTC_BUILD_QUALITY_HIGH);
+    for (std::size_t i = 0; i < bodies.size(); ++i) {
+      if (has(bodies[i])) attach(bodies[i].mesh, of.get(), static_cast<unsigned>(i));
+    }
+    rtcCommitScene(of.get());
+  }
+
+  void attach(const renderer::Mesh& mesh, RTCScene to, unsigned number) {
     RTCGeometry geometry = rtcNewGeometry(device.get(), RTC_GEOMETRY_TYPE_TRIANGLE);
     void* const corners = rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
                                                   sizeof(glm::vec3), mesh.positions.size());
@@ -182,16 +249,16 @@ struct LitScene::Data {
                                                     3 * sizeof(std::uint32_t), mesh.triangles.size());
     std::copy(mesh.triangles.begin(), mesh.triangles.end(), static_cast<std::array<std::uint32_t, 3>*>(triangles));
     rtcCommitGeometry(geometry);
-    rtcAttachGeometry(scene.get(), geometry);
+    rtcAttachGeometryByID(to, geometry, number);
     rtcReleaseGeometry(geometry);
   }
 
   /// Finds the first surfaces hit by the rays of a packet, and their colours.
-  void trace(Packet& p) const {
+  void trace(Packet& p, RTCScene in) const {
     RTCIntersectContext context;
     rtcInitIntersectContext(&context);
     context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
-    rtcIntersect16(p.valid, scene.get(), &context, &p.rays);
+    rtcIntersect16(p.valid, in, &context, &p.rays);
     for (int lane = 0; lane < packet; ++lane) {
       if (p.valid[lane]) p.colours[lane] = colour(p, lane);
     }
@@ -211,6 +278,60 @@ struct LitScene::Data {
     const Rgb light = w * body.light[t[0]] + u * body.light[t[1]] + v * body.light[t[2]];
     return body.emission +
            light * at(body.albedo, surface_point, uv) * (0.7f + 0.6f * noise.at(surface_point * (1 / 35.0f)));
+  }
+
+  /// The lamps in front of a camera, at raster positions of its picture.
+  std::vector<Lamp> lamps(const petzval::LayerCamera& camera, const glm::vec3& eye) const {
+    std::vector<Lamp> found;
+    for (const Body& body : bodies) {
+      if (!body.lamp || !(body.lamp->centre.z - eye.z > body.lamp->radius)) continue;
+      const glm::vec3 run = (body.lamp->centre - eye) / (body.lamp->centre.z - eye.z);
+      const auto focal = static_cast<float>(camera.focal_px);
+      // The image of a sphere away from the axis is an ellipse; the disc has its area.
+      found.push_back(
+          {.raster = glm::vec2(camera.axis) + focal * glm::vec2{run.x, -run.y},
+           .radius_px = focal * body.lamp->radius / (body.lamp->centre.z - eye.z) * std::sqrt(glm::length(run)),
+           .inverse_depth = 1 / (body.lamp->centre.z - eye.z),
+           .radiance = body.emission});
+    }
+    return found;
+  }
+
+  /// The pixels of the layers that lamps cover. Surfaces that are nearer by less than the bias hide parts of a lamp,
+  /// because both are in the same layer.
+  LampPixels lamp_pixels(const petzval::LayerCamera& camera, const glm::vec3& eye, double bias) const {
+    LampPixels found(surfaces ? static_cast<std::size_t>(camera.layer_columns() * camera.layer_rows()) : 0);
+    Packet p;
+    for (const Lamp& lamp : lamps(camera, eye)) {
+      const glm::ivec2 begin = glm::max(glm::ivec2(glm::floor(lamp.raster - lamp.radius_px)), -camera.overscan),
+                       end = glm::min(glm::ivec2(glm::ceil(lamp.raster + lamp.radius_px)),
+                                      glm::ivec2(camera.columns, camera.rows) + camera.overscan);
+      for (int row = begin.y; row < end.y; ++row) {
+        for (int column = begin.x; column < end.x; ++column) {
+          const glm::vec2 from = glm::max(glm::vec2(column, row), lamp.raster - lamp.radius_px),
+                          size = glm::min(glm::vec2(column, row) + 1.0f, lamp.raster + lamp.radius_px) - from;
+          int inside = 0, hidden = 0;
+          for (int lane = 0; lane < packet; ++lane) {
+            const float part = (static_cast<float>(lane) + 0.5f) / packet;
+            const glm::vec2 at = from + size * glm::vec2(part, glm::fract(part * packet * 0.618034f));
+            const glm::vec2 run = (at - glm::vec2(camera.axis)) / static_cast<float>(camera.focal_px);
+            p.set(lane, eye, {run.x, -run.y}, 1 / (lamp.inverse_depth + static_cast<float>(bias)),
+                  1 / lamp.inverse_depth);
+            p.valid[lane] = glm::length(at - lamp.raster) < lamp.radius_px ? -1 : 0;
+          }
+          trace(p, surfaces.get());
+          for (int lane = 0; lane < packet; ++lane) {
+            if (p.valid[lane]) ++inside, hidden += p.hit(lane);
+          }
+          const float area = lamp.covers(glm::vec2(column, row) + 0.5f) *
+                             (1 - static_cast<float>(hidden) / static_cast<float>(std::max(inside, 1)));
+          const auto pixel =
+              static_cast<std::size_t>((row + camera.overscan) * camera.layer_columns() + column + camera.overscan);
+          if (area > 0) found.add(pixel, {area, lamp.inverse_depth, lamp.radiance});
+        }
+      }
+    }
+    return found;
   }
 };
 
@@ -279,8 +400,9 @@ void for_squares(int columns, int rows, int threads, const Work& work) {
 
 }  // namespace
 
-petzval::LayerSet::Peel LitScene::peel(const petzval::LayerCamera& camera, int threads) const {
-  return [this, camera, threads](int, std::span<const float> below, const petzval::LayerPlanes& out) {
+petzval::LayerSet::Peel LitScene::peel(const petzval::LayerCamera& camera, int threads, double bias) const {
+  return [this, camera, threads, bias = static_cast<float>(bias), lamps = data_->lamp_pixels(camera, eye_, bias)](
+             int, std::span<const float> below, const petzval::LayerPlanes& out) {
     std::atomic<std::size_t> written = 0;
     const auto focal = static_cast<float>(camera.focal_px);
     const glm::vec2 axis = glm::vec2(camera.axis) + static_cast<float>(camera.overscan);
@@ -302,12 +424,25 @@ petzval::LayerSet::Peel LitScene::peel(const petzval::LayerCamera& camera, int t
         any = true;
       }
       if (!any) return;
-      data_->trace(p);
+      data_->trace(p, data_->without_lamps());
       std::size_t count = 0;
       for (int lane = 0; lane < packet; ++lane) {
         if (!p.valid[lane]) continue;
         const std::size_t pixel = pixel_of(lane);
-        const float w = p.hit(lane) ? 1 / p.rays.ray.tfar[lane] : 0.0f;
+        float w = p.hit(lane) ? 1 / p.rays.ray.tfar[lane] : 0.0f;
+        if (lamps.any(pixel)) {
+          // Lamps that are no farther behind the nearest surface or lamp than the bias belong to the same layer.
+          const std::vector<LampPixels::Light>& lights = lamps.at(pixel);
+          for (const LampPixels::Light& l : lights)
+            w = l.inverse_depth < below[pixel] ? std::max(w, l.inverse_depth) : w;
+          Rgb light{0, 0, 0};
+          float area = 0;
+          for (const LampPixels::Light& l : lights) {
+            if (l.inverse_depth < below[pixel] && l.inverse_depth >= w - bias)
+              light += l.area * l.radiance, area += l.area;
+          }
+          p.colours[lane] = light + std::max(0.0f, 1 - area) * p.colours[lane];
+        }
         out.inverse_depth[pixel] = std::min(w, std::nextafter(below[pixel], 0.0f));
         out.red[pixel] = p.colours[lane].x, out.green[pixel] = p.colours[lane].y, out.blue[pixel] = p.colours[lane].z;
         ++count;
@@ -349,12 +484,13 @@ petzval::RgbImage LitScene::reference(const petzval::LensRays& rays, int threads
     }
   }
 
+  const std::vector<Lamp> lamps = data_->lamps(camera, eye_);
   for_squares(camera.columns, camera.rows, threads, [&](const Square& square) {
     thread_local std::vector<petzval::LayerRay> own;
     own.resize(count * packet);
     glm::vec3 sums[packet] = {};
     Packet p;
-    float weights[packet] = {};
+    float weights[packet] = {}, at_x[packet] = {}, at_y[packet] = {}, slope_x[packet] = {}, slope_y[packet] = {};
     for (int channel = 0; channel < rays.channels(); ++channel) {
       for (int lane = 0; !same && lane < packet; ++lane) {
         if (!square.has(lane)) continue;
@@ -372,8 +508,32 @@ petzval::RgbImage LitScene::reference(const petzval::LensRays& rays, int threads
           const glm::vec2 run = (at - axis) / focal, from = glm::vec2(ray.slope) / focal;
           p.set(lane, eye_ + glm::vec3{from.x, -from.y, 0}, {run.x, -run.y}, 0);
           weights[lane] = static_cast<float>(ray.weight);
+          at_x[lane] = at.x, at_y[lane] = at.y;
+          slope_x[lane] = static_cast<float>(ray.slope.x), slope_y[lane] = static_cast<float>(ray.slope.y);
         }
-        data_->trace(p);
+        data_->trace(p, data_->without_lamps());
+        // Lamps are integrated over a pixel around each ray: rays through the centres of pixels miss lamps.
+        float free[packet];
+        Rgb light[packet] = {};
+        std::fill_n(free, packet, 1.0f);
+        for (const Lamp& lamp : lamps) {
+          const float reach = lamp.radius_px + 0.5f;
+          int near[packet], any = 0;
+          for (int lane = 0; lane < packet; ++lane) {
+            near[lane] = (std::abs(at_x[lane] + slope_x[lane] * lamp.inverse_depth - lamp.raster.x) < reach) &
+                         (std::abs(at_y[lane] + slope_y[lane] * lamp.inverse_depth - lamp.raster.y) < reach);
+            any |= near[lane];
+          }
+          for (int lane = 0; any && lane < packet; ++lane) {
+            if (!near[lane] || !p.valid[lane] || p.rays.ray.tfar[lane] * lamp.inverse_depth < 1) continue;
+            const float area = lamp.covers(
+                {at_x[lane] + slope_x[lane] * lamp.inverse_depth, at_y[lane] + slope_y[lane] * lamp.inverse_depth});
+            light[lane] += area * lamp.radiance, free[lane] -= area;
+          }
+        }
+        for (int lane = 0; lane < packet; ++lane) {
+          p.colours[lane] = light[lane] + std::max(free[lane], 0.0f) * p.colours[lane];
+        }
         for (int lane = 0; lane < packet; ++lane) {
           if (!p.valid[lane]) continue;
           if (rays.channels() == 1) {

@@ -47,9 +47,13 @@ class LitScene {
   petzval::Vec3<double> vertex(std::size_t index) const;
 
   /// The layers of a camera, for LayerSet::peel: a ray through the centre of each pixel, starting at the last surface.
-  petzval::LayerSet::Peel peel(const petzval::LayerCamera& camera, int threads) const;
+  /// Lamps (spheres that emit light) cover fractions of pixels: their light is integrated over each pixel.
+  ///
+  /// @param bias as in PeelPlan (1/mm): lamps behind a surface by less belong to the layer of the surface
+  petzval::LayerSet::Peel peel(const petzval::LayerCamera& camera, int threads, double bias = 0) const;
 
-  /// The reference picture: all rays of each pixel, traced through the triangles of the scene.
+  /// The reference picture: all rays of each pixel, traced through the triangles of the scene. As in the layers, the
+  /// light of a lamp is integrated over a pixel around each ray.
   petzval::RgbImage reference(const petzval::LensRays& rays, int threads) const;
 
  private:

@@ -295,7 +295,12 @@ class Job {
     const auto last = flip.begin() + static_cast<std::ptrdiff_t>(0.99 * static_cast<double>(flip.size()));
     std::nth_element(flip.begin(), last, flip.end());
     json["flip_p99"] = *last;
-    json["energy_drift"] = lens_blur::energy_drift(picture, reference);
+    const double drift = lens_blur::energy_drift(picture, reference);
+    json["energy_drift"] = drift;
+    if (std::abs(drift) > 0.01) {
+      std::cerr << "note: the picture has " << examples::number(100 * std::abs(drift), 2) << " % "
+                << (drift > 0 ? "more" : "less") << " light than the reference\n";
+    }
 
     // Flicker: change of the error from frame to frame.
     std::vector<float> error(picture.pixels.size());

@@ -76,6 +76,12 @@ TEST_F(LensBlurProgram, WritesPicturesAndTheirMeasures) {
   EXPECT_NE(picture("out/sharp.pfm").pixels, picture("out/blur.pfm").pixels);
 }
 
+TEST_F(LensBlurProgram, KeepsTheEnergyOfSmallLights) {
+  const json result = blur({"--scene", "street", "--thin-lens", "50", "--f-number", "2.8", "--focus", "5000", "--size",
+                            "400x300", "--rays", "32", "--highlights-above", "0", "--supersample", "1", "--compare"});
+  EXPECT_LT(std::abs(result["energy_drift"].get<double>()), 0.01);
+}
+
 TEST_F(LensBlurProgram, PlaneInFocusIsUnchanged) {
   write_files(2000, 2000);
   const json result = blur(joined({files(), thin, {"--focus", "2000", "--highlights-above", "0"}}));

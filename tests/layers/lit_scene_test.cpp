@@ -237,6 +237,31 @@ TEST(LitScene, NeverNeedsMoreThanTenLayersThroughTheLensOfThePaper) {
   EXPECT_GE(most, 8);
 }
 
+TEST(LitScene, IntegratesLampsOverPixels) {
+  // A lamp between the centres of four pixels, alone and half hidden by a board just in front of it.
+  const LayerCamera camera = crop_of_paper(12, 10);
+  for (const float radius_px : {0.1f, 0.4f, 1.3f, 4.0f}) {
+    for (const bool hidden : {false, true}) {
+      constexpr float away = 20000;
+      const float mm = away / static_cast<float>(camera.focal_px);
+      const glm::vec3 centre{0.03f * mm, -0.02f * mm, -away};
+      SceneDescription scene{.name = "lamp", .sky = {.colour = {0, 0, 0}}, .pose = {}};
+      scene.objects.push_back(lamp(renderer::Sphere{centre, radius_px * mm}, {100, 50, 25}));
+      if (hidden) {
+        scene.objects.push_back(
+            lamp(renderer::Quad{centre + mm * glm::vec3{-9, -9, 9}, {9 * mm, 0, 0}, {0, 18 * mm, 0}}, {0, 0, 0}));
+      }
+      const LitScene lit(scene);
+      LayerSet layers;
+      layers.peel({.camera = camera, .bias = 1e-4}, 4, lit.peel(camera, 2, 1e-4));
+      double light = 0;
+      for (std::size_t i = 0; i < 120; ++i) light += layers.rgba(0, i)[1];
+      const double area = std::numbers::pi * radius_px * radius_px * (hidden ? 0.5 : 1);
+      EXPECT_NEAR(light / (50 * area), 1, hidden ? 0.06 : 1e-3) << radius_px << ' ' << hidden;
+    }
+  }
+}
+
 TEST(References, PinholeEqualsTheFirstLayer) {
   const LayerCamera camera = crop_of_paper(51, 38);  // not multiples of the packet size
   const LitScene lit(Soup(7, 300, 4, 1000, 10000, 0.04).scene());
