@@ -7,10 +7,10 @@
 #include <cmath>
 #include <cstdint>
 #include <limits>
-#include <map>
 #include <optional>
 #include <random>
 #include <string>
+#include <unordered_map>
 #include <variant>
 
 #include <glm/glm.hpp>
@@ -90,19 +90,15 @@ struct Body {
 /// Area that a disc around (0, 0) and a quadrant, the points with smaller x and y, have in common.
 float area_below(float x, float y, float radius) {
   x = std::clamp(x, -radius, radius), y = std::clamp(y, -radius, radius);
-  // Area left of x, below the line through the centre; of the disc below y in full.
-  const auto segment = [&](float t) {
-    return 0.5f * (t * std::sqrt(std::max(0.0f, radius * radius - t * t)) + radius * radius * std::asin(t / radius));
+  const auto height = [&](float t) { return std::sqrt(std::max(0.0f, radius * radius - t * t)); };
+  // Integral of half the height of the disc between two columns.
+  const auto half = [&](float from, float to) {
+    const auto up_to = [&](float t) { return t * height(t) + radius * radius * std::asin(t / radius); };
+    return to > from ? (up_to(to) - up_to(from)) / 2 : 0.0f;
   };
-  // Columns from -radius to x have the height clamp(y, -h, h) + h, where h is half the height of the disc.
-  const float edge = std::sqrt(std::max(0.0f, radius * radius - y * y));  // beyond, columns are shorter than |y|
-  const auto integral = [&](float from, float to, bool outer) {
-    if (!(to > from)) return 0.0f;
-    const float half = segment(to) - segment(from);
-    return outer ? (y > 0 ? 2 * half : 0.0f) : half + y * (to - from);
-  };
-  return integral(-radius, std::min(x, -edge), true) + integral(-edge, std::clamp(x, -edge, edge), false) +
-         integral(edge, x, true);
+  // Between -edge and edge the quadrant cuts columns at y; beyond, they lie entirely below or above y.
+  const float edge = height(y), cut = std::clamp(x, -edge, edge), outer = y > 0 ? 2.0f : 0.0f;
+  return outer * (half(-radius, std::min(x, -edge)) + half(edge, x)) + half(-edge, cut) + y * (cut + edge);
 }
 
 /// A small light as a disc in the picture of a layer camera.
@@ -119,23 +115,12 @@ struct Lamp {
   }
 };
 
-/// The light of lamps in pixels of the layers.
-class LampPixels {
- public:
-  struct Light {
-    float area, inverse_depth;  ///< area: fraction of the pixel
-    Rgb radiance;
-  };
-  /// @param pixels number of pixels; 0: no lamps
-  explicit LampPixels(std::size_t pixels) : lit_(pixels) {}
-  void add(std::size_t pixel, const Light& light) { lit_[pixel] = true, lights_[pixel].push_back(light); }
-  bool any(std::size_t pixel) const { return !lit_.empty() && lit_[pixel]; }
-  const std::vector<Light>& at(std::size_t pixel) const { return lights_.at(pixel); }
-
- private:
-  std::vector<bool> lit_;
-  std::map<std::size_t, std::vector<Light>> lights_;
+/// The light of a lamp in one pixel of the layers.
+struct LampLight {
+  float area, inverse_depth;  ///< area: fraction of the pixel
+  Rgb radiance;
 };
+using LampPixels = std::unordered_map<std::size_t, std::vector<LampLight>>;
 
 /// Rays of a packet. Directions have z = 1 mm, so that ray distances are depths.
 struct alignas(64) Packet {
@@ -300,7 +285,7 @@ struct LitScene::Data {
   /// The pixels of the layers that lamps cover. Surfaces that are nearer by less than the bias hide parts of a lamp,
   /// because both are in the same layer.
   LampPixels lamp_pixels(const petzval::LayerCamera& camera, const glm::vec3& eye, double bias) const {
-    LampPixels found(surfaces ? static_cast<std::size_t>(camera.layer_columns() * camera.layer_rows()) : 0);
+    LampPixels found;
     Packet p;
     for (const Lamp& lamp : lamps(camera, eye)) {
       const glm::ivec2 begin = glm::max(glm::ivec2(glm::floor(lamp.raster - lamp.radius_px)), -camera.overscan),
@@ -327,7 +312,7 @@ struct LitScene::Data {
                              (1 - static_cast<float>(hidden) / static_cast<float>(std::max(inside, 1)));
           const auto pixel =
               static_cast<std::size_t>((row + camera.overscan) * camera.layer_columns() + column + camera.overscan);
-          if (area > 0) found.add(pixel, {area, lamp.inverse_depth, lamp.radiance});
+          if (area > 0) found[pixel].push_back({area, lamp.inverse_depth, lamp.radiance});
         }
       }
     }
@@ -430,16 +415,14 @@ petzval::LayerSet::Peel LitScene::peel(const petzval::LayerCamera& camera, int t
         if (!p.valid[lane]) continue;
         const std::size_t pixel = pixel_of(lane);
         float w = p.hit(lane) ? 1 / p.rays.ray.tfar[lane] : 0.0f;
-        if (lamps.any(pixel)) {
+        if (const auto lit = lamps.find(pixel); lit != lamps.end()) {
           // Lamps that are no farther behind the nearest surface or lamp than the bias belong to the same layer.
-          const std::vector<LampPixels::Light>& lights = lamps.at(pixel);
-          for (const LampPixels::Light& l : lights)
-            w = l.inverse_depth < below[pixel] ? std::max(w, l.inverse_depth) : w;
+          const auto left = [&](const LampLight& l) { return l.inverse_depth < below[pixel]; };
+          for (const LampLight& l : lit->second) w = left(l) ? std::max(w, l.inverse_depth) : w;
           Rgb light{0, 0, 0};
           float area = 0;
-          for (const LampPixels::Light& l : lights) {
-            if (l.inverse_depth < below[pixel] && l.inverse_depth >= w - bias)
-              light += l.area * l.radiance, area += l.area;
+          for (const LampLight& l : lit->second) {
+            if (left(l) && l.inverse_depth >= w - bias) light += l.area * l.radiance, area += l.area;
           }
           p.colours[lane] = light + std::max(0.0f, 1 - area) * p.colours[lane];
         }

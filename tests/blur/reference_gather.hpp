@@ -73,8 +73,8 @@ inline BlurredImage reference_gather(const LayerSet& layers, const LensRays& ray
               met = met_here = true;
             };
             for (int layer = 0; layer < layers.count() && through > 1e-3; ++layer) {
-              const double w = layers.inverse_depth(layer)[pixel], a = layers.rgba(layer, pixel)[3];
-              const double c = layers.rgba(layer, pixel)[channel];
+              const auto rgba = layers.rgba(layer, pixel);
+              const double w = layers.inverse_depth(layer)[pixel], a = rgba[3], c = rgba[channel];
               if (w >= 0 && w < low && front_here < 0) {
                 guess = c, guess_alpha = a, front_here = w, colour_here = c, alpha_here = a;
               }
