@@ -8,6 +8,7 @@
 #include <tuple>
 #include <utility>
 
+#include "core/low_discrepancy.hpp"
 #include "petzval/core/parallel.hpp"
 
 namespace petzval::blur_detail {
@@ -87,6 +88,7 @@ struct Highlights::Stamp {
 /// Rays that meet a highlight, relative to its pixel.
 struct Highlights::Splat {
   double x, y, light;  ///< position in the picture, and the light of the ray
+  double half = 0;     ///< half the width of the tent over which the light is spread
 };
 struct Highlights::Lines {
   std::size_t channel = 0, most = 0;  ///< most: largest number of lines
@@ -137,11 +139,6 @@ void Highlights::find(const GatherOptions& options) {
       }
     }
   }
-  if (bright.empty()) return;
-  // Blocks of one pixel: with larger blocks, the count would depend on the position of a pixel in its block.
-  CountsIn bright_in;
-  bright_in.fill(layers_.columns, layers_.rows, 1, bright);
-
   const RayTable& table = rays_.table;
   std::vector<CoveredArea> areas;
   for (std::size_t row = 0; row < table.node_rows; ++row) {
@@ -153,17 +150,30 @@ void Highlights::find(const GatherOptions& options) {
     const int within = std::clamp(position - overscan_, 0, end);
     return std::min(static_cast<std::size_t>(within / table.step), nodes - 1);
   };
-  const auto rays = static_cast<double>(rays_.rays_of_set());
-  for (Highlight h : bright) {
+  for (Highlight& h : bright) {
     h.area = static_cast<float>(areas[node(h.row, table.area.rows, table.node_rows) * table.node_columns +
                                       node(h.column, table.area.columns, table.node_columns)]
                                     .at(h.inverse_depth));
-    // A wide bright surface needs no stamps, because enough rays of each pixel meet it.
-    const int reach = static_cast<int>(std::sqrt(h.area / std::numbers::pi));
-    const double covered =
-        bright_in({h.column - reach, h.row - reach, h.column + reach, h.row + reach}) / std::max(h.area, 1.0f);
-    if (h.area > rays && covered < 0.5 && covered * rays < 32) highlights_.push_back(h);
   }
+  // A wide bright surface needs no stamps, because enough rays of each pixel meet it. Much dimmer surfaces, such as a
+  // white wall behind a lamp, do not count. Blocks of one pixel: with larger blocks, the count would depend on the
+  // position of a pixel in its block.
+  constexpr float much = 16;
+  const auto rays = static_cast<double>(rays_.rays_of_set());
+  const auto brightness = [](const Highlight& h) { return std::max({h.light[0], h.light[1], h.light[2]}); };
+  CountsIn bright_in;
+  for (float level = above; !bright.empty(); level *= much) {
+    bright_in.fill(layers_.columns, layers_.rows, 1, bright);
+    for (const Highlight& h : bright) {
+      if (brightness(h) > level * much) continue;
+      const int reach = static_cast<int>(std::sqrt(h.area / std::numbers::pi));
+      const double covered =
+          bright_in({h.column - reach, h.row - reach, h.column + reach, h.row + reach}) / std::max(h.area, 1.0f);
+      if (h.area > rays && covered < 0.5 && covered * rays < 32) highlights_.push_back(h);
+    }
+    std::erase_if(bright, [&](const Highlight& h) { return brightness(h) <= level * much; });
+  }
+  std::ranges::stable_sort(highlights_, {}, &Highlight::row);
   counts_.fill(layers_.columns, layers_.rows, NBuffer::block, highlights_);
   std::size_t at = 0;
   for (int row = 0; row <= layers_.rows; ++row) {
@@ -276,6 +286,64 @@ void Highlights::extend(Lines& lines, const Highlight& h, std::size_t count, con
   }
 }
 
+/// Sets the widths of tents that overlap the tents of adjacent rays, so that the sum is smooth.
+///
+/// Rays of a fixed difference of indices have a fixed offset in the pupil, apart from its borders. The area between
+/// such neighbours of a ray is the part of the blur that the ray stands for.
+void Highlights::set_tents(std::vector<Splat>& splats, std::size_t rays, double area) {
+  const core_detail::Kronecker<2> points;
+  struct Offset {
+    std::size_t index;
+    double u, v;
+  };
+  std::vector<Offset> nearest;
+  for (std::size_t i = 1; i < rays / 2; ++i) {
+    const auto [u, v] = points(i);
+    nearest.push_back({i, std::remainder(u - points(0)[0], 1), std::remainder(v - points(0)[1], 1)});
+  }
+  std::ranges::partial_sort(nearest, nearest.begin() + 2, {}, [](const Offset& o) { return o.u * o.u + o.v * o.v; });
+  const double of_pupil = std::abs(nearest[0].u * nearest[1].v - nearest[0].v * nearest[1].u);
+  const double usual = area / static_cast<double>(rays);
+  for (std::size_t i = 0; i < rays; ++i) {
+    Splat& s = splats[i];
+    Vec2<double> to[2];
+    bool known = s.light > 0;
+    for (std::size_t k = 0; k < 2; ++k) {
+      const auto [index, u, dv] = nearest[k];
+      const double next = points(i)[1] + dv, last = points(i)[1] - dv;
+      const bool ahead = i + index < rays && next > 0 && next < 1, behind = i >= index && last > 0 && last < 1;
+      known = known && (ahead || behind);
+      if (!known) break;
+      const Splat& other = splats[ahead ? i + index : i - index];
+      known = other.light > 0;
+      to[k] = {other.x - s.x, other.y - s.y};
+    }
+    const double own =
+        known ? std::abs(to[0].x * to[1].y - to[0].y * to[1].x) / of_pupil / static_cast<double>(rays) : usual;
+    s.half = std::max(0.75, 2.1 * std::sqrt(std::min(own, 9 * usual)));
+  }
+}
+
+/// Moves rays towards their mean, so that tents keep the second moments of the rays.
+void Highlights::contract(std::vector<Splat>& splats) {
+  double light = 0, x = 0, y = 0, xx = 0, xy = 0, yy = 0, variance = 0;
+  for (const Splat& s : splats) {
+    light += s.light, x += s.light * s.x, y += s.light * s.y, variance += s.light * s.half * s.half / 6;
+  }
+  x /= light, y /= light, variance /= light;
+  for (const Splat& s : splats) {
+    xx += s.light * (s.x - x) * (s.x - x), xy += s.light * (s.x - x) * (s.y - y), yy += s.light * (s.y - y) * (s.y - y);
+  }
+  xx /= light, xy /= light, yy /= light;
+  // Half the variance relative to the moments; a blur that is narrower than the tents is kept.
+  const double determinant = xx * yy - xy * xy, part = variance / 2 / determinant;
+  if (!(determinant > 2 * variance * (xx + yy))) return;
+  for (Splat& s : splats) {
+    const double off_x = s.x - x, off_y = s.y - y;
+    s.x -= part * (yy * off_x - xy * off_y), s.y -= part * (xx * off_y - xy * off_x);
+  }
+}
+
 Highlights::Stamp Highlights::stamp_of(const Highlight& h, double density, Lines& lines,
                                        const std::stop_token& stop) const {
   keep_on(stop, "gather");
@@ -283,8 +351,7 @@ Highlights::Stamp Highlights::stamp_of(const Highlight& h, double density, Lines
   // Highlights of a group share the lines, except where lines are cheap.
   if (rays_.shift_invariant) lines.splats.clear();
   extend(lines, h, rays, stop);
-  // The light of a ray is spread over a tent. The tent overlaps the tents of adjacent rays, so that the sum is uniform.
-  const double half = std::max(0.75, 2.1 * std::sqrt(h.area / static_cast<double>(rays)));
+  set_tents(lines.splats, rays, h.area);
   std::vector<float> through(rays + 64, 1.0f);
   hide(h, lines, rays, through);
 
@@ -295,10 +362,14 @@ Highlights::Stamp Highlights::stamp_of(const Highlight& h, double density, Lines
     Splat s = lines.splats[i];
     stamp.hidden |= s.light > 0 && through[i] < 1;
     s.light *= through[i] / static_cast<double>(rays);
-    if (!(s.light > 0)) continue;
-    splats.push_back(s);
-    left = std::min(left, s.x - half), right = std::max(right, s.x + half);
-    top = std::min(top, s.y - half), bottom = std::max(bottom, s.y + half);
+    if (s.light > 0) splats.push_back(s);
+  }
+  contract(splats);
+  double widest = 0;
+  for (const Splat& s : splats) {
+    left = std::min(left, s.x - s.half), right = std::max(right, s.x + s.half);
+    top = std::min(top, s.y - s.half), bottom = std::max(bottom, s.y + s.half);
+    widest = std::max(widest, s.half);
   }
   if (splats.empty()) return stamp;
 
@@ -307,9 +378,9 @@ Highlights::Stamp Highlights::stamp_of(const Highlight& h, double density, Lines
   stamp.rows = static_cast<int>(std::ceil(bottom)) - stamp.top;
   // Fractions of a tent's light in rows of pixels; the rows have a fixed length, for SIMD instructions.
   constexpr std::size_t lanes = 8;
-  std::vector<float> across((static_cast<std::size_t>(2 * half) + 1 + lanes) / lanes * lanes), down(across.size());
+  std::vector<float> across((static_cast<std::size_t>(2 * widest) + 1 + lanes) / lanes * lanes), down(across.size());
   stamp.light.resize(static_cast<std::size_t>(stamp.columns) * static_cast<std::size_t>(stamp.rows) + across.size());
-  const auto fractions = [half](double centre, int first, std::vector<float>& of_pixels) {
+  const auto fractions = [](double centre, double half, int first, std::vector<float>& of_pixels) {
     const auto begin = static_cast<float>((first - centre) / half), step = static_cast<float>(1 / half);
     const auto before = [](float t) {
       t = t < -1 ? -1 : t > 1 ? 1 : t;
@@ -321,9 +392,9 @@ Highlights::Stamp Highlights::stamp_of(const Highlight& h, double density, Lines
     }
   };
   for (const Splat& s : splats) {
-    const int column = static_cast<int>(std::floor(s.x - half)), row = static_cast<int>(std::floor(s.y - half)),
-              end = static_cast<int>(std::ceil(s.y + half));
-    fractions(s.x, column, across), fractions(s.y, row, down);
+    const int column = static_cast<int>(std::floor(s.x - s.half)), row = static_cast<int>(std::floor(s.y - s.half)),
+              end = static_cast<int>(std::ceil(s.y + s.half));
+    fractions(s.x, s.half, column, across), fractions(s.y, s.half, row, down);
     float* light = &stamp.light[static_cast<std::size_t>(row - stamp.top) * static_cast<std::size_t>(stamp.columns) +
                                 static_cast<std::size_t>(column - stamp.left)];
     for (int j = 0; j < end - row; ++j, light += stamp.columns) {

@@ -42,8 +42,8 @@ class Highlights {
   std::size_t count() const noexcept { return highlights_.size(); }
   /// Number of highlights in a rectangle of the layers, widened to full blocks.
   std::uint32_t count_in(const PixelRect& rect) const noexcept { return counts_(rect); }
-  /// Removes the light of the highlights from a copy of a rectangle: `layers` layers of `planes` planes, `plane_stride` apart,
-  /// with rows of `columns` pixels.
+  /// Removes the light of the highlights from a copy of a rectangle: `layers` layers of `planes` planes, `plane_stride`
+  /// apart, with rows of `columns` pixels.
   void cut(const PixelRect& rect, int columns, int layers, int planes, std::size_t plane_stride, float* copy) const;
   /// Adds the light of the highlights to the picture.
   void spread(const GatherOptions& options, BlurredImage& picture) const;
@@ -63,6 +63,8 @@ class Highlights {
   /// @param density number of rays for each pixel covered by the blur
   /// @param lines   the lines of the group so far
   Stamp stamp_of(const Highlight& highlight, double density, Lines& lines, const std::stop_token& stop) const;
+  static void set_tents(std::vector<Splat>& splats, std::size_t rays, double area);
+  static void contract(std::vector<Splat>& splats);
   const Highlight& brightest(const Group& group) const;
   /// The part of the picture over which a group is distributed; it has no columns if it lies outside the picture.
   RasterArea area_of(const Group& group, std::size_t channel) const;

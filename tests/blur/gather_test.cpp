@@ -454,6 +454,61 @@ TEST(Highlights, AreLightsWithMoreBlurPixelsThanRays) {
   }
 }
 
+TEST(Highlights, AreLightsBesideAWhiteWall) {
+  // A wall that is bright, but dimmer than the lamp by far, fills the blur of the lamp.
+  static float wall;
+  const Scene lamp = [](double x, double y) {
+    std::vector<Surface> seen;
+    if (std::abs(x) < 0.0014 && std::abs(y) < 0.0014) seen.push_back({1 / 1000.0f, 1000, 500, 0.5f});
+    seen.push_back({1 / 2000.0f, wall, wall, wall});
+    return seen;
+  };
+  const LensRays rays = thin_rays(30, 32);
+  std::uint64_t lights[2];
+  for (const bool white : {false, true}) {
+    wall = white ? 2.0f : 0.1f;
+    lights[white] = gather(layers_of(lamp, rays), rays).statistics.highlights;
+  }
+  EXPECT_GT(lights[0], 0u);
+  EXPECT_EQ(lights[1], lights[0]);
+}
+
+TEST(Highlights, AreSmoothIfRaysSpreadUnevenly) {
+  // The map of the pupil (x, y) to the blur (x + 0.4 x^2, y) has a density of 1 / (1 + 0.8 x).
+  const LayerCamera camera = small_camera();
+  constexpr double radius = 22, w = 1 / 1000.0, stretch = 0.4;
+  const LensRays::Source source = [=](int, const Vec2<double>& raster, std::span<const PupilPoint> points,
+                                      std::span<LayerRay> found) {
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      const double turn = 2 * std::numbers::pi * points[i].u, r = std::sqrt(points[i].v), x = r * std::cos(turn);
+      const Vec2<double> slope = Vec2<double>{x + stretch * x * x, r * std::sin(turn)} * (2 * radius / w);
+      found[i] = {raster - slope * (0.5 * w), slope, 1};
+    }
+  };
+  const LensRays rays(camera, vogel_points(32), 1, source, {.nearest_mm = 1000});
+  const Scene lamp = [](double x, double y) {
+    std::vector<Surface> seen;
+    if (std::abs(x) < 0.0014 && std::abs(y) < 0.0014) seen.push_back({1 / 1000.0f, 1000, 500, 0.5f});
+    seen.push_back({1 / 2000.0f, 0, 0, 0});
+    return seen;
+  };
+  const BlurredImage picture = gather(layers_of(lamp, rays), rays);
+  ASSERT_GT(picture.statistics.highlights, 0u);
+  double worst = 0;  // where rays are sparse
+  for (int row = 0; row < 100; ++row) {
+    for (int column = 0; column < 150; ++column) {
+      // The film is on the other side of the lamp.
+      const double at = -(column + 0.5 - 75) / radius, y = (row + 0.5 - 50) / radius;
+      const double x = (std::sqrt(std::max(0.0, 1 + 4 * stretch * at)) - 1) / (2 * stretch);
+      if (x < 0.2 || std::hypot(x, y) > 0.9) continue;
+      const double level =
+          picture.statistics.highlights * 1000 / (std::numbers::pi * radius * radius) / (1 + 2 * stretch * x);
+      worst = std::max(worst, std::abs(picture.rgba[static_cast<std::size_t>(4 * (row * 150 + column))] / level - 1));
+    }
+  }
+  EXPECT_LT(worst, 0.1);
+}
+
 TEST(Highlights, StopIfCancelled) {
   const Scene lamps = [](double x, double y) {
     const bool lamp = std::hypot(std::remainder(x, 0.1), std::remainder(y, 0.05)) < 0.002;

@@ -191,4 +191,20 @@ TEST(Points, HaveTheRadiusOfTheirCircleOfConfusionOnEveryPath) {
   }
 }
 
+TEST(Points, HaveTheRadiusOfTheirCircleOfConfusionAsHighlights) {
+  constexpr double focus = 1 / 1000.0, rounding = 4 / 12.0;
+  const LayerCamera camera = layer_camera(90, 70, radians(10));
+  const LensRays rays =
+      LensRays::thin(camera, {.radius_mm = 25, .inverse_focus = focus}, vogel_points(16), {.nearest_mm = 250});
+  for (const double wanted : {9.2, 11.7, 13.77, 27.54}) {
+    const double w = focus + wanted / (25 * camera.focal_px);
+    const PeelPlan plan = plan_peel(rays, 0.5 / w, 1e7);
+    const BlurredImage picture = gather(grey_pixel(plan, w, 0.5 * w), rays, {.highlights_above = 0.1});
+    ASSERT_EQ(picture.statistics.highlights, 1u);
+    const Disc disc = disc_of(picture);
+    EXPECT_NEAR(std::sqrt(disc.radius * disc.radius - rounding), wanted, 0.02);
+    EXPECT_NEAR(disc.light, 0.5, 0.005);
+  }
+}
+
 }  // namespace physics_test
