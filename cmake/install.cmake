@@ -74,4 +74,8 @@ install(FILES ${PROJECT_BINARY_DIR}/petzvalConfig.cmake ${PROJECT_BINARY_DIR}/pe
   DESTINATION ${package_dir})
 
 install(DIRECTORY data/ DESTINATION ${CMAKE_INSTALL_DATADIR}/petzval)
-install(FILES LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR})
+install(FILES LICENSE README.md DESTINATION ${CMAKE_INSTALL_DOCDIR})
+# The guides keep their folders, which their links name.
+install(DIRECTORY lib/docs DESTINATION ${CMAKE_INSTALL_DOCDIR}/lib FILES_MATCHING PATTERN "*.md")
+install(DIRECTORY examples/pictures DESTINATION ${CMAKE_INSTALL_DOCDIR}/examples)
+install(FILES examples/hosts/README.md DESTINATION ${CMAKE_INSTALL_DOCDIR}/examples/hosts)
