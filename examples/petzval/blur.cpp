@@ -29,7 +29,6 @@
 #include "support/cli.hpp"
 #include "support/contact_sheet.hpp"
 #include "support/files.hpp"
-#include "support/interrupt.hpp"
 #include "support/picture_files.hpp"
 #include "support/text.hpp"
 
@@ -114,11 +113,9 @@ class Job {
   void run() {
     const std::filesystem::path folder = options_.out_folder;
     examples::make_folder(folder);
-    const examples::Interrupt interrupt;
     std::optional<examples::Progress> progress;
     if (options_.frames > 1) progress.emplace("petzval blur", options_.frames);
     for (std::uint32_t frame = 0; frame < options_.frames; ++frame) {
-      examples::stop_if_asked();
       if (progress) progress->step("frame " + std::to_string(frame + 1));
       std::string number = std::to_string(frame + 1);
       number.insert(0, 4 - std::min<std::size_t>(number.size(), 4), '0');

@@ -23,6 +23,7 @@
 #include "support/cli.hpp"
 #include "support/design.hpp"
 #include "support/files.hpp"
+#include "support/interrupt.hpp"
 #include "support/iris_setup.hpp"
 #include "support/load_lens.hpp"
 #include "support/picture_files.hpp"
@@ -275,6 +276,7 @@ int commands::colour(int argc, char** argv) {
                                         .threads = examples::threads()});
         const auto name =
             loaded.id + "_" + examples::number(p.field_deg) + "deg_focus_" + examples::number(p.focus_mm) + "mm.exr";
+        const examples::Together uninterrupted;
         petzval::ExrPart part = petzval::spectral_image(p.image.psf, weights);
         part.texts.merge(examples::parameters());
         petzval::write_exr({&part, 1}, folder / name);

@@ -46,6 +46,7 @@ void print_overview(std::ostream& out) {
   }
   out << "\npetzval help COMMAND   options of a command, with an example; petzval help COMMAND all: every detail\n"
          "petzval help files     formats of points, keys and tables\n"
+         "petzval help WORD      commands for a task: mtf, distortion, bokeh, dof, blender, nuke, zemax, ...\n"
          "petzval --version\n";
 }
 
@@ -72,7 +73,7 @@ Lenses: data/README.md describes the JSON format; petzval convert reads and writ
 Reports (--json, and JSON files in --out DIR): lib/docs/reports.md and picture_reports.md list the keys.
 
 Exit status: 0 success; 1 error, with one line on standard error; 2 unknown command; 3 not converted
-  because of --strict; 130 interrupted (Ctrl-C), with finished work kept if the command has --resume.
+  because of --strict; 130 interrupted (Ctrl-C or SIGTERM): finished pictures are kept, --resume continues.
 )";
 }
 
@@ -81,9 +82,12 @@ int unknown(std::string_view name) {
   for (const Group& group : commands::groups()) {
     for (const Command& command : group.commands) names.emplace_back(command.name);
   }
-  const std::string near = examples::nearest(name, names);
+  const std::string task = commands::first_command_for(name), near = examples::nearest(name, names);
   std::cerr << "petzval: command = \"" << name << "\"; must be a command"
-            << (near.empty() ? " (petzval help)" : "; did you mean " + near + "?") << '\n';
+            << (!task.empty()  ? "; see petzval " + task + " (petzval help " + std::string(name) + ')'
+                : near.empty() ? " (petzval help)"
+                               : "; did you mean " + near + "?")
+            << '\n';
   return 2;
 }
 
@@ -109,6 +113,11 @@ int help(int argc, char** argv) {
   if (argc < 3) return print_overview(std::cout), 0;
   const std::string_view topic = argv[2];
   if (topic == "files") return print_files(), 0;
+  if (!find(topic)) {
+    std::string words;
+    for (int i = 2; i < argc; ++i) words += argv[i];
+    if (commands::print_help_on(words)) return 0;
+  }
   std::string flag = "--help";
   const std::string_view next = argc > 3 ? argv[3] : "";
   if (next == "merge" || next == "query") {  // commands of psf-set and render
@@ -124,7 +133,8 @@ int help(int argc, char** argv) {
 int main(int argc, char** argv) {
   const std::string_view first = argc > 1 ? argv[1] : "help";
   if (first == "help" || first == "--help" || first == "-h") return help(argc, argv);
-  if (first == "--version") return std::cout << "petzval " PETZVAL_VERSION "\n", 0;
+  if (first == "--version" || first == "version" || first == "-v")
+    return std::cout << "petzval " PETZVAL_VERSION "\n", 0;
   if (first == "--man-page") return commands::print_man_page(), 0;
   if (first == "--bash-completion") return commands::print_bash_completion(), 0;
   if (first == "--zsh-completion") return commands::print_zsh_completion(), 0;

@@ -2,17 +2,19 @@
 // Renders the image of a point light for several focus distances: an EXR and a PNG for each, a contact sheet, and a
 // JSON file of measurements.
 //
-//   petzval psf data/lenses/double_gauss_100mm_f1.35.json --at 1000
-//             --focus 800,900,1000,1100,1200 --out out
+//   petzval psf double_gauss_100mm_f1.35 --at 1m --focus 80cm,90cm,1m,1.1m,1.2m --out out
+//   petzval psf planar_50mm_f1.4 double_gauss_52mm_f1.8 --at 5m --focus 2m --fields 0,10,20 --out out
 #include "commands.hpp"
 
 #include <algorithm>
 #include <cmath>
+#include <iomanip>
 #include <limits>
 #include <numbers>
 #include <numeric>
 #include <optional>
 #include <span>
+#include <sstream>
 #include <string>
 #include <vector>
 
@@ -27,6 +29,7 @@
 #include "support/cli.hpp"
 #include "support/design.hpp"
 #include "support/files.hpp"
+#include "support/interrupt.hpp"
 #include "support/iris_setup.hpp"
 #include "support/load_lens.hpp"
 #include "support/picture_files.hpp"
@@ -41,11 +44,12 @@ constexpr int picture_pixels = 512;
 
 struct Options {
   std::vector<std::string> formats;
-  examples::LensInput lens_file;
+  examples::LensInput lens_file;  ///< its options; `lenses` has the names
+  std::vector<std::string> lenses;
   std::string model = "exact_double", out_folder, white_point = "D65";
   examples::FocusFlags focus;
-  std::vector<double> focus_mm, wavelengths_nm{petzval::d_line_nm};
-  double subject_mm = 0, field_deg = 0, tolerance = 0, width_mm = 0, exposure = 1;
+  std::vector<double> focus_mm, fields_deg{0}, wavelengths_nm{petzval::d_line_nm};
+  double subject_mm = 0, tolerance = 0, width_mm = 0, exposure = 1;
   bool diffraction = false;
   examples::IrisSetup iris;
   examples::BokehFlags bokeh;
@@ -58,11 +62,17 @@ struct Options {
 };
 
 struct Picture {
-  double focus_mm = 0;
+  double field_deg = 0, focus_mm = 0;
   examples::BokehScene scene;
   std::optional<petzval::Camera> camera;
   petzval::PointImage image;
   std::optional<petzval::DiffractionPsf> waves;  ///< with --diffraction
+};
+
+/// A lens and its pictures, by field and focus.
+struct Subject {
+  examples::LoadedLens loaded;
+  std::vector<Picture> pictures;
 };
 
 petzval::DiffractionPsf waves_of(const Picture& picture, double half_width_mm) {
@@ -80,13 +90,18 @@ petzval::PointImage image_of(const Picture& picture, const petzval::PsfOptions& 
   return petzval::point_image(picture.scene.lens, picture.scene.light, options);
 }
 
-/// Half of the width of all pictures with diffraction: the given width, or 15 Airy radii and the blur of the rays.
-double half_width_of_waves(std::span<const Picture> pictures, const Options& options) {
+/// Half of the width of all pictures: the given width, or the largest blur, with diffraction at least 15 Airy radii.
+/// 0 for the pictures of one field of one lens by rays, which fit their own blur.
+double common_half_width(std::span<const Subject> subjects, const Options& options) {
   if (options.width_mm > 0) return options.width_mm / 2;
   double half_width = 0;
-  for (const Picture& p : pictures) {
-    const double blur = image_of(p, {.samples = 1u << 12, .pixels = 16}).size.max_radius;
-    half_width = std::max({half_width, 1.1 * blur, 15 * petzval::airy_radius(p.scene.lens)});
+  if (!options.diffraction && subjects.size() * options.fields_deg.size() == 1) return half_width;
+  for (const Subject& subject : subjects) {
+    for (const Picture& p : subject.pictures) {
+      const double blur = image_of(p, {.samples = 1u << 12, .pixels = 16}).size.max_radius;
+      half_width =
+          std::max({half_width, 1.1 * blur, options.diffraction ? 15 * petzval::airy_radius(p.scene.lens) : 0});
+    }
   }
   return half_width;
 }
@@ -95,46 +110,41 @@ double half_width_of_waves(std::span<const Picture> pictures, const Options& opt
 std::vector<Picture> focused(const examples::LoadedLens& loaded, const Options& options,
                              const petzval::BokehControls& controls) {
   const petzval::Lens lens = examples::stopped_down(loaded.lens, options.iris);
-  const examples::BokehSetup setup{.light_mm = options.subject_mm,
-                                   .origin = options.focus.distance_origin(),
-                                   .criterion = options.focus.options().criterion,
-                                   .field_rad = petzval::radians(options.field_deg)};
   std::vector<Picture> pictures;
-  for (const double focus : options.focus_mm) {
-    Picture picture{focus, examples::focused_scene(lens, focus, setup), {}, {}, {}};
-    examples::want_light(picture.scene.lens, picture.scene.light, "--fields");
-    if (!options.plain()) {
-      picture.camera =
-          examples::camera_of(picture.scene, {.model = *petzval::model_named(options.model), .bokeh = controls});
+  for (const double field : options.fields_deg) {
+    const examples::BokehSetup setup{.light_mm = options.subject_mm,
+                                     .origin = options.focus.distance_origin(),
+                                     .criterion = options.focus.options().criterion,
+                                     .field_rad = petzval::radians(field)};
+    for (const double focus : options.focus_mm) {
+      Picture picture{field, focus, examples::focused_scene(lens, focus, setup), {}, {}, {}};
+      examples::want_light(picture.scene.lens, picture.scene.light, "--fields");
+      if (!options.plain()) {
+        picture.camera =
+            examples::camera_of(picture.scene, {.model = *petzval::model_named(options.model), .bokeh = controls});
+      }
+      pictures.push_back(std::move(picture));
     }
-    pictures.push_back(std::move(picture));
   }
   return pictures;
 }
 
-/// The contact sheet. All tiles have the scale of the largest blur.
-examples::Sheet contact_sheet(const std::vector<Picture>& pictures, const examples::LoadedLens& loaded,
-                              const Options& options) {
-  double half_width = std::max(options.width_mm / 2, 1e-4);  // a perfect point has no size
-  for (const Picture& p : pictures) {
-    if (p.waves) half_width = p.waves->pixel_mm * p.waves->pixels / 2;
-    if (!p.waves && options.width_mm == 0) half_width = std::max(half_width, 1.08 * p.image.size.max_radius);
-  }
+/// A row of the contact sheet of a lens: a field.
+examples::SheetRow sheet_row(std::span<const Picture> pictures, const examples::LoadedLens& loaded,
+                             const Options& options, double half_width) {
   const int tile_pixels = examples::tile_pixels(pictures.size());
   examples::SheetRow row{
       .title = loaded.lens.name(),
       .subtitle = "point light at " + examples::number(options.subject_mm) + " mm, " +
-                  examples::number(options.field_deg) + "°; distances from the " + options.focus.from() + "; focus " +
-                  options.focus.criterion +
+                  examples::number(pictures.front().field_deg) + "°; distances from the " + options.focus.from() +
+                  "; focus " + options.focus.criterion +
                   (options.iris.f_number > 0 ? "; f/" + examples::number(options.iris.f_number) : "; wide open") +
                   (options.iris.blades > 0 ? "; " + std::to_string(options.iris.blades) + " blades" : "") +
                   (options.model == "exact_double" ? "" : "; " + options.model) +
                   (options.diffraction ? "; with diffraction" : ""),
       .pixel_mm = 2 * half_width / tile_pixels,
       .tiles = {}};
-  examples::Progress progress("contact sheet", pictures.size());
   for (const Picture& p : pictures) {
-    progress.step(examples::focus_caption(p.focus_mm));
     // Waves replace the picture below; only the numbers of the rays are needed.
     const auto image = p.waves ? p.image
                                : image_of(p, {.samples = options.samples,
@@ -150,7 +160,7 @@ examples::Sheet contact_sheet(const std::vector<Picture>& pictures, const exampl
     }
     row.tiles.push_back(std::move(tile));
   }
-  return {"Bokeh of a point light", {std::move(row)}, examples::bokeh_notes()};
+  return row;
 }
 
 Json to_json(std::span<const Picture> pictures, const examples::LoadedLens& loaded, const Options& options,
@@ -171,7 +181,7 @@ Json to_json(std::span<const Picture> pictures, const examples::LoadedLens& load
             {"subject_distance_mm", finite_or_null(options.subject_mm)},
             {"distance_from", options.focus.origin},
             {"f_number_real", petzval::real_f_number(examples::stopped_down(loaded.lens, options.iris))},
-            {"field_deg", options.field_deg},
+            {"fields_deg", options.fields_deg},
             {"samples", options.samples},
             {"with_diffraction", options.diffraction},
             {"results", Json::array()}};
@@ -184,7 +194,8 @@ Json to_json(std::span<const Picture> pictures, const examples::LoadedLens& load
     const double iris_area =
         options.bokeh.iris_image.empty() ? petzval::iris_area(iris) : petzval::iris_area(iris, controls.weight_map);
     json["results"].push_back(
-        {{"focus_mm", finite_or_null(p.focus_mm)},
+        {{"field_deg", p.field_deg},
+         {"focus_mm", finite_or_null(p.focus_mm)},
          {"film_z_mm", p.scene.lens.film_z()},
          {"criterion", options.focus.criterion},
          {"throughput", p.image.throughput},
@@ -210,41 +221,85 @@ Json to_json(std::span<const Picture> pictures, const examples::LoadedLens& load
   return json;
 }
 
-/// Traces the pictures. Each complete picture is written at once, with the measurements of all complete pictures, so
-/// that an interrupted run loses only the current picture.
-void render(std::vector<Picture> pictures, const examples::LoadedLens& loaded, const Options& options,
-            const petzval::BokehControls& controls) {
-  const std::filesystem::path folder = options.out_folder;
-  examples::make_folder(folder);
-  const std::filesystem::path numbers = folder / (loaded.id + "_bokeh.json");
-  {
-    const double half_width = options.diffraction ? half_width_of_waves(pictures, options) : 0;
-    examples::Progress progress("bokeh", pictures.size());
-    for (std::size_t i = 0; i < pictures.size(); ++i) {
-      Picture& p = pictures[i];
-      progress.step(examples::focus_caption(p.focus_mm));
-      p.image = image_of(p, {.samples = options.samples,
-                             .tolerance = options.tolerance,
-                             .pixels = picture_pixels,
-                             .half_width_mm = options.width_mm / 2,
-                             .threads = examples::threads()});
-      if (options.diffraction) p.waves = waves_of(p, half_width);
-      const std::string stem = loaded.id + "_focus_" + examples::number(p.focus_mm) + "mm";
-      const petzval::RgbImage image =
-          p.waves ? examples::irradiance(*p.waves, options.light) : examples::irradiance(p.image.psf, options.light);
-      for (const auto& file : examples::write_picture(image, examples::expose(image, options.exposure).picture,
-                                                      options.formats, folder / stem)) {
-        options.output.file(file);
-      }
-      const std::span whole = std::span(pictures).first(i + 1);
-      examples::write_text(numbers, to_json(whole, loaded, options, controls).dump(1) + '\n');
+/// A table of all results, from their JSON. Infinite distances are empty.
+std::string to_csv(const Json& lenses, std::span<const Subject> subjects) {
+  constexpr std::array keys{"field_deg", "focus_mm",      "film_z_mm",       "throughput",
+                            "radius_mm", "rms_radius_mm", "picture_pixel_mm"};
+  std::ostringstream csv;
+  csv << "lens";
+  for (const char* key : keys) csv << ',' << key;
+  for (std::size_t i = 0; i < lenses.size(); ++i) {
+    for (const Json& result : lenses[i]["results"]) {
+      csv << '\n' << std::quoted(subjects[i].loaded.id, '"', '"');
+      for (const char* key : keys) csv << ',' << (result[key].is_null() ? "" : result[key].dump());
     }
   }
-  examples::write_png(examples::draw_sheet(contact_sheet(pictures, loaded, options)),
-                      folder / (loaded.id + "_bokeh.png"));
-  options.output.file(folder / (loaded.id + "_bokeh.png"));
+  csv << '\n';
+  return csv.str();
+}
+
+/// Traces the pictures. Each complete picture is written at once, with the measurements of all complete pictures, so
+/// that an interrupted run loses only the current picture.
+void render(std::vector<Subject> subjects, const Options& options, const petzval::BokehControls& controls) {
+  const std::filesystem::path folder = options.out_folder;
+  examples::make_folder(folder);
+  const bool one = subjects.size() == 1;
+  const std::filesystem::path numbers = folder / ((one ? subjects.front().loaded.id + '_' : "") + "bokeh.json");
+  const double half_width = common_half_width(subjects, options);
+  Json lenses = Json::array();
+  const auto report = [&] { return one ? lenses.front() : Json{{"lenses", lenses}}; };
+  {
+    examples::Progress progress("bokeh", subjects.size() * subjects.front().pictures.size());
+    for (Subject& subject : subjects) {
+      const examples::LoadedLens& loaded = subject.loaded;
+      lenses.emplace_back();
+      for (std::size_t i = 0; i < subject.pictures.size(); ++i) {
+        Picture& p = subject.pictures[i];
+        progress.step((one ? "" : loaded.id + ", ") + examples::focus_caption(p.focus_mm));
+        p.image = image_of(p, {.samples = options.samples,
+                               .tolerance = options.tolerance,
+                               .pixels = picture_pixels,
+                               .half_width_mm = half_width,
+                               .threads = examples::threads()});
+        if (options.diffraction) p.waves = waves_of(p, half_width);
+        const std::string field = options.fields_deg.size() > 1 ? '_' + examples::number(p.field_deg) + "deg" : "",
+                          stem = loaded.id + field + "_focus_" + examples::number(p.focus_mm) + "mm";
+        const examples::Together uninterrupted;
+        const petzval::RgbImage image =
+            p.waves ? examples::irradiance(*p.waves, options.light) : examples::irradiance(p.image.psf, options.light);
+        for (const auto& file : examples::write_picture(image, examples::expose(image, options.exposure).picture,
+                                                        options.formats, folder / stem)) {
+          options.output.file(file);
+        }
+        p.image.psf.counts = {};  // the sheet traces its own picture; many lenses and fields must fit into memory
+        lenses.back() = to_json(std::span(subject.pictures).first(i + 1), loaded, options, controls);
+        examples::write_text(numbers, report().dump(1) + '\n');
+      }
+    }
+  }
+  double tile_half_width = half_width;
+  for (const Picture& p : subjects.front().pictures) {  // the only subject, unless all pictures have one width
+    if (half_width == 0) tile_half_width = std::max({tile_half_width, 1e-4, 1.08 * p.image.size.max_radius});
+  }
+  examples::Progress progress("contact sheet", subjects.size());
+  for (const Subject& subject : subjects) {
+    progress.step(subject.loaded.id);
+    examples::Sheet sheet{"Bokeh of a point light", {}, examples::bokeh_notes()};
+    for (std::size_t i = 0; i < subject.pictures.size(); i += options.focus_mm.size()) {
+      sheet.rows.push_back(sheet_row(std::span(subject.pictures).subspan(i, options.focus_mm.size()), subject.loaded,
+                                     options, tile_half_width));
+    }
+    const std::filesystem::path file = folder / (subject.loaded.id + "_bokeh.png");
+    examples::write_png(examples::draw_sheet(sheet), file);
+    options.output.file(file);
+  }
+  if (!one || options.fields_deg.size() > 1) {
+    const std::filesystem::path table = std::filesystem::path(numbers).replace_extension(".csv");
+    examples::write_text(table, to_csv(lenses, subjects));
+    options.output.file(table);
+  }
   options.output.file(numbers);
-  options.output.report(to_json(pictures, loaded, options, controls));
+  options.output.report(report());
 }
 
 }  // namespace
@@ -256,15 +311,19 @@ int commands::psf(int argc, char** argv) {
       "--diffraction by waves.\n"
       "Writes to DIR and prints the paths, each picture as soon as it is complete: LENS_focus_<D>mm.exr (float, "
       "linear: fraction of the light in the paraxial entrance pupil, per mm^2 of film), LENS_focus_<D>mm.png (each "
-      "with its own exposure), LENS_bokeh.png (all at one scale) and LENS_bokeh.json. Images show the film as a "
+      "with its own exposure), LENS_bokeh.png (all at one scale) and LENS_bokeh.json. Several lenses or fields: "
+      "pictures LENS_<F>deg_focus_<D>mm of one scale, and one table of all, bokeh.csv and bokeh.json (one lens: "
+      "LENS_bokeh). Images show the film as a "
       "photograph does, rotated by 180 degrees (+x to the left, +y down); centroids are in the axes of the film. "
       "throughput is the light on the film divided by the light on the paraxial entrance pupil of the open stop; "
       "throughput_of_round_iris is divided by the light on the pupil of a round iris with the same f-number, which is "
       "smaller with --iris-area equal. The lens is focused at the primary wavelength, which is nearest to the d line "
       "(587.5618 nm).",
       "petzval psf");
-  examples::add_lens(app, options.lens_file);
-  examples::add_length(app, "--at", options.subject_mm, examples::positive_length, "distance of the light (mm), or inf")
+  examples::add_lenses(app, options.lens_file, options.lenses);
+  examples::add_length(app, "--at", options.subject_mm, examples::positive_length,
+                       "distance of the light (mm), or inf; at --fields of 90 degrees and more, along the ray from the "
+                       "entrance pupil")
       ->required()
       ->default_str("");
   examples::add_lengths(app, "--focus", options.focus_mm, examples::positive_length, "focus distances (mm), or inf")
@@ -277,8 +336,8 @@ int commands::psf(int argc, char** argv) {
   examples::add_model(app, options.model)->capture_default_str();
   examples::add_iris(app, options.iris);
   examples::add_bokeh(app, options.bokeh);
-  examples::add_number(app, "--fields", options.field_deg, examples::field_angle,
-                       "angle of the light towards +y, seen from the paraxial entrance pupil (degrees)");
+  examples::add_numbers(app, "--fields", options.fields_deg, examples::field_angle,
+                        "angles of the light towards +y, seen from the paraxial entrance pupil (degrees)");
   examples::add_samples(app, options.samples);
   examples::add_number(
       app, "--tolerance", options.tolerance, {std::numeric_limits<double>::min(), 1, "a number above 0, at most 1"},
@@ -308,8 +367,20 @@ int commands::psf(int argc, char** argv) {
     }
     options.light = examples::white_light(options.white_point);
     examples::rgb_weights(options.wavelengths_nm, options.light);  // throws for invalid wavelengths before the work
-    const auto loaded = examples::load_lens(options.lens_file, options.wavelengths_nm);
     const petzval::BokehControls controls = examples::controls_of(options.bokeh);
-    render(focused(loaded, options, controls), loaded, options, controls);
+    std::vector<Subject> subjects;
+    for (const std::string& lens : options.lenses) {
+      options.lens_file.file = lens;
+      Subject subject{examples::load_lens(options.lens_file, options.wavelengths_nm), {}};
+      for (const Subject& other : subjects) {
+        if (other.loaded.id == subject.loaded.id) {
+          throw petzval::Error("LENS = " + lens + ": another lens is named " + subject.loaded.id +
+                               "; names must differ");
+        }
+      }
+      subject.pictures = focused(subject.loaded, options, controls);
+      subjects.push_back(std::move(subject));
+    }
+    render(std::move(subjects), options, controls);
   });
 }

@@ -27,7 +27,6 @@
 #include "support/cli.hpp"
 #include "support/design.hpp"
 #include "support/files.hpp"
-#include "support/interrupt.hpp"
 #include "support/iris_setup.hpp"
 #include "support/load_lens.hpp"
 #include "support/psf_job.hpp"
@@ -239,10 +238,8 @@ void compute(const Options& options) {
   job.begin(folder, options.shard);
   const std::vector<std::size_t> left = left_to_do(job, options);
   {
-    const examples::Interrupt interrupt;
     examples::Progress progress("PSFs", left.size());
     for (const std::size_t node : left) {
-      examples::stop_if_asked();
       progress.step(job.name(node));
       job.write(folder, node, scenes.kernel(job.axes().point(node)));
       if (options.shard.count > 1) options.output.file(job.file(folder, node));

@@ -148,8 +148,8 @@ class Job {
     expressive_ = examples::expressive_of(options.expressive, lens_, film_);
   }
 
-  /// Renders and writes the results. Returns false if a signal ended the work.
-  bool run() {
+  /// Renders and writes the results.
+  void run() {
     const renderer::LensCamera lens = camera(chosen_.model);
     refuse_walls(lens);
     say_where_focus_is_steep(lens.camera());
@@ -184,12 +184,10 @@ class Job {
     }();
     say(file);
     if (report.finished && options_.noise > 0) say_noise(sums, job.at("white"));
-    if (report.interrupted) {
-      std::cerr << "note: interrupted; the same command with --resume continues\n";
-    } else if (!report.finished) {
+    if (!report.finished && !report.interrupted) {
       std::cerr << "note: out of time; the same command with --resume continues\n";
     }
-    if (options_.shard.count > 1) return !report.interrupted;
+    if (options_.shard.count > 1) return;
     write_results(sums, job,
                   {{"model", petzval::name(chosen_.model)},
                    {"why", chosen_.why},
@@ -199,7 +197,6 @@ class Job {
                    {"paths_per_second", report.seconds > 0 ? static_cast<double>(report.paths) / report.seconds : 0},
                    {"finished", report.finished && !report.interrupted}},
                   options_.formats, folder, options_.exposure);
-    return !report.interrupted;
   }
 
  private:
@@ -220,7 +217,7 @@ class Job {
     if (options.scene.ends_with(".json")) return renderer::read_scene(options.scene);
     if (auto scene = renderer::built_in_scene(options.scene)) return std::move(*scene);
     throw petzval::Error("--scene = \"" + options.scene + "\"; must be " + std::string(renderer::built_in_scene_names) +
-                         " or a file that ends in .json");
+                         " or a file that ends in .json (petzval blur and view have other scenes)");
   }
   renderer::LensCamera camera(petzval::ModelKind model) const {
     return {petzval::Camera(
@@ -444,10 +441,10 @@ int commands::render(int argc, char** argv) {
       "petzval render");
   app.add_option(
          "--scene", options.scene,
-         "scene; balls, chess, statues, street or table, for a film of 36x24 mm and lenses of 100 mm (statues: 50 mm); "
-         "or a scene as JSON")
+         "scene or file of a scene (.json); for a film of 36x24 mm and lenses of 100 mm (statues: 50 mm). petzval blur "
+         "and view have other scenes")
       ->required()
-      ->type_name("NAME|FILE.json");
+      ->type_name("NAME:{balls,chess,statues,street,table}");
   examples::add_lens(app, options.lens_file);
   std::vector<std::string> models{"auto"};
   for (const petzval::ModelKind m : petzval::models()) models.emplace_back(petzval::name(m));
@@ -520,8 +517,7 @@ int commands::render(int argc, char** argv) {
   const auto* formats = examples::add_formats(app, options.formats, "png (sRGB)");
   examples::add_out_folder(app, options.out_folder)->required();
 
-  bool whole = true;
-  const int status = examples::run(app, argc, argv, [&] {
+  return examples::run(app, argc, argv, [&] {
     if (options.samples == 0 && options.noise > 0) options.samples = 4096;
     if (options.samples == 0 && options.seconds == 0) options.samples = 64;
     if (!tile.empty()) options.shard = examples::parse_shard("--shard", tile);
@@ -533,7 +529,7 @@ int commands::render(int argc, char** argv) {
       throw petzval::Error("--format must not be used with --shard " + tile +
                            "; 'petzval render merge' writes the picture");
     }
-    whole = Job(options).run();
+    Job(options).run();
+    examples::end_if_asked();
   });
-  return whole ? status : examples::interrupted_status;
 }

@@ -143,7 +143,9 @@ int commands::report(int argc, char** argv) {
   Options options;
   examples::App app(
       "Reports the first-order data, pupils, f-numbers and lint findings of a lens, in both sections if it has "
-      "cylinders. Lengths in mm; z from the first vertex, towards the film. Findings are not failures. Subject, "
+      "cylinders, and draws with --out the layout, spots, through-focus spots, encircled energy, ray fans, wavefront, "
+      "footprints, focus, MTF, colour, field curvature, distortion, Seidel sums, illumination and, with coatings, "
+      "transmittance. Lengths in mm; z from the first vertex, towards the film. Findings are not failures. Subject, "
       "wavelengths with their weights, and fields are taken from the file if it has them.\n"
       "With --out: writes LENS_layout.svg (and LENS_layout_x.svg for a lens with cylinders), LENS_spots.svg, "
       "LENS_through_focus.svg, LENS_energy.svg, LENS_fans.svg, LENS_wavefront.svg, LENS_footprints.svg, "

@@ -5,11 +5,13 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <numbers>
 #include <span>
 #include <string_view>
 
 #include "camera_setup.hpp"
 #include "petzval/core/error.hpp"
+#include "petzval/core/geometry.hpp"
 #include "petzval/core/sobol.hpp"
 #include "petzval/glass/glass.hpp"
 #include "petzval/image/psf_image.hpp"
@@ -19,6 +21,8 @@
 
 namespace examples {
 namespace {
+
+constexpr double right_angle = std::numbers::pi / 2;
 
 /// True if z lies in front of the whole first surface, even if that surface bulges forward.
 bool in_front(const petzval::Lens& lens, double z) {
@@ -52,12 +56,31 @@ void check_light(const petzval::Lens& lens, const BokehSetup& setup, double orig
                        "; must be in front of the lens, more than " + number(in_front_mm, 6) + " mm away");
 }
 
+/// A light at a field of 90 degrees or more, at a distance along its ray from the entrance pupil.
+/// @throws petzval::Error  if the light is not outside the lens
+petzval::FieldPoint light_beside(const petzval::Lens& lens, const BokehSetup& setup) {
+  // No plane of z holds a point at 90 degrees; the next field has one.
+  const double field = std::copysign(std::max(std::abs(setup.field_rad), right_angle + 1e-9), setup.field_rad);
+  const double pupil_z = petzval::pupils(lens, lens.primary_wavelength()).entrance.z;
+  const petzval::FieldPoint light{field, pupil_z - setup.light_mm * std::cos(field)};
+  try {
+    petzval::scene_point(lens, light);
+  } catch (const petzval::Error&) {
+    throw petzval::Error("--at = " + number(setup.light_mm) + " mm along the ray at " +
+                         number(petzval::degrees(setup.field_rad)) + " degrees; must be outside the lens");
+  }
+  return light;
+}
+
 }  // namespace
 
 BokehScene focused_scene(const petzval::Lens& lens, double focus_mm, const BokehSetup& setup) {
   const petzval::Lens focused = for_flag("--focus", [&] {
     return petzval::with_focus(lens, focus_mm, {setup.criterion, setup.origin});
   });
+  if (std::isfinite(setup.light_mm) && std::abs(setup.field_rad) >= right_angle) {
+    return {focused, light_beside(focused, setup)};
+  }
   const double from_z = origin_z(focused, setup.origin);
   check_light(lens, setup, from_z);
   return {focused, {setup.field_rad, from_z - setup.light_mm}};

@@ -19,7 +19,9 @@ namespace examples {
 
 /// A point light and how the lens is focused.
 struct BokehSetup {
-  double light_mm = 1000;  ///< distance of the light from `origin`, mm; may be infinite
+  /// Distance of the light from `origin`, mm; may be infinite. At fields of 90 degrees and more, along the ray from the
+  /// entrance pupil.
+  double light_mm = 1000;
   petzval::DistanceOrigin origin = petzval::DistanceOrigin::front_vertex;
   petzval::FocusCriterion criterion = petzval::FocusCriterion::min_rms;
   double field_rad = 0;

@@ -198,6 +198,7 @@ namespace {
 double parse_quantity(const std::string& where, std::string_view text, const Range& range,
                       std::span<const std::pair<std::string_view, double>> units) {
   double value = 0;
+  if (where.ends_with("f-number") && (text.starts_with("f/") || text.starts_with("F/"))) text.remove_prefix(2);
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
   const std::string_view unit = text.substr(static_cast<std::size_t>(end - text.data()));
   bool read = error == std::errc() && unit.empty();
@@ -206,7 +207,7 @@ double parse_quantity(const std::string& where, std::string_view text, const Ran
   }
   if (!read || !(value >= range.least && value <= range.most)) {
     throw petzval::Error(where + " = \"" + std::string(text) + "\"; must be " + range.words +
-                         (units.empty() ? "" : " (mm, or with a unit: um, mm, cm, m, km, in, ft)"));
+                         (units.size() > 2 ? " (mm, or with a unit: um, mm, cm, m, km, in, ft)" : ""));
   }
   return value;
 }
@@ -214,7 +215,10 @@ double parse_quantity(const std::string& where, std::string_view text, const Ran
 }  // namespace
 
 double parse_number(const std::string& where, std::string_view text, const Range& range) {
-  return parse_quantity(where, text, range, {});
+  static constexpr std::pair<std::string_view, double> degrees[]{{"deg", 1}, {"°", 1}};
+  const std::string_view rule = range.words;
+  const bool angle = rule.find("angle") != rule.npos || rule.find("degrees") != rule.npos;
+  return parse_quantity(where, text, range, angle ? degrees : std::span(degrees).first(0));
 }
 
 double parse_length(const std::string& where, std::string_view text, const Range& range) {
@@ -318,7 +322,9 @@ Option* add_wavelength(App& app, const std::string& flag, double& value, const s
 Option* add_out_folder(App& app, std::string& folder, const std::string& help, const std::string& flag) {
   Option* out = app.add_option(flag, folder, help)->type_name("DIR");
   app.add_check([out, &folder, flag] {
-    if (out->given()) want_folder(flag, folder);
+    if (!out->given()) return;
+    want_folder(flag, folder);
+    clean_on_signals(folder, false);
   });
   return out;
 }
@@ -330,6 +336,7 @@ Option* add_out_file(App& app, std::string& file, const std::string& help, const
     if (!out->given()) return;
     want_file(flag, file);
     app.want_other_files(flag, file);
+    clean_on_signals(std::filesystem::absolute(file).parent_path(), false);
   });
   return out;
 }
@@ -465,14 +472,14 @@ int run(App& app, int argc, char** argv, const std::function<void()>& body) {
   command_line = app.app_->get_name() + words_of_results(argc, argv);
   try {
     app.app_->parse(argc, argv);
+    const bool resumes = app.app_->get_option_no_throw("--resume") != nullptr;
+    end_on_signals(std::string("note: interrupted") + (resumes ? "; the same command with --resume continues" : ""));
+    if (!quiet) show_progress(app.app_->get_name());
     for (const auto& check : app.checks_) check();
     body();
+    hide_progress();
     std::cout.flush();
     return std::cout ? 0 : fail("cannot write to standard output");
-  } catch (const Interrupted&) {
-    const bool resumes = app.app_->get_option_no_throw("--resume") != nullptr;
-    std::cerr << "note: interrupted" << (resumes ? "; the same command with --resume continues" : "") << '\n';
-    return interrupted_status;
   } catch (const CLI::Success&) {
     try {
       print_help(std::cout, text_of(*app.app_), help_topic, coloured(STDOUT_FILENO));
@@ -480,8 +487,12 @@ int run(App& app, int argc, char** argv, const std::function<void()>& body) {
       return fail(unknown.what());
     }
     return 0;
-  } catch (const CLI::ExtrasError&) {
-    const std::vector<std::string> extras = app.app_->remaining();
+  } catch (const CLI::ParseError& error) {
+    // A mistyped flag comes before its consequences: missing or surplus arguments.
+    std::vector<std::string> extras = app.app_->remaining();
+    std::ranges::stable_partition(extras, [](const std::string& word) { return word.starts_with('-'); });
+    const bool mistyped = !extras.empty() && extras.front().starts_with('-');
+    if (!mistyped && !dynamic_cast<const CLI::ExtrasError*>(&error)) return fail(error.what());
     if (!extras.empty() && !extras.front().starts_with('-')) {
       return fail(('"' + extras.front() + "\": the command has all its arguments (see --help)").c_str());
     }
@@ -489,33 +500,13 @@ int run(App& app, int argc, char** argv, const std::function<void()>& body) {
     for (const CLI::Option* option : app.app_->get_options()) {
       if (!option->get_positional()) flags.push_back(option->get_name());
     }
-    const std::string near = extras.empty() ? "" : nearest(extras.front(), flags);
+    const std::string near = extras.empty() ? "" : nearest_flag(extras.front(), flags);
     return fail(((extras.empty() ? "an argument" : extras.front()) + ": must be an option of this command" +
                  (near.empty() ? " (see --help)" : "; did you mean " + near + "?"))
                     .c_str());
   } catch (const std::exception& error) {
     return fail(error.what());
   }
-}
-
-Progress::Progress(std::string title, std::size_t steps)
-    : title_(std::move(title)), steps_(steps), shown_(!quiet && isatty(STDERR_FILENO) == 1) {}
-
-Progress::~Progress() {
-  if (shown_) std::cerr << "\r\033[K";
-}
-
-void Progress::step(const std::string& what) {
-  const std::chrono::duration<double> spent = std::chrono::steady_clock::now() - start_;
-  const std::size_t done = begun_++;
-  if (!shown_) return;
-  std::cerr << "\r\033[K" << title_ << ' ' << begun_ << '/' << steps_ << ": " << what;
-  if (done > 0) {
-    const double seconds = spent.count() / static_cast<double>(done) * static_cast<double>(steps_ - done);
-    std::cerr << ", " << (seconds < 100 ? number(std::ceil(seconds)) + " s" : number(std::ceil(seconds / 60)) + " min")
-              << " left";
-  }
-  std::cerr << std::flush;
 }
 
 }  // namespace examples

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <array>
-#include <chrono>
 #include <deque>
 #include <functional>
 #include <limits>
@@ -16,6 +15,7 @@
 #include "help.hpp"
 #include "petzval/core/error.hpp"
 #include "petzval/focus/focus.hpp"
+#include "progress.hpp"
 
 namespace CLI {
 class App;
@@ -34,7 +34,7 @@ struct Range {
 inline constexpr Range finite_number{};
 inline constexpr Range positive_length{std::numeric_limits<double>::min(), std::numeric_limits<double>::infinity(),
                                        "a number above 0, or inf"};
-inline constexpr Range field_angle{-180, 180, "a number of degrees from -180 to 180, without a unit"};
+inline constexpr Range field_angle{-180, 180, "a number of degrees from -180 to 180"};
 inline constexpr Range positive_number{std::numeric_limits<double>::min(), std::numeric_limits<double>::max(),
                                        "a finite number above 0"};
 
@@ -212,23 +212,5 @@ Option* add_samples(App& app, std::uint32_t& samples);
 /// Reads the command line and runs the body. Returns the exit status: 0, or 1 after one line with the reason on
 /// standard error.
 int run(App& app, int argc, char** argv, const std::function<void()>& body);
-
-/// Shows the progress of a long job and the estimated time left in one line if standard error is a terminal. The
-/// estimate assumes that all steps take equally long.
-class Progress {
- public:
-  Progress(std::string title, std::size_t steps);
-  ~Progress();
-  Progress(const Progress&) = delete;
-  Progress& operator=(const Progress&) = delete;
-  /// Begins the next step.
-  void step(const std::string& what);
-
- private:
-  std::string title_;
-  std::size_t steps_, begun_ = 0;
-  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
-  bool shown_;
-};
 
 }  // namespace examples

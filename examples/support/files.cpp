@@ -6,6 +6,7 @@
 #include <system_error>
 
 #include "cli.hpp"
+#include "interrupt.hpp"
 #include "petzval/core/error.hpp"
 #include "petzval/core/files.hpp"
 
@@ -38,7 +39,10 @@ std::string read_text(const std::filesystem::path& file, std::size_t most) {
   return petzval::read_file(file, "a file", most);
 }
 
-void write_text(const std::filesystem::path& file, const std::string& text) { petzval::write_file(text, file); }
+void write_text(const std::filesystem::path& file, const std::string& text) {
+  const Together uninterrupted;
+  petzval::write_file(text, file);
+}
 
 void want_ending(const std::string& option, const std::filesystem::path& file, const std::string& ending) {
   if (file.extension() == ending) return;
@@ -70,6 +74,10 @@ void rename(const std::filesystem::path& file, const std::filesystem::path& new_
 
 void make_folder(const std::filesystem::path& folder) {
   std::error_code error, unknown;
+  for (auto part = folder; !part.empty() && !std::filesystem::exists(part, unknown) && !unknown;
+       part = part.parent_path()) {
+    clean_on_signals(part, true);
+  }
   std::filesystem::create_directories(folder, error);
   if (std::filesystem::is_directory(folder, unknown)) return;
   fail(folder, "cannot create the folder", error ? error : std::make_error_code(std::errc::not_a_directory));

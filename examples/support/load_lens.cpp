@@ -76,14 +76,11 @@ std::filesystem::path lens_path(const std::string& text) {
                        (near.empty() ? "; petzval lenses lists them" : "; did you mean " + near + "?"));
 }
 
-}  // namespace
+constexpr const char* lens_help =
+    "a shipped lens (petzval lenses) or a file: JSON as in data/lenses, .zmx, .seq, .len, .lens, OpticalBench or other "
+    "tables";
 
-Option* add_lens(App& app, LensInput& input, const std::string& name, const std::string& remark) {
-  Option* lens = app.add_option(name, input.file,
-                                "a shipped lens (petzval lenses) or a file: JSON as in data/lenses, .zmx, .seq, .len, "
-                                ".lens, OpticalBench or other tables" +
-                                    (remark.empty() ? "" : "; " + remark));
-  if (name == "LENS" && remark.empty()) lens->required();
+Option* add_lens_options(App& app, LensInput& input, Option* lens) {
   lens->type_name("FILE");
   app.add_option("--glasses", input.glass_files, "glass catalogues to search first (.agf, refractiveindex.info .yml)")
       ->type_name("FILE...")
@@ -97,6 +94,18 @@ Option* add_lens(App& app, LensInput& input, const std::string& name, const std:
                "replace media known only by n_d and V_d by the nearest glass; within 0.001 and 0.5, with a note")
       ->needs(lens);
   return lens;
+}
+
+}  // namespace
+
+Option* add_lens(App& app, LensInput& input, const std::string& name, const std::string& remark) {
+  Option* lens = app.add_option(name, input.file, lens_help + (remark.empty() ? "" : "; " + remark));
+  if (name == "LENS" && remark.empty()) lens->required();
+  return add_lens_options(app, input, lens);
+}
+
+Option* add_lenses(App& app, LensInput& input, std::vector<std::string>& lenses) {
+  return add_lens_options(app, input, app.add_option("LENS", lenses, lens_help)->required());
 }
 
 Option* add_thin_lens(App& app, double& focal_length_mm) {

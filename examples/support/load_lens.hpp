@@ -25,6 +25,9 @@ struct LensInput {
 /// Adds LENS with --glasses and --configuration. LENS is required if `remark` is empty.
 Option* add_lens(App& app, LensInput& input, const std::string& name = "LENS", const std::string& remark = "");
 
+/// Adds LENS... and the options of add_lens() for all of them; sets `lenses` instead of input.file.
+Option* add_lenses(App& app, LensInput& input, std::vector<std::string>& lenses);
+
 /// Adds --thin-lens: the focal length of a thin lens (mm) instead of LENS; 0 if the option is not given.
 Option* add_thin_lens(App& app, double& focal_length_mm);
 

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "interrupt.hpp"
 #include "petzval/image/exr.hpp"
 #include "text.hpp"
 
@@ -27,6 +28,7 @@ Option* add_formats(App& app, std::vector<std::string>& formats, const std::stri
 }
 
 void write_png(const petzval::Rgb8Image& image, const std::filesystem::path& file) {
+  const Together uninterrupted;
   petzval::write_png(image, file, parameters());
 }
 
@@ -38,6 +40,7 @@ std::vector<std::filesystem::path> write_picture(const petzval::RgbImage& image,
                                                  const std::map<std::string, std::vector<float>>& channels) {
   const std::map<std::string, std::string> attributes = texts.empty() ? parameters() : texts;
   std::vector<std::filesystem::path> files;
+  const Together uninterrupted;
   for (const std::string& format : formats) {
     std::filesystem::path file = stem;
     file += '.' + format;

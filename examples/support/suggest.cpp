@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <utility>
 #include <vector>
 
 namespace examples {
@@ -39,6 +40,21 @@ std::string nearest(std::string_view mistyped, std::span<const std::string> name
     if (distance < least) least = distance, best = candidate;
   }
   return best;
+}
+
+std::string nearest_flag(std::string_view mistyped, std::span<const std::string> names) {
+  static constexpr std::pair<std::string_view, std::string_view> meanings[]{
+      {"--aperture", "--f-number"}, {"--fstop", "--f-number"}, {"--f-stop", "--f-number"}, {"-f", "--f-number"},
+      {"--distance", "--at"},       {"--distance", "--focus"}, {"--focus", "--at"},        {"--subject", "--at"},
+      {"--subject", "--focus"},     {"-o", "--out"},           {"--output", "--out"},      {"--resolution", "--size"},
+      {"--width", "--size"},        {"--height", "--size"},    {"--samples", "--spp"},     {"--samples", "--rays"},
+      {"--spp", "--rays"},          {"--sensor", "--film"},    {"--coc", "--blur"},        {"--angle", "--fields"},
+      {"--input", "--image"},       {"-j", "--threads"}};
+  mistyped = mistyped.substr(0, mistyped.find('='));
+  for (const auto& [flag, same] : meanings) {
+    if (mistyped == flag && std::ranges::find(names, same) != names.end()) return std::string(same);
+  }
+  return nearest(mistyped, names);
 }
 
 }  // namespace examples

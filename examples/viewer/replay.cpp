@@ -11,7 +11,6 @@
 #include "petzval/core/error.hpp"
 #include "petzval/image/image.hpp"
 #include "support/cli.hpp"
-#include "support/interrupt.hpp"
 #include "support/picture_files.hpp"
 #include "support/text.hpp"
 
@@ -48,10 +47,8 @@ void replay(const ReplayOptions& options) {
   if (!options.out_folder.empty()) examples::make_folder(options.out_folder);
   Session session(options.session);
   session.make_layers();
-  const examples::Interrupt interrupt;
   std::size_t number = 0, refused = 0;
   for (const Json& event : options.events) {
-    examples::stop_if_asked();
     ++number;
     const auto start = std::chrono::steady_clock::now();
     std::string error;

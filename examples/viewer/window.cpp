@@ -646,6 +646,7 @@ class Window {
 
 void show_window(const WindowOptions& options) {
   examples::Interrupt interrupt;
+  examples::hide_progress();
   std::optional<Screen> screen;
   Window window(options);  // after the screen, which its textures must not outlive
   const auto save = [&] {
@@ -686,6 +687,7 @@ void show_window(const WindowOptions& options) {
       screen->swap();
     }
     save();
+    examples::end_if_asked();  // the worker may need seconds to end
   } catch (const petzval::Error& error) {
     save();
     const std::string saved = options.log_file.empty() ? "" : ". The events are saved in " + options.log_file;
