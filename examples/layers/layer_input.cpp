@@ -247,7 +247,7 @@ void LayerInput::fill(const petzval::PeelPlan& plan, int layers, int threads, pe
   if (scene_) {
     set.peel(plan, layers,
              [&, peel = scene_->peel(plan.camera, threads, plan.bias)](int layer, std::span<const float> below,
-                                                            const petzval::LayerPlanes& out) {
+                                                                       const petzval::LayerPlanes& out) {
                if (stop.stop_requested()) throw petzval::Cancelled("layers");
                return peel(layer, below, out);
              });

@@ -156,7 +156,7 @@ void Highlights::find(const GatherOptions& options) {
                                     .at(h.inverse_depth));
   }
   // A wide bright surface needs no stamps, because enough rays of each pixel meet it. Much dimmer surfaces, such as a
-  // white wall behind a lamp, do not count. Blocks of one pixel: with larger blocks, the count would depend on the
+  // white wall behind a lamp, are not counted. Blocks of one pixel: with larger blocks, the count would depend on the
   // position of a pixel in its block.
   constexpr float much = 16;
   const auto rays = static_cast<double>(rays_.rays_of_set());
@@ -288,8 +288,8 @@ void Highlights::extend(Lines& lines, const Highlight& h, std::size_t count, con
 
 /// Sets the widths of tents that overlap the tents of adjacent rays, so that the sum is smooth.
 ///
-/// Rays of a fixed difference of indices have a fixed offset in the pupil, apart from its borders. The area between
-/// such neighbours of a ray is the part of the blur that the ray stands for.
+/// Rays whose indices differ by a constant have a constant offset in the pupil. The area between such neighbours of a
+/// ray is the part of the blur that the ray represents.
 void Highlights::set_tents(std::vector<Splat>& splats, std::size_t rays, double area) {
   const core_detail::Kronecker<2> points;
   struct Offset {

@@ -454,7 +454,7 @@ TEST(Highlights, AreLightsWithMoreBlurPixelsThanRays) {
   }
 }
 
-TEST(Highlights, AreLightsBesideAWhiteWall) {
+TEST(Highlights, AreLightsInFrontOfAWhiteWall) {
   // A wall that is bright, but dimmer than the lamp by far, fills the blur of the lamp.
   static float wall;
   const Scene lamp = [](double x, double y) {
