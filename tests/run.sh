@@ -3,7 +3,7 @@
 # Builds petzval and runs its tests. Installs missing packages on Debian 12.
 #
 #   sh tests/run.sh [arguments of ctest, such as -R Snell]    the tests of the library
-#   sh tests/run.sh -L full      the tests of programs, packages and fuzz targets; clang, if installed, compiles all sources
+#   sh tests/run.sh -L full      the tests of programs, packages and fuzz targets, and the build of the benchmarks; clang, if installed, compiles all sources
 #   sh tests/run.sh --report    prints the tables of tests/README.md: worst cases of the accuracy tests
 #
 # BUILD_DIR=... replaces build/. UNITY=OFF compiles the sources separately, which is faster after a change of one source.
@@ -52,7 +52,7 @@ case " $* " in
   *) full=OFF target=petzval-tests example_packages= full_packages= ;;
 esac
 need $library_packages $example_packages $test_packages $full_packages
-build $unity -DPETZVAL_BUILD_TESTS=ON -DPETZVAL_FULL_TESTS=$full -DPETZVAL_BUILD_EXAMPLES=$full -DCMAKE_COMPILE_WARNING_AS_ERROR=ON
+build $unity -DPETZVAL_BUILD_TESTS=ON -DPETZVAL_FULL_TESTS=$full -DPETZVAL_BUILD_EXAMPLES=$full -DPETZVAL_BUILD_BENCHMARKS=$full -DCMAKE_COMPILE_WARNING_AS_ERROR=ON
 if [ "${1-}" = --report ]; then
   work=$(mktemp -d)
   trap 'rm -rf "$work"' EXIT

@@ -65,7 +65,7 @@ double miss_rate(const petzval::BlurredImage& picture) {
 
 lens_blur::LensFlags thin_lens(double diameter_mm) {
   lens_blur::LensFlags lens;
-  lens.thin_lens_mm = 50, lens.lens_diameter_mm = diameter_mm, lens.focus_mm = focus_mm, lens.rays = 100;
+  lens.thin_lens_mm = 50, lens.iris.f_number = 50 / diameter_mm, lens.focus_mm = focus_mm, lens.rays = 100;
   return lens;
 }
 
@@ -209,7 +209,7 @@ void report_lenses(const Settings& settings, const LoadedScene& scene) {
   lens_blur::LensFlags singlet;
   singlet.singlet = "102,-102,12,N-BK7", singlet.focus_mm = focus_mm, singlet.fov_deg = 30, singlet.rays = 100;
   lens_blur::LensFlags chroma = singlet;
-  chroma.chroma = true;
+  chroma.wavelengths = "rgb";
   for (const Row& row : {Row{"thin, 300 mm", thin_lens(300)}, Row{"thin, 100 mm, film tilted by 1 degree", tilted},
                          Row{"singlet f/2", singlet}, Row{"singlet f/2, three colours", chroma}}) {
     const View view = scene.through(settings, row.lens);
