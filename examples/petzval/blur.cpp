@@ -150,19 +150,14 @@ class Job {
     rays_error_px_ = std::max(rays_error_px_, rays.interpolation_error_px());
     const petzval::PeelPlan plan = lens_blur::plan_of(input_, rays, nearest);
 
-    // A single picture is computed twice and the second run is timed, because the first run also allocates memory.
-    double peel_ms = 0, n_buffer_ms = 0, gather_ms = 0, threshold = 0;
-    for (int run = 0; run < (options_.frames > 1 ? 1 : 2); ++run) {
-      start = std::chrono::steady_clock::now();
-      input_.fill(plan, static_cast<int>(options_.layers), threads_, layers_);
-      n_buffer_ms = 1e3 * layers_.n_buffer_seconds();
-      peel_ms = ms_since(start) - n_buffer_ms;
-      threshold =
-          options_.highlights_above < 0 ? lens_blur::threshold_of(layers_, !input_.scene()) : options_.highlights_above;
-      start = std::chrono::steady_clock::now();
-      petzval::gather(layers_, rays, {.threads = threads_, .highlights_above = threshold}, blurred_);
-      gather_ms = ms_since(start);
-    }
+    start = std::chrono::steady_clock::now();
+    input_.fill(plan, static_cast<int>(options_.layers), threads_, layers_);
+    const double n_buffer_ms = 1e3 * layers_.n_buffer_seconds(), peel_ms = ms_since(start) - n_buffer_ms;
+    const double threshold =
+        options_.highlights_above < 0 ? lens_blur::threshold_of(layers_, !input_.scene()) : options_.highlights_above;
+    start = std::chrono::steady_clock::now();
+    petzval::gather(layers_, rays, {.threads = threads_, .highlights_above = threshold}, blurred_);
+    const double gather_ms = ms_since(start);
     const RgbImage picture = lens_blur::averaged(lens_blur::colours_of(blurred_), side_);
     write(picture, folder / ("blur" + number));
     if (frame == 0) {
