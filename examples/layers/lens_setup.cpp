@@ -64,15 +64,13 @@ petzval::Prescription singlet_of(const std::string& text, const petzval::GlassCa
 
 }  // namespace
 
-void add_lens(examples::App& app, LensFlags& flags) {
+void add_lens(examples::App& app, LensFlags& flags, const std::string& frames_help) {
   examples::add_thin_lens(app, flags.thin_lens_mm);
   examples::add_lens(app, flags.lens_file, "LENS", "traced by exact rays");
   app.add_option("--singlet", flags.singlet,
                  "two spherical surfaces, traced by exact rays; f/2 unless --f-number is given")
       ->type_name("R1,R2,THICKNESS,GLASS");
-  add_length(app, "--focus", flags.focus_mm, examples::positive_length,
-             "distance of the subject in focus (mm), or inf; depths of layers count from the entrance pupil")
-      ->required();
+  examples::add_focus_pull(app, flags.pull, flags.focus_mm, frames_help);
   examples::add_focus(app, flags.focus);
   constexpr examples::Range angle{1e-3, 120, "more than 0 and at most 120"};
   add_number(
@@ -107,7 +105,8 @@ void add_lens(examples::App& app, LensFlags& flags) {
   auto* points =
       app.add_option(
              "--points", flags.surface.points_file,
-             "focal surface: the distances in focus at points of the picture; with --frames, focus points with keys")
+             "focal surface: the distances in focus at points of the picture; with --frames, focus points with keys. A "
+             "real lens is replaced by its thick lens")
           ->type_name("POINTS.json");
   add_surface_kind(app, flags.surface, points);
   add_expressive(app, flags.expressive);
@@ -115,8 +114,8 @@ void add_lens(examples::App& app, LensFlags& flags) {
 
 namespace {
 
-/// The lens of the flags, focused, without a focal surface.
-LensView view_of(const LensFlags& flags, int columns, int rows) {
+/// The lens of the flags, stopped down.
+petzval::Lens lens_of(const LensFlags& flags) {
   const int kinds = (flags.thin_lens_mm > 0) + !flags.lens_file.file.empty() + !flags.singlet.empty();
   if (kinds != 1) {
     throw Error("lens: " + std::to_string(kinds) + " of --thin-lens, LENS and --singlet are given; must be 1");
@@ -136,20 +135,29 @@ LensView view_of(const LensFlags& flags, int columns, int rows) {
         wavelengths, {.glasses = &glasses});
   }();
   if (thin) iris.f_number = 0;  // the lens has this f-number
-  lens = examples::stopped_down(lens, iris);
-  if (thin && !(flags.focus_mm > flags.thin_lens_mm)) {
-    throw Error("--focus = " + number(flags.focus_mm) + "; must be more than the focal length, " +
+  return examples::stopped_down(lens, iris);
+}
+
+/// The lens focused at a distance, without a focal surface. film_height_mm: 0: by --fov.
+LensView view_of(const LensFlags& flags, const petzval::Lens& unfocused, double focus_mm, int columns, int rows,
+                 double film_height_mm = 0) {
+  const bool thin = flags.thin_lens_mm > 0;
+  if (thin && !(focus_mm > flags.thin_lens_mm)) {
+    throw Error("--focus = " + number(focus_mm) + "; must be more than the focal length, " +
                 number(flags.thin_lens_mm) + ": nearer subjects have no real image");
   }
   petzval::FocusOptions focus = flags.focus.options();
   if (thin) focus.criterion = petzval::FocusCriterion::paraxial;  // a thin lens has no other focus
-  lens = examples::for_flag("--focus", [&] { return petzval::with_focus(lens, flags.focus_mm, focus); });
+  const petzval::Lens lens =
+      examples::for_flag("--focus", [&] { return petzval::with_focus(unfocused, focus_mm, focus); });
   LensView view{.lens = lens,
                 .thin_diameter_mm = thin ? flags.thin_lens_mm / flags.iris.f_number : 0,
                 .coloured = flags.coloured(),
                 .controls = controls_of(flags.bokeh)};
   view.vertical_angle_rad = petzval::radians(flags.fov_deg > 0 ? flags.fov_deg : 30);
-  const double height = thin || flags.fov_deg > 0 ? petzval::film_height_for_angle(lens, view.vertical_angle_rad) : 24;
+  const double height = film_height_mm > 0          ? film_height_mm
+                        : thin || flags.fov_deg > 0 ? petzval::film_height_for_angle(lens, view.vertical_angle_rad)
+                                                    : 24;
   view.film = {.width_mm = height * columns / rows,
                .height_mm = height,
                .columns = columns,
@@ -158,7 +166,7 @@ LensView view_of(const LensFlags& flags, int columns, int rows) {
                .tilt_rad = petzval::radians(flags.tilt_deg),
                .swing_rad = petzval::radians(flags.swing_deg)};
   // Depths of layers count from the entrance pupil.
-  view.focus_depth_mm = flags.focus_mm + petzval::pupils(lens).entrance.z - petzval::origin_z(lens, focus.origin);
+  view.focus_depth_mm = focus_mm + petzval::pupils(lens).entrance.z - petzval::origin_z(lens, focus.origin);
   if (!flags.expressive.change_nothing()) view.expressive = expressive_of(flags.expressive, lens, view.film);
   return view;
 }
@@ -169,7 +177,8 @@ BlurLens::BlurLens(const LensFlags& flags, int columns, int rows, const renderer
     : flags_(flags),
       pose_(pose),
       keyed_(keyed),
-      view_(view_of(flags, columns, rows)),
+      unfocused_(lens_of(flags)),
+      view_(view_of(flags, unfocused_, flags.focus_mm, columns, rows)),
       pattern_{flags.rays, flags.supersample, flags.jitter},
       layers_(view_.layers(flags.supersample)) {
   if (flags.rays == 0) {
@@ -179,6 +188,16 @@ BlurLens::BlurLens(const LensFlags& flags, int columns, int rows, const renderer
   if (!view_.thin()) examples::say_what_does_not_fit(view_.lens, view_.film);
   if (keyed_ && !flags.surface.points_file.empty()) points_ = examples::read_focus_points(flags.surface.points_file);
   view_.surface = surface_at(0);
+  if (model() == petzval::ModelKind::thick) {
+    examples::note(std::string(view_.surface ? "--points" : "an expressive lens") + ": " + name() +
+                   " is replaced by its thick lens, without aberrations and vignetting");
+  }
+}
+
+void BlurLens::focus_at(double focus_mm, bool keep_film) {
+  const petzval::Film film = view_.film;
+  view_ = view_of(flags_, unfocused_, focus_mm, film.columns, film.rows, keep_film ? film.height_mm : 0);
+  layers_ = view_.layers(flags_.supersample);
 }
 
 std::optional<petzval::FocalSurface> BlurLens::surface_at(double time) const {

@@ -14,6 +14,7 @@
 #include "support/cli.hpp"
 #include "support/expressive_flags.hpp"
 #include "support/focal_surface_setup.hpp"
+#include "support/focus_pull.hpp"
 #include "support/iris_setup.hpp"
 #include "support/load_lens.hpp"
 
@@ -25,6 +26,7 @@ struct LensFlags {
   examples::LensInput lens_file;
   std::string singlet;
   double focus_mm = 0, fov_deg = 0;
+  examples::FocusPull pull;  ///< a focus that moves; focus_mm is then its first distance
   examples::FocusFlags focus;
   double tilt_deg = 0, swing_deg = 0;
   std::uint32_t rays = 0;  ///< 0: 256, or 512 for traced surfaces with jitter
@@ -42,7 +44,8 @@ struct LensFlags {
   bool coloured() const noexcept { return wavelengths == "rgb"; }
 };
 
-void add_lens(examples::App& app, LensFlags& flags);
+/// @param frames_help  names of the results of --frames
+void add_lens(examples::App& app, LensFlags& flags, const std::string& frames_help);
 
 /// The lens given on the command line, set up for one image size.
 class BlurLens {
@@ -54,6 +57,9 @@ class BlurLens {
 
   const petzval::LayerCamera& layers() const noexcept { return layers_; }
   const std::string& name() const noexcept { return view_.lens.name(); }
+  petzval::ModelKind model() const noexcept { return view_.model(); }
+  /// Focuses at another distance. keep_film: the film keeps its size, otherwise the picture keeps its angle (--fov).
+  void focus_at(double focus_mm, bool keep_film);
   /// Changes the number of rays per pixel.
   void set_rays(std::uint32_t rays) noexcept { pattern_.rays = rays; }
   std::uint32_t ray_count() const noexcept { return pattern_.rays; }
@@ -66,6 +72,7 @@ class BlurLens {
   LensFlags flags_;
   renderer::Pose pose_;
   bool keyed_;
+  petzval::Lens unfocused_;
   LensView view_;
   RayPattern pattern_;
   petzval::LayerCamera layers_;

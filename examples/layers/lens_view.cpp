@@ -11,14 +11,16 @@
 
 namespace lens_blur {
 
-petzval::Camera LensView::camera(std::uint32_t supersample) const {
+petzval::ModelKind LensView::model() const noexcept {
   const bool first_order = surface || !expressive.empty() || first_order_only;
+  return thin() ? petzval::ModelKind::thin : first_order ? petzval::ModelKind::thick : petzval::ModelKind::exact_float;
+}
+
+petzval::Camera LensView::camera(std::uint32_t supersample) const {
   petzval::Film fine = film;
   fine.columns *= static_cast<int>(supersample), fine.rows *= static_cast<int>(supersample);
   return petzval::Camera(lens, fine,
-                         {.model = thin()        ? petzval::ModelKind::thin
-                                   : first_order ? petzval::ModelKind::thick
-                                                 : petzval::ModelKind::exact_float,
+                         {.model = model(),
                           .normalisation = petzval::Normalisation::unity_on_axis,
                           .bokeh = controls,
                           .focal_surface = surface,

@@ -37,6 +37,7 @@ struct LensView {
   bool first_order_only = false;  ///< a preview of a real lens
 
   bool thin() const noexcept { return thin_diameter_mm > 0; }
+  petzval::ModelKind model() const noexcept;
   /// The camera with film pixels of a part of the picture's pixels.
   petzval::Camera camera(std::uint32_t supersample) const;
   /// The camera of the layers, without overscan.

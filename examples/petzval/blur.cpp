@@ -41,9 +41,8 @@ struct Options {
   lens_blur::InputFlags input;
   lens_blur::LensFlags lens;
   std::uint32_t layers = 4, supersample = 0;
-  std::uint32_t frames = 1;
-  double frames_per_second = 24, travel_mm = 0,
-         highlights_above = -1;  ///< highlights_above < 0: lens_blur::threshold_of()
+  std::uint32_t frames = 1;                     ///< FocusPull::count()
+  double travel_mm = 0, highlights_above = -1;  ///< highlights_above < 0: lens_blur::threshold_of()
   bool compare = false;
   std::uint32_t compare_rays = 0;  ///< 0: no comparison with more rays
   std::vector<std::string> formats;
@@ -117,10 +116,9 @@ class Job {
     if (options_.frames > 1) progress.emplace("petzval blur", options_.frames);
     for (std::uint32_t frame = 0; frame < options_.frames; ++frame) {
       if (progress) progress->step("frame " + std::to_string(frame + 1));
-      std::string number = std::to_string(frame + 1);
-      number.insert(0, 4 - std::min<std::size_t>(number.size(), 4), '0');
-      do_frame(frame, folder, options_.frames > 1 ? "_" + number : "");
+      do_frame(frame, folder, options_.frames > 1 ? "_" + examples::frame_number(frame) : "");
     }
+    result_["model"] = petzval::name(lens_.model());
     if (options_.compare && options_.frames > 1) result_["flicker"] = flicker_ / (options_.frames - 1);
     if (options_.frames > 1) write_frames(folder);
     if (options_.compare_rays > 0) compare_rays(folder);
@@ -135,7 +133,14 @@ class Job {
 
  private:
   void do_frame(std::uint32_t frame, const std::filesystem::path& folder, const std::string& number) {
-    const double time = frame / options_.frames_per_second;
+    const examples::FocusPull& pull = options_.lens.pull;
+    const double time = pull.time_s(frame);
+    double focus_mm = options_.lens.focus_mm;
+    if (pull.moves()) {
+      focus_mm = pull.distance_mm(frame, options_.frames);
+      // The camera of a file keeps its angle.
+      lens_.focus_at(focus_mm, input_.scene() != nullptr);
+    }
     if (input_.scene()) {
       const double part = options_.frames > 1 ? frame / (options_.frames - 1.0) : 0;
       input_.scene()->move_to({static_cast<float>(part * options_.travel_mm), 0, 0});
@@ -184,9 +189,14 @@ class Job {
               {"highlights_above", threshold},
               {"highlights", statistics.highlights},
               {"supersample", side_}};
+    if (options_.lens.surface.points_file.empty()) json["focus_mm"] = examples::finite_or_null(focus_mm);
     if (options_.compare) compare(rays, picture, json);
     if (options_.frames > 1 && frame * most_shown / options_.frames >= shown_.size()) {
-      shown_.push_back({petzval::to_srgb8(picture), {examples::number(time, 3) + " s"}});
+      const bool infinite = std::isinf(focus_mm);
+      shown_.push_back({petzval::to_srgb8(picture),
+                        {!pull.moves() ? examples::number(time, 3) + " s"
+                         : infinite    ? "infinity"
+                                       : examples::number(focus_mm / 1000, 3) + " m"}});
     }
     if (options_.frames == 1) {
       result_ = json;
@@ -197,7 +207,8 @@ class Job {
 
   /// Writes frames.png: up to 8 frames at equal steps of time.
   void write_frames(const std::filesystem::path& folder) {
-    examples::Sheet sheet{.title = lens_.name(), .rows = {}, .notes = {}};
+    const bool thick = lens_.model() == petzval::ModelKind::thick;
+    examples::Sheet sheet{.title = lens_.name() + (thick ? " (thick lens)" : ""), .rows = {}, .notes = {}};
     for (examples::Tile& tile : shown_) {
       if (sheet.rows.empty() || sheet.rows.back().tiles.size() == most_shown / 2) sheet.rows.emplace_back();
       sheet.rows.back().tiles.push_back(std::move(tile));
@@ -336,7 +347,9 @@ int commands::blur(int argc, char** argv) {
       "blur.json; with --compare also reference.*, the same rays traced through the scene.",
       "petzval blur");
   lens_blur::add_input(app, options.input);
-  lens_blur::add_lens(app, options.lens);
+  lens_blur::add_lens(app, options.lens,
+                      "written as blur_0001.* and so on, and up to 8 of them side by side in frames.png; --points then "
+                      "gives focus points with keys");
   constexpr examples::Range layers{1, 64, "a whole number from 1 to 64"};
   examples::add_count(app, "--layers", options.layers, layers, "largest number of surfaces behind each other");
   app.add_flag("--compare", options.compare,
@@ -352,19 +365,13 @@ int commands::blur(int argc, char** argv) {
   examples::add_number(app, "--highlights-above", options.highlights_above, {0, 1e9, "a number from 0 to 1e9"},
                        "radiance above which small lights become uniform discs; 0: never")
       ->default_str("6 times the mean; at most 1, or 0.75 in files without values above 1");
-  auto* frames = examples::add_count(
-      app, "--frames", options.frames, {1, 100000, "a whole number from 1 to 100000"},
-      "number of frames; written as blur_0001.* and so on, and up to 8 of them side by side in frames.png; --points "
-      "then gives focus points with keys");
-  examples::add_number(app, "--fps", options.frames_per_second, examples::positive_number,
-                       "frames per second, for the keys of --points")
-      ->needs(frames)
-      ->needs(app.get_option("--points"));
   examples::add_length(app, "--travel", options.travel_mm, examples::finite_number,
-                       "distance that the camera moves to the right over all frames (mm)")
-      ->needs(frames);
+                       "distance that the camera moves to the right over all frames (mm)");
   examples::add_threads(app);
   examples::add_formats(app, options.formats, "png (sRGB)");
   examples::add_out_folder(app, options.out_folder)->required();
-  return examples::run(app, argc, argv, [&] { Job(options).run(); });
+  return examples::run(app, argc, argv, [&] {
+    options.frames = options.lens.pull.count(options.lens.focus.origin, options.lens.surface.points_file);
+    Job(options).run();
+  });
 }

@@ -24,6 +24,7 @@
 #include "support/cli.hpp"
 #include "support/files.hpp"
 #include "support/focus_json.hpp"
+#include "support/focus_pull.hpp"
 #include "support/movement_setup.hpp"
 #include "support/text.hpp"
 
@@ -189,6 +190,13 @@ Json to_json(const std::vector<Frame>& all) {
   return rows;
 }
 
+/// The distance in focus on the axis in each frame, for --focus of blur and render.
+std::string to_keys(const std::vector<Frame>& all, const std::string& from) {
+  std::vector<examples::FocusPull::Key> keys;
+  for (const Frame& f : all) keys.push_back({f.time, 1 / f.distance_mm});
+  return examples::to_json(keys, from);
+}
+
 std::string plot(const Options& options, const examples::MovingLens& lens,
                  const std::vector<petzval::FocusPoint>& points, const std::vector<Frame>& all) {
   std::vector<petzval::FocusPullFrame> shown;
@@ -236,7 +244,8 @@ int commands::pull(int argc, char** argv) {
       "The film starts at the focus for infinity. It does not move in a frame without points (no_targets), with points "
       "out of reach (unreachable) or without a solution (not_converged). subject_distance_mm: distance in focus on the "
       "axis.\n"
-      "Writes NAME_focus_pull.csv and NAME_focus_pull.svg into DIR.",
+      "Writes NAME_focus_pull.csv, .svg and, without --fit-tilt, .json into DIR. The .json has the distances over time "
+      "for 'petzval blur LENS --focus FILE' and 'petzval render LENS --focus FILE'.",
       "petzval pull");
   examples::add_movement_options(app, options);
   app.add_option("--keys", options.keys_file, "JSON file of points and keys")->type_name("FILE")->required();
@@ -262,21 +271,25 @@ int commands::pull(int argc, char** argv) {
     const std::filesystem::path folder = options.out_folder;
     examples::make_folder(folder);
     const std::string csv_file = (folder / (lens.id + "_focus_pull.csv")).string(),
-                      svg_file = (folder / (lens.id + "_focus_pull.svg")).string();
+                      svg_file = (folder / (lens.id + "_focus_pull.svg")).string(),
+                      keys_file = (folder / (lens.id + "_focus_pull.json")).string();
     examples::write_text(csv_file, to_csv(all));
     examples::write_text(svg_file, svg);
+    std::vector<std::string> files{csv_file, svg_file};
+    if (!options.tilt) {
+      examples::write_text(keys_file, to_keys(all, options.focus.origin));
+      files.push_back(keys_file);
+    }
     if (options.json) {
       const Json json{{"lens", lens.title},
                       {"model", options.model_name()},
                       {"distance_from", options.focus.origin},
                       {"frames", to_json(all)},
-                      {"files", {csv_file, svg_file}}};
+                      {"files", files}};
       std::cout << json.dump(1) << '\n';
       return;
     }
-    std::cout << lens.title << ", " << lens.conditions << "\n\n"
-              << to_text(all, options.frames_per_s) << '\n'
-              << csv_file << '\n'
-              << svg_file << '\n';
+    std::cout << lens.title << ", " << lens.conditions << "\n\n" << to_text(all, options.frames_per_s) << '\n';
+    for (const std::string& file : files) std::cout << file << '\n';
   });
 }

@@ -199,6 +199,8 @@ class Job {
                   options_.formats, folder, options_.exposure);
   }
 
+  petzval::ModelKind model() const noexcept { return chosen_.model; }
+
  private:
   static renderer::PathColourSource colours_named(const std::string& text) {
     if (const auto mode = renderer::colour_mode_named(text)) return renderer::PathColourSource(*mode);
@@ -401,6 +403,27 @@ class Job {
   petzval::ExpressiveLens expressive_;
 };
 
+/// Renders one picture, or the frames of a focus pull.
+void render_frames(Options options) {
+  const examples::FocusPull& pull = options.setup.pull;
+  const std::uint32_t count = pull.count(options.setup.focus.origin, options.surface.points_file);
+  if (count > 1 && !pull.moves()) {
+    throw petzval::Error("--frames = " + std::to_string(count) + ": must be used with --focus A:B or KEYS.json");
+  }
+  const fs::path folder = options.out_folder;
+  for (std::uint32_t frame = 0; frame < count; ++frame) {
+    if (count > 1) {
+      options.out_folder = (folder / ("frame_" + examples::frame_number(frame))).string();
+      options.setup.focus_mm = pull.distance_mm(frame, count);
+    }
+    Job job(options);
+    job.run();
+    examples::end_if_asked();
+    // Models of different frames must not differ.
+    options.model = petzval::name(job.model()), options.budget_px = 0;
+  }
+}
+
 /// Runs: petzval render merge FOLDER... --out DIR
 int merge(int argc, char** argv) {
   std::vector<std::string> folders, formats{"exr", "png"};
@@ -481,8 +504,7 @@ int commands::render(int argc, char** argv) {
                       "seed of the random numbers");
   examples::add_threads(app);
   examples::add_picture_size(app, options.width, options.height, usual_width);
-  examples::add_camera(app, options.setup);
-  app.get_option("--focus")->required()->default_str("");
+  examples::add_camera(app, options.setup, "each is written as with one --focus, to DIR/frame_0001 and so on");
   examples::add_bokeh(app, options.bokeh);
   auto* points = app.add_option("--points", options.surface.points_file,
                                 "distances in focus, depth-of-field extents and blurs at points of the picture, for a "
@@ -529,7 +551,6 @@ int commands::render(int argc, char** argv) {
       throw petzval::Error("--format must not be used with --shard " + tile +
                            "; 'petzval render merge' writes the picture");
     }
-    Job(options).run();
-    examples::end_if_asked();
+    render_frames(options);
   });
 }

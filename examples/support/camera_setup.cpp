@@ -34,11 +34,15 @@ petzval::Film CameraSetup::film(std::uint32_t columns, std::uint32_t rows, std::
   return {.width_mm = width, .height_mm = height, .columns = static_cast<int>(across), .rows = static_cast<int>(down)};
 }
 
-void add_camera(App& app, CameraSetup& setup) {
+void add_camera(App& app, CameraSetup& setup, const std::string& frames_help) {
   add_iris(app, setup.iris);
-  add_length(app, "--focus", setup.focus_mm, positive_length,
-             "distance of the subject in focus (mm), or inf; at the primary wavelength: the one nearest to the d line, "
-             "unless the lens states a reference");
+  if (frames_help.empty()) {
+    add_length(app, "--focus", setup.focus_mm, positive_length,
+               "distance of the subject in focus (mm), or inf; at the primary wavelength: the one nearest to the d "
+               "line, unless the lens states a reference");
+  } else {
+    add_focus_pull(app, setup.pull, setup.focus_mm, frames_help);
+  }
   add_focus(app, setup.focus);
   app.add_option(
          "--film",

@@ -7,6 +7,7 @@
 #include <string_view>
 
 #include "cli.hpp"
+#include "focus_pull.hpp"
 #include "iris_setup.hpp"
 #include "load_lens.hpp"
 #include "petzval/core/film.hpp"
@@ -21,6 +22,7 @@ inline constexpr Range film_side{std::numeric_limits<double>::min(), 1e6, "a len
 struct CameraSetup {
   IrisSetup iris;
   double focus_mm = 3000;  ///< distance of the subject in focus, mm
+  FocusPull pull;          ///< a focus that moves; focus_mm is then its first distance
   FocusFlags focus;        ///< origin and criterion of focus_mm
   std::string film_mm = "36x24";
   bool film_given = false;
@@ -39,7 +41,8 @@ struct CameraSetup {
 };
 
 /// Adds the options of add_iris, --focus, --from, --criterion and --film.
-void add_camera(App& app, CameraSetup& setup);
+/// @param frames_help  if not empty, adds the options of add_focus_pull()
+void add_camera(App& app, CameraSetup& setup, const std::string& frames_help = "");
 
 /// Adds --size, 0 if not given, for CameraSetup::film.
 void add_picture_size(App& app, std::uint32_t& width, std::uint32_t& height, std::uint32_t usual_width);

@@ -71,6 +71,9 @@ std::vector<double> JsonEntry::list(const char* key, std::size_t count, const ch
 
 Json points_of(const std::string& where, const Json& document) {
   if (document.is_array()) return document;
+  if (document.is_object() && document.contains("keys")) {
+    throw petzval::Error(where + ": has distances over time; must be given as --focus " + where);
+  }
   check_keys(where, document, {"points"}, "points, or a list");
   if (!document.contains("points") || !document["points"].is_array()) {
     refuse(where + ": points", document.contains("points") ? document["points"] : Json(), "a list of points");

@@ -336,6 +336,26 @@ TEST_F(BokehScene, AcceptsFocalSurfacesAndAberrations) {
   EXPECT_NEAR(mean(light, 0), mean(surface, 0), 5 * std::hypot(error(light, 0), error(surface, 0)));
 }
 
+TEST_F(BokehScene, FocusPull_FramesEqualStills) {
+  const Arguments few{"--size", "36x24", "--spp", "2"};
+  const auto with = [&](Arguments more) {
+    more.insert(more.end(), few.begin(), few.end());
+    return more;
+  };
+  expect_failure("render", arguments("pull", {"--focus", "1m:inf"}), {"--focus", "--frames"});
+  expect_failure("render", arguments("pull", {"--frames", "2"}), {"--frames", "--focus"});
+  const Outcome done = run("render", arguments("pull", with({"--focus", "1m:inf", "--frames", "3"})));
+  ASSERT_EQ(done.status, 0) << done.err;
+  for (const auto& [frame, distance] : {std::pair{"1", "1m"}, {"2", "2m"}, {"3", "inf"}}) {
+    const json still = render("still", with({"--focus", distance}));
+    const std::string of_frame = path(std::string("pull/frame_000") + frame);
+    EXPECT_EQ(read_json(of_frame + "/render.json")["job"], still["job"]);
+    EXPECT_EQ(petzval::read_exr_parts(of_frame + "/picture.exr").front().channels.front().values,
+              petzval::read_exr_parts(path("still/picture.exr")).front().channels.front().values);
+    std::filesystem::remove_all(path("still"));
+  }
+}
+
 // An oblique plane covers the left half of the picture and crosses the axis 1000 mm in front of the entrance pupil.
 TEST_F(BokehScene, GuidesOfAPlaneAreItsAlbedoNormalAndDepth) {
   write("plane.json", R"({"sky": [0.5, 0.5, 0.5], "objects": [{"quad": {"corner_mm": [-400, -240, -1320],

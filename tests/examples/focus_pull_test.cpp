@@ -57,6 +57,25 @@ TEST_F(FocusPull, PassesItsKeysAndStaysBetweenThem) {
   }
 }
 
+TEST_F(FocusPull, WritesDistancesThatBlurReads) {
+  const json all = frames(thin_50, rack, {"--fps", "1", "--from", "film"});
+  Arguments blur = thin_50;
+  for (const std::string& a :
+       {std::string("--focus"), path("out/thin_lens_focus_pull.json"), std::string("--from"), std::string("film"),
+        std::string("--fps"), std::string("1"), std::string("--scene"), std::string("town"), std::string("--size"),
+        std::string("40x30"), std::string("--rays"), std::string("4"), std::string("--out"), path("blur")}) {
+    blur.push_back(a);
+  }
+  const auto outcome = run("blur", blur);
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  const json report = read_json(path("blur/blur.json"));
+  ASSERT_EQ(report["frames"].size(), all.size());
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    const double distance = all[i]["subject_distance_mm"];
+    EXPECT_NEAR(report["frames"][i]["focus_mm"], distance, 1e-9 * distance) << i;
+  }
+}
+
 TEST_F(FocusPull, CountsDistancesFromTheirOrigin) {
   for (const auto& [origin, z] :
        {std::pair{"film", film_of(1000)}, {"entrance_pupil", 0.0}, {"front_principal", 0.0}}) {
@@ -126,7 +145,8 @@ TEST_F(FocusPull, WritesATableAndAPlot) {
   ASSERT_EQ(outcome.status, 0) << outcome.err;
   std::set<std::string> names;
   for (const auto& file : std::filesystem::directory_iterator(path("out"))) names.insert(file.path().filename());
-  EXPECT_EQ(names, (std::set<std::string>{"thin_lens_focus_pull.csv", "thin_lens_focus_pull.svg"}));
+  EXPECT_EQ(names, (std::set<std::string>{"thin_lens_focus_pull.csv", "thin_lens_focus_pull.json",
+                                          "thin_lens_focus_pull.svg"}));
   const auto rows = lines(read(path("out/thin_lens_focus_pull.csv")));
   ASSERT_EQ(rows.size(), 98u);
   EXPECT_EQ(rows[0], "time_s,film_z_mm,subject_distance_mm,tilt_deg,swing_deg,rms_blur_um,breathing,targets,status");

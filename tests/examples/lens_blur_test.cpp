@@ -42,6 +42,7 @@ class LensBlurProgram : public Programs {
     for (std::size_t i = 0; i < depths.size(); ++i) depths[i] = static_cast<float>(i % 24 < 12 ? left_mm : right_mm);
     petzval::write_pfm(24, 16, depths, path("depth.pfm"));
   }
+  static Arguments real() { return {lens("double_gauss_52mm_f1.8"), "--scene", "town", "--supersample", "1"}; }
   Arguments files() const { return {"--image", path("rgb.pfm"), "--depth", path("depth.pfm")}; }
 };
 
@@ -146,6 +147,60 @@ TEST_F(LensBlurProgram, FollowsKeysOverFrames) {
   blur(joined({thin, small, {"--scene", "town", "--focus", "2000"}}), "near");
   EXPECT_LT(difference(last, picture("near/blur.pfm")), 1e-3);
   EXPECT_GT(difference(first, last), 1e-2);
+}
+
+TEST_F(LensBlurProgram, FocusPull_RealLens_FramesEqualStills) {
+  const json pull = blur(joined({small, real(), {"--focus", "2m:inf", "--frames", "3"}}), "pull");
+  EXPECT_EQ(pull["model"], "exact_float");
+  ASSERT_EQ(pull["frames"].size(), 3u);
+  for (const auto& [frame, distance] : {std::pair{"1", "2m"}, {"2", "4m"}, {"3", "inf"}}) {
+    const json still = blur(joined({small, real(), {"--focus", distance}}), "still");
+    EXPECT_EQ(still["model"], "exact_float");
+    EXPECT_EQ(still["focus_mm"], pull["frames"][std::stoul(frame) - 1]["focus_mm"]);
+    EXPECT_EQ(picture("still/blur.pfm").pixels, picture(std::string("pull/blur_000") + frame + ".pfm").pixels);
+  }
+  EXPECT_TRUE(pull["frames"][2]["focus_mm"].is_null());
+}
+
+TEST_F(LensBlurProgram, FocusPull_FileOfKeys_FollowsItsTimes) {
+  write("keys.json", R"({"keys": [{"time_s": 3, "distance_mm": 2000}, {"time_s": 5, "distance_mm": null}]})");
+  const Arguments town = joined({thin, small, {"--scene", "town", "--focus", path("keys.json")}});
+  const auto distances = [](const json& result) {
+    std::vector<double> list;
+    for (const json& frame : result["frames"])
+      list.push_back(frame["focus_mm"].is_null() ? 0 : frame["focus_mm"].get<double>());
+    return list;
+  };
+  EXPECT_EQ(distances(blur(joined({town, {"--fps", "1"}}))), (std::vector<double>{2000, 4000, 0}));
+  EXPECT_EQ(distances(blur(joined({town, {"--fps", "1", "--frames", "2"}}))), (std::vector<double>{2000, 4000}));
+}
+
+TEST_F(LensBlurProgram, FocusPull_WithoutFramesOrWithPoints_IsRefused) {
+  write("points.json", R"([{"pixel": [40, 30], "distance_mm": 2000}])");
+  write("keys.json", R"({"distance_from": "film", "keys": [{"time_s": 0, "distance_mm": 2000}]})");
+  const auto refused = [&](const Arguments& arguments, const std::vector<petzval::testing::Token>& tokens) {
+    expect_failure("blur", joined({thin, small, {"--scene", "town", "--out", path("out")}, arguments}), tokens);
+  };
+  refused({"--focus", "2m:4m"}, {"--focus", "2m:4m", "--frames"});
+  refused({"--focus", "2m:-4m", "--frames", "2"}, {"--focus", "-4m"});
+  refused({"--focus", "2m:4m", "--frames", "2", "--points", path("points.json")}, {"--focus", "--points"});
+  refused({"--focus", path("keys.json")}, {"keys.json", "film", "--from", "front_vertex"});
+  refused({"--focus", "2m", "--points", path("keys.json")}, {"keys.json", "--focus"});
+  write("keys.json", R"({"keys": [{"time_s": 1, "distance_mm": 2000}, {"time_s": 1, "distance_mm": 3000}]})");
+  refused({"--focus", path("keys.json")}, {"keys.json", "key", 2, "time_s"});
+  write("keys.json", R"({"keys": [{"time_s": 1, "distance_mm": -2000}]})");
+  refused({"--focus", path("keys.json")}, {"keys.json", "key", 1, "distance_mm", -2000});
+}
+
+TEST_F(LensBlurProgram, FocalSurface_RealLens_NamesItsModel) {
+  write("points.json", R"([{"pixel": [40, 30], "distance_mm": 2000}])");
+  const auto outcome = run(
+      "blur", joined({small,
+                      real(),
+                      {"--focus", "2m", "--points", path("points.json"), "--format", "png", "--out", path("out")}}));
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_EQ(read_json(path("out/blur.json"))["model"], "thick");
+  petzval::testing::expect_tokens(outcome.err, {"note", "--points", "thick"});
 }
 
 TEST_F(LensBlurProgram, ComparesNumbersOfRays) {

@@ -1,0 +1,120 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "focus_pull.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "files.hpp"
+#include "json_input.hpp"
+#include "petzval/core/error.hpp"
+#include "text.hpp"
+
+namespace examples {
+namespace {
+
+constexpr Range frame_counts{1, 100000, "a whole number from 1 to 100000"};
+
+std::vector<FocusPull::Key> read_keys(const std::string& file, std::string& origin) {
+  const Json document = read_json(file);
+  check_keys(file, document, {"distance_from", "keys"}, "keys and distance_from");
+  origin.clear();
+  if (document.contains("distance_from")) {
+    const std::vector<std::string> known = names(distance_origins);
+    const Json& from = document["distance_from"];
+    if (!from.is_string() || std::ranges::find(known, from.get<std::string>()) == known.end()) {
+      refuse(file + ": distance_from", from, "a value of --from");
+    }
+    origin = from.get<std::string>();
+  }
+  constexpr const char* rule = "a list of one key or more, each with time_s and distance_mm";
+  if (!document.contains("keys") || !document["keys"].is_array() || document["keys"].empty()) {
+    refuse(file + ": keys", document.value("keys", Json()), rule);
+  }
+  std::vector<FocusPull::Key> keys;
+  for (const Json& json : document["keys"]) {
+    const JsonEntry entry{file + ": key " + std::to_string(keys.size() + 1), json};
+    entry.keys({"time_s", "distance_mm"}, "time_s and distance_mm; infinity is null");
+    const auto time = entry.number("time_s", finite_number);
+    if (!time || !json.contains("distance_mm")) refuse(entry.where, json, "an object with time_s and distance_mm");
+    if (!keys.empty() && !(keys.back().time_s < *time)) {
+      refuse(entry.where + ": time_s", json["time_s"], "a time after the previous key");
+    }
+    const bool infinite = json["distance_mm"].is_null();
+    keys.push_back({*time, infinite ? 0 : 1 / *entry.number("distance_mm", positive_number)});
+  }
+  return keys;
+}
+
+}  // namespace
+
+std::uint32_t FocusPull::count(const std::string& from, const std::string& points) const {
+  if (frames_per_s > 0 && points.empty() && !text.ends_with(".json")) {
+    throw petzval::Error("--fps = " + number(frames_per_s) + ": must be used with --focus KEYS.json or --points");
+  }
+  if (!moves()) return std::max(frames, 1u);
+  const std::string given = "--focus = " + text;
+  if (!points.empty()) throw petzval::Error(given + " with --points; must be one distance");
+  if (!origin.empty() && origin != from) {
+    throw petzval::Error(text + ": distance_from = " + origin + "; must be the value of --from, " + from);
+  }
+  if (!text.ends_with(".json")) {
+    if (frames < 2) throw petzval::Error(given + ": must be used with --frames of 2 or more");
+    return frames;
+  }
+  const double all = std::floor((keys.back().time_s - keys.front().time_s) / time_s(1) + 1e-6) + 1;
+  if (frames == 0 && !(all <= frame_counts.most)) {
+    throw petzval::Error(text + ": frames = " + number(all) + "; must be at most " + number(frame_counts.most) +
+                         " or limited by --frames");
+  }
+  return frames > 0 ? frames : static_cast<std::uint32_t>(all);
+}
+
+double FocusPull::distance_mm(std::uint32_t frame, std::uint32_t count) const {
+  const double time =
+      text.ends_with(".json") ? keys.front().time_s + time_s(frame) : frame / (static_cast<double>(count) - 1);
+  const auto after = std::ranges::find_if(keys, [&](const Key& key) { return key.time_s > time; });
+  if (after == keys.begin() || after == keys.end()) return 1 / (after == keys.end() ? keys.back() : *after).inverse_mm;
+  const Key &a = after[-1], &b = *after;
+  return 1 / std::lerp(a.inverse_mm, b.inverse_mm, (time - a.time_s) / (b.time_s - a.time_s));
+}
+
+void add_focus_pull(App& app, FocusPull& pull, double& focus_mm, const std::string& frames_help) {
+  app.add_option(
+         "--focus",
+         [&](const std::string& text) {
+           pull.text = text, pull.keys.clear();
+           if (text.ends_with(".json")) {
+             pull.keys = read_keys(text, pull.origin);
+             focus_mm = 1 / pull.keys.front().inverse_mm;
+             return;
+           }
+           const std::size_t colon = text.find(':');
+           focus_mm = parse_length("--focus", text.substr(0, colon), positive_length);
+           if (colon == std::string::npos) return;
+           const double last = parse_length("--focus", text.substr(colon + 1), positive_length);
+           pull.keys = {{0, 1 / focus_mm}, {1, 1 / last}};
+         },
+         "distance of the subject in focus (mm or inf), or A:B, from A to B over --frames; steps of 1/distance are "
+         "equal; KEYS.json: distances over time, as petzval pull writes them")
+      ->type_name("LENGTH|A:B|KEYS.json")
+      ->required();
+  add_count(app, "--frames", pull.frames, frame_counts, "number of frames; " + frames_help)
+      ->default_str("1; KEYS.json: up to the last key");
+  add_number(app, "--fps", pull.frames_per_s, positive_number, "frames per second, for times of keys")
+      ->default_str("24");
+}
+
+std::string to_json(const std::vector<FocusPull::Key>& keys, const std::string& from) {
+  Json list = Json::array();
+  for (const FocusPull::Key& key : keys) {
+    list.push_back({{"time_s", key.time_s}, {"distance_mm", finite_or_null(1 / key.inverse_mm)}});
+  }
+  return Json{{"distance_from", from}, {"keys", list}}.dump(1) + '\n';
+}
+
+std::string frame_number(std::uint32_t frame) {
+  const std::string digits = std::to_string(frame + 1);
+  return std::string(4 - std::min<std::size_t>(digits.size(), 4), '0') + digits;
+}
+
+}  // namespace examples
