@@ -185,6 +185,22 @@ LayerInput::LayerInput(const InputFlags& flags) : flags_(flags), depths_are_axia
   columns_ = lists_.columns, rows_ = lists_.rows;
 }
 
+void LayerInput::refine(int side) {
+  if (side == 1) return;
+  FragmentLists fine{.columns = side * lists_.columns, .rows = side * lists_.rows, .offsets = {0}, .fragments = {}};
+  for (int row = 0; row < fine.rows; ++row) {
+    for (int column = 0; column < fine.columns; ++column) {
+      const auto pixel = static_cast<std::size_t>(row / side * lists_.columns + column / side);
+      const auto at = [&](std::size_t i) {
+        return lists_.fragments.begin() + static_cast<std::ptrdiff_t>(lists_.offsets[i]);
+      };
+      fine.fragments.insert(fine.fragments.end(), at(pixel), at(pixel + 1));
+      fine.offsets.push_back(fine.fragments.size());
+    }
+  }
+  lists_ = std::move(fine);
+}
+
 void LayerInput::read_picture() {
   const std::string& file = flags_.image;
   std::vector<petzval::ExrPart> parts = read_parts(file);

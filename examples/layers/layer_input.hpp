@@ -40,6 +40,8 @@ class LayerInput {
   float depth_mm(int column, int row) const;
   /// Depth of the nearest surface, mm. Converts distances to depths. camera: the camera of the layers.
   double nearest_mm(const petzval::LayerCamera& camera, int threads);
+  /// Divides each pixel of files into side x side equal pixels. nearest_mm() must not have been called.
+  void refine(int side);
   /// Fills the layers of a plan. Files have a fixed set of layers, whatever the plan.
   /// @throws petzval::Cancelled if `stop` requests a stop before the last layer
   void fill(const petzval::PeelPlan& plan, int layers, int threads, petzval::LayerSet& set,

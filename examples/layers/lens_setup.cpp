@@ -179,7 +179,7 @@ BlurLens::BlurLens(const LensFlags& flags, int columns, int rows, const renderer
       keyed_(keyed),
       unfocused_(lens_of(flags)),
       view_(view_of(flags, unfocused_, flags.focus_mm, columns, rows)),
-      pattern_{flags.rays, flags.supersample, flags.jitter},
+      pattern_{flags.rays, flags.supersample, flags.jitter, flags.over_pixels},
       layers_(view_.layers(flags.supersample)) {
   if (flags.rays == 0) {
     pattern_.rays = view_.thin() ? 256 : 512;

@@ -33,6 +33,7 @@ struct LensFlags {
   /// Numbers of rays that are compared with each other; `rays` is the last. Empty if --rays is not given.
   std::vector<std::uint32_t> ray_counts;
   std::uint32_t supersample = 1;  ///< 1, 2 or 4 subpixels per pixel in each direction
+  bool over_pixels = false;       ///< as RayPattern
   std::string wavelengths = "d";
   bool jitter = false;
   examples::IrisSetup iris;

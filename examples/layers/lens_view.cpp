@@ -68,7 +68,11 @@ petzval::LensRays LensView::rays(const petzval::LayerCamera& layers, const RayPa
   const int sets = pattern.jitter ? 16 : parts;
   const std::vector<petzval::PupilPoint> points =
       petzval::vogel_sets((static_cast<int>(pattern.rays) + parts - 1) / parts, sets);
-  const petzval::LensRaysOptions options{.nearest_mm = nearest_mm, .set_count = sets, .threads = threads, .stop = stop};
+  const petzval::LensRaysOptions options{.nearest_mm = nearest_mm,
+                                         .set_count = sets,
+                                         .over_pixels = pattern.over_pixels,
+                                         .threads = threads,
+                                         .stop = stop};
   if (!thin() || controls.vignettes() || !expressive.empty()) {
     std::vector<petzval::Wavelength> wavelengths;
     for (std::size_t i = 1; coloured && i <= petzval::rgb_triple_nm.size(); ++i) wavelengths.emplace_back(i);

@@ -21,6 +21,7 @@ struct RayPattern {
   std::uint32_t rays = 256;       ///< per pixel of the picture
   std::uint32_t supersample = 1;  ///< 1, 2 or 4 subpixels in each direction, which share the rays
   bool jitter = false;            ///< 16 sets of rays, alternating over the pixels
+  bool over_pixels = false;       ///< as LensRaysOptions; for layers with one sample per pixel, such as files
 };
 
 /// A lens in front of layers: the rays of `petzval blur` and `petzval view`.

@@ -75,8 +75,8 @@ RgbImage missed_of(const petzval::BlurredImage& picture) {
   return image;
 }
 
-lens_blur::LensFlags with_supersample(lens_blur::LensFlags flags, int side) {
-  flags.supersample = static_cast<std::uint32_t>(side);
+lens_blur::LensFlags for_pixels(lens_blur::LensFlags flags, int side, bool of_file) {
+  flags.supersample = static_cast<std::uint32_t>(side), flags.over_pixels = of_file;
   return flags;
 }
 
@@ -89,7 +89,7 @@ class Job {
         side_(options.supersample > 0 ? static_cast<int>(options.supersample)
               : input_.scene()        ? 2
                                       : 1),
-        lens_(with_supersample(options.lens, side_), input_.columns(), input_.rows(), input_.pose(),
+        lens_(for_pixels(options.lens, side_, !input_.scene()), input_.columns(), input_.rows(), input_.pose(),
               options.frames > 1) {
     if (options.frames == 1 && options.travel_mm != 0) {
       throw petzval::Error("--travel: --frames = 1; must be 2 or more");
@@ -104,8 +104,8 @@ class Job {
     if (side_ == 3) throw petzval::Error(std::string("--supersample = 3; must be ") + supersamples.words);
     if (!input_.scene()) {
       if (options.compare) throw petzval::Error("--compare needs --scene");
-      if (side_ > 1) throw petzval::Error("--supersample needs --scene: files have a fixed number of pixels");
       if (options.travel_mm != 0) throw petzval::Error("--travel needs --scene: files have a fixed camera");
+      input_.refine(side_);
     }
   }
 
@@ -359,8 +359,8 @@ int commands::blur(int argc, char** argv) {
                       "layers: rays.png, rays.svg, many_rays.* and `quality` in blur.json")
       ->default_str("");
   examples::add_count(app, "--supersample", options.supersample, supersamples,
-                      "subpixels of a scene per pixel in each direction, averaged; the rays of a pixel are divided "
-                      "between its subpixels")
+                      "subpixels per pixel in each direction, averaged; the rays of a pixel are divided between its "
+                      "subpixels. Rays of files are spread over each pixel in any case")
       ->default_str("2; files: 1");
   examples::add_number(app, "--highlights-above", options.highlights_above, {0, 1e9, "a number from 0 to 1e9"},
                        "radiance above which small lights become uniform discs; 0: never")

@@ -247,8 +247,8 @@ Frame Session::frame(std::uint32_t rays, bool first_order, const std::stop_token
   const auto start = std::chrono::steady_clock::now();
   lens_blur::LensView lens = view(false);
   lens.first_order_only = first_order && !lens.thin();
-  const petzval::LensRays table =
-      lens.rays(camera_, {.rays = rays}, lens_blur::least_depth(nearest_mm_), options_.threads, stop);
+  const petzval::LensRays table = lens.rays(camera_, {.rays = rays, .over_pixels = !input_.scene()},
+                                            lens_blur::least_depth(nearest_mm_), options_.threads, stop);
   petzval::gather(layers_, table, {.threads = options_.threads, .highlights_above = threshold_, .stop = stop},
                   blurred_);
   Frame result{.picture = lens_blur::colours_of(blurred_), .rays = rays, .first_order = lens.first_order_only};
@@ -262,7 +262,8 @@ Frame Session::still(const std::stop_token& stop) {
   const lens_blur::LensView lens = view(true);
   const bool thin = lens.thin();
   const std::uint32_t side = input_.scene() ? 2 : 1;
-  const lens_blur::RayPattern pattern{.rays = thin ? 256u : 512u, .supersample = side, .jitter = !thin};
+  const lens_blur::RayPattern pattern{
+      .rays = thin ? 256u : 512u, .supersample = side, .jitter = !thin, .over_pixels = !input_.scene()};
   const petzval::LayerCamera camera = lens.layers(side);
   const double nearest = input_.nearest_mm(camera, options_.threads);
   const petzval::LensRays rays = lens.rays(camera, pattern, lens_blur::least_depth(nearest), options_.threads, stop);

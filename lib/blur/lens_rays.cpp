@@ -127,6 +127,19 @@ Spread spread_of(const RayTable& t, double nearest) {
   return spread;
 }
 
+/// Moves each ray within its pixel, equally at all nodes. Positions are rounded to pixels, so that rays stay in theirs.
+void spread_over_pixels(RayTable& table) {
+  constexpr double side = 0.998;
+  const core_detail::Kronecker<2> positions;
+  for (std::size_t begin = 0; begin < table.nodes.size(); begin += table.node_size()) {
+    for (std::size_t i = 0; i < table.rays; ++i) {
+      const auto at = positions(i);
+      table.nodes[begin + at_x * table.rays + i] += static_cast<float>(side * (at[0] - 0.5));
+      table.nodes[begin + at_y * table.rays + i] += static_cast<float>(side * (at[1] - 0.5));
+    }
+  }
+}
+
 }  // namespace
 
 Cancelled::~Cancelled() = default;  // anchors the type information in this library
@@ -168,6 +181,7 @@ LensRays::LensRays(const LayerCamera& camera, std::span<const PupilPoint> points
   const Spread spread = spread_of(d->table, nearest);
   d->largest_slope = spread.steepest;
   d->shift_invariant = spread.differ_px <= same_px && spread.light <= 1e-6;
+  if (options.over_pixels) spread_over_pixels(d->table);
   data_ = std::move(d);
 }
 

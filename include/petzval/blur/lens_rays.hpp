@@ -88,6 +88,10 @@ struct LensRaysOptions {
   /// Number of ray sets in the points (vogel_sets): 1, 4 or 16. Each pixel of a square of 1 x 1, 2 x 2 or 4 x 4 takes a
   /// different set; the mean over the square has the rays of all sets. More sets replace repeated patterns by grain.
   int set_count = 1;
+  /// Spreads the rays of a pixel over its area; false: they start at its centre. For layers with one sample per pixel:
+  /// blurs smaller than a pixel become means over the pixel, and surfaces in focus are unchanged. The offsets are part
+  /// of the rays of at(), not of exact_rays_at().
+  bool over_pixels = false;
   int threads = 1;
   /// Cancels the construction from another thread: the constructor throws Cancelled. It tests the token before each
   /// call of the source.
