@@ -124,7 +124,7 @@ void add_input(examples::App& app, InputFlags& flags) {
       ->one_of({"town", "miniature", "lights", "statues", "knot", "leaves", "street"});
   auto* image =
       app.add_option("--image", flags.image,
-                     "picture: PNG or JPEG (sRGB), PFM or EXR (linear). An EXR may have depths (Z, mm) and alpha (A); "
+                     "picture: PNG or JPEG (sRGB), PFM or EXR (linear). An EXR may have depths (Z) and alpha (A); "
                      "several parts are layers from near to far")
           ->type_name("PICTURE");
   app.add_option("--deep", flags.deep, "deep picture")->type_name("DEEP.exr");
@@ -133,11 +133,15 @@ void add_input(examples::App& app, InputFlags& flags) {
                                "PNG with 8 or 16 bits, which needs --near and --far")
                     ->type_name("DEPTHS")
                     ->needs(image);
-  app.add_option("--depth-kind", flags.depth_kind,
-                 "values of files: depths along the axis (axial, mm), distances along rays (distance, mm), or 1/depth "
-                 "along the axis (inverse, 1/mm), as in disparity maps of phones and neural networks")
+  app.add_option(
+         "--depth-kind", flags.depth_kind,
+         "values of files: depths along the axis (axial), distances along rays (distance), or 1/depth along the "
+         "axis (inverse), as in disparity maps of phones and neural networks")
       ->one_of({"axial", "distance", "inverse"})
       ->capture_default_str();
+  app.add_option("--depth-unit", flags.depth_unit, "unit of the depths of files; inverse depths are 1/unit")
+      ->one_of({"m", "cm", "mm", "in"})
+      ->default_str("mm");
   auto* near = add_length(app, "--near", flags.near_mm, examples::positive_number,
                           "depth at the near end of the values of --depth, which go from 0 (black) to 1 (white)")
                    ->default_str("values are not scaled")
@@ -160,10 +164,14 @@ LayerInput::LayerInput(const InputFlags& flags) : flags_(flags), depths_are_axia
   }
   if (flags.depth_kind == "inverse" && flags.depth.empty())
     throw Error("--depth-kind = inverse: must be used with --depth");
+  if (!flags.depth_unit.empty() && flags.near_mm > 0) {
+    throw Error("--depth-unit must not be used with --near and --far, which have their own units");
+  }
   if (!flags.scene.empty()) {
     if (!depths_are_axial_) {
       throw Error("--depth-kind = " + flags.depth_kind + ": must not be used with --scene, whose depths are axial");
     }
+    if (!flags.depth_unit.empty()) throw Error("--depth-unit must not be used with --scene");
     const auto description = blur_scene(flags.scene);
     if (!description) throw Error("--scene = " + flags.scene + "; must be " + std::string(blur_scene_names));
     pose_ = description->pose;
@@ -183,6 +191,21 @@ LayerInput::LayerInput(const InputFlags& flags) : flags_(flags), depths_are_axia
     read_picture();
   }
   columns_ = lists_.columns, rows_ = lists_.rows;
+  if (flags.depth_unit.empty()) return;
+  const auto unit =
+      static_cast<float>(examples::parse_length("--depth-unit", "1" + flags.depth_unit, examples::positive_number));
+  for (FragmentLists::Fragment& f : lists_.fragments) f.depth_mm *= unit;
+}
+
+void LayerInput::refuse_near(double nearest_mm, double focal_length_mm, bool failed) const {
+  const bool unit_given = !flags_.depth_unit.empty() || flags_.near_mm > 0;
+  if (scene_ || (unit_given && !failed) || nearest_mm >= std::abs(focal_length_mm)) return;
+  const std::string& file = !flags_.depth.empty() ? flags_.depth : !flags_.deep.empty() ? flags_.deep : flags_.image;
+  throw Error(file + ": nearest depth = " + examples::number(nearest_mm, 3) + " mm; must be " +
+              (unit_given ? "" : "at least ") + "the focal length of the lens, " +
+              examples::number(focal_length_mm, 3) +
+              (unit_given ? " mm, or more: the blur of nearer surfaces is too wide to compute"
+                          : " mm: are the depths in metres? --depth-unit m (mm: keep them as they are)"));
 }
 
 void LayerInput::refine(int side) {

@@ -15,6 +15,7 @@ namespace lens_blur {
 /// Command line of the source of layers.
 struct InputFlags {
   std::string scene, image, deep, depth, depth_kind = "axial";
+  std::string depth_unit;               ///< empty: mm, not given
   double near_mm = 0, far_mm = 0;       ///< depths of the ends of the values of --depth; 0: values are lengths
   std::string white;                    ///< "near" or "far"; empty: far, or near for inverse depths
   std::uint32_t width = 0, height = 0;  ///< 0: 800 x 600, or the size of the file
@@ -40,6 +41,9 @@ class LayerInput {
   float depth_mm(int column, int row) const;
   /// Depth of the nearest surface, mm. Converts distances to depths. camera: the camera of the layers.
   double nearest_mm(const petzval::LayerCamera& camera, int threads);
+  /// @throws petzval::Error  that asks for the unit, if depths of files are below the focal length of the lens and have
+  ///         no --depth-unit; `failed`: also if they have one, because the blur failed
+  void refuse_near(double nearest_mm, double focal_length_mm, bool failed = false) const;
   /// Divides each pixel of files into side x side equal pixels. nearest_mm() must not have been called.
   void refine(int side);
   /// Fills the layers of a plan. Files have a fixed set of layers, whatever the plan.

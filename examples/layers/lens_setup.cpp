@@ -194,6 +194,8 @@ BlurLens::BlurLens(const LensFlags& flags, int columns, int rows, const renderer
   }
 }
 
+double BlurLens::focal_length_mm() const { return petzval::first_order(view_.lens).effective_focal_length; }
+
 void BlurLens::focus_at(double focus_mm, bool keep_film) {
   const petzval::Film film = view_.film;
   view_ = view_of(flags_, unfocused_, focus_mm, film.columns, film.rows, keep_film ? film.height_mm : 0);

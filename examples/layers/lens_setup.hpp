@@ -59,6 +59,7 @@ class BlurLens {
   const petzval::LayerCamera& layers() const noexcept { return layers_; }
   const std::string& name() const noexcept { return view_.lens.name(); }
   petzval::ModelKind model() const noexcept { return view_.model(); }
+  double focal_length_mm() const;
   /// Focuses at another distance. keep_film: the film keeps its size, otherwise the picture keeps its angle (--fov).
   void focus_at(double focus_mm, bool keep_film);
   /// Changes the number of rays per pixel.

@@ -116,7 +116,12 @@ class Job {
     if (options_.frames > 1) progress.emplace("petzval blur", options_.frames);
     for (std::uint32_t frame = 0; frame < options_.frames; ++frame) {
       if (progress) progress->step("frame " + std::to_string(frame + 1));
-      do_frame(frame, folder, options_.frames > 1 ? "_" + examples::frame_number(frame) : "");
+      try {
+        do_frame(frame, folder, options_.frames > 1 ? "_" + examples::frame_number(frame) : "");
+      } catch (const petzval::Error&) {
+        input_.refuse_near(nearest_mm_, lens_.focal_length_mm(), true);
+        throw;
+      }
     }
     result_["model"] = petzval::name(lens_.model());
     if (options_.compare && options_.frames > 1) result_["flicker"] = flicker_ / (options_.frames - 1);
@@ -145,9 +150,10 @@ class Job {
       const double part = options_.frames > 1 ? frame / (options_.frames - 1.0) : 0;
       input_.scene()->move_to({static_cast<float>(part * options_.travel_mm), 0, 0});
     }
-    const double nearest = input_.nearest_mm(lens_.layers(), threads_);
+    const double nearest = nearest_mm_ = input_.nearest_mm(lens_.layers(), threads_);
     if (!std::isfinite(nearest))
       throw petzval::Error("layers: all depths are infinite; must have at least one finite depth");
+    input_.refuse_near(nearest, lens_.focal_length_mm());
     auto start = std::chrono::steady_clock::now();
     // A smaller depth than the nearest surface: layers extend beyond the picture, where objects may be nearer.
     const petzval::LensRays rays = lens_.rays(lens_blur::least_depth(nearest), threads_, time);
@@ -163,6 +169,7 @@ class Job {
     start = std::chrono::steady_clock::now();
     petzval::gather(layers_, rays, {.threads = threads_, .highlights_above = threshold}, blurred_);
     const double gather_ms = ms_since(start);
+    nearest_mm_ = std::numeric_limits<double>::infinity();  // later errors have other reasons
     const RgbImage picture = lens_blur::averaged(lens_blur::colours_of(blurred_), side_);
     write(picture, folder / ("blur" + number));
     if (frame == 0) {
@@ -334,7 +341,8 @@ class Job {
   Json result_;
   std::vector<examples::Tile> shown_;  ///< tiles of frames.png
   std::vector<float> last_error_;
-  double flicker_ = 0, rays_error_px_ = 0;  ///< rays_error_px_: maximum over all frames
+  double nearest_mm_ = std::numeric_limits<double>::infinity();  ///< while a picture is computed
+  double flicker_ = 0, rays_error_px_ = 0;                       ///< rays_error_px_: maximum over all frames
 };
 
 }  // namespace

@@ -34,7 +34,7 @@ constexpr std::array all_groups{
           " --out --camera --all --calibration --ray-map --povray --format --json --check --strict --repair "
           "--precision --surfaces-from "},
     Group{"Quality", true, " --lens-samples --half --tolerance --layers --jitter --supersample --highlights-above "},
-    Group{"Depths", true, " --depth-kind --near --far --white "},
+    Group{"Depths", true, " --depth-kind --depth-unit --near --far --white "},
     Group{"Files", true, " --glasses --configuration --coatings --match-glasses --ignore-apertures "},
     Group{"Iris", true,
           " --roundness --iris-rotation --iris-area --iris-image --lens-ratio --rate-of-change --keep-light "

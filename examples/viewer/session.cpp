@@ -133,6 +133,7 @@ Session::Session(const SessionOptions& options) : options_(options), input_(opti
   }
   editor_.emplace(scene, options.lens);
   update_camera();
+  input_.refuse_near(nearest_mm_, petzval::first_order(editor_->state().lens).effective_focal_length);
 }
 
 petzval::Lens Session::load(const petzval::FocusLensChoice& choice) {
@@ -360,6 +361,7 @@ Json Session::log() const {
     if (!value.empty()) json[key] = value;
   }
   if (!input.depth.empty() && input.depth_kind != "axial") json["depth_kind"] = input.depth_kind;
+  if (!input.depth_unit.empty()) json["depth_unit"] = input.depth_unit;
   if (input.near_mm > 0) {
     json["near_mm"] = input.near_mm;
     json["far_mm"] = examples::finite_or_null(input.far_mm);
@@ -409,6 +411,7 @@ std::string Session::blur_command(const std::string& points_file) const {
   add_file("--deep", input.deep);
   add_file("--depth", input.depth);
   add_if(input.depth_kind != "axial", "--depth-kind", input.depth_kind);
+  add_if(!input.depth_unit.empty(), "--depth-unit", input.depth_unit);
   add_if(input.near_mm > 0, "--near", exact(input.near_mm));
   add_if(input.near_mm > 0, "--far", exact(input.far_mm));
   add_if(!input.white.empty(), "--white", input.white);
@@ -464,9 +467,10 @@ examples::Json events_of(const Json& log, const std::string& where) {
 
 SessionOptions options_of(const Json& log, const std::string& where) {
   examples::check_keys(where, log,
-                       {"scene", "image", "depth", "deep", "depth_kind", "near_mm", "far_mm", "white", "lens", "size",
-                        "fov_deg", "events"},
-                       "scene, image, depth, deep, depth_kind, near_mm, far_mm, white, lens, size, fov_deg and events");
+                       {"scene", "image", "depth", "deep", "depth_kind", "depth_unit", "near_mm", "far_mm", "white",
+                        "lens", "size", "fov_deg", "events"},
+                       "scene, image, depth, deep, depth_kind, depth_unit, near_mm, far_mm, white, lens, size, fov_deg "
+                       "and events");
   SessionOptions options;
   const auto text = [&](const char* key, std::string& target) {
     if (!log.contains(key)) return;
@@ -475,6 +479,7 @@ SessionOptions options_of(const Json& log, const std::string& where) {
   };
   text("scene", options.input.scene), text("image", options.input.image), text("depth", options.input.depth);
   text("deep", options.input.deep), text("depth_kind", options.input.depth_kind), text("white", options.input.white);
+  text("depth_unit", options.input.depth_unit);
   const examples::JsonEntry entry{where, log};
   if (const auto near = entry.number("near_mm", examples::positive_number)) {
     options.input.near_mm = *near;

@@ -203,6 +203,31 @@ TEST_F(LensBlurProgram, FocalSurface_RealLens_NamesItsModel) {
   petzval::testing::expect_tokens(outcome.err, {"note", "--points", "thick"});
 }
 
+TEST_F(LensBlurProgram, DepthsInMetres_WithTheirUnit_EqualMillimetres) {
+  const Arguments lens = joined({thin, {"--focus", "2000", "--rays", "16"}});
+  write_files(1000, 2000);
+  blur(joined({lens, files()}), "mm");
+  write_files(1, 2);
+  blur(joined({lens, files(), {"--depth-unit", "m"}}), "m");
+  EXPECT_EQ(picture("mm/blur.pfm").pixels, picture("m/blur.pfm").pixels);
+  write_files(1, 0.5);
+  blur(joined({lens, files(), {"--depth-kind", "inverse", "--depth-unit", "m"}}), "inverse");
+  EXPECT_EQ(picture("mm/blur.pfm").pixels, picture("inverse/blur.pfm").pixels);
+}
+
+TEST_F(LensBlurProgram, DepthsBelowTheFocalLength_AreAskedFor) {
+  write_files(0.01, 20);
+  for (const Arguments& unit : {Arguments{}, Arguments{"--depth-unit", "mm"}}) {
+    const auto outcome = run("blur", joined({thin, files(), unit, {"--focus", "2m", "--out", path("out")}}));
+    EXPECT_EQ(outcome.status, 1);
+    petzval::testing::expect_tokens(outcome.err, {"depth.pfm", 0.01, "focal", 50});
+    for (const char* inside : {"gather", "layers", "PeelPlan", "rays"}) {
+      EXPECT_FALSE(petzval::testing::has_token(outcome.err, inside)) << outcome.err;
+    }
+    if (unit.empty()) petzval::testing::expect_tokens(outcome.err, {"--depth-unit", "metres"});
+  }
+}
+
 // The blur of a black and white edge, 0.26 px in radius, is an integral over the pixels beside the edge.
 TEST_F(LensBlurProgram, BlurBelowAPixel_IsAMeanOverThePixel) {
   RgbImage image(24, 16);
@@ -254,6 +279,7 @@ TEST_F(LensBlurProgram, RefusesInvalidInput) {
   refused(joined({focus, files(), {"--rays", "16,32"}}), {"--rays", 2, "--compare-rays"});
   refused(joined({focus, files(), {"--rays", "16,2.5", "--compare-rays", "64"}}), {"--rays", 2.5});
   refused(joined({focus, files(), {"--frames", "2", "--compare-rays", "64"}}), {"--compare-rays", "--frames", 2});
+  refused(joined({focus, files(), {"--near", "1m", "--far", "2m", "--depth-unit", "m"}}), {"--depth-unit", "--near"});
   refused(joined({focus, files(), {"--size", "80"}}), {"--size"});
   refused(joined({files(), {"--focus", "40"}}), {"--focus", 40});
   petzval::write_exr(picture("rgb.pfm"), path("flat.exr"));
