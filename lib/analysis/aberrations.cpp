@@ -33,6 +33,13 @@ std::optional<FilmRay> at_film(const Lens& lens, const AimedRay& aimed) {
   return ray;
 }
 
+/// The limit at step 0 of values at a step, a half and a quarter of it: Richardson's rule without the terms of first
+/// and second order. Aspheres with r^3 have a term of first order.
+std::optional<double> limit_at_0(const std::array<std::optional<double>, 3>& values) {
+  if (!values[0] || !values[1] || !values[2]) return {};
+  return (*values[0] - 6 * *values[1] + 8 * *values[2]) / 3;
+}
+
 /// Distance at which rays on both sides of a chief ray intersect.
 std::optional<double> crossing(double position_change, double slope_change) {
   const double distance = -position_change / slope_change;
@@ -140,15 +147,18 @@ std::vector<RayFan> ray_fans(const Lens& lens, double subject_z, std::span<const
 
 std::vector<FieldFocus> field_curvature(const Lens& lens, double subject_z, std::span<const double> fields_rad,
                                         Wavelength wavelength) {
-  constexpr double step = 1e-3;  // semi-diameters of the stop
   std::vector<FieldFocus> foci;
   for (const double field : fields_rad) {
     const FieldPoint point{.field_rad = field, .z = subject_z};
     const auto ray = [&](const Vec2<double>& target) { return at_film(lens, aim(lens, point, target, wavelength)); };
-    const auto up = ray({0, step}), down = ray({0, -step}), right = ray({step, 0}), left = ray({-step, 0});
-    FieldFocus& focus = foci.emplace_back(FieldFocus{field, {}, {}});
-    if (up && down) focus.tangential_mm = crossing(up->y - down->y, up->slope_y - down->slope_y);
-    if (right && left) focus.sagittal_mm = crossing(right->x - left->x, right->slope_x - left->slope_x);
+    std::array<std::optional<double>, 3> tangential, sagittal;
+    for (std::size_t k = 0; k < tangential.size(); ++k) {
+      const double step = std::ldexp(2e-3, -static_cast<int>(k));  // semi-diameters of the stop
+      const auto up = ray({0, step}), down = ray({0, -step}), right = ray({step, 0}), left = ray({-step, 0});
+      if (up && down) tangential[k] = crossing(up->y - down->y, up->slope_y - down->slope_y);
+      if (right && left) sagittal[k] = crossing(right->x - left->x, right->slope_x - left->slope_x);
+    }
+    FieldFocus& focus = foci.emplace_back(FieldFocus{field, limit_at_0(tangential), limit_at_0(sagittal)});
     // Along the light, which may run towards -z behind mirrors.
     const double forwards = lens.light_direction(lens.surface_count());
     for (auto* distance : {&focus.tangential_mm, &focus.sagittal_mm}) {
@@ -166,17 +176,24 @@ std::vector<FieldDistortion> distortion_percent(const Lens& lens, double subject
     if (!hit) return {};
     return hit->y;
   };
-  constexpr double small = 1e-4;  // rad; the ratio differs by 1e-8 from its limit
-  const auto near_axis = height(small);
+  double widest = 0;
+  for (const double field : fields_rad) widest = std::max(widest, std::abs(field));
+  const double small = widest > 0 ? std::min(4e-4, widest / 4) : 4e-4;  // rad; some telescopes have fields of 1e-3
+  std::array<std::optional<double>, 3> scales;                          // height over field
+  for (std::size_t k = 0; k < scales.size(); ++k) {
+    const double near_axis = std::ldexp(small, -static_cast<int>(k));
+    if (const auto found = height(near_axis)) scales[k] = *found / near_axis;
+  }
+  const auto scale = limit_at_0(scales);
   std::vector<FieldDistortion> result;
   for (const double field : fields_rad) {
     FieldDistortion& own = result.emplace_back(FieldDistortion{field, height(field), {}, {}});
-    if (!own.height_mm || !near_axis) continue;
-    const auto percent = [&](double projected, double limit) {
-      return field == 0 ? 0 : 100 * (*own.height_mm / (*near_axis / limit * projected) - 1);
+    if (!own.height_mm || !scale) continue;
+    const auto percent = [&](double projected) {
+      return field == 0 ? 0 : 100 * (*own.height_mm / (*scale * projected) - 1);
     };
-    own.f_theta_percent = percent(field, small);
-    if (std::abs(field) < std::numbers::pi / 2) own.f_tan_theta_percent = percent(std::tan(field), std::tan(small));
+    own.f_theta_percent = percent(field);
+    if (std::abs(field) < std::numbers::pi / 2) own.f_tan_theta_percent = percent(std::tan(field));
   }
   return result;
 }

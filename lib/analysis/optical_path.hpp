@@ -6,6 +6,7 @@
 #include <optional>
 #include <vector>
 
+#include "petzval/core/config.hpp"
 #include "petzval/core/geometry.hpp"
 #include "petzval/core/ray.hpp"
 #include "petzval/lens/lens.hpp"
@@ -31,7 +32,7 @@ struct PathRay {
 ///
 /// The path ends at the plane wavefront of the ray through the image point. Its length does not depend on a distant
 /// reference sphere, so that it keeps its digits for telecentric lenses.
-class OpticalPaths {
+class PETZVAL_API OpticalPaths {
  public:
   /// @param image  image point, lens frame, mm
   /// @throws Error under the conditions of pupils()
@@ -58,7 +59,7 @@ class OpticalPaths {
 };
 
 /// Wavefront errors of the rays of one point and wavelength, relative to the sphere of wavefront().
-class SphereErrors {
+class PETZVAL_API SphereErrors {
  public:
   /// nullopt if the chief ray does not reach the film. @throws Error under the conditions of aim()
   static std::optional<SphereErrors> of(const Lens& lens, const FieldPoint& point, std::size_t wavelength);

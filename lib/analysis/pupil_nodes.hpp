@@ -37,8 +37,9 @@ std::vector<PupilNode> pupil_nodes(const PupilRegion& pupil) {
 }
 
 /// The same nodes, then the ends of the spans, which have no area: the extremes of a pupil.
-inline std::vector<PupilNode> pupil_nodes_and_rim(const PupilRegion& pupil) {
-  std::vector<PupilNode> result = pupil_nodes(pupil);
+template <std::size_t radii = 8>
+std::vector<PupilNode> pupil_nodes_and_rim(const PupilRegion& pupil) {
+  std::vector<PupilNode> result = pupil_nodes<radii>(pupil);
   for (const PupilSpan& span : pupil.spans) result.push_back({{span.to.x, span.to.y}, 0, span.direction});
   return result;
 }

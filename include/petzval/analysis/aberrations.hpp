@@ -54,7 +54,8 @@ struct FieldFocus {
 /// @param wavelength  a compiled wavelength
 /// @throws Error      under the conditions of aim()
 ///
-/// Accuracy: derivatives by central differences over 0.002 semi-diameters of the stop; 1e-6 of the foci.
+/// Accuracy: central differences over 0.004, 0.002 and 0.001 semi-diameters of the stop, extrapolated to 0; 1e-6 of the
+/// foci, also for aspheres with r^3 (tests/analysis/aberrations_test.cpp).
 PETZVAL_API std::vector<FieldFocus> field_curvature(const Lens& lens, double subject_z,
                                                     std::span<const double> fields_rad, Wavelength wavelength = {});
 

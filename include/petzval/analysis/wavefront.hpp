@@ -37,7 +37,9 @@ enum class PupilCoordinates : std::uint8_t {
 struct WavefrontOptions {
   Wavelength wavelength{};  ///< a compiled wavelength
   PupilCoordinates coordinates = PupilCoordinates::stop;
-  std::size_t directions = 48;  ///< directions about the middle of the pupil, a multiple of 3, at least 12
+  /// Directions about the middle of the pupil, a multiple of 3, at least 12; up to nine times as many if the Strehl
+  /// ratio needs them.
+  std::size_t directions = 48;
 };
 
 /// Wavefront error of one field and wavelength over the exit pupil, in waves.
@@ -61,15 +63,19 @@ struct Wavefront {
   /// Strehl ratio at the image point with the smallest standard deviation, for equal amplitude over the pupil. nullopt
   /// if rms_without_tilt exceeds half a wave, because such an image has no single peak.
   std::optional<double> strehl{};
+  double strehl_error = 0;                      ///< as sampling_error_waves, for strehl; 0 without it
   std::array<double, zernike_terms> zernike{};  ///< coefficients in waves; zernike[k] belongs to zernike_fringe(k)
   double zernike_residual_waves = 0;            ///< standard deviation of the wavefront about the polynomials
-  double sampling_error_waves = 0;              ///< change of rms_waves with a third of the directions
+  /// Larger change of rms_waves with a third of the directions and with half of the nodes along each direction.
+  double sampling_error_waves = 0;
 };
 
 /// Wavefront error over the exit pupil, by optical paths of exact rays.
 ///
-/// Rays lie on Gauss-Legendre nodes inside the vignetted pupil. Zernike coefficients are a least-squares fit in the
-/// unit circle of the coordinates; if the pupil is vignetted, the polynomials are not orthogonal over the rays.
+/// Rays lie on Gauss-Legendre nodes inside the vignetted pupil: 16 along each direction, 32 if strehl_error exceeds
+/// 1e-4. Lenses with thousands of surfaces keep the first number of directions, with a larger strehl_error. Zernike
+/// coefficients are a least-squares fit in the unit circle of the coordinates; if the pupil is vignetted, the
+/// polynomials are not orthogonal over the rays.
 ///
 /// @param lens   the focused lens
 /// @param point  the scene point
@@ -78,7 +84,7 @@ struct Wavefront {
 /// @throws Error if the number of directions is not a multiple of 3 or below 12, or under the conditions of aim()
 ///
 /// Accuracy: paths within 1e-8 waves of sums in long double; rms_waves and Zernike coefficients within
-/// sampling_error_waves of ten times the rays (tests/analysis/wavefront_test.cpp).
+/// sampling_error_waves, and strehl within strehl_error, of ten times the rays (tests/analysis/wavefront_test.cpp).
 PETZVAL_API std::optional<Wavefront> wavefront(const Lens& lens, const FieldPoint& point,
                                                const WavefrontOptions& options = {});
 
