@@ -10,6 +10,7 @@
 #include <filesystem>
 #include <iostream>
 #include <string>
+#include <utility>
 
 #include "petzval/analysis/distortion.hpp"
 #include "petzval/analysis/lens_metadata.hpp"
@@ -20,6 +21,7 @@
 #include "petzval/image/exr.hpp"
 #include "support/camera_setup.hpp"
 #include "support/cli.hpp"
+#include "support/design.hpp"
 #include "support/files.hpp"
 #include "support/lens_light.hpp"
 #include "support/load_lens.hpp"
@@ -38,7 +40,9 @@ struct Options {
 };
 
 void write(const Options& options) {
-  const examples::LoadedLens loaded = examples::load_lens(options.lens_file, std::array{petzval::d_line_nm});
+  examples::LensFile source = examples::read_lens(options.lens_file);
+  const double primary_nm = examples::light_of(source).primary_nm;  // as in `petzval report`
+  const examples::LoadedLens loaded = examples::compiled(std::move(source), std::array{primary_nm});
   petzval::Lens lens = examples::focused(loaded, options.setup);
   if (const auto coated = examples::coated(lens, options.coatings)) lens = *coated;
   const auto [width, height] = options.setup.film_size();

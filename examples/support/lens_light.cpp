@@ -10,6 +10,7 @@
 
 #include "bokeh.hpp"
 #include "number_csv.hpp"
+#include "petzval/analysis/lens_metadata.hpp"
 #include "petzval/core/error.hpp"
 #include "petzval/core/geometry.hpp"
 #include "petzval/glass/glass.hpp"
@@ -101,6 +102,7 @@ LightReport report_light(const Report& report, const std::string& coatings, cons
   for (const double degrees : result.fields_deg) fields.push_back(petzval::radians(degrees));
   result.values = petzval::transmittance(colours, subject_z(report.subject, colours), fields, threads());
   if (visible) result.colour = daylight_behind(*visible, subject_z(report.subject, *visible));
+  result.t_stop = petzval::aperture_state(colours).t_number;
   return result;
 }
 
@@ -136,9 +138,8 @@ Json to_json(const std::optional<LightReport>& light) {
                                      {"field_deg", light->fields_deg[i / wavelengths.size()]},
                                      {"value", or_null(light->values[i].value)}});
   }
-  if (!light->colour) return json;
-  json["t_stop"] = finite_or_null(light->colour->t_stop);
-  json["colour"] = to_json(*light->colour);
+  if (light->t_stop) json["t_stop"] = finite_or_null(*light->t_stop);
+  if (light->colour) json["colour"] = to_json(*light->colour);
   return json;
 }
 
@@ -168,6 +169,12 @@ std::string coatings_in_words(const LightReport& light) {
   return text + (one ? " to air has none and is uncoated" : " to air have none and are uncoated");
 }
 
+std::string t_stop_in_words(const LightReport& light) {
+  if (!light.t_stop || !std::isfinite(*light.t_stop)) return {};
+  const double nm = light.colours.wavelengths_nm()[light.colours.primary_wavelength()];
+  return "T-stop " + number(*light.t_stop, 4) + " at " + number(nm, 6) + " nm";
+}
+
 std::vector<std::string> colour_in_words(const petzval::LensColour& colour) {
   const auto kelvin = [](const std::optional<double>& value) {
     return value ? ", " + number(std::round(*value), 6) + " K" : std::string();
@@ -177,8 +184,7 @@ std::vector<std::string> colour_in_words(const petzval::LensColour& colour) {
     const double rounded = std::round(10 * *mired) / 10;
     shift = "; " + number(std::abs(rounded), 4) + " mired" + (rounded == 0 ? "" : rounded < 0 ? " cooler" : " warmer");
   }
-  const std::string passed = number(100 * colour.luminous_transmittance, 4) + " % of daylight D65";
-  return {std::isfinite(colour.t_stop) ? "T-stop " + number(colour.t_stop, 4) + " (" + passed + ")" : passed,
+  return {number(100 * colour.luminous_transmittance, 4) + " % of daylight D65",
           "White light becomes x = " + number(colour.xy[0], 4) + ", y = " + number(colour.xy[1], 4) +
               kelvin(colour.cct_k) + " (CIE 1931; D65 is " + number(colour.light_xy[0], 4) + ", " +
               number(colour.light_xy[1], 4) + kelvin(colour.light_cct_k) + ")" + shift};
@@ -192,7 +198,8 @@ std::string to_text(const LightReport& light) {
          << number(light.colours.wavelengths_nm()[wavelength], 6)
          << " nm: " << (value ? number(100 * *value, 4) + " %" : "no ray passes") << '\n';
   }
-  if (!light.visible) text << "  no T-stop and colour: indices or reflectances from 400 to 700 nm are unknown\n";
+  if (const std::string words = t_stop_in_words(light); !words.empty()) text << "  " << words << '\n';
+  if (!light.visible) text << "  no colour: indices or reflectances from 400 to 700 nm are unknown\n";
   if (light.visible && !light.colour) text << "  no T-stop and colour: no light passes\n";
   if (!light.colour) return text.str();
   for (const std::string& line : colour_in_words(*light.colour)) text << "  " << line << '\n';

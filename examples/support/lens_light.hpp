@@ -30,6 +30,7 @@ struct LightReport {
   /// The lens at 400 to 700 nm, less if a table of reflectances covers less; nullopt if its indices are unknown.
   std::optional<petzval::Lens> visible;
   std::optional<petzval::LensColour> colour;  ///< in daylight (D65); nullopt: no ray passes or no `visible`
+  std::optional<double> t_stop{};             ///< petzval::ApertureState::t_number; nullopt: no ray passes
 };
 
 /// Wavelengths from 400 to 700 nm in steps of 10 that all tables of reflectances of the lens cover; empty if there are
@@ -54,7 +55,9 @@ Json to_json(const std::optional<LightReport>& light);
 std::string to_text(const LightReport& light);
 /// "coatings: of the file; surfaces 3 and 5 to air have none and are uncoated".
 std::string coatings_in_words(const LightReport& light);
-/// "T-stop 1.4 (90 % of daylight D65)", then the colour.
+/// "T-stop 1.4 at 587.562 nm"; empty without a T-stop.
+std::string t_stop_in_words(const LightReport& light);
+/// "90 % of daylight D65", then the colour.
 std::vector<std::string> colour_in_words(const petzval::LensColour& colour);
 Json to_json(const petzval::LensColour& colour);
 

@@ -12,6 +12,7 @@
 #include "petzval/analysis/transmittance.hpp"
 #include "petzval/core/error.hpp"
 #include "petzval/paraxial/first_order.hpp"
+#include "petzval/pupil/f_number.hpp"
 #include "petzval/pupil/illumination.hpp"
 
 namespace petzval {
@@ -34,19 +35,23 @@ Film film_of(const Prescription& prescription, const Lens& lens) {
   return {.width_mm = 3 * unit, .height_mm = 2 * unit, .columns = 1920, .rows = 1280};
 }
 
-LensState lens_state(const LensDistortion& distortion) {
-  const Lens& lens = distortion.camera().lens();
-  const Pinhole& pinhole = distortion.pinhole();
-  const double film_z = distortion.camera().film().z();
-  LensState state;
-  state.effective_focal_length_mm = first_order(lens, {}, main_meridian(lens)).effective_focal_length;
-  state.pinhole_focal_length_mm = pinhole.focal_length_mm.y;
-  state.f_number = paraxial_f_number(lens);
+ApertureState aperture_state(const Lens& lens) {
+  ApertureState state{.f_number = real_f_number(lens)};
   state.area_f_number = std::max(state.f_number, area_f_number(lens));
   if (states_coatings(lens)) {
     const auto light = transmittance(lens, FieldPoint{.z = -std::numeric_limits<double>::infinity()});
     if (light) state.t_number = state.area_f_number / std::sqrt(*light);
   }
+  return state;
+}
+
+LensState lens_state(const LensDistortion& distortion) {
+  const Lens& lens = distortion.camera().lens();
+  const Pinhole& pinhole = distortion.pinhole();
+  const double film_z = distortion.camera().film().z();
+  LensState state{aperture_state(lens)};
+  state.effective_focal_length_mm = first_order(lens, {}, main_meridian(lens)).effective_focal_length;
+  state.pinhole_focal_length_mm = pinhole.focal_length_mm.y;
   state.focus_distance_mm = film_z - pinhole.subject_z_mm;
   state.entrance_pupil_offset_mm = film_z - pinhole.z_mm;
   return state;

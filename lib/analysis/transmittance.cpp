@@ -194,11 +194,9 @@ std::optional<LensColour> lens_colour(const Lens& lens, double subject_z, const 
     const double sum = xyz[0] + xyz[1] + xyz[2];
     return std::array{xyz[0] / sum, xyz[1] / sum};
   };
-  const double luminous = behind[1] / white[1];
   const auto own = xy(behind), of_light = xy(white);
-  return LensColour{
-      luminous, area_f_number(lens) / std::sqrt(luminous), own,
-      of_light, correlated_colour_temperature(own, table), correlated_colour_temperature(of_light, table)};
+  return LensColour{behind[1] / white[1], own, of_light, correlated_colour_temperature(own, table),
+                    correlated_colour_temperature(of_light, table)};
 }
 
 }  // namespace petzval

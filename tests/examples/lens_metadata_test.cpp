@@ -36,6 +36,23 @@ TEST_F(LensMetadata, StatesTStopsWithCoatings) {
   EXPECT_NEAR(parts[1].numbers.at("tStop"), json.at("t_stop").get<double>(), 1e-5);
 }
 
+// The number asked for, and one T-stop, in the report and in the files.
+TEST_F(LensMetadata, HasTheFNumberAndTStopOfTheReport) {
+  const std::string file = lens("planar_50mm_f1.4");
+  for (const std::string number : {"1.4", "2"}) {
+    const std::vector<std::string> state{file, "--f-number", number, "--coatings", "mgf2", "--json"};
+    auto shot = state;
+    shot.insert(shot.end(), {"--focus", "inf", "--out", path("out")});
+    const auto report = nlohmann::json::parse(run("report", state).out);
+    const auto metadata = nlohmann::json::parse(run("metadata", shot).out);
+    const auto sample = read_json(path("out/planar_50mm_f1.4.opentrackio.json")).at("lens");
+    EXPECT_NEAR(report.at("f_number").get<double>(), std::stod(number), 2e-3);
+    EXPECT_NEAR(metadata.at("f_number").get<double>(), report.at("f_number").get<double>(), 1e-9);
+    EXPECT_NEAR(sample.at("fStop").get<double>(), report.at("f_number").get<double>(), 1e-9);
+    EXPECT_NEAR(metadata.at("t_stop").get<double>(), report.at("t_stop").get<double>(), 1e-9);
+  }
+}
+
 // The files contain the distance from the film, as the formats require, for any origin of distances on the command
 // line.
 TEST_F(LensMetadata, ConvertsDistancesToTheFormat) {

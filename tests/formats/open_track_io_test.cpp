@@ -118,7 +118,7 @@ TEST(OpenTrackIo, HasTheKeysAndUnitsOfTheStandard) {
                                                  "focusDistance", "pinholeFocalLength", "projectionOffset"}));
   EXPECT_NEAR(sample.at("focusDistance").get<double>(), 2, 1e-8);
   EXPECT_NEAR(sample.at("entrancePupilOffset").get<double>(), (lens.film_z() - pupils(lens).entrance.z) / 1000, 1e-12);
-  EXPECT_NEAR(sample.at("fStop").get<double>(), paraxial_f_number(lens), 1e-12);
+  EXPECT_NEAR(sample.at("fStop").get<double>(), real_f_number(lens), 1e-12);
   const Lens coated = with_coating(lens, Coating::quarter_wave());
   const double passed = transmittance(coated, FieldPoint{.z = -std::numeric_limits<double>::infinity()}).value();
   EXPECT_NEAR(written(coated, film, identity).at("lens").at("tStop").get<double>() * std::sqrt(passed),

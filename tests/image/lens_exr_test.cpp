@@ -56,7 +56,7 @@ TEST(LensExr, HasStandardAttributesWithTypesAndUnits) {
   const Imf::Header& header = read.header(0);
   ASSERT_TRUE(Imf::hasFocus(header) && Imf::hasAperture(header));
   EXPECT_NEAR(Imf::focus(header), 2, 1e-6);  // metres
-  EXPECT_NEAR(Imf::aperture(header), paraxial_f_number(lens), 1e-6);
+  EXPECT_NEAR(Imf::aperture(header), real_f_number(lens), 1e-6);
   const auto number = [&](const char* name) {
     return double{header.typedAttribute<Imf::FloatAttribute>(name).value()};
   };

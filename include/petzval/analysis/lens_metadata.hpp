@@ -30,22 +30,32 @@ PETZVAL_API LensIdentity identity_of(const Prescription& prescription);
 /// @throws Error unless the diagonal is positive and finite; an image circle above 1000 focal lengths is infinite
 PETZVAL_API Film film_of(const Prescription& prescription, const Lens& lens);
 
-/// Lens settings, with the terms of OpenEXR and OpenTrackIO.
-struct LensState {
-  double effective_focal_length_mm = 0;  ///< in the main meridian
-  double pinhole_focal_length_mm = 0;    ///< vertical focal length of Pinhole
-  double f_number = 0;                   ///< effective focal length over the diameter of the paraxial entrance pupil
+/// The f-numbers and the T-stop of a lens, for reports and file formats.
+struct ApertureState {
+  double f_number = 0;       ///< real_f_number(), the argument of with_f_number() if the lens is stopped down
   double area_f_number = 0;  ///< area_f_number(), at least f_number: with blades and obscurations, without losses
   /// T-stop: area_f_number divided by the root of the transmittance() of the axis at infinity, at the primary
   /// wavelength; nullopt unless a coating is stated (states_coatings()): the losses are unknown.
   std::optional<double> t_number{};
-  double focus_distance_mm = 0;         ///< from the film to the subject; infinite at infinity
-  double entrance_pupil_offset_mm = 0;  ///< from the film to the entrance pupil, positive towards the scene
+};
+
+/// The aperture state of a lens at its primary wavelength.
+///
+/// @throws Error under the conditions of real_f_number() and area_f_number(), and of transmittance() if a coating is
+///               stated
+PETZVAL_API ApertureState aperture_state(const Lens& lens);
+
+/// Lens settings, with the terms of OpenEXR and OpenTrackIO.
+struct LensState : ApertureState {
+  double effective_focal_length_mm = 0;  ///< in the main meridian
+  double pinhole_focal_length_mm = 0;    ///< vertical focal length of Pinhole
+  double focus_distance_mm = 0;          ///< from the film to the subject; infinite at infinity
+  double entrance_pupil_offset_mm = 0;   ///< from the film to the entrance pupil, positive towards the scene
 };
 
 /// The lens settings of a camera, with the subject at Pinhole::subject_z_mm.
 ///
-/// @throws Error under the conditions of scene_point(), and of transmittance() if a coating is stated
+/// @throws Error under the conditions of scene_point() and aperture_state()
 PETZVAL_API LensState lens_state(const LensDistortion& distortion);
 
 /// Polynomial falloff of the irradiance towards the edge of the film, relative to the axis.

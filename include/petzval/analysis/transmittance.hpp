@@ -75,14 +75,13 @@ PETZVAL_API double area_f_number(const Lens& lens, Wavelength wavelength = {});
 /// The effect of the transmittance of the axis on white light.
 struct LensColour {
   double luminous_transmittance = 0;  ///< of CIE Y
-  double t_stop = 0;                  ///< area_f_number() divided by the root of luminous_transmittance
   std::array<double, 2> xy{};         ///< CIE 1931 chromaticity of the light behind the lens
   std::array<double, 2> light_xy{};   ///< chromaticity of the light
   std::optional<double> cct_k{};      ///< correlated_colour_temperature() of the light behind the lens
   std::optional<double> light_cct_k{};
 };
 
-/// T-stop and colour of a lens on the axis.
+/// The colour of a lens on the axis.
 ///
 /// @param lens      the lens, compiled for several wavelengths of the visible spectrum; its transmittance is linear
 ///                  between them and constant outside
@@ -90,7 +89,7 @@ struct LensColour {
 /// @param light     the light
 /// @param table     the colour matching functions
 /// @return          nullopt if no ray or no light passes
-/// @throws Error    under the conditions of transmittance(), area_f_number() and tristimulus()
+/// @throws Error    under the conditions of transmittance() and tristimulus()
 PETZVAL_API std::optional<LensColour> lens_colour(const Lens& lens, double subject_z, const Spectrum& light,
                                                   const ColourMatching& table);
 
