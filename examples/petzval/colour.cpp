@@ -259,7 +259,8 @@ int commands::colour(int argc, char** argv) {
               {"criterion", options.focus.criterion},
               {"white_point", options.white_point},
               {"primary_nm", set[lens.primary_wavelength()]},
-              {"rgb_weights", weights}};
+              {"rgb_weights", weights},
+              {"frame", examples::picture_frame}};
     json.update(to_json(colour, options));
     const std::filesystem::path folder = options.out_folder;
     examples::make_folder(folder);

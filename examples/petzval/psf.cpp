@@ -184,6 +184,7 @@ Json to_json(std::span<const Picture> pictures, const examples::LoadedLens& load
             {"fields_deg", options.fields_deg},
             {"samples", options.samples},
             {"with_diffraction", options.diffraction},
+            {"frame", examples::picture_frame},
             {"results", Json::array()}};
   const auto sum = [](const auto& rays) { return std::accumulate(rays.begin(), rays.end(), std::uint64_t(0)); };
   for (const Picture& p : pictures) {

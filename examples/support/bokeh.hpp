@@ -17,6 +17,11 @@
 
 namespace examples {
 
+/// The axes of pictures of point lights, for the key "frame" of reports.
+inline constexpr const char* picture_frame =
+    "rows from the top; rotated by 180 degrees against the film, as a photograph: right is -x, up is -y; positions in "
+    "mm are on the film";
+
 /// A point light and how the lens is focused.
 struct BokehSetup {
   /// Distance of the light from `origin`, mm; may be infinite. At fields of 90 degrees and more, along the ray from the
