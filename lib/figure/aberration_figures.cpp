@@ -223,9 +223,12 @@ std::string seidel_figure(const Lens& lens, double subject_z, const SeidelSums& 
     });
     const double range = round_range(1000 * largest, 1e-6);
     Axes axes(svg, left, y, width - left - 24, height,
-              {first - 0.5, end - 0.5,
-               "surface, from " + std::to_string(first_surface_number) + "; the last bars are the sums"},
+              {.from = first - 0.5,
+               .to = end - 0.5,
+               .title = "surface, from " + std::to_string(first_surface_number) + "; the last bars are the sums",
+               .ticks_to = end - 3},
               {-range, range, "\u00b5m"});
+    svg.text(axes.x(end - 1), y + height + 16, "sum", figure_detail::small_centred);
     each([&](double place, const SeidelTerms& at) {
       const double bar = 0.8 / static_cast<double>(terms.size());
       for (std::size_t k = 0; k < terms.size(); ++k) {

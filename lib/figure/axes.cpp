@@ -26,7 +26,8 @@ void for_ticks(const Axis& axis, int most, Draw draw) {
   }
   double step = round_length(span / most);
   while (span / step > most) step = round_length(2.5 * step);
-  for (double k = std::ceil(axis.from / step - 1e-9); k * step <= axis.to + 1e-9 * step; ++k) {
+  const double last = std::min(axis.to, axis.ticks_to);
+  for (double k = std::ceil(axis.from / step - 1e-9); k * step <= last + 1e-9 * step; ++k) {
     draw(k * step, to_text(k == 0 ? 0.0 : k * step, 6));  // no "-0"
   }
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <limits>
 #include <span>
 #include <string>
 #include <string_view>
@@ -16,6 +17,7 @@ struct Axis {
   double from = 0, to = 1;
   std::string title;
   bool powers_of_ten = false;  ///< true: values are decimal logarithms; ticks show the numbers
+  double ticks_to = std::numeric_limits<double>::infinity();  ///< larger values have no ticks
 };
 
 /// A diagram: a frame with ticks at round values, and curves clipped to the frame.

@@ -26,7 +26,7 @@ using figure_detail::svg_number;
 
 constexpr double cell = 190, gap = 14,
                  caption_height = 22;  // side of a cell, space between cells, height of the line below
-constexpr double left = 118, top = 112, bottom = 76;
+constexpr double left = 118, top = 112, bottom = 108;
 constexpr std::size_t drawn_rays = 600;
 
 class SpotFigure {
@@ -146,21 +146,19 @@ class SpotFigure {
     figure_detail::draw_scale_bar(svg_, left, y, cell / 2 / limit_, cell / 2, ",  the same in all cells");
     svg_.text(
         gap, y + 24,
-        "Origin: centroid of all rays of the field. RMS and max: radii about the centroid of the rays in the cell. "
-        "Wavelengths have " +
-            figure_detail::weights_text(weights_) + ".",
+        "Origin: centroid of all rays of the field. RMS and max: radii about the centroid of the rays in the cell.",
         small_text);
+    svg_.text(gap, y + 40,
+              std::to_string(spots_.front().sent) + " rays sent per spot, at most " + std::to_string(drawn_rays) +
+                  " drawn. Wavelengths have " + figure_detail::weights_text(weights_) + ".",
+              small_text);
     // A closed stop has no Airy circle.
-    const std::string circle =
-        !std::isfinite(f_number_)
-            ? std::string()
-            : "Chief ray: through the centre of the stop. Dashed: Airy circle, 1.22 wavelength N / n, N = " +
+    if (!std::isfinite(f_number_)) return;
+    svg_.text(gap, y + 56,
+              "Chief ray: through the centre of the stop. Dashed: Airy circle, 1.22 wavelength N / n, N = " +
                   to_text(f_number_, 3) + " on the film side; " +
                   figure_detail::length_text(airy(lens_.primary_wavelength())) + " at " +
-                  to_text(lens_.wavelengths_nm()[lens_.primary_wavelength()], 6) + " nm. ";
-    svg_.text(gap, y + 40,
-              circle + std::to_string(spots_.front().sent) + " rays sent per spot, at most " +
-                  std::to_string(drawn_rays) + " drawn.",
+                  to_text(lens_.wavelengths_nm()[lens_.primary_wavelength()], 6) + " nm.",
               small_text);
   }
 
