@@ -31,6 +31,7 @@ constexpr examples::Range film_shift{-1e6, 1e6, "a number from -1000000 to 10000
 struct Options {
   examples::LensInput lens_file;
   std::string out_folder, film = "focus";
+  bool film_given = false;
   std::vector<double> field_deg, wavelengths_nm;  // empty: the fields and wavelengths of the file
   double subject_mm = 0, defocus_mm = 0, f_number = 0;
   bool subject_given = false;
@@ -47,6 +48,7 @@ struct Setting {
   examples::ReportFields fields;
   double subject_mm = 0;
   std::string origin;
+  bool film_of_file = false;
 };
 
 Setting setting_of(const Options& options) {
@@ -67,12 +69,20 @@ Setting setting_of(const Options& options) {
     subject_mm = loaded.prescription.design.object_distance_mm;
   }
   petzval::Lens lens = options.f_number > 0 ? examples::stopped_to(loaded.lens, options.f_number) : loaded.lens;
-  if (options.film == "focus")
-    lens = examples::for_flag("--at", [&] { return petzval::with_focus(lens, subject_mm, focus.options()); });
-  lens = petzval::with_film(lens, lens.film_z() + options.defocus_mm);
+  bool film_of_file = options.film == "file";
+  if (!film_of_file) try {
+      lens = examples::for_flag("--at", [&] { return petzval::with_focus(lens, subject_mm, focus.options()); });
+    } catch (const petzval::Error& error) {
+      // Field lenses and eyepieces: the film of the file may lie on or before the last vertex.
+      if (options.subject_given || options.film_given) throw;
+      film_of_file = true;
+      examples::note(std::string(error.what()) + "; the film of the file is used");
+    }
+  if (options.defocus_mm != 0) lens = petzval::with_film(lens, lens.film_z() + options.defocus_mm);
   examples::ReportFields fields{options.field_deg, false};
   if (fields.degrees.empty()) fields = examples::fields_of(loaded, loaded.lens);
-  return {std::move(loaded), std::move(lens), std::move(light), std::move(fields), subject_mm, focus.origin};
+  return {std::move(loaded), std::move(lens), std::move(light), std::move(fields),
+          subject_mm,        focus.origin,    film_of_file};
 }
 
 std::vector<petzval::Spot> spots(const Setting& setting, bool fields_given, std::uint32_t samples) {
@@ -125,8 +135,8 @@ Json to_json(const std::vector<petzval::Spot>& all, const Setting& setting, cons
                     {"rays_sent", spot.sent},
                     {"rays_transmitted", spot.x.size()},
                     {"film_z_mm", setting.lens.film_z()},
-                    {"film", options.film},
-                    {"criterion", options.film == "focus" ? Json(options.focus.criterion) : Json()},
+                    {"film", setting.film_of_file ? "file" : "focus"},
+                    {"criterion", setting.film_of_file ? Json() : Json(options.focus.criterion)},
                     {"subject_distance_mm", examples::finite_or_null(setting.subject_mm)},
                     {"distance_from", setting.origin},
                     {"dispersion", petzval::name(setting.lens.dispersion())}});
@@ -161,7 +171,7 @@ int commands::spots(int argc, char** argv) {
                                        "distance of the subject (mm), or inf")
                       ->default_str("subject of the file");
   examples::add_focus(app, options.focus);
-  examples::add_film_choice(app, options.film, options.film);
+  const auto* film = examples::add_film_choice(app, options.film, options.film);
   examples::add_length(app, "--defocus", options.defocus_mm, film_shift,
                        "shift of the film away from the lens (mm), -1000000 to 1000000");
   examples::add_samples(app, options.samples);
@@ -170,6 +180,7 @@ int commands::spots(int argc, char** argv) {
 
   return examples::run(app, argc, argv, [&] {
     options.subject_given = subject->given();
+    options.film_given = film->given();
     const Setting setting = setting_of(options);
     const auto all = spots(setting, !options.field_deg.empty(), options.samples);
 

@@ -121,7 +121,9 @@ Diffraction diffraction(double airy_radius_mm, const SpotSize& size) noexcept {
 
 Spot analysis_detail::trace_spot(const Lens& lens, const FieldPoint& point, std::size_t wavelength,
                                  std::uint32_t samples) {
-  RayBundle rays = trace_bundle(lens, PupilSampler(pupil_boundary(lens, point, wavelength)), samples, 0, 1, 0, true);
+  const std::size_t directions = lens.surface_count() > 512 ? 32 : 256;  // seconds for thousands of surfaces
+  const PupilSampler pupil(pupil_boundary(lens, point, wavelength, directions));
+  RayBundle rays = trace_bundle(lens, pupil, samples, 0, 1, 0, true);
   Spot spot;
   spot.point = point;
   spot.wavelength = wavelength;

@@ -74,6 +74,7 @@ double image_circle_mm(const Lens& lens, double least_fraction, Wavelength wavel
 }
 
 std::optional<double> relative_illumination(const Lens& lens, const FieldPoint& point, Wavelength wavelength) {
+  if (lens.film_z() == lens.surfaces().back().vertex_z) return {};  // no plane separates directions of its light
   const double axis = film_irradiance(lens, {}, wavelength);
   const AimedRay chief = chief_ray(lens, point, wavelength);
   if (axis == 0 || !chief || !chief.end.transmitted()) return {};

@@ -108,4 +108,25 @@ YFLN 0.0 6.0 -10.0
   EXPECT_NE(read(path("spots/relay_spots.svg")).find("subject at z = -200 mm"), std::string::npos);
 }
 
+// A field lens with the film on its last vertex, and an eyepiece with the film in front of the last vertex.
+TEST_F(SpotDiagram, ReadsFilmsOnAndBeforeTheLastVertex) {
+  for (const std::string gap : {"0", "-12"}) {
+    write("field.json",
+          R"({"format": "petzval-lens 1", "name": "field lens", "source": {"design": "test", "numbers": "test"},
+      "focal_length_mm": null, "f_number": null, "half_field_deg": 3, "surfaces": [
+      {"radius": 50, "thickness": 5, "nd": 1.5168, "vd": 64.2, "semi_diameter": 10, "stop": true},
+      {"radius": -50, "thickness": 60, "semi_diameter": 10},
+      {"radius": 30, "thickness": 2, "nd": 1.5168, "vd": 64.2, "semi_diameter": 10},
+      {"radius": 0, "thickness": )" +
+              gap + R"(, "semi_diameter": 10}]})");
+    const auto outcome = run("spots", {path("field.json"), "--out", path("spots"), "--json"});
+    ASSERT_EQ(outcome.status, 0) << outcome.err;
+    const auto json = nlohmann::json::parse(outcome.out);
+    EXPECT_EQ(json[0]["film"], "file");
+    EXPECT_GT(json[0]["rays_transmitted"].get<int>(), 0);
+    EXPECT_EQ(json[0]["relative_illumination"].is_null(), gap == "0");
+    EXPECT_EQ(run("report", {path("field.json"), "--out", path("report")}).status, 0);
+  }
+}
+
 }  // namespace

@@ -23,9 +23,10 @@ namespace petzval {
 PETZVAL_API double film_irradiance(const Lens& lens, const FilmPoint& point, Wavelength wavelength = {});
 
 /// Irradiance at the film point of a scene point's chief ray, relative to the axis: natural and optical vignetting,
-/// with distortion and pupil aberration. nullopt if the axis is dark or no chief ray reaches the film.
+/// with distortion and pupil aberration. nullopt if the axis is dark, no chief ray reaches the film, or the film lies
+/// in the plane of the last vertex.
 ///
-/// @throws Error  if scene_point() does, or the film lies in the plane of the last vertex
+/// @throws Error  if scene_point() does
 PETZVAL_API std::optional<double> relative_illumination(const Lens& lens, const FieldPoint& point,
                                                         Wavelength wavelength = {});
 
